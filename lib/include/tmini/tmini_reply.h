@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Commands, the replies they are answered with, and what those replies say (sections 3 and 4).
+ * Pure functions, any context; they read `content`, keep nothing and never wait. */
+
+#ifndef TMINI_REPLY_H
+#define TMINI_REPLY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "tmini_parser.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A command is two bytes: this one and the code. */
+#define TMINI_COMMAND_SIGN 0xA5u
+
+typedef enum {
+    TMINI_COMMAND_FASTER_TENTH = 0x09, /* Scan frequency + 0.1 Hz. */
+    TMINI_COMMAND_SLOWER_TENTH = 0x0A,
+    TMINI_COMMAND_FASTER_ONE = 0x0B, /* Scan frequency + 1 Hz. */
+    TMINI_COMMAND_SLOWER_ONE = 0x0C,
+    TMINI_COMMAND_GET_FREQUENCY = 0x0D,
+    TMINI_COMMAND_REBOOT = 0x40,
+    TMINI_COMMAND_START = 0x60,
+    TMINI_COMMAND_STOP = 0x65,
+    TMINI_COMMAND_GET_INFO = 0x90,
+    TMINI_COMMAND_GET_HEALTH = 0x92,
+} tmini_command_t;
+
+#define TMINI_INFO_SIZE 20u
+#define TMINI_HEALTH_SIZE 3u
+#define TMINI_FREQUENCY_SIZE 4u
+#define TMINI_SERIAL_DIGITS 16u
+
+/* Models that speak this protocol (section 9.15). */
+#define TMINI_MODEL_T_MINI_PRO 150u
+#define TMINI_MODEL_T_MINI_PLUS 151u
+
+typedef struct {
+    uint8_t model; /* TMINI_MODEL_T_MINI_PLUS, … */
+    uint8_t firmware_major;
+    uint8_t firmware_minor;
+    uint8_t hardware;
+    uint8_t serial[TMINI_SERIAL_DIGITS]; /* Digits as numbers 0 to 9, not characters. */
+} tmini_info_t;
+
+/* Faulty modules. The same bits in a health reply and in CT information (sections 4 and 7). */
+typedef enum {
+    TMINI_FAULT_SENSOR = 1 << 0,
+    TMINI_FAULT_ENCODER = 1 << 1,        /* Rotor blocked, opto-coupler or code disc. */
+    TMINI_FAULT_WIRELESS_POWER = 1 << 2, /* Tested once, at power-up, like the next two. */
+    TMINI_FAULT_PD = 1 << 3,             /* Laser feedback voltage. */
+    TMINI_FAULT_LD = 1 << 4,             /* Laser drive current. */
+    TMINI_FAULT_DATA = 1 << 5,           /* A revolution without one valid range: covered? */
+} tmini_fault_t;
+
+#define TMINI_FAULT_MASK 0x3Fu
+
+typedef struct {
+    uint8_t faults;      /* A combination of tmini_fault_t; 0: healthy. */
+    uint16_t error_code; /* Details of the faulty module; undocumented. */
+} tmini_health_t;
+
+/* Writes to `shape` the header of the reply that `command` is answered with. Returns false for the
+ * commands that are not answered: stop and reboot. */
+bool tmini_reply_shape(tmini_command_t command, tmini_reply_shape_t *shape);
+
+/* Device information from a reply's 20 bytes. The firmware's minor number comes first: real units
+ * do so, against the manual (section 9.4). */
+void tmini_reply_info(const uint8_t content[TMINI_INFO_SIZE], tmini_info_t *info);
+
+/* Health from a reply's 3 bytes. The two reserved bits are left out. */
+void tmini_reply_health(const uint8_t content[TMINI_HEALTH_SIZE], tmini_health_t *health);
+
+/* The scan frequency that is set, in 0.01 Hz, from a reply's 4 bytes. */
+uint32_t tmini_reply_frequency_chz(const uint8_t content[TMINI_FREQUENCY_SIZE]);
+
+/* The serial number as text: 16 characters and a terminating 0; '?' for what is not a digit. */
+void tmini_serial_text(const tmini_info_t *info, char text[TMINI_SERIAL_DIGITS + 1]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

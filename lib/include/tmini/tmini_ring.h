@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* A ring of received bytes: the only thing that the receive interrupt and the rest share.
+ *
+ * One producer (an interrupt, a DMA channel or a receiving task) and one consumer (the context
+ * that parses), without locks: each index is written by one side only. The three producer
+ * functions are for the producer's context, init is for before either runs; everything else is
+ * the consumer's.
+ *
+ *   CPU-fed ring   The producer hands over bytes. Those that find the ring full are refused,
+ *                  counted, and never overwrite anything.
+ *   DMA ring       Circular DMA writes straight into the ring's memory; the producer only
+ *                  publishes how far. The hardware does not see the consumer and may overwrite
+ *                  unread bytes: the consumer detects it, because no more than half the ring may
+ *                  lie unread. The other half is what the hardware may be writing meanwhile, which
+ *                  is why its position must be published at least once every half ring. */
+
+#ifndef TMINI_RING_H
+#define TMINI_RING_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tmini_status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The indices count bytes since init and wrap with size_t; the memory's size is a power of two, so
+ * that a count modulo the size is always the right place. An all-zero ring is safe: its head stands
+ * at its limit, so it refuses every byte. Treat the members as private. */
+typedef struct {
+    uint8_t *memory;
+    size_t mask;    /* The memory's size - 1. */
+    size_t window;  /* Unread bytes that are certainly intact: the size, or half of it with DMA. */
+    size_t head;    /* Written by the producer: bytes stored. */
+    size_t refused; /* Written by the producer: bytes that found the ring full. */
+    size_t limit;   /* Written by the consumer: where head must stop, one size ahead of tail. */
+    size_t tail;    /* The consumer's own: bytes given back. */
+} tmini_ring_t;
+
+/* Empties the ring over `memory`, which the caller owns and keeps for as long as the ring is used.
+ * `size` is a power of two. Call before the producer runs.
+ * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT (null pointer, size not a power of two): the ring then
+ * refuses every byte. */
+tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size, bool dma);
+
+/* Producer of a CPU-fed ring: stores one byte. Interrupt-safe; no loop, no wait. */
+void tmini_ring_put(tmini_ring_t *ring, uint8_t byte);
+
+/* Producer of a CPU-fed ring: stores as many of `count` bytes as fit and refuses the rest.
+ * Interrupt-safe; two block copies at most. */
+void tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count);
+
+/* Producer of a DMA ring: the hardware's next write goes to memory[position]; `position` equal to
+ * the size means 0. Call at least once every half ring, as the half-transfer and
+ * transfer-complete interrupts do. Interrupt-safe; no loop, no wait. */
+void tmini_ring_publish(tmini_ring_t *ring, size_t position);
+
+/* Consumer: bytes stored and not yet discarded. More than `window` of them (DMA only) means that
+ * the hardware may have overwritten the oldest. */
+size_t tmini_ring_unread(const tmini_ring_t *ring);
+
+/* Consumer: the unread byte `offset` bytes from the oldest, which must be below tmini_ring_unread().
+ * A larger offset reads another byte of the ring's memory, never outside it. */
+uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset);
+
+/* Consumer: gives the oldest `count` bytes back to the producer; at most tmini_ring_unread(). */
+void tmini_ring_discard(tmini_ring_t *ring, size_t count);
+
+/* Consumer: the number of bytes refused since init, modulo the range of size_t. */
+size_t tmini_ring_refused(const tmini_ring_t *ring);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Scans: the packets of one revolution gathered in the caller's buffer (section 6).
+ *
+ * A scan runs from a start packet to the next one. What precedes the first start packet is no scan.
+ * If a start packet is lost, the angle swept since the last one tells: two revolutions are never
+ * merged; the first is closed when it has turned full circle, and what follows waits for the next
+ * start packet. (The start angle is not 0 on every unit, section 9.8.)
+ *
+ * All functions: one context, the one that parses; no waiting. */
+
+#ifndef TMINI_SCAN_H
+#define TMINI_SCAN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tmini_packet.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A buffer of this many points holds any revolution at the default 6 Hz and above (section 9.7). */
+#define TMINI_SCAN_POINTS_TYPICAL 800u
+
+/* One revolution. `points` is the caller's own buffer, in order of arrival. */
+typedef struct {
+    const tmini_point_t *points;
+    uint16_t count;           /* Points in the buffer. */
+    uint16_t dropped;         /* Points that did not fit in it. */
+    uint16_t packets;         /* Packets received of this revolution. */
+    uint16_t gaps;            /* Places at which at least one packet is missing. */
+    uint16_t checksum_errors; /* While it was received; at most 65535. */
+    uint16_t frequency_chz;   /* Measured, 0.01 Hz, from the start packet after it; 0: unknown. */
+    uint32_t timestamp_ms;    /* The port's clock when the start packet was parsed. */
+    bool complete;            /* Ended by a start packet, with no gap and nothing dropped. */
+} tmini_scan_t;
+
+/* Treat the members as private, but for `scan` as documented below. */
+typedef struct {
+    tmini_scan_t scan;
+    tmini_point_t *buffer;
+    uint16_t capacity;
+    uint16_t previous_angle_q6; /* Where the last packet ended. */
+    int32_t swept_q6;           /* Angle turned since the start packet. */
+    uint32_t errors_before;     /* The parser's checksum errors when the scan began. */
+    uint8_t filter;
+    bool open;
+} tmini_scan_builder_t;
+
+/* Gathers into `buffer`, which has room for `capacity` points and stays the caller's; applies
+ * `filter`, a combination of tmini_filter_t. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null
+ * pointer, capacity 0 or above 65535, undefined filter bits. */
+tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buffer,
+                               size_t capacity, unsigned filter);
+
+/* Forgets the scan under way: what comes next does not continue it. */
+void tmini_scan_discard(tmini_scan_builder_t *builder);
+
+/* If `packet` no longer belongs to the scan under way, finishes that scan and returns true:
+ * builder->scan is then valid until tmini_scan_add() is called for the same packet. */
+bool tmini_scan_close(tmini_scan_builder_t *builder, const tmini_packet_t *packet);
+
+/* Adds `packet` to the scan under way; a start packet begins one, at time `now_ms`. A packet that
+ * DMA overwrote meanwhile leaves a gap, never a wrong point. Call tmini_scan_close() before. */
+void tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

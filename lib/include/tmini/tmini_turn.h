@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* CT information: what the packets of one revolution say in bits 1 to 7 of their CT bytes, each by
+ * its index within the revolution (section 7).
+ *
+ * Packets do not carry that index, so a lost one would shift the meaning of every later CT. The
+ * lidar therefore sends a CRC-8 over a revolution's CT bytes, LastCRC, just before the next start
+ * packet. A revolution is trusted only if LastCRC is there, equals, and nothing was lost; else it
+ * is dropped whole. Units that send neither LastCRC nor CT information (section 9.1) never become
+ * "healthy, version 0.0": their information stays unknown.
+ *
+ * All functions: one context, the one that parses; no waiting. */
+
+#ifndef TMINI_TURN_H
+#define TMINI_TURN_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "tmini_packet.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Indices with a documented meaning: 0 to 13. */
+#define TMINI_TURN_FIELDS 14u
+
+/* Treat the members as private. */
+typedef struct {
+    uint8_t current[TMINI_TURN_FIELDS]; /* CTs of the revolution under way. */
+    uint8_t trusted[TMINI_TURN_FIELDS]; /* The newest trusted CT of each index. */
+    uint16_t known;                     /* Bit i: trusted[i] is valid. */
+    uint16_t packets;                   /* Of the revolution under way; 0 before the first. */
+    uint8_t crc;
+    bool spoiled;     /* Something of the revolution under way was lost. */
+    bool informative; /* A point packet of it had a CT other than 0. */
+} tmini_turn_t;
+
+/* Which fields of tmini_turn_info_t are valid. Fast scans have fewer than 14 packets, so that the
+ * later ones may never arrive (section 9.7). */
+typedef enum {
+    TMINI_KNOWN_USER_VERSION = 1 << 0,
+    TMINI_KNOWN_FAULTS = 1 << 1,
+    TMINI_KNOWN_HARDWARE = 1 << 2, /* And the firmware's major number. */
+    TMINI_KNOWN_FIRMWARE = 1 << 3, /* Both of the firmware's numbers. */
+    TMINI_KNOWN_YEAR = 1 << 4,
+    TMINI_KNOWN_MONTH = 1 << 5,
+    TMINI_KNOWN_DAY = 1 << 6,
+    TMINI_KNOWN_SERIAL = 1 << 7, /* The whole serial number: date and number. */
+} tmini_known_t;
+
+/* Fields that are not known are 0. */
+typedef struct {
+    uint8_t known;      /* A combination of tmini_known_t. */
+    uint8_t user_major; /* Protocol version, currently 1.0. */
+    uint8_t user_minor;
+    uint8_t faults; /* A combination of tmini_fault_t; 0: healthy. */
+    uint8_t hardware;
+    uint8_t firmware_major;
+    uint8_t firmware_minor;
+    uint8_t month;
+    uint8_t day;
+    uint16_t year;   /* 2020 to 2051. */
+    uint32_t number; /* The serial number's last eight digits, 0 to 2097151. */
+} tmini_turn_info_t;
+
+/* Forgets everything. */
+void tmini_turn_init(tmini_turn_t *turn);
+
+/* Forgets the revolution under way, which was interrupted; keeps what is known. */
+void tmini_turn_discard(tmini_turn_t *turn);
+
+/* Takes the next packet. Returns true if it is a start packet that ended a trusted revolution: what
+ * tmini_turn_info() says has just been confirmed. Bounded: a few instructions a packet. */
+bool tmini_turn_add(tmini_turn_t *turn, const tmini_packet_t *packet);
+
+/* What is known from trusted revolutions; each field keeps its value once known. */
+void tmini_turn_info(const tmini_turn_t *turn, tmini_turn_info_t *info);
+
+/* The guard's CRC-8 (CRC-8/MAXIM: reflected polynomial 0x8C, initial value 0) over one more byte. */
+uint8_t tmini_turn_crc8(uint8_t crc, uint8_t byte);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,396 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Commands: how each is begun, carried out phase by phase, and ended. The state diagram is in
+ * docs/design.md. */
+
+#include "tmini_driver.h"
+
+/* More frequency steps than any change needs (6 of 1 Hz and 5 of 0.1 Hz). */
+#define STEPS_MAX 20
+#define COARSE_STEP_CHZ 100
+#define FINE_STEP_CHZ 10
+
+/* ------------------------------------------------------------------------------------- sending */
+
+/* Hands what is left of the command to the port. Returns false if the port reports a failure. */
+static bool transmit(tmini_t *lidar)
+{
+    const uint8_t bytes[2] = { TMINI_COMMAND_SIGN, lidar->sent };
+    const int taken = lidar->port->write(lidar->port_context, &bytes[2 - lidar->unsent],
+                                         lidar->unsent);
+    if (taken < 0) {
+        lidar->unsent = 0;
+        return false;
+    }
+    lidar->unsent = (uint8_t)(taken < lidar->unsent ? lidar->unsent - taken : 0);
+    lidar->sign_sent = lidar->unsent == 1;
+    return true;
+}
+
+/* The bytes leave with the next tmini_driver_keep_time(). If the first byte of a command that is
+ * given up has left already, it serves for this one: it is the same in all. */
+static void send(tmini_t *lidar, tmini_command_t command)
+{
+    lidar->sent = (uint8_t)command;
+    lidar->unsent = lidar->sign_sent ? 1 : 2;
+}
+
+static void ask(tmini_t *lidar, tmini_command_t command)
+{
+    tmini_reply_shape_t shape;
+    (void)tmini_reply_shape(command, &shape);
+    tmini_parser_await(&lidar->parser, &shape);
+    send(lidar, command);
+    driver_enter(lidar, PHASE_ASKING);
+}
+
+/* --------------------------------------------------------------------------- how commands end */
+
+static void rest(tmini_t *lidar, enum phase phase)
+{
+    tmini_parser_await(&lidar->parser, NULL);
+    lidar->goal = GOAL_NONE;
+    lidar->recovering = false;
+    lidar->unsent = 0;
+    lidar->heard = false;
+    driver_enter(lidar, phase);
+}
+
+static void end(tmini_t *lidar, enum phase phase, tmini_event_t event)
+{
+    rest(lidar, phase);
+    driver_raise(lidar, event);
+}
+
+void tmini_driver_cancel(tmini_t *lidar)
+{
+    rest(lidar, PHASE_UNKNOWN);
+}
+
+/* After a retry, the reply to an earlier attempt may still come: the line is not surely quiet. */
+static void succeed(tmini_t *lidar, tmini_event_t event)
+{
+    end(lidar, lidar->attempts == 0 ? PHASE_IDLE : PHASE_UNKNOWN, event);
+}
+
+static void fail(tmini_t *lidar, tmini_status_t status)
+{
+    lidar->failure = (int8_t)status;
+    end(lidar, PHASE_UNKNOWN, TMINI_EVENT_FAILED);
+}
+
+/* An attempt has failed: another one, unless it was the last. */
+static void attempt_failed(tmini_t *lidar, tmini_status_t status)
+{
+    if (status == TMINI_ERROR_TIMEOUT) {
+        lidar->timeouts++;
+    }
+    if (lidar->recovering) {
+        tmini_driver_back_off(lidar);
+        return;
+    }
+    lidar->attempts++;
+    if (status == TMINI_ERROR_TIMEOUT && lidar->attempts < lidar->timing->attempts) {
+        tmini_driver_hush(lidar);
+        return;
+    }
+    fail(lidar, lidar->step_refused ? TMINI_ERROR_REPLY : status);
+}
+
+/* ----------------------------------------------------------------------------- frequency change */
+
+static bool is_reached(const tmini_t *lidar)
+{
+    const int32_t left = (int32_t)lidar->target_chz - lidar->frequency_chz;
+    return left >= -FINE_STEP_CHZ / 2 && left <= FINE_STEP_CHZ / 2;
+}
+
+/* The step that comes nearest to the target without leaving the permitted range. */
+static tmini_command_t next_step(const tmini_t *lidar)
+{
+    const int32_t now = lidar->frequency_chz;
+    const int32_t left = (int32_t)lidar->target_chz - now;
+    if (left > COARSE_STEP_CHZ / 2 && now + COARSE_STEP_CHZ <= (int32_t)TMINI_FREQUENCY_MAX_CHZ) {
+        return TMINI_COMMAND_FASTER_ONE;
+    }
+    if (left < -COARSE_STEP_CHZ / 2 && now - COARSE_STEP_CHZ >= (int32_t)TMINI_FREQUENCY_MIN_CHZ) {
+        return TMINI_COMMAND_SLOWER_ONE;
+    }
+    return left > 0 ? TMINI_COMMAND_FASTER_TENTH : TMINI_COMMAND_SLOWER_TENTH;
+}
+
+/* A step's reply tells the new frequency. When that has come to the target, it is read back. */
+static void continue_frequency_change(tmini_t *lidar)
+{
+    if (is_reached(lidar)) {
+        ask(lidar, TMINI_COMMAND_GET_FREQUENCY);
+    } else if (lidar->steps < STEPS_MAX) {
+        lidar->steps++;
+        ask(lidar, next_step(lidar));
+    } else {
+        fail(lidar, TMINI_ERROR_REPLY);
+    }
+}
+
+static void frequency_reply(tmini_t *lidar, uint32_t frequency_chz)
+{
+    const bool is_step = lidar->sent != TMINI_COMMAND_GET_FREQUENCY;
+    if (is_step && frequency_chz == lidar->frequency_chz) {
+        /* A late reply of the step before, which looks the same; or the lidar refuses to step.
+         * Wait on: time tells. */
+        tmini_reply_shape_t shape;
+        (void)tmini_reply_shape(TMINI_COMMAND_GET_FREQUENCY, &shape);
+        tmini_parser_await(&lidar->parser, &shape);
+        lidar->step_refused = true;
+        return;
+    }
+    if (frequency_chz > UINT16_MAX) {
+        fail(lidar, TMINI_ERROR_REPLY);
+        return;
+    }
+    lidar->step_refused = false;
+    lidar->frequency_chz = (uint16_t)frequency_chz;
+    if (lidar->goal == GOAL_FREQUENCY || (!is_step && is_reached(lidar))) {
+        succeed(lidar, TMINI_EVENT_FREQUENCY);
+    } else {
+        driver_enter(lidar, PHASE_SETTLING);
+    }
+}
+
+/* ------------------------------------------------------------------------------- carrying out */
+
+void tmini_driver_hush(tmini_t *lidar)
+{
+    tmini_parser_await(&lidar->parser, NULL);
+    send(lidar, TMINI_COMMAND_STOP);
+    driver_enter(lidar, PHASE_HUSHING);
+}
+
+/* The line is quiet: the command that was asked for may be sent (section 2). */
+static void issue(tmini_t *lidar)
+{
+    switch (lidar->goal) {
+    case GOAL_START:
+        lidar->restarts = (uint16_t)(lidar->restarts + lidar->recovering);
+        ask(lidar, TMINI_COMMAND_START);
+        break;
+    case GOAL_INFO:
+        ask(lidar, TMINI_COMMAND_GET_INFO);
+        break;
+    case GOAL_HEALTH:
+        ask(lidar, TMINI_COMMAND_GET_HEALTH);
+        break;
+    case GOAL_REBOOT:
+        lidar->reboots = (uint16_t)(lidar->reboots + lidar->recovering);
+        send(lidar, TMINI_COMMAND_REBOOT);
+        driver_enter(lidar, PHASE_BOOTING);
+        break;
+    case GOAL_STOP:
+        end(lidar, PHASE_IDLE, TMINI_EVENT_STOPPED);
+        break;
+    default:
+        ask(lidar, TMINI_COMMAND_GET_FREQUENCY);
+        break;
+    }
+}
+
+void tmini_driver_reply(tmini_t *lidar)
+{
+    uint8_t content[TMINI_INFO_SIZE];
+    /* Bytes that came behind this reply, and only those, are heard in the idle state. */
+    lidar->received = lidar->ring.tail + lidar->parser.frame;
+    tmini_parser_reply_content(&lidar->parser, content, lidar->parser.awaited.length);
+    switch (lidar->sent) {
+    case TMINI_COMMAND_START:
+        driver_enter(lidar, PHASE_SPINNING_UP);
+        break;
+    case TMINI_COMMAND_GET_INFO:
+        tmini_reply_info(content, &lidar->reply.info);
+        succeed(lidar, TMINI_EVENT_INFO);
+        break;
+    case TMINI_COMMAND_GET_HEALTH:
+        tmini_reply_health(content, &lidar->reply.health);
+        succeed(lidar, TMINI_EVENT_HEALTH);
+        break;
+    default:
+        frequency_reply(lidar, tmini_reply_frequency_chz(content));
+        break;
+    }
+}
+
+static bool is_quiet(const tmini_t *lidar)
+{
+    const uint32_t quiet_ms = lidar->timing->quiet_ms;
+    return driver_elapsed(lidar, lidar->phase_ms, quiet_ms) &&
+           driver_elapsed(lidar, lidar->received_ms, quiet_ms);
+}
+
+/* Waits for a quiet line, and for no longer than the lidar's longest tail. */
+static void wait_for_quiet(tmini_t *lidar, void (*then)(tmini_t *))
+{
+    if (is_quiet(lidar)) {
+        then(lidar);
+    } else if (driver_elapsed(lidar, lidar->phase_ms, lidar->timing->stop_ms)) {
+        attempt_failed(lidar, TMINI_ERROR_TIMEOUT);
+    }
+}
+
+static void rebooted(tmini_t *lidar)
+{
+    if (lidar->recovering) {
+        lidar->goal = GOAL_START;
+        tmini_driver_hush(lidar);
+    } else {
+        end(lidar, PHASE_UNKNOWN, TMINI_EVENT_REBOOTED);
+    }
+}
+
+/* Returns true when the command's bytes have left; a phase's time runs from then on. */
+static bool has_left(tmini_t *lidar)
+{
+    if (lidar->unsent == 0) {
+        return true;
+    }
+    if (!transmit(lidar)) {
+        attempt_failed(lidar, TMINI_ERROR_WRITE);
+        return false;
+    }
+    if (lidar->unsent == 0) {
+        lidar->phase_ms = lidar->now_ms;
+    } else if (driver_elapsed(lidar, lidar->phase_ms, lidar->timing->write_ms)) {
+        attempt_failed(lidar, TMINI_ERROR_WRITE);
+    }
+    return false;
+}
+
+void tmini_driver_keep_time(tmini_t *lidar)
+{
+    const tmini_timing_t *const timing = lidar->timing;
+    if (!has_left(lidar)) {
+        return;
+    }
+    switch (lidar->phase) {
+    case PHASE_HUSHING:
+        wait_for_quiet(lidar, issue);
+        break;
+    case PHASE_SETTLING:
+        wait_for_quiet(lidar, continue_frequency_change);
+        break;
+    case PHASE_ASKING:
+        if (driver_elapsed(lidar, lidar->phase_ms, timing->reply_ms)) {
+            attempt_failed(lidar, TMINI_ERROR_TIMEOUT);
+        }
+        break;
+    case PHASE_SPINNING_UP:
+        if (driver_elapsed(lidar, lidar->phase_ms, timing->spin_up_ms)) {
+            attempt_failed(lidar, TMINI_ERROR_TIMEOUT);
+        }
+        break;
+    case PHASE_BOOTING:
+        if (driver_elapsed(lidar, lidar->phase_ms, timing->reboot_ms)) {
+            rebooted(lidar);
+        }
+        break;
+    default:
+        tmini_driver_watch(lidar);
+        break;
+    }
+}
+
+/* ---------------------------------------------------------------------------- public functions */
+
+/* Begins a command. The bytes leave at once, as far as the port takes them. */
+static void begin(tmini_t *lidar, enum goal goal)
+{
+    const bool is_quiet_line = driver_is_idle(lidar) && goal != GOAL_STOP;
+    lidar->goal = (uint8_t)goal;
+    lidar->attempts = 0;
+    lidar->steps = 0;
+    lidar->step_refused = false;
+    lidar->recovering = false;
+    if (is_quiet_line) {
+        issue(lidar);
+    } else {
+        tmini_driver_hush(lidar);
+    }
+    (void)has_left(lidar);
+}
+
+/* Whether a command other than stop may be begun now. */
+static tmini_status_t permission(const tmini_t *lidar)
+{
+    if (lidar == NULL || lidar->port == NULL) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    if (lidar->recovering || lidar->phase == PHASE_SCANNING) {
+        return TMINI_ERROR_STATE;
+    }
+    return lidar->goal == GOAL_NONE ? TMINI_OK : TMINI_ERROR_BUSY;
+}
+
+static tmini_status_t request(tmini_t *lidar, enum goal goal)
+{
+    const tmini_status_t status = permission(lidar);
+    if (status == TMINI_OK) {
+        tmini_driver_look(lidar);
+        begin(lidar, goal);
+    }
+    return status;
+}
+
+tmini_status_t tmini_start(tmini_t *lidar)
+{
+    return request(lidar, GOAL_START);
+}
+
+tmini_status_t tmini_stop(tmini_t *lidar)
+{
+    if (lidar == NULL || lidar->port == NULL) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    if (lidar->goal == GOAL_STOP) {
+        return TMINI_OK; /* It is being stopped already. */
+    }
+    const bool aborts =
+        lidar->goal != GOAL_NONE && !lidar->recovering && lidar->phase != PHASE_SCANNING;
+    tmini_driver_look(lidar);
+    if (aborts) {
+        fail(lidar, TMINI_ERROR_ABORTED);
+    }
+    begin(lidar, GOAL_STOP);
+    return TMINI_OK;
+}
+
+tmini_status_t tmini_request_info(tmini_t *lidar)
+{
+    return request(lidar, GOAL_INFO);
+}
+
+tmini_status_t tmini_request_health(tmini_t *lidar)
+{
+    return request(lidar, GOAL_HEALTH);
+}
+
+tmini_status_t tmini_request_frequency(tmini_t *lidar)
+{
+    return request(lidar, GOAL_FREQUENCY);
+}
+
+tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
+{
+    if (frequency_chz < TMINI_FREQUENCY_MIN_CHZ || frequency_chz > TMINI_FREQUENCY_MAX_CHZ ||
+        frequency_chz % TMINI_FREQUENCY_STEP_CHZ != 0) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    const tmini_status_t status = request(lidar, GOAL_SET_FREQUENCY);
+    if (status == TMINI_OK) {
+        lidar->target_chz = frequency_chz;
+    }
+    return status;
+}
+
+tmini_status_t tmini_reboot(tmini_t *lidar)
+{
+    return request(lidar, GOAL_REBOOT);
+}

@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "tmini/tmini_parser.h"
+
+#include "tmini_packet_header.h"
+#include "tmini_ring_reader.h"
+
+enum verdict { USELESS, INCOMPLETE, COMPLETE };
+
+/* Offsets in a reply's header (section 4); a packet's are in tmini_packet_header.h. */
+enum { REPLY_LENGTH = 2, REPLY_MODE_AND_LENGTH = 5, REPLY_TYPE = 6 };
+
+/* True if the candidate has `count` bytes; if not, it need not be looked at again before it has. */
+static bool has(tmini_parser_t *parser, size_t unread, size_t count)
+{
+    parser->need = (uint16_t)count;
+    return unread >= count;
+}
+
+static bool packet_header_is_plausible(const tmini_parser_t *parser)
+{
+    const uint8_t *const header = parser->header;
+    const bool is_start = (header[CT] & 1u) != 0;
+    const bool check_bits = (header[FSA] & header[LSA] & 1u) != 0;
+    return check_bits && header[LSN] >= 1 && header[LSN] <= (is_start ? 1 : parser->max_samples);
+}
+
+/* XORs the candidate into its own checksum. The words are little-endian, so even header bytes meet
+ * the checksum's low byte and odd ones its high byte; of a sample, S1 and S2 meet the low byte and
+ * S3 the high one. The checksum itself is among the header bytes: nothing remains if it is right. */
+static bool checksum_matches(const tmini_parser_t *parser)
+{
+    const tmini_ring_t *const ring = parser->ring;
+    uint8_t low = 0;
+    uint8_t high = 0;
+    for (size_t i = 0; i < TMINI_PACKET_HEADER_SIZE; i += 2) {
+        low ^= parser->header[i];
+        high ^= parser->header[i + 1];
+    }
+    size_t samples = parser->header[LSN];
+    size_t index = ring->tail + TMINI_PACKET_HEADER_SIZE;
+    while (samples > 0) {
+        uint8_t joined[TMINI_SAMPLE_SIZE];
+        size_t count = samples;
+        const uint8_t *sample = ring_samples(ring, index, &count, joined);
+        samples -= count;
+        index += TMINI_SAMPLE_SIZE * count;
+        for (; count > 0; count--) {
+            low ^= sample[0] ^ sample[1];
+            high ^= sample[2];
+            sample += TMINI_SAMPLE_SIZE;
+        }
+    }
+    return (low | high) == 0;
+}
+
+static enum verdict judge_packet(tmini_parser_t *parser, size_t unread)
+{
+    if (!has(parser, unread, TMINI_PACKET_HEADER_SIZE)) {
+        return INCOMPLETE;
+    }
+    ring_copy(parser->ring, 0, parser->header, TMINI_PACKET_HEADER_SIZE);
+    if (!packet_header_is_plausible(parser)) {
+        return USELESS;
+    }
+    if (!has(parser, unread, TMINI_PACKET_SIZE_MAX(parser->header[LSN]))) {
+        return INCOMPLETE;
+    }
+    if (!checksum_matches(parser)) {
+        parser->counters.checksum_errors++;
+        return USELESS;
+    }
+    return COMPLETE;
+}
+
+/* Of the length only the lowest byte can be other than 0: no reply is longer than 20 bytes. When
+ * continuous it has no meaning. */
+static bool reply_has_awaited_shape(const tmini_parser_t *parser)
+{
+    const uint8_t *const header = parser->header;
+    const tmini_reply_shape_t *const awaited = &parser->awaited;
+    const uint8_t mode_and_length = header[REPLY_MODE_AND_LENGTH];
+    if (header[REPLY_TYPE] != awaited->type || mode_and_length >> 6 != awaited->mode) {
+        return false;
+    }
+    return awaited->mode == TMINI_REPLY_MODE_CONTINUOUS ||
+           (header[REPLY_LENGTH] == awaited->length &&
+            (header[REPLY_LENGTH + 1] | header[REPLY_LENGTH + 2] | mode_and_length) == 0);
+}
+
+static enum verdict judge_reply(tmini_parser_t *parser, size_t unread)
+{
+    if (!has(parser, unread, TMINI_REPLY_HEADER_SIZE)) {
+        return INCOMPLETE;
+    }
+    ring_copy(parser->ring, 0, parser->header, TMINI_REPLY_HEADER_SIZE);
+    if (!reply_has_awaited_shape(parser)) {
+        return USELESS;
+    }
+    return has(parser, unread, TMINI_REPLY_HEADER_SIZE + parser->awaited.length) ? COMPLETE
+                                                                               : INCOMPLETE;
+}
+
+static enum verdict judge(tmini_parser_t *parser, size_t unread)
+{
+    const bool second_known = has(parser, unread, 2);
+    const uint8_t first = ring_peek(parser->ring, 0);
+    const uint8_t second = ring_peek(parser->ring, 1);
+    if (first == 0xAA && (second == 0x55 || !second_known)) {
+        return second_known ? judge_packet(parser, unread) : INCOMPLETE;
+    }
+    if (first == 0xA5 && parser->awaiting && (second == 0x5A || !second_known)) {
+        return second_known ? judge_reply(parser, unread) : INCOMPLETE;
+    }
+    return USELESS;
+}
+
+static void widen_gap(tmini_parser_t *parser, size_t bytes)
+{
+    const size_t room = UINT16_MAX - (size_t)parser->gap;
+    parser->gap = (uint16_t)(bytes < room ? parser->gap + bytes : UINT16_MAX);
+}
+
+static void skip_byte(tmini_parser_t *parser)
+{
+    parser->stray = ring_peek(parser->ring, 0);
+    ring_discard(parser->ring, 1);
+    parser->need = 1;
+    parser->counters.bytes_skipped++;
+    widen_gap(parser, 1);
+}
+
+/* Gives the frame delivered last back to the producer. */
+static void release_frame(tmini_parser_t *parser)
+{
+    if (parser->frame > 0) {
+        ring_discard(parser->ring, parser->frame);
+        parser->frame = 0;
+        parser->gap = 0;
+    }
+}
+
+static void count_refused(tmini_parser_t *parser)
+{
+    const size_t refused = tmini_ring_refused(parser->ring);
+    parser->counters.bytes_overrun += (uint32_t)(refused - parser->refused);
+    parser->refused = refused;
+}
+
+/* The unread bytes, less those that DMA may have overwritten: they are dropped. */
+static size_t intact_bytes(tmini_parser_t *parser)
+{
+    tmini_ring_t *const ring = parser->ring;
+    const size_t unread = ring_unread(ring);
+    if (unread <= ring->window) {
+        return unread;
+    }
+    const size_t lost = unread - ring->window;
+    ring_discard(ring, lost);
+    parser->counters.bytes_overrun += (uint32_t)lost;
+    parser->gap = UINT16_MAX;
+    parser->need = 1;
+    return ring->window;
+}
+
+/* The complete candidate becomes a frame: `need` has come to its size. */
+static tmini_frame_t deliver(tmini_parser_t *parser)
+{
+    parser->frame = parser->need;
+    parser->need = 1;
+    if (ring_peek(parser->ring, 0) == 0xAA) {
+        parser->counters.packets++;
+        parser->counters.bytes_in_packets += parser->frame;
+        return TMINI_FRAME_PACKET;
+    }
+    parser->awaiting = false;
+    parser->counters.bytes_in_replies += parser->frame;
+    return TMINI_FRAME_REPLY;
+}
+
+tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uint8_t max_samples)
+{
+    if (parser == NULL || ring == NULL) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    *parser = (tmini_parser_t){ .ring = ring, .need = 1, .max_samples = max_samples };
+    if (max_samples == 0) {
+        parser->max_samples = TMINI_MAX_SAMPLES_DEFAULT;
+    }
+    return ring->window < TMINI_PACKET_SIZE_MAX(parser->max_samples) ? TMINI_ERROR_ARGUMENT
+                                                                     : TMINI_OK;
+}
+
+tmini_frame_t tmini_parser_next(tmini_parser_t *parser)
+{
+    release_frame(parser);
+    count_refused(parser);
+    for (;;) {
+        const size_t unread = intact_bytes(parser);
+        if (unread < parser->need) {
+            return TMINI_FRAME_NONE;
+        }
+        const enum verdict verdict = judge(parser, unread);
+        if (verdict == INCOMPLETE) {
+            return TMINI_FRAME_NONE;
+        }
+        if (verdict == USELESS) {
+            skip_byte(parser);
+        } else if (tmini_parser_frame_intact(parser)) {
+            return deliver(parser);
+        }
+    }
+}
+
+bool tmini_parser_frame_intact(const tmini_parser_t *parser)
+{
+    return ring_unread(parser->ring) <= parser->ring->window;
+}
+
+void tmini_parser_await(tmini_parser_t *parser, const tmini_reply_shape_t *shape)
+{
+    parser->need = 1; /* What the candidate may be has changed: look at it again. */
+    parser->awaiting = shape != NULL;
+    if (shape != NULL) {
+        parser->awaited = *shape;
+    }
+}
+
+void tmini_parser_reply_content(const tmini_parser_t *parser, uint8_t *content, size_t count)
+{
+    ring_copy(parser->ring, TMINI_REPLY_HEADER_SIZE, content, count);
+}
+
+size_t tmini_parser_pending(const tmini_parser_t *parser)
+{
+    return ring_unread(parser->ring) - parser->frame;
+}
+
+void tmini_parser_abandon(tmini_parser_t *parser)
+{
+    const size_t unread = ring_unread(parser->ring);
+    if (unread > 0 && unread < parser->need) {
+        skip_byte(parser);
+    }
+}

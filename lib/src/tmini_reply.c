@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "tmini/tmini_reply.h"
+
+#include <string.h>
+
+bool tmini_reply_shape(tmini_command_t command, tmini_reply_shape_t *shape)
+{
+    switch (command) {
+    case TMINI_COMMAND_STOP:
+    case TMINI_COMMAND_REBOOT:
+        return false;
+    case TMINI_COMMAND_START:
+        *shape = (tmini_reply_shape_t){ .type = 0x81, .mode = TMINI_REPLY_MODE_CONTINUOUS };
+        return true;
+    case TMINI_COMMAND_GET_INFO:
+        *shape = (tmini_reply_shape_t){ .type = 0x04, .length = TMINI_INFO_SIZE };
+        return true;
+    case TMINI_COMMAND_GET_HEALTH:
+        *shape = (tmini_reply_shape_t){ .type = 0x06, .length = TMINI_HEALTH_SIZE };
+        return true;
+    case TMINI_COMMAND_FASTER_TENTH:
+    case TMINI_COMMAND_SLOWER_TENTH:
+    case TMINI_COMMAND_FASTER_ONE:
+    case TMINI_COMMAND_SLOWER_ONE:
+    case TMINI_COMMAND_GET_FREQUENCY:
+        break;
+    }
+    *shape = (tmini_reply_shape_t){ .type = 0x04, .length = TMINI_FREQUENCY_SIZE };
+    return true;
+}
+
+void tmini_reply_info(const uint8_t content[TMINI_INFO_SIZE], tmini_info_t *info)
+{
+    info->model = content[0];
+    info->firmware_minor = content[1];
+    info->firmware_major = content[2];
+    info->hardware = content[3];
+    memcpy(info->serial, &content[4], TMINI_SERIAL_DIGITS);
+}
+
+void tmini_reply_health(const uint8_t content[TMINI_HEALTH_SIZE], tmini_health_t *health)
+{
+    health->faults = content[0] & TMINI_FAULT_MASK;
+    health->error_code = (uint16_t)(content[1] | (unsigned)content[2] << 8);
+}
+
+uint32_t tmini_reply_frequency_chz(const uint8_t content[TMINI_FREQUENCY_SIZE])
+{
+    return content[0] | (uint32_t)content[1] << 8 | (uint32_t)content[2] << 16 |
+           (uint32_t)content[3] << 24;
+}
+
+void tmini_serial_text(const tmini_info_t *info, char text[TMINI_SERIAL_DIGITS + 1])
+{
+    for (unsigned i = 0; i < TMINI_SERIAL_DIGITS; i++) {
+        text[i] = info->serial[i] <= 9 ? (char)('0' + info->serial[i]) : '?';
+    }
+    text[TMINI_SERIAL_DIGITS] = '\0';
+}

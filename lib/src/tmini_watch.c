@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* While the lidar scans: is it still there, and is it well? And the ladder that brings it back. */
+
+#include "tmini_driver.h"
+
+/* Every third attempt to recover reboots the lidar first. */
+#define REBOOT_RUNG 3
+
+/* ---------------------------------------------------------------------------------- faults */
+
+static void report(tmini_t *lidar, uint8_t faults)
+{
+    lidar->observed = faults;
+    if (faults != lidar->faults) {
+        lidar->faults = faults;
+        driver_raise(lidar, TMINI_EVENT_FAULT);
+    }
+}
+
+/* What one revolution shows is believed when the next one shows it too. */
+static void observe(tmini_t *lidar, uint8_t faults)
+{
+    if (faults == lidar->observed) {
+        report(lidar, faults);
+    }
+    lidar->observed = faults;
+}
+
+/* A start packet: judge the revolution that it ends, by CT information if the unit sends that. */
+static void judge_revolution(tmini_t *lidar, bool trusted)
+{
+    tmini_turn_info_t info;
+    tmini_turn_info(&lidar->turn, &info);
+    const bool unit_tells = (info.known & TMINI_KNOWN_FAULTS) != 0;
+    if (trusted && unit_tells) {
+        observe(lidar, info.faults);
+    } else if (!unit_tells && lidar->revolving) {
+        observe(lidar, lidar->range_seen ? 0 : TMINI_FAULT_DATA);
+    }
+    lidar->revolving = true;
+    lidar->range_seen = false;
+    lidar->start_ms = lidar->now_ms;
+}
+
+/* ------------------------------------------------------------------------------- scan packets */
+
+/* The first packet after a start, or after a loss: nothing continues what was before. */
+static void resume(tmini_t *lidar)
+{
+    tmini_parser_await(&lidar->parser, NULL);
+    tmini_turn_discard(&lidar->turn);
+    tmini_scan_discard(&lidar->builder);
+    lidar->goal = GOAL_START;
+    lidar->revolving = false;
+    lidar->range_seen = false;
+    lidar->observed = lidar->faults;
+    lidar->start_ms = lidar->now_ms;
+    driver_enter(lidar, PHASE_SCANNING);
+    if (lidar->recovering) {
+        lidar->recovering = false;
+        lidar->recoveries++;
+        driver_raise(lidar, TMINI_EVENT_RECOVERED);
+    } else {
+        driver_raise(lidar, TMINI_EVENT_STARTED);
+    }
+}
+
+/* A packet means that the lidar scans: also when the reply to the start was lost, or when a lost
+ * lidar comes back by itself. But not the tail behind a stop (section 9.10). */
+static bool is_welcome(const tmini_t *lidar)
+{
+    if (lidar->goal == GOAL_START) {
+        return lidar->phase != PHASE_HUSHING;
+    }
+    return lidar->recovering && lidar->phase == PHASE_BOOTING;
+}
+
+static void gather(tmini_t *lidar)
+{
+    if (lidar->streaming) {
+        driver_raise(lidar, TMINI_EVENT_PACKET);
+    } else if (tmini_scan_close(&lidar->builder, &lidar->packet)) {
+        lidar->held = true;
+        lidar->scans++;
+        driver_raise(lidar, TMINI_EVENT_SCAN);
+    } else {
+        tmini_scan_add(&lidar->builder, &lidar->packet, lidar->packet_ms);
+    }
+}
+
+void tmini_driver_packet(tmini_t *lidar)
+{
+    if (!is_welcome(lidar)) {
+        return;
+    }
+    if (lidar->phase != PHASE_SCANNING) {
+        resume(lidar);
+    }
+    lidar->packet_ms = lidar->now_ms;
+    const bool trusted = tmini_turn_add(&lidar->turn, &lidar->packet);
+    if (tmini_packet_is_start(&lidar->packet)) {
+        judge_revolution(lidar, trusted);
+    }
+    lidar->range_seen = lidar->range_seen || tmini_packet_has_range(&lidar->packet);
+    gather(lidar);
+}
+
+/* ----------------------------------------------------------------------------------- recovery */
+
+static void climb(tmini_t *lidar)
+{
+    const bool reboots = lidar->rung > 0 && lidar->rung % REBOOT_RUNG == 0;
+    lidar->goal = reboots ? GOAL_REBOOT : GOAL_START;
+    tmini_driver_hush(lidar);
+}
+
+static void lose(tmini_t *lidar)
+{
+    lidar->losses++;
+    lidar->recovering = true;
+    lidar->rung = 0;
+    driver_raise(lidar, TMINI_EVENT_LOST);
+    if (lidar->no_recovery) {
+        driver_enter(lidar, PHASE_BACKING_OFF);
+    } else {
+        climb(lidar);
+    }
+}
+
+void tmini_driver_back_off(tmini_t *lidar)
+{
+    /* At the top the ladder's last rungs are climbed again and again. */
+    lidar->rung = (uint8_t)(lidar->rung < UINT8_MAX ? lidar->rung + 1 : UINT8_MAX - REBOOT_RUNG + 1);
+    lidar->goal = GOAL_START;
+    lidar->unsent = 0;
+    tmini_parser_await(&lidar->parser, NULL);
+    driver_enter(lidar, PHASE_BACKING_OFF);
+}
+
+static uint32_t pause_ms(const tmini_t *lidar)
+{
+    uint32_t pause = lidar->timing->back_off_ms;
+    for (unsigned rung = 1; rung < lidar->rung && pause < lidar->timing->back_off_max_ms; rung++) {
+        pause *= 2;
+    }
+    return pause < lidar->timing->back_off_max_ms ? pause : lidar->timing->back_off_max_ms;
+}
+
+/* No start packet and no range for so long: the rotor is blocked (section 8). */
+static void watch_rotor(tmini_t *lidar)
+{
+    if (!lidar->range_seen && driver_elapsed(lidar, lidar->start_ms, lidar->timing->turn_ms)) {
+        report(lidar, (uint8_t)(lidar->faults | TMINI_FAULT_ENCODER));
+    }
+}
+
+void tmini_driver_watch(tmini_t *lidar)
+{
+    switch (lidar->phase) {
+    case PHASE_SCANNING:
+        if (driver_elapsed(lidar, lidar->packet_ms, lidar->timing->data_ms)) {
+            lose(lidar);
+        } else {
+            watch_rotor(lidar);
+        }
+        break;
+    case PHASE_BACKING_OFF:
+        if (!lidar->no_recovery && driver_elapsed(lidar, lidar->phase_ms, pause_ms(lidar))) {
+            climb(lidar);
+        }
+        break;
+    default:
+        break;
+    }
+}
