@@ -16,6 +16,8 @@
 set(TMINI_CMOCK_CONFIG ${CMAKE_CURRENT_LIST_DIR}/cmock.yml)
 set(TMINI_SHORTEN_RUNNER ${CMAKE_CURRENT_LIST_DIR}/ShortenRunner.cmake)
 
+# -W0: warnings about Ruby code are for its authors.
+
 # Sets OUT to the runner made for the test file SOURCE in the folder DIR.
 function(tmini_generate_runner out source dir)
     set(generator ${TMINI_UNITY_DIR}/auto/generate_test_runner.rb)
@@ -28,7 +30,7 @@ function(tmini_generate_runner out source dir)
     get_filename_component(test_file ${source} NAME)
     # Run beside the test file, so that its report says "test_x.c", not where it was checked out.
     add_custom_command(OUTPUT ${runner}
-        COMMAND ${TMINI_RUBY} ${generator} ${TMINI_CMOCK_CONFIG} ${test_file} ${runner}
+        COMMAND ${TMINI_RUBY} -W0 ${generator} ${TMINI_CMOCK_CONFIG} ${test_file} ${runner}
         ${shorten}
         DEPENDS ${source} ${generator} ${TMINI_CMOCK_CONFIG} ${TMINI_SHORTEN_RUNNER}
         WORKING_DIRECTORY ${test_dir}
@@ -47,7 +49,7 @@ function(tmini_generate_mocks out dir)
         set(mock ${dir}/mock_${name}.c)
         # CMock writes to its working directory: a path in an option would lose unusual characters.
         add_custom_command(OUTPUT ${mock} ${dir}/mock_${name}.h
-            COMMAND ${TMINI_RUBY} ${TMINI_CMOCK_DIR}/lib/cmock.rb -o${TMINI_CMOCK_CONFIG} ${header}
+            COMMAND ${TMINI_RUBY} -W0 ${TMINI_CMOCK_DIR}/lib/cmock.rb -o${TMINI_CMOCK_CONFIG} ${header}
             DEPENDS ${header} ${TMINI_CMOCK_CONFIG}
             WORKING_DIRECTORY ${dir}
             COMMENT "Generating mock_${name}"
