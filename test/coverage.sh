@@ -21,7 +21,7 @@ report() {
 need gcc gcc
 need gcovr gcovr
 need_test_tools
-install_missing
+install_tools
 
 cd "$root"
 build_preset coverage

@@ -16,7 +16,7 @@ need clang-tidy clang-tidy
 need cppcheck cppcheck
 need shellcheck shellcheck
 need_build_tools
-install_missing
+install_tools
 
 cd "$root"
 failed=

@@ -33,7 +33,7 @@ wish_for_machines() {
 
 need_test_tools
 [ "${TMINI_OPTIONAL:-yes}" = no ] || wish_for_machines
-install_missing
+install_tools
 
 # What goes well before the tests is not worth reading.
 quietly cmake -S "$root" -B "$root/build"

@@ -13,7 +13,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 
 need gcc gcc
 need_test_tools
-install_missing
+install_tools
 
 cd "$root"
 build_preset sanitizers

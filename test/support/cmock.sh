@@ -74,9 +74,15 @@ download_cmock() {
     ls "$1"/cmock_*.deb
 }
 
+cmock_dir=
+
+remove_cmock_download() {
+    [ -z "$cmock_dir" ] || rm -rf "$cmock_dir"
+}
+
 need_cmock_from_trixie() {
     cmock_dir=$(mktemp -d)
-    chmod 755 "$cmock_dir"
+    chmod 755 "$cmock_dir" # apt reads it as a user of its own.
     if package=$(download_cmock "$cmock_dir"); then
         need "$cmock_script" "$package"
         return

@@ -16,6 +16,13 @@ need_test_tools() {
     need_cmock
 }
 
+install_tools() {
+    status=0
+    install_missing || status=$?
+    remove_cmock_download
+    return "$status"
+}
+
 job_count() {
     nproc 2>/dev/null || echo 2
 }
