@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# tmini_add_unit_test(NAME
+#     SOURCES test_file.c [more.c …]   the first one holds the tests: void test_…(void)
+#     [MOCKS header.h …]               functions declared there are mocked; in the test file,
+#                                      #include "mock_header.h"
+#     [LABELS label …]                 ctest labels; `unit` unless given
+#     [NOT_ON machine …]               other machines it does not run on: `int16` for tests whose
+#                                      arrays do not fit in 8 KB of RAM, or `bigendian`
+# )
+#
+# One executable and one ctest. The main function (the "runner") and the mocks are generated at build
+# time. The tests run on this computer and, unless excepted, on each machine of OtherMachines.cmake.
+
+set(TMINI_CMOCK_CONFIG ${CMAKE_CURRENT_LIST_DIR}/cmock.yml)
+set(TMINI_SHORTEN_RUNNER ${CMAKE_CURRENT_LIST_DIR}/ShortenRunner.cmake)
+
+# -W0: warnings about Ruby code are for its authors.
+
+# Sets OUT to the runner made for the test file SOURCE in the folder DIR.
+function(tmini_generate_runner out source dir)
+    set(generator ${TMINI_UNITY_DIR}/auto/generate_test_runner.rb)
+    set(runner ${dir}/runner.c)
+    set(shorten "")
+    if(TMINI_TEST_SHORT_NAMES)
+        set(shorten COMMAND ${CMAKE_COMMAND} -D RUNNER=${runner} -P ${TMINI_SHORTEN_RUNNER})
+    endif()
+    get_filename_component(test_dir ${source} DIRECTORY)
+    get_filename_component(test_file ${source} NAME)
+    # Run beside the test file, so that its report says "test_x.c", not where it was checked out.
+    add_custom_command(OUTPUT ${runner}
+        COMMAND ${TMINI_RUBY} -W0 ${generator} ${TMINI_CMOCK_CONFIG} ${test_file} ${runner}
+        ${shorten}
+        DEPENDS ${source} ${generator} ${TMINI_CMOCK_CONFIG} ${TMINI_SHORTEN_RUNNER}
+        WORKING_DIRECTORY ${test_dir}
+        COMMENT "Generating the runner of ${test_file}"
+        VERBATIM
+    )
+    set(${out} ${runner} PARENT_SCOPE)
+endfunction()
+
+# Sets OUT to the sources of mocks made for the given headers in the folder DIR.
+function(tmini_generate_mocks out dir)
+    set(mocks "")
+    foreach(header ${ARGN})
+        get_filename_component(header ${header} ABSOLUTE)
+        get_filename_component(name ${header} NAME_WE)
+        set(mock ${dir}/mock_${name}.c)
+        # CMock writes to its working directory: a path in an option would lose unusual characters.
+        add_custom_command(OUTPUT ${mock} ${dir}/mock_${name}.h
+            COMMAND ${TMINI_RUBY} -W0 ${TMINI_CMOCK_DIR}/lib/cmock.rb -o${TMINI_CMOCK_CONFIG} ${header}
+            DEPENDS ${header} ${TMINI_CMOCK_CONFIG}
+            WORKING_DIRECTORY ${dir}
+            COMMENT "Generating mock_${name}"
+            VERBATIM
+        )
+        list(APPEND mocks ${mock})
+    endforeach()
+    set(${out} ${mocks} PARENT_SCOPE)
+endfunction()
+
+# What the executable TARGET is compiled and linked with, besides its sources.
+function(tmini_configure_unit_test target generated_dir)
+    target_include_directories(${target} PRIVATE ${generated_dir})
+    foreach(header ${ARGN})
+        get_filename_component(header_dir ${header} DIRECTORY)
+        target_include_directories(${target} PRIVATE ${header_dir})
+    endforeach()
+    target_link_libraries(${target} PRIVATE tmini_cmock tmini::tmini)
+    set_target_properties(${target} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON)
+    target_compile_options(${target} PRIVATE -Wall -Wextra $<$<BOOL:${TMINI_STRICT}>:-Werror>)
+endfunction()
+
+# Adds the ctest; what a machine without exit statuses prints decides there.
+function(tmini_register_unit_test name)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES LABELS "${ARGN}" TIMEOUT 300)
+    if(TMINI_TEST_PASS_PATTERN)
+        set_tests_properties(${name} PROPERTIES
+            PASS_REGULAR_EXPRESSION "${TMINI_TEST_PASS_PATTERN}"
+            FAIL_REGULAR_EXPRESSION "${TMINI_TEST_FAIL_PATTERN}")
+    endif()
+endfunction()
+
+# Remembers, for OtherMachines.cmake, that the test NAME runs on all machines but those given.
+function(tmini_note_machines name)
+    set_property(GLOBAL APPEND PROPERTY TMINI_UNIT_TESTS ${name})
+    set_property(GLOBAL PROPERTY TMINI_${name}_NOT_ON "${ARGN}")
+endfunction()
+
+function(tmini_add_unit_test name)
+    cmake_parse_arguments(arg "" "" "SOURCES;MOCKS;LABELS;NOT_ON" ${ARGN})
+    if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
+        message(FATAL_ERROR "tmini_add_unit_test(${name}): needs SOURCES; "
+            "not understood: ${arg_UNPARSED_ARGUMENTS}")
+    endif()
+    if(TMINI_TEST_MACHINE IN_LIST arg_NOT_ON)
+        return()
+    endif()
+    if(NOT arg_LABELS)
+        set(arg_LABELS unit)
+    endif()
+
+    set(dir ${CMAKE_CURRENT_BINARY_DIR}/${name}.generated)
+    file(MAKE_DIRECTORY ${dir})
+    list(GET arg_SOURCES 0 test_file)
+    get_filename_component(test_file ${test_file} ABSOLUTE)
+    tmini_generate_runner(runner ${test_file} ${dir})
+    tmini_generate_mocks(mocks ${dir} ${arg_MOCKS})
+    set_source_files_properties(${runner} ${mocks} PROPERTIES COMPILE_OPTIONS -w)
+
+    add_executable(${name} ${arg_SOURCES} ${runner} ${mocks})
+    tmini_configure_unit_test(${name} ${dir} ${arg_MOCKS})
+    tmini_register_unit_test(${name} ${arg_LABELS})
+    tmini_note_machines(${name} ${arg_NOT_ON})
+endfunction()

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# ATmega2560, simulated: a machine whose int has 16 bits and whose RAM has 8 KB.
+
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_SYSTEM_PROCESSOR avr)
+set(CMAKE_C_COMPILER avr-gcc)
+# Unity would put its texts into flash if it saw the macro AVR, but read them as if they were in RAM.
+set(CMAKE_C_FLAGS_INIT
+    "-mmcu=atmega2560 -ffunction-sections -fdata-sections -UAVR -DTMINI_TEST_INT16")
+# The linker refuses static data that would leave less than 1.5 KB to the stack.
+set(CMAKE_EXE_LINKER_FLAGS_INIT
+    "-mmcu=atmega2560 -Wl,--gc-sections -Wl,--defsym=__DATA_REGION_LENGTH__=6656")
+# CMake's trial program needs no linking, hence no start-up code.
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+
+find_program(TMINI_SIMAVR simavr)
+set(CMAKE_CROSSCOMPILING_EMULATOR ${TMINI_SIMAVR} -m atmega2560 -f 16000000)
+
+set(TMINI_TEST_MACHINE int16)
+set(TMINI_TEST_SHORT_NAMES ON)
+set(TMINI_TEST_BOARD_SOURCES ${CMAKE_CURRENT_LIST_DIR}/../../support/avr_board.c)
+# There is no exit status: what Unity prints last tells.
+set(TMINI_TEST_PASS_PATTERN " Tests 0 Failures ")
+set(TMINI_TEST_FAIL_PATTERN "STACK OVERFLOW")

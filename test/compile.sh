@@ -1,0 +1,85 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# Compiles, without linking, every source and every public header of the library for one target:
+#
+#   test/compile.sh gcc|clang|c++|cortex-m0|avr|rv32imc|powerpc
+#
+# as freestanding C99 with strict warnings as errors; `c++` compiles the headers as C++11 and C++17.
+# Exit status: 0 clean, 1 not clean, 2 wrong usage, 77 the compiler is not installed.
+
+set -eu
+
+lib=$(cd "$(dirname "$0")/../lib" && pwd)
+warnings="-pedantic -Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Wundef -Werror"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# A compiler without the C library's headers (a package of its own for some targets) is of no use.
+need_compiler() {
+    if ! command -v "$1" >/dev/null; then
+        echo "skipped: $1 is not installed"
+        exit 77
+    fi
+    if ! echo '#include <string.h>' | "$@" -E - >/dev/null 2>&1; then
+        echo "skipped: $1 finds no C library"
+        exit 77
+    fi
+}
+
+# compile LANGUAGE FILE COMPILER FLAG…
+compile() {
+    language=$1 file=$2
+    shift 2
+    # shellcheck disable=SC2086 # the warnings are several words
+    "$@" $warnings -ffreestanding -I "$lib/include" -x "$language" -c "$file" -o "$work/out.o"
+}
+
+# check_sources COMPILER FLAG…
+check_sources() {
+    for source in "$lib"/src/*.c; do
+        compile c "$source" "$@"
+    done
+}
+
+# check_headers LANGUAGE COMPILER FLAG…: each one alone, and twice, which shows missing guards.
+check_headers() {
+    language=$1
+    shift
+    for header in "$lib"/include/tmini/*.h; do
+        include="#include \"tmini/$(basename "$header")\""
+        printf '%s\n%s\nextern int not_empty;\n' "$include" "$include" >"$work/includer"
+        compile "$language" "$work/includer" "$@"
+    done
+}
+
+# check_c COMPILER FLAG…
+check_c() {
+    need_compiler "$@"
+    check_sources "$@" -std=c99
+    check_headers c "$@" -std=c99
+}
+
+check_cxx() {
+    need_compiler g++ -x c++
+    check_headers c++ g++ -std=c++11
+    check_headers c++ g++ -std=c++17
+}
+
+case ${1:-} in
+    gcc) check_c gcc ;;
+    clang) check_c clang ;;
+    c++) check_cxx ;;
+    cortex-m0) check_c arm-none-eabi-gcc -mcpu=cortex-m0 -mthumb -Os ;;
+    avr) check_c avr-gcc -mmcu=atmega2560 -Os ;;
+    rv32imc)
+        check_c riscv64-unknown-elf-gcc --specs=picolibc.specs -march=rv32imc -mabi=ilp32 -Os
+        ;;
+    powerpc) check_c powerpc-linux-gnu-gcc -O2 ;;
+    *)
+        sed -n '5,10s/^# \{0,1\}//p' "$0" >&2
+        exit 2
+        ;;
+esac
+echo "compiled clean: $1"

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Uses the library, in code that its own strict warnings would refuse: they must not apply here. */
+
+#include <stdio.h>
+
+#include "tmini/tmini_status.h"
+
+int sloppy(long wide, int unused)
+{
+    int narrow = wide;
+    {
+        int narrow = 3;
+        (void)narrow;
+    }
+    return narrow;
+}
+
+int main()
+{
+    puts(tmini_status_name(TMINI_OK));
+    return sloppy(0, 1);
+}

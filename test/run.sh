@@ -1,0 +1,43 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# Installs what the tests need, builds in build/ and runs all tests:
+#
+#   test/run.sh [ctest's options …]        for example: test/run.sh -L unit
+#
+# Emulated machines and their compilers are installed where the system has them; what is missing is
+# skipped and said. TMINI_OPTIONAL=no installs none of them.
+
+set -eu
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=test/support/environment.sh
+. "$root/test/support/environment.sh"
+
+# Compilers and emulators for the checks labelled compile, bigendian and int16.
+wish_for_machines() {
+    wish clang clang
+    wish g++ g++
+    wish arm-none-eabi-gcc gcc-arm-none-eabi
+    wish /usr/lib/arm-none-eabi/newlib libnewlib-arm-none-eabi
+    wish riscv64-unknown-elf-gcc gcc-riscv64-unknown-elf
+    wish /usr/lib/picolibc/riscv64-unknown-elf picolibc-riscv64-unknown-elf
+    wish avr-gcc gcc-avr
+    wish /usr/lib/avr/include/avr/io.h avr-libc
+    wish simavr simavr
+    wish powerpc-linux-gnu-gcc gcc-powerpc-linux-gnu
+    wish /usr/powerpc-linux-gnu/include/stdio.h libc6-dev-powerpc-cross
+    is_present qemu-ppc-static || wish qemu-ppc qemu-user
+}
+
+need_test_tools
+[ "${TMINI_OPTIONAL:-yes}" = no ] || wish_for_machines
+install_tools
+
+# What goes well before the tests is not worth reading.
+quietly cmake -S "$root" -B "$root/build"
+quietly cmake --build "$root/build" --parallel "$(job_count)"
+
+cd "$root/build"
+exec ctest --output-on-failure --no-tests=error --parallel "$(job_count)" "$@"

@@ -1,0 +1,20 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# Runs the tests with GCC's address and undefined-behaviour sanitizers, in build-sanitizers/; any
+# finding fails its test. Options are passed to ctest.
+
+set -eu
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=test/support/environment.sh
+. "$root/test/support/environment.sh"
+
+need gcc gcc
+need_test_tools
+install_tools
+
+cd "$root"
+build_preset sanitizers
+exec ctest --preset sanitizers --parallel "$(job_count)" "$@"

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+# shellcheck shell=sh
+# shellcheck disable=SC2154 # $root is the sourcing script's
+
+# What the scripts in test/ have in common. To be sourced with $root set to the project's folder.
+
+# shellcheck source=examples/support/packages.sh
+. "$root/examples/support/packages.sh"
+# shellcheck source=test/support/cmock.sh
+. "$root/test/support/cmock.sh"
+
+need_test_tools() {
+    need_build_tools
+    need ruby ruby
+    need_cmock
+}
+
+install_tools() {
+    status=0
+    install_missing || status=$?
+    remove_cmock_download
+    return "$status"
+}
+
+job_count() {
+    nproc 2>/dev/null || echo 2
+}
+
+# Configures and builds a preset; its output is shown only if it fails.
+build_preset() {
+    quietly cmake --preset "$1"
+    quietly cmake --build --preset "$1" --parallel "$(job_count)"
+}

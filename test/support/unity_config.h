@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Unity's and CMock's settings, the same on every machine that runs the unit tests but for where the
+ * output goes. Also checks that a machine chosen for a property has that property. */
+
+#ifndef UNITY_CONFIG_H
+#define UNITY_CONFIG_H
+
+#include <limits.h>
+#include <stdint.h>
+
+/* 64-bit assertions also where no type of the machine's own is that wide. */
+#define UNITY_SUPPORT_64
+
+#ifdef __AVR__
+
+#include "avr_board.h"
+
+#define UNITY_OUTPUT_START() avr_board_start()
+#define UNITY_OUTPUT_CHAR(c) avr_board_put((char)(c))
+#define UNITY_OUTPUT_COMPLETE() avr_board_stop()
+
+/* 8 KB of RAM hold everything, texts included. */
+#define CMOCK_MEM_STATIC
+#define CMOCK_MEM_SIZE 512
+#define CMOCK_MEM_ALIGN 0
+#define CMOCK_MEM_INDEX_TYPE uint16_t
+#define CMOCK_MEM_PTR_AS_INT uint16_t
+
+#endif
+
+#if defined(TMINI_TEST_INT16) && INT_MAX != 0x7FFF
+#error "this machine was chosen for its 16-bit int, which it has not"
+#endif
+
+#if defined(TMINI_TEST_BIG_ENDIAN) && __BYTE_ORDER__ != __ORDER_BIG_ENDIAN__
+#error "this machine was chosen for being big-endian, which it is not"
+#endif
+
+#endif
