@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The encoder against bytes that the manual and real units are known to send (docs/protocol.md). */
+
+#include "encoder.h"
+
+#include "unity.h"
+
+/* Section 5: the manual's own recorded packet. */
+static const uint8_t manual_packet[] = {
+    0xAA, 0x55, 0x20, 0x13, 0x95, 0xA9, 0x63, 0x00, 0x5A, 0xE8, 0x01, 0x08, 0xB9, 0x01, 0xAC, 0xB8,
+    0x01, 0xF8, 0xB6, 0x01, 0x88, 0xB5, 0x01, 0x58, 0xAE, 0x01, 0xC0, 0xAB, 0x01, 0x04, 0xAA, 0x01,
+    0x78, 0xA9, 0x01, 0x34, 0xA9, 0x01, 0xC4, 0xAD, 0x01, 0x34, 0xAF, 0x01, 0x78, 0xAE, 0x01, 0x2C,
+    0xAD, 0x01, 0x02, 0x00, 0x00, 0x62, 0xAD, 0x01, 0x60, 0xAD, 0x01, 0xF0, 0xAB, 0x01, 0x88, 0xAD,
+    0x01, 0xFE, 0xAD};
+
+/* Its distances and flags, worked out by hand from S2 and S3. */
+static const encode_sample_t manual_samples[19] = {
+    {11842, 1, 0}, {11819, 1, 0}, {11710, 1, 0}, {11618, 1, 0}, {11158, 1, 0},
+    {10992, 1, 0}, {10881, 1, 0}, {10846, 1, 0}, {10829, 1, 0}, {11121, 1, 0},
+    {11213, 1, 0}, {11166, 1, 0}, {11083, 1, 0}, {0, 1, 2},     {11096, 0, 2},
+    {11096, 1, 0}, {11004, 1, 0}, {11106, 1, 0}, {11135, 1, 2}};
+
+static encode_turn_t a_turn(void)
+{
+    encode_turn_t turn = {0};
+
+    turn.frequency_dhz = 60;
+    turn.user_major = 1;
+    turn.user_minor = 3;
+    turn.health = 0x22;
+    turn.hardware = 1;
+    turn.firmware_major = 2;
+    turn.firmware_minor = 7;
+    turn.year = 2025;
+    turn.month = 4;
+    turn.day = 24;
+    turn.serial = 1193046; /* 10.010.00.1101000.1010110 in binary */
+    return turn;
+}
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static void the_manuals_packet_is_encoded_byte_for_byte(void)
+{
+    const encode_packet_t packet = {0x20, 19, 21706, 49, manual_samples};
+    uint8_t out[ENCODE_PACKET_MAX];
+
+    TEST_ASSERT_EQUAL_size_t(67, encode_packet(out, &packet));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(manual_packet, out, 67);
+}
+
+static void the_manuals_checksum_is_e85a(void)
+{
+    TEST_ASSERT_EQUAL_HEX16(0xE85A, encode_checksum(manual_packet));
+}
+
+static void a_real_units_start_packet_is_encoded_byte_for_byte(void)
+{
+    static const uint8_t expected[] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
+                                       0x00, 0x9E, 0x56, 0x15, 0x54, 0x02};
+    const encode_sample_t sample = {149, 21, 0};
+    const encode_packet_t packet = {0x75, 1, 31, 31, &sample};
+    uint8_t out[ENCODE_PACKET_MAX];
+
+    TEST_ASSERT_EQUAL_size_t(13, encode_packet(out, &packet));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 13);
+}
+
+static void the_example_sample_of_section_5_is_64_e5_6f(void)
+{
+    static const uint8_t expected[] = {0x64, 0xE5, 0x6F};
+    const encode_sample_t sample = {7161, 100, 1};
+    uint8_t out[3];
+
+    encode_sample(out, sample);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 3);
+}
+
+static void the_largest_sample_fills_all_its_bits(void)
+{
+    static const uint8_t expected[] = {0xFF, 0xFF, 0xFF};
+    const encode_sample_t sample = {16383, 255, 3};
+    uint8_t out[3];
+
+    encode_sample(out, sample);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 3);
+}
+
+static void an_angle_has_its_check_bit_set(void)
+{
+    TEST_ASSERT_EQUAL_HEX16(0x0001, encode_angle(0));
+    TEST_ASSERT_EQUAL_HEX16(0xA995, encode_angle(21706));
+    TEST_ASSERT_EQUAL_HEX16(0xFFFF, encode_angle(32767));
+}
+
+static void sealing_makes_a_changed_packet_valid_again(void)
+{
+    uint8_t packet[] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F, 0x00, 0, 0, 0x14, 0x54, 0x02};
+
+    encode_seal(packet);
+    TEST_ASSERT_EQUAL_HEX8(0x9F, packet[8]);
+    TEST_ASSERT_EQUAL_HEX8(0x56, packet[9]);
+}
+
+static void a_packet_may_have_255_samples(void)
+{
+    static const encode_sample_t samples[255];
+    const encode_packet_t packet = {0, 255, 0, 0, samples};
+    uint8_t out[ENCODE_PACKET_MAX];
+
+    TEST_ASSERT_EQUAL_size_t(775, encode_packet(out, &packet));
+    TEST_ASSERT_EQUAL_HEX8(0xAA, out[8]); /* AA ^ CT 0 ^ 01 ^ 01 */
+    TEST_ASSERT_EQUAL_HEX8(0xAA, out[9]); /* 55 ^ LSN FF */
+}
+
+static void the_scan_reply_is_the_manuals(void)
+{
+    static const uint8_t expected[] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
+    uint8_t out[ENCODE_REPLY_MAX];
+
+    TEST_ASSERT_EQUAL_size_t(7, encode_scan_reply(out));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
+}
+
+/* The reply of a real T-mini Plus: firmware 1.2 with the minor byte first, hardware 1. */
+static void device_information_is_a_real_units_reply(void)
+{
+    static const uint8_t expected[] = {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x97, 0x02,
+                                       0x01, 0x01, 2,    0,    2,    5,    0,    4,    2,
+                                       4,    0,    0,    0,    9,    0,    1,    9,    4};
+    const encode_information_t information = {
+        151, 1, 2, 1, {2, 0, 2, 5, 0, 4, 2, 4, 0, 0, 0, 9, 0, 1, 9, 4}};
+    uint8_t out[ENCODE_REPLY_MAX];
+
+    TEST_ASSERT_EQUAL_size_t(27, encode_information_reply(out, &information));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 27);
+}
+
+static void health_has_status_and_a_little_endian_error_code(void)
+{
+    static const uint8_t expected[] = {0xA5, 0x5A, 0x03, 0x00, 0x00, 0x00, 0x06, 0x22, 0x34, 0x12};
+    uint8_t out[ENCODE_REPLY_MAX];
+
+    TEST_ASSERT_EQUAL_size_t(10, encode_health_reply(out, 0x22, 0x1234));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 10);
+}
+
+static void six_hertz_is_600_hundredths(void)
+{
+    static const uint8_t expected[] = {0xA5, 0x5A, 0x04, 0x00, 0x00, 0x00,
+                                       0x04, 0x58, 0x02, 0x00, 0x00};
+    uint8_t out[ENCODE_REPLY_MAX];
+
+    TEST_ASSERT_EQUAL_size_t(11, encode_frequency_reply(out, 600));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 11);
+}
+
+static void a_reply_of_any_mode_and_length_can_be_made(void)
+{
+    static const uint8_t expected[] = {0xA5, 0x5A, 0x56, 0x34, 0x12, 0xC0, 0x99};
+    uint8_t out[ENCODE_REPLY_MAX];
+
+    TEST_ASSERT_EQUAL_size_t(7, encode_reply(out, 3, 0x99, NULL, 0x123456));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
+}
+
+static void the_crc_of_123456789_is_a1(void)
+{
+    uint8_t crc = 0;
+
+    for (uint8_t digit = '1'; digit <= '9'; digit++) {
+        crc = encode_crc8(crc, digit);
+    }
+    TEST_ASSERT_EQUAL_HEX8(0xA1, crc);
+}
+
+static void ct_bytes_follow_the_table_of_section_7(void)
+{
+    const encode_turn_t turn = a_turn();
+
+    TEST_ASSERT_EQUAL_HEX8(0x79, encode_ct(&turn, 0)); /* 60 << 1 | 1 */
+    TEST_ASSERT_EQUAL_HEX8(0x46, encode_ct(&turn, 1)); /* 1 << 6 | 3 << 1 */
+    TEST_ASSERT_EQUAL_HEX8(0x44, encode_ct(&turn, 3)); /* 0x22 << 1 */
+    TEST_ASSERT_EQUAL_HEX8(0x24, encode_ct(&turn, 4)); /* 1 << 5 | 2 << 1 */
+    TEST_ASSERT_EQUAL_HEX8(0x0E, encode_ct(&turn, 5)); /* 7 << 1 */
+}
+
+/* 1193046 = 0x123456: bits 20..19 are 2, 18..16 are 2, 15..14 are 0, 13..7 are 0x68, 6..0 0x56. */
+static void the_serial_number_is_spread_over_indices_9_to_13(void)
+{
+    const encode_turn_t turn = a_turn();
+
+    TEST_ASSERT_EQUAL_HEX8(0x2C, encode_ct(&turn, 9));  /* 5 << 3 | 2 << 1 */
+    TEST_ASSERT_EQUAL_HEX8(0x44, encode_ct(&turn, 10)); /* 4 << 4 | 2 << 1 */
+    TEST_ASSERT_EQUAL_HEX8(0xC0, encode_ct(&turn, 11)); /* 24 << 3 | 0 << 1 */
+    TEST_ASSERT_EQUAL_HEX8(0xD0, encode_ct(&turn, 12)); /* 0x68 << 1 */
+    TEST_ASSERT_EQUAL_HEX8(0xAC, encode_ct(&turn, 13)); /* 0x56 << 1 */
+}
+
+static void only_index_0_has_bit_0_set(void)
+{
+    const encode_turn_t turn = a_turn();
+
+    for (uint32_t index = 1; index < 300; index++) {
+        TEST_ASSERT_EQUAL_HEX8(0, encode_ct(&turn, index) & 1u);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(the_manuals_packet_is_encoded_byte_for_byte);
+    RUN_TEST(the_manuals_checksum_is_e85a);
+    RUN_TEST(a_real_units_start_packet_is_encoded_byte_for_byte);
+    RUN_TEST(the_example_sample_of_section_5_is_64_e5_6f);
+    RUN_TEST(the_largest_sample_fills_all_its_bits);
+    RUN_TEST(an_angle_has_its_check_bit_set);
+    RUN_TEST(sealing_makes_a_changed_packet_valid_again);
+    RUN_TEST(a_packet_may_have_255_samples);
+    RUN_TEST(the_scan_reply_is_the_manuals);
+    RUN_TEST(device_information_is_a_real_units_reply);
+    RUN_TEST(health_has_status_and_a_little_endian_error_code);
+    RUN_TEST(six_hertz_is_600_hundredths);
+    RUN_TEST(a_reply_of_any_mode_and_length_can_be_made);
+    RUN_TEST(the_crc_of_123456789_is_a1);
+    RUN_TEST(ct_bytes_follow_the_table_of_section_7);
+    RUN_TEST(the_serial_number_is_spread_over_indices_9_to_13);
+    RUN_TEST(only_index_0_has_bit_0_set);
+    return UNITY_END();
+}
