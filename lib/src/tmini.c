@@ -56,14 +56,13 @@ static void receive(tmini_t *lidar)
 {
     if (lidar->held) {
         lidar->held = false;
-        tmini_scan_add(&lidar->builder, &lidar->packet, lidar->packet_ms);
+        tmini_scan_add(&lidar->builder, &lidar->latest.packet, lidar->phase_ms);
     }
     while (lidar->pending == 0) {
         switch (next_frame(lidar)) {
         case TMINI_FRAME_NONE:
             return;
         case TMINI_FRAME_PACKET:
-            tmini_packet_open(&lidar->packet, &lidar->parser);
             tmini_driver_packet(lidar);
             break;
         case TMINI_FRAME_REPLY:
@@ -100,8 +99,8 @@ static tmini_status_t init_modules(tmini_t *lidar, const tmini_config_t *config)
     if (status == TMINI_OK) {
         status = tmini_parser_init(&lidar->parser, &lidar->ring, config->max_samples);
     }
-    lidar->streaming = config->points == NULL && config->max_points == 0;
-    if (status == TMINI_OK && !lidar->streaming) {
+    const bool streaming = config->points == NULL && config->max_points == 0;
+    if (status == TMINI_OK && !streaming) {
         status = tmini_scan_init(&lidar->builder, config->points, config->max_points,
                                  config->filter);
     }
@@ -171,17 +170,17 @@ const tmini_scan_t *tmini_scan(const tmini_t *lidar)
 
 const tmini_packet_t *tmini_packet(const tmini_t *lidar)
 {
-    return &lidar->packet;
+    return &lidar->latest.packet;
 }
 
 const tmini_info_t *tmini_info(const tmini_t *lidar)
 {
-    return &lidar->reply.info;
+    return &lidar->latest.info;
 }
 
 const tmini_health_t *tmini_health(const tmini_t *lidar)
 {
-    return &lidar->reply.health;
+    return &lidar->latest.health;
 }
 
 uint16_t tmini_frequency_chz(const tmini_t *lidar)

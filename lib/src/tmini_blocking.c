@@ -108,7 +108,7 @@ tmini_status_t tmini_start_and_wait(tmini_t *lidar, uint32_t timeout_ms)
 {
     const uint16_t aside = set_events_aside(lidar);
     const tmini_status_t begun = tmini_start(lidar);
-    const bool streaming = begun == TMINI_OK && lidar->streaming;
+    const bool streaming = begun == TMINI_OK && lidar->builder.capacity == 0;
     return finish(lidar, begun, aside, streaming ? TMINI_EVENT_PACKET : TMINI_EVENT_SCAN,
                   timeout_ms);
 }

@@ -206,11 +206,11 @@ void tmini_driver_reply(tmini_t *lidar)
         driver_enter(lidar, PHASE_SPINNING_UP);
         break;
     case TMINI_COMMAND_GET_INFO:
-        tmini_reply_info(content, &lidar->reply.info);
+        tmini_reply_info(content, &lidar->latest.info);
         succeed(lidar, TMINI_EVENT_INFO);
         break;
     case TMINI_COMMAND_GET_HEALTH:
-        tmini_reply_health(content, &lidar->reply.health);
+        tmini_reply_health(content, &lidar->latest.health);
         succeed(lidar, TMINI_EVENT_HEALTH);
         break;
     default:

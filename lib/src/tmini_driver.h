@@ -66,7 +66,7 @@ void tmini_driver_reply(tmini_t *lidar);     /* The awaited reply has come. */
 void tmini_driver_keep_time(tmini_t *lidar); /* What the wire's phase asks for now. */
 
 /* tmini_watch.c */
-void tmini_driver_packet(tmini_t *lidar);   /* lidar->packet has come. */
+void tmini_driver_packet(tmini_t *lidar);   /* A packet has come. */
 void tmini_driver_watch(tmini_t *lidar);    /* While scanning: still there, and well? */
 void tmini_driver_back_off(tmini_t *lidar); /* An attempt to recover has failed. */
 

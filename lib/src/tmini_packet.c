@@ -47,7 +47,6 @@ void tmini_packet_open(tmini_packet_t *packet, const tmini_parser_t *parser)
     packet->stray = parser->stray;
     packet->gap = parser->gap;
     packet->parser = parser;
-    packet->samples = parser->ring->tail + TMINI_PACKET_HEADER_SIZE;
     packet->step = 0;
     if (packet->count > 1) {
         const uint32_t intervals = packet->count - 1u;
@@ -63,8 +62,8 @@ bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_
     }
     uint8_t joined[TMINI_SAMPLE_SIZE];
     size_t count = 1;
-    const uint8_t *const sample = ring_samples(
-        packet->parser->ring, packet->samples + TMINI_SAMPLE_SIZE * index, &count, joined);
+    const uint8_t *const sample =
+        ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(index), &count, joined);
     *point = decode(sample, packet->first_angle_q6, HALF + (uint32_t)index * packet->step);
     return tmini_parser_frame_intact(packet->parser);
 }
@@ -80,8 +79,8 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
     while (done < wanted) {
         uint8_t joined[TMINI_SAMPLE_SIZE];
         size_t count = wanted - done;
-        const uint8_t *sample = ring_samples(
-            packet->parser->ring, packet->samples + TMINI_SAMPLE_SIZE * done, &count, joined);
+        const uint8_t *sample =
+            ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
         tmini_point_t *point = &points[done];
         done += count;
         for (; count > 0; count--) {
@@ -101,7 +100,7 @@ bool tmini_packet_has_range(const tmini_packet_t *packet)
 {
     const tmini_ring_t *const ring = packet->parser->ring;
     for (size_t i = 0; i < packet->count; i++) {
-        const size_t sample = TMINI_PACKET_HEADER_SIZE + TMINI_SAMPLE_SIZE * i;
+        const size_t sample = TMINI_PACKET_SIZE_MAX(i);
         if (ring_peek(ring, sample + 1) > 3 || ring_peek(ring, sample + 2) > 0) {
             return true;
         }

@@ -8,6 +8,9 @@
 
 enum verdict { USELESS, INCOMPLETE, COMPLETE };
 
+/* The start signs (sections 4 and 5). */
+enum { PACKET_FIRST = 0xAA, PACKET_SECOND = 0x55, REPLY_FIRST = 0xA5, REPLY_SECOND = 0x5A };
+
 /* Offsets in a reply's header (section 4); a packet's are in tmini_packet_header.h. */
 enum { REPLY_LENGTH = 2, REPLY_MODE_AND_LENGTH = 5, REPLY_TYPE = 6 };
 
@@ -31,21 +34,19 @@ static bool packet_header_is_plausible(const tmini_parser_t *parser)
  * S3 the high one. The checksum itself is among the header bytes: nothing remains if it is right. */
 static bool checksum_matches(const tmini_parser_t *parser)
 {
-    const tmini_ring_t *const ring = parser->ring;
     uint8_t low = 0;
     uint8_t high = 0;
     for (size_t i = 0; i < TMINI_PACKET_HEADER_SIZE; i += 2) {
         low ^= parser->header[i];
         high ^= parser->header[i + 1];
     }
-    size_t samples = parser->header[LSN];
-    size_t index = ring->tail + TMINI_PACKET_HEADER_SIZE;
-    while (samples > 0) {
+    const size_t samples = parser->header[LSN];
+    for (size_t done = 0; done < samples;) {
         uint8_t joined[TMINI_SAMPLE_SIZE];
-        size_t count = samples;
-        const uint8_t *sample = ring_samples(ring, index, &count, joined);
-        samples -= count;
-        index += TMINI_SAMPLE_SIZE * count;
+        size_t count = samples - done;
+        const uint8_t *sample =
+            ring_samples(parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
+        done += count;
         for (; count > 0; count--) {
             low ^= sample[0] ^ sample[1];
             high ^= sample[2];
@@ -53,25 +54,6 @@ static bool checksum_matches(const tmini_parser_t *parser)
         }
     }
     return (low | high) == 0;
-}
-
-static enum verdict judge_packet(tmini_parser_t *parser, size_t unread)
-{
-    if (!has(parser, unread, TMINI_PACKET_HEADER_SIZE)) {
-        return INCOMPLETE;
-    }
-    ring_copy(parser->ring, 0, parser->header, TMINI_PACKET_HEADER_SIZE);
-    if (!packet_header_is_plausible(parser)) {
-        return USELESS;
-    }
-    if (!has(parser, unread, TMINI_PACKET_SIZE_MAX(parser->header[LSN]))) {
-        return INCOMPLETE;
-    }
-    if (!checksum_matches(parser)) {
-        parser->counters.checksum_errors++;
-        return USELESS;
-    }
-    return COMPLETE;
 }
 
 /* Of the length only the lowest byte can be other than 0: no reply is longer than 20 bytes. When
@@ -89,31 +71,36 @@ static bool reply_has_awaited_shape(const tmini_parser_t *parser)
             (header[REPLY_LENGTH + 1] | header[REPLY_LENGTH + 2] | mode_and_length) == 0);
 }
 
-static enum verdict judge_reply(tmini_parser_t *parser, size_t unread)
-{
-    if (!has(parser, unread, TMINI_REPLY_HEADER_SIZE)) {
-        return INCOMPLETE;
-    }
-    ring_copy(parser->ring, 0, parser->header, TMINI_REPLY_HEADER_SIZE);
-    if (!reply_has_awaited_shape(parser)) {
-        return USELESS;
-    }
-    return has(parser, unread, TMINI_REPLY_HEADER_SIZE + parser->awaited.length) ? COMPLETE
-                                                                               : INCOMPLETE;
-}
-
+/* What the ring's oldest bytes are. */
 static enum verdict judge(tmini_parser_t *parser, size_t unread)
 {
-    const bool second_known = has(parser, unread, 2);
-    const uint8_t first = ring_peek(parser->ring, 0);
-    const uint8_t second = ring_peek(parser->ring, 1);
-    if (first == 0xAA && (second == 0x55 || !second_known)) {
-        return second_known ? judge_packet(parser, unread) : INCOMPLETE;
+    const bool is_packet = ring_peek(parser->ring, 0) == PACKET_FIRST;
+    if (!is_packet && !(parser->awaiting && ring_peek(parser->ring, 0) == REPLY_FIRST)) {
+        return USELESS;
     }
-    if (first == 0xA5 && parser->awaiting && (second == 0x5A || !second_known)) {
-        return second_known ? judge_reply(parser, unread) : INCOMPLETE;
+    if (!has(parser, unread, 2)) {
+        return INCOMPLETE;
     }
-    return USELESS;
+    if (ring_peek(parser->ring, 1) != (is_packet ? PACKET_SECOND : REPLY_SECOND)) {
+        return USELESS;
+    }
+    const size_t header_size = is_packet ? TMINI_PACKET_HEADER_SIZE : TMINI_REPLY_HEADER_SIZE;
+    if (!has(parser, unread, header_size)) {
+        return INCOMPLETE;
+    }
+    ring_copy(parser->ring, 0, parser->header, header_size);
+    if (!(is_packet ? packet_header_is_plausible(parser) : reply_has_awaited_shape(parser))) {
+        return USELESS;
+    }
+    if (!has(parser, unread, is_packet ? TMINI_PACKET_SIZE_MAX(parser->header[LSN])
+                                       : TMINI_REPLY_HEADER_SIZE + parser->awaited.length)) {
+        return INCOMPLETE;
+    }
+    if (is_packet && !checksum_matches(parser)) {
+        parser->counters.checksum_errors++;
+        return USELESS;
+    }
+    return COMPLETE;
 }
 
 static void widen_gap(tmini_parser_t *parser, size_t bytes)
@@ -169,7 +156,7 @@ static tmini_frame_t deliver(tmini_parser_t *parser)
 {
     parser->frame = parser->need;
     parser->need = 1;
-    if (ring_peek(parser->ring, 0) == 0xAA) {
+    if (parser->header[0] == PACKET_FIRST) {
         parser->counters.packets++;
         parser->counters.bytes_in_packets += parser->frame;
         return TMINI_FRAME_PACKET;

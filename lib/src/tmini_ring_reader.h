@@ -32,13 +32,13 @@ static inline void ring_discard(tmini_ring_t *ring, size_t count)
     tmini_store(&ring->limit, ring->tail + ring->mask + 1);
 }
 
-/* The samples (three bytes each) from the ring's byte `index` on that lie in one piece: at most
+/* The samples (three bytes each) from the unread byte `offset` on that lie in one piece: at most
  * *count, which becomes their number. One that straddles the memory's end is put together in
  * `joined`. Lets the loops over samples, the hottest there are, run without wrapping. */
-static inline const uint8_t *ring_samples(const tmini_ring_t *ring, size_t index, size_t *count,
+static inline const uint8_t *ring_samples(const tmini_ring_t *ring, size_t offset, size_t *count,
                                           uint8_t joined[3])
 {
-    const size_t at = index & ring->mask;
+    const size_t at = (ring->tail + offset) & ring->mask;
     const size_t to_end = ring->mask + 1 - at;
     if (3 * *count <= to_end) {
         return &ring->memory[at];

@@ -37,9 +37,9 @@ static bool is_missing_before(const tmini_scan_builder_t *builder, const tmini_p
            turned(builder->previous_angle_q6, packet->first_angle_q6) > JUMP_Q6;
 }
 
-static void add_up(uint16_t *total, uint32_t amount)
+static void add_up(uint16_t *total, size_t amount)
 {
-    const uint32_t room = (uint32_t)UINT16_MAX - *total;
+    const size_t room = UINT16_MAX - (size_t)*total;
     *total = (uint16_t)(*total + (amount < room ? amount : room));
 }
 
@@ -51,8 +51,8 @@ static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet)
     if (!is_start || is_missing_before(builder, packet)) {
         add_up(&scan->gaps, 1);
     }
-    add_up(&scan->checksum_errors,
-           packet->parser->counters.checksum_errors - builder->errors_before);
+    scan->checksum_errors =
+        (uint16_t)(packet->parser->counters.checksum_errors - builder->errors_before);
     /* A start packet carries the frequency of the revolution before it (section 9.8). */
     scan->frequency_chz = (uint16_t)(is_start ? (packet->ct >> 1) * 10 : 0);
     scan->complete = scan->gaps == 0 && scan->dropped == 0;
@@ -61,10 +61,10 @@ static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet)
 
 static void begin(tmini_scan_builder_t *builder, const tmini_packet_t *start, uint32_t now_ms)
 {
-    builder->scan = (tmini_scan_t){ .points = builder->buffer, .timestamp_ms = now_ms };
+    builder->scan = (tmini_scan_t){ .points = builder->scan.points, .timestamp_ms = now_ms };
     builder->previous_angle_q6 = start->first_angle_q6;
     builder->swept_q6 = 0;
-    builder->errors_before = start->parser->counters.checksum_errors;
+    builder->errors_before = (uint16_t)start->parser->counters.checksum_errors;
     builder->open = true;
 }
 
@@ -72,14 +72,14 @@ static void append_points(tmini_scan_builder_t *builder, const tmini_packet_t *p
 {
     tmini_scan_t *const scan = &builder->scan;
     const size_t count =
-        tmini_packet_points(packet, builder->filter, &builder->buffer[scan->count],
+        tmini_packet_points(packet, builder->filter, &scan->points[scan->count],
                             (size_t)builder->capacity - scan->count);
     if (!tmini_parser_frame_intact(packet->parser)) {
         add_up(&scan->gaps, 1);
         return;
     }
     scan->count = (uint16_t)(scan->count + count);
-    add_up(&scan->dropped, (uint32_t)(packet->count - count));
+    add_up(&scan->dropped, packet->count - count);
     add_up(&scan->packets, 1);
 }
 
@@ -91,7 +91,7 @@ tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buf
         return TMINI_ERROR_ARGUMENT;
     }
     *builder = (tmini_scan_builder_t){
-        .buffer = buffer, .capacity = (uint16_t)capacity, .filter = (uint8_t)filter
+        .scan.points = buffer, .capacity = (uint16_t)capacity, .filter = (uint8_t)filter
     };
     return TMINI_OK;
 }

@@ -7,8 +7,7 @@
 
 #include "tmini/tmini_reply.h"
 
-/* Which information stands at which index (section 7). Health is at 3, not at 4 as one sentence of
- * the manual says (section 9.3). */
+/* Which information stands at which index (section 7). */
 enum {
     USER_VERSION = 1,
     HEALTH = 3,
@@ -21,12 +20,17 @@ enum {
     NUMBER_LOW = 13,
 };
 
+/* The others are production data. */
+#define KNOWN_MASK                                                                              \
+    (TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE | TMINI_KNOWN_FIRMWARE | \
+     TMINI_KNOWN_YEAR | TMINI_KNOWN_MONTH | TMINI_KNOWN_DAY | TMINI_KNOWN_SERIAL)
+
 static void trust_current(tmini_turn_t *turn)
 {
     const unsigned count =
         turn->packets < TMINI_TURN_FIELDS ? turn->packets : TMINI_TURN_FIELDS;
     memcpy(turn->trusted, turn->current, count);
-    turn->known |= (uint16_t)((1ul << count) - 1);
+    turn->known |= (uint16_t)((1u << count) - 1);
 }
 
 static void begin_revolution(tmini_turn_t *turn)
@@ -49,7 +53,7 @@ static void append(tmini_turn_t *turn, uint8_t ct)
     if (turn->packets < TMINI_TURN_FIELDS) {
         turn->current[turn->packets] = ct;
     }
-    if (turn->packets < UINT16_MAX) {
+    if (turn->packets < UINT8_MAX) {
         turn->packets++;
     }
 }
@@ -83,11 +87,6 @@ bool tmini_turn_add(tmini_turn_t *turn, const tmini_packet_t *packet)
     return trusted;
 }
 
-static bool known(const tmini_turn_t *turn, unsigned index)
-{
-    return (turn->known >> index & 1u) != 0;
-}
-
 /* The serial number's digits 9 to 16 are 21 bits, spread over the last five indices. */
 static uint32_t serial_number(const uint8_t *ct)
 {
@@ -96,55 +95,26 @@ static uint32_t serial_number(const uint8_t *ct)
            (uint32_t)(ct[NUMBER_LOW] >> 1);
 }
 
-static void read_versions(const tmini_turn_t *turn, tmini_turn_info_t *info)
+unsigned tmini_turn_faults(const tmini_turn_t *turn)
 {
-    const uint8_t *const ct = turn->trusted;
-    if (known(turn, USER_VERSION)) {
-        info->known |= TMINI_KNOWN_USER_VERSION;
-        info->user_major = ct[USER_VERSION] >> 6;
-        info->user_minor = ct[USER_VERSION] >> 1 & 0x1Fu;
-    }
-    if (known(turn, HEALTH)) {
-        info->known |= TMINI_KNOWN_FAULTS;
-        info->faults = ct[HEALTH] >> 1 & TMINI_FAULT_MASK;
-    }
-    if (known(turn, HARDWARE)) {
-        info->known |= TMINI_KNOWN_HARDWARE;
-        info->hardware = ct[HARDWARE] >> 5;
-        info->firmware_major = ct[HARDWARE] >> 1 & 0x0Fu;
-    }
-    if (known(turn, FIRMWARE_MINOR)) {
-        info->known |= TMINI_KNOWN_FIRMWARE;
-        info->firmware_minor = ct[FIRMWARE_MINOR] >> 1;
-    }
-}
-
-static void read_serial(const tmini_turn_t *turn, tmini_turn_info_t *info)
-{
-    const uint8_t *const ct = turn->trusted;
-    if (known(turn, YEAR)) {
-        info->known |= TMINI_KNOWN_YEAR;
-        info->year = (uint16_t)(2020u + (ct[YEAR] >> 3));
-    }
-    if (known(turn, MONTH)) {
-        info->known |= TMINI_KNOWN_MONTH;
-        info->month = ct[MONTH] >> 4;
-    }
-    if (known(turn, DAY)) {
-        info->known |= TMINI_KNOWN_DAY;
-        info->day = ct[DAY] >> 3;
-    }
-    if (known(turn, NUMBER_LOW)) {
-        info->known |= TMINI_KNOWN_SERIAL;
-        info->number = serial_number(ct);
-    }
+    return (turn->known & TMINI_KNOWN_FAULTS) != 0 ? turn->trusted[HEALTH] >> 1 & TMINI_FAULT_MASK
+                                                   : TMINI_FAULTS_UNKNOWN;
 }
 
 void tmini_turn_info(const tmini_turn_t *turn, tmini_turn_info_t *info)
 {
-    *info = (tmini_turn_info_t){ 0 };
-    read_versions(turn, info);
-    read_serial(turn, info);
+    const uint8_t *const ct = turn->trusted; /* 0 where it is not known. */
+    info->known = turn->known & KNOWN_MASK;
+    info->user_major = ct[USER_VERSION] >> 6;
+    info->user_minor = ct[USER_VERSION] >> 1 & 0x1Fu;
+    info->faults = ct[HEALTH] >> 1 & TMINI_FAULT_MASK;
+    info->hardware = ct[HARDWARE] >> 5;
+    info->firmware_major = ct[HARDWARE] >> 1 & 0x0Fu;
+    info->firmware_minor = ct[FIRMWARE_MINOR] >> 1;
+    info->year = (uint16_t)((info->known & TMINI_KNOWN_YEAR) != 0 ? 2020u + (ct[YEAR] >> 3) : 0);
+    info->month = ct[MONTH] >> 4;
+    info->day = ct[DAY] >> 3;
+    info->number = (info->known & TMINI_KNOWN_SERIAL) != 0 ? serial_number(ct) : 0;
 }
 
 uint8_t tmini_turn_crc8(uint8_t crc, uint8_t byte)

@@ -31,13 +31,13 @@ static void observe(tmini_t *lidar, uint8_t faults)
 /* A start packet: judge the revolution that it ends, by CT information if the unit sends that. */
 static void judge_revolution(tmini_t *lidar, bool trusted)
 {
-    tmini_turn_info_t info;
-    tmini_turn_info(&lidar->turn, &info);
-    const bool unit_tells = (info.known & TMINI_KNOWN_FAULTS) != 0;
-    if (trusted && unit_tells) {
-        observe(lidar, info.faults);
-    } else if (!unit_tells && lidar->revolving) {
-        observe(lidar, lidar->range_seen ? 0 : TMINI_FAULT_DATA);
+    const unsigned told = tmini_turn_faults(&lidar->turn);
+    if (told == TMINI_FAULTS_UNKNOWN) {
+        if (lidar->revolving) {
+            observe(lidar, lidar->range_seen ? 0 : TMINI_FAULT_DATA);
+        }
+    } else if (trusted) {
+        observe(lidar, (uint8_t)told);
     }
     lidar->revolving = true;
     lidar->range_seen = false;
@@ -79,14 +79,15 @@ static bool is_welcome(const tmini_t *lidar)
 
 static void gather(tmini_t *lidar)
 {
-    if (lidar->streaming) {
+    const tmini_packet_t *const packet = &lidar->latest.packet;
+    if (lidar->builder.capacity == 0) {
         driver_raise(lidar, TMINI_EVENT_PACKET);
-    } else if (tmini_scan_close(&lidar->builder, &lidar->packet)) {
+    } else if (tmini_scan_close(&lidar->builder, packet)) {
         lidar->held = true;
         lidar->scans++;
         driver_raise(lidar, TMINI_EVENT_SCAN);
     } else {
-        tmini_scan_add(&lidar->builder, &lidar->packet, lidar->packet_ms);
+        tmini_scan_add(&lidar->builder, packet, lidar->now_ms);
     }
 }
 
@@ -98,12 +99,14 @@ void tmini_driver_packet(tmini_t *lidar)
     if (lidar->phase != PHASE_SCANNING) {
         resume(lidar);
     }
-    lidar->packet_ms = lidar->now_ms;
-    const bool trusted = tmini_turn_add(&lidar->turn, &lidar->packet);
-    if (tmini_packet_is_start(&lidar->packet)) {
+    tmini_packet_t *const packet = &lidar->latest.packet;
+    tmini_packet_open(packet, &lidar->parser);
+    lidar->phase_ms = lidar->now_ms;
+    const bool trusted = tmini_turn_add(&lidar->turn, packet);
+    if (tmini_packet_is_start(packet)) {
         judge_revolution(lidar, trusted);
     }
-    lidar->range_seen = lidar->range_seen || tmini_packet_has_range(&lidar->packet);
+    lidar->range_seen = lidar->range_seen || tmini_packet_has_range(packet);
     gather(lidar);
 }
 
@@ -160,7 +163,7 @@ void tmini_driver_watch(tmini_t *lidar)
 {
     switch (lidar->phase) {
     case PHASE_SCANNING:
-        if (driver_elapsed(lidar, lidar->packet_ms, lidar->timing->data_ms)) {
+        if (driver_elapsed(lidar, lidar->phase_ms, lidar->timing->data_ms)) {
             lose(lidar);
         } else {
             watch_rotor(lidar);

@@ -130,25 +130,9 @@ typedef struct {
     uint16_t reboots;       /* Soft reboots sent to recover. */
 } tmini_counters_t;
 
-/* One lidar. The members are private; it is here so that it can be allocated statically. */
+/* One lidar. The members are private; they are here so that it can be allocated statically. The small
+ * ones come first: Thumb code reaches them with short instructions. */
 typedef struct {
-    tmini_ring_t ring;
-    tmini_parser_t parser;
-    tmini_packet_t packet;
-    tmini_turn_t turn;
-    tmini_scan_builder_t builder;
-
-    const tmini_port_t *port;
-    void *port_context;
-    const tmini_timing_t *timing;
-    uint32_t now_ms;      /* As of this poll. */
-    uint32_t phase_ms;    /* When the phase began. */
-    uint32_t received_ms; /* When bytes were last seen to have come. */
-    uint32_t packet_ms;   /* When the last valid packet was parsed. */
-    uint32_t start_ms;    /* When the last start packet was parsed. */
-    size_t received;      /* The ring's head at received_ms. */
-
-    uint16_t pending;  /* A bit for each event not yet returned. */
     uint8_t phase;     /* What goes on on the wire. */
     uint8_t goal;      /* The command that is being carried out. */
     uint8_t attempts;  /* Failed attempts at it. */
@@ -162,25 +146,38 @@ typedef struct {
     int8_t failure;    /* The status of the last failed command. */
     uint8_t faults;    /* As reported. */
     uint8_t observed;  /* As seen in the last revolution; reported when seen twice. */
-    bool streaming;    /* No scan buffer. */
     bool no_recovery;
     bool recovering;
-    bool held;         /* The packet that closed the scan has not been added to the next. */
-    bool range_seen;   /* A valid range since the last start packet. */
-    bool revolving;    /* A start packet has come since scanning began. */
-
+    bool held;       /* The packet that closed the scan has not been added to the next. */
+    bool range_seen; /* A valid range since the last start packet. */
+    bool revolving;  /* A start packet has come since scanning began. */
+    uint16_t pending; /* A bit for each event not yet returned. */
     uint16_t target_chz;
     uint16_t frequency_chz;
-    union {
-        tmini_info_t info;
-        tmini_health_t health;
-    } reply;
-    uint32_t scans;
     uint16_t timeouts;
     uint16_t losses;
     uint16_t recoveries;
     uint16_t restarts;
     uint16_t reboots;
+    uint32_t scans;
+    uint32_t now_ms;      /* As of this poll. */
+    uint32_t phase_ms;    /* When the phase began; while scanning, when the last packet came. */
+    uint32_t received_ms; /* When bytes were last seen to have come. */
+    uint32_t start_ms;    /* When the last start packet came. */
+    size_t received;      /* The ring's head at received_ms. */
+    const tmini_port_t *port;
+    void *port_context;
+    const tmini_timing_t *timing;
+
+    tmini_ring_t ring;
+    tmini_parser_t parser;
+    tmini_turn_t turn;
+    tmini_scan_builder_t builder; /* Without a capacity when streaming. */
+    union {
+        tmini_packet_t packet; /* While scanning. */
+        tmini_info_t info;     /* The answers to commands, which are not sent while scanning. */
+        tmini_health_t health;
+    } latest;
 } tmini_t;
 
 /* ---------------------------------------------------------------------------------- life cycle */

@@ -47,7 +47,7 @@ typedef struct {
     uint8_t flag;         /* 0 to 3, as sent: a tmini_flag_t or neither. */
 } tmini_point_t;
 
-/* Members down to `stray` may be read. */
+/* Members down to `gap` may be read. */
 typedef struct {
     uint16_t first_angle_q6; /* FSA, below 23040. */
     uint16_t last_angle_q6;  /* LSA, below 23040. Without meaning when count is 1 (section 9.6). */
@@ -55,9 +55,8 @@ typedef struct {
     uint8_t count;           /* Samples: 1 to 255. */
     uint8_t stray;           /* The last byte before the packet that belonged to no frame. */
     uint16_t gap;            /* How many of those there were since the last frame, or 65535: many. */
+    uint32_t step;           /* From sample to sample, in 1/64 degree / 2^17, rounded up. */
     const tmini_parser_t *parser;
-    size_t samples; /* Index of the first sample in the ring. */
-    uint32_t step;  /* From sample to sample, in 1/64 degree / 2^17, rounded up. */
 } tmini_packet_t;
 
 /* Opens the packet that `parser` delivered last (TMINI_FRAME_PACKET). One division. */

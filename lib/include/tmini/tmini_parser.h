@@ -73,16 +73,16 @@ typedef struct {
 
 /* Treat the members as private. */
 typedef struct {
-    tmini_ring_t *ring;
-    size_t refused; /* How many of the ring's refused bytes have been counted. */
-    uint16_t need;  /* Bytes without which the candidate cannot be judged further. */
-    uint16_t frame; /* Size of the frame delivered last, still at the ring's tail. */
-    uint16_t gap;   /* Bytes lost or skipped since the last frame, at most UINT16_MAX. */
-    uint8_t stray;  /* The byte skipped last. */
-    uint8_t header[TMINI_PACKET_HEADER_SIZE]; /* The candidate's, once it has been judged. */
     uint8_t max_samples;
     bool awaiting;
     tmini_reply_shape_t awaited;
+    uint8_t stray;                            /* The byte skipped last. */
+    uint8_t header[TMINI_PACKET_HEADER_SIZE]; /* The candidate's, once it has come. */
+    uint16_t need;  /* Bytes without which the candidate cannot be judged further. */
+    uint16_t frame; /* Size of the frame delivered last, still at the ring's tail. */
+    uint16_t gap;   /* Bytes lost or skipped since the last frame, at most UINT16_MAX. */
+    tmini_ring_t *ring;
+    size_t refused; /* How many of the ring's refused bytes have been counted. */
     tmini_parser_counters_t counters;
 } tmini_parser_t;
 

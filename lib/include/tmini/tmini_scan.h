@@ -26,14 +26,14 @@ extern "C" {
 /* A buffer of this many points holds any revolution at the default 6 Hz and above (section 9.7). */
 #define TMINI_SCAN_POINTS_TYPICAL 800u
 
-/* One revolution. `points` is the caller's own buffer, in order of arrival. */
+/* One revolution. */
 typedef struct {
-    const tmini_point_t *points;
+    tmini_point_t *points;    /* The caller's own buffer, in order of arrival. */
     uint16_t count;           /* Points in the buffer. */
     uint16_t dropped;         /* Points that did not fit in it. */
     uint16_t packets;         /* Packets received of this revolution. */
     uint16_t gaps;            /* Places at which at least one packet is missing. */
-    uint16_t checksum_errors; /* While it was received; at most 65535. */
+    uint16_t checksum_errors; /* While it was received, modulo 2^16. */
     uint16_t frequency_chz;   /* Measured, 0.01 Hz, from the start packet after it; 0: unknown. */
     uint32_t timestamp_ms;    /* The port's clock when the start packet was parsed. */
     bool complete;            /* Ended by a start packet, with no gap and nothing dropped. */
@@ -41,14 +41,13 @@ typedef struct {
 
 /* Treat the members as private, but for `scan` as documented below. */
 typedef struct {
-    tmini_scan_t scan;
-    tmini_point_t *buffer;
-    uint16_t capacity;
-    uint16_t previous_angle_q6; /* Where the last packet ended. */
-    int32_t swept_q6;           /* Angle turned since the start packet. */
-    uint32_t errors_before;     /* The parser's checksum errors when the scan began. */
     uint8_t filter;
     bool open;
+    uint16_t capacity;
+    uint16_t previous_angle_q6; /* Where the last packet ended. */
+    uint16_t errors_before;     /* The parser's checksum errors when the scan began, modulo 2^16. */
+    int32_t swept_q6;           /* Angle turned since the start packet. */
+    tmini_scan_t scan;
 } tmini_scan_builder_t;
 
 /* Gathers into `buffer`, which has room for `capacity` points and stays the caller's; applies

@@ -27,33 +27,36 @@ extern "C" {
 /* Indices with a documented meaning: 0 to 13. */
 #define TMINI_TURN_FIELDS 14u
 
+/* No combination of tmini_fault_t. */
+#define TMINI_FAULTS_UNKNOWN 0x100u
+
 /* Treat the members as private. */
 typedef struct {
-    uint8_t current[TMINI_TURN_FIELDS]; /* CTs of the revolution under way. */
-    uint8_t trusted[TMINI_TURN_FIELDS]; /* The newest trusted CT of each index. */
-    uint16_t known;                     /* Bit i: trusted[i] is valid. */
-    uint16_t packets;                   /* Of the revolution under way; 0 before the first. */
+    uint8_t packets; /* Of the revolution under way, at most 255; 0 before the first. */
     uint8_t crc;
     bool spoiled;     /* Something of the revolution under way was lost. */
     bool informative; /* A point packet of it had a CT other than 0. */
+    uint16_t known;   /* Bit i: trusted[i] is valid; all others are 0. */
+    uint8_t current[TMINI_TURN_FIELDS]; /* CTs of the revolution under way. */
+    uint8_t trusted[TMINI_TURN_FIELDS]; /* The newest trusted CT of each index. */
 } tmini_turn_t;
 
-/* Which fields of tmini_turn_info_t are valid. Fast scans have fewer than 14 packets, so that the
- * later ones may never arrive (section 9.7). */
+/* Which fields of tmini_turn_info_t are valid: a bit for the index that completes each. Fast scans
+ * have fewer than 14 packets, so that the later ones may never arrive (section 9.7). */
 typedef enum {
-    TMINI_KNOWN_USER_VERSION = 1 << 0,
-    TMINI_KNOWN_FAULTS = 1 << 1,
-    TMINI_KNOWN_HARDWARE = 1 << 2, /* And the firmware's major number. */
-    TMINI_KNOWN_FIRMWARE = 1 << 3, /* Both of the firmware's numbers. */
-    TMINI_KNOWN_YEAR = 1 << 4,
-    TMINI_KNOWN_MONTH = 1 << 5,
-    TMINI_KNOWN_DAY = 1 << 6,
-    TMINI_KNOWN_SERIAL = 1 << 7, /* The whole serial number: date and number. */
+    TMINI_KNOWN_USER_VERSION = 1 << 1,
+    TMINI_KNOWN_FAULTS = 1 << 3, /* Not 4, as one sentence of the manual says (section 9.3). */
+    TMINI_KNOWN_HARDWARE = 1 << 4, /* And the firmware's major number. */
+    TMINI_KNOWN_FIRMWARE = 1 << 5, /* Both of the firmware's numbers. */
+    TMINI_KNOWN_YEAR = 1 << 9,
+    TMINI_KNOWN_MONTH = 1 << 10,
+    TMINI_KNOWN_DAY = 1 << 11,
+    TMINI_KNOWN_SERIAL = 1 << 13, /* The whole serial number: date and number. */
 } tmini_known_t;
 
 /* Fields that are not known are 0. */
 typedef struct {
-    uint8_t known;      /* A combination of tmini_known_t. */
+    uint16_t known;     /* A combination of tmini_known_t. */
     uint8_t user_major; /* Protocol version, currently 1.0. */
     uint8_t user_minor;
     uint8_t faults; /* A combination of tmini_fault_t; 0: healthy. */
@@ -75,6 +78,10 @@ void tmini_turn_discard(tmini_turn_t *turn);
 /* Takes the next packet. Returns true if it is a start packet that ended a trusted revolution: what
  * tmini_turn_info() says has just been confirmed. Bounded: a few instructions a packet. */
 bool tmini_turn_add(tmini_turn_t *turn, const tmini_packet_t *packet);
+
+/* The faults that the last trusted revolution told, a combination of tmini_fault_t, or
+ * TMINI_FAULTS_UNKNOWN if none has. */
+unsigned tmini_turn_faults(const tmini_turn_t *turn);
 
 /* What is known from trusted revolutions; each field keeps its value once known. */
 void tmini_turn_info(const tmini_turn_t *turn, tmini_turn_info_t *info);
