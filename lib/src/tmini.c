@@ -3,8 +3,8 @@
 
 #include "tmini/tmini.h"
 
+#include "tmini_atomic.h"
 #include "tmini_driver.h"
-#include "tmini_ring_reader.h"
 
 const tmini_timing_t tmini_timing_default = {
     .silence_ms = 30, /* A line at work is never silent for longer than 5 ms (section 1). */

@@ -8,6 +8,12 @@
 
 /* More frequency steps than any change needs (6 of 1 Hz and 5 of 0.1 Hz). */
 #define STEPS_MAX 20
+/* The events with which commands end. */
+#define END_EVENTS                                                                                \
+    (1u << TMINI_EVENT_STARTED | 1u << TMINI_EVENT_STOPPED | 1u << TMINI_EVENT_INFO |              \
+     1u << TMINI_EVENT_HEALTH | 1u << TMINI_EVENT_FREQUENCY | 1u << TMINI_EVENT_REBOOTED |         \
+     1u << TMINI_EVENT_FAILED)
+
 #define COARSE_STEP_CHZ 100
 #define FINE_STEP_CHZ 10
 
@@ -36,13 +42,14 @@ static void send(tmini_t *lidar, tmini_command_t command)
     lidar->unsent = lidar->sign_sent ? 1 : 2;
 }
 
+/* Sends a command when the line is quiet, and awaits what it is answered with, if anything. */
 static void ask(tmini_t *lidar, tmini_command_t command)
 {
     tmini_reply_shape_t shape;
-    (void)tmini_reply_shape(command, &shape);
-    tmini_parser_await(&lidar->parser, &shape);
+    const bool answered = tmini_reply_shape(command, &shape);
+    tmini_parser_await(&lidar->parser, answered ? &shape : NULL);
     send(lidar, command);
-    driver_enter(lidar, PHASE_ASKING);
+    driver_enter(lidar, answered ? PHASE_ASKING : PHASE_BOOTING);
 }
 
 /* --------------------------------------------------------------------------- how commands end */
@@ -167,32 +174,29 @@ void tmini_driver_hush(tmini_t *lidar)
     driver_enter(lidar, PHASE_HUSHING);
 }
 
+/* What each goal's first command is, once the line is quiet. */
+static const uint8_t first_command[] = {
+    [GOAL_START] = TMINI_COMMAND_START,
+    [GOAL_INFO] = TMINI_COMMAND_GET_INFO,
+    [GOAL_HEALTH] = TMINI_COMMAND_GET_HEALTH,
+    [GOAL_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
+    [GOAL_SET_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
+    [GOAL_REBOOT] = TMINI_COMMAND_REBOOT,
+};
+
 /* The line is quiet: the command that was asked for may be sent (section 2). */
 static void issue(tmini_t *lidar)
 {
-    switch (lidar->goal) {
-    case GOAL_START:
-        lidar->restarts = (uint16_t)(lidar->restarts + lidar->recovering);
-        ask(lidar, TMINI_COMMAND_START);
-        break;
-    case GOAL_INFO:
-        ask(lidar, TMINI_COMMAND_GET_INFO);
-        break;
-    case GOAL_HEALTH:
-        ask(lidar, TMINI_COMMAND_GET_HEALTH);
-        break;
-    case GOAL_REBOOT:
-        lidar->reboots = (uint16_t)(lidar->reboots + lidar->recovering);
-        send(lidar, TMINI_COMMAND_REBOOT);
-        driver_enter(lidar, PHASE_BOOTING);
-        break;
-    case GOAL_STOP:
+    if (lidar->goal == GOAL_STOP) {
         end(lidar, PHASE_IDLE, TMINI_EVENT_STOPPED);
-        break;
-    default:
-        ask(lidar, TMINI_COMMAND_GET_FREQUENCY);
-        break;
+        return;
     }
+    if (lidar->recovering && lidar->goal == GOAL_START) {
+        lidar->restarts++;
+    } else if (lidar->recovering) {
+        lidar->reboots++;
+    }
+    ask(lidar, (tmini_command_t)first_command[lidar->goal]);
 }
 
 void tmini_driver_reply(tmini_t *lidar)
@@ -309,6 +313,7 @@ static void begin(tmini_t *lidar, enum goal goal)
     lidar->steps = 0;
     lidar->step_refused = false;
     lidar->recovering = false;
+    lidar->pending &= (uint16_t)~END_EVENTS; /* Of an earlier command: none is this one's. */
     if (is_quiet_line) {
         issue(lidar);
     } else {
@@ -355,10 +360,11 @@ tmini_status_t tmini_stop(tmini_t *lidar)
     const bool aborts =
         lidar->goal != GOAL_NONE && !lidar->recovering && lidar->phase != PHASE_SCANNING;
     tmini_driver_look(lidar);
-    if (aborts) {
-        fail(lidar, TMINI_ERROR_ABORTED);
-    }
     begin(lidar, GOAL_STOP);
+    if (aborts && lidar->goal == GOAL_STOP) {
+        lidar->failure = TMINI_ERROR_ABORTED;
+        driver_raise(lidar, TMINI_EVENT_FAILED);
+    }
     return TMINI_OK;
 }
 
