@@ -124,7 +124,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
     lidar->no_recovery = config->no_recovery;
     tmini_driver_look(lidar);
     lidar->received_ms = lidar->now_ms;
-    driver_enter(lidar, PHASE_UNKNOWN);
+    driver_enter(lidar, PHASE_UNKNOWN, 0);
     return TMINI_OK;
 }
 

@@ -152,6 +152,7 @@ typedef struct {
     bool range_seen; /* A valid range since the last start packet. */
     bool revolving;  /* A start packet has come since scanning began. */
     uint16_t pending; /* A bit for each event not yet returned. */
+    uint16_t limit_ms; /* How long the phase may last; 0: as long as it likes. */
     uint16_t target_chz;
     uint16_t frequency_chz;
     uint16_t timeouts;
