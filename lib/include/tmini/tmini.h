@@ -186,7 +186,7 @@ typedef struct {
 /* Sets up a lidar; sends nothing. Call before any byte is fed. Port, timing and buffers stay the
  * caller's and must outlive the lidar; the configuration itself may go.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: a required member missing or out of range; the lidar
- * then refuses bytes and commands, and polls to nothing. */
+ * then refuses commands and polls to nothing. */
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config);
 
 /* ----------------------------------------------------------- receiving: interrupt or task context */
