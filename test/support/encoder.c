@@ -134,9 +134,9 @@ uint8_t encode_crc8(uint8_t crc, uint8_t byte)
 }
 
 /* Undisclosed by the manual: any value with bit 0 clear will do. */
-static uint8_t production_data(uint32_t index)
+static uint8_t production_data(uint8_t production, uint32_t index)
 {
-    return (uint8_t)((index * 0x5Au + 0x34u) & 0xFEu);
+    return (uint8_t)((index * 0x5Au + production * 2u) & 0xFEu);
 }
 
 static uint8_t field(uint32_t high, unsigned shift, uint32_t low)
@@ -157,6 +157,6 @@ uint8_t encode_ct(const encode_turn_t *turn, uint32_t index)
     case 11: return field(turn->day, 3, (turn->serial >> 14) & 3u);
     case 12: return field(0, 1, (turn->serial >> 7) & 0x7Fu);
     case 13: return field(0, 1, turn->serial & 0x7Fu);
-    default: return production_data(index);
+    default: return production_data(turn->production, index);
     }
 }

@@ -63,6 +63,7 @@ typedef struct {
     uint8_t month;          /* 1..12 */
     uint8_t day;            /* 1..31 */
     uint32_t serial;        /* 0..2097151 */
+    uint8_t production;     /* undisclosed: makes up the value of all other indices */
 } encode_turn_t;
 
 /* Little-endian words (section 1). */
@@ -102,7 +103,7 @@ size_t encode_frequency_reply(uint8_t *out, uint32_t frequency_chz);
 uint8_t encode_crc8(uint8_t crc, uint8_t byte);
 
 /* The CT byte of the packet with this index in its revolution (start packet = 0). Indices
- * that the manual calls production data get an arbitrary but fixed value. */
+ * that the manual calls production data get a value made up from `production`. */
 uint8_t encode_ct(const encode_turn_t *turn, uint32_t index);
 
 #endif

@@ -1,0 +1,534 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "link.h"
+
+#include <string.h>
+
+/* Room for a whole frame, every byte of it with another one inserted. */
+#define ROOM_FOR_A_FRAME (2u * SIM_FRAME_MAX)
+
+static const char *const kind_names[SIM_LINK_KINDS] = {"drop",  "flip", "insert", "burst",
+                                                       "stall", "cut",  "unplug", "garble"};
+
+const char *sim_link_kind_name(sim_link_kind_t kind)
+{
+    return kind_names[kind];
+}
+
+sim_link_kind_t sim_link_kind_named(const char *name)
+{
+    unsigned kind = 0;
+
+    while (kind < SIM_LINK_KINDS && strcmp(name, kind_names[kind]) != 0) {
+        kind++;
+    }
+    return (sim_link_kind_t)kind;
+}
+
+bool sim_link_counts_bytes(sim_link_kind_t kind)
+{
+    return kind == SIM_LINK_DROP || kind == SIM_LINK_FLIP || kind == SIM_LINK_INSERT;
+}
+
+sim_link_config_t sim_link_default_config(void)
+{
+    sim_link_config_t config;
+
+    memset(&config, 0, sizeof config);
+    config.seed = 1;
+    config.shortest[SIM_LINK_BURST] = 2;
+    config.longest[SIM_LINK_BURST] = 64;
+    config.shortest[SIM_LINK_STALL] = 5;
+    config.longest[SIM_LINK_STALL] = 100;
+    config.shortest[SIM_LINK_UNPLUG] = 500;
+    config.longest[SIM_LINK_UNPLUG] = 5000;
+    config.shortest[SIM_LINK_GARBLE] = 50;
+    config.longest[SIM_LINK_GARBLE] = 2000;
+    return config;
+}
+
+/* ---- When faults come ---- */
+
+static uint64_t draw_gap(sim_link_t *link, sim_link_kind_t kind)
+{
+    const uint32_t mean = link->config.mean_gap[kind];
+    const uint64_t unit = sim_link_counts_bytes(kind) ? 1u : 1000u;
+
+    return random_gap(&link->random, mean) * unit;
+}
+
+static void find_nearest_byte(sim_link_t *link)
+{
+    link->nearest_byte = SIM_NEVER;
+    for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
+        if (link->next_byte[kind] < link->nearest_byte) {
+            link->nearest_byte = link->next_byte[kind];
+        }
+    }
+}
+
+/* The kind's next fault after this byte or moment. */
+static void schedule(sim_link_t *link, sim_link_kind_t kind, uint64_t from_us)
+{
+    const bool never = link->config.mean_gap[kind] == 0u;
+
+    if (sim_link_counts_bytes(kind)) {
+        link->next_byte[kind] = never ? SIM_NEVER : link->passed + draw_gap(link, kind);
+        find_nearest_byte(link);
+    } else {
+        link->begin_us[kind] = never ? SIM_NEVER : from_us + draw_gap(link, kind);
+    }
+}
+
+void sim_link_init(sim_link_t *link, sim_t *sim, const sim_link_config_t *config)
+{
+    memset(link, 0, sizeof *link);
+    link->sim = sim;
+    link->config = config == NULL ? sim_link_default_config() : *config;
+    link->cut_from = SIZE_MAX;
+    random_seed(&link->random, link->config.seed);
+    for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
+        link->next_byte[kind] = SIM_NEVER;
+        link->begin_us[kind] = SIM_NEVER;
+        link->end_us[kind] = SIM_NEVER;
+    }
+    for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
+        schedule(link, (sim_link_kind_t)kind, 0);
+    }
+}
+
+void sim_link_observe(sim_link_t *link, const sim_link_observer_t *observer)
+{
+    static const sim_link_observer_t nobody = {NULL, NULL, NULL};
+
+    link->observer = observer == NULL ? nobody : *observer;
+}
+
+static void report_begin(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
+{
+    link->counts.faults[kind]++;
+    if (link->observer.on_fault != NULL) {
+        link->observer.on_fault(link->observer.context, kind, true, at_us);
+    }
+}
+
+static void report_end(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
+{
+    link->last_fault_us = at_us > link->last_fault_us ? at_us : link->last_fault_us;
+    if (link->observer.on_fault != NULL) {
+        link->observer.on_fault(link->observer.context, kind, false, at_us);
+    }
+}
+
+/* ---- What becomes of a packet ---- */
+
+static void close_packet(sim_link_t *link, bool complete)
+{
+    sim_link_packet_t *packet = &link->packet;
+
+    if (!link->packet_open) {
+        return;
+    }
+    link->packet_open = false;
+    packet->intact = packet->intact && complete;
+    packet->offset = packet->intact ? link->produced - packet->sent.length : 0u;
+    link->counts.packets++;
+    link->counts.intact_packets += packet->intact ? 1u : 0u;
+    if (link->observer.on_packet != NULL) {
+        link->observer.on_packet(link->observer.context, packet);
+    }
+}
+
+/* The device may be switched off before the packet ends: its bytes are kept for the report. */
+static void open_packet(sim_link_t *link, const sim_packet_t *sent)
+{
+    link->packet_open = true;
+    link->packet.sent = *sent;
+    link->packet.sent.bytes = link->packet_bytes;
+    link->packet.intact = true;
+    memcpy(link->packet_bytes, sent->bytes, sent->length);
+}
+
+/* ---- Bytes ---- */
+
+static void deliver(sim_link_t *link, const uint8_t *bytes, size_t count)
+{
+    const size_t at = (size_t)(link->produced % SIM_LINK_BACKLOG);
+    const size_t to_end = SIM_LINK_BACKLOG - at;
+    const size_t first = count < to_end ? count : to_end;
+
+    memcpy(link->backlog + at, bytes, first);
+    memcpy(link->backlog, bytes + first, count - first);
+    link->produced += count;
+}
+
+/* Never the same byte: "hit" then always means changed. */
+static uint8_t spoiled(sim_link_t *link, uint8_t byte)
+{
+    return (uint8_t)(byte ^ random_between(&link->random, 1, 255));
+}
+
+/* Whether this byte meets a fault of the kind; reports it, and plans the next. */
+static bool meets(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
+{
+    if (link->passed < link->next_byte[kind]) {
+        return false;
+    }
+    report_begin(link, kind, at_us);
+    report_end(link, kind, at_us);
+    schedule(link, kind, at_us);
+    return true;
+}
+
+/* Unlike the byte that follows, so that the packet around it is really broken. */
+static void insert_before(sim_link_t *link, uint8_t following)
+{
+    const uint8_t byte = spoiled(link, following);
+
+    deliver(link, &byte, 1);
+}
+
+static void count_burst_down(sim_link_t *link, uint64_t at_us)
+{
+    if (link->burst_left > 0u && --link->burst_left == 0u) {
+        report_end(link, SIM_LINK_BURST, at_us);
+    }
+}
+
+/* LastCRC, in front of a start packet, is not part of it. */
+static void pass_byte(sim_link_t *link, const sim_run_t *run, size_t i)
+{
+    const size_t place = run->offset + i;
+    const uint64_t at_us = sim_byte_us(run->start_us, place);
+    const bool in_packet = place >= run->packet_at;
+    uint8_t byte = run->bytes[i];
+
+    if (meets(link, SIM_LINK_INSERT, at_us)) {
+        insert_before(link, run->bytes[i]);
+        link->packet.intact = link->packet.intact && place <= run->packet_at;
+    }
+    if (meets(link, SIM_LINK_FLIP, at_us)) {
+        byte = (uint8_t)(byte ^ (1u << random_below(&link->random, 8)));
+    }
+    if (link->burst_left > 0u || link->garbling) {
+        byte = spoiled(link, run->bytes[i]);
+    }
+    if (meets(link, SIM_LINK_DROP, at_us) || place >= link->cut_from) {
+        link->packet.intact = link->packet.intact && !in_packet;
+    } else {
+        link->packet.intact = link->packet.intact && (!in_packet || byte == run->bytes[i]);
+        deliver(link, &byte, 1);
+    }
+    link->passed++;
+    count_burst_down(link, at_us);
+}
+
+static bool is_safe(const sim_link_t *link, const sim_run_t *run)
+{
+    return link->burst_left == 0u && !link->garbling && link->cut_from == SIZE_MAX &&
+           link->passed + run->length <= link->nearest_byte;
+}
+
+static void begin_frame(sim_link_t *link, const sim_run_t *run)
+{
+    close_packet(link, false);
+    if (run->packet == NULL) {
+        return;
+    }
+    open_packet(link, run->packet);
+    if (link->cut_waiting) {
+        link->cut_waiting = false;
+        link->cut_from =
+            run->packet_at + (size_t)random_below(&link->random, run->packet->length);
+    }
+}
+
+static void end_frame(sim_link_t *link, const sim_run_t *run)
+{
+    close_packet(link, run->completes);
+    if (link->cut_from != SIZE_MAX) {
+        link->cut_from = SIZE_MAX;
+        report_end(link, SIM_LINK_CUT, sim_byte_us(run->start_us, run->frame_length - 1u));
+    }
+}
+
+static void pass_run(sim_link_t *link, const sim_run_t *run)
+{
+    if (run->offset == 0u) {
+        begin_frame(link, run);
+    }
+    if (is_safe(link, run)) {
+        deliver(link, run->bytes, run->length);
+        link->passed += run->length;
+    } else {
+        for (size_t i = 0; i < run->length; i++) {
+            pass_byte(link, run, i);
+        }
+    }
+    if (run->offset + run->length == run->frame_length) {
+        end_frame(link, run);
+    }
+}
+
+/* ---- Faults that last ---- */
+
+static uint64_t draw_amount(sim_link_t *link, sim_link_kind_t kind)
+{
+    return random_between(&link->random, link->config.shortest[kind], link->config.longest[kind]);
+}
+
+/* How much may have been delivered by now: after a stall, as much as the line can carry. */
+static uint64_t delivery_limit(const sim_link_t *link, uint64_t now_us)
+{
+    uint64_t limit = link->held_from;
+
+    if (!link->throttled) {
+        return link->produced;
+    }
+    if (now_us > link->release_us) {
+        limit += (now_us - link->release_us) * 72u / 3125u; /* section 1: 230400 baud */
+    }
+    return limit < link->produced ? limit : link->produced;
+}
+
+static void begin_stall(sim_link_t *link, uint64_t end_us, uint64_t at_us)
+{
+    link->held_from = delivery_limit(link, at_us);
+    link->release_us = end_us;
+    link->throttled = true;
+}
+
+static void drop_byte_faults_under_way(sim_link_t *link, uint64_t at_us)
+{
+    if (link->burst_left > 0u) {
+        link->burst_left = 0;
+        report_end(link, SIM_LINK_BURST, at_us);
+    }
+    if (link->cut_waiting || link->cut_from != SIZE_MAX) {
+        link->cut_waiting = false;
+        link->cut_from = SIZE_MAX;
+        report_end(link, SIM_LINK_CUT, at_us);
+    }
+}
+
+static void unplug(sim_link_t *link, uint64_t at_us)
+{
+    sim_power(link->sim, false, at_us);
+    close_packet(link, false);
+    drop_byte_faults_under_way(link, at_us);
+    link->unplugged = true;
+}
+
+static void replug(sim_link_t *link, uint64_t at_us)
+{
+    sim_power(link->sim, true, at_us);
+    link->unplugged = false;
+}
+
+static void begin_fault(sim_link_t *link, sim_link_kind_t kind, uint64_t amount, uint64_t at_us)
+{
+    const uint64_t end_us = at_us + amount * 1000u;
+
+    report_begin(link, kind, at_us);
+    switch (kind) {
+    case SIM_LINK_BURST: link->burst_left = (uint32_t)amount; return;
+    case SIM_LINK_CUT: link->cut_waiting = true; return;
+    case SIM_LINK_STALL: begin_stall(link, end_us, at_us); break;
+    case SIM_LINK_GARBLE: link->garbling = true; break;
+    default: unplug(link, at_us); break;
+    }
+    link->end_us[kind] = end_us;
+}
+
+static void end_fault(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
+{
+    link->end_us[kind] = SIM_NEVER;
+    if (kind == SIM_LINK_GARBLE) {
+        link->garbling = false;
+    } else if (kind == SIM_LINK_UNPLUG) {
+        replug(link, at_us);
+    }
+    report_end(link, kind, at_us);
+}
+
+static bool is_under_way(const sim_link_t *link, sim_link_kind_t kind)
+{
+    switch (kind) {
+    case SIM_LINK_BURST: return link->burst_left > 0u;
+    case SIM_LINK_CUT: return link->cut_waiting || link->cut_from != SIZE_MAX;
+    default: return link->end_us[kind] != SIM_NEVER;
+    }
+}
+
+/* A silent line has no bytes to spoil, and one without power nothing at all. */
+static bool has_an_effect(const sim_link_t *link, sim_link_kind_t kind)
+{
+    const sim_mode_t mode = sim_mode(link->sim);
+
+    if (kind == SIM_LINK_BURST || kind == SIM_LINK_CUT) {
+        return mode == SIM_SCANNING || mode == SIM_STOPPING;
+    }
+    return !link->unplugged;
+}
+
+static void fault_is_due(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
+{
+    schedule(link, kind, at_us);
+    if (has_an_effect(link, kind) && !is_under_way(link, kind)) {
+        begin_fault(link, kind, draw_amount(link, kind), at_us);
+    }
+}
+
+/* ---- Time ---- */
+
+static uint64_t next_event_us(const sim_link_t *link)
+{
+    uint64_t next = SIM_NEVER;
+
+    for (unsigned kind = SIM_LINK_BURST; kind < SIM_LINK_KINDS; kind++) {
+        next = link->begin_us[kind] < next ? link->begin_us[kind] : next;
+        next = link->end_us[kind] < next ? link->end_us[kind] : next;
+    }
+    return next;
+}
+
+static void happen(sim_link_t *link, uint64_t at_us)
+{
+    for (unsigned kind = SIM_LINK_BURST; kind < SIM_LINK_KINDS; kind++) {
+        if (link->end_us[kind] == at_us) {
+            end_fault(link, (sim_link_kind_t)kind, at_us);
+        }
+        if (link->begin_us[kind] == at_us) {
+            fault_is_due(link, (sim_link_kind_t)kind, at_us);
+        }
+    }
+}
+
+/* One step towards now: a run of bytes, or the beginning or end of a fault. False: there is
+ * nothing more by now, or no room for it until the host reads. */
+static bool pass_next(sim_link_t *link, uint64_t now_us)
+{
+    const uint64_t event_us = next_event_us(link);
+    sim_run_t run;
+
+    if (link->produced - link->delivered > SIM_LINK_BACKLOG - ROOM_FOR_A_FRAME) {
+        return false;
+    }
+    if (sim_next_run(link->sim, event_us < now_us ? event_us : now_us, &run)) {
+        pass_run(link, &run);
+        return true;
+    }
+    if (event_us > now_us) {
+        return false;
+    }
+    happen(link, event_us);
+    return true;
+}
+
+static void pass_all(sim_link_t *link, uint64_t now_us)
+{
+    while (pass_next(link, now_us)) {
+    }
+}
+
+static size_t hand_over(sim_link_t *link, uint64_t now_us, uint8_t *out, size_t max)
+{
+    const size_t at = (size_t)(link->delivered % SIM_LINK_BACKLOG);
+    const size_t ready = (size_t)(delivery_limit(link, now_us) - link->delivered);
+    const size_t count = ready < max ? ready : max;
+    const size_t to_end = SIM_LINK_BACKLOG - at;
+    const size_t first = count < to_end ? count : to_end;
+
+    memcpy(out, link->backlog + at, first);
+    memcpy(out + first, link->backlog, count - first);
+    link->delivered += count;
+    if (now_us > link->release_us && link->delivered == link->produced) {
+        link->throttled = false;
+    }
+    return count;
+}
+
+/* A long time may have passed since the last call: in portions that the backlog can hold. */
+size_t sim_link_read(sim_link_t *link, uint64_t now_us, uint8_t *out, size_t max)
+{
+    size_t count = 0;
+    size_t more;
+
+    do {
+        pass_all(link, now_us);
+        more = hand_over(link, now_us, out + count, max - count);
+        count += more;
+    } while (more > 0u);
+    return count;
+}
+
+void sim_link_write(sim_link_t *link, const uint8_t *bytes, size_t count, uint64_t now_us)
+{
+    pass_all(link, now_us);
+    if (!link->unplugged) {
+        sim_receive(link->sim, bytes, count, now_us);
+    }
+}
+
+static uint64_t next_delivery_us(const sim_link_t *link)
+{
+    if (link->delivered == link->produced) {
+        return SIM_NEVER;
+    }
+    if (!link->throttled) {
+        return 0;
+    }
+    return sim_byte_us(link->release_us, (size_t)(link->delivered - link->held_from));
+}
+
+uint64_t sim_link_next_us(sim_link_t *link)
+{
+    const uint64_t event_us = next_event_us(link);
+    const uint64_t device_us = sim_next_us(link->sim);
+    const uint64_t delivery_us = next_delivery_us(link);
+    const uint64_t next_us = event_us < device_us ? event_us : device_us;
+
+    return delivery_us < next_us ? delivery_us : next_us;
+}
+
+void sim_link_set_mean_gap(sim_link_t *link, sim_link_kind_t kind, uint32_t mean_gap,
+                           uint64_t now_us)
+{
+    pass_all(link, now_us);
+    link->config.mean_gap[kind] = mean_gap;
+    schedule(link, kind, now_us);
+}
+
+void sim_link_calm(sim_link_t *link, uint64_t now_us)
+{
+    for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
+        sim_link_set_mean_gap(link, (sim_link_kind_t)kind, 0, now_us);
+    }
+}
+
+void sim_link_force(sim_link_t *link, sim_link_kind_t kind, uint32_t amount, uint64_t now_us)
+{
+    pass_all(link, now_us);
+    if (sim_link_counts_bytes(kind)) {
+        link->next_byte[kind] = link->passed;
+        find_nearest_byte(link);
+    } else if (!is_under_way(link, kind)) {
+        begin_fault(link, kind, amount, now_us);
+    }
+}
+
+bool sim_link_is_faulty(const sim_link_t *link)
+{
+    for (unsigned kind = SIM_LINK_BURST; kind < SIM_LINK_KINDS; kind++) {
+        if (is_under_way(link, (sim_link_kind_t)kind)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+uint64_t sim_link_last_fault_us(const sim_link_t *link)
+{
+    return link->last_fault_us;
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/*
+ * What the simulated lidar sees: an ideal room of 5 m x 4 m with boxes, a pillar, a doorway into a
+ * corridor and a window that gives no range; as a table of distances by angle. Integer arithmetic
+ * only, so that every machine sees the same room to the millimetre.
+ */
+
+#ifndef SCENE_H
+#define SCENE_H
+
+#include <stdint.h>
+
+/* One entry a 1/16 degree: samples are at least 0.5 degrees apart, and the table stays small
+ * enough for a microcontroller and for a processor's first cache. */
+#define SIM_SCENE_STEP_Q6 4u
+#define SIM_SCENE_ENTRIES 5760u
+
+typedef struct {
+    uint16_t distance_mm[SIM_SCENE_ENTRIES]; /* 0: no range */
+} sim_scene_t;
+
+/* The room, without obstacles. */
+void sim_scene_build(sim_scene_t *scene);
+
+/* Puts an obstacle in front of whatever is there: `width_q6` wide, centred on `angle_q6` (0..23039,
+ * 1/64 degree), at `distance_mm`. What is nearer already stays. */
+void sim_scene_place(sim_scene_t *scene, uint16_t angle_q6, uint16_t width_q6,
+                     uint16_t distance_mm);
+
+/* The ideal distance at an angle (0..23039). */
+uint16_t sim_scene_distance(const sim_scene_t *scene, uint16_t angle_q6);
+
+#endif

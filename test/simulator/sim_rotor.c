@@ -1,0 +1,333 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "sim_rotor.h"
+
+#define FULL_TURN_Q16 (UINT32_C(23040) << 16)
+#define SAMPLE_US 250u     /* section 1: 4000 samples a second */
+#define FULL_PACKET 40u    /* section 9.6 */
+#define SPEED_PER_CHZ 1000u
+#define HAIR_Q6 7u         /* section 9.6: 0.266 - 0.156 degrees */
+
+static uint32_t set_speed(const sim_t *sim)
+{
+    return (uint32_t)sim->frequency_chz * SPEED_PER_CHZ;
+}
+
+static bool frozen(const sim_t *sim)
+{
+    return sim->rotor_blocked && !sim->config.blocked_sends_starts;
+}
+
+/* speed / 4000 Hz of a full turn: speed * FULL_TURN_Q16 / (4000 * 10^5), reduced. */
+static uint32_t step_of(uint32_t speed)
+{
+    return (uint32_t)((uint64_t)speed * 294912u / 78125u);
+}
+
+static uint32_t approach(uint32_t from, uint32_t to, uint32_t most)
+{
+    if (from < to) {
+        return to - from > most ? from + most : to;
+    }
+    return from - to > most ? from - most : to;
+}
+
+/* The speed follows the set frequency as fast as the spin-up goes. */
+static void turn_rotor(sim_t *sim, uint32_t samples)
+{
+    sim_rotor_t *rotor = &sim->rotor;
+    const uint32_t target = (uint32_t)((int32_t)set_speed(sim) + rotor->wobble);
+    const uint32_t spin_up_samples = (uint32_t)sim->config.spin_up_ms * 4u;
+    const uint32_t most =
+        spin_up_samples == 0u ? target : set_speed(sim) / spin_up_samples * samples + 1u;
+
+    rotor->speed = approach(rotor->speed, target, most);
+    rotor->step = frozen(sim) ? 0u : step_of(rotor->speed);
+}
+
+/* This revolution's wobble: some permille either way. */
+static int32_t draw_wobble(sim_t *sim)
+{
+    const uint32_t most = set_speed(sim) / 1000u * sim->config.wobble_permille;
+
+    return (int32_t)random_between(&sim->random, 0, 2u * most) - (int32_t)most;
+}
+
+static uint32_t samples_to_full_turn(const sim_rotor_t *rotor)
+{
+    if (rotor->step == 0u) {
+        return FULL_PACKET;
+    }
+    return (FULL_TURN_Q16 - rotor->phase + rotor->step - 1u) / rotor->step;
+}
+
+static bool happens(sim_t *sim, uint16_t permille)
+{
+    return permille != 0u && random_below(&sim->random, 1000) < permille;
+}
+
+/* Section 9.6: full packets, a short last one, now and then one with a single sample. */
+static uint32_t draw_packet_samples(sim_t *sim)
+{
+    const uint32_t left = samples_to_full_turn(&sim->rotor);
+
+    if (sim->rotor.at_start || happens(sim, sim->config.lone_packet_permille)) {
+        return 1;
+    }
+    return left < FULL_PACKET ? left : FULL_PACKET;
+}
+
+static void plan_packet(sim_t *sim, uint64_t from_us)
+{
+    sim->rotor.planned = (uint8_t)draw_packet_samples(sim);
+    sim->rotor.due_us = from_us + (uint32_t)sim->rotor.planned * SAMPLE_US;
+}
+
+static uint32_t decimal(const uint8_t *digits, unsigned count)
+{
+    uint32_t value = 0;
+
+    for (unsigned i = 0; i < count; i++) {
+        value = value * 10u + digits[i];
+    }
+    return value;
+}
+
+/* Section 7: the serial number is the date and a number; section 9.5: it may not be a date. */
+static void prepare_turn_information(sim_t *sim)
+{
+    const encode_information_t *information = &sim->config.information;
+    encode_turn_t *turn = &sim->rotor.turn;
+
+    turn->user_major = sim->config.user_major;
+    turn->user_minor = sim->config.user_minor;
+    turn->hardware = information->hardware;
+    turn->firmware_major = information->firmware_major;
+    turn->firmware_minor = information->firmware_minor;
+    turn->year = (uint16_t)decimal(information->serial, 4);
+    turn->month = (uint8_t)decimal(information->serial + 4, 2);
+    turn->day = (uint8_t)decimal(information->serial + 6, 2);
+    turn->serial = decimal(information->serial + 8, 8);
+}
+
+/* Where the rotor stands when it is started is chance: the first revolution is a partial one. */
+void sim_rotor_start(sim_t *sim, uint64_t at_us)
+{
+    sim_rotor_t *rotor = &sim->rotor;
+
+    prepare_turn_information(sim);
+    rotor->phase = random_below(&sim->random, FULL_TURN_Q16);
+    rotor->speed = set_speed(sim) / 100u * sim->config.spin_up_percent;
+    rotor->wobble = draw_wobble(sim);
+    rotor->at_start = false;
+    rotor->in_turn = false;
+    rotor->index = 0;
+    rotor->samples = 0;
+    rotor->valid = 0;
+    rotor->data_fault = false;
+    turn_rotor(sim, 0);
+    plan_packet(sim, at_us);
+}
+
+void sim_rotor_release(sim_t *sim)
+{
+    sim->rotor.speed = set_speed(sim) / 100u * sim->config.spin_up_percent;
+}
+
+void sim_rotor_stop(sim_t *sim)
+{
+    sim->rotor.due_us = SIM_NEVER;
+}
+
+bool sim_rotor_measures(const sim_t *sim)
+{
+    const sim_rotor_t *rotor = &sim->rotor;
+
+    return rotor->due_us != SIM_NEVER &&
+           sim->now_us + (uint32_t)rotor->planned * SAMPLE_US >= rotor->due_us;
+}
+
+/* The signal falls with the distance. */
+static uint8_t intensity_at(uint16_t distance_mm)
+{
+    return (uint8_t)(10u + UINT32_C(360000) / (distance_mm + 1500u));
+}
+
+static uint16_t add_noise(uint16_t distance_mm, uint32_t dice, uint32_t noise_mm)
+{
+    const uint32_t added = (dice & 0xFFFFu) * (2u * noise_mm + 1u) >> 16;
+
+    if (distance_mm <= noise_mm) {
+        return distance_mm;
+    }
+    return (uint16_t)(distance_mm + added - noise_mm);
+}
+
+/* One number is drawn a sample, and its parts used: 16 bits each for the noise, for a range that
+ * is missing, and for the flag. */
+static encode_sample_t measure(sim_t *sim, uint32_t angle_q16)
+{
+    const uint64_t dice = random_u64(&sim->random);
+    const uint32_t missing = ((uint32_t)(dice >> 16) & 0xFFFFu) * 1000u >> 16;
+    const uint32_t flagged = ((uint32_t)(dice >> 32) & 0xFFFFu) * 1000u >> 16;
+    const uint16_t ideal = sim->scene.distance_mm[(angle_q16 >> 16) / SIM_SCENE_STEP_Q6];
+    encode_sample_t sample = {0, 0, 0};
+
+    if (sim->rotor_blocked || sim->window_covered) {
+        return sample;
+    }
+    if (ideal != 0u && missing >= sim->config.invalid_permille) {
+        sample.distance_mm = add_noise(ideal, (uint32_t)dice, sim->config.noise_mm);
+        sample.intensity = intensity_at(ideal);
+        sim->rotor.valid++;
+    }
+    if (flagged < sim->config.flagged_permille) {
+        sample.flag = (uint8_t)(2u + (dice >> 63));
+    }
+    return sample;
+}
+
+static uint32_t turned_by(uint32_t angle_q16, uint32_t more_q16)
+{
+    const uint32_t room = FULL_TURN_Q16 - angle_q16;
+
+    return more_q16 < room ? angle_q16 + more_q16 : more_q16 - room;
+}
+
+static void measure_all(sim_t *sim, encode_sample_t *samples)
+{
+    uint32_t angle = turned_by(sim->rotor.phase, (uint32_t)sim->config.start_angle_q6 << 16);
+
+    for (uint32_t i = 0; i < sim->rotor.planned; i++) {
+        samples[i] = measure(sim, angle);
+        angle = turned_by(angle, sim->rotor.step);
+    }
+}
+
+/* 0..2 * jitter: the same amount is subtracted from all angles of the device. */
+static uint32_t draw_jitter(sim_t *sim)
+{
+    const uint32_t most = frozen(sim) ? 0u : sim->config.angle_jitter_q6;
+
+    return random_between(&sim->random, 0, 2u * most);
+}
+
+/* Both angles with jitter, last not before first: the clockwise difference would be a full turn. */
+static void set_angles(sim_t *sim, encode_packet_t *packet)
+{
+    const sim_rotor_t *rotor = &sim->rotor;
+    const uint32_t zero = ENCODE_FULL_TURN_Q6 + sim->config.start_angle_q6 -
+                          (frozen(sim) ? 0u : sim->config.angle_jitter_q6);
+    const uint32_t swept = rotor->step * (rotor->planned - 1u);
+    const uint32_t first = zero + (rotor->phase >> 16) + draw_jitter(sim);
+    uint32_t last = zero + ((rotor->phase + swept) >> 16) + draw_jitter(sim);
+
+    if (rotor->planned == 1u) {
+        last = rotor->at_start ? first : first - HAIR_Q6;
+    } else if (last < first) {
+        last = first;
+    }
+    packet->first_q6 = (uint16_t)(first % ENCODE_FULL_TURN_Q6);
+    packet->last_q6 = (uint16_t)(last % ENCODE_FULL_TURN_Q6);
+}
+
+/* The previous revolution's frequency (section 9.8), or the present speed if there was none. */
+static uint16_t measured_frequency_dhz(const sim_rotor_t *rotor)
+{
+    uint32_t dhz = rotor->speed / (10u * SPEED_PER_CHZ);
+
+    if (rotor->in_turn && rotor->samples > 0u) {
+        dhz = (40000u + rotor->samples / 2u) / rotor->samples;
+    }
+    return (uint16_t)(dhz < 127u ? dhz : 127u);
+}
+
+/* Section 8: data fault when a whole revolution had no range; a blocked rotor, whose laser is
+ * dark, shows the encoder fault instead. */
+static void begin_revolution(sim_t *sim)
+{
+    sim_rotor_t *rotor = &sim->rotor;
+
+    rotor->turn.frequency_dhz = measured_frequency_dhz(rotor);
+    rotor->turn.production = (uint8_t)random_below(&sim->random, 128);
+    rotor->data_fault = rotor->in_turn && rotor->valid == 0u && !sim->rotor_blocked;
+    rotor->wobble = draw_wobble(sim);
+    rotor->in_turn = true;
+    rotor->index = 0;
+    rotor->crc = 0;
+    rotor->samples = 0;
+    rotor->valid = 0;
+    sim->revolution++;
+}
+
+/* Point packets before the first start packet have no index, and carry nothing. */
+static uint8_t next_ct(sim_t *sim)
+{
+    sim_rotor_t *rotor = &sim->rotor;
+
+    if (!rotor->at_start && (!sim->config.ct_information || !rotor->in_turn)) {
+        return 0;
+    }
+    rotor->turn.health = sim_health(sim);
+    return encode_ct(&rotor->turn, rotor->index);
+}
+
+/* LastCRC closes the revolution before; ahead of the first one there is nothing to close. */
+static uint8_t add_last_crc(const sim_t *sim, sim_frame_t *frame)
+{
+    if (!sim->rotor.at_start || !sim->rotor.in_turn || !sim->config.ct_information) {
+        return 0;
+    }
+    frame->bytes[0] = sim->rotor.crc;
+    return 1;
+}
+
+static void fill_frame(sim_t *sim, sim_frame_t *frame)
+{
+    sim_rotor_t *rotor = &sim->rotor;
+    encode_sample_t samples[FULL_PACKET];
+    encode_packet_t packet = {0, 0, 0, 0, NULL};
+
+    frame->packet_at = add_last_crc(sim, frame);
+    if (rotor->at_start) {
+        begin_revolution(sim);
+    }
+    packet.ct = next_ct(sim);
+    packet.lsn = rotor->planned;
+    packet.samples = samples;
+    set_angles(sim, &packet);
+    measure_all(sim, samples);
+    frame->length = (uint16_t)(encode_packet(frame->bytes + frame->packet_at, &packet) +
+                               frame->packet_at);
+    frame->is_packet = true;
+    frame->packet.number = sim->packet_number++;
+    frame->packet.revolution = sim->revolution;
+    frame->packet.starts_revolution = rotor->at_start;
+    rotor->crc = encode_crc8(rotor->crc, packet.ct);
+}
+
+static void turn_past_packet(sim_t *sim)
+{
+    sim_rotor_t *rotor = &sim->rotor;
+    const uint32_t swept = rotor->step * rotor->planned;
+    const uint32_t to_start = FULL_TURN_Q16 - rotor->phase;
+
+    rotor->at_start = swept >= to_start;
+    rotor->phase = rotor->at_start ? swept - to_start : rotor->phase + swept;
+    rotor->index++;
+    rotor->samples += rotor->planned;
+    turn_rotor(sim, rotor->planned);
+    plan_packet(sim, sim->now_us);
+}
+
+void sim_rotor_packet(sim_t *sim)
+{
+    sim_frame_t *frame = sim_line_open(&sim->line);
+
+    if (frame != NULL) {
+        fill_frame(sim, frame);
+        sim_line_send(&sim->line, sim->now_us);
+    }
+    turn_past_packet(sim);
+}

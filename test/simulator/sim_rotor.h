@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/*
+ * The turning, measuring part of the simulated lidar: rotor speed, samples, packets, revolutions
+ * and their CT information. Used by simulator.c only.
+ */
+
+#ifndef SIM_ROTOR_H
+#define SIM_ROTOR_H
+
+#include "simulator.h"
+
+/* Begins to turn from near standstill; the first samples are taken from `at_us` on. */
+void sim_rotor_start(sim_t *sim, uint64_t at_us);
+
+/* Turns on at the present speed after it had been blocked. */
+void sim_rotor_release(sim_t *sim);
+
+void sim_rotor_stop(sim_t *sim);
+
+/* Whether samples are being taken now: not before the first packet's. */
+bool sim_rotor_measures(const sim_t *sim);
+
+/* Sends the packet that is due now and plans the next one. */
+void sim_rotor_packet(sim_t *sim);
+
+#endif

@@ -1,0 +1,478 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Modes, commands, replies and time; what turns and measures is in sim_rotor.c, what paces the
+ * bytes in sim_line.c. */
+
+#include "simulator.h"
+
+#include "sim_rotor.h"
+
+#include <string.h>
+
+sim_config_t sim_default_config(void)
+{
+    static const uint8_t serial[16] = {2, 0, 2, 6, 0, 3, 1, 7, 0, 0, 0, 1, 2, 3, 4, 5};
+    sim_config_t config = {0};
+
+    config.seed = 1;
+    config.ct_information = true;
+    config.frequency_chz = 600;
+    config.min_frequency_chz = 500;
+    config.max_frequency_chz = 1200;
+    config.reply_latency_ms = 3;
+    config.stop_tail_ms = 60;
+    config.first_packet_ms = 200;
+    config.spin_up_ms = 1000;
+    config.spin_up_percent = 40;
+    config.boot_ms = 2500;
+    config.wobble_permille = 5;
+    config.angle_jitter_q6 = 3;
+    config.noise_mm = 8;
+    config.invalid_permille = 3;
+    config.flagged_permille = 5;
+    config.lone_packet_permille = 2;
+    config.blocked_sends_starts = true;
+    config.information.model = 151;
+    config.information.firmware_major = 1;
+    config.information.firmware_minor = 2;
+    config.information.hardware = 1;
+    memcpy(config.information.serial, serial, sizeof serial);
+    config.user_major = 1;
+    return config;
+}
+
+static uint64_t ms(uint32_t milliseconds)
+{
+    return (uint64_t)milliseconds * 1000u;
+}
+
+static void set_mode(sim_t *sim, sim_mode_t mode, uint64_t due_us)
+{
+    const sim_mode_t before = sim->mode;
+
+    sim->mode = mode;
+    sim->mode_due_us = due_us;
+    if (mode != before && sim->observer.on_mode != NULL) {
+        sim->observer.on_mode(sim->observer.context, before, mode, sim->now_us);
+    }
+}
+
+void sim_init(sim_t *sim, const sim_config_t *config)
+{
+    memset(sim, 0, sizeof *sim);
+    sim->config = *config;
+    sim->mode = SIM_IDLE;
+    sim->mode_due_us = SIM_NEVER;
+    sim->frequency_chz = config->frequency_chz;
+    random_seed(&sim->random, config->seed);
+    sim_rotor_stop(sim);
+    sim_scene_build(&sim->scene);
+}
+
+void sim_observe(sim_t *sim, const sim_observer_t *observer)
+{
+    static const sim_observer_t nobody = {NULL, NULL, NULL, NULL};
+
+    sim->observer = observer == NULL ? nobody : *observer;
+}
+
+/* ---- Replies ---- */
+
+/* When the reply to a command that came now is due: replies never overtake each other. */
+static uint64_t reply_due_us(sim_t *sim)
+{
+    uint64_t due = sim->now_us + ms(sim->config.reply_latency_ms) + ms(sim->extra_latency_ms);
+
+    if (sim->reply_count > 0u) {
+        const uint32_t last = (sim->first_reply + sim->reply_count - 1u) % SIM_REPLIES;
+
+        due = sim->replies[last].due_us > due ? sim->replies[last].due_us : due;
+    }
+    sim->extra_latency_ms = 0;
+    return due;
+}
+
+/* Returns when the reply is due, whether it will be sent or is lost. */
+static uint64_t answer(sim_t *sim, const uint8_t *bytes, size_t length)
+{
+    const uint64_t due = reply_due_us(sim);
+    sim_reply_t *reply = &sim->replies[(sim->first_reply + sim->reply_count) % SIM_REPLIES];
+
+    if (sim->lose_reply || sim->reply_count == SIM_REPLIES) {
+        sim->lose_reply = false;
+        sim->counts.lost_replies++;
+        return due;
+    }
+    reply->due_us = due;
+    reply->length = (uint8_t)length;
+    memcpy(reply->bytes, bytes, length);
+    sim->reply_count++;
+    return due;
+}
+
+static uint64_t next_reply_us(const sim_t *sim)
+{
+    return sim->reply_count == 0u ? SIM_NEVER : sim->replies[sim->first_reply].due_us;
+}
+
+/* While scanning it lands between two packets, as on the real device (section 2). */
+static void send_reply(sim_t *sim)
+{
+    const sim_reply_t *reply = &sim->replies[sim->first_reply];
+    sim_frame_t *frame = sim_line_open(&sim->line);
+
+    sim->first_reply = (sim->first_reply + 1u) % SIM_REPLIES;
+    sim->reply_count--;
+    if (frame != NULL) {
+        frame->length = reply->length;
+        memcpy(frame->bytes, reply->bytes, reply->length);
+        sim_line_send(&sim->line, sim->now_us);
+    }
+}
+
+/* ---- Commands ---- */
+
+static bool is_fatal(const sim_t *sim)
+{
+    return (sim_health(sim) & sim->config.fatal_health) != 0u;
+}
+
+/* In the tail of a stop the stream simply goes on; while scanning nothing changes. */
+static void start(sim_t *sim)
+{
+    uint8_t reply[ENCODE_REPLY_MAX];
+    const uint64_t due = answer(sim, reply, encode_scan_reply(reply));
+
+    if (is_fatal(sim)) {
+        set_mode(sim, SIM_FAULT, SIM_NEVER);
+        return;
+    }
+    if (sim->mode != SIM_SCANNING && sim->mode != SIM_STOPPING) {
+        sim_rotor_start(sim, due + ms(sim->config.first_packet_ms));
+    }
+    set_mode(sim, SIM_SCANNING, SIM_NEVER);
+}
+
+static void go_idle(sim_t *sim)
+{
+    sim_rotor_stop(sim);
+    set_mode(sim, SIM_IDLE, SIM_NEVER);
+}
+
+static void stop(sim_t *sim)
+{
+    if (sim->mode == SIM_SCANNING && sim_rotor_measures(sim)) {
+        set_mode(sim, SIM_STOPPING, sim->now_us + ms(sim->config.stop_tail_ms));
+    } else if (sim->mode == SIM_SCANNING || sim->mode == SIM_FAULT) {
+        go_idle(sim);
+    }
+}
+
+static void answer_information(sim_t *sim)
+{
+    uint8_t reply[ENCODE_REPLY_MAX];
+
+    answer(sim, reply, encode_information_reply(reply, &sim->config.information));
+}
+
+/* The error code's values are undisclosed (section 4): the faulty bits again will do. */
+static void answer_health(sim_t *sim)
+{
+    const uint8_t status = sim_health(sim);
+    uint8_t reply[ENCODE_REPLY_MAX];
+
+    answer(sim, reply, encode_health_reply(reply, status, status));
+}
+
+static void step_frequency(sim_t *sim, int step_chz)
+{
+    const int frequency = (int)sim->frequency_chz + step_chz;
+    uint8_t reply[ENCODE_REPLY_MAX];
+
+    if (frequency >= (int)sim->config.min_frequency_chz &&
+        frequency <= (int)sim->config.max_frequency_chz) {
+        sim->frequency_chz = (uint16_t)frequency;
+    }
+    answer(sim, reply, encode_frequency_reply(reply, sim->frequency_chz));
+}
+
+/* All that is not burnt in is lost: the set frequency too. */
+static void reset(sim_t *sim, sim_mode_t mode, uint64_t due_us)
+{
+    sim_line_cut(&sim->line, sim->now_us);
+    sim_rotor_stop(sim);
+    sim->rotor.data_fault = false;
+    sim->reply_count = 0;
+    sim->half_command = false;
+    sim->frequency_chz = sim->config.frequency_chz;
+    set_mode(sim, mode, due_us);
+}
+
+static bool obey(sim_t *sim, uint8_t code)
+{
+    switch (code) {
+    case SIM_COMMAND_FREQUENCY_UP_TENTH: step_frequency(sim, 10); return true;
+    case SIM_COMMAND_FREQUENCY_DOWN_TENTH: step_frequency(sim, -10); return true;
+    case SIM_COMMAND_FREQUENCY_UP: step_frequency(sim, 100); return true;
+    case SIM_COMMAND_FREQUENCY_DOWN: step_frequency(sim, -100); return true;
+    case SIM_COMMAND_GET_FREQUENCY: step_frequency(sim, 0); return true;
+    case SIM_COMMAND_REBOOT: reset(sim, SIM_BOOTING, sim->now_us + ms(sim->config.boot_ms));
+        return true;
+    case SIM_COMMAND_START: start(sim); return true;
+    case SIM_COMMAND_STOP: stop(sim); return true;
+    case SIM_COMMAND_INFORMATION: answer_information(sim); return true;
+    case SIM_COMMAND_HEALTH: answer_health(sim); return true;
+    default: return false;
+    }
+}
+
+/* The manual's rule (section 2): while scanning, stop and nothing else. */
+static void count_command(sim_t *sim, uint8_t code, sim_mode_t mode)
+{
+    sim->counts.commands++;
+    if (code != SIM_COMMAND_STOP) {
+        sim->counts.commands_while_scanning += mode == SIM_SCANNING ? 1u : 0u;
+        sim->counts.commands_in_tail += mode == SIM_STOPPING ? 1u : 0u;
+    }
+}
+
+static void execute(sim_t *sim, uint8_t code)
+{
+    const sim_mode_t mode = sim->mode;
+
+    if (sim->observer.on_command != NULL) {
+        sim->observer.on_command(sim->observer.context, code, sim->now_us);
+    }
+    if (obey(sim, code)) {
+        count_command(sim, code, mode);
+    } else {
+        sim->counts.unknown_commands++;
+    }
+}
+
+static bool listens(const sim_t *sim)
+{
+    return sim->mode != SIM_OFF && sim->mode != SIM_BOOTING;
+}
+
+static void receive_byte(sim_t *sim, uint8_t byte)
+{
+    if (!listens(sim)) {
+        return;
+    }
+    if (byte == 0xA5) {
+        sim->half_command = true;
+    } else if (sim->half_command) {
+        sim->half_command = false;
+        execute(sim, byte);
+    }
+}
+
+/* ---- Time ---- */
+
+static uint64_t earlier(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint64_t next_event_us(const sim_t *sim)
+{
+    return earlier(sim->mode_due_us, earlier(next_reply_us(sim), sim->rotor.due_us));
+}
+
+/* Does what is due next, if that is not after `until_us`. */
+static bool step(sim_t *sim, uint64_t until_us)
+{
+    const uint64_t event_us = next_event_us(sim);
+
+    if (event_us > until_us) {
+        return false;
+    }
+    sim->now_us = event_us;
+    if (event_us == sim->mode_due_us) {
+        go_idle(sim);
+    } else if (event_us == next_reply_us(sim)) {
+        send_reply(sim);
+    } else {
+        sim_rotor_packet(sim);
+    }
+    return true;
+}
+
+static void advance(sim_t *sim, uint64_t now_us)
+{
+    while (step(sim, now_us)) {
+    }
+    sim->now_us = now_us > sim->now_us ? now_us : sim->now_us;
+}
+
+void sim_receive(sim_t *sim, const uint8_t *bytes, size_t count, uint64_t now_us)
+{
+    advance(sim, now_us);
+    for (size_t i = 0; i < count; i++) {
+        receive_byte(sim, bytes[i]);
+    }
+}
+
+static void note_packet(sim_t *sim, const sim_packet_t *packet)
+{
+    sim->counts.packets++;
+    sim->counts.start_packets += packet->starts_revolution ? 1u : 0u;
+    sim->counts.samples += packet->bytes[3];
+    if (sim->observer.on_packet != NULL) {
+        sim->observer.on_packet(sim->observer.context, packet);
+    }
+}
+
+static void note_sent(sim_t *sim, const sim_run_t *run)
+{
+    if (!run->completes) {
+        return;
+    }
+    if (run->packet == NULL) {
+        sim->counts.replies++;
+    } else {
+        note_packet(sim, run->packet);
+    }
+}
+
+/* Frames are made one at a time, when the line is free for them: any jump of time is fine. */
+static bool take_run(sim_t *sim, uint64_t now_us, size_t max, sim_run_t *run)
+{
+    while (sim_line_front(&sim->line) == NULL && step(sim, now_us)) {
+    }
+    if (!sim_line_take(&sim->line, now_us, max, run)) {
+        advance(sim, now_us);
+        return false;
+    }
+    note_sent(sim, run);
+    return true;
+}
+
+bool sim_next_run(sim_t *sim, uint64_t now_us, sim_run_t *run)
+{
+    return take_run(sim, now_us, SIM_FRAME_MAX, run);
+}
+
+size_t sim_transmit(sim_t *sim, uint64_t now_us, uint8_t *out, size_t max)
+{
+    size_t count = 0;
+    sim_run_t run;
+
+    while (count < max && take_run(sim, now_us, max - count, &run)) {
+        memcpy(out + count, run.bytes, run.length);
+        count += run.length;
+    }
+    return count;
+}
+
+uint64_t sim_next_us(sim_t *sim)
+{
+    const sim_frame_t *frame = sim_line_front(&sim->line);
+    const uint64_t event_us = next_event_us(sim);
+
+    if (frame == NULL) {
+        return event_us;
+    }
+    return earlier(event_us, sim_byte_us(frame->start_us, frame->taken));
+}
+
+void sim_power(sim_t *sim, bool on, uint64_t now_us)
+{
+    advance(sim, now_us);
+    if (!on) {
+        reset(sim, SIM_OFF, SIM_NEVER);
+    } else if (sim->mode == SIM_OFF) {
+        set_mode(sim, SIM_BOOTING, sim->now_us + ms(sim->config.boot_ms));
+    }
+}
+
+/* ---- What happens to the device ---- */
+
+/* Section 2: the device shuts its ranging unit off by itself. */
+static void shut_off_if_fatal(sim_t *sim)
+{
+    if (is_fatal(sim) && (sim->mode == SIM_SCANNING || sim->mode == SIM_STOPPING)) {
+        sim_rotor_stop(sim);
+        set_mode(sim, SIM_FAULT, SIM_NEVER);
+    }
+}
+
+void sim_set_health(sim_t *sim, uint8_t bits)
+{
+    sim->health = bits;
+    shut_off_if_fatal(sim);
+}
+
+void sim_block_rotor(sim_t *sim, bool blocked)
+{
+    sim->rotor_blocked = blocked;
+    if (!blocked) {
+        sim_rotor_release(sim);
+    }
+    shut_off_if_fatal(sim);
+}
+
+void sim_cover_window(sim_t *sim, bool covered)
+{
+    sim->window_covered = covered;
+}
+
+void sim_place_obstacle(sim_t *sim, uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm)
+{
+    sim_scene_place(&sim->scene, angle_q6, width_q6, distance_mm);
+}
+
+void sim_clear_obstacles(sim_t *sim)
+{
+    sim_scene_build(&sim->scene);
+}
+
+void sim_delay_next_reply(sim_t *sim, uint32_t extra_ms)
+{
+    sim->extra_latency_ms = extra_ms;
+}
+
+void sim_lose_next_reply(sim_t *sim)
+{
+    sim->lose_reply = true;
+}
+
+/* ---- Questions ---- */
+
+sim_mode_t sim_mode(const sim_t *sim)
+{
+    return sim->mode;
+}
+
+const char *sim_mode_name(sim_mode_t mode)
+{
+    static const char *const names[] = {"off",      "booting",  "idle",
+                                        "scanning", "stopping", "fault"};
+
+    return names[mode];
+}
+
+uint16_t sim_frequency_chz(const sim_t *sim)
+{
+    return sim->frequency_chz;
+}
+
+uint8_t sim_health(const sim_t *sim)
+{
+    uint8_t health = sim->health;
+
+    if (sim->rotor_blocked) {
+        health |= SIM_HEALTH_ENCODER;
+    }
+    if (sim->rotor.data_fault) {
+        health |= SIM_HEALTH_DATA;
+    }
+    return health;
+}
+
+uint32_t sim_lost_frames(const sim_t *sim)
+{
+    return sim->line.lost;
+}

@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/*
+ * The simulated lidar: a T-mini Plus as docs/protocol.md describes it, as a pure state machine.
+ * Bytes in, bytes out, virtual time in microseconds; no I/O, no globals, no heap, and no code
+ * shared with lib/. Use:
+ *
+ *     sim_init(&sim, &config);                        idle at time 0
+ *     sim_receive(&sim, bytes, count, now_us);        the host has sent something
+ *     count = sim_transmit(&sim, now_us, out, max);   what has left the device by now
+ *
+ * Time never runs backwards. A user that takes nothing for more than about 100 ms of streaming
+ * while it sends commands loses whole frames (`lost_frames`); otherwise frames are made on demand.
+ */
+
+#ifndef SIMULATOR_H
+#define SIMULATOR_H
+
+#include "encoder.h"
+#include "random.h"
+#include "scene.h"
+#include "sim_line.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define SIM_NEVER UINT64_MAX
+
+/* Health bits of section 4. */
+#define SIM_HEALTH_SENSOR 0x01u
+#define SIM_HEALTH_ENCODER 0x02u
+#define SIM_HEALTH_WIRELESS_POWER 0x04u
+#define SIM_HEALTH_PD 0x08u
+#define SIM_HEALTH_LD 0x10u
+#define SIM_HEALTH_DATA 0x20u
+
+/* Command codes of section 3. */
+typedef enum {
+    SIM_COMMAND_FREQUENCY_UP_TENTH = 0x09,
+    SIM_COMMAND_FREQUENCY_DOWN_TENTH = 0x0A,
+    SIM_COMMAND_FREQUENCY_UP = 0x0B,
+    SIM_COMMAND_FREQUENCY_DOWN = 0x0C,
+    SIM_COMMAND_GET_FREQUENCY = 0x0D,
+    SIM_COMMAND_REBOOT = 0x40,
+    SIM_COMMAND_START = 0x60,
+    SIM_COMMAND_STOP = 0x65,
+    SIM_COMMAND_INFORMATION = 0x90,
+    SIM_COMMAND_HEALTH = 0x92
+} sim_command_t;
+
+typedef enum {
+    SIM_OFF,      /* no power */
+    SIM_BOOTING,  /* nothing is received or sent */
+    SIM_IDLE,     /* section 2 */
+    SIM_SCANNING, /* section 2; from the start command on */
+    SIM_STOPPING, /* the stream's tail after a stop command (section 9.10) */
+    SIM_FAULT     /* section 2's stop mode: no stream until the fault is gone and start comes */
+} sim_mode_t;
+
+typedef struct {
+    uint64_t seed;
+    bool ct_information;          /* false: no LastCRC, CT 0 in point packets (section 9.1) */
+    uint16_t frequency_chz;       /* set frequency after power-up, 0.01 Hz */
+    uint16_t min_frequency_chz;   /* a step beyond a limit changes nothing, and says so */
+    uint16_t max_frequency_chz;
+    uint16_t reply_latency_ms;
+    uint16_t stop_tail_ms;        /* how long the stream goes on after a stop command */
+    uint16_t first_packet_ms;     /* from the start command's reply to the first packet's samples */
+    uint16_t spin_up_ms;          /* the rotor's time from standstill to the set frequency */
+    uint8_t spin_up_percent;      /* of the set frequency, when the first samples are taken */
+    uint16_t boot_ms;             /* after power-up and soft reboot */
+    uint16_t start_angle_q6;      /* where the start packet is; not 0 on every unit (9.8) */
+    uint8_t wobble_permille;      /* of the speed, drawn anew every revolution */
+    uint8_t angle_jitter_q6;      /* of FSA and LSA, up to so much either way */
+    uint8_t noise_mm;             /* of distances, up to so much either way */
+    uint16_t invalid_permille;    /* samples without range besides the scene's own */
+    uint16_t flagged_permille;    /* samples flagged 2 or 3, half and half (section 9.9) */
+    uint16_t lone_packet_permille;/* point packets cut down to LSN 1, LSA a hair before FSA (9.6) */
+    bool blocked_sends_starts;    /* rotor blocked: do start packets go on coming? */
+    uint8_t fatal_health;         /* health bits that put the device into SIM_FAULT */
+    encode_information_t information;
+    uint8_t user_major; /* protocol version in the CT information */
+    uint8_t user_minor;
+} sim_config_t;
+
+typedef struct {
+    uint32_t packets; /* sent completely, as all below */
+    uint32_t start_packets;
+    uint64_t samples;
+    uint32_t replies;
+    uint32_t commands;
+    uint32_t unknown_commands;        /* A5 followed by a code that does not exist: ignored */
+    uint32_t commands_while_scanning; /* other than stop: the manual forbids them (section 2) */
+    uint32_t commands_in_tail;        /* other than stop, while the stream's tail still came */
+    uint32_t lost_replies;            /* sim_lose_next_reply(), or too many waiting */
+} sim_counts_t;
+
+/* What an observer is told; any member may be NULL. Called from sim_receive(), sim_transmit() and
+ * the like, in order of time. */
+typedef struct {
+    void *context;
+    void (*on_packet)(void *context, const sim_packet_t *packet); /* its last byte has left */
+    void (*on_command)(void *context, uint8_t code, uint64_t now_us);
+    void (*on_mode)(void *context, sim_mode_t from, sim_mode_t to, uint64_t now_us);
+} sim_observer_t;
+
+#define SIM_REPLIES 4u
+
+typedef struct {
+    uint64_t due_us;
+    uint8_t length;
+    uint8_t bytes[ENCODE_REPLY_MAX];
+} sim_reply_t;
+
+/* The turning, measuring part. Phases are angles from the start packet's place, in 2^-16 of
+ * 1/64 degree; speeds in 10^-5 Hz. */
+typedef struct {
+    uint32_t phase; /* of the next sample */
+    uint32_t step;  /* from sample to sample */
+    uint32_t speed;
+    int32_t wobble; /* this revolution's deviation from the set frequency */
+    uint64_t due_us; /* when the packet being measured is complete; SIM_NEVER: not measuring */
+    uint8_t planned; /* its samples */
+    bool at_start;   /* it is a start packet */
+    bool in_turn;    /* a start packet has come since the start of scanning */
+    uint32_t index;  /* of it in its revolution */
+    uint8_t crc;     /* of the CT bytes of this revolution so far */
+    uint32_t samples; /* of this revolution so far */
+    uint32_t valid;   /* of them with a range */
+    bool data_fault;  /* the whole previous revolution had none */
+    encode_turn_t turn;
+} sim_rotor_t;
+
+/* Everything about one lidar. Caller-owned; read `counts`, leave the rest to the functions. */
+typedef struct {
+    sim_config_t config;
+    sim_observer_t observer;
+    sim_counts_t counts;
+    uint64_t now_us;
+    sim_mode_t mode;
+    uint64_t mode_due_us; /* end of booting or of the stream's tail */
+    uint16_t frequency_chz;
+    bool half_command; /* A5 has come, the code has not */
+    uint8_t health;
+    bool rotor_blocked;
+    bool window_covered;
+    uint32_t extra_latency_ms; /* of the next reply only */
+    bool lose_reply;
+    sim_reply_t replies[SIM_REPLIES];
+    uint32_t first_reply;
+    uint32_t reply_count;
+    uint32_t packet_number;
+    uint32_t revolution;
+    random_t random;
+    sim_rotor_t rotor;
+    sim_line_t line;
+    sim_scene_t scene;
+} sim_t;
+
+/* A documented unit: CT information, 6.00 Hz, start packet at 0 degrees, quiet sensor. */
+sim_config_t sim_default_config(void);
+
+/* An idle device at time 0. `config` is copied. */
+void sim_init(sim_t *sim, const sim_config_t *config);
+
+/* `observer` is copied; NULL: nobody. */
+void sim_observe(sim_t *sim, const sim_observer_t *observer);
+
+/* The host's bytes, arriving now. */
+void sim_receive(sim_t *sim, const uint8_t *bytes, size_t count, uint64_t now_us);
+
+/* The bytes that have left by now and have not been taken yet, at most `max`; what does not fit
+ * stays for the next call. Returns their number. */
+size_t sim_transmit(sim_t *sim, uint64_t now_us, uint8_t *out, size_t max);
+
+/* The same a run at a time, with its time and truth and without copying; false: nothing more by
+ * now. What the run points to is valid until the next call of a function of the simulator. */
+bool sim_next_run(sim_t *sim, uint64_t now_us, sim_run_t *run);
+
+/* When something will happen next if nothing is received: a byte or a change of mode.
+ * SIM_NEVER: nothing will. */
+uint64_t sim_next_us(sim_t *sim);
+
+/* Power is removed (bytes stop at once) or returns (the device boots, then is idle). */
+void sim_power(sim_t *sim, bool on, uint64_t now_us);
+
+/* Things that happen to the device, from the next packet on. */
+void sim_set_health(sim_t *sim, uint8_t bits); /* besides what is found out live */
+void sim_block_rotor(sim_t *sim, bool blocked);
+void sim_cover_window(sim_t *sim, bool covered);
+void sim_place_obstacle(sim_t *sim, uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm);
+void sim_clear_obstacles(sim_t *sim);
+
+/* One-shot trouble with the reply to the next command that has one. Replies keep their order; the
+ * stream begins when the start command's reply was due, late or lost. */
+void sim_delay_next_reply(sim_t *sim, uint32_t extra_ms);
+void sim_lose_next_reply(sim_t *sim);
+
+sim_mode_t sim_mode(const sim_t *sim);
+const char *sim_mode_name(sim_mode_t mode);
+uint16_t sim_frequency_chz(const sim_t *sim); /* set, not measured */
+uint8_t sim_health(const sim_t *sim);         /* as the health command reports it */
+uint32_t sim_lost_frames(const sim_t *sim);
+
+#endif
