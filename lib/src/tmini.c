@@ -3,8 +3,8 @@
 
 #include "tmini/tmini.h"
 
+#include "tmini_atomic.h"
 #include "tmini_driver.h"
-#include "tmini_ring_reader.h"
 
 const tmini_timing_t tmini_timing_default = {
     .silence_ms = 30, /* A line at work is never silent for longer than 5 ms (section 1). */
@@ -92,20 +92,14 @@ static bool has_required_members(const tmini_config_t *config)
 }
 
 /* Ring, parser and builder check their own parts of the configuration. */
-static tmini_status_t init_modules(tmini_t *lidar, const tmini_config_t *config)
+static bool init_modules(tmini_t *lidar, const tmini_config_t *config)
 {
-    tmini_status_t status =
-        tmini_ring_init(&lidar->ring, config->rx_buffer, config->rx_size, config->rx_dma);
-    if (status == TMINI_OK) {
-        status = tmini_parser_init(&lidar->parser, &lidar->ring, config->max_samples);
-    }
     const bool streaming = config->points == NULL && config->max_points == 0;
-    if (status == TMINI_OK && !streaming) {
-        status = tmini_scan_init(&lidar->builder, config->points, config->max_points,
-                                 config->filter);
-    }
-    tmini_turn_init(&lidar->turn);
-    return status;
+    return tmini_ring_init(&lidar->ring, config->rx_buffer, config->rx_size, config->rx_dma) ==
+               TMINI_OK &&
+           tmini_parser_init(&lidar->parser, &lidar->ring, config->max_samples) == TMINI_OK &&
+           (streaming || tmini_scan_init(&lidar->builder, config->points, config->max_points,
+                                         config->filter) == TMINI_OK);
 }
 
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
@@ -113,18 +107,15 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
     if (lidar == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    *lidar = (tmini_t){ 0 };
-    if (!has_required_members(config) || init_modules(lidar, config) != TMINI_OK) {
-        *lidar = (tmini_t){ 0 };
+    *lidar = (tmini_t){ 0 }; /* Also phase, goal and turn: unknown, none and nothing known. */
+    if (!has_required_members(config) || !init_modules(lidar, config)) {
         return TMINI_ERROR_ARGUMENT;
     }
-    lidar->port = config->port;
+    lidar->port = config->port; /* From now on the lidar is set up. */
     lidar->port_context = config->port_context;
     lidar->timing = config->timing != NULL ? config->timing : &tmini_timing_default;
     lidar->no_recovery = config->no_recovery;
     tmini_driver_look(lidar);
-    lidar->received_ms = lidar->now_ms;
-    driver_enter(lidar, PHASE_UNKNOWN);
     return TMINI_OK;
 }
 

@@ -12,15 +12,21 @@ static void idle(const tmini_t *lidar)
     }
 }
 
-static tmini_status_t wait_for(tmini_t *lidar, tmini_event_t wanted, uint32_t timeout_ms)
+/* Polls until `wanted` comes or the command fails; gives it up when time is up. A command that could
+ * not be begun has ended already. */
+static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event_t wanted,
+                               uint32_t timeout_ms)
 {
+    if (begun != TMINI_OK) {
+        return begun;
+    }
     const uint32_t begun_ms = lidar->port->now_ms(lidar->port_context);
     do {
         const tmini_event_t event = tmini_poll(lidar);
         if (event == wanted) {
             return TMINI_OK;
         }
-        if (event == TMINI_EVENT_FAILED) {
+        if (event == TMINI_EVENT_FAILED && lidar->failure != TMINI_ERROR_ABORTED) {
             return tmini_failure(lidar);
         }
         if (event == TMINI_EVENT_NONE) {
@@ -31,38 +37,13 @@ static tmini_status_t wait_for(tmini_t *lidar, tmini_event_t wanted, uint32_t ti
     return TMINI_ERROR_TIMEOUT;
 }
 
-/* An event of an earlier command must not be taken for the next one's end. Returns what there was,
- * for finish() to restore if that next command cannot be begun. */
-static uint16_t set_events_aside(tmini_t *lidar)
-{
-    uint16_t aside = 0;
-    if (lidar != NULL) {
-        aside = lidar->pending;
-        lidar->pending = 0;
-    }
-    return aside;
-}
-
-static tmini_status_t finish(tmini_t *lidar, tmini_status_t begun, uint16_t aside,
-                             tmini_event_t wanted, uint32_t timeout_ms)
-{
-    if (begun == TMINI_OK) {
-        return wait_for(lidar, wanted, timeout_ms);
-    }
-    if (lidar != NULL) {
-        lidar->pending = aside;
-    }
-    return begun;
-}
-
 tmini_status_t tmini_read_info(tmini_t *lidar, tmini_info_t *info, uint32_t timeout_ms)
 {
     if (info == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    const uint16_t aside = set_events_aside(lidar);
     const tmini_status_t status =
-        finish(lidar, tmini_request_info(lidar), aside, TMINI_EVENT_INFO, timeout_ms);
+        wait_for(lidar, tmini_request_info(lidar), TMINI_EVENT_INFO, timeout_ms);
     if (status == TMINI_OK) {
         *info = *tmini_info(lidar);
     }
@@ -74,9 +55,8 @@ tmini_status_t tmini_read_health(tmini_t *lidar, tmini_health_t *health, uint32_
     if (health == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    const uint16_t aside = set_events_aside(lidar);
     const tmini_status_t status =
-        finish(lidar, tmini_request_health(lidar), aside, TMINI_EVENT_HEALTH, timeout_ms);
+        wait_for(lidar, tmini_request_health(lidar), TMINI_EVENT_HEALTH, timeout_ms);
     if (status == TMINI_OK) {
         *health = *tmini_health(lidar);
     }
@@ -88,9 +68,8 @@ tmini_status_t tmini_read_frequency(tmini_t *lidar, uint16_t *frequency_chz, uin
     if (frequency_chz == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    const uint16_t aside = set_events_aside(lidar);
     const tmini_status_t status =
-        finish(lidar, tmini_request_frequency(lidar), aside, TMINI_EVENT_FREQUENCY, timeout_ms);
+        wait_for(lidar, tmini_request_frequency(lidar), TMINI_EVENT_FREQUENCY, timeout_ms);
     if (status == TMINI_OK) {
         *frequency_chz = tmini_frequency_chz(lidar);
     }
@@ -99,26 +78,18 @@ tmini_status_t tmini_read_frequency(tmini_t *lidar, uint16_t *frequency_chz, uin
 
 tmini_status_t tmini_write_frequency(tmini_t *lidar, uint16_t frequency_chz, uint32_t timeout_ms)
 {
-    const uint16_t aside = set_events_aside(lidar);
-    return finish(lidar, tmini_set_frequency(lidar, frequency_chz), aside, TMINI_EVENT_FREQUENCY,
-                  timeout_ms);
+    return wait_for(lidar, tmini_set_frequency(lidar, frequency_chz), TMINI_EVENT_FREQUENCY,
+                    timeout_ms);
 }
 
 tmini_status_t tmini_start_and_wait(tmini_t *lidar, uint32_t timeout_ms)
 {
-    const uint16_t aside = set_events_aside(lidar);
     const tmini_status_t begun = tmini_start(lidar);
     const bool streaming = begun == TMINI_OK && lidar->builder.capacity == 0;
-    return finish(lidar, begun, aside, streaming ? TMINI_EVENT_PACKET : TMINI_EVENT_SCAN,
-                  timeout_ms);
+    return wait_for(lidar, begun, streaming ? TMINI_EVENT_PACKET : TMINI_EVENT_SCAN, timeout_ms);
 }
 
 tmini_status_t tmini_stop_and_wait(tmini_t *lidar, uint32_t timeout_ms)
 {
-    const uint16_t aside = set_events_aside(lidar);
-    const tmini_status_t begun = tmini_stop(lidar);
-    if (begun == TMINI_OK) {
-        (void)set_events_aside(lidar); /* The end of a command that this one aborted. */
-    }
-    return finish(lidar, begun, aside, TMINI_EVENT_STOPPED, timeout_ms);
+    return wait_for(lidar, tmini_stop(lidar), TMINI_EVENT_STOPPED, timeout_ms);
 }

@@ -8,6 +8,12 @@
 
 /* More frequency steps than any change needs (6 of 1 Hz and 5 of 0.1 Hz). */
 #define STEPS_MAX 20
+/* The events with which commands end. */
+#define END_EVENTS                                                                                \
+    (1u << TMINI_EVENT_STARTED | 1u << TMINI_EVENT_STOPPED | 1u << TMINI_EVENT_INFO |              \
+     1u << TMINI_EVENT_HEALTH | 1u << TMINI_EVENT_FREQUENCY | 1u << TMINI_EVENT_REBOOTED |         \
+     1u << TMINI_EVENT_FAILED)
+
 #define COARSE_STEP_CHZ 100
 #define FINE_STEP_CHZ 10
 
@@ -36,13 +42,18 @@ static void send(tmini_t *lidar, tmini_command_t command)
     lidar->unsent = lidar->sign_sent ? 1 : 2;
 }
 
+/* Sends a command when the line is quiet, and awaits what it is answered with, if anything. */
 static void ask(tmini_t *lidar, tmini_command_t command)
 {
     tmini_reply_shape_t shape;
-    (void)tmini_reply_shape(command, &shape);
-    tmini_parser_await(&lidar->parser, &shape);
+    const bool answered = tmini_reply_shape(command, &shape);
+    tmini_parser_await(&lidar->parser, answered ? &shape : NULL);
     send(lidar, command);
-    driver_enter(lidar, PHASE_ASKING);
+    if (answered) {
+        driver_enter(lidar, PHASE_ASKING, lidar->timing->reply_ms);
+    } else {
+        driver_enter(lidar, PHASE_BOOTING, lidar->timing->reboot_ms);
+    }
 }
 
 /* --------------------------------------------------------------------------- how commands end */
@@ -54,7 +65,7 @@ static void rest(tmini_t *lidar, enum phase phase)
     lidar->recovering = false;
     lidar->unsent = 0;
     lidar->heard = false;
-    driver_enter(lidar, phase);
+    driver_enter(lidar, phase, 0);
 }
 
 static void end(tmini_t *lidar, enum phase phase, tmini_event_t event)
@@ -154,7 +165,7 @@ static void frequency_reply(tmini_t *lidar, uint32_t frequency_chz)
     if (lidar->goal == GOAL_FREQUENCY || (!is_step && is_reached(lidar))) {
         succeed(lidar, TMINI_EVENT_FREQUENCY);
     } else {
-        driver_enter(lidar, PHASE_SETTLING);
+        driver_enter(lidar, PHASE_SETTLING, lidar->timing->stop_ms);
     }
 }
 
@@ -164,35 +175,32 @@ void tmini_driver_hush(tmini_t *lidar)
 {
     tmini_parser_await(&lidar->parser, NULL);
     send(lidar, TMINI_COMMAND_STOP);
-    driver_enter(lidar, PHASE_HUSHING);
+    driver_enter(lidar, PHASE_HUSHING, lidar->timing->stop_ms);
 }
+
+/* What each goal's first command is, once the line is quiet. */
+static const uint8_t first_command[] = {
+    [GOAL_START] = TMINI_COMMAND_START,
+    [GOAL_INFO] = TMINI_COMMAND_GET_INFO,
+    [GOAL_HEALTH] = TMINI_COMMAND_GET_HEALTH,
+    [GOAL_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
+    [GOAL_SET_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
+    [GOAL_REBOOT] = TMINI_COMMAND_REBOOT,
+};
 
 /* The line is quiet: the command that was asked for may be sent (section 2). */
 static void issue(tmini_t *lidar)
 {
-    switch (lidar->goal) {
-    case GOAL_START:
-        lidar->restarts = (uint16_t)(lidar->restarts + lidar->recovering);
-        ask(lidar, TMINI_COMMAND_START);
-        break;
-    case GOAL_INFO:
-        ask(lidar, TMINI_COMMAND_GET_INFO);
-        break;
-    case GOAL_HEALTH:
-        ask(lidar, TMINI_COMMAND_GET_HEALTH);
-        break;
-    case GOAL_REBOOT:
-        lidar->reboots = (uint16_t)(lidar->reboots + lidar->recovering);
-        send(lidar, TMINI_COMMAND_REBOOT);
-        driver_enter(lidar, PHASE_BOOTING);
-        break;
-    case GOAL_STOP:
+    if (lidar->goal == GOAL_STOP) {
         end(lidar, PHASE_IDLE, TMINI_EVENT_STOPPED);
-        break;
-    default:
-        ask(lidar, TMINI_COMMAND_GET_FREQUENCY);
-        break;
+        return;
     }
+    if (lidar->recovering && lidar->goal == GOAL_START) {
+        lidar->restarts++;
+    } else if (lidar->recovering) {
+        lidar->reboots++;
+    }
+    ask(lidar, (tmini_command_t)first_command[lidar->goal]);
 }
 
 void tmini_driver_reply(tmini_t *lidar)
@@ -203,7 +211,7 @@ void tmini_driver_reply(tmini_t *lidar)
     tmini_parser_reply_content(&lidar->parser, content, lidar->parser.awaited.length);
     switch (lidar->sent) {
     case TMINI_COMMAND_START:
-        driver_enter(lidar, PHASE_SPINNING_UP);
+        driver_enter(lidar, PHASE_SPINNING_UP, lidar->timing->spin_up_ms);
         break;
     case TMINI_COMMAND_GET_INFO:
         tmini_reply_info(content, &lidar->latest.info);
@@ -224,16 +232,6 @@ static bool is_quiet(const tmini_t *lidar)
     const uint32_t quiet_ms = lidar->timing->quiet_ms;
     return driver_elapsed(lidar, lidar->phase_ms, quiet_ms) &&
            driver_elapsed(lidar, lidar->received_ms, quiet_ms);
-}
-
-/* Waits for a quiet line, and for no longer than the lidar's longest tail. */
-static void wait_for_quiet(tmini_t *lidar, void (*then)(tmini_t *))
-{
-    if (is_quiet(lidar)) {
-        then(lidar);
-    } else if (driver_elapsed(lidar, lidar->phase_ms, lidar->timing->stop_ms)) {
-        attempt_failed(lidar, TMINI_ERROR_TIMEOUT);
-    }
 }
 
 static void rebooted(tmini_t *lidar)
@@ -264,37 +262,38 @@ static bool has_left(tmini_t *lidar)
     return false;
 }
 
+/* The phase has lasted as long as it may. */
+static void expire(tmini_t *lidar)
+{
+    switch (lidar->phase) {
+    case PHASE_SCANNING:
+        tmini_driver_lose(lidar);
+        break;
+    case PHASE_BACKING_OFF:
+        tmini_driver_climb(lidar);
+        break;
+    case PHASE_BOOTING:
+        rebooted(lidar);
+        break;
+    default:
+        attempt_failed(lidar, TMINI_ERROR_TIMEOUT);
+        break;
+    }
+}
+
 void tmini_driver_keep_time(tmini_t *lidar)
 {
-    const tmini_timing_t *const timing = lidar->timing;
     if (!has_left(lidar)) {
         return;
     }
-    switch (lidar->phase) {
-    case PHASE_HUSHING:
-        wait_for_quiet(lidar, issue);
-        break;
-    case PHASE_SETTLING:
-        wait_for_quiet(lidar, continue_frequency_change);
-        break;
-    case PHASE_ASKING:
-        if (driver_elapsed(lidar, lidar->phase_ms, timing->reply_ms)) {
-            attempt_failed(lidar, TMINI_ERROR_TIMEOUT);
-        }
-        break;
-    case PHASE_SPINNING_UP:
-        if (driver_elapsed(lidar, lidar->phase_ms, timing->spin_up_ms)) {
-            attempt_failed(lidar, TMINI_ERROR_TIMEOUT);
-        }
-        break;
-    case PHASE_BOOTING:
-        if (driver_elapsed(lidar, lidar->phase_ms, timing->reboot_ms)) {
-            rebooted(lidar);
-        }
-        break;
-    default:
-        tmini_driver_watch(lidar);
-        break;
+    if (lidar->phase == PHASE_HUSHING && is_quiet(lidar)) {
+        issue(lidar);
+    } else if (lidar->phase == PHASE_SETTLING && is_quiet(lidar)) {
+        continue_frequency_change(lidar);
+    } else if (lidar->limit_ms > 0 && driver_elapsed(lidar, lidar->phase_ms, lidar->limit_ms)) {
+        expire(lidar);
+    } else if (lidar->phase == PHASE_SCANNING) {
+        tmini_driver_watch_rotor(lidar);
     }
 }
 
@@ -309,6 +308,7 @@ static void begin(tmini_t *lidar, enum goal goal)
     lidar->steps = 0;
     lidar->step_refused = false;
     lidar->recovering = false;
+    lidar->pending &= (uint16_t)~END_EVENTS; /* Of an earlier command: none is this one's. */
     if (is_quiet_line) {
         issue(lidar);
     } else {
@@ -355,10 +355,11 @@ tmini_status_t tmini_stop(tmini_t *lidar)
     const bool aborts =
         lidar->goal != GOAL_NONE && !lidar->recovering && lidar->phase != PHASE_SCANNING;
     tmini_driver_look(lidar);
-    if (aborts) {
-        fail(lidar, TMINI_ERROR_ABORTED);
-    }
     begin(lidar, GOAL_STOP);
+    if (aborts && lidar->goal == GOAL_STOP) {
+        lidar->failure = TMINI_ERROR_ABORTED;
+        driver_raise(lidar, TMINI_EVENT_FAILED);
+    }
     return TMINI_OK;
 }
 

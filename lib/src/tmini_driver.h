@@ -44,10 +44,12 @@ static inline void driver_raise(tmini_t *lidar, tmini_event_t event)
     lidar->pending |= (uint16_t)(1u << event);
 }
 
-static inline void driver_enter(tmini_t *lidar, enum phase phase)
+/* A phase that has lasted `limit_ms` is over, one way or the other; 0 for no limit. */
+static inline void driver_enter(tmini_t *lidar, enum phase phase, uint16_t limit_ms)
 {
     lidar->phase = (uint8_t)phase;
     lidar->phase_ms = lidar->now_ms;
+    lidar->limit_ms = limit_ms;
 }
 
 /* Nothing has been heard since the lidar was last known to be idle. */
@@ -66,8 +68,10 @@ void tmini_driver_reply(tmini_t *lidar);     /* The awaited reply has come. */
 void tmini_driver_keep_time(tmini_t *lidar); /* What the wire's phase asks for now. */
 
 /* tmini_watch.c */
-void tmini_driver_packet(tmini_t *lidar);   /* A packet has come. */
-void tmini_driver_watch(tmini_t *lidar);    /* While scanning: still there, and well? */
-void tmini_driver_back_off(tmini_t *lidar); /* An attempt to recover has failed. */
+void tmini_driver_packet(tmini_t *lidar);      /* A packet has come. */
+void tmini_driver_watch_rotor(tmini_t *lidar); /* While scanning: does it turn? */
+void tmini_driver_lose(tmini_t *lidar);        /* No packet any more. */
+void tmini_driver_back_off(tmini_t *lidar);    /* An attempt to recover has failed. */
+void tmini_driver_climb(tmini_t *lidar);       /* Makes the next attempt to recover. */
 
 #endif

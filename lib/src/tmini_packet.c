@@ -4,7 +4,6 @@
 #include "tmini/tmini_packet.h"
 
 #include "tmini_packet_header.h"
-#include "tmini_ring_reader.h"
 
 /* Sample i lies at first + round(i * diff / (count - 1)). `step` is diff / (count - 1) with 17
  * fraction bits, rounded up, and HALF rounds to nearest, halves up. That is exact: after at most 254
@@ -63,7 +62,7 @@ bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_
     uint8_t joined[TMINI_SAMPLE_SIZE];
     size_t count = 1;
     const uint8_t *const sample =
-        ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(index), &count, joined);
+        tmini_ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(index), &count, joined);
     *point = decode(sample, packet->first_angle_q6, HALF + (uint32_t)index * packet->step);
     return tmini_parser_frame_intact(packet->parser);
 }
@@ -80,7 +79,7 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
         uint8_t joined[TMINI_SAMPLE_SIZE];
         size_t count = wanted - done;
         const uint8_t *sample =
-            ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
+            tmini_ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
         tmini_point_t *point = &points[done];
         done += count;
         for (; count > 0; count--) {
@@ -101,7 +100,7 @@ bool tmini_packet_has_range(const tmini_packet_t *packet)
     const tmini_ring_t *const ring = packet->parser->ring;
     for (size_t i = 0; i < packet->count; i++) {
         const size_t sample = TMINI_PACKET_SIZE_MAX(i);
-        if (ring_peek(ring, sample + 1) > 3 || ring_peek(ring, sample + 2) > 0) {
+        if (tmini_ring_peek(ring, sample + 1) > 3 || tmini_ring_peek(ring, sample + 2) > 0) {
             return true;
         }
     }

@@ -4,7 +4,6 @@
 #include "tmini/tmini_parser.h"
 
 #include "tmini_packet_header.h"
-#include "tmini_ring_reader.h"
 
 enum verdict { USELESS, INCOMPLETE, COMPLETE };
 
@@ -45,7 +44,7 @@ static bool checksum_matches(const tmini_parser_t *parser)
         uint8_t joined[TMINI_SAMPLE_SIZE];
         size_t count = samples - done;
         const uint8_t *sample =
-            ring_samples(parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
+            tmini_ring_samples(parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
         done += count;
         for (; count > 0; count--) {
             low ^= sample[0] ^ sample[1];
@@ -74,21 +73,21 @@ static bool reply_has_awaited_shape(const tmini_parser_t *parser)
 /* What the ring's oldest bytes are. */
 static enum verdict judge(tmini_parser_t *parser, size_t unread)
 {
-    const bool is_packet = ring_peek(parser->ring, 0) == PACKET_FIRST;
-    if (!is_packet && !(parser->awaiting && ring_peek(parser->ring, 0) == REPLY_FIRST)) {
+    const bool is_packet = tmini_ring_peek(parser->ring, 0) == PACKET_FIRST;
+    if (!is_packet && !(parser->awaiting && tmini_ring_peek(parser->ring, 0) == REPLY_FIRST)) {
         return USELESS;
     }
     if (!has(parser, unread, 2)) {
         return INCOMPLETE;
     }
-    if (ring_peek(parser->ring, 1) != (is_packet ? PACKET_SECOND : REPLY_SECOND)) {
+    if (tmini_ring_peek(parser->ring, 1) != (is_packet ? PACKET_SECOND : REPLY_SECOND)) {
         return USELESS;
     }
     const size_t header_size = is_packet ? TMINI_PACKET_HEADER_SIZE : TMINI_REPLY_HEADER_SIZE;
     if (!has(parser, unread, header_size)) {
         return INCOMPLETE;
     }
-    ring_copy(parser->ring, 0, parser->header, header_size);
+    tmini_ring_copy(parser->ring, 0, parser->header, header_size);
     if (!(is_packet ? packet_header_is_plausible(parser) : reply_has_awaited_shape(parser))) {
         return USELESS;
     }
@@ -111,8 +110,8 @@ static void widen_gap(tmini_parser_t *parser, size_t bytes)
 
 static void skip_byte(tmini_parser_t *parser)
 {
-    parser->stray = ring_peek(parser->ring, 0);
-    ring_discard(parser->ring, 1);
+    parser->stray = tmini_ring_peek(parser->ring, 0);
+    tmini_ring_discard(parser->ring, 1);
     parser->need = 1;
     parser->counters.bytes_skipped++;
     widen_gap(parser, 1);
@@ -122,7 +121,7 @@ static void skip_byte(tmini_parser_t *parser)
 static void release_frame(tmini_parser_t *parser)
 {
     if (parser->frame > 0) {
-        ring_discard(parser->ring, parser->frame);
+        tmini_ring_discard(parser->ring, parser->frame);
         parser->frame = 0;
         parser->gap = 0;
     }
@@ -139,12 +138,12 @@ static void count_refused(tmini_parser_t *parser)
 static size_t intact_bytes(tmini_parser_t *parser)
 {
     tmini_ring_t *const ring = parser->ring;
-    const size_t unread = ring_unread(ring);
+    const size_t unread = tmini_ring_unread(ring);
     if (unread <= ring->window) {
         return unread;
     }
     const size_t lost = unread - ring->window;
-    ring_discard(ring, lost);
+    tmini_ring_discard(ring, lost);
     parser->counters.bytes_overrun += (uint32_t)lost;
     parser->gap = UINT16_MAX;
     parser->need = 1;
@@ -202,7 +201,7 @@ tmini_frame_t tmini_parser_next(tmini_parser_t *parser)
 
 bool tmini_parser_frame_intact(const tmini_parser_t *parser)
 {
-    return ring_unread(parser->ring) <= parser->ring->window;
+    return tmini_ring_unread(parser->ring) <= parser->ring->window;
 }
 
 void tmini_parser_await(tmini_parser_t *parser, const tmini_reply_shape_t *shape)
@@ -216,17 +215,17 @@ void tmini_parser_await(tmini_parser_t *parser, const tmini_reply_shape_t *shape
 
 void tmini_parser_reply_content(const tmini_parser_t *parser, uint8_t *content, size_t count)
 {
-    ring_copy(parser->ring, TMINI_REPLY_HEADER_SIZE, content, count);
+    tmini_ring_copy(parser->ring, TMINI_REPLY_HEADER_SIZE, content, count);
 }
 
 size_t tmini_parser_pending(const tmini_parser_t *parser)
 {
-    return ring_unread(parser->ring) - parser->frame;
+    return tmini_ring_unread(parser->ring) - parser->frame;
 }
 
 void tmini_parser_abandon(tmini_parser_t *parser)
 {
-    const size_t unread = ring_unread(parser->ring);
+    const size_t unread = tmini_ring_unread(parser->ring);
     if (unread > 0 && unread < parser->need) {
         skip_byte(parser);
     }

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "tmini_atomic.h"
-#include "tmini_ring_reader.h"
 
 tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size, bool dma)
 {
@@ -61,17 +60,42 @@ void tmini_ring_publish(tmini_ring_t *ring, size_t position)
 
 size_t tmini_ring_unread(const tmini_ring_t *ring)
 {
-    return ring_unread(ring);
+    return tmini_load(&ring->head) - ring->tail;
 }
 
 uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 {
-    return ring_peek(ring, offset);
+    return ring->memory[(ring->tail + offset) & ring->mask];
+}
+
+void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        bytes[i] = tmini_ring_peek(ring, offset + i);
+    }
+}
+
+const uint8_t *tmini_ring_samples(const tmini_ring_t *ring, size_t offset, size_t *count,
+                                  uint8_t joined[3])
+{
+    const size_t at = (ring->tail + offset) & ring->mask;
+    const size_t to_end = ring->mask + 1 - at;
+    if (3 * *count <= to_end) {
+        return &ring->memory[at];
+    }
+    if (to_end >= 3) {
+        *count = to_end / 3;
+        return &ring->memory[at];
+    }
+    tmini_ring_copy(ring, offset, joined, 3);
+    *count = 1;
+    return joined;
 }
 
 void tmini_ring_discard(tmini_ring_t *ring, size_t count)
 {
-    ring_discard(ring, count);
+    ring->tail += count;
+    tmini_store(&ring->limit, ring->tail + ring->mask + 1);
 }
 
 size_t tmini_ring_refused(const tmini_ring_t *ring)

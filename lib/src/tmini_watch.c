@@ -57,7 +57,7 @@ static void resume(tmini_t *lidar)
     lidar->range_seen = false;
     lidar->observed = lidar->faults;
     lidar->start_ms = lidar->now_ms;
-    driver_enter(lidar, PHASE_SCANNING);
+    driver_enter(lidar, PHASE_SCANNING, lidar->timing->data_ms);
     if (lidar->recovering) {
         lidar->recovering = false;
         lidar->recoveries++;
@@ -110,71 +110,53 @@ void tmini_driver_packet(tmini_t *lidar)
     gather(lidar);
 }
 
-/* ----------------------------------------------------------------------------------- recovery */
-
-static void climb(tmini_t *lidar)
-{
-    const bool reboots = lidar->rung > 0 && lidar->rung % REBOOT_RUNG == 0;
-    lidar->goal = reboots ? GOAL_REBOOT : GOAL_START;
-    tmini_driver_hush(lidar);
-}
-
-static void lose(tmini_t *lidar)
-{
-    lidar->losses++;
-    lidar->recovering = true;
-    lidar->rung = 0;
-    driver_raise(lidar, TMINI_EVENT_LOST);
-    if (lidar->no_recovery) {
-        driver_enter(lidar, PHASE_BACKING_OFF);
-    } else {
-        climb(lidar);
-    }
-}
-
-void tmini_driver_back_off(tmini_t *lidar)
-{
-    /* At the top the ladder's last rungs are climbed again and again. */
-    lidar->rung = (uint8_t)(lidar->rung < UINT8_MAX ? lidar->rung + 1 : UINT8_MAX - REBOOT_RUNG + 1);
-    lidar->goal = GOAL_START;
-    lidar->unsent = 0;
-    tmini_parser_await(&lidar->parser, NULL);
-    driver_enter(lidar, PHASE_BACKING_OFF);
-}
-
-static uint32_t pause_ms(const tmini_t *lidar)
-{
-    uint32_t pause = lidar->timing->back_off_ms;
-    for (unsigned rung = 1; rung < lidar->rung && pause < lidar->timing->back_off_max_ms; rung++) {
-        pause *= 2;
-    }
-    return pause < lidar->timing->back_off_max_ms ? pause : lidar->timing->back_off_max_ms;
-}
-
 /* No start packet and no range for so long: the rotor is blocked (section 8). */
-static void watch_rotor(tmini_t *lidar)
+void tmini_driver_watch_rotor(tmini_t *lidar)
 {
     if (!lidar->range_seen && driver_elapsed(lidar, lidar->start_ms, lidar->timing->turn_ms)) {
         report(lidar, (uint8_t)(lidar->faults | TMINI_FAULT_ENCODER));
     }
 }
 
-void tmini_driver_watch(tmini_t *lidar)
+/* ----------------------------------------------------------------------------------- recovery */
+
+void tmini_driver_lose(tmini_t *lidar)
 {
-    switch (lidar->phase) {
-    case PHASE_SCANNING:
-        if (driver_elapsed(lidar, lidar->phase_ms, lidar->timing->data_ms)) {
-            lose(lidar);
-        } else {
-            watch_rotor(lidar);
-        }
-        break;
-    case PHASE_BACKING_OFF:
-        if (!lidar->no_recovery && driver_elapsed(lidar, lidar->phase_ms, pause_ms(lidar))) {
-            climb(lidar);
-        }
-        break;
-    default:
-        break;
+    lidar->losses++;
+    lidar->recovering = true;
+    lidar->rung = 0;
+    driver_raise(lidar, TMINI_EVENT_LOST);
+    if (lidar->no_recovery) {
+        driver_enter(lidar, PHASE_BACKING_OFF, 0);
+    } else {
+        tmini_driver_climb(lidar);
     }
+}
+
+void tmini_driver_climb(tmini_t *lidar)
+{
+    const bool reboots = lidar->rung > 0 && lidar->rung % REBOOT_RUNG == 0;
+    lidar->goal = reboots ? GOAL_REBOOT : GOAL_START;
+    tmini_driver_hush(lidar);
+}
+
+/* The pause doubles from rung to rung. */
+static uint16_t pause_ms(const tmini_t *lidar)
+{
+    const tmini_timing_t *const timing = lidar->timing;
+    uint32_t pause = timing->back_off_ms;
+    for (unsigned rung = 1; rung < lidar->rung && pause < timing->back_off_max_ms; rung++) {
+        pause *= 2;
+    }
+    return (uint16_t)(pause < timing->back_off_max_ms ? pause : timing->back_off_max_ms);
+}
+
+void tmini_driver_back_off(tmini_t *lidar)
+{
+    /* At the top, the last rungs are climbed again and again. */
+    lidar->rung = (uint8_t)(lidar->rung < UINT8_MAX ? lidar->rung + 1 : UINT8_MAX - REBOOT_RUNG + 1);
+    lidar->goal = GOAL_START;
+    lidar->unsent = 0;
+    tmini_parser_await(&lidar->parser, NULL);
+    driver_enter(lidar, PHASE_BACKING_OFF, pause_ms(lidar));
 }

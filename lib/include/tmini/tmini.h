@@ -152,6 +152,7 @@ typedef struct {
     bool range_seen; /* A valid range since the last start packet. */
     bool revolving;  /* A start packet has come since scanning began. */
     uint16_t pending; /* A bit for each event not yet returned. */
+    uint16_t limit_ms; /* How long the phase may last; 0: as long as it likes. */
     uint16_t target_chz;
     uint16_t frequency_chz;
     uint16_t timeouts;
@@ -185,7 +186,7 @@ typedef struct {
 /* Sets up a lidar; sends nothing. Call before any byte is fed. Port, timing and buffers stay the
  * caller's and must outlive the lidar; the configuration itself may go.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: a required member missing or out of range; the lidar
- * then refuses bytes and commands, and polls to nothing. */
+ * then refuses commands and polls to nothing. */
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config);
 
 /* ----------------------------------------------------------- receiving: interrupt or task context */

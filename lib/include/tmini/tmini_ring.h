@@ -68,6 +68,15 @@ size_t tmini_ring_unread(const tmini_ring_t *ring);
  * A larger offset reads another byte of the ring's memory, never outside it. */
 uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset);
 
+/* Consumer: copies `count` unread bytes from `offset` on. */
+void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count);
+
+/* Consumer: the three-byte samples from the unread byte `offset` on that lie in one piece, so that
+ * the loops over samples, the hottest there are, run without wrapping. At most *count samples; *count
+ * becomes how many there are. One that straddles the memory's end is put together in `joined`. */
+const uint8_t *tmini_ring_samples(const tmini_ring_t *ring, size_t offset, size_t *count,
+                                  uint8_t joined[3]);
+
 /* Consumer: gives the oldest `count` bytes back to the producer; at most tmini_ring_unread(). */
 void tmini_ring_discard(tmini_ring_t *ring, size_t count);
 
