@@ -4,6 +4,8 @@
 
 # Reads the sources without running them: formatting, static analysis, and strict compilation for
 # each target of test/compile.sh. Does all checks, then fails if any has found something.
+#
+#   test/lint.sh [--fix]       --fix puts the formatting right in place first
 
 set -eu
 
@@ -38,19 +40,25 @@ find_files() {
     find . -name 'build*' -prune -o -name '.git' -prune -o -type f \( "$@" \) -print
 }
 
-check_format() {
-    find_files -name '*.c' -o -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run -Werror
+# format OPTION…
+format() {
+    find_files -name '*.c' -o -name '*.h' -o -name '*.cpp' | xargs clang-format "$@"
 }
 
 check_tidy() {
     quietly cmake -S . -B build-lint -DTMINI_BUILD_TESTS=OFF -DTMINI_BUILD_EXAMPLES=OFF || return 1
-    clang-tidy -p build-lint --quiet lib/src/*.c 2>&1 | grep -v ' warnings\? generated\.$' >build-lint/tidy || true
-    cat build-lint/tidy
-    ! grep -q 'error:' build-lint/tidy
+    # Findings are on standard output, the count of what was suppressed on the other.
+    clang-tidy -p build-lint --quiet lib/src/*.c 2>build-lint/tidy.log && return
+    grep 'error:' build-lint/tidy.log >&2
+    return 1
 }
 
+# Suppressed: cppcheck tries a configuration without any compiler's primitives, which is an #error by
+# design; it takes the smaller of two values for equal to one of them; and it sees no users of
+# structures' members.
 check_cppcheck() {
     cppcheck --quiet --std=c99 --enable=warning,style,performance,portability --inline-suppr \
+        --suppress=preprocessorErrorDirective --suppress=knownConditionTrueFalse \
         --suppress=missingIncludeSystem --suppress=unusedStructMember --error-exitcode=1 \
         -I lib/include lib/src
 }
@@ -66,7 +74,8 @@ check_compile() {
     [ "$status" -eq 0 ] || [ "$status" -eq 77 ]
 }
 
-check clang-format check_format
+[ "${1:-}" != --fix ] || format -i
+check clang-format format --dry-run -Werror
 check clang-tidy check_tidy
 check cppcheck check_cppcheck
 check shellcheck check_scripts

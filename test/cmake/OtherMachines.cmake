@@ -66,7 +66,7 @@ function(tmini_add_test_on_machine test machine dir)
     add_test(NAME ${machine}.${test} COMMAND ${CMAKE_COMMAND} -E chdir ${dir}
         ${CMAKE_CTEST_COMMAND} -R "^${test}$" --output-on-failure --no-tests=error)
     set_tests_properties(${machine}.${test} PROPERTIES
-        LABELS ${machine} FIXTURES_REQUIRED ${machine} TIMEOUT 330)
+        LABELS ${machine} FIXTURES_REQUIRED ${machine} TIMEOUT 150)
 endfunction()
 
 if(TMINI_TEST_MACHINES)

@@ -75,7 +75,7 @@ endfunction()
 # Adds the ctest; what a machine without exit statuses prints decides there.
 function(tmini_register_unit_test name)
     add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES LABELS "${ARGN}" TIMEOUT 300)
+    set_tests_properties(${name} PROPERTIES LABELS "${ARGN}" TIMEOUT 120)
     if(TMINI_TEST_PASS_PATTERN)
         set_tests_properties(${name} PROPERTIES
             PASS_REGULAR_EXPRESSION "${TMINI_TEST_PASS_PATTERN}"

@@ -87,6 +87,7 @@ need_cmock_from_trixie() {
         need "$cmock_script" "$package"
         return
     fi
+    remove_cmock_download
     echo "This Debian has no package cmock, and the one of the next release could not be had from" >&2
     echo "the machine's own package sources (why: above). Please install CMock by hand and name its" >&2
     echo "folder: CMOCK_ROOT=DIR test/run.sh" >&2
