@@ -83,7 +83,7 @@ static tmini_event_t take_event(tmini_t *lidar)
     while ((lidar->pending >> event & 1u) == 0) {
         event++;
     }
-    lidar->pending &= (uint16_t)~(1u << event);
+    lidar->pending &= (uint16_t) ~(1u << event);
     return (tmini_event_t)event;
 }
 
@@ -109,7 +109,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
     if (lidar == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    *lidar = (tmini_t){ 0 }; /* Also phase, goal and turn: unknown, none and nothing known. */
+    *lidar = (tmini_t){0}; /* Also phase, goal and turn: unknown, none and nothing known. */
     if (!has_required_members(config) || !init_modules(lidar, config)) {
         return TMINI_ERROR_ARGUMENT;
     }

@@ -9,9 +9,9 @@
 /* More frequency steps than any change needs (6 of 1 Hz and 5 of 0.1 Hz). */
 #define STEPS_MAX 20
 /* The events with which commands end. */
-#define END_EVENTS                                                                                \
-    (1u << TMINI_EVENT_STARTED | 1u << TMINI_EVENT_STOPPED | 1u << TMINI_EVENT_INFO |              \
-     1u << TMINI_EVENT_HEALTH | 1u << TMINI_EVENT_FREQUENCY | 1u << TMINI_EVENT_REBOOTED |         \
+#define END_EVENTS                                                                         \
+    (1u << TMINI_EVENT_STARTED | 1u << TMINI_EVENT_STOPPED | 1u << TMINI_EVENT_INFO |      \
+     1u << TMINI_EVENT_HEALTH | 1u << TMINI_EVENT_FREQUENCY | 1u << TMINI_EVENT_REBOOTED | \
      1u << TMINI_EVENT_FAILED)
 
 #define COARSE_STEP_CHZ 100
@@ -22,9 +22,9 @@
 /* Hands what is left of the command to the port. Returns false if the port reports a failure. */
 static bool transmit(tmini_t *lidar)
 {
-    const uint8_t bytes[2] = { TMINI_COMMAND_SIGN, lidar->sent };
-    const int taken = lidar->port->write(lidar->port_context, &bytes[2 - lidar->unsent],
-                                         lidar->unsent);
+    const uint8_t bytes[2] = {TMINI_COMMAND_SIGN, lidar->sent};
+    const int taken =
+        lidar->port->write(lidar->port_context, &bytes[2 - lidar->unsent], lidar->unsent);
     if (taken < 0) {
         lidar->unsent = 0;
         return false;

@@ -93,14 +93,13 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
     for (size_t done = 0; done < wanted;) {
         uint8_t joined[TMINI_SAMPLE_SIZE];
         size_t count = wanted - done;
-        const uint8_t *sample = tmini_ring_samples(
-            packet->parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
+        const uint8_t *sample =
+            tmini_ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
         done += count;
         for (size_t left = count; left > 0; left--) {
-            decode(point, sample, first_angle, turned);
-            turned += step;
+            decode(point++, sample, first_angle, turned);
             sample += TMINI_SAMPLE_SIZE;
-            point++;
+            turned += step;
         }
     }
     if (filter != TMINI_FILTER_NONE) {

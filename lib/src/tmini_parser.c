@@ -91,8 +91,9 @@ static enum verdict judge(tmini_parser_t *parser, size_t unread)
     if (!(is_packet ? packet_header_is_plausible(parser) : reply_has_awaited_shape(parser))) {
         return USELESS;
     }
-    if (!has(parser, unread, is_packet ? TMINI_PACKET_SIZE_MAX(parser->header[LSN])
-                                       : TMINI_REPLY_HEADER_SIZE + parser->awaited.length)) {
+    if (!has(parser, unread,
+             is_packet ? TMINI_PACKET_SIZE_MAX(parser->header[LSN])
+                       : TMINI_REPLY_HEADER_SIZE + parser->awaited.length)) {
         return INCOMPLETE;
     }
     if (is_packet && !checksum_matches(parser)) {
@@ -170,7 +171,7 @@ tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uin
     if (parser == NULL || ring == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    *parser = (tmini_parser_t){ .ring = ring, .need = 1, .max_samples = max_samples };
+    *parser = (tmini_parser_t){.ring = ring, .need = 1, .max_samples = max_samples};
     if (max_samples == 0) {
         parser->max_samples = TMINI_MAX_SAMPLES_DEFAULT;
     }

@@ -12,13 +12,13 @@ bool tmini_reply_shape(tmini_command_t command, tmini_reply_shape_t *shape)
     case TMINI_COMMAND_REBOOT:
         return false;
     case TMINI_COMMAND_START:
-        *shape = (tmini_reply_shape_t){ .type = 0x81, .mode = TMINI_REPLY_MODE_CONTINUOUS };
+        *shape = (tmini_reply_shape_t){.type = 0x81, .mode = TMINI_REPLY_MODE_CONTINUOUS};
         return true;
     case TMINI_COMMAND_GET_INFO:
-        *shape = (tmini_reply_shape_t){ .type = 0x04, .length = TMINI_INFO_SIZE };
+        *shape = (tmini_reply_shape_t){.type = 0x04, .length = TMINI_INFO_SIZE};
         return true;
     case TMINI_COMMAND_GET_HEALTH:
-        *shape = (tmini_reply_shape_t){ .type = 0x06, .length = TMINI_HEALTH_SIZE };
+        *shape = (tmini_reply_shape_t){.type = 0x06, .length = TMINI_HEALTH_SIZE};
         return true;
     case TMINI_COMMAND_FASTER_TENTH:
     case TMINI_COMMAND_SLOWER_TENTH:
@@ -27,7 +27,7 @@ bool tmini_reply_shape(tmini_command_t command, tmini_reply_shape_t *shape)
     case TMINI_COMMAND_GET_FREQUENCY:
         break;
     }
-    *shape = (tmini_reply_shape_t){ .type = 0x04, .length = TMINI_FREQUENCY_SIZE };
+    *shape = (tmini_reply_shape_t){.type = 0x04, .length = TMINI_FREQUENCY_SIZE};
     return true;
 }
 

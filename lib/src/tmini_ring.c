@@ -12,7 +12,7 @@ tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size,
     if (ring == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    *ring = (tmini_ring_t){ 0 };
+    *ring = (tmini_ring_t){0};
     if (memory == NULL || size == 0 || (size & (size - 1)) != 0) {
         return TMINI_ERROR_ARGUMENT;
     }

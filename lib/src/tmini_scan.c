@@ -61,7 +61,7 @@ static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet)
 
 static void begin(tmini_scan_builder_t *builder, const tmini_packet_t *start, uint32_t now_ms)
 {
-    builder->scan = (tmini_scan_t){ .points = builder->scan.points, .timestamp_ms = now_ms };
+    builder->scan = (tmini_scan_t){.points = builder->scan.points, .timestamp_ms = now_ms};
     builder->previous_angle_q6 = start->first_angle_q6;
     builder->swept_q6 = 0;
     builder->errors_before = (uint16_t)start->parser->counters.checksum_errors;
@@ -71,9 +71,8 @@ static void begin(tmini_scan_builder_t *builder, const tmini_packet_t *start, ui
 static void append_points(tmini_scan_builder_t *builder, const tmini_packet_t *packet)
 {
     tmini_scan_t *const scan = &builder->scan;
-    const size_t count =
-        tmini_packet_points(packet, builder->filter, &scan->points[scan->count],
-                            (size_t)builder->capacity - scan->count);
+    const size_t count = tmini_packet_points(packet, builder->filter, &scan->points[scan->count],
+                                             (size_t)builder->capacity - scan->count);
     if (!tmini_parser_frame_intact(packet->parser)) {
         add_up(&scan->gaps, 1);
         return;
@@ -91,8 +90,7 @@ tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buf
         return TMINI_ERROR_ARGUMENT;
     }
     *builder = (tmini_scan_builder_t){
-        .scan.points = buffer, .capacity = (uint16_t)capacity, .filter = (uint8_t)filter
-    };
+        .scan.points = buffer, .capacity = (uint16_t)capacity, .filter = (uint8_t)filter};
     return TMINI_OK;
 }
 

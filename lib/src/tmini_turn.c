@@ -21,14 +21,13 @@ enum {
 };
 
 /* The others are production data. */
-#define KNOWN_MASK                                                                              \
+#define KNOWN_MASK                                                                                 \
     (TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE | TMINI_KNOWN_FIRMWARE | \
      TMINI_KNOWN_YEAR | TMINI_KNOWN_MONTH | TMINI_KNOWN_DAY | TMINI_KNOWN_SERIAL)
 
 static void trust_current(tmini_turn_t *turn)
 {
-    const unsigned count =
-        turn->packets < TMINI_TURN_FIELDS ? turn->packets : TMINI_TURN_FIELDS;
+    const unsigned count = turn->packets < TMINI_TURN_FIELDS ? turn->packets : TMINI_TURN_FIELDS;
     memcpy(turn->trusted, turn->current, count);
     turn->known |= (uint16_t)((1u << count) - 1);
 }
@@ -60,7 +59,7 @@ static void append(tmini_turn_t *turn, uint8_t ct)
 
 void tmini_turn_init(tmini_turn_t *turn)
 {
-    *turn = (tmini_turn_t){ 0 };
+    *turn = (tmini_turn_t){0};
 }
 
 void tmini_turn_discard(tmini_turn_t *turn)

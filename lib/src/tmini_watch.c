@@ -154,7 +154,8 @@ static uint16_t pause_ms(const tmini_t *lidar)
 void tmini_driver_back_off(tmini_t *lidar)
 {
     /* At the top, the last rungs are climbed again and again. */
-    lidar->rung = (uint8_t)(lidar->rung < UINT8_MAX ? lidar->rung + 1 : UINT8_MAX - REBOOT_RUNG + 1);
+    lidar->rung =
+        (uint8_t)(lidar->rung < UINT8_MAX ? lidar->rung + 1 : UINT8_MAX - REBOOT_RUNG + 1);
     lidar->goal = GOAL_START;
     lidar->unsent = 0;
     tmini_parser_await(&lidar->parser, NULL);

@@ -101,7 +101,7 @@ typedef enum {
     TMINI_EVENT_FREQUENCY, /* tmini_frequency_chz() has been read, or set and read back. */
     TMINI_EVENT_REBOOTED,  /* The soft reboot's time is over. */
     TMINI_EVENT_FAILED,    /* A command failed; tmini_failure() says why. */
-    TMINI_EVENT_LOST,      /* No valid packets any more; being recovered unless configured not to. */
+    TMINI_EVENT_LOST, /* No valid packets any more; being recovered unless configured not to. */
     TMINI_EVENT_RECOVERED, /* Valid packets again. */
     TMINI_EVENT_FAULT,     /* tmini_faults() has changed, to 0 as well. */
     TMINI_EVENT_PACKET,    /* Streaming: tmini_packet() is valid until the next tmini_poll(). */
@@ -109,11 +109,11 @@ typedef enum {
 } tmini_event_t;
 
 typedef enum {
-    TMINI_STATE_UNKNOWN,    /* The lidar may be streaming: after init, reboot or a failure. */
-    TMINI_STATE_IDLE,       /* Not scanning, and the line is quiet. */
-    TMINI_STATE_BUSY,       /* Carrying out a query, a frequency change or a reboot. */
-    TMINI_STATE_STOPPING,   /* Waiting for the line to fall quiet after a stop. */
-    TMINI_STATE_STARTING,   /* Until the first packet. */
+    TMINI_STATE_UNKNOWN,  /* The lidar may be streaming: after init, reboot or a failure. */
+    TMINI_STATE_IDLE,     /* Not scanning, and the line is quiet. */
+    TMINI_STATE_BUSY,     /* Carrying out a query, a frequency change or a reboot. */
+    TMINI_STATE_STOPPING, /* Waiting for the line to fall quiet after a stop. */
+    TMINI_STATE_STARTING, /* Until the first packet. */
     TMINI_STATE_SCANNING,
     TMINI_STATE_RECOVERING, /* Lost while scanning; brought back, or waited for. */
 } tmini_state_t;
@@ -148,10 +148,10 @@ typedef struct {
     uint8_t observed;  /* As seen in the last revolution; reported when seen twice. */
     bool no_recovery;
     bool recovering;
-    bool held;       /* The packet that closed the scan has not been added to the next. */
-    bool range_seen; /* A valid range since the last start packet. */
-    bool revolving;  /* A start packet has come since scanning began. */
-    uint16_t pending; /* A bit for each event not yet returned. */
+    bool held;         /* The packet that closed the scan has not been added to the next. */
+    bool range_seen;   /* A valid range since the last start packet. */
+    bool revolving;    /* A start packet has come since scanning began. */
+    uint16_t pending;  /* A bit for each event not yet returned. */
     uint16_t limit_ms; /* How long the phase may last; 0: as long as it likes. */
     uint16_t target_chz;
     uint16_t frequency_chz;

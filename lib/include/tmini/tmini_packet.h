@@ -54,8 +54,8 @@ typedef struct {
     uint8_t ct;              /* As sent: bit 0 start packet, bits 1 to 7 CT information. */
     uint8_t count;           /* Samples: 1 to 255. */
     uint8_t stray;           /* The last byte before the packet that belonged to no frame. */
-    uint16_t gap;            /* How many of those there were since the last frame, or 65535: many. */
-    uint32_t step;           /* From sample to sample, in 1/64 degree / 2^17, rounded up. */
+    uint16_t gap;  /* How many of those there were since the last frame, or 65535: many. */
+    uint32_t step; /* From sample to sample, in 1/64 degree / 2^17, rounded up. */
     const tmini_parser_t *parser;
 } tmini_packet_t;
 

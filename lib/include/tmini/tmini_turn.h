@@ -34,9 +34,9 @@ extern "C" {
 typedef struct {
     uint8_t packets; /* Of the revolution under way, at most 255; 0 before the first. */
     uint8_t crc;
-    bool spoiled;     /* Something of the revolution under way was lost. */
-    bool informative; /* A point packet of it had a CT other than 0. */
-    uint16_t known;   /* Bit i: trusted[i] is valid; all others are 0. */
+    bool spoiled;                       /* Something of the revolution under way was lost. */
+    bool informative;                   /* A point packet of it had a CT other than 0. */
+    uint16_t known;                     /* Bit i: trusted[i] is valid; all others are 0. */
     uint8_t current[TMINI_TURN_FIELDS]; /* CTs of the revolution under way. */
     uint8_t trusted[TMINI_TURN_FIELDS]; /* The newest trusted CT of each index. */
 } tmini_turn_t;
@@ -45,7 +45,7 @@ typedef struct {
  * have fewer than 14 packets, so that the later ones may never arrive (section 9.7). */
 typedef enum {
     TMINI_KNOWN_USER_VERSION = 1 << 1,
-    TMINI_KNOWN_FAULTS = 1 << 3, /* Not 4, as one sentence of the manual says (section 9.3). */
+    TMINI_KNOWN_FAULTS = 1 << 3,   /* Not 4, as one sentence of the manual says (section 9.3). */
     TMINI_KNOWN_HARDWARE = 1 << 4, /* And the firmware's major number. */
     TMINI_KNOWN_FIRMWARE = 1 << 5, /* Both of the firmware's numbers. */
     TMINI_KNOWN_YEAR = 1 << 9,
