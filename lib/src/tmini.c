@@ -76,13 +76,15 @@ static void receive(tmini_t *lidar)
  * they are valid until parsing goes on. */
 static tmini_event_t take_event(tmini_t *lidar)
 {
-    for (unsigned event = TMINI_EVENT_NONE; event <= TMINI_EVENT_SCAN; event++) {
-        if ((lidar->pending >> event & 1u) != 0) {
-            lidar->pending &= (uint16_t)~(1u << event);
-            return (tmini_event_t)event;
-        }
+    if (lidar->pending == 0) {
+        return TMINI_EVENT_NONE;
     }
-    return TMINI_EVENT_NONE;
+    unsigned event = TMINI_EVENT_STARTED;
+    while ((lidar->pending >> event & 1u) == 0) {
+        event++;
+    }
+    lidar->pending &= (uint16_t)~(1u << event);
+    return (tmini_event_t)event;
 }
 
 static bool has_required_members(const tmini_config_t *config)

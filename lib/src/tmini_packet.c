@@ -25,16 +25,22 @@ static uint16_t clockwise_difference(uint16_t from, uint16_t to)
     return (uint16_t)(to + (to < from ? TMINI_TURN_Q6 : 0) - from);
 }
 
-/* The point of the sample that lies `turned` (17 fraction bits) after the first. */
-static inline tmini_point_t decode(const uint8_t *sample, uint32_t first_angle, uint32_t turned)
+/* The point of the sample that lies `turned` (17 fraction bits) after the first. All three bytes are
+ * read before the point, which might overlap them for all the compiler knows, is written. */
+static inline void decode(tmini_point_t *point, const uint8_t *sample, uint32_t first_angle,
+                          uint32_t turned)
 {
-    const uint32_t angle = first_angle + (turned >> STEP_BITS);
-    return (tmini_point_t){
-        .angle_q6 = (uint16_t)(angle < TMINI_TURN_Q6 ? angle : angle - TMINI_TURN_Q6),
-        .distance_mm = (uint16_t)(sample[2] << 6 | sample[1] >> 2),
-        .intensity = sample[0],
-        .flag = sample[1] & 3u,
-    };
+    const uint8_t intensity = sample[0];
+    const unsigned low = sample[1];
+    const unsigned high = sample[2];
+    uint32_t angle = first_angle + (turned >> STEP_BITS);
+    if (angle >= TMINI_TURN_Q6) {
+        angle -= TMINI_TURN_Q6;
+    }
+    point->angle_q6 = (uint16_t)angle;
+    point->distance_mm = (uint16_t)(high << 6 | low >> 2);
+    point->intensity = intensity;
+    point->flag = low & 3u;
 }
 
 void tmini_packet_open(tmini_packet_t *packet, const tmini_parser_t *parser)
@@ -63,8 +69,17 @@ bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_
     size_t count = 1;
     const uint8_t *const sample =
         tmini_ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(index), &count, joined);
-    *point = decode(sample, packet->first_angle_q6, HALF + (uint32_t)index * packet->step);
+    decode(point, sample, packet->first_angle_q6, HALF + (uint32_t)index * packet->step);
     return tmini_parser_frame_intact(packet->parser);
+}
+
+static void apply_filter(unsigned filter, tmini_point_t *points, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if ((filter >> points[i].flag & 1u) != 0) {
+            points[i].distance_mm = 0;
+        }
+    }
 }
 
 size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_point_t *points,
@@ -74,23 +89,22 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
     const uint32_t first_angle = packet->first_angle_q6;
     const uint32_t step = packet->step;
     uint32_t turned = HALF;
-    size_t done = 0;
-    while (done < wanted) {
+    tmini_point_t *point = points;
+    for (size_t done = 0; done < wanted;) {
         uint8_t joined[TMINI_SAMPLE_SIZE];
         size_t count = wanted - done;
-        const uint8_t *sample =
-            tmini_ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
-        tmini_point_t *point = &points[done];
+        const uint8_t *sample = tmini_ring_samples(
+            packet->parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
         done += count;
-        for (; count > 0; count--) {
-            *point = decode(sample, first_angle, turned);
-            if ((filter >> point->flag & 1u) != 0) {
-                point->distance_mm = 0;
-            }
+        for (size_t left = count; left > 0; left--) {
+            decode(point, sample, first_angle, turned);
             turned += step;
             sample += TMINI_SAMPLE_SIZE;
             point++;
         }
+    }
+    if (filter != TMINI_FILTER_NONE) {
+        apply_filter(filter, points, wanted);
     }
     return wanted;
 }

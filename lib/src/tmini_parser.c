@@ -46,7 +46,7 @@ static bool checksum_matches(const tmini_parser_t *parser)
         const uint8_t *sample =
             tmini_ring_samples(parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
         done += count;
-        for (; count > 0; count--) {
+        for (size_t left = count; left > 0; left--) {
             low ^= sample[0] ^ sample[1];
             high ^= sample[2];
             sample += TMINI_SAMPLE_SIZE;

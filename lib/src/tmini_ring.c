@@ -70,8 +70,11 @@ uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count)
 {
-    for (size_t i = 0; i < count; i++) {
-        bytes[i] = tmini_ring_peek(ring, offset + i);
+    const uint8_t *const memory = ring->memory;
+    const size_t mask = ring->mask;
+    size_t index = ring->tail + offset;
+    for (const uint8_t *const end = bytes + count; bytes != end; bytes++) {
+        *bytes = memory[index++ & mask];
     }
 }
 
