@@ -25,7 +25,7 @@ endfunction()
 # The command line that compiled main.c has our include folder, and no option of ours.
 function(check_command_line)
     file(READ ${BUILD}/compile_commands.json commands)
-    string(REGEX MATCH "\"command\": \"[^\n]*main\\.c\"," command "${commands}")
+    string(REGEX MATCH "\"command\": \"[^\n]*main\\.c[^\n]*" command "${commands}")
     if(NOT command)
         message(FATAL_ERROR "no command line for main.c in:\n${commands}")
     endif()
