@@ -126,14 +126,14 @@ static void write_totals(report_t *report, uint64_t now_us, uint64_t lost_by_hos
     const sim_link_counts_t *link = &report->link->counts;
 
     print_time(report, now_us);
-    fprintf(report->log,
-            "totals: %" PRIu32 " packets (%" PRIu32 " intact behind the line), %" PRIu32
-            " start packets, %" PRIu64 " samples, %" PRIu32 " replies, %" PRIu32 " commands (%" PRIu32
-            " unknown, %" PRIu32 " forbidden while scanning), %" PRIu64
-            " bytes that the host did not take\n",
-            device->packets, link->intact_packets, device->start_packets, device->samples,
-            device->replies, device->commands, device->unknown_commands,
-            device->commands_while_scanning, lost_by_host);
+    fprintf(report->log, "totals: %" PRIu32 " packets, %" PRIu32 " of them intact behind the line, ",
+            device->packets, link->intact_packets);
+    fprintf(report->log, "%" PRIu32 " start packets, %" PRIu64 " samples, %" PRIu32 " replies, ",
+            device->start_packets, device->samples, device->replies);
+    fprintf(report->log, "%" PRIu32 " commands, %" PRIu32 " forbidden while scanning, ",
+            device->commands, device->commands_while_scanning);
+    fprintf(report->log, "%" PRIu32 " unknown, %" PRIu64 " bytes that the host did not take\n",
+            device->unknown_commands, lost_by_host);
 }
 
 static bool close_file(FILE *file)
