@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* tmini-sim: the simulated lidar in real time for programs, or recorded in virtual time. */
+
+#define _XOPEN_SOURCE 600
+
+#include "host.h"
+#include "link.h"
+#include "options.h"
+#include "report.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define EXIT_WRONG_USAGE 2
+
+/* While bytes come every 43 us: how long to let them gather, and the longest sleep otherwise. */
+#define TICK_MS 2
+#define LONGEST_SLEEP_MS 500
+
+static sim_t device;
+static sim_link_t wire;
+static host_t host;
+static report_t report;
+static volatile sig_atomic_t stop_requested;
+
+static void request_stop(int signal_number)
+{
+    (void)signal_number;
+    stop_requested = 1;
+}
+
+static void catch_signals(void)
+{
+    struct sigaction action;
+
+    memset(&action, 0, sizeof action);
+    sigemptyset(&action.sa_mask);
+    action.sa_handler = request_stop;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    action.sa_handler = SIG_IGN; /* a client that goes is not our end */
+    sigaction(SIGPIPE, &action, NULL);
+}
+
+static double real_seconds(void)
+{
+    struct timespec now;
+
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
+}
+
+static uint64_t end_us(const options_t *options)
+{
+    return options->seconds > 0.0 ? (uint64_t)(options->seconds * 1e6) : SIM_NEVER;
+}
+
+/* ---- In real time ---- */
+
+/* Everything both ways up to now. */
+static void exchange(uint64_t now_us)
+{
+    uint8_t bytes[4096];
+    size_t count = host_read(&host, bytes, sizeof bytes);
+
+    if (count > 0) {
+        sim_link_write(&wire, bytes, count, now_us);
+    }
+    do {
+        count = sim_link_read(&wire, now_us, bytes, sizeof bytes);
+        host_write(&host, bytes, count);
+    } while (count == sizeof bytes);
+}
+
+static int time_to_sleep_ms(uint64_t now_us, uint64_t until_us, double speed)
+{
+    uint64_t next_us = sim_link_next_us(&wire);
+    double sleep_ms;
+
+    next_us = next_us < until_us ? next_us : until_us;
+    if (next_us <= now_us || host.pending_count > 0u) {
+        return TICK_MS;
+    }
+    sleep_ms = (double)(next_us - now_us) / 1000.0 / speed + 1.0;
+    if (sleep_ms < TICK_MS) {
+        return TICK_MS;
+    }
+    return sleep_ms < LONGEST_SLEEP_MS ? (int)sleep_ms : LONGEST_SLEEP_MS;
+}
+
+static uint64_t serve(const options_t *options)
+{
+    const double origin = real_seconds();
+    const uint64_t until_us = end_us(options);
+    uint64_t now_us = 0;
+
+    while (stop_requested == 0 && now_us < until_us) {
+        now_us = (uint64_t)((real_seconds() - origin) * options->speed * 1e6);
+        now_us = now_us < until_us ? now_us : until_us;
+        exchange(now_us);
+        host_wait(&host, time_to_sleep_ms(now_us, until_us, options->speed));
+    }
+    return now_us;
+}
+
+static bool open_host(const options_t *options)
+{
+    if (options->pty ? !host_open_pty(&host) : !host_open_tcp(&host, options->tcp_port)) {
+        return false;
+    }
+    printf("%s\n", host.address);
+    fflush(stdout);
+    return true;
+}
+
+static int run_in_real_time(const options_t *options)
+{
+    uint64_t now_us;
+
+    if (!open_host(options)) {
+        return EXIT_FAILURE;
+    }
+    if (!report_open(&report, options->log_path, options->truth_path, &device, &wire)) {
+        host_close(&host);
+        return EXIT_FAILURE;
+    }
+    now_us = serve(options);
+    host_close(&host);
+    return report_close(&report, now_us, host.lost) ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+/* ---- In virtual time ---- */
+
+/* The stream from the start command on, its reply included. */
+static bool record(FILE *file, uint64_t until_us)
+{
+    static const uint8_t start[2] = {0xA5, SIM_COMMAND_START};
+    const uint64_t step_us = 10000;
+    uint8_t bytes[4096];
+    uint64_t now_us = 0;
+
+    sim_link_write(&wire, start, sizeof start, 0);
+    while (now_us < until_us && stop_requested == 0) {
+        size_t count;
+
+        now_us = until_us - now_us < step_us ? until_us : now_us + step_us;
+        count = sim_link_read(&wire, now_us, bytes, sizeof bytes);
+        if (fwrite(bytes, 1, count, file) != count) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool write_recording(const options_t *options)
+{
+    const bool to_stdout = strcmp(options->write_path, "-") == 0;
+    FILE *file = to_stdout ? stdout : fopen(options->write_path, "wb");
+    bool written;
+
+    if (file == NULL) {
+        fprintf(stderr, "tmini-sim: cannot write %s: %s\n", options->write_path, strerror(errno));
+        return false;
+    }
+    written = record(file, end_us(options));
+    written = (to_stdout ? fflush(file) : fclose(file)) == 0 && written;
+    if (!written) {
+        fprintf(stderr, "tmini-sim: cannot write %s: %s\n", options->write_path, strerror(errno));
+    }
+    return written;
+}
+
+static int run_in_virtual_time(const options_t *options)
+{
+    bool written;
+
+    if (!report_open(&report, options->log_path, options->truth_path, &device, &wire)) {
+        return EXIT_FAILURE;
+    }
+    written = write_recording(options);
+    return report_close(&report, end_us(options), 0) && written ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+int main(int argc, char **argv)
+{
+    options_t options;
+
+    if (!options_parse(&options, argc, argv)) {
+        return EXIT_WRONG_USAGE;
+    }
+    if (options.help) {
+        options_print_help();
+        return EXIT_SUCCESS;
+    }
+    catch_signals();
+    sim_init(&device, &options.device);
+    sim_link_init(&wire, &device, &options.link);
+    return options.write_path != NULL ? run_in_virtual_time(&options) : run_in_real_time(&options);
+}

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The command line of tmini-sim. */
+
+#ifndef OPTIONS_H
+#define OPTIONS_H
+
+#include "link.h"
+
+typedef struct {
+    bool help;
+    bool pty;
+    bool tcp;
+    uint16_t tcp_port;      /* 0: any free one */
+    const char *write_path; /* NULL: not asked for, as all paths below; "-": standard output */
+    const char *log_path;
+    const char *truth_path;
+    double seconds; /* of virtual time; 0: for ever */
+    double speed;   /* virtual seconds a real second */
+    sim_config_t device;
+    sim_link_config_t link;
+} options_t;
+
+/* False after having said on standard error what is wrong and what to do. */
+bool options_parse(options_t *options, int argc, char **argv);
+
+void options_print_help(void);
+
+#endif

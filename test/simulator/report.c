@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "report.h"
+
+#include "reference_decoder.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <string.h>
+
+static const char *command_name(uint8_t code)
+{
+    switch (code) {
+    case SIM_COMMAND_FREQUENCY_UP_TENTH: return "frequency +0.1 Hz";
+    case SIM_COMMAND_FREQUENCY_DOWN_TENTH: return "frequency -0.1 Hz";
+    case SIM_COMMAND_FREQUENCY_UP: return "frequency +1 Hz";
+    case SIM_COMMAND_FREQUENCY_DOWN: return "frequency -1 Hz";
+    case SIM_COMMAND_GET_FREQUENCY: return "get frequency";
+    case SIM_COMMAND_REBOOT: return "reboot";
+    case SIM_COMMAND_START: return "start";
+    case SIM_COMMAND_STOP: return "stop";
+    case SIM_COMMAND_INFORMATION: return "device information";
+    case SIM_COMMAND_HEALTH: return "health";
+    default: return "unknown";
+    }
+}
+
+static void print_time(const report_t *report, uint64_t at_us)
+{
+    fprintf(report->log, "%" PRIu64 ".%06" PRIu64 " ", at_us / 1000000u, at_us % 1000000u);
+}
+
+static void log_command(void *context, uint8_t code, uint64_t now_us)
+{
+    report_t *report = context;
+    const bool scanning = sim_mode(report->sim) == SIM_SCANNING && code != SIM_COMMAND_STOP;
+
+    print_time(report, now_us);
+    fprintf(report->log, "command A5 %02X %s%s\n", (unsigned)code, command_name(code),
+            scanning ? " (forbidden while scanning)" : "");
+}
+
+static void log_mode(void *context, sim_mode_t from, sim_mode_t to, uint64_t now_us)
+{
+    report_t *report = context;
+
+    print_time(report, now_us);
+    fprintf(report->log, "mode %s -> %s\n", sim_mode_name(from), sim_mode_name(to));
+}
+
+static void log_fault(void *context, sim_link_kind_t kind, bool begins, uint64_t at_us)
+{
+    report_t *report = context;
+
+    if (report->log != NULL) {
+        print_time(report, at_us);
+        fprintf(report->log, "fault %s %s\n", sim_link_kind_name(kind), begins ? "begins" : "ends");
+    }
+}
+
+static void write_truth(void *context, const sim_link_packet_t *packet)
+{
+    report_t *report = context;
+    const sim_packet_t *sent = &packet->sent;
+    const unsigned lsn = sent->bytes[3];
+
+    for (unsigned i = 0; report->truth != NULL && i < lsn; i++) {
+        const reference_point_t point = reference_point(sent->bytes, i);
+
+        fprintf(report->truth, "%" PRIu32 ",%" PRIu32 ",%u,%u,%u,%u,%u,%d\n", sent->number,
+                sent->revolution, i, (unsigned)point.angle_q6, (unsigned)point.distance_mm,
+                (unsigned)point.intensity, (unsigned)point.flag, packet->intact ? 1 : 0);
+    }
+}
+
+/* Leaves `*file` NULL when no path is given. */
+static bool open_file(FILE **file, const char *path)
+{
+    *file = NULL;
+    if (path == NULL) {
+        return true;
+    }
+    *file = strcmp(path, "-") == 0 ? stdout : fopen(path, "w");
+    if (*file == NULL) {
+        fprintf(stderr, "tmini-sim: cannot write %s: %s\n", path, strerror(errno));
+        return false;
+    }
+    return true;
+}
+
+static void observe(report_t *report, sim_t *sim, sim_link_t *link)
+{
+    const sim_observer_t device_observer = {report, NULL, log_command, log_mode};
+    const sim_link_observer_t link_observer = {report, write_truth, log_fault};
+
+    if (report->log != NULL) {
+        sim_observe(sim, &device_observer);
+    }
+    sim_link_observe(link, &link_observer);
+}
+
+bool report_open(report_t *report, const char *log_path, const char *truth_path, sim_t *sim,
+                 sim_link_t *link)
+{
+    report->sim = sim;
+    report->link = link;
+    report->truth = NULL;
+    if (!open_file(&report->log, log_path) || !open_file(&report->truth, truth_path)) {
+        return false;
+    }
+    if (report->log != NULL) {
+        setvbuf(report->log, NULL, _IOLBF, BUFSIZ);
+    }
+    if (report->truth != NULL) {
+        fputs("packet,revolution,index,angle_q6,distance_mm,intensity,flag,intact\n",
+              report->truth);
+    }
+    observe(report, sim, link);
+    return true;
+}
+
+static void write_totals(report_t *report, uint64_t now_us, uint64_t lost_by_host)
+{
+    const sim_counts_t *device = &report->sim->counts;
+    const sim_link_counts_t *link = &report->link->counts;
+
+    print_time(report, now_us);
+    fprintf(report->log, "totals: %" PRIu32 " packets, %" PRIu32 " of them intact behind the line, ",
+            device->packets, link->intact_packets);
+    fprintf(report->log, "%" PRIu32 " start packets, %" PRIu64 " samples, %" PRIu32 " replies, ",
+            device->start_packets, device->samples, device->replies);
+    fprintf(report->log, "%" PRIu32 " commands, %" PRIu32 " forbidden while scanning, ",
+            device->commands, device->commands_while_scanning);
+    fprintf(report->log, "%" PRIu32 " unknown, %" PRIu64 " bytes that the host did not take\n",
+            device->unknown_commands, lost_by_host);
+}
+
+static bool close_file(FILE *file)
+{
+    if (file == NULL || file == stdout) {
+        return file == NULL || fflush(stdout) == 0;
+    }
+    return fclose(file) == 0;
+}
+
+bool report_close(report_t *report, uint64_t now_us, uint64_t lost_by_host)
+{
+    bool written;
+
+    if (report->log != NULL) {
+        write_totals(report, now_us, lost_by_host);
+    }
+    written = close_file(report->log);
+    written = close_file(report->truth) && written;
+    if (!written) {
+        fprintf(stderr, "tmini-sim: cannot write log or truth: %s\n", strerror(errno));
+    }
+    return written;
+}
