@@ -5,6 +5,7 @@
 #     SOURCES test_file.c [more.c …]   the first one holds the tests: void test_…(void)
 #     [MOCKS header.h …]               functions declared there are mocked; in the test file,
 #                                      #include "mock_header.h"
+#     [LIBRARIES target …]             linked besides the library, Unity and CMock
 #     [LABELS label …]                 ctest labels; `unit` unless given
 #     [NOT_ON machine …]               other machines it does not run on: `int16` for tests whose
 #                                      arrays do not fit in 8 KB of RAM, or `bigendian`
@@ -90,7 +91,7 @@ function(tmini_note_machines name)
 endfunction()
 
 function(tmini_add_unit_test name)
-    cmake_parse_arguments(arg "" "" "SOURCES;MOCKS;LABELS;NOT_ON" ${ARGN})
+    cmake_parse_arguments(arg "" "" "SOURCES;MOCKS;LIBRARIES;LABELS;NOT_ON" ${ARGN})
     if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
         message(FATAL_ERROR "tmini_add_unit_test(${name}): needs SOURCES; "
             "not understood: ${arg_UNPARSED_ARGUMENTS}")
@@ -112,6 +113,7 @@ function(tmini_add_unit_test name)
 
     add_executable(${name} ${arg_SOURCES} ${runner} ${mocks})
     tmini_configure_unit_test(${name} ${dir} ${arg_MOCKS})
+    target_link_libraries(${name} PRIVATE ${arg_LIBRARIES})
     tmini_register_unit_test(${name} ${arg_LABELS})
     tmini_note_machines(${name} ${arg_NOT_ON})
 endfunction()

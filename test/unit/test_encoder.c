@@ -43,7 +43,7 @@ static encode_turn_t a_turn(void)
 void setUp(void) {}
 void tearDown(void) {}
 
-static void the_manuals_packet_is_encoded_byte_for_byte(void)
+void test_the_manuals_packet_is_encoded_byte_for_byte(void)
 {
     const encode_packet_t packet = {0x20, 19, 21706, 49, manual_samples};
     uint8_t out[ENCODE_PACKET_MAX];
@@ -52,12 +52,12 @@ static void the_manuals_packet_is_encoded_byte_for_byte(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(manual_packet, out, 67);
 }
 
-static void the_manuals_checksum_is_e85a(void)
+void test_the_manuals_checksum_is_e85a(void)
 {
     TEST_ASSERT_EQUAL_HEX16(0xE85A, encode_checksum(manual_packet));
 }
 
-static void a_real_units_start_packet_is_encoded_byte_for_byte(void)
+void test_a_real_units_start_packet_is_encoded_byte_for_byte(void)
 {
     static const uint8_t expected[] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
                                        0x00, 0x9E, 0x56, 0x15, 0x54, 0x02};
@@ -69,7 +69,7 @@ static void a_real_units_start_packet_is_encoded_byte_for_byte(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 13);
 }
 
-static void the_example_sample_of_section_5_is_64_e5_6f(void)
+void test_the_example_sample_of_section_5_is_64_e5_6f(void)
 {
     static const uint8_t expected[] = {0x64, 0xE5, 0x6F};
     const encode_sample_t sample = {7161, 100, 1};
@@ -79,7 +79,7 @@ static void the_example_sample_of_section_5_is_64_e5_6f(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 3);
 }
 
-static void the_largest_sample_fills_all_its_bits(void)
+void test_the_largest_sample_fills_all_its_bits(void)
 {
     static const uint8_t expected[] = {0xFF, 0xFF, 0xFF};
     const encode_sample_t sample = {16383, 255, 3};
@@ -89,14 +89,14 @@ static void the_largest_sample_fills_all_its_bits(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 3);
 }
 
-static void an_angle_has_its_check_bit_set(void)
+void test_an_angle_has_its_check_bit_set(void)
 {
     TEST_ASSERT_EQUAL_HEX16(0x0001, encode_angle(0));
     TEST_ASSERT_EQUAL_HEX16(0xA995, encode_angle(21706));
     TEST_ASSERT_EQUAL_HEX16(0xFFFF, encode_angle(32767));
 }
 
-static void sealing_makes_a_changed_packet_valid_again(void)
+void test_sealing_makes_a_changed_packet_valid_again(void)
 {
     uint8_t packet[] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F, 0x00, 0, 0, 0x14, 0x54, 0x02};
 
@@ -105,7 +105,7 @@ static void sealing_makes_a_changed_packet_valid_again(void)
     TEST_ASSERT_EQUAL_HEX8(0x56, packet[9]);
 }
 
-static void a_packet_may_have_255_samples(void)
+void test_a_packet_may_have_255_samples(void)
 {
     static const encode_sample_t samples[255];
     const encode_packet_t packet = {0, 255, 0, 0, samples};
@@ -116,7 +116,7 @@ static void a_packet_may_have_255_samples(void)
     TEST_ASSERT_EQUAL_HEX8(0xAA, out[9]); /* 55 ^ LSN FF */
 }
 
-static void the_scan_reply_is_the_manuals(void)
+void test_the_scan_reply_is_the_manuals(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
     uint8_t out[ENCODE_REPLY_MAX];
@@ -126,7 +126,7 @@ static void the_scan_reply_is_the_manuals(void)
 }
 
 /* The reply of a real T-mini Plus: firmware 1.2 with the minor byte first, hardware 1. */
-static void device_information_is_a_real_units_reply(void)
+void test_device_information_is_a_real_units_reply(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x97, 0x02,
                                        0x01, 0x01, 2,    0,    2,    5,    0,    4,    2,
@@ -139,7 +139,7 @@ static void device_information_is_a_real_units_reply(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 27);
 }
 
-static void health_has_status_and_a_little_endian_error_code(void)
+void test_health_has_status_and_a_little_endian_error_code(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x03, 0x00, 0x00, 0x00, 0x06, 0x22, 0x34, 0x12};
     uint8_t out[ENCODE_REPLY_MAX];
@@ -148,7 +148,7 @@ static void health_has_status_and_a_little_endian_error_code(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 10);
 }
 
-static void six_hertz_is_600_hundredths(void)
+void test_six_hertz_is_600_hundredths(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x04, 0x00, 0x00, 0x00,
                                        0x04, 0x58, 0x02, 0x00, 0x00};
@@ -158,7 +158,7 @@ static void six_hertz_is_600_hundredths(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 11);
 }
 
-static void a_reply_of_any_mode_and_length_can_be_made(void)
+void test_a_reply_of_any_mode_and_length_can_be_made(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x56, 0x34, 0x12, 0xC0, 0x99};
     uint8_t out[ENCODE_REPLY_MAX];
@@ -167,7 +167,7 @@ static void a_reply_of_any_mode_and_length_can_be_made(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
 }
 
-static void the_crc_of_123456789_is_a1(void)
+void test_the_crc_of_123456789_is_a1(void)
 {
     uint8_t crc = 0;
 
@@ -177,7 +177,7 @@ static void the_crc_of_123456789_is_a1(void)
     TEST_ASSERT_EQUAL_HEX8(0xA1, crc);
 }
 
-static void ct_bytes_follow_the_table_of_section_7(void)
+void test_ct_bytes_follow_the_table_of_section_7(void)
 {
     const encode_turn_t turn = a_turn();
 
@@ -189,7 +189,7 @@ static void ct_bytes_follow_the_table_of_section_7(void)
 }
 
 /* 1193046 = 0x123456: bits 20..19 are 2, 18..16 are 2, 15..14 are 0, 13..7 are 0x68, 6..0 0x56. */
-static void the_serial_number_is_spread_over_indices_9_to_13(void)
+void test_the_serial_number_is_spread_over_indices_9_to_13(void)
 {
     const encode_turn_t turn = a_turn();
 
@@ -200,34 +200,11 @@ static void the_serial_number_is_spread_over_indices_9_to_13(void)
     TEST_ASSERT_EQUAL_HEX8(0xAC, encode_ct(&turn, 13)); /* 0x56 << 1 */
 }
 
-static void only_index_0_has_bit_0_set(void)
+void test_only_index_0_has_bit_0_set(void)
 {
     const encode_turn_t turn = a_turn();
 
     for (uint32_t index = 1; index < 300; index++) {
         TEST_ASSERT_EQUAL_HEX8(0, encode_ct(&turn, index) & 1u);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(the_manuals_packet_is_encoded_byte_for_byte);
-    RUN_TEST(the_manuals_checksum_is_e85a);
-    RUN_TEST(a_real_units_start_packet_is_encoded_byte_for_byte);
-    RUN_TEST(the_example_sample_of_section_5_is_64_e5_6f);
-    RUN_TEST(the_largest_sample_fills_all_its_bits);
-    RUN_TEST(an_angle_has_its_check_bit_set);
-    RUN_TEST(sealing_makes_a_changed_packet_valid_again);
-    RUN_TEST(a_packet_may_have_255_samples);
-    RUN_TEST(the_scan_reply_is_the_manuals);
-    RUN_TEST(device_information_is_a_real_units_reply);
-    RUN_TEST(health_has_status_and_a_little_endian_error_code);
-    RUN_TEST(six_hertz_is_600_hundredths);
-    RUN_TEST(a_reply_of_any_mode_and_length_can_be_made);
-    RUN_TEST(the_crc_of_123456789_is_a1);
-    RUN_TEST(ct_bytes_follow_the_table_of_section_7);
-    RUN_TEST(the_serial_number_is_spread_over_indices_9_to_13);
-    RUN_TEST(only_index_0_has_bit_0_set);
-    return UNITY_END();
 }

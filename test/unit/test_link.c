@@ -142,7 +142,7 @@ void tearDown(void)
     TEST_ASSERT_EQUAL_UINT32(0, sim_lost_frames(&sim));
 }
 
-static void a_faultless_wire_passes_every_byte_in_its_time(void)
+void test_a_faultless_wire_passes_every_byte_in_its_time(void)
 {
     static uint8_t direct[STREAM_MAX];
     const sim_config_t device = sim_default_config();
@@ -158,7 +158,7 @@ static void a_faultless_wire_passes_every_byte_in_its_time(void)
     TEST_ASSERT_EQUAL_MEMORY(direct, stream, size);
 }
 
-static void without_faults_every_packet_is_intact(void)
+void test_without_faults_every_packet_is_intact(void)
 {
     send(0x60);
     run_ms(10000);
@@ -169,7 +169,7 @@ static void without_faults_every_packet_is_intact(void)
 }
 
 /* 60 s are about 780,000 bytes and 6400 packets. */
-static void dropped_bytes_cost_the_packets_they_were_in(void)
+void test_dropped_bytes_cost_the_packets_they_were_in(void)
 {
     scan_with(SIM_LINK_DROP, 1000, 60);
     expect_faults(SIM_LINK_DROP, 680, 880);
@@ -178,7 +178,7 @@ static void dropped_bytes_cost_the_packets_they_were_in(void)
     TEST_ASSERT_EQUAL_size_t(wire.passed - heard.begun[SIM_LINK_DROP], size);
 }
 
-static void flipped_bits_cost_the_packets_they_were_in(void)
+void test_flipped_bits_cost_the_packets_they_were_in(void)
 {
     scan_with(SIM_LINK_FLIP, 1000, 60);
     expect_faults(SIM_LINK_FLIP, 680, 880);
@@ -186,7 +186,7 @@ static void flipped_bits_cost_the_packets_they_were_in(void)
     TEST_ASSERT_EQUAL_size_t(wire.passed, size);
 }
 
-static void inserted_bytes_cost_only_packets_that_they_split(void)
+void test_inserted_bytes_cost_only_packets_that_they_split(void)
 {
     scan_with(SIM_LINK_INSERT, 1000, 60);
     expect_faults(SIM_LINK_INSERT, 680, 880);
@@ -194,7 +194,7 @@ static void inserted_bytes_cost_only_packets_that_they_split(void)
     TEST_ASSERT_EQUAL_size_t(wire.passed + heard.begun[SIM_LINK_INSERT], size);
 }
 
-static void bursts_spoil_the_packets_they_touch(void)
+void test_bursts_spoil_the_packets_they_touch(void)
 {
     scan_with(SIM_LINK_BURST, 500, 60);
     expect_faults(SIM_LINK_BURST, 80, 160);
@@ -203,7 +203,7 @@ static void bursts_spoil_the_packets_they_touch(void)
     TEST_ASSERT_EQUAL_size_t(wire.passed, size);
 }
 
-static void a_cut_loses_the_rest_of_one_packet(void)
+void test_a_cut_loses_the_rest_of_one_packet(void)
 {
     scan_with(SIM_LINK_CUT, 500, 60);
     expect_faults(SIM_LINK_CUT, 80, 160);
@@ -212,7 +212,7 @@ static void a_cut_loses_the_rest_of_one_packet(void)
     TEST_ASSERT_TRUE(size < wire.passed);
 }
 
-static void a_stall_makes_bytes_late_but_loses_none(void)
+void test_a_stall_makes_bytes_late_but_loses_none(void)
 {
     scan_with(SIM_LINK_STALL, 1000, 60);
     expect_faults(SIM_LINK_STALL, 35, 85);
@@ -223,7 +223,7 @@ static void a_stall_makes_bytes_late_but_loses_none(void)
     TEST_ASSERT_EQUAL_size_t(wire.passed, size);
 }
 
-static void nothing_comes_during_a_stall_and_then_it_comes_at_the_lines_speed(void)
+void test_nothing_comes_during_a_stall_and_then_it_comes_at_the_lines_speed(void)
 {
     size_t before;
 
@@ -241,7 +241,7 @@ static void nothing_comes_during_a_stall_and_then_it_comes_at_the_lines_speed(vo
     TEST_ASSERT_EQUAL_size_t(wire.passed, size);
 }
 
-static void garbling_spoils_every_byte_while_it_lasts(void)
+void test_garbling_spoils_every_byte_while_it_lasts(void)
 {
     scan_with(SIM_LINK_GARBLE, 0, 3);
     sim_link_force(&wire, SIM_LINK_GARBLE, 500, now);
@@ -253,7 +253,7 @@ static void garbling_spoils_every_byte_while_it_lasts(void)
     expect_the_truth_about_every_packet();
 }
 
-static void unplugging_silences_the_line_and_resets_the_device(void)
+void test_unplugging_silences_the_line_and_resets_the_device(void)
 {
     scan_with(SIM_LINK_UNPLUG, 0, 3);
     sim_link_force(&wire, SIM_LINK_UNPLUG, 1000, now);
@@ -269,7 +269,7 @@ static void unplugging_silences_the_line_and_resets_the_device(void)
     TEST_ASSERT_EQUAL_size_t(11, size);
 }
 
-static void a_packet_cut_by_unplugging_is_reported_as_hit(void)
+void test_a_packet_cut_by_unplugging_is_reported_as_hit(void)
 {
     scan_with(SIM_LINK_UNPLUG, 0, 3);
     run_ms(1);
@@ -281,7 +281,7 @@ static void a_packet_cut_by_unplugging_is_reported_as_hit(void)
     expect_the_truth_about_every_packet();
 }
 
-static void a_packet_cut_by_a_reboot_is_reported_as_hit(void)
+void test_a_packet_cut_by_a_reboot_is_reported_as_hit(void)
 {
     scan_with(SIM_LINK_UNPLUG, 0, 3);
     run_ms(1);
@@ -296,7 +296,7 @@ static void a_packet_cut_by_a_reboot_is_reported_as_hit(void)
     TEST_ASSERT_EQUAL_size_t(fate_count - 1u, intact_packets());
 }
 
-static void unplugging_by_chance_comes_back_by_itself(void)
+void test_unplugging_by_chance_comes_back_by_itself(void)
 {
     config.mean_gap[SIM_LINK_UNPLUG] = 5000;
     connect();
@@ -308,7 +308,7 @@ static void unplugging_by_chance_comes_back_by_itself(void)
     expect_the_truth_about_every_packet();
 }
 
-static void faults_of_bytes_can_be_forced_one_at_a_time(void)
+void test_faults_of_bytes_can_be_forced_one_at_a_time(void)
 {
     scan_with(SIM_LINK_DROP, 0, 3);
     sim_link_force(&wire, SIM_LINK_DROP, 0, now);
@@ -320,7 +320,7 @@ static void faults_of_bytes_can_be_forced_one_at_a_time(void)
     expect_the_truth_about_every_packet();
 }
 
-static void all_kinds_together_still_tell_the_truth(void)
+void test_all_kinds_together_still_tell_the_truth(void)
 {
     for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
         config.mean_gap[kind] = 2000;
@@ -339,7 +339,7 @@ static void all_kinds_together_still_tell_the_truth(void)
     expect_the_truth_about_every_packet();
 }
 
-static void a_calmed_wire_has_no_more_faults(void)
+void test_a_calmed_wire_has_no_more_faults(void)
 {
     scan_with(SIM_LINK_FLIP, 1000, 10);
     sim_link_calm(&wire, now);
@@ -348,7 +348,7 @@ static void a_calmed_wire_has_no_more_faults(void)
     TEST_ASSERT_EQUAL_UINT(0, heard.begun[SIM_LINK_FLIP]);
 }
 
-static void the_same_seed_gives_the_same_faults_whatever_the_steps(void)
+void test_the_same_seed_gives_the_same_faults_whatever_the_steps(void)
 {
     static uint8_t other[STREAM_MAX];
     size_t other_size;
@@ -369,7 +369,7 @@ static void the_same_seed_gives_the_same_faults_whatever_the_steps(void)
     TEST_ASSERT_EQUAL_MEMORY(other, stream, size);
 }
 
-static void the_next_event_is_never_later_than_the_next_byte(void)
+void test_the_next_event_is_never_later_than_the_next_byte(void)
 {
     scan_with(SIM_LINK_STALL, 200, 3);
     for (int i = 0; i < 20000; i++) {
@@ -383,35 +383,9 @@ static void the_next_event_is_never_later_than_the_next_byte(void)
     }
 }
 
-static void kinds_have_names(void)
+void test_kinds_have_names(void)
 {
     TEST_ASSERT_EQUAL_STRING("unplug", sim_link_kind_name(SIM_LINK_UNPLUG));
     TEST_ASSERT_EQUAL(SIM_LINK_STALL, sim_link_kind_named("stall"));
     TEST_ASSERT_EQUAL(SIM_LINK_KINDS, sim_link_kind_named("stal"));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(a_faultless_wire_passes_every_byte_in_its_time);
-    RUN_TEST(without_faults_every_packet_is_intact);
-    RUN_TEST(dropped_bytes_cost_the_packets_they_were_in);
-    RUN_TEST(flipped_bits_cost_the_packets_they_were_in);
-    RUN_TEST(inserted_bytes_cost_only_packets_that_they_split);
-    RUN_TEST(bursts_spoil_the_packets_they_touch);
-    RUN_TEST(a_cut_loses_the_rest_of_one_packet);
-    RUN_TEST(a_stall_makes_bytes_late_but_loses_none);
-    RUN_TEST(nothing_comes_during_a_stall_and_then_it_comes_at_the_lines_speed);
-    RUN_TEST(garbling_spoils_every_byte_while_it_lasts);
-    RUN_TEST(unplugging_silences_the_line_and_resets_the_device);
-    RUN_TEST(a_packet_cut_by_unplugging_is_reported_as_hit);
-    RUN_TEST(a_packet_cut_by_a_reboot_is_reported_as_hit);
-    RUN_TEST(unplugging_by_chance_comes_back_by_itself);
-    RUN_TEST(faults_of_bytes_can_be_forced_one_at_a_time);
-    RUN_TEST(all_kinds_together_still_tell_the_truth);
-    RUN_TEST(a_calmed_wire_has_no_more_faults);
-    RUN_TEST(the_same_seed_gives_the_same_faults_whatever_the_steps);
-    RUN_TEST(the_next_event_is_never_later_than_the_next_byte);
-    RUN_TEST(kinds_have_names);
-    return UNITY_END();
 }

@@ -74,7 +74,7 @@ void setUp(void)
 
 void tearDown(void) {}
 
-static void an_empty_array_holds_nothing(void)
+void test_an_empty_array_holds_nothing(void)
 {
     const reference_counts_t counts = decode();
     const reference_counts_t nothing = {0};
@@ -82,7 +82,7 @@ static void an_empty_array_holds_nothing(void)
     TEST_ASSERT_EQUAL_MEMORY(&nothing, &counts, sizeof counts);
 }
 
-static void the_manuals_packet_is_found_with_its_header_fields(void)
+void test_the_manuals_packet_is_found_with_its_header_fields(void)
 {
     add(manual_packet, 67);
     decode();
@@ -95,7 +95,7 @@ static void the_manuals_packet_is_found_with_its_header_fields(void)
     TEST_ASSERT_FALSE(items[0].starts_revolution);
 }
 
-static void packets_in_a_row_are_all_found_and_counted(void)
+void test_packets_in_a_row_are_all_found_and_counted(void)
 {
     reference_counts_t counts;
 
@@ -118,7 +118,7 @@ static void packets_in_a_row_are_all_found_and_counted(void)
     TEST_ASSERT_EQUAL_UINT64(1, counts.bytes_skipped);
 }
 
-static void a_last_crc_of_aa_does_not_hide_the_start_packet(void)
+void test_a_last_crc_of_aa_does_not_hide_the_start_packet(void)
 {
     add_byte(0xAA);
     add(start_packet, 13);
@@ -126,7 +126,7 @@ static void a_last_crc_of_aa_does_not_hide_the_start_packet(void)
     expect_item(0, true, 1, 13);
 }
 
-static void a_wrong_checksum_costs_one_byte_not_the_declared_length(void)
+void test_a_wrong_checksum_costs_one_byte_not_the_declared_length(void)
 {
     reference_counts_t counts;
 
@@ -143,7 +143,7 @@ static void a_wrong_checksum_costs_one_byte_not_the_declared_length(void)
     TEST_ASSERT_EQUAL_UINT64(40, counts.bytes_skipped);
 }
 
-static void an_incomplete_candidate_at_the_end_is_searched_byte_by_byte(void)
+void test_an_incomplete_candidate_at_the_end_is_searched_byte_by_byte(void)
 {
     reference_counts_t counts;
 
@@ -165,7 +165,7 @@ static void expect_rejected_without_checksum_error(void)
     TEST_ASSERT_EQUAL_UINT64(size, counts.bytes_skipped);
 }
 
-static void lsn_0_is_no_packet(void)
+void test_lsn_0_is_no_packet(void)
 {
     static const uint8_t packet[] = {0xAA, 0x55, 0x00, 0x00, 0x01, 0x00, 0x01, 0x00, 0xAA, 0x55};
 
@@ -173,14 +173,14 @@ static void lsn_0_is_no_packet(void)
     expect_rejected_without_checksum_error();
 }
 
-static void an_lsn_beyond_the_limit_is_no_packet(void)
+void test_an_lsn_beyond_the_limit_is_no_packet(void)
 {
     add(manual_packet, 67);
     options.max_samples = 18;
     expect_rejected_without_checksum_error();
 }
 
-static void an_lsn_at_the_limit_is_a_packet(void)
+void test_an_lsn_at_the_limit_is_a_packet(void)
 {
     add(manual_packet, 67);
     options.max_samples = 19;
@@ -188,7 +188,7 @@ static void an_lsn_at_the_limit_is_a_packet(void)
     expect_item(0, true, 0, 67);
 }
 
-static void a_check_bit_of_0_is_no_packet_even_with_a_right_checksum(void)
+void test_a_check_bit_of_0_is_no_packet_even_with_a_right_checksum(void)
 {
     add(start_packet, 13);
     bytes[4] = 0x3E;
@@ -199,7 +199,7 @@ static void a_check_bit_of_0_is_no_packet_even_with_a_right_checksum(void)
     expect_rejected_without_checksum_error();
 }
 
-static void a_start_packet_of_two_samples_is_no_packet_even_with_a_right_checksum(void)
+void test_a_start_packet_of_two_samples_is_no_packet_even_with_a_right_checksum(void)
 {
     static const uint8_t packet[] = {0xAA, 0x55, 0x75, 0x02, 0x3F, 0x00, 0x3F, 0x00,
                                      0xDF, 0x57, 0,    0,    0,    0,    0,    0};
@@ -209,7 +209,7 @@ static void a_start_packet_of_two_samples_is_no_packet_even_with_a_right_checksu
     expect_rejected_without_checksum_error();
 }
 
-static void a_point_packet_of_one_sample_is_a_packet(void)
+void test_a_point_packet_of_one_sample_is_a_packet(void)
 {
     add(start_packet, 13);
     bytes[2] = 0x74;
@@ -219,7 +219,7 @@ static void a_point_packet_of_one_sample_is_a_packet(void)
     TEST_ASSERT_FALSE(items[0].starts_revolution);
 }
 
-static void a_reply_that_is_not_awaited_is_skipped(void)
+void test_a_reply_that_is_not_awaited_is_skipped(void)
 {
     reference_counts_t counts;
 
@@ -229,7 +229,7 @@ static void a_reply_that_is_not_awaited_is_skipped(void)
     TEST_ASSERT_EQUAL_UINT64(11, counts.bytes_skipped);
 }
 
-static void the_awaited_reply_is_delivered_once(void)
+void test_the_awaited_reply_is_delivered_once(void)
 {
     static const reference_reply_t awaited = {0, 0x04, 4};
     reference_counts_t counts;
@@ -252,7 +252,7 @@ static void expect_not_taken(reference_reply_t awaited)
     TEST_ASSERT_EQUAL_UINT64(0, decode().replies);
 }
 
-static void a_reply_of_another_mode_type_or_length_is_not_taken(void)
+void test_a_reply_of_another_mode_type_or_length_is_not_taken(void)
 {
     static const reference_reply_t other_length = {0, 0x04, 20};
     static const reference_reply_t other_type = {0, 0x06, 4};
@@ -264,7 +264,7 @@ static void a_reply_of_another_mode_type_or_length_is_not_taken(void)
     expect_not_taken(other_mode);
 }
 
-static void an_incomplete_reply_is_not_taken(void)
+void test_an_incomplete_reply_is_not_taken(void)
 {
     static const reference_reply_t awaited = {0, 0x04, 4};
 
@@ -272,7 +272,7 @@ static void an_incomplete_reply_is_not_taken(void)
     expect_not_taken(awaited);
 }
 
-static void the_length_of_a_continuous_reply_is_ignored(void)
+void test_the_length_of_a_continuous_reply_is_ignored(void)
 {
     static const reference_reply_t awaited = {1, 0x81, 99};
 
@@ -285,7 +285,7 @@ static void the_length_of_a_continuous_reply_is_ignored(void)
     expect_item(1, true, 7, 13);
 }
 
-static void a_packet_inside_a_reply_that_is_not_awaited_is_found(void)
+void test_a_packet_inside_a_reply_that_is_not_awaited_is_found(void)
 {
     static const uint8_t header[] = {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04};
 
@@ -296,7 +296,7 @@ static void a_packet_inside_a_reply_that_is_not_awaited_is_found(void)
 }
 
 /* 339.15625 degrees are 21706/64, 0.765625 are 49/64: 1383/64 clockwise in 18 steps. */
-static void the_manuals_angles_wrap_past_360_degrees(void)
+void test_the_manuals_angles_wrap_past_360_degrees(void)
 {
     TEST_ASSERT_EQUAL_UINT16(21706, reference_point(manual_packet, 0).angle_q6);
     TEST_ASSERT_EQUAL_UINT16(21783, reference_point(manual_packet, 1).angle_q6);
@@ -305,12 +305,12 @@ static void the_manuals_angles_wrap_past_360_degrees(void)
 }
 
 /* 21706 + 9 * 1383 / 18 = 22397.5. */
-static void halves_are_rounded_up(void)
+void test_halves_are_rounded_up(void)
 {
     TEST_ASSERT_EQUAL_UINT16(22398, reference_point(manual_packet, 9).angle_q6);
 }
 
-static void the_manuals_samples_have_their_distances_intensities_and_flags(void)
+void test_the_manuals_samples_have_their_distances_intensities_and_flags(void)
 {
     TEST_ASSERT_EQUAL_UINT16(11842, reference_point(manual_packet, 0).distance_mm);
     TEST_ASSERT_EQUAL_UINT16(11135, reference_point(manual_packet, 18).distance_mm);
@@ -322,7 +322,7 @@ static void the_manuals_samples_have_their_distances_intensities_and_flags(void)
 }
 
 /* Section 9.6: FSA 0.266 degrees, LSA 0.156 degrees, one sample. */
-static void the_angle_of_a_lone_sample_is_fsa(void)
+void test_the_angle_of_a_lone_sample_is_fsa(void)
 {
     static const uint8_t packet[13] = {0xAA, 0x55, 0x00, 0x01, 0x23, 0x00, 0x15};
 
@@ -330,7 +330,7 @@ static void the_angle_of_a_lone_sample_is_fsa(void)
 }
 
 /* FSA 0xB401 is 23040/64 = 360 degrees, LSA 0xB40D is 360.09375 degrees. */
-static void angles_of_360_degrees_and_more_are_reduced(void)
+void test_angles_of_360_degrees_and_more_are_reduced(void)
 {
     static const uint8_t packet[] = {0xAA, 0x55, 0x00, 0x03, 0x01, 0xB4, 0x0D, 0xB4, 0, 0,
                                      0,    0,    0,    0,    0,    0,    0,    0,    0};
@@ -341,7 +341,7 @@ static void angles_of_360_degrees_and_more_are_reduced(void)
 }
 
 /* FSA 359.984375, LSA 0: the middle is 23039.5, which rounds to 23040, which is 0. */
-static void rounding_up_to_360_degrees_gives_0(void)
+void test_rounding_up_to_360_degrees_gives_0(void)
 {
     static const uint8_t packet[] = {0xAA, 0x55, 0x00, 0x03, 0xFF, 0xB3, 0x01, 0x00, 0, 0,
                                      0,    0,    0,    0,    0,    0,    0,    0,    0};
@@ -351,7 +351,7 @@ static void rounding_up_to_360_degrees_gives_0(void)
     TEST_ASSERT_EQUAL_UINT16(0, reference_point(packet, 2).angle_q6);
 }
 
-static void every_byte_is_accounted_for_whatever_the_damage(void)
+void test_every_byte_is_accounted_for_whatever_the_damage(void)
 {
     random_t random;
 
@@ -368,35 +368,4 @@ static void every_byte_is_accounted_for_whatever_the_damage(void)
         counts = reference_decode(bytes, size, &options, NULL, NULL);
         TEST_ASSERT_EQUAL_UINT64(counts.bytes, counts.bytes_in_packets + counts.bytes_skipped);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(an_empty_array_holds_nothing);
-    RUN_TEST(the_manuals_packet_is_found_with_its_header_fields);
-    RUN_TEST(packets_in_a_row_are_all_found_and_counted);
-    RUN_TEST(a_last_crc_of_aa_does_not_hide_the_start_packet);
-    RUN_TEST(a_wrong_checksum_costs_one_byte_not_the_declared_length);
-    RUN_TEST(an_incomplete_candidate_at_the_end_is_searched_byte_by_byte);
-    RUN_TEST(lsn_0_is_no_packet);
-    RUN_TEST(an_lsn_beyond_the_limit_is_no_packet);
-    RUN_TEST(an_lsn_at_the_limit_is_a_packet);
-    RUN_TEST(a_check_bit_of_0_is_no_packet_even_with_a_right_checksum);
-    RUN_TEST(a_start_packet_of_two_samples_is_no_packet_even_with_a_right_checksum);
-    RUN_TEST(a_point_packet_of_one_sample_is_a_packet);
-    RUN_TEST(a_reply_that_is_not_awaited_is_skipped);
-    RUN_TEST(the_awaited_reply_is_delivered_once);
-    RUN_TEST(a_reply_of_another_mode_type_or_length_is_not_taken);
-    RUN_TEST(an_incomplete_reply_is_not_taken);
-    RUN_TEST(the_length_of_a_continuous_reply_is_ignored);
-    RUN_TEST(a_packet_inside_a_reply_that_is_not_awaited_is_found);
-    RUN_TEST(the_manuals_angles_wrap_past_360_degrees);
-    RUN_TEST(halves_are_rounded_up);
-    RUN_TEST(the_manuals_samples_have_their_distances_intensities_and_flags);
-    RUN_TEST(the_angle_of_a_lone_sample_is_fsa);
-    RUN_TEST(angles_of_360_degrees_and_more_are_reduced);
-    RUN_TEST(rounding_up_to_360_degrees_gives_0);
-    RUN_TEST(every_byte_is_accounted_for_whatever_the_damage);
-    return UNITY_END();
 }

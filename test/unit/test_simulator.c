@@ -126,7 +126,7 @@ void tearDown(void)
 
 /* ---- Idle and its commands ---- */
 
-static void it_is_idle_and_silent_after_power_up(void)
+void test_it_is_idle_and_silent_after_power_up(void)
 {
     run_ms(5000);
     TEST_ASSERT_EQUAL_size_t(0, size);
@@ -135,7 +135,7 @@ static void it_is_idle_and_silent_after_power_up(void)
     TEST_ASSERT_EQUAL_UINT64(SIM_NEVER, sim_next_us(&sim));
 }
 
-static void device_information_has_the_minor_firmware_version_first(void)
+void test_device_information_has_the_minor_firmware_version_first(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, 0x97, 2, 1, 1, 2, 0, 2,
                                        6,    0,    3,    1, 7, 0, 0,    0,    1, 2, 3, 4, 5};
@@ -145,7 +145,7 @@ static void device_information_has_the_minor_firmware_version_first(void)
     expect_stream(expected, sizeof expected);
 }
 
-static void health_is_all_clear_at_first(void)
+void test_health_is_all_clear_at_first(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x03, 0, 0, 0, 0x06, 0, 0, 0};
 
@@ -154,7 +154,7 @@ static void health_is_all_clear_at_first(void)
     expect_stream(expected, sizeof expected);
 }
 
-static void health_reports_the_bits_that_are_set(void)
+void test_health_reports_the_bits_that_are_set(void)
 {
     sim_set_health(&sim, SIM_HEALTH_PD | SIM_HEALTH_LD);
     send(0x92);
@@ -164,7 +164,7 @@ static void health_reports_the_bits_that_are_set(void)
     TEST_ASSERT_NOT_EQUAL(0, stream[8]);
 }
 
-static void frequency_steps_are_a_tenth_and_a_whole_hertz(void)
+void test_frequency_steps_are_a_tenth_and_a_whole_hertz(void)
 {
     send(0x0D);
     expect_frequency_reply(0x58, 0x02); /* 600 */
@@ -178,7 +178,7 @@ static void frequency_steps_are_a_tenth_and_a_whole_hertz(void)
     expect_frequency_reply(0x58, 0x02); /* 600 */
 }
 
-static void a_step_beyond_a_limit_changes_nothing_and_says_so(void)
+void test_a_step_beyond_a_limit_changes_nothing_and_says_so(void)
 {
     config.frequency_chz = 1150;
     power_up();
@@ -190,7 +190,7 @@ static void a_step_beyond_a_limit_changes_nothing_and_says_so(void)
     expect_frequency_reply(0xF4, 0x01); /* 500 */
 }
 
-static void stop_and_unknown_commands_have_no_reply(void)
+void test_stop_and_unknown_commands_have_no_reply(void)
 {
     send(0x65);
     send(0x61);
@@ -201,7 +201,7 @@ static void stop_and_unknown_commands_have_no_reply(void)
     TEST_ASSERT_EQUAL_UINT32(2, sim.counts.unknown_commands);
 }
 
-static void a_command_may_arrive_in_two_parts_and_among_garbage(void)
+void test_a_command_may_arrive_in_two_parts_and_among_garbage(void)
 {
     static const uint8_t first[] = {0x0D, 0x60, 0xA5, 0xA5};
     static const uint8_t second[] = {0x0D, 0x60, 0x90};
@@ -213,7 +213,7 @@ static void a_command_may_arrive_in_two_parts_and_among_garbage(void)
     TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
 }
 
-static void a_reply_comes_after_the_latency_at_the_lines_speed(void)
+void test_a_reply_comes_after_the_latency_at_the_lines_speed(void)
 {
     config.reply_latency_ms = 20;
     power_up();
@@ -229,7 +229,7 @@ static void a_reply_comes_after_the_latency_at_the_lines_speed(void)
     TEST_ASSERT_EQUAL_size_t(10, size);
 }
 
-static void one_reply_can_be_delayed_and_the_next_one_waits_behind_it(void)
+void test_one_reply_can_be_delayed_and_the_next_one_waits_behind_it(void)
 {
     sim_delay_next_reply(&sim, 3000);
     send(0x92);
@@ -246,7 +246,7 @@ static void one_reply_can_be_delayed_and_the_next_one_waits_behind_it(void)
     expect_frequency_reply(0x58, 0x02);
 }
 
-static void one_reply_can_be_lost(void)
+void test_one_reply_can_be_lost(void)
 {
     sim_lose_next_reply(&sim);
     send(0x0D);
@@ -258,7 +258,7 @@ static void one_reply_can_be_lost(void)
 
 /* ---- Scanning ---- */
 
-static void start_is_answered_and_packets_follow(void)
+void test_start_is_answered_and_packets_follow(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
 
@@ -273,7 +273,7 @@ static void start_is_answered_and_packets_follow(void)
     TEST_ASSERT_EQUAL_UINT64(0, counts.checksum_errors);
 }
 
-static void only_last_crc_bytes_stand_between_the_packets(void)
+void test_only_last_crc_bytes_stand_between_the_packets(void)
 {
     scan_seconds(10);
     TEST_ASSERT_EQUAL_UINT64(0, counts.checksum_errors);
@@ -285,7 +285,7 @@ static void only_last_crc_bytes_stand_between_the_packets(void)
 }
 
 /* Section 9.7: 624 to 667 points at 6 Hz, start packet included; here 4000 / 6 within 1 %. */
-static void a_revolution_at_6_hz_has_about_667_points(void)
+void test_a_revolution_at_6_hz_has_about_667_points(void)
 {
     size_t start;
 
@@ -299,7 +299,7 @@ static void a_revolution_at_6_hz_has_about_667_points(void)
     }
 }
 
-static void a_revolution_at_12_hz_has_about_333_points(void)
+void test_a_revolution_at_12_hz_has_about_333_points(void)
 {
     size_t start;
 
@@ -310,7 +310,7 @@ static void a_revolution_at_12_hz_has_about_333_points(void)
     TEST_ASSERT_UINT_WITHIN(5, 333, points_between(start, next_start(start + 1u)));
 }
 
-static void packets_are_full_but_for_the_start_and_the_last(void)
+void test_packets_are_full_but_for_the_start_and_the_last(void)
 {
     config.lone_packet_permille = 0;
     power_up();
@@ -326,7 +326,7 @@ static void packets_are_full_but_for_the_start_and_the_last(void)
     }
 }
 
-static void lone_point_packets_end_a_hair_before_they_begin(void)
+void test_lone_point_packets_end_a_hair_before_they_begin(void)
 {
     unsigned lone = 0;
 
@@ -343,7 +343,7 @@ static void lone_point_packets_end_a_hair_before_they_begin(void)
 }
 
 /* 40 samples of 34.56/64 degree: 39 steps are 1347.84/64 degree, and jitter is 3/64 each. */
-static void a_full_packet_at_6_hz_sweeps_21_degrees(void)
+void test_a_full_packet_at_6_hz_sweeps_21_degrees(void)
 {
     unsigned full = 0;
 
@@ -359,7 +359,7 @@ static void a_full_packet_at_6_hz_sweeps_21_degrees(void)
     TEST_ASSERT_TRUE(full > 700);
 }
 
-static void angles_go_on_clockwise_from_packet_to_packet(void)
+void test_angles_go_on_clockwise_from_packet_to_packet(void)
 {
     scan_seconds(10);
     for (size_t i = 1; i < packet_count; i++) {
@@ -370,7 +370,7 @@ static void angles_go_on_clockwise_from_packet_to_packet(void)
     }
 }
 
-static void start_packets_are_at_the_start_angle(void)
+void test_start_packets_are_at_the_start_angle(void)
 {
     config.start_angle_q6 = 7424; /* 116 degrees */
     power_up();
@@ -382,13 +382,13 @@ static void start_packets_are_at_the_start_angle(void)
     }
 }
 
-static void the_load_is_13_kilobytes_a_second(void)
+void test_the_load_is_13_kilobytes_a_second(void)
 {
     scan_seconds(10);
     TEST_ASSERT_UINT_WITHIN(300, 13100, size / 10u);
 }
 
-static void bytes_never_come_faster_than_the_line(void)
+void test_bytes_never_come_faster_than_the_line(void)
 {
     uint8_t chunk[1000];
 
@@ -399,7 +399,7 @@ static void bytes_never_come_faster_than_the_line(void)
     }
 }
 
-static void one_late_call_gives_the_same_bytes_as_many_early_ones(void)
+void test_one_late_call_gives_the_same_bytes_as_many_early_ones(void)
 {
     static uint8_t other[STREAM_MAX];
     size_t other_size;
@@ -414,7 +414,7 @@ static void one_late_call_gives_the_same_bytes_as_many_early_ones(void)
     TEST_ASSERT_EQUAL_MEMORY(stream, other, size);
 }
 
-static void a_small_buffer_loses_nothing(void)
+void test_a_small_buffer_loses_nothing(void)
 {
     static uint8_t other[STREAM_MAX];
     size_t other_size = 0;
@@ -433,7 +433,7 @@ static void a_small_buffer_loses_nothing(void)
     TEST_ASSERT_EQUAL_MEMORY(stream, other, size);
 }
 
-static void another_seed_gives_another_stream(void)
+void test_another_seed_gives_another_stream(void)
 {
     static uint8_t other[STREAM_MAX];
 
@@ -447,7 +447,7 @@ static void another_seed_gives_another_stream(void)
 
 /* Section 9.8: the first packets arrive during spin-up; the start packet carries the frequency
  * of the revolution before. */
-static void the_first_revolutions_are_slow(void)
+void test_the_first_revolutions_are_slow(void)
 {
     size_t start;
 
@@ -462,7 +462,7 @@ static void the_first_revolutions_are_slow(void)
     TEST_ASSERT_UINT_WITHIN(1, 60, packets[start].ct >> 1);
 }
 
-static void a_start_packet_carries_the_previous_revolutions_frequency(void)
+void test_a_start_packet_carries_the_previous_revolutions_frequency(void)
 {
     config.wobble_permille = 60;
     power_up();
@@ -478,7 +478,7 @@ static void a_start_packet_carries_the_previous_revolutions_frequency(void)
 
 /* ---- Turn information ---- */
 
-static void the_ct_bytes_carry_what_section_7_says(void)
+void test_the_ct_bytes_carry_what_section_7_says(void)
 {
     size_t start;
 
@@ -495,7 +495,7 @@ static void the_ct_bytes_carry_what_section_7_says(void)
     TEST_ASSERT_EQUAL_HEX8(0x72, packets[start + 13u].ct); /*         + 0x39 */
 }
 
-static void last_crc_guards_the_ct_bytes_of_every_revolution(void)
+void test_last_crc_guards_the_ct_bytes_of_every_revolution(void)
 {
     scan_seconds(20);
     for (size_t start = next_start(0), turn = 0; turn < 100; turn++) {
@@ -510,7 +510,7 @@ static void last_crc_guards_the_ct_bytes_of_every_revolution(void)
     }
 }
 
-static void last_crc_is_sometimes_aa(void)
+void test_last_crc_is_sometimes_aa(void)
 {
     unsigned seen = 0;
 
@@ -526,7 +526,7 @@ static void last_crc_is_sometimes_aa(void)
     TEST_ASSERT_EQUAL_UINT64(0, counts.checksum_errors);
 }
 
-static void the_first_start_packet_has_no_last_crc_and_none_before_it_a_ct(void)
+void test_the_first_start_packet_has_no_last_crc_and_none_before_it_a_ct(void)
 {
     size_t start;
 
@@ -542,7 +542,7 @@ static void the_first_start_packet_has_no_last_crc_and_none_before_it_a_ct(void)
     }
 }
 
-static void a_unit_without_ct_information_sends_neither_ct_nor_last_crc(void)
+void test_a_unit_without_ct_information_sends_neither_ct_nor_last_crc(void)
 {
     config.ct_information = false;
     power_up();
@@ -572,7 +572,7 @@ static unsigned ranges_from(size_t first)
     return ranges;
 }
 
-static void a_covered_window_gives_no_ranges_and_the_data_fault(void)
+void test_a_covered_window_gives_no_ranges_and_the_data_fault(void)
 {
     size_t start;
 
@@ -590,7 +590,7 @@ static void a_covered_window_gives_no_ranges_and_the_data_fault(void)
     TEST_ASSERT_EQUAL_HEX8(0x00, packets[next_start(0) + 3u].ct);
 }
 
-static void a_blocked_rotor_gives_no_ranges_and_the_encoder_fault(void)
+void test_a_blocked_rotor_gives_no_ranges_and_the_encoder_fault(void)
 {
     sim_block_rotor(&sim, true);
     scan_seconds(3);
@@ -599,7 +599,7 @@ static void a_blocked_rotor_gives_no_ranges_and_the_encoder_fault(void)
     TEST_ASSERT_EQUAL_HEX8(0x04, packets[next_start(0) + 3u].ct);
 }
 
-static void a_blocked_rotor_may_stop_the_start_packets(void)
+void test_a_blocked_rotor_may_stop_the_start_packets(void)
 {
     config.blocked_sends_starts = false;
     power_up();
@@ -614,7 +614,7 @@ static void a_blocked_rotor_may_stop_the_start_packets(void)
     TEST_ASSERT_TRUE(counts.start_packets > 5);
 }
 
-static void a_fatal_fault_ends_the_stream_until_it_is_gone_and_start_comes(void)
+void test_a_fatal_fault_ends_the_stream_until_it_is_gone_and_start_comes(void)
 {
     config.fatal_health = SIM_HEALTH_LD;
     power_up();
@@ -653,7 +653,7 @@ static reference_point_t nearest_to(uint16_t angle_q6)
 
 /* The lidar stands 2.2 m from the left wall, 2.8 m from the right one, 1.7 m from the one behind
  * and 2.3 m from the one ahead. 90 degrees are to the right: clockwise seen from above. */
-static void the_room_is_seen_clockwise_from_straight_ahead(void)
+void test_the_room_is_seen_clockwise_from_straight_ahead(void)
 {
     scan_seconds(1);
     TEST_ASSERT_UINT_WITHIN(15, 2300, nearest_to(64).distance_mm);
@@ -664,19 +664,19 @@ static void the_room_is_seen_clockwise_from_straight_ahead(void)
 
 /* The nearest side of the pillar: its centre is sqrt(300^2 + 1500^2) = 1529.7 mm away at
  * -11.31 degrees, its radius 150 mm. */
-static void a_round_pillar_stands_ahead_to_the_left(void)
+void test_a_round_pillar_stands_ahead_to_the_left(void)
 {
     scan_seconds(1);
     TEST_ASSERT_UINT_WITHIN(15, 1380, nearest_to(22316).distance_mm);
 }
 
-static void nearer_things_reflect_more_light(void)
+void test_nearer_things_reflect_more_light(void)
 {
     scan_seconds(1);
     TEST_ASSERT_TRUE(nearest_to(11520).intensity > nearest_to(5760).intensity);
 }
 
-static void an_obstacle_appears_where_it_is_placed_and_goes_again(void)
+void test_an_obstacle_appears_where_it_is_placed_and_goes_again(void)
 {
     sim_place_obstacle(&sim, 0, 640, 400);
     scan_seconds(1);
@@ -690,7 +690,7 @@ static void an_obstacle_appears_where_it_is_placed_and_goes_again(void)
     TEST_ASSERT_UINT_WITHIN(15, 2300, nearest_to(64).distance_mm);
 }
 
-static void flags_2_and_3_occur_as_often_as_configured(void)
+void test_flags_2_and_3_occur_as_often_as_configured(void)
 {
     unsigned flags[4] = {0, 0, 0, 0};
 
@@ -709,7 +709,7 @@ static void flags_2_and_3_occur_as_often_as_configured(void)
 
 /* ---- Stop, reboot, power ---- */
 
-static void stop_has_a_tail_of_whole_packets(void)
+void test_stop_has_a_tail_of_whole_packets(void)
 {
     config.stop_tail_ms = 100;
     power_up();
@@ -726,7 +726,7 @@ static void stop_has_a_tail_of_whole_packets(void)
     TEST_ASSERT_EQUAL_size_t(0, size);
 }
 
-static void a_stop_before_the_first_packet_leaves_silence(void)
+void test_a_stop_before_the_first_packet_leaves_silence(void)
 {
     send(0x60);
     run_ms(100);
@@ -737,7 +737,7 @@ static void a_stop_before_the_first_packet_leaves_silence(void)
     TEST_ASSERT_EQUAL_size_t(0, size);
 }
 
-static void commands_while_scanning_are_counted_and_answered_between_packets(void)
+void test_commands_while_scanning_are_counted_and_answered_between_packets(void)
 {
     size_t stray;
 
@@ -758,7 +758,7 @@ static void commands_while_scanning_are_counted_and_answered_between_packets(voi
     TEST_ASSERT_EQUAL_UINT32(1, sim.counts.commands_in_tail);
 }
 
-static void a_lost_start_reply_does_not_stop_the_stream(void)
+void test_a_lost_start_reply_does_not_stop_the_stream(void)
 {
     sim_lose_next_reply(&sim);
     send(0x60);
@@ -768,7 +768,7 @@ static void a_lost_start_reply_does_not_stop_the_stream(void)
     TEST_ASSERT_TRUE(counts.packets > 100);
 }
 
-static void nothing_is_answered_during_a_reboot_and_the_frequency_is_reset(void)
+void test_nothing_is_answered_during_a_reboot_and_the_frequency_is_reset(void)
 {
     send(0x0B);
     run_ms(10);
@@ -784,7 +784,7 @@ static void nothing_is_answered_during_a_reboot_and_the_frequency_is_reset(void)
     expect_frequency_reply(0x58, 0x02);
 }
 
-static void losing_power_cuts_a_packet_in_the_middle(void)
+void test_losing_power_cuts_a_packet_in_the_middle(void)
 {
     scan_seconds(1);
     do {
@@ -850,7 +850,7 @@ static void observe(void)
     sim_observe(&sim, &observer);
 }
 
-static void the_observer_hears_of_every_packet_and_its_place(void)
+void test_the_observer_hears_of_every_packet_and_its_place(void)
 {
     observe();
     send(0x60);
@@ -866,7 +866,7 @@ static void the_observer_hears_of_every_packet_and_its_place(void)
     }
 }
 
-static void the_observer_hears_of_commands_and_modes(void)
+void test_the_observer_hears_of_commands_and_modes(void)
 {
     static const uint8_t codes[] = {0x60, 0x77, 0x65};
 
@@ -882,59 +882,4 @@ static void the_observer_hears_of_commands_and_modes(void)
     TEST_ASSERT_EQUAL(SIM_SCANNING, seen.modes[0]);
     TEST_ASSERT_EQUAL(SIM_STOPPING, seen.modes[1]);
     TEST_ASSERT_EQUAL(SIM_IDLE, seen.modes[2]);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(it_is_idle_and_silent_after_power_up);
-    RUN_TEST(device_information_has_the_minor_firmware_version_first);
-    RUN_TEST(health_is_all_clear_at_first);
-    RUN_TEST(health_reports_the_bits_that_are_set);
-    RUN_TEST(frequency_steps_are_a_tenth_and_a_whole_hertz);
-    RUN_TEST(a_step_beyond_a_limit_changes_nothing_and_says_so);
-    RUN_TEST(stop_and_unknown_commands_have_no_reply);
-    RUN_TEST(a_command_may_arrive_in_two_parts_and_among_garbage);
-    RUN_TEST(a_reply_comes_after_the_latency_at_the_lines_speed);
-    RUN_TEST(one_reply_can_be_delayed_and_the_next_one_waits_behind_it);
-    RUN_TEST(one_reply_can_be_lost);
-    RUN_TEST(start_is_answered_and_packets_follow);
-    RUN_TEST(only_last_crc_bytes_stand_between_the_packets);
-    RUN_TEST(a_revolution_at_6_hz_has_about_667_points);
-    RUN_TEST(a_revolution_at_12_hz_has_about_333_points);
-    RUN_TEST(packets_are_full_but_for_the_start_and_the_last);
-    RUN_TEST(lone_point_packets_end_a_hair_before_they_begin);
-    RUN_TEST(a_full_packet_at_6_hz_sweeps_21_degrees);
-    RUN_TEST(angles_go_on_clockwise_from_packet_to_packet);
-    RUN_TEST(start_packets_are_at_the_start_angle);
-    RUN_TEST(the_load_is_13_kilobytes_a_second);
-    RUN_TEST(bytes_never_come_faster_than_the_line);
-    RUN_TEST(one_late_call_gives_the_same_bytes_as_many_early_ones);
-    RUN_TEST(a_small_buffer_loses_nothing);
-    RUN_TEST(another_seed_gives_another_stream);
-    RUN_TEST(the_first_revolutions_are_slow);
-    RUN_TEST(a_start_packet_carries_the_previous_revolutions_frequency);
-    RUN_TEST(the_ct_bytes_carry_what_section_7_says);
-    RUN_TEST(last_crc_guards_the_ct_bytes_of_every_revolution);
-    RUN_TEST(last_crc_is_sometimes_aa);
-    RUN_TEST(the_first_start_packet_has_no_last_crc_and_none_before_it_a_ct);
-    RUN_TEST(a_unit_without_ct_information_sends_neither_ct_nor_last_crc);
-    RUN_TEST(a_covered_window_gives_no_ranges_and_the_data_fault);
-    RUN_TEST(a_blocked_rotor_gives_no_ranges_and_the_encoder_fault);
-    RUN_TEST(a_blocked_rotor_may_stop_the_start_packets);
-    RUN_TEST(a_fatal_fault_ends_the_stream_until_it_is_gone_and_start_comes);
-    RUN_TEST(the_room_is_seen_clockwise_from_straight_ahead);
-    RUN_TEST(a_round_pillar_stands_ahead_to_the_left);
-    RUN_TEST(nearer_things_reflect_more_light);
-    RUN_TEST(an_obstacle_appears_where_it_is_placed_and_goes_again);
-    RUN_TEST(flags_2_and_3_occur_as_often_as_configured);
-    RUN_TEST(stop_has_a_tail_of_whole_packets);
-    RUN_TEST(a_stop_before_the_first_packet_leaves_silence);
-    RUN_TEST(commands_while_scanning_are_counted_and_answered_between_packets);
-    RUN_TEST(a_lost_start_reply_does_not_stop_the_stream);
-    RUN_TEST(nothing_is_answered_during_a_reboot_and_the_frequency_is_reset);
-    RUN_TEST(losing_power_cuts_a_packet_in_the_middle);
-    RUN_TEST(the_observer_hears_of_every_packet_and_its_place);
-    RUN_TEST(the_observer_hears_of_commands_and_modes);
-    return UNITY_END();
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The program tmini-sim from outside: usage, pseudo-terminal, socket, recordings. Its path is the
- * first argument. POSIX only. */
+/* The program tmini-sim from outside: usage, pseudo-terminal, socket, recordings. TMINI_SIM is
+ * its path. POSIX only. */
 
 #define _XOPEN_SOURCE 600
 
@@ -25,7 +25,6 @@
 #define OUTPUT_MAX 2000000u
 #define NO_PROCESS (-1)
 
-static const char *program;
 static pid_t child = NO_PROCESS;
 static int child_output = -1;
 static uint8_t received[OUTPUT_MAX];
@@ -48,7 +47,7 @@ static void launch(const char *const arguments[])
     char *argv[8] = {0};
     int ends[2];
 
-    argv[0] = (char *)(uintptr_t)program;
+    argv[0] = (char *)(uintptr_t)TMINI_SIM;
     for (size_t i = 0; i < 6 && arguments[i] != NULL; i++) {
         argv[i + 1u] = (char *)(uintptr_t)arguments[i];
     }
@@ -60,7 +59,7 @@ static void launch(const char *const arguments[])
         close(ends[0]);
         close(ends[1]);
         if (freopen("/dev/null", "w", stderr) != NULL) {
-            execv(program, argv);
+            execv(TMINI_SIM, argv);
         }
         _exit(127);
     }
@@ -163,7 +162,10 @@ static size_t read_file(const char *path)
     return count;
 }
 
-void setUp(void) {}
+void setUp(void)
+{
+    signal(SIGPIPE, SIG_IGN);
+}
 
 void tearDown(void)
 {
@@ -176,14 +178,14 @@ void tearDown(void)
 
 /* ---- Usage ---- */
 
-static void help_succeeds(void)
+void test_help_succeeds(void)
 {
     static const char *const arguments[] = {"--help", NULL};
 
     TEST_ASSERT_EQUAL_INT(0, run(arguments));
 }
 
-static void wrong_usage_is_exit_status_2(void)
+void test_wrong_usage_is_exit_status_2(void)
 {
     static const char *const wrong[][6] = {
         {NULL},
@@ -207,7 +209,7 @@ static void wrong_usage_is_exit_status_2(void)
     }
 }
 
-static void a_file_that_cannot_be_written_is_exit_status_1(void)
+void test_a_file_that_cannot_be_written_is_exit_status_1(void)
 {
     static const char *const to_directory[] = {"--write", "/", "--seconds", "1", NULL};
     static const char *const to_full_disk[] = {"--write", "/dev/full", "--seconds", "9", NULL};
@@ -228,7 +230,7 @@ static void launch_pty(char *path, size_t size)
     read_address(path, size);
 }
 
-static void clients_of_the_pty_are_served_one_after_another_without_echo(void)
+void test_clients_of_the_pty_are_served_one_after_another_without_echo(void)
 {
     char path[64];
 
@@ -246,7 +248,7 @@ static void clients_of_the_pty_are_served_one_after_another_without_echo(void)
     TEST_ASSERT_EQUAL_INT(0, terminate());
 }
 
-static void a_client_may_leave_settings_that_the_next_one_does_not_feel(void)
+void test_a_client_may_leave_settings_that_the_next_one_does_not_feel(void)
 {
     struct termios settings;
     char path[64];
@@ -267,7 +269,7 @@ static void a_client_may_leave_settings_that_the_next_one_does_not_feel(void)
     TEST_ASSERT_EQUAL_INT(0, terminate());
 }
 
-static void the_stream_goes_on_while_nobody_listens_and_nothing_stale_is_kept(void)
+void test_the_stream_goes_on_while_nobody_listens_and_nothing_stale_is_kept(void)
 {
     char path[64];
     int fd;
@@ -291,7 +293,7 @@ static void the_stream_goes_on_while_nobody_listens_and_nothing_stale_is_kept(vo
 
 /* ---- Socket ---- */
 
-static void clients_of_the_socket_are_served_one_after_another(void)
+void test_clients_of_the_socket_are_served_one_after_another(void)
 {
     static const char *const arguments[] = {"--tcp", "0", NULL};
     char address[64];
@@ -309,7 +311,7 @@ static void clients_of_the_socket_are_served_one_after_another(void)
     TEST_ASSERT_EQUAL_INT(0, terminate());
 }
 
-static void a_client_that_has_said_all_still_gets_its_answer(void)
+void test_a_client_that_has_said_all_still_gets_its_answer(void)
 {
     static const char *const arguments[] = {"--tcp", "0", NULL};
     char address[64];
@@ -326,7 +328,7 @@ static void a_client_that_has_said_all_still_gets_its_answer(void)
 }
 
 /* 50 virtual seconds in one real one, at 13 kB a virtual second, less connecting and spin-up. */
-static void it_ends_after_its_seconds_and_speed_shortens_them(void)
+void test_it_ends_after_its_seconds_and_speed_shortens_them(void)
 {
     static const char *const arguments[] = {"--tcp", "0", "--speed", "50", "--seconds", "50"};
     char address[64];
@@ -343,7 +345,7 @@ static void it_ends_after_its_seconds_and_speed_shortens_them(void)
 
 /* ---- Recordings ---- */
 
-static void the_same_options_give_the_same_recording(void)
+void test_the_same_options_give_the_same_recording(void)
 {
     static const char *const arguments[] = {"--write", "tmini-sim-test.bin", "--seconds", "20",
                                             "--fault", "drop=1e-4"};
@@ -360,7 +362,7 @@ static void the_same_options_give_the_same_recording(void)
     remove("tmini-sim-test.bin");
 }
 
-static void the_truth_has_a_row_a_sample(void)
+void test_the_truth_has_a_row_a_sample(void)
 {
     static const char *const arguments[] = {"--write", "/dev/null", "--seconds", "2",
                                             "--truth", "tmini-sim-test.csv"};
@@ -378,27 +380,4 @@ static void the_truth_has_a_row_a_sample(void)
     /* 2 s less 3 ms of latency and 200 ms before the first sample, at 4000 a second. */
     TEST_ASSERT_UINT_WITHIN(80, 7188, rows);
     remove("tmini-sim-test.csv");
-}
-
-int main(int argc, char **argv)
-{
-    if (argc != 2) {
-        fprintf(stderr, "usage: %s PATH-OF-TMINI-SIM\n", argv[0]);
-        return 2;
-    }
-    program = argv[1];
-    signal(SIGPIPE, SIG_IGN);
-    UNITY_BEGIN();
-    RUN_TEST(help_succeeds);
-    RUN_TEST(wrong_usage_is_exit_status_2);
-    RUN_TEST(a_file_that_cannot_be_written_is_exit_status_1);
-    RUN_TEST(clients_of_the_pty_are_served_one_after_another_without_echo);
-    RUN_TEST(a_client_may_leave_settings_that_the_next_one_does_not_feel);
-    RUN_TEST(the_stream_goes_on_while_nobody_listens_and_nothing_stale_is_kept);
-    RUN_TEST(clients_of_the_socket_are_served_one_after_another);
-    RUN_TEST(a_client_that_has_said_all_still_gets_its_answer);
-    RUN_TEST(it_ends_after_its_seconds_and_speed_shortens_them);
-    RUN_TEST(the_same_options_give_the_same_recording);
-    RUN_TEST(the_truth_has_a_row_a_sample);
-    return UNITY_END();
 }
