@@ -83,7 +83,7 @@ static tmini_event_t take_event(tmini_t *lidar)
     while ((lidar->pending >> event & 1u) == 0) {
         event++;
     }
-    lidar->pending &= (uint16_t) ~(1u << event);
+    lidar->pending = (uint16_t)(lidar->pending & ~(1u << event));
     return (tmini_event_t)event;
 }
 

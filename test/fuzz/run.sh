@@ -1,0 +1,41 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# Fuzzes the parser and the driver with libFuzzer under the address and undefined-behaviour sanitizers:
+#
+#   test/fuzz/run.sh [SECONDS]      for each target; 60 unless given
+#
+# What it finds lies in build-fuzz/; give that file to build-fuzz/fuzz_… to see it again. The inputs
+# that it collected stay in build-fuzz/corpus_… and are where the next run goes on.
+
+set -eu
+
+root=$(cd "$(dirname "$0")/../.." && pwd)
+seconds=${1:-60}
+build=$root/build-fuzz
+compiler=${TMINI_FUZZ_CC:-clang}
+
+if ! command -v "$compiler" >/dev/null; then
+    echo "SKIPPED: no $compiler (packages clang and libclang-rt-14-dev, or later)"
+    exit 0
+fi
+
+# fuzz TARGET SOURCE…
+fuzz() {
+    target=$1
+    shift
+    "$compiler" -std=c99 -g -O1 -Wall -Wextra -fsanitize=fuzzer,address,undefined \
+        -fno-sanitize-recover=all -I"$root/lib/include" -I"$root/test/support" \
+        "$root/test/fuzz/$target.c" "$@" "$root"/lib/src/*.c -o "$build/$target"
+    mkdir -p "$build/corpus_$target"
+    (cd "$build" && "./$target" -max_total_time="$seconds" -max_len=4096 -print_final_stats=1 \
+        -verbosity=0 "corpus_$target" 2>&1) | grep -E 'stat::number_of_executed|ERROR|SUMMARY|Test unit' &&
+        ! ls "$build"/crash-* "$build"/timeout-* "$build"/oom-* >/dev/null 2>&1
+}
+
+mkdir -p "$build"
+rm -f "$build"/crash-* "$build"/timeout-* "$build"/oom-*
+fuzz fuzz_parser "$root/test/support/reference_decoder.c"
+fuzz fuzz_driver
+echo "nothing found"
