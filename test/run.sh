@@ -15,9 +15,16 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=test/support/environment.sh
 . "$root/test/support/environment.sh"
 
+# Clang's fuzzing runtime is in a package that is named for Clang's version.
+wish_for_fuzzer() {
+    version=$(apt-cache depends clang 2>/dev/null | sed -n 's/.*Depends: clang-\([0-9]*\)$/\1/p')
+    [ -z "$version" ] || wish "/usr/share/doc/libclang-rt-$version-dev" "libclang-rt-$version-dev"
+}
+
 # Compilers and emulators for the checks labelled compile, bigendian and int16.
 wish_for_machines() {
     wish clang clang
+    wish_for_fuzzer
     wish g++ g++
     wish arm-none-eabi-gcc gcc-arm-none-eabi
     wish /usr/lib/arm-none-eabi/newlib libnewlib-arm-none-eabi

@@ -308,7 +308,8 @@ static void begin(tmini_t *lidar, enum goal goal)
     lidar->steps = 0;
     lidar->step_refused = false;
     lidar->recovering = false;
-    lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS); /* Of an earlier command: none is this one's. */
+    /* The end of an earlier command is not the end of this one. */
+    lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
     if (is_quiet_line) {
         issue(lidar);
     } else {

@@ -47,7 +47,7 @@ static uint8_t take(void)
 
 static bool is_command(uint8_t code)
 {
-    static const uint8_t codes[] = { 0x60, 0x65, 0x90, 0x92, 0x09, 0x0A, 0x0B, 0x0C, 0x0D, 0x40 };
+    static const uint8_t codes[] = {0x60, 0x65, 0x90, 0x92, 0x09, 0x0A, 0x0B, 0x0C, 0x0D, 0x40};
     return memchr(codes, code, sizeof codes) != NULL;
 }
 
@@ -74,8 +74,8 @@ static uint32_t port_now_ms(void *context)
 static void command(uint8_t which)
 {
     static tmini_status_t (*const commands[])(tmini_t *) = {
-        tmini_start,           tmini_stop,   tmini_request_info, tmini_request_health,
-        tmini_request_frequency, tmini_reboot,
+        tmini_start,  tmini_stop, tmini_request_info, tmini_request_health, tmini_request_frequency,
+        tmini_reboot,
     };
     const tmini_state_t before = tmini_state(&world.lidar);
     tmini_status_t status;
@@ -111,7 +111,7 @@ static void receive(uint8_t count, bool dma)
 /* What a lidar would say, so that the fuzzer need not find a checksum first. */
 static void receive_packet(uint8_t ct, uint8_t samples, bool dma)
 {
-    uint8_t packet[10 + 3 * 40] = { 0xAA, 0x55, ct, (uint8_t)((ct & 1) != 0 ? 1 : 1 + samples % 40) };
+    uint8_t packet[10 + 3 * 40] = {0xAA, 0x55, ct, (uint8_t)((ct & 1) != 0 ? 1 : 1 + samples % 40)};
     for (size_t i = 4; i < 8; i++) {
         packet[i] = take();
     }
@@ -185,7 +185,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const tmini_port_t port = { .write = port_write, .now_ms = port_now_ms };
+    static const tmini_port_t port = {.write = port_write, .now_ms = port_now_ms};
     memset(&world, 0, sizeof world);
     world.data = data;
     world.left = size;

@@ -96,10 +96,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const uint8_t max_samples = data[0] == 0 ? 80 : data[0];
     const size_t chunk = 1u + data[1] % 200u;
     const bool waits = data[2] % 2 != 0;
-    const tmini_reply_shape_t shape = { .type = 0x04, .mode = 0, .length = data[3] % 21u };
-    const reference_reply_t reply = { .mode = 0, .type = 0x04, .length = shape.length };
-    const reference_options_t options = { .max_samples = max_samples,
-                                          .awaited = waits ? &reply : NULL };
+    const tmini_reply_shape_t shape = {.type = 0x04, .mode = 0, .length = data[3] % 21u};
+    const reference_reply_t reply = {.mode = 0, .type = 0x04, .length = shape.length};
+    const reference_options_t options = {.max_samples = max_samples,
+                                         .awaited = waits ? &reply : NULL};
     stream = data + 4;
     size -= 4;
 

@@ -16,8 +16,9 @@ seconds=${1:-60}
 build=$root/build-fuzz
 compiler=${TMINI_FUZZ_CC:-clang}
 
-if ! command -v "$compiler" >/dev/null; then
-    echo "SKIPPED: no $compiler (packages clang and libclang-rt-14-dev, or later)"
+if ! echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' |
+    "$compiler" -x c -fsanitize=fuzzer,address - -o /dev/null 2>/dev/null; then
+    echo "SKIPPED: $compiler cannot build fuzzers (packages clang and libclang-rt-…-dev of its version)"
     exit 0
 fi
 
