@@ -296,6 +296,21 @@ static void a_packet_cut_by_a_reboot_is_reported_as_hit(void)
     TEST_ASSERT_EQUAL_size_t(fate_count - 1u, intact_packets());
 }
 
+static void unplugging_ends_a_burst_and_a_cut_under_way(void)
+{
+    scan_with(SIM_LINK_UNPLUG, 0, 3);
+    sim_link_force(&wire, SIM_LINK_BURST, 5000, now);
+    sim_link_force(&wire, SIM_LINK_CUT, 0, now);
+    run_ms(1);
+    sim_link_force(&wire, SIM_LINK_BURST, 5000, now);
+    sim_link_force(&wire, SIM_LINK_UNPLUG, 1000, now);
+    run_ms(2000);
+    TEST_ASSERT_FALSE(sim_link_is_faulty(&wire));
+    TEST_ASSERT_EQUAL_UINT(1, heard.begun[SIM_LINK_BURST]);
+    TEST_ASSERT_EQUAL_UINT(1, heard.ended[SIM_LINK_BURST]);
+    TEST_ASSERT_EQUAL_UINT(1, heard.ended[SIM_LINK_CUT]);
+}
+
 static void unplugging_by_chance_comes_back_by_itself(void)
 {
     config.mean_gap[SIM_LINK_UNPLUG] = 5000;
@@ -406,6 +421,7 @@ int main(void)
     RUN_TEST(unplugging_silences_the_line_and_resets_the_device);
     RUN_TEST(a_packet_cut_by_unplugging_is_reported_as_hit);
     RUN_TEST(a_packet_cut_by_a_reboot_is_reported_as_hit);
+    RUN_TEST(unplugging_ends_a_burst_and_a_cut_under_way);
     RUN_TEST(unplugging_by_chance_comes_back_by_itself);
     RUN_TEST(faults_of_bytes_can_be_forced_one_at_a_time);
     RUN_TEST(all_kinds_together_still_tell_the_truth);

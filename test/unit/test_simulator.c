@@ -67,6 +67,7 @@ static void decode(void)
 
     packet_count = 0;
     counts = reference_decode(stream, size, &options, collect, NULL);
+    TEST_ASSERT_EQUAL_UINT32(0, sim_lost_frames(&sim));
 }
 
 /* Scans for some seconds after the spin-up is over. */
@@ -119,10 +120,7 @@ void setUp(void)
     power_up();
 }
 
-void tearDown(void)
-{
-    TEST_ASSERT_EQUAL_UINT32(0, sim_lost_frames(&sim));
-}
+void tearDown(void) {}
 
 /* ---- Idle and its commands ---- */
 
@@ -679,6 +677,7 @@ static void nearer_things_reflect_more_light(void)
 static void an_obstacle_appears_where_it_is_placed_and_goes_again(void)
 {
     sim_place_obstacle(&sim, 0, 640, 400);
+    TEST_ASSERT_EQUAL_UINT16(400, sim_scene_distance(&sim.scene, 23039));
     scan_seconds(1);
     TEST_ASSERT_UINT_WITHIN(10, 400, nearest_to(64).distance_mm);
     TEST_ASSERT_UINT_WITHIN(10, 400, nearest_to(23000).distance_mm);
@@ -884,6 +883,21 @@ static void the_observer_hears_of_commands_and_modes(void)
     TEST_ASSERT_EQUAL(SIM_IDLE, seen.modes[2]);
 }
 
+/* 500 ms are 50 packets; the line's queue holds 16. */
+static void frames_that_nobody_takes_in_time_are_lost_and_counted(void)
+{
+    scan_seconds(1);
+    now += 500000;
+    send(0x65);
+    TEST_ASSERT_UINT_WITHIN(8, 50 + 3 - 16, sim_lost_frames(&sim));
+}
+
+static void modes_have_names(void)
+{
+    TEST_ASSERT_EQUAL_STRING("off", sim_mode_name(SIM_OFF));
+    TEST_ASSERT_EQUAL_STRING("fault", sim_mode_name(SIM_FAULT));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -936,5 +950,7 @@ int main(void)
     RUN_TEST(losing_power_cuts_a_packet_in_the_middle);
     RUN_TEST(the_observer_hears_of_every_packet_and_its_place);
     RUN_TEST(the_observer_hears_of_commands_and_modes);
+    RUN_TEST(frames_that_nobody_takes_in_time_are_lost_and_counted);
+    RUN_TEST(modes_have_names);
     return UNITY_END();
 }

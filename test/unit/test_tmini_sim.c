@@ -380,6 +380,40 @@ static void the_truth_has_a_row_a_sample(void)
     remove("tmini-sim-test.csv");
 }
 
+static void expect_in_log(const char *text)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr((const char *)received, text), text);
+}
+
+static void the_log_tells_of_commands_modes_faults_and_totals(void)
+{
+    static const char *const arguments[] = {"--tcp", "0", "--log", "tmini-sim-test.log",
+                                            "--fault", "flip=0.01"};
+    static const uint8_t unknown[2] = {0xA5, 0x77};
+    char address[64];
+    int fd;
+
+    launch(arguments);
+    read_address(address, sizeof address);
+    fd = connect_to(address);
+    send_to(fd, start_scan);
+    TEST_ASSERT_EQUAL_size_t(1000, read_for(fd, 1000, 5000));
+    send_to(fd, ask_frequency);
+    send_to(fd, unknown);
+    send_to(fd, stop_scan);
+    poll(NULL, 0, 200);
+    close(fd);
+    TEST_ASSERT_EQUAL_INT(0, terminate());
+    received[read_file("tmini-sim-test.log")] = '\0';
+    expect_in_log("command A5 60 start\n");
+    expect_in_log("command A5 0D get frequency (forbidden while scanning)\n");
+    expect_in_log("command A5 77 unknown");
+    expect_in_log("mode stopping -> idle\n");
+    expect_in_log("fault flip begins\n");
+    expect_in_log("3 commands, 1 forbidden while scanning, 1 unknown, ");
+    remove("tmini-sim-test.log");
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2) {
@@ -400,5 +434,6 @@ int main(int argc, char **argv)
     RUN_TEST(it_ends_after_its_seconds_and_speed_shortens_them);
     RUN_TEST(the_same_options_give_the_same_recording);
     RUN_TEST(the_truth_has_a_row_a_sample);
+    RUN_TEST(the_log_tells_of_commands_modes_faults_and_totals);
     return UNITY_END();
 }
