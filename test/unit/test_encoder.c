@@ -167,6 +167,15 @@ static void a_reply_of_any_mode_and_length_can_be_made(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
 }
 
+static void a_length_never_spills_into_the_mode(void)
+{
+    static const uint8_t expected[] = {0xA5, 0x5A, 0xFF, 0xFF, 0xFF, 0x7F, 0x81};
+    uint8_t out[ENCODE_REPLY_MAX];
+
+    TEST_ASSERT_EQUAL_size_t(7, encode_reply(out, 1, 0x81, NULL, 0xFFFFFFFF));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
+}
+
 static void the_crc_of_123456789_is_a1(void)
 {
     uint8_t crc = 0;
@@ -225,6 +234,7 @@ int main(void)
     RUN_TEST(health_has_status_and_a_little_endian_error_code);
     RUN_TEST(six_hertz_is_600_hundredths);
     RUN_TEST(a_reply_of_any_mode_and_length_can_be_made);
+    RUN_TEST(a_length_never_spills_into_the_mode);
     RUN_TEST(the_crc_of_123456789_is_a1);
     RUN_TEST(ct_bytes_follow_the_table_of_section_7);
     RUN_TEST(the_serial_number_is_spread_over_indices_9_to_13);

@@ -188,6 +188,18 @@ static void a_step_beyond_a_limit_changes_nothing_and_says_so(void)
     expect_frequency_reply(0xF4, 0x01); /* 500 */
 }
 
+static void the_limits_themselves_can_be_reached(void)
+{
+    config.frequency_chz = 1190;
+    power_up();
+    send(0x09);
+    expect_frequency_reply(0xB0, 0x04); /* 1200 */
+    config.frequency_chz = 600;
+    power_up();
+    send(0x0C);
+    expect_frequency_reply(0xF4, 0x01); /* 500 */
+}
+
 static void stop_and_unknown_commands_have_no_reply(void)
 {
     send(0x65);
@@ -242,6 +254,21 @@ static void one_reply_can_be_delayed_and_the_next_one_waits_behind_it(void)
     forget_stream();
     send(0x0D);
     expect_frequency_reply(0x58, 0x02);
+}
+
+/* Ten bytes of health at 3003 ms, then the start command's seven, then the stream. */
+static void a_stream_waits_for_its_own_late_reply(void)
+{
+    sim_delay_next_reply(&sim, 3000);
+    send(0x92);
+    run_ms(1000);
+    send(0x60);
+    run_ms(2200);
+    TEST_ASSERT_EQUAL_size_t(17, size);
+    TEST_ASSERT_EQUAL_HEX8(0x81, stream[16]);
+    run_ms(1000);
+    decode();
+    TEST_ASSERT_TRUE(counts.packets > 50);
 }
 
 static void one_reply_can_be_lost(void)
@@ -783,6 +810,14 @@ static void nothing_is_answered_during_a_reboot_and_the_frequency_is_reset(void)
     expect_frequency_reply(0x58, 0x02);
 }
 
+static void a_reboot_forgets_a_reply_that_is_due(void)
+{
+    send(0x90);
+    send(0x40);
+    run_ms(5000);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+}
+
 static void losing_power_cuts_a_packet_in_the_middle(void)
 {
     scan_seconds(1);
@@ -801,6 +836,29 @@ static void losing_power_cuts_a_packet_in_the_middle(void)
     TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
     send(0x0D);
     expect_frequency_reply(0x58, 0x02);
+}
+
+static void what_left_before_power_was_lost_can_still_be_read(void)
+{
+    uint32_t before;
+    sim_run_t run;
+
+    scan_seconds(1);
+    while (!sim_next_run(&sim, now, &run) || run.packet == NULL || run.offset > 0) {
+        now += 100;
+    }
+    before = sim.counts.packets;
+    sim_power(&sim, false, now + 1000); /* 23.04 bytes later */
+    TEST_ASSERT_UINT_WITHIN(1, 23, sim_transmit(&sim, now + 5000, stream, STREAM_MAX));
+    TEST_ASSERT_EQUAL_UINT32(before, sim.counts.packets);
+}
+
+/* 10 bits at 230400 baud are 43.403 us; a byte is there when all of it has left. */
+static void the_time_of_a_byte_is_when_it_has_left(void)
+{
+    TEST_ASSERT_EQUAL_UINT64(1044, sim_byte_us(1000, 0));
+    TEST_ASSERT_EQUAL_UINT64(1087, sim_byte_us(1000, 1));
+    TEST_ASSERT_EQUAL_UINT64(4125, sim_byte_us(1000, 71));
 }
 
 /* ---- Ground truth ---- */
@@ -907,10 +965,12 @@ int main(void)
     RUN_TEST(health_reports_the_bits_that_are_set);
     RUN_TEST(frequency_steps_are_a_tenth_and_a_whole_hertz);
     RUN_TEST(a_step_beyond_a_limit_changes_nothing_and_says_so);
+    RUN_TEST(the_limits_themselves_can_be_reached);
     RUN_TEST(stop_and_unknown_commands_have_no_reply);
     RUN_TEST(a_command_may_arrive_in_two_parts_and_among_garbage);
     RUN_TEST(a_reply_comes_after_the_latency_at_the_lines_speed);
     RUN_TEST(one_reply_can_be_delayed_and_the_next_one_waits_behind_it);
+    RUN_TEST(a_stream_waits_for_its_own_late_reply);
     RUN_TEST(one_reply_can_be_lost);
     RUN_TEST(start_is_answered_and_packets_follow);
     RUN_TEST(only_last_crc_bytes_stand_between_the_packets);
@@ -947,7 +1007,10 @@ int main(void)
     RUN_TEST(commands_while_scanning_are_counted_and_answered_between_packets);
     RUN_TEST(a_lost_start_reply_does_not_stop_the_stream);
     RUN_TEST(nothing_is_answered_during_a_reboot_and_the_frequency_is_reset);
+    RUN_TEST(a_reboot_forgets_a_reply_that_is_due);
     RUN_TEST(losing_power_cuts_a_packet_in_the_middle);
+    RUN_TEST(the_time_of_a_byte_is_when_it_has_left);
+    RUN_TEST(what_left_before_power_was_lost_can_still_be_read);
     RUN_TEST(the_observer_hears_of_every_packet_and_its_place);
     RUN_TEST(the_observer_hears_of_commands_and_modes);
     RUN_TEST(frames_that_nobody_takes_in_time_are_lost_and_counted);
