@@ -142,7 +142,8 @@ static bool is_fatal(const sim_t *sim)
 static void start(sim_t *sim)
 {
     uint8_t reply[ENCODE_REPLY_MAX];
-    const uint64_t due = answer(sim, reply, encode_scan_reply(reply));
+    const size_t length = encode_scan_reply(reply);
+    const uint64_t due = answer(sim, reply, length);
 
     if (is_fatal(sim)) {
         set_mode(sim, SIM_FAULT, SIM_NEVER);
@@ -172,8 +173,9 @@ static void stop(sim_t *sim)
 static void answer_information(sim_t *sim)
 {
     uint8_t reply[ENCODE_REPLY_MAX];
+    const size_t length = encode_information_reply(reply, &sim->config.information);
 
-    answer(sim, reply, encode_information_reply(reply, &sim->config.information));
+    answer(sim, reply, length);
 }
 
 /* The error code's values are undisclosed (section 4): the faulty bits again will do. */
@@ -181,20 +183,23 @@ static void answer_health(sim_t *sim)
 {
     const uint8_t status = sim_health(sim);
     uint8_t reply[ENCODE_REPLY_MAX];
+    const size_t length = encode_health_reply(reply, status, status);
 
-    answer(sim, reply, encode_health_reply(reply, status, status));
+    answer(sim, reply, length);
 }
 
 static void step_frequency(sim_t *sim, int step_chz)
 {
     const int frequency = (int)sim->frequency_chz + step_chz;
     uint8_t reply[ENCODE_REPLY_MAX];
+    size_t length;
 
     if (frequency >= (int)sim->config.min_frequency_chz &&
         frequency <= (int)sim->config.max_frequency_chz) {
         sim->frequency_chz = (uint16_t)frequency;
     }
-    answer(sim, reply, encode_frequency_reply(reply, sim->frequency_chz));
+    length = encode_frequency_reply(reply, sim->frequency_chz);
+    answer(sim, reply, length);
 }
 
 /* All that is not burnt in is lost: the set frequency too. */
@@ -209,6 +214,11 @@ static void reset(sim_t *sim, sim_mode_t mode, uint64_t due_us)
     set_mode(sim, mode, due_us);
 }
 
+static void reboot(sim_t *sim)
+{
+    reset(sim, SIM_BOOTING, sim->now_us + ms(sim->config.boot_ms));
+}
+
 static bool obey(sim_t *sim, uint8_t code)
 {
     switch (code) {
@@ -217,8 +227,7 @@ static bool obey(sim_t *sim, uint8_t code)
     case SIM_COMMAND_FREQUENCY_UP: step_frequency(sim, 100); return true;
     case SIM_COMMAND_FREQUENCY_DOWN: step_frequency(sim, -100); return true;
     case SIM_COMMAND_GET_FREQUENCY: step_frequency(sim, 0); return true;
-    case SIM_COMMAND_REBOOT: reset(sim, SIM_BOOTING, sim->now_us + ms(sim->config.boot_ms));
-        return true;
+    case SIM_COMMAND_REBOOT: reboot(sim); return true;
     case SIM_COMMAND_START: start(sim); return true;
     case SIM_COMMAND_STOP: stop(sim); return true;
     case SIM_COMMAND_INFORMATION: answer_information(sim); return true;

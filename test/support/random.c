@@ -37,11 +37,6 @@ uint32_t random_between(random_t *random, uint32_t low, uint32_t high)
     return low + random_below(random, high - low + 1u);
 }
 
-bool random_chance(random_t *random, uint32_t one_in)
-{
-    return one_in != 0u && random_below(random, one_in) == 0u;
-}
-
 /* log2(x) for x >= 1 as a 16.16 number: the integer part is the top bit's place; each squaring of
  * the mantissa then yields one more bit of the fraction. */
 static uint32_t log2_q16(uint32_t x)

@@ -9,7 +9,6 @@
 #ifndef RANDOM_H
 #define RANDOM_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 typedef struct {
@@ -27,9 +26,6 @@ uint32_t random_below(random_t *random, uint32_t limit);
 
 /* Uniform in low..high, both included. */
 uint32_t random_between(random_t *random, uint32_t low, uint32_t high);
-
-/* True once in `one_in` times on average; never when `one_in` is 0. */
-bool random_chance(random_t *random, uint32_t one_in);
 
 /* The gap to the next of a series of independent events that are `mean` apart on average
  * (exponentially distributed), at least 1. */

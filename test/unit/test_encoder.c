@@ -167,7 +167,16 @@ void test_a_reply_of_any_mode_and_length_can_be_made(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
 }
 
-void test_the_crc_of_123456789_is_a1(void)
+static void a_length_never_spills_into_the_mode(void)
+{
+    static const uint8_t expected[] = {0xA5, 0x5A, 0xFF, 0xFF, 0xFF, 0x7F, 0x81};
+    uint8_t out[ENCODE_REPLY_MAX];
+
+    TEST_ASSERT_EQUAL_size_t(7, encode_reply(out, 1, 0x81, NULL, 0xFFFFFFFF));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
+}
+
+static void the_crc_of_123456789_is_a1(void)
 {
     uint8_t crc = 0;
 
@@ -207,4 +216,28 @@ void test_only_index_0_has_bit_0_set(void)
     for (uint32_t index = 1; index < 300; index++) {
         TEST_ASSERT_EQUAL_HEX8(0, encode_ct(&turn, index) & 1u);
     }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(the_manuals_packet_is_encoded_byte_for_byte);
+    RUN_TEST(the_manuals_checksum_is_e85a);
+    RUN_TEST(a_real_units_start_packet_is_encoded_byte_for_byte);
+    RUN_TEST(the_example_sample_of_section_5_is_64_e5_6f);
+    RUN_TEST(the_largest_sample_fills_all_its_bits);
+    RUN_TEST(an_angle_has_its_check_bit_set);
+    RUN_TEST(sealing_makes_a_changed_packet_valid_again);
+    RUN_TEST(a_packet_may_have_255_samples);
+    RUN_TEST(the_scan_reply_is_the_manuals);
+    RUN_TEST(device_information_is_a_real_units_reply);
+    RUN_TEST(health_has_status_and_a_little_endian_error_code);
+    RUN_TEST(six_hertz_is_600_hundredths);
+    RUN_TEST(a_reply_of_any_mode_and_length_can_be_made);
+    RUN_TEST(a_length_never_spills_into_the_mode);
+    RUN_TEST(the_crc_of_123456789_is_a1);
+    RUN_TEST(ct_bytes_follow_the_table_of_section_7);
+    RUN_TEST(the_serial_number_is_spread_over_indices_9_to_13);
+    RUN_TEST(only_index_0_has_bit_0_set);
+    return UNITY_END();
 }

@@ -381,3 +381,61 @@ void test_the_truth_has_a_row_a_sample(void)
     TEST_ASSERT_UINT_WITHIN(80, 7188, rows);
     remove("tmini-sim-test.csv");
 }
+
+static void expect_in_log(const char *text)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr((const char *)received, text), text);
+}
+
+static void the_log_tells_of_commands_modes_faults_and_totals(void)
+{
+    static const char *const arguments[] = {"--tcp", "0", "--log", "tmini-sim-test.log",
+                                            "--fault", "flip=0.01"};
+    static const uint8_t unknown[2] = {0xA5, 0x77};
+    char address[64];
+    int fd;
+
+    launch(arguments);
+    read_address(address, sizeof address);
+    fd = connect_to(address);
+    send_to(fd, start_scan);
+    TEST_ASSERT_EQUAL_size_t(1000, read_for(fd, 1000, 5000));
+    send_to(fd, ask_frequency);
+    send_to(fd, unknown);
+    send_to(fd, stop_scan);
+    poll(NULL, 0, 200);
+    close(fd);
+    TEST_ASSERT_EQUAL_INT(0, terminate());
+    received[read_file("tmini-sim-test.log")] = '\0';
+    expect_in_log("command A5 60 start\n");
+    expect_in_log("command A5 0D get frequency (forbidden while scanning)\n");
+    expect_in_log("command A5 77 unknown");
+    expect_in_log("mode stopping -> idle\n");
+    expect_in_log("fault flip begins\n");
+    expect_in_log("3 commands, 1 forbidden while scanning, 1 unknown, ");
+    remove("tmini-sim-test.log");
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 2) {
+        fprintf(stderr, "usage: %s PATH-OF-TMINI-SIM\n", argv[0]);
+        return 2;
+    }
+    program = argv[1];
+    signal(SIGPIPE, SIG_IGN);
+    UNITY_BEGIN();
+    RUN_TEST(help_succeeds);
+    RUN_TEST(wrong_usage_is_exit_status_2);
+    RUN_TEST(a_file_that_cannot_be_written_is_exit_status_1);
+    RUN_TEST(clients_of_the_pty_are_served_one_after_another_without_echo);
+    RUN_TEST(a_client_may_leave_settings_that_the_next_one_does_not_feel);
+    RUN_TEST(the_stream_goes_on_while_nobody_listens_and_nothing_stale_is_kept);
+    RUN_TEST(clients_of_the_socket_are_served_one_after_another);
+    RUN_TEST(a_client_that_has_said_all_still_gets_its_answer);
+    RUN_TEST(it_ends_after_its_seconds_and_speed_shortens_them);
+    RUN_TEST(the_same_options_give_the_same_recording);
+    RUN_TEST(the_truth_has_a_row_a_sample);
+    RUN_TEST(the_log_tells_of_commands_modes_faults_and_totals);
+    return UNITY_END();
+}

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Seeded randomness and damage: what every randomised test stands on. */
+
+#include "corrupt.h"
+#include "random.h"
+
+#include "unity.h"
+
+#include <string.h>
+
+static random_t dice;
+
+void setUp(void)
+{
+    random_seed(&dice, 1);
+}
+
+void tearDown(void) {}
+
+static void the_same_seed_gives_the_same_numbers(void)
+{
+    random_t other;
+
+    random_seed(&other, 1);
+    for (int i = 0; i < 100; i++) {
+        TEST_ASSERT_EQUAL_UINT64(random_u64(&other), random_u64(&dice));
+    }
+}
+
+static void another_seed_gives_other_numbers(void)
+{
+    random_t other;
+
+    random_seed(&other, 0);
+    TEST_ASSERT_NOT_EQUAL(random_u64(&other), random_u64(&dice));
+}
+
+static void every_number_in_a_range_comes_up_about_equally_often(void)
+{
+    unsigned seen[10] = {0};
+
+    for (int i = 0; i < 100000; i++) {
+        const uint32_t number = random_between(&dice, 5, 14);
+
+        TEST_ASSERT_TRUE(number >= 5u && number <= 14u);
+        seen[number - 5u]++;
+    }
+    for (int i = 0; i < 10; i++) {
+        TEST_ASSERT_UINT_WITHIN(400, 10000, seen[i]);
+    }
+}
+
+static void below_0_and_below_1_are_0(void)
+{
+    TEST_ASSERT_EQUAL_UINT32(0, random_below(&dice, 0));
+    TEST_ASSERT_EQUAL_UINT32(0, random_below(&dice, 1));
+}
+
+/* Of an exponential distribution 36.8 % lie beyond the mean, 13.5 % beyond twice the mean. */
+static void gaps_are_exponentially_distributed(void)
+{
+    uint64_t sum = 0;
+    unsigned beyond = 0;
+    unsigned far_beyond = 0;
+
+    for (int i = 0; i < 100000; i++) {
+        const uint64_t gap = random_gap(&dice, 1000);
+
+        TEST_ASSERT_TRUE(gap >= 1u);
+        sum += gap;
+        beyond += gap > 1000u ? 1u : 0u;
+        far_beyond += gap > 2000u ? 1u : 0u;
+    }
+    TEST_ASSERT_UINT_WITHIN(10, 1000, (unsigned)(sum / 100000u));
+    TEST_ASSERT_UINT_WITHIN(500, 36788, beyond);
+    TEST_ASSERT_UINT_WITHIN(500, 13534, far_beyond);
+}
+
+static void damage_changes_the_size_as_its_kind_says(void)
+{
+    uint8_t bytes[100] = {0};
+
+    TEST_ASSERT_EQUAL_size_t(59, corrupt_once(&dice, CORRUPT_DROP, bytes, 60, 100));
+    TEST_ASSERT_EQUAL_size_t(60, corrupt_once(&dice, CORRUPT_FLIP, bytes, 60, 100));
+    TEST_ASSERT_EQUAL_size_t(61, corrupt_once(&dice, CORRUPT_INSERT, bytes, 60, 100));
+    TEST_ASSERT_EQUAL_size_t(60, corrupt_once(&dice, CORRUPT_BURST, bytes, 60, 100));
+    TEST_ASSERT_TRUE(corrupt_once(&dice, CORRUPT_CUT, bytes, 60, 100) < 60);
+    TEST_ASSERT_TRUE(corrupt_once(&dice, CORRUPT_GARBAGE, bytes, 60, 100) > 60);
+    TEST_ASSERT_EQUAL_size_t(0, corrupt_once(&dice, CORRUPT_DROP, bytes, 0, 100));
+}
+
+static void a_flip_changes_one_bit(void)
+{
+    uint8_t bytes[100] = {0};
+    unsigned sum = 0;
+
+    corrupt_once(&dice, CORRUPT_FLIP, bytes, 100, 100);
+    for (int i = 0; i < 100; i++) {
+        sum += bytes[i];
+    }
+    TEST_ASSERT_TRUE(sum != 0u && (sum & (sum - 1u)) == 0u);
+}
+
+static void damage_stays_within_the_capacity(void)
+{
+    uint8_t bytes[64];
+    size_t size = 40;
+
+    memset(bytes, 0xEE, sizeof bytes);
+    for (int i = 0; i < 10000; i++) {
+        size = corrupt_some(&dice, 3, bytes, size, 60);
+        TEST_ASSERT_TRUE(size <= 60);
+        size = size < 20u ? 40u : size;
+    }
+    TEST_ASSERT_EACH_EQUAL_HEX8(0xEE, bytes + 60, 4);
+}
+
+static void look_alike_garbage_is_full_of_false_headers(void)
+{
+    static uint8_t bytes[10000];
+    unsigned headers = 0;
+
+    corrupt_fill(&dice, bytes, sizeof bytes);
+    for (size_t i = 1; i < sizeof bytes; i++) {
+        headers += bytes[i - 1u] == 0xAA && bytes[i] == 0x55 ? 1u : 0u;
+    }
+    TEST_ASSERT_TRUE(headers > 40);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(the_same_seed_gives_the_same_numbers);
+    RUN_TEST(another_seed_gives_other_numbers);
+    RUN_TEST(every_number_in_a_range_comes_up_about_equally_often);
+    RUN_TEST(below_0_and_below_1_are_0);
+    RUN_TEST(gaps_are_exponentially_distributed);
+    RUN_TEST(damage_changes_the_size_as_its_kind_says);
+    RUN_TEST(a_flip_changes_one_bit);
+    RUN_TEST(damage_stays_within_the_capacity);
+    RUN_TEST(look_alike_garbage_is_full_of_false_headers);
+    return UNITY_END();
+}
