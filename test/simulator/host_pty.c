@@ -27,8 +27,8 @@ static bool make_raw(int fd)
     if (tcgetattr(fd, &settings) != 0) {
         return false;
     }
-    settings.c_iflag &= ~(tcflag_t)(IGNBRK | BRKINT | PARMRK | ISTRIP | INLCR | IGNCR | ICRNL |
-                                    IXON | IXOFF);
+    settings.c_iflag &=
+        ~(tcflag_t)(IGNBRK | BRKINT | PARMRK | ISTRIP | INLCR | IGNCR | ICRNL | IXON | IXOFF);
     settings.c_oflag &= ~(tcflag_t)OPOST;
     settings.c_lflag &= ~(tcflag_t)(ECHO | ECHONL | ICANON | ISIG | IEXTEN);
     settings.c_cflag &= ~(tcflag_t)(CSIZE | PARENB);

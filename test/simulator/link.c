@@ -239,8 +239,7 @@ static void begin_frame(sim_link_t *link, const sim_run_t *run)
     open_packet(link, run->packet);
     if (link->cut_waiting) {
         link->cut_waiting = false;
-        link->cut_from =
-            run->packet_at + (size_t)random_below(&link->random, run->packet->length);
+        link->cut_from = run->packet_at + (size_t)random_below(&link->random, run->packet->length);
     }
 }
 
@@ -332,11 +331,21 @@ static void begin_fault(sim_link_t *link, sim_link_kind_t kind, uint64_t amount,
 
     report_begin(link, kind, at_us);
     switch (kind) {
-    case SIM_LINK_BURST: link->burst_left = (uint32_t)amount; return;
-    case SIM_LINK_CUT: link->cut_waiting = true; return;
-    case SIM_LINK_STALL: begin_stall(link, end_us, at_us); break;
-    case SIM_LINK_GARBLE: link->garbling = true; break;
-    default: unplug(link, at_us); break;
+    case SIM_LINK_BURST:
+        link->burst_left = (uint32_t)amount;
+        return;
+    case SIM_LINK_CUT:
+        link->cut_waiting = true;
+        return;
+    case SIM_LINK_STALL:
+        begin_stall(link, end_us, at_us);
+        break;
+    case SIM_LINK_GARBLE:
+        link->garbling = true;
+        break;
+    default:
+        unplug(link, at_us);
+        break;
     }
     link->end_us[kind] = end_us;
 }
@@ -355,9 +364,12 @@ static void end_fault(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
 static bool is_under_way(const sim_link_t *link, sim_link_kind_t kind)
 {
     switch (kind) {
-    case SIM_LINK_BURST: return link->burst_left > 0u;
-    case SIM_LINK_CUT: return link->cut_waiting || link->cut_from != SIZE_MAX;
-    default: return link->end_us[kind] != SIM_NEVER;
+    case SIM_LINK_BURST:
+        return link->burst_left > 0u;
+    case SIM_LINK_CUT:
+        return link->cut_waiting || link->cut_from != SIZE_MAX;
+    default:
+        return link->end_us[kind] != SIM_NEVER;
     }
 }
 

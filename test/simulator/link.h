@@ -61,7 +61,7 @@ typedef struct {
 
 typedef struct {
     uint32_t faults[SIM_LINK_KINDS];
-    uint32_t packets;        /* whose fate is known */
+    uint32_t packets; /* whose fate is known */
     uint32_t intact_packets;
 } sim_link_counts_t;
 
@@ -75,19 +75,19 @@ typedef struct {
     sim_link_observer_t observer;
     sim_link_counts_t counts;
     random_t random;
-    uint64_t passed;                  /* bytes that came from the device */
-    uint64_t next_byte[SIM_LINK_KINDS];  /* faults of single bytes: at which byte, else never */
-    uint64_t nearest_byte;               /* the least of them */
-    uint64_t begin_us[SIM_LINK_KINDS];   /* faults in time: the next one's begin */
-    uint64_t end_us[SIM_LINK_KINDS];     /* and the present one's end; SIM_NEVER: none now */
+    uint64_t passed;                    /* bytes that came from the device */
+    uint64_t next_byte[SIM_LINK_KINDS]; /* faults of single bytes: at which byte, else never */
+    uint64_t nearest_byte;              /* the least of them */
+    uint64_t begin_us[SIM_LINK_KINDS];  /* faults in time: the next one's begin */
+    uint64_t end_us[SIM_LINK_KINDS];    /* and the present one's end; SIM_NEVER: none now */
     uint32_t burst_left;
-    bool cut_waiting;   /* for the next packet to begin */
-    size_t cut_from;    /* place in the frame; SIZE_MAX: not cutting */
+    bool cut_waiting; /* for the next packet to begin */
+    size_t cut_from;  /* place in the frame; SIZE_MAX: not cutting */
     bool unplugged;
     bool garbling;
-    bool throttled;       /* during a stall and until the backlog has drained */
-    uint64_t held_from;   /* first byte held back */
-    uint64_t release_us;  /* when the stall ends */
+    bool throttled;      /* during a stall and until the backlog has drained */
+    uint64_t held_from;  /* first byte held back */
+    uint64_t release_us; /* when the stall ends */
     uint64_t last_fault_us;
     bool packet_open;
     sim_link_packet_t packet;

@@ -142,8 +142,10 @@ static const option_t known[] = {
      set_write},
     {"--frequency", "HZ", "set scan frequency at power-up, 5 to 12 (6)", set_frequency},
     {"--no-ct", NULL, "send neither CT information nor LastCRC", set_no_ct},
-    {"--fault", "KIND=RATE", "drop, flip, insert: probability a byte;\n"
-     "                        burst, stall, cut, unplug, garble: events a second", set_fault},
+    {"--fault", "KIND=RATE",
+     "drop, flip, insert: probability a byte;\n"
+     "                        burst, stall, cut, unplug, garble: events a second",
+     set_fault},
     {"--seed", "N", "of all that is random (1)", set_seed},
     {"--seconds", "N", "of virtual time, then exit (never)", set_seconds},
     {"--speed", "X", "virtual seconds a real second (1)", set_speed},
@@ -201,7 +203,8 @@ static bool is_consistent(const options_t *options)
         return complain("--write", " needs --seconds N");
     }
     if (on_standard_output(options->write_path) + on_standard_output(options->log_path) +
-            on_standard_output(options->truth_path) > 1) {
+            on_standard_output(options->truth_path) >
+        1) {
         return complain("", "only one of --write, --log and --truth can be -");
     }
     return true;

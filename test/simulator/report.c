@@ -12,17 +12,28 @@
 static const char *command_name(uint8_t code)
 {
     switch (code) {
-    case SIM_COMMAND_FREQUENCY_UP_TENTH: return "frequency +0.1 Hz";
-    case SIM_COMMAND_FREQUENCY_DOWN_TENTH: return "frequency -0.1 Hz";
-    case SIM_COMMAND_FREQUENCY_UP: return "frequency +1 Hz";
-    case SIM_COMMAND_FREQUENCY_DOWN: return "frequency -1 Hz";
-    case SIM_COMMAND_GET_FREQUENCY: return "get frequency";
-    case SIM_COMMAND_REBOOT: return "reboot";
-    case SIM_COMMAND_START: return "start";
-    case SIM_COMMAND_STOP: return "stop";
-    case SIM_COMMAND_INFORMATION: return "device information";
-    case SIM_COMMAND_HEALTH: return "health";
-    default: return "unknown";
+    case SIM_COMMAND_FREQUENCY_UP_TENTH:
+        return "frequency +0.1 Hz";
+    case SIM_COMMAND_FREQUENCY_DOWN_TENTH:
+        return "frequency -0.1 Hz";
+    case SIM_COMMAND_FREQUENCY_UP:
+        return "frequency +1 Hz";
+    case SIM_COMMAND_FREQUENCY_DOWN:
+        return "frequency -1 Hz";
+    case SIM_COMMAND_GET_FREQUENCY:
+        return "get frequency";
+    case SIM_COMMAND_REBOOT:
+        return "reboot";
+    case SIM_COMMAND_START:
+        return "start";
+    case SIM_COMMAND_STOP:
+        return "stop";
+    case SIM_COMMAND_INFORMATION:
+        return "device information";
+    case SIM_COMMAND_HEALTH:
+        return "health";
+    default:
+        return "unknown";
     }
 }
 

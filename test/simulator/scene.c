@@ -127,8 +127,7 @@ static void put(uint16_t *distance, uint16_t distance_mm)
     }
 }
 
-void sim_scene_place(sim_scene_t *scene, uint16_t angle_q6, uint16_t width_q6,
-                     uint16_t distance_mm)
+void sim_scene_place(sim_scene_t *scene, uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm)
 {
     const uint32_t centre = angle_q6 / SIM_SCENE_STEP_Q6 + SIM_SCENE_ENTRIES;
     const uint32_t half = width_q6 / (2u * SIM_SCENE_STEP_Q6);

@@ -20,19 +20,19 @@
 
 /* One packet as it was sent: the truth that tests compare with. */
 typedef struct {
-    const uint8_t *bytes;  /* LastCRC not included; valid during the call or until the next one */
+    const uint8_t *bytes; /* LastCRC not included; valid during the call or until the next one */
     uint16_t length;
-    uint32_t number;       /* of the packet since sim_init(), from 0 */
-    uint32_t revolution;   /* start packets so far, this one included */
+    uint32_t number;     /* of the packet since sim_init(), from 0 */
+    uint32_t revolution; /* start packets so far, this one included */
     bool starts_revolution;
-    uint64_t position;     /* of its first byte in all that the device has sent */
+    uint64_t position; /* of its first byte in all that the device has sent */
 } sim_packet_t;
 
 /* Bytes of one frame, back to back on the wire. */
 typedef struct {
     const uint8_t *bytes;
     size_t length;
-    size_t offset;              /* of the first of them in its frame */
+    size_t offset; /* of the first of them in its frame */
     size_t frame_length;
     size_t packet_at;           /* where the packet begins in the frame: 1 behind a LastCRC */
     const sim_packet_t *packet; /* NULL in a reply */

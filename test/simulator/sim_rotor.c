@@ -4,10 +4,10 @@
 #include "sim_rotor.h"
 
 #define FULL_TURN_Q16 (UINT32_C(23040) << 16)
-#define SAMPLE_US 250u     /* section 1: 4000 samples a second */
-#define FULL_PACKET 40u    /* section 9.6 */
+#define SAMPLE_US 250u  /* section 1: 4000 samples a second */
+#define FULL_PACKET 40u /* section 9.6 */
 #define SPEED_PER_CHZ 1000u
-#define HAIR_Q6 7u         /* section 9.6: 0.266 - 0.156 degrees */
+#define HAIR_Q6 7u /* section 9.6: 0.266 - 0.156 degrees */
 
 static uint32_t set_speed(const sim_t *sim)
 {
@@ -298,8 +298,8 @@ static void fill_frame(sim_t *sim, sim_frame_t *frame)
     packet.samples = samples;
     set_angles(sim, &packet);
     measure_all(sim, samples);
-    frame->length = (uint16_t)(encode_packet(frame->bytes + frame->packet_at, &packet) +
-                               frame->packet_at);
+    frame->length =
+        (uint16_t)(encode_packet(frame->bytes + frame->packet_at, &packet) + frame->packet_at);
     frame->is_packet = true;
     frame->packet.number = sim->packet_number++;
     frame->packet.revolution = sim->revolution;

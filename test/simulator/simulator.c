@@ -222,17 +222,38 @@ static void reboot(sim_t *sim)
 static bool obey(sim_t *sim, uint8_t code)
 {
     switch (code) {
-    case SIM_COMMAND_FREQUENCY_UP_TENTH: step_frequency(sim, 10); return true;
-    case SIM_COMMAND_FREQUENCY_DOWN_TENTH: step_frequency(sim, -10); return true;
-    case SIM_COMMAND_FREQUENCY_UP: step_frequency(sim, 100); return true;
-    case SIM_COMMAND_FREQUENCY_DOWN: step_frequency(sim, -100); return true;
-    case SIM_COMMAND_GET_FREQUENCY: step_frequency(sim, 0); return true;
-    case SIM_COMMAND_REBOOT: reboot(sim); return true;
-    case SIM_COMMAND_START: start(sim); return true;
-    case SIM_COMMAND_STOP: stop(sim); return true;
-    case SIM_COMMAND_INFORMATION: answer_information(sim); return true;
-    case SIM_COMMAND_HEALTH: answer_health(sim); return true;
-    default: return false;
+    case SIM_COMMAND_FREQUENCY_UP_TENTH:
+        step_frequency(sim, 10);
+        return true;
+    case SIM_COMMAND_FREQUENCY_DOWN_TENTH:
+        step_frequency(sim, -10);
+        return true;
+    case SIM_COMMAND_FREQUENCY_UP:
+        step_frequency(sim, 100);
+        return true;
+    case SIM_COMMAND_FREQUENCY_DOWN:
+        step_frequency(sim, -100);
+        return true;
+    case SIM_COMMAND_GET_FREQUENCY:
+        step_frequency(sim, 0);
+        return true;
+    case SIM_COMMAND_REBOOT:
+        reboot(sim);
+        return true;
+    case SIM_COMMAND_START:
+        start(sim);
+        return true;
+    case SIM_COMMAND_STOP:
+        stop(sim);
+        return true;
+    case SIM_COMMAND_INFORMATION:
+        answer_information(sim);
+        return true;
+    case SIM_COMMAND_HEALTH:
+        answer_health(sim);
+        return true;
+    default:
+        return false;
     }
 }
 
@@ -457,8 +478,7 @@ sim_mode_t sim_mode(const sim_t *sim)
 
 const char *sim_mode_name(sim_mode_t mode)
 {
-    static const char *const names[] = {"off",      "booting",  "idle",
-                                        "scanning", "stopping", "fault"};
+    static const char *const names[] = {"off", "booting", "idle", "scanning", "stopping", "fault"};
 
     return names[mode];
 }

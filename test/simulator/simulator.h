@@ -61,25 +61,26 @@ typedef enum {
 
 typedef struct {
     uint64_t seed;
-    bool ct_information;          /* false: no LastCRC, CT 0 in point packets (section 9.1) */
-    uint16_t frequency_chz;       /* set frequency after power-up, 0.01 Hz */
-    uint16_t min_frequency_chz;   /* a step beyond a limit changes nothing, and says so */
+    bool ct_information;        /* false: no LastCRC, CT 0 in point packets (section 9.1) */
+    uint16_t frequency_chz;     /* set frequency after power-up, 0.01 Hz */
+    uint16_t min_frequency_chz; /* a step beyond a limit changes nothing, and says so */
     uint16_t max_frequency_chz;
     uint16_t reply_latency_ms;
-    uint16_t stop_tail_ms;        /* how long the stream goes on after a stop command */
-    uint16_t first_packet_ms;     /* from the start command's reply to the first packet's samples */
-    uint16_t spin_up_ms;          /* the rotor's time from standstill to the set frequency */
-    uint8_t spin_up_percent;      /* of the set frequency, when the first samples are taken */
-    uint16_t boot_ms;             /* after power-up and soft reboot */
-    uint16_t start_angle_q6;      /* where the start packet is; not 0 on every unit (9.8) */
-    uint8_t wobble_permille;      /* of the speed, drawn anew every revolution */
-    uint8_t angle_jitter_q6;      /* of FSA and LSA, up to so much either way */
-    uint8_t noise_mm;             /* of distances, up to so much either way */
-    uint16_t invalid_permille;    /* samples without range besides the scene's own */
-    uint16_t flagged_permille;    /* samples flagged 2 or 3, half and half (section 9.9) */
-    uint16_t lone_packet_permille;/* point packets cut down to LSN 1, LSA a hair before FSA (9.6) */
-    bool blocked_sends_starts;    /* rotor blocked: do start packets go on coming? */
-    uint8_t fatal_health;         /* health bits that put the device into SIM_FAULT */
+    uint16_t stop_tail_ms;     /* how long the stream goes on after a stop command */
+    uint16_t first_packet_ms;  /* from the start command's reply to the first packet's samples */
+    uint16_t spin_up_ms;       /* the rotor's time from standstill to the set frequency */
+    uint8_t spin_up_percent;   /* of the set frequency, when the first samples are taken */
+    uint16_t boot_ms;          /* after power-up and soft reboot */
+    uint16_t start_angle_q6;   /* where the start packet is; not 0 on every unit (9.8) */
+    uint8_t wobble_permille;   /* of the speed, drawn anew every revolution */
+    uint8_t angle_jitter_q6;   /* of FSA and LSA, up to so much either way */
+    uint8_t noise_mm;          /* of distances, up to so much either way */
+    uint16_t invalid_permille; /* samples without range besides the scene's own */
+    uint16_t flagged_permille; /* samples flagged 2 or 3, half and half (section 9.9) */
+    uint16_t
+        lone_packet_permille;  /* point packets cut down to LSN 1, LSA a hair before FSA (9.6) */
+    bool blocked_sends_starts; /* rotor blocked: do start packets go on coming? */
+    uint8_t fatal_health;      /* health bits that put the device into SIM_FAULT */
     encode_information_t information;
     uint8_t user_major; /* protocol version in the CT information */
     uint8_t user_minor;
@@ -120,13 +121,13 @@ typedef struct {
     uint32_t phase; /* of the next sample */
     uint32_t step;  /* from sample to sample */
     uint32_t speed;
-    int32_t wobble; /* this revolution's deviation from the set frequency */
-    uint64_t due_us; /* when the packet being measured is complete; SIM_NEVER: not measuring */
-    uint8_t planned; /* its samples */
-    bool at_start;   /* it is a start packet */
-    bool in_turn;    /* a start packet has come since the start of scanning */
-    uint32_t index;  /* of it in its revolution */
-    uint8_t crc;     /* of the CT bytes of this revolution so far */
+    int32_t wobble;   /* this revolution's deviation from the set frequency */
+    uint64_t due_us;  /* when the packet being measured is complete; SIM_NEVER: not measuring */
+    uint8_t planned;  /* its samples */
+    bool at_start;    /* it is a start packet */
+    bool in_turn;     /* a start packet has come since the start of scanning */
+    uint32_t index;   /* of it in its revolution */
+    uint8_t crc;      /* of the CT bytes of this revolution so far */
     uint32_t samples; /* of this revolution so far */
     uint32_t valid;   /* of them with a range */
     bool data_fault;  /* the whole previous revolution had none */

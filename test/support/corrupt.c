@@ -7,8 +7,8 @@
 
 uint8_t corrupt_lookalike(random_t *random)
 {
-    static const uint8_t likely[] = {0xAA, 0x55, 0xAA, 0x55, 0xA5, 0x5A, 0x00,
-                                     0x01, 0x02, 0x03, 0x28, 0x81};
+    static const uint8_t likely[] = {0xAA, 0x55, 0xAA, 0x55, 0xA5, 0x5A,
+                                     0x00, 0x01, 0x02, 0x03, 0x28, 0x81};
     const uint32_t draw = random_below(random, 2u * sizeof likely);
 
     return draw < sizeof likely ? likely[draw] : (uint8_t)random_below(random, 256);
@@ -64,20 +64,24 @@ size_t corrupt_once(random_t *random, corrupt_kind_t kind, uint8_t *bytes, size_
     }
     at = pick(random, 0, size - 1u);
     switch (kind) {
-    case CORRUPT_DROP: return remove_bytes(bytes, size, at, 1);
-    case CORRUPT_CUT: return remove_bytes(bytes, size, at, pick(random, 2, 200));
-    case CORRUPT_INSERT: return add_garbage(random, bytes, size, 1, capacity);
+    case CORRUPT_DROP:
+        return remove_bytes(bytes, size, at, 1);
+    case CORRUPT_CUT:
+        return remove_bytes(bytes, size, at, pick(random, 2, 200));
+    case CORRUPT_INSERT:
+        return add_garbage(random, bytes, size, 1, capacity);
     case CORRUPT_GARBAGE:
         return add_garbage(random, bytes, size, pick(random, 2, 32), capacity);
     case CORRUPT_BURST:
         corrupt_fill(random, bytes + at, smaller(pick(random, 2, 32), size - at));
         return size;
-    default: bytes[at] = (uint8_t)(bytes[at] ^ (1u << random_below(random, 8))); return size;
+    default:
+        bytes[at] = (uint8_t)(bytes[at] ^ (1u << random_below(random, 8)));
+        return size;
     }
 }
 
-size_t corrupt_some(random_t *random, unsigned faults, uint8_t *bytes, size_t size,
-                    size_t capacity)
+size_t corrupt_some(random_t *random, unsigned faults, uint8_t *bytes, size_t size, size_t capacity)
 {
     for (; faults > 0; faults--) {
         const corrupt_kind_t kind = (corrupt_kind_t)random_below(random, CORRUPT_KINDS);

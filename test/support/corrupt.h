@@ -15,12 +15,12 @@
 #include <stdint.h>
 
 typedef enum {
-    CORRUPT_DROP,   /* one byte lost */
-    CORRUPT_FLIP,   /* one bit flipped */
-    CORRUPT_INSERT, /* one byte added */
-    CORRUPT_BURST,  /* up to 32 bytes overwritten */
-    CORRUPT_CUT,    /* up to 200 bytes lost */
-    CORRUPT_GARBAGE,/* up to 32 bytes of look-alike garbage added */
+    CORRUPT_DROP,    /* one byte lost */
+    CORRUPT_FLIP,    /* one bit flipped */
+    CORRUPT_INSERT,  /* one byte added */
+    CORRUPT_BURST,   /* up to 32 bytes overwritten */
+    CORRUPT_CUT,     /* up to 200 bytes lost */
+    CORRUPT_GARBAGE, /* up to 32 bytes of look-alike garbage added */
     CORRUPT_KINDS
 } corrupt_kind_t;
 

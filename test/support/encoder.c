@@ -147,16 +147,27 @@ static uint8_t field(uint32_t high, unsigned shift, uint32_t low)
 uint8_t encode_ct(const encode_turn_t *turn, uint32_t index)
 {
     switch (index) {
-    case 0: return (uint8_t)(field(0, 1, turn->frequency_dhz) | 1u);
-    case 1: return field(turn->user_major, 6, turn->user_minor);
-    case 3: return field(0, 1, turn->health);
-    case 4: return field(turn->hardware, 5, turn->firmware_major);
-    case 5: return field(0, 1, turn->firmware_minor);
-    case 9: return field(turn->year - 2020u, 3, (turn->serial >> 19) & 3u);
-    case 10: return field(turn->month, 4, (turn->serial >> 16) & 7u);
-    case 11: return field(turn->day, 3, (turn->serial >> 14) & 3u);
-    case 12: return field(0, 1, (turn->serial >> 7) & 0x7Fu);
-    case 13: return field(0, 1, turn->serial & 0x7Fu);
-    default: return production_data(turn->production, index);
+    case 0:
+        return (uint8_t)(field(0, 1, turn->frequency_dhz) | 1u);
+    case 1:
+        return field(turn->user_major, 6, turn->user_minor);
+    case 3:
+        return field(0, 1, turn->health);
+    case 4:
+        return field(turn->hardware, 5, turn->firmware_major);
+    case 5:
+        return field(0, 1, turn->firmware_minor);
+    case 9:
+        return field(turn->year - 2020u, 3, (turn->serial >> 19) & 3u);
+    case 10:
+        return field(turn->month, 4, (turn->serial >> 16) & 7u);
+    case 11:
+        return field(turn->day, 3, (turn->serial >> 14) & 3u);
+    case 12:
+        return field(0, 1, (turn->serial >> 7) & 0x7Fu);
+    case 13:
+        return field(0, 1, turn->serial & 0x7Fu);
+    default:
+        return production_data(turn->production, index);
     }
 }

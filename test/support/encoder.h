@@ -18,7 +18,7 @@
 #define ENCODE_SAMPLE_SIZE 3u
 #define ENCODE_PACKET_MAX 775u /* LSN is one byte: 10 + 3 * 255 */
 #define ENCODE_REPLY_HEADER 7u
-#define ENCODE_REPLY_MAX 27u /* device information: 7 + 20 */
+#define ENCODE_REPLY_MAX 27u       /* device information: 7 + 20 */
 #define ENCODE_FULL_TURN_Q6 23040u /* 360 degrees in 1/64 degree */
 
 /* Reply modes and type codes of section 4. */
@@ -35,10 +35,10 @@ typedef struct {
 } encode_sample_t;
 
 typedef struct {
-    uint8_t ct;           /* the whole byte; bit 0 set in a start packet */
-    uint8_t lsn;          /* number of samples */
-    uint16_t first_q6;    /* angle of the first sample, 1/64 degree, 0..32767 */
-    uint16_t last_q6;     /* angle of the last sample */
+    uint8_t ct;        /* the whole byte; bit 0 set in a start packet */
+    uint8_t lsn;       /* number of samples */
+    uint16_t first_q6; /* angle of the first sample, 1/64 degree, 0..32767 */
+    uint16_t last_q6;  /* angle of the last sample */
     const encode_sample_t *samples;
 } encode_packet_t;
 

@@ -117,8 +117,7 @@ static void expect_the_truth_about_every_packet(void)
         const sim_link_packet_t *packet = &fates[i].packet;
 
         if (is_in_stream(packet)) {
-            TEST_ASSERT_EQUAL_MEMORY(fates[i].bytes, stream + packet->offset,
-                                     packet->sent.length);
+            TEST_ASSERT_EQUAL_MEMORY(fates[i].bytes, stream + packet->offset, packet->sent.length);
             there++;
         }
     }
@@ -246,7 +245,7 @@ void test_nothing_comes_during_a_stall_and_then_it_comes_at_the_lines_speed(void
     TEST_ASSERT_EQUAL_size_t(wire.passed, size);
 }
 
-static void a_stall_while_the_backlog_drains_holds_the_rest_back(void)
+void test_a_stall_while_the_backlog_drains_holds_the_rest_back(void)
 {
     size_t before;
 
@@ -263,7 +262,7 @@ static void a_stall_while_the_backlog_drains_holds_the_rest_back(void)
 }
 
 /* The first byte of each frame is flipped: LastCRC in front of a start packet, else the header. */
-static void a_spoiled_last_crc_does_not_hit_the_start_packet(void)
+void test_a_spoiled_last_crc_does_not_hit_the_start_packet(void)
 {
     unsigned starts = 0;
 
@@ -279,14 +278,13 @@ static void a_spoiled_last_crc_does_not_hit_the_start_packet(void)
         while (fate_count == before) {
             run_us(20);
         }
-        TEST_ASSERT_EQUAL(fates[before].packet.sent.starts_revolution,
-                          fates[before].packet.intact);
+        TEST_ASSERT_EQUAL(fates[before].packet.sent.starts_revolution, fates[before].packet.intact);
         starts += fates[before].packet.intact ? 1u : 0u;
     }
     TEST_ASSERT_TRUE(starts > 5);
 }
 
-static void garbling_spoils_every_byte_while_it_lasts(void)
+void test_garbling_spoils_every_byte_while_it_lasts(void)
 {
     scan_with(SIM_LINK_GARBLE, 0, 3);
     sim_link_force(&wire, SIM_LINK_GARBLE, 500, now);
@@ -341,7 +339,7 @@ void test_a_packet_cut_by_a_reboot_is_reported_as_hit(void)
     TEST_ASSERT_EQUAL_size_t(fate_count - 1u, intact_packets());
 }
 
-static void a_packet_cut_behind_the_wires_back_is_reported_as_hit(void)
+void test_a_packet_cut_behind_the_wires_back_is_reported_as_hit(void)
 {
     scan_with(SIM_LINK_UNPLUG, 0, 3);
     run_ms(1);
@@ -354,7 +352,7 @@ static void a_packet_cut_behind_the_wires_back_is_reported_as_hit(void)
     expect_the_truth_about_every_packet();
 }
 
-static void unplugging_ends_a_burst_and_a_cut_under_way(void)
+void test_unplugging_ends_a_burst_and_a_cut_under_way(void)
 {
     scan_with(SIM_LINK_UNPLUG, 0, 3);
     sim_link_force(&wire, SIM_LINK_BURST, 5000, now);
@@ -369,7 +367,7 @@ static void unplugging_ends_a_burst_and_a_cut_under_way(void)
     TEST_ASSERT_EQUAL_UINT(1, heard.ended[SIM_LINK_CUT]);
 }
 
-static void unplugging_by_chance_comes_back_by_itself(void)
+void test_unplugging_by_chance_comes_back_by_itself(void)
 {
     config.mean_gap[SIM_LINK_UNPLUG] = 5000;
     connect();
@@ -461,34 +459,4 @@ void test_kinds_have_names(void)
     TEST_ASSERT_EQUAL_STRING("unplug", sim_link_kind_name(SIM_LINK_UNPLUG));
     TEST_ASSERT_EQUAL(SIM_LINK_STALL, sim_link_kind_named("stall"));
     TEST_ASSERT_EQUAL(SIM_LINK_KINDS, sim_link_kind_named("stal"));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(a_faultless_wire_passes_every_byte_in_its_time);
-    RUN_TEST(without_faults_every_packet_is_intact);
-    RUN_TEST(dropped_bytes_cost_the_packets_they_were_in);
-    RUN_TEST(flipped_bits_cost_the_packets_they_were_in);
-    RUN_TEST(inserted_bytes_cost_only_packets_that_they_split);
-    RUN_TEST(bursts_spoil_the_packets_they_touch);
-    RUN_TEST(a_spoiled_last_crc_does_not_hit_the_start_packet);
-    RUN_TEST(a_cut_loses_the_rest_of_one_packet);
-    RUN_TEST(a_stall_makes_bytes_late_but_loses_none);
-    RUN_TEST(nothing_comes_during_a_stall_and_then_it_comes_at_the_lines_speed);
-    RUN_TEST(a_stall_while_the_backlog_drains_holds_the_rest_back);
-    RUN_TEST(garbling_spoils_every_byte_while_it_lasts);
-    RUN_TEST(unplugging_silences_the_line_and_resets_the_device);
-    RUN_TEST(a_packet_cut_by_unplugging_is_reported_as_hit);
-    RUN_TEST(a_packet_cut_by_a_reboot_is_reported_as_hit);
-    RUN_TEST(a_packet_cut_behind_the_wires_back_is_reported_as_hit);
-    RUN_TEST(unplugging_ends_a_burst_and_a_cut_under_way);
-    RUN_TEST(unplugging_by_chance_comes_back_by_itself);
-    RUN_TEST(faults_of_bytes_can_be_forced_one_at_a_time);
-    RUN_TEST(all_kinds_together_still_tell_the_truth);
-    RUN_TEST(a_calmed_wire_has_no_more_faults);
-    RUN_TEST(the_same_seed_gives_the_same_faults_whatever_the_steps);
-    RUN_TEST(the_next_event_is_never_later_than_the_next_byte);
-    RUN_TEST(kinds_have_names);
-    return UNITY_END();
 }

@@ -19,7 +19,7 @@ void setUp(void)
 
 void tearDown(void) {}
 
-static void the_same_seed_gives_the_same_numbers(void)
+void test_the_same_seed_gives_the_same_numbers(void)
 {
     random_t other;
 
@@ -29,7 +29,7 @@ static void the_same_seed_gives_the_same_numbers(void)
     }
 }
 
-static void another_seed_gives_other_numbers(void)
+void test_another_seed_gives_other_numbers(void)
 {
     random_t other;
 
@@ -37,7 +37,7 @@ static void another_seed_gives_other_numbers(void)
     TEST_ASSERT_NOT_EQUAL(random_u64(&other), random_u64(&dice));
 }
 
-static void every_number_in_a_range_comes_up_about_equally_often(void)
+void test_every_number_in_a_range_comes_up_about_equally_often(void)
 {
     unsigned seen[10] = {0};
 
@@ -52,14 +52,14 @@ static void every_number_in_a_range_comes_up_about_equally_often(void)
     }
 }
 
-static void below_0_and_below_1_are_0(void)
+void test_below_0_and_below_1_are_0(void)
 {
     TEST_ASSERT_EQUAL_UINT32(0, random_below(&dice, 0));
     TEST_ASSERT_EQUAL_UINT32(0, random_below(&dice, 1));
 }
 
 /* Of an exponential distribution 36.8 % lie beyond the mean, 13.5 % beyond twice the mean. */
-static void gaps_are_exponentially_distributed(void)
+void test_gaps_are_exponentially_distributed(void)
 {
     uint64_t sum = 0;
     unsigned beyond = 0;
@@ -78,7 +78,7 @@ static void gaps_are_exponentially_distributed(void)
     TEST_ASSERT_UINT_WITHIN(500, 13534, far_beyond);
 }
 
-static void damage_changes_the_size_as_its_kind_says(void)
+void test_damage_changes_the_size_as_its_kind_says(void)
 {
     uint8_t bytes[100] = {0};
 
@@ -91,7 +91,7 @@ static void damage_changes_the_size_as_its_kind_says(void)
     TEST_ASSERT_EQUAL_size_t(0, corrupt_once(&dice, CORRUPT_DROP, bytes, 0, 100));
 }
 
-static void a_flip_changes_one_bit(void)
+void test_a_flip_changes_one_bit(void)
 {
     uint8_t bytes[100] = {0};
     unsigned sum = 0;
@@ -103,7 +103,7 @@ static void a_flip_changes_one_bit(void)
     TEST_ASSERT_TRUE(sum != 0u && (sum & (sum - 1u)) == 0u);
 }
 
-static void damage_stays_within_the_capacity(void)
+void test_damage_stays_within_the_capacity(void)
 {
     uint8_t bytes[64];
     size_t size = 40;
@@ -117,7 +117,7 @@ static void damage_stays_within_the_capacity(void)
     TEST_ASSERT_EACH_EQUAL_HEX8(0xEE, bytes + 60, 4);
 }
 
-static void look_alike_garbage_is_full_of_false_headers(void)
+void test_look_alike_garbage_is_full_of_false_headers(void)
 {
     static uint8_t bytes[10000];
     unsigned headers = 0;
@@ -127,19 +127,4 @@ static void look_alike_garbage_is_full_of_false_headers(void)
         headers += bytes[i - 1u] == 0xAA && bytes[i] == 0x55 ? 1u : 0u;
     }
     TEST_ASSERT_TRUE(headers > 40);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(the_same_seed_gives_the_same_numbers);
-    RUN_TEST(another_seed_gives_other_numbers);
-    RUN_TEST(every_number_in_a_range_comes_up_about_equally_often);
-    RUN_TEST(below_0_and_below_1_are_0);
-    RUN_TEST(gaps_are_exponentially_distributed);
-    RUN_TEST(damage_changes_the_size_as_its_kind_says);
-    RUN_TEST(a_flip_changes_one_bit);
-    RUN_TEST(damage_stays_within_the_capacity);
-    RUN_TEST(look_alike_garbage_is_full_of_false_headers);
-    return UNITY_END();
 }

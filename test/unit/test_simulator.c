@@ -188,7 +188,7 @@ void test_a_step_beyond_a_limit_changes_nothing_and_says_so(void)
     expect_frequency_reply(0xF4, 0x01); /* 500 */
 }
 
-static void the_limits_themselves_can_be_reached(void)
+void test_the_limits_themselves_can_be_reached(void)
 {
     config.frequency_chz = 1190;
     power_up();
@@ -200,7 +200,7 @@ static void the_limits_themselves_can_be_reached(void)
     expect_frequency_reply(0xF4, 0x01); /* 500 */
 }
 
-static void stop_and_unknown_commands_have_no_reply(void)
+void test_stop_and_unknown_commands_have_no_reply(void)
 {
     send(0x65);
     send(0x61);
@@ -257,7 +257,7 @@ void test_one_reply_can_be_delayed_and_the_next_one_waits_behind_it(void)
 }
 
 /* Ten bytes of health at 3003 ms, then the start command's seven, then the stream. */
-static void a_stream_waits_for_its_own_late_reply(void)
+void test_a_stream_waits_for_its_own_late_reply(void)
 {
     sim_delay_next_reply(&sim, 3000);
     send(0x92);
@@ -271,7 +271,7 @@ static void a_stream_waits_for_its_own_late_reply(void)
     TEST_ASSERT_TRUE(counts.packets > 50);
 }
 
-static void one_reply_can_be_lost(void)
+void test_one_reply_can_be_lost(void)
 {
     sim_lose_next_reply(&sim);
     send(0x0D);
@@ -810,7 +810,7 @@ void test_nothing_is_answered_during_a_reboot_and_the_frequency_is_reset(void)
     expect_frequency_reply(0x58, 0x02);
 }
 
-static void a_reboot_forgets_a_reply_that_is_due(void)
+void test_a_reboot_forgets_a_reply_that_is_due(void)
 {
     send(0x90);
     send(0x40);
@@ -818,7 +818,7 @@ static void a_reboot_forgets_a_reply_that_is_due(void)
     TEST_ASSERT_EQUAL_size_t(0, size);
 }
 
-static void losing_power_cuts_a_packet_in_the_middle(void)
+void test_losing_power_cuts_a_packet_in_the_middle(void)
 {
     scan_seconds(1);
     do {
@@ -838,7 +838,7 @@ static void losing_power_cuts_a_packet_in_the_middle(void)
     expect_frequency_reply(0x58, 0x02);
 }
 
-static void what_left_before_power_was_lost_can_still_be_read(void)
+void test_what_left_before_power_was_lost_can_still_be_read(void)
 {
     uint32_t before;
     sim_run_t run;
@@ -854,7 +854,7 @@ static void what_left_before_power_was_lost_can_still_be_read(void)
 }
 
 /* 10 bits at 230400 baud are 43.403 us; a byte is there when all of it has left. */
-static void the_time_of_a_byte_is_when_it_has_left(void)
+void test_the_time_of_a_byte_is_when_it_has_left(void)
 {
     TEST_ASSERT_EQUAL_UINT64(1044, sim_byte_us(1000, 0));
     TEST_ASSERT_EQUAL_UINT64(1087, sim_byte_us(1000, 1));
@@ -942,7 +942,7 @@ void test_the_observer_hears_of_commands_and_modes(void)
 }
 
 /* 500 ms are 50 packets; the line's queue holds 16. */
-static void frames_that_nobody_takes_in_time_are_lost_and_counted(void)
+void test_frames_that_nobody_takes_in_time_are_lost_and_counted(void)
 {
     scan_seconds(1);
     now += 500000;
@@ -950,70 +950,8 @@ static void frames_that_nobody_takes_in_time_are_lost_and_counted(void)
     TEST_ASSERT_UINT_WITHIN(8, 50 + 3 - 16, sim_lost_frames(&sim));
 }
 
-static void modes_have_names(void)
+void test_modes_have_names(void)
 {
     TEST_ASSERT_EQUAL_STRING("off", sim_mode_name(SIM_OFF));
     TEST_ASSERT_EQUAL_STRING("fault", sim_mode_name(SIM_FAULT));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(it_is_idle_and_silent_after_power_up);
-    RUN_TEST(device_information_has_the_minor_firmware_version_first);
-    RUN_TEST(health_is_all_clear_at_first);
-    RUN_TEST(health_reports_the_bits_that_are_set);
-    RUN_TEST(frequency_steps_are_a_tenth_and_a_whole_hertz);
-    RUN_TEST(a_step_beyond_a_limit_changes_nothing_and_says_so);
-    RUN_TEST(the_limits_themselves_can_be_reached);
-    RUN_TEST(stop_and_unknown_commands_have_no_reply);
-    RUN_TEST(a_command_may_arrive_in_two_parts_and_among_garbage);
-    RUN_TEST(a_reply_comes_after_the_latency_at_the_lines_speed);
-    RUN_TEST(one_reply_can_be_delayed_and_the_next_one_waits_behind_it);
-    RUN_TEST(a_stream_waits_for_its_own_late_reply);
-    RUN_TEST(one_reply_can_be_lost);
-    RUN_TEST(start_is_answered_and_packets_follow);
-    RUN_TEST(only_last_crc_bytes_stand_between_the_packets);
-    RUN_TEST(a_revolution_at_6_hz_has_about_667_points);
-    RUN_TEST(a_revolution_at_12_hz_has_about_333_points);
-    RUN_TEST(packets_are_full_but_for_the_start_and_the_last);
-    RUN_TEST(lone_point_packets_end_a_hair_before_they_begin);
-    RUN_TEST(a_full_packet_at_6_hz_sweeps_21_degrees);
-    RUN_TEST(angles_go_on_clockwise_from_packet_to_packet);
-    RUN_TEST(start_packets_are_at_the_start_angle);
-    RUN_TEST(the_load_is_13_kilobytes_a_second);
-    RUN_TEST(bytes_never_come_faster_than_the_line);
-    RUN_TEST(one_late_call_gives_the_same_bytes_as_many_early_ones);
-    RUN_TEST(a_small_buffer_loses_nothing);
-    RUN_TEST(another_seed_gives_another_stream);
-    RUN_TEST(the_first_revolutions_are_slow);
-    RUN_TEST(a_start_packet_carries_the_previous_revolutions_frequency);
-    RUN_TEST(the_ct_bytes_carry_what_section_7_says);
-    RUN_TEST(last_crc_guards_the_ct_bytes_of_every_revolution);
-    RUN_TEST(last_crc_is_sometimes_aa);
-    RUN_TEST(the_first_start_packet_has_no_last_crc_and_none_before_it_a_ct);
-    RUN_TEST(a_unit_without_ct_information_sends_neither_ct_nor_last_crc);
-    RUN_TEST(a_covered_window_gives_no_ranges_and_the_data_fault);
-    RUN_TEST(a_blocked_rotor_gives_no_ranges_and_the_encoder_fault);
-    RUN_TEST(a_blocked_rotor_may_stop_the_start_packets);
-    RUN_TEST(a_fatal_fault_ends_the_stream_until_it_is_gone_and_start_comes);
-    RUN_TEST(the_room_is_seen_clockwise_from_straight_ahead);
-    RUN_TEST(a_round_pillar_stands_ahead_to_the_left);
-    RUN_TEST(nearer_things_reflect_more_light);
-    RUN_TEST(an_obstacle_appears_where_it_is_placed_and_goes_again);
-    RUN_TEST(flags_2_and_3_occur_as_often_as_configured);
-    RUN_TEST(stop_has_a_tail_of_whole_packets);
-    RUN_TEST(a_stop_before_the_first_packet_leaves_silence);
-    RUN_TEST(commands_while_scanning_are_counted_and_answered_between_packets);
-    RUN_TEST(a_lost_start_reply_does_not_stop_the_stream);
-    RUN_TEST(nothing_is_answered_during_a_reboot_and_the_frequency_is_reset);
-    RUN_TEST(a_reboot_forgets_a_reply_that_is_due);
-    RUN_TEST(losing_power_cuts_a_packet_in_the_middle);
-    RUN_TEST(the_time_of_a_byte_is_when_it_has_left);
-    RUN_TEST(what_left_before_power_was_lost_can_still_be_read);
-    RUN_TEST(the_observer_hears_of_every_packet_and_its_place);
-    RUN_TEST(the_observer_hears_of_commands_and_modes);
-    RUN_TEST(frames_that_nobody_takes_in_time_are_lost_and_counted);
-    RUN_TEST(modes_have_names);
-    return UNITY_END();
 }

@@ -34,9 +34,8 @@ static const uint8_t ask_frequency[2] = {0xA5, 0x0D};
 static const uint8_t start_scan[2] = {0xA5, 0x60};
 static const uint8_t stop_scan[2] = {0xA5, 0x65};
 
-static const uint8_t information[27] = {0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, 0x97, 2,
-                                        1,    1,    2,    0, 2, 6, 0,    3,    1,
-                                        7,    0,    0,    0, 1, 2, 3,    4,    5};
+static const uint8_t information[27] = {0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, 0x97, 2, 1, 1, 2, 0, 2,
+                                        6,    0,    3,    1, 7, 0, 0,    0,    1, 2, 3, 4, 5};
 static const uint8_t six_hertz[11] = {0xA5, 0x5A, 0x04, 0, 0, 0, 0x04, 0x58, 0x02, 0, 0};
 
 /* ---- Helpers ---- */
@@ -364,8 +363,8 @@ void test_the_same_options_give_the_same_recording(void)
 
 void test_the_truth_has_a_row_a_sample(void)
 {
-    static const char *const arguments[] = {"--write", "/dev/null", "--seconds", "2",
-                                            "--truth", "tmini-sim-test.csv"};
+    static const char *const arguments[] = {"--write", "/dev/null", "--seconds",
+                                            "2",       "--truth",   "tmini-sim-test.csv"};
     static const char header[] =
         "packet,revolution,index,angle_q6,distance_mm,intensity,flag,intact\n0,0,0,";
     size_t rows = 0;
@@ -387,9 +386,9 @@ static void expect_in_log(const char *text)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr((const char *)received, text), text);
 }
 
-static void the_log_tells_of_commands_modes_faults_and_totals(void)
+void test_the_log_tells_of_commands_modes_faults_and_totals(void)
 {
-    static const char *const arguments[] = {"--tcp", "0", "--log", "tmini-sim-test.log",
+    static const char *const arguments[] = {"--tcp",   "0",        "--log", "tmini-sim-test.log",
                                             "--fault", "flip=0.01"};
     static const uint8_t unknown[2] = {0xA5, 0x77};
     char address[64];
@@ -414,28 +413,4 @@ static void the_log_tells_of_commands_modes_faults_and_totals(void)
     expect_in_log("fault flip begins\n");
     expect_in_log("3 commands, 1 forbidden while scanning, 1 unknown, ");
     remove("tmini-sim-test.log");
-}
-
-int main(int argc, char **argv)
-{
-    if (argc != 2) {
-        fprintf(stderr, "usage: %s PATH-OF-TMINI-SIM\n", argv[0]);
-        return 2;
-    }
-    program = argv[1];
-    signal(SIGPIPE, SIG_IGN);
-    UNITY_BEGIN();
-    RUN_TEST(help_succeeds);
-    RUN_TEST(wrong_usage_is_exit_status_2);
-    RUN_TEST(a_file_that_cannot_be_written_is_exit_status_1);
-    RUN_TEST(clients_of_the_pty_are_served_one_after_another_without_echo);
-    RUN_TEST(a_client_may_leave_settings_that_the_next_one_does_not_feel);
-    RUN_TEST(the_stream_goes_on_while_nobody_listens_and_nothing_stale_is_kept);
-    RUN_TEST(clients_of_the_socket_are_served_one_after_another);
-    RUN_TEST(a_client_that_has_said_all_still_gets_its_answer);
-    RUN_TEST(it_ends_after_its_seconds_and_speed_shortens_them);
-    RUN_TEST(the_same_options_give_the_same_recording);
-    RUN_TEST(the_truth_has_a_row_a_sample);
-    RUN_TEST(the_log_tells_of_commands_modes_faults_and_totals);
-    return UNITY_END();
 }
