@@ -40,6 +40,7 @@ static void send(tmini_t *lidar, tmini_command_t command)
 {
     lidar->sent = (uint8_t)command;
     lidar->unsent = lidar->sign_sent ? 1 : 2;
+    lidar->step_refused = false;
 }
 
 /* Sends a command when the line is quiet, and awaits what it is answered with, if anything. */
@@ -306,7 +307,6 @@ static void begin(tmini_t *lidar, enum goal goal)
     lidar->goal = (uint8_t)goal;
     lidar->attempts = 0;
     lidar->steps = 0;
-    lidar->step_refused = false;
     lidar->recovering = false;
     /* The end of an earlier command is not the end of this one. */
     lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);

@@ -50,6 +50,7 @@ static void judge_revolution(tmini_t *lidar, bool trusted)
 static void resume(tmini_t *lidar)
 {
     tmini_parser_await(&lidar->parser, NULL);
+    lidar->unsent = 0; /* A start that is no longer needed must not be sent (section 2). */
     tmini_turn_discard(&lidar->turn);
     tmini_scan_discard(&lidar->builder);
     lidar->goal = GOAL_START;

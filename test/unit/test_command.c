@@ -1,0 +1,935 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What is said to the lidar, and when: every command, its replies, late and lost ones, its waits and
+ * its failures. Which command may be begun in which state is in test_states.c. */
+
+#include "rig.h"
+
+#include "mock_port_functions.h"
+#include "unity.h"
+
+#include <string.h>
+
+void setUp(void)
+{
+    rig_open();
+}
+
+void tearDown(void)
+{
+}
+
+static void fails_with(tmini_status_t status)
+{
+    polls_to(TMINI_EVENT_FAILED);
+    TEST_ASSERT_EQUAL_INT(status, tmini_failure(&rig.lidar));
+    is_in(TMINI_STATE_UNKNOWN);
+}
+
+static uint16_t timeouts(void)
+{
+    tmini_counters_t counters;
+
+    tmini_counters(&rig.lidar, &counters);
+    return counters.timeouts;
+}
+
+/* ---- Before a command: the line is made quiet ---- */
+
+void test_from_an_unknown_state_a_command_first_stops_the_lidar_and_waits_for_a_quiet_line(void)
+{
+    sends(STOP);
+    begins(tmini_request_info(&rig.lidar));
+    is_in(TMINI_STATE_BUSY);
+    was_sent();
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_INFO);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_in_the_idle_state_a_command_is_sent_at_once(void)
+{
+    rig_go_idle();
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    was_sent();
+}
+
+void test_each_byte_that_is_heard_puts_the_command_off_by_the_quiet_time(void)
+{
+    sends(STOP);
+    begins(tmini_request_info(&rig.lidar));
+    passes(30);
+    rig_feed_byte(0x00);
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_INFO);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_packets_of_the_tail_behind_a_stop_are_no_scan(void)
+{
+    rig_go_scanning();
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    for (unsigned ms = 0; ms < 300; ms += 10) {
+        rig_feed_start_packet(1000);
+        passes(10);
+    }
+    passes(40); /* The last packet came 10 ms ago. */
+    polls_to(TMINI_EVENT_STOPPED);
+    is_in(TMINI_STATE_IDLE);
+}
+
+void test_a_stop_that_gets_lost_is_sent_again(void)
+{
+    rig_go_scanning();
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    for (unsigned ms = 0; ms < 600; ms += 20) {
+        rig_feed_point_packet(1000);
+        passes(20);
+    }
+    polls_to(TMINI_EVENT_NONE); /* Not quiet in time, */
+    sends(STOP);                /* so once more. */
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+    TEST_ASSERT_EQUAL_UINT(1, timeouts());
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
+void test_a_lidar_that_will_not_be_stopped_fails_the_command_after_three_attempts(void)
+{
+    rig_go_scanning();
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    for (unsigned attempt = 1; attempt <= 3; attempt++) {
+        for (unsigned ms = 0; ms < 600; ms += 20) {
+            rig_feed_point_packet(1000);
+            passes(20);
+        }
+        if (attempt < 3) {
+            polls_to(TMINI_EVENT_NONE);
+            sends(STOP);
+        }
+    }
+    fails_with(TMINI_ERROR_TIMEOUT);
+    TEST_ASSERT_EQUAL_UINT(3, timeouts());
+}
+
+void test_a_byte_that_comes_while_idle_makes_the_state_unknown_and_the_next_command_stop_first(void)
+{
+    rig_go_idle();
+    rig_feed_byte(0x00);
+    polls_to(TMINI_EVENT_NONE);
+    is_in(TMINI_STATE_UNKNOWN);
+    sends(STOP);
+    begins(tmini_request_health(&rig.lidar));
+}
+
+void test_a_byte_that_no_poll_has_seen_yet_counts_as_heard(void)
+{
+    rig_go_idle();
+    rig_feed_byte(0x00);
+    sends(STOP);
+    begins(tmini_request_health(&rig.lidar));
+}
+
+void test_bytes_behind_a_reply_make_the_state_unknown(void)
+{
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    rig_feed_health(0, 0);
+    rig_feed_byte(0x55);
+    polls_to(TMINI_EVENT_HEALTH);
+    polls_to(TMINI_EVENT_NONE);
+    is_in(TMINI_STATE_UNKNOWN);
+}
+
+/* ---- Each command and its reply ---- */
+
+void test_info_is_what_the_reply_says(void)
+{
+    /* 151, firmware 1.2 with the minor number first (section 9.4), hardware 1, 16 digits. */
+    static const uint8_t reply[] = { 0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x97, 0x02,
+                                     0x01, 0x01, 2,    0,    2,    5,    0,    4,    2,
+                                     4,    0,    0,    0,    9,    0,    1,    9,    4 };
+
+    rig_go_idle();
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    is_in(TMINI_STATE_BUSY);
+    rig_feed(reply, sizeof reply);
+    polls_to(TMINI_EVENT_INFO);
+    is_in(TMINI_STATE_IDLE);
+    const tmini_info_t *const info = tmini_info(&rig.lidar);
+    TEST_ASSERT_EQUAL_UINT8(151, info->model);
+    TEST_ASSERT_EQUAL_UINT8(1, info->firmware_major);
+    TEST_ASSERT_EQUAL_UINT8(2, info->firmware_minor);
+    TEST_ASSERT_EQUAL_UINT8(1, info->hardware);
+    TEST_ASSERT_EQUAL_UINT8_ARRAY(&reply[11], info->serial, 16);
+}
+
+void test_health_is_what_the_reply_says(void)
+{
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    rig_feed_health(TMINI_FAULT_ENCODER | TMINI_FAULT_LD, 0x1234);
+    polls_to(TMINI_EVENT_HEALTH);
+    is_in(TMINI_STATE_IDLE);
+    TEST_ASSERT_EQUAL_HEX8(0x12, tmini_health(&rig.lidar)->faults);
+    TEST_ASSERT_EQUAL_HEX16(0x1234, tmini_health(&rig.lidar)->error_code);
+}
+
+void test_the_frequency_is_what_the_reply_says(void)
+{
+    rig_go_idle();
+    sends(GET_FREQUENCY);
+    begins(tmini_request_frequency(&rig.lidar));
+    rig_feed_frequency(720);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    is_in(TMINI_STATE_IDLE);
+    TEST_ASSERT_EQUAL_UINT16(720, tmini_frequency_chz(&rig.lidar));
+}
+
+void test_after_a_reboot_the_state_is_unknown_until_the_next_command(void)
+{
+    rig_go_idle();
+    sends(REBOOT);
+    begins(tmini_reboot(&rig.lidar));
+    is_in(TMINI_STATE_BUSY);
+    passes(5000);
+    polls_to(TMINI_EVENT_REBOOTED);
+    is_in(TMINI_STATE_UNKNOWN);
+}
+
+void test_packets_while_the_lidar_reboots_are_no_scan(void)
+{
+    rig_go_idle();
+    sends(REBOOT);
+    begins(tmini_reboot(&rig.lidar));
+    rig_feed_start_packet(1000);
+    passes(5000);
+    polls_to(TMINI_EVENT_REBOOTED);
+}
+
+void test_scanning_begins_with_the_first_packet_after_the_start_reply(void)
+{
+    rig_go_idle();
+    sends(START);
+    begins(tmini_start(&rig.lidar));
+    is_in(TMINI_STATE_STARTING);
+    passes(5);
+    rig_feed_scan_reply();
+    polls_to(TMINI_EVENT_NONE);
+    is_in(TMINI_STATE_STARTING);
+    passes(400);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+    is_in(TMINI_STATE_SCANNING);
+}
+
+void test_a_packet_means_scanning_even_if_the_start_reply_was_lost(void)
+{
+    rig_go_starting();
+    passes(200);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+    is_in(TMINI_STATE_SCANNING);
+}
+
+void test_the_start_reply_may_come_behind_the_first_packet(void)
+{
+    rig_go_starting();
+    rig_feed_point_packet(1000);
+    rig_feed_scan_reply();
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+    passes(999);
+    is_in(TMINI_STATE_SCANNING);
+}
+
+void test_stopping_ends_when_the_line_is_quiet(void)
+{
+    rig_go_scanning();
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    is_in(TMINI_STATE_STOPPING);
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+    is_in(TMINI_STATE_IDLE);
+}
+
+void test_a_second_stop_while_stopping_sends_nothing(void)
+{
+    rig_go_scanning();
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    passes(20);
+    begins(tmini_stop(&rig.lidar));
+    passes(30);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
+void test_stop_aborts_a_query(void)
+{
+    rig_go_idle();
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    polls_to(TMINI_EVENT_FAILED);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ABORTED, tmini_failure(&rig.lidar));
+    is_in(TMINI_STATE_STOPPING);
+    rig_feed_info(); /* Nobody waits for it any more. */
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
+void test_a_command_swallows_the_end_of_the_one_before_that_nobody_polled_for(void)
+{
+    sends_both_taking(STOP, -1);
+    begins(tmini_request_info(&rig.lidar)); /* Fails at once, */
+    sends(STOP);
+    begins(tmini_request_info(&rig.lidar)); /* which would look like the end of this one. */
+    passes(50);
+}
+
+/* ---- Replies: the awaited one only ---- */
+
+void test_a_frequency_is_not_taken_for_device_information_though_the_type_is_the_same(void)
+{
+    rig_go_idle();
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    rig_feed_frequency(600);
+    passes(10);
+    rig_feed_info();
+    polls_to(TMINI_EVENT_INFO);
+}
+
+void test_device_information_is_not_taken_for_a_frequency_though_the_type_is_the_same(void)
+{
+    rig_go_idle();
+    sends(GET_FREQUENCY);
+    begins(tmini_request_frequency(&rig.lidar));
+    rig_feed_info();
+    passes(10);
+    rig_feed_frequency(600);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    TEST_ASSERT_EQUAL_UINT16(600, tmini_frequency_chz(&rig.lidar));
+}
+
+void test_a_reply_that_nobody_asked_for_is_skipped(void)
+{
+    rig_go_idle();
+    rig_feed_info();
+    passes(10);
+}
+
+void test_a_reply_that_comes_late_answers_the_repeated_question(void)
+{
+    rig_go_idle();
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_INFO);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_info();
+    polls_to(TMINI_EVENT_INFO);
+    is_in(TMINI_STATE_UNKNOWN); /* Its own reply may still come. */
+}
+
+void test_a_reply_that_comes_while_the_line_is_being_hushed_is_not_taken(void)
+{
+    rig_go_idle();
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_info();
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_INFO);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_info();
+    polls_to(TMINI_EVENT_INFO);
+}
+
+static void asks_in_vain(uint8_t code)
+{
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(code);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_a_question_without_an_answer_is_asked_three_times(void)
+{
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    asks_in_vain(GET_HEALTH);
+    asks_in_vain(GET_HEALTH);
+    passes(2000);
+    fails_with(TMINI_ERROR_TIMEOUT);
+    TEST_ASSERT_EQUAL_UINT(3, timeouts());
+}
+
+void test_each_command_has_all_its_attempts(void)
+{
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    asks_in_vain(GET_HEALTH);
+    rig_feed_health(0, 0);
+    polls_to(TMINI_EVENT_HEALTH);
+
+    sends(STOP);
+    begins(tmini_request_health(&rig.lidar));
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_HEALTH);
+    polls_to(TMINI_EVENT_NONE);
+    asks_in_vain(GET_HEALTH);
+    asks_in_vain(GET_HEALTH);
+    rig_feed_health(0, 0);
+    polls_to(TMINI_EVENT_HEALTH);
+}
+
+void test_a_start_that_is_acknowledged_but_brings_no_packet_is_tried_again(void)
+{
+    rig_go_spinning_up();
+    passes(3000);
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(START);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+    TEST_ASSERT_EQUAL_UINT(1, timeouts());
+}
+
+void test_a_single_attempt_is_one_attempt(void)
+{
+    tmini_timing_t timing = tmini_timing_default;
+
+    timing.attempts = 1;
+    rig.config.timing = &timing;
+    rig_init();
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    passes(2000);
+    fails_with(TMINI_ERROR_TIMEOUT);
+}
+
+void test_no_attempts_count_as_one(void)
+{
+    tmini_timing_t timing = tmini_timing_default;
+
+    timing.attempts = 0;
+    rig.config.timing = &timing;
+    rig_init();
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    passes(2000);
+    fails_with(TMINI_ERROR_TIMEOUT);
+}
+
+/* ---- Setting the frequency ---- */
+
+static void begins_to_set(uint16_t target_chz, uint16_t now_chz)
+{
+    rig_go_idle();
+    sends(GET_FREQUENCY);
+    begins(tmini_set_frequency(&rig.lidar, target_chz));
+    is_in(TMINI_STATE_BUSY);
+    rig_feed_frequency(now_chz);
+    polls_to(TMINI_EVENT_NONE);
+}
+
+/* Until the line is quiet, then the next command, which is answered with this frequency. */
+static void steps(uint8_t code, uint16_t answer_chz)
+{
+    passes(50);
+    sends(code);
+    polls_to(TMINI_EVENT_NONE);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+    rig_feed_frequency(answer_chz);
+}
+
+static void arrives_at(uint16_t frequency_chz)
+{
+    polls_to(TMINI_EVENT_FREQUENCY);
+    is_in(TMINI_STATE_IDLE);
+    TEST_ASSERT_EQUAL_UINT16(frequency_chz, tmini_frequency_chz(&rig.lidar));
+}
+
+void test_a_frequency_is_reached_in_steps_and_read_back(void)
+{
+    begins_to_set(820, 600);
+    steps(FASTER_ONE, 700);
+    steps(FASTER_ONE, 800);
+    steps(FASTER_TENTH, 810);
+    steps(FASTER_TENTH, 820);
+    steps(GET_FREQUENCY, 820);
+    arrives_at(820);
+}
+
+void test_the_frequency_goes_down_as_well(void)
+{
+    begins_to_set(680, 900);
+    steps(SLOWER_ONE, 800);
+    steps(SLOWER_ONE, 700);
+    steps(SLOWER_TENTH, 690);
+    steps(SLOWER_TENTH, 680);
+    steps(GET_FREQUENCY, 680);
+    arrives_at(680);
+}
+
+void test_a_coarse_step_may_overshoot_where_that_is_shorter(void)
+{
+    begins_to_set(680, 600);
+    steps(FASTER_ONE, 700);
+    steps(SLOWER_TENTH, 690);
+    steps(SLOWER_TENTH, 680);
+    steps(GET_FREQUENCY, 680);
+    arrives_at(680);
+}
+
+void test_half_a_coarse_step_is_made_in_fine_ones(void)
+{
+    begins_to_set(650, 600);
+    steps(FASTER_TENTH, 610);
+    steps(FASTER_TENTH, 620);
+    steps(FASTER_TENTH, 630);
+    steps(FASTER_TENTH, 640);
+    steps(FASTER_TENTH, 650);
+    steps(GET_FREQUENCY, 650);
+    arrives_at(650);
+}
+
+void test_half_a_coarse_step_down_is_made_in_fine_ones(void)
+{
+    begins_to_set(650, 700);
+    steps(SLOWER_TENTH, 690);
+    steps(SLOWER_TENTH, 680);
+    steps(SLOWER_TENTH, 670);
+    steps(SLOWER_TENTH, 660);
+    steps(SLOWER_TENTH, 650);
+    steps(GET_FREQUENCY, 650);
+    arrives_at(650);
+}
+
+void test_no_step_goes_above_the_highest_frequency(void)
+{
+    begins_to_set(1200, 1110);
+    steps(FASTER_TENTH, 1120);
+}
+
+void test_a_coarse_step_may_lead_to_the_highest_frequency(void)
+{
+    begins_to_set(1200, 1100);
+    steps(FASTER_ONE, 1200);
+    steps(GET_FREQUENCY, 1200);
+    arrives_at(1200);
+}
+
+void test_no_step_goes_below_the_lowest_frequency(void)
+{
+    begins_to_set(600, 690);
+    steps(SLOWER_TENTH, 680);
+}
+
+void test_a_coarse_step_may_lead_to_the_lowest_frequency(void)
+{
+    begins_to_set(600, 700);
+    steps(SLOWER_ONE, 600);
+    steps(GET_FREQUENCY, 600);
+    arrives_at(600);
+}
+
+void test_a_frequency_that_is_set_already_is_read_back_all_the_same_and_not_stepped(void)
+{
+    rig_go_idle();
+    sends(GET_FREQUENCY);
+    begins(tmini_set_frequency(&rig.lidar, 600));
+    rig_feed_frequency(600);
+    arrives_at(600);
+}
+
+void test_off_the_grid_the_nearest_frequency_will_do(void)
+{
+    begins_to_set(650, 633);
+    steps(FASTER_TENTH, 643);
+    steps(FASTER_TENTH, 653);
+    steps(GET_FREQUENCY, 653);
+    arrives_at(653);
+}
+
+void test_half_a_fine_step_off_is_near_enough_on_either_side(void)
+{
+    rig_go_idle();
+    sends(GET_FREQUENCY);
+    begins(tmini_set_frequency(&rig.lidar, 650));
+    rig_feed_frequency(645);
+    arrives_at(645);
+
+    sends(GET_FREQUENCY);
+    begins(tmini_set_frequency(&rig.lidar, 650));
+    rig_feed_frequency(655);
+    arrives_at(655);
+}
+
+void test_more_than_half_a_fine_step_off_is_not_near_enough(void)
+{
+    begins_to_set(650, 656);
+    steps(SLOWER_TENTH, 646);
+    steps(GET_FREQUENCY, 646);
+    arrives_at(646);
+}
+
+void test_less_than_half_a_fine_step_short_is_stepped(void)
+{
+    begins_to_set(650, 644);
+    steps(FASTER_TENTH, 654);
+    steps(GET_FREQUENCY, 654);
+    arrives_at(654);
+}
+
+void test_a_step_is_sent_only_when_the_line_is_quiet_behind_the_reply(void)
+{
+    begins_to_set(700, 600);
+    passes(40);
+    rig_feed_byte(0x00);
+    passes(50);
+    sends(FASTER_ONE);
+    polls_to(TMINI_EVENT_NONE);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_a_line_that_does_not_settle_between_steps_is_hushed(void)
+{
+    begins_to_set(700, 600);
+    for (unsigned ms = 0; ms < 600; ms += 40) {
+        rig_feed_byte(0x00);
+        passes(40);
+    }
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_FREQUENCY);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_a_lost_reply_to_a_step_is_mended_by_reading_the_frequency(void)
+{
+    begins_to_set(700, 600);
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(FASTER_ONE);
+    polls_to(TMINI_EVENT_NONE);
+    asks_in_vain(GET_FREQUENCY);
+    rig_feed_frequency(700); /* The step had been made. */
+    polls_to(TMINI_EVENT_FREQUENCY);
+    TEST_ASSERT_EQUAL_UINT16(700, tmini_frequency_chz(&rig.lidar));
+}
+
+void test_a_second_copy_of_the_last_steps_reply_is_not_taken_for_the_next_steps(void)
+{
+    begins_to_set(800, 600);
+    steps(FASTER_ONE, 700);
+    passes(50);
+    sends(FASTER_ONE);
+    polls_to(TMINI_EVENT_NONE);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_frequency(700); /* Late. */
+    passes(10);
+    rig_feed_frequency(800); /* Its own. */
+    steps(GET_FREQUENCY, 800);
+    arrives_at(800);
+}
+
+void test_a_lidar_that_refuses_to_step_fails_with_the_reply_after_three_attempts(void)
+{
+    begins_to_set(700, 600);
+    for (unsigned attempt = 1; attempt <= 3; attempt++) {
+        steps(FASTER_ONE, 600);
+        passes(2000);
+        if (attempt < 3) {
+            polls_to(TMINI_EVENT_NONE);
+            sends(STOP);
+            polls_to(TMINI_EVENT_NONE);
+            passes(50);
+            polls_to(TMINI_EVENT_NONE);
+            sends(GET_FREQUENCY);
+            polls_to(TMINI_EVENT_NONE);
+            rig_feed_frequency(600);
+            polls_to(TMINI_EVENT_NONE);
+        }
+    }
+    fails_with(TMINI_ERROR_REPLY);
+}
+
+void test_a_lidar_that_falls_silent_after_refusing_a_step_fails_with_a_timeout(void)
+{
+    begins_to_set(700, 600);
+    steps(FASTER_ONE, 600);
+    asks_in_vain(GET_FREQUENCY);
+    asks_in_vain(GET_FREQUENCY);
+    passes(2000);
+    fails_with(TMINI_ERROR_TIMEOUT);
+}
+
+void test_a_port_that_fails_after_a_refused_step_fails_the_command_with_write(void)
+{
+    begins_to_set(700, 600);
+    steps(FASTER_ONE, 600);
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    sends_both_taking(STOP, -1);
+    fails_with(TMINI_ERROR_WRITE);
+}
+
+void test_a_lidar_that_never_gets_there_fails_with_the_reply_after_twenty_steps(void)
+{
+    begins_to_set(600, 60000);
+    for (unsigned step = 1; step <= 20; step++) {
+        steps(SLOWER_ONE, (uint16_t)(60000 - step));
+    }
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    fails_with(TMINI_ERROR_REPLY);
+}
+
+void test_a_read_back_that_differs_is_stepped_further(void)
+{
+    begins_to_set(700, 600);
+    steps(FASTER_ONE, 700);
+    steps(GET_FREQUENCY, 690);
+    polls_to(TMINI_EVENT_NONE);
+    steps(FASTER_TENTH, 700);
+    steps(GET_FREQUENCY, 700);
+    arrives_at(700);
+}
+
+void test_the_largest_frequency_that_fits_is_reported(void)
+{
+    rig_go_idle();
+    sends(GET_FREQUENCY);
+    begins(tmini_request_frequency(&rig.lidar));
+    rig_feed_frequency(65535);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    TEST_ASSERT_EQUAL_UINT16(65535, tmini_frequency_chz(&rig.lidar));
+}
+
+void test_an_absurd_frequency_fails_the_command(void)
+{
+    rig_go_idle();
+    sends(GET_FREQUENCY);
+    begins(tmini_request_frequency(&rig.lidar));
+    rig_feed_frequency(65536);
+    fails_with(TMINI_ERROR_REPLY);
+}
+
+void test_frequencies_out_of_range_or_between_steps_are_refused_and_nothing_is_sent(void)
+{
+    static const uint16_t refused[] = { 0, 590, 599, 605, 1195, 1201, 1210, 65530, 65535 };
+
+    rig_go_idle();
+    for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
+        TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_set_frequency(&rig.lidar, refused[i]));
+    }
+    is_in(TMINI_STATE_IDLE);
+}
+
+void test_both_ends_of_the_frequency_range_are_accepted(void)
+{
+    rig_go_idle();
+    sends(GET_FREQUENCY);
+    begins(tmini_set_frequency(&rig.lidar, 600));
+    rig_feed_frequency(600);
+    arrives_at(600);
+    sends(GET_FREQUENCY);
+    begins(tmini_set_frequency(&rig.lidar, 1200));
+    rig_feed_frequency(1200);
+    arrives_at(1200);
+}
+
+/* ---- A port that is slow, or fails ---- */
+
+void test_what_the_port_does_not_take_is_offered_again_at_each_poll(void)
+{
+    sends_both_taking(STOP, 0);
+    begins(tmini_stop(&rig.lidar));
+    sends_both_taking(STOP, 0);
+    polls_to(TMINI_EVENT_NONE);
+    sends_both_taking(STOP, 1);
+    polls_to(TMINI_EVENT_NONE);
+    sends_rest_taking(STOP, 0);
+    polls_to(TMINI_EVENT_NONE);
+    sends_rest_taking(STOP, 1);
+    polls_to(TMINI_EVENT_NONE);
+    passes(50); /* From when the last byte has left. */
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
+void test_the_wait_for_a_quiet_line_begins_when_the_command_has_left(void)
+{
+    sends_both_taking(STOP, 0);
+    begins(tmini_stop(&rig.lidar));
+    rig.now_ms += 60;
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
+void test_a_port_that_claims_more_than_it_was_given_has_taken_all(void)
+{
+    sends_both_taking(STOP, 3);
+    begins(tmini_stop(&rig.lidar));
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
+void test_a_port_that_fails_fails_the_command_at_once(void)
+{
+    sends_both_taking(STOP, -1);
+    begins(tmini_stop(&rig.lidar));
+    fails_with(TMINI_ERROR_WRITE);
+    TEST_ASSERT_EQUAL_UINT(0, timeouts());
+}
+
+void test_a_port_that_takes_nothing_fails_the_command_after_100_ms(void)
+{
+    sends_both_taking(STOP, 0);
+    begins(tmini_stop(&rig.lidar));
+    rig.now_ms += 99;
+    sends_both_taking(STOP, 0);
+    polls_to(TMINI_EVENT_NONE);
+    rig.now_ms += 1;
+    sends_both_taking(STOP, 0);
+    fails_with(TMINI_ERROR_WRITE);
+}
+
+void test_a_port_that_takes_half_a_command_fails_it_after_100_ms(void)
+{
+    sends_both_taking(STOP, 1);
+    begins(tmini_stop(&rig.lidar));
+    rig.now_ms += 100;
+    sends_rest_taking(STOP, 0);
+    fails_with(TMINI_ERROR_WRITE);
+}
+
+void test_a_command_given_up_is_not_sent_any_further(void)
+{
+    sends_both_taking(STOP, 0);
+    begins(tmini_stop(&rig.lidar));
+    rig.now_ms += 100;
+    sends_both_taking(STOP, 0);
+    fails_with(TMINI_ERROR_WRITE);
+    passes(1000);
+}
+
+void test_the_first_byte_of_a_command_given_up_serves_for_the_next_one(void)
+{
+    rig_go_idle();
+    sends_both_taking(GET_INFO, 1);
+    begins(tmini_request_info(&rig.lidar));
+    sends_rest_taking(STOP, 1);
+    begins(tmini_stop(&rig.lidar));
+    polls_to(TMINI_EVENT_FAILED);
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+}
+
+void test_the_first_byte_serves_for_the_next_command_also_when_the_second_failed(void)
+{
+    rig_go_idle();
+    sends_both_taking(GET_INFO, 1);
+    begins(tmini_request_info(&rig.lidar));
+    sends_rest_taking(GET_INFO, -1);
+    fails_with(TMINI_ERROR_WRITE);
+    sends_rest_taking(STOP, 1);
+    begins(tmini_request_info(&rig.lidar));
+}
+
+void test_a_failing_stop_is_the_end_of_the_command_it_aborts_too(void)
+{
+    rig_go_idle();
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    sends_both_taking(STOP, -1);
+    begins(tmini_stop(&rig.lidar));
+    fails_with(TMINI_ERROR_WRITE);
+    passes(1000);
+}
+
+void test_a_start_that_has_not_left_is_not_sent_into_a_stream_that_is_back(void)
+{
+    rig_go_idle();
+    sends_both_taking(START, 0);
+    begins(tmini_start(&rig.lidar));
+    rig_feed_point_packet(1000); /* The lidar scans already: it had missed the stop. */
+    polls_to(TMINI_EVENT_STARTED);
+    (void)rig_drain();
+    passes(999);
+}
+
+void test_half_a_start_that_has_not_left_is_completed_by_the_next_stop(void)
+{
+    rig_go_idle();
+    sends_both_taking(START, 1);
+    begins(tmini_start(&rig.lidar));
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+    (void)rig_drain();
+    sends_rest_taking(STOP, 1);
+    begins(tmini_stop(&rig.lidar));
+}
+
+void test_the_time_for_a_reply_begins_when_the_command_has_left(void)
+{
+    rig_go_idle();
+    sends_both_taking(GET_INFO, 0);
+    begins(tmini_request_info(&rig.lidar));
+    rig.now_ms += 90;
+    sends(GET_INFO);
+    polls_to(TMINI_EVENT_NONE);
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
