@@ -25,22 +25,21 @@ static uint16_t clockwise_difference(uint16_t from, uint16_t to)
     return (uint16_t)(to + (to < from ? TMINI_TURN_Q6 : 0) - from);
 }
 
-/* The point of the sample that lies `turned` (17 fraction bits) after the first. All three bytes are
- * read before the point, which might overlap them for all the compiler knows, is written. */
+/* The point of the sample that lies `turned` (17 fraction bits) after the first. The sample is read
+ * before the point, which might overlap it for all the compiler knows, is written. */
 static inline void decode(tmini_point_t *point, const uint8_t *sample, uint32_t first_angle,
                           uint32_t turned)
 {
     const uint8_t intensity = sample[0];
-    const unsigned low = sample[1];
-    const unsigned high = sample[2];
+    const unsigned distance_and_flag = sample[1] | (unsigned)sample[2] << 8;
     uint32_t angle = first_angle + (turned >> STEP_BITS);
     if (angle >= TMINI_TURN_Q6) {
         angle -= TMINI_TURN_Q6;
     }
     point->angle_q6 = (uint16_t)angle;
-    point->distance_mm = (uint16_t)(high << 6 | low >> 2);
+    point->distance_mm = (uint16_t)(distance_and_flag >> 2);
     point->intensity = intensity;
-    point->flag = low & 3u;
+    point->flag = distance_and_flag & 3u;
 }
 
 void tmini_packet_open(tmini_packet_t *packet, const tmini_parser_t *parser)

@@ -28,16 +28,13 @@ static bool packet_header_is_plausible(const tmini_parser_t *parser)
     return check_bits && header[LSN] >= 1 && header[LSN] <= (is_start ? 1 : parser->max_samples);
 }
 
-/* XORs the candidate into its own checksum. The words are little-endian, so even header bytes meet
- * the checksum's low byte and odd ones its high byte; of a sample, S1 and S2 meet the low byte and
- * S3 the high one. The checksum itself is among the header bytes: nothing remains if it is right. */
+/* XORs the candidate's 16-bit words: those of the header, and two for each sample. The checksum itself
+ * is among them, so that nothing remains if it is right. */
 static bool checksum_matches(const tmini_parser_t *parser)
 {
-    uint8_t low = 0;
-    uint8_t high = 0;
+    unsigned sum = 0;
     for (size_t i = 0; i < TMINI_PACKET_HEADER_SIZE; i += 2) {
-        low ^= parser->header[i];
-        high ^= parser->header[i + 1];
+        sum ^= parser->header[i] | (unsigned)parser->header[i + 1] << 8;
     }
     const size_t samples = parser->header[LSN];
     for (size_t done = 0; done < samples;) {
@@ -47,12 +44,11 @@ static bool checksum_matches(const tmini_parser_t *parser)
             tmini_ring_samples(parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
         done += count;
         for (size_t left = count; left > 0; left--) {
-            low ^= sample[0] ^ sample[1];
-            high ^= sample[2];
+            sum ^= sample[0] ^ (sample[1] | (unsigned)sample[2] << 8);
             sample += TMINI_SAMPLE_SIZE;
         }
     }
-    return (low | high) == 0;
+    return sum == 0;
 }
 
 /* Of the length only the lowest byte can be other than 0: no reply is longer than 20 bytes. When
