@@ -15,11 +15,12 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=test/support/environment.sh
 . "$root/test/support/environment.sh"
 
-# Compilers and emulators for the checks labelled compile, bigendian and int16.
+# Compilers and emulators for the checks labelled compile and for those on other machines.
 wish_for_machines() {
     wish clang clang
     wish g++ g++
     wish arm-none-eabi-gcc gcc-arm-none-eabi
+    wish qemu-system-arm qemu-system-arm
     wish /usr/lib/arm-none-eabi/newlib libnewlib-arm-none-eabi
     wish riscv64-unknown-elf-gcc gcc-riscv64-unknown-elf
     wish /usr/lib/picolibc/riscv64-unknown-elf picolibc-riscv64-unknown-elf
