@@ -15,7 +15,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=test/support/environment.sh
 . "$root/test/support/environment.sh"
 
-# Compilers and emulators for the checks labelled compile, bigendian and int16.
+# Compilers and emulators for the checks labelled compile, bigendian, int16 and rv32imc.
 wish_for_machines() {
     wish clang clang
     wish g++ g++
@@ -28,6 +28,7 @@ wish_for_machines() {
     wish simavr simavr
     wish powerpc-linux-gnu-gcc gcc-powerpc-linux-gnu
     wish /usr/powerpc-linux-gnu/include/stdio.h libc6-dev-powerpc-cross
+    wish qemu-system-riscv32 qemu-system-misc
     is_present qemu-ppc-static || wish qemu-ppc qemu-user
 }
 

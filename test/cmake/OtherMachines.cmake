@@ -76,4 +76,7 @@ if(TMINI_TEST_MACHINES)
     tmini_add_machine(int16
         TOOLCHAIN avr-atmega2560.cmake BUILD_TYPE MinSizeRel
         PROGRAMS avr-gcc simavr)
+    tmini_add_machine(rv32imc
+        TOOLCHAIN rv32imc.cmake BUILD_TYPE MinSizeRel
+        PROGRAMS riscv64-unknown-elf-gcc qemu-system-riscv32)
 endif()
