@@ -22,6 +22,7 @@ wish_for_fuzzer() {
 }
 
 # Compilers and emulators for the checks labelled compile and for those on other machines.
+# Compilers and emulators for the checks labelled compile, bigendian, int16 and rv32imc.
 wish_for_machines() {
     wish clang clang
     wish_for_fuzzer
@@ -36,6 +37,7 @@ wish_for_machines() {
     wish simavr simavr
     wish powerpc-linux-gnu-gcc gcc-powerpc-linux-gnu
     wish /usr/powerpc-linux-gnu/include/stdio.h libc6-dev-powerpc-cross
+    wish qemu-system-riscv32 qemu-system-misc
     is_present qemu-ppc-static || wish qemu-ppc qemu-user
 }
 

@@ -81,4 +81,7 @@ if(TMINI_TEST_MACHINES)
             TOOLCHAIN ${processor}.cmake BUILD_TYPE MinSizeRel
             PROGRAMS arm-none-eabi-gcc qemu-system-arm)
     endforeach()
+    tmini_add_machine(rv32imc
+        TOOLCHAIN rv32imc.cmake BUILD_TYPE MinSizeRel
+        PROGRAMS riscv64-unknown-elf-gcc qemu-system-riscv32)
 endif()

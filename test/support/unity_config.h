@@ -42,6 +42,10 @@
 #error "this machine was chosen for its 16-bit int, which it has not"
 #endif
 
+#if defined(TMINI_TEST_RV32IMC) && (__riscv_xlen != 32 || !defined(__riscv_compressed))
+#error "this machine was chosen for being rv32imc, which it is not"
+#endif
+
 #if defined(TMINI_TEST_BIG_ENDIAN) && __BYTE_ORDER__ != __ORDER_BIG_ENDIAN__
 #error "this machine was chosen for being big-endian, which it is not"
 #endif
