@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Ring and parser as a program would use them, for tests: whatever is fed and read, the receiver
+ * asserts each time that every byte is accounted for. */
+
+#ifndef RECEIVER_H
+#define RECEIVER_H
+
+#include "random.h"
+#include "reference_decoder.h"
+#include "tmini/tmini_packet.h"
+
+typedef struct {
+    tmini_ring_t ring;
+    tmini_parser_t parser;
+    tmini_packet_t packet; /* Open when receiver_next() has returned a packet. */
+    uint8_t *memory;
+    size_t size;
+    size_t position;   /* Where the DMA writes next. */
+    uint32_t received; /* Bytes that have come, including refused ones. */
+    bool dma;
+} receiver_t;
+
+/* `size` is a power of two; the memory is the caller's. */
+void receiver_open(receiver_t *receiver, uint8_t *memory, size_t size, uint8_t max_samples);
+void receiver_open_dma(receiver_t *receiver, uint8_t *memory, size_t size, uint8_t max_samples);
+
+/* Lets the ring's indices stand where they would be after `count` bytes. Before the first byte. */
+void receiver_age(receiver_t *receiver, size_t count);
+
+/* How many bytes may be fed without loss. */
+size_t receiver_room(const receiver_t *receiver);
+
+/* Bytes come in: through tmini_ring_write(), or as a DMA that publishes its position every quarter
+ * of the ring. */
+void receiver_feed(receiver_t *receiver, const uint8_t *bytes, size_t count);
+
+/* tmini_parser_next() and, for a packet, tmini_packet_open(). */
+tmini_frame_t receiver_next(receiver_t *receiver);
+
+/* Where the frame delivered last begins, counted from the first byte; not if there were overruns. */
+size_t receiver_frame_offset(const receiver_t *receiver);
+
+void receiver_abandon(receiver_t *receiver);
+
+/* No more bytes come: the next frame in what is left, after abandoning what must be. */
+tmini_frame_t receiver_next_at_end(receiver_t *receiver);
+
+void receiver_await(receiver_t *receiver, uint8_t mode, uint8_t type, uint8_t length);
+
+/* How receiver_compare() feeds the bytes. */
+typedef struct {
+    size_t chunk;                     /* Bytes at a time; 0: random, by `random`. */
+    random_t *random;                 /* May be NULL if chunk is not 0. */
+    const reference_reply_t *awaited; /* From the beginning; or NULL. */
+} receiver_course_t;
+
+/* Feeds the bytes without loss, and asserts that frames, points and counters are those of the
+ * reference decoder. Returns the reference's counters. */
+reference_counts_t receiver_compare(receiver_t *receiver, const receiver_course_t *course,
+                                    const uint8_t *bytes, size_t size);
+
+#endif

@@ -1,0 +1,1186 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The parser: which packets and replies it finds in a stream, however the bytes come and whatever
+ * has happened to them. receiver.c asserts at every step that no byte is unaccounted for. */
+
+#include "receiver.h"
+#include "stream.h"
+
+#include "unity.h"
+
+#include <string.h>
+
+static uint8_t memory[1024];
+static uint8_t bytes[900];
+static stream_t stream;
+static receiver_t receiver;
+
+/* Section 5: the manual's packet, 19 samples, 67 bytes. */
+static const uint8_t manual_packet[67] = {
+    0xAA, 0x55, 0x20, 0x13, 0x95, 0xA9, 0x63, 0x00, 0x5A, 0xE8, 0x01, 0x08, 0xB9, 0x01,
+    0xAC, 0xB8, 0x01, 0xF8, 0xB6, 0x01, 0x88, 0xB5, 0x01, 0x58, 0xAE, 0x01, 0xC0, 0xAB,
+    0x01, 0x04, 0xAA, 0x01, 0x78, 0xA9, 0x01, 0x34, 0xA9, 0x01, 0xC4, 0xAD, 0x01, 0x34,
+    0xAF, 0x01, 0x78, 0xAE, 0x01, 0x2C, 0xAD, 0x01, 0x02, 0x00, 0x00, 0x62, 0xAD, 0x01,
+    0x60, 0xAD, 0x01, 0xF0, 0xAB, 0x01, 0x88, 0xAD, 0x01, 0xFE, 0xAD};
+
+/* Section 9.14: a start packet of a real unit. */
+static const uint8_t start_packet[13] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
+                                         0x00, 0x9E, 0x56, 0x15, 0x54, 0x02};
+
+/* Section 4, and the replies of real units. */
+static const uint8_t start_reply[7] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
+static const uint8_t health_reply[10] = {0xA5, 0x5A, 0x03, 0, 0, 0, 0x06, 0x20, 0x11, 0x22};
+static const uint8_t frequency_reply[11] = {0xA5, 0x5A, 0x04, 0, 0, 0, 0x04, 0x58, 0x02, 0, 0};
+static const uint8_t info_reply[27] = {0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, 0x97, 2, 1, 1, 2, 0, 2,
+                                       5,    0,    4,    2, 4, 0, 0,    0,    9, 0, 1, 9, 4};
+
+void setUp(void)
+{
+    stream = (stream_t){bytes, 0, sizeof bytes};
+    memset(memory, 0, sizeof memory);
+    receiver_open(&receiver, memory, 256, 0);
+}
+
+void tearDown(void) {}
+
+static void feed(const uint8_t *more, size_t count)
+{
+    receiver_feed(&receiver, more, count);
+}
+
+static void feed_byte(uint8_t byte)
+{
+    receiver_feed(&receiver, &byte, 1);
+}
+
+static void expect_frame(tmini_frame_t expected)
+{
+    TEST_ASSERT_EQUAL_INT(expected, receiver_next(&receiver));
+}
+
+/* A packet of `count` samples, and where it began. */
+static void expect_packet(uint8_t count, size_t offset)
+{
+    expect_frame(TMINI_FRAME_PACKET);
+    TEST_ASSERT_EQUAL_UINT8(count, receiver.packet.count);
+    TEST_ASSERT_EQUAL_UINT(offset, receiver_frame_offset(&receiver));
+}
+
+static void expect_nothing(void)
+{
+    expect_frame(TMINI_FRAME_NONE);
+}
+
+static void expect_skipped(uint32_t count)
+{
+    TEST_ASSERT_EQUAL_UINT32(count, receiver.parser.counters.bytes_skipped);
+}
+
+static void expect_pending(size_t count)
+{
+    TEST_ASSERT_EQUAL_UINT(count, tmini_parser_pending(&receiver.parser));
+}
+
+/* ---------------------------------------------------------------------------------------- init */
+
+static tmini_status_t init_with(size_t ring_size, bool dma, uint8_t max_samples)
+{
+    tmini_ring_t ring;
+    tmini_parser_t parser;
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, ring_size, dma));
+    return tmini_parser_init(&parser, &ring, max_samples);
+}
+
+void test_null_pointers_are_an_argument_error(void)
+{
+    tmini_parser_t parser;
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_parser_init(NULL, &receiver.ring, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_parser_init(&parser, NULL, 0));
+}
+
+void test_a_ring_that_failed_to_initialise_is_an_argument_error(void)
+{
+    tmini_parser_t parser;
+    tmini_ring_t ring;
+    (void)tmini_ring_init(&ring, memory, 0, false);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_parser_init(&parser, &ring, 1));
+}
+
+void test_the_ring_must_hold_the_largest_packet(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(128, false, 0)); /* 80: 250 bytes. */
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(256, false, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(256, false, 82)); /* 256 bytes. */
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(256, false, 83));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(512, false, 255)); /* 775 bytes. */
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(1024, false, 255));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(8, false, 1)); /* 13 bytes. */
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(16, false, 1));
+}
+
+void test_half_a_dma_ring_must_hold_the_largest_packet(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(256, true, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(512, true, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(32, true, 2)); /* 16 bytes. */
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(32, true, 3));
+}
+
+/* ------------------------------------------------------------------------------------- packets */
+
+void test_the_manuals_packet_is_found(void)
+{
+    feed(manual_packet, 67);
+    expect_packet(19, 0);
+    TEST_ASSERT_EQUAL_UINT32(1, receiver.parser.counters.packets);
+    TEST_ASSERT_EQUAL_UINT32(67, receiver.parser.counters.bytes_in_packets);
+    TEST_ASSERT_EQUAL_UINT32(0, receiver.parser.counters.checksum_errors);
+    expect_skipped(0);
+    expect_pending(0);
+    expect_nothing();
+}
+
+void test_a_real_units_start_packet_is_found(void)
+{
+    feed(start_packet, 13);
+    expect_packet(1, 0);
+    TEST_ASSERT_TRUE(tmini_packet_is_start(&receiver.packet));
+}
+
+void test_nothing_is_found_where_nothing_has_come(void)
+{
+    expect_nothing();
+    expect_pending(0);
+}
+
+void test_a_packet_is_delivered_with_its_last_byte_and_not_before(void)
+{
+    for (size_t i = 0; i < 66; i++) {
+        feed_byte(manual_packet[i]);
+        expect_nothing();
+        expect_pending(i + 1);
+    }
+    feed_byte(manual_packet[66]);
+    expect_packet(19, 0);
+    expect_pending(0);
+}
+
+void test_packets_in_a_row_are_delivered_one_at_a_time(void)
+{
+    feed(start_packet, 13);
+    feed(manual_packet, 67);
+    feed(start_packet, 13);
+    expect_packet(1, 0);
+    expect_pending(80);
+    expect_packet(19, 13);
+    expect_pending(13);
+    expect_packet(1, 80);
+    expect_nothing();
+    TEST_ASSERT_EQUAL_UINT32(3, receiver.parser.counters.packets);
+    TEST_ASSERT_EQUAL_UINT32(93, receiver.parser.counters.bytes_in_packets);
+}
+
+void test_a_delivered_packet_keeps_its_place_until_the_next_call(void)
+{
+    feed(manual_packet, 67);
+    expect_packet(19, 0);
+    TEST_ASSERT_EQUAL_UINT(67, tmini_ring_unread(&receiver.ring));
+    TEST_ASSERT_EQUAL_UINT(189, receiver_room(&receiver));
+    expect_nothing();
+    TEST_ASSERT_EQUAL_UINT(256, receiver_room(&receiver));
+}
+
+void test_garbage_before_and_between_packets_is_skipped_and_counted(void)
+{
+    const uint8_t garbage[] = {0x00, 0x55, 0xAA, 0xA5, 0x5A, 0xAA, 0x54, 0x55, 0xFF};
+    feed(garbage, sizeof garbage);
+    feed(manual_packet, 67);
+    feed(garbage, sizeof garbage);
+    feed(manual_packet, 67);
+    expect_packet(19, 9);
+    expect_skipped(9);
+    expect_packet(19, 85);
+    expect_skipped(18);
+}
+
+void test_garbage_is_skipped_as_soon_as_it_cannot_begin_a_packet(void)
+{
+    const uint8_t garbage[] = {0x01, 0x55, 0x5A, 0xA5};
+    feed(garbage, sizeof garbage);
+    expect_nothing();
+    expect_skipped(4);
+    expect_pending(0);
+    feed_byte(0xAA);
+    expect_nothing();
+    expect_pending(1);
+    feed_byte(0x54);
+    expect_nothing();
+    expect_skipped(6);
+    expect_pending(0);
+}
+
+void test_aa_before_a_packet_does_not_hide_it(void)
+{
+    feed_byte(0xAA);
+    feed_byte(0xAA);
+    feed(start_packet, 13);
+    expect_packet(1, 2);
+    expect_skipped(2);
+}
+
+void test_the_gap_before_a_packet_is_told_with_its_last_byte(void)
+{
+    feed(start_packet, 13);
+    feed_byte(0x11);
+    feed_byte(0x22);
+    feed(start_packet, 13);
+    feed(start_packet, 13);
+    feed_byte(0xAA);
+    feed(start_packet, 13);
+    expect_packet(1, 0);
+    TEST_ASSERT_EQUAL_UINT16(0, receiver.packet.gap);
+    expect_packet(1, 15);
+    TEST_ASSERT_EQUAL_UINT16(2, receiver.packet.gap);
+    TEST_ASSERT_EQUAL_HEX8(0x22, receiver.packet.stray);
+    expect_packet(1, 28);
+    TEST_ASSERT_EQUAL_UINT16(0, receiver.packet.gap);
+    expect_packet(1, 42);
+    TEST_ASSERT_EQUAL_UINT16(1, receiver.packet.gap);
+    TEST_ASSERT_EQUAL_HEX8(0xAA, receiver.packet.stray);
+}
+
+/* In pieces that fit beside a frame delivered before. */
+static void skip_garbage(uint32_t count)
+{
+    const uint32_t skipped = receiver.parser.counters.bytes_skipped;
+    memset(bytes, 0, 200);
+    for (uint32_t left = count; left > 0;) {
+        const size_t piece = left < 200 ? (size_t)left : 200;
+        feed(bytes, piece);
+        expect_nothing();
+        left -= (uint32_t)piece;
+    }
+    expect_skipped(skipped + count);
+}
+
+void test_a_gap_is_counted_up_to_65535(void)
+{
+    skip_garbage(65534);
+    feed(start_packet, 13);
+    expect_packet(1, 65534);
+    TEST_ASSERT_EQUAL_UINT16(65534, receiver.packet.gap);
+    skip_garbage(65535);
+    feed(start_packet, 13);
+    expect_frame(TMINI_FRAME_PACKET);
+    TEST_ASSERT_EQUAL_UINT16(65535, receiver.packet.gap);
+    skip_garbage(65537);
+    feed(start_packet, 13);
+    expect_frame(TMINI_FRAME_PACKET);
+    TEST_ASSERT_EQUAL_UINT16(65535, receiver.packet.gap);
+}
+
+void test_a_reply_ends_a_gap_too(void)
+{
+    receiver_await(&receiver, 1, 0x81, 0);
+    feed_byte(0x77);
+    feed(start_reply, 7);
+    feed(start_packet, 13);
+    expect_frame(TMINI_FRAME_REPLY);
+    expect_packet(1, 8);
+    TEST_ASSERT_EQUAL_UINT16(0, receiver.packet.gap);
+}
+
+/* ------------------------------------------------------------------------- what is no packet */
+
+/* Whether the packet in `bytes` is one when it is followed by another. */
+static void expect_rejected(uint32_t checksum_errors)
+{
+    receiver_open(&receiver, memory, 256, 0);
+    feed(bytes, stream.size);
+    feed(start_packet, 13);
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
+    TEST_ASSERT_EQUAL_UINT(stream.size, receiver_frame_offset(&receiver));
+    TEST_ASSERT_EQUAL_UINT32(checksum_errors, receiver.parser.counters.checksum_errors);
+    expect_skipped((uint32_t)stream.size);
+}
+
+void test_a_wrong_checksum_costs_one_byte_and_is_counted(void)
+{
+    stream_add(&stream, manual_packet, 67);
+    bytes[8] ^= 0x01;
+    expect_rejected(1);
+    bytes[8] ^= 0x01;
+    bytes[9] ^= 0x80;
+    expect_rejected(1);
+}
+
+void test_each_part_of_a_packet_counts_in_its_checksum(void)
+{
+    static const uint8_t places[] = {2, 5, 7, 10, 11, 12, 64, 65, 66};
+    for (size_t i = 0; i < sizeof places; i++) {
+        stream.size = 0;
+        stream_add(&stream, manual_packet, 67);
+        bytes[places[i]] ^= 0x40;
+        expect_rejected(1);
+    }
+}
+
+void test_a_packet_without_samples_is_none(void)
+{
+    const encode_packet_t packet = {0x20, 0, 100, 100, NULL};
+    stream.size = encode_packet(bytes, &packet);
+    TEST_ASSERT_EQUAL_UINT(10, stream.size);
+    expect_rejected(0);
+}
+
+void test_a_check_bit_of_0_makes_no_packet_even_with_a_right_checksum(void)
+{
+    (void)stream_add_packet(&stream, 0, 3, 100, 200);
+    bytes[4] &= 0xFE;
+    encode_seal(bytes);
+    expect_rejected(0);
+    bytes[4] |= 1;
+    bytes[6] &= 0xFE;
+    encode_seal(bytes);
+    expect_rejected(0);
+}
+
+void test_a_start_packet_of_two_samples_is_none(void)
+{
+    (void)stream_add_packet(&stream, 0x79, 2, 100, 200);
+    expect_rejected(0);
+}
+
+void test_a_point_packet_of_one_sample_is_a_packet(void)
+{
+    (void)stream_add_packet(&stream, 0x78, 1, 17, 10); /* Section 9.6: FSA > LSA. */
+    feed(bytes, stream.size);
+    expect_packet(1, 0);
+    TEST_ASSERT_FALSE(tmini_packet_is_start(&receiver.packet));
+    TEST_ASSERT_EQUAL_UINT16(17, receiver.packet.first_angle_q6);
+    TEST_ASSERT_EQUAL_UINT16(10, receiver.packet.last_angle_q6);
+}
+
+static bool accepts(uint8_t max_samples, uint8_t samples)
+{
+    stream.size = 0;
+    (void)stream_add_packet(&stream, 0, samples, 0, 1000);
+    receiver_open(&receiver, memory, 1024, max_samples);
+    feed(bytes, stream.size);
+    return receiver_next_at_end(&receiver) == TMINI_FRAME_PACKET;
+}
+
+void test_packets_may_have_up_to_the_configured_number_of_samples(void)
+{
+    TEST_ASSERT_TRUE(accepts(1, 1));
+    TEST_ASSERT_FALSE(accepts(1, 2));
+    TEST_ASSERT_TRUE(accepts(40, 40));
+    TEST_ASSERT_FALSE(accepts(40, 41));
+    TEST_ASSERT_TRUE(accepts(80, 80));
+    TEST_ASSERT_FALSE(accepts(80, 81));
+    TEST_ASSERT_TRUE(accepts(254, 254));
+    TEST_ASSERT_FALSE(accepts(254, 255));
+    TEST_ASSERT_TRUE(accepts(255, 255));
+}
+
+void test_unless_configured_packets_may_have_up_to_80_samples(void)
+{
+    TEST_ASSERT_TRUE(accepts(0, 80));
+    TEST_ASSERT_FALSE(accepts(0, 81));
+}
+
+void test_a_packet_that_fills_the_ring_is_found(void)
+{
+    receiver_open(&receiver, memory, 256, 82);
+    (void)stream_add_packet(&stream, 0, 82, 0, 5000);
+    feed(bytes, 255);
+    expect_nothing();
+    TEST_ASSERT_EQUAL_UINT(1, receiver_room(&receiver));
+    feed(&bytes[255], 1);
+    expect_packet(82, 0);
+}
+
+/* ----------------------------------------------------------------------------------- corruption */
+
+/* A stream with all that a revolution has, short: start packets, LastCRC, a point packet of one
+ * sample with FSA > LSA. Places and sizes are those of its packets. */
+#define PACKETS 6
+static const uint8_t places[PACKETS] = {0, 13, 32, 49, 62, 75};
+static const uint8_t sizes[PACKETS] = {13, 19, 16, 13, 13, 16};
+
+static void make_turn(void)
+{
+    stream.size = 0;
+    (void)stream_add_packet(&stream, 0x79, 1, 0, 0);
+    (void)stream_add_packet(&stream, 0x40, 3, 34, 102);
+    (void)stream_add_packet(&stream, 0x00, 2, 22900, 17);
+    stream_add_byte(&stream, 0xAA); /* LastCRC. */
+    (void)stream_add_packet(&stream, 0x7B, 1, 17, 17);
+    (void)stream_add_packet(&stream, 0x40, 1, 57, 50);
+    (void)stream_add_packet(&stream, 0x00, 2, 81, 115);
+    TEST_ASSERT_EQUAL_UINT(91, stream.size);
+}
+
+/* A bit for each packet of the turn that is found at its place, moved by `moved` if it lies at
+ * `from` or beyond. */
+static unsigned found_packets(size_t from, int moved)
+{
+    unsigned found = 0;
+    receiver_open(&receiver, memory, 256, 0);
+    feed(bytes, stream.size);
+    while (receiver_next_at_end(&receiver) != TMINI_FRAME_NONE) {
+        for (unsigned i = 0; i < PACKETS; i++) {
+            const size_t place = places[i] + (size_t)(places[i] >= from ? moved : 0);
+            found |= (unsigned)(receiver_frame_offset(&receiver) == place) << i;
+        }
+    }
+    return found;
+}
+
+/* All packets but the one that has the byte at `place`; 0x3F are all. */
+static unsigned all_but_hit(size_t place)
+{
+    unsigned found = 0x3F;
+    for (unsigned i = 0; i < PACKETS; i++) {
+        if (place >= places[i] && place < (size_t)places[i] + sizes[i]) {
+            found &= ~(1u << i);
+        }
+    }
+    return found;
+}
+
+/* Frames, points and counters are those of the reference decoder, fed in chunks of that size. */
+static void expect_like_reference(size_t chunk)
+{
+    const receiver_course_t course = {.chunk = chunk};
+    receiver_open(&receiver, memory, 256, 0);
+    (void)receiver_compare(&receiver, &course, bytes, stream.size);
+}
+
+void test_an_undamaged_stream_is_found_whole(void)
+{
+    make_turn();
+    TEST_ASSERT_EQUAL_HEX(0x3F, found_packets(0, 0));
+    expect_skipped(1);
+}
+
+void test_a_changed_byte_costs_no_packet_but_its_own(void)
+{
+    static const uint8_t values[] = {0x00, 0x01, 0x02, 0x50, 0x55, 0xA5, 0xAA, 0xFF};
+    make_turn();
+    for (size_t place = 0; place < stream.size; place++) {
+        const uint8_t original = bytes[place];
+        for (size_t i = 0; i < sizeof values; i++) {
+            if (values[i] != original) {
+                bytes[place] = values[i];
+                TEST_ASSERT_EQUAL_HEX(all_but_hit(place), found_packets(0, 0));
+                expect_like_reference(1 + place % 40);
+            }
+        }
+        bytes[place] = original;
+    }
+}
+
+void test_a_flipped_bit_costs_no_packet_but_its_own(void)
+{
+    make_turn();
+    for (size_t place = 0; place < stream.size; place++) {
+        for (unsigned bit = 0; bit < 8; bit++) {
+            bytes[place] ^= (uint8_t)(1u << bit);
+            TEST_ASSERT_EQUAL_HEX(all_but_hit(place), found_packets(0, 0));
+            bytes[place] ^= (uint8_t)(1u << bit);
+        }
+    }
+}
+
+void test_a_lost_byte_costs_no_packet_but_its_own(void)
+{
+    for (size_t place = 0; place < 91; place++) {
+        make_turn();
+        memmove(&bytes[place], &bytes[place + 1], stream.size - place - 1);
+        stream.size--;
+        TEST_ASSERT_EQUAL_HEX(all_but_hit(place), found_packets(place + 1, -1));
+        expect_like_reference(7);
+    }
+}
+
+void test_an_extra_byte_costs_no_packet_but_the_one_it_comes_into(void)
+{
+    static const uint8_t values[] = {0x00, 0x01, 0x55, 0xA5, 0xAA, 0xFF};
+    for (size_t place = 0; place <= 91; place++) {
+        for (size_t i = 0; i < sizeof values; i++) {
+            make_turn();
+            memmove(&bytes[place + 1], &bytes[place], stream.size - place);
+            bytes[place] = values[i];
+            stream.size++;
+            unsigned expected = 0x3F;
+            for (unsigned k = 0; k < PACKETS; k++) {
+                if (place > places[k] && place < (size_t)places[k] + sizes[k]) {
+                    expected &= ~(1u << k);
+                }
+            }
+            /* The same byte once more is no change to it: the packet stands one byte later. */
+            const unsigned found = found_packets(place, 1);
+            TEST_ASSERT_EQUAL_HEX(expected, found & expected);
+            expect_like_reference(5);
+        }
+    }
+}
+
+void test_a_stream_cut_anywhere_keeps_its_whole_packets(void)
+{
+    for (size_t size = 0; size <= 91; size++) {
+        unsigned expected = 0;
+        make_turn();
+        stream.size = size;
+        for (unsigned i = 0; i < PACKETS; i++) {
+            expected |= (unsigned)(places[i] + (size_t)sizes[i] <= size) << i;
+        }
+        TEST_ASSERT_EQUAL_HEX(expected, found_packets(0, 0));
+    }
+}
+
+void test_a_packet_cut_anywhere_costs_no_other_packet(void)
+{
+    for (size_t size = 1; size < 67; size++) {
+        stream.size = 0;
+        stream_add(&stream, start_packet, 13);
+        stream_add(&stream, manual_packet, size);
+        stream_add(&stream, start_packet, 13);
+        stream_add(&stream, manual_packet, 67);
+        receiver_open(&receiver, memory, 256, 0);
+        feed(bytes, stream.size);
+        expect_packet(1, 0);
+        TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
+        TEST_ASSERT_EQUAL_UINT(13 + size, receiver_frame_offset(&receiver));
+        expect_packet(19, 26 + size);
+        expect_skipped((uint32_t)size);
+    }
+}
+
+/* Every LSN that a packet of 19 samples can be damaged to. */
+static void expect_next_packets_for_every_lsn(uint8_t max_samples)
+{
+    for (unsigned lsn = 0; lsn <= 255; lsn++) {
+        if (lsn == 19) {
+            continue;
+        }
+        stream.size = 0;
+        stream_add(&stream, manual_packet, 67);
+        bytes[3] = (uint8_t)lsn;
+        stream_add(&stream, start_packet, 13);
+        stream_add(&stream, manual_packet, 67);
+        receiver_open(&receiver, memory, 1024, max_samples);
+        feed(bytes, stream.size);
+        TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
+        TEST_ASSERT_EQUAL_UINT(67, receiver_frame_offset(&receiver));
+        TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
+        TEST_ASSERT_EQUAL_UINT(80, receiver_frame_offset(&receiver));
+        expect_skipped(67);
+    }
+}
+
+void test_a_corrupted_length_does_not_cost_the_next_packet(void)
+{
+    expect_next_packets_for_every_lsn(0);
+}
+
+void test_a_corrupted_length_does_not_cost_the_next_packet_when_all_lengths_are_accepted(void)
+{
+    expect_next_packets_for_every_lsn(255);
+}
+
+/* A packet whose samples hold the header of a packet of 40 samples, and then a whole packet. */
+static void make_packet_with_packet_inside(void)
+{
+    static const uint8_t false_header[12] = {0xAA, 0x55, 0x00, 0x28, 0x01, 0x00,
+                                             0x41, 0x01, 0x00, 0x00, 0x00, 0x00};
+    const encode_packet_t outer = {0x20, 9, 100, 900, NULL};
+    encode_packet_header(bytes, &outer);
+    memcpy(&bytes[10], false_header, 12);
+    memcpy(&bytes[22], start_packet, 13);
+    memset(&bytes[35], 0x33, 2);
+    encode_seal(bytes);
+    stream.size = 37;
+}
+
+void test_headers_and_packets_inside_a_valid_packet_are_its_samples(void)
+{
+    make_packet_with_packet_inside();
+    feed(bytes, 37);
+    feed(start_packet, 13);
+    expect_packet(9, 0);
+    expect_packet(1, 37);
+    expect_nothing();
+    expect_skipped(0);
+}
+
+void test_inside_a_damaged_packet_a_false_header_hides_nothing(void)
+{
+    make_packet_with_packet_inside();
+    bytes[8] ^= 1;
+    feed(bytes, 37);
+    expect_nothing();
+    expect_pending(27); /* The false header wants 130 bytes. */
+    feed(manual_packet, 67);
+    feed(manual_packet, 67);
+    expect_packet(1, 22);
+    TEST_ASSERT_EQUAL_UINT32(2, receiver.parser.counters.checksum_errors);
+    expect_packet(19, 37);
+    expect_packet(19, 104);
+}
+
+/* -------------------------------------------------------------------------------- chunking */
+
+void test_the_same_frames_are_found_whatever_the_chunks(void)
+{
+    make_turn();
+    bytes[16] ^= 4; /* One packet damaged, and garbage at the end. */
+    stream_add(&stream, manual_packet, 30);
+    stream_add(&stream, start_packet, 13);
+    for (size_t chunk = 1; chunk <= stream.size; chunk++) {
+        expect_like_reference(chunk);
+    }
+}
+
+void test_the_same_frames_are_found_in_random_chunks(void)
+{
+    random_t random;
+    const receiver_course_t course = {.chunk = 0, .random = &random};
+    random_seed(&random, 1);
+    make_turn();
+    bytes[35] ^= 4;
+    for (unsigned i = 0; i < 50; i++) {
+        receiver_open(&receiver, memory, 256, 0);
+        (void)receiver_compare(&receiver, &course, bytes, stream.size);
+    }
+}
+
+void test_the_same_frames_are_found_wherever_they_lie_in_the_ring(void)
+{
+    const receiver_course_t course = {.chunk = 11};
+    make_turn();
+    for (size_t start = 0; start < 256; start++) {
+        receiver_open(&receiver, memory, 256, 0);
+        receiver_age(&receiver, start);
+        (void)receiver_compare(&receiver, &course, bytes, stream.size);
+    }
+}
+
+void test_the_same_frames_are_found_while_the_rings_indices_wrap(void)
+{
+    const receiver_course_t course = {.chunk = 9};
+    make_turn();
+    for (size_t before = 0; before <= 92; before++) {
+        receiver_open(&receiver, memory, 256, 0);
+        receiver_age(&receiver, (size_t)0 - before);
+        (void)receiver_compare(&receiver, &course, bytes, stream.size);
+    }
+}
+
+/* ------------------------------------------------------------------------------------- replies */
+
+static void expect_reply(size_t offset, const uint8_t *reply, size_t content)
+{
+    uint8_t copy[21];
+    memset(copy, 0xEE, sizeof copy);
+    expect_frame(TMINI_FRAME_REPLY);
+    TEST_ASSERT_EQUAL_UINT(offset, receiver_frame_offset(&receiver));
+    tmini_parser_reply_content(&receiver.parser, copy, content);
+    if (content > 0) {
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(&reply[7], copy, content);
+    }
+    TEST_ASSERT_EQUAL_HEX8(0xEE, copy[content]);
+    TEST_ASSERT_EQUAL_UINT32(7 + content, receiver.parser.counters.bytes_in_replies);
+    expect_skipped((uint32_t)offset);
+}
+
+void test_an_awaited_start_reply_is_found_and_the_packets_behind_it(void)
+{
+    receiver_await(&receiver, 1, 0x81, 0);
+    feed(start_reply, 7);
+    feed(start_packet, 13);
+    expect_reply(0, start_reply, 0);
+    expect_packet(1, 7);
+}
+
+void test_an_awaited_health_reply_is_found(void)
+{
+    receiver_await(&receiver, 0, 0x06, 3);
+    feed(health_reply, 10);
+    expect_reply(0, health_reply, 3);
+}
+
+void test_an_awaited_frequency_reply_is_found(void)
+{
+    receiver_await(&receiver, 0, 0x04, 4);
+    feed(frequency_reply, 11);
+    expect_reply(0, frequency_reply, 4);
+}
+
+void test_an_awaited_device_information_is_found(void)
+{
+    receiver_await(&receiver, 0, 0x04, 20);
+    feed(info_reply, 27);
+    expect_reply(0, info_reply, 20);
+}
+
+void test_a_reply_is_delivered_with_its_last_byte_and_not_before(void)
+{
+    receiver_await(&receiver, 0, 0x04, 20);
+    for (size_t i = 0; i < 26; i++) {
+        feed_byte(info_reply[i]);
+        expect_nothing();
+        expect_pending(i + 1);
+    }
+    feed_byte(info_reply[26]);
+    expect_reply(0, info_reply, 20);
+    expect_pending(0);
+}
+
+void test_a_reply_is_found_behind_garbage_and_half_a_sign(void)
+{
+    receiver_await(&receiver, 0, 0x06, 3);
+    feed_byte(0x5A);
+    feed_byte(0xA5);
+    feed_byte(0x00);
+    feed_byte(0xA5);
+    feed(health_reply, 10);
+    expect_reply(4, health_reply, 3);
+}
+
+void test_a_reply_lies_anywhere_in_the_ring(void)
+{
+    for (size_t start = 220; start <= 256; start++) {
+        receiver_open(&receiver, memory, 256, 0);
+        receiver_age(&receiver, start);
+        receiver_await(&receiver, 0, 0x04, 20);
+        feed(info_reply, 27);
+        expect_reply(0, info_reply, 20);
+    }
+}
+
+void test_packets_are_found_while_a_reply_is_awaited(void)
+{
+    receiver_await(&receiver, 0, 0x06, 3);
+    feed(start_packet, 13);
+    feed(manual_packet, 67);
+    feed(health_reply, 10);
+    expect_packet(1, 0);
+    expect_packet(19, 13);
+    expect_frame(TMINI_FRAME_REPLY);
+    expect_skipped(0);
+}
+
+static void expect_no_reply(const uint8_t *reply, size_t size)
+{
+    feed(reply, size);
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, receiver_next_at_end(&receiver));
+    TEST_ASSERT_EQUAL_UINT32(0, receiver.parser.counters.bytes_in_replies);
+}
+
+void test_a_reply_that_is_not_awaited_is_skipped_at_once(void)
+{
+    feed(frequency_reply, 11);
+    expect_nothing();
+    expect_skipped(11);
+}
+
+void test_a_reply_of_another_type_is_not_taken(void)
+{
+    receiver_await(&receiver, 0, 0x06, 4);
+    expect_no_reply(frequency_reply, 11);
+}
+
+void test_a_reply_of_another_length_is_not_taken(void)
+{
+    receiver_await(&receiver, 0, 0x04, 20);
+    expect_no_reply(frequency_reply, 11);
+    receiver_await(&receiver, 0, 0x04, 4);
+    expect_no_reply(info_reply, 27);
+}
+
+void test_a_reply_of_another_mode_is_not_taken(void)
+{
+    receiver_await(&receiver, 1, 0x04, 0);
+    expect_no_reply(frequency_reply, 11);
+    receiver_await(&receiver, 0, 0x81, 5);
+    feed(start_reply, 7);
+    expect_no_reply(start_packet, 5);
+}
+
+void test_every_bit_of_the_length_is_compared(void)
+{
+    for (unsigned bit = 0; bit < 30; bit++) {
+        receiver_open(&receiver, memory, 256, 0);
+        receiver_await(&receiver, 0, 0x06, 3);
+        memcpy(bytes, health_reply, 10);
+        bytes[2 + bit / 8] ^= (uint8_t)(1u << bit % 8);
+        expect_no_reply(bytes, 10);
+    }
+}
+
+void test_undefined_modes_are_not_taken(void)
+{
+    receiver_await(&receiver, 0, 0x06, 3);
+    memcpy(bytes, health_reply, 10);
+    bytes[5] = 0x80;
+    expect_no_reply(bytes, 10);
+    bytes[5] = 0xC0;
+    expect_no_reply(bytes, 10);
+}
+
+void test_both_bytes_of_the_sign_are_compared(void)
+{
+    receiver_await(&receiver, 0, 0x06, 3);
+    memcpy(bytes, health_reply, 10);
+    bytes[0] = 0xAA;
+    expect_no_reply(bytes, 10);
+    bytes[0] = 0xA5;
+    bytes[1] = 0x55;
+    expect_no_reply(bytes, 10);
+}
+
+void test_the_length_of_a_continuous_reply_is_ignored(void)
+{
+    static const uint8_t lengths[][4] = {
+        {0, 0, 0, 0x40}, {5, 0, 0, 0x40}, {0xFF, 0xFF, 0xFF, 0x7F}};
+    for (size_t i = 0; i < 3; i++) {
+        receiver_open(&receiver, memory, 256, 0);
+        receiver_await(&receiver, 1, 0x81, 0);
+        memcpy(bytes, start_reply, 7);
+        memcpy(&bytes[2], lengths[i], 4);
+        feed(bytes, 7);
+        feed(start_packet, 13);
+        expect_reply(0, bytes, 0);
+        expect_packet(1, 7);
+    }
+}
+
+void test_a_delivered_reply_ends_the_waiting(void)
+{
+    receiver_await(&receiver, 0, 0x06, 3);
+    feed(health_reply, 10);
+    feed(health_reply, 10);
+    expect_frame(TMINI_FRAME_REPLY);
+    expect_nothing();
+    expect_skipped(10);
+}
+
+void test_a_reply_can_be_awaited_again(void)
+{
+    receiver_await(&receiver, 0, 0x06, 3);
+    feed(health_reply, 10);
+    expect_frame(TMINI_FRAME_REPLY);
+    receiver_await(&receiver, 0, 0x04, 4);
+    feed(frequency_reply, 11);
+    expect_frame(TMINI_FRAME_REPLY);
+    TEST_ASSERT_EQUAL_UINT32(21, receiver.parser.counters.bytes_in_replies);
+    expect_skipped(0);
+}
+
+void test_a_reply_that_comes_after_the_waiting_is_skipped(void)
+{
+    receiver_await(&receiver, 0, 0x06, 3);
+    tmini_parser_await(&receiver.parser, NULL);
+    feed(health_reply, 10);
+    expect_nothing();
+    expect_skipped(10);
+}
+
+void test_when_the_waiting_ends_a_part_of_the_reply_is_looked_at_again(void)
+{
+    receiver_await(&receiver, 0, 0x04, 20);
+    feed(info_reply, 12);
+    feed(start_packet, 13); /* The reply broke off. */
+    expect_nothing();
+    expect_pending(25);
+    tmini_parser_await(&receiver.parser, NULL);
+    expect_packet(1, 12);
+    expect_skipped(12);
+}
+
+void test_another_reply_awaited_meanwhile_is_found_in_what_is_pending(void)
+{
+    receiver_await(&receiver, 0, 0x04, 20);
+    feed(info_reply, 10);
+    feed(health_reply, 10);
+    expect_nothing();
+    receiver_await(&receiver, 0, 0x06, 3);
+    expect_reply(10, health_reply, 3);
+}
+
+void test_an_awaited_shape_is_copied(void)
+{
+    tmini_reply_shape_t shape = {.type = 0x06, .mode = 0, .length = 3};
+    tmini_parser_await(&receiver.parser, &shape);
+    shape.type = 0x04;
+    feed(health_reply, 10);
+    expect_frame(TMINI_FRAME_REPLY);
+}
+
+void test_a_packet_inside_a_reply_that_is_not_awaited_is_found(void)
+{
+    feed(info_reply, 7);
+    feed(start_packet, 13);
+    expect_packet(1, 7);
+}
+
+void test_a_packet_inside_an_awaited_reply_is_its_content(void)
+{
+    receiver_await(&receiver, 0, 0x04, 20);
+    memcpy(bytes, info_reply, 27);
+    memcpy(&bytes[10], start_packet, 13);
+    feed(bytes, 27);
+    expect_reply(0, bytes, 20);
+    expect_nothing();
+}
+
+/* ------------------------------------------------------------------------------------- abandon */
+
+void test_an_abandoned_candidate_costs_one_byte(void)
+{
+    feed(manual_packet, 66);
+    expect_nothing();
+    receiver_abandon(&receiver);
+    expect_skipped(1);
+    expect_pending(65);
+    expect_nothing();
+    expect_skipped(66); /* No other candidate in it. */
+    expect_pending(0);
+}
+
+void test_what_an_abandoned_candidate_hid_is_found(void)
+{
+    feed(manual_packet, 20);
+    feed(start_packet, 13);
+    expect_nothing();
+    receiver_abandon(&receiver);
+    expect_packet(1, 20);
+    expect_skipped(20);
+}
+
+void test_an_abandoned_reply_is_searched_too(void)
+{
+    receiver_await(&receiver, 0, 0x04, 20);
+    feed(info_reply, 9);
+    feed(start_packet, 13);
+    expect_nothing();
+    receiver_abandon(&receiver);
+    expect_packet(1, 9);
+}
+
+void test_a_lone_first_byte_can_be_abandoned(void)
+{
+    feed_byte(0xAA);
+    expect_nothing();
+    receiver_abandon(&receiver);
+    expect_skipped(1);
+    expect_pending(0);
+}
+
+void test_without_a_candidate_there_is_nothing_to_abandon(void)
+{
+    receiver_abandon(&receiver);
+    expect_skipped(0);
+    feed(start_packet, 13);
+    expect_packet(1, 0);
+    receiver_abandon(&receiver);
+    TEST_ASSERT_EQUAL_UINT(13, tmini_ring_unread(&receiver.ring));
+    expect_skipped(0);
+}
+
+void test_a_candidate_that_has_become_complete_is_not_abandoned(void)
+{
+    feed(start_packet, 12);
+    expect_nothing();
+    feed(&start_packet[12], 1);
+    receiver_abandon(&receiver);
+    expect_packet(1, 0);
+}
+
+void test_bytes_that_have_not_been_looked_at_are_not_abandoned(void)
+{
+    feed(start_packet, 1);
+    receiver_abandon(&receiver);
+    expect_skipped(0);
+    feed(&start_packet[1], 12);
+    expect_packet(1, 0);
+}
+
+/* ------------------------------------------------------------------------ a ring that overflows */
+
+void test_refused_bytes_are_counted_as_overrun(void)
+{
+    memset(bytes, 0, 300);
+    feed(bytes, 300);
+    expect_nothing();
+    TEST_ASSERT_EQUAL_UINT32(44, receiver.parser.counters.bytes_overrun);
+    expect_skipped(256);
+    feed(bytes, 260);
+    expect_nothing();
+    TEST_ASSERT_EQUAL_UINT32(48, receiver.parser.counters.bytes_overrun);
+}
+
+void test_packets_in_a_ring_that_overflowed_are_found_and_those_after_it(void)
+{
+    for (unsigned i = 0; i < 4; i++) {
+        feed(manual_packet, 67); /* 268 bytes: the last one is cut. */
+    }
+    expect_packet(19, 12); /* The offset counts refused bytes. */
+    expect_packet(19, 79);
+    expect_packet(19, 146);
+    expect_nothing();
+    feed(start_packet, 13);
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
+    TEST_ASSERT_EQUAL_UINT8(1, receiver.packet.count);
+    TEST_ASSERT_EQUAL_UINT32(12, receiver.parser.counters.bytes_overrun);
+    expect_skipped(55);
+}
+
+void test_bytes_refused_while_a_packet_is_read_leave_it_intact(void)
+{
+    feed(manual_packet, 67);
+    expect_packet(19, 0);
+    memset(bytes, 0x11, 300);
+    feed(bytes, 300);
+    TEST_ASSERT_TRUE(tmini_parser_frame_intact(&receiver.parser));
+    expect_nothing();
+    TEST_ASSERT_EQUAL_UINT32(111, receiver.parser.counters.bytes_overrun);
+}
+
+/* ----------------------------------------------------------------------------------------- DMA */
+
+static void open_dma(void)
+{
+    receiver_open_dma(&receiver, memory, 512, 0);
+}
+
+void test_a_dma_ring_gives_the_same_frames_wherever_they_lie(void)
+{
+    const receiver_course_t course = {.chunk = 23};
+    make_turn();
+    for (size_t start = 0; start < 512; start += 3) {
+        open_dma();
+        receiver_age(&receiver, start);
+        (void)receiver_compare(&receiver, &course, bytes, stream.size);
+    }
+}
+
+void test_a_dma_ring_gives_the_same_frames_while_its_indices_wrap(void)
+{
+    const receiver_course_t course = {.chunk = 23};
+    make_turn();
+    for (size_t before = 0; before <= 92; before++) {
+        open_dma();
+        receiver_age(&receiver, (size_t)0 - before);
+        (void)receiver_compare(&receiver, &course, bytes, stream.size);
+    }
+}
+
+void test_a_dma_ring_may_hold_half_its_size(void)
+{
+    open_dma();
+    memset(bytes, 0, 256);
+    memcpy(bytes, start_packet, 13);
+    memcpy(&bytes[243], start_packet, 13);
+    feed(bytes, 256);
+    expect_packet(1, 0);
+    expect_packet(1, 243);
+    TEST_ASSERT_EQUAL_UINT32(0, receiver.parser.counters.bytes_overrun);
+}
+
+void test_what_dma_may_have_overwritten_is_dropped_and_counted(void)
+{
+    open_dma();
+    memset(bytes, 0, 257);
+    memcpy(bytes, start_packet, 13);
+    memcpy(&bytes[244], start_packet, 13);
+    feed(bytes, 257); /* One more than half: the first packet's first byte is not trusted. */
+    expect_packet(1, 244);
+    TEST_ASSERT_EQUAL_UINT32(1, receiver.parser.counters.bytes_overrun);
+    expect_skipped(243);
+}
+
+void test_an_overrun_of_dma_is_a_gap_of_65535(void)
+{
+    open_dma();
+    feed(start_packet, 13);
+    expect_packet(1, 0);
+    memset(bytes, 0, 300);
+    memcpy(&bytes[44], start_packet, 13); /* Right behind what is lost. */
+    feed(bytes, 300);
+    expect_packet(1, 57);
+    TEST_ASSERT_EQUAL_UINT16(65535, receiver.packet.gap);
+    TEST_ASSERT_EQUAL_UINT32(44, receiver.parser.counters.bytes_overrun);
+    feed(start_packet, 13);
+    expect_packet(1, 313);
+    TEST_ASSERT_EQUAL_UINT16(243, receiver.packet.gap);
+}
+
+void test_a_candidate_that_dma_overran_is_forgotten(void)
+{
+    open_dma();
+    feed(manual_packet, 60);
+    expect_nothing();
+    memset(bytes, 0, 230);
+    memcpy(&bytes[0], start_packet, 13); /* At 60: would be inside the candidate. */
+    feed(bytes, 230);                    /* 34 are lost. */
+    expect_packet(1, 60);
+    TEST_ASSERT_EQUAL_UINT32(34, receiver.parser.counters.bytes_overrun);
+    expect_skipped(26);
+}
+
+void test_many_laps_of_dma_are_counted_and_survived(void)
+{
+    open_dma();
+    memset(bytes, 0, 900);
+    feed(bytes, 900);
+    feed(bytes, 900);
+    feed(start_packet, 13);
+    expect_packet(1, 1800);
+    TEST_ASSERT_EQUAL_UINT32(1557, receiver.parser.counters.bytes_overrun);
+    expect_skipped(243);
+}
+
+void test_a_packet_that_dma_overwrites_while_it_is_read_is_not_intact(void)
+{
+    open_dma();
+    feed(manual_packet, 67);
+    expect_packet(19, 0);
+    TEST_ASSERT_TRUE(tmini_parser_frame_intact(&receiver.parser));
+    memset(bytes, 0, 190);
+    feed(bytes, 189);
+    TEST_ASSERT_TRUE(tmini_parser_frame_intact(&receiver.parser));
+    feed(bytes, 1);
+    TEST_ASSERT_FALSE(tmini_parser_frame_intact(&receiver.parser));
+    expect_nothing();
+    TEST_ASSERT_EQUAL_UINT32(0, receiver.parser.counters.bytes_overrun); /* All was delivered. */
+    expect_skipped(190);
+}
+
+void test_an_overrun_behind_a_packet_is_a_gap_before_the_next_one(void)
+{
+    open_dma();
+    feed(manual_packet, 67);
+    expect_packet(19, 0);
+    memset(bytes, 0, 300);
+    memcpy(&bytes[44], start_packet, 13);
+    feed(bytes, 300);
+    expect_packet(1, 111);
+    TEST_ASSERT_EQUAL_UINT16(65535, receiver.packet.gap);
+}
+
+/* ------------------------------------------------------------------------------------ counters */
+
+void test_counters_wrap_around_modulo_2_to_the_32(void)
+{
+    receiver.parser.counters.packets = UINT32_MAX;
+    receiver.parser.counters.bytes_in_packets = UINT32_MAX - 10;
+    receiver.received = UINT32_MAX - 10;
+    feed(start_packet, 13);
+    expect_frame(TMINI_FRAME_PACKET);
+    TEST_ASSERT_EQUAL_UINT32(0, receiver.parser.counters.packets);
+    TEST_ASSERT_EQUAL_UINT32(2, receiver.parser.counters.bytes_in_packets);
+}

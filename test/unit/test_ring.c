@@ -1,0 +1,395 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The ring of received bytes: filled by a CPU or by DMA, read by the parser. */
+
+#include "tmini/tmini_ring.h"
+
+#include "unity.h"
+
+#include <string.h>
+
+#define SIZE 16u
+#define GUARD 0xEEu
+
+/* A guard byte on each side: the ring must never write there. */
+static uint8_t area[SIZE + 2];
+static uint8_t *const memory = &area[1];
+static tmini_ring_t ring;
+static const uint8_t letters[] = "abcdefghijklmnopqrstuvwxyz";
+
+void setUp(void)
+{
+    memset(area, GUARD, sizeof area);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE, false));
+}
+
+void tearDown(void)
+{
+    TEST_ASSERT_EQUAL_HEX8(GUARD, area[0]);
+    TEST_ASSERT_EQUAL_HEX8(GUARD, area[SIZE + 1]);
+}
+
+static void use_dma(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE, true));
+}
+
+/* The indices as they are after `count` bytes have come and gone. */
+static void age(size_t count)
+{
+    ring.head = count;
+    ring.tail = count;
+    ring.limit = count + SIZE;
+}
+
+static void put_letters(size_t first, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        tmini_ring_put(&ring, letters[first + i]);
+    }
+}
+
+static void expect_unread(const char *expected)
+{
+    const size_t count = strlen(expected);
+    TEST_ASSERT_EQUAL_UINT(count, tmini_ring_unread(&ring));
+    for (size_t i = 0; i < count; i++) {
+        TEST_ASSERT_EQUAL_INT(expected[i], tmini_ring_peek(&ring, i));
+    }
+}
+
+/* ---------------------------------------------------------------------------------------- init */
+
+static void expect_refused_arguments(uint8_t *bytes, size_t size)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ring_init(&ring, bytes, size, false));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ring_init(&ring, bytes, size, true));
+}
+
+void test_a_null_pointer_is_an_argument_error(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ring_init(NULL, memory, SIZE, false));
+    expect_refused_arguments(NULL, SIZE);
+}
+
+void test_a_size_that_is_no_power_of_two_is_an_argument_error(void)
+{
+    expect_refused_arguments(memory, 0);
+    expect_refused_arguments(memory, 3);
+    expect_refused_arguments(memory, 12);
+    expect_refused_arguments(memory, 15);
+    expect_refused_arguments(memory, SIZE_MAX);
+}
+
+void test_every_power_of_two_is_a_size(void)
+{
+    for (size_t size = 1; size <= SIZE; size *= 2) {
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, size, false));
+        put_letters(0, SIZE + 1);
+        TEST_ASSERT_EQUAL_UINT(size, tmini_ring_unread(&ring));
+    }
+}
+
+void test_a_ring_that_was_not_initialised_refuses_every_byte(void)
+{
+    ring = (tmini_ring_t){0};
+    tmini_ring_put(&ring, 'a');
+    tmini_ring_write(&ring, letters, 5);
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
+    TEST_ASSERT_EQUAL_UINT(6, tmini_ring_refused(&ring));
+}
+
+void test_a_ring_whose_initialisation_failed_refuses_every_byte(void)
+{
+    put_letters(0, 3);
+    (void)tmini_ring_init(&ring, memory, 12, false);
+    tmini_ring_put(&ring, 'a');
+    tmini_ring_write(&ring, letters, 5);
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
+    TEST_ASSERT_EQUAL_UINT(6, tmini_ring_refused(&ring));
+}
+
+void test_initialisation_empties_a_ring(void)
+{
+    put_letters(0, SIZE + 2);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE, false));
+    expect_unread("");
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_refused(&ring));
+}
+
+/* ------------------------------------------------------------------------------------ CPU-fed */
+
+void test_bytes_come_out_in_the_order_in_which_they_went_in(void)
+{
+    put_letters(0, 3);
+    expect_unread("abc");
+    tmini_ring_discard(&ring, 1);
+    expect_unread("bc");
+    put_letters(3, 1);
+    expect_unread("bcd");
+    tmini_ring_discard(&ring, 3);
+    expect_unread("");
+}
+
+void test_a_full_ring_refuses_bytes_and_keeps_what_it_has(void)
+{
+    put_letters(0, SIZE);
+    expect_unread("abcdefghijklmnop");
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_refused(&ring));
+    put_letters(SIZE, 3);
+    expect_unread("abcdefghijklmnop");
+    TEST_ASSERT_EQUAL_UINT(3, tmini_ring_refused(&ring));
+}
+
+void test_a_discarded_byte_makes_room_for_exactly_one(void)
+{
+    put_letters(0, SIZE);
+    tmini_ring_discard(&ring, 1);
+    put_letters(SIZE, 2);
+    expect_unread("bcdefghijklmnopq");
+    TEST_ASSERT_EQUAL_UINT(1, tmini_ring_refused(&ring));
+}
+
+void test_the_window_of_a_cpu_fed_ring_is_its_size(void)
+{
+    TEST_ASSERT_EQUAL_UINT(SIZE, ring.window);
+}
+
+void test_an_offset_beyond_the_unread_bytes_still_reads_inside_the_memory(void)
+{
+    put_letters(0, SIZE);
+    TEST_ASSERT_EQUAL_INT('a', tmini_ring_peek(&ring, SIZE));
+    TEST_ASSERT_EQUAL_INT('p', tmini_ring_peek(&ring, SIZE_MAX));
+    tmini_ring_discard(&ring, 5);
+    TEST_ASSERT_EQUAL_INT('b', tmini_ring_peek(&ring, 12));
+}
+
+/* -------------------------------------------------------------------------------------- blocks */
+
+void test_a_block_is_stored_like_its_bytes_one_by_one(void)
+{
+    tmini_ring_write(&ring, letters, 5);
+    tmini_ring_write(&ring, &letters[5], 2);
+    expect_unread("abcdefg");
+}
+
+void test_an_empty_block_changes_nothing(void)
+{
+    tmini_ring_write(&ring, letters, 0);
+    expect_unread("");
+    put_letters(0, SIZE);
+    tmini_ring_write(&ring, letters, 0);
+    expect_unread("abcdefghijklmnop");
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_refused(&ring));
+}
+
+void test_a_block_wraps_around_the_memorys_end(void)
+{
+    put_letters(0, 12);
+    tmini_ring_discard(&ring, 12);
+    tmini_ring_write(&ring, letters, 10);
+    expect_unread("abcdefghij");
+    TEST_ASSERT_EQUAL_HEX8_ARRAY("efghij", memory, 6);
+}
+
+void test_a_block_that_ends_at_the_memorys_end_fits(void)
+{
+    put_letters(0, 12);
+    tmini_ring_discard(&ring, 12);
+    tmini_ring_write(&ring, letters, 4);
+    expect_unread("abcd");
+    TEST_ASSERT_EQUAL_INT('a', memory[0]); /* The first of the twelve. */
+}
+
+void test_a_block_of_the_rings_size_fits_at_every_position(void)
+{
+    for (size_t start = 0; start < 2 * SIZE; start++) {
+        age(start);
+        tmini_ring_write(&ring, letters, SIZE);
+        expect_unread("abcdefghijklmnop");
+    }
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_refused(&ring));
+}
+
+void test_the_part_of_a_block_that_does_not_fit_is_refused_and_counted(void)
+{
+    put_letters(0, 10);
+    tmini_ring_discard(&ring, 2);
+    tmini_ring_write(&ring, &letters[10], 11);
+    expect_unread("cdefghijklmnopqr");
+    TEST_ASSERT_EQUAL_UINT(3, tmini_ring_refused(&ring));
+    tmini_ring_write(&ring, letters, 4);
+    expect_unread("cdefghijklmnopqr");
+    TEST_ASSERT_EQUAL_UINT(7, tmini_ring_refused(&ring));
+}
+
+void test_a_block_larger_than_the_ring_is_cut(void)
+{
+    tmini_ring_write(&ring, letters, 26);
+    expect_unread("abcdefghijklmnop");
+    TEST_ASSERT_EQUAL_UINT(10, tmini_ring_refused(&ring));
+}
+
+/* ---------------------------------------------------------------------------------- wrap-around */
+
+void test_indices_wrap_around_with_size_t(void)
+{
+    age(SIZE_MAX - 2);
+    put_letters(0, SIZE);
+    expect_unread("abcdefghijklmnop");
+    put_letters(0, 1);
+    TEST_ASSERT_EQUAL_UINT(1, tmini_ring_refused(&ring));
+    tmini_ring_discard(&ring, 10);
+    expect_unread("klmnop");
+    tmini_ring_write(&ring, letters, 11);
+    expect_unread("klmnopabcdefghij");
+    TEST_ASSERT_EQUAL_UINT(2, tmini_ring_refused(&ring));
+}
+
+void test_a_block_is_stored_across_the_wrap_of_size_t(void)
+{
+    age(SIZE_MAX - 2);
+    tmini_ring_write(&ring, letters, 20);
+    expect_unread("abcdefghijklmnop");
+    TEST_ASSERT_EQUAL_UINT(4, tmini_ring_refused(&ring));
+}
+
+void test_the_count_of_refused_bytes_wraps_around_with_size_t(void)
+{
+    ring.refused = SIZE_MAX - 1;
+    put_letters(0, SIZE + 1);
+    TEST_ASSERT_EQUAL_UINT(SIZE_MAX, tmini_ring_refused(&ring));
+    tmini_ring_write(&ring, letters, 3);
+    TEST_ASSERT_EQUAL_UINT(2, tmini_ring_refused(&ring));
+}
+
+/* ----------------------------------------------------------------------------------------- DMA */
+
+/* What DMA does: memory changes, then its position is published. */
+static void dma_writes(size_t first, size_t count, size_t at)
+{
+    for (size_t i = 0; i < count; i++) {
+        memory[(at + i) % SIZE] = letters[first + i];
+    }
+    tmini_ring_publish(&ring, (at + count) % SIZE);
+}
+
+void test_the_window_of_a_dma_ring_is_half_its_size(void)
+{
+    use_dma();
+    TEST_ASSERT_EQUAL_UINT(SIZE / 2, ring.window);
+}
+
+void test_published_bytes_can_be_read(void)
+{
+    use_dma();
+    expect_unread("");
+    dma_writes(0, 3, 0);
+    expect_unread("abc");
+    dma_writes(3, 2, 3);
+    expect_unread("abcde");
+}
+
+void test_publishing_the_same_position_again_changes_nothing(void)
+{
+    use_dma();
+    dma_writes(0, 3, 0);
+    tmini_ring_publish(&ring, 3);
+    expect_unread("abc");
+}
+
+void test_a_position_equal_to_the_size_means_0(void)
+{
+    use_dma();
+    dma_writes(0, 8, 0);
+    memcpy(&memory[8], "ijklmnop", 8);
+    tmini_ring_publish(&ring, SIZE);
+    expect_unread("abcdefghijklmnop");
+    tmini_ring_publish(&ring, 0);
+    expect_unread("abcdefghijklmnop");
+}
+
+void test_a_position_behind_the_last_one_has_wrapped_around_the_memorys_end(void)
+{
+    use_dma();
+    dma_writes(0, 8, 0);
+    dma_writes(8, 6, 8);
+    tmini_ring_discard(&ring, 12);
+    dma_writes(14, 5, 14);
+    expect_unread("mnopqrs");
+}
+
+void test_more_unread_bytes_than_the_window_tell_of_an_overrun(void)
+{
+    use_dma();
+    dma_writes(0, 8, 0);
+    TEST_ASSERT_EQUAL_UINT(SIZE / 2, tmini_ring_unread(&ring));
+    dma_writes(8, 8, 8);
+    dma_writes(16, 8, 0);
+    TEST_ASSERT_EQUAL_UINT(24, tmini_ring_unread(&ring));
+    tmini_ring_discard(&ring, 16);
+    expect_unread("qrstuvwx");
+}
+
+void test_dma_positions_are_right_across_the_wrap_of_size_t(void)
+{
+    use_dma();
+    age(SIZE_MAX - 2); /* Position 13. */
+    dma_writes(0, 7, 13);
+    expect_unread("abcdefg");
+    tmini_ring_discard(&ring, 5);
+    dma_writes(7, 4, 4);
+    expect_unread("fghijk");
+}
+
+/* ------------------------------------------------------------------------------- reading in place */
+
+void test_unread_bytes_are_copied_across_the_memorys_end(void)
+{
+    uint8_t copy[6] = {0};
+    age(12);
+    put_letters(0, 10);
+    tmini_ring_copy(&ring, 2, copy, 5);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY("cdefg\0", copy, 6);
+    tmini_ring_copy(&ring, 2, copy, 0);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY("cdefg\0", copy, 6);
+}
+
+/* The samples from the unread byte `offset` on; `place` is where they lie, NULL if put together. */
+static void expect_samples(size_t offset, size_t wanted, size_t count, const uint8_t *place)
+{
+    uint8_t joined[3] = {0};
+    size_t got = wanted;
+    const uint8_t *const samples = tmini_ring_samples(&ring, offset, &got, joined);
+    TEST_ASSERT_EQUAL_UINT(count, got);
+    TEST_ASSERT_EQUAL_PTR(place != NULL ? place : joined, samples);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(&letters[offset], samples, 3 * count);
+}
+
+void test_samples_that_lie_in_one_piece_are_read_where_they_are(void)
+{
+    put_letters(0, SIZE);
+    expect_samples(0, 5, 5, memory);
+    expect_samples(1, 5, 5, &memory[1]); /* Up to the memory's last byte. */
+    expect_samples(13, 1, 1, &memory[13]);
+}
+
+void test_of_samples_in_two_pieces_the_whole_ones_of_the_first_piece_come_first(void)
+{
+    age(5);
+    put_letters(0, SIZE);
+    expect_samples(0, 5, 3, &memory[5]); /* Eleven bytes to the end. */
+    expect_samples(2, 4, 3, &memory[7]);
+    expect_samples(8, 2, 1, &memory[13]);
+}
+
+void test_a_sample_that_straddles_the_memorys_end_is_put_together(void)
+{
+    age(5);
+    put_letters(0, SIZE);
+    expect_samples(9, 2, 1, NULL);
+    expect_samples(10, 2, 1, NULL);
+    expect_samples(10, 1, 1, NULL);
+    expect_samples(11, 1, 1, &memory[0]);
+}

@@ -1,0 +1,533 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Scans: which packets make one revolution, and how good it is (sections 6 and 9). The revolutions
+ * here have few packets of few samples: inside a packet, samples may be any angle apart. */
+
+#include "receiver.h"
+#include "stream.h"
+
+#include "tmini/tmini_scan.h"
+#include "unity.h"
+
+#include <string.h>
+
+#define DEGREE 64u
+#define ROOM 40u
+
+static uint8_t memory[512];
+static uint8_t bytes[300];
+static stream_t stream;
+static receiver_t receiver;
+static tmini_point_t points[ROOM + 1];
+static tmini_scan_builder_t builder;
+static const tmini_scan_t *const scan = &builder.scan;
+static uint32_t now_ms;
+static uint8_t strays; /* Bytes put before the next packet. */
+
+static void begin_with(size_t capacity, unsigned filter)
+{
+    memset(points, 0xEE, sizeof points);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_scan_init(&builder, points, capacity, filter));
+}
+
+void setUp(void)
+{
+    stream = (stream_t){bytes, 0, sizeof bytes};
+    receiver_open(&receiver, memory, 512, 0);
+    now_ms = 5000;
+    strays = 0;
+    begin_with(ROOM, TMINI_FILTER_NONE);
+}
+
+void tearDown(void)
+{
+    TEST_ASSERT_EQUAL_HEX16(0xEEEE, points[ROOM].angle_q6);
+}
+
+/* The packet arrives, and is open; the scan under way may be closed by it. */
+static bool arrive(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_q6)
+{
+    stream.size = 0;
+    for (; strays > 0; strays--) {
+        stream_add_byte(&stream, 0x11);
+    }
+    (void)stream_add_packet(&stream, ct, count, (uint16_t)(first_q6 % 23040u),
+                            (uint16_t)(last_q6 % 23040u));
+    receiver_feed(&receiver, bytes, stream.size);
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next(&receiver));
+    return tmini_scan_close(&builder, &receiver.packet);
+}
+
+static void add(void)
+{
+    tmini_scan_add(&builder, &receiver.packet, now_ms);
+}
+
+/* A start packet, at 6.0 Hz. Returns whether it has closed a scan. */
+static bool start(uint32_t at_q6)
+{
+    const bool closed = arrive(0x79, 1, at_q6, at_q6);
+    add();
+    return closed;
+}
+
+/* A point packet of five samples. Returns whether it has closed a scan. */
+static bool point(uint32_t first_q6, uint32_t last_q6)
+{
+    const bool closed = arrive(0x00, 5, first_q6, last_q6);
+    add();
+    return closed;
+}
+
+/* A quarter turn by a point packet, one degree from the packets beside it. */
+static void quarter(uint32_t from_q6)
+{
+    TEST_ASSERT_FALSE(point(from_q6 + DEGREE, from_q6 + 90 * DEGREE));
+}
+
+/* All but its start packet. */
+static void rest_of_turn(uint32_t from_q6)
+{
+    for (uint32_t turned = 0; turned < 360 * DEGREE; turned += 90 * DEGREE) {
+        quarter(from_q6 + turned);
+    }
+}
+
+/* A start packet comes and closes a scan of that quality. */
+static void expect_scan(uint32_t at_q6, uint16_t gaps, bool complete)
+{
+    TEST_ASSERT_TRUE(arrive(0x7B, 1, at_q6, at_q6));
+    TEST_ASSERT_EQUAL_UINT16(gaps, scan->gaps);
+    TEST_ASSERT_EQUAL(complete, scan->complete);
+}
+
+/* ----------------------------------------------------------------------------------------- init */
+
+void test_null_pointers_are_an_argument_error(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_scan_init(NULL, points, ROOM, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_scan_init(&builder, NULL, ROOM, 0));
+}
+
+void test_a_capacity_of_0_is_an_argument_error(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_scan_init(&builder, points, 0, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_scan_init(&builder, points, 1, 0));
+}
+
+void test_a_capacity_above_65535_is_an_argument_error(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_scan_init(&builder, points, 65535, 0));
+    if (SIZE_MAX > 65535u) {
+        TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT,
+                              tmini_scan_init(&builder, points, (size_t)65535 + 1, 0));
+        TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_scan_init(&builder, points, SIZE_MAX, 0));
+    }
+}
+
+void test_only_defined_filters_are_taken(void)
+{
+    for (unsigned filter = 0; filter < 256; filter++) {
+        const bool is_defined = filter == TMINI_FILTER_NONE || filter == TMINI_FILTER_SPECULAR ||
+                                filter == TMINI_FILTER_AMBIENT || filter == TMINI_FILTER_BOTH;
+        TEST_ASSERT_EQUAL_INT(is_defined ? TMINI_OK : TMINI_ERROR_ARGUMENT,
+                              tmini_scan_init(&builder, points, ROOM, filter));
+    }
+}
+
+/* ---------------------------------------------------------------------------------- revolutions */
+
+void test_what_precedes_the_first_start_packet_is_no_scan(void)
+{
+    quarter(180 * DEGREE);
+    quarter(270 * DEGREE);
+    TEST_ASSERT_FALSE(start(0));
+    TEST_ASSERT_EQUAL_UINT16(1, scan->count);
+}
+
+void test_a_scan_goes_from_a_start_packet_to_the_next(void)
+{
+    TEST_ASSERT_FALSE(start(0));
+    rest_of_turn(0);
+    now_ms = 5167;
+    expect_scan(0, 0, true);
+    TEST_ASSERT_EQUAL_PTR(points, scan->points);
+    TEST_ASSERT_EQUAL_UINT16(21, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(5, scan->packets);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->dropped);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->checksum_errors);
+    TEST_ASSERT_EQUAL_UINT32(5000, scan->timestamp_ms);
+    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz); /* Of the start packet behind it. */
+}
+
+void test_points_are_in_order_of_arrival(void)
+{
+    (void)start(3);
+    (void)point(7, 47);
+    (void)point(90 * DEGREE, 91 * DEGREE);
+    TEST_ASSERT_EQUAL_UINT16(11, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(3, points[0].angle_q6);
+    TEST_ASSERT_EQUAL_UINT16(7, points[1].angle_q6);
+    TEST_ASSERT_EQUAL_UINT16(17, points[2].angle_q6);
+    TEST_ASSERT_EQUAL_UINT16(47, points[5].angle_q6);
+    TEST_ASSERT_EQUAL_UINT16(5760, points[6].angle_q6);
+    TEST_ASSERT_EQUAL_UINT16(5824, points[10].angle_q6);
+    TEST_ASSERT_EQUAL_UINT16(1000, points[0].distance_mm);
+    TEST_ASSERT_EQUAL_UINT16(1028, points[10].distance_mm);
+    TEST_ASSERT_EQUAL_UINT8(196, points[10].intensity);
+    TEST_ASSERT_EQUAL_UINT8(3, points[4].flag);
+}
+
+void test_a_scan_stays_as_it_is_until_the_packet_that_closed_it_is_added(void)
+{
+    (void)start(0);
+    rest_of_turn(0);
+    expect_scan(17, 0, true);
+    TEST_ASSERT_EQUAL_UINT16(0, points[0].angle_q6);
+    now_ms = 5167;
+    add();
+    TEST_ASSERT_EQUAL_UINT16(17, points[0].angle_q6);
+    TEST_ASSERT_EQUAL_UINT16(1, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(1, scan->packets);
+    TEST_ASSERT_EQUAL_UINT32(5167, scan->timestamp_ms);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->frequency_chz);
+    TEST_ASSERT_FALSE(scan->complete);
+}
+
+void test_a_scan_is_closed_once(void)
+{
+    (void)start(0);
+    expect_scan(0, 0, true);
+    TEST_ASSERT_FALSE(tmini_scan_close(&builder, &receiver.packet));
+}
+
+void test_scans_follow_one_another(void)
+{
+    (void)start(0);
+    for (unsigned i = 0; i < 3; i++) {
+        rest_of_turn(0);
+        expect_scan(0, 0, true);
+        add();
+    }
+}
+
+void test_the_frequency_has_steps_of_a_tenth_of_a_hertz(void)
+{
+    (void)start(0);
+    TEST_ASSERT_TRUE(arrive(0x75, 1, 0, 0)); /* A real unit's: 5.8 Hz. */
+    TEST_ASSERT_EQUAL_UINT16(580, scan->frequency_chz);
+    add();
+    TEST_ASSERT_TRUE(arrive(0xFF, 1, 0, 0));
+    TEST_ASSERT_EQUAL_UINT16(1270, scan->frequency_chz);
+}
+
+void test_a_discarded_scan_is_not_continued(void)
+{
+    (void)start(0);
+    quarter(0);
+    tmini_scan_discard(&builder);
+    quarter(90 * DEGREE);
+    TEST_ASSERT_FALSE(start(0));
+    TEST_ASSERT_EQUAL_UINT16(1, scan->count);
+}
+
+void test_filtered_points_keep_their_place(void)
+{
+    begin_with(ROOM, TMINI_FILTER_SPECULAR);
+    (void)start(0);
+    quarter(0);
+    TEST_ASSERT_EQUAL_UINT16(6, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(1007, points[2].distance_mm);
+    TEST_ASSERT_EQUAL_UINT16(0, points[3].distance_mm);
+    TEST_ASSERT_EQUAL_UINT8(2, points[3].flag);
+    TEST_ASSERT_EQUAL_UINT16(1021, points[4].distance_mm);
+}
+
+/* ------------------------------------------------------------------------------- a small buffer */
+
+void test_points_that_do_not_fit_are_counted_and_not_written(void)
+{
+    begin_with(8, TMINI_FILTER_NONE);
+    (void)start(0);
+    rest_of_turn(0);
+    TEST_ASSERT_EQUAL_HEX16(0xEEEE, points[8].angle_q6);
+    expect_scan(0, 0, false);
+    TEST_ASSERT_EQUAL_UINT16(8, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(13, scan->dropped);
+    TEST_ASSERT_EQUAL_UINT16(5, scan->packets);
+}
+
+void test_a_buffer_that_just_fits_makes_a_complete_scan(void)
+{
+    begin_with(21, TMINI_FILTER_NONE);
+    (void)start(0);
+    rest_of_turn(0);
+    expect_scan(0, 0, true);
+    begin_with(20, TMINI_FILTER_NONE);
+    add();
+    rest_of_turn(0);
+    expect_scan(0, 0, false);
+    TEST_ASSERT_EQUAL_UINT16(20, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(1, scan->dropped);
+}
+
+void test_the_next_scan_has_the_whole_buffer_again(void)
+{
+    begin_with(8, TMINI_FILTER_NONE);
+    (void)start(0);
+    rest_of_turn(0);
+    expect_scan(0, 0, false);
+    add();
+    quarter(0);
+    TEST_ASSERT_EQUAL_UINT16(6, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->dropped);
+}
+
+/* ------------------------------------------------------------------------------------- quality */
+
+void test_one_byte_before_a_start_packet_is_last_crc_and_no_gap(void)
+{
+    (void)start(0);
+    rest_of_turn(0);
+    strays = 1;
+    expect_scan(0, 0, true);
+    add();
+    rest_of_turn(0);
+    expect_scan(0, 0, true);
+}
+
+void test_two_bytes_before_a_start_packet_are_a_gap(void)
+{
+    (void)start(0);
+    rest_of_turn(0);
+    strays = 2;
+    expect_scan(0, 1, false);
+}
+
+void test_a_gap_before_a_scan_is_not_its_own(void)
+{
+    strays = 9;
+    (void)start(0);
+    rest_of_turn(0);
+    expect_scan(0, 0, true);
+}
+
+void test_a_byte_before_a_point_packet_is_a_gap(void)
+{
+    (void)start(0);
+    quarter(0);
+    strays = 1;
+    quarter(90 * DEGREE);
+    quarter(180 * DEGREE);
+    strays = 1;
+    quarter(270 * DEGREE);
+    expect_scan(0, 2, false);
+}
+
+void test_a_jump_of_more_than_4_degrees_is_a_gap(void)
+{
+    (void)start(0);
+    (void)point(256, 1000);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
+    (void)point(1256, 2000);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
+    (void)point(2257, 3000);
+    TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
+    (void)point(3000 + 200 * DEGREE, 4000 + 200 * DEGREE);
+    TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
+}
+
+void test_a_jump_at_the_end_of_a_turn_is_a_gap(void)
+{
+    (void)start(0);
+    quarter(0);
+    quarter(90 * DEGREE);
+    quarter(180 * DEGREE);
+    expect_scan(0, 1, false);
+}
+
+void test_a_step_back_by_less_than_4_degrees_is_jitter(void)
+{
+    (void)start(116 * DEGREE);
+    (void)point(115 * DEGREE, 200 * DEGREE);
+    (void)point(196 * DEGREE + 1, 270 * DEGREE);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
+    (void)point(266 * DEGREE + 1, 300 * DEGREE);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
+    (void)point(296 * DEGREE, 302 * DEGREE); /* Exactly 4: 356 forwards. */
+    TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
+}
+
+void test_the_last_angle_of_a_lone_sample_does_not_count(void)
+{
+    (void)start(0);
+    quarter(0);
+    (void)arrive(0x00, 1, 91 * DEGREE, 50 * DEGREE); /* Section 9.6: LSA before FSA. */
+    add();
+    quarter(91 * DEGREE);
+    quarter(181 * DEGREE);
+    quarter(270 * DEGREE);
+    expect_scan(0, 0, true);
+}
+
+void test_checksum_errors_are_counted_while_the_scan_is_received(void)
+{
+    receiver.parser.counters.checksum_errors = 65530;
+    (void)start(0);
+    rest_of_turn(0);
+    receiver.parser.counters.checksum_errors += 3;
+    TEST_ASSERT_TRUE(arrive(0x79, 1, 0, 0));
+    TEST_ASSERT_EQUAL_UINT16(3, scan->checksum_errors);
+    add();
+    receiver.parser.counters.checksum_errors += 7; /* Past 65535. */
+    TEST_ASSERT_TRUE(arrive(0x79, 1, 0, 0));
+    TEST_ASSERT_EQUAL_UINT16(7, scan->checksum_errors);
+    add();
+    TEST_ASSERT_TRUE(arrive(0x79, 1, 0, 0));
+    TEST_ASSERT_EQUAL_UINT16(0, scan->checksum_errors);
+}
+
+void test_counts_stop_at_65535(void)
+{
+    begin_with(2, TMINI_FILTER_NONE);
+    (void)start(0);
+    builder.scan.gaps = 65534;
+    builder.scan.packets = 65534;
+    builder.scan.dropped = 65530;
+    strays = 1;
+    quarter(0); /* Four points do not fit. */
+    TEST_ASSERT_EQUAL_UINT16(65535, scan->gaps);
+    TEST_ASSERT_EQUAL_UINT16(65535, scan->packets);
+    TEST_ASSERT_EQUAL_UINT16(65534, scan->dropped);
+    strays = 1;
+    quarter(90 * DEGREE);
+    TEST_ASSERT_EQUAL_UINT16(65535, scan->gaps);
+    TEST_ASSERT_EQUAL_UINT16(65535, scan->packets);
+    TEST_ASSERT_EQUAL_UINT16(65535, scan->dropped);
+}
+
+/* ---------------------------------------------------------------------------- lost start packets */
+
+/* Two revolutions from `from_q6` on, but the second one's start packet is missing. */
+static void expect_closed_without_start(uint32_t from_q6)
+{
+    begin_with(ROOM, TMINI_FILTER_NONE);
+    (void)start(from_q6);
+    rest_of_turn(from_q6);
+    TEST_ASSERT_TRUE(arrive(0x00, 5, from_q6 + DEGREE, from_q6 + 90 * DEGREE));
+    TEST_ASSERT_EQUAL_UINT16(21, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(5, scan->packets);
+    TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->frequency_chz);
+    TEST_ASSERT_FALSE(scan->complete);
+    add();
+    quarter(from_q6 + 90 * DEGREE);
+    quarter(from_q6 + 180 * DEGREE);
+    TEST_ASSERT_EQUAL_UINT16(21, scan->count); /* They wait for a start packet. */
+    TEST_ASSERT_FALSE(start(from_q6));
+    rest_of_turn(from_q6);
+    expect_scan(from_q6, 0, true);
+    add();
+}
+
+void test_a_lost_start_packet_never_merges_two_revolutions(void)
+{
+    expect_closed_without_start(0);
+}
+
+void test_a_lost_start_packet_is_noticed_wherever_revolutions_start(void)
+{
+    for (uint32_t degrees = 4; degrees < 360; degrees += 28) {
+        expect_closed_without_start(degrees * DEGREE);
+        expect_closed_without_start(degrees * DEGREE + 1);
+    }
+}
+
+void test_packets_lost_around_a_start_do_not_merge_revolutions(void)
+{
+    for (uint32_t start_at = 0; start_at <= 116; start_at += 116) {
+        begin_with(ROOM, TMINI_FILTER_NONE);
+        const uint32_t from_q6 = start_at * DEGREE;
+        (void)start(from_q6);
+        quarter(from_q6);
+        quarter(from_q6 + 90 * DEGREE);
+        /* Lost: two point packets, the start packet, the next point packet. */
+        TEST_ASSERT_TRUE(arrive(0x00, 5, from_q6 + 91 * DEGREE, from_q6 + 180 * DEGREE));
+        TEST_ASSERT_EQUAL_UINT16(11, scan->count);
+        TEST_ASSERT_FALSE(scan->complete);
+        add();
+        TEST_ASSERT_FALSE(start(from_q6));
+    }
+}
+
+/* The start angle changes by some degrees: 362 are still the same revolution. */
+void test_a_revolution_may_take_362_degrees_and_no_more(void)
+{
+    (void)start(0);
+    rest_of_turn(0);
+    TEST_ASSERT_FALSE(point(1, 128));
+    TEST_ASSERT_TRUE(arrive(0x00, 5, 129, 129));
+    begin_with(ROOM, TMINI_FILTER_NONE);
+    (void)start(0);
+    rest_of_turn(0);
+    TEST_ASSERT_TRUE(arrive(0x00, 5, 1, 129));
+}
+
+void test_jitter_backwards_does_not_count_as_a_turn(void)
+{
+    (void)start(0);
+    for (unsigned i = 0; i < 6; i++) {
+        TEST_ASSERT_FALSE(point(10 * DEGREE, 12 * DEGREE)); /* Two degrees on, two back. */
+    }
+    TEST_ASSERT_FALSE(point(13 * DEGREE, 350 * DEGREE));
+    TEST_ASSERT_FALSE(point(351 * DEGREE, 360 * DEGREE + 100));
+    TEST_ASSERT_TRUE(arrive(0x00, 5, 101, 140));
+}
+
+void test_a_start_packet_a_little_before_a_full_turn_closes_the_scan(void)
+{
+    (void)start(117 * DEGREE);
+    rest_of_turn(117 * DEGREE);
+    expect_scan(115 * DEGREE, 0, true);
+}
+
+/* ------------------------------------------------------------------------------------------ DMA */
+
+static void overrun(void)
+{
+    memset(bytes, 0, sizeof bytes);
+    receiver_feed(&receiver, bytes, 260);
+    TEST_ASSERT_FALSE(tmini_parser_frame_intact(&receiver.parser));
+}
+
+void test_a_packet_that_dma_has_overwritten_is_a_gap_and_no_point(void)
+{
+    receiver_open_dma(&receiver, memory, 512, 0);
+    (void)start(0);
+    quarter(0);
+    TEST_ASSERT_FALSE(arrive(0x00, 5, 91 * DEGREE, 180 * DEGREE));
+    overrun();
+    add();
+    TEST_ASSERT_EQUAL_UINT16(6, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(2, scan->packets);
+    TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->dropped);
+    TEST_ASSERT_FALSE(point(181 * DEGREE, 270 * DEGREE)); /* After a gap of 65535. */
+    TEST_ASSERT_EQUAL_UINT16(11, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(181 * DEGREE, points[6].angle_q6);
+    TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
+}
+
+void test_a_start_packet_that_dma_has_overwritten_begins_a_scan_with_a_gap(void)
+{
+    receiver_open_dma(&receiver, memory, 512, 0);
+    (void)start(0);
+    rest_of_turn(0);
+    expect_scan(0, 0, true);
+    overrun();
+    add();
+    TEST_ASSERT_EQUAL_UINT16(0, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->packets);
+    TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
+}
