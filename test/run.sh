@@ -21,8 +21,7 @@ wish_for_fuzzer() {
     [ -z "$version" ] || wish "/usr/share/doc/libclang-rt-$version-dev" "libclang-rt-$version-dev"
 }
 
-# Compilers and emulators for the checks labelled compile and for those on other machines.
-# Compilers and emulators for the checks labelled compile, bigendian, int16 and rv32imc.
+# Compilers and emulators for the checks labelled compile, and for the tests on other machines.
 wish_for_machines() {
     wish clang clang
     wish_for_fuzzer

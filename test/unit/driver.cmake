@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# The driver, on a mocked port.
+foreach(test test_command test_states)
+    tmini_add_unit_test(${test}
+        SOURCES ${test}.c ../support/rig.c
+        MOCKS ../support/port_functions.h
+        LIBRARIES tmini_test_support
+        NOT_ON int16)
+endforeach()

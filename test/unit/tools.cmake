@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# The tests' own tools, which the others rely on.
+tmini_add_unit_test(test_random SOURCES test_random.c LIBRARIES tmini_test_support NOT_ON int16)
+tmini_add_unit_test(test_encoder SOURCES test_encoder.c LIBRARIES tmini_test_support NOT_ON int16)
+tmini_add_unit_test(test_reference_decoder SOURCES test_reference_decoder.c LIBRARIES tmini_test_support NOT_ON int16)
+tmini_add_unit_test(test_simulator SOURCES test_simulator.c LIBRARIES tmini_simulator NOT_ON int16)
+tmini_add_unit_test(test_link SOURCES test_link.c LIBRARIES tmini_simulator NOT_ON int16)
+if(TARGET tmini-sim AND NOT CMAKE_CROSSCOMPILING)
+    tmini_add_unit_test(test_tmini_sim SOURCES test_tmini_sim.c NOT_ON others)
+    target_compile_definitions(test_tmini_sim PRIVATE TMINI_SIM="$<TARGET_FILE:tmini-sim>")
+    add_dependencies(test_tmini_sim tmini-sim)
+endif()
