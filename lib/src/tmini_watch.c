@@ -28,16 +28,18 @@ static void observe(tmini_t *lidar, uint8_t faults)
     lidar->observed = faults;
 }
 
-/* A start packet: judge the revolution that it ends, by CT information if the unit sends that. */
+/* A start packet: judge the revolution that it ends, by CT information if the unit sends that, else by
+ * whether it had any range. The first one after a start may be only a part. */
 static void judge_revolution(tmini_t *lidar, bool trusted)
 {
-    const unsigned told = tmini_turn_faults(&lidar->turn);
-    if (told == TMINI_FAULTS_UNKNOWN) {
-        if (lidar->revolving) {
-            observe(lidar, lidar->range_seen ? 0 : TMINI_FAULT_DATA);
-        }
-    } else if (trusted) {
-        observe(lidar, (uint8_t)told);
+    unsigned faults = tmini_turn_faults(&lidar->turn);
+    bool judged = trusted;
+    if (faults == TMINI_FAULTS_UNKNOWN) {
+        faults = lidar->range_seen ? 0 : TMINI_FAULT_DATA;
+        judged = lidar->revolving;
+    }
+    if (judged) {
+        observe(lidar, (uint8_t)faults);
     }
     lidar->revolving = true;
     lidar->range_seen = false;
