@@ -72,8 +72,8 @@ static void receive(tmini_t *lidar)
     }
 }
 
-/* Of the events that are pending, the first in the order of tmini_event_t. Scan and packet are last:
- * they are valid until parsing goes on. */
+/* Of the events that are pending, the first in the order of tmini_event_t. Scan and packet are
+ * last: they are valid until parsing goes on. */
 static tmini_event_t take_event(tmini_t *lidar)
 {
     if (lidar->pending == 0) {

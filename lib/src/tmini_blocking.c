@@ -12,8 +12,8 @@ static void idle(const tmini_t *lidar)
     }
 }
 
-/* Polls until `wanted` comes or the command fails; gives it up when time is up. A command that could
- * not be begun has ended already. */
+/* Polls until `wanted` comes or the command fails; gives it up when time is up. A command that
+ * could not be begun has ended already. */
 static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event_t wanted,
                                uint32_t timeout_ms)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the driver's three files share: tmini.c (events), tmini_command.c (what is said to the lidar)
- * and tmini_watch.c (whether it keeps scanning, and is well). */
+/* What the driver's three files share: tmini.c (events), tmini_command.c (what is said to the
+ * lidar) and tmini_watch.c (whether it keeps scanning, and is well). */
 
 #ifndef TMINI_DRIVER_H
 #define TMINI_DRIVER_H

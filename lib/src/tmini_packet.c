@@ -6,10 +6,10 @@
 #include "tmini_packet_header.h"
 
 /* Sample i lies at first + round(i * diff / (count - 1)). `step` is diff / (count - 1) with 17
- * fraction bits, rounded up, and HALF rounds to nearest, halves up. That is exact: after at most 254
- * steps the rounding up amounts to less than 254 / 2^17 < 1 / (2 * 254), and an exact value that is
- * not yet at the next rounding boundary is at least 1 / (2 * (count - 1)) below it. It cannot
- * overflow: i * diff / (count - 1) <= diff < 23040 < 2^15. */
+ * fraction bits, rounded up, and HALF rounds to nearest, halves up. That is exact: after at most
+ * 254 steps the rounding up amounts to less than 254 / 2^17 < 1 / (2 * 254), and an exact value
+ * that is not yet at the next rounding boundary is at least 1 / (2 * (count - 1)) below it. It
+ * cannot overflow: i * diff / (count - 1) <= diff < 23040 < 2^15. */
 #define STEP_BITS 17
 #define HALF ((uint32_t)1 << (STEP_BITS - 1))
 

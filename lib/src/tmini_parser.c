@@ -28,8 +28,8 @@ static bool packet_header_is_plausible(const tmini_parser_t *parser)
     return check_bits && header[LSN] >= 1 && header[LSN] <= (is_start ? 1 : parser->max_samples);
 }
 
-/* XORs the candidate's 16-bit words: those of the header, and two for each sample. The checksum itself
- * is among them, so that nothing remains if it is right. */
+/* XORs the candidate's 16-bit words: those of the header, and two for each sample. The checksum
+ * itself is among them, so that nothing remains if it is right. */
 static bool checksum_matches(const tmini_parser_t *parser)
 {
     unsigned sum = 0;

@@ -28,8 +28,8 @@ static void observe(tmini_t *lidar, uint8_t faults)
     lidar->observed = faults;
 }
 
-/* A start packet: judge the revolution that it ends, by CT information if the unit sends that, else by
- * whether it had any range. The first one after a start may be only a part. */
+/* A start packet: judge the revolution that it ends, by CT information if the unit sends that, else
+ * by whether it had any range. The first one after a start may be only a part. */
 static void judge_revolution(tmini_t *lidar, bool trusted)
 {
     unsigned faults = tmini_turn_faults(&lidar->turn);

@@ -20,9 +20,9 @@
  * Nothing is locked and no interrupt is disabled (but see tmini_atomic.h for 8-bit machines). Any
  * number of lidars, each with a tmini_t of its own.
  *
- * Time. No function waits. Commands only begin something; how it ends is an event. tmini_poll() must
- * be called often enough that the receive buffer does not overflow: the lidar sends about 13,100
- * bytes a second, so 1024 bytes last 78 ms, or 39 ms with DMA, which can use half of them.
+ * Time. No function waits. Commands only begin something; how it ends is an event. tmini_poll()
+ * must be called often enough that the receive buffer does not overflow: the lidar sends about
+ * 13,100 bytes a second, so 1024 bytes last 78 ms, or 39 ms with DMA, which can use half of them.
  *
  * "Section" in these headers means the section of docs/protocol.md. */
 
@@ -130,8 +130,8 @@ typedef struct {
     uint16_t reboots;       /* Soft reboots sent to recover. */
 } tmini_counters_t;
 
-/* One lidar. The members are private; they are here so that it can be allocated statically. The small
- * ones come first: Thumb code reaches them with short instructions. */
+/* One lidar. The members are private; they are here so that it can be allocated statically. The
+ * small ones come first: Thumb code reaches them with short instructions. */
 typedef struct {
     uint8_t phase;     /* What goes on on the wire. */
     uint8_t goal;      /* The command that is being carried out. */
@@ -189,40 +189,41 @@ typedef struct {
  * then refuses commands and polls to nothing. */
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config);
 
-/* ----------------------------------------------------------- receiving: interrupt or task context */
+/* -------------------------------------------------------- receiving: interrupt or task context */
 
 /* Stores one received byte: the call for a UART's receive interrupt. No loop, no wait, at most 16
- * instructions on a Cortex-M4. When the buffer is full the byte is refused and counted. Does nothing
- * harmful before tmini_init(). */
+ * instructions on a Cortex-M4. When the buffer is full the byte is refused and counted. Does
+ * nothing harmful before tmini_init(). */
 static inline void tmini_feed_byte(tmini_t *lidar, uint8_t byte)
 {
     tmini_ring_put(&lidar->ring, byte);
 }
 
-/* Stores a block of received bytes; those that do not fit are refused and counted. Two block copies. */
+/* Stores a block of received bytes; those that do not fit are refused and counted. Two block
+ * copies. */
 static inline void tmini_feed(tmini_t *lidar, const uint8_t *bytes, size_t count)
 {
     tmini_ring_write(&lidar->ring, bytes, count);
 }
 
 /* Publishes how far circular DMA has written rx_buffer: `position` is the index it writes next
- * (rx_size less the channel's remaining count). Call it from the half-transfer, transfer-complete and
- * idle-line interrupts, at least once every half buffer. No loop, no wait. Overwritten bytes are
- * noticed when polling, counted, and never become points. */
+ * (rx_size less the channel's remaining count). Call it from the half-transfer, transfer-complete
+ * and idle-line interrupts, at least once every half buffer. No loop, no wait. Overwritten bytes
+ * are noticed when polling, counted, and never become points. */
 static inline void tmini_feed_dma(tmini_t *lidar, size_t position)
 {
     tmini_ring_publish(&lidar->ring, position);
 }
 
-/* ------------------------------------------------------------- everything else: the polling context */
+/* -------------------------------------------------------- everything else: the polling context */
 
 /* Parses what has been received, keeps time, sends what is due; returns the next event or
- * TMINI_EVENT_NONE when there is nothing left to do. Call it until then. Bounded by the bytes in the
- * receive buffer and two bytes sent. */
+ * TMINI_EVENT_NONE when there is nothing left to do. Call it until then. Bounded by the bytes in
+ * the receive buffer and two bytes sent. */
 tmini_event_t tmini_poll(tmini_t *lidar);
 
-/* Commands. Each only begins; the event in brackets or TMINI_EVENT_FAILED is its end. From an unknown
- * state each first stops the lidar and waits for a quiet line (section 9.10). All return
+/* Commands. Each only begins; the event in brackets or TMINI_EVENT_FAILED is its end. From an
+ * unknown state each first stops the lidar and waits for a quiet line (section 9.10). All return
  *   TMINI_OK              begun
  *   TMINI_ERROR_ARGUMENT  null pointer, or a lidar that was not set up
  *   TMINI_ERROR_STATE     the lidar is scanning or being recovered: only stop is possible
@@ -232,8 +233,8 @@ tmini_event_t tmini_poll(tmini_t *lidar);
 /* Starts scanning [STARTED]. */
 tmini_status_t tmini_start(tmini_t *lidar);
 
-/* Stops scanning, and whatever else is under way [STOPPED]. In any state; an unfinished command ends
- * with TMINI_EVENT_FAILED, TMINI_ERROR_ABORTED. */
+/* Stops scanning, and whatever else is under way [STOPPED]. In any state; an unfinished command
+ * ends with TMINI_EVENT_FAILED, TMINI_ERROR_ABORTED. */
 tmini_status_t tmini_stop(tmini_t *lidar);
 
 /* Asks for the device information [INFO]. */
@@ -246,8 +247,8 @@ tmini_status_t tmini_request_health(tmini_t *lidar);
 tmini_status_t tmini_request_frequency(tmini_t *lidar);
 
 /* Sets the scan frequency, in steps of 1 and 0.1 Hz, and reads it back [FREQUENCY]. 600 to 1200, a
- * multiple of 10; TMINI_ERROR_ARGUMENT otherwise, and nothing is sent. A lidar that answers but does
- * not get there ends with TMINI_EVENT_FAILED, TMINI_ERROR_REPLY. */
+ * multiple of 10; TMINI_ERROR_ARGUMENT otherwise, and nothing is sent. A lidar that answers but
+ * does not get there ends with TMINI_EVENT_FAILED, TMINI_ERROR_REPLY. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
 
 /* Reboots the lidar [REBOOTED]. */
@@ -265,10 +266,10 @@ uint16_t tmini_frequency_chz(const tmini_t *lidar);
 /* Why the last failed command failed: TMINI_ERROR_TIMEOUT, _WRITE, _REPLY or _ABORTED. */
 tmini_status_t tmini_failure(const tmini_t *lidar);
 
-/* What is wrong with the lidar while scanning, a combination of tmini_fault_t; 0: nothing known. From
- * CT information when the unit sends it, seen in two revolutions. A unit that sends none has
- * TMINI_FAULT_DATA when two revolutions bring no valid range. Either has TMINI_FAULT_ENCODER
- * when packets come without any range and without a revolution (section 8). */
+/* What is wrong with the lidar while scanning, a combination of tmini_fault_t; 0: nothing known.
+ * From CT information when the unit sends it, seen in two revolutions. A unit that sends none has
+ * TMINI_FAULT_DATA when two revolutions bring no valid range. Either has TMINI_FAULT_ENCODER when
+ * packets come without any range and without a revolution (section 8). */
 uint8_t tmini_faults(const tmini_t *lidar);
 
 /* CT information: version, health and serial number as sent while scanning, each if known. */

@@ -35,7 +35,8 @@ extern "C" {
 #define TMINI_REPLY_HEADER_SIZE 7u
 #define TMINI_SAMPLE_SIZE 3u
 
-/* Samples accepted in a packet unless configured otherwise: the vendor's own limit (section 9.6). */
+/* Samples accepted in a packet unless configured otherwise: the vendor's own limit (section 9.6).
+ * */
 #define TMINI_MAX_SAMPLES_DEFAULT 80u
 
 /* Bytes of the largest packet with that many samples: the ring's window must hold one. */

@@ -64,16 +64,18 @@ void tmini_ring_publish(tmini_ring_t *ring, size_t position);
  * the hardware may have overwritten the oldest. */
 size_t tmini_ring_unread(const tmini_ring_t *ring);
 
-/* Consumer: the unread byte `offset` bytes from the oldest, which must be below tmini_ring_unread().
- * A larger offset reads another byte of the ring's memory, never outside it. */
+/* Consumer: the unread byte `offset` bytes from the oldest, which must be below
+ * tmini_ring_unread(). A larger offset reads another byte of the ring's memory, never outside it.
+ * */
 uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset);
 
 /* Consumer: copies `count` unread bytes from `offset` on. */
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count);
 
 /* Consumer: the three-byte samples from the unread byte `offset` on that lie in one piece, so that
- * the loops over samples, the hottest there are, run without wrapping. At most *count samples; *count
- * becomes how many there are. One that straddles the memory's end is put together in `joined`. */
+ * the loops over samples, the hottest there are, run without wrapping. At most *count samples;
+ * *count becomes how many there are. One that straddles the memory's end is put together in
+ * `joined`. */
 const uint8_t *tmini_ring_samples(const tmini_ring_t *ring, size_t offset, size_t *count,
                                   uint8_t joined[3]);
 

@@ -32,7 +32,7 @@ typedef struct {
     uint16_t count;           /* Points in the buffer. */
     uint16_t dropped;         /* Points that did not fit in it. */
     uint16_t packets;         /* Packets received of this revolution. */
-    uint16_t gaps;            /* Places at which at least one packet is missing. */
+    uint16_t gaps;            /* Places where bytes were lost or damaged: packets may be missing. */
     uint16_t checksum_errors; /* While it was received, modulo 2^16. */
     uint16_t frequency_chz;   /* Measured, 0.01 Hz, from the start packet after it; 0: unknown. */
     uint32_t timestamp_ms;    /* The port's clock when the start packet was parsed. */
