@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "tmini_port_template.h"
+
+/* FILL IN 1: hands one byte to the transmitter, without waiting for it to leave. Returns 1 when the
+ * transmitter has taken it, 0 when it is busy (the driver offers the byte again at the next
+ * tmini_poll()), or a negative number when it has failed. */
+static int transmit(void *uart, uint8_t byte)
+{
+    (void)uart;
+    (void)byte;
+    return -1; /* There is no transmitter yet. */
+}
+
+static int write(void *context, const uint8_t *bytes, size_t count)
+{
+    const tmini_port_template_t *const port = context;
+    int taken = 0;
+    while ((size_t)taken < count) {
+        const int result = transmit(port->uart, bytes[taken]);
+        if (result < 0) {
+            return result;
+        }
+        if (result == 0) {
+            break;
+        }
+        taken++;
+    }
+    return taken;
+}
+
+/* FILL IN 2 (or leave as it is): milliseconds, if your system counts them already. Where 32 bits take
+ * more than one access, an interrupt may come in between: two equal readings show that none has. */
+static uint32_t now_ms(void *context)
+{
+    const tmini_port_template_t *const port = context;
+    uint32_t time_ms = port->time_ms;
+    for (uint32_t again = port->time_ms; again != time_ms; again = port->time_ms) {
+        time_ms = again;
+    }
+    return time_ms;
+}
+
+/* FILL IN 3 (optional): a function that lets other work run for about a millisecond: an RTOS delay,
+ * or a sleep until the next interrupt. Only the functions of tmini_blocking.h call it, while they
+ * wait; NULL makes them spin. */
+const tmini_port_t tmini_port_template = { .write = write, .now_ms = now_ms, .wait = NULL };
+
+void tmini_port_template_begin(tmini_port_template_t *port, tmini_t *lidar, void *uart)
+{
+    *port = (tmini_port_template_t){ .lidar = lidar, .uart = uart };
+}
+
+void tmini_port_template_tick(tmini_port_template_t *port)
+{
+    port->time_ms = port->time_ms + 1;
+}
+
+/* A byte that came with an error is stored as well: the parser's checks decide what it is worth. */
+void tmini_port_template_receive(tmini_port_template_t *port, uint8_t byte, bool is_error)
+{
+    if (is_error) {
+        port->receive_errors = port->receive_errors + 1;
+    }
+    tmini_feed_byte(port->lidar, byte);
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* A port to start yours from: copy this file and its source, rename, and fill in the places that
+ * the source marks FILL IN. ../README.md explains the steps.
+ *
+ * It compiles as it is. Unfilled, it has no UART: every command ends with TMINI_EVENT_FAILED and
+ * TMINI_ERROR_WRITE, so that a port left unfinished is noticed. */
+
+#ifndef TMINI_PORT_TEMPLATE_H
+#define TMINI_PORT_TEMPLATE_H
+
+#include <stdint.h>
+
+#include "tmini/tmini.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What the port knows of one lidar's connection; one of these a lidar, allocated by you. Its address
+ * is the `port_context` of tmini_config_t. */
+typedef struct {
+    tmini_t *lidar;
+    void *uart; /* Whatever your board calls the UART: a handle, a number, a register address. */
+    volatile uint32_t time_ms;
+    volatile uint32_t receive_errors; /* Framing, noise and overrun errors: for your diagnostics. */
+} tmini_port_template_t;
+
+/* The `port` of tmini_config_t. */
+extern const tmini_port_t tmini_port_template;
+
+/* Call once, before tmini_init(): names the two ends that the port connects. The UART is set up
+ * (230400 baud, 8 data bits, no parity, 1 stop bit) but its receive interrupt not yet enabled; that
+ * comes after tmini_init(). */
+void tmini_port_template_begin(tmini_port_template_t *port, tmini_t *lidar, void *uart);
+
+/* Call from an interrupt every millisecond. */
+void tmini_port_template_tick(tmini_port_template_t *port);
+
+/* Call from the UART's receive interrupt with each byte; `is_error` if the UART reported a framing,
+ * noise or overrun error with it. */
+void tmini_port_template_receive(tmini_port_template_t *port, uint8_t byte, bool is_error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
