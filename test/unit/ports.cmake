@@ -13,3 +13,23 @@ endfunction()
 
 tmini_add_port_test(test_port_template template
     SOURCES test_port_template.c ${PROJECT_SOURCE_DIR}/port/template/tmini_port_template.c)
+
+set(stm32 ${PROJECT_SOURCE_DIR}/port/stm32)
+set(stm32_hal ${PROJECT_SOURCE_DIR}/test/support/stm32_stub/stm32_stub_hal.h)
+
+# An STM32 has 32 bits: these do not run on the 8-bit machine.
+tmini_add_port_test(test_port_stm32_hal stm32 NOT_ON int16
+    SOURCES test_port_stm32_hal.c ${stm32}/tmini_stm32_hal.c MOCKS ${stm32_hal})
+tmini_add_port_test(test_port_stm32_hal_cache stm32 NOT_ON int16
+    SOURCES test_port_stm32_hal_cache.c ${stm32}/tmini_stm32_hal.c MOCKS ${stm32_hal})
+tmini_add_port_test(test_port_stm32_usart_dr stm32 NOT_ON int16
+    SOURCES test_port_stm32_usart.c ${stm32}/tmini_stm32_usart_dr.c)
+tmini_add_port_test(test_port_stm32_usart_rdr stm32 NOT_ON int16
+    SOURCES test_port_stm32_usart.c ${stm32}/tmini_stm32_usart_rdr.c)
+
+# Another processor, another DMA controller, another USART.
+if(TARGET test_port_stm32_hal_cache)
+    target_compile_definitions(test_port_stm32_hal_cache PRIVATE
+        STM32_STUB_DCACHE STM32_STUB_LINKED_LISTS)
+    target_compile_definitions(test_port_stm32_usart_rdr PRIVATE USART_HAS_RDR)
+endif()

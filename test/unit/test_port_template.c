@@ -22,9 +22,7 @@ void setUp(void)
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_init(&lidar, &config));
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_a_command_through_the_unfilled_template_fails_as_a_write_error(void)
 {
