@@ -21,12 +21,13 @@ wish_for_fuzzer() {
     [ -z "$version" ] || wish "/usr/share/doc/libclang-rt-$version-dev" "libclang-rt-$version-dev"
 }
 
-# Compilers and emulators for the checks labelled compile, bigendian and int16.
+# Compilers and emulators for the checks labelled compile and for those on other machines.
 wish_for_machines() {
     wish clang clang
     wish_for_fuzzer
     wish g++ g++
     wish arm-none-eabi-gcc gcc-arm-none-eabi
+    wish qemu-system-arm qemu-system-arm
     wish /usr/lib/arm-none-eabi/newlib libnewlib-arm-none-eabi
     wish riscv64-unknown-elf-gcc gcc-riscv64-unknown-elf
     wish /usr/lib/picolibc/riscv64-unknown-elf picolibc-riscv64-unknown-elf

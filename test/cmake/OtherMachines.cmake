@@ -60,7 +60,7 @@ endfunction()
 # The other build's own ctest knows how to run its test, and when it has passed.
 function(tmini_add_test_on_machine test machine dir)
     get_property(not_on GLOBAL PROPERTY TMINI_${test}_NOT_ON)
-    if(machine IN_LIST not_on)
+    if(machine IN_LIST not_on OR others IN_LIST not_on)
         return()
     endif()
     add_test(NAME ${machine}.${test} COMMAND ${CMAKE_COMMAND} -E chdir ${dir}
@@ -76,4 +76,9 @@ if(TMINI_TEST_MACHINES)
     tmini_add_machine(int16
         TOOLCHAIN avr-atmega2560.cmake BUILD_TYPE MinSizeRel
         PROGRAMS avr-gcc simavr)
+    foreach(processor cortex-m0 cortex-m4)
+        tmini_add_machine(${processor}
+            TOOLCHAIN ${processor}.cmake BUILD_TYPE MinSizeRel
+            PROGRAMS arm-none-eabi-gcc qemu-system-arm)
+    endforeach()
 endif()

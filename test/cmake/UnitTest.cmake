@@ -8,7 +8,8 @@
 #     [LIBRARIES target …]             linked besides the library, Unity and CMock
 #     [LABELS label …]                 ctest labels; `unit` unless given
 #     [NOT_ON machine …]               other machines it does not run on: `int16` for tests whose
-#                                      arrays do not fit in 8 KB of RAM, or `bigendian`
+#                                      arrays do not fit in 8 KB of RAM, `bigendian`, …, or
+#                                      `others`: none but this computer
 # )
 #
 # One executable and one ctest. The main function (the "runner") and the mocks are generated at build

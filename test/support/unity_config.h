@@ -30,6 +30,14 @@
 
 #endif
 
+#ifdef TMINI_TEST_SEMIHOSTING
+
+#include "semihosting.h"
+
+#define UNITY_OUTPUT_CHAR(c) semihosting_put((char)(c))
+
+#endif
+
 #if defined(TMINI_TEST_INT16) && INT_MAX != 0x7FFF
 #error "this machine was chosen for its 16-bit int, which it has not"
 #endif

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Start-up of unit tests on an emulated Cortex-M: vector table, main(), end by semihosting. The emulator
+ * has loaded initialised data into RAM, and RAM is zero at first. */
+
+#include "semihosting.h"
+
+#include <stdint.h>
+
+/* Operations and reasons of ARM's semihosting specification. */
+#define SYS_WRITEC 0x03
+#define SYS_EXIT 0x18
+#define APPLICATION_EXIT 0x20026u
+#define RUN_TIME_ERROR 0x20023u
+
+extern uint32_t stack_top; /* Of the linker script. */
+
+int main(void);
+
+static void ask(uint32_t operation, uint32_t argument)
+{
+    register uint32_t r0 __asm__("r0") = operation;
+    register uint32_t r1 __asm__("r1") = argument;
+    __asm__ volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
+}
+
+void semihosting_put(char character)
+{
+    ask(SYS_WRITEC, (uint32_t)&character);
+}
+
+void semihosting_exit(int status)
+{
+    ask(SYS_EXIT, status == 0 ? APPLICATION_EXIT : RUN_TIME_ERROR);
+    for (;;) {
+    }
+}
+
+void cortex_m_reset(void);
+
+void cortex_m_reset(void)
+{
+    semihosting_exit(main());
+}
+
+/* Any exception: an unaligned access, a wild pointer, a stack that left its place. */
+static void fault(void)
+{
+    static const char text[] = "PROCESSOR FAULT\n";
+    for (const char *character = text; *character != '\0'; character++) {
+        semihosting_put(*character);
+    }
+    semihosting_exit(1);
+}
+
+/* Initial stack pointer, reset, and the other exceptions of the processor itself. */
+__attribute__((section(".vectors"), used)) static const void *const vectors[16] = {
+    &stack_top, cortex_m_reset, fault, fault, fault, fault, fault, fault,
+    fault,      fault,          fault, fault, fault, fault, fault, fault,
+};
