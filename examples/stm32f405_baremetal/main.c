@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Obstacle stop on an STM32F405, without an operating system and without vendor code: asks the lidar who
+ * it is and how it is, sets its scan frequency, scans, and lets the robot move while nothing is near
+ * in front. Says each second on the console what it sees. */
+
+#include "board.h"
+#include "console.h"
+#include "obstacle.h"
+#include "report.h"
+#include "stm32f405.h"
+#include "tmini/tmini.h"
+#include "tmini_stm32_usart.h"
+
+#define FREQUENCY_CHZ 1000u
+#define STATUS_MS 1000u
+#define RETRY_MS 1000u
+
+static uint8_t rx[1024];
+static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
+static tmini_t lidar;
+static tmini_stm32_usart_t port;
+static obstacle_t obstacle;
+static report_status_t status;
+static volatile uint32_t worst_cycles;
+static uint32_t failed_ms;
+static bool wants_to_scan = true;
+static bool has_failed;
+static bool says_digests;
+
+void USART1_IRQHandler(void);
+
+void USART1_IRQHandler(void)
+{
+    const uint32_t start = board_cycle();
+    tmini_stm32_usart_interrupt(&port);
+    const uint32_t cycles = board_cycles_since(start);
+    if (cycles > worst_cycles) {
+        worst_cycles = cycles;
+    }
+}
+
+static void see(const tmini_scan_t *scan)
+{
+    obstacle_see(&obstacle, scan, board_time_ms);
+    status.points += scan->count;
+    if (says_digests) {
+        report_digest(scan);
+    }
+}
+
+/* Each answer leads to the next question, and the last one to scanning. */
+static void handle(tmini_event_t event)
+{
+    switch (event) {
+    case TMINI_EVENT_INFO:
+        report_info(tmini_info(&lidar));
+        (void)tmini_request_health(&lidar);
+        break;
+    case TMINI_EVENT_HEALTH:
+        report_health(tmini_health(&lidar));
+        (void)tmini_set_frequency(&lidar, FREQUENCY_CHZ);
+        break;
+    case TMINI_EVENT_FREQUENCY:
+        report_frequency(tmini_frequency_chz(&lidar));
+        (void)tmini_start(&lidar);
+        break;
+    case TMINI_EVENT_STARTED:
+        report_word("started");
+        break;
+    case TMINI_EVENT_SCAN:
+        see(tmini_scan(&lidar));
+        break;
+    case TMINI_EVENT_FAULT:
+        report_faults(tmini_faults(&lidar));
+        break;
+    case TMINI_EVENT_LOST:
+        report_word("lost");
+        break;
+    case TMINI_EVENT_RECOVERED:
+        report_word("recovered");
+        break;
+    case TMINI_EVENT_STOPPED:
+        report_word("stopped");
+        report_counters(&lidar, &port);
+        break;
+    case TMINI_EVENT_FAILED:
+        report_failure(tmini_failure(&lidar));
+        has_failed = true;
+        failed_ms = board_time_ms;
+        break;
+    default:
+        break;
+    }
+}
+
+/* Begins from the beginning, at first and after a failure. A lidar that is still streaming, because only
+ * this controller was restarted, is stopped first by the library. */
+static void ask_again(void)
+{
+    if (has_failed && wants_to_scan && board_time_ms - failed_ms >= RETRY_MS) {
+        has_failed = false;
+        (void)tmini_request_info(&lidar);
+    }
+}
+
+static void obey(char key)
+{
+    switch (key) {
+    case 's':
+        wants_to_scan = false;
+        obstacle_blind(&obstacle);
+        (void)tmini_stop(&lidar);
+        break;
+    case 'g':
+        wants_to_scan = true;
+        (void)tmini_start(&lidar);
+        break;
+    case 'c':
+        report_counters(&lidar, &port);
+        break;
+    case 'd':
+        says_digests = !says_digests;
+        break;
+    default:
+        break;
+    }
+}
+
+static void drive(void)
+{
+    if (tmini_state(&lidar) != TMINI_STATE_SCANNING || tmini_faults(&lidar) != 0) {
+        obstacle_blind(&obstacle);
+    }
+    status.may_move = obstacle_may_move(&obstacle, board_time_ms);
+    board_enable_drive(status.may_move);
+}
+
+static void say_status(void)
+{
+    static uint32_t said_ms;
+    if (board_time_ms - said_ms < STATUS_MS) {
+        return;
+    }
+    said_ms += STATUS_MS;
+    tmini_counters_t counters;
+    tmini_counters(&lidar, &counters);
+    status.worst_cycles = worst_cycles;
+    worst_cycles = 0;
+    report_status(&counters, &obstacle, &status);
+}
+
+static void start_lidar(void)
+{
+    const tmini_config_t config = {
+        .port = &tmini_stm32_usart_port,
+        .port_context = &port,
+        .rx_buffer = rx,
+        .rx_size = sizeof rx,
+        .points = points,
+        .max_points = sizeof points / sizeof points[0],
+    };
+    tmini_stm32_usart_begin(&port, &lidar, (volatile void *)USART1_BASE, &board_time_ms);
+    if (tmini_init(&lidar, &config) != TMINI_OK) {
+        report_word("wrong configuration");
+        return;
+    }
+    tmini_stm32_usart_open(&port, BOARD_USART1_CLOCK_HZ);
+    board_enable_lidar_interrupt();
+    (void)tmini_request_info(&lidar);
+}
+
+int main(void)
+{
+    board_start();
+    report_start();
+    start_lidar();
+    for (;;) {
+        const tmini_event_t event = tmini_poll(&lidar);
+        handle(event);
+        ask_again();
+        obey(console_key());
+        drive();
+        say_status();
+        if (console_work() && event == TMINI_EVENT_NONE) {
+            board_sleep();
+        }
+    }
+}

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* From reset to main(): vector table, initialised and zeroed data, and a painted stack, on which the paint
+ * that is left shows how much was ever used. */
+
+#include "board.h"
+#include "stm32f405.h"
+
+#define PAINT 0xC5C5C5C5u
+
+/* Of the linker script. */
+extern uint32_t stack_bottom[];
+extern uint32_t paint_end[];
+extern uint32_t stack_top[];
+extern uint32_t data_load[];
+extern uint32_t data_start[];
+extern uint32_t data_end[];
+extern uint32_t bss_start[];
+extern uint32_t bss_end[];
+
+int main(void);
+void reset_handler(void);
+void SysTick_Handler(void);
+void USART1_IRQHandler(void);
+
+static void paint_stack(void)
+{
+    for (volatile uint32_t *word = stack_bottom; word < paint_end; word++) {
+        *word = PAINT;
+    }
+}
+
+uint32_t board_stack_used(void)
+{
+    const uint32_t *word = stack_bottom;
+    while (word < stack_top && *word == PAINT) {
+        word++;
+    }
+    return (uint32_t)((uintptr_t)stack_top - (uintptr_t)word);
+}
+
+void reset_handler(void)
+{
+    const uint32_t *from = data_load;
+    for (uint32_t *to = data_start; to < data_end; to++) {
+        *to = *from++;
+    }
+    for (uint32_t *to = bss_start; to < bss_end; to++) {
+        *to = 0;
+    }
+    paint_stack();
+    (void)main();
+}
+
+/* Whatever else happens (a fault, an interrupt that has no handler, which faults), the robot must not
+ * move on. */
+static void stop_handler(void)
+{
+    board_enable_drive(false);
+    for (;;) {
+    }
+}
+
+typedef void (*handler_t)(void);
+
+/* Places behind the initial stack pointer. */
+enum { RESET, NMI, HARD_FAULT, MEMORY_FAULT, BUS_FAULT, USAGE_FAULT, SYSTICK = 14, EXCEPTIONS };
+
+#define IRQS 82u
+
+__attribute__((section(".vectors"), used)) static const struct {
+    const uint32_t *stack;
+    handler_t exceptions[EXCEPTIONS];
+    handler_t irqs[IRQS];
+} vectors = {
+    .stack = stack_top,
+    .exceptions =
+        {
+            [RESET] = reset_handler,
+            [NMI] = stop_handler,
+            [HARD_FAULT] = stop_handler,
+            [MEMORY_FAULT] = stop_handler,
+            [BUS_FAULT] = stop_handler,
+            [USAGE_FAULT] = stop_handler,
+            [SYSTICK] = SysTick_Handler,
+        },
+    .irqs = {[USART1_IRQ] = USART1_IRQHandler},
+};
