@@ -196,7 +196,7 @@ static int board_write(void *context, const uint8_t *bytes, size_t count)
     return (int)taken;
 }
 
-const tmini_port_t board_port = { .write = board_write, .now_ms = board_now_ms };
+const tmini_port_t board_port = {.write = board_write, .now_ms = board_now_ms};
 
 void board_open(tmini_t *lidar)
 {

@@ -181,6 +181,7 @@ static void handle(tmini_event_t event)
         break;
     default:
         put_named("unexpected_event", event);
+        finished = 1;
         break;
     }
 }

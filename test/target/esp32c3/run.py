@@ -19,11 +19,11 @@ import labwired
 
 PROCESSOR_HZ = 20_000_000  # What the chip comes out of reset with; TICKS_PER_MS in board.c.
 SLICE_US = 250  # Six byte times.
-END_US = 8_000_000
+END_US = 4_000_000
 
-# The manual's command codes. From an unknown state the first thing is a stop; 11 Hz is asked for,
-# raised by 1 Hz and read back.
-EXPECTED_COMMANDS = [0x65, 0x90, 0x92, 0x0D, 0x0B, 0x60, 0x65]
+# The manual's command codes. From an unknown state the first thing is a stop. The frequency is asked
+# for, 11 Hz, raised by 1 Hz and asked for again.
+EXPECTED_COMMANDS = [0x65, 0x90, 0x92, 0x0D, 0x0B, 0x0D, 0x60, 0x65]
 EXPECTED_FACTS = {
     "model": ["151"],
     "firmware_major": ["1"],
@@ -33,6 +33,8 @@ EXPECTED_FACTS = {
     "frequency_chz": ["1200"],
     "started": [""],
     "stopped": [""],
+    "turn_known": [str(0b10111000111010)],  # Indices 1, 3, 4, 5, 9, 10, 11 and 13.
+    "turn_number": ["12345"],
     "complete": ["1", "1", "1", "1"],
     "checksum_errors": ["0"],
     "bytes_overrun": ["0"],

@@ -85,7 +85,7 @@ static void print_truth(void)
 
 int main(int argc, char **argv)
 {
-    const sim_observer_t observer = { .on_packet = note_packet };
+    const sim_observer_t observer = {.on_packet = note_packet};
     sim_config_t config = sim_default_config();
     truth = tmpfile();
     if (argc != 2 || truth == NULL) {
