@@ -14,6 +14,8 @@ set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=test/support/environment.sh
 . "$root/test/support/environment.sh"
+# shellcheck source=test/support/labwired.sh
+. "$root/test/support/labwired.sh"
 
 # Clang's fuzzing runtime is in a package that is named for Clang's version.
 wish_for_fuzzer() {
@@ -38,12 +40,14 @@ wish_for_machines() {
     wish powerpc-linux-gnu-gcc gcc-powerpc-linux-gnu
     wish /usr/powerpc-linux-gnu/include/stdio.h libc6-dev-powerpc-cross
     wish qemu-system-riscv32 qemu-system-misc
+    wish_for_labwired
     is_present qemu-ppc-static || wish qemu-ppc qemu-user
 }
 
 need_test_tools
 [ "${TMINI_OPTIONAL:-yes}" = no ] || wish_for_machines
 install_tools
+[ "${TMINI_OPTIONAL:-yes}" = no ] || prepare_labwired "$root/build/labwired"
 
 # What goes well before the tests is not worth reading.
 quietly cmake -S "$root" -B "$root/build"
