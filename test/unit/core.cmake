@@ -9,3 +9,15 @@ tmini_add_unit_test(test_packet SOURCES test_packet.c LIBRARIES tmini_test_recei
 tmini_add_unit_test(test_reply SOURCES test_reply.c)
 tmini_add_unit_test(test_turn SOURCES test_turn.c)
 tmini_add_unit_test(test_scan SOURCES test_scan.c LIBRARIES tmini_test_receiver)
+
+# Ring and parser built once more, with an atomic header that lets the test come between any two
+# accesses of an index.
+tmini_add_unit_test(test_interrupts
+    SOURCES test_interrupts.c ${PROJECT_SOURCE_DIR}/lib/src/tmini_ring.c
+        ${PROJECT_SOURCE_DIR}/lib/src/tmini_parser.c
+    LIBRARIES tmini_test_receiver)
+if(TARGET test_interrupts)
+    target_compile_definitions(test_interrupts
+        PRIVATE TMINI_ATOMIC_HEADER="interrupting_atomic.h")
+    target_include_directories(test_interrupts PRIVATE ../support)
+endif()
