@@ -30,18 +30,20 @@ static void observe(tmini_t *lidar, uint8_t faults)
 
 /* A start packet: judge the revolution that it ends, by CT information if the unit sends that, else
  * by whether it had any range. The first one after a start may be only a part. */
+/* A start packet: judge the revolution that it ends, by CT information if the unit sends that, else by
+ * whether it had any range. Of one that was not received whole, the missing part may have had one. */
 static void judge_revolution(tmini_t *lidar, bool trusted)
 {
     unsigned faults = tmini_turn_faults(&lidar->turn);
     bool judged = trusted;
     if (faults == TMINI_FAULTS_UNKNOWN) {
         faults = lidar->range_seen ? 0 : TMINI_FAULT_DATA;
-        judged = lidar->revolving;
+        judged = lidar->whole || lidar->range_seen;
     }
     if (judged) {
         observe(lidar, (uint8_t)faults);
     }
-    lidar->revolving = true;
+    lidar->whole = true;
     lidar->range_seen = false;
     lidar->start_ms = lidar->now_ms;
 }
@@ -56,7 +58,7 @@ static void resume(tmini_t *lidar)
     tmini_turn_discard(&lidar->turn);
     tmini_scan_discard(&lidar->builder);
     lidar->goal = GOAL_START;
-    lidar->revolving = false;
+    lidar->whole = false;
     lidar->range_seen = false;
     lidar->observed = lidar->faults;
     lidar->start_ms = lidar->now_ms;
@@ -106,6 +108,9 @@ void tmini_driver_packet(tmini_t *lidar)
     tmini_packet_open(packet, &lidar->parser);
     lidar->phase_ms = lidar->now_ms;
     const bool trusted = tmini_turn_add(&lidar->turn, packet);
+    if (packet->gap > 1) { /* One byte may be LastCRC; with more, a packet may be lost. */
+        lidar->whole = false;
+    }
     if (tmini_packet_is_start(packet)) {
         judge_revolution(lidar, trusted);
     }

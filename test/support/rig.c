@@ -21,12 +21,19 @@ static uint32_t read_clock(void *context, int calls)
     return rig.now_ms;
 }
 
+static void renew_mocks(void)
+{
+    mock_port_functions_Destroy();
+    mock_port_functions_Init();
+    port_now_ms_StubWithCallback(read_clock);
+}
+
 void rig_open(void)
 {
     memset(&rig, 0, sizeof rig);
     rig.port.write = port_write;
     rig.port.now_ms = port_now_ms;
-    port_now_ms_StubWithCallback(read_clock);
+    renew_mocks();
     rig.now_ms = 1000;
     rig.config.port = &rig.port;
     rig.config.port_context = &rig.port;
@@ -58,6 +65,7 @@ void rig_expect_write(unsigned line, uint8_t first, uint8_t second, size_t count
 void rig_verify(void)
 {
     mock_port_functions_Verify();
+    renew_mocks(); /* CMock's memory would not hold the calls of a long story. */
 }
 
 /* ---- Time and events ---- */

@@ -150,7 +150,7 @@ typedef struct {
     bool recovering;
     bool held;         /* The packet that closed the scan has not been added to the next. */
     bool range_seen;   /* A valid range since the last start packet. */
-    bool revolving;    /* A start packet has come since scanning began. */
+    bool whole;        /* Nothing has been lost since the last start packet. */
     uint16_t pending;  /* A bit for each event not yet returned. */
     uint16_t limit_ms; /* How long the phase may last; 0: as long as it likes. */
     uint16_t target_chz;
@@ -270,6 +270,10 @@ tmini_status_t tmini_failure(const tmini_t *lidar);
  * From CT information when the unit sends it, seen in two revolutions. A unit that sends none has
  * TMINI_FAULT_DATA when two revolutions bring no valid range. Either has TMINI_FAULT_ENCODER when
  * packets come without any range and without a revolution (section 8). */
+/* What is wrong with the lidar while scanning, a combination of tmini_fault_t; 0: nothing known. From
+ * CT information when the unit sends it, seen in two revolutions. A unit that sends none has
+ * TMINI_FAULT_DATA when two whole revolutions bring no valid range. Either has TMINI_FAULT_ENCODER
+ * when packets come without any range and without a revolution (section 8). */
 uint8_t tmini_faults(const tmini_t *lidar);
 
 /* CT information: version, health and serial number as sent while scanning, each if known. */

@@ -1,0 +1,757 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The driver's frame: setting it up, feeding it, its events and results, its clock, its misuse. */
+
+#include "rig.h"
+
+#include "mock_port_functions.h"
+#include "unity.h"
+
+#include <string.h>
+
+void setUp(void)
+{
+    rig_open();
+}
+
+void tearDown(void)
+{
+}
+
+static tmini_counters_t counters(void)
+{
+    tmini_counters_t copy;
+
+    tmini_counters(&rig.lidar, &copy);
+    return copy;
+}
+
+/* ---- Setting up ---- */
+
+void test_a_lidar_just_set_up_is_in_the_unknown_state_and_nothing_has_been_sent(void)
+{
+    is_in(TMINI_STATE_UNKNOWN);
+    passes(10000);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_failure(&rig.lidar));
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
+}
+
+/* And then it refuses commands and polls to nothing. */
+static void is_refused(const tmini_config_t *config)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_init(&rig.lidar, config));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_start(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_stop(&rig.lidar));
+    polls_to(TMINI_EVENT_NONE);
+    is_in(TMINI_STATE_UNKNOWN);
+}
+
+void test_no_configuration_is_refused(void)
+{
+    is_refused(NULL);
+}
+
+void test_no_lidar_is_refused(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_init(NULL, &rig.config));
+}
+
+void test_no_port_is_refused(void)
+{
+    rig.config.port = NULL;
+    is_refused(&rig.config);
+}
+
+void test_a_port_without_write_is_refused(void)
+{
+    rig.port.write = NULL;
+    is_refused(&rig.config);
+}
+
+void test_a_port_without_a_clock_is_refused(void)
+{
+    rig.port.now_ms = NULL;
+    is_refused(&rig.config);
+}
+
+void test_a_port_without_wait_is_enough(void)
+{
+    rig.port.wait = NULL;
+    rig_init();
+}
+
+void test_no_receive_buffer_is_refused(void)
+{
+    rig.config.rx_buffer = NULL;
+    is_refused(&rig.config);
+}
+
+void test_a_receive_buffer_that_is_no_power_of_two_is_refused(void)
+{
+    rig.config.rx_size = 255;
+    is_refused(&rig.config);
+}
+
+void test_a_receive_buffer_too_small_for_the_largest_packet_is_refused(void)
+{
+    rig.config.rx_size = 128; /* 80 samples are 250 bytes. */
+    is_refused(&rig.config);
+}
+
+void test_a_smaller_receive_buffer_will_do_for_smaller_packets(void)
+{
+    rig.config.rx_size = 128;
+    rig.config.max_samples = 39; /* 127 bytes. */
+    rig_init();
+}
+
+void test_with_dma_half_the_buffer_must_hold_the_largest_packet(void)
+{
+    rig.config.rx_dma = true;
+    is_refused(&rig.config);
+    rig.config.max_samples = 39;
+    rig_init();
+}
+
+void test_points_without_room_are_refused(void)
+{
+    rig.config.max_points = 0;
+    is_refused(&rig.config);
+}
+
+void test_room_without_points_is_refused(void)
+{
+    rig.config.points = NULL;
+    is_refused(&rig.config);
+}
+
+void test_more_points_than_can_be_counted_are_refused(void)
+{
+    if (SIZE_MAX > 65535u) {
+        rig.config.max_points = (size_t)65535u + 1;
+        is_refused(&rig.config);
+    }
+}
+
+void test_an_undefined_filter_is_refused(void)
+{
+    rig.config.filter = 1;
+    is_refused(&rig.config);
+}
+
+/* ---- Misuse ---- */
+
+static void refuses_all_commands(tmini_t *lidar)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_start(lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_stop(lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_request_info(lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_request_health(lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_request_frequency(lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_set_frequency(lidar, 700));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_reboot(lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, tmini_poll(lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_UNKNOWN, tmini_state(lidar));
+}
+
+void test_a_null_pointer_is_refused_by_every_command(void)
+{
+    refuses_all_commands(NULL);
+}
+
+void test_a_lidar_never_set_up_is_refused_by_every_command(void)
+{
+    static tmini_t untouched;
+
+    refuses_all_commands(&untouched);
+}
+
+void test_a_lidar_never_set_up_takes_bytes_without_harm_and_has_empty_results(void)
+{
+    static tmini_t untouched;
+    const uint8_t bytes[4] = { 1, 2, 3, 4 };
+    tmini_counters_t seen;
+    tmini_turn_info_t turn;
+
+    tmini_feed_byte(&untouched, 0xAA);
+    tmini_feed(&untouched, bytes, sizeof bytes);
+    tmini_feed_dma(&untouched, 0);
+    tmini_counters(&untouched, &seen);
+    tmini_turn(&untouched, &turn);
+    TEST_ASSERT_EQUAL_UINT32(0, seen.bytes_pending);
+    TEST_ASSERT_EQUAL_UINT32(0, seen.parser.packets);
+    TEST_ASSERT_EQUAL_HEX16(0, turn.known);
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&untouched)->count);
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&untouched));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_failure(&untouched));
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&untouched));
+}
+
+/* ---- Feeding ---- */
+
+void test_single_bytes_blocks_and_dma_bring_the_same_packet(void)
+{
+    /* 5.8 Hz, 0.484 degrees, intensity 21, 149 mm, from a real unit (section 9.14). */
+    static const uint8_t packet[] = { 0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
+                                      0x00, 0x9E, 0x56, 0x15, 0x54, 0x02 };
+
+    for (unsigned way = 0; way < 3; way++) {
+        rig.config.points = NULL;
+        rig.config.max_points = 0;
+        rig.config.rx_dma = way == 2;
+        rig.config.max_samples = 39;
+        rig_init();
+        rig_go_starting();
+        if (way == 0) {
+            for (size_t i = 0; i < sizeof packet; i++) {
+                tmini_feed_byte(&rig.lidar, packet[i]);
+            }
+        } else if (way == 1) {
+            tmini_feed(&rig.lidar, packet, sizeof packet);
+        } else {
+            memcpy(rig.rx, packet, sizeof packet);
+            tmini_feed_dma(&rig.lidar, sizeof packet);
+        }
+        polls_to(TMINI_EVENT_STARTED);
+        polls_to(TMINI_EVENT_PACKET);
+        tmini_point_t point;
+        TEST_ASSERT_TRUE(tmini_packet_point(tmini_packet(&rig.lidar), 0, &point));
+        TEST_ASSERT_EQUAL_UINT16(31, point.angle_q6);
+        TEST_ASSERT_EQUAL_UINT16(149, point.distance_mm);
+        TEST_ASSERT_EQUAL_UINT8(21, point.intensity);
+        polls_to(TMINI_EVENT_NONE);
+    }
+}
+
+void test_every_byte_is_accounted_for(void)
+{
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    rig_feed_byte(0x11);     /* 1 skipped */
+    rig_feed_health(0, 0);   /* 10 in a reply */
+    rig_feed_byte(0x22);     /* 1 skipped */
+    rig_feed_point_packet(1000); /* 22 in a packet */
+    rig_feed_byte(0xAA);     /* 1 pending */
+    (void)rig_drain();
+    const tmini_counters_t seen = counters();
+    TEST_ASSERT_EQUAL_UINT32(35, rig.fed);
+    TEST_ASSERT_EQUAL_UINT32(22, seen.parser.bytes_in_packets);
+    TEST_ASSERT_EQUAL_UINT32(10, seen.parser.bytes_in_replies);
+    TEST_ASSERT_EQUAL_UINT32(2, seen.parser.bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(1, seen.bytes_pending);
+    TEST_ASSERT_EQUAL_UINT32(0, seen.parser.bytes_overrun);
+}
+
+void test_bytes_that_find_the_buffer_full_are_counted(void)
+{
+    static const uint8_t zeros[RIG_RX_SIZE] = { 0 };
+
+    rig_feed(zeros, sizeof zeros);
+    rig_feed(zeros, 7);
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT32(7, counters().parser.bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(RIG_RX_SIZE, counters().parser.bytes_skipped);
+}
+
+void test_packets_while_idle_are_parsed_and_counted_but_are_no_event(void)
+{
+    rig_go_idle();
+    rig_feed_start_packet(1000);
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT32(1, counters().parser.packets);
+    is_in(TMINI_STATE_UNKNOWN);
+}
+
+/* ---- Silence ---- */
+
+/* A header that promises more than comes: it hides the packet behind it. */
+static void feed_false_header_and_packet(void)
+{
+    static const uint8_t header[] = { 0xAA, 0x55, 0x00, 0x50, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00 };
+
+    rig_feed(header, sizeof header);
+    rig_feed_start_packet(1000);
+}
+
+void test_silence_gives_a_candidate_up_so_that_the_packet_it_hides_is_delivered(void)
+{
+    rig_go_scanning();
+    rig_feed_start_packet(1000);
+    (void)rig_drain();
+    feed_false_header_and_packet();
+    passes(30);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
+}
+
+void test_silence_gives_up_one_candidate_behind_the_other(void)
+{
+    rig_go_scanning();
+    rig_feed_start_packet(1000);
+    (void)rig_drain();
+    feed_false_header_and_packet();
+    feed_false_header_and_packet();
+    passes(30);
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_SCAN), rig_drain());
+    TEST_ASSERT_EQUAL_UINT32(2, counters().scans);
+    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
+}
+
+void test_a_byte_that_comes_in_time_keeps_the_candidate(void)
+{
+    uint8_t bytes[64];
+    static const encode_sample_t samples[10] = { { 1000, 50, 0 } };
+    const encode_packet_t packet = { 0, 10, 640, 1280, samples };
+    const size_t size = encode_packet(bytes, &packet);
+
+    for (size_t i = 0; i < size; i++) {
+        const uint32_t before = counters().parser.packets;
+        rig_feed_byte(bytes[i]);
+        passes(29);
+        TEST_ASSERT_EQUAL_UINT32(before + (i == size - 1 ? 1 : 0), counters().parser.packets);
+    }
+}
+
+void test_silence_gives_up_what_hides_a_reply_too(void)
+{
+    static const uint8_t header[] = { 0xAA, 0x55, 0x00, 0x28, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00 };
+
+    rig_go_idle();
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    rig_feed(header, sizeof header);
+    rig_feed_info();
+    passes(30);
+    polls_to(TMINI_EVENT_INFO);
+}
+
+/* ---- Scans ---- */
+
+/* A turn of three point packets, each a little further on; all samples 1000 mm but for the start. */
+static void feed_turn(uint16_t start_distance_mm)
+{
+    rig_feed_start_packet(start_distance_mm);
+    rig_feed_point_packet(1000);
+    rig_feed_point_packet(1001);
+}
+
+void test_a_scan_is_delivered_with_the_start_packet_that_follows_it(void)
+{
+    rig_go_scanning();
+    rig.now_ms = 5000;
+    feed_turn(700);
+    polls_to(TMINI_EVENT_NONE);
+    rig.now_ms = 5166;
+    feed_turn(800);
+    polls_to(TMINI_EVENT_SCAN);
+    const tmini_scan_t *const scan = tmini_scan(&rig.lidar);
+    TEST_ASSERT_EQUAL_PTR(rig.points, scan->points);
+    TEST_ASSERT_EQUAL_UINT16(9, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(3, scan->packets);
+    TEST_ASSERT_EQUAL_UINT16(600, scan->frequency_chz);
+    TEST_ASSERT_EQUAL_UINT32(5000, scan->timestamp_ms);
+    TEST_ASSERT_TRUE(scan->complete);
+    TEST_ASSERT_EQUAL_UINT16(700, scan->points[0].distance_mm);
+    TEST_ASSERT_EQUAL_UINT16(1000, scan->points[1].distance_mm);
+    TEST_ASSERT_EQUAL_UINT16(1001, scan->points[8].distance_mm);
+    TEST_ASSERT_EQUAL_UINT32(1, counters().scans);
+}
+
+void test_a_scan_is_valid_until_the_next_poll_whatever_is_fed(void)
+{
+    rig_go_scanning();
+    feed_turn(700);
+    feed_turn(800);
+    polls_to(TMINI_EVENT_SCAN);
+    feed_turn(900);
+    TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
+    TEST_ASSERT_EQUAL_UINT16(700, tmini_scan(&rig.lidar)->points[0].distance_mm);
+    polls_to(TMINI_EVENT_SCAN); /* The next one, which begins with the packet that ended it. */
+    TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
+    TEST_ASSERT_EQUAL_UINT16(800, tmini_scan(&rig.lidar)->points[0].distance_mm);
+}
+
+void test_the_packet_that_ended_a_scan_keeps_its_time_however_late_the_next_poll(void)
+{
+    rig_go_scanning();
+    feed_turn(700);
+    polls_to(TMINI_EVENT_NONE);
+    rig.now_ms = 7000;
+    feed_turn(800);
+    polls_to(TMINI_EVENT_SCAN);
+    rig.now_ms = 7077;
+    polls_to(TMINI_EVENT_NONE);
+    feed_turn(900);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT32(7000, tmini_scan(&rig.lidar)->timestamp_ms);
+}
+
+void test_a_scan_is_delivered_after_the_fault_that_came_with_it(void)
+{
+    rig_go_scanning();
+    for (unsigned i = 0; i < 2; i++) {
+        rig_feed_plain_turn(0);
+        (void)rig_drain();
+    }
+    rig_feed_plain_turn(0);
+    polls_to(TMINI_EVENT_FAULT);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(17, tmini_scan(&rig.lidar)->count);
+    polls_to(TMINI_EVENT_NONE);
+}
+
+void test_a_scan_with_more_points_than_the_buffer_holds_says_how_many_were_dropped(void)
+{
+    rig.config.max_points = 30;
+    rig_init();
+    rig_go_scanning();
+    rig_feed_start_packet(1000);
+    rig_feed_packet(0, 40, 1000);
+    rig_feed_start_packet(1000);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(30, tmini_scan(&rig.lidar)->count);
+    TEST_ASSERT_EQUAL_UINT16(11, tmini_scan(&rig.lidar)->dropped);
+    TEST_ASSERT_FALSE(tmini_scan(&rig.lidar)->complete);
+}
+
+void test_the_filter_of_the_configuration_is_applied(void)
+{
+    static const encode_sample_t samples[2] = { { 1000, 50, 2 }, { 2000, 50, 3 } };
+    const encode_packet_t packet = { 0, 2, 640, 672, samples };
+    uint8_t bytes[16];
+
+    rig.config.filter = TMINI_FILTER_SPECULAR;
+    rig_init();
+    rig_go_scanning();
+    rig_feed_start_packet(1000);
+    rig_feed(bytes, encode_packet(bytes, &packet));
+    rig_feed_start_packet(1000);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&rig.lidar)->points[1].distance_mm);
+    TEST_ASSERT_EQUAL_UINT16(2000, tmini_scan(&rig.lidar)->points[2].distance_mm);
+}
+
+void test_a_stop_does_not_take_back_a_scan_that_waits_behind_a_fault(void)
+{
+    rig_go_scanning();
+    for (unsigned i = 0; i < 2; i++) {
+        rig_feed_plain_turn(0);
+        (void)rig_drain();
+    }
+    rig_feed_plain_turn(0);
+    polls_to(TMINI_EVENT_FAULT);
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(17, tmini_scan(&rig.lidar)->count);
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
+void test_a_new_start_does_not_continue_the_scan_before_the_stop(void)
+{
+    rig_go_scanning();
+    feed_turn(700);
+    polls_to(TMINI_EVENT_NONE);
+    rig_go_idle();
+    sends(START);
+    begins(tmini_start(&rig.lidar));
+    rig_feed_scan_reply();
+    feed_turn(800);
+    polls_to(TMINI_EVENT_STARTED);
+    polls_to(TMINI_EVENT_NONE);
+    feed_turn(900);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(800, tmini_scan(&rig.lidar)->points[0].distance_mm);
+    TEST_ASSERT_TRUE(tmini_scan(&rig.lidar)->complete);
+}
+
+/* ---- Streaming ---- */
+
+static void go_streaming(void)
+{
+    rig.config.points = NULL;
+    rig.config.max_points = 0;
+    rig_init();
+    rig_go_starting();
+}
+
+void test_streaming_brings_an_event_for_each_packet_and_none_for_scans(void)
+{
+    go_streaming();
+    feed_turn(700);
+    feed_turn(800);
+    polls_to(TMINI_EVENT_STARTED);
+    polls_to(TMINI_EVENT_PACKET);
+    TEST_ASSERT_TRUE(tmini_packet_is_start(tmini_packet(&rig.lidar)));
+    polls_to(TMINI_EVENT_PACKET);
+    TEST_ASSERT_FALSE(tmini_packet_is_start(tmini_packet(&rig.lidar)));
+    TEST_ASSERT_EQUAL_UINT8(4, tmini_packet(&rig.lidar)->count);
+    for (unsigned i = 0; i < 4; i++) {
+        polls_to(TMINI_EVENT_PACKET);
+    }
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT32(0, counters().scans);
+}
+
+void test_a_streamed_packet_is_valid_until_the_next_poll_though_its_event_came_second(void)
+{
+    tmini_point_t points[2];
+
+    go_streaming();
+    rig_feed_packet(0x79, 1, 700);
+    rig_feed_packet(0, 2, 800);
+    polls_to(TMINI_EVENT_STARTED);
+    polls_to(TMINI_EVENT_PACKET);
+    TEST_ASSERT_EQUAL_UINT(1, tmini_packet_points(tmini_packet(&rig.lidar), 0, points, 2));
+    TEST_ASSERT_EQUAL_UINT16(700, points[0].distance_mm);
+    polls_to(TMINI_EVENT_PACKET);
+    TEST_ASSERT_EQUAL_UINT(2, tmini_packet_points(tmini_packet(&rig.lidar), 0, points, 2));
+    TEST_ASSERT_EQUAL_UINT16(800, points[1].distance_mm);
+}
+
+void test_streaming_reports_faults_and_losses_as_well(void)
+{
+    go_streaming();
+    for (unsigned i = 0; i < 3; i++) {
+        rig_feed_plain_turn(0);
+        (void)rig_drain();
+    }
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+}
+
+/* ---- Results ---- */
+
+void test_what_the_lidar_tells_of_itself_while_scanning_is_known_once_a_turn_was_trusted(void)
+{
+    tmini_turn_info_t turn;
+
+    rig_go_scanning();
+    rig_feed_turn(TMINI_FAULT_LD, 1000);
+    (void)rig_drain();
+    tmini_turn(&rig.lidar, &turn);
+    TEST_ASSERT_EQUAL_HEX16(0, turn.known);
+    rig_feed_turn(TMINI_FAULT_LD, 1000);
+    (void)rig_drain();
+    tmini_turn(&rig.lidar, &turn);
+    TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE,
+                            turn.known);
+    TEST_ASSERT_EQUAL_UINT8(1, turn.user_major);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_LD, turn.faults);
+}
+
+void test_a_second_setting_up_forgets_everything(void)
+{
+    rig_go_recovering();
+    rig_init();
+    is_in(TMINI_STATE_UNKNOWN);
+    TEST_ASSERT_EQUAL_UINT16(0, counters().losses);
+    TEST_ASSERT_EQUAL_UINT32(0, counters().parser.packets);
+    passes(60000);
+}
+
+void test_a_timing_of_ones_own_is_used(void)
+{
+    tmini_timing_t timing = tmini_timing_default;
+
+    timing.quiet_ms = 7;
+    rig.config.timing = &timing;
+    rig_init();
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    passes(7);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
+/* ---- The clock's wrap-around, in every wait ---- */
+
+/* `ms` pass, across the moment at which the clock starts again at 0. */
+static void begin_near_the_end(uint32_t ms)
+{
+    rig.now_ms = UINT32_MAX - ms / 2;
+}
+
+void test_waiting_for_a_quiet_line_survives_the_clocks_wrap_around(void)
+{
+    begin_near_the_end(50);
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    rig_feed_byte(0x00);
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
+void test_waiting_for_a_stop_survives_the_clocks_wrap_around(void)
+{
+    begin_near_the_end(600);
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    for (unsigned ms = 0; ms < 600; ms += 20) {
+        rig_feed_byte(0x00);
+        passes(20);
+    }
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_waiting_for_a_reply_survives_the_clocks_wrap_around(void)
+{
+    rig_go_idle();
+    begin_near_the_end(2000);
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_waiting_for_the_transmitter_survives_the_clocks_wrap_around(void)
+{
+    begin_near_the_end(100);
+    sends_both_taking(STOP, 0);
+    begins(tmini_stop(&rig.lidar));
+    rig.now_ms += 99;
+    sends_both_taking(STOP, 0);
+    polls_to(TMINI_EVENT_NONE);
+    rig.now_ms += 1;
+    sends_both_taking(STOP, 0);
+    polls_to(TMINI_EVENT_FAILED);
+}
+
+void test_waiting_for_the_first_packet_survives_the_clocks_wrap_around(void)
+{
+    rig_go_starting();
+    begin_near_the_end(3000);
+    rig_feed_scan_reply();
+    passes(3000);
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_waiting_between_steps_survives_the_clocks_wrap_around(void)
+{
+    rig_go_idle();
+    begin_near_the_end(50);
+    sends(GET_FREQUENCY);
+    begins(tmini_set_frequency(&rig.lidar, 700));
+    rig_feed_frequency(600);
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(FASTER_ONE);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_waiting_for_a_reboot_survives_the_clocks_wrap_around(void)
+{
+    rig_go_idle();
+    begin_near_the_end(5000);
+    sends(REBOOT);
+    begins(tmini_reboot(&rig.lidar));
+    passes(5000);
+    polls_to(TMINI_EVENT_REBOOTED);
+}
+
+void test_waiting_for_data_survives_the_clocks_wrap_around(void)
+{
+    rig_go_scanning();
+    begin_near_the_end(1000);
+    rig_feed_point_packet(1000);
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+}
+
+void test_waiting_for_a_turn_survives_the_clocks_wrap_around(void)
+{
+    rig_go_scanning();
+    begin_near_the_end(3000);
+    rig_feed_start_packet(0);
+    for (unsigned ms = 0; ms < 3000; ms += 500) {
+        rig_feed_point_packet(0);
+        passes(500);
+    }
+    polls_to(TMINI_EVENT_FAULT);
+}
+
+void test_the_pause_between_attempts_survives_the_clocks_wrap_around(void)
+{
+    rig_go_asking_again();
+    begin_near_the_end(500);
+    polls_to(TMINI_EVENT_NONE); /* So late that the attempt has failed. */
+    passes(500);
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_silence_survives_the_clocks_wrap_around(void)
+{
+    rig_go_scanning();
+    begin_near_the_end(30);
+    rig_feed_start_packet(1000);
+    (void)rig_drain();
+    feed_false_header_and_packet();
+    passes(30);
+    polls_to(TMINI_EVENT_SCAN);
+}
+
+/* ---- Several lidars ---- */
+
+static uint32_t now_of_any(void *context, int calls)
+{
+    (void)context;
+    (void)calls;
+    return rig.now_ms;
+}
+
+void test_three_lidars_at_once_know_nothing_of_each_other(void)
+{
+    static tmini_t lidars[3];
+    static uint8_t rx[3][RIG_RX_SIZE];
+    static const uint8_t commands[3][2] = { { 0xA5, 0x65 }, { 0xA5, 0x65 }, { 0xA5, 0x65 } };
+    static const uint8_t start[2] = { 0xA5, 0x60 };
+    static const uint8_t info[2] = { 0xA5, 0x90 };
+    uint8_t reply[ENCODE_REPLY_MAX];
+
+    port_now_ms_StubWithCallback(now_of_any);
+    for (unsigned i = 0; i < 3; i++) {
+        rig.config.rx_buffer = rx[i];
+        rig.config.port_context = rx[i];
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidars[i], &rig.config));
+        port_write_ExpectAndReturn(rx[i], commands[i], 2, 2);
+    }
+    begins(tmini_stop(&lidars[0]));
+    begins(tmini_start(&lidars[1]));
+    begins(tmini_request_info(&lidars[2]));
+
+    rig.now_ms += 50;
+    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_STOPPED, tmini_poll(&lidars[0]));
+    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, tmini_poll(&lidars[1]));
+    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, tmini_poll(&lidars[2]));
+    port_write_ExpectAndReturn(rx[1], start, 2, 2);
+    port_write_ExpectAndReturn(rx[2], info, 2, 2);
+    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, tmini_poll(&lidars[0]));
+    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, tmini_poll(&lidars[1]));
+    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, tmini_poll(&lidars[2]));
+
+    tmini_feed(&lidars[1], reply, encode_scan_reply(reply));
+    tmini_feed(&lidars[2], reply, encode_health_reply(reply, 0, 0)); /* Not what it waits for. */
+    for (unsigned i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, tmini_poll(&lidars[i]));
+    }
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_IDLE, tmini_state(&lidars[0]));
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_STARTING, tmini_state(&lidars[1]));
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_BUSY, tmini_state(&lidars[2]));
+}
