@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""Measures what the library costs, checks the budgets and the documents' tables.
+
+    bench.py FOLDER [--update]
+
+Figures and programs go to FOLDER. Exit status: 0; 1 if a budget is exceeded, a table is out of
+date or something failed. Usually called by run.sh, which finds the tools.
+"""
+
+import concurrent.futures
+import difflib
+import pathlib
+import platform
+import re
+import sys
+
+import flash
+import host
+import instructions
+import stack
+import streams
+import tables
+from targets import HERE, LEVELS, ROOT, TARGETS, BenchError, run, target_named
+
+FOOTPRINT = ROOT / "docs" / "footprint.md"
+README = ROOT / "README.md"
+README_TABLES = ["footprint"]
+FOOTPRINT_TABLES = [name for name in tables.BLOCKS if name not in README_TABLES]
+ROOM = ROOT.parent / "shared" / "recordings" / "t-mini-plus-room.bin"
+
+
+class Budget:
+    """A limit of budgets.txt and what was measured."""
+
+    def __init__(self, name, limit, title, measured):
+        self.name, self.limit, self.title, self.measured = name, limit, title, measured
+
+    def is_exceeded(self):
+        return self.measured > self.limit
+
+    def shown(self):
+        return f"{self.measured:.1f}".removesuffix(".0")
+
+    def margin(self):
+        return 100 * (self.limit - self.measured) / self.limit
+
+
+def measure_target(name, level, folder, made):
+    """All figures of one processor at one level."""
+    target = target_named(name)
+    place = folder / (name + level)
+    objects = target.compile_library(level, place)
+    weights = flash.measure(target, level, objects, place)
+    depth = stack.measure(target, objects, place / "everything.elf")
+    counts = instructions.measure(target, level, objects, place, made)
+    if counts["stack seen"] > depth["polling"][0]:
+        raise BenchError(f"{name} {level}: {counts['stack seen']} bytes of stack are used, "
+                         f"more than the bound of {depth['polling'][0]}")
+    return {"flash": weights, "stack": depth, "counts": counts}
+
+
+def library_version(target, header, macro):
+    """The C library's version, from its own header."""
+    probe = ["-dM", "-E", "-include", header, "-x", "c", "/dev/null"]
+    found = re.search(rf"#define {macro} \"(.*)\"",
+                      run(target.tool("gcc"), *target.machine, *probe))
+    return found[1] if found else "unknown"
+
+
+def tool_versions():
+    """Figures are comparable only under the same compilers and C libraries."""
+    arm, riscv = target_named("cortex-m4"), target_named("rv32imc")
+    return [("Cortex-M", arm.version()),
+            ("newlib", library_version(arm, "newlib.h", "_NEWLIB_VERSION")),
+            ("rv32imc", riscv.version()),
+            ("picolibc", library_version(riscv, "picolibc.h", "__PICOLIBC_VERSION__")),
+            (platform.machine(), run("cc", "--version").splitlines()[0].strip())]
+
+
+def measure_all(folder):
+    """Everything there is to measure."""
+    made = streams.make(folder)
+    recording = folder / "clean.bin"
+    recording.write_bytes(made["clean"])
+    figures = {"versions": tool_versions(), "targets": {}, "ram": {},
+               "host size": len(made["clean"])}
+    with concurrent.futures.ProcessPoolExecutor(max_workers=2) as pool:
+        jobs = {(target.name, level): pool.submit(measure_target, target.name, level, folder, made)
+                for target in TARGETS for level in LEVELS}
+        program = host.build(folder)
+        figures["host"] = host.measure(program, recording, folder)
+        if ROOM.exists():
+            figures["room"] = host.measure(program, ROOM, folder)
+        for key, job in jobs.items():
+            figures["targets"][key] = job.result()
+    for target in TARGETS:
+        figures["ram"][target.name] = flash.sizes_of_types(target, folder / target.name)
+    figures["budgets"] = read_budgets(figures)
+    return figures
+
+
+def measured_for_budgets(figures):
+    """What each budget limits."""
+    m4 = [figures["targets"]["cortex-m4", level] for level in LEVELS]
+    by_blocks = figures["host"]["blocks"]
+    return {
+        "feed_byte_m4": max(f["counts"]["feed worst"] for f in m4),
+        "byte_to_point_m4": max(sum(f["counts"]["costs"]["blocks"]) for f in m4),
+        "byte_to_point_x86": by_blocks["own"] + by_blocks["copies"],
+        "flash_parser_m4": m4[0]["flash"]["parser"]["own"],
+        "flash_everything_m4": m4[0]["flash"]["everything"]["own"],
+        "ram": max(figures["ram"][target.name]["tmini_t"] +
+                   figures["targets"][target.name, level]["flash"]["everything"]["writable"]
+                   for target in TARGETS for level in LEVELS),
+        "stack_m4": max(f["stack"]["polling"][0] for f in m4),
+    }
+
+
+def read_budgets(figures):
+    measured = measured_for_budgets(figures)
+    budgets = []
+    for line in (HERE / "budgets.txt").read_text().splitlines():
+        if line and not line.startswith("#"):
+            name, limit, title = line.split(None, 2)
+            budgets.append(Budget(name, int(limit), title, measured.pop(name)))
+    if measured:
+        raise BenchError(f"budgets.txt says nothing of {sorted(measured)}")
+    return budgets
+
+
+def check_budgets(figures):
+    """Says which budgets are exceeded; returns whether none is."""
+    exceeded = [budget for budget in figures["budgets"] if budget.is_exceeded()]
+    for budget in exceeded:
+        print(f"OVER BUDGET: {budget.title}: {budget.shown()}, the limit is {budget.limit}")
+    return not exceeded
+
+
+def same_tools(figures):
+    """True if the committed tables were made with the tools that are here."""
+    committed = tables.block_in(FOOTPRINT.read_text(), "versions")
+    return committed == tables.versions(figures)
+
+
+def check_document(document, names, figures):
+    """Says in what a document differs from the figures; returns whether in nothing."""
+    old, new = document.read_text(), tables.renew(document, names, figures)
+    if old == new:
+        return True
+    sys.stdout.writelines(difflib.unified_diff(
+        old.splitlines(True), new.splitlines(True), f"{document.name} as committed",
+        f"{document.name} as measured", n=0))
+    print(f"OUT OF DATE: {document.name}; test/bench/run.sh --update rewrites its tables")
+    return False
+
+
+def holds_tables(document, names):
+    """Says so if a document has no place for its tables."""
+    text = document.read_text() if document.exists() else ""
+    absent = [name for name in names if tables.block_in(text, name) is None]
+    if absent:
+        print(f"{document.name} has no markers for: {', '.join(absent)}")
+    return not absent
+
+
+def check_documents(figures):
+    """A README without markers has no table that could be wrong."""
+    if not holds_tables(FOOTPRINT, FOOTPRINT_TABLES):
+        return False
+    if not same_tools(figures):
+        print("The committed tables were made with other compilers; here budgets alone are "
+              "checked:")
+        print(tables.versions(figures))
+        return True
+    right = check_document(FOOTPRINT, FOOTPRINT_TABLES, figures)
+    if holds_tables(README, README_TABLES):
+        right = check_document(README, README_TABLES, figures) and right
+    return right
+
+
+def update_documents(figures):
+    for document, names in ((FOOTPRINT, FOOTPRINT_TABLES), (README, README_TABLES)):
+        if holds_tables(document, names):
+            document.write_text(tables.renew(document, names, figures))
+            print(f"updated: {document.name}")
+
+
+def show(figures):
+    """All tables, and what is not compared."""
+    for name, render in tables.BLOCKS.items():
+        print(f"\n{name}\n\n{render(figures)}")
+    print()
+    for feed, f in figures["host"].items():
+        print(f"x86-64, by {feed}: {f['own']:.2f} instructions a byte, and {f['copies']:.2f} in "
+              "the C library's copies")
+    for feed, f in figures.get("room", {}).items():
+        print(f"x86-64, a room as a real unit sent it, by {feed}: {f['own']:.2f} and "
+              f"{f['copies']:.2f}, {f['packets']} packets")
+    if "room" not in figures:
+        print(f"skipped: no real unit's recording at {ROOM}")
+
+
+def main(words):
+    if len(words) not in (1, 2) or words[1:] not in ([], ["--update"]):
+        print(__doc__)
+        return 2
+    folder = pathlib.Path(words[0])
+    folder.mkdir(parents=True, exist_ok=True)
+    figures = measure_all(folder)
+    show(figures)
+    within = check_budgets(figures)
+    if words[1:]:
+        update_documents(figures)
+        return 0 if within else 1
+    return 0 if check_documents(figures) and within else 1
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except BenchError as error:
+        sys.exit(f"bench: {error}")

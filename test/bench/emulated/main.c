@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The program that the emulator calls, function by function: one lidar on a board whose clock and
+ * UART are variables. Only the library's instructions are counted, none of this file. */
+
+#include "tmini/tmini.h"
+
+#define RX_SIZE 1024
+
+tmini_t bench_lidar;
+uint8_t bench_rx[RX_SIZE];
+uint8_t bench_block[RX_SIZE];
+uint32_t bench_now_ms;
+uint8_t bench_sent;
+
+static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
+static tmini_point_t packet_points[TMINI_MAX_SAMPLES_DEFAULT];
+static tmini_counters_t counters;
+
+void bench_main(void);
+void bench_begin(bool dma, bool streaming);
+tmini_status_t bench_command(tmini_command_t command);
+tmini_status_t bench_set_frequency(uint16_t frequency_chz);
+void bench_feed_byte(uint8_t byte);
+void bench_feed(size_t count);
+void bench_feed_dma(size_t position);
+tmini_event_t bench_poll(void);
+void bench_decode(void);
+const tmini_counters_t *bench_counters(void);
+
+static int bench_write(void *context, const uint8_t *bytes, size_t count)
+{
+    (void)context;
+    bench_sent = bytes[count - 1];
+    return (int)count;
+}
+
+static uint32_t bench_clock(void *context)
+{
+    (void)context;
+    return bench_now_ms;
+}
+
+static const tmini_port_t port = {.write = bench_write, .now_ms = bench_clock};
+
+void bench_begin(bool dma, bool streaming)
+{
+    const tmini_config_t config = {.port = &port,
+                                   .rx_buffer = bench_rx,
+                                   .rx_size = RX_SIZE,
+                                   .rx_dma = dma,
+                                   .points = streaming ? NULL : points,
+                                   .max_points = streaming ? 0 : TMINI_SCAN_POINTS_TYPICAL};
+    (void)tmini_init(&bench_lidar, &config);
+}
+
+tmini_status_t bench_command(tmini_command_t command)
+{
+    switch (command) {
+    case TMINI_COMMAND_START:
+        return tmini_start(&bench_lidar);
+    case TMINI_COMMAND_STOP:
+        return tmini_stop(&bench_lidar);
+    case TMINI_COMMAND_GET_INFO:
+        return tmini_request_info(&bench_lidar);
+    case TMINI_COMMAND_GET_HEALTH:
+        return tmini_request_health(&bench_lidar);
+    case TMINI_COMMAND_GET_FREQUENCY:
+        return tmini_request_frequency(&bench_lidar);
+    case TMINI_COMMAND_REBOOT:
+        return tmini_reboot(&bench_lidar);
+    default:
+        return TMINI_ERROR_ARGUMENT;
+    }
+}
+
+tmini_status_t bench_set_frequency(uint16_t frequency_chz)
+{
+    return tmini_set_frequency(&bench_lidar, frequency_chz);
+}
+
+void bench_feed_byte(uint8_t byte)
+{
+    tmini_feed_byte(&bench_lidar, byte);
+}
+
+void bench_feed(size_t count)
+{
+    tmini_feed(&bench_lidar, bench_block, count);
+}
+
+void bench_feed_dma(size_t position)
+{
+    tmini_feed_dma(&bench_lidar, position);
+}
+
+tmini_event_t bench_poll(void)
+{
+    return tmini_poll(&bench_lidar);
+}
+
+/* What a streaming user does with TMINI_EVENT_PACKET. */
+void bench_decode(void)
+{
+    (void)tmini_packet_points(tmini_packet(&bench_lidar), TMINI_FILTER_NONE, packet_points,
+                              TMINI_MAX_SAMPLES_DEFAULT);
+}
+
+const tmini_counters_t *bench_counters(void)
+{
+    tmini_counters(&bench_lidar, &counters);
+    return &counters;
+}
+
+/* The program's entry: nothing is run from here. */
+void bench_main(void) {}

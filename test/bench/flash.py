@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""Flash and RAM: small programs that use a part of the library each, linked and taken apart."""
+
+import pathlib
+
+from targets import HERE, LIB_SOURCES, contributions, run
+
+# In the order of the tables: file name, title.
+CONFIGURATIONS = (
+    ("parser", "parser + decoding"),
+    ("streaming", "streaming, no scan buffer"),
+    ("driver", "full driver"),
+    ("everything", "full driver + blocking helpers"),
+)
+
+
+def module_of(file):
+    """The library's module that an object file of the link is, or None."""
+    stem = pathlib.Path(file).stem
+    return stem if stem in {source.stem for source in LIB_SOURCES} else None
+
+
+def is_support(file):
+    """True for what the C library and the compiler's own library contribute: memcpy and such."""
+    return file.endswith(")")
+
+
+def weigh(map_file):
+    """Bytes of flash by module, of flash from the compiler's libraries, and of writable data."""
+    modules = {}
+    support = 0
+    writable = 0
+    for section, size, file in contributions(map_file):
+        module = module_of(file)
+        if module and section in ("data", "bss"):
+            writable += size
+        elif module:
+            modules[module] = modules.get(module, 0) + size
+        elif is_support(file) and section in ("text", "rodata"):
+            support += size
+    return {"modules": modules, "own": sum(modules.values()), "support": support,
+            "writable": writable}
+
+
+def measure(target, level, objects, folder):
+    """All configurations for one target and level."""
+    weights = {}
+    for name, _ in CONFIGURATIONS:
+        main = target.compile(HERE / "flash" / f"{name}.c", level, folder / "flash")
+        _, map_file = target.link([*objects, main], folder / f"{name}.elf")
+        weights[name] = weigh(map_file)
+    return weights
+
+
+def sizes_of_types(target, folder):
+    """Bytes of each type that a user allocates: {"tmini_t": …}."""
+    item = target.compile(HERE / "ram.c", "-Os", folder)
+    sizes = {}
+    for line in run(target.tool("nm"), "-S", item).splitlines():
+        _, size, _, name = line.split()
+        sizes[name.removeprefix("ram_")] = int(size, 16)
+    return sizes

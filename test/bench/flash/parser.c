@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Parser and decoding only: bytes in, points out. */
+
+#include "tmini/tmini_packet.h"
+
+static uint8_t rx[512];
+static tmini_ring_t ring;
+static tmini_parser_t parser;
+static tmini_packet_t packet;
+static tmini_point_t points[TMINI_MAX_SAMPLES_DEFAULT];
+
+void bench_main(void);
+void bench_interrupt(uint8_t byte);
+
+void bench_interrupt(uint8_t byte)
+{
+    tmini_ring_put(&ring, byte);
+}
+
+void bench_main(void)
+{
+    (void)tmini_ring_init(&ring, rx, sizeof rx, false);
+    (void)tmini_parser_init(&parser, &ring, 0);
+    for (;;) {
+        if (tmini_parser_next(&parser) == TMINI_FRAME_PACKET) {
+            tmini_packet_open(&packet, &parser);
+            (void)tmini_packet_points(&packet, TMINI_FILTER_NONE, points,
+                                      TMINI_MAX_SAMPLES_DEFAULT);
+        }
+    }
+}

@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""Instructions, counted while streams and conversations go through the library on one processor."""
+
+import re
+
+from emulator import Machine
+from targets import HERE, ROOT, BenchError
+
+RX_SIZE = 1024           # Of emulated/main.c.
+TICK_MS = 10             # How often is polled: about once a packet.
+BYTES_A_TICK = 131       # At the lidar's mean data rate (section 1).
+LINE_BYTES_A_TICK = 230  # At the line's full rate, 230400 baud.
+SCAN_REPLY = bytes.fromhex("A5 5A 05 00 00 40 81")
+START, STOP, INFO, HEALTH, GET_FREQUENCY, REBOOT = 0x60, 0x65, 0x90, 0x92, 0x0D, 0x40
+STEPS_CHZ = {0x09: 10, 0x0A: -10, 0x0B: 100, 0x0C: -100}
+
+
+def event_names():
+    """The events of tmini.h, by their value."""
+    header = (ROOT / "lib/include/tmini/tmini.h").read_text()
+    body = re.search(r"typedef enum \{([^}]*)\} tmini_event_t;", header)[1]
+    return re.findall(r"^\s+TMINI_EVENT_(\w+)", body, re.MULTILINE)
+
+
+class FakeLidar:
+    """Answers commands as section 4 says."""
+
+    def __init__(self):
+        self.frequency_chz = 600
+        self.answers = True
+
+    def reply_to(self, command):
+        if not self.answers or command in (0, STOP, REBOOT):
+            return b""
+        if command == START:
+            return SCAN_REPLY
+        if command == INFO:
+            return bytes.fromhex("A5 5A 14 00 00 00 04 97 02 01 01"
+                                 "02 00 02 04 00 05 00 04 00 00 01 02 03 04 05 06")
+        if command == HEALTH:
+            return bytes.fromhex("A5 5A 03 00 00 00 06 00 00 00")
+        self.frequency_chz += STEPS_CHZ.get(command, 0)
+        return bytes.fromhex("A5 5A 04 00 00 00 04") + self.frequency_chz.to_bytes(4, "little")
+
+
+class Session:
+    """One lidar from tmini_init() on, and what its calls cost."""
+
+    def __init__(self, target, program, feed="bytes", streaming=False):
+        self.machine = Machine(target.name, program)
+        self.machine.paint_stack()
+        self.names = event_names()
+        self.lidar = FakeLidar()
+        self.now_ms = 0
+        self.position = 0
+        self.feed = getattr(self, "_feed_" + feed)
+        self.feed_total = self.feed_worst = self.poll_total = 0
+        self.worst_poll = {}
+        self.machine.call("bench_begin", feed == "dma", streaming)
+
+    def _fed(self, cost):
+        self.feed_total += cost
+        self.feed_worst = max(self.feed_worst, cost)
+
+    def _feed_bytes(self, data):
+        for byte in data:
+            self._fed(self.machine.cost("bench_feed_byte", byte)[1])
+
+    def _feed_blocks(self, data):
+        self.machine.write("bench_block", data)
+        self._fed(self.machine.cost("bench_feed", len(data))[1])
+
+    def _feed_dma(self, data):
+        """What the hardware does, then the one call that tells of it."""
+        first = data[:RX_SIZE - self.position]
+        self.machine.write("bench_rx", first, self.position)
+        self.machine.write("bench_rx", data[len(first):])
+        self.position = (self.position + len(data)) % RX_SIZE
+        self._fed(self.machine.cost("bench_feed_dma", self.position)[1])
+
+    def poll(self):
+        """One poll; returns the event's name."""
+        value, cost = self.machine.cost("bench_poll")
+        name = self.names[value]
+        self.worst_poll[name] = max(self.worst_poll.get(name, 0), cost)
+        self.poll_total += cost
+        if name == "PACKET":
+            self.poll_total += self.machine.cost("bench_decode")[1]
+        return name
+
+    def tick(self, data=b"", milliseconds=TICK_MS):
+        """Time passes, `data` arrives; polls until nothing is left and returns the events."""
+        self.now_ms += milliseconds
+        self.machine.write_word("bench_now_ms", self.now_ms)
+        if data:
+            self.feed(data)
+        events = []
+        while not events or events[-1] != "NONE":
+            events.append(self.poll())
+        return events
+
+    def answer(self):
+        """What the lidar says to the command just sent."""
+        command = self.machine.read(self.machine.addresses["bench_sent"], 1)[0]
+        self.machine.write("bench_sent", b"\0")
+        return self.lidar.reply_to(command)
+
+    def until(self, wanted, limit_ms=20000):
+        """Carries on the conversation until the event comes."""
+        end_ms = self.now_ms + limit_ms
+        while wanted not in self.tick(self.answer()):
+            if self.now_ms > end_ms:
+                raise BenchError(f"the event {wanted} does not come")
+
+    def command(self, code):
+        if self.machine.call("bench_command", code) != 0:
+            raise BenchError(f"the command {code:#x} is refused")
+
+    def spin_up(self):
+        """Starts, up to the lidar's reply."""
+        self.command(START)
+        while True:
+            reply = self.answer()
+            self.tick(reply)
+            if reply:
+                return
+
+    def run(self, stream, bytes_a_tick=BYTES_A_TICK):
+        """Feeds a whole stream."""
+        for at in range(0, len(stream), bytes_a_tick):
+            self.tick(stream[at:at + bytes_a_tick])
+
+    def counters(self):
+        """packets, checksum errors, bytes in packets, in replies, skipped, overrun."""
+        address = self.machine.call("bench_counters")
+        data = self.machine.read(address, 24)
+        return [int.from_bytes(data[i:i + 4], "little") for i in range(0, 24, 4)]
+
+    def idle_poll(self):
+        """What a poll costs that finds nothing."""
+        before = self.poll_total
+        self.now_ms += 1
+        self.machine.write_word("bench_now_ms", self.now_ms)
+        if self.poll() != "NONE":
+            raise BenchError("there is something to do in a poll that should be idle")
+        return self.poll_total - before
+
+
+def merge_worst(into, worst):
+    for name, cost in worst.items():
+        into[name] = max(into.get(name, 0), cost)
+
+
+def through(target, program, stream, feed, streaming=False, packets=None):
+    """A stream's cost a byte: (feeding, polling), and the session."""
+    session = Session(target, program, feed, streaming)
+    session.spin_up()
+    session.feed_total = session.poll_total = session.feed_worst = 0
+    session.run(stream)
+    if packets is not None and session.counters()[0] != packets:
+        raise BenchError(f"{session.counters()[0]} packets arrive instead of {packets}")
+    return (session.feed_total / len(stream), session.poll_total / len(stream)), session
+
+
+def full_ring(target, program):
+    """The costliest tmini_feed_byte(), also when the buffer is full and bytes are refused."""
+    session = Session(target, program)
+    session.feed(bytes(2 * RX_SIZE))
+    return session.feed_worst
+
+
+def resynchronisation(target, program, clean, hostile):
+    """Polling's cost a skipped byte in a stream that is no stream."""
+    session = Session(target, program, "blocks")
+    session.spin_up()
+    session.run(clean)
+    skipped = session.counters()[4]
+    session.poll_total = 0
+    session.run(hostile, LINE_BYTES_A_TICK)
+    skipped = session.counters()[4] - skipped
+    if skipped < len(hostile) / 2:
+        raise BenchError("the hostile stream is not hostile")
+    return session.poll_total / skipped
+
+
+def conversation(target, program, clean, faulty):
+    """Every event there is; returns the costliest poll of each, and the deepest stack."""
+    session = Session(target, program)
+    for code, event in ((STOP, "STOPPED"), (INFO, "INFO"), (HEALTH, "HEALTH"),
+                        (GET_FREQUENCY, "FREQUENCY"), (REBOOT, "REBOOTED")):
+        session.command(code)
+        session.until(event)
+    if session.machine.call("bench_set_frequency", 730) != 0:
+        raise BenchError("setting the frequency is refused")
+    session.until("FREQUENCY")
+    session.lidar.answers = False
+    session.command(INFO)
+    session.until("FAILED")
+    session.lidar.answers = True
+    session.spin_up()
+    session.run(clean)
+    session.run(faulty)
+    session.until("LOST")
+    while not session.answer():
+        session.tick()
+    session.tick(SCAN_REPLY)
+    session.run(clean)
+    missing = set(session.names) - set(session.worst_poll) - {"PACKET"}
+    if missing:
+        raise BenchError(f"events that were not seen: {sorted(missing)}")
+    return session.worst_poll, session.machine.stack_used()
+
+
+def check_counting(target, program, clean):
+    """Counting blocks must agree with counting single instructions. A Cortex-M3 or M4 skips some
+    within a block (IT); they take their cycle, and only the blocks' count includes them."""
+    fast = Session(target, program)
+    slow = Session(target, program)
+    for session in (fast, slow):
+        session.spin_up()
+        session.feed(clean[:1000])
+    _, blocks = fast.machine.cost("bench_poll")
+    _, steps = slow.machine.single_steps("bench_poll")
+    may_skip = target.name in ("cortex-m3", "cortex-m4")
+    if not (steps <= blocks <= 1.2 * steps if may_skip else steps == blocks):
+        raise BenchError(f"{target.title}: {blocks} instructions by blocks, {steps} by steps")
+
+
+def measure(target, level, objects, folder, streams):
+    """Everything that is counted on one processor."""
+    main = target.compile(HERE / "emulated" / "main.c", level, folder / "emulated")
+    program, _ = target.link([*objects, main], folder / "emulated.elf")
+    clean = streams["clean"]
+    check_counting(target, program, clean)
+    costs, worst = {}, {}
+    for name, feed, streaming in (("bytes", "bytes", False), ("blocks", "blocks", False),
+                                  ("dma", "dma", False), ("streaming", "blocks", True)):
+        costs[name], session = through(target, program, clean, feed, streaming,
+                                       streams["clean packets"])
+        merge_worst(worst, session.worst_poll)
+        if name == "bytes":
+            idle = session.idle_poll()
+            feed_worst = max(session.feed_worst, full_ring(target, program))
+    costs["corrupted"], _ = through(target, program, streams["corrupted"], "blocks")
+    conversed, stack = conversation(target, program, streams["turn"], streams["faulty"])
+    merge_worst(worst, conversed)
+    hostile = {name: resynchronisation(target, program, streams["turn"], streams[name])
+               for name in streams if name.startswith(("random", "headers"))}
+    by_frequency = {name: sum(through(target, program, streams[name], "blocks")[0])
+                    for name in streams if name.endswith("Hz")}
+    return {"costs": costs, "feed worst": feed_worst, "idle poll": idle, "worst poll": worst,
+            "hostile": hostile, "by frequency": by_frequency, "stack seen": stack}

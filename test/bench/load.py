@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""What the counts mean for a board: the processor's load, and how often to poll."""
+
+from streams import POINTS
+
+# Assumed generously: loads, branches and flash wait states make two cycles of an instruction, and
+# an interrupt's entry and exit take 40.
+CYCLES_AN_INSTRUCTION = 2
+CYCLES_AN_INTERRUPT = 40
+POLLS_A_SECOND = 1000
+
+SAMPLES_A_SECOND = 4000
+LINE_BYTES_A_MS = 23.04
+FULL_PACKET = 130
+
+BOARDS = (("8 MHz Cortex-M0", "cortex-m0", 8), ("72 MHz Cortex-M3", "cortex-m3", 72),
+          ("168 MHz Cortex-M4", "cortex-m4", 168), ("160 MHz ESP32-C3", "rv32imc", 160))
+
+
+def packets_a_revolution(frequency):
+    """A start packet of one point, then packets of 40."""
+    return 1 + -(-(POINTS[frequency] - 1) // 40)
+
+
+def bytes_a_second(frequency):
+    """Samples, headers and one LastCRC a revolution."""
+    return (POINTS[frequency] * 3 + packets_a_revolution(frequency) * 10 + 1) * frequency
+
+
+def percent(figures, megahertz, feed):
+    """Load at 6 Hz, polled once a millisecond. By bytes each byte has an interrupt of its own; DMA
+    has one every 128 bytes (half of a small buffer)."""
+    rate = bytes_a_second(6)
+    feeding, polling = figures["costs"][feed]
+    interrupts = rate if feed == "bytes" else rate / 128
+    instructions = rate * (feeding + polling) + POLLS_A_SECOND * figures["idle poll"]
+    cycles = instructions * CYCLES_AN_INSTRUCTION + interrupts * CYCLES_AN_INTERRUPT
+    return 100 * cycles / (megahertz * 1e6)
+
+
+def longest_pause_ms(ring, dma):
+    """How long a buffer lasts between polls: what is left of it (of its half, with DMA) beside an
+    incomplete packet, filled at the mean rate, when a packet has just begun to come at the line's
+    full rate."""
+    usable = (ring // 2 if dma else ring) - (FULL_PACKET - 1)
+    rate = bytes_a_second(6) / 1000
+    burst = FULL_PACKET * (1 - rate / LINE_BYTES_A_MS)
+    return max(0.0, (usable - burst) / rate)

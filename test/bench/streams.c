@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Writes a stream of scan packets to standard output, from the independent encoder:
+ *
+ *   streams clean REVOLUTIONS POINTS   as a lidar sends them, with CT information; 667 points a
+ *                                      revolution are 6 Hz
+ *   streams faulty REVOLUTIONS POINTS  the same from a lidar that reports a fault of its encoder
+ *   streams corrupted REVOLUTIONS POINTS  as clean, one fault in about 500 bytes
+ *   streams random SIZE 0              bytes without structure
+ *   streams headers SIZE STEP          a false header every STEP bytes, claiming 80 samples */
+
+#include "corrupt.h"
+#include "encoder.h"
+#include "random.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CAPACITY (1u << 20)
+#define FULL_PACKET 40u
+#define MOST_SAMPLES 80u
+#define BYTES_A_FAULT 500u
+#define HEALTH_ENCODER 2u /* section 4 */
+
+static uint8_t stream[CAPACITY];
+static size_t size;
+static uint32_t points_a_revolution;
+
+static encode_turn_t turn = {.frequency_dhz = 60,
+                             .user_major = 1,
+                             .hardware = 1,
+                             .firmware_major = 1,
+                             .firmware_minor = 2,
+                             .year = 2024,
+                             .month = 5,
+                             .day = 4,
+                             .serial = 12345};
+
+static encode_sample_t room(random_t *random)
+{
+    const bool lost = random_below(random, 20) == 0;
+    return (encode_sample_t){.distance_mm = (uint16_t)(lost ? 0 : 200 + random_below(random, 8000)),
+                             .intensity = (uint8_t)random_below(random, 256),
+                             .flag = 0};
+}
+
+/* One packet of the revolution, from its point `first` on. Returns how many points it has. */
+static uint32_t add_packet(random_t *random, uint32_t index, uint32_t first)
+{
+    encode_sample_t samples[FULL_PACKET];
+    const uint32_t left = points_a_revolution - first;
+    const uint32_t most = index == 0 ? 1 : FULL_PACKET;
+    const uint32_t count = left < most ? left : most;
+    for (uint32_t i = 0; i < count; i++) {
+        samples[i] = room(random);
+    }
+    const encode_packet_t packet = {
+        .ct = encode_ct(&turn, index),
+        .lsn = (uint8_t)count,
+        .first_q6 = (uint16_t)(first * ENCODE_FULL_TURN_Q6 / points_a_revolution),
+        .last_q6 = (uint16_t)((first + count - 1) * ENCODE_FULL_TURN_Q6 / points_a_revolution),
+        .samples = samples,
+    };
+    size += encode_packet(&stream[size], &packet);
+    return count;
+}
+
+static void add_revolution(random_t *random)
+{
+    uint8_t crc = 0;
+    uint32_t index = 0;
+    for (uint32_t first = 0; first < points_a_revolution; index++) {
+        crc = encode_crc8(crc, encode_ct(&turn, index));
+        first += add_packet(random, index, first);
+    }
+    stream[size++] = crc;
+}
+
+static void make_scans(uint32_t revolutions)
+{
+    random_t random;
+    random_seed(&random, 1);
+    for (uint32_t i = 0; i < revolutions && size + 4096 < CAPACITY; i++) {
+        add_revolution(&random);
+    }
+}
+
+static void corrupt(void)
+{
+    random_t random;
+    random_seed(&random, 2);
+    size = corrupt_some(&random, (unsigned)(size / BYTES_A_FAULT), stream, size, CAPACITY);
+}
+
+static void make_noise(uint32_t bytes)
+{
+    random_t random;
+    random_seed(&random, 3);
+    for (size = 0; size < bytes && size < CAPACITY; size++) {
+        stream[size] = (uint8_t)random_below(&random, 256);
+    }
+}
+
+/* A header is AA 55 CT LSN FSA FSA LSA LSA CS CS; it is believed if LSN is not too large and the
+ * first bytes of FSA and LSA are odd. With a STEP below 10 headers overlap. */
+static void make_headers(uint32_t bytes, uint32_t step)
+{
+    const uint8_t header[] = {0xAA, 0x55, 0x00, MOST_SAMPLES};
+    for (size = 0; size < bytes && size < CAPACITY; size++) {
+        const size_t at = size % step;
+        stream[size] = at < sizeof header ? header[at] : 0x01;
+    }
+}
+
+static bool make(const char *kind, uint32_t amount, uint32_t parameter)
+{
+    points_a_revolution = parameter;
+    if (strcmp(kind, "clean") == 0) {
+        make_scans(amount);
+    } else if (strcmp(kind, "faulty") == 0) {
+        turn.health = HEALTH_ENCODER;
+        make_scans(amount);
+    } else if (strcmp(kind, "corrupted") == 0) {
+        make_scans(amount);
+        corrupt();
+    } else if (strcmp(kind, "random") == 0) {
+        make_noise(amount);
+    } else if (strcmp(kind, "headers") == 0 && parameter > 0) {
+        make_headers(amount, parameter);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+static uint32_t number(const char *word)
+{
+    return (uint32_t)strtoul(word, NULL, 10);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 4 || !make(argv[1], number(argv[2]), number(argv[3]))) {
+        fputs("usage: streams clean|faulty|corrupted|random|headers AMOUNT PARAMETER\n", stderr);
+        return 2;
+    }
+    return fwrite(stream, 1, size, stdout) == size ? 0 : 1;
+}

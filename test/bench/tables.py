@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""Figures as Markdown tables, and the documents that hold them between markers."""
+
+import re
+
+import load
+from flash import CONFIGURATIONS
+from streams import HEADER_STEPS, POINTS
+from targets import LEVELS, TARGETS
+
+
+def table(head, rows):
+    """A Markdown table; columns but the first are figures, to the right."""
+    lines = [head, ["---"] + ["---:"] * (len(head) - 1), *rows]
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
+
+
+def one(value):
+    """With one decimal."""
+    return f"{value:.1f}"
+
+
+def machines(figures):
+    """(title, figures) of each processor and level."""
+    for target in TARGETS:
+        for level in LEVELS:
+            yield f"{target.title} `{level}`", figures["targets"][target.name, level]
+
+
+def versions(figures):
+    return table(["tool", "version"], [[name, text] for name, text in figures["versions"]]) \
+        .replace("---:", "---")
+
+
+def flash(figures):
+    rows = [[title, *(f["flash"][name]["own"] for name, _ in CONFIGURATIONS),
+             f["flash"]["everything"]["support"]] for title, f in machines(figures)]
+    return table(["bytes of flash", *(title for _, title in CONFIGURATIONS), "C library"], rows)
+
+
+def modules(figures):
+    chosen = [(title, f["flash"]["everything"]["modules"]) for title, f in machines(figures)]
+    names = sorted(set().union(*(module for _, module in chosen)))
+    rows = [[f"`{name}`", *(module.get(name, 0) for _, module in chosen)] for name in names]
+    rows.append(["all", *(sum(module.values()) for _, module in chosen)])
+    return table(["bytes of flash", *(title for title, _ in chosen)], rows)
+
+
+def ram(figures):
+    sizes = figures["ram"]
+    rows = [[f"`{name}`", *(sizes[target.name][name] for target in TARGETS)]
+            for name in sizes[TARGETS[0].name]]
+    writable = [max(figures["targets"][target.name, level]["flash"]["everything"]["writable"]
+                    for level in LEVELS) for target in TARGETS]
+    rows.append(["variables of the library's own", *writable])
+    return table(["bytes of RAM", *(target.title for target in TARGETS)], rows)
+
+
+def stack(figures):
+    rows = [[title, f["stack"]["polling"][0], f["counts"]["stack seen"],
+             f["stack"]["interrupt"][0]] for title, f in machines(figures)]
+    return table(["bytes of stack", "polling, at most", "polling, seen", "interrupt, at most"],
+                 rows)
+
+
+def instructions(figures):
+    rows = []
+    for title, f in machines(figures):
+        costs = f["counts"]["costs"]
+        rows.append([title, f["counts"]["feed worst"], *(one(sum(costs[name])) for name in
+                     ("bytes", "blocks", "dma", "streaming", "corrupted")),
+                     f["counts"]["idle poll"]])
+    return table(["instructions", "`tmini_feed_byte()`, worst", "a byte, by bytes",
+                  "a byte, by blocks", "a byte, by DMA", "a byte, streaming",
+                  "a byte, corrupted", "idle `tmini_poll()`"], rows)
+
+
+def polls(figures):
+    chosen = [(title, f["counts"]["worst poll"]) for title, f in machines(figures)
+              if title.endswith("`-Os`")]
+    names = list(chosen[0][1])
+    rows = [[f"`{name}`", *(worst[name] for _, worst in chosen)] for name in sorted(names)]
+    return table(["event, instructions at most", *(title for title, _ in chosen)], rows)
+
+
+def hostile(figures):
+    chosen = [(title, f["counts"]["hostile"]) for title, f in machines(figures)]
+    rows = [["random", *(one(cost["random"]) for _, cost in chosen)]]
+    rows += [[f"a header every {step} bytes", *(one(cost[f"headers {step}"]) for _, cost in chosen)]
+             for step in HEADER_STEPS]
+    return table(["instructions a byte", *(title for title, _ in chosen)], rows)
+
+
+def host(figures):
+    rows = [[f"by {feed}", one(f["own"]), one(f["own"] * figures["host size"])]
+            for feed, f in figures["host"].items()]
+    return table(["x86-64 `-O2`", "instructions a byte", "instructions"],
+                 [[name, each, total.removesuffix(".0")] for name, each, total in rows])
+
+
+def cpu(figures):
+    rows = []
+    for title, name, megahertz in load.BOARDS:
+        f = figures["targets"][name, "-Os"]["counts"]
+        rows.append([title, *(one(load.percent(f, megahertz, feed)) + " %"
+                              for feed in ("bytes", "dma"))])
+    return table(["load, library at `-Os`", "interrupt a byte", "DMA"], rows)
+
+
+def pauses(_figures):
+    def text(ring, dma):
+        pause = load.longest_pause_ms(ring, dma)
+        return f"{pause:.0f} ms" if pause >= 1 else "–"
+
+    rows = [[f"{ring} bytes", text(ring, False), text(ring, True)]
+            for ring in (256, 512, 1024, 2048)]
+    return table(["receive buffer", "interrupt or blocks", "DMA"], rows)
+
+
+def growth(figures):
+    counts = figures["targets"]["cortex-m4", "-Os"]["counts"]["by frequency"]
+    rows = []
+    for frequency in POINTS:
+        rate = load.bytes_a_second(frequency)
+        each = counts[f"{frequency} Hz"]
+        rows.append([f"{frequency} Hz", load.packets_a_revolution(frequency), f"{rate:,}",
+                     one(each), f"{round(rate * each / 1000):,} k"])
+    return table(["scan frequency", "packets a revolution", "bytes a second",
+                  "instructions a byte", "instructions a second"], rows)
+
+
+def budgets(figures):
+    rows = [[budget.title, f"{budget.limit}", f"{budget.shown()}", f"{budget.margin():.0f} %"]
+            for budget in figures["budgets"]]
+    return table(["budget", "limit", "measured", "to spare"], rows)
+
+
+def summary(figures):
+    """The README's table."""
+    m4 = figures["targets"]["cortex-m4", "-Os"]
+    m0 = figures["targets"]["cortex-m0", "-Os"]
+    rows = [
+        ["flash, parser and decoding", *(f["flash"]["parser"]["own"] for f in (m0, m4))],
+        ["flash, everything", *(f["flash"]["everything"]["own"] for f in (m0, m4))],
+        ["RAM a lidar, besides your buffers",
+         *(figures["ram"][name]["tmini_t"] for name in ("cortex-m0", "cortex-m4"))],
+        ["stack, at most", *(f["stack"]["polling"][0] for f in (m0, m4))],
+        ["instructions in the receive interrupt's call",
+         *(f["counts"]["feed worst"] for f in (m0, m4))],
+        ["instructions a byte, in to point out",
+         *(one(sum(f["counts"]["costs"]["blocks"])) for f in (m0, m4))],
+    ]
+    return table(["`-Os`", "Cortex-M0", "Cortex-M4"], rows)
+
+
+BLOCKS = {"versions": versions, "budgets": budgets, "flash": flash, "modules": modules, "ram": ram,
+          "stack": stack, "instructions": instructions, "polls": polls, "hostile": hostile,
+          "host": host, "load": cpu, "pauses": pauses, "growth": growth, "footprint": summary}
+
+
+def between(name):
+    """The pattern of a generated block."""
+    return re.compile(rf"(<!-- {name}:begin[^>]*-->\n)(.*?)(<!-- {name}:end -->)", re.DOTALL)
+
+
+def block_in(text, name):
+    """What a document holds between a block's markers, or None."""
+    found = between(name).search(text)
+    return found[2].strip("\n") if found else None
+
+
+def renew(document, names, figures):
+    """The document's text with its blocks as measured now."""
+    text = document.read_text()
+    for name in names:
+        new = BLOCKS[name](figures)
+        text = between(name).sub(lambda found, new=new: f"{found[1]}\n{new}\n\n{found[3]}", text)
+    return text

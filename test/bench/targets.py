@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""The processors measured, and how the library is compiled and linked for them."""
+
+import pathlib
+import re
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+HERE = ROOT / "test" / "bench"
+LIB_SOURCES = sorted((ROOT / "lib" / "src").glob("*.c"))
+LEVELS = ("-Os", "-O2")
+
+
+class BenchError(Exception):
+    """Something that the caller must mend, with a message that says what."""
+
+
+def run(*command):
+    """Runs a command and returns what it printed."""
+    words = [str(word) for word in command]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise BenchError(f"{' '.join(words)}\nfailed:\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+class Target:
+    """One processor: its compiler and options."""
+
+    def __init__(self, name, title, prefix, machine, link):
+        self.name = name
+        self.title = title
+        self.prefix = prefix
+        self.machine = machine
+        self.link_options = link
+
+    def tool(self, name):
+        return self.prefix + name
+
+    def version(self):
+        """The compiler's whole version line: figures are comparable under the same one only."""
+        return run(self.tool("gcc"), "--version").splitlines()[0].strip()
+
+    def compile(self, source, level, folder, *extra):
+        """Compiles one source to `folder`; returns the object file."""
+        folder.mkdir(parents=True, exist_ok=True)
+        target = folder / (source.stem + ".o")
+        # Names without the checkout's place, so that its length cannot matter.
+        run(self.tool("gcc"), *self.machine, "-std=c99", level, "-Wall", "-Wextra", "-Werror",
+            "-ffunction-sections", "-fdata-sections", f"-ffile-prefix-map={ROOT}=.",
+            "-I", ROOT / "lib" / "include", *extra, "-c", source, "-o", target)
+        return target
+
+    def compile_library(self, level, folder):
+        """All of lib/src; call graphs with stack sizes (*.ci) beside the objects."""
+        return [self.compile(source, level, folder, "-fcallgraph-info=su,da")
+                for source in LIB_SOURCES]
+
+    def link(self, objects, program):
+        """Links without start-up code, dropping what is not used; returns program and map."""
+        map_file = program.with_suffix(".map")
+        run(self.tool("gcc"), *self.machine, *self.link_options, "-nostartfiles",
+            "-Wl,--gc-sections", f"-Wl,-Map={map_file}", f"-Wl,-T,{HERE / 'program.ld'}",
+            *objects, "-o", program)
+        return program, map_file
+
+
+def cortex(name, title):
+    return Target(name, title, "arm-none-eabi-", (f"-mcpu={name}", "-mthumb"),
+                  ("--specs=nano.specs", "--specs=nosys.specs"))
+
+
+PICOLIBC = ("-march=rv32imc", "-mabi=ilp32", "--specs=picolibc.specs")
+
+TARGETS = (
+    cortex("cortex-m0", "Cortex-M0"),
+    cortex("cortex-m3", "Cortex-M3"),
+    cortex("cortex-m4", "Cortex-M4"),
+    Target("rv32imc", "rv32imc", "riscv64-unknown-elf-", PICOLIBC, ()),
+)
+
+
+def target_named(name):
+    return next(target for target in TARGETS if target.name == name)
+
+
+SECTION = re.compile(
+    r"^ \.(text|rodata|data|bss)\S*\s+0x[0-9a-f]+\s+0x([0-9a-f]+)\s+(\S+)$", re.MULTILINE)
+
+
+def contributions(map_file):
+    """What each object file brings to a linked program: (section, bytes, file) triples."""
+    text = map_file.read_text()
+    text = text[text.index("Linker script and memory map"):]
+    text = re.sub(r"\n( \.\S+)\n\s+", r"\n\1 ", text)  # Long names stand on a line of their own.
+    return [(section, int(size, 16), file) for section, size, file in SECTION.findall(text)
+            if int(size, 16) > 0]
