@@ -37,13 +37,21 @@ void tmini_driver_look(tmini_t *lidar)
     }
 }
 
+/* Bytes are pending, and all of them had come when time was last looked at: those that an interrupt
+ * has brought meanwhile must not be judged by it. */
+static bool is_all_old(const tmini_t *lidar)
+{
+    return tmini_parser_pending(&lidar->parser) > 0 &&
+           tmini_load(&lidar->ring.head) == lidar->received;
+}
+
 /* A candidate that has stopped coming is given up, so that what it hides is looked at. */
 static tmini_frame_t next_frame(tmini_t *lidar)
 {
     tmini_parser_t *const parser = &lidar->parser;
     tmini_frame_t frame = tmini_parser_next(parser);
     if (driver_elapsed(lidar, lidar->received_ms, lidar->timing->silence_ms)) {
-        while (frame == TMINI_FRAME_NONE && tmini_parser_pending(parser) > 0) {
+        while (frame == TMINI_FRAME_NONE && is_all_old(lidar)) {
             tmini_parser_abandon(parser);
             frame = tmini_parser_next(parser);
         }

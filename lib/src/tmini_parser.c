@@ -127,8 +127,11 @@ static void release_frame(tmini_parser_t *parser)
 static void count_refused(tmini_parser_t *parser)
 {
     const size_t refused = tmini_ring_refused(parser->ring);
-    parser->counters.bytes_overrun += (uint32_t)(refused - parser->refused);
-    parser->refused = refused;
+    if (refused != parser->refused) {
+        parser->counters.bytes_overrun += (uint32_t)(refused - parser->refused);
+        parser->refused = refused;
+        parser->gap = UINT16_MAX;
+    }
 }
 
 /* The unread bytes, less those that DMA may have overwritten: they are dropped. */
@@ -171,8 +174,9 @@ tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uin
     if (max_samples == 0) {
         parser->max_samples = TMINI_MAX_SAMPLES_DEFAULT;
     }
-    return ring->window < TMINI_PACKET_SIZE_MAX(parser->max_samples) ? TMINI_ERROR_ARGUMENT
-                                                                     : TMINI_OK;
+    const bool fits = ring->window >= TMINI_PACKET_SIZE_MAX(parser->max_samples) &&
+                      ring->window >= TMINI_REPLY_SIZE_MAX;
+    return fits ? TMINI_OK : TMINI_ERROR_ARGUMENT;
 }
 
 tmini_frame_t tmini_parser_next(tmini_parser_t *parser)

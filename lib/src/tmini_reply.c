@@ -25,10 +25,10 @@ bool tmini_reply_shape(tmini_command_t command, tmini_reply_shape_t *shape)
     case TMINI_COMMAND_FASTER_ONE:
     case TMINI_COMMAND_SLOWER_ONE:
     case TMINI_COMMAND_GET_FREQUENCY:
-        break;
+    default:
+        *shape = (tmini_reply_shape_t){ .type = 0x04, .length = TMINI_FREQUENCY_SIZE };
+        return true;
     }
-    *shape = (tmini_reply_shape_t){.type = 0x04, .length = TMINI_FREQUENCY_SIZE};
-    return true;
 }
 
 void tmini_reply_info(const uint8_t content[TMINI_INFO_SIZE], tmini_info_t *info)

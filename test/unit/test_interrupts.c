@@ -130,12 +130,12 @@ void test_a_reader_on_another_core_loses_and_repeats_nothing(void)
 {
     for (chosen = 0; chosen < 7; chosen++) {
         size_t taken = 0;
-        receiver_open(&receiver, memory, 16, 1);
+        receiver_open(&receiver, memory, 32, 1);
         expected_byte = 0;
         read_bytes = 0;
         handler = reader_comes_at_the_chosen_access;
         for (size_t round = 0; round < 200; round++) {
-            taken += write_numbers((uint8_t)taken, round % 40);
+            taken += write_numbers((uint8_t)taken, round % 80);
             taken += write_numbers((uint8_t)taken, 1);
         }
         handler = NULL;

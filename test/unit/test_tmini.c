@@ -267,6 +267,31 @@ void test_packets_while_idle_are_parsed_and_counted_but_are_no_event(void)
 
 /* ---- Silence ---- */
 
+/* A clock that takes so long to read that five bytes of a health reply come meanwhile. */
+static uint32_t slow_clock(void *context)
+{
+    static const uint8_t reply[] = { 0xA5, 0x5A, 0x03, 0x00, 0x00 };
+
+    (void)context;
+    rig_feed(reply, sizeof reply);
+    return rig.now_ms;
+}
+
+void test_bytes_that_come_while_the_clock_is_read_are_not_given_up(void)
+{
+    static const uint8_t rest[] = { 0x00, 0x06, 0x00, 0x00, 0x00 };
+
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    passes(100);
+    rig.port.now_ms = slow_clock; /* As long as the line is silent in its eyes: 100 ms. */
+    (void)tmini_poll(&rig.lidar);
+    rig.port.now_ms = port_now_ms;
+    rig_feed(rest, sizeof rest);
+    polls_to(TMINI_EVENT_HEALTH);
+}
+
 /* A header that promises more than comes: it hides the packet behind it. */
 static void feed_false_header_and_packet(void)
 {

@@ -268,10 +268,6 @@ tmini_status_t tmini_failure(const tmini_t *lidar);
 
 /* What is wrong with the lidar while scanning, a combination of tmini_fault_t; 0: nothing known.
  * From CT information when the unit sends it, seen in two revolutions. A unit that sends none has
- * TMINI_FAULT_DATA when two revolutions bring no valid range. Either has TMINI_FAULT_ENCODER when
- * packets come without any range and without a revolution (section 8). */
-/* What is wrong with the lidar while scanning, a combination of tmini_fault_t; 0: nothing known. From
- * CT information when the unit sends it, seen in two revolutions. A unit that sends none has
  * TMINI_FAULT_DATA when two whole revolutions bring no valid range. Either has TMINI_FAULT_ENCODER
  * when packets come without any range and without a revolution (section 8). */
 uint8_t tmini_faults(const tmini_t *lidar);

@@ -35,13 +35,15 @@ extern "C" {
 #define TMINI_REPLY_HEADER_SIZE 7u
 #define TMINI_SAMPLE_SIZE 3u
 
-/* Samples accepted in a packet unless configured otherwise: the vendor's own limit (section 9.6).
- * */
+/* Samples accepted in a packet unless configured otherwise: the vendor's limit (section 9.6). */
 #define TMINI_MAX_SAMPLES_DEFAULT 80u
 
 /* Bytes of the largest packet with that many samples: the ring's window must hold one. */
 #define TMINI_PACKET_SIZE_MAX(max_samples) \
     (TMINI_PACKET_HEADER_SIZE + TMINI_SAMPLE_SIZE * (max_samples))
+
+/* The longest reply, device information. */
+#define TMINI_REPLY_SIZE_MAX (TMINI_REPLY_HEADER_SIZE + 20u)
 
 typedef enum {
     TMINI_FRAME_NONE, /* Nothing more can be told from the bytes received so far. */
@@ -89,7 +91,7 @@ typedef struct {
 
 /* Parses what arrives in `ring`, which must outlive the parser. `max_samples`: 1 to 255, or 0 for
  * the default. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, or a ring whose window is
- * smaller than the largest packet. */
+ * smaller than the largest packet or reply. */
 tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uint8_t max_samples);
 
 /* The next frame, or TMINI_FRAME_NONE. The frame lies at the ring's tail, where packet and reply

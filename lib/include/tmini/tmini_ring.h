@@ -64,9 +64,8 @@ void tmini_ring_publish(tmini_ring_t *ring, size_t position);
  * the hardware may have overwritten the oldest. */
 size_t tmini_ring_unread(const tmini_ring_t *ring);
 
-/* Consumer: the unread byte `offset` bytes from the oldest, which must be below
- * tmini_ring_unread(). A larger offset reads another byte of the ring's memory, never outside it.
- * */
+/* Consumer: the unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger
+ * offset reads another byte of the ring's memory, never one outside it. */
 uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset);
 
 /* Consumer: copies `count` unread bytes from `offset` on. */

@@ -86,8 +86,7 @@ unsigned tmini_turn_faults(const tmini_turn_t *turn);
 /* What is known from trusted revolutions; each field keeps its value once known. */
 void tmini_turn_info(const tmini_turn_t *turn, tmini_turn_info_t *info);
 
-/* The guard's CRC-8 (CRC-8/MAXIM: reflected polynomial 0x8C, initial value 0) over one more byte.
- * */
+/* The guard's CRC-8 (CRC-8/MAXIM: reflected polynomial 0x8C, initial value 0), a byte further. */
 uint8_t tmini_turn_crc8(uint8_t crc, uint8_t byte);
 
 #ifdef __cplusplus
