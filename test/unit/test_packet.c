@@ -331,38 +331,31 @@ static uint16_t exact_angle(uint16_t first, uint32_t difference, uint32_t index,
     return (uint16_t)((first + turned) % 23040u);
 }
 
-/* The library computes with a rounded step. Samples are read as they would be from a packet with
- * these angles, but without encoding one for each. */
-static void expect_exact_angles(uint8_t count, uint16_t difference, unsigned stride)
+static void expect_exact_angles(unsigned count, unsigned difference, unsigned stride)
 {
     const uint16_t first = 100;
-    uint8_t *const header = receiver.parser.header;
-    encode_u16(&header[4], encode_angle(first));
-    encode_u16(&header[6], encode_angle((uint16_t)((first + difference) % 23040u)));
-    header[3] = count;
-    tmini_packet_open(&receiver.packet, &receiver.parser);
+    const uint16_t last = (uint16_t)((first + difference) % 23040u);
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, receiver_next(&receiver)); /* Makes room. */
+    open_angles((uint8_t)count, first, last);
     for (unsigned i = 0; i < count; i += stride) {
-        const uint16_t exact = exact_angle(first, difference, i, count - 1u);
-        TEST_ASSERT_EQUAL_UINT16(exact, angle(i));
+        TEST_ASSERT_EQUAL_UINT16(exact_angle(first, difference, i, count - 1), angle(i));
     }
-    TEST_ASSERT_EQUAL_UINT16((first + difference) % 23040u, angle(count - 1u));
+    TEST_ASSERT_EQUAL_UINT16(last, angle(count - 1));
 }
 
-/* One more than a whole number of intervals, half an interval, one less: where rounding is
- * nearest to going wrong, at the far end of the largest packets. All pairs of count and
- * difference are in test_angles.c. */
+/* Half an interval more than a whole number of them, and one more: where rounding is nearest to going
+ * wrong. All pairs of count and difference are in test/system/test_angles.c. */
 void test_interpolated_angles_are_exact(void)
 {
-    open_angles(255, 0, 22000);
     for (unsigned count = 2; count <= 255; count += 23) {
-        const unsigned intervals = count - 1u;
+        const unsigned intervals = count - 1;
         for (unsigned turns = 0; turns < 23040 / intervals; turns += 1 + 2000 / intervals) {
             const unsigned difference = turns * intervals + intervals / 2;
-            expect_exact_angles((uint8_t)count, (uint16_t)difference, 7);
-            expect_exact_angles((uint8_t)count, (uint16_t)(difference + 1), 5);
+            expect_exact_angles(count, difference, 7);
+            expect_exact_angles(count, difference + 1, 5);
         }
-        expect_exact_angles((uint8_t)count, 23039, 1);
-        expect_exact_angles((uint8_t)count, 0, 9);
+        expect_exact_angles(count, 23039, 1);
+        expect_exact_angles(count, 0, 9);
     }
 }
 
