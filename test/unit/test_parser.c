@@ -227,6 +227,16 @@ void test_garbage_is_skipped_as_soon_as_it_cannot_begin_a_packet(void)
     expect_pending(0);
 }
 
+void test_garbage_behind_a_packet_is_skipped_as_soon_too(void)
+{
+    feed(start_packet, 13);
+    expect_packet(1, 0);
+    feed_byte(0x00);
+    expect_nothing();
+    expect_skipped(1);
+    expect_pending(0);
+}
+
 void test_aa_before_a_packet_does_not_hide_it(void)
 {
     feed_byte(0xAA);
@@ -918,6 +928,30 @@ void test_another_reply_awaited_meanwhile_is_found_in_what_is_pending(void)
     expect_reply(10, health_reply, 3);
 }
 
+void test_when_the_waiting_ends_a_lone_first_byte_of_a_reply_is_skipped(void)
+{
+    receiver_await(&receiver, 0, 0x04, 20);
+    feed_byte(0xA5);
+    expect_nothing();
+    expect_pending(1);
+    tmini_parser_await(&receiver.parser, NULL);
+    expect_nothing();
+    expect_skipped(1);
+    expect_pending(0);
+}
+
+void test_waiting_for_a_reply_takes_nothing_from_an_empty_ring(void)
+{
+    receiver_await(&receiver, 0, 0x04, 20);
+    expect_nothing();
+    tmini_parser_await(&receiver.parser, NULL);
+    expect_nothing();
+    expect_skipped(0);
+    expect_pending(0);
+    feed(start_packet, 13);
+    expect_packet(1, 0);
+}
+
 void test_an_awaited_shape_is_copied(void)
 {
     tmini_reply_shape_t shape = {.type = 0x06, .mode = 0, .length = 3};
@@ -1030,6 +1064,21 @@ void test_refused_bytes_are_counted_as_overrun(void)
     TEST_ASSERT_EQUAL_UINT32(48, receiver.parser.counters.bytes_overrun);
 }
 
+void test_refused_bytes_leave_a_gap(void)
+{
+    memset(bytes, 0, 300);
+    feed(start_packet, 13);
+    expect_packet(1, 0);
+    feed(bytes, 244); /* One is refused. */
+    expect_nothing();
+    feed(start_packet, 13);
+    expect_frame(TMINI_FRAME_PACKET);
+    TEST_ASSERT_EQUAL_UINT16(65535, receiver.packet.gap);
+    feed(start_packet, 13);
+    expect_frame(TMINI_FRAME_PACKET);
+    TEST_ASSERT_EQUAL_UINT16(0, receiver.packet.gap);
+}
+
 void test_packets_in_a_ring_that_overflowed_are_found_and_those_after_it(void)
 {
     for (unsigned i = 0; i < 4; i++) {
@@ -1108,6 +1157,18 @@ void test_what_dma_may_have_overwritten_is_dropped_and_counted(void)
     expect_packet(1, 244);
     TEST_ASSERT_EQUAL_UINT32(1, receiver.parser.counters.bytes_overrun);
     expect_skipped(243);
+}
+
+void test_overruns_of_dma_add_up(void)
+{
+    open_dma();
+    memset(bytes, 0, 300);
+    feed(bytes, 300);
+    expect_nothing();
+    TEST_ASSERT_EQUAL_UINT32(44, receiver.parser.counters.bytes_overrun);
+    feed(bytes, 260);
+    expect_nothing();
+    TEST_ASSERT_EQUAL_UINT32(48, receiver.parser.counters.bytes_overrun);
 }
 
 void test_an_overrun_of_dma_is_a_gap_of_65535(void)

@@ -174,6 +174,12 @@ void test_a_block_is_stored_like_its_bytes_one_by_one(void)
     expect_unread("abcdefg");
 }
 
+void test_a_block_may_be_a_single_byte(void)
+{
+    tmini_ring_write(&ring, letters, 1);
+    expect_unread("a");
+}
+
 void test_an_empty_block_changes_nothing(void)
 {
     tmini_ring_write(&ring, letters, 0);
@@ -359,12 +365,13 @@ void test_unread_bytes_are_copied_across_the_memorys_end(void)
 /* The samples from the unread byte `offset` on; `place` is where they lie, NULL if put together. */
 static void expect_samples(size_t offset, size_t wanted, size_t count, const uint8_t *place)
 {
-    uint8_t joined[3] = {0};
+    uint8_t joined[4] = {0, 0, 0, GUARD};
     size_t got = wanted;
     const uint8_t *const samples = tmini_ring_samples(&ring, offset, &got, joined);
     TEST_ASSERT_EQUAL_UINT(count, got);
     TEST_ASSERT_EQUAL_PTR(place != NULL ? place : joined, samples);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(&letters[offset], samples, 3 * count);
+    TEST_ASSERT_EQUAL_HEX8(GUARD, joined[3]);
 }
 
 void test_samples_that_lie_in_one_piece_are_read_where_they_are(void)
@@ -372,6 +379,7 @@ void test_samples_that_lie_in_one_piece_are_read_where_they_are(void)
     put_letters(0, SIZE);
     expect_samples(0, 5, 5, memory);
     expect_samples(1, 5, 5, &memory[1]); /* Up to the memory's last byte. */
+    expect_samples(1, 4, 4, &memory[1]);
     expect_samples(13, 1, 1, &memory[13]);
 }
 

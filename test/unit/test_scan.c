@@ -359,6 +359,16 @@ void test_a_step_back_by_less_than_4_degrees_is_jitter(void)
     TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
 }
 
+void test_a_packet_of_two_samples_goes_from_the_first_angle_to_the_last(void)
+{
+    (void)start(0);
+    (void)arrive(0x00, 2, DEGREE, 180 * DEGREE);
+    add();
+    (void)arrive(0x00, 2, 181 * DEGREE, 360 * DEGREE);
+    add();
+    expect_scan(0, 0, true);
+}
+
 void test_the_last_angle_of_a_lone_sample_does_not_count(void)
 {
     (void)start(0);

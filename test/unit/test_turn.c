@@ -199,6 +199,28 @@ void test_the_largest_values_fit_their_fields(void)
     TEST_ASSERT_EQUAL_UINT32(2097151, info.number);
 }
 
+/* The number's 21 bits are 01 101 10 0110101 0101011: 891563. */
+void test_each_bit_of_the_serial_number_has_its_place(void)
+{
+    uint8_t crc = tmini_turn_crc8(0, 0x79);
+    uint8_t cts[16] = {0};
+    cts[8] = 6 << 3 | 1 << 1;
+    cts[9] = 12 << 4 | 5 << 1;
+    cts[10] = 31 << 3 | 2 << 1;
+    cts[11] = 0x35 << 1;
+    cts[12] = 0x2B << 1;
+    for (unsigned i = 0; i < 16; i++) {
+        crc = tmini_turn_crc8(crc, cts[i]);
+    }
+    add_revolution(0x79, cts, 16);
+    TEST_ASSERT_TRUE(end_with(crc));
+    tmini_turn_info(&turn, &info);
+    TEST_ASSERT_EQUAL_UINT16(2026, info.year);
+    TEST_ASSERT_EQUAL_UINT8(12, info.month);
+    TEST_ASSERT_EQUAL_UINT8(31, info.day);
+    TEST_ASSERT_EQUAL_UINT32(891563, info.number);
+}
+
 void test_a_healthy_lidar_is_known_to_have_no_faults(void)
 {
     uint8_t cts[17];
@@ -257,6 +279,16 @@ void test_a_unit_without_ct_information_never_becomes_healthy(void)
         TEST_ASSERT_FALSE(add(0x79, 1, (uint8_t)noise)); /* 0x32 would be its CRC. */
     }
     expect_nothing_known();
+}
+
+void test_a_unit_that_stops_to_send_ct_information_is_not_trusted_for_what_it_sent_before(void)
+{
+    static const uint8_t zeros[16] = {0};
+    add_six_hertz();
+    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
+    add_points(zeros, 16);
+    TEST_ASSERT_FALSE(end_with(0x32)); /* Their CRC, by chance. */
+    TEST_ASSERT_EQUAL_UINT(0x12, tmini_turn_faults(&turn));
 }
 
 void test_one_point_packet_with_information_is_enough(void)
@@ -324,6 +356,16 @@ void test_what_comes_before_the_first_start_packet_is_left_out(void)
     TEST_ASSERT_FALSE(end_with(SIX_HERTZ_CRC));
     add_points(&six_hertz[1], 16);
     TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
+}
+
+void test_no_last_crc_makes_packets_before_the_first_start_packet_a_revolution(void)
+{
+    for (unsigned crc = 0; crc <= 255; crc++) {
+        tmini_turn_init(&turn);
+        add_points(&six_hertz[1], 16);
+        TEST_ASSERT_FALSE(end_with((uint8_t)crc));
+        expect_nothing_known();
+    }
 }
 
 void test_a_first_start_packet_ends_nothing(void)
