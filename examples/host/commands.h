@@ -9,5 +9,6 @@
 #include "options.h"
 
 extern const command_t command_decode;
+extern const command_t command_plot;
 
 #endif

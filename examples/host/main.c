@@ -12,6 +12,7 @@
 
 static const command_t *const commands[] = {
     &command_decode,
+    &command_plot,
 };
 
 #define COMMANDS (sizeof commands / sizeof commands[0])
