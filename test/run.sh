@@ -31,6 +31,7 @@ wish_for_machines() {
     wish g++ g++
     wish arm-none-eabi-gcc gcc-arm-none-eabi
     wish qemu-system-arm qemu-system-arm
+    wish python3 python3
     wish /usr/lib/arm-none-eabi/newlib libnewlib-arm-none-eabi
     wish riscv64-unknown-elf-gcc gcc-riscv64-unknown-elf
     wish /usr/lib/picolibc/riscv64-unknown-elf picolibc-riscv64-unknown-elf
