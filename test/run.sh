@@ -38,6 +38,7 @@ wish_for_machines() {
     wish avr-gcc gcc-avr
     wish /usr/lib/avr/include/avr/io.h avr-libc
     wish simavr simavr
+    wish /usr/share/arduino/hardware/arduino/avr arduino-core-avr
     wish powerpc-linux-gnu-gcc gcc-powerpc-linux-gnu
     wish /usr/powerpc-linux-gnu/include/stdio.h libc6-dev-powerpc-cross
     wish qemu-system-riscv32 qemu-system-misc

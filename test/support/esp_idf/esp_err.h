@@ -14,4 +14,14 @@ typedef int esp_err_t;
 #define ESP_ERR_INVALID_ARG 0x102
 #define ESP_ERR_INVALID_STATE 0x103
 
+/* The real one prints where, and restarts the chip. */
+void esp_stop(esp_err_t error);
+#define ESP_ERROR_CHECK(call)         \
+    do {                              \
+        const esp_err_t error = call; \
+        if (error != ESP_OK) {        \
+            esp_stop(error);          \
+        }                             \
+    } while (0)
+
 #endif

@@ -17,4 +17,8 @@
 #define CONFIG_TMINI_ESP32_TASK_PRIORITY 12
 #define CONFIG_TMINI_ESP32_TASK_CORE -1
 
+/* Of examples/esp32_idf. */
+#define CONFIG_EXAMPLE_STOP_GPIO 10
+#define CONFIG_EXAMPLE_STOP_MM 400
+
 #endif

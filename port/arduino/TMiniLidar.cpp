@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "TMiniLidar.h"
+
+/* The protocol's section 1. */
+static const unsigned long BAUD_RATE = 230400;
+
+#if defined(ESP32) || defined(ESP8266)
+/* The core's own receive buffer: 78 ms at 13.1 kB/s, instead of 20 with the usual 256 bytes. */
+static const size_t SERIAL_RX_SIZE = 1024;
+#endif
+
+const tmini_port_t TMiniLidarBase::port_ = {write, nowMs, NULL};
+
+TMiniPoint TMiniPoints::operator[](size_t index) const
+{
+    TMiniPoint point;
+    static_cast<tmini_point_t &>(point) = tmini_point_t();
+    if (scan_ != NULL) {
+        static_cast<tmini_point_t &>(point) = scan_[index];
+    } else {
+        tmini_packet_point(packet_, index, &point);
+    }
+    return point;
+}
+
+TMiniLidarBase::TMiniLidarBase(uint8_t *rx, size_t rxSize, tmini_point_t *points, size_t maxPoints)
+    : lidar_(), config_(), serial_(NULL), event_(TMINI_EVENT_NONE)
+{
+    config_.port = &port_;
+    config_.port_context = this;
+    config_.rx_buffer = rx;
+    config_.rx_size = rxSize;
+    config_.points = points;
+    config_.max_points = maxPoints;
+}
+
+/* Two bytes always fit in the core's transmit buffer: nothing else is ever sent. */
+int TMiniLidarBase::write(void *context, const uint8_t *bytes, size_t count)
+{
+    Stream *const serial = static_cast<TMiniLidarBase *>(context)->serial_;
+    return static_cast<int>(serial->write(bytes, count));
+}
+
+uint32_t TMiniLidarBase::nowMs(void *)
+{
+    return static_cast<uint32_t>(millis());
+}
+
+bool TMiniLidarBase::listen(Stream &serial)
+{
+    serial_ = &serial;
+    event_ = TMINI_EVENT_NONE;
+    return tmini_init(&lidar_, &config_) == TMINI_OK;
+}
+
+bool TMiniLidarBase::begin(Stream &serial)
+{
+    return listen(serial);
+}
+
+bool TMiniLidarBase::begin(HardwareSerial &serial)
+{
+#if defined(ESP32) || defined(ESP8266)
+    serial.setRxBufferSize(SERIAL_RX_SIZE); /* Only heard before begin(). */
+#endif
+    serial.begin(BAUD_RATE);
+    return listen(serial);
+}
+
+#if defined(ESP32)
+bool TMiniLidarBase::begin(HardwareSerial &serial, int8_t rxPin, int8_t txPin)
+{
+    serial.setRxBufferSize(SERIAL_RX_SIZE); /* Only heard before begin(). */
+    serial.begin(BAUD_RATE, SERIAL_8N1, rxPin, txPin);
+#if defined(ESP_ARDUINO_VERSION_MAJOR) && ESP_ARDUINO_VERSION_MAJOR >= 3
+    serial.setRxFIFOFull(64); /* Of 128; by default only 8 bytes (0.35 ms) are left for delays. */
+#endif
+    return listen(serial);
+}
+#endif
+
+/* Only what is there is read, so that readBytes() has nothing to wait for. */
+void TMiniLidarBase::receive()
+{
+    uint8_t chunk[64];
+    int waiting = serial_->available();
+    while (waiting > 0) {
+        const size_t wanted = static_cast<size_t>(waiting) < sizeof chunk
+                                  ? static_cast<size_t>(waiting)
+                                  : sizeof chunk;
+        const size_t count = serial_->readBytes(chunk, wanted);
+        if (count == 0) {
+            return;
+        }
+        tmini_feed(&lidar_, chunk, count);
+        waiting -= static_cast<int>(count);
+    }
+}
+
+tmini_event_t TMiniLidarBase::loop()
+{
+    if (serial_ == NULL) {
+        return TMINI_EVENT_NONE;
+    }
+    receive();
+    event_ = tmini_poll(&lidar_);
+    return event_;
+}
+
+size_t TMiniLidarBase::available() const
+{
+    switch (event_) {
+    case TMINI_EVENT_SCAN:
+        return tmini_scan(&lidar_)->count;
+    case TMINI_EVENT_PACKET:
+        return tmini_packet(&lidar_)->count;
+    default:
+        return 0;
+    }
+}
+
+TMiniPoints TMiniLidarBase::points() const
+{
+    const tmini_point_t *const scan =
+        event_ == TMINI_EVENT_SCAN ? tmini_scan(&lidar_)->points : NULL;
+    return TMiniPoints(scan, tmini_packet(&lidar_), available());
+}
+
+bool TMiniLidarBase::start()
+{
+    return tmini_start(&lidar_) == TMINI_OK;
+}
+
+bool TMiniLidarBase::stop()
+{
+    return tmini_stop(&lidar_) == TMINI_OK;
+}
+
+bool TMiniLidarBase::requestInfo()
+{
+    return tmini_request_info(&lidar_) == TMINI_OK;
+}
+
+bool TMiniLidarBase::requestHealth()
+{
+    return tmini_request_health(&lidar_) == TMINI_OK;
+}
+
+bool TMiniLidarBase::setFrequency(float hertz)
+{
+    if (!(hertz >= 6.0f && hertz <= 12.0f)) {
+        return false;
+    }
+    const uint16_t tenths = static_cast<uint16_t>(hertz * 10.0f + 0.5f);
+    return tmini_set_frequency(&lidar_, static_cast<uint16_t>(tenths * 10u)) == TMINI_OK;
+}
+
+bool TMiniLidarBase::reboot()
+{
+    return tmini_reboot(&lidar_) == TMINI_OK;
+}
+
+bool TMiniLidarBase::isScanning() const
+{
+    return tmini_state(&lidar_) == TMINI_STATE_SCANNING;
+}
+
+const tmini_info_t &TMiniLidarBase::info() const
+{
+    return *tmini_info(&lidar_);
+}
+
+const tmini_health_t &TMiniLidarBase::health() const
+{
+    return *tmini_health(&lidar_);
+}
+
+uint8_t TMiniLidarBase::faults() const
+{
+    return tmini_faults(&lidar_);
+}
+
+const char *TMiniLidarBase::error() const
+{
+    return tmini_status_name(tmini_failure(&lidar_));
+}
+
+tmini_t *TMiniLidarBase::driver()
+{
+    return &lidar_;
+}

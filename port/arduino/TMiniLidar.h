@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The lidar for Arduino sketches, on any serial port that is a Stream:
+ *
+ *     TMiniLidar lidar;
+ *
+ *     void setup() {
+ *         lidar.begin(Serial1, 16, 17);    // ESP32: RX pin, TX pin; elsewhere begin(Serial1)
+ *         lidar.start();
+ *     }
+ *     void loop() {
+ *         while (lidar.loop()) {           // as long as something happens
+ *             if (lidar.available()) {
+ *                 for (TMiniPoint point : lidar.points()) {
+ *                     if (point.isValid()) { use(point.angleDegrees(), point.distanceMm()); }
+ *                 }
+ *             }
+ *         }
+ *     }
+ *
+ * Nothing waits, and nothing is allocated. TMiniLidar gathers whole revolutions (7 KB of RAM);
+ * TMiniLidarStreaming hands over each packet of up to 40 points as it comes (1 KB). All that the
+ * library can do besides is behind driver(). */
+
+#ifndef TMINI_LIDAR_H
+#define TMINI_LIDAR_H
+
+#include <Arduino.h>
+
+#include "tmini/tmini.h"
+
+/* One measurement. */
+struct TMiniPoint : public tmini_point_t {
+    bool isValid() const
+    {
+        return distance_mm != 0;
+    }
+    uint16_t distanceMm() const
+    {
+        return distance_mm;
+    }
+    /* Clockwise seen from above, 0 to less than 360. */
+    float angleDegrees() const
+    {
+        return static_cast<float>(angle_q6) / 64.0f;
+    }
+};
+
+/* The points of a scan or of a packet, for a range-based for; valid until the next loop(). */
+class TMiniPoints
+{
+  public:
+    class Iterator
+    {
+      public:
+        Iterator(const TMiniPoints &points, size_t index) : points_(points), index_(index) {}
+        TMiniPoint operator*() const
+        {
+            return points_[index_];
+        }
+        Iterator &operator++()
+        {
+            index_++;
+            return *this;
+        }
+        bool operator!=(const Iterator &other) const
+        {
+            return index_ != other.index_;
+        }
+
+      private:
+        const TMiniPoints &points_;
+        size_t index_;
+    };
+
+    TMiniPoints(const tmini_point_t *scan, const tmini_packet_t *packet, size_t count)
+        : scan_(scan), packet_(packet), count_(count)
+    {
+    }
+    size_t size() const
+    {
+        return count_;
+    }
+    TMiniPoint operator[](size_t index) const;
+    Iterator begin() const
+    {
+        return Iterator(*this, 0);
+    }
+    Iterator end() const
+    {
+        return Iterator(*this, count_);
+    }
+
+  private:
+    const tmini_point_t *scan_;
+    const tmini_packet_t *packet_;
+    size_t count_;
+};
+
+/* Everything but the buffers. Use TMiniLidar or TMiniLidarStreaming, below. */
+class TMiniLidarBase
+{
+  public:
+    /* Opens the serial port at the lidar's 230400 baud, on an ESP32 or ESP8266 with a large receive
+     * buffer. False when something is wrong with the buffers' sizes. */
+    bool begin(HardwareSerial &serial);
+#if defined(ESP32)
+    bool begin(HardwareSerial &serial, int8_t rxPin, int8_t txPin);
+#endif
+    /* For any other Stream: the sketch has opened it, at 230400 baud. */
+    bool begin(Stream &serial);
+
+    /* Takes what has been received, and does what is due. Returns what has happened, or
+     * TMINI_EVENT_NONE (0) when nothing has: call it until then. Never waits. */
+    tmini_event_t loop();
+
+    /* How many points the last loop() has brought: those of a whole revolution, or when streaming
+     * those of a packet. They are there until the next loop(). */
+    size_t available() const;
+    TMiniPoints points() const;
+
+    /* Commands. False: not possible now. How they end comes from loop(), as the event in brackets or
+     * as TMINI_EVENT_FAILED; error() then says why. */
+    bool start();                   /* [STARTED] */
+    bool stop();                    /* [STOPPED] */
+    bool requestInfo();             /* [INFO], then info() */
+    bool requestHealth();           /* [HEALTH], then health() */
+    bool setFrequency(float hertz); /* [FREQUENCY]; 6 to 12, in steps of 0.1 */
+    bool reboot();                  /* [REBOOTED] */
+
+    bool isScanning() const;
+    const tmini_info_t &info() const;
+    const tmini_health_t &health() const;
+    /* A combination of tmini_fault_t; see TMINI_EVENT_FAULT. */
+    uint8_t faults() const;
+    const char *error() const;
+
+    /* The library's own handle, for what has no method here: counters, CT information, states … */
+    tmini_t *driver();
+
+  protected:
+    TMiniLidarBase(uint8_t *rx, size_t rxSize, tmini_point_t *points, size_t maxPoints);
+
+  private:
+    TMiniLidarBase(const TMiniLidarBase &);
+    TMiniLidarBase &operator=(const TMiniLidarBase &);
+    bool listen(Stream &serial);
+    void receive();
+    static int write(void *context, const uint8_t *bytes, size_t count);
+    static uint32_t nowMs(void *context);
+
+    static const tmini_port_t port_;
+    tmini_t lidar_;
+    tmini_config_t config_;
+    Stream *serial_;
+    tmini_event_t event_;
+};
+
+/* A lidar with its buffers: RxSize received bytes (a power of two, from 256), MaxPoints points. */
+template <size_t RxSize, size_t MaxPoints> class TMiniLidarWith : public TMiniLidarBase
+{
+  public:
+    TMiniLidarWith() : TMiniLidarBase(rx_, RxSize, points_, MaxPoints) {}
+
+  private:
+    uint8_t rx_[RxSize];
+    tmini_point_t points_[MaxPoints];
+};
+
+template <size_t RxSize> class TMiniLidarWith<RxSize, 0> : public TMiniLidarBase
+{
+  public:
+    TMiniLidarWith() : TMiniLidarBase(rx_, RxSize, NULL, 0) {}
+
+  private:
+    uint8_t rx_[RxSize];
+};
+
+typedef TMiniLidarWith<1024, TMINI_SCAN_POINTS_TYPICAL> TMiniLidar;
+typedef TMiniLidarWith<512, 0> TMiniLidarStreaming;
+
+#endif

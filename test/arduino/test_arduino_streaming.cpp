@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The sketch Streaming, as it is, against the simulated lidar. */
+
+#include <Arduino.h>
+
+#include "Streaming/Streaming.ino"
+
+#include "unity.h"
+
+#include "virtual_lidar.h"
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+/* The numbers that the sketch has printed, a line each. */
+static std::vector<unsigned> printed_numbers()
+{
+    std::vector<unsigned> numbers;
+    std::string digits;
+    for (uint8_t byte : Serial.sent) {
+        if (byte == '\n') {
+            numbers.push_back(static_cast<unsigned>(std::stoul(digits)));
+            digits.clear();
+        } else {
+            digits += static_cast<char>(byte);
+        }
+    }
+    return numbers;
+}
+
+static unsigned nearest_of(const std::vector<reference_point_t> &points)
+{
+    unsigned result = 0;
+    for (const reference_point_t &point : points) {
+        if (point.distance_mm != 0 && (result == 0 || point.distance_mm < result)) {
+            result = point.distance_mm;
+        }
+    }
+    return result;
+}
+
+static void the_sketch_prints_the_nearest_distance_of_each_revolution(void)
+{
+    VirtualLidar unit;
+    setup();
+    for (unsigned i = 0; i < 2500; i++) {
+        unit.pass();
+        loop();
+    }
+    /* Number 0 is what came before the first start packet. */
+    const std::vector<unsigned> numbers = printed_numbers();
+    TEST_ASSERT_TRUE(numbers.size() >= 8);
+    for (size_t revolution = 0; revolution < numbers.size(); revolution++) {
+        TEST_ASSERT_EQUAL_UINT(nearest_of(unit.revolutions[static_cast<uint32_t>(revolution)]),
+                               numbers[revolution]);
+    }
+}
+
+int main(void)
+{
+    UnityBegin("test_arduino_streaming.cpp");
+    RUN_TEST(the_sketch_prints_the_nearest_distance_of_each_revolution);
+    return UnityEnd();
+}
