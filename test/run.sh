@@ -44,6 +44,8 @@ wish_for_machines() {
     wish qemu-system-riscv32 qemu-system-misc
     wish_for_labwired
     is_present qemu-ppc-static || wish qemu-ppc qemu-user
+    wish valgrind valgrind
+    python3 -c 'import ensurepip' 2>/dev/null || wish python3-venv python3-venv
 }
 
 need_test_tools

@@ -133,6 +133,9 @@ def read_budgets(figures):
 def check_budgets(figures):
     """Says which budgets are exceeded; returns whether none is."""
     exceeded = [budget for budget in figures["budgets"] if budget.is_exceeded()]
+    if platform.machine() != "x86_64":
+        print("This computer is no x86-64: its own budget says nothing here.")
+        exceeded = [budget for budget in exceeded if not budget.name.endswith("x86")]
     for budget in exceeded:
         print(f"OVER BUDGET: {budget.title}: {budget.shown()}, the limit is {budget.limit}")
     return not exceeded
@@ -192,11 +195,14 @@ def show(figures):
     for name, render in tables.BLOCKS.items():
         print(f"\n{name}\n\n{render(figures)}")
     print()
+    for (name, level), f in figures["targets"].items():
+        depth, path = f["stack"]["polling"]
+        print(f"{name} {level}: {depth} bytes of stack in {' > '.join(path)}")
     for feed, f in figures["host"].items():
-        print(f"x86-64, by {feed}: {f['own']:.2f} instructions a byte, and {f['copies']:.2f} in "
+        print(f"this computer, by {feed}: {f['own']:.2f} instructions a byte, and {f['copies']:.2f} in "
               "the C library's copies")
     for feed, f in figures.get("room", {}).items():
-        print(f"x86-64, a room as a real unit sent it, by {feed}: {f['own']:.2f} and "
+        print(f"this computer, a room as a real unit sent it, by {feed}: {f['own']:.2f} and "
               f"{f['copies']:.2f}, {f['packets']} packets")
     if "room" not in figures:
         print(f"skipped: no real unit's recording at {ROOM}")

@@ -39,7 +39,7 @@ skip() {
 wish_for_bench_tools() {
     wish cc gcc
     wish python3 python3
-    python3 -c 'import ensurepip' 2>/dev/null || wish /no/ensurepip python3-venv
+    python3 -c 'import ensurepip' 2>/dev/null || wish python3-venv python3-venv
     wish arm-none-eabi-gcc gcc-arm-none-eabi
     wish /usr/lib/arm-none-eabi/newlib libnewlib-arm-none-eabi
     wish riscv64-unknown-elf-gcc gcc-riscv64-unknown-elf
