@@ -6,7 +6,7 @@
 
 #include "tmini_driver.h"
 
-/* More frequency steps than any change needs (6 of 1 Hz and 5 of 0.1 Hz). */
+/* More frequency steps than any change needs (6 of 1 Hz and 9 of 0.1 Hz). */
 #define STEPS_MAX 20
 /* The events with which commands end. */
 #define END_EVENTS                                                                         \
@@ -118,15 +118,14 @@ static bool is_reached(const tmini_t *lidar)
     return left >= -FINE_STEP_CHZ / 2 && left <= FINE_STEP_CHZ / 2;
 }
 
-/* The step that comes nearest to the target without leaving the permitted range. */
+/* Never beyond the target, so never out of the permitted range. */
 static tmini_command_t next_step(const tmini_t *lidar)
 {
-    const int32_t now = lidar->frequency_chz;
-    const int32_t left = (int32_t)lidar->target_chz - now;
-    if (left > COARSE_STEP_CHZ / 2 && now + COARSE_STEP_CHZ <= (int32_t)TMINI_FREQUENCY_MAX_CHZ) {
+    const int32_t left = (int32_t)lidar->target_chz - lidar->frequency_chz;
+    if (left >= COARSE_STEP_CHZ) {
         return TMINI_COMMAND_FASTER_ONE;
     }
-    if (left < -COARSE_STEP_CHZ / 2 && now - COARSE_STEP_CHZ >= (int32_t)TMINI_FREQUENCY_MIN_CHZ) {
+    if (left <= -COARSE_STEP_CHZ) {
         return TMINI_COMMAND_SLOWER_ONE;
     }
     return left > 0 ? TMINI_COMMAND_FASTER_TENTH : TMINI_COMMAND_SLOWER_TENTH;
@@ -287,10 +286,13 @@ void tmini_driver_keep_time(tmini_t *lidar)
     if (!has_left(lidar)) {
         return;
     }
-    if (lidar->phase == PHASE_HUSHING && is_quiet(lidar)) {
-        issue(lidar);
-    } else if (lidar->phase == PHASE_SETTLING && is_quiet(lidar)) {
-        continue_frequency_change(lidar);
+    const bool hushing = lidar->phase == PHASE_HUSHING;
+    if ((hushing || lidar->phase == PHASE_SETTLING) && is_quiet(lidar)) {
+        if (hushing) {
+            issue(lidar);
+        } else {
+            continue_frequency_change(lidar);
+        }
     } else if (lidar->limit_ms > 0 && driver_elapsed(lidar, lidar->phase_ms, lidar->limit_ms)) {
         expire(lidar);
     } else if (lidar->phase == PHASE_SCANNING) {

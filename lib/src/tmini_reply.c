@@ -26,7 +26,7 @@ bool tmini_reply_shape(tmini_command_t command, tmini_reply_shape_t *shape)
     case TMINI_COMMAND_SLOWER_ONE:
     case TMINI_COMMAND_GET_FREQUENCY:
     default:
-        *shape = (tmini_reply_shape_t){ .type = 0x04, .length = TMINI_FREQUENCY_SIZE };
+        *shape = (tmini_reply_shape_t){.type = 0x04, .length = TMINI_FREQUENCY_SIZE};
         return true;
     }
 }

@@ -70,12 +70,11 @@ uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count)
 {
-    const uint8_t *const memory = ring->memory;
-    const size_t mask = ring->mask;
-    size_t index = ring->tail + offset;
-    for (const uint8_t *const end = bytes + count; bytes != end; bytes++) {
-        *bytes = memory[index++ & mask];
-    }
+    const size_t at = (ring->tail + offset) & ring->mask;
+    const size_t to_end = ring->mask + 1 - at;
+    const size_t first = count < to_end ? count : to_end;
+    memcpy(bytes, &ring->memory[at], first);
+    memcpy(&bytes[first], ring->memory, count - first);
 }
 
 const uint8_t *tmini_ring_samples(const tmini_ring_t *ring, size_t offset, size_t *count,
@@ -90,7 +89,9 @@ const uint8_t *tmini_ring_samples(const tmini_ring_t *ring, size_t offset, size_
         *count = to_end / 3;
         return &ring->memory[at];
     }
-    tmini_ring_copy(ring, offset, joined, 3);
+    for (size_t i = 0; i < 3; i++) {
+        joined[i] = tmini_ring_peek(ring, offset + i);
+    }
     *count = 1;
     return joined;
 }

@@ -118,9 +118,10 @@ void tmini_turn_info(const tmini_turn_t *turn, tmini_turn_info_t *info)
 
 uint8_t tmini_turn_crc8(uint8_t crc, uint8_t byte)
 {
+    /* What four steps of the reflected polynomial 0x8C make of the low four bits. */
+    static const uint8_t steps[16] = {0x00, 0x9D, 0x23, 0xBE, 0x46, 0xDB, 0x65, 0xF8,
+                                      0x8C, 0x11, 0xAF, 0x32, 0xCA, 0x57, 0xE9, 0x74};
     crc ^= byte;
-    for (unsigned bit = 0; bit < 8; bit++) {
-        crc = (uint8_t)((crc & 1u) != 0 ? crc >> 1 ^ 0x8C : crc >> 1);
-    }
-    return crc;
+    crc = (uint8_t)(crc >> 4 ^ steps[crc & 0x0Fu]);
+    return (uint8_t)(crc >> 4 ^ steps[crc & 0x0Fu]);
 }

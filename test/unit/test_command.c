@@ -511,38 +511,24 @@ void test_the_frequency_goes_down_as_well(void)
     arrives_at(680);
 }
 
-void test_a_coarse_step_may_overshoot_where_that_is_shorter(void)
+void test_less_than_a_coarse_step_is_made_in_fine_ones(void)
 {
-    begins_to_set(680, 600);
-    steps(FASTER_ONE, 700);
-    steps(SLOWER_TENTH, 690);
-    steps(SLOWER_TENTH, 680);
-    steps(GET_FREQUENCY, 680);
-    arrives_at(680);
+    begins_to_set(690, 600);
+    for (uint16_t step = 1; step <= 9; step++) {
+        steps(FASTER_TENTH, (uint16_t)(600 + 10 * step));
+    }
+    steps(GET_FREQUENCY, 690);
+    arrives_at(690);
 }
 
-void test_half_a_coarse_step_is_made_in_fine_ones(void)
+void test_less_than_a_coarse_step_down_is_made_in_fine_ones(void)
 {
-    begins_to_set(650, 600);
-    steps(FASTER_TENTH, 610);
-    steps(FASTER_TENTH, 620);
-    steps(FASTER_TENTH, 630);
-    steps(FASTER_TENTH, 640);
-    steps(FASTER_TENTH, 650);
-    steps(GET_FREQUENCY, 650);
-    arrives_at(650);
-}
-
-void test_half_a_coarse_step_down_is_made_in_fine_ones(void)
-{
-    begins_to_set(650, 700);
-    steps(SLOWER_TENTH, 690);
-    steps(SLOWER_TENTH, 680);
-    steps(SLOWER_TENTH, 670);
-    steps(SLOWER_TENTH, 660);
-    steps(SLOWER_TENTH, 650);
-    steps(GET_FREQUENCY, 650);
-    arrives_at(650);
+    begins_to_set(610, 700);
+    for (uint16_t step = 1; step <= 9; step++) {
+        steps(SLOWER_TENTH, (uint16_t)(700 - 10 * step));
+    }
+    steps(GET_FREQUENCY, 610);
+    arrives_at(610);
 }
 
 void test_no_step_goes_above_the_highest_frequency(void)
