@@ -3,7 +3,6 @@
 
 #include "tmini/tmini.h"
 
-#include "tmini_atomic.h"
 #include "tmini_driver.h"
 
 const tmini_timing_t tmini_timing_default = {
@@ -28,7 +27,7 @@ static bool is_set_up(const tmini_t *lidar)
 
 void tmini_driver_look(tmini_t *lidar)
 {
-    const size_t received = tmini_load(&lidar->ring.head);
+    const size_t received = tmini_ring_stored(&lidar->ring);
     lidar->now_ms = lidar->port->now_ms(lidar->port_context);
     if (received != lidar->received) {
         lidar->received = received;
@@ -37,21 +36,14 @@ void tmini_driver_look(tmini_t *lidar)
     }
 }
 
-/* Bytes are pending, and all of them had come when time was last looked at: those that an interrupt
- * has brought meanwhile must not be judged by it. */
-static bool is_all_old(const tmini_t *lidar)
-{
-    return tmini_parser_pending(&lidar->parser) > 0 &&
-           tmini_load(&lidar->ring.head) == lidar->received;
-}
-
 /* A candidate that has stopped coming is given up, so that what it hides is looked at. */
 static tmini_frame_t next_frame(tmini_t *lidar)
 {
     tmini_parser_t *const parser = &lidar->parser;
     tmini_frame_t frame = tmini_parser_next(parser);
     if (driver_elapsed(lidar, lidar->received_ms, lidar->timing->silence_ms)) {
-        while (frame == TMINI_FRAME_NONE && is_all_old(lidar)) {
+        while (frame == TMINI_FRAME_NONE && tmini_parser_pending(parser) > 0 &&
+               driver_is_up_to_date(lidar)) {
             tmini_parser_abandon(parser);
             frame = tmini_parser_next(parser);
         }

@@ -6,9 +6,10 @@
  * tmini_load() reads a size_t that the other side writes, and no later access moves before it;
  * tmini_store() writes one, and no earlier access moves behind it (acquire and release, in C11's
  * words). Both are one access wide, so that the other side sees the old value or the new one.
+ * tmini_fence() keeps earlier reads before later ones.
  *
  * GCC and Clang map them to instructions that are right on several cores too (ESP32). For another
- * compiler, or a machine with needs of its own, name a header that defines both functions:
+ * compiler, or a machine with needs of its own, name a header that defines the three functions:
  * -DTMINI_ATOMIC_HEADER='"my_atomic.h"'. */
 
 #ifndef TMINI_ATOMIC_H
@@ -43,6 +44,13 @@ static inline void tmini_store(size_t *value, size_t stored)
     }
 }
 
+static inline void tmini_fence(void)
+{
+    __asm__ volatile(
+        "" ::
+            : "memory"); /* One core that reads in order: only the compiler might not. */
+}
+
 #elif defined(__GNUC__)
 
 static inline size_t tmini_load(const size_t *value)
@@ -53,6 +61,11 @@ static inline size_t tmini_load(const size_t *value)
 static inline void tmini_store(size_t *value, size_t stored)
 {
     __atomic_store_n(value, stored, __ATOMIC_RELEASE);
+}
+
+static inline void tmini_fence(void)
+{
+    __atomic_thread_fence(__ATOMIC_ACQUIRE);
 }
 
 #else

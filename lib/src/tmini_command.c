@@ -231,7 +231,7 @@ static bool is_quiet(const tmini_t *lidar)
 {
     const uint32_t quiet_ms = lidar->timing->quiet_ms;
     return driver_elapsed(lidar, lidar->phase_ms, quiet_ms) &&
-           driver_elapsed(lidar, lidar->received_ms, quiet_ms);
+           driver_elapsed(lidar, lidar->received_ms, quiet_ms) && driver_is_up_to_date(lidar);
 }
 
 static void rebooted(tmini_t *lidar)
@@ -308,6 +308,7 @@ static void begin(tmini_t *lidar, enum goal goal)
     const bool is_quiet_line = driver_is_idle(lidar) && goal != GOAL_STOP;
     lidar->goal = (uint8_t)goal;
     lidar->attempts = 0;
+    lidar->rung = 0;
     lidar->steps = 0;
     lidar->recovering = false;
     /* The end of an earlier command is not the end of this one. */

@@ -52,6 +52,13 @@ static inline void driver_enter(tmini_t *lidar, enum phase phase, uint16_t limit
     lidar->limit_ms = limit_ms;
 }
 
+/* All bytes had come when time was last looked at. Those that an interrupt has brought since must
+ * not be judged by it. */
+static inline bool driver_is_up_to_date(const tmini_t *lidar)
+{
+    return tmini_ring_stored(&lidar->ring) == lidar->received;
+}
+
 /* Nothing has been heard since the lidar was last known to be idle. */
 static inline bool driver_is_idle(const tmini_t *lidar)
 {

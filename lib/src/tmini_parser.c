@@ -124,13 +124,16 @@ static void release_frame(tmini_parser_t *parser)
     }
 }
 
+/* Bytes are refused when the ring is full: they are missing one ring's size ahead of its tail. */
 static void count_refused(tmini_parser_t *parser)
 {
-    const size_t refused = tmini_ring_refused(parser->ring);
+    const tmini_ring_t *const ring = parser->ring;
+    const size_t refused = tmini_ring_refused(ring);
     if (refused != parser->refused) {
         parser->counters.bytes_overrun += (uint32_t)(refused - parser->refused);
         parser->refused = refused;
-        parser->gap = UINT16_MAX;
+        parser->hole = ring->tail + ring->mask + 1;
+        parser->hole_ahead = true;
     }
 }
 
@@ -155,6 +158,10 @@ static tmini_frame_t deliver(tmini_parser_t *parser)
 {
     parser->frame = parser->need;
     parser->need = 1;
+    if (parser->hole_ahead && parser->ring->tail - parser->hole <= SIZE_MAX / 2) {
+        parser->hole_ahead = false;
+        parser->gap = UINT16_MAX;
+    }
     if (parser->header[0] == PACKET_FIRST) {
         parser->counters.packets++;
         parser->counters.bytes_in_packets += parser->frame;
@@ -181,8 +188,8 @@ tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uin
 
 tmini_frame_t tmini_parser_next(tmini_parser_t *parser)
 {
-    release_frame(parser);
     count_refused(parser);
+    release_frame(parser);
     for (;;) {
         const size_t unread = intact_bytes(parser);
         if (unread < parser->need) {
@@ -202,7 +209,7 @@ tmini_frame_t tmini_parser_next(tmini_parser_t *parser)
 
 bool tmini_parser_frame_intact(const tmini_parser_t *parser)
 {
-    return tmini_ring_unread(parser->ring) <= parser->ring->window;
+    return tmini_ring_intact(parser->ring);
 }
 
 void tmini_parser_await(tmini_parser_t *parser, const tmini_reply_shape_t *shape)

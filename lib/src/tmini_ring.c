@@ -58,6 +58,17 @@ void tmini_ring_publish(tmini_ring_t *ring, size_t position)
     tmini_store(&ring->head, head + ((position - head) & ring->mask));
 }
 
+bool tmini_ring_intact(const tmini_ring_t *ring)
+{
+    tmini_fence(); /* What has been read was read before the producer's index is read again. */
+    return tmini_ring_unread(ring) <= ring->window;
+}
+
+size_t tmini_ring_stored(const tmini_ring_t *ring)
+{
+    return tmini_load(&ring->head);
+}
+
 size_t tmini_ring_unread(const tmini_ring_t *ring)
 {
     return tmini_load(&ring->head) - ring->tail;

@@ -104,7 +104,8 @@ bool tmini_scan_close(tmini_scan_builder_t *builder, const tmini_packet_t *packe
     if (!builder->open) {
         return false;
     }
-    if (!tmini_packet_is_start(packet) && swept_with(builder, packet) <= FULL_CIRCLE_Q6) {
+    if (!tmini_packet_is_start(packet) && packet->gap != UINT16_MAX &&
+        swept_with(builder, packet) <= FULL_CIRCLE_Q6) {
         return false;
     }
     finish(builder, packet);

@@ -29,9 +29,7 @@ static void observe(tmini_t *lidar, uint8_t faults)
 }
 
 /* A start packet: judge the revolution that it ends, by CT information if the unit sends that, else
- * by whether it had any range. The first one after a start may be only a part. */
-/* A start packet: judge the revolution that it ends, by CT information if the unit sends that, else by
- * whether it had any range. Of one that was not received whole, the missing part may have had one. */
+ * by whether it had any range. If it was not received whole, the rest may have had one. */
 static void judge_revolution(tmini_t *lidar, bool trusted)
 {
     unsigned faults = tmini_turn_faults(&lidar->turn);
@@ -43,9 +41,11 @@ static void judge_revolution(tmini_t *lidar, bool trusted)
     if (judged) {
         observe(lidar, (uint8_t)faults);
     }
+    if (lidar->whole) {
+        lidar->rung = 0; /* It has truly recovered, if it was lost. */
+    }
     lidar->whole = true;
     lidar->range_seen = false;
-    lidar->start_ms = lidar->now_ms;
 }
 
 /* ------------------------------------------------------------------------------- scan packets */
@@ -61,7 +61,7 @@ static void resume(tmini_t *lidar)
     lidar->whole = false;
     lidar->range_seen = false;
     lidar->observed = lidar->faults;
-    lidar->start_ms = lidar->now_ms;
+    lidar->turning_ms = lidar->now_ms;
     driver_enter(lidar, PHASE_SCANNING, lidar->timing->data_ms);
     if (lidar->recovering) {
         lidar->recovering = false;
@@ -111,17 +111,22 @@ void tmini_driver_packet(tmini_t *lidar)
     if (packet->gap > 1) { /* One byte may be LastCRC; with more, a packet may be lost. */
         lidar->whole = false;
     }
+    const bool has_range = tmini_packet_has_range(packet);
     if (tmini_packet_is_start(packet)) {
         judge_revolution(lidar, trusted);
+        lidar->turning_ms = lidar->now_ms;
     }
-    lidar->range_seen = lidar->range_seen || tmini_packet_has_range(packet);
+    if (has_range) {
+        lidar->range_seen = true;
+        lidar->turning_ms = lidar->now_ms;
+    }
     gather(lidar);
 }
 
 /* No start packet and no range for so long: the rotor is blocked (section 8). */
 void tmini_driver_watch_rotor(tmini_t *lidar)
 {
-    if (!lidar->range_seen && driver_elapsed(lidar, lidar->start_ms, lidar->timing->turn_ms)) {
+    if (driver_elapsed(lidar, lidar->turning_ms, lidar->timing->turn_ms)) {
         report(lidar, (uint8_t)(lidar->faults | TMINI_FAULT_ENCODER));
     }
 }
@@ -132,12 +137,13 @@ void tmini_driver_lose(tmini_t *lidar)
 {
     lidar->losses++;
     lidar->recovering = true;
-    lidar->rung = 0;
     driver_raise(lidar, TMINI_EVENT_LOST);
     if (lidar->no_recovery) {
         driver_enter(lidar, PHASE_BACKING_OFF, 0);
-    } else {
+    } else if (lidar->rung == 0) {
         tmini_driver_climb(lidar);
+    } else {
+        tmini_driver_back_off(lidar); /* Lost again before it made a whole revolution. */
     }
 }
 

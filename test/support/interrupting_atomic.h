@@ -27,4 +27,9 @@ static inline void tmini_store(size_t *value, size_t stored)
     interrupt();
 }
 
+static inline void tmini_fence(void)
+{
+    interrupt();
+}
+
 #endif

@@ -134,6 +134,38 @@ void test_half_a_dma_ring_must_hold_the_largest_packet(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(64, true, 8));
 }
 
+/* ------------------------------------------------------------------------------- refused bytes */
+
+static void next_is_a_packet_after_a_gap_of(uint16_t gap)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, tmini_parser_next(&receiver.parser));
+    tmini_packet_t packet;
+    tmini_packet_open(&packet, &receiver.parser);
+    TEST_ASSERT_EQUAL_UINT16(gap, packet.gap);
+}
+
+/* Ten packets of 25 bytes and 6 other bytes fill the ring; the eleventh packet is refused whole. */
+void test_refused_bytes_leave_a_gap_where_they_are_missing(void)
+{
+    static const uint8_t others[6] = { 0 };
+    static const encode_sample_t samples[5] = { { 1000, 50, 0 } };
+    const encode_packet_t packet = { 0, 5, 640, 1280, samples };
+    uint8_t one[25];
+    TEST_ASSERT_EQUAL_UINT(25, encode_packet(one, &packet));
+    receiver_open(&receiver, memory, 256, 0);
+    tmini_ring_write(&receiver.ring, others, sizeof others);
+    for (unsigned i = 0; i < 11; i++) {
+        tmini_ring_write(&receiver.ring, one, sizeof one);
+    }
+    next_is_a_packet_after_a_gap_of(6);
+    for (unsigned i = 1; i < 10; i++) {
+        tmini_ring_write(&receiver.ring, one, i == 3 ? sizeof one : 0); /* A twelfth. */
+        next_is_a_packet_after_a_gap_of(0);
+    }
+    next_is_a_packet_after_a_gap_of(65535);
+    TEST_ASSERT_EQUAL_UINT32(25, receiver.parser.counters.bytes_overrun);
+}
+
 /* ------------------------------------------------------------------------------------- packets */
 
 void test_the_manuals_packet_is_found(void)

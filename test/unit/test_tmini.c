@@ -292,6 +292,20 @@ void test_bytes_that_come_while_the_clock_is_read_are_not_given_up(void)
     polls_to(TMINI_EVENT_HEALTH);
 }
 
+void test_a_line_on_which_bytes_come_while_the_clock_is_read_is_not_quiet(void)
+{
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    passes(49);
+    rig.now_ms += 1;
+    rig.port.now_ms = slow_clock;
+    polls_to(TMINI_EVENT_NONE);
+    rig.port.now_ms = port_now_ms;
+    is_in(TMINI_STATE_STOPPING);
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
 /* A header that promises more than comes: it hides the packet behind it. */
 static void feed_false_header_and_packet(void)
 {

@@ -251,9 +251,22 @@ void test_packets_with_a_range_but_without_start_packets_are_no_encoder_fault(vo
 {
     rig_go_scanning();
     rig_feed_start_packet(0);
+    (void)rig_drain();
+    for (unsigned i = 0; i < 4; i++) {
+        stands_still_for(1500);
+        rig_feed_point_packet(1000);
+    }
+}
+
+void test_a_rotor_blocked_in_the_middle_of_a_turn_is_an_encoder_fault(void)
+{
+    rig_go_scanning();
+    rig_feed_start_packet(0);
     rig_feed_point_packet(1000);
     (void)rig_drain();
-    stands_still_for(4000);
+    stands_still_for(3000);
+    polls_to(TMINI_EVENT_FAULT);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
 }
 
 void test_a_turn_without_ranges_every_now_and_then_is_no_encoder_fault(void)
@@ -459,13 +472,14 @@ void test_the_ladder_has_no_end(void)
     }
 }
 
-void test_each_loss_begins_at_the_ladders_foot(void)
+void test_a_loss_after_a_whole_turn_begins_at_the_ladders_foot(void)
 {
     rig_go_backing_off();
     tries_in_vain(500);
     tries_in_vain(1000);
-    rig_feed_point_packet(1000);
+    rig_feed_start_packet(1000);
     polls_to(TMINI_EVENT_RECOVERED);
+    rig_feed_start_packet(1000);
     (void)rig_drain();
     passes(1000);
     polls_to(TMINI_EVENT_LOST);
@@ -474,6 +488,20 @@ void test_each_loss_begins_at_the_ladders_foot(void)
     finds_quiet_and_sends(START);
     gets_no_reply();
     tries_in_vain(500);
+}
+
+/* A weak supply: it starts, and dies of the motor's current. */
+void test_a_loss_before_a_whole_turn_goes_on_up_the_ladder(void)
+{
+    rig_go_backing_off();
+    tries_in_vain(500);
+    rig_feed_start_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+    rig_feed_point_packet(1000);
+    (void)rig_drain();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    tries_with_a_reboot_in_vain(2000);
 }
 
 void test_a_pause_that_is_configured_longer_than_the_longest_is_cut(void)

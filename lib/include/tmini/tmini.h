@@ -23,6 +23,7 @@
  * Time. No function waits. Commands only begin something; how it ends is an event. tmini_poll()
  * must be called often enough that the receive buffer does not overflow: the lidar sends about
  * 13,100 bytes a second, so 1024 bytes last 78 ms, or 39 ms with DMA, which can use half of them.
+ * Call it until it returns TMINI_EVENT_NONE: only then does it look after time.
  *
  * "Section" in these headers means the section of docs/protocol.md. */
 
@@ -57,7 +58,8 @@ extern "C" {
 
 /* ------------------------------------------------------------------------------ configuration */
 
-/* How long the driver waits for what, in milliseconds. */
+/* How long the driver waits for what, in milliseconds. Change a copy of tmini_timing_default: a
+ * time of 0 is no time, or for stop, reply, spin-up, data, reboot and back-off no limit at all. */
 typedef struct {
     uint16_t silence_ms;      /* A packet that stops coming is given up after this silence. */
     uint16_t quiet_ms;        /* A line silent this long after stop is quiet. */
@@ -85,7 +87,7 @@ typedef struct {
     tmini_point_t *points;    /* One scan. NULL: streaming, an event for each packet instead. */
     size_t max_points;        /* 1 to 65535, or 0 when streaming. */
     uint8_t max_samples;      /* Packets with more are not valid; 0: the default, 80. */
-    uint8_t filter;           /* A combination of tmini_filter_t; 0: keep every distance. */
+    uint8_t filter;           /* Of scans: a combination of tmini_filter_t; 0: keep all. */
     bool no_recovery;         /* A lost lidar is reported, but not restarted. */
     const tmini_timing_t *timing; /* NULL: tmini_timing_default. */
 } tmini_config_t;
@@ -164,7 +166,7 @@ typedef struct {
     uint32_t now_ms;      /* As of this poll. */
     uint32_t phase_ms;    /* When the phase began; while scanning, when the last packet came. */
     uint32_t received_ms; /* When bytes were last seen to have come. */
-    uint32_t start_ms;    /* When the last start packet came. */
+    uint32_t turning_ms;  /* When a start packet or a range last came. */
     size_t received;      /* The ring's head at received_ms. */
     const tmini_port_t *port;
     void *port_context;
@@ -183,8 +185,9 @@ typedef struct {
 
 /* ---------------------------------------------------------------------------------- life cycle */
 
-/* Sets up a lidar; sends nothing. Call before any byte is fed. Port, timing and buffers stay the
- * caller's and must outlive the lidar; the configuration itself may go.
+/* Sets up a lidar; sends nothing. Nothing may be fed meanwhile; what is fed to an all-zero tmini_t
+ * before is refused. Port, timing and buffers stay the caller's and must outlive the lidar; the
+ * configuration itself may go.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: a required member missing or out of range; the lidar
  * then refuses commands and polls to nothing. */
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config);
@@ -192,24 +195,24 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config);
 /* -------------------------------------------------------- receiving: interrupt or task context */
 
 /* Stores one received byte: the call for a UART's receive interrupt. No loop, no wait, at most 16
- * instructions on a Cortex-M4. When the buffer is full the byte is refused and counted. Does
- * nothing harmful before tmini_init(). */
+ * instructions on a Cortex-M4. When the buffer is full the byte is refused and counted. */
 static inline void tmini_feed_byte(tmini_t *lidar, uint8_t byte)
 {
     tmini_ring_put(&lidar->ring, byte);
 }
 
-/* Stores a block of received bytes; those that do not fit are refused and counted. Two block
- * copies. */
+/* Stores a block of received bytes; those that do not fit are refused and counted. Bytes must not
+ * be held back for longer than silence_ms, or their packet is given up. Two block copies. */
 static inline void tmini_feed(tmini_t *lidar, const uint8_t *bytes, size_t count)
 {
     tmini_ring_write(&lidar->ring, bytes, count);
 }
 
 /* Publishes how far circular DMA has written rx_buffer: `position` is the index it writes next
- * (rx_size less the channel's remaining count). Call it from the half-transfer, transfer-complete
- * and idle-line interrupts, at least once every half buffer. No loop, no wait. Overwritten bytes
- * are noticed when polling, counted, and never become points. */
+ * (rx_size less the channel's remaining count), and never goes back. Call it from the
+ * half-transfer, transfer-complete and idle-line interrupts; all three are needed (tmini_ring.h
+ * says why). No loop, no wait. Overwritten bytes are noticed when polling, counted, and never
+ * become points. */
 static inline void tmini_feed_dma(tmini_t *lidar, size_t position)
 {
     tmini_ring_publish(&lidar->ring, position);
@@ -228,7 +231,8 @@ tmini_event_t tmini_poll(tmini_t *lidar);
  *   TMINI_ERROR_ARGUMENT  null pointer, or a lidar that was not set up
  *   TMINI_ERROR_STATE     the lidar is scanning or being recovered: only stop is possible
  *   TMINI_ERROR_BUSY      another command is under way
- * and touch nothing unless they return TMINI_OK. */
+ * and touch nothing unless they return TMINI_OK. If the event that ended the command before has not
+ * been polled yet, it is dropped. */
 
 /* Starts scanning [STARTED]. */
 tmini_status_t tmini_start(tmini_t *lidar);
@@ -247,15 +251,15 @@ tmini_status_t tmini_request_health(tmini_t *lidar);
 tmini_status_t tmini_request_frequency(tmini_t *lidar);
 
 /* Sets the scan frequency, in steps of 1 and 0.1 Hz, and reads it back [FREQUENCY]. 600 to 1200, a
- * multiple of 10; TMINI_ERROR_ARGUMENT otherwise, and nothing is sent. A lidar that answers but
- * does not get there ends with TMINI_EVENT_FAILED, TMINI_ERROR_REPLY. */
+ * multiple of 10; TMINI_ERROR_ARGUMENT otherwise, and nothing is sent. Within 0.05 Hz is there. A
+ * lidar that answers but does not get there ends with TMINI_EVENT_FAILED, TMINI_ERROR_REPLY. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
 
 /* Reboots the lidar [REBOOTED]. */
 tmini_status_t tmini_reboot(tmini_t *lidar);
 
-/* Results. Pointers are valid until the next command; see the events for scan and packet. None
- * returns NULL. */
+/* Results, of a lidar that has been set up. What information and health point to is valid from
+ * their event to the next command; see the events for scan and packet. None returns NULL. */
 tmini_state_t tmini_state(const tmini_t *lidar);
 const tmini_scan_t *tmini_scan(const tmini_t *lidar);
 const tmini_packet_t *tmini_packet(const tmini_t *lidar);

@@ -36,7 +36,8 @@ tmini_status_t tmini_read_frequency(tmini_t *lidar, uint16_t *frequency_chz, uin
 tmini_status_t tmini_write_frequency(tmini_t *lidar, uint16_t frequency_chz, uint32_t timeout_ms);
 
 /* Starts scanning and waits for the first scan, or for the first packet when streaming. The scan is
- * valid until the next tmini_poll(). */
+ * valid until the next tmini_poll(). If it does not come in time, the lidar may turn all the same:
+ * stop it. */
 tmini_status_t tmini_start_and_wait(tmini_t *lidar, uint32_t timeout_ms);
 
 /* Stops the lidar and waits until the line is quiet. */

@@ -78,6 +78,7 @@ typedef struct {
 typedef struct {
     uint8_t max_samples;
     bool awaiting;
+    bool hole_ahead; /* No frame from behind the hole has been delivered yet. */
     tmini_reply_shape_t awaited;
     uint8_t stray;                            /* The byte skipped last. */
     uint8_t header[TMINI_PACKET_HEADER_SIZE]; /* The candidate's, once it has come. */
@@ -86,6 +87,7 @@ typedef struct {
     uint16_t gap;   /* Bytes lost or skipped since the last frame, at most UINT16_MAX. */
     tmini_ring_t *ring;
     size_t refused; /* How many of the ring's refused bytes have been counted. */
+    size_t hole;    /* Where in the stream the last of them are missing. */
     tmini_parser_counters_t counters;
 } tmini_parser_t;
 

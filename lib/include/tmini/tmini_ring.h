@@ -13,8 +13,9 @@
  *   DMA ring       Circular DMA writes straight into the ring's memory; the producer only
  *                  publishes how far. The hardware does not see the consumer and may overwrite
  *                  unread bytes: the consumer detects it, because no more than half the ring may
- *                  lie unread. The other half is what the hardware may be writing meanwhile, which
- *                  is why its position must be published at least once every half ring. */
+ *                  lie unread. The other half is what the hardware may be writing meanwhile. So
+ *                  it must never be half a ring ahead of the position published last; and what is
+ *                  published at once, with a packet that waits for its rest, must fit in half. */
 
 #ifndef TMINI_RING_H
 #define TMINI_RING_H
@@ -43,7 +44,7 @@ typedef struct {
 } tmini_ring_t;
 
 /* Empties the ring over `memory`, which the caller owns and keeps for as long as the ring is used.
- * `size` is a power of two. Call before the producer runs.
+ * `size` is a power of two. The producer must not run meanwhile.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT (null pointer, size not a power of two): the ring then
  * refuses every byte. */
 tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size, bool dma);
@@ -56,9 +57,13 @@ void tmini_ring_put(tmini_ring_t *ring, uint8_t byte);
 void tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count);
 
 /* Producer of a DMA ring: the hardware's next write goes to memory[position]; `position` equal to
- * the size means 0. Call at least once every half ring, as the half-transfer and
- * transfer-complete interrupts do. Interrupt-safe; no loop, no wait. */
+ * the size means 0. It must never go back. Call it from the half-transfer, transfer-complete and
+ * idle-line interrupts: the first two alone publish half a ring at once, and nothing is left for a
+ * packet that has come in part. Interrupt-safe; no loop, no wait. */
 void tmini_ring_publish(tmini_ring_t *ring, size_t position);
+
+/* Consumer: the number of bytes stored since init, modulo the range of size_t. */
+size_t tmini_ring_stored(const tmini_ring_t *ring);
 
 /* Consumer: bytes stored and not yet discarded. More than `window` of them (DMA only) means that
  * the hardware may have overwritten the oldest. */
@@ -67,6 +72,10 @@ size_t tmini_ring_unread(const tmini_ring_t *ring);
 /* Consumer: the unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger
  * offset reads another byte of the ring's memory, never one outside it. */
 uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset);
+
+/* Consumer: true if nothing that has been read so far can have been overwritten. Only DMA can make
+ * it false. */
+bool tmini_ring_intact(const tmini_ring_t *ring);
 
 /* Consumer: copies `count` unread bytes from `offset` on. */
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count);

@@ -4,9 +4,11 @@
 /* Scans: the packets of one revolution gathered in the caller's buffer (section 6).
  *
  * A scan runs from a start packet to the next one. What precedes the first start packet is no scan.
- * If a start packet is lost, the angle swept since the last one tells: two revolutions are never
- * merged; the first is closed when it has turned full circle, and what follows waits for the next
- * start packet. (The start angle is not 0 on every unit, section 9.8.)
+ * Revolutions are not merged. If a start packet is lost, the angle swept since the last one tells:
+ * the scan is closed when it has turned full circle, and what follows waits for the next start
+ * packet. (The start angle is not 0 on every unit, section 9.8.) A receive buffer that overflowed
+ * closes it as well, because any number of turns may be missing. What cannot be noticed is a
+ * stream that pauses for exactly a whole number of turns, between two packets.
  *
  * All functions: one context, the one that parses; no waiting. */
 
