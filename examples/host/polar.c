@@ -123,8 +123,6 @@ static void draw_ranges(const sheet_t *sheet, const scale_t *scale)
         const spot_t at = at_bearing(15, mm * pixels_per_mm(scale) - 16);
         char text[16];
         (void)snprintf(text, sizeof text, "%.*f m", scale->decimals, mm / 1000.0);
-        sheet->box(sheet->self, (spot_t){ at.x - 28, at.y - 11 }, (spot_t){ 56, 22 },
-                   (paint_t){ ground.red, ground.green, ground.blue, 0.8 });
         sheet->text(sheet->self, (spot_t){ at.x, at.y + 6 }, text, &font);
     }
     sheet->end(sheet->self);
