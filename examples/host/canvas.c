@@ -8,7 +8,7 @@
 
 bool canvas_init(canvas_t *canvas, unsigned width, unsigned height)
 {
-    *canvas = (canvas_t){ width, height, calloc((size_t)width * height, 3) };
+    *canvas = (canvas_t){width, height, calloc((size_t)width * height, 3)};
     return canvas->pixels != NULL;
 }
 
@@ -70,7 +70,7 @@ static void dotted_ring(canvas_t *canvas, spot_t centre, double radius, const pe
     const double dots = floor(turn * radius / (4 * pen->width));
     for (double i = 0; i < dots; i++) {
         const double angle = turn * i / dots;
-        const spot_t at = { centre.x + radius * cos(angle), centre.y + radius * sin(angle) };
+        const spot_t at = {centre.x + radius * cos(angle), centre.y + radius * sin(angle)};
         canvas_disc(canvas, at, pen->width / 2, pen->paint);
     }
 }
@@ -95,7 +95,7 @@ void canvas_ring(canvas_t *canvas, spot_t centre, double radius, const pen_t *pe
 /* How far a place is from the line between two others. */
 static double distance_from_line(spot_t at, spot_t from, spot_t to)
 {
-    const spot_t along = { to.x - from.x, to.y - from.y };
+    const spot_t along = {to.x - from.x, to.y - from.y};
     const double square = along.x * along.x + along.y * along.y;
     double share = 0;
     if (square > 0) {
@@ -129,7 +129,7 @@ void canvas_line(canvas_t *canvas, spot_t from, spot_t to, const pen_t *pen)
         row_of_line(from, to, y + 0.5, reach, span);
         const unsigned right = clip(span[1] + 1, canvas->width);
         for (unsigned x = clip(span[0], canvas->width); x < right; x++) {
-            const double distance = distance_from_line((spot_t){ x + 0.5, y + 0.5 }, from, to);
+            const double distance = distance_from_line((spot_t){x + 0.5, y + 0.5}, from, to);
             cover(canvas, x, y, pen->width / 2 - distance, pen->paint);
         }
     }

@@ -27,8 +27,8 @@ static void print_json(const decoder_t *decoder)
 {
     const tmini_packet_t *const packet = &decoder->packet;
     tmini_point_t points[UINT8_MAX];
-    const size_t count = tmini_packet_points(packet, TMINI_FILTER_NONE, points,
-                                             sizeof points / sizeof points[0]);
+    const size_t count =
+        tmini_packet_points(packet, TMINI_FILTER_NONE, points, sizeof points / sizeof points[0]);
     (void)printf("{\"scan\":%" PRIu64 ",\"packet\":%" PRIu64 ",\"start\":%s,\"ct\":%d,\"points\":",
                  decoder->totals.start_packets, decoder->totals.packets - 1,
                  tmini_packet_is_start(packet) ? "true" : "false", packet->ct);

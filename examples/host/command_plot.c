@@ -43,7 +43,7 @@ static int draw_one(const kept_scan_t *kept, const options_t *options)
     (void)snprintf(subtitle, sizeof subtitle,
                    "%s \xC2\xB7 %d points, %zu with a distance \xC2\xB7 %s", frequency, scan->count,
                    scan_valid_points(scan), base_name(options->operand));
-    return picture_write(options->output, &(figure_t){ title, subtitle, &scan, 1 });
+    return picture_write(options->output, &(figure_t){title, subtitle, &scan, 1});
 }
 
 static int draw_all(const scan_list_t *list, const options_t *options)
@@ -63,8 +63,8 @@ static int draw_all(const scan_list_t *list, const options_t *options)
                    list->scans[list->count - 1].number);
     (void)snprintf(subtitle, sizeof subtitle, "%zu points with a distance \xC2\xB7 %s", points,
                    base_name(options->operand));
-    const int status = picture_write(options->output,
-                                     &(figure_t){ title, subtitle, scans, list->count });
+    const int status =
+        picture_write(options->output, &(figure_t){title, subtitle, scans, list->count});
     free(scans);
     return status;
 }

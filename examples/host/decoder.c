@@ -8,7 +8,7 @@
 
 void decoder_init(decoder_t *decoder, FILE *file, uint8_t max_samples)
 {
-    *decoder = (decoder_t){ .file = file };
+    *decoder = (decoder_t){.file = file};
     (void)tmini_ring_init(&decoder->ring, decoder->memory, sizeof decoder->memory, false);
     (void)tmini_parser_init(&decoder->parser, &decoder->ring, max_samples);
 }

@@ -113,7 +113,7 @@ static void put_block(bit_writer_t *writer, const uint8_t *bytes, size_t size)
 uint8_t *deflate_zlib(const uint8_t *bytes, size_t size, size_t *compressed_size)
 {
     /* No byte takes more than nine bits; header, block header, end and checksum fit in 16 bytes. */
-    bit_writer_t writer = { .bytes = malloc(size + size / 8 + 16) };
+    bit_writer_t writer = {.bytes = malloc(size + size / 8 + 16)};
     if (writer.bytes == NULL) {
         return NULL;
     }

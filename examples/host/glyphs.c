@@ -147,13 +147,13 @@ static double width_of(const char *text, double size)
 
 static spot_t place(spot_t origin, double unit, const char *coordinates)
 {
-    return (spot_t){ origin.x + unit * number(coordinates[0]),
-                     origin.y - unit * (number(coordinates[1]) - BASE_LINE) };
+    return (spot_t){origin.x + unit * number(coordinates[0]),
+                    origin.y - unit * (number(coordinates[1]) - BASE_LINE)};
 }
 
 static spot_t between(spot_t from, spot_t to, double share)
 {
-    return (spot_t){ from.x + share * (to.x - from.x), from.y + share * (to.y - from.y) };
+    return (spot_t){from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)};
 }
 
 /* A quadratic Bézier curve, in straight pieces. */
@@ -162,8 +162,8 @@ static void draw_curve(canvas_t *canvas, spot_t from, spot_t towards, spot_t to,
     spot_t here = from;
     for (int i = 1; i <= CURVE_PIECES; i++) {
         const double share = (double)i / CURVE_PIECES;
-        const spot_t next = between(between(from, towards, share), between(towards, to, share),
-                                    share);
+        const spot_t next =
+            between(between(from, towards, share), between(towards, to, share), share);
         canvas_line(canvas, here, next, pen);
         here = next;
     }
@@ -195,7 +195,7 @@ static void draw_glyph(canvas_t *canvas, spot_t origin, double unit, const char 
 void glyphs_draw(canvas_t *canvas, spot_t at, const char *text, const font_t *font)
 {
     const double unit = font->size / EM;
-    const pen_t pen = { font->paint, unit * (font->bold ? 2.6 : 1.7), false };
+    const pen_t pen = {font->paint, unit * (font->bold ? 2.6 : 1.7), false};
     if (font->align != ALIGN_LEFT) {
         at.x -= width_of(text, font->size) / (font->align == ALIGN_CENTRE ? 2 : 1);
     }

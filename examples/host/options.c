@@ -19,19 +19,19 @@ typedef struct {
 } option_t;
 
 static const option_t option_table[] = {
-    { 'p', "port", "PORT", "the lidar's serial port, for example /dev/ttyUSB0", 0, 0 },
-    { 'n', "count", "N", "how many scans; 0: until Ctrl-C", 0, 1000000 },
-    { 's', "seconds", "N", "how long; without it, until Ctrl-C", 1, 1000000 },
-    { 'o', "output", "FILE", "where to draw: FILE.svg or FILE.png", 0, 0 },
-    { 'C', "csv", NULL, "comma-separated values", 0, 0 },
-    { 'J', "json", NULL, "JSON, one object a line", 0, 0 },
-    { 'S', "stats", "FILE", "write the counters to FILE, as a JSON object", 0, 0 },
-    { 'M', "max-samples", "N", "accept packets of up to N samples (1 to 255; default 80)", 1, 255 },
-    { 'N', "scan", "N", "the scan with number N, as `tmini decode --csv` counts them", 1,
-      1000000000 },
-    { 'A', "all", NULL, "all scans in one picture", 0, 0 },
-    { 'q', "quiet", NULL, "no progress or remarks, only results and errors", 0, 0 },
-    { 'h', "help", NULL, "this text", 0, 0 },
+    {'p', "port", "PORT", "the lidar's serial port, for example /dev/ttyUSB0", 0, 0},
+    {'n', "count", "N", "how many scans; 0: until Ctrl-C", 0, 1000000},
+    {'s', "seconds", "N", "how long; without it, until Ctrl-C", 1, 1000000},
+    {'o', "output", "FILE", "where to draw: FILE.svg or FILE.png", 0, 0},
+    {'C', "csv", NULL, "comma-separated values", 0, 0},
+    {'J', "json", NULL, "JSON, one object a line", 0, 0},
+    {'S', "stats", "FILE", "write the counters to FILE, as a JSON object", 0, 0},
+    {'M', "max-samples", "N", "accept packets of up to N samples (1 to 255; default 80)", 1, 255},
+    {'N', "scan", "N", "the scan with number N, as `tmini decode --csv` counts them", 1,
+     1000000000},
+    {'A', "all", NULL, "all scans in one picture", 0, 0},
+    {'q', "quiet", NULL, "no progress or remarks, only results and errors", 0, 0},
+    {'h', "help", NULL, "this text", 0, 0},
 };
 
 #define OPTIONS (sizeof option_table / sizeof option_table[0])
@@ -156,7 +156,7 @@ static int take_option(options_t *options, const command_t *command, int count, 
 
 int options_parse(options_t *options, const command_t *command, int count, char *const *words)
 {
-    *options = (options_t){ 0 };
+    *options = (options_t){0};
     bool only_operands = false;
     int status = STATUS_OK;
     for (int i = 0; i < count && status == STATUS_OK; i++) {

@@ -61,8 +61,8 @@ static uint8_t *filter_rows(const canvas_t *canvas, size_t *size)
 
 static void write_file(FILE *file, const canvas_t *canvas, const uint8_t *data, size_t size)
 {
-    static const uint8_t signature[8] = { 0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n' };
-    uint8_t header[13] = { [8] = 8 /* bits a colour */, [9] = COLOUR_RGB };
+    static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+    uint8_t header[13] = {[8] = 8 /* bits a colour */, [9] = COLOUR_RGB};
     put_u32(header, canvas->width);
     put_u32(header + 4, canvas->height);
     (void)fwrite(signature, 1, sizeof signature, file);

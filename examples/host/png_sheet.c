@@ -67,5 +67,5 @@ sheet_t png_sheet(unsigned width, unsigned height)
         free(canvas);
         canvas = NULL;
     }
-    return (sheet_t){ canvas, begin, end, box, line, ring, disc, text, save, release };
+    return (sheet_t){canvas, begin, end, box, line, ring, disc, text, save, release};
 }

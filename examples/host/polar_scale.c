@@ -26,7 +26,7 @@ static void look_at(scale_t *scale, const tmini_point_t *point, unsigned *farthe
 /* The smallest step of a round number of millimetres that needs few enough rings. */
 static void choose_rings(scale_t *scale, unsigned farthest_mm)
 {
-    static const unsigned steps_mm[] = { 50, 100, 200, 250, 500, 1000, 2000, 2500, 5000 };
+    static const unsigned steps_mm[] = {50, 100, 200, 250, 500, 1000, 2000, 2500, 5000};
     size_t i = 0;
     while (steps_mm[i] * RINGS_MAX < farthest_mm) {
         i++; /* Ends: 30 m are more than the 16383 mm of the protocol. */
@@ -41,7 +41,7 @@ static void choose_rings(scale_t *scale, unsigned farthest_mm)
 void scale_fit(scale_t *scale, const figure_t *figure)
 {
     unsigned farthest_mm = 0;
-    *scale = (scale_t){ .darkest = UINT8_MAX };
+    *scale = (scale_t){.darkest = UINT8_MAX};
     for (size_t i = 0; i < figure->count; i++) {
         for (size_t j = 0; j < figure->scans[i]->count; j++) {
             look_at(scale, &figure->scans[i]->points[j], &farthest_mm);

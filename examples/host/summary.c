@@ -11,7 +11,7 @@
 
 bool summary_init(summary_t *summary)
 {
-    *summary = (summary_t){ .scans = scan_list_new() };
+    *summary = (summary_t){.scans = scan_list_new()};
     tmini_turn_init(&summary->turn);
     return summary->scans != NULL;
 }
@@ -59,8 +59,8 @@ static void print_frequency(const scan_list_t *list)
     unsigned highest = 0;
     for (size_t i = 0; i < list->count; i++) {
         const unsigned frequency_chz = list->scans[i].scan.frequency_chz;
-        lowest = frequency_chz > 0 && (lowest == 0 || frequency_chz < lowest) ? frequency_chz
-                                                                              : lowest;
+        lowest =
+            frequency_chz > 0 && (lowest == 0 || frequency_chz < lowest) ? frequency_chz : lowest;
         highest = frequency_chz > highest ? frequency_chz : highest;
     }
     if (lowest == highest) {

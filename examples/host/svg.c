@@ -131,7 +131,7 @@ static void disc(void *self, spot_t centre, double radius, paint_t paint)
 
 static void text(void *self, spot_t at, const char *words, const font_t *font)
 {
-    static const char *const anchors[] = { "start", "middle", "end" };
+    static const char *const anchors[] = {"start", "middle", "end"};
     append(self, "<text x=\"%.2f\" y=\"%.2f\" font-size=\"%.4g\" text-anchor=\"%s\"", at.x, at.y,
            font->size, anchors[font->align]);
     append_paint(self, "fill", font->paint);
@@ -173,5 +173,5 @@ sheet_t svg_sheet(unsigned width, unsigned height)
         svg->width = width;
         svg->height = height;
     }
-    return (sheet_t){ svg, begin, end, box, line, ring, disc, text, save, release };
+    return (sheet_t){svg, begin, end, box, line, ring, disc, text, save, release};
 }

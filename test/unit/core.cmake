@@ -10,6 +10,11 @@ tmini_add_unit_test(test_reply SOURCES test_reply.c)
 tmini_add_unit_test(test_turn SOURCES test_turn.c)
 tmini_add_unit_test(test_scan SOURCES test_scan.c LIBRARIES tmini_test_receiver)
 
+# What may be used besides.
+tmini_add_unit_test(test_sectors SOURCES test_sectors.c LIBRARIES tmini_test_receiver)
+tmini_add_unit_test(test_ranges SOURCES test_ranges.c)
+tmini_add_unit_test(test_units SOURCES test_units.c)
+
 # Ring and parser built once more, with an atomic header that lets the test come between any two
 # accesses of an index.
 tmini_add_unit_test(test_interrupts

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Optional: a scan as ranges at equal angles, counter-clockwise, as ROS wants them in a LaserScan
+ * message. Integers only; tmini_units.h turns them into metres and radians. Nothing else in the library
+ * needs it.
+ *
+ * The lidar counts angles clockwise and its points lie where they fall; ROS counts counter-clockwise
+ * (x ahead, y to the left) and wants one range every so many degrees. With `count` bins:
+ *
+ *     bin i is centred on the ROS angle   -180 degrees + i * 360 degrees / count
+ *     bin 0                is behind      (angle_min; angle_max is one bin short of +180 degrees)
+ *     bin count / 4        is to the right
+ *     bin count / 2        is ahead
+ *     bin 3 * count / 4    is to the left
+ *
+ * so `count` is best a multiple of 4. The measured points of a bin give its nearest range; 720 bins at
+ * 6 Hz leave some empty, 360 hardly any. */
+
+#ifndef TMINI_RANGES_H
+#define TMINI_RANGES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tmini_scan.h"
+#include "tmini_status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Writes `count` ranges in mm to `ranges_mm`, 0 where nothing was measured, and, unless it is null,
+ * the intensities of the same points to `intensities`. Any context; no waiting; a division a point.
+ * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: scan or ranges null, count 0 or above 65535. */
+tmini_status_t tmini_ranges_of_scan(const tmini_scan_t *scan, uint16_t *ranges_mm,
+                                    uint8_t *intensities, size_t count);
+
+/* The bin, of `count` (1 to 65535), in which an angle of the lidar lies. */
+size_t tmini_ranges_bin(uint16_t angle_q6, size_t count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

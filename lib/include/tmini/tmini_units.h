@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Optional: the library's integers as floats in degrees, radians, hertz and metres. The only place
+ * with floats; nothing else includes it, and it needs neither a C library nor an FPU. */
+
+#ifndef TMINI_UNITS_H
+#define TMINI_UNITS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tmini_packet.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define TMINI_PI 3.14159265358979f
+
+/* An angle of the lidar, clockwise from its front, in degrees: 0 to 359.98. Exact. */
+static inline float tmini_degrees(uint16_t angle_q6)
+{
+    return (float)angle_q6 / 64.0f;
+}
+
+/* The same in radians, still clockwise: 0 to 2 pi. */
+static inline float tmini_radians(uint16_t angle_q6)
+{
+    return (float)angle_q6 * (2.0f * TMINI_PI / (float)TMINI_TURN_Q6);
+}
+
+/* The same as ROS counts: counter-clockwise from straight ahead, in radians, -pi to pi. Then
+ * x = range * cos(angle) points ahead and y = range * sin(angle) to the left. */
+static inline float tmini_ros_radians(uint16_t angle_q6)
+{
+    const uint16_t half = (uint16_t)(TMINI_TURN_Q6 / 2u);
+    return angle_q6 <= half ? -tmini_radians(angle_q6)
+                            : tmini_radians((uint16_t)(TMINI_TURN_Q6 - angle_q6));
+}
+
+static inline float tmini_hertz(uint16_t frequency_chz)
+{
+    return (float)frequency_chz / 100.0f;
+}
+
+static inline float tmini_metres(uint16_t distance_mm)
+{
+    return (float)distance_mm / 1000.0f;
+}
+
+/* For ranges from tmini_ranges.h: the angle of bin 0, and from bin to bin; a LaserScan's angle_min and
+ * angle_increment. */
+static inline float tmini_ranges_angle_min(void)
+{
+    return -TMINI_PI;
+}
+
+static inline float tmini_ranges_increment(size_t count)
+{
+    return 2.0f * TMINI_PI / (float)count;
+}
+
+/* Ranges in metres; where nothing was measured, `missing`: in ROS INFINITY or NAN. */
+static inline void tmini_ranges_metres(const uint16_t *ranges_mm, size_t count, float missing,
+                                       float *ranges_m)
+{
+    for (size_t i = 0; i < count; i++) {
+        ranges_m[i] = ranges_mm[i] != 0 ? tmini_metres(ranges_mm[i]) : missing;
+    }
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

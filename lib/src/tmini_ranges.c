@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "tmini/tmini_ranges.h"
+
+/* The angle from behind, counter-clockwise, in bins, rounded to nearest.
+ * 2 * 23040 * 65535 + 23040 is below 2^32. */
+size_t tmini_ranges_bin(uint16_t angle_q6, size_t count)
+{
+    const uint32_t turn = TMINI_TURN_Q6;
+    const uint32_t behind = turn / 2;
+    const uint32_t from_behind = behind + (angle_q6 > behind ? turn : 0) - angle_q6;
+    const uint32_t bin = (2 * from_behind * (uint32_t)count + turn) / (2 * turn);
+    return (size_t)(bin < count ? bin : 0);
+}
+
+static void clear(uint16_t *ranges_mm, uint8_t *intensities, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        ranges_mm[i] = 0;
+        if (intensities != NULL) {
+            intensities[i] = 0;
+        }
+    }
+}
+
+tmini_status_t tmini_ranges_of_scan(const tmini_scan_t *scan, uint16_t *ranges_mm,
+                                    uint8_t *intensities, size_t count)
+{
+    if (scan == NULL || ranges_mm == NULL || count == 0 || count > UINT16_MAX) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    clear(ranges_mm, intensities, count);
+    for (size_t i = 0; i < scan->count; i++) {
+        const tmini_point_t *const point = &scan->points[i];
+        const size_t bin = tmini_ranges_bin(point->angle_q6, count);
+        const bool is_nearer = ranges_mm[bin] == 0 || point->distance_mm < ranges_mm[bin];
+        if (point->distance_mm == 0 || !is_nearer) {
+            continue;
+        }
+        ranges_mm[bin] = point->distance_mm;
+        if (intensities != NULL) {
+            intensities[bin] = point->intensity;
+        }
+    }
+    return TMINI_OK;
+}
