@@ -29,7 +29,7 @@ static void wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t bits)
     }
 }
 
-/* 168 MHz by the PLL: source / M * 336 / 2, with 1 MHz behind M. */
+/* 168 MHz by the PLL: source / M * 336 / 2, with 1 MHz behind M. (The bits for 2 are 0.) */
 static void start_clock(void)
 {
     const uint32_t source_hz = BOARD_CRYSTAL_HZ != 0 ? BOARD_CRYSTAL_HZ : INTERNAL_OSCILLATOR_HZ;
@@ -39,7 +39,7 @@ static void start_clock(void)
         RCC_CR |= RCC_CR_HSEON;
         wait_for(&RCC_CR, RCC_CR_HSERDY, RCC_CR_HSERDY);
     }
-    RCC_PLLCFGR = source_hz / 1000000u | 336u << 6 | 0u << 16 | 7u << 24 |
+    RCC_PLLCFGR = source_hz / 1000000u | 336u << 6 | 7u << 24 |
                   (BOARD_CRYSTAL_HZ != 0 ? RCC_PLLCFGR_SRC_HSE : 0u);
     RCC_CR |= RCC_CR_PLLON;
     wait_for(&RCC_CR, RCC_CR_PLLRDY, RCC_CR_PLLRDY);

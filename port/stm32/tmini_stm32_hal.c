@@ -106,7 +106,7 @@ static void publish(tmini_stm32_hal_t *port)
         read_anew(port->buffer, port->position, position);
     }
     tmini_feed_dma(port->lidar, position);
-    port->position = (uint16_t)(position % port->size);
+    port->position = position;
     __set_PRIMASK(primask);
 }
 
@@ -123,19 +123,21 @@ static void copy(tmini_stm32_hal_t *port, uint16_t end)
     port->position = end;
 }
 
-/* What had come when reception was broken off. A DMA controller that was reset has forgotten: 0. */
+/* What had come when reception was broken off. */
 static void save_remainder(tmini_stm32_hal_t *port)
 {
     const UART_HandleTypeDef *const uart = port->uart;
-    const bool is_by_dma = uart->hdmarx != NULL;
-    if (port->reception == RECEPTION_BYTES ||
-        (is_by_dma && __HAL_DMA_GET_COUNTER(uart->hdmarx) == 0)) {
+    if (port->reception == RECEPTION_BYTES) {
         return;
     }
-    if (port->reception == RECEPTION_DMA) {
+    if (uart->hdmarx == NULL) {
+        copy(port, (uint16_t)(port->size - uart->RxXferCount));
+    } else if (__HAL_DMA_GET_COUNTER(uart->hdmarx) == 0) {
+        return; /* The DMA controller was reset, and has forgotten. */
+    } else if (port->reception == RECEPTION_DMA) {
         publish(port);
     } else {
-        copy(port, is_by_dma ? dma_position(port) : (uint16_t)(port->size - uart->RxXferCount));
+        copy(port, dma_position(port));
     }
 }
 

@@ -33,3 +33,16 @@ if(TARGET test_port_stm32_hal_cache)
         STM32_STUB_DCACHE STM32_STUB_LINKED_LISTS)
     target_compile_definitions(test_port_stm32_usart_rdr PRIVATE USART_HAS_RDR)
 endif()
+
+# The examples for STM32: what makes the robot stop.
+set(stm32_cube ${PROJECT_SOURCE_DIR}/examples/stm32_cube)
+tmini_add_port_test(test_example_stm32_cube stm32 NOT_ON int16
+    SOURCES test_example_stm32_cube.c ${stm32_cube}/lidar.c ${stm32}/tmini_stm32_hal.c
+    MOCKS ${stm32_hal} LIBRARIES tmini_test_support)
+set(stm32_baremetal ${PROJECT_SOURCE_DIR}/examples/stm32f405_baremetal)
+tmini_add_port_test(test_example_stm32_obstacle stm32
+    SOURCES test_example_stm32_obstacle.c ${stm32_baremetal}/obstacle.c)
+if(TARGET test_example_stm32_cube)
+    target_include_directories(test_example_stm32_cube PRIVATE ${stm32_cube})
+endif()
+target_include_directories(test_example_stm32_obstacle PRIVATE ${stm32_baremetal})

@@ -388,6 +388,20 @@ void test_packets_after_an_error_come_from_the_buffers_start(void)
     TEST_ASSERT_EQUAL_UINT32(512 + PACKET_SIZE, bytes_in(&counters));
 }
 
+void test_packets_that_come_soon_after_an_error_are_found(void)
+{
+    begin_dma();
+    event_at(100);
+    (void)poll();
+    dma_error_at(100);
+    (void)poll();
+    put_packet(0);
+    event_at(130); /* Farther than where the error was, before any half event. */
+    const tmini_counters_t counters = poll();
+    TEST_ASSERT_EQUAL_UINT32(1, counters.parser.packets);
+    TEST_ASSERT_EQUAL_UINT32(512 + 130, bytes_in(&counters));
+}
+
 void test_an_error_before_the_first_byte_passes_nothing(void)
 {
     begin_dma();
@@ -401,7 +415,7 @@ void test_a_dma_controller_that_was_reset_by_the_error_is_not_believed(void)
     begin_dma();
     event_at(100);
     (void)poll();
-    put_packet(200); /* Old bytes. */
+    put_packet(400); /* Old bytes. */
     dma_error_at(512);
     TEST_ASSERT_EQUAL_UINT32(0, poll().parser.packets);
 }
@@ -436,9 +450,10 @@ void test_a_restart_that_fails_is_tried_again_by_polling(void)
 void test_a_reception_that_has_just_ended_is_left_to_the_callback(void)
 {
     begin_dma();
+    tick_ms = 5000;
     (void)tmini_poll(&lidar);
     hal_breaks_off(HAL_UART_ERROR_ORE);
-    tick_ms = 1002;
+    tick_ms = 5002;
     (void)tmini_poll(&lidar);
     TEST_ASSERT_EQUAL_UINT32(0, port.counters.restarts);
 }
@@ -482,6 +497,19 @@ void test_a_block_by_interrupt_is_copied_and_the_next_one_asked_for(void)
     tmini_stm32_hal_rx_event(&port, &uart, PACKET_SIZE);
     TEST_ASSERT_EQUAL_UINT32(1, poll().parser.packets);
     TEST_ASSERT_EQUAL_UINT32(0, port.counters.restarts);
+}
+
+void test_each_block_begins_at_its_first_byte(void)
+{
+    begin_blocks_by_interrupt();
+    memcpy(block, packet, PACKET_SIZE);
+    for (uint32_t blocks = 1; blocks <= 2; blocks++) {
+        uart.RxState = HAL_UART_STATE_READY;
+        HAL_UARTEx_ReceiveToIdle_IT_ExpectAndReturn(&uart, block, BLOCK_SIZE, HAL_OK);
+        tmini_stm32_hal_rx_event(&port, &uart, PACKET_SIZE);
+        hal_receives();
+        TEST_ASSERT_EQUAL_UINT32(blocks, poll().parser.packets);
+    }
 }
 
 void test_a_block_by_plain_dma_is_copied_once_and_the_next_one_asked_for(void)

@@ -16,7 +16,10 @@ HAL_StatusTypeDef HAL_UARTEx_ReceiveToIdle_DMA(UART_HandleTypeDef *huart, hal_me
                                                uint16_t Size);
 HAL_StatusTypeDef HAL_UART_Transmit_IT(UART_HandleTypeDef *huart, const uint8_t *pData,
                                        uint16_t Size);
+HAL_StatusTypeDef HAL_Init(void);
 uint32_t HAL_GetTick(void);
+void HAL_GPIO_WritePin(GPIO_TypeDef *GPIOx, uint16_t GPIO_Pin, GPIO_PinState PinState);
+void Error_Handler(void);
 void __WFI(void);
 
 /* Only there, as the macro says, on a Cortex-M7. */

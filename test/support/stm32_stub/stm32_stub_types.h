@@ -61,6 +61,18 @@ typedef struct {
     volatile uint32_t ErrorCode;
 } UART_HandleTypeDef;
 
+typedef struct {
+    uint32_t unused;
+} GPIO_TypeDef;
+
+typedef enum { GPIO_PIN_RESET, GPIO_PIN_SET } GPIO_PinState;
+
+extern GPIO_TypeDef stm32_stub_gpiob;
+#define GPIOB (&stm32_stub_gpiob)
+#define GPIO_PIN_0 ((uint16_t)0x0001)
+
+#define __ALIGNED(alignment) __attribute__((aligned(alignment)))
+
 /* The HAL says uint8_t; the name tells the mocks that it is the address that counts. */
 typedef uint8_t hal_memory_t;
 

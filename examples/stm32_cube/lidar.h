@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Obstacle stop for a project made by CubeMX: the pin DRIVE_ENABLE is high while the lidar sees nothing
+ * near in front. Two calls from main.c; main.c beside this file shows where. */
+
+#ifndef LIDAR_H
+#define LIDAR_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Once, after all MX_…_Init(). */
+void lidar_start(void);
+
+/* Again and again in the main loop; returns at once. At the latest every 20 ms. */
+void lidar_work(void);
+
+/* The distance of the nearest thing within 30 degrees of straight ahead in the last scan; 0: nothing. */
+uint16_t lidar_ahead_mm(void);
+
+#endif

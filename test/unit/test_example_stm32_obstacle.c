@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Obstacle stop in the bare-metal example: when may the robot move? */
+
+#include "obstacle.h"
+
+#include "unity.h"
+
+#define DEGREE_Q6 64u
+
+static tmini_point_t points[3];
+static tmini_scan_t scan;
+static obstacle_t obstacle;
+
+void setUp(void)
+{
+    obstacle = (obstacle_t){0};
+    scan = (tmini_scan_t){.points = points, .count = 1, .complete = true};
+    points[0] = (tmini_point_t){.angle_q6 = 0, .distance_mm = 2000};
+}
+
+void tearDown(void) {}
+
+static bool may_move_after(uint16_t distance_mm, unsigned degrees)
+{
+    points[0].distance_mm = distance_mm;
+    points[0].angle_q6 = (uint16_t)(degrees * DEGREE_Q6);
+    obstacle_see(&obstacle, &scan, 1000);
+    return obstacle_may_move(&obstacle, 1000);
+}
+
+void test_it_may_not_before_the_first_scan(void)
+{
+    TEST_ASSERT_FALSE(obstacle_may_move(&obstacle, 0));
+}
+
+void test_it_may_when_all_is_far(void)
+{
+    TEST_ASSERT_TRUE(may_move_after(2000, 0));
+}
+
+void test_it_may_not_when_something_is_near_in_front(void)
+{
+    TEST_ASSERT_FALSE(may_move_after(299, 0));
+    TEST_ASSERT_FALSE(may_move_after(299, 22));
+    TEST_ASSERT_FALSE(may_move_after(299, 338));
+}
+
+void test_what_is_near_elsewhere_does_not_stop_it(void)
+{
+    TEST_ASSERT_TRUE(may_move_after(100, 23));
+    TEST_ASSERT_TRUE(may_move_after(100, 180));
+    TEST_ASSERT_TRUE(may_move_after(100, 337));
+}
+
+void test_a_point_without_range_is_not_near(void)
+{
+    TEST_ASSERT_TRUE(may_move_after(0, 0));
+}
+
+void test_once_stopped_it_needs_more_room_to_go_on(void)
+{
+    TEST_ASSERT_FALSE(may_move_after(299, 0));
+    TEST_ASSERT_FALSE(may_move_after(349, 0));
+    TEST_ASSERT_TRUE(may_move_after(350, 0));
+    TEST_ASSERT_TRUE(may_move_after(301, 0));
+}
+
+void test_it_stops_when_half_a_second_brings_no_complete_scan(void)
+{
+    TEST_ASSERT_TRUE(may_move_after(2000, 0));
+    TEST_ASSERT_TRUE(obstacle_may_move(&obstacle, 1499));
+    TEST_ASSERT_FALSE(obstacle_may_move(&obstacle, 1500));
+}
+
+void test_an_incomplete_scan_can_stop_it_but_not_let_it_go(void)
+{
+    scan.complete = false;
+    TEST_ASSERT_FALSE(may_move_after(2000, 0));
+    scan.complete = true;
+    TEST_ASSERT_TRUE(may_move_after(2000, 0));
+    scan.complete = false;
+    TEST_ASSERT_FALSE(may_move_after(200, 0));
+    TEST_ASSERT_FALSE(may_move_after(2000, 0));
+}
+
+void test_blind_it_may_not(void)
+{
+    TEST_ASSERT_TRUE(may_move_after(2000, 0));
+    obstacle_blind(&obstacle);
+    TEST_ASSERT_FALSE(obstacle_may_move(&obstacle, 1000));
+}
+
+void test_each_sector_knows_its_nearest_point(void)
+{
+    scan.count = 3;
+    points[0] = (tmini_point_t){.angle_q6 = 90 * DEGREE_Q6, .distance_mm = 700};
+    points[1] = (tmini_point_t){.angle_q6 = 100 * DEGREE_Q6, .distance_mm = 600};
+    points[2] = (tmini_point_t){.angle_q6 = 80 * DEGREE_Q6, .distance_mm = 800};
+    obstacle_see(&obstacle, &scan, 1000);
+    TEST_ASSERT_EQUAL_UINT16(600, obstacle.nearest_mm[2]);
+    TEST_ASSERT_EQUAL_UINT16(0, obstacle.nearest_mm[0]);
+}
