@@ -6,7 +6,7 @@
  *     TMiniLidar lidar;
  *
  *     void setup() {
- *         lidar.begin(Serial1, 16, 17);    // ESP32: RX pin, TX pin; elsewhere begin(Serial1)
+ *         lidar.begin(Serial1, 26, 27);    // ESP32: RX pin, TX pin; elsewhere begin(Serial1)
  *         lidar.start();
  *     }
  *     void loop() {
@@ -19,8 +19,8 @@
  *         }
  *     }
  *
- * Nothing waits, and nothing is allocated. TMiniLidar gathers whole revolutions (7 KB of RAM);
- * TMiniLidarStreaming hands over each packet of up to 40 points as it comes (1 KB). All that the
+ * Nothing waits, and nothing is allocated. TMiniLidar gathers whole revolutions (6 KB of RAM);
+ * TMiniLidarStreaming hands over each packet of up to 40 points as it comes (0.8 KB). All that the
  * library can do besides is behind driver(). */
 
 #ifndef TMINI_LIDAR_H

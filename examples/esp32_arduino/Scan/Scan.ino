@@ -6,8 +6,8 @@
 
 #include <TMiniLidar.h>
 
-static const int8_t RX_PIN = 16; /* To the lidar's TX. */
-static const int8_t TX_PIN = 17; /* To the lidar's RX. */
+static const int8_t RX_PIN = 26; /* To the lidar's TX. */
+static const int8_t TX_PIN = 27; /* To the lidar's RX. */
 static const uint16_t STOP_MM = 400;
 static const float FRONT_DEGREES = 30.0f; /* To either side of 0 degrees. */
 

@@ -14,8 +14,8 @@
 #include <string>
 
 /* Names that the real thing takes away. */
-#define degrees(radians) ((radians) * 57.29577951308232)
-#define radians(degrees) ((degrees) * 0.017453292519943295)
+#define degrees(radians) ((radians)*57.29577951308232)
+#define radians(degrees) ((degrees)*0.017453292519943295)
 
 extern unsigned long arduino_millis;
 
