@@ -45,7 +45,7 @@ static void judge_revolution(tmini_t *lidar, bool trusted)
     }
     lidar->whole = true;
     lidar->range_seen = false;
-    lidar->start_ms = lidar->now_ms;
+    lidar->turned_ms = lidar->now_ms;
 }
 
 /* ------------------------------------------------------------------------------- scan packets */
@@ -61,7 +61,7 @@ static void resume(tmini_t *lidar)
     lidar->whole = false;
     lidar->range_seen = false;
     lidar->observed = lidar->faults;
-    lidar->start_ms = lidar->now_ms;
+    lidar->turned_ms = lidar->now_ms;
     driver_enter(lidar, PHASE_SCANNING, lidar->timing->data_ms);
     if (lidar->recovering) {
         lidar->recovering = false;
@@ -114,14 +114,17 @@ void tmini_driver_packet(tmini_t *lidar)
     if (tmini_packet_is_start(packet)) {
         judge_revolution(lidar, trusted);
     }
-    lidar->range_seen = lidar->range_seen || tmini_packet_has_range(packet);
+    if (tmini_packet_has_range(packet)) {
+        lidar->range_seen = true;
+        lidar->turned_ms = lidar->now_ms;
+    }
     gather(lidar);
 }
 
 /* No start packet and no range for so long: the rotor is blocked (section 8). */
 void tmini_driver_watch_rotor(tmini_t *lidar)
 {
-    if (!lidar->range_seen && driver_elapsed(lidar, lidar->start_ms, lidar->timing->turn_ms)) {
+    if (driver_elapsed(lidar, lidar->turned_ms, lidar->timing->turn_ms)) {
         report(lidar, (uint8_t)(lidar->faults | TMINI_FAULT_ENCODER));
     }
 }
