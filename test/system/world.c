@@ -319,6 +319,9 @@ static void note_trouble(world_t *world)
     } else if (sim_link_is_faulty(&world->link) && world->trouble_us < world->now_us) {
         world->trouble_us = world->now_us;
     }
+    if (tmini_state(&world->lidar) != TMINI_STATE_RECOVERING) {
+        world->in_trouble = false; /* The program has stopped it. */
+    }
     if (world->in_trouble && !world->config.no_recovery && world->now_us > world->trouble_us &&
         world->now_us - world->trouble_us > WORLD_RECOVERY_MS * 1000u) {
         world->in_trouble = false;
