@@ -75,7 +75,7 @@ static world_config_t draw_config(soak_t *soak, uint64_t seed)
     config.sim.blocked_sends_starts = one_in(soak, 2);
     config.sim.boot_ms = (uint16_t)between(soak, 500, 4000);
     config.dma = one_in(soak, 2);
-    config.rx_size = config.dma ? 8192 : 4096;
+    config.rx_size = config.dma ? 8192 : 2048;
     config.streaming = one_in(soak, 3);
     config.short_writes = one_in(soak, 3);
     config.busy_one_in = one_in(soak, 3) ? 0 : (uint16_t)between(soak, 20, 500);

@@ -107,6 +107,7 @@ static truth_verdict_t pop_missing(truth_t *truth, uint64_t offset)
 
 void truth_forget(truth_t *truth, uint64_t end)
 {
+    truth->compared = end;
     while (truth->count > 0 && entry(truth, 0)->offset + entry(truth, 0)->length <= end) {
         pop(truth);
     }
@@ -200,110 +201,110 @@ static unsigned points_of(const truth_t *truth, uint64_t offset, const tmini_sca
     return bytes[3];
 }
 
+/* How far the comparison has come. */
 typedef struct {
     const tmini_scan_t *scan;
-    unsigned index;
-    bool differs;
+    uint64_t at;    /* On the line. */
+    uint64_t to;
+    unsigned index; /* Of the scan's next point; 0: its start packet has not been found yet. */
+    unsigned packets;
+    bool by_chance;
 } comparison_t;
 
-static void compare_item(void *context, const reference_item_t *item)
+static bool fits(const truth_t *truth, const comparison_t *comparison, uint64_t offset)
 {
-    comparison_t *const comparison = context;
-
-    for (unsigned i = 0; i < item->lsn; i++) {
-        const reference_point_t expected = reference_point(item->bytes, i);
-
-        if (comparison->index >= comparison->scan->count ||
-            !is_point(&expected, &comparison->scan->points[comparison->index])) {
-            comparison->differs = true;
-            return;
-        }
-        comparison->index++;
-    }
+    return points_of(truth, offset, comparison->scan, comparison->index) > 0;
 }
 
-/* Whether the scan is what a decoder finds on the line, whatever was sent. */
-static bool is_on_the_line(const truth_t *truth, uint64_t from, uint64_t to,
-                           const tmini_scan_t *scan)
+static void take(truth_t *truth, comparison_t *comparison, uint64_t offset)
 {
-    static uint8_t bytes[TRUTH_HISTORY];
-    const reference_options_t options = { TMINI_MAX_SAMPLES_DEFAULT, NULL };
-    comparison_t comparison = { scan, 0, false };
+    const unsigned count = points_of(truth, offset, comparison->scan, comparison->index);
 
-    if (to - from > TRUTH_HISTORY) {
-        return false;
-    }
-    copy(truth, from, bytes, (size_t)(to - from));
-    (void)reference_decode(bytes, (size_t)(to - from), &options, compare_item, &comparison);
-    return !comparison.differs && comparison.index == scan->count;
+    comparison->index += count;
+    comparison->packets++;
+    comparison->at = offset + TMINI_PACKET_SIZE_MAX(count);
+    truth->delivered_end = comparison->at;
 }
 
-/* The start packet with which the scan begins: the first one that has its first point. */
-static bool find_start(truth_t *truth, uint64_t to, const tmini_scan_t *scan)
+/* The scan may contain damaged packets whose checksum happens to match. */
+static bool take_by_chance(truth_t *truth, comparison_t *comparison, uint64_t to)
 {
-    while (truth->count > 0 && entry(truth, 0)->offset < to) {
-        if (entry(truth, 0)->starts_revolution) {
-            if (points_of(truth, entry(truth, 0)->offset, scan, 0) > 0) {
-                return true;
-            }
-            if (!is_excused(truth, entry(truth, 0))) {
-                return false;
-            }
+    uint8_t bytes[ENCODE_PACKET_MAX];
+
+    for (uint64_t offset = comparison->at; offset < to; offset++) {
+        copy(truth, offset, bytes, sizeof bytes);
+        if (is_valid(bytes) && (comparison->index > 0 || (bytes[2] & 1u) != 0) &&
+            fits(truth, comparison, offset)) {
+            take(truth, comparison, offset);
+            comparison->by_chance = true;
+            return true;
         }
-        pop(truth);
     }
     return false;
 }
 
-/* A complete scan misses no packet of all that were sent. */
-static bool is_consecutive(truth_t *truth, uint32_t number, const tmini_scan_t *scan)
+/* The next packet that was sent must be next in the scan. Returns false if it is not, for no reason. */
+static bool take_sent(truth_t *truth, comparison_t *comparison)
 {
-    return !scan->complete || (truth->count > 0 && entry(truth, 0)->number == number);
+    const truth_packet_t *const sent = entry(truth, 0);
+    const bool belongs = comparison->index > 0 || sent->starts_revolution;
+
+    if (belongs && fits(truth, comparison, sent->offset)) {
+        take(truth, comparison, sent->offset);
+        truth->checked++;
+    } else if (take_by_chance(truth, comparison, sent->offset)) {
+        return true;
+    } else if (belongs && !is_excused(truth, sent)) {
+        return false;
+    }
+    pop(truth);
+    return true;
 }
 
-static truth_verdict_t compare_packets(truth_t *truth, uint64_t to, const tmini_scan_t *scan)
+static bool any_sent(truth_t *truth, const comparison_t *comparison)
 {
-    const uint32_t number = entry(truth, 0)->number;
-    unsigned index = 0;
-    unsigned packets = 0;
+    return truth->count > 0 && entry(truth, 0)->offset < comparison->to;
+}
 
-    while (truth->count > 0 && entry(truth, 0)->offset < to) {
-        const unsigned count = points_of(truth, entry(truth, 0)->offset, scan, index);
+/* A complete scan misses no packet of all that were sent. */
+static bool is_consecutive(truth_t *truth, uint32_t number, const comparison_t *comparison)
+{
+    return !comparison->scan->complete || comparison->by_chance ||
+           (truth->count > 0 && entry(truth, 0)->number == number + comparison->packets);
+}
 
-        if (count == 0 && !is_excused(truth, entry(truth, 0))) {
+static truth_verdict_t compare(truth_t *truth, comparison_t *comparison)
+{
+    uint32_t number = 0;
+
+    while (any_sent(truth, comparison)) {
+        if (comparison->index == 0) {
+            number = entry(truth, 0)->number;
+        }
+        if (!take_sent(truth, comparison)) {
             return TRUTH_LOST;
         }
-        index += count;
-        packets += count > 0 ? 1 : 0;
-        pop(truth);
     }
-    if (index != scan->count || packets != scan->packets ||
-        !is_consecutive(truth, number + packets, scan)) {
+    while (take_by_chance(truth, comparison, comparison->to)) {
+    }
+    if (comparison->index != comparison->scan->count ||
+        comparison->packets != comparison->scan->packets ||
+        !is_consecutive(truth, number, comparison)) {
         return TRUTH_WRONG;
     }
-    truth->checked += packets;
-    truth->points += index;
-    return TRUTH_RIGHT;
+    truth->points += comparison->index;
+    return comparison->by_chance ? TRUTH_BY_CHANCE : TRUTH_RIGHT;
 }
 
 truth_verdict_t truth_compare_scan(truth_t *truth, uint64_t end, unsigned closing_length,
                                    const tmini_scan_t *scan)
 {
-    const uint64_t to = end - closing_length;
+    comparison_t comparison = { .scan = scan, .at = truth->compared, .to = end - closing_length };
+    truth_verdict_t verdict = TRUTH_RIGHT;
 
-    if (scan->dropped > 0) {
-        truth_forget(truth, to);
-        return TRUTH_RIGHT;
+    if (scan->dropped == 0) {
+        verdict = compare(truth, &comparison);
     }
-    if (!find_start(truth, to, scan)) {
-        truth_forget(truth, to);
-        return TRUTH_WRONG;
-    }
-    const uint64_t from = entry(truth, 0)->offset;
-    const truth_verdict_t verdict = compare_packets(truth, to, scan);
-    if (verdict != TRUTH_RIGHT) {
-        truth_forget(truth, to);
-        return is_on_the_line(truth, from, to, scan) ? TRUTH_BY_CHANCE : verdict;
-    }
-    return TRUTH_RIGHT;
+    truth_forget(truth, comparison.to);
+    return verdict;
 }
