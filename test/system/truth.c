@@ -28,6 +28,7 @@ static void pop(truth_t *truth)
 void truth_sent(truth_t *truth, const sim_link_packet_t *packet)
 {
     if (!packet->intact) {
+        truth->small_damaged += packet->sent.bytes[3] <= TRUTH_SMALL_SAMPLES ? 1 : 0;
         return;
     }
     if (truth->count == TRUTH_PACKETS) {
@@ -39,7 +40,7 @@ void truth_sent(truth_t *truth, const sim_link_packet_t *packet)
         .length = packet->sent.length,
         .starts_revolution = packet->sent.starts_revolution,
         .revolution = packet->sent.revolution,
-        .number = packet->sent.number,
+        .number = packet->sent.number - truth->small_damaged,
     };
 }
 
@@ -266,7 +267,7 @@ static bool any_sent(truth_t *truth, const comparison_t *comparison)
     return truth->count > 0 && entry(truth, 0)->offset < comparison->to;
 }
 
-/* A complete scan misses no packet of all that were sent. */
+/* A complete scan misses no packet of all that were sent and could be missed. */
 static bool is_consecutive(truth_t *truth, uint32_t number, const comparison_t *comparison)
 {
     return !comparison->scan->complete || comparison->by_chance ||

@@ -17,13 +17,17 @@
 #define TRUTH_HISTORY 131072u /* Bytes: 10 s of scanning. */
 #define TRUTH_SPLITS 16u
 
+/* A packet of so few samples may vanish without a trace, if the line loses all of its bytes: the hole
+ * is less than 4 degrees wide, and nothing is left that could be skipped. */
+#define TRUTH_SMALL_SAMPLES 7u
+
 typedef struct {
     uint64_t offset;
     uint16_t length;
     bool starts_revolution;
     bool optional; /* A silence fell into it: it may have been given up. */
     uint32_t revolution;
-    uint32_t number; /* Of the packet among all that were sent. */
+    uint32_t number; /* Of the packet among all that were sent, those left out that are damaged and small. */
 } truth_packet_t;
 
 typedef enum {
@@ -40,6 +44,7 @@ typedef struct {
     uint32_t first;
     uint32_t count;
     uint32_t overflows;
+    uint32_t small_damaged; /* Packets sent so far. */
     uint64_t splits[TRUTH_SPLITS];
     uint32_t split_count;
     uint64_t delivered_end; /* Of the packet delivered last. */
