@@ -214,6 +214,7 @@ static void check_packet(world_t *world)
 
 static void check_scan(world_t *world)
 {
+    world->scan = *tmini_scan(&world->lidar);
     const unsigned closing = TMINI_PACKET_SIZE_MAX(tmini_packet(&world->lidar)->count);
 
     judge(world,

@@ -97,6 +97,7 @@ typedef struct {
     uint64_t fault_on_us[8];    /* When each bit was last there, */
     uint64_t fault_off_us[8];   /* and when not. */
     uint8_t faults;             /* As reported last. */
+    tmini_scan_t scan;          /* The last one; its points are no longer valid. */
     truth_t truth;
     world_counts_t counts;
 } world_t;
