@@ -3,10 +3,11 @@
 
 /* soak HOURS [SEED]
  *
- * Runs the library against the simulated lidar for so many hours of virtual time, half an hour for each
- * of many differently configured pairs, while everything goes wrong that can: on the line, in the lidar,
- * in the program that uses the library. Prints what happened; exit status 0 if the library did nothing
- * wrong (world.h says what is checked), 1 if it did, 2 on wrong usage. The same seed does the same. */
+ * Runs the library against the simulated lidar for so many hours of virtual time, half an hour for
+ * each of many differently configured pairs, while everything goes wrong that can: on the line, in
+ * the lidar, in the program that uses the library. Prints what happened; exit status 0 if the library
+ * did nothing wrong (world.h says what is checked), 1 if it did, 2 on wrong usage. The same seed does
+ * the same. */
 
 #include "world.h"
 
@@ -157,7 +158,8 @@ static void ask_for_health(soak_t *soak)
     const uint64_t since_us = world->now_us;
 
     if (carry_out(soak, tmini_request_health(&world->lidar), TMINI_EVENT_HEALTH, 10000)) {
-        check_answer(soak, tmini_health(&world->lidar)->faults == sim_health(&world->sim), since_us);
+        check_answer(soak, tmini_health(&world->lidar)->faults == sim_health(&world->sim),
+                     since_us);
     }
 }
 
@@ -189,8 +191,8 @@ static void reboot(soak_t *soak)
     (void)carry_out(soak, tmini_reboot(&soak->world.lidar), TMINI_EVENT_REBOOTED, 10000);
 }
 
-static void (*const requests[])(soak_t *soak) = { ask_for_info, ask_for_health, ask_for_frequency,
-                                                  set_frequency, reboot };
+static void (*const requests[])(soak_t *soak) = {ask_for_info, ask_for_health, ask_for_frequency,
+                                                 set_frequency, reboot};
 
 /* Stops, asks for one thing or another, and lets scanning go on. */
 static void have_a_word(soak_t *soak)
@@ -238,10 +240,10 @@ static void bring_bad_weather(soak_t *soak)
         uint32_t low;
         uint32_t high;
     } ranges[SIM_LINK_KINDS] = {
-        [SIM_LINK_DROP] = { 150, 100000 },    [SIM_LINK_FLIP] = { 150, 100000 },
-        [SIM_LINK_INSERT] = { 150, 100000 },  [SIM_LINK_BURST] = { 30, 10000 },
-        [SIM_LINK_STALL] = { 200, 20000 },    [SIM_LINK_CUT] = { 30, 10000 },
-        [SIM_LINK_UNPLUG] = { 10000, 60000 }, [SIM_LINK_GARBLE] = { 4000, 60000 },
+        [SIM_LINK_DROP] = {150, 100000},    [SIM_LINK_FLIP] = {150, 100000},
+        [SIM_LINK_INSERT] = {150, 100000},  [SIM_LINK_BURST] = {30, 10000},
+        [SIM_LINK_STALL] = {200, 20000},    [SIM_LINK_CUT] = {30, 10000},
+        [SIM_LINK_UNPLUG] = {10000, 60000}, [SIM_LINK_GARBLE] = {4000, 60000},
     };
     const bool all = one_in(soak, 4);
     const uint32_t only = between(soak, 0, SIM_LINK_KINDS - 1);

@@ -18,9 +18,7 @@ void setUp(void)
     config = world_default_config();
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void begin(void)
 {
@@ -133,7 +131,7 @@ static void streams_on_while_the_program_restarts(void)
 
 void test_info_is_asked_of_a_lidar_that_is_still_streaming(void)
 {
-    static const uint8_t serial[16] = { 2, 0, 2, 6, 0, 3, 1, 7, 0, 0, 0, 1, 2, 3, 4, 5 };
+    static const uint8_t serial[16] = {2, 0, 2, 6, 0, 3, 1, 7, 0, 0, 0, 1, 2, 3, 4, 5};
 
     streams_on_while_the_program_restarts();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(&world.lidar));
@@ -244,7 +242,7 @@ void test_a_lost_reply_to_any_frequency_step_does_no_harm(void)
 
 void test_a_late_reply_to_any_frequency_step_does_no_harm(void)
 {
-    static const uint32_t delays_ms[] = { 40, 100, 1900, 2050, 2500 };
+    static const uint32_t delays_ms[] = {40, 100, 1900, 2050, 2500};
 
     for (unsigned i = 0; i < sizeof delays_ms / sizeof delays_ms[0]; i++) {
         for (unsigned late = 0; late < 6; late++) {

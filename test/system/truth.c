@@ -63,7 +63,8 @@ void truth_fell_silent(truth_t *truth, uint64_t end)
 static bool was_split(const truth_t *truth, const truth_packet_t *packet)
 {
     for (uint32_t i = 0; i < TRUTH_SPLITS; i++) {
-        if (truth->splits[i] > packet->offset && truth->splits[i] < packet->offset + packet->length) {
+        if (truth->splits[i] > packet->offset &&
+            truth->splits[i] < packet->offset + packet->length) {
             return true;
         }
     }
@@ -205,7 +206,7 @@ static unsigned points_of(const truth_t *truth, uint64_t offset, const tmini_sca
 /* How far the comparison has come. */
 typedef struct {
     const tmini_scan_t *scan;
-    uint64_t at;    /* On the line. */
+    uint64_t at; /* On the line. */
     uint64_t to;
     unsigned index; /* Of the scan's next point; 0: its start packet has not been found yet. */
     unsigned packets;
@@ -300,7 +301,7 @@ static truth_verdict_t compare(truth_t *truth, comparison_t *comparison)
 truth_verdict_t truth_compare_scan(truth_t *truth, uint64_t end, unsigned closing_length,
                                    const tmini_scan_t *scan)
 {
-    comparison_t comparison = { .scan = scan, .at = truth->compared, .to = end - closing_length };
+    comparison_t comparison = {.scan = scan, .at = truth->compared, .to = end - closing_length};
     truth_verdict_t verdict = TRUTH_RIGHT;
 
     if (scan->dropped == 0) {

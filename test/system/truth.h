@@ -27,7 +27,7 @@ typedef struct {
     bool starts_revolution;
     bool optional; /* A silence fell into it: it may have been given up. */
     uint32_t revolution;
-    uint32_t number; /* Of the packet among all that were sent, those left out that are damaged and small. */
+    uint32_t number; /* Of the packet among all that were sent, without the small damaged ones. */
 } truth_packet_t;
 
 typedef enum {
@@ -39,7 +39,7 @@ typedef enum {
 
 typedef struct {
     uint8_t history[TRUTH_HISTORY];
-    uint64_t end;                         /* Of the history. */
+    uint64_t end;                          /* Of the history. */
     truth_packet_t packets[TRUTH_PACKETS]; /* Those not yet compared, in order. */
     uint32_t first;
     uint32_t count;

@@ -12,9 +12,9 @@
 #define CLOCK_AT_THE_BEGINNING 0xFFFF0000u /* It wraps around after a minute. */
 
 static const char *const violation_names[VIOLATION_KINDS] = {
-    "packets lost",  "false packets", "wrong scans",   "bytes not accounted for", "forbidden commands",
-    "false faults", "missed faults", "wrong answers", "slow recoveries"
-};
+    "packets lost",       "false packets", "wrong scans",   "bytes not accounted for",
+    "forbidden commands", "false faults",  "missed faults", "wrong answers",
+    "slow recoveries"};
 
 const char *world_violation_name(violation_t violation)
 {
@@ -114,7 +114,7 @@ void world_restart_library(world_t *world)
 
 void world_init(world_t *world, const world_config_t *config)
 {
-    const sim_link_observer_t observer = { .context = world, .on_packet = on_packet };
+    const sim_link_observer_t observer = {.context = world, .on_packet = on_packet};
 
     memset(world, 0, sizeof *world);
     world->config = *config;

@@ -26,30 +26,30 @@ typedef struct {
     uint64_t seed;
     sim_config_t sim;
     sim_link_config_t link;
-    size_t rx_size;          /* At most WORLD_RX_MAX. */
+    size_t rx_size; /* At most WORLD_RX_MAX. */
     bool dma;
     bool streaming;
     bool no_recovery;
-    bool short_writes;       /* The port takes 0, 1 or 2 bytes, by chance. */
-    uint16_t busy_one_in;    /* How often the main loop is busy; 0: never. */
-    uint16_t busy_ms;        /* At most for so long. */
-    bool overruns_expected;  /* A ring too small for that: packets may be lost in it. */
-    bool report;             /* Says each violation on standard output. */
+    bool short_writes;      /* The port takes 0, 1 or 2 bytes, by chance. */
+    uint16_t busy_one_in;   /* How often the main loop is busy; 0: never. */
+    uint16_t busy_ms;       /* At most for so long. */
+    bool overruns_expected; /* A ring too small for that: packets may be lost in it. */
+    bool report;            /* Says each violation on standard output. */
 } world_config_t;
 
 #define WORLD_RX_MAX 8192u
 #define WORLD_POINTS 4000u
 
 typedef enum {
-    VIOLATION_LOST_PACKET,    /* Arrived unharmed, but was not delivered. */
-    VIOLATION_FALSE_PACKET,   /* Delivered, but no valid packet of the line. */
-    VIOLATION_WRONG_SCAN,     /* Not the points of the packets it is made of. */
-    VIOLATION_BYTES,          /* Bytes not accounted for. */
-    VIOLATION_COMMAND,        /* Other than stop, while the lidar was scanning. */
-    VIOLATION_FALSE_FAULT,    /* Reported though not there, or as gone though there. */
-    VIOLATION_MISSED_FAULT,   /* There, but not reported in time; or gone, but still reported. */
-    VIOLATION_ANSWER,         /* A command on an undisturbed line: none, or not the truth. */
-    VIOLATION_SLOW_RECOVERY,  /* Later than WORLD_RECOVERY_MS after the last trouble. */
+    VIOLATION_LOST_PACKET,   /* Arrived unharmed, but was not delivered. */
+    VIOLATION_FALSE_PACKET,  /* Delivered, but no valid packet of the line. */
+    VIOLATION_WRONG_SCAN,    /* Not the points of the packets it is made of. */
+    VIOLATION_BYTES,         /* Bytes not accounted for. */
+    VIOLATION_COMMAND,       /* Other than stop, while the lidar was scanning. */
+    VIOLATION_FALSE_FAULT,   /* Reported though not there, or as gone though there. */
+    VIOLATION_MISSED_FAULT,  /* There, but not reported in time; or gone, but still reported. */
+    VIOLATION_ANSWER,        /* A command on an undisturbed line: none, or not the truth. */
+    VIOLATION_SLOW_RECOVERY, /* Later than WORLD_RECOVERY_MS after the last trouble. */
     VIOLATION_KINDS
 } violation_t;
 
@@ -87,17 +87,17 @@ typedef struct {
     uint8_t rx[WORLD_RX_MAX];
     tmini_point_t points[WORLD_POINTS];
     size_t dma_position;
-    uint64_t fed;               /* Bytes that came since the library was set up, */
-    uint64_t told;              /* and those of them that it has been told of. */
-    uint64_t fed_before;        /* Bytes that came before that. */
-    uint64_t silent_since_us;   /* The last poll that found new bytes, */
-    uint64_t told_at_poll;      /* which were these. */
-    uint64_t trouble_us;        /* When the last trouble ended. */
-    bool in_trouble;            /* A loss has been reported and not recovered. */
-    uint64_t fault_on_us[8];    /* When each bit was last there, */
-    uint64_t fault_off_us[8];   /* and when not. */
-    uint8_t faults;             /* As reported last. */
-    tmini_scan_t scan;          /* The last one; its points are no longer valid. */
+    uint64_t fed;             /* Bytes that came since the library was set up, */
+    uint64_t told;            /* and those of them that it has been told of. */
+    uint64_t fed_before;      /* Bytes that came before that. */
+    uint64_t silent_since_us; /* The last poll that found new bytes, */
+    uint64_t told_at_poll;    /* which were these. */
+    uint64_t trouble_us;      /* When the last trouble ended. */
+    bool in_trouble;          /* A loss has been reported and not recovered. */
+    uint64_t fault_on_us[8];  /* When each bit was last there, */
+    uint64_t fault_off_us[8]; /* and when not. */
+    uint8_t faults;           /* As reported last. */
+    tmini_scan_t scan;        /* The last one; its points are no longer valid. */
     truth_t truth;
     world_counts_t counts;
 } world_t;

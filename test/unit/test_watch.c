@@ -13,9 +13,7 @@ void setUp(void)
     rig_open();
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static tmini_counters_t counters(void)
 {
