@@ -59,15 +59,14 @@ static void receive(tmini_t *lidar)
         tmini_scan_add(&lidar->builder, &lidar->latest.packet, lidar->phase_ms);
     }
     while (lidar->pending == 0) {
-        switch (next_frame(lidar)) {
-        case TMINI_FRAME_NONE:
+        const tmini_frame_t frame = next_frame(lidar);
+        if (frame == TMINI_FRAME_NONE) {
             return;
-        case TMINI_FRAME_PACKET:
+        }
+        if (frame == TMINI_FRAME_PACKET) {
             tmini_driver_packet(lidar);
-            break;
-        case TMINI_FRAME_REPLY:
+        } else {
             tmini_driver_reply(lidar);
-            break;
         }
     }
 }

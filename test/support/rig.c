@@ -122,8 +122,7 @@ void rig_feed_scan_reply(void)
 void rig_feed_info(void)
 {
     static const encode_information_t information = {
-        151, 1, 2, 1, { 2, 0, 2, 5, 0, 4, 2, 4, 0, 0, 0, 9, 0, 1, 9, 4 }
-    };
+        151, 1, 2, 1, {2, 0, 2, 5, 0, 4, 2, 4, 0, 0, 0, 9, 0, 1, 9, 4}};
     uint8_t reply[ENCODE_REPLY_MAX];
 
     rig_feed(reply, encode_information_reply(reply, &information));
@@ -147,7 +146,7 @@ void rig_feed_packet(uint8_t ct, uint8_t lsn, uint16_t distance_mm)
 {
     encode_sample_t samples[40];
     uint8_t bytes[ENCODE_PACKET_HEADER + 40 * ENCODE_SAMPLE_SIZE];
-    const encode_packet_t packet = { ct, lsn, 640, (uint16_t)(640 + 32 * (lsn - 1)), samples };
+    const encode_packet_t packet = {ct, lsn, 640, (uint16_t)(640 + 32 * (lsn - 1)), samples};
 
     for (unsigned i = 0; i < lsn; i++) {
         samples[i].distance_mm = distance_mm;
@@ -177,7 +176,7 @@ void rig_feed_plain_turn(uint16_t distance_mm)
 
 void rig_feed_turn(uint8_t health, uint16_t distance_mm)
 {
-    const encode_turn_t turn = { .frequency_dhz = 60, .user_major = 1, .health = health };
+    const encode_turn_t turn = {.frequency_dhz = 60, .user_major = 1, .health = health};
 
     if (rig.in_turn) {
         rig_feed_byte(rig.crc);

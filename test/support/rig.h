@@ -42,9 +42,9 @@ typedef struct {
     uint32_t now_ms; /* What the port's clock says. */
     uint8_t rx[RIG_RX_SIZE];
     tmini_point_t points[RIG_POINTS];
-    uint8_t crc;      /* Of the revolution fed last. */
-    bool in_turn;     /* There was one, with CT information. */
-    uint32_t fed;     /* Bytes, since the lidar was set up. */
+    uint8_t crc;  /* Of the revolution fed last. */
+    bool in_turn; /* There was one, with CT information. */
+    uint32_t fed; /* Bytes, since the lidar was set up. */
 } rig_t;
 
 extern rig_t rig;
@@ -74,8 +74,7 @@ void rig_verify(void);
 #define polls_to(event) \
     UNITY_TEST_ASSERT_EQUAL_INT(event, tmini_poll(&rig.lidar), __LINE__, "event")
 
-#define is_in(state) \
-    UNITY_TEST_ASSERT_EQUAL_INT(state, tmini_state(&rig.lidar), __LINE__, "state")
+#define is_in(state) UNITY_TEST_ASSERT_EQUAL_INT(state, tmini_state(&rig.lidar), __LINE__, "state")
 
 /* `ms` milliseconds pass. Polls at the beginning, in the middle and one millisecond before the end:
  * nothing may happen or be sent. The next poll is at the end. */
@@ -112,11 +111,11 @@ void rig_feed_turn(uint8_t health, uint16_t distance_mm);
 /* ---- Ways into each state ---- */
 
 void rig_go_idle(void);
-void rig_go_starting(void);    /* The start has been sent, its reply is awaited. */
-void rig_go_spinning_up(void); /* The start has been acknowledged. */
-void rig_go_scanning(void);    /* One point packet with a range has come. */
-void rig_go_recovering(void);  /* Lost; a stop has been sent just now. */
-void rig_go_asking_again(void);/* Recovering; a start has been sent just now. */
-void rig_go_backing_off(void); /* Recovering; the first attempt has failed just now. */
+void rig_go_starting(void);     /* The start has been sent, its reply is awaited. */
+void rig_go_spinning_up(void);  /* The start has been acknowledged. */
+void rig_go_scanning(void);     /* One point packet with a range has come. */
+void rig_go_recovering(void);   /* Lost; a stop has been sent just now. */
+void rig_go_asking_again(void); /* Recovering; a start has been sent just now. */
+void rig_go_backing_off(void);  /* Recovering; the first attempt has failed just now. */
 
 #endif

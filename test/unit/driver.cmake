@@ -7,5 +7,5 @@ foreach(test test_tmini test_command test_states test_watch test_blocking)
         SOURCES ${test}.c ../support/rig.c
         MOCKS ../support/port_functions.h
         LIBRARIES tmini_test_support
-        NOT_ON int16)
+        )
 endforeach()

@@ -50,9 +50,7 @@ void setUp(void)
     script.waits = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void feed_healthy(void)
 {
@@ -212,8 +210,8 @@ void test_a_command_given_up_half_sent_is_not_sent_any_further(void)
 
 void test_a_result_is_not_touched_by_a_failure(void)
 {
-    tmini_info_t info = { .model = 1 };
-    tmini_health_t health = { .faults = 2 };
+    tmini_info_t info = {.model = 1};
+    tmini_health_t health = {.faults = 2};
     uint16_t frequency_chz = 3;
 
     sends(GET_INFO);
@@ -268,8 +266,7 @@ void test_a_command_that_cannot_be_begun_does_not_wait(void)
     port_wait_StubWithCallback(wait);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_read_info(&rig.lidar, &info, 100));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_read_health(&rig.lidar, &health, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE,
-                          tmini_read_frequency(&rig.lidar, &frequency_chz, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_read_frequency(&rig.lidar, &frequency_chz, 100));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_write_frequency(&rig.lidar, 700, 100));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_start_and_wait(&rig.lidar, 100));
     is_in(TMINI_STATE_SCANNING);

@@ -16,9 +16,7 @@ void setUp(void)
     rig_open();
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void fails_with(tmini_status_t status)
 {
@@ -157,9 +155,9 @@ void test_bytes_behind_a_reply_make_the_state_unknown(void)
 void test_info_is_what_the_reply_says(void)
 {
     /* 151, firmware 1.2 with the minor number first (section 9.4), hardware 1, 16 digits. */
-    static const uint8_t reply[] = { 0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x97, 0x02,
-                                     0x01, 0x01, 2,    0,    2,    5,    0,    4,    2,
-                                     4,    0,    0,    0,    9,    0,    1,    9,    4 };
+    static const uint8_t reply[] = {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x97, 0x02,
+                                    0x01, 0x01, 2,    0,    2,    5,    0,    4,    2,
+                                    4,    0,    0,    0,    9,    0,    1,    9,    4};
 
     rig_go_idle();
     sends(GET_INFO);
@@ -748,7 +746,7 @@ void test_an_absurd_frequency_fails_the_command(void)
 
 void test_frequencies_out_of_range_or_between_steps_are_refused_and_nothing_is_sent(void)
 {
-    static const uint16_t refused[] = { 0, 590, 599, 605, 1195, 1201, 1210, 65530, 65535 };
+    static const uint16_t refused[] = {0, 590, 599, 605, 1195, 1201, 1210, 65530, 65535};
 
     rig_go_idle();
     for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {

@@ -14,7 +14,7 @@ typedef struct {
     const char *name;
     tmini_status_t (*command)(tmini_t *lidar);
     tmini_status_t status;
-    uint8_t sent;        /* At once; or NOTHING. */
+    uint8_t sent; /* At once; or NOTHING. */
     tmini_state_t after;
     tmini_event_t event; /* At the next poll. */
 } cell_t;
@@ -24,9 +24,7 @@ void setUp(void)
     rig_open();
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static tmini_status_t set_frequency(tmini_t *lidar)
 {
@@ -44,9 +42,7 @@ static void check(const cell_t *cell)
     was_sent();
 }
 
-static void do_nothing(void)
-{
-}
+static void do_nothing(void) {}
 
 static void go_busy(void)
 {
@@ -76,18 +72,16 @@ static void check_all(void (*go)(void), tmini_state_t state, const cell_t *cells
 void test_in_the_unknown_state_every_command_first_sends_a_stop(void)
 {
     static const cell_t cells[7] = {
-        { "unknown x start", tmini_start, TMINI_OK, STOP, TMINI_STATE_STARTING,
-          TMINI_EVENT_NONE },
-        { "unknown x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_NONE },
-        { "unknown x info", tmini_request_info, TMINI_OK, STOP, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "unknown x health", tmini_request_health, TMINI_OK, STOP, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "unknown x frequency", tmini_request_frequency, TMINI_OK, STOP, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "unknown x set frequency", set_frequency, TMINI_OK, STOP, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "unknown x reboot", tmini_reboot, TMINI_OK, STOP, TMINI_STATE_BUSY, TMINI_EVENT_NONE },
+        {"unknown x start", tmini_start, TMINI_OK, STOP, TMINI_STATE_STARTING, TMINI_EVENT_NONE},
+        {"unknown x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_NONE},
+        {"unknown x info", tmini_request_info, TMINI_OK, STOP, TMINI_STATE_BUSY, TMINI_EVENT_NONE},
+        {"unknown x health", tmini_request_health, TMINI_OK, STOP, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
+        {"unknown x frequency", tmini_request_frequency, TMINI_OK, STOP, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
+        {"unknown x set frequency", set_frequency, TMINI_OK, STOP, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
+        {"unknown x reboot", tmini_reboot, TMINI_OK, STOP, TMINI_STATE_BUSY, TMINI_EVENT_NONE},
     };
 
     check_all(do_nothing, TMINI_STATE_UNKNOWN, cells);
@@ -96,17 +90,16 @@ void test_in_the_unknown_state_every_command_first_sends_a_stop(void)
 void test_in_the_idle_state_every_command_is_sent_at_once(void)
 {
     static const cell_t cells[7] = {
-        { "idle x start", tmini_start, TMINI_OK, START, TMINI_STATE_STARTING, TMINI_EVENT_NONE },
-        { "idle x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_NONE },
-        { "idle x info", tmini_request_info, TMINI_OK, GET_INFO, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "idle x health", tmini_request_health, TMINI_OK, GET_HEALTH, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "idle x frequency", tmini_request_frequency, TMINI_OK, GET_FREQUENCY, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "idle x set frequency", set_frequency, TMINI_OK, GET_FREQUENCY, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "idle x reboot", tmini_reboot, TMINI_OK, REBOOT, TMINI_STATE_BUSY, TMINI_EVENT_NONE },
+        {"idle x start", tmini_start, TMINI_OK, START, TMINI_STATE_STARTING, TMINI_EVENT_NONE},
+        {"idle x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_NONE},
+        {"idle x info", tmini_request_info, TMINI_OK, GET_INFO, TMINI_STATE_BUSY, TMINI_EVENT_NONE},
+        {"idle x health", tmini_request_health, TMINI_OK, GET_HEALTH, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
+        {"idle x frequency", tmini_request_frequency, TMINI_OK, GET_FREQUENCY, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
+        {"idle x set frequency", set_frequency, TMINI_OK, GET_FREQUENCY, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
+        {"idle x reboot", tmini_reboot, TMINI_OK, REBOOT, TMINI_STATE_BUSY, TMINI_EVENT_NONE},
     };
 
     check_all(rig_go_idle, TMINI_STATE_IDLE, cells);
@@ -115,19 +108,19 @@ void test_in_the_idle_state_every_command_is_sent_at_once(void)
 void test_in_the_busy_state_every_command_but_stop_is_told_so(void)
 {
     static const cell_t cells[7] = {
-        { "busy x start", tmini_start, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "busy x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_FAILED },
-        { "busy x info", tmini_request_info, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "busy x health", tmini_request_health, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "busy x frequency", tmini_request_frequency, TMINI_ERROR_BUSY, NOTHING,
-          TMINI_STATE_BUSY, TMINI_EVENT_NONE },
-        { "busy x set frequency", set_frequency, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
-        { "busy x reboot", tmini_reboot, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
-          TMINI_EVENT_NONE },
+        {"busy x start", tmini_start, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
+        {"busy x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_FAILED},
+        {"busy x info", tmini_request_info, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
+        {"busy x health", tmini_request_health, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
+        {"busy x frequency", tmini_request_frequency, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
+        {"busy x set frequency", set_frequency, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
+        {"busy x reboot", tmini_reboot, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
+         TMINI_EVENT_NONE},
     };
 
     check_all(go_busy, TMINI_STATE_BUSY, cells);
@@ -136,20 +129,19 @@ void test_in_the_busy_state_every_command_but_stop_is_told_so(void)
 void test_in_the_stopping_state_every_command_but_stop_is_told_busy(void)
 {
     static const cell_t cells[7] = {
-        { "stopping x start", tmini_start, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
-          TMINI_EVENT_NONE },
-        { "stopping x stop", tmini_stop, TMINI_OK, NOTHING, TMINI_STATE_STOPPING,
-          TMINI_EVENT_NONE },
-        { "stopping x info", tmini_request_info, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
-          TMINI_EVENT_NONE },
-        { "stopping x health", tmini_request_health, TMINI_ERROR_BUSY, NOTHING,
-          TMINI_STATE_STOPPING, TMINI_EVENT_NONE },
-        { "stopping x frequency", tmini_request_frequency, TMINI_ERROR_BUSY, NOTHING,
-          TMINI_STATE_STOPPING, TMINI_EVENT_NONE },
-        { "stopping x set frequency", set_frequency, TMINI_ERROR_BUSY, NOTHING,
-          TMINI_STATE_STOPPING, TMINI_EVENT_NONE },
-        { "stopping x reboot", tmini_reboot, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
-          TMINI_EVENT_NONE },
+        {"stopping x start", tmini_start, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
+         TMINI_EVENT_NONE},
+        {"stopping x stop", tmini_stop, TMINI_OK, NOTHING, TMINI_STATE_STOPPING, TMINI_EVENT_NONE},
+        {"stopping x info", tmini_request_info, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
+         TMINI_EVENT_NONE},
+        {"stopping x health", tmini_request_health, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
+         TMINI_EVENT_NONE},
+        {"stopping x frequency", tmini_request_frequency, TMINI_ERROR_BUSY, NOTHING,
+         TMINI_STATE_STOPPING, TMINI_EVENT_NONE},
+        {"stopping x set frequency", set_frequency, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
+         TMINI_EVENT_NONE},
+        {"stopping x reboot", tmini_reboot, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
+         TMINI_EVENT_NONE},
     };
 
     check_all(go_stopping, TMINI_STATE_STOPPING, cells);
@@ -158,20 +150,19 @@ void test_in_the_stopping_state_every_command_but_stop_is_told_busy(void)
 void test_in_the_starting_state_every_command_but_stop_is_told_busy(void)
 {
     static const cell_t cells[7] = {
-        { "starting x start", tmini_start, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
-          TMINI_EVENT_NONE },
-        { "starting x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING,
-          TMINI_EVENT_FAILED },
-        { "starting x info", tmini_request_info, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
-          TMINI_EVENT_NONE },
-        { "starting x health", tmini_request_health, TMINI_ERROR_BUSY, NOTHING,
-          TMINI_STATE_STARTING, TMINI_EVENT_NONE },
-        { "starting x frequency", tmini_request_frequency, TMINI_ERROR_BUSY, NOTHING,
-          TMINI_STATE_STARTING, TMINI_EVENT_NONE },
-        { "starting x set frequency", set_frequency, TMINI_ERROR_BUSY, NOTHING,
-          TMINI_STATE_STARTING, TMINI_EVENT_NONE },
-        { "starting x reboot", tmini_reboot, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
-          TMINI_EVENT_NONE },
+        {"starting x start", tmini_start, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
+         TMINI_EVENT_NONE},
+        {"starting x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_FAILED},
+        {"starting x info", tmini_request_info, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
+         TMINI_EVENT_NONE},
+        {"starting x health", tmini_request_health, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
+         TMINI_EVENT_NONE},
+        {"starting x frequency", tmini_request_frequency, TMINI_ERROR_BUSY, NOTHING,
+         TMINI_STATE_STARTING, TMINI_EVENT_NONE},
+        {"starting x set frequency", set_frequency, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
+         TMINI_EVENT_NONE},
+        {"starting x reboot", tmini_reboot, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
+         TMINI_EVENT_NONE},
     };
 
     check_all(rig_go_starting, TMINI_STATE_STARTING, cells);
@@ -180,20 +171,19 @@ void test_in_the_starting_state_every_command_but_stop_is_told_busy(void)
 void test_in_the_scanning_state_only_stop_is_sent(void)
 {
     static const cell_t cells[7] = {
-        { "scanning x start", tmini_start, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_SCANNING,
-          TMINI_EVENT_NONE },
-        { "scanning x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING,
-          TMINI_EVENT_NONE },
-        { "scanning x info", tmini_request_info, TMINI_ERROR_STATE, NOTHING,
-          TMINI_STATE_SCANNING, TMINI_EVENT_NONE },
-        { "scanning x health", tmini_request_health, TMINI_ERROR_STATE, NOTHING,
-          TMINI_STATE_SCANNING, TMINI_EVENT_NONE },
-        { "scanning x frequency", tmini_request_frequency, TMINI_ERROR_STATE, NOTHING,
-          TMINI_STATE_SCANNING, TMINI_EVENT_NONE },
-        { "scanning x set frequency", set_frequency, TMINI_ERROR_STATE, NOTHING,
-          TMINI_STATE_SCANNING, TMINI_EVENT_NONE },
-        { "scanning x reboot", tmini_reboot, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_SCANNING,
-          TMINI_EVENT_NONE },
+        {"scanning x start", tmini_start, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_SCANNING,
+         TMINI_EVENT_NONE},
+        {"scanning x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_NONE},
+        {"scanning x info", tmini_request_info, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_SCANNING,
+         TMINI_EVENT_NONE},
+        {"scanning x health", tmini_request_health, TMINI_ERROR_STATE, NOTHING,
+         TMINI_STATE_SCANNING, TMINI_EVENT_NONE},
+        {"scanning x frequency", tmini_request_frequency, TMINI_ERROR_STATE, NOTHING,
+         TMINI_STATE_SCANNING, TMINI_EVENT_NONE},
+        {"scanning x set frequency", set_frequency, TMINI_ERROR_STATE, NOTHING,
+         TMINI_STATE_SCANNING, TMINI_EVENT_NONE},
+        {"scanning x reboot", tmini_reboot, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_SCANNING,
+         TMINI_EVENT_NONE},
     };
 
     check_all(rig_go_scanning, TMINI_STATE_SCANNING, cells);
@@ -202,20 +192,19 @@ void test_in_the_scanning_state_only_stop_is_sent(void)
 void test_in_the_recovering_state_only_stop_is_sent(void)
 {
     static const cell_t cells[7] = {
-        { "recovering x start", tmini_start, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_RECOVERING,
-          TMINI_EVENT_NONE },
-        { "recovering x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING,
-          TMINI_EVENT_NONE },
-        { "recovering x info", tmini_request_info, TMINI_ERROR_STATE, NOTHING,
-          TMINI_STATE_RECOVERING, TMINI_EVENT_NONE },
-        { "recovering x health", tmini_request_health, TMINI_ERROR_STATE, NOTHING,
-          TMINI_STATE_RECOVERING, TMINI_EVENT_NONE },
-        { "recovering x frequency", tmini_request_frequency, TMINI_ERROR_STATE, NOTHING,
-          TMINI_STATE_RECOVERING, TMINI_EVENT_NONE },
-        { "recovering x set frequency", set_frequency, TMINI_ERROR_STATE, NOTHING,
-          TMINI_STATE_RECOVERING, TMINI_EVENT_NONE },
-        { "recovering x reboot", tmini_reboot, TMINI_ERROR_STATE, NOTHING,
-          TMINI_STATE_RECOVERING, TMINI_EVENT_NONE },
+        {"recovering x start", tmini_start, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_RECOVERING,
+         TMINI_EVENT_NONE},
+        {"recovering x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_NONE},
+        {"recovering x info", tmini_request_info, TMINI_ERROR_STATE, NOTHING,
+         TMINI_STATE_RECOVERING, TMINI_EVENT_NONE},
+        {"recovering x health", tmini_request_health, TMINI_ERROR_STATE, NOTHING,
+         TMINI_STATE_RECOVERING, TMINI_EVENT_NONE},
+        {"recovering x frequency", tmini_request_frequency, TMINI_ERROR_STATE, NOTHING,
+         TMINI_STATE_RECOVERING, TMINI_EVENT_NONE},
+        {"recovering x set frequency", set_frequency, TMINI_ERROR_STATE, NOTHING,
+         TMINI_STATE_RECOVERING, TMINI_EVENT_NONE},
+        {"recovering x reboot", tmini_reboot, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_RECOVERING,
+         TMINI_EVENT_NONE},
     };
 
     check_all(rig_go_recovering, TMINI_STATE_RECOVERING, cells);

@@ -15,9 +15,7 @@ void setUp(void)
     rig_open();
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static tmini_counters_t counters(void)
 {
@@ -171,7 +169,7 @@ void test_a_lidar_never_set_up_is_refused_by_every_command(void)
 void test_a_lidar_never_set_up_takes_bytes_without_harm_and_has_empty_results(void)
 {
     static tmini_t untouched;
-    const uint8_t bytes[4] = { 1, 2, 3, 4 };
+    const uint8_t bytes[4] = {1, 2, 3, 4};
     tmini_counters_t seen;
     tmini_turn_info_t turn;
 
@@ -194,8 +192,8 @@ void test_a_lidar_never_set_up_takes_bytes_without_harm_and_has_empty_results(vo
 void test_single_bytes_blocks_and_dma_bring_the_same_packet(void)
 {
     /* 5.8 Hz, 0.484 degrees, intensity 21, 149 mm, from a real unit (section 9.14). */
-    static const uint8_t packet[] = { 0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
-                                      0x00, 0x9E, 0x56, 0x15, 0x54, 0x02 };
+    static const uint8_t packet[] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
+                                     0x00, 0x9E, 0x56, 0x15, 0x54, 0x02};
 
     for (unsigned way = 0; way < 3; way++) {
         rig.config.points = NULL;
@@ -230,11 +228,11 @@ void test_every_byte_is_accounted_for(void)
     rig_go_idle();
     sends(GET_HEALTH);
     begins(tmini_request_health(&rig.lidar));
-    rig_feed_byte(0x11);     /* 1 skipped */
-    rig_feed_health(0, 0);   /* 10 in a reply */
-    rig_feed_byte(0x22);     /* 1 skipped */
+    rig_feed_byte(0x11);         /* 1 skipped */
+    rig_feed_health(0, 0);       /* 10 in a reply */
+    rig_feed_byte(0x22);         /* 1 skipped */
     rig_feed_point_packet(1000); /* 22 in a packet */
-    rig_feed_byte(0xAA);     /* 1 pending */
+    rig_feed_byte(0xAA);         /* 1 pending */
     (void)rig_drain();
     const tmini_counters_t seen = counters();
     TEST_ASSERT_EQUAL_UINT32(35, rig.fed);
@@ -247,7 +245,7 @@ void test_every_byte_is_accounted_for(void)
 
 void test_bytes_that_find_the_buffer_full_are_counted(void)
 {
-    static const uint8_t zeros[RIG_RX_SIZE] = { 0 };
+    static const uint8_t zeros[RIG_RX_SIZE] = {0};
 
     rig_feed(zeros, sizeof zeros);
     rig_feed(zeros, 7);
@@ -270,7 +268,7 @@ void test_packets_while_idle_are_parsed_and_counted_but_are_no_event(void)
 /* A clock that takes so long to read that five bytes of a health reply come meanwhile. */
 static uint32_t slow_clock(void *context)
 {
-    static const uint8_t reply[] = { 0xA5, 0x5A, 0x03, 0x00, 0x00 };
+    static const uint8_t reply[] = {0xA5, 0x5A, 0x03, 0x00, 0x00};
 
     (void)context;
     rig_feed(reply, sizeof reply);
@@ -279,7 +277,7 @@ static uint32_t slow_clock(void *context)
 
 void test_bytes_that_come_while_the_clock_is_read_are_not_given_up(void)
 {
-    static const uint8_t rest[] = { 0x00, 0x06, 0x00, 0x00, 0x00 };
+    static const uint8_t rest[] = {0x00, 0x06, 0x00, 0x00, 0x00};
 
     rig_go_idle();
     sends(GET_HEALTH);
@@ -309,7 +307,7 @@ void test_a_line_on_which_bytes_come_while_the_clock_is_read_is_not_quiet(void)
 /* A header that promises more than comes: it hides the packet behind it. */
 static void feed_false_header_and_packet(void)
 {
-    static const uint8_t header[] = { 0xAA, 0x55, 0x00, 0x50, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00 };
+    static const uint8_t header[] = {0xAA, 0x55, 0x00, 0x50, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00};
 
     rig_feed(header, sizeof header);
     rig_feed_start_packet(1000);
@@ -342,8 +340,8 @@ void test_silence_gives_up_one_candidate_behind_the_other(void)
 void test_a_byte_that_comes_in_time_keeps_the_candidate(void)
 {
     uint8_t bytes[64];
-    static const encode_sample_t samples[10] = { { 1000, 50, 0 } };
-    const encode_packet_t packet = { 0, 10, 640, 1280, samples };
+    static const encode_sample_t samples[10] = {{1000, 50, 0}};
+    const encode_packet_t packet = {0, 10, 640, 1280, samples};
     const size_t size = encode_packet(bytes, &packet);
 
     for (size_t i = 0; i < size; i++) {
@@ -356,7 +354,7 @@ void test_a_byte_that_comes_in_time_keeps_the_candidate(void)
 
 void test_silence_gives_up_what_hides_a_reply_too(void)
 {
-    static const uint8_t header[] = { 0xAA, 0x55, 0x00, 0x28, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00 };
+    static const uint8_t header[] = {0xAA, 0x55, 0x00, 0x28, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00};
 
     rig_go_idle();
     sends(GET_INFO);
@@ -458,8 +456,8 @@ void test_a_scan_with_more_points_than_the_buffer_holds_says_how_many_were_dropp
 
 void test_the_filter_of_the_configuration_is_applied(void)
 {
-    static const encode_sample_t samples[2] = { { 1000, 50, 2 }, { 2000, 50, 3 } };
-    const encode_packet_t packet = { 0, 2, 640, 672, samples };
+    static const encode_sample_t samples[2] = {{1000, 50, 2}, {2000, 50, 3}};
+    const encode_packet_t packet = {0, 2, 640, 672, samples};
     uint8_t bytes[16];
 
     rig.config.filter = TMINI_FILTER_SPECULAR;
@@ -759,9 +757,9 @@ void test_three_lidars_at_once_know_nothing_of_each_other(void)
 {
     static tmini_t lidars[3];
     static uint8_t rx[3][RIG_RX_SIZE];
-    static const uint8_t commands[3][2] = { { 0xA5, 0x65 }, { 0xA5, 0x65 }, { 0xA5, 0x65 } };
-    static const uint8_t start[2] = { 0xA5, 0x60 };
-    static const uint8_t info[2] = { 0xA5, 0x90 };
+    static const uint8_t commands[3][2] = {{0xA5, 0x65}, {0xA5, 0x65}, {0xA5, 0x65}};
+    static const uint8_t start[2] = {0xA5, 0x60};
+    static const uint8_t info[2] = {0xA5, 0x90};
     uint8_t reply[ENCODE_REPLY_MAX];
 
     port_now_ms_StubWithCallback(now_of_any);

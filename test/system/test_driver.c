@@ -1,0 +1,616 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The library drives the simulated lidar, in virtual time. world.h says what is checked all the while;
+ * the tests say what must come of it. */
+
+#include "world.h"
+
+#include "unity.h"
+
+#include <string.h>
+
+static world_t world;
+static world_config_t config;
+
+void setUp(void)
+{
+    config = world_default_config();
+}
+
+void tearDown(void) {}
+
+static void begin(void)
+{
+    world_init(&world, &config);
+}
+
+static void check_world(const world_t *checked)
+{
+    for (unsigned i = 0; i < VIOLATION_KINDS; i++) {
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, checked->counts.violations[i],
+                                         world_violation_name((violation_t)i));
+    }
+}
+
+/* Waits for the end of a command that has begun. */
+static void ends_with(tmini_event_t event, uint32_t limit_ms)
+{
+    const unsigned events = world_run_until(&world, BIT(event) | BIT(TMINI_EVENT_FAILED), limit_ms);
+
+    TEST_ASSERT_TRUE_MESSAGE((events & BIT(event)) != 0, "the command has not ended as it should");
+}
+
+static void fails_with(tmini_status_t status, uint32_t limit_ms)
+{
+    const unsigned events = world_run_until(&world, BIT(TMINI_EVENT_FAILED), limit_ms);
+
+    TEST_ASSERT_TRUE((events & BIT(TMINI_EVENT_FAILED)) != 0);
+    TEST_ASSERT_EQUAL_INT(status, tmini_failure(&world.lidar));
+}
+
+/* Scanning, at full speed. */
+static void scan(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&world.lidar));
+    ends_with(TMINI_EVENT_STARTED, 3000);
+    (void)world_run_ms(&world, 3000);
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(&world.lidar));
+}
+
+static uint32_t count(tmini_event_t event)
+{
+    return world.counts.events[event];
+}
+
+/* ---- Starting ---- */
+
+void test_a_cold_start_brings_the_first_scan_within_two_seconds_and_then_six_a_second(void)
+{
+    begin();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&world.lidar));
+    ends_with(TMINI_EVENT_SCAN, 2000);
+    (void)world_run_ms(&world, 2000);
+    const uint32_t before = count(TMINI_EVENT_SCAN);
+    (void)world_run_ms(&world, 10000);
+    TEST_ASSERT_UINT32_WITHIN(1, 60, count(TMINI_EVENT_SCAN) - before);
+    TEST_ASSERT_TRUE(world.scan.complete);
+    TEST_ASSERT_UINT16_WITHIN(10, 600, world.scan.frequency_chz);
+    check_world(&world);
+}
+
+void test_a_cold_start_of_a_unit_without_ct_information_is_the_same(void)
+{
+    config.sim.ct_information = false;
+    begin();
+    scan();
+    TEST_ASSERT_TRUE(count(TMINI_EVENT_SCAN) > 12);
+    TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_FAULT));
+    check_world(&world);
+}
+
+void test_no_packet_of_the_spin_up_is_lost_and_it_is_not_taken_for_a_loss(void)
+{
+    config.sim.spin_up_ms = 5000;
+    config.sim.spin_up_percent = 5;
+    config.streaming = true;
+    begin();
+    scan();
+    (void)world_run_ms(&world, 5000);
+    TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_LOST));
+    TEST_ASSERT_EQUAL_UINT32(world.link.counts.packets, count(TMINI_EVENT_PACKET));
+    check_world(&world);
+}
+
+void test_a_restarted_program_finds_the_lidar_streaming_and_starts_it_again(void)
+{
+    begin();
+    scan();
+    world_restart_library(&world);
+    scan();
+    check_world(&world);
+}
+
+void test_a_restarted_program_that_never_commands_gets_nothing_from_a_streaming_lidar(void)
+{
+    begin();
+    scan();
+    world_restart_library(&world);
+    TEST_ASSERT_EQUAL_HEX(0, world_run_ms(&world, 5000));
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_UNKNOWN, tmini_state(&world.lidar));
+}
+
+/* ---- Each command, on a lidar that is still streaming ---- */
+
+static void streams_on_while_the_program_restarts(void)
+{
+    begin();
+    scan();
+    world_restart_library(&world);
+}
+
+void test_info_is_asked_of_a_lidar_that_is_still_streaming(void)
+{
+    static const uint8_t serial[16] = {2, 0, 2, 6, 0, 3, 1, 7, 0, 0, 0, 1, 2, 3, 4, 5};
+
+    streams_on_while_the_program_restarts();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(&world.lidar));
+    ends_with(TMINI_EVENT_INFO, 1000);
+    TEST_ASSERT_EQUAL_UINT8(151, tmini_info(&world.lidar)->model);
+    TEST_ASSERT_EQUAL_UINT8_ARRAY(serial, tmini_info(&world.lidar)->serial, 16);
+    TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
+    check_world(&world);
+}
+
+void test_health_is_asked_of_a_lidar_that_is_still_streaming(void)
+{
+    streams_on_while_the_program_restarts();
+    sim_set_health(&world.sim, SIM_HEALTH_LD);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_health(&world.lidar));
+    ends_with(TMINI_EVENT_HEALTH, 1000);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_LD, tmini_health(&world.lidar)->faults);
+    check_world(&world);
+}
+
+void test_the_frequency_is_asked_of_a_lidar_that_is_still_streaming(void)
+{
+    streams_on_while_the_program_restarts();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_frequency(&world.lidar));
+    ends_with(TMINI_EVENT_FREQUENCY, 1000);
+    TEST_ASSERT_EQUAL_UINT16(600, tmini_frequency_chz(&world.lidar));
+    check_world(&world);
+}
+
+void test_the_frequency_of_a_lidar_that_is_still_streaming_is_set(void)
+{
+    streams_on_while_the_program_restarts();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 940));
+    ends_with(TMINI_EVENT_FREQUENCY, 3000);
+    TEST_ASSERT_EQUAL_UINT16(940, sim_frequency_chz(&world.sim));
+    scan();
+    TEST_ASSERT_UINT16_WITHIN(20, 940, world.scan.frequency_chz);
+    check_world(&world);
+}
+
+void test_a_lidar_that_is_still_streaming_is_rebooted(void)
+{
+    streams_on_while_the_program_restarts();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_reboot(&world.lidar));
+    ends_with(TMINI_EVENT_REBOOTED, 6000);
+    TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
+    scan();
+    check_world(&world);
+}
+
+void test_a_lidar_that_is_still_streaming_is_stopped(void)
+{
+    streams_on_while_the_program_restarts();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
+    ends_with(TMINI_EVENT_STOPPED, 1000);
+    TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
+    check_world(&world);
+}
+
+/* ---- Commands in adverse conditions ---- */
+
+void test_every_frequency_can_be_set_from_where_the_last_one_left_it(void)
+{
+    begin();
+    for (unsigned i = 0; i < 61; i++) {
+        const uint16_t target_chz = (uint16_t)(600 + 10 * (i * 37 % 61));
+
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, target_chz));
+        ends_with(TMINI_EVENT_FREQUENCY, 3000);
+        TEST_ASSERT_EQUAL_UINT16(target_chz, sim_frequency_chz(&world.sim));
+    }
+    check_world(&world);
+}
+
+void test_a_frequency_that_the_unit_refuses_fails_with_the_reply(void)
+{
+    config.sim.max_frequency_chz = 900;
+    begin();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 1000));
+    fails_with(TMINI_ERROR_REPLY, 20000);
+    check_world(&world);
+}
+
+void test_a_lost_reply_is_asked_for_again(void)
+{
+    begin();
+    sim_lose_next_reply(&world.sim);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(&world.lidar));
+    ends_with(TMINI_EVENT_INFO, 3000);
+    check_world(&world);
+}
+
+void test_a_lost_reply_to_any_frequency_step_does_no_harm(void)
+{
+    for (unsigned lost = 0; lost < 6; lost++) {
+        begin();
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 820));
+        while (world.sim.counts.replies < lost) {
+            (void)world_step(&world);
+        }
+        sim_lose_next_reply(&world.sim);
+        ends_with(TMINI_EVENT_FREQUENCY, 6000);
+        TEST_ASSERT_EQUAL_UINT16(820, sim_frequency_chz(&world.sim));
+        TEST_ASSERT_EQUAL_UINT32(1, world.sim.counts.lost_replies);
+        check_world(&world);
+    }
+}
+
+void test_a_late_reply_to_any_frequency_step_does_no_harm(void)
+{
+    static const uint32_t delays_ms[] = {40, 100, 1900, 2050, 2500};
+
+    for (unsigned i = 0; i < sizeof delays_ms / sizeof delays_ms[0]; i++) {
+        for (unsigned late = 0; late < 6; late++) {
+            begin();
+            TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 820));
+            while (world.sim.counts.replies < late) {
+                (void)world_step(&world);
+            }
+            sim_delay_next_reply(&world.sim, delays_ms[i]);
+            ends_with(TMINI_EVENT_FREQUENCY, 8000);
+            TEST_ASSERT_EQUAL_UINT16(820, sim_frequency_chz(&world.sim));
+            check_world(&world);
+        }
+    }
+}
+
+void test_a_late_reply_to_one_question_is_not_taken_for_the_answer_to_another(void)
+{
+    begin();
+    sim_delay_next_reply(&world.sim, 2500);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_frequency(&world.lidar));
+    (void)world_run_ms(&world, 2000);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
+    fails_with(TMINI_ERROR_ABORTED, 1);
+    ends_with(TMINI_EVENT_STOPPED, 1000);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(&world.lidar));
+    (void)world_run_until(&world, BIT(TMINI_EVENT_INFO), 3000);
+    TEST_ASSERT_EQUAL_UINT8(151, tmini_info(&world.lidar)->model);
+    check_world(&world);
+}
+
+void test_a_lost_reply_to_the_start_does_not_keep_scans_away(void)
+{
+    begin();
+    sim_lose_next_reply(&world.sim);
+    scan();
+    check_world(&world);
+}
+
+void test_a_tail_of_300_ms_behind_a_stop_is_waited_out(void)
+{
+    config.sim.stop_tail_ms = 300;
+    begin();
+    scan();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
+    TEST_ASSERT_EQUAL_HEX(0, world_run_ms(&world, 300));
+    ends_with(TMINI_EVENT_STOPPED, 100);
+    check_world(&world);
+}
+
+void test_commands_arrive_through_a_transmitter_that_is_often_busy(void)
+{
+    config.short_writes = true;
+    begin();
+    scan();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
+    ends_with(TMINI_EVENT_STOPPED, 1000);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 1180));
+    ends_with(TMINI_EVENT_FREQUENCY, 5000);
+    TEST_ASSERT_EQUAL_UINT16(1180, sim_frequency_chz(&world.sim));
+    check_world(&world);
+}
+
+void test_a_lidar_without_power_fails_every_attempt(void)
+{
+    begin();
+    sim_link_force(&world.link, SIM_LINK_UNPLUG, 60000, world.now_us);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&world.lidar));
+    fails_with(TMINI_ERROR_TIMEOUT, 10000);
+}
+
+/* ---- Faults of the line, at several rates ---- */
+
+/* A minute of it, then calm: scans must be back, and nothing wrong have happened. */
+static void survives(sim_link_kind_t kind, uint32_t mean_gap)
+{
+    begin();
+    scan();
+    sim_link_set_mean_gap(&world.link, kind, mean_gap, world.now_us);
+    (void)world_run_ms(&world, 60000);
+    TEST_ASSERT_TRUE(world.link.counts.faults[kind] > 0);
+    sim_link_calm(&world.link, world.now_us);
+    (void)world_run_ms(&world, WORLD_RECOVERY_MS + 5000);
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(&world.lidar));
+    TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_FAULT));
+    check_world(&world);
+}
+
+static void survives_in_every_mode(sim_link_kind_t kind, uint32_t mean_gap)
+{
+    for (unsigned mode = 0; mode < 4; mode++) {
+        config.seed = mode;
+        config.streaming = (mode & 1u) != 0;
+        config.dma = (mode & 2u) != 0;
+        config.rx_size = config.dma ? 8192 : 2048;
+        config.sim.ct_information = !config.sim.ct_information;
+        config.busy_one_in = 100;
+        config.busy_ms = 60;
+        survives(kind, mean_gap);
+    }
+}
+
+void test_lost_bytes_cost_no_other_packet(void)
+{
+    survives_in_every_mode(SIM_LINK_DROP, 200);
+    survives_in_every_mode(SIM_LINK_DROP, 2000);
+    survives_in_every_mode(SIM_LINK_DROP, 50000);
+}
+
+void test_flipped_bits_cost_no_other_packet(void)
+{
+    survives_in_every_mode(SIM_LINK_FLIP, 200);
+    survives_in_every_mode(SIM_LINK_FLIP, 2000);
+    survives_in_every_mode(SIM_LINK_FLIP, 50000);
+}
+
+void test_extra_bytes_cost_no_other_packet(void)
+{
+    survives_in_every_mode(SIM_LINK_INSERT, 200);
+    survives_in_every_mode(SIM_LINK_INSERT, 2000);
+    survives_in_every_mode(SIM_LINK_INSERT, 50000);
+}
+
+void test_bursts_cost_no_other_packet(void)
+{
+    survives_in_every_mode(SIM_LINK_BURST, 20);
+    survives_in_every_mode(SIM_LINK_BURST, 200);
+    survives_in_every_mode(SIM_LINK_BURST, 5000);
+}
+
+void test_stalls_cost_at_most_the_packet_that_they_cut(void)
+{
+    survives_in_every_mode(SIM_LINK_STALL, 200);
+    survives_in_every_mode(SIM_LINK_STALL, 1000);
+    survives_in_every_mode(SIM_LINK_STALL, 10000);
+}
+
+void test_packets_cut_short_cost_no_other_packet(void)
+{
+    survives_in_every_mode(SIM_LINK_CUT, 20);
+    survives_in_every_mode(SIM_LINK_CUT, 200);
+    survives_in_every_mode(SIM_LINK_CUT, 5000);
+}
+
+void test_loss_of_power_is_recovered_from(void)
+{
+    survives_in_every_mode(SIM_LINK_UNPLUG, 5000);
+    survives_in_every_mode(SIM_LINK_UNPLUG, 15000);
+}
+
+void test_wrong_baud_rates_for_a_while_are_recovered_from(void)
+{
+    survives_in_every_mode(SIM_LINK_GARBLE, 2000);
+    survives_in_every_mode(SIM_LINK_GARBLE, 10000);
+}
+
+/* ---- Recovery ---- */
+
+void test_a_lidar_unplugged_for_a_minute_is_recovered_in_time(void)
+{
+    begin();
+    scan();
+    sim_link_force(&world.link, SIM_LINK_UNPLUG, 60000, world.now_us);
+    (void)world_run_ms(&world, 60000);
+    TEST_ASSERT_EQUAL_UINT32(1, count(TMINI_EVENT_LOST));
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_RECOVERING, tmini_state(&world.lidar));
+    ends_with(TMINI_EVENT_RECOVERED, WORLD_RECOVERY_MS + config.sim.boot_ms);
+    ends_with(TMINI_EVENT_SCAN, 1000);
+    check_world(&world);
+}
+
+void test_a_lidar_unplugged_is_recovered_in_time_whenever_it_comes_back(void)
+{
+    for (uint32_t away_ms = 500; away_ms < 40000; away_ms += 1250) {
+        begin();
+        scan();
+        sim_link_force(&world.link, SIM_LINK_UNPLUG, away_ms, world.now_us);
+        (void)world_run_ms(&world, away_ms);
+        (void)world_run_ms(&world, WORLD_RECOVERY_MS + config.sim.boot_ms);
+        TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(&world.lidar));
+        check_world(&world);
+    }
+}
+
+void test_without_recovery_the_program_starts_the_lidar_again(void)
+{
+    config.no_recovery = true;
+    begin();
+    scan();
+    const uint32_t commands = world.sim.counts.commands;
+    sim_link_force(&world.link, SIM_LINK_UNPLUG, 2000, world.now_us);
+    ends_with(TMINI_EVENT_LOST, 2000);
+    TEST_ASSERT_EQUAL_HEX(0, world_run_ms(&world, 30000));
+    TEST_ASSERT_EQUAL_UINT32(commands, world.sim.counts.commands);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
+    ends_with(TMINI_EVENT_STOPPED, 1000);
+    scan();
+    check_world(&world);
+}
+
+void test_a_lidar_that_shuts_itself_off_is_lost_and_recovered_when_it_is_well_again(void)
+{
+    config.sim.fatal_health = SIM_HEALTH_SENSOR;
+    begin();
+    scan();
+    sim_set_health(&world.sim, SIM_HEALTH_SENSOR);
+    world_run_until(&world, BIT(TMINI_EVENT_LOST), 2000);
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_RECOVERING, tmini_state(&world.lidar));
+    sim_set_health(&world.sim, 0);
+    ends_with(TMINI_EVENT_RECOVERED, WORLD_RECOVERY_MS);
+}
+
+/* ---- Faults of the lidar ---- */
+
+static void reports(uint8_t expected)
+{
+    const uint32_t losses = count(TMINI_EVENT_LOST);
+    const uint32_t commands = world.sim.counts.commands;
+
+    (void)world_run_ms(&world, 60000);
+    TEST_ASSERT_EQUAL_HEX8(expected, tmini_faults(&world.lidar));
+    TEST_ASSERT_EQUAL_UINT32(1, count(TMINI_EVENT_FAULT));
+    sim_block_rotor(&world.sim, false);
+    sim_cover_window(&world.sim, false);
+    sim_set_health(&world.sim, 0);
+    (void)world_run_ms(&world, WORLD_FAULT_MS);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&world.lidar));
+    TEST_ASSERT_EQUAL_UINT32(2, count(TMINI_EVENT_FAULT));
+    /* It was told, not "repaired". */
+    TEST_ASSERT_EQUAL_UINT32(losses, count(TMINI_EVENT_LOST));
+    TEST_ASSERT_EQUAL_UINT32(commands, world.sim.counts.commands);
+    check_world(&world);
+}
+
+static void begin_with(bool ct_information, bool blocked_sends_starts)
+{
+    config.sim.ct_information = ct_information;
+    config.sim.blocked_sends_starts = blocked_sends_starts;
+    begin();
+    scan();
+}
+
+void test_a_blocked_rotor_is_reported_and_not_repaired(void)
+{
+    begin_with(true, true);
+    sim_block_rotor(&world.sim, true);
+    reports(TMINI_FAULT_ENCODER);
+}
+
+void test_a_blocked_rotor_without_start_packets_is_reported_and_not_repaired(void)
+{
+    begin_with(true, false);
+    sim_block_rotor(&world.sim, true);
+    reports(TMINI_FAULT_ENCODER);
+}
+
+void test_a_blocked_rotor_of_a_unit_without_ct_information_is_reported_and_not_repaired(void)
+{
+    begin_with(false, false);
+    sim_block_rotor(&world.sim, true);
+    reports(TMINI_FAULT_ENCODER);
+}
+
+void test_a_blocked_rotor_with_start_packets_but_no_ct_information_shows_as_no_data(void)
+{
+    begin_with(false, true);
+    sim_block_rotor(&world.sim, true);
+    reports(TMINI_FAULT_DATA);
+}
+
+void test_a_covered_window_is_reported_and_not_repaired(void)
+{
+    begin_with(true, true);
+    sim_cover_window(&world.sim, true);
+    reports(TMINI_FAULT_DATA);
+}
+
+void test_a_covered_window_of_a_unit_without_ct_information_is_reported_and_not_repaired(void)
+{
+    begin_with(false, true);
+    sim_cover_window(&world.sim, true);
+    reports(TMINI_FAULT_DATA);
+}
+
+void test_every_health_bit_is_reported(void)
+{
+    for (unsigned bit = 0; bit < 6; bit++) {
+        begin_with(true, true);
+        sim_set_health(&world.sim, (uint8_t)(1u << bit));
+        reports((uint8_t)(1u << bit));
+    }
+}
+
+/* ---- Reception ---- */
+
+void test_a_small_dma_ring_is_enough_for_a_prompt_main_loop(void)
+{
+    config.dma = true;
+    config.rx_size = 1024;
+    config.busy_one_in = 10;
+    config.busy_ms = 8;
+    begin();
+    scan();
+    (void)world_run_ms(&world, 60000);
+    check_world(&world);
+}
+
+void test_a_ring_of_1024_bytes_is_enough_for_a_main_loop_that_is_busy_for_60_ms(void)
+{
+    config.rx_size = 1024;
+    config.busy_one_in = 10;
+    config.busy_ms = 60;
+    begin();
+    scan();
+    (void)world_run_ms(&world, 60000);
+    check_world(&world);
+}
+
+void test_a_main_loop_that_is_busy_for_too_long_costs_packets_but_accounts_for_them(void)
+{
+    tmini_counters_t counters;
+
+    for (unsigned dma = 0; dma < 2; dma++) {
+        config.dma = dma == 1;
+        config.rx_size = 1024;
+        config.busy_one_in = 10;
+        config.busy_ms = 400;
+        config.overruns_expected = true;
+        begin();
+        scan();
+        (void)world_run_ms(&world, 60000);
+        tmini_counters(&world.lidar, &counters);
+        TEST_ASSERT_TRUE(counters.parser.bytes_overrun > 0);
+        TEST_ASSERT_TRUE(count(TMINI_EVENT_SCAN) > 0);
+        TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_LOST));
+        check_world(&world);
+    }
+}
+
+/* ---- Several ---- */
+
+void test_three_lidars_at_once_each_do_as_if_alone(void)
+{
+    static world_t worlds[3];
+
+    for (unsigned i = 0; i < 3; i++) {
+        config.seed = i;
+        config.sim.frequency_chz = (uint16_t)(600 + 200 * i);
+        config.streaming = i == 1;
+        world_init(&worlds[i], &config);
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&worlds[i].lidar));
+    }
+    for (unsigned ms = 0; ms < 20000; ms++) {
+        for (unsigned i = 0; i < 3; i++) {
+            (void)world_step(&worlds[i]);
+        }
+        if (ms == 10000) {
+            sim_link_force(&worlds[0].link, SIM_LINK_UNPLUG, 1500, worlds[0].now_us);
+            TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&worlds[2].lidar));
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, worlds[0].counts.events[TMINI_EVENT_RECOVERED]);
+    TEST_ASSERT_EQUAL_UINT32(0, worlds[1].counts.events[TMINI_EVENT_LOST]);
+    TEST_ASSERT_EQUAL_UINT32(1, worlds[2].counts.events[TMINI_EVENT_STOPPED]);
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(&worlds[0].lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(&worlds[1].lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_IDLE, tmini_state(&worlds[2].lidar));
+    for (unsigned i = 0; i < 3; i++) {
+        check_world(&worlds[i]);
+    }
+}
