@@ -17,6 +17,7 @@ from targets import ROOT, BenchError, run
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "[^"]*?(\d+) bytes \((\w+)\)')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"(?: label: "([^"]+)")?')
 RELOCATED_CALL = re.compile(r"R_(?:ARM_THM_(?:CALL|JUMP24)|RISCV_CALL(?:_PLT)?)\s+(\w+)")
+DIRECT_CALL = re.compile(r"\t(?:bl|blx|b|b\.n|b\.w|jal|j)\s+(?:ra,)?[0-9a-f]+ <(\w+)>")
 FUNCTION = re.compile(r"^[0-9a-f]+ <([^>]+)>:$")
 
 # What the interrupt calls; everything else is called where the user polls.
@@ -100,7 +101,7 @@ def add_support(target, program, support, frames, calls):
             continue
         text = "\n".join(bodies[name])
         frames[name] = sum(adjusts_stack_by(line) for line in bodies[name])
-        called = set(re.findall(r"\t(?:bl|blx|b|b\.n|b\.w|jal|j)\s+(?:ra,)?[0-9a-f]+ <(\w+)>", text))
+        called = set(DIRECT_CALL.findall(text))
         calls[name] = called - {name}
         queue.extend(calls[name])
 
