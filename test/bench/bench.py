@@ -199,8 +199,8 @@ def show(figures):
         depth, path = f["stack"]["polling"]
         print(f"{name} {level}: {depth} bytes of stack in {' > '.join(path)}")
     for feed, f in figures["host"].items():
-        print(f"this computer, by {feed}: {f['own']:.2f} instructions a byte, and {f['copies']:.2f} in "
-              "the C library's copies")
+        print(f"this computer, by {feed}: {f['own']:.2f} instructions a byte, and "
+              f"{f['copies']:.2f} in the C library's copies")
     for feed, f in figures.get("room", {}).items():
         print(f"this computer, a room as a real unit sent it, by {feed}: {f['own']:.2f} and "
               f"{f['copies']:.2f}, {f['packets']} packets")

@@ -5,10 +5,11 @@
 
 import re
 
+import load
 from emulator import Machine
 from targets import HERE, ROOT, BenchError
 
-RX_SIZE = 1024           # Of emulated/main.c.
+RX_SIZE = 1024
 TICK_MS = 10             # How often is polled: about once a packet.
 BYTES_A_TICK = 131       # At the lidar's mean data rate (section 1).
 LINE_BYTES_A_TICK = 230  # At the line's full rate, 230400 baud.
@@ -48,17 +49,18 @@ class FakeLidar:
 class Session:
     """One lidar from tmini_init() on, and what its calls cost."""
 
-    def __init__(self, target, program, feed="bytes", streaming=False):
+    def __init__(self, target, program, feed="bytes", streaming=False, rx_size=RX_SIZE):
         self.machine = Machine(target.name, program)
         self.machine.paint_stack()
         self.names = event_names()
         self.lidar = FakeLidar()
         self.now_ms = 0
         self.position = 0
+        self.rx_size = rx_size
         self.feed = getattr(self, "_feed_" + feed)
         self.feed_total = self.feed_worst = self.poll_total = 0
         self.worst_poll = {}
-        self.machine.call("bench_begin", feed == "dma", streaming)
+        self.machine.call("bench_begin", feed == "dma", streaming, rx_size)
 
     def _fed(self, cost):
         self.feed_total += cost
@@ -74,10 +76,10 @@ class Session:
 
     def _feed_dma(self, data):
         """What the hardware does, then the one call that tells of it."""
-        first = data[:RX_SIZE - self.position]
+        first = data[:self.rx_size - self.position]
         self.machine.write("bench_rx", first, self.position)
         self.machine.write("bench_rx", data[len(first):])
-        self.position = (self.position + len(data)) % RX_SIZE
+        self.position = (self.position + len(data)) % self.rx_size
         self._fed(self.machine.cost("bench_feed_dma", self.position)[1])
 
     def poll(self):
@@ -90,12 +92,16 @@ class Session:
             self.poll_total += self.machine.cost("bench_decode")[1]
         return name
 
-    def tick(self, data=b"", milliseconds=TICK_MS):
-        """Time passes, `data` arrives; polls until nothing is left and returns the events."""
+    def receive(self, data, milliseconds):
+        """Time passes, `data` arrives; nobody polls."""
         self.now_ms += milliseconds
         self.machine.write_word("bench_now_ms", self.now_ms)
         if data:
             self.feed(data)
+
+    def tick(self, data=b"", milliseconds=TICK_MS):
+        """Time passes, `data` arrives; polls until nothing is left and returns the events."""
+        self.receive(data, milliseconds)
         events = []
         while not events or events[-1] != "NONE":
             events.append(self.poll())
@@ -213,6 +219,35 @@ def conversation(target, program, clean, faulty):
     return session.worst_poll, session.machine.stack_used()
 
 
+def overrun(target, program, stream, rx_size, dma, pause_ms):
+    """Bytes lost when a packet comes every 10 ms at the line's full rate, and one poll every
+    `pause_ms` finds them."""
+    session = Session(target, program, "dma" if dma else "blocks", rx_size=rx_size)
+    session.spin_up()
+    bytes_a_ms = LINE_BYTES_A_TICK // TICK_MS
+    for at in range(0, len(stream), BYTES_A_TICK):
+        packet = stream[at:at + BYTES_A_TICK]
+        for ms in range(TICK_MS):
+            session.receive(packet[ms * bytes_a_ms:(ms + 1) * bytes_a_ms], 1)
+            if session.now_ms % pause_ms == 0:
+                session.tick(milliseconds=0)
+    return session.counters()[5]
+
+
+def check_pauses(target, program, stream):
+    """The longest pauses between polls that the tables promise must lose nothing; much longer ones
+    must lose something, or this would be no check."""
+    for rx_size in load.RINGS:
+        for dma in (False, True):
+            pause_ms = int(load.longest_pause_ms(rx_size, dma))
+            if pause_ms < 1:
+                continue
+            if overrun(target, program, stream, rx_size, dma, pause_ms) > 0:
+                raise BenchError(f"{rx_size} bytes do not last for {pause_ms} ms")
+            if overrun(target, program, stream, rx_size, dma, 2 * pause_ms + 20) == 0:
+                raise BenchError(f"{rx_size} bytes last longer than they can")
+
+
 def check_counting(target, program, clean):
     """Counting blocks must agree with counting single instructions. A Cortex-M3 or M4 skips some
     within a block (IT); they take their cycle, and only the blocks' count includes them."""
@@ -234,6 +269,8 @@ def measure(target, level, objects, folder, streams):
     program, _ = target.link([*objects, main], folder / "emulated.elf")
     clean = streams["clean"]
     check_counting(target, program, clean)
+    if (target.name, level) == ("cortex-m4", "-Os"):
+        check_pauses(target, program, clean)
     costs, worst = {}, {}
     for name, feed, streaming in (("bytes", "bytes", False), ("blocks", "blocks", False),
                                   ("dma", "dma", False), ("streaming", "blocks", True)):

@@ -57,7 +57,8 @@ has_library() {
 is_present cc || skip "there is no C compiler"
 is_present valgrind || skip "valgrind is not installed"
 is_present python3 || skip "Python 3 is not installed"
-has_library arm-none-eabi-gcc --specs=nano.specs || skip "arm-none-eabi-gcc or newlib is not installed"
+has_library arm-none-eabi-gcc --specs=nano.specs ||
+    skip "arm-none-eabi-gcc or newlib is not installed"
 has_library riscv64-unknown-elf-gcc --specs=picolibc.specs ||
     skip "riscv64-unknown-elf-gcc or picolibc is not installed"
 

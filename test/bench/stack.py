@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Worst-case stack: the compiler's frame sizes summed along the deepest path of calls.
+"""Worst-case stack: frames summed along the deepest path of calls.
 
-Frames and calls come from the compiler (-fcallgraph-info=su,da), calls that it adds itself (memcpy,
-division) and their frames from the disassembly. The port's functions are the user's and not
-included. A caller whose last act is a call has given its frame back by then, which is not taken
-into account: the bound is never too low.
+Frames come from the compiler (-fcallgraph-info=su,da), calls from the object code, which also has
+those that the compiler adds itself (memcpy, division); frames of such support functions come from
+the disassembly. A tail call, a branch as the caller's last act, finds the caller's frame given back.
+The port's functions are the user's and not included.
 """
 
 import functools
@@ -16,56 +16,103 @@ from targets import ROOT, BenchError, run
 
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "[^"]*?(\d+) bytes \((\w+)\)')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"(?: label: "([^"]+)")?')
-RELOCATED_CALL = re.compile(r"R_(?:ARM_THM_(?:CALL|JUMP24)|RISCV_CALL(?:_PLT)?)\s+(\w+)")
-FUNCTION = re.compile(r"^[0-9a-f]+ <([^>]+)>:$")
+FUNCTION = re.compile(r"^[0-9a-f]+ <([^.>][^>]*)>:$")  # Not a local label.
+RELOCATED = re.compile(r"(R_ARM_THM_CALL|R_ARM_THM_JUMP24|R_RISCV_CALL(?:_PLT)?)\s+(\S+)")
+DIRECT_CALL = re.compile(r"\t(?:bl|blx|b|b\.n|b\.w|jal|j)\s+(?:ra,)?[0-9a-f]+ <(\w+)>")
 
 # What the interrupt calls; everything else is called where the user polls.
 INTERRUPT = ("tmini_ring_put", "tmini_ring_write", "tmini_ring_publish")
+
+
+class Graph:
+    """Functions with their frames and calls. Static functions are named file:function."""
+
+    def __init__(self):
+        self.frames = {}
+        self.calls = {}       # {caller: {callees}}, the caller's frame staying
+        self.tail_calls = {}  # the same, the caller's frame given back
+
+    def add_call(self, caller, callee, is_tail):
+        calls = self.tail_calls if is_tail else self.calls
+        calls.setdefault(caller, set()).add(callee)
+
+    def callees(self, caller):
+        return self.calls.get(caller, set()) | self.tail_calls.get(caller, set())
+
+    def deepest(self, name):
+        """Bytes of stack below a call of the function, and the path to them."""
+        @functools.cache
+        def depth_of(function):
+            frame = self.frames[function]
+            paths = [(frame, ())]
+            for callee in sorted(self.calls.get(function, ())):
+                depth, path = depth_of(callee)
+                paths.append((frame + depth, path))
+            for callee in sorted(self.tail_calls.get(function, ())):
+                paths.append(depth_of(callee))
+            depth, path = max(paths, key=lambda found: found[0])
+            return depth, (function.rsplit(":", 1)[-1], *path)
+
+        try:
+            return depth_of(name)
+        except RecursionError as error:
+            raise BenchError("the library calls itself: its stack has no bound") from error
 
 
 def is_port_call(place):
     """True if the source at file:line:column calls one of the port's functions."""
     name, line, _ = place.rsplit(":", 2)
     path = ROOT / name.removeprefix("./")
-    lines = path.read_text().splitlines()
-    return "port->" in lines[int(line) - 1]
+    return "port->" in path.read_text().splitlines()[int(line) - 1]
 
 
-def read_graph(objects):
-    """Frames and calls of the library: {function: bytes}, {function: {functions}}."""
-    frames, calls = {}, {}
-    for item in objects:
-        text = item.with_suffix(".ci").read_text()
-        for name, size, kind in NODE.findall(text):
-            if kind != "static":
-                raise BenchError(f"{name} has a stack frame that is not of constant size")
-            frames[name] = int(size)
-        for caller, callee, place in EDGE.findall(text):
-            if callee != "__indirect_call":
-                calls.setdefault(caller, set()).add(callee)
-            elif not is_port_call(place):
+def add_frames(graph, text):
+    """Frames of one object. Returns the graph's names of its functions by their symbols."""
+    names = {}
+    for name, size, kind in NODE.findall(text):
+        if kind != "static":
+            raise BenchError(f"{name} has a stack frame that is not of constant size")
+        graph.frames[name] = int(size)
+        names[name.rsplit(":", 1)[-1]] = name
+    return names
+
+
+def is_tail(relocation, instruction):
+    """A branch rather than a call."""
+    return relocation == "R_ARM_THM_JUMP24" or "auipc\tt1" in instruction
+
+
+def add_calls(graph, names, disassembly):
+    """Calls in one object's code. Returns the symbols of other objects that it calls."""
+    foreign = set()
+    caller = instruction = None
+    for line in disassembly.splitlines():
+        start = FUNCTION.match(line)
+        call = RELOCATED.search(line)
+        if start:
+            caller = names.get(start[1])
+        elif call and caller:
+            callee = names.get(call[2], call[2])
+            graph.add_call(caller, callee, is_tail(call[1], instruction))
+            if call[2] not in names:
+                foreign.add(call[2])
+        else:
+            instruction = line
+    return foreign
+
+
+def check_calls(graph, text):
+    """The compiler's own account of calls must hold none that the object code has not shown; and
+    no call through a pointer but the port's, whose depth would be unknown."""
+    for caller, callee, place in EDGE.findall(text):
+        if callee == "__indirect_call":
+            if not is_port_call(place):
                 raise BenchError(f"{place}: a call through a pointer that is not the port's")
-    return frames, calls
+        elif callee in graph.frames and callee not in graph.callees(caller):
+            raise BenchError(f"{caller} calls {callee}, which the object code does not show")
 
 
-def add_hidden_calls(target, objects, frames, calls):
-    """Calls that only the disassembly shows, of functions outside the library. Returns them."""
-    support = set()
-    names = {name.rsplit(":", 1)[-1]: name for name in frames}
-    for item in objects:
-        caller = None
-        for line in run(target.tool("objdump"), "-dr", item).splitlines():
-            start = FUNCTION.match(line)
-            if start:
-                caller = names.get(start[1])
-            call = RELOCATED_CALL.search(line)
-            if call and caller and call[1] not in names:
-                calls.setdefault(caller, set()).add(call[1])
-                support.add(call[1])
-    return support
-
-
-def adjusts_stack_by(line):
+def stack_taken(line):
     """Bytes of stack that an instruction takes."""
     saved = re.search(r"\t(?:push|stmdb\s+sp!,|stmfd\s+sp!,)\s*\{(.*)\}", line)
     if saved:
@@ -74,53 +121,43 @@ def adjusts_stack_by(line):
             ends = re.fullmatch(r"\s*r(\d+)-r(\d+)\s*", part)
             count += int(ends[2]) - int(ends[1]) + 1 if ends else 1
         return 4 * count
-    down = re.search(r"\tsub(?:\.w|w)?\s+sp,(?: sp,)? ?#(\d+)", line)
-    if down:
-        return int(down[1])
-    down = re.search(r"\t(?:c\.)?addi(?:16sp)?\s+sp,(?:sp,)?-(\d+)", line)
+    down = re.search(r"\tsub(?:\.w|w)?\s+sp,(?: sp,)? ?#(\d+)", line) or \
+        re.search(r"\t(?:c\.)?addi(?:16sp)?\s+sp,(?:sp,)?-(\d+)", line)
     return int(down[1]) if down else 0
 
 
-def add_support(target, program, support, frames, calls):
-    """Frames of the C library's functions, and what they call in turn."""
+def add_support(graph, names, disassembly):
+    """The C library's functions: what they take in all, and what they call in turn."""
     bodies = {}
-    for line in run(target.tool("objdump"), "-d", program).splitlines():
+    for line in disassembly.splitlines():
         start = FUNCTION.match(line)
         if start:
             body = bodies.setdefault(start[1], [])
         elif line.startswith(" "):
             body.append(line)
-    queue = sorted(support)
+    queue = sorted(names)
     while queue:
         name = queue.pop()
-        if name in frames:
+        if name in graph.frames:
             continue
-        if name not in bodies:
-            frames[name] = 0  # Not in this program, so not called in it.
-            continue
-        text = "\n".join(bodies[name])
-        frames[name] = sum(adjusts_stack_by(line) for line in bodies[name])
-        called = set(re.findall(r"\t(?:bl|blx|b|b\.n|b\.w|jal|j)\s+(?:ra,)?[0-9a-f]+ <(\w+)>", text))
-        calls[name] = called - {name}
-        queue.extend(calls[name])
+        body = bodies.get(name, [])  # A function that this program has not is not called in it.
+        graph.frames[name] = sum(stack_taken(line) for line in body)
+        for callee in set(DIRECT_CALL.findall("\n".join(body))) - {name}:
+            graph.add_call(name, callee, False)
+            queue.append(callee)
 
 
 def measure(target, objects, program):
     """The deepest stack of the interrupt and of polling, with the path that leads there."""
-    frames, calls = read_graph(objects)
-    support = add_hidden_calls(target, objects, frames, calls)
-    add_support(target, program, support, frames, calls)
-
-    @functools.cache
-    def deepest(name):
-        below = max((deepest(callee) for callee in sorted(calls.get(name, ()))),
-                    default=(0, ()))
-        return frames[name] + below[0], (name.rsplit(":", 1)[-1], *below[1])
-
-    public = sorted(name for name in frames if name.startswith("tmini_"))
-    try:
-        depths = {name: deepest(name) for name in public}
-    except RecursionError as error:
-        raise BenchError("the library calls itself: its stack has no bound") from error
-    return {"interrupt": max(depths[name] for name in INTERRUPT),
-            "polling": max(depths[name] for name in public if name not in INTERRUPT)}
+    graph = Graph()
+    foreign = set()
+    accounts = [item.with_suffix(".ci").read_text() for item in objects]
+    for item, text in zip(objects, accounts):
+        names = add_frames(graph, text)
+        foreign |= add_calls(graph, names, run(target.tool("objdump"), "-dr", item))
+    for text in accounts:
+        check_calls(graph, text)
+    add_support(graph, foreign, run(target.tool("objdump"), "-d", program))
+    public = sorted(name for name in graph.frames if name.startswith("tmini_"))
+    return {"interrupt": max(graph.deepest(name) for name in INTERRUPT),
+            "polling": max(graph.deepest(name) for name in public if name not in INTERRUPT)}

@@ -112,10 +112,10 @@ def cpu(figures):
 def pauses(_figures):
     def text(ring, dma):
         pause = load.longest_pause_ms(ring, dma)
-        return f"{pause:.0f} ms" if pause >= 1 else "–"
+        return f"{int(pause)} ms" if pause >= 1 else "–"
 
     rows = [[f"{ring} bytes", text(ring, False), text(ring, True)]
-            for ring in (256, 512, 1024, 2048)]
+            for ring in load.RINGS]
     return table(["receive buffer", "interrupt or blocks", "DMA"], rows)
 
 
@@ -151,6 +151,9 @@ def summary(figures):
          *(f["counts"]["feed worst"] for f in (m0, m4))],
         ["instructions a byte, in to point out",
          *(one(sum(f["counts"]["costs"]["blocks"])) for f in (m0, m4))],
+        ["load at full data rate, 8 and 168 MHz, an interrupt a byte",
+         *(one(load.percent(f["counts"], megahertz, "bytes")) + " %"
+           for f, megahertz in ((m0, 8), (m4, 168)))],
     ]
     return table(["`-Os`", "Cortex-M0", "Cortex-M4"], rows)
 

@@ -6,7 +6,7 @@
 
 #include "tmini/tmini.h"
 
-#define RX_SIZE 1024
+#define RX_SIZE 2048
 
 tmini_t bench_lidar;
 uint8_t bench_rx[RX_SIZE];
@@ -19,7 +19,7 @@ static tmini_point_t packet_points[TMINI_MAX_SAMPLES_DEFAULT];
 static tmini_counters_t counters;
 
 void bench_main(void);
-void bench_begin(bool dma, bool streaming);
+void bench_begin(bool dma, bool streaming, size_t rx_size);
 tmini_status_t bench_command(tmini_command_t command);
 tmini_status_t bench_set_frequency(uint16_t frequency_chz);
 void bench_feed_byte(uint8_t byte);
@@ -44,11 +44,11 @@ static uint32_t bench_clock(void *context)
 
 static const tmini_port_t port = {.write = bench_write, .now_ms = bench_clock};
 
-void bench_begin(bool dma, bool streaming)
+void bench_begin(bool dma, bool streaming, size_t rx_size)
 {
     const tmini_config_t config = {.port = &port,
                                    .rx_buffer = bench_rx,
-                                   .rx_size = RX_SIZE,
+                                   .rx_size = rx_size,
                                    .rx_dma = dma,
                                    .points = streaming ? NULL : points,
                                    .max_points = streaming ? 0 : TMINI_SCAN_POINTS_TYPICAL};
