@@ -46,7 +46,6 @@ static void judge_revolution(tmini_t *lidar, bool trusted)
     }
     lidar->whole = true;
     lidar->range_seen = false;
-    lidar->turned_ms = lidar->now_ms;
 }
 
 /* ------------------------------------------------------------------------------- scan packets */
@@ -63,7 +62,6 @@ static void resume(tmini_t *lidar)
     lidar->range_seen = false;
     lidar->observed = lidar->faults;
     lidar->turning_ms = lidar->now_ms;
-    lidar->turned_ms = lidar->now_ms;
     driver_enter(lidar, PHASE_SCANNING, lidar->timing->data_ms);
     if (lidar->recovering) {
         lidar->recovering = false;
@@ -122,10 +120,6 @@ void tmini_driver_packet(tmini_t *lidar)
         lidar->range_seen = true;
         lidar->turning_ms = lidar->now_ms;
     }
-    if (tmini_packet_has_range(packet)) {
-        lidar->range_seen = true;
-        lidar->turned_ms = lidar->now_ms;
-    }
     gather(lidar);
 }
 
@@ -133,7 +127,6 @@ void tmini_driver_packet(tmini_t *lidar)
 void tmini_driver_watch_rotor(tmini_t *lidar)
 {
     if (driver_elapsed(lidar, lidar->turning_ms, lidar->timing->turn_ms)) {
-    if (driver_elapsed(lidar, lidar->turned_ms, lidar->timing->turn_ms)) {
         report(lidar, (uint8_t)(lidar->faults | TMINI_FAULT_ENCODER));
     }
 }

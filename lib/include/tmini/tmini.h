@@ -167,7 +167,6 @@ typedef struct {
     uint32_t phase_ms;    /* When the phase began; while scanning, when the last packet came. */
     uint32_t received_ms; /* When bytes were last seen to have come. */
     uint32_t turning_ms;  /* When a start packet or a range last came. */
-    uint32_t turned_ms;   /* When the last start packet or range came. */
     size_t received;      /* The ring's head at received_ms. */
     const tmini_port_t *port;
     void *port_context;
