@@ -21,17 +21,6 @@
 #define TITLE_SIZE 64
 #define SUBTITLE_SIZE 256
 
-static const char *base_name(const char *path)
-{
-    const char *name = path;
-    for (; *path != '\0'; path++) {
-        if ((*path == '/' || *path == '\\') && path[1] != '\0') {
-            name = path + 1;
-        }
-    }
-    return name;
-}
-
 static const char *source_of(const options_t *options)
 {
     return options->operand != NULL ? options->operand : options->port;
@@ -51,7 +40,7 @@ static int draw_one(const kept_scan_t *kept, const options_t *options)
     }
     (void)snprintf(subtitle, sizeof subtitle,
                    "%s \xC2\xB7 %d points, %zu with a distance \xC2\xB7 %s", frequency, scan->count,
-                   scan_valid_points(scan), base_name(source_of(options)));
+                   scan_valid_points(scan), recording_base_name(source_of(options)));
     return picture_write(options->output, &(figure_t){title, subtitle, &scan, 1});
 }
 
@@ -71,7 +60,7 @@ static int draw_all(const scan_list_t *list, const options_t *options)
     (void)snprintf(title, sizeof title, "Scans %" PRIu64 " to %" PRIu64, list->scans[0].number,
                    list->scans[list->count - 1].number);
     (void)snprintf(subtitle, sizeof subtitle, "%zu points with a distance \xC2\xB7 %s", points,
-                   base_name(source_of(options)));
+                   recording_base_name(source_of(options)));
     const int status =
         picture_write(options->output, &(figure_t){title, subtitle, scans, list->count});
     free(scans);

@@ -19,7 +19,7 @@ typedef struct {
     uint64_t scans;
     uint64_t packets;
     uint64_t checksum_errors;
-    uint64_t bytes_lost; /* Skipped or overrun. */
+    uint64_t bytes_lost; /* Stray bytes between packets, or overrun ones. */
     unsigned zoom_mm;    /* The range chosen by hand; 0: as far as there is something. */
     unsigned range_mm;   /* The range shown: view_draw()'s own. */
 } view_t;

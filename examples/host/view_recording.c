@@ -22,7 +22,9 @@ typedef struct {
     tmini_scan_builder_t builder;
     tmini_point_t points[SCAN_CAPACITY];
     tmini_turn_t turn;
-    uint64_t guard_bytes; /* LastCRC: no packet's, but not lost. */
+    uint64_t bytes_before; /* The first packet. */
+    uint64_t bytes_until;  /* The latest packet: skipped bytes, */
+    uint64_t guard_bytes;  /* of which LastCRC is none that was lost. */
     uint32_t begun_ms;
     bool is_at_end;
     char health[FAULTS_TEXT_SIZE];
@@ -43,6 +45,10 @@ static bool take(player_t *player, viewer_t *viewer)
         viewer->view.scans++;
     }
     player->guard_bytes += tmini_packet_is_start(packet) && packet->gap == 1 ? 1 : 0;
+    player->bytes_until = decoder_bytes_skipped(&player->decoder);
+    if (player->decoder.totals.packets == 1) {
+        player->bytes_before = player->bytes_until;
+    }
     (void)tmini_turn_add(&player->turn, packet);
     tmini_scan_add(&player->builder, packet, 0);
     return is_scan;
@@ -75,14 +81,14 @@ static void tell(player_t *player, view_t *view)
     }
     view->packets = totals->packets;
     view->checksum_errors = totals->checksum_errors;
-    view->bytes_lost = decoder_bytes_skipped(&player->decoder) - player->guard_bytes;
+    view->bytes_lost = player->bytes_until - player->bytes_before - player->guard_bytes;
     view->state = player->is_at_end ? "end of the recording" : "playing";
 }
 
 static int watch(const options_t *options, player_t *player)
 {
     static viewer_t viewer;
-    if (!viewer_open(&viewer, options->operand)) {
+    if (!viewer_open(&viewer, recording_base_name(options->operand))) {
         return STATUS_FAILED;
     }
     player->begun_ms = now_ms();
