@@ -8,7 +8,14 @@
 
 #include "options.h"
 
+extern const command_t command_info;
+extern const command_t command_health;
+extern const command_t command_frequency;
+extern const command_t command_reboot;
+extern const command_t command_scan;
+extern const command_t command_record;
 extern const command_t command_decode;
 extern const command_t command_plot;
+extern const command_t command_view;
 
 #endif

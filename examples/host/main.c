@@ -11,8 +11,8 @@
 #include "tmini/tmini.h"
 
 static const command_t *const commands[] = {
-    &command_decode,
-    &command_plot,
+    &command_info,   &command_health, &command_frequency, &command_reboot, &command_scan,
+    &command_record, &command_decode, &command_plot,      &command_view,
 };
 
 #define COMMANDS (sizeof commands / sizeof commands[0])

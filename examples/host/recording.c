@@ -50,3 +50,14 @@ int recording_verdict(const char *path, const decoder_t *decoder)
     }
     return STATUS_OK;
 }
+
+const char *recording_base_name(const char *path)
+{
+    const char *name = path;
+    for (; *path != '\0'; path++) {
+        if ((*path == '/' || *path == '\\') && path[1] != '\0') {
+            name = path + 1;
+        }
+    }
+    return name;
+}

@@ -19,4 +19,7 @@ void recording_close(FILE *file);
  * read, was empty, or holds nothing of a lidar. Returns the status to leave with. */
 int recording_verdict(const char *path, const decoder_t *decoder);
 
+/* The path without its folders. */
+const char *recording_base_name(const char *path);
+
 #endif

@@ -27,6 +27,10 @@ bool summary_add(summary_t *summary, const decoder_t *decoder)
     if (tmini_packet_is_start(packet) && packet->gap == 1) {
         summary->guard_bytes++;
     }
+    summary->bytes_until = decoder_bytes_skipped(decoder);
+    if (decoder->totals.packets == 1) {
+        summary->bytes_before = summary->bytes_until;
+    }
     (void)tmini_turn_add(&summary->turn, packet);
     return scan_list_add(summary->scans, decoder);
 }
@@ -100,6 +104,23 @@ static void print_unit(const tmini_turn_t *turn)
     }
 }
 
+static void print_errors(const summary_t *summary, const decoder_totals_t *totals)
+{
+    const uint64_t between = summary->bytes_until - summary->bytes_before - summary->guard_bytes;
+    (void)printf("errors      %" PRIu64 " wrong checksums, %" PRIu64
+                 " stray bytes between packets\n",
+                 totals->checksum_errors, between);
+}
+
+static void print_stream(const summary_t *summary, const decoder_t *decoder)
+{
+    (void)printf("stream      %" PRIu64 " bytes: %" PRIu64 " packets, %" PRIu64
+                 " guard bytes; %" PRIu64 " bytes before the first packet, %" PRIu64
+                 " after the last\n",
+                 decoder->totals.bytes, decoder->totals.packets, summary->guard_bytes,
+                 summary->bytes_before, decoder_bytes_skipped(decoder) - summary->bytes_until);
+}
+
 bool summary_print(summary_t *summary, const decoder_t *decoder)
 {
     const decoder_totals_t *const totals = &decoder->totals;
@@ -111,11 +132,7 @@ bool summary_print(summary_t *summary, const decoder_t *decoder)
     print_frequency(summary->scans);
     print_nearest(summary->scans);
     print_unit(&summary->turn);
-    (void)printf("errors      %" PRIu64 " wrong checksums, %" PRIu64 " bytes that belong to no "
-                 "packet\n",
-                 totals->checksum_errors, decoder_bytes_skipped(decoder) - summary->guard_bytes);
-    (void)printf("stream      %" PRIu64 " bytes, %" PRIu64 " packets, %" PRIu64
-                 " guard bytes between revolutions\n",
-                 totals->bytes, totals->packets, summary->guard_bytes);
+    print_errors(summary, totals);
+    print_stream(summary, decoder);
     return true;
 }

@@ -15,7 +15,10 @@
 typedef struct {
     scan_list_t *scans;
     tmini_turn_t turn;
-    uint64_t guard_bytes; /* LastCRC (section 7): one byte before a start packet. */
+    uint64_t guard_bytes;  /* LastCRC (section 7): one byte before a start packet. */
+    uint64_t bytes_before; /* The first packet: the reply to the start command. */
+    uint64_t
+        bytes_until; /* The last packet so far: skipped bytes; after it the recording was cut. */
 } summary_t;
 
 /* Returns false if memory is short. Released by summary_free(). */

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The port for computers: a lidar on a serial device of Linux, macOS or another POSIX system, such as
+ * /dev/ttyUSB0 or /dev/tty.usbserial-110. Works on pseudo-terminals too.
+ *
+ *     static tmini_posix_t serial;
+ *
+ *     if (tmini_posix_open(&serial, "/dev/ttyUSB0") != TMINI_POSIX_OK) { … }
+ *     config.port = &tmini_posix_port;
+ *     config.port_context = &serial;
+ *     tmini_init(&lidar, &config);
+ *     tmini_posix_attach(&serial, &lidar);
+ *     tmini_start(&lidar);
+ *     while (tmini_posix_receive(&serial, 10) == TMINI_POSIX_OK) {
+ *         while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) { … }
+ *     }
+ *
+ * There is no interrupt here: the one context that polls also receives. The port's `wait` receives as
+ * well, so that the functions of tmini_blocking.h work. Any number of lidars, each with a tmini_posix_t
+ * of its own. */
+
+#ifndef TMINI_POSIX_H
+#define TMINI_POSIX_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tmini/tmini.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum {
+    TMINI_POSIX_OK = 0,
+    TMINI_POSIX_NO_DEVICE = -1,      /* There is no device of that name. */
+    TMINI_POSIX_PERMISSION = -2,     /* It may not be opened by this user. */
+    TMINI_POSIX_BUSY = -3,           /* Another program uses it. */
+    TMINI_POSIX_NOT_A_TERMINAL = -4, /* It is a file or another kind of device. */
+    TMINI_POSIX_BAUD_RATE = -5,      /* It cannot do 230400 baud. */
+    TMINI_POSIX_UNPLUGGED = -6,      /* It was there, and has gone. */
+    TMINI_POSIX_FAILED = -7,         /* Something else; errno tells. */
+} tmini_posix_status_t;
+
+/* Called with all bytes that are received, before the lidar gets them; for recordings. */
+typedef void (*tmini_posix_tap_t)(void *context, const uint8_t *bytes, size_t count);
+
+/* One serial device. `received` may be read, the rest is private. */
+typedef struct {
+    uint64_t received; /* Bytes since it was opened. */
+    tmini_t *lidar;
+    tmini_posix_tap_t tap;
+    void *tap_context;
+    tmini_posix_status_t state;
+    int fd;
+} tmini_posix_t;
+
+/* The `port` of tmini_config_t; its `port_context` is the tmini_posix_t. */
+extern const tmini_port_t tmini_posix_port;
+
+/* Opens a device at 230400 baud, 8N1, without flow control, for this program alone, and drops what it
+ * received before. May wait as long as the system's open does. */
+tmini_posix_status_t tmini_posix_open(tmini_posix_t *serial, const char *path);
+
+/* After tmini_init(): what is received goes to this lidar. */
+void tmini_posix_attach(tmini_posix_t *serial, tmini_t *lidar);
+
+/* From now on, what is received goes to `tap` too; none when NULL. */
+void tmini_posix_tap(tmini_posix_t *serial, tmini_posix_tap_t tap, void *context);
+
+/* Waits up to `timeout_ms` for bytes and feeds them to the lidar, at most 128: call tmini_poll() until
+ * it returns TMINI_EVENT_NONE in between. A signal ends the waiting early. Returns TMINI_POSIX_OK, also
+ * when nothing came; TMINI_POSIX_UNPLUGGED or TMINI_POSIX_FAILED, then also ever after. */
+tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms);
+
+/* Closes the device. */
+void tmini_posix_close(tmini_posix_t *serial);
+
+/* The status as a short English phrase, for example "no such device". Never NULL. */
+const char *tmini_posix_status_name(tmini_posix_status_t status);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
