@@ -12,7 +12,7 @@ CONFIGURATIONS = (
     ("parser", "parser + decoding"),
     ("streaming", "streaming, no scan buffer"),
     ("driver", "full driver"),
-    ("everything", "full driver + blocking helpers"),
+    ("everything", "full driver + blocking helpers + sectors"),
 )
 
 

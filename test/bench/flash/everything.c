@@ -1,15 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The full driver and all optional modules. */
+/* The full driver, the blocking helpers and sectors. */
 
 #include "full_driver.h"
 
 #include "tmini/tmini_blocking.h"
+#include "tmini/tmini_sectors.h"
+
+#define SECTORS 8
 
 static tmini_info_t info;
 static tmini_health_t health;
 static uint16_t frequency_chz;
+static tmini_sectors_t sectors;
+static uint16_t nearest_mm[SECTORS];
 
 static void waiting_commands(void)
 {
@@ -21,8 +26,17 @@ static void waiting_commands(void)
     (void)tmini_stop_and_wait(&lidar, TMINI_BLOCKING_TIMEOUT_MS);
 }
 
+static void look_around(void)
+{
+    (void)tmini_sectors_init(&sectors, nearest_mm, SECTORS, 0, TMINI_FILTER_NONE);
+    tmini_sectors_add_scan(&sectors, tmini_scan(&lidar));
+    (void)tmini_sectors_add_packet(&sectors, tmini_packet(&lidar));
+    sink = nearest_mm[tmini_sectors_at(&sectors, 0)];
+}
+
 void bench_main(void)
 {
     full_driver();
     waiting_commands();
+    look_around();
 }
