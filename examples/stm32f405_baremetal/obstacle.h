@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "tmini/tmini.h"
+#include "tmini/tmini_sectors.h"
 
 #define OBSTACLE_SECTORS 8u
 
@@ -23,10 +24,14 @@
 typedef struct {
     uint16_t
         nearest_mm[OBSTACLE_SECTORS]; /* Clockwise, the first one ahead; 0: nothing in range. */
+    tmini_sectors_t sectors;          /* Fills it in. */
     uint32_t seen_ms;                 /* When the last complete scan came. */
     bool clear;                       /* Nothing near in front, as of the last scans. */
     bool seeing;                      /* A complete scan has come. */
 } obstacle_t;
+
+/* Nothing seen yet. */
+void obstacle_init(obstacle_t *obstacle);
 
 /* Takes a scan. */
 void obstacle_see(obstacle_t *obstacle, const tmini_scan_t *scan, uint32_t now_ms);

@@ -45,11 +45,11 @@ static uint32_t now_ms(void *context)
 /* FILL IN 3 (optional): a function that lets other work run for about a millisecond: an RTOS delay,
  * or a sleep until the next interrupt. Only the functions of tmini_blocking.h call it, while they
  * wait; NULL makes them spin. */
-const tmini_port_t tmini_port_template = { .write = write, .now_ms = now_ms, .wait = NULL };
+const tmini_port_t tmini_port_template = {.write = write, .now_ms = now_ms, .wait = NULL};
 
 void tmini_port_template_begin(tmini_port_template_t *port, tmini_t *lidar, void *uart)
 {
-    *port = (tmini_port_template_t){ .lidar = lidar, .uart = uart };
+    *port = (tmini_port_template_t){.lidar = lidar, .uart = uart};
 }
 
 void tmini_port_template_tick(tmini_port_template_t *port)

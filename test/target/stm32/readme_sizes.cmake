@@ -3,13 +3,13 @@
 
 # cmake -D EXAMPLE=folder -D MAP=firmware.map -P readme_sizes.cmake
 #
-# Fails if the sizes in the example's README are more than a twentieth away from those of the firmware.
+# Fails if the sizes in the example's README are more than a tenth away from those of the firmware.
 
 include(${EXAMPLE}/sizes.cmake)
 file(READ ${EXAMPLE}/README.md readme)
 
 function(compare what claimed actual)
-    math(EXPR difference "20 * (${claimed} - ${actual})")
+    math(EXPR difference "10 * (${claimed} - ${actual})")
     if(difference GREATER actual OR difference LESS -${actual})
         message(SEND_ERROR "README.md says ${what} ${claimed}, but it is ${actual}")
     endif()
