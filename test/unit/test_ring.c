@@ -132,6 +132,17 @@ void test_bytes_come_out_in_the_order_in_which_they_went_in(void)
     expect_unread("");
 }
 
+void test_stored_bytes_are_counted_whether_read_or_not(void)
+{
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_stored(&ring));
+    put_letters(0, 3);
+    tmini_ring_discard(&ring, 2);
+    put_letters(3, 2);
+    TEST_ASSERT_EQUAL_UINT(5, tmini_ring_stored(&ring));
+    put_letters(0, SIZE); /* Three are refused. */
+    TEST_ASSERT_EQUAL_UINT(18, tmini_ring_stored(&ring));
+}
+
 void test_a_full_ring_refuses_bytes_and_keeps_what_it_has(void)
 {
     put_letters(0, SIZE);
@@ -336,6 +347,19 @@ void test_more_unread_bytes_than_the_window_tell_of_an_overrun(void)
     TEST_ASSERT_EQUAL_UINT(24, tmini_ring_unread(&ring));
     tmini_ring_discard(&ring, 16);
     expect_unread("qrstuvwx");
+}
+
+void test_unread_bytes_are_intact_while_they_fit_the_window(void)
+{
+    put_letters(0, SIZE + 1);
+    TEST_ASSERT_TRUE(tmini_ring_intact(&ring)); /* The CPU overwrites nothing. */
+    use_dma();
+    dma_writes(0, 8, 0);
+    TEST_ASSERT_TRUE(tmini_ring_intact(&ring));
+    dma_writes(8, 1, 8);
+    TEST_ASSERT_FALSE(tmini_ring_intact(&ring));
+    tmini_ring_discard(&ring, 1);
+    TEST_ASSERT_TRUE(tmini_ring_intact(&ring));
 }
 
 void test_dma_positions_are_right_across_the_wrap_of_size_t(void)
