@@ -2,6 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 #define _XOPEN_SOURCE 700
+#define _DEFAULT_SOURCE
 
 #include "program.h"
 
@@ -13,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
@@ -211,16 +213,24 @@ static void talk(int fd, const uint8_t *bytes, size_t size)
     }
 }
 
+/* Opens both ends of a pseudo-terminal. */
+static void open_terminal(int *master, int *line)
+{
+    *master = posix_openpt(O_RDWR | O_NOCTTY);
+    TEST_ASSERT_TRUE(*master >= 0);
+    TEST_ASSERT_EQUAL_INT(0, grantpt(*master));
+    TEST_ASSERT_EQUAL_INT(0, unlockpt(*master));
+    *line = open(ptsname(*master), O_RDWR | O_NOCTTY);
+    TEST_ASSERT_TRUE(*line >= 0);
+}
+
 const char *program_start_talker(const uint8_t *bytes, size_t size)
 {
-    const int master = posix_openpt(O_RDWR | O_NOCTTY);
-    TEST_ASSERT_TRUE(master >= 0);
-    TEST_ASSERT_EQUAL_INT(0, grantpt(master));
-    TEST_ASSERT_EQUAL_INT(0, unlockpt(master));
-    const char *const port = ptsname(master);
-    /* Held open, so that the talker does not find the line hung up; and raw, so that there is no echo. */
-    const int line = open(port, O_RDWR | O_NOCTTY);
+    int master = -1;
+    int line = -1;
     struct termios settings;
+    open_terminal(&master, &line);
+    /* Raw, so that there is no echo. */
     TEST_ASSERT_EQUAL_INT(0, tcgetattr(line, &settings));
     settings.c_lflag = 0;
     settings.c_oflag = 0;
@@ -231,9 +241,29 @@ const char *program_start_talker(const uint8_t *bytes, size_t size)
         (void)fcntl(master, F_SETFL, O_NONBLOCK);
         talk(master, bytes, size);
     }
+    const char *const port = ptsname(master);
     close(master);
-    close(line);
+    close(line); /* The talker's stays open: else it would find the line hung up. */
     return port;
+}
+
+pid_t program_start_on_terminal(unsigned columns, unsigned rows, const char *const words[],
+                                int *master, int *line)
+{
+    const struct winsize size = {.ws_col = (unsigned short)columns, .ws_row = (unsigned short)rows};
+    open_terminal(master, line);
+    TEST_ASSERT_EQUAL_INT(0, ioctl(*line, TIOCSWINSZ, &size));
+    tool = fork();
+    TEST_ASSERT_TRUE(tool >= 0);
+    if (tool == 0) {
+        (void)setsid();
+        (void)ioctl(*line, TIOCSCTTY, 0);
+        for (int fd = 0; fd < 3; fd++) {
+            dup2(*line, fd);
+        }
+        become(TMINI, words);
+    }
+    return tool;
 }
 
 void program_clean_up(void)

@@ -44,6 +44,11 @@ void program_give_up_rights(bool gives_up);
 pid_t program_start_tmini(const char *const words[]);
 int program_finish(pid_t tool, int signal_number);
 
+/* Starts the tool on a terminal of its own, of that size; the terminal's other end is returned in
+ * `master`, and what the terminal's programs see of it in `line`. Both are the caller's to close. */
+pid_t program_start_on_terminal(unsigned columns, unsigned rows, const char *const words[],
+                                int *master, int *line);
+
 /* Starts the simulated lidar on a pseudo-terminal, with more options up to a NULL. Returns the port,
  * valid until the next call. */
 const char *program_start_lidar(const char *const options[]);

@@ -288,7 +288,7 @@ void test_the_png_shows_the_same_points_at_the_same_places(void)
         const circle_t place = place_of(&points[i]);
         TEST_ASSERT_TRUE(is_bright(pixel(&png, place.x, place.y)));
     }
-    /* Half-way to each of them there is nothing but beams, unless something else is near. */
+    /* Beside the axis to the right, within the room and behind its wall, there is nothing. */
     TEST_ASSERT_FALSE(is_bright(pixel(&png, lidar.x + 0.5 * pixels_per_m, lidar.y + 7)));
     TEST_ASSERT_FALSE(is_bright(pixel(&png, lidar.x + 4 * pixels_per_m, lidar.y + 7)));
     TEST_ASSERT_FALSE(is_bright(pixel(&png, 5, 5)));
