@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Shows the library at work, on any computer and without a lidar: builds the host tool, decodes a
-# recording of a simulated lidar, and draws what it saw. Needs a C compiler and CMake, and installs
-# them where they are missing.
+# Shows the library at work, on any computer and without a lidar: builds the host tool and a simulated
+# lidar, lets the one drive the other through a pseudo-terminal as if it were a serial port, and
+# draws what was seen. Needs a C compiler and CMake, and installs them where they are missing.
 
 set -eu
 
@@ -17,17 +17,57 @@ install_missing
 
 build=$root/build-demo
 tmini=$build/bin/tmini
-recording=$root/test/recordings/sim-6hz.bin
-picture=$build/room.png
 
-echo "Building in $build …"
+bold="" dim="" plain=""
+if [ -t 1 ] && [ -z "${NO_COLOR:-}" ]; then
+    bold=$(printf '\033[1m') dim=$(printf '\033[2m') plain=$(printf '\033[0m')
+fi
+
+# say TEXT: what comes next.
+say() {
+    printf '\n%s\n' "$bold$*$plain"
+}
+
+# show COMMAND…: runs one of the tool's commands, and shows it as a user would type it.
+show() {
+    printf '%s\n' "$dim\$ tmini $*$plain"
+    "$tmini" "$@"
+}
+
+# Starts the simulated lidar; its first line of output names the port.
+start_lidar() {
+    "$build/bin/tmini-sim" --pty >"$build/lidar.port" &
+    lidar=$!
+    trap 'kill "$lidar" 2>/dev/null || true' EXIT
+    trap 'exit 1' INT TERM HUP
+    for _ in 1 2 3 4 5 6 7 8 9 10; do
+        port=$(head -n 1 "$build/lidar.port")
+        [ -z "$port" ] || return 0
+        sleep 0.2
+    done
+    echo "The simulated lidar does not start." >&2
+    return 1
+}
+
+say "Building in $build"
 quietly cmake -S "$root" -B "$build" -DTMINI_BUILD_TESTS=OFF
-quietly cmake --build "$build" --target tmini_tool --parallel 2
+quietly cmake --build "$build" --target tmini_tool tmini-sim --parallel 2
+start_lidar
+echo "A simulated T-mini Plus in a simulated room is on $port."
 
-echo
-echo "A recording of 2 s, decoded:"
-"$tmini" decode "$recording"
+say "Which lidar is it, and is it well?"
+show info -p "$port"
+show health -p "$port"
 
-"$tmini" plot "$recording" -o "$picture"
-echo
-echo "Its last complete scan as a picture: $picture"
+say "Live scans, while its motor comes up to speed"
+show scan -p "$port" -n 6
+
+say "Two seconds of raw bytes, recorded and decoded"
+show record -p "$port" "$build/room.bin" --seconds 2 --quiet
+show decode "$build/room.bin"
+
+say "The last complete scan as a picture"
+show plot "$build/room.bin" -o "$build/room.png"
+
+say "The picture: $build/room.png"
+echo "With a lidar of your own, try: $tmini view -p /dev/ttyUSB0"

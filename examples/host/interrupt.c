@@ -24,6 +24,7 @@ void interrupt_watch(void)
     (void)sigaction(SIGTERM, &action, NULL);
     (void)sigaction(SIGHUP, &action, NULL);
     (void)sigaction(SIGQUIT, &action, NULL);
+    (void)signal(SIGPIPE, SIG_IGN);
 }
 
 bool interrupt_has_come(void)

@@ -9,7 +9,8 @@
 
 #include <stdbool.h>
 
-/* From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT are only noted. */
+/* From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT are only noted, and a reader that has gone (`| head`)
+ * makes writing fail instead of ending the program. */
 void interrupt_watch(void);
 
 /* True once one of them has come. */
