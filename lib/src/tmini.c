@@ -197,14 +197,12 @@ void tmini_turn(const tmini_t *lidar, tmini_turn_info_t *info)
 
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
 {
-    *counters = (tmini_counters_t){
-        .parser = lidar->parser.counters,
-        .bytes_pending = is_set_up(lidar) ? (uint32_t)tmini_parser_pending(&lidar->parser) : 0,
-        .scans = lidar->scans,
-        .timeouts = lidar->timeouts,
-        .losses = lidar->losses,
-        .recoveries = lidar->recoveries,
-        .restarts = lidar->restarts,
-        .reboots = lidar->reboots,
-    };
+    counters->parser = lidar->parser.counters;
+    counters->bytes_pending = is_set_up(lidar) ? (uint32_t)tmini_parser_pending(&lidar->parser) : 0;
+    counters->scans = lidar->scans;
+    counters->timeouts = lidar->timeouts;
+    counters->losses = lidar->losses;
+    counters->recoveries = lidar->recoveries;
+    counters->restarts = lidar->restarts;
+    counters->reboots = lidar->reboots;
 }

@@ -147,17 +147,15 @@ static void continue_frequency_change(tmini_t *lidar)
 static void frequency_reply(tmini_t *lidar, uint32_t frequency_chz)
 {
     const bool is_step = lidar->sent != TMINI_COMMAND_GET_FREQUENCY;
+    if (frequency_chz > UINT16_MAX) {
+        fail(lidar, TMINI_ERROR_REPLY);
+        return;
+    }
     if (is_step && frequency_chz == lidar->frequency_chz) {
         /* A late reply of the step before, which looks the same; or the lidar refuses to step.
          * Wait on: time tells. */
-        tmini_reply_shape_t shape;
-        (void)tmini_reply_shape(TMINI_COMMAND_GET_FREQUENCY, &shape);
-        tmini_parser_await(&lidar->parser, &shape);
+        lidar->parser.awaiting = true;
         lidar->step_refused = true;
-        return;
-    }
-    if (frequency_chz > UINT16_MAX) {
-        fail(lidar, TMINI_ERROR_REPLY);
         return;
     }
     lidar->step_refused = false;

@@ -32,14 +32,19 @@ static inline void decode(tmini_point_t *point, const uint8_t *sample, uint32_t 
 {
     const uint8_t intensity = sample[0];
     const unsigned distance_and_flag = sample[1] | (unsigned)sample[2] << 8;
-    uint32_t angle = first_angle + (turned >> STEP_BITS);
-    if (angle >= TMINI_TURN_Q6) {
-        angle -= TMINI_TURN_Q6;
-    }
-    point->angle_q6 = (uint16_t)angle;
+    point->angle_q6 = (uint16_t)(first_angle + (turned >> STEP_BITS));
     point->distance_mm = (uint16_t)(distance_and_flag >> 2);
     point->intensity = intensity;
     point->flag = distance_and_flag & 3u;
+}
+
+static void wrap(tmini_point_t *points, size_t count)
+{
+    for (; count > 0; count--, points++) {
+        if (points->angle_q6 >= TMINI_TURN_Q6) {
+            points->angle_q6 = (uint16_t)(points->angle_q6 - TMINI_TURN_Q6);
+        }
+    }
 }
 
 void tmini_packet_open(tmini_packet_t *packet, const tmini_parser_t *parser)
@@ -69,6 +74,7 @@ bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_
     const uint8_t *const sample =
         tmini_ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(index), &count, joined);
     decode(point, sample, packet->first_angle_q6, HALF + (uint32_t)index * packet->step);
+    wrap(point, 1);
     return tmini_parser_frame_intact(packet->parser);
 }
 
@@ -100,6 +106,9 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
             sample += TMINI_SAMPLE_SIZE;
             turned += step;
         }
+    }
+    if (packet->last_angle_q6 < first_angle) {
+        wrap(points, wanted);
     }
     if (filter != TMINI_FILTER_NONE) {
         apply_filter(filter, points, wanted);

@@ -43,9 +43,9 @@ static bool checksum_matches(const tmini_parser_t *parser)
         const uint8_t *sample =
             tmini_ring_samples(parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
         done += count;
-        for (size_t left = count; left > 0; left--) {
+        const uint8_t *const end = &sample[TMINI_SAMPLE_SIZE * count];
+        for (; sample != end; sample += TMINI_SAMPLE_SIZE) {
             sum ^= sample[0] ^ (sample[1] | (unsigned)sample[2] << 8);
-            sample += TMINI_SAMPLE_SIZE;
         }
     }
     return sum == 0;
@@ -69,14 +69,16 @@ static bool reply_has_awaited_shape(const tmini_parser_t *parser)
 /* What the ring's oldest bytes are. */
 static enum verdict judge(tmini_parser_t *parser, size_t unread)
 {
-    const bool is_packet = tmini_ring_peek(parser->ring, 0) == PACKET_FIRST;
-    if (!is_packet && !(parser->awaiting && tmini_ring_peek(parser->ring, 0) == REPLY_FIRST)) {
+    uint8_t sign[2]; /* The second byte has perhaps not come yet. */
+    tmini_ring_copy(parser->ring, 0, sign, sizeof sign);
+    const bool is_packet = sign[0] == PACKET_FIRST;
+    if (!is_packet && !(parser->awaiting && sign[0] == REPLY_FIRST)) {
         return USELESS;
     }
     if (!has(parser, unread, 2)) {
         return INCOMPLETE;
     }
-    if (tmini_ring_peek(parser->ring, 1) != (is_packet ? PACKET_SECOND : REPLY_SECOND)) {
+    if (sign[1] != (is_packet ? PACKET_SECOND : REPLY_SECOND)) {
         return USELESS;
     }
     const size_t header_size = is_packet ? TMINI_PACKET_HEADER_SIZE : TMINI_REPLY_HEADER_SIZE;
@@ -99,19 +101,15 @@ static enum verdict judge(tmini_parser_t *parser, size_t unread)
     return COMPLETE;
 }
 
-static void widen_gap(tmini_parser_t *parser, size_t bytes)
-{
-    const size_t room = UINT16_MAX - (size_t)parser->gap;
-    parser->gap = (uint16_t)(bytes < room ? parser->gap + bytes : UINT16_MAX);
-}
-
 static void skip_byte(tmini_parser_t *parser)
 {
     parser->stray = tmini_ring_peek(parser->ring, 0);
     tmini_ring_discard(parser->ring, 1);
     parser->need = 1;
     parser->counters.bytes_skipped++;
-    widen_gap(parser, 1);
+    if (parser->gap < UINT16_MAX) {
+        parser->gap++;
+    }
 }
 
 /* Gives the frame delivered last back to the producer. */

@@ -7,28 +7,27 @@
 
 bool tmini_reply_shape(tmini_command_t command, tmini_reply_shape_t *shape)
 {
+    *shape = (tmini_reply_shape_t){.type = 0x04, .length = TMINI_FREQUENCY_SIZE};
     switch (command) {
     case TMINI_COMMAND_STOP:
     case TMINI_COMMAND_REBOOT:
         return false;
     case TMINI_COMMAND_START:
-        *shape = (tmini_reply_shape_t){.type = 0x81, .mode = TMINI_REPLY_MODE_CONTINUOUS};
-        return true;
+        shape->type = 0x81;
+        shape->mode = TMINI_REPLY_MODE_CONTINUOUS;
+        shape->length = 0;
+        break;
     case TMINI_COMMAND_GET_INFO:
-        *shape = (tmini_reply_shape_t){.type = 0x04, .length = TMINI_INFO_SIZE};
-        return true;
+        shape->length = TMINI_INFO_SIZE;
+        break;
     case TMINI_COMMAND_GET_HEALTH:
-        *shape = (tmini_reply_shape_t){.type = 0x06, .length = TMINI_HEALTH_SIZE};
-        return true;
-    case TMINI_COMMAND_FASTER_TENTH:
-    case TMINI_COMMAND_SLOWER_TENTH:
-    case TMINI_COMMAND_FASTER_ONE:
-    case TMINI_COMMAND_SLOWER_ONE:
-    case TMINI_COMMAND_GET_FREQUENCY:
+        shape->type = 0x06;
+        shape->length = TMINI_HEALTH_SIZE;
+        break;
     default:
-        *shape = (tmini_reply_shape_t){.type = 0x04, .length = TMINI_FREQUENCY_SIZE};
-        return true;
+        break;
     }
+    return true;
 }
 
 void tmini_reply_info(const uint8_t content[TMINI_INFO_SIZE], tmini_info_t *info)

@@ -81,11 +81,13 @@ uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count)
 {
-    const size_t at = (ring->tail + offset) & ring->mask;
-    const size_t to_end = ring->mask + 1 - at;
-    const size_t first = count < to_end ? count : to_end;
-    memcpy(bytes, &ring->memory[at], first);
-    memcpy(&bytes[first], ring->memory, count - first);
+    /* In locals, because `bytes` might overlap the ring for all the compiler knows. */
+    const uint8_t *const memory = ring->memory;
+    const size_t mask = ring->mask;
+    size_t index = ring->tail + offset;
+    for (const uint8_t *const end = bytes + count; bytes != end; bytes++) {
+        *bytes = memory[index++ & mask];
+    }
 }
 
 const uint8_t *tmini_ring_samples(const tmini_ring_t *ring, size_t offset, size_t *count,

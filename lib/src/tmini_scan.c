@@ -7,6 +7,10 @@
 #define JUMP_Q6 256          /* 4 degrees: further than this, at least one packet is missing. */
 #define FULL_CIRCLE_Q6 23168 /* 362 degrees: further than this, it is another revolution. */
 
+/* More bytes than this missing may have been a whole turn: at 12 Hz it has about 1100 (section
+ * 9.7). */
+#define HOLE_BYTES 1000
+
 /* The angle turned from one direction to another, clockwise, or slightly back: a hair of jitter
  * backwards (section 9.6) is not nearly a whole turn forwards. */
 static int32_t turned(uint16_t from, uint16_t to)
@@ -104,7 +108,7 @@ bool tmini_scan_close(tmini_scan_builder_t *builder, const tmini_packet_t *packe
     if (!builder->open) {
         return false;
     }
-    if (!tmini_packet_is_start(packet) && packet->gap != UINT16_MAX &&
+    if (!tmini_packet_is_start(packet) && packet->gap <= HOLE_BYTES &&
         swept_with(builder, packet) <= FULL_CIRCLE_Q6) {
         return false;
     }

@@ -158,10 +158,8 @@ void tmini_driver_climb(tmini_t *lidar)
 static uint16_t pause_ms(const tmini_t *lidar)
 {
     const tmini_timing_t *const timing = lidar->timing;
-    uint32_t pause = timing->back_off_ms;
-    for (unsigned rung = 1; rung < lidar->rung && pause < timing->back_off_max_ms; rung++) {
-        pause *= 2;
-    }
+    const unsigned doublings = lidar->rung - 1u;
+    const uint32_t pause = doublings < 16 ? (uint32_t)timing->back_off_ms << doublings : UINT32_MAX;
     return (uint16_t)(pause < timing->back_off_max_ms ? pause : timing->back_off_max_ms);
 }
 

@@ -69,7 +69,7 @@ def measure(program, recording, folder):
     """Instructions a byte by way of feeding: the library's own and those of copies."""
     size = recording.stat().st_size
     results = {}
-    for feed in ("bytes", "blocks"):
+    for feed in ("bytes", "blocks", "decode"):
         packets, own, copies = count(program, feed, recording, folder)
         results[feed] = {"packets": packets, "own": own / size, "copies": copies / size}
     return results

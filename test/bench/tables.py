@@ -94,7 +94,9 @@ def hostile(figures):
 
 
 def host(figures):
-    rows = [[f"by {feed}", one(f["own"]), one(f["own"] * figures["host size"])]
+    ways = {"bytes": "whole driver, fed by bytes", "blocks": "whole driver, fed by blocks",
+            "decode": "ring to scan, fed by blocks"}
+    rows = [[ways[feed], one(f["own"]), one(f["own"] * figures["host size"])]
             for feed, f in figures["host"].items()]
     return table(["x86-64 `-O2`", "instructions a byte", "instructions"],
                  [[name, each, total.removesuffix(".0")] for name, each, total in rows])

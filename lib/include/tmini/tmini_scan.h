@@ -6,9 +6,10 @@
  * A scan runs from a start packet to the next one. What precedes the first start packet is no scan.
  * Revolutions are not merged. If a start packet is lost, the angle swept since the last one tells:
  * the scan is closed when it has turned full circle, and what follows waits for the next start
- * packet. (The start angle is not 0 on every unit, section 9.8.) A receive buffer that overflowed
- * closes it as well, because any number of turns may be missing. What cannot be noticed is a
- * stream that pauses for exactly a whole number of turns, between two packets.
+ * packet. (The start angle is not 0 on every unit, section 9.8.) A receive buffer that overflowed,
+ * or a turn's worth of garbage, closes it as well, because any number of turns may be missing. What
+ * cannot be noticed is a stream that pauses for exactly a whole number of turns, between two
+ * packets.
  *
  * All functions: one context, the one that parses; no waiting. */
 

@@ -4,6 +4,7 @@
 /* Feeds a recording to the library on this computer, for an instruction counter to watch:
  *
  *   host bytes|blocks FILE     about a packet at a time, then tmini_poll() until there is nothing
+ *   host decode FILE           the same by blocks, with ring, parser, packet and scan alone
  *
  * Prints how many scan packets were found. */
 
@@ -75,6 +76,36 @@ static void feed_all(size_t size, bool by_bytes)
     }
 }
 
+/* What decoders without a driver do: from bytes to scans. Returns the number of packets. */
+static unsigned long decode_all(size_t size)
+{
+    static tmini_ring_t ring;
+    static tmini_parser_t parser;
+    static tmini_scan_builder_t builder;
+    (void)tmini_ring_init(&ring, rx, sizeof rx, false);
+    (void)tmini_parser_init(&parser, &ring, 0);
+    (void)tmini_scan_init(&builder, points, TMINI_SCAN_POINTS_TYPICAL, TMINI_FILTER_NONE);
+    for (size_t at = 0; at < size; at += BLOCK) {
+        tmini_ring_write(&ring, &recording[at], size - at < BLOCK ? size - at : BLOCK);
+        while (tmini_parser_next(&parser) == TMINI_FRAME_PACKET) {
+            tmini_packet_t packet;
+            tmini_packet_open(&packet, &parser);
+            (void)tmini_scan_close(&builder, &packet);
+            tmini_scan_add(&builder, &packet, 0);
+        }
+    }
+    return (unsigned long)parser.counters.packets;
+}
+
+static unsigned long drive_all(size_t size, bool by_bytes)
+{
+    tmini_counters_t counters;
+    start();
+    feed_all(size, by_bytes);
+    tmini_counters(&lidar, &counters);
+    return (unsigned long)counters.parser.packets;
+}
+
 static size_t read_file(const char *name)
 {
     FILE *const file = fopen(name, "rb");
@@ -95,13 +126,11 @@ int main(int argc, char **argv)
                                    .max_points = TMINI_SCAN_POINTS_TYPICAL};
     const size_t size = argc == 3 ? read_file(argv[2]) : 0;
     if (size == 0 || tmini_init(&lidar, &config) != TMINI_OK) {
-        fputs("usage: host bytes|blocks FILE\n", stderr);
+        fputs("usage: host bytes|blocks|decode FILE\n", stderr);
         return 2;
     }
-    start();
-    feed_all(size, strcmp(argv[1], "bytes") == 0);
-    tmini_counters_t counters;
-    tmini_counters(&lidar, &counters);
-    printf("%lu\n", (unsigned long)counters.parser.packets);
+    printf("%lu\n", strcmp(argv[1], "decode") == 0
+                        ? decode_all(size)
+                        : drive_all(size, strcmp(argv[1], "bytes") == 0));
     return 0;
 }
