@@ -325,6 +325,29 @@ void test_a_byte_before_a_point_packet_is_a_gap(void)
     expect_scan(0, 2, false);
 }
 
+static void garbage(unsigned count)
+{
+    static const uint8_t byte = 0x11;
+    for (; count > 0; count--) {
+        receiver_feed(&receiver, &byte, 1);
+        TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, receiver_next(&receiver));
+    }
+}
+
+/* A turn at 12 Hz has some 1100 bytes: of which turn the packet is, its angle does not tell. */
+void test_more_than_1000_stray_bytes_end_a_scan(void)
+{
+    (void)start(0);
+    quarter(0);
+    garbage(1000);
+    TEST_ASSERT_FALSE(arrive(0x00, 5, 90 * DEGREE, 179 * DEGREE));
+    add();
+    garbage(1001);
+    TEST_ASSERT_TRUE(arrive(0x00, 5, 180 * DEGREE, 269 * DEGREE));
+    TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
+    TEST_ASSERT_FALSE(scan->complete);
+}
+
 void test_a_jump_of_more_than_4_degrees_is_a_gap(void)
 {
     (void)start(0);
