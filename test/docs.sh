@@ -34,7 +34,8 @@ check_links() {
 }
 
 check_program README.md
-for document in $(find . -name 'build*' -prune -o -name '*.md' -print); do
+documents=$(find . -name 'build*' -prune -o -name '*.md' -print) # No name has a blank.
+for document in $documents; do
     check_links "$document"
 done
 [ -z "$failed" ] || exit 1

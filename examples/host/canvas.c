@@ -67,8 +67,8 @@ void canvas_disc(canvas_t *canvas, spot_t centre, double radius, paint_t paint)
 static void dotted_ring(canvas_t *canvas, spot_t centre, double radius, const pen_t *pen)
 {
     const double turn = 2 * acos(-1);
-    const double dots = floor(turn * radius / (4 * pen->width));
-    for (double i = 0; i < dots; i++) {
+    const int dots = (int)(turn * radius / (4 * pen->width));
+    for (int i = 0; i < dots; i++) {
         const double angle = turn * i / dots;
         const spot_t at = {centre.x + radius * cos(angle), centre.y + radius * sin(angle)};
         canvas_disc(canvas, at, pen->width / 2, pen->paint);

@@ -17,7 +17,7 @@ const char *faults_text(uint8_t faults, char text[FAULTS_TEXT_SIZE])
     (void)snprintf(text, FAULTS_TEXT_SIZE, "%s", faults == 0 ? "healthy" : "faulty: ");
     bool is_first = true;
     for (unsigned bit = 0; bit < 6; bit++) {
-        if ((faults >> bit & 1u) != 0) {
+        if (((unsigned)faults >> bit & 1u) != 0) {
             const size_t length = strlen(text);
             (void)snprintf(text + length, FAULTS_TEXT_SIZE - length, "%s%s", is_first ? "" : ", ",
                            names[bit]);

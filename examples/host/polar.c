@@ -102,7 +102,7 @@ static void draw_bearings(const sheet_t *sheet)
     for (int degrees = 0; degrees < 360; degrees += 30) {
         const bool is_axis = degrees % 90 == 0;
         spot_t at = at_bearing(degrees, RADIUS + 40);
-        char text[8];
+        char text[16];
         (void)snprintf(text, sizeof text, "%d\xC2\xB0", degrees);
         at.y += is_axis ? -3 : 7;
         sheet->text(sheet->self, at, text, &number);

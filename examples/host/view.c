@@ -92,28 +92,45 @@ static frame_t frame_of(const screen_t *screen, const view_t *view)
     return frame;
 }
 
-static void dot_at(screen_t *screen, const frame_t *frame, double degrees, double distance,
-                   layer_t layer, uint8_t colour)
+/* A place in the picture: dots from the lidar, in a direction. */
+typedef struct {
+    double degrees;
+    double distance;
+} bearing_t;
+
+static spot_t place_of(const frame_t *frame, bearing_t bearing)
 {
-    const double radians = degrees * acos(-1) / 180;
-    const double x = frame->x + distance * sin(radians);
-    const double y = frame->y - distance * cos(radians);
-    screen_dot(screen, (int)lround(x), (int)lround(y), layer, colour);
+    const double radians = bearing.degrees * acos(-1) / 180;
+    return (spot_t){frame->x + bearing.distance * sin(radians),
+                    frame->y - bearing.distance * cos(radians)};
 }
 
+static spot_t place_of_point(const frame_t *frame, const tmini_point_t *point)
+{
+    return place_of(frame, (bearing_t){point->angle_q6 / 64.0,
+                                       frame->radius * point->distance_mm / frame->range_mm});
+}
+
+static void grid_dot(screen_t *screen, const frame_t *frame, bearing_t bearing)
+{
+    const spot_t spot = place_of(frame, bearing);
+    screen_dot(screen, (int)lround(spot.x), (int)lround(spot.y), LAYER_GRID, COLOUR_GRID);
+}
+
+/* Rings with a dot at every third place, and the axes to the four sides. */
 static void draw_grid(screen_t *screen, const frame_t *frame)
 {
     const unsigned step_mm = zooms[zoom_of(frame->range_mm)].step_mm;
     for (unsigned mm = step_mm; mm <= frame->range_mm; mm += step_mm) {
         const double radius = frame->radius * mm / frame->range_mm;
-        const double pitch = 57.3 * 3 / fmax(radius, 3); /* A dot every third place. */
-        for (double degrees = 0; degrees < 360; degrees += pitch) {
-            dot_at(screen, frame, degrees, radius, LAYER_GRID, COLOUR_GRID);
+        const int dots = (int)(2 * acos(-1) * fmax(radius, 3) / 3);
+        for (int i = 0; i <= dots; i++) {
+            grid_dot(screen, frame, (bearing_t){360.0 * i / dots, radius});
         }
     }
-    for (int degrees = 0; degrees < 360; degrees += 90) {
-        for (double distance = 6; distance < frame->radius; distance += 4) {
-            dot_at(screen, frame, degrees, distance, LAYER_GRID, COLOUR_GRID);
+    for (int i = 0; i < 4; i++) {
+        for (int distance = 6; distance < frame->radius; distance += 4) {
+            grid_dot(screen, frame, (bearing_t){90.0 * i, distance});
         }
     }
 }
@@ -147,9 +164,9 @@ static void draw_points(screen_t *screen, const frame_t *frame, const tmini_scan
     for (size_t i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
         if (point->distance_mm > 0 && point->distance_mm <= frame->range_mm) {
-            dot_at(screen, frame, point->angle_q6 / 64.0,
-                   frame->radius * point->distance_mm / frame->range_mm, LAYER_POINTS,
-                   terminal_colour(scale_intensity(&scale, point->intensity)));
+            const spot_t spot = place_of_point(frame, point);
+            screen_dot(screen, (int)lround(spot.x), (int)lround(spot.y), LAYER_POINTS,
+                       terminal_colour(scale_intensity(&scale, point->intensity)));
         }
     }
 }
@@ -159,10 +176,8 @@ static void mark_nearest(screen_t *screen, const frame_t *frame, const tmini_poi
     if (nearest == NULL || nearest->distance_mm > frame->range_mm) {
         return;
     }
-    const double radians = nearest->angle_q6 / 64.0 * acos(-1) / 180;
-    const double distance = frame->radius * nearest->distance_mm / frame->range_mm;
-    screen_put(screen, (int)lround(frame->x + distance * sin(radians)) / 2,
-               (int)lround(frame->y - distance * cos(radians)) / 4, NEAREST_CHARACTER,
+    const spot_t spot = place_of_point(frame, nearest);
+    screen_put(screen, (int)lround(spot.x) / 2, (int)lround(spot.y) / 4, NEAREST_CHARACTER,
                COLOUR_AMBER);
 }
 

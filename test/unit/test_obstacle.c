@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop in the bare-metal example: when may the robot move? */
+/* Obstacle stop, as the examples do it: when may the robot move? */
 
 #include "obstacle.h"
 
