@@ -116,7 +116,6 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
     lidar->port_context = config->port_context;
     lidar->timing = config->timing != NULL ? config->timing : &tmini_timing_default;
     lidar->no_recovery = config->no_recovery;
-    tmini_driver_look(lidar);
     return TMINI_OK;
 }
 

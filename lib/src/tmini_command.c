@@ -26,7 +26,6 @@ static bool transmit(tmini_t *lidar)
     const int taken =
         lidar->port->write(lidar->port_context, &bytes[2 - lidar->unsent], lidar->unsent);
     if (taken < 0) {
-        lidar->unsent = 0;
         return false;
     }
     lidar->unsent = (uint8_t)(taken < lidar->unsent ? lidar->unsent - taken : 0);
@@ -248,14 +247,12 @@ static bool has_left(tmini_t *lidar)
     if (lidar->unsent == 0) {
         return true;
     }
-    if (!transmit(lidar)) {
+    if (!transmit(lidar) ||
+        (lidar->unsent > 0 &&
+         driver_elapsed(lidar, lidar->phase_ms, lidar->timing->write_ms))) {
         attempt_failed(lidar, TMINI_ERROR_WRITE);
-        return false;
-    }
-    if (lidar->unsent == 0) {
+    } else if (lidar->unsent == 0) {
         lidar->phase_ms = lidar->now_ms;
-    } else if (driver_elapsed(lidar, lidar->phase_ms, lidar->timing->write_ms)) {
-        attempt_failed(lidar, TMINI_ERROR_WRITE);
     }
     return false;
 }

@@ -116,7 +116,11 @@ static bool carry_out(soak_t *soak, tmini_status_t begun, tmini_event_t end, uin
         world_violate(world, VIOLATION_ANSWER, "not begun");
         return false;
     }
-    const unsigned events = world_run_until(world, BIT(end) | BIT(TMINI_EVENT_FAILED), limit_ms);
+    unsigned events = world_run_until(world, BIT(end) | BIT(TMINI_EVENT_FAILED), limit_ms);
+    if ((events & BIT(end)) == 0 && tmini_failure(&world->lidar) == TMINI_ERROR_ABORTED) {
+        /* That was the end of a start that had just been tried. */
+        events |= world_run_until(world, BIT(end) | BIT(TMINI_EVENT_FAILED), limit_ms);
+    }
     if ((events & BIT(end)) != 0) {
         return true;
     }

@@ -120,6 +120,20 @@ void test_start_waits_for_the_first_scan(void)
     is_in(TMINI_STATE_SCANNING);
 }
 
+static void feed_two_turns(void)
+{
+    feed_turn();
+    feed_turn();
+}
+
+void test_nothing_is_waited_for_while_there_are_events(void)
+{
+    comes(10, feed_two_turns);
+    sends(START);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start_and_wait(&rig.lidar, 1000));
+    TEST_ASSERT_EQUAL_UINT(10, script.waits);
+}
+
 void test_start_waits_for_the_first_packet_when_streaming(void)
 {
     rig.config.points = NULL;
@@ -205,6 +219,18 @@ void test_a_command_given_up_half_sent_is_not_sent_any_further(void)
     sends_both_taking(GET_INFO, 1);
     sends_rest_taking(GET_INFO, 0);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_read_info(&rig.lidar, &info, 0));
+    TEST_ASSERT_EQUAL_HEX(0, rig_drain());
+}
+
+void test_a_start_given_up_while_the_lidar_is_being_recovered_leaves_it_alone(void)
+{
+    comes(10, feed_turn);
+    sends(START);
+    sends(STOP); /* Lost after a second. */
+    sends(START);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_start_and_wait(&rig.lidar, 1500));
+    is_in(TMINI_STATE_UNKNOWN);
+    rig.now_ms += 60000;
     TEST_ASSERT_EQUAL_HEX(0, rig_drain());
 }
 

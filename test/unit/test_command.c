@@ -393,6 +393,20 @@ void test_a_question_without_an_answer_is_asked_three_times(void)
     TEST_ASSERT_EQUAL_UINT(3, timeouts());
 }
 
+void test_a_reply_that_comes_after_the_last_attempt_is_nobodys(void)
+{
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    asks_in_vain(GET_HEALTH);
+    asks_in_vain(GET_HEALTH);
+    passes(2000);
+    fails_with(TMINI_ERROR_TIMEOUT);
+    rig_feed_health(0, 0);
+    passes(10);
+    is_in(TMINI_STATE_UNKNOWN);
+}
+
 void test_each_command_has_all_its_attempts(void)
 {
     rig_go_idle();
@@ -527,6 +541,18 @@ void test_less_than_a_coarse_step_down_is_made_in_fine_ones(void)
     }
     steps(GET_FREQUENCY, 610);
     arrives_at(610);
+}
+
+void test_each_change_has_all_its_steps(void)
+{
+    for (unsigned change = 0; change < 3; change++) {
+        begins_to_set(690, 600);
+        for (uint16_t step = 1; step <= 9; step++) {
+            steps(FASTER_TENTH, (uint16_t)(600 + 10 * step));
+        }
+        steps(GET_FREQUENCY, 690);
+        arrives_at(690);
+    }
 }
 
 void test_no_step_goes_above_the_highest_frequency(void)
@@ -681,6 +707,24 @@ void test_a_lidar_that_refuses_to_step_fails_with_the_reply_after_three_attempts
         }
     }
     fails_with(TMINI_ERROR_REPLY);
+}
+
+void test_a_step_that_was_not_refused_after_all_does_not_blame_the_reply_for_a_noisy_line(void)
+{
+    tmini_timing_t timing = tmini_timing_default;
+
+    timing.attempts = 1;
+    rig.config.timing = &timing;
+    rig_init();
+    begins_to_set(800, 600);
+    steps(FASTER_ONE, 600); /* As if refused, */
+    passes(10);
+    rig_feed_frequency(700); /* but that was only late. */
+    for (unsigned ms = 0; ms < 600; ms += 40) {
+        passes(40);
+        rig_feed_byte(0x00);
+    }
+    fails_with(TMINI_ERROR_TIMEOUT);
 }
 
 void test_a_lidar_that_falls_silent_after_refusing_a_step_fails_with_a_timeout(void)

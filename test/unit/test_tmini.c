@@ -337,6 +337,15 @@ void test_silence_gives_up_one_candidate_behind_the_other(void)
     TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
 }
 
+void test_silence_gives_up_a_single_byte_too(void)
+{
+    rig_feed_byte(0xAA);
+    passes(30);
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
+    TEST_ASSERT_EQUAL_UINT32(1, counters().parser.bytes_skipped);
+}
+
 void test_a_byte_that_comes_in_time_keeps_the_candidate(void)
 {
     uint8_t bytes[64];
@@ -438,6 +447,22 @@ void test_a_scan_is_delivered_after_the_fault_that_came_with_it(void)
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_UINT16(17, tmini_scan(&rig.lidar)->count);
     polls_to(TMINI_EVENT_NONE);
+}
+
+void test_a_scan_that_waits_behind_a_fault_is_no_loss_however_late_the_next_poll(void)
+{
+    rig_go_scanning();
+    for (unsigned i = 0; i < 2; i++) {
+        rig_feed_plain_turn(0);
+        (void)rig_drain();
+    }
+    rig_feed_plain_turn(0);
+    polls_to(TMINI_EVENT_FAULT);
+    rig.now_ms += 1500;
+    polls_to(TMINI_EVENT_SCAN);
+    rig_feed_point_packet(0);
+    polls_to(TMINI_EVENT_NONE);
+    is_in(TMINI_STATE_SCANNING);
 }
 
 void test_a_scan_with_more_points_than_the_buffer_holds_says_how_many_were_dropped(void)

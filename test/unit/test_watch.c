@@ -183,6 +183,16 @@ void test_a_turn_of_which_a_point_packet_was_lost_is_no_data_fault(void)
     }
 }
 
+void test_one_byte_before_a_start_packet_may_be_last_crc_and_the_turn_is_whole(void)
+{
+    rig_go_scanning();
+    for (unsigned i = 0; i < 3; i++) {
+        (void)plain_turn_events(0);
+        rig_feed_byte(0x00);
+    }
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
+}
+
 void test_a_range_clears_a_data_fault_though_packets_were_lost(void)
 {
     rig_go_scanning();
@@ -289,6 +299,18 @@ void test_a_rotor_that_turns_again_clears_the_fault_after_two_turns(void)
     polls_to(TMINI_EVENT_FAULT);
     (void)plain_turn_events(1000); /* The turn that was blocked ends: no range, but not whole. */
     (void)plain_turn_events(1000);
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULT), plain_turn_events(1000));
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+}
+
+void test_a_rotor_that_was_blocked_in_the_middle_of_a_turn_clears_the_fault_after_two_turns(void)
+{
+    rig_go_scanning();
+    (void)plain_turn_events(1000);
+    (void)plain_turn_events(1000);
+    stands_still_for(3000);
+    polls_to(TMINI_EVENT_FAULT);
+    TEST_ASSERT_EQUAL_HEX(0, plain_turn_events(1000));
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULT), plain_turn_events(1000));
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
@@ -614,6 +636,26 @@ void test_a_lidar_that_comes_back_by_itself_while_it_is_being_rebooted_has_recov
     is_in(TMINI_STATE_SCANNING);
 }
 
+void test_a_lidar_that_comes_back_by_itself_after_a_reboot_that_failed_has_recovered(void)
+{
+    rig_go_backing_off();
+    tries_in_vain(500);
+    tries_in_vain(1000);
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    sends_both_taking(STOP, -1); /* The stop before the reboot. */
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+}
+
+void test_a_start_reply_that_comes_in_the_pause_does_not_end_it(void)
+{
+    rig_go_backing_off();
+    rig_feed_scan_reply();
+    pauses_and_stops(500);
+}
+
 void test_packets_between_the_stop_and_a_quiet_line_are_not_yet_a_recovery(void)
 {
     rig_go_recovering();
@@ -667,6 +709,42 @@ void test_a_turn_cut_by_a_loss_is_no_data_fault(void)
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_RECOVERED), rig_drain());
     TEST_ASSERT_EQUAL_HEX(0, plain_turn_events(0));
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULT), plain_turn_events(0));
+}
+
+void test_a_range_from_before_a_loss_does_not_clear_a_data_fault(void)
+{
+    rig_go_scanning();
+    for (unsigned i = 0; i < 3; i++) {
+        (void)plain_turn_events(0);
+    }
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_NONE);
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    finds_quiet_and_sends(START);
+    rig_feed_point_packet(0);
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_RECOVERED), plain_turn_events(1000));
+    TEST_ASSERT_EQUAL_HEX(0, plain_turn_events(1000)); /* One turn with a range, */
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULT), plain_turn_events(1000)); /* and another. */
+}
+
+void test_a_turn_from_before_a_stop_is_not_trusted_after_the_next_start(void)
+{
+    tmini_turn_info_t turn;
+
+    rig_go_scanning();
+    rig_feed_turn(TMINI_FAULT_LD, 1000);
+    (void)rig_drain();
+    rig_go_idle();
+    sends(START);
+    begins(tmini_start(&rig.lidar));
+    rig_feed_scan_reply();
+    rig_feed_turn(TMINI_FAULT_LD, 1000); /* The stray byte before it is the right LastCRC by chance. */
+    (void)rig_drain();
+    tmini_turn(&rig.lidar, &turn);
+    TEST_ASSERT_EQUAL_HEX16(0, turn.known);
 }
 
 void test_faults_outlive_a_loss(void)
