@@ -175,7 +175,6 @@ int main(void)
 {
     board_start();
     report_start();
-    obstacle_init(&obstacle);
     start_lidar();
     for (;;) {
         const tmini_event_t event = tmini_poll(&lidar);

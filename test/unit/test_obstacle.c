@@ -15,7 +15,7 @@ static obstacle_t obstacle;
 
 void setUp(void)
 {
-    obstacle_init(&obstacle);
+    obstacle = (obstacle_t){.clear = false};
     scan = (tmini_scan_t){.points = points, .count = 1, .complete = true};
     points[0] = (tmini_point_t){.angle_q6 = 0, .distance_mm = 2000};
 }
