@@ -8,14 +8,14 @@
 
 /* More frequency steps than any change needs (6 of 1 Hz and 9 of 0.1 Hz). */
 #define STEPS_MAX 20
+#define COARSE_STEP_CHZ 100
+#define FINE_STEP_CHZ 10
+
 /* The events with which commands end. */
 #define END_EVENTS                                                                         \
     (1u << TMINI_EVENT_STARTED | 1u << TMINI_EVENT_STOPPED | 1u << TMINI_EVENT_INFO |      \
      1u << TMINI_EVENT_HEALTH | 1u << TMINI_EVENT_FREQUENCY | 1u << TMINI_EVENT_REBOOTED | \
      1u << TMINI_EVENT_FAILED)
-
-#define COARSE_STEP_CHZ 100
-#define FINE_STEP_CHZ 10
 
 /* ------------------------------------------------------------------------------------- sending */
 
@@ -248,8 +248,7 @@ static bool has_left(tmini_t *lidar)
         return true;
     }
     if (!transmit(lidar) ||
-        (lidar->unsent > 0 &&
-         driver_elapsed(lidar, lidar->phase_ms, lidar->timing->write_ms))) {
+        (lidar->unsent > 0 && driver_elapsed(lidar, lidar->phase_ms, lidar->timing->write_ms))) {
         attempt_failed(lidar, TMINI_ERROR_WRITE);
     } else if (lidar->unsent == 0) {
         lidar->phase_ms = lidar->now_ms;

@@ -7,8 +7,7 @@
 #define JUMP_Q6 256          /* 4 degrees: further than this, at least one packet is missing. */
 #define FULL_CIRCLE_Q6 23168 /* 362 degrees: further than this, it is another revolution. */
 
-/* More bytes than this missing may have been a whole turn: at 12 Hz it has about 1100 (section
- * 9.7). */
+/* More bytes than this may have been a whole turn: at 12 Hz it has about 1100 (section 9.7). */
 #define HOLE_BYTES 1000
 
 /* The angle turned from one direction to another, clockwise, or slightly back: a hair of jitter
