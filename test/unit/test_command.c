@@ -841,6 +841,17 @@ void test_the_wait_for_a_quiet_line_begins_when_the_command_has_left(void)
     polls_to(TMINI_EVENT_STOPPED);
 }
 
+void test_a_port_that_takes_a_command_at_the_last_moment_has_taken_it(void)
+{
+    sends_both_taking(STOP, 0);
+    begins(tmini_stop(&rig.lidar));
+    rig.now_ms += 150; /* Nobody polled. */
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
 void test_a_port_that_claims_more_than_it_was_given_has_taken_all(void)
 {
     sends_both_taking(STOP, 3);

@@ -493,6 +493,26 @@ void test_the_ladder_has_no_end(void)
     }
 }
 
+void test_a_loss_after_a_new_start_begins_at_the_ladders_foot(void)
+{
+    rig_go_backing_off();
+    tries_in_vain(500);
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+    sends(START);
+    begins(tmini_start(&rig.lidar));
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+    (void)rig_drain();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    sends(STOP); /* Without a pause. */
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
 void test_a_loss_after_a_whole_turn_begins_at_the_ladders_foot(void)
 {
     rig_go_backing_off();
@@ -741,7 +761,8 @@ void test_a_turn_from_before_a_stop_is_not_trusted_after_the_next_start(void)
     sends(START);
     begins(tmini_start(&rig.lidar));
     rig_feed_scan_reply();
-    rig_feed_turn(TMINI_FAULT_LD, 1000); /* The stray byte before it is the right LastCRC by chance. */
+    rig_feed_turn(TMINI_FAULT_LD,
+                  1000); /* The stray byte before it is the right LastCRC by chance. */
     (void)rig_drain();
     tmini_turn(&rig.lidar, &turn);
     TEST_ASSERT_EQUAL_HEX16(0, turn.known);
