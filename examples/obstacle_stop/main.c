@@ -79,6 +79,7 @@ int main(int argc, char **argv)
     while (ended == 0 && tmini_posix_receive(&serial, 10) == TMINI_POSIX_OK) {
         drive();
     }
+    show(false); /* Without a lidar, whatever the reason, the robot stops. */
     (void)tmini_stop_and_wait(&lidar, 1000);
     tmini_posix_close(&serial);
     return ended != 0 ? 0 : 1;

@@ -91,15 +91,17 @@ static void become(const char *path, const char *const words[])
     _exit(PROGRAM_CANNOT_START);
 }
 
-static pid_t start_tool(const char *input, const char *const words[])
+static pid_t start(const char *path, const char *input, const char *const words[])
 {
+    program_write_file(WORK_DIR "/output", "", 0); /* Nothing of the program before. */
+    program_write_file(WORK_DIR "/errors", "", 0);
     const pid_t pid = fork();
     TEST_ASSERT_TRUE(pid >= 0);
     if (pid == 0) {
         redirect(STDIN_FILENO, input, O_RDONLY);
-        redirect(STDOUT_FILENO, WORK_DIR "/output", O_WRONLY | O_CREAT | O_TRUNC);
-        redirect(STDERR_FILENO, WORK_DIR "/errors", O_WRONLY | O_CREAT | O_TRUNC);
-        become(TMINI, words);
+        redirect(STDOUT_FILENO, WORK_DIR "/output", O_WRONLY);
+        redirect(STDERR_FILENO, WORK_DIR "/errors", O_WRONLY);
+        become(path, words);
     }
     tool = pid;
     return pid;
@@ -133,17 +135,22 @@ int program_finish(pid_t pid, int signal_number)
 
 pid_t program_start_tmini(const char *const words[])
 {
-    return start_tool("/dev/null", words);
+    return start(TMINI, "/dev/null", words);
+}
+
+pid_t program_start(const char *path, const char *const words[])
+{
+    return start(path, "/dev/null", words);
 }
 
 int program_tmini(const char *const words[])
 {
-    return program_finish(start_tool("/dev/null", words), 0);
+    return program_finish(start(TMINI, "/dev/null", words), 0);
 }
 
 int program_tmini_from(const char *input, const char *const words[])
 {
-    return program_finish(start_tool(input, words), 0);
+    return program_finish(start(TMINI, input, words), 0);
 }
 
 /* The first line of what the simulator prints. */

@@ -44,6 +44,9 @@ void program_give_up_rights(bool gives_up);
 pid_t program_start_tmini(const char *const words[]);
 int program_finish(pid_t tool, int signal_number);
 
+/* The same for another program. */
+pid_t program_start(const char *path, const char *const words[]);
+
 /* Starts the tool on a terminal of its own, of that size; the terminal's other end is returned in
  * `master`, and what the terminal's programs see of it in `line`. Both are the caller's to close. */
 pid_t program_start_on_terminal(unsigned columns, unsigned rows, const char *const words[],
