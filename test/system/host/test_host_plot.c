@@ -294,6 +294,23 @@ void test_the_png_shows_the_same_points_at_the_same_places(void)
     TEST_ASSERT_FALSE(is_bright(pixel(&png, 5, 5)));
 }
 
+void test_a_point_in_the_png_is_a_dot_of_seven_pixels(void)
+{
+    png_t png;
+    size_t size = 0;
+    const char *const picture = program_path("cross.png");
+    TEST_ASSERT_EQUAL_INT(
+        0, program_tmini(WORDS("plot", cross_recording(0, 0), "--scan", "1", "-o", picture)));
+    const char *const file = program_read_file(1, picture, &size);
+    TEST_ASSERT_NULL(png_read((const uint8_t *)file, size, &png));
+    /* The point 2 m to the right: 250 pixels from the middle (600, 690). */
+    TEST_ASSERT_TRUE(is_bright(pixel(&png, 850, 690)));
+    TEST_ASSERT_TRUE(is_bright(pixel(&png, 850, 692)));
+    TEST_ASSERT_TRUE(is_bright(pixel(&png, 850, 687)));
+    TEST_ASSERT_FALSE(is_bright(pixel(&png, 850, 694)));
+    TEST_ASSERT_FALSE(is_bright(pixel(&png, 850, 685)));
+}
+
 static void expect_failure(int status, const char *reason, const char *const words[])
 {
     TEST_ASSERT_EQUAL_INT(status, program_tmini(words));
