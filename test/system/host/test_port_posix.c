@@ -4,6 +4,7 @@
 /* The POSIX port itself: what opening and receiving return, and the blocking helpers over it. */
 
 #define _XOPEN_SOURCE 700
+#define _DEFAULT_SOURCE /* B230400 */
 
 #include "program.h"
 #include "tmini/tmini_blocking.h"
@@ -11,7 +12,11 @@
 
 #include "unity.h"
 
+#include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
+#include <termios.h>
+#include <unistd.h>
 
 static tmini_posix_t serial;
 static tmini_t lidar;
@@ -123,6 +128,26 @@ void test_reasons_for_not_opening_are_told_apart(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NOT_A_TERMINAL, tmini_posix_open(&serial, "/dev/null"));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NOT_A_TERMINAL, tmini_posix_receive(&serial, 0));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NOT_A_TERMINAL, tmini_posix_open(&serial, "/tmp"));
+}
+
+void test_a_line_for_typing_becomes_one_for_bytes(void)
+{
+    /* A new pseudo-terminal is one for typing: it echoes, edits lines, and changes characters. */
+    const int master = posix_openpt(O_RDWR | O_NOCTTY);
+    TEST_ASSERT_TRUE(master >= 0);
+    TEST_ASSERT_EQUAL_INT(0, grantpt(master));
+    TEST_ASSERT_EQUAL_INT(0, unlockpt(master));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_open(&serial, ptsname(master)));
+    struct termios settings;
+    TEST_ASSERT_EQUAL_INT(0, tcgetattr(master, &settings));
+    TEST_ASSERT_EQUAL_HEX(0, settings.c_lflag & (tcflag_t)(ICANON | ECHO | ISIG | IEXTEN));
+    TEST_ASSERT_EQUAL_HEX(0, settings.c_iflag & (tcflag_t)(ICRNL | INLCR | IGNCR | IXON | IXOFF |
+                                                           ISTRIP | PARMRK | INPCK));
+    TEST_ASSERT_EQUAL_HEX(0, settings.c_oflag & (tcflag_t)OPOST);
+    TEST_ASSERT_EQUAL_HEX(CS8 | CREAD | CLOCAL,
+                          settings.c_cflag & (tcflag_t)(CSIZE | CREAD | CLOCAL | PARENB | CSTOPB));
+    TEST_ASSERT_TRUE(cfgetispeed(&settings) == B230400 && cfgetospeed(&settings) == B230400);
+    close(master);
 }
 
 void test_every_status_has_a_name(void)
