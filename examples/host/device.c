@@ -47,9 +47,10 @@ static const char *advice_for(tmini_posix_status_t status)
     }
 }
 
-/* The driver's own, but for someone who waits at a keyboard. */
+/* The driver's own, but for someone who waits at a keyboard, and for a computer that has other things
+ * to do: bytes may reach this program late and in one go. */
 static const tmini_timing_t patience = {
-    .silence_ms = 30,
+    .silence_ms = 250,
     .quiet_ms = 50,
     .stop_ms = 600,
     .reply_ms = 1000,

@@ -5,7 +5,8 @@
  * firmware.
  *
  * It may while something has been seen lately and nothing of it was near in front. A scan with gaps
- * may have missed what was there: it can stop the robot, but does not let it go on. */
+ * may have missed what was there: it can stop the robot, but does not let it go on. A scan without
+ * any distance means that the lidar sees nothing, not that nothing is there. */
 
 #ifndef OBSTACLE_H
 #define OBSTACLE_H

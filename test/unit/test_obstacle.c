@@ -56,7 +56,15 @@ void test_what_is_near_elsewhere_does_not_stop_it(void)
 
 void test_a_point_without_range_is_not_near(void)
 {
+    scan.count = 2;
+    points[1] = (tmini_point_t){.angle_q6 = 180 * DEGREE_Q6, .distance_mm = 2000};
     TEST_ASSERT_TRUE(may_move_after(0, 0));
+}
+
+void test_a_scan_without_any_range_is_blindness_not_room(void)
+{
+    TEST_ASSERT_TRUE(may_move_after(2000, 0));
+    TEST_ASSERT_FALSE(may_move_after(0, 0));
 }
 
 void test_once_stopped_it_needs_more_room_to_go_on(void)
