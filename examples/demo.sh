@@ -45,29 +45,42 @@ start_lidar() {
         [ -z "$port" ] || return 0
         sleep 0.2
     done
-    echo "The simulated lidar does not start." >&2
     return 1
+}
+
+# What a lidar on a port shows.
+show_live() {
+    echo "A simulated T-mini Plus in a simulated room is on $port."
+
+    say "Which lidar is it, and is it well?"
+    show info -p "$port"
+    show health -p "$port"
+
+    say "Live scans, while its motor comes up to speed"
+    show scan -p "$port" -n 6
+
+    say "Two seconds of raw bytes, recorded and decoded"
+    show record -p "$port" "$build/room.bin" --seconds 2 --quiet
+}
+
+# Some containers have no pseudo-terminals (no /dev/pts).
+show_without_port() {
+    echo "There are no pseudo-terminals here: no live part. The simulated lidar writes a recording instead."
+    "$build/bin/tmini-sim" --write "$build/room.bin" --seconds 4 >/dev/null
 }
 
 say "Building in $build"
 quietly cmake -S "$root" -B "$build" -DTMINI_BUILD_TESTS=OFF
 quietly cmake --build "$build" --target tmini_tool tmini-sim --parallel 2
-start_lidar
-echo "A simulated T-mini Plus in a simulated room is on $port."
-
-say "Which lidar is it, and is it well?"
-show info -p "$port"
-show health -p "$port"
-
-say "Live scans, while its motor comes up to speed"
-show scan -p "$port" -n 6
-
-say "Two seconds of raw bytes, recorded and decoded"
-show record -p "$port" "$build/room.bin" --seconds 2 --quiet
+if start_lidar; then
+    show_live
+else
+    show_without_port
+fi
 show decode "$build/room.bin"
 
 say "The last complete scan as a picture"
 show plot "$build/room.bin" -o "$build/room.png"
 
 say "The picture: $build/room.png"
-echo "With a lidar of your own, try: $tmini view -p /dev/ttyUSB0"
+echo "The tool is $tmini. With a lidar of your own, try: $tmini view -p /dev/ttyUSB0"
