@@ -24,7 +24,6 @@ wish_for_fuzzer() {
 }
 
 # Compilers and emulators for the checks labelled compile, and for the tests on other machines.
-# Compilers and emulators for the checks labelled compile and for those on other machines.
 wish_for_machines() {
     wish clang clang
     wish_for_fuzzer

@@ -211,8 +211,8 @@ static inline void tmini_feed(tmini_t *lidar, const uint8_t *bytes, size_t count
 /* Publishes how far circular DMA has written rx_buffer: `position` is the index it writes next
  * (rx_size less the channel's remaining count), and never goes back. Call it from the
  * half-transfer, transfer-complete and idle-line interrupts; all three are needed (tmini_ring.h
- * says why). No loop, no wait. Overwritten bytes are noticed when polling, counted, and never
- * become points. */
+ * says why), and bytes must not be held back for longer than silence_ms. No loop, no wait.
+ * Overwritten bytes are noticed when polling, counted, and never become points. */
 static inline void tmini_feed_dma(tmini_t *lidar, size_t position)
 {
     tmini_ring_publish(&lidar->ring, position);
