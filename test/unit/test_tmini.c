@@ -319,7 +319,7 @@ void test_silence_gives_a_candidate_up_so_that_the_packet_it_hides_is_delivered(
     rig_feed_start_packet(1000);
     (void)rig_drain();
     feed_false_header_and_packet();
-    passes(30);
+    passes(100);
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
 }
@@ -331,7 +331,7 @@ void test_silence_gives_up_one_candidate_behind_the_other(void)
     (void)rig_drain();
     feed_false_header_and_packet();
     feed_false_header_and_packet();
-    passes(30);
+    passes(100);
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_SCAN), rig_drain());
     TEST_ASSERT_EQUAL_UINT32(2, counters().scans);
     TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
@@ -340,7 +340,7 @@ void test_silence_gives_up_one_candidate_behind_the_other(void)
 void test_silence_gives_up_a_single_byte_too(void)
 {
     rig_feed_byte(0xAA);
-    passes(30);
+    passes(100);
     polls_to(TMINI_EVENT_NONE);
     TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
     TEST_ASSERT_EQUAL_UINT32(1, counters().parser.bytes_skipped);
@@ -356,7 +356,7 @@ void test_a_byte_that_comes_in_time_keeps_the_candidate(void)
     for (size_t i = 0; i < size; i++) {
         const uint32_t before = counters().parser.packets;
         rig_feed_byte(bytes[i]);
-        passes(29);
+        passes(99);
         TEST_ASSERT_EQUAL_UINT32(before + (i == size - 1 ? 1 : 0), counters().parser.packets);
     }
 }
@@ -370,7 +370,7 @@ void test_silence_gives_up_what_hides_a_reply_too(void)
     begins(tmini_request_info(&rig.lidar));
     rig_feed(header, sizeof header);
     rig_feed_info();
-    passes(30);
+    passes(100);
     polls_to(TMINI_EVENT_INFO);
 }
 
@@ -761,11 +761,11 @@ void test_the_pause_between_attempts_survives_the_clocks_wrap_around(void)
 void test_silence_survives_the_clocks_wrap_around(void)
 {
     rig_go_scanning();
-    begin_near_the_end(30);
+    begin_near_the_end(100);
     rig_feed_start_packet(1000);
     (void)rig_drain();
     feed_false_header_and_packet();
-    passes(30);
+    passes(100);
     polls_to(TMINI_EVENT_SCAN);
 }
 

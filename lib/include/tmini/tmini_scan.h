@@ -26,7 +26,8 @@
 extern "C" {
 #endif
 
-/* A buffer of this many points holds any revolution at the default 6 Hz and above (section 9.7). */
+/* A buffer of this many points holds any revolution at 6 Hz and above (section 9.7). While the motor
+ * comes up to speed, the first ones may have more: those are counted as dropped. */
 #define TMINI_SCAN_POINTS_TYPICAL 800u
 
 /* One revolution. */
