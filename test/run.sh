@@ -53,6 +53,7 @@ install_tools
 [ "${TMINI_OPTIONAL:-yes}" = no ] || prepare_labwired "$root/build/labwired"
 
 # What goes well before the tests is not worth reading.
+echo "Building in $root/build"
 quietly cmake -S "$root" -B "$root/build" -DTMINI_BUILD_TESTS=ON -DTMINI_BUILD_EXAMPLES=ON
 quietly cmake --build "$root/build" --parallel "$(job_count)"
 

@@ -10,7 +10,7 @@ foreach(test test_simulator test_link)
     tmini_add_unit_test(${test} SOURCES ${test}.c LIBRARIES tmini_simulator
         NOT_ON int16 cortex-m0 cortex-m4)
 endforeach()
-if(TARGET tmini-sim AND NOT CMAKE_CROSSCOMPILING)
+if(TARGET tmini-sim AND TMINI_HAS_PTY AND NOT CMAKE_CROSSCOMPILING)
     tmini_add_unit_test(test_tmini_sim SOURCES test_tmini_sim.c NOT_ON others)
     target_compile_definitions(test_tmini_sim PRIVATE TMINI_SIM="$<TARGET_FILE:tmini-sim>")
     add_dependencies(test_tmini_sim tmini-sim)
