@@ -4,13 +4,11 @@
 #include "lidar.h"
 
 #include "main.h"
+#include "obstacle.h"
 #include "tmini/tmini.h"
 #include "tmini_stm32_hal.h"
 #include "usart.h"
 
-#define STOP_MM 300u
-#define AHEAD_Q6 (30u * 64u) /* To either side, in 1/64 degree. */
-#define BLIND_MS 500u        /* Without a complete scan for so long, the robot stops. */
 #define RETRY_MS 1000u
 
 /* Aligned for the data cache of a Cortex-M7; elsewhere that does no harm. On an H7 it must also lie in a RAM
@@ -20,10 +18,8 @@ static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_t lidar;
 static tmini_stm32_hal_t port;
 
-static uint16_t ahead_mm;
-static uint32_t seen_ms;
+static obstacle_t obstacle;
 static uint32_t tried_ms;
-static bool has_seen;
 
 /* ------------------------------------------------- the HAL's callbacks: share them with other UARTs */
 
@@ -39,31 +35,14 @@ void HAL_UART_ErrorCallback(UART_HandleTypeDef *huart)
 
 /* --------------------------------------------------------------------------------- obstacle stop */
 
-static bool is_ahead(uint16_t angle_q6)
+/* Without a scanning lidar, or with a faulty one, nothing can be known of what is in front. */
+static void drive(void)
 {
-    return angle_q6 <= AHEAD_Q6 || angle_q6 >= TMINI_TURN_Q6 - AHEAD_Q6;
-}
-
-static void see(const tmini_scan_t *scan)
-{
-    ahead_mm = 0;
-    for (unsigned i = 0; i < scan->count; i++) {
-        const tmini_point_t *const point = &scan->points[i];
-        if (point->distance_mm != 0 && is_ahead(point->angle_q6) &&
-            (ahead_mm == 0 || point->distance_mm < ahead_mm)) {
-            ahead_mm = point->distance_mm;
-        }
+    if (tmini_state(&lidar) != TMINI_STATE_SCANNING || tmini_faults(&lidar) != 0) {
+        obstacle_blind(&obstacle);
     }
-    if (scan->complete) {
-        has_seen = true;
-        seen_ms = HAL_GetTick();
-    }
-}
-
-static bool may_move(void)
-{
-    return has_seen && HAL_GetTick() - seen_ms < BLIND_MS && tmini_faults(&lidar) == 0 &&
-           (ahead_mm == 0 || ahead_mm >= STOP_MM);
+    HAL_GPIO_WritePin(DRIVE_ENABLE_GPIO_Port, DRIVE_ENABLE_Pin,
+                      obstacle_may_move(&obstacle, HAL_GetTick()) ? GPIO_PIN_SET : GPIO_PIN_RESET);
 }
 
 /* At first, and after a failure. A lidar lost while it scans is brought back by the library. */
@@ -97,14 +76,13 @@ void lidar_start(void)
 void lidar_work(void)
 {
     if (tmini_poll(&lidar) == TMINI_EVENT_SCAN) {
-        see(tmini_scan(&lidar));
+        obstacle_see(&obstacle, tmini_scan(&lidar), HAL_GetTick());
     }
     try_to_scan();
-    HAL_GPIO_WritePin(DRIVE_ENABLE_GPIO_Port, DRIVE_ENABLE_Pin,
-                      may_move() ? GPIO_PIN_SET : GPIO_PIN_RESET);
+    drive();
 }
 
 uint16_t lidar_ahead_mm(void)
 {
-    return ahead_mm;
+    return obstacle.nearest_mm[0];
 }

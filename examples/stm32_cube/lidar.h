@@ -16,7 +16,7 @@ void lidar_start(void);
 /* Again and again in the main loop; returns at once. At the latest every 20 ms. */
 void lidar_work(void);
 
-/* The distance of the nearest thing within 30 degrees of straight ahead in the last scan; 0: nothing. */
+/* The distance of the nearest thing in front, in a sector 45 degrees wide, in the last scan; 0: nothing. */
 uint16_t lidar_ahead_mm(void);
 
 #endif

@@ -35,16 +35,17 @@ if(TARGET test_port_stm32_hal_cache)
 endif()
 
 # The examples for STM32: what makes the robot stop.
+set(obstacle_stop ${PROJECT_SOURCE_DIR}/examples/obstacle_stop)
 set(stm32_cube ${PROJECT_SOURCE_DIR}/examples/stm32_cube)
 tmini_add_port_test(test_example_stm32_cube stm32 NOT_ON int16
     SOURCES test_example_stm32_cube.c ${stm32_cube}/lidar.c ${stm32}/tmini_stm32_hal.c
+        ${obstacle_stop}/obstacle.c
     MOCKS ${stm32_hal} LIBRARIES tmini_test_support)
 if(TARGET test_example_stm32_cube)
-    target_include_directories(test_example_stm32_cube PRIVATE ${stm32_cube})
+    target_include_directories(test_example_stm32_cube PRIVATE ${stm32_cube} ${obstacle_stop})
 endif()
 
 # What the PC's and the firmware's obstacle stop have in common.
-set(obstacle_stop ${PROJECT_SOURCE_DIR}/examples/obstacle_stop)
 tmini_add_unit_test(test_obstacle SOURCES test_obstacle.c ${obstacle_stop}/obstacle.c)
 target_include_directories(test_obstacle PRIVATE ${obstacle_stop})
 target_compile_options(test_obstacle PRIVATE -Wpedantic -Wconversion -Wshadow)

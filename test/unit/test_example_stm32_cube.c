@@ -16,6 +16,8 @@
 
 #define DEGREE_Q6 64u
 #define PACKET_SAMPLES 40u
+#define HEALTH_INDEX 3u
+#define PD_CT 0x10 /* The health bit PD, 0x08, above bit 0. */
 
 bool stm32_stub_is_masked;
 bool stm32_stub_was_read_unmasked;
@@ -30,6 +32,11 @@ static size_t size;
 static size_t written; /* What DMA has written in all. */
 static uint8_t sent[2];
 static bool may_move;
+
+static unsigned index_in_turn;
+static uint8_t health_ct; /* The CT byte with the health bits (section 7); 0: no CT information. */
+static uint8_t crc;
+static bool next_is_harmed;
 
 static uint32_t get_tick(int calls)
 {
@@ -76,6 +83,8 @@ void setUp(void)
         .RxState = HAL_UART_STATE_READY,
     };
     written = 0;
+    health_ct = 0;
+    next_is_harmed = false;
     tick_ms += 100000;
     HAL_GetTick_Stub(get_tick);
     HAL_UARTEx_ReceiveToIdle_DMA_Stub(receive);
@@ -112,6 +121,18 @@ static void arrive(const uint8_t *bytes, size_t count)
     HAL_UARTEx_RxEventCallback(&huart1, (uint16_t)(written % size));
 }
 
+/* Behind a start packet's revolution comes LastCRC, if there is CT information. */
+static uint8_t next_ct(bool starts)
+{
+    if (starts && health_ct != 0) {
+        arrive(&crc, 1);
+    }
+    index_in_turn = starts ? 0 : index_in_turn + 1;
+    const uint8_t ct = starts ? 1 : index_in_turn == HEALTH_INDEX ? health_ct : 0;
+    crc = encode_crc8(starts ? 0 : crc, ct);
+    return ct;
+}
+
 /* Samples a degree apart, all at 2 m but for those with `near_mm` from 10 degrees before `near` to 10
  * behind it. */
 static void arrive_packet(bool starts, unsigned first, unsigned count, unsigned near,
@@ -125,23 +146,31 @@ static void arrive_packet(bool starts, unsigned first, unsigned count, unsigned 
         samples[i] = (encode_sample_t){.distance_mm = is_near ? near_mm : 2000};
     }
     const encode_packet_t packet = {
-        .ct = starts ? 1 : 0,
+        .ct = next_ct(starts),
         .lsn = (uint8_t)count,
         .first_q6 = (uint16_t)(first * DEGREE_Q6),
         .last_q6 = (uint16_t)((first + count - 1) * DEGREE_Q6),
         .samples = samples,
     };
-    arrive(bytes, encode_packet(bytes, &packet));
+    const size_t length = encode_packet(bytes, &packet);
+    bytes[length - 1] ^= next_is_harmed ? 0x55 : 0;
+    next_is_harmed = false;
+    arrive(bytes, length);
     work_for(10);
+}
+
+static void arrive_rest(unsigned near, uint16_t near_mm)
+{
+    for (unsigned first = 1; first < 360; first += PACKET_SAMPLES) {
+        const unsigned left = 360 - first;
+        arrive_packet(false, first, left < PACKET_SAMPLES ? left : PACKET_SAMPLES, near, near_mm);
+    }
 }
 
 static void arrive_revolution(unsigned near, uint16_t near_mm)
 {
     arrive_packet(true, 0, 1, near, near_mm);
-    for (unsigned first = 1; first < 360; first += PACKET_SAMPLES) {
-        const unsigned left = 360 - first;
-        arrive_packet(false, first, left < PACKET_SAMPLES ? left : PACKET_SAMPLES, near, near_mm);
-    }
+    arrive_rest(near, near_mm);
 }
 
 static void scan_with(unsigned near, uint16_t near_mm)
@@ -181,6 +210,42 @@ void test_no_range_is_not_near(void)
 {
     scan_with(0, 0);
     TEST_ASSERT_TRUE(may_move);
+}
+
+void test_a_scan_that_has_lost_what_is_in_front_does_not_let_the_robot_go(void)
+{
+    scan_with(20, 250);
+    TEST_ASSERT_FALSE(may_move);
+    next_is_harmed = true; /* 1 to 40 degrees. */
+    arrive_rest(20, 250);
+    arrive_packet(true, 0, 1, 20, 250);
+    TEST_ASSERT_EQUAL_UINT16(2000, lidar_ahead_mm());
+    TEST_ASSERT_FALSE(may_move);
+}
+
+void test_a_faulty_lidar_stops_the_robot_whatever_it_measures(void)
+{
+    scan_with(0, 2000);
+    TEST_ASSERT_TRUE(may_move);
+    health_ct = PD_CT;
+    arrive_rest(0, 2000);
+    arrive_revolution(0, 2000);
+    arrive_revolution(0, 2000);
+    arrive_packet(true, 0, 1, 0, 2000);
+    TEST_ASSERT_EQUAL_UINT16(2000, lidar_ahead_mm());
+    TEST_ASSERT_FALSE(may_move);
+}
+
+void test_the_robot_needs_more_room_to_go_on_than_to_stop(void)
+{
+    scan_with(0, 250);
+    arrive_rest(0, 320);
+    arrive_packet(true, 0, 1, 0, 320);
+    TEST_ASSERT_EQUAL_UINT16(250, lidar_ahead_mm());
+    arrive_rest(0, 320);
+    arrive_packet(true, 0, 1, 0, 320);
+    TEST_ASSERT_EQUAL_UINT16(320, lidar_ahead_mm());
+    TEST_ASSERT_FALSE(may_move);
 }
 
 void test_a_robot_that_sees_nothing_any_more_stops(void)
