@@ -47,12 +47,21 @@ void test_it_tells_who_the_lidar_is_and_stops_the_robot_only_while_it_must(void)
     assert_logged(", go; lost: 0 checksums, 0 bytes, 0 overflows\n");
     TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
 
-    virtual_idf_place_obstacle(0, 640, 350); /* 10 degrees wide, 350 mm ahead. */
+    virtual_idf_place_obstacle(0, 640, 250); /* 10 degrees wide, 250 mm ahead. */
     vTaskDelay(100);
     TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN));
     assert_logged(", STOP;");
 
     virtual_idf_clear_obstacles();
+    vTaskDelay(100);
+    TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
+
+    virtual_idf_set_health(SIM_HEALTH_PD); /* Ranges go on coming, all of them far. */
+    vTaskDelay(100);
+    TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN));
+    assert_logged("W lidar: faults 0x08\n");
+
+    virtual_idf_set_health(0);
     vTaskDelay(100);
     TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
 

@@ -457,6 +457,13 @@ void virtual_idf_power_lidar(bool on)
     unlock();
 }
 
+void virtual_idf_set_health(uint8_t bits)
+{
+    lock();
+    sim_set_health(&world.lidar, bits);
+    unlock();
+}
+
 bool virtual_idf_driver_is_installed(void)
 {
     lock();

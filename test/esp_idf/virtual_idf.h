@@ -25,6 +25,7 @@ void virtual_idf_hold_interrupts(uint32_t duration_us);
 void virtual_idf_place_obstacle(uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm);
 void virtual_idf_clear_obstacles(void);
 void virtual_idf_power_lidar(bool on);
+void virtual_idf_set_health(uint8_t bits);
 
 bool virtual_idf_driver_is_installed(void);
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop on an ESP32: asks the lidar who and how it is, scans, raises a pin while something in
- * front is too near, and writes a line a second to the console. */
+/* Obstacle stop on an ESP32: asks the lidar who and how it is, scans, raises a pin while the robot
+ * must not move, and writes a line a second to the console. */
 
 #include <inttypes.h>
 
@@ -11,10 +11,9 @@
 #include "freertos/FreeRTOS.h"
 #include "freertos/task.h"
 
+#include "obstacle.h"
 #include "tmini_esp32.h"
 
-#define FRONT_Q6 1920u /* 30 degrees to either side of 0, in 1/64 degree. */
-#define BLIND_MS 500u  /* Without a scan for so long, stop. */
 #define REPORT_MS 1000u
 
 static const char *const TAG = "lidar";
@@ -24,9 +23,7 @@ static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_t lidar;
 static tmini_esp32_t board;
 
-static uint16_t nearest_mm; /* In front, in the last scan; 0: nothing. */
-static uint32_t seen_ms;    /* When that was. */
-static bool seen;
+static obstacle_t obstacle;
 static uint32_t scans; /* Since the last line on the console. */
 
 static uint32_t now_ms(void)
@@ -36,29 +33,13 @@ static uint32_t now_ms(void)
 
 /* ---------------------------------------------------------------------------------- obstacle stop */
 
-static bool is_in_front(const tmini_point_t *point)
-{
-    return point->angle_q6 <= FRONT_Q6 || point->angle_q6 >= TMINI_TURN_Q6 - FRONT_Q6;
-}
-
-static uint16_t nearest_in_front(const tmini_scan_t *scan)
-{
-    uint16_t nearest = 0;
-    for (unsigned i = 0; i < scan->count; i++) {
-        const tmini_point_t *const point = &scan->points[i];
-        if (point->distance_mm != 0 && is_in_front(point) &&
-            (nearest == 0 || point->distance_mm < nearest)) {
-            nearest = point->distance_mm;
-        }
-    }
-    return nearest;
-}
-
-/* A robot that sees nothing must not move either. */
+/* Without a scanning lidar, or with a faulty one, nothing can be known of what is in front. */
 static bool must_stop(void)
 {
-    const bool blind = !seen || now_ms() - seen_ms > BLIND_MS || tmini_faults(&lidar) != 0;
-    return blind || (nearest_mm != 0 && nearest_mm < CONFIG_EXAMPLE_STOP_MM);
+    if (tmini_state(&lidar) != TMINI_STATE_SCANNING || tmini_faults(&lidar) != 0) {
+        obstacle_blind(&obstacle);
+    }
+    return !obstacle_may_move(&obstacle, now_ms());
 }
 
 static void open_stop_pin(void)
@@ -79,9 +60,7 @@ static void set_stop_pin(bool stop)
 
 static void see(const tmini_scan_t *scan)
 {
-    nearest_mm = nearest_in_front(scan);
-    seen_ms = now_ms();
-    seen = true;
+    obstacle_see(&obstacle, scan, now_ms());
     scans++;
 }
 
@@ -140,8 +119,8 @@ static void report_each_second(void)
     ESP_LOGI(TAG,
              "%" PRIu32 " scans, nearest in front %u mm, %s; lost: %" PRIu32 " checksums, %" PRIu32
              " bytes, %" PRIu32 " overflows",
-             scans, nearest_mm, must_stop() ? "STOP" : "go", counters.parser.checksum_errors,
-             counters.parser.bytes_overrun, uart.fifo_overflows);
+             scans, obstacle.nearest_mm[0], must_stop() ? "STOP" : "go",
+             counters.parser.checksum_errors, counters.parser.bytes_overrun, uart.fifo_overflows);
     scans = 0;
 }
 

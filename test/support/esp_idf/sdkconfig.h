@@ -19,6 +19,5 @@
 
 /* Of examples/esp32_idf. */
 #define CONFIG_EXAMPLE_STOP_GPIO 10
-#define CONFIG_EXAMPLE_STOP_MM 400
 
 #endif
