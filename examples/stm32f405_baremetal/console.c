@@ -64,6 +64,14 @@ void console_hundredths(const char *name, uint32_t hundredths)
     put_number(hundredths % 100, 2, 10);
 }
 
+void console_version(const char *name, uint32_t major, uint32_t minor)
+{
+    put_name(name);
+    put_number(major, 1, 10);
+    put('.');
+    put_number(minor, 1, 10);
+}
+
 void console_hex(const char *name, uint32_t value)
 {
     put_name(name);

@@ -18,6 +18,9 @@ void console_value(const char *name, uint32_t value);
 /* "name 12.34", with a blank before it, from hundredths. */
 void console_hundredths(const char *name, uint32_t hundredths);
 
+/* "name 1.2", with a blank before it. */
+void console_version(const char *name, uint32_t major, uint32_t minor);
+
 /* "name 0123abcd", with a blank before it. */
 void console_hex(const char *name, uint32_t value);
 

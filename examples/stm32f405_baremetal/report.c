@@ -20,7 +20,7 @@ void report_info(const tmini_info_t *info)
     tmini_serial_text(info, serial);
     console_text("info");
     console_value("model", info->model);
-    console_hundredths("firmware", info->firmware_major * 100u + info->firmware_minor);
+    console_version("firmware", info->firmware_major, info->firmware_minor);
     console_value("hardware", info->hardware);
     console_text(" serial ");
     console_text(serial);
