@@ -51,3 +51,18 @@ void VirtualLidar::unplug()
 {
     plugged_ = false;
 }
+
+void VirtualLidar::placeObstacle(uint16_t distance_mm)
+{
+    sim_place_obstacle(&sim_, 0, 640, distance_mm);
+}
+
+void VirtualLidar::clearObstacles()
+{
+    sim_clear_obstacles(&sim_);
+}
+
+void VirtualLidar::setHealth(uint8_t bits)
+{
+    sim_set_health(&sim_, bits);
+}

@@ -24,6 +24,11 @@ class VirtualLidar
     void pass();
     /* Unplugged: nothing comes any more. */
     void unplug();
+    /* 10 degrees wide, in front. */
+    void placeObstacle(uint16_t distance_mm);
+    void clearObstacles();
+    /* Reports these faults (section 4), and goes on measuring. */
+    void setHealth(uint8_t bits);
 
     /* Points by revolution and by packet. */
     std::map<uint32_t, std::vector<reference_point_t>> revolutions;
