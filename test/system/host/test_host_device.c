@@ -95,6 +95,36 @@ void test_health_of_a_healthy_lidar(void)
                   WORDS("health", "-p", port, "--json"));
 }
 
+static void expect_ill(const char *expected, const char *const words[])
+{
+    TEST_ASSERT_EQUAL_INT(1, program_tmini(words));
+    TEST_ASSERT_EQUAL_STRING(expected, program_output);
+    TEST_ASSERT_EQUAL_STRING("", program_errors);
+}
+
+void test_health_of_a_lidar_with_two_faults(void)
+{
+    port = program_start_lidar(WORDS("--health", "0x18"));
+    expect_ill("faulty: laser feedback (PD), laser drive (LD); error code 24\n",
+               WORDS("health", "-p", port));
+    expect_ill("{\"healthy\":false,\"faults\":24,\"error_code\":24}\n",
+               WORDS("health", "-p", port, "--json"));
+}
+
+void test_health_of_a_lidar_that_does_not_turn(void)
+{
+    port = program_start_lidar(WORDS("--blocked"));
+    expect_ill("faulty: encoder (is the rotor blocked?); error code 2\n",
+               WORDS("health", "-p", port));
+}
+
+void test_a_covered_window_is_told_while_scanning(void)
+{
+    port = program_start_lidar(WORDS("--covered"));
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-n", "8")));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "faulty: data (is the window covered?)"));
+}
+
 void test_the_frequency_is_read_set_and_kept(void)
 {
     begin();
