@@ -31,7 +31,7 @@ static const char *advice_for(tmini_posix_status_t status)
     case TMINI_POSIX_NO_DEVICE:
         return "there is no such device. Is the adapter plugged in? `ls /dev/tty*` shows the "
                "ports: "
-               "USB adapters are\n/dev/ttyUSB0 or /dev/ttyACM0 on Linux, /dev/tty.usb… on macOS.";
+               "USB adapters are\n/dev/ttyUSB0 or /dev/ttyACM0 on Linux, /dev/cu.usb… on macOS.";
     case TMINI_POSIX_PERMISSION:
         return "you may not open it. On Linux, join the group that owns it and log in again:\n"
                "sudo usermod -a -G dialout $USER";
@@ -49,20 +49,14 @@ static const char *advice_for(tmini_posix_status_t status)
 
 /* The driver's own, but for someone who waits at a keyboard, and for a computer that has other things
  * to do: bytes may reach this program late and in one go. */
-static const tmini_timing_t patience = {
-    .silence_ms = 250,
-    .quiet_ms = 50,
-    .stop_ms = 600,
-    .reply_ms = 1000,
-    .write_ms = 100,
-    .spin_up_ms = 3000,
-    .data_ms = 1000,
-    .turn_ms = 3000,
-    .reboot_ms = 5000,
-    .back_off_ms = 500,
-    .back_off_max_ms = 4000,
-    .attempts = 3,
-};
+static const tmini_timing_t *patience(void)
+{
+    static tmini_timing_t timing;
+    timing = tmini_timing_default;
+    timing.silence_ms = 250;
+    timing.reply_ms = 1000;
+    return &timing;
+}
 
 static void explain_opening(const char *path, tmini_posix_status_t status)
 {
@@ -89,7 +83,7 @@ device_t *device_open(const options_t *options)
         .rx_size = sizeof device.rx,
         .points = device.points,
         .max_points = SCAN_CAPACITY,
-        .timing = &patience,
+        .timing = patience(),
     };
     (void)tmini_init(&device.lidar, &config);
     tmini_posix_attach(&device.serial, &device.lidar);
@@ -251,6 +245,11 @@ static int explain_trouble(const device_t *device)
         return message_fail(
             "the lidar on %s sends packets, but completes no revolution. Does it turn?",
             device->path);
+    }
+    if (tmini_state(&device->lidar) == TMINI_STATE_RECOVERING) {
+        return message_fail("the lidar on %s has fallen silent and does not come back. Check its "
+                            "supply (5 V, up to 1 A)\nand its plug.",
+                            device->path);
     }
     return message_fail(
         "the lidar on %s has answered before, but now: %s. Try again; if that does not "

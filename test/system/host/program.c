@@ -203,6 +203,12 @@ void program_stop_lidar(void)
     end(&lidar);
 }
 
+void program_freeze_lidar(void)
+{
+    TEST_ASSERT_TRUE(lidar > 0);
+    TEST_ASSERT_EQUAL_INT(0, kill(lidar, SIGSTOP));
+}
+
 /* What the host sends is read and forgotten. */
 static void talk(int fd, const uint8_t *bytes, size_t size)
 {

@@ -286,6 +286,17 @@ void test_a_cable_pulled_while_scanning_is_told(void)
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "Plug it in"));
 }
 
+void test_a_lidar_that_falls_silent_while_scanning_is_told(void)
+{
+    begin();
+    const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
+    wait_for_lines(2);
+    program_freeze_lidar();
+    TEST_ASSERT_EQUAL_INT(1, program_finish(tool, 0));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "has fallen silent; starting it again"));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "has fallen silent and does not come back"));
+}
+
 void test_a_recording_survives_a_pulled_cable(void)
 {
     begin();
@@ -377,6 +388,15 @@ void test_a_lidar_that_sends_but_does_not_hear(void)
     port = program_start_talker((const uint8_t *)recording + 7, size - 7);
     expect_failure(1, "does not do what it is told", WORDS("info", "-p", port));
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "the adapter's TX"));
+}
+
+void test_a_recording_is_not_lost_to_a_lidar_that_does_not_answer(void)
+{
+    const char *const precious = program_path("precious.bin");
+    program_write_file(precious, "gold", 4);
+    port = program_start_talker(NULL, 0);
+    expect_failure(1, "not one byte came", WORDS("record", "-p", port, precious, "-q"));
+    TEST_ASSERT_EQUAL_STRING("gold", program_read_file(0, precious, NULL));
 }
 
 void test_a_recording_that_cannot_be_written(void)
