@@ -5,7 +5,9 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <signal.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "faults.h"
 #include "interrupt.h"
@@ -64,6 +66,18 @@ static void explain_opening(const char *path, tmini_posix_status_t status)
     (void)message_fail("cannot use %s: %s", path, advice != NULL ? advice : strerror(errno));
 }
 
+static volatile sig_atomic_t started_fd = -1;
+
+/* The stop command (section 3), from a signal's handler: nobody waits for the line to fall quiet. */
+static void stop_at_once(void)
+{
+    static const uint8_t stop[2] = {0xA5, 0x65};
+    const int fd = started_fd;
+    if (fd >= 0 && write(fd, stop, sizeof stop) < 0) {
+        return; /* Nothing more can be done. */
+    }
+}
+
 device_t *device_open(const options_t *options)
 {
     static device_t device;
@@ -89,6 +103,7 @@ device_t *device_open(const options_t *options)
     tmini_posix_attach(&device.serial, &device.lidar);
     device.path = options->port;
     interrupt_watch();
+    interrupt_last_words(stop_at_once);
     return &device;
 }
 
@@ -103,6 +118,7 @@ void device_close(device_t *device)
         } while (event != TMINI_EVENT_NONE && event != TMINI_EVENT_STOPPED &&
                  event != TMINI_EVENT_FAILED);
     }
+    started_fd = -1;
     tmini_posix_close(&device->serial);
 }
 
@@ -153,6 +169,7 @@ int device_finish(device_t *device, tmini_status_t begun, tmini_event_t wanted)
 int device_start(device_t *device)
 {
     device->was_started = true;
+    started_fd = device->serial.fd;
     return device_finish(device, tmini_start(&device->lidar), TMINI_EVENT_STARTED);
 }
 
