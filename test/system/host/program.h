@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <sys/types.h>
+#include <termios.h>
 
 #define PROGRAM_WORDS_MAX 16
 
@@ -48,9 +49,10 @@ int program_finish(pid_t tool, int signal_number);
 pid_t program_start(const char *path, const char *const words[]);
 
 /* Starts the tool on a terminal of its own, of that size; the terminal's other end is returned in
- * `master`, and what the terminal's programs see of it in `line`. Both are the caller's to close. */
+ * `master`, and what the terminal's programs see of it in `line`. Both are the caller's to close. In
+ * `before`: the terminal's settings before the tool began. */
 pid_t program_start_on_terminal(unsigned columns, unsigned rows, const char *const words[],
-                                int *master, int *line);
+                                int *master, int *line, struct termios *before);
 
 /* Starts the simulated lidar on a pseudo-terminal, with more options up to a NULL. Returns the port,
  * valid until the next call. */

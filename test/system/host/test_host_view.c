@@ -49,8 +49,7 @@ void tearDown(void)
 static void begin(unsigned columns, unsigned rows, const char *const words[])
 {
     vt_init(&vt, columns, rows);
-    tool = program_start_on_terminal(columns, rows, words, &master, &line);
-    TEST_ASSERT_EQUAL_INT(0, tcgetattr(line, &before));
+    tool = program_start_on_terminal(columns, rows, words, &master, &line, &before);
 }
 
 /* Shows what the tool draws within that time. */
@@ -326,6 +325,15 @@ void test_a_lidar_is_shown_live_and_stopped_in_the_end(void)
     press('q');
     expect_end(0);
     TEST_ASSERT_NOT_NULL(strstr(program_read_file(0, log, NULL), "stopping -> idle"));
+}
+
+void test_a_blocked_rotor_is_shown(void)
+{
+    begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--blocked"))));
+    wait_for("health    FAULTY");
+    wait_for("encoder (is the rotor blocked?)");
+    press('q');
+    expect_end(0);
 }
 
 void test_a_pulled_cable_ends_the_view_with_a_message(void)
