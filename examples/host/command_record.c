@@ -139,9 +139,10 @@ static int run(const options_t *options)
         return message_usage("record into which file? Usage: tmini record %s",
                              command_record.usage);
     }
-    device_t *const device = device_open(options);
-    if (device == NULL) {
-        return options->port == NULL ? STATUS_USAGE : STATUS_FAILED;
+    device_t *device = NULL;
+    const int opened = device_open(&device, options);
+    if (opened != STATUS_OK) {
+        return opened;
     }
     const int status = close_tape(&tape, options->operand, record(device, options, &tape));
     device_close(device);

@@ -60,10 +60,10 @@ static const tmini_timing_t *patience(void)
     return &timing;
 }
 
-static void explain_opening(const char *path, tmini_posix_status_t status)
+static int explain_opening(const char *path, tmini_posix_status_t status)
 {
     const char *const advice = advice_for(status);
-    (void)message_fail("cannot use %s: %s", path, advice != NULL ? advice : strerror(errno));
+    return message_fail("cannot use %s: %s", path, advice != NULL ? advice : strerror(errno));
 }
 
 static volatile sig_atomic_t started_fd = -1;
@@ -78,17 +78,15 @@ static void stop_at_once(void)
     }
 }
 
-device_t *device_open(const options_t *options)
+int device_open(device_t **opened, const options_t *options)
 {
     static device_t device;
     if (options->port == NULL) {
-        (void)message_usage("on which port is the lidar? For example: -p /dev/ttyUSB0");
-        return NULL;
+        return message_usage("on which port is the lidar? For example: -p /dev/ttyUSB0");
     }
     const tmini_posix_status_t status = tmini_posix_open(&device.serial, options->port);
     if (status != TMINI_POSIX_OK) {
-        explain_opening(options->port, status);
-        return NULL;
+        return explain_opening(options->port, status);
     }
     const tmini_config_t config = {
         .port = &tmini_posix_port,
@@ -104,7 +102,8 @@ device_t *device_open(const options_t *options)
     device.path = options->port;
     interrupt_watch();
     interrupt_last_words(stop_at_once);
-    return &device;
+    *opened = &device;
+    return STATUS_OK;
 }
 
 void device_close(device_t *device)
