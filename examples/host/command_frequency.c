@@ -39,9 +39,10 @@ static int run(const options_t *options)
         return message_usage("\"%s\" is not a scan frequency: 6 to 12 Hz, in steps of 0.1",
                              options->operand);
     }
-    device_t *const device = device_open(options);
-    if (device == NULL) {
-        return options->port == NULL ? STATUS_USAGE : STATUS_FAILED;
+    device_t *device = NULL;
+    const int opened = device_open(&device, options);
+    if (opened != STATUS_OK) {
+        return opened;
     }
     const tmini_status_t begun = wanted_chz > 0 ? tmini_set_frequency(&device->lidar, wanted_chz)
                                                 : tmini_request_frequency(&device->lidar);

@@ -40,9 +40,10 @@ static void print(const tmini_info_t *info, format_t format)
 
 static int run(const options_t *options)
 {
-    device_t *const device = device_open(options);
-    if (device == NULL) {
-        return options->port == NULL ? STATUS_USAGE : STATUS_FAILED;
+    device_t *device = NULL;
+    const int opened = device_open(&device, options);
+    if (opened != STATUS_OK) {
+        return opened;
     }
     const int status = device_finish(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO);
     if (status == STATUS_OK) {

@@ -145,9 +145,10 @@ static int gather(device_t *device, const options_t *options, scan_list_t *list)
 
 static int plot_device(const options_t *options)
 {
-    device_t *const device = device_open(options);
-    if (device == NULL) {
-        return STATUS_FAILED;
+    device_t *device = NULL;
+    const int opened = device_open(&device, options);
+    if (opened != STATUS_OK) {
+        return opened;
     }
     scan_list_t *const list = scan_list_new();
     int status =

@@ -10,9 +10,10 @@
 
 static int run(const options_t *options)
 {
-    device_t *const device = device_open(options);
-    if (device == NULL) {
-        return options->port == NULL ? STATUS_USAGE : STATUS_FAILED;
+    device_t *device = NULL;
+    const int opened = device_open(&device, options);
+    if (opened != STATUS_OK) {
+        return opened;
     }
     message_note("rebooting; this takes some seconds …");
     int status = device_finish(device, tmini_reboot(&device->lidar), TMINI_EVENT_REBOOTED);

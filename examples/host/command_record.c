@@ -16,15 +16,56 @@
 /* How often progress is shown. */
 #define PROGRESS_MS 200u
 
+/* More than comes through the line in the time that a start may take. */
+#define HELD_MAX 400000u
+
+/* Until the lidar has started, what it says is held: a file that exists is not to be lost to a lidar
+ * that does not answer. */
 typedef struct {
-    FILE *file;
+    FILE *file; /* NULL until then. */
     uint64_t bytes;
+    size_t held_count;
+    uint8_t held[HELD_MAX];
 } tape_t;
 
 static void write_tape(void *context, const uint8_t *bytes, size_t count)
 {
     tape_t *const tape = context;
-    tape->bytes += fwrite(bytes, 1, count, tape->file);
+    if (tape->file != NULL) {
+        tape->bytes += fwrite(bytes, 1, count, tape->file);
+    } else if (count <= HELD_MAX - tape->held_count) {
+        memcpy(tape->held + tape->held_count, bytes, count);
+        tape->held_count += count;
+    }
+}
+
+static int open_tape(tape_t *tape, const char *path)
+{
+    FILE *const file = fopen(path, "wb");
+    if (file == NULL) {
+        return message_fail("cannot write %s: %s", path, strerror(errno));
+    }
+    tape->bytes = fwrite(tape->held, 1, tape->held_count, file);
+    tape->file = file;
+    return STATUS_OK;
+}
+
+/* Returns `status`, unless the file is not whole. */
+static int close_tape(tape_t *tape, const char *path, int status)
+{
+    if (tape->file == NULL) {
+        return status;
+    }
+    errno = 0;
+    const bool failed = ferror(tape->file) != 0;
+    if (fclose(tape->file) != 0 || failed) {
+        return message_fail("cannot write %s: %s", path,
+                            errno != 0 ? strerror(errno) : "the disk may be full");
+    }
+    if (status == STATUS_OK) {
+        message_note("%" PRIu64 " bytes in %s", tape->bytes, path);
+    }
+    return status;
 }
 
 static void show_progress(const device_t *device, const tape_t *tape, uint32_t elapsed_ms,
@@ -79,6 +120,9 @@ static int record(device_t *device, const options_t *options, tape_t *tape)
     tmini_posix_tap(&device->serial, write_tape, tape);
     status = device_start(device);
     if (status == STATUS_OK) {
+        status = open_tape(tape, options->operand);
+    }
+    if (status == STATUS_OK) {
         status = roll(device, options, tape);
     }
     if (device->serial.state == TMINI_POSIX_OK) {
@@ -88,38 +132,19 @@ static int record(device_t *device, const options_t *options, tape_t *tape)
     return status;
 }
 
-static int record_to(FILE *file, device_t *device, const options_t *options)
-{
-    tape_t tape = {.file = file};
-    int status = record(device, options, &tape);
-    errno = 0;
-    const bool failed = ferror(file) != 0;
-    if (fclose(file) != 0 || failed) {
-        status = message_fail("cannot write %s: %s", options->operand,
-                              errno != 0 ? strerror(errno) : "the disk may be full");
-    } else if (status == STATUS_OK) {
-        message_note("%" PRIu64 " bytes in %s", tape.bytes, options->operand);
-    }
-    return status;
-}
-
 static int run(const options_t *options)
 {
+    static tape_t tape;
     if (options->operand == NULL) {
         return message_usage("record into which file? Usage: tmini record %s",
                              command_record.usage);
     }
-    device_t *const device = device_open(options);
-    if (device == NULL) {
-        return options->port == NULL ? STATUS_USAGE : STATUS_FAILED;
+    device_t *device = NULL;
+    const int opened = device_open(&device, options);
+    if (opened != STATUS_OK) {
+        return opened;
     }
-    int status = STATUS_FAILED;
-    FILE *const file = fopen(options->operand, "wb");
-    if (file == NULL) {
-        (void)message_fail("cannot write %s: %s", options->operand, strerror(errno));
-    } else {
-        status = record_to(file, device, options);
-    }
+    const int status = close_tape(&tape, options->operand, record(device, options, &tape));
     device_close(device);
     return status;
 }

@@ -87,9 +87,10 @@ static int print_scans(device_t *device, const options_t *options)
 
 static int run(const options_t *options)
 {
-    device_t *const device = device_open(options);
-    if (device == NULL) {
-        return options->port == NULL ? STATUS_USAGE : STATUS_FAILED;
+    device_t *device = NULL;
+    const int opened = device_open(&device, options);
+    if (opened != STATUS_OK) {
+        return opened;
     }
     int status = device_start(device);
     if (status == STATUS_OK) {

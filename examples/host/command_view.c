@@ -70,9 +70,10 @@ static int watch(device_t *device)
 
 static int view_device(const options_t *options)
 {
-    device_t *const device = device_open(options);
-    if (device == NULL) {
-        return STATUS_FAILED;
+    device_t *device = NULL;
+    const int opened = device_open(&device, options);
+    if (opened != STATUS_OK) {
+        return opened;
     }
     int status = device_start(device);
     if (status == STATUS_OK) {

@@ -5,7 +5,9 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <signal.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "faults.h"
 #include "interrupt.h"
@@ -31,7 +33,7 @@ static const char *advice_for(tmini_posix_status_t status)
     case TMINI_POSIX_NO_DEVICE:
         return "there is no such device. Is the adapter plugged in? `ls /dev/tty*` shows the "
                "ports: "
-               "USB adapters are\n/dev/ttyUSB0 or /dev/ttyACM0 on Linux, /dev/tty.usb… on macOS.";
+               "USB adapters are\n/dev/ttyUSB0 or /dev/ttyACM0 on Linux, /dev/cu.usb… on macOS.";
     case TMINI_POSIX_PERMISSION:
         return "you may not open it. On Linux, join the group that owns it and log in again:\n"
                "sudo usermod -a -G dialout $USER";
@@ -49,38 +51,42 @@ static const char *advice_for(tmini_posix_status_t status)
 
 /* The driver's own, but for someone who waits at a keyboard, and for a computer that has other things
  * to do: bytes may reach this program late and in one go. */
-static const tmini_timing_t patience = {
-    .silence_ms = 250,
-    .quiet_ms = 50,
-    .stop_ms = 600,
-    .reply_ms = 1000,
-    .write_ms = 100,
-    .spin_up_ms = 3000,
-    .data_ms = 1000,
-    .turn_ms = 3000,
-    .reboot_ms = 5000,
-    .back_off_ms = 500,
-    .back_off_max_ms = 4000,
-    .attempts = 3,
-};
-
-static void explain_opening(const char *path, tmini_posix_status_t status)
+static const tmini_timing_t *patience(void)
 {
-    const char *const advice = advice_for(status);
-    (void)message_fail("cannot use %s: %s", path, advice != NULL ? advice : strerror(errno));
+    static tmini_timing_t timing;
+    timing = tmini_timing_default;
+    timing.silence_ms = 250;
+    timing.reply_ms = 1000;
+    return &timing;
 }
 
-device_t *device_open(const options_t *options)
+static int explain_opening(const char *path, tmini_posix_status_t status)
+{
+    const char *const advice = advice_for(status);
+    return message_fail("cannot use %s: %s", path, advice != NULL ? advice : strerror(errno));
+}
+
+static volatile sig_atomic_t started_fd = -1;
+
+/* The stop command (section 3), from a signal's handler: nobody waits for the line to fall quiet. */
+static void stop_at_once(void)
+{
+    static const uint8_t stop[2] = {0xA5, 0x65};
+    const int fd = started_fd;
+    if (fd >= 0 && write(fd, stop, sizeof stop) < 0) {
+        return; /* Nothing more can be done. */
+    }
+}
+
+int device_open(device_t **opened, const options_t *options)
 {
     static device_t device;
     if (options->port == NULL) {
-        (void)message_usage("on which port is the lidar? For example: -p /dev/ttyUSB0");
-        return NULL;
+        return message_usage("on which port is the lidar? For example: -p /dev/ttyUSB0");
     }
     const tmini_posix_status_t status = tmini_posix_open(&device.serial, options->port);
     if (status != TMINI_POSIX_OK) {
-        explain_opening(options->port, status);
-        return NULL;
+        return explain_opening(options->port, status);
     }
     const tmini_config_t config = {
         .port = &tmini_posix_port,
@@ -89,13 +95,15 @@ device_t *device_open(const options_t *options)
         .rx_size = sizeof device.rx,
         .points = device.points,
         .max_points = SCAN_CAPACITY,
-        .timing = &patience,
+        .timing = patience(),
     };
     (void)tmini_init(&device.lidar, &config);
     tmini_posix_attach(&device.serial, &device.lidar);
     device.path = options->port;
     interrupt_watch();
-    return &device;
+    interrupt_last_words(stop_at_once);
+    *opened = &device;
+    return STATUS_OK;
 }
 
 void device_close(device_t *device)
@@ -109,6 +117,7 @@ void device_close(device_t *device)
         } while (event != TMINI_EVENT_NONE && event != TMINI_EVENT_STOPPED &&
                  event != TMINI_EVENT_FAILED);
     }
+    started_fd = -1;
     tmini_posix_close(&device->serial);
 }
 
@@ -159,6 +168,7 @@ int device_finish(device_t *device, tmini_status_t begun, tmini_event_t wanted)
 int device_start(device_t *device)
 {
     device->was_started = true;
+    started_fd = device->serial.fd;
     return device_finish(device, tmini_start(&device->lidar), TMINI_EVENT_STARTED);
 }
 
@@ -251,6 +261,11 @@ static int explain_trouble(const device_t *device)
         return message_fail(
             "the lidar on %s sends packets, but completes no revolution. Does it turn?",
             device->path);
+    }
+    if (tmini_state(&device->lidar) == TMINI_STATE_RECOVERING) {
+        return message_fail("the lidar on %s has fallen silent and does not come back. Check its "
+                            "supply (5 V, up to 1 A)\nand its plug.",
+                            device->path);
     }
     return message_fail(
         "the lidar on %s has answered before, but now: %s. Try again; if that does not "

@@ -22,8 +22,8 @@ typedef struct {
 } device_t;
 
 /* Opens the port of the options and sets the lidar up; sends nothing. From now on Ctrl-C is only noted.
- * Returns NULL, and says why, if that fails. One at a time. */
-device_t *device_open(const options_t *options);
+ * Returns STATUS_OK, or the status to leave with, and says why. One at a time. */
+int device_open(device_t **opened, const options_t *options);
 
 /* Stops the lidar if it was started, and closes the port. */
 void device_close(device_t *device);

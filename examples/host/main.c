@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "message.h"
 #include "tmini/tmini.h"
 
@@ -65,6 +66,7 @@ static int run(const command_t *command, int count, char *const *words)
 int main(int argc, char **argv)
 {
     const char *const name = argc > 1 ? argv[1] : "";
+    interrupt_ignore_closed_pipes();
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
         print_usage(stdout);
         return close_output(STATUS_OK);

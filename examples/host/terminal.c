@@ -8,17 +8,21 @@
 #include "terminal.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <poll.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include "interrupt.h"
+
 #define OTHER_SCREEN "\033[?1049h\033[?25l\033[2J"
 #define OWN_SCREEN "\033[0m\033[?25h\033[?1049l"
 
-static bool is_taken;
+static volatile sig_atomic_t is_taken;
 static bool has_keys;
 static struct termios before;
 
@@ -37,24 +41,61 @@ static void take_keys(void)
     (void)tcsetattr(STDIN_FILENO, TCSADRAIN, &settings);
 }
 
+static bool write_own_screen(void)
+{
+    const size_t size = sizeof OWN_SCREEN - 1;
+    return write(STDOUT_FILENO, OWN_SCREEN, size) == (ssize_t)size;
+}
+
+/* Gives the terminal back without waiting for it: output may have been stopped (Ctrl-S), or nobody may
+ * be there who reads it. May be called from a signal's handler. */
+static void restore_at_once(void)
+{
+    if (is_taken == 0) {
+        return;
+    }
+    is_taken = 0;
+    struct termios unstopped = before;
+    unstopped.c_iflag &= ~(tcflag_t)IXON; /* Lets stopped output go on. */
+    if (has_keys) {
+        (void)tcsetattr(STDIN_FILENO, TCSANOW, &unstopped);
+    }
+    const int flags = fcntl(STDOUT_FILENO, F_GETFL);
+    (void)fcntl(STDOUT_FILENO, F_SETFL, flags | O_NONBLOCK);
+    if (!write_own_screen()) {
+        (void)tcflush(STDOUT_FILENO, TCOFLUSH);
+        (void)write_own_screen();
+    }
+    (void)fcntl(STDOUT_FILENO, F_SETFL, flags); /* Others write to it too. */
+    if (has_keys) {
+        (void)tcsetattr(STDIN_FILENO, TCSANOW, &before);
+    }
+}
+
 bool terminal_take(void)
 {
     if (isatty(STDOUT_FILENO) == 0) {
         return false;
     }
     take_keys();
-    is_taken = true;
+    is_taken = 1;
     (void)atexit(terminal_restore);
+    interrupt_last_words(restore_at_once);
+    (void)signal(SIGTSTP, SIG_IGN); /* Stopped, the program could not give the terminal back. */
     terminal_write(OTHER_SCREEN, strlen(OTHER_SCREEN));
     return true;
 }
 
 void terminal_restore(void)
 {
-    if (!is_taken) {
+    if (interrupt_has_come()) {
+        restore_at_once();
+    }
+    if (is_taken == 0) {
         return;
     }
-    is_taken = false;
+    is_taken = 0;
+    (void)signal(SIGTSTP, SIG_DFL);
     terminal_write(OWN_SCREEN, strlen(OWN_SCREEN));
     if (has_keys) {
         (void)tcsetattr(STDIN_FILENO, TCSADRAIN, &before);
@@ -88,6 +129,9 @@ void terminal_write(const char *text, size_t size)
         const ssize_t written = write(STDOUT_FILENO, text, size);
         if (written < 0 && errno != EINTR && errno != EAGAIN) {
             return; /* The terminal has gone; a signal says so too. */
+        }
+        if (written < 0 && interrupt_has_come()) {
+            return; /* Whether the terminal takes any more is not to keep the program from ending. */
         }
         if (written > 0) {
             text += written;

@@ -92,6 +92,7 @@ static int watch(const options_t *options, player_t *player)
         return STATUS_FAILED;
     }
     player->begun_ms = now_ms();
+    (void)take(player, &viewer); /* The first packet. */
     while (!viewer.is_over) {
         const bool is_news = play(player, &viewer);
         tell(player, &viewer.view);
@@ -112,8 +113,12 @@ int view_recording(const options_t *options)
     decoder_init(&player.decoder, file, (uint8_t)options->max_samples);
     (void)tmini_scan_init(&player.builder, player.points, SCAN_CAPACITY, TMINI_FILTER_NONE);
     tmini_turn_init(&player.turn);
-    int status = watch(options, &player);
-    if (status == STATUS_OK && player.is_at_end) {
+    /* What is no recording is told before the screen is taken over. */
+    int status = STATUS_OK;
+    if (decoder_next(&player.decoder)) {
+        status = watch(options, &player);
+    }
+    if (status == STATUS_OK && (player.is_at_end || player.decoder.totals.packets == 0)) {
         status = recording_verdict(options->operand, &player.decoder);
     }
     recording_close(file);

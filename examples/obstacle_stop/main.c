@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Obstacle stop: what a robot builder starts from. Shows the nearest obstacle in each of eight
- * sectors, and STOP when something is nearer than 30 cm in front.
+ * sectors, and STOP when something is nearer than 30 cm in front, or when the lidar cannot say.
  *
  *     obstacle_stop /dev/ttyUSB0          or the port that `tmini-sim --pty` prints */
 
@@ -17,6 +17,7 @@ static uint8_t rx[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_t lidar;
 static tmini_posix_t serial;
+static tmini_timing_t timing;
 static obstacle_t obstacle;
 static volatile sig_atomic_t ended;
 
@@ -26,34 +27,66 @@ static void end(int signal_number)
     ended = 1;
 }
 
+static void show_header(void)
+{
+    (void)puts("mm    front    45°  right   135°   back   225°   left   315°");
+    (void)fflush(stdout);
+}
+
 static void show(bool may_move)
 {
-    (void)printf("%s  front %5d  right %5d  back %5d  left %5d mm\n", may_move ? "go  " : "STOP",
-                 obstacle.nearest_mm[0], obstacle.nearest_mm[2], obstacle.nearest_mm[4],
-                 obstacle.nearest_mm[6]);
+    (void)printf("%s", may_move ? "go  " : "STOP");
+    for (unsigned i = 0; i < OBSTACLE_SECTORS; i++) {
+        (void)printf("  %5d", obstacle.nearest_mm[i]);
+    }
+    (void)putchar('\n');
     (void)fflush(stdout);
+}
+
+static void tell(tmini_event_t event)
+{
+    if (event == TMINI_EVENT_FAILED) {
+        (void)fprintf(stderr, "the lidar does not start: %s; trying again\n",
+                      tmini_status_name(tmini_failure(&lidar)));
+    } else if (event == TMINI_EVENT_LOST) {
+        (void)fprintf(stderr, "the lidar has fallen silent; starting it again\n");
+    } else if (event == TMINI_EVENT_FAULT) {
+        (void)fprintf(stderr, "the lidar's faults: 0x%02X\n", (unsigned)tmini_faults(&lidar));
+    }
 }
 
 /* In firmware this is the main loop; nothing else changes. */
 static void drive(void)
 {
     static bool could_move;
-    const tmini_event_t event = tmini_poll(&lidar);
+    bool is_news = false;
     const uint32_t now_ms = tmini_posix_port.now_ms(&serial);
-    if (event == TMINI_EVENT_SCAN) {
-        obstacle_see(&obstacle, tmini_scan(&lidar), now_ms);
-    } else if (event == TMINI_EVENT_LOST || event == TMINI_EVENT_FAULT) {
+    tmini_event_t event = TMINI_EVENT_NONE;
+    while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) {
+        tell(event);
+        if (event == TMINI_EVENT_SCAN) {
+            obstacle_see(&obstacle, tmini_scan(&lidar), now_ms);
+            is_news = true;
+        }
+    }
+    /* Each time round, not only when it begins: a faulty lidar may go on sending scans. */
+    if (tmini_faults(&lidar) != 0 || tmini_state(&lidar) != TMINI_STATE_SCANNING) {
         obstacle_blind(&obstacle);
     }
+    if (tmini_state(&lidar) == TMINI_STATE_UNKNOWN) {
+        (void)tmini_start(&lidar); /* At first, and when it has failed. */
+    }
     const bool may_move = obstacle_may_move(&obstacle, now_ms);
-    if (event == TMINI_EVENT_SCAN || may_move != could_move) {
+    if (is_news || may_move != could_move) {
         show(may_move); /* A robot sets its motors here, each time round. */
     }
     could_move = may_move;
 }
 
-int main(int argc, char **argv)
+static void set_up(void)
 {
+    timing = tmini_timing_default;
+    timing.silence_ms = 250; /* A computer has other things to do: bytes may come late. */
     const tmini_config_t config = {
         .port = &tmini_posix_port,
         .port_context = &serial,
@@ -61,26 +94,43 @@ int main(int argc, char **argv)
         .rx_size = sizeof rx,
         .points = points,
         .max_points = TMINI_SCAN_POINTS_TYPICAL,
+        .timing = &timing,
     };
-    if (argc != 2) {
-        (void)fprintf(stderr, "usage: obstacle_stop PORT\n");
-        return 2;
-    }
-    const tmini_posix_status_t opened = tmini_posix_open(&serial, argv[1]);
-    if (opened != TMINI_POSIX_OK) {
-        (void)fprintf(stderr, "%s: %s\n", argv[1], tmini_posix_status_name(opened));
-        return 1;
-    }
-    (void)signal(SIGINT, end);
-    (void)signal(SIGTERM, end);
     (void)tmini_init(&lidar, &config);
     tmini_posix_attach(&serial, &lidar);
-    (void)tmini_start(&lidar);
-    while (ended == 0 && tmini_posix_receive(&serial, 10) == TMINI_POSIX_OK) {
+}
+
+/* Until the user or the port ends it. */
+static tmini_posix_status_t run(void)
+{
+    tmini_posix_status_t status = TMINI_POSIX_OK;
+    while (ended == 0 && status == TMINI_POSIX_OK) {
         drive();
+        status = tmini_posix_receive(&serial, 10);
     }
     show(false); /* Without a lidar, whatever the reason, the robot stops. */
     (void)tmini_stop_and_wait(&lidar, 1000);
     tmini_posix_close(&serial);
-    return ended != 0 ? 0 : 1;
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 2) {
+        (void)fprintf(stderr, "usage: obstacle_stop PORT\n");
+        return 2;
+    }
+    tmini_posix_status_t status = tmini_posix_open(&serial, argv[1]);
+    if (status == TMINI_POSIX_OK) {
+        (void)signal(SIGINT, end);
+        (void)signal(SIGTERM, end);
+        set_up();
+        show_header();
+        status = run();
+    }
+    if (status != TMINI_POSIX_OK) {
+        (void)fprintf(stderr, "%s: %s\n", argv[1], tmini_posix_status_name(status));
+        return 1;
+    }
+    return 0;
 }

@@ -171,8 +171,10 @@ tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms)
         return serial->state;
     }
     struct pollfd device = {.fd = serial->fd, .events = POLLIN};
-    if (poll(&device, 1, timeout_ms) <= 0) {
-        return TMINI_POSIX_OK;
+    const int ready = poll(&device, 1, timeout_ms);
+    if (ready <= 0) {
+        serial->state = ready == 0 ? TMINI_POSIX_OK : status_of_transfer(errno);
+        return serial->state;
     }
     uint8_t block[BLOCK_SIZE];
     const ssize_t count = read(serial->fd, block, sizeof block);

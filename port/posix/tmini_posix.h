@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The port for computers: a lidar on a serial device of Linux, macOS or another POSIX system, such as
- * /dev/ttyUSB0 or /dev/tty.usbserial-110. Works on pseudo-terminals too.
+/* The port for computers: a lidar on a serial device of Linux or another POSIX system, such as
+ * /dev/ttyUSB0. Works on pseudo-terminals too. Written for macOS as well (/dev/cu.usbserial-110), but
+ * not tried on macOS.
  *
  *     static tmini_posix_t serial;
  *

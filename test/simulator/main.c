@@ -187,6 +187,15 @@ static int run_in_virtual_time(const options_t *options)
     return report_close(&report, end_us(options), 0) && written ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
+static void set_up(const options_t *options)
+{
+    sim_init(&device, &options->device);
+    sim_set_health(&device, options->health);
+    sim_block_rotor(&device, options->blocked);
+    sim_cover_window(&device, options->covered);
+    sim_link_init(&wire, &device, &options->link);
+}
+
 int main(int argc, char **argv)
 {
     options_t options;
@@ -199,7 +208,6 @@ int main(int argc, char **argv)
         return EXIT_SUCCESS;
     }
     catch_signals();
-    sim_init(&device, &options.device);
-    sim_link_init(&wire, &device, &options.link);
+    set_up(&options);
     return options.write_path != NULL ? run_in_virtual_time(&options) : run_in_real_time(&options);
 }

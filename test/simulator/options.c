@@ -35,6 +35,20 @@ static bool set_no_ct(options_t *options, const char *value)
     return true;
 }
 
+static bool set_blocked(options_t *options, const char *value)
+{
+    (void)value;
+    options->blocked = true;
+    return true;
+}
+
+static bool set_covered(options_t *options, const char *value)
+{
+    (void)value;
+    options->covered = true;
+    return true;
+}
+
 /* The whole text, a number in low..high. */
 static bool parse_number(const char *text, double low, double high, double *number)
 {
@@ -85,6 +99,16 @@ static bool set_frequency(options_t *options, const char *value)
     }
     options->device.frequency_chz = (uint16_t)(hertz * 100.0 + 0.5);
     return true;
+}
+
+/* The six bits of section 4, also as 0x... */
+static bool set_health(options_t *options, const char *value)
+{
+    char *end;
+    const unsigned long bits = strtoul(value, &end, 0);
+
+    options->health = (uint8_t)(bits & 0x3Fu);
+    return end != value && *end == '\0' && *value != '-' && bits <= 0x3Fu;
 }
 
 static bool set_seconds(options_t *options, const char *value)
@@ -142,6 +166,12 @@ static const option_t known[] = {
      set_write},
     {"--frequency", "HZ", "set scan frequency at power-up, 5 to 12 (6)", set_frequency},
     {"--no-ct", NULL, "send neither CT information nor LastCRC", set_no_ct},
+    {"--blocked", NULL, "the rotor does not turn", set_blocked},
+    {"--covered", NULL, "the window is covered: no ranges", set_covered},
+    {"--health", "BITS",
+     "faults reported, 0 to 0x3F: 1 sensor, 2 encoder,\n"
+     "                        4 wireless power, 8 PD, 16 LD, 32 data (0)",
+     set_health},
     {"--fault", "KIND=RATE",
      "drop, flip, insert: probability a byte;\n"
      "                        burst, stall, cut, unplug, garble: events a second",

@@ -18,6 +18,9 @@ typedef struct {
     const char *truth_path;
     double seconds; /* of virtual time; 0: for ever */
     double speed;   /* virtual seconds a real second */
+    bool blocked;   /* the rotor */
+    bool covered;   /* the window */
+    uint8_t health; /* faults that the device reports: SIM_HEALTH_... */
     sim_config_t device;
     sim_link_config_t link;
 } options_t;

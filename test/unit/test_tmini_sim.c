@@ -199,6 +199,9 @@ void test_wrong_usage_is_exit_status_2(void)
         {"--pty", "--fault", "drop=2", NULL},
         {"--pty", "--speed", "0", NULL},
         {"--pty", "--seed", "-1", NULL},
+        {"--pty", "--health", "0x40", NULL},
+        {"--pty", "--health", "-1", NULL},
+        {"--pty", "--health", "ill", NULL},
         {"--write", "/dev/null", NULL},
         {"--write", "-", "--seconds", "1", "--log", NULL},
     };

@@ -203,6 +203,12 @@ void program_stop_lidar(void)
     end(&lidar);
 }
 
+void program_freeze_lidar(void)
+{
+    TEST_ASSERT_TRUE(lidar > 0);
+    TEST_ASSERT_EQUAL_INT(0, kill(lidar, SIGSTOP));
+}
+
 /* What the host sends is read and forgotten. */
 static void talk(int fd, const uint8_t *bytes, size_t size)
 {
@@ -255,11 +261,12 @@ const char *program_start_talker(const uint8_t *bytes, size_t size)
 }
 
 pid_t program_start_on_terminal(unsigned columns, unsigned rows, const char *const words[],
-                                int *master, int *line)
+                                int *master, int *line, struct termios *before)
 {
     const struct winsize size = {.ws_col = (unsigned short)columns, .ws_row = (unsigned short)rows};
     open_terminal(master, line);
     TEST_ASSERT_EQUAL_INT(0, ioctl(*line, TIOCSWINSZ, &size));
+    TEST_ASSERT_EQUAL_INT(0, tcgetattr(*line, before));
     tool = fork();
     TEST_ASSERT_TRUE(tool >= 0);
     if (tool == 0) {

@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <sys/types.h>
+#include <termios.h>
 
 #define PROGRAM_WORDS_MAX 16
 
@@ -48,9 +49,10 @@ int program_finish(pid_t tool, int signal_number);
 pid_t program_start(const char *path, const char *const words[]);
 
 /* Starts the tool on a terminal of its own, of that size; the terminal's other end is returned in
- * `master`, and what the terminal's programs see of it in `line`. Both are the caller's to close. */
+ * `master`, and what the terminal's programs see of it in `line`. Both are the caller's to close. In
+ * `before`: the terminal's settings before the tool began. */
 pid_t program_start_on_terminal(unsigned columns, unsigned rows, const char *const words[],
-                                int *master, int *line);
+                                int *master, int *line, struct termios *before);
 
 /* Starts the simulated lidar on a pseudo-terminal, with more options up to a NULL. Returns the port,
  * valid until the next call. */
@@ -58,6 +60,9 @@ const char *program_start_lidar(const char *const options[]);
 
 /* As if its cable were pulled. */
 void program_stop_lidar(void);
+
+/* As if its supply failed: the port stays, but nothing comes any more. */
+void program_freeze_lidar(void);
 
 /* Opens a pseudo-terminal and repeats these bytes on it for ever, at about the lidar's speed; says
  * nothing if `size` is 0. Returns the port. */

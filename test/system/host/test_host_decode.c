@@ -13,6 +13,7 @@
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define BYTES_MAX 60000u
@@ -210,6 +211,18 @@ void test_statistics_that_cannot_be_written_are_a_failure(void)
     expect_failure(1, "cannot write /nowhere/stats",
                    (const char *const[]){"decode", RECORDINGS "sim-6hz.bin", "--csv", "--stats",
                                          "/nowhere/stats", NULL});
+}
+
+void test_a_reader_that_has_read_enough_is_a_failure_but_costs_no_statistics(void)
+{
+    const char *const stats = program_path("stats");
+    const char *const status = program_path("status");
+    program_write_file(stats, "", 0);
+    TEST_ASSERT_EQUAL_INT(0, system("cd '" WORK_DIR "' && { '" TMINI "' decode '" RECORDINGS
+                                    "sim-6hz.bin' --csv --stats stats 2>errors; echo $? >status; }"
+                                    " | head -n 1 >head"));
+    TEST_ASSERT_EQUAL_STRING("1\n", program_read_file(0, status, NULL));
+    TEST_ASSERT_EQUAL_STRING_LEN("{\"packets\":", program_read_file(0, stats, NULL), 11);
 }
 
 void test_wrong_usage_ends_with_2_and_says_why(void)

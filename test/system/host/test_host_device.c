@@ -95,6 +95,36 @@ void test_health_of_a_healthy_lidar(void)
                   WORDS("health", "-p", port, "--json"));
 }
 
+static void expect_ill(const char *expected, const char *const words[])
+{
+    TEST_ASSERT_EQUAL_INT(1, program_tmini(words));
+    TEST_ASSERT_EQUAL_STRING(expected, program_output);
+    TEST_ASSERT_EQUAL_STRING("", program_errors);
+}
+
+void test_health_of_a_lidar_with_two_faults(void)
+{
+    port = program_start_lidar(WORDS("--health", "0x18"));
+    expect_ill("faulty: laser feedback (PD), laser drive (LD); error code 24\n",
+               WORDS("health", "-p", port));
+    expect_ill("{\"healthy\":false,\"faults\":24,\"error_code\":24}\n",
+               WORDS("health", "-p", port, "--json"));
+}
+
+void test_health_of_a_lidar_that_does_not_turn(void)
+{
+    port = program_start_lidar(WORDS("--blocked"));
+    expect_ill("faulty: encoder (is the rotor blocked?); error code 2\n",
+               WORDS("health", "-p", port));
+}
+
+void test_a_covered_window_is_told_while_scanning(void)
+{
+    port = program_start_lidar(WORDS("--covered"));
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-n", "8")));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "faulty: data (is the window covered?)"));
+}
+
 void test_the_frequency_is_read_set_and_kept(void)
 {
     begin();
@@ -256,6 +286,17 @@ void test_a_cable_pulled_while_scanning_is_told(void)
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "Plug it in"));
 }
 
+void test_a_lidar_that_falls_silent_while_scanning_is_told(void)
+{
+    begin();
+    const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
+    wait_for_lines(2);
+    program_freeze_lidar();
+    TEST_ASSERT_EQUAL_INT(1, program_finish(tool, 0));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "has fallen silent; starting it again"));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "has fallen silent and does not come back"));
+}
+
 void test_a_recording_survives_a_pulled_cable(void)
 {
     begin();
@@ -347,6 +388,15 @@ void test_a_lidar_that_sends_but_does_not_hear(void)
     port = program_start_talker((const uint8_t *)recording + 7, size - 7);
     expect_failure(1, "does not do what it is told", WORDS("info", "-p", port));
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "the adapter's TX"));
+}
+
+void test_a_recording_is_not_lost_to_a_lidar_that_does_not_answer(void)
+{
+    const char *const precious = program_path("precious.bin");
+    program_write_file(precious, "gold", 4);
+    port = program_start_talker(NULL, 0);
+    expect_failure(1, "not one byte came", WORDS("record", "-p", port, precious, "-q"));
+    TEST_ASSERT_EQUAL_STRING("gold", program_read_file(0, precious, NULL));
 }
 
 void test_a_recording_that_cannot_be_written(void)

@@ -49,8 +49,7 @@ void tearDown(void)
 static void begin(unsigned columns, unsigned rows, const char *const words[])
 {
     vt_init(&vt, columns, rows);
-    tool = program_start_on_terminal(columns, rows, words, &master, &line);
-    TEST_ASSERT_EQUAL_INT(0, tcgetattr(line, &before));
+    tool = program_start_on_terminal(columns, rows, words, &master, &line, &before);
 }
 
 /* Shows what the tool draws within that time. */
@@ -89,16 +88,9 @@ static void press(char key)
     TEST_ASSERT_EQUAL_INT(1, (int)write(master, &key, 1));
 }
 
-/* The program has ended with this status, and the terminal is as it was. */
-static void expect_end(int expected)
+static void expect_terminal_as_before(void)
 {
-    int status = 0;
-    for (int i = 0; i < 1000 && waitpid(tool, &status, WNOHANG) != tool; i++) {
-        watch(10);
-    }
     watch(10);
-    TEST_ASSERT_TRUE(WIFEXITED(status));
-    TEST_ASSERT_EQUAL_INT(expected, WEXITSTATUS(status));
     TEST_ASSERT_FALSE(vt.is_other_screen);
     TEST_ASSERT_FALSE(vt.is_cursor_hidden);
     TEST_ASSERT_EQUAL_UINT(0, vt.misunderstood);
@@ -108,6 +100,18 @@ static void expect_end(int expected)
     TEST_ASSERT_EQUAL_HEX(before.c_iflag, after.c_iflag);
     TEST_ASSERT_EQUAL_HEX(before.c_oflag, after.c_oflag);
     TEST_ASSERT_EQUAL_MEMORY(before.c_cc, after.c_cc, sizeof before.c_cc);
+}
+
+/* The program has ended with this status, and the terminal is as it was. */
+static void expect_end(int expected)
+{
+    int status = 0;
+    for (int i = 0; i < 1000 && waitpid(tool, &status, WNOHANG) != tool; i++) {
+        watch(10);
+    }
+    TEST_ASSERT_TRUE(WIFEXITED(status));
+    TEST_ASSERT_EQUAL_INT(expected, WEXITSTATUS(status));
+    expect_terminal_as_before();
 }
 
 static void resize(unsigned columns, unsigned rows)
@@ -265,6 +269,36 @@ void test_signals_give_the_terminal_back(void)
     }
 }
 
+void test_a_signal_gives_a_terminal_back_whose_output_is_stopped(void)
+{
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    press('\x13');  /* Ctrl-S */
+    resize(60, 18); /* Something to draw: the tool now waits for the terminal. */
+    watch(300);
+    kill(tool, SIGTERM);
+    expect_end(0);
+}
+
+void test_a_second_signal_gives_the_terminal_back_and_stops_the_lidar(void)
+{
+    const char *const log = program_path("log");
+    begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--log", log))));
+    wait_for("scan 2 ");
+    kill(tool, SIGSTOP); /* So that both come before it can heed the first. */
+    kill(tool, SIGTERM);
+    kill(tool, SIGHUP);
+    kill(tool, SIGCONT);
+    int status = 0;
+    for (int i = 0; i < 1000 && waitpid(tool, &status, WNOHANG) != tool; i++) {
+        watch(10);
+    }
+    TEST_ASSERT_TRUE(WIFSIGNALED(status));
+    expect_terminal_as_before();
+    (void)poll(NULL, 0, 1000); /* The lidar's tail. */
+    TEST_ASSERT_NOT_NULL(strstr(program_read_file(0, log, NULL), "stopping -> idle"));
+}
+
 void test_without_a_terminal_there_is_no_view(void)
 {
     TEST_ASSERT_EQUAL_INT(1, program_tmini(WORDS("view", cross_recording())));
@@ -272,11 +306,9 @@ void test_without_a_terminal_there_is_no_view(void)
     TEST_ASSERT_EQUAL_STRING("", program_output);
 }
 
-void test_a_file_that_is_no_recording_is_told_in_the_end(void)
+void test_a_file_that_is_no_recording_is_told_at_once(void)
 {
     begin(80, 24, WORDS("view", RECORDINGS "README.md"));
-    wait_for("end of the recording");
-    press('q');
     expect_end(1);
     TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "holds no lidar packet"));
 }
@@ -293,6 +325,15 @@ void test_a_lidar_is_shown_live_and_stopped_in_the_end(void)
     press('q');
     expect_end(0);
     TEST_ASSERT_NOT_NULL(strstr(program_read_file(0, log, NULL), "stopping -> idle"));
+}
+
+void test_a_blocked_rotor_is_shown(void)
+{
+    begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--blocked"))));
+    wait_for("health    FAULTY");
+    wait_for("encoder (is the rotor blocked?)");
+    press('q');
+    expect_end(0);
 }
 
 void test_a_pulled_cable_ends_the_view_with_a_message(void)

@@ -12,6 +12,7 @@
 
 #include <poll.h>
 #include <signal.h>
+#include <stdio.h>
 #include <string.h>
 
 #define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
@@ -23,11 +24,11 @@ void tearDown(void)
     program_clean_up();
 }
 
-/* Until the program has printed the text. */
-static void wait_for(const char *text)
+/* Until the program has written the text there. */
+static void wait_for_in(const char *path, const char *text)
 {
-    for (int i = 0; i < 1000; i++) {
-        if (strstr(program_read_file(0, WORK_DIR "/output", NULL), text) != NULL) {
+    for (int i = 0; i < 2000; i++) {
+        if (strstr(program_read_file(0, path, NULL), text) != NULL) {
             return;
         }
         (void)poll(NULL, 0, 10);
@@ -35,12 +36,45 @@ static void wait_for(const char *text)
     TEST_FAIL_MESSAGE(text);
 }
 
+static void wait_for(const char *text)
+{
+    wait_for_in(WORK_DIR "/output", text);
+}
+
+static void wait_for_message(const char *text)
+{
+    wait_for_in(WORK_DIR "/errors", text);
+}
+
+static unsigned count_of(const char *text, const char *part)
+{
+    unsigned count = 0;
+    for (const char *at = strstr(text, part); at != NULL; at = strstr(at + 1, part)) {
+        count++;
+    }
+    return count;
+}
+
+/* The program against a lidar with this fault: once it has told of it, the robot stands for five more
+ * scans. */
+static void expect_to_stand(const char *message, const char *const options[])
+{
+    size_t told = 0;
+    const pid_t program = program_start(OBSTACLE_STOP, WORDS(program_start_lidar(options)));
+    wait_for_message(message);
+    (void)program_read_file(0, WORK_DIR "/output", &told);
+    (void)poll(NULL, 0, 1200);
+    TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGTERM));
+    TEST_ASSERT_TRUE(count_of(program_output + told, "STOP ") >= 5);
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output + told, "go "));
+}
+
 void test_a_robot_in_a_free_room_may_go(void)
 {
     const char *const log = program_path("log");
     const char *const port = program_start_lidar(WORDS("--log", log));
     const pid_t program = program_start(OBSTACLE_STOP, WORDS(port));
-    wait_for("go    front  13");
+    wait_for("\ngo     13");
     TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGINT));
     TEST_ASSERT_NOT_NULL(strstr(program_read_file(0, log, NULL), "stopping -> idle"));
 }
@@ -57,7 +91,55 @@ void test_a_robot_that_has_lost_its_lidar_must_stop(void)
     while (strchr(last_line, '\n')[1] != '\0') {
         last_line = strchr(last_line, '\n') + 1;
     }
-    TEST_ASSERT_EQUAL_STRING_LEN("STOP  front ", last_line, 12);
+    TEST_ASSERT_EQUAL_STRING_LEN("STOP ", last_line, 5);
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, ": unplugged\n"));
+}
+
+void test_all_eight_sectors_are_shown(void)
+{
+    const pid_t program = program_start(OBSTACLE_STOP, WORDS(program_start_lidar(WORDS(NULL))));
+    wait_for("\ngo ");
+    TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGINT));
+    TEST_ASSERT_EQUAL_STRING_LEN("mm    front    45", program_output, 17);
+    unsigned mm[8] = {0};
+    TEST_ASSERT_EQUAL_INT(8, sscanf(strstr(program_output, "\ngo ") + 4, "%u%u%u%u%u%u%u%u", &mm[0],
+                                    &mm[1], &mm[2], &mm[3], &mm[4], &mm[5], &mm[6], &mm[7]));
+    for (unsigned i = 0; i < 8; i++) {
+        TEST_ASSERT_TRUE(mm[i] > 900 && mm[i] < 3500); /* The room is 5 m x 4 m, with boxes. */
+    }
+}
+
+void test_a_robot_whose_lidar_is_covered_stays_where_it_is(void)
+{
+    expect_to_stand("faults: 0x20", WORDS("--covered"));
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go ")); /* Nor before. */
+}
+
+void test_a_robot_whose_lidar_is_covered_and_says_nothing_about_it_stays_where_it_is(void)
+{
+    expect_to_stand("faults: 0x20", WORDS("--covered", "--no-ct"));
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go "));
+}
+
+void test_a_robot_whose_lidar_does_not_turn_stays_where_it_is(void)
+{
+    expect_to_stand("faults: 0x02", WORDS("--blocked"));
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go "));
+}
+
+void test_a_fault_that_stays_stops_the_robot_although_ranges_come(void)
+{
+    expect_to_stand("faults: 0x10", WORDS("--health", "0x10"));
+}
+
+void test_a_lidar_that_does_not_answer_is_told_and_started_again(void)
+{
+    const char *const port = program_start_talker(NULL, 0);
+    const pid_t program = program_start(OBSTACLE_STOP, WORDS(port));
+    wait_for_message("the lidar does not start: timeout; trying again\n");
+    TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGINT));
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go "));
+    TEST_ASSERT_EQUAL_UINT(1, count_of(program_output, "STOP "));
 }
 
 void test_wrong_usage_and_a_wrong_port_are_told(void)

@@ -15,6 +15,7 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -100,6 +101,19 @@ void test_a_device_that_has_gone_stays_gone(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_receive(&serial, 1000));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_receive(&serial, 0));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_read_info(&lidar, &info, 8000));
+}
+
+void test_a_system_that_cannot_wait_for_bytes_is_no_silence(void)
+{
+    struct rlimit limit;
+    begin();
+    TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &limit));
+    const struct rlimit none = {.rlim_cur = 0, .rlim_max = limit.rlim_max};
+    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &none)); /* poll() fails then. */
+    const tmini_posix_status_t status = tmini_posix_receive(&serial, 100);
+    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &limit));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, status);
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_receive(&serial, 0));
 }
 
 void test_writing_to_a_device_that_has_gone_fails(void)
