@@ -17,6 +17,9 @@
  *         while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) { … }
  *     }
  *
+ * A computer has other things to do, and may bring bytes late: let the configuration's timing be a copy
+ * of tmini_timing_default with a silence_ms of 250, as examples/obstacle_stop does.
+ *
  * There is no interrupt here: the one context that polls also receives. The port's `wait` receives as
  * well, so that the functions of tmini_blocking.h work. Any number of lidars, each with a tmini_posix_t
  * of its own. */
