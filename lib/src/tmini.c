@@ -6,8 +6,7 @@
 #include "tmini_driver.h"
 
 const tmini_timing_t tmini_timing_default = {
-    .silence_ms =
-        100, /* A line at work is silent for 5 ms; a task or bridge may hold bytes back. */
+    .silence_ms = 100, /* A line at work: 5 ms; but a task or bridge may hold bytes back. */
     .quiet_ms = 50,
     .stop_ms = 600, /* Twice the longest tail seen after a stop (section 9.10). */
     .reply_ms = 2000,
