@@ -20,11 +20,6 @@ const tmini_timing_t tmini_timing_default = {
     .attempts = 3,
 };
 
-static bool is_set_up(const tmini_t *lidar)
-{
-    return lidar != NULL && lidar->port != NULL;
-}
-
 void tmini_driver_look(tmini_t *lidar)
 {
     const size_t received = tmini_ring_stored(&lidar->ring);
@@ -121,7 +116,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
 
 tmini_event_t tmini_poll(tmini_t *lidar)
 {
-    if (!is_set_up(lidar)) {
+    if (!driver_is_set_up(lidar)) {
         return TMINI_EVENT_NONE;
     }
     tmini_driver_look(lidar);
@@ -136,7 +131,7 @@ tmini_event_t tmini_poll(tmini_t *lidar)
 
 tmini_state_t tmini_state(const tmini_t *lidar)
 {
-    if (!is_set_up(lidar)) {
+    if (!driver_is_set_up(lidar)) {
         return TMINI_STATE_UNKNOWN;
     }
     if (lidar->recovering) {
@@ -197,7 +192,8 @@ void tmini_turn(const tmini_t *lidar, tmini_turn_info_t *info)
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
 {
     counters->parser = lidar->parser.counters;
-    counters->bytes_pending = is_set_up(lidar) ? (uint32_t)tmini_parser_pending(&lidar->parser) : 0;
+    counters->bytes_pending =
+        driver_is_set_up(lidar) ? (uint32_t)tmini_parser_pending(&lidar->parser) : 0;
     counters->scans = lidar->scans;
     counters->timeouts = lidar->timeouts;
     counters->losses = lidar->losses;

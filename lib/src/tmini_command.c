@@ -318,7 +318,7 @@ static void begin(tmini_t *lidar, enum goal goal)
 /* Whether a command other than stop may be begun now. */
 static tmini_status_t permission(const tmini_t *lidar)
 {
-    if (lidar == NULL || lidar->port == NULL) {
+    if (!driver_is_set_up(lidar)) {
         return TMINI_ERROR_ARGUMENT;
     }
     if (lidar->recovering || lidar->phase == PHASE_SCANNING) {
@@ -344,7 +344,7 @@ tmini_status_t tmini_start(tmini_t *lidar)
 
 tmini_status_t tmini_stop(tmini_t *lidar)
 {
-    if (lidar == NULL || lidar->port == NULL) {
+    if (!driver_is_set_up(lidar)) {
         return TMINI_ERROR_ARGUMENT;
     }
     if (lidar->goal == GOAL_STOP) {

@@ -34,6 +34,11 @@ enum goal {
     GOAL_REBOOT,
 };
 
+static inline bool driver_is_set_up(const tmini_t *lidar)
+{
+    return lidar != NULL && lidar->port != NULL;
+}
+
 static inline bool driver_elapsed(const tmini_t *lidar, uint32_t since_ms, uint32_t wait_ms)
 {
     return lidar->now_ms - since_ms >= wait_ms; /* Right across the clock's wrap-around too. */
