@@ -2,17 +2,19 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Shows the library at work, on any computer and without a lidar: builds the host tool and a simulated
-# lidar, lets the one drive the other through a pseudo-terminal as if it were a serial port, and
-# draws what was seen. Needs a C compiler and CMake, and installs them where they are missing.
+# Shows the library at work, on any computer and without a lidar: builds the host tool and a
+# simulated lidar, lets the one drive the other through a pseudo-terminal as if it were a serial
+# port, and draws what was seen. Needs a C compiler, CMake and cairo, and installs them where they
+# are missing.
 
 set -eu
 
 root=$(cd "$(dirname "$0")/.." && pwd)
-# shellcheck source=examples/support/packages.sh
-. "$root/examples/support/packages.sh"
+# shellcheck source=test/support/packages.sh
+. "$root/test/support/packages.sh"
 
 need_build_tools
+need_drawing
 install_missing
 
 build=$root/build-demo
@@ -65,7 +67,8 @@ show_live() {
 
 # Some containers have no pseudo-terminals (no /dev/pts).
 show_without_port() {
-    echo "There are no pseudo-terminals here: no live part. The simulated lidar writes a recording instead."
+    echo "There are no pseudo-terminals here: no live part."
+    echo "The simulated lidar writes a recording instead."
     "$build/bin/tmini-sim" --write "$build/room.bin" --seconds 4 >/dev/null
 }
 

@@ -4,7 +4,7 @@
 
 # Compiles, without linking, every source and every public header of the library for one target:
 #
-#   test/compile.sh gcc|clang|c++|cortex-m0|avr|rv32imc|powerpc
+#   test/compile.sh gcc|clang|c++|cortex-m0|avr|rv32imc|xtensa|powerpc
 #
 # as freestanding C99 with strict warnings as errors; `c++` compiles the headers as C++11 and C++17.
 # Exit status: 0 clean, 1 not clean, 2 wrong usage, 77 the compiler is not installed.
@@ -75,6 +75,11 @@ case ${1:-} in
     avr) check_c avr-gcc -mmcu=atmega2560 -Os ;;
     rv32imc)
         check_c riscv64-unknown-elf-gcc --specs=picolibc.specs -march=rv32imc -mabi=ilp32 -Os
+        ;;
+    xtensa)
+        # Where Debian puts this C library's headers; the compiler does not look there by itself.
+        check_c xtensa-lx106-elf-gcc -mlongcalls -isystem /usr/lib/xtensa-lx106-elf/include \
+            -isystem /usr/lib/picolibc/xtensa-lx106-elf/include -Os
         ;;
     powerpc) check_c powerpc-linux-gnu-gcc -O2 ;;
     *)

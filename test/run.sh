@@ -14,8 +14,8 @@ set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=test/support/environment.sh
 . "$root/test/support/environment.sh"
-# shellcheck source=test/support/labwired.sh
-. "$root/test/support/labwired.sh"
+# shellcheck source=test/support/python.sh
+. "$root/test/support/python.sh"
 
 # Clang's fuzzing runtime is in a package that is named for Clang's version.
 wish_for_fuzzer() {
@@ -23,38 +23,59 @@ wish_for_fuzzer() {
     [ -z "$version" ] || wish "/usr/share/doc/libclang-rt-$version-dev" "libclang-rt-$version-dev"
 }
 
+# The viewer is compiled by Clang, linked by lld, and tried out in a browser.
+wish_for_browser() {
+    wish wasm-ld lld
+    is_present google-chrome || wish chromium chromium
+    wish chromedriver chromium-driver
+}
+
 # Compilers and emulators for the checks labelled compile, and for the tests on other machines.
 wish_for_machines() {
     wish clang clang
     wish_for_fuzzer
+    wish_for_browser
     wish g++ g++
     wish arm-none-eabi-gcc gcc-arm-none-eabi
     wish qemu-system-arm qemu-system-arm
-    wish python3 python3
     wish /usr/lib/arm-none-eabi/newlib libnewlib-arm-none-eabi
     wish riscv64-unknown-elf-gcc gcc-riscv64-unknown-elf
     wish /usr/lib/picolibc/riscv64-unknown-elf picolibc-riscv64-unknown-elf
+    wish xtensa-lx106-elf-gcc gcc-xtensa-lx106
+    wish /usr/share/doc/picolibc-xtensa-lx106-elf picolibc-xtensa-lx106-elf
     wish avr-gcc gcc-avr
     wish /usr/lib/avr/include/avr/io.h avr-libc
     wish simavr simavr
     wish /usr/share/arduino/hardware/arduino/avr arduino-core-avr
+    wish arduino-builder arduino-builder
+    wish arduino-ctags arduino-ctags
     wish powerpc-linux-gnu-gcc gcc-powerpc-linux-gnu
     wish /usr/powerpc-linux-gnu/include/stdio.h libc6-dev-powerpc-cross
     wish qemu-system-riscv32 qemu-system-misc
-    wish_for_labwired
+    wish_for_python
     is_present qemu-ppc-static || wish qemu-ppc qemu-user
     wish valgrind valgrind
-    python3 -c 'import ensurepip' 2>/dev/null || wish python3-venv python3-venv
+}
+
+prepare_python_tools() {
+    # shellcheck disable=SC2086 # the packages are several words
+    prepare_python_packages "$root/build/labwired" $labwired_packages
+    # shellcheck disable=SC2086
+    prepare_python_packages "$root/build/platformio" $platformio_packages
+    # shellcheck disable=SC2086
+    prepare_python_packages "$root/build/esp-idf-packer" $component_packages
 }
 
 need_test_tools
+need_drawing
 [ "${TMINI_OPTIONAL:-yes}" = no ] || wish_for_machines
 install_tools
-[ "${TMINI_OPTIONAL:-yes}" = no ] || prepare_labwired "$root/build/labwired"
+[ "${TMINI_OPTIONAL:-yes}" = no ] || prepare_python_tools
 
 # What goes well before the tests is not worth reading.
 echo "Building in $root/build"
-quietly cmake -S "$root" -B "$root/build" -DTMINI_BUILD_TESTS=ON -DTMINI_BUILD_EXAMPLES=ON
+quietly cmake -S "$root" -B "$root/build" -DTMINI_BUILD_TESTS=ON \
+    -DTMINI_BUILD_EXAMPLES=ON -DTMINI_WERROR=ON
 quietly cmake --build "$root/build" --parallel "$(job_count)"
 
 cd "$root/build"

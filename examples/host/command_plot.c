@@ -3,141 +3,165 @@
 
 /* tmini plot: a picture of a scan, or of all scans, of a recording or of a lidar. */
 
-#include "commands.h"
-
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <string.h>
 
 #include "device.h"
 #include "message.h"
 #include "picture.h"
+#include "points.h"
 #include "recording.h"
-#include "scan_list.h"
+#include "scale.h"
 
 /* From a lidar: by this scan the motor has come up to speed. */
 #define DEVICE_SCANS 4u
 
-#define TITLE_SIZE 64
-#define SUBTITLE_SIZE 256
+/* More than the eye tells apart in one picture. */
+#define POINTS_MAX 65536u
 
-static const char *source_of(const options_t *options)
+/* What is to be drawn: the last complete scan, the wanted one, or points of all. */
+typedef struct {
+    tmini_scan_t scan;
+    uint64_t number; /* Of it; 0: there is none yet. */
+    uint64_t first;  /* Of all scans that have come. */
+    uint64_t last;
+    uint64_t every; /* Of all scans' points, each so-manieth is kept, */
+    uint64_t seen;  /* after so many. */
+    size_t count;
+    tmini_point_t points[POINTS_MAX];
+} drawing_t;
+
+static drawing_t drawing = {.every = 1};
+
+/* When there is no room for more, every other one has been enough. */
+static void add_thinned(const tmini_point_t *point)
 {
-    return options->operand != NULL ? options->operand : options->port;
+    if (drawing.seen++ % drawing.every != 0) {
+        return;
+    }
+    if (drawing.count == POINTS_MAX) {
+        drawing.count /= 2;
+        for (size_t i = 0; i < drawing.count; i++) {
+            drawing.points[i] = drawing.points[2 * i];
+        }
+        drawing.every *= 2;
+    }
+    drawing.points[drawing.count++] = *point;
 }
 
-static int draw_one(const kept_scan_t *kept, const options_t *options)
+static void take_scan(const stream_t *stream, const options_t *options)
 {
-    const tmini_scan_t *const scan = &kept->scan;
-    char title[TITLE_SIZE];
-    char subtitle[SUBTITLE_SIZE];
-    char frequency[32] = "frequency unknown";
-    (void)snprintf(title, sizeof title, "Scan %" PRIu64 "%s", kept->number,
-                   scan->complete ? "" : " (incomplete)");
-    if (scan->frequency_chz > 0) {
-        (void)snprintf(frequency, sizeof frequency, "%d.%d Hz", scan->frequency_chz / 100,
-                       scan->frequency_chz / 10 % 10);
+    const tmini_scan_t *const scan = &stream->scan;
+    const bool is_wanted =
+        options->scan > 0 ? stream->number == options->scan : stream->scan.complete;
+    drawing.first = drawing.first == 0 ? stream->number : drawing.first;
+    drawing.last = stream->number;
+    if (options->all) {
+        for (size_t i = 0; i < scan->count; i++) {
+            add_thinned(&scan->points[i]);
+        }
+    } else if (is_wanted) {
+        drawing.scan = *scan;
+        drawing.number = stream->number;
+        drawing.count = scan->count;
+        memcpy(drawing.points, scan->points, scan->count * sizeof *scan->points);
     }
-    (void)snprintf(subtitle, sizeof subtitle,
-                   "%s \xC2\xB7 %d points, %zu with a distance \xC2\xB7 %s", frequency, scan->count,
-                   scan_valid_points(scan), recording_base_name(source_of(options)));
-    return picture_write(options->output, &(figure_t){title, subtitle, &scan, 1});
 }
 
-static int draw_all(const scan_list_t *list, const options_t *options)
+/* Writes the picture, and says in words what is in it. */
+static int write_picture(const options_t *options, const char *title, const char *subtitle)
 {
-    const tmini_scan_t **const scans = malloc(list->count * sizeof *scans);
-    if (scans == NULL) {
-        return message_fail("not enough memory for all scans");
+    scale_t scale;
+    const figure_t figure = {title, subtitle, drawing.points, drawing.count};
+    const int status = picture_write(options->output, &figure);
+    if (status != STATUS_OK) {
+        return status;
     }
-    size_t points = 0;
-    for (size_t i = 0; i < list->count; i++) {
-        scans[i] = &list->scans[i].scan;
-        points += scan_valid_points(scans[i]);
+    scale_fit(&scale, drawing.points, drawing.count);
+    message_note("%s: %s; %s; rings to %.*f m", options->output, title, subtitle, scale.decimals,
+                 scale.range_mm / 1000.0);
+    if (scale.valid == 0) {
+        message_note("no point has a distance: is the window covered?");
+    } else if (2 * (scale.specular + scale.ambient) > scale.valid) {
+        message_note("%zu of %zu points flagged: not marked in the picture",
+                     scale.specular + scale.ambient, scale.valid);
     }
-    char title[TITLE_SIZE];
-    char subtitle[SUBTITLE_SIZE];
-    (void)snprintf(title, sizeof title, "Scans %" PRIu64 " to %" PRIu64, list->scans[0].number,
-                   list->scans[list->count - 1].number);
-    (void)snprintf(subtitle, sizeof subtitle, "%zu points with a distance \xC2\xB7 %s", points,
-                   recording_base_name(source_of(options)));
-    const int status =
-        picture_write(options->output, &(figure_t){title, subtitle, scans, list->count});
-    free(scans);
-    return status;
+    return STATUS_OK;
 }
 
-static int draw(const scan_list_t *list, const options_t *options)
+static int draw(const options_t *options, const char *source)
 {
-    if (list->count == 0) {
+    char title[80];
+    char subtitle[600];
+    char thinned[40] = "";
+    const size_t valid = points_valid(drawing.points, drawing.count);
+    if (drawing.last == 0) {
         return message_fail("%s has no start packet, so no scan: record for at least a second",
-                            source_of(options));
+                            source);
     }
     if (options->all) {
-        return draw_all(list, options);
+        (void)snprintf(title, sizeof title, "Scans %" PRIu64 " to %" PRIu64, drawing.first,
+                       drawing.last);
+        if (drawing.every > 1) {
+            (void)snprintf(thinned, sizeof thinned, ", one in %" PRIu64, drawing.every);
+        }
+        (void)snprintf(subtitle, sizeof subtitle, "%zu points with a distance%s \xC2\xB7 %s", valid,
+                       thinned, recording_base_name(source));
+        return write_picture(options, title, subtitle);
     }
-    if (options->scan > 0) {
-        const kept_scan_t *const scan = scan_list_find(list, options->scan);
-        return scan != NULL ? draw_one(scan, options)
-                            : message_fail("%s has no scan %u, only %" PRIu64 " to %" PRIu64,
-                                           source_of(options), options->scan, list->scans[0].number,
-                                           list->scans[list->count - 1].number);
+    if (drawing.number == 0) {
+        return options->scan > 0 ? message_fail("%s has no scan %u, only %" PRIu64 " to %" PRIu64,
+                                                source, options->scan, drawing.first, drawing.last)
+                                 : message_fail("%s has no complete scan; --scan %" PRIu64
+                                                " draws an incomplete one",
+                                                source, drawing.last);
     }
-    const kept_scan_t *const scan = scan_list_last_complete(list);
-    return scan != NULL
-               ? draw_one(scan, options)
-               : message_fail("%s has no complete scan; --scan %" PRIu64 " draws an incomplete one",
-                              source_of(options), list->scans[list->count - 1].number);
-}
-
-static int read_and_draw(decoder_t *decoder, const options_t *options)
-{
-    scan_list_t *const list = scan_list_new();
-    bool has_memory = list != NULL;
-    while (has_memory && decoder_next(decoder)) {
-        has_memory = scan_list_add(list, decoder);
-    }
-    has_memory = has_memory && scan_list_end(list);
-    int status = STATUS_OK;
-    if (!has_memory) {
-        status = message_fail("not enough memory for this recording");
-    } else {
-        status = recording_verdict(options->operand, decoder);
-    }
-    if (status == STATUS_OK) {
-        status = draw(list, options);
-    }
-    scan_list_free(list);
-    return status;
+    (void)snprintf(title, sizeof title, "Scan %" PRIu64 "%s", drawing.number,
+                   drawing.scan.complete ? "" : " (incomplete)");
+    (void)snprintf(subtitle, sizeof subtitle,
+                   "%s%s \xC2\xB7 %zu points, %zu with a distance \xC2\xB7 %s",
+                   drawing.scan.frequency_chz == 0 ? "frequency " : "",
+                   frequency_text(drawing.scan.frequency_chz), drawing.count, valid,
+                   recording_base_name(source));
+    return write_picture(options, title, subtitle);
 }
 
 static int plot_recording(const options_t *options)
 {
-    FILE *const file = recording_open(options->operand);
-    if (file == NULL) {
-        return STATUS_FAILED;
+    static recording_t recording;
+    int status = recording_open(&recording, options);
+    if (status != STATUS_OK) {
+        return status;
     }
-    decoder_t decoder;
-    decoder_init(&decoder, file, (uint8_t)options->max_samples);
-    const int status = read_and_draw(&decoder, options);
-    recording_close(file);
-    return status;
+    while (recording_next(&recording)) {
+        if (recording.stream.has_scan) {
+            take_scan(&recording.stream, options);
+        }
+        recording_show_progress(&recording, options);
+    }
+    if (stream_end(&recording.stream)) {
+        take_scan(&recording.stream, options);
+    }
+    recording_close(&recording);
+    status = recording_verdict(&recording);
+    return status == STATUS_OK ? draw(options, recording.name) : status;
 }
 
 /* Gathers scans until the wanted one, or a complete one at full speed, has come. */
-static int gather(device_t *device, const options_t *options, scan_list_t *list)
+static int gather(device_t *device, const options_t *options)
 {
-    const size_t wanted = options->scan > 0 ? options->scan : DEVICE_SCANS;
-    bool is_enough = false;
+    const unsigned wanted = options->scan > 0 ? options->scan : DEVICE_SCANS;
     int status = device_start(device);
-    while (status == STATUS_OK && !is_enough) {
-        const tmini_scan_t *const scan = device_next_scan(device);
-        if (scan == NULL) {
-            status = device_why(device);
-        } else if (!scan_list_append(list, &(kept_scan_t){*scan, list->count + 1, 0})) {
-            status = message_fail("not enough memory for so many scans");
+    while (status == STATUS_OK &&
+           (drawing.last < wanted || (!options->all && drawing.number < wanted))) {
+        if (device_next_scan(device, NULL)) {
+            take_scan(&device->stream, options);
         } else {
-            is_enough = list->count >= wanted && (scan->complete || options->scan > 0);
+            status = device_why(device);
+        }
+        if (options->scan > 0 && drawing.last > wanted) {
+            break; /* Its start packet was lost. */
         }
     }
     return status;
@@ -146,46 +170,38 @@ static int gather(device_t *device, const options_t *options, scan_list_t *list)
 static int plot_device(const options_t *options)
 {
     device_t *device = NULL;
-    const int opened = device_open(&device, options);
-    if (opened != STATUS_OK) {
-        return opened;
-    }
-    scan_list_t *const list = scan_list_new();
-    int status =
-        list != NULL ? gather(device, options, list) : message_fail("not enough memory for scans");
-    device_close(device);
+    int status = device_open(&device, options);
     if (status == STATUS_OK) {
-        status = draw(list, options);
+        status = gather(device, options);
+        device_close(device);
     }
-    scan_list_free(list);
-    return status;
+    return status == STATUS_OK ? draw(options, device->path) : status;
 }
 
 static int run(const options_t *options)
 {
-    const bool has_one_source = (options->operand == NULL) != (options->port == NULL);
-    if (!has_one_source || options->output == NULL) {
+    if ((options->operand != NULL && options->port != NULL) || options->output == NULL) {
         return message_usage("plot what, and where to? Usage: tmini plot %s", command_plot.usage);
     }
     if (!picture_is_known(options->output)) {
-        return message_usage("%s: the picture's name must end in .svg or .png", options->output);
+        return message_usage("%s: the picture's name must end in .svg, .png or .pdf",
+                             options->output);
     }
     if (options->all && options->scan > 0) {
         return message_usage("either --all or --scan N, not both");
     }
-    return options->port != NULL ? plot_device(options) : plot_recording(options);
+    return options->operand != NULL ? plot_recording(options) : plot_device(options);
 }
 
 const command_t command_plot = {
     .name = "plot",
-    .usage = "FILE|-|-p PORT -o OUT.svg|OUT.png [--scan N|--all]",
+    .usage = "[FILE|-|-p PORT] -o OUT.svg|OUT.png|OUT.pdf|- [--scan N|--all]",
     .summary = "a picture of a scan",
     .details =
-        "\n"
         "Draws the last complete scan, seen from above with the lidar's front up: range\n"
         "rings in metres, points coloured by intensity, interference marked. From a lidar, waits\n"
-        "some scans until it is up to speed.",
+        "some scans until it is up to speed. -o - writes SVG to standard output.",
     .accepts = "poNAMq",
-    .operand = "FILE",
+    .has_operand = true,
     .run = run,
 };

@@ -1,17 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini record: the lidar's raw bytes into a file. */
+/* tmini record: what the lidar sends into a file, raw or with time stamps. */
 
-#include "commands.h"
+#define _POSIX_C_SOURCE 200809L
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
 #include "device.h"
 #include "message.h"
+#include "recording.h"
 
 /* How often progress is shown. */
 #define PROGRESS_MS 200u
@@ -19,93 +22,115 @@
 /* More than comes through the line in the time that a start may take. */
 #define HELD_MAX 400000u
 
-/* Until the lidar has started, what it says is held: a file that exists is not to be lost to a lidar
- * that does not answer. */
+/* Until the lidar has started, what it says is held: a file that exists is not to be lost to a
+ * lidar that does not answer. */
 typedef struct {
+    const char *path;
     FILE *file; /* NULL until then. */
-    uint64_t bytes;
+    bool is_timed;
+    uint64_t stamp_us; /* Of the chunk before. */
+    uint64_t bytes;    /* Of the lidar's. */
     size_t held_count;
     uint8_t held[HELD_MAX];
 } tape_t;
 
-static void write_tape(void *context, const uint8_t *bytes, size_t count)
+static uint64_t now_us(void)
 {
-    tape_t *const tape = context;
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
+}
+
+static void put(tape_t *tape, const uint8_t *bytes, size_t count)
+{
     if (tape->file != NULL) {
-        tape->bytes += fwrite(bytes, 1, count, tape->file);
+        (void)fwrite(bytes, 1, count, tape->file);
     } else if (count <= HELD_MAX - tape->held_count) {
         memcpy(tape->held + tape->held_count, bytes, count);
         tape->held_count += count;
     }
 }
 
-static int open_tape(tape_t *tape, const char *path)
+/* The port's tap: a block is far smaller than CHUNK_MAX. A pause of more than the 71 minutes that
+ * fit in 32 bits is shortened to them. */
+static void write_tape(void *context, const uint8_t *bytes, size_t count)
 {
-    FILE *const file = fopen(path, "wb");
+    tape_t *const tape = context;
+    const uint64_t now = now_us();
+    const uint64_t since = now - tape->stamp_us;
+    const uint32_t delta = since < UINT32_MAX ? (uint32_t)since : UINT32_MAX;
+    const uint8_t head[CHUNK_HEAD_SIZE] = {(uint8_t)delta,         (uint8_t)(delta >> 8),
+                                           (uint8_t)(delta >> 16), (uint8_t)(delta >> 24),
+                                           (uint8_t)count,         (uint8_t)(count >> 8)};
+    put(tape, head, tape->is_timed ? sizeof head : 0);
+    put(tape, bytes, count);
+    tape->stamp_us = now;
+    tape->bytes += count;
+}
+
+static int open_tape(tape_t *tape)
+{
+    FILE *const file = strcmp(tape->path, "-") == 0 ? stdout : fopen(tape->path, "wb");
     if (file == NULL) {
-        return message_fail("cannot write %s: %s", path, strerror(errno));
+        return message_fail("cannot write %s: %s", tape->path, strerror(errno));
     }
-    tape->bytes = fwrite(tape->held, 1, tape->held_count, file);
     tape->file = file;
+    put(tape, tape->held, tape->held_count);
     return STATUS_OK;
 }
 
 /* Returns `status`, unless the file is not whole. */
-static int close_tape(tape_t *tape, const char *path, int status)
+static int close_tape(tape_t *tape, int status)
 {
     if (tape->file == NULL) {
         return status;
     }
     errno = 0;
-    const bool failed = ferror(tape->file) != 0;
-    if (fclose(tape->file) != 0 || failed) {
-        return message_fail("cannot write %s: %s", path,
+    const bool has_failed = ferror(tape->file) != 0;
+    const bool is_closed = (tape->file == stdout ? fflush(stdout) : fclose(tape->file)) == 0;
+    if (!is_closed || has_failed) {
+        return message_fail("cannot write %s: %s", tape->path,
                             errno != 0 ? strerror(errno) : "the disk may be full");
     }
     if (status == STATUS_OK) {
-        message_note("%" PRIu64 " bytes in %s", tape->bytes, path);
+        message_note("%" PRIu64 " bytes in %s", tape->bytes,
+                     tape->file == stdout ? "standard output" : tape->path);
     }
     return status;
 }
 
-static void show_progress(const device_t *device, const tape_t *tape, uint32_t elapsed_ms,
+/* Only for someone who looks on: what is written into a log once is enough. */
+static void show_progress(const device_t *device, const tape_t *tape, const options_t *options,
                           const char *end)
 {
     tmini_counters_t counters;
     tmini_counters(&device->lidar, &counters);
-    (void)fprintf(stderr,
-                  "%4" PRIu32 ".%" PRIu32 " s  %8" PRIu64 " bytes  %5" PRIu32 " scans  %" PRIu32
-                  " wrong checksums  %" PRIu32 " bytes overrun%s",
-                  elapsed_ms / 1000, elapsed_ms / 100 % 10, tape->bytes, counters.scans,
-                  counters.parser.checksum_errors, counters.parser.bytes_overrun, end);
+    if (!options->quiet && (isatty(STDERR_FILENO) != 0 || end[0] == '\n')) {
+        (void)fprintf(stderr,
+                      "%4u.%u s  %8" PRIu64 " bytes  %5" PRIu64 " scans  %" PRIu32
+                      " wrong checksums  %" PRIu32 " bytes overrun%s",
+                      (unsigned)(device_ms(device) / 1000),
+                      (unsigned)(device_ms(device) / 100 % 10), tape->bytes, device->stream.scans,
+                      counters.parser.checksum_errors, counters.parser.bytes_overrun, end);
+    }
 }
 
-static uint32_t now_ms(void)
-{
-    return tmini_posix_port.now_ms(NULL);
-}
-
-/* Until the time is over or Ctrl-C is pressed. The first is no reason to end with an error, nor is the
- * second. */
+/* Until the time is over or Ctrl-C is pressed, neither of which is a failure. */
 static int roll(device_t *device, const options_t *options, const tape_t *tape)
 {
-    const uint32_t begun_ms = now_ms();
-    uint32_t shown_ms = begun_ms - PROGRESS_MS;
-    while (device_is_usable(device) && ferror(tape->file) == 0) {
+    const uint32_t begun_ms = device_ms(device);
+    uint32_t shown_ms = begun_ms;
+    bool is_over = false;
+    while (!is_over && device_is_usable(device) && ferror(tape->file) == 0) {
         (void)device_wait(device, PROGRESS_MS / 4);
-        const uint32_t elapsed_ms = now_ms() - begun_ms;
-        const bool is_over = options->seconds > 0 && elapsed_ms / 1000 >= options->seconds;
-        if (!options->quiet && (is_over || now_ms() - shown_ms >= PROGRESS_MS)) {
-            shown_ms = now_ms();
-            show_progress(device, tape, elapsed_ms, is_over ? "\n" : "\r");
-        }
-        if (is_over) {
-            return STATUS_OK;
+        is_over = options->seconds > 0 && device_ms(device) - begun_ms >= options->seconds * 1000;
+        if (device_ms(device) - shown_ms >= PROGRESS_MS) {
+            shown_ms = device_ms(device);
+            show_progress(device, tape, options, "\r");
+            (void)fflush(tape->file); /* For who reads along, and against a power failure. */
         }
     }
-    if (!options->quiet) {
-        (void)fputc('\n', stderr); /* The progress stays. */
-    }
+    show_progress(device, tape, options, "\n");
     return device->serial.state == TMINI_POSIX_OK ? STATUS_OK : device_why(device);
 }
 
@@ -113,14 +138,15 @@ static int roll(device_t *device, const options_t *options, const tape_t *tape)
  * recording begins and ends with whole packets. */
 static int record(device_t *device, const options_t *options, tape_t *tape)
 {
-    int status = device_finish(device, tmini_stop(&device->lidar), TMINI_EVENT_STOPPED);
-    if (status != STATUS_OK) {
-        return status;
+    if (!device_stop(device)) {
+        return device_why(device);
     }
+    tape->stamp_us = now_us();
+    put(tape, recording_magic, tape->is_timed ? sizeof recording_magic : 0);
     tmini_posix_tap(&device->serial, write_tape, tape);
-    status = device_start(device);
+    int status = device_start(device);
     if (status == STATUS_OK) {
-        status = open_tape(tape, options->operand);
+        status = open_tape(tape);
     }
     if (status == STATUS_OK) {
         status = roll(device, options, tape);
@@ -139,24 +165,32 @@ static int run(const options_t *options)
         return message_usage("record into which file? Usage: tmini record %s",
                              command_record.usage);
     }
+    if (strcmp(options->operand, "-") == 0 && isatty(STDOUT_FILENO) != 0) {
+        return message_usage("raw bytes would spoil the terminal: let a program read them, for "
+                             "example `| tmini decode -`");
+    }
     device_t *device = NULL;
     const int opened = device_open(&device, options);
     if (opened != STATUS_OK) {
         return opened;
     }
-    const int status = close_tape(&tape, options->operand, record(device, options, &tape));
+    tape.path = options->operand;
+    const char *const ending = strrchr(options->operand, '.');
+    tape.is_timed = options->timed || (ending != NULL && strcmp(ending, ".tmini") == 0);
+    const int status = close_tape(&tape, record(device, options, &tape));
     device_close(device);
     return status;
 }
 
 const command_t command_record = {
     .name = "record",
-    .usage = "-p PORT FILE [--seconds N]",
-    .summary = "the lidar's raw bytes into a file, until Ctrl-C or for N seconds",
-    .details = "\n"
-               "FILE then holds all that the lidar sent from the start command on, for `tmini "
-               "decode`,\n`plot` and `view`.",
-    .accepts = "psq",
-    .operand = "FILE",
+    .usage = "[-p PORT] FILE|- [--seconds N] [--timed]",
+    .summary = "what the lidar sends into a file, until Ctrl-C or for N seconds",
+    .details =
+        "FILE then holds all that the lidar sent from the start command on, for `tmini decode`,\n"
+        "`plot` and `view`. A FILE.tmini, or any with --timed, also holds when it came; others\n"
+        "hold the raw bytes alone.",
+    .accepts = "psTq",
+    .has_operand = true,
     .run = run,
 };

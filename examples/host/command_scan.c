@@ -3,21 +3,21 @@
 
 /* tmini scan: scans as they come, as a line each, as CSV or as JSON. */
 
-#include "commands.h"
-
+#include <inttypes.h>
 #include <stdio.h>
 
 #include "device.h"
-#include "direction.h"
+#include "interrupt.h"
 #include "message.h"
-#include "rows.h"
+#include "points.h"
 
-static void print_line(unsigned number, const tmini_scan_t *scan)
+static void print_line(const stream_t *stream)
 {
-    const tmini_point_t *const nearest = scan_nearest(scan);
-    (void)printf("scan %-4u  %2d.%d Hz  %3d points, %3zu with a distance", number,
-                 scan->frequency_chz / 100, scan->frequency_chz / 10 % 10, scan->count,
-                 scan_valid_points(scan));
+    const tmini_scan_t *const scan = &stream->scan;
+    const tmini_point_t *const nearest = points_nearest(scan->points, scan->count);
+    (void)printf("scan %-4" PRIu64 "  %s  %3d points, %3zu with a distance", stream->number,
+                 frequency_text(scan->frequency_chz), scan->count,
+                 points_valid(scan->points, scan->count));
     if (nearest != NULL) {
         (void)printf("  nearest %d.%03d m at %3d degrees, %s", nearest->distance_mm / 1000,
                      nearest->distance_mm % 1000, nearest->angle_q6 / 64,
@@ -26,93 +26,82 @@ static void print_line(unsigned number, const tmini_scan_t *scan)
     (void)puts(scan->complete ? "" : "  (incomplete)");
 }
 
-static void print_csv(unsigned number, const tmini_scan_t *scan)
+/* 0: without end. */
+static unsigned wanted_scans;
+
+/* What precedes the first start packet is no scan, and what ends the last one belongs to the
+ * next. */
+static void print_packet(const stream_t *stream, const tmini_packet_t *packet)
 {
-    for (size_t i = 0; i < scan->count; i++) {
-        const tmini_point_t *const point = &scan->points[i];
-        (void)printf("%u,%zu," ANGLE_FORMAT ",%d,%d,%d\n", number, i, ANGLE_VALUES(point->angle_q6),
-                     point->distance_mm, point->intensity, point->flag);
+    const bool is_over = wanted_scans > 0 && stream->scans >= wanted_scans;
+    if (stream->start_packets > 0 && !is_over) {
+        rows_print_packet(stream, packet);
     }
 }
 
-static void print_json(unsigned number, const tmini_scan_t *scan)
+static void summarise(const stream_t *stream, uint64_t with_range)
 {
-    (void)printf("{\"scan\":%u,\"timestamp_ms\":%" PRIu32 ",\"frequency_hz\":%d.%02d,"
-                 "\"complete\":%s,\"packets\":%d,\"gaps\":%d,\"dropped\":%d,"
-                 "\"checksum_errors\":%d,\"points\":",
-                 number, scan->timestamp_ms, scan->frequency_chz / 100, scan->frequency_chz % 100,
-                 scan->complete ? "true" : "false", scan->packets, scan->gaps, scan->dropped,
-                 scan->checksum_errors);
-    row_print_json(scan->points, scan->count);
-    (void)puts("}");
+    message_note("%" PRIu64 " scans, %" PRIu64 " complete, %" PRIu64
+                 " with a distance; %u.%u %% of "
+                 "the packets damaged",
+                 stream->scans, stream->complete, with_range, stream_damaged_permille(stream) / 10,
+                 stream_damaged_permille(stream) % 10);
 }
 
-static void print(unsigned number, const tmini_scan_t *scan, format_t format)
-{
-    switch (format) {
-    case FORMAT_CSV:
-        print_csv(number, scan);
-        break;
-    case FORMAT_JSON:
-        print_json(number, scan);
-        break;
-    default:
-        print_line(number, scan);
-        break;
-    }
-    (void)fflush(stdout); /* So that who reads along does so at once. */
-}
-
+/* Returns the status to leave with. */
 static int print_scans(device_t *device, const options_t *options)
 {
-    if (options->format == FORMAT_CSV) {
-        (void)puts("scan,point,angle_deg,distance_mm,intensity,flag");
+    const stream_t *const stream = &device->stream;
+    const bool is_csv = options->format == FORMAT_CSV;
+    uint64_t with_range = 0;
+    int status = STATUS_OK;
+    wanted_scans = options->count;
+    if (is_csv) {
+        (void)puts(ROWS_HEADER);
     }
-    unsigned number = 0;
-    while (options->count == 0 || number < options->count) {
-        const tmini_scan_t *const scan = device_next_scan(device);
-        if (scan == NULL) {
-            const bool was_asked_to_end =
-                device->serial.state == TMINI_POSIX_OK && !device_is_usable(device);
-            return was_asked_to_end && options->count == 0 ? STATUS_OK : device_why(device);
+    while (status == STATUS_OK && (options->count == 0 || stream->scans < options->count)) {
+        if (!device_next_scan(device, is_csv ? print_packet : NULL)) {
+            const bool may_end = options->count == 0 && interrupt_has_come();
+            status = may_end ? -1 : device_why(device);
+            break;
         }
-        number++;
-        print(number, scan, options->format);
-        if (ferror(stdout) != 0) {
-            return STATUS_FAILED; /* main() says why. */
+        with_range += points_valid(stream->scan.points, stream->scan.count) > 0 ? 1 : 0;
+        if (options->format == FORMAT_JSON) {
+            rows_print_scan(stream);
+        } else if (!is_csv) {
+            print_line(stream);
         }
+        /* So that who reads along does so at once. */
+        status = fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
-    return STATUS_OK;
+    summarise(stream, with_range);
+    if (status <= 0 && stream->scans > 0 && with_range == 0) {
+        return message_fail("no scan had a distance: is the window covered, or the rotor blocked? "
+                            "`tmini health` tells more");
+    }
+    return status < 0 ? STATUS_OK : status;
 }
 
 static int run(const options_t *options)
 {
     device_t *device = NULL;
-    const int opened = device_open(&device, options);
-    if (opened != STATUS_OK) {
-        return opened;
-    }
-    int status = device_start(device);
+    int status = device_open(&device, options);
     if (status == STATUS_OK) {
-        status = print_scans(device, options);
+        status = device_start(device);
+        status = status == STATUS_OK ? print_scans(device, options) : status;
+        device_close(device);
     }
-    device_close(device);
     return status;
 }
 
 const command_t command_scan = {
     .name = "scan",
-    .usage = "-p PORT [-n N] [--csv|--json]",
+    .usage = "[-p PORT] [-n N] [--csv|--json]",
     .summary = "scans as they come, until Ctrl-C or N of them",
     .details =
-        "\n"
-        "Without --csv or --json: a line a scan.\n"
-        "--csv   scan,point,angle_deg,distance_mm,intensity,flag\n"
-        "--json  an object a line for each scan; points are\n"
-        "        [angle in degrees, distance in mm, intensity, flag].\n"
-        "Distance 0: no valid range. Angles count clockwise, seen from above. While the motor\n"
-        "comes up to speed, the first scans have more points than the later ones.",
+        "A line a scan; or, with the same columns and members as `tmini decode`, --csv or\n"
+        "--json. Exit status 1 also when no scan had a distance. While the motor comes up to\n"
+        "speed, the first scans have more points than the later ones.",
     .accepts = "pnCJq",
-    .operand = NULL,
     .run = run,
 };

@@ -1,106 +1,307 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini view: a live picture in the terminal, of a lidar or of a recording. */
+/* tmini view: a picture in the terminal, of a lidar live or of a recording at its own speed. */
 
-#include "commands.h"
+#define _POSIX_C_SOURCE 200809L
+
+#include <poll.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "device.h"
-#include "faults.h"
+#include "interrupt.h"
 #include "message.h"
-#include "viewer.h"
+#include "points.h"
+#include "recording.h"
+#include "terminal.h"
+#include "view.h"
 
-#define SLICE_MS 10u
+#define SLICE_MS 10
+#define SEEK_MS 5000u
 
-/* Takes the next event. Returns true if there is something to show. */
-static bool follow(device_t *device, viewer_t *viewer)
+/* A terminal without a cursor gets a picture below the other, and not too many. */
+#define PLAIN_MS 1000u
+
+typedef struct {
+    view_t view;
+    screen_t screen;
+    bool is_over; /* The user has had enough, a signal has come, or memory is short. */
+    bool has_news;
+    uint32_t shown_ms;
+} viewer_t;
+
+/* A recording's playing. */
+typedef struct {
+    recording_t recording;
+    uint32_t position_ms; /* Of the recording, */
+    uint32_t since_ms;    /* at this time of the clock. */
+    bool is_paused;
+} player_t;
+
+static uint32_t now_ms(void)
 {
-    switch (device_wait(device, SLICE_MS)) {
-    case TMINI_EVENT_SCAN:
-        viewer_keep(viewer, tmini_scan(&device->lidar));
-        viewer->view.state = "scanning";
-        viewer->view.scans++;
-        return true;
-    case TMINI_EVENT_LOST:
-        viewer->view.state = "LOST: no packets; starting the lidar again";
-        return true;
-    case TMINI_EVENT_RECOVERED:
-    case TMINI_EVENT_STARTED:
-        viewer->view.state = "scanning";
-        return true;
-    case TMINI_EVENT_FAULT:
-        return true;
-    default:
-        return false;
+    return tmini_posix_port.now_ms(NULL);
+}
+
+static int open_viewer(viewer_t *viewer, const char *source, const stream_t *stream)
+{
+    *viewer = (viewer_t){.view = {.source = source, .state = "", .stream = stream}};
+    viewer->screen.has_colours = terminal_has_colours();
+    viewer->screen.has_unicode = terminal_has_unicode();
+    viewer->screen.has_cursor = terminal_has_cursor();
+    interrupt_watch();
+    return terminal_take() ? STATUS_OK
+                           : message_fail("view draws in a terminal, and there is none; try `tmini "
+                                          "scan`, `decode` or `plot`");
+}
+
+static void close_viewer(viewer_t *viewer)
+{
+    terminal_restore();
+    screen_free(&viewer->screen);
+}
+
+/* Follows the terminal's size. */
+static void fit(viewer_t *viewer)
+{
+    unsigned columns = 80;
+    unsigned rows = 24;
+    (void)terminal_size(&columns, &rows);
+    if (columns != viewer->screen.columns || rows != viewer->screen.rows) {
+        viewer->is_over = !screen_resize(&viewer->screen, columns, rows);
+        viewer->has_news = true;
     }
 }
 
-static void tell(const device_t *device, view_t *view, char health[FAULTS_TEXT_SIZE])
+static void show(viewer_t *viewer)
 {
-    tmini_counters_t counters;
-    tmini_turn_info_t info;
-    tmini_counters(&device->lidar, &counters);
-    tmini_turn(&device->lidar, &info);
-    const uint8_t faults = tmini_faults(&device->lidar);
-    view->is_faulty = faults != 0;
-    if (faults != 0 || (info.known & TMINI_KNOWN_FAULTS) != 0) {
-        view->health = faults_text(faults, health);
+    const bool is_soon = !viewer->screen.has_cursor && viewer->shown_ms != 0 &&
+                         now_ms() - viewer->shown_ms < PLAIN_MS;
+    if (viewer->is_over || !viewer->has_news || is_soon) {
+        return;
     }
-    view->packets = counters.parser.packets;
-    view->checksum_errors = counters.parser.checksum_errors;
-    view->bytes_lost = counters.parser.bytes_overrun;
+    const char *text = NULL;
+    view_draw(&viewer->view, &viewer->screen);
+    const size_t size = screen_render(&viewer->screen, &text);
+    terminal_write(text, size);
+    viewer->has_news = false;
+    viewer->shown_ms = now_ms();
+}
+
+/* To be called every few milliseconds: follows size and keys, and draws again if need be. Returns
+ * the key, if it was none that every view knows. */
+static int attend(viewer_t *viewer)
+{
+    const int key = terminal_key();
+    fit(viewer);
+    switch (key) {
+    case 'q':
+    case 'Q':
+    case KEY_ESCAPE:
+        viewer->is_over = true;
+        break;
+    case '+':
+    case '=':
+    case '-':
+        view_zoom(&viewer->view, key != '-');
+        break;
+    case 'a':
+        viewer->view.zoom_mm = 0;
+        viewer->view.range_mm = 0;
+        break;
+    case KEY_SUSPEND:
+        terminal_suspend();
+        break;
+    default:
+        break;
+    }
+    viewer->has_news = viewer->has_news || key != KEY_NONE;
+    show(viewer);
+    viewer->is_over = viewer->is_over || interrupt_has_come();
+    return key;
+}
+
+static void follow(device_t *device, viewer_t *viewer)
+{
+    const tmini_event_t event = device_wait(device, SLICE_MS);
+    viewer->has_news =
+        viewer->has_news || (event != TMINI_EVENT_NONE && event != TMINI_EVENT_PACKET);
+    viewer->view.faults = tmini_faults(&device->lidar);
+    if (viewer->view.faults == 0) {
+        viewer->view.faults = device->stream.faults;
+    }
+    viewer->view.state = tmini_state(&device->lidar) == TMINI_STATE_SCANNING
+                             ? "scanning"
+                             : "SILENT: starting it again";
 }
 
 static int watch(device_t *device)
 {
     static viewer_t viewer;
-    char health[FAULTS_TEXT_SIZE];
-    if (!viewer_open(&viewer, device->path)) {
-        return STATUS_FAILED;
+    const int status = open_viewer(&viewer, device->path, &device->stream);
+    viewer.view.keys = "q quit   + - zoom   a auto";
+    while (status == STATUS_OK && !viewer.is_over && device->serial.state == TMINI_POSIX_OK) {
+        follow(device, &viewer);
+        (void)attend(&viewer);
     }
-    viewer.view.state = "starting";
-    while (!viewer.is_over && device->serial.state == TMINI_POSIX_OK) {
-        const bool is_news = follow(device, &viewer);
-        tell(device, &viewer.view, health);
-        viewer_attend(&viewer, is_news);
-    }
-    viewer_close(&viewer);
-    return viewer.is_over ? STATUS_OK : device_why(device);
+    close_viewer(&viewer);
+    return status != STATUS_OK || viewer.is_over ? status : device_why(device);
 }
 
 static int view_device(const options_t *options)
 {
     device_t *device = NULL;
-    const int opened = device_open(&device, options);
-    if (opened != STATUS_OK) {
-        return opened;
-    }
-    int status = device_start(device);
+    int status = device_open(&device, options);
     if (status == STATUS_OK) {
-        status = watch(device);
+        status = device_start(device);
+        status = status == STATUS_OK ? watch(device) : status;
+        device_close(device);
     }
-    device_close(device);
+    return status;
+}
+
+static uint32_t position(const player_t *player)
+{
+    return player->position_ms + (player->is_paused ? 0 : now_ms() - player->since_ms);
+}
+
+static void set_position(player_t *player, uint32_t position_ms)
+{
+    player->position_ms = position_ms;
+    player->since_ms = now_ms();
+}
+
+/* Takes packets up to that time, or to the next scan if `by_scan`. Returns whether a scan has come.
+ * */
+static bool play_to(player_t *player, uint32_t until_ms, bool by_scan)
+{
+    recording_t *const recording = &player->recording;
+    bool has_scan = false;
+    while (recording->time_us / 1000 <= until_ms && recording_next(recording)) {
+        has_scan = has_scan || recording->stream.has_scan;
+        if (by_scan && recording->stream.has_scan) {
+            break;
+        }
+    }
+    return has_scan;
+}
+
+/* A scan further, or back by playing again from the beginning. */
+static void step(player_t *player, bool is_back)
+{
+    const uint64_t number = player->recording.stream.number;
+    player->is_paused = true;
+    if (!is_back) {
+        (void)play_to(player, UINT32_MAX, true);
+    } else if (number > 1 && recording_rewind(&player->recording)) {
+        do {
+            (void)play_to(player, UINT32_MAX, true);
+        } while (player->recording.stream.number + 1 < number && !player->recording.is_at_end);
+    }
+    set_position(player, (uint32_t)(player->recording.time_us / 1000));
+}
+
+static void seek(player_t *player, bool is_back)
+{
+    const uint32_t now = position(player);
+    const uint32_t target = !is_back ? now + SEEK_MS : now > SEEK_MS ? now - SEEK_MS : 0;
+    if (!is_back || recording_rewind(&player->recording)) {
+        (void)play_to(player, target, false);
+        const uint32_t reached = (uint32_t)(player->recording.time_us / 1000);
+        set_position(player, player->recording.is_at_end && reached < target ? reached : target);
+    }
+}
+
+static void obey(player_t *player, int key)
+{
+    switch (key) {
+    case ' ':
+        set_position(player, position(player));
+        player->is_paused = !player->is_paused;
+        break;
+    case '.':
+    case ',':
+        step(player, key == ',');
+        break;
+    case KEY_RIGHT:
+    case KEY_LEFT:
+    case '>':
+    case '<':
+        seek(player, key == KEY_LEFT || key == '<');
+        break;
+    default:
+        break;
+    }
+}
+
+static int play(const options_t *options, player_t *player)
+{
+    static viewer_t viewer;
+    const recording_t *const recording = &player->recording;
+    const char *const name = recording_base_name(options->operand);
+    const int status = open_viewer(&viewer, name, &recording->stream);
+    viewer.view.keys = "q quit  +- zoom  a auto  space pause  ,. step  <> 5 s";
+    player->recording.is_impatient = true;
+    set_position(player, 0);
+    while (status == STATUS_OK && !viewer.is_over) {
+        const bool was_at_end = recording->is_at_end;
+        if (!player->is_paused && play_to(player, position(player), true)) {
+            viewer.has_news = true;
+        }
+        viewer.has_news = viewer.has_news || recording->is_at_end != was_at_end;
+        viewer.view.faults = recording->stream.faults;
+        viewer.view.state = recording->is_at_end ? "end of the recording"
+                            : player->is_paused  ? "paused"
+                                                 : "playing";
+        const int key = attend(&viewer);
+        obey(player, key);
+        viewer.has_news = viewer.has_news || key != KEY_NONE;
+        (void)poll(NULL, 0, SLICE_MS);
+    }
+    close_viewer(&viewer);
+    return status;
+}
+
+static int view_recording(const options_t *options)
+{
+    static player_t player;
+    int status = recording_open(&player.recording, options);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    /* What is no recording is told before the screen is taken over. */
+    if (recording_next(&player.recording)) {
+        status = play(options, &player);
+    }
+    if (status == STATUS_OK && player.recording.is_at_end) {
+        status = recording_verdict(&player.recording);
+    }
+    recording_close(&player.recording);
     return status;
 }
 
 static int run(const options_t *options)
 {
-    if ((options->operand == NULL) == (options->port == NULL)) {
+    if (options->operand != NULL && options->port != NULL) {
         return message_usage("view what? Usage: tmini view %s", command_view.usage);
     }
-    return options->port != NULL ? view_device(options) : view_recording(options);
+    return options->operand != NULL ? view_recording(options) : view_device(options);
 }
 
 const command_t command_view = {
     .name = "view",
-    .usage = "-p PORT|FILE",
-    .summary = "a live picture in the terminal, of a lidar or a recording",
+    .usage = "[-p PORT|FILE|-]",
+    .summary = "a picture in the terminal, of a lidar live or of a recording",
     .details =
-        "\n"
-        "Keys: + and - zoom, a chooses the range automatically, q ends. The marked point is "
-        "the\nnearest obstacle; the numbers around the triangle are the nearest ones of each\n"
-        "sector, in metres. Needs a terminal with UTF-8; NO_COLOR=1 does without colours.",
+        "Keys: + and - zoom, a chooses the range automatically, q or Esc ends, Ctrl-Z suspends. In "
+        "a\n"
+        "recording: space pauses, . and , go a scan further or back, the arrows (or < and >) five\n"
+        "seconds. The marked point is the nearest obstacle; the numbers around the triangle are "
+        "the nearest\n"
+        "ones of each sector, in metres. A locale without UTF-8 gets characters instead of dots,\n"
+        "NO_COLOR=1 no colours, and TERM=dumb one picture below the other.",
     .accepts = "pMq",
-    .operand = "FILE",
+    .has_operand = true,
     .run = run,
 };

@@ -1,55 +1,88 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A lidar on a serial port, as the tool's commands use it: opened, driven, and left stopped, with a
- * message for everything that can go wrong. */
+/* A lidar on a port, as the tool's commands use it: opened, driven, and left stopped, with a
+ * message for everything that can go wrong. The driver delivers packets; `stream` makes scans of
+ * them, as it does of a recording's. */
 
 #ifndef DEVICE_H
 #define DEVICE_H
 
 #include "options.h"
-#include "scan_list.h"
+#include "stream.h"
 #include "tmini_posix.h"
 
 typedef struct {
     tmini_t lidar;
     tmini_posix_t serial;
+    stream_t stream;
     const char *path;
+    uint32_t begun_ms; /* When it was opened, and then when it was told to start. */
+    uint32_t silences; /* How often the lidar was lost: nothing came any more, */
+    uint32_t noises;   /* or only bytes that were no packets. */
+    uint64_t good_at;  /* Bytes received by the latest packet. */
     bool was_started;
     bool ignores_interrupt; /* While stopping. */
     uint8_t rx[4096];
-    tmini_point_t points[SCAN_CAPACITY];
 } device_t;
 
-/* Opens the port of the options and sets the lidar up; sends nothing. From now on Ctrl-C is only noted.
- * Returns STATUS_OK, or the status to leave with, and says why. One at a time. */
+/* Opens the port of the options and sets the lidar up; sends nothing. From now on Ctrl-C is only
+ * noted. Returns STATUS_OK, or the status to leave with, and says why. One at a time. */
 int device_open(device_t **opened, const options_t *options);
 
 /* Stops the lidar if it was started, and closes the port. */
 void device_close(device_t *device);
 
-/* The next event; TMINI_EVENT_NONE when none came within `timeout_ms`, when the port has failed, or
- * when Ctrl-C was pressed: ask device_is_usable(). */
+/* Milliseconds since the lidar was told to start; before, since it was opened. */
+uint32_t device_ms(const device_t *device);
+
+/* The next event; TMINI_EVENT_SCAN instead of TMINI_EVENT_PACKET if it has completed a scan: see
+ * `stream`. TMINI_EVENT_NONE when none came within `timeout_ms`, when the port has failed, or when
+ * Ctrl-C was pressed: ask device_is_usable(). */
 tmini_event_t device_wait(device_t *device, uint32_t timeout_ms);
 
 /* False once the port has failed or Ctrl-C was pressed. */
 bool device_is_usable(const device_t *device);
 
-/* Waits for the end of a command: `begun` is what the command's function returned, `wanted` the event
- * that ends it. Returns STATUS_OK, or STATUS_FAILED and says what is wrong and what to try. */
+/* Waits for the end of a command: `begun` is what the command's function returned, `wanted` the
+ * event that ends it. Returns whether it ended well. */
+bool device_await(device_t *device, tmini_status_t begun, tmini_event_t wanted);
+
+/* The same, but returns STATUS_OK, or STATUS_FAILED and says what is wrong and what to try. */
 int device_finish(device_t *device, tmini_status_t begun, tmini_event_t wanted);
+
+/* The lidar is about to be told to start: the time begins, and it will be stopped in the end. */
+void device_begin(device_t *device);
 
 /* Begins to scan, and waits for the first packet. Returns as device_finish(). */
 int device_start(device_t *device);
 
-/* Stops scanning, and waits until the line is quiet. Returns as device_finish(). */
-int device_stop(device_t *device);
+/* Stops scanning, and waits until the line is quiet. Returns whether it is. */
+bool device_stop(device_t *device);
 
-/* Waits for the next scan. Returns NULL if none comes, and then device_why() says why. */
-const tmini_scan_t *device_next_scan(device_t *device);
+/* Waits for the next scan; `print`, if not NULL, is called for each packet. Returns false if none
+ * comes, and then device_why() says why. */
+bool device_next_scan(device_t *device,
+                      void (*print)(const stream_t *stream, const tmini_packet_t *packet));
 
-/* Says why the lidar does not do what it should, and what to try. Returns STATUS_FAILED; after Ctrl-C
- * says nothing. */
-int device_why(const device_t *device);
+/* Says why the lidar does not do what it should, and what to try. Returns STATUS_FAILED; after
+ * Ctrl-C says nothing. */
+int device_why(device_t *device);
+
+typedef enum {
+    TROUBLE_SILENCE, /* Not one byte comes. */
+    TROUBLE_NOISE,   /* Bytes come, but no lidar's. */
+    TROUBLE_DEAF,    /* It sends, but does not obey. */
+    TROUBLE_OTHER,   /* It has answered something. */
+} trouble_t;
+
+/* Which of these it is, by what has come so far. */
+trouble_t trouble_find(const tmini_posix_t *serial, const tmini_t *lidar);
+
+/* In words, and what to check; "" for TROUBLE_OTHER. */
+const char *trouble_text(trouble_t trouble);
+
+/* Why a port cannot be opened, and what to do; never NULL. */
+const char *trouble_opening(tmini_posix_status_t status);
 
 #endif

@@ -12,18 +12,23 @@ static volatile sig_atomic_t has_come;
 
 static void (*volatile last_words[2])(void);
 
-/* Returning lets the second signal, which is blocked meanwhile, do what it does by itself. */
-static void note(int signal_number)
+/* Returning lets the signal, which is blocked meanwhile, do what it does by itself. */
+static void leave(int signal_number)
 {
-    if (has_come == 0) {
-        has_come = 1;
-        return;
-    }
     for (size_t i = 0; i < 2 && last_words[i] != NULL; i++) {
         last_words[i]();
     }
     (void)signal(signal_number, SIG_DFL);
     (void)raise(signal_number);
+}
+
+static void note(int signal_number)
+{
+    if (has_come == 0) {
+        has_come = 1;
+    } else {
+        leave(signal_number);
+    }
 }
 
 void interrupt_last_words(void (*speak)(void))
@@ -32,24 +37,29 @@ void interrupt_last_words(void (*speak)(void))
     last_words[at] = speak;
 }
 
-void interrupt_ignore_closed_pipes(void)
+/* One after another, so that the last words are whole. */
+static void handle(const int *signals, size_t count, void (*handler)(int))
 {
-    (void)signal(SIGPIPE, SIG_IGN);
+    struct sigaction action = {.sa_handler = handler};
+    (void)sigemptyset(&action.sa_mask);
+    for (size_t i = 0; i < count; i++) {
+        (void)sigaddset(&action.sa_mask, signals[i]);
+    }
+    for (size_t i = 0; i < count; i++) {
+        (void)sigaction(signals[i], &action, NULL);
+    }
+}
+
+void interrupt_watch_pipes(void)
+{
+    static const int closed[] = {SIGPIPE};
+    handle(closed, 1, leave);
 }
 
 void interrupt_watch(void)
 {
-    struct sigaction action = {.sa_handler = note};
-    (void)sigemptyset(&action.sa_mask);
-    (void)sigaddset(&action.sa_mask,
-                    SIGINT); /* One after another, so that the last words are whole. */
-    (void)sigaddset(&action.sa_mask, SIGTERM);
-    (void)sigaddset(&action.sa_mask, SIGHUP);
-    (void)sigaddset(&action.sa_mask, SIGQUIT);
-    (void)sigaction(SIGINT, &action, NULL);
-    (void)sigaction(SIGTERM, &action, NULL);
-    (void)sigaction(SIGHUP, &action, NULL);
-    (void)sigaction(SIGQUIT, &action, NULL);
+    static const int ending[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+    handle(ending, 4, note);
 }
 
 bool interrupt_has_come(void)

@@ -2,22 +2,23 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Ctrl-C, and the other signals that ask a program to end: they are noted, so that the lidar can be
- * stopped and the terminal restored before leaving. A second one ends the program at once, after the
- * little that must be done even then. */
+ * stopped and the terminal restored before leaving. A second one ends the program at once, after
+ * the little that must be done even then. */
 
 #ifndef INTERRUPT_H
 #define INTERRUPT_H
 
 #include <stdbool.h>
 
-/* From now on a reader that has gone (`| head`) makes writing fail instead of ending the program. */
-void interrupt_ignore_closed_pipes(void);
+/* From now on a reader that has gone (`| head`) ends the program at once and without a word, as it
+ * does other programs, but for the last words. */
+void interrupt_watch_pipes(void);
 
 /* From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT are only noted. */
 void interrupt_watch(void);
 
-/* What to do when a second one comes: called from the signal's handler. Up to two functions; one that is
- * there already is not added again. */
+/* What to do when a second one comes, or a pipe is closed: called from the signal's handler. Up to
+ * two functions; one that is there already is not added again. */
 void interrupt_last_words(void (*speak)(void));
 
 /* True once one of them has come. */

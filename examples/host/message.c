@@ -6,46 +6,24 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-static bool silenced;
+static bool is_silent;
 
-static void print(const char *prefix, const char *format, va_list arguments)
+int message_print(int status, const char *format, ...)
 {
-    (void)fflush(stdout); /* So that the two streams stay in order on a terminal. */
-    (void)fputs(prefix, stderr);
-    (void)vfprintf(stderr, format, arguments);
-    (void)fputc('\n', stderr);
-}
-
-int message_fail(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    print("tmini: ", format, arguments);
-    va_end(arguments);
-    return STATUS_FAILED;
-}
-
-int message_usage(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    print("tmini: ", format, arguments);
-    va_end(arguments);
-    return STATUS_USAGE;
-}
-
-void message_note(const char *format, ...)
-{
-    if (silenced) {
-        return;
+    if (status == STATUS_OK && is_silent) {
+        return status;
     }
     va_list arguments;
     va_start(arguments, format);
-    print("", format, arguments);
+    (void)fflush(stdout); /* So that the two streams stay in order on a terminal. */
+    (void)fputs(status == STATUS_OK ? "" : "tmini: ", stderr);
+    (void)vfprintf(stderr, format, arguments);
+    (void)fputc('\n', stderr);
     va_end(arguments);
+    return status;
 }
 
 void message_silence(bool silent)
 {
-    silenced = silent;
+    is_silent = silent;
 }

@@ -15,21 +15,20 @@ enum {
 };
 
 #if defined(__GNUC__)
-#define MESSAGE_FORMAT __attribute__((format(printf, 1, 2)))
+#define MESSAGE_FORMAT __attribute__((format(printf, 2, 3)))
 #else
 #define MESSAGE_FORMAT
 #endif
 
-/* Prints "tmini: …" and returns STATUS_FAILED, so that a command can end with it. */
-int message_fail(const char *format, ...) MESSAGE_FORMAT;
+/* Prints a line: a remark, unless silenced; or behind "tmini: " why the program leaves with this
+ * status. Returns the status, so that a command can end with it. */
+int message_print(int status, const char *format, ...) MESSAGE_FORMAT;
 
-/* The same with STATUS_USAGE. */
-int message_usage(const char *format, ...) MESSAGE_FORMAT;
+#define message_note(...) (void)message_print(STATUS_OK, __VA_ARGS__)
+#define message_fail(...) message_print(STATUS_FAILED, __VA_ARGS__)
+#define message_usage(...) message_print(STATUS_USAGE, __VA_ARGS__)
 
-/* Prints a line of information, unless silenced. */
-void message_note(const char *format, ...) MESSAGE_FORMAT;
-
-/* After message_silence(true) there are errors only. */
+/* After message_silence(true) there are no remarks. */
 void message_silence(bool silent);
 
 #endif

@@ -1,61 +1,71 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
+#define _GNU_SOURCE /* getopt_long() */
+
 #include "options.h"
 
+#include <ctype.h>
 #include <errno.h>
+#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "message.h"
+#include "points.h"
+
+typedef enum { IS_FLAG, IS_TEXT, IS_NUMBER, IS_CSV, IS_JSON } kind_t;
 
 typedef struct {
-    char letter;       /* As in command_t.accepts; lower-case ones are also short options. */
+    char letter;       /* As in command_t.accepts; all but a few capital ones are short options. */
     const char *name;  /* Without the two dashes. */
     const char *value; /* What it takes, for the help; NULL: nothing. */
     const char *help;
-    unsigned min, max; /* If the value is a number. */
+    kind_t kind;
+    size_t place; /* Of the member in options_t. */
+    unsigned min, max;
 } option_t;
 
-static const option_t option_table[] = {
-    {'p', "port", "PORT", "the lidar's serial port, for example /dev/ttyUSB0", 0, 0},
-    {'n', "count", "N", "how many scans; 0: until Ctrl-C", 0, 1000000},
-    {'s', "seconds", "N", "how long; without it, until Ctrl-C", 1, 1000000},
-    {'o', "output", "FILE", "where to draw: FILE.svg or FILE.png", 0, 0},
-    {'C', "csv", NULL, "comma-separated values", 0, 0},
-    {'J', "json", NULL, "JSON, one object a line", 0, 0},
-    {'S', "stats", "FILE", "write the counters to FILE, as a JSON object", 0, 0},
-    {'M', "max-samples", "N", "accept packets of up to N samples (1 to 255; default 80)", 1, 255},
-    {'N', "scan", "N", "the scan with number N, as `tmini decode --csv` counts them", 1,
-     1000000000},
-    {'A', "all", NULL, "all scans in one picture", 0, 0},
-    {'q', "quiet", NULL, "no progress or remarks, only results and errors", 0, 0},
-    {'h', "help", NULL, "this text", 0, 0},
+#define PLACE(member) offsetof(options_t, member)
+
+static const option_t table[] = {
+    {'p', "port", "PORT", "the lidar: /dev/ttyUSB0, tcp:HOST:PORT; else $TMINI_PORT", IS_TEXT,
+     PLACE(port), 0, 0},
+    {'n', "count", "N", "how many scans; 0: until Ctrl-C", IS_NUMBER, PLACE(count), 0, 1000000},
+    {'s', "seconds", "N", "how long", IS_NUMBER, PLACE(seconds), 1, 1000000},
+    {'o', "output", "FILE", "where to draw: FILE.svg, FILE.png or FILE.pdf", IS_TEXT, PLACE(output),
+     0, 0},
+    {'C', "csv", NULL, "comma-separated values", IS_CSV, 0, 0, 0},
+    {'J', "json", NULL, "JSON, one object a line", IS_JSON, 0, 0, 0},
+    {'S', "stats", "FILE", "write the counters to FILE, as a JSON object", IS_TEXT, PLACE(stats), 0,
+     0},
+    {'M', "max-samples", "N", "accept packets of up to N samples (1 to 255; default 80)", IS_NUMBER,
+     PLACE(max_samples), 1, 255},
+    {'N', "scan", "N", "the scan with number N, as `decode --csv` counts them", IS_NUMBER,
+     PLACE(scan), 1, 1000000000},
+    {'A', "all", NULL, "all scans in one picture", IS_FLAG, PLACE(all), 0, 0},
+    {'T', "timed", NULL, "with time stamps, as for a FILE.tmini", IS_FLAG, PLACE(timed), 0, 0},
+    {'q', "quiet", NULL, "no progress or remarks, only results and errors", IS_FLAG, PLACE(quiet),
+     0, 0},
+    {'h', "help", NULL, "this text", IS_FLAG, PLACE(help), 0, 0},
+    {'V', "version", NULL, "the version", IS_FLAG, PLACE(version), 0, 0},
 };
 
-#define OPTIONS (sizeof option_table / sizeof option_table[0])
+#define OPTIONS (sizeof table / sizeof table[0])
 
-static bool is_accepted(const command_t *command, const option_t *option)
+static bool is_short(const option_t *option)
 {
-    return option->letter == 'h' || strchr(command->accepts, option->letter) != NULL;
+    return islower((unsigned char)option->letter) != 0 || option->letter == 'V';
 }
 
-/* `word` is "-x" or "--name" or "--name=value". */
-static const option_t *find(const command_t *command, const char *word)
+static const option_t *find(int letter)
 {
-    const bool is_long = word[1] == '-';
-    const size_t length = strcspn(word + 2, "=");
-    for (size_t i = 0; i < OPTIONS; i++) {
-        const option_t *const option = &option_table[i];
-        const bool same =
-            is_long ? strlen(option->name) == length && strncmp(option->name, word + 2, length) == 0
-                    : option->letter == word[1] && option->letter >= 'a' && word[2] == '\0';
-        if (same && is_accepted(command, option)) {
-            return option;
-        }
+    size_t i = 0;
+    while (i < OPTIONS && table[i].letter != letter) {
+        i++;
     }
-    return NULL;
+    return i < OPTIONS ? &table[i] : NULL;
 }
 
 static bool read_number(const option_t *option, const char *text, unsigned *number)
@@ -65,6 +75,8 @@ static bool read_number(const option_t *option, const char *text, unsigned *numb
     const unsigned long value = strtoul(text, &end, 10);
     if (text[0] < '0' || text[0] > '9' || *end != '\0' || errno != 0 || value < option->min ||
         value > option->max) {
+        (void)message_usage("--%s: \"%s\" is not a number from %u to %u", option->name, text,
+                            option->min, option->max);
         return false;
     }
     *number = (unsigned)value;
@@ -73,118 +85,139 @@ static bool read_number(const option_t *option, const char *text, unsigned *numb
 
 static bool set_format(options_t *options, format_t format)
 {
-    const bool clashes = options->format != FORMAT_TEXT && options->format != format;
+    if (options->format != FORMAT_TEXT && options->format != format) {
+        (void)message_usage("either --csv or --json, not both");
+        return false;
+    }
     options->format = format;
-    return !clashes;
+    return true;
 }
 
-/* Returns false if the value is not what the option takes. */
+static bool take_operand(options_t *options, const char *word)
+{
+    if (options->word_count < OPTIONS_WORDS) {
+        options->words[options->word_count++] = word;
+    }
+    return true;
+}
+
+/* Returns false, and says why, if the value is not what the option takes. */
 static bool apply(options_t *options, const option_t *option, const char *value)
 {
-    switch (option->letter) {
-    case 'p':
-        options->port = value;
+    void *const member = (char *)options + option->place;
+    if (strchr(options->given, option->letter) == NULL) {
+        options->given[strlen(options->given)] = option->letter; /* There is room for all. */
+    }
+    switch (option->kind) {
+    case IS_TEXT:
+        *(const char **)member = value;
         return true;
-    case 'o':
-        options->output = value;
-        return true;
-    case 'S':
-        options->stats = value;
-        return true;
-    case 'n':
-        return read_number(option, value, &options->count);
-    case 's':
-        return read_number(option, value, &options->seconds);
-    case 'M':
-        return read_number(option, value, &options->max_samples);
-    case 'N':
-        return read_number(option, value, &options->scan);
-    case 'C':
+    case IS_NUMBER:
+        return read_number(option, value, member);
+    case IS_CSV:
         return set_format(options, FORMAT_CSV);
-    case 'J':
+    case IS_JSON:
         return set_format(options, FORMAT_JSON);
-    case 'A':
-        options->all = true;
-        return true;
-    case 'q':
-        options->quiet = true;
-        return true;
     default:
-        options->help = true;
+        *(bool *)member = true;
         return true;
     }
 }
 
-static int take_operand(options_t *options, const command_t *command, const char *word)
+/* For getopt_long(): the short options, after "-:", which asks for all words in their order and for
+ * silence about errors; and the long ones. */
+static void list_options(char *short_ones, struct option *long_ones)
 {
-    if (command->operand == NULL || options->operand != NULL) {
-        return message_usage("%s: unexpected \"%s\"; see tmini %s --help", command->name, word,
-                             command->name);
-    }
-    options->operand = word;
-    return STATUS_OK;
-}
-
-/* Takes the option at words[*index], and its value, which may be the word after it. */
-static int take_option(options_t *options, const command_t *command, int count, char *const *words,
-                       int *index)
-{
-    const char *const word = words[*index];
-    const option_t *const option = find(command, word);
-    if (option == NULL) {
-        return message_usage("%s has no option %s; see tmini %s --help", command->name, word,
-                             command->name);
-    }
-    const char *value = word[1] == '-' ? strchr(word, '=') : NULL;
-    if (value != NULL) {
-        value++;
-    } else if (option->value != NULL && *index + 1 < count) {
-        (*index)++;
-        value = words[*index];
-    }
-    if ((value == NULL) != (option->value == NULL)) {
-        return message_usage("--%s takes %s value; see tmini %s --help", option->name,
-                             value == NULL ? "a" : "no", command->name);
-    }
-    if (!apply(options, option, value)) {
-        return value == NULL ? message_usage("either --csv or --json, not both")
-                             : message_usage("--%s: \"%s\" is not a number from %u to %u",
-                                             option->name, value, option->min, option->max);
-    }
-    return STATUS_OK;
-}
-
-int options_parse(options_t *options, const command_t *command, int count, char *const *words)
-{
-    *options = (options_t){0};
-    bool only_operands = false;
-    int status = STATUS_OK;
-    for (int i = 0; i < count && status == STATUS_OK; i++) {
-        const bool looks_like_option = words[i][0] == '-' && words[i][1] != '\0';
-        if (!only_operands && strcmp(words[i], "--") == 0) {
-            only_operands = true;
-        } else if (!only_operands && looks_like_option) {
-            status = take_option(options, command, count, words, &i);
-        } else {
-            status = take_operand(options, command, words[i]);
+    short_ones += sprintf(short_ones, "-:");
+    for (size_t i = 0; i < OPTIONS; i++) {
+        const int has_value = table[i].value != NULL ? required_argument : no_argument;
+        long_ones[i] = (struct option){table[i].name, has_value, NULL, table[i].letter};
+        if (is_short(&table[i])) {
+            short_ones +=
+                sprintf(short_ones, "%c%s", table[i].letter, has_value != no_argument ? ":" : "");
         }
     }
-    return status;
+}
+
+/* What getopt_long() could not take. */
+static bool complain(int answer, const char *word)
+{
+    const option_t *const known = find(optopt);
+    const size_t length = strcspn(word, "=");
+    if (answer == ':' && known != NULL) {
+        (void)message_usage("--%s takes a value: --%s %s", known->name, known->name, known->value);
+    } else if (known != NULL && word[1] == '-') {
+        (void)message_usage("--%s takes no value", known->name);
+    } else if (word[1] == '-') {
+        (void)message_usage("there is no option %.*s, or more than one; see tmini --help",
+                            (int)length, word);
+    } else {
+        (void)message_usage("there is no option -%c; see tmini --help", optopt);
+    }
+    return false;
+}
+
+int options_parse(options_t *options, int argc, char **argv)
+{
+    char short_ones[3 * OPTIONS + 3];
+    struct option long_ones[OPTIONS + 1] = {{0}};
+    bool is_good = true;
+    int answer = 0;
+    *options = (options_t){0};
+    list_options(short_ones, long_ones);
+    while (is_good && (answer = getopt_long(argc, argv, short_ones, long_ones, NULL)) != -1) {
+        if (answer == '?' || answer == ':') {
+            is_good = complain(answer, argv[optind - 1]);
+        } else {
+            is_good =
+                answer == 1 ? take_operand(options, optarg) : apply(options, find(answer), optarg);
+        }
+    }
+    for (int i = optind; is_good && i < argc; i++) {
+        is_good = take_operand(options, argv[i]); /* After "--". */
+    }
+    options->command = options->words[0];
+    options->operand = options->words[1];
+    return is_good ? STATUS_OK : STATUS_USAGE;
+}
+
+static bool is_accepted(const command_t *command, char letter)
+{
+    return letter == 'h' || letter == 'V' || strchr(command->accepts, letter) != NULL;
+}
+
+int options_check(const options_t *options, const command_t *command)
+{
+    const char *const excess = options->words[command->has_operand ? 2 : 1];
+    for (const char *letter = options->given; *letter != '\0'; letter++) {
+        if (!is_accepted(command, *letter)) {
+            return message_usage("%s has no option --%s; see tmini %s --help", command->name,
+                                 find(*letter)->name, command->name);
+        }
+    }
+    if (excess != NULL) {
+        return message_usage("%s: unexpected \"%s\"; see tmini %s --help", command->name, excess,
+                             command->name);
+    }
+    return STATUS_OK;
 }
 
 void options_help(const command_t *command)
 {
-    (void)printf("tmini %s %s\n\n%s\n%s\n\n", command->name, command->usage, command->summary,
-                 command->details);
+    (void)printf("tmini %s %s\n\n%s\n", command->name, command->usage, command->summary);
+    (void)printf(command->details != NULL ? "\n%s\n\n" : "\n", command->details);
+    if (is_accepted(command, 'C')) {
+        (void)printf("%s\n\n", rows_help);
+    }
     for (size_t i = 0; i < OPTIONS; i++) {
-        const option_t *const option = &option_table[i];
-        if (is_accepted(command, option)) {
+        const option_t *const option = &table[i];
+        if (is_accepted(command, option->letter)) {
             char name[40];
             (void)snprintf(name, sizeof name, "--%s %s", option->name,
                            option->value != NULL ? option->value : "");
-            const bool is_short = option->letter >= 'a';
-            (void)printf("  %c%c%c %-20s %s\n", is_short ? '-' : ' ',
-                         is_short ? option->letter : ' ', is_short ? ',' : ' ', name, option->help);
+            (void)printf("  %c%c%c %-20s %s\n", is_short(option) ? '-' : ' ',
+                         is_short(option) ? option->letter : ' ', is_short(option) ? ',' : ' ',
+                         name, option->help);
         }
     }
 }

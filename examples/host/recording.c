@@ -1,52 +1,220 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
+#define _POSIX_C_SOURCE 200809L
+
 #include "recording.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
+#include <poll.h>
+#include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "message.h"
 
-static const char *name_of(const char *path)
+/* With the largest packet waiting for its last byte (775), this much still fits in the ring. */
+#define BLOCK_SIZE 2048u
+
+/* Shorter recordings are read at once. */
+#define LONG_SIZE 20000000u
+
+#define US_A_SAMPLE 250u /* Section 1. */
+
+const uint8_t recording_magic[8] = {0x89, 't', 'm', 'i', 'n', 'i', 1, '\n'};
+
+/* What is there, rather than all that fits: it may come through a pipe, and live. Returns false at
+ * the end, or when there is nothing yet. */
+static bool fill(recording_t *recording)
 {
-    return strcmp(path, "-") == 0 ? "standard input" : path;
+    struct pollfd entry = {.fd = recording->fd, .events = POLLIN};
+    ssize_t more = 0;
+    recording->is_waiting = recording->is_impatient && poll(&entry, 1, 0) == 0;
+    if (recording->is_waiting) {
+        return false;
+    }
+    recording->count -= recording->at;
+    memmove(recording->buffer, recording->buffer + recording->at, recording->count);
+    recording->at = 0;
+    do {
+        more = read(recording->fd, recording->buffer + recording->count,
+                    sizeof recording->buffer - recording->count);
+    } while (more < 0 && errno == EINTR);
+    recording->error = more < 0 ? errno : 0;
+    recording->count += more > 0 ? (size_t)more : 0;
+    recording->consumed += more > 0 ? (size_t)more : 0;
+    return more > 0;
 }
 
-FILE *recording_open(const char *path)
+static void detect_format(recording_t *recording)
 {
-    if (strcmp(path, "-") == 0) {
-        return stdin;
+    while (recording->count < sizeof recording_magic && fill(recording)) {
     }
-    FILE *const file = fopen(path, "rb");
-    if (file == NULL) {
-        (void)message_fail("cannot open %s: %s", path, strerror(errno));
-    }
-    return file;
+    recording->is_timed = recording->count >= sizeof recording_magic &&
+                          memcmp(recording->buffer, recording_magic, sizeof recording_magic) == 0;
+    recording->at = recording->is_timed ? sizeof recording_magic : 0;
 }
 
-void recording_close(FILE *file)
+static bool begin_chunk(recording_t *recording)
 {
-    if (file != stdin) {
-        (void)fclose(file);
+    while (recording->count - recording->at < CHUNK_HEAD_SIZE) {
+        if (!fill(recording)) {
+            return false;
+        }
+    }
+    const uint8_t *const head = recording->buffer + recording->at;
+    recording->at += CHUNK_HEAD_SIZE;
+    recording->chunk_us += (uint32_t)head[0] | (uint32_t)head[1] << 8 | (uint32_t)head[2] << 16 |
+                           (uint32_t)head[3] << 24;
+    recording->chunk_left = (uint32_t)head[4] | (uint32_t)head[5] << 8;
+    return true;
+}
+
+/* More bytes of the lidar's into the ring; returns false at the end. */
+static bool refill(recording_t *recording)
+{
+    while (recording->is_timed && recording->chunk_left == 0) {
+        if (!begin_chunk(recording)) {
+            return false;
+        }
+    }
+    if (recording->at == recording->count && !fill(recording)) {
+        return false;
+    }
+    size_t count = recording->count - recording->at;
+    count = count < BLOCK_SIZE ? count : BLOCK_SIZE;
+    if (recording->is_timed) {
+        count = count < recording->chunk_left ? count : recording->chunk_left;
+        recording->chunk_left -= (uint32_t)count;
+    }
+    tmini_ring_write(&recording->ring, recording->buffer + recording->at, count);
+    recording->at += count;
+    recording->bytes += count;
+    return true;
+}
+
+static void begin(recording_t *recording)
+{
+    recording->at = recording->count = 0;
+    recording->bytes = recording->bytes_in_packets = recording->consumed = 0;
+    recording->chunk_us = recording->chunk_left = recording->parser_errors = 0;
+    recording->checksum_errors = 0;
+    recording->is_at_end = false;
+    (void)tmini_ring_init(&recording->ring, recording->memory, sizeof recording->memory, false);
+    (void)tmini_parser_init(&recording->parser, &recording->ring, recording->max_samples);
+    stream_init(&recording->stream);
+    detect_format(recording);
+}
+
+static void count_errors(recording_t *recording)
+{
+    tmini_parser_counters_t counters;
+    tmini_parser_counters(&recording->parser, &counters);
+    recording->checksum_errors += (uint32_t)(counters.checksum_errors - recording->parser_errors);
+    recording->parser_errors = counters.checksum_errors;
+}
+
+static void take(recording_t *recording)
+{
+    tmini_packet_open(&recording->packet, tmini_parser_frame(&recording->parser));
+    recording->time_us =
+        recording->is_timed ? recording->chunk_us : recording->stream.points * US_A_SAMPLE;
+    recording->bytes_in_packets += TMINI_PACKET_SIZE((uint64_t)recording->packet.count);
+    (void)stream_take(&recording->stream, &recording->packet,
+                      (uint32_t)(recording->time_us / 1000));
+    recording->bytes_until = recording_skipped(recording);
+    if (recording->stream.packets == 1) {
+        recording->bytes_before = recording->bytes_until;
     }
 }
 
-int recording_verdict(const char *path, const decoder_t *decoder)
+bool recording_next(recording_t *recording)
 {
-    const char *const name = name_of(path);
-    if (ferror(decoder->file) != 0) {
-        return message_fail("cannot read %s: %s", name, strerror(errno));
+    while (!recording->is_at_end) {
+        const tmini_frame_type_t frame = tmini_parser_next(&recording->parser);
+        count_errors(recording);
+        if (frame == TMINI_FRAME_PACKET) {
+            take(recording);
+            return true;
+        }
+        if (frame == TMINI_FRAME_NONE && !refill(recording)) {
+            if (recording->is_waiting) {
+                return false;
+            }
+            recording->is_at_end = tmini_parser_pending(&recording->parser) == 0;
+            tmini_parser_abandon(&recording->parser);
+        }
     }
-    if (decoder->totals.bytes == 0) {
-        return message_fail("%s is empty: nothing was recorded. Was the lidar scanning?", name);
+    return false;
+}
+
+uint64_t recording_skipped(const recording_t *recording)
+{
+    return recording->bytes - recording->bytes_in_packets -
+           tmini_parser_pending(&recording->parser);
+}
+
+int recording_open(recording_t *recording, const options_t *options)
+{
+    const bool is_standard = strcmp(options->operand, "-") == 0;
+    struct stat status;
+    *recording = (recording_t){.max_samples = (uint8_t)options->max_samples};
+    recording->name = is_standard ? "standard input" : options->operand;
+    recording->fd = is_standard ? STDIN_FILENO : open(options->operand, O_RDONLY);
+    if (recording->fd < 0) {
+        return message_fail("cannot open %s: %s", options->operand, strerror(errno));
     }
-    if (decoder->totals.packets == 0) {
+    if (fstat(recording->fd, &status) == 0 && S_ISREG(status.st_mode)) {
+        recording->size = (uint64_t)status.st_size;
+    }
+    begin(recording);
+    return STATUS_OK;
+}
+
+void recording_close(recording_t *recording)
+{
+    if (recording->fd != STDIN_FILENO) {
+        (void)close(recording->fd);
+    }
+}
+
+bool recording_rewind(recording_t *recording)
+{
+    if (lseek(recording->fd, 0, SEEK_SET) != 0) {
+        return false;
+    }
+    begin(recording);
+    return true;
+}
+
+void recording_show_progress(recording_t *recording, const options_t *options)
+{
+    const unsigned percent =
+        recording->size < LONG_SIZE ? 0 : (unsigned)(recording->consumed * 100 / recording->size);
+    if (percent != recording->shown_percent && !options->quiet && isatty(STDERR_FILENO) != 0) {
+        recording->shown_percent = percent;
+        (void)fprintf(stderr, "%3u %% of %s%s", percent, recording->name,
+                      percent < 100 ? "\r" : "\n");
+    }
+}
+
+int recording_verdict(const recording_t *recording)
+{
+    if (recording->error != 0) {
+        return message_fail("cannot read %s: %s", recording->name, strerror(recording->error));
+    }
+    if (recording->bytes == 0) {
+        return message_fail("%s is empty: nothing was recorded. Was the lidar scanning?",
+                            recording->name);
+    }
+    if (recording->stream.packets == 0) {
         return message_fail("%s holds no lidar packet in %" PRIu64 " bytes: it is not a recording "
                             "of a T-mini Plus,\nor was recorded with another baud rate than "
                             "230400, or before the lidar scanned.",
-                            name, decoder->totals.bytes);
+                            recording->name, recording->bytes);
     }
     return STATUS_OK;
 }
@@ -55,7 +223,7 @@ const char *recording_base_name(const char *path)
 {
     const char *name = path;
     for (; *path != '\0'; path++) {
-        if ((*path == '/' || *path == '\\') && path[1] != '\0') {
+        if (*path == '/' && path[1] != '\0') {
             name = path + 1;
         }
     }

@@ -1,23 +1,83 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Recordings as files: opening one, and saying what is wrong with one. */
+/* Recordings: raw bytes as the lidar sent them, or the same in chunks with time stamps. Read packet
+ * by packet, with the library's ring, parser and packet modules and without any port; in constant
+ * memory, however long. No reply is awaited, so replies in a recording count as skipped bytes.
+ *
+ * A timed recording (FILE.tmini) begins with the eight bytes 89 74 6D 69 6E 69 01 0A ("tmini",
+ * version 1). Then come chunks: the microseconds since the chunk before, or since the recording's
+ * beginning (four bytes, least significant first); how many bytes follow (two bytes, likewise);
+ * these bytes. */
 
 #ifndef RECORDING_H
 #define RECORDING_H
 
-#include <stdio.h>
+#include "options.h"
+#include "stream.h"
+#include "tmini/tmini_parser.h"
 
-#include "decoder.h"
+/* Bytes of a chunk's head, and the most that follow. */
+#define CHUNK_HEAD_SIZE 6u
+#define CHUNK_MAX UINT16_MAX
 
-/* Opens a recording for reading; "-" is standard input. NULL, and said why, if that fails. */
-FILE *recording_open(const char *path);
+extern const uint8_t recording_magic[8];
 
-void recording_close(FILE *file);
+/* Members down to `stream` may be read. 64 bits, because a recording may be longer than the
+ * parser's counters reach. */
+typedef struct {
+    const char *name;
+    uint64_t bytes; /* Of the lidar's. */
+    uint64_t bytes_in_packets;
+    uint64_t bytes_before; /* The first packet, and up to the latest one: skipped ones. */
+    uint64_t bytes_until;
+    uint64_t checksum_errors;
+    uint64_t time_us; /* Of the latest packet. */
+    bool is_timed;    /* Otherwise the time is that of 4000 samples a second. */
+    bool is_at_end;
+    bool is_impatient;     /* May be set: recording_next() then does not wait for a pipe's bytes. */
+    tmini_packet_t packet; /* The latest. */
+    stream_t stream;
 
-/* To be called when the decoder has come to the end: says what is wrong if the file could not be
- * read, was empty, or holds nothing of a lidar. Returns the status to leave with. */
-int recording_verdict(const char *path, const decoder_t *decoder);
+    int fd;
+    bool is_waiting;
+    int error;     /* errno of a failed read, or 0. */
+    uint64_t size; /* Of the file; 0: not known. */
+    uint64_t consumed;
+    uint64_t chunk_us;
+    uint32_t chunk_left;
+    uint32_t parser_errors; /* Of the parser's checksum errors, those that are counted. */
+    uint8_t max_samples;
+    unsigned shown_percent;
+    size_t at, count; /* In `buffer`: what has been read and not yet decoded. */
+    uint8_t buffer[16384];
+    tmini_ring_t ring;
+    tmini_parser_t parser;
+    uint8_t memory[4096];
+} recording_t;
+
+/* Opens the recording that is the options' operand; "-" is standard input. Returns STATUS_OK, or
+ * the status to leave with, and says why. */
+int recording_open(recording_t *recording, const options_t *options);
+void recording_close(recording_t *recording);
+
+/* Finds the next valid packet and gives it to the stream. At the end of the file, what waits for
+ * more bytes is re-examined byte by byte. Returns false when nothing is left (`is_at_end`), or
+ * there yet. */
+bool recording_next(recording_t *recording);
+
+/* Back to its beginning. Returns false if that cannot be: it comes through a pipe. */
+bool recording_rewind(recording_t *recording);
+
+/* Bytes that belonged to no packet, of those decoded so far. */
+uint64_t recording_skipped(const recording_t *recording);
+
+/* Shows on standard error, if that is a terminal, how much of a long recording has been read. */
+void recording_show_progress(recording_t *recording, const options_t *options);
+
+/* At the end: says what is wrong if the file could not be read, was empty, or holds nothing of a
+ * lidar. Returns the status to leave with. */
+int recording_verdict(const recording_t *recording);
 
 /* The path without its folders. */
 const char *recording_base_name(const char *path);

@@ -9,17 +9,17 @@
 
 #define BRAILLE 0x2800u
 
-/* A cell takes a change of colour and a character of three bytes at most; a row's end a little more. */
+/* A cell takes a change of colour and a character of three bytes at most; a row's end a little
+ * more. */
 #define CELL_SIZE 16u
 #define ROW_SIZE 32u
 
 bool screen_resize(screen_t *screen, unsigned columns, unsigned rows)
 {
-    const bool has_colours = screen->has_colours;
-    screen_free(screen);
+    free(screen->cells);
+    free(screen->output);
     screen->columns = columns;
     screen->rows = rows;
-    screen->has_colours = has_colours;
     screen->cells = calloc((size_t)columns * rows, sizeof *screen->cells);
     screen->output = malloc((size_t)rows * ((size_t)columns * CELL_SIZE + ROW_SIZE) + ROW_SIZE);
     if (screen->cells == NULL || screen->output == NULL) {
@@ -53,11 +53,13 @@ static cell_t *cell_at(const screen_t *screen, int column, int row)
     return &screen->cells[(size_t)row * screen->columns + (size_t)column];
 }
 
-void screen_put(screen_t *screen, int column, int row, uint16_t character, uint8_t colour)
+void screen_put(screen_t *screen, int column, int row, uint16_t character, char plain,
+                uint8_t colour)
 {
     cell_t *const cell = cell_at(screen, column, row);
     if (cell != NULL) {
-        *cell = (cell_t){character, colour, LAYER_TEXT};
+        const uint16_t put = screen->has_unicode ? character : (unsigned char)plain;
+        *cell = (cell_t){put, colour, LAYER_TEXT};
     }
 }
 
@@ -65,8 +67,8 @@ void screen_text(screen_t *screen, int column, int row, const char *text, uint8_
 {
     for (; *text != '\0'; text++) {
         const unsigned char character = (unsigned char)*text;
-        screen_put(screen, column++, row, character >= ' ' && character < 127 ? character : '?',
-                   colour);
+        const char put = character >= ' ' && character < 127 ? *text : '?';
+        screen_put(screen, column++, row, (uint16_t)put, put, colour);
     }
 }
 
@@ -86,7 +88,11 @@ void screen_dot(screen_t *screen, int x, int y, layer_t layer, uint8_t colour)
     if (cell->layer < layer) {
         *cell = (cell_t){BRAILLE, colour, (uint8_t)layer};
     }
-    cell->character |= braille_bit(x % 2, y % 4);
+    if (screen->has_unicode) {
+        cell->character |= braille_bit(x % 2, y % 4);
+    } else {
+        cell->character = layer == LAYER_GRID ? '.' : '*';
+    }
     cell->colour = colour;
 }
 
@@ -105,13 +111,25 @@ static char *put_utf8(char *out, unsigned character)
     return out;
 }
 
+/* A row without a cursor ends with its last character. */
+static unsigned width_of(const screen_t *screen, unsigned row)
+{
+    unsigned width = screen->columns;
+    while (!screen->has_cursor && width > 0 &&
+           cell_at(screen, (int)width - 1, (int)row)->character == ' ') {
+        width--;
+    }
+    return width;
+}
+
 size_t screen_render(screen_t *screen, const char **text)
 {
     char *out = screen->output;
     int colour = -1;
     for (unsigned row = 0; row < screen->rows; row++) {
-        out += sprintf(out, "\033[%u;1H", row + 1);
-        for (unsigned column = 0; column < screen->columns; column++) {
+        out += screen->has_cursor ? sprintf(out, "\033[%u;1H", row + 1) : 0;
+        const unsigned width = width_of(screen, row);
+        for (unsigned column = 0; column < width; column++) {
             const cell_t *const cell = cell_at(screen, (int)column, (int)row);
             if (screen->has_colours && cell->character != ' ' && cell->colour != colour) {
                 colour = cell->colour;
@@ -119,6 +137,7 @@ size_t screen_render(screen_t *screen, const char **text)
             }
             out = put_utf8(out, cell->character);
         }
+        out += screen->has_cursor ? 0 : sprintf(out, "\n");
     }
     *text = screen->output;
     return (size_t)(out - screen->output);

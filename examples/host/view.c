@@ -8,14 +8,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "direction.h"
-#include "polar_scale.h"
-#include "ramp.h"
-#include "scan_list.h"
+#include "points.h"
 #include "tmini/tmini_sectors.h"
 
 #define PANEL_COLUMNS 27
 #define PICTURE_COLUMNS_MIN 24
+#define PANEL_ROWS 20             /* Otherwise only what is more important is said. */
 #define LIDAR_CHARACTER 0x25B2u   /* a triangle that points up */
 #define NEAREST_CHARACTER 0x25C6u /* a diamond */
 #define DEGREE_SIGN 0xB0u
@@ -39,8 +37,6 @@ typedef struct {
     unsigned range_mm;
 } frame_t;
 
-/* ---------------------------------------------------------------------------------------- range */
-
 static size_t zoom_of(unsigned range_mm)
 {
     size_t i = 0;
@@ -50,19 +46,34 @@ static size_t zoom_of(unsigned range_mm)
     return i;
 }
 
-/* By itself the range only grows: a picture that breathes is hard to look at. */
-static void choose_range(view_t *view)
+static const tmini_scan_t *scan_of(const view_t *view)
 {
+    return view->stream->scans > 0 ? &view->stream->scan : NULL;
+}
+
+/* By themselves range and colours only widen: a picture that breathes is hard to look at. */
+static void choose_scale(view_t *view)
+{
+    const tmini_scan_t *const scan = scan_of(view);
+    scale_t *const colours = &view->colours;
     unsigned farthest_mm = 0;
-    for (size_t i = 0; view->scan != NULL && i < view->scan->count; i++) {
-        const unsigned distance_mm = view->scan->points[i].distance_mm;
-        farthest_mm = distance_mm > farthest_mm ? distance_mm : farthest_mm;
+    for (size_t i = 0; scan != NULL && i < scan->count; i++) {
+        const tmini_point_t *const point = &scan->points[i];
+        if (point->distance_mm > 0) {
+            const bool is_first = colours->brightest == 0;
+            farthest_mm = point->distance_mm > farthest_mm ? point->distance_mm : farthest_mm;
+            colours->darkest = is_first || point->intensity < colours->darkest ? point->intensity
+                                                                               : colours->darkest;
+            colours->brightest =
+                point->intensity > colours->brightest ? point->intensity : colours->brightest;
+        }
     }
     if (view->zoom_mm > 0) {
         view->range_mm = view->zoom_mm;
     } else if (farthest_mm > view->range_mm) {
         view->range_mm = zooms[zoom_of(farthest_mm)].range_mm;
     }
+    view->range_mm = view->range_mm > 0 ? view->range_mm : zooms[3].range_mm;
 }
 
 void view_zoom(view_t *view, bool in)
@@ -74,8 +85,6 @@ void view_zoom(view_t *view, bool in)
         view->zoom_mm = zooms[now + 1].range_mm;
     }
 }
-
-/* -------------------------------------------------------------------------------------- picture */
 
 /* The largest circle that fits between the first and the last row. */
 static frame_t frame_of(const screen_t *screen, const view_t *view)
@@ -92,28 +101,25 @@ static frame_t frame_of(const screen_t *screen, const view_t *view)
     return frame;
 }
 
-/* A place in the picture: dots from the lidar, in a direction. */
 typedef struct {
-    double degrees;
-    double distance;
-} bearing_t;
+    double x, y;
+} spot_t;
 
-static spot_t place_of(const frame_t *frame, bearing_t bearing)
+static spot_t place_of(const frame_t *frame, double degrees, double distance)
 {
-    const double radians = bearing.degrees * acos(-1) / 180;
-    return (spot_t){frame->x + bearing.distance * sin(radians),
-                    frame->y - bearing.distance * cos(radians)};
+    const double radians = degrees * acos(-1) / 180;
+    return (spot_t){frame->x + distance * sin(radians), frame->y - distance * cos(radians)};
 }
 
 static spot_t place_of_point(const frame_t *frame, const tmini_point_t *point)
 {
-    return place_of(frame, (bearing_t){point->angle_q6 / 64.0,
-                                       frame->radius * point->distance_mm / frame->range_mm});
+    return place_of(frame, point->angle_q6 / 64.0,
+                    frame->radius * point->distance_mm / frame->range_mm);
 }
 
-static void grid_dot(screen_t *screen, const frame_t *frame, bearing_t bearing)
+static void grid_dot(screen_t *screen, const frame_t *frame, double degrees, double distance)
 {
-    const spot_t spot = place_of(frame, bearing);
+    const spot_t spot = place_of(frame, degrees, distance);
     screen_dot(screen, (int)lround(spot.x), (int)lround(spot.y), LAYER_GRID, COLOUR_GRID);
 }
 
@@ -125,12 +131,12 @@ static void draw_grid(screen_t *screen, const frame_t *frame)
         const double radius = frame->radius * mm / frame->range_mm;
         const int dots = (int)(2 * acos(-1) * fmax(radius, 3) / 3);
         for (int i = 0; i <= dots; i++) {
-            grid_dot(screen, frame, (bearing_t){360.0 * i / dots, radius});
+            grid_dot(screen, frame, 360.0 * i / dots, radius);
         }
     }
     for (int i = 0; i < 4; i++) {
         for (int distance = 6; distance < frame->radius; distance += 4) {
-            grid_dot(screen, frame, (bearing_t){90.0 * i, distance});
+            grid_dot(screen, frame, 90.0 * i, distance);
         }
     }
 }
@@ -148,80 +154,74 @@ static void label_rings(screen_t *screen, const frame_t *frame)
 }
 
 /* The colour of the terminal's 6 x 6 x 6 cube that is nearest to an intensity's. */
-static uint8_t terminal_colour(double share)
+static uint8_t terminal_colour(colour_t colour)
 {
-    const paint_t paint = ramp_colour(share);
-    const int red = (paint.red + 25) / 51;
-    const int green = (paint.green + 25) / 51;
-    const int blue = (paint.blue + 25) / 51;
-    return (uint8_t)(16 + 36 * red + 6 * green + blue);
+    return (uint8_t)(16 + 36 * lround(colour.red * 5) + 6 * lround(colour.green * 5) +
+                     lround(colour.blue * 5));
 }
 
-static void draw_points(screen_t *screen, const frame_t *frame, const tmini_scan_t *scan)
+static void draw_points(screen_t *screen, const frame_t *frame, const scale_t *colours,
+                        const tmini_scan_t *scan)
 {
-    scale_t scale;
-    scale_fit(&scale, &(figure_t){.scans = &scan, .count = 1});
     for (size_t i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
         if (point->distance_mm > 0 && point->distance_mm <= frame->range_mm) {
             const spot_t spot = place_of_point(frame, point);
             screen_dot(screen, (int)lround(spot.x), (int)lround(spot.y), LAYER_POINTS,
-                       terminal_colour(scale_intensity(&scale, point->intensity)));
+                       terminal_colour(scale_colour(colours, point->intensity)));
         }
     }
 }
 
 static void mark_nearest(screen_t *screen, const frame_t *frame, const tmini_point_t *nearest)
 {
-    if (nearest == NULL || nearest->distance_mm > frame->range_mm) {
-        return;
+    if (nearest != NULL && nearest->distance_mm <= frame->range_mm) {
+        const spot_t spot = place_of_point(frame, nearest);
+        screen_put(screen, (int)lround(spot.x) / 2, (int)lround(spot.y) / 4, NEAREST_CHARACTER, 'X',
+                   COLOUR_AMBER);
     }
-    const spot_t spot = place_of_point(frame, nearest);
-    screen_put(screen, (int)lround(spot.x) / 2, (int)lround(spot.y) / 4, NEAREST_CHARACTER,
-               COLOUR_AMBER);
 }
 
 static void draw_picture(screen_t *screen, const view_t *view)
 {
     const frame_t frame = frame_of(screen, view);
+    const tmini_scan_t *const scan = scan_of(view);
     draw_grid(screen, &frame);
-    if (view->scan != NULL) {
-        draw_points(screen, &frame, view->scan);
+    if (scan != NULL) {
+        draw_points(screen, &frame, &view->colours, scan);
     }
     label_rings(screen, &frame);
-    if (view->scan != NULL) {
-        mark_nearest(screen, &frame, scan_nearest(view->scan));
+    if (scan != NULL) {
+        mark_nearest(screen, &frame, points_nearest(scan->points, scan->count));
     }
-    screen_put(screen, (int)(frame.x / 2), (int)(frame.y / 4), LIDAR_CHARACTER, COLOUR_PLAIN);
+    screen_put(screen, (int)(frame.x / 2), (int)(frame.y / 4), LIDAR_CHARACTER, 'A', COLOUR_PLAIN);
 }
 
-/* ---------------------------------------------------------------------------------------- words */
-
+/* The last row is for keys, the one above for faults. */
 static void say(screen_t *screen, int *row, const char *name, const char *value, uint8_t colour)
 {
     const int column = (int)screen->columns - PANEL_COLUMNS + 1;
-    screen_text(screen, column, *row, name, COLOUR_DIM);
-    screen_text(screen, column + 10, *row, value, colour);
+    if (*row < (int)screen->rows - 2) {
+        screen_text(screen, column, *row, name, COLOUR_DIM);
+        screen_text(screen, column + 10, *row, value, colour);
+    }
     (*row)++;
 }
 
-static void say_number(screen_t *screen, int *row, const char *name, uint64_t number)
+/* Right-aligned, and cut off at `from`. */
+static void say_right(screen_t *screen, int from, int row, const char *text, uint8_t colour)
 {
-    char text[24];
-    (void)snprintf(text, sizeof text, "%" PRIu64, number);
-    say(screen, row, name, text, COLOUR_PLAIN);
-}
-
-static void say_error(screen_t *screen, int *row, const char *name, uint64_t number)
-{
-    char text[24];
-    (void)snprintf(text, sizeof text, "%" PRIu64, number);
-    say(screen, row, name, text, number > 0 ? COLOUR_ALARM : COLOUR_PLAIN);
+    const int column = (int)screen->columns - (int)strlen(text) - 1;
+    if (column >= from) {
+        screen_text(screen, column, row, text, colour);
+    } else {
+        screen_text(screen, from, row, text, colour);
+    }
 }
 
 static void say_nearest(screen_t *screen, int *row, const tmini_scan_t *scan)
 {
-    const tmini_point_t *const nearest = scan_nearest(scan);
+    const tmini_point_t *const nearest = points_nearest(scan->points, scan->count);
     if (nearest == NULL) {
         say(screen, row, "nearest", "nothing", COLOUR_AMBER);
         *row += 2;
@@ -234,7 +234,7 @@ static void say_nearest(screen_t *screen, int *row, const tmini_scan_t *scan)
     (void)snprintf(text, sizeof text, "at %d deg,", nearest->angle_q6 / 64);
     say(screen, row, "", text, COLOUR_AMBER);
     const char *const name = direction_name(nearest->angle_q6);
-    screen_text(screen, (int)screen->columns - (int)strlen(name) - 1, (*row)++, name, COLOUR_AMBER);
+    say_right(screen, (int)screen->columns - PANEL_COLUMNS, (*row)++, name, COLOUR_AMBER);
 }
 
 /* The nearest obstacle of each of eight sectors, where the sector is. */
@@ -256,57 +256,67 @@ static void say_sectors(screen_t *screen, int *row, const tmini_scan_t *scan)
         }
         screen_text(screen, column + places[i].column, *row + places[i].row, text, COLOUR_PLAIN);
     }
-    screen_put(screen, column + 10, *row + 2, LIDAR_CHARACTER, COLOUR_DIM);
+    screen_put(screen, column + 10, *row + 2, LIDAR_CHARACTER, 'A', COLOUR_DIM);
     *row += 5;
 }
 
 static void draw_panel(screen_t *screen, const view_t *view)
 {
+    const tmini_scan_t *const scan = scan_of(view);
+    const unsigned permille = stream_damaged_permille(view->stream);
+    const telling_t telling = stream_telling(view->stream);
     char text[24];
     int row = 2;
-    if (view->scan != NULL) {
-        say_nearest(screen, &row, view->scan);
+    if (scan != NULL && screen->rows >= PANEL_ROWS) {
+        say_nearest(screen, &row, scan);
         row++;
-        say_sectors(screen, &row, view->scan);
+        say_sectors(screen, &row, scan);
         row++;
-        (void)snprintf(text, sizeof text, "%d, %zu valid", view->scan->count,
-                       scan_valid_points(view->scan));
+    }
+    if (scan != NULL) {
+        (void)snprintf(text, sizeof text, "%d, %zu valid", scan->count,
+                       points_valid(scan->points, scan->count));
         say(screen, &row, "points", text, COLOUR_PLAIN);
     }
     (void)snprintf(text, sizeof text, "%g m%s", view->range_mm / 1000.0,
                    view->zoom_mm > 0 ? "" : ", auto");
     say(screen, &row, "range", text, COLOUR_PLAIN);
-    say_number(screen, &row, "packets", view->packets);
-    say_error(screen, &row, "checksums", view->checksum_errors);
-    say_error(screen, &row, "lost", view->bytes_lost);
-    if (view->health != NULL) {
-        say(screen, &row, "health", view->is_faulty ? "FAULTY" : "healthy",
-            view->is_faulty ? COLOUR_ALARM : COLOUR_PLAIN);
-    }
+    (void)snprintf(text, sizeof text, "%" PRIu64, view->stream->packets);
+    say(screen, &row, "packets", text, COLOUR_PLAIN);
+    (void)snprintf(text, sizeof text, "%u.%u %%", permille / 10, permille % 10);
+    say(screen, &row, "damaged", text, permille > 0 ? COLOUR_ALARM : COLOUR_PLAIN);
+    say(screen, &row, "health",
+        view->faults == 0                ? "healthy"
+        : view->faults != FAULTS_UNKNOWN ? "FAULTY"
+        : telling == TELLS_NOTHING       ? "not told"
+                                         : "unknown",
+        view->faults != 0 && view->faults != FAULTS_UNKNOWN ? COLOUR_ALARM : COLOUR_PLAIN);
 }
 
 static void draw_lines(screen_t *screen, const view_t *view)
 {
-    char text[64];
+    char text[FAULTS_TEXT_SIZE];
     const int last = (int)screen->rows - 1;
+    const tmini_scan_t *const scan = scan_of(view);
     screen_text(screen, 1, 0, view->source, COLOUR_PLAIN);
-    if (view->scan != NULL) {
-        (void)snprintf(text, sizeof text, "scan %" PRIu64 "  %d.%d Hz", view->scans,
-                       view->scan->frequency_chz / 100, view->scan->frequency_chz / 10 % 10);
-        screen_text(screen, (int)screen->columns - (int)strlen(text) - 1, 0, text, COLOUR_PLAIN);
+    if (scan != NULL) {
+        (void)snprintf(text, sizeof text, "  %sscan %" PRIu64 "  %s",
+                       scan->complete ? "" : "incomplete ", view->stream->number,
+                       frequency_text(scan->frequency_chz));
+        say_right(screen, 0, 0, text, scan->complete ? COLOUR_PLAIN : COLOUR_ALARM);
     }
-    screen_text(screen, 1, last, "q quit   + - zoom   a auto", COLOUR_DIM);
-    const char *const state = view->is_faulty ? view->health : view->state;
-    screen_text(screen, (int)screen->columns - (int)strlen(state) - 1, last, state,
-                view->is_faulty ? COLOUR_ALARM : COLOUR_DIM);
+    if (view->faults != 0 && view->faults != FAULTS_UNKNOWN) {
+        say_right(screen, 0, last - 1, faults_text(view->faults, text), COLOUR_ALARM);
+    }
+    const int keys = (int)strlen(view->keys);
+    const bool fits = (int)screen->columns >= keys + (int)strlen(view->state) + 4;
+    screen_text(screen, 1, last, fits ? view->keys : "q quit", COLOUR_DIM);
+    say_right(screen, fits ? keys + 3 : 9, last, view->state, COLOUR_DIM);
 }
 
 void view_draw(view_t *view, screen_t *screen)
 {
-    choose_range(view);
-    if (view->range_mm == 0) {
-        view->range_mm = zooms[3].range_mm;
-    }
+    choose_scale(view);
     screen_clear(screen);
     draw_picture(screen, view);
     if (screen->columns >= PANEL_COLUMNS + PICTURE_COLUMNS_MIN) {

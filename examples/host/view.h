@@ -6,22 +6,20 @@
 #ifndef VIEW_H
 #define VIEW_H
 
+#include "scale.h"
 #include "screen.h"
-#include "tmini/tmini_scan.h"
+#include "stream.h"
 
 /* The whole state of the view; the caller fills it in. */
 typedef struct {
     const char *source; /* The port's or the file's name. */
     const char *state;  /* "scanning", "end of the recording", … */
-    const char *health; /* In words, or NULL if not known. */
-    bool is_faulty;
-    const tmini_scan_t *scan; /* The latest, or NULL before the first. */
-    uint64_t scans;
-    uint64_t packets;
-    uint64_t checksum_errors;
-    uint64_t bytes_lost; /* Stray bytes between packets, or overrun ones. */
-    unsigned zoom_mm;    /* The range chosen by hand; 0: as far as there is something. */
-    unsigned range_mm;   /* The range shown: view_draw()'s own. */
+    const char *keys;   /* What they do. */
+    const stream_t *stream;
+    unsigned faults;   /* A combination of tmini_fault_t, or FAULTS_UNKNOWN. */
+    unsigned zoom_mm;  /* The range chosen by hand; 0: as far as there is something. */
+    unsigned range_mm; /* The range shown: view_draw()'s own. */
+    scale_t colours;   /* So that an intensity keeps its colour: view_draw()'s own. */
 } view_t;
 
 /* Draws the view on the screen, whatever its size. */

@@ -6,11 +6,15 @@
  *
  *     obstacle_stop /dev/ttyUSB0          or the port that `tmini-sim --pty` prints */
 
+#define _GNU_SOURCE /* getopt_long() */
+
+#include <getopt.h>
 #include <signal.h>
 #include <stdio.h>
 
 #include "obstacle.h"
 #include "tmini/tmini_blocking.h"
+#include "tmini/tmini_names.h"
 #include "tmini_posix.h"
 
 static uint8_t rx[1024];
@@ -45,13 +49,15 @@ static void show(bool may_move)
 
 static void tell(tmini_event_t event)
 {
-    if (event == TMINI_EVENT_FAILED) {
+    if (event == TMINI_EVENT_COMMAND_FAILED) {
         (void)fprintf(stderr, "the lidar does not start: %s; trying again\n",
-                      tmini_status_name(tmini_failure(&lidar)));
+                      tmini_status_name(tmini_command_error(&lidar)));
     } else if (event == TMINI_EVENT_LOST) {
         (void)fprintf(stderr, "the lidar has fallen silent; starting it again\n");
-    } else if (event == TMINI_EVENT_FAULT) {
-        (void)fprintf(stderr, "the lidar's faults: 0x%02X\n", (unsigned)tmini_faults(&lidar));
+    } else if (event == TMINI_EVENT_FAULTS_CHANGED) {
+        char faults[TMINI_FAULTS_TEXT_SIZE];
+        (void)fprintf(stderr, "the lidar's faults: %s\n",
+                      tmini_faults_text(tmini_faults(&lidar), faults, sizeof faults));
     }
 }
 
@@ -83,10 +89,10 @@ static void drive(void)
     could_move = may_move;
 }
 
-static void set_up(void)
+static tmini_posix_status_t set_up(const char *path)
 {
     timing = tmini_timing_default;
-    timing.silence_ms = 250; /* A computer has other things to do: bytes may come late. */
+    timing.frame_timeout_ms = 250; /* A computer has other things to do: bytes may come late. */
     const tmini_config_t config = {
         .port = &tmini_posix_port,
         .port_context = &serial,
@@ -96,8 +102,9 @@ static void set_up(void)
         .max_points = TMINI_SCAN_POINTS_TYPICAL,
         .timing = &timing,
     };
+    tmini_posix_init(&serial, path);
     (void)tmini_init(&lidar, &config);
-    tmini_posix_attach(&serial, &lidar);
+    return tmini_posix_start(&serial, &lidar);
 }
 
 /* Until the user or the port ends it. */
@@ -110,26 +117,67 @@ static tmini_posix_status_t run(void)
     }
     show(false); /* Without a lidar, whatever the reason, the robot stops. */
     (void)tmini_stop_and_wait(&lidar, 1000);
-    tmini_posix_close(&serial);
+    tmini_posix_stop(&serial);
     return status;
+}
+
+static int usage(FILE *file, int status)
+{
+    (void)fprintf(file, "usage: obstacle_stop PORT, or obstacle_stop -p PORT\n");
+    return status;
+}
+
+/* Returns the port, or NULL and the status to leave with. The same grammar as the host tool's. */
+static const char *read_options(int argc, char **argv, int *status)
+{
+    static const struct option options[] = {{"port", required_argument, NULL, 'p'},
+                                            {"help", no_argument, NULL, 'h'},
+                                            {"version", no_argument, NULL, 'V'},
+                                            {NULL, 0, NULL, 0}};
+    const char *path = NULL;
+    int letter = 0;
+    while ((letter = getopt_long(argc, argv, "p:hV", options, NULL)) != -1) {
+        switch (letter) {
+        case 'p':
+            path = optarg;
+            break;
+        case 'h':
+            *status = usage(stdout, 0);
+            return NULL;
+        case 'V':
+            *status = 0;
+            (void)printf("obstacle_stop %d.%d.%d\n", TMINI_VERSION_MAJOR, TMINI_VERSION_MINOR,
+                         TMINI_VERSION_PATCH);
+            return NULL;
+        default:
+            *status = usage(stderr, 2);
+            return NULL;
+        }
+    }
+    path = path == NULL && optind < argc ? argv[optind++] : path;
+    if (path == NULL || optind < argc) {
+        *status = usage(stderr, 2);
+        return NULL;
+    }
+    return path;
 }
 
 int main(int argc, char **argv)
 {
-    if (argc != 2) {
-        (void)fprintf(stderr, "usage: obstacle_stop PORT\n");
-        return 2;
+    int wrong = 0;
+    const char *const path = read_options(argc, argv, &wrong);
+    if (path == NULL) {
+        return wrong;
     }
-    tmini_posix_status_t status = tmini_posix_open(&serial, argv[1]);
+    tmini_posix_status_t status = set_up(path);
     if (status == TMINI_POSIX_OK) {
         (void)signal(SIGINT, end);
         (void)signal(SIGTERM, end);
-        set_up();
         show_header();
         status = run();
     }
     if (status != TMINI_POSIX_OK) {
-        (void)fprintf(stderr, "%s: %s\n", argv[1], tmini_posix_status_name(status));
+        (void)fprintf(stderr, "%s: %s\n", path, tmini_posix_status_name(status));
         return 1;
     }
     return 0;

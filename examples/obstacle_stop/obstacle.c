@@ -5,7 +5,8 @@
 
 #define AHEAD 0
 
-/* Nothing at all in any direction: a covered window or a blocked rotor, rather than an empty hall. */
+/* Nothing at all in any direction: a covered window or a blocked rotor, rather than an empty
+ * hall. */
 static bool is_dark(const obstacle_t *obstacle)
 {
     for (unsigned i = 0; i < OBSTACLE_SECTORS; i++) {

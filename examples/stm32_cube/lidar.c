@@ -3,16 +3,23 @@
 
 #include "lidar.h"
 
-#include "main.h"
 #include "obstacle.h"
 #include "tmini/tmini.h"
 #include "tmini_stm32_hal.h"
-#include "usart.h"
+
+/* Define it to see something: a line of text a second, by printf(). README.md says where it
+ * goes. */
+#ifdef LIDAR_PRINTF
+#include <stdio.h>
+
+#include "tmini/tmini_names.h"
+#endif
 
 #define RETRY_MS 1000u
+#define REPORT_MS 1000u
 
-/* Aligned for the data cache of a Cortex-M7; elsewhere that does no harm. On an H7 it must also lie in a RAM
- * that the DMA reaches, which the default DTCM is not. */
+/* Aligned for the data cache of a Cortex-M7; elsewhere that does no harm. It must lie in a RAM that
+ * the DMA reaches: see README.md for H7, and for F4's CCM. */
 static uint8_t rx[1024] __ALIGNED(32);
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_t lidar;
@@ -21,11 +28,12 @@ static tmini_stm32_hal_t port;
 static obstacle_t obstacle;
 static uint32_t tried_ms;
 
-/* ------------------------------------------------- the HAL's callbacks: share them with other UARTs */
+/* --------------------------------------------- the HAL's callbacks: share them with other UARTs */
 
 void HAL_UARTEx_RxEventCallback(UART_HandleTypeDef *huart, uint16_t Size)
 {
-    tmini_stm32_hal_rx_event(&port, huart, Size);
+    (void)Size;
+    tmini_stm32_hal_rx_event(&port, huart);
 }
 
 void HAL_UART_ErrorCallback(UART_HandleTypeDef *huart)
@@ -33,7 +41,41 @@ void HAL_UART_ErrorCallback(UART_HandleTypeDef *huart)
     tmini_stm32_hal_error(&port, huart);
 }
 
-/* --------------------------------------------------------------------------------- obstacle stop */
+/* ----------------------------------------------------------------------------- something to see */
+
+/* A pin with the user label LIDAR_LED, if there is one, changes with every complete scan. */
+static void blink(const tmini_scan_t *scan)
+{
+#ifdef LIDAR_LED_Pin
+    if (scan->complete) {
+        HAL_GPIO_TogglePin(LIDAR_LED_GPIO_Port, LIDAR_LED_Pin);
+    }
+#else
+    (void)scan;
+#endif
+}
+
+static void report(void)
+{
+#ifdef LIDAR_PRINTF
+    static uint32_t reported_ms;
+    if (HAL_GetTick() - reported_ms < REPORT_MS) {
+        return;
+    }
+    reported_ms = HAL_GetTick();
+    tmini_counters_t counters;
+    char faults[64];
+    tmini_counters(&lidar, &counters);
+    printf("lidar %s, faults %s, scans %lu, ahead %u mm, errors %lu, overrun %lu\r\n",
+           tmini_state_name(tmini_state(&lidar)),
+           tmini_faults_text(tmini_faults(&lidar), faults, sizeof faults),
+           (unsigned long)counters.scans, (unsigned)lidar_ahead_mm(),
+           (unsigned long)counters.parser.checksum_errors,
+           (unsigned long)counters.parser.bytes_overrun);
+#endif
+}
+
+/* -------------------------------------------------------------------------------- obstacle stop */
 
 /* Without a scanning lidar, or with a faulty one, nothing can be known of what is in front. */
 static void drive(void)
@@ -54,7 +96,7 @@ static void try_to_scan(void)
     }
 }
 
-void lidar_start(void)
+void lidar_start(UART_HandleTypeDef *uart)
 {
     const tmini_config_t config = {
         .port = &tmini_stm32_hal_port,
@@ -65,21 +107,27 @@ void lidar_start(void)
         .points = points,
         .max_points = sizeof points / sizeof points[0],
     };
-    if (tmini_init(&lidar, &config) != TMINI_OK ||
-        tmini_stm32_hal_receive_dma(&port, &lidar, &huart1, rx, sizeof rx) != TMINI_OK) {
-        Error_Handler(); /* DMA missing or not circular: see the settings in README.md. */
+    if (tmini_stm32_hal_init(&port, uart) != TMINI_OK || tmini_init(&lidar, &config) != TMINI_OK ||
+        tmini_stm32_hal_start(&port, &lidar) == TMINI_ERROR_ARGUMENT) {
+        Error_Handler(); /* Baud rate, or no circular DMA: see README.md. */
     }
     tried_ms = HAL_GetTick();
     (void)tmini_start(&lidar);
 }
 
+/* All that has come: what is left in the buffer might be overwritten before the next call. */
 void lidar_work(void)
 {
-    if (tmini_poll(&lidar) == TMINI_EVENT_SCAN) {
-        obstacle_see(&obstacle, tmini_scan(&lidar), HAL_GetTick());
+    tmini_event_t event;
+    while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) {
+        if (event == TMINI_EVENT_SCAN) {
+            obstacle_see(&obstacle, tmini_scan(&lidar), HAL_GetTick());
+            blink(tmini_scan(&lidar));
+        }
     }
     try_to_scan();
     drive();
+    report();
 }
 
 uint16_t lidar_ahead_mm(void)

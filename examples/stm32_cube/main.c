@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What goes into the user sections of the main.c that CubeMX generates (with a pair of files for each
- * peripheral): three lines. The rest of it stands for the generated code. */
+/* What goes into the user sections of the main.c that CubeMX generates (with a pair of files for
+ * each peripheral): three lines. The rest of it stands for the generated code. */
 
 #include "main.h"
 #include "dma.h"
@@ -24,7 +24,7 @@ int main(void)
     MX_USART1_UART_Init();
 
     /* USER CODE BEGIN 2 */
-    lidar_start();
+    lidar_start(&huart1);
     /* USER CODE END 2 */
 
     while (1) {

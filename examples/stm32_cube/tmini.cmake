@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# tmini, its port and the obstacle stop for a CMake project made by CubeMX. At the end of the project's CMakeLists.txt:
+# tmini, its port and the obstacle stop for a CMake project made by CubeMX. At the end of the
+# project's CMakeLists.txt:
 #
 #   include(/path/to/tmini/examples/stm32_cube/tmini.cmake)
 #   target_sources(${CMAKE_PROJECT_NAME} PRIVATE Core/Src/lidar.c)

@@ -9,8 +9,8 @@
 #define CYCLES_PER_MS (BOARD_CLOCK_HZ / 1000u)
 #define INTERNAL_OSCILLATOR_HZ 16000000u
 
-/* Some milliseconds at 16 MHz. A crystal takes two of them to start, the PLL 0.3; no bit comes where
- * the clock control is not there, as in an emulator. */
+/* Some milliseconds at 16 MHz. A crystal takes two of them to start, the PLL 0.3; no bit comes
+ * where the clock control is not there, as in an emulator. */
 #define PATIENCE 20000u
 
 volatile uint32_t board_time_ms;
@@ -22,8 +22,7 @@ void SysTick_Handler(void)
     board_time_ms = board_time_ms + 1;
 }
 
-/* Waits for the bits, but not for ever: without them the firmware goes on, as well as it can. */
-static void wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t bits)
+void board_wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t bits)
 {
     for (uint32_t i = 0; i < PATIENCE && (*reg & mask) != bits; i++) {
     }
@@ -37,15 +36,15 @@ static void start_clock(void)
     PWR_CR |= PWR_CR_VOS;
     if (BOARD_CRYSTAL_HZ != 0) {
         RCC_CR |= RCC_CR_HSEON;
-        wait_for(&RCC_CR, RCC_CR_HSERDY, RCC_CR_HSERDY);
+        board_wait_for(&RCC_CR, RCC_CR_HSERDY, RCC_CR_HSERDY);
     }
     RCC_PLLCFGR = source_hz / 1000000u | 336u << 6 | 7u << 24 |
                   (BOARD_CRYSTAL_HZ != 0 ? RCC_PLLCFGR_SRC_HSE : 0u);
     RCC_CR |= RCC_CR_PLLON;
-    wait_for(&RCC_CR, RCC_CR_PLLRDY, RCC_CR_PLLRDY);
+    board_wait_for(&RCC_CR, RCC_CR_PLLRDY, RCC_CR_PLLRDY);
     FLASH_ACR = FLASH_ACR_5_WAIT_STATES | FLASH_ACR_PREFETCH_AND_CACHES;
     RCC_CFGR = RCC_CFGR_PPRE1_DIV4 | RCC_CFGR_PPRE2_DIV2 | RCC_CFGR_SW_PLL;
-    wait_for(&RCC_CFGR, RCC_CFGR_SWS_MASK, RCC_CFGR_SWS_PLL);
+    board_wait_for(&RCC_CFGR, RCC_CFGR_SWS_MASK, RCC_CFGR_SWS_PLL);
 }
 
 static void start_pins(void)

@@ -13,8 +13,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* An STM32F405 with its own 16 MHz oscillator needs no crystal, but that oscillator is exact to 1 % only
- * near room temperature. With a crystal: its frequency, a multiple of 1 MHz. */
+/* An STM32F405 with its own 16 MHz oscillator needs no crystal, but that oscillator is exact to 1 %
+ * only near room temperature. With a crystal: its frequency, a multiple of 1 MHz. */
 #ifndef BOARD_CRYSTAL_HZ
 #define BOARD_CRYSTAL_HZ 0u
 #endif
@@ -28,6 +28,10 @@ extern volatile uint32_t board_time_ms;
 
 /* Sets everything up; the drive is off, the lidar's interrupt not yet enabled. */
 void board_start(void);
+
+/* Waits until the register's masked bits are these, but not for ever: without them the firmware
+ * goes on, as well as it can. */
+void board_wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t bits);
 
 void board_enable_lidar_interrupt(void);
 

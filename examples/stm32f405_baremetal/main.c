@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop on an STM32F405, without an operating system and without vendor code: asks the lidar who
- * it is and how it is, sets its scan frequency, scans, and lets the robot move while nothing is near
- * in front. Says each second on the console what it sees. */
+/* Obstacle stop on an STM32F405, without an operating system and without vendor code: asks the
+ * lidar who it is and how it is, sets its scan frequency, scans, and lets the robot move while
+ * nothing is near in front. Says each second on the console what it sees. */
 
 #include "board.h"
 #include "console.h"
 #include "obstacle.h"
+#include "reception.h"
 #include "report.h"
 #include "stm32f405.h"
 #include "tmini/tmini.h"
@@ -72,7 +73,7 @@ static void handle(tmini_event_t event)
     case TMINI_EVENT_SCAN:
         see(tmini_scan(&lidar));
         break;
-    case TMINI_EVENT_FAULT:
+    case TMINI_EVENT_FAULTS_CHANGED:
         report_faults(tmini_faults(&lidar));
         break;
     case TMINI_EVENT_LOST:
@@ -85,8 +86,8 @@ static void handle(tmini_event_t event)
         report_word("stopped");
         report_counters(&lidar, &port);
         break;
-    case TMINI_EVENT_FAILED:
-        report_failure(tmini_failure(&lidar));
+    case TMINI_EVENT_COMMAND_FAILED:
+        report_failure(tmini_command_error(&lidar));
         has_failed = true;
         failed_ms = board_time_ms;
         break;
@@ -95,8 +96,8 @@ static void handle(tmini_event_t event)
     }
 }
 
-/* Begins from the beginning, at first and after a failure. A lidar that is still streaming, because only
- * this controller was restarted, is stopped first by the library. */
+/* Begins from the beginning, at first and after a failure. A lidar that is still streaming, because
+ * only this controller was restarted, is stopped first by the library. */
 static void ask_again(void)
 {
     if (has_failed && wants_to_scan && board_time_ms - failed_ms >= RETRY_MS) {
@@ -158,15 +159,16 @@ static void start_lidar(void)
         .port_context = &port,
         .rx_buffer = rx,
         .rx_size = sizeof rx,
+        .rx_dma = reception_uses_dma,
         .points = points,
         .max_points = sizeof points / sizeof points[0],
     };
-    tmini_stm32_usart_begin(&port, &lidar, (volatile void *)USART1_BASE, &board_time_ms);
-    if (tmini_init(&lidar, &config) != TMINI_OK) {
+    if (tmini_stm32_usart_init(&port, (volatile void *)USART1_BASE, &board_time_ms) != TMINI_OK ||
+        tmini_init(&lidar, &config) != TMINI_OK ||
+        reception_start(&port, &lidar, rx, sizeof rx) != TMINI_OK) {
         report_word("wrong configuration");
         return;
     }
-    tmini_stm32_usart_open(&port, BOARD_USART1_CLOCK_HZ);
     board_enable_lidar_interrupt();
     (void)tmini_request_info(&lidar);
 }

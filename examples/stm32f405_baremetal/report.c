@@ -5,6 +5,7 @@
 
 #include "board.h"
 #include "console.h"
+#include "tmini/tmini_names.h"
 
 #define CYCLES_PER_US (BOARD_CLOCK_HZ / 1000000u)
 

@@ -21,8 +21,8 @@ void report_failure(tmini_status_t status);
 void report_faults(uint8_t faults);
 void report_word(const char *word);
 
-/* A scan's points as a checksum (CRC-32 of each point's angle, distance, intensity and flag, as 2, 2, 1 and
- * 1 bytes, low byte first), to be compared with what the lidar has sent. */
+/* A scan's points as a checksum (CRC-32 of each point's angle, distance, intensity and flag, as 2,
+ * 2, 1 and 1 bytes, low byte first), to be compared with what the lidar has sent. */
 void report_digest(const tmini_scan_t *scan);
 
 /* Once a second. */
@@ -35,7 +35,8 @@ typedef struct {
 void report_status(const tmini_counters_t *counters, const obstacle_t *obstacle,
                    const report_status_t *status);
 
-/* All counters. The first value is what the interrupt has counted; the library's must add up to it. */
+/* All counters. The first value is what the interrupt has counted; the library's must add up to
+ * it. */
 void report_counters(const tmini_t *lidar, const tmini_stm32_usart_t *port);
 
 #endif

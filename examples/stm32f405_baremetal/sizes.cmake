@@ -3,7 +3,8 @@
 
 # cmake -D MAP=firmware.map -P sizes.cmake
 #
-# Prints, from the linker's map, what the firmware takes of flash and RAM, and what of it is the library.
+# Prints, from the linker's map, what the firmware takes of flash and RAM, and what of it is the
+# library.
 
 file(STRINGS ${MAP} lines)
 
@@ -18,12 +19,13 @@ foreach(line IN LISTS lines)
     if(line MATCHES "^(\\.[a-zA-Z._]+)( |$)")
         set(output ${CMAKE_MATCH_1})
     endif()
-    if(line MATCHES "^(\\.(text|ARM\\.exidx|stack|data|bss)) +0x[0-9a-f]+ +(0x[0-9a-f]+)")
+    set(sections "text|ARM\\.extab|ARM\\.exidx|stack|data|bss")
+    if(line MATCHES "^(\\.(${sections})) +0x[0-9a-f]+ +(0x[0-9a-f]+)")
         math(EXPR size "${CMAKE_MATCH_3}")
         if(output STREQUAL ".stack")
             set(stack ${size})
         endif()
-        if(output MATCHES "text|exidx|data")
+        if(output MATCHES "text|extab|exidx|data")
             math(EXPR flash "${flash} + ${size}")
         endif()
         if(output MATCHES "data|bss|stack")
@@ -31,7 +33,7 @@ foreach(line IN LISTS lines)
         endif()
     elseif(line MATCHES "0x[0-9a-f]+ +(0x[0-9a-f]+) .*libtmini\\.a")
         math(EXPR size "${CMAKE_MATCH_1}")
-        if(output MATCHES "text|exidx|data")
+        if(output MATCHES "text|extab|exidx|data")
             math(EXPR library_flash "${library_flash} + ${size}")
         endif()
         if(output MATCHES "data|bss")

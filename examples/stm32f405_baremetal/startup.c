@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* From reset to main(): vector table, initialised and zeroed data, and a painted stack, on which the paint
- * that is left shows how much was ever used. */
+/* From reset to main(): vector table, initialised and zeroed data, and a painted stack, on which
+ * the paint that is left shows how much was ever used. */
 
 #include "board.h"
 #include "stm32f405.h"
@@ -23,6 +23,7 @@ int main(void);
 void reset_handler(void);
 void SysTick_Handler(void);
 void USART1_IRQHandler(void);
+void DMA2_Stream2_IRQHandler(void) __attribute__((weak)); /* Only there with DMA. */
 
 static void paint_stack(void)
 {
@@ -53,8 +54,8 @@ void reset_handler(void)
     (void)main();
 }
 
-/* Whatever else happens (a fault, an interrupt that has no handler, which faults), the robot must not
- * move on. */
+/* Whatever else happens (a fault, an interrupt that has no handler, which faults), the robot must
+ * not move on. */
 static void stop_handler(void)
 {
     board_enable_drive(false);
@@ -85,5 +86,5 @@ __attribute__((section(".vectors"), used)) static const struct {
             [USAGE_FAULT] = stop_handler,
             [SYSTICK] = SysTick_Handler,
         },
-    .irqs = {[USART1_IRQ] = USART1_IRQHandler},
+    .irqs = {[USART1_IRQ] = USART1_IRQHandler, [DMA2_STREAM2_IRQ] = DMA2_Stream2_IRQHandler},
 };

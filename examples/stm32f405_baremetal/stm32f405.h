@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The few registers of the STM32F405 that this firmware touches; names and places as in reference manual
- * RM0090 and in ARM's manual of the Cortex-M4. */
+/* The few registers of the STM32F405 that this firmware touches; names and places as in reference
+ * manual RM0090 and in ARM's manual of the Cortex-M4. */
 
 #ifndef STM32F405_H
 #define STM32F405_H
@@ -28,6 +28,7 @@
 #define RCC_AHB1ENR REGISTER(0x40023830u)
 #define RCC_AHB1ENR_GPIOA (1u << 0)
 #define RCC_AHB1ENR_GPIOB (1u << 1)
+#define RCC_AHB1ENR_DMA2 (1u << 22)
 #define RCC_APB1ENR REGISTER(0x40023840u)
 #define RCC_APB1ENR_USART2 (1u << 17)
 #define RCC_APB1ENR_PWR (1u << 28)
@@ -51,6 +52,25 @@
 
 #define USART1_BASE 0x40011000u
 #define USART1_IRQ 37u
+#define USART_DR_OFFSET 4u
+
+/* DMA2, stream 2. */
+#define DMA2_STREAM2_IRQ 58u
+#define DMA2_LISR REGISTER(0x40026400u)
+#define DMA2_LIFCR REGISTER(0x40026408u)
+#define DMA_STREAM2_HT (1u << 20)
+#define DMA_STREAM2_TC (1u << 21)
+#define DMA_STREAM2_ALL (0x3Du << 16)
+#define DMA2_S2CR REGISTER(0x40026440u)
+#define DMA_SCR_EN (1u << 0)
+#define DMA_SCR_HTIE (1u << 3)
+#define DMA_SCR_TCIE (1u << 4)
+#define DMA_SCR_CIRC (1u << 8)
+#define DMA_SCR_MINC (1u << 10)
+#define DMA_SCR_CHANNEL(channel) ((channel##u) << 25)
+#define DMA2_S2NDTR REGISTER(0x40026444u)
+#define DMA2_S2PAR REGISTER(0x40026448u)
+#define DMA2_S2M0AR REGISTER(0x4002644Cu)
 
 #define USART2_SR REGISTER(0x40004400u)
 #define USART2_DR REGISTER(0x40004404u)

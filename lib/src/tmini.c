@@ -6,73 +6,59 @@
 #include "tmini_driver.h"
 
 const tmini_timing_t tmini_timing_default = {
-    .silence_ms = 100, /* A line at work: 5 ms; but a task or bridge may hold bytes back. */
-    .quiet_ms = 50,
-    .stop_ms = 600, /* Twice the longest tail seen after a stop (section 9.10). */
-    .reply_ms = 2000,
-    .write_ms = 100,
-    .spin_up_ms = 3000,
-    .data_ms = 1000,
-    .turn_ms = 3000,
-    .reboot_ms = 5000,
+    .frame_timeout_ms = 100, /* A line at work: 5 ms; but a task or bridge may hold bytes back. */
+    .max_pause_ms = 30,      /* A line at work: 10 ms, a packet's time. */
+    .quiet_line_ms = 50,
+    .stop_timeout_ms = 600, /* Twice the longest tail seen after a stop (section 9.10). */
+    .reply_timeout_ms = 2000,
+    .write_timeout_ms = 100,
+    .spin_up_timeout_ms = 3000,
+    .data_timeout_ms = 1000,
+    .rotation_timeout_ms = 3000,
+    .reboot_time_ms = 5000,
     .back_off_ms = 500,
     .back_off_max_ms = 4000,
-    .attempts = 3,
+    .max_attempts = 3,
 };
 
-void tmini_driver_look(tmini_t *lidar)
+/* Nobody knows what happened on the line, or in layers below that hold bytes back, since the last
+ * look at it: it counts as no more silence than this. */
+#define UNSEEN_SILENCE_MAX_MS 50
+
+/* The events with which commands end. */
+#define END_EVENTS                                                                         \
+    (1u << TMINI_EVENT_STARTED | 1u << TMINI_EVENT_STOPPED | 1u << TMINI_EVENT_INFO |      \
+     1u << TMINI_EVENT_HEALTH | 1u << TMINI_EVENT_FREQUENCY | 1u << TMINI_EVENT_REBOOTED | \
+     1u << TMINI_EVENT_COMMAND_FAILED)
+
+/* Each event has a bit in tmini_t.pending. */
+typedef char events_fit_their_mask[TMINI_EVENT_MORE <= 16 ? 1 : -1];
+
+/* More bytes at a look than the wire can have brought since the last one, and in a UART's FIFO,
+ * come from a layer that holds them back. */
+#define HELD_MS 16u
+
+/* Which packets others may be missing before: each that begins among the doubtful bytes, and
+ * AHEAD: the first one behind them, if none has been marked; AROUND: the first one behind them
+ * in any case. */
+enum { DOUBT_NONE, DOUBT_AHEAD, DOUBT_MARKED, DOUBT_AROUND };
+
+static bool is_set_up(const tmini_t *lidar)
 {
-    const size_t received = tmini_ring_stored(&lidar->ring);
-    lidar->now_ms = lidar->port->now_ms(lidar->port_context);
-    if (received != lidar->received) {
-        lidar->received = received;
-        lidar->received_ms = lidar->now_ms;
-        lidar->heard = true;
-    }
+    return lidar != NULL && lidar->link.port != NULL;
 }
 
-/* A candidate that has stopped coming is given up, so that what it hides is looked at. */
-static tmini_frame_t next_frame(tmini_t *lidar)
-{
-    tmini_parser_t *const parser = &lidar->parser;
-    tmini_frame_t frame = tmini_parser_next(parser);
-    if (driver_elapsed(lidar, lidar->received_ms, lidar->timing->silence_ms)) {
-        while (frame == TMINI_FRAME_NONE && tmini_parser_pending(parser) > 0 &&
-               driver_is_up_to_date(lidar)) {
-            tmini_parser_abandon(parser);
-            frame = tmini_parser_next(parser);
-        }
-    }
-    return frame;
-}
+/* ------------------------------------------------------------------------------------- events */
 
-/* Handles frames until one raises an event or none is left. */
-static void receive(tmini_t *lidar)
+static void raise_event(tmini_t *lidar, tmini_event_t event)
 {
-    if (lidar->held) {
-        lidar->held = false;
-        tmini_scan_add(&lidar->builder, &lidar->latest.packet, lidar->phase_ms);
-    }
-    while (lidar->pending == 0) {
-        const tmini_frame_t frame = next_frame(lidar);
-        if (frame == TMINI_FRAME_NONE) {
-            return;
-        }
-        if (frame == TMINI_FRAME_PACKET) {
-            tmini_driver_packet(lidar);
-        } else {
-            tmini_driver_reply(lidar);
-        }
-    }
+    lidar->pending |= (uint16_t)(1u << event);
 }
 
 /* Of the events that are pending, the first in the order of tmini_event_t. Scan and packet are
  * last: they are valid until parsing goes on. */
 static tmini_event_t take_event(tmini_t *lidar)
 {
-    if (lidar->pending == 0) {
-        return TMINI_EVENT_NONE;
-    }
     unsigned event = TMINI_EVENT_STARTED;
     while ((lidar->pending >> event & 1u) == 0) {
         event++;
@@ -80,6 +66,368 @@ static tmini_event_t take_event(tmini_t *lidar)
     lidar->pending = (uint16_t)(lidar->pending & ~(1u << event));
     return (tmini_event_t)event;
 }
+
+/* --------------------------------------------------------------------------------------- time */
+
+/* How long so many bytes take a lidar that scans: 13.1 a millisecond (section 1), less some for the
+ * clocks' sake; 12.5. */
+static uint32_t transit_ms(size_t bytes)
+{
+    return (uint32_t)bytes * 41u >> 9;
+}
+
+/* How long they take on the wire at least: 23 a millisecond. */
+static uint32_t wire_ms(size_t bytes)
+{
+    return (uint32_t)bytes * 45u >> 10;
+}
+
+static uint16_t add_ms(uint16_t sum_ms, uint32_t more_ms)
+{
+    const uint32_t room_ms = UINT16_MAX - (uint32_t)sum_ms;
+    return (uint16_t)(sum_ms + (more_ms < room_ms ? more_ms : room_ms));
+}
+
+/* Between, or around, the bytes noted last others may be missing. */
+static void doubt(tmini_t *lidar, uint8_t where)
+{
+    lidar->doubt = where;
+    lidar->doubtful_to = lidar->link.received;
+    lidar->link.pause_ms = 0;
+}
+
+/* Bytes have come, `passed_ms` after the last look. While the lidar scans they never pause for
+ * long: if they are too few for the time since others came, then others may be missing, before
+ * or among them. If they do not come straight from the wire, but a layer below has held them
+ * back, the pause may as well be behind them, or go on: what is left of the time counts for the
+ * next ones. And if there are more than the ring holds, a gap of DMA, nobody knows how many
+ * there were. */
+static void note_bytes(tmini_t *lidar, size_t count, uint32_t passed_ms)
+{
+    tmini_link_t *const link = &lidar->link;
+    const uint16_t max_pause_ms = link->timing->max_pause_ms;
+    const uint32_t due_ms = transit_ms(count);
+    const bool are_held = lidar->is_unwatched || wire_ms(count) > passed_ms + HELD_MS;
+    link->received += count;
+    link->silent_ms = 0;
+    lidar->is_unwatched = false;
+    if (count > lidar->ring.size) {
+        doubt(lidar, DOUBT_AROUND);
+    } else if (max_pause_ms > 0 && link->pause_ms > max_pause_ms + due_ms) {
+        doubt(lidar, are_held ? DOUBT_AROUND : DOUBT_AHEAD);
+    }
+    link->pause_ms = (uint16_t)(are_held && link->pause_ms > due_ms ? link->pause_ms - due_ms : 0);
+}
+
+/* Reads the clock and notes whether bytes have come. */
+static void update_time(tmini_t *lidar)
+{
+    tmini_link_t *const link = &lidar->link;
+    const size_t count = tmini_ring_stored(&lidar->ring) - link->received;
+    const uint32_t now_ms = link->port->now_ms(link->port_context);
+    const uint32_t passed_ms = now_ms - link->now_ms;
+    link->now_ms = now_ms;
+    link->pause_ms = add_ms(link->pause_ms, passed_ms);
+    lidar->is_unwatched = lidar->is_unwatched || passed_ms > link->timing->max_pause_ms;
+    if (count > 0) {
+        note_bytes(lidar, count, passed_ms);
+    } else {
+        link->silent_ms = add_ms(
+            link->silent_ms, passed_ms < UNSEEN_SILENCE_MAX_MS ? passed_ms : UNSEEN_SILENCE_MAX_MS);
+    }
+    if (lidar->state == TMINI_STATE_IDLE && !tmini_command_line_is_quiet(lidar)) {
+        lidar->state = TMINI_STATE_UNKNOWN;
+    }
+}
+
+/* When the frame delivered last came: before the bytes behind it. */
+static uint32_t arrival_ms(const tmini_t *lidar)
+{
+    const size_t behind = lidar->link.received - tmini_parser_position(&lidar->parser);
+    return lidar->link.now_ms - transit_ms(behind);
+}
+
+/* ----------------------------------------------------------------------------------- commands */
+
+/* The event with which each operation ends well. A start ends with its first packet. */
+static const uint8_t end_event[] = {
+    [TMINI_OPERATION_STOP] = TMINI_EVENT_STOPPED,
+    [TMINI_OPERATION_INFO] = TMINI_EVENT_INFO,
+    [TMINI_OPERATION_HEALTH] = TMINI_EVENT_HEALTH,
+    [TMINI_OPERATION_FREQUENCY] = TMINI_EVENT_FREQUENCY,
+    [TMINI_OPERATION_SET_FREQUENCY] = TMINI_EVENT_FREQUENCY,
+    [TMINI_OPERATION_REBOOT] = TMINI_EVENT_REBOOTED,
+};
+
+static void fail(tmini_t *lidar, tmini_status_t status)
+{
+    lidar->command_error = (int8_t)status;
+    raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
+}
+
+/* Draws the consequences of how the user's command stands. */
+static void take_result(tmini_t *lidar, int result)
+{
+    if (result == TMINI_UNDER_WAY) {
+        return;
+    }
+    lidar->state = tmini_command_left_idle(lidar) ? TMINI_STATE_IDLE : TMINI_STATE_UNKNOWN;
+    if (result == TMINI_OK) {
+        raise_event(lidar, (tmini_event_t)end_event[lidar->command.operation]);
+    } else {
+        fail(lidar, (tmini_status_t)result);
+    }
+}
+
+/* The first bytes leave at once, as far as the port takes them. */
+static void begin(tmini_t *lidar, tmini_state_t state, tmini_operation_t operation,
+                  uint16_t frequency_chz)
+{
+    lidar->state = (uint8_t)state;
+    tmini_command_begin(lidar, operation, lidar->link.timing->max_attempts, frequency_chz);
+    take_result(lidar, tmini_command_poll(lidar));
+}
+
+/* An answer to a question is read here; the rest is the command's. */
+static void take_answer(tmini_t *lidar, const uint8_t *content)
+{
+    if (lidar->command.operation == TMINI_OPERATION_INFO) {
+        tmini_reply_info(content, &lidar->latest.info);
+    } else if (lidar->command.operation == TMINI_OPERATION_HEALTH) {
+        tmini_reply_health(content, &lidar->latest.health);
+    }
+    take_result(lidar, tmini_command_reply(lidar, content));
+}
+
+static void take_reply(tmini_t *lidar)
+{
+    uint8_t content[TMINI_INFO_SIZE];
+    const tmini_reply_header_t header = lidar->parser.awaited;
+    if (!tmini_frame_content(tmini_parser_frame(&lidar->parser), content, header.length)) {
+        /* DMA was faster: as if it had not come. */
+        (void)tmini_parser_await(&lidar->parser, &header);
+    } else if (lidar->state == TMINI_STATE_RECOVERING) {
+        tmini_recovery_reply(lidar, content);
+    } else {
+        take_answer(lidar, content);
+    }
+}
+
+/* ------------------------------------------------------------------------------------ scanning */
+
+/* The lidar is lost if this is not called again in time. */
+static void expect_packet(tmini_t *lidar)
+{
+    tmini_command_wait(lidar, lidar->link.timing->data_timeout_ms);
+}
+
+static void begin_scanning(tmini_t *lidar, tmini_event_t event)
+{
+    lidar->state = TMINI_STATE_SCANNING;
+    tmini_scan_discard(&lidar->builder);
+    tmini_monitor_begin(lidar);
+    raise_event(lidar, event);
+}
+
+/* A lidar that was left idle streams: the stop was lost on the wire. */
+static void stop_again(tmini_t *lidar)
+{
+    raise_event(lidar, TMINI_EVENT_STREAMING);
+    begin(lidar, TMINI_STATE_STOPPING, TMINI_OPERATION_STOP, 0);
+}
+
+/* A packet has come: does it mean that the lidar has begun to scan, or scans again? */
+static void note_scanning(tmini_t *lidar)
+{
+    const bool is_lost = lidar->state == TMINI_STATE_RECOVERING;
+    if (is_lost || lidar->state == TMINI_STATE_STARTING) {
+        if (is_lost ? tmini_recovery_packet(lidar) : tmini_command_packet(lidar)) {
+            begin_scanning(lidar, is_lost ? TMINI_EVENT_RECOVERED : TMINI_EVENT_STARTED);
+        }
+    } else if (lidar->state <= TMINI_STATE_IDLE && tmini_command_left_idle(lidar)) {
+        stop_again(lidar);
+    }
+}
+
+/* A packet begins at that place in the stream. */
+static void mark_doubtful(tmini_t *lidar, size_t begins_at)
+{
+    const bool is_among = lidar->doubtful_to - begins_at - 1 < SIZE_MAX / 2;
+    if (is_among || lidar->doubt != DOUBT_MARKED) {
+        lidar->latest.packet.gap = TMINI_GAP_UNKNOWN;
+    }
+    if (!is_among) {
+        lidar->doubt = DOUBT_NONE;
+    } else if (lidar->doubt == DOUBT_AHEAD) {
+        lidar->doubt = DOUBT_MARKED;
+    }
+}
+
+static void open_packet(tmini_t *lidar)
+{
+    const tmini_frame_t *const frame = tmini_parser_frame(&lidar->parser);
+    tmini_packet_open(&lidar->latest.packet, frame);
+    if (lidar->doubt != DOUBT_NONE) {
+        mark_doubtful(lidar, tmini_parser_position(&lidar->parser) - frame->size);
+    }
+}
+
+static void watch_packet(tmini_t *lidar)
+{
+    const unsigned shown = tmini_monitor_packet(lidar);
+    if ((shown & TMINI_SHOWN_FAULTS) != 0) {
+        raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
+    }
+    if ((shown & TMINI_SHOWN_COMPLETE) != 0) {
+        tmini_recovery_forget(lidar); /* It has truly recovered, if it was lost. */
+    }
+    if ((shown & TMINI_SHOWN_LOSS) != 0) {
+        tmini_scan_refute(&lidar->builder);
+    }
+}
+
+/* Since the last packet of the scan, damaged ones may have come instead of others, a few bytes of
+ * each: neither silence nor many bytes, but too long. */
+static void judge_interval(tmini_t *lidar, uint32_t came_ms)
+{
+    const uint16_t max_pause_ms = lidar->link.timing->max_pause_ms;
+    const uint32_t due_ms = transit_ms(tmini_parser_frame(&lidar->parser)->size);
+    const int32_t since_ms = (int32_t)(came_ms - lidar->builder.scan.end_ms);
+    if (lidar->builder.open && max_pause_ms > 0 && since_ms > (int32_t)(max_pause_ms + due_ms)) {
+        lidar->latest.packet.gap = TMINI_GAP_UNKNOWN;
+    }
+}
+
+static void deliver_packet(tmini_t *lidar)
+{
+    const tmini_packet_t *const packet = &lidar->latest.packet;
+    const uint32_t came_ms = arrival_ms(lidar);
+    judge_interval(lidar, came_ms);
+    if (lidar->builder.capacity == 0) {
+        raise_event(lidar, TMINI_EVENT_PACKET);
+    } else if (tmini_scan_close(&lidar->builder, packet, came_ms)) {
+        lidar->is_held = true;
+        lidar->scans++;
+        raise_event(lidar, TMINI_EVENT_SCAN);
+    } else {
+        tmini_scan_add(&lidar->builder, packet, came_ms);
+    }
+}
+
+/* Bytes that came during this poll have not been noted yet: a pause before them is to be known
+ * first. */
+static void note_late_bytes(tmini_t *lidar)
+{
+    if (lidar->link.received - tmini_parser_position(&lidar->parser) > SIZE_MAX / 2) {
+        update_time(lidar);
+    }
+}
+
+static void take_packet(tmini_t *lidar)
+{
+    note_late_bytes(lidar);
+    note_scanning(lidar);
+    if (lidar->state != TMINI_STATE_SCANNING) {
+        return; /* The tail behind a stop, or a stream that nobody asked for. */
+    }
+    expect_packet(lidar);
+    open_packet(lidar);
+    watch_packet(lidar);
+    deliver_packet(lidar);
+}
+
+/* The packet that closed the scan which has been returned begins the next one. */
+static void add_held_packet(tmini_t *lidar)
+{
+    if (lidar->is_held) {
+        lidar->is_held = false;
+        tmini_scan_add(&lidar->builder, &lidar->latest.packet, lidar->builder.scan.end_ms);
+    }
+}
+
+/* ------------------------------------------------------------------------------------- polling */
+
+/* A candidate that has stopped coming is given up, so that what it hides is looked at. */
+static bool give_up_candidate(tmini_t *lidar)
+{
+    const tmini_link_t *const link = &lidar->link;
+    if (link->silent_ms < link->timing->frame_timeout_ms ||
+        tmini_ring_stored(&lidar->ring) != link->received ||
+        tmini_parser_pending(&lidar->parser) == 0) {
+        return false;
+    }
+    tmini_parser_abandon(&lidar->parser);
+    return true;
+}
+
+/* Handles frames until one raises an event or none is left. Returns false if that takes more work
+ * than one poll may do. */
+static bool receive(tmini_t *lidar)
+{
+    add_held_packet(lidar);
+    for (size_t effort = 0; lidar->pending == 0; effort += lidar->parser.effort + 1u) {
+        if (effort >= TMINI_PARSER_EFFORT) {
+            return false;
+        }
+        const tmini_frame_type_t type = tmini_parser_next(&lidar->parser);
+        if (type == TMINI_FRAME_PACKET) {
+            take_packet(lidar);
+        } else if (type == TMINI_FRAME_REPLY) {
+            take_reply(lidar);
+        } else if (type == TMINI_FRAME_NONE && !give_up_candidate(lidar)) {
+            return true;
+        }
+    }
+    return true;
+}
+
+static void lose(tmini_t *lidar)
+{
+    lidar->state = TMINI_STATE_RECOVERING;
+    raise_event(lidar, TMINI_EVENT_LOST);
+    tmini_recovery_begin(lidar);
+}
+
+/* Looks after what is due by time, or by the line's quiet. */
+static void keep_time(tmini_t *lidar)
+{
+    switch (lidar->state) {
+    case TMINI_STATE_UNKNOWN:
+    case TMINI_STATE_IDLE:
+        break;
+    case TMINI_STATE_RECOVERING:
+        tmini_recovery_poll(lidar);
+        break;
+    case TMINI_STATE_SCANNING:
+        if (tmini_command_poll(lidar) == TMINI_OK) {
+            lose(lidar);
+        } else if (tmini_monitor_poll(lidar)) {
+            raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
+        }
+        break;
+    default:
+        take_result(lidar, tmini_command_poll(lidar));
+        break;
+    }
+}
+
+tmini_event_t tmini_poll(tmini_t *lidar)
+{
+    if (!is_set_up(lidar)) {
+        return TMINI_EVENT_NONE;
+    }
+    update_time(lidar);
+    const bool is_done = lidar->pending != 0 || receive(lidar);
+    if (lidar->pending == 0) {
+        keep_time(lidar);
+    }
+    if (lidar->pending != 0) {
+        return take_event(lidar);
+    }
+    return is_done ? TMINI_EVENT_NONE : TMINI_EVENT_MORE;
+}
+
+/* ---------------------------------------------------------------------------------- life cycle */
 
 static bool has_required_members(const tmini_config_t *config)
 {
@@ -103,50 +451,107 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
     if (lidar == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    *lidar = (tmini_t){0}; /* Also phase, goal and turn: unknown, none and nothing known. */
+    *lidar = (tmini_t){0}; /* Also state, phase and CT information: unknown, none, nothing known. */
     if (!has_required_members(config) || !init_modules(lidar, config)) {
         return TMINI_ERROR_ARGUMENT;
     }
-    lidar->port = config->port; /* From now on the lidar is set up. */
-    lidar->port_context = config->port_context;
-    lidar->timing = config->timing != NULL ? config->timing : &tmini_timing_default;
-    lidar->no_recovery = config->no_recovery;
+    lidar->link.port = config->port; /* From now on the lidar is set up. */
+    lidar->link.port_context = config->port_context;
+    lidar->link.timing = config->timing != NULL ? config->timing : &tmini_timing_default;
+    lidar->disable_recovery = config->disable_recovery;
     return TMINI_OK;
 }
 
-tmini_event_t tmini_poll(tmini_t *lidar)
+/* ------------------------------------------------------------------------- the user's commands */
+
+/* Begins a command. The end of an earlier one, not polled yet, is not the end of this one. */
+static void begin_users(tmini_t *lidar, tmini_state_t state, tmini_operation_t operation,
+                        uint16_t frequency_chz)
 {
-    if (!driver_is_set_up(lidar)) {
-        return TMINI_EVENT_NONE;
-    }
-    tmini_driver_look(lidar);
-    if (lidar->pending == 0) {
-        receive(lidar);
-    }
-    if (lidar->pending == 0) {
-        tmini_driver_keep_time(lidar);
-    }
-    return take_event(lidar);
+    update_time(lidar);
+    tmini_recovery_forget(lidar);
+    lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
+    begin(lidar, state, operation, frequency_chz);
 }
+
+/* Begins a command other than stop, if it may be begun now. */
+static tmini_status_t request(tmini_t *lidar, tmini_state_t state, tmini_operation_t operation,
+                              uint16_t frequency_chz)
+{
+    if (!is_set_up(lidar)) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    if (lidar->state >= TMINI_STATE_SCANNING) {
+        return TMINI_ERROR_STATE;
+    }
+    if (lidar->state > TMINI_STATE_IDLE) {
+        return TMINI_ERROR_BUSY;
+    }
+    begin_users(lidar, state, operation, frequency_chz);
+    return TMINI_OK;
+}
+
+tmini_status_t tmini_start(tmini_t *lidar)
+{
+    return request(lidar, TMINI_STATE_STARTING, TMINI_OPERATION_START, 0);
+}
+
+tmini_status_t tmini_stop(tmini_t *lidar)
+{
+    if (!is_set_up(lidar)) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    if (lidar->state == TMINI_STATE_STOPPING) {
+        return TMINI_OK; /* It is being stopped already. */
+    }
+    const bool aborts = lidar->state == TMINI_STATE_BUSY || lidar->state == TMINI_STATE_STARTING;
+    begin_users(lidar, TMINI_STATE_STOPPING, TMINI_OPERATION_STOP, 0);
+    if (aborts && lidar->state == TMINI_STATE_STOPPING) {
+        fail(lidar, TMINI_ERROR_ABORTED);
+    }
+    return TMINI_OK;
+}
+
+tmini_status_t tmini_request_info(tmini_t *lidar)
+{
+    return request(lidar, TMINI_STATE_BUSY, TMINI_OPERATION_INFO, 0);
+}
+
+tmini_status_t tmini_request_health(tmini_t *lidar)
+{
+    return request(lidar, TMINI_STATE_BUSY, TMINI_OPERATION_HEALTH, 0);
+}
+
+tmini_status_t tmini_request_frequency(tmini_t *lidar)
+{
+    return request(lidar, TMINI_STATE_BUSY, TMINI_OPERATION_FREQUENCY, 0);
+}
+
+tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
+{
+    if (frequency_chz < TMINI_FREQUENCY_MIN_CHZ || frequency_chz > TMINI_FREQUENCY_MAX_CHZ ||
+        frequency_chz % TMINI_FREQUENCY_STEP_CHZ != 0) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    return request(lidar, TMINI_STATE_BUSY, TMINI_OPERATION_SET_FREQUENCY, frequency_chz);
+}
+
+tmini_status_t tmini_reboot(tmini_t *lidar)
+{
+    return request(lidar, TMINI_STATE_BUSY, TMINI_OPERATION_REBOOT, 0);
+}
+
+void tmini_cancel(tmini_t *lidar)
+{
+    tmini_command_cancel(lidar);
+    lidar->state = TMINI_STATE_UNKNOWN;
+}
+
+/* ------------------------------------------------------------------------------------- results */
 
 tmini_state_t tmini_state(const tmini_t *lidar)
 {
-    if (!driver_is_set_up(lidar)) {
-        return TMINI_STATE_UNKNOWN;
-    }
-    if (lidar->recovering) {
-        return TMINI_STATE_RECOVERING;
-    }
-    switch (lidar->goal) {
-    case GOAL_NONE:
-        return driver_is_idle(lidar) ? TMINI_STATE_IDLE : TMINI_STATE_UNKNOWN;
-    case GOAL_STOP:
-        return TMINI_STATE_STOPPING;
-    case GOAL_START:
-        return lidar->phase == PHASE_SCANNING ? TMINI_STATE_SCANNING : TMINI_STATE_STARTING;
-    default:
-        return TMINI_STATE_BUSY;
-    }
+    return is_set_up(lidar) ? (tmini_state_t)lidar->state : TMINI_STATE_UNKNOWN;
 }
 
 const tmini_scan_t *tmini_scan(const tmini_t *lidar)
@@ -171,33 +576,36 @@ const tmini_health_t *tmini_health(const tmini_t *lidar)
 
 uint16_t tmini_frequency_chz(const tmini_t *lidar)
 {
-    return lidar->frequency_chz;
+    return lidar->command.frequency_chz;
 }
 
-tmini_status_t tmini_failure(const tmini_t *lidar)
+tmini_status_t tmini_command_error(const tmini_t *lidar)
 {
-    return (tmini_status_t)lidar->failure;
+    return (tmini_status_t)lidar->command_error;
 }
 
 uint8_t tmini_faults(const tmini_t *lidar)
 {
-    return lidar->faults;
+    return lidar->monitor.faults;
 }
 
-void tmini_turn(const tmini_t *lidar, tmini_turn_info_t *info)
+void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info)
 {
-    tmini_turn_info(&lidar->turn, info);
+    tmini_ct_read(&lidar->monitor.ct, info);
 }
 
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
 {
-    counters->parser = lidar->parser.counters;
-    counters->bytes_pending =
-        driver_is_set_up(lidar) ? (uint32_t)tmini_parser_pending(&lidar->parser) : 0;
-    counters->scans = lidar->scans;
-    counters->timeouts = lidar->timeouts;
-    counters->losses = lidar->losses;
-    counters->recoveries = lidar->recoveries;
-    counters->restarts = lidar->restarts;
-    counters->reboots = lidar->reboots;
+    *counters = (tmini_counters_t){.scans = lidar->scans,
+                                   .timeouts = lidar->command.timeouts,
+                                   .losses = lidar->recovery.losses,
+                                   .recoveries = lidar->recovery.recoveries,
+                                   .restarts = lidar->recovery.restarts,
+                                   .reboots = lidar->recovery.reboots};
+    if (is_set_up(lidar)) {
+        tmini_parser_counters(&lidar->parser, &counters->parser);
+        counters->bytes_pending = (uint32_t)tmini_parser_pending(&lidar->parser);
+    } else {
+        counters->parser.bytes_overrun = (uint32_t)tmini_ring_overrun(&lidar->ring);
+    }
 }

@@ -7,8 +7,8 @@
 
 static void idle(const tmini_t *lidar)
 {
-    if (lidar->port->wait != NULL) {
-        lidar->port->wait(lidar->port_context);
+    if (lidar->link.port->wait != NULL) {
+        lidar->link.port->wait(lidar->link.port_context);
     }
 }
 
@@ -20,20 +20,21 @@ static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event
     if (begun != TMINI_OK) {
         return begun;
     }
-    const uint32_t begun_ms = lidar->port->now_ms(lidar->port_context);
+    const uint32_t begun_ms = lidar->link.port->now_ms(lidar->link.port_context);
     do {
         const tmini_event_t event = tmini_poll(lidar);
         if (event == wanted) {
             return TMINI_OK;
         }
-        if (event == TMINI_EVENT_FAILED && lidar->failure != TMINI_ERROR_ABORTED) {
-            return tmini_failure(lidar);
+        if (event == TMINI_EVENT_COMMAND_FAILED &&
+            tmini_command_error(lidar) != TMINI_ERROR_ABORTED) {
+            return tmini_command_error(lidar);
         }
         if (event == TMINI_EVENT_NONE) {
             idle(lidar);
         }
-    } while (lidar->port->now_ms(lidar->port_context) - begun_ms < timeout_ms);
-    tmini_driver_cancel(lidar);
+    } while (lidar->link.port->now_ms(lidar->link.port_context) - begun_ms < timeout_ms);
+    tmini_cancel(lidar);
     return TMINI_ERROR_TIMEOUT;
 }
 

@@ -1,126 +1,141 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Commands: how each is begun, carried out phase by phase, and ended. The state diagram is in
- * docs/design.md. */
+/* One command at a time: sends it when the line is quiet, awaits its reply, tries again, and
+ * reports how it ended. What that means is for others to decide. */
 
 #include "tmini_driver.h"
+
+/* What goes on on the wire. */
+enum phase {
+    PHASE_NONE,           /* Nothing is under way; the lidar may be streaming. */
+    PHASE_IDLE,           /* Nothing is under way; the lidar was left idle, and the line quiet. */
+    PHASE_QUIESCING,      /* Stop has been sent: until the line is quiet. */
+    PHASE_AWAITING_REPLY, /* A command has been sent: until its reply. */
+    PHASE_AWAITING_STEP,  /* The same, but one has come that shows no step: until another. */
+    PHASE_SETTLING,       /* Between two frequency commands: until the line is quiet. */
+    PHASE_SPINNING_UP,    /* The start has been acknowledged: until the first packet. */
+    PHASE_WAITING,        /* A reboot has been sent, or nothing: for as long as it takes. */
+};
 
 /* More frequency steps than any change needs (6 of 1 Hz and 9 of 0.1 Hz). */
 #define STEPS_MAX 20
 #define COARSE_STEP_CHZ 100
 #define FINE_STEP_CHZ 10
 
-/* The events with which commands end. */
-#define END_EVENTS                                                                         \
-    (1u << TMINI_EVENT_STARTED | 1u << TMINI_EVENT_STOPPED | 1u << TMINI_EVENT_INFO |      \
-     1u << TMINI_EVENT_HEALTH | 1u << TMINI_EVENT_FREQUENCY | 1u << TMINI_EVENT_REBOOTED | \
-     1u << TMINI_EVENT_FAILED)
+/* No unit turns faster: a reply that says so is none. Section 1 has 12 Hz at most. */
+#define PLAUSIBLE_CHZ_MAX 2000
+
+/* A phase that has lasted `timeout_ms` is over, one way or the other; 0 for no limit. */
+static void enter(tmini_t *lidar, enum phase phase, uint16_t timeout_ms)
+{
+    lidar->command.phase = (uint8_t)phase;
+    lidar->command.since_ms = lidar->link.now_ms;
+    lidar->command.timeout_ms = timeout_ms;
+}
 
 /* ------------------------------------------------------------------------------------- sending */
+
+/* The bytes leave with the next transmit(). If the first byte of a command that was given up has
+ * left already, it serves for this one: it is the same in all. */
+static void send(tmini_t *lidar, tmini_command_code_t code)
+{
+    lidar->command.code = (uint8_t)code;
+    lidar->command.unsent = lidar->command.sync_sent ? 1 : 2;
+}
 
 /* Hands what is left of the command to the port. Returns false if the port reports a failure. */
 static bool transmit(tmini_t *lidar)
 {
-    const uint8_t bytes[2] = {TMINI_COMMAND_SIGN, lidar->sent};
-    const int taken =
-        lidar->port->write(lidar->port_context, &bytes[2 - lidar->unsent], lidar->unsent);
+    tmini_command_t *const command = &lidar->command;
+    const uint8_t bytes[2] = {TMINI_COMMAND_SYNC, command->code};
+    const uint8_t unsent = command->unsent;
+    const int taken = lidar->link.port->write(lidar->link.port_context, &bytes[2 - unsent], unsent);
     if (taken < 0) {
         return false;
     }
-    lidar->unsent = (uint8_t)(taken < lidar->unsent ? lidar->unsent - taken : 0);
-    lidar->sign_sent = lidar->unsent == 1;
+    command->unsent = (uint8_t)(taken < unsent ? unsent - taken : 0);
+    command->sync_sent = command->unsent == 1;
     return true;
 }
 
-/* The bytes leave with the next tmini_driver_keep_time(). If the first byte of a command that is
- * given up has left already, it serves for this one: it is the same in all. */
-static void send(tmini_t *lidar, tmini_command_t command)
+/* First stop, which is permitted always, and wait until the line is quiet (section 9.10). */
+static void quiesce(tmini_t *lidar)
 {
-    lidar->sent = (uint8_t)command;
-    lidar->unsent = lidar->sign_sent ? 1 : 2;
-    lidar->step_refused = false;
+    (void)tmini_parser_await(&lidar->parser, NULL);
+    send(lidar, TMINI_COMMAND_STOP);
+    enter(lidar, PHASE_QUIESCING, lidar->link.timing->stop_timeout_ms);
 }
 
 /* Sends a command when the line is quiet, and awaits what it is answered with, if anything. */
-static void ask(tmini_t *lidar, tmini_command_t command)
+static void request(tmini_t *lidar, tmini_command_code_t code)
 {
-    tmini_reply_shape_t shape;
-    const bool answered = tmini_reply_shape(command, &shape);
-    tmini_parser_await(&lidar->parser, answered ? &shape : NULL);
-    send(lidar, command);
-    if (answered) {
-        driver_enter(lidar, PHASE_ASKING, lidar->timing->reply_ms);
+    tmini_reply_header_t reply;
+    const bool is_answered = tmini_reply_header(code, &reply);
+    (void)tmini_parser_await(&lidar->parser, is_answered ? &reply : NULL);
+    send(lidar, code);
+    if (is_answered) {
+        enter(lidar, PHASE_AWAITING_REPLY, lidar->link.timing->reply_timeout_ms);
     } else {
-        driver_enter(lidar, PHASE_BOOTING, lidar->timing->reboot_ms);
+        enter(lidar, PHASE_WAITING, lidar->link.timing->reboot_time_ms);
     }
 }
 
 /* --------------------------------------------------------------------------- how commands end */
 
-static void rest(tmini_t *lidar, enum phase phase)
+static void end(tmini_t *lidar, enum phase phase)
 {
-    tmini_parser_await(&lidar->parser, NULL);
-    lidar->goal = GOAL_NONE;
-    lidar->recovering = false;
-    lidar->unsent = 0;
-    lidar->heard = false;
-    driver_enter(lidar, phase, 0);
+    (void)tmini_parser_await(&lidar->parser, NULL);
+    lidar->command.unsent = 0;
+    lidar->command.quiet_at = tmini_parser_position(&lidar->parser);
+    enter(lidar, phase, 0);
 }
 
-static void end(tmini_t *lidar, enum phase phase, tmini_event_t event)
+/* After a second attempt, the reply to the first may still come: the line is not surely quiet. */
+static int succeed(tmini_t *lidar)
 {
-    rest(lidar, phase);
-    driver_raise(lidar, event);
+    end(lidar, lidar->command.is_repeated ? PHASE_NONE : PHASE_IDLE);
+    return TMINI_OK;
 }
 
-void tmini_driver_cancel(tmini_t *lidar)
+static int fail(tmini_t *lidar, tmini_status_t status)
 {
-    rest(lidar, PHASE_UNKNOWN);
+    end(lidar, PHASE_NONE);
+    return status;
 }
 
-/* After a retry, the reply to an earlier attempt may still come: the line is not surely quiet. */
-static void succeed(tmini_t *lidar, tmini_event_t event)
+/* A time is over: another attempt, unless it was the last. */
+static int time_out(tmini_t *lidar)
 {
-    end(lidar, lidar->attempts == 0 ? PHASE_IDLE : PHASE_UNKNOWN, event);
-}
-
-static void fail(tmini_t *lidar, tmini_status_t status)
-{
-    lidar->failure = (int8_t)status;
-    end(lidar, PHASE_UNKNOWN, TMINI_EVENT_FAILED);
-}
-
-/* An attempt has failed: another one, unless it was the last. */
-static void attempt_failed(tmini_t *lidar, tmini_status_t status)
-{
-    if (status == TMINI_ERROR_TIMEOUT) {
-        lidar->timeouts++;
+    tmini_command_t *const command = &lidar->command;
+    command->timeouts++;
+    if (command->attempts_left > 0) {
+        command->attempts_left--;
+        command->is_repeated = true;
+        quiesce(lidar);
+        return TMINI_UNDER_WAY;
     }
-    if (lidar->recovering) {
-        tmini_driver_back_off(lidar);
-        return;
-    }
-    lidar->attempts++;
-    if (status == TMINI_ERROR_TIMEOUT && lidar->attempts < lidar->timing->attempts) {
-        tmini_driver_hush(lidar);
-        return;
-    }
-    fail(lidar, lidar->step_refused ? TMINI_ERROR_REPLY : status);
+    return fail(lidar,
+                command->phase == PHASE_AWAITING_STEP ? TMINI_ERROR_REPLY : TMINI_ERROR_TIMEOUT);
 }
 
 /* ----------------------------------------------------------------------------- frequency change */
 
-static bool is_reached(const tmini_t *lidar)
+static int32_t chz_to_go(const tmini_command_t *command)
 {
-    const int32_t left = (int32_t)lidar->target_chz - lidar->frequency_chz;
+    return (int32_t)command->target_chz - command->frequency_chz;
+}
+
+static bool is_reached(const tmini_command_t *command)
+{
+    const int32_t left = chz_to_go(command);
     return left >= -FINE_STEP_CHZ / 2 && left <= FINE_STEP_CHZ / 2;
 }
 
 /* Never beyond the target, so never out of the permitted range. */
-static tmini_command_t next_step(const tmini_t *lidar)
+static tmini_command_code_t next_step(const tmini_command_t *command)
 {
-    const int32_t left = (int32_t)lidar->target_chz - lidar->frequency_chz;
+    const int32_t left = chz_to_go(command);
     if (left >= COARSE_STEP_CHZ) {
         return TMINI_COMMAND_FASTER_ONE;
     }
@@ -131,265 +146,179 @@ static tmini_command_t next_step(const tmini_t *lidar)
 }
 
 /* A step's reply tells the new frequency. When that has come to the target, it is read back. */
-static void continue_frequency_change(tmini_t *lidar)
+static int continue_frequency_change(tmini_t *lidar)
 {
-    if (is_reached(lidar)) {
-        ask(lidar, TMINI_COMMAND_GET_FREQUENCY);
-    } else if (lidar->steps < STEPS_MAX) {
-        lidar->steps++;
-        ask(lidar, next_step(lidar));
+    tmini_command_t *const command = &lidar->command;
+    if (is_reached(command)) {
+        request(lidar, TMINI_COMMAND_GET_FREQUENCY);
+    } else if (command->steps < STEPS_MAX) {
+        command->steps++;
+        request(lidar, next_step(command));
     } else {
-        fail(lidar, TMINI_ERROR_REPLY);
+        return fail(lidar, TMINI_ERROR_REPLY);
     }
+    return TMINI_UNDER_WAY;
 }
 
-static void frequency_reply(tmini_t *lidar, uint32_t frequency_chz)
+/* A late reply to the step before looks like one to this step that was refused. Time tells. */
+static int await_another_frequency(tmini_t *lidar)
 {
-    const bool is_step = lidar->sent != TMINI_COMMAND_GET_FREQUENCY;
-    if (frequency_chz > UINT16_MAX) {
-        fail(lidar, TMINI_ERROR_REPLY);
-        return;
-    }
-    if (is_step && frequency_chz == lidar->frequency_chz) {
-        /* A late reply of the step before, which looks the same; or the lidar refuses to step.
-         * Wait on: time tells. */
-        lidar->parser.awaiting = true;
-        lidar->step_refused = true;
-        return;
-    }
-    lidar->step_refused = false;
-    lidar->frequency_chz = (uint16_t)frequency_chz;
-    if (lidar->goal == GOAL_FREQUENCY || (!is_step && is_reached(lidar))) {
-        succeed(lidar, TMINI_EVENT_FREQUENCY);
-    } else {
-        driver_enter(lidar, PHASE_SETTLING, lidar->timing->stop_ms);
-    }
+    const tmini_reply_header_t same = lidar->parser.awaited;
+    (void)tmini_parser_await(&lidar->parser, &same);
+    lidar->command.phase = PHASE_AWAITING_STEP; /* For what is left of the time. */
+    return TMINI_UNDER_WAY;
 }
 
-/* ------------------------------------------------------------------------------- carrying out */
-
-void tmini_driver_hush(tmini_t *lidar)
+static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
 {
-    tmini_parser_await(&lidar->parser, NULL);
-    send(lidar, TMINI_COMMAND_STOP);
-    driver_enter(lidar, PHASE_HUSHING, lidar->timing->stop_ms);
+    tmini_command_t *const command = &lidar->command;
+    const bool is_step = command->code != TMINI_COMMAND_GET_FREQUENCY;
+    if (frequency_chz > PLAUSIBLE_CHZ_MAX) {
+        return fail(lidar, TMINI_ERROR_REPLY);
+    }
+    if (is_step && frequency_chz == command->frequency_chz) {
+        return await_another_frequency(lidar);
+    }
+    command->frequency_chz = (uint16_t)frequency_chz;
+    if (command->operation == TMINI_OPERATION_FREQUENCY || (!is_step && is_reached(command))) {
+        return succeed(lidar);
+    }
+    enter(lidar, PHASE_SETTLING, lidar->link.timing->stop_timeout_ms);
+    return TMINI_UNDER_WAY;
 }
 
-/* What each goal's first command is, once the line is quiet. */
-static const uint8_t first_command[] = {
-    [GOAL_START] = TMINI_COMMAND_START,
-    [GOAL_INFO] = TMINI_COMMAND_GET_INFO,
-    [GOAL_HEALTH] = TMINI_COMMAND_GET_HEALTH,
-    [GOAL_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
-    [GOAL_SET_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
-    [GOAL_REBOOT] = TMINI_COMMAND_REBOOT,
-};
+/* -------------------------------------------------------------------------------- keeping time */
 
-/* The line is quiet: the command that was asked for may be sent (section 2). */
-static void issue(tmini_t *lidar)
-{
-    if (lidar->goal == GOAL_STOP) {
-        end(lidar, PHASE_IDLE, TMINI_EVENT_STOPPED);
-        return;
-    }
-    if (lidar->recovering && lidar->goal == GOAL_START) {
-        lidar->restarts++;
-    } else if (lidar->recovering) {
-        lidar->reboots++;
-    }
-    ask(lidar, (tmini_command_t)first_command[lidar->goal]);
-}
-
-void tmini_driver_reply(tmini_t *lidar)
-{
-    uint8_t content[TMINI_INFO_SIZE];
-    /* Bytes that came behind this reply, and only those, are heard in the idle state. */
-    lidar->received = lidar->ring.tail + lidar->parser.frame;
-    tmini_parser_reply_content(&lidar->parser, content, lidar->parser.awaited.length);
-    switch (lidar->sent) {
-    case TMINI_COMMAND_START:
-        driver_enter(lidar, PHASE_SPINNING_UP, lidar->timing->spin_up_ms);
-        break;
-    case TMINI_COMMAND_GET_INFO:
-        tmini_reply_info(content, &lidar->latest.info);
-        succeed(lidar, TMINI_EVENT_INFO);
-        break;
-    case TMINI_COMMAND_GET_HEALTH:
-        tmini_reply_health(content, &lidar->latest.health);
-        succeed(lidar, TMINI_EVENT_HEALTH);
-        break;
-    default:
-        frequency_reply(lidar, tmini_reply_frequency_chz(content));
-        break;
-    }
-}
-
+/* Bytes that an interrupt has brought since time was looked at are not judged by it. */
 static bool is_quiet(const tmini_t *lidar)
 {
-    const uint32_t quiet_ms = lidar->timing->quiet_ms;
-    return driver_elapsed(lidar, lidar->phase_ms, quiet_ms) &&
-           driver_elapsed(lidar, lidar->received_ms, quiet_ms) && driver_is_up_to_date(lidar);
+    const uint16_t quiet_ms = lidar->link.timing->quiet_line_ms;
+    return lidar->link.silent_ms >= quiet_ms &&
+           tmini_has_elapsed(lidar, lidar->command.since_ms, quiet_ms) &&
+           tmini_ring_stored(&lidar->ring) == lidar->link.received;
 }
 
-static void rebooted(tmini_t *lidar)
+/* What each operation's first command is, once the line is quiet. */
+static const uint8_t first_command[] = {
+    [TMINI_OPERATION_START] = TMINI_COMMAND_START,
+    [TMINI_OPERATION_INFO] = TMINI_COMMAND_GET_INFO,
+    [TMINI_OPERATION_HEALTH] = TMINI_COMMAND_GET_HEALTH,
+    [TMINI_OPERATION_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
+    [TMINI_OPERATION_SET_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
+    [TMINI_OPERATION_REBOOT] = TMINI_COMMAND_REBOOT,
+};
+
+/* The line is quiet: what was asked for may be sent (section 2). What has come before a question is
+ * not its answer, not even what a packet that was cut off hides. */
+static int proceed(tmini_t *lidar)
 {
-    if (lidar->recovering) {
-        lidar->goal = GOAL_START;
-        tmini_driver_hush(lidar);
-    } else {
-        end(lidar, PHASE_UNKNOWN, TMINI_EVENT_REBOOTED);
+    const uint8_t operation = lidar->command.operation;
+    tmini_parser_skip_to(&lidar->parser, lidar->link.received);
+    if (operation == TMINI_OPERATION_STOP) {
+        end(lidar, PHASE_IDLE);
+        return TMINI_OK;
     }
+    request(lidar, (tmini_command_code_t)first_command[operation]);
+    return TMINI_UNDER_WAY;
 }
 
-/* Returns true when the command's bytes have left; a phase's time runs from then on. */
-static bool has_left(tmini_t *lidar)
+/* The command's bytes leave; a phase's time runs from then on. */
+static int send_rest(tmini_t *lidar)
 {
-    if (lidar->unsent == 0) {
-        return true;
-    }
+    tmini_command_t *const command = &lidar->command;
     if (!transmit(lidar) ||
-        (lidar->unsent > 0 && driver_elapsed(lidar, lidar->phase_ms, lidar->timing->write_ms))) {
-        attempt_failed(lidar, TMINI_ERROR_WRITE);
-    } else if (lidar->unsent == 0) {
-        lidar->phase_ms = lidar->now_ms;
+        (command->unsent > 0 &&
+         tmini_has_elapsed(lidar, command->since_ms, lidar->link.timing->write_timeout_ms))) {
+        return fail(lidar, TMINI_ERROR_WRITE);
     }
-    return false;
+    if (command->unsent == 0) {
+        command->since_ms = lidar->link.now_ms;
+    }
+    return TMINI_UNDER_WAY;
 }
 
-/* The phase has lasted as long as it may. */
-static void expire(tmini_t *lidar)
+int tmini_command_poll(tmini_t *lidar)
 {
-    switch (lidar->phase) {
-    case PHASE_SCANNING:
-        tmini_driver_lose(lidar);
-        break;
-    case PHASE_BACKING_OFF:
-        tmini_driver_climb(lidar);
-        break;
-    case PHASE_BOOTING:
-        rebooted(lidar);
-        break;
-    default:
-        attempt_failed(lidar, TMINI_ERROR_TIMEOUT);
-        break;
+    const tmini_command_t *const command = &lidar->command;
+    if (command->unsent > 0) {
+        return send_rest(lidar);
     }
+    if (command->phase == PHASE_QUIESCING && is_quiet(lidar)) {
+        return proceed(lidar);
+    }
+    if (command->phase == PHASE_SETTLING && is_quiet(lidar)) {
+        tmini_parser_skip_to(&lidar->parser, lidar->link.received);
+        return continue_frequency_change(lidar);
+    }
+    if (command->timeout_ms == 0 ||
+        !tmini_has_elapsed(lidar, command->since_ms, command->timeout_ms)) {
+        return TMINI_UNDER_WAY;
+    }
+    if (command->phase == PHASE_WAITING) {
+        end(lidar, PHASE_NONE);
+        return TMINI_OK;
+    }
+    return time_out(lidar);
 }
 
-void tmini_driver_keep_time(tmini_t *lidar)
-{
-    if (!has_left(lidar)) {
-        return;
-    }
-    const bool hushing = lidar->phase == PHASE_HUSHING;
-    if ((hushing || lidar->phase == PHASE_SETTLING) && is_quiet(lidar)) {
-        if (hushing) {
-            issue(lidar);
-        } else {
-            continue_frequency_change(lidar);
-        }
-    } else if (lidar->limit_ms > 0 && driver_elapsed(lidar, lidar->phase_ms, lidar->limit_ms)) {
-        expire(lidar);
-    } else if (lidar->phase == PHASE_SCANNING) {
-        tmini_driver_watch_rotor(lidar);
-    }
-}
+/* ------------------------------------------------------------------------ for the layers above */
 
-/* ---------------------------------------------------------------------------- public functions */
-
-/* Begins a command. The bytes leave at once, as far as the port takes them. */
-static void begin(tmini_t *lidar, enum goal goal)
+void tmini_command_begin(tmini_t *lidar, tmini_operation_t operation, uint8_t attempts,
+                         uint16_t frequency_chz)
 {
-    const bool is_quiet_line = driver_is_idle(lidar) && goal != GOAL_STOP;
-    lidar->goal = (uint8_t)goal;
-    lidar->attempts = 0;
-    lidar->rung = 0;
-    lidar->steps = 0;
-    lidar->recovering = false;
-    /* The end of an earlier command is not the end of this one. */
-    lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
-    if (is_quiet_line) {
-        issue(lidar);
+    tmini_command_t *const command = &lidar->command;
+    const bool may_send = tmini_command_line_is_quiet(lidar) && operation != TMINI_OPERATION_STOP;
+    command->operation = (uint8_t)operation;
+    command->attempts_left = (uint8_t)(attempts > 0 ? attempts - 1 : 0);
+    command->is_repeated = false;
+    command->steps = 0;
+    command->target_chz = frequency_chz;
+    if (may_send) {
+        (void)proceed(lidar);
     } else {
-        tmini_driver_hush(lidar);
+        quiesce(lidar);
     }
-    (void)has_left(lidar);
 }
 
-/* Whether a command other than stop may be begun now. */
-static tmini_status_t permission(const tmini_t *lidar)
+int tmini_command_reply(tmini_t *lidar, const uint8_t *content)
 {
-    if (!driver_is_set_up(lidar)) {
-        return TMINI_ERROR_ARGUMENT;
+    switch (lidar->command.code) {
+    case TMINI_COMMAND_START:
+        enter(lidar, PHASE_SPINNING_UP, lidar->link.timing->spin_up_timeout_ms);
+        return TMINI_UNDER_WAY;
+    case TMINI_COMMAND_GET_INFO:
+    case TMINI_COMMAND_GET_HEALTH:
+        return succeed(lidar);
+    default:
+        return take_frequency(lidar, tmini_reply_frequency_chz(content));
     }
-    if (lidar->recovering || lidar->phase == PHASE_SCANNING) {
-        return TMINI_ERROR_STATE;
-    }
-    return lidar->goal == GOAL_NONE ? TMINI_OK : TMINI_ERROR_BUSY;
 }
 
-static tmini_status_t request(tmini_t *lidar, enum goal goal)
+bool tmini_command_packet(tmini_t *lidar)
 {
-    const tmini_status_t status = permission(lidar);
-    if (status == TMINI_OK) {
-        tmini_driver_look(lidar);
-        begin(lidar, goal);
+    if (lidar->command.phase == PHASE_QUIESCING) {
+        return false; /* The tail. In other phases the reply to the start may have been lost. */
     }
-    return status;
+    end(lidar, PHASE_NONE); /* So a start that is no longer needed is not sent (section 2). */
+    return true;
 }
 
-tmini_status_t tmini_start(tmini_t *lidar)
+void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms)
 {
-    return request(lidar, GOAL_START);
+    enter(lidar, PHASE_WAITING, wait_ms);
 }
 
-tmini_status_t tmini_stop(tmini_t *lidar)
+void tmini_command_cancel(tmini_t *lidar)
 {
-    if (!driver_is_set_up(lidar)) {
-        return TMINI_ERROR_ARGUMENT;
-    }
-    if (lidar->goal == GOAL_STOP) {
-        return TMINI_OK; /* It is being stopped already. */
-    }
-    const bool aborts =
-        lidar->goal != GOAL_NONE && !lidar->recovering && lidar->phase != PHASE_SCANNING;
-    tmini_driver_look(lidar);
-    begin(lidar, GOAL_STOP);
-    if (aborts && lidar->goal == GOAL_STOP) {
-        lidar->failure = TMINI_ERROR_ABORTED;
-        driver_raise(lidar, TMINI_EVENT_FAILED);
-    }
-    return TMINI_OK;
+    end(lidar, PHASE_NONE);
 }
 
-tmini_status_t tmini_request_info(tmini_t *lidar)
+bool tmini_command_left_idle(const tmini_t *lidar)
 {
-    return request(lidar, GOAL_INFO);
+    return lidar->command.phase == PHASE_IDLE;
 }
 
-tmini_status_t tmini_request_health(tmini_t *lidar)
+bool tmini_command_line_is_quiet(const tmini_t *lidar)
 {
-    return request(lidar, GOAL_HEALTH);
-}
-
-tmini_status_t tmini_request_frequency(tmini_t *lidar)
-{
-    return request(lidar, GOAL_FREQUENCY);
-}
-
-tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
-{
-    if (frequency_chz < TMINI_FREQUENCY_MIN_CHZ || frequency_chz > TMINI_FREQUENCY_MAX_CHZ ||
-        frequency_chz % TMINI_FREQUENCY_STEP_CHZ != 0) {
-        return TMINI_ERROR_ARGUMENT;
-    }
-    const tmini_status_t status = request(lidar, GOAL_SET_FREQUENCY);
-    if (status == TMINI_OK) {
-        lidar->target_chz = frequency_chz;
-    }
-    return status;
-}
-
-tmini_status_t tmini_reboot(tmini_t *lidar)
-{
-    return request(lidar, GOAL_REBOOT);
+    return tmini_command_left_idle(lidar) && lidar->command.quiet_at == lidar->link.received;
 }

@@ -1,89 +1,111 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the driver's three files share: tmini.c (events), tmini_command.c (what is said to the
- * lidar) and tmini_watch.c (whether it keeps scanning, and is well). */
+/* What the driver's files ask of each other. Calls go downwards only:
+ *
+ *     tmini.c              state, events, public functions, the time of this poll
+ *      ├ tmini_recovery.c  what to try next, and when
+ *      │  └ tmini_command.c  one command at a time
+ *      └ tmini_monitor.c   packets to faults
+ *
+ * Each writes its own group of members of tmini_t (`command`, `recovery`, `monitor`), and tmini.c
+ * the rest. docs/design.md has the states and phases as a drawing. */
 
 #ifndef TMINI_DRIVER_H
 #define TMINI_DRIVER_H
 
 #include "tmini/tmini.h"
 
-/* What goes on on the wire. */
-enum phase {
-    PHASE_UNKNOWN,     /* Nothing; but the lidar may be streaming. */
-    PHASE_IDLE,        /* Nothing, and the line is quiet. */
-    PHASE_HUSHING,     /* Stop has been sent: until the line is quiet. */
-    PHASE_ASKING,      /* A command has been sent: until its reply. */
-    PHASE_SETTLING,    /* Between two frequency commands: until the line is quiet. */
-    PHASE_SPINNING_UP, /* The start has been acknowledged: until the first packet. */
-    PHASE_SCANNING,
-    PHASE_BACKING_OFF, /* Between two attempts to recover. */
-    PHASE_BOOTING,
+/* True when a time that began at `since_ms` is over; across the clock's wrap-around too. */
+static inline bool tmini_has_elapsed(const tmini_t *lidar, uint32_t since_ms, uint32_t wait_ms)
+{
+    return lidar->link.now_ms - since_ms >= wait_ms;
+}
+
+/* ------------------------------------------------------------------------------------ tmini.c */
+
+/* Gives up the command under way: for the blocking helpers, which stand above. */
+void tmini_cancel(tmini_t *lidar);
+
+/* ---------------------------------------------------------------------------- tmini_command.c */
+
+/* What the user or the recovery asks for. */
+typedef enum {
+    TMINI_OPERATION_STOP,
+    TMINI_OPERATION_START,
+    TMINI_OPERATION_INFO,
+    TMINI_OPERATION_HEALTH,
+    TMINI_OPERATION_FREQUENCY,
+    TMINI_OPERATION_SET_FREQUENCY,
+    TMINI_OPERATION_REBOOT,
+} tmini_operation_t;
+
+/* How a command stands: TMINI_OK, it has ended well; an error, it has failed; or this. */
+#define TMINI_UNDER_WAY 1
+
+/* Begins an operation, in the place of one that may be under way; its first bytes leave with the
+ * next tmini_command_poll(). A time-out is followed by another attempt, up to `attempts` in all.
+ * `frequency_chz` is for TMINI_OPERATION_SET_FREQUENCY. */
+void tmini_command_begin(tmini_t *lidar, tmini_operation_t operation, uint8_t attempts,
+                         uint16_t frequency_chz);
+
+/* Goes on with what is due now: bytes to send, a line that is quiet, a time that is over. */
+int tmini_command_poll(tmini_t *lidar);
+
+/* The awaited reply has come, with this content. */
+int tmini_command_reply(tmini_t *lidar, const uint8_t *content);
+
+/* A packet has come while a start or a reboot is under way. True if it shows that the start has
+ * ended well, or that a lidar being rebooted scans: the command is then over. Not so the tail
+ * behind a stop (section 9.10). */
+bool tmini_command_packet(tmini_t *lidar);
+
+/* Sends nothing and ends well after a time; 0: never. While it runs, nothing else is under way. */
+void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms);
+
+/* Gives up what is under way, without a word. */
+void tmini_command_cancel(tmini_t *lidar);
+
+/* True while nothing is under way, and since the last command ended nothing has been heard: the
+ * next one may be sent at once. */
+bool tmini_command_line_is_quiet(const tmini_t *lidar);
+
+/* True while nothing is under way, and the lidar was left idle. */
+bool tmini_command_left_idle(const tmini_t *lidar);
+
+/* --------------------------------------------------------------------------- tmini_recovery.c */
+
+/* Begins to bring back a lidar that has been lost. */
+void tmini_recovery_begin(tmini_t *lidar);
+
+/* Goes on with it. */
+void tmini_recovery_poll(tmini_t *lidar);
+
+/* The awaited reply to an attempt has come. */
+void tmini_recovery_reply(tmini_t *lidar, const uint8_t *content);
+
+/* A packet has come. True if it means that the lidar is back, by an attempt or by itself. */
+bool tmini_recovery_packet(tmini_t *lidar);
+
+/* A complete revolution has come: the next loss is a new one. */
+void tmini_recovery_forget(tmini_t *lidar);
+
+/* ---------------------------------------------------------------------------- tmini_monitor.c */
+
+/* What a packet showed; a combination. */
+enum {
+    TMINI_SHOWN_FAULTS = 1,   /* The faults have changed. */
+    TMINI_SHOWN_COMPLETE = 2, /* A complete revolution has ended with it. */
+    TMINI_SHOWN_LOSS = 4,     /* LastCRC says that a packet of the revolution was lost. */
 };
 
-/* The command that is being carried out. While scanning it is GOAL_START. */
-enum goal {
-    GOAL_NONE,
-    GOAL_STOP,
-    GOAL_START,
-    GOAL_INFO,
-    GOAL_HEALTH,
-    GOAL_FREQUENCY,
-    GOAL_SET_FREQUENCY,
-    GOAL_REBOOT,
-};
+/* Scanning begins, anew or again: nothing continues what was before. */
+void tmini_monitor_begin(tmini_t *lidar);
 
-static inline bool driver_is_set_up(const tmini_t *lidar)
-{
-    return lidar != NULL && lidar->port != NULL;
-}
+/* Takes the packet in lidar->latest. */
+unsigned tmini_monitor_packet(tmini_t *lidar);
 
-static inline bool driver_elapsed(const tmini_t *lidar, uint32_t since_ms, uint32_t wait_ms)
-{
-    return lidar->now_ms - since_ms >= wait_ms; /* Right across the clock's wrap-around too. */
-}
-
-static inline void driver_raise(tmini_t *lidar, tmini_event_t event)
-{
-    lidar->pending |= (uint16_t)(1u << event);
-}
-
-/* A phase that has lasted `limit_ms` is over, one way or the other; 0 for no limit. */
-static inline void driver_enter(tmini_t *lidar, enum phase phase, uint16_t limit_ms)
-{
-    lidar->phase = (uint8_t)phase;
-    lidar->phase_ms = lidar->now_ms;
-    lidar->limit_ms = limit_ms;
-}
-
-/* All bytes had come when time was last looked at. Those that an interrupt has brought since must
- * not be judged by it. */
-static inline bool driver_is_up_to_date(const tmini_t *lidar)
-{
-    return tmini_ring_stored(&lidar->ring) == lidar->received;
-}
-
-/* Nothing has been heard since the lidar was last known to be idle. */
-static inline bool driver_is_idle(const tmini_t *lidar)
-{
-    return lidar->phase == PHASE_IDLE && !lidar->heard;
-}
-
-/* tmini.c: reads the clock and notes whether bytes have come. */
-void tmini_driver_look(tmini_t *lidar);
-
-/* tmini_command.c */
-void tmini_driver_hush(tmini_t *lidar);      /* Begins to carry out lidar->goal. */
-void tmini_driver_cancel(tmini_t *lidar);    /* Gives it up without a word. */
-void tmini_driver_reply(tmini_t *lidar);     /* The awaited reply has come. */
-void tmini_driver_keep_time(tmini_t *lidar); /* What the wire's phase asks for now. */
-
-/* tmini_watch.c */
-void tmini_driver_packet(tmini_t *lidar);      /* A packet has come. */
-void tmini_driver_watch_rotor(tmini_t *lidar); /* While scanning: does it turn? */
-void tmini_driver_lose(tmini_t *lidar);        /* No packet any more. */
-void tmini_driver_back_off(tmini_t *lidar);    /* An attempt to recover has failed. */
-void tmini_driver_climb(tmini_t *lidar);       /* Makes the next attempt to recover. */
+/* Looks after time while scanning. True if the faults have changed. */
+bool tmini_monitor_poll(tmini_t *lidar);
 
 #endif

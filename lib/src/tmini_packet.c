@@ -17,50 +17,59 @@
 static uint16_t angle_of(const uint8_t *field)
 {
     const unsigned angle = (field[0] | (unsigned)field[1] << 8) >> 1;
-    return (uint16_t)(angle < TMINI_TURN_Q6 ? angle : angle - TMINI_TURN_Q6);
+    return (uint16_t)(angle < TMINI_FULL_CIRCLE_Q6 ? angle : angle - TMINI_FULL_CIRCLE_Q6);
 }
 
 static uint16_t clockwise_difference(uint16_t from, uint16_t to)
 {
-    return (uint16_t)(to + (to < from ? TMINI_TURN_Q6 : 0) - from);
+    return (uint16_t)(to + (to < from ? TMINI_FULL_CIRCLE_Q6 : 0) - from);
 }
 
-/* The point of the sample that lies `turned` (17 fraction bits) after the first. The sample is read
- * before the point, which might overlap it for all the compiler knows, is written. */
-static inline void decode(tmini_point_t *point, const uint8_t *sample, uint32_t first_angle,
-                          uint32_t turned)
+/* Decodes `count` samples that lie in one piece, from sample `index` of the packet on: the hottest
+ * loop there is. A function of its own, so that all that it needs stays in registers; each sample
+ * is read before its point is written, because the two might overlap for all the compiler knows. */
+static void decode(const tmini_packet_t *packet, size_t index, const uint8_t *sample, size_t count,
+                   tmini_point_t *point)
 {
-    const uint8_t intensity = sample[0];
-    const unsigned distance_and_flag = sample[1] | (unsigned)sample[2] << 8;
-    point->angle_q6 = (uint16_t)(first_angle + (turned >> STEP_BITS));
-    point->distance_mm = (uint16_t)(distance_and_flag >> 2);
-    point->intensity = intensity;
-    point->flag = distance_and_flag & 3u;
+    const uint32_t first_angle = packet->first_angle_q6;
+    const uint32_t step = packet->step;
+    uint32_t turned = HALF + (uint32_t)index * step;
+    const tmini_point_t *const end = point + count;
+    do {
+        const uint8_t intensity = sample[0];
+        const unsigned distance_and_flag = sample[1] | (unsigned)sample[2] << 8;
+        point->angle_q6 = (uint16_t)(first_angle + (turned >> STEP_BITS));
+        point->distance_mm = (uint16_t)(distance_and_flag >> 2);
+        point->intensity = intensity;
+        point->flag = distance_and_flag & 3u;
+        sample += TMINI_SAMPLE_SIZE;
+        turned += step;
+        point++;
+    } while (point != end);
 }
 
 static void wrap(tmini_point_t *points, size_t count)
 {
     for (; count > 0; count--, points++) {
-        if (points->angle_q6 >= TMINI_TURN_Q6) {
-            points->angle_q6 = (uint16_t)(points->angle_q6 - TMINI_TURN_Q6);
+        if (points->angle_q6 >= TMINI_FULL_CIRCLE_Q6) {
+            points->angle_q6 = (uint16_t)(points->angle_q6 - TMINI_FULL_CIRCLE_Q6);
         }
     }
 }
 
-void tmini_packet_open(tmini_packet_t *packet, const tmini_parser_t *parser)
+void tmini_packet_open(tmini_packet_t *packet, const tmini_frame_t *frame)
 {
-    packet->first_angle_q6 = angle_of(&parser->header[FSA]);
-    packet->last_angle_q6 = angle_of(&parser->header[LSA]);
-    packet->ct = parser->header[CT];
-    packet->count = parser->header[LSN];
-    packet->stray = parser->stray;
-    packet->gap = parser->gap;
-    packet->parser = parser;
+    packet->first_angle_q6 = angle_of(&frame->header[FSA]);
+    packet->last_angle_q6 = angle_of(&frame->header[LSA]);
+    packet->ct = frame->header[CT];
+    packet->count = frame->header[LSN];
+    packet->gap = frame->gap;
+    packet->frame = frame;
     packet->step = 0;
     if (packet->count > 1) {
         const uint32_t intervals = packet->count - 1u;
-        const uint32_t turn = clockwise_difference(packet->first_angle_q6, packet->last_angle_q6);
-        packet->step = ((turn << STEP_BITS) + intervals - 1) / intervals;
+        const uint32_t swept = clockwise_difference(packet->first_angle_q6, packet->last_angle_q6);
+        packet->step = ((swept << STEP_BITS) + intervals - 1) / intervals;
     }
 }
 
@@ -71,11 +80,9 @@ bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_
     }
     uint8_t joined[TMINI_SAMPLE_SIZE];
     size_t count = 1;
-    const uint8_t *const sample =
-        tmini_ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(index), &count, joined);
-    decode(point, sample, packet->first_angle_q6, HALF + (uint32_t)index * packet->step);
+    decode(packet, index, tmini_frame_samples(packet->frame, index, &count, joined), 1, point);
     wrap(point, 1);
-    return tmini_parser_frame_intact(packet->parser);
+    return tmini_frame_intact(packet->frame);
 }
 
 static void apply_filter(unsigned filter, tmini_point_t *points, size_t count)
@@ -91,23 +98,14 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
                            size_t max_points)
 {
     const size_t wanted = packet->count < max_points ? packet->count : max_points;
-    const uint32_t first_angle = packet->first_angle_q6;
-    const uint32_t step = packet->step;
-    uint32_t turned = HALF;
-    tmini_point_t *point = points;
     for (size_t done = 0; done < wanted;) {
         uint8_t joined[TMINI_SAMPLE_SIZE];
         size_t count = wanted - done;
-        const uint8_t *sample =
-            tmini_ring_samples(packet->parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
+        const uint8_t *const samples = tmini_frame_samples(packet->frame, done, &count, joined);
+        decode(packet, done, samples, count, &points[done]);
         done += count;
-        for (size_t left = count; left > 0; left--) {
-            decode(point++, sample, first_angle, turned);
-            sample += TMINI_SAMPLE_SIZE;
-            turned += step;
-        }
     }
-    if (packet->last_angle_q6 < first_angle) {
+    if (packet->last_angle_q6 < packet->first_angle_q6) {
         wrap(points, wanted);
     }
     if (filter != TMINI_FILTER_NONE) {
@@ -118,9 +116,9 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
 
 bool tmini_packet_has_range(const tmini_packet_t *packet)
 {
-    const tmini_ring_t *const ring = packet->parser->ring;
+    const tmini_ring_t *const ring = packet->frame->ring;
     for (size_t i = 0; i < packet->count; i++) {
-        const size_t sample = TMINI_PACKET_SIZE_MAX(i);
+        const size_t sample = TMINI_SAMPLE_OFFSET(i);
         if (tmini_ring_peek(ring, sample + 1) > 3 || tmini_ring_peek(ring, sample + 2) > 0) {
             return true;
         }

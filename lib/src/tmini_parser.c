@@ -3,60 +3,90 @@
 
 #include "tmini/tmini_parser.h"
 
+#include <string.h>
+
 #include "tmini_packet_header.h"
 
-enum verdict { USELESS, INCOMPLETE, COMPLETE };
+enum verdict { NOT_A_FRAME, INCOMPLETE, COMPLETE };
 
 /* The start signs (sections 4 and 5). */
 enum { PACKET_FIRST = 0xAA, PACKET_SECOND = 0x55, REPLY_FIRST = 0xA5, REPLY_SECOND = 0x5A };
 
-/* Offsets in a reply's header (section 4); a packet's are in tmini_packet_header.h. */
-enum { REPLY_LENGTH = 2, REPLY_MODE_AND_LENGTH = 5, REPLY_TYPE = 6 };
+/* Offsets in a reply's header behind the start sign (section 4); a packet's are in
+ * tmini_packet_header.h. */
+enum { REPLY_LENGTH = 0, REPLY_MODE_AND_LENGTH = 3, REPLY_TYPE = 4 };
 
-/* True if the candidate has `count` bytes; if not, it need not be looked at again before it has. */
-static bool has(tmini_parser_t *parser, size_t unread, size_t count)
+/* The checksum runs over words of four bytes, and a sample has three: four samples are three
+ * words. */
+#define BLOCK_SAMPLES 4u
+#define BLOCK_SIZE (BLOCK_SAMPLES * TMINI_SAMPLE_SIZE)
+
+/* -------------------------------------------------------------------------------- the checksum */
+
+/* What samples contribute: S1 and S2 count in the low byte, S3 in the high byte (section 5). */
+static unsigned xor_samples(const uint8_t *sample, size_t count)
 {
-    parser->need = (uint16_t)count;
-    return unread >= count;
+    unsigned sum = 0;
+    for (const uint8_t *const end = sample + TMINI_SAMPLE_SIZE * count; sample != end;
+         sample += TMINI_SAMPLE_SIZE) {
+        sum ^= sample[0] ^ sample[1] ^ (unsigned)sample[2] << 8;
+    }
+    return sum;
 }
+
+/* The same for samples in one piece, most of them by blocks: three words that are XORed in one go
+ * contribute what their own bytes do. */
+static unsigned xor_piece(const uint8_t *sample, size_t count)
+{
+    uint32_t first = 0;
+    uint32_t second = 0;
+    uint32_t third = 0;
+    for (; count >= BLOCK_SAMPLES; count -= BLOCK_SAMPLES) {
+        first ^= tmini_word(sample);
+        second ^= tmini_word(sample + 4);
+        third ^= tmini_word(sample + 8);
+        sample += BLOCK_SIZE;
+    }
+    const uint32_t words[] = {first, second, third};
+    return xor_samples((const uint8_t *)words, BLOCK_SAMPLES) ^ xor_samples(sample, count);
+}
+
+/* XORs the candidate's 16-bit words. The checksum itself is among them, so that nothing remains if
+ * it is right. */
+static bool checksum_matches(const tmini_frame_t *frame)
+{
+    unsigned sum = PACKET_FIRST | (unsigned)PACKET_SECOND << 8;
+    for (size_t i = 0; i < sizeof frame->header; i += 2) {
+        sum ^= frame->header[i] | (unsigned)frame->header[i + 1] << 8;
+    }
+    size_t left = frame->header[LSN];
+    while (left > 0) {
+        const size_t done = frame->header[LSN] - left;
+        uint8_t joined[TMINI_SAMPLE_SIZE];
+        size_t count = left;
+        const uint8_t *const samples = tmini_frame_samples(frame, done, &count, joined);
+        sum ^= xor_piece(samples, count);
+        left -= count;
+    }
+    return sum == 0;
+}
+
+/* --------------------------------------------------------------------------------- candidates */
 
 static bool packet_header_is_plausible(const tmini_parser_t *parser)
 {
-    const uint8_t *const header = parser->header;
+    const uint8_t *const header = parser->frame.header;
     const bool is_start = (header[CT] & 1u) != 0;
     const bool check_bits = (header[FSA] & header[LSA] & 1u) != 0;
     return check_bits && header[LSN] >= 1 && header[LSN] <= (is_start ? 1 : parser->max_samples);
 }
 
-/* XORs the candidate's 16-bit words: those of the header, and two for each sample. The checksum
- * itself is among them, so that nothing remains if it is right. */
-static bool checksum_matches(const tmini_parser_t *parser)
-{
-    unsigned sum = 0;
-    for (size_t i = 0; i < TMINI_PACKET_HEADER_SIZE; i += 2) {
-        sum ^= parser->header[i] | (unsigned)parser->header[i + 1] << 8;
-    }
-    const size_t samples = parser->header[LSN];
-    for (size_t done = 0; done < samples;) {
-        uint8_t joined[TMINI_SAMPLE_SIZE];
-        size_t count = samples - done;
-        const uint8_t *sample =
-            tmini_ring_samples(parser->ring, TMINI_PACKET_SIZE_MAX(done), &count, joined);
-        done += count;
-        const uint8_t *const end = &sample[TMINI_SAMPLE_SIZE * count];
-        for (; sample != end; sample += TMINI_SAMPLE_SIZE) {
-            sum ^= sample[0] ^ (sample[1] | (unsigned)sample[2] << 8);
-        }
-    }
-    return sum == 0;
-}
-
 /* Of the length only the lowest byte can be other than 0: no reply is longer than 20 bytes. When
  * continuous it has no meaning. */
-static bool reply_has_awaited_shape(const tmini_parser_t *parser)
+static bool reply_header_is_awaited(const tmini_parser_t *parser)
 {
-    const uint8_t *const header = parser->header;
-    const tmini_reply_shape_t *const awaited = &parser->awaited;
+    const uint8_t *const header = parser->frame.header;
+    const tmini_reply_header_t *const awaited = &parser->awaited;
     const uint8_t mode_and_length = header[REPLY_MODE_AND_LENGTH];
     if (header[REPLY_TYPE] != awaited->type || mode_and_length >> 6 != awaited->mode) {
         return false;
@@ -66,107 +96,191 @@ static bool reply_has_awaited_shape(const tmini_parser_t *parser)
             (header[REPLY_LENGTH + 1] | header[REPLY_LENGTH + 2] | mode_and_length) == 0);
 }
 
-/* What the ring's oldest bytes are. */
-static enum verdict judge(tmini_parser_t *parser, size_t unread)
+/* Neither a packet nor the awaited reply begins with this byte. */
+static bool begins_no_frame(const tmini_parser_t *parser, uint8_t byte)
 {
-    uint8_t sign[2]; /* The second byte has perhaps not come yet. */
-    tmini_ring_copy(parser->ring, 0, sign, sizeof sign);
-    const bool is_packet = sign[0] == PACKET_FIRST;
-    if (!is_packet && !(parser->awaiting && sign[0] == REPLY_FIRST)) {
-        return USELESS;
+    return byte != PACKET_FIRST && !(parser->awaiting && byte == REPLY_FIRST);
+}
+
+/* Copies what follows the start sign; of a reply, a little more than its header. */
+static void read_header(tmini_frame_t *frame)
+{
+    size_t count = sizeof frame->header;
+    const uint8_t *const piece = tmini_ring_piece(frame->ring, TMINI_START_SIGN_SIZE, &count);
+    if (count == sizeof frame->header) {
+        memcpy(frame->header, piece, sizeof frame->header); /* Of constant size: a few moves. */
+    } else {
+        tmini_ring_copy(frame->ring, TMINI_START_SIGN_SIZE, frame->header, sizeof frame->header);
     }
-    if (!has(parser, unread, 2)) {
+}
+
+/* Reads the header of the packet that may begin here. */
+static enum verdict classify_packet_header(tmini_parser_t *parser)
+{
+    tmini_frame_t *const frame = &parser->frame;
+    read_header(frame);
+    if (!packet_header_is_plausible(parser)) {
+        return NOT_A_FRAME;
+    }
+    parser->kind = TMINI_FRAME_PACKET;
+    parser->need = (uint16_t)TMINI_PACKET_SIZE(frame->header[LSN]);
+    return COMPLETE;
+}
+
+/* The same of the awaited reply. */
+static enum verdict classify_reply_header(tmini_parser_t *parser)
+{
+    tmini_frame_t *const frame = &parser->frame;
+    read_header(frame);
+    if (!reply_header_is_awaited(parser)) {
+        return NOT_A_FRAME;
+    }
+    parser->kind = TMINI_FRAME_REPLY;
+    parser->need = (uint16_t)(TMINI_REPLY_HEADER_SIZE + parser->awaited.length);
+    return COMPLETE;
+}
+
+/* Looks at the candidate's start sign, then at its header, as soon as they have come. */
+static enum verdict classify_header(tmini_parser_t *parser, size_t unread)
+{
+    const tmini_ring_t *const ring = parser->frame.ring;
+    const uint8_t first = tmini_ring_peek(ring, 0);
+    const bool is_packet = first == PACKET_FIRST;
+    if (begins_no_frame(parser, first)) {
+        return NOT_A_FRAME;
+    }
+    parser->need = 2;
+    if (unread < 2) {
         return INCOMPLETE;
     }
-    if (sign[1] != (is_packet ? PACKET_SECOND : REPLY_SECOND)) {
-        return USELESS;
+    if (tmini_ring_peek(ring, 1) != (is_packet ? PACKET_SECOND : REPLY_SECOND)) {
+        return NOT_A_FRAME;
     }
-    const size_t header_size = is_packet ? TMINI_PACKET_HEADER_SIZE : TMINI_REPLY_HEADER_SIZE;
-    if (!has(parser, unread, header_size)) {
+    parser->need = is_packet ? TMINI_PACKET_HEADER_SIZE : TMINI_REPLY_HEADER_SIZE;
+    if (unread < parser->need) {
         return INCOMPLETE;
     }
-    tmini_ring_copy(parser->ring, 0, parser->header, header_size);
-    if (!(is_packet ? packet_header_is_plausible(parser) : reply_has_awaited_shape(parser))) {
-        return USELESS;
+    return is_packet ? classify_packet_header(parser) : classify_reply_header(parser);
+}
+
+/* What the ring's oldest bytes are; `need` of them, if they are complete. */
+static enum verdict classify(tmini_parser_t *parser, size_t unread)
+{
+    if (parser->kind == TMINI_FRAME_NONE) {
+        const enum verdict verdict = classify_header(parser, unread);
+        if (verdict != COMPLETE) {
+            return verdict;
+        }
     }
-    if (!has(parser, unread,
-             is_packet ? TMINI_PACKET_SIZE_MAX(parser->header[LSN])
-                       : TMINI_REPLY_HEADER_SIZE + parser->awaited.length)) {
+    if (unread < parser->need) {
         return INCOMPLETE;
     }
-    if (is_packet && !checksum_matches(parser)) {
+    if (parser->kind == TMINI_FRAME_PACKET && !checksum_matches(&parser->frame)) {
         parser->counters.checksum_errors++;
-        return USELESS;
+        parser->effort = (uint16_t)(parser->effort + parser->need);
+        return NOT_A_FRAME;
     }
     return COMPLETE;
 }
 
-static void skip_byte(tmini_parser_t *parser)
+/* The candidate is to be looked at from its first byte. */
+static void begin_candidate(tmini_parser_t *parser)
 {
-    parser->stray = tmini_ring_peek(parser->ring, 0);
-    tmini_ring_discard(parser->ring, 1);
     parser->need = 1;
-    parser->counters.bytes_skipped++;
-    if (parser->gap < UINT16_MAX) {
-        parser->gap++;
-    }
+    parser->kind = TMINI_FRAME_NONE;
 }
 
-/* Gives the frame delivered last back to the producer. */
-static void release_frame(tmini_parser_t *parser)
+/* -------------------------------------------------------------------- skipping and losing bytes */
+
+static void discard_skipped(tmini_parser_t *parser, size_t count)
 {
-    if (parser->frame > 0) {
-        tmini_ring_discard(parser->ring, parser->frame);
-        parser->frame = 0;
-        parser->gap = 0;
-    }
+    tmini_frame_t *const frame = &parser->frame;
+    const size_t room = TMINI_GAP_UNKNOWN - (size_t)frame->gap;
+    tmini_ring_discard(frame->ring, count);
+    frame->gap = (uint16_t)(frame->gap + (count < room ? count : room));
+    parser->counters.bytes_skipped += (uint32_t)count;
+    begin_candidate(parser);
 }
 
-/* Bytes are refused when the ring is full: they are missing one ring's size ahead of its tail. */
-static void count_refused(tmini_parser_t *parser)
+/* Skips the candidate's first byte, and those behind it, as far as they lie in one piece, that can
+ * begin no frame. */
+static void skip(tmini_parser_t *parser, size_t unread)
 {
-    const tmini_ring_t *const ring = parser->ring;
-    const size_t refused = tmini_ring_refused(ring);
-    if (refused != parser->refused) {
-        parser->counters.bytes_overrun += (uint32_t)(refused - parser->refused);
-        parser->refused = refused;
-        parser->hole = ring->tail + ring->mask + 1;
-        parser->hole_ahead = true;
+    tmini_frame_t *const frame = &parser->frame;
+    size_t count = unread < TMINI_PARSER_EFFORT ? unread : TMINI_PARSER_EFFORT;
+    const uint8_t *const bytes = tmini_ring_piece(frame->ring, 0, &count);
+    size_t skipped = 1;
+    while (skipped < count && begins_no_frame(parser, bytes[skipped])) {
+        skipped++;
     }
+    frame->last_skipped = bytes[skipped - 1];
+    discard_skipped(parser, skipped);
+    parser->effort = (uint16_t)(parser->effort + skipped);
 }
 
 /* The unread bytes, less those that DMA may have overwritten: they are dropped. */
 static size_t intact_bytes(tmini_parser_t *parser)
 {
-    tmini_ring_t *const ring = parser->ring;
+    tmini_ring_t *const ring = parser->frame.ring;
     const size_t unread = tmini_ring_unread(ring);
     if (unread <= ring->window) {
         return unread;
     }
     const size_t lost = unread - ring->window;
     tmini_ring_discard(ring, lost);
+    begin_candidate(parser);
     parser->counters.bytes_overrun += (uint32_t)lost;
-    parser->gap = UINT16_MAX;
-    parser->need = 1;
+    parser->frame.gap = TMINI_GAP_UNKNOWN;
     return ring->window;
 }
 
-/* The complete candidate becomes a frame: `need` has come to its size. */
-static tmini_frame_t deliver(tmini_parser_t *parser)
+/* There are not enough bytes for the candidate. If the ring is closed, what would complete it has
+ * been lost: it is given up, and the ring opened when it is empty. Returns false if it is not. */
+static bool pass_lost_bytes(tmini_parser_t *parser)
 {
-    parser->frame = parser->need;
-    parser->need = 1;
-    if (parser->hole_ahead && parser->ring->tail - parser->hole <= SIZE_MAX / 2) {
-        parser->hole_ahead = false;
-        parser->gap = UINT16_MAX;
+    tmini_ring_t *const ring = parser->frame.ring;
+    if (!tmini_ring_is_closed(ring)) {
+        return false;
     }
-    if (parser->header[0] == PACKET_FIRST) {
+    const size_t unread = tmini_ring_unread(ring); /* Nothing is stored any more. */
+    if (unread == 0) {
+        parser->frame.gap = TMINI_GAP_UNKNOWN;
+        tmini_ring_open(ring);
+    } else if (unread < parser->need) {
+        skip(parser, unread);
+    }
+    return true;
+}
+
+/* ---------------------------------------------------------------------------- public functions */
+
+/* Gives the frame delivered last back to the producer. */
+static void release_frame(tmini_parser_t *parser)
+{
+    tmini_frame_t *const frame = &parser->frame;
+    if (frame->size > 0) {
+        tmini_ring_discard(frame->ring, frame->size);
+        frame->size = 0;
+        frame->gap = 0;
+    }
+}
+
+/* The complete candidate becomes a frame: `need` has come to its size. */
+static tmini_frame_type_t deliver(tmini_parser_t *parser)
+{
+    tmini_frame_t *const frame = &parser->frame;
+    frame->size = parser->need;
+    frame->checksum_errors = (uint16_t)parser->counters.checksum_errors;
+    parser->effort = (uint16_t)(parser->effort + frame->size);
+    const bool is_packet = parser->kind == TMINI_FRAME_PACKET;
+    begin_candidate(parser);
+    if (is_packet) {
         parser->counters.packets++;
-        parser->counters.bytes_in_packets += parser->frame;
+        parser->counters.bytes_in_packets += frame->size;
         return TMINI_FRAME_PACKET;
     }
     parser->awaiting = false;
-    parser->counters.bytes_in_replies += parser->frame;
+    parser->counters.bytes_in_replies += frame->size;
     return TMINI_FRAME_REPLY;
 }
 
@@ -175,64 +289,82 @@ tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uin
     if (parser == NULL || ring == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    *parser = (tmini_parser_t){.ring = ring, .need = 1, .max_samples = max_samples};
+    *parser = (tmini_parser_t){.frame.ring = ring, .need = 1, .max_samples = max_samples};
     if (max_samples == 0) {
         parser->max_samples = TMINI_MAX_SAMPLES_DEFAULT;
     }
-    const bool fits = ring->window >= TMINI_PACKET_SIZE_MAX(parser->max_samples) &&
+    const bool fits = ring->window >= TMINI_PACKET_SIZE(parser->max_samples) &&
                       ring->window >= TMINI_REPLY_SIZE_MAX;
     return fits ? TMINI_OK : TMINI_ERROR_ARGUMENT;
 }
 
-tmini_frame_t tmini_parser_next(tmini_parser_t *parser)
+tmini_frame_type_t tmini_parser_next(tmini_parser_t *parser)
 {
-    count_refused(parser);
+    parser->effort = 0;
     release_frame(parser);
-    for (;;) {
+    while (parser->effort < TMINI_PARSER_EFFORT) {
         const size_t unread = intact_bytes(parser);
         if (unread < parser->need) {
-            return TMINI_FRAME_NONE;
+            if (!pass_lost_bytes(parser)) {
+                return TMINI_FRAME_NONE;
+            }
+            continue;
         }
-        const enum verdict verdict = judge(parser, unread);
-        if (verdict == INCOMPLETE) {
-            return TMINI_FRAME_NONE;
-        }
-        if (verdict == USELESS) {
-            skip_byte(parser);
-        } else if (tmini_parser_frame_intact(parser)) {
+        const enum verdict verdict = classify(parser, unread);
+        if (verdict == NOT_A_FRAME) {
+            skip(parser, unread);
+        } else if (verdict == COMPLETE && tmini_frame_intact(&parser->frame)) {
             return deliver(parser);
         }
     }
+    return TMINI_FRAME_MORE;
 }
 
-bool tmini_parser_frame_intact(const tmini_parser_t *parser)
+tmini_status_t tmini_parser_await(tmini_parser_t *parser, const tmini_reply_header_t *header)
 {
-    return tmini_ring_intact(parser->ring);
-}
-
-void tmini_parser_await(tmini_parser_t *parser, const tmini_reply_shape_t *shape)
-{
-    parser->need = 1; /* What the candidate may be has changed: look at it again. */
-    parser->awaiting = shape != NULL;
-    if (shape != NULL) {
-        parser->awaited = *shape;
+    begin_candidate(parser); /* What the candidate may be has changed: look at it again. */
+    parser->awaiting = false;
+    if (header == NULL) {
+        return TMINI_OK;
     }
-}
-
-void tmini_parser_reply_content(const tmini_parser_t *parser, uint8_t *content, size_t count)
-{
-    tmini_ring_copy(parser->ring, TMINI_REPLY_HEADER_SIZE, content, count);
+    if (TMINI_REPLY_HEADER_SIZE + (size_t)header->length > parser->frame.ring->window) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    parser->awaiting = true;
+    parser->awaited = *header;
+    return TMINI_OK;
 }
 
 size_t tmini_parser_pending(const tmini_parser_t *parser)
 {
-    return tmini_ring_unread(parser->ring) - parser->frame;
+    return tmini_ring_unread(parser->frame.ring) - parser->frame.size;
+}
+
+size_t tmini_parser_position(const tmini_parser_t *parser)
+{
+    return tmini_ring_tail(parser->frame.ring) + parser->frame.size;
+}
+
+void tmini_parser_counters(const tmini_parser_t *parser, tmini_parser_counters_t *counters)
+{
+    *counters = parser->counters;
+    counters->bytes_overrun += (uint32_t)tmini_ring_overrun(parser->frame.ring);
+}
+
+void tmini_parser_skip_to(tmini_parser_t *parser, size_t position)
+{
+    release_frame(parser);
+    const size_t count = position - tmini_parser_position(parser);
+    if (count > 0 && count <= tmini_ring_unread(parser->frame.ring)) {
+        parser->frame.last_skipped = tmini_ring_peek(parser->frame.ring, count - 1);
+        discard_skipped(parser, count);
+    }
 }
 
 void tmini_parser_abandon(tmini_parser_t *parser)
 {
-    const size_t unread = tmini_ring_unread(parser->ring);
+    const size_t unread = tmini_ring_unread(parser->frame.ring);
     if (unread > 0 && unread < parser->need) {
-        skip_byte(parser);
+        skip(parser, unread);
     }
 }

@@ -7,7 +7,7 @@
  * 2 * 23040 * 65535 + 23040 is below 2^32. */
 size_t tmini_ranges_bin(uint16_t angle_q6, size_t count)
 {
-    const uint32_t turn = TMINI_TURN_Q6;
+    const uint32_t turn = TMINI_FULL_CIRCLE_Q6;
     const uint32_t behind = turn / 2;
     const uint32_t from_behind = behind + (angle_q6 > behind ? turn : 0) - angle_q6;
     const uint32_t bin = (2 * from_behind * (uint32_t)count + turn) / (2 * turn);
@@ -24,6 +24,19 @@ static void clear(uint16_t *ranges_mm, uint8_t *intensities, size_t count)
     }
 }
 
+/* The nearest point of a bin is its range. */
+static void take(const tmini_point_t *point, uint16_t *range_mm, uint8_t *intensity)
+{
+    const bool is_nearer = *range_mm == 0 || point->distance_mm < *range_mm;
+    if (point->distance_mm == 0 || !is_nearer) {
+        return;
+    }
+    *range_mm = point->distance_mm;
+    if (intensity != NULL) {
+        *intensity = point->intensity;
+    }
+}
+
 tmini_status_t tmini_ranges_of_scan(const tmini_scan_t *scan, uint16_t *ranges_mm,
                                     uint8_t *intensities, size_t count)
 {
@@ -34,14 +47,7 @@ tmini_status_t tmini_ranges_of_scan(const tmini_scan_t *scan, uint16_t *ranges_m
     for (size_t i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
         const size_t bin = tmini_ranges_bin(point->angle_q6, count);
-        const bool is_nearer = ranges_mm[bin] == 0 || point->distance_mm < ranges_mm[bin];
-        if (point->distance_mm == 0 || !is_nearer) {
-            continue;
-        }
-        ranges_mm[bin] = point->distance_mm;
-        if (intensities != NULL) {
-            intensities[bin] = point->intensity;
-        }
+        take(point, &ranges_mm[bin], intensities != NULL ? &intensities[bin] : NULL);
     }
     return TMINI_OK;
 }

@@ -5,9 +5,9 @@
 
 #include <string.h>
 
-bool tmini_reply_shape(tmini_command_t command, tmini_reply_shape_t *shape)
+bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *shape)
 {
-    *shape = (tmini_reply_shape_t){.type = 0x04, .length = TMINI_FREQUENCY_SIZE};
+    *shape = (tmini_reply_header_t){.type = 0x04, .length = TMINI_FREQUENCY_SIZE};
     switch (command) {
     case TMINI_COMMAND_STOP:
     case TMINI_COMMAND_REBOOT:

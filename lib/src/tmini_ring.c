@@ -5,7 +5,11 @@
 
 #include <string.h>
 
-#include "tmini_atomic.h"
+/* DMA may use half of the ring only; a ring that the CPU feeds, all of it. */
+static bool is_fed_by_cpu(const tmini_ring_t *ring)
+{
+    return ring->window == ring->size;
+}
 
 tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size, bool dma)
 {
@@ -13,109 +17,74 @@ tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size,
         return TMINI_ERROR_ARGUMENT;
     }
     *ring = (tmini_ring_t){0};
-    if (memory == NULL || size == 0 || (size & (size - 1)) != 0) {
+    if (memory == NULL || size < 2 || (size & (size - 1)) != 0) {
         return TMINI_ERROR_ARGUMENT;
     }
     ring->memory = memory;
-    ring->mask = size - 1;
+    ring->size = size;
     ring->window = dma ? size / 2 : size;
+    ring->gate = size - 1;
     tmini_store(&ring->limit, size); /* Last: until then a byte that comes early is refused. */
     return TMINI_OK;
 }
 
-void tmini_ring_put(tmini_ring_t *ring, uint8_t byte)
+size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
 {
-    const size_t head = ring->head;
-    if (head == tmini_load(&ring->limit)) {
-        tmini_store(&ring->refused, ring->refused + 1);
-        return;
-    }
-    ring->memory[head & ring->mask] = byte;
-    tmini_store(&ring->head, head + 1);
-}
-
-void tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
-{
-    const size_t head = ring->head;
-    const size_t room = tmini_load(&ring->limit) - head;
+    const size_t room = tmini_ring_room(ring);
     const size_t taken = count < room ? count : room;
     if (taken > 0) {
-        const size_t at = head & ring->mask;
-        const size_t to_end = ring->mask + 1 - at;
+        const size_t head = ring->head;
+        const size_t at = head & (ring->size - 1);
+        const size_t to_end = ring->size - at;
         const size_t first = taken < to_end ? taken : to_end;
         memcpy(&ring->memory[at], bytes, first);
         memcpy(ring->memory, &bytes[first], taken - first);
         tmini_store(&ring->head, head + taken);
     }
     if (taken < count) {
-        tmini_store(&ring->refused, ring->refused + (count - taken));
+        tmini_ring_refuse(ring, count - taken);
     }
+    return taken;
+}
+
+size_t tmini_ring_room(const tmini_ring_t *ring)
+{
+    const size_t limit = tmini_load(&ring->limit);
+    return tmini_load(&ring->gate) != 0 ? limit - ring->head : 0;
 }
 
 void tmini_ring_publish(tmini_ring_t *ring, size_t position)
 {
     const size_t head = ring->head;
-    tmini_store(&ring->head, head + ((position - head) & ring->mask));
+    tmini_store(&ring->head, head + ((position - head) & (ring->size - 1)));
 }
 
-bool tmini_ring_intact(const tmini_ring_t *ring)
+void tmini_ring_gap(tmini_ring_t *ring)
 {
-    tmini_fence(); /* What has been read was read before the producer's index is read again. */
-    return tmini_ring_unread(ring) <= ring->window;
-}
-
-size_t tmini_ring_stored(const tmini_ring_t *ring)
-{
-    return tmini_load(&ring->head);
-}
-
-size_t tmini_ring_unread(const tmini_ring_t *ring)
-{
-    return tmini_load(&ring->head) - ring->tail;
-}
-
-uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
-{
-    return ring->memory[(ring->tail + offset) & ring->mask];
+    if (is_fed_by_cpu(ring)) {
+        tmini_store(&ring->gate, 0);
+    } else {
+        tmini_store(&ring->head, ring->head + ring->size); /* A lap that nobody saw. */
+    }
 }
 
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count)
 {
     /* In locals, because `bytes` might overlap the ring for all the compiler knows. */
     const uint8_t *const memory = ring->memory;
-    const size_t mask = ring->mask;
-    size_t index = ring->tail + offset;
+    const size_t mask = ring->size - 1;
+    size_t index = ring->limit + offset; /* A size ahead of the tail is the same place. */
     for (const uint8_t *const end = bytes + count; bytes != end; bytes++) {
         *bytes = memory[index++ & mask];
     }
 }
 
-const uint8_t *tmini_ring_samples(const tmini_ring_t *ring, size_t offset, size_t *count,
-                                  uint8_t joined[3])
-{
-    const size_t at = (ring->tail + offset) & ring->mask;
-    const size_t to_end = ring->mask + 1 - at;
-    if (3 * *count <= to_end) {
-        return &ring->memory[at];
-    }
-    if (to_end >= 3) {
-        *count = to_end / 3;
-        return &ring->memory[at];
-    }
-    for (size_t i = 0; i < 3; i++) {
-        joined[i] = tmini_ring_peek(ring, offset + i);
-    }
-    *count = 1;
-    return joined;
-}
-
 void tmini_ring_discard(tmini_ring_t *ring, size_t count)
 {
-    ring->tail += count;
-    tmini_store(&ring->limit, ring->tail + ring->mask + 1);
+    tmini_store(&ring->limit, ring->limit + count);
 }
 
-size_t tmini_ring_refused(const tmini_ring_t *ring)
+void tmini_ring_open(tmini_ring_t *ring)
 {
-    return tmini_load(&ring->refused);
+    tmini_store(&ring->gate, ring->size - 1);
 }

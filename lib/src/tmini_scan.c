@@ -3,20 +3,21 @@
 
 #include "tmini/tmini_scan.h"
 
+#define CIRCLE_Q6 ((int32_t)TMINI_FULL_CIRCLE_Q6)
+
 /* Samples are at most 1.08 degrees apart (12 Hz), and the encoder jitters by less than that. */
-#define JUMP_Q6 256          /* 4 degrees: further than this, at least one packet is missing. */
-#define FULL_CIRCLE_Q6 23168 /* 362 degrees: further than this, it is another revolution. */
+#define JUMP_Q6 256 /* 4 degrees: further than this, at least one packet is missing. */
+#define SWEPT_MAX_Q6 (CIRCLE_Q6 + 16) /* 360.25 degrees: further, it is another revolution. */
 
-/* More bytes than this may have been a whole turn: at 12 Hz it has about 1100 (section 9.7). */
-#define HOLE_BYTES 1000
+/* More bytes than this may have been half a turn: at 12 Hz a turn has about 1100 (section 9.7). */
+#define GAP_MAX 500
 
-/* The angle turned from one direction to another, clockwise, or slightly back: a hair of jitter
+/* The angle swept from one direction to another, clockwise, or slightly back: a hair of jitter
  * backwards (section 9.6) is not nearly a whole turn forwards. */
-static int32_t turned(uint16_t from, uint16_t to)
+static int32_t swept(uint16_t from, uint16_t to)
 {
-    const int32_t forwards = (int32_t)to - from + (to < from ? (int32_t)TMINI_TURN_Q6 : 0);
-    return forwards > (int32_t)TMINI_TURN_Q6 - JUMP_Q6 ? forwards - (int32_t)TMINI_TURN_Q6
-                                                       : forwards;
+    const int32_t forwards = (int32_t)to - from + (to < from ? CIRCLE_Q6 : 0);
+    return forwards > CIRCLE_Q6 - JUMP_Q6 ? forwards - CIRCLE_Q6 : forwards;
 }
 
 /* The LSA of a single sample is without meaning. */
@@ -25,19 +26,27 @@ static uint16_t end_of(const tmini_packet_t *packet)
     return packet->count > 1 ? packet->last_angle_q6 : packet->first_angle_q6;
 }
 
-/* The angle turned since the start packet when `packet` ends. */
-static int32_t swept_with(const tmini_scan_builder_t *builder, const tmini_packet_t *packet)
+/* The angle swept from where the last packet ended to where `packet` begins. */
+static int32_t swept_ahead(const tmini_scan_builder_t *builder, const tmini_packet_t *packet)
 {
-    return builder->swept_q6 + turned(builder->previous_angle_q6, packet->first_angle_q6) +
-           turned(packet->first_angle_q6, end_of(packet));
+    return swept(builder->previous_angle_q6, packet->first_angle_q6);
 }
 
-static bool is_missing_before(const tmini_scan_builder_t *builder, const tmini_packet_t *packet)
+/* The angle swept since the start packet when a packet ends that begins so far ahead. */
+static int32_t swept_with(const tmini_scan_builder_t *builder, const tmini_packet_t *packet,
+                          int32_t ahead)
 {
-    /* One byte before a start packet is LastCRC (section 7). */
-    const unsigned expected = tmini_packet_is_start(packet) ? 1 : 0;
-    return packet->gap > expected ||
-           turned(builder->previous_angle_q6, packet->first_angle_q6) > JUMP_Q6;
+    return builder->swept_q6 + ahead + swept(packet->first_angle_q6, end_of(packet));
+}
+
+/* True if `packet` may continue the revolution: not if half a turn or more may be missing before
+ * it, by bytes or by angle, nor if it would lead beyond the circle or behind its beginning. */
+static bool continues(const tmini_scan_builder_t *builder, const tmini_packet_t *packet)
+{
+    const int32_t ahead = swept_ahead(builder, packet);
+    const int32_t angle = swept_with(builder, packet, ahead);
+    return packet->gap <= GAP_MAX && ahead <= CIRCLE_Q6 / 2 && angle <= SWEPT_MAX_Q6 &&
+           angle >= -JUMP_Q6;
 }
 
 static void add_up(uint16_t *total, size_t amount)
@@ -46,28 +55,32 @@ static void add_up(uint16_t *total, size_t amount)
     *total = (uint16_t)(*total + (amount < room ? amount : room));
 }
 
-/* The scan ends with what has been received before `packet`. */
-static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet)
+/* The scan ends with what has been received before `packet`. It is complete when a start packet
+ * comes back to where it began, and nothing is missing: one byte before a start packet is
+ * LastCRC. */
+static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
 {
     tmini_scan_t *const scan = &builder->scan;
+    const int32_t ahead = swept_ahead(builder, packet);
+    const int32_t beyond = builder->swept_q6 + ahead - CIRCLE_Q6;
     const bool is_start = tmini_packet_is_start(packet);
-    if (!is_start || is_missing_before(builder, packet)) {
+    if (!is_start || packet->gap > 1 || ahead > JUMP_Q6) {
         add_up(&scan->gaps, 1);
     }
-    scan->checksum_errors =
-        (uint16_t)(packet->parser->counters.checksum_errors - builder->errors_before);
+    scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - builder->errors_before);
     /* A start packet carries the frequency of the revolution before it (section 9.8). */
     scan->frequency_chz = (uint16_t)(is_start ? (packet->ct >> 1) * 10 : 0);
-    scan->complete = scan->gaps == 0 && scan->dropped == 0;
+    scan->end_ms = now_ms;
+    scan->complete = (scan->gaps | scan->dropped) == 0 && beyond >= -JUMP_Q6 && beyond <= JUMP_Q6;
     builder->open = false;
 }
 
 static void begin(tmini_scan_builder_t *builder, const tmini_packet_t *start, uint32_t now_ms)
 {
-    builder->scan = (tmini_scan_t){.points = builder->scan.points, .timestamp_ms = now_ms};
+    builder->scan = (tmini_scan_t){.points = builder->scan.points, .start_ms = now_ms};
     builder->previous_angle_q6 = start->first_angle_q6;
     builder->swept_q6 = 0;
-    builder->errors_before = (uint16_t)start->parser->counters.checksum_errors;
+    builder->errors_before = start->frame->checksum_errors;
     builder->open = true;
 }
 
@@ -76,7 +89,7 @@ static void append_points(tmini_scan_builder_t *builder, const tmini_packet_t *p
     tmini_scan_t *const scan = &builder->scan;
     const size_t count = tmini_packet_points(packet, builder->filter, &scan->points[scan->count],
                                              (size_t)builder->capacity - scan->count);
-    if (!tmini_parser_frame_intact(packet->parser)) {
+    if (!tmini_frame_intact(packet->frame)) {
         add_up(&scan->gaps, 1);
         return;
     }
@@ -102,17 +115,18 @@ void tmini_scan_discard(tmini_scan_builder_t *builder)
     builder->open = false;
 }
 
-bool tmini_scan_close(tmini_scan_builder_t *builder, const tmini_packet_t *packet)
+bool tmini_scan_close(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
 {
-    if (!builder->open) {
+    if (!builder->open || (!tmini_packet_is_start(packet) && continues(builder, packet))) {
         return false;
     }
-    if (!tmini_packet_is_start(packet) && packet->gap <= HOLE_BYTES &&
-        swept_with(builder, packet) <= FULL_CIRCLE_Q6) {
-        return false;
-    }
-    finish(builder, packet);
+    finish(builder, packet, now_ms);
     return true;
+}
+
+void tmini_scan_refute(tmini_scan_builder_t *builder)
+{
+    add_up(&builder->scan.gaps, 1);
 }
 
 void tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
@@ -121,10 +135,13 @@ void tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet,
         begin(builder, packet, now_ms);
     } else if (!builder->open) {
         return;
-    } else if (is_missing_before(builder, packet)) {
+    }
+    const int32_t ahead = swept_ahead(builder, packet);
+    if (!tmini_packet_is_start(packet) && (packet->gap > 0 || ahead > JUMP_Q6)) {
         add_up(&builder->scan.gaps, 1);
     }
-    builder->swept_q6 = swept_with(builder, packet);
+    builder->swept_q6 = (int16_t)swept_with(builder, packet, ahead);
     builder->previous_angle_q6 = end_of(packet);
+    builder->scan.end_ms = now_ms; /* So far. */
     append_points(builder, packet);
 }

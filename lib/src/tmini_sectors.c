@@ -7,7 +7,7 @@ tmini_status_t tmini_sectors_init(tmini_sectors_t *sectors, uint16_t *nearest_mm
                                   uint16_t front_q6, unsigned filter)
 {
     if (sectors == NULL || nearest_mm == NULL || count == 0 || count > UINT16_MAX ||
-        front_q6 >= TMINI_TURN_Q6 || (filter & ~(unsigned)TMINI_FILTER_BOTH) != 0) {
+        front_q6 >= TMINI_FULL_CIRCLE_Q6 || (filter & ~(unsigned)TMINI_FILTER_BOTH) != 0) {
         return TMINI_ERROR_ARGUMENT;
     }
     *sectors = (tmini_sectors_t){
@@ -31,7 +31,7 @@ void tmini_sectors_clear(tmini_sectors_t *sectors)
  * as to the right. 2 * 23039 * 65535 + 23040 is below 2^32. */
 size_t tmini_sectors_at(const tmini_sectors_t *sectors, uint16_t angle_q6)
 {
-    const uint32_t turn = TMINI_TURN_Q6;
+    const uint32_t turn = TMINI_FULL_CIRCLE_Q6;
     const uint32_t from_front = ((uint32_t)angle_q6 + turn - sectors->front_q6) % turn;
     const uint32_t sector = (2 * from_front * sectors->count + turn) / (2 * turn);
     return (size_t)(sector < sectors->count ? sector : 0);

@@ -1,17 +1,46 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
+/* Build systems that know frameworks beside Arduino compile this file for all of them. */
+#if defined(ARDUINO)
+
 #include "TMiniLidar.h"
+
+#include "tmini/tmini_names.h"
 
 /* The protocol's section 1. */
 static const unsigned long BAUD_RATE = 230400;
 
-#if defined(ESP32) || defined(ESP8266)
-/* The core's own receive buffer: 78 ms at 13.1 kB/s, instead of 20 with the usual 256 bytes. */
+#if defined(ESP32) || defined(ESP8266) || TMINI_LIDAR_ON_RP2040
+/* The core's own receive buffer: 78 ms at 13.1 kB/s, instead of 20 with 256 bytes, or 2 with 32. */
 static const size_t SERIAL_RX_SIZE = 1024;
 #endif
 
-const tmini_port_t TMiniLidarBase::port_ = {write, nowMs, NULL};
+/* Where the core's receive buffer can be chosen, that is before the port is opened. */
+static void enlarge(TMiniSerial &serial)
+{
+#if defined(ESP32) || defined(ESP8266)
+    serial.setRxBufferSize(SERIAL_RX_SIZE);
+#elif TMINI_LIDAR_ON_RP2040
+    serial.end(); /* If the sketch has opened it: refused then. */
+    serial.setFIFOSize(SERIAL_RX_SIZE);
+#else
+    (void)serial;
+#endif
+}
+
+/* Where the UART's FIFO interrupts at a level that can be chosen, that is after the port is opened.
+ * Of 128 bytes the core leaves 8 for delays, 0.35 ms; this half of them. */
+static void quicken(TMiniSerial &serial)
+{
+#if defined(ESP_ARDUINO_VERSION_MAJOR) && ESP_ARDUINO_VERSION_MAJOR >= 3
+    serial.setRxFIFOFull(64);
+#else
+    (void)serial;
+#endif
+}
+
+const tmini_port_t TMiniLidarBase::port_ = {writeBytes, nowMs, NULL};
 
 TMiniPoint TMiniPoints::operator[](size_t index) const
 {
@@ -37,7 +66,7 @@ TMiniLidarBase::TMiniLidarBase(uint8_t *rx, size_t rxSize, tmini_point_t *points
 }
 
 /* Two bytes always fit in the core's transmit buffer: nothing else is ever sent. */
-int TMiniLidarBase::write(void *context, const uint8_t *bytes, size_t count)
+int TMiniLidarBase::writeBytes(void *context, const uint8_t *bytes, size_t count)
 {
     Stream *const serial = static_cast<TMiniLidarBase *>(context)->serial_;
     return static_cast<int>(serial->write(bytes, count));
@@ -60,52 +89,69 @@ bool TMiniLidarBase::begin(Stream &serial)
     return listen(serial);
 }
 
-bool TMiniLidarBase::begin(HardwareSerial &serial)
+bool TMiniLidarBase::begin(TMiniSerial &serial)
 {
-#if defined(ESP32) || defined(ESP8266)
-    serial.setRxBufferSize(SERIAL_RX_SIZE); /* Only heard before begin(). */
-#endif
+    enlarge(serial);
     serial.begin(BAUD_RATE);
+    quicken(serial);
     return listen(serial);
 }
 
 #if defined(ESP32)
-bool TMiniLidarBase::begin(HardwareSerial &serial, int8_t rxPin, int8_t txPin)
+bool TMiniLidarBase::begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin)
 {
-    serial.setRxBufferSize(SERIAL_RX_SIZE); /* Only heard before begin(). */
+    enlarge(serial);
     serial.begin(BAUD_RATE, SERIAL_8N1, rxPin, txPin);
-#if defined(ESP_ARDUINO_VERSION_MAJOR) && ESP_ARDUINO_VERSION_MAJOR >= 3
-    serial.setRxFIFOFull(64); /* Of 128; by default only 8 bytes (0.35 ms) are left for delays. */
-#endif
+    quicken(serial);
     return listen(serial);
 }
+#elif TMINI_LIDAR_ON_RP2040
+bool TMiniLidarBase::begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin)
+{
+    serial.end(); /* Open, it would keep its pins. */
+    return serial.setRX(static_cast<pin_size_t>(rxPin)) &&
+           serial.setTX(static_cast<pin_size_t>(txPin)) && begin(serial);
+}
 #endif
 
-/* Only what is there is read, so that readBytes() has nothing to wait for. */
-void TMiniLidarBase::receive()
+static size_t smaller(size_t a, size_t b)
 {
-    uint8_t chunk[64];
-    int waiting = serial_->available();
-    while (waiting > 0) {
-        const size_t wanted = static_cast<size_t>(waiting) < sizeof chunk
-                                  ? static_cast<size_t>(waiting)
-                                  : sizeof chunk;
-        const size_t count = serial_->readBytes(chunk, wanted);
-        if (count == 0) {
-            return;
-        }
-        tmini_feed(&lidar_, chunk, count);
-        waiting -= static_cast<int>(count);
-    }
+    return a < b ? a : b;
 }
 
+/* Only what is there is asked for, so that readBytes() has nothing to wait for; and only what the
+ * lidar's ring has room for: the rest waits in the core's buffer. */
+size_t TMiniLidarBase::receivable()
+{
+    const int waiting = serial_->available();
+    return smaller(waiting > 0 ? static_cast<size_t>(waiting) : 0, tmini_feed_room(&lidar_));
+}
+
+bool TMiniLidarBase::receive()
+{
+    uint8_t chunk[64];
+    size_t left = receivable();
+    while (left > 0) {
+        const size_t count = serial_->readBytes(chunk, smaller(left, sizeof chunk));
+        if (count == 0) {
+            return false;
+        }
+        tmini_feed(&lidar_, chunk, count);
+        left -= count;
+    }
+    return true;
+}
+
+/* Polling makes room: nothing has happened only when nothing is left that could be received. */
 tmini_event_t TMiniLidarBase::loop()
 {
-    if (serial_ == NULL) {
-        return TMINI_EVENT_NONE;
+    event_ = TMINI_EVENT_NONE;
+    bool can_receive = serial_ != NULL;
+    while (can_receive && event_ == TMINI_EVENT_NONE) {
+        can_receive = receive();
+        event_ = tmini_poll(&lidar_);
+        can_receive = can_receive && receivable() > 0;
     }
-    receive();
-    event_ = tmini_poll(&lidar_);
     return event_;
 }
 
@@ -184,10 +230,12 @@ uint8_t TMiniLidarBase::faults() const
 
 const char *TMiniLidarBase::error() const
 {
-    return tmini_status_name(tmini_failure(&lidar_));
+    return tmini_status_name(tmini_command_error(&lidar_));
 }
 
 tmini_t *TMiniLidarBase::driver()
 {
     return &lidar_;
 }
+
+#endif

@@ -30,6 +30,17 @@
 
 #include "tmini/tmini.h"
 
+/* The class of the board's serial ports that begin() opens. That of Raspberry Pi's controllers (the
+ * core of Earle Philhower) has a buffer of 32 bytes, 1.4 ms, and only its own class can enlarge
+ * it. */
+#if defined(ARDUINO_ARCH_RP2040) && !defined(ARDUINO_ARCH_MBED)
+#define TMINI_LIDAR_ON_RP2040 1
+typedef SerialUART TMiniSerial;
+#else
+#define TMINI_LIDAR_ON_RP2040 0
+typedef HardwareSerial TMiniSerial;
+#endif
+
 /* One measurement. */
 struct TMiniPoint : public tmini_point_t {
     bool isValid() const
@@ -102,11 +113,17 @@ class TMiniPoints
 class TMiniLidarBase
 {
   public:
-    /* Opens the serial port at the lidar's 230400 baud, on an ESP32 or ESP8266 with a large receive
-     * buffer. False when something is wrong with the buffers' sizes. */
-    bool begin(HardwareSerial &serial);
-#if defined(ESP32)
-    bool begin(HardwareSerial &serial, int8_t rxPin, int8_t txPin);
+    /* Opens the serial port at the lidar's 230400 baud; on an ESP32, ESP8266, RP2040 and RP2350
+     * with a large receive buffer. False when something is wrong with the buffers' sizes. */
+    bool begin(TMiniSerial &serial);
+#if defined(ESP32) || TMINI_LIDAR_ON_RP2040
+    bool begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin);
+#endif
+#if TMINI_LIDAR_ON_RP2040
+    /* Name the port itself (Serial1): a HardwareSerial & to it cannot enlarge its buffer. Other
+     * kinds of port with a buffer of their own, such as SerialPIO: open it, then
+     * begin(static_cast<Stream &>(port)). */
+    bool begin(HardwareSerial &serial) = delete;
 #endif
     /* For any other Stream: the sketch has opened it, at 230400 baud. */
     bool begin(Stream &serial);
@@ -120,8 +137,8 @@ class TMiniLidarBase
     size_t available() const;
     TMiniPoints points() const;
 
-    /* Commands. False: not possible now. How they end comes from loop(), as the event in brackets or
-     * as TMINI_EVENT_FAILED; error() then says why. */
+    /* Commands. False: not possible now. How they end comes from loop(), as the event in brackets
+     * or as TMINI_EVENT_COMMAND_FAILED; error() then says why. */
     bool start();                   /* [STARTED] */
     bool stop();                    /* [STOPPED] */
     bool requestInfo();             /* [INFO], then info() */
@@ -132,7 +149,7 @@ class TMiniLidarBase
     bool isScanning() const;
     const tmini_info_t &info() const;
     const tmini_health_t &health() const;
-    /* A combination of tmini_fault_t; see TMINI_EVENT_FAULT. */
+    /* A combination of tmini_fault_t; see TMINI_EVENT_FAULTS_CHANGED. */
     uint8_t faults() const;
     const char *error() const;
 
@@ -146,8 +163,9 @@ class TMiniLidarBase
     TMiniLidarBase(const TMiniLidarBase &);
     TMiniLidarBase &operator=(const TMiniLidarBase &);
     bool listen(Stream &serial);
-    void receive();
-    static int write(void *context, const uint8_t *bytes, size_t count);
+    size_t receivable();
+    bool receive();
+    static int writeBytes(void *context, const uint8_t *bytes, size_t count);
     static uint32_t nowMs(void *context);
 
     static const tmini_port_t port_;

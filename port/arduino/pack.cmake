@@ -24,6 +24,7 @@ endif()
 file(GLOB sources ${root}/lib/src/*.c ${root}/lib/src/*.h)
 file(GLOB sketches ${root}/examples/esp32_arduino/*/*.ino)
 file(COPY ${sources} ${CMAKE_CURRENT_LIST_DIR}/TMiniLidar.cpp ${CMAKE_CURRENT_LIST_DIR}/TMiniLidar.h
+    ${CMAKE_CURRENT_LIST_DIR}/tmini.h
     DESTINATION ${folder}/src)
 file(COPY ${root}/lib/include/tmini DESTINATION ${folder}/src)
 file(COPY ${CMAKE_CURRENT_LIST_DIR}/library.properties ${CMAKE_CURRENT_LIST_DIR}/README.md

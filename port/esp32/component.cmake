@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The library and its ESP32 port as an ESP-IDF component. Included by the CMakeLists.txt at the root.
-# ESP-IDF reads it twice: first as a script, only to learn the requirements.
+# The library and its ESP32 port as an ESP-IDF component. Included by the CMakeLists.txt at the
+# root. ESP-IDF reads it twice: first as a script, only to learn the requirements.
 
 set(tmini_root ${CMAKE_CURRENT_LIST_DIR}/../..)
 file(GLOB tmini_sources ${tmini_root}/lib/src/*.c)
@@ -15,12 +15,14 @@ idf_build_get_property(tmini_target IDF_TARGET)
 if(NOT tmini_target STREQUAL "linux")
     list(APPEND tmini_sources ${CMAKE_CURRENT_LIST_DIR}/tmini_esp32.c)
     list(APPEND tmini_include_dirs ${CMAKE_CURRENT_LIST_DIR})
+    list(APPEND tmini_requires esp_pm)
     list(APPEND tmini_private_requires esp_timer)
     # Drivers got components of their own in 5.3.
     if("${IDF_VERSION_MAJOR}.${IDF_VERSION_MINOR}" VERSION_LESS "5.3")
         list(APPEND tmini_requires driver)
     else()
         list(APPEND tmini_requires esp_driver_uart)
+        list(APPEND tmini_private_requires esp_driver_gpio)
     endif()
 endif()
 

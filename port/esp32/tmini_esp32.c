@@ -3,10 +3,14 @@
 
 #include "tmini_esp32.h"
 
+#include "driver/gpio.h"
 #include "esp_intr_alloc.h"
+#include "esp_log.h"
 #include "esp_timer.h"
 #include "freertos/task.h"
 #include "soc/uart_reg.h"
+
+static const char *const TAG = "tmini";
 
 /* The protocol's section 1. */
 #define BAUD_RATE 230400
@@ -17,9 +21,37 @@
 #define FIFO_THRESHOLD_MAX 126
 #define TIMEOUT_SYMBOLS_MAX 100
 
-/* How long the receiving task waits for an event before it looks by itself, and so how long closing
- * may take. An event that found the queue full is made up for then, if not by the next one. */
+/* How long the receiving task waits for an event before it looks by itself, and so how long
+ * stopping may take. An event that found the queue full is made up for then, if not by the next
+ * one. Not 0 where ticks are longer, or the task would never wait, and nothing of lower priority
+ * ever run. */
 #define LOOK_MS 20
+#define LOOK_TICKS (pdMS_TO_TICKS(LOOK_MS) > 0 ? pdMS_TO_TICKS(LOOK_MS) : 1)
+
+/* The low-power UARTs of some chips have numbers too, after the others: FIFOs of 16 bytes, slow
+ * clocks. */
+#ifdef SOC_UART_HP_NUM
+#define UARTS SOC_UART_HP_NUM
+#else
+#define UARTS UART_NUM_MAX
+#endif
+
+#ifdef CONFIG_FREERTOS_UNICORE
+#define CORES 1
+#else
+#define CORES 2
+#endif
+
+/* The crystal's frequency is the same whatever the power management does to the CPU's and the
+ * buses'. The two oldest chips cannot give it to a UART: there the APB has to keep its full
+ * speed. */
+#if defined(CONFIG_IDF_TARGET_ESP32) || defined(CONFIG_IDF_TARGET_ESP32S2)
+#define UART_CLOCK UART_SCLK_APB
+#define PM_LOCK ESP_PM_APB_FREQ_MAX
+#else
+#define UART_CLOCK UART_SCLK_XTAL
+#define PM_LOCK ESP_PM_NO_LIGHT_SLEEP
+#endif
 
 /* The interrupt handler is where menuconfig has put it; saying otherwise earns a warning. */
 #ifdef CONFIG_UART_ISR_IN_IRAM
@@ -53,23 +85,67 @@ static uint32_t total(const uint32_t *counter)
 
 /* ------------------------------------------------------------------------------------ receiving */
 
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Takes no more than the lidar's ring has room for: what the ring would have to refuse is safe in
+ * the driver's buffer, until the poll has made room. And nothing from behind a gap yet. */
+static size_t wanted_now(const tmini_esp32_t *board)
+{
+    const size_t wanted = smaller(tmini_feed_room(board->lidar), sizeof board->chunk);
+    return board->gap_ahead ? smaller(wanted, board->before_gap) : wanted;
+}
+
+static size_t take(tmini_esp32_t *board, size_t wanted)
+{
+    if (wanted == 0) {
+        return 0;
+    }
+    const int count =
+        uart_read_bytes((uart_port_t)board->config.uart, board->chunk, (uint32_t)wanted, 0);
+    return count > 0 ? tmini_feed(board->lidar, board->chunk, (size_t)count) : 0;
+}
+
+/* The driver has forgotten the FIFO's bytes, behind those that it holds now. (If it has received
+ * more since, the gap is a little earlier: the parser finds its way, and only the scan that it
+ * counts for may differ.) */
+static void note_gap(tmini_esp32_t *board)
+{
+    if (!board->gap_ahead) {
+        board->before_gap = 0;
+        (void)uart_get_buffered_data_len((uart_port_t)board->config.uart, &board->before_gap);
+        board->gap_ahead = true;
+    }
+}
+
+static void pass_gap(tmini_esp32_t *board, size_t wanted, size_t count)
+{
+    board->before_gap -= board->gap_ahead ? count : 0;
+    if (board->gap_ahead && (board->before_gap == 0 || count < wanted)) {
+        board->gap_ahead = false;
+        tmini_feed_gap(board->lidar);
+    }
+}
+
 /* Reads until nothing is left, whatever size an event has named: then neither a lost event nor one
  * that comes late matters. Reading is also what sets a driver with a full buffer going again.
  *
  * There is no flushing here, after overflows either. What the driver holds was received whole; what
  * overflowed is gone already. Flushing would only add intact packets to the loss: the parser finds
- * its way past the hole by itself. */
+ * its way past the gap by itself. */
 static size_t drain(tmini_esp32_t *board)
 {
     size_t drained = 0;
-    int count = 0;
+    size_t wanted = 0;
+    size_t count = 0;
     do {
-        count = uart_read_bytes(board->uart, board->chunk, sizeof board->chunk, 0);
-        if (count > 0) {
-            tmini_feed(board->lidar, board->chunk, (size_t)count);
-            drained += (size_t)count;
-        }
-    } while (count == (int)sizeof board->chunk);
+        wanted = wanted_now(board);
+        count = take(board, wanted);
+        pass_gap(board, wanted, count);
+        drained += count;
+    } while (count > 0 && count == wanted);
     add(&board->counters.bytes, (uint32_t)drained);
     return drained;
 }
@@ -103,6 +179,9 @@ static size_t receive(tmini_esp32_t *board, TickType_t ticks)
     const bool was_full = uxQueueSpacesAvailable(board->events) == 0;
     if (xQueueReceive(board->events, &event, ticks) == pdTRUE) {
         count_event(&board->counters, event.type);
+        if (event.type == UART_FIFO_OVF) {
+            note_gap(board);
+        }
         if (was_full) {
             add(&board->counters.queues_full, 1);
         }
@@ -112,51 +191,109 @@ static size_t receive(tmini_esp32_t *board, TickType_t ticks)
 
 size_t tmini_esp32_receive(tmini_esp32_t *board, TickType_t ticks)
 {
-    if (board == NULL || !board->is_open || board->with_task) {
+    if (board == NULL || !board->is_started || board->config.with_task) {
         return 0;
     }
     return receive(board, ticks);
 }
 
-/* Touches nothing of the board after its last store: the board may be gone by then. */
+/* With a full ring it is the poll that makes it go on, and no event tells of that: look each tick.
+ *
+ * Touches nothing of the board after its last store: the board may be gone by then. */
 static void receive_task(void *argument)
 {
     tmini_esp32_t *const board = argument;
     while (!load(&board->stopping)) {
-        (void)receive(board, pdMS_TO_TICKS(LOOK_MS));
+        (void)receive(board, tmini_feed_room(board->lidar) > 0 ? LOOK_TICKS : 1);
     }
     store(&board->receiving, false);
     vTaskDelete(NULL);
 }
 
-/* --------------------------------------------------------------------------------------- opening */
+/* -------------------------------------------------------------------------------- configuration */
 
 static bool is_within(int value, int least, int most)
 {
     return value >= least && value <= most;
 }
 
-static bool is_valid(const tmini_esp32_config_t *config)
+static const char *mistake_in_task(const tmini_esp32_config_t *config)
 {
-    const bool task_is_valid =
-        !config->with_task || (config->task_stack_bytes > 0 && config->task_priority >= 0 &&
-                               config->task_core >= TMINI_ESP32_ANY_CORE);
-    return config->uart >= 0 && config->tx_pin >= 0 && config->rx_pin >= 0 &&
-           config->buffer_size > FIFO_SIZE && config->queue_length > 0 &&
-           is_within(config->fifo_threshold, 1, FIFO_THRESHOLD_MAX) &&
-           is_within(config->timeout_symbols, 1, TIMEOUT_SYMBOLS_MAX) && task_is_valid;
+    if (!config->with_task) {
+        return NULL;
+    }
+    if (config->task_stack_bytes <= 0) {
+        return "task_stack_bytes";
+    }
+    if (!is_within(config->task_priority, 0, configMAX_PRIORITIES - 1)) {
+        return "task_priority: from 0 to less than configMAX_PRIORITIES";
+    }
+    if (!is_within(config->task_core, TMINI_ESP32_ANY_CORE, CORES - 1)) {
+        return "task_core: FreeRTOS does not run on that core";
+    }
+    return NULL;
+}
+
+/* FreeRTOS and the UART driver stop the program at some of these mistakes, and say nothing about
+ * the lidar: so each is found here, and named. NULL when there is none. */
+static const char *mistake_in(const tmini_esp32_config_t *config)
+{
+    if (!is_within(config->uart, 0, UARTS - 1)) {
+        return "uart: this chip has no such one, or it is a low-power one";
+    }
+    if (config->tx_pin < 0 || config->rx_pin < 0) {
+        return "tx_pin, rx_pin: not chosen (menuconfig, T-mini lidar)";
+    }
+    if (config->buffer_size <= FIFO_SIZE) {
+        return "buffer_size: more than the FIFO's 128 bytes";
+    }
+    if (config->queue_length <= 0) {
+        return "queue_length";
+    }
+    if (!is_within(config->fifo_threshold, 1, FIFO_THRESHOLD_MAX)) {
+        return "fifo_threshold: 1 to 126";
+    }
+    if (!is_within(config->timeout_symbols, 1, TIMEOUT_SYMBOLS_MAX)) {
+        return "timeout_symbols: 1 to 100";
+    }
+    return mistake_in_task(config);
+}
+
+esp_err_t tmini_esp32_init(tmini_esp32_t *board, const tmini_esp32_config_t *config)
+{
+    if (board == NULL || config == NULL) {
+        return ESP_ERR_INVALID_ARG;
+    }
+    const char *const mistake = mistake_in(config);
+    *board = (tmini_esp32_t){.config = *config, .is_ready = mistake == NULL};
+    if (mistake != NULL) {
+        ESP_LOGE(TAG, "%s", mistake);
+        return ESP_ERR_INVALID_ARG;
+    }
+    return ESP_OK;
+}
+
+/* ------------------------------------------------------------------------ starting and stopping */
+
+/* An unplugged lidar must not leave the line floating: noise would be bytes, and frame errors
+ * interrupts. Older versions of ESP-IDF did this by themselves. Pins without a pull-up (34 to 39 of
+ * the ESP32) say so in the log, and work. */
+static void pull_up(int pin)
+{
+    (void)gpio_pullup_en((gpio_num_t)pin);
 }
 
 /* 8N1; no flow control, for which the lidar has no wires. */
-static esp_err_t set_up_uart(uart_port_t uart, const tmini_esp32_config_t *config)
+static esp_err_t set_up_uart(const tmini_esp32_config_t *config)
 {
+    const uart_port_t uart = (uart_port_t)config->uart;
     const uart_config_t line = {
         .baud_rate = BAUD_RATE,
         .data_bits = UART_DATA_8_BITS,
         .parity = UART_PARITY_DISABLE,
         .stop_bits = UART_STOP_BITS_1,
         .flow_ctrl = UART_HW_FLOWCTRL_DISABLE,
-        .source_clk = UART_SCLK_DEFAULT,
+        .source_clk = UART_CLOCK,
     };
     esp_err_t error = uart_param_config(uart, &line);
     if (error == ESP_OK) {
@@ -164,6 +301,7 @@ static esp_err_t set_up_uart(uart_port_t uart, const tmini_esp32_config_t *confi
                              UART_PIN_NO_CHANGE);
     }
     if (error == ESP_OK) {
+        pull_up(config->rx_pin);
         error = uart_set_rx_full_threshold(uart, config->fifo_threshold);
     }
     if (error == ESP_OK) {
@@ -176,8 +314,9 @@ static esp_err_t set_up_uart(uart_port_t uart, const tmini_esp32_config_t *confi
     return error;
 }
 
-static esp_err_t start_task(tmini_esp32_t *board, const tmini_esp32_config_t *config)
+static esp_err_t start_task(tmini_esp32_t *board)
 {
+    const tmini_esp32_config_t *const config = &board->config;
     if (!config->with_task) {
         return ESP_OK;
     }
@@ -190,37 +329,83 @@ static esp_err_t start_task(tmini_esp32_t *board, const tmini_esp32_config_t *co
     return created == pdPASS ? ESP_OK : ESP_ERR_NO_MEM;
 }
 
-esp_err_t tmini_esp32_open(tmini_esp32_t *board, const tmini_esp32_config_t *config, tmini_t *lidar)
+/* Before the UART is set up: the baud rate's divider is worked out from the clock as it is then. */
+static esp_err_t hold_clock(tmini_esp32_t *board)
 {
-    if (board == NULL || config == NULL || lidar == NULL || !is_valid(config)) {
-        return ESP_ERR_INVALID_ARG;
+    esp_pm_lock_handle_t lock = NULL;
+    esp_err_t error = esp_pm_lock_create(PM_LOCK, 0, "tmini", &lock);
+    if (error == ESP_ERR_NOT_SUPPORTED) {
+        return ESP_OK; /* Without power management nothing changes a clock. */
     }
-    if (board->is_open) {
-        return ESP_ERR_INVALID_STATE;
+    if (error != ESP_OK) {
+        return error;
     }
-    *board = (tmini_esp32_t){
-        .lidar = lidar, .uart = (uart_port_t)config->uart, .with_task = config->with_task};
+    error = esp_pm_lock_acquire(lock);
+    if (error != ESP_OK) {
+        (void)esp_pm_lock_delete(lock);
+        return error;
+    }
+    board->pm_lock = lock;
+    return ESP_OK;
+}
+
+static void release_clock(tmini_esp32_t *board)
+{
+    if (board->pm_lock != NULL) {
+        (void)esp_pm_lock_release(board->pm_lock);
+        (void)esp_pm_lock_delete(board->pm_lock);
+        board->pm_lock = NULL;
+    }
+}
+
+/* The driver, and the task over it; on failure nothing is left of either. */
+static esp_err_t begin_reception(tmini_esp32_t *board)
+{
+    const tmini_esp32_config_t *const config = &board->config;
+    const uart_port_t uart = (uart_port_t)config->uart;
     /* No transmit buffer: a command's two bytes always fit in the transmit FIFO. */
-    esp_err_t error = uart_driver_install(board->uart, config->buffer_size, 0, config->queue_length,
+    esp_err_t error = uart_driver_install(uart, config->buffer_size, 0, config->queue_length,
                                           &board->events, INTERRUPT_FLAGS);
     if (error != ESP_OK) {
         return error; /* Not ours to remove: it may be someone else's. */
     }
-    error = set_up_uart(board->uart, config);
+    error = set_up_uart(config);
     if (error == ESP_OK) {
-        error = start_task(board, config);
+        error = start_task(board);
     }
     if (error != ESP_OK) {
-        (void)uart_driver_delete(board->uart);
+        (void)uart_driver_delete(uart);
+    }
+    return error;
+}
+
+esp_err_t tmini_esp32_start(tmini_esp32_t *board, tmini_t *lidar)
+{
+    if (board == NULL || lidar == NULL) {
+        return ESP_ERR_INVALID_ARG;
+    }
+    if (!board->is_ready || board->is_started) {
+        return ESP_ERR_INVALID_STATE;
+    }
+    board->lidar = lidar;
+    board->stopping = false;
+    board->gap_ahead = false;
+    board->counters = (tmini_esp32_counters_t){.bytes = 0};
+    esp_err_t error = hold_clock(board);
+    if (error == ESP_OK) {
+        error = begin_reception(board);
+    }
+    if (error != ESP_OK) {
+        release_clock(board);
         return error;
     }
-    board->is_open = true;
+    board->is_started = true;
     return ESP_OK;
 }
 
-esp_err_t tmini_esp32_close(tmini_esp32_t *board)
+esp_err_t tmini_esp32_stop(tmini_esp32_t *board)
 {
-    if (board == NULL || !board->is_open) {
+    if (board == NULL || !board->is_started) {
         return ESP_ERR_INVALID_STATE;
     }
     /* The task must not be in the driver when that goes, nor hold one of its locks: it ends itself,
@@ -229,8 +414,10 @@ esp_err_t tmini_esp32_close(tmini_esp32_t *board)
     while (load(&board->receiving)) {
         vTaskDelay(1);
     }
-    board->is_open = false;
-    return uart_driver_delete(board->uart);
+    board->is_started = false;
+    const esp_err_t error = uart_driver_delete((uart_port_t)board->config.uart);
+    release_clock(board);
+    return error;
 }
 
 void tmini_esp32_counters(const tmini_esp32_t *board, tmini_esp32_counters_t *counters)
@@ -246,15 +433,15 @@ void tmini_esp32_counters(const tmini_esp32_t *board, tmini_esp32_counters_t *co
     };
 }
 
-/* -------------------------------------------------------------------------------------- the port */
+/* ------------------------------------------------------------------------------------- the port */
 
 static int port_write(void *context, const uint8_t *bytes, size_t count)
 {
     const tmini_esp32_t *const board = context;
-    if (!board->is_open) {
+    if (!board->is_started) {
         return -1;
     }
-    return uart_tx_chars(board->uart, (const char *)bytes, (uint32_t)count);
+    return uart_tx_chars((uart_port_t)board->config.uart, (const char *)bytes, (uint32_t)count);
 }
 
 static uint32_t port_now_ms(void *context)
@@ -266,7 +453,7 @@ static uint32_t port_now_ms(void *context)
 static void port_wait(void *context)
 {
     tmini_esp32_t *const board = context;
-    if (board->is_open && !board->with_task) {
+    if (board->is_started && !board->config.with_task) {
         (void)receive(board, 1);
     } else {
         vTaskDelay(1);

@@ -10,11 +10,12 @@
  *     static tmini_t lidar;
  *     static tmini_esp32_t board;
  *
+ *     const tmini_esp32_config_t wiring = TMINI_ESP32_CONFIG_DEFAULT;
+ *     ESP_ERROR_CHECK(tmini_esp32_init(&board, &wiring));
  *     config.port = &tmini_esp32_port;
  *     config.port_context = &board;
- *     tmini_init(&lidar, &config);                                  first the lidar,
- *     const tmini_esp32_config_t wiring = TMINI_ESP32_CONFIG_DEFAULT;
- *     ESP_ERROR_CHECK(tmini_esp32_open(&board, &wiring, &lidar));   then bytes for it
+ *     tmini_init(&lidar, &config);
+ *     ESP_ERROR_CHECK(tmini_esp32_start(&board, &lidar));   bytes come from here on
  *
  * With a task (the default), that task feeds and the one that polls is another, on the same core or
  * not: the lidar's ring is made for that. Without (`with_task` false), one task calls both
@@ -29,6 +30,7 @@
 
 #include "driver/uart.h"
 #include "esp_err.h"
+#include "esp_pm.h"
 #include "freertos/FreeRTOS.h"
 #include "freertos/queue.h"
 #include "sdkconfig.h"
@@ -43,17 +45,17 @@ extern "C" {
 #define TMINI_ESP32_ANY_CORE (-1)
 
 typedef struct {
-    int uart;             /* 1 for UART1, and so on. UART0 is the console unless moved. */
+    int uart;             /* 1 for UART1, and so on; not a low-power one. UART0 is the console. */
     int tx_pin;           /* The GPIO wired to the lidar's RX. */
-    int rx_pin;           /* The GPIO wired to the lidar's TX. */
+    int rx_pin;           /* The GPIO wired to the lidar's TX. Its pull-up is switched on. */
     int buffer_size;      /* Of the UART driver's ring buffer: more than the FIFO's 128 bytes. */
     int queue_length;     /* Of the UART driver's event queue. */
     int fifo_threshold;   /* Bytes in the FIFO that raise the interrupt: 1 to 126. */
     int timeout_symbols;  /* Or so many byte times of silence behind the last byte: 1 to 100. */
     bool with_task;       /* Start a receiving task; else the caller calls tmini_esp32_receive(). */
     int task_stack_bytes; /* The rest is for that task alone. */
-    int task_priority;    /* Above the task that polls. */
-    int task_core;        /* 0, 1 or TMINI_ESP32_ANY_CORE. */
+    int task_priority;    /* Above the task that polls, below FreeRTOS's configMAX_PRIORITIES. */
+    int task_core;        /* A core that FreeRTOS runs on (0, 1), or TMINI_ESP32_ANY_CORE. */
 } tmini_esp32_config_t;
 
 /* Wiring and sizes as chosen in menuconfig, "T-mini lidar". Kconfig says what each is good for. */
@@ -69,55 +71,67 @@ typedef struct {
         .task_core = CONFIG_TMINI_ESP32_TASK_CORE,                                          \
     }
 
-/* What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. What the
- * parser then makes of them is in tmini_counters(). */
+/* What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. What
+ * the parser then makes of them is in tmini_counters(). */
 typedef struct {
     uint32_t bytes;          /* Handed to the lidar. */
     uint32_t fifo_overflows; /* The interrupt came too late; the FIFO's 128 bytes were lost. */
-    uint32_t buffers_full;   /* The task came too late; bytes waited, and may then overflow. */
+    uint32_t buffers_full;   /* Poll or task came too late; bytes waited, and may then overflow. */
     uint32_t queues_full;    /* Events may have been lost, but no bytes. */
     uint32_t breaks;         /* The line was low for longer than a byte: unplugged? */
     uint32_t frame_errors;   /* A stop bit was missing: wrong baud rate, noise? */
     uint32_t parity_errors;  /* Cannot happen without a parity bit; counted all the same. */
 } tmini_esp32_counters_t;
 
-/* One UART with a lidar. All zero: closed. Treat the members as private. */
+/* One UART with a lidar. Treat the members as private. */
 typedef struct {
+    tmini_esp32_config_t config;
     tmini_t *lidar;
     QueueHandle_t events;
-    uart_port_t uart;
-    bool is_open;
-    bool with_task;
-    bool stopping;                   /* Written by tmini_esp32_close(), read by the task. */
+    esp_pm_lock_handle_t pm_lock; /* NULL: power management is not compiled in. */
+    bool is_ready;                /* tmini_esp32_init() has found nothing wrong. */
+    bool is_started;
+    bool gap_ahead;                  /* Bytes were lost, */
+    size_t before_gap;               /* behind so many that are still in the driver's buffer. */
+    bool stopping;                   /* Written by tmini_esp32_stop(), read by the task. */
     bool receiving;                  /* Written by the task: cleared by its last breath. */
     tmini_esp32_counters_t counters; /* Written by the receiving context alone. */
     uint8_t chunk[128];
 } tmini_esp32_t;
 
-/* The lidar's port. Its context is the tmini_esp32_t, which need not be open for tmini_init(). */
+/* The lidar's port. Its context is the tmini_esp32_t. */
 extern const tmini_port_t tmini_esp32_port;
+
+/* Checks and copies the configuration; touches no hardware. Not while `board` is started. Returns
+ * ESP_OK, or ESP_ERR_INVALID_ARG for a null pointer or a value outside its documented range, with a
+ * line in the log that names it. */
+esp_err_t tmini_esp32_init(tmini_esp32_t *board, const tmini_esp32_config_t *config);
 
 /* Installs the UART driver, sets it up for the lidar and starts the receiving task. The UART's
  * interrupt is served by the core that makes this call. `lidar` has been through tmini_init(); both
- * it and `board` stay the caller's and must last until tmini_esp32_close().
+ * it and `board` stay the caller's and must last until tmini_esp32_stop(). The counters start anew.
+ *
+ * Until then a lock of the power management is held, if that is compiled in (CONFIG_PM_ENABLE): no
+ * light sleep, in which a UART receives nothing; and on the ESP32 and the ESP32-S2, whose UARTs
+ * take their clock from the APB, no slower APB.
  *
  * Context: a task. Waits only for memory. Returns ESP_OK, or with nothing left behind
- *   ESP_ERR_INVALID_ARG    null pointer, or a value outside its documented range
- *   ESP_ERR_INVALID_STATE  already open
- *   ESP_ERR_NO_MEM         no memory for the task
+ *   ESP_ERR_INVALID_ARG    null pointer
+ *   ESP_ERR_INVALID_STATE  started already, or tmini_esp32_init() has not succeeded
+ *   ESP_ERR_NO_MEM         no memory for the task or the lock
  *   another                as the UART driver gave it; ESP_FAIL if the UART is taken */
-esp_err_t tmini_esp32_open(tmini_esp32_t *board, const tmini_esp32_config_t *config,
-                           tmini_t *lidar);
+esp_err_t tmini_esp32_start(tmini_esp32_t *board, tmini_t *lidar);
 
 /* Ends the receiving task and removes the UART driver; also while bytes come in. Stop the lidar
- * before, or it goes on scanning. `board` may be opened again; the counters start anew.
+ * before, or it goes on scanning. `board` may be started again.
  *
- * Context: the task that polls. Waits up to about 30 ms for the receiving task to end. Returns
- * ESP_OK, ESP_ERR_INVALID_STATE when not open, or what the UART driver gave. */
-esp_err_t tmini_esp32_close(tmini_esp32_t *board);
+ * Context: the task that polls. Waits for the receiving task to end: 20 ms and two ticks at most.
+ * Returns ESP_OK, ESP_ERR_INVALID_STATE when not started, or what the UART driver gave. */
+esp_err_t tmini_esp32_stop(tmini_esp32_t *board);
 
-/* Waits up to `ticks` for bytes, and hands all that have come to the lidar. Returns how many. For use
- * without a receiving task only; with one, or when closed, it returns 0 at once.
+/* Waits up to `ticks` for bytes, and hands to the lidar what fits into its ring; the rest waits in
+ * the UART driver's buffer for the next call. Returns how many. For use without a receiving task
+ * only; with one, or when stopped, it returns 0 at once.
  *
  * Context: the task that polls. */
 size_t tmini_esp32_receive(tmini_esp32_t *board, TickType_t ticks);

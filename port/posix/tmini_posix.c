@@ -10,9 +10,15 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
+#include <string.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/time.h>
 #include <termios.h>
 #include <time.h>
 #include <unistd.h>
@@ -24,7 +30,10 @@
 /* Half of the smallest receive buffer that a lidar may have. */
 #define BLOCK_SIZE 128
 
-/* ------------------------------------------------------------------------------------- opening */
+#define SOCKET_PREFIX "tcp:"
+#define CONNECT_S 5
+
+/* ----------------------------------------------------------------------------------- starting */
 
 static tmini_posix_status_t status_of_open(int error)
 {
@@ -59,8 +68,8 @@ static tmini_posix_status_t claim(int fd)
     return TMINI_POSIX_OK;
 }
 
-/* Bytes as they are, both ways; no modem lines, no flow control. With VMIN 1, reading nothing from a
- * device without O_NONBLOCK's EAGAIN means that it has hung up. */
+/* Bytes as they are, both ways; no modem lines, no flow control. With VMIN 1, reading nothing from
+ * a device without O_NONBLOCK's EAGAIN means that it has hung up. */
 static void make_raw(struct termios *settings)
 {
     settings->c_iflag = IGNBRK;
@@ -88,30 +97,97 @@ static tmini_posix_status_t set_up(int fd)
     return TMINI_POSIX_OK;
 }
 
-tmini_posix_status_t tmini_posix_open(tmini_posix_t *serial, const char *path)
+void tmini_posix_init(tmini_posix_t *serial, const char *path)
 {
-    *serial = (tmini_posix_t){.fd = -1, .state = TMINI_POSIX_NO_DEVICE};
-    const int fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK);
-    if (fd < 0) {
-        serial->state = status_of_open(errno);
-        return serial->state;
+    *serial = (tmini_posix_t){.path = path, .fd = -1, .state = TMINI_POSIX_NO_DEVICE};
+}
+
+static tmini_posix_status_t open_device(tmini_posix_t *serial)
+{
+    serial->fd = open(serial->path, O_RDWR | O_NOCTTY | O_NONBLOCK);
+    if (serial->fd < 0) {
+        return status_of_open(errno);
     }
-    tmini_posix_status_t status = claim(fd);
-    if (status == TMINI_POSIX_OK) {
-        status = set_up(fd);
+    const tmini_posix_status_t status = claim(serial->fd);
+    return status == TMINI_POSIX_OK ? set_up(serial->fd) : status;
+}
+
+/* Returns the socket, or -1 with errno set. */
+static int connect_to(const struct addrinfo *place)
+{
+    const struct timeval patience = {.tv_sec = CONNECT_S};
+    const int on = 1;
+    const int fd = socket(place->ai_family, place->ai_socktype, place->ai_protocol);
+    (void)setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+    (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    if (fd >= 0 && connect(fd, place->ai_addr, place->ai_addrlen) != 0) {
+        const int error = errno;
+        (void)close(fd);
+        errno = error == EINPROGRESS ? ETIMEDOUT : error;
+        return -1;
     }
+    return fd;
+}
+
+/* "tcp:HOST:PORT"; the last colon counts, because HOST may be an IPv6 address. */
+static tmini_posix_status_t open_socket(tmini_posix_t *serial)
+{
+    const struct addrinfo hints = {.ai_socktype = SOCK_STREAM};
+    const char *const host = serial->path + sizeof SOCKET_PREFIX - 1;
+    const char *const colon = strrchr(host, ':');
+    struct addrinfo *places = NULL;
+    char name[256];
+    if (colon == NULL || colon == host || colon[1] == '\0' ||
+        (size_t)(colon - host) >= sizeof name) {
+        return TMINI_POSIX_ADDRESS;
+    }
+    memcpy(name, host, (size_t)(colon - host));
+    name[colon - host] = '\0';
+    if (getaddrinfo(name, colon + 1, &hints, &places) != 0) {
+        return TMINI_POSIX_ADDRESS;
+    }
+    for (const struct addrinfo *place = places; place != NULL && serial->fd < 0;
+         place = place->ai_next) {
+        serial->fd = connect_to(place);
+    }
+    const int error = errno;
+    freeaddrinfo(places);
+    errno = error;
+    if (serial->fd < 0) {
+        return TMINI_POSIX_FAILED;
+    }
+    (void)fcntl(serial->fd, F_SETFL, fcntl(serial->fd, F_GETFL) | O_NONBLOCK);
+    return TMINI_POSIX_OK;
+}
+
+tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *serial, int fd, tmini_t *lidar)
+{
+    tmini_posix_stop(serial);
+    serial->lidar = lidar;
+    serial->received = 0;
     serial->fd = fd;
-    serial->state = status;
+    serial->state = TMINI_POSIX_OK;
+    (void)fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) | O_NONBLOCK);
+    return serial->state;
+}
+
+tmini_posix_status_t tmini_posix_start(tmini_posix_t *serial, tmini_t *lidar)
+{
+    tmini_posix_stop(serial); /* Started twice: from the beginning, and nothing is left open. */
+    serial->lidar = lidar;
+    serial->received = 0;
+    const bool is_socket = strncmp(serial->path, SOCKET_PREFIX, sizeof SOCKET_PREFIX - 1) == 0;
+    const tmini_posix_status_t status = is_socket ? open_socket(serial) : open_device(serial);
     if (status != TMINI_POSIX_OK) {
         const int error = errno;
-        tmini_posix_close(serial);
-        serial->state = status;
+        tmini_posix_stop(serial);
         errno = error;
     }
+    serial->state = status;
     return status;
 }
 
-void tmini_posix_close(tmini_posix_t *serial)
+void tmini_posix_stop(tmini_posix_t *serial)
 {
     if (serial->fd >= 0) {
         (void)ioctl(serial->fd, TIOCNXCL);
@@ -121,12 +197,7 @@ void tmini_posix_close(tmini_posix_t *serial)
     serial->state = TMINI_POSIX_NO_DEVICE;
 }
 
-/* ----------------------------------------------------------------------------------- receiving */
-
-void tmini_posix_attach(tmini_posix_t *serial, tmini_t *lidar)
-{
-    serial->lidar = lidar;
-}
+/* ---------------------------------------------------------------------------------- receiving */
 
 void tmini_posix_tap(tmini_posix_t *serial, tmini_posix_tap_t tap, void *context)
 {
@@ -148,6 +219,9 @@ static tmini_posix_status_t status_of_transfer(int error)
     case ENXIO:
     case ENODEV:
     case EBADF:
+    case EPIPE:
+    case ECONNRESET:
+    case ETIMEDOUT:
         return TMINI_POSIX_UNPLUGGED;
     default:
         return TMINI_POSIX_FAILED;
@@ -165,9 +239,17 @@ static void take(tmini_posix_t *serial, const uint8_t *bytes, size_t count)
     }
 }
 
+/* What the ring would have to refuse is safe with the system, until polling has made room. */
+static size_t room(const tmini_posix_t *serial)
+{
+    const size_t space = serial->lidar != NULL ? tmini_feed_room(serial->lidar) : BLOCK_SIZE;
+    return space < BLOCK_SIZE ? space : BLOCK_SIZE;
+}
+
 tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms)
 {
-    if (serial->state != TMINI_POSIX_OK) {
+    const size_t wanted = room(serial);
+    if (serial->state != TMINI_POSIX_OK || wanted == 0) {
         return serial->state;
     }
     struct pollfd device = {.fd = serial->fd, .events = POLLIN};
@@ -177,7 +259,7 @@ tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms)
         return serial->state;
     }
     uint8_t block[BLOCK_SIZE];
-    const ssize_t count = read(serial->fd, block, sizeof block);
+    const ssize_t count = read(serial->fd, block, wanted);
     if (count > 0) {
         take(serial, block, (size_t)count);
     } else {
@@ -186,7 +268,19 @@ tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms)
     return serial->state;
 }
 
-/* ------------------------------------------------------------------------------------ the port */
+/* ----------------------------------------------------------------------------------- the port */
+
+/* A socket whose other end has gone answers write() with a signal. */
+static ssize_t write_quietly(int fd, const uint8_t *bytes, size_t count)
+{
+#ifdef MSG_NOSIGNAL
+    const ssize_t sent = send(fd, bytes, count, MSG_NOSIGNAL);
+    if (sent >= 0 || errno != ENOTSOCK) {
+        return sent;
+    }
+#endif
+    return write(fd, bytes, count);
+}
 
 static int write_bytes(void *context, const uint8_t *bytes, size_t count)
 {
@@ -194,7 +288,7 @@ static int write_bytes(void *context, const uint8_t *bytes, size_t count)
     if (serial->state != TMINI_POSIX_OK) {
         return -1;
     }
-    const ssize_t written = write(serial->fd, bytes, count);
+    const ssize_t written = write_quietly(serial->fd, bytes, count);
     if (written >= 0) {
         return (int)written;
     }
@@ -240,6 +334,8 @@ const char *tmini_posix_status_name(tmini_posix_status_t status)
         return "unplugged";
     case TMINI_POSIX_FAILED:
         return "failed";
+    case TMINI_POSIX_ADDRESS:
+        return "no such address";
     }
     return "unknown status";
 }

@@ -2,27 +2,29 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* The port for computers: a lidar on a serial device of Linux or another POSIX system, such as
- * /dev/ttyUSB0. Works on pseudo-terminals too. Written for macOS as well (/dev/cu.usbserial-110), but
- * not tried on macOS.
+ * /dev/ttyUSB0. Works on pseudo-terminals too. Written for macOS as well (/dev/cu.usbserial-110),
+ * but not tried on macOS.
  *
  *     static tmini_posix_t serial;
  *
- *     if (tmini_posix_open(&serial, "/dev/ttyUSB0") != TMINI_POSIX_OK) { … }
+ *     tmini_posix_init(&serial, "/dev/ttyUSB0");
  *     config.port = &tmini_posix_port;
  *     config.port_context = &serial;
  *     tmini_init(&lidar, &config);
- *     tmini_posix_attach(&serial, &lidar);
+ *     if (tmini_posix_start(&serial, &lidar) != TMINI_POSIX_OK) { … }
  *     tmini_start(&lidar);
  *     while (tmini_posix_receive(&serial, 10) == TMINI_POSIX_OK) {
  *         while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) { … }
  *     }
+ *     tmini_posix_stop(&serial);
  *
- * A computer has other things to do, and may bring bytes late: let the configuration's timing be a copy
- * of tmini_timing_default with a silence_ms of 250, as examples/obstacle_stop does.
+ * A computer has other things to do, and may bring bytes late: let the configuration's timing
+ * be a copy of tmini_timing_default with a frame_timeout_ms of 250, as examples/obstacle_stop
+ * does.
  *
- * There is no interrupt here: the one context that polls also receives. The port's `wait` receives as
- * well, so that the functions of tmini_blocking.h work. Any number of lidars, each with a tmini_posix_t
- * of its own. */
+ * There is no interrupt here: the one context that polls also receives. The port's `wait`
+ * receives as well, so that the functions of tmini_blocking.h work. Any number of lidars, each
+ * with a tmini_posix_t of its own. */
 
 #ifndef TMINI_POSIX_H
 #define TMINI_POSIX_H
@@ -45,6 +47,7 @@ typedef enum {
     TMINI_POSIX_BAUD_RATE = -5,      /* It cannot do 230400 baud. */
     TMINI_POSIX_UNPLUGGED = -6,      /* It was there, and has gone. */
     TMINI_POSIX_FAILED = -7,         /* Something else; errno tells. */
+    TMINI_POSIX_ADDRESS = -8,        /* It is no tcp:HOST:PORT, or there is no such host. */
 } tmini_posix_status_t;
 
 /* Called with all bytes that are received, before the lidar gets them; for recordings. */
@@ -52,7 +55,8 @@ typedef void (*tmini_posix_tap_t)(void *context, const uint8_t *bytes, size_t co
 
 /* One serial device. `received` may be read, the rest is private. */
 typedef struct {
-    uint64_t received; /* Bytes since it was opened. */
+    uint64_t received; /* Bytes since it was started. */
+    const char *path;
     tmini_t *lidar;
     tmini_posix_tap_t tap;
     void *tap_context;
@@ -63,23 +67,34 @@ typedef struct {
 /* The `port` of tmini_config_t; its `port_context` is the tmini_posix_t. */
 extern const tmini_port_t tmini_posix_port;
 
-/* Opens a device at 230400 baud, 8N1, without flow control, for this program alone, and drops what it
- * received before. May wait as long as the system's open does. */
-tmini_posix_status_t tmini_posix_open(tmini_posix_t *serial, const char *path);
-
-/* After tmini_init(): what is received goes to this lidar. */
-void tmini_posix_attach(tmini_posix_t *serial, tmini_t *lidar);
+/* Names the device, or the socket to a controller that forwards its UART: "tcp:HOST:PORT". Touches
+ * nothing yet. `path` stays the caller's, and must last as long as `serial` is used. Not between
+ * tmini_posix_start() and tmini_posix_stop(). */
+void tmini_posix_init(tmini_posix_t *serial, const char *path);
 
 /* From now on, what is received goes to `tap` too; none when NULL. */
 void tmini_posix_tap(tmini_posix_t *serial, tmini_posix_tap_t tap, void *context);
 
-/* Waits up to `timeout_ms` for bytes and feeds them to the lidar, at most 128: call tmini_poll() until
- * it returns TMINI_EVENT_NONE in between. A signal ends the waiting early. Returns TMINI_POSIX_OK, also
- * when nothing came; TMINI_POSIX_UNPLUGGED or TMINI_POSIX_FAILED, then also ever after. */
+/* Opens the device at 230400 baud, 8N1, without flow control, for this program alone, and drops
+ * what it received before; or connects the socket, for some seconds at most. From then on received
+ * bytes go to `lidar`, which has been through tmini_init(); NULL: to the tap alone. May wait as
+ * long as the system's open does. A device that was stopped, or could not be opened, may be started
+ * again. */
+tmini_posix_status_t tmini_posix_start(tmini_posix_t *serial, tmini_t *lidar);
+
+/* The same over a descriptor that is open already, such as a socket to a controller that forwards
+ * its UART. It becomes the port's own: tmini_posix_stop() closes it. Returns TMINI_POSIX_OK. */
+tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *serial, int fd, tmini_t *lidar);
+
+/* Waits up to `timeout_ms` for bytes and feeds them to the lidar, at most 128 and no more than its
+ * ring has room for: call tmini_poll() until it returns TMINI_EVENT_NONE in between. Without room
+ * it returns at once; the bytes stay with the system. A signal ends the waiting early. Returns
+ * TMINI_POSIX_OK, also when nothing came; TMINI_POSIX_UNPLUGGED or TMINI_POSIX_FAILED, then also
+ * ever after. */
 tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms);
 
-/* Closes the device. */
-void tmini_posix_close(tmini_posix_t *serial);
+/* Closes the device, if it is open. Stop the lidar before, or it goes on scanning. */
+void tmini_posix_stop(tmini_posix_t *serial);
 
 /* The status as a short English phrase, for example "no such device". Never NULL. */
 const char *tmini_posix_status_name(tmini_posix_status_t status);

@@ -3,16 +3,12 @@
 
 #include "tmini_stm32_hal.h"
 
-#include <string.h>
-
 enum reception { RECEPTION_NONE, RECEPTION_DMA, RECEPTION_BLOCKS, RECEPTION_BYTES };
 
-/* How long reception may stand still before it is started again. The HAL reports an error only when
- * it has stopped its DMA, some microseconds after it has marked the reception as ended. */
-#define STANDSTILL_MS 3u
+/* Between two attempts to start a reception that will not start or stay. */
+#define RESTART_PAUSE_MS 3u
 
-/* The DMA controller counts in 16 bits; a power of two is at most this. */
-#define RX_SIZE_MAX 32768u
+#define BLOCK_SIZE_MIN 64u
 
 /* ------------------------------------------------------------------- what differs by family */
 
@@ -21,10 +17,9 @@ enum reception { RECEPTION_NONE, RECEPTION_DMA, RECEPTION_BLOCKS, RECEPTION_BYTE
 
 #define CACHE_LINE 32u
 
-static bool is_good_buffer(const void *buffer, size_t size)
+static bool is_aligned(const void *buffer, size_t size)
 {
-    return buffer != NULL && size > 0 && (uintptr_t)buffer % CACHE_LINE == 0 &&
-           size % CACHE_LINE == 0;
+    return (uintptr_t)buffer % CACHE_LINE == 0 && size % CACHE_LINE == 0;
 }
 
 /* Whole lines from the one in which `from` lies. The CPU writes to none of them while DMA runs, so
@@ -32,11 +27,12 @@ static bool is_good_buffer(const void *buffer, size_t size)
 static void read_anew(uint8_t *buffer, size_t from, size_t to)
 {
     const size_t first = from / CACHE_LINE * CACHE_LINE;
-    if (to > first) {
+    if (to > from) {
         SCB_InvalidateDCache_by_Addr((void *)&buffer[first], (int32_t)(to - first));
     }
 }
 
+/* Nothing may be written from the cache on its own, later, over what DMA has brought. */
 static void write_through(uint8_t *buffer, size_t size)
 {
     SCB_CleanInvalidateDCache_by_Addr((void *)buffer, (int32_t)size);
@@ -44,9 +40,11 @@ static void write_through(uint8_t *buffer, size_t size)
 
 #else
 
-static bool is_good_buffer(const void *buffer, size_t size)
+static bool is_aligned(const void *buffer, size_t size)
 {
-    return buffer != NULL && size > 0;
+    (void)buffer;
+    (void)size;
+    return true;
 }
 
 static void read_anew(const uint8_t *buffer, size_t from, size_t to)
@@ -64,24 +62,59 @@ static void write_through(const uint8_t *buffer, size_t size)
 
 #endif
 
-/* The newer DMA controllers (H5, U5, …) run in circles by linked lists. */
-#ifdef DMA_LINKEDLIST_CIRCULAR
-
-static bool is_circular(const DMA_HandleTypeDef *dma)
-{
-    return dma->Mode == DMA_LINKEDLIST_CIRCULAR;
-}
-
+/* A bit of a register that the HAL's interrupts change as well. HALs from before 2021 have no such
+ * thing; there the instructions between reading and writing are a risk that the HAL takes, too. */
+#ifdef ATOMIC_CLEAR_BIT
+#define CLEAR_SHARED_BIT(reg, bit) ATOMIC_CLEAR_BIT(reg, bit)
 #else
-
-static bool is_circular(const DMA_HandleTypeDef *dma)
-{
-    return dma->Init.Mode == DMA_CIRCULAR;
-}
-
+#define CLEAR_SHARED_BIT(reg, bit) CLEAR_BIT(reg, bit)
 #endif
 
-/* ------------------------------------------------------------------------------- receiving */
+#ifdef HAL_DMA_MODULE_ENABLED
+
+/* The newer DMA controllers (H5, U5, …) run in circles by linked lists. */
+static bool is_circular(const DMA_HandleTypeDef *dma)
+{
+#ifdef DMA_LINKEDLIST_CIRCULAR
+    return dma->Mode == DMA_LINKEDLIST_CIRCULAR;
+#else
+    return dma->Init.Mode == DMA_CIRCULAR;
+#endif
+}
+
+/* Bytes that wait in the DMA's FIFO are counted as received before they are in memory. */
+static bool has_fifo(const DMA_HandleTypeDef *dma)
+{
+#ifdef DMA_FIFOMODE_DISABLE
+    return dma->Init.FIFOMode != DMA_FIFOMODE_DISABLE;
+#else
+    (void)dma;
+    return false;
+#endif
+}
+
+static bool has_good_dma(const UART_HandleTypeDef *uart)
+{
+    return uart->hdmarx != NULL && is_circular(uart->hdmarx) && !has_fifo(uart->hdmarx);
+}
+
+/* With the idle line, where the HAL also says which event it reports (since 2022). Without, half
+ * and whole buffer and the polls do as well. */
+static HAL_StatusTypeDef receive_by_dma(tmini_stm32_hal_t *port)
+{
+#ifdef HAL_UART_RXEVENT_HT
+    return HAL_UARTEx_ReceiveToIdle_DMA(port->uart, port->buffer, port->size);
+#else
+    return HAL_UART_Receive_DMA(port->uart, port->buffer, port->size);
+#endif
+}
+
+/* Errors of the line would stop the DMA for good: the HAL takes any of them as the end. Without
+ * their interrupt each costs its byte. The UART goes on by itself also after an overrun. */
+static void ignore_line_errors(tmini_stm32_hal_t *port)
+{
+    CLEAR_SHARED_BIT(port->uart->Instance->CR3, USART_CR3_EIE);
+}
 
 /* The index that DMA writes next; the size itself when it has just come full circle. */
 static uint16_t dma_position(const tmini_stm32_hal_t *port)
@@ -89,130 +122,52 @@ static uint16_t dma_position(const tmini_stm32_hal_t *port)
     return (uint16_t)(port->size - __HAL_DMA_GET_COUNTER(port->uart->hdmarx));
 }
 
-/* Hands over what DMA has written into the library's own buffer. The position is the hardware's, not
- * the event's: an idle event may overtake the half-transfer event of bytes that came before, whose
- * position would then be one of the past. For the same reason a second event must not come between
- * reading the position and using it, whatever the priorities are: interrupts are held back for these
- * few instructions. */
-static void publish(tmini_stm32_hal_t *port)
+/* Taken back at once: if the DMA's interrupt has come into the idle line's, between the HAL's
+ * writing the type there and calling, both would read the DMA's. */
+static void tell_event(tmini_stm32_hal_t *port)
 {
-    const uint32_t primask = __get_PRIMASK();
-    __disable_irq();
-    const uint16_t position = dma_position(port);
-    if (position < port->position) {
-        read_anew(port->buffer, port->position, port->size);
-        read_anew(port->buffer, 0, position);
-    } else {
-        read_anew(port->buffer, port->position, position);
-    }
-    tmini_feed_dma(port->lidar, position);
-    port->position = position;
-    __set_PRIMASK(primask);
+#ifdef HAL_UART_RXEVENT_HT
+    const uint32_t type = port->uart->RxEventType;
+    port->uart->RxEventType = HAL_UART_RXEVENT_IDLE;
+    tmini_stm32_circle_tell(&port->circle, type == HAL_UART_RXEVENT_HT,
+                            type == HAL_UART_RXEVENT_TC);
+#else
+    (void)port;
+#endif
 }
 
-/* Hands over the block's bytes up to `end`. An event that was overtaken brings nothing new. */
-static void copy(tmini_stm32_hal_t *port, uint16_t end)
+#else /* The project's HAL has no DMA. */
+
+static bool has_good_dma(const UART_HandleTypeDef *uart)
 {
-    if (end <= port->position || end > port->size) {
-        return;
-    }
-    if (port->uart->hdmarx != NULL) {
-        read_anew(port->buffer, port->position, end);
-    }
-    tmini_feed(port->lidar, &port->buffer[port->position], (size_t)(end - port->position));
-    port->position = end;
+    (void)uart;
+    return false;
 }
 
-/* What had come when reception was broken off. */
-static void save_remainder(tmini_stm32_hal_t *port)
+static HAL_StatusTypeDef receive_by_dma(const tmini_stm32_hal_t *port)
 {
-    const UART_HandleTypeDef *const uart = port->uart;
-    if (port->reception == RECEPTION_BYTES) {
-        return;
-    }
-    if (uart->hdmarx == NULL) {
-        copy(port, (uint16_t)(port->size - uart->RxXferCount));
-    } else if (__HAL_DMA_GET_COUNTER(uart->hdmarx) == 0) {
-        return; /* The DMA controller was reset, and has forgotten. */
-    } else if (port->reception == RECEPTION_DMA) {
-        publish(port);
-    } else {
-        copy(port, dma_position(port));
-    }
+    (void)port;
+    return HAL_ERROR;
 }
 
-/* DMA begins again at the buffer's start. The bytes from here to its end are old ones: they are
- * overwritten, so that they cannot be taken for new packets, and passed. */
-static void pass_remainder(tmini_stm32_hal_t *port)
+static void ignore_line_errors(const tmini_stm32_hal_t *port)
 {
-    if (port->position > 0) {
-        memset(&port->buffer[port->position], 0, (size_t)(port->size - port->position));
-        write_through(port->buffer, port->size);
-        tmini_feed_dma(port->lidar, port->size);
-    }
+    (void)port;
 }
 
-static bool start(tmini_stm32_hal_t *port)
+static uint16_t dma_position(const tmini_stm32_hal_t *port)
 {
-    port->alive_ms = HAL_GetTick();
-    if (port->reception == RECEPTION_DMA) {
-        pass_remainder(port);
-    }
-    port->position = 0;
-    HAL_StatusTypeDef status;
-    if (port->reception == RECEPTION_BYTES) {
-        status = HAL_UART_Receive_IT(port->uart, port->buffer, port->size);
-    } else if (port->uart->hdmarx != NULL) {
-        status = HAL_UARTEx_ReceiveToIdle_DMA(port->uart, port->buffer, port->size);
-    } else {
-        status = HAL_UARTEx_ReceiveToIdle_IT(port->uart, port->buffer, port->size);
-    }
-    return status == HAL_OK;
+    return port->circle.position;
 }
 
-static bool is_receiving(const tmini_stm32_hal_t *port)
+static void tell_event(const tmini_stm32_hal_t *port)
 {
-    return port->uart->RxState != HAL_UART_STATE_READY;
+    (void)port;
 }
 
-static void restart(tmini_stm32_hal_t *port)
-{
-    port->counters.restarts = port->counters.restarts + 1;
-    (void)start(port); /* If it fails, the next polls try again. */
-}
+#endif
 
-static bool is_ours(const tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
-{
-    return uart == port->uart && port->reception != RECEPTION_NONE;
-}
-
-void tmini_stm32_hal_rx_event(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart,
-                              uint16_t size)
-{
-    if (!is_ours(port, uart)) {
-        return;
-    }
-    if (port->reception == RECEPTION_DMA) {
-        publish(port);
-        return;
-    }
-    copy(port, size);
-    if (!is_receiving(port)) {
-        (void)start(port); /* A block by interrupt or by DMA that is not circular has ended. */
-    } else if (port->position == port->size) {
-        port->position = 0;
-    }
-}
-
-void tmini_stm32_hal_rx_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
-{
-    if (is_ours(port, uart)) {
-        tmini_feed_byte(port->lidar, port->byte);
-        (void)start(port);
-    }
-}
-
-/* ---------------------------------------------------------------------------------- errors */
+/* ------------------------------------------------------------------------------- line errors */
 
 static void count_errors(volatile tmini_stm32_hal_counters_t *counters, uint32_t code)
 {
@@ -223,21 +178,229 @@ static void count_errors(volatile tmini_stm32_hal_counters_t *counters, uint32_t
     counters->other_errors = counters->other_errors + ((code & ~known) != 0);
 }
 
-void tmini_stm32_hal_error(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
+static uint32_t line_errors(const UART_HandleTypeDef *uart)
 {
-    if (!is_ours(port, uart)) {
+    uint32_t errors = HAL_UART_ERROR_NONE;
+    errors |= __HAL_UART_GET_FLAG(uart, UART_FLAG_ORE) ? HAL_UART_ERROR_ORE : 0;
+    errors |= __HAL_UART_GET_FLAG(uart, UART_FLAG_FE) ? HAL_UART_ERROR_FE : 0;
+    errors |= __HAL_UART_GET_FLAG(uart, UART_FLAG_NE) ? HAL_UART_ERROR_NE : 0;
+    return errors;
+}
+
+/* With DMA, where no interrupt tells of them. Flags in SR clear themselves when DMA reads the next
+ * byte, because they have been looked at here; those in ISR are cleared. */
+static void look_at_line_errors(tmini_stm32_hal_t *port)
+{
+    const uint32_t errors = line_errors(port->uart);
+    count_errors(&port->counters, errors & ~(uint32_t)port->line_flags);
+    port->line_flags = (uint8_t)errors;
+#ifdef UART_CLEAR_OREF
+    if (errors != 0) {
+        __HAL_UART_CLEAR_FLAG(port->uart, UART_CLEAR_OREF | UART_CLEAR_FEF | UART_CLEAR_NEF);
+        port->line_flags = 0;
+    }
+#endif
+}
+
+/* ------------------------------------------------------------------- what DMA has brought */
+
+static void copy_out(tmini_stm32_hal_t *port, uint16_t from, uint16_t to)
+{
+    read_anew(port->buffer, from, to);
+    tmini_feed(port->lidar, &port->buffer[from], (size_t)(to - from));
+}
+
+/* Copies the block's part that is new. */
+static void copy_new(tmini_stm32_hal_t *port, uint16_t from, uint16_t to)
+{
+    if (to < from) {
+        copy_out(port, from, port->size);
+        from = 0;
+    }
+    if (to > from) {
+        copy_out(port, from, to);
+    }
+}
+
+static void publish_new(tmini_stm32_hal_t *port, uint16_t from, uint16_t to)
+{
+    if (to < from) {
+        read_anew(port->buffer, from, port->size);
+        from = 0;
+    }
+    read_anew(port->buffer, from, to);
+    tmini_feed_dma(port->lidar, to);
+}
+
+static void hand_over(tmini_stm32_hal_t *port)
+{
+    tmini_stm32_circle_t *const circle = &port->circle;
+    const uint8_t middles =
+        circle->middles; /* Before the position: it may only be ahead of them. */
+    const uint8_t ends = circle->ends;
+    const uint16_t from = circle->position;
+    if (tmini_stm32_circle_advance(circle, dma_position(port), middles, ends)) {
+        port->counters.laps = port->counters.laps + 1;
+        read_anew(port->buffer, 0, port->size);
+        tmini_feed_gap(port->lidar);
+    }
+    if (port->reception == RECEPTION_DMA) {
+        publish_new(port, from, circle->position);
+    } else {
+        copy_new(port, from, circle->position);
+    }
+    look_at_line_errors(port);
+}
+
+static bool is_receiving(const tmini_stm32_hal_t *port)
+{
+    return port->is_started && port->uart->RxState == HAL_UART_STATE_BUSY_RX;
+}
+
+/* In any context. The position is the hardware's, never the event's: an idle event may overtake the
+ * half-transfer event of bytes that came before. */
+static void hand_over_new(tmini_stm32_hal_t *port)
+{
+    if (!is_receiving(port) || !tmini_stm32_circle_enter(&port->circle)) {
         return;
     }
-    count_errors(&port->counters, uart->ErrorCode);
-    if (!is_receiving(port)) { /* Else the HAL goes on by itself. */
-        save_remainder(port);
-        restart(port);
+    do {
+        hand_over(port);
+    } while (tmini_stm32_circle_leave(&port->circle));
+}
+
+/* ----------------------------------------------------------------------- starting, in the poll */
+
+/* An error that was pending before would end the reception inside the very call that begins it. */
+static void forget_reception(tmini_stm32_hal_t *port)
+{
+    port->is_started = false;
+    (void)HAL_UART_AbortReceive(port->uart);
+    __HAL_UART_CLEAR_OREFLAG(port->uart);
+}
+
+static void prepare_circle(tmini_stm32_hal_t *port)
+{
+    if (port->reception == RECEPTION_DMA) {
+        tmini_stm32_circle_rewind(port->lidar);
+    }
+    write_through(port->buffer, port->size);
+    tmini_stm32_circle_begin(&port->circle, port->size);
+    port->line_flags = 0;
+}
+
+/* The HAL enables the interrupt of errors before that of bytes, or the DMA. A byte that comes
+ * damaged between the two would end the reception before it has begun; or, where only reading the
+ * byte clears the error (SR and DR), interrupt for ever. So no interrupt, for some ten
+ * microseconds. */
+static HAL_StatusTypeDef begin_uninterrupted(tmini_stm32_hal_t *port)
+{
+    const uint32_t primask = __get_PRIMASK();
+    HAL_StatusTypeDef status;
+    __disable_irq();
+    if (port->reception == RECEPTION_BYTES) {
+        status = HAL_UART_Receive_IT(port->uart, &port->byte, 1);
+    } else {
+        status = receive_by_dma(port);
+        ignore_line_errors(port);
+    }
+    port->is_started = status == HAL_OK;
+    __set_PRIMASK(primask);
+    return status;
+}
+
+static bool begin_reception(tmini_stm32_hal_t *port)
+{
+    forget_reception(port);
+    port->started_ms = HAL_GetTick();
+    if (port->reception != RECEPTION_BYTES) {
+        prepare_circle(port);
+    }
+    return begin_uninterrupted(port) == HAL_OK;
+}
+
+static void restart(tmini_stm32_hal_t *port)
+{
+    port->counters.restarts = port->counters.restarts + 1;
+    if (port->reception != RECEPTION_DMA) {
+        tmini_feed_gap(port->lidar);
+    }
+    (void)begin_reception(port);
+}
+
+/* Every tmini_poll() comes by. */
+static void look_after_reception(tmini_stm32_hal_t *port, uint32_t time_ms)
+{
+    if (port->reception == RECEPTION_NONE) {
+        return;
+    }
+    if (!is_receiving(port)) {
+        if (time_ms - port->started_ms >= RESTART_PAUSE_MS) {
+            restart(port);
+        }
+    } else if (port->reception != RECEPTION_BYTES) {
+        hand_over_new(port);
+    }
+}
+
+/* -------------------------------------------------------------------------- the HAL's callbacks */
+
+static bool is_ours(const tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
+{
+    return uart == port->uart && port->is_started;
+}
+
+static bool is_in_circle(const tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
+{
+    return is_ours(port, uart) && port->reception != RECEPTION_BYTES;
+}
+
+void tmini_stm32_hal_rx_event(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
+{
+    if (is_in_circle(port, uart)) {
+        tell_event(port);
+        hand_over_new(port);
+    }
+}
+
+void tmini_stm32_hal_rx_half_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
+{
+    if (is_in_circle(port, uart)) {
+        tmini_stm32_circle_tell(&port->circle, true, false);
+        hand_over_new(port);
+    }
+}
+
+/* Errors first: asking for the next byte clears the HAL's note of them. */
+static void take_byte(tmini_stm32_hal_t *port)
+{
+    count_errors(&port->counters, port->uart->ErrorCode);
+    tmini_feed_byte(port->lidar, port->byte);
+    (void)HAL_UART_Receive_IT(port->uart, &port->byte, 1); /* If it fails, the poll starts anew. */
+}
+
+void tmini_stm32_hal_rx_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
+{
+    if (is_in_circle(port, uart)) {
+        tmini_stm32_circle_tell(&port->circle, false, true);
+        hand_over_new(port);
+    } else if (is_ours(port, uart)) {
+        take_byte(port);
+    }
+}
+
+/* Starting again is the poll's: this may be running inside the very call that starts, and the DMA
+ * may still be stopping. */
+void tmini_stm32_hal_error(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
+{
+    if (is_ours(port, uart)) {
+        count_errors(&port->counters, uart->ErrorCode);
     }
 }
 
 /* ------------------------------------------------------------------------ the port's functions */
 
-static int write(void *context, const uint8_t *bytes, size_t count)
+static int send_bytes(void *context, const uint8_t *bytes, size_t count)
 {
     tmini_stm32_hal_t *const port = context;
     if (port->uart == NULL || count > sizeof port->sending) {
@@ -257,98 +420,102 @@ static int write(void *context, const uint8_t *bytes, size_t count)
     }
 }
 
-/* Reception that stands still is noticed here, because every tmini_poll() comes by. */
-static void look_after_reception(tmini_stm32_hal_t *port, uint32_t time_ms)
-{
-    if (port->reception == RECEPTION_NONE) {
-        return;
-    }
-    if (is_receiving(port)) {
-        port->alive_ms = time_ms;
-    } else if (time_ms - port->alive_ms >= STANDSTILL_MS) {
-        restart(port);
-    }
-}
-
-static uint32_t now_ms(void *context)
+static uint32_t time_now_ms(void *context)
 {
     const uint32_t time_ms = HAL_GetTick();
     look_after_reception(context, time_ms);
     return time_ms;
 }
 
-static void wait(void *context)
+static void wait_for_interrupt(void *context)
 {
     (void)context;
     __WFI();
 }
 
-const tmini_port_t tmini_stm32_hal_port = {.write = write, .now_ms = now_ms, .wait = wait};
+const tmini_port_t tmini_stm32_hal_port = {
+    .write = send_bytes, .now_ms = time_now_ms, .wait = wait_for_interrupt};
 
-/* -------------------------------------------------------------------------- begin to receive */
+/* -------------------------------------------------------------------------------- life cycle */
 
-static bool is_usable(const tmini_stm32_hal_t *port, const tmini_t *lidar,
-                      const UART_HandleTypeDef *uart)
+tmini_status_t tmini_stm32_hal_init(tmini_stm32_hal_t *port, UART_HandleTypeDef *uart)
 {
-    return port != NULL && lidar != NULL && uart != NULL;
+    if (port == NULL || uart == NULL) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    *port = (tmini_stm32_hal_t){.uart = uart};
+    return TMINI_OK;
+}
+
+static bool are_set_up(const tmini_stm32_hal_t *port, const tmini_t *lidar)
+{
+    return port != NULL && port->uart != NULL && tmini_stm32_circle_is_set_up(lidar);
+}
+
+static bool is_230400_8n1(const UART_HandleTypeDef *uart)
+{
+    return uart->Init.BaudRate == TMINI_STM32_BAUD_RATE &&
+           uart->Init.WordLength == UART_WORDLENGTH_8B && uart->Init.Parity == UART_PARITY_NONE;
+}
+
+static bool is_good_circle(const UART_HandleTypeDef *uart, const uint8_t *buffer, size_t size)
+{
+    return has_good_dma(uart) && size <= TMINI_STM32_CIRCLE_MAX && is_aligned(buffer, size);
 }
 
 /* Everything is in place before the first interrupt can come. */
-static tmini_status_t begin(tmini_stm32_hal_t *port, const tmini_stm32_hal_t *wanted)
+static tmini_status_t start_reception(tmini_stm32_hal_t *port, tmini_t *lidar,
+                                      enum reception reception, uint8_t *buffer, size_t size)
 {
-    *port = *wanted;
-    if (port->reception == RECEPTION_BYTES) {
-        port->buffer = &port->byte;
-        port->size = 1;
-    } else {
-        write_through(port->buffer, port->size); /* Nothing that is written later on its own. */
-    }
-    return start(port) ? TMINI_OK : TMINI_ERROR_STATE;
+    port->is_started = false;
+    port->lidar = lidar;
+    port->buffer = buffer;
+    port->size = (uint16_t)size;
+    port->reception = (uint8_t)reception;
+    return begin_reception(port) ? TMINI_OK : TMINI_ERROR_STATE;
 }
 
-tmini_status_t tmini_stm32_hal_receive_dma(tmini_stm32_hal_t *port, tmini_t *lidar,
-                                           UART_HandleTypeDef *uart, uint8_t *rx_buffer,
-                                           size_t rx_size)
+tmini_status_t tmini_stm32_hal_start(tmini_stm32_hal_t *port, tmini_t *lidar)
 {
-    if (!is_usable(port, lidar, uart) || !is_good_buffer(rx_buffer, rx_size) ||
-        rx_size > RX_SIZE_MAX || (rx_size & (rx_size - 1)) != 0 || uart->hdmarx == NULL ||
-        !is_circular(uart->hdmarx)) {
+    if (!are_set_up(port, lidar)) {
+        return TMINI_ERROR_STATE;
+    }
+    if (!is_230400_8n1(port->uart)) {
         return TMINI_ERROR_ARGUMENT;
     }
-    const tmini_stm32_hal_t wanted = {
-        .uart = uart,
-        .lidar = lidar,
-        .buffer = rx_buffer,
-        .size = (uint16_t)rx_size,
-        .reception = RECEPTION_DMA,
-    };
-    return begin(port, &wanted);
+    if (!tmini_stm32_circle_is_for(lidar)) {
+        return start_reception(port, lidar, RECEPTION_BYTES, NULL, 0);
+    }
+    uint8_t *const memory = lidar->ring.memory;
+    const size_t size = tmini_stm32_circle_size(lidar);
+    if (!is_good_circle(port->uart, memory, size)) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    return start_reception(port, lidar, RECEPTION_DMA, memory, size);
 }
 
-tmini_status_t tmini_stm32_hal_receive_blocks(tmini_stm32_hal_t *port, tmini_t *lidar,
-                                              UART_HandleTypeDef *uart, uint8_t *block,
-                                              size_t block_size)
+tmini_status_t tmini_stm32_hal_start_blocks(tmini_stm32_hal_t *port, tmini_t *lidar, uint8_t *block,
+                                            size_t block_size)
 {
-    if (!is_usable(port, lidar, uart) || !is_good_buffer(block, block_size) ||
-        block_size > UINT16_MAX) {
+    if (!are_set_up(port, lidar)) {
+        return TMINI_ERROR_STATE;
+    }
+    if (block == NULL || block_size < BLOCK_SIZE_MIN || block_size % 2 != 0 ||
+        tmini_stm32_circle_is_for(lidar) || !is_230400_8n1(port->uart) ||
+        !is_good_circle(port->uart, block, block_size)) {
         return TMINI_ERROR_ARGUMENT;
     }
-    const tmini_stm32_hal_t wanted = {
-        .uart = uart,
-        .lidar = lidar,
-        .buffer = block,
-        .size = (uint16_t)block_size,
-        .reception = RECEPTION_BLOCKS,
-    };
-    return begin(port, &wanted);
+    return start_reception(port, lidar, RECEPTION_BLOCKS, block, block_size);
 }
 
-tmini_status_t tmini_stm32_hal_receive_bytes(tmini_stm32_hal_t *port, tmini_t *lidar,
-                                             UART_HandleTypeDef *uart)
+void tmini_stm32_hal_stop(tmini_stm32_hal_t *port)
 {
-    if (!is_usable(port, lidar, uart)) {
-        return TMINI_ERROR_ARGUMENT;
+    if (port == NULL || port->uart == NULL || port->reception == RECEPTION_NONE) {
+        return;
     }
-    const tmini_stm32_hal_t wanted = {.uart = uart, .lidar = lidar, .reception = RECEPTION_BYTES};
-    return begin(port, &wanted);
+    if (port->reception != RECEPTION_BYTES) {
+        hand_over_new(port);
+    }
+    port->reception = RECEPTION_NONE;
+    forget_reception(port);
 }

@@ -1,29 +1,35 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A tmini port for STM32 with ST's HAL, any family. README.md beside this file has the CubeMX settings.
+/* A tmini port for STM32 with ST's HAL, any family, any version. README.md beside this file has the
+ * CubeMX settings.
  *
- * Received bytes can come in three ways; choose one of the tmini_stm32_hal_receive_…() functions:
+ *     tmini_stm32_hal_init(&port, &huart1);    after the HAL's own initialisation
+ *     tmini_init(&lidar, &config);             .port = &tmini_stm32_hal_port, .port_context = &port
+ *     tmini_stm32_hal_start(&port, &lidar);    from now on bytes come in
+ *     tmini_start(&lidar); …                   commands, polling
+ *     tmini_stm32_hal_stop(&port);             no more bytes come in; start again as you like
  *
- *   DMA     Circular DMA straight into the library's receive buffer: no work at all for a byte.
- *   blocks  The HAL collects blocks, by DMA of any mode or by interrupt; each is copied.
- *   bytes   An interrupt a byte: works everywhere, about 13,000 times a second.
+ * Received bytes come in one of three ways:
+ *
+ *   DMA     With rx_dma in the configuration: circular DMA into the lidar's receive buffer itself.
+ *           No work at all for a byte.
+ *   bytes   Without rx_dma: an interrupt a byte, about 13,000 times a second while scanning.
+ *   blocks  Without rx_dma, and tmini_stm32_hal_start_blocks(): circular DMA into a small buffer,
+ *           and a copy. For a receive buffer that lies where DMA does not reach.
  *
  * The HAL's callbacks stay yours; call from them the function named like each:
  *
- *   HAL_UARTEx_RxEventCallback(huart, size)   tmini_stm32_hal_rx_event(&port, huart, size)   DMA, blocks
- *   HAL_UART_RxCpltCallback(huart)            tmini_stm32_hal_rx_complete(&port, huart)      bytes
- *   HAL_UART_ErrorCallback(huart)             tmini_stm32_hal_error(&port, huart)            all
+ *   HAL_UARTEx_RxEventCallback(huart, size)  tmini_stm32_hal_rx_event(&port, huart)     DMA, blocks
+ *   HAL_UART_RxCpltCallback(huart)           tmini_stm32_hal_rx_complete(&port, huart)  bytes
+ *   HAL_UART_ErrorCallback(huart)            tmini_stm32_hal_error(&port, huart)        all
  *
- * Each does nothing if the UART is another one, so several UARTs may share a callback.
+ * Each does nothing if the UART is another one, so several UARTs may share a callback. The event's
+ * size is not asked for: HALs of different years mean different things by it, and the DMA knows
+ * better.
  *
- * Line errors. After an overrun, and with DMA after every error, the HAL stops receiving for good. The
- * port counts the error, saves what had come before it and starts again. A reception that stands still
- * for any other reason (the HAL was locked, or a callback is missing) is started again within some
- * milliseconds by tmini_poll(), through the port's clock.
- *
- * Order of calls: HAL's initialisation, tmini_init() with this port and a zeroed context, then one of
- * the receive functions, then commands. */
+ * Everything that can fail is mended by the poll, never in an interrupt: a reception that has
+ * stopped, for whatever reason, is started again by the next tmini_poll(). */
 
 #ifndef TMINI_STM32_HAL_H
 #define TMINI_STM32_HAL_H
@@ -32,6 +38,7 @@
 #include <stdint.h>
 
 #include "tmini/tmini.h"
+#include "tmini_stm32_circle.h"
 
 /* Every CubeMX project has a main.h that includes the HAL of its family. */
 #ifdef TMINI_STM32_HAL_HEADER
@@ -44,27 +51,31 @@
 extern "C" {
 #endif
 
-/* Running totals, for diagnostics. */
+/* Running totals, for diagnostics. With DMA an error is seen when it is looked for, at the poll's
+ * and the events' pace: several between two looks count as one, and with SR and DR some are cleared
+ * by the HAL before. They tell that there are errors, not how many. */
 typedef struct {
     uint32_t overruns; /* Bytes came faster than interrupt or DMA took them. */
     uint32_t framing_errors;
     uint32_t noise_errors;
     uint32_t other_errors; /* Parity, DMA. */
     uint32_t restarts;     /* Of a reception that had stopped. */
+    uint32_t laps; /* Times that DMA may have lapped its interrupts: they came far too late. */
 } tmini_stm32_hal_counters_t;
 
-/* One lidar's UART. Allocate it statically, so that it is zero at first; `counters` may be read,
- * the rest is private. */
+/* One lidar's UART; `counters` may be read, the rest is private. */
 typedef struct {
     UART_HandleTypeDef *uart;
     tmini_t *lidar;
     uint8_t *buffer; /* What the HAL receives into. */
     uint16_t size;
-    uint16_t position; /* Bytes of it that have been handed over in this round. */
     uint8_t reception;
+    volatile bool is_started; /* The HAL has begun, and the DMA channel counts. */
     uint8_t byte;
+    uint8_t line_flags; /* Errors of the line that have been counted and still show. */
     uint8_t sending[2]; /* The HAL reads it while it sends. */
-    uint32_t alive_ms;  /* When reception was last seen running. */
+    uint32_t started_ms;
+    tmini_stm32_circle_t circle;
     volatile tmini_stm32_hal_counters_t counters;
 } tmini_stm32_hal_t;
 
@@ -73,30 +84,37 @@ typedef struct {
  * structure and put its delay there. */
 extern const tmini_port_t tmini_stm32_hal_port;
 
-/* Receives by circular DMA into `rx_buffer`, which is the one given to tmini_init(), with rx_dma
- * set. `rx_size`: a power of two from 512 to 32768; on a Cortex-M7 with data cache the buffer must be
- * aligned to 32 bytes, and lie where the DMA reaches it. The DMA channel must be circular, byte-wide,
- * with its FIFO off.
- * Returns TMINI_OK; TMINI_ERROR_ARGUMENT (null pointer, size, alignment, DMA missing or not circular);
- * TMINI_ERROR_STATE if the HAL refuses to start. */
-tmini_status_t tmini_stm32_hal_receive_dma(tmini_stm32_hal_t *port, tmini_t *lidar,
-                                           UART_HandleTypeDef *uart, uint8_t *rx_buffer,
-                                           size_t rx_size);
+/* Names the UART, which must outlive the port. Sends and receives nothing yet.
+ * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
+tmini_status_t tmini_stm32_hal_init(tmini_stm32_hal_t *port, UART_HandleTypeDef *uart);
 
-/* Receives blocks into `block`, a buffer of its own (64 to 256 bytes do well; on a Cortex-M7 aligned
- * as above), and copies them on; rx_dma is not set. Uses DMA if the UART has a channel for it, circular
- * or not, else interrupts. Returns as above. */
-tmini_status_t tmini_stm32_hal_receive_blocks(tmini_stm32_hal_t *port, tmini_t *lidar,
-                                              UART_HandleTypeDef *uart, uint8_t *block,
-                                              size_t block_size);
+/* Receives for `lidar`, which has been through tmini_init(), into the buffer given there: with
+ * rx_dma by DMA, without it byte by byte. For DMA the buffer has a size of 512 to 32768, lies where
+ * the DMA reaches it and, on a processor with data cache, is aligned to 32 bytes; the DMA channel
+ * is circular, byte-wide, with its FIFO off. From the polling context.
+ * Returns TMINI_OK;
+ *   TMINI_ERROR_STATE     lidar or port not set up; or the HAL refuses to start: polls try again
+ *   TMINI_ERROR_ARGUMENT  the UART is not set to 230400 8N1; or DMA: none, not circular, with
+ *                         FIFO, or a buffer too large or not aligned */
+tmini_status_t tmini_stm32_hal_start(tmini_stm32_hal_t *port, tmini_t *lidar);
 
-/* Receives byte by byte; rx_dma is not set. Returns as above. */
-tmini_status_t tmini_stm32_hal_receive_bytes(tmini_stm32_hal_t *port, tmini_t *lidar,
-                                             UART_HandleTypeDef *uart);
+/* Receives by circular DMA into `block`, a buffer of its own, and copies everything from there into
+ * the one given to tmini_init() (without rx_dma). `block_size` is even, 64 to 32768; 256 bytes bear
+ * 5 ms in which no interrupt is served. Alignment, DMA channel and results as above; also
+ * TMINI_ERROR_ARGUMENT for a null pointer, another size, or with rx_dma. */
+tmini_status_t tmini_stm32_hal_start_blocks(tmini_stm32_hal_t *port, tmini_t *lidar, uint8_t *block,
+                                            size_t block_size);
 
-/* To be called from the HAL's callbacks, in interrupt context; see the table above. */
-void tmini_stm32_hal_rx_event(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart,
-                              uint16_t size);
+/* Ends reception: when it returns, neither the HAL nor its DMA writes to a buffer of the lidar.
+ * What had come is handed over. Waits some microseconds for the DMA; if the hardware does not let
+ * go, 5 ms. From the polling context. */
+void tmini_stm32_hal_stop(tmini_stm32_hal_t *port);
+
+/* To be called from the HAL's callbacks, in interrupt context; see the table above. With a HAL from
+ * before 2022, which does not say which event it reports, DMA and blocks need these two:
+ * rx_half_complete, called from HAL_UART_RxHalfCpltCallback(), and rx_complete. */
+void tmini_stm32_hal_rx_event(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
+void tmini_stm32_hal_rx_half_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 void tmini_stm32_hal_rx_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 void tmini_stm32_hal_error(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 

@@ -1,57 +1,97 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A tmini port for STM32 without the HAL: an interrupt a byte, on the USART's registers. Compile the one
- * source that fits the family:
+/* A tmini port for STM32 without the HAL, on the USART's registers; beside LL as well. Compile the
+ * one source that fits the family:
  *
  *   tmini_stm32_usart_dr.c    registers SR and DR: F1, F2, F4, L1
- *   tmini_stm32_usart_rdr.c   registers ISR and RDR: all others (C0, F0, F3, F7, G0, G4, H5, H7, L0,
- *                             L4, L5, U0, U5, WB, WL, …)
+ *   tmini_stm32_usart_rdr.c   registers ISR and RDR: all others (C0, F0, F3, F7, G0, G4, H5, H7,
+ *                             L0, L4, L5, U0, U5, WB, WL, …), and every LPUART
  *
- * Yours: the clocks of USART and pins, the pins' alternate function, the USART's interrupt in the NVIC,
- * and a count of milliseconds. Order of calls: tmini_stm32_usart_begin(), tmini_init(),
- * tmini_stm32_usart_open(), then commands.
+ *     tmini_stm32_usart_init(&port, USART1, &time_ms);
+ *     tmini_init(&lidar, &config);          .port = &tmini_stm32_usart_port, .port_context = &port
+ *     tmini_stm32_usart_start(&port, &lidar, 84000000);    an interrupt a byte; or, with rx_dma,
+ *     tmini_stm32_usart_start_dma(&port, &lidar, 84000000, &DMA2_Stream2->NDTR);
+ *     NVIC_EnableIRQ(USART1_IRQn);
+ *     …
+ *     tmini_stm32_usart_stop(&port);
  *
- *     void USART1_IRQHandler(void) { tmini_stm32_usart_interrupt(&port); } */
+ *     void USART1_IRQHandler(void) { tmini_stm32_usart_interrupt(&port); }
+ *
+ * Yours: the clocks of USART, DMA and pins, the pins' alternate function, the DMA channel,
+ * interrupts in the NVIC, and a count of milliseconds. README.md beside this file shows a DMA
+ * channel. */
 
 #ifndef TMINI_STM32_USART_H
 #define TMINI_STM32_USART_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "tmini/tmini.h"
+#include "tmini_stm32_circle.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* One lidar's USART; the counters may be read, the rest is private. */
+/* One lidar's USART; the counters may be read, the rest is private. With DMA, several errors
+ * between two looks at the USART (idle line, half a buffer, poll) count as one. */
 typedef struct {
     volatile uint32_t *registers;
     tmini_t *lidar;
     const volatile uint32_t *time_ms;
-    volatile uint32_t bytes; /* Received; compare with tmini_counters(). */
+    const volatile uint32_t *remaining; /* The DMA channel's count; NULL: an interrupt a byte. */
+    tmini_stm32_circle_t circle;
+    uint32_t line_flags;     /* Errors that have been counted and still show. */
+    volatile uint32_t bytes; /* Received by interrupt; compare with tmini_counters(). */
     volatile uint32_t overruns;
     volatile uint32_t framing_errors;
     volatile uint32_t noise_errors;
+    volatile uint32_t
+        laps; /* Times that DMA may have lapped the interrupts: they came far too late. */
 } tmini_stm32_usart_t;
 
 /* The `port` of tmini_config_t; its `port_context` is the address of a tmini_stm32_usart_t. Never
  * waits: takes what the transmitter has room for. */
 extern const tmini_port_t tmini_stm32_usart_port;
 
-/* Names the ends that the port connects. `usart` is the USART's base address (USART1 of ST's headers
- * will do). `time_ms` is a count of milliseconds, kept by an interrupt of yours. */
-void tmini_stm32_usart_begin(tmini_stm32_usart_t *port, tmini_t *lidar, volatile void *usart,
-                             const volatile uint32_t *time_ms);
+/* Names the USART. `usart` is the USART's base address (USART1 of ST's headers
+ * will do). `time_ms` is a count of milliseconds, kept by an interrupt of yours. Touches no
+ * register. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
+tmini_status_t tmini_stm32_usart_init(tmini_stm32_usart_t *port, volatile void *usart,
+                                      const volatile uint32_t *time_ms);
 
-/* Sets the USART to 230400 8N1 and lets it receive. `clock_hz` is the clock that feeds the USART,
- * at least 3.7 MHz. */
-void tmini_stm32_usart_open(tmini_stm32_usart_t *port, uint32_t clock_hz);
+/* Sets the USART to 230400 8N1 and receives for `lidar`, which has been through tmini_init(), by an
+ * interrupt a byte. `clock_hz` is the clock that feeds the
+ * USART, at least 3.7 MHz; 0 leaves baud rate and format as you have set them (LL, LPUART).
+ * Returns TMINI_OK;
+ *   TMINI_ERROR_STATE     port or lidar not set up
+ *   TMINI_ERROR_ARGUMENT  the clock makes no baud rate within 2 % of 230400; or rx_dma is set */
+tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar,
+                                       uint32_t clock_hz);
 
-/* To be called from the USART's interrupt. No loop, no wait. A byte that came with a framing or noise
- * error is counted and stored all the same: the packet's checksum decides what it is worth. */
+/* The same by circular DMA into the buffer given to tmini_init() with rx_dma, 512 to 32768 bytes.
+ * The DMA channel is set up and enabled: from the USART's data register, byte-wide, circular, FIFO
+ * off, at the buffer's start, over its whole size. `remaining` is its register of items left (NDTR,
+ * CNDTR, CBR1). The processor has no data cache, or the buffer lies where it does not cache. After
+ * _stop() set the channel up anew before starting again. Returns as above; TMINI_ERROR_ARGUMENT
+ * also if rx_dma is not set, or `remaining` is null or not at the size. */
+tmini_status_t tmini_stm32_usart_start_dma(tmini_stm32_usart_t *port, tmini_t *lidar,
+                                           uint32_t clock_hz, const volatile uint32_t *remaining);
+
+/* Ends reception: no more interrupts, no more requests to the DMA channel, which is yours to
+ * disable. What had come is handed over. Sending goes on to work. From the polling context. */
+void tmini_stm32_usart_stop(tmini_stm32_usart_t *port);
+
+/* To be called from the USART's interrupt. No loop over bytes, no wait. A byte that came with a
+ * framing or noise error is counted and stored all the same: the packet's checksum decides what it
+ * is worth. */
 void tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port);
+
+/* To be called from the DMA channel's interrupt, with the flags that it found and has cleared, both
+ * in one call: two at once mean that it came late. */
+void tmini_stm32_usart_dma_interrupt(tmini_stm32_usart_t *port, bool half, bool complete);
 
 #ifdef __cplusplus
 }

@@ -13,7 +13,7 @@ static int transmit(void *uart, uint8_t byte)
     return -1; /* There is no transmitter yet. */
 }
 
-static int write(void *context, const uint8_t *bytes, size_t count)
+static int send_bytes(void *context, const uint8_t *bytes, size_t count)
 {
     const tmini_port_template_t *const port = context;
     int taken = 0;
@@ -30,9 +30,10 @@ static int write(void *context, const uint8_t *bytes, size_t count)
     return taken;
 }
 
-/* FILL IN 2 (or leave as it is): milliseconds, if your system counts them already. Where 32 bits take
- * more than one access, an interrupt may come in between: two equal readings show that none has. */
-static uint32_t now_ms(void *context)
+/* FILL IN 2 (or leave as it is): milliseconds, if your system counts them already. Where 32 bits
+ * take more than one access, an interrupt may come in between: two equal readings show that none
+ * has. */
+static uint32_t time_now_ms(void *context)
 {
     const tmini_port_template_t *const port = context;
     uint32_t time_ms = port->time_ms;
@@ -45,11 +46,32 @@ static uint32_t now_ms(void *context)
 /* FILL IN 3 (optional): a function that lets other work run for about a millisecond: an RTOS delay,
  * or a sleep until the next interrupt. Only the functions of tmini_blocking.h call it, while they
  * wait; NULL makes them spin. */
-const tmini_port_t tmini_port_template = {.write = write, .now_ms = now_ms, .wait = NULL};
+const tmini_port_t tmini_port_template = {.write = send_bytes, .now_ms = time_now_ms, .wait = NULL};
 
-void tmini_port_template_begin(tmini_port_template_t *port, tmini_t *lidar, void *uart)
+/* FILL IN 4: switches the UART's receive interrupt on and off. Whatever was pending before, an
+ * overrun above all, is cleared first: this controller may have been reset while the lidar went on
+ * sending. */
+static void enable_receive_interrupt(void *uart, bool enable)
 {
-    *port = (tmini_port_template_t){.lidar = lidar, .uart = uart};
+    (void)uart;
+    (void)enable;
+}
+
+void tmini_port_template_init(tmini_port_template_t *port, void *uart)
+{
+    *port = (tmini_port_template_t){.uart = uart};
+}
+
+void tmini_port_template_start(tmini_port_template_t *port, tmini_t *lidar)
+{
+    port->lidar = lidar;
+    enable_receive_interrupt(port->uart, true);
+}
+
+void tmini_port_template_stop(tmini_port_template_t *port)
+{
+    enable_receive_interrupt(port->uart, false);
+    port->lidar = NULL;
 }
 
 void tmini_port_template_tick(tmini_port_template_t *port)
@@ -63,5 +85,7 @@ void tmini_port_template_receive(tmini_port_template_t *port, uint8_t byte, bool
     if (is_error) {
         port->receive_errors = port->receive_errors + 1;
     }
-    tmini_feed_byte(port->lidar, byte);
+    if (port->lidar != NULL) {
+        tmini_feed_byte(port->lidar, byte);
+    }
 }

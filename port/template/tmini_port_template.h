@@ -4,12 +4,19 @@
 /* A port to start yours from: copy this file and its source, rename, and fill in the places that
  * the source marks FILL IN. ../README.md explains the steps.
  *
- * It compiles as it is. Unfilled, it has no UART: every command ends with TMINI_EVENT_FAILED and
- * TMINI_ERROR_WRITE, so that a port left unfinished is noticed. */
+ *     tmini_port_template_init(&port, uart);
+ *     tmini_init(&lidar, &config);              .port = &tmini_port_template, .port_context = &port
+ *     tmini_port_template_start(&port, &lidar); from now on bytes come in
+ *     tmini_start(&lidar); …                    commands, polling
+ *     tmini_port_template_stop(&port);
+ *
+ * It compiles as it is. Unfilled, it has no UART: every command ends with
+ * TMINI_EVENT_COMMAND_FAILED and TMINI_ERROR_WRITE, so that a port left unfinished is noticed. */
 
 #ifndef TMINI_PORT_TEMPLATE_H
 #define TMINI_PORT_TEMPLATE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "tmini/tmini.h"
@@ -18,8 +25,8 @@
 extern "C" {
 #endif
 
-/* What the port knows of one lidar's connection; one of these a lidar, allocated by you. Its address
- * is the `port_context` of tmini_config_t. */
+/* What the port knows of one lidar's connection; one of these a lidar, allocated by you. Its
+ * address is the `port_context` of tmini_config_t. */
 typedef struct {
     tmini_t *lidar;
     void *uart; /* Whatever your board calls the UART: a handle, a number, a register address. */
@@ -30,10 +37,16 @@ typedef struct {
 /* The `port` of tmini_config_t. */
 extern const tmini_port_t tmini_port_template;
 
-/* Call once, before tmini_init(): names the two ends that the port connects. The UART is set up
- * (230400 baud, 8 data bits, no parity, 1 stop bit) but its receive interrupt not yet enabled; that
- * comes after tmini_init(). */
-void tmini_port_template_begin(tmini_port_template_t *port, tmini_t *lidar, void *uart);
+/* Names the UART, which is set up (230400 baud, 8 data bits, no parity, 1 stop bit), its receive
+ * interrupt not yet enabled. Call once. */
+void tmini_port_template_init(tmini_port_template_t *port, void *uart);
+
+/* From now on received bytes go to `lidar`, which has been through tmini_init(). Not from an
+ * interrupt. */
+void tmini_port_template_start(tmini_port_template_t *port, tmini_t *lidar);
+
+/* Until now. Not from an interrupt; may be started again. */
+void tmini_port_template_stop(tmini_port_template_t *port);
 
 /* Call from an interrupt every millisecond. */
 void tmini_port_template_tick(tmini_port_template_t *port);

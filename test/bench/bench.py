@@ -11,6 +11,7 @@ date or something failed. Usually called by run.sh, which finds the tools.
 
 import concurrent.futures
 import difflib
+import os
 import pathlib
 import platform
 import re
@@ -28,7 +29,8 @@ FOOTPRINT = ROOT / "docs" / "footprint.md"
 README = ROOT / "README.md"
 README_TABLES = ["footprint"]
 FOOTPRINT_TABLES = [name for name in tables.BLOCKS if name not in README_TABLES]
-ROOM = ROOT.parent / "shared" / "recordings" / "t-mini-plus-room.bin"
+RECORDINGS = os.environ.get("TMINI_RECORDINGS_DIR", ROOT / "test" / "recordings" / "real")
+ROOM = pathlib.Path(RECORDINGS) / "t-mini-plus-room.bin"
 
 
 class Budget:
@@ -103,12 +105,24 @@ def measure_all(folder):
 
 def measured_for_budgets(figures):
     """What each budget limits."""
+    m0 = figures["targets"]["cortex-m0", "-Os"]
     m4 = [figures["targets"]["cortex-m4", level] for level in LEVELS]
-    decode = figures["host"]["decode"]
+    host_costs = {feed: f["own"] + f["copies"] for feed, f in figures["host"].items()}
+
+    def cost(f, name):
+        return sum(f["counts"]["costs"][name])
+
     return {
         "feed_byte_m4": max(f["counts"]["feed worst"] for f in m4),
-        "byte_to_point_m4": max(sum(f["counts"]["costs"]["blocks"]) for f in m4),
-        "byte_to_point_x86": decode["own"] + decode["copies"],
+        "idle_poll_m4": m4[0]["counts"]["idle poll"],
+        "blocks_m4_os": cost(m4[0], "blocks"),
+        "bytes_m4_os": cost(m4[0], "bytes"),
+        "bytes_m4_o2": cost(m4[1], "bytes"),
+        "corrupted_m4_os": cost(m4[0], "corrupted"),
+        "blocks_m0_os": cost(m0, "blocks"),
+        "decode_x86": host_costs["decode"],
+        "blocks_x86": host_costs["blocks"],
+        "bytes_x86": host_costs["bytes"],
         "flash_parser_m4": m4[0]["flash"]["parser"]["own"],
         "flash_driver_m4": m4[0]["flash"]["driver"]["own"],
         "ram": max(figures["ram"][target.name]["tmini_t"] +
@@ -124,7 +138,7 @@ def read_budgets(figures):
     for line in (HERE / "budgets.txt").read_text().splitlines():
         if line and not line.startswith("#"):
             name, limit, title = line.split(None, 2)
-            budgets.append(Budget(name, int(limit), title, measured.pop(name)))
+            budgets.append(Budget(name, float(limit), title, measured.pop(name)))
     if measured:
         raise BenchError(f"budgets.txt says nothing of {sorted(measured)}")
     return budgets
@@ -137,7 +151,7 @@ def check_budgets(figures):
         print("This computer is no x86-64: its own budget says nothing here.")
         exceeded = [budget for budget in exceeded if not budget.name.endswith("x86")]
     for budget in exceeded:
-        print(f"OVER BUDGET: {budget.title}: {budget.shown()}, the limit is {budget.limit}")
+        print(f"OVER BUDGET: {budget.title}: {budget.shown()}, the limit is {budget.limit:g}")
     return not exceeded
 
 

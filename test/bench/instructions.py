@@ -67,8 +67,9 @@ class Session:
         self.feed_worst = max(self.feed_worst, cost)
 
     def _feed_bytes(self, data):
+        nothing = self.machine.cost("interrupt_nothing")[1]
         for byte in data:
-            self._fed(self.machine.cost("bench_feed_byte", byte)[1])
+            self._fed(self.machine.cost("interrupt_feed_byte", byte)[1] - nothing)
 
     def _feed_blocks(self, data):
         self.machine.write("bench_block", data)
@@ -191,9 +192,11 @@ def resynchronisation(target, program, clean, hostile):
     return session.poll_total / skipped
 
 
-def conversation(target, program, clean, faulty):
+def conversation(target, program, clean, faulty, hostile):
     """Every event there is; returns the costliest poll of each, and the deepest stack."""
     session = Session(target, program)
+    if "MORE" not in session.tick(hostile[:RX_SIZE]):
+        raise BenchError("a full ring of false headers is not too much for one poll")
     for code, event in ((STOP, "STOPPED"), (INFO, "INFO"), (HEALTH, "HEALTH"),
                         (GET_FREQUENCY, "FREQUENCY"), (REBOOT, "REBOOTED")):
         session.command(code)
@@ -203,8 +206,13 @@ def conversation(target, program, clean, faulty):
     session.until("FREQUENCY")
     session.lidar.answers = False
     session.command(INFO)
-    session.until("FAILED")
+    session.until("COMMAND_FAILED")
     session.lidar.answers = True
+    session.command(STOP)
+    session.until("STOPPED")
+    if "STREAMING" not in session.tick(clean[:BYTES_A_TICK]):
+        raise BenchError("an idle lidar that streams is not noticed")
+    session.until("STOPPED")
     session.spin_up()
     session.run(clean)
     session.run(faulty)
@@ -281,7 +289,8 @@ def measure(target, level, objects, folder, streams):
             idle = session.idle_poll()
             feed_worst = max(session.feed_worst, full_ring(target, program))
     costs["corrupted"], _ = through(target, program, streams["corrupted"], "blocks")
-    conversed, stack = conversation(target, program, streams["turn"], streams["faulty"])
+    conversed, stack = conversation(target, program, streams["turn"], streams["faulty"],
+                                    streams["headers 10"])
     merge_worst(worst, conversed)
     hostile = {name: resynchronisation(target, program, streams["turn"], streams[name])
                for name in streams if name.startswith(("random", "headers"))}

@@ -9,7 +9,8 @@
 #
 # --update rewrites the tables instead of comparing them. Tables are compared only under the
 # compilers that they were made with; budgets always are. Installs what it needs, unless told not
-# to. Exit status: 0 in order, 1 not in order, 2 wrong usage, 77 a tool is missing.
+# to. TMINI_RECORDINGS_DIR may name a folder with a real unit's recordings. Exit status: 0 in order,
+# 1 not in order, 2 wrong usage, 77 a tool is missing.
 
 set -eu
 
@@ -25,7 +26,7 @@ for word in "$@"; do
         --no-install) install=no ;;
         --update) update=--update ;;
         *)
-            sed -n '5,13s/^# \{0,1\}//p' "$0"
+            sed -n '5,14s/^# \{0,1\}//p' "$0"
             exit 2
             ;;
     esac

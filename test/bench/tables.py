@@ -134,7 +134,7 @@ def growth(figures):
 
 
 def budgets(figures):
-    rows = [[budget.title, f"{budget.limit}", f"{budget.shown()}", f"{budget.margin():.0f} %"]
+    rows = [[budget.title, f"{budget.limit:g}", f"{budget.shown()}", f"{budget.margin():.0f} %"]
             for budget in figures["budgets"]]
     return table(["budget", "limit", "measured", "to spare"], rows)
 

@@ -62,7 +62,7 @@ class Target:
         """Links without start-up code, dropping what is not used; returns program and map."""
         map_file = program.with_suffix(".map")
         run(self.tool("gcc"), *self.machine, *self.link_options, "-nostartfiles",
-            "-Wl,--gc-sections", f"-Wl,-Map={map_file}", f"-Wl,-T,{HERE / 'program.ld'}",
+            "-Wl,--gc-sections", "-Xlinker", f"-Map={map_file}", "-T", HERE / "program.ld",
             *objects, "-o", program)
         return program, map_file
 

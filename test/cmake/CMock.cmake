@@ -7,28 +7,56 @@
 #      vendor/unity;
 #   2. the package `cmock` of Debian (trixie and later) and Ubuntu (24.04 and later);
 #   3. a download, pinned by commit: a git commit is the hash of all that it contains.
-# Sets TMINI_CMOCK_DIR, TMINI_UNITY_DIR, TMINI_RUBY.
-
-find_program(TMINI_RUBY ruby)
-if(NOT TMINI_RUBY)
-    message(FATAL_ERROR "The tests need Ruby, for the generators of Unity and CMock. "
-        "Install it (test/run.sh does), or build without tests: -DTMINI_BUILD_TESTS=OFF.")
-endif()
+# Sets TMINI_CMOCK_DIR, TMINI_UNITY_DIR, TMINI_RUBY. Where something is missing it says so, and
+# turns TMINI_BUILD_TESTS off: whoever only wants the library and the tool shall have them.
 
 set(CMOCK_ROOT "$ENV{CMOCK_ROOT}" CACHE PATH "Folder of CMock, with Unity in vendor/unity")
 
-function(tmini_download_cmock)
-    include(FetchContent)
-    FetchContent_Declare(tmini_cmock_source
-        GIT_REPOSITORY https://github.com/ThrowTheSwitch/CMock.git
-        # Release v2.6.0; its submodule is Unity v2.6.1.
-        GIT_TAG 49435d9f3313abb3422252d3d2dc12a7542332ca
-        GIT_SUBMODULES vendor/unity
-    )
-    message(STATUS "CMock is not installed: downloading it (choose a copy with -DCMOCK_ROOT=DIR)")
-    FetchContent_MakeAvailable(tmini_cmock_source)
-    set(TMINI_CMOCK_DIR ${tmini_cmock_source_SOURCE_DIR} PARENT_SCOPE)
+macro(tmini_do_without_tests)
+    message("-- The tests are left out: " ${ARGN})
+    set(TMINI_BUILD_TESTS OFF)
+endmacro()
+
+function(tmini_run_git out)
+    execute_process(COMMAND ${GIT_EXECUTABLE} ${ARGN} RESULT_VARIABLE status
+        OUTPUT_QUIET ERROR_QUIET)
+    set(${out} ${status} PARENT_SCOPE)
 endfunction()
+
+# Sets OUT to the folder of a downloaded copy, or to nothing.
+function(tmini_download_cmock out)
+    # Release v2.6.0; its submodule is Unity v2.6.1.
+    set(commit 49435d9f3313abb3422252d3d2dc12a7542332ca)
+    set(dir ${CMAKE_BINARY_DIR}/cmock-${commit})
+    set(${out} ${dir} PARENT_SCOPE)
+    if(EXISTS ${dir}/complete)
+        return()
+    endif()
+    message(STATUS "CMock is not installed: downloading it (choose a copy with -DCMOCK_ROOT=DIR)")
+    find_package(Git QUIET)
+    set(status "no git")
+    if(GIT_FOUND)
+        file(REMOVE_RECURSE ${dir})
+        tmini_run_git(status clone --quiet https://github.com/ThrowTheSwitch/CMock.git ${dir})
+    endif()
+    foreach(step "checkout;--quiet;${commit}" "submodule;update;--quiet;--init;vendor/unity")
+        if(status EQUAL 0)
+            tmini_run_git(status -C ${dir} ${step})
+        endif()
+    endforeach()
+    if(status EQUAL 0)
+        file(WRITE ${dir}/complete "")
+    else()
+        set(${out} "" PARENT_SCOPE)
+    endif()
+endfunction()
+
+find_program(TMINI_RUBY ruby)
+if(NOT TMINI_RUBY)
+    tmini_do_without_tests("they need Ruby, for the generators of Unity and CMock. test/run.sh "
+        "installs what they need.")
+    return()
+endif()
 
 if(CMOCK_ROOT)
     # A folder that was asked for is used or refused, never silently replaced by another.
@@ -36,7 +64,12 @@ if(CMOCK_ROOT)
 elseif(EXISTS /usr/share/cmock/lib/cmock.rb)
     set(TMINI_CMOCK_DIR /usr/share/cmock)
 else()
-    tmini_download_cmock()
+    tmini_download_cmock(TMINI_CMOCK_DIR)
+    if(NOT TMINI_CMOCK_DIR)
+        tmini_do_without_tests("they need CMock, which is neither installed nor to be downloaded. "
+            "test/run.sh installs what they need; -DCMOCK_ROOT=DIR names a copy.")
+        return()
+    endif()
 endif()
 set(TMINI_UNITY_DIR ${TMINI_CMOCK_DIR}/vendor/unity)
 

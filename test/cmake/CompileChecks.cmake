@@ -3,9 +3,6 @@
 
 # One test for each way of compiling the library that ../compile.sh knows.
 
-find_program(TMINI_SH sh)
-mark_as_advanced(TMINI_SH)
-
 function(tmini_add_compile_checks)
     foreach(target ${ARGN})
         add_test(NAME compile.${target}
@@ -16,5 +13,5 @@ function(tmini_add_compile_checks)
 endfunction()
 
 if(TMINI_SH)
-    tmini_add_compile_checks(gcc clang c++ cortex-m0 avr rv32imc powerpc)
+    tmini_add_compile_checks(gcc clang c++ cortex-m0 avr rv32imc xtensa powerpc)
 endif()

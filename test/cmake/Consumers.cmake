@@ -10,5 +10,36 @@ foreach(way add_subdirectory FetchContent find_package)
         -D BUILD=${CMAKE_CURRENT_BINARY_DIR}/consumer.${way}
         -D COMPILER=${CMAKE_C_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
         -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/run.cmake)
-    set_tests_properties(consumer.${way} PROPERTIES LABELS consumer TIMEOUT 300)
+    set_tests_properties(consumer.${way} PROPERTIES LABELS consumer TIMEOUT 900)
 endforeach()
+
+# Everything installed and uninstalled.
+if(TARGET tmini_tool)
+    find_program(TMINI_PKG_CONFIG pkg-config)
+    mark_as_advanced(TMINI_PKG_CONFIG)
+    add_test(NAME consumer.install COMMAND ${CMAKE_COMMAND}
+        -D TMINI_SOURCE=${PROJECT_SOURCE_DIR} -D BUILD=${CMAKE_CURRENT_BINARY_DIR}/consumer.install
+        -D COMPILER=${CMAKE_C_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
+        -D PKG_CONFIG=${TMINI_PKG_CONFIG}
+        -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/install.cmake)
+    set_tests_properties(consumer.install PROPERTIES LABELS consumer TIMEOUT 900)
+endif()
+
+# What the ecosystems' manifests repeat, compared.
+tmini_missing_programs(missing python3)
+if(missing)
+    tmini_add_skipped_test(manifests "${missing} is not installed")
+else()
+    add_test(NAME manifests COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/consumer/manifests.py)
+    set_tests_properties(manifests PROPERTIES LABELS consumer)
+endif()
+
+# What docs/ecosystems.md claims. Where there is no C++, several of its tests are not there either.
+if(missing OR NOT CMAKE_CXX_COMPILER)
+    tmini_add_skipped_test(ecosystems "python3 or a C++ compiler is not installed")
+else()
+    add_test(NAME ecosystems
+        COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/consumer/ecosystems.py
+            ${CMAKE_BINARY_DIR} ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER})
+    set_tests_properties(ecosystems PROPERTIES LABELS docs)
+endif()

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Runs the unit tests on other, emulated machines. Each machine has a build of this same project, with
-# a toolchain file, in a folder of its own inside the build folder. A test makes that build, the tests
-# that need it follow. A machine whose compiler or emulator is missing is one skipped test.
+# Runs the unit tests on other, emulated machines. Each machine has a build of this same project,
+# with a toolchain file, in a folder of its own inside the build folder. A test makes that build,
+# the tests that need it follow. A machine whose compiler or emulator is missing is one skipped
+# test.
 #
 # The same by hand:
 #   cmake -B build-avr -DCMAKE_TOOLCHAIN_FILE=test/cmake/toolchains/avr-atmega2560.cmake
@@ -25,36 +26,12 @@ function(tmini_add_machine machine)
         -D BUILD_TYPE=${arg_BUILD_TYPE} -D CMOCK=${TMINI_CMOCK_DIR}
         -P ${CMAKE_CURRENT_SOURCE_DIR}/cmake/BuildMachine.cmake)
     set_tests_properties(${machine}.build PROPERTIES
-        LABELS ${machine} FIXTURES_SETUP ${machine} TIMEOUT 600)
+        LABELS ${machine} FIXTURES_SETUP ${machine} TIMEOUT 1800)
 
     get_property(tests GLOBAL PROPERTY TMINI_UNIT_TESTS)
     foreach(test ${tests})
         tmini_add_test_on_machine(${test} ${machine} ${dir})
     endforeach()
-endfunction()
-
-# Sets OUT to those of the given programs that are not installed.
-function(tmini_missing_programs out)
-    set(missing "")
-    foreach(program ${ARGN})
-        string(REPLACE "|" ";" names ${program})
-        string(MAKE_C_IDENTIFIER "TMINI_PROGRAM_${program}" variable)
-        find_program(${variable} NAMES ${names})
-        mark_as_advanced(${variable})
-        if(NOT ${variable})
-            list(GET names 0 name)
-            list(APPEND missing ${name})
-        endif()
-    endforeach()
-    string(REPLACE ";" ", " missing "${missing}")
-    set(${out} "${missing}" PARENT_SCOPE)
-endfunction()
-
-# A test that only tells why it does nothing.
-function(tmini_add_skipped_test label reason)
-    message(STATUS "Tests `${label}` are skipped: ${reason}")
-    add_test(NAME ${label} COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: ${reason}")
-    set_tests_properties(${label} PROPERTIES LABELS ${label} SKIP_REGULAR_EXPRESSION "^SKIPPED")
 endfunction()
 
 # The other build's own ctest knows how to run its test, and when it has passed.
@@ -66,7 +43,7 @@ function(tmini_add_test_on_machine test machine dir)
     add_test(NAME ${machine}.${test} COMMAND ${CMAKE_COMMAND} -E chdir ${dir}
         ${CMAKE_CTEST_COMMAND} -R "^${test}$" --output-on-failure --no-tests=error)
     set_tests_properties(${machine}.${test} PROPERTIES
-        LABELS ${machine} FIXTURES_REQUIRED ${machine} TIMEOUT 150)
+        LABELS ${machine} FIXTURES_REQUIRED ${machine} TIMEOUT 1800)
 endfunction()
 
 if(TMINI_TEST_MACHINES)

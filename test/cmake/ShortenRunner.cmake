@@ -7,5 +7,7 @@
 # sentences would need most of it; the line number in the report still tells which test it is.
 
 file(READ "${RUNNER}" text)
-string(REGEX REPLACE "run_test\\(([a-zA-Z0-9_]+), \"[^\"]*\", " "run_test(\\1, \"\", " text "${text}")
+string(REGEX REPLACE
+    "run_test\\(([a-zA-Z0-9_]+), \"[^\"]*\", "
+    "run_test(\\1, \"\", " text "${text}")
 file(WRITE "${RUNNER}" "${text}")

@@ -12,8 +12,9 @@
 #                                      `others`: none but this computer
 # )
 #
-# One executable and one ctest. The main function (the "runner") and the mocks are generated at build
-# time. The tests run on this computer and, unless excepted, on each machine of OtherMachines.cmake.
+# One executable and one ctest. The main function (the "runner") and the mocks are generated at
+# build time. The tests run on this computer and, unless excepted, on each machine of
+# OtherMachines.cmake.
 
 set(TMINI_CMOCK_CONFIG ${CMAKE_CURRENT_LIST_DIR}/cmock.yml)
 set(TMINI_SHORTEN_RUNNER ${CMAKE_CURRENT_LIST_DIR}/ShortenRunner.cmake)
@@ -51,7 +52,8 @@ function(tmini_generate_mocks out dir)
         set(mock ${dir}/mock_${name}.c)
         # CMock writes to its working directory: a path in an option would lose unusual characters.
         add_custom_command(OUTPUT ${mock} ${dir}/mock_${name}.h
-            COMMAND ${TMINI_RUBY} -W0 ${TMINI_CMOCK_DIR}/lib/cmock.rb -o${TMINI_CMOCK_CONFIG} ${header}
+            COMMAND ${TMINI_RUBY} -W0 ${TMINI_CMOCK_DIR}/lib/cmock.rb
+                -o${TMINI_CMOCK_CONFIG} ${header}
             DEPENDS ${header} ${TMINI_CMOCK_CONFIG}
             WORKING_DIRECTORY ${dir}
             COMMENT "Generating mock_${name}"
@@ -71,13 +73,13 @@ function(tmini_configure_unit_test target generated_dir)
     endforeach()
     target_link_libraries(${target} PRIVATE tmini_cmock tmini::tmini)
     set_target_properties(${target} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON)
-    target_compile_options(${target} PRIVATE -Wall -Wextra $<$<BOOL:${TMINI_STRICT}>:-Werror>)
+    target_compile_options(${target} PRIVATE -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
 endfunction()
 
 # Adds the ctest; what a machine without exit statuses prints decides there.
 function(tmini_register_unit_test name)
     add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES LABELS "${ARGN}" TIMEOUT 120)
+    set_tests_properties(${name} PROPERTIES LABELS "${ARGN}" TIMEOUT 600)
     if(TMINI_TEST_PASS_PATTERN)
         set_tests_properties(${name} PROPERTIES
             PASS_REGULAR_EXPRESSION "${TMINI_TEST_PASS_PATTERN}"

@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#include "tmini/tmini_status.h"
+#include "tmini/tmini_names.h"
 
 int sloppy(long wide, int unused)
 {

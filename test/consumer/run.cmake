@@ -5,22 +5,7 @@
 #
 # Configures, checks, builds and runs the consumer project.
 
-function(run_or_fail)
-    execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
-    if(NOT status EQUAL 0)
-        string(REPLACE ";" " " command "${ARGN}")
-        message(FATAL_ERROR "failed: ${command}")
-    endif()
-endfunction()
-
-# Installs the library into the folder PREFIX, to be found there.
-function(install_library prefix)
-    set(build ${BUILD}/installed-from)
-    run_or_fail(${CMAKE_COMMAND} -S ${TMINI_SOURCE} -B ${build} -G ${GENERATOR}
-        -DCMAKE_C_COMPILER=${COMPILER} -DCMAKE_INSTALL_PREFIX=${prefix}
-        -DTMINI_BUILD_TESTS=OFF -DTMINI_BUILD_EXAMPLES=OFF)
-    run_or_fail(${CMAKE_COMMAND} --build ${build} --target install)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 
 # The command line that compiled main.c has our include folder, and no option of ours.
 function(check_command_line)
@@ -37,10 +22,8 @@ endfunction()
 
 file(REMOVE_RECURSE ${BUILD})
 if(WAY STREQUAL "find_package")
-    install_library(${BUILD}/prefix)
+    install_project(${BUILD}/installed-from ${BUILD}/prefix OFF)
 endif()
-# An environment's own flags would look like ours.
-unset(ENV{CFLAGS})
 run_or_fail(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${BUILD} -G ${GENERATOR}
     -DCMAKE_C_COMPILER=${COMPILER} -DWAY=${WAY} -DTMINI_SOURCE=${TMINI_SOURCE}
     -DFETCHCONTENT_SOURCE_DIR_TMINI=${TMINI_SOURCE} -DCMAKE_PREFIX_PATH=${BUILD}/prefix)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Fuzz target: the whole driver as a hostile world would use it. The input is a list of actions: bytes
- * received, by interrupt, block or DMA, time passing, polls, commands at any moment, a port that takes
- * none, one or both bytes, or fails. Nothing may crash, hang or lose count, and nothing but whole
- * two-byte commands may leave. */
+/* Fuzz target: the whole driver as a hostile world would use it. The input is a list of actions:
+ * bytes received, by interrupt, block or DMA, time passing, polls, commands at any moment, a port
+ * that takes none, one or both bytes, or fails. Nothing may crash, hang or lose count, and nothing
+ * but whole two-byte commands may leave. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -140,8 +140,8 @@ static void poll_events(uint8_t times)
         if (event == TMINI_EVENT_SCAN) {
             demand(tmini_scan(&world.lidar)->count <= POINTS);
         }
-        if (event == TMINI_EVENT_FAILED) {
-            demand(tmini_failure(&world.lidar) < 0);
+        if (event == TMINI_EVENT_COMMAND_FAILED) {
+            demand(tmini_command_error(&world.lidar) < 0);
         }
     }
 }
@@ -203,7 +203,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .points = streaming ? NULL : world.points,
         .max_points = streaming ? 0 : POINTS,
         .filter = (uint8_t)(setup & TMINI_FILTER_BOTH),
-        .no_recovery = (setup & 16) != 0,
+        .disable_recovery = (setup & 16) != 0,
     };
     demand(tmini_init(&world.lidar, &config) == TMINI_OK);
     while (world.left > 0) {

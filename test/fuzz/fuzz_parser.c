@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Fuzz target: any bytes, in any chunks, through parser, packets and scans. They must come to the same
- * frames and points as the reference decoder finds, and every byte must be accounted for. */
+/* Fuzz target: any bytes, in any chunks, through parser, packets and scans. They must come to the
+ * same frames and points as the reference decoder finds, and every byte must be accounted for. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "reference_decoder.h"
+#include "tmini/tmini_parser.h"
 #include "tmini/tmini_scan.h"
 
 #define FRAMES_MAX 4096
@@ -51,12 +52,12 @@ static void compare_packet(const tmini_packet_t *packet)
 
 static void gather(tmini_scan_builder_t *builder, const tmini_packet_t *packet)
 {
-    if (tmini_scan_close(builder, packet)) {
+    if (tmini_scan_close(builder, packet, 0)) {
         const tmini_scan_t *const scan = &builder->scan;
         demand(scan->count <= SCAN_POINTS && scan->packets > 0);
         demand(!scan->complete || (scan->gaps == 0 && scan->dropped == 0));
         for (size_t i = 0; i < scan->count; i++) {
-            demand(scan->points[i].angle_q6 < TMINI_TURN_Q6);
+            demand(scan->points[i].angle_q6 < TMINI_FULL_CIRCLE_Q6);
         }
     }
     tmini_scan_add(builder, packet, 0);
@@ -68,9 +69,11 @@ static void drain(tmini_parser_t *parser, tmini_scan_builder_t *builder)
         switch (tmini_parser_next(parser)) {
         case TMINI_FRAME_NONE:
             return;
+        case TMINI_FRAME_MORE:
+            break;
         case TMINI_FRAME_PACKET: {
             tmini_packet_t packet;
-            tmini_packet_open(&packet, parser);
+            tmini_packet_open(&packet, tmini_parser_frame(parser));
             compare_packet(&packet);
             gather(builder, &packet);
             break;
@@ -96,8 +99,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const uint8_t max_samples = data[0] == 0 ? 80 : data[0];
     const size_t chunk = 1u + data[1] % 200u;
     const bool waits = data[2] % 2 != 0;
-    const tmini_reply_shape_t shape = {.type = 0x04, .mode = 0, .length = data[3] % 21u};
-    const reference_reply_t reply = {.mode = 0, .type = 0x04, .length = shape.length};
+    const tmini_reply_header_t header = {.type = 0x04, .mode = 0, .length = data[3] % 21u};
+    const reference_reply_t reply = {.mode = 0, .type = 0x04, .length = header.length};
     const reference_options_t options = {.max_samples = max_samples,
                                          .awaited = waits ? &reply : NULL};
     stream = data + 4;
@@ -113,7 +116,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     demand(tmini_ring_init(&ring, memory, sizeof memory, false) == TMINI_OK);
     demand(tmini_parser_init(&parser, &ring, max_samples) == TMINI_OK);
     demand(tmini_scan_init(&builder, points, SCAN_POINTS, TMINI_FILTER_BOTH) == TMINI_OK);
-    tmini_parser_await(&parser, waits ? &shape : NULL);
+    demand(tmini_parser_await(&parser, waits ? &header : NULL) == TMINI_OK);
     for (size_t at = 0; at < size; at += chunk) {
         tmini_ring_write(&ring, stream + at, size - at < chunk ? size - at : chunk);
         drain(&parser, &builder);
@@ -123,11 +126,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         drain(&parser, &builder);
     }
     demand(seen == expected_count || expected_count == FRAMES_MAX);
-    demand(parser.counters.packets == counts.packets);
-    demand(parser.counters.checksum_errors == counts.checksum_errors);
-    demand(parser.counters.bytes_in_packets == counts.bytes_in_packets);
-    demand(parser.counters.bytes_in_replies == counts.bytes_in_replies);
-    demand(parser.counters.bytes_skipped == counts.bytes_skipped);
-    demand(parser.counters.bytes_overrun == 0);
+    tmini_parser_counters_t counters;
+    tmini_parser_counters(&parser, &counters);
+    demand(counters.packets == counts.packets);
+    demand(counters.checksum_errors == counts.checksum_errors);
+    demand(counters.bytes_in_packets == counts.bytes_in_packets);
+    demand(counters.bytes_in_replies == counts.bytes_in_replies);
+    demand(counters.bytes_skipped == counts.bytes_skipped);
+    demand(counters.bytes_overrun == 0);
     return 0;
 }

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Fuzzes the parser and the driver with libFuzzer under the address and undefined-behaviour sanitizers:
+# Fuzzes the parser and the driver with libFuzzer under the address and undefined-behaviour
+# sanitizers:
 #
 #   test/fuzz/run.sh [SECONDS]      for each target; 60 unless given
 #
@@ -18,7 +19,7 @@ compiler=${TMINI_FUZZ_CC:-clang}
 
 if ! echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' |
     "$compiler" -x c -fsanitize=fuzzer,address - -o /dev/null 2>/dev/null; then
-    echo "SKIPPED: $compiler cannot build fuzzers (packages clang and libclang-rt-…-dev of its version)"
+    echo "SKIPPED: $compiler cannot build fuzzers (packages clang, libclang-rt-…-dev)"
     exit 0
 fi
 

@@ -13,10 +13,11 @@ tmini_ring_t any_ring(void)
     tmini_ring_t ring;
     const bool dma = nondet_bool();
     CLAIM(tmini_ring_init(&ring, ring_memory, RING_SIZE, dma) == TMINI_OK);
-    ring.tail = nondet_size();
-    ring.limit = ring.tail + RING_SIZE;
+    ring.limit = nondet_size();
     ring.head = nondet_size();
-    ring.refused = nondet_size();
-    ASSUME(ring.head - ring.tail <= RING_SIZE); /* DMA may go further; see proof_ring.c. */
+    ring.overrun = nondet_size();
+    ring.gate = nondet_bool() ? RING_SIZE - 1 : 0;
+    ASSUME(ring.head - tmini_ring_tail(&ring) <=
+           RING_SIZE); /* DMA may go further; see proof_ring.c. */
     return ring;
 }

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the proofs share. A proof's main() sets up any state that the module's invariants allow, with
- * any contents, calls one function, and asserts; the model checker tries all values at once. */
+/* What the proofs share. A proof's main() sets up any state that the module's invariants allow,
+ * with any contents, calls one function, and asserts; the model checker tries all values at
+ * once. */
 
 #ifndef PROOF_H
 #define PROOF_H

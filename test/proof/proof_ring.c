@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The ring, at any indices (also where they wrap): no function leaves its memory; a byte that is put is
- * the byte that is read, or is counted as refused; nothing that is unread is overwritten. */
+/* The ring, at any indices (also where they wrap): no function leaves its memory; a byte that is
+ * put is the byte that is read, or is counted as refused; nothing that is unread is overwritten. */
 
 #include "proof.h"
 
@@ -13,14 +13,16 @@ static void put_keeps_every_unread_byte(void)
     const size_t offset = nondet_size();
     ASSUME(offset < unread);
     const uint8_t before = tmini_ring_peek(&ring, offset);
-    const size_t refused = tmini_ring_refused(&ring);
+    const size_t refused = tmini_ring_overrun(&ring);
+    const bool was_closed = tmini_ring_is_closed(&ring);
     const uint8_t byte = nondet_byte();
     tmini_ring_put(&ring, byte);
     CLAIM(tmini_ring_peek(&ring, offset) == before);
-    if (unread == RING_SIZE) {
-        CLAIM(tmini_ring_unread(&ring) == RING_SIZE && tmini_ring_refused(&ring) == refused + 1);
+    if (unread == RING_SIZE || was_closed) {
+        CLAIM(tmini_ring_is_closed(&ring));
+        CLAIM(tmini_ring_unread(&ring) == unread && tmini_ring_overrun(&ring) == refused + 1);
     } else {
-        CLAIM(tmini_ring_unread(&ring) == unread + 1 && tmini_ring_refused(&ring) == refused);
+        CLAIM(tmini_ring_unread(&ring) == unread + 1 && tmini_ring_overrun(&ring) == refused);
         CLAIM(tmini_ring_peek(&ring, unread) == byte);
     }
 }
@@ -34,12 +36,13 @@ static void write_stores_what_fits_and_counts_the_rest(void)
     }
     const size_t count = nondet_size();
     const size_t unread = tmini_ring_unread(&ring);
-    const size_t refused = tmini_ring_refused(&ring);
+    const size_t refused = tmini_ring_overrun(&ring);
+    const size_t room = tmini_ring_is_closed(&ring) ? 0 : RING_SIZE - unread;
     ASSUME(count <= sizeof bytes);
     tmini_ring_write(&ring, bytes, count);
     const size_t stored = tmini_ring_unread(&ring) - unread;
-    CLAIM(stored == (count < RING_SIZE - unread ? count : RING_SIZE - unread));
-    CLAIM(tmini_ring_refused(&ring) - refused == count - stored);
+    CLAIM(stored == (count < room ? count : room));
+    CLAIM(tmini_ring_overrun(&ring) - refused == count - stored);
     const size_t offset = nondet_size();
     if (offset < stored) {
         CLAIM(tmini_ring_peek(&ring, unread + offset) == bytes[offset]);
@@ -56,19 +59,18 @@ static void publish_stays_below_one_round(void)
     CLAIM(ring.head % RING_SIZE == position % RING_SIZE);
 }
 
-static void samples_lie_in_the_memory_or_are_joined(void)
+static void pieces_lie_in_the_memory(void)
 {
     tmini_ring_t ring = any_ring();
-    uint8_t joined[3];
     const size_t offset = nondet_size();
     const size_t wanted = nondet_size();
     const size_t index = nondet_size();
     size_t count = wanted;
-    ASSUME(wanted >= 1 && wanted <= RING_SIZE / 3 && offset <= RING_SIZE);
-    const uint8_t *const samples = tmini_ring_samples(&ring, offset, &count, joined);
+    ASSUME(wanted >= 1 && wanted <= RING_SIZE && offset <= RING_SIZE);
+    const uint8_t *const piece = tmini_ring_piece(&ring, offset, &count);
     CLAIM(count >= 1 && count <= wanted);
-    ASSUME(index < 3 * count);
-    CLAIM(samples[index] == tmini_ring_peek(&ring, offset + index)); /* Also reads within bounds. */
+    ASSUME(index < count);
+    CLAIM(piece[index] == tmini_ring_peek(&ring, offset + index)); /* Also reads within bounds. */
 }
 
 int main(void)
@@ -76,6 +78,6 @@ int main(void)
     put_keeps_every_unread_byte();
     write_stores_what_fits_and_counts_the_rest();
     publish_stays_below_one_round();
-    samples_lie_in_the_memory_or_are_joined();
+    pieces_lie_in_the_memory();
     return 0;
 }

@@ -4,24 +4,20 @@
 
 # Proves what proof_….c claim, with the model checker CBMC: for all values at once. About a minute.
 #
-# Without an installed cbmc (Debian has it from trixie on) and as root, it is put into a small Debian of
-# its own in build-proof/, by debootstrap, from where this machine's own packages come.
+# Without an installed cbmc (Debian has it from trixie on) and as root, it is put into a small
+# Debian of its own in build-proof/, by debootstrap, from where this machine's own packages come.
 
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
 jail=$root/build-proof
-
-machines_mirror() {
-    cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null |
-        sed -n 's/^URIs: *\([^ ]*debian\)\/* *$/\1/p; s/^deb \(\[.*\] \)\{0,1\}\([^ ]*debian\)\/* .*/\2/p' |
-        head -n 1
-}
+# shellcheck source=test/support/mirrors.sh
+. "$root/test/support/mirrors.sh"
 
 make_jail() {
     command -v debootstrap >/dev/null || apt-get install -y -qq debootstrap >/dev/null
     debootstrap --variant=minbase --include=gcc,libc6-dev,cbmc trixie "$jail" \
-        "$(machines_mirror)" >"$jail.log" 2>&1
+        "$(mirror_of debian)" >"$jail.log" 2>&1
 }
 
 if command -v cbmc >/dev/null; then

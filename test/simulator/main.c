@@ -203,9 +203,9 @@ int main(int argc, char **argv)
     if (!options_parse(&options, argc, argv)) {
         return EXIT_WRONG_USAGE;
     }
-    if (options.help) {
-        options_print_help();
-        return EXIT_SUCCESS;
+    if (options.help || options.version) {
+        (options.help ? options_print_help : options_print_version)();
+        return fflush(stdout) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
     }
     catch_signals();
     set_up(&options);

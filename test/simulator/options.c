@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
+#define _GNU_SOURCE /* getopt_long() */
+
 #include "options.h"
 
+#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct {
+    char letter; /* also a short option; 0: only a long one */
     const char *name;
     const char *value; /* what the value is called in the help; NULL: it takes none */
     const char *help;
@@ -18,6 +22,13 @@ static bool set_help(options_t *options, const char *value)
 {
     (void)value;
     options->help = true;
+    return true;
+}
+
+static bool set_version(options_t *options, const char *value)
+{
+    (void)value;
+    options->version = true;
     return true;
 }
 
@@ -101,6 +112,37 @@ static bool set_frequency(options_t *options, const char *value)
     return true;
 }
 
+/* One digit each, as on the units' labels. */
+static bool set_firmware(options_t *options, const char *value)
+{
+    encode_information_t *const information = &options->device.information;
+
+    if (strlen(value) != 3 || value[1] != '.' || value[0] < '0' || value[0] > '9' ||
+        value[2] < '0' || value[2] > '9') {
+        return false;
+    }
+    information->firmware_major = (uint8_t)(value[0] - '0');
+    information->firmware_minor = (uint8_t)(value[2] - '0');
+    return true;
+}
+
+/* The angles are those of two real units (section 9.8). */
+static bool set_beginning(options_t *options, const char *value)
+{
+    sim_config_t *const device = &options->device;
+
+    if (strcmp(value, "unmarked") == 0) {
+        device->beginning = SIM_BEGINS_UNMARKED;
+        device->first_angle_q6 = 21101; /* 329.7 degrees. */
+    } else if (strcmp(value, "start") == 0) {
+        device->beginning = SIM_BEGINS_WITH_A_START;
+        device->first_angle_q6 = 5485; /* 85.7 degrees. */
+    } else {
+        device->beginning = SIM_BEGINS_ANYWHERE;
+    }
+    return device->beginning != SIM_BEGINS_ANYWHERE || strcmp(value, "anywhere") == 0;
+}
+
 /* The six bits of section 4, also as 0x... */
 static bool set_health(options_t *options, const char *value)
 {
@@ -114,6 +156,28 @@ static bool set_health(options_t *options, const char *value)
 static bool set_seconds(options_t *options, const char *value)
 {
     return parse_number(value, 0.001, 1e9, &options->seconds);
+}
+
+static bool set_motor(options_t *options, const char *value)
+{
+    double percent;
+
+    if (!parse_number(value, 1, 150, &percent)) {
+        return false;
+    }
+    options->device.motor_percent = (uint8_t)percent;
+    return true;
+}
+
+static bool set_spin_up(options_t *options, const char *value)
+{
+    double seconds;
+
+    if (!parse_number(value, 0, 60, &seconds)) {
+        return false;
+    }
+    options->device.spin_up_ms = (uint16_t)(seconds * 1000.0);
+    return true;
 }
 
 static bool set_speed(options_t *options, const char *value)
@@ -160,56 +224,67 @@ static bool set_fault(options_t *options, const char *value)
 }
 
 static const option_t known[] = {
-    {"--pty", NULL, "serve a pseudo-terminal; its path is the first line printed", set_pty},
-    {"--tcp", "PORT", "serve 127.0.0.1:PORT (0: any free port; the first line says)", set_tcp},
-    {"--write", "FILE", "record --seconds of scanning in virtual time, as fast as can be",
+    {0, "pty", NULL, "serve a pseudo-terminal; its path is the first line printed", set_pty},
+    {0, "tcp", "PORT", "serve 127.0.0.1:PORT (0: any free port; the first line says)", set_tcp},
+    {0, "write", "FILE", "record --seconds of scanning in virtual time, as fast as can be",
      set_write},
-    {"--frequency", "HZ", "set scan frequency at power-up, 5 to 12 (6)", set_frequency},
-    {"--no-ct", NULL, "send neither CT information nor LastCRC", set_no_ct},
-    {"--blocked", NULL, "the rotor does not turn", set_blocked},
-    {"--covered", NULL, "the window is covered: no ranges", set_covered},
-    {"--health", "BITS",
+    {0, "frequency", "HZ", "set scan frequency at power-up, 5 to 12 (6)", set_frequency},
+    {0, "firmware", "X.Y", "version of the firmware (1.2; 1.3 is in the field)", set_firmware},
+    {0, "begin", "HOW",
+     "first packets after a start: anywhere, unmarked (they pass the start\n"
+     "                          packet's place without one), start (the first is one) (anywhere)",
+     set_beginning},
+    {0, "no-ct", NULL, "send neither CT information nor LastCRC", set_no_ct},
+    {0, "blocked", NULL, "the rotor does not turn", set_blocked},
+    {0, "covered", NULL, "the window is covered: no ranges", set_covered},
+    {0, "health", "BITS",
      "faults reported, 0 to 0x3F: 1 sensor, 2 encoder,\n"
-     "                        4 wireless power, 8 PD, 16 LD, 32 data (0)",
+     "                          4 wireless power, 8 PD, 16 LD, 32 data (0)",
      set_health},
-    {"--fault", "KIND=RATE",
+    {0, "motor", "PERCENT", "of the set frequency that the motor comes up to (100)", set_motor},
+    {0, "spin-up", "SECONDS", "that it takes for that (1)", set_spin_up},
+    {0, "fault", "KIND=RATE",
      "drop, flip, insert: probability a byte;\n"
-     "                        burst, stall, cut, unplug, garble: events a second",
+     "                          burst, stall, cut, unplug, garble: events a second",
      set_fault},
-    {"--seed", "N", "of all that is random (1)", set_seed},
-    {"--seconds", "N", "of virtual time, then exit (never)", set_seconds},
-    {"--speed", "X", "virtual seconds a real second (1)", set_speed},
-    {"--log", "FILE", "commands, modes, faults and totals; - is standard output", set_log},
-    {"--truth", "FILE", "every sample sent, as CSV; - is standard output", set_truth},
-    {"--help", NULL, "this", set_help},
+    {0, "seed", "N", "of all that is random (1)", set_seed},
+    {'s', "seconds", "N", "of virtual time, then exit (never)", set_seconds},
+    {0, "speed", "X", "virtual seconds a real second (1)", set_speed},
+    {0, "log", "FILE", "commands, modes, faults and totals; - is standard output", set_log},
+    {0, "truth", "FILE", "every sample sent, as CSV; - is standard output", set_truth},
+    {'h', "help", NULL, "this", set_help},
+    {'V', "version", NULL, "the version", set_version},
 };
 
 #define KNOWN_OPTIONS (sizeof known / sizeof known[0])
+
+void options_print_version(void)
+{
+    puts("tmini-sim " TMINI_SIM_VERSION);
+}
 
 void options_print_help(void)
 {
     puts("usage: tmini-sim --pty | --tcp PORT | --write FILE --seconds N [options]\n"
          "A simulated YDLIDAR T-mini Plus.\n");
     for (size_t i = 0; i < KNOWN_OPTIONS; i++) {
-        const char *value = known[i].value == NULL ? "" : known[i].value;
+        const option_t *option = &known[i];
+        const char letter[4] = {'-', option->letter, ',', '\0'};
 
-        printf("  %-11s %-10s%s\n", known[i].name, value, known[i].help);
+        printf("%3s --%-9s %-10s%s\n", option->letter == 0 ? "" : letter, option->name,
+               option->value == NULL ? "" : option->value, option->help);
     }
-}
-
-static const option_t *find(const char *name)
-{
-    for (size_t i = 0; i < KNOWN_OPTIONS; i++) {
-        if (strcmp(known[i].name, name) == 0) {
-            return &known[i];
-        }
-    }
-    return NULL;
 }
 
 static bool complain(const char *about, const char *what)
 {
     fprintf(stderr, "tmini-sim: %s%s; try tmini-sim --help\n", about, what);
+    return false;
+}
+
+static bool complain_of(const option_t *option, const char *what)
+{
+    fprintf(stderr, "tmini-sim: --%s%s; try tmini-sim --help\n", option->name, what);
     return false;
 }
 
@@ -223,7 +298,7 @@ static bool is_consistent(const options_t *options)
     const int modes =
         (options->pty ? 1 : 0) + (options->tcp ? 1 : 0) + (options->write_path == NULL ? 0 : 1);
 
-    if (options->help) {
+    if (options->help || options->version) {
         return true;
     }
     if (modes != 1) {
@@ -240,25 +315,67 @@ static bool is_consistent(const options_t *options)
     return true;
 }
 
+/* For getopt_long(): the short options, after ":", which asks for silence about errors; and the
+ * long ones, each returning its place in the table, beyond all characters. */
+#define PLACE 256
+
+static void list_options(char *short_ones, struct option *long_ones)
+{
+    *short_ones++ = ':';
+    for (size_t i = 0; i < KNOWN_OPTIONS; i++) {
+        const int has_value = known[i].value != NULL ? required_argument : no_argument;
+
+        long_ones[i].name = known[i].name;
+        long_ones[i].has_arg = has_value;
+        long_ones[i].val = PLACE + (int)i;
+        if (known[i].letter != 0) {
+            *short_ones++ = known[i].letter;
+            *short_ones++ = ':';
+            short_ones -= has_value == no_argument ? 1 : 0;
+        }
+    }
+    *short_ones = '\0';
+}
+
+static const option_t *option_of(int answer)
+{
+    size_t i = 0;
+
+    while (answer < PLACE && i < KNOWN_OPTIONS && known[i].letter != answer) {
+        i++;
+    }
+    i = answer < PLACE ? i : (size_t)(answer - PLACE);
+    return i < KNOWN_OPTIONS ? &known[i] : NULL;
+}
+
+static bool take(options_t *options, int answer, const char *word)
+{
+    const option_t *option = answer == '?' || answer == ':' ? NULL : option_of(answer);
+
+    if (option == NULL) {
+        return complain(word,
+                        answer == ':' ? " needs a value" : " is not an option, or needs no value");
+    }
+    return option->set(options, optarg) || complain_of(option, " has a value out of range or form");
+}
+
 bool options_parse(options_t *options, int argc, char **argv)
 {
+    char short_ones[2 * KNOWN_OPTIONS + 2];
+    struct option long_ones[KNOWN_OPTIONS + 1];
+    int answer;
+
     memset(options, 0, sizeof *options);
+    memset(long_ones, 0, sizeof long_ones);
     options->speed = 1.0;
     options->device = sim_default_config();
     options->link = sim_link_default_config();
-    for (int i = 1; i < argc; i++) {
-        const option_t *option = find(argv[i]);
-
-        if (option == NULL) {
-            return complain(argv[i], " is not an option");
-        }
-        if (option->value != NULL && i + 1 == argc) {
-            return complain(option->name, " needs a value");
-        }
-        i += option->value != NULL ? 1 : 0;
-        if (!option->set(options, argv[i])) {
-            return complain(option->name, " has a value out of range or form");
+    list_options(short_ones, long_ones);
+    while ((answer = getopt_long(argc, argv, short_ones, long_ones, NULL)) != -1) {
+        if (!take(options, answer, argv[optind - 1])) {
+            return false;
         }
     }
-    return is_consistent(options);
+    return optind == argc ? is_consistent(options)
+                          : complain(argv[optind], ": there is nothing to say without an option");
 }

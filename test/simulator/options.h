@@ -10,6 +10,7 @@
 
 typedef struct {
     bool help;
+    bool version;
     bool pty;
     bool tcp;
     uint16_t tcp_port;      /* 0: any free one */
@@ -29,5 +30,6 @@ typedef struct {
 bool options_parse(options_t *options, int argc, char **argv);
 
 void options_print_help(void);
+void options_print_version(void);
 
 #endif

@@ -25,7 +25,8 @@ typedef struct {
     uint32_t number;     /* of the packet since sim_init(), from 0 */
     uint32_t revolution; /* start packets so far, this one included */
     bool starts_revolution;
-    uint64_t position; /* of its first byte in all that the device has sent */
+    bool is_of_partial; /* its revolution began elsewhere than at the start packets' place */
+    uint64_t position;  /* of its first byte in all that the device has sent */
 } sim_packet_t;
 
 /* Bytes of one frame, back to back on the wire. */

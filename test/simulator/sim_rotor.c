@@ -11,7 +11,7 @@
 
 static uint32_t set_speed(const sim_t *sim)
 {
-    return (uint32_t)sim->frequency_chz * SPEED_PER_CHZ;
+    return (uint32_t)sim->frequency_chz * SPEED_PER_CHZ / 100u * sim->config.motor_percent;
 }
 
 static bool frozen(const sim_t *sim)
@@ -56,7 +56,7 @@ static int32_t draw_wobble(sim_t *sim)
 
 static uint32_t samples_to_full_turn(const sim_rotor_t *rotor)
 {
-    if (rotor->step == 0u) {
+    if (rotor->step == 0u || rotor->unmarked) {
         return FULL_PACKET;
     }
     return (FULL_TURN_Q16 - rotor->phase + rotor->step - 1u) / rotor->step;
@@ -111,17 +111,32 @@ static void prepare_turn_information(sim_t *sim)
     turn->serial = decimal(information->serial + 8, 8);
 }
 
-/* Where the rotor stands when it is started is chance: the first revolution is a partial one. */
+/* Where the rotor stands when it is started is chance, unless the configuration says where: the
+ * first revolution is a partial one. */
+static uint32_t first_phase(sim_t *sim)
+{
+    const uint32_t chance = random_below(&sim->random, FULL_TURN_Q16);
+    const uint32_t angle_q6 = sim->config.first_angle_q6;
+
+    if (angle_q6 == 0u) {
+        return chance;
+    }
+    return ((angle_q6 + ENCODE_FULL_TURN_Q6 - sim->config.start_angle_q6) % ENCODE_FULL_TURN_Q6)
+           << 16;
+}
+
 void sim_rotor_start(sim_t *sim, uint64_t at_us)
 {
     sim_rotor_t *rotor = &sim->rotor;
 
     prepare_turn_information(sim);
-    rotor->phase = random_below(&sim->random, FULL_TURN_Q16);
+    rotor->phase = first_phase(sim);
     rotor->speed = set_speed(sim) / 100u * sim->config.spin_up_percent;
     rotor->wobble = draw_wobble(sim);
-    rotor->at_start = false;
+    rotor->at_start = sim->config.beginning == SIM_BEGINS_WITH_A_START;
+    rotor->unmarked = sim->config.beginning == SIM_BEGINS_UNMARKED;
     rotor->in_turn = false;
+    rotor->is_partial = false;
     rotor->index = 0;
     rotor->samples = 0;
     rotor->valid = 0;
@@ -253,6 +268,7 @@ static void begin_revolution(sim_t *sim)
     rotor->turn.production = (uint8_t)random_below(&sim->random, 128);
     rotor->data_fault = rotor->in_turn && rotor->valid == 0u && !sim->rotor_blocked;
     rotor->wobble = draw_wobble(sim);
+    rotor->is_partial = !rotor->in_turn && sim->config.beginning == SIM_BEGINS_WITH_A_START;
     rotor->in_turn = true;
     rotor->index = 0;
     rotor->crc = 0;
@@ -304,6 +320,7 @@ static void fill_frame(sim_t *sim, sim_frame_t *frame)
     frame->packet.number = sim->packet_number++;
     frame->packet.revolution = sim->revolution;
     frame->packet.starts_revolution = rotor->at_start;
+    frame->packet.is_of_partial = rotor->is_partial;
     rotor->crc = encode_crc8(rotor->crc, packet.ct);
 }
 
@@ -313,8 +330,11 @@ static void turn_past_packet(sim_t *sim)
     const uint32_t swept = rotor->step * rotor->planned;
     const uint32_t to_start = FULL_TURN_Q16 - rotor->phase;
 
-    rotor->at_start = swept >= to_start;
-    rotor->phase = rotor->at_start ? swept - to_start : rotor->phase + swept;
+    const bool passes = swept >= to_start;
+
+    rotor->at_start = passes && !rotor->unmarked;
+    rotor->unmarked = rotor->unmarked && !passes;
+    rotor->phase = passes ? swept - to_start : rotor->phase + swept;
     rotor->index++;
     rotor->samples += rotor->planned;
     turn_rotor(sim, rotor->planned);

@@ -26,6 +26,7 @@ sim_config_t sim_default_config(void)
     config.spin_up_ms = 1000;
     config.spin_up_percent = 40;
     config.boot_ms = 2500;
+    config.motor_percent = 100;
     config.wobble_permille = 5;
     config.angle_jitter_q6 = 3;
     config.noise_mm = 8;
@@ -188,6 +189,16 @@ static void answer_health(sim_t *sim)
     answer(sim, reply, length);
 }
 
+/* Undocumented: type 0x10, four zero bytes, whatever they mean. */
+static void answer_undocumented_98(sim_t *sim)
+{
+    static const uint8_t content[4] = {0, 0, 0, 0};
+    uint8_t reply[ENCODE_REPLY_MAX];
+    const size_t length = encode_reply(reply, ENCODE_MODE_SINGLE, 0x10, content, sizeof content);
+
+    answer(sim, reply, length);
+}
+
 static void step_frequency(sim_t *sim, int step_chz)
 {
     const int frequency = (int)sim->frequency_chz + step_chz;
@@ -251,6 +262,9 @@ static bool obey(sim_t *sim, uint8_t code)
         return true;
     case SIM_COMMAND_HEALTH:
         answer_health(sim);
+        return true;
+    case SIM_COMMAND_UNDOCUMENTED_98:
+        answer_undocumented_98(sim);
         return true;
     default:
         return false;

@@ -47,7 +47,8 @@ typedef enum {
     SIM_COMMAND_START = 0x60,
     SIM_COMMAND_STOP = 0x65,
     SIM_COMMAND_INFORMATION = 0x90,
-    SIM_COMMAND_HEALTH = 0x92
+    SIM_COMMAND_HEALTH = 0x92,
+    SIM_COMMAND_UNDOCUMENTED_98 = 0x98 /* not in the manual, but real units answer it */
 } sim_command_t;
 
 typedef enum {
@@ -59,6 +60,13 @@ typedef enum {
     SIM_FAULT     /* section 2's stop mode: no stream until the fault is gone and start comes */
 } sim_mode_t;
 
+/* How the first packets after a start look; real units do all three (section 9.8). */
+typedef enum {
+    SIM_BEGINS_ANYWHERE,     /* the rotor stands anywhere; the first start packet is at its place */
+    SIM_BEGINS_UNMARKED,     /* just before the start packet's place, which it passes without one */
+    SIM_BEGINS_WITH_A_START, /* anywhere, and the very first packet is a start packet */
+} sim_beginning_t;
+
 typedef struct {
     uint64_t seed;
     bool ct_information;        /* false: no LastCRC, CT 0 in point packets (section 9.1) */
@@ -66,12 +74,15 @@ typedef struct {
     uint16_t min_frequency_chz; /* a step beyond a limit changes nothing, and says so */
     uint16_t max_frequency_chz;
     uint16_t reply_latency_ms;
-    uint16_t stop_tail_ms;     /* how long the stream goes on after a stop command */
-    uint16_t first_packet_ms;  /* from the start command's reply to the first packet's samples */
-    uint16_t spin_up_ms;       /* the rotor's time from standstill to the set frequency */
-    uint8_t spin_up_percent;   /* of the set frequency, when the first samples are taken */
+    uint16_t stop_tail_ms;    /* how long the stream goes on after a stop command */
+    uint16_t first_packet_ms; /* from the start command's reply to the first packet's samples */
+    uint16_t spin_up_ms;      /* the rotor's time from standstill to the set frequency */
+    uint8_t spin_up_percent;  /* of the set frequency, when the first samples are taken */
+    sim_beginning_t beginning;
+    uint16_t first_angle_q6;   /* where the rotor stands then; 0: by chance */
     uint16_t boot_ms;          /* after power-up and soft reboot */
     uint16_t start_angle_q6;   /* where the start packet is; not 0 on every unit (9.8) */
+    uint8_t motor_percent;     /* of the set frequency, which it comes up to: 100 */
     uint8_t wobble_permille;   /* of the speed, drawn anew every revolution */
     uint8_t angle_jitter_q6;   /* of FSA and LSA, up to so much either way */
     uint8_t noise_mm;          /* of distances, up to so much either way */
@@ -125,6 +136,8 @@ typedef struct {
     uint64_t due_us;  /* when the packet being measured is complete; SIM_NEVER: not measuring */
     uint8_t planned;  /* its samples */
     bool at_start;    /* it is a start packet */
+    bool is_partial;  /* this revolution began elsewhere than at the start packets' place */
+    bool unmarked;    /* the start packet's place will be passed without one */
     bool in_turn;     /* a start packet has come since the start of scanning */
     uint32_t index;   /* of it in its revolution */
     uint8_t crc;      /* of the CT bytes of this revolution so far */

@@ -3,7 +3,7 @@
 # shellcheck shell=sh
 
 # need_cmock: the package `cmock` (CMock with Unity), to be installed by install_missing of
-# examples/support/packages.sh, which is to be sourced first.
+# packages.sh, which is to be sourced first.
 #
 # Debian 12 does not have it, but the package of the next release is architecture-independent and
 # runs there. It is fetched from where the machine gets its own packages, through a configuration of
@@ -88,9 +88,11 @@ need_cmock_from_trixie() {
         return
     fi
     remove_cmock_download
-    echo "This Debian has no package cmock, and the one of the next release could not be had from" >&2
-    echo "the machine's own package sources (why: above). Please install CMock by hand and name its" >&2
-    echo "folder: CMOCK_ROOT=DIR test/run.sh" >&2
+    cat >&2 <<'EOF'
+This Debian has no package cmock, and that of the next release could not be had from the machine's
+own package sources (why: above). Please install CMock by hand and name its folder:
+CMOCK_ROOT=DIR test/run.sh
+EOF
     return 1
 }
 

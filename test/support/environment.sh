@@ -5,8 +5,8 @@
 
 # What the scripts in test/ have in common. To be sourced with $root set to the project's folder.
 
-# shellcheck source=examples/support/packages.sh
-. "$root/examples/support/packages.sh"
+# shellcheck source=test/support/packages.sh
+. "$root/test/support/packages.sh"
 # shellcheck source=test/support/cmock.sh
 . "$root/test/support/cmock.sh"
 

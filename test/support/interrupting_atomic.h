@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A TMINI_ATOMIC_HEADER for tests: before and after each access of an index that both sides use, the
- * test may be the interrupt, the DMA or the other core that comes just then. */
+/* A TMINI_ATOMIC_HEADER for tests: before and after each access of an index that both sides use,
+ * the test may be the interrupt, the DMA or the other core that comes just then. */
 
 #ifndef INTERRUPTING_ATOMIC_H
 #define INTERRUPTING_ATOMIC_H

@@ -17,6 +17,8 @@ extern const tmini_port_t board_port;
 extern int board_uart;
 
 void USART1_IRQHandler(void);
+void UART1_Handler(void);
+int uart_write(void *uart, const uint8_t *bytes, size_t count);
 void avoid_obstacles(const tmini_scan_t *scan);
 void signal_fault(uint8_t faults);
 

@@ -13,12 +13,19 @@ typedef struct {
     size_t fed;
 } run_t;
 
+tmini_parser_counters_t receiver_counters(const receiver_t *receiver)
+{
+    tmini_parser_counters_t counters;
+    tmini_parser_counters(&receiver->parser, &counters);
+    return counters;
+}
+
 static void check_accounts(const receiver_t *receiver)
 {
-    const tmini_parser_counters_t *const counters = &receiver->parser.counters;
+    const tmini_parser_counters_t counters = receiver_counters(receiver);
     TEST_ASSERT_EQUAL_UINT32(receiver->received,
-                             counters->bytes_in_packets + counters->bytes_in_replies +
-                                 counters->bytes_skipped + counters->bytes_overrun +
+                             counters.bytes_in_packets + counters.bytes_in_replies +
+                                 counters.bytes_skipped + counters.bytes_overrun +
                                  (uint32_t)tmini_parser_pending(&receiver->parser));
 }
 
@@ -48,7 +55,6 @@ void receiver_open_dma(receiver_t *receiver, uint8_t *memory, size_t size, uint8
 void receiver_age(receiver_t *receiver, size_t count)
 {
     receiver->ring.head = count;
-    receiver->ring.tail = count;
     receiver->ring.limit = count + receiver->size;
     receiver->position = count % receiver->size;
 }
@@ -83,12 +89,15 @@ void receiver_feed(receiver_t *receiver, const uint8_t *bytes, size_t count)
     }
 }
 
-tmini_frame_t receiver_next(receiver_t *receiver)
+tmini_frame_type_t receiver_next(receiver_t *receiver)
 {
-    const tmini_frame_t frame = tmini_parser_next(&receiver->parser);
-    check_accounts(receiver);
+    tmini_frame_type_t frame;
+    do {
+        frame = tmini_parser_next(&receiver->parser);
+        check_accounts(receiver);
+    } while (frame == TMINI_FRAME_MORE);
     if (frame == TMINI_FRAME_PACKET) {
-        tmini_packet_open(&receiver->packet, &receiver->parser);
+        tmini_packet_open(&receiver->packet, tmini_parser_frame(&receiver->parser));
     }
     return frame;
 }
@@ -109,9 +118,9 @@ void receiver_abandon(receiver_t *receiver)
     check_accounts(receiver);
 }
 
-tmini_frame_t receiver_next_at_end(receiver_t *receiver)
+tmini_frame_type_t receiver_next_at_end(receiver_t *receiver)
 {
-    tmini_frame_t frame = receiver_next(receiver);
+    tmini_frame_type_t frame = receiver_next(receiver);
     while (frame == TMINI_FRAME_NONE && tmini_parser_pending(&receiver->parser) > 0) {
         receiver_abandon(receiver);
         frame = receiver_next(receiver);
@@ -121,8 +130,8 @@ tmini_frame_t receiver_next_at_end(receiver_t *receiver)
 
 void receiver_await(receiver_t *receiver, uint8_t mode, uint8_t type, uint8_t length)
 {
-    const tmini_reply_shape_t shape = {.type = type, .mode = mode, .length = length};
-    tmini_parser_await(&receiver->parser, &shape);
+    const tmini_reply_header_t header = {.type = type, .mode = mode, .length = length};
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_parser_await(&receiver->parser, &header));
 }
 
 /* ------------------------------------------------------------- comparison with the reference */
@@ -141,9 +150,9 @@ static size_t next_chunk(const run_t *run)
     return smaller(smaller(chunk, receiver_room(run->receiver)), run->size - run->fed);
 }
 
-static tmini_frame_t next_frame(run_t *run)
+static tmini_frame_type_t next_frame(run_t *run)
 {
-    tmini_frame_t frame = receiver_next(run->receiver);
+    tmini_frame_type_t frame = receiver_next(run->receiver);
     while (frame == TMINI_FRAME_NONE && run->fed < run->size) {
         const size_t chunk = next_chunk(run);
         TEST_ASSERT_TRUE(chunk > 0);
@@ -190,7 +199,7 @@ static void expect_packet(const receiver_t *receiver, const reference_item_t *it
     TEST_ASSERT_EQUAL_UINT16((item->fsa >> 1) % 23040u, packet->first_angle_q6);
     TEST_ASSERT_EQUAL_UINT16((item->lsa >> 1) % 23040u, packet->last_angle_q6);
     TEST_ASSERT_EQUAL(item->starts_revolution, tmini_packet_is_start(packet));
-    TEST_ASSERT_TRUE(tmini_parser_frame_intact(&receiver->parser));
+    TEST_ASSERT_TRUE(tmini_frame_intact(tmini_parser_frame(&receiver->parser)));
     expect_points(packet, item->bytes);
 }
 
@@ -198,7 +207,7 @@ static void expect_reply(const receiver_t *receiver, const reference_item_t *ite
 {
     uint8_t content[32];
     const size_t count = smaller(item->length - 7u, sizeof content);
-    tmini_parser_reply_content(&receiver->parser, content, count);
+    (void)tmini_frame_content(tmini_parser_frame(&receiver->parser), content, count);
     if (count > 0) {
         TEST_ASSERT_EQUAL_HEX8_ARRAY(&item->bytes[7], content, count);
     }
@@ -208,7 +217,7 @@ static void expect_item(void *context, const reference_item_t *item)
 {
     run_t *const run = context;
     const receiver_t *const receiver = run->receiver;
-    const tmini_frame_t frame = next_frame(run);
+    const tmini_frame_type_t frame = next_frame(run);
     TEST_ASSERT_EQUAL_INT(item->is_packet ? TMINI_FRAME_PACKET : TMINI_FRAME_REPLY, frame);
     TEST_ASSERT_EQUAL_UINT(item->length, frame_size(receiver));
     TEST_ASSERT_EQUAL_UINT(item->offset, run->fed - tmini_ring_unread(&receiver->ring));
@@ -221,13 +230,13 @@ static void expect_item(void *context, const reference_item_t *item)
 
 static void expect_counters(const receiver_t *receiver, const reference_counts_t *expected)
 {
-    const tmini_parser_counters_t *const counters = &receiver->parser.counters;
-    TEST_ASSERT_EQUAL_UINT32(expected->packets, counters->packets);
-    TEST_ASSERT_EQUAL_UINT32(expected->checksum_errors, counters->checksum_errors);
-    TEST_ASSERT_EQUAL_UINT32(expected->bytes_in_packets, counters->bytes_in_packets);
-    TEST_ASSERT_EQUAL_UINT32(expected->bytes_in_replies, counters->bytes_in_replies);
-    TEST_ASSERT_EQUAL_UINT32(expected->bytes_skipped, counters->bytes_skipped);
-    TEST_ASSERT_EQUAL_UINT32(0, counters->bytes_overrun);
+    const tmini_parser_counters_t counters = receiver_counters(receiver);
+    TEST_ASSERT_EQUAL_UINT32(expected->packets, counters.packets);
+    TEST_ASSERT_EQUAL_UINT32(expected->checksum_errors, counters.checksum_errors);
+    TEST_ASSERT_EQUAL_UINT32(expected->bytes_in_packets, counters.bytes_in_packets);
+    TEST_ASSERT_EQUAL_UINT32(expected->bytes_in_replies, counters.bytes_in_replies);
+    TEST_ASSERT_EQUAL_UINT32(expected->bytes_skipped, counters.bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
 }
 
 reference_counts_t receiver_compare(receiver_t *receiver, const receiver_course_t *course,

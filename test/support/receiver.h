@@ -10,6 +10,7 @@
 #include "random.h"
 #include "reference_decoder.h"
 #include "tmini/tmini_packet.h"
+#include "tmini/tmini_parser.h"
 
 typedef struct {
     tmini_ring_t ring;
@@ -37,15 +38,19 @@ size_t receiver_room(const receiver_t *receiver);
 void receiver_feed(receiver_t *receiver, const uint8_t *bytes, size_t count);
 
 /* tmini_parser_next() and, for a packet, tmini_packet_open(). */
-tmini_frame_t receiver_next(receiver_t *receiver);
+tmini_frame_type_t receiver_next(receiver_t *receiver);
 
-/* Where the frame delivered last begins, counted from the first byte; not if there were overruns. */
+/* The parser's counters. */
+tmini_parser_counters_t receiver_counters(const receiver_t *receiver);
+
+/* Where the frame delivered last begins, counted from the first byte; not if there were
+ * overruns. */
 size_t receiver_frame_offset(const receiver_t *receiver);
 
 void receiver_abandon(receiver_t *receiver);
 
 /* No more bytes come: the next frame in what is left, after abandoning what must be. */
-tmini_frame_t receiver_next_at_end(receiver_t *receiver);
+tmini_frame_type_t receiver_next_at_end(receiver_t *receiver);
 
 void receiver_await(receiver_t *receiver, uint8_t mode, uint8_t type, uint8_t length);
 

@@ -41,6 +41,9 @@ void rig_open(void)
     rig.config.rx_size = sizeof rig.rx;
     rig.config.points = rig.points;
     rig.config.max_points = RIG_POINTS;
+    rig.timing = tmini_timing_default;
+    rig.timing.max_pause_ms = 0; /* Its revolutions are short, and its clock jumps. */
+    rig.config.timing = &rig.timing;
     rig_init();
 }
 
@@ -250,4 +253,20 @@ void rig_go_backing_off(void)
     rig_go_asking_again();
     passes(2000);
     polls_to(TMINI_EVENT_NONE); /* Given up. */
+}
+
+/* ---- Turns and what they bring ---- */
+
+unsigned rig_turn_events(uint8_t health)
+{
+    rig.now_ms += 160;
+    rig_feed_turn(health, 1000);
+    return rig_drain() & ~BIT(TMINI_EVENT_SCAN);
+}
+
+unsigned rig_plain_turn_events(uint16_t distance_mm)
+{
+    rig.now_ms += 160;
+    rig_feed_plain_turn(distance_mm);
+    return rig_drain() & ~BIT(TMINI_EVENT_SCAN);
 }

@@ -38,6 +38,7 @@ enum {
 typedef struct {
     tmini_t lidar;
     tmini_config_t config;
+    tmini_timing_t timing; /* The default, but that pauses of the line are not judged. */
     tmini_port_t port;
     uint32_t now_ms; /* What the port's clock says. */
     uint8_t rx[RIG_RX_SIZE];
@@ -107,6 +108,11 @@ void rig_feed_plain_turn(uint16_t distance_mm);
 /* The same from a unit with CT information, which tells this health; with the LastCRC of the turn
  * before. That turn is then over: it is the one that is judged. */
 void rig_feed_turn(uint8_t health, uint16_t distance_mm);
+
+/* A turn of either kind comes, 160 ms later. Returns the events that its packets brought, but
+ * scans. With CT information a turn is judged when the next one begins. */
+unsigned rig_turn_events(uint8_t health);
+unsigned rig_plain_turn_events(uint16_t distance_mm);
 
 /* ---- Ways into each state ---- */
 

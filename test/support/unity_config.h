@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Unity's and CMock's settings, the same on every machine that runs the unit tests but for where the
- * output goes. Also checks that a machine chosen for a property has that property. */
+/* Unity's and CMock's settings, the same on every machine that runs the unit tests but for where
+ * the output goes. Also checks that a machine chosen for a property has that property. */
 
 #ifndef UNITY_CONFIG_H
 #define UNITY_CONFIG_H
@@ -15,7 +15,7 @@
 
 #ifdef __AVR__
 
-#include "avr_board.h"
+#include "../target/avr_board.h"
 
 #define UNITY_OUTPUT_START() avr_board_start()
 #define UNITY_OUTPUT_CHAR(c) avr_board_put((char)(c))

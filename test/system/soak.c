@@ -5,9 +5,9 @@
  *
  * Runs the library against the simulated lidar for so many hours of virtual time, half an hour for
  * each of many differently configured pairs, while everything goes wrong that can: on the line, in
- * the lidar, in the program that uses the library. Prints what happened; exit status 0 if the library
- * did nothing wrong (world.h says what is checked), 1 if it did, 2 on wrong usage. The same seed does
- * the same. */
+ * the lidar, in the program that uses the library. Prints what happened; exit status 0 if the
+ * library did nothing wrong (world.h says what is checked), 1 if it did, 2 on wrong usage. The same
+ * seed does the same. */
 
 #include "world.h"
 
@@ -75,6 +75,9 @@ static world_config_t draw_config(soak_t *soak, uint64_t seed)
     config.sim.start_angle_q6 = one_in(soak, 2) ? 0 : (uint16_t)between(soak, 0, 23039);
     config.sim.blocked_sends_starts = one_in(soak, 2);
     config.sim.boot_ms = (uint16_t)between(soak, 500, 4000);
+    config.sim.beginning =
+        (sim_beginning_t)between(soak, SIM_BEGINS_ANYWHERE, SIM_BEGINS_WITH_A_START);
+    config.sim.information.firmware_minor = one_in(soak, 2) ? 3 : 2;
     config.dma = one_in(soak, 2);
     config.rx_size = config.dma ? 8192 : 2048;
     config.streaming = one_in(soak, 3);
@@ -112,14 +115,17 @@ static bool carry_out(soak_t *soak, tmini_status_t begun, tmini_event_t end, uin
     const uint64_t begun_us = world->now_us;
 
     soak->commands++;
+    if (begun == TMINI_ERROR_BUSY && tmini_state(&world->lidar) == TMINI_STATE_STOPPING) {
+        return false; /* The stop was lost on the line: the lidar is being stopped again. */
+    }
     if (begun != TMINI_OK) {
         world_violate(world, VIOLATION_ANSWER, "not begun");
         return false;
     }
-    unsigned events = world_run_until(world, BIT(end) | BIT(TMINI_EVENT_FAILED), limit_ms);
-    if ((events & BIT(end)) == 0 && tmini_failure(&world->lidar) == TMINI_ERROR_ABORTED) {
+    unsigned events = world_run_until(world, BIT(end) | BIT(TMINI_EVENT_COMMAND_FAILED), limit_ms);
+    if ((events & BIT(end)) == 0 && tmini_command_error(&world->lidar) == TMINI_ERROR_ABORTED) {
         /* That was the end of a start that had just been tried. */
-        events |= world_run_until(world, BIT(end) | BIT(TMINI_EVENT_FAILED), limit_ms);
+        events |= world_run_until(world, BIT(end) | BIT(TMINI_EVENT_COMMAND_FAILED), limit_ms);
     }
     if ((events & BIT(end)) != 0) {
         return true;
@@ -369,7 +375,7 @@ static void add_up(totals_t *totals, const soak_t *soak)
     totals->split += counts->packets_split;
     totals->eclipsed += counts->packets_eclipsed;
     totals->lidar_faults += soak->lidar_faults;
-    totals->fault_events += counts->events[TMINI_EVENT_FAULT];
+    totals->fault_events += counts->events[TMINI_EVENT_FAULTS_CHANGED];
     totals->losses += counts->events[TMINI_EVENT_LOST];
     totals->recoveries += counts->events[TMINI_EVENT_RECOVERED];
     totals->library_restarts += soak->restarts;

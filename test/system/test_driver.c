@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The library drives the simulated lidar, in virtual time. world.h says what is checked all the while;
- * the tests say what must come of it. */
+/* The library drives the simulated lidar, in virtual time. world.h says what is checked all the
+ * while; the tests say what must come of it. */
 
 #include "world.h"
 
@@ -36,17 +36,18 @@ static void check_world(const world_t *checked)
 /* Waits for the end of a command that has begun. */
 static void ends_with(tmini_event_t event, uint32_t limit_ms)
 {
-    const unsigned events = world_run_until(&world, BIT(event) | BIT(TMINI_EVENT_FAILED), limit_ms);
+    const unsigned events =
+        world_run_until(&world, BIT(event) | BIT(TMINI_EVENT_COMMAND_FAILED), limit_ms);
 
     TEST_ASSERT_TRUE_MESSAGE((events & BIT(event)) != 0, "the command has not ended as it should");
 }
 
 static void fails_with(tmini_status_t status, uint32_t limit_ms)
 {
-    const unsigned events = world_run_until(&world, BIT(TMINI_EVENT_FAILED), limit_ms);
+    const unsigned events = world_run_until(&world, BIT(TMINI_EVENT_COMMAND_FAILED), limit_ms);
 
-    TEST_ASSERT_TRUE((events & BIT(TMINI_EVENT_FAILED)) != 0);
-    TEST_ASSERT_EQUAL_INT(status, tmini_failure(&world.lidar));
+    TEST_ASSERT_TRUE((events & BIT(TMINI_EVENT_COMMAND_FAILED)) != 0);
+    TEST_ASSERT_EQUAL_INT(status, tmini_command_error(&world.lidar));
 }
 
 /* Scanning, at full speed. */
@@ -85,7 +86,7 @@ void test_a_cold_start_of_a_unit_without_ct_information_is_the_same(void)
     begin();
     scan();
     TEST_ASSERT_TRUE(count(TMINI_EVENT_SCAN) > 12);
-    TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_FAULT));
+    TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_FAULTS_CHANGED));
     check_world(&world);
 }
 
@@ -100,6 +101,24 @@ void test_no_packet_of_the_spin_up_is_lost_and_it_is_not_taken_for_a_loss(void)
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_LOST));
     TEST_ASSERT_EQUAL_UINT32(world.link.counts.packets, count(TMINI_EVENT_PACKET));
     check_world(&world);
+}
+
+/* As two real units begin: past the start packet's place without one, or with one anywhere. */
+void test_first_packets_as_real_units_send_them_make_true_scans(void)
+{
+    static const uint16_t stands_at_q6[] = {0, 21101, 5485};
+
+    for (unsigned i = 0; i < 6; i++) {
+        config.sim.beginning = (sim_beginning_t)(i % 3);
+        config.sim.first_angle_q6 = stands_at_q6[i % 3];
+        config.sim.ct_information = i < 3;
+        config.sim.information.firmware_minor = 3;
+        begin();
+        scan();
+        TEST_ASSERT_TRUE(count(TMINI_EVENT_SCAN) > 12);
+        TEST_ASSERT_TRUE(world.scan.complete);
+        check_world(&world);
+    }
 }
 
 void test_a_restarted_program_finds_the_lidar_streaming_and_starts_it_again(void)
@@ -274,6 +293,28 @@ void test_a_late_reply_to_one_question_is_not_taken_for_the_answer_to_another(vo
     check_world(&world);
 }
 
+/* Another program has asked A5 98 just before, which real units answer. */
+void test_a_late_reply_to_a_command_of_another_program_disturbs_no_answer(void)
+{
+    static const uint8_t command[2] = {0xA5, SIM_COMMAND_UNDOCUMENTED_98};
+
+    for (uint32_t late_ms = 0; late_ms < 200; late_ms += 9) {
+        begin();
+        sim_delay_next_reply(&world.sim, 50 + late_ms);
+        sim_receive(&world.sim, command, 2, world.now_us);
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_frequency(&world.lidar));
+        ends_with(TMINI_EVENT_FREQUENCY, 5000);
+        TEST_ASSERT_EQUAL_UINT16(600, tmini_frequency_chz(&world.lidar));
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(&world.lidar));
+        ends_with(TMINI_EVENT_INFO, 5000);
+        TEST_ASSERT_EQUAL_UINT8(151, tmini_info(&world.lidar)->model);
+        sim_delay_next_reply(&world.sim, late_ms);
+        sim_receive(&world.sim, command, 2, world.now_us);
+        scan();
+        check_world(&world);
+    }
+}
+
 void test_a_lost_reply_to_the_start_does_not_keep_scans_away(void)
 {
     begin();
@@ -327,7 +368,7 @@ static void survives(sim_link_kind_t kind, uint32_t mean_gap)
     sim_link_calm(&world.link, world.now_us);
     (void)world_run_ms(&world, WORLD_RECOVERY_MS + 5000);
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(&world.lidar));
-    TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_FAULT));
+    TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_FAULTS_CHANGED));
     check_world(&world);
 }
 
@@ -429,7 +470,7 @@ void test_a_lidar_unplugged_is_recovered_in_time_whenever_it_comes_back(void)
 
 void test_without_recovery_the_program_starts_the_lidar_again(void)
 {
-    config.no_recovery = true;
+    config.disable_recovery = true;
     begin();
     scan();
     const uint32_t commands = world.sim.counts.commands;
@@ -464,13 +505,13 @@ static void reports(uint8_t expected)
 
     (void)world_run_ms(&world, 60000);
     TEST_ASSERT_EQUAL_HEX8(expected, tmini_faults(&world.lidar));
-    TEST_ASSERT_EQUAL_UINT32(1, count(TMINI_EVENT_FAULT));
+    TEST_ASSERT_EQUAL_UINT32(1, count(TMINI_EVENT_FAULTS_CHANGED));
     sim_block_rotor(&world.sim, false);
     sim_cover_window(&world.sim, false);
     sim_set_health(&world.sim, 0);
     (void)world_run_ms(&world, WORLD_FAULT_MS);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&world.lidar));
-    TEST_ASSERT_EQUAL_UINT32(2, count(TMINI_EVENT_FAULT));
+    TEST_ASSERT_EQUAL_UINT32(2, count(TMINI_EVENT_FAULTS_CHANGED));
     /* It was told, not "repaired". */
     TEST_ASSERT_EQUAL_UINT32(losses, count(TMINI_EVENT_LOST));
     TEST_ASSERT_EQUAL_UINT32(commands, world.sim.counts.commands);

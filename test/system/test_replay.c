@@ -10,7 +10,7 @@
 #include "receiver.h"
 
 #include "tmini/tmini_scan.h"
-#include "tmini/tmini_turn.h"
+#include "tmini/tmini_ct.h"
 #include "unity.h"
 
 #include <stdio.h>
@@ -18,6 +18,7 @@
 
 #define RECORDING_MAX 40000u
 #define SCANS_MAX 20u
+#define PATH_SIZE 4096u /* Wherever the project lies. */
 
 static uint8_t bytes[RECORDING_MAX];
 static uint8_t damaged[RECORDING_MAX];
@@ -26,7 +27,7 @@ static uint8_t memory[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL + 200];
 static receiver_t receiver;
 static tmini_scan_builder_t builder;
-static tmini_turn_t turn;
+static tmini_ct_t turn;
 
 typedef struct {
     unsigned packets_before_first;
@@ -57,7 +58,7 @@ static bool load(const char *path)
 
 static void load_own(const char *name)
 {
-    char path[500];
+    char path[PATH_SIZE];
     (void)snprintf(path, sizeof path, "%s%s", RECORDINGS, name);
     TEST_ASSERT_TRUE_MESSAGE(load(path), path);
 }
@@ -70,8 +71,8 @@ static void handle_packet(uint32_t now_ms)
     replay.points += packet->count;
     replay.starts += tmini_packet_is_start(packet) ? 1 : 0;
     replay.packets_before_first += replay.starts == 0 ? 1 : 0;
-    replay.trusted += tmini_turn_add(&turn, packet) ? 1 : 0;
-    if (tmini_scan_close(&builder, packet)) {
+    replay.trusted += tmini_ct_add(&turn, packet) == TMINI_CT_CONFIRMED ? 1 : 0;
+    if (tmini_scan_close(&builder, packet, now_ms)) {
         TEST_ASSERT_TRUE(replay.scans < SCANS_MAX);
         replay.scan[replay.scans++] = builder.scan;
     }
@@ -82,7 +83,7 @@ static void handle_packet(uint32_t now_ms)
 static void replay_in_chunks(size_t chunk)
 {
     replay = (replay_t){0};
-    tmini_turn_init(&turn);
+    tmini_ct_init(&turn);
     TEST_ASSERT_EQUAL_INT(TMINI_OK,
                           tmini_scan_init(&builder, points, sizeof points / sizeof points[0], 0));
     receiver_open(&receiver, memory, sizeof memory, 0);
@@ -101,13 +102,13 @@ static void replay_in_chunks(size_t chunk)
 static void expect_counts(uint32_t packets, unsigned starts, unsigned point_count, uint32_t skipped,
                           uint32_t checksum_errors)
 {
-    const tmini_parser_counters_t *const counters = &receiver.parser.counters;
-    TEST_ASSERT_EQUAL_UINT32(packets, counters->packets);
+    const tmini_parser_counters_t counters = receiver_counters(&receiver);
+    TEST_ASSERT_EQUAL_UINT32(packets, counters.packets);
     TEST_ASSERT_EQUAL_UINT(starts, replay.starts);
     TEST_ASSERT_EQUAL_UINT(point_count, replay.points);
-    TEST_ASSERT_EQUAL_UINT32(skipped, counters->bytes_skipped);
-    TEST_ASSERT_EQUAL_UINT32(checksum_errors, counters->checksum_errors);
-    TEST_ASSERT_EQUAL_UINT32(0, counters->bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(skipped, counters.bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(checksum_errors, counters.checksum_errors);
+    TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
 }
 
 /* All scans are complete and have these points, packets and frequencies in 0.1 Hz. */
@@ -126,7 +127,7 @@ static void expect_scans(unsigned count, const uint16_t *point_counts, const uin
     }
 }
 
-/* -------------------------------------------------------------------------------- the repository's */
+/* ----------------------------------------------------------------------------- the repository's */
 
 void test_the_manuals_packet_is_replayed(void)
 {
@@ -160,10 +161,10 @@ void test_six_hertz_are_replayed_whatever_the_chunks(void)
 
 void test_six_hertz_tell_all_ct_information(void)
 {
-    tmini_turn_info_t info;
+    tmini_ct_info_t info;
     load_own("sim-6hz.bin");
     replay_in_chunks(64);
-    tmini_turn_info(&turn, &info);
+    tmini_ct_read(&turn, &info);
     TEST_ASSERT_TRUE((info.known & TMINI_KNOWN_SERIAL) != 0);
     TEST_ASSERT_EQUAL_UINT16(2026, info.year);
     TEST_ASSERT_EQUAL_UINT8(3, info.month);
@@ -171,7 +172,7 @@ void test_six_hertz_tell_all_ct_information(void)
     TEST_ASSERT_EQUAL_UINT32(12345, info.number);
     TEST_ASSERT_EQUAL_UINT8(1, info.firmware_major);
     TEST_ASSERT_EQUAL_UINT8(2, info.firmware_minor);
-    TEST_ASSERT_EQUAL_UINT(0, tmini_turn_faults(&turn));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&turn));
 }
 
 void test_ten_hertz_of_a_plain_unit_make_scans_and_no_ct_information(void)
@@ -184,7 +185,7 @@ void test_ten_hertz_of_a_plain_unit_make_scans_and_no_ct_information(void)
     expect_counts(143, 11, 5132, 99, 0);
     expect_scans(10, counts, packets, frequencies);
     TEST_ASSERT_EQUAL_UINT(0, replay.trusted);
-    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_turn_faults(&turn));
+    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&turn));
 }
 
 void test_twelve_hertz_make_scans_and_tell_the_beginning_of_the_ct_information(void)
@@ -198,7 +199,7 @@ void test_twelve_hertz_make_scans_and_tell_the_beginning_of_the_ct_information(v
     expect_counts(149, 13, 5149, 19, 0);
     expect_scans(12, counts, packets, frequencies);
     TEST_ASSERT_EQUAL_UINT(12, replay.trusted);
-    TEST_ASSERT_EQUAL_UINT(0, tmini_turn_faults(&turn));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&turn));
 }
 
 /* 299 packets were sent; each of the 266 that came through whole is delivered. No revolution came
@@ -217,7 +218,7 @@ void test_on_a_bad_line_every_intact_packet_is_replayed(void)
     }
 }
 
-/* ---------------------------------------------------------------------------- what was really sent */
+/* ------------------------------------------------------------------------- what was really sent */
 
 typedef struct {
     unsigned packet, revolution, index, angle_q6, distance_mm, intensity, flag, intact;
@@ -258,14 +259,15 @@ static void expect_true_points(FILE *file)
 
 static void expect_truth(const char *name)
 {
-    char path[500];
+    char path[PATH_SIZE];
+    char header[200];
     truth_t truth;
     (void)snprintf(path, sizeof path, "%s%s.csv", TRUTHS, name);
     FILE *const file = fopen(path, "r");
     if (file == NULL) {
         TEST_IGNORE_MESSAGE("what was sent is not here: the test `recordings` makes it");
     }
-    (void)fscanf(file, "%*s");
+    TEST_ASSERT_NOT_NULL(fgets(header, sizeof header, file));
     receiver_open(&receiver, memory, sizeof memory, 0);
     for (size_t fed = 0; fed < size;) {
         const size_t left = size - fed;
@@ -291,12 +293,12 @@ void test_every_sample_is_as_it_was_sent(void)
     }
 }
 
-/* ----------------------------------------------------------------------------------- the real unit */
+/* -------------------------------------------------------------------------------- the real unit */
 
 static void load_real(void)
 {
     if (!load(REAL_RECORDINGS "t-mini-plus-room.bin")) {
-        TEST_IGNORE_MESSAGE("no recording of a real unit in ../shared/recordings");
+        TEST_IGNORE_MESSAGE("no recording of a real unit in TMINI_RECORDINGS_DIR");
     }
 }
 
@@ -311,7 +313,7 @@ void test_a_real_units_recording_gives_four_complete_scans(void)
     TEST_ASSERT_EQUAL_UINT(20, replay.packets_before_first);
     expect_scans(4, counts, packets, frequencies);
     TEST_ASSERT_EQUAL_UINT(0, replay.trusted);
-    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_turn_faults(&turn));
+    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&turn));
 }
 
 /* Each copy in random chunks, through the ring of the smallest size. */

@@ -39,6 +39,7 @@ void truth_sent(truth_t *truth, const sim_link_packet_t *packet)
         .offset = packet->offset,
         .length = packet->sent.length,
         .starts_revolution = packet->sent.starts_revolution,
+        .is_of_partial = packet->sent.is_of_partial,
         .revolution = packet->sent.revolution,
         .number = packet->sent.number - truth->small_damaged,
     };
@@ -146,7 +147,7 @@ static bool packet_is_as_on_the_line(truth_t *truth, uint64_t offset, const tmin
 {
     uint8_t bytes[ENCODE_PACKET_MAX];
 
-    copy(truth, offset, bytes, TMINI_PACKET_SIZE_MAX(packet->count));
+    copy(truth, offset, bytes, TMINI_PACKET_SIZE(packet->count));
     if (!is_valid(bytes) || bytes[3] != packet->count || bytes[2] != packet->ct) {
         return false;
     }
@@ -164,7 +165,7 @@ static bool packet_is_as_on_the_line(truth_t *truth, uint64_t offset, const tmin
 
 truth_verdict_t truth_compare_packet(truth_t *truth, uint64_t end, const tmini_packet_t *packet)
 {
-    const uint64_t offset = end - TMINI_PACKET_SIZE_MAX(packet->count);
+    const uint64_t offset = end - TMINI_PACKET_SIZE(packet->count);
     const truth_verdict_t before = pop_missing(truth, offset);
     const bool as_sent = truth->count > 0 && entry(truth, 0)->offset == offset;
 
@@ -184,15 +185,15 @@ truth_verdict_t truth_compare_packet(truth_t *truth, uint64_t end, const tmini_p
 
 /* ---- A scan ---- */
 
-/* How many points of the packet on the line at `offset` are those of the scan from `index` on: all of
- * them, or 0. */
+/* How many points of the packet on the line at `offset` are those of the scan from `index` on: all
+ * of them, or 0. */
 static unsigned points_of(const truth_t *truth, uint64_t offset, const tmini_scan_t *scan,
                           unsigned index)
 {
     uint8_t bytes[ENCODE_PACKET_MAX];
 
     copy(truth, offset, bytes, ENCODE_PACKET_HEADER);
-    copy(truth, offset, bytes, TMINI_PACKET_SIZE_MAX(bytes[3]));
+    copy(truth, offset, bytes, TMINI_PACKET_SIZE(bytes[3]));
     for (unsigned i = 0; i < bytes[3]; i++) {
         const reference_point_t expected = reference_point(bytes, i);
 
@@ -210,6 +211,10 @@ typedef struct {
     uint64_t to;
     unsigned index; /* Of the scan's next point; 0: its start packet has not been found yet. */
     unsigned packets;
+    uint32_t revolution; /* Of the scan's first packet that arrived as it was sent. */
+    bool is_of_partial;
+    bool has_revolution;
+    bool mixed;
     bool by_chance;
 } comparison_t;
 
@@ -224,7 +229,7 @@ static void take(truth_t *truth, comparison_t *comparison, uint64_t offset)
 
     comparison->index += count;
     comparison->packets++;
-    comparison->at = offset + TMINI_PACKET_SIZE_MAX(count);
+    comparison->at = offset + TMINI_PACKET_SIZE(count);
     truth->delivered_end = comparison->at;
 }
 
@@ -245,7 +250,22 @@ static bool take_by_chance(truth_t *truth, comparison_t *comparison, uint64_t to
     return false;
 }
 
-/* The next packet that was sent must be next in the scan. Returns false if it is not, for no reason. */
+/* All of a scan's points are of one revolution; or of one turn: where the lidar began with a start
+ * packet anywhere and the next one is lost, nothing shows it, and nothing is overlaid. */
+static void note_revolution(comparison_t *comparison, const truth_packet_t *sent)
+{
+    const uint32_t before = comparison->revolution;
+    const bool continues =
+        sent->revolution == before || (comparison->is_of_partial && sent->revolution == before + 1);
+
+    comparison->mixed |= comparison->has_revolution && !continues;
+    comparison->revolution = sent->revolution;
+    comparison->is_of_partial = sent->is_of_partial;
+    comparison->has_revolution = true;
+}
+
+/* The next packet that was sent must be next in the scan. Returns false if it is not, for no
+ * reason. */
 static bool take_sent(truth_t *truth, comparison_t *comparison)
 {
     const truth_packet_t *const sent = entry(truth, 0);
@@ -253,6 +273,7 @@ static bool take_sent(truth_t *truth, comparison_t *comparison)
 
     if (belongs && fits(truth, comparison, sent->offset)) {
         take(truth, comparison, sent->offset);
+        note_revolution(comparison, sent);
         truth->checked++;
     } else if (take_by_chance(truth, comparison, sent->offset)) {
         return true;
@@ -295,6 +316,9 @@ static truth_verdict_t compare(truth_t *truth, comparison_t *comparison)
         return TRUTH_WRONG;
     }
     truth->points += comparison->index;
+    if (comparison->mixed) {
+        return TRUTH_MIXED;
+    }
     return comparison->by_chance ? TRUTH_BY_CHANCE : TRUTH_RIGHT;
 }
 

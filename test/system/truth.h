@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What was on the line: the packets that arrived unharmed, and the raw bytes themselves. Compares what
- * the library delivers with that, by the independent decoder. Part of the world.
+/* What was on the line: the packets that arrived unharmed, and the raw bytes themselves. Compares
+ * what the library delivers with that, by the independent decoder. Part of the world.
  *
  * Places on the line are counted in bytes that reached the host. */
 
@@ -17,15 +17,16 @@
 #define TRUTH_HISTORY 131072u /* Bytes: 10 s of scanning. */
 #define TRUTH_SPLITS 16u
 
-/* A packet of so few samples may vanish without a trace, if the line loses all of its bytes: the hole
- * is less than 4 degrees wide, and nothing is left that could be skipped. */
+/* A packet of so few samples may vanish without a trace, if the line loses all of its bytes: the
+ * hole is less than 4 degrees wide, and nothing is left that could be skipped. */
 #define TRUTH_SMALL_SAMPLES 7u
 
 typedef struct {
     uint64_t offset;
     uint16_t length;
     bool starts_revolution;
-    bool optional; /* A silence fell into it: it may have been given up. */
+    bool is_of_partial; /* Of a turn's part, which the next revolution goes on with. */
+    bool optional;      /* A silence fell into it: it may have been given up. */
     uint32_t revolution;
     uint32_t number; /* Of the packet among all that were sent, without the small damaged ones. */
 } truth_packet_t;
@@ -34,6 +35,7 @@ typedef enum {
     TRUTH_RIGHT,
     TRUTH_BY_CHANCE, /* Not as sent, but a valid packet as it arrived. */
     TRUTH_LOST,      /* A packet that arrived unharmed is not there. */
+    TRUTH_MIXED,     /* A scan of two revolutions. */
     TRUTH_WRONG
 } truth_verdict_t;
 

@@ -12,8 +12,9 @@
 #define CLOCK_AT_THE_BEGINNING 0xFFFF0000u /* It wraps around after a minute. */
 
 static const char *const violation_names[VIOLATION_KINDS] = {
-    "packets lost",       "false packets", "wrong scans",   "bytes not accounted for",
-    "forbidden commands", "false faults",  "missed faults", "wrong answers",
+    "packets lost",   "false packets",           "wrong scans",
+    "mixed scans",    "bytes not accounted for", "forbidden commands",
+    "false faults",   "missed faults",           "wrong answers",
     "slow recoveries"};
 
 const char *world_violation_name(violation_t violation)
@@ -93,7 +94,7 @@ void world_restart_library(world_t *world)
         .rx_dma = world->config.dma,
         .points = world->config.streaming ? NULL : world->points,
         .max_points = world->config.streaming ? 0 : WORLD_POINTS,
-        .no_recovery = world->config.no_recovery,
+        .disable_recovery = world->config.disable_recovery,
     };
 
     world->port.write = port_write;
@@ -141,9 +142,9 @@ static void publish(world_t *world, uint64_t told)
     world->told = told;
 }
 
-/* Interrupts: half transfer, transfer complete, idle line; and a timer, without which a large buffer
- * would be published so rarely that the library took it for silence. `world->fed` counts these bytes
- * already. */
+/* Interrupts: half transfer, transfer complete, idle line; and a timer, without which a large
+ * buffer would be published so rarely that the library took it for silence. `world->fed` counts
+ * these bytes already. */
 static void feed_dma(world_t *world, const uint8_t *bytes, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -200,6 +201,8 @@ static void judge(world_t *world, truth_verdict_t verdict, violation_t wrong)
         return;
     } else if (verdict == TRUTH_LOST) {
         world_violate(world, VIOLATION_LOST_PACKET, "it arrived unharmed");
+    } else if (verdict == TRUTH_MIXED) {
+        world_violate(world, VIOLATION_MIXED_SCAN, "points of two revolutions");
     } else {
         world_violate(world, wrong, "not as on the line");
     }
@@ -215,7 +218,7 @@ static void check_packet(world_t *world)
 static void check_scan(world_t *world)
 {
     world->scan = *tmini_scan(&world->lidar);
-    const unsigned closing = TMINI_PACKET_SIZE_MAX(tmini_packet(&world->lidar)->count);
+    const unsigned closing = TMINI_PACKET_SIZE(tmini_packet(&world->lidar)->count);
 
     judge(world,
           truth_compare_scan(&world->truth, parsed_now(world), closing, tmini_scan(&world->lidar)),
@@ -282,7 +285,7 @@ static void handle(world_t *world, tmini_event_t event)
         truth_forget(&world->truth, parsed_now(world) - 1);
         check_recovery(world);
         break;
-    case TMINI_EVENT_FAULT:
+    case TMINI_EVENT_FAULTS_CHANGED:
         check_faults(world);
         break;
     case TMINI_EVENT_PACKET:
@@ -327,7 +330,7 @@ static void note_trouble(world_t *world)
     if (tmini_state(&world->lidar) != TMINI_STATE_RECOVERING) {
         world->in_trouble = false; /* The program has stopped it. */
     }
-    if (world->in_trouble && !world->config.no_recovery && world->now_us > world->trouble_us &&
+    if (world->in_trouble && !world->config.disable_recovery && world->now_us > world->trouble_us &&
         world->now_us - world->trouble_us > WORLD_RECOVERY_MS * 1000u) {
         world->in_trouble = false;
         world_violate(world, VIOLATION_SLOW_RECOVERY, "still no packets");
@@ -336,7 +339,7 @@ static void note_trouble(world_t *world)
 
 static void note_silence(world_t *world)
 {
-    const uint64_t silence_us = (tmini_timing_default.silence_ms - 1u) * 1000u;
+    const uint64_t silence_us = (tmini_timing_default.frame_timeout_ms - 1u) * 1000u;
 
     if (world->told != world->told_at_poll) {
         world->told_at_poll = world->told;

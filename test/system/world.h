@@ -6,6 +6,7 @@
  *
  *   - every packet that arrives unharmed while the library scans is delivered, point by point;
  *   - nothing is delivered that was not on the line as a valid packet;
+ *   - no scan has points of two revolutions;
  *   - every byte is in exactly one place of the library's counters;
  *   - the lidar never gets a command other than stop while it scans;
  *   - a reported fault is there, and one that has gone is not reported.
@@ -29,7 +30,7 @@ typedef struct {
     size_t rx_size; /* At most WORLD_RX_MAX. */
     bool dma;
     bool streaming;
-    bool no_recovery;
+    bool disable_recovery;
     bool short_writes;      /* The port takes 0, 1 or 2 bytes, by chance. */
     uint16_t busy_one_in;   /* How often the main loop is busy; 0: never. */
     uint16_t busy_ms;       /* At most for so long. */
@@ -44,6 +45,7 @@ typedef enum {
     VIOLATION_LOST_PACKET,   /* Arrived unharmed, but was not delivered. */
     VIOLATION_FALSE_PACKET,  /* Delivered, but no valid packet of the line. */
     VIOLATION_WRONG_SCAN,    /* Not the points of the packets it is made of. */
+    VIOLATION_MIXED_SCAN,    /* Points of two revolutions in one scan. */
     VIOLATION_BYTES,         /* Bytes not accounted for. */
     VIOLATION_COMMAND,       /* Other than stop, while the lidar was scanning. */
     VIOLATION_FALSE_FAULT,   /* Reported though not there, or as gone though there. */
@@ -53,13 +55,13 @@ typedef enum {
     VIOLATION_KINDS
 } violation_t;
 
-/* Scans have resumed that long after the last trouble has ended. The worst case: the lidar comes back
- * just after a start was sent (2 s until that is given up), the longest pause follows (4 s), and then
- * it is the reboot's turn (5 s); start and first revolution take the rest. */
+/* Scans have resumed that long after the last trouble has ended. The worst case: the lidar comes
+ * back just after a start was sent (2 s until that is given up), the longest pause follows (4 s),
+ * and then it is the reboot's turn (5 s); start and first revolution take the rest. */
 #define WORLD_RECOVERY_MS 13000u
 
-/* A fault of the lidar must be reported, and its end too, within that time: three revolutions, or the
- * 3 s that it takes to notice that there are none. */
+/* A fault of the lidar must be reported, and its end too, within that time: three revolutions, or
+ * the 3 s that it takes to notice that there are none. */
 #define WORLD_FAULT_MS 5000u
 
 typedef struct {
@@ -102,7 +104,8 @@ typedef struct {
     world_counts_t counts;
 } world_t;
 
-/* A lidar without faults on the line, a CPU-fed ring of 2048 bytes and scans; nothing goes wrong. */
+/* A lidar without faults on the line, a CPU-fed ring of 2048 bytes and scans; nothing goes
+ * wrong. */
 world_config_t world_default_config(void);
 
 void world_init(world_t *world, const world_config_t *config);

@@ -2,16 +2,17 @@
 # Copyright (c) 2026 The tmini authors
 
 # What the toolchain files of emulated Cortex-M machines have in common. They set CORTEX_M, the
-# processor's name for the compiler, CORTEX_M_MACHINE, the emulator's options for a board with it, and
-# CORTEX_M_RAM, the address of 16 MB of RAM there.
+# processor's name for the compiler, CORTEX_M_MACHINE, the emulator's options for a board with it,
+# and CORTEX_M_RAM, the address of 16 MB of RAM there.
 
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR arm)
 set(CMAKE_C_COMPILER arm-none-eabi-gcc)
 set(CMAKE_C_FLAGS_INIT "-mcpu=${CORTEX_M} -mthumb -ffunction-sections -fdata-sections \
--DTMINI_TEST_SEMIHOSTING -I${CMAKE_CURRENT_LIST_DIR}")
+-DTMINI_TEST_SEMIHOSTING -I\"${CMAKE_CURRENT_LIST_DIR}\"")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "--specs=nano.specs --specs=nosys.specs -nostartfiles \
--Wl,--gc-sections -Wl,--defsym=RAM_START=${CORTEX_M_RAM} -T${CMAKE_CURRENT_LIST_DIR}/cortex_m.ld")
+-Wl,--gc-sections -Wl,--defsym=RAM_START=${CORTEX_M_RAM} \
+-T\"${CMAKE_CURRENT_LIST_DIR}/cortex_m.ld\"")
 # CMake's trial program needs no linking, hence no start-up code.
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Start-up of unit tests on an emulated Cortex-M: vector table, main(), end by semihosting. The emulator
- * has loaded initialised data into RAM, and RAM is zero at first. */
+/* Start-up of unit tests on an emulated Cortex-M: vector table, main(), end by semihosting. The
+ * emulator has loaded initialised data into RAM, and RAM is zero at first. */
 
 #include "semihosting.h"
 

@@ -2,17 +2,20 @@
 # Copyright (c) 2026 The tmini authors
 
 # The library's core, from bytes to scans.
-tmini_add_unit_test(test_status SOURCES test_status.c)
+tmini_add_unit_test(test_names SOURCES test_names.c)
 tmini_add_unit_test(test_ring SOURCES test_ring.c)
+tmini_add_unit_test(test_frame SOURCES test_frame.c)
 tmini_add_unit_test(test_parser SOURCES test_parser.c LIBRARIES tmini_test_receiver)
 tmini_add_unit_test(test_packet SOURCES test_packet.c LIBRARIES tmini_test_receiver)
 tmini_add_unit_test(test_reply SOURCES test_reply.c)
-tmini_add_unit_test(test_turn SOURCES test_turn.c)
+tmini_add_unit_test(test_ct SOURCES test_ct.c)
 tmini_add_unit_test(test_scan SOURCES test_scan.c LIBRARIES tmini_test_receiver)
 
 # What may be used besides.
 tmini_add_unit_test(test_sectors SOURCES test_sectors.c LIBRARIES tmini_test_receiver)
 tmini_add_unit_test(test_ranges SOURCES test_ranges.c)
+tmini_add_unit_test(test_mount SOURCES test_mount.c)
+tmini_add_unit_test(test_time SOURCES test_time.c)
 tmini_add_unit_test(test_units SOURCES test_units.c)
 
 # Ring and parser built once more, with an atomic header that lets the test come between any two

@@ -2,10 +2,34 @@
 # Copyright (c) 2026 The tmini authors
 
 # The driver, on a mocked port.
-foreach(test test_tmini test_command test_states test_watch test_blocking)
+foreach(test test_tmini test_command test_recovery test_monitor test_states test_blocking)
     tmini_add_unit_test(${test}
         SOURCES ${test}.c ../support/rig.c
         MOCKS ../support/port_functions.h
         LIBRARIES tmini_test_support
         )
 endforeach()
+
+tmini_add_unit_test(test_effort
+    SOURCES test_effort.c ../support/rig.c
+    MOCKS ../support/port_functions.h
+    LIBRARIES tmini_test_support
+    NOT_ON int16)
+
+# The driver before a lidar that turns, on a port that notes what is written.
+foreach(test test_honest_scans test_honest_commands test_real_bytes)
+    tmini_add_unit_test(${test} SOURCES ${test}.c ../support/turns.c
+        LIBRARIES tmini_test_support NOT_ON int16)
+endforeach()
+
+# The same, with the library built once more with an atomic header that lets the test come between
+# any two accesses of an index.
+file(GLOB library_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/src/*.c)
+tmini_add_unit_test(test_honest_moments
+    SOURCES test_honest_moments.c ../support/turns.c ${library_sources}
+    LIBRARIES tmini_test_support NOT_ON int16)
+if(TARGET test_honest_moments)
+    target_compile_definitions(test_honest_moments
+        PRIVATE TMINI_ATOMIC_HEADER="interrupting_atomic.h")
+    target_include_directories(test_honest_moments PRIVATE ../support)
+endif()

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The commands that wait. The port's `wait` lets a millisecond pass, in which bytes come as a script
- * says: what comes when, counted from the test's beginning. */
+/* The commands that wait. The port's `wait` lets a millisecond pass, in which bytes come as a
+ * script says: what comes when, counted from the test's beginning. */
 
 #include "rig.h"
 
@@ -271,7 +271,7 @@ void test_a_command_that_uses_up_its_attempts_says_why(void)
     sends(GET_INFO);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT,
                           tmini_read_info(&rig.lidar, &info, TMINI_BLOCKING_TIMEOUT_MS));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_failure(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_command_error(&rig.lidar));
 }
 
 void test_a_stop_that_fails_after_aborting_says_why(void)

@@ -102,7 +102,7 @@ void test_a_packet_tells_the_gap_before_it_and_its_last_byte(void)
     receiver_feed(&receiver, garbage, 3);
     open_packet(start_packet, 13);
     TEST_ASSERT_EQUAL_UINT16(3, receiver.packet.gap);
-    TEST_ASSERT_EQUAL_HEX8(0x33, receiver.packet.stray);
+    TEST_ASSERT_EQUAL_HEX8(0x33, receiver.packet.frame->last_skipped);
     open_packet(manual_packet, 67);
     TEST_ASSERT_EQUAL_UINT16(0, receiver.packet.gap);
 }
@@ -369,7 +369,8 @@ static void expect_exact_angles(unsigned count, unsigned difference, unsigned st
     TEST_ASSERT_EQUAL_UINT16(last, angle(count - 1));
 }
 
-/* Worked out apart from the library: a step with 16 fraction bits, or one rounded down, fails here. */
+/* Worked out apart from the library: a step with 16 fraction bits, or one rounded down, fails
+ * here. */
 void test_a_step_less_exact_would_not_do(void)
 {
     open_angles(254, 0, 85);
@@ -381,8 +382,8 @@ void test_a_step_less_exact_would_not_do(void)
     TEST_ASSERT_EQUAL_UINT16(1, angle(127)); /* 0.5. */
 }
 
-/* Half an interval more than a whole number of them, and one more: where rounding is nearest to going
- * wrong. All pairs of count and difference are in test/system/test_angles.c. */
+/* Half an interval more than a whole number of them, and one more: where rounding is nearest to
+ * going wrong. All pairs of count and difference are in test/system/test_angles.c. */
 void test_interpolated_angles_are_exact(void)
 {
     for (unsigned count = 2; count <= 255; count += 23) {

@@ -13,24 +13,24 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-static void expect_shape(tmini_command_t command, uint8_t mode, uint8_t type, uint8_t length)
+static void expect_shape(tmini_command_code_t command, uint8_t mode, uint8_t type, uint8_t length)
 {
-    tmini_reply_shape_t shape = {.type = 0xEE, .mode = 0xEE, .length = 0xEE};
-    TEST_ASSERT_TRUE(tmini_reply_shape(command, &shape));
+    tmini_reply_header_t shape = {.type = 0xEE, .mode = 0xEE, .length = 0xEE};
+    TEST_ASSERT_TRUE(tmini_reply_header(command, &shape));
     TEST_ASSERT_EQUAL_HEX8(mode, shape.mode);
     TEST_ASSERT_EQUAL_HEX8(type, shape.type);
     TEST_ASSERT_EQUAL_UINT8(length, shape.length);
 }
 
-static void expect_no_reply(tmini_command_t command)
+static void expect_no_reply(tmini_command_code_t command)
 {
-    tmini_reply_shape_t shape;
-    TEST_ASSERT_FALSE(tmini_reply_shape(command, &shape));
+    tmini_reply_header_t shape;
+    TEST_ASSERT_FALSE(tmini_reply_header(command, &shape));
 }
 
 void test_command_codes_are_those_of_section_3(void)
 {
-    TEST_ASSERT_EQUAL_HEX8(0xA5, TMINI_COMMAND_SIGN);
+    TEST_ASSERT_EQUAL_HEX8(0xA5, TMINI_COMMAND_SYNC);
     TEST_ASSERT_EQUAL_HEX8(0x60, TMINI_COMMAND_START);
     TEST_ASSERT_EQUAL_HEX8(0x65, TMINI_COMMAND_STOP);
     TEST_ASSERT_EQUAL_HEX8(0x90, TMINI_COMMAND_GET_INFO);

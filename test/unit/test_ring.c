@@ -39,7 +39,6 @@ static void use_dma(void)
 static void age(size_t count)
 {
     ring.head = count;
-    ring.tail = count;
     ring.limit = count + SIZE;
 }
 
@@ -76,6 +75,7 @@ void test_a_null_pointer_is_an_argument_error(void)
 void test_a_size_that_is_no_power_of_two_is_an_argument_error(void)
 {
     expect_refused_arguments(memory, 0);
+    expect_refused_arguments(memory, 1); /* Its indices could not tell full from empty. */
     expect_refused_arguments(memory, 3);
     expect_refused_arguments(memory, 12);
     expect_refused_arguments(memory, 15);
@@ -84,7 +84,7 @@ void test_a_size_that_is_no_power_of_two_is_an_argument_error(void)
 
 void test_every_power_of_two_is_a_size(void)
 {
-    for (size_t size = 1; size <= SIZE; size *= 2) {
+    for (size_t size = 2; size <= SIZE; size *= 2) {
         TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, size, false));
         put_letters(0, SIZE + 1);
         TEST_ASSERT_EQUAL_UINT(size, tmini_ring_unread(&ring));
@@ -97,7 +97,7 @@ void test_a_ring_that_was_not_initialised_refuses_every_byte(void)
     tmini_ring_put(&ring, 'a');
     tmini_ring_write(&ring, letters, 5);
     TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
-    TEST_ASSERT_EQUAL_UINT(6, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(6, tmini_ring_overrun(&ring));
 }
 
 void test_a_ring_whose_initialisation_failed_refuses_every_byte(void)
@@ -107,7 +107,7 @@ void test_a_ring_whose_initialisation_failed_refuses_every_byte(void)
     tmini_ring_put(&ring, 'a');
     tmini_ring_write(&ring, letters, 5);
     TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
-    TEST_ASSERT_EQUAL_UINT(6, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(6, tmini_ring_overrun(&ring));
 }
 
 void test_initialisation_empties_a_ring(void)
@@ -115,7 +115,7 @@ void test_initialisation_empties_a_ring(void)
     put_letters(0, SIZE + 2);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE, false));
     expect_unread("");
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&ring));
 }
 
 /* ------------------------------------------------------------------------------------ CPU-fed */
@@ -147,10 +147,10 @@ void test_a_full_ring_refuses_bytes_and_keeps_what_it_has(void)
 {
     put_letters(0, SIZE);
     expect_unread("abcdefghijklmnop");
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&ring));
     put_letters(SIZE, 3);
     expect_unread("abcdefghijklmnop");
-    TEST_ASSERT_EQUAL_UINT(3, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(3, tmini_ring_overrun(&ring));
 }
 
 void test_a_discarded_byte_makes_room_for_exactly_one(void)
@@ -159,7 +159,7 @@ void test_a_discarded_byte_makes_room_for_exactly_one(void)
     tmini_ring_discard(&ring, 1);
     put_letters(SIZE, 2);
     expect_unread("bcdefghijklmnopq");
-    TEST_ASSERT_EQUAL_UINT(1, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(1, tmini_ring_overrun(&ring));
 }
 
 void test_the_window_of_a_cpu_fed_ring_is_its_size(void)
@@ -198,7 +198,7 @@ void test_an_empty_block_changes_nothing(void)
     put_letters(0, SIZE);
     tmini_ring_write(&ring, letters, 0);
     expect_unread("abcdefghijklmnop");
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&ring));
 }
 
 void test_a_block_wraps_around_the_memorys_end(void)
@@ -226,7 +226,7 @@ void test_a_block_of_the_rings_size_fits_at_every_position(void)
         tmini_ring_write(&ring, letters, SIZE);
         expect_unread("abcdefghijklmnop");
     }
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&ring));
 }
 
 void test_the_part_of_a_block_that_does_not_fit_is_refused_and_counted(void)
@@ -235,17 +235,17 @@ void test_the_part_of_a_block_that_does_not_fit_is_refused_and_counted(void)
     tmini_ring_discard(&ring, 2);
     tmini_ring_write(&ring, &letters[10], 11);
     expect_unread("cdefghijklmnopqr");
-    TEST_ASSERT_EQUAL_UINT(3, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(3, tmini_ring_overrun(&ring));
     tmini_ring_write(&ring, letters, 4);
     expect_unread("cdefghijklmnopqr");
-    TEST_ASSERT_EQUAL_UINT(7, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(7, tmini_ring_overrun(&ring));
 }
 
 void test_a_block_larger_than_the_ring_is_cut(void)
 {
     tmini_ring_write(&ring, letters, 26);
     expect_unread("abcdefghijklmnop");
-    TEST_ASSERT_EQUAL_UINT(10, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(10, tmini_ring_overrun(&ring));
 }
 
 /* ---------------------------------------------------------------------------------- wrap-around */
@@ -256,12 +256,72 @@ void test_indices_wrap_around_with_size_t(void)
     put_letters(0, SIZE);
     expect_unread("abcdefghijklmnop");
     put_letters(0, 1);
-    TEST_ASSERT_EQUAL_UINT(1, tmini_ring_refused(&ring));
-    tmini_ring_discard(&ring, 10);
-    expect_unread("klmnop");
+    TEST_ASSERT_EQUAL_UINT(1, tmini_ring_overrun(&ring));
+    tmini_ring_discard(&ring, SIZE);
+    tmini_ring_open(&ring);
+    tmini_ring_write(&ring, letters, 10);
+    tmini_ring_discard(&ring, 4);
     tmini_ring_write(&ring, letters, 11);
-    expect_unread("klmnopabcdefghij");
-    TEST_ASSERT_EQUAL_UINT(2, tmini_ring_refused(&ring));
+    expect_unread("efghijabcdefghij");
+    TEST_ASSERT_EQUAL_UINT(2, tmini_ring_overrun(&ring));
+}
+
+/* -------------------------------------------------------------------------------- a closed ring */
+
+void test_a_refused_byte_closes_the_ring_however_much_room_there_is_then(void)
+{
+    put_letters(0, SIZE);
+    TEST_ASSERT_FALSE(tmini_ring_is_closed(&ring)); /* Full, and nothing is missing. */
+    put_letters(SIZE, 1);
+    TEST_ASSERT_TRUE(tmini_ring_is_closed(&ring));
+    tmini_ring_discard(&ring, 10);
+    put_letters(0, 2);
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_write(&ring, letters, 3));
+    expect_unread("klmnop");
+    TEST_ASSERT_EQUAL_UINT(6, tmini_ring_overrun(&ring));
+}
+
+void test_a_block_that_was_cut_closes_the_ring_too(void)
+{
+    put_letters(0, 10);
+    TEST_ASSERT_EQUAL_UINT(6, tmini_ring_write(&ring, &letters[10], 7));
+    TEST_ASSERT_TRUE(tmini_ring_is_closed(&ring));
+    TEST_ASSERT_EQUAL_UINT(1, tmini_ring_overrun(&ring));
+}
+
+void test_a_ring_that_was_opened_again_takes_bytes_from_where_it_was(void)
+{
+    put_letters(0, SIZE + 1);
+    tmini_ring_discard(&ring, SIZE);
+    tmini_ring_open(&ring);
+    TEST_ASSERT_FALSE(tmini_ring_is_closed(&ring));
+    put_letters(3, 2);
+    expect_unread("de");
+    TEST_ASSERT_EQUAL_UINT(SIZE + 2, tmini_ring_stored(&ring));
+}
+
+void test_a_gap_closes_the_ring_without_counting_bytes(void)
+{
+    put_letters(0, 3);
+    tmini_ring_gap(&ring);
+    TEST_ASSERT_TRUE(tmini_ring_is_closed(&ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&ring));
+    put_letters(3, 1);
+    expect_unread("abc");
+    TEST_ASSERT_EQUAL_UINT(1, tmini_ring_overrun(&ring));
+}
+
+void test_there_is_room_for_what_would_be_stored(void)
+{
+    TEST_ASSERT_EQUAL_UINT(SIZE, tmini_ring_room(&ring));
+    put_letters(0, 10);
+    TEST_ASSERT_EQUAL_UINT(SIZE - 10, tmini_ring_room(&ring));
+    tmini_ring_discard(&ring, 4);
+    TEST_ASSERT_EQUAL_UINT(SIZE - 6, tmini_ring_room(&ring));
+    TEST_ASSERT_EQUAL_UINT(SIZE - 6, tmini_ring_write(&ring, letters, SIZE));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring));
+    tmini_ring_discard(&ring, 4);
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring)); /* It is closed. */
 }
 
 void test_a_block_is_stored_across_the_wrap_of_size_t(void)
@@ -269,16 +329,16 @@ void test_a_block_is_stored_across_the_wrap_of_size_t(void)
     age(SIZE_MAX - 2);
     tmini_ring_write(&ring, letters, 20);
     expect_unread("abcdefghijklmnop");
-    TEST_ASSERT_EQUAL_UINT(4, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(4, tmini_ring_overrun(&ring));
 }
 
 void test_the_count_of_refused_bytes_wraps_around_with_size_t(void)
 {
-    ring.refused = SIZE_MAX - 1;
+    ring.overrun = SIZE_MAX - 1;
     put_letters(0, SIZE + 1);
-    TEST_ASSERT_EQUAL_UINT(SIZE_MAX, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(SIZE_MAX, tmini_ring_overrun(&ring));
     tmini_ring_write(&ring, letters, 3);
-    TEST_ASSERT_EQUAL_UINT(2, tmini_ring_refused(&ring));
+    TEST_ASSERT_EQUAL_UINT(2, tmini_ring_overrun(&ring));
 }
 
 /* ----------------------------------------------------------------------------------------- DMA */
@@ -290,6 +350,21 @@ static void dma_writes(size_t first, size_t count, size_t at)
         memory[(at + i) % SIZE] = letters[first + i];
     }
     tmini_ring_publish(&ring, (at + count) % SIZE);
+}
+
+void test_a_lap_that_nobody_saw_leaves_the_newest_half_intact_at_most(void)
+{
+    use_dma();
+    dma_writes(0, 4, 0);
+    TEST_ASSERT_TRUE(tmini_ring_intact(&ring));
+    tmini_ring_gap(&ring);
+    TEST_ASSERT_FALSE(tmini_ring_intact(&ring));
+    TEST_ASSERT_EQUAL_UINT(SIZE + 4, tmini_ring_unread(&ring));
+    tmini_ring_publish(&ring, 6);
+    TEST_ASSERT_EQUAL_UINT(SIZE + 6, tmini_ring_unread(&ring));
+    tmini_ring_discard(&ring, SIZE + 6 - SIZE / 2);
+    TEST_ASSERT_TRUE(tmini_ring_intact(&ring));
+    TEST_ASSERT_FALSE(tmini_ring_is_closed(&ring));
 }
 
 void test_the_window_of_a_dma_ring_is_half_its_size(void)
@@ -373,7 +448,7 @@ void test_dma_positions_are_right_across_the_wrap_of_size_t(void)
     expect_unread("fghijk");
 }
 
-/* ------------------------------------------------------------------------------- reading in place */
+/* ----------------------------------------------------------------------------- reading in place */
 
 void test_unread_bytes_are_copied_across_the_memorys_end(void)
 {
@@ -386,42 +461,26 @@ void test_unread_bytes_are_copied_across_the_memorys_end(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY("cdefg\0", copy, 6);
 }
 
-/* The samples from the unread byte `offset` on; `place` is where they lie, NULL if put together. */
-static void expect_samples(size_t offset, size_t wanted, size_t count, const uint8_t *place)
+void test_unread_bytes_in_one_piece_are_read_where_they_are(void)
 {
-    uint8_t joined[4] = {0, 0, 0, GUARD};
-    size_t got = wanted;
-    const uint8_t *const samples = tmini_ring_samples(&ring, offset, &got, joined);
-    TEST_ASSERT_EQUAL_UINT(count, got);
-    TEST_ASSERT_EQUAL_PTR(place != NULL ? place : joined, samples);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(&letters[offset], samples, 3 * count);
-    TEST_ASSERT_EQUAL_HEX8(GUARD, joined[3]);
-}
-
-void test_samples_that_lie_in_one_piece_are_read_where_they_are(void)
-{
-    put_letters(0, SIZE);
-    expect_samples(0, 5, 5, memory);
-    expect_samples(1, 5, 5, &memory[1]); /* Up to the memory's last byte. */
-    expect_samples(1, 4, 4, &memory[1]);
-    expect_samples(13, 1, 1, &memory[13]);
-}
-
-void test_of_samples_in_two_pieces_the_whole_ones_of_the_first_piece_come_first(void)
-{
+    size_t count = 5;
     age(5);
     put_letters(0, SIZE);
-    expect_samples(0, 5, 3, &memory[5]); /* Eleven bytes to the end. */
-    expect_samples(2, 4, 3, &memory[7]);
-    expect_samples(8, 2, 1, &memory[13]);
+    TEST_ASSERT_EQUAL_PTR(&memory[7], tmini_ring_piece(&ring, 2, &count));
+    TEST_ASSERT_EQUAL_UINT(5, count);
+    count = 9;
+    TEST_ASSERT_EQUAL_PTR(&memory[7], tmini_ring_piece(&ring, 2, &count));
+    TEST_ASSERT_EQUAL_UINT(9, count); /* Up to the memory's last byte. */
 }
 
-void test_a_sample_that_straddles_the_memorys_end_is_put_together(void)
+void test_of_unread_bytes_in_two_pieces_the_first_piece_comes_first(void)
 {
+    size_t count = 10;
     age(5);
     put_letters(0, SIZE);
-    expect_samples(9, 2, 1, NULL);
-    expect_samples(10, 2, 1, NULL);
-    expect_samples(10, 1, 1, NULL);
-    expect_samples(11, 1, 1, &memory[0]);
+    TEST_ASSERT_EQUAL_PTR(&memory[7], tmini_ring_piece(&ring, 2, &count));
+    TEST_ASSERT_EQUAL_UINT(9, count);
+    count = 5;
+    TEST_ASSERT_EQUAL_PTR(&memory[0], tmini_ring_piece(&ring, 11, &count));
+    TEST_ASSERT_EQUAL_UINT(5, count);
 }

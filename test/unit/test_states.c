@@ -110,7 +110,8 @@ void test_in_the_busy_state_every_command_but_stop_is_told_so(void)
     static const cell_t cells[7] = {
         {"busy x start", tmini_start, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
          TMINI_EVENT_NONE},
-        {"busy x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_FAILED},
+        {"busy x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING,
+         TMINI_EVENT_COMMAND_FAILED},
         {"busy x info", tmini_request_info, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
          TMINI_EVENT_NONE},
         {"busy x health", tmini_request_health, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
@@ -152,7 +153,8 @@ void test_in_the_starting_state_every_command_but_stop_is_told_busy(void)
     static const cell_t cells[7] = {
         {"starting x start", tmini_start, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
          TMINI_EVENT_NONE},
-        {"starting x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_FAILED},
+        {"starting x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING,
+         TMINI_EVENT_COMMAND_FAILED},
         {"starting x info", tmini_request_info, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
          TMINI_EVENT_NONE},
         {"starting x health", tmini_request_health, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,

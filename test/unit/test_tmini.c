@@ -32,7 +32,7 @@ void test_a_lidar_just_set_up_is_in_the_unknown_state_and_nothing_has_been_sent(
     is_in(TMINI_STATE_UNKNOWN);
     passes(10000);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_failure(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_command_error(&rig.lidar));
     TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
 }
 
@@ -171,19 +171,19 @@ void test_a_lidar_never_set_up_takes_bytes_without_harm_and_has_empty_results(vo
     static tmini_t untouched;
     const uint8_t bytes[4] = {1, 2, 3, 4};
     tmini_counters_t seen;
-    tmini_turn_info_t turn;
+    tmini_ct_info_t turn;
 
     tmini_feed_byte(&untouched, 0xAA);
     tmini_feed(&untouched, bytes, sizeof bytes);
     tmini_feed_dma(&untouched, 0);
     tmini_counters(&untouched, &seen);
-    tmini_turn(&untouched, &turn);
+    tmini_ct_info(&untouched, &turn);
     TEST_ASSERT_EQUAL_UINT32(0, seen.bytes_pending);
     TEST_ASSERT_EQUAL_UINT32(0, seen.parser.packets);
     TEST_ASSERT_EQUAL_HEX16(0, turn.known);
     TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&untouched)->count);
     TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&untouched));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_failure(&untouched));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_command_error(&untouched));
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&untouched));
 }
 
@@ -233,6 +233,7 @@ void test_every_byte_is_accounted_for(void)
     rig_feed_byte(0x22);         /* 1 skipped */
     rig_feed_point_packet(1000); /* 22 in a packet */
     rig_feed_byte(0xAA);         /* 1 pending */
+    sends(STOP);                 /* Nobody asked for the packet. */
     (void)rig_drain();
     const tmini_counters_t seen = counters();
     TEST_ASSERT_EQUAL_UINT32(35, rig.fed);
@@ -254,13 +255,43 @@ void test_bytes_that_find_the_buffer_full_are_counted(void)
     TEST_ASSERT_EQUAL_UINT32(RIG_RX_SIZE, counters().parser.bytes_skipped);
 }
 
-void test_packets_while_idle_are_parsed_and_counted_but_are_no_event(void)
+void test_packets_of_an_unknown_lidar_are_parsed_and_counted_but_are_no_event(void)
 {
-    rig_go_idle();
     rig_feed_start_packet(1000);
     polls_to(TMINI_EVENT_NONE);
     TEST_ASSERT_EQUAL_UINT32(1, counters().parser.packets);
     is_in(TMINI_STATE_UNKNOWN);
+}
+
+/* Its stop was lost on the wire while the motor came up: the line was quiet all the same. */
+void test_an_idle_lidar_that_streams_is_reported_and_stopped_again(void)
+{
+    rig_go_idle();
+    rig_feed_start_packet(1000);
+    sends(STOP);
+    polls_to(TMINI_EVENT_STREAMING);
+    was_sent();
+    is_in(TMINI_STATE_STOPPING);
+    rig_feed_point_packet(1000); /* The tail is no news. */
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+    is_in(TMINI_STATE_IDLE);
+    rig_feed_point_packet(1000);
+    sends(STOP);
+    polls_to(TMINI_EVENT_STREAMING);
+}
+
+void test_a_lidar_that_streams_after_a_query_is_stopped_too(void)
+{
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    rig_feed_health(0, 0);
+    polls_to(TMINI_EVENT_HEALTH);
+    rig_feed_point_packet(1000);
+    sends(STOP);
+    polls_to(TMINI_EVENT_STREAMING);
 }
 
 /* ---- Silence ---- */
@@ -376,7 +407,8 @@ void test_silence_gives_up_what_hides_a_reply_too(void)
 
 /* ---- Scans ---- */
 
-/* A turn of three point packets, each a little further on; all samples 1000 mm but for the start. */
+/* A turn of three point packets, each a little further on; all samples 1000 mm but for the
+ * start. */
 static void feed_turn(uint16_t start_distance_mm)
 {
     rig_feed_start_packet(start_distance_mm);
@@ -398,8 +430,9 @@ void test_a_scan_is_delivered_with_the_start_packet_that_follows_it(void)
     TEST_ASSERT_EQUAL_UINT16(9, scan->count);
     TEST_ASSERT_EQUAL_UINT16(3, scan->packets);
     TEST_ASSERT_EQUAL_UINT16(600, scan->frequency_chz);
-    TEST_ASSERT_EQUAL_UINT32(5000, scan->timestamp_ms);
-    TEST_ASSERT_TRUE(scan->complete);
+    TEST_ASSERT_EQUAL_UINT32(4997, scan->start_ms); /* 44 bytes have come since: 3 ms. */
+    TEST_ASSERT_EQUAL_UINT32(5163, scan->end_ms);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
     TEST_ASSERT_EQUAL_UINT16(700, scan->points[0].distance_mm);
     TEST_ASSERT_EQUAL_UINT16(1000, scan->points[1].distance_mm);
     TEST_ASSERT_EQUAL_UINT16(1001, scan->points[8].distance_mm);
@@ -432,7 +465,7 @@ void test_the_packet_that_ended_a_scan_keeps_its_time_however_late_the_next_poll
     polls_to(TMINI_EVENT_NONE);
     feed_turn(900);
     polls_to(TMINI_EVENT_SCAN);
-    TEST_ASSERT_EQUAL_UINT32(7000, tmini_scan(&rig.lidar)->timestamp_ms);
+    TEST_ASSERT_EQUAL_UINT32(6997, tmini_scan(&rig.lidar)->start_ms);
 }
 
 void test_a_scan_is_delivered_after_the_fault_that_came_with_it(void)
@@ -443,7 +476,7 @@ void test_a_scan_is_delivered_after_the_fault_that_came_with_it(void)
         (void)rig_drain();
     }
     rig_feed_plain_turn(0);
-    polls_to(TMINI_EVENT_FAULT);
+    polls_to(TMINI_EVENT_FAULTS_CHANGED);
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_UINT16(17, tmini_scan(&rig.lidar)->count);
     polls_to(TMINI_EVENT_NONE);
@@ -457,7 +490,7 @@ void test_a_scan_that_waits_behind_a_fault_is_no_loss_however_late_the_next_poll
         (void)rig_drain();
     }
     rig_feed_plain_turn(0);
-    polls_to(TMINI_EVENT_FAULT);
+    polls_to(TMINI_EVENT_FAULTS_CHANGED);
     rig.now_ms += 1500;
     polls_to(TMINI_EVENT_SCAN);
     rig_feed_point_packet(0);
@@ -504,7 +537,7 @@ void test_a_stop_does_not_take_back_a_scan_that_waits_behind_a_fault(void)
         (void)rig_drain();
     }
     rig_feed_plain_turn(0);
-    polls_to(TMINI_EVENT_FAULT);
+    polls_to(TMINI_EVENT_FAULTS_CHANGED);
     sends(STOP);
     begins(tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_SCAN);
@@ -528,7 +561,7 @@ void test_a_new_start_does_not_continue_the_scan_before_the_stop(void)
     feed_turn(900);
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_UINT16(800, tmini_scan(&rig.lidar)->points[0].distance_mm);
-    TEST_ASSERT_TRUE(tmini_scan(&rig.lidar)->complete);
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&rig.lidar)->gaps);
 }
 
 /* ---- Streaming ---- */
@@ -591,16 +624,16 @@ void test_streaming_reports_faults_and_losses_as_well(void)
 
 void test_what_the_lidar_tells_of_itself_while_scanning_is_known_once_a_turn_was_trusted(void)
 {
-    tmini_turn_info_t turn;
+    tmini_ct_info_t turn;
 
     rig_go_scanning();
     rig_feed_turn(TMINI_FAULT_LD, 1000);
     (void)rig_drain();
-    tmini_turn(&rig.lidar, &turn);
+    tmini_ct_info(&rig.lidar, &turn);
     TEST_ASSERT_EQUAL_HEX16(0, turn.known);
     rig_feed_turn(TMINI_FAULT_LD, 1000);
     (void)rig_drain();
-    tmini_turn(&rig.lidar, &turn);
+    tmini_ct_info(&rig.lidar, &turn);
     TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE,
                             turn.known);
     TEST_ASSERT_EQUAL_UINT8(1, turn.user_major);
@@ -621,7 +654,7 @@ void test_a_timing_of_ones_own_is_used(void)
 {
     tmini_timing_t timing = tmini_timing_default;
 
-    timing.quiet_ms = 7;
+    timing.quiet_line_ms = 7;
     rig.config.timing = &timing;
     rig_init();
     sends(STOP);
@@ -686,7 +719,7 @@ void test_waiting_for_the_transmitter_survives_the_clocks_wrap_around(void)
     polls_to(TMINI_EVENT_NONE);
     rig.now_ms += 1;
     sends_both_taking(STOP, 0);
-    polls_to(TMINI_EVENT_FAILED);
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
 }
 
 void test_waiting_for_the_first_packet_survives_the_clocks_wrap_around(void)
@@ -743,7 +776,7 @@ void test_waiting_for_a_turn_survives_the_clocks_wrap_around(void)
         rig_feed_point_packet(0);
         passes(500);
     }
-    polls_to(TMINI_EVENT_FAULT);
+    polls_to(TMINI_EVENT_FAULTS_CHANGED);
 }
 
 void test_the_pause_between_attempts_survives_the_clocks_wrap_around(void)
@@ -816,4 +849,80 @@ void test_three_lidars_at_once_know_nothing_of_each_other(void)
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_IDLE, tmini_state(&lidars[0]));
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_STARTING, tmini_state(&lidars[1]));
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_BUSY, tmini_state(&lidars[2]));
+}
+
+/* ---- Pauses of the line ---- */
+
+static void judge_pauses(void)
+{
+    rig.timing = tmini_timing_default;
+    rig_init();
+    rig_go_scanning();
+    feed_turn(700);
+    polls_to(TMINI_EVENT_NONE);
+}
+
+/* 8 point packets of 22 bytes: 14 ms of a line at work. */
+static void comes_after(uint32_t pause_ms)
+{
+    rig.now_ms += pause_ms;
+    for (unsigned i = 0; i < 8; i++) {
+        rig_feed_point_packet(1000);
+    }
+}
+
+void test_a_scan_goes_on_after_a_pause_that_cannot_hold_half_a_turn(void)
+{
+    judge_pauses();
+    comes_after(30 + 12); /* The first packet came 12 ms before the last byte. */
+    polls_to(TMINI_EVENT_NONE);
+}
+
+void test_a_longer_pause_ends_the_scan(void)
+{
+    judge_pauses();
+    comes_after(30 + 12 + 2);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
+    TEST_ASSERT_FALSE(tmini_scan(&rig.lidar)->complete);
+    polls_to(TMINI_EVENT_NONE);
+    feed_turn(800); /* What comes at once continues: the next scan is as usual. */
+    feed_turn(900);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&rig.lidar)->gaps);
+}
+
+void test_a_pause_counts_from_poll_to_poll_however_often_it_is_polled(void)
+{
+    judge_pauses();
+    for (unsigned i = 0; i < 43; i++) {
+        rig.now_ms++;
+        polls_to(TMINI_EVENT_NONE);
+    }
+    comes_after(1);
+    polls_to(TMINI_EVENT_SCAN);
+}
+
+/* Five bytes of each packet get through, every 10 ms, for a turn. */
+void test_packets_cut_to_a_few_bytes_for_too_long_end_the_scan(void)
+{
+    static const uint8_t rest[5] = {0x11, 0x22, 0x33, 0x44, 0x55};
+    judge_pauses();
+    for (unsigned i = 0; i < 9; i++) {
+        rig.now_ms += 10;
+        rig_feed(rest, sizeof rest);
+        polls_to(TMINI_EVENT_NONE);
+    }
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
+}
+
+void test_pauses_need_not_be_looked_for(void)
+{
+    judge_pauses();
+    rig.timing.max_pause_ms = 0;
+    comes_after(10000);
+    polls_to(TMINI_EVENT_NONE);
 }

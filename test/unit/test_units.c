@@ -62,3 +62,16 @@ void test_ranges_in_metres_name_what_is_missing_as_the_caller_wishes(void)
     TEST_ASSERT_TRUE(ranges_m[1] == -1.0f);
     expect_near(0.25f, ranges_m[2]);
 }
+
+void test_a_scan_takes_its_period_and_a_bin_its_share_backwards(void)
+{
+    const tmini_scan_t scan = {.start_ms = 1000, .end_ms = 1100, .complete = true};
+    expect_near(0.1f, tmini_ranges_scan_time(&scan));
+    expect_near(-0.00025f, tmini_ranges_time_increment(&scan, 400));
+}
+
+void test_the_lidar_is_made_for_5_cm_to_12_m(void)
+{
+    expect_near(0.05f, tmini_range_min());
+    expect_near(12.0f, tmini_range_max());
+}

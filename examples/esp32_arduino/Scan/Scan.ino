@@ -1,19 +1,48 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* ESP32: whole revolutions from a T-mini Plus. Once a second a line with the nearest thing in front,
- * and STOP when it is nearer than STOP_MM, or when the lidar sees nothing. Wiring: README.md, one
- * folder up. */
+/* Whole revolutions from a T-mini Plus on Serial1. Once a second a line with the nearest thing in
+ * front, and STOP when it is nearer than STOP_MM, or when the lidar sees nothing. Any board with 8
+ * KB of RAM and a second serial port; wiring: README.md, one folder up. */
 
 #include <TMiniLidar.h>
 
+/* An ESP32's serial ports reach any pin; other boards have theirs. */
+#if defined(ESP32)
+#if CONFIG_IDF_TARGET_ESP32
 static const int8_t RX_PIN = 26; /* To the lidar's TX. */
 static const int8_t TX_PIN = 27; /* To the lidar's RX. */
+#elif CONFIG_IDF_TARGET_ESP32S2 || CONFIG_IDF_TARGET_ESP32S3
+static const int8_t RX_PIN = 18; /* 26 and 27 are the flash's here. */
+static const int8_t TX_PIN = 17;
+#elif CONFIG_IDF_TARGET_ESP32C6
+static const int8_t RX_PIN = 18;
+static const int8_t TX_PIN = 19;
+#elif CONFIG_IDF_TARGET_ESP32H2
+static const int8_t RX_PIN = 10;
+static const int8_t TX_PIN = 11;
+#elif CONFIG_IDF_TARGET_ESP32P4
+static const int8_t RX_PIN = 20;
+static const int8_t TX_PIN = 21;
+#elif CONFIG_IDF_TARGET_ESP32C5 || CONFIG_IDF_TARGET_ESP32C61
+static const int8_t RX_PIN = 23;
+static const int8_t TX_PIN = 24;
+#else /* ESP32-C2, ESP32-C3 */
+static const int8_t RX_PIN = 4;
+static const int8_t TX_PIN = 5;
+#endif
+#endif
+
 static const uint16_t STOP_MM = 400;
 static const float FRONT_DEGREES = 30.0f;  /* To either side of 0 degrees. */
 static const unsigned long BLIND_MS = 500; /* Without a complete scan for so long, stop. */
 
+/* At 6 revolutions a second one has 667 points; TMiniLidar has room for 800. */
+#if defined(__AVR__)
+static TMiniLidarWith<512, 700> lidar;
+#else
 static TMiniLidar lidar;
+#endif
 static unsigned scans;
 static uint16_t nearest;     /* In front, in the last scan that could tell; 0: nothing. */
 static unsigned long seenMs; /* When a complete scan came. */
@@ -29,8 +58,8 @@ static bool isNear(uint16_t distance)
     return distance != 0 && distance < STOP_MM;
 }
 
-/* A scan with gaps may have missed what is in front, and one without any range has seen nothing: they
- * can stop, but do not let go on. */
+/* A scan with gaps may have missed what is in front, and one without any range has seen nothing:
+ * they can stop, but do not let go on. */
 static void lookAhead()
 {
     uint16_t ahead = 0;
@@ -68,11 +97,11 @@ static void handle(tmini_event_t event)
         Serial.println(lidar.info().model);
         lidar.start();
         break;
-    case TMINI_EVENT_FAULT:
+    case TMINI_EVENT_FAULTS_CHANGED:
         Serial.print("lidar faults ");
         Serial.println(lidar.faults());
         break;
-    case TMINI_EVENT_FAILED:
+    case TMINI_EVENT_COMMAND_FAILED:
         Serial.print("no lidar: ");
         Serial.println(lidar.error());
         lidar.start(); /* Tried again until there is one. */
@@ -102,7 +131,11 @@ static void report()
 void setup()
 {
     Serial.begin(115200);
+#if defined(ESP32)
     lidar.begin(Serial1, RX_PIN, TX_PIN);
+#else
+    lidar.begin(Serial1);
+#endif
     lidar.requestInfo();
 }
 

@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Boards with little RAM, such as the Arduino Mega 2560: packet by packet, nothing is kept but the
- * nearest distance of the revolution. Lidar on Serial1; what 16 MHz boards can and cannot do with it
- * is in README.md, one folder up. */
+ * nearest distance of the revolution. Lidar on Serial1; what 16 MHz boards can and cannot do with
+ * it is in README.md, one folder up. */
 
 #include <TMiniLidar.h>
 
@@ -40,7 +40,7 @@ void loop()
     while (tmini_event_t event = lidar.loop()) {
         if (event == TMINI_EVENT_PACKET) {
             lookAtPacket();
-        } else if (event == TMINI_EVENT_FAILED) {
+        } else if (event == TMINI_EVENT_COMMAND_FAILED) {
             lidar.start();
         }
     }

@@ -12,6 +12,7 @@
 #include "freertos/task.h"
 
 #include "obstacle.h"
+#include "tmini/tmini_names.h"
 #include "tmini_esp32.h"
 
 #define REPORT_MS 1000u
@@ -31,7 +32,7 @@ static uint32_t now_ms(void)
     return tmini_esp32_port.now_ms(&board);
 }
 
-/* ---------------------------------------------------------------------------------- obstacle stop */
+/* -------------------------------------------------------------------------------- obstacle stop */
 
 /* Without a scanning lidar, or with a faulty one, nothing can be known of what is in front. */
 static bool must_stop(void)
@@ -56,7 +57,7 @@ static void set_stop_pin(bool stop)
     }
 }
 
-/* ----------------------------------------------------------------------------------------- events */
+/* --------------------------------------------------------------------------------------- events */
 
 static void see(const tmini_scan_t *scan)
 {
@@ -75,20 +76,22 @@ static void tell_info(const tmini_info_t *info)
 /* Information, then health, then scanning; from the beginning when something fails. */
 static void handle(tmini_event_t event)
 {
+    char faults[TMINI_FAULTS_TEXT_SIZE];
     switch (event) {
     case TMINI_EVENT_INFO:
         tell_info(tmini_info(&lidar));
         (void)tmini_request_health(&lidar);
         break;
     case TMINI_EVENT_HEALTH:
-        ESP_LOGI(TAG, "health: faults 0x%02x", tmini_health(&lidar)->faults);
+        ESP_LOGI(TAG, "health: faults: %s",
+                 tmini_faults_text(tmini_health(&lidar)->faults, faults, sizeof faults));
         (void)tmini_start(&lidar);
         break;
     case TMINI_EVENT_SCAN:
         see(tmini_scan(&lidar));
         break;
-    case TMINI_EVENT_FAULT:
-        ESP_LOGW(TAG, "faults 0x%02x", tmini_faults(&lidar));
+    case TMINI_EVENT_FAULTS_CHANGED:
+        ESP_LOGW(TAG, "faults: %s", tmini_faults_text(tmini_faults(&lidar), faults, sizeof faults));
         break;
     case TMINI_EVENT_LOST:
         ESP_LOGW(TAG, "lost; trying to get it back");
@@ -96,8 +99,9 @@ static void handle(tmini_event_t event)
     case TMINI_EVENT_RECOVERED:
         ESP_LOGI(TAG, "back again");
         break;
-    case TMINI_EVENT_FAILED:
-        ESP_LOGE(TAG, "no answer: %s. Wiring, 5 V?", tmini_status_name(tmini_failure(&lidar)));
+    case TMINI_EVENT_COMMAND_FAILED:
+        ESP_LOGE(TAG, "no answer: %s. Wiring, 5 V?",
+                 tmini_status_name(tmini_command_error(&lidar)));
         (void)tmini_request_info(&lidar);
         break;
     default:
@@ -137,11 +141,12 @@ static void set_up(void)
     const tmini_esp32_config_t wiring = TMINI_ESP32_CONFIG_DEFAULT;
     open_stop_pin();
     set_stop_pin(true);
+    ESP_ERROR_CHECK(tmini_esp32_init(&board, &wiring));
     if (tmini_init(&lidar, &config) != TMINI_OK) {
         ESP_LOGE(TAG, "the configuration is wrong");
         return;
     }
-    ESP_ERROR_CHECK(tmini_esp32_open(&board, &wiring, &lidar));
+    ESP_ERROR_CHECK(tmini_esp32_start(&board, &lidar));
     (void)tmini_request_info(&lidar);
 }
 

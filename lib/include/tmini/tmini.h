@@ -10,7 +10,7 @@
  *     for (;;) {
  *         switch (tmini_poll(&lidar)) {
  *         case TMINI_EVENT_SCAN:  avoid_obstacles(tmini_scan(&lidar)); break;
- *         case TMINI_EVENT_FAULT: signal_fault(tmini_faults(&lidar)); break;
+ *         case TMINI_EVENT_FAULTS_CHANGED: signal_faults(tmini_faults(&lidar)); break;
  *         default: break;
  *         }
  *     }
@@ -41,7 +41,7 @@
 #include "tmini_ring.h"
 #include "tmini_scan.h"
 #include "tmini_status.h"
-#include "tmini_turn.h"
+#include "tmini_ct.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -58,21 +58,37 @@ extern "C" {
 
 /* ------------------------------------------------------------------------------ configuration */
 
-/* How long the driver waits for what, in milliseconds. Change a copy of tmini_timing_default: a
- * time of 0 is no time, or for stop, reply, spin-up, data, reboot and back-off no limit at all. */
+/* How long the driver waits for what, in milliseconds. Change a copy of tmini_timing_default. */
 typedef struct {
-    uint16_t silence_ms;      /* A packet that stops coming is given up after this silence. */
-    uint16_t quiet_ms;        /* A line silent this long after stop is quiet. */
-    uint16_t stop_ms;         /* If it is not quiet by then, stop is sent again (section 9.10). */
-    uint16_t reply_ms;        /* For a reply (section 9.11). */
-    uint16_t write_ms;        /* For the port to take a command's two bytes. */
-    uint16_t spin_up_ms;      /* From the start reply to the first packet. */
-    uint16_t data_ms;         /* Without a valid packet for so long, the lidar is lost. */
-    uint16_t turn_ms;         /* Packets without a range or a start packet: the rotor is blocked. */
-    uint16_t reboot_ms;       /* For a soft reboot (section 9.11). */
-    uint16_t back_off_ms;     /* First pause between attempts to recover; doubles each time, */
-    uint16_t back_off_max_ms; /* up to this. */
-    uint8_t attempts;         /* How often a command is tried, at least 1. */
+    /* A packet that stops coming is given up after this silence. 0: with the next silent poll. */
+    uint16_t frame_timeout_ms;
+    /* What comes after a longer pause of the line does not continue a scan: at 12 Hz half a turn
+     * takes 42 ms. Bytes that were held back count by the time in which the line could have sent
+     * them. 0: pauses are not looked for. */
+    uint16_t max_pause_ms;
+    /* A line silent for so long after stop is quiet. 0: at once. */
+    uint16_t quiet_line_ms;
+    /* If the line is not quiet by then, stop is sent again (section 9.10). 0: it never is. */
+    uint16_t stop_timeout_ms;
+    /* For a reply (section 9.11). 0: for ever. */
+    uint16_t reply_timeout_ms;
+    /* For the port to take a command's two bytes. 0: at once. */
+    uint16_t write_timeout_ms;
+    /* From the start reply to the first packet. 0: for ever. */
+    uint16_t spin_up_timeout_ms;
+    /* Without a valid packet for so long, the lidar is lost. 0: it never is. */
+    uint16_t data_timeout_ms;
+    /* Packets, but neither a range nor a start packet for so long: the rotor is blocked. 0: that is
+     * not looked for. */
+    uint16_t rotation_timeout_ms;
+    /* What a soft reboot takes (section 9.11). 0: for ever. */
+    uint16_t reboot_time_ms;
+    /* The first pause between attempts to recover; it doubles each time. 0: no next attempt. */
+    uint16_t back_off_ms;
+    /* The longest such pause. 0: no next attempt. */
+    uint16_t back_off_max_ms;
+    /* How often a command is tried. 0: once. */
+    uint8_t max_attempts;
 } tmini_timing_t;
 
 /* The values used when the configuration gives none; they fit the real device. */
@@ -88,26 +104,29 @@ typedef struct {
     size_t max_points;        /* 1 to 65535, or 0 when streaming. */
     uint8_t max_samples;      /* Packets with more are not valid; 0: the default, 80. */
     uint8_t filter;           /* Of scans: a combination of tmini_filter_t; 0: keep all. */
-    bool no_recovery;         /* A lost lidar is reported, but not restarted. */
-    const tmini_timing_t *timing; /* NULL: tmini_timing_default. */
+    bool disable_recovery;    /* A lost lidar is reported, but not restarted. */
+    const tmini_timing_t *timing; /* NULL: tmini_timing_default. It must outlive the lidar. */
 } tmini_config_t;
 
 /* ----------------------------------------------------------------------------- events, states */
 
+/* When several are due, they are returned in this order. */
 typedef enum {
     TMINI_EVENT_NONE,
-    TMINI_EVENT_STARTED,   /* Scanning: the first packet has come. */
-    TMINI_EVENT_STOPPED,   /* Idle, and the line is quiet. */
-    TMINI_EVENT_INFO,      /* tmini_info() has been read. */
-    TMINI_EVENT_HEALTH,    /* tmini_health() has been read. */
-    TMINI_EVENT_FREQUENCY, /* tmini_frequency_chz() has been read, or set and read back. */
-    TMINI_EVENT_REBOOTED,  /* The soft reboot's time is over. */
-    TMINI_EVENT_FAILED,    /* A command failed; tmini_failure() says why. */
+    TMINI_EVENT_STARTED,        /* Scanning: the first packet has come. */
+    TMINI_EVENT_STOPPED,        /* Idle, and the line is quiet. */
+    TMINI_EVENT_INFO,           /* tmini_info() has been read. */
+    TMINI_EVENT_HEALTH,         /* tmini_health() has been read. */
+    TMINI_EVENT_FREQUENCY,      /* tmini_frequency_chz() has been read, or set and read back. */
+    TMINI_EVENT_REBOOTED,       /* The soft reboot's time is over. */
+    TMINI_EVENT_COMMAND_FAILED, /* tmini_command_error() says why. */
+    TMINI_EVENT_STREAMING, /* A lidar left idle scans all the same; it is being stopped again. */
     TMINI_EVENT_LOST, /* No valid packets any more; being recovered unless configured not to. */
-    TMINI_EVENT_RECOVERED, /* Valid packets again. */
-    TMINI_EVENT_FAULT,     /* tmini_faults() has changed, to 0 as well. */
-    TMINI_EVENT_PACKET,    /* Streaming: tmini_packet() is valid until the next tmini_poll(). */
-    TMINI_EVENT_SCAN,      /* tmini_scan() is valid until the next tmini_poll(). */
+    TMINI_EVENT_RECOVERED,      /* Valid packets again. */
+    TMINI_EVENT_FAULTS_CHANGED, /* tmini_faults() has changed, to 0 as well. */
+    TMINI_EVENT_PACKET, /* Streaming: tmini_packet() is valid until the next tmini_poll(). */
+    TMINI_EVENT_SCAN,   /* tmini_scan() is valid until the next tmini_poll(). */
+    TMINI_EVENT_MORE,   /* Nothing yet, but bytes wait: a poll's work is bounded. Poll again. */
 } tmini_event_t;
 
 typedef enum {
@@ -128,60 +147,12 @@ typedef struct {
     uint16_t timeouts;      /* Waits that ended without what was waited for. */
     uint16_t losses;        /* TMINI_EVENT_LOST. */
     uint16_t recoveries;    /* TMINI_EVENT_RECOVERED. */
-    uint16_t restarts;      /* Starts sent to recover. */
-    uint16_t reboots;       /* Soft reboots sent to recover. */
+    uint16_t restarts;      /* Attempts to recover by a start. */
+    uint16_t reboots;       /* Attempts to recover by a soft reboot. */
 } tmini_counters_t;
 
-/* One lidar. The members are private; they are here so that it can be allocated statically. The
- * small ones come first: Thumb code reaches them with short instructions. */
-typedef struct {
-    uint8_t phase;     /* What goes on on the wire. */
-    uint8_t goal;      /* The command that is being carried out. */
-    uint8_t attempts;  /* Failed attempts at it. */
-    uint8_t rung;      /* Failed attempts to recover. */
-    uint8_t steps;     /* Frequency steps sent. */
-    bool step_refused; /* The frequency did not change in answer to a step. */
-    uint8_t sent;      /* The command code on its way, */
-    uint8_t unsent;    /* and how many of its two bytes the port has not taken yet. */
-    bool sign_sent;    /* The lidar has got the first byte of a command, and no second. */
-    bool heard;        /* Bytes have come since the line was found quiet. */
-    int8_t failure;    /* The status of the last failed command. */
-    uint8_t faults;    /* As reported. */
-    uint8_t observed;  /* As seen in the last revolution; reported when seen twice. */
-    bool no_recovery;
-    bool recovering;
-    bool held;         /* The packet that closed the scan has not been added to the next. */
-    bool range_seen;   /* A valid range since the last start packet. */
-    bool whole;        /* Nothing has been lost since the last start packet. */
-    uint16_t pending;  /* A bit for each event not yet returned. */
-    uint16_t limit_ms; /* How long the phase may last; 0: as long as it likes. */
-    uint16_t target_chz;
-    uint16_t frequency_chz;
-    uint16_t timeouts;
-    uint16_t losses;
-    uint16_t recoveries;
-    uint16_t restarts;
-    uint16_t reboots;
-    uint32_t scans;
-    uint32_t now_ms;      /* As of this poll. */
-    uint32_t phase_ms;    /* When the phase began; while scanning, when the last packet came. */
-    uint32_t received_ms; /* When bytes were last seen to have come. */
-    uint32_t turning_ms;  /* When a start packet or a range last came. */
-    size_t received;      /* The ring's head at received_ms. */
-    const tmini_port_t *port;
-    void *port_context;
-    const tmini_timing_t *timing;
-
-    tmini_ring_t ring;
-    tmini_parser_t parser;
-    tmini_turn_t turn;
-    tmini_scan_builder_t builder; /* Without a capacity when streaming. */
-    union {
-        tmini_packet_t packet; /* While scanning. */
-        tmini_info_t info;     /* The answers to commands, which are not sent while scanning. */
-        tmini_health_t health;
-    } latest;
-} tmini_t;
+/* One lidar; its members are private. It is described at the end of this file. */
+typedef struct tmini tmini_t;
 
 /* ---------------------------------------------------------------------------------- life cycle */
 
@@ -194,39 +165,46 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config);
 
 /* -------------------------------------------------------- receiving: interrupt or task context */
 
-/* Stores one received byte: the call for a UART's receive interrupt. No loop, no wait, at most 16
- * instructions on a Cortex-M4. When the buffer is full the byte is refused and counted. */
-static inline void tmini_feed_byte(tmini_t *lidar, uint8_t byte)
-{
-    tmini_ring_put(&lidar->ring, byte);
-}
+/* Stores one received byte: the call for a UART's receive interrupt. No loop, no wait, a handful of
+ * instructions. Once the buffer is full, bytes are refused and counted (bytes_overrun) until
+ * polling has emptied it. */
+TMINI_INLINE void tmini_feed_byte(tmini_t *lidar, uint8_t byte);
 
-/* Stores a block of received bytes; those that do not fit are refused and counted. Bytes must not
- * be held back for longer than silence_ms, or their packet is given up. Two block copies. */
-static inline void tmini_feed(tmini_t *lidar, const uint8_t *bytes, size_t count)
-{
-    tmini_ring_write(&lidar->ring, bytes, count);
-}
+/* Stores a block of received bytes and returns how many it stored: those that do not fit are
+ * refused and counted. Bytes must not be held back for longer than frame_timeout_ms, or their
+ * packet is given up. What a layer below has held back is best handed over at once, before the next
+ * poll; if it has waited for room longer than max_pause_ms, drop it and call tmini_feed_gap() once:
+ * the pauses of the line do not show in it. Two block copies. */
+static inline size_t tmini_feed(tmini_t *lidar, const uint8_t *bytes, size_t count);
+
+/* How many bytes tmini_feed() would store now, at least: for a receiver with a queue of its own. */
+static inline size_t tmini_feed_room(const tmini_t *lidar);
 
 /* Publishes how far circular DMA has written rx_buffer: `position` is the index it writes next
  * (rx_size less the channel's remaining count), and never goes back. Call it from the
  * half-transfer, transfer-complete and idle-line interrupts; all three are needed (tmini_ring.h
- * says why), and bytes must not be held back for longer than silence_ms. No loop, no wait.
- * Overwritten bytes are noticed when polling, counted, and never become points. */
-static inline void tmini_feed_dma(tmini_t *lidar, size_t position)
-{
-    tmini_ring_publish(&lidar->ring, position);
-}
+ * says why), and bytes must not be held back for longer than frame_timeout_ms. No loop, no wait.
+ * Overwritten bytes are noticed when polling, counted (bytes_overrun), and never become points. */
+static inline void tmini_feed_dma(tmini_t *lidar, size_t position);
+
+/* Says that bytes were lost on their way, behind those fed so far, and not how many: a receiver's
+ * queue overflowed, or DMA may have gone a whole lap unseen (then call it before tmini_feed_dma()).
+ * No scan continues across the gap. Without DMA nothing is stored until polling has emptied the
+ * buffer: look at tmini_feed_room(). With DMA it counts a lap (rx_size bytes) as overrun, how many
+ * there may have been. */
+static inline void tmini_feed_gap(tmini_t *lidar);
 
 /* -------------------------------------------------------- everything else: the polling context */
 
 /* Parses what has been received, keeps time, sends what is due; returns the next event or
- * TMINI_EVENT_NONE when there is nothing left to do. Call it until then. Bounded by the bytes in
- * the receive buffer and two bytes sent. */
+ * TMINI_EVENT_NONE when there is nothing left to do. Call it until then. Bounded: it looks at no
+ * more than TMINI_PARSER_EFFORT bytes and one packet (docs/footprint.md says what that costs at
+ * worst), and sends two. With more to look at and no event it returns TMINI_EVENT_MORE: call it
+ * again when other work allows. */
 tmini_event_t tmini_poll(tmini_t *lidar);
 
-/* Commands. Each only begins; the event in brackets or TMINI_EVENT_FAILED is its end. From an
- * unknown state each first stops the lidar and waits for a quiet line (section 9.10). All return
+/* Commands. Each only begins; the event in brackets or TMINI_EVENT_COMMAND_FAILED is its end. From
+ * an unknown state each first stops the lidar and waits for a quiet line (section 9.10). All return
  *   TMINI_OK              begun
  *   TMINI_ERROR_ARGUMENT  null pointer, or a lidar that was not set up
  *   TMINI_ERROR_STATE     the lidar is scanning or being recovered: only stop is possible
@@ -238,7 +216,7 @@ tmini_event_t tmini_poll(tmini_t *lidar);
 tmini_status_t tmini_start(tmini_t *lidar);
 
 /* Stops scanning, and whatever else is under way [STOPPED]. In any state; an unfinished command
- * ends with TMINI_EVENT_FAILED, TMINI_ERROR_ABORTED. */
+ * ends with TMINI_EVENT_COMMAND_FAILED, TMINI_ERROR_ABORTED. */
 tmini_status_t tmini_stop(tmini_t *lidar);
 
 /* Asks for the device information [INFO]. */
@@ -252,7 +230,8 @@ tmini_status_t tmini_request_frequency(tmini_t *lidar);
 
 /* Sets the scan frequency, in steps of 1 and 0.1 Hz, and reads it back [FREQUENCY]. 600 to 1200, a
  * multiple of 10; TMINI_ERROR_ARGUMENT otherwise, and nothing is sent. Within 0.05 Hz is there. A
- * lidar that answers but does not get there ends with TMINI_EVENT_FAILED, TMINI_ERROR_REPLY. */
+ * lidar that answers but does not get there ends with TMINI_EVENT_COMMAND_FAILED,
+ * TMINI_ERROR_REPLY. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
 
 /* Reboots the lidar [REBOOTED]. */
@@ -268,7 +247,7 @@ const tmini_health_t *tmini_health(const tmini_t *lidar);
 uint16_t tmini_frequency_chz(const tmini_t *lidar);
 
 /* Why the last failed command failed: TMINI_ERROR_TIMEOUT, _WRITE, _REPLY or _ABORTED. */
-tmini_status_t tmini_failure(const tmini_t *lidar);
+tmini_status_t tmini_command_error(const tmini_t *lidar);
 
 /* What is wrong with the lidar while scanning, a combination of tmini_fault_t; 0: nothing known.
  * From CT information when the unit sends it, seen in two revolutions. A unit that sends none has
@@ -277,10 +256,113 @@ tmini_status_t tmini_failure(const tmini_t *lidar);
 uint8_t tmini_faults(const tmini_t *lidar);
 
 /* CT information: version, health and serial number as sent while scanning, each if known. */
-void tmini_turn(const tmini_t *lidar, tmini_turn_info_t *info);
+void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info);
 
 /* Copies the counters. */
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters);
+
+/* ------------------------------------------------------------------------------------- private */
+
+/* What a lidar consists of, grouped by the file of lib/src that writes it. The small members come
+ * first: Thumb code reaches them with short instructions. */
+
+/* tmini_command.c */
+typedef struct {
+    uint8_t operation; /* Under way, or the last one. */
+    uint8_t phase;     /* What goes on on the wire. */
+    uint8_t code;      /* The command code on its way, */
+    uint8_t unsent;    /* and how many of its two bytes the port has not taken yet. */
+    bool sync_sent;    /* The lidar has got the first byte of a command, and no second. */
+    uint8_t attempts_left;
+    bool is_repeated;    /* This is not the first attempt. */
+    uint8_t steps;       /* Frequency steps sent. */
+    uint16_t timeout_ms; /* How long the phase may last; 0: as long as it likes. */
+    uint16_t target_chz;
+    uint16_t frequency_chz;
+    uint16_t timeouts;
+    uint32_t since_ms; /* When the phase began. */
+    size_t quiet_at;   /* The place in the stream behind which nothing has come since the end. */
+} tmini_command_t;
+
+/* tmini_recovery.c */
+typedef struct {
+    uint8_t attempts; /* Failed ones, since the last complete revolution. */
+    bool is_pausing;  /* Between two attempts. */
+    uint16_t losses;
+    uint16_t recoveries;
+    uint16_t restarts;
+    uint16_t reboots;
+} tmini_recovery_t;
+
+/* tmini_monitor.c */
+typedef struct {
+    uint8_t faults;       /* As reported. */
+    uint8_t observed;     /* As seen in the last revolution; reported when seen twice. */
+    bool is_complete;     /* Nothing has been lost since the last start packet. */
+    bool has_range;       /* A valid range has come since then. */
+    uint32_t rotating_ms; /* When a start packet or a range last came. */
+    tmini_ct_t ct;
+} tmini_monitor_t;
+
+/* tmini.c: the port, and what was seen when time was last looked at. */
+typedef struct {
+    const tmini_port_t *port;
+    void *port_context;
+    const tmini_timing_t *timing;
+    uint32_t now_ms;
+    size_t received;    /* Bytes stored in the ring since init. */
+    uint16_t pause_ms;  /* How long ago others were seen to have come; 65535: or longer. */
+    uint16_t silent_ms; /* The same, as far as anybody looked. */
+} tmini_link_t;
+
+struct tmini {
+    uint8_t state; /* A tmini_state_t. */
+    int8_t command_error;
+    uint16_t pending; /* A bit for each event not yet returned. */
+    bool is_held;     /* The packet that closed the scan has not been added to the next. */
+    uint8_t doubt;    /* Whether, between the bytes before `doubtful_to`, others may be missing. */
+    bool disable_recovery;
+    bool is_unwatched; /* Since bytes came, nobody looked for longer than the line may pause. */
+    size_t doubtful_to;
+    uint32_t scans;
+    tmini_command_t command;
+    tmini_recovery_t recovery;
+    tmini_link_t link;
+    tmini_ring_t ring;
+    tmini_parser_t parser;
+    tmini_scan_builder_t builder; /* Without a capacity when streaming. */
+    union {
+        tmini_packet_t packet; /* While scanning. */
+        tmini_info_t info;     /* The answers to commands, which are not sent while scanning. */
+        tmini_health_t health;
+    } latest;
+    tmini_monitor_t monitor;
+};
+
+TMINI_INLINE void tmini_feed_byte(tmini_t *lidar, uint8_t byte)
+{
+    tmini_ring_put(&lidar->ring, byte);
+}
+
+static inline size_t tmini_feed(tmini_t *lidar, const uint8_t *bytes, size_t count)
+{
+    return tmini_ring_write(&lidar->ring, bytes, count);
+}
+
+static inline size_t tmini_feed_room(const tmini_t *lidar)
+{
+    return tmini_ring_room(&lidar->ring);
+}
+
+static inline void tmini_feed_dma(tmini_t *lidar, size_t position)
+{
+    tmini_ring_publish(&lidar->ring, position);
+}
+
+static inline void tmini_feed_gap(tmini_t *lidar)
+{
+    tmini_ring_gap(&lidar->ring);
+}
 
 #ifdef __cplusplus
 }

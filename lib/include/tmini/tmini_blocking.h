@@ -13,7 +13,7 @@
  * Context: the one that polls. All return
  *   TMINI_OK                                  done
  *   TMINI_ERROR_ARGUMENT, _STATE, _BUSY       not begun, as the command in tmini.h says
- *   TMINI_ERROR_TIMEOUT, _WRITE, _REPLY       failed, as tmini_failure() says, or not in time
+ *   TMINI_ERROR_TIMEOUT, _WRITE, _REPLY       failed, as tmini_command_error() says, or not in time
  * and write their result only with TMINI_OK. */
 
 #ifndef TMINI_BLOCKING_H

@@ -6,8 +6,8 @@
  * Pure integer arithmetic. Angles are in the protocol's own unit, 1/64 degree, clockwise seen from
  * above, 0 to 23039. Interpolated ones are the exact rational value rounded to nearest, halves up.
  *
- * A packet is a view of bytes that lie in the parser's ring: valid from tmini_packet_open() to the
- * next tmini_parser_next(), and only for the ring's consumer context. No function waits. */
+ * A packet is a view of a frame's bytes: valid from tmini_packet_open() to the next
+ * tmini_parser_next(), and only for the ring's consumer context. No function waits. */
 
 #ifndef TMINI_PACKET_H
 #define TMINI_PACKET_H
@@ -16,14 +16,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tmini_parser.h"
+#include "tmini_frame.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* A full circle in 1/64 degree. */
-#define TMINI_TURN_Q6 23040u
+#define TMINI_FULL_CIRCLE_Q6 23040u
 
 /* What the lidar notes of a sample (section 5). Not trustworthy on every unit (section 9.9). */
 typedef enum {
@@ -47,20 +47,24 @@ typedef struct {
     uint8_t flag;         /* 0 to 3, as sent: a tmini_flag_t or neither. */
 } tmini_point_t;
 
+/* The ranges that the lidar is made for, in millimetres (section 1). What lies outside may be sent
+ * all the same. A distance of 0 is none of them: not "near" nor "free", but unknown. */
+#define TMINI_RANGE_MIN_MM 50u
+#define TMINI_RANGE_MAX_MM 12000u
+
 /* Members down to `gap` may be read. */
 typedef struct {
     uint16_t first_angle_q6; /* FSA, below 23040. */
     uint16_t last_angle_q6;  /* LSA, below 23040. Without meaning when count is 1 (section 9.6). */
     uint8_t ct;              /* As sent: bit 0 start packet, bits 1 to 7 CT information. */
     uint8_t count;           /* Samples: 1 to 255. */
-    uint8_t stray;           /* The last byte before the packet that belonged to no frame. */
-    uint16_t gap;  /* How many of those there were since the last frame, or 65535: many. */
-    uint32_t step; /* From sample to sample, in 1/64 degree / 2^17, rounded up. */
-    const tmini_parser_t *parser;
+    uint16_t gap;            /* Bytes skipped before it, or TMINI_GAP_UNKNOWN: bytes were lost. */
+    uint32_t step;           /* From sample to sample, in 1/64 degree / 2^17, rounded up. */
+    const tmini_frame_t *frame;
 } tmini_packet_t;
 
-/* Opens the packet that `parser` delivered last (TMINI_FRAME_PACKET). One division. */
-void tmini_packet_open(tmini_packet_t *packet, const tmini_parser_t *parser);
+/* Opens the packet that the parser has delivered as `frame` (TMINI_FRAME_PACKET). One division. */
+void tmini_packet_open(tmini_packet_t *packet, const tmini_frame_t *frame);
 
 /* True for the packet with which a revolution begins. */
 static inline bool tmini_packet_is_start(const tmini_packet_t *packet)
@@ -73,8 +77,8 @@ static inline bool tmini_packet_is_start(const tmini_packet_t *packet)
 bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_t *point);
 
 /* Reads the first points, as many as the packet has and at most `max_points`, applying `filter` (a
- * combination of tmini_filter_t). Returns how many. tmini_parser_frame_intact() then tells whether
- * they may be used. About 20 instructions a point. */
+ * combination of tmini_filter_t). Returns how many. tmini_frame_intact() then tells whether they
+ * may be used. About 20 instructions a point. */
 size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_point_t *points,
                            size_t max_points);
 

@@ -13,7 +13,8 @@
  *
  * A valid packet begins with AA 55, has 1 to max_samples samples (exactly 1 in a start packet), the
  * check bits of both angles set, and a matching checksum. Replies carry no checksum, so one is
- * taken only while it is awaited, and only with the awaited mode, type and length.
+ * taken only while it is awaited, and only with the awaited mode, type and length. A frame never
+ * spans a place where the ring has lost bytes.
  *
  * All functions: the ring's consumer context only; no waiting. */
 
@@ -24,6 +25,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "tmini_frame.h"
 #include "tmini_ring.h"
 #include "tmini_status.h"
 
@@ -31,25 +33,22 @@
 extern "C" {
 #endif
 
-#define TMINI_PACKET_HEADER_SIZE 10u
-#define TMINI_REPLY_HEADER_SIZE 7u
-#define TMINI_SAMPLE_SIZE 3u
-
 /* Samples accepted in a packet unless configured otherwise: the vendor's limit (section 9.6). */
 #define TMINI_MAX_SAMPLES_DEFAULT 80u
-
-/* Bytes of the largest packet with that many samples: the ring's window must hold one. */
-#define TMINI_PACKET_SIZE_MAX(max_samples) \
-    (TMINI_PACKET_HEADER_SIZE + TMINI_SAMPLE_SIZE * (max_samples))
 
 /* The longest reply, device information. */
 #define TMINI_REPLY_SIZE_MAX (TMINI_REPLY_HEADER_SIZE + 20u)
 
+/* The work that one call of tmini_parser_next() may do, in bytes looked at. A candidate's bytes are
+ * looked at once, and again for every false header before it whose packet would reach it. */
+#define TMINI_PARSER_EFFORT 2048u
+
 typedef enum {
     TMINI_FRAME_NONE, /* Nothing more can be told from the bytes received so far. */
+    TMINI_FRAME_MORE, /* Nothing yet, but not all bytes have been looked at: call again. */
     TMINI_FRAME_PACKET,
     TMINI_FRAME_REPLY,
-} tmini_frame_t;
+} tmini_frame_type_t;
 
 typedef enum {
     TMINI_REPLY_MODE_SINGLE = 0,
@@ -61,7 +60,7 @@ typedef struct {
     uint8_t type;
     uint8_t mode;   /* A tmini_reply_mode_t. */
     uint8_t length; /* Bytes of content; 0 and not compared when continuous. */
-} tmini_reply_shape_t;
+} tmini_reply_header_t;
 
 /* Running totals, modulo 2^32. Whatever arrives, every byte is in exactly one place:
  * bytes in = in packets + in replies + skipped + overrun + tmini_parser_pending(). */
@@ -76,19 +75,15 @@ typedef struct {
 
 /* Treat the members as private. */
 typedef struct {
+    tmini_frame_t frame; /* Delivered last; its size is 0 while the next one is sought. */
+    uint16_t need;       /* Bytes without which the candidate cannot be told further. */
+    uint16_t effort;     /* Bytes looked at by the last call of tmini_parser_next(). */
     uint8_t max_samples;
+    uint8_t
+        kind; /* What the candidate is by its header, which is plausible: a tmini_frame_type_t. */
     bool awaiting;
-    bool hole_ahead; /* No frame from behind the hole has been delivered yet. */
-    tmini_reply_shape_t awaited;
-    uint8_t stray;                            /* The byte skipped last. */
-    uint8_t header[TMINI_PACKET_HEADER_SIZE]; /* The candidate's, once it has come. */
-    uint16_t need;  /* Bytes without which the candidate cannot be judged further. */
-    uint16_t frame; /* Size of the frame delivered last, still at the ring's tail. */
-    uint16_t gap;   /* Bytes lost or skipped since the last frame, at most UINT16_MAX. */
-    tmini_ring_t *ring;
-    size_t refused; /* How many of the ring's refused bytes have been counted. */
-    size_t hole;    /* Where in the stream the last of them are missing. */
-    tmini_parser_counters_t counters;
+    tmini_reply_header_t awaited;
+    tmini_parser_counters_t counters; /* bytes_overrun: without those that the ring refused. */
 } tmini_parser_t;
 
 /* Parses what arrives in `ring`, which must outlive the parser. `max_samples`: 1 to 255, or 0 for
@@ -96,28 +91,39 @@ typedef struct {
  * smaller than the largest packet or reply. */
 tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uint8_t max_samples);
 
-/* The next frame, or TMINI_FRAME_NONE. The frame lies at the ring's tail, where packet and reply
- * functions read it, until the next call gives it back. Bounded by the bytes in the ring: each is
- * looked at once, or once more for every false header before it whose packet would reach it. */
-tmini_frame_t tmini_parser_next(tmini_parser_t *parser);
+/* Goes on to the next frame, which tmini_parser_frame() then tells. The frame lies at the ring's
+ * tail until the next call gives it back. Bounded by TMINI_PARSER_EFFORT and one frame. */
+tmini_frame_type_t tmini_parser_next(tmini_parser_t *parser);
 
-/* True while the frame delivered last is certainly as it was: call after reading its bytes. Only
- * DMA can make it false; then nothing that was read may be used. */
-bool tmini_parser_frame_intact(const tmini_parser_t *parser);
+/* The frame delivered last, valid until the next call of tmini_parser_next(). */
+static inline const tmini_frame_t *tmini_parser_frame(const tmini_parser_t *parser)
+{
+    return &parser->frame;
+}
 
-/* From now on takes a reply of this shape; none when `shape` is null. It is copied. A delivered
- * reply ends the waiting. */
-void tmini_parser_await(tmini_parser_t *parser, const tmini_reply_shape_t *shape);
-
-/* Copies `count` bytes of the content of the reply delivered last. */
-void tmini_parser_reply_content(const tmini_parser_t *parser, uint8_t *content, size_t count);
+/* From now on takes a reply with this header; none when `header` is null. It is copied. A delivered
+ * reply ends the waiting.
+ * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: such a reply is longer than the ring's window, and is
+ * not awaited. */
+tmini_status_t tmini_parser_await(tmini_parser_t *parser, const tmini_reply_header_t *header);
 
 /* The bytes that wait in the ring for more to come. */
 size_t tmini_parser_pending(const tmini_parser_t *parser);
 
+/* How many bytes have been parsed or lost since init, the frame delivered last among them, modulo
+ * the range of size_t: the place in the stream of the byte behind that frame. */
+size_t tmini_parser_position(const tmini_parser_t *parser);
+
+/* Copies the counters. */
+void tmini_parser_counters(const tmini_parser_t *parser, tmini_parser_counters_t *counters);
+
+/* Gives back the frame delivered last, and skips all bytes before that place in the stream, without
+ * looking at them. Not for more bytes than have come: then it skips none. */
+void tmini_parser_skip_to(tmini_parser_t *parser, size_t position);
+
 /* No more bytes will come (silence, end of a recording): gives up the incomplete candidate by
- * skipping its first byte. Call tmini_parser_next() again, and both until nothing is pending.
- * Without a pending candidate it does nothing. */
+ * skipping its first byte, and those behind it that can begin no frame. Call tmini_parser_next()
+ * again, and both until nothing is pending. Without a pending candidate it does nothing. */
 void tmini_parser_abandon(tmini_parser_t *parser);
 
 #ifdef __cplusplus

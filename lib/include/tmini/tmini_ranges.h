@@ -2,11 +2,12 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Optional: a scan as ranges at equal angles, counter-clockwise, as ROS wants them in a LaserScan
- * message. Integers only; tmini_units.h turns them into metres and radians. Nothing else in the library
- * needs it.
+ * message. Integers only; tmini_units.h turns them into metres and radians. Nothing else in the
+ * library needs it.
  *
- * The lidar counts angles clockwise and its points lie where they fall; ROS counts counter-clockwise
- * (x ahead, y to the left) and wants one range every so many degrees. With `count` bins:
+ * The lidar counts angles clockwise and its points lie where they fall; ROS counts
+ * counter-clockwise (x ahead, y to the left) and wants one range every so many degrees. With
+ * `count` bins:
  *
  *     bin i is centred on the ROS angle   -180 degrees + i * 360 degrees / count
  *     bin 0                is behind      (angle_min; angle_max is one bin short of +180 degrees)
@@ -14,8 +15,8 @@
  *     bin count / 2        is ahead
  *     bin 3 * count / 4    is to the left
  *
- * so `count` is best a multiple of 4. The measured points of a bin give its nearest range; 720 bins at
- * 6 Hz leave some empty, 360 hardly any. */
+ * so `count` is best a multiple of 4. The measured points of a bin give its nearest range; 720 bins
+ * at 6 Hz leave some empty, 360 hardly any. */
 
 #ifndef TMINI_RANGES_H
 #define TMINI_RANGES_H

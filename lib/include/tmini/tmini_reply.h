@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 /* A command is two bytes: this one and the code. */
-#define TMINI_COMMAND_SIGN 0xA5u
+#define TMINI_COMMAND_SYNC 0xA5u
 
 typedef enum {
     TMINI_COMMAND_FASTER_TENTH = 0x09, /* Scan frequency + 0.1 Hz. */
@@ -30,7 +30,7 @@ typedef enum {
     TMINI_COMMAND_STOP = 0x65,
     TMINI_COMMAND_GET_INFO = 0x90,
     TMINI_COMMAND_GET_HEALTH = 0x92,
-} tmini_command_t;
+} tmini_command_code_t;
 
 #define TMINI_INFO_SIZE 20u
 #define TMINI_HEALTH_SIZE 3u
@@ -68,7 +68,7 @@ typedef struct {
 
 /* Writes to `shape` the header of the reply that `command` is answered with. Returns false for the
  * commands that are not answered: stop and reboot. */
-bool tmini_reply_shape(tmini_command_t command, tmini_reply_shape_t *shape);
+bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *shape);
 
 /* Device information from a reply's 20 bytes. The firmware's minor number comes first: real units
  * do so, against the manual (section 9.4). */

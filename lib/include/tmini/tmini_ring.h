@@ -4,12 +4,13 @@
 /* A ring of received bytes: the only thing that the receive interrupt and the rest share.
  *
  * One producer (an interrupt, a DMA channel or a receiving task) and one consumer (the context
- * that parses), without locks: each index is written by one side only. The three producer
- * functions are for the producer's context, init is for before either runs; everything else is
- * the consumer's.
+ * that parses), without locks. The producer functions are for the producer's context, init is for
+ * before either runs; everything else is the consumer's.
  *
- *   CPU-fed ring   The producer hands over bytes. Those that find the ring full are refused,
- *                  counted, and never overwrite anything.
+ *   CPU-fed ring   The producer hands over bytes. Once one has found the ring full, the ring is
+ *                  closed: it refuses all that follows, and counts it, until the consumer has taken
+ *                  everything stored before and opens it again. So bytes are never missing anywhere
+ *                  but behind the last one stored, however many were refused, and however often.
  *   DMA ring       Circular DMA writes straight into the ring's memory; the producer only
  *                  publishes how far. The hardware does not see the consumer and may overwrite
  *                  unread bytes: the consumer detects it, because no more than half the ring may
@@ -24,6 +25,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "tmini_atomic.h"
 #include "tmini_status.h"
 
 #ifdef __cplusplus
@@ -34,27 +36,54 @@ extern "C" {
  * that a count modulo the size is always the right place. An all-zero ring is safe: its head stands
  * at its limit, so it refuses every byte. Treat the members as private. */
 typedef struct {
+    size_t head;  /* Written by the producer: bytes stored. */
+    size_t limit; /* Written by the consumer: where head must stop, one size ahead of the oldest
+                      * byte not yet given back. */
+    size_t gate;  /* size - 1 while the ring is open. The producer closes it by writing 0, the
+                      * consumer opens it; while it is closed, head does not move. */
     uint8_t *memory;
-    size_t mask;    /* The memory's size - 1. */
+    size_t overrun; /* Written by the producer: bytes refused. */
+    size_t size;    /* Of the memory. */
     size_t window;  /* Unread bytes that are certainly intact: the size, or half of it with DMA. */
-    size_t head;    /* Written by the producer: bytes stored. */
-    size_t refused; /* Written by the producer: bytes that found the ring full. */
-    size_t limit;   /* Written by the consumer: where head must stop, one size ahead of tail. */
-    size_t tail;    /* The consumer's own: bytes given back. */
 } tmini_ring_t;
 
 /* Empties the ring over `memory`, which the caller owns and keeps for as long as the ring is used.
- * `size` is a power of two. The producer must not run meanwhile.
- * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT (null pointer, size not a power of two): the ring then
- * refuses every byte. */
+ * `size` is a power of two, at least 2. The producer must not run meanwhile.
+ * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT (null pointer, wrong size): the ring then refuses every
+ * byte. */
 tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size, bool dma);
 
-/* Producer of a CPU-fed ring: stores one byte. Interrupt-safe; no loop, no wait. */
-void tmini_ring_put(tmini_ring_t *ring, uint8_t byte);
+/* ----------------------------------------------------------------------- the producer's context */
 
-/* Producer of a CPU-fed ring: stores as many of `count` bytes as fit and refuses the rest.
- * Interrupt-safe; two block copies at most. */
-void tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count);
+/* Producer of a CPU-fed ring: bytes found the ring full or closed. */
+TMINI_INLINE void tmini_ring_refuse(tmini_ring_t *ring, size_t count)
+{
+    tmini_store(&ring->overrun, ring->overrun + count);
+    tmini_store(&ring->gate, 0); /* Last: whoever sees it closed sees all bytes and the count. */
+}
+
+/* Producer of a CPU-fed ring: stores one byte. Interrupt-safe; no loop, no wait. Raises overrun
+ * when the ring is full or closed. In the header, because a call would cost as much as the act. */
+TMINI_INLINE void tmini_ring_put(tmini_ring_t *ring, uint8_t byte)
+{
+    const size_t head = ring->head; /* Its own: nobody else writes it. */
+    if (head != tmini_load(&ring->limit)) {
+        const size_t gate = tmini_load(&ring->gate);
+        if (gate != 0) {
+            ring->memory[head & gate] = byte;
+            tmini_store(&ring->head, ring->head + 1); /* Read again, it needs no register. */
+            return;
+        }
+    }
+    tmini_ring_refuse(ring, 1);
+}
+
+/* Producer of a CPU-fed ring: stores as many of `count` bytes as fit, refuses the rest, and returns
+ * how many were stored. Interrupt-safe; two block copies at most. */
+size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count);
+
+/* Producer of a CPU-fed ring: how many bytes tmini_ring_write() would store now, at least. */
+size_t tmini_ring_room(const tmini_ring_t *ring);
 
 /* Producer of a DMA ring: the hardware's next write goes to memory[position]; `position` equal to
  * the size means 0. It must never go back. Call it from the half-transfer, transfer-complete and
@@ -62,36 +91,83 @@ void tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count);
  * packet that has come in part. Interrupt-safe; no loop, no wait. */
 void tmini_ring_publish(tmini_ring_t *ring, size_t position);
 
-/* Consumer: the number of bytes stored since init, modulo the range of size_t. */
-size_t tmini_ring_stored(const tmini_ring_t *ring);
+/* Producer: bytes were lost on their way here, behind the last one stored, and their number is not
+ * known: a receiver's queue overflowed, or circular DMA may have gone a whole lap unseen (then call
+ * this before publishing). A CPU-fed ring is closed, as after an overrun; of a DMA ring what has
+ * not been read yet counts as overwritten, but for the newest half. Interrupt-safe; no loop, no
+ * wait. */
+void tmini_ring_gap(tmini_ring_t *ring);
 
-/* Consumer: bytes stored and not yet discarded. More than `window` of them (DMA only) means that
- * the hardware may have overwritten the oldest. */
-size_t tmini_ring_unread(const tmini_ring_t *ring);
+/* ----------------------------------------------------------------------- the consumer's context */
 
-/* Consumer: the unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger
- * offset reads another byte of the ring's memory, never one outside it. */
-uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset);
+/* The number of bytes stored since init, modulo the range of size_t. */
+static inline size_t tmini_ring_stored(const tmini_ring_t *ring)
+{
+    return tmini_load(&ring->head);
+}
 
-/* Consumer: true if nothing that has been read so far can have been overwritten. Only DMA can make
- * it false. */
-bool tmini_ring_intact(const tmini_ring_t *ring);
+/* The number of bytes given back since init, modulo the range of size_t: where the oldest lies. */
+static inline size_t tmini_ring_tail(const tmini_ring_t *ring)
+{
+    return ring->limit - ring->size;
+}
 
-/* Consumer: copies `count` unread bytes from `offset` on. */
+/* Bytes stored and not yet discarded. More than `window` of them (DMA only) means that the hardware
+ * may have overwritten the oldest. */
+static inline size_t tmini_ring_unread(const tmini_ring_t *ring)
+{
+    return tmini_load(&ring->head) - tmini_ring_tail(ring);
+}
+
+/* The unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger offset reads
+ * another byte of the ring's memory, never one outside it. */
+static inline uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
+{
+    /* The limit is a size ahead of the tail: the same place. */
+    return ring->memory[(ring->limit + offset) & (ring->size - 1)];
+}
+
+/* True if nothing that has been read so far can have been overwritten. Only DMA can make it
+ * false. */
+static inline bool tmini_ring_intact(const tmini_ring_t *ring)
+{
+    tmini_fence(); /* What has been read was read before the producer's index is read again. */
+    return tmini_ring_unread(ring) <= ring->window;
+}
+
+/* Copies `count` unread bytes from `offset` on. */
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count);
 
-/* Consumer: the three-byte samples from the unread byte `offset` on that lie in one piece, so that
- * the loops over samples, the hottest there are, run without wrapping. At most *count samples;
- * *count becomes how many there are. One that straddles the memory's end is put together in
- * `joined`. */
-const uint8_t *tmini_ring_samples(const tmini_ring_t *ring, size_t offset, size_t *count,
-                                  uint8_t joined[3]);
+/* The unread bytes from `offset` on that lie in one piece, so that loops over them need not wrap:
+ * at most *count, which becomes how many there are, at least one. */
+static inline const uint8_t *tmini_ring_piece(const tmini_ring_t *ring, size_t offset,
+                                              size_t *count)
+{
+    const size_t at = (ring->limit + offset) & (ring->size - 1);
+    const size_t to_end = ring->size - at;
+    if (*count > to_end) {
+        *count = to_end;
+    }
+    return &ring->memory[at];
+}
 
-/* Consumer: gives the oldest `count` bytes back to the producer; at most tmini_ring_unread(). */
+/* Gives the oldest `count` bytes back to the producer; at most tmini_ring_unread(). */
 void tmini_ring_discard(tmini_ring_t *ring, size_t count);
 
-/* Consumer: the number of bytes refused since init, modulo the range of size_t. */
-size_t tmini_ring_refused(const tmini_ring_t *ring);
+/* True if bytes are missing behind the last one stored: the ring is closed. */
+static inline bool tmini_ring_is_closed(const tmini_ring_t *ring)
+{
+    return tmini_load(&ring->gate) == 0;
+}
+
+/* Opens a closed ring again, once everything in it has been discarded. */
+void tmini_ring_open(tmini_ring_t *ring);
+
+/* The number of bytes refused since init, modulo the range of size_t. */
+static inline size_t tmini_ring_overrun(const tmini_ring_t *ring)
+{
+    return tmini_load(&ring->overrun);
+}
 
 #ifdef __cplusplus
 }

@@ -4,12 +4,11 @@
 /* Scans: the packets of one revolution gathered in the caller's buffer (section 6).
  *
  * A scan runs from a start packet to the next one. What precedes the first start packet is no scan.
- * Revolutions are not merged. If a start packet is lost, the angle swept since the last one tells:
+ * Revolutions are never mixed. If a start packet is lost, the angle swept since the last one tells:
  * the scan is closed when it has turned full circle, and what follows waits for the next start
- * packet. (The start angle is not 0 on every unit, section 9.8.) A receive buffer that overflowed,
- * or a turn's worth of garbage, closes it as well, because any number of turns may be missing. What
- * cannot be noticed is a stream that pauses for exactly a whole number of turns, between two
- * packets.
+ * packet. (The start angle is not 0 on every unit, section 9.8.) A gap that may hold half a turn or
+ * more, by bytes, by angle, or because the caller says so (a pause of the line, an overflow: the
+ * frame's gap is TMINI_GAP_UNKNOWN), closes it as well, because any number of turns may be missing.
  *
  * All functions: one context, the one that parses; no waiting. */
 
@@ -26,8 +25,8 @@
 extern "C" {
 #endif
 
-/* A buffer of this many points holds any revolution at 6 Hz and above (section 9.7). While the motor
- * comes up to speed, the first ones may have more: those are counted as dropped. */
+/* A buffer of this many points holds any revolution at 6 Hz and above (section 9.7). While the
+ * motor comes up to speed, the first ones may have more: those are counted as dropped. */
 #define TMINI_SCAN_POINTS_TYPICAL 800u
 
 /* One revolution. */
@@ -39,8 +38,9 @@ typedef struct {
     uint16_t gaps;            /* Places where bytes were lost or damaged: packets may be missing. */
     uint16_t checksum_errors; /* While it was received, modulo 2^16. */
     uint16_t frequency_chz;   /* Measured, 0.01 Hz, from the start packet after it; 0: unknown. */
-    uint32_t timestamp_ms;    /* The port's clock when the start packet was parsed. */
-    bool complete;            /* Ended by a start packet, with no gap and nothing dropped. */
+    uint32_t start_ms;        /* The port's clock when its start packet came, and */
+    uint32_t end_ms;          /* when the packet came that ended it. */
+    bool complete;            /* A full circle to the next start packet, no gap, nothing dropped. */
 } tmini_scan_t;
 
 /* Treat the members as private, but for `scan` as documented below. */
@@ -50,7 +50,7 @@ typedef struct {
     uint16_t capacity;
     uint16_t previous_angle_q6; /* Where the last packet ended. */
     uint16_t errors_before;     /* The parser's checksum errors when the scan began, modulo 2^16. */
-    int32_t swept_q6;           /* Angle turned since the start packet. */
+    int16_t swept_q6;           /* Angle swept since the start packet: -4 to 360 degrees. */
     tmini_scan_t scan;
 } tmini_scan_builder_t;
 
@@ -63,12 +63,17 @@ tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buf
 /* Forgets the scan under way: what comes next does not continue it. */
 void tmini_scan_discard(tmini_scan_builder_t *builder);
 
-/* If `packet` no longer belongs to the scan under way, finishes that scan and returns true:
- * builder->scan is then valid until tmini_scan_add() is called for the same packet. */
-bool tmini_scan_close(tmini_scan_builder_t *builder, const tmini_packet_t *packet);
+/* If `packet`, which came at `now_ms`, no longer belongs to the scan under way, finishes that scan
+ * and returns true: builder->scan is then valid until tmini_scan_add() is called for the same
+ * packet. */
+bool tmini_scan_close(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
 
-/* Adds `packet` to the scan under way; a start packet begins one, at time `now_ms`. A packet that
- * DMA overwrote meanwhile leaves a gap, never a wrong point. Call tmini_scan_close() before. */
+/* Something outside the packets proves that one of the scan under way was lost (LastCRC, section
+ * 7): it has a gap and is not complete. Call it before tmini_scan_close(). */
+void tmini_scan_refute(tmini_scan_builder_t *builder);
+
+/* Adds `packet` to the scan under way; a start packet begins one, at `now_ms`. A packet that DMA
+ * overwrote meanwhile leaves a gap, never a wrong point. Call tmini_scan_close() before. */
 void tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
 
 #ifdef __cplusplus

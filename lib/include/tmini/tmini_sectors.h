@@ -9,8 +9,8 @@
  *          \ | /               them: 0 front, 1 front right, 2 right, 3 back right, 4 back,
  *      6 <-- L --> 2           5 back left, 6 left, 7 front left.
  *          / | \
- *        5   v   3             The front is angle 0 of the lidar unless init says otherwise: that is
- *            4                 for a lidar that is mounted turned.
+ *        5   v   3             The front is angle 0 of the lidar unless init says otherwise: that
+ *            4                 is for a lidar that is mounted turned.
  *
  * From a whole scan:
  *
@@ -51,10 +51,10 @@ typedef struct {
     uint8_t filter;
 } tmini_sectors_t;
 
-/* Sets up `count` sectors, 1 to 65535, all clear. `nearest_mm` has room for so many, stays the caller's
- * and must outlive the sectors. `front_q6`: the lidar's angle that looks to the robot's front, below
- * TMINI_TURN_Q6, in 1/64 degree; usually 0. `filter`: a combination of tmini_filter_t, points to leave
- * out; a scan may have been filtered already.
+/* Sets up `count` sectors, 1 to 65535, all clear. `nearest_mm` has room for so many, stays the
+ * caller's and must outlive the sectors. `front_q6`: the lidar's angle that looks to the robot's
+ * front, below TMINI_FULL_CIRCLE_Q6, in 1/64 degree; usually 0. `filter`: a combination of
+ * tmini_filter_t, points to leave out; a scan may have been filtered already.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, count or front out of range, undefined
  * filter bits. */
 tmini_status_t tmini_sectors_init(tmini_sectors_t *sectors, uint16_t *nearest_mm, size_t count,

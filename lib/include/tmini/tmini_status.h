@@ -21,10 +21,6 @@ typedef enum {
     TMINI_ERROR_ABORTED = -7,  /* A stop ended the command before it had finished. */
 } tmini_status_t;
 
-/* The status as a short English phrase for logs, for example "timeout". Never NULL, whatever the
- * value; a constant string. Any context. */
-const char *tmini_status_name(tmini_status_t status);
-
 #ifdef __cplusplus
 }
 #endif

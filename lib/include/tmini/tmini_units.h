@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "tmini_packet.h"
+#include "tmini_time.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -27,16 +28,16 @@ static inline float tmini_degrees(uint16_t angle_q6)
 /* The same in radians, still clockwise: 0 to 2 pi. */
 static inline float tmini_radians(uint16_t angle_q6)
 {
-    return (float)angle_q6 * (2.0f * TMINI_PI / (float)TMINI_TURN_Q6);
+    return (float)angle_q6 * (2.0f * TMINI_PI / (float)TMINI_FULL_CIRCLE_Q6);
 }
 
 /* The same as ROS counts: counter-clockwise from straight ahead, in radians, -pi to pi. Then
  * x = range * cos(angle) points ahead and y = range * sin(angle) to the left. */
 static inline float tmini_ros_radians(uint16_t angle_q6)
 {
-    const uint16_t half = (uint16_t)(TMINI_TURN_Q6 / 2u);
+    const uint16_t half = (uint16_t)(TMINI_FULL_CIRCLE_Q6 / 2u);
     return angle_q6 <= half ? -tmini_radians(angle_q6)
-                            : tmini_radians((uint16_t)(TMINI_TURN_Q6 - angle_q6));
+                            : tmini_radians((uint16_t)(TMINI_FULL_CIRCLE_Q6 - angle_q6));
 }
 
 static inline float tmini_hertz(uint16_t frequency_chz)
@@ -49,8 +50,8 @@ static inline float tmini_metres(uint16_t distance_mm)
     return (float)distance_mm / 1000.0f;
 }
 
-/* For ranges from tmini_ranges.h: the angle of bin 0, and from bin to bin; a LaserScan's angle_min and
- * angle_increment. */
+/* For ranges from tmini_ranges.h: the angle of bin 0, and from bin to bin; a LaserScan's angle_min
+ * and angle_increment. */
 static inline float tmini_ranges_angle_min(void)
 {
     return -TMINI_PI;
@@ -59,6 +60,32 @@ static inline float tmini_ranges_angle_min(void)
 static inline float tmini_ranges_increment(size_t count)
 {
     return 2.0f * TMINI_PI / (float)count;
+}
+
+/* A LaserScan's scan_time, in seconds; 0 if it is not known. */
+static inline float tmini_ranges_scan_time(const tmini_scan_t *scan)
+{
+    return (float)tmini_scan_period_ms(scan) / 1000.0f;
+}
+
+/* A LaserScan's time_increment, in seconds from bin to bin: negative, because the bins run
+ * counter-clockwise and the rotor clockwise. Bin 0, behind the lidar, is measured half a period
+ * after the scan's start_ms, bin count / 2 at its beginning; the bins beyond, on the left, a
+ * period later than this says: at its end. */
+static inline float tmini_ranges_time_increment(const tmini_scan_t *scan, size_t count)
+{
+    return -tmini_ranges_scan_time(scan) / (float)count;
+}
+
+/* A LaserScan's range_min and range_max, in metres (section 1). */
+static inline float tmini_range_min(void)
+{
+    return (float)TMINI_RANGE_MIN_MM / 1000.0f;
+}
+
+static inline float tmini_range_max(void)
+{
+    return (float)TMINI_RANGE_MAX_MM / 1000.0f;
 }
 
 /* Ranges in metres; where nothing was measured, `missing`: in ROS INFINITY or NAN. */

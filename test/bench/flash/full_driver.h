@@ -11,7 +11,7 @@
 static uint8_t rx[512];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_counters_t counters;
-static tmini_turn_info_t turn;
+static tmini_ct_info_t turn;
 static volatile uint32_t sink;
 
 static void commands(void)
@@ -32,10 +32,10 @@ static void results(void)
     sink = tmini_health(&lidar)->faults;
     sink = tmini_frequency_chz(&lidar);
     sink = tmini_faults(&lidar);
-    sink = (uint32_t)tmini_failure(&lidar);
+    sink = (uint32_t)tmini_command_error(&lidar);
     sink = (uint32_t)tmini_state(&lidar);
     tmini_counters(&lidar, &counters);
-    tmini_turn(&lidar, &turn);
+    tmini_ct_info(&lidar, &turn);
 }
 
 static void full_driver(void)
@@ -47,7 +47,7 @@ static void full_driver(void)
                                    .max_points = TMINI_SCAN_POINTS_TYPICAL};
     (void)tmini_init(&lidar, &config);
     commands();
-    while (tmini_poll(&lidar) != TMINI_EVENT_FAILED) {
+    while (tmini_poll(&lidar) != TMINI_EVENT_COMMAND_FAILED) {
         results();
     }
 }

@@ -4,6 +4,7 @@
 /* Parser and decoding only: bytes in, points out. */
 
 #include "tmini/tmini_packet.h"
+#include "tmini/tmini_parser.h"
 
 static uint8_t rx[512];
 static tmini_ring_t ring;
@@ -25,7 +26,7 @@ void bench_main(void)
     (void)tmini_parser_init(&parser, &ring, 0);
     for (;;) {
         if (tmini_parser_next(&parser) == TMINI_FRAME_PACKET) {
-            tmini_packet_open(&packet, &parser);
+            tmini_packet_open(&packet, tmini_parser_frame(&parser));
             (void)tmini_packet_points(&packet, TMINI_FILTER_NONE, points,
                                       TMINI_MAX_SAMPLES_DEFAULT);
         }

@@ -89,12 +89,14 @@ static unsigned long decode_all(size_t size)
         tmini_ring_write(&ring, &recording[at], size - at < BLOCK ? size - at : BLOCK);
         while (tmini_parser_next(&parser) == TMINI_FRAME_PACKET) {
             tmini_packet_t packet;
-            tmini_packet_open(&packet, &parser);
-            (void)tmini_scan_close(&builder, &packet);
+            tmini_packet_open(&packet, tmini_parser_frame(&parser));
+            (void)tmini_scan_close(&builder, &packet, 0);
             tmini_scan_add(&builder, &packet, 0);
         }
     }
-    return (unsigned long)parser.counters.packets;
+    tmini_parser_counters_t counters;
+    tmini_parser_counters(&parser, &counters);
+    return (unsigned long)counters.packets;
 }
 
 static unsigned long drive_all(size_t size, bool by_bytes)

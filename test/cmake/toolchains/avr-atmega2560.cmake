@@ -6,7 +6,8 @@
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR avr)
 set(CMAKE_C_COMPILER avr-gcc)
-# Unity would put its texts into flash if it saw the macro AVR, but read them as if they were in RAM.
+# Unity would put its texts into flash if it saw the macro AVR, but read them as if they were in
+# RAM.
 set(CMAKE_C_FLAGS_INIT
     "-mmcu=atmega2560 -ffunction-sections -fdata-sections -UAVR -DTMINI_TEST_INT16")
 # The linker refuses static data that would leave less than 1.5 KB to the stack.
@@ -20,7 +21,7 @@ set(CMAKE_CROSSCOMPILING_EMULATOR ${TMINI_SIMAVR} -m atmega2560 -f 16000000)
 
 set(TMINI_TEST_MACHINE int16)
 set(TMINI_TEST_SHORT_NAMES ON)
-set(TMINI_TEST_BOARD_SOURCES ${CMAKE_CURRENT_LIST_DIR}/../../support/avr_board.c)
+set(TMINI_TEST_BOARD_SOURCES ${CMAKE_CURRENT_LIST_DIR}/../../target/avr_board.c)
 # There is no exit status: what Unity prints last tells.
 set(TMINI_TEST_PASS_PATTERN " Tests 0 Failures ")
 set(TMINI_TEST_FAIL_PATTERN "STACK OVERFLOW")

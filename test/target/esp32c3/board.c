@@ -63,7 +63,7 @@ void board_interrupt(void);
 static tmini_t *receiver;
 static volatile board_statistics_t statistics;
 
-/* --------------------------------------------------------------------------- start and interrupts */
+/* ------------------------------------------------------------------------- start and interrupts */
 
 __attribute__((naked, section(".start"))) void board_start(void)
 {
@@ -154,7 +154,7 @@ void board_sleep(void)
     __asm__ volatile("wfi");
 }
 
-/* ----------------------------------------------------------------------------------- UART, clock */
+/* ---------------------------------------------------------------------------------- UART, clock */
 
 /* 230400 8N1 from the 40 MHz crystal: 173 10/16, 0.008 % slow. An interrupt at 64 bytes, or 40 bit
  * times after the last one. */

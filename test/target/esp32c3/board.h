@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* An ESP32-C3 without any operating system: UART0 for the lidar, received by interrupt, and a clock. */
+/* An ESP32-C3 without any operating system: UART0 for the lidar, received by interrupt, and a
+ * clock. */
 
 #ifndef BOARD_H
 #define BOARD_H

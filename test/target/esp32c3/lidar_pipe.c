@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The simulated lidar on standard input and output, in somebody else's time: for emulators that keep
- * their own. Usage: lidar_pipe FREQUENCY_CHZ
+/* The simulated lidar on standard input and output, in somebody else's time: for emulators that
+ * keep their own. Usage: lidar_pipe FREQUENCY_CHZ
  *
  *     in:   NOW_US HEX      the host's bytes (HEX may be empty), arriving at NOW_US
  *     out:  HEX             what has left the lidar by then

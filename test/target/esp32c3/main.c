@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The firmware: asks the lidar everything, changes its frequency, takes four scans and stops it. What
- * it sees goes as text into memory, `log_text`, where the test reads it; the UART is the lidar's. */
+/* The firmware: asks the lidar everything, changes its frequency, takes four scans and stops it.
+ * What it sees goes as text into memory, `log_text`, where the test reads it; the UART is the
+ * lidar's. */
 
 #include "board.h"
 
@@ -88,8 +89,8 @@ static void log_scan(const tmini_scan_t *scan)
 
 static void log_turn(void)
 {
-    tmini_turn_info_t info;
-    tmini_turn(&lidar, &info);
+    tmini_ct_info_t info;
+    tmini_ct_info(&lidar, &info);
     put_named("turn_known", info.known);
     put_named("turn_number", info.number);
 }
@@ -111,7 +112,7 @@ static void log_totals(void)
     put_named("lidar_struct", (uint32_t)sizeof lidar);
 }
 
-/* --------------------------------------------------------------------------------------- the job */
+/* -------------------------------------------------------------------------------------- the job */
 
 static void next_step(void)
 {

@@ -19,12 +19,12 @@ if ! command -v "$compiler" >/dev/null; then
     exit 77
 fi
 if ! "$python" -c 'import labwired' 2>/dev/null; then
-    echo "skipped: no Python package labwired in $1 (test/run.sh installs it where that can be done)"
+    echo "skipped: no Python package labwired in $1 (test/run.sh installs it)"
     exit 77
 fi
 
-# GCC 12 wants the CSR instructions named (zicsr), but finds no C library for that name; in the older
-# edition of the instruction set they belong to it.
+# GCC 12 wants the CSR instructions named (zicsr), but finds no C library for that name; in the
+# older edition of the instruction set they belong to it.
 "$compiler" --specs=picolibc.specs -march=rv32imc -misa-spec=2.2 -mabi=ilp32 \
     -std=c99 -Os -ffunction-sections -fdata-sections -Wall -Wextra -Wconversion -Werror -DEMULATED \
     -I "$root/lib/include" "$here/board.c" "$here/main.c" "$root"/lib/src/*.c \

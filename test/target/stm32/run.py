@@ -410,14 +410,28 @@ def parse_arguments():
     return parser.parse_args()
 
 
-def main():
-    args = parse_arguments()
+def attempt(args):
+    """Runs and checks; returns the problems, and prints them."""
     try:
         problems = check(args, *run_undisturbed(args))
     except TimeoutError as error:
         problems = [str(error)]
     for problem in problems:
         print(f"PROBLEM: {problem}")
+    return problems
+
+
+def main():
+    args = parse_arguments()
+    problems = attempt(args)
+    # The emulator's time goes on while a busy computer holds the lidar's bytes back, which the firmware
+    # rightly takes for a line that has fallen silent. The same seed sends the same bytes: a firmware at
+    # fault is so each time.
+    for _ in range(ATTEMPTS - 1):
+        if not problems or args.lossy:
+            break
+        print("Once more: was it the firmware, or a computer that was too busy?")
+        problems = attempt(args)
     if args.lossy:
         found = [problem for problem in problems if problem.startswith(("packets", "bytes in in_"))]
         print("The deliberate fault was " + ("found." if len(found) == 2 else "NOT found."))

@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A deliberate fault, linked into the firmware by the linker's --wrap: of the bytes that the interrupt
- * receives, one now and then does not reach the library. The target test must find it. */
+/* A deliberate fault, linked into the firmware by the linker's --wrap: of the bytes that the
+ * interrupt receives and counts, one now and then is taken out of the library's ring again, as if
+ * it had not reached the library. The target test must find it. */
 
-#include "tmini/tmini_ring.h"
+#include "tmini_stm32_usart.h"
 
 #define INTERVAL 5000u
 
-void __real_tmini_ring_put(tmini_ring_t *ring, uint8_t byte);
-void __wrap_tmini_ring_put(tmini_ring_t *ring, uint8_t byte);
+void __real_tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port);
+void __wrap_tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port);
 
-void __wrap_tmini_ring_put(tmini_ring_t *ring, uint8_t byte)
+void __wrap_tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port)
 {
-    static uint32_t count;
-    count++;
-    if (count % INTERVAL != 0) {
-        __real_tmini_ring_put(ring, byte);
+    const uint32_t before = port->bytes;
+    __real_tmini_stm32_usart_interrupt(port);
+    if (port->bytes != before && port->bytes % INTERVAL == 0) {
+        port->lidar->ring.head--;
     }
 }

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "obstacle.h"
+
+#define AHEAD 0
+
+/* Nothing at all in any direction: a covered window or a blocked rotor, rather than an empty
+ * hall. */
+static bool is_dark(const obstacle_t *obstacle)
+{
+    for (unsigned i = 0; i < OBSTACLE_SECTORS; i++) {
+        if (obstacle->nearest_mm[i] != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void obstacle_see(obstacle_t *obstacle, const tmini_scan_t *scan, uint32_t now_ms)
+{
+    tmini_sectors_t sectors;
+    (void)tmini_sectors_init(&sectors, obstacle->nearest_mm, OBSTACLE_SECTORS, 0,
+                             TMINI_FILTER_NONE);
+    tmini_sectors_add_scan(&sectors, scan);
+    if (is_dark(obstacle)) {
+        obstacle_blind(obstacle);
+        return;
+    }
+
+    const uint16_t ahead_mm = obstacle->nearest_mm[AHEAD];
+    if (ahead_mm != 0 && ahead_mm < OBSTACLE_STOP_MM) {
+        obstacle->clear = false;
+    } else if (scan->complete && (ahead_mm == 0 || ahead_mm >= OBSTACLE_GO_MM)) {
+        obstacle->clear = true;
+    }
+    if (scan->complete) {
+        obstacle->seeing = true;
+        obstacle->seen_ms = now_ms;
+    }
+}
+
+void obstacle_blind(obstacle_t *obstacle)
+{
+    obstacle->clear = false;
+    obstacle->seeing = false;
+}
+
+bool obstacle_may_move(const obstacle_t *obstacle, uint32_t now_ms)
+{
+    return obstacle->clear && obstacle->seeing && now_ms - obstacle->seen_ms < OBSTACLE_BLIND_MS;
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Obstacle stop: from scans to "may the robot move?". Pure, integers only; the same on a PC and in
+ * firmware.
+ *
+ * It may while something has been seen lately and nothing of it was near in front. A scan with gaps
+ * may have missed what was there: it can stop the robot, but does not let it go on. A scan without
+ * any distance means that the lidar sees nothing, not that nothing is there. */
+
+#ifndef OBSTACLE_H
+#define OBSTACLE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "tmini/tmini_sectors.h"
+
+#define OBSTACLE_SECTORS 8u
+
+#define OBSTACLE_STOP_MM 300u
+#define OBSTACLE_GO_MM 350u /* Farther than the stop, so that the robot does not stutter. */
+#define OBSTACLE_BLIND_MS 500u
+
+typedef struct {
+    uint16_t nearest_mm[OBSTACLE_SECTORS]; /* Clockwise, the first one ahead; 0: nothing seen. */
+    uint32_t seen_ms;                      /* When the last complete scan came. */
+    bool clear;                            /* Nothing near in front, as of the last scans. */
+    bool seeing;                           /* A complete scan has come. */
+} obstacle_t;
+
+/* Takes a scan. */
+void obstacle_see(obstacle_t *obstacle, const tmini_scan_t *scan, uint32_t now_ms);
+
+/* Nothing can be seen for now: a fault, or no lidar. */
+void obstacle_blind(obstacle_t *obstacle);
+
+bool obstacle_may_move(const obstacle_t *obstacle, uint32_t now_ms);
+
+#endif

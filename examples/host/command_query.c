@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* tmini info, health, frequency and reboot: one question to the lidar, one answer. */
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "device.h"
+#include "message.h"
+#include "points.h"
+
+static const char *model_name(uint8_t model)
+{
+    switch (model) {
+    case TMINI_MODEL_T_MINI_PLUS:
+        return "T-mini Plus";
+    case TMINI_MODEL_T_MINI_PRO:
+        return "T-mini Pro";
+    default:
+        return "unknown: not a T-mini Plus or Pro, perhaps with another protocol";
+    }
+}
+
+static int query_info(device_t *device, const options_t *options)
+{
+    char serial[TMINI_SERIAL_DIGITS + 1];
+    const int status = device_finish(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    const tmini_info_t *const info = tmini_info(&device->lidar);
+    tmini_serial_text(info, serial);
+    if (options->format == FORMAT_JSON) {
+        (void)printf("{\"model\":%d,\"firmware\":\"%d.%d\",\"hardware\":%d,\"serial\":\"%s\"}\n",
+                     info->model, info->firmware_major, info->firmware_minor, info->hardware,
+                     serial);
+        return STATUS_OK;
+    }
+    (void)printf("model       %d (%s)\n", info->model, model_name(info->model));
+    (void)printf("firmware    %d.%d\n", info->firmware_major, info->firmware_minor);
+    (void)printf("hardware    %d\n", info->hardware);
+    (void)printf("serial      %s\n", serial);
+    return STATUS_OK;
+}
+
+static int query_health(device_t *device, const options_t *options)
+{
+    char text[FAULTS_TEXT_SIZE];
+    const int status =
+        device_finish(device, tmini_request_health(&device->lidar), TMINI_EVENT_HEALTH);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    const tmini_health_t *const health = tmini_health(&device->lidar);
+    if (options->format == FORMAT_JSON) {
+        (void)printf("{\"healthy\":%s,\"faults\":%d,\"error_code\":%d}\n",
+                     health->faults == 0 ? "true" : "false", health->faults, health->error_code);
+    } else if (health->faults == 0) {
+        (void)puts("healthy");
+    } else {
+        (void)printf("%s; error code %d\n", faults_text(health->faults, text), health->error_code);
+    }
+    return health->faults == 0 ? STATUS_OK : STATUS_FAILED;
+}
+
+/* "7.5" as 750; 0 if it is no permitted frequency. */
+static uint16_t read_frequency(const char *text)
+{
+    char *end = NULL;
+    const double frequency = strtod(text, &end);
+    const double steps = frequency * 10;
+    if (end == text || *end != '\0' || !(frequency >= TMINI_FREQUENCY_MIN_CHZ / 100.0) ||
+        !(frequency <= TMINI_FREQUENCY_MAX_CHZ / 100.0) || fabs(steps - round(steps)) > 1e-6) {
+        return 0;
+    }
+    return (uint16_t)(lround(steps) * (long)TMINI_FREQUENCY_STEP_CHZ);
+}
+
+static int query_frequency(device_t *device, const options_t *options)
+{
+    const tmini_status_t begun =
+        options->operand != NULL
+            ? tmini_set_frequency(&device->lidar, read_frequency(options->operand))
+            : tmini_request_frequency(&device->lidar);
+    const int status = device_finish(device, begun, TMINI_EVENT_FREQUENCY);
+    if (status == STATUS_OK) {
+        const uint16_t frequency_chz = tmini_frequency_chz(&device->lidar);
+        (void)printf(options->format == FORMAT_JSON ? "{\"frequency_hz\":%d.%02d}\n"
+                                                    : "%d.%02d Hz\n",
+                     frequency_chz / 100, frequency_chz % 100);
+    }
+    return status;
+}
+
+static int query_reboot(device_t *device, const options_t *options)
+{
+    (void)options;
+    message_note("rebooting; this takes some seconds …");
+    int status = device_finish(device, tmini_reboot(&device->lidar), TMINI_EVENT_REBOOTED);
+    if (status == STATUS_OK) {
+        /* A reboot is not answered: ask something that is. */
+        status = device_finish(device, tmini_request_health(&device->lidar), TMINI_EVENT_HEALTH);
+    }
+    if (status == STATUS_OK) {
+        message_note("the lidar is back");
+    }
+    return status;
+}
+
+/* Opens the port, asks what the command is called after, and prints the answer. */
+static int run(const options_t *options)
+{
+    static const struct {
+        const command_t *command;
+        int (*ask)(device_t *device, const options_t *options);
+    } queries[] = {{&command_info, query_info},
+                   {&command_health, query_health},
+                   {&command_frequency, query_frequency},
+                   {&command_reboot, query_reboot}};
+    device_t *device = NULL;
+    size_t i = 0;
+    if (options->operand != NULL && read_frequency(options->operand) == 0) {
+        return message_usage("\"%s\" is not a scan frequency: 6 to 12 Hz, in steps of 0.1",
+                             options->operand);
+    }
+    while (strcmp(queries[i].command->name, options->command) != 0) {
+        i++;
+    }
+    int status = device_open(&device, options);
+    if (status == STATUS_OK) {
+        status = queries[i].ask(device, options);
+        device_close(device);
+    }
+    return status;
+}
+
+const command_t command_info = {
+    .name = "info",
+    .usage = "[-p PORT] [--json]",
+    .summary = "model, firmware, hardware and serial number",
+    .accepts = "pJq",
+    .run = run,
+};
+
+const command_t command_health = {
+    .name = "health",
+    .usage = "[-p PORT] [--json]",
+    .summary = "whether the lidar is well",
+    .details = "Exit status 1 also when the lidar is faulty.",
+    .accepts = "pJq",
+    .run = run,
+};
+
+const command_t command_frequency = {
+    .name = "frequency",
+    .usage = "[HZ] [-p PORT] [--json]",
+    .summary = "reads the scan frequency, or sets it",
+    .details =
+        "HZ: 6 to 12, in steps of 0.1. The lidar forgets it when it loses power. Prints what\n"
+        "is set, which `tmini scan` shows the motor to come close to.",
+    .accepts = "pJq",
+    .has_operand = true,
+    .run = run,
+};
+
+const command_t command_reboot = {
+    .name = "reboot",
+    .usage = "[-p PORT]",
+    .summary = "restarts the lidar",
+    .details = "The lidar stops, and its scan frequency goes back to what it has at power-up.",
+    .accepts = "pq",
+    .run = run,
+};

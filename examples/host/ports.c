@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* tmini ports: the USB serial adapters of this computer. For tests, the environment's TMINI_ROOT is
+ * the folder in which dev/ and sys/ are looked for. */
+
+#define _XOPEN_SOURCE 700
+
+#include "ports.h"
+
+#include <glob.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "message.h"
+
+#define PORTS_MAX 32
+#define PATH_SIZE 600
+
+typedef struct {
+    char name[PATH_SIZE];   /* The most stable one. */
+    char device[PATH_SIZE]; /* What that leads to. */
+    char maker[20];         /* "vendor:product", or "" if not known. */
+    const char *chip;       /* NULL: not one of those that lidars come with. */
+} adapter_t;
+
+/* What lidars' adapters are made of; 60-tmini.rules knows the same. */
+static const struct {
+    const char *maker, *chip;
+} chips[] = {
+    {"10c4:ea60", "CP210x"}, {"1a86:7523", "CH340"},  {"1a86:55d4", "CH9102"},
+    {"067b:2303", "PL2303"}, {"0403:6001", "FT232R"}, {"0403:6015", "FT230X"},
+    {"0483:5740", "STM32"},
+};
+
+/* By stability of the name. */
+static const char *const places[] = {
+    "/dev/tmini*",  "/dev/serial/by-id/*", "/dev/ttyUSB*",          "/dev/ttyACM*",
+    "/dev/cu.usb*", "/dev/cu.SLAB*",       "/dev/cu.wchusbserial*",
+};
+
+static const char *root(void)
+{
+    const char *const folder = getenv("TMINI_ROOT");
+    return folder != NULL ? folder : "";
+}
+
+/* The first word of a file of the USB device, which is one or two folders above the one of the tty;
+ * "" if there is none. */
+static void read_word(const adapter_t *adapter, const char *name, char word[8])
+{
+    static const char *const above[] = {"..", "../.."};
+    word[0] = '\0';
+    for (size_t i = 0; i < 2 && word[0] == '\0'; i++) {
+        char path[PATH_SIZE];
+        (void)snprintf(path, sizeof path, "%s/sys/class/tty/%.60s/device/%s/%s", root(),
+                       strrchr(adapter->device, '/') + 1, above[i], name);
+        FILE *const file = fopen(path, "r");
+        if (file != NULL) {
+            (void)!fscanf(file, "%7s", word);
+            (void)fclose(file);
+        }
+    }
+}
+
+static void find_maker(adapter_t *adapter)
+{
+    char vendor[8];
+    char product[8];
+    read_word(adapter, "idVendor", vendor);
+    read_word(adapter, "idProduct", product);
+    (void)snprintf(adapter->maker, sizeof adapter->maker, "%s%s%s", vendor,
+                   vendor[0] != '\0' ? ":" : "", product);
+    for (size_t i = 0; i < sizeof chips / sizeof chips[0]; i++) {
+        adapter->chip = strcmp(adapter->maker, chips[i].maker) == 0 ? chips[i].chip : adapter->chip;
+    }
+}
+
+/* Adds the adapter of that name, unless it has been found under another one. */
+static size_t add(adapter_t *adapters, size_t count, const char *name)
+{
+    adapter_t *const adapter = &adapters[count];
+    char *const device = realpath(name, NULL);
+    if (device == NULL || count == PORTS_MAX) {
+        free(device);
+        return count;
+    }
+    *adapter = (adapter_t){.chip = NULL};
+    (void)snprintf(adapter->name, sizeof adapter->name, "%s", name);
+    (void)snprintf(adapter->device, sizeof adapter->device, "%s", device);
+    free(device);
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(adapters[i].device, adapter->device) == 0) {
+            return count;
+        }
+    }
+    find_maker(adapter);
+    return count + 1;
+}
+
+static size_t find_adapters(adapter_t *adapters)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        char pattern[PATH_SIZE];
+        glob_t found = {0};
+        (void)snprintf(pattern, sizeof pattern, "%s%s", root(), places[i]);
+        if (glob(pattern, 0, NULL, &found) == 0) {
+            for (size_t j = 0; j < found.gl_pathc; j++) {
+                count = add(adapters, count, found.gl_pathv[j]);
+            }
+            globfree(&found);
+        }
+    }
+    return count;
+}
+
+static void print(FILE *file, const adapter_t *adapters, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const adapter_t *const adapter = &adapters[i];
+        (void)fprintf(file, "%s  (%s%s%s)  %s\n", adapter->name,
+                      strcmp(adapter->name, adapter->device) == 0 ? "" : adapter->device,
+                      strcmp(adapter->name, adapter->device) == 0 ? "" : ", ",
+                      adapter->maker[0] != '\0' ? adapter->maker : "maker unknown",
+                      adapter->chip != NULL ? adapter->chip : "");
+    }
+}
+
+/* The only one that may be a lidar's, or else the only one at all; NULL: there is no such. */
+static const adapter_t *only_one(const adapter_t *adapters, size_t count)
+{
+    const adapter_t *likely = NULL;
+    size_t likely_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        likely = adapters[i].chip != NULL ? &adapters[i] : likely;
+        likely_count += adapters[i].chip != NULL ? 1 : 0;
+    }
+    return likely_count == 1 ? likely : count == 1 ? adapters : NULL;
+}
+
+const char *ports_choose(const options_t *options)
+{
+    static adapter_t adapters[PORTS_MAX + 1];
+    const char *const usual = getenv("TMINI_PORT");
+    if (options->port != NULL) {
+        return options->port;
+    }
+    if (usual != NULL && usual[0] != '\0') {
+        return usual;
+    }
+    const size_t count = find_adapters(adapters);
+    const adapter_t *const adapter = only_one(adapters, count);
+    if (adapter != NULL) {
+        message_note("using %s", adapter->name);
+        return adapter->name;
+    }
+    (void)message_usage(count == 0
+                            ? "on which port is the lidar? No USB serial adapter is plugged in. "
+                              "For example: -p /dev/ttyUSB0"
+                            : "on which port is the lidar? Say, for example, -p %s; there are:",
+                        adapters[0].name);
+    print(stderr, adapters, count);
+    return NULL;
+}
+
+static int run(const options_t *options)
+{
+    static adapter_t adapters[PORTS_MAX + 1];
+    const size_t count = find_adapters(adapters);
+    (void)options;
+    print(stdout, adapters, count);
+    return count > 0 ? STATUS_OK
+                     : message_fail("no USB serial adapter is plugged in, or its driver is missing "
+                                    "(on Linux, `dmesg` tells)");
+}
+
+const command_t command_ports = {
+    .name = "ports",
+    .usage = "",
+    .summary = "the serial adapters of this computer",
+    .details =
+        "A line for each: its most stable name, the device behind it, the USB numbers of its "
+        "maker,\n"
+        "and its chip if it is one of those that lidars come with. A command without -p takes the\n"
+        "port of the environment's TMINI_PORT, or else the only such adapter.",
+    .accepts = "q",
+    .run = run,
+};

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* A scan as ROS's LaserScan message, in the caller's own memory: nothing is allocated.
+ *
+ * Ray 0 points ahead, the next one to its left, counter-clockwise and in equal steps, as ROS
+ * counts. The lidar turns the other way, so the message's first ray is the one measured last: its
+ * time is the header's, and time_increment is negative. That is exact for a lidar whose revolution
+ * begins ahead, as the T-mini Plus's does. */
+
+#ifndef LASER_SCAN_H
+#define LASER_SCAN_H
+
+#include <sensor_msgs/msg/laser_scan.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "tmini/tmini_ranges.h"
+
+/* Rays in a message, an even number: 360 hardly leave one empty at 6 Hz, see tmini_ranges.h. */
+#ifndef LASER_SCAN_RAYS
+#define LASER_SCAN_RAYS 360u
+#endif
+
+/* What a message points to, and what it is made from. */
+typedef struct {
+    float ranges[LASER_SCAN_RAYS];
+    float intensities[LASER_SCAN_RAYS];
+    uint16_t bins_mm[LASER_SCAN_RAYS];
+    uint8_t bin_intensities[LASER_SCAN_RAYS];
+} laser_scan_memory_t;
+
+/* Ties `message` to `memory` and fills in what is the same in every scan. All three must outlive
+ * the message's use; `frame_id` is the name of the lidar's frame, such as "laser". */
+void laser_scan_init(sensor_msgs__msg__LaserScan *message, laser_scan_memory_t *memory,
+                     char *frame_id);
+
+/* Fills in a scan that ended at `end_ns` (nanoseconds of ROS's clock). A ray without a valid range
+ * is NAN: the lidar does not tell nothing there from not seen. False, and nothing is changed, when
+ * the scan is null. */
+bool laser_scan_fill(sensor_msgs__msg__LaserScan *message, laser_scan_memory_t *memory,
+                     const tmini_scan_t *scan, int64_t end_ns);
+
+#endif

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The tmini authors
+
+// A lidar at work: the library's driver between a source of bytes and the page. Commands are the
+// driver's; only that some follow each other is decided here.
+
+import { diagnose, problems } from './problems.js';
+
+const POLL_MS = 20;
+
+// A lidar that has answered before may leave these unanswered, and be let scan all the same.
+const DISPENSABLE = new Set(['health', 'frequency']);
+
+// Time as the driver sees it. While the browser does not run the page at all (a dialog, a computer
+// asleep), bytes wait and the lidar is not to blame: such a pause counts as a short one.
+class Clock {
+    static #LONGEST_STEP_MS = 100;
+    #ms = 0;
+    #last = performance.now();
+
+    now() {
+        const time = performance.now();
+        this.#ms += Math.min(time - this.#last, Clock.#LONGEST_STEP_MS);
+        this.#last = time;
+        return Math.floor(this.#ms);
+    }
+}
+
+// `listener` is told: onEvent(name, detail), onScan(), onChange(), onBytes(bytes),
+// onProblem(problem or null).
+export class Lidar {
+    info = null;   // As the lidar answered, once it has.
+    health = null;
+    frequencyChz = 0;
+    gone = false;
+    #library;
+    #listener;
+    #source;
+    #clock = new Clock();
+    #timer = 0;
+    #queue = [];
+    #command = null;
+    #awaitingEnd = null;
+
+    constructor(library, source, listener) {
+        this.#library = library;
+        this.#source = source;
+        this.#listener = listener;
+    }
+
+    get source() {
+        return this.#source;
+    }
+
+    // Opens the source; asks the lidar who and how it is, and lets it scan.
+    async open() {
+        const source = this.#source;
+        source.onBytes = (bytes) => this.#receive(bytes);
+        source.onLostBytes = (why) => this.#lostBytes(why);
+        source.onGone = () => this.#left();
+        source.onBack = () => this.#back();
+        this.#library.call('lidar_init', this.#clock.now());
+        await source.open();
+        this.#timer = setInterval(() => this.#tick(), POLL_MS);
+        this.#run(['info', 'health', 'frequency', 'start']);
+    }
+
+    // Stops the lidar and lets go of the source. The lidar gets a second to obey.
+    async close() {
+        if (!this.gone && this.state !== this.#library.constants.STATE_IDLE) {
+            this.#queue = [];
+            this.#run(['stop']);
+            await this.#ended(1000);
+        }
+        clearInterval(this.#timer);
+        await this.#source.close();
+    }
+
+    // The page goes away: at least the command is sent.
+    abandon() {
+        this.#library.call('lidar_stop');
+        this.#send();
+    }
+
+    get state() {
+        return this.#library.call('lidar_state');
+    }
+
+    get isScanning() {
+        const { STATE_STARTING, STATE_SCANNING, STATE_RECOVERING } = this.#library.constants;
+        return [STATE_STARTING, STATE_SCANNING, STATE_RECOVERING].includes(this.state);
+    }
+
+    get isBusy() {
+        return this.#command !== null || this.#queue.length > 0;
+    }
+
+    // A command of the user's: info, health, frequency, reboot, start, stop. While the lidar scans
+    // only stop may be sent to it: for anything else it is stopped, and started again afterwards.
+    request(command, value) {
+        const pause = this.isScanning && command !== 'stop' && command !== 'start';
+        this.#run(pause ? ['stop', [command, value], 'start'] : [[command, value]]);
+    }
+
+    #run(commands) {
+        this.#queue = commands.map((command) => (Array.isArray(command) ? command : [command]));
+        this.#next();
+    }
+
+    #next() {
+        const next = this.#queue.shift();
+        this.#command = null;
+        if (next === undefined) {
+            this.#awaitingEnd?.();
+            return;
+        }
+        const [command, value] = next;
+        const status = this.#issue(command, value);
+        if (status === this.#library.constants.OK) {
+            this.#command = command;
+            this.#send();
+        } else {
+            this.#queue = [];
+            this.#listener.onEvent(`${command}: ${this.#library.text('status_name', status)}`);
+        }
+        this.#listener.onChange();
+    }
+
+    #issue(command, value) {
+        if (command === 'frequency' && value !== undefined) {
+            return this.#library.call('lidar_set_frequency', value);
+        }
+        return this.#library.call(`lidar_${command}`);
+    }
+
+    #ended(limitMs) {
+        return new Promise((resolve) => {
+            this.#awaitingEnd = resolve;
+            setTimeout(resolve, limitMs);
+        });
+    }
+
+    #tick() {
+        this.#source.tick?.(this.#clock.now());
+        this.#poll();
+    }
+
+    // A block may be larger than the library takes at once.
+    #receive(bytes) {
+        const size = this.#library.transferSize;
+        this.#listener.onBytes(bytes);
+        for (let from = 0; from < bytes.length; from += size) {
+            const part = bytes.subarray(from, from + size);
+            this.#library.hand(part);
+            this.#library.call('lidar_feed', part.length);
+            this.#poll();
+        }
+    }
+
+    // Time must not run backwards between polls: each asks the clock itself.
+    #poll() {
+        const { EVENT_NONE } = this.#library.constants;
+        const now = this.#clock.now();
+        for (let event; (event = this.#library.call('lidar_poll', now)) !== EVENT_NONE;) {
+            this.#take(event);
+        }
+        this.#send();
+    }
+
+    #send() {
+        const count = this.#library.call('lidar_sent');
+        if (count > 0) {
+            this.#source.write(this.#library.take(count));
+        }
+    }
+
+    #take(event) {
+        const c = this.#library.constants;
+        if (event === c.EVENT_MORE) {
+            return;
+        }
+        if (event === c.EVENT_SCAN) {
+            this.#listener.onScan();
+            return;
+        }
+        const detail = this.#detail(event);
+        this.#listener.onEvent(this.#library.text('event_name', event), detail);
+        if (event === c.EVENT_COMMAND_FAILED) {
+            this.#failed();
+        } else if ([c.EVENT_STARTED, c.EVENT_STOPPED, c.EVENT_INFO, c.EVENT_HEALTH, c.EVENT_FREQUENCY,
+                    c.EVENT_REBOOTED].includes(event)) {
+            this.#listener.onProblem(null);
+            this.#next();
+        } else if (event === c.EVENT_LOST) {
+            this.#lost();
+        } else if (event === c.EVENT_RECOVERED) {
+            this.#listener.onProblem(null);
+        }
+        this.#listener.onChange();
+    }
+
+    // What an event brings; kept where it is of use later.
+    #detail(event) {
+        const c = this.#library.constants;
+        switch (event) {
+        case c.EVENT_INFO:
+            this.info = { ...this.#library.numbers('lidar_info_numbers'), serial: this.#library.takeText() };
+            return `model ${this.info.model}, serial number ${this.info.serial}`;
+        case c.EVENT_HEALTH:
+            this.health = this.#library.numbers('lidar_health_numbers');
+            return this.#library.faultsText(this.health.faults);
+        case c.EVENT_FREQUENCY:
+            this.frequencyChz = this.#library.call('lidar_frequency_chz');
+            return `${(this.frequencyChz / 100).toFixed(2)} Hz`;
+        case c.EVENT_FAULTS_CHANGED:
+            return this.#library.faultsText(this.#library.call('lidar_faults'));
+        case c.EVENT_COMMAND_FAILED:
+            return this.#library.text('status_name', this.#library.call('lidar_error'));
+        default:
+            return '';
+        }
+    }
+
+    // One that stop has ended is no failure: that was the user.
+    #failed() {
+        const error = this.#library.call('lidar_error');
+        if (error === this.#library.constants.ERROR_ABORTED) {
+            return;
+        }
+        const why = this.#library.text('status_name', error);
+        const command = this.#command ?? 'command';
+        if (DISPENSABLE.has(command) && this.#queue.length > 0 && !this.gone) {
+            this.#next();
+            return;
+        }
+        this.#queue = [];
+        this.#command = null;
+        this.#awaitingEnd?.();
+        if (!this.gone) {
+            this.#listener.onProblem(diagnose(this.#library.numbers('lidar_numbers'), command, why));
+        }
+    }
+
+    // Whether anything comes at all makes the difference.
+    #lost() {
+        if (this.gone) {
+            return;
+        }
+        const before = this.#library.numbers('lidar_numbers').bytes;
+        this.#listener.onProblem(problems.fellSilent);
+        setTimeout(() => {
+            const { STATE_RECOVERING } = this.#library.constants;
+            const now = this.#library.numbers('lidar_numbers').bytes;
+            if (!this.gone && this.state === STATE_RECOVERING && now > before) {
+                this.#listener.onProblem(problems.garbled);
+            }
+        }, 300);
+    }
+
+    #lostBytes(why) {
+        this.#library.call('lidar_gap');
+        this.#listener.onEvent('bytes lost before they reached the page', why);
+    }
+
+    #left() {
+        this.gone = true;
+        this.#listener.onProblem(problems.unplugged);
+        this.#listener.onEvent('unplugged', this.#source.name);
+        this.#listener.onChange();
+    }
+
+    // A lidar that was scanning is brought back by the driver itself.
+    #back() {
+        this.gone = false;
+        this.#listener.onProblem(null);
+        this.#listener.onEvent('plugged in again', this.#source.name);
+        this.#listener.onChange();
+    }
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The tmini authors
+
+// What is saved: what comes from the lidar, the picture, the points.
+
+import { CHUNK_HEAD_SIZE, CHUNK_MAX, MAGIC } from './recording.js';
+
+// "2026-05-04-130501", for names of files.
+function stamp() {
+    const now = new Date();
+    const two = (number) => String(number).padStart(2, '0');
+    const day = [now.getFullYear(), two(now.getMonth() + 1), two(now.getDate())].join('-');
+    return `${day}-${two(now.getHours())}${two(now.getMinutes())}${two(now.getSeconds())}`;
+}
+
+// Offers `parts` as a file in the browser's manner; returns its name.
+export function save(kind, extension, parts, type) {
+    const link = document.createElement('a');
+    link.download = `tmini-${kind}-${stamp()}.${extension}`;
+    link.href = URL.createObjectURL(new Blob(parts, { type }));
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+    return link.download;
+}
+
+// The last seconds that are always kept, in milliseconds.
+const KEPT_MS = 10000;
+
+// What comes from the lidar, with its times, as a recording for `tmini`: since it was started, and the last
+// seconds always.
+export class Recorder {
+    isRunning = false;
+    bytes = 0;
+    #chunks = []; // [time, bytes]
+
+    start() {
+        this.isRunning = true;
+        this.bytes = 0;
+        this.#chunks = [];
+    }
+
+    // Nothing is kept of what came before.
+    clear() {
+        this.#chunks = [];
+    }
+
+    add(bytes) {
+        const now = performance.now();
+        this.bytes += bytes.length;
+        for (let from = 0; from < bytes.length; from += CHUNK_MAX) {
+            this.#chunks.push([now, bytes.slice(from, from + CHUNK_MAX)]);
+        }
+        while (!this.isRunning && this.#chunks[0][0] < now - KEPT_MS) {
+            this.#chunks.shift();
+        }
+    }
+
+    // Ends and saves; returns the file's name.
+    stop() {
+        this.isRunning = false;
+        return save('recording', 'tmini', this.parts(), 'application/octet-stream');
+    }
+
+    // All that is kept, in the tool's format of timed recordings.
+    parts() {
+        const begun = this.#chunks[0]?.[0] ?? 0;
+        let timeUs = 0; // As far as the chunks have told it: rounding must not add up.
+        return [MAGIC, ...this.#chunks.flatMap(([time, bytes]) => {
+            const head = new DataView(new ArrayBuffer(CHUNK_HEAD_SIZE));
+            const passedUs = Math.round((time - begun) * 1000) - timeUs;
+            timeUs += passedUs;
+            head.setUint32(0, passedUs, true);
+            head.setUint16(4, bytes.length, true);
+            return [head, bytes];
+        })];
+    }
+}

@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The driver, on a port that JavaScript plays. */
+
+#include "web.h"
+
+#include <stdbool.h>
+
+#include "tmini/tmini.h"
+
+/* Two seconds and more of data: a page in the background is called rarely. */
+#define RX_SIZE 32768u
+
+/* Commands are two bytes, taken away after each poll. */
+#define SENT_MAX 64u
+
+static struct {
+    tmini_t lidar;
+    tmini_timing_t timing;
+    uint8_t rx[RX_SIZE];
+    tmini_point_t points[WEB_SCAN_POINTS];
+    uint8_t sent[SENT_MAX];
+    uint32_t sent_count;
+    uint32_t received;
+    uint32_t now_ms;
+} live;
+
+static int port_write(void *context, const uint8_t *bytes, size_t count)
+{
+    size_t taken = 0;
+    (void)context;
+    while (taken < count && live.sent_count < SENT_MAX) {
+        live.sent[live.sent_count++] = bytes[taken++];
+    }
+    return (int)taken;
+}
+
+static uint32_t port_now_ms(void *context)
+{
+    (void)context;
+    return live.now_ms;
+}
+
+/* A browser hands bytes over late and in portions of its own, so a pause tells nothing. And the
+ * lidar may just have been plugged in: it takes some seconds until it hears. */
+static const tmini_timing_t *patience(void)
+{
+    live.timing = tmini_timing_default;
+    live.timing.frame_timeout_ms = 250;
+    live.timing.max_pause_ms = 0;
+    live.timing.reply_timeout_ms = 1000;
+    live.timing.max_attempts = 5;
+    live.timing.back_off_max_ms = 2000;
+    return &live.timing;
+}
+
+EXPORTED int lidar_init(uint32_t now_ms)
+{
+    static const tmini_port_t port = {port_write, port_now_ms, NULL};
+    const tmini_config_t config = {
+        .port = &port,
+        .rx_buffer = live.rx,
+        .rx_size = sizeof live.rx,
+        .points = live.points,
+        .max_points = WEB_SCAN_POINTS,
+        .timing = patience(),
+    };
+    live.now_ms = now_ms;
+    live.sent_count = 0;
+    live.received = 0;
+    shown_clear();
+    return tmini_init(&live.lidar, &config);
+}
+
+/* `count` bytes in `transfer` have been received. */
+EXPORTED void lidar_feed(uint32_t count)
+{
+    live.received += count;
+    (void)tmini_feed(&live.lidar, web_transfer, count);
+}
+
+/* Bytes were lost before they reached the page, behind those fed so far. */
+EXPORTED void lidar_gap(void)
+{
+    tmini_feed_gap(&live.lidar);
+}
+
+/* The next event; a scan among them is then the one shown. */
+EXPORTED uint32_t lidar_poll(uint32_t now_ms)
+{
+    live.now_ms = now_ms;
+    const tmini_event_t event = tmini_poll(&live.lidar);
+    if (event == TMINI_EVENT_SCAN) {
+        shown_take(tmini_scan(&live.lidar));
+    }
+    return event;
+}
+
+/* What the driver has sent since it was asked last: in `transfer`. */
+EXPORTED uint32_t lidar_sent(void)
+{
+    const uint32_t count = live.sent_count;
+    for (uint32_t i = 0; i < count; i++) {
+        web_transfer[i] = live.sent[i];
+    }
+    live.sent_count = 0;
+    return count;
+}
+
+EXPORTED int lidar_start(void)
+{
+    return tmini_start(&live.lidar);
+}
+
+EXPORTED int lidar_stop(void)
+{
+    return tmini_stop(&live.lidar);
+}
+
+EXPORTED int lidar_info(void)
+{
+    return tmini_request_info(&live.lidar);
+}
+
+EXPORTED int lidar_health(void)
+{
+    return tmini_request_health(&live.lidar);
+}
+
+EXPORTED int lidar_frequency(void)
+{
+    return tmini_request_frequency(&live.lidar);
+}
+
+EXPORTED int lidar_set_frequency(uint32_t frequency_chz)
+{
+    return tmini_set_frequency(&live.lidar, (uint16_t)frequency_chz);
+}
+
+EXPORTED int lidar_reboot(void)
+{
+    return tmini_reboot(&live.lidar);
+}
+
+EXPORTED uint32_t lidar_state(void)
+{
+    return tmini_state(&live.lidar);
+}
+
+EXPORTED uint32_t lidar_faults(void)
+{
+    return tmini_faults(&live.lidar);
+}
+
+EXPORTED int lidar_error(void)
+{
+    return tmini_command_error(&live.lidar);
+}
+
+EXPORTED uint32_t lidar_frequency_chz(void)
+{
+    return tmini_frequency_chz(&live.lidar);
+}
+
+EXPORTED uint32_t lidar_numbers(void)
+{
+    tmini_counters_t counters;
+    tmini_ct_info_t ct;
+    tmini_counters(&live.lidar, &counters);
+    tmini_ct_info(&live.lidar, &ct);
+    numbers_clear();
+    numbers_put("bytes", live.received);
+    numbers_put("packets", counters.parser.packets);
+    numbers_put("checksumErrors", counters.parser.checksum_errors);
+    numbers_put("bytesInPackets", counters.parser.bytes_in_packets);
+    numbers_put("bytesInReplies", counters.parser.bytes_in_replies);
+    numbers_put("bytesSkipped", counters.parser.bytes_skipped);
+    numbers_put("bytesOverrun", counters.parser.bytes_overrun);
+    numbers_put("scans", counters.scans);
+    numbers_put("timeouts", counters.timeouts);
+    numbers_put("losses", counters.losses);
+    numbers_put("recoveries", counters.recoveries);
+    numbers_put("restarts", counters.restarts);
+    numbers_put("reboots", counters.reboots);
+    numbers_put_ct(&ct);
+    return numbers_count();
+}
+
+/* The serial number's characters are in `transfer`. */
+EXPORTED uint32_t lidar_info_numbers(void)
+{
+    const tmini_info_t *info = tmini_info(&live.lidar);
+    tmini_serial_text(info, (char *)web_transfer);
+    numbers_clear();
+    numbers_put("model", info->model);
+    numbers_put("firmwareMajor", info->firmware_major);
+    numbers_put("firmwareMinor", info->firmware_minor);
+    numbers_put("hardware", info->hardware);
+    return numbers_count();
+}
+
+EXPORTED uint32_t lidar_health_numbers(void)
+{
+    const tmini_health_t *health = tmini_health(&live.lidar);
+    numbers_clear();
+    numbers_put("faults", health->faults);
+    numbers_put("errorCode", health->error_code);
+    return numbers_count();
+}

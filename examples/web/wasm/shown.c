@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The scan that is shown: as it came, and as the lidar's mounting makes it. */
+
+#include "web.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+#include "tmini/tmini_mount.h"
+#include "tmini/tmini_sectors.h"
+
+#define SECTORS 8u
+
+/* JavaScript reads points where they are. */
+typedef char point_is_six_bytes[sizeof(tmini_point_t) == 6 ? 1 : -1];
+typedef char angle_is_first[offsetof(tmini_point_t, angle_q6) == 0 ? 1 : -1];
+typedef char distance_follows[offsetof(tmini_point_t, distance_mm) == 2 ? 1 : -1];
+typedef char then_intensity[offsetof(tmini_point_t, intensity) == 4 ? 1 : -1];
+typedef char then_flag[offsetof(tmini_point_t, flag) == 5 ? 1 : -1];
+
+static struct {
+    tmini_scan_t scan;
+    tmini_point_t raw[WEB_SCAN_POINTS];
+    tmini_point_t mounted[WEB_SCAN_POINTS];
+    uint16_t nearest_mm[SECTORS];
+    tmini_sectors_t sectors;
+    const tmini_point_t *nearest;
+    uint32_t valid;
+    uint32_t flagged;
+    uint32_t farthest_mm;
+    uint8_t darkest;
+    uint8_t brightest;
+    tmini_mount_t mount;
+} shown;
+
+static void look_at(const tmini_point_t *point)
+{
+    shown.flagged += point->flag >= TMINI_FLAG_SPECULAR ? 1u : 0u;
+    if (point->distance_mm == 0) {
+        return;
+    }
+    shown.valid++;
+    if (shown.nearest == NULL || point->distance_mm < shown.nearest->distance_mm) {
+        shown.nearest = point;
+    }
+    shown.farthest_mm =
+        point->distance_mm > shown.farthest_mm ? point->distance_mm : shown.farthest_mm;
+    shown.darkest = point->intensity < shown.darkest ? point->intensity : shown.darkest;
+    shown.brightest = point->intensity > shown.brightest ? point->intensity : shown.brightest;
+}
+
+static void mount(void)
+{
+    shown.nearest = NULL;
+    shown.valid = 0;
+    shown.flagged = 0;
+    shown.farthest_mm = 0;
+    shown.darkest = UINT8_MAX;
+    shown.brightest = 0;
+    (void)tmini_sectors_init(&shown.sectors, shown.nearest_mm, SECTORS, 0, TMINI_FILTER_NONE);
+    memcpy(shown.mounted, shown.raw, shown.scan.count * sizeof *shown.raw);
+    (void)tmini_mount_apply(&shown.mount, shown.mounted, shown.scan.count);
+    for (size_t i = 0; i < shown.scan.count; i++) {
+        look_at(&shown.mounted[i]);
+        tmini_sectors_add(&shown.sectors, &shown.mounted[i]);
+    }
+}
+
+void shown_take(const tmini_scan_t *scan)
+{
+    shown.scan = *scan;
+    memcpy(shown.raw, scan->points, scan->count * sizeof *scan->points);
+    mount();
+}
+
+void shown_clear(void)
+{
+    memset(&shown.scan, 0, sizeof shown.scan);
+    mount();
+}
+
+EXPORTED void shown_forget(void)
+{
+    shown_clear();
+}
+
+/* How the lidar sits on the robot; the scan that is shown follows at once. */
+EXPORTED void shown_mount(uint32_t front_q6, uint32_t is_upside_down)
+{
+    shown.mount.front_q6 = (uint16_t)(front_q6 % TMINI_FULL_CIRCLE_Q6);
+    shown.mount.is_upside_down = is_upside_down != 0;
+    mount();
+}
+
+EXPORTED const void *shown_points(void)
+{
+    return shown.mounted;
+}
+
+EXPORTED const void *shown_sectors(void)
+{
+    return shown.nearest_mm;
+}
+
+EXPORTED uint32_t shown_numbers(void)
+{
+    const tmini_point_t nobody = {0};
+    const tmini_point_t *nearest = shown.nearest != NULL ? shown.nearest : &nobody;
+    numbers_clear();
+    numbers_put("points", shown.scan.count);
+    numbers_put("valid", shown.valid);
+    numbers_put("flagged", shown.flagged);
+    numbers_put("dropped", shown.scan.dropped);
+    numbers_put("packets", shown.scan.packets);
+    numbers_put("gaps", shown.scan.gaps);
+    numbers_put("checksumErrors", shown.scan.checksum_errors);
+    numbers_put("frequencyChz", shown.scan.frequency_chz);
+    numbers_put("complete", shown.scan.complete ? 1u : 0u);
+    numbers_put("nearestMm", nearest->distance_mm);
+    numbers_put("nearestQ6", nearest->angle_q6);
+    numbers_put("nearestSector", (uint32_t)tmini_sectors_at(&shown.sectors, nearest->angle_q6));
+    numbers_put("farthestMm", shown.farthest_mm);
+    numbers_put("darkest", shown.darkest);
+    numbers_put("brightest", shown.brightest);
+    return numbers_count();
+}

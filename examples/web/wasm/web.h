@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Between the library and JavaScript. Functions marked EXPORTED are called from there; there are no
+ * imports. Bytes go both ways through `transfer`, numbers come out of a table with their names, so
+ * that JavaScript knows the layout of no structure but of a point. */
+
+#ifndef WEB_H
+#define WEB_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tmini/tmini_ct.h"
+#include "tmini/tmini_scan.h"
+
+#define EXPORTED __attribute__((visibility("default")))
+
+/* The motor comes up to speed from two revolutions a second: 4000 samples of those fit, nearly. */
+#define WEB_SCAN_POINTS 2400u
+
+#define WEB_TRANSFER_SIZE 16384u
+extern uint8_t web_transfer[WEB_TRANSFER_SIZE];
+
+/* Empties the table of numbers; adds one. `name` is a constant string. */
+void numbers_clear(void);
+void numbers_put(const char *name, uint32_t value);
+void numbers_put_ct(const tmini_ct_info_t *info);
+uint32_t numbers_count(void);
+
+/* What recording_next() comes to. */
+typedef enum { NEXT_NEEDS_BYTES, NEXT_PACKET, NEXT_SCAN, NEXT_END } next_t;
+
+/* Makes `scan` the one that is shown; it is copied. */
+void shown_take(const tmini_scan_t *scan);
+
+/* Nothing is shown. */
+void shown_clear(void);
+
+#endif

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The primitives: memory order between the two sides of the ring, and reading a word of bytes. The
+ * only file with compiler extensions.
+ *
+ * tmini_load() reads a size_t that the other side writes, and no later access moves before it;
+ * tmini_store() writes one, and no earlier access moves behind it (acquire and release, in C11's
+ * words). Both are one access wide, so that the other side sees the old value or the new one.
+ * tmini_fence() keeps earlier reads before later ones.
+ *
+ * GCC and Clang map them to instructions that are right on several cores too (ESP32). On one core,
+ * which always sees its own accesses in order, interrupts included, keeping the compiler in order
+ * is enough and costs nothing: TMINI_SINGLE_CORE says so. It is 1 on Cortex-M unless the chip is
+ * known to have two cores; define it as 0 or 1 for the whole build to overrule that. Circular DMA
+ * counts as another core only on processors that reorder reads (Cortex-M7): tmini_fence() stays
+ * real there.
+ *
+ * For another compiler, or a machine with needs of its own, name a header that defines the three
+ * functions: -DTMINI_ATOMIC_HEADER='"my_atomic.h"'. */
+
+#ifndef TMINI_ATOMIC_H
+#define TMINI_ATOMIC_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#if !defined(TMINI_SINGLE_CORE)
+#if defined(PICO_RP2040) || defined(PICO_RP2350) || defined(ARDUINO_ARCH_RP2040)
+#define TMINI_SINGLE_CORE 0
+#elif defined(__ARM_ARCH_PROFILE)
+#define TMINI_SINGLE_CORE (__ARM_ARCH_PROFILE == 'M')
+#else
+#define TMINI_SINGLE_CORE 0
+#endif
+#endif
+
+/* For functions of which each instruction counts: at -Os a compiler might call them instead. */
+#if defined(__GNUC__) && defined(__OPTIMIZE__)
+#define TMINI_INLINE static inline __attribute__((always_inline))
+#else
+#define TMINI_INLINE static inline
+#endif
+
+#if defined(TMINI_ATOMIC_HEADER)
+
+#include TMINI_ATOMIC_HEADER
+
+#elif defined(__AVR__)
+
+/* A size_t takes two accesses on this 8-bit machine: keep interrupts out for those two. */
+#include <util/atomic.h>
+
+TMINI_INLINE size_t tmini_load(const size_t *value)
+{
+    size_t loaded;
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
+    {
+        loaded = *(const volatile size_t *)value;
+    }
+    return loaded;
+}
+
+TMINI_INLINE void tmini_store(size_t *value, size_t stored)
+{
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
+    {
+        *(volatile size_t *)value = stored;
+    }
+}
+
+/* One core that reads in order: only the compiler might not. */
+TMINI_INLINE void tmini_fence(void)
+{
+    __asm__ volatile("" ::: "memory");
+}
+
+#elif defined(__GNUC__) && TMINI_SINGLE_CORE
+
+/* A plain read: the compiler may join it with its neighbour's (LDRD), but not keep what it has
+ * read. */
+TMINI_INLINE size_t tmini_load(const size_t *value)
+{
+    const size_t loaded = *value;
+    __asm__ volatile("" ::: "memory");
+    return loaded;
+}
+
+TMINI_INLINE void tmini_store(size_t *value, size_t stored)
+{
+    __asm__ volatile("" ::: "memory");
+    __atomic_store_n(value, stored, __ATOMIC_RELAXED);
+}
+
+TMINI_INLINE void tmini_fence(void)
+{
+    __atomic_thread_fence(__ATOMIC_ACQUIRE);
+}
+
+#elif defined(__GNUC__)
+
+TMINI_INLINE size_t tmini_load(const size_t *value)
+{
+    return __atomic_load_n(value, __ATOMIC_ACQUIRE);
+}
+
+TMINI_INLINE void tmini_store(size_t *value, size_t stored)
+{
+    __atomic_store_n(value, stored, __ATOMIC_RELEASE);
+}
+
+TMINI_INLINE void tmini_fence(void)
+{
+    __atomic_thread_fence(__ATOMIC_ACQUIRE);
+}
+
+#else
+
+#error "tmini: no memory-ordering primitives for this compiler; see TMINI_ATOMIC_HEADER above"
+
+#endif
+
+/* Four bytes at any address, as the machine orders them: one load where it can. */
+TMINI_INLINE uint32_t tmini_word(const uint8_t *bytes)
+{
+#if defined(__GNUC__)
+    typedef struct __attribute__((packed, may_alias)) {
+        uint32_t word;
+    } unaligned_t;
+    return ((const unaligned_t *)(const void *)bytes)->word;
+#else
+    uint32_t word;
+    memcpy(&word, bytes, sizeof word);
+    return word;
+#endif
+}
+
+#endif

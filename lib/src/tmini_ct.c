@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "tmini/tmini_ct.h"
+
+#include <string.h>
+
+#include "tmini/tmini_reply.h"
+
+/* The fields that are kept, in the order of their indices. */
+enum {
+    USER_VERSION,
+    HEALTH,
+    HARDWARE,
+    FIRMWARE_MINOR,
+    YEAR,
+    MONTH,
+    DAY,
+    NUMBER_HIGH,
+    NUMBER_LOW,
+};
+
+/* At which index each stands (section 7). The others are production data. */
+static const uint8_t index_of[TMINI_CT_FIELDS] = {
+    [USER_VERSION] = 1, [HEALTH] = 3, [HARDWARE] = 4,     [FIRMWARE_MINOR] = 5, [YEAR] = 9,
+    [MONTH] = 10,       [DAY] = 11,   [NUMBER_HIGH] = 12, [NUMBER_LOW] = 13,
+};
+
+#define KNOWN_MASK                                                                                 \
+    (TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE | TMINI_KNOWN_FIRMWARE | \
+     TMINI_KNOWN_YEAR | TMINI_KNOWN_MONTH | TMINI_KNOWN_DAY | TMINI_KNOWN_SERIAL)
+
+static void trust_current(tmini_ct_t *ct)
+{
+    const unsigned count = ct->packets < TMINI_CT_INDICES ? ct->packets : TMINI_CT_INDICES;
+    memcpy(ct->trusted, ct->current, ct->fields);
+    ct->known |= (uint16_t)((1u << count) - 1);
+}
+
+static void begin_revolution(tmini_ct_t *ct)
+{
+    ct->packets = 0;
+    ct->fields = 0;
+    ct->crc = 0;
+    ct->complete = true;
+    ct->informative = false;
+}
+
+/* Exactly one byte between the last point packet and this start packet is LastCRC. Units without CT
+ * information send none: there it is noise. */
+static tmini_ct_verdict_t check_revolution(const tmini_ct_t *ct, const tmini_packet_t *start)
+{
+    if (!ct->informative || !ct->complete || start->gap != 1) {
+        return TMINI_CT_UNKNOWN;
+    }
+    return start->frame->last_skipped == ct->crc ? TMINI_CT_CONFIRMED : TMINI_CT_REFUTED;
+}
+
+static void append(tmini_ct_t *ct, uint8_t byte)
+{
+    ct->crc = tmini_ct_crc8(ct->crc, byte);
+    if (ct->fields < TMINI_CT_FIELDS && ct->packets == index_of[ct->fields]) {
+        ct->current[ct->fields++] = byte;
+    }
+    if (ct->packets < UINT8_MAX) {
+        ct->packets++;
+    }
+}
+
+void tmini_ct_init(tmini_ct_t *ct)
+{
+    *ct = (tmini_ct_t){0};
+}
+
+void tmini_ct_discard(tmini_ct_t *ct)
+{
+    begin_revolution(ct);
+}
+
+tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)
+{
+    tmini_ct_verdict_t verdict = TMINI_CT_UNKNOWN;
+    if (tmini_packet_is_start(packet)) {
+        verdict = check_revolution(ct, packet);
+        if (verdict == TMINI_CT_CONFIRMED) {
+            trust_current(ct);
+        }
+        begin_revolution(ct);
+    } else if (ct->packets == 0) {
+        return TMINI_CT_UNKNOWN; /* Before the first start packet: the index is not known. */
+    } else {
+        ct->complete = ct->complete && packet->gap == 0;
+        ct->informative = ct->informative || packet->ct != 0;
+    }
+    append(ct, packet->ct);
+    return verdict;
+}
+
+/* The serial number's digits 9 to 16 are 21 bits, spread over the last five indices. */
+static uint32_t serial_number(const uint8_t *ct)
+{
+    return (uint32_t)(ct[YEAR] >> 1 & 3u) << 19 | (uint32_t)(ct[MONTH] >> 1 & 7u) << 16 |
+           (uint32_t)(ct[DAY] >> 1 & 3u) << 14 | (uint32_t)(ct[NUMBER_HIGH] >> 1) << 7 |
+           (uint32_t)(ct[NUMBER_LOW] >> 1);
+}
+
+unsigned tmini_ct_faults(const tmini_ct_t *ct)
+{
+    return (ct->known & TMINI_KNOWN_FAULTS) != 0 ? ct->trusted[HEALTH] >> 1 & TMINI_FAULT_MASK
+                                                 : TMINI_FAULTS_UNKNOWN;
+}
+
+void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
+{
+    const uint8_t *const trusted = ct->trusted; /* 0 where it is not known. */
+    info->known = ct->known & KNOWN_MASK;
+    info->user_major = trusted[USER_VERSION] >> 6;
+    info->user_minor = trusted[USER_VERSION] >> 1 & 0x1Fu;
+    info->faults = trusted[HEALTH] >> 1 & TMINI_FAULT_MASK;
+    info->hardware = trusted[HARDWARE] >> 5;
+    info->firmware_major = trusted[HARDWARE] >> 1 & 0x0Fu;
+    info->firmware_minor = trusted[FIRMWARE_MINOR] >> 1;
+    info->year =
+        (uint16_t)((info->known & TMINI_KNOWN_YEAR) != 0 ? 2020u + (trusted[YEAR] >> 3) : 0);
+    info->month = trusted[MONTH] >> 4;
+    info->day = trusted[DAY] >> 3;
+    info->number = (info->known & TMINI_KNOWN_SERIAL) != 0 ? serial_number(trusted) : 0;
+}
+
+uint8_t tmini_ct_crc8(uint8_t crc, uint8_t byte)
+{
+    /* What four steps of the reflected polynomial 0x8C make of the low four bits. */
+    static const uint8_t steps[16] = {0x00, 0x9D, 0x23, 0xBE, 0x46, 0xDB, 0x65, 0xF8,
+                                      0x8C, 0x11, 0xAF, 0x32, 0xCA, 0x57, 0xE9, 0x74};
+    crc ^= byte;
+    crc = (uint8_t)(crc >> 4 ^ steps[crc & 0x0Fu]);
+    return (uint8_t)(crc >> 4 ^ steps[crc & 0x0Fu]);
+}

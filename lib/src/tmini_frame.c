@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "tmini/tmini_frame.h"
+
+const uint8_t *tmini_frame_samples(const tmini_frame_t *frame, size_t index, size_t *count,
+                                   uint8_t joined[TMINI_SAMPLE_SIZE])
+{
+    const size_t wanted = TMINI_SAMPLE_SIZE * *count;
+    size_t bytes = wanted;
+    const uint8_t *const piece = tmini_ring_piece(frame->ring, TMINI_SAMPLE_OFFSET(index), &bytes);
+    if (bytes == wanted) {
+        return piece;
+    }
+    if (bytes >= TMINI_SAMPLE_SIZE) {
+        *count = bytes / TMINI_SAMPLE_SIZE;
+        return piece;
+    }
+    for (size_t i = 0; i < TMINI_SAMPLE_SIZE; i++) {
+        joined[i] = tmini_ring_peek(frame->ring, TMINI_SAMPLE_OFFSET(index) + i);
+    }
+    *count = 1;
+    return joined;
+}

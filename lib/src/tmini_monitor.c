@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* While the lidar scans: is it well? Packets in, faults out, each seen in two revolutions. */
+
+#include "tmini_driver.h"
+
+/* Returns true if that is news. */
+static bool report(tmini_monitor_t *monitor, uint8_t faults)
+{
+    const bool has_changed = faults != monitor->faults;
+    monitor->observed = faults;
+    monitor->faults = faults;
+    return has_changed;
+}
+
+/* What one revolution shows is believed when the next one shows it too. */
+static bool observe(tmini_monitor_t *monitor, uint8_t faults)
+{
+    const bool is_seen_twice = faults == monitor->observed;
+    monitor->observed = faults;
+    return is_seen_twice && report(monitor, faults);
+}
+
+/* Without CT information: whether the revolution had any range. Of one that was not received
+ * completely, the rest may have had one. */
+static bool judge_by_range(tmini_monitor_t *monitor)
+{
+    if (monitor->has_range) {
+        return observe(monitor, 0);
+    }
+    return monitor->is_complete && observe(monitor, TMINI_FAULT_DATA);
+}
+
+/* A start packet: the revolution that it ends is judged, by what the unit itself says of its health
+ * (section 7), if it does. */
+static unsigned end_revolution(tmini_monitor_t *monitor, tmini_ct_verdict_t verdict)
+{
+    const unsigned faults = tmini_ct_faults(&monitor->ct);
+    bool have_changed = false;
+    if (faults == TMINI_FAULTS_UNKNOWN) {
+        have_changed = judge_by_range(monitor);
+    } else if (verdict == TMINI_CT_CONFIRMED) {
+        have_changed = observe(monitor, (uint8_t)faults);
+    }
+    const bool was_complete = monitor->is_complete;
+    monitor->is_complete = true;
+    monitor->has_range = false;
+    return (have_changed ? TMINI_SHOWN_FAULTS : 0u) | (was_complete ? TMINI_SHOWN_COMPLETE : 0u) |
+           (verdict == TMINI_CT_REFUTED ? TMINI_SHOWN_LOSS : 0u);
+}
+
+void tmini_monitor_begin(tmini_t *lidar)
+{
+    tmini_monitor_t *const monitor = &lidar->monitor;
+    tmini_ct_discard(&monitor->ct);
+    monitor->is_complete = false;
+    monitor->has_range = false;
+    monitor->observed = monitor->faults;
+    monitor->rotating_ms = lidar->link.now_ms;
+}
+
+unsigned tmini_monitor_packet(tmini_t *lidar)
+{
+    tmini_monitor_t *const monitor = &lidar->monitor;
+    const tmini_packet_t *const packet = &lidar->latest.packet;
+    const tmini_ct_verdict_t verdict = tmini_ct_add(&monitor->ct, packet);
+    const bool is_start = tmini_packet_is_start(packet);
+    unsigned shown = 0;
+    if (packet->gap > 1) { /* One byte may be LastCRC; with more, a packet may be lost. */
+        monitor->is_complete = false;
+    }
+    if (is_start) {
+        shown = end_revolution(monitor, verdict);
+    }
+    const bool has_range = tmini_packet_has_range(packet);
+    if (has_range) {
+        monitor->has_range = true;
+    }
+    if (is_start || has_range) {
+        monitor->rotating_ms = lidar->link.now_ms;
+    }
+    return shown;
+}
+
+bool tmini_monitor_poll(tmini_t *lidar)
+{
+    tmini_monitor_t *const monitor = &lidar->monitor;
+    /* No start packet and no range for so long: the rotor is blocked (section 8). */
+    const uint16_t timeout_ms = lidar->link.timing->rotation_timeout_ms;
+    return timeout_ms > 0 && tmini_has_elapsed(lidar, monitor->rotating_ms, timeout_ms) &&
+           report(monitor, (uint8_t)(monitor->faults | TMINI_FAULT_ENCODER));
+}

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What the two kinds of USART have in common: all of the port but the place of the registers and
+ * how flags are cleared. Each of the two sources names these, then includes this file; nobody else
+ * does.
+ *
+ *   STATUS CR1 CR2 CR3 BRR DATA_IN DATA_OUT   indices of registers
+ *   CR1_UE                                    the bit that switches the USART on
+ *   clear_flags(registers, status)            of those in `status`: errors and idle line */
+
+#ifndef TMINI_STM32_USART_COMMON_H
+#define TMINI_STM32_USART_COMMON_H
+
+/* At most so much of the baud rate, in parts of 1000, may be lost by dividing the clock: the
+ * receiver bears 3.3 % in all, and the lidar's own clock wants its share. */
+#define BAUD_ERROR_MAX 20u
+
+/* In SR as in ISR. */
+#define STATUS_FE (1u << 1)
+#define STATUS_NE (1u << 2)
+#define STATUS_ORE (1u << 3)
+#define STATUS_IDLE (1u << 4)
+#define STATUS_RXNE (1u << 5)
+#define STATUS_TXE (1u << 7)
+#define STATUS_ERRORS (STATUS_FE | STATUS_NE | STATUS_ORE)
+
+#define CR1_RE (1u << 2)
+#define CR1_TE (1u << 3)
+#define CR1_IDLEIE (1u << 4)
+#define CR1_RXNEIE (1u << 5) /* Also for overruns. */
+#define CR3_EIE (1u << 0)
+#define CR3_DMAR (1u << 6)
+
+#define DMA_COUNT 0xFFFFu
+
+/* ------------------------------------------------------------------------------- receiving */
+
+static void count_errors(tmini_stm32_usart_t *port, uint32_t errors)
+{
+    port->overruns = port->overruns + ((errors & STATUS_ORE) != 0);
+    port->framing_errors = port->framing_errors + ((errors & STATUS_FE) != 0);
+    port->noise_errors = port->noise_errors + ((errors & STATUS_NE) != 0);
+}
+
+static void take_byte(tmini_stm32_usart_t *port)
+{
+    const uint32_t status = port->registers[STATUS];
+    count_errors(port, status);
+    clear_flags(port->registers, status);
+    if ((status & STATUS_RXNE) != 0) {
+        const uint8_t byte = (uint8_t)port->registers[DATA_IN];
+        port->bytes = port->bytes + 1;
+        tmini_feed_byte(port->lidar, byte);
+    }
+}
+
+/* A flag that still shows the error of a byte counted before is not counted again. */
+static void look_at_line(tmini_stm32_usart_t *port)
+{
+    const uint32_t status = port->registers[STATUS];
+    count_errors(port, status & ~port->line_flags);
+    clear_flags(port->registers, status);
+    port->line_flags = port->registers[STATUS] & STATUS_ERRORS;
+}
+
+static void hand_over(tmini_stm32_usart_t *port)
+{
+    tmini_stm32_circle_t *const circle = &port->circle;
+    const uint8_t middles =
+        circle->middles; /* Before the position: it may only be ahead of them. */
+    const uint8_t ends = circle->ends;
+    const uint16_t position = (uint16_t)(circle->size - (*port->remaining & DMA_COUNT));
+    if (tmini_stm32_circle_advance(circle, position, middles, ends)) {
+        port->laps = port->laps + 1;
+        tmini_feed_gap(port->lidar);
+    }
+    tmini_feed_dma(port->lidar, circle->position);
+    look_at_line(port);
+}
+
+static void hand_over_new(tmini_stm32_usart_t *port)
+{
+    if (!tmini_stm32_circle_enter(&port->circle)) {
+        return;
+    }
+    do {
+        hand_over(port);
+    } while (tmini_stm32_circle_leave(&port->circle));
+}
+
+void tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port)
+{
+    if (port->remaining != NULL) {
+        hand_over_new(port);
+    } else {
+        take_byte(port);
+    }
+}
+
+void tmini_stm32_usart_dma_interrupt(tmini_stm32_usart_t *port, bool half, bool complete)
+{
+    if (port->remaining != NULL) {
+        tmini_stm32_circle_tell(&port->circle, half, complete);
+        hand_over_new(port);
+    }
+}
+
+/* ------------------------------------------------------------------------ the port's functions */
+
+static int send_bytes(void *context, const uint8_t *bytes, size_t count)
+{
+    const tmini_stm32_usart_t *const port = context;
+    int taken = 0;
+    while ((size_t)taken < count && (port->registers[STATUS] & STATUS_TXE) != 0) {
+        port->registers[DATA_OUT] = bytes[taken];
+        taken++;
+    }
+    return taken;
+}
+
+/* Every tmini_poll() comes by: what DMA has brought since the last interrupt goes with it. */
+static uint32_t time_now_ms(void *context)
+{
+    tmini_stm32_usart_t *const port = context;
+    if (port->remaining != NULL) {
+        hand_over_new(port);
+    }
+    return *port->time_ms;
+}
+
+const tmini_port_t tmini_stm32_usart_port = {
+    .write = send_bytes, .now_ms = time_now_ms, .wait = NULL};
+
+/* -------------------------------------------------------------------------------- life cycle */
+
+tmini_status_t tmini_stm32_usart_init(tmini_stm32_usart_t *port, volatile void *usart,
+                                      const volatile uint32_t *time_ms)
+{
+    if (port == NULL || usart == NULL || time_ms == NULL) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    *port = (tmini_stm32_usart_t){.registers = usart, .time_ms = time_ms};
+    return TMINI_OK;
+}
+
+static bool are_set_up(const tmini_stm32_usart_t *port, const tmini_t *lidar)
+{
+    return port != NULL && port->registers != NULL && tmini_stm32_circle_is_set_up(lidar);
+}
+
+/* With 16-fold oversampling BRR is the divider in sixteenths, that is the clock by the baud
+ * rate. */
+static uint32_t divider(uint32_t clock_hz)
+{
+    return (clock_hz + TMINI_STM32_BAUD_RATE / 2) / TMINI_STM32_BAUD_RATE;
+}
+
+static bool is_good_clock(uint32_t clock_hz)
+{
+    const uint32_t made_hz = divider(clock_hz) * TMINI_STM32_BAUD_RATE;
+    const uint32_t error_hz = made_hz > clock_hz ? made_hz - clock_hz : clock_hz - made_hz;
+    return clock_hz == 0 ||
+           (divider(clock_hz) >= 16 && error_hz <= made_hz / 1000 * BAUD_ERROR_MAX);
+}
+
+/* The other registers may be written only while the USART is off. */
+static void switch_on(volatile uint32_t *registers, uint32_t clock_hz, uint32_t interrupt,
+                      uint32_t dma)
+{
+    registers[CR1] &= ~(CR1_UE | CR1_RXNEIE | CR1_IDLEIE);
+    if (clock_hz != 0) {
+        registers[CR1] = 0;
+        registers[CR2] = 0;
+        registers[CR3] = 0;
+        registers[BRR] = divider(clock_hz);
+    }
+    registers[CR3] = (registers[CR3] & ~(CR3_EIE | CR3_DMAR)) | dma;
+    clear_flags(registers, registers[STATUS]);
+    registers[CR1] |= CR1_UE | CR1_TE | CR1_RE | interrupt;
+}
+
+tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar, uint32_t clock_hz)
+{
+    if (!are_set_up(port, lidar)) {
+        return TMINI_ERROR_STATE;
+    }
+    if (tmini_stm32_circle_is_for(lidar) || !is_good_clock(clock_hz)) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    port->lidar = lidar;
+    port->remaining = NULL;
+    switch_on(port->registers, clock_hz, CR1_RXNEIE, 0);
+    return TMINI_OK;
+}
+
+/* The DMA channel stands at the buffer's start and is as long as the buffer. */
+static bool is_good_channel(const tmini_t *lidar, const volatile uint32_t *remaining)
+{
+    const size_t size = tmini_stm32_circle_size(lidar);
+    return tmini_stm32_circle_is_for(lidar) && size <= TMINI_STM32_CIRCLE_MAX &&
+           remaining != NULL && (*remaining & DMA_COUNT) == size;
+}
+
+tmini_status_t tmini_stm32_usart_start_dma(tmini_stm32_usart_t *port, tmini_t *lidar,
+                                           uint32_t clock_hz, const volatile uint32_t *remaining)
+{
+    if (!are_set_up(port, lidar)) {
+        return TMINI_ERROR_STATE;
+    }
+    if (!is_good_channel(lidar, remaining) || !is_good_clock(clock_hz)) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    port->lidar = lidar;
+    tmini_stm32_circle_rewind(lidar);
+    tmini_stm32_circle_begin(&port->circle, tmini_stm32_circle_size(lidar));
+    port->line_flags = 0;
+    port->remaining = remaining;
+    switch_on(port->registers, clock_hz, CR1_IDLEIE, CR3_DMAR);
+    return TMINI_OK;
+}
+
+void tmini_stm32_usart_stop(tmini_stm32_usart_t *port)
+{
+    port->registers[CR1] &= ~(CR1_RXNEIE | CR1_IDLEIE);
+    port->registers[CR3] &= ~CR3_DMAR;
+    if (port->remaining != NULL) {
+        hand_over_new(port);
+        port->remaining = NULL;
+    }
+}
+
+#endif

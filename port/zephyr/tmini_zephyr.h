@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The lidar on a UART of any board that Zephyr knows, over the interrupt-driven UART API.
+ *
+ *     #define UART DEVICE_DT_GET(DT_BUS(DT_NODELABEL(lidar)))
+ *
+ *     static tmini_zephyr_t board;
+ *     static tmini_t lidar;
+ *
+ *     tmini_zephyr_init(&board, UART);
+ *     tmini_init(&lidar, &config);             .port = &tmini_zephyr_port, .port_context = &board
+ *     tmini_zephyr_start(&board, &lidar);      bytes come
+ *     tmini_start(&lidar);                     the lidar scans
+ *     for (;;) {
+ *         switch (tmini_poll(&lidar)) {
+ *         case TMINI_EVENT_SCAN: use(tmini_scan(&lidar)); break;
+ *         case TMINI_EVENT_NONE: tmini_zephyr_wait(&board, K_MSEC(10)); break;
+ *         default: break;
+ *         }
+ *     }
+ *
+ * The UART's callback stores bytes and nothing more; all functions here belong to the one thread
+ * that polls. The errors returned are Zephyr's, negative. */
+
+#ifndef TMINI_ZEPHYR_H
+#define TMINI_ZEPHYR_H
+
+#include <stdint.h>
+
+#include <zephyr/device.h>
+#include <zephyr/kernel.h>
+
+#include "tmini/tmini.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. Errors
+ * stay 0 with UART drivers that do not tell them. */
+typedef struct {
+    uint32_t bytes;          /* Handed to the lidar. */
+    uint32_t overruns;       /* The interrupt came too late; bytes were lost. */
+    uint32_t framing_errors; /* A stop bit was missing: wrong baud rate, noise? */
+    uint32_t breaks;         /* The line was low for longer than a byte: unplugged? */
+} tmini_zephyr_counters_t;
+
+/* One UART with a lidar. Treat the members as private. */
+typedef struct {
+    const struct device *uart;
+    tmini_t *lidar; /* NULL: not receiving. */
+    struct k_sem received;
+    struct k_spinlock lock; /* Between the callback and stopping, on several cores. */
+    uint32_t unannounced;   /* Bytes since the polling thread was last woken. */
+    tmini_zephyr_counters_t counters;
+} tmini_zephyr_t;
+
+/* The `port` of tmini_config_t; its `port_context` is the tmini_zephyr_t. */
+extern const tmini_port_t tmini_zephyr_port;
+
+/* Names the UART and sets it to 230400 baud, 8N1. A driver that cannot change the baud rate while
+ * it runs keeps the devicetree's `current-speed`. Not between start and stop. Returns 0,
+ *   -EINVAL  null pointer
+ *   -ENODEV  the UART is not ready
+ *   or what the UART driver gave */
+int tmini_zephyr_init(tmini_zephyr_t *board, const struct device *uart);
+
+/* Received bytes go to `lidar`, which has been through tmini_init(); the counters begin anew. Takes
+ * the UART's callback. Returns 0,
+ *   -EINVAL    null pointer, or no tmini_zephyr_init() before
+ *   -EALREADY  started already */
+int tmini_zephyr_start(tmini_zephyr_t *board, tmini_t *lidar);
+
+/* Ends reception. Stop the lidar before, or it goes on scanning. */
+void tmini_zephyr_stop(tmini_zephyr_t *board);
+
+/* Sleeps until bytes have come (CONFIG_TMINI_WAKE_BYTES), at most `timeout`: for a polling thread
+ * that has nothing left to do. The driver also keeps time, so let `timeout` be some 10 ms. */
+void tmini_zephyr_wait(tmini_zephyr_t *board, k_timeout_t timeout);
+
+/* Copies the counters. */
+void tmini_zephyr_counters(const tmini_zephyr_t *board, tmini_zephyr_counters_t *counters);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""What several ecosystems' manifests repeat must not drift apart.
+
+    manifests.py [ROOT]
+
+Compares what each of them says of version, description, licence, author, keywords and home page,
+and looks for every source of the library in each list of sources. Exit status: 0 they agree, 1 not;
+every disagreement is told.
+"""
+
+import glob
+import json
+import os
+import re
+import sys
+
+ROOT = os.path.abspath(sys.argv[1] if len(sys.argv) > 1
+                       else os.path.join(os.path.dirname(__file__), "..", ".."))
+complaints = []
+
+
+def complain(text):
+    complaints.append(text)
+
+
+def path(name):
+    return os.path.join(ROOT, name)
+
+
+def read(name):
+    with open(path(name), encoding="utf-8") as file:
+        return file.read()
+
+
+def find(name, pattern):
+    """The only group of the pattern's first match, or None."""
+    match = re.search(pattern, read(name), re.MULTILINE)
+    return match and match.group(1).strip().strip('"')
+
+
+def without_comments(text):
+    return re.sub(r"#.*", "", text)
+
+
+# ---- What each manifest says ----
+
+def of_cmake():
+    name = "CMakeLists.txt"
+    return {
+        "version": find(name, r"project\(tmini VERSION ([0-9.]+)"),
+        "description": find(name, r'DESCRIPTION\s+("[^"]*")'),
+        "home page": find(name, r"HOMEPAGE_URL\s+(\S+)"),
+    }
+
+
+def of_header():
+    name = "lib/include/tmini/tmini.h"
+    parts = [find(name, r"#define TMINI_VERSION_%s ([0-9]+)" % part)
+             for part in ("MAJOR", "MINOR", "PATCH")]
+    return {"version": ".".join(str(part) for part in parts)}
+
+
+def of_platformio():
+    manifest = json.loads(read("library.json"))
+    repository = manifest.get("repository") or {}
+    return {
+        "name": manifest.get("name"),
+        "version": manifest.get("version"),
+        "description": manifest.get("description"),
+        "licence": manifest.get("license"),
+        "author": ", ".join(author["name"] for author in manifest.get("authors", [])),
+        "keywords": sorted(manifest.get("keywords", [])),
+        "home page": manifest.get("homepage") or repository.get("url"),
+    }
+
+
+def of_arduino():
+    name = "port/arduino/library.properties"
+    return {
+        "name": find(name, r"^name=(.*)$"),
+        "version": find(name, r"^version=(.*)$"),
+        "description": (find(name, r"^sentence=(.*)$") or "").rstrip("."),
+        "author": find(name, r"^author=(.*)$"),
+        "home page": find(name, r"^url=(.*)$"),
+    }
+
+
+def of_esp_idf():
+    name = "idf_component.yml"
+    tags = re.search(r"^tags:\n((?:  - .*\n)+)", read(name), re.MULTILINE)
+    return {
+        "version": find(name, r"^version: (.*)$"),
+        "description": find(name, r"^description: (.*)$"),
+        "licence": find(name, r"^license: (.*)$"),
+        "keywords": sorted(re.findall(r"- (.*)", tags.group(1))) if tags else None,
+        "home page": find(name, r"^url: (.*)$"),
+    }
+
+
+def of_documents():
+    return {
+        "version": find("CHANGELOG.md", r"^## ([0-9][0-9.]*) \([0-9]{4}-[0-9]{2}-[0-9]{2}\)$"),
+        "licence": (find("LICENSE", r"^(.*)$") or "").replace(" License", ""),
+        "author": find("LICENSE", r"^Copyright \(c\) [0-9-]+ (.*)$"),
+    }
+
+
+def of_readme():
+    return {
+        "version": find("README.md", r"^Version ([0-9.]+)\."),
+        "licence": find("README.md", r"^(\w+) licence\."),
+    }
+
+
+# What each must say; a home page is compared where there is one.
+SAID = {
+    "CMakeLists.txt": (of_cmake, "version description"),
+    "tmini.h": (of_header, "version"),
+    "library.json": (of_platformio, "name version description licence author keywords"),
+    "library.properties": (of_arduino, "name version description author"),
+    "idf_component.yml": (of_esp_idf, "version description licence keywords"),
+    "CHANGELOG.md and LICENSE": (of_documents, "version licence author"),
+    "README.md": (of_readme, "version licence"),
+}
+
+
+def check_facts():
+    said = {}
+    for manifest, (facts_of, needed) in SAID.items():
+        facts = facts_of()
+        for fact in needed.split():
+            if not facts.get(fact):
+                complain("%s says nothing of %s" % (manifest, fact))
+        for fact, value in facts.items():
+            if value:
+                said.setdefault(fact, {}).setdefault(str(value), []).append(manifest)
+    for fact, values in said.items():
+        if len(values) > 1:
+            complain("%s differs:" % fact)
+            for value, manifests in values.items():
+                complain("    %s: %s" % (", ".join(manifests), value))
+
+
+# ---- Lists of sources ----
+
+SOURCES = sorted(os.path.basename(name) for name in glob.glob(path("lib/src/*.c")))
+
+
+def build_files():
+    """Build descriptions that may list the library's sources."""
+    for folder, folders, files in os.walk(ROOT):
+        folders[:] = [name for name in folders
+                      if name not in ("test", ".git") and not name.startswith("build")]
+        for file in files:
+            if file == "CMakeLists.txt" or file.endswith((".cmake", ".mk")):
+                yield os.path.relpath(os.path.join(folder, file), ROOT)
+
+
+def check_sources():
+    """Whoever names one of them names all, or takes whatever is there."""
+    listed = re.findall(r"src/(\w+\.c)", read("lib/CMakeLists.txt"))
+    if sorted(listed) != SOURCES:
+        complain("lib/CMakeLists.txt does not list what lib/src holds: %s"
+                 % ", ".join(sorted(set(listed) ^ set(SOURCES))))
+    for name in build_files():
+        named = set(re.findall(r"lib/src/(\w+\.c)", without_comments(read(name))))
+        if named and named != set(SOURCES):
+            complain("%s names some of lib/src, but not %s"
+                     % (name, ", ".join(sorted(set(SOURCES) - named))))
+
+
+# Those that take whatever is there.
+TAKERS = ["port/arduino/pack.cmake", "port/esp32/component.cmake", "port/pico/CMakeLists.txt",
+          "port/zephyr/CMakeLists.txt"]
+
+
+def check_takers():
+    for name in TAKERS:
+        if "/lib/src/*.c" not in without_comments(read(name)):
+            complain("%s does not take lib/src/*.c" % name)
+
+
+def check_platformio_lists():
+    manifest = json.loads(read("library.json"))
+    if "+<lib/src/*.c>" not in manifest["build"]["srcFilter"]:
+        complain("library.json does not build lib/src/*.c")
+    for header in manifest["headers"]:
+        if not glob.glob(path("lib/include/" + header)) + glob.glob(path("port/*/" + header)):
+            complain("library.json: no such header: %s" % header)
+    for name in manifest["export"]["include"]:
+        if not os.path.exists(path(name)):
+            complain("library.json: nothing to export: %s" % name)
+    for example in manifest["examples"]:
+        for file in example["files"]:
+            if not os.path.exists(path(os.path.join(example["base"], file))):
+                complain("library.json: no such example: %s" % file)
+
+
+def check_arduino_lists():
+    for header in (find("port/arduino/library.properties", r"^includes=(.*)$") or "").split(","):
+        if not os.path.exists(path("port/arduino/" + header)):
+            complain("library.properties: no such header: %s" % header)
+
+
+def check_esp_idf_lists():
+    included = re.search(r"\n  include:\n(.*)", read("idf_component.yml"), re.DOTALL)
+    patterns = re.findall(r"    - (.*)", included.group(1)) if included else []
+    for pattern in patterns:
+        if not glob.glob(path(pattern)):
+            complain("idf_component.yml: nothing to include: %s" % pattern)
+    for needed in ("lib/src/*.c", "lib/src/*.h", "lib/include/tmini/*.h"):
+        if needed not in patterns:
+            complain("idf_component.yml does not include %s" % needed)
+
+
+def check_zephyr_lists():
+    name = "zephyr/module.yml"
+    if find(name, r"^name: (.*)$") != of_platformio()["name"]:
+        complain("%s has another name" % name)
+    places = re.findall(r"(?:cmake|kconfig|dts_root): (.*)", read(name))
+    places += re.findall(r"^  - (.*)$", read(name), re.MULTILINE)
+    if len(places) < 4:
+        complain("%s names only %s" % (name, places))
+    for place in places:
+        if not os.path.exists(path(place)):
+            complain("%s: no such place: %s" % (name, place))
+
+
+check_facts()
+check_sources()
+check_takers()
+check_zephyr_lists()
+check_platformio_lists()
+check_arduino_lists()
+check_esp_idf_lists()
+print("\n".join(complaints) or "the manifests agree")
+sys.exit(1 if complaints else 0)

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# The tests' stand-in for Arduino, as the core for ESP32 would be seen by a sketch.
+
+import os
+
+from SCons.Script import DefaultEnvironment
+
+env = DefaultEnvironment()
+env.Append(
+    CPPPATH=[os.environ["TMINI_ARDUINO_STUB"]],
+    CPPDEFINES=[("ARDUINO", 10819), "ESP32", ("ESP_ARDUINO_VERSION_MAJOR", 3)],
+    CXXFLAGS=["-std=gnu++11"],
+)
+env.Append(
+    LIBS=[env.BuildLibrary("$BUILD_DIR/core", os.path.join(env.PioPlatform().get_dir(), "core"))]
+)

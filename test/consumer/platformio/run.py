@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""PlatformIO itself, off the network, with small platforms of our own (platforms/).
+
+    run.py native|scan|streaming ROOT WORK
+    run.py archive ROOT WORK SOURCES ARCHIVE
+
+Run by the Python that has the packages platformio and scons. Builds the consumer's program, or a
+sketch of examples/esp32_arduino; `archive` compares the archive that we have packed with what
+PlatformIO's packer makes from the archive of all sources, and builds the program with ours. Exit
+status: 0 it builds, 1 not, 77 a compiler is not installed.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tarfile
+
+import SCons
+from platformio.dependencies import get_core_dependencies
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+SCONS = """\
+import sys
+sys.path.insert(0, {!r})
+from SCons.Script.Main import main
+sys.exit(main())
+"""
+
+
+def write(path, text):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def describe(folder, kind, name, version):
+    """What PlatformIO leaves in a package that it has installed."""
+    spec = {"owner": "platformio", "id": None, "name": name, "requirements": None, "uri": None}
+    about = {"type": kind, "name": name, "version": version, "spec": spec}
+    write(os.path.join(folder, ".piopm"), json.dumps(about))
+
+
+def install_scons(core):
+    """The Python package, as the tool that PlatformIO would download."""
+    version = get_core_dependencies()["tool-scons"].strip("~^=")
+    folder = os.path.join(core, "packages", "tool-scons")
+    os.makedirs(folder)
+    write(os.path.join(folder, "scons.py"), SCONS.format(os.path.dirname(SCons.__path__[0])))
+    write(os.path.join(folder, "package.json"),
+          json.dumps({"name": "tool-scons", "version": version}))
+    describe(folder, "tool", "tool-scons", version)
+
+
+def install_platforms(core):
+    for name in os.listdir(os.path.join(HERE, "platforms")):
+        folder = os.path.join(core, "platforms", name)
+        shutil.copytree(os.path.join(HERE, "platforms", name), folder)
+        with open(os.path.join(folder, "platform.json"), encoding="utf-8") as file:
+            describe(folder, "platform", name, json.load(file)["version"])
+
+
+def environment(root, work):
+    core = os.path.join(work, "core")
+    install_scons(core)
+    install_platforms(core)
+    return dict(
+        os.environ,
+        PLATFORMIO_CORE_DIR=core,
+        PLATFORMIO_WORKSPACE_DIR=os.path.join(work, "workspace"),
+        PLATFORMIO_SETTING_ENABLE_TELEMETRY="no",
+        PLATFORMIO_SETTING_CHECK_PLATFORMIO_INTERVAL="9999",
+        PLATFORMIO_SETTING_CHECK_PRUNE_SYSTEM_THRESHOLD="0",
+        TMINI_ARDUINO_STUB=os.path.join(root, "test", "port", "arduino", "arduino_stub"),
+    )
+
+
+def build(project, name, env):
+    """Returns the program that `pio run` has made."""
+    subprocess.run([sys.executable, "-m", "platformio", "run", "-d", project, "-e", name],
+                   env=env, check=True)
+    folder = os.path.join(env["PLATFORMIO_WORKSPACE_DIR"], "build", name)
+    programs = [name for name in os.listdir(folder) if name in ("program", "firmware.elf",
+                                                                "program.elf")]
+    assert len(programs) == 1, os.listdir(folder)
+    return os.path.join(folder, programs[0])
+
+
+def check_native(package, env):
+    env["TMINI_PACKAGE"] = package
+    program = build(os.path.join(HERE, "project"), "consumer", env)
+    output = subprocess.run([program], check=True, capture_output=True, text=True).stdout
+    assert output == "ok\n", output
+
+
+def check_sketch(root, name, env):
+    return build(os.path.join(root, "examples", "esp32_arduino"), name, env)
+
+
+def pack(root, work):
+    """As `pio pkg pack`, but for the list of licences, which that fetches to look ours up."""
+    from platformio.package.manifest.schema import ManifestSchema
+    from platformio.package.pack import PackagePacker
+    ManifestSchema.load_spdx_licenses = staticmethod(
+        lambda: {"licenses": [{"licenseId": "MIT"}]})
+    return PackagePacker(root).pack(os.path.join(work, "tmini.tar.gz"))
+
+
+def names_in(archive):
+    with tarfile.open(archive) as file:
+        return sorted(member.name for member in file if member.isfile())
+
+
+def check_archive(sources, archive, work, env):
+    folder = unpack(sources, os.path.join(work, "sources"))
+    (name,) = os.listdir(folder)
+    ours, theirs = names_in(archive), names_in(pack(os.path.join(folder, name), work))
+    assert ours == theirs, sorted(set(ours) ^ set(theirs))
+    check_native(unpack(archive, os.path.join(work, "unpacked")), env)
+
+
+def unpack(archive, folder):
+    with tarfile.open(archive) as file:
+        file.extractall(folder)
+    return folder
+
+
+def check_streaming(root, env):
+    for needed in ("avr-g++", "avr-gcc-ar"):
+        if not shutil.which(needed):
+            return needed
+    if not os.path.exists("/usr/share/arduino/hardware/arduino/avr/cores/arduino"):
+        return "arduino-core-avr"
+    firmware = check_sketch(root, "streaming", env)
+    subprocess.run(["avr-size", firmware], check=True)
+    return None
+
+
+def main():
+    part, root, work = sys.argv[1], os.path.abspath(sys.argv[2]), os.path.abspath(sys.argv[3])
+    shutil.rmtree(work, ignore_errors=True)
+    env = environment(root, work)
+    missing = None
+    if part == "native":
+        check_native(root, env)
+    elif part == "archive":
+        check_archive(sys.argv[4], sys.argv[5], work, env)
+    elif part == "scan":
+        subprocess.run([check_sketch(root, "scan", env)], check=True)
+    elif part == "streaming":
+        missing = check_streaming(root, env)
+    if missing:
+        print("skipped:", missing, "is not installed")
+        sys.exit(77)
+
+
+main()

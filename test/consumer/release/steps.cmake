@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# What the release tests have in common. They get VERSION, ARCHIVES, ROOT, WORK, COMPILER and
+# GENERATOR.
+
+include(${CMAKE_CURRENT_LIST_DIR}/../steps.cmake)
+
+# Unpacks the archive of that ending in WORK, which is emptied before.
+function(unpack ending)
+    file(REMOVE_RECURSE ${WORK})
+    file(MAKE_DIRECTORY ${WORK})
+    # From the outside in: CMake 3.31 unpacks nothing, and says nothing, if an archive's path has
+    # accents and the locale is C.
+    file(RELATIVE_PATH archive ${WORK} ${ARCHIVES}/tmini-${VERSION}${ending})
+    execute_process(COMMAND ${CMAKE_COMMAND} -E tar xf ${archive}
+        WORKING_DIRECTORY ${WORK} RESULT_VARIABLE status)
+    if(NOT status EQUAL 0)
+        message(FATAL_ERROR "tmini-${VERSION}${ending} cannot be unpacked")
+    endif()
+endfunction()
+
+# build(SOURCE OPTION…), in WORK/build.
+function(build source)
+    run_or_fail(${CMAKE_COMMAND} -S ${source} -B ${WORK}/build -G ${GENERATOR}
+        -DCMAKE_C_COMPILER=${COMPILER} ${ARGN})
+    run_or_fail(${CMAKE_COMMAND} --build ${WORK}/build)
+endfunction()
+
+function(expect_nothing_named)
+    foreach(pattern ${ARGN})
+        file(GLOB_RECURSE found ${WORK}/${pattern})
+        if(found)
+            message(FATAL_ERROR "not for users: ${found}")
+        endif()
+    endforeach()
+endfunction()

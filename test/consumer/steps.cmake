@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# What the consumers' scripts have in common. They get TMINI_SOURCE, COMPILER and GENERATOR.
+
+# An environment's own flags would look like ours.
+unset(ENV{CFLAGS})
+
+function(run_or_fail)
+    execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
+    if(NOT status EQUAL 0)
+        string(REPLACE ";" " " command "${ARGN}")
+        message(FATAL_ERROR "failed: ${command}")
+    endif()
+endfunction()
+
+# Builds the library in BUILD, and the programs if TOOL, and installs them below PREFIX.
+function(install_project build prefix tool)
+    run_or_fail(${CMAKE_COMMAND} -S ${TMINI_SOURCE} -B ${build} -G ${GENERATOR}
+        -DCMAKE_C_COMPILER=${COMPILER} -DCMAKE_INSTALL_LIBDIR=lib
+        -DTMINI_BUILD_TESTS=OFF -DTMINI_BUILD_EXAMPLES=${tool})
+    run_or_fail(${CMAKE_COMMAND} --build ${build} --parallel 2)
+    run_or_fail(${CMAKE_COMMAND} --install ${build} --prefix ${prefix})
+endfunction()

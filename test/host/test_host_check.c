@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* `tmini check`: the right verdict on each fault of the simulated lidar, and on what is no lidar.
+ * All are examined at the same time, each by a tool of its own; the tests look at what it said. A
+ * busy computer may be told of as well ("pace", "computer"): that is no fault of the lidar's. */
+
+#define _XOPEN_SOURCE 700
+
+#include "program.h"
+
+#include "unity.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+typedef struct {
+    const char *name;
+    const char *options[5]; /* Of the simulated lidar. */
+    pid_t tool;
+} case_t;
+
+static case_t cases[] = {
+    {"good", {"--seed", "7"}, 0},
+    {"socket", {"--tcp", "0"}, 0},
+    {"no_ct", {"--no-ct"}, 0},
+    {"drop", {"--fault", "drop=1e-3"}, 0},
+    {"flip", {"--fault", "flip=1e-3"}, 0},
+    {"insert", {"--fault", "insert=1e-3"}, 0},
+    {"burst", {"--fault", "burst=4"}, 0},
+    {"cut", {"--fault", "cut=6"}, 0},
+    {"stall", {"--fault", "stall=3"}, 0},
+    {"garble", {"--fault", "garble=2"}, 0},
+    {"unplug", {"--fault", "unplug=1"}, 0},
+    {"blocked", {"--blocked"}, 0},
+    {"covered", {"--covered"}, 0},
+    {"covered_no_ct", {"--covered", "--no-ct"}, 0},
+    {"sensor", {"--health", "0x01"}, 0},
+    {"power", {"--health", "0x04"}, 0},
+    {"pd", {"--health", "0x08"}, 0},
+    {"ld", {"--health", "0x10"}, 0},
+    {"slow", {"--motor", "70"}, 0},
+    {"brake", {"--motor", "85"}, 0},
+    {"weak", {"--spin-up", "8"}, 0},
+};
+
+#define CASES (sizeof cases / sizeof cases[0])
+
+/* What is no simulated lidar. */
+static pid_t silent, noisy, deaf, half, gone;
+
+static void begin_cases(void)
+{
+    static const uint8_t noise[] = {0x33, 0x4C, 0xF8, 0x00, 0x80, 0x66, 0x99, 0xE6, 0x1E};
+    static const uint8_t information[27] = {0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, 0x97, 2, 1, 1, 2, 0, 2,
+                                            6,    0,    3,    1, 7, 0, 0,    0,    1, 2, 3, 4, 5};
+    size_t size = 0;
+    program_begin_background();
+    for (size_t i = 0; i < CASES; i++) {
+        const char *const port = program_start_lidar(cases[i].options);
+        cases[i].tool = program_start_as(cases[i].name, WORDS("check", "-p", port, "-q", "-s7"));
+    }
+    const char *const room = program_read_file(1, RECORDINGS "sim-6hz.bin", &size);
+    silent = program_start_as("silent", WORDS("check", "-p", program_start_talker(NULL, 0)));
+    noisy =
+        program_start_as("noisy", WORDS("check", "-p", program_start_talker(noise, sizeof noise)));
+    deaf = program_start_as(
+        "deaf", WORDS("check", "-p", program_start_talker((const uint8_t *)room + 7, size - 7)));
+    half = program_start_as("half",
+                            WORDS("check", "-p", program_start_answerer(0x90, information, 27)));
+    const char *const port = program_start_lidar(WORDS("--seed", "8"));
+    gone = program_start_as("gone", WORDS("check", "-p", port, "-q"));
+    program_end_background();
+}
+
+void setUp(void)
+{
+    static bool has_begun;
+    (void)unsetenv("TMINI_PORT");
+    if (!has_begun) {
+        has_begun = true;
+        begin_cases();
+    }
+}
+
+void tearDown(void)
+{
+    program_clean_up();
+}
+
+/* Ends the case, which has this exit status. */
+static void end_case(const char *name, int status)
+{
+    size_t i = 0;
+    while (strcmp(cases[i].name, name) != 0) {
+        i++;
+    }
+    const int ended = program_finish_as(name, cases[i].tool);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(status, ended, program_output);
+}
+
+static void expect_said(const char *text)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_output, text), program_output);
+}
+
+static void expect_unsaid(const char *text)
+{
+    TEST_ASSERT_NULL_MESSAGE(strstr(program_output, text), program_output);
+}
+
+/* Bad for exactly these reasons. */
+static void expect_bad(const char *name, const char *reasons)
+{
+    char verdict[80];
+    end_case(name, 1);
+    (void)snprintf(verdict, sizeof verdict, "\nverdict: not good: %s\n", reasons);
+    expect_said(verdict);
+}
+
+void test_a_good_lidar_is_good(void)
+{
+    end_case("good", 0);
+    expect_unsaid("BAD");
+    expect_said(
+        "\nok    answers    model 151, firmware 1.2, hardware 1, serial 2026031700012345\n");
+    expect_said("\nok    health     healthy\n");
+    expect_said("\nok    supply     no restart; first packet after ");
+    expect_said("\nok    line       0.0 % of ");
+    expect_said("\nok    frequency  6.0 Hz measured, 6.0 Hz set\n");
+    expect_said("\nok    faults     none told while scanning\n");
+    expect_said(" % of the points have a distance\n");
+    expect_said("\nverdict: ");
+    end_case("socket", 0);
+    expect_unsaid("BAD");
+    expect_said("ok    port       tcp:127.0.0.1:");
+}
+
+void test_a_unit_that_tells_nothing_within_the_stream_is_good_too(void)
+{
+    end_case("no_ct", 0);
+    expect_said("\nok    faults     this unit tells none while scanning\n");
+    expect_unsaid("BAD");
+}
+
+void test_a_damaged_line_is_a_line(void)
+{
+    expect_bad("drop", "line");
+    expect_said(" packets damaged, ");
+    expect_said("GND beside them");
+    expect_bad("flip", "line");
+    expect_bad("insert", "line");
+    expect_bad("burst", "line");
+    expect_bad("cut", "line");
+}
+
+void test_bytes_that_come_late_are_no_damage(void)
+{
+    end_case("stall", 0);
+    expect_said("\nlook  pace       packets came up to ");
+    expect_said("\nok    line       0.0 % ");
+    expect_said("verdict: usable, but look at: ");
+}
+
+void test_a_wrong_baud_rate_for_a_while_is_a_line(void)
+{
+    expect_bad("garble", "line");
+}
+
+void test_a_lidar_that_restarts_has_a_weak_supply(void)
+{
+    end_case("unplug", 1);
+    expect_said("\nBAD   supply     the lidar fell silent ");
+    expect_said("5 V, up to 1 A");
+}
+
+void test_a_motor_that_comes_up_slowly_has_a_weak_supply(void)
+{
+    end_case("weak", 0);
+    expect_said("\nlook  supply     the motor took ");
+}
+
+void test_a_blocked_rotor(void)
+{
+    expect_bad("blocked", "health");
+    expect_said("faulty: encoder");
+    expect_said("let the rotor turn freely");
+}
+
+void test_a_covered_window_however_it_is_told(void)
+{
+    expect_bad("covered", "faults");
+    expect_said("uncover or clean the window");
+    expect_bad("covered_no_ct", "faults");
+}
+
+void test_a_broken_module_is_named(void)
+{
+    expect_bad("sensor", "health");
+    expect_said("faulty: sensor\n");
+    expect_bad("power", "health");
+    expect_said("faulty: wireless power\n");
+    expect_bad("pd", "health");
+    expect_said("faulty: PD\n");
+    expect_bad("ld", "health");
+    expect_said("faulty: LD\n");
+    expect_said("ask its maker");
+}
+
+void test_a_motor_that_does_not_come_up_to_its_speed(void)
+{
+    expect_bad("slow", "frequency");
+    expect_said("\nBAD   frequency  4.2 Hz measured, 6.0 Hz set\n");
+    end_case("brake", 0);
+    expect_said("\nlook  frequency  5.1 Hz measured, 6.0 Hz set\n");
+    expect_said("brake the rotor");
+}
+
+void test_what_is_no_lidar(void)
+{
+    TEST_ASSERT_EQUAL_INT(1, program_finish_as("silent", silent));
+    expect_said("\nverdict: not good: wiring\n");
+    expect_said("not one byte came");
+    TEST_ASSERT_EQUAL_INT(1, program_finish_as("noisy", noisy));
+    expect_said("\nverdict: not good: baud\n");
+    expect_said("230400 baud");
+    TEST_ASSERT_EQUAL_INT(1, program_finish_as("deaf", deaf));
+    expect_said("\nverdict: not good: command\n");
+    expect_said("the adapter's TX");
+}
+
+void test_a_lidar_that_answers_but_does_not_scan(void)
+{
+    TEST_ASSERT_EQUAL_INT(1, program_finish_as("half", half));
+    expect_said("\nlook  health     not answered\n");
+    expect_said("\nBAD   start      it answers, but does not scan\n");
+    expect_said("\nverdict: not good: start\n");
+    expect_unsaid("RX");
+}
+
+void test_an_interrupted_examination_has_no_verdict(void)
+{
+    (void)kill(gone, SIGINT);
+    TEST_ASSERT_EQUAL_INT(1, program_finish_as("gone", gone));
+    expect_unsaid("verdict");
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "no verdict"));
+}
+
+void test_without_a_port_there_is_nothing_to_look_at(void)
+{
+    TEST_ASSERT_EQUAL_INT(1, program_tmini(WORDS("check", "-p", "/dev/nowhere")));
+    expect_said("verdict: cannot tell: there is no port to look at\n");
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "no such device"));
+    TEST_ASSERT_EQUAL_INT(2, program_tmini(WORDS("check")));
+}

@@ -1,0 +1,684 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The host tool and a lidar: each command against the simulated one on a pseudo-terminal, and what
+ * is said when there is none, or something else, or when it goes away. */
+
+#define _XOPEN_SOURCE 700
+
+#include "program.h"
+
+#include "unity.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define NO_OPTIONS ((const char *const[]){NULL})
+#define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+static const char *port;
+
+/* --------------------------------------------------------------------------------- background */
+
+/* What waits for many seconds, all at the same time: the tests below look at how it ended. */
+enum {
+    SILENT_INFO,
+    SILENT_SCAN,
+    SILENT_RECORD,
+    NOISY_INFO,
+    NOISY_SCAN,
+    DEAF_INFO,
+    HALF_INFO,
+    HALF_SCAN,
+    HALF_HEALTH,
+    LONG_RECORD,
+    REBOOT,
+    JOBS
+};
+
+static const char *const job_names[JOBS] = {
+    "silent_info", "silent_scan", "silent_record", "noisy_info",  "noisy_scan", "deaf_info",
+    "half_info",   "half_scan",   "half_health",   "long_record", "reboot"};
+static pid_t jobs[JOBS];
+static const char *rebooted_port;
+
+static void start_job(unsigned job, const char *const words[])
+{
+    jobs[job] = program_start_as(job_names[job], words);
+}
+
+/* Returns the exit status. */
+static int end_job(unsigned job)
+{
+    return program_finish_as(job_names[job], jobs[job]);
+}
+
+/* A receiver at another rate makes some other bytes of what is sent, and no packet. */
+static const uint8_t noise[] = {0x33, 0x4C, 0xF8, 0x00, 0x80, 0x66, 0x99, 0xE6, 0x1E};
+
+/* The answer to A5 90: model 151, firmware 1.2, hardware 1, and a serial number. */
+static const uint8_t information[27] = {0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, 0x97, 2, 1, 1, 2, 0, 2,
+                                        6,    0,    3,    1, 7, 0, 0,    0,    1, 2, 3, 4, 5};
+
+static const char *start_half_a_lidar(void)
+{
+    return program_start_answerer(0x90, information, sizeof information);
+}
+
+/* Once, before the first test. */
+static void start_background(void)
+{
+    size_t size = 0;
+    program_begin_background();
+    program_write_file(program_path("precious.bin"), "gold", 4);
+    start_job(SILENT_INFO, WORDS("info", "-p", program_start_talker(NULL, 0)));
+    start_job(SILENT_SCAN, WORDS("scan", "-p", program_start_talker(NULL, 0)));
+    start_job(SILENT_RECORD, WORDS("record", "-p", program_start_talker(NULL, 0), "precious.bin"));
+    start_job(NOISY_INFO, WORDS("info", "-p", program_start_talker(noise, sizeof noise)));
+    start_job(NOISY_SCAN, WORDS("scan", "-p", program_start_talker(noise, sizeof noise)));
+    const char *const recording = program_read_file(1, RECORDINGS "sim-6hz.bin", &size);
+    start_job(DEAF_INFO,
+              WORDS("info", "-p", program_start_talker((const uint8_t *)recording + 7, size - 7)));
+    start_job(HALF_INFO, WORDS("info", "-p", start_half_a_lidar()));
+    start_job(HALF_SCAN, WORDS("scan", "-p", start_half_a_lidar()));
+    start_job(HALF_HEALTH, WORDS("health", "-p", start_half_a_lidar()));
+    port = program_start_lidar(WORDS("--log", "long.log"));
+    start_job(LONG_RECORD, WORDS("record", "-p", port, "long.bin", "--seconds", "8", "--quiet"));
+    rebooted_port = program_start_lidar(WORDS("--frequency", "9"));
+    start_job(REBOOT, WORDS("reboot", "-p", rebooted_port));
+    program_end_background();
+}
+
+void setUp(void)
+{
+    static bool has_begun;
+    (void)unsetenv("TMINI_PORT");
+    (void)unsetenv("TMINI_ROOT");
+    (void)setenv("TOOL", TMINI, 1);
+    if (!has_begun) {
+        has_begun = true;
+        start_background();
+    }
+}
+
+void tearDown(void)
+{
+    program_clean_up();
+}
+
+static void begin(void)
+{
+    port = program_start_lidar(NO_OPTIONS);
+}
+
+static void expect_output(const char *expected, const char *const words[])
+{
+    const int status = program_tmini(words);
+    TEST_ASSERT_EQUAL_STRING(expected, program_output);
+    TEST_ASSERT_EQUAL_STRING("", program_errors);
+    TEST_ASSERT_EQUAL_INT(0, status);
+}
+
+static void expect_failure(int status, const char *reason, const char *const words[])
+{
+    TEST_ASSERT_EQUAL_INT(status, program_tmini(words));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "tmini: "));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, reason), program_errors);
+    TEST_ASSERT_EQUAL_STRING("", program_output);
+}
+
+static unsigned count_of(const char *text, const char *part)
+{
+    unsigned count = 0;
+    for (const char *at = strstr(text, part); at != NULL; at = strstr(at + 1, part)) {
+        count++;
+    }
+    return count;
+}
+
+/* Waits until the tool has printed so many lines. */
+static void wait_for_lines(unsigned lines)
+{
+    for (int i = 0; i < 1000; i++) {
+        if (count_of(program_read_file(0, WORK_DIR "/output", NULL), "\n") >= lines) {
+            return;
+        }
+        (void)poll(NULL, 0, 10);
+    }
+    TEST_FAIL_MESSAGE("the tool prints nothing");
+}
+
+/* Waits until the file is that long. */
+static void wait_for_bytes(const char *path, size_t wanted)
+{
+    size_t size = 0;
+    for (int i = 0; i < 3000; i++) {
+        struct stat status;
+        if (stat(path, &status) == 0 && (size_t)status.st_size >= wanted) {
+            return;
+        }
+        (void)poll(NULL, 0, 10);
+    }
+    TEST_ASSERT_EQUAL_size_t(wanted, size);
+}
+
+/* ----------------------------------------------------------------------------------- commands */
+
+void test_info_names_model_versions_and_serial_number(void)
+{
+    begin();
+    expect_output("model       151 (T-mini Plus)\n"
+                  "firmware    1.2\n"
+                  "hardware    1\n"
+                  "serial      2026031700012345\n",
+                  WORDS("info", "-p", port));
+    expect_output("{\"model\":151,\"firmware\":\"1.2\",\"hardware\":1,"
+                  "\"serial\":\"2026031700012345\"}\n",
+                  WORDS("info", "--json", "--port", port));
+}
+
+void test_health_of_a_healthy_lidar(void)
+{
+    begin();
+    expect_output("healthy\n", WORDS("health", "-p", port));
+    expect_output("{\"healthy\":true,\"faults\":0,\"error_code\":0}\n",
+                  WORDS("health", "-p", port, "--json"));
+}
+
+static void expect_ill(const char *expected, const char *const words[])
+{
+    TEST_ASSERT_EQUAL_INT(1, program_tmini(words));
+    TEST_ASSERT_EQUAL_STRING(expected, program_output);
+    TEST_ASSERT_EQUAL_STRING("", program_errors);
+}
+
+void test_health_of_a_lidar_with_two_faults(void)
+{
+    port = program_start_lidar(WORDS("--health", "0x18"));
+    expect_ill("faulty: PD, LD; error code 24\n", WORDS("health", "-p", port));
+    expect_ill("{\"healthy\":false,\"faults\":24,\"error_code\":24}\n",
+               WORDS("health", "-p", port, "--json"));
+}
+
+void test_health_of_a_lidar_that_does_not_turn(void)
+{
+    port = program_start_lidar(WORDS("--blocked"));
+    expect_ill("faulty: encoder (is the rotor blocked?); error code 2\n",
+               WORDS("health", "-p", port));
+}
+
+/* `tmini scan && drive` must not drive. */
+void test_a_covered_window_is_told_while_scanning_and_is_a_failure(void)
+{
+    port = program_start_lidar(WORDS("--covered"));
+    TEST_ASSERT_EQUAL_INT(1, program_tmini(WORDS("scan", "-p", port, "-n", "5")));
+    /* Two revolutions in a row tell it: a computer that is busy may have lost one of them. */
+    if (strstr(program_errors, "5 scans, 5 complete, ") != NULL) {
+        TEST_ASSERT_NOT_NULL(strstr(program_errors, "faulty: data (is the window covered?)"));
+    }
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "5 scans, "));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, " complete, 0 with a distance; "));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "no scan had a distance"));
+}
+
+void test_the_frequency_is_read_set_and_kept(void)
+{
+    begin();
+    expect_output("6.00 Hz\n", WORDS("frequency", "-p", port));
+    expect_output("7.50 Hz\n", WORDS("frequency", "7.5", "-p", port));
+    expect_output("{\"frequency_hz\":7.50}\n", WORDS("frequency", "-p", port, "--json"));
+    expect_output("12.00 Hz\n", WORDS("frequency", "12", "-p", port));
+    expect_output("6.00 Hz\n", WORDS("frequency", "6.0", "-p", port));
+}
+
+void test_a_frequency_out_of_range_is_refused_before_anything_is_sent(void)
+{
+    expect_failure(2, "6 to 12 Hz", WORDS("frequency", "5.9", "-p", "/dev/none"));
+    expect_failure(2, "6 to 12 Hz", WORDS("frequency", "12.1", "-p", "/dev/none"));
+    expect_failure(2, "6 to 12 Hz", WORDS("frequency", "7.55", "-p", "/dev/none"));
+    expect_failure(2, "6 to 12 Hz", WORDS("frequency", "nan", "-p", "/dev/none"));
+    expect_failure(2, "6 to 12 Hz", WORDS("frequency", "7Hz", "-p", "/dev/none"));
+}
+
+void test_a_frequency_is_lost_in_a_reboot(void)
+{
+    begin();
+    expect_output("9.00 Hz\n", WORDS("frequency", "9", "-p", port));
+    expect_output("9.00 Hz\n", WORDS("frequency", "-p", port));
+}
+
+void test_scan_prints_a_line_for_each_scan(void)
+{
+    begin();
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-n", "4")));
+    TEST_ASSERT_EQUAL_UINT(4, count_of(program_output, "\n"));
+    /* The nearest thing in the simulated room is the corner of a box, 1.0 m away. */
+    const char *const last = strstr(program_output, "scan 4 ");
+    TEST_ASSERT_NOT_NULL(last);
+    TEST_ASSERT_NOT_NULL(strstr(last, " degrees, "));
+    TEST_ASSERT_NOT_NULL(strstr(program_output, " Hz ")); /* Unknown where a start was lost. */
+}
+
+void test_scan_ends_with_a_summary(void)
+{
+    begin();
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-n3")));
+    TEST_ASSERT_EQUAL_STRING_LEN("3 scans, ", program_errors, 9);
+    TEST_ASSERT_NOT_NULL(
+        strstr(program_errors, " complete, 3 with a distance; 0.0 % of the packets damaged\n"));
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-qn1")));
+    TEST_ASSERT_EQUAL_STRING("", program_errors);
+}
+
+void test_scan_as_json_has_the_members_of_decode(void)
+{
+    begin();
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-n", "2", "--json")));
+    TEST_ASSERT_EQUAL_STRING_LEN("{\"scan\":1,\"time_ms\":", program_output, 20);
+    TEST_ASSERT_NOT_NULL(strstr(program_output, ",\"frequency_hz\":"));
+    TEST_ASSERT_NOT_NULL(strstr(program_output, ",\"complete\":"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(program_output, ",\"dropped\":0,\"checksum_errors\":0,\"faults\":"));
+    TEST_ASSERT_NOT_NULL(strstr(program_output, "]]}\n{\"scan\":2,"));
+    TEST_ASSERT_EQUAL_UINT(2, count_of(program_output, "\n"));
+}
+
+void test_scan_as_csv_has_the_columns_of_decode(void)
+{
+    begin();
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-n", "2", "--csv")));
+    TEST_ASSERT_EQUAL_STRING_LEN(
+        "scan,packet,point,angle_deg,distance_mm,intensity,flag,time_ms,frequency_hz\n1,",
+        program_output, 78);
+    TEST_ASSERT_TRUE(count_of(program_output, "\n2,") >
+                     100); /* Some 700, or fewer on a busy computer. */
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "\n3,"));
+}
+
+/* The same bytes, live and recorded: the same rows, but for the time. */
+void test_a_scan_live_and_recorded_is_the_same(void)
+{
+    begin();
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("record", "-p", port, "rec.tmini", "-q", "-s1")));
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("decode", "rec.tmini", "-q", "--csv")));
+    const char *const row = strstr(program_output, "\n1,");
+    TEST_ASSERT_NOT_NULL(row);
+    unsigned number[9] = {0};
+    TEST_ASSERT_EQUAL_INT(9, sscanf(row, "\n%u,%u,%u,%u.%*u,%u,%u,%u,%u,%u", &number[0], &number[1],
+                                    &number[2], &number[3], &number[4], &number[5], &number[6],
+                                    &number[7], &number[8]));
+    TEST_ASSERT_TRUE(number[7] > 100 && number[7] < 60000); /* Since the start command. */
+}
+
+/* Where the lidar's bytes went: from the simulator's own count, which its log ends with. */
+void test_a_long_recording_holds_every_packet(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, end_job(LONG_RECORD));
+    TEST_ASSERT_EQUAL_STRING("", program_errors);
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("decode", "long.bin", "--csv", "--quiet",
+                                                 "--stats", program_path("stats"))));
+    unsigned packets = 0;
+    unsigned starts = 0;
+    unsigned points = 0;
+    unsigned errors = 0;
+    unsigned bytes = 0;
+    unsigned skipped = 0;
+    TEST_ASSERT_EQUAL_INT(
+        6, sscanf(program_read_file(0, program_path("stats"), NULL),
+                  "{\"packets\":%u,\"start_packets\":%u,\"points\":%u,\"checksum_errors\":%u,"
+                  "\"bytes\":%u,\"bytes_skipped\":%u}",
+                  &packets, &starts, &points, &errors, &bytes, &skipped));
+    TEST_ASSERT_EQUAL_UINT(0, errors);
+    TEST_ASSERT_TRUE(points > 31000); /* 4000 a second. */
+    /* The reply to the start command, and one LastCRC before each start packet but the first. */
+    TEST_ASSERT_EQUAL_UINT(7 + starts - 1, skipped);
+}
+
+/* A dash is standard output, and standard input: no file in between. */
+void test_a_recording_can_go_through_a_pipe(void)
+{
+    begin();
+    (void)setenv("TMINI_PORT", port, 1);
+    TEST_ASSERT_EQUAL_INT(
+        0, system("\"$TOOL\" record - --seconds 1 -q | \"$TOOL\" decode - >summary"));
+    const char *const text = program_read_file(0, program_path("summary"), NULL);
+    TEST_ASSERT_NOT_NULL(strstr(text, "0 stray bytes between packets"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "7 bytes before the first packet, 0 after the last"));
+}
+
+/* What the lidar was told, after a reader has gone. */
+void test_a_closed_pipe_ends_a_scan_silently_and_stops_the_lidar(void)
+{
+    const char *const log = program_path("log");
+    (void)setenv("TMINI_PORT", program_start_lidar(WORDS("--log", log)), 1);
+    TEST_ASSERT_EQUAL_INT(
+        0, system("{ \"$TOOL\" scan 2>errors; echo $? >status; } | head -n 2 >head"));
+    TEST_ASSERT_EQUAL_STRING("141\n", program_read_file(0, program_path("status"), NULL));
+    TEST_ASSERT_EQUAL_STRING("", program_read_file(0, program_path("errors"), NULL));
+    for (int i = 0; i < 500 && strstr(program_read_file(0, log, NULL), "stopping -> idle") == NULL;
+         i++) {
+        (void)poll(NULL, 0, 10);
+    }
+    const char *const text = program_read_file(0, log, NULL);
+    TEST_ASSERT_NOT_NULL(strstr(strstr(text, "A5 60 start"), "A5 65 stop"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "stopping -> idle"));
+}
+
+/* Else the port would be descriptor 1, and the results be sent to the lidar. */
+void test_with_closed_output_nothing_goes_to_the_lidar(void)
+{
+    const char *const log = program_path("log");
+    (void)setenv("TMINI_PORT", program_start_lidar(WORDS("--log", log)), 1);
+    TEST_ASSERT_EQUAL_INT(256, system("\"$TOOL\" info <&- >&- 2>errors"));
+    TEST_ASSERT_EQUAL_STRING("tmini: cannot write to standard output\n",
+                             program_read_file(0, program_path("errors"), NULL));
+    TEST_ASSERT_EQUAL_INT(256, system("\"$TOOL\" health >&- 2>&-"));
+    /* Each once: a stop, because nothing is known of the lidar, and the question. */
+    TEST_ASSERT_EQUAL_UINT(4, count_of(program_read_file(0, log, NULL), "command A5"));
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_read_file(0, log, NULL), "unknown"));
+}
+
+void test_a_lidar_can_be_behind_a_socket(void)
+{
+    port = program_start_lidar(WORDS("--tcp", "0"));
+    TEST_ASSERT_EQUAL_STRING_LEN("tcp:127.0.0.1:", port, 14);
+    expect_output("healthy\n", WORDS("health", "-p", port));
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-qn2", "-p", port)));
+    TEST_ASSERT_EQUAL_UINT(2, count_of(program_output, "\n"));
+}
+
+void test_a_socket_that_is_closed_is_told(void)
+{
+    port = program_start_lidar(WORDS("--tcp", "0"));
+    const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
+    wait_for_lines(2);
+    program_stop_lidar();
+    TEST_ASSERT_EQUAL_INT(1, program_finish(tool, 0));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, " has gone: "));
+    expect_failure(1, "Connection refused", WORDS("info", "-p", port));
+}
+
+void test_an_address_that_is_none_is_told(void)
+{
+    expect_failure(1, "tcp:HOST:PORT", WORDS("info", "-p", "tcp:localhost"));
+    expect_failure(1, "tcp:HOST:PORT", WORDS("info", "-p", "tcp:"));
+    expect_failure(1, "there must be such a host",
+                   WORDS("info", "-p", "tcp:no.such.host.invalid:1"));
+}
+
+void test_a_recording_tells_its_size(void)
+{
+    begin();
+    const char *const recording = program_path("one.bin");
+    size_t size = 0;
+    char line[100];
+    TEST_ASSERT_EQUAL_INT(0,
+                          program_tmini(WORDS("record", "-p", port, recording, "--seconds", "1")));
+    (void)program_read_file(0, recording, &size);
+    (void)snprintf(line, sizeof line, "\n%zu bytes in ", size);
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, line));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, " scans  0 wrong checksums  0 bytes overrun"));
+    TEST_ASSERT_TRUE(size > 5000);
+    TEST_ASSERT_EQUAL_UINT(2, count_of(program_errors, "\n")); /* Progress is for terminals. */
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_errors, "\r"));
+}
+
+void test_a_recording_ends_with_ctrl_c_and_is_whole(void)
+{
+    begin();
+    const char *const recording = program_path("interrupted.bin");
+    (void)remove(recording);
+    const pid_t tool = program_start_tmini(WORDS("record", "-p", port, recording, "--quiet"));
+    wait_for_bytes(recording, 8000);
+    TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGINT));
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("decode", recording)));
+    TEST_ASSERT_NOT_NULL(strstr(program_output, "0 stray bytes between packets"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(program_output, "7 bytes before the first packet, 0 after the last"));
+}
+
+void test_plot_of_a_lidar_draws_a_scan(void)
+{
+    begin();
+    const int status = program_tmini(WORDS("plot", "-p", port, "-o", program_path("live.svg")));
+    if (strstr(program_errors, "without cairo") != NULL) {
+        TEST_IGNORE_MESSAGE("the tool was built without cairo");
+    }
+    TEST_ASSERT_EQUAL_INT(0, status);
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "live.svg: Scan "));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, " with a distance"));
+}
+
+/* ----------------------------------------------------------------------------- Ctrl-C, unplug */
+
+void test_ctrl_c_stops_the_lidar_before_leaving(void)
+{
+    const char *const log = program_path("log");
+    port = program_start_lidar(WORDS("--log", log));
+    const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
+    wait_for_lines(2);
+    TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGINT));
+    TEST_ASSERT_NULL(strstr(program_errors, "tmini: "));
+    const char *const text = program_read_file(0, log, NULL);
+    const char *const start = strstr(text, "A5 60 start");
+    TEST_ASSERT_NOT_NULL(start);
+    TEST_ASSERT_NOT_NULL(strstr(start, "A5 65 stop"));
+    TEST_ASSERT_NOT_NULL(strstr(start, "stopping -> idle"));
+}
+
+void test_a_lidar_that_is_still_streaming_is_stopped_first(void)
+{
+    begin();
+    const int line = open(port, O_RDWR | O_NOCTTY);
+    TEST_ASSERT_EQUAL_INT(2, (int)write(line, "\xA5\x60", 2));
+    (void)poll(NULL, 0, 500);
+    expect_output("healthy\n", WORDS("health", "-p", port));
+    close(line);
+}
+
+void test_a_cable_pulled_while_scanning_is_told(void)
+{
+    begin();
+    const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
+    wait_for_lines(2);
+    program_stop_lidar();
+    TEST_ASSERT_EQUAL_INT(1, program_finish(tool, 0));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "has gone: the adapter was unplugged"));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "Plug it in"));
+}
+
+void test_a_lidar_that_falls_silent_while_scanning_is_told(void)
+{
+    begin();
+    const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
+    wait_for_lines(2);
+    program_freeze_lidar();
+    TEST_ASSERT_EQUAL_INT(1, program_finish(tool, 0));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "has fallen silent; starting it again"));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "has fallen silent and does not come back"));
+}
+
+void test_a_recording_survives_a_pulled_cable(void)
+{
+    begin();
+    const char *const recording = program_path("pulled.bin");
+    (void)remove(recording);
+    const pid_t tool = program_start_tmini(WORDS("record", "-p", port, recording, "-q"));
+    wait_for_bytes(recording, 16000);
+    program_stop_lidar();
+    TEST_ASSERT_EQUAL_INT(1, program_finish(tool, 0));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "has gone"));
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("decode", recording)));
+    TEST_ASSERT_NOT_NULL(strstr(program_output, " complete"));
+}
+
+/* -------------------------------------------------------------------------- what can be wrong */
+
+void test_a_command_without_a_port_asks_for_one(void)
+{
+    static const char *const commands[] = {"info", "health", "frequency", "reboot", "scan", "view"};
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        expect_failure(2, "-p /dev/ttyUSB0", WORDS(commands[i]));
+    }
+    expect_failure(2, "-p /dev/ttyUSB0", WORDS("record", "x"));
+    expect_failure(2, "record into which file?", WORDS("record", "-p", "x"));
+    expect_failure(2, "view what?", WORDS("view", "-p", "x", "file"));
+}
+
+/* A computer's folders, made up: an adapter is what the links lead to. */
+static void plug_in(const char *name, const char *line, const char *vendor, const char *product)
+{
+    char script[600];
+    (void)snprintf(script, sizeof script,
+                   "mkdir -p root/dev/serial/by-id root/usb/%s/1-1:1.0/tty && "
+                   "ln -sf '%s' root/dev/serial/by-id/%s && echo %s >root/usb/%s/idVendor && "
+                   "echo %s >root/usb/%s/idProduct && mkdir -p root/sys/class/tty/%s && "
+                   "ln -sf ../../../../usb/%s/1-1:1.0 root/sys/class/tty/%s/device",
+                   name, line, name, vendor, name, product, name, strrchr(line, '/') + 1, name,
+                   strrchr(line, '/') + 1);
+    TEST_ASSERT_EQUAL_INT(0, system(script));
+    (void)setenv("TMINI_ROOT", "root", 1);
+}
+
+static void unplug_all(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, system("rm -rf root"));
+}
+
+void test_ports_lists_adapters_by_their_stable_names(void)
+{
+    unplug_all();
+    begin();
+    plug_in("usb-Lidar_0001", port, "10c4", "ea60");
+    plug_in("usb-Printer", program_start_talker(NULL, 0), "dead", "beef");
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("ports")));
+    const char *const lidars =
+        strstr(program_output, "root/dev/serial/by-id/usb-Lidar_0001  (/dev/");
+    TEST_ASSERT_NOT_NULL(lidars);
+    TEST_ASSERT_NOT_NULL(strstr(lidars, ", 10c4:ea60)  CP210x\n"));
+    TEST_ASSERT_NOT_NULL(strstr(program_output, ", dead:beef)  \n"));
+    TEST_ASSERT_EQUAL_UINT(2, count_of(program_output, "\n"));
+}
+
+void test_the_only_adapter_that_may_be_a_lidars_is_taken(void)
+{
+    unplug_all();
+    begin();
+    plug_in("usb-Lidar_0001", port, "1a86", "55d4");
+    plug_in("usb-Printer", program_start_talker(NULL, 0), "dead", "beef");
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("health")));
+    TEST_ASSERT_EQUAL_STRING("using root/dev/serial/by-id/usb-Lidar_0001\n", program_errors);
+    TEST_ASSERT_EQUAL_STRING("healthy\n", program_output);
+    plug_in("usb-Lidar_0002", program_start_lidar(NO_OPTIONS), "10c4", "ea60");
+    expect_failure(2, "there are:\nroot/dev/serial/by-id/usb-Lidar_0001", WORDS("health"));
+    expect_output("healthy\n", WORDS("health", "-p", port));
+    (void)setenv("TMINI_PORT", port, 1);
+    expect_output("healthy\n", WORDS("health"));
+}
+
+void test_without_an_adapter_ports_says_so(void)
+{
+    expect_failure(1, "no USB serial adapter is plugged in", WORDS("ports"));
+}
+
+void test_a_port_that_does_not_exist(void)
+{
+    expect_failure(1, "there is no such device", WORDS("info", "-p", "/dev/nowhere"));
+    expect_failure(1, "/dev/nowhere/deep", WORDS("scan", "-p", "/dev/nowhere/deep"));
+}
+
+void test_a_port_that_is_no_serial_device(void)
+{
+    expect_failure(1, "not a serial port", WORDS("info", "-p", "/dev/null"));
+    expect_failure(1, "not a serial port", WORDS("info", "-p", "/tmp"));
+    expect_failure(1, "not a serial port", WORDS("info", "-p", RECORDINGS "sim-6hz.bin"));
+}
+
+void test_a_port_that_another_program_uses(void)
+{
+    begin();
+    const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
+    wait_for_lines(1);
+    /* Both have the same files for their output; the second one says something last. */
+    TEST_ASSERT_EQUAL_INT(1, program_finish(program_start_tmini(WORDS("info", "-p", port)), 0));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "another program is using it"));
+    (void)program_finish(tool, SIGINT);
+}
+
+void test_a_port_that_one_may_not_open(void)
+{
+    begin();
+    TEST_ASSERT_EQUAL_INT(0, chmod(port, 0));
+    program_give_up_rights(true);
+    const int status = program_tmini(WORDS("info", "-p", port));
+    program_give_up_rights(false);
+    if (status == PROGRAM_CANNOT_START) {
+        TEST_IGNORE_MESSAGE("a user without rights cannot run the tool from this folder");
+    }
+    TEST_ASSERT_EQUAL_INT(1, status);
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "you may not open it"));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "dialout"));
+}
+
+/* The job has failed, with this reason among others. */
+static void expect_failed_job(unsigned job, const char *reason)
+{
+    TEST_ASSERT_EQUAL_INT(1, end_job(job));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "tmini: "));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, reason), program_errors);
+    TEST_ASSERT_EQUAL_STRING("", program_output);
+}
+
+void test_a_port_without_a_lidar(void)
+{
+    expect_failed_job(SILENT_INFO, "not one byte came");
+    expect_failed_job(SILENT_SCAN, "its TX goes to the adapter's RX");
+}
+
+void test_a_lidar_at_the_wrong_baud_rate(void)
+{
+    expect_failed_job(NOISY_INFO, "wrong baud rate");
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "but nothing that a T-mini Plus says"));
+    expect_failed_job(NOISY_SCAN, "wrong baud rate");
+}
+
+void test_a_lidar_that_sends_but_does_not_hear(void)
+{
+    expect_failed_job(DEAF_INFO, "does not do what it is told");
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "the adapter's TX"));
+}
+
+void test_a_lidar_that_answers_one_command_is_not_told_to_check_its_wires(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, end_job(HALF_INFO));
+    TEST_ASSERT_EQUAL_STRING("", program_errors);
+    expect_failed_job(HALF_HEALTH, "answers `tmini info`, so its wires are good");
+    TEST_ASSERT_NULL(strstr(program_errors, "RX"));
+    expect_failed_job(HALF_SCAN, "but not this command: timeout");
+}
+
+void test_a_recording_is_not_lost_to_a_lidar_that_does_not_answer(void)
+{
+    expect_failed_job(SILENT_RECORD, "not one byte came");
+    TEST_ASSERT_EQUAL_STRING("gold", program_read_file(0, program_path("precious.bin"), NULL));
+}
+
+void test_a_reboot_is_over_when_the_lidar_answers_again(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, end_job(REBOOT));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "the lidar is back"));
+    expect_output("9.00 Hz\n", WORDS("frequency", "-p", rebooted_port));
+}
+
+void test_a_recording_that_cannot_be_written(void)
+{
+    begin();
+    expect_failure(1, "cannot write /nowhere/x",
+                   WORDS("record", "-p", port, "/nowhere/x", "--seconds", "1"));
+}

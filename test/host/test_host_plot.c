@@ -1,0 +1,426 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* `tmini plot`, measured: is every point of the scan in the picture where it should be? The points
+ * are those of the reference decoder; the scale is what the tool says, and the rings are measured.
+ * */
+
+#include "encoder.h"
+#include "program.h"
+#include "reference_decoder.h"
+
+#include "unity.h"
+
+#include <cairo.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define POINTS_MAX 20000u
+
+#define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+/* Pixels, as the picture is laid out. */
+#define MIDDLE_X 600.0
+#define MIDDLE_Y 690.0
+#define OUTERMOST 500.0
+#define POINT_WIDTH 6.8
+#define POINTS_ONE_SCAN 1000u
+
+typedef struct {
+    double x, y;
+} place_t;
+
+/* The points with a distance of one scan, or of all, by the reference decoder. */
+static reference_point_t points[POINTS_MAX];
+static size_t point_count;
+static unsigned scans_seen;
+static unsigned scan_wanted; /* 0: all */
+
+static double pixels_per_m;
+
+void setUp(void) {}
+
+void tearDown(void)
+{
+    program_clean_up();
+}
+
+static void expect_near(double tolerance, double expected, double value)
+{
+    char text[80];
+    (void)snprintf(text, sizeof text, "expected %.3f, was %.3f", expected, value);
+    TEST_ASSERT_TRUE_MESSAGE(fabs(value - expected) <= tolerance, text);
+}
+
+/* ----------------------------------------------------------------------- what should be drawn */
+
+static void collect(void *context, const reference_item_t *item)
+{
+    (void)context;
+    scans_seen += item->starts_revolution ? 1u : 0u;
+    if (scans_seen == 0 || (scan_wanted != 0 && scans_seen != scan_wanted)) {
+        return;
+    }
+    for (unsigned i = 0; i < item->lsn; i++) {
+        const reference_point_t point = reference_point(item->bytes, i);
+        if (point.distance_mm > 0) {
+            points[point_count++] = point;
+        }
+    }
+}
+
+static void decode(const char *path, unsigned scan)
+{
+    const reference_options_t options = {.max_samples = 80};
+    size_t size = 0;
+    const char *const recording = program_read_file(1, path, &size);
+    point_count = scans_seen = 0;
+    scan_wanted = scan;
+    (void)reference_decode((const uint8_t *)recording, size, &options, collect, NULL);
+    TEST_ASSERT_TRUE(point_count > 0 && point_count < POINTS_MAX);
+}
+
+/* ------------------------------------------------------------------------------ what is drawn */
+
+/* A disc is a line from a place to itself, with round ends: those of that width, in pixels. Returns
+ * how many there are. */
+static size_t discs(const char *svg, double width, place_t *found, size_t room)
+{
+    size_t count = 0;
+    for (const char *at = svg; (at = strstr(at, "<path ")) != NULL; at++) {
+        const char *const end = strchr(at, '>');
+        const char *const stroke = strstr(at, "stroke-width");
+        const char *const data = strstr(at, " d=\"M ");
+        place_t from;
+        place_t to;
+        if (end == NULL || stroke == NULL || stroke > end || data == NULL || data > end ||
+            fabs(strtod(stroke + strcspn(stroke, "0123456789"), NULL) - width) > 0.01 ||
+            sscanf(data, " d=\"M %lf %lf L %lf %lf", &from.x, &from.y, &to.x, &to.y) != 4 ||
+            from.x != to.x || from.y != to.y) {
+            continue;
+        }
+        TEST_ASSERT_TRUE(count < room);
+        found[count++] = from;
+    }
+    return count;
+}
+
+/* Rings of that radius: how many begin there, at their rightmost place. */
+static unsigned rings(const char *svg, double x, double y, double radius)
+{
+    unsigned count = 0;
+    for (const char *at = svg; (at = strstr(at, " d=\"M ")) != NULL; at++) {
+        place_t from;
+        if (sscanf(at, " d=\"M %lf %lf C", &from.x, &from.y) == 2 &&
+            strchr(at, 'C') < strchr(at, '>') && fabs(from.x - x - radius) < 0.02 &&
+            fabs(from.y - y) < 0.02) {
+            count++;
+        }
+    }
+    return count;
+}
+
+/* Beams and ground are dark; a point is not. */
+static bool is_bright(cairo_surface_t *png, double x, double y)
+{
+    uint32_t pixel = 0;
+    TEST_ASSERT_EQUAL_INT(CAIRO_STATUS_SUCCESS, cairo_surface_status(png));
+    memcpy(&pixel,
+           cairo_image_surface_get_data(png) +
+               (size_t)y * (size_t)cairo_image_surface_get_stride(png) + 4 * (size_t)x,
+           sizeof pixel);
+    return (pixel >> 16 & 255) > 140 || (pixel >> 8 & 255) > 140 || (pixel & 255) > 140;
+}
+
+/* Clockwise from straight up. */
+static place_t place_of(const reference_point_t *point)
+{
+    const double angle = point->angle_q6 / 64.0 * acos(-1) / 180;
+    const double distance = point->distance_mm / 1000.0 * pixels_per_m;
+    return (place_t){MIDDLE_X + distance * sin(angle), MIDDLE_Y - distance * cos(angle)};
+}
+
+static const char *read_svg(void)
+{
+    return program_read_file(0, program_path("picture.svg"), NULL);
+}
+
+/* `metres`: what the outermost ring stands for, as the tool says. */
+static void expect_points(double metres)
+{
+    static place_t drawn[POINTS_MAX];
+    char words[40];
+    (void)snprintf(words, sizeof words, "; rings to %g m\n", metres);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, words), program_errors);
+    pixels_per_m = OUTERMOST / metres;
+    TEST_ASSERT_EQUAL_UINT(1, rings(read_svg(), MIDDLE_X, MIDDLE_Y, OUTERMOST));
+    TEST_ASSERT_EQUAL_size_t(point_count, discs(read_svg(), POINT_WIDTH, drawn, POINTS_MAX));
+    for (size_t i = 0; i < point_count; i++) {
+        const place_t expected = place_of(&points[i]);
+        expect_near(0.02, expected.x, drawn[i].x);
+        expect_near(0.02, expected.y, drawn[i].y);
+    }
+}
+
+static void plot(const char *recording, const char *option, const char *value)
+{
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("plot", recording, "-o",
+                                                 program_path("picture.svg"), option, value)));
+}
+
+static void expect_said(const char *words)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, words), program_errors);
+}
+
+/* -------------------------------------------------------------------------------------- tests */
+
+void test_the_last_complete_scan_is_drawn_point_by_point(void)
+{
+    plot(RECORDINGS "sim-6hz.bin", NULL, NULL);
+    decode(RECORDINGS "sim-6hz.bin", 8);
+    expect_points(6);
+    expect_said("picture.svg: Scan 8; 6.0 Hz \xC2\xB7 669 points, 653 with a distance "
+                "\xC2\xB7 sim-6hz.bin; ");
+}
+
+void test_a_scan_can_be_chosen(void)
+{
+    plot(RECORDINGS "sim-10hz-plain.bin", "--scan", "3");
+    decode(RECORDINGS "sim-10hz-plain.bin", 3);
+    expect_points(6);
+    expect_said(": Scan 3; ");
+}
+
+void test_an_unfinished_scan_can_be_chosen_and_is_called_so(void)
+{
+    plot(RECORDINGS "sim-6hz.bin", "--scan", "9");
+    decode(RECORDINGS "sim-6hz.bin", 9);
+    expect_points(6);
+    expect_said(": Scan 9 (incomplete); frequency unknown ");
+}
+
+void test_all_scans_fit_in_one_picture(void)
+{
+    plot(RECORDINGS "sim-12hz.bin", "--all", NULL);
+    decode(RECORDINGS "sim-12hz.bin", 0);
+    expect_points(6);
+    expect_said(": Scans 1 to ");
+}
+
+/* A recording of one scan, made for this: a point each 90 degrees; the start packet first. */
+static const char *cross_recording(uint8_t flag_right, uint8_t flag_back)
+{
+    static const uint16_t quarter = 5760;
+    const encode_sample_t front = {1000, 10, 0};
+    const encode_sample_t rest[3] = {{2000, 20, flag_right}, {3000, 30, flag_back}, {4000, 40, 0}};
+    const encode_packet_t start = {121, 1, 0, 0, &front}; /* 6.0 Hz */
+    const encode_packet_t packet = {0, 3, quarter, (uint16_t)(3 * quarter), rest};
+    uint8_t bytes[100];
+    size_t size = encode_packet(bytes, &start);
+    size += encode_packet(bytes + size, &packet);
+    size += encode_packet(bytes + size, &start);
+    const char *const path = program_path("cross.bin");
+    program_write_file(path, bytes, size);
+    return path;
+}
+
+void test_front_is_up_and_angles_go_clockwise(void)
+{
+    place_t drawn[4];
+    plot(cross_recording(0, 0), "--scan", "1");
+    expect_said("; rings to 4 m\n");
+    TEST_ASSERT_EQUAL_size_t(4, discs(read_svg(), POINT_WIDTH, drawn, 4));
+    /* 4 m is the outermost ring: 500 pixels. Front, right, back, left. */
+    expect_near(0.02, MIDDLE_Y - 125, drawn[0].y);
+    expect_near(0.02, MIDDLE_X, drawn[0].x);
+    expect_near(0.02, MIDDLE_X + 250, drawn[1].x);
+    expect_near(0.02, MIDDLE_Y, drawn[1].y);
+    expect_near(0.02, MIDDLE_Y + 375, drawn[2].y);
+    expect_near(0.02, MIDDLE_X - 500, drawn[3].x);
+}
+
+static unsigned count_of(const char *text, const char *part)
+{
+    unsigned count = 0;
+    for (const char *at = strstr(text, part); at != NULL; at = strstr(at + 1, part)) {
+        count++;
+    }
+    return count;
+}
+
+void test_interference_and_the_nearest_point_are_marked(void)
+{
+    plot(cross_recording(2, 3), "--scan", "1");
+    const char *const svg = read_svg();
+    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X + 250, MIDDLE_Y, 7.4)); /* Flag 2: a ring. */
+    TEST_ASSERT_EQUAL_UINT(1, count_of(svg, "M 594 1059 L 606 1071"));    /* Flag 3: a cross, */
+    TEST_ASSERT_EQUAL_UINT(1, count_of(svg, "M 594 1071 L 606 1059"));    /* 3 m behind. */
+    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X, MIDDLE_Y - 125, 12));  /* The nearest one. */
+}
+
+void test_a_unit_that_flags_every_sample_is_not_covered_with_marks(void)
+{
+    const encode_sample_t samples[3] = {{2000, 20, 2}, {3000, 30, 3}, {4000, 40, 3}};
+    const encode_packet_t start = {121, 1, 0, 0, &samples[0]};
+    const encode_packet_t packet = {0, 3, 5760, 17280, samples};
+    uint8_t bytes[100];
+    size_t size = encode_packet(bytes, &start);
+    size += encode_packet(bytes + size, &packet);
+    size += encode_packet(bytes + size, &start);
+    program_write_file(program_path("flagged.bin"), bytes, size);
+    plot(program_path("flagged.bin"), "--scan", "1");
+    place_t drawn[4];
+    TEST_ASSERT_EQUAL_size_t(4, discs(read_svg(), POINT_WIDTH, drawn, 4));
+    TEST_ASSERT_EQUAL_UINT(0, rings(read_svg(), MIDDLE_X + 250, MIDDLE_Y, 7.4));
+    TEST_ASSERT_EQUAL_UINT(0, count_of(read_svg(), "M 594 1059"));
+    expect_said("4 of 4 points flagged");
+}
+
+void test_a_covered_lidar_is_no_empty_disc(void)
+{
+    const encode_sample_t none[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    const encode_packet_t start = {121, 1, 0, 0, none};
+    const encode_packet_t packet = {0, 3, 5760, 17280, none};
+    uint8_t bytes[100];
+    size_t size = encode_packet(bytes, &start);
+    size += encode_packet(bytes + size, &packet);
+    size += encode_packet(bytes + size, &start);
+    program_write_file(program_path("covered.bin"), bytes, size);
+    plot(program_path("covered.bin"), "--scan", "1");
+    expect_said("; rings to 6 m\n"); /* Of whatever there might have been. */
+    expect_said("no point has a distance: is the window covered?");
+    /* And in the picture, above the lidar: there are words. */
+    const char *const picture = program_path("covered.png");
+    TEST_ASSERT_EQUAL_INT(
+        0, program_tmini(WORDS("plot", program_path("covered.bin"), "--scan", "1", "-o", picture)));
+    cairo_surface_t *const png = cairo_image_surface_create_from_png(picture);
+    unsigned lit = 0;
+    for (int x = 200; x < 1000; x++) {
+        lit += is_bright(png, x, MIDDLE_Y - 158) ? 1 : 0;
+    }
+    TEST_ASSERT_TRUE(lit > 30);
+    cairo_surface_destroy(png);
+}
+
+void test_the_png_shows_the_same_points_at_the_same_places(void)
+{
+    plot(RECORDINGS "sim-6hz.bin", NULL, NULL);
+    decode(RECORDINGS "sim-6hz.bin", 8);
+    pixels_per_m = OUTERMOST / 6;
+    const char *const picture = program_path("picture.png");
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("plot", RECORDINGS "sim-6hz.bin", "-o", picture)));
+    cairo_surface_t *const png = cairo_image_surface_create_from_png(picture);
+    TEST_ASSERT_EQUAL_INT(1200, cairo_image_surface_get_width(png));
+    TEST_ASSERT_EQUAL_INT(1360, cairo_image_surface_get_height(png));
+    for (size_t i = 0; i < point_count; i++) {
+        const place_t place = place_of(&points[i]);
+        TEST_ASSERT_TRUE(is_bright(png, place.x, place.y));
+    }
+    /* Beside the axis to the right, within the room and behind its wall, there is nothing. */
+    TEST_ASSERT_FALSE(is_bright(png, MIDDLE_X + 0.5 * pixels_per_m, MIDDLE_Y + 7));
+    TEST_ASSERT_FALSE(is_bright(png, MIDDLE_X + 4 * pixels_per_m, MIDDLE_Y + 7));
+    TEST_ASSERT_FALSE(is_bright(png, 5, 5));
+    cairo_surface_destroy(png);
+}
+
+void test_a_point_in_the_png_is_a_dot_of_seven_pixels(void)
+{
+    const char *const picture = program_path("cross.png");
+    TEST_ASSERT_EQUAL_INT(
+        0, program_tmini(WORDS("plot", cross_recording(0, 0), "--scan", "1", "-o", picture)));
+    cairo_surface_t *const png = cairo_image_surface_create_from_png(picture);
+    /* The point 2 m to the right: 250 pixels from the middle (600, 690). */
+    TEST_ASSERT_TRUE(is_bright(png, 850, 690));
+    TEST_ASSERT_TRUE(is_bright(png, 850, 692));
+    TEST_ASSERT_TRUE(is_bright(png, 850, 687));
+    TEST_ASSERT_FALSE(is_bright(png, 850, 694));
+    TEST_ASSERT_FALSE(is_bright(png, 850, 685));
+    cairo_surface_destroy(png);
+}
+
+void test_pdf_is_the_third_kind(void)
+{
+    size_t size = 0;
+    const char *const picture = program_path("picture.pdf");
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("plot", RECORDINGS "sim-6hz.bin", "-o", picture)));
+    const char *const file = program_read_file(1, picture, &size);
+    TEST_ASSERT_EQUAL_STRING_LEN("%PDF-", file, 5);
+    TEST_ASSERT_TRUE(size > 10000);
+}
+
+/* However long, and in whatever bytes: 0xFF is never UTF-8, and cairo stops drawing at such text.
+ * */
+void test_any_name_of_a_file_can_stand_below_the_title(void)
+{
+    static const char *const names[] = {
+        "Raum \xC3\xBC\xE4\xB8\xAD\xF0\x9F\x98\x80.bin",
+        "not utf-8 \xFF\xC3.bin",
+        ("a_name_that_is_much_longer_than_the_picture_is_wide_a_name_that_is_much_longer_than_the_"
+         "picture_is_wide_a_name_that_is_much_longer_than_the_picture_is_wide.bin"),
+    };
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        size_t size = 0;
+        place_t drawn[POINTS_ONE_SCAN];
+        const char *const recording = program_read_file(1, RECORDINGS "sim-6hz.bin", &size);
+        const char *const path = program_path(names[i]);
+        program_write_file(path, recording, size);
+        plot(path, NULL, NULL);
+        TEST_ASSERT_EQUAL_size_t(653, discs(read_svg(), POINT_WIDTH, drawn, POINTS_ONE_SCAN));
+        (void)remove(path);
+        /* The last words of the picture are there, too: the ring before "nearest". */
+        TEST_ASSERT_NOT_NULL(strstr(read_svg(), "1292"));
+    }
+}
+
+/* 100 MB hold 30 million points, which would be 180 MB, and far more as SVG. */
+void test_all_scans_of_a_long_recording_fit_in_bounded_memory(void)
+{
+    size_t size = 0;
+    const char *const room = program_read_file(1, RECORDINGS "sim-6hz.bin", &size);
+    FILE *const file = fopen("big.bin", "wb");
+    TEST_ASSERT_NOT_NULL(file);
+    for (size_t written = 0; written < 100000000; written += size) {
+        TEST_ASSERT_EQUAL_size_t(size, fwrite(room, 1, size, file));
+    }
+    fclose(file);
+    (void)setenv("TOOL", TMINI, 1);
+    TEST_ASSERT_EQUAL_INT(
+        0, system(PROGRAM_LIMIT("180000") "\"$TOOL\" plot big.bin --all -o big.png 2>said"));
+    const char *const said = program_read_file(0, "said", NULL);
+    const char *const thinned = strstr(said, " points with a distance, one in 512 ");
+    TEST_ASSERT_NOT_NULL_MESSAGE(thinned, said);
+    TEST_ASSERT_NULL(strchr(said, '%')); /* Progress is for terminals. */
+    (void)remove("big.bin");
+}
+
+void test_a_dash_is_standard_output_as_svg(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("plot", RECORDINGS "sim-6hz.bin", "-qo", "-")));
+    TEST_ASSERT_EQUAL_STRING_LEN("<?xml", program_output, 5);
+    TEST_ASSERT_NOT_NULL(strstr(program_output, "</svg>"));
+    TEST_ASSERT_EQUAL_STRING("", program_errors);
+}
+
+static void expect_failure(int status, const char *reason, const char *const words[])
+{
+    TEST_ASSERT_EQUAL_INT(status, program_tmini(words));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "tmini: "));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, reason), program_errors);
+}
+
+void test_what_cannot_be_drawn_is_said(void)
+{
+    static const char *const room = RECORDINGS "sim-6hz.bin";
+    expect_failure(2, "must end in .svg, .png or .pdf", WORDS("plot", room, "-o", "picture.jpg"));
+    expect_failure(2, "plot what, and where to?", WORDS("plot", room));
+    expect_failure(2, "not both", WORDS("plot", room, "-o", "x.svg", "--all", "--scan", "1"));
+    expect_failure(1, "has no scan 10, only 1 to 9",
+                   WORDS("plot", room, "-o", "x.svg", "--scan", "10"));
+    expect_failure(1, "cannot write /nowhere/x.svg", WORDS("plot", room, "-o", "/nowhere/x.svg"));
+    expect_failure(1, "cannot write /nowhere/x.png", WORDS("plot", room, "-o", "/nowhere/x.png"));
+    expect_failure(1, "no start packet",
+                   WORDS("plot", RECORDINGS "manual-packet.bin", "-o", "x.svg"));
+}

@@ -1,0 +1,553 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* `tmini view` in a terminal: what the screen shows, what keys and sizes do, and that the terminal
+ * is given back as it was, whatever ends the program. */
+
+#define _XOPEN_SOURCE 700
+#define _DEFAULT_SOURCE
+
+#include "encoder.h"
+#include "program.h"
+#include "vt.h"
+
+#include "unity.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+static vt_t vt;
+static int master = -1;
+static int line = -1;
+static pid_t tool;
+static struct termios before;
+
+void setUp(void)
+{
+    (void)unsetenv("NO_COLOR");
+    (void)unsetenv("TMINI_PORT");
+    (void)setenv("TERM", "xterm-256color", 1);
+    (void)setenv("LC_ALL", "C.UTF-8", 1);
+}
+
+void tearDown(void)
+{
+    program_clean_up();
+    if (master >= 0) {
+        close(master);
+        close(line);
+    }
+    master = -1;
+}
+
+static void begin(unsigned columns, unsigned rows, const char *const words[])
+{
+    vt_init(&vt, columns, rows);
+    tool = program_start_on_terminal(columns, rows, words, &master, &line, &before);
+}
+
+/* Shows what the tool draws within that time. */
+static void watch(int milliseconds)
+{
+    struct pollfd output = {.fd = master, .events = POLLIN};
+    char bytes[4096];
+    while (poll(&output, 1, milliseconds) > 0) {
+        const ssize_t count = read(master, bytes, sizeof bytes);
+        if (count <= 0) {
+            return;
+        }
+        vt_feed(&vt, bytes, (size_t)count);
+    }
+}
+
+static void wait_for(const char *text)
+{
+    for (int i = 0; i < 1000; i++) {
+        if (strstr(vt_text(&vt), text) != NULL) {
+            watch(50); /* Until the whole screen has been drawn. */
+            return;
+        }
+        struct pollfd output = {.fd = master, .events = POLLIN};
+        char bytes[512];
+        if (poll(&output, 1, 10) > 0) {
+            const ssize_t count = read(master, bytes, sizeof bytes);
+            vt_feed(&vt, bytes, count > 0 ? (size_t)count : 0);
+        }
+    }
+    TEST_FAIL_MESSAGE(vt_text(&vt));
+}
+
+static void press(char key)
+{
+    TEST_ASSERT_EQUAL_INT(1, (int)write(master, &key, 1));
+}
+
+static void press_all(const char *keys)
+{
+    TEST_ASSERT_EQUAL_INT((int)strlen(keys), (int)write(master, keys, strlen(keys)));
+}
+
+static void expect_terminal_as_before(void)
+{
+    watch(10);
+    TEST_ASSERT_FALSE(vt.is_other_screen);
+    TEST_ASSERT_FALSE(vt.is_cursor_hidden);
+    TEST_ASSERT_EQUAL_UINT(0, vt.misunderstood);
+    struct termios after;
+    TEST_ASSERT_EQUAL_INT(0, tcgetattr(line, &after));
+    TEST_ASSERT_EQUAL_HEX(before.c_lflag, after.c_lflag);
+    TEST_ASSERT_EQUAL_HEX(before.c_iflag, after.c_iflag);
+    TEST_ASSERT_EQUAL_HEX(before.c_oflag, after.c_oflag);
+    TEST_ASSERT_EQUAL_MEMORY(before.c_cc, after.c_cc, sizeof before.c_cc);
+}
+
+/* The program has ended with this status, and the terminal is as it was. */
+static void expect_end(int expected)
+{
+    int status = 0;
+    for (int i = 0; i < 1000 && waitpid(tool, &status, WNOHANG) != tool; i++) {
+        watch(10);
+    }
+    TEST_ASSERT_TRUE(WIFEXITED(status));
+    TEST_ASSERT_EQUAL_INT(expected, WEXITSTATUS(status));
+    expect_terminal_as_before();
+}
+
+static void resize(unsigned columns, unsigned rows)
+{
+    const struct winsize size = {.ws_col = (unsigned short)columns, .ws_row = (unsigned short)rows};
+    vt.columns = columns;
+    vt.rows = rows;
+    TEST_ASSERT_EQUAL_INT(0, ioctl(line, TIOCSWINSZ, &size));
+}
+
+/* A scan with a point every 90 degrees: 1 m in front, 2 m to the right, 3 m behind, 4 m to the
+ * left. */
+static const char *cross_recording(void)
+{
+    const encode_sample_t front = {1000, 10, 0};
+    const encode_sample_t rest[3] = {{2000, 20, 0}, {3000, 30, 0}, {4000, 40, 0}};
+    const encode_packet_t start = {121, 1, 0, 0, &front}; /* 6.0 Hz */
+    const encode_packet_t packet = {0, 3, 5760, 17280, rest};
+    uint8_t bytes[100];
+    size_t size = encode_packet(bytes, &start);
+    size += encode_packet(bytes + size, &packet);
+    size += encode_packet(bytes + size, &start);
+    const char *const path = program_path("cross.bin");
+    program_write_file(path, bytes, size);
+    return path;
+}
+
+/* ------------------------------------------------------------------------------------ picture */
+
+void test_points_are_where_they_should_be(void)
+{
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    /* The picture is 53 characters wide: the panel takes 27. Two lines are for words, which leaves
+     * 88 rows of dots; so 4 m are 43 dots, around the dot between 52 and 53, and between 47 and 48.
+     * */
+    TEST_ASSERT_EQUAL_HEX32(0x25B2, vt.cells[11][26]); /* the lidar */
+    TEST_ASSERT_EQUAL_HEX32(0x25C6, vt.cells[9][26]);  /* front, nearest: dot 53, 37 */
+    TEST_ASSERT_EQUAL_HEX32(0x2801, vt.cells[12][37]); /* right: dot 74, 48, its cell's first */
+    TEST_ASSERT_EQUAL_HEX32(0x2808, vt.cells[20][26]); /* back: dot 53, 80 */
+    TEST_ASSERT_EQUAL_HEX32(0x2801, vt.cells[12][5]);  /* left: dot 10, 48 */
+}
+
+void test_the_panel_says_what_is_seen(void)
+{
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    const char *const text = vt_text(&vt);
+    TEST_ASSERT_NOT_NULL(strstr(text, " cross.bin "));
+    TEST_ASSERT_NOT_NULL(strstr(text, "  incomplete scan 1  6.0 Hz\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "nearest   1.000 m\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "at 0 deg,\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, " ahead\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "points    4, 4 valid\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "range     4 m, auto\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "packets   3\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "damaged   0.0 %\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "4.00        \xE2\x96\xB2         2.00\n")); /* left, right */
+}
+
+void test_a_room_looks_as_it_did_when_a_person_looked_at_it(void)
+{
+    size_t size = 0;
+    begin(80, 24, WORDS("view", RECORDINGS "sim-6hz.bin"));
+    wait_for("end of the recording");
+    TEST_ASSERT_EQUAL_STRING(program_read_file(0, SCREENS "view_80x24.txt", &size), vt_text(&vt));
+}
+
+void test_colours_are_left_out_when_asked(void)
+{
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    TEST_ASSERT_TRUE(vt.coloured > 10);
+    press('q');
+    expect_end(0);
+    tearDown();
+    (void)setenv("NO_COLOR", "1", 1);
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    TEST_ASSERT_EQUAL_UINT(0, vt.coloured);
+}
+
+/* ------------------------------------------------------------------------------ keys and size */
+
+void test_keys_zoom(void)
+{
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("range     4 m, auto");
+    press('+');
+    wait_for("range     3 m\n");
+    press('+');
+    wait_for("range     2 m\n");
+    press('-');
+    press('-');
+    press('-');
+    wait_for("range     6 m\n");
+    press('a');
+    wait_for("range     4 m, auto");
+}
+
+void test_q_ends(void)
+{
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    TEST_ASSERT_TRUE(vt.is_other_screen);
+    TEST_ASSERT_TRUE(vt.is_cursor_hidden);
+    press('q');
+    expect_end(0);
+}
+
+void test_the_picture_follows_the_terminals_size(void)
+{
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    resize(60, 18);
+    watch(300);
+    TEST_ASSERT_EQUAL_HEX32('q', vt.cells[17][1]);
+    TEST_ASSERT_EQUAL_HEX32(0x25B2, vt.cells[8][16]);
+    resize(120, 40);
+    watch(300);
+    TEST_ASSERT_EQUAL_HEX32('q', vt.cells[39][1]);
+    TEST_ASSERT_EQUAL_HEX32(0x25B2, vt.cells[19][46]);
+    press('q');
+    expect_end(0);
+}
+
+void test_a_tiny_terminal_does_no_harm(void)
+{
+    begin(7, 3, WORDS("view", cross_recording()));
+    watch(500);
+    resize(1, 1);
+    watch(300);
+    press('q');
+    expect_end(0);
+}
+
+void test_escape_ends_and_an_arrow_does_not(void)
+{
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    press_all("\033[A"); /* Up means nothing. */
+    press('+');
+    wait_for("range     3 m\n");
+    press(27);
+    expect_end(0);
+}
+
+/* Raw bytes of two seconds: 4000 samples a second, 8 scans and a bit. */
+#define ROOM RECORDINGS "sim-6hz.bin"
+#define LONG_ROOM "room.bin"
+
+void test_a_recording_can_be_paused_stepped_through_and_played_again(void)
+{
+    begin(80, 24, WORDS("view", ROOM));
+    wait_for("end of the recording");
+    press(',');
+    wait_for("scan 7 ");
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "paused"));
+    press(',');
+    wait_for("scan 6 ");
+    press('.');
+    wait_for("scan 7 ");
+    watch(400); /* It does not go on by itself: */
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "scan 7 "));
+    press(' '); /* but now it does. */
+    wait_for("end of the recording");
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "scan 8 "));
+    press_all("\033[D"); /* Five seconds back is the beginning. */
+    wait_for("playing");
+    wait_for("scan 2 ");
+    press('>');
+    wait_for("end of the recording");
+}
+
+void test_keys_come_from_the_terminal_also_when_the_recording_comes_through_a_pipe(void)
+{
+    (void)setenv("TOOL", TMINI, 1);
+    vt_init(&vt, 80, 24);
+    tool = program_start_shell_on_terminal(80, 24, "cat " ROOM " | \"$TOOL\" view -", &master,
+                                           &line, &before);
+    wait_for("end of the recording");
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "scan 8 "));
+    press('+');
+    wait_for("range     4 m\n");
+    press('q');
+    expect_end(0);
+}
+
+void test_ctrl_z_gives_the_terminal_back_and_fg_takes_it_again(void)
+{
+    (void)setenv("TOOL", TMINI, 1);
+    vt_init(&vt, 80, 24);
+    tool = program_start_shell_on_terminal(80, 24, "set -m; \"$TOOL\" view " ROOM "; fg >/dev/null",
+                                           &master, &line, &before);
+    wait_for("end of the recording");
+    const unsigned taken_before = vt.taken;
+    press(26);
+    for (int i = 0; i < 500 && vt.taken == taken_before; i++) {
+        watch(10); /* The shell goes on, and fetches it back. */
+    }
+    TEST_ASSERT_EQUAL_UINT(taken_before + 1, vt.taken);
+    wait_for("end of the recording");
+    press('q');
+    expect_end(0);
+}
+
+/* ---------------------------------------------------------------------------- other terminals */
+
+static void expect_ascii(void)
+{
+    for (const char *at = vt_text(&vt); *at != '\0'; at++) {
+        TEST_ASSERT_TRUE((unsigned char)*at < 128);
+    }
+}
+
+void test_a_locale_without_utf_8_gets_characters(void)
+{
+    (void)setenv("LC_ALL", "C", 1);
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    expect_ascii();
+    TEST_ASSERT_EQUAL_HEX32('A', vt.cells[11][26]); /* the lidar */
+    TEST_ASSERT_EQUAL_HEX32('X', vt.cells[9][26]);  /* front, nearest */
+    TEST_ASSERT_EQUAL_HEX32('*', vt.cells[12][37]); /* right */
+    TEST_ASSERT_EQUAL_HEX32('*', vt.cells[20][26]); /* back */
+    TEST_ASSERT_EQUAL_HEX32('*', vt.cells[12][5]);  /* left */
+    press('q');
+    expect_end(0);
+}
+
+/* The variables in their order: one that is empty does not count. */
+void test_the_locale_is_the_one_that_the_variables_say(void)
+{
+    (void)setenv("LC_ALL", "", 1);
+    (void)setenv("LC_CTYPE", "", 1);
+    (void)setenv("LANG", "xy_ZZ.utf8", 1); /* Not installed here. */
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    TEST_ASSERT_EQUAL_HEX32(0x25B2, vt.cells[11][26]);
+    press('q');
+    expect_end(0);
+    (void)unsetenv("LC_CTYPE");
+    (void)unsetenv("LANG");
+}
+
+void test_a_dumb_terminal_gets_one_picture_below_the_other(void)
+{
+    (void)setenv("TERM", "dumb", 1);
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    TEST_ASSERT_EQUAL_UINT(0, vt.coloured);
+    TEST_ASSERT_EQUAL_UINT(0, vt.escapes);
+    TEST_ASSERT_FALSE(vt.is_other_screen);
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "nearest   1.000 m\n"));
+    press('q');
+    int status = 0;
+    for (int i = 0; i < 1000 && waitpid(tool, &status, WNOHANG) != tool; i++) {
+        watch(10);
+    }
+    TEST_ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    TEST_ASSERT_EQUAL_UINT(0, vt.escapes);
+}
+
+void test_an_empty_no_color_means_nothing(void)
+{
+    (void)setenv("NO_COLOR", "", 1);
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    TEST_ASSERT_TRUE(vt.coloured > 10);
+}
+
+void test_a_small_terminal_has_the_picture_the_state_and_the_way_out(void)
+{
+    begin(30, 10, WORDS("view", ROOM));
+    wait_for("end of the recording");
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "\n q quit  end of the recording\n"));
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), " sim-6hz.bin   scan 8  6.0 Hz\n"));
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "\xE2\x96\xB2")); /* the lidar */
+    press('q');
+    expect_end(0);
+}
+
+/* ------------------------------------------------------------------------ what is not perfect */
+
+/* Of `decode` and `plot`, but a terminal is needed to see it. */
+void test_who_waits_for_a_long_recording_is_told_how_far_it_is(void)
+{
+    (void)setenv("TOOL", TMINI, 1);
+    vt_init(&vt, 80, 24);
+    tool = program_start_shell_on_terminal(
+        80, 24,
+        "cp " ROOM " " LONG_ROOM "; for i in 1 2 3 4 5 6 7 8 9 10; do cat " LONG_ROOM " " LONG_ROOM
+        " >two; mv two " LONG_ROOM "; done; \"$TOOL\" decode " LONG_ROOM " | tail -n 1",
+        &master, &line, &before);
+    wait_for("100 % of " LONG_ROOM);
+    wait_for("stream  ");
+    (void)remove(LONG_ROOM);
+}
+
+void test_a_damaged_recording_says_so(void)
+{
+    begin(80, 24, WORDS("view", RECORDINGS "sim-6hz-damaged.bin"));
+    wait_for("end of the recording");
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "  incomplete scan "));
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "damaged   10.7 %\n")); /* 32 of 298 */
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "health    unknown\n"));
+}
+
+/* A point that stays keeps its colour when a brighter one comes and goes. */
+void test_colours_are_steady(void)
+{
+    const encode_sample_t dim = {1000, 10, 0};
+    const encode_sample_t far_dim = {2000, 20, 0};
+    const encode_sample_t far_bright = {2000, 250, 0};
+    const encode_packet_t start = {121, 1, 0, 0, &dim};
+    const encode_packet_t with_bright = {0, 1, 5760, 5760, &far_bright};
+    const encode_packet_t with_dim = {0, 1, 5760, 5760, &far_dim};
+    uint8_t bytes[200];
+    size_t size = 0;
+    for (unsigned turn = 0; turn < 2; turn++) {
+        size += encode_packet(bytes + size, &start);
+        size += encode_packet(bytes + size, turn == 0 ? &with_bright : &with_dim);
+    }
+    size += encode_packet(bytes + size, &start);
+    program_write_file(program_path("steady.bin"), bytes, size);
+    begin(80, 24, WORDS("view", program_path("steady.bin")));
+    wait_for("end of the recording");
+    const unsigned colour = vt.colours[12][48]; /* 2 m to the right, in scan 2: 20 of 10 to 250, */
+    press(',');
+    wait_for("scan 1 ");
+    TEST_ASSERT_TRUE(vt.colours[12][48] != colour); /* and in scan 1 the brightest. */
+}
+
+/* ------------------------------------------------------------------------ how else it can end */
+
+void test_ctrl_c_gives_the_terminal_back(void)
+{
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    press(3);
+    expect_end(0);
+}
+
+void test_signals_give_the_terminal_back(void)
+{
+    static const int signals[] = {SIGTERM, SIGHUP, SIGQUIT};
+    for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
+        begin(80, 24, WORDS("view", cross_recording()));
+        wait_for("end of the recording");
+        kill(tool, signals[i]);
+        expect_end(0);
+        tearDown();
+    }
+}
+
+void test_a_signal_gives_a_terminal_back_whose_output_is_stopped(void)
+{
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+    press('\x13');  /* Ctrl-S */
+    resize(60, 18); /* Something to draw: the tool now waits for the terminal. */
+    watch(300);
+    kill(tool, SIGTERM);
+    expect_end(0);
+}
+
+void test_a_second_signal_gives_the_terminal_back_and_stops_the_lidar(void)
+{
+    const char *const log = program_path("log");
+    begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--log", log))));
+    wait_for("scan 2 ");
+    kill(tool, SIGSTOP); /* So that both come before it can heed the first. */
+    kill(tool, SIGTERM);
+    kill(tool, SIGHUP);
+    kill(tool, SIGCONT);
+    int status = 0;
+    for (int i = 0; i < 1000 && waitpid(tool, &status, WNOHANG) != tool; i++) {
+        watch(10);
+    }
+    TEST_ASSERT_TRUE(WIFSIGNALED(status));
+    expect_terminal_as_before();
+    (void)poll(NULL, 0, 1000); /* The lidar's tail. */
+    TEST_ASSERT_NOT_NULL(strstr(program_read_file(0, log, NULL), "stopping -> idle"));
+}
+
+void test_without_a_terminal_there_is_no_view(void)
+{
+    TEST_ASSERT_EQUAL_INT(1, program_tmini(WORDS("view", cross_recording())));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "there is none"));
+    TEST_ASSERT_EQUAL_STRING("", program_output);
+}
+
+void test_a_file_that_is_no_recording_is_told_at_once(void)
+{
+    begin(80, 24, WORDS("view", RECORDINGS "README.md"));
+    expect_end(1);
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "holds no lidar packet"));
+}
+
+/* --------------------------------------------------------------------------------------- live */
+
+void test_a_lidar_is_shown_live_and_stopped_in_the_end(void)
+{
+    const char *const log = program_path("log");
+    begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--log", log))));
+    wait_for("scanning");
+    wait_for("scan 5 ");
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "behind to the right"));
+    press('q');
+    expect_end(0);
+    TEST_ASSERT_NOT_NULL(strstr(program_read_file(0, log, NULL), "stopping -> idle"));
+}
+
+void test_a_blocked_rotor_is_shown(void)
+{
+    begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--blocked"))));
+    wait_for("health    FAULTY");
+    wait_for("faulty: encoder (is the rotor blocked?)\n"); /* In a line of its own: */
+    wait_for("\n q quit   + - zoom   a auto ");
+    press('q');
+    expect_end(0);
+}
+
+void test_a_pulled_cable_ends_the_view_with_a_message(void)
+{
+    begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--seed", "2"))));
+    wait_for("scan 2 ");
+    program_stop_lidar();
+    expect_end(1);
+    TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "has gone: the adapter was unplugged"));
+}

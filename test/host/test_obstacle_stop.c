@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* examples/obstacle_stop on a PC, with the simulated lidar. OBSTACLE_STOP is the program's path. In
+ * the simulated room the nearest thing in the front sector is a pillar, 1.37 m away. */
+
+#define _XOPEN_SOURCE 700
+
+#include "program.h"
+
+#include "unity.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+#define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+void setUp(void) {}
+
+void tearDown(void)
+{
+    program_clean_up();
+}
+
+/* Until the program has written the text there. */
+static void wait_for_in(const char *path, const char *text)
+{
+    for (int i = 0; i < 2000; i++) {
+        if (strstr(program_read_file(0, path, NULL), text) != NULL) {
+            return;
+        }
+        (void)poll(NULL, 0, 10);
+    }
+    TEST_FAIL_MESSAGE(text);
+}
+
+static void wait_for(const char *text)
+{
+    wait_for_in(WORK_DIR "/output", text);
+}
+
+static void wait_for_message(const char *text)
+{
+    wait_for_in(WORK_DIR "/errors", text);
+}
+
+static unsigned count_of(const char *text, const char *part)
+{
+    unsigned count = 0;
+    for (const char *at = strstr(text, part); at != NULL; at = strstr(at + 1, part)) {
+        count++;
+    }
+    return count;
+}
+
+/* The program against a lidar with this fault: once it has told of it, the robot stands for five
+ * more scans. */
+static void expect_to_stand(const char *message, const char *const options[])
+{
+    size_t told = 0;
+    const pid_t program = program_start(OBSTACLE_STOP, WORDS(program_start_lidar(options)));
+    wait_for_message(message);
+    (void)program_read_file(0, WORK_DIR "/output", &told);
+    (void)poll(NULL, 0, 1200);
+    TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGTERM));
+    TEST_ASSERT_TRUE(count_of(program_output + told, "STOP ") >= 5);
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output + told, "go "));
+}
+
+void test_a_robot_in_a_free_room_may_go(void)
+{
+    const char *const log = program_path("log");
+    const char *const port = program_start_lidar(WORDS("--log", log));
+    const pid_t program = program_start(OBSTACLE_STOP, WORDS(port));
+    wait_for("\ngo     13");
+    TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGINT));
+    TEST_ASSERT_NOT_NULL(strstr(program_read_file(0, log, NULL), "stopping -> idle"));
+}
+
+void test_a_robot_that_has_lost_its_lidar_must_stop(void)
+{
+    const char *const port = program_start_lidar((const char *const[]){NULL});
+    const pid_t program = program_start(OBSTACLE_STOP, WORDS(port));
+    wait_for("\ngo ");
+    program_stop_lidar();
+    TEST_ASSERT_EQUAL_INT(1, program_finish(program, 0));
+    const char *last_line = strstr(program_output, "STOP");
+    TEST_ASSERT_NOT_NULL(last_line);
+    while (strchr(last_line, '\n')[1] != '\0') {
+        last_line = strchr(last_line, '\n') + 1;
+    }
+    TEST_ASSERT_EQUAL_STRING_LEN("STOP ", last_line, 5);
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, ": unplugged\n"));
+}
+
+void test_all_eight_sectors_are_shown(void)
+{
+    const pid_t program = program_start(OBSTACLE_STOP, WORDS(program_start_lidar(WORDS(NULL))));
+    wait_for("\ngo ");
+    TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGINT));
+    TEST_ASSERT_EQUAL_STRING_LEN("mm    front    45", program_output, 17);
+    unsigned mm[8] = {0};
+    TEST_ASSERT_EQUAL_INT(8, sscanf(strstr(program_output, "\ngo ") + 4, "%u%u%u%u%u%u%u%u", &mm[0],
+                                    &mm[1], &mm[2], &mm[3], &mm[4], &mm[5], &mm[6], &mm[7]));
+    for (unsigned i = 0; i < 8; i++) {
+        TEST_ASSERT_TRUE(mm[i] > 900 && mm[i] < 3500); /* The room is 5 m x 4 m, with boxes. */
+    }
+}
+
+void test_a_robot_whose_lidar_is_covered_stays_where_it_is(void)
+{
+    expect_to_stand("faults: data", WORDS("--covered"));
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go ")); /* Nor before. */
+}
+
+void test_a_robot_whose_lidar_is_covered_and_says_nothing_about_it_stays_where_it_is(void)
+{
+    expect_to_stand("faults: data", WORDS("--covered", "--no-ct"));
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go "));
+}
+
+void test_a_robot_whose_lidar_does_not_turn_stays_where_it_is(void)
+{
+    expect_to_stand("faults: encoder", WORDS("--blocked"));
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go "));
+}
+
+void test_a_fault_that_stays_stops_the_robot_although_ranges_come(void)
+{
+    expect_to_stand("faults: LD", WORDS("--health", "0x10"));
+}
+
+void test_a_lidar_that_does_not_answer_is_told_and_started_again(void)
+{
+    const char *const port = program_start_talker(NULL, 0);
+    const pid_t program = program_start(OBSTACLE_STOP, WORDS(port));
+    wait_for_message("the lidar does not start: timeout; trying again\n");
+    TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGINT));
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go "));
+    TEST_ASSERT_EQUAL_UINT(1, count_of(program_output, "STOP "));
+}
+
+void test_wrong_usage_and_a_wrong_port_are_told(void)
+{
+    TEST_ASSERT_EQUAL_INT(2, program_finish(program_start(OBSTACLE_STOP, WORDS(NULL)), 0));
+    TEST_ASSERT_EQUAL_STRING("usage: obstacle_stop PORT, or obstacle_stop -p PORT\n",
+                             program_errors);
+    TEST_ASSERT_EQUAL_INT(2, program_finish(program_start(OBSTACLE_STOP, WORDS("a", "b")), 0));
+    TEST_ASSERT_EQUAL_INT(0, program_finish(program_start(OBSTACLE_STOP, WORDS("--vers")), 0));
+    TEST_ASSERT_EQUAL_STRING_LEN("obstacle_stop 0.", program_output, 16);
+    TEST_ASSERT_EQUAL_INT(0, program_finish(program_start(OBSTACLE_STOP, WORDS("-h")), 0));
+    TEST_ASSERT_EQUAL_INT(1, program_finish(program_start(OBSTACLE_STOP, WORDS("-p/dev/none")), 0));
+    TEST_ASSERT_EQUAL_STRING("/dev/none: no such device\n", program_errors);
+    TEST_ASSERT_EQUAL_INT(1, program_finish(program_start(OBSTACLE_STOP, WORDS("/dev/none")), 0));
+    TEST_ASSERT_EQUAL_STRING("/dev/none: no such device\n", program_errors);
+}

@@ -1,0 +1,84 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# Checks that the library's files call only those below them, and that each member of tmini_t is
+# written by the file that owns it:
+#
+#   test/layers.sh LIBRARY.a
+#
+# What may call what is the table below: a call that is not in it is an error, so that no circle can
+# come about. Calls are read from the objects' symbols.
+
+set -eu
+
+archive=$1
+root=$(cd "$(dirname "$0")/.." && pwd)
+
+may_call='
+tmini_ring
+tmini_frame     tmini_ring
+tmini_parser    tmini_ring tmini_frame
+tmini_packet    tmini_ring tmini_frame
+tmini_reply
+tmini_ct
+tmini_scan      tmini_packet
+tmini_command   tmini_ring tmini_parser tmini_reply
+tmini_recovery  tmini_command
+tmini_monitor   tmini_packet tmini_ct
+tmini           tmini_ring tmini_parser tmini_frame tmini_packet tmini_reply tmini_ct tmini_scan
+tmini           tmini_command tmini_recovery tmini_monitor
+tmini_blocking  tmini
+tmini_sectors   tmini_packet tmini_frame
+tmini_ranges
+tmini_mount
+tmini_names
+tmini_time
+'
+
+# Prints "FILE SYMBOL TYPE" of every symbol in the archive.
+symbols() {
+    nm -A "$archive" |
+        sed -n 's/^[^:]*:\([a-z_]*\)\.c\.o:[0-9a-f ]* \([A-Za-z]\) \([a-z_0-9]*\)$/\1 \3 \2/p'
+}
+
+calls=$({
+    printf '%s\n' "$may_call" | sed 's/^/allow /'
+    symbols | sed 's/^/symbol /'
+} | awk '
+    $1 == "allow" && NF > 1 { known[$2] = 1; for (i = 3; i <= NF; i++) allowed[$2, $i] = 1 }
+    $1 == "symbol" && $4 ~ /[TRDB]/ { owner[$3] = $2; files[$2] = 1 }
+    $1 == "symbol" && $4 == "U" { uses[$2, $3] = 1 }
+    END {
+        for (file in files) if (!(file in known)) print "not in the table of layers: " file ".c"
+        for (use in uses) {
+            split(use, part, SUBSEP)
+            callee = owner[part[2]]
+            if (callee != "" && callee != part[1] && !((part[1], callee) in allowed))
+                print part[1] ".c must not call " part[2] "() of " callee ".c"
+        }
+        for (file in known) if (!(file in files)) print "no such file in the library: " file ".c"
+    }')
+
+# written_outside MEMBER OWNER: assignments to lidar->MEMBER in other files.
+written_outside() {
+    for file in "$root"/lib/src/*.c; do
+        [ "$(basename "$file")" = "$2" ] ||
+            grep -nE "lidar->$1\.[a-z_]+ *([-+|&]?=[^=]|\+\+|--)|tmini_$1_t \*const" "$file" |
+            grep -v "const tmini_$1_t" |
+            sed "s|^|$(basename "$file"):|; s|$|  (only $2 writes lidar->$1)|"
+    done
+}
+
+written=$(
+    written_outside command tmini_command.c
+    written_outside recovery tmini_recovery.c
+    written_outside monitor tmini_monitor.c
+    written_outside link tmini.c
+)
+
+if [ -n "$calls$written" ]; then
+    printf '%s\n' "$calls" "$written"
+    exit 1
+fi
+echo "every call goes downwards, and every member has one writer"

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The little of Arduino's API that the port and its sketches use, written for the tests from the
+ * public reference: a clock that a test sets and serial ports that a test fills and reads. With
+ * ESP32 or ARDUINO_ARCH_RP2040 defined, what that core adds. */
+
+#ifndef ARDUINO_H
+#define ARDUINO_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <deque>
+#include <string>
+
+/* Names that the real thing takes away. */
+#define degrees(radians) ((radians)*57.29577951308232)
+#define radians(degrees) ((degrees)*0.017453292519943295)
+
+extern unsigned long arduino_millis;
+
+inline unsigned long millis()
+{
+    return arduino_millis;
+}
+
+class Print
+{
+  public:
+    virtual ~Print() {}
+    virtual size_t write(uint8_t byte) = 0;
+    virtual size_t write(const uint8_t *bytes, size_t count)
+    {
+        size_t taken = 0;
+        while (taken < count && write(bytes[taken]) == 1) {
+            taken++;
+        }
+        return taken;
+    }
+    void print(const char *text)
+    {
+        write(reinterpret_cast<const uint8_t *>(text), std::string(text).size());
+    }
+    void print(unsigned long number)
+    {
+        print(std::to_string(number).c_str());
+    }
+    template <typename T> void println(T value)
+    {
+        print(value);
+        print("\r\n");
+    }
+};
+
+class Stream : public Print
+{
+  public:
+    virtual int available() = 0;
+    virtual int read() = 0;
+    size_t readBytes(uint8_t *buffer, size_t length)
+    {
+        size_t count = 0;
+        int byte = 0;
+        while (count < length && available() > 0 && (byte = read()) >= 0) {
+            buffer[count++] = static_cast<uint8_t>(byte);
+        }
+        waited = waited || count < length; /* The real one waits up to a second. */
+        return count;
+    }
+    bool waited = false;
+};
+
+#define SERIAL_8N1 0x800001cu
+
+class HardwareSerial : public Stream
+{
+  public:
+    using Print::write;
+    int available() override
+    {
+        return static_cast<int>(received.size());
+    }
+    int read() override
+    {
+        if (received.empty()) {
+            return -1;
+        }
+        const uint8_t byte = received.front();
+        received.pop_front();
+        return byte;
+    }
+    size_t write(uint8_t byte) override
+    {
+        sent.push_back(byte);
+        return 1;
+    }
+    virtual void begin(unsigned long baud)
+    {
+        baud_rate = baud;
+        size_at_begin = rx_size;
+        fifo_full = 120; /* As the ESP32's core does at this baud rate. */
+    }
+    /* A byte comes in: into the buffer, or nowhere. */
+    void take(uint8_t byte)
+    {
+        if (received.size() < rx_size) {
+            received.push_back(byte);
+        } else {
+            lost++;
+        }
+    }
+#if defined(ESP32)
+    void begin(unsigned long baud, uint32_t config, int8_t rx, int8_t tx)
+    {
+        begin(baud);
+        line = config;
+        rx_pin = rx;
+        tx_pin = tx;
+    }
+    size_t setRxBufferSize(size_t size)
+    {
+        return rx_size = size;
+    }
+    bool setRxFIFOFull(uint8_t bytes)
+    {
+        fifo_full = bytes;
+        return true;
+    }
+#endif
+
+    unsigned lost = 0;
+    std::deque<uint8_t> received;
+    std::deque<uint8_t> sent;
+    unsigned long baud_rate = 0;
+    uint32_t line = 0;
+    size_t rx_size = 256;
+    size_t size_at_begin = 0;
+    int rx_pin = -1;
+    int tx_pin = -1;
+    int fifo_full = 0;
+};
+
+#if defined(ARDUINO_ARCH_RP2040)
+typedef uint8_t pin_size_t;
+
+/* While the port is open, its pins and its queue of 32 bytes are what they are. */
+class SerialUART : public HardwareSerial
+{
+  public:
+    SerialUART()
+    {
+        rx_size = 32;
+    }
+    void begin(unsigned long baud) override
+    {
+        HardwareSerial::begin(baud);
+        is_open = true;
+    }
+    void end()
+    {
+        is_open = false;
+    }
+    bool setFIFOSize(size_t size)
+    {
+        rx_size = is_open ? rx_size : size;
+        return !is_open;
+    }
+    bool setRX(pin_size_t pin)
+    {
+        rx_pin = is_open ? rx_pin : pin;
+        return !is_open;
+    }
+    bool setTX(pin_size_t pin)
+    {
+        tx_pin = is_open ? tx_pin : pin;
+        return !is_open;
+    }
+
+    bool is_open = false;
+};
+
+typedef SerialUART SerialPort;
+#else
+typedef HardwareSerial SerialPort;
+#endif
+
+extern HardwareSerial Serial;
+extern SerialPort Serial1;
+
+#endif

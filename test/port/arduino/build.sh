@@ -1,0 +1,64 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# Packs the Arduino library, unless it is given as ARCHIVE, and builds one of its sketches with
+# Arduino's own builder and AVR core:
+#
+#   build.sh CMAKE SKETCH BOARD RAM [ARCHIVE]
+#
+# for example: build.sh cmake Streaming mega:cpu=atmega2560 8192
+# Exit status: 0 it links, without a warning about our code, and leaves a quarter of the board's RAM
+# for the stack; 1 not; 77 builder, compiler or core is not installed.
+
+set -eu
+
+cmake=$1 sketch=$2 board=$3 ram=$4 archive=${5:-}
+root=$(cd "$(dirname "$0")/../../.." && pwd)
+hardware=/usr/share/arduino/hardware
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+for needed in arduino-builder arduino-ctags avr-g++; do
+    if ! command -v "$needed" >/dev/null; then
+        echo "skipped: $needed is not installed"
+        exit 77
+    fi
+done
+if [ ! -e "$hardware/arduino/avr/cores/arduino/Arduino.h" ]; then
+    echo "skipped: arduino-core-avr is not installed"
+    exit 77
+fi
+
+mkdir "$work/libraries" "$work/tools" "$work/build"
+if [ -n "$archive" ]; then
+    # CMake 3.31 unpacks nothing from a path with accents where the locale is C.
+    cp "$archive" "$work/library.zip"
+    (cd "$work/libraries" && "$cmake" -E tar xf ../library.zip)
+else
+    "$cmake" -D OUT="$work/libraries/tmini" -P "$root/port/arduino/pack.cmake"
+fi
+
+# Where Debian has the tool that looks for a sketch's functions; Arduino brings it along otherwise.
+ctags='"{cmd.path}" -u --language-force=c++ -f - --c++-kinds=svpf --fields=KSTtzns'
+ctags="$ctags --line-directives \"{source_file}\""
+
+# GCC before 6 does not name DECIMAL_DIG in C++, but the core expects it.
+arduino-builder -compile -core-api-version 10819 -warnings all -fqbn "arduino:avr:$board" \
+    -hardware "$hardware" -tools "$work/tools" -libraries "$work/libraries" \
+    -prefs "tools.ctags.cmd.path=$(command -v arduino-ctags)" -prefs "tools.ctags.pattern=$ctags" \
+    -prefs compiler.cpp.extra_flags=-DDECIMAL_DIG=__DECIMAL_DIG__ -build-path "$work/build" \
+    "$work/libraries/tmini/examples/$sketch/$sketch.ino" >"$work/log" 2>&1 || {
+    cat "$work/log"
+    exit 1
+}
+if grep "$work/libraries.*warning:" "$work/log"; then
+    exit 1
+fi
+tail -n 2 "$work/log"
+
+used=$(sed -n 's/^Global variables use \([0-9]*\) bytes.*/\1/p' "$work/log")
+[ "$used" -le $((ram * 3 / 4)) ] || {
+    echo "too much RAM: $used of $ram bytes"
+    exit 1
+}

@@ -1,0 +1,296 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The class that sketches use, against the simulated lidar. */
+
+#include <TMiniLidar.h>
+
+#include <math.h>
+
+#include "unity.h"
+
+#include "virtual_lidar.h"
+
+static VirtualLidar *unit;
+
+void setUp(void)
+{
+    arduino_millis = 0xFFFFFF00u; /* The clock wraps around in every test. */
+    Serial1 = SerialPort();
+    unit = new VirtualLidar;
+}
+
+void tearDown(void)
+{
+    delete unit;
+}
+
+/* Runs until `wanted` happens; false if it does not within `limit_ms`. */
+static bool happens(TMiniLidarBase &lidar, tmini_event_t wanted, unsigned limit_ms)
+{
+    for (unsigned i = 0; i < limit_ms; i++) {
+        unit->pass();
+        while (tmini_event_t event = lidar.loop()) {
+            if (event == wanted) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static void assert_same_points(const std::vector<reference_point_t> &expected,
+                               const TMiniLidarBase &lidar)
+{
+    size_t index = 0;
+    TEST_ASSERT_EQUAL_UINT(expected.size(), lidar.available());
+    TEST_ASSERT_EQUAL_UINT(expected.size(), lidar.points().size());
+    for (TMiniPoint point : lidar.points()) {
+        TEST_ASSERT_EQUAL_UINT(expected[index].angle_q6, point.angle_q6);
+        TEST_ASSERT_EQUAL_UINT(expected[index].distance_mm, point.distanceMm());
+        TEST_ASSERT_EQUAL_UINT(expected[index].intensity, point.intensity);
+        TEST_ASSERT_EQUAL_UINT(expected[index].flag, point.flag);
+        index++;
+    }
+    TEST_ASSERT_EQUAL_UINT(expected.size(), index);
+}
+
+static void beginning_enlarges_the_buffer_before_it_opens_the_port(void)
+{
+    TMiniLidar lidar;
+    TEST_ASSERT_TRUE(lidar.begin(Serial1, 16, 17));
+    TEST_ASSERT_EQUAL_UINT(1024, Serial1.size_at_begin);
+    TEST_ASSERT_EQUAL_UINT(230400, Serial1.baud_rate);
+    TEST_ASSERT_EQUAL_INT(16, Serial1.rx_pin);
+    TEST_ASSERT_EQUAL_INT(17, Serial1.tx_pin);
+#if defined(ESP32)
+    TEST_ASSERT_EQUAL_HEX32(SERIAL_8N1, Serial1.line);
+    TEST_ASSERT_EQUAL_INT(64, Serial1.fifo_full);
+#endif
+}
+
+static void a_hardware_port_on_its_usual_pins_is_opened_just_so(void)
+{
+    TMiniLidar lidar;
+    TEST_ASSERT_TRUE(lidar.begin(Serial1));
+    TEST_ASSERT_EQUAL_UINT(1024, Serial1.size_at_begin);
+    TEST_ASSERT_EQUAL_UINT(230400, Serial1.baud_rate);
+    TEST_ASSERT_EQUAL_INT(-1, Serial1.rx_pin);
+#if defined(ESP32)
+    TEST_ASSERT_EQUAL_INT(64, Serial1.fifo_full);
+#endif
+}
+
+static void a_port_that_the_sketch_has_opened_is_enlarged_all_the_same(void)
+{
+    TMiniLidar lidar;
+    Serial1.begin(9600);
+    TEST_ASSERT_TRUE(lidar.begin(Serial1));
+    TEST_ASSERT_EQUAL_UINT(1024, Serial1.size_at_begin);
+    TEST_ASSERT_TRUE(lidar.begin(Serial1, 16, 17));
+    TEST_ASSERT_EQUAL_INT(16, Serial1.rx_pin);
+}
+
+/* Runs for `ms`, with a sketch that comes round every `pause` ms. */
+static void run_with_pauses(TMiniLidarBase &lidar, unsigned ms, unsigned pause)
+{
+    for (unsigned i = 1; i <= ms; i++) {
+        unit->pass();
+        while (i % pause == 0 && lidar.loop() != TMINI_EVENT_NONE) {
+        }
+    }
+}
+
+/* 50 ms are 660 bytes: more than the lidar's own buffer here, less than the core's. */
+static void what_the_lidars_buffer_has_no_room_for_stays_in_the_cores(void)
+{
+    static TMiniLidarWith<256, 0> lidar;
+    tmini_counters_t counters;
+    lidar.begin(Serial1);
+    lidar.start();
+    run_with_pauses(lidar, 4000, 50);
+    tmini_counters(lidar.driver(), &counters);
+    TEST_ASSERT_EQUAL_UINT(0, Serial1.lost);
+    TEST_ASSERT_EQUAL_UINT(0, counters.parser.bytes_overrun);
+    TEST_ASSERT_TRUE(counters.parser.packets > 200);
+}
+
+static void any_other_stream_is_left_as_the_sketch_has_opened_it(void)
+{
+    TMiniLidar lidar;
+    Stream &stream = Serial1;
+    TEST_ASSERT_TRUE(lidar.begin(stream));
+    TEST_ASSERT_EQUAL_UINT(0, Serial1.baud_rate);
+}
+
+/* As an adapter that has been unplugged. */
+class StuckStream : public Stream
+{
+  public:
+    int available() override
+    {
+        return 5;
+    }
+    int read() override
+    {
+        return -1;
+    }
+    size_t write(uint8_t) override
+    {
+        return 0;
+    }
+};
+
+static void a_stream_that_promises_bytes_and_gives_none_holds_nobody_up(void)
+{
+    TMiniLidar lidar;
+    StuckStream stream;
+    TEST_ASSERT_TRUE(lidar.begin(stream));
+    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, lidar.loop());
+}
+
+static void before_begin_nothing_happens(void)
+{
+    TMiniLidar lidar;
+    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, lidar.loop());
+    TEST_ASSERT_EQUAL_UINT(0, lidar.available());
+    TEST_ASSERT_FALSE(lidar.start());
+}
+
+static void buffers_of_a_wrong_size_are_refused(void)
+{
+    TMiniLidarWith<300, 10> lidar;
+    TEST_ASSERT_FALSE(lidar.begin(Serial1));
+}
+
+static void every_point_of_every_scan_is_there(void)
+{
+    static TMiniLidarWith<1024, 2000> lidar; /* Slow revolutions, while spinning up, have more. */
+    lidar.begin(Serial1);
+    TEST_ASSERT_TRUE(lidar.start());
+    for (uint32_t revolution = 1; revolution <= 5; revolution++) {
+        TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+        assert_same_points(unit->revolutions[revolution], lidar);
+    }
+    TEST_ASSERT_TRUE(lidar.isScanning());
+}
+
+static void every_point_of_every_packet_is_there_when_streaming(void)
+{
+    static TMiniLidarStreaming lidar;
+    lidar.begin(Serial1);
+    TEST_ASSERT_TRUE(lidar.start());
+    for (size_t packet = 0; packet < 50; packet++) {
+        TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_PACKET, 2000));
+        assert_same_points(unit->packets[packet], lidar);
+    }
+}
+
+static void points_are_gone_with_the_next_loop(void)
+{
+    static TMiniLidar lidar;
+    lidar.begin(Serial1);
+    lidar.start();
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, lidar.loop());
+    TEST_ASSERT_EQUAL_UINT(0, lidar.available());
+    TEST_ASSERT_EQUAL_UINT(0, lidar.points().size());
+}
+
+static void it_never_asks_for_more_than_is_there(void)
+{
+    static TMiniLidar lidar;
+    lidar.begin(Serial1);
+    lidar.start();
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    TEST_ASSERT_FALSE(Serial1.waited);
+}
+
+static void information_and_health_are_read(void)
+{
+    TMiniLidar lidar;
+    lidar.begin(Serial1);
+    TEST_ASSERT_TRUE(lidar.requestInfo());
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_INFO, 1000));
+    TEST_ASSERT_EQUAL_UINT(151, lidar.info().model);
+    TEST_ASSERT_TRUE(lidar.requestHealth());
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_HEALTH, 1000));
+    TEST_ASSERT_EQUAL_UINT(0, lidar.health().faults);
+}
+
+static void the_frequency_is_set_in_hertz(void)
+{
+    TMiniLidar lidar;
+    lidar.begin(Serial1);
+    TEST_ASSERT_TRUE(lidar.setFrequency(7.3f));
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_FREQUENCY, 3000));
+    TEST_ASSERT_EQUAL_UINT(730, tmini_frequency_chz(lidar.driver()));
+}
+
+static void a_frequency_out_of_range_is_refused(void)
+{
+    TMiniLidar lidar;
+    lidar.begin(Serial1);
+    TEST_ASSERT_FALSE(lidar.setFrequency(5.9f));
+    TEST_ASSERT_FALSE(lidar.setFrequency(12.1f));
+    TEST_ASSERT_FALSE(lidar.setFrequency(-1.0f));
+    TEST_ASSERT_FALSE(lidar.setFrequency(NAN));
+}
+
+static void while_scanning_only_stop_is_possible(void)
+{
+    static TMiniLidar lidar;
+    lidar.begin(Serial1);
+    lidar.start();
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    TEST_ASSERT_FALSE(lidar.requestInfo());
+    TEST_ASSERT_FALSE(lidar.reboot());
+    TEST_ASSERT_TRUE(lidar.stop());
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_STOPPED, 1000));
+    TEST_ASSERT_FALSE(lidar.isScanning());
+}
+
+static void without_a_lidar_a_command_fails_and_says_why(void)
+{
+    TMiniLidar lidar;
+    unit->unplug();
+    lidar.begin(Serial1);
+    TEST_ASSERT_TRUE(lidar.requestInfo());
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_COMMAND_FAILED, 10000));
+    TEST_ASSERT_EQUAL_STRING("timeout", lidar.error());
+}
+
+static void degrees_are_a_sixty_fourth_of_the_units_and_zero_is_no_distance(void)
+{
+    TMiniPoint point;
+    point.angle_q6 = 5776; /* 90.25 * 64 */
+    point.distance_mm = 0;
+    TEST_ASSERT_EQUAL_FLOAT(90.25f, point.angleDegrees());
+    TEST_ASSERT_FALSE(point.isValid());
+    point.distance_mm = 1;
+    TEST_ASSERT_TRUE(point.isValid());
+}
+
+int main(void)
+{
+    UnityBegin("test_arduino_lidar.cpp");
+    RUN_TEST(beginning_enlarges_the_buffer_before_it_opens_the_port);
+    RUN_TEST(a_hardware_port_on_its_usual_pins_is_opened_just_so);
+    RUN_TEST(a_port_that_the_sketch_has_opened_is_enlarged_all_the_same);
+    RUN_TEST(what_the_lidars_buffer_has_no_room_for_stays_in_the_cores);
+    RUN_TEST(any_other_stream_is_left_as_the_sketch_has_opened_it);
+    RUN_TEST(a_stream_that_promises_bytes_and_gives_none_holds_nobody_up);
+    RUN_TEST(before_begin_nothing_happens);
+    RUN_TEST(buffers_of_a_wrong_size_are_refused);
+    RUN_TEST(every_point_of_every_scan_is_there);
+    RUN_TEST(every_point_of_every_packet_is_there_when_streaming);
+    RUN_TEST(points_are_gone_with_the_next_loop);
+    RUN_TEST(it_never_asks_for_more_than_is_there);
+    RUN_TEST(information_and_health_are_read);
+    RUN_TEST(the_frequency_is_set_in_hertz);
+    RUN_TEST(a_frequency_out_of_range_is_refused);
+    RUN_TEST(while_scanning_only_stop_is_possible);
+    RUN_TEST(without_a_lidar_a_command_fails_and_says_why);
+    RUN_TEST(degrees_are_a_sixty_fourth_of_the_units_and_zero_is_no_distance);
+    return UnityEnd();
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The sketch Scan, as it is, against the simulated lidar. A sketch begins once: the tests are one
+ * story, in the order of main(). */
+
+#include <Arduino.h>
+
+#include "Scan/Scan.ino"
+
+#include "unity.h"
+
+#include "virtual_lidar.h"
+
+static VirtualLidar *unit;
+
+static void run_for(unsigned ms)
+{
+    for (unsigned i = 0; i < ms; i++) {
+        unit->pass();
+        loop();
+    }
+}
+
+static std::string printed()
+{
+    return std::string(Serial.sent.begin(), Serial.sent.end());
+}
+
+static bool has_printed(const std::string &text)
+{
+    return printed().find(text) != std::string::npos;
+}
+
+/* Runs until the sketch prints a line, and returns it. */
+static std::string next_line()
+{
+    Serial.sent.clear();
+    for (unsigned i = 0; i < 1500 && Serial.sent.empty(); i++) {
+        run_for(1);
+    }
+    return printed();
+}
+
+/* What is in front, from the lidar's own truth: valid, within 30 degrees of 0. */
+static unsigned nearest_in_front(const std::vector<reference_point_t> &points)
+{
+    unsigned result = 0;
+    for (const reference_point_t &point : points) {
+        const bool in_front = point.angle_q6 <= 1920 || point.angle_q6 >= 21120;
+        if (in_front && point.distance_mm != 0 && (result == 0 || point.distance_mm < result)) {
+            result = point.distance_mm;
+        }
+    }
+    return result;
+}
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+static void the_sketch_tells_the_model_and_every_second_what_is_in_front(void)
+{
+    setup();
+    run_for(3500);
+    TEST_ASSERT_TRUE(has_printed("lidar model 151\r\n"));
+    TEST_ASSERT_TRUE(scans >= 12);
+    const std::string line = next_line();
+    const unsigned truth = nearest_in_front(unit->revolutions[scans]);
+    const std::string expected =
+        std::to_string(scans) + " scans, nearest in front " + std::to_string(truth) + " mm\r\n";
+    TEST_ASSERT_EQUAL_STRING(expected.c_str(), line.c_str());
+}
+
+static void something_near_in_front_is_a_stop(void)
+{
+    unit->placeObstacle(350);
+    run_for(1500);
+    TEST_ASSERT_TRUE(has_printed(" mm: STOP\r\n"));
+    unit->clearObstacles();
+    run_for(1500);
+    TEST_ASSERT_FALSE(next_line().find("STOP") != std::string::npos);
+}
+
+static void a_faulty_lidar_is_a_stop_whatever_it_measures(void)
+{
+    unit->setHealth(SIM_HEALTH_PD);
+    run_for(1500);
+    TEST_ASSERT_TRUE(has_printed("lidar faults 8\r\n"));
+    TEST_ASSERT_TRUE(has_printed(" scans, blind: STOP\r\n"));
+    unit->setHealth(0);
+    run_for(1500);
+    TEST_ASSERT_FALSE(next_line().find("STOP") != std::string::npos);
+}
+
+static void a_lidar_that_has_gone_is_a_stop(void)
+{
+    unit->unplug();
+    run_for(600);
+    const std::string expected = std::to_string(scans) + " scans, blind: STOP\r\n";
+    TEST_ASSERT_EQUAL_STRING(expected.c_str(), next_line().c_str());
+}
+
+int main(void)
+{
+    VirtualLidar lidar_on_the_table;
+    unit = &lidar_on_the_table;
+    UnityBegin("test_arduino_scan.cpp");
+    RUN_TEST(the_sketch_tells_the_model_and_every_second_what_is_in_front);
+    RUN_TEST(something_near_in_front_is_a_stop);
+    RUN_TEST(a_faulty_lidar_is_a_stop_whatever_it_measures);
+    RUN_TEST(a_lidar_that_has_gone_is_a_stop);
+    return UnityEnd();
+}

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The simulated lidar on the stand-in's Serial1, in virtual time, and the truth about what it
+ * sent. */
+
+#ifndef VIRTUAL_LIDAR_H
+#define VIRTUAL_LIDAR_H
+
+#include <Arduino.h>
+
+#include <map>
+#include <vector>
+
+extern "C" {
+#include "reference_decoder.h"
+#include "simulator.h"
+}
+
+class VirtualLidar
+{
+  public:
+    VirtualLidar();
+    /* Lets a millisecond pass: what the sketch has sent arrives, what the lidar sends comes in. */
+    void pass();
+    /* Unplugged: nothing comes any more. */
+    void unplug();
+    /* 10 degrees wide, in front. */
+    void placeObstacle(uint16_t distance_mm);
+    void clearObstacles();
+    /* Reports these faults (section 4), and goes on measuring. */
+    void setHealth(uint8_t bits);
+
+    /* Points by revolution and by packet. */
+    std::map<uint32_t, std::vector<reference_point_t>> revolutions;
+    std::vector<std::vector<reference_point_t>> packets;
+
+  private:
+    static void notePacket(void *context, const sim_packet_t *packet);
+    sim_t sim_;
+    uint64_t now_us_;
+    bool plugged_;
+};
+
+#endif

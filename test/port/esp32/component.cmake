@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# The ESP-IDF component as its manifest has it packed, and the example: in the repository, and
+# copied out alone as the component registry gives it to a user. Built by a model of ESP-IDF's
+# build; and if the variable IDF_PATH of the environment names an ESP-IDF, configured by that too,
+# for its target `linux`.
+#
+#   cmake -D ROOT=DIR -D WORK=DIR -P component.cmake
+
+cmake_minimum_required(VERSION 3.16)
+
+function(run name)
+    execute_process(COMMAND ${ARGN} RESULT_VARIABLE status
+        OUTPUT_VARIABLE output ERROR_VARIABLE output)
+    if(NOT status EQUAL 0)
+        message(FATAL_ERROR "${name}:\n${output}")
+    endif()
+endfunction()
+
+function(build name source)
+    set(ENV{IDF_PATH} ${CMAKE_CURRENT_LIST_DIR}/idf_model)
+    run("${name}, configuring" ${CMAKE_COMMAND} -S ${source} -B ${WORK}/build-${name})
+    run("${name}, building" ${CMAKE_COMMAND} --build ${WORK}/build-${name})
+    message("${name}: configured and built by the model")
+endfunction()
+
+# What the manifest's list names, copied to WORK/packed/tmini.
+function(pack)
+    file(STRINGS ${ROOT}/idf_component.yml lines)
+    string(REGEX REPLACE "^.*;  include:;" "" lines "${lines}")
+    string(REGEX MATCHALL "    - [^;]+" lines "${lines}")
+    foreach(line ${lines})
+        string(REPLACE "    - " "" pattern ${line})
+        file(GLOB names RELATIVE ${ROOT} ${ROOT}/${pattern})
+        if(NOT names)
+            message(FATAL_ERROR "idf_component.yml: nothing is named ${pattern}")
+        endif()
+        foreach(name ${names})
+            get_filename_component(folder ${name} DIRECTORY)
+            file(COPY ${ROOT}/${name} DESTINATION ${WORK}/packed/tmini/${folder})
+        endforeach()
+    endforeach()
+endfunction()
+
+# The registry takes each folder of `examples` for an example.
+function(check_pack)
+    file(GLOB examples RELATIVE ${WORK}/packed/tmini/examples ${WORK}/packed/tmini/examples/*)
+    if(NOT examples STREQUAL "esp32_idf")
+        message(FATAL_ERROR "packed as examples: ${examples}")
+    endif()
+    file(GLOB_RECURSE files RELATIVE ${WORK}/packed/tmini ${WORK}/packed/tmini/*)
+    foreach(file ${files})
+        if(NOT file MATCHES "^(lib|port/esp32|examples/esp32_idf)/|^[^/]*$")
+            message(FATAL_ERROR "packed, but nothing for ESP-IDF: ${file}")
+        endif()
+    endforeach()
+endfunction()
+
+function(configure_for_real idf source)
+    if(NOT EXISTS ${idf}/tools/cmake/project.cmake)
+        message("without ESP-IDF itself: IDF_PATH does not name one")
+        return()
+    endif()
+    set(python python3)
+    if(DEFINED ENV{IDF_PYTHON_ENV_PATH})
+        set(python $ENV{IDF_PYTHON_ENV_PATH}/bin/python)
+    endif()
+    set(ENV{IDF_PATH} ${idf})
+    run("ESP-IDF itself" ${CMAKE_COMMAND} -S ${source} -B ${WORK}/build-idf -G Ninja
+        -D IDF_TARGET=linux -D PYTHON=${python} -D PYTHON_DEPS_CHECKED=1
+        -D SDKCONFIG=${WORK}/build-idf/sdkconfig
+        "-DCOMPONENTS=main\\;tmini")
+    message("${source}: configured by ${idf}")
+endfunction()
+
+set(real_idf "$ENV{IDF_PATH}")
+file(REMOVE_RECURSE ${WORK})
+pack()
+check_pack()
+build(in_the_repository ${ROOT}/examples/esp32_idf)
+
+file(COPY ${WORK}/packed/tmini/examples/esp32_idf DESTINATION ${WORK})
+file(COPY ${WORK}/packed/tmini DESTINATION ${WORK}/esp32_idf/components)
+build(copied_out ${WORK}/esp32_idf)
+configure_for_real("${real_idf}" ${WORK}/esp32_idf)
+
+run("the example's obstacle.c is that of obstacle_stop" ${CMAKE_COMMAND} -E compare_files
+    ${ROOT}/examples/esp32_idf/main/obstacle.c ${ROOT}/examples/obstacle_stop/obstacle.c)
+run("the example's obstacle.h is that of obstacle_stop" ${CMAKE_COMMAND} -E compare_files
+    ${ROOT}/examples/esp32_idf/main/obstacle.h ${ROOT}/examples/obstacle_stop/obstacle.h)

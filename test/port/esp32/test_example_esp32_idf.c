@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The program examples/esp32_idf, as it is, against the simulated lidar in its room. */
+
+#include <string.h>
+
+#include "unity.h"
+
+#include "freertos/task.h"
+#include "virtual_idf.h"
+
+#define STOP_PIN 10 /* CONFIG_EXAMPLE_STOP_GPIO */
+
+void app_main(void);
+
+static void run_program(void *argument)
+{
+    (void)argument;
+    app_main();
+}
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+static void assert_logged(const char *text)
+{
+    if (strstr(virtual_idf_log(), text) == NULL) {
+        TEST_FAIL_MESSAGE(virtual_idf_log());
+    }
+}
+
+/* One program, one story: it runs for ever. */
+void test_it_tells_who_the_lidar_is_and_stops_the_robot_only_while_it_must(void)
+{
+    virtual_idf_begin(NULL);
+    xTaskCreatePinnedToCore(run_program, "main", 3584, NULL, 1, NULL, 0);
+
+    vTaskDelay(20);
+    TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN)); /* Nothing seen yet. */
+
+    vTaskDelay(300);
+    assert_logged("I lidar: model 151, firmware 1.2, hardware 1, serial 2026031700012345\n");
+    assert_logged("I lidar: health: faults: none\n");
+    assert_logged(" scans, nearest in front ");
+    assert_logged(", go; lost: 0 checksums, 0 bytes, 0 overflows\n");
+    TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
+
+    virtual_idf_place_obstacle(0, 640, 250); /* 10 degrees wide, 250 mm ahead. */
+    vTaskDelay(100);
+    TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN));
+    assert_logged(", STOP;");
+
+    virtual_idf_clear_obstacles();
+    vTaskDelay(100);
+    TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
+
+    virtual_idf_set_health(SIM_HEALTH_PD); /* Ranges go on coming, all of them far. */
+    vTaskDelay(100);
+    TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN));
+    assert_logged("W lidar: faults: PD\n");
+
+    virtual_idf_set_health(0);
+    vTaskDelay(100);
+    TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
+
+    virtual_idf_power_lidar(false);
+    vTaskDelay(200);
+    TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN));
+    assert_logged("W lidar: lost; trying to get it back\n");
+
+    virtual_idf_power_lidar(true);
+    vTaskDelay(2500);
+    assert_logged("I lidar: back again\n");
+    TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
+}

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The ESP32 port with a receiving task beside the polling one, against the simulated lidar. */
+
+#include <string.h>
+
+#include "unity.h"
+
+#include "freertos/task.h"
+#include "reference_decoder.h"
+#include "tmini/tmini_blocking.h"
+#include "tmini_esp32.h"
+#include "virtual_idf.h"
+
+#define REVOLUTIONS 16u
+#define POINTS_MAX 2000u
+
+static reference_point_t truth[REVOLUTIONS][POINTS_MAX];
+static size_t truth_count[REVOLUTIONS];
+static uint32_t packets_sent;
+
+static uint8_t rx[1024];
+static tmini_point_t points[POINTS_MAX];
+static tmini_t lidar;
+static tmini_esp32_t board;
+static tmini_esp32_config_t wiring;
+
+static void note_packet(void *context, const sim_packet_t *packet)
+{
+    (void)context;
+    packets_sent++;
+    if (packet->revolution >= REVOLUTIONS) {
+        return;
+    }
+    size_t *const count = &truth_count[packet->revolution];
+    const unsigned samples = packet->bytes[3]; /* LSN */
+    for (unsigned i = 0; i < samples && *count < POINTS_MAX; i++) {
+        truth[packet->revolution][(*count)++] = reference_point(packet->bytes, i);
+    }
+}
+
+void setUp(void)
+{
+    const sim_observer_t observer = {.on_packet = note_packet};
+    const tmini_config_t config = {
+        .port = &tmini_esp32_port,
+        .port_context = &board,
+        .rx_buffer = rx,
+        .rx_size = sizeof rx,
+        .points = points,
+        .max_points = POINTS_MAX,
+    };
+    memset(truth_count, 0, sizeof truth_count);
+    packets_sent = 0;
+    virtual_idf_begin(&observer);
+    memset(&board, 0, sizeof board);
+    wiring = (tmini_esp32_config_t)TMINI_ESP32_CONFIG_DEFAULT;
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+}
+
+/* Whatever a test did: nothing is left behind, and nobody used what was not there. */
+void tearDown(void)
+{
+    (void)tmini_esp32_stop(&board);
+    TEST_ASSERT_EQUAL_UINT(0, virtual_idf_tasks());
+    TEST_ASSERT_FALSE(virtual_idf_driver_is_installed());
+    TEST_ASSERT_EQUAL_UINT(0, virtual_idf_locks_held());
+    TEST_ASSERT_EQUAL_UINT(0, virtual_idf_stray_calls());
+}
+
+static void start_port(void)
+{
+    TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_start(&board, &lidar));
+}
+
+static void start_port_and_lidar(void)
+{
+    start_port();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
+}
+
+/* Polls until `wanted` happens; fails when it does not within two seconds. */
+static void poll_until(tmini_event_t wanted)
+{
+    const uint32_t begun_ms = tmini_esp32_port.now_ms(&board);
+    while (tmini_esp32_port.now_ms(&board) - begun_ms < 2000) {
+        const tmini_event_t event = tmini_poll(&lidar);
+        if (event == wanted) {
+            return;
+        }
+        if (event == TMINI_EVENT_NONE) {
+            tmini_esp32_port.wait(&board);
+        }
+    }
+    TEST_FAIL_MESSAGE("it did not happen in time");
+}
+
+static void assert_scan_is_revolution(uint32_t revolution)
+{
+    const tmini_scan_t *const scan = tmini_scan(&lidar);
+    TEST_ASSERT_TRUE(scan->complete);
+    TEST_ASSERT_EQUAL_UINT(truth_count[revolution], scan->count);
+    for (unsigned i = 0; i < scan->count; i++) {
+        TEST_ASSERT_EQUAL_UINT(truth[revolution][i].angle_q6, scan->points[i].angle_q6);
+        TEST_ASSERT_EQUAL_UINT(truth[revolution][i].distance_mm, scan->points[i].distance_mm);
+        TEST_ASSERT_EQUAL_UINT(truth[revolution][i].intensity, scan->points[i].intensity);
+        TEST_ASSERT_EQUAL_UINT(truth[revolution][i].flag, scan->points[i].flag);
+    }
+}
+
+static void assert_ten_true_scans(void)
+{
+    for (uint32_t revolution = 1; revolution <= 10; revolution++) {
+        poll_until(TMINI_EVENT_SCAN);
+        assert_scan_is_revolution(revolution);
+    }
+}
+
+void test_every_point_arrives_through_a_task_of_its_own(void)
+{
+    start_port_and_lidar();
+    assert_ten_true_scans();
+}
+
+void test_every_point_arrives_through_the_callers_own_loop(void)
+{
+    wiring.with_task = false;
+    start_port_and_lidar();
+    assert_ten_true_scans();
+}
+
+void test_every_point_arrives_when_most_events_find_the_queue_full(void)
+{
+    tmini_esp32_counters_t counters;
+    wiring.queue_length = 1;
+    wiring.with_task = false; /* Polled every 10 ms, for some twenty events. */
+    start_port_and_lidar();
+    for (uint32_t revolution = 1; revolution <= 3;) {
+        vTaskDelay(1);
+        (void)tmini_esp32_receive(&board, 0);
+        for (tmini_event_t event = tmini_poll(&lidar); event != TMINI_EVENT_NONE;
+             event = tmini_poll(&lidar)) {
+            if (event == TMINI_EVENT_SCAN) {
+                assert_scan_is_revolution(revolution++);
+            }
+        }
+    }
+    tmini_esp32_counters(&board, &counters);
+    TEST_ASSERT_TRUE(counters.queues_full > 0);
+}
+
+/* 20 ms of bytes, 262, are twice the FIFO. */
+void test_an_overflow_costs_the_packets_that_it_hit_and_no_other(void)
+{
+    tmini_esp32_counters_t uart;
+    tmini_counters_t counters;
+    start_port_and_lidar();
+    poll_until(TMINI_EVENT_SCAN);
+    virtual_idf_hold_interrupts(20000);
+    poll_until(TMINI_EVENT_SCAN);
+    TEST_ASSERT_FALSE(tmini_scan(&lidar)->complete);
+    TEST_ASSERT_NOT_EQUAL_UINT16(0, tmini_scan(&lidar)->gaps);
+    poll_until(TMINI_EVENT_SCAN);
+    assert_scan_is_revolution(3);
+
+    tmini_esp32_counters(&board, &uart);
+    tmini_counters(&lidar, &counters);
+    TEST_ASSERT_EQUAL_UINT32(1, uart.fifo_overflows);
+    /* Two whole packets' time, and the two that it only touched; the last may still be on its
+     * way. */
+    TEST_ASSERT_TRUE(packets_sent - counters.parser.packets <= 4 + 1);
+}
+
+static void poll_all(void)
+{
+    while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
+    }
+}
+
+/* Receiving first: what has come during the pause is no silence. */
+static void receive_and_poll_all(void)
+{
+    size_t received = 0;
+    do {
+        received = tmini_esp32_receive(&board, 0);
+        poll_all();
+    } while (received > 0);
+}
+
+static void assert_nothing_was_lost(void)
+{
+    tmini_esp32_counters_t uart;
+    tmini_counters_t counters;
+    tmini_esp32_counters(&board, &uart);
+    tmini_counters(&lidar, &counters);
+    TEST_ASSERT_EQUAL_UINT32(0, counters.parser.bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(0, uart.fifo_overflows);
+    TEST_ASSERT_EQUAL_UINT32(0, uart.buffers_full);
+    TEST_ASSERT_TRUE(packets_sent > 200);
+    TEST_ASSERT_TRUE(packets_sent - counters.parser.packets <= 12); /* Still in the buffers. */
+}
+
+/* 1570 bytes, more than the lidar's ring holds. In between, the loop comes round every 10 ms. */
+void test_a_pause_of_120_ms_between_polls_loses_nothing(void)
+{
+    start_port_and_lidar();
+    for (unsigned i = 0; i < 400; i++) {
+        vTaskDelay(i % 20 == 0 ? 12 : 1);
+        poll_all();
+    }
+    assert_nothing_was_lost();
+}
+
+/* The same each time round: what the driver's buffer holds is fetched as soon as there is room. */
+void test_a_loop_that_always_pauses_for_120_ms_and_receives_by_itself_loses_nothing(void)
+{
+    wiring.with_task = false;
+    start_port_and_lidar();
+    for (unsigned i = 0; i < 40; i++) {
+        vTaskDelay(12);
+        receive_and_poll_all();
+    }
+    assert_nothing_was_lost();
+}
+
+void test_a_port_is_stopped_while_bytes_come_and_started_again(void)
+{
+    for (unsigned i = 0; i < 20; i++) {
+        start_port();
+        (void)tmini_start(&lidar); /* The first time; after that it scans already. */
+        vTaskDelay(20 + i);
+        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&board));
+        TEST_ASSERT_EQUAL_UINT(0, virtual_idf_tasks());
+        TEST_ASSERT_FALSE(virtual_idf_driver_is_installed());
+    }
+}
+
+void test_commands_that_wait_work_with_a_task_and_without(void)
+{
+    for (unsigned i = 0; i < 2; i++) {
+        tmini_info_t info;
+        wiring.with_task = i == 0;
+        start_port();
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 1000));
+        TEST_ASSERT_EQUAL_UINT(151, info.model);
+        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&board));
+    }
+}

@@ -1,0 +1,586 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "virtual_idf.h"
+
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "driver/gpio.h"
+#include "driver/uart.h"
+#include "esp_log.h"
+#include "esp_pm.h"
+#include "esp_timer.h"
+#include "freertos/task.h"
+
+#define STEP_US 500u
+#define TICK_US (1000000u / CONFIG_FREERTOS_HZ)
+#define FIFO_SIZE 128u
+#define BUFFER_MAX 16384u
+#define QUEUE_MAX 128u
+#define PINS 64
+#define WAITERS 8u
+
+typedef struct {
+    bool used;
+    bool released;
+    bool for_event; /* Or for time alone. */
+    uint64_t until_us;
+} waiter_t;
+
+static struct {
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    uint64_t now_us;
+    uint64_t held_until_us;
+    unsigned tasks;
+    unsigned waiting;
+    waiter_t waiters[WAITERS];
+
+    sim_t lidar;
+    bool installed;
+    unsigned stray_calls;
+    uint8_t fifo[FIFO_SIZE];
+    size_t fifo_count;
+    bool fifo_overflowed;
+    uint8_t buffer[BUFFER_MAX];
+    size_t buffer_size;
+    size_t buffer_count;
+    uint8_t stash
+        [FIFO_SIZE]; /* What did not fit into the buffer; while there is any, no more is read. */
+    size_t stash_count;
+    uart_event_t queue[QUEUE_MAX];
+    size_t queue_size;
+    size_t queue_count;
+
+    unsigned locks_held; /* Of the power management. */
+    int pins[PINS];
+    char log[16384];
+    size_t log_length;
+} world = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
+
+static void lock(void)
+{
+    pthread_mutex_lock(&world.lock);
+}
+
+static void unlock(void)
+{
+    pthread_mutex_unlock(&world.lock);
+}
+
+/* ------------------------------------------------------------------------- the UART's interrupt */
+
+/* An event that finds the queue full is lost, as in ESP-IDF. */
+static void post(uart_event_type_t type, size_t size)
+{
+    if (world.queue_count < world.queue_size) {
+        world.queue[world.queue_count++] = (uart_event_t){.type = type, .size = size};
+    }
+}
+
+static void fill_fifo(void)
+{
+    uint8_t bytes[256];
+    const size_t count = sim_transmit(&world.lidar, world.now_us, bytes, sizeof bytes);
+    for (size_t i = 0; i < count; i++) {
+        if (world.fifo_count < FIFO_SIZE) {
+            world.fifo[world.fifo_count++] = bytes[i];
+        } else {
+            world.fifo_overflowed = true;
+        }
+    }
+}
+
+static bool keep(const uint8_t *bytes, size_t count)
+{
+    if (world.buffer_size - world.buffer_count < count) {
+        return false;
+    }
+    memcpy(&world.buffer[world.buffer_count], bytes, count);
+    world.buffer_count += count;
+    return true;
+}
+
+static void empty_fifo(void)
+{
+    if (keep(world.fifo, world.fifo_count)) {
+        post(UART_DATA, world.fifo_count);
+    } else {
+        memcpy(world.stash, world.fifo, world.fifo_count);
+        world.stash_count = world.fifo_count;
+        post(UART_BUFFER_FULL, world.fifo_count);
+    }
+    world.fifo_count = 0;
+}
+
+/* ESP-IDF's interrupt handler empties the FIFO into its buffer while that has room; once it has
+ * not, it puts the FIFO's bytes aside, says so once, and does not come back before somebody has
+ * read. On overflow it resets the FIFO, whatever is in it. */
+static void serve_interrupt(void)
+{
+    if (!world.installed || world.now_us < world.held_until_us) {
+        return;
+    }
+    if (world.fifo_overflowed) {
+        world.fifo_overflowed = false;
+        world.fifo_count = 0;
+        post(UART_FIFO_OVF, 0);
+    }
+    if (world.fifo_count > 0 && world.stash_count == 0) {
+        empty_fifo();
+    }
+}
+
+/* ------------------------------------------------------------------------------- time and tasks */
+
+static bool is_over(const waiter_t *waiter)
+{
+    return world.now_us >= waiter->until_us || (waiter->for_event && world.queue_count > 0);
+}
+
+static void release_waiters(void)
+{
+    for (unsigned i = 0; i < WAITERS; i++) {
+        waiter_t *const waiter = &world.waiters[i];
+        if (waiter->used && !waiter->released && is_over(waiter)) {
+            waiter->released = true;
+            world.waiting--;
+        }
+    }
+    pthread_cond_broadcast(&world.changed);
+}
+
+static void let_time_pass(void)
+{
+    while (world.tasks > 0 && world.waiting == world.tasks) {
+        world.now_us += STEP_US;
+        fill_fifo();
+        serve_interrupt();
+        release_waiters();
+    }
+}
+
+static void wait_until(uint64_t until_us, bool for_event)
+{
+    waiter_t *waiter = world.waiters;
+    while (waiter->used) {
+        waiter++;
+    }
+    *waiter = (waiter_t){.used = true, .for_event = for_event, .until_us = until_us};
+    world.waiting++;
+    release_waiters();
+    let_time_pass();
+    while (!waiter->released) {
+        pthread_cond_wait(&world.changed, &world.lock);
+    }
+    waiter->used = false;
+}
+
+typedef struct {
+    TaskFunction_t function;
+    void *argument;
+} start_t;
+
+static void *run_task(void *argument)
+{
+    const start_t start = *(start_t *)argument;
+    free(argument);
+    start.function(start.argument);
+    return NULL;
+}
+
+BaseType_t xTaskCreatePinnedToCore(TaskFunction_t function, const char *name, uint32_t stack_depth,
+                                   void *argument, UBaseType_t priority, TaskHandle_t *task,
+                                   BaseType_t core)
+{
+    pthread_t thread;
+    start_t *const start = malloc(sizeof *start);
+    (void)name;
+    (void)stack_depth;
+    (void)priority;
+    (void)task;
+    (void)core;
+    if (start == NULL) {
+        return pdFAIL;
+    }
+    *start = (start_t){.function = function, .argument = argument};
+    lock();
+    world.tasks++;
+    unlock();
+    if (pthread_create(&thread, NULL, run_task, start) != 0) {
+        abort();
+    }
+    pthread_detach(thread);
+    return pdPASS;
+}
+
+void vTaskDelete(TaskHandle_t task)
+{
+    (void)task; /* Always the calling one. */
+    lock();
+    world.tasks--;
+    let_time_pass();
+    unlock();
+    pthread_exit(NULL);
+}
+
+void vTaskDelay(TickType_t ticks)
+{
+    lock();
+    wait_until(world.now_us + (uint64_t)ticks * TICK_US, false);
+    unlock();
+}
+
+int64_t esp_timer_get_time(void)
+{
+    lock();
+    const int64_t now_us = (int64_t)world.now_us;
+    unlock();
+    return now_us;
+}
+
+BaseType_t xQueueReceive(QueueHandle_t queue, void *buffer, TickType_t ticks)
+{
+    (void)queue;
+    lock();
+    if (world.queue_count == 0 && ticks > 0) {
+        wait_until(world.now_us + (uint64_t)ticks * TICK_US, true);
+    }
+    const bool received = world.queue_count > 0;
+    if (received) {
+        memcpy(buffer, &world.queue[0], sizeof world.queue[0]);
+        world.queue_count--;
+        memmove(&world.queue[0], &world.queue[1], world.queue_count * sizeof world.queue[0]);
+    }
+    unlock();
+    return received ? pdTRUE : pdFALSE;
+}
+
+UBaseType_t uxQueueSpacesAvailable(const QueueHandle_t queue)
+{
+    (void)queue;
+    lock();
+    const UBaseType_t spaces = (UBaseType_t)(world.queue_size - world.queue_count);
+    unlock();
+    return spaces;
+}
+
+/* ---------------------------------------------------------------------------------- UART driver */
+
+/* True, with the lock held, if there is a driver to call. */
+static bool enter_driver(void)
+{
+    lock();
+    if (!world.installed) {
+        world.stray_calls++;
+        unlock();
+    }
+    return world.installed;
+}
+
+static esp_err_t check_driver(void)
+{
+    if (!enter_driver()) {
+        return ESP_FAIL;
+    }
+    unlock();
+    return ESP_OK;
+}
+
+esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffer_size,
+                              int queue_size, QueueHandle_t *queue, int intr_alloc_flags)
+{
+    (void)uart;
+    (void)tx_buffer_size;
+    (void)intr_alloc_flags;
+    lock();
+    const bool was_installed = world.installed;
+    if (!was_installed) {
+        world.installed = true;
+        world.buffer_size = (size_t)rx_buffer_size;
+        world.buffer_count = 0;
+        world.queue_size = (size_t)queue_size;
+        world.queue_count = 0;
+        world.stash_count = 0;
+        world.fifo_count = 0;
+        world.fifo_overflowed = false;
+    }
+    *queue = (QueueHandle_t)(void *)&world.queue;
+    unlock();
+    return was_installed ? ESP_FAIL : ESP_OK;
+}
+
+esp_err_t uart_driver_delete(uart_port_t uart)
+{
+    (void)uart;
+    if (!enter_driver()) {
+        return ESP_FAIL;
+    }
+    world.installed = false;
+    unlock();
+    return ESP_OK;
+}
+
+esp_err_t uart_param_config(uart_port_t uart, const uart_config_t *config)
+{
+    (void)uart;
+    return config->baud_rate == 230400 ? ESP_OK : ESP_FAIL;
+}
+
+esp_err_t uart_set_pin(uart_port_t uart, int tx, int rx, int rts, int cts)
+{
+    (void)uart;
+    (void)rts;
+    (void)cts;
+    return tx != rx ? ESP_OK : ESP_FAIL;
+}
+
+esp_err_t uart_set_rx_full_threshold(uart_port_t uart, int threshold)
+{
+    (void)uart;
+    (void)threshold;
+    return check_driver();
+}
+
+esp_err_t uart_set_rx_timeout(uart_port_t uart, const uint8_t symbols)
+{
+    (void)uart;
+    (void)symbols;
+    return check_driver();
+}
+
+esp_err_t uart_enable_intr_mask(uart_port_t uart, uint32_t mask)
+{
+    (void)uart;
+    (void)mask;
+    return check_driver();
+}
+
+esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size)
+{
+    (void)uart;
+    if (!enter_driver()) {
+        return ESP_FAIL;
+    }
+    *size = world.buffer_count;
+    unlock();
+    return ESP_OK;
+}
+
+int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t ticks)
+{
+    (void)uart;
+    (void)ticks;
+    if (!enter_driver()) {
+        return -1;
+    }
+    const size_t count = world.buffer_count < length ? world.buffer_count : length;
+    memcpy(buffer, world.buffer, count);
+    world.buffer_count -= count;
+    memmove(world.buffer, &world.buffer[count], world.buffer_count);
+    if (world.stash_count > 0 && keep(world.stash, world.stash_count)) {
+        world.stash_count = 0;
+    }
+    unlock();
+    return (int)count;
+}
+
+int uart_tx_chars(uart_port_t uart, const char *buffer, uint32_t length)
+{
+    (void)uart;
+    if (!enter_driver()) {
+        return -1;
+    }
+    sim_receive(&world.lidar, (const uint8_t *)buffer, length, world.now_us);
+    unlock();
+    return (int)length;
+}
+
+/* ------------------------------------------------------------------------------------- the rest */
+
+esp_err_t gpio_pullup_en(gpio_num_t pin)
+{
+    (void)pin;
+    return ESP_OK;
+}
+
+esp_err_t esp_pm_lock_create(esp_pm_lock_type_t type, int arg, const char *name,
+                             esp_pm_lock_handle_t *created)
+{
+    (void)type;
+    (void)arg;
+    (void)name;
+    *created = (esp_pm_lock_handle_t)(void *)&world.locks_held;
+    return ESP_OK;
+}
+
+esp_err_t esp_pm_lock_acquire(esp_pm_lock_handle_t held)
+{
+    (void)held;
+    lock();
+    world.locks_held++;
+    unlock();
+    return ESP_OK;
+}
+
+esp_err_t esp_pm_lock_release(esp_pm_lock_handle_t held)
+{
+    (void)held;
+    lock();
+    world.locks_held--;
+    unlock();
+    return ESP_OK;
+}
+
+esp_err_t esp_pm_lock_delete(esp_pm_lock_handle_t held)
+{
+    (void)held;
+    return ESP_OK;
+}
+
+esp_err_t gpio_set_direction(gpio_num_t pin, gpio_mode_t mode)
+{
+    (void)mode;
+    lock();
+    world.pins[pin] = 0;
+    unlock();
+    return ESP_OK;
+}
+
+esp_err_t gpio_set_level(gpio_num_t pin, uint32_t level)
+{
+    lock();
+    world.pins[pin] = (int)level;
+    unlock();
+    return ESP_OK;
+}
+
+void esp_log_line(char level, const char *tag, const char *format, ...)
+{
+    va_list arguments;
+    char *const end = world.log + sizeof world.log;
+    lock();
+    char *at = world.log + world.log_length;
+    at += snprintf(at, (size_t)(end - at), "%c %s: ", level, tag);
+    va_start(arguments, format);
+    at += vsnprintf(at, (size_t)(end - at), format, arguments);
+    va_end(arguments);
+    at += snprintf(at, (size_t)(end - at), "\n");
+    world.log_length = (size_t)(at - world.log);
+    if (world.log_length > sizeof world.log - 1024u) {
+        abort(); /* More than any test logs. */
+    }
+    unlock();
+}
+
+void esp_stop(esp_err_t error)
+{
+    fprintf(stderr, "ESP_ERROR_CHECK: 0x%x\n", (unsigned)error);
+    abort();
+}
+
+void virtual_idf_begin(const sim_observer_t *observer)
+{
+    const sim_config_t config = sim_default_config();
+    lock();
+    world.now_us = 0;
+    world.held_until_us = 0;
+    world.tasks = 1;
+    world.waiting = 0;
+    memset(world.waiters, 0, sizeof world.waiters);
+    world.installed = false;
+    world.stray_calls = 0;
+    world.locks_held = 0;
+    world.log_length = 0;
+    world.log[0] = '\0';
+    for (unsigned i = 0; i < PINS; i++) {
+        world.pins[i] = -1;
+    }
+    sim_init(&world.lidar, &config);
+    sim_observe(&world.lidar, observer);
+    unlock();
+}
+
+void virtual_idf_hold_interrupts(uint32_t duration_us)
+{
+    lock();
+    world.held_until_us = world.now_us + duration_us;
+    unlock();
+}
+
+void virtual_idf_place_obstacle(uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm)
+{
+    lock();
+    sim_place_obstacle(&world.lidar, angle_q6, width_q6, distance_mm);
+    unlock();
+}
+
+void virtual_idf_clear_obstacles(void)
+{
+    lock();
+    sim_clear_obstacles(&world.lidar);
+    unlock();
+}
+
+void virtual_idf_power_lidar(bool on)
+{
+    lock();
+    sim_power(&world.lidar, on, world.now_us);
+    unlock();
+}
+
+void virtual_idf_set_health(uint8_t bits)
+{
+    lock();
+    sim_set_health(&world.lidar, bits);
+    unlock();
+}
+
+unsigned virtual_idf_locks_held(void)
+{
+    lock();
+    const unsigned held = world.locks_held;
+    unlock();
+    return held;
+}
+
+bool virtual_idf_driver_is_installed(void)
+{
+    lock();
+    const bool installed = world.installed;
+    unlock();
+    return installed;
+}
+
+unsigned virtual_idf_tasks(void)
+{
+    lock();
+    const unsigned tasks = world.tasks - 1;
+    unlock();
+    return tasks;
+}
+
+unsigned virtual_idf_stray_calls(void)
+{
+    lock();
+    const unsigned calls = world.stray_calls;
+    unlock();
+    return calls;
+}
+
+const char *virtual_idf_log(void)
+{
+    return world.log; /* Grows only while the caller waits. */
+}
+
+int virtual_idf_pin(int pin)
+{
+    lock();
+    const int level = world.pins[pin];
+    unlock();
+    return level;
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* As much of ESP-IDF as the ESP32 port needs, on threads, with the simulated lidar on the UART.
+ *
+ * Tasks are real threads and run at the same time, as on two cores. Time is virtual: it goes on, by
+ * up to half a millisecond, only when all tasks wait for it. So nothing depends on how busy the
+ * computer is. */
+
+#ifndef VIRTUAL_IDF_H
+#define VIRTUAL_IDF_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "simulator.h"
+
+/* A world without tasks but the caller's, in which the lidar is told to `observer`. */
+void virtual_idf_begin(const sim_observer_t *observer);
+
+/* The UART's interrupt is held off for so long, as by an operation on the flash. */
+void virtual_idf_hold_interrupts(uint32_t duration_us);
+
+/* What happens to the lidar: simulator.h. */
+void virtual_idf_place_obstacle(uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm);
+void virtual_idf_clear_obstacles(void);
+void virtual_idf_power_lidar(bool on);
+void virtual_idf_set_health(uint8_t bits);
+
+bool virtual_idf_driver_is_installed(void);
+
+/* Locks of the power management that are held. */
+unsigned virtual_idf_locks_held(void);
+
+/* Tasks besides the caller's. */
+unsigned virtual_idf_tasks(void);
+
+/* How many calls named a UART whose driver was not installed: 0, if all is well. */
+unsigned virtual_idf_stray_calls(void);
+
+/* What has been logged, as text. */
+const char *virtual_idf_log(void);
+
+/* The level of a pin; -1 if it is no output. */
+int virtual_idf_pin(int pin);
+
+#endif

@@ -1,0 +1,480 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "freertos_model.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "board.h"
+#include "freertos_api.h"
+
+#define STEP_US 20u
+#define FIFO_SIZE 16u
+#define TASKS 4u
+#define NEVER UINT64_MAX
+#define STACK_WORDS_MIN 128u
+
+struct freertos_task {
+    pthread_t thread;
+    pthread_cond_t turn;
+    TaskFunction_t function;
+    void *argument;
+    UBaseType_t priority;
+    bool used;
+    bool suspended;
+    bool waiting; /* For a notification, or for time alone, */
+    bool for_notice;
+    uint64_t until_us; /* or for this time. */
+    uint32_t notices;
+};
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+
+static struct {
+    struct freertos_task tasks[TASKS]; /* The first is the test's. */
+    struct freertos_task *current;
+    bool ending;
+    bool undisturbed;
+    bool in_interrupt;
+    uint64_t now_us;
+    uint64_t skipped_us;
+    sim_t lidar;
+    bool interrupt_enabled;
+    uint8_t fifo[FIFO_SIZE];
+    unsigned count;
+    bool overrun;
+    uint64_t last_us;
+    uint32_t line_bytes;
+    uint32_t overrun_bytes;
+    unsigned wakes;
+    char console[8192];
+    size_t console_length;
+} world;
+
+void freertos_model_assert(const char *condition)
+{
+    fprintf(stderr, "assertion: %s\n", condition);
+    abort();
+}
+
+static void demand(bool condition, const char *what)
+{
+    if (!condition) {
+        freertos_model_assert(what);
+    }
+}
+
+/* ----------------------------------------------------------------------------- time, interrupts */
+
+static void receive_bytes(void)
+{
+    uint8_t byte;
+    while (sim_transmit(&world.lidar, world.now_us, &byte, 1) == 1) {
+        world.line_bytes++;
+        world.last_us = world.now_us;
+        if (world.count < FIFO_SIZE) {
+            world.fifo[world.count++] = byte;
+        } else {
+            world.overrun = true;
+            world.overrun_bytes++;
+        }
+    }
+}
+
+/* At half a FIFO, or after 32 bit times of silence. */
+static bool wants_interrupt(void)
+{
+    const bool timed_out = world.count > 0 && world.now_us - world.last_us >= 139;
+    return world.interrupt_enabled && (world.count >= FIFO_SIZE / 2 || timed_out);
+}
+
+static void pass_step(void)
+{
+    world.now_us += STEP_US;
+    receive_bytes();
+    if (!world.undisturbed && wants_interrupt()) {
+        world.in_interrupt = true;
+        UART1_Handler();
+        world.in_interrupt = false;
+    }
+}
+
+/* --------------------------------------------------------------------------------------- tasks */
+
+static bool is_ready(const struct freertos_task *task)
+{
+    if (!task->used || task->suspended) {
+        return false;
+    }
+    return !task->waiting || (task->for_notice && task->notices > 0) ||
+           world.now_us >= task->until_us;
+}
+
+static struct freertos_task *most_urgent(void)
+{
+    struct freertos_task *chosen = NULL;
+    for (unsigned i = 0; i < TASKS; i++) {
+        struct freertos_task *const task = &world.tasks[i];
+        if (is_ready(task) && (chosen == NULL || task->priority > chosen->priority)) {
+            chosen = task;
+        }
+    }
+    return chosen;
+}
+
+/* Gives the processor to the most urgent task, and waits until it is the caller's again. */
+static void reschedule(struct freertos_task *self)
+{
+    struct freertos_task *next = most_urgent();
+    while (next == NULL) {
+        pass_step();
+        next = most_urgent();
+    }
+    next->waiting = false;
+    world.current = next;
+    pthread_cond_signal(&next->turn);
+    while (world.current != self && !world.ending) {
+        pthread_cond_wait(&self->turn, &lock);
+    }
+    if (world.ending && self != &world.tasks[0]) {
+        pthread_mutex_unlock(&lock);
+        pthread_exit(NULL);
+    }
+}
+
+static void yield_to_more_urgent(void)
+{
+    struct freertos_task *const self = world.current;
+    const struct freertos_task *const next = most_urgent();
+    if (next != NULL && next != self && next->priority > self->priority) {
+        reschedule(self);
+    }
+}
+
+static uint64_t after(TickType_t ticks)
+{
+    if (ticks == portMAX_DELAY) {
+        return NEVER;
+    }
+    return world.now_us + (uint64_t)ticks * 1000000u / configTICK_RATE_HZ;
+}
+
+static void wait_until(uint64_t until_us, bool for_notice)
+{
+    struct freertos_task *const self = world.current;
+    demand(!world.in_interrupt, "no waiting in an interrupt");
+    self->waiting = true;
+    self->for_notice = for_notice;
+    self->until_us = until_us;
+    reschedule(self);
+}
+
+static void *run_task(void *argument)
+{
+    struct freertos_task *const self = argument;
+    pthread_mutex_lock(&lock);
+    while (world.current != self && !world.ending) {
+        pthread_cond_wait(&self->turn, &lock);
+    }
+    if (!world.ending) {
+        self->function(self->argument); /* Holding the lock: the processor is its own. */
+        freertos_model_assert("a task must not return");
+    }
+    pthread_mutex_unlock(&lock);
+    return NULL;
+}
+
+static struct freertos_task *new_task(UBaseType_t priority)
+{
+    for (unsigned i = 0; i < TASKS; i++) {
+        if (!world.tasks[i].used) {
+            world.tasks[i] = (struct freertos_task){.used = true, .priority = priority};
+            pthread_cond_init(&world.tasks[i].turn, NULL);
+            return &world.tasks[i];
+        }
+    }
+    freertos_model_assert("no more tasks");
+    return NULL;
+}
+
+static void end_tasks(void)
+{
+    world.ending = true;
+    for (unsigned i = 1; i < TASKS; i++) {
+        if (world.tasks[i].used) {
+            pthread_cond_signal(&world.tasks[i].turn);
+            pthread_mutex_unlock(&lock);
+            pthread_join(world.tasks[i].thread, NULL);
+            pthread_mutex_lock(&lock);
+        }
+    }
+}
+
+void freertos_model_begin(const sim_observer_t *observer, unsigned priority)
+{
+    const sim_config_t config = sim_default_config();
+    if (world.current == NULL) {
+        pthread_mutex_lock(&lock); /* The test's thread has the processor from here on. */
+    }
+    end_tasks();
+    memset(&world, 0, sizeof world);
+    sim_init(&world.lidar, &config);
+    sim_observe(&world.lidar, observer);
+    world.current = new_task(priority);
+}
+
+TaskHandle_t xTaskCreateStatic(TaskFunction_t function, const char *name, uint32_t stack_words,
+                               void *argument, UBaseType_t priority, StackType_t *stack,
+                               StaticTask_t *memory)
+{
+    demand(name != NULL && stack != NULL && memory != NULL, "a task needs memory");
+    demand(stack_words >= STACK_WORDS_MIN && priority < configMAX_PRIORITIES, "a task's size");
+    struct freertos_task *const task = new_task(priority);
+    memset(stack, 0xA5, stack_words * sizeof *stack);
+    memory->kept = task;
+    task->function = function;
+    task->argument = argument;
+    demand(pthread_create(&task->thread, NULL, run_task, task) == 0, "a thread");
+    yield_to_more_urgent();
+    return task;
+}
+
+TaskHandle_t xTaskGetCurrentTaskHandle(void)
+{
+    return world.current;
+}
+
+TickType_t xTaskGetTickCount(void)
+{
+    return (TickType_t)((world.now_us + world.skipped_us) * configTICK_RATE_HZ / 1000000u);
+}
+
+void vTaskDelay(TickType_t ticks)
+{
+    wait_until(after(ticks), false);
+}
+
+void vTaskSuspend(TaskHandle_t task)
+{
+    demand(task == NULL, "only itself");
+    world.current->suspended = true;
+    reschedule(world.current);
+}
+
+/* The tasks exist; they run whenever the test's task lets them. */
+void vTaskStartScheduler(void) {}
+
+BaseType_t xTaskNotifyGiveIndexed(TaskHandle_t task, UBaseType_t index)
+{
+    demand(index < configTASK_NOTIFICATION_ARRAY_ENTRIES, "an index");
+    demand(!world.in_interrupt, "not from an interrupt");
+    task->notices++;
+    yield_to_more_urgent();
+    return pdPASS;
+}
+
+void vTaskNotifyGiveIndexedFromISR(TaskHandle_t task, UBaseType_t index, BaseType_t *woken)
+{
+    demand(index < configTASK_NOTIFICATION_ARRAY_ENTRIES, "an index");
+    demand(world.in_interrupt, "from an interrupt only");
+    task->notices++;
+    if (task->priority > world.current->priority) {
+        *woken = pdTRUE;
+    }
+}
+
+uint32_t ulTaskNotifyTakeIndexed(UBaseType_t index, BaseType_t clear, TickType_t ticks)
+{
+    struct freertos_task *const self = world.current;
+    demand(index < configTASK_NOTIFICATION_ARRAY_ENTRIES, "an index");
+    if (self->notices == 0 && ticks > 0) {
+        wait_until(after(ticks), true);
+    }
+    const uint32_t notices = self->notices;
+    self->notices = clear == pdTRUE || notices == 0 ? 0 : notices - 1;
+    world.wakes += self == &world.tasks[0] && notices > 0;
+    return notices;
+}
+
+/* ------------------------------------------------------------------------------- stream buffers */
+
+StreamBufferHandle_t xStreamBufferCreateStatic(size_t size, size_t trigger, uint8_t *storage,
+                                               StaticStreamBuffer_t *memory)
+{
+    demand(storage != NULL && trigger < size, "a stream's size");
+    *memory = (StaticStreamBuffer_t){.memory = storage, .size = size, .trigger = trigger};
+    return memory;
+}
+
+/* One place stays free, as in the kernel. A waiting task is woken at the trigger level only. */
+size_t xStreamBufferSendFromISR(StreamBufferHandle_t stream, const void *bytes, size_t count,
+                                BaseType_t *woken)
+{
+    const size_t room = stream->size - 1 - stream->count;
+    const size_t sent = count < room ? count : room;
+    demand(world.in_interrupt, "from an interrupt only");
+    memcpy(&stream->memory[stream->count], bytes, sent);
+    stream->count += sent;
+    if (stream->waiting != NULL && stream->count >= stream->trigger) {
+        stream->waiting->until_us = 0;
+        if (stream->waiting->priority > world.current->priority) {
+            *woken = pdTRUE;
+        }
+        stream->waiting = NULL;
+    }
+    return sent;
+}
+
+size_t xStreamBufferReceive(StreamBufferHandle_t stream, void *bytes, size_t size, TickType_t ticks)
+{
+    if (stream->count == 0 && ticks > 0) {
+        stream->waiting = world.current;
+        wait_until(after(ticks), false);
+        stream->waiting = NULL;
+    }
+    const size_t taken = stream->count < size ? stream->count : size;
+    memcpy(bytes, stream->memory, taken);
+    stream->count -= taken;
+    memmove(stream->memory, &stream->memory[taken], stream->count);
+    return taken;
+}
+
+BaseType_t xStreamBufferIsEmpty(StreamBufferHandle_t stream)
+{
+    return stream->count == 0 ? pdTRUE : pdFALSE;
+}
+
+BaseType_t xStreamBufferReset(StreamBufferHandle_t stream)
+{
+    if (stream->waiting != NULL) {
+        return pdFAIL;
+    }
+    stream->count = 0;
+    return pdPASS;
+}
+
+/* --------------------------------------------------------------------------------- for the test */
+
+sim_t *freertos_model_lidar(void)
+{
+    return &world.lidar;
+}
+
+uint64_t freertos_model_now_us(void)
+{
+    return world.now_us;
+}
+
+void freertos_model_work(uint32_t us)
+{
+    for (const uint64_t end_us = world.now_us + us; world.now_us < end_us;) {
+        pass_step();
+        yield_to_more_urgent();
+    }
+}
+
+void freertos_model_work_undisturbed(uint32_t us)
+{
+    world.undisturbed = true;
+    for (const uint64_t end_us = world.now_us + us; world.now_us < end_us;) {
+        pass_step();
+    }
+    world.undisturbed = false;
+}
+
+void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count)
+{
+    world.overrun = overrun;
+    for (size_t i = 0; i < count; i++) {
+        world.fifo[world.count++] = bytes[i];
+        world.line_bytes++;
+        if (world.count == FIFO_SIZE / 2 || i + 1 == count) {
+            world.in_interrupt = true;
+            UART1_Handler();
+            world.in_interrupt = false;
+        }
+    }
+}
+
+void freertos_model_skip(uint64_t us)
+{
+    world.skipped_us += us;
+}
+
+uint32_t freertos_model_line_bytes(void)
+{
+    return world.line_bytes;
+}
+
+uint32_t freertos_model_overrun_bytes(void)
+{
+    return world.overrun_bytes;
+}
+
+unsigned freertos_model_wakes(void)
+{
+    return world.wakes;
+}
+
+unsigned freertos_model_tasks(void)
+{
+    unsigned tasks = 0;
+    for (unsigned i = 1; i < TASKS; i++) {
+        tasks += world.tasks[i].used;
+    }
+    return tasks;
+}
+
+const char *freertos_model_console(void)
+{
+    return world.console;
+}
+
+/* -------------------------------------------------------------------------- the example's board */
+
+void board_start(void) {}
+
+void board_sleep(void) {}
+
+int board_lidar_write(void *uart, const uint8_t *bytes, size_t count)
+{
+    (void)uart;
+    sim_receive(&world.lidar, bytes, count, world.now_us);
+    return (int)count;
+}
+
+void board_enable_lidar_interrupt(void)
+{
+    world.interrupt_enabled = true;
+}
+
+size_t board_lidar_read(uint8_t *bytes, size_t max, int *overrun)
+{
+    const size_t taken = world.count < max ? world.count : max;
+    demand(world.in_interrupt, "in the interrupt only");
+    memcpy(bytes, world.fifo, taken);
+    world.count -= (unsigned)taken;
+    memmove(world.fifo, &world.fifo[taken], world.count);
+    *overrun = world.overrun;
+    world.overrun = false;
+    return taken;
+}
+
+void board_print(const char *text)
+{
+    const size_t length = strlen(text);
+    if (world.console_length + length < sizeof world.console) {
+        memcpy(&world.console[world.console_length], text, length + 1);
+        world.console_length += length;
+    }
+}
+
+void board_print_number(uint32_t number)
+{
+    char text[12];
+    snprintf(text, sizeof text, "%lu", (unsigned long)number);
+    board_print(text);
+}

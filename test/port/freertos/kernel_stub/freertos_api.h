@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What the port and its example use of the FreeRTOS kernel, with the kernel's names, on a model of
+ * it (../freertos_model.h). Written for the tests from the kernel's public API documentation. */
+
+#ifndef FREERTOS_API_H
+#define FREERTOS_API_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define configSUPPORT_STATIC_ALLOCATION 1
+#define configTASK_NOTIFICATION_ARRAY_ENTRIES 1
+#define configMAX_PRIORITIES 4
+
+/* Other ticks are other tests. */
+#ifndef configTICK_RATE_HZ
+#define configTICK_RATE_HZ 1000u
+#endif
+#ifndef TICK_TYPE
+#define TICK_TYPE uint32_t
+#endif
+
+typedef TICK_TYPE TickType_t;
+typedef long BaseType_t;
+typedef unsigned long UBaseType_t;
+typedef uint32_t StackType_t;
+
+#define pdFALSE ((BaseType_t)0)
+#define pdTRUE ((BaseType_t)1)
+#define pdPASS pdTRUE
+#define pdFAIL pdFALSE
+#define portMAX_DELAY ((TickType_t)-1)
+#define pdMS_TO_TICKS(ms) ((TickType_t)((uint64_t)(ms)*configTICK_RATE_HZ / 1000u))
+#define portYIELD_FROM_ISR(woken) ((void)(woken))
+
+void freertos_model_assert(const char *condition);
+#define configASSERT(condition) ((condition) ? (void)0 : freertos_model_assert(#condition))
+
+typedef struct freertos_task *TaskHandle_t;
+typedef void (*TaskFunction_t)(void *argument);
+typedef struct {
+    void *kept;
+} StaticTask_t;
+
+TaskHandle_t xTaskCreateStatic(TaskFunction_t function, const char *name, uint32_t stack_words,
+                               void *argument, UBaseType_t priority, StackType_t *stack,
+                               StaticTask_t *memory);
+TaskHandle_t xTaskGetCurrentTaskHandle(void);
+TickType_t xTaskGetTickCount(void);
+void vTaskDelay(TickType_t ticks);
+void vTaskSuspend(TaskHandle_t task);
+void vTaskStartScheduler(void);
+
+BaseType_t xTaskNotifyGiveIndexed(TaskHandle_t task, UBaseType_t index);
+void vTaskNotifyGiveIndexedFromISR(TaskHandle_t task, UBaseType_t index, BaseType_t *woken);
+uint32_t ulTaskNotifyTakeIndexed(UBaseType_t index, BaseType_t clear, TickType_t ticks);
+
+typedef struct freertos_stream *StreamBufferHandle_t;
+typedef struct freertos_stream {
+    uint8_t *memory;
+    size_t size;
+    size_t count;
+    size_t trigger;
+    TaskHandle_t waiting;
+} StaticStreamBuffer_t;
+
+StreamBufferHandle_t xStreamBufferCreateStatic(size_t size, size_t trigger, uint8_t *storage,
+                                               StaticStreamBuffer_t *memory);
+size_t xStreamBufferSendFromISR(StreamBufferHandle_t stream, const void *bytes, size_t count,
+                                BaseType_t *woken);
+size_t xStreamBufferReceive(StreamBufferHandle_t stream, void *bytes, size_t size,
+                            TickType_t ticks);
+BaseType_t xStreamBufferIsEmpty(StreamBufferHandle_t stream);
+BaseType_t xStreamBufferReset(StreamBufferHandle_t stream);
+
+#endif

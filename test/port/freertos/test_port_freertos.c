@@ -1,0 +1,443 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The FreeRTOS port on a model of the kernel, against the simulated lidar. The test is the polling
+ * task. */
+
+#include <string.h>
+
+#include "unity.h"
+
+#include "board.h"
+#include "freertos_model.h"
+#include "tmini/tmini_blocking.h"
+#include "tmini_freertos.h"
+#include "truth.h"
+
+#define ENOUGH_POINTS 2000u
+#define POLLING_PRIORITY 1u
+#define RECEIVING_PRIORITY 2u
+#define TICK_US (1000000u / configTICK_RATE_HZ + 1)
+
+static uint8_t rx[1024];
+static uint8_t stream[1024];
+static tmini_point_t points[ENOUGH_POINTS];
+static tmini_t lidar;
+static tmini_freertos_t board;
+static tmini_freertos_wiring_t wiring;
+
+/* As the example has it. */
+void UART1_Handler(void)
+{
+    uint8_t bytes[16];
+    int overrun = 0;
+    BaseType_t woken = pdFALSE;
+    const size_t count = board_lidar_read(bytes, sizeof bytes, &overrun);
+    if (overrun) {
+        tmini_freertos_gap_from_isr(&board);
+    }
+    tmini_freertos_receive_from_isr(&board, bytes, count, &woken);
+    portYIELD_FROM_ISR(woken);
+}
+
+static void init_lidar(size_t rx_size)
+{
+    const tmini_config_t config = {
+        .port = &tmini_freertos_port,
+        .port_context = &board,
+        .rx_buffer = rx,
+        .rx_size = rx_size,
+        .points = points,
+        .max_points = ENOUGH_POINTS,
+    };
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+}
+
+void setUp(void)
+{
+    const sim_observer_t observer = truth_begin();
+    freertos_model_begin(&observer, POLLING_PRIORITY);
+    memset(&board, 0, sizeof board);
+    wiring = (tmini_freertos_wiring_t){.write = board_lidar_write};
+    init_lidar(sizeof rx);
+}
+
+void tearDown(void)
+{
+    tmini_freertos_stop(&board);
+}
+
+static void receive_by_stream(void)
+{
+    wiring.stream = stream;
+    wiring.stream_size = sizeof stream;
+    wiring.priority = RECEIVING_PRIORITY;
+}
+
+static void start(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    board_enable_lidar_interrupt();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
+}
+
+static void poll_until(tmini_event_t wanted)
+{
+    const uint64_t begun_us = freertos_model_now_us();
+    while (freertos_model_now_us() - begun_us < 2000000) {
+        const tmini_event_t event = tmini_poll(&lidar);
+        if (event == wanted) {
+            return;
+        }
+        if (event == TMINI_EVENT_NONE) {
+            tmini_freertos_wait(&board, pdMS_TO_TICKS(10));
+        }
+    }
+    TEST_FAIL_MESSAGE("it did not happen in time");
+}
+
+static void assert_true_scans(uint32_t first, uint32_t last)
+{
+    for (uint32_t revolution = first; revolution <= last; revolution++) {
+        poll_until(TMINI_EVENT_SCAN);
+        truth_assert_revolution(tmini_scan(&lidar), revolution);
+    }
+}
+
+/* One or two scans that say that something is missing, and then true ones. */
+static void assert_gap(void)
+{
+    poll_until(TMINI_EVENT_SCAN);
+    TEST_ASSERT_FALSE(tmini_scan(&lidar)->complete);
+    truth_assert_nothing_invented(tmini_scan(&lidar));
+    poll_until(TMINI_EVENT_SCAN);
+    if (!tmini_scan(&lidar)->complete) {
+        truth_assert_nothing_invented(tmini_scan(&lidar));
+        poll_until(TMINI_EVENT_SCAN);
+    }
+    truth_assert_some_revolution(tmini_scan(&lidar));
+}
+
+static tmini_freertos_counters_t counted(void)
+{
+    tmini_freertos_counters_t counters;
+    tmini_freertos_counters(&board, &counters);
+    return counters;
+}
+
+/* ------------------------------------------------------------------------- from the interrupt */
+
+void test_every_point_arrives_from_the_interrupt(void)
+{
+    start();
+    assert_true_scans(1, 10);
+    TEST_ASSERT_EQUAL_UINT(0, freertos_model_tasks());
+    TEST_ASSERT_EQUAL_UINT32(freertos_model_line_bytes(), counted().bytes);
+}
+
+void test_the_polling_task_is_woken_once_in_64_bytes(void)
+{
+    start();
+    assert_true_scans(1, 10);
+    TEST_ASSERT_UINT_WITHIN(freertos_model_line_bytes() / 64 / 5, freertos_model_line_bytes() / 64,
+                            freertos_model_wakes());
+}
+
+void test_a_polling_task_that_works_60_ms_loses_nothing(void)
+{
+    start();
+    assert_true_scans(1, 2);
+    for (uint32_t revolution = 3; revolution < 8; revolution++) {
+        freertos_model_work(60000);
+        assert_true_scans(revolution, revolution);
+    }
+}
+
+void test_an_overrun_of_the_uart_is_a_gap(void)
+{
+    start();
+    assert_true_scans(1, 2);
+    freertos_model_work_undisturbed(20000);
+    assert_gap();
+    TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
+    TEST_ASSERT_EQUAL_UINT32(freertos_model_line_bytes() - freertos_model_overrun_bytes(),
+                             counted().bytes);
+}
+
+/* ---------------------------------------------------------------------------- through a stream */
+
+void test_every_point_arrives_through_the_receiving_task(void)
+{
+    receive_by_stream();
+    start();
+    assert_true_scans(1, 10);
+    TEST_ASSERT_EQUAL_UINT(1, freertos_model_tasks());
+    TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
+}
+
+/* 60 ms are 786 bytes: more than rx_buffer has room for, and the stream keeps the rest. */
+void test_the_stream_keeps_what_the_lidar_has_no_room_for(void)
+{
+    tmini_counters_t counters;
+    receive_by_stream();
+    init_lidar(512);
+    start();
+    assert_true_scans(1, 2);
+    for (uint32_t revolution = 3; revolution < 8; revolution++) {
+        freertos_model_work(60000);
+        assert_true_scans(revolution, revolution);
+    }
+    tmini_counters(&lidar, &counters);
+    TEST_ASSERT_EQUAL_UINT32(0, counters.parser.bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
+}
+
+/* 300 ms are 3930 bytes; stream and rx_buffer together keep 2047. */
+void test_a_stream_that_overflows_is_one_gap(void)
+{
+    tmini_counters_t counters;
+    receive_by_stream();
+    start();
+    assert_true_scans(1, 2);
+    freertos_model_work(300000);
+    assert_gap();
+    tmini_counters(&lidar, &counters);
+    TEST_ASSERT_UINT_WITHIN(500, 3930 - 2047, counted().bytes_lost);
+    TEST_ASSERT_EQUAL_UINT32(0, counters.parser.bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(freertos_model_line_bytes(), counted().bytes);
+}
+
+void test_an_overrun_of_the_uart_before_the_stream_is_a_gap(void)
+{
+    receive_by_stream();
+    start();
+    assert_true_scans(1, 2);
+    freertos_model_work_undisturbed(20000);
+    assert_gap();
+    TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
+}
+
+/* A line that pauses in the middle of a packet must not keep what came before from the lidar. */
+void test_fewer_bytes_than_the_stream_wakes_at_are_handed_on_in_time(void)
+{
+    tmini_info_t info;
+    receive_by_stream(); /* The reply has 27 bytes, the stream wakes at 32. */
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    board_enable_lidar_interrupt();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 1000));
+    TEST_ASSERT_EQUAL_UINT(151, info.model);
+}
+
+/* ----------------------------------------------------------------------- losses without a trace */
+
+static uint32_t packets(void)
+{
+    tmini_counters_t counters;
+    for (unsigned polls = 0; polls < 10; polls++) {
+        (void)tmini_poll(&lidar);
+    }
+    tmini_counters(&lidar, &counters);
+    return counters.parser.packets;
+}
+
+/* The packet's two parts fit together, whatever was lost between them. */
+static void receive_packet(bool overrun)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    freertos_model_receive(false, truth_packet, TRUTH_PACKET_CUT);
+    vTaskDelay(pdMS_TO_TICKS(20));
+    TEST_ASSERT_EQUAL_UINT32(0, packets());
+    freertos_model_receive(overrun, &truth_packet[TRUTH_PACKET_CUT],
+                           TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT);
+    vTaskDelay(pdMS_TO_TICKS(20));
+}
+
+void test_no_packet_is_put_together_across_an_overrun(void)
+{
+    for (unsigned way = 0; way < 2; way++) {
+        receive_packet(false);
+        TEST_ASSERT_EQUAL_UINT32(1, packets());
+        tmini_freertos_stop(&board);
+        init_lidar(sizeof rx);
+        receive_packet(true);
+        TEST_ASSERT_EQUAL_UINT32(0, packets());
+        tmini_freertos_stop(&board);
+        setUp();
+        receive_by_stream();
+    }
+}
+
+static void fill_small_stream(void)
+{
+    static const uint8_t nothing[97] = {0};
+    receive_by_stream();
+    wiring.stream_size = 128; /* Takes 127. */
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    freertos_model_receive(false, nothing, sizeof nothing);
+    freertos_model_receive(false, truth_packet, TRUTH_PACKET_CUT);
+    TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
+    freertos_model_receive(false, nothing, 10);
+    TEST_ASSERT_EQUAL_UINT32(10, counted().bytes_lost);
+}
+
+void test_no_packet_is_put_together_across_a_full_stream(void)
+{
+    fill_small_stream();
+    vTaskDelay(pdMS_TO_TICKS(20)); /* The receiving task empties it. */
+    TEST_ASSERT_EQUAL_UINT32(0, packets());
+    freertos_model_receive(false, &truth_packet[TRUTH_PACKET_CUT],
+                           TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT);
+    vTaskDelay(pdMS_TO_TICKS(20));
+    TEST_ASSERT_EQUAL_UINT32(0, packets());
+    TEST_ASSERT_EQUAL_UINT32(10, counted().bytes_lost); /* It has opened again. */
+}
+
+void test_a_stream_that_was_full_takes_nothing_before_it_is_empty(void)
+{
+    uint8_t taken[60];
+    fill_small_stream();
+    TEST_ASSERT_EQUAL_UINT(60, xStreamBufferReceive(board.stream, taken, sizeof taken, 0));
+    freertos_model_receive(false, &truth_packet[TRUTH_PACKET_CUT],
+                           TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT);
+    TEST_ASSERT_EQUAL_UINT32(10 + TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT, counted().bytes_lost);
+}
+
+void test_a_stream_that_was_full_when_stopped_is_open_at_the_next_start(void)
+{
+    fill_small_stream();
+    tmini_freertos_stop(&board);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    freertos_model_receive(false, truth_packet, TRUTH_PACKET_SIZE);
+    TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
+    TEST_ASSERT_EQUAL_UINT32(TRUTH_PACKET_SIZE, counted().bytes);
+}
+
+/* ------------------------------------------------------------------------------ start and stop */
+
+void test_what_cannot_work_is_refused(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(NULL, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&board, NULL));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(NULL, &lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(&board, &lidar));
+    receive_by_stream();
+    wiring.stream_size = 127;
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&board, &wiring));
+    wiring.stream_size = 128;
+    wiring.priority = configMAX_PRIORITIES;
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&board, &wiring));
+    wiring.priority = configMAX_PRIORITIES - 1;
+    wiring.write = NULL;
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(&board, &lidar));
+    wiring.write = board_lidar_write;
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(&board, NULL));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_freertos_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_UINT(1, freertos_model_tasks());
+}
+
+void test_bytes_before_the_start_are_dropped(void)
+{
+    static const uint8_t start_scanning[2] = {0xA5, 0x60};
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
+    board_enable_lidar_interrupt();
+    (void)board_lidar_write(NULL, start_scanning, 2);
+    freertos_model_work(600000);
+    TEST_ASSERT_TRUE(freertos_model_line_bytes() > 1000);
+    TEST_ASSERT_EQUAL_UINT32(0, counted().bytes);
+}
+
+static void assert_stops_and_starts(unsigned tasks)
+{
+    start();
+    assert_true_scans(1, 1);
+    for (unsigned i = 0; i < 20; i++) {
+        tmini_freertos_stop(&board);
+        const uint32_t bytes = counted().bytes;
+        freertos_model_work(5000 + 100 * i);
+        TEST_ASSERT_EQUAL_UINT32(bytes, counted().bytes);
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+        poll_until(TMINI_EVENT_SCAN);
+        truth_assert_nothing_invented(tmini_scan(&lidar));
+    }
+    poll_until(TMINI_EVENT_SCAN);
+    truth_assert_some_revolution(tmini_scan(&lidar));
+    TEST_ASSERT_EQUAL_UINT(tasks, freertos_model_tasks());
+}
+
+void test_it_stops_and_starts_while_the_lidar_streams(void)
+{
+    assert_stops_and_starts(0);
+}
+
+void test_the_receiving_task_rests_while_stopped_and_is_the_same_again(void)
+{
+    receive_by_stream();
+    assert_stops_and_starts(1);
+}
+
+/* It waits for bytes that do not come: until it has noticed, it may still be at work. */
+void test_stopping_waits_for_the_receiving_task_every_time(void)
+{
+    receive_by_stream();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
+    for (unsigned i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+        vTaskDelay(1);
+        const uint64_t begun_us = freertos_model_now_us();
+        tmini_freertos_stop(&board);
+        TEST_ASSERT_TRUE(freertos_model_now_us() > begun_us);
+        TEST_ASSERT_TRUE(freertos_model_now_us() - begun_us <= 10000 + 2 * TICK_US);
+    }
+}
+
+void test_what_the_stream_held_when_stopped_is_not_handed_on_later(void)
+{
+    receive_by_stream();
+    init_lidar(256);
+    start();
+    assert_true_scans(1, 1);
+    freertos_model_work(50000); /* rx_buffer is full, the stream half. */
+    tmini_freertos_stop(&board);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(pdTRUE, xStreamBufferIsEmpty(board.stream));
+}
+
+/* ----------------------------------------------------------------------------------- the clock */
+
+/* The tick's rate and width are those that this file is compiled with: 1000 Hz and 32 bits, 1024 Hz
+ * and 16 bits, 50 Hz. */
+void test_the_clock_runs_in_milliseconds_across_every_wrap_of_the_tick(void)
+{
+    const uint32_t begun_ms = tmini_freertos_port.now_ms(&board);
+    uint64_t passed_us = 0;
+    for (unsigned i = 0; i < 3000; i++) {
+        freertos_model_skip(4294967 +
+                            i); /* A thousand times, and 32 bits of milliseconds have wrapped. */
+        passed_us += 4294967 + i;
+        const uint32_t shown_ms = tmini_freertos_port.now_ms(&board) - begun_ms;
+        const uint32_t error_ms = shown_ms - (uint32_t)(passed_us / 1000u);
+        TEST_ASSERT_TRUE(error_ms + TICK_US / 1000u + 1u <=
+                         TICK_US / 1000u + 2u); /* A tick late. */
+    }
+}
+
+void test_waiting_for_no_time_is_waiting_for_a_tick(void)
+{
+    const uint64_t begun_us = freertos_model_now_us();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
+    tmini_freertos_wait(&board, 0);
+    TEST_ASSERT_TRUE(freertos_model_now_us() > begun_us);
+}
+
+void test_without_wiring_nothing_is_sent(void)
+{
+    static const uint8_t byte = 0xA5;
+    TEST_ASSERT_EQUAL_INT(-1, tmini_freertos_port.write(&board, &byte, 1));
+}

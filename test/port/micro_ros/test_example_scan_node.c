@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The node of examples/micro_ros between the simulated lidar and an agent that comes and goes, in
+ * virtual time. */
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "scan_node.h"
+#include "simulator.h"
+#include "virtual_agent.h"
+
+#include "unity.h"
+
+#define EPOCH_NS INT64_C(1790000000000000000) /* ROS's clock when ours says 0. */
+#define NS_PER_US 1000
+
+static sim_t sim;
+static uint64_t now_us;
+static bool plugged;
+static uint64_t turn_began_us; /* The last start packet's end. */
+static uint8_t rx[2048];
+static tmini_point_t points[800];
+static tmini_t lidar;
+static scan_node_t node;
+static char frame[] = "laser";
+
+/* ---- Nothing is allocated: the linker leads calls here ---- */
+
+static unsigned allocations;
+void *__real_malloc(size_t size);
+void *__wrap_malloc(size_t size);
+
+void *__wrap_malloc(size_t size)
+{
+    allocations++;
+    return __real_malloc(size);
+}
+
+/* ---- The world ---- */
+
+static void note_packet(void *context, const sim_packet_t *packet)
+{
+    (void)context;
+    if (packet->bytes[2] & 1) { /* A start packet. */
+        turn_began_us = now_us;
+    }
+}
+
+static uint32_t now_ms(void *context)
+{
+    (void)context;
+    return (uint32_t)(now_us / 1000);
+}
+
+static int send_to_lidar(void *context, const uint8_t *bytes, size_t count)
+{
+    (void)context;
+    if (plugged) {
+        sim_receive(&sim, bytes, count, now_us);
+    }
+    return (int)count;
+}
+
+/* A millisecond in which nothing but the interrupt runs. */
+static void tick(void)
+{
+    uint8_t bytes[64];
+    size_t count;
+    now_us += 1000;
+    virtual_agent.epoch_ns = EPOCH_NS + (int64_t)now_us * NS_PER_US;
+    while ((count = sim_transmit(&sim, now_us, bytes, sizeof bytes)) > 0) {
+        if (plugged) {
+            (void)tmini_feed(&lidar, bytes, count);
+        }
+    }
+}
+
+static void wait(int ms)
+{
+    for (int i = 0; i < ms; i++) {
+        tick();
+    }
+}
+
+static void run_for(unsigned ms)
+{
+    const uint64_t end_us = now_us + ms * UINT64_C(1000);
+    while (now_us < end_us) {
+        tick();
+        scan_node_step(&node);
+    }
+}
+
+static uint32_t overruns(void)
+{
+    tmini_counters_t counters;
+    tmini_counters(&lidar, &counters);
+    return counters.parser.bytes_overrun;
+}
+
+void setUp(void)
+{
+    static const tmini_port_t port = {.write = send_to_lidar, .now_ms = now_ms};
+    static const sim_observer_t observer = {.on_packet = note_packet};
+    const sim_config_t sim_config = sim_default_config();
+    const tmini_config_t config = {
+        .port = &port,
+        .rx_buffer = rx,
+        .rx_size = sizeof rx,
+        .points = points,
+        .max_points = 800,
+    };
+    now_us = 0;
+    plugged = true;
+    sim_init(&sim, &sim_config);
+    sim_observe(&sim, &observer);
+    virtual_agent_reset(wait);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+    scan_node_init(&node, &lidar, &config, frame);
+}
+
+void tearDown(void) {}
+
+void test_each_scan_is_published(void)
+{
+    virtual_agent.present = true;
+    run_for(10000); /* At 6 Hz; the motor needs its time. */
+    TEST_ASSERT_GREATER_THAN_UINT(50, virtual_agent.published);
+    TEST_ASSERT_EQUAL_UINT32(virtual_agent.published, node.counters.published);
+    TEST_ASSERT_EQUAL_UINT32(0, node.counters.unpublished);
+    TEST_ASSERT_EQUAL_UINT32(1, node.counters.connections);
+    TEST_ASSERT_EQUAL_STRING("scan", virtual_agent.topic);
+}
+
+void test_a_message_shows_the_room(void)
+{
+    virtual_agent.present = true;
+    sim_place_obstacle(&sim, 90 * 64, 20 * 64, 700); /* To the right. */
+    run_for(5000);
+    TEST_ASSERT_FLOAT_WITHIN(0.05f, 0.7f, virtual_agent.message.ranges.data[270]);
+    TEST_ASSERT_FALSE(fabsf(virtual_agent.message.ranges.data[90] - 0.7f) < 0.1f);
+    TEST_ASSERT_FLOAT_WITHIN(0.02f, 0.1667f, virtual_agent.message.scan_time);
+}
+
+/* The next one's start packet ends a scan. How much later does the last message say? */
+static int64_t stamp_is_late_ns(void)
+{
+    const int64_t stamp_ns = virtual_agent.message.header.stamp.sec * INT64_C(1000000000) +
+                             (int64_t)virtual_agent.message.header.stamp.nanosec;
+    return stamp_ns - (EPOCH_NS + (int64_t)turn_began_us * NS_PER_US);
+}
+
+void test_a_message_bears_the_scans_end_in_the_agents_clock(void)
+{
+    virtual_agent.present = true;
+    run_for(5000);
+    const unsigned published = virtual_agent.published;
+    while (virtual_agent.published == published) {
+        run_for(1);
+    }
+    TEST_ASSERT_TRUE(virtual_agent.synchronised);
+    TEST_ASSERT_TRUE(stamp_is_late_ns() >= 0 && stamp_is_late_ns() <= 1000000);
+}
+
+/* The bytes that came behind it tell a part of a scan's age: the line brings 23 a millisecond at
+ * most, the lidar 13. */
+void test_a_scan_that_is_found_late_keeps_its_time(void)
+{
+    int64_t latest_ns = 0;
+    virtual_agent.present = true;
+    run_for(5000);
+    for (int i = 0; i < 100; i++) {
+        const unsigned published = virtual_agent.published;
+        wait(40);
+        scan_node_step(&node);
+        if (virtual_agent.published != published && stamp_is_late_ns() > latest_ns) {
+            latest_ns = stamp_is_late_ns();
+        }
+    }
+    TEST_ASSERT_TRUE(latest_ns > 0 && latest_ns <= 25 * NS_PER_US * INT64_C(1000));
+}
+
+void test_nothing_is_allocated_while_scans_are_published(void)
+{
+    virtual_agent.present = true;
+    run_for(3000);
+    allocations = 0;
+    run_for(3000);
+    TEST_ASSERT_EQUAL_UINT(0, allocations);
+}
+
+void test_an_agent_that_comes_later_is_found(void)
+{
+    run_for(5000);
+    TEST_ASSERT_FALSE(virtual_agent.support_open);
+    TEST_ASSERT_GREATER_THAN_UINT32(20, node.counters.unpublished);
+    virtual_agent.present = true;
+    run_for(1300);
+    TEST_ASSERT_EQUAL_UINT32(1, node.counters.connections);
+    TEST_ASSERT_GREATER_THAN_UINT(0, virtual_agent.published);
+}
+
+void test_an_agent_that_goes_and_comes_back_is_connected_to_again(void)
+{
+    virtual_agent.present = true;
+    run_for(3000);
+    virtual_agent.present = false;
+    run_for(3000);
+    TEST_ASSERT_FALSE(virtual_agent.publisher_open);
+    TEST_ASSERT_FALSE(virtual_agent.node_open);
+    TEST_ASSERT_FALSE(virtual_agent.support_open);
+    virtual_agent.present = true;
+    run_for(2000);
+    TEST_ASSERT_EQUAL_UINT32(2, node.counters.connections);
+    TEST_ASSERT_TRUE(virtual_agent.publisher_open);
+    TEST_ASSERT_EQUAL_UINT32(0, node.counters.unclosed);
+}
+
+void test_waiting_for_the_agent_costs_no_byte_of_the_lidar(void)
+{
+    virtual_agent.present = true;
+    run_for(3000);
+    virtual_agent.present = false;
+    run_for(5000);
+    TEST_ASSERT_EQUAL_INT(SCAN_NODE_WAIT_MS, virtual_agent.longest_wait_ms);
+    TEST_ASSERT_EQUAL_UINT32(0, overruns());
+}
+
+void test_what_was_opened_in_vain_is_closed_and_tried_again(void)
+{
+    virtual_agent.present = true;
+    virtual_agent.refuses_publisher = true;
+    run_for(1500);
+    TEST_ASSERT_FALSE(virtual_agent.node_open);
+    TEST_ASSERT_FALSE(virtual_agent.support_open);
+    virtual_agent.refuses_publisher = false;
+    virtual_agent.refuses_node = true;
+    run_for(1500);
+    TEST_ASSERT_FALSE(virtual_agent.support_open);
+    virtual_agent.refuses_node = false;
+    virtual_agent.refuses_support = true;
+    run_for(1500);
+    TEST_ASSERT_EQUAL_UINT32(0, node.counters.connections);
+    virtual_agent.refuses_support = false;
+    run_for(1500);
+    TEST_ASSERT_EQUAL_UINT32(1, node.counters.connections);
+}
+
+void test_a_scan_that_is_not_taken_is_counted(void)
+{
+    virtual_agent.present = true;
+    run_for(3000);
+    virtual_agent.takes_nothing = true;
+    run_for(1000);
+    TEST_ASSERT_GREATER_OR_EQUAL_UINT32(5, node.counters.unpublished);
+    TEST_ASSERT_EQUAL_UINT32(1, node.counters.connections);
+}
+
+void test_what_does_not_close_is_counted(void)
+{
+    virtual_agent.present = true;
+    run_for(1500);
+    virtual_agent.present = false;
+    virtual_agent.closes_badly = true;
+    run_for(1500);
+    TEST_ASSERT_EQUAL_UINT32(3, node.counters.unclosed);
+}
+
+void test_a_lidar_that_is_plugged_in_later_is_started(void)
+{
+    virtual_agent.present = true;
+    plugged = false;
+    run_for(20000);
+    TEST_ASSERT_EQUAL_UINT(0, virtual_agent.published);
+    plugged = true;
+    run_for(20000);
+    TEST_ASSERT_GREATER_THAN_UINT(10, virtual_agent.published);
+}

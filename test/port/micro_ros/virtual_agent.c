@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "virtual_agent.h"
+
+#include <rmw_microros/rmw_microros.h>
+#include <string.h>
+
+#include "unity.h"
+
+virtual_agent_t virtual_agent;
+
+static rmw_context_t context;
+static rmw_publisher_t publisher_handle;
+static const rosidl_message_type_support_t laser_scan = {"LaserScan"};
+
+void virtual_agent_reset(void (*wait)(int ms))
+{
+    memset(&virtual_agent, 0, sizeof virtual_agent);
+    virtual_agent.wait = wait;
+    context = (rmw_context_t){false, 1000};
+    publisher_handle = (rmw_publisher_t){false, 1000};
+}
+
+static void spend(int ms)
+{
+    if (ms > virtual_agent.longest_wait_ms) {
+        virtual_agent.longest_wait_ms = ms;
+    }
+    virtual_agent.wait(ms);
+}
+
+/* An answer comes after 2 ms, or never. */
+static bool answers_within(int timeout_ms)
+{
+    spend(virtual_agent.present ? 2 : timeout_ms);
+    return virtual_agent.present;
+}
+
+rmw_ret_t rmw_uros_ping_agent(int timeout_ms, uint8_t attempts)
+{
+    TEST_ASSERT_EQUAL_UINT8(1, attempts);
+    return answers_within(timeout_ms) ? RMW_RET_OK : RMW_RET_ERROR;
+}
+
+rmw_ret_t rmw_uros_sync_session(int timeout_ms)
+{
+    TEST_ASSERT_TRUE(virtual_agent.support_open);
+    virtual_agent.synchronised = answers_within(timeout_ms);
+    return virtual_agent.synchronised ? RMW_RET_OK : RMW_RET_ERROR;
+}
+
+int64_t rmw_uros_epoch_nanos(void)
+{
+    return virtual_agent.epoch_ns;
+}
+
+rmw_ret_t rmw_uros_set_context_entity_destroy_session_timeout(rmw_context_t *of, int timeout_ms)
+{
+    TEST_ASSERT_EQUAL_PTR(&context, of);
+    of->destroy_timeout_ms = timeout_ms;
+    return RMW_RET_OK;
+}
+
+rmw_ret_t rmw_uros_set_publisher_session_timeout(rmw_publisher_t *publisher, int timeout_ms)
+{
+    TEST_ASSERT_EQUAL_PTR(&publisher_handle, publisher);
+    publisher->session_timeout_ms = timeout_ms;
+    return RMW_RET_OK;
+}
+
+rcl_allocator_t rcl_get_default_allocator(void)
+{
+    return (rcl_allocator_t){&virtual_agent};
+}
+
+rcl_node_t rcl_get_zero_initialized_node(void)
+{
+    return (rcl_node_t){NULL};
+}
+
+rcl_publisher_t rcl_get_zero_initialized_publisher(void)
+{
+    return (rcl_publisher_t){NULL};
+}
+
+rmw_context_t *rcl_context_get_rmw_context(rcl_context_t *of)
+{
+    return of->impl;
+}
+
+rmw_publisher_t *rcl_publisher_get_rmw_handle(const rcl_publisher_t *publisher)
+{
+    return publisher->impl;
+}
+
+const rosidl_message_type_support_t *laser_scan_type_support(void)
+{
+    return &laser_scan;
+}
+
+rcl_ret_t rclc_support_init(rclc_support_t *support, int argc, char const *const *argv,
+                            rcl_allocator_t *allocator)
+{
+    TEST_ASSERT_FALSE(virtual_agent.support_open);
+    TEST_ASSERT_EQUAL_PTR(&virtual_agent, allocator->state);
+    (void)argc;
+    (void)argv;
+    if (virtual_agent.refuses_support || !virtual_agent.present) {
+        return RCL_RET_ERROR;
+    }
+    virtual_agent.support_open = true;
+    context.destroy_timeout_ms = 1000;
+    support->context.impl = &context;
+    support->allocator = allocator;
+    return RCL_RET_OK;
+}
+
+rcl_ret_t rclc_node_init_default(rcl_node_t *node, const char *name, const char *name_space,
+                                 rclc_support_t *support)
+{
+    TEST_ASSERT_TRUE(virtual_agent.support_open);
+    TEST_ASSERT_FALSE(virtual_agent.node_open);
+    TEST_ASSERT_NULL(node->impl);
+    TEST_ASSERT_NOT_NULL(support);
+    TEST_ASSERT_EQUAL_STRING("tmini", name);
+    TEST_ASSERT_EQUAL_STRING("", name_space);
+    if (virtual_agent.refuses_node) {
+        return RCL_RET_ERROR;
+    }
+    virtual_agent.node_open = true;
+    node->impl = &virtual_agent;
+    return RCL_RET_OK;
+}
+
+rcl_ret_t rclc_publisher_init_default(rcl_publisher_t *publisher, const rcl_node_t *node,
+                                      const rosidl_message_type_support_t *type_support,
+                                      const char *topic_name)
+{
+    TEST_ASSERT_TRUE(virtual_agent.node_open);
+    TEST_ASSERT_FALSE(virtual_agent.publisher_open);
+    TEST_ASSERT_NULL(publisher->impl);
+    TEST_ASSERT_NOT_NULL(node->impl);
+    TEST_ASSERT_EQUAL_PTR(&laser_scan, type_support);
+    if (virtual_agent.refuses_publisher) {
+        return RCL_RET_ERROR;
+    }
+    strncpy(virtual_agent.topic, topic_name, sizeof virtual_agent.topic - 1);
+    virtual_agent.publisher_open = true;
+    publisher_handle.session_timeout_ms = 1000;
+    publisher->impl = &publisher_handle;
+    return RCL_RET_OK;
+}
+
+/* A reliable publisher waits for the agent's word. */
+rcl_ret_t rcl_publish(const rcl_publisher_t *publisher, const void *message,
+                      rmw_publisher_allocation_t *allocation)
+{
+    TEST_ASSERT_TRUE(virtual_agent.publisher_open);
+    TEST_ASSERT_NULL(allocation);
+    if (!answers_within(publisher->impl->session_timeout_ms) || virtual_agent.takes_nothing) {
+        return RCL_RET_ERROR;
+    }
+    virtual_agent.message = *(const sensor_msgs__msg__LaserScan *)message;
+    virtual_agent.published++;
+    return RCL_RET_OK;
+}
+
+/* What has been opened last is closed first. */
+static rcl_ret_t close_one(bool *is_open, bool inner_is_open)
+{
+    TEST_ASSERT_TRUE(*is_open);
+    TEST_ASSERT_FALSE(inner_is_open);
+    *is_open = false;
+    (void)answers_within(context.destroy_timeout_ms);
+    return virtual_agent.closes_badly ? RCL_RET_ERROR : RCL_RET_OK;
+}
+
+rcl_ret_t rcl_publisher_fini(rcl_publisher_t *publisher, rcl_node_t *node)
+{
+    TEST_ASSERT_NOT_NULL(node->impl);
+    publisher->impl = NULL;
+    return close_one(&virtual_agent.publisher_open, false);
+}
+
+rcl_ret_t rcl_node_fini(rcl_node_t *node)
+{
+    node->impl = NULL;
+    return close_one(&virtual_agent.node_open, virtual_agent.publisher_open);
+}
+
+rcl_ret_t rclc_support_fini(rclc_support_t *support)
+{
+    support->context.impl = NULL;
+    return close_one(&virtual_agent.support_open, virtual_agent.node_open);
+}

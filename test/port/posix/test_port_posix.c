@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The POSIX port itself: what opening and receiving return, and the blocking helpers over it. */
+
+#define _XOPEN_SOURCE 700
+#define _DEFAULT_SOURCE /* B230400 */
+
+#include "program.h"
+#include "tmini/tmini_blocking.h"
+#include "tmini_posix.h"
+
+#include "unity.h"
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+static tmini_posix_t serial;
+static tmini_t lidar;
+static uint8_t rx[1024];
+static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL + 200];
+static size_t tapped;
+
+void setUp(void)
+{
+    tapped = 0;
+    tmini_posix_init(&serial, "/dev/nowhere");
+}
+
+void tearDown(void)
+{
+    tmini_posix_stop(&serial);
+    program_clean_up();
+}
+
+static tmini_posix_status_t start(tmini_posix_t *device, const char *path)
+{
+    tmini_posix_init(device, path);
+    return tmini_posix_start(device, NULL);
+}
+
+static void begin(void)
+{
+    const tmini_config_t config = {
+        .port = &tmini_posix_port,
+        .port_context = &serial,
+        .rx_buffer = rx,
+        .rx_size = sizeof rx,
+        .points = points,
+        .max_points = sizeof points / sizeof points[0],
+    };
+    const char *const port = program_start_lidar((const char *const[]){NULL});
+    tmini_posix_init(&serial, port);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&serial, &lidar));
+}
+
+static void tap(void *context, const uint8_t *bytes, size_t count)
+{
+    TEST_ASSERT_EQUAL_PTR(&tapped, context);
+    TEST_ASSERT_NOT_NULL(bytes);
+    tapped += count;
+}
+
+void test_the_blocking_helpers_work_over_it(void)
+{
+    tmini_info_t info;
+    uint16_t frequency_chz = 0;
+    begin();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 8000));
+    TEST_ASSERT_EQUAL_UINT8(151, info.model);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_frequency(&lidar, &frequency_chz, 8000));
+    TEST_ASSERT_EQUAL_UINT16(600, frequency_chz);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start_and_wait(&lidar, 8000));
+    TEST_ASSERT_TRUE(tmini_scan(&lidar)->count > 600);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop_and_wait(&lidar, 2000));
+}
+
+void test_a_tap_gets_every_byte(void)
+{
+    tmini_info_t info;
+    begin();
+    tmini_posix_tap(&serial, tap, &tapped);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 8000));
+    TEST_ASSERT_EQUAL_size_t(27, tapped); /* The reply: 7 + 20 bytes. */
+    TEST_ASSERT_EQUAL_UINT64(27, serial.received);
+    tmini_posix_tap(&serial, NULL, NULL);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 8000));
+    TEST_ASSERT_EQUAL_size_t(27, tapped);
+}
+
+void test_a_lidar_can_be_behind_a_socket(void)
+{
+    tmini_info_t info;
+    const tmini_config_t config = {
+        .port = &tmini_posix_port, .port_context = &serial, .rx_buffer = rx, .rx_size = sizeof rx};
+    tmini_posix_init(&serial, program_start_lidar((const char *const[]){"--tcp", "0", NULL}));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&serial, &lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 8000));
+    TEST_ASSERT_EQUAL_UINT8(151, info.model);
+    program_stop_lidar();
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_receive(&serial, 1000));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_read_info(&lidar, &info, 8000));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_start(&serial, &lidar)); /* Refused. */
+}
+
+void test_an_address_that_is_none_is_told(void)
+{
+    static const char *const wrong[] = {"tcp:", "tcp:host", "tcp::1",
+                                        "tcp:host:", "tcp:no.such.host.invalid:1"};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        tmini_posix_init(&serial, wrong[i]);
+        TEST_ASSERT_EQUAL_INT(TMINI_POSIX_ADDRESS, tmini_posix_start(&serial, NULL));
+    }
+}
+
+void test_silence_is_no_error(void)
+{
+    begin();
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_receive(&serial, 20));
+    TEST_ASSERT_EQUAL_UINT64(0, serial.received);
+}
+
+void test_a_device_that_has_gone_stays_gone(void)
+{
+    tmini_info_t info;
+    begin();
+    program_stop_lidar();
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_receive(&serial, 1000));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_receive(&serial, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_read_info(&lidar, &info, 8000));
+}
+
+void test_a_system_that_cannot_wait_for_bytes_is_no_silence(void)
+{
+    struct rlimit limit;
+    begin();
+    TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &limit));
+    const struct rlimit none = {.rlim_cur = 0, .rlim_max = limit.rlim_max};
+    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &none)); /* poll() fails then. */
+    const tmini_posix_status_t status = tmini_posix_receive(&serial, 100);
+    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &limit));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, status);
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_receive(&serial, 0));
+}
+
+void test_writing_to_a_device_that_has_gone_fails(void)
+{
+    tmini_info_t info;
+    begin();
+    program_stop_lidar();
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_read_info(&lidar, &info, 8000));
+}
+
+void test_a_device_is_used_by_one_program_at_a_time(void)
+{
+    tmini_posix_t other;
+    const char *const port = program_start_lidar((const char *const[]){NULL});
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&serial, port));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_BUSY, start(&other, port));
+    tmini_posix_stop(&serial);
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&other, port));
+    tmini_posix_stop(&other);
+}
+
+void test_a_device_is_started_again_after_it_was_stopped(void)
+{
+    tmini_info_t info;
+    begin();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 8000));
+    tmini_posix_stop(&serial);
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_receive(&serial, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&serial, &lidar));
+    TEST_ASSERT_EQUAL_UINT64(0, serial.received);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 8000));
+}
+
+void test_started_twice_it_is_open_once(void)
+{
+    begin();
+    const int first = serial.fd;
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&serial, &lidar));
+    TEST_ASSERT_EQUAL_INT(first, serial.fd); /* The lowest number that is free. */
+}
+
+void test_before_it_is_started_nothing_is_received_or_sent(void)
+{
+    static const uint8_t stop[2] = {0xA5, 0x65};
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_receive(&serial, 0));
+    TEST_ASSERT_EQUAL_INT(-1, tmini_posix_port.write(&serial, stop, sizeof stop));
+}
+
+void test_without_polling_bytes_stay_with_the_system(void)
+{
+    static const uint8_t bytes[2000];
+    tmini_counters_t counters;
+    int ends[2];
+    begin();
+    TEST_ASSERT_EQUAL_INT(0, socketpair(AF_UNIX, SOCK_STREAM, 0, ends));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start_on(&serial, ends[0], &lidar));
+    TEST_ASSERT_EQUAL_INT(sizeof bytes, write(ends[1], bytes, sizeof bytes));
+    for (unsigned i = 0; i < 20; i++) {
+        TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_receive(&serial, 1000));
+    }
+    TEST_ASSERT_EQUAL_UINT64(sizeof rx, serial.received);
+    for (unsigned i = 0; i < 20; i++) {
+        TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_receive(&serial, 1));
+        while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT64(sizeof bytes, serial.received);
+    tmini_counters(&lidar, &counters);
+    TEST_ASSERT_EQUAL_UINT32(0, counters.parser.bytes_overrun);
+    close(ends[1]);
+}
+
+void test_reasons_for_not_opening_are_told_apart(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, start(&serial, "/dev/nowhere"));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_receive(&serial, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NOT_A_TERMINAL, start(&serial, "/dev/null"));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NOT_A_TERMINAL, tmini_posix_receive(&serial, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NOT_A_TERMINAL, start(&serial, "/tmp"));
+}
+
+void test_a_line_for_typing_becomes_one_for_bytes(void)
+{
+    /* A new pseudo-terminal is one for typing: it echoes, edits lines, and changes characters. */
+    const int master = posix_openpt(O_RDWR | O_NOCTTY);
+    TEST_ASSERT_TRUE(master >= 0);
+    TEST_ASSERT_EQUAL_INT(0, grantpt(master));
+    TEST_ASSERT_EQUAL_INT(0, unlockpt(master));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&serial, ptsname(master)));
+    struct termios settings;
+    TEST_ASSERT_EQUAL_INT(0, tcgetattr(master, &settings));
+    TEST_ASSERT_EQUAL_HEX(0, settings.c_lflag & (tcflag_t)(ICANON | ECHO | ISIG | IEXTEN));
+    TEST_ASSERT_EQUAL_HEX(0, settings.c_iflag & (tcflag_t)(ICRNL | INLCR | IGNCR | IXON | IXOFF |
+                                                           ISTRIP | PARMRK | INPCK));
+    TEST_ASSERT_EQUAL_HEX(0, settings.c_oflag & (tcflag_t)OPOST);
+    TEST_ASSERT_EQUAL_HEX(CS8 | CREAD | CLOCAL,
+                          settings.c_cflag & (tcflag_t)(CSIZE | CREAD | CLOCAL | PARENB | CSTOPB));
+    TEST_ASSERT_TRUE(cfgetispeed(&settings) == B230400 && cfgetospeed(&settings) == B230400);
+    close(master);
+}
+
+void test_every_status_has_a_name(void)
+{
+    for (int i = TMINI_POSIX_ADDRESS; i <= TMINI_POSIX_OK; i++) {
+        const char *const name = tmini_posix_status_name((tmini_posix_status_t)i);
+        TEST_ASSERT_TRUE(strlen(name) > 0 && strcmp(name, "unknown status") != 0);
+    }
+    TEST_ASSERT_EQUAL_STRING("unknown status", tmini_posix_status_name((tmini_posix_status_t)1));
+}

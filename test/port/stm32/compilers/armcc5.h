@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Stands for what ARMCC 5 knows without any header. */
+
+#ifndef ARMCC5_H
+#define ARMCC5_H
+
+#define __CC_ARM 5060960
+#define __memory_changed() __asm__ volatile("" ::: "memory")
+#define __dmb(kind) ((void)(kind), __sync_synchronize())
+
+#endif

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Stands for IAR's header of that name. */
+
+#ifndef INTRINSICS_H
+#define INTRINSICS_H
+
+#define __DMB() __sync_synchronize()
+
+#endif

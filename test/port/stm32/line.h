@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* A line on which bytes come one behind the other, at its full speed. */
+
+#ifndef LINE_H
+#define LINE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Empties the line and joins it to the model's USART. */
+void line_open(void);
+
+/* Bytes that come from now on, or behind those that are still to come. */
+void line_send(const uint8_t *bytes, size_t count);
+
+/* The next byte sent comes with these errors (MODEL_FE, MODEL_NE). */
+void line_send_with(uint32_t errors);
+
+bool line_is_empty(void);
+
+#endif

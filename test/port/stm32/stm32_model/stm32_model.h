@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The hardware: one USART at 230400 baud with one DMA channel, and interrupts. Registers are read
+ * and written by these functions alone, since reading has effects. Time passes with every access,
+ * in nanoseconds; what is due happens then, interrupts included. */
+
+#ifndef STM32_MODEL_H
+#define STM32_MODEL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define MODEL_BYTE_NS 43403u
+
+/* Of SR and ISR alike. */
+#define MODEL_FE (1u << 1)
+#define MODEL_NE (1u << 2)
+#define MODEL_ORE (1u << 3)
+#define MODEL_IDLE (1u << 4)
+#define MODEL_RXNE (1u << 5)
+#define MODEL_TC (1u << 6)
+#define MODEL_TXE (1u << 7)
+
+#define MODEL_CR1_IDLEIE (1u << 4)
+#define MODEL_CR1_RXNEIE (1u << 5)
+#define MODEL_CR1_TXEIE (1u << 7)
+#define MODEL_CR3_EIE (1u << 0)
+#define MODEL_CR3_DMAR (1u << 6)
+
+/* DMA flags and the interrupts that they raise. */
+#define MODEL_DMA_TE (1u << 2)
+#define MODEL_DMA_HT (1u << 3)
+#define MODEL_DMA_TC (1u << 4)
+
+typedef struct {
+    volatile uint32_t CR1;
+    volatile uint32_t CR3;
+} USART_TypeDef;
+
+typedef struct {
+    bool enabled;
+    bool circular;
+    uint8_t *memory;
+    uint16_t size;
+    uint32_t left; /* In this round. */
+    uint32_t flags;
+    uint32_t interrupts;
+} model_dma_t;
+
+typedef enum { MODEL_USART_IRQ, MODEL_DMA_IRQ, MODEL_IRQS } model_irq_t;
+
+/* One byte on the line. */
+typedef struct {
+    uint64_t at_ns; /* When its stop bit has come. */
+    uint8_t byte;
+    uint32_t errors; /* MODEL_FE, MODEL_NE. */
+} model_byte_t;
+
+typedef struct {
+    /* What tests set. */
+    bool (*next)(model_byte_t *byte); /* Peeks the line's next byte; false: none known. */
+    void (*take)(void);               /* The byte has come. */
+    void (*sent)(uint8_t byte, uint64_t now_us);
+    void (*handler[MODEL_IRQS])(void);
+    unsigned priority[MODEL_IRQS]; /* A lower number interrupts a higher one. */
+    bool disabled[MODEL_IRQS];     /* In the NVIC. */
+    uint32_t access_ns;            /* That an access takes. */
+    uint64_t held_until_ns;        /* No interrupt before. */
+    uint64_t irq_held_until_ns[MODEL_IRQS];
+    void (*on_access)(void); /* Called at each access: for interrupts at a chosen place. */
+
+    /* With a data cache: the buffer as the CPU sees it, and what is really in its memory. */
+    uint8_t *cached;
+    size_t cached_size;
+    uint8_t ram[1024];
+
+    /* The hardware's own. */
+    uint64_t now_ns;
+    uint64_t tick_ns; /* Time in which the tick's interrupt has run. */
+    uint32_t flags;
+    uint32_t seen; /* Read in SR: reading DR clears them. */
+    uint8_t data;
+    bool was_busy;
+    uint64_t idle_ns;
+    model_dma_t dma;
+    unsigned level; /* Priority of what runs. */
+    bool masked;
+    uint32_t interrupts[MODEL_IRQS]; /* Served. */
+    uint32_t overruns;
+    uint32_t nested;
+} model_t;
+
+extern model_t model;
+extern USART_TypeDef model_usart;
+
+/* An idle USART, interrupts of equal priority. */
+void model_reset(void);
+
+/* `us` pass. Nothing runs but interrupts. */
+void model_pass(uint64_t us);
+
+/* Accesses. */
+uint32_t model_status(void);   /* Reads SR or ISR. */
+uint8_t model_read_data(void); /* Reads DR or RDR. */
+void model_write_data(uint8_t byte);
+void model_clear(uint32_t flags); /* Writes ICR. */
+void model_set(volatile uint32_t *reg, uint32_t bits);
+void model_unset(volatile uint32_t *reg, uint32_t bits);
+uint32_t model_dma_left(void);
+uint32_t model_tick_ms(void);
+
+/* An access to something else: time passes. */
+void model_step(void);
+
+#endif

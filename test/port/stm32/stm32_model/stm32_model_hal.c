@@ -1,0 +1,511 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "stm32_model_hal.h"
+
+#ifndef HAL_UART_RECEPTION_STANDARD
+#define HAL_UART_RECEPTION_STANDARD 0u
+#endif
+#define TO_IDLE 1u
+#define EVENT_TC 0u
+#define EVENT_HT 1u
+#define EVENT_IDLE 2u
+#define ERRORS (MODEL_FE | MODEL_NE | MODEL_ORE)
+
+/* The HALs of both kinds of USART clear errors in their own way. */
+static void clear_idle(void)
+{
+#ifdef STM32_MODEL_SR
+    (void)model_status();
+    (void)model_read_data();
+#else
+    model_clear(MODEL_IDLE);
+#endif
+}
+
+/* HALs before 2022 lock the handle while a function runs, and refuse others meanwhile. */
+static bool lock(UART_HandleTypeDef *uart)
+{
+    if (STM32_MODEL_YEAR > 2021) {
+        return true;
+    }
+    if (uart->Lock) {
+        return false;
+    }
+    uart->Lock = true;
+    model_step();
+    return true;
+}
+
+static void unlock(UART_HandleTypeDef *uart)
+{
+    if (STM32_MODEL_YEAR <= 2021) {
+        uart->Lock = false;
+    }
+}
+
+/* --------------------------------------------------------------------------------------- events */
+
+#ifndef STM32_MODEL_NO_DMA
+
+static bool is_circular(const DMA_HandleTypeDef *dma)
+{
+#ifdef STM32_MODEL_LINKED_LISTS
+    return dma->Mode == DMA_LINKEDLIST_CIRCULAR;
+#else
+    return dma->Init.Mode == DMA_CIRCULAR;
+#endif
+}
+
+static void report(UART_HandleTypeDef *uart, uint32_t type, uint16_t size)
+{
+    uart->RxEventType = type;
+    model_step();
+    if (uart->ReceptionType == TO_IDLE) {
+        HAL_UARTEx_RxEventCallback(uart, size);
+    } else if (type == EVENT_HT) {
+        HAL_UART_RxHalfCpltCallback(uart);
+    } else {
+        HAL_UART_RxCpltCallback(uart);
+    }
+}
+
+/* Since 2025 the size says where DMA really is. */
+static uint16_t reported_size(const UART_HandleTypeDef *uart, uint16_t nominal)
+{
+    if (STM32_MODEL_YEAR < 2025) {
+        return nominal;
+    }
+    const uint32_t left = model_dma_left();
+    return (uint16_t)(left < uart->RxXferSize ? uart->RxXferSize - left : uart->RxXferSize);
+}
+
+static void idle_with_dma(UART_HandleTypeDef *uart)
+{
+    const uint32_t left = model_dma_left();
+    if (left > 0 && left < uart->RxXferSize) {
+        report(uart, EVENT_IDLE, (uint16_t)(uart->RxXferSize - left));
+    } else if (left == uart->RxXferSize && STM32_MODEL_YEAR >= 2024 && is_circular(uart->hdmarx)) {
+        report(uart, EVENT_IDLE, uart->RxXferSize);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------ DMA */
+
+/* One UART, hence one handle, whose channel serves it. */
+static UART_HandleTypeDef *dma_user;
+
+static void dma_error_reported(DMA_HandleTypeDef *dma)
+{
+    (void)dma;
+    dma_user->RxXferCount = 0;
+    HAL_UART_ErrorCallback(dma_user);
+}
+
+static bool dma_start(UART_HandleTypeDef *uart, uint8_t *memory, uint16_t size)
+{
+    DMA_HandleTypeDef *const dma = uart->hdmarx;
+    if (dma->State != HAL_DMA_STATE_READY) {
+        return false;
+    }
+    dma_user = uart;
+    dma->State = HAL_DMA_STATE_BUSY;
+    model_step();
+    model.dma = (model_dma_t){.circular = is_circular(dma), .memory = memory, .size = size};
+    model.dma.left = size;
+    model_step();
+    model.dma.interrupts = MODEL_DMA_HT | MODEL_DMA_TC | MODEL_DMA_TE;
+    model.dma.enabled = true;
+    model_step();
+    return true;
+}
+
+static void dma_stop(DMA_HandleTypeDef *dma)
+{
+    model.dma.enabled = false;
+    model.dma.interrupts = 0;
+    model.dma.flags = 0;
+    model_step();
+    dma->State = HAL_DMA_STATE_READY;
+}
+
+/* Streams say by an interrupt that they have stopped; the others stop at once. */
+static bool dma_stop_later(DMA_HandleTypeDef *dma)
+{
+    if (dma->State != HAL_DMA_STATE_BUSY) {
+        return false;
+    }
+#if defined(STM32_MODEL_STREAMS) || defined(STM32_MODEL_LINKED_LISTS)
+    dma->State = HAL_DMA_STATE_ABORT;
+    model.dma.enabled = false;
+    model.dma.flags |= MODEL_DMA_TC;
+    model_step();
+#else
+    dma_stop(dma);
+    dma->XferAbortCallback(dma);
+#endif
+    return true;
+}
+
+static void end_reception(UART_HandleTypeDef *uart);
+
+static void dma_failed(UART_HandleTypeDef *uart)
+{
+    dma_stop(uart->hdmarx);
+    if (uart->RxState == HAL_UART_STATE_BUSY_RX) {
+        end_reception(uart);
+    }
+    uart->ErrorCode |= HAL_UART_ERROR_DMA;
+    HAL_UART_ErrorCallback(uart);
+}
+
+static void dma_half(UART_HandleTypeDef *uart)
+{
+    model.dma.flags &= ~MODEL_DMA_HT;
+    model_step();
+    report(uart, EVENT_HT, reported_size(uart, uart->RxXferSize / 2));
+}
+
+static void dma_complete(UART_HandleTypeDef *uart)
+{
+    model.dma.flags &= ~MODEL_DMA_TC;
+    model_step();
+    report(uart, EVENT_TC, reported_size(uart, uart->RxXferSize));
+}
+
+void HAL_DMA_IRQHandler(DMA_HandleTypeDef *hdma)
+{
+    model_step();
+    const uint32_t flags = model.dma.flags & model.dma.interrupts;
+    if (hdma->State == HAL_DMA_STATE_ABORT) {
+        dma_stop(hdma);
+        if (hdma->XferAbortCallback != NULL) {
+            hdma->XferAbortCallback(hdma);
+        }
+        return;
+    }
+    if ((flags & MODEL_DMA_TE) != 0) {
+        dma_failed(dma_user);
+        return;
+    }
+    if ((flags & MODEL_DMA_HT) != 0) {
+        dma_half(dma_user);
+    }
+    if ((flags & MODEL_DMA_TC) != 0) {
+        dma_complete(dma_user);
+    }
+}
+
+#endif
+
+/* ----------------------------------------------------------------------------- starting, ending */
+
+static void end_reception(UART_HandleTypeDef *uart)
+{
+    model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE);
+    model_unset(&model_usart.CR3, MODEL_CR3_EIE);
+    if (uart->ReceptionType == TO_IDLE) {
+        model_unset(&model_usart.CR1, MODEL_CR1_IDLEIE);
+    }
+    uart->RxState = HAL_UART_STATE_READY;
+    uart->ReceptionType = HAL_UART_RECEPTION_STANDARD;
+}
+
+static void prepare(UART_HandleTypeDef *uart, uint8_t *memory, uint16_t size)
+{
+    uart->pRxBuffPtr = memory;
+    uart->RxXferSize = size;
+    uart->RxXferCount = size;
+    uart->ErrorCode = HAL_UART_ERROR_NONE;
+    uart->RxState = HAL_UART_STATE_BUSY_RX;
+    model_step();
+}
+
+static HAL_StatusTypeDef start_interrupt(UART_HandleTypeDef *uart, uint8_t *memory, uint16_t size)
+{
+    prepare(uart, memory, size);
+    unlock(uart);
+    model_set(&model_usart.CR3, MODEL_CR3_EIE);
+    model_set(&model_usart.CR1, MODEL_CR1_RXNEIE);
+    return HAL_OK;
+}
+
+/* Back to waiting for the idle line, unless an error has ended it meanwhile. */
+static HAL_StatusTypeDef await_idle(UART_HandleTypeDef *uart, HAL_StatusTypeDef status)
+{
+    if (uart->ReceptionType != TO_IDLE) {
+        return HAL_ERROR;
+    }
+    clear_idle();
+    model_set(&model_usart.CR1, MODEL_CR1_IDLEIE);
+    return status;
+}
+
+static bool may_start(UART_HandleTypeDef *uart)
+{
+    model_step();
+    return uart->RxState == HAL_UART_STATE_READY && lock(uart);
+}
+
+HAL_StatusTypeDef HAL_UART_Receive_IT(UART_HandleTypeDef *huart, uint8_t *pData, uint16_t Size)
+{
+    if (!may_start(huart)) {
+        return HAL_BUSY;
+    }
+    huart->ReceptionType = HAL_UART_RECEPTION_STANDARD;
+    return start_interrupt(huart, pData, Size);
+}
+
+HAL_StatusTypeDef HAL_UARTEx_ReceiveToIdle_IT(UART_HandleTypeDef *huart, uint8_t *pData,
+                                              uint16_t Size)
+{
+    if (!may_start(huart)) {
+        return HAL_BUSY;
+    }
+    huart->ReceptionType = TO_IDLE;
+    return await_idle(huart, start_interrupt(huart, pData, Size));
+}
+
+#ifndef STM32_MODEL_NO_DMA
+
+/* An error that is pending interrupts where its interrupt is enabled: before the DMA's request
+ * is. */
+static HAL_StatusTypeDef start_dma(UART_HandleTypeDef *uart, uint8_t *memory, uint16_t size)
+{
+    prepare(uart, memory, size);
+    uart->hdmarx->XferAbortCallback = NULL;
+    if (!dma_start(uart, memory, size)) {
+        uart->ErrorCode = HAL_UART_ERROR_DMA;
+        uart->RxState = HAL_UART_STATE_READY;
+        unlock(uart);
+        return HAL_ERROR;
+    }
+#ifdef STM32_MODEL_SR
+    (void)model_status();
+    (void)model_read_data();
+#endif
+    unlock(uart);
+    model_set(&model_usart.CR3, MODEL_CR3_EIE);
+    model_set(&model_usart.CR3, MODEL_CR3_DMAR);
+    return HAL_OK;
+}
+
+HAL_StatusTypeDef HAL_UART_Receive_DMA(UART_HandleTypeDef *huart, uint8_t *pData, uint16_t Size)
+{
+    if (!may_start(huart)) {
+        return HAL_BUSY;
+    }
+    huart->ReceptionType = HAL_UART_RECEPTION_STANDARD;
+    return start_dma(huart, pData, Size);
+}
+
+HAL_StatusTypeDef HAL_UARTEx_ReceiveToIdle_DMA(UART_HandleTypeDef *huart, uint8_t *pData,
+                                               uint16_t Size)
+{
+    if (!may_start(huart)) {
+        return HAL_BUSY;
+    }
+    huart->ReceptionType = TO_IDLE;
+    return await_idle(huart, start_dma(huart, pData, Size));
+}
+
+#endif
+
+HAL_StatusTypeDef HAL_UART_AbortReceive(UART_HandleTypeDef *huart)
+{
+    model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE);
+    model_unset(&model_usart.CR3, MODEL_CR3_EIE);
+    if (huart->ReceptionType == TO_IDLE) {
+        model_unset(&model_usart.CR1, MODEL_CR1_IDLEIE);
+    }
+#ifndef STM32_MODEL_NO_DMA
+    if ((model_usart.CR3 & MODEL_CR3_DMAR) != 0) {
+        model_unset(&model_usart.CR3, MODEL_CR3_DMAR);
+        if (huart->hdmarx != NULL && huart->hdmarx->State == HAL_DMA_STATE_BUSY) {
+            huart->hdmarx->XferAbortCallback = NULL;
+            dma_stop(huart->hdmarx);
+        }
+    }
+#endif
+#ifndef STM32_MODEL_SR
+    model_clear(ERRORS);
+    (void)model_read_data();
+#endif
+    huart->RxXferCount = 0;
+    huart->RxState = HAL_UART_STATE_READY;
+    huart->ReceptionType = HAL_UART_RECEPTION_STANDARD;
+    return HAL_OK;
+}
+
+/* ------------------------------------------------------------------------------------ interrupt */
+
+static void receive_byte(UART_HandleTypeDef *uart)
+{
+    if (uart->RxState != HAL_UART_STATE_BUSY_RX) {
+        return;
+    }
+    *uart->pRxBuffPtr++ = model_read_data();
+    uart->RxXferCount--;
+    if (uart->RxXferCount > 0) {
+        return;
+    }
+    model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE);
+    model_unset(&model_usart.CR3, MODEL_CR3_EIE);
+    uart->RxState = HAL_UART_STATE_READY;
+    if (uart->ReceptionType == TO_IDLE) {
+        uart->ReceptionType = HAL_UART_RECEPTION_STANDARD;
+        model_unset(&model_usart.CR1, MODEL_CR1_IDLEIE);
+        uart->RxEventType = EVENT_TC;
+        HAL_UARTEx_RxEventCallback(uart, uart->RxXferSize);
+    } else {
+        HAL_UART_RxCpltCallback(uart);
+    }
+}
+
+static void note_errors(UART_HandleTypeDef *uart, uint32_t flags, uint32_t cr1, uint32_t cr3)
+{
+    const bool eie = (cr3 & MODEL_CR3_EIE) != 0;
+    uint32_t noted = eie ? flags & (MODEL_FE | MODEL_NE) : 0;
+    if (eie || (cr1 & MODEL_CR1_RXNEIE) != 0) {
+        noted |= flags & MODEL_ORE;
+    }
+    uart->ErrorCode |= (noted & MODEL_FE) != 0 ? HAL_UART_ERROR_FE : 0;
+    uart->ErrorCode |= (noted & MODEL_NE) != 0 ? HAL_UART_ERROR_NE : 0;
+    uart->ErrorCode |= (noted & MODEL_ORE) != 0 ? HAL_UART_ERROR_ORE : 0;
+#ifndef STM32_MODEL_SR
+    model_clear(noted);
+#endif
+}
+
+/* The end of a reception that an error has broken off. */
+static void break_off(UART_HandleTypeDef *uart)
+{
+    end_reception(uart);
+#ifndef STM32_MODEL_NO_DMA
+    if ((model_usart.CR3 & MODEL_CR3_DMAR) != 0) {
+        model_unset(&model_usart.CR3, MODEL_CR3_DMAR);
+        uart->hdmarx->XferAbortCallback = dma_error_reported;
+        if (!dma_stop_later(uart->hdmarx)) {
+            uart->hdmarx->XferAbortCallback(uart->hdmarx);
+        }
+        return;
+    }
+#endif
+    HAL_UART_ErrorCallback(uart);
+}
+
+static void handle_errors(UART_HandleTypeDef *uart, uint32_t flags, uint32_t cr1, uint32_t cr3)
+{
+    note_errors(uart, flags, cr1, cr3);
+    if (uart->ErrorCode == HAL_UART_ERROR_NONE) {
+        return;
+    }
+    if ((flags & MODEL_RXNE) != 0 && (cr1 & MODEL_CR1_RXNEIE) != 0) {
+        receive_byte(uart);
+    }
+    if ((uart->ErrorCode & HAL_UART_ERROR_ORE) != 0 || (model_usart.CR3 & MODEL_CR3_DMAR) != 0) {
+        break_off(uart);
+    } else {
+        HAL_UART_ErrorCallback(uart);
+        uart->ErrorCode = HAL_UART_ERROR_NONE;
+    }
+}
+
+static void handle_idle(UART_HandleTypeDef *uart)
+{
+    clear_idle();
+#ifndef STM32_MODEL_NO_DMA
+    if ((model_usart.CR3 & MODEL_CR3_DMAR) != 0) {
+        idle_with_dma(uart);
+        return;
+    }
+#endif
+    const uint16_t received = (uint16_t)(uart->RxXferSize - uart->RxXferCount);
+    if (uart->RxXferCount > 0 && received > 0) {
+        end_reception(uart);
+        uart->RxEventType = EVENT_IDLE;
+        HAL_UARTEx_RxEventCallback(uart, received);
+    }
+}
+
+static void transmit_next(UART_HandleTypeDef *uart)
+{
+    model_write_data(*uart->pTxBuffPtr++);
+    uart->TxXferCount--;
+    if (uart->TxXferCount == 0) {
+        model_unset(&model_usart.CR1, MODEL_CR1_TXEIE);
+        uart->gState = HAL_UART_STATE_READY;
+    }
+}
+
+void HAL_UART_IRQHandler(UART_HandleTypeDef *huart)
+{
+    const uint32_t flags = model_status();
+    const uint32_t cr1 = model_usart.CR1;
+    const uint32_t cr3 = model_usart.CR3;
+    const bool errors_wanted = (cr3 & MODEL_CR3_EIE) != 0 || (cr1 & MODEL_CR1_RXNEIE) != 0;
+    if ((flags & ERRORS) != 0 && errors_wanted) {
+        handle_errors(huart, flags, cr1, cr3);
+    } else if ((flags & MODEL_RXNE) != 0 && (cr1 & MODEL_CR1_RXNEIE) != 0) {
+        receive_byte(huart);
+    } else if (huart->ReceptionType == TO_IDLE && (flags & MODEL_IDLE) != 0 &&
+               (cr1 & MODEL_CR1_IDLEIE) != 0) {
+        handle_idle(huart);
+    } else if ((flags & MODEL_TXE) != 0 && (cr1 & MODEL_CR1_TXEIE) != 0) {
+        transmit_next(huart);
+    }
+}
+
+/* -------------------------------------------------------------------------------------- sending */
+
+HAL_StatusTypeDef HAL_UART_Transmit_IT(UART_HandleTypeDef *huart, const uint8_t *pData,
+                                       uint16_t Size)
+{
+    if (huart->gState != HAL_UART_STATE_READY || !lock(huart)) {
+        return HAL_BUSY;
+    }
+    huart->pTxBuffPtr = pData;
+    huart->TxXferCount = Size;
+    huart->gState = HAL_UART_STATE_BUSY_TX;
+    model_step();
+    unlock(huart);
+    model_set(&model_usart.CR1, MODEL_CR1_TXEIE);
+    return HAL_OK;
+}
+
+uint32_t HAL_GetTick(void)
+{
+    return model_tick_ms();
+}
+
+/* ----------------------------------------------------------------------------------- data cache */
+
+#ifdef STM32_MODEL_DCACHE
+
+#define LINE 32u
+
+/* The lines from the one in which `addr` lies, as far as they belong to the buffer. */
+static void between_cache_and_memory(uint8_t *addr, int32_t count, bool to_memory)
+{
+    const size_t first = (size_t)(addr - model.cached) / LINE * LINE;
+    const size_t end = ((size_t)(addr - model.cached) + (size_t)count + LINE - 1) / LINE * LINE;
+    for (size_t i = first; i < end && i < model.cached_size; i++) {
+        if (to_memory) {
+            model.ram[i] = model.cached[i];
+        } else {
+            model.cached[i] = model.ram[i];
+        }
+    }
+}
+
+void SCB_InvalidateDCache_by_Addr(void *addr, int32_t dsize)
+{
+    between_cache_and_memory(addr, dsize, false);
+}
+
+void SCB_CleanInvalidateDCache_by_Addr(void *addr, int32_t dsize)
+{
+    between_cache_and_memory(addr, dsize, true);
+}
+
+#endif

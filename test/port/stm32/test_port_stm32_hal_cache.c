@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The HAL port where the processor has a data cache; that what DMA brings is read from memory, all
+ * tests of test_port_stm32_hal_dma.c show on the model with a cache. */
+
+#include "hal_rig.h"
+
+#include <string.h>
+
+#include "unity.h"
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+void test_a_buffer_that_is_not_aligned_to_cache_lines_is_refused(void)
+{
+    hal_rig_open(BY_BLOCKS);
+    TEST_ASSERT_EQUAL(
+        TMINI_ERROR_ARGUMENT,
+        tmini_stm32_hal_start_blocks(&hal_rig.port, &hal_rig.lidar, &hal_rig_block[4], 128));
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, tmini_stm32_hal_start_blocks(
+                                                &hal_rig.port, &hal_rig.lidar, hal_rig_block, 80));
+}
+
+/* Else what the CPU has written there would go to memory later, on its own. */
+void test_a_buffer_is_written_to_memory_before_dma_begins(void)
+{
+    hal_rig_open(BY_DMA);
+    memset(hal_rig_rx, 0x5A, sizeof hal_rig_rx);
+    TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(hal_rig_rx, model.ram, sizeof hal_rig_rx);
+}

@@ -1,0 +1,497 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The HAL port's DMA, into the lidar's buffer and by blocks, on the model: events, errors, laps.
+ * Compiled for several families and years of the HAL. */
+
+#include "hal_rig.h"
+
+#include <string.h>
+
+#include "unity.h"
+
+#define PACKET HAL_RIG_PACKET_SIZE
+#define LAP_US 44445u
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+static uint32_t bytes_accounted_for(void)
+{
+    const tmini_counters_t counters = hal_rig_poll();
+    return counters.parser.bytes_in_packets + counters.parser.bytes_skipped +
+           counters.parser.bytes_overrun + counters.bytes_pending;
+}
+
+/* ------------------------------------------------------------------------------ what is refused */
+
+static void set_dma_mode(uint32_t mode)
+{
+#ifdef DMA_LINKEDLIST_CIRCULAR
+    hal_rig.dma.Mode = mode;
+#else
+    hal_rig.dma.Init.Mode = mode;
+#endif
+}
+
+static void check_refused(hal_rig_way_t way)
+{
+    hal_rig_open(way);
+    set_dma_mode(DMA_NORMAL);
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, hal_rig_start());
+#ifdef DMA_FIFOMODE_DISABLE
+    hal_rig_open(way);
+    hal_rig.dma.Init.FIFOMode = DMA_FIFOMODE_ENABLE;
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, hal_rig_start());
+#endif
+}
+
+void test_dma_that_is_not_circular_or_has_a_fifo_is_refused(void)
+{
+    check_refused(BY_DMA);
+    check_refused(BY_BLOCKS);
+}
+
+static tmini_status_t start_blocks(uint8_t *block, size_t size)
+{
+    return tmini_stm32_hal_start_blocks(&hal_rig.port, &hal_rig.lidar, block, size);
+}
+
+void test_blocks_of_a_wrong_size_are_refused(void)
+{
+    hal_rig_open(BY_BLOCKS);
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, start_blocks(NULL, 256));
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, start_blocks(hal_rig_block, 0));
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, start_blocks(hal_rig_block, 62));
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, start_blocks(hal_rig_block, 255));
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, start_blocks(hal_rig_block, 65536));
+}
+
+void test_blocks_are_refused_for_a_buffer_announced_as_dmas_target(void)
+{
+    hal_rig_open(BY_DMA);
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, start_blocks(hal_rig_block, 256));
+}
+
+/* ------------------------------------------------------------------------------------------ DMA */
+
+/* By DMA and by blocks alike. */
+static void check_both(void (*check)(hal_rig_way_t way))
+{
+    check(BY_DMA);
+    check(BY_BLOCKS);
+}
+
+static void check_receives(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    hal_rig_line_packets(200);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(200 * PACKET, bytes_accounted_for());
+    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
+    TEST_ASSERT_LESS_THAN_UINT32(50, model.interrupts[MODEL_USART_IRQ]);
+}
+
+void test_dma_brings_every_byte(void)
+{
+    check_both(check_receives);
+}
+
+static void check_shares_callbacks(hal_rig_way_t way)
+{
+    UART_HandleTypeDef other = {.RxState = HAL_UART_STATE_READY, .ErrorCode = HAL_UART_ERROR_FE};
+    hal_rig_open_and_start(way);
+    hal_rig_line_packets(1);
+    model_pass(300);
+    tmini_stm32_hal_rx_event(&hal_rig.port, &other);
+    tmini_stm32_hal_rx_half_complete(&hal_rig.port, &other);
+    tmini_stm32_hal_rx_complete(&hal_rig.port, &other);
+    tmini_stm32_hal_error(&hal_rig.port, &other);
+    TEST_ASSERT_EQUAL_UINT32(0, tmini_ring_stored(&hal_rig.lidar.ring));
+    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().framing_errors);
+}
+
+void test_callbacks_of_another_uart_change_nothing(void)
+{
+    check_both(check_shares_callbacks);
+}
+
+static void check_line_of_pauses(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    for (unsigned i = 0; i < 300;
+         i++) { /* Ends at every position of a buffer, the full one as well. */
+        hal_rig_line_packets(1);
+        model_pass(1000);
+        (void)hal_rig_poll();
+    }
+    TEST_ASSERT_EQUAL_UINT32(300, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
+}
+
+/* HALs of different years report different events and sizes there. */
+void test_idle_events_anywhere_lose_and_repeat_nothing(void)
+{
+    check_both(check_line_of_pauses);
+}
+
+static void check_priorities(hal_rig_way_t way)
+{
+    for (unsigned usart = 4; usart <= 6; usart++) {
+        hal_rig_open_and_start(way);
+        model.priority[MODEL_USART_IRQ] = usart;
+        model.access_ns = 2000; /* A slow controller: interrupts meet. */
+        hal_rig_line_packets(200);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
+        TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
+    }
+}
+
+void test_priorities_of_the_two_interrupts_may_be_any(void)
+{
+    check_both(check_priorities);
+}
+
+/* Between reading the position and using it. */
+static unsigned accesses;
+
+static void idle_event(void)
+{
+#ifdef HAL_UART_RXEVENT_IDLE
+    hal_rig.uart.RxEventType = HAL_UART_RXEVENT_IDLE;
+#endif
+    tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart);
+}
+
+static void event_at_every_seventh_access(void)
+{
+    if (++accesses % 7 == 0 && model.level == 100 &&
+        hal_rig.uart.RxState == HAL_UART_STATE_BUSY_RX) {
+        model.level = 0;
+        idle_event();
+        model.level = 100;
+    }
+}
+
+static void check_events_inside(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    model.on_access = event_at_every_seventh_access;
+    model.access_ns = 20000;
+    hal_rig_line_packets(300);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(300, hal_rig_packets());
+}
+
+void test_an_event_between_reading_the_position_and_using_it_harms_nothing(void)
+{
+    check_both(check_events_inside);
+}
+
+static void check_polls_alone(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    model.disabled[MODEL_USART_IRQ] = true;
+    model.disabled[MODEL_DMA_IRQ] = true;
+    hal_rig_line_packets(200);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
+}
+
+void test_polls_alone_bring_what_dma_has_written(void)
+{
+    check_both(check_polls_alone);
+}
+
+/* --------------------------------------------------------------------------- errors of the line */
+
+static void check_pending_overrun(hal_rig_way_t way)
+{
+    hal_rig_open(way);
+    hal_rig_line_packets(100);
+    model_pass(2000);
+    TEST_ASSERT_NOT_EQUAL(0, model.flags & MODEL_ORE);
+    TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+    hal_rig_run();
+    TEST_ASSERT_GREATER_THAN_UINT32(94, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
+}
+
+void test_an_overrun_pending_at_the_start_hinders_nothing(void)
+{
+    check_both(check_pending_overrun);
+}
+
+/* A damaged byte that comes at any moment of the HAL's start. */
+static void check_error_inside_start(hal_rig_way_t way)
+{
+    static const uint8_t broken = 0x00;
+    for (unsigned at = 0; at < 60; at++) {
+        hal_rig_open(way);
+        model_pass(10000);
+        line_send_with(MODEL_FE);
+        line_send(&broken, 1);
+        model.now_ns += MODEL_BYTE_NS - at * model.access_ns;
+        TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+        hal_rig_line_packets(100);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
+        TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
+        TEST_ASSERT_LESS_THAN_UINT32(50, model.interrupts[MODEL_USART_IRQ]);
+    }
+}
+
+void test_an_error_inside_the_hals_start_ends_nothing(void)
+{
+    check_both(check_error_inside_start);
+}
+
+static void check_framing_errors(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    for (unsigned i = 0; i < 20; i++) {
+        static const uint8_t broken = 0x00;
+        hal_rig_line_packets(10);
+        line_send_with(i % 2 == 0 ? MODEL_FE : MODEL_NE);
+        line_send(&broken, 1);
+    }
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(20, hal_rig_poll().parser.bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
+    TEST_ASSERT_GREATER_THAN_UINT32(4, hal_rig_errors().framing_errors);
+    TEST_ASSERT_GREATER_THAN_UINT32(4, hal_rig_errors().noise_errors);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(10, hal_rig_errors().framing_errors);
+}
+
+void test_an_error_of_the_line_costs_its_byte_and_nothing_else(void)
+{
+    check_both(check_framing_errors);
+}
+
+static void check_overrun_while_running(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    hal_rig_line_packets(10);
+    model_pass(2000);
+    model.flags |= MODEL_ORE;
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(10, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().overruns);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
+}
+
+void test_an_overrun_while_dma_runs_is_counted_and_stops_nothing(void)
+{
+    check_both(check_overrun_while_running);
+}
+
+/* ------------------------------------------------------------------- reception that has stopped */
+
+static void check_standstill(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    hal_rig_line_packets(30);
+    hal_rig_run();
+    hal_rig.uart.RxState = HAL_UART_STATE_READY; /* Whoever did that: the DMA still runs. */
+    model_pass(20000);
+    (void)hal_rig_poll();
+    TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
+    hal_rig_line_packets(100);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(130, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
+}
+
+void test_a_reception_that_stands_still_is_started_again_by_the_next_poll(void)
+{
+    check_both(check_standstill);
+}
+
+static void check_dma_error(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    hal_rig_line_packets(30);
+    hal_rig_run();
+    model.dma.flags |= MODEL_DMA_TE;
+    model_pass(5000);
+    TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().other_errors);
+    TEST_ASSERT_FALSE(hal_rig.started_in_error);
+    (void)hal_rig_poll();
+    hal_rig_line_packets(100);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(130, hal_rig_packets());
+}
+
+void test_a_dma_that_fails_is_started_again_by_the_poll_and_not_in_the_interrupt(void)
+{
+    check_both(check_dma_error);
+}
+
+/* An error in the middle of a packet; half of it has come before. */
+void test_what_came_before_a_restart_is_no_packet_again(void)
+{
+    hal_rig_open_and_start(BY_DMA);
+    hal_rig_line_packets(78); /* 1014 bytes: the buffer is full of packets. */
+    hal_rig_run();
+    hal_rig_line_packets(10);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(88, hal_rig_packets());
+    hal_rig.uart.RxState = HAL_UART_STATE_READY;
+    model_pass(20000);
+    TEST_ASSERT_EQUAL_UINT32(88, hal_rig_packets());
+    hal_rig_line_packets(100);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(188, hal_rig_packets());
+}
+
+static void check_hopeless(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    hal_rig.dma.State = HAL_DMA_STATE_ABORT; /* The channel never comes back. */
+    hal_rig.uart.RxState = HAL_UART_STATE_READY;
+    model_usart.CR3 = 0;
+    for (unsigned i = 0; i < 300; i++) {
+        model_pass(100);
+        (void)hal_rig_poll();
+    }
+    TEST_ASSERT_LESS_THAN_UINT32(12, hal_rig_errors().restarts); /* 30 ms. */
+    TEST_ASSERT_GREATER_THAN_UINT32(5, hal_rig_errors().restarts);
+}
+
+void test_restarts_that_fail_are_tried_again_some_milliseconds_later(void)
+{
+    check_both(check_hopeless);
+}
+
+/* ----------------------------------------------------------------------------------------- laps */
+
+/* Returns the packets that came out of 200, with the interrupts held back in between. */
+static uint32_t packets_with_interrupts_held(hal_rig_way_t way, uint32_t us)
+{
+    hal_rig_open_and_start(way);
+    hal_rig_line_packets(200);
+    for (unsigned i = 0; i < 30; i++) {
+        model_pass(1000);
+        (void)hal_rig_poll();
+    }
+    model.held_until_ns = model.now_ns + us * 1000u;
+    model_pass(us + 10);
+    hal_rig_run();
+    return hal_rig_packets();
+}
+
+/* All lengths from half a lap on. */
+void test_a_lap_that_no_interrupt_has_seen_is_noticed(void)
+{
+    for (uint32_t us = LAP_US; us < 2 * LAP_US; us += 1500) {
+        const uint32_t packets = packets_with_interrupts_held(BY_DMA, us);
+        TEST_ASSERT_GREATER_THAN_UINT32(0, hal_rig_errors().laps);
+        TEST_ASSERT_LESS_THAN_UINT32(200, packets);
+        TEST_ASSERT_GREATER_THAN_UINT32(75, packets);
+    }
+}
+
+/* Just over a lap: only a few bytes seem to be new. */
+void test_what_a_lap_has_overwritten_counts_as_lost(void)
+{
+    (void)packets_with_interrupts_held(BY_DMA, LAP_US + 1000);
+    TEST_ASSERT_GREATER_THAN_UINT32(500, hal_rig_poll().parser.bytes_overrun);
+}
+
+/* As when the DMA's interrupt has come into the idle line's: both find the DMA's kind noted. */
+void test_an_event_told_once_is_not_told_again(void)
+{
+    hal_rig_open_and_start(BY_DMA);
+    hal_rig_line_packets(60);
+    model_pass(520 * 44); /* The middle has been passed. */
+    tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart);
+    tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
+}
+
+void test_a_lap_of_a_block_that_no_interrupt_has_seen_is_noticed(void)
+{
+    for (uint32_t us = LAP_US / 4; us < LAP_US; us += 700) {
+        (void)packets_with_interrupts_held(BY_BLOCKS, us);
+        TEST_ASSERT_GREATER_THAN_UINT32(0, hal_rig_errors().laps);
+    }
+}
+
+void test_interrupts_late_by_less_than_half_a_lap_lose_nothing(void)
+{
+    for (uint32_t us = 100; us < LAP_US / 2 - 2000; us += 1500) {
+        TEST_ASSERT_EQUAL_UINT32(200, packets_with_interrupts_held(BY_DMA, us));
+        TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
+    }
+}
+
+/* The DMA's interrupt inside the idle line's, between the HAL's noting the kind of event and its
+ * call. */
+void test_an_event_taken_for_another_is_no_lap(void)
+{
+    hal_rig_open_and_start(BY_DMA);
+    model.priority[MODEL_DMA_IRQ] = 4;
+    model.access_ns = 5000;
+    for (unsigned i = 0; i < 2000; i++) {
+        hal_rig_line_packets(1);
+        model_pass(HAL_RIG_PACKET_SIZE * 44 + 30 + i % 50);
+        (void)hal_rig_poll();
+    }
+    TEST_ASSERT_EQUAL_UINT32(2000, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
+}
+
+/* ----------------------------------------------------------------------------------------- stop */
+
+static void check_stop(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    hal_rig_line_packets(5);
+    model_pass(3000); /* No event has come yet. */
+    tmini_stm32_hal_stop(&hal_rig.port);
+    TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
+    TEST_ASSERT_FALSE(model.dma.enabled);
+    hal_rig_line_packets(100);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
+    TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+    hal_rig_line_packets(100);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(105, hal_rig_packets());
+}
+
+void test_after_stop_dma_is_off_and_what_had_come_is_there(void)
+{
+    check_both(check_stop);
+}
+
+static void check_new_lidar(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    hal_rig_line_packets(33);
+    hal_rig_run();
+    tmini_stm32_hal_stop(&hal_rig.port);
+    const tmini_config_t config = {
+        .port = &tmini_stm32_hal_port,
+        .port_context = &hal_rig.port,
+        .rx_buffer = hal_rig_rx,
+        .rx_size = sizeof hal_rig_rx,
+        .rx_dma = way == BY_DMA,
+    };
+    TEST_ASSERT_EQUAL(TMINI_OK, tmini_init(&hal_rig.lidar, &config));
+    TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+    hal_rig_line_packets(100);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(100 * PACKET, bytes_accounted_for());
+}
+
+void test_a_lidar_set_up_anew_begins_at_the_buffers_start(void)
+{
+    check_both(check_new_lidar);
+}

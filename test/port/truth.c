@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "truth.h"
+
+#include "unity.h"
+
+#include "reference_decoder.h"
+
+const uint8_t truth_packet[TRUTH_PACKET_SIZE] = {
+    0xAA, 0x55, 0x20, 0x13, 0x95, 0xA9, 0x63, 0x00, 0x5A, 0xE8, 0x01, 0x08, 0xB9, 0x01,
+    0xAC, 0xB8, 0x01, 0xF8, 0xB6, 0x01, 0x88, 0xB5, 0x01, 0x58, 0xAE, 0x01, 0xC0, 0xAB,
+    0x01, 0x04, 0xAA, 0x01, 0x78, 0xA9, 0x01, 0x34, 0xA9, 0x01, 0xC4, 0xAD, 0x01, 0x34,
+    0xAF, 0x01, 0x78, 0xAE, 0x01, 0x2C, 0xAD, 0x01, 0x02, 0x00, 0x00, 0x62, 0xAD, 0x01,
+    0x60, 0xAD, 0x01, 0xF0, 0xAB, 0x01, 0x88, 0xAD, 0x01, 0xFE, 0xAD,
+};
+
+#define POINTS_MAX 400000u
+
+static struct {
+    reference_point_t points[POINTS_MAX];
+    uint32_t revolutions[POINTS_MAX];
+    uint32_t count;
+    uint32_t packets;
+    uint32_t seen; /* Points up to here have been found in scans, or passed over. */
+} truth;
+
+static void note_packet(void *context, const sim_packet_t *packet)
+{
+    (void)context;
+    const unsigned samples = packet->bytes[3]; /* LSN */
+    truth.packets++;
+    for (unsigned i = 0; i < samples && truth.count < POINTS_MAX; i++) {
+        truth.points[truth.count] = reference_point(packet->bytes, i);
+        truth.revolutions[truth.count] = packet->revolution;
+        truth.count++;
+    }
+}
+
+sim_observer_t truth_begin(void)
+{
+    truth.count = 0;
+    truth.packets = 0;
+    truth.seen = 0;
+    return (sim_observer_t){.on_packet = note_packet};
+}
+
+uint32_t truth_packets(void)
+{
+    return truth.packets;
+}
+
+static bool is_equal(const reference_point_t *sent, const tmini_point_t *point)
+{
+    return sent->angle_q6 == point->angle_q6 && sent->distance_mm == point->distance_mm &&
+           sent->intensity == point->intensity && sent->flag == point->flag;
+}
+
+/* The index of the revolution's first point, or the number of points. */
+static uint32_t first_of(uint32_t revolution)
+{
+    uint32_t i = 0;
+    while (i < truth.count && truth.revolutions[i] != revolution) {
+        i++;
+    }
+    return i;
+}
+
+void truth_assert_revolution(const tmini_scan_t *scan, uint32_t revolution)
+{
+    const uint32_t first = first_of(revolution);
+    TEST_ASSERT_TRUE_MESSAGE(scan->complete, "the scan is not complete");
+    for (uint32_t i = 0; i < scan->count; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(first + i < truth.count, "more points than were sent");
+        TEST_ASSERT_EQUAL_UINT32(revolution, truth.revolutions[first + i]);
+        TEST_ASSERT_TRUE_MESSAGE(is_equal(&truth.points[first + i], &scan->points[i]),
+                                 "a point is not as it was sent");
+    }
+    const uint32_t behind = first + scan->count;
+    TEST_ASSERT_TRUE_MESSAGE(behind >= truth.count || truth.revolutions[behind] != revolution,
+                             "points are missing");
+}
+
+static bool is_revolution_at(const tmini_scan_t *scan, uint32_t first)
+{
+    const uint32_t behind = first + scan->count;
+    if (behind > truth.count || truth.revolutions[behind - 1] != truth.revolutions[first] ||
+        (behind < truth.count && truth.revolutions[behind] == truth.revolutions[first])) {
+        return false;
+    }
+    unsigned i = 0;
+    while (i < scan->count && is_equal(&truth.points[first + i], &scan->points[i])) {
+        i++;
+    }
+    return i == scan->count;
+}
+
+static bool begins_revolution(uint32_t at)
+{
+    return at == 0 || truth.revolutions[at - 1] != truth.revolutions[at];
+}
+
+void truth_assert_some_revolution(const tmini_scan_t *scan)
+{
+    uint32_t at = truth.seen;
+    TEST_ASSERT_TRUE_MESSAGE(scan->complete && scan->count > 0, "the scan is not complete");
+    while (at < truth.count && !(begins_revolution(at) && is_revolution_at(scan, at))) {
+        at++;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(at < truth.count, "it is no revolution");
+    truth.seen = at + scan->count;
+}
+
+void truth_assert_nothing_invented(const tmini_scan_t *scan)
+{
+    for (unsigned i = 0; i < scan->count; i++) {
+        while (truth.seen < truth.count && !is_equal(&truth.points[truth.seen], &scan->points[i])) {
+            truth.seen++;
+        }
+        TEST_ASSERT_TRUE_MESSAGE(truth.seen < truth.count, "a point was never sent");
+        truth.seen++;
+    }
+}

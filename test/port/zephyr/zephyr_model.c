@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "zephyr_model.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "zephyr_api.h"
+
+#define STEP_US 20u
+#define FIFO_MAX 16u
+
+const struct device zephyr_model_uart = {.name = "uart"};
+
+static struct {
+    sim_t lidar;
+    uint64_t now_us;
+    uint8_t fifo[FIFO_MAX];
+    unsigned fifo_size;
+    unsigned count;
+    int errors;
+    int damage;
+    bool lose_while_reading;
+    int error_check;
+    int configure;
+    bool ready;
+    bool receiving;
+    bool held_up;
+    bool in_interrupt;
+    uint32_t baud_rate;
+    uint32_t line_bytes;
+    uart_irq_callback_user_data_t callback;
+    void *user_data;
+    unsigned wakes;
+    void (*on_sleep)(void);
+    char console[8192];
+    size_t console_length;
+} board;
+
+void zephyr_model_begin(const sim_observer_t *observer)
+{
+    memset(&board, 0, sizeof board);
+    const sim_config_t config = sim_default_config();
+    sim_init(&board.lidar, &config);
+    sim_observe(&board.lidar, observer);
+    board.fifo_size = FIFO_MAX;
+    board.ready = true;
+}
+
+void zephyr_model_set_fifo(unsigned size)
+{
+    board.fifo_size = size;
+}
+
+void zephyr_model_set_error_check(int result)
+{
+    board.error_check = result;
+}
+
+void zephyr_model_set_configure(int result)
+{
+    board.configure = result;
+}
+
+void zephyr_model_set_ready(bool ready)
+{
+    board.ready = ready;
+}
+
+sim_t *zephyr_model_lidar(void)
+{
+    return &board.lidar;
+}
+
+uint64_t zephyr_model_now_us(void)
+{
+    return board.now_us;
+}
+
+uint32_t zephyr_model_line_bytes(void)
+{
+    return board.line_bytes;
+}
+
+uint32_t zephyr_model_baud_rate(void)
+{
+    return board.baud_rate;
+}
+
+bool zephyr_model_is_receiving(void)
+{
+    return board.receiving;
+}
+
+unsigned zephyr_model_wakes(void)
+{
+    return board.wakes;
+}
+
+void zephyr_model_damage(int errors)
+{
+    board.damage = errors;
+}
+
+void zephyr_model_lose_while_reading(void)
+{
+    board.lose_while_reading = true;
+}
+
+/* ----------------------------------------------------------------------------- time, interrupts */
+
+static void receive_byte(uint8_t byte)
+{
+    board.line_bytes++;
+    board.errors |= board.damage;
+    board.damage = 0;
+    if (board.count < board.fifo_size) {
+        board.fifo[board.count++] = byte;
+    } else {
+        board.errors |= UART_ERROR_OVERRUN;
+    }
+}
+
+static void serve_interrupt(void)
+{
+    if (!board.held_up && !board.in_interrupt && board.receiving && board.count > 0 &&
+        board.callback != NULL) {
+        board.in_interrupt = true;
+        board.callback(&zephyr_model_uart, board.user_data);
+        board.in_interrupt = false;
+    }
+}
+
+void zephyr_model_receive(const uint8_t *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        receive_byte(bytes[i]);
+        if (board.count == board.fifo_size || i + 1 == count) {
+            serve_interrupt();
+        }
+    }
+}
+
+void zephyr_model_leave_receiving(void)
+{
+    board.receiving = true;
+}
+
+void zephyr_model_interrupt_late(void)
+{
+    board.in_interrupt = true;
+    board.callback(&zephyr_model_uart, board.user_data);
+    board.in_interrupt = false;
+}
+
+void zephyr_model_pass(uint32_t us)
+{
+    const uint64_t end_us = board.now_us + us;
+    while (board.now_us < end_us) {
+        uint8_t byte;
+        board.now_us += STEP_US;
+        while (sim_transmit(&board.lidar, board.now_us, &byte, 1) == 1) {
+            receive_byte(byte);
+            serve_interrupt();
+        }
+        serve_interrupt();
+    }
+}
+
+void zephyr_model_pass_held_up(uint32_t us)
+{
+    board.held_up = true;
+    zephyr_model_pass(us);
+    board.held_up = false;
+    serve_interrupt();
+}
+
+/* ----------------------------------------------------------------------------------------- UART */
+
+bool device_is_ready(const struct device *device)
+{
+    return device == &zephyr_model_uart && board.ready;
+}
+
+int uart_configure(const struct device *device, const struct uart_config *config)
+{
+    (void)device;
+    if (board.configure == 0 && config->parity == UART_CFG_PARITY_NONE &&
+        config->stop_bits == UART_CFG_STOP_BITS_1 && config->data_bits == UART_CFG_DATA_BITS_8 &&
+        config->flow_ctrl == UART_CFG_FLOW_CTRL_NONE) {
+        board.baud_rate = config->baudrate;
+    }
+    return board.configure;
+}
+
+int uart_err_check(const struct device *device)
+{
+    (void)device;
+    const int errors = board.errors;
+    board.errors = 0;
+    return board.error_check != 0 ? board.error_check : errors;
+}
+
+void uart_poll_out(const struct device *device, unsigned char byte)
+{
+    (void)device;
+    sim_receive(&board.lidar, &byte, 1, board.now_us);
+}
+
+int uart_irq_callback_user_data_set(const struct device *device,
+                                    uart_irq_callback_user_data_t callback, void *user_data)
+{
+    (void)device;
+    if (board.receiving) {
+        abort(); /* An interrupt could come in between. */
+    }
+    board.callback = callback;
+    board.user_data = user_data;
+    return 0;
+}
+
+void uart_irq_rx_enable(const struct device *device)
+{
+    (void)device;
+    board.receiving = true;
+    serve_interrupt();
+}
+
+void uart_irq_rx_disable(const struct device *device)
+{
+    (void)device;
+    board.receiving = false;
+}
+
+void uart_irq_tx_disable(const struct device *device)
+{
+    (void)device;
+}
+
+int uart_irq_update(const struct device *device)
+{
+    (void)device;
+    return 1;
+}
+
+static void check_context(void)
+{
+    if (!board.in_interrupt) {
+        abort(); /* Zephyr allows these in the callback only. */
+    }
+}
+
+int uart_irq_rx_ready(const struct device *device)
+{
+    (void)device;
+    check_context();
+    return board.count > 0;
+}
+
+int uart_fifo_read(const struct device *device, uint8_t *bytes, int size)
+{
+    (void)device;
+    check_context();
+    const unsigned taken = board.count < (unsigned)size ? board.count : (unsigned)size;
+    memcpy(bytes, board.fifo, taken);
+    board.count -= taken;
+    memmove(board.fifo, &board.fifo[taken], board.count);
+    board.errors = 0; /* Some drivers do so. */
+    if (board.lose_while_reading) {
+        board.lose_while_reading = false;
+        board.errors = UART_ERROR_OVERRUN;
+    }
+    return (int)taken;
+}
+
+/* --------------------------------------------------------------------------------------- kernel */
+
+int k_sem_init(struct k_sem *sem, unsigned initial, unsigned limit)
+{
+    *sem = (struct k_sem){.count = initial, .limit = limit};
+    return 0;
+}
+
+void k_sem_give(struct k_sem *sem)
+{
+    if (sem->limit == 0) {
+        abort(); /* It has not been made. */
+    }
+    if (sem->count < sem->limit) {
+        sem->count++;
+    }
+}
+
+int k_sem_take(struct k_sem *sem, k_timeout_t timeout)
+{
+    const uint64_t end_us = board.now_us + (uint64_t)timeout.ms * 1000u;
+    while (sem->count == 0 && board.now_us < end_us) {
+        zephyr_model_pass(STEP_US);
+    }
+    if (board.on_sleep != NULL) {
+        board.on_sleep();
+    }
+    if (sem->count == 0) {
+        return -EAGAIN;
+    }
+    sem->count--;
+    board.wakes++;
+    return 0;
+}
+
+k_spinlock_key_t k_spin_lock(struct k_spinlock *lock)
+{
+    if (lock->held) {
+        abort(); /* It would never end. */
+    }
+    lock->held = true;
+    return (k_spinlock_key_t){0};
+}
+
+void k_spin_unlock(struct k_spinlock *lock, k_spinlock_key_t key)
+{
+    (void)key;
+    lock->held = false;
+}
+
+uint32_t k_uptime_get_32(void)
+{
+    return (uint32_t)(board.now_us / 1000u);
+}
+
+void zephyr_model_on_sleep(void (*callback)(void))
+{
+    board.on_sleep = callback;
+}
+
+int printk(const char *format, ...)
+{
+    va_list arguments;
+    char *const end = &board.console[board.console_length];
+    const size_t room = sizeof board.console - board.console_length;
+    va_start(arguments, format);
+    const int length = vsnprintf(end, room, format, arguments);
+    va_end(arguments);
+    if (length > 0 && (size_t)length < room) {
+        board.console_length += (size_t)length;
+    }
+    return length;
+}
+
+const char *zephyr_model_console(void)
+{
+    return board.console;
+}

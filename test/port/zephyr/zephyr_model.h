@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* A board under Zephyr as far as the port sees it: one thread, one UART with its interrupt, a
+ * semaphore to sleep on, and the simulated lidar. Time goes on only while the thread sleeps or the
+ * test makes it.
+ *
+ * The UART is one of two kinds that Zephyr's drivers have: with a FIFO of 16 bytes, or of 1; with
+ * errors told by uart_err_check(), or not. As with some drivers, reading data clears the errors. */
+
+#ifndef ZEPHYR_MODEL_H
+#define ZEPHYR_MODEL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "simulator.h"
+
+/* A fresh board with a lidar at rest that is told to `observer`; a FIFO of 16, errors told. */
+void zephyr_model_begin(const sim_observer_t *observer);
+
+void zephyr_model_set_fifo(unsigned size);
+
+/* -ENOSYS for a driver without uart_err_check() or uart_configure(); 0: it has them. */
+void zephyr_model_set_error_check(int result);
+void zephyr_model_set_configure(int result);
+
+void zephyr_model_set_ready(bool ready);
+
+/* The lidar; see simulator.h. */
+sim_t *zephyr_model_lidar(void);
+
+uint64_t zephyr_model_now_us(void);
+
+/* Time passes: bytes come and interrupts are served; or, held up, not served until it is over. */
+void zephyr_model_pass(uint32_t us);
+void zephyr_model_pass_held_up(uint32_t us);
+
+/* Bytes as if the lidar had sent them now; the interrupt comes when the FIFO is full, and at the
+ * end. */
+void zephyr_model_receive(const uint8_t *bytes, size_t count);
+
+/* Somebody else has left reception on; and an interrupt that was under way while it was switched
+ * off. */
+void zephyr_model_leave_receiving(void);
+void zephyr_model_interrupt_late(void);
+
+/* The error that comes with the next byte. */
+void zephyr_model_damage(int errors);
+
+/* The next reading of the FIFO finds it full, and one byte is lost while it is being read. */
+void zephyr_model_lose_while_reading(void);
+
+/* Bytes that have come on the line so far. */
+uint32_t zephyr_model_line_bytes(void);
+
+uint32_t zephyr_model_baud_rate(void);
+bool zephyr_model_is_receiving(void);
+
+/* How often the polling thread has been woken by the semaphore, and not by its time-out. */
+unsigned zephyr_model_wakes(void);
+
+/* Called whenever the thread sleeps; may leave by longjmp(). NULL: nobody. */
+void zephyr_model_on_sleep(void (*callback)(void));
+
+/* What the program has printed. */
+const char *zephyr_model_console(void);
+
+#endif

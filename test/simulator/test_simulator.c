@@ -1,0 +1,997 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The simulated lidar against docs/protocol.md, through its bytes alone. */
+
+#include "reference_decoder.h"
+#include "simulator.h"
+
+#include "unity.h"
+
+#include <string.h>
+
+#define SECOND UINT64_C(1000000)
+#define STREAM_MAX 2000000u
+#define PACKETS_MAX 20000u
+
+static sim_t sim;
+static sim_config_t config;
+static uint64_t now;
+static uint8_t stream[STREAM_MAX];
+static size_t size;
+static reference_item_t packets[PACKETS_MAX];
+static size_t packet_count;
+static reference_counts_t counts;
+
+/* ---- Helpers ---- */
+
+static void power_up(void)
+{
+    sim_init(&sim, &config);
+    now = 0;
+    size = 0;
+}
+
+static void run_ms(uint32_t milliseconds)
+{
+    for (; milliseconds > 0; milliseconds--) {
+        now += 1000;
+        size += sim_transmit(&sim, now, stream + size, STREAM_MAX - size);
+    }
+}
+
+static void send(uint8_t code)
+{
+    const uint8_t command[2] = {0xA5, code};
+
+    sim_receive(&sim, command, 2, now);
+}
+
+static void forget_stream(void)
+{
+    size = 0;
+}
+
+static void collect(void *context, const reference_item_t *item)
+{
+    (void)context;
+    if (item->is_packet && packet_count < PACKETS_MAX) {
+        packets[packet_count++] = *item;
+    }
+}
+
+static void decode(void)
+{
+    static const reference_reply_t start_reply = {1, 0x81, 0};
+    const reference_options_t options = {80, &start_reply};
+
+    packet_count = 0;
+    counts = reference_decode(stream, size, &options, collect, NULL);
+    TEST_ASSERT_EQUAL_UINT32(0, sim_lost_frames(&sim));
+}
+
+/* Scans for some seconds after the spin-up is over. */
+static void scan_seconds(uint32_t seconds)
+{
+    send(0x60);
+    run_ms(3000);
+    forget_stream();
+    run_ms(seconds * 1000u);
+    decode();
+}
+
+static size_t next_start(size_t from)
+{
+    while (from < packet_count && !packets[from].starts_revolution) {
+        from++;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(from < packet_count, "no more start packets");
+    return from;
+}
+
+static unsigned points_between(size_t from, size_t to)
+{
+    unsigned points = 0;
+
+    for (; from < to; from++) {
+        points += packets[from].lsn;
+    }
+    return points;
+}
+
+static void expect_stream(const uint8_t *expected, size_t length)
+{
+    TEST_ASSERT_EQUAL_size_t(length, size);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, stream, length);
+}
+
+static void expect_frequency_reply(uint8_t low, uint8_t high)
+{
+    const uint8_t expected[] = {0xA5, 0x5A, 0x04, 0, 0, 0, 0x04, low, high, 0, 0};
+
+    run_ms(10);
+    expect_stream(expected, sizeof expected);
+    forget_stream();
+}
+
+void setUp(void)
+{
+    config = sim_default_config();
+    power_up();
+}
+
+void tearDown(void) {}
+
+/* ---- Idle and its commands ---- */
+
+void test_it_is_idle_and_silent_after_power_up(void)
+{
+    run_ms(5000);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
+    TEST_ASSERT_EQUAL_UINT16(600, sim_frequency_chz(&sim));
+    TEST_ASSERT_EQUAL_UINT64(SIM_NEVER, sim_next_us(&sim));
+}
+
+void test_device_information_has_the_minor_firmware_version_first(void)
+{
+    static const uint8_t expected[] = {0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, 0x97, 2, 1, 1, 2, 0, 2,
+                                       6,    0,    3,    1, 7, 0, 0,    0,    1, 2, 3, 4, 5};
+
+    send(0x90);
+    run_ms(10);
+    expect_stream(expected, sizeof expected);
+}
+
+void test_health_is_all_clear_at_first(void)
+{
+    static const uint8_t expected[] = {0xA5, 0x5A, 0x03, 0, 0, 0, 0x06, 0, 0, 0};
+
+    send(0x92);
+    run_ms(10);
+    expect_stream(expected, sizeof expected);
+}
+
+void test_health_reports_the_bits_that_are_set(void)
+{
+    sim_set_health(&sim, SIM_HEALTH_PD | SIM_HEALTH_LD);
+    send(0x92);
+    run_ms(10);
+    TEST_ASSERT_EQUAL_size_t(10, size);
+    TEST_ASSERT_EQUAL_HEX8(0x18, stream[7]);
+    TEST_ASSERT_NOT_EQUAL(0, stream[8]);
+}
+
+void test_frequency_steps_are_a_tenth_and_a_whole_hertz(void)
+{
+    send(0x0D);
+    expect_frequency_reply(0x58, 0x02); /* 600 */
+    send(0x09);
+    expect_frequency_reply(0x62, 0x02); /* 610 */
+    send(0x0B);
+    expect_frequency_reply(0xC6, 0x02); /* 710 */
+    send(0x0A);
+    expect_frequency_reply(0xBC, 0x02); /* 700 */
+    send(0x0C);
+    expect_frequency_reply(0x58, 0x02); /* 600 */
+}
+
+void test_a_step_beyond_a_limit_changes_nothing_and_says_so(void)
+{
+    config.frequency_chz = 1150;
+    power_up();
+    send(0x0B);
+    expect_frequency_reply(0x7E, 0x04); /* 1150 */
+    config.frequency_chz = 500;
+    power_up();
+    send(0x0A);
+    expect_frequency_reply(0xF4, 0x01); /* 500 */
+}
+
+void test_the_limits_themselves_can_be_reached(void)
+{
+    config.frequency_chz = 1190;
+    power_up();
+    send(0x09);
+    expect_frequency_reply(0xB0, 0x04); /* 1200 */
+    config.frequency_chz = 600;
+    power_up();
+    send(0x0C);
+    expect_frequency_reply(0xF4, 0x01); /* 500 */
+}
+
+void test_stop_and_unknown_commands_have_no_reply(void)
+{
+    send(0x65);
+    send(0x61);
+    send(0x00);
+    run_ms(100);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+    TEST_ASSERT_EQUAL_UINT32(1, sim.counts.commands);
+    TEST_ASSERT_EQUAL_UINT32(2, sim.counts.unknown_commands);
+}
+
+void test_a_command_may_arrive_in_two_parts_and_among_garbage(void)
+{
+    static const uint8_t first[] = {0x0D, 0x60, 0xA5, 0xA5};
+    static const uint8_t second[] = {0x0D, 0x60, 0x90};
+
+    sim_receive(&sim, first, sizeof first, now);
+    run_ms(50);
+    sim_receive(&sim, second, sizeof second, now);
+    expect_frequency_reply(0x58, 0x02);
+    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
+}
+
+void test_a_reply_comes_after_the_latency_at_the_lines_speed(void)
+{
+    config.reply_latency_ms = 20;
+    power_up();
+    send(0x92);
+    /* 20 ms and ten bytes of 43.403 us are 20434.03 us. */
+    size = sim_transmit(&sim, 20043, stream, STREAM_MAX);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+    size = sim_transmit(&sim, 20044, stream, STREAM_MAX);
+    TEST_ASSERT_EQUAL_size_t(1, size);
+    size += sim_transmit(&sim, 20434, stream, STREAM_MAX);
+    TEST_ASSERT_EQUAL_size_t(9, size);
+    size += sim_transmit(&sim, 20435, stream, STREAM_MAX);
+    TEST_ASSERT_EQUAL_size_t(10, size);
+}
+
+void test_one_reply_can_be_delayed_and_the_next_one_waits_behind_it(void)
+{
+    sim_delay_next_reply(&sim, 3000);
+    send(0x92);
+    run_ms(1000);
+    send(0x0D);
+    run_ms(1990);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+    run_ms(20);
+    TEST_ASSERT_EQUAL_size_t(21, size);
+    TEST_ASSERT_EQUAL_HEX8(0x06, stream[6]);
+    TEST_ASSERT_EQUAL_HEX8(0x04, stream[16]);
+    forget_stream();
+    send(0x0D);
+    expect_frequency_reply(0x58, 0x02);
+}
+
+/* Ten bytes of health at 3003 ms, then the start command's seven, then the stream. */
+void test_a_stream_waits_for_its_own_late_reply(void)
+{
+    sim_delay_next_reply(&sim, 3000);
+    send(0x92);
+    run_ms(1000);
+    send(0x60);
+    run_ms(2200);
+    TEST_ASSERT_EQUAL_size_t(17, size);
+    TEST_ASSERT_EQUAL_HEX8(0x81, stream[16]);
+    run_ms(1000);
+    decode();
+    TEST_ASSERT_TRUE(counts.packets > 50);
+}
+
+void test_one_reply_can_be_lost(void)
+{
+    sim_lose_next_reply(&sim);
+    send(0x0D);
+    run_ms(100);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+    send(0x0D);
+    expect_frequency_reply(0x58, 0x02);
+}
+
+/* ---- Scanning ---- */
+
+void test_start_is_answered_and_packets_follow(void)
+{
+    static const uint8_t expected[] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
+
+    send(0x60);
+    TEST_ASSERT_EQUAL(SIM_SCANNING, sim_mode(&sim));
+    run_ms(100);
+    expect_stream(expected, sizeof expected);
+    run_ms(2000);
+    decode();
+    TEST_ASSERT_TRUE(counts.packets > 150);
+    TEST_ASSERT_EQUAL_UINT64(1, counts.replies);
+    TEST_ASSERT_EQUAL_UINT64(0, counts.checksum_errors);
+}
+
+void test_only_last_crc_bytes_stand_between_the_packets(void)
+{
+    scan_seconds(10);
+    TEST_ASSERT_EQUAL_UINT64(0, counts.checksum_errors);
+    for (size_t i = 1; i + 1u < packet_count; i++) {
+        const size_t gap = packets[i].offset - packets[i - 1u].offset - packets[i - 1u].length;
+
+        TEST_ASSERT_EQUAL_size_t(packets[i].starts_revolution ? 1 : 0, gap);
+    }
+}
+
+/* Section 9.7: 624 to 667 points at 6 Hz, start packet included; here 4000 / 6 within 1 %. */
+void test_a_revolution_at_6_hz_has_about_667_points(void)
+{
+    size_t start;
+
+    scan_seconds(10);
+    start = next_start(0);
+    for (int turn = 0; turn < 50; turn++) {
+        const size_t next = next_start(start + 1u);
+
+        TEST_ASSERT_UINT_WITHIN(7, 667, points_between(start, next));
+        start = next;
+    }
+}
+
+void test_a_revolution_at_12_hz_has_about_333_points(void)
+{
+    size_t start;
+
+    config.frequency_chz = 1200;
+    power_up();
+    scan_seconds(5);
+    start = next_start(0);
+    TEST_ASSERT_UINT_WITHIN(5, 333, points_between(start, next_start(start + 1u)));
+}
+
+void test_packets_are_full_but_for_the_start_and_the_last(void)
+{
+    config.lone_packet_permille = 0;
+    power_up();
+    scan_seconds(10);
+    for (size_t i = next_start(0); i + 1u < packet_count; i++) {
+        if (packets[i].starts_revolution) {
+            TEST_ASSERT_EQUAL_UINT8(1, packets[i].lsn);
+        } else if (packets[i + 1u].starts_revolution) {
+            TEST_ASSERT_TRUE(packets[i].lsn >= 1u && packets[i].lsn <= 40u);
+        } else {
+            TEST_ASSERT_EQUAL_UINT8(40, packets[i].lsn);
+        }
+    }
+}
+
+void test_lone_point_packets_end_a_hair_before_they_begin(void)
+{
+    unsigned lone = 0;
+
+    config.lone_packet_permille = 200;
+    power_up();
+    scan_seconds(10);
+    for (size_t i = 0; i < packet_count; i++) {
+        if (packets[i].lsn == 1u && !packets[i].starts_revolution && packets[i].fsa > 20u) {
+            TEST_ASSERT_EQUAL_UINT16(packets[i].fsa - 14u, packets[i].lsa);
+            lone++;
+        }
+    }
+    TEST_ASSERT_TRUE(lone > 100);
+}
+
+/* 40 samples of 34.56/64 degree: 39 steps are 1347.84/64 degree, and jitter is 3/64 each. */
+void test_a_full_packet_at_6_hz_sweeps_21_degrees(void)
+{
+    unsigned full = 0;
+
+    scan_seconds(10);
+    for (size_t i = 0; i < packet_count; i++) {
+        if (packets[i].lsn == 40u) {
+            const int swept = (packets[i].lsa >> 1) - (packets[i].fsa >> 1);
+
+            TEST_ASSERT_INT_WITHIN(20, 1348, swept < 0 ? swept + 23040 : swept);
+            full++;
+        }
+    }
+    TEST_ASSERT_TRUE(full > 700);
+}
+
+void test_angles_go_on_clockwise_from_packet_to_packet(void)
+{
+    scan_seconds(10);
+    for (size_t i = 1; i < packet_count; i++) {
+        const int last = packets[i - 1u].lsa >> 1;
+        const int step = ((packets[i].fsa >> 1) - last + 23040) % 23040;
+
+        TEST_ASSERT_INT_WITHIN(16, 34, step);
+    }
+}
+
+void test_start_packets_are_at_the_start_angle(void)
+{
+    config.start_angle_q6 = 7424; /* 116 degrees */
+    power_up();
+    scan_seconds(5);
+    for (size_t i = next_start(0); i < packet_count; i++) {
+        if (packets[i].starts_revolution) {
+            TEST_ASSERT_UINT_WITHIN(40, 7440, packets[i].fsa >> 1);
+        }
+    }
+}
+
+void test_the_load_is_13_kilobytes_a_second(void)
+{
+    scan_seconds(10);
+    TEST_ASSERT_UINT_WITHIN(300, 13100, size / 10u);
+}
+
+void test_bytes_never_come_faster_than_the_line(void)
+{
+    uint8_t chunk[1000];
+
+    send(0x60);
+    for (uint32_t i = 0; i < 30000; i++) {
+        now += 100;
+        TEST_ASSERT_TRUE(sim_transmit(&sim, now, chunk, sizeof chunk) <= 3);
+    }
+}
+
+void test_one_late_call_gives_the_same_bytes_as_many_early_ones(void)
+{
+    static uint8_t other[STREAM_MAX];
+    size_t other_size;
+
+    send(0x60);
+    run_ms(5000);
+    sim_init(&sim, &config);
+    now = 0;
+    send(0x60);
+    other_size = sim_transmit(&sim, 5 * SECOND, other, STREAM_MAX);
+    TEST_ASSERT_EQUAL_size_t(size, other_size);
+    TEST_ASSERT_EQUAL_MEMORY(stream, other, size);
+}
+
+void test_a_small_buffer_loses_nothing(void)
+{
+    static uint8_t other[STREAM_MAX];
+    size_t other_size = 0;
+    size_t more;
+
+    send(0x60);
+    run_ms(2000);
+    sim_init(&sim, &config);
+    now = 0;
+    send(0x60);
+    do {
+        more = sim_transmit(&sim, 2 * SECOND, other + other_size, 7);
+        other_size += more;
+    } while (more > 0);
+    TEST_ASSERT_EQUAL_size_t(size, other_size);
+    TEST_ASSERT_EQUAL_MEMORY(stream, other, size);
+}
+
+void test_another_seed_gives_another_stream(void)
+{
+    static uint8_t other[STREAM_MAX];
+
+    scan_seconds(1);
+    memcpy(other, stream, 5000);
+    config.seed = 2;
+    power_up();
+    scan_seconds(1);
+    TEST_ASSERT_NOT_EQUAL(0, memcmp(stream, other, 5000));
+}
+
+/* Section 9.8: the first packets arrive during spin-up; the start packet carries the frequency
+ * of the revolution before. */
+/* From 329.7 degrees on, and through the start packet's place without one. */
+void test_the_first_packets_may_pass_the_start_packets_place_without_one(void)
+{
+    config.beginning = SIM_BEGINS_UNMARKED;
+    config.first_angle_q6 = 21101;
+    power_up();
+    send(0x60);
+    run_ms(1500);
+    decode();
+    const size_t first = next_start(0);
+    TEST_ASSERT_UINT_WITHIN(config.angle_jitter_q6, 21101, packets[0].fsa >> 1);
+    TEST_ASSERT_TRUE(points_between(0, first) > 667); /* Part of a slow turn, and a whole one. */
+    TEST_ASSERT_TRUE(packets[first].fsa >> 1 <= 64 || packets[first].fsa >> 1 >= 22976);
+}
+
+/* The very first packet begins a revolution at 85.7 degrees; its frequency is 2.4 Hz. */
+void test_the_first_packet_may_be_a_start_packet_anywhere(void)
+{
+    config.beginning = SIM_BEGINS_WITH_A_START;
+    config.first_angle_q6 = 5485;
+    power_up();
+    send(0x60);
+    run_ms(1500);
+    decode();
+    TEST_ASSERT_TRUE(packets[0].starts_revolution);
+    TEST_ASSERT_EQUAL_HEX8(24 << 1 | 1, packets[0].ct);
+    TEST_ASSERT_UINT_WITHIN(config.angle_jitter_q6, 5485, packets[0].fsa >> 1);
+    const size_t second = next_start(1);
+    TEST_ASSERT_TRUE(packets[second].fsa >> 1 <= 64 || packets[second].fsa >> 1 >= 22976);
+}
+
+void test_an_undocumented_command_is_answered_with_four_zeros(void)
+{
+    static const uint8_t expected[] = {0xA5, 0x5A, 0x04, 0, 0, 0, 0x10, 0, 0, 0, 0};
+
+    send(0x98);
+    run_ms(10);
+    expect_stream(expected, sizeof expected);
+}
+
+void test_the_first_revolutions_are_slow(void)
+{
+    size_t start;
+
+    send(0x60);
+    run_ms(4000);
+    decode();
+    start = next_start(0);
+    TEST_ASSERT_TRUE((packets[start].ct >> 1) < 58);
+    for (int turn = 0; turn < 10; turn++) {
+        start = next_start(start + 1u);
+    }
+    TEST_ASSERT_UINT_WITHIN(1, 60, packets[start].ct >> 1);
+}
+
+void test_a_start_packet_carries_the_previous_revolutions_frequency(void)
+{
+    config.wobble_permille = 60;
+    power_up();
+    scan_seconds(20);
+    for (size_t start = next_start(0), turn = 0; turn < 100; turn++) {
+        const size_t next = next_start(start + 1u);
+        const unsigned points = points_between(start, next);
+
+        TEST_ASSERT_EQUAL_UINT((40000u + points / 2u) / points, packets[next].ct >> 1);
+        start = next;
+    }
+}
+
+/* ---- Turn information ---- */
+
+void test_the_ct_bytes_carry_what_section_7_says(void)
+{
+    size_t start;
+
+    scan_seconds(5);
+    start = next_start(0);
+    TEST_ASSERT_EQUAL_HEX8(0x40, packets[start + 1u].ct);  /* user version 1.0 */
+    TEST_ASSERT_EQUAL_HEX8(0x00, packets[start + 3u].ct);  /* healthy */
+    TEST_ASSERT_EQUAL_HEX8(0x22, packets[start + 4u].ct);  /* hardware 1, firmware 1. */
+    TEST_ASSERT_EQUAL_HEX8(0x04, packets[start + 5u].ct);  /* .2 */
+    TEST_ASSERT_EQUAL_HEX8(0x30, packets[start + 9u].ct);  /* 2026 */
+    TEST_ASSERT_EQUAL_HEX8(0x30, packets[start + 10u].ct); /* March */
+    TEST_ASSERT_EQUAL_HEX8(0x88, packets[start + 11u].ct); /* 17th */
+    TEST_ASSERT_EQUAL_HEX8(0xC0, packets[start + 12u].ct); /* 12345 = 0x60 << 7 */
+    TEST_ASSERT_EQUAL_HEX8(0x72, packets[start + 13u].ct); /*         + 0x39 */
+}
+
+void test_last_crc_guards_the_ct_bytes_of_every_revolution(void)
+{
+    scan_seconds(20);
+    for (size_t start = next_start(0), turn = 0; turn < 100; turn++) {
+        const size_t next = next_start(start + 1u);
+        uint8_t crc = 0;
+
+        for (size_t i = start; i < next; i++) {
+            crc = encode_crc8(crc, packets[i].ct);
+        }
+        TEST_ASSERT_EQUAL_HEX8(crc, stream[packets[next].offset - 1u]);
+        start = next;
+    }
+}
+
+void test_last_crc_is_sometimes_aa(void)
+{
+    unsigned seen = 0;
+
+    config.frequency_chz = 1200;
+    power_up();
+    scan_seconds(120);
+    for (size_t i = 1; i < packet_count; i++) {
+        if (packets[i].starts_revolution && stream[packets[i].offset - 1u] == 0xAA) {
+            seen++;
+        }
+    }
+    TEST_ASSERT_TRUE(seen > 0);
+    TEST_ASSERT_EQUAL_UINT64(0, counts.checksum_errors);
+}
+
+void test_the_first_start_packet_has_no_last_crc_and_none_before_it_a_ct(void)
+{
+    size_t start;
+
+    send(0x60);
+    run_ms(4000);
+    decode();
+    start = next_start(0);
+    TEST_ASSERT_TRUE(start > 0);
+    TEST_ASSERT_EQUAL_size_t(packets[start].offset,
+                             packets[start - 1u].offset + packets[start - 1u].length);
+    for (size_t i = 0; i < start; i++) {
+        TEST_ASSERT_EQUAL_HEX8(0, packets[i].ct);
+    }
+}
+
+void test_a_unit_without_ct_information_sends_neither_ct_nor_last_crc(void)
+{
+    config.ct_information = false;
+    power_up();
+    scan_seconds(10);
+    for (size_t i = 1; i < packet_count; i++) {
+        TEST_ASSERT_EQUAL_size_t(packets[i - 1u].offset + packets[i - 1u].length,
+                                 packets[i].offset);
+        if (packets[i].starts_revolution) {
+            TEST_ASSERT_UINT_WITHIN(1, 60, packets[i].ct >> 1);
+        } else {
+            TEST_ASSERT_EQUAL_HEX8(0, packets[i].ct);
+        }
+    }
+}
+
+/* ---- Faults of the device ---- */
+
+static unsigned ranges_from(size_t first)
+{
+    unsigned ranges = 0;
+
+    for (size_t i = first; i < packet_count; i++) {
+        for (unsigned s = 0; s < packets[i].lsn; s++) {
+            ranges += reference_point(packets[i].bytes, s).distance_mm != 0u ? 1u : 0u;
+        }
+    }
+    return ranges;
+}
+
+void test_a_covered_window_gives_no_ranges_and_the_data_fault(void)
+{
+    size_t start;
+
+    sim_cover_window(&sim, true);
+    scan_seconds(3);
+    TEST_ASSERT_EQUAL_UINT(0, ranges_from(0));
+    start = next_start(0);
+    TEST_ASSERT_EQUAL_HEX8(0x40, packets[start + 3u].ct);
+    sim_cover_window(&sim, false);
+    run_ms(1000);
+    forget_stream();
+    run_ms(1000);
+    decode();
+    TEST_ASSERT_TRUE(ranges_from(0) > 3000);
+    TEST_ASSERT_EQUAL_HEX8(0x00, packets[next_start(0) + 3u].ct);
+}
+
+void test_a_blocked_rotor_gives_no_ranges_and_the_encoder_fault(void)
+{
+    sim_block_rotor(&sim, true);
+    scan_seconds(3);
+    TEST_ASSERT_TRUE(packet_count > 250);
+    TEST_ASSERT_EQUAL_UINT(0, ranges_from(0));
+    TEST_ASSERT_EQUAL_HEX8(0x04, packets[next_start(0) + 3u].ct);
+}
+
+void test_a_blocked_rotor_may_stop_the_start_packets(void)
+{
+    config.blocked_sends_starts = false;
+    power_up();
+    sim_block_rotor(&sim, true);
+    scan_seconds(3);
+    TEST_ASSERT_TRUE(packet_count > 250);
+    TEST_ASSERT_EQUAL_UINT64(0, counts.start_packets);
+    TEST_ASSERT_EQUAL_UINT16(packets[0].fsa, packets[packet_count - 1u].lsa);
+    sim_block_rotor(&sim, false);
+    run_ms(2000);
+    decode();
+    TEST_ASSERT_TRUE(counts.start_packets > 5);
+}
+
+void test_a_fatal_fault_ends_the_stream_until_it_is_gone_and_start_comes(void)
+{
+    config.fatal_health = SIM_HEALTH_LD;
+    power_up();
+    scan_seconds(1);
+    sim_set_health(&sim, SIM_HEALTH_LD);
+    TEST_ASSERT_EQUAL(SIM_FAULT, sim_mode(&sim));
+    run_ms(20);
+    forget_stream();
+    send(0x60);
+    run_ms(2000);
+    TEST_ASSERT_EQUAL_size_t(7, size);
+    sim_set_health(&sim, 0);
+    send(0x60);
+    run_ms(2000);
+    TEST_ASSERT_EQUAL(SIM_SCANNING, sim_mode(&sim));
+    TEST_ASSERT_TRUE(size > 10000);
+}
+
+/* ---- Scene ---- */
+
+static reference_point_t nearest_to(uint16_t angle_q6)
+{
+    for (size_t i = next_start(0); i < packet_count; i++) {
+        for (unsigned s = 0; s < packets[i].lsn; s++) {
+            const reference_point_t point = reference_point(packets[i].bytes, s);
+
+            if (point.angle_q6 + 20u > angle_q6 && point.angle_q6 < angle_q6 + 20u &&
+                point.distance_mm != 0u) {
+                return point;
+            }
+        }
+    }
+    TEST_FAIL_MESSAGE("no point there");
+    return reference_point(packets[0].bytes, 0);
+}
+
+/* The lidar stands 2.2 m from the left wall, 2.8 m from the right one, 1.7 m from the one behind
+ * and 2.3 m from the one ahead. 90 degrees are to the right: clockwise seen from above. */
+void test_the_room_is_seen_clockwise_from_straight_ahead(void)
+{
+    scan_seconds(1);
+    TEST_ASSERT_UINT_WITHIN(15, 2300, nearest_to(64).distance_mm);
+    TEST_ASSERT_UINT_WITHIN(15, 2800, nearest_to(5760).distance_mm);
+    TEST_ASSERT_UINT_WITHIN(15, 1700, nearest_to(11520).distance_mm);
+    TEST_ASSERT_UINT_WITHIN(15, 2200, nearest_to(17280).distance_mm);
+}
+
+/* The nearest side of the pillar: its centre is sqrt(300^2 + 1500^2) = 1529.7 mm away at
+ * -11.31 degrees, its radius 150 mm. */
+void test_a_round_pillar_stands_ahead_to_the_left(void)
+{
+    scan_seconds(1);
+    TEST_ASSERT_UINT_WITHIN(15, 1380, nearest_to(22316).distance_mm);
+}
+
+void test_nearer_things_reflect_more_light(void)
+{
+    scan_seconds(1);
+    TEST_ASSERT_TRUE(nearest_to(11520).intensity > nearest_to(5760).intensity);
+}
+
+void test_an_obstacle_appears_where_it_is_placed_and_goes_again(void)
+{
+    sim_place_obstacle(&sim, 0, 640, 400);
+    TEST_ASSERT_EQUAL_UINT16(400, sim_scene_distance(&sim.scene, 23039));
+    scan_seconds(1);
+    TEST_ASSERT_UINT_WITHIN(10, 400, nearest_to(64).distance_mm);
+    TEST_ASSERT_UINT_WITHIN(10, 400, nearest_to(23000).distance_mm);
+    TEST_ASSERT_TRUE(nearest_to(400).distance_mm > 2000);
+    sim_clear_obstacles(&sim);
+    forget_stream();
+    run_ms(1000);
+    decode();
+    TEST_ASSERT_UINT_WITHIN(15, 2300, nearest_to(64).distance_mm);
+}
+
+void test_flags_2_and_3_occur_as_often_as_configured(void)
+{
+    unsigned flags[4] = {0, 0, 0, 0};
+
+    config.flagged_permille = 100;
+    power_up();
+    scan_seconds(10);
+    for (size_t i = 0; i < packet_count; i++) {
+        for (unsigned s = 0; s < packets[i].lsn; s++) {
+            flags[reference_point(packets[i].bytes, s).flag]++;
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT(0, flags[1]);
+    TEST_ASSERT_UINT_WITHIN(300, 2000, flags[2]);
+    TEST_ASSERT_UINT_WITHIN(300, 2000, flags[3]);
+}
+
+/* ---- Stop, reboot, power ---- */
+
+void test_stop_has_a_tail_of_whole_packets(void)
+{
+    config.stop_tail_ms = 100;
+    power_up();
+    scan_seconds(1);
+    forget_stream();
+    send(0x65);
+    TEST_ASSERT_EQUAL(SIM_STOPPING, sim_mode(&sim));
+    run_ms(90);
+    TEST_ASSERT_TRUE(size > 1000);
+    run_ms(30);
+    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
+    forget_stream();
+    run_ms(1000);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+}
+
+void test_a_stop_before_the_first_packet_leaves_silence(void)
+{
+    send(0x60);
+    run_ms(100);
+    send(0x65);
+    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
+    forget_stream();
+    run_ms(1000);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+}
+
+void test_commands_while_scanning_are_counted_and_answered_between_packets(void)
+{
+    size_t stray;
+
+    scan_seconds(1);
+    forget_stream();
+    send(0x0D);
+    send(0x60);
+    run_ms(1000);
+    decode();
+    TEST_ASSERT_EQUAL_UINT32(2, sim.counts.commands_while_scanning);
+    TEST_ASSERT_EQUAL_UINT64(0, counts.checksum_errors);
+    stray = size - (size_t)counts.bytes_in_packets - (size_t)counts.start_packets;
+    TEST_ASSERT_TRUE(stray >= 18 && stray < 18 + 260);
+    send(0x65);
+    TEST_ASSERT_EQUAL_UINT32(2, sim.counts.commands_while_scanning);
+    send(0x0D);
+    TEST_ASSERT_EQUAL_UINT32(2, sim.counts.commands_while_scanning);
+    TEST_ASSERT_EQUAL_UINT32(1, sim.counts.commands_in_tail);
+}
+
+void test_a_lost_start_reply_does_not_stop_the_stream(void)
+{
+    sim_lose_next_reply(&sim);
+    send(0x60);
+    run_ms(2000);
+    decode();
+    TEST_ASSERT_EQUAL_UINT64(0, counts.replies);
+    TEST_ASSERT_TRUE(counts.packets > 100);
+}
+
+void test_nothing_is_answered_during_a_reboot_and_the_frequency_is_reset(void)
+{
+    send(0x0B);
+    run_ms(10);
+    send(0x40);
+    TEST_ASSERT_EQUAL(SIM_BOOTING, sim_mode(&sim));
+    forget_stream();
+    run_ms(2490);
+    send(0x0D);
+    run_ms(100);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
+    send(0x0D);
+    expect_frequency_reply(0x58, 0x02);
+}
+
+void test_a_reboot_forgets_a_reply_that_is_due(void)
+{
+    send(0x90);
+    send(0x40);
+    run_ms(5000);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+}
+
+void test_losing_power_cuts_a_packet_in_the_middle(void)
+{
+    scan_seconds(1);
+    do {
+        forget_stream();
+        run_ms(1);
+    } while (size != 23);
+    forget_stream();
+    sim_power(&sim, false, now);
+    run_ms(5000);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+    TEST_ASSERT_EQUAL(SIM_OFF, sim_mode(&sim));
+    sim_power(&sim, true, now);
+    TEST_ASSERT_EQUAL(SIM_BOOTING, sim_mode(&sim));
+    run_ms(2500);
+    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
+    send(0x0D);
+    expect_frequency_reply(0x58, 0x02);
+}
+
+void test_what_left_before_power_was_lost_can_still_be_read(void)
+{
+    uint32_t before;
+    sim_run_t run;
+
+    scan_seconds(1);
+    while (!sim_next_run(&sim, now, &run) || run.packet == NULL || run.offset > 0) {
+        now += 100;
+    }
+    before = sim.counts.packets;
+    sim_power(&sim, false, now + 1000); /* 23.04 bytes later */
+    TEST_ASSERT_UINT_WITHIN(1, 23, sim_transmit(&sim, now + 5000, stream, STREAM_MAX));
+    TEST_ASSERT_EQUAL_UINT32(before, sim.counts.packets);
+}
+
+/* 10 bits at 230400 baud are 43.403 us; a byte is there when all of it has left. */
+void test_the_time_of_a_byte_is_when_it_has_left(void)
+{
+    TEST_ASSERT_EQUAL_UINT64(1044, sim_byte_us(1000, 0));
+    TEST_ASSERT_EQUAL_UINT64(1087, sim_byte_us(1000, 1));
+    TEST_ASSERT_EQUAL_UINT64(4125, sim_byte_us(1000, 71));
+}
+
+/* ---- Ground truth ---- */
+
+static struct {
+    uint32_t packets;
+    uint32_t starts;
+    sim_mode_t modes[10];
+    size_t mode_count;
+    uint8_t codes[10];
+    size_t code_count;
+} seen;
+
+/* Its bytes are already in the stream or on the way there: compared by position later. */
+static sim_packet_t truths[PACKETS_MAX];
+
+static void see_packet(void *context, const sim_packet_t *packet)
+{
+    (void)context;
+    TEST_ASSERT_EQUAL_UINT32(seen.packets, packet->number);
+    truths[seen.packets++] = *packet;
+    seen.starts += packet->starts_revolution ? 1u : 0u;
+    TEST_ASSERT_EQUAL_UINT32(seen.starts, packet->revolution);
+}
+
+static void see_mode(void *context, sim_mode_t from, sim_mode_t to, uint64_t at_us)
+{
+    (void)context;
+    (void)from;
+    (void)at_us;
+    seen.modes[seen.mode_count++] = to;
+}
+
+static void see_command(void *context, uint8_t code, uint64_t at_us)
+{
+    (void)context;
+    (void)at_us;
+    seen.codes[seen.code_count++] = code;
+}
+
+static void observe(void)
+{
+    sim_observer_t observer = {NULL, see_packet, see_command, see_mode};
+
+    memset(&seen, 0, sizeof seen);
+    sim_observe(&sim, &observer);
+}
+
+void test_the_observer_hears_of_every_packet_and_its_place(void)
+{
+    observe();
+    send(0x60);
+    run_ms(5000);
+    decode();
+    TEST_ASSERT_EQUAL_UINT64(counts.packets, seen.packets);
+    TEST_ASSERT_EQUAL_UINT64(counts.start_packets, seen.starts);
+    TEST_ASSERT_EQUAL_UINT32(counts.packets, sim.counts.packets);
+    TEST_ASSERT_EQUAL_UINT64(counts.points, sim.counts.samples);
+    for (size_t i = 0; i < packet_count; i++) {
+        TEST_ASSERT_EQUAL_UINT64(packets[i].offset, truths[i].position);
+        TEST_ASSERT_EQUAL_size_t(packets[i].length, truths[i].length);
+    }
+}
+
+void test_the_observer_hears_of_commands_and_modes(void)
+{
+    static const uint8_t codes[] = {0x60, 0x77, 0x65};
+
+    observe();
+    send(0x60);
+    run_ms(1000);
+    send(0x77);
+    send(0x65);
+    run_ms(1000);
+    TEST_ASSERT_EQUAL_size_t(3, seen.code_count);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(codes, seen.codes, 3);
+    TEST_ASSERT_EQUAL_size_t(3, seen.mode_count);
+    TEST_ASSERT_EQUAL(SIM_SCANNING, seen.modes[0]);
+    TEST_ASSERT_EQUAL(SIM_STOPPING, seen.modes[1]);
+    TEST_ASSERT_EQUAL(SIM_IDLE, seen.modes[2]);
+}
+
+/* 500 ms are 50 packets; the line's queue holds 16. */
+void test_frames_that_nobody_takes_in_time_are_lost_and_counted(void)
+{
+    scan_seconds(1);
+    now += 500000;
+    send(0x65);
+    TEST_ASSERT_UINT_WITHIN(8, 50 + 3 - 16, sim_lost_frames(&sim));
+}
+
+void test_modes_have_names(void)
+{
+    TEST_ASSERT_EQUAL_STRING("off", sim_mode_name(SIM_OFF));
+    TEST_ASSERT_EQUAL_STRING("fault", sim_mode_name(SIM_FAULT));
+}

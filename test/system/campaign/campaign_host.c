@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "campaign_host.h"
+
+#include "interrupting_atomic.h"
+
+#include <string.h>
+
+#define NEVER UINT64_MAX
+#define IDLE_LINE_US 90u /* Two bytes' time. */
+#define STALE_US 30000u  /* Bytes held back for longer have outlived their time. */
+
+static host_t *polling; /* While tmini_poll() is at work, and no interrupt is. */
+
+static uint64_t now_us(const host_t *host)
+{
+    return host->now_ns / 1000u;
+}
+
+static uint64_t arrival_us(const host_t *host, uint32_t byte)
+{
+    return byte < host->line->size ? host->begun_us + host->line->at_us[byte] : NEVER;
+}
+
+static void tell_gap(host_t *host)
+{
+    host->gaps_told++;
+    tmini_feed_gap(&host->lidar);
+}
+
+/* ---- An interrupt for each byte ---- */
+
+static uint64_t receive_bytes(host_t *host)
+{
+    const uint64_t until_us = now_us(host);
+
+    while (arrival_us(host, host->next) <= until_us) {
+        tmini_feed_byte(&host->lidar, host->line->bytes[host->next++]);
+        host->told++;
+    }
+    return arrival_us(host, host->next);
+}
+
+/* ---- A layer below that holds bytes, and is closed from its overflow until it is emptied ---- */
+
+static uint32_t room(const host_t *host)
+{
+    return host->config.asks_room ? (uint32_t)tmini_feed_room(&host->lidar) : UINT32_MAX;
+}
+
+/* What finds no room is kept below. When that lasts, the library sees bytes without a pause where
+ * the line may have had one: all that has waited is stale, and let go. */
+static void drop_if_stale(host_t *host)
+{
+    if (host->holds_back && now_us(host) - arrival_us(host, host->fed) > STALE_US) {
+        line_touch(host->line, host->fed, host->next);
+        host->fed = host->next;
+        tell_gap(host);
+    }
+}
+
+static void hand_over(host_t *host)
+{
+    drop_if_stale(host);
+    const uint32_t arrived = host->next - host->fed;
+    const uint32_t held = arrived < host->config.block_size ? arrived : host->config.block_size;
+    const uint32_t fits = room(host);
+    const uint32_t count = held < fits ? held : fits;
+
+    tmini_feed(&host->lidar, &host->line->bytes[host->fed], count);
+    host->told += count;
+    host->fed += count;
+    host->holds_back = count < held;
+    if (count == held && arrived > held) {
+        line_touch(host->line, host->fed, host->next);
+        host->fed = host->next;
+        tell_gap(host);
+    }
+}
+
+static void hold_bytes(host_t *host, uint64_t until_us)
+{
+    while (arrival_us(host, host->next) <= until_us) {
+        host->next++;
+    }
+}
+
+static uint64_t receive_blocks(host_t *host)
+{
+    const uint64_t until_us = now_us(host);
+
+    while (host->config.block_us > 0 && host->block_due_us <= until_us) {
+        hold_bytes(host, host->block_due_us);
+        hand_over(host);
+        host->block_due_us += host->config.block_us;
+    }
+    hold_bytes(host, until_us);
+    return host->config.block_us > 0 ? host->block_due_us : NEVER;
+}
+
+/* ---- Circular DMA ---- */
+
+/* As a port does it: with both halves' flags pending, a lap may have been lost. */
+static void serve_dma(host_t *host)
+{
+    if (!host->half && !host->full && !host->idle) {
+        return;
+    }
+    if (host->half && host->full) {
+        tell_gap(host);
+        host->told += (uint32_t)host->config.rx_size; /* The library counts an unseen lap as one. */
+    }
+    host->half = false;
+    host->full = false;
+    host->idle = false;
+    host->told += (uint32_t)((host->position - host->published) & (host->config.rx_size - 1));
+    host->published = host->position;
+    tmini_feed_dma(&host->lidar, host->position);
+}
+
+static void write_byte(host_t *host)
+{
+    host->rx[host->position++] = host->line->bytes[host->next++];
+    host->half |= host->position == host->config.rx_size / 2;
+    if (host->position == host->config.rx_size) {
+        host->position = 0;
+        host->full = true;
+    }
+}
+
+static uint64_t receive_dma(host_t *host)
+{
+    const uint64_t until_us = now_us(host);
+
+    for (;;) {
+        const uint64_t byte_us = arrival_us(host, host->next);
+        const uint64_t idle_us = host->next > 0 && host->published != host->position
+                                     ? arrival_us(host, host->next - 1) + IDLE_LINE_US
+                                     : NEVER;
+
+        if (idle_us < byte_us && idle_us <= until_us && !host->idle) {
+            host->idle = true;
+        } else if (byte_us <= until_us) {
+            write_byte(host);
+        } else {
+            return byte_us < idle_us || host->idle ? byte_us : idle_us;
+        }
+        if (!host->stalled) {
+            serve_dma(host);
+        }
+    }
+}
+
+/* ---- Time ---- */
+
+static void receive(host_t *host)
+{
+    static uint64_t (*const receivers[FEED_KINDS])(host_t * host) = {
+        [FEED_BYTES] = receive_bytes, [FEED_BLOCKS] = receive_blocks, [FEED_DMA] = receive_dma};
+    const uint64_t due_us = host->started ? receivers[host->config.feed](host) : NEVER;
+
+    host->due_ns = due_us < NEVER / 1000u ? due_us * 1000u : NEVER;
+}
+
+void host_wait_us(host_t *host, uint64_t us)
+{
+    host->now_ns += us * 1000u;
+    receive(host);
+}
+
+/* The CPU stands still, and DMA does not: for any number of bytes, often nearly whole laps. */
+static void stall(host_t *host)
+{
+    const uint32_t lap = (uint32_t)host->config.rx_size;
+    const uint32_t laps = random_between(host->random, 0, host->config.stall_laps);
+    const uint32_t more = random_below(host->random, 2) == 0 ? random_below(host->random, lap)
+                                                             : random_below(host->random, 64);
+    const uint32_t last = host->next + laps * lap + more;
+    const uint64_t end_us = arrival_us(host, last < host->line->size ? last : host->line->size - 1);
+
+    host->stalled = true;
+    if (end_us > now_us(host)) {
+        host_wait_us(host, end_us - now_us(host));
+    }
+    host->stalled = false;
+    serve_dma(host);
+    receive(host);
+}
+
+static bool happens(host_t *host, uint32_t one_in)
+{
+    return one_in > 0 && random_below(host->random, one_in) == 0;
+}
+
+static bool may_stall(host_t *host)
+{
+    return host->config.feed == FEED_DMA && host->started && host->next < host->line->size &&
+           happens(host, host->config.stall_one_in);
+}
+
+static void preempt(host_t *host)
+{
+    if (may_stall(host)) {
+        stall(host);
+    } else {
+        host_wait_us(host, random_between(host->random, 1, host->config.preempt_us));
+    }
+}
+
+void interrupt(void)
+{
+    host_t *const host = polling;
+
+    if (host == NULL) {
+        return;
+    }
+    host->accesses++;
+    host->now_ns += host->config.access_ns;
+    if (host->now_ns < host->due_ns && host->accesses != host->preempted_at) {
+        return;
+    }
+    polling = NULL; /* An interrupt is not interrupted. */
+    if (host->accesses == host->preempted_at) {
+        preempt(host);
+    } else {
+        receive(host);
+    }
+    polling = host;
+}
+
+/* ---- The port ---- */
+
+static uint32_t read_clock(void *context)
+{
+    return (uint32_t)(now_us((const host_t *)context) / 1000u);
+}
+
+static int take_command(void *context, const uint8_t *bytes, size_t count)
+{
+    host_t *const host = context;
+
+    if (count == 2 && bytes[1] == 0x60 && !host->started) {
+        host->started = true;
+        host->begun_us = now_us(host);
+        host->block_due_us = host->begun_us + 1;
+        host->due_ns = 0;
+    }
+    return (int)count;
+}
+
+static const tmini_port_t port = {.write = take_command, .now_ms = read_clock};
+
+/* ---- The program ---- */
+
+void host_begin(host_t *host, const host_config_t *config, line_t *line, random_t *random)
+{
+    const tmini_config_t library = {.port = &port,
+                                    .port_context = host,
+                                    .rx_buffer = host->rx,
+                                    .rx_size = config->rx_size,
+                                    .rx_dma = config->feed == FEED_DMA,
+                                    .points = host->points,
+                                    .max_points = config->max_points,
+                                    .disable_recovery = true};
+
+    memset(host, 0, offsetof(host_t, points));
+    memset(&host->now_ns, 0, sizeof *host - offsetof(host_t, now_ns));
+    host->config = *config;
+    host->line = line;
+    host->random = random;
+    host->now_ns = (uint64_t)random_u32(random) * 1000000u; /* The clock may wrap around. */
+    (void)tmini_init(&host->lidar, &library);
+    (void)tmini_start(&host->lidar);
+    while (!host->started) {
+        (void)tmini_poll(&host->lidar);
+        host->now_ns += 1000000u;
+    }
+}
+
+tmini_event_t host_poll(host_t *host)
+{
+    tmini_event_t event;
+
+    host->told_before_poll = host->told;
+    host->accesses = 0;
+    host->preempted_at = 0;
+    if (happens(host, host->config.preempt_one_in)) {
+        host->preempted_at = random_between(host->random, 1, 200);
+    }
+    polling = host;
+    event = tmini_poll(&host->lidar);
+    polling = NULL;
+    return event;
+}
+
+void host_fetch(host_t *host)
+{
+    if (host->config.feed == FEED_BLOCKS && host->config.block_us == 0) {
+        hand_over(host);
+    }
+}
+
+bool host_was_undisturbed(const host_t *host)
+{
+    return host->told == host->told_before_poll;
+}
+
+void host_rest(host_t *host)
+{
+    if (may_stall(host)) {
+        stall(host);
+    }
+    host_wait_us(host, host->config.poll_us);
+}
+
+void host_handle_scan(host_t *host)
+{
+    if (happens(host, host->config.handle_one_in)) {
+        host_wait_us(host, random_between(host->random, 1000, host->config.handler_us));
+    }
+}
+
+bool host_has_received_all(const host_t *host)
+{
+    const bool held = host->config.feed == FEED_BLOCKS && host->fed < host->next;
+    const bool unpublished = host->config.feed == FEED_DMA && host->published != host->position;
+
+    return host->next >= host->line->size && !held && !unpublished;
+}

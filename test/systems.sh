@@ -1,0 +1,168 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# Runs the README's two commands, examples/demo.sh and test/run.sh, on bare systems: each is made by
+# debootstrap, from where this machine's own packages come, and gets the project's last commit in a
+# folder whose name has spaces and accents. The user there has no root rights, but sudo. Prints a
+# table.
+#
+#   test/systems.sh [NAME …]    debian-12 debian-13 ubuntu-24.04 debian-12-i386; all unless given
+#
+# Needs root and debootstrap, 4 GB of disk for the system under test, and a quarter of an hour for
+# each. Everything lies in build-systems/: NAME.demo.log and NAME.tests.log say what happened; a
+# system is deleted after its run unless TMINI_KEEP=yes; packages are kept in cache/ for the next
+# time. TMINI_DEBIAN_MIRROR and TMINI_UBUNTU_MIRROR name other mirrors.
+# Exit status: 0 all green, 1 not, 2 wrong usage, 77 it cannot be done here.
+
+set -eu
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=test/support/mirrors.sh
+. "$root/test/support/mirrors.sh"
+
+all_systems="debian-12 debian-13 ubuntu-24.04 debian-12-i386"
+work=$root/build-systems
+folder="/home/user/Ein Ordner mit Umläuten and spaces and a rather long name/tmini"
+table=$work/table.md
+
+usage() {
+    sed -n '5,16s/^# \{0,1\}//p' "$0" >&2
+    exit 2
+}
+
+# describe NAME: sets what debootstrap and apt have to know.
+describe() {
+    architecture=amd64 components=main script="" personality=linux64
+    mirror=${TMINI_DEBIAN_MIRROR:-$(mirror_of debian)}
+    case $1 in
+        debian-12) suite=bookworm ;;
+        debian-13) suite=trixie ;;
+        debian-12-i386) suite=bookworm architecture=i386 personality=linux32 ;;
+        ubuntu-24.04)
+            # All of Ubuntu's releases since 2007 are made by the same script.
+            suite=noble components="main universe" script=gutsy
+            mirror=${TMINI_UBUNTU_MIRROR:-$(mirror_of ubuntu)}
+            ;;
+        *) usage ;;
+    esac
+}
+
+# Without the distribution's keys here the first packages cannot be verified; the system is thrown
+# away.
+verification() {
+    keys=/usr/share/keyrings/ubuntu-archive-keyring.gpg
+    [ "$suite" != noble ] || [ -e "$keys" ] || echo --no-check-gpg
+}
+
+# make_system NAME: a minimal system with sudo and nothing else, that uses this machine's network
+# settings.
+make_system() {
+    mkdir -p "$work/cache/$1"
+    # shellcheck disable=SC2046 # one option or none
+    debootstrap --variant=minbase --arch="$architecture" --cache-dir="$work/cache/$1" \
+        --include=ca-certificates,sudo $(verification) "$suite" "$system" "$mirror" \
+        ${script:+"/usr/share/debootstrap/scripts/$script"} || return 1
+    for pocket in "$suite" "$suite-updates"; do
+        echo "deb $mirror $pocket $components"
+    done >"$system/etc/apt/sources.list"
+    apt-config dump | grep '^Acquire::\(http\|Check\)' \
+        >"$system/etc/apt/apt.conf.d/99machine" || true
+    cp -L /etc/resolv.conf /etc/hosts "$system/etc/"
+    cp /etc/ssl/certs/ca-certificates.crt "$system/etc/ssl/certs/"
+    [ ! -e /etc/pip.conf ] || cp /etc/pip.conf "$system/etc/"
+    chroot "$system" useradd --create-home user
+    echo 'user ALL=(ALL) NOPASSWD: ALL' >"$system/etc/sudoers.d/user"
+}
+
+# What Git knows of the project, as a user would clone it.
+clone_project() {
+    mkdir -p "$system$folder"
+    git -C "$root" archive HEAD | tar x -C "$system$folder"
+    chroot "$system" chown -R user: /home/user
+}
+
+# as_user NAME COMMAND…: in the project's folder; the environment is a login's, but for what the
+# network needs. The mounts vanish with the last process.
+as_user() {
+    name=$1
+    shift
+    # shellcheck disable=SC2016 # expanded in the inner shell
+    unshare --mount --propagation private sh -c '
+        system=$1 cache=$2 personality=$3 folder=$4
+        shift 4
+        mount -t proc proc "$system/proc"
+        mount --rbind /dev "$system/dev"
+        mount --bind "$cache" "$system/var/cache/apt/archives"
+        exec "$personality" chroot --userspec=user:user "$system" env -i \
+            HOME=/home/user USER=user PATH=/usr/local/bin:/usr/bin:/bin \
+            ${PIP_CERT:+"PIP_CERT=$PIP_CERT"} \
+            sh -c '"'"'cd "$1" && shift && exec "$@"'"'"' sh "$folder" "$@"
+    ' sh "$system" "$work/cache/$name/archives" "$personality" "$folder" "$@" </dev/null
+}
+
+# count STATUS LOG: ctest's lines of that ending.
+count() {
+    grep -c "^ *[0-9]*/[0-9]* Test *#.*$1" "$2" || true
+}
+
+# reasons NAME: why tests were skipped, and which have failed.
+reasons() {
+    failed=$(sed -n 's/.* - \(.*\) (\(Failed\|Timeout\|Not Run\|SEGFAULT\)).*$/\1/p' \
+        "$work/$1.tests.log" | head -n 8 | tr '\n' ' ')
+    skipped=$(sed -n 's/^SKIPPED: /skipped: /; /^skipped: /p' "$work/$1.last.log" | sort -u |
+        tr '\n' ';')
+    [ -z "$failed" ] || printf 'failed: %s ' "$failed"
+    printf '%s' "${skipped%;}"
+}
+
+# run_system NAME: one row of the table.
+run_system() {
+    describe "$1"
+    system=$work/$1
+    rm -rf "$system"
+    mkdir -p "$work/cache/$1/archives/partial"
+    begin=$(date +%s)
+    if ! make_system "$1" >"$work/$1.make.log" 2>&1; then
+        echo "| $1 | could not be made: $(tail -n 1 "$work/$1.make.log") | | | | | |" >>"$table"
+        return 1
+    fi
+    clone_project
+    made=$(date +%s)
+    demo=green tests=0
+    as_user "$1" examples/demo.sh >"$work/$1.demo.log" 2>&1 || demo="**RED**"
+    shown=$(date +%s)
+    as_user "$1" test/run.sh >"$work/$1.tests.log" 2>&1 || tests=$?
+    end=$(date +%s)
+    # Only there skipped tests say why.
+    : >"$work/$1.last.log"
+    cp "$system$folder/build/Testing/Temporary/LastTest.log" "$work/$1.last.log" || true
+    [ "$(grep -c '^Total Test time' "$work/$1.tests.log")" -eq 1 ] || tests=1
+    echo "| $1 | $demo | $(count ' Passed ' "$work/$1.tests.log") |" \
+        "$(count '\*\*\*\(Failed\|Timeout\|Not Run\|Exception\)' "$work/$1.tests.log") |" \
+        "$(count '\*\*\*Skipped' "$work/$1.tests.log") | $(reasons "$1") |" \
+        "$((made - begin)) + $((shown - made)) + $((end - shown)) s |" >>"$table"
+    [ "${TMINI_KEEP:-no}" = yes ] || rm -rf "$system"
+    [ "$demo" = green ] && [ "$tests" -eq 0 ]
+}
+
+[ "$(id -u)" -eq 0 ] || { echo "skipped: debootstrap needs root"; exit 77; }
+command -v debootstrap >/dev/null || { echo "skipped: debootstrap is not installed"; exit 77; }
+# shellcheck disable=SC2086 # several words
+[ $# -gt 0 ] || set -- $all_systems
+for name in "$@"; do
+    describe "$name"
+done
+
+mkdir -p "$work"
+{
+    echo "| system | demo | passed | failed | skipped | why | made + demo + tests |"
+    echo "|---|---|---:|---:|---:|---|---|"
+} >"$table"
+status=0
+for name in "$@"; do
+    echo "$name …"
+    run_system "$name" || status=1
+done
+cat "$table"
+exit "$status"

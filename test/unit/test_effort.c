@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What one call of the parser or the driver may cost, whatever has arrived: large rings full of
+ * the worst that can be sent. */
+
+#include "rig.h"
+
+#include "tmini/tmini_parser.h"
+#include "unity.h"
+
+/* The header of a packet of 80 samples, 250 bytes. Repeated, it makes candidates that are complete,
+ * plausible and wrong; each costs its 250 bytes and yields ten. */
+static const uint8_t header[10] = {0xAA, 0x55, 0x00, 80, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00};
+#define HEADERS 400u
+#define CANDIDATES 376u /* (400 * 10 - 250) / 10 + 1 of them are complete. */
+
+static uint8_t memory[8192];
+static tmini_ring_t ring;
+static tmini_parser_t parser;
+
+void setUp(void)
+{
+    rig_open();
+}
+
+void tearDown(void)
+{
+    rig_verify();
+}
+
+static void open_parser(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, sizeof memory, false));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_parser_init(&parser, &ring, 0));
+}
+
+static tmini_parser_counters_t parser_counters(void)
+{
+    tmini_parser_counters_t counters;
+    tmini_parser_counters(&parser, &counters);
+    return counters;
+}
+
+/* One call looks at 2048 bytes and at most one packet more. */
+void test_a_call_looks_at_no_more_bytes_than_it_may(void)
+{
+    open_parser();
+    for (unsigned i = 0; i < HEADERS; i++) {
+        (void)tmini_ring_write(&ring, header, sizeof header);
+    }
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_MORE, tmini_parser_next(&parser));
+    const uint32_t errors = parser_counters().checksum_errors;
+    TEST_ASSERT_TRUE(errors >= 7 && errors <= 9);
+    TEST_ASSERT_EQUAL_UINT32(10 * errors, parser_counters().bytes_skipped);
+    unsigned calls = 1;
+    while (tmini_parser_next(&parser) == TMINI_FRAME_MORE) {
+        calls++;
+    }
+    TEST_ASSERT_TRUE(calls > 40);
+    TEST_ASSERT_EQUAL_UINT32(CANDIDATES, parser_counters().checksum_errors);
+}
+
+void test_garbage_without_a_candidate_is_passed_in_bounded_steps_too(void)
+{
+    open_parser();
+    for (size_t i = 0; i < sizeof memory; i++) {
+        tmini_ring_put(&ring, 0);
+    }
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_MORE, tmini_parser_next(&parser));
+    TEST_ASSERT_EQUAL_UINT32(2048, parser_counters().bytes_skipped);
+    while (tmini_parser_next(&parser) == TMINI_FRAME_MORE) {
+    }
+    TEST_ASSERT_EQUAL_UINT32(8192, parser_counters().bytes_skipped);
+}
+
+static uint32_t checksum_errors(void)
+{
+    tmini_counters_t counters;
+    tmini_counters(&rig.lidar, &counters);
+    return counters.parser.checksum_errors;
+}
+
+void test_a_poll_that_has_more_to_do_says_so_and_goes_on_with_the_next(void)
+{
+    rig.config.rx_buffer = memory;
+    rig.config.rx_size = sizeof memory;
+    rig_init();
+    for (unsigned i = 0; i < HEADERS; i++) {
+        rig_feed(header, sizeof header);
+    }
+    polls_to(TMINI_EVENT_MORE);
+    TEST_ASSERT_TRUE(checksum_errors() > 0 && checksum_errors() < 20);
+    unsigned polls = 1;
+    while (tmini_poll(&rig.lidar) == TMINI_EVENT_MORE) {
+        polls++;
+    }
+    TEST_ASSERT_TRUE(polls > 20);
+    TEST_ASSERT_EQUAL_UINT32(CANDIDATES, checksum_errors());
+}

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Points as a robot sees them whose lidar is mounted turned, upside down, or looks at the robot
+ * itself. */
+
+#include "tmini/tmini_mount.h"
+#include "unity.h"
+
+#define DEGREE 64u
+
+static tmini_point_t points[8];
+static size_t count;
+
+void setUp(void)
+{
+    count = 0;
+}
+
+void tearDown(void) {}
+
+static void add(uint16_t angle_q6, uint16_t distance_mm)
+{
+    points[count] =
+        (tmini_point_t){angle_q6, distance_mm, (uint8_t)(10 + count), (uint8_t)(count % 4)};
+    count++;
+}
+
+static void is_point(size_t index, uint16_t angle_q6, uint16_t distance_mm)
+{
+    TEST_ASSERT_EQUAL_UINT16(angle_q6, points[index].angle_q6);
+    TEST_ASSERT_EQUAL_UINT16(distance_mm, points[index].distance_mm);
+}
+
+static void apply(const tmini_mount_t *mount, size_t left)
+{
+    TEST_ASSERT_EQUAL_UINT(left, tmini_mount_apply(mount, points, count));
+}
+
+void test_a_mount_of_zeros_changes_nothing(void)
+{
+    static const tmini_mount_t mount = {0};
+    add(0, 0);
+    add(23039, 16383);
+    apply(&mount, 2);
+    is_point(0, 0, 0);
+    is_point(1, 23039, 16383);
+    TEST_ASSERT_EQUAL_UINT8(11, points[1].intensity);
+    TEST_ASSERT_EQUAL_UINT8(1, points[1].flag);
+}
+
+/* The lidar's 90 degrees look ahead: what it sees at 100 is 10 degrees to the right of the
+ * front. */
+void test_a_lidar_mounted_turned_is_turned_back(void)
+{
+    static const tmini_mount_t mount = {.front_q6 = 90 * DEGREE};
+    add(90 * DEGREE, 1000);
+    add(100 * DEGREE, 1001);
+    add(89 * DEGREE, 1002);
+    add(0, 1003);
+    apply(&mount, 4);
+    is_point(0, 0, 1000);
+    is_point(1, 10 * DEGREE, 1001);
+    is_point(2, 359 * DEGREE, 1002);
+    is_point(3, 270 * DEGREE, 1003);
+}
+
+/* From above, the angles of a lidar that hangs run counter-clockwise. */
+void test_a_lidar_upside_down_is_mirrored(void)
+{
+    static const tmini_mount_t mount = {.is_upside_down = true};
+    add(0, 1000);
+    add(10 * DEGREE, 1001);
+    add(350 * DEGREE, 1002);
+    apply(&mount, 3);
+    is_point(0, 0, 1000);
+    is_point(1, 350 * DEGREE, 1001);
+    is_point(2, 10 * DEGREE, 1002);
+}
+
+void test_a_lidar_upside_down_and_turned_is_mirrored_about_the_front(void)
+{
+    static const tmini_mount_t mount = {.front_q6 = 30 * DEGREE, .is_upside_down = true};
+    add(30 * DEGREE, 1000);
+    add(40 * DEGREE, 1001);
+    add(20 * DEGREE, 1002);
+    apply(&mount, 3);
+    is_point(0, 0, 1000);
+    is_point(1, 350 * DEGREE, 1001);
+    is_point(2, 10 * DEGREE, 1002);
+    TEST_ASSERT_EQUAL_UINT16(330 * DEGREE, tmini_mount_angle(&mount, 60 * DEGREE));
+}
+
+void test_distances_out_of_range_become_unknown(void)
+{
+    static const tmini_mount_t mount = {.min_mm = 100, .max_mm = 5000};
+    add(0, 99);
+    add(1, 100);
+    add(2, 5000);
+    add(3, 5001);
+    add(4, 0);
+    apply(&mount, 5);
+    is_point(0, 0, 0);
+    is_point(1, 1, 100);
+    is_point(2, 2, 5000);
+    is_point(3, 3, 0);
+    is_point(4, 4, 0);
+}
+
+void test_without_a_largest_distance_none_is_too_far(void)
+{
+    static const tmini_mount_t mount = {.min_mm = 1};
+    add(0, 16383);
+    apply(&mount, 1);
+    is_point(0, 0, 16383);
+}
+
+void test_an_arc_masks_the_directions_from_its_beginning_to_its_end(void)
+{
+    static const tmini_arc_t arcs[] = {{10 * DEGREE, 20 * DEGREE}};
+    static const tmini_mount_t mount = {.masked = arcs, .masked_count = 1};
+    add(10 * DEGREE - 1, 1000);
+    add(10 * DEGREE, 1001);
+    add(20 * DEGREE, 1002);
+    add(20 * DEGREE + 1, 1003);
+    apply(&mount, 4);
+    is_point(0, 10 * DEGREE - 1, 1000);
+    is_point(1, 10 * DEGREE, 0);
+    is_point(2, 20 * DEGREE, 0);
+    is_point(3, 20 * DEGREE + 1, 1003);
+}
+
+void test_an_arc_may_go_through_the_front(void)
+{
+    static const tmini_arc_t arcs[] = {{100, 200}, {350 * DEGREE, 10 * DEGREE}};
+    static const tmini_mount_t mount = {.masked = arcs, .masked_count = 2};
+    add(350 * DEGREE - 1, 1000);
+    add(350 * DEGREE, 1001);
+    add(0, 1002);
+    add(10 * DEGREE, 1003);
+    add(10 * DEGREE + 1, 1004);
+    apply(&mount, 5);
+    is_point(0, 350 * DEGREE - 1, 1000);
+    is_point(1, 350 * DEGREE, 0);
+    is_point(2, 0, 0);
+    is_point(3, 10 * DEGREE, 0);
+    is_point(4, 10 * DEGREE + 1, 1004);
+}
+
+/* The lidar hangs, and sees a mast at its 120 degrees; for the robot that is at 60. */
+void test_arcs_are_the_robots_directions(void)
+{
+    static const tmini_arc_t arcs[] = {{59 * DEGREE, 61 * DEGREE}};
+    static const tmini_mount_t mount = {
+        .front_q6 = 180 * DEGREE, .is_upside_down = true, .masked = arcs, .masked_count = 1};
+    add(120 * DEGREE, 300);
+    add(60 * DEGREE, 1001);
+    apply(&mount, 2);
+    is_point(0, 60 * DEGREE, 0);
+    is_point(1, 120 * DEGREE, 1001);
+}
+
+void test_a_mount_that_drops_removes_points_and_keeps_the_others_in_order(void)
+{
+    static const tmini_arc_t arcs[] = {{100, 200}};
+    static const tmini_mount_t mount = {
+        .drops = true, .min_mm = 50, .masked = arcs, .masked_count = 1};
+    add(10, 1000);
+    add(150, 1001);
+    add(250, 49);
+    add(300, 0); /* Unknown, which is a measurement too. */
+    add(350, 1004);
+    apply(&mount, 3);
+    is_point(0, 10, 1000);
+    is_point(1, 300, 0);
+    is_point(2, 350, 1004);
+    TEST_ASSERT_EQUAL_UINT8(14, points[2].intensity);
+}
+
+void test_no_points_stay_no_points(void)
+{
+    static const tmini_mount_t mount = {.drops = true};
+    apply(&mount, 0);
+}

@@ -1,0 +1,508 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* A lidar that is lost while it scans, and the ladder that brings it back. */
+
+#include "rig.h"
+
+#include "mock_port_functions.h"
+#include "unity.h"
+
+void setUp(void)
+{
+    rig_open();
+}
+
+void tearDown(void) {}
+
+static tmini_counters_t counters(void)
+{
+    tmini_counters_t copy;
+
+    tmini_counters(&rig.lidar, &copy);
+    return copy;
+}
+
+/* ---- Loss ---- */
+
+void test_a_second_without_a_packet_is_a_loss(void)
+{
+    rig_go_scanning();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    is_in(TMINI_STATE_RECOVERING);
+    TEST_ASSERT_EQUAL_UINT16(1, counters().losses);
+}
+
+void test_each_packet_puts_the_loss_off(void)
+{
+    rig_go_scanning();
+    passes(999);
+    rig_feed_point_packet(1000);
+    passes(999);
+    is_in(TMINI_STATE_SCANNING);
+}
+
+void test_bytes_without_valid_packets_are_a_loss_too(void)
+{
+    rig_go_scanning();
+    for (unsigned ms = 0; ms < 1000; ms += 20) {
+        rig_feed_byte(0xAA);
+        passes(20);
+    }
+    polls_to(TMINI_EVENT_LOST);
+}
+
+void test_packets_that_came_while_nobody_polled_are_no_loss(void)
+{
+    rig_go_scanning();
+    rig_feed_point_packet(1000);
+    rig.now_ms += 5000;
+    polls_to(TMINI_EVENT_NONE);
+    passes(999);
+    is_in(TMINI_STATE_SCANNING);
+}
+
+/* ---- Recovery ---- */
+
+void test_a_lost_lidar_is_stopped_and_when_the_line_is_quiet_started(void)
+{
+    rig_go_recovering(); /* The stop has been sent. */
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(START);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+    TEST_ASSERT_EQUAL_UINT16(1, counters().restarts);
+}
+
+void test_the_first_packet_recovers(void)
+{
+    rig_go_asking_again();
+    rig_feed_scan_reply();
+    polls_to(TMINI_EVENT_NONE);
+    is_in(TMINI_STATE_RECOVERING);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+    is_in(TMINI_STATE_SCANNING);
+    (void)rig_drain();
+    passes(999);
+    TEST_ASSERT_EQUAL_UINT16(1, counters().recoveries);
+}
+
+/* From the moment at which an attempt has failed: its pause, then the next attempt's stop. */
+static void pauses_and_stops(uint32_t pause_ms)
+{
+    passes(pause_ms);
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+/* The line is quiet; this is sent. */
+static void finds_quiet_and_sends(uint8_t code)
+{
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(code);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+static void gets_no_reply(void)
+{
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+}
+
+static void tries_in_vain(uint32_t pause_ms)
+{
+    pauses_and_stops(pause_ms);
+    finds_quiet_and_sends(START);
+    gets_no_reply();
+}
+
+static void tries_with_a_reboot_in_vain(uint32_t pause_ms)
+{
+    pauses_and_stops(pause_ms);
+    finds_quiet_and_sends(REBOOT);
+    passes(5000);
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+    finds_quiet_and_sends(START);
+    gets_no_reply();
+}
+
+void test_the_ladder_starts_three_times_then_reboots_with_pauses_that_double_up_to_4_s(void)
+{
+    rig_go_backing_off();
+    tries_in_vain(500);
+    tries_in_vain(1000);
+    tries_with_a_reboot_in_vain(2000);
+    tries_in_vain(4000);
+    tries_in_vain(4000);
+    tries_with_a_reboot_in_vain(4000);
+    tries_in_vain(4000);
+    is_in(TMINI_STATE_RECOVERING);
+    TEST_ASSERT_EQUAL_UINT16(1, counters().losses);
+    TEST_ASSERT_EQUAL_UINT16(8, counters().restarts);
+    TEST_ASSERT_EQUAL_UINT16(2, counters().reboots);
+    TEST_ASSERT_EQUAL_UINT16(8, counters().timeouts);
+    TEST_ASSERT_EQUAL_UINT16(0, counters().recoveries);
+}
+
+void test_the_ladder_has_no_end(void)
+{
+    rig_go_backing_off();
+    tries_in_vain(500);
+    tries_in_vain(1000);
+    tries_with_a_reboot_in_vain(2000);
+    for (unsigned round = 0; round < 200; round++) {
+        tries_in_vain(4000);
+        tries_in_vain(4000);
+        tries_with_a_reboot_in_vain(4000);
+    }
+}
+
+void test_a_loss_after_a_new_start_begins_at_the_ladders_foot(void)
+{
+    rig_go_backing_off();
+    tries_in_vain(500);
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+    sends(START);
+    begins(tmini_start(&rig.lidar));
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+    (void)rig_drain();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    sends(STOP); /* Without a pause. */
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_a_loss_after_a_whole_turn_begins_at_the_ladders_foot(void)
+{
+    rig_go_backing_off();
+    tries_in_vain(500);
+    tries_in_vain(1000);
+    rig_feed_start_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+    rig_feed_start_packet(1000);
+    (void)rig_drain();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    finds_quiet_and_sends(START);
+    gets_no_reply();
+    tries_in_vain(500);
+}
+
+/* A weak supply: it starts, and dies of the motor's current. */
+void test_a_loss_before_a_whole_turn_goes_on_up_the_ladder(void)
+{
+    rig_go_backing_off();
+    tries_in_vain(500);
+    rig_feed_start_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+    rig_feed_point_packet(1000);
+    (void)rig_drain();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    tries_with_a_reboot_in_vain(2000);
+}
+
+void test_a_pause_that_is_configured_longer_than_the_longest_is_cut(void)
+{
+    tmini_timing_t timing = tmini_timing_default;
+
+    timing.back_off_ms = 60000;
+    timing.back_off_max_ms = 700;
+    rig.config.timing = &timing;
+    rig_init();
+    rig_go_backing_off();
+    pauses_and_stops(700);
+}
+
+void test_the_longest_pause_there_is_can_be_configured(void)
+{
+    tmini_timing_t timing = tmini_timing_default;
+
+    timing.back_off_ms = 40000;
+    timing.back_off_max_ms = 65535;
+    rig.config.timing = &timing;
+    rig_init();
+    rig_go_backing_off();
+    tries_in_vain(40000);
+    pauses_and_stops(65535);
+}
+
+void test_no_pause_can_be_configured(void)
+{
+    tmini_timing_t timing = tmini_timing_default;
+
+    timing.back_off_ms = 1;
+    timing.back_off_max_ms = 1;
+    rig.config.timing = &timing;
+    rig_init();
+    rig_go_backing_off();
+    rig.now_ms += 1;
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_a_start_that_is_acknowledged_but_brings_no_packet_is_a_failed_attempt(void)
+{
+    rig_go_asking_again();
+    rig_feed_scan_reply();
+    passes(3000);
+    polls_to(TMINI_EVENT_NONE);
+    pauses_and_stops(500);
+}
+
+void test_a_line_that_does_not_fall_quiet_is_a_failed_attempt(void)
+{
+    rig_go_recovering();
+    for (unsigned ms = 0; ms < 600; ms += 20) {
+        rig_feed_byte(0x00);
+        passes(20);
+    }
+    polls_to(TMINI_EVENT_NONE);
+    pauses_and_stops(500);
+}
+
+void test_a_port_that_fails_is_a_failed_attempt(void)
+{
+    rig_go_scanning();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    sends_both_taking(STOP, -1);
+    polls_to(TMINI_EVENT_NONE);
+    pauses_and_stops(500);
+}
+
+void test_a_port_that_takes_nothing_is_a_failed_attempt_and_nothing_is_sent_in_the_pause(void)
+{
+    rig_go_scanning();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    sends_both_taking(STOP, 0);
+    polls_to(TMINI_EVENT_NONE);
+    rig.now_ms += 100;
+    sends_both_taking(STOP, 0);
+    polls_to(TMINI_EVENT_NONE);
+    pauses_and_stops(500);
+}
+
+void test_a_lidar_that_comes_back_by_itself_in_the_pause_has_recovered(void)
+{
+    rig_go_backing_off();
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+    (void)rig_drain();
+    passes(999);
+    is_in(TMINI_STATE_SCANNING);
+    TEST_ASSERT_EQUAL_UINT16(1, counters().recoveries);
+}
+
+void test_a_lidar_that_comes_back_by_itself_while_it_is_being_rebooted_has_recovered(void)
+{
+    rig_go_backing_off();
+    tries_in_vain(500);
+    tries_in_vain(1000);
+    pauses_and_stops(2000);
+    finds_quiet_and_sends(REBOOT);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+    (void)rig_drain();
+    rig_feed_point_packet(1000);
+    (void)rig_drain();
+    passes(999);
+    is_in(TMINI_STATE_SCANNING);
+}
+
+void test_a_lidar_that_comes_back_by_itself_after_a_reboot_that_failed_has_recovered(void)
+{
+    rig_go_backing_off();
+    tries_in_vain(500);
+    tries_in_vain(1000);
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    sends_both_taking(STOP, -1); /* The stop before the reboot. */
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+}
+
+void test_a_start_reply_that_comes_in_the_pause_does_not_end_it(void)
+{
+    rig_go_backing_off();
+    rig_feed_scan_reply();
+    pauses_and_stops(500);
+}
+
+void test_packets_between_the_stop_and_a_quiet_line_are_not_yet_a_recovery(void)
+{
+    rig_go_recovering();
+    rig_feed_point_packet(1000);
+    passes(50);
+    is_in(TMINI_STATE_RECOVERING);
+    polls_to(TMINI_EVENT_NONE);
+    sends(START);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+void test_packets_before_the_reboot_of_the_ladder_are_not_yet_a_recovery(void)
+{
+    rig_go_backing_off();
+    tries_in_vain(500);
+    tries_in_vain(1000);
+    pauses_and_stops(2000);
+    rig_feed_point_packet(1000);
+    finds_quiet_and_sends(REBOOT);
+}
+
+void test_a_recovered_turn_does_not_continue_the_one_before_the_loss(void)
+{
+    rig_go_scanning();
+    rig_feed_start_packet(1000);
+    (void)rig_drain();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    finds_quiet_and_sends(START);
+    rig_feed_point_packet(1000);
+    rig_feed_start_packet(1000);
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_RECOVERED), rig_drain());
+    TEST_ASSERT_EQUAL_UINT32(0, counters().scans);
+}
+
+void test_a_turn_cut_by_a_loss_is_no_data_fault(void)
+{
+    rig_go_scanning();
+    (void)rig_plain_turn_events(0);
+    (void)rig_plain_turn_events(0); /* One turn without a range, and most of another. */
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    finds_quiet_and_sends(START);
+    rig_feed_point_packet(0);
+    rig_feed_start_packet(0);
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_RECOVERED), rig_drain());
+    TEST_ASSERT_EQUAL_HEX(0, rig_plain_turn_events(0));
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_plain_turn_events(0));
+}
+
+void test_a_range_from_before_a_loss_does_not_clear_a_data_fault(void)
+{
+    rig_go_scanning();
+    for (unsigned i = 0; i < 3; i++) {
+        (void)rig_plain_turn_events(0);
+    }
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_NONE);
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    finds_quiet_and_sends(START);
+    rig_feed_point_packet(0);
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_RECOVERED), rig_plain_turn_events(1000));
+    TEST_ASSERT_EQUAL_HEX(0, rig_plain_turn_events(1000)); /* One turn with a range, */
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED),
+                          rig_plain_turn_events(1000)); /* and another. */
+}
+
+void test_a_turn_from_before_a_stop_is_not_trusted_after_the_next_start(void)
+{
+    tmini_ct_info_t turn;
+
+    rig_go_scanning();
+    rig_feed_turn(TMINI_FAULT_LD, 1000);
+    (void)rig_drain();
+    rig_go_idle();
+    sends(START);
+    begins(tmini_start(&rig.lidar));
+    rig_feed_scan_reply();
+    rig_feed_turn(TMINI_FAULT_LD,
+                  1000); /* The stray byte before it is the right LastCRC by chance. */
+    (void)rig_drain();
+    tmini_ct_info(&rig.lidar, &turn);
+    TEST_ASSERT_EQUAL_HEX16(0, turn.known);
+}
+
+void test_faults_outlive_a_loss(void)
+{
+    rig_go_scanning();
+    for (unsigned i = 0; i < 3; i++) {
+        (void)rig_turn_events(TMINI_FAULT_PD);
+    }
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_PD, tmini_faults(&rig.lidar));
+}
+
+void test_stop_ends_the_recovery(void)
+{
+    rig_go_backing_off();
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+    passes(60000);
+    is_in(TMINI_STATE_IDLE);
+}
+
+/* ---- Without recovery ---- */
+
+static void go_lost_without_recovery(void)
+{
+    rig.config.disable_recovery = true;
+    rig_init();
+    rig_go_scanning();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+}
+
+void test_without_recovery_a_loss_is_reported_and_nothing_sent(void)
+{
+    go_lost_without_recovery();
+    is_in(TMINI_STATE_RECOVERING);
+    passes(1000000);
+    TEST_ASSERT_EQUAL_UINT16(1, counters().losses);
+    TEST_ASSERT_EQUAL_UINT16(0, counters().restarts);
+}
+
+void test_without_recovery_a_lidar_that_comes_back_by_itself_has_recovered(void)
+{
+    go_lost_without_recovery();
+    passes(60000);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+    is_in(TMINI_STATE_SCANNING);
+}
+
+void test_without_recovery_stop_and_start_are_the_users(void)
+{
+    go_lost_without_recovery();
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+    sends(START);
+    begins(tmini_start(&rig.lidar));
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+}

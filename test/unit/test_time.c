@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* When the points of a scan were measured. */
+
+#include "tmini/tmini_time.h"
+#include "unity.h"
+
+#define DEGREE 64u
+
+static tmini_point_t points[4];
+static tmini_scan_t scan;
+
+void setUp(void)
+{
+    scan = (tmini_scan_t){.points = points,
+                          .count = 4,
+                          .start_ms = 0xFFFFFFF0u,
+                          .end_ms = 84, /* 100 ms later, across the clock's wrap-around. */
+                          .frequency_chz = 625,
+                          .complete = true};
+}
+
+void tearDown(void) {}
+
+static void has_angles(uint16_t a, uint16_t b, uint16_t c, uint16_t d)
+{
+    points[0].angle_q6 = a;
+    points[1].angle_q6 = b;
+    points[2].angle_q6 = c;
+    points[3].angle_q6 = d;
+}
+
+static void is_at(size_t index, uint32_t time_us)
+{
+    TEST_ASSERT_EQUAL_UINT32(time_us, tmini_point_time_us(&scan, index));
+}
+
+void test_a_complete_scans_period_is_its_own_time(void)
+{
+    TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
+}
+
+void test_an_incomplete_scans_period_is_what_the_lidar_measured(void)
+{
+    scan.complete = false;
+    TEST_ASSERT_EQUAL_UINT32(160, tmini_scan_period_ms(&scan));
+}
+
+void test_a_period_that_nobody_knows_is_0(void)
+{
+    scan.complete = false;
+    scan.frequency_chz = 0;
+    TEST_ASSERT_EQUAL_UINT32(0, tmini_scan_period_ms(&scan));
+}
+
+/* A quarter of 100 ms is 25,000 us. The start angle need not be 0 (section 9.8). */
+void test_a_points_time_goes_with_its_angle(void)
+{
+    has_angles(115 * DEGREE, 205 * DEGREE, 295 * DEGREE, 25 * DEGREE);
+    is_at(0, 0);
+    is_at(1, 25000);
+    is_at(2, 50000);
+    is_at(3, 75000);
+}
+
+void test_an_early_point_a_hair_behind_the_first_is_not_a_turn_later(void)
+{
+    has_angles(10, 8, 180 * DEGREE, 300 * DEGREE);
+    is_at(1, 0);
+}
+
+/* 6 / 23040 of 100 ms are 26 us. */
+void test_a_late_point_a_hair_beyond_the_circle_is_a_turn_later(void)
+{
+    has_angles(10, 90 * DEGREE, 180 * DEGREE, 16);
+    is_at(3, 100026);
+}
+
+void test_with_an_unknown_period_a_sample_takes_250_us(void)
+{
+    has_angles(0, 1, 2, 3);
+    scan.complete = false;
+    scan.frequency_chz = 0;
+    is_at(0, 0);
+    is_at(3, 750);
+}
+
+void test_the_longest_period_does_not_overflow(void)
+{
+    has_angles(0, 90 * DEGREE, 180 * DEGREE, 23039);
+    scan.start_ms = 0;
+    scan.end_ms = 3000;
+    is_at(3, 2999869);  /* 23039 / 23040 of 3 s. */
+    scan.end_ms = 3001; /* No revolution is so slow. */
+    is_at(3, 750);
+}

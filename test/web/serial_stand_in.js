@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The tmini authors
+
+// Stands in for navigator.serial, as Web Serial specifies it, with the simulated lidar behind the
+// adapter. It runs before the page and takes the library from it, as an instance of its own. What
+// happens at the adapter is told to `bench`:
+//
+//     bench.plug()  bench.unplug()         the cable
+//     bench.choice = 'none'                the user closes the list of ports
+//     bench.opening = 'NetworkError'       open() fails so
+//     bench.line = 'dead' | 'garbled' | 'deaf' | 'held' (until it is good again) | 'good'
+//     bench.lineError('ParityError')       the stream ends so, the port goes on
+//     bench.writeError()                   the next thing written fails so, the port goes on
+//     bench.answers = (code) => …          whether the lidar gets to hear that command
+
+const bench = { choice: 'port', opening: null, line: 'good', opened: [], written: [], answers: () => true };
+
+const PORTION = 64; // As USB carries them.
+
+class Device {
+    #exports = null;
+    #plugged = true;
+
+    async #power() {
+        const text = document.getElementById('library').textContent.trim();
+        const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+        this.#exports = (await WebAssembly.instantiate(bytes)).instance.exports;
+        this.#exports.simulation_init(7, 1, 600);
+    }
+
+    get #now() {
+        return Math.floor(performance.now());
+    }
+
+    async ready() {
+        if (this.#exports === null) {
+            await this.#power();
+        }
+    }
+
+    setPower(on) {
+        this.#plugged = on;
+        this.#exports?.simulation_power(on ? 1 : 0, this.#now);
+    }
+
+    receive(bytes) {
+        if (!this.#plugged || bench.line === 'deaf' || !bench.answers(bytes[1])) {
+            return;
+        }
+        new Uint8Array(this.#exports.memory.buffer, this.#exports.transfer(), bytes.length).set(bytes);
+        this.#exports.simulation_write(bytes.length, this.#now);
+    }
+
+    // What has come since it was asked last; bytes that nobody takes are lost.
+    send() {
+        if (bench.line === 'held') {
+            return new Uint8Array(0);
+        }
+        const count = this.#exports.simulation_read(this.#now);
+        const bytes = new Uint8Array(this.#exports.memory.buffer, this.#exports.transfer(), count).slice();
+        if (bench.line === 'dead') {
+            return bytes.subarray(0, 0);
+        }
+        return bench.line === 'garbled' ? bytes.map((byte) => (byte * 7 + 90) & 0x7F) : bytes;
+    }
+
+    // As a lidar that was left scanning.
+    startByItself() {
+        this.receive(Uint8Array.of(0xA5, 0x60));
+    }
+}
+
+// [[state]], [[readFatal]] … are the specification's internal slots.
+class StandInPort extends EventTarget {
+    onconnect = null;
+    ondisconnect = null;
+    #state = 'closed';
+    #readable = null;
+    #writable = null;
+    #readFatal = false;
+    #writeFatal = false;
+    #bufferSize = 0;
+    #control = null;
+    #writeControl = null;
+    #timer = 0;
+    #connected = true;
+    #failsWriting = false;
+    #device;
+
+    constructor(device) {
+        super();
+        this.#device = device;
+    }
+
+    get connected() {
+        return this.#connected;
+    }
+
+    getInfo() {
+        return { usbVendorId: 0x10C4, usbProductId: 0xEA60 };
+    }
+
+    async open(options) {
+        if (options?.baudRate === undefined) {
+            throw new TypeError('required member baudRate is undefined.');
+        }
+        if (this.#state !== 'closed') {
+            throw new DOMException('The port is already open.', 'InvalidStateError');
+        }
+        if (options.baudRate === 0 || options.bufferSize === 0) {
+            throw new TypeError('A value is 0.');
+        }
+        this.#state = 'opening';
+        await this.#device.ready();
+        if (bench.opening !== null || !this.#connected) {
+            this.#state = 'closed';
+            throw new DOMException('Failed to open serial port.', bench.opening ?? 'NetworkError');
+        }
+        bench.opened.push({ ...options });
+        this.#state = 'opened';
+        this.#bufferSize = options.bufferSize ?? 255;
+        this.#readFatal = false;
+        this.#writeFatal = false;
+        this.#timer = setInterval(() => this.#arrive(), 8);
+    }
+
+    get readable() {
+        if (this.#readable === null && this.#state === 'opened' && !this.#readFatal) {
+            this.#readable = new ReadableStream({
+                type: 'bytes',
+                start: (control) => { this.#control = control; },
+                cancel: () => { this.#readable = null; },
+            }, { highWaterMark: this.#bufferSize });
+        }
+        return this.#readable;
+    }
+
+    get writable() {
+        if (this.#writable === null && this.#state === 'opened' && !this.#writeFatal) {
+            this.#writable = new WritableStream({
+                start: (control) => { this.#writeControl = control; },
+                write: (bytes) => {
+                    if (this.#failsWriting) {
+                        this.#failsWriting = false;
+                        this.#writable = null;
+                        throw new DOMException('Writing failed.', 'UnknownError');
+                    }
+                    bench.written.push(...bytes);
+                    this.#device.receive(bytes);
+                },
+                abort: () => { this.#writable = null; },
+                close: () => { this.#writable = null; },
+            });
+        }
+        return this.#writable;
+    }
+
+    async setSignals() {}
+
+    async getSignals() {
+        return { dataCarrierDetect: false, clearToSend: false, ringIndicator: false, dataSetReady: false };
+    }
+
+    // Streams that someone holds make it fail, as cancel() and abort() then do.
+    async close() {
+        if (this.#state !== 'opened') {
+            throw new DOMException('The port is already closed.', 'InvalidStateError');
+        }
+        const ends = [this.#readable?.cancel(), this.#writable?.abort()];
+        this.#state = 'closing';
+        try {
+            await Promise.all(ends);
+        } catch (error) {
+            this.#state = 'opened';
+            throw error;
+        }
+        clearInterval(this.#timer);
+        this.#readable = null;
+        this.#writable = null;
+        this.#state = 'closed';
+    }
+
+    async forget() {
+        await this.close().catch(() => {});
+    }
+
+    // What has come goes into the stream; more than its buffer holds is lost.
+    #arrive() {
+        const bytes = this.#device.send();
+        if (bytes.length === 0 || this.#readable === null) {
+            return;
+        }
+        if (this.#control.desiredSize < bytes.length) {
+            this.failStream('BufferOverrunError');
+            return;
+        }
+        for (let from = 0; from < bytes.length; from += PORTION) {
+            this.#control.enqueue(bytes.slice(from, from + PORTION));
+        }
+    }
+
+    // The stream ends, the port goes on.
+    failStream(name) {
+        this.#control.error(new DOMException(`The line failed: ${name}.`, name));
+        this.#readable = null;
+    }
+
+    failWriting() {
+        this.#failsWriting = true;
+    }
+
+    lose() {
+        const lost = () => new DOMException('The device has been lost.', 'NetworkError');
+        this.#connected = false;
+        clearInterval(this.#timer);
+        if (this.#state === 'opened') {
+            this.#readFatal = true;
+            this.#writeFatal = true;
+            if (this.#readable !== null) {
+                this.#control.error(lost());
+                this.#readable = null;
+            }
+            if (this.#writable !== null) {
+                this.#writeControl.error(lost());
+                this.#writable = null;
+            }
+        }
+        this.#tell('disconnect');
+    }
+
+    find() {
+        this.#connected = true;
+        this.#tell('connect');
+    }
+
+    // At the port, and bubbling to navigator.serial.
+    #tell(type) {
+        this.dispatchEvent(new Event(type));
+        const event = new Event(type);
+        Object.defineProperty(event, 'target', { value: this });
+        navigator.serial.dispatchEvent(event);
+    }
+}
+
+class StandInSerial extends EventTarget {
+    onconnect = null;
+    ondisconnect = null;
+    #port;
+
+    constructor(port) {
+        super();
+        this.#port = port;
+    }
+
+    async getPorts() {
+        return this.#port.connected ? [this.#port] : [];
+    }
+
+    async requestPort() {
+        if (!navigator.userActivation.isActive) {
+            throw new DOMException('Must be handling a user gesture to show a permission request.', 'SecurityError');
+        }
+        if (bench.choice === 'none') {
+            throw new DOMException('No port selected by the user.', 'NotFoundError');
+        }
+        return this.#port;
+    }
+}
+
+{
+    const device = new Device();
+    const port = new StandInPort(device);
+    bench.unplug = () => {
+        device.setPower(false);
+        port.lose();
+    };
+    bench.plug = () => {
+        device.setPower(true);
+        port.find();
+    };
+    bench.lineError = (name) => port.failStream(name);
+    bench.writeError = () => port.failWriting();
+    bench.leaveScanning = async () => {
+        await device.ready();
+        device.startByItself();
+    };
+    bench.members = {
+        Serial: StandInSerial.prototype,
+        SerialPort: StandInPort.prototype,
+    };
+    bench.port = port;
+    window.bench = bench;
+    Object.defineProperty(navigator, 'serial', { value: new StandInSerial(port), configurable: true });
+}

@@ -1,0 +1,869 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""The viewer in a real browser, opened from its file, used as a person uses it.
+
+    test_viewer.py PAGE TMINI [unittest's options …]
+
+PAGE is tmini.html, TMINI the tool that it is compared with. Exit status 77: there is no browser here.
+"""
+
+import functools
+import http.server
+import json
+import os
+import pathlib
+import random
+import signal
+import struct
+import subprocess
+import sys
+import threading
+import unittest
+import zlib
+
+import webdriver
+
+HERE = pathlib.Path(__file__).resolve().parent
+RECORDINGS = HERE.parent / "recordings"
+STAND_IN = (HERE / "serial_stand_in.js").read_text(encoding="utf-8")
+SIZE_MAX = 150_000
+
+# The page's time runs faster than the clock on the wall, so that the tests are over sooner.
+FASTER = """{
+    const now = performance.now.bind(performance);
+    performance.now = () => 3 * now();
+}
+"""
+
+PAGE = None
+TMINI = None
+DRIVER = None
+
+
+def real_recording():
+    """A real unit's recording, where there is one."""
+    path = pathlib.Path(os.environ.get("TMINI_RECORDINGS_DIR") or RECORDINGS / "real") / "t-mini-plus-room.bin"
+    return path if path.exists() else None
+
+
+def pixels(png):
+    """An 8-bit RGB or RGBA PNG as (width, rows), a row being a list of (red, green, blue)."""
+    width, height, _, colour = struct.unpack(">IIBB", png[16:26])
+    channels = {2: 3, 6: 4}[colour]
+    at, packed = 8, b""
+    while at < len(png):
+        length, kind = struct.unpack(">I4s", png[at:at + 8])
+        packed += png[at + 8:at + 8 + length] if kind == b"IDAT" else b""
+        at += 12 + length
+    raw = zlib.decompress(packed)
+    rows, stride, before = [], width * channels, bytearray(width * channels)
+    for y in range(height):
+        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        unfilter(kind, line, before, channels)
+        rows.append([tuple(line[x:x + 3]) for x in range(0, stride, channels)])
+        before = line
+    return width, rows
+
+
+def unfilter(kind, line, above, step):
+    """Undoes a PNG row's filter in place."""
+    for i in range(len(line)) if kind else ():
+        left = line[i - step] if i >= step else 0
+        corner = above[i - step] if i >= step else 0
+        line[i] = (line[i] + [0, left, above[i], (left + above[i]) // 2,
+                              paeth(left, above[i], corner)][kind]) & 255
+
+
+def paeth(left, above, corner):
+    guess = left + above - corner
+    return min((left, above, corner), key=lambda value: abs(guess - value))
+
+
+def is_coloured(pixel):
+    """Neither black, white nor grey: a point of the picture, not its grid or its words."""
+    return max(pixel) - min(pixel) > 60
+
+
+def luminance(colour):
+    parts = [part / 255 for part in colour]
+    parts = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
+
+
+def contrast(one, other):
+    """As the Web Content Accessibility Guidelines define it: 1 to 21."""
+    bright, dark = sorted((luminance(one), luminance(other)), reverse=True)
+    return (bright + 0.05) / (dark + 0.05)
+
+
+class Viewer(unittest.TestCase):
+    """One browser for the tests of a class; each opens the page anew."""
+
+    width, height, dark, before = 1000, 600, False, ""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.page = webdriver.Page(DRIVER, cls.width, cls.height, cls.dark, FASTER + cls.before)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.page.close()
+
+    def setUp(self):
+        self.page.log("browser")
+        self.page.log("performance")
+        self.page.go(PAGE.as_uri())
+        self.page.wait_text("#state", "not connected")
+
+    def tearDown(self):
+        complaints = [entry for entry in self.page.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+        self.assertEqual([], complaints)
+
+    def open_recording(self, path):
+        self.page.type("#file", str(path))
+
+    def simulate(self):
+        self.page.click("#simulate")
+        self.page.wait_text("#state", "scanning")
+        self.wait_scans(1)
+
+    def wait_scans(self, count):
+        """So many more complete revolutions."""
+        before = self.number("#scans")
+        self.page.wait(f"{count} revolutions", lambda: self.number("#scans") >= before + count)
+
+    def number(self, selector):
+        text = self.page.text(selector)
+        return 0 if text == "–" else int(text)
+
+    def saved(self, button):
+        """Clicks, and returns what has been saved, once it is whole."""
+        def finished():
+            return [file for file in self.page.downloads.glob("tmini-*") if file.suffix != ".crdownload"]
+        self.page.click(button)
+        (path,) = self.page.wait("a file", finished)
+        content = path.read_bytes()
+        path.unlink()
+        return path.name, content
+
+    def look(self, condition):
+        """Where in the picture pixels (r, g, b) fulfil the condition: [how many, their middle to the right of
+        the lidar, their middle ahead of it], in halves of the picture's height. Without the legend."""
+        return self.page.run("""const canvas = document.querySelector('#picture');
+            const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d');
+            copy.drawImage(canvas, 0, 0);
+            const { data, width } = copy.getImageData(0, 0, canvas.width, canvas.height - 60);
+            const fulfils = new Function('r', 'g', 'b', 'return ' + arguments[0]);
+            let [count, x, y] = [0, 0, 0];
+            for (let i = 0; i < data.length; i += 4) {
+                if (fulfils(data[i], data[i + 1], data[i + 2])) {
+                    count++;
+                    x += i / 4 % width;
+                    y += Math.floor(i / 4 / width);
+                }
+            }
+            const half = canvas.height / 2;
+            return [count, (x / count - canvas.width / 2) / half, 1 - y / count / half]""", condition)
+
+    def coloured(self):
+        """How many pixels of the picture are neither black, white nor grey: points and marks."""
+        return self.look("Math.max(r, g, b) - Math.min(r, g, b) > 60")[0]
+
+
+def decode(path):
+    """What the tool says of a recording: (its rows, its counters)."""
+    with open(os.devnull, "w", encoding="utf-8") as nowhere:
+        stats = DRIVER.folder / "stats.json"
+        rows = subprocess.run([TMINI, "decode", path, "--csv", "--stats", stats], check=True,
+                              stdout=subprocess.PIPE, stderr=nowhere, text=True).stdout
+    return rows, json.loads(stats.read_text())
+
+
+class Recordings(Viewer):
+    """A recording shows what the tool decodes of it."""
+
+    def check(self, path):
+        rows, stats = decode(path)
+        self.open_recording(path)
+        self.page.wait_text("#source", path.name)
+        name, content = self.saved("#save-csv")
+        self.assertRegex(name, r"^tmini-points-[\d-]+\.csv$")
+        self.assertEqual(rows, content.decode())
+        self.page.run("""const position = document.querySelector('#position');
+            position.value = position.max; position.dispatchEvent(new Event('input'))""")
+        self.page.wait_text("#packets", str(stats["packets"]))
+        self.assertEqual([stats[key] for key in ("bytes", "packets", "start_packets", "checksum_errors")],
+                         [self.number(key) for key in ("#bytes", "#packets", "#scans", "#checksums")])
+
+    def test_clean(self):
+        self.check(RECORDINGS / "sim-6hz.bin")
+        self.assertEqual("6.00 Hz", self.page.text("#frequency"))
+        self.assertEqual("complete", self.page.text("#quality"))
+        self.assertEqual("2026031700012345", self.page.text("#ct-serial"))
+        self.assertEqual("none", self.page.text("#faults"))
+        self.assertGreater(self.coloured(), 500)
+
+    def test_damaged(self):
+        self.check(RECORDINGS / "sim-6hz-damaged.bin")
+        self.assertEqual("bad", self.page.run("return document.querySelector('#checksums').className"))
+
+    def test_without_ct_information(self):
+        self.check(RECORDINGS / "sim-10hz-plain.bin")
+        self.assertEqual("not told by this unit", self.page.text("#ct-version"))
+        self.assertEqual("not told", self.page.text("#ct-health"))
+        self.assertEqual("–", self.page.text("#faults"))
+
+    def test_of_a_real_unit(self):
+        path = real_recording()
+        if path is None:
+            self.skipTest("no real unit's recording here")
+        self.check(path)
+        self.assertGreater(self.coloured(), 500)
+
+    def test_that_is_long(self):
+        path = self.page.folder / "long.bin"
+        path.write_bytes((RECORDINGS / "sim-6hz-damaged.bin").read_bytes() * 30)
+        self.check(path)
+
+    def test_dropped_on_the_page_plays_to_its_end(self):
+        content = list((RECORDINGS / "sim-12hz.bin").read_bytes())
+        self.page.run("""const data = new DataTransfer();
+            data.items.add(new File([Uint8Array.from(arguments[0])], 'dropped.bin'));
+            document.body.dispatchEvent(
+                new DragEvent('drop',
+                {dataTransfer: data, bubbles: true, cancelable: true}))""",
+                      content)
+        self.page.wait_text("#source", "dropped.bin")
+        self.assertEqual("Pause", self.page.text("#play"))
+        self.page.wait_text("#log", "end of the recording")
+        stats = decode(RECORDINGS / "sim-12hz.bin")[1]
+        seconds = f"{stats['points'] / 4000:.1f}"  # The lidar takes 4000 samples a second.
+        self.assertEqual(f"{seconds} of {seconds} s", self.page.text("#time"))
+        self.page.wait_text("#packets", str(stats["packets"]))
+        self.page.click("#play")
+        self.page.wait("it to play again", lambda: 0 < self.number("#packets") < 100)
+        self.page.click("#disconnect")
+        self.page.wait_text("#state", "not connected")
+
+    def test_that_ends_with_a_start_packet_is_played_to_its_end(self):
+        content = (RECORDINGS / "sim-6hz.bin").read_bytes()
+        path = self.page.folder / "short.bin"
+        last = content.rindex(bytes.fromhex("aa5579"))  # A start packet's sign, and its CT at 6.0 Hz.
+        path.write_bytes(content[:last + 13])
+        self.check(path)
+
+    def test_with_a_wrong_last_crc_has_a_scan_that_is_not_complete(self):
+        content = bytearray((RECORDINGS / "sim-6hz.bin").read_bytes())
+        last = content.rindex(bytes.fromhex("aa5579"))  # A start packet's sign, and its CT at 6.0 Hz.
+        content[last - 1] ^= 0x10
+        path = self.page.folder / "refuted.bin"
+        path.write_bytes(content)
+        self.check(path)
+        self.assertEqual("gaps: 1, wrong checksums: 0, points dropped: 0", self.page.text("#quality"))
+
+    def test_of_one_packet_has_no_revolution(self):
+        self.open_recording(RECORDINGS / "manual-packet.bin")
+        self.page.wait_text("#problem", "1 packets, but no whole revolution")
+        self.assertEqual(decode(RECORDINGS / "manual-packet.bin")[0], self.saved("#save-csv")[1].decode())
+
+    def test_that_is_none_is_said(self):
+        path = self.page.folder / "letter.txt"
+        path.write_bytes(random.Random(1).randbytes(5000))
+        self.open_recording(path)
+        self.page.wait_text("#problem", "letter.txt holds no lidar packet in 5000 bytes.")
+        path.write_bytes(b"")
+        self.page.click("#disconnect")
+        self.page.wait_text("#state", "not connected")
+        self.open_recording(path)
+        self.page.wait_text("#problem", "letter.txt is empty")
+
+
+class Simulated(Viewer):
+    """The simulated lidar, and everything that can happen to it."""
+
+    def setUp(self):
+        super().setUp()
+        self.simulate()
+
+    def switch(self, name):
+        self.page.run("document.getElementById(arguments[0]).scrollIntoView({block: 'center'})", f"sim-{name}")
+        self.page.click(f"#sim-{name}")
+
+    def test_is_asked_and_scans(self):
+        self.assertEqual(
+            ["151 T-mini Plus", "1.2", "1", "2026031700012345", "none"],
+            [self.page.text(f"#{key}") for key in ("model", "firmware", "hardware", "serial-number", "health-reply")])
+        self.wait_scans(8)
+        self.assertRegex(self.page.text("#frequency"), r"^(5\.9|6\.0)\d Hz$")
+        self.assertRegex(self.page.text("#points"), r"^6\d\d, 6\d\d with a distance$")
+        self.assertEqual("complete", self.page.text("#quality"))
+        self.page.wait_text("#ct-version", "firmware 1.2, hardware 1, protocol 1.0")
+        self.assertEqual("2026031700012345", self.page.text("#ct-serial"))
+        # The room: 5 m x 4 m, 2.2 m from the left wall and 1.7 m from the one behind.
+        self.assertRegex(self.page.text("#sector6"), r"^2\.(19|20)\d m$")
+        self.assertRegex(self.page.text("#sector4"), r"^1\.(69|70)\d m$")
+        self.assertEqual([0, 0, 0], [self.number(key) for key in ("#checksums", "#overrun", "#losses")])
+        self.assertGreater(self.coloured(), 500)
+
+    def test_rotor_blocked(self):
+        self.switch("blocked")
+        self.page.wait_text("#faults", "encoder")
+        self.page.wait_text("#fault", "Is the rotor blocked?")
+        self.page.wait_text("#log", "encoder")
+        self.assertTrue(self.page.is_shown("#fault"))
+        self.wait_scans(4)
+        self.assertEqual("–", self.page.text("#nearest"))
+        self.assertLess(self.coloured(), 20)
+        self.switch("blocked")
+        self.page.wait_text("#faults", "none")
+        self.assertFalse(self.page.is_shown("#fault"))
+
+    def test_window_covered(self):
+        self.switch("covered")
+        self.page.wait_text("#fault", "Is the window covered?")
+        self.assertEqual("data", self.page.text("#faults"))
+        self.switch("covered")
+        self.page.wait_text("#faults", "none")
+
+    def test_each_health_bit(self):
+        names = ["sensor", "encoder", "wireless power", "PD", "LD", "data"]
+        for i, name in enumerate(names):
+            self.switch(f"health-{1 << i}")
+            self.page.wait_text("#faults", ", ".join(names[:i + 1]))
+            self.page.wait_text("#fault", name)
+
+    def test_each_fault_of_the_wire(self):
+        for name, sign in (("drop", "#checksums"), ("flip", "#checksums"), ("insert", "#checksums"),
+                           ("burst", "#skipped"), ("cut", "#skipped")):
+            before = self.number(sign)
+            self.switch(f"wire-{name}")
+            self.page.wait(f"{name} in {sign}", lambda at=sign, was=before: self.number(at) > was + 2)
+            self.page.wait_text("#quality", "gap")
+            self.switch(f"wire-{name}")
+        self.switch("wire-stall")
+        scans = self.number("#scans")
+        self.page.wait("stalled bytes to arrive", lambda: self.number("#scans") > scans + 6)
+        self.assertEqual("0", self.page.text("#overrun"))
+
+    def test_wrong_baud_rate(self):
+        self.switch("wire-garble")
+        self.page.wait_text("#problem", "Bytes come, but no valid packets any more")
+        self.page.wait_text("#state", "recovering")
+        self.switch("wire-garble")
+        self.page.wait_text("#state", "scanning", 15)
+        self.assertFalse(self.page.is_shown("#problem"))
+        self.page.wait("a recovery", lambda: self.number("#recoveries") >= 1)
+
+    def test_without_power(self):
+        self.switch("unplugged")
+        self.page.wait_text("#problem", "The lidar has fallen silent")
+        self.page.wait_text("#log", "lost")
+        self.switch("unplugged")
+        self.page.wait_text("#state", "scanning", 15)
+        self.page.wait_text("#log", "recovered")
+        self.page.wait_text("#losses", "1")
+
+    def test_commands(self):
+        self.page.clear("#frequency-wanted")
+        self.page.type("#frequency-wanted", "12")
+        self.page.click("#set-frequency")
+        self.page.wait_text("#frequency-set", "set: 12.00 Hz")
+        self.page.wait_text("#state", "scanning")
+        self.page.wait_text("#frequency", "12.0")
+        self.page.click("#start-stop")
+        self.page.wait_text("#state", "idle")
+        self.page.click("#ask-health")
+        self.page.wait_text("#log", "health: none")
+        self.page.click("#ask-info")
+        self.page.wait_text("#state", "idle")
+        self.page.click("#start-stop")
+        self.page.wait_text("#state", "scanning")
+        self.page.click("#reboot")
+        self.page.wait_text("#log", "rebooted", 10)
+        self.page.wait_text("#state", "scanning")
+        self.page.click("#disconnect")
+        self.page.wait_text("#state", "not connected")
+        self.assertTrue(self.page.is_shown("#welcome"))
+
+    def show_visitor_alone(self):
+        """Nearer than a metre there is nothing else. Returns where he is drawn."""
+        self.page.run("""const range = document.querySelector('#range');
+            range.append(new Option('0.9 m', 900, true, true)); range.dispatchEvent(new Event('change'))""")
+        self.switch("visitor")
+        self.page.wait_text("#sector0", "0.6")
+        return self.visitor()
+
+    def visitor(self):
+        self.wait_scans(2)
+        return self.look("Math.max(r, g, b) - Math.min(r, g, b) > 60")
+
+    def test_points_are_drawn_where_they_are(self):
+        count, right, ahead = self.show_visitor_alone()
+        self.assertGreater(count, 100)
+        self.assertAlmostEqual(0, right, delta=0.1)
+        self.assertAlmostEqual(0.7, ahead, delta=0.1)
+        self.front_at("-90")
+        _, right, ahead = self.visitor()
+        self.assertAlmostEqual(0.7, right, delta=0.1)
+        self.assertAlmostEqual(0, ahead, delta=0.1)
+
+    def persist(self, revolutions):
+        self.page.run("""const slider = document.querySelector('#persistence');
+            slider.value = arguments[0]; slider.dispatchEvent(new Event('input'))""", revolutions)
+
+    def test_earlier_revolutions_stay_as_long_as_wanted(self):
+        self.persist(20)
+        self.assertEqual("20 revolutions", self.page.text("#persistence-value"))
+        self.show_visitor_alone()
+        self.switch("visitor")
+        self.page.wait_text("#sector0", "1.3")
+        self.assertGreater(self.visitor()[0], 50)
+        self.persist(1)
+        self.assertEqual(0, self.visitor()[0])
+
+    def test_flagged_points_are_marked(self):
+        self.persist(20)
+        self.page.wait("marks in the picture", lambda: self.look("r > 140 && g < 60 && b > 15 && b < 70")[0] > 5)
+
+    def test_picture_follows_the_theme(self):
+        white = "r === 255 && g === 255 && b === 255"
+        self.assertGreater(self.look(white)[0], 10000)
+        self.page.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        self.page.wait("a dark picture", lambda: self.look(white)[0] == 0)
+        self.page.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
+
+    def test_what_is_being_recorded_is_saved_when_the_lidar_goes(self):
+        self.page.click("#record")
+        self.wait_scans(2)
+        self.assertGreaterEqual(decode(self.saved_recording("#disconnect"))[1]["start_packets"], 2)
+
+    def test_recording_is_opened_instead_and_last_of_several_stays(self):
+        for name in ("sim-6hz.bin", "sim-12hz.bin"):
+            self.open_recording(RECORDINGS / name)
+        self.page.wait_text("#source", "sim-12hz.bin")
+        self.assertFalse(self.page.is_shown("#panel-lidar"))
+        self.assertEqual(decode(RECORDINGS / "sim-12hz.bin")[0], self.saved("#save-csv")[1].decode())
+        self.page.wait_text("#log", "end of the recording")
+        self.assertEqual(1, self.page.text("#log").count("end of the recording"))
+
+    def front_at(self, degrees):
+        self.page.clear("#mount-front")
+        self.page.type("#mount-front", degrees)
+
+    def test_visitor_and_mounting(self):
+        """He stands at the lidar's 0 degrees, about 25 degrees wide."""
+        self.switch("visitor")
+        self.page.wait_text("#nearest", "ahead")
+        self.page.wait_text("#sector0", "0.6")
+        self.front_at("-90")
+        self.page.wait_text("#sector2", "0.6")
+        self.page.wait_text("#nearest", ", right")
+        self.front_at("90")
+        self.page.wait_text("#sector6", "0.6")
+        self.page.wait_text("#nearest", ", left")
+        self.page.click("#mount-upside-down")
+        self.page.wait_text("#sector2", "0.6")
+        self.page.wait_text("#nearest", ", right")
+
+    def saved_recording(self, button):
+        """Clicks; returns where the recording lies that has been saved."""
+        name, content = self.saved(button)
+        self.assertRegex(name, r"^tmini-recording-[\d-]+\.tmini$")
+        path = self.page.folder / "saved.tmini"
+        path.write_bytes(content)
+        return path
+
+    def test_recording_is_saved_with_its_times(self):
+        self.page.click("#record")
+        self.wait_scans(3)
+        path = self.saved_recording("#record")
+        rows, stats = decode(path)
+        self.assertGreaterEqual(stats["start_packets"], 3)
+        self.assertEqual(0, stats["checksum_errors"])
+        times = [int(row.split(",")[7]) for row in rows.splitlines()[1:]]
+        self.assertAlmostEqual(stats["points"] / 4, times[-1] - times[0], delta=120)
+        self.page.click("#disconnect")
+        self.page.wait_text("#state", "not connected")
+        self.open_recording(path)
+        self.page.wait_text("#source", "saved.tmini")
+        self.assertEqual(rows, self.saved("#save-csv")[1].decode())
+
+    def test_points_of_the_last_seconds_are_saved(self):
+        self.wait_scans(3)
+        self.page.click("#start-stop")
+        self.page.wait_text("#state", "idle")
+        rows = [row.split(",") for row in self.saved("#save-csv")[1].decode().splitlines()]
+        self.assertEqual(["scan", "packet", "point", "angle_deg", "distance_mm", "intensity", "flag", "time_ms",
+                          "frequency_hz"], rows[0])
+        scans = [row[0] for row in rows[1:]]
+        counts = {scans.count(scan) for scan in set(scans)}
+        self.assertIn(int(self.page.text("#points").split(",")[0]), counts)
+        shown = self.page.text("#summary")
+        self.saved("#save-csv")
+        self.assertEqual(shown, self.page.text("#summary"))
+        self.page.click("#start-stop")
+        self.page.wait_text("#state", "scanning")
+        self.wait_scans(2)
+
+class Serial(Viewer):
+    """Web Serial, played by a stand-in."""
+
+    before = STAND_IN
+
+    def connect(self):
+        self.page.click("#connect")
+
+    def bench(self, script):
+        return self.page.run(script)
+
+    def test_stand_in_has_the_members_of_the_real_thing(self):
+        members = self.page.run("""return Object.fromEntries(Object.entries(bench.members).map(([name, mine]) =>
+            [name, Object.getOwnPropertyNames(window[name].prototype).filter((member) => !member.startsWith('on'))
+                .filter((member) => !(member in mine))]))""")
+        self.assertEqual({"Serial": [], "SerialPort": []}, members)
+
+    def test_connects_scans_is_unplugged_and_comes_back(self):
+        self.connect()
+        self.page.wait_text("#state", "scanning")
+        self.page.wait_text("#source", "USB adapter 10c4:ea60")
+        self.wait_scans(2)
+        self.assertEqual(230400, self.bench("return bench.opened[0].baudRate"))
+        self.assertEqual("2026031700012345", self.page.text("#serial-number"))
+        self.bench("bench.unplug()")
+        self.page.wait_text("#problem", "The adapter has gone")
+        self.page.wait_text("#state", "unplugged")
+        self.bench("bench.plug()")
+        self.page.wait_text("#state", "scanning", 15)
+        self.assertFalse(self.page.is_shown("#problem"))
+        self.wait_scans(2)
+        self.page.click("#disconnect")
+        self.page.wait_text("#state", "not connected")
+        self.assertIsNone(self.bench("return bench.port.readable"))
+        self.assertEqual([0xA5, 0x65], self.bench("return bench.written.slice(-2)"))
+        self.connect()
+        self.page.wait_text("#state", "scanning")
+
+    def test_scans_again_with_connect_after_it_was_unplugged(self):
+        self.connect()
+        self.page.wait_text("#state", "scanning")
+        self.bench("bench.unplug()")
+        self.page.wait_text("#state", "unplugged")
+        self.page.click("#disconnect")
+        self.page.wait_text("#state", "not connected")
+        self.bench("bench.plug()")
+        self.connect()
+        self.page.wait_text("#state", "scanning", 15)
+
+    def test_lidar_that_was_left_scanning(self):
+        self.bench("return bench.leaveScanning()")
+        self.connect()
+        self.page.wait_text("#serial-number", "2026031700012345")
+        self.page.wait_text("#state", "scanning")
+
+    def test_line_errors_do_not_end_it(self):
+        self.connect()
+        self.page.wait_text("#state", "scanning")
+        for name in ("BufferOverrunError", "FramingError", "ParityError", "BreakError"):
+            self.wait_scans(1)
+            self.note_qualities()
+            self.bench(f"bench.lineError('{name}')")
+            self.page.wait_text("#log", name)
+            self.page.wait("a scan that is not complete", lambda: self.page.run(
+                "return qualities.some((quality) => !quality.includes('complete'))"))
+        self.wait_scans(2)
+        self.assertEqual("scanning", self.page.text("#state"))
+
+    def note_qualities(self):
+        """What is said of the scans from now on."""
+        self.page.run("""const place = document.querySelector('#quality');
+            window.qualities = [];
+            window.observer?.disconnect();
+            window.observer = new MutationObserver(() => qualities.push(place.textContent));
+            observer.observe(place, { childList: true, characterData: true, subtree: true })""")
+
+    def test_write_that_fails_once_is_repeated(self):
+        self.bench("bench.writeError()")
+        self.connect()
+        self.page.wait_text("#state", "scanning")
+        self.page.wait_text("#serial-number", "2026031700012345")
+
+    def test_lidar_that_does_not_tell_its_health_scans(self):
+        self.bench("bench.answers = (code) => code !== 0x92")
+        self.connect()
+        self.page.wait_text("#state", "scanning", 15)
+        self.page.wait_text("#log", "command failed: timeout")
+        self.assertFalse(self.page.is_shown("#problem"))
+
+    def test_lidar_that_fails_later_is_told_apart(self):
+        self.connect()
+        self.page.wait_text("#state", "scanning")
+        self.page.click("#start-stop")
+        self.page.wait_text("#state", "idle")
+        self.bench("bench.answers = (code) => code !== 0x90")
+        self.page.click("#ask-info")
+        self.page.wait_text("#problem", "The lidar has answered before, but now “info” failed: timeout.")
+        self.bench("bench.answers = () => true")
+        self.page.click("#ask-info")
+        self.page.wait("the problem to go", lambda: not self.page.is_shown("#problem"))
+
+    def test_lidar_that_starts_by_itself_is_stopped_again(self):
+        self.connect()
+        self.page.wait_text("#state", "scanning")
+        self.page.click("#start-stop")
+        self.page.wait_text("#state", "idle")
+        self.bench("return bench.leaveScanning()")
+        self.page.wait_text("#log", "streaming")
+        self.page.wait_text("#state", "idle")
+
+    def test_page_that_is_busy_for_a_while_loses_nothing(self):
+        self.connect()
+        self.page.wait_text("#state", "scanning")
+        self.wait_scans(2)
+        self.page.run("""bench.line = 'held';  // What comes meanwhile arrives a little after the page is back.
+            const end = Date.now() + 360;  // 1.08 s of the page's time, more than the lidar may be silent.
+            while (Date.now() < end) { /* Busy. */ }
+            setTimeout(() => { bench.line = 'good'; }, 40)""")
+        self.wait_scans(3)
+        self.assertEqual([0, 0, 0], [self.number(key) for key in ("#losses", "#checksums", "#overrun")])
+        self.assertEqual("complete", self.page.text("#quality"))
+
+    def test_bytes_that_come_late_and_in_portions_are_no_gap(self):
+        self.connect()
+        self.page.wait_text("#state", "scanning")
+        self.wait_scans(2)
+        self.note_qualities()
+        self.page.run("bench.line = 'held'; setTimeout(() => { bench.line = 'good'; }, 50)")
+        self.wait_scans(3)
+        self.assertEqual([], self.page.run("return qualities.filter((quality) => quality !== 'complete')"))
+
+    def test_lidar_that_does_not_hear_at_first(self):
+        self.bench("let asked = 0; bench.answers = (code) => code !== 0x90 || ++asked > 4")
+        self.connect()
+        self.page.wait_text("#state", "scanning", 15)
+
+    def test_page_that_goes_away_stops_the_lidar(self):
+        self.connect()
+        self.page.wait_text("#state", "scanning")
+        self.bench("dispatchEvent(new Event('pagehide'))")
+        self.page.wait("a stop", lambda: self.bench("return bench.written.slice(-2)") == [0xA5, 0x65])
+
+    def test_port_in_use(self):
+        self.bench("bench.opening = 'NetworkError'")
+        self.connect()
+        self.page.wait_text("#problem", "another program or tab is using it")
+        self.assertTrue(self.page.is_shown("#problem"))
+        self.bench("bench.opening = null")
+        self.connect()
+        self.page.wait_text("#state", "scanning")
+        self.assertFalse(self.page.is_shown("#problem"))
+
+    def test_no_port_chosen(self):
+        self.bench("bench.choice = 'none'")
+        self.connect()
+        self.assertFalse(self.page.is_shown("#problem"))
+        self.assertTrue(self.page.is_shown("#welcome"))
+
+    def test_no_answer(self):
+        self.bench("bench.line = 'dead'")
+        self.connect()
+        self.page.wait_text("#problem", "No answer: not one byte came.")
+
+    def test_wrong_baud_rate(self):
+        self.bench("bench.line = 'garbled'")
+        self.connect()
+        self.page.wait_text("#problem", "nothing that a T-mini Plus says: a wrong baud rate", 15)
+
+    def test_lidar_that_does_not_hear(self):
+        self.bench("return bench.leaveScanning()")
+        self.bench("bench.line = 'deaf'")
+        self.connect()
+        self.page.wait_text("#problem", "does not do what it is told", 15)
+
+
+class WithoutSerial(Viewer):
+    """A browser that has no Web Serial."""
+
+    before = "delete Navigator.prototype.serial"
+
+    def test_says_so_and_simulates(self):
+        self.page.click("#connect")
+        self.page.wait_text("#problem", "This browser cannot reach a serial port.")
+        self.page.wait_text("#problem", "Chrome, Edge or Opera")
+        self.simulate()
+        self.assertFalse(self.page.is_shown("#problem"))
+
+
+class RealSerial(Viewer):
+    """Chromium's own Web Serial, which has no port here: the page reaches it from a file."""
+
+    def test_is_there(self):
+        self.assertTrue(self.page.run("return isSecureContext && navigator.serial instanceof Serial"))
+        self.assertEqual([], self.page.run("return navigator.serial.getPorts()"))
+
+
+class Appearance(Viewer):
+    """Light, wide."""
+
+    ground = (255, 255, 255)
+
+    def test_no_word_is_cut_off_and_nothing_lies_beside_the_page(self):
+        self.simulate()
+        self.page.click("#sim-blocked")
+        self.page.wait_text("#fault", "encoder")
+        self.assertEqual([], self.page.run("""return [...document.querySelectorAll('body *')]
+            .filter((item) => item.checkVisibility() && item.getBoundingClientRect().right > innerWidth + 1)
+            .map((item) => item.outerHTML.slice(0, 80))"""))
+
+    def test_picture_has_the_theme_and_the_points(self):
+        self.simulate()
+        self.wait_scans(3)
+        _, rows = pixels(self.page.screenshot())
+        box = self.page.run("""const box = document.querySelector('#picture').getBoundingClientRect();
+            return [box.left, box.top, box.right, box.bottom].map(Math.round)""")
+        left, top, right, bottom = box
+        inside = [pixel for row in rows[top + 4:bottom - 60] for pixel in row[left + 4:right - 4]]
+        grounds = sum(pixel == self.ground for pixel in inside)
+        self.assertGreater(grounds, 0.8 * len(inside))
+        self.assertGreater(sum(map(is_coloured, inside)), 300)
+
+    def test_words_stand_out(self):
+        colours = self.page.run("""const probe = document.createElement('canvas')
+                .getContext('2d', {willReadFrequently: true});
+            const style = getComputedStyle(document.documentElement);
+            return Object.fromEntries(['ground', 'page', 'text', 'dim', 'accent', 'on-accent', 'alarm', 'alarm-ground']
+                .map((name) => {
+                    probe.fillStyle = style.getPropertyValue('--' + name);
+                    probe.fillRect(0, 0, 1, 1);
+                    return [name, [...probe.getImageData(0, 0, 1, 1).data].slice(0, 3)];
+                }))""")
+        for one, other in (("text", "ground"), ("text", "page"), ("dim", "ground"), ("dim", "page"),
+                           ("accent", "ground"), ("on-accent", "accent"), ("alarm", "ground"),
+                           ("alarm", "alarm-ground"), ("text", "alarm-ground")):
+            self.assertGreaterEqual(contrast(colours[one], colours[other]), 4.5, f"{one} on {other}")
+
+
+class AppearanceDark(Appearance):
+    """Dark, wide."""
+
+    dark = True
+    ground = (15, 19, 24)
+
+
+class AppearancePhone(Appearance):
+    """As wide as a phone."""
+
+    width, height = 360, 740
+
+    def test_buttons_are_large_enough_to_touch(self):
+        self.assertEqual([], self.page.run("""return [...document.querySelectorAll('button')]
+            .filter((item) => item.checkVisibility() && item.getBoundingClientRect().height < 44)
+            .map((item) => item.id)"""))
+
+
+class Accessibility(Viewer):
+    """With a keyboard, and with a screen reader."""
+
+    controls = ("button", "checkbox", "slider", "spinbutton", "combobox", "textbox")
+
+    def tree(self):
+        nodes = self.page.devtools("Accessibility.getFullAXTree")["nodes"]
+        return [(node["role"]["value"], node.get("name", {}).get("value", ""))
+                for node in nodes if not node["ignored"]]
+
+    def test_each_control_has_a_name_of_its_own(self):
+        self.simulate()
+        controls = [(role, name) for role, name in self.tree() if role in self.controls]
+        self.assertGreater(len(controls), 25)
+        self.assertEqual([], [control for control in controls if not control[1].strip()])
+        self.assertEqual(len(controls), len(set(controls)))
+
+    def test_picture_is_described_in_words(self):
+        self.simulate()
+        self.page.wait_text("#summary", "Nearest obstacle: 1.0")
+        roles = [role for role, _ in self.tree()]
+        for role in ("image", "log", "status", "main", "heading"):
+            self.assertIn(role, roles)
+        self.page.click("#sim-covered")
+        self.page.wait_text("#fault", "data")
+        self.assertIn("alert", [role for role, _ in self.tree()])
+
+    def test_each_control_is_reached_and_used_by_keyboard(self):
+        tab = "\ue004"
+        reached = set()
+        for _ in range(40):
+            self.press(tab)
+            reached.add(self.page.run("return document.activeElement.id"))
+        wanted = set(self.page.run("""return [...document.querySelectorAll('button, input, select')]
+            .filter((item) => item.checkVisibility() && !item.disabled).map((item) => item.id)"""))
+        self.assertEqual(set(), wanted - reached)
+        self.page.run("document.querySelector('#simulate').focus()")
+        self.press("\ue007")
+        self.page.wait_text("#state", "scanning")
+        self.assertNotEqual("BODY", self.page.run("return document.activeElement.tagName"))
+
+    def press(self, key):
+        self.page.ask("POST", "/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": [
+            {"type": "keyDown", "value": key}, {"type": "keyUp", "value": key}]}]})
+
+
+class OneFile(Viewer):
+    """Nothing beside the file is needed, and nobody is asked for anything."""
+
+    def requests(self):
+        messages = [json.loads(entry["message"])["message"] for entry in self.page.log("performance")]
+        return [message["params"]["request"]["url"] for message in messages
+                if message["method"] == "Network.requestWillBeSent"]
+
+    def test_is_small(self):
+        self.assertLessEqual(PAGE.stat().st_size, SIZE_MAX)
+
+    def test_asks_for_nothing(self):
+        self.simulate()
+        self.assertEqual({PAGE.as_uri()}, {url for url in self.requests() if not url.startswith("data:")})
+
+    def test_works_from_a_server(self):
+        seen = []
+
+        class Handler(http.server.SimpleHTTPRequestHandler):
+            def log_message(self, *_):
+                seen.append(self.path)
+
+        handler = functools.partial(Handler, directory=str(PAGE.parent))
+        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        try:
+            self.page.go(f"http://127.0.0.1:{server.server_port}/{PAGE.name}")
+            self.simulate()
+        finally:
+            server.shutdown()
+            server.server_close()
+        self.assertEqual([f"/{PAGE.name}"], seen)
+
+
+def main():
+    global PAGE, TMINI, DRIVER
+    PAGE, TMINI = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("terminated"))  # The browser must not stay.
+    try:
+        DRIVER = webdriver.Driver()
+    except webdriver.Missing as why:
+        print(f"SKIPPED: {why}")
+        return 77
+    try:
+        try:
+            webdriver.Page(DRIVER).close()
+        except webdriver.Missing as why:
+            print(f"SKIPPED: {why}")
+            return 77
+        program = unittest.main(argv=[sys.argv[0], *sys.argv[3:]], exit=False, verbosity=2)
+        return 0 if program.result.wasSuccessful() else 1
+    finally:
+        DRIVER.close()
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    sys.exit(main())

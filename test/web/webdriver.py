@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""A real browser, driven over the WebDriver protocol with nothing but Python's standard library."""
+
+import base64
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import urllib.error
+import urllib.request
+
+# The key under which WebDriver wraps an element of the page.
+ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
+
+BROWSER_OPTIONS = [
+    "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+]
+
+
+class Missing(Exception):
+    """There is no browser here, or it does not start."""
+
+
+class ScriptError(Exception):
+    """What the browser answered when it could not do what was asked."""
+
+
+def find_program(variable, *names):
+    """The program that the environment names, or the first that is installed."""
+    path = os.environ.get(variable) or next(filter(None, map(shutil.which, names)), None)
+    if path is None:
+        raise Missing(f"no {names[0]} (Debian: apt-get install chromium chromium-driver)")
+    return path
+
+
+class Driver:
+    """The chromedriver process, on a port that it chooses itself."""
+
+    def __init__(self):
+        self.browser = find_program("TMINI_CHROMIUM", "chromium", "chromium-browser", "google-chrome")
+        program = find_program("TMINI_CHROMEDRIVER", "chromedriver")
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="tmini-web-"))
+        self.process = subprocess.Popen(  # pylint: disable=consider-using-with
+            [program, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            start_new_session=True)
+        self.url = f"http://127.0.0.1:{self._read_port()}"
+
+    def _read_port(self):
+        for line in self.process.stdout:
+            found = re.search(r"started successfully on port (\d+)", line)
+            if found:
+                return int(found.group(1))
+        raise Missing("chromedriver does not start")
+
+    def close(self):
+        """Ends it, and the browsers that it has started."""
+        os.killpg(self.process.pid, signal.SIGTERM)
+        self.process.wait(timeout=10)
+        self.process.stdout.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def ask(self, method, path, body=None):
+        """One command of the protocol; returns its value."""
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(self.url + path, data, {"Content-Type": "application/json"},
+                                         method=method)
+        try:
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                return json.load(answer)["value"]
+        except urllib.error.HTTPError as error:
+            value = json.load(error)["value"]
+            raise ScriptError(f"{value['error']}: {value['message'].splitlines()[0]}") from None
+
+
+class Page:
+    """A browser of its own with one page in it."""
+
+    def __init__(self, driver, width=1280, height=800, dark=False, before=""):
+        """`before` is JavaScript that runs in each page before the page's own."""
+        self.driver = driver
+        self.folder = pathlib.Path(tempfile.mkdtemp(dir=driver.folder))
+        self.downloads = self.folder / "downloads"
+        arguments = BROWSER_OPTIONS + [f"--user-data-dir={self.folder / 'profile'}"]
+        session = self._open_session(arguments)
+        self.path = f"/session/{session['sessionId']}"
+        self.process_id = session["capabilities"].get("goog:processID")
+        self.resize(width, height)
+        self.devtools("Emulation.setEmulatedMedia", features=[
+            {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        if before:
+            self.devtools("Page.addScriptToEvaluateOnNewDocument", source=before)
+
+    def _open_session(self, arguments):
+        options = {
+            "binary": self.driver.browser,
+            "args": arguments,
+            "prefs": {"download.default_directory": str(self.downloads)},
+        }
+        capabilities = {"goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
+        try:
+            return self.driver.ask("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})
+        except ScriptError as error:
+            raise Missing(f"the browser does not start: {error}") from None
+
+    def close(self):
+        self.ask("DELETE", "")
+
+    def ask(self, method, path, body=None):
+        return self.driver.ask(method, self.path + path, body)
+
+    def devtools(self, command, **parameters):
+        """What WebDriver has no word for, Chromium's own protocol has."""
+        return self.ask("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})
+
+    def resize(self, width, height, ratio=1):
+        """The page's own size: narrower than a window can be."""
+        self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height,
+                      deviceScaleFactor=ratio, mobile=False)
+
+    def go(self, url):
+        self.ask("POST", "/url", {"url": url})
+
+    def run(self, script, *arguments):
+        """Runs a function's body in the page; a promise is waited for."""
+        return self.ask("POST", "/execute/sync", {"script": script, "args": list(arguments)})
+
+    def element(self, selector):
+        return self.ask("POST", "/element", {"using": "css selector", "value": selector})[ELEMENT]
+
+    def click(self, selector):
+        self.ask("POST", f"/element/{self.element(selector)}/click", {})
+
+    def type(self, selector, text):
+        self.ask("POST", f"/element/{self.element(selector)}/value", {"text": text})
+
+    def clear(self, selector):
+        self.ask("POST", f"/element/{self.element(selector)}/clear", {})
+
+    def text(self, selector):
+        """What stands there, on the screen or not."""
+        return self.run("return document.querySelector(arguments[0]).textContent", selector)
+
+    def is_shown(self, selector):
+        return self.run("return document.querySelector(arguments[0]).checkVisibility()", selector)
+
+    def screenshot(self, whole=False):
+        """The page as PNG; `whole`: also what one would have to scroll to."""
+        if whole:
+            return base64.b64decode(self.devtools("Page.captureScreenshot", captureBeyondViewport=True)["data"])
+        return base64.b64decode(self.ask("GET", "/screenshot"))
+
+    def log(self, kind):
+        """Entries since the last call: "browser" is the console, "performance" the network."""
+        return self.ask("POST", "/se/log", {"type": kind})
+
+    def wait(self, what, condition, seconds=10):
+        """Until the condition, a function without arguments, is true; returns what it returned."""
+        end = time.monotonic() + seconds
+        while True:
+            value = condition()
+            if value:
+                return value
+            if time.monotonic() > end:
+                raise AssertionError(f"in vain waited {seconds} s for: {what}")
+            time.sleep(0.05)
+
+    def wait_text(self, selector, part, seconds=10):
+        """Until the text there contains `part`."""
+        try:
+            return self.wait(f"“{part}” in {selector}", lambda: part in self.text(selector), seconds)
+        except AssertionError as error:
+            raise AssertionError(f"{error}; there is: {self.text(selector)!r}") from None
