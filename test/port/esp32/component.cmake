@@ -25,6 +25,17 @@ function(build name source)
     message("${name}: configured and built by the model")
 endfunction()
 
+# Configuring `source` must fail, and say `reason`.
+function(refuse name source reason)
+    set(ENV{IDF_PATH} ${CMAKE_CURRENT_LIST_DIR}/idf_model)
+    execute_process(COMMAND ${CMAKE_COMMAND} -S ${source} -B ${WORK}/build-${name}
+        RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE errors)
+    if(status EQUAL 0 OR NOT errors MATCHES "${reason}")
+        message(FATAL_ERROR "${name}: not refused with \"${reason}\":\n${errors}")
+    endif()
+    message("${name}: refused")
+endfunction()
+
 # What the manifest's list names, copied to WORK/packed/tmini.
 function(pack)
     file(STRINGS ${ROOT}/idf_component.yml lines)
@@ -78,7 +89,13 @@ set(real_idf "$ENV{IDF_PATH}")
 file(REMOVE_RECURSE ${WORK})
 pack()
 check_pack()
-build(in_the_repository ${ROOT}/examples/esp32_idf)
+
+# The repository's folder may have any name here; ESP-IDF minds it.
+file(MAKE_DIRECTORY ${WORK}/named)
+file(CREATE_LINK ${ROOT} ${WORK}/named/tmini SYMBOLIC)
+file(CREATE_LINK ${ROOT} ${WORK}/named/main SYMBOLIC)
+build(in_the_repository ${WORK}/named/tmini/examples/esp32_idf)
+refuse(in_a_folder_called_main ${WORK}/named/main/examples/esp32_idf "please rename")
 
 file(COPY ${WORK}/packed/tmini/examples/esp32_idf DESTINATION ${WORK})
 file(COPY ${WORK}/packed/tmini DESTINATION ${WORK}/esp32_idf/components)
