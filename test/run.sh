@@ -57,6 +57,11 @@ wish_for_machines() {
     wish valgrind valgrind
 }
 
+# What the documents are checked with.
+wish_for_documents() {
+    wish doxygen doxygen
+}
+
 prepare_python_tools() {
     # shellcheck disable=SC2086 # the packages are several words
     prepare_python_packages "$root/build/labwired" $labwired_packages
@@ -69,6 +74,7 @@ prepare_python_tools() {
 need_test_tools
 need_drawing
 [ "${TMINI_OPTIONAL:-yes}" = no ] || wish_for_machines
+[ "${TMINI_OPTIONAL:-yes}" = no ] || wish_for_documents
 install_tools
 [ "${TMINI_OPTIONAL:-yes}" = no ] || prepare_python_tools
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The library by its name: #include <tmini.h>. */
+/** @file
+ * The library by its name, which is what Arduino looks for. */
 
 #ifndef TMINI_ARDUINO_H
 #define TMINI_ARDUINO_H

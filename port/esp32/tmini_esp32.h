@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The lidar on a UART of an ESP32 (any chip of the family, ESP-IDF 5.0 and newer).
+/** @file
+ * The lidar on a UART of an ESP32 (any chip of the family, ESP-IDF 5.0 and newer).
  *
  * Over ESP-IDF's own UART driver: its interrupt takes the bytes out of the UART's 128-byte FIFO
  * into its ring buffer and posts events to a queue; a receiving task, or the caller's own loop,
@@ -41,24 +42,25 @@
 extern "C" {
 #endif
 
-/* The task may run on any core. */
+/** The task may run on any core. */
 #define TMINI_ESP32_ANY_CORE (-1)
 
+/** How the lidar is connected, and how it is received. */
 typedef struct {
-    int uart;             /* 1 for UART1, and so on; not a low-power one. UART0 is the console. */
-    int tx_pin;           /* The GPIO wired to the lidar's RX. */
-    int rx_pin;           /* The GPIO wired to the lidar's TX. Its pull-up is switched on. */
-    int buffer_size;      /* Of the UART driver's ring buffer: more than the FIFO's 128 bytes. */
-    int queue_length;     /* Of the UART driver's event queue. */
-    int fifo_threshold;   /* Bytes in the FIFO that raise the interrupt: 1 to 126. */
-    int timeout_symbols;  /* Or so many byte times of silence behind the last byte: 1 to 100. */
-    bool with_task;       /* Start a receiving task; else the caller calls tmini_esp32_receive(). */
-    int task_stack_bytes; /* The rest is for that task alone. */
-    int task_priority;    /* Above the task that polls, below FreeRTOS's configMAX_PRIORITIES. */
-    int task_core;        /* A core that FreeRTOS runs on (0, 1), or TMINI_ESP32_ANY_CORE. */
+    int uart;            /**< 1 for UART1, and so on; not a low-power one. UART0 is the console. */
+    int tx_pin;          /**< The GPIO wired to the lidar's RX. */
+    int rx_pin;          /**< The GPIO wired to the lidar's TX. Its pull-up is switched on. */
+    int buffer_size;     /**< Of the UART driver's ring buffer: more than the FIFO's 128 bytes. */
+    int queue_length;    /**< Of the UART driver's event queue. */
+    int fifo_threshold;  /**< Bytes in the FIFO that raise the interrupt: 1 to 126. */
+    int timeout_symbols; /**< Or so many byte times of silence behind the last byte: 1 to 100. */
+    bool with_task; /**< Start a receiving task; else the caller calls tmini_esp32_receive(). */
+    int task_stack_bytes; /**< The rest is for that task alone. */
+    int task_priority;    /**< Above the task that polls, below FreeRTOS's configMAX_PRIORITIES. */
+    int task_core;        /**< A core that FreeRTOS runs on (0, 1), or TMINI_ESP32_ANY_CORE. */
 } tmini_esp32_config_t;
 
-/* Wiring and sizes as chosen in menuconfig, "T-mini lidar". Kconfig says what each is good for. */
+/** Wiring and sizes as chosen in menuconfig, "T-mini lidar". Kconfig says what each is good for. */
 #define TMINI_ESP32_CONFIG_DEFAULT                                                          \
     {                                                                                       \
         .uart = CONFIG_TMINI_ESP32_UART, .tx_pin = CONFIG_TMINI_ESP32_TX_PIN,               \
@@ -71,20 +73,21 @@ typedef struct {
         .task_core = CONFIG_TMINI_ESP32_TASK_CORE,                                          \
     }
 
-/* What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. What
+/** What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. What
  * the parser then makes of them is in tmini_counters(). */
 typedef struct {
-    uint32_t bytes;          /* Handed to the lidar. */
-    uint32_t fifo_overflows; /* The interrupt came too late; the FIFO's 128 bytes were lost. */
-    uint32_t buffers_full;   /* Poll or task came too late; bytes waited, and may then overflow. */
-    uint32_t queues_full;    /* Events may have been lost, but no bytes. */
-    uint32_t breaks;         /* The line was low for longer than a byte: unplugged? */
-    uint32_t frame_errors;   /* A stop bit was missing: wrong baud rate, noise? */
-    uint32_t parity_errors;  /* Cannot happen without a parity bit; counted all the same. */
+    uint32_t bytes;          /**< Handed to the lidar. */
+    uint32_t fifo_overflows; /**< The interrupt came too late; the FIFO's 128 bytes were lost. */
+    uint32_t buffers_full;  /**< Poll or task came too late; bytes waited, and may then overflow. */
+    uint32_t queues_full;   /**< Events may have been lost, but no bytes. */
+    uint32_t breaks;        /**< The line was low for longer than a byte: unplugged? */
+    uint32_t frame_errors;  /**< A stop bit was missing: wrong baud rate, noise? */
+    uint32_t parity_errors; /**< Cannot happen without a parity bit; counted all the same. */
 } tmini_esp32_counters_t;
 
-/* One UART with a lidar. Treat the members as private. */
+/** One UART with a lidar. Treat the members as private. */
 typedef struct {
+    /** @cond private */
     tmini_esp32_config_t config;
     tmini_t *lidar;
     QueueHandle_t events;
@@ -97,17 +100,18 @@ typedef struct {
     bool receiving;                  /* Written by the task: cleared by its last breath. */
     tmini_esp32_counters_t counters; /* Written by the receiving context alone. */
     uint8_t chunk[128];
+    /** @endcond */
 } tmini_esp32_t;
 
-/* The lidar's port. Its context is the tmini_esp32_t. */
+/** The lidar's port. Its context is the tmini_esp32_t. */
 extern const tmini_port_t tmini_esp32_port;
 
-/* Checks and copies the configuration; touches no hardware. Not while `board` is started. Returns
+/** Checks and copies the configuration; touches no hardware. Not while `board` is started. Returns
  * ESP_OK, or ESP_ERR_INVALID_ARG for a null pointer or a value outside its documented range, with a
  * line in the log that names it. */
 esp_err_t tmini_esp32_init(tmini_esp32_t *board, const tmini_esp32_config_t *config);
 
-/* Installs the UART driver, sets it up for the lidar and starts the receiving task. The UART's
+/** Installs the UART driver, sets it up for the lidar and starts the receiving task. The UART's
  * interrupt is served by the core that makes this call. `lidar` has been through tmini_init(); both
  * it and `board` stay the caller's and must last until tmini_esp32_stop(). The counters start anew.
  *
@@ -122,21 +126,21 @@ esp_err_t tmini_esp32_init(tmini_esp32_t *board, const tmini_esp32_config_t *con
  *   another                as the UART driver gave it; ESP_FAIL if the UART is taken */
 esp_err_t tmini_esp32_start(tmini_esp32_t *board, tmini_t *lidar);
 
-/* Ends the receiving task and removes the UART driver; also while bytes come in. Stop the lidar
+/** Ends the receiving task and removes the UART driver; also while bytes come in. Stop the lidar
  * before, or it goes on scanning. `board` may be started again.
  *
  * Context: the task that polls. Waits for the receiving task to end: 20 ms and two ticks at most.
  * Returns ESP_OK, ESP_ERR_INVALID_STATE when not started, or what the UART driver gave. */
 esp_err_t tmini_esp32_stop(tmini_esp32_t *board);
 
-/* Waits up to `ticks` for bytes, and hands to the lidar what fits into its ring; the rest waits in
+/** Waits up to `ticks` for bytes, and hands to the lidar what fits into its ring; the rest waits in
  * the UART driver's buffer for the next call. Returns how many. For use without a receiving task
  * only; with one, or when stopped, it returns 0 at once.
  *
  * Context: the task that polls. */
 size_t tmini_esp32_receive(tmini_esp32_t *board, TickType_t ticks);
 
-/* Copies the counters; any task. */
+/** Copies the counters; any task. */
 void tmini_esp32_counters(const tmini_esp32_t *board, tmini_esp32_counters_t *counters);
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The lidar under FreeRTOS, on any chip: bytes go from your UART interrupt to the lidar, and the
+/** @file
+ * The lidar under FreeRTOS, on any chip: bytes go from your UART interrupt to the lidar, and the
  * task that polls sleeps until there are some. Nothing is allocated; no interrupt is disabled.
  *
  *     static tmini_freertos_t board;
@@ -52,40 +53,42 @@
 extern "C" {
 #endif
 
-/* The receiving task's stack, in words. */
 #ifndef TMINI_FREERTOS_STACK_WORDS
+/** The receiving task's stack, in words. */
 #define TMINI_FREERTOS_STACK_WORDS 192
 #endif
 
-/* The polling task is woken after so many bytes: 13,100 come each second while scanning. Fewer wait
- * for the time-out of tmini_freertos_wait(). */
 #ifndef TMINI_FREERTOS_WAKE_BYTES
+/** The polling task is woken after so many bytes: 13,100 come each second while scanning. Fewer
+ * wait for the time-out of tmini_freertos_wait(). */
 #define TMINI_FREERTOS_WAKE_BYTES 64
 #endif
 
-/* Which of the polling task's notifications; configTASK_NOTIFICATION_ARRAY_ENTRIES are there. */
 #ifndef TMINI_FREERTOS_NOTIFICATION
+/** Which of the polling task's notifications; configTASK_NOTIFICATION_ARRAY_ENTRIES are there. */
 #define TMINI_FREERTOS_NOTIFICATION 0
 #endif
 
+/** How the lidar is connected. */
 typedef struct {
-    /* Sends, as `write` of tmini_port_t does: required. */
+    /** Sends, as `write` of tmini_port_t does: required. */
     int (*write)(void *uart, const uint8_t *bytes, size_t count);
-    void *uart;           /* Passed to it. */
-    uint8_t *stream;      /* The stream buffer's memory; NULL: no stream and no receiving task. */
-    size_t stream_size;   /* 128 or more; 1024 bytes last 78 ms. */
-    UBaseType_t priority; /* Of the receiving task: above the task that polls. */
+    void *uart;           /**< Passed to it. */
+    uint8_t *stream;      /**< The stream buffer's memory; NULL: no stream and no receiving task. */
+    size_t stream_size;   /**< 128 or more; 1024 bytes last 44 ms. */
+    UBaseType_t priority; /**< Of the receiving task: above the task that polls. */
 } tmini_freertos_wiring_t;
 
-/* What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. */
+/** What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. */
 typedef struct {
-    uint32_t bytes;      /* From the interrupt. */
-    uint32_t bytes_lost; /* Of them, those that the stream had no room for. */
-    uint32_t overruns;   /* tmini_freertos_gap_from_isr() was called. */
+    uint32_t bytes;      /**< From the interrupt. */
+    uint32_t bytes_lost; /**< Of them, those that the stream had no room for. */
+    uint32_t overruns;   /**< tmini_freertos_gap_from_isr() was called. */
 } tmini_freertos_counters_t;
 
-/* One UART with a lidar. Treat the members as private. */
+/** One UART with a lidar. Treat the members as private. */
 typedef struct {
+    /** @cond private */
     tmini_freertos_wiring_t wiring;
     tmini_t *lidar;
     TaskHandle_t poller;
@@ -102,46 +105,47 @@ typedef struct {
     StaticStreamBuffer_t stream_memory;
     StaticTask_t task_memory;
     StackType_t stack[TMINI_FREERTOS_STACK_WORDS];
+    /** @endcond */
 } tmini_freertos_t;
 
-/* The `port` of tmini_config_t; its `port_context` is the tmini_freertos_t. Its clock is the
+/** The `port` of tmini_config_t; its `port_context` is the tmini_freertos_t. Its clock is the
  * kernel's tick, of any rate and width; polled at least once in each round of the tick count. */
 extern const tmini_port_t tmini_freertos_port;
 
-/* Names the UART and makes the stream, if there is one; nothing is received yet. May be called
+/** Names the UART and makes the stream, if there is one; nothing is received yet. May be called
  * before the scheduler runs, and once only: the receiving task, once started, stays. Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer, no `write`, a stream below 128 bytes, a priority that the
  *                         kernel does not have */
 tmini_status_t tmini_freertos_init(tmini_freertos_t *board, const tmini_freertos_wiring_t *wiring);
 
-/* From now on received bytes go to `lidar`, which has been through tmini_init(); the counters begin
- * anew. Returns
+/** From now on received bytes go to `lidar`, which has been through tmini_init(); the counters
+ * begin anew. Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer, or no tmini_freertos_init() before
  *   TMINI_ERROR_STATE     started already */
 tmini_status_t tmini_freertos_start(tmini_freertos_t *board, tmini_t *lidar);
 
-/* From now on received bytes are dropped. With a stream it waits until the receiving task rests: at
- * most 10 ms and two ticks. Stop the lidar before, or it goes on scanning. The UART's interrupt
+/** From now on received bytes are dropped. With a stream it waits until the receiving task rests:
+ * at most 10 ms and two ticks. Stop the lidar before, or it goes on scanning. The UART's interrupt
  * must not be under way on another core. */
 void tmini_freertos_stop(tmini_freertos_t *board);
 
-/* Sleeps until bytes have come, at most `ticks` (at least one): for a polling task that has nothing
- * left to do. The driver also keeps time, so let it be some 10 ms. The caller is the task that will
- * be woken. */
+/** Sleeps until bytes have come, at most `ticks` (at least one): for a polling task that has
+ * nothing left to do. The driver also keeps time, so let it be some 10 ms. The caller is the task
+ * that will be woken. */
 void tmini_freertos_wait(tmini_freertos_t *board, TickType_t ticks);
 
-/* Takes received bytes; for the UART's interrupt. *woken becomes pdTRUE if a task of higher
+/** Takes received bytes; for the UART's interrupt. *woken becomes pdTRUE if a task of higher
  * priority has been woken, as with FreeRTOS's own functions of this kind. No loop but a copy, no
  * wait. */
 void tmini_freertos_receive_from_isr(tmini_freertos_t *board, const uint8_t *bytes, size_t count,
                                      BaseType_t *woken);
 
-/* Says that bytes were lost before those received next: the UART has reported an overrun. */
+/** Says that bytes were lost before those received next: the UART has reported an overrun. */
 void tmini_freertos_gap_from_isr(tmini_freertos_t *board);
 
-/* Copies the counters. */
+/** Copies the counters. */
 void tmini_freertos_counters(const tmini_freertos_t *board, tmini_freertos_counters_t *counters);
 
 #ifdef __cplusplus

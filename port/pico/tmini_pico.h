@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The lidar on a UART of an RP2040 or RP2350 (Raspberry Pi Pico, Pico 2), with the Pico SDK.
+/** @file
+ * The lidar on a UART of an RP2040 or RP2350 (Raspberry Pi Pico, Pico 2), with the Pico SDK.
  *
  *     TMINI_PICO_RING(ring, 1024);
  *     static tmini_pico_t board;
@@ -40,33 +41,36 @@
 extern "C" {
 #endif
 
+/** The smallest ring, in bytes. */
 #define TMINI_PICO_RING_MIN 256u
+/** The largest ring, in bytes. */
 #define TMINI_PICO_RING_MAX 32768u
 
-/* Defines a ring where the hardware needs it: at a multiple of its size. */
+/** Defines a ring where the hardware needs it: at a multiple of its size. */
 #define TMINI_PICO_RING(name, size) static uint8_t name[size] __attribute__((aligned(size)))
 
-/* Which pins can be which UART's TX and RX is in the chip's data sheet; the Pico's own leaflet
+/** Which pins can be which UART's TX and RX is in the chip's data sheet; the Pico's own leaflet
  * shows it. */
 typedef struct {
-    uart_inst_t *uart; /* uart0 carries the console unless that is moved, or on USB. */
-    uint tx_pin;       /* The GPIO wired to the lidar's RX. */
-    uint rx_pin;       /* The GPIO wired to the lidar's TX. */
-    uint8_t *ring;     /* TMINI_PICO_RING(), for DMA; NULL: an interrupt. */
-    size_t ring_size;  /* A power of two from 256 to 32768; 1024 bytes last 78 ms. */
+    uart_inst_t *uart; /**< uart0 carries the console unless that is moved, or on USB. */
+    uint tx_pin;       /**< The GPIO wired to the lidar's RX. */
+    uint rx_pin;       /**< The GPIO wired to the lidar's TX. */
+    uint8_t *ring;     /**< TMINI_PICO_RING(), for DMA; NULL: an interrupt. */
+    size_t ring_size;  /**< A power of two from 256 to 32768; 1024 bytes last 41 ms. */
 } tmini_pico_wiring_t;
 
-/* What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. */
+/** What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. */
 typedef struct {
-    uint32_t bytes;          /* Handed to the lidar. */
-    uint32_t bytes_lost;     /* DMA had come round to them before they were taken. */
-    uint32_t overruns;       /* The UART's FIFO was full: the interrupt came too late. */
-    uint32_t framing_errors; /* A stop bit was missing: wrong baud rate, noise? */
-    uint32_t breaks;         /* The line was low for longer than a byte: no supply, no wire? */
+    uint32_t bytes;          /**< Handed to the lidar. */
+    uint32_t bytes_lost;     /**< DMA had come round to them before they were taken. */
+    uint32_t overruns;       /**< The UART's FIFO was full: the interrupt came too late. */
+    uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
+    uint32_t breaks;         /**< The line was low for longer than a byte: no supply, no wire? */
 } tmini_pico_counters_t;
 
-/* One UART with a lidar. Treat the members as private. */
+/** One UART with a lidar. Treat the members as private. */
 typedef struct {
+    /** @cond private */
     tmini_t *lidar; /* NULL: not receiving. */
     uart_inst_t *uart;
     uint8_t *ring;
@@ -74,13 +78,14 @@ typedef struct {
     uint32_t taken; /* Bytes taken out of the ring, as the two channels count. */
     uint8_t channels[2];
     tmini_pico_counters_t counters;
+    /** @endcond */
 } tmini_pico_t;
 
-/* The `port` of tmini_config_t; its `port_context` is the tmini_pico_t. `rx_dma` stays false: the
+/** The `port` of tmini_config_t; its `port_context` is the tmini_pico_t. `rx_dma` stays false: the
  * ring that DMA writes is the port's own. Its `wait` receives, too. */
 extern const tmini_port_t tmini_pico_port;
 
-/* Sets up UART and pins: 230400 baud, 8N1, pull-up on RX. Nothing is received yet. The ring stays
+/** Sets up UART and pins: 230400 baud, 8N1, pull-up on RX. Nothing is received yet. The ring stays
  * the caller's. Not between tmini_pico_start() and tmini_pico_stop(). Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer; pins that this UART does not have; a ring that is too small
@@ -88,7 +93,7 @@ extern const tmini_port_t tmini_pico_port;
  *   TMINI_ERROR_STATE     the UART's clock does not make 230400 baud within 2 % */
 tmini_status_t tmini_pico_init(tmini_pico_t *board, const tmini_pico_wiring_t *wiring);
 
-/* Received bytes go to `lidar`, which has been through tmini_init(). What came before is dropped,
+/** Received bytes go to `lidar`, which has been through tmini_init(). What came before is dropped,
  * and the counters begin anew. Takes two DMA channels, or the UART's interrupt handler. Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer, or no tmini_pico_init() before
@@ -96,17 +101,17 @@ tmini_status_t tmini_pico_init(tmini_pico_t *board, const tmini_pico_wiring_t *w
  *                         handler of somebody else */
 tmini_status_t tmini_pico_start(tmini_pico_t *board, tmini_t *lidar);
 
-/* Hands what DMA has written to the lidar, as far as that has room for it, and returns how many
+/** Hands what DMA has written to the lidar, as far as that has room for it, and returns how many
  * bytes: call it before polling. `rx_buffer` should be as large as the ring, so that all comes at
  * once; else call it and poll until it returns 0. Does nothing when an interrupt receives, or
  * nothing has been started. No wait; a copy of the bytes. */
 size_t tmini_pico_receive(tmini_pico_t *board);
 
-/* Ends reception and gives back what tmini_pico_start() took. Stop the lidar before, or it goes on
+/** Ends reception and gives back what tmini_pico_start() took. Stop the lidar before, or it goes on
  * scanning. On the core that started. */
 void tmini_pico_stop(tmini_pico_t *board);
 
-/* Copies the counters. */
+/** Copies the counters. */
 void tmini_pico_counters(const tmini_pico_t *board, tmini_pico_counters_t *counters);
 
 #ifdef __cplusplus

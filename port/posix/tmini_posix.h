@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The port for computers: a lidar on a serial device of Linux or another POSIX system, such as
+/** @file
+ * The port for computers: a lidar on a serial device of Linux or another POSIX system, such as
  * /dev/ttyUSB0. Works on pseudo-terminals too. Written for macOS as well (/dev/cu.usbserial-110),
  * but not tried on macOS.
  *
@@ -38,65 +39,68 @@
 extern "C" {
 #endif
 
+/** What became of the device. */
 typedef enum {
-    TMINI_POSIX_OK = 0,
-    TMINI_POSIX_NO_DEVICE = -1,      /* There is no device of that name. */
-    TMINI_POSIX_PERMISSION = -2,     /* It may not be opened by this user. */
-    TMINI_POSIX_BUSY = -3,           /* Another program uses it. */
-    TMINI_POSIX_NOT_A_TERMINAL = -4, /* It is a file or another kind of device. */
-    TMINI_POSIX_BAUD_RATE = -5,      /* It cannot do 230400 baud. */
-    TMINI_POSIX_UNPLUGGED = -6,      /* It was there, and has gone. */
-    TMINI_POSIX_FAILED = -7,         /* Something else; errno tells. */
-    TMINI_POSIX_ADDRESS = -8,        /* It is no tcp:HOST:PORT, or there is no such host. */
+    TMINI_POSIX_OK = 0,              /**< It is open, or was never opened. */
+    TMINI_POSIX_NO_DEVICE = -1,      /**< There is no device of that name. */
+    TMINI_POSIX_PERMISSION = -2,     /**< It may not be opened by this user. */
+    TMINI_POSIX_BUSY = -3,           /**< Another program uses it. */
+    TMINI_POSIX_NOT_A_TERMINAL = -4, /**< It is a file or another kind of device. */
+    TMINI_POSIX_BAUD_RATE = -5,      /**< It cannot do 230400 baud. */
+    TMINI_POSIX_UNPLUGGED = -6,      /**< It was there, and has gone. */
+    TMINI_POSIX_FAILED = -7,         /**< Something else; errno tells. */
+    TMINI_POSIX_ADDRESS = -8,        /**< It is no tcp:HOST:PORT, or there is no such host. */
 } tmini_posix_status_t;
 
-/* Called with all bytes that are received, before the lidar gets them; for recordings. */
+/** Called with all bytes that are received, before the lidar gets them; for recordings. */
 typedef void (*tmini_posix_tap_t)(void *context, const uint8_t *bytes, size_t count);
 
-/* One serial device. `received` may be read, the rest is private. */
+/** One serial device. `received` may be read, the rest is private. */
 typedef struct {
-    uint64_t received; /* Bytes since it was started. */
+    uint64_t received; /**< Bytes since it was started. */
+    /** @cond private */
     const char *path;
     tmini_t *lidar;
     tmini_posix_tap_t tap;
     void *tap_context;
     tmini_posix_status_t state;
     int fd;
+    /** @endcond */
 } tmini_posix_t;
 
-/* The `port` of tmini_config_t; its `port_context` is the tmini_posix_t. */
+/** The `port` of tmini_config_t; its `port_context` is the tmini_posix_t. */
 extern const tmini_port_t tmini_posix_port;
 
-/* Names the device, or the socket to a controller that forwards its UART: "tcp:HOST:PORT". Touches
+/** Names the device, or the socket to a controller that forwards its UART: "tcp:HOST:PORT". Touches
  * nothing yet. `path` stays the caller's, and must last as long as `serial` is used. Not between
  * tmini_posix_start() and tmini_posix_stop(). */
 void tmini_posix_init(tmini_posix_t *serial, const char *path);
 
-/* From now on, what is received goes to `tap` too; none when NULL. */
+/** From now on, what is received goes to `tap` too; none when NULL. */
 void tmini_posix_tap(tmini_posix_t *serial, tmini_posix_tap_t tap, void *context);
 
-/* Opens the device at 230400 baud, 8N1, without flow control, for this program alone, and drops
+/** Opens the device at 230400 baud, 8N1, without flow control, for this program alone, and drops
  * what it received before; or connects the socket, for some seconds at most. From then on received
  * bytes go to `lidar`, which has been through tmini_init(); NULL: to the tap alone. May wait as
  * long as the system's open does. A device that was stopped, or could not be opened, may be started
  * again. */
 tmini_posix_status_t tmini_posix_start(tmini_posix_t *serial, tmini_t *lidar);
 
-/* The same over a descriptor that is open already, such as a socket to a controller that forwards
+/** The same over a descriptor that is open already, such as a socket to a controller that forwards
  * its UART. It becomes the port's own: tmini_posix_stop() closes it. Returns TMINI_POSIX_OK. */
 tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *serial, int fd, tmini_t *lidar);
 
-/* Waits up to `timeout_ms` for bytes and feeds them to the lidar, at most 128 and no more than its
+/** Waits up to `timeout_ms` for bytes and feeds them to the lidar, at most 128 and no more than its
  * ring has room for: call tmini_poll() until it returns TMINI_EVENT_NONE in between. Without room
  * it returns at once; the bytes stay with the system. A signal ends the waiting early. Returns
  * TMINI_POSIX_OK, also when nothing came; TMINI_POSIX_UNPLUGGED or TMINI_POSIX_FAILED, then also
  * ever after. */
 tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms);
 
-/* Closes the device, if it is open. Stop the lidar before, or it goes on scanning. */
+/** Closes the device, if it is open. Stop the lidar before, or it goes on scanning. */
 void tmini_posix_stop(tmini_posix_t *serial);
 
-/* The status as a short English phrase, for example "no such device". Never NULL. */
+/** The status as a short English phrase, for example "no such device". Never NULL. */
 const char *tmini_posix_status_name(tmini_posix_status_t status);
 
 #ifdef __cplusplus

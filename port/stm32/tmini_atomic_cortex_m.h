@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The library's memory-ordering primitives for IAR and ARMCC 5, on a Cortex-M with one core:
+/** @file
+ * The library's memory-ordering primitives for IAR and ARMCC 5, on a Cortex-M with one core:
  *
  *     -DTMINI_ATOMIC_HEADER="\"tmini_atomic_cortex_m.h\""
  *

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* How far circular DMA has come: what the port over the HAL and the ports on the registers share.
+/** @file
+ * How far circular DMA has come: what the port over the HAL and the ports on the registers share.
  * Private to them; it stands in a header so that each of them is a single source.
  *
  * Three contexts ask the DMA channel for its position and hand over what has come: the DMA's
@@ -26,22 +27,22 @@
 
 #include "tmini/tmini.h"
 
-#define TMINI_STM32_BAUD_RATE 230400u /* Section 1. */
+#define TMINI_STM32_BAUD_RATE 230400u /**< Section 1. */
 
-/* The DMA controllers count in 16 bits; a power of two is at most this. */
+/** The DMA controllers count in 16 bits; a power of two is at most this. */
 #define TMINI_STM32_CIRCLE_MAX 32768u
 
 typedef struct {
     uint16_t size;
-    uint16_t position;        /* Handed over up to here. */
-    volatile uint8_t middles; /* Passings told; written by the DMA's interrupt alone. */
+    uint16_t position;        /**< Handed over up to here. */
+    volatile uint8_t middles; /**< Passings told; written by the DMA's interrupt alone. */
     volatile uint8_t ends;
-    uint8_t known_middles; /* As of the last advance. */
+    uint8_t known_middles; /**< As of the last advance. */
     uint8_t known_ends;
-    int8_t untold_middles; /* Passings seen and not told yet: 0 or 1. */
+    int8_t untold_middles; /**< Passings seen and not told yet: 0 or 1. */
     int8_t untold_ends;
-    volatile bool busy;  /* Someone is handing over, */
-    volatile bool again; /* and someone else has come by meanwhile. */
+    volatile bool busy;  /**< Someone is handing over, */
+    volatile bool again; /**< and someone else has come by meanwhile. */
 } tmini_stm32_circle_t;
 
 static inline void tmini_stm32_circle_begin(tmini_stm32_circle_t *circle, size_t size)
@@ -49,14 +50,14 @@ static inline void tmini_stm32_circle_begin(tmini_stm32_circle_t *circle, size_t
     *circle = (tmini_stm32_circle_t){.size = (uint16_t)size};
 }
 
-/* For the interrupt of the DMA channel: which flags it has served. */
+/** For the interrupt of the DMA channel: which flags it has served. */
 static inline void tmini_stm32_circle_tell(tmini_stm32_circle_t *circle, bool middle, bool end)
 {
     circle->middles = (uint8_t)(circle->middles + middle);
     circle->ends = (uint8_t)(circle->ends + end);
 }
 
-/* Whether the caller is the one who hands over now. */
+/** Whether the caller is the one who hands over now. */
 static inline bool tmini_stm32_circle_enter(tmini_stm32_circle_t *circle)
 {
     if (circle->busy) {
@@ -68,14 +69,14 @@ static inline bool tmini_stm32_circle_enter(tmini_stm32_circle_t *circle)
     return true;
 }
 
-/* Whether the caller has to hand over once more. */
+/** Whether the caller has to hand over once more. */
 static inline bool tmini_stm32_circle_leave(tmini_stm32_circle_t *circle)
 {
     circle->busy = false;
     return circle->again && tmini_stm32_circle_enter(circle);
 }
 
-/* Whether more passings have been told than were on the way. */
+/** Whether more passings have been told than were on the way. */
 static inline bool tmini_stm32_circle_settle(int8_t *untold, bool passed, uint8_t told)
 {
     const int balance = *untold + passed - told;
@@ -83,7 +84,7 @@ static inline bool tmini_stm32_circle_settle(int8_t *untold, bool passed, uint8_
     return balance < 0;
 }
 
-/* Goes on to the position that the hardware shows, the size itself meaning 0. `middles` and `ends`
+/** Goes on to the position that the hardware shows, the size itself meaning 0. `middles` and `ends`
  * are the passings told before it was read. Returns true if a lap may have been missed on the
  * way. */
 static inline bool tmini_stm32_circle_advance(tmini_stm32_circle_t *circle, uint16_t position,
@@ -116,13 +117,13 @@ static inline size_t tmini_stm32_circle_size(const tmini_t *lidar)
     return lidar->ring.size;
 }
 
-/* Whether it was announced as the target of DMA (rx_dma): then half of it counts. */
+/** Whether it was announced as the target of DMA (rx_dma): then half of it counts. */
 static inline bool tmini_stm32_circle_is_for(const tmini_t *lidar)
 {
     return lidar->ring.window < tmini_stm32_circle_size(lidar);
 }
 
-/* DMA that is started begins at the buffer's start, wherever it was before. The old bytes from
+/** DMA that is started begins at the buffer's start, wherever it was before. The old bytes from
  * there to the end are overwritten, so that they cannot be taken for new packets, and passed.
  * Before reception begins, in the polling context. */
 static inline void tmini_stm32_circle_rewind(tmini_t *lidar)

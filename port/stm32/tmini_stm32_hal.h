@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A tmini port for STM32 with ST's HAL, any family, any version. README.md beside this file has the
+/** @file
+ * A tmini port for STM32 with ST's HAL, any family, any version. README.md beside this file has the
  * CubeMX settings.
  *
  *     tmini_stm32_hal_init(&port, &huart1);    after the HAL's own initialisation
@@ -51,20 +52,21 @@
 extern "C" {
 #endif
 
-/* Running totals, for diagnostics. With DMA an error is seen when it is looked for, at the poll's
+/** Running totals, for diagnostics. With DMA an error is seen when it is looked for, at the poll's
  * and the events' pace: several between two looks count as one, and with SR and DR some are cleared
  * by the HAL before. They tell that there are errors, not how many. */
 typedef struct {
-    uint32_t overruns; /* Bytes came faster than interrupt or DMA took them. */
-    uint32_t framing_errors;
-    uint32_t noise_errors;
-    uint32_t other_errors; /* Parity, DMA. */
-    uint32_t restarts;     /* Of a reception that had stopped. */
-    uint32_t laps; /* Times that DMA may have lapped its interrupts: they came far too late. */
+    uint32_t overruns;       /**< Bytes came faster than interrupt or DMA took them. */
+    uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
+    uint32_t noise_errors;   /**< A bit's samples differed. */
+    uint32_t other_errors;   /**< Parity, DMA. */
+    uint32_t restarts;       /**< Of a reception that had stopped. */
+    uint32_t laps; /**< Times that DMA may have lapped its interrupts: they came far too late. */
 } tmini_stm32_hal_counters_t;
 
-/* One lidar's UART; `counters` may be read, the rest is private. */
+/** One lidar's UART; `counters` may be read, the rest is private. */
 typedef struct {
+    /** @cond private */
     UART_HandleTypeDef *uart;
     tmini_t *lidar;
     uint8_t *buffer; /* What the HAL receives into. */
@@ -76,19 +78,20 @@ typedef struct {
     uint8_t sending[2]; /* The HAL reads it while it sends. */
     uint32_t started_ms;
     tmini_stm32_circle_t circle;
-    volatile tmini_stm32_hal_counters_t counters;
+    /** @endcond */
+    volatile tmini_stm32_hal_counters_t counters; /**< What has gone wrong. */
 } tmini_stm32_hal_t;
 
-/* The `port` of tmini_config_t; its `port_context` is the address of a tmini_stm32_hal_t. Sends by
+/** The `port` of tmini_config_t; its `port_context` is the address of a tmini_stm32_hal_t. Sends by
  * interrupt, never waits. `wait` sleeps until the next interrupt (WFI); with an RTOS, copy the
  * structure and put its delay there. */
 extern const tmini_port_t tmini_stm32_hal_port;
 
-/* Names the UART, which must outlive the port. Sends and receives nothing yet.
+/** Names the UART, which must outlive the port. Sends and receives nothing yet.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
 tmini_status_t tmini_stm32_hal_init(tmini_stm32_hal_t *port, UART_HandleTypeDef *uart);
 
-/* Receives for `lidar`, which has been through tmini_init(), into the buffer given there: with
+/** Receives for `lidar`, which has been through tmini_init(), into the buffer given there: with
  * rx_dma by DMA, without it byte by byte. For DMA the buffer has a size of 512 to 32768, lies where
  * the DMA reaches it and, on a processor with data cache, is aligned to 32 bytes; the DMA channel
  * is circular, byte-wide, with its FIFO off. From the polling context.
@@ -98,24 +101,31 @@ tmini_status_t tmini_stm32_hal_init(tmini_stm32_hal_t *port, UART_HandleTypeDef 
  *                         FIFO, or a buffer too large or not aligned */
 tmini_status_t tmini_stm32_hal_start(tmini_stm32_hal_t *port, tmini_t *lidar);
 
-/* Receives by circular DMA into `block`, a buffer of its own, and copies everything from there into
- * the one given to tmini_init() (without rx_dma). `block_size` is even, 64 to 32768; 256 bytes bear
- * 5 ms in which no interrupt is served. Alignment, DMA channel and results as above; also
- * TMINI_ERROR_ARGUMENT for a null pointer, another size, or with rx_dma. */
+/** Receives by circular DMA into `block`, a buffer of its own, and copies everything from there
+ * into the one given to tmini_init() (without rx_dma). `block_size` is even, 64 to 32768; 256
+ * bytes bear 5 ms in which no interrupt is served. Alignment, DMA channel and results as above;
+ * also TMINI_ERROR_ARGUMENT for a null pointer, another size, or with rx_dma. */
 tmini_status_t tmini_stm32_hal_start_blocks(tmini_stm32_hal_t *port, tmini_t *lidar, uint8_t *block,
                                             size_t block_size);
 
-/* Ends reception: when it returns, neither the HAL nor its DMA writes to a buffer of the lidar.
+/** Ends reception: when it returns, neither the HAL nor its DMA writes to a buffer of the lidar.
  * What had come is handed over. Waits some microseconds for the DMA; if the hardware does not let
  * go, 5 ms. From the polling context. */
 void tmini_stm32_hal_stop(tmini_stm32_hal_t *port);
 
-/* To be called from the HAL's callbacks, in interrupt context; see the table above. With a HAL from
- * before 2022, which does not say which event it reports, DMA and blocks need these two:
- * rx_half_complete, called from HAL_UART_RxHalfCpltCallback(), and rx_complete. */
+/** For HAL_UARTEx_RxEventCallback(), with DMA and blocks: hands over what has come. In interrupt
+ * context, as the three below; none waits, and none does anything for another UART. */
 void tmini_stm32_hal_rx_event(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
+
+/** For HAL_UART_RxHalfCpltCallback(), with DMA and blocks and a HAL from before 2022, which does
+ * not say which event it reports. */
 void tmini_stm32_hal_rx_half_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
+
+/** For HAL_UART_RxCpltCallback(): with bytes takes the one that has come; with DMA and blocks
+ * needed under a HAL from before 2022. */
 void tmini_stm32_hal_rx_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
+
+/** For HAL_UART_ErrorCallback(): counts the error, so that reception goes on. */
 void tmini_stm32_hal_error(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A tmini port for STM32 without the HAL, on the USART's registers; beside LL as well. Compile the
+/** @file
+ * A tmini port for STM32 without the HAL, on the USART's registers; beside LL as well. Compile the
  * one source that fits the family:
  *
  *   tmini_stm32_usart_dr.c    registers SR and DR: F1, F2, F4, L1
@@ -35,43 +36,44 @@
 extern "C" {
 #endif
 
-/* One lidar's USART; the counters may be read, the rest is private. With DMA, several errors
+/** One lidar's USART; the counters may be read, the rest is private. With DMA, several errors
  * between two looks at the USART (idle line, half a buffer, poll) count as one. */
 typedef struct {
+    /** @cond private */
     volatile uint32_t *registers;
     tmini_t *lidar;
     const volatile uint32_t *time_ms;
     const volatile uint32_t *remaining; /* The DMA channel's count; NULL: an interrupt a byte. */
     tmini_stm32_circle_t circle;
-    uint32_t line_flags;     /* Errors that have been counted and still show. */
-    volatile uint32_t bytes; /* Received by interrupt; compare with tmini_counters(). */
-    volatile uint32_t overruns;
-    volatile uint32_t framing_errors;
-    volatile uint32_t noise_errors;
-    volatile uint32_t
-        laps; /* Times that DMA may have lapped the interrupts: they came far too late. */
+    uint32_t line_flags; /* Errors that have been counted and still show. */
+    /** @endcond */
+    volatile uint32_t bytes;          /**< Received by interrupt; compare with tmini_counters(). */
+    volatile uint32_t overruns;       /**< Bytes came faster than interrupt or DMA took them. */
+    volatile uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
+    volatile uint32_t noise_errors;   /**< A bit's samples differed. */
+    volatile uint32_t laps; /**< Times that DMA may have lapped the interrupts: far too late. */
 } tmini_stm32_usart_t;
 
-/* The `port` of tmini_config_t; its `port_context` is the address of a tmini_stm32_usart_t. Never
+/** The `port` of tmini_config_t; its `port_context` is the address of a tmini_stm32_usart_t. Never
  * waits: takes what the transmitter has room for. */
 extern const tmini_port_t tmini_stm32_usart_port;
 
-/* Names the USART. `usart` is the USART's base address (USART1 of ST's headers
+/** Names the USART. `usart` is the USART's base address (USART1 of ST's headers
  * will do). `time_ms` is a count of milliseconds, kept by an interrupt of yours. Touches no
  * register. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
 tmini_status_t tmini_stm32_usart_init(tmini_stm32_usart_t *port, volatile void *usart,
                                       const volatile uint32_t *time_ms);
 
-/* Sets the USART to 230400 8N1 and receives for `lidar`, which has been through tmini_init(), by an
- * interrupt a byte. `clock_hz` is the clock that feeds the
- * USART, at least 3.7 MHz; 0 leaves baud rate and format as you have set them (LL, LPUART).
+/** Sets the USART to 230400 8N1 and receives for `lidar`, which has been through tmini_init(), by
+ * an interrupt a byte. `clock_hz` is the clock that feeds the USART, at least 3.7 MHz; 0 leaves
+ * baud rate and format as you have set them (LL, LPUART).
  * Returns TMINI_OK;
  *   TMINI_ERROR_STATE     port or lidar not set up
  *   TMINI_ERROR_ARGUMENT  the clock makes no baud rate within 2 % of 230400; or rx_dma is set */
 tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar,
                                        uint32_t clock_hz);
 
-/* The same by circular DMA into the buffer given to tmini_init() with rx_dma, 512 to 32768 bytes.
+/** The same by circular DMA into the buffer given to tmini_init() with rx_dma, 512 to 32768 bytes.
  * The DMA channel is set up and enabled: from the USART's data register, byte-wide, circular, FIFO
  * off, at the buffer's start, over its whole size. `remaining` is its register of items left (NDTR,
  * CNDTR, CBR1). The processor has no data cache, or the buffer lies where it does not cache. After
@@ -80,17 +82,17 @@ tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar
 tmini_status_t tmini_stm32_usart_start_dma(tmini_stm32_usart_t *port, tmini_t *lidar,
                                            uint32_t clock_hz, const volatile uint32_t *remaining);
 
-/* Ends reception: no more interrupts, no more requests to the DMA channel, which is yours to
+/** Ends reception: no more interrupts, no more requests to the DMA channel, which is yours to
  * disable. What had come is handed over. Sending goes on to work. From the polling context. */
 void tmini_stm32_usart_stop(tmini_stm32_usart_t *port);
 
-/* To be called from the USART's interrupt. No loop over bytes, no wait. A byte that came with a
+/** To be called from the USART's interrupt. No loop over bytes, no wait. A byte that came with a
  * framing or noise error is counted and stored all the same: the packet's checksum decides what it
  * is worth. */
 void tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port);
 
-/* To be called from the DMA channel's interrupt, with the flags that it found and has cleared, both
- * in one call: two at once mean that it came late. */
+/** To be called from the DMA channel's interrupt, with the flags that it found and has cleared,
+ * both in one call: two at once mean that it came late. */
 void tmini_stm32_usart_dma_interrupt(tmini_stm32_usart_t *port, bool half, bool complete);
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the two kinds of USART have in common: all of the port but the place of the registers and
+/** @file
+ * What the two kinds of USART have in common: all of the port but the place of the registers and
  * how flags are cleared. Each of the two sources names these, then includes this file; nobody else
  * does.
  *
@@ -12,11 +13,11 @@
 #ifndef TMINI_STM32_USART_COMMON_H
 #define TMINI_STM32_USART_COMMON_H
 
-/* At most so much of the baud rate, in parts of 1000, may be lost by dividing the clock: the
+/** At most so much of the baud rate, in parts of 1000, may be lost by dividing the clock: the
  * receiver bears 3.3 % in all, and the lidar's own clock wants its share. */
 #define BAUD_ERROR_MAX 20u
 
-/* In SR as in ISR. */
+/** In SR as in ISR. */
 #define STATUS_FE (1u << 1)
 #define STATUS_NE (1u << 2)
 #define STATUS_ORE (1u << 3)
@@ -28,7 +29,7 @@
 #define CR1_RE (1u << 2)
 #define CR1_TE (1u << 3)
 #define CR1_IDLEIE (1u << 4)
-#define CR1_RXNEIE (1u << 5) /* Also for overruns. */
+#define CR1_RXNEIE (1u << 5) /**< Also for overruns. */
 #define CR3_EIE (1u << 0)
 #define CR3_DMAR (1u << 6)
 
@@ -55,7 +56,7 @@ static void take_byte(tmini_stm32_usart_t *port)
     }
 }
 
-/* A flag that still shows the error of a byte counted before is not counted again. */
+/** A flag that still shows the error of a byte counted before is not counted again. */
 static void look_at_line(tmini_stm32_usart_t *port)
 {
     const uint32_t status = port->registers[STATUS];
@@ -119,7 +120,7 @@ static int send_bytes(void *context, const uint8_t *bytes, size_t count)
     return taken;
 }
 
-/* Every tmini_poll() comes by: what DMA has brought since the last interrupt goes with it. */
+/** Every tmini_poll() comes by: what DMA has brought since the last interrupt goes with it. */
 static uint32_t time_now_ms(void *context)
 {
     tmini_stm32_usart_t *const port = context;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A port to start yours from: copy this file and its source, rename, and fill in the places that
+/** @file
+ * A port to start yours from: copy this file and its source, rename, and fill in the places that
  * the source marks FILL IN. ../README.md explains the steps.
  *
  *     tmini_port_template_init(&port, uart);
@@ -25,34 +26,35 @@
 extern "C" {
 #endif
 
-/* What the port knows of one lidar's connection; one of these a lidar, allocated by you. Its
+/** What the port knows of one lidar's connection; one of these a lidar, allocated by you. Its
  * address is the `port_context` of tmini_config_t. */
 typedef struct {
-    tmini_t *lidar;
-    void *uart; /* Whatever your board calls the UART: a handle, a number, a register address. */
-    volatile uint32_t time_ms;
-    volatile uint32_t receive_errors; /* Framing, noise and overrun errors: for your diagnostics. */
+    tmini_t *lidar; /**< Where received bytes go; NULL: nowhere. */
+    void *uart; /**< Whatever your board calls the UART: a handle, a number, a register address. */
+    volatile uint32_t time_ms; /**< Milliseconds counted by tmini_port_template_tick(). */
+    volatile uint32_t
+        receive_errors; /**< Framing, noise and overrun errors: for your diagnostics. */
 } tmini_port_template_t;
 
-/* The `port` of tmini_config_t. */
+/** The `port` of tmini_config_t. */
 extern const tmini_port_t tmini_port_template;
 
-/* Names the UART, which is set up (230400 baud, 8 data bits, no parity, 1 stop bit), its receive
+/** Names the UART, which is set up (230400 baud, 8 data bits, no parity, 1 stop bit), its receive
  * interrupt not yet enabled. Call once. */
 void tmini_port_template_init(tmini_port_template_t *port, void *uart);
 
-/* From now on received bytes go to `lidar`, which has been through tmini_init(). Not from an
+/** From now on received bytes go to `lidar`, which has been through tmini_init(). Not from an
  * interrupt. */
 void tmini_port_template_start(tmini_port_template_t *port, tmini_t *lidar);
 
-/* Until now. Not from an interrupt; may be started again. */
+/** Until now. Not from an interrupt; may be started again. */
 void tmini_port_template_stop(tmini_port_template_t *port);
 
-/* Call from an interrupt every millisecond. */
+/** Call from an interrupt every millisecond. */
 void tmini_port_template_tick(tmini_port_template_t *port);
 
-/* Call from the UART's receive interrupt with each byte; `is_error` if the UART reported a framing,
- * noise or overrun error with it. */
+/** Call from the UART's receive interrupt with each byte; `is_error` if the UART reported a
+ * framing, noise or overrun error with it. */
 void tmini_port_template_receive(tmini_port_template_t *port, uint8_t byte, bool is_error);
 
 #ifdef __cplusplus

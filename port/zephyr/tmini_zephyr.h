@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The lidar on a UART of any board that Zephyr knows, over the interrupt-driven UART API.
+/** @file
+ * The lidar on a UART of any board that Zephyr knows, over the interrupt-driven UART API.
  *
  *     #define UART DEVICE_DT_GET(DT_BUS(DT_NODELABEL(lidar)))
  *
@@ -37,49 +38,51 @@
 extern "C" {
 #endif
 
-/* What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. Errors
+/** What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. Errors
  * stay 0 with UART drivers that do not tell them. */
 typedef struct {
-    uint32_t bytes;          /* Handed to the lidar. */
-    uint32_t overruns;       /* The interrupt came too late; bytes were lost. */
-    uint32_t framing_errors; /* A stop bit was missing: wrong baud rate, noise? */
-    uint32_t breaks;         /* The line was low for longer than a byte: unplugged? */
+    uint32_t bytes;          /**< Handed to the lidar. */
+    uint32_t overruns;       /**< The interrupt came too late; bytes were lost. */
+    uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
+    uint32_t breaks;         /**< The line was low for longer than a byte: unplugged? */
 } tmini_zephyr_counters_t;
 
-/* One UART with a lidar. Treat the members as private. */
+/** One UART with a lidar. Treat the members as private. */
 typedef struct {
+    /** @cond private */
     const struct device *uart;
     tmini_t *lidar; /* NULL: not receiving. */
     struct k_sem received;
     struct k_spinlock lock; /* Between the callback and stopping, on several cores. */
     uint32_t unannounced;   /* Bytes since the polling thread was last woken. */
     tmini_zephyr_counters_t counters;
+    /** @endcond */
 } tmini_zephyr_t;
 
-/* The `port` of tmini_config_t; its `port_context` is the tmini_zephyr_t. */
+/** The `port` of tmini_config_t; its `port_context` is the tmini_zephyr_t. */
 extern const tmini_port_t tmini_zephyr_port;
 
-/* Names the UART and sets it to 230400 baud, 8N1. A driver that cannot change the baud rate while
+/** Names the UART and sets it to 230400 baud, 8N1. A driver that cannot change the baud rate while
  * it runs keeps the devicetree's `current-speed`. Not between start and stop. Returns 0,
  *   -EINVAL  null pointer
  *   -ENODEV  the UART is not ready
  *   or what the UART driver gave */
 int tmini_zephyr_init(tmini_zephyr_t *board, const struct device *uart);
 
-/* Received bytes go to `lidar`, which has been through tmini_init(); the counters begin anew. Takes
- * the UART's callback. Returns 0,
+/** Received bytes go to `lidar`, which has been through tmini_init(); the counters begin anew.
+ * Takes the UART's callback. Returns 0,
  *   -EINVAL    null pointer, or no tmini_zephyr_init() before
  *   -EALREADY  started already */
 int tmini_zephyr_start(tmini_zephyr_t *board, tmini_t *lidar);
 
-/* Ends reception. Stop the lidar before, or it goes on scanning. */
+/** Ends reception. Stop the lidar before, or it goes on scanning. */
 void tmini_zephyr_stop(tmini_zephyr_t *board);
 
-/* Sleeps until bytes have come (CONFIG_TMINI_WAKE_BYTES), at most `timeout`: for a polling thread
+/** Sleeps until bytes have come (CONFIG_TMINI_WAKE_BYTES), at most `timeout`: for a polling thread
  * that has nothing left to do. The driver also keeps time, so let `timeout` be some 10 ms. */
 void tmini_zephyr_wait(tmini_zephyr_t *board, k_timeout_t timeout);
 
-/* Copies the counters. */
+/** Copies the counters. */
 void tmini_zephyr_counters(const tmini_zephyr_t *board, tmini_zephyr_counters_t *counters);
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini: a driver for the YDLIDAR T-mini Plus, a spinning 2D lidar.
+/** @file
+ * tmini: a driver for the YDLIDAR T-mini Plus, a spinning 2D lidar.
  *
  * The receive interrupt only stores bytes (tmini_feed_byte(), or tmini_feed() for blocks, or
  * tmini_feed_dma() for circular DMA). Everything else happens in tmini_poll(), which returns one
@@ -21,9 +22,10 @@
  * number of lidars, each with a tmini_t of its own.
  *
  * Time. No function waits. Commands only begin something; how it ends is an event. tmini_poll()
- * must be called often enough that the receive buffer does not overflow: the lidar sends about
- * 13,100 bytes a second, so 1024 bytes last 78 ms, or 39 ms with DMA, which can use half of them.
- * Call it until it returns TMINI_EVENT_NONE: only then does it look after time.
+ * must be called often enough that the receive buffer does not overflow: at least every 38 ms with
+ * 1024 bytes, or every 16 ms with DMA, which can use half of them (docs/footprint.md, "How often to
+ * poll", has other sizes). Call it until it returns TMINI_EVENT_NONE: only then does it look after
+ * time.
  *
  * "Section" in these headers means the section of docs/protocol.md. */
 
@@ -47,147 +49,155 @@
 extern "C" {
 #endif
 
+/** The library's version, as in 0.1.2: the 0. Versioning is semantic (CHANGELOG.md). */
 #define TMINI_VERSION_MAJOR 0
+/** As in 0.1.2: the 1. */
 #define TMINI_VERSION_MINOR 1
+/** As in 0.1.2: the 2. */
 #define TMINI_VERSION_PATCH 0
 
-/* Scan frequencies that may be set, in 0.01 Hz (section 1). */
+/** The lowest scan frequency that may be set, in 0.01 Hz (section 1). */
 #define TMINI_FREQUENCY_MIN_CHZ 600u
+/** The highest scan frequency that may be set, in 0.01 Hz (section 1). */
 #define TMINI_FREQUENCY_MAX_CHZ 1200u
+/** Scan frequencies that may be set are multiples of this, in 0.01 Hz (section 3). */
 #define TMINI_FREQUENCY_STEP_CHZ 10u
 
 /* ------------------------------------------------------------------------------ configuration */
 
-/* How long the driver waits for what, in milliseconds. Change a copy of tmini_timing_default. */
+/** How long the driver waits for what, in milliseconds. Change a copy of tmini_timing_default. */
 typedef struct {
-    /* A packet that stops coming is given up after this silence. 0: with the next silent poll. */
+    /** A packet that stops coming is given up after this silence. 0: with the next silent poll. */
     uint16_t frame_timeout_ms;
-    /* What comes after a longer pause of the line does not continue a scan: at 12 Hz half a turn
+    /** What comes after a longer pause of the line does not continue a scan: at 12 Hz half a turn
      * takes 42 ms. Bytes that were held back count by the time in which the line could have sent
      * them. 0: pauses are not looked for. */
     uint16_t max_pause_ms;
-    /* A line silent for so long after stop is quiet. 0: at once. */
+    /** A line silent for so long after stop is quiet. 0: at once. */
     uint16_t quiet_line_ms;
-    /* If the line is not quiet by then, stop is sent again (section 9.10). 0: it never is. */
+    /** If the line is not quiet by then, stop is sent again (section 9.10). 0: it never is. */
     uint16_t stop_timeout_ms;
-    /* For a reply (section 9.11). 0: for ever. */
+    /** For a reply (section 9.11). 0: for ever. */
     uint16_t reply_timeout_ms;
-    /* For the port to take a command's two bytes. 0: at once. */
+    /** For the port to take a command's two bytes. 0: at once. */
     uint16_t write_timeout_ms;
-    /* From the start reply to the first packet. 0: for ever. */
+    /** From the start reply to the first packet. 0: for ever. */
     uint16_t spin_up_timeout_ms;
-    /* Without a valid packet for so long, the lidar is lost. 0: it never is. */
+    /** Without a valid packet for so long, the lidar is lost. 0: it never is. */
     uint16_t data_timeout_ms;
-    /* Packets, but neither a range nor a start packet for so long: the rotor is blocked. 0: that is
-     * not looked for. */
+    /** Packets, but neither a range nor a start packet for so long: the rotor is blocked. 0: that
+     * is not looked for. */
     uint16_t rotation_timeout_ms;
-    /* What a soft reboot takes (section 9.11). 0: for ever. */
+    /** What a soft reboot takes (section 9.11). 0: for ever. */
     uint16_t reboot_time_ms;
-    /* The first pause between attempts to recover; it doubles each time. 0: no next attempt. */
+    /** The first pause between attempts to recover; it doubles each time. 0: no next attempt. */
     uint16_t back_off_ms;
-    /* The longest such pause. 0: no next attempt. */
+    /** The longest such pause. 0: no next attempt. */
     uint16_t back_off_max_ms;
-    /* How often a command is tried. 0: once. */
+    /** How often a command is tried. 0: once. */
     uint8_t max_attempts;
 } tmini_timing_t;
 
-/* The values used when the configuration gives none; they fit the real device. */
+/** The values used when the configuration gives none; they fit the real device. */
 extern const tmini_timing_t tmini_timing_default;
 
+/** What tmini_init() needs to know. Members that are not named may be 0. */
 typedef struct {
-    const tmini_port_t *port; /* Required. */
-    void *port_context;       /* Passed to its functions. */
-    uint8_t *rx_buffer;       /* Received bytes. Required. */
-    size_t rx_size;           /* A power of two; 256 or more (512 with DMA) for 80 samples. */
-    bool rx_dma;              /* The buffer is the target of circular DMA: use tmini_feed_dma(). */
-    tmini_point_t *points;    /* One scan. NULL: streaming, an event for each packet instead. */
-    size_t max_points;        /* 1 to 65535, or 0 when streaming. */
-    uint8_t max_samples;      /* Packets with more are not valid; 0: the default, 80. */
-    uint8_t filter;           /* Of scans: a combination of tmini_filter_t; 0: keep all. */
-    bool disable_recovery;    /* A lost lidar is reported, but not restarted. */
-    const tmini_timing_t *timing; /* NULL: tmini_timing_default. It must outlive the lidar. */
+    const tmini_port_t *port; /**< Required. */
+    void *port_context;       /**< Passed to its functions. */
+    uint8_t *rx_buffer;       /**< Received bytes. Required. */
+    size_t rx_size;           /**< A power of two; 256 or more (512 with DMA) for 80 samples. */
+    bool rx_dma;           /**< The buffer is the target of circular DMA: use tmini_feed_dma(). */
+    tmini_point_t *points; /**< One scan. NULL: streaming, an event for each packet instead. */
+    size_t max_points;     /**< 1 to 65535, or 0 when streaming. */
+    uint8_t max_samples;   /**< Packets with more are not valid; 0: the default, 80. */
+    uint8_t filter;        /**< Of scans: a combination of tmini_filter_t; 0: keep all. */
+    bool disable_recovery; /**< A lost lidar is reported, but not restarted. */
+    const tmini_timing_t *timing; /**< NULL: tmini_timing_default. It must outlive the lidar. */
 } tmini_config_t;
 
 /* ----------------------------------------------------------------------------- events, states */
 
-/* When several are due, they are returned in this order. */
+/** When several are due, they are returned in this order. */
 typedef enum {
-    TMINI_EVENT_NONE,
-    TMINI_EVENT_STARTED,        /* Scanning: the first packet has come. */
-    TMINI_EVENT_STOPPED,        /* Idle, and the line is quiet. */
-    TMINI_EVENT_INFO,           /* tmini_info() has been read. */
-    TMINI_EVENT_HEALTH,         /* tmini_health() has been read. */
-    TMINI_EVENT_FREQUENCY,      /* tmini_frequency_chz() has been read, or set and read back. */
-    TMINI_EVENT_REBOOTED,       /* The soft reboot's time is over. */
-    TMINI_EVENT_COMMAND_FAILED, /* tmini_command_error() says why. */
-    TMINI_EVENT_STREAMING, /* A lidar left idle scans all the same; it is being stopped again. */
-    TMINI_EVENT_LOST, /* No valid packets any more; being recovered unless configured not to. */
-    TMINI_EVENT_RECOVERED,      /* Valid packets again. */
-    TMINI_EVENT_FAULTS_CHANGED, /* tmini_faults() has changed, to 0 as well. */
-    TMINI_EVENT_PACKET, /* Streaming: tmini_packet() is valid until the next tmini_poll(). */
-    TMINI_EVENT_SCAN,   /* tmini_scan() is valid until the next tmini_poll(). */
-    TMINI_EVENT_MORE,   /* Nothing yet, but bytes wait: a poll's work is bounded. Poll again. */
+    TMINI_EVENT_NONE,           /**< Nothing is left to do. */
+    TMINI_EVENT_STARTED,        /**< Scanning: the first packet has come. */
+    TMINI_EVENT_STOPPED,        /**< Idle, and the line is quiet. */
+    TMINI_EVENT_INFO,           /**< tmini_info() has been read. */
+    TMINI_EVENT_HEALTH,         /**< tmini_health() has been read. */
+    TMINI_EVENT_FREQUENCY,      /**< tmini_frequency_chz() has been read, or set and read back. */
+    TMINI_EVENT_REBOOTED,       /**< The soft reboot's time is over. */
+    TMINI_EVENT_COMMAND_FAILED, /**< tmini_command_error() says why. */
+    TMINI_EVENT_STREAMING, /**< A lidar left idle scans all the same; it is being stopped again. */
+    TMINI_EVENT_LOST, /**< No valid packets any more; being recovered unless configured not to. */
+    TMINI_EVENT_RECOVERED,      /**< Valid packets again. */
+    TMINI_EVENT_FAULTS_CHANGED, /**< tmini_faults() has changed, to 0 as well. */
+    TMINI_EVENT_PACKET, /**< Streaming: tmini_packet() is valid until the next tmini_poll(). */
+    TMINI_EVENT_SCAN,   /**< tmini_scan() is valid until the next tmini_poll(). */
+    TMINI_EVENT_MORE,   /**< Nothing yet, but bytes wait: a poll's work is bounded. Poll again. */
 } tmini_event_t;
 
+/** What the lidar does, as far as the driver knows (docs/design.md has a diagram). */
 typedef enum {
-    TMINI_STATE_UNKNOWN,  /* The lidar may be streaming: after init, reboot or a failure. */
-    TMINI_STATE_IDLE,     /* Not scanning, and the line is quiet. */
-    TMINI_STATE_BUSY,     /* Carrying out a query, a frequency change or a reboot. */
-    TMINI_STATE_STOPPING, /* Waiting for the line to fall quiet after a stop. */
-    TMINI_STATE_STARTING, /* Until the first packet. */
-    TMINI_STATE_SCANNING,
-    TMINI_STATE_RECOVERING, /* Lost while scanning; brought back, or waited for. */
+    TMINI_STATE_UNKNOWN,    /**< The lidar may be streaming: after init, reboot or a failure. */
+    TMINI_STATE_IDLE,       /**< Not scanning, and the line is quiet. */
+    TMINI_STATE_BUSY,       /**< Carrying out a query, a frequency change or a reboot. */
+    TMINI_STATE_STOPPING,   /**< Waiting for the line to fall quiet after a stop. */
+    TMINI_STATE_STARTING,   /**< Until the first packet. */
+    TMINI_STATE_SCANNING,   /**< Packets come. */
+    TMINI_STATE_RECOVERING, /**< Lost while scanning; brought back, or waited for. */
 } tmini_state_t;
 
-/* Running totals, modulo the range of their type. */
+/** Running totals, modulo the range of their type. */
 typedef struct {
-    tmini_parser_counters_t parser;
-    uint32_t bytes_pending; /* Received and waiting for more. */
-    uint32_t scans;         /* Delivered as TMINI_EVENT_SCAN. */
-    uint16_t timeouts;      /* Waits that ended without what was waited for. */
-    uint16_t losses;        /* TMINI_EVENT_LOST. */
-    uint16_t recoveries;    /* TMINI_EVENT_RECOVERED. */
-    uint16_t restarts;      /* Attempts to recover by a start. */
-    uint16_t reboots;       /* Attempts to recover by a soft reboot. */
+    tmini_parser_counters_t parser; /**< Packets, checksum errors, and where each byte went. */
+    uint32_t bytes_pending;         /**< Received and waiting for more. */
+    uint32_t scans;                 /**< Delivered as TMINI_EVENT_SCAN. */
+    uint16_t timeouts;              /**< Waits that ended without what was waited for. */
+    uint16_t losses;                /**< TMINI_EVENT_LOST. */
+    uint16_t recoveries;            /**< TMINI_EVENT_RECOVERED. */
+    uint16_t restarts;              /**< Attempts to recover by a start. */
+    uint16_t reboots;               /**< Attempts to recover by a soft reboot. */
 } tmini_counters_t;
 
-/* One lidar; its members are private. It is described at the end of this file. */
+/** One lidar: allocated by the caller, set up by tmini_init(). Its members are private. */
 typedef struct tmini tmini_t;
 
 /* ---------------------------------------------------------------------------------- life cycle */
 
-/* Sets up a lidar; sends nothing. Nothing may be fed meanwhile; what is fed to an all-zero tmini_t
- * before is refused. Port, timing and buffers stay the caller's and must outlive the lidar; the
- * configuration itself may go.
+/** Sets up a lidar; sends nothing, waits for nothing. From the polling context. Nothing may be fed
+ * meanwhile; what is fed to an all-zero tmini_t before is refused. Port, timing and buffers stay
+ * the caller's and must outlive the lidar; the configuration itself may go.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: a required member missing or out of range; the lidar
  * then refuses commands and polls to nothing. */
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config);
 
 /* -------------------------------------------------------- receiving: interrupt or task context */
 
-/* Stores one received byte: the call for a UART's receive interrupt. No loop, no wait, a handful of
- * instructions. Once the buffer is full, bytes are refused and counted (bytes_overrun) until
- * polling has emptied it. */
+/** Stores one received byte: the call for a UART's receive interrupt. No loop, no wait, a handful
+ * of instructions. Once the buffer is full, bytes are refused and counted (bytes_overrun) until
+ * polling has emptied it. From the receiving context only, as the next four. */
 TMINI_INLINE void tmini_feed_byte(tmini_t *lidar, uint8_t byte);
 
-/* Stores a block of received bytes and returns how many it stored: those that do not fit are
+/** Stores a block of received bytes and returns how many it stored: those that do not fit are
  * refused and counted. Bytes must not be held back for longer than frame_timeout_ms, or their
  * packet is given up. What a layer below has held back is best handed over at once, before the next
  * poll; if it has waited for room longer than max_pause_ms, drop it and call tmini_feed_gap() once:
- * the pauses of the line do not show in it. Two block copies. */
+ * the pauses of the line do not show in it. No wait; two block copies. */
 static inline size_t tmini_feed(tmini_t *lidar, const uint8_t *bytes, size_t count);
 
-/* How many bytes tmini_feed() would store now, at least: for a receiver with a queue of its own. */
+/** How many bytes tmini_feed() would store now, at least: for a receiver with a queue of its
+ * own. */
 static inline size_t tmini_feed_room(const tmini_t *lidar);
 
-/* Publishes how far circular DMA has written rx_buffer: `position` is the index it writes next
+/** Publishes how far circular DMA has written rx_buffer: `position` is the index it writes next
  * (rx_size less the channel's remaining count), and never goes back. Call it from the
  * half-transfer, transfer-complete and idle-line interrupts; all three are needed (tmini_ring.h
  * says why), and bytes must not be held back for longer than frame_timeout_ms. No loop, no wait.
  * Overwritten bytes are noticed when polling, counted (bytes_overrun), and never become points. */
 static inline void tmini_feed_dma(tmini_t *lidar, size_t position);
 
-/* Says that bytes were lost on their way, behind those fed so far, and not how many: a receiver's
+/** Says that bytes were lost on their way, behind those fed so far, and not how many: a receiver's
  * queue overflowed, or DMA may have gone a whole lap unseen (then call it before tmini_feed_dma()).
  * No scan continues across the gap. Without DMA nothing is stored until polling has emptied the
  * buffer: look at tmini_feed_room(). With DMA it counts a lap (rx_size bytes) as overrun, how many
@@ -196,70 +206,103 @@ static inline void tmini_feed_gap(tmini_t *lidar);
 
 /* -------------------------------------------------------- everything else: the polling context */
 
-/* Parses what has been received, keeps time, sends what is due; returns the next event or
- * TMINI_EVENT_NONE when there is nothing left to do. Call it until then. Bounded: it looks at no
- * more than TMINI_PARSER_EFFORT bytes and one packet (docs/footprint.md says what that costs at
- * worst), and sends two. With more to look at and no event it returns TMINI_EVENT_MORE: call it
- * again when other work allows. */
+/** Parses what has been received, keeps time, sends what is due; returns the next event or
+ * TMINI_EVENT_NONE when there is nothing left to do. Call it until then. From the polling context,
+ * never from within itself. It never waits, and its work is bounded: it looks at no more than
+ * TMINI_PARSER_EFFORT bytes and one packet (docs/footprint.md says what that costs at worst), and
+ * sends two. With more to look at and no event it returns TMINI_EVENT_MORE: call it again when
+ * other work allows. */
 tmini_event_t tmini_poll(tmini_t *lidar);
 
-/* Commands. Each only begins; the event in brackets or TMINI_EVENT_COMMAND_FAILED is its end. From
- * an unknown state each first stops the lidar and waits for a quiet line (section 9.10). All return
- *   TMINI_OK              begun
- *   TMINI_ERROR_ARGUMENT  null pointer, or a lidar that was not set up
- *   TMINI_ERROR_STATE     the lidar is scanning or being recovered: only stop is possible
- *   TMINI_ERROR_BUSY      another command is under way
+/** @name Commands
+ * Each only begins; the event in brackets or TMINI_EVENT_COMMAND_FAILED is its end. From an unknown
+ * state each first stops the lidar and waits for a quiet line (section 9.10). All return
+ *
+ *     TMINI_OK              begun
+ *     TMINI_ERROR_ARGUMENT  null pointer, or a lidar that was not set up
+ *     TMINI_ERROR_STATE     the lidar is scanning or being recovered: only stop is possible
+ *     TMINI_ERROR_BUSY      another command is under way
+ *
  * and touch nothing unless they return TMINI_OK. If the event that ended the command before has not
- * been polled yet, it is dropped. */
+ * been polled yet, it is dropped. From the polling context. None waits, and each sends two bytes at
+ * most; the rest of a command is done by tmini_poll(). */
+/** @{ */
 
-/* Starts scanning [STARTED]. */
+/** Starts scanning [STARTED]; after that each revolution is TMINI_EVENT_SCAN (section 2). */
 tmini_status_t tmini_start(tmini_t *lidar);
 
-/* Stops scanning, and whatever else is under way [STOPPED]. In any state; an unfinished command
- * ends with TMINI_EVENT_COMMAND_FAILED, TMINI_ERROR_ABORTED. */
+/** Stops scanning, and whatever else is under way [STOPPED]. In any state, so never
+ * TMINI_ERROR_STATE or _BUSY; an unfinished command ends with TMINI_EVENT_COMMAND_FAILED,
+ * TMINI_ERROR_ABORTED (section 9.10). */
 tmini_status_t tmini_stop(tmini_t *lidar);
 
-/* Asks for the device information [INFO]. */
+/** Asks for the device information [INFO]: tmini_info() (section 4). */
 tmini_status_t tmini_request_info(tmini_t *lidar);
 
-/* Asks for the health status [HEALTH]. */
+/** Asks for the health status [HEALTH]: tmini_health() (section 4). */
 tmini_status_t tmini_request_health(tmini_t *lidar);
 
-/* Asks for the scan frequency that is set [FREQUENCY]. */
+/** Asks for the scan frequency that is set [FREQUENCY]: tmini_frequency_chz() (section 4). */
 tmini_status_t tmini_request_frequency(tmini_t *lidar);
 
-/* Sets the scan frequency, in steps of 1 and 0.1 Hz, and reads it back [FREQUENCY]. 600 to 1200, a
- * multiple of 10; TMINI_ERROR_ARGUMENT otherwise, and nothing is sent. Within 0.05 Hz is there. A
- * lidar that answers but does not get there ends with TMINI_EVENT_COMMAND_FAILED,
- * TMINI_ERROR_REPLY. */
+/** Sets the scan frequency, in steps of 1 and 0.1 Hz, and reads it back [FREQUENCY]. In 0.01 Hz:
+ * 600 to 1200, a multiple of 10; TMINI_ERROR_ARGUMENT otherwise, and nothing is sent. Within
+ * 0.05 Hz is there. A lidar that answers but does not get there ends with
+ * TMINI_EVENT_COMMAND_FAILED, TMINI_ERROR_REPLY (section 3). */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
 
-/* Reboots the lidar [REBOOTED]. */
+/** Reboots the lidar [REBOOTED], which takes timing.reboot_time_ms (section 9.11). */
 tmini_status_t tmini_reboot(tmini_t *lidar);
 
-/* Results, of a lidar that has been set up. What information and health point to is valid from
- * their event to the next command; see the events for scan and packet. None returns NULL. */
+/** @} */
+
+/** @name Results
+ * Of a lidar that has been set up; from the polling context, without waiting. What is pointed to
+ * belongs to the lidar and is never NULL. */
+/** @{ */
+
+/** What the lidar does. */
 tmini_state_t tmini_state(const tmini_t *lidar);
+
+/** The scan that TMINI_EVENT_SCAN announced, valid until the next tmini_poll() (section 6). */
 const tmini_scan_t *tmini_scan(const tmini_t *lidar);
+
+/** Streaming: the packet that TMINI_EVENT_PACKET announced, valid until the next tmini_poll()
+ * (section 5). */
 const tmini_packet_t *tmini_packet(const tmini_t *lidar);
+
+/** The device information that TMINI_EVENT_INFO announced, valid until the next command (section
+ * 4). */
 const tmini_info_t *tmini_info(const tmini_t *lidar);
+
+/** The health status that TMINI_EVENT_HEALTH announced, valid until the next command (section
+ * 4). */
 const tmini_health_t *tmini_health(const tmini_t *lidar);
+
+/** The scan frequency that TMINI_EVENT_FREQUENCY announced, as it is set, in 0.01 Hz; 0 before.
+ * What is measured is in each scan. */
 uint16_t tmini_frequency_chz(const tmini_t *lidar);
 
-/* Why the last failed command failed: TMINI_ERROR_TIMEOUT, _WRITE, _REPLY or _ABORTED. */
+/** Why the last failed command failed: TMINI_ERROR_TIMEOUT, _WRITE, _REPLY or _ABORTED. TMINI_OK if
+ * none has. */
 tmini_status_t tmini_command_error(const tmini_t *lidar);
 
-/* What is wrong with the lidar while scanning, a combination of tmini_fault_t; 0: nothing known.
+/** What is wrong with the lidar while scanning, a combination of tmini_fault_t; 0: nothing known.
  * From CT information when the unit sends it, seen in two revolutions. A unit that sends none has
  * TMINI_FAULT_DATA when two whole revolutions bring no valid range. Either has TMINI_FAULT_ENCODER
  * when packets come without any range and without a revolution (section 8). */
 uint8_t tmini_faults(const tmini_t *lidar);
 
-/* CT information: version, health and serial number as sent while scanning, each if known. */
+/** Copies CT information to `info`: version, health and serial number as sent while scanning, each
+ * if known (section 7). */
 void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info);
 
-/* Copies the counters. */
+/** Copies the counters to `counters`; they run from tmini_init(). */
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters);
+
+/** @} */
+
+/** @cond private */
 
 /* ------------------------------------------------------------------------------------- private */
 
@@ -338,6 +381,8 @@ struct tmini {
     } latest;
     tmini_monitor_t monitor;
 };
+
+/** @endcond */
 
 TMINI_INLINE void tmini_feed_byte(tmini_t *lidar, uint8_t byte)
 {

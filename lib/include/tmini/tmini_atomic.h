@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The primitives: memory order between the two sides of the ring, and reading a word of bytes. The
+/** @file
+ * The primitives: memory order between the two sides of the ring, and reading a word of bytes. The
  * only file with compiler extensions.
  *
  * tmini_load() reads a size_t that the other side writes, and no later access moves before it;
@@ -26,6 +27,8 @@
 #include <stdint.h>
 #include <string.h>
 
+/** @def TMINI_SINGLE_CORE
+ * 1: feeding and polling run on the same core; 0: perhaps on two. Define it to overrule. */
 #if !defined(TMINI_SINGLE_CORE)
 #if defined(PICO_RP2040) || defined(PICO_RP2350) || defined(ARDUINO_ARCH_RP2040)
 #define TMINI_SINGLE_CORE 0
@@ -36,7 +39,8 @@
 #endif
 #endif
 
-/* For functions of which each instruction counts: at -Os a compiler might call them instead. */
+/** @def TMINI_INLINE
+ * For functions of which each instruction counts: at -Os a compiler might call them instead. */
 #if defined(__GNUC__) && defined(__OPTIMIZE__)
 #define TMINI_INLINE static inline __attribute__((always_inline))
 #else
@@ -52,6 +56,8 @@
 /* A size_t takes two accesses on this 8-bit machine: keep interrupts out for those two. */
 #include <util/atomic.h>
 
+/** Reads an index that the other side writes; no later access moves before it. Any context; two
+ * accesses on this 8-bit machine, with interrupts kept out. */
 TMINI_INLINE size_t tmini_load(const size_t *value)
 {
     size_t loaded;
@@ -62,6 +68,8 @@ TMINI_INLINE size_t tmini_load(const size_t *value)
     return loaded;
 }
 
+/** Writes an index that the other side reads; no earlier access moves behind it. Any context; two
+ * accesses on this 8-bit machine, with interrupts kept out. */
 TMINI_INLINE void tmini_store(size_t *value, size_t stored)
 {
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
@@ -70,7 +78,8 @@ TMINI_INLINE void tmini_store(size_t *value, size_t stored)
     }
 }
 
-/* One core that reads in order: only the compiler might not. */
+/** Keeps earlier reads before later ones. One core that reads in order: only the compiler might
+ * not. */
 TMINI_INLINE void tmini_fence(void)
 {
     __asm__ volatile("" ::: "memory");
@@ -78,8 +87,9 @@ TMINI_INLINE void tmini_fence(void)
 
 #elif defined(__GNUC__) && TMINI_SINGLE_CORE
 
-/* A plain read: the compiler may join it with its neighbour's (LDRD), but not keep what it has
- * read. */
+/** Reads an index that the other side writes; no later access moves before it. Any context; one
+ * access. A plain read: the compiler may join it with its neighbour's (LDRD), but not keep what it
+ * has read. */
 TMINI_INLINE size_t tmini_load(const size_t *value)
 {
     const size_t loaded = *value;
@@ -87,12 +97,15 @@ TMINI_INLINE size_t tmini_load(const size_t *value)
     return loaded;
 }
 
+/** Writes an index that the other side reads; no earlier access moves behind it. Any context; one
+ * access. */
 TMINI_INLINE void tmini_store(size_t *value, size_t stored)
 {
     __asm__ volatile("" ::: "memory");
     __atomic_store_n(value, stored, __ATOMIC_RELAXED);
 }
 
+/** Keeps earlier reads before later ones. */
 TMINI_INLINE void tmini_fence(void)
 {
     __atomic_thread_fence(__ATOMIC_ACQUIRE);
@@ -100,16 +113,21 @@ TMINI_INLINE void tmini_fence(void)
 
 #elif defined(__GNUC__)
 
+/** Reads an index that the other side writes; no later access moves before it. Any context; one
+ * access. */
 TMINI_INLINE size_t tmini_load(const size_t *value)
 {
     return __atomic_load_n(value, __ATOMIC_ACQUIRE);
 }
 
+/** Writes an index that the other side reads; no earlier access moves behind it. Any context; one
+ * access. */
 TMINI_INLINE void tmini_store(size_t *value, size_t stored)
 {
     __atomic_store_n(value, stored, __ATOMIC_RELEASE);
 }
 
+/** Keeps earlier reads before later ones. */
 TMINI_INLINE void tmini_fence(void)
 {
     __atomic_thread_fence(__ATOMIC_ACQUIRE);
@@ -121,7 +139,7 @@ TMINI_INLINE void tmini_fence(void)
 
 #endif
 
-/* Four bytes at any address, as the machine orders them: one load where it can. */
+/** Four bytes at any address, as the machine orders them: one load where it can. Any context. */
 TMINI_INLINE uint32_t tmini_word(const uint8_t *bytes)
 {
 #if defined(__GNUC__)

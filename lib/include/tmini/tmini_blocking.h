@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The commands in a form that waits: for start-up code and for tools. A thin layer over
+/** @file
+ * The commands in a form that waits: for start-up code and for tools. A thin layer over
  * tmini_poll().
  *
  * Each function polls until the command has ended or `timeout_ms` has passed on the port's clock,
@@ -11,9 +12,11 @@
  * aborted; the lidar's state is then unknown, which the next command mends.
  *
  * Context: the one that polls. All return
- *   TMINI_OK                                  done
- *   TMINI_ERROR_ARGUMENT, _STATE, _BUSY       not begun, as the command in tmini.h says
- *   TMINI_ERROR_TIMEOUT, _WRITE, _REPLY       failed, as tmini_command_error() says, or not in time
+ *
+ *     TMINI_OK                                  done
+ *     TMINI_ERROR_ARGUMENT, _STATE, _BUSY       not begun, as the command in tmini.h says
+ *     TMINI_ERROR_TIMEOUT, _WRITE, _REPLY       failed, as tmini_command_error() says, or too late
+ *
  * and write their result only with TMINI_OK. */
 
 #ifndef TMINI_BLOCKING_H
@@ -25,22 +28,35 @@
 extern "C" {
 #endif
 
-/* Enough for three attempts of any query with the default timing, in milliseconds. */
+/** A time-out for the functions below, in milliseconds: enough for three attempts of any query with
+ * the default timing. */
 #define TMINI_BLOCKING_TIMEOUT_MS 8000u
 
+/** Asks for the device information and copies it to `info` (sections 3 and 4). Waits `timeout_ms`
+ * at most. Returns what is listed above; TMINI_ERROR_ARGUMENT also if `info` is null. */
 tmini_status_t tmini_read_info(tmini_t *lidar, tmini_info_t *info, uint32_t timeout_ms);
+
+/** Asks for the health status and copies it to `health` (sections 3 and 4). Waits `timeout_ms` at
+ * most. Returns what is listed above; TMINI_ERROR_ARGUMENT also if `health` is null. */
 tmini_status_t tmini_read_health(tmini_t *lidar, tmini_health_t *health, uint32_t timeout_ms);
+
+/** Asks for the scan frequency that is set and writes it to `frequency_chz`, in 0.01 Hz (sections 3
+ * and 4). Waits `timeout_ms` at most. Returns what is listed above; TMINI_ERROR_ARGUMENT also if
+ * `frequency_chz` is null. */
 tmini_status_t tmini_read_frequency(tmini_t *lidar, uint16_t *frequency_chz, uint32_t timeout_ms);
 
-/* Sets the scan frequency; allow 2 s more than for a query, for up to a dozen steps. */
+/** Sets the scan frequency, in 0.01 Hz: 600 to 1200, a multiple of 10 (section 3). Waits
+ * `timeout_ms` at most: allow 2 s more than for a query, for up to a dozen steps. Returns what is
+ * listed above; TMINI_ERROR_ARGUMENT also for another frequency. */
 tmini_status_t tmini_write_frequency(tmini_t *lidar, uint16_t frequency_chz, uint32_t timeout_ms);
 
-/* Starts scanning and waits for the first scan, or for the first packet when streaming. The scan is
- * valid until the next tmini_poll(). If it does not come in time, the lidar may turn all the same:
- * stop it. */
+/** Starts scanning and waits for the first scan, or for the first packet when streaming, for
+ * `timeout_ms` at most. The scan is valid until the next tmini_poll(). Returns what is listed
+ * above; after TMINI_ERROR_TIMEOUT the lidar may turn all the same: stop it. */
 tmini_status_t tmini_start_and_wait(tmini_t *lidar, uint32_t timeout_ms);
 
-/* Stops the lidar and waits until the line is quiet. */
+/** Stops the lidar and waits until the line is quiet, `timeout_ms` at most (section 9.10). In any
+ * state. Returns what is listed above. */
 tmini_status_t tmini_stop_and_wait(tmini_t *lidar, uint32_t timeout_ms);
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A frame: a scan packet or a reply that the parser has found (sections 4 and 5). What reads frames
+/** @file
+ * A frame: a scan packet or a reply that the parser has found (sections 4 and 5). What reads frames
  * (packet, ct, scan) knows this and nothing behind it.
  *
  * The frame's bytes lie in the ring until the parser goes on to the next one. With DMA they may be
@@ -21,46 +22,52 @@
 extern "C" {
 #endif
 
-/* Both begin with a start sign of two bytes, which is part of the header. */
+/** Packets and replies begin with a start sign of two bytes, which is part of the header. */
 #define TMINI_START_SIGN_SIZE 2u
+/** Bytes of a packet before its samples (section 5). */
 #define TMINI_PACKET_HEADER_SIZE 10u
+/** Bytes of a reply before its content (section 4). */
 #define TMINI_REPLY_HEADER_SIZE 7u
+/** Bytes of a sample (section 5). */
 #define TMINI_SAMPLE_SIZE 3u
 
-/* Where sample `index`, from 0, lies in a packet; and the bytes of a packet of so many samples. */
+/** Where sample `index`, from 0, lies in a packet: bytes from its beginning. */
 #define TMINI_SAMPLE_OFFSET(index) (TMINI_PACKET_HEADER_SIZE + TMINI_SAMPLE_SIZE * (index))
+/** The bytes of a packet of so many samples. */
 #define TMINI_PACKET_SIZE(samples) TMINI_SAMPLE_OFFSET(samples)
 
-/* A gap of this many bytes may be any number more. */
+/** A gap of this many bytes may be any number more. */
 #define TMINI_GAP_UNKNOWN UINT16_MAX
 
-/* Members may be read. */
+/** A packet or reply that the parser has found. Members may be read. */
 typedef struct {
-    tmini_ring_t *ring;       /* Holds the bytes, the frame's first one being the oldest. */
-    uint16_t size;            /* Bytes. */
-    uint16_t gap;             /* Bytes skipped since the last frame, or TMINI_GAP_UNKNOWN: lost. */
-    uint16_t checksum_errors; /* The parser's so far, modulo 2^16. */
-    uint8_t last_skipped;     /* The last of the skipped bytes. */
-    uint8_t header[TMINI_PACKET_HEADER_SIZE - TMINI_START_SIGN_SIZE]; /* A reply's is shorter. */
+    tmini_ring_t *ring;       /**< Holds the bytes, the frame's first one being the oldest. */
+    uint16_t size;            /**< Bytes. */
+    uint16_t gap;             /**< Bytes skipped since the last one, or TMINI_GAP_UNKNOWN: lost. */
+    uint16_t checksum_errors; /**< The parser's so far, modulo 2^16. */
+    uint8_t last_skipped;     /**< The last of the skipped bytes. */
+    uint8_t header[TMINI_PACKET_HEADER_SIZE - TMINI_START_SIGN_SIZE]; /**< A reply's is shorter. */
 } tmini_frame_t;
 
-/* True while the frame is certainly as it was found. Only DMA can make it false; then nothing that
+/** True while the frame is certainly as it was found. Only DMA can make it false; then nothing that
  * was read of it may be used. */
 static inline bool tmini_frame_intact(const tmini_frame_t *frame)
 {
     return tmini_ring_intact(frame->ring);
 }
 
-/* Copies `count` bytes of a reply's content. Returns false if DMA has overwritten them. */
+/** Copies the first `count` bytes, at most as many as the reply has, of a reply's content to
+ * `content`. Returns false if DMA has overwritten them. */
 static inline bool tmini_frame_content(const tmini_frame_t *frame, uint8_t *content, size_t count)
 {
     tmini_ring_copy(frame->ring, TMINI_REPLY_HEADER_SIZE, content, count);
     return tmini_frame_intact(frame);
 }
 
-/* The packet's samples from `index` on that lie in one piece, so that the loops over samples, the
+/** The packet's samples from `index` on that lie in one piece, so that the loops over samples, the
  * hottest there are, run without wrapping: at most *count, which becomes how many there are, at
- * least one. One that straddles the end of the ring's memory is put together in `joined`. */
+ * least one. One that straddles the end of the ring's memory is put together in `joined`. The
+ * result points into the ring's memory, or to `joined`, and is valid as long as the frame is. */
 const uint8_t *tmini_frame_samples(const tmini_frame_t *frame, size_t index, size_t *count,
                                    uint8_t joined[TMINI_SAMPLE_SIZE]);
 

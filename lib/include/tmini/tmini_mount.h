@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Optional: points as the robot sees them, from a lidar that is mounted turned or upside down,
+/** @file
+ * Optional: points as the robot sees them, from a lidar that is mounted turned or upside down,
  * without those that the robot itself is in the way of, or that are nearer or farther than wanted.
  * Integers only; nothing else in the library needs it.
  *
@@ -29,28 +30,28 @@
 extern "C" {
 #endif
 
-/* The directions from `from_q6` clockwise to `to_q6`, both included, in 1/64 degree below 23040;
+/** The directions from `from_q6` clockwise to `to_q6`, both included, in 1/64 degree below 23040;
  * as the robot counts them, 0 to its front. From 350 to 10 degrees is 20 degrees wide. */
 typedef struct {
-    uint16_t from_q6;
-    uint16_t to_q6;
+    uint16_t from_q6; /**< Where it begins. */
+    uint16_t to_q6;   /**< Where it ends. */
 } tmini_arc_t;
 
-/* All 0: nothing changes. */
+/** How the lidar is mounted, and what is to be left out. All 0: nothing changes. */
 typedef struct {
-    uint16_t front_q6;   /* The lidar's angle that looks to the robot's front, below 23040. */
-    bool is_upside_down; /* The lidar hangs: its angles run the other way round. */
-    bool drops;          /* What is masked or out of range is removed; else its distance is 0. */
-    uint16_t min_mm;     /* Distances below are out of range. */
-    uint16_t max_mm;     /* Distances above are; 0: none. */
-    const tmini_arc_t *masked; /* Directions in which the robot sees itself. */
-    size_t masked_count;
+    uint16_t front_q6;   /**< The lidar's angle that looks to the robot's front, below 23040. */
+    bool is_upside_down; /**< The lidar hangs: its angles run the other way round. */
+    bool drops;          /**< What is masked or out of range is removed; else its distance is 0. */
+    uint16_t min_mm;     /**< Distances below are out of range. */
+    uint16_t max_mm;     /**< Distances above are; 0: none. */
+    const tmini_arc_t *masked; /**< Directions in which the robot sees itself. */
+    size_t masked_count;       /**< How many. */
 } tmini_mount_t;
 
-/* The robot's angle of a lidar's angle, both clockwise, in 1/64 degree, 0 to 23039. */
+/** The robot's angle of a lidar's angle, both clockwise, in 1/64 degree, 0 to 23039. */
 uint16_t tmini_mount_angle(const tmini_mount_t *mount, uint16_t angle_q6);
 
-/* Changes `count` points in place. Returns how many are left: as many, unless the mount drops
+/** Changes `count` points in place. Returns how many are left: as many, unless the mount drops
  * some. A distance of 0, unknown, is never out of range. About 15 instructions a point, and 5 an
  * arc. */
 size_t tmini_mount_apply(const tmini_mount_t *mount, tmini_point_t *points, size_t count);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Optional: statuses, events, states and faults as short English phrases, for logs and displays.
+/** @file
+ * Optional: statuses, events, states and faults as short English phrases, for logs and displays.
  * The linker leaves out what is not used. Any context; no waiting; the strings are constant. */
 
 #ifndef TMINI_NAMES_H
@@ -16,23 +17,25 @@
 extern "C" {
 #endif
 
-/* A buffer of this size holds the text of any combination of faults. */
+/** A buffer of this size holds the text of any combination of faults. */
 #define TMINI_FAULTS_TEXT_SIZE 48u
 
-/* For example "timeout". Never NULL, whatever the value: then "unknown status". */
+/** A status as text, for example "timeout". Never NULL, whatever the value: then "unknown
+ * status". */
 const char *tmini_status_name(tmini_status_t status);
 
-/* For example "faults changed"; "unknown event" for what is none. Never NULL. */
+/** An event as text, for example "faults changed"; "unknown event" for what is none. Never NULL. */
 const char *tmini_event_name(tmini_event_t event);
 
-/* For example "scanning"; "unknown state" for what is none, and "unknown" for the state that is
- * called so. Never NULL. */
+/** A state as text, for example "scanning"; "unknown state" for what is none, and "unknown" for the
+ * state that is called so. Never NULL. */
 const char *tmini_state_name(tmini_state_t state);
 
-/* The name of one fault, for example "encoder"; "unknown fault" for none or several. Never NULL. */
+/** The name of one fault, for example "encoder"; "unknown fault" for none or several. Never
+ * NULL. */
 const char *tmini_fault_name(tmini_fault_t fault);
 
-/* Writes the names of all faults in `faults` (a combination of tmini_fault_t) to `text`, as in
+/** Writes the names of all faults in `faults` (a combination of tmini_fault_t) to `text`, as in
  * "encoder, data"; "none" for 0. `size`: the bytes there are in `text`, the terminating 0 included;
  * what does not fit is cut off, and nothing is written if it is 0. Returns `text`. */
 const char *tmini_faults_text(uint8_t faults, char *text, size_t size);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Finds scan packets and replies in a ring of received bytes (sections 4 and 5 of the protocol).
+/** @file
+ * Finds scan packets and replies in a ring of received bytes (sections 4 and 5 of the protocol).
  *
  * The parser works in place: the ring's oldest bytes are the candidate, and stay there until they
  * have proved to be a frame or not. A candidate that fails costs exactly one byte; parsing resumes
@@ -33,95 +34,96 @@
 extern "C" {
 #endif
 
-/* Samples accepted in a packet unless configured otherwise: the vendor's limit (section 9.6). */
+/** Samples accepted in a packet unless configured otherwise: the vendor's limit (section 9.6). */
 #define TMINI_MAX_SAMPLES_DEFAULT 80u
 
-/* The longest reply, device information. */
+/** The longest reply, device information. */
 #define TMINI_REPLY_SIZE_MAX (TMINI_REPLY_HEADER_SIZE + 20u)
 
-/* The work that one call of tmini_parser_next() may do, in bytes looked at. A candidate's bytes are
- * looked at once, and again for every false header before it whose packet would reach it. */
+/** The work that one call of tmini_parser_next() may do, in bytes looked at. A candidate's bytes
+ * are looked at once, and again for every false header before it whose packet would reach it. */
 #define TMINI_PARSER_EFFORT 2048u
 
+/** What tmini_parser_next() has found. */
 typedef enum {
-    TMINI_FRAME_NONE, /* Nothing more can be told from the bytes received so far. */
-    TMINI_FRAME_MORE, /* Nothing yet, but not all bytes have been looked at: call again. */
-    TMINI_FRAME_PACKET,
-    TMINI_FRAME_REPLY,
+    TMINI_FRAME_NONE,   /**< Nothing more can be told from the bytes received so far. */
+    TMINI_FRAME_MORE,   /**< Nothing yet, but not all bytes have been looked at: call again. */
+    TMINI_FRAME_PACKET, /**< A valid scan packet. */
+    TMINI_FRAME_REPLY,  /**< The awaited reply. */
 } tmini_frame_type_t;
 
+/** How a reply goes on behind its header (section 4). */
 typedef enum {
-    TMINI_REPLY_MODE_SINGLE = 0,
-    TMINI_REPLY_MODE_CONTINUOUS = 1, /* Its length field is meaningless; the content follows on. */
+    TMINI_REPLY_MODE_SINGLE = 0,     /**< With content of the length that it tells. */
+    TMINI_REPLY_MODE_CONTINUOUS = 1, /**< Without end: packets follow, its length is meaningless. */
 } tmini_reply_mode_t;
 
-/* The header by which an awaited reply is recognised (section 4). */
+/** The header by which an awaited reply is recognised (section 4). */
 typedef struct {
-    uint8_t type;
-    uint8_t mode;   /* A tmini_reply_mode_t. */
-    uint8_t length; /* Bytes of content; 0 and not compared when continuous. */
+    uint8_t type;   /**< The type code: 04, 06 or 81. */
+    uint8_t mode;   /**< A tmini_reply_mode_t. */
+    uint8_t length; /**< Bytes of content; 0 and not compared when continuous. */
 } tmini_reply_header_t;
 
-/* Running totals, modulo 2^32. Whatever arrives, every byte is in exactly one place:
+/** Running totals, modulo 2^32. Whatever arrives, every byte is in exactly one place:
  * bytes in = in packets + in replies + skipped + overrun + tmini_parser_pending(). */
 typedef struct {
-    uint32_t packets;
-    uint32_t checksum_errors; /* Complete, plausible candidates whose checksum did not match. */
-    uint32_t bytes_in_packets;
-    uint32_t bytes_in_replies;
-    uint32_t bytes_skipped; /* In no packet or reply; LastCRC bytes are among them. */
-    uint32_t bytes_overrun; /* Refused by a full ring, or overwritten by DMA before being read. */
+    uint32_t packets;          /**< Valid packets. */
+    uint32_t checksum_errors;  /**< Complete, plausible candidates whose checksum did not match. */
+    uint32_t bytes_in_packets; /**< Of valid packets. */
+    uint32_t bytes_in_replies; /**< Of replies that were awaited. */
+    uint32_t bytes_skipped;    /**< In no packet or reply; LastCRC bytes are among them. */
+    uint32_t bytes_overrun; /**< Refused by a full ring, or overwritten by DMA before being read. */
 } tmini_parser_counters_t;
 
-/* Treat the members as private. */
+/** A parser over one ring. Treat the members as private. */
 typedef struct {
-    tmini_frame_t frame; /* Delivered last; its size is 0 while the next one is sought. */
-    uint16_t need;       /* Bytes without which the candidate cannot be told further. */
-    uint16_t effort;     /* Bytes looked at by the last call of tmini_parser_next(). */
-    uint8_t max_samples;
-    uint8_t
-        kind; /* What the candidate is by its header, which is plausible: a tmini_frame_type_t. */
-    bool awaiting;
-    tmini_reply_header_t awaited;
-    tmini_parser_counters_t counters; /* bytes_overrun: without those that the ring refused. */
+    tmini_frame_t frame; /**< Delivered last; its size is 0 while the next one is sought. */
+    uint16_t need;       /**< Bytes without which the candidate cannot be told further. */
+    uint16_t effort;     /**< Bytes looked at by the last call of tmini_parser_next(). */
+    uint8_t max_samples; /**< Packets with more are not valid. */
+    uint8_t kind;        /**< What the candidate is by its plausible header: tmini_frame_type_t. */
+    bool awaiting;       /**< A reply is awaited, */
+    tmini_reply_header_t awaited;     /**< with this header. */
+    tmini_parser_counters_t counters; /**< bytes_overrun: without those that the ring refused. */
 } tmini_parser_t;
 
-/* Parses what arrives in `ring`, which must outlive the parser. `max_samples`: 1 to 255, or 0 for
+/** Parses what arrives in `ring`, which must outlive the parser. `max_samples`: 1 to 255, or 0 for
  * the default. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, or a ring whose window is
  * smaller than the largest packet or reply. */
 tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uint8_t max_samples);
 
-/* Goes on to the next frame, which tmini_parser_frame() then tells. The frame lies at the ring's
+/** Goes on to the next frame, which tmini_parser_frame() then tells. The frame lies at the ring's
  * tail until the next call gives it back. Bounded by TMINI_PARSER_EFFORT and one frame. */
 tmini_frame_type_t tmini_parser_next(tmini_parser_t *parser);
 
-/* The frame delivered last, valid until the next call of tmini_parser_next(). */
+/** The frame delivered last, valid until the next call of tmini_parser_next(). */
 static inline const tmini_frame_t *tmini_parser_frame(const tmini_parser_t *parser)
 {
     return &parser->frame;
 }
 
-/* From now on takes a reply with this header; none when `header` is null. It is copied. A delivered
- * reply ends the waiting.
+/** From now on takes a reply with this header; none when `header` is null. It is copied. A
+ * delivered reply ends the waiting.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: such a reply is longer than the ring's window, and is
  * not awaited. */
 tmini_status_t tmini_parser_await(tmini_parser_t *parser, const tmini_reply_header_t *header);
 
-/* The bytes that wait in the ring for more to come. */
+/** The bytes that wait in the ring for more to come. */
 size_t tmini_parser_pending(const tmini_parser_t *parser);
 
-/* How many bytes have been parsed or lost since init, the frame delivered last among them, modulo
+/** How many bytes have been parsed or lost since init, the frame delivered last among them, modulo
  * the range of size_t: the place in the stream of the byte behind that frame. */
 size_t tmini_parser_position(const tmini_parser_t *parser);
 
-/* Copies the counters. */
+/** Copies the counters. */
 void tmini_parser_counters(const tmini_parser_t *parser, tmini_parser_counters_t *counters);
 
-/* Gives back the frame delivered last, and skips all bytes before that place in the stream, without
- * looking at them. Not for more bytes than have come: then it skips none. */
+/** Gives back the frame delivered last, and skips all bytes before that place in the stream,
+ * without looking at them. Not for more bytes than have come: then it skips none. */
 void tmini_parser_skip_to(tmini_parser_t *parser, size_t position);
 
-/* No more bytes will come (silence, end of a recording): gives up the incomplete candidate by
+/** No more bytes will come (silence, end of a recording): gives up the incomplete candidate by
  * skipping its first byte, and those behind it that can begin no frame. Call tmini_parser_next()
  * again, and both until nothing is pending. Without a pending candidate it does nothing. */
 void tmini_parser_abandon(tmini_parser_t *parser);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the driver needs of the board: something to send bytes with, and a clock. Received bytes
+/** @file
+ * What the driver needs of the board: something to send bytes with, and a clock. Received bytes
  * come the other way, through tmini_feed_byte(), tmini_feed() or tmini_feed_dma().
  *
  * All members are called from within tmini_poll() or a command function, hence in the context that
@@ -17,18 +18,21 @@
 extern "C" {
 #endif
 
+/** The functions of a board. All three get the configuration's `port_context`. The structure must
+ * outlive the lidar; it may be constant, and several lidars may share it. */
 typedef struct {
-    /* Hands up to `count` (at most 2) bytes to the UART and returns how many it took, 0 to count,
+    /** Hands up to `count` (at most 2) bytes to the UART and returns how many it took, 0 to count,
      * or a negative number when sending has failed. It may take fewer, even none, when the
      * transmitter is busy: the driver offers the rest again at the next tmini_poll(). It must not
      * wait longer than the bytes take on the wire (87 µs for two). The bytes are the driver's only
      * during the call: copy what is sent later. Required. */
     int (*write)(void *context, const uint8_t *bytes, size_t count);
 
-    /* Milliseconds since any moment, running on modulo 2^32. Required. */
+    /** Milliseconds since any moment, running on modulo 2^32; steps of up to 10 ms will do. Must
+     * not wait. Required. */
     uint32_t (*now_ms)(void *context);
 
-    /* Lets other work run (an RTOS delay, a sleep until the next interrupt) for about a
+    /** Lets other work run (an RTOS delay, a sleep until the next interrupt) for about a
      * millisecond. Only the blocking helpers of tmini_blocking.h call it, while they wait.
      * Optional: NULL makes them spin. */
     void (*wait)(void *context);

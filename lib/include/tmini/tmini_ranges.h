@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Optional: a scan as ranges at equal angles, counter-clockwise, as ROS wants them in a LaserScan
+/** @file
+ * Optional: a scan as ranges at equal angles, counter-clockwise, as ROS wants them in a LaserScan
  * message. Integers only; tmini_units.h turns them into metres and radians. Nothing else in the
  * library needs it.
  *
@@ -31,13 +32,15 @@
 extern "C" {
 #endif
 
-/* Writes `count` ranges in mm to `ranges_mm`, 0 where nothing was measured, and, unless it is null,
- * the intensities of the same points to `intensities`. Any context; no waiting; a division a point.
+/** Writes `count` ranges in mm to `ranges_mm`, 0 where nothing was measured, and, unless it is
+ * null, the intensities of the same points to `intensities`. Any context; no waiting; a division a
+ * point.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: scan or ranges null, count 0 or above 65535. */
 tmini_status_t tmini_ranges_of_scan(const tmini_scan_t *scan, uint16_t *ranges_mm,
                                     uint8_t *intensities, size_t count);
 
-/* The bin, of `count` (1 to 65535), in which an angle of the lidar lies. */
+/** The bin, of `count` (1 to 65535), in which an angle of the lidar lies: in 1/64 degree, below
+ * TMINI_FULL_CIRCLE_Q6. Any context; no waiting; one division. */
 size_t tmini_ranges_bin(uint16_t angle_q6, size_t count);
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Commands, the replies they are answered with, and what those replies say (sections 3 and 4).
+/** @file
+ * Commands, the replies they are answered with, and what those replies say (sections 3 and 4).
  * Pure functions, any context; they read `content`, keep nothing and never wait. */
 
 #ifndef TMINI_REPLY_H
@@ -16,71 +17,80 @@
 extern "C" {
 #endif
 
-/* A command is two bytes: this one and the code. */
+/** A command is two bytes: this one and the code. */
 #define TMINI_COMMAND_SYNC 0xA5u
 
+/** The codes of the commands (section 3). */
 typedef enum {
-    TMINI_COMMAND_FASTER_TENTH = 0x09, /* Scan frequency + 0.1 Hz. */
-    TMINI_COMMAND_SLOWER_TENTH = 0x0A,
-    TMINI_COMMAND_FASTER_ONE = 0x0B, /* Scan frequency + 1 Hz. */
-    TMINI_COMMAND_SLOWER_ONE = 0x0C,
-    TMINI_COMMAND_GET_FREQUENCY = 0x0D,
-    TMINI_COMMAND_REBOOT = 0x40,
-    TMINI_COMMAND_START = 0x60,
-    TMINI_COMMAND_STOP = 0x65,
-    TMINI_COMMAND_GET_INFO = 0x90,
-    TMINI_COMMAND_GET_HEALTH = 0x92,
+    TMINI_COMMAND_FASTER_TENTH = 0x09,  /**< Scan frequency + 0.1 Hz. */
+    TMINI_COMMAND_SLOWER_TENTH = 0x0A,  /**< Scan frequency - 0.1 Hz. */
+    TMINI_COMMAND_FASTER_ONE = 0x0B,    /**< Scan frequency + 1 Hz. */
+    TMINI_COMMAND_SLOWER_ONE = 0x0C,    /**< Scan frequency - 1 Hz. */
+    TMINI_COMMAND_GET_FREQUENCY = 0x0D, /**< The scan frequency that is set. */
+    TMINI_COMMAND_REBOOT = 0x40,        /**< Soft reboot; no reply. */
+    TMINI_COMMAND_START = 0x60,         /**< Start scanning. */
+    TMINI_COMMAND_STOP = 0x65,          /**< Stop scanning; no reply. */
+    TMINI_COMMAND_GET_INFO = 0x90,      /**< Device information. */
+    TMINI_COMMAND_GET_HEALTH = 0x92,    /**< Health status. */
 } tmini_command_code_t;
 
+/** Bytes of a device information reply's content (section 4). */
 #define TMINI_INFO_SIZE 20u
+/** Bytes of a health reply's content (section 4). */
 #define TMINI_HEALTH_SIZE 3u
+/** Bytes of a scan frequency reply's content (section 4). */
 #define TMINI_FREQUENCY_SIZE 4u
+/** Digits of a serial number (section 4). */
 #define TMINI_SERIAL_DIGITS 16u
 
-/* Models that speak this protocol (section 9.15). */
+/** The model number of the T-mini Pro, which speaks the same protocol (section 9.15). */
 #define TMINI_MODEL_T_MINI_PRO 150u
+/** The model number of the T-mini Plus (section 4). */
 #define TMINI_MODEL_T_MINI_PLUS 151u
 
+/** What the lidar tells of itself (section 4). */
 typedef struct {
-    uint8_t model; /* TMINI_MODEL_T_MINI_PLUS, … */
-    uint8_t firmware_major;
-    uint8_t firmware_minor;
-    uint8_t hardware;
-    uint8_t serial[TMINI_SERIAL_DIGITS]; /* Digits as numbers 0 to 9, not characters. */
+    uint8_t model;                       /**< TMINI_MODEL_T_MINI_PLUS, … */
+    uint8_t firmware_major;              /**< As in 1.2: the 1. */
+    uint8_t firmware_minor;              /**< As in 1.2: the 2. */
+    uint8_t hardware;                    /**< Hardware version. */
+    uint8_t serial[TMINI_SERIAL_DIGITS]; /**< Digits as numbers 0 to 9, not characters. */
 } tmini_info_t;
 
-/* Faulty modules. The same bits in a health reply and in CT information (sections 4 and 7). */
+/** Faulty modules. The same bits in a health reply and in CT information (sections 4 and 7). */
 typedef enum {
-    TMINI_FAULT_SENSOR = 1 << 0,
-    TMINI_FAULT_ENCODER = 1 << 1,        /* Rotor blocked, opto-coupler or code disc. */
-    TMINI_FAULT_WIRELESS_POWER = 1 << 2, /* Tested once, at power-up, like the next two. */
-    TMINI_FAULT_PD = 1 << 3,             /* Laser feedback voltage. */
-    TMINI_FAULT_LD = 1 << 4,             /* Laser drive current. */
-    TMINI_FAULT_DATA = 1 << 5,           /* A revolution without one valid range: covered? */
+    TMINI_FAULT_SENSOR = 1 << 0,         /**< The ranging sensor. */
+    TMINI_FAULT_ENCODER = 1 << 1,        /**< Rotor blocked, opto-coupler or code disc. */
+    TMINI_FAULT_WIRELESS_POWER = 1 << 2, /**< Tested once, at power-up, like the next two. */
+    TMINI_FAULT_PD = 1 << 3,             /**< Laser feedback voltage. */
+    TMINI_FAULT_LD = 1 << 4,             /**< Laser drive current. */
+    TMINI_FAULT_DATA = 1 << 5,           /**< A revolution without one valid range: covered? */
 } tmini_fault_t;
 
+/** All faults; the two bits beside them are reserved (section 4). */
 #define TMINI_FAULT_MASK 0x3Fu
 
+/** The answer to a health request (section 4). */
 typedef struct {
-    uint8_t faults;      /* A combination of tmini_fault_t; 0: healthy. */
-    uint16_t error_code; /* Details of the faulty module; undocumented. */
+    uint8_t faults;      /**< A combination of tmini_fault_t; 0: healthy. */
+    uint16_t error_code; /**< Details of the faulty module; undocumented. */
 } tmini_health_t;
 
-/* Writes to `shape` the header of the reply that `command` is answered with. Returns false for the
+/** Writes to `shape` the header of the reply that `command` is answered with. Returns false for the
  * commands that are not answered: stop and reboot. */
 bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *shape);
 
-/* Device information from a reply's 20 bytes. The firmware's minor number comes first: real units
+/** Device information from a reply's 20 bytes. The firmware's minor number comes first: real units
  * do so, against the manual (section 9.4). */
 void tmini_reply_info(const uint8_t content[TMINI_INFO_SIZE], tmini_info_t *info);
 
-/* Health from a reply's 3 bytes. The two reserved bits are left out. */
+/** Health from a reply's 3 bytes. The two reserved bits are left out. */
 void tmini_reply_health(const uint8_t content[TMINI_HEALTH_SIZE], tmini_health_t *health);
 
-/* The scan frequency that is set, in 0.01 Hz, from a reply's 4 bytes. */
+/** The scan frequency that is set, in 0.01 Hz, from a reply's 4 bytes. */
 uint32_t tmini_reply_frequency_chz(const uint8_t content[TMINI_FREQUENCY_SIZE]);
 
-/* The serial number as text: 16 characters and a terminating 0; '?' for what is not a digit. */
+/** The serial number as text: 16 characters and a terminating 0; '?' for what is not a digit. */
 void tmini_serial_text(const tmini_info_t *info, char text[TMINI_SERIAL_DIGITS + 1]);
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A ring of received bytes: the only thing that the receive interrupt and the rest share.
+/** @file
+ * A ring of received bytes: the only thing that the receive interrupt and the rest share.
  *
  * One producer (an interrupt, a DMA channel or a receiving task) and one consumer (the context
  * that parses), without locks. The producer functions are for the producer's context, init is for
@@ -32,22 +33,24 @@
 extern "C" {
 #endif
 
-/* The indices count bytes since init and wrap with size_t; the memory's size is a power of two, so
+/** A ring. Treat the members as private.
+ *
+ * The indices count bytes since init and wrap with size_t; the memory's size is a power of two, so
  * that a count modulo the size is always the right place. An all-zero ring is safe: its head stands
- * at its limit, so it refuses every byte. Treat the members as private. */
+ * at its limit, so it refuses every byte. */
 typedef struct {
-    size_t head;  /* Written by the producer: bytes stored. */
-    size_t limit; /* Written by the consumer: where head must stop, one size ahead of the oldest
+    size_t head;  /**< Written by the producer: bytes stored. */
+    size_t limit; /**< Written by the consumer: where head must stop, one size ahead of the oldest
                       * byte not yet given back. */
-    size_t gate;  /* size - 1 while the ring is open. The producer closes it by writing 0, the
+    size_t gate;  /**< size - 1 while the ring is open. The producer closes it by writing 0, the
                       * consumer opens it; while it is closed, head does not move. */
-    uint8_t *memory;
-    size_t overrun; /* Written by the producer: bytes refused. */
-    size_t size;    /* Of the memory. */
-    size_t window;  /* Unread bytes that are certainly intact: the size, or half of it with DMA. */
+    uint8_t *memory; /**< The caller's. */
+    size_t overrun;  /**< Written by the producer: bytes refused. */
+    size_t size;     /**< Of the memory. */
+    size_t window;   /**< Unread bytes that are certainly intact: the size, with DMA half of it. */
 } tmini_ring_t;
 
-/* Empties the ring over `memory`, which the caller owns and keeps for as long as the ring is used.
+/** Empties the ring over `memory`, which the caller owns and keeps for as long as the ring is used.
  * `size` is a power of two, at least 2. The producer must not run meanwhile.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT (null pointer, wrong size): the ring then refuses every
  * byte. */
@@ -55,14 +58,15 @@ tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size,
 
 /* ----------------------------------------------------------------------- the producer's context */
 
-/* Producer of a CPU-fed ring: bytes found the ring full or closed. */
+/** Producer of a CPU-fed ring: `count` bytes found the ring full or closed. Counts them and closes
+ * it. Interrupt-safe; no loop, no wait. */
 TMINI_INLINE void tmini_ring_refuse(tmini_ring_t *ring, size_t count)
 {
     tmini_store(&ring->overrun, ring->overrun + count);
     tmini_store(&ring->gate, 0); /* Last: whoever sees it closed sees all bytes and the count. */
 }
 
-/* Producer of a CPU-fed ring: stores one byte. Interrupt-safe; no loop, no wait. Raises overrun
+/** Producer of a CPU-fed ring: stores one byte. Interrupt-safe; no loop, no wait. Raises overrun
  * when the ring is full or closed. In the header, because a call would cost as much as the act. */
 TMINI_INLINE void tmini_ring_put(tmini_ring_t *ring, uint8_t byte)
 {
@@ -78,20 +82,21 @@ TMINI_INLINE void tmini_ring_put(tmini_ring_t *ring, uint8_t byte)
     tmini_ring_refuse(ring, 1);
 }
 
-/* Producer of a CPU-fed ring: stores as many of `count` bytes as fit, refuses the rest, and returns
- * how many were stored. Interrupt-safe; two block copies at most. */
+/** Producer of a CPU-fed ring: stores as many of `count` bytes as fit, refuses the rest, and
+ * returns how many were stored. Interrupt-safe; two block copies at most. */
 size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count);
 
-/* Producer of a CPU-fed ring: how many bytes tmini_ring_write() would store now, at least. */
+/** Producer of a CPU-fed ring: how many bytes tmini_ring_write() would store now, at least.
+ * Interrupt-safe; no loop, no wait. */
 size_t tmini_ring_room(const tmini_ring_t *ring);
 
-/* Producer of a DMA ring: the hardware's next write goes to memory[position]; `position` equal to
+/** Producer of a DMA ring: the hardware's next write goes to memory[position]; `position` equal to
  * the size means 0. It must never go back. Call it from the half-transfer, transfer-complete and
  * idle-line interrupts: the first two alone publish half a ring at once, and nothing is left for a
  * packet that has come in part. Interrupt-safe; no loop, no wait. */
 void tmini_ring_publish(tmini_ring_t *ring, size_t position);
 
-/* Producer: bytes were lost on their way here, behind the last one stored, and their number is not
+/** Producer: bytes were lost on their way here, behind the last one stored, and their number is not
  * known: a receiver's queue overflowed, or circular DMA may have gone a whole lap unseen (then call
  * this before publishing). A CPU-fed ring is closed, as after an overrun; of a DMA ring what has
  * not been read yet counts as overwritten, but for the newest half. Interrupt-safe; no loop, no
@@ -100,26 +105,26 @@ void tmini_ring_gap(tmini_ring_t *ring);
 
 /* ----------------------------------------------------------------------- the consumer's context */
 
-/* The number of bytes stored since init, modulo the range of size_t. */
+/** The number of bytes stored since init, modulo the range of size_t. */
 static inline size_t tmini_ring_stored(const tmini_ring_t *ring)
 {
     return tmini_load(&ring->head);
 }
 
-/* The number of bytes given back since init, modulo the range of size_t: where the oldest lies. */
+/** The number of bytes given back since init, modulo the range of size_t: where the oldest lies. */
 static inline size_t tmini_ring_tail(const tmini_ring_t *ring)
 {
     return ring->limit - ring->size;
 }
 
-/* Bytes stored and not yet discarded. More than `window` of them (DMA only) means that the hardware
- * may have overwritten the oldest. */
+/** Bytes stored and not yet discarded. More than `window` of them (DMA only) means that the
+ * hardware may have overwritten the oldest. */
 static inline size_t tmini_ring_unread(const tmini_ring_t *ring)
 {
     return tmini_load(&ring->head) - tmini_ring_tail(ring);
 }
 
-/* The unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger offset reads
+/** The unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger offset reads
  * another byte of the ring's memory, never one outside it. */
 static inline uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 {
@@ -127,7 +132,7 @@ static inline uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
     return ring->memory[(ring->limit + offset) & (ring->size - 1)];
 }
 
-/* True if nothing that has been read so far can have been overwritten. Only DMA can make it
+/** True if nothing that has been read so far can have been overwritten. Only DMA can make it
  * false. */
 static inline bool tmini_ring_intact(const tmini_ring_t *ring)
 {
@@ -135,10 +140,11 @@ static inline bool tmini_ring_intact(const tmini_ring_t *ring)
     return tmini_ring_unread(ring) <= ring->window;
 }
 
-/* Copies `count` unread bytes from `offset` on. */
+/** Copies `count` unread bytes from `offset` on to `bytes`; offset + count is at most
+ * tmini_ring_unread(). Two block copies at most. */
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count);
 
-/* The unread bytes from `offset` on that lie in one piece, so that loops over them need not wrap:
+/** The unread bytes from `offset` on that lie in one piece, so that loops over them need not wrap:
  * at most *count, which becomes how many there are, at least one. */
 static inline const uint8_t *tmini_ring_piece(const tmini_ring_t *ring, size_t offset,
                                               size_t *count)
@@ -151,19 +157,19 @@ static inline const uint8_t *tmini_ring_piece(const tmini_ring_t *ring, size_t o
     return &ring->memory[at];
 }
 
-/* Gives the oldest `count` bytes back to the producer; at most tmini_ring_unread(). */
+/** Gives the oldest `count` bytes back to the producer; at most tmini_ring_unread(). */
 void tmini_ring_discard(tmini_ring_t *ring, size_t count);
 
-/* True if bytes are missing behind the last one stored: the ring is closed. */
+/** True if bytes are missing behind the last one stored: the ring is closed. */
 static inline bool tmini_ring_is_closed(const tmini_ring_t *ring)
 {
     return tmini_load(&ring->gate) == 0;
 }
 
-/* Opens a closed ring again, once everything in it has been discarded. */
+/** Opens a closed ring again, once everything in it has been discarded. */
 void tmini_ring_open(tmini_ring_t *ring);
 
-/* The number of bytes refused since init, modulo the range of size_t. */
+/** The number of bytes refused since init, modulo the range of size_t. */
 static inline size_t tmini_ring_overrun(const tmini_ring_t *ring)
 {
     return tmini_load(&ring->overrun);

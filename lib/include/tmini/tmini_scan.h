@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Scans: the packets of one revolution gathered in the caller's buffer (section 6).
+/** @file
+ * Scans: the packets of one revolution gathered in the caller's buffer (section 6).
  *
  * A scan runs from a start packet to the next one. What precedes the first start packet is no scan.
  * Revolutions are never mixed. If a start packet is lost, the angle swept since the last one tells:
@@ -25,54 +26,54 @@
 extern "C" {
 #endif
 
-/* A buffer of this many points holds any revolution at 6 Hz and above (section 9.7). While the
+/** A buffer of this many points holds any revolution at 6 Hz and above (section 9.7). While the
  * motor comes up to speed, the first ones may have more: those are counted as dropped. */
 #define TMINI_SCAN_POINTS_TYPICAL 800u
 
-/* One revolution. */
+/** One revolution, and how good it is. */
 typedef struct {
-    tmini_point_t *points;    /* The caller's own buffer, in order of arrival. */
-    uint16_t count;           /* Points in the buffer. */
-    uint16_t dropped;         /* Points that did not fit in it. */
-    uint16_t packets;         /* Packets received of this revolution. */
-    uint16_t gaps;            /* Places where bytes were lost or damaged: packets may be missing. */
-    uint16_t checksum_errors; /* While it was received, modulo 2^16. */
-    uint16_t frequency_chz;   /* Measured, 0.01 Hz, from the start packet after it; 0: unknown. */
-    uint32_t start_ms;        /* The port's clock when its start packet came, and */
-    uint32_t end_ms;          /* when the packet came that ended it. */
-    bool complete;            /* A full circle to the next start packet, no gap, nothing dropped. */
+    tmini_point_t *points;    /**< The caller's own buffer, in order of arrival. */
+    uint16_t count;           /**< Points in the buffer. */
+    uint16_t dropped;         /**< Points that did not fit in it. */
+    uint16_t packets;         /**< Packets received of this revolution. */
+    uint16_t gaps;            /**< Places where bytes were lost or damaged: packets may lack. */
+    uint16_t checksum_errors; /**< While it was received, modulo 2^16. */
+    uint16_t frequency_chz;   /**< Measured, 0.01 Hz, from the start packet after it; 0: unknown. */
+    uint32_t start_ms;        /**< The port's clock when its start packet came, and */
+    uint32_t end_ms;          /**< when the packet came that ended it. */
+    bool complete;            /**< A full circle to the next start packet; no gap, none dropped. */
 } tmini_scan_t;
 
-/* Treat the members as private, but for `scan` as documented below. */
+/** A scan under way. Treat the members as private, but for `scan` as documented below. */
 typedef struct {
-    uint8_t filter;
-    bool open;
-    uint16_t capacity;
-    uint16_t previous_angle_q6; /* Where the last packet ended. */
-    uint16_t errors_before;     /* The parser's checksum errors when the scan began, modulo 2^16. */
-    int16_t swept_q6;           /* Angle swept since the start packet: -4 to 360 degrees. */
-    tmini_scan_t scan;
+    uint8_t filter;             /**< A combination of tmini_filter_t. */
+    bool open;                  /**< A scan is under way. */
+    uint16_t capacity;          /**< Points that the buffer has room for. */
+    uint16_t previous_angle_q6; /**< Where the last packet ended. */
+    uint16_t errors_before;     /**< The parser's checksum errors when it began, modulo 2^16. */
+    int16_t swept_q6;           /**< Angle swept since the start packet: -4 to 360 degrees. */
+    tmini_scan_t scan;          /**< What there is of it. */
 } tmini_scan_builder_t;
 
-/* Gathers into `buffer`, which has room for `capacity` points and stays the caller's; applies
+/** Gathers into `buffer`, which has room for `capacity` points and stays the caller's; applies
  * `filter`, a combination of tmini_filter_t. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null
  * pointer, capacity 0 or above 65535, undefined filter bits. */
 tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buffer,
                                size_t capacity, unsigned filter);
 
-/* Forgets the scan under way: what comes next does not continue it. */
+/** Forgets the scan under way: what comes next does not continue it. */
 void tmini_scan_discard(tmini_scan_builder_t *builder);
 
-/* If `packet`, which came at `now_ms`, no longer belongs to the scan under way, finishes that scan
+/** If `packet`, which came at `now_ms`, no longer belongs to the scan under way, finishes that scan
  * and returns true: builder->scan is then valid until tmini_scan_add() is called for the same
  * packet. */
 bool tmini_scan_close(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
 
-/* Something outside the packets proves that one of the scan under way was lost (LastCRC, section
+/** Something outside the packets proves that one of the scan under way was lost (LastCRC, section
  * 7): it has a gap and is not complete. Call it before tmini_scan_close(). */
 void tmini_scan_refute(tmini_scan_builder_t *builder);
 
-/* Adds `packet` to the scan under way; a start packet begins one, at `now_ms`. A packet that DMA
+/** Adds `packet` to the scan under way; a start packet begins one, at `now_ms`. A packet that DMA
  * overwrote meanwhile leaves a gap, never a wrong point. Call tmini_scan_close() before. */
 void tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
 

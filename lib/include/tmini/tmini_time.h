@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Optional: when each point of a scan was measured, for compensating the robot's own motion.
+/** @file
+ * Optional: when each point of a scan was measured, for compensating the robot's own motion.
  * Integers only; nothing else in the library needs it.
  *
  * How well it is known: a scan's start_ms and end_ms are the times at which its start packet and
@@ -22,11 +23,11 @@
 extern "C" {
 #endif
 
-/* How long the revolution took, in milliseconds: by the clock if the scan is complete, else by the
+/** How long the revolution took, in milliseconds: by the clock if the scan is complete, else by the
  * frequency that the lidar measured; 0 if that is not known either. */
 uint32_t tmini_scan_period_ms(const tmini_scan_t *scan);
 
-/* When point `index` (below scan->count) was measured, in microseconds after scan->start_ms: by
+/** When point `index` (below scan->count) was measured, in microseconds after scan->start_ms: by
  * its angle, or, when the period is not known, by its place at 4000 samples a second (section
  * 1). Two divisions. */
 uint32_t tmini_point_time_us(const tmini_scan_t *scan, size_t index);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Optional: the library's integers as floats in degrees, radians, hertz and metres. The only place
+/** @file
+ * Optional: the library's integers as floats in degrees, radians, hertz and metres. The only place
  * with floats; nothing else includes it, and it needs neither a C library nor an FPU. */
 
 #ifndef TMINI_UNITS_H
@@ -17,22 +18,23 @@
 extern "C" {
 #endif
 
+/** The circle's constant, as a float. */
 #define TMINI_PI 3.14159265358979f
 
-/* An angle of the lidar, clockwise from its front, in degrees: 0 to 359.98. Exact. */
+/** An angle of the lidar, clockwise from its front, in degrees: 0 to 359.98. Exact. */
 static inline float tmini_degrees(uint16_t angle_q6)
 {
     return (float)angle_q6 / 64.0f;
 }
 
-/* The same in radians, still clockwise: 0 to 2 pi. */
+/** An angle of the lidar in radians, still clockwise: 0 to 2 pi. */
 static inline float tmini_radians(uint16_t angle_q6)
 {
     return (float)angle_q6 * (2.0f * TMINI_PI / (float)TMINI_FULL_CIRCLE_Q6);
 }
 
-/* The same as ROS counts: counter-clockwise from straight ahead, in radians, -pi to pi. Then
- * x = range * cos(angle) points ahead and y = range * sin(angle) to the left. */
+/** An angle of the lidar as ROS counts: counter-clockwise from straight ahead, in radians, -pi to
+ * pi. Then x = range * cos(angle) points ahead and y = range * sin(angle) to the left. */
 static inline float tmini_ros_radians(uint16_t angle_q6)
 {
     const uint16_t half = (uint16_t)(TMINI_FULL_CIRCLE_Q6 / 2u);
@@ -40,35 +42,38 @@ static inline float tmini_ros_radians(uint16_t angle_q6)
                             : tmini_radians((uint16_t)(TMINI_FULL_CIRCLE_Q6 - angle_q6));
 }
 
+/** A frequency of the library, in 0.01 Hz, in hertz. */
 static inline float tmini_hertz(uint16_t frequency_chz)
 {
     return (float)frequency_chz / 100.0f;
 }
 
+/** A distance of the library, in millimetres, in metres. 0 stays 0: no valid range. */
 static inline float tmini_metres(uint16_t distance_mm)
 {
     return (float)distance_mm / 1000.0f;
 }
 
-/* For ranges from tmini_ranges.h: the angle of bin 0, and from bin to bin; a LaserScan's angle_min
- * and angle_increment. */
+/** For ranges from tmini_ranges.h: the angle of bin 0 in radians; a LaserScan's angle_min. */
 static inline float tmini_ranges_angle_min(void)
 {
     return -TMINI_PI;
 }
 
+/** For ranges from tmini_ranges.h: the angle from bin to bin in radians, of `count` bins (not 0); a
+ * LaserScan's angle_increment. */
 static inline float tmini_ranges_increment(size_t count)
 {
     return 2.0f * TMINI_PI / (float)count;
 }
 
-/* A LaserScan's scan_time, in seconds; 0 if it is not known. */
+/** A LaserScan's scan_time, in seconds; 0 if it is not known. */
 static inline float tmini_ranges_scan_time(const tmini_scan_t *scan)
 {
     return (float)tmini_scan_period_ms(scan) / 1000.0f;
 }
 
-/* A LaserScan's time_increment, in seconds from bin to bin: negative, because the bins run
+/** A LaserScan's time_increment, in seconds from bin to bin: negative, because the bins run
  * counter-clockwise and the rotor clockwise. Bin 0, behind the lidar, is measured half a period
  * after the scan's start_ms, bin count / 2 at its beginning; the bins beyond, on the left, a
  * period later than this says: at its end. */
@@ -77,18 +82,20 @@ static inline float tmini_ranges_time_increment(const tmini_scan_t *scan, size_t
     return -tmini_ranges_scan_time(scan) / (float)count;
 }
 
-/* A LaserScan's range_min and range_max, in metres (section 1). */
+/** A LaserScan's range_min, in metres (section 1). */
 static inline float tmini_range_min(void)
 {
     return (float)TMINI_RANGE_MIN_MM / 1000.0f;
 }
 
+/** A LaserScan's range_max, in metres (section 1). */
 static inline float tmini_range_max(void)
 {
     return (float)TMINI_RANGE_MAX_MM / 1000.0f;
 }
 
-/* Ranges in metres; where nothing was measured, `missing`: in ROS INFINITY or NAN. */
+/** Writes `count` ranges in metres to `ranges_m`; where nothing was measured, `missing`: in ROS
+ * INFINITY or NAN. */
 static inline void tmini_ranges_metres(const uint16_t *ranges_mm, size_t count, float missing,
                                        float *ranges_m)
 {

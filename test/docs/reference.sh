@@ -1,0 +1,33 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# Every public symbol is documented: doxygen reads the headers of the library and of the ports
+# without a warning. The reference is left in the folder given:
+#
+#   test/docs/reference.sh [FOLDER]
+
+set -eu
+
+root=$(cd "$(dirname "$0")/../.." && pwd)
+folder=${1:-$root/build-reference}
+mkdir -p "$folder"
+folder=$(cd "$folder" && pwd)
+
+command -v doxygen >/dev/null || { echo "SKIPPED: doxygen is not installed"; exit 77; }
+
+cd "$root"
+complaints=$({
+    cat docs/Doxyfile
+    echo "OUTPUT_DIRECTORY = \"$folder\""
+} | doxygen - 2>&1) || true
+if [ -n "$complaints" ]; then
+    printf '%s\n' "$complaints"
+    exit 1
+fi
+
+# That nothing is complained of must not be because nothing has been read.
+for symbol in tmini_poll tmini_ranges_of_scan tmini_stm32_hal_start tmini_esp32_receive TMiniLidar; do
+    grep -qr "$symbol" "$folder/html" || { echo "not in the reference: $symbol"; exit 1; }
+done
+echo "every public symbol is documented"
