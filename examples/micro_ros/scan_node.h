@@ -49,7 +49,7 @@ void scan_node_init(scan_node_t *node, tmini_t *lidar, const tmini_config_t *con
 
 /* Does what is due; call it again and again, in the one context that polls the lidar. It waits for
  * the agent, but never longer than SCAN_NODE_WAIT_MS at a time, and the lidar's receive buffer must
- * hold that long: 2048 bytes hold 156 ms. (Only connecting takes longer, as micro-ROS was built: up
+ * hold that long: 2048 bytes hold 83 ms. (Only connecting takes longer, as micro-ROS was built: up
  * to seconds.) */
 void scan_node_step(scan_node_t *node);
 

@@ -56,7 +56,7 @@ typedef struct {
     uint tx_pin;       /**< The GPIO wired to the lidar's RX. */
     uint rx_pin;       /**< The GPIO wired to the lidar's TX. */
     uint8_t *ring;     /**< TMINI_PICO_RING(), for DMA; NULL: an interrupt. */
-    size_t ring_size;  /**< A power of two from 256 to 32768; 1024 bytes last 41 ms. */
+    size_t ring_size;  /**< A power of two from 256 to 32768; 1024 bytes last 43 ms. */
 } tmini_pico_wiring_t;
 
 /** What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. */

@@ -228,17 +228,16 @@ def conversation(target, program, clean, faulty, hostile):
 
 
 def overrun(target, program, stream, rx_size, dma, pause_ms):
-    """Bytes lost when a packet comes every 10 ms at the line's full rate, and one poll every
-    `pause_ms` finds them."""
+    """Bytes lost when the line never pauses and one poll every `pause_ms` finds them."""
     session = Session(target, program, "dma" if dma else "blocks", rx_size=rx_size)
     session.spin_up()
-    bytes_a_ms = LINE_BYTES_A_TICK // TICK_MS
-    for at in range(0, len(stream), BYTES_A_TICK):
-        packet = stream[at:at + BYTES_A_TICK]
-        for ms in range(TICK_MS):
-            session.receive(packet[ms * bytes_a_ms:(ms + 1) * bytes_a_ms], 1)
-            if session.now_ms % pause_ms == 0:
-                session.tick(milliseconds=0)
+    begin, at = session.now_ms, 0
+    while at < len(stream):
+        end = int((session.now_ms + 1 - begin) * load.LINE_BYTES_A_MS)
+        session.receive(stream[at:end], 1)
+        at = end
+        if session.now_ms % pause_ms == 0:
+            session.tick(milliseconds=0)
     return session.counters()[5]
 
 

@@ -12,7 +12,7 @@ CYCLES_AN_INTERRUPT = 40
 POLLS_A_SECOND = 1000
 
 SAMPLES_A_SECOND = 4000
-RINGS = (256, 512, 1024, 2048)
+RINGS = (256, 512, 1024, 2048, 4096)
 LINE_BYTES_A_MS = 23.04
 FULL_PACKET = 130
 
@@ -42,10 +42,7 @@ def percent(figures, megahertz, feed):
 
 
 def longest_pause_ms(ring, dma):
-    """How long a buffer lasts between polls: what is left of it (of its half, with DMA) beside an
-    incomplete packet, filled at the mean rate, when a packet has just begun to come at the line's
-    full rate."""
+    """How long a buffer lasts between polls, whatever the line does: what is left of it (of its
+    half, with DMA) beside an incomplete packet, filled at the line's full rate."""
     usable = (ring // 2 if dma else ring) - (FULL_PACKET - 1)
-    rate = bytes_a_second(6) / 1000
-    burst = FULL_PACKET * (1 - rate / LINE_BYTES_A_MS)
-    return max(0.0, (usable - burst) / rate)
+    return max(0.0, usable / LINE_BYTES_A_MS)

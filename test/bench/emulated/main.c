@@ -7,7 +7,7 @@
 
 #include "tmini/tmini.h"
 
-#define RX_SIZE 2048
+#define RX_SIZE 4096
 
 tmini_t bench_lidar;
 uint8_t bench_rx[RX_SIZE];
