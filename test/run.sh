@@ -60,6 +60,8 @@ wish_for_machines() {
 # What the documents are checked with.
 wish_for_documents() {
     wish doxygen doxygen
+    wish shellcheck shellcheck
+    wish dtc device-tree-compiler
 }
 
 prepare_python_tools() {

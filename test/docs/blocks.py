@@ -1,0 +1,339 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""Every block of code in every document is compiled, configured, parsed or run; and every use of the
+tool that documents show is one that the tool knows.
+
+    blocks.py BUILD COMPILER [C++-COMPILER]
+
+BUILD is a built build folder. Exit status: 0 all is in order, 1 not; every mistake is told, and so
+is what could not be checked, and why.
+"""
+
+import configparser
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import tools
+from documents import ROOT, documents, indented_blocks, name, parse
+
+# Not checked, whatever is in them.
+UNCHECKED = {
+    "text": "what a program prints, a drawing or a formula: nothing to compile",
+}
+
+WARNINGS = ["-Wall", "-Wextra", "-Werror", "-Wno-unused", "-Wno-unused-parameter"]
+C = ["-std=c99", "-Ilib/include"]
+CXX = ["-std=c++11", "-Ilib/include"]
+
+
+def stand_ins(*folders):
+    """The tests' stand-ins for platforms; what they do oddly is not the documents' concern."""
+    return [word for folder in folders for word in ("-isystem", folder)]
+
+
+def prelude(header):
+    return ["-Itest/docs/prelude", "-include", f"test/docs/prelude/{header}.h"]
+
+
+HAL = ["-Iport/stm32", *stand_ins("test/port/stm32/stm32_model"), "-DSTM32_MODEL_SR",
+       "-DSTM32_MODEL_STREAMS", "-DSTM32_MODEL_YEAR=2024"]
+KERNEL = ["-Iport/freertos", *stand_ins("test/port/freertos/kernel_stub")]
+STM32 = [*C, *HAL, *KERNEL, *prelude("stm32"), "-Wno-pointer-to-int-cast"]
+ESP_IDF = [*C, "-Iport/esp32", *stand_ins("test/port/esp32/esp_idf"), *prelude("board")]
+ARDUINO = [*CXX, "-Iport/arduino", *stand_ins("test/port/arduino/arduino_stub"),
+           "-DARDUINO=10819", "-DESP32", "-DESP_ARDUINO_VERSION_MAJOR=3"]
+FREERTOS = [*C, *KERNEL, *prelude("board")]
+ZEPHYR = [*C, "-Iport/zephyr", *stand_ins("test/port/zephyr/zephyr_stub"), *prelude("board")]
+PICO = [*C, "-std=gnu99", "-Iport/pico", *stand_ins("test/port/pico/sdk_stub"), *prelude("board")]
+MICRO_ROS = [*C, "-Iexamples/micro_ros", *stand_ins("test/port/micro_ros/micro_ros_stub")]
+BOARD = [*C, *prelude("board")]
+
+# How programs are compiled, by document, and by section where that matters; else as BOARD.
+CONTEXTS = {
+    "docs/ecosystems.md#STM32Cube": [*C, *HAL],
+    "docs/ecosystems.md#Arduino": ARDUINO,
+    "docs/ecosystems.md#ESP-IDF": ESP_IDF,
+    "docs/ecosystems.md#Zephyr": ZEPHYR,
+    "docs/ecosystems.md#FreeRTOS": FREERTOS,
+    "docs/ecosystems.md#Raspberry Pi Pico": PICO,
+    "docs/ecosystems.md#micro-ROS": MICRO_ROS,
+    "examples/micro_ros/README.md": [*MICRO_ROS, *prelude("micro_ros")],
+    "examples/stm32_cube/README.md": [*C, *HAL, *prelude("cube")],
+    "port/README.md": [*C, "-Iport/template", *prelude("template")],
+    "port/arduino/README.md": ARDUINO,
+    "port/esp32/README.md": ESP_IDF,
+    "port/freertos/README.md": FREERTOS,
+    "port/pico/README.md": PICO,
+    "port/stm32/README.md": STM32,
+    "port/stm32/README.md#With registers or LL": [*STM32, "-DREGISTERS"],
+    "port/stm32/README.md#By DMA": [*STM32, "-DREGISTERS", "-DBY_DMA"],
+    "port/stm32/README.md#Where the buffer may lie": [*STM32, "-DH7"],
+    "port/stm32/README.md#Two lidars": [*STM32, "-DTWO_LIDARS"],
+    "port/stm32/README.md#With an RTOS": [*STM32, "-DRTOS"],
+    "port/zephyr/README.md": ZEPHYR,
+    "test/simulator/README.md": [*C, "-Itest/simulator", "-Itest/support", *prelude("a_test")],
+}
+
+# Zephyr's own settings; the others must be in a Kconfig of this project.
+ZEPHYR_SETTINGS = ("CONFIG_SERIAL",)
+
+# Macros that define something, and so are no statements.
+DEFINING = ("TMINI_PICO_RING",)
+
+
+class Failed(Exception):
+    """A block is wrong."""
+
+
+class Missing(Exception):
+    """A block cannot be checked here."""
+
+
+def run(*command, **options):
+    result = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                            check=False, **options)
+    if result.returncode != 0:
+        raise Failed(result.stdout.strip())
+    return result.stdout
+
+
+def need(program):
+    found = shutil.which(program)
+    if not found:
+        raise Missing(f"{program} is not installed")
+    return found
+
+
+# ---------------------------------------------------------------------------------- C and C++
+
+
+def items(text):
+    """Splits a program into its items at the outermost level, each as (number of line, text)."""
+    found, lines, depth, first = [], [], 0, 1
+    for number, line in enumerate(text.splitlines(), 1):
+        if not lines:
+            first = number
+        lines.append(line)
+        code = re.sub(r"/\*.*?\*/|//.*|\"(\\.|[^\"])*\"|'(\\.|[^'])'", "", line)
+        depth += len(re.findall(r"[({\[]", code)) - len(re.findall(r"[)}\]]", code))
+        comment_open = "\n".join(lines).count("/*") > "\n".join(lines).count("*/")
+        ends = not code.strip() or code.rstrip().endswith((";", "}")) or code.startswith("#")
+        if depth == 0 and ends and not comment_open:
+            found.append((first, "\n".join(lines)))
+            lines = []
+    if lines:
+        found.append((first, "\n".join(lines)))
+    return found
+
+
+def is_statement(item):
+    code = re.sub(r"/\*.*?\*/|//[^\n]*", "", item, flags=re.DOTALL).strip()
+    if not code or code.startswith("#") or code.startswith(DEFINING):
+        return False
+    if re.match(r"(static|extern|typedef|struct|enum|union)\b", code):
+        return False
+    if re.match(r"(if|for|while|switch|do|return)\b", code):
+        return True
+    if re.match(r"[\w\s*]+\([^;{]*\)\s*\{", code):
+        return False
+    # A declaration without a value, or a function's.
+    return not re.match(r"[A-Za-z_]\w*[\s*]+\w+(\[[^]]*\]|\([^()]*\))?;$", code)
+
+
+def program(block):
+    """The block as something to compile: its statements become the body of a function."""
+    outside, inside = [], []
+    for number, item in items(block.text):
+        line = f'#line {block.number + number - 1} "{name(block.path)}"'
+        (inside if is_statement(item) else outside).append(f"{line}\n{item}")
+    if inside:
+        outside += ["void statements(void);", "void statements(void)", "{", *inside, "}"]
+    return "\n".join(outside) + "\n"
+
+
+def check_c(block, place, language="c"):
+    compiler = place.compilers[language]
+    if not compiler:
+        raise Missing(f"there is no compiler for {language}")
+    document = name(block.path)
+    flags = CONTEXTS.get(f"{document}#{block.section}") or CONTEXTS.get(document) or BOARD
+    text = program(block) if language == "c" else block.text
+    run(compiler, "-fsyntax-only", *WARNINGS, *flags, "-x", language, "-", input=text, cwd=ROOT)
+
+
+def check_cxx(block, place):
+    check_c(block, place, "c++")
+
+
+# -------------------------------------------------------------------------------------- CMake
+
+CMAKE_BEFORE = """cmake_minimum_required(VERSION 3.16)
+project(my_project C)
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/main.c "int main(void) { return 0; }")
+foreach(executable my_project my_program firmware)
+    add_executable(${executable} ${CMAKE_CURRENT_BINARY_DIR}/main.c)
+endforeach()
+# The Pico SDK's.
+foreach(library hardware_dma hardware_gpio hardware_irq hardware_sync hardware_uart pico_time)
+    add_library(${library} INTERFACE)
+endforeach()
+"""
+
+LIBRARY = re.compile(r"\b(add_subdirectory|FetchContent_MakeAvailable|find_package|include)\(")
+USE = "target_link_libraries("
+
+
+def installed(place):
+    """Where this build has been installed, for find_package()."""
+    prefix = place.folder / "installed"
+    if not prefix.exists():
+        run("cmake", "--install", place.build, "--prefix", prefix)
+    return prefix
+
+
+def check_cmake(block, place):
+    """Configures a project of which the block is the end."""
+    project = place.folder / f"cmake-{block.number}"
+    shutil.rmtree(project, ignore_errors=True)
+    (project / "third_party").mkdir(parents=True)
+    (project / "third_party" / "tmini").symlink_to(ROOT, target_is_directory=True)
+    (project / "Core" / "Src").mkdir(parents=True)
+    shutil.copy(ROOT / "examples/stm32_cube/lidar.c", project / "Core" / "Src")
+    text = block.text
+    for shown in ("/path/to/tmini", "path/to/tmini"):
+        text = text.replace(shown, "${CMAKE_CURRENT_SOURCE_DIR}/third_party/tmini")
+    if not LIBRARY.search(text):
+        text = "add_subdirectory(third_party/tmini)\n" + text
+    if USE not in text and "include(" not in text.replace("include(FetchContent)", ""):
+        text += "target_link_libraries(firmware PRIVATE tmini::tmini)\n"
+    (project / "CMakeLists.txt").write_text(CMAKE_BEFORE + text)
+    run("cmake", "-S", project, "-B", project / "build", f"-DFETCHCONTENT_SOURCE_DIR_TMINI={ROOT}",
+        f"-DCMAKE_PREFIX_PATH={installed(place)}", f"-DCMAKE_C_COMPILER={place.compilers['c']}")
+
+
+# ---------------------------------------------------------------------------------- the others
+
+
+def check_sh(block, _place):
+    run("sh", "-n", input=block.text)
+    # Files are the reader's; what is assigned or exported is used by programs that follow.
+    run(need("shellcheck"), "-s", "sh", "-e", "SC2034,SC2164", "-", input=block.text)
+    for option in re.findall(r"-D([A-Z_]+)=", block.text):
+        if option.startswith(("CMAKE_", "PICO_")):
+            continue
+        if not any(option in path.read_text(encoding="utf-8")
+                   for path in [*ROOT.glob("**/CMakeLists.txt"), *ROOT.glob("**/*.[ch]")]
+                   if "build" not in path.relative_to(ROOT).parts[0]):
+            raise Failed(f"nothing of this project knows {option}")
+
+
+def check_ini(block, _place):
+    parser = configparser.ConfigParser()
+    parser.read_string("[env]\n" + block.text)
+    for key in parser["env"]:
+        if not re.fullmatch(r"\w+", key):
+            raise Failed(f"no option: {key}")
+
+
+def check_json(block, _place):
+    for line in block.text.splitlines():
+        json.loads(line)
+
+
+def check_yaml(block, _place):
+    # Python's standard library reads no YAML; Ruby's does.
+    run(need("ruby"), "-ryaml", "-e", "YAML.load($stdin.read)", input=block.text)
+
+
+def check_conf(block, _place):
+    known = "".join(path.read_text(encoding="utf-8") for path in (
+        ROOT / "Kconfig", ROOT / "port/zephyr/Kconfig"))
+    for line in block.text.splitlines():
+        setting = re.fullmatch(r"(CONFIG_(\w+))=(y|n|\d+|0x[0-9a-fA-F]+|\"[^\"]*\")", line)
+        if not setting:
+            raise Failed(f"no setting: {line}")
+        if setting[1] not in ZEPHYR_SETTINGS and \
+                not re.search(rf"config {setting[2]}$", known, re.MULTILINE):
+            raise Failed(f"no such setting: {setting[1]}")
+
+
+def check_dts(block, _place):
+    compatible = re.findall(r'compatible = "([^"]*)"', block.text)
+    for named in compatible:
+        if not (ROOT / f"port/zephyr/dts/bindings/sensor/{named}.yaml").exists():
+            raise Failed(f"there is no binding for {named}")
+    board = "/dts-v1/;\n/ { uart0: uart-0 {}; uart1: uart-1 {}; };\n"
+    run(need("dtc"), "-q", "-o", os.devnull, "-", input=board + block.text)
+
+
+def check_ld(block, place):
+    script = place.folder / f"{block.number}.ld"
+    script.write_text("MEMORY { RAM_D2 : ORIGIN = 0x30000000, LENGTH = 288K }\n"
+                      "SECTIONS {\n" + block.text + "}\n")
+    run(need("ld"), "-r", "-T", script, "-o", os.devnull, "-b", "binary", script)
+
+
+CHECKS = {"c": check_c, "cpp": check_cxx, "cmake": check_cmake, "sh": check_sh, "ini": check_ini,
+          "json": check_json, "yaml": check_yaml, "conf": check_conf, "dts": check_dts,
+          "ld": check_ld}
+
+
+class Place:
+    """Where to build, and with what."""
+
+    def __init__(self, build, compiler, cxx_compiler):
+        self.build = Path(build).resolve()
+        self.compilers = {"c": compiler, "c++": cxx_compiler}
+        self.folder = self.build / "test" / "docs" / "blocks"
+        self.folder.mkdir(parents=True, exist_ok=True)
+        shutil.rmtree(self.folder / "installed", ignore_errors=True)
+
+
+def check(block, place):
+    """Returns what is wrong with a block, and why it has not been looked at, if so."""
+    if block.language in UNCHECKED:
+        return None, UNCHECKED[block.language]
+    if block.language not in CHECKS:
+        return f"{block}: no check for the language \"{block.language}\"", None
+    try:
+        CHECKS[block.language](block, place)
+    except Failed as failure:
+        return f"{block}: {failure}", None
+    except (configparser.Error, json.JSONDecodeError) as failure:
+        return f"{block}: {failure}", None
+    except Missing as reason:
+        return None, str(reason)
+    return None, None
+
+
+def main():
+    place = Place(sys.argv[1], sys.argv[2], sys.argv[3] if len(sys.argv) > 3 else None)
+    complaints, unchecked, checked = [], {}, 0
+    for path in documents():
+        blocks, prose = parse(path)
+        complaints += [f"{name(path)}:{number}: code without a fence and a language"
+                       for number in indented_blocks(prose)]
+        for block in blocks:
+            wrong, reason = check(block, place)
+            if wrong:
+                complaints.append(wrong)
+            elif reason:
+                unchecked.setdefault(reason, []).append(str(block))
+            else:
+                checked += 1
+    complaints += tools.check(place.build)
+    for reason, places in unchecked.items():
+        print(f"not checked, {reason}: {', '.join(places)}")
+    if checked < 40:
+        complaints.append(f"only {checked} blocks have been found: is this check still one?")
+    print("\n".join(complaints) or f"all of {checked} blocks are in order")
+    sys.exit(1 if complaints else 0)
+
+
+main()

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""The documents of the project, for the checks in this folder: where they are, what is in them."""
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+FENCE = re.compile(r"^( *)(`{3,}|~{3,}) *([^`]*)$")
+HEADING = re.compile(r"^#+ +(.*?) *#*$")
+
+
+def is_ours(folder):
+    return not folder.startswith("build") and folder not in (".git", ".pio", "managed_components")
+
+
+def documents():
+    """All documents but those in build folders, as paths."""
+    return [path for path in sorted(ROOT.rglob("*.md"))
+            if all(is_ours(folder) for folder in path.relative_to(ROOT).parts[:-1])]
+
+
+def name(path):
+    return path.relative_to(ROOT).as_posix()
+
+
+class Block:
+    """A block of code: its language, "" if it names none, the section that it stands in, the number
+    of its first line, and its text."""
+
+    def __init__(self, path, section, number, language, lines):
+        self.path, self.section, self.number, self.language = path, section, number, language
+        self.text = "\n".join(lines) + "\n"
+
+    def __str__(self):
+        return f"{name(self.path)}:{self.number}"
+
+
+def parse(path):
+    """Returns a document's blocks of code, and its other lines as (number, line)."""
+    blocks, prose = [], []
+    section, opened = "", None
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        fence = FENCE.match(line)
+        if opened is None:
+            if fence:
+                opened, lines, first = fence, [], number + 1
+                continue
+            heading = HEADING.match(line)
+            section = heading[1] if heading else section
+            prose.append((number, line))
+        elif fence and fence[2].startswith(opened[2]) and not fence[3]:
+            blocks.append(Block(path, section, first, opened[3].strip(), lines))
+            opened = None
+        else:
+            indent = len(opened[1])
+            lines.append(line[indent:] if not line[:indent].strip() else line)
+    if opened is not None:
+        blocks.append(Block(path, section, first, "unclosed", lines))
+    return blocks, prose
+
+
+def indented_blocks(prose):
+    """The numbers of lines that begin a block of code by being indented."""
+    found, before, in_list = [], "", False
+    for number, line in prose:
+        if re.match(r" {0,3}([-*+]|\d+\.) ", line):
+            in_list = True
+        elif line.strip() and not line.startswith(" "):
+            in_list = False
+        follows = not before.strip() or HEADING.match(before)
+        if line.startswith("    ") and line.strip() and follows and not in_list:
+            found.append(number)
+        before = line
+    return found
+
+
+def anchor(heading):
+    """What a heading is linked to by."""
+    text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading)
+    text = re.sub(r"[`*]", "", text).strip().lower()
+    return re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", text))
+
+
+def anchors(path):
+    """All that can be linked to within a document."""
+    found = []
+    for _, line in parse(path)[1]:
+        heading = HEADING.match(line)
+        if heading:
+            plain = anchor(heading[1])
+            count = sum(re.fullmatch(re.escape(plain) + r"(-\d+)?", other) is not None
+                        for other in found)
+            found.append(f"{plain}-{count}" if count else plain)
+        found += re.findall(r'<a (?:id|name)="([^"]+)"', line)
+    return found

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What programs in the documents take for granted of a board and of the reader's own program.
+ * Registers are named and laid out as by the makers of the chips. */
+
+#ifndef BOARD_H
+#define BOARD_H
+
+#include "tmini/tmini.h"
+
+/* A USART of an STM32F1, F2, F4 or L1. */
+typedef struct {
+    volatile uint32_t SR;
+    volatile uint32_t DR;
+    volatile uint32_t BRR;
+    volatile uint32_t CR1;
+    volatile uint32_t CR2;
+    volatile uint32_t CR3;
+} board_usart_t;
+
+#define USART_SR_ORE (1u << 3)
+#define USART_SR_RXNE (1u << 5)
+
+extern board_usart_t *const USART1;
+
+extern const tmini_port_t board_port;
+extern int board_uart;
+
+/* The reader's own. */
+void avoid_obstacles(const tmini_scan_t *scan);
+void signal_fault(uint8_t faults);
+void use(const tmini_scan_t *scan);
+void handle(tmini_event_t event);
+void stop_the_robot(void);
+void sleep_ms(uint32_t milliseconds);
+int uart_write(void *uart, const uint8_t *bytes, size_t count);
+size_t uart_take(uint8_t *bytes, size_t size, int *overrun);
+
+#endif

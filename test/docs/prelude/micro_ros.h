@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What examples/micro_ros/README.md takes for granted: a lidar that has been set up. */
+
+#include "board.h"
+#include "scan_node.h"
+
+extern tmini_t lidar;
+extern const tmini_config_t config;

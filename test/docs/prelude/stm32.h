@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What port/stm32/README.md takes for granted: a CubeMX project, CMSIS, LL drivers and an RTOS. ST's
+ * functions and constants are declared as ST documents them, without their values. */
+
+#ifndef STM32_PRELUDE_H
+#define STM32_PRELUDE_H
+
+#include "FreeRTOS.h"
+#include "board.h"
+#include "main.h"
+#include "task.h"
+#include "tmini_stm32_hal.h"
+#include "tmini_stm32_usart.h"
+
+extern tmini_t lidar;
+extern const tmini_config_t config;
+extern UART_HandleTypeDef huart1;
+
+#ifdef TWO_LIDARS
+extern tmini_stm32_hal_t left_port;
+extern tmini_stm32_hal_t right_port;
+#endif
+
+#ifdef RTOS
+extern tmini_stm32_hal_t port;
+extern TaskHandle_t lidar_task;
+void vTaskNotifyGiveFromISR(TaskHandle_t task, BaseType_t *woken);
+uint32_t ulTaskNotifyTake(BaseType_t clear, TickType_t ticks);
+int osDelay(uint32_t ticks); /* CMSIS-RTOS2 */
+#endif
+
+#ifdef REGISTERS
+extern uint8_t rx[1024];
+
+typedef enum {
+    USART1_IRQn = 37,
+    DMA2_Stream2_IRQn = 58,
+} IRQn_Type;
+void NVIC_EnableIRQ(IRQn_Type interrupt);
+
+typedef struct {
+    volatile uint32_t CR;
+    volatile uint32_t NDTR;
+} DMA_Stream_TypeDef;
+
+typedef struct {
+    volatile uint32_t LISR;
+} DMA_TypeDef;
+
+#ifdef BY_DMA
+extern tmini_stm32_usart_t port;
+#endif
+
+extern DMA_TypeDef *const DMA2;
+extern DMA_Stream_TypeDef *const DMA2_Stream2;
+
+extern const uint32_t LL_AHB1_GRP1_PERIPH_DMA2;
+extern const uint32_t LL_DMA_STREAM_2;
+extern const uint32_t LL_DMA_CHANNEL_4;
+extern const uint32_t LL_DMA_DIRECTION_PERIPH_TO_MEMORY;
+extern const uint32_t LL_DMA_MODE_CIRCULAR;
+extern const uint32_t LL_DMA_MEMORY_INCREMENT;
+extern const uint32_t LL_DMA_PDATAALIGN_BYTE;
+extern const uint32_t LL_DMA_MDATAALIGN_BYTE;
+
+void LL_AHB1_GRP1_EnableClock(uint32_t periphs);
+void LL_DMA_SetChannelSelection(DMA_TypeDef *dma, uint32_t stream, uint32_t channel);
+void LL_DMA_ConfigTransfer(DMA_TypeDef *dma, uint32_t stream, uint32_t configuration);
+void LL_DMA_DisableFifoMode(DMA_TypeDef *dma, uint32_t stream);
+void LL_DMA_SetPeriphAddress(DMA_TypeDef *dma, uint32_t stream, uint32_t address);
+void LL_DMA_SetMemoryAddress(DMA_TypeDef *dma, uint32_t stream, uint32_t address);
+void LL_DMA_SetDataLength(DMA_TypeDef *dma, uint32_t stream, uint32_t length);
+void LL_DMA_EnableIT_HT(DMA_TypeDef *dma, uint32_t stream);
+void LL_DMA_EnableIT_TC(DMA_TypeDef *dma, uint32_t stream);
+void LL_DMA_EnableStream(DMA_TypeDef *dma, uint32_t stream);
+uint32_t LL_DMA_IsActiveFlag_HT2(const DMA_TypeDef *dma);
+uint32_t LL_DMA_IsActiveFlag_TC2(const DMA_TypeDef *dma);
+void LL_DMA_ClearFlag_HT2(DMA_TypeDef *dma);
+void LL_DMA_ClearFlag_TC2(DMA_TypeDef *dma);
+#endif
+
+#ifdef H7
+void __HAL_RCC_D2SRAM1_CLK_ENABLE(void); /* A macro of the HAL. */
+#endif
+
+#endif

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""Uses of tmini and tmini-sim in documents: each command and option must be one that --help tells."""
+
+import re
+import subprocess
+
+from documents import documents, name
+
+USE = re.compile(r"(?<![\w/.-])(?:build(?:-demo)?/bin/)?(tmini-sim|tmini) +([^`|;&#\n]*)")
+
+# What prose says of the programs, and not to them: `tmini COMMAND --help`.
+PLACEHOLDERS = ("COMMAND",)
+
+
+def help_of(build, *words):
+    result = subprocess.run([build / "bin" / words[0], *words[1:], "--help"], text=True,
+                            stdout=subprocess.PIPE, check=True)
+    return result.stdout
+
+
+def commands(text):
+    return set(re.findall(r"^  tmini (\w+) ", text, re.MULTILINE))
+
+
+def options(text):
+    return set(re.findall(r"(?<![\w-])(--[a-z][a-z-]*|-[a-zA-Z])\b", text))
+
+
+def spans(path):
+    """Everything in a document that is meant to be typed: spans of code and lines of blocks."""
+    fenced = False
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        if line.lstrip().startswith("```"):
+            fenced = line.strip() == "```sh"
+        elif fenced:
+            yield number, line.split(" #")[0]
+        else:
+            for span in re.findall(r"`([^`]+)`", line):
+                if USE.match(span):
+                    yield number, span
+
+
+def unknown_options(text, words):
+    """Those of `words` that the help does not tell. Short ones may be joined: -n3, -qn1."""
+    known = options(text)
+    return [word for word in (word.split("=")[0].strip("[]") for word in words)
+            if re.match(r"--?[a-zA-Z]", word) and word not in known
+            and not (re.match(r"-[a-zA-Z]", word) and word[:2] in known)]
+
+
+def check_use(helps, program, words):
+    if program == "tmini":
+        if not words or words[0].startswith("-") or words[0] in PLACEHOLDERS:
+            return unknown_options(helps["tmini"] + " --version", words)
+        command = words[0]
+        if command not in commands(helps["tmini"]):
+            return [command]
+        return unknown_options(helps[command], words[1:])
+    return unknown_options(helps["tmini-sim"], words)
+
+
+def check(build):
+    """Returns complaints about uses that the programs in `build` do not know."""
+    helps = {"tmini": help_of(build, "tmini"), "tmini-sim": help_of(build, "tmini-sim")}
+    helps |= {command: help_of(build, "tmini", command) for command in commands(helps["tmini"])}
+    complaints, uses = [], 0
+    for path in documents():
+        for number, span in spans(path):
+            for program, rest in USE.findall(span):
+                uses += 1
+                complaints += [f"{name(path)}:{number}: {program} does not know {word}: {span.strip()}"
+                               for word in check_use(helps, program, rest.split())]
+    if uses < 30:
+        complaints.append(f"only {uses} uses of the tool have been found: is this check still one?")
+    return complaints
