@@ -62,6 +62,9 @@ wish_for_documents() {
     wish doxygen doxygen
     wish shellcheck shellcheck
     wish dtc device-tree-compiler
+    wish hunspell hunspell
+    wish /usr/share/hunspell/en_GB.dic hunspell-en-gb
+    wish codespell codespell
 }
 
 prepare_python_tools() {

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""Spelling: British English, of the documents and of the public headers' comments, by hunspell with
+the project's own words (words.txt) besides; and well-known slips in all sources, by codespell.
+
+    spelling.py
+
+Exit status: 0 all is in order, 1 not: every word is told with its places; 77 no tool is installed.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from documents import ROOT, documents, name, parse
+
+WORDS = Path(__file__).with_name("words.txt")
+SOURCES = ("lib", "port", "examples", "test", "docs", "README.md", "CONTRIBUTING.md", "CHANGELOG.md")
+# Names, and a word of another language.
+NOT_SLIPS = "hsi,ordner,paeth,pre-empted,te,ue"
+
+
+def plain(line):
+    """A line of a document without what is no English: code, addresses, tags."""
+    line = re.sub(r"`[^`]*`|<[^>]*>|\]\([^)]*\)|https?:\S+", " ", line)
+    return re.sub(r"\S*[/\\_=@]\S*|\b0x\w+|[A-Za-z]*\d\w*|['’]s\b|Wi-Fi|(?<!\w)-\w+", " ", line)
+
+
+def comments(path):
+    """The lines of a header's comments, without code and names."""
+    text = path.read_text(encoding="utf-8")
+    for comment in re.finditer(r"/\*.*?\*/", text, re.DOTALL):
+        first = text.count("\n", 0, comment.start()) + 1
+        for number, line in enumerate(comment[0].splitlines(), first):
+            if not re.match(r" \* {5}", line):
+                yield number, plain(re.sub(r"[\w.]+\(\)|\w+_\w+|@\w+", " ", line))
+
+
+def text_of(path):
+    if path.suffix == ".md":
+        return [(number, plain(line)) for number, line in parse(path)[1]]
+    return list(comments(path))
+
+
+def misspelt(lines):
+    """The words that hunspell does not know."""
+    with tempfile.NamedTemporaryFile("w", suffix=".txt", encoding="utf-8") as words:
+        words.write("".join(line for line in WORDS.read_text(encoding="utf-8").splitlines(True)
+                            if line.strip() and not line.startswith("#")))
+        words.flush()
+        result = subprocess.run(["hunspell", "-l", "-i", "utf-8", "-d", "en_GB", "-p", words.name],
+                                input="\n".join(lines), text=True, encoding="utf-8",
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=True)
+    return set(result.stdout.split())
+
+
+def check_documents():
+    paths = [*documents(), *sorted(ROOT.glob("lib/include/tmini/*.h")),
+             *sorted(ROOT.glob("port/*/*.h"))]
+    lines = {path: text_of(path) for path in paths}
+    complaints = []
+    for word in sorted(misspelt([line for path in paths for _, line in lines[path]])):
+        places = [f"{name(path)}:{number}" for path in paths for number, line in lines[path]
+                  if re.search(rf"(?<![\w]){re.escape(word)}(?![\w])", line)]
+        complaints.append(f"{word}: {', '.join(places[:5])}")
+    return complaints
+
+
+def check_sources():
+    result = subprocess.run(
+        ["codespell", "-L", NOT_SLIPS, "--skip", "*.svg,*.png,*.tmini,*.bin,words.txt,build*", *SOURCES],
+        cwd=ROOT, text=True, stdout=subprocess.PIPE, check=False)
+    return result.stdout.splitlines()
+
+
+def has_dictionary():
+    return shutil.which("hunspell") and subprocess.run(
+        ["hunspell", "-l", "-d", "en_GB"], input="", text=True, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, check=False).returncode == 0
+
+
+def main():
+    complaints, tools = [], 0
+    for check, is_there, tool in ((check_documents, has_dictionary(), "hunspell with en_GB"),
+                                  (check_sources, shutil.which("codespell"), "codespell")):
+        if is_there:
+            tools += 1
+            complaints += check()
+        else:
+            print(f"not installed, done without: {tool}")
+    print("\n".join(complaints) or "no misspelt words")
+    sys.exit(77 if not tools else 1 if complaints else 0)
+
+
+main()
