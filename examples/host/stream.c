@@ -75,10 +75,10 @@ bool stream_take(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms
     if (verdict == TMINI_CT_REFUTED) {
         tmini_scan_refute(&stream->builder);
     }
-    if (tmini_scan_close(&stream->builder, &taken, now_ms)) {
+    if (tmini_scan_add(&stream->builder, &taken, now_ms)) {
         keep(stream);
+        (void)tmini_scan_add(&stream->builder, &taken, now_ms);
     }
-    tmini_scan_add(&stream->builder, &taken, now_ms);
     if (tmini_packet_is_start(packet)) {
         stream->is_open = true;
         stream->open_number = stream->start_packets;

@@ -305,12 +305,10 @@ static void deliver_packet(tmini_t *lidar)
     judge_interval(lidar, came_ms);
     if (lidar->builder.capacity == 0) {
         raise_event(lidar, TMINI_EVENT_PACKET);
-    } else if (tmini_scan_close(&lidar->builder, packet, came_ms)) {
+    } else if (tmini_scan_add(&lidar->builder, packet, came_ms)) {
         lidar->is_held = true;
         lidar->scans++;
         raise_event(lidar, TMINI_EVENT_SCAN);
-    } else {
-        tmini_scan_add(&lidar->builder, packet, came_ms);
     }
 }
 
@@ -341,7 +339,7 @@ static void add_held_packet(tmini_t *lidar)
 {
     if (lidar->is_held) {
         lidar->is_held = false;
-        tmini_scan_add(&lidar->builder, &lidar->latest.packet, lidar->builder.scan.end_ms);
+        (void)tmini_scan_add(&lidar->builder, &lidar->latest.packet, lidar->builder.scan.end_ms);
     }
 }
 

@@ -26,25 +26,12 @@ static uint16_t end_of(const tmini_packet_t *packet)
     return packet->count > 1 ? packet->last_angle_q6 : packet->first_angle_q6;
 }
 
-/* The angle swept from where the last packet ended to where `packet` begins. */
-static int32_t swept_ahead(const tmini_scan_builder_t *builder, const tmini_packet_t *packet)
+/* True if a packet that begins `ahead` of the last one's end, and ends `angle` from the start packet,
+ * may continue the revolution: not if half a turn or more may be missing before it, by bytes or by
+ * angle, nor if it would lead beyond the circle or behind its beginning. A lost start packet shows
+ * here. */
+static bool continues(const tmini_packet_t *packet, int32_t ahead, int32_t angle)
 {
-    return swept(builder->previous_angle_q6, packet->first_angle_q6);
-}
-
-/* The angle swept since the start packet when a packet ends that begins so far ahead. */
-static int32_t swept_with(const tmini_scan_builder_t *builder, const tmini_packet_t *packet,
-                          int32_t ahead)
-{
-    return builder->swept_q6 + ahead + swept(packet->first_angle_q6, end_of(packet));
-}
-
-/* True if `packet` may continue the revolution: not if half a turn or more may be missing before
- * it, by bytes or by angle, nor if it would lead beyond the circle or behind its beginning. */
-static bool continues(const tmini_scan_builder_t *builder, const tmini_packet_t *packet)
-{
-    const int32_t ahead = swept_ahead(builder, packet);
-    const int32_t angle = swept_with(builder, packet, ahead);
     return packet->gap <= GAP_MAX && ahead <= CIRCLE_Q6 / 2 && angle <= SWEPT_MAX_Q6 &&
            angle >= -JUMP_Q6;
 }
@@ -55,13 +42,13 @@ static void add_up(uint16_t *total, size_t amount)
     *total = (uint16_t)(*total + (amount < room ? amount : room));
 }
 
-/* The scan ends with what has been received before `packet`. It is complete when a start packet
- * comes back to where it began, and nothing is missing: one byte before a start packet is
- * LastCRC. */
-static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
+/* The scan ends with what has been received before `packet`, which begins `ahead` of it. It is
+ * complete when a start packet comes back to where it began, and nothing is missing: one byte
+ * before a start packet is LastCRC. */
+static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
+                   uint32_t now_ms)
 {
     tmini_scan_t *const scan = &builder->scan;
-    const int32_t ahead = swept_ahead(builder, packet);
     const int32_t beyond = builder->swept_q6 + ahead - CIRCLE_Q6;
     const bool is_start = tmini_packet_is_start(packet);
     if (!is_start || packet->gap > 1 || ahead > JUMP_Q6) {
@@ -78,8 +65,6 @@ static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet, 
 static void begin(tmini_scan_builder_t *builder, const tmini_packet_t *start, uint32_t now_ms)
 {
     builder->scan = (tmini_scan_t){.points = builder->scan.points, .start_ms = now_ms};
-    builder->previous_angle_q6 = start->first_angle_q6;
-    builder->swept_q6 = 0;
     builder->errors_before = start->frame->checksum_errors;
     builder->open = true;
 }
@@ -115,33 +100,33 @@ void tmini_scan_discard(tmini_scan_builder_t *builder)
     builder->open = false;
 }
 
-bool tmini_scan_close(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
-{
-    if (!builder->open || (!tmini_packet_is_start(packet) && continues(builder, packet))) {
-        return false;
-    }
-    finish(builder, packet, now_ms);
-    return true;
-}
-
 void tmini_scan_refute(tmini_scan_builder_t *builder)
 {
     add_up(&builder->scan.gaps, 1);
 }
 
-void tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
+bool tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
 {
-    if (tmini_packet_is_start(packet)) {
+    const bool is_start = tmini_packet_is_start(packet);
+    int32_t angle = swept(packet->first_angle_q6, end_of(packet));
+    if (builder->open) {
+        const int32_t ahead = swept(builder->previous_angle_q6, packet->first_angle_q6);
+        angle += builder->swept_q6 + ahead;
+        if (is_start || !continues(packet, ahead, angle)) {
+            finish(builder, packet, ahead, now_ms);
+            return true;
+        }
+        if (packet->gap > 0 || ahead > JUMP_Q6) {
+            add_up(&builder->scan.gaps, 1);
+        }
+    } else if (is_start) {
         begin(builder, packet, now_ms);
-    } else if (!builder->open) {
-        return;
+    } else {
+        return false; /* Of a revolution whose beginning was not received. */
     }
-    const int32_t ahead = swept_ahead(builder, packet);
-    if (!tmini_packet_is_start(packet) && (packet->gap > 0 || ahead > JUMP_Q6)) {
-        add_up(&builder->scan.gaps, 1);
-    }
-    builder->swept_q6 = (int16_t)swept_with(builder, packet, ahead);
+    builder->swept_q6 = (int16_t)angle;
     builder->previous_angle_q6 = end_of(packet);
     builder->scan.end_ms = now_ms; /* So far. */
     append_points(builder, packet);
+    return false;
 }

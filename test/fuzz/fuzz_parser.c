@@ -52,15 +52,15 @@ static void compare_packet(const tmini_packet_t *packet)
 
 static void gather(tmini_scan_builder_t *builder, const tmini_packet_t *packet)
 {
-    if (tmini_scan_close(builder, packet, 0)) {
+    if (tmini_scan_add(builder, packet, 0)) {
         const tmini_scan_t *const scan = &builder->scan;
         demand(scan->count <= SCAN_POINTS && scan->packets > 0);
         demand(!scan->complete || (scan->gaps == 0 && scan->dropped == 0));
         for (size_t i = 0; i < scan->count; i++) {
             demand(scan->points[i].angle_q6 < TMINI_FULL_CIRCLE_Q6);
         }
+        demand(!tmini_scan_add(builder, packet, 0));
     }
-    tmini_scan_add(builder, packet, 0);
 }
 
 static void drain(tmini_parser_t *parser, tmini_scan_builder_t *builder)

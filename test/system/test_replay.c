@@ -72,11 +72,11 @@ static void handle_packet(uint32_t now_ms)
     replay.starts += tmini_packet_is_start(packet) ? 1 : 0;
     replay.packets_before_first += replay.starts == 0 ? 1 : 0;
     replay.trusted += tmini_ct_add(&turn, packet) == TMINI_CT_CONFIRMED ? 1 : 0;
-    if (tmini_scan_close(&builder, packet, now_ms)) {
+    if (tmini_scan_add(&builder, packet, now_ms)) {
         TEST_ASSERT_TRUE(replay.scans < SCANS_MAX);
         replay.scan[replay.scans++] = builder.scan;
+        TEST_ASSERT_FALSE(tmini_scan_add(&builder, packet, now_ms));
     }
-    tmini_scan_add(&builder, packet, now_ms);
 }
 
 /* Everything, in chunks of `chunk` bytes, and what is left at the end. */

@@ -104,12 +104,14 @@ static next_t take_packet(void)
     if (tmini_ct_add(&tape.ct, &tape.packet) == TMINI_CT_REFUTED) {
         tmini_scan_refute(&tape.builder);
     }
-    const bool is_scan = tmini_scan_close(&tape.builder, &tape.packet, at_ms);
-    if (is_scan && tape.is_shown) {
-        shown_take(&tape.builder.scan);
+    const bool is_scan = tmini_scan_add(&tape.builder, &tape.packet, at_ms);
+    if (is_scan) {
+        if (tape.is_shown) {
+            shown_take(&tape.builder.scan);
+        }
+        (void)tmini_scan_add(&tape.builder, &tape.packet, at_ms);
     }
     (void)tmini_packet_points(&tape.packet, TMINI_FILTER_NONE, tape.points, UINT8_MAX);
-    tmini_scan_add(&tape.builder, &tape.packet, at_ms);
     count_packet();
     return is_scan ? NEXT_SCAN : NEXT_PACKET;
 }

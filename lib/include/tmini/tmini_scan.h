@@ -36,7 +36,7 @@ typedef struct {
     uint16_t count;           /**< Points in the buffer. */
     uint16_t dropped;         /**< Points that did not fit in it. */
     uint16_t packets;         /**< Packets received of this revolution. */
-    uint16_t gaps;            /**< Places where bytes were lost or damaged: packets may lack. */
+    uint16_t gaps;            /**< Places where bytes were lost or damaged: packets may be lost. */
     uint16_t checksum_errors; /**< While it was received, modulo 2^16. */
     uint16_t frequency_chz;   /**< Measured, 0.01 Hz, from the start packet after it; 0: unknown. */
     uint32_t start_ms;        /**< The port's clock when its start packet came, and */
@@ -51,7 +51,7 @@ typedef struct {
     uint16_t capacity;          /**< Points that the buffer has room for. */
     uint16_t previous_angle_q6; /**< Where the last packet ended. */
     uint16_t errors_before;     /**< The parser's checksum errors when it began, modulo 2^16. */
-    int16_t swept_q6;           /**< Angle swept since the start packet: -4 to 360 degrees. */
+    int16_t swept_q6;           /**< Angle swept since the start packet: -4 to 360.25 degrees. */
     tmini_scan_t scan;          /**< What there is of it. */
 } tmini_scan_builder_t;
 
@@ -64,18 +64,15 @@ tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buf
 /** Forgets the scan under way: what comes next does not continue it. */
 void tmini_scan_discard(tmini_scan_builder_t *builder);
 
-/** If `packet`, which came at `now_ms`, no longer belongs to the scan under way, finishes that scan
- * and returns true: builder->scan is then valid until tmini_scan_add() is called for the same
- * packet. */
-bool tmini_scan_close(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
+/** Adds `packet`, which came at `now_ms`, to the scan under way; a start packet begins one. If it no
+ * longer belongs to the scan under way, finishes that instead and returns true: builder->scan is
+ * then valid until the same packet is added again. A packet that DMA overwrote meanwhile leaves a
+ * gap, never a wrong point. */
+bool tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
 
 /** Something outside the packets proves that one of the scan under way was lost (LastCRC, section
- * 7): it has a gap and is not complete. Call it before tmini_scan_close(). */
+ * 7): it has a gap and is not complete. Call it before adding the packet that shows it. */
 void tmini_scan_refute(tmini_scan_builder_t *builder);
-
-/** Adds `packet` to the scan under way; a start packet begins one, at `now_ms`. A packet that DMA
- * overwrote meanwhile leaves a gap, never a wrong point. Call tmini_scan_close() before. */
-void tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
 
 #ifdef __cplusplus
 }

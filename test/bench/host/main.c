@@ -90,8 +90,9 @@ static unsigned long decode_all(size_t size)
         while (tmini_parser_next(&parser) == TMINI_FRAME_PACKET) {
             tmini_packet_t packet;
             tmini_packet_open(&packet, tmini_parser_frame(&parser));
-            (void)tmini_scan_close(&builder, &packet, 0);
-            tmini_scan_add(&builder, &packet, 0);
+            if (tmini_scan_add(&builder, &packet, 0)) {
+                (void)tmini_scan_add(&builder, &packet, 0);
+            }
         }
     }
     tmini_parser_counters_t counters;
