@@ -140,11 +140,15 @@ static void update_time(tmini_t *lidar)
     }
 }
 
-/* When the frame delivered last came: before the bytes behind it. */
-static uint32_t arrival_ms(const tmini_t *lidar)
+/* When the frame delivered last came: before the bytes behind it. Those that came during this poll
+ * have not been noted yet: a pause before them is to be known first. */
+static uint32_t arrival_ms(tmini_t *lidar)
 {
-    const size_t behind = lidar->link.received - tmini_parser_position(&lidar->parser);
-    return lidar->link.now_ms - transit_ms(behind);
+    const size_t position = tmini_parser_position(&lidar->parser);
+    if (lidar->link.received - position > SIZE_MAX / 2) {
+        update_time(lidar);
+    }
+    return lidar->link.now_ms - transit_ms(lidar->link.received - position);
 }
 
 /* ----------------------------------------------------------------------------------- commands */
@@ -184,6 +188,7 @@ static void begin(tmini_t *lidar, tmini_state_t state, tmini_operation_t operati
                   uint16_t frequency_chz)
 {
     lidar->state = (uint8_t)state;
+    lidar->is_settled = false;
     tmini_command_begin(lidar, operation, lidar->link.timing->max_attempts, frequency_chz);
     take_result(lidar, tmini_command_poll(lidar));
 }
@@ -199,7 +204,8 @@ static void take_answer(tmini_t *lidar, const uint8_t *content)
     take_result(lidar, tmini_command_reply(lidar, content));
 }
 
-static void take_reply(tmini_t *lidar)
+/* Not inlined, so that its content does not lie on the stack below a packet's points. */
+TMINI_NOINLINE static void take_reply(tmini_t *lidar)
 {
     uint8_t content[TMINI_INFO_SIZE];
     const tmini_reply_header_t header = lidar->parser.awaited;
@@ -272,9 +278,12 @@ static void open_packet(tmini_t *lidar)
     }
 }
 
-static void watch_packet(tmini_t *lidar)
+static void monitor_packet(tmini_t *lidar)
 {
     const unsigned shown = tmini_monitor_packet(lidar);
+    if (shown == 0) {
+        return;
+    }
     if ((shown & TMINI_SHOWN_FAULTS) != 0) {
         raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
     }
@@ -298,11 +307,9 @@ static void judge_interval(tmini_t *lidar, uint32_t came_ms)
     }
 }
 
-static void deliver_packet(tmini_t *lidar)
+static void deliver_packet(tmini_t *lidar, uint32_t came_ms)
 {
     const tmini_packet_t *const packet = &lidar->latest.packet;
-    const uint32_t came_ms = arrival_ms(lidar);
-    judge_interval(lidar, came_ms);
     if (lidar->builder.capacity == 0) {
         raise_event(lidar, TMINI_EVENT_PACKET);
     } else if (tmini_scan_add(&lidar->builder, packet, came_ms)) {
@@ -312,26 +319,18 @@ static void deliver_packet(tmini_t *lidar)
     }
 }
 
-/* Bytes that came during this poll have not been noted yet: a pause before them is to be known
- * first. */
-static void note_late_bytes(tmini_t *lidar)
-{
-    if (lidar->link.received - tmini_parser_position(&lidar->parser) > SIZE_MAX / 2) {
-        update_time(lidar);
-    }
-}
-
 static void take_packet(tmini_t *lidar)
 {
-    note_late_bytes(lidar);
+    const uint32_t came_ms = arrival_ms(lidar);
     note_scanning(lidar);
     if (lidar->state != TMINI_STATE_SCANNING) {
         return; /* The tail behind a stop, or a stream that nobody asked for. */
     }
     expect_packet(lidar);
     open_packet(lidar);
-    watch_packet(lidar);
-    deliver_packet(lidar);
+    judge_interval(lidar, came_ms);
+    monitor_packet(lidar);
+    deliver_packet(lidar, came_ms);
 }
 
 /* The packet that closed the scan which has been returned begins the next one. */
@@ -409,11 +408,22 @@ static void keep_time(tmini_t *lidar)
     }
 }
 
+/* True if something has happened since the last poll: bytes have come, or were lost, or time has
+ * passed. Most polls of a fast loop end here. */
+static bool has_news(const tmini_t *lidar)
+{
+    const tmini_link_t *const link = &lidar->link;
+    return tmini_ring_stored(&lidar->ring) != link->received ||
+           tmini_ring_is_closed(&lidar->ring) ||
+           link->port->now_ms(link->port_context) != link->now_ms;
+}
+
 tmini_event_t tmini_poll(tmini_t *lidar)
 {
-    if (!is_set_up(lidar)) {
+    if (!is_set_up(lidar) || (lidar->is_settled && !has_news(lidar))) {
         return TMINI_EVENT_NONE;
     }
+    lidar->is_settled = false;
     update_time(lidar);
     const bool is_done = lidar->pending != 0 || receive(lidar);
     if (lidar->pending == 0) {
@@ -422,7 +432,11 @@ tmini_event_t tmini_poll(tmini_t *lidar)
     if (lidar->pending != 0) {
         return take_event(lidar);
     }
-    return is_done ? TMINI_EVENT_NONE : TMINI_EVENT_MORE;
+    if (!is_done) {
+        return TMINI_EVENT_MORE;
+    }
+    lidar->is_settled = lidar->command.unsent == 0;
+    return TMINI_EVENT_NONE;
 }
 
 /* ---------------------------------------------------------------------------------- life cycle */
@@ -542,6 +556,7 @@ tmini_status_t tmini_reboot(tmini_t *lidar)
 void tmini_cancel(tmini_t *lidar)
 {
     tmini_command_cancel(lidar);
+    lidar->is_settled = false;
     lidar->state = TMINI_STATE_UNKNOWN;
 }
 

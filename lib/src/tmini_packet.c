@@ -25,27 +25,26 @@ static uint16_t clockwise_difference(uint16_t from, uint16_t to)
     return (uint16_t)(to + (to < from ? TMINI_FULL_CIRCLE_Q6 : 0) - from);
 }
 
-/* Decodes `count` samples that lie in one piece, from sample `index` of the packet on: the hottest
+/* Decodes `count` samples, at least one, that lie in one piece, from sample `index` of the packet on: the hottest
  * loop there is. A function of its own, so that all that it needs stays in registers; each sample
  * is read before its point is written, because the two might overlap for all the compiler knows. */
-static void decode(const tmini_packet_t *packet, size_t index, const uint8_t *sample, size_t count,
-                   tmini_point_t *point)
+TMINI_NOINLINE static void decode(const tmini_packet_t *packet, size_t index, const uint8_t *sample,
+                                  size_t count, tmini_point_t *point)
 {
     const uint32_t first_angle = packet->first_angle_q6;
     const uint32_t step = packet->step;
     uint32_t turned = HALF + (uint32_t)index * step;
-    const tmini_point_t *const end = point + count;
+    TMINI_UNROLL
     do {
         const uint8_t intensity = sample[0];
         const unsigned distance_and_flag = sample[1] | (unsigned)sample[2] << 8;
-        point->angle_q6 = (uint16_t)(first_angle + (turned >> STEP_BITS));
-        point->distance_mm = (uint16_t)(distance_and_flag >> 2);
-        point->intensity = intensity;
-        point->flag = distance_and_flag & 3u;
+        *point++ = (tmini_point_t){.angle_q6 = (uint16_t)(first_angle + (turned >> STEP_BITS)),
+                                   .distance_mm = (uint16_t)(distance_and_flag >> 2),
+                                   .intensity = intensity,
+                                   .flag = distance_and_flag & 3u};
         sample += TMINI_SAMPLE_SIZE;
         turned += step;
-        point++;
-    } while (point != end);
+    } while (--count > 0);
 }
 
 static void wrap(tmini_point_t *points, size_t count)

@@ -23,42 +23,63 @@ enum { REPLY_LENGTH = 0, REPLY_MODE_AND_LENGTH = 3, REPLY_TYPE = 4 };
 
 /* -------------------------------------------------------------------------------- the checksum */
 
-/* What samples contribute: S1 and S2 count in the low byte, S3 in the high byte (section 5). */
+/* What so many samples contribute, at least one: S1 and S2 count in the low byte, S3 in the high
+ * byte (section 5). */
 static unsigned xor_samples(const uint8_t *sample, size_t count)
 {
     unsigned sum = 0;
-    for (const uint8_t *const end = sample + TMINI_SAMPLE_SIZE * count; sample != end;
-         sample += TMINI_SAMPLE_SIZE) {
+    do {
         sum ^= sample[0] ^ sample[1] ^ (unsigned)sample[2] << 8;
-    }
+        sample += TMINI_SAMPLE_SIZE;
+    } while (--count > 0);
     return sum;
 }
 
-/* The same for samples in one piece, most of them by blocks: three words that are XORed in one go
- * contribute what their own bytes do. */
-static unsigned xor_piece(const uint8_t *sample, size_t count)
+/* The same by blocks: three words that are XORed in one go contribute what their own bytes do. */
+static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
 {
     uint32_t first = 0;
     uint32_t second = 0;
     uint32_t third = 0;
-    for (; count >= BLOCK_SAMPLES; count -= BLOCK_SAMPLES) {
+    TMINI_UNROLL
+    do {
         first ^= tmini_word(sample);
         second ^= tmini_word(sample + 4);
         third ^= tmini_word(sample + 8);
         sample += BLOCK_SIZE;
-    }
+    } while (--blocks > 0);
     const uint32_t words[] = {first, second, third};
-    return xor_samples((const uint8_t *)words, BLOCK_SAMPLES) ^ xor_samples(sample, count);
+    const uint8_t *const s = (const uint8_t *)words;
+    const unsigned low = s[0] ^ s[1] ^ s[3] ^ s[4] ^ s[6] ^ s[7] ^ s[9] ^ s[10];
+    return low ^ (unsigned)(s[2] ^ s[5] ^ s[8] ^ s[11]) << 8;
+}
+
+/* The same of samples in one piece, most of them by blocks. An address that is `ahead` above a
+ * multiple of 4 becomes one by so many samples of three bytes. */
+static unsigned xor_piece(const uint8_t *sample, size_t count)
+{
+    unsigned sum = 0;
+    const size_t ahead = (uintptr_t)sample % TMINI_WORD_ALIGNMENT;
+    if (ahead > 0 && count > ahead) {
+        sum = xor_samples(sample, ahead);
+        sample += TMINI_SAMPLE_SIZE * ahead;
+        count -= ahead;
+    }
+    if (count >= BLOCK_SAMPLES) {
+        sum ^= xor_blocks(sample, count / BLOCK_SAMPLES);
+        sample += BLOCK_SIZE * (count / BLOCK_SAMPLES);
+        count %= BLOCK_SAMPLES;
+    }
+    return count > 0 ? sum ^ xor_samples(sample, count) : sum;
 }
 
 /* XORs the candidate's 16-bit words. The checksum itself is among them, so that nothing remains if
  * it is right. */
 static bool checksum_matches(const tmini_frame_t *frame)
 {
-    unsigned sum = PACKET_FIRST | (unsigned)PACKET_SECOND << 8;
-    for (size_t i = 0; i < sizeof frame->header; i += 2) {
-        sum ^= frame->header[i] | (unsigned)frame->header[i + 1] << 8;
-    }
+    const uint8_t *const header = frame->header;
+    unsigned sum = PACKET_FIRST ^ header[0] ^ header[2] ^ header[4] ^ header[6];
+    sum ^= (unsigned)(PACKET_SECOND ^ header[1] ^ header[3] ^ header[5] ^ header[7]) << 8;
     size_t left = frame->header[LSN];
     while (left > 0) {
         const size_t done = frame->header[LSN] - left;
@@ -338,11 +359,6 @@ tmini_status_t tmini_parser_await(tmini_parser_t *parser, const tmini_reply_head
 size_t tmini_parser_pending(const tmini_parser_t *parser)
 {
     return tmini_ring_unread(parser->frame.ring) - parser->frame.size;
-}
-
-size_t tmini_parser_position(const tmini_parser_t *parser)
-{
-    return tmini_ring_tail(parser->frame.ring) + parser->frame.size;
 }
 
 void tmini_parser_counters(const tmini_parser_t *parser, tmini_parser_counters_t *counters)

@@ -370,6 +370,7 @@ struct tmini {
     uint32_t scans;
     tmini_command_t command;
     tmini_recovery_t recovery;
+    bool is_settled; /* The last poll left nothing to do until bytes come or time passes. */
     tmini_link_t link;
     tmini_ring_t ring;
     tmini_parser_t parser;

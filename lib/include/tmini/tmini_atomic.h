@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * The primitives: memory order between the two sides of the ring, and reading a word of bytes. The
- * only file with compiler extensions.
+ * The primitives: memory order between the two sides of the ring, reading a word of bytes, and what
+ * a compiler is to be told of the hottest loops. The only file with compiler extensions.
  *
  * tmini_load() reads a size_t that the other side writes, and no later access moves before it;
  * tmini_store() writes one, and no earlier access moves behind it (acquire and release, in C11's
@@ -45,6 +45,22 @@
 #define TMINI_INLINE static inline __attribute__((always_inline))
 #else
 #define TMINI_INLINE static inline
+#endif
+
+/** @def TMINI_NOINLINE
+ * For a function that is to have its registers, or its stack, for itself. */
+#if defined(__GNUC__)
+#define TMINI_NOINLINE __attribute__((noinline))
+#else
+#define TMINI_NOINLINE
+#endif
+
+/** @def TMINI_UNROLL
+ * Before a loop that is worth four times its size where the compiler optimizes for speed. */
+#if defined(__GNUC__) && __GNUC__ >= 8 && !defined(__clang__)
+#define TMINI_UNROLL _Pragma("GCC unroll 4")
+#else
+#define TMINI_UNROLL
 #endif
 
 #if defined(TMINI_ATOMIC_HEADER)
@@ -139,19 +155,25 @@ TMINI_INLINE void tmini_fence(void)
 
 #endif
 
-/** Four bytes at any address, as the machine orders them: one load where it can. Any context. */
+/** @def TMINI_WORD_ALIGNMENT
+ * A word is loaded at addresses that are a multiple of this. */
+#if defined(__ARM_FEATURE_UNALIGNED) || defined(__x86_64__) || defined(__i386__) || \
+    defined(__riscv_misaligned_fast) || defined(__AVR__)
+#define TMINI_WORD_ALIGNMENT 1u
+#else
+#define TMINI_WORD_ALIGNMENT 4u
+#endif
+
+/** Four bytes from such an address, as the machine orders them: one load. */
 TMINI_INLINE uint32_t tmini_word(const uint8_t *bytes)
 {
-#if defined(__GNUC__)
-    typedef struct __attribute__((packed, may_alias)) {
-        uint32_t word;
-    } unaligned_t;
-    return ((const unaligned_t *)(const void *)bytes)->word;
-#else
     uint32_t word;
+#if defined(__GNUC__)
+    memcpy(&word, __builtin_assume_aligned(bytes, TMINI_WORD_ALIGNMENT), sizeof word);
+#else
     memcpy(&word, bytes, sizeof word);
-    return word;
 #endif
+    return word;
 }
 
 #endif

@@ -114,7 +114,10 @@ size_t tmini_parser_pending(const tmini_parser_t *parser);
 
 /** How many bytes have been parsed or lost since init, the frame delivered last among them, modulo
  * the range of size_t: the place in the stream of the byte behind that frame. */
-size_t tmini_parser_position(const tmini_parser_t *parser);
+static inline size_t tmini_parser_position(const tmini_parser_t *parser)
+{
+    return tmini_ring_tail(parser->frame.ring) + parser->frame.size;
+}
 
 /** Copies the counters. */
 void tmini_parser_counters(const tmini_parser_t *parser, tmini_parser_counters_t *counters);
