@@ -236,7 +236,7 @@ static void skip(tmini_parser_t *parser, size_t unread)
     }
     frame->last_skipped = bytes[skipped - 1];
     discard_skipped(parser, skipped);
-    parser->effort = (uint16_t)(parser->effort + skipped);
+    parser->effort = (uint16_t)(parser->effort + skipped + TMINI_CANDIDATE_EFFORT);
 }
 
 /* The unread bytes, less those that DMA may have overwritten: they are dropped. */

@@ -10,6 +10,7 @@ from emulator import Machine
 from targets import HERE, ROOT, BenchError
 
 RX_SIZE = 1024
+LARGEST_RING = 2048
 TICK_MS = 10             # How often is polled: about once a packet.
 BYTES_A_TICK = 131       # At the lidar's mean data rate (section 1).
 LINE_BYTES_A_TICK = 230  # At the line's full rate, 230400 baud.
@@ -145,10 +146,10 @@ class Session:
         data = self.machine.read(address, 24)
         return [int.from_bytes(data[i:i + 4], "little") for i in range(0, 24, 4)]
 
-    def idle_poll(self):
-        """What a poll costs that finds nothing."""
+    def idle_poll(self, milliseconds):
+        """What a poll costs that finds nothing, so long after the one before it."""
         before = self.poll_total
-        self.now_ms += 1
+        self.now_ms += milliseconds
         self.machine.write_word("bench_now_ms", self.now_ms)
         if self.poll() != "NONE":
             raise BenchError("there is something to do in a poll that should be idle")
@@ -190,6 +191,20 @@ def resynchronisation(target, program, clean, hostile):
     if skipped < len(hostile) / 2:
         raise BenchError("the hostile stream is not hostile")
     return session.poll_total / skipped
+
+
+def longest_poll(target, program, clean, hostile):
+    """The costliest single poll when the largest ring is full of the worst that can be sent, while
+    the lidar scans and a scan is under way."""
+    session = Session(target, program, "blocks", rx_size=LARGEST_RING)
+    session.spin_up()
+    session.run(clean)
+    session.worst_poll = {}
+    for _ in range(4):
+        session.tick(hostile[:LARGEST_RING])
+    if "MORE" not in session.worst_poll:
+        raise BenchError("a full ring is not too much for one poll")
+    return max(session.worst_poll.values())
 
 
 def conversation(target, program, clean, faulty, hostile):
@@ -285,7 +300,7 @@ def measure(target, level, objects, folder, streams):
                                        streams["clean packets"])
         merge_worst(worst, session.worst_poll)
         if name == "bytes":
-            idle = session.idle_poll()
+            idle = {ms: session.idle_poll(ms) for ms in (0, 1)}
             feed_worst = max(session.feed_worst, full_ring(target, program))
     costs["corrupted"], _ = through(target, program, streams["corrupted"], "blocks")
     conversed, stack = conversation(target, program, streams["turn"], streams["faulty"],
@@ -293,7 +308,9 @@ def measure(target, level, objects, folder, streams):
     merge_worst(worst, conversed)
     hostile = {name: resynchronisation(target, program, streams["turn"], streams[name])
                for name in streams if name.startswith(("random", "headers"))}
+    longest = {name: longest_poll(target, program, streams["turn"], streams[name])
+               for name in hostile}
     by_frequency = {name: sum(through(target, program, streams[name], "blocks")[0])
                     for name in streams if name.endswith("Hz")}
     return {"costs": costs, "feed worst": feed_worst, "idle poll": idle, "worst poll": worst,
-            "hostile": hostile, "by frequency": by_frequency, "stack seen": stack}
+            "hostile": hostile, "longest poll": longest, "by frequency": by_frequency, "stack seen": stack}

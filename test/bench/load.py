@@ -36,7 +36,7 @@ def percent(figures, megahertz, feed):
     rate = bytes_a_second(6)
     feeding, polling = figures["costs"][feed]
     interrupts = rate if feed == "bytes" else rate / 128
-    instructions = rate * (feeding + polling) + POLLS_A_SECOND * figures["idle poll"]
+    instructions = rate * (feeding + polling) + POLLS_A_SECOND * figures["idle poll"][1]
     cycles = instructions * CYCLES_AN_INSTRUCTION + interrupts * CYCLES_AN_INTERRUPT
     return 100 * cycles / (megahertz * 1e6)
 

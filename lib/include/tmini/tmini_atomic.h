@@ -56,9 +56,9 @@
 #endif
 
 /** @def TMINI_UNROLL
- * Before a loop that is worth four times its size where the compiler optimizes for speed. */
+ * Before a loop that is worth eight times its size where the compiler optimizes for speed. */
 #if defined(__GNUC__) && __GNUC__ >= 8 && !defined(__clang__)
-#define TMINI_UNROLL _Pragma("GCC unroll 4")
+#define TMINI_UNROLL _Pragma("GCC unroll 8")
 #else
 #define TMINI_UNROLL
 #endif

@@ -44,6 +44,9 @@ extern "C" {
  * are looked at once, and again for every false header before it whose packet would reach it. */
 #define TMINI_PARSER_EFFORT 2048u
 
+/** To find that a candidate is no frame costs as much as looking at so many bytes. */
+#define TMINI_CANDIDATE_EFFORT 14u
+
 /** What tmini_parser_next() has found. */
 typedef enum {
     TMINI_FRAME_NONE,   /**< Nothing more can be told from the bytes received so far. */
@@ -80,7 +83,7 @@ typedef struct {
 typedef struct {
     tmini_frame_t frame; /**< Delivered last; its size is 0 while the next one is sought. */
     uint16_t need;       /**< Bytes without which the candidate cannot be told further. */
-    uint16_t effort;     /**< Bytes looked at by the last call of tmini_parser_next(). */
+    uint16_t effort;     /**< Done by the last call of tmini_parser_next(), as above. */
     uint8_t max_samples; /**< Packets with more are not valid. */
     uint8_t kind;        /**< What the candidate is by its plausible header: tmini_frame_type_t. */
     bool awaiting;       /**< A reply is awaited, */
