@@ -97,7 +97,7 @@ typedef struct {
     bool gap_ahead;                  /* Bytes were lost, */
     size_t before_gap;               /* behind so many that are still in the driver's buffer. */
     bool stopping;                   /* Written by tmini_esp32_stop(), read by the task. */
-    bool receiving;                  /* Written by the task: cleared by its last breath. */
+    bool receiving;                  /* Written by the task: cleared when it ends. */
     tmini_esp32_counters_t counters; /* Written by the receiving context alone. */
     uint8_t chunk[128];
     /** @endcond */

@@ -16,6 +16,7 @@ from documents import ROOT, anchors, documents, name, parse
 
 LINK = re.compile(r"\[(?:[^][]|\[[^]]*\])*\]\(([^()\s]*)(?:\s+\"[^\"]*\")?\)")
 REFERENCE = re.compile(r"^\[[^]]+\]:\s*(\S+)")
+TAG = re.compile(r"<[^>]* (?:src|href)=\"([^\"]*)\"")
 PATH = re.compile(r"(?<![\w/.-])((?:docs|examples|lib|port|test)/[\w./-]*\w)")
 
 # Recordings of real units, which each user has to bring.
@@ -45,7 +46,8 @@ def check_link(path, number, target):
 
 def links(path):
     for number, line in parse(path)[1]:
-        for target in LINK.findall(without_code(line)) + REFERENCE.findall(line):
+        for target in [*LINK.findall(without_code(line)), *REFERENCE.findall(line),
+                       *TAG.findall(line)]:
             yield number, target
 
 
