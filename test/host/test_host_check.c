@@ -50,8 +50,19 @@ static case_t cases[] = {
 
 #define CASES (sizeof cases / sizeof cases[0])
 
+/* On a busy computer the simulated lidar or the tool may stand still for a second: what the tool
+ * says of that is true, but not what the case is about. Such a case is tried again, alone; so often
+ * in all. */
+static unsigned retries = 20;
+
 /* What is no simulated lidar. */
 static pid_t silent, noisy, deaf, half, gone;
+
+static void begin_case(case_t *one)
+{
+    const char *const port = program_start_lidar(one->options);
+    one->tool = program_start_as(one->name, WORDS("check", "-p", port, "-q", "-s7"));
+}
 
 static void begin_cases(void)
 {
@@ -61,8 +72,7 @@ static void begin_cases(void)
     size_t size = 0;
     program_begin_background();
     for (size_t i = 0; i < CASES; i++) {
-        const char *const port = program_start_lidar(cases[i].options);
-        cases[i].tool = program_start_as(cases[i].name, WORDS("check", "-p", port, "-q", "-s7"));
+        begin_case(&cases[i]);
     }
     const char *const room = program_read_file(1, RECORDINGS "sim-6hz.bin", &size);
     silent = program_start_as("silent", WORDS("check", "-p", program_start_talker(NULL, 0)));
@@ -73,7 +83,7 @@ static void begin_cases(void)
     half = program_start_as("half",
                             WORDS("check", "-p", program_start_answerer(0x90, information, 27)));
     const char *const port = program_start_lidar(WORDS("--seed", "8"));
-    gone = program_start_as("gone", WORDS("check", "-p", port, "-q"));
+    gone = program_start_as("gone", WORDS("check", "-p", port, "-q", "-s600"));
     program_end_background();
 }
 
@@ -92,15 +102,35 @@ void tearDown(void)
     program_clean_up();
 }
 
-/* Ends the case, which has this exit status. */
-static void end_case(const char *name, int status)
+static case_t *find_case(const char *name)
 {
     size_t i = 0;
     while (strcmp(cases[i].name, name) != 0) {
         i++;
     }
-    const int ended = program_finish_as(name, cases[i].tool);
+    return &cases[i];
+}
+
+static bool computer_was_busy(void)
+{
+    return strstr(program_output, "the lidar fell silent ") != NULL ||
+           strstr(program_output, "\nlook  pace ") != NULL ||
+           strstr(program_output, "\nlook  computer ") != NULL;
+}
+
+/* Ends the case, which has this exit status and says this. */
+static void end_case(const char *name, int status, const char *text)
+{
+    case_t *const one = find_case(name);
+    int ended = program_finish_as(name, one->tool);
+    while (retries > 0 && computer_was_busy() &&
+           (ended != status || strstr(program_output, text) == NULL)) {
+        retries--;
+        begin_case(one);
+        ended = program_finish_as(name, one->tool);
+    }
     TEST_ASSERT_EQUAL_INT_MESSAGE(status, ended, program_output);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_output, text), program_output);
 }
 
 static void expect_said(const char *text)
@@ -117,32 +147,29 @@ static void expect_unsaid(const char *text)
 static void expect_bad(const char *name, const char *reasons)
 {
     char verdict[80];
-    end_case(name, 1);
     (void)snprintf(verdict, sizeof verdict, "\nverdict: not good: %s\n", reasons);
-    expect_said(verdict);
+    end_case(name, 1, verdict);
 }
 
 void test_a_good_lidar_is_good(void)
 {
-    end_case("good", 0);
+    end_case("good", 0, "\nok    supply     no restart; first packet after ");
     expect_unsaid("BAD");
     expect_said(
         "\nok    answers    model 151, firmware 1.2, hardware 1, serial 2026031700012345\n");
     expect_said("\nok    health     healthy\n");
-    expect_said("\nok    supply     no restart; first packet after ");
     expect_said("\nok    line       0.0 % of ");
     expect_said("\nok    frequency  6.0 Hz measured, 6.0 Hz set\n");
     expect_said("\nok    faults     none told while scanning\n");
     expect_said(" % of the points have a distance\n");
     expect_said("\nverdict: ");
-    end_case("socket", 0);
+    end_case("socket", 0, "ok    port       tcp:127.0.0.1:");
     expect_unsaid("BAD");
-    expect_said("ok    port       tcp:127.0.0.1:");
 }
 
 void test_a_unit_that_tells_nothing_within_the_stream_is_good_too(void)
 {
-    end_case("no_ct", 0);
+    end_case("no_ct", 0, "\nverdict: ");
     expect_said("\nok    faults     this unit tells none while scanning\n");
     expect_unsaid("BAD");
 }
@@ -160,8 +187,7 @@ void test_a_damaged_line_is_a_line(void)
 
 void test_bytes_that_come_late_are_no_damage(void)
 {
-    end_case("stall", 0);
-    expect_said("\nlook  pace       packets came up to ");
+    end_case("stall", 0, "\nlook  pace       packets came up to ");
     expect_said("\nok    line       0.0 % ");
     expect_said("verdict: usable, but look at: ");
 }
@@ -173,15 +199,13 @@ void test_a_wrong_baud_rate_for_a_while_is_a_line(void)
 
 void test_a_lidar_that_restarts_has_a_weak_supply(void)
 {
-    end_case("unplug", 1);
-    expect_said("\nBAD   supply     the lidar fell silent ");
+    end_case("unplug", 1, "\nBAD   supply     the lidar fell silent ");
     expect_said("5 V, up to 1 A");
 }
 
 void test_a_motor_that_comes_up_slowly_has_a_weak_supply(void)
 {
-    end_case("weak", 0);
-    expect_said("\nlook  supply     the motor took ");
+    end_case("weak", 0, "\nlook  supply     the motor took ");
 }
 
 void test_a_blocked_rotor(void)
@@ -215,8 +239,7 @@ void test_a_motor_that_does_not_come_up_to_its_speed(void)
 {
     expect_bad("slow", "frequency");
     expect_said("\nBAD   frequency  4.2 Hz measured, 6.0 Hz set\n");
-    end_case("brake", 0);
-    expect_said("\nlook  frequency  5.1 Hz measured, 6.0 Hz set\n");
+    end_case("brake", 0, "\nlook  frequency  5.1 Hz measured, 6.0 Hz set\n");
     expect_said("brake the rotor");
 }
 
