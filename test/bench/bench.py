@@ -32,6 +32,10 @@ FOOTPRINT_TABLES = [name for name in tables.BLOCKS if name not in README_TABLES]
 RECORDINGS = os.environ.get("TMINI_RECORDINGS_DIR", ROOT / "test" / "recordings" / "real")
 ROOM = pathlib.Path(RECORDINGS) / "t-mini-plus-room.bin"
 
+# The limits are for the compilers that the committed tables were made with; with others the library
+# may cost so many percent more.
+OTHER_TOOLS_PERCENT = 10
+
 
 class Budget:
     """A limit of budgets.txt and what was measured."""
@@ -39,8 +43,8 @@ class Budget:
     def __init__(self, name, limit, title, measured):
         self.name, self.limit, self.title, self.measured = name, limit, title, measured
 
-    def is_exceeded(self):
-        return self.measured > self.limit
+    def is_exceeded(self, more_percent):
+        return self.measured > self.limit * (1 + more_percent / 100)
 
     def shown(self):
         return f"{self.measured:.1f}".removesuffix(".0")
@@ -148,12 +152,14 @@ def read_budgets(figures):
 
 def check_budgets(figures):
     """Says which budgets are exceeded; returns whether none is."""
-    exceeded = [budget for budget in figures["budgets"] if budget.is_exceeded()]
+    more = 0 if same_tools(figures) else OTHER_TOOLS_PERCENT
+    exceeded = [budget for budget in figures["budgets"] if budget.is_exceeded(more)]
     if platform.machine() != "x86_64":
         print("This computer is no x86-64: its own budget says nothing here.")
         exceeded = [budget for budget in exceeded if not budget.name.endswith("x86")]
     for budget in exceeded:
-        print(f"OVER BUDGET: {budget.title}: {budget.shown()}, the limit is {budget.limit:g}")
+        print(f"OVER BUDGET: {budget.title}: {budget.shown()}, the limit is {budget.limit:g}" +
+              (f" and {more} %" if more else ""))
     return not exceeded
 
 
@@ -189,8 +195,8 @@ def check_documents(figures):
     if not holds_tables(FOOTPRINT, FOOTPRINT_TABLES):
         return False
     if not same_tools(figures):
-        print("The committed tables were made with other compilers; here budgets alone are "
-              "checked:")
+        print("The committed tables were made with other compilers; here budgets alone are checked, "
+              f"with {OTHER_TOOLS_PERCENT} % more:")
         print(tables.versions(figures))
         return True
     right = check_document(FOOTPRINT, FOOTPRINT_TABLES, figures)

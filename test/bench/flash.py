@@ -5,7 +5,7 @@
 
 import pathlib
 
-from targets import HERE, LIB_SOURCES, contributions, run
+from targets import HERE, LIB_SOURCES, BenchError, contributions, run
 
 # In the order of the tables: file name, title.
 CONFIGURATIONS = (
@@ -40,6 +40,8 @@ def weigh(map_file):
             modules[module] = modules.get(module, 0) + size
         elif is_support(file) and section in ("text", "rodata"):
             support += size
+    if not modules:
+        raise BenchError(f"{map_file} names no file of the library")
     return {"modules": modules, "own": sum(modules.values()), "support": support,
             "writable": writable}
 
