@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""The interrupt handlers that documents show for USARTs with SR and DR survive an overrun: they run
+over such a USART, in which reading SR and then DR clears it, and nothing else does.
+
+    handlers.py BUILD C++-COMPILER
+
+Exit status: 0 all do, 1 not.
+"""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from documents import documents, parse
+
+HANDLER = re.compile(r"^void USART1_IRQHandler\(void\).*?^}\n", re.MULTILINE | re.DOTALL)
+
+PROGRAM = """
+#include <cstdint>
+#include <cstdio>
+#include <vector>
+
+enum : uint32_t { USART_SR_ORE = 1u << 3, USART_SR_RXNE = 1u << 5 };
+
+/* As the reference manuals of STM32F1 and F4 have it. */
+struct Usart {
+    uint32_t status = 0;
+    uint8_t data = 0;
+    bool is_ore_seen = false;
+
+    struct Status {
+        Usart *usart;
+        operator uint32_t() const
+        {
+            usart->is_ore_seen = (usart->status & USART_SR_ORE) != 0;
+            return usart->status;
+        }
+    } SR{this};
+
+    struct Data {
+        Usart *usart;
+        operator uint32_t() const
+        {
+            usart->status &= ~(USART_SR_RXNE | (usart->is_ore_seen ? USART_SR_ORE : 0u));
+            usart->is_ore_seen = false;
+            return usart->data;
+        }
+    } DR{this};
+
+    void receive(uint8_t byte)
+    {
+        if ((status & USART_SR_RXNE) != 0) {
+            status |= USART_SR_ORE;
+        } else {
+            data = byte;
+            status |= USART_SR_RXNE;
+        }
+    }
+};
+
+static Usart registers;
+static Usart *const USART1 = &registers;
+static int lidar;
+static std::vector<uint8_t> fed;
+
+static void tmini_feed_byte(int *, uint8_t byte)
+{
+    fed.push_back(byte);
+}
+
+HANDLER
+
+/* Interrupts as long as the USART asks for it; false: for ever. */
+static bool serve()
+{
+    for (int i = 0; i < 10; i++) {
+        if (registers.status == 0) {
+            return true;
+        }
+        USART1_IRQHandler();
+    }
+    return false;
+}
+
+static bool receives(uint8_t byte)
+{
+    registers.receive(byte);
+    return serve() && !fed.empty() && fed.back() == byte;
+}
+
+int main()
+{
+    if (!receives(0x11)) {
+        return std::puts("it does not receive"), 1;
+    }
+    registers.receive(0x22);
+    registers.receive(0x33);
+    if (!serve()) {
+        return std::puts("an overrun interrupts for ever"), 1;
+    }
+    registers.status = USART_SR_ORE;
+    if (!serve()) {
+        return std::puts("an overrun without a byte interrupts for ever"), 1;
+    }
+    return receives(0x44) && fed[1] == 0x22 ? 0 : (std::puts("it receives no more"), 1);
+}
+"""
+
+
+def handlers():
+    for path in documents():
+        for block in parse(path)[0]:
+            for handler in HANDLER.findall(block.text):
+                if block.language == "c" and "USART1->" in handler:
+                    yield block, handler
+
+
+def survives(handler, folder, compiler):
+    """None, or what is wrong."""
+    program = folder / "handler"
+    built = subprocess.run([compiler, "-std=c++11", "-x", "c++", "-", "-o", program], text=True,
+                           input=PROGRAM.replace("HANDLER\n", handler), stdout=subprocess.PIPE,
+                           stderr=subprocess.STDOUT, check=False)
+    if built.returncode != 0:
+        return built.stdout
+    result = subprocess.run([program], text=True, stdout=subprocess.PIPE, check=False)
+    return result.stdout if result.returncode != 0 else None
+
+
+def main():
+    folder = Path(sys.argv[1]) / "test" / "docs" / "handlers"
+    folder.mkdir(parents=True, exist_ok=True)
+    if survives("void USART1_IRQHandler(void) { tmini_feed_byte(&lidar, (uint8_t)USART1->DR); }\n",
+                folder, sys.argv[2]) is None:
+        sys.exit("a handler that reads DR alone seems to survive: is this check still one?")
+    failed, count = False, 0
+    for block, handler in handlers():
+        count += 1
+        wrong = survives(handler, folder, sys.argv[2])
+        if wrong:
+            failed = True
+            print(f"{block}: {wrong.strip()}")
+    print(f"{count} handlers tried")
+    sys.exit(1 if failed or count < 3 else 0)
+
+
+main()
