@@ -169,7 +169,7 @@ static void fail(tmini_t *lidar, tmini_status_t status)
     raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
 }
 
-/* Draws the consequences of how the user's command stands. */
+/* Draws the consequences of how the user's command stands: the only place where one ends. */
 static void take_result(tmini_t *lidar, int result)
 {
     if (result == TMINI_UNDER_WAY) {
@@ -235,7 +235,8 @@ static void begin_scanning(tmini_t *lidar, tmini_event_t event)
     raise_event(lidar, event);
 }
 
-/* A lidar that was left idle streams: the stop was lost on the wire. */
+/* A lidar that was left idle streams: the stop was lost on the wire. Nobody polls for its scans, so
+ * it would wear out its motor unnoticed. */
 static void stop_again(tmini_t *lidar)
 {
     raise_event(lidar, TMINI_EVENT_STREAMING);
@@ -313,7 +314,7 @@ static void deliver_packet(tmini_t *lidar, uint32_t came_ms)
     if (lidar->builder.capacity == 0) {
         raise_event(lidar, TMINI_EVENT_PACKET);
     } else if (tmini_scan_add(&lidar->builder, packet, came_ms)) {
-        lidar->is_held = true;
+        lidar->packet_waits = true;
         lidar->scans++;
         raise_event(lidar, TMINI_EVENT_SCAN);
     }
@@ -333,11 +334,12 @@ static void take_packet(tmini_t *lidar)
     deliver_packet(lidar, came_ms);
 }
 
-/* The packet that closed the scan which has been returned begins the next one. */
-static void add_held_packet(tmini_t *lidar)
+/* The packet that closed the scan which has been returned begins the next one. It had to wait,
+ * because the application reads the scan until it polls again. */
+static void add_waiting_packet(tmini_t *lidar)
 {
-    if (lidar->is_held) {
-        lidar->is_held = false;
+    if (lidar->packet_waits) {
+        lidar->packet_waits = false;
         (void)tmini_scan_add(&lidar->builder, &lidar->latest.packet, lidar->builder.scan.end_ms);
     }
 }
@@ -361,7 +363,7 @@ static bool give_up_candidate(tmini_t *lidar)
  * than one poll may do. */
 static bool receive(tmini_t *lidar)
 {
-    add_held_packet(lidar);
+    add_waiting_packet(lidar);
     for (size_t effort = 0; lidar->pending == 0; effort += lidar->parser.effort + 1u) {
         if (effort >= TMINI_PARSER_EFFORT) {
             return false;
@@ -450,12 +452,12 @@ static bool has_required_members(const tmini_config_t *config)
 /* Ring, parser and builder check their own parts of the configuration. */
 static bool init_modules(tmini_t *lidar, const tmini_config_t *config)
 {
-    const bool streaming = config->points == NULL && config->max_points == 0;
+    const bool by_packets = config->points == NULL && config->max_points == 0;
     return tmini_ring_init(&lidar->ring, config->rx_buffer, config->rx_size, config->rx_dma) ==
                TMINI_OK &&
            tmini_parser_init(&lidar->parser, &lidar->ring, config->max_samples) == TMINI_OK &&
-           (streaming || tmini_scan_init(&lidar->builder, config->points, config->max_points,
-                                         config->filter) == TMINI_OK);
+           (by_packets || tmini_scan_init(&lidar->builder, config->points, config->max_points,
+                                          config->filter) == TMINI_OK);
 }
 
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)

@@ -86,8 +86,8 @@ tmini_status_t tmini_write_frequency(tmini_t *lidar, uint16_t frequency_chz, uin
 tmini_status_t tmini_start_and_wait(tmini_t *lidar, uint32_t timeout_ms)
 {
     const tmini_status_t begun = tmini_start(lidar);
-    const bool streaming = begun == TMINI_OK && lidar->builder.capacity == 0;
-    return wait_for(lidar, begun, streaming ? TMINI_EVENT_PACKET : TMINI_EVENT_SCAN, timeout_ms);
+    const bool by_packets = begun == TMINI_OK && lidar->builder.capacity == 0;
+    return wait_for(lidar, begun, by_packets ? TMINI_EVENT_PACKET : TMINI_EVENT_SCAN, timeout_ms);
 }
 
 tmini_status_t tmini_stop_and_wait(tmini_t *lidar, uint32_t timeout_ms)

@@ -54,6 +54,7 @@ static bool transmit(tmini_t *lidar)
     if (taken < 0) {
         return false;
     }
+    /* A port that claims to have taken more than it was given is believed to have taken all. */
     command->unsent = (uint8_t)(taken < unsent ? unsent - taken : 0);
     command->sync_sent = command->unsent == 1;
     return true;
@@ -198,7 +199,8 @@ static bool is_quiet(const tmini_t *lidar)
            tmini_ring_stored(&lidar->ring) == lidar->link.received;
 }
 
-/* What each operation's first command is, once the line is quiet. */
+/* What each operation's first command is, once the line is quiet. A frequency is changed by steps,
+ * so that it must be known where they begin. */
 static const uint8_t first_command[] = {
     [TMINI_OPERATION_START] = TMINI_COMMAND_START,
     [TMINI_OPERATION_INFO] = TMINI_COMMAND_GET_INFO,
@@ -267,6 +269,7 @@ void tmini_command_begin(tmini_t *lidar, tmini_operation_t operation, uint8_t at
                          uint16_t frequency_chz)
 {
     tmini_command_t *const command = &lidar->command;
+    /* A lidar that is known to be idle needs no stop before its command. */
     const bool may_send = tmini_command_line_is_quiet(lidar) && operation != TMINI_OPERATION_STOP;
     command->operation = (uint8_t)operation;
     command->attempts_left = (uint8_t)(attempts > 0 ? attempts - 1 : 0);

@@ -17,7 +17,7 @@ const uint8_t *tmini_frame_samples(const tmini_frame_t *frame, size_t index, siz
         return piece;
     }
     for (size_t i = 0; i < TMINI_SAMPLE_SIZE; i++) {
-        joined[i] = tmini_ring_peek(frame->ring, TMINI_SAMPLE_OFFSET(index) + i);
+        joined[i] = tmini_frame_peek(frame, TMINI_SAMPLE_OFFSET(index) + i);
     }
     *count = 1;
     return joined;

@@ -115,10 +115,10 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
 
 bool tmini_packet_has_range(const tmini_packet_t *packet)
 {
-    const tmini_ring_t *const ring = packet->frame->ring;
+    const tmini_frame_t *const frame = packet->frame;
     for (size_t i = 0; i < packet->count; i++) {
         const size_t sample = TMINI_SAMPLE_OFFSET(i);
-        if (tmini_ring_peek(ring, sample + 1) > 3 || tmini_ring_peek(ring, sample + 2) > 0) {
+        if (tmini_frame_peek(frame, sample + 1) > 3 || tmini_frame_peek(frame, sample + 2) > 0) {
             return true;
         }
     }

@@ -7,10 +7,10 @@
  * 2 * 23040 * 65535 + 23040 is below 2^32. */
 size_t tmini_ranges_bin(uint16_t angle_q6, size_t count)
 {
-    const uint32_t turn = TMINI_FULL_CIRCLE_Q6;
-    const uint32_t behind = turn / 2;
-    const uint32_t from_behind = behind + (angle_q6 > behind ? turn : 0) - angle_q6;
-    const uint32_t bin = (2 * from_behind * (uint32_t)count + turn) / (2 * turn);
+    const uint32_t circle = TMINI_FULL_CIRCLE_Q6;
+    const uint32_t behind = circle / 2;
+    const uint32_t from_behind = behind + (angle_q6 > behind ? circle : 0) - angle_q6;
+    const uint32_t bin = (2 * from_behind * (uint32_t)count + circle) / (2 * circle);
     return (size_t)(bin < count ? bin : 0);
 }
 

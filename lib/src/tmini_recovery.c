@@ -53,6 +53,8 @@ static void reboot(tmini_t *lidar)
     begin(lidar, TMINI_OPERATION_REBOOT);
 }
 
+/* A reboot takes seconds, and a lidar that is only unplugged does not hear it: first what is
+ * quick. */
 static void make_attempt(tmini_t *lidar)
 {
     const uint8_t failed = lidar->recovery.attempts;

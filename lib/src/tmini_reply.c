@@ -5,24 +5,25 @@
 
 #include <string.h>
 
-bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *shape)
+/* Most commands are answered with a frequency: the question for it, and each of its steps. */
+bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header)
 {
-    *shape = (tmini_reply_header_t){.type = 0x04, .length = TMINI_FREQUENCY_SIZE};
+    *header = (tmini_reply_header_t){.type = 0x04, .length = TMINI_FREQUENCY_SIZE};
     switch (command) {
     case TMINI_COMMAND_STOP:
     case TMINI_COMMAND_REBOOT:
         return false;
     case TMINI_COMMAND_START:
-        shape->type = 0x81;
-        shape->mode = TMINI_REPLY_MODE_CONTINUOUS;
-        shape->length = 0;
+        header->type = 0x81;
+        header->mode = TMINI_REPLY_MODE_CONTINUOUS;
+        header->length = 0;
         break;
     case TMINI_COMMAND_GET_INFO:
-        shape->length = TMINI_INFO_SIZE;
+        header->length = TMINI_INFO_SIZE;
         break;
     case TMINI_COMMAND_GET_HEALTH:
-        shape->type = 0x06;
-        shape->length = TMINI_HEALTH_SIZE;
+        header->type = 0x06;
+        header->length = TMINI_HEALTH_SIZE;
         break;
     default:
         break;

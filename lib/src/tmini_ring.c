@@ -47,12 +47,15 @@ size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
     return taken;
 }
 
+/* What the consumer does meanwhile can only make more room, never less. */
 size_t tmini_ring_room(const tmini_ring_t *ring)
 {
     const size_t limit = tmini_load(&ring->limit);
     return tmini_load(&ring->gate) != 0 ? limit - ring->head : 0;
 }
 
+/* The position says where in its lap the hardware is, not in which lap: it is taken for the next
+ * such place ahead of the one published last. */
 void tmini_ring_publish(tmini_ring_t *ring, size_t position)
 {
     const size_t head = ring->head;
@@ -62,6 +65,7 @@ void tmini_ring_publish(tmini_ring_t *ring, size_t position)
 void tmini_ring_gap(tmini_ring_t *ring)
 {
     if (is_fed_by_cpu(ring)) {
+        /* As a refused byte does, but there is no number to count. */
         tmini_store(&ring->gate, 0);
     } else {
         tmini_store(&ring->head, ring->head + ring->size); /* A lap that nobody saw. */
@@ -79,6 +83,7 @@ void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, si
     }
 }
 
+/* From now on the producer may write there; so everything must have been read by now. */
 void tmini_ring_discard(tmini_ring_t *ring, size_t count)
 {
     tmini_store(&ring->limit, ring->limit + count);

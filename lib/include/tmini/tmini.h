@@ -108,8 +108,8 @@ typedef struct {
     uint8_t *rx_buffer;       /**< Received bytes. Required. */
     size_t rx_size;           /**< A power of two; 256 or more (512 with DMA) for 80 samples. */
     bool rx_dma;           /**< The buffer is the target of circular DMA: use tmini_feed_dma(). */
-    tmini_point_t *points; /**< One scan. NULL: streaming, an event for each packet instead. */
-    size_t max_points;     /**< 1 to 65535, or 0 when streaming. */
+    tmini_point_t *points; /**< One scan. NULL: an event for each packet instead. */
+    size_t max_points;     /**< 1 to 65535, or 0 with no points. */
     uint8_t max_samples;   /**< Packets with more are not valid; 0: the default, 80. */
     uint8_t filter;        /**< Of scans: a combination of tmini_filter_t; 0: keep all. */
     bool disable_recovery; /**< A lost lidar is reported, but not restarted. */
@@ -361,9 +361,9 @@ typedef struct {
 struct tmini {
     uint8_t state; /* A tmini_state_t. */
     int8_t command_error;
-    uint16_t pending; /* A bit for each event not yet returned. */
-    bool is_held;     /* The packet that closed the scan has not been added to the next. */
-    uint8_t doubt;    /* Whether, between the bytes before `doubtful_to`, others may be missing. */
+    uint16_t pending;  /* A bit for each event not yet returned. */
+    bool packet_waits; /* The packet that closed the scan has not been added to the next. */
+    uint8_t doubt;     /* Whether, between the bytes before `doubtful_to`, others may be missing. */
     bool disable_recovery;
     bool is_unwatched; /* Since bytes came, nobody looked for longer than the line may pause. */
     size_t doubtful_to;
@@ -374,7 +374,7 @@ struct tmini {
     tmini_link_t link;
     tmini_ring_t ring;
     tmini_parser_t parser;
-    tmini_scan_builder_t builder; /* Without a capacity when streaming. */
+    tmini_scan_builder_t builder; /* Without a capacity: by packets. */
     union {
         tmini_packet_t packet; /* While scanning. */
         tmini_info_t info;     /* The answers to commands, which are not sent while scanning. */

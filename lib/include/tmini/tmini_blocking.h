@@ -46,7 +46,7 @@ tmini_status_t tmini_read_health(tmini_t *lidar, tmini_health_t *health, uint32_
 tmini_status_t tmini_read_frequency(tmini_t *lidar, uint16_t *frequency_chz, uint32_t timeout_ms);
 
 /** Sets the scan frequency, in 0.01 Hz: 600 to 1200, a multiple of 10 (section 3). Waits
- * `timeout_ms` at most: allow 2 s more than for a query, for up to a dozen steps. Returns what is
+ * `timeout_ms` at most: allow 2 s more than for a query, for up to 15 steps. Returns what is
  * listed above; TMINI_ERROR_ARGUMENT also for another frequency. */
 tmini_status_t tmini_write_frequency(tmini_t *lidar, uint16_t frequency_chz, uint32_t timeout_ms);
 

@@ -56,6 +56,13 @@ static inline bool tmini_frame_intact(const tmini_frame_t *frame)
     return tmini_ring_intact(frame->ring);
 }
 
+/** The frame's byte at `offset`, which is below its size: 0 is the start sign's first byte. DMA may
+ * have overwritten it. */
+static inline uint8_t tmini_frame_peek(const tmini_frame_t *frame, size_t offset)
+{
+    return tmini_ring_peek(frame->ring, offset);
+}
+
 /** Copies the first `count` bytes, at most as many as the reply has, of a reply's content to
  * `content`. Returns false if DMA has overwritten them. */
 static inline bool tmini_frame_content(const tmini_frame_t *frame, uint8_t *content, size_t count)
