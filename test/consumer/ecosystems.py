@@ -12,6 +12,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 DOCUMENT = os.path.join(ROOT, "docs", "ecosystems.md")
@@ -20,8 +21,12 @@ complaints = []
 
 
 def tests_of(build):
-    listing = subprocess.run(["ctest", "-N"], cwd=build, text=True, stdout=subprocess.PIPE,
-                             check=True).stdout
+    """Asked from another folder: ctest begins a new log where it is asked, also for a mere list."""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:
+            file.write("subdirs([==[%s]==])\n" % os.path.abspath(build))
+        listing = subprocess.run(["ctest", "-N"], cwd=folder, text=True, stdout=subprocess.PIPE,
+                                 check=True).stdout
     return set(re.findall(r"Test +#\d+: (\S+)", listing))
 
 
