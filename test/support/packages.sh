@@ -92,12 +92,11 @@ refresh_index() {
     quietly apt_get update || echo "apt-get update failed; trying with the lists at hand" >&2
 }
 
-# is_available PACKAGE|FILE.deb. Of a name that other packages only mention, apt shows nothing, and
-# succeeds.
+# is_available PACKAGE|FILE.deb
 is_available() {
     case $1 in
         /*) [ -e "$1" ] ;;
-        *) [ -n "$(apt-cache show --no-all-versions "$1" 2>/dev/null)" ] ;;
+        *) apt-cache show --no-all-versions "$1" >/dev/null 2>&1 ;;
     esac
 }
 
