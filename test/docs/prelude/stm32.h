@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What port/stm32/README.md takes for granted: a CubeMX project, CMSIS, LL drivers and an RTOS. ST's
- * functions and constants are declared as ST documents them, without their values. */
+/* What port/stm32/README.md takes for granted: a CubeMX project, CMSIS, LL drivers and an RTOS.
+ * ST's functions and constants are declared as ST documents them, without their values. */
 
 #ifndef STM32_PRELUDE_H
 #define STM32_PRELUDE_H
