@@ -9,6 +9,7 @@ the project's own words (words.txt) besides; and well-known slips in all sources
 Exit status: 0 all is in order, 1 not: every word is told with its places; 77 no tool is installed.
 """
 
+import os
 import re
 import shutil
 import subprocess
@@ -54,6 +55,7 @@ def misspelt(lines):
         words.flush()
         result = subprocess.run(["hunspell", "-l", "-i", "utf-8", "-d", "en_GB", "-p", words.name],
                                 input="\n".join(lines), text=True, encoding="utf-8",
+                                env={**os.environ, "LC_ALL": "C.UTF-8"},
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=True)
     return set(result.stdout.split())
 
