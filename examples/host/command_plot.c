@@ -3,19 +3,20 @@
 
 /* tmini plot: a picture of a scan, or of all scans, of a recording or of a lidar. */
 
-#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "device.h"
-#include "message.h"
+#include "output.h"
 #include "picture.h"
 #include "points.h"
 #include "recording.h"
-#include "scale.h"
 
 /* From a lidar: by this scan the motor has come up to speed. */
 #define DEVICE_SCANS 4u
+
+/* On a damaged line none may be complete: after so many more it is enough. */
+#define PATIENCE_SCANS 40u
 
 /* More than the eye tells apart in one picture. */
 #define POINTS_MAX 65536u
@@ -23,11 +24,11 @@
 /* What is to be drawn: the last complete scan, the wanted one, or points of all. */
 typedef struct {
     tmini_scan_t scan;
-    uint64_t number; /* Of it; 0: there is none yet. */
-    uint64_t first;  /* Of all scans that have come. */
-    uint64_t last;
-    uint64_t every; /* Of all scans' points, each so-manieth is kept, */
-    uint64_t seen;  /* after so many. */
+    count_t number; /* Of it; 0: there is none yet. */
+    count_t first;  /* Of all scans that have come. */
+    count_t last;
+    count_t every; /* Of all scans' points, each so-manieth is kept, */
+    count_t seen;  /* after so many. */
     size_t count;
     tmini_point_t points[POINTS_MAX];
 } drawing_t;
@@ -69,62 +70,65 @@ static void take_scan(const stream_t *stream, const options_t *options)
     }
 }
 
-/* Writes the picture, and says in words what is in it. */
-static int write_picture(const options_t *options, const char *title, const char *subtitle)
+static void name_all(figure_t *figure, const char *source)
 {
-    scale_t scale;
-    const figure_t figure = {title, subtitle, drawing.points, drawing.count};
-    const int status = picture_write(options->output, &figure);
-    if (status != STATUS_OK) {
-        return status;
+    char thinned[40] = "";
+    if (drawing.every > 1) {
+        (void)snprintf(thinned, sizeof thinned, ", one in %llu", drawing.every);
     }
-    scale_fit(&scale, drawing.points, drawing.count);
-    message_note("%s: %s; %s; rings to %.*f m", options->output, title, subtitle, scale.decimals,
-                 scale.range_mm / 1000.0);
-    if (scale.valid == 0) {
+    (void)snprintf(figure->title, sizeof figure->title, "Scans %llu to %llu", drawing.first,
+                   drawing.last);
+    (void)snprintf(figure->subtitle, sizeof figure->subtitle,
+                   "%zu points with a distance%s \xC2\xB7 %s", figure->survey.valid, thinned,
+                   source);
+}
+
+static void name_one(figure_t *figure, const char *source)
+{
+    const unsigned frequency_chz = drawing.scan.frequency_chz;
+    (void)snprintf(figure->title, sizeof figure->title, "Scan %llu%s", drawing.number,
+                   drawing.scan.complete ? "" : " (incomplete)");
+    (void)snprintf(figure->subtitle, sizeof figure->subtitle,
+                   "%s%s \xC2\xB7 %zu points, %zu with a distance \xC2\xB7 %s",
+                   frequency_chz == 0 ? "frequency " : "", frequency_text(frequency_chz),
+                   figure->survey.count, figure->survey.valid, source);
+}
+
+/* Writes the picture, and says in words what is in it. */
+static int write_picture(const options_t *options, const char *source)
+{
+    figure_t figure = {.points = drawing.points,
+                       .survey = points_survey(drawing.points, drawing.count)};
+    const survey_t *const survey = &figure.survey;
+    (options->all ? name_all : name_one)(&figure, recording_base_name(source));
+    if (picture_write(options->output, &figure) != STATUS_OK) {
+        return STATUS_FAILED;
+    }
+    message_note("%s: %s; %s; rings to %g m", options->output, figure.title, figure.subtitle,
+                 picture_range_mm(survey) / 1000.0);
+    if (survey->valid == 0) {
         message_note("no point has a distance: is the window covered?");
-    } else if (2 * (scale.specular + scale.ambient) > scale.valid) {
+    } else if (!picture_marks_flags(survey)) {
         message_note("%zu of %zu points flagged: not marked in the picture",
-                     scale.specular + scale.ambient, scale.valid);
+                     survey->specular + survey->ambient, survey->valid);
     }
     return STATUS_OK;
 }
 
 static int draw(const options_t *options, const char *source)
 {
-    char title[80];
-    char subtitle[600];
-    char thinned[40] = "";
-    const size_t valid = points_valid(drawing.points, drawing.count);
     if (drawing.last == 0) {
         return message_fail("%s has no start packet, so no scan: record for at least a second",
                             source);
     }
-    if (options->all) {
-        (void)snprintf(title, sizeof title, "Scans %" PRIu64 " to %" PRIu64, drawing.first,
-                       drawing.last);
-        if (drawing.every > 1) {
-            (void)snprintf(thinned, sizeof thinned, ", one in %" PRIu64, drawing.every);
-        }
-        (void)snprintf(subtitle, sizeof subtitle, "%zu points with a distance%s \xC2\xB7 %s", valid,
-                       thinned, recording_base_name(source));
-        return write_picture(options, title, subtitle);
+    if (options->all || drawing.number > 0) {
+        return write_picture(options, source);
     }
-    if (drawing.number == 0) {
-        return options->scan > 0 ? message_fail("%s has no scan %u, only %" PRIu64 " to %" PRIu64,
-                                                source, options->scan, drawing.first, drawing.last)
-                                 : message_fail("%s has no complete scan; --scan %" PRIu64
-                                                " draws an incomplete one",
-                                                source, drawing.last);
-    }
-    (void)snprintf(title, sizeof title, "Scan %" PRIu64 "%s", drawing.number,
-                   drawing.scan.complete ? "" : " (incomplete)");
-    (void)snprintf(subtitle, sizeof subtitle,
-                   "%s%s \xC2\xB7 %zu points, %zu with a distance \xC2\xB7 %s",
-                   drawing.scan.frequency_chz == 0 ? "frequency " : "",
-                   frequency_text(drawing.scan.frequency_chz), drawing.count, valid,
-                   recording_base_name(source));
-    return write_picture(options, title, subtitle);
+    return options->scan > 0
+               ? message_fail("%s has no scan %u, only %llu to %llu", source, options->scan,
+                              drawing.first, drawing.last)
+               : message_fail("%s has no complete scan; --scan %llu draws an incomplete one",
+                              source, drawing.last);
 }
 
 static int plot_recording(const options_t *options)
@@ -138,7 +142,6 @@ static int plot_recording(const options_t *options)
         if (recording.stream.has_scan) {
             take_scan(&recording.stream, options);
         }
-        recording_show_progress(&recording, options);
     }
     if (stream_end(&recording.stream)) {
         take_scan(&recording.stream, options);
@@ -148,33 +151,20 @@ static int plot_recording(const options_t *options)
     return status == STATUS_OK ? draw(options, recording.name) : status;
 }
 
-/* Gathers scans until the wanted one, or a complete one at full speed, has come. */
-static int gather(device_t *device, const options_t *options)
+/* Waits for the wanted scan, or for a complete one at full speed. */
+static int plot_device(device_t *device, const options_t *options)
 {
     const unsigned wanted = options->scan > 0 ? options->scan : DEVICE_SCANS;
+    const unsigned enough = wanted + (options->scan > 0 || options->all ? 0 : PATIENCE_SCANS);
     int status = device_start(device);
-    while (status == STATUS_OK &&
-           (drawing.last < wanted || (!options->all && drawing.number < wanted))) {
+    while (status == STATUS_OK && drawing.last < enough && drawing.number < wanted) {
         if (device_next_scan(device, NULL)) {
             take_scan(&device->stream, options);
         } else {
             status = device_why(device);
         }
-        if (options->scan > 0 && drawing.last > wanted) {
-            break; /* Its start packet was lost. */
-        }
     }
-    return status;
-}
-
-static int plot_device(const options_t *options)
-{
-    device_t *device = NULL;
-    int status = device_open(&device, options);
-    if (status == STATUS_OK) {
-        status = gather(device, options);
-        device_close(device);
-    }
+    (void)device_stop(device);
     return status == STATUS_OK ? draw(options, device->path) : status;
 }
 
@@ -190,7 +180,7 @@ static int run(const options_t *options)
     if (options->all && options->scan > 0) {
         return message_usage("either --all or --scan N, not both");
     }
-    return options->operand != NULL ? plot_recording(options) : plot_device(options);
+    return options->operand != NULL ? plot_recording(options) : device_use(options, plot_device);
 }
 
 const command_t command_plot = {

@@ -3,7 +3,7 @@
 
 /* tmini plot where there is no cairo: instead of command_plot.c and picture.c. */
 
-#include "message.h"
+#include "output.h"
 #include "options.h"
 
 static int run(const options_t *options)

@@ -6,22 +6,16 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "device.h"
-#include "message.h"
+#include "output.h"
 #include "points.h"
 
 static const char *model_name(uint8_t model)
 {
-    switch (model) {
-    case TMINI_MODEL_T_MINI_PLUS:
-        return "T-mini Plus";
-    case TMINI_MODEL_T_MINI_PRO:
-        return "T-mini Pro";
-    default:
-        return "unknown: not a T-mini Plus or Pro, perhaps with another protocol";
-    }
+    return model == TMINI_MODEL_T_MINI_PLUS  ? "T-mini Plus"
+           : model == TMINI_MODEL_T_MINI_PRO ? "T-mini Pro"
+                                             : "unknown: it may speak another protocol";
 }
 
 static int query_info(device_t *device, const options_t *options)
@@ -33,7 +27,7 @@ static int query_info(device_t *device, const options_t *options)
     }
     const tmini_info_t *const info = tmini_info(&device->lidar);
     tmini_serial_text(info, serial);
-    if (options->format == FORMAT_JSON) {
+    if (options->json) {
         (void)printf("{\"model\":%d,\"firmware\":\"%d.%d\",\"hardware\":%d,\"serial\":\"%s\"}\n",
                      info->model, info->firmware_major, info->firmware_minor, info->hardware,
                      serial);
@@ -55,7 +49,7 @@ static int query_health(device_t *device, const options_t *options)
         return status;
     }
     const tmini_health_t *const health = tmini_health(&device->lidar);
-    if (options->format == FORMAT_JSON) {
+    if (options->json) {
         (void)printf("{\"healthy\":%s,\"faults\":%d,\"error_code\":%d}\n",
                      health->faults == 0 ? "true" : "false", health->faults, health->error_code);
     } else if (health->faults == 0) {
@@ -87,10 +81,8 @@ static int query_frequency(device_t *device, const options_t *options)
             : tmini_request_frequency(&device->lidar);
     const int status = device_finish(device, begun, TMINI_EVENT_FREQUENCY);
     if (status == STATUS_OK) {
-        const uint16_t frequency_chz = tmini_frequency_chz(&device->lidar);
-        (void)printf(options->format == FORMAT_JSON ? "{\"frequency_hz\":%d.%02d}\n"
-                                                    : "%d.%02d Hz\n",
-                     frequency_chz / 100, frequency_chz % 100);
+        (void)printf(options->json ? "{\"frequency_hz\":%.2f}\n" : "%.2f Hz\n",
+                     tmini_frequency_chz(&device->lidar) / 100.0);
     }
     return status;
 }
@@ -110,31 +102,13 @@ static int query_reboot(device_t *device, const options_t *options)
     return status;
 }
 
-/* Opens the port, asks what the command is called after, and prints the answer. */
-static int run(const options_t *options)
+static int run_frequency(const options_t *options)
 {
-    static const struct {
-        const command_t *command;
-        int (*ask)(device_t *device, const options_t *options);
-    } queries[] = {{&command_info, query_info},
-                   {&command_health, query_health},
-                   {&command_frequency, query_frequency},
-                   {&command_reboot, query_reboot}};
-    device_t *device = NULL;
-    size_t i = 0;
     if (options->operand != NULL && read_frequency(options->operand) == 0) {
         return message_usage("\"%s\" is not a scan frequency: 6 to 12 Hz, in steps of 0.1",
                              options->operand);
     }
-    while (strcmp(queries[i].command->name, options->command) != 0) {
-        i++;
-    }
-    int status = device_open(&device, options);
-    if (status == STATUS_OK) {
-        status = queries[i].ask(device, options);
-        device_close(device);
-    }
-    return status;
+    return device_use(options, query_frequency);
 }
 
 const command_t command_info = {
@@ -142,7 +116,7 @@ const command_t command_info = {
     .usage = "[-p PORT] [--json]",
     .summary = "model, firmware, hardware and serial number",
     .accepts = "pJq",
-    .run = run,
+    .use = query_info,
 };
 
 const command_t command_health = {
@@ -151,7 +125,7 @@ const command_t command_health = {
     .summary = "whether the lidar is well",
     .details = "Exit status 1 also when the lidar is faulty.",
     .accepts = "pJq",
-    .run = run,
+    .use = query_health,
 };
 
 const command_t command_frequency = {
@@ -163,7 +137,7 @@ const command_t command_frequency = {
         "is set, which `tmini scan` shows the motor to come close to.",
     .accepts = "pJq",
     .has_operand = true,
-    .run = run,
+    .run = run_frequency,
 };
 
 const command_t command_reboot = {
@@ -172,5 +146,5 @@ const command_t command_reboot = {
     .summary = "restarts the lidar",
     .details = "The lidar stops, and its scan frequency goes back to what it has at power-up.",
     .accepts = "pq",
-    .run = run,
+    .use = query_reboot,
 };

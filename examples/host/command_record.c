@@ -6,14 +6,13 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include <errno.h>
-#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "device.h"
-#include "message.h"
+#include "output.h"
 #include "recording.h"
 
 /* How often progress is shown. */
@@ -28,8 +27,9 @@ typedef struct {
     const char *path;
     FILE *file; /* NULL until then. */
     bool is_timed;
+    uint64_t begun_us;
     uint64_t stamp_us; /* Of the chunk before. */
-    uint64_t bytes;    /* Of the lidar's. */
+    count_t bytes;     /* Of the lidar's. */
     size_t held_count;
     uint8_t held[HELD_MAX];
 } tape_t;
@@ -68,56 +68,25 @@ static void write_tape(void *context, const uint8_t *bytes, size_t count)
     tape->bytes += count;
 }
 
-static int open_tape(tape_t *tape)
+/* What is there of the recording, and how good it is. */
+static const char *tape_text(const device_t *device, const tape_t *tape)
 {
-    FILE *const file = strcmp(tape->path, "-") == 0 ? stdout : fopen(tape->path, "wb");
-    if (file == NULL) {
-        return message_fail("cannot write %s: %s", tape->path, strerror(errno));
-    }
-    tape->file = file;
-    put(tape, tape->held, tape->held_count);
-    return STATUS_OK;
-}
-
-/* Returns `status`, unless the file is not whole. */
-static int close_tape(tape_t *tape, int status)
-{
-    if (tape->file == NULL) {
-        return status;
-    }
-    errno = 0;
-    const bool has_failed = ferror(tape->file) != 0;
-    const bool is_closed = (tape->file == stdout ? fflush(stdout) : fclose(tape->file)) == 0;
-    if (!is_closed || has_failed) {
-        return message_fail("cannot write %s: %s", tape->path,
-                            errno != 0 ? strerror(errno) : "the disk may be full");
-    }
-    if (status == STATUS_OK) {
-        message_note("%" PRIu64 " bytes in %s", tape->bytes,
-                     tape->file == stdout ? "standard output" : tape->path);
-    }
-    return status;
-}
-
-/* Only for someone who looks on: what is written into a log once is enough. */
-static void show_progress(const device_t *device, const tape_t *tape, const options_t *options,
-                          const char *end)
-{
+    static char text[120];
     tmini_counters_t counters;
     tmini_counters(&device->lidar, &counters);
-    if (!options->quiet && (isatty(STDERR_FILENO) != 0 || end[0] == '\n')) {
-        (void)fprintf(stderr,
-                      "%4u.%u s  %8" PRIu64 " bytes  %5" PRIu64 " scans  %" PRIu32
-                      " wrong checksums  %" PRIu32 " bytes overrun%s",
-                      (unsigned)(device_ms(device) / 1000),
-                      (unsigned)(device_ms(device) / 100 % 10), tape->bytes, device->stream.scans,
-                      counters.parser.checksum_errors, counters.parser.bytes_overrun, end);
-    }
+    (void)snprintf(text, sizeof text,
+                   "%.1f s, %llu bytes, %llu scans, %u"
+                   " wrong checksums, %u bytes overrun",
+                   (double)(tape->stamp_us - tape->begun_us) / 1e6, tape->bytes,
+                   device->stream.scans, counters.parser.checksum_errors,
+                   counters.parser.bytes_overrun);
+    return text;
 }
 
 /* Until the time is over or Ctrl-C is pressed, neither of which is a failure. */
-static int roll(device_t *device, const options_t *options, const tape_t *tape)
+static int roll(device_t *device, const options_t *options, tape_t *tape)
 {
+    put(tape, tape->held, tape->held_count);
     const uint32_t begun_ms = device_ms(device);
     uint32_t shown_ms = begun_ms;
     bool is_over = false;
@@ -126,41 +95,44 @@ static int roll(device_t *device, const options_t *options, const tape_t *tape)
         is_over = options->seconds > 0 && device_ms(device) - begun_ms >= options->seconds * 1000;
         if (device_ms(device) - shown_ms >= PROGRESS_MS) {
             shown_ms = device_ms(device);
-            show_progress(device, tape, options, "\r");
+            message_progress(false, "%s", tape_text(device, tape));
             (void)fflush(tape->file); /* For who reads along, and against a power failure. */
         }
     }
-    show_progress(device, tape, options, "\n");
     return device->serial.state == TMINI_POSIX_OK ? STATUS_OK : device_why(device);
 }
 
 /* From before the start command, on a quiet line, to the last byte after the stop command: so the
  * recording begins and ends with whole packets. */
-static int record(device_t *device, const options_t *options, tape_t *tape)
+static int record(device_t *device, const options_t *options)
 {
+    static tape_t tape;
+    const char *const ending = strrchr(options->operand, '.');
     if (!device_stop(device)) {
         return device_why(device);
     }
-    tape->stamp_us = now_us();
-    put(tape, recording_magic, tape->is_timed ? sizeof recording_magic : 0);
-    tmini_posix_tap(&device->serial, write_tape, tape);
+    tape.path = options->operand;
+    tape.is_timed = options->timed || (ending != NULL && strcmp(ending, ".tmini") == 0);
+    tape.begun_us = tape.stamp_us = now_us();
+    put(&tape, recording_magic, tape.is_timed ? sizeof recording_magic : 0);
+    tmini_posix_tap(&device->serial, write_tape, &tape);
     int status = device_start(device);
     if (status == STATUS_OK) {
-        status = open_tape(tape);
+        tape.file = output_open(tape.path);
+        status = tape.file != NULL ? roll(device, options, &tape) : STATUS_FAILED;
     }
-    if (status == STATUS_OK) {
-        status = roll(device, options, tape);
-    }
-    if (device->serial.state == TMINI_POSIX_OK) {
-        (void)device_stop(device);
-    }
+    (void)device_stop(device);
     tmini_posix_tap(&device->serial, NULL, NULL);
-    return status;
+    if (tape.file == NULL) {
+        return status;
+    }
+    message_note("%s: %s", tape.file == stdout ? "standard output" : tape.path,
+                 tape_text(device, &tape));
+    return output_close(tape.file, tape.path, status);
 }
 
 static int run(const options_t *options)
 {
-    static tape_t tape;
     if (options->operand == NULL) {
         return message_usage("record into which file? Usage: tmini record %s",
                              command_record.usage);
@@ -169,17 +141,7 @@ static int run(const options_t *options)
         return message_usage("raw bytes would spoil the terminal: let a program read them, for "
                              "example `| tmini decode -`");
     }
-    device_t *device = NULL;
-    const int opened = device_open(&device, options);
-    if (opened != STATUS_OK) {
-        return opened;
-    }
-    tape.path = options->operand;
-    const char *const ending = strrchr(options->operand, '.');
-    tape.is_timed = options->timed || (ending != NULL && strcmp(ending, ".tmini") == 0);
-    const int status = close_tape(&tape, record(device, options, &tape));
-    device_close(device);
-    return status;
+    return device_use(options, record);
 }
 
 const command_t command_record = {

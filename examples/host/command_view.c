@@ -11,10 +11,9 @@
 
 #include "device.h"
 #include "interrupt.h"
-#include "message.h"
+#include "output.h"
 #include "points.h"
 #include "recording.h"
-#include "terminal.h"
 #include "view.h"
 
 #define SLICE_MS 10
@@ -46,32 +45,12 @@ static uint32_t now_ms(void)
 
 static int open_viewer(viewer_t *viewer, const char *source, const stream_t *stream)
 {
-    *viewer = (viewer_t){.view = {.source = source, .state = "", .stream = stream}};
-    viewer->screen.has_colours = terminal_has_colours();
-    viewer->screen.has_unicode = terminal_has_unicode();
-    viewer->screen.has_cursor = terminal_has_cursor();
+    *viewer = (viewer_t){.view = {.source = source, .state = "", .stream = stream},
+                         .screen = screen_begin()};
     interrupt_watch();
     return terminal_take() ? STATUS_OK
                            : message_fail("view draws in a terminal, and there is none; try `tmini "
                                           "scan`, `decode` or `plot`");
-}
-
-static void close_viewer(viewer_t *viewer)
-{
-    terminal_restore();
-    screen_free(&viewer->screen);
-}
-
-/* Follows the terminal's size. */
-static void fit(viewer_t *viewer)
-{
-    unsigned columns = 80;
-    unsigned rows = 24;
-    (void)terminal_size(&columns, &rows);
-    if (columns != viewer->screen.columns || rows != viewer->screen.rows) {
-        viewer->is_over = !screen_resize(&viewer->screen, columns, rows);
-        viewer->has_news = true;
-    }
 }
 
 static void show(viewer_t *viewer)
@@ -81,20 +60,15 @@ static void show(viewer_t *viewer)
     if (viewer->is_over || !viewer->has_news || is_soon) {
         return;
     }
-    const char *text = NULL;
     view_draw(&viewer->view, &viewer->screen);
-    const size_t size = screen_render(&viewer->screen, &text);
-    terminal_write(text, size);
+    screen_show(&viewer->screen);
     viewer->has_news = false;
     viewer->shown_ms = now_ms();
 }
 
-/* To be called every few milliseconds: follows size and keys, and draws again if need be. Returns
- * the key, if it was none that every view knows. */
-static int attend(viewer_t *viewer)
+/* What every view does at a key. */
+static void heed(viewer_t *viewer, int key)
 {
-    const int key = terminal_key();
-    fit(viewer);
     switch (key) {
     case 'q':
     case 'Q':
@@ -107,8 +81,7 @@ static int attend(viewer_t *viewer)
         view_zoom(&viewer->view, key != '-');
         break;
     case 'a':
-        viewer->view.zoom_mm = 0;
-        viewer->view.range_mm = 0;
+        viewer->view.zoom_mm = viewer->view.range_mm = 0;
         break;
     case KEY_SUSPEND:
         terminal_suspend();
@@ -116,49 +89,50 @@ static int attend(viewer_t *viewer)
     default:
         break;
     }
-    viewer->has_news = viewer->has_news || key != KEY_NONE;
+}
+
+/* To be called every few milliseconds: follows size and keys, and draws again if need be. Returns
+ * the key. */
+static int attend(viewer_t *viewer)
+{
+    const int key = terminal_key();
+    heed(viewer, key);
+    viewer->has_news |= screen_fit(&viewer->screen) || key != KEY_NONE;
+    viewer->is_over |= viewer->screen.rows == 0; /* Memory is short. */
     show(viewer);
-    viewer->is_over = viewer->is_over || interrupt_has_come();
+    viewer->is_over |= interrupt_has_come();
     return key;
 }
 
 static void follow(device_t *device, viewer_t *viewer)
 {
     const tmini_event_t event = device_wait(device, SLICE_MS);
-    viewer->has_news =
-        viewer->has_news || (event != TMINI_EVENT_NONE && event != TMINI_EVENT_PACKET);
-    viewer->view.faults = tmini_faults(&device->lidar);
-    if (viewer->view.faults == 0) {
-        viewer->view.faults = device->stream.faults;
-    }
+    const unsigned faults = tmini_faults(&device->lidar);
+    viewer->has_news |= event != TMINI_EVENT_NONE && event != TMINI_EVENT_PACKET;
+    viewer->view.faults = faults != 0 ? faults : device->stream.faults;
     viewer->view.state = tmini_state(&device->lidar) == TMINI_STATE_SCANNING
                              ? "scanning"
                              : "SILENT: starting it again";
 }
 
-static int watch(device_t *device)
+static int watch(device_t *device, const options_t *options)
 {
     static viewer_t viewer;
-    const int status = open_viewer(&viewer, device->path, &device->stream);
+    (void)options;
+    int status = device_start(device);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    device->is_secretive = true; /* The picture tells. */
+    status = open_viewer(&viewer, device->path, &device->stream);
     viewer.view.keys = "q quit   + - zoom   a auto";
     while (status == STATUS_OK && !viewer.is_over && device->serial.state == TMINI_POSIX_OK) {
         follow(device, &viewer);
         (void)attend(&viewer);
     }
-    close_viewer(&viewer);
+    terminal_restore();
+    screen_free(&viewer.screen);
     return status != STATUS_OK || viewer.is_over ? status : device_why(device);
-}
-
-static int view_device(const options_t *options)
-{
-    device_t *device = NULL;
-    int status = device_open(&device, options);
-    if (status == STATUS_OK) {
-        status = device_start(device);
-        status = status == STATUS_OK ? watch(device) : status;
-        device_close(device);
-    }
-    return status;
 }
 
 static uint32_t position(const player_t *player)
@@ -172,17 +146,14 @@ static void set_position(player_t *player, uint32_t position_ms)
     player->since_ms = now_ms();
 }
 
-/* Takes packets up to that time, or to the next scan if `by_scan`. Returns whether a scan has come.
- * */
+/* Takes packets up to that time, or to the next scan if `by_scan`. Returns whether a scan came. */
 static bool play_to(player_t *player, uint32_t until_ms, bool by_scan)
 {
     recording_t *const recording = &player->recording;
     bool has_scan = false;
-    while (recording->time_us / 1000 <= until_ms && recording_next(recording)) {
-        has_scan = has_scan || recording->stream.has_scan;
-        if (by_scan && recording->stream.has_scan) {
-            break;
-        }
+    while (recording->time_us / 1000 <= until_ms && !(has_scan && by_scan) &&
+           !interrupt_has_come() && recording_next(recording)) {
+        has_scan |= recording->stream.has_scan;
     }
     return has_scan;
 }
@@ -190,14 +161,15 @@ static bool play_to(player_t *player, uint32_t until_ms, bool by_scan)
 /* A scan further, or back by playing again from the beginning. */
 static void step(player_t *player, bool is_back)
 {
-    const uint64_t number = player->recording.stream.number;
+    const count_t number = player->recording.stream.number;
     player->is_paused = true;
     if (!is_back) {
         (void)play_to(player, UINT32_MAX, true);
     } else if (number > 1 && recording_rewind(&player->recording)) {
         do {
             (void)play_to(player, UINT32_MAX, true);
-        } while (player->recording.stream.number + 1 < number && !player->recording.is_at_end);
+        } while (player->recording.stream.number + 1 < number && !player->recording.is_at_end &&
+                 !interrupt_has_come());
     }
     set_position(player, (uint32_t)(player->recording.time_us / 1000));
 }
@@ -246,20 +218,19 @@ static int play(const options_t *options, player_t *player)
     set_position(player, 0);
     while (status == STATUS_OK && !viewer.is_over) {
         const bool was_at_end = recording->is_at_end;
-        if (!player->is_paused && play_to(player, position(player), true)) {
-            viewer.has_news = true;
-        }
-        viewer.has_news = viewer.has_news || recording->is_at_end != was_at_end;
+        viewer.has_news |= !player->is_paused && play_to(player, position(player), true);
+        viewer.has_news |= recording->is_at_end != was_at_end;
         viewer.view.faults = recording->stream.faults;
         viewer.view.state = recording->is_at_end ? "end of the recording"
                             : player->is_paused  ? "paused"
                                                  : "playing";
         const int key = attend(&viewer);
         obey(player, key);
-        viewer.has_news = viewer.has_news || key != KEY_NONE;
+        viewer.has_news |= key != KEY_NONE;
         (void)poll(NULL, 0, SLICE_MS);
     }
-    close_viewer(&viewer);
+    terminal_restore();
+    screen_free(&viewer.screen);
     return status;
 }
 
@@ -286,7 +257,7 @@ static int run(const options_t *options)
     if (options->operand != NULL && options->port != NULL) {
         return message_usage("view what? Usage: tmini view %s", command_view.usage);
     }
-    return options->operand != NULL ? view_recording(options) : view_device(options);
+    return options->operand != NULL ? view_recording(options) : device_use(options, watch);
 }
 
 const command_t command_view = {

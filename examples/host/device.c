@@ -9,20 +9,15 @@
 #include <unistd.h>
 
 #include "interrupt.h"
-#include "message.h"
+#include "output.h"
 #include "points.h"
-#include "ports.h"
 #include "tmini/tmini_names.h"
 
 /* Longer than any command takes that the driver tries three times. */
 #define COMMAND_MS 15000u
 
-/* Without a scan for so long something is wrong. The driver has tried to restart the lidar by then.
- * */
+/* Without a scan for so long something is wrong: the driver has tried to restart the lidar. */
 #define SCAN_MS 4000u
-
-/* For the line to fall quiet when leaving. */
-#define STOP_MS 1000u
 
 /* More than a packet that breaks off, and than the answer to a restart. */
 #define NOISE_BYTES 400u
@@ -30,14 +25,18 @@
 /* No longer at once, so that Ctrl-C is noticed and time is kept. */
 #define SLICE_MS 10
 
+/* A stop may be lost while the line is quiet for another reason, a USB hub's for example. So many
+ * times a lidar that goes on within this time is stopped again. */
+#define STAYS_MS 200u
+#define STOPS 3
+
 /* The driver's own, but for someone who waits at a keyboard, and for a computer that has other
  * things to do: bytes may reach this program late and in one go. */
 static tmini_timing_t patience;
 
 static volatile sig_atomic_t started_fd = -1;
 
-/* The stop command (section 3), from a signal's handler: nobody waits for the line to fall quiet.
- * */
+/* The stop command (section 3), from a signal's handler: nobody waits for a quiet line. */
 static void stop_at_once(void)
 {
     static const uint8_t stop[2] = {TMINI_COMMAND_SYNC, TMINI_COMMAND_STOP};
@@ -64,40 +63,6 @@ static void set_up(device_t *device)
     stream_init(&device->stream);
 }
 
-int device_open(device_t **opened, const options_t *options)
-{
-    static device_t device;
-    device.path = ports_choose(options);
-    if (device.path == NULL) {
-        return STATUS_USAGE;
-    }
-    set_up(&device);
-    const tmini_posix_status_t status = tmini_posix_start(&device.serial, &device.lidar);
-    if (status != TMINI_POSIX_OK) {
-        return message_fail("cannot use %s: %s", device.path, trouble_opening(status));
-    }
-    device.begun_ms = tmini_posix_port.now_ms(&device.serial);
-    interrupt_watch();
-    interrupt_last_words(stop_at_once);
-    *opened = &device;
-    return STATUS_OK;
-}
-
-void device_close(device_t *device)
-{
-    if (device->was_started) {
-        device->ignores_interrupt = true;
-        (void)tmini_stop(&device->lidar);
-        tmini_event_t event = TMINI_EVENT_NONE;
-        do {
-            event = device_wait(device, STOP_MS);
-        } while (event != TMINI_EVENT_NONE && event != TMINI_EVENT_STOPPED &&
-                 event != TMINI_EVENT_COMMAND_FAILED);
-    }
-    started_fd = -1;
-    tmini_posix_stop(&device->serial);
-}
-
 uint32_t device_ms(const device_t *device)
 {
     return tmini_posix_port.now_ms(NULL) - device->begun_ms;
@@ -109,6 +74,23 @@ bool device_is_usable(const device_t *device)
            (device->ignores_interrupt || !interrupt_has_come());
 }
 
+static void tell(const device_t *device, tmini_event_t event)
+{
+    char text[FAULTS_TEXT_SIZE];
+    if (device->is_secretive) {
+        return;
+    }
+    if (event == TMINI_EVENT_FAULTS_CHANGED) {
+        message_note("the lidar is %s", faults_text(tmini_faults(&device->lidar), text));
+    } else if (event == TMINI_EVENT_LOST) {
+        message_note("the lidar has fallen silent; starting it again");
+    } else if (event == TMINI_EVENT_RECOVERED) {
+        message_note("the lidar is back");
+    } else if (event == TMINI_EVENT_STREAMING) {
+        message_note("the lidar scans although it was stopped; stopping it again");
+    }
+}
+
 static tmini_event_t follow(device_t *device, tmini_event_t event)
 {
     if (event == TMINI_EVENT_PACKET) {
@@ -118,13 +100,12 @@ static tmini_event_t follow(device_t *device, tmini_event_t event)
         return is_scan ? TMINI_EVENT_SCAN : TMINI_EVENT_PACKET;
     }
     if (event == TMINI_EVENT_LOST) {
+        const bool is_noise = device->serial.received - device->good_at > NOISE_BYTES;
         stream_break(&device->stream);
-        if (device->serial.received - device->good_at > NOISE_BYTES) {
-            device->noises++;
-        } else {
-            device->silences++;
-        }
+        *(is_noise ? &device->noises : &device->silences) += 1;
     }
+    device->strays += event == TMINI_EVENT_STREAMING ? 1 : 0;
+    tell(device, event);
     return event;
 }
 
@@ -176,21 +157,18 @@ int device_start(device_t *device)
 
 bool device_stop(device_t *device)
 {
+    tmini_status_t begun = tmini_stop(&device->lidar);
+    bool is_stopped = false;
+    bool stays = false;
     device->ignores_interrupt = true;
-    const bool is_stopped = device_await(device, tmini_stop(&device->lidar), TMINI_EVENT_STOPPED);
-    device->ignores_interrupt = false;
-    device->was_started = !is_stopped;
-    return is_stopped;
-}
-
-static void tell(const device_t *device, tmini_event_t event)
-{
-    char text[FAULTS_TEXT_SIZE];
-    if (event == TMINI_EVENT_FAULTS_CHANGED) {
-        message_note("the lidar is %s", faults_text(tmini_faults(&device->lidar), text));
-    } else if (event == TMINI_EVENT_LOST) {
-        message_note("the lidar has fallen silent; starting it again");
+    for (int i = 0; i < STOPS && !stays; i++) {
+        is_stopped = device_await(device, begun, TMINI_EVENT_STOPPED);
+        stays = !is_stopped || device_wait(device, STAYS_MS) != TMINI_EVENT_STREAMING;
+        begun = TMINI_OK; /* The driver itself stops a lidar that streams unasked. */
     }
+    device->ignores_interrupt = false;
+    device->was_started = !(is_stopped && stays);
+    return is_stopped && stays;
 }
 
 bool device_next_scan(device_t *device,
@@ -205,16 +183,15 @@ bool device_next_scan(device_t *device,
         if (event == TMINI_EVENT_SCAN) {
             return true;
         }
-        tell(device, event);
     }
     return false;
 }
 
-trouble_t trouble_find(const tmini_posix_t *serial, const tmini_t *lidar)
+trouble_t trouble_find(const device_t *device)
 {
     tmini_counters_t counters;
-    tmini_counters(lidar, &counters);
-    if (serial->received == 0) {
+    tmini_counters(&device->lidar, &counters);
+    if (device->serial.received == 0) {
         return TROUBLE_SILENCE;
     }
     if (counters.parser.bytes_in_replies > 0) {
@@ -225,55 +202,31 @@ trouble_t trouble_find(const tmini_posix_t *serial, const tmini_t *lidar)
 
 const char *trouble_text(trouble_t trouble)
 {
-    switch (trouble) {
-    case TROUBLE_SILENCE:
-        return "no answer: not one byte came. Check that\n"
-               "- this is the port that the lidar is on,\n"
-               "- the lidar has 5 V and GND,\n"
-               "- its TX goes to the adapter's RX, and its RX to the adapter's TX.";
-    case TROUBLE_NOISE:
-        return "bytes came, but nothing that a T-mini Plus says. Check that\n"
-               "- it is this lidar, and not another device,\n"
-               "- the adapter really runs at 230400 baud (wrong baud rate: try another adapter),\n"
-               "- lidar and adapter share GND, and the wires are short.";
-    case TROUBLE_DEAF:
-        return "the lidar sends, but does not do what it is told. Check the wire from the "
-               "adapter's TX\nto the lidar's RX, and that its level is 3.3 V.";
-    default:
-        return "";
-    }
-}
-
-const char *trouble_opening(tmini_posix_status_t status)
-{
-    switch (status) {
-    case TMINI_POSIX_NO_DEVICE:
-        return "there is no such device. Is the adapter plugged in? `tmini ports` shows which "
-               "there are.";
-    case TMINI_POSIX_PERMISSION:
-        return "you may not open it. On Linux, join the group that owns it and log in again:\n"
-               "sudo usermod -a -G dialout $USER";
-    case TMINI_POSIX_BUSY:
-        return "another program is using it. Close that program; `lsof` on the port shows which.";
-    case TMINI_POSIX_NOT_A_TERMINAL:
-        return "it is not a serial port. For a recording, use `tmini decode`, `plot FILE` or "
-               "`view FILE`.";
-    case TMINI_POSIX_BAUD_RATE:
-        return "it cannot do 230400 baud, the lidar's only baud rate. Use an adapter that can.";
-    case TMINI_POSIX_ADDRESS:
-        return "a lidar behind a socket is tcp:HOST:PORT, and there must be such a host.";
-    default:
-        return strerror(errno);
-    }
+    static const char *const texts[] = {
+        [TROUBLE_SILENCE] = "no answer: not one byte came. Check that\n"
+                            "- this is the port that the lidar is on,\n"
+                            "- the lidar has 5 V and GND,\n"
+                            "- its TX goes to the adapter's RX, and its RX to the adapter's TX.",
+        [TROUBLE_NOISE] = "bytes came, but nothing that a T-mini Plus says. Check that\n"
+                          "- it is this lidar, and not another device,\n"
+                          "- the adapter really runs at 230400 baud (wrong baud rate: try another "
+                          "adapter),\n"
+                          "- lidar and adapter share GND, and the wires are short.",
+        [TROUBLE_DEAF] =
+            "the lidar sends, but does not do what it is told. Check the wire from the "
+            "adapter's TX\nto the lidar's RX, and that its level is 3.3 V.",
+        [TROUBLE_OTHER] = "",
+    };
+    return texts[trouble];
 }
 
 /* A lidar that answers this is well wired. */
 static bool answers_info(device_t *device)
 {
-    device->was_started = false;
     patience.max_attempts = 1;
-    return device_stop(device) &&
-           device_await(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO);
+    const bool is_stopped = device_stop(device);
+    device->was_started = false; /* It has been tried. */
+    return is_stopped && device_await(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO);
 }
 
 static int explain_port(const device_t *device)
@@ -319,7 +272,7 @@ int device_why(device_t *device)
         return explain_scanning(device);
     }
     const char *const reason = tmini_status_name(tmini_command_error(&device->lidar));
-    const trouble_t trouble = trouble_find(&device->serial, &device->lidar);
+    const trouble_t trouble = trouble_find(device);
     if (trouble == TROUBLE_NOISE || trouble == TROUBLE_DEAF || !answers_info(device)) {
         return trouble == TROUBLE_OTHER
                    ? message_fail(
@@ -333,4 +286,51 @@ int device_why(device_t *device)
         "command: %s.\nTry again; if that does not help, `tmini reboot`. Its firmware "
         "may not know the command.",
         device->path, reason);
+}
+
+/* Why a port cannot be opened, and what to do. */
+static const char *advice_for(tmini_posix_status_t status)
+{
+    static const char *const texts[] = {
+        [-TMINI_POSIX_NO_DEVICE] = "there is no such device. Is the adapter plugged in? `tmini "
+                                   "ports` shows which there are.",
+        [-TMINI_POSIX_PERMISSION] =
+            "you may not open it. On Linux, join the group that owns it and "
+            "log in again:\nsudo usermod -a -G dialout $USER",
+        [-TMINI_POSIX_BUSY] = "another program is using it. Close that program; `lsof` on the port "
+                              "shows which.",
+        [-TMINI_POSIX_NOT_A_TERMINAL] = "it is not a serial port. For a recording, use `tmini "
+                                        "decode`, `plot FILE` or `view FILE`.",
+        [-TMINI_POSIX_BAUD_RATE] = "it cannot do 230400 baud, the lidar's only baud rate. Use an "
+                                   "adapter that can.",
+        [-TMINI_POSIX_ADDRESS] = "a lidar behind a socket is tcp:HOST:PORT, and there must be such "
+                                 "a host.",
+    };
+    const size_t index = (size_t)-status;
+    const bool is_known = index < sizeof texts / sizeof texts[0] && texts[index] != NULL;
+    return is_known ? texts[index] : strerror(errno);
+}
+
+int device_use(const options_t *options, int (*use)(device_t *device, const options_t *options))
+{
+    static device_t device;
+    device.path = ports_choose(options);
+    if (device.path == NULL) {
+        return STATUS_USAGE;
+    }
+    set_up(&device);
+    const tmini_posix_status_t opened = tmini_posix_start(&device.serial, &device.lidar);
+    if (opened != TMINI_POSIX_OK) {
+        return message_fail("cannot use %s: %s", device.path, advice_for(opened));
+    }
+    device.begun_ms = tmini_posix_port.now_ms(&device.serial);
+    interrupt_watch();
+    interrupt_last_words(stop_at_once);
+    const int status = use(&device, options);
+    if (device.was_started) {
+        (void)device_stop(&device);
+    }
+    started_fd = -1;
+    tmini_posix_stop(&device.serial);
+    return status;
 }

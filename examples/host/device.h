@@ -12,26 +12,26 @@
 #include "stream.h"
 #include "tmini_posix.h"
 
-typedef struct {
+typedef struct device {
     tmini_t lidar;
     tmini_posix_t serial;
     stream_t stream;
     const char *path;
     uint32_t begun_ms; /* When it was opened, and then when it was told to start. */
     uint32_t silences; /* How often the lidar was lost: nothing came any more, */
-    uint32_t noises;   /* or only bytes that were no packets. */
+    uint32_t noises;   /* or only bytes that were no packets; */
+    uint32_t strays;   /* and how often it scanned although it had been stopped. */
     uint64_t good_at;  /* Bytes received by the latest packet. */
+    bool is_secretive; /* May be set: what happens is for the caller to tell. */
     bool was_started;
     bool ignores_interrupt; /* While stopping. */
     uint8_t rx[4096];
 } device_t;
 
-/* Opens the port of the options and sets the lidar up; sends nothing. From now on Ctrl-C is only
- * noted. Returns STATUS_OK, or the status to leave with, and says why. One at a time. */
-int device_open(device_t **opened, const options_t *options);
-
-/* Stops the lidar if it was started, and closes the port. */
-void device_close(device_t *device);
+/* Opens the port of the options and sets a lidar up there, lets `use` do what it likes with it, and
+ * leaves it stopped. From now on Ctrl-C is only noted. Returns what `use` does; or, if there is no
+ * such port, the status to leave with, and says why. */
+int device_use(const options_t *options, int (*use)(device_t *device, const options_t *options));
 
 /* Milliseconds since the lidar was told to start; before, since it was opened. */
 uint32_t device_ms(const device_t *device);
@@ -57,7 +57,7 @@ void device_begin(device_t *device);
 /* Begins to scan, and waits for the first packet. Returns as device_finish(). */
 int device_start(device_t *device);
 
-/* Stops scanning, and waits until the line is quiet. Returns whether it is. */
+/* Stops scanning, and waits until the line is quiet and stays so. Returns whether it does. */
 bool device_stop(device_t *device);
 
 /* Waits for the next scan; `print`, if not NULL, is called for each packet. Returns false if none
@@ -77,12 +77,9 @@ typedef enum {
 } trouble_t;
 
 /* Which of these it is, by what has come so far. */
-trouble_t trouble_find(const tmini_posix_t *serial, const tmini_t *lidar);
+trouble_t trouble_find(const device_t *device);
 
 /* In words, and what to check; "" for TROUBLE_OTHER. */
 const char *trouble_text(trouble_t trouble);
-
-/* Why a port cannot be opened, and what to do; never NULL. */
-const char *trouble_opening(tmini_posix_status_t status);
 
 #endif

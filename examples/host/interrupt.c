@@ -38,28 +38,24 @@ void interrupt_last_words(void (*speak)(void))
 }
 
 /* One after another, so that the last words are whole. */
-static void handle(const int *signals, size_t count, void (*handler)(int))
+static void handle(int signal_number, void (*handler)(int))
 {
     struct sigaction action = {.sa_handler = handler};
-    (void)sigemptyset(&action.sa_mask);
-    for (size_t i = 0; i < count; i++) {
-        (void)sigaddset(&action.sa_mask, signals[i]);
-    }
-    for (size_t i = 0; i < count; i++) {
-        (void)sigaction(signals[i], &action, NULL);
-    }
+    (void)sigfillset(&action.sa_mask);
+    (void)sigaction(signal_number, &action, NULL);
 }
 
 void interrupt_watch_pipes(void)
 {
-    static const int closed[] = {SIGPIPE};
-    handle(closed, 1, leave);
+    handle(SIGPIPE, leave);
 }
 
 void interrupt_watch(void)
 {
-    static const int ending[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
-    handle(ending, 4, note);
+    handle(SIGINT, note);
+    handle(SIGTERM, note);
+    handle(SIGHUP, note);
+    handle(SIGQUIT, note);
 }
 
 bool interrupt_has_come(void)

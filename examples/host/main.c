@@ -1,20 +1,207 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini: checks a lidar, its wiring and recordings of it from a computer. */
+/* tmini: checks a lidar, its wiring and recordings of it from a computer. The command line: the
+ * options, the commands, and how the program begins and ends. */
 
-#define _POSIX_C_SOURCE 200809L
+#define _GNU_SOURCE /* getopt_long() */
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <getopt.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "options.h"
+#include "device.h"
 #include "interrupt.h"
-#include "message.h"
-#include "tmini/tmini.h"
+#include "options.h"
+#include "output.h"
+#include "points.h"
+
+/* ------------------------------------------------------------------------------------- options */
+
+typedef struct {
+    char letter;       /* As in command_t.accepts; all but a few capital ones are short options. */
+    const char *name;  /* Without the two dashes. */
+    const char *value; /* What it takes, for the help; NULL: nothing. */
+    const char *help;
+    size_t place;      /* Of the member in options_t: */
+    unsigned min, max; /* a number from here to there; a text, if both are 0; or a bool. */
+} option_t;
+
+#define PLACE(member) offsetof(options_t, member)
+
+static const option_t table[] = {
+    {'p', "port", "PORT", "the lidar: /dev/ttyUSB0, tcp:HOST:PORT; else $TMINI_PORT", PLACE(port),
+     0, 0},
+    {'n', "count", "N", "how many scans; 0: until Ctrl-C", PLACE(count), 0, 1000000},
+    {'s', "seconds", "N", "how long", PLACE(seconds), 1, 1000000},
+    {'o', "output", "FILE", "where to draw: FILE.svg, FILE.png or FILE.pdf", PLACE(output), 0, 0},
+    {'C', "csv", NULL, "comma-separated values", PLACE(csv), 0, 0},
+    {'J', "json", NULL, "JSON, one object a line", PLACE(json), 0, 0},
+    {'S', "stats", "FILE", "write the counters to FILE, as a JSON object", PLACE(stats), 0, 0},
+    {'M', "max-samples", "N", "accept packets of up to N samples (1 to 255; default 80)",
+     PLACE(max_samples), 1, 255},
+    {'N', "scan", "N", "the scan with number N, as `decode --csv` counts them", PLACE(scan), 1,
+     1000000000},
+    {'A', "all", NULL, "all scans in one picture", PLACE(all), 0, 0},
+    {'T', "timed", NULL, "with time stamps, as for a FILE.tmini", PLACE(timed), 0, 0},
+    {'q', "quiet", NULL, "no progress or remarks, only results and errors", PLACE(quiet), 0, 0},
+    {'h', "help", NULL, "this text", PLACE(help), 0, 0},
+    {'V', "version", NULL, "the version", PLACE(version), 0, 0},
+};
+
+#define OPTIONS (sizeof table / sizeof table[0])
+
+static bool is_short(const option_t *option)
+{
+    return islower((unsigned char)option->letter) != 0 || option->letter == 'V';
+}
+
+/* The option with that letter, which is one of them. */
+static const option_t *find(int letter)
+{
+    size_t i = 0;
+    while (table[i].letter != letter) {
+        i++;
+    }
+    return &table[i];
+}
+
+static bool read_number(const option_t *option, const char *text, unsigned *number)
+{
+    char *end = NULL;
+    errno = 0;
+    const unsigned long value = strtoul(text, &end, 10);
+    if (text[0] < '0' || text[0] > '9' || *end != '\0' || errno != 0 || value < option->min ||
+        value > option->max) {
+        (void)message_usage("--%s: \"%s\" is not a number from %u to %u", option->name, text,
+                            option->min, option->max);
+        return false;
+    }
+    *number = (unsigned)value;
+    return true;
+}
+
+/* Returns false, and says why, if the value is not what the option takes. */
+static bool apply(options_t *options, const option_t *option, const char *value)
+{
+    void *const member = (char *)options + option->place;
+    if (strchr(options->given, option->letter) == NULL) {
+        options->given[strlen(options->given)] = option->letter; /* There is room for all. */
+    }
+    if (option->value == NULL) {
+        *(bool *)member = true;
+    } else if (option->max == 0) {
+        *(const char **)member = value;
+    } else {
+        return read_number(option, value, member);
+    }
+    return true;
+}
+
+/* For getopt_long(): the short options, after a "-" that asks for all words in their order; and the
+ * long ones. */
+static void list_options(char *short_ones, struct option *long_ones)
+{
+    *short_ones++ = '-';
+    for (size_t i = 0; i < OPTIONS; i++) {
+        const int has_value = table[i].value != NULL ? required_argument : no_argument;
+        long_ones[i] = (struct option){table[i].name, has_value, NULL, table[i].letter};
+        if (is_short(&table[i])) {
+            short_ones +=
+                sprintf(short_ones, "%c%s", table[i].letter, has_value != no_argument ? ":" : "");
+        }
+    }
+}
+
+/* A word that is no option, of which the first ones count. */
+static bool take_word(options_t *options, const char *word)
+{
+    if (options->word_count < OPTIONS_WORDS) {
+        options->words[options->word_count++] = word;
+    }
+    return true;
+}
+
+/* getopt_long() itself says what it cannot take. */
+static bool take(options_t *options, int answer)
+{
+    return answer == '?' ? message_usage("see tmini --help") == STATUS_OK
+           : answer == 1 ? take_word(options, optarg)
+                         : apply(options, find(answer), optarg);
+}
+
+/* Reads all words, in any order. Returns STATUS_OK, or STATUS_USAGE when it has been said why not. */
+static int parse(options_t *options, int argc, char **argv)
+{
+    static char name[] = "tmini";
+    char short_ones[2 * OPTIONS + 2];
+    struct option long_ones[OPTIONS + 1] = {{0}};
+    bool is_good = true;
+    int answer = 0;
+    *options = (options_t){0};
+    list_options(short_ones, long_ones);
+    argv[0] = argc > 0 ? name : NULL; /* For getopt_long()'s messages. */
+    while (is_good && (answer = getopt_long(argc, argv, short_ones, long_ones, NULL)) != -1) {
+        is_good = take(options, answer);
+    }
+    for (int i = optind; is_good && i < argc; i++) {
+        is_good = take_word(options, argv[i]); /* After "--". */
+    }
+    options->command = options->words[0];
+    options->operand = options->words[1];
+    return is_good ? STATUS_OK : STATUS_USAGE;
+}
+
+static bool is_accepted(const command_t *command, char letter)
+{
+    return letter == 'h' || letter == 'V' || strchr(command->accepts, letter) != NULL;
+}
+
+/* Whether the command takes what was given: STATUS_OK, or STATUS_USAGE when it has been said what it
+ * does not take. */
+static int check(const options_t *options, const command_t *command)
+{
+    const char *const excess = options->words[command->has_operand ? 2 : 1];
+    for (const char *letter = options->given; *letter != '\0'; letter++) {
+        if (!is_accepted(command, *letter)) {
+            return message_usage("%s has no option --%s; see tmini %s --help", command->name,
+                                 find(*letter)->name, command->name);
+        }
+    }
+    if (excess != NULL) {
+        return message_usage("%s: unexpected \"%s\"; see tmini %s --help", command->name, excess,
+                             command->name);
+    }
+    return options->csv && options->json ? message_usage("either --csv or --json, not both")
+                                         : STATUS_OK;
+}
+
+static void explain(const command_t *command)
+{
+    (void)printf("tmini %s %s\n\n%s\n", command->name, command->usage, command->summary);
+    (void)printf(command->details != NULL ? "\n%s\n\n" : "\n", command->details);
+    if (is_accepted(command, 'C')) {
+        (void)printf("%s\n\n", rows_help);
+    }
+    for (size_t i = 0; i < OPTIONS; i++) {
+        const option_t *const option = &table[i];
+        if (is_accepted(command, option->letter)) {
+            char name[40];
+            (void)snprintf(name, sizeof name, "--%s %s", option->name,
+                           option->value != NULL ? option->value : "");
+            (void)printf("  %c%c%c %-20s %s\n", is_short(option) ? '-' : ' ',
+                         is_short(option) ? option->letter : ' ', is_short(option) ? ',' : ' ',
+                         name, option->help);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------ commands */
 
 static const command_t *const commands[] = {
     &command_ports,     &command_check,  &command_info, &command_health,
@@ -48,12 +235,6 @@ static int print_usage(FILE *file, int status)
     return status;
 }
 
-static int print_version(void)
-{
-    (void)printf("tmini %d.%d.%d\n", TMINI_VERSION_MAJOR, TMINI_VERSION_MINOR, TMINI_VERSION_PATCH);
-    return STATUS_OK;
-}
-
 static const command_t *find_command(const char *name)
 {
     for (size_t i = 0; i < COMMANDS; i++) {
@@ -64,30 +245,40 @@ static const command_t *find_command(const char *name)
     return NULL;
 }
 
-static int run(options_t *options)
+static int run_command(const command_t *command, const options_t *options, bool wants_help)
 {
-    if (options->command != NULL && strcmp(options->command, "help") == 0) {
-        options->help = true;
-        options->command = options->operand;
-    }
-    if (options->version) {
-        return print_version();
-    }
-    if (options->command == NULL) {
-        return options->help ? print_usage(stdout, STATUS_OK) : print_usage(stderr, STATUS_USAGE);
-    }
-    const command_t *const command = find_command(options->command);
-    if (command == NULL) {
-        (void)print_usage(stderr, STATUS_USAGE);
-        return message_usage("there is no command \"%s\"", options->command);
-    }
-    if (options->help) {
-        options_help(command);
+    if (wants_help) {
+        explain(command);
         return STATUS_OK;
     }
     message_silence(options->quiet);
-    const int status = options_check(options, command);
-    return status == STATUS_OK ? command->run(options) : status;
+    const int status = check(options, command);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    return command->run != NULL ? command->run(options) : device_use(options, command->use);
+}
+
+/* `tmini help scan` is `tmini scan --help`. */
+static int run(const options_t *options)
+{
+    const bool is_help = options->command != NULL && strcmp(options->command, "help") == 0;
+    const bool wants_help = is_help || options->help;
+    const char *const name = is_help ? options->operand : options->command;
+    const command_t *const command = name != NULL ? find_command(name) : NULL;
+    if (options->version) {
+        (void)printf("tmini %d.%d.%d\n", TMINI_VERSION_MAJOR, TMINI_VERSION_MINOR,
+                     TMINI_VERSION_PATCH);
+        return STATUS_OK;
+    }
+    if (name == NULL) {
+        return wants_help ? print_usage(stdout, STATUS_OK) : print_usage(stderr, STATUS_USAGE);
+    }
+    if (command == NULL) {
+        (void)print_usage(stderr, STATUS_USAGE);
+        return message_usage("there is no command \"%s\"", name);
+    }
+    return run_command(command, options, wants_help);
 }
 
 /* Output that could not be written, for example to a full disk, must not pass for success. */
@@ -104,6 +295,6 @@ int main(int argc, char **argv)
     options_t options;
     hold_standard_descriptors();
     interrupt_watch_pipes();
-    const int status = options_parse(&options, argc, argv);
+    const int status = parse(&options, argc, argv);
     return close_output(status == STATUS_OK ? run(&options) : status);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The command line: which command, and its options. */
+/* The command line: which command, its options, and the port. */
 
 #ifndef OPTIONS_H
 #define OPTIONS_H
@@ -9,12 +9,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-typedef enum {
-    FORMAT_TEXT, /* For people. */
-    FORMAT_CSV,
-    FORMAT_JSON,
-} format_t;
 
 #define OPTIONS_WORDS 3u
 
@@ -27,11 +21,12 @@ typedef struct {
     const char *port;
     const char *output;
     const char *stats;
-    format_t format;
     unsigned max_samples;
     unsigned count;
     unsigned seconds;
     unsigned scan;
+    bool csv; /* Neither of these: text for people. */
+    bool json;
     bool all;
     bool timed;
     bool quiet;
@@ -40,6 +35,8 @@ typedef struct {
     char given[32]; /* The options' letters. */
 } options_t;
 
+struct device;
+
 typedef struct {
     const char *name;
     const char *usage;   /* What follows the name. */
@@ -47,18 +44,13 @@ typedef struct {
     const char *details; /* More lines, for --help; NULL: none. */
     const char *accepts; /* The letters of its options, see options.c; all have help and version. */
     bool has_operand;
-    int (*run)(const options_t *options);
+    int (*run)(const options_t *options); /* Or else, with the lidar on the port: */
+    int (*use)(struct device *device, const options_t *options);
 } command_t;
 
-/* Reads all words, in any order. Returns STATUS_OK, or STATUS_USAGE and says why. */
-int options_parse(options_t *options, int argc, char **argv);
-
-/* Whether the command takes what was given: returns STATUS_OK, or STATUS_USAGE and says what not.
- * */
-int options_check(const options_t *options, const command_t *command);
-
-/* Prints the usage of a command and its options. */
-void options_help(const command_t *command);
+/* The port of the options, or else of the environment's TMINI_PORT, or else the only adapter that
+ * there is. NULL, and said why, if that does not tell. Valid until the next call. */
+const char *ports_choose(const options_t *options);
 
 /* Each in a file of its own, or beside its relatives. */
 extern const command_t command_ports, command_check, command_info, command_health,

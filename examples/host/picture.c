@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "message.h"
-#include "scale.h"
+#include "output.h"
+#include "points.h"
 
 #define WIDTH 1200
 #define HEIGHT 1360
@@ -21,6 +21,8 @@
 #define MIDDLE_Y 690.0
 #define RADIUS 500.0
 #define LEGEND_Y 1290.0
+#define RINGS_MAX 6u
+#define EMPTY_MM 6000u /* Of a picture in which there is nothing. */
 #define TURN (2 * 3.14159265358979323846)
 
 /* Light of the beams in a picture of one scan, which has about so many points. */
@@ -48,14 +50,32 @@ static spot_t at_bearing(double degrees, double distance)
     return (spot_t){MIDDLE_X + distance * sin(radians), MIDDLE_Y - distance * cos(radians)};
 }
 
-static double pixels(const scale_t *scale, unsigned mm)
+/* The smallest step of a round number of millimetres that needs few enough rings. */
+static unsigned ring_step_mm(const survey_t *survey)
 {
-    return RADIUS * mm / scale->range_mm;
+    static const unsigned steps_mm[] = {50, 100, 200, 250, 500, 1000, 2000, 2500, 5000};
+    size_t i = 0;
+    while (steps_mm[i] * RINGS_MAX < (survey->valid > 0 ? survey->farthest_mm : EMPTY_MM)) {
+        i++; /* Ends: 30 m are more than the 16383 mm of the protocol. */
+    }
+    return steps_mm[i];
 }
 
-static spot_t place_of(const tmini_point_t *point, const scale_t *scale)
+unsigned picture_range_mm(const survey_t *survey)
 {
-    return at_bearing(point->angle_q6 / 64.0, pixels(scale, point->distance_mm));
+    const unsigned step_mm = ring_step_mm(survey);
+    const unsigned farthest_mm = survey->valid > 0 ? survey->farthest_mm : EMPTY_MM;
+    return (farthest_mm + step_mm - 1) / step_mm * step_mm;
+}
+
+static double pixels(const survey_t *survey, unsigned mm)
+{
+    return RADIUS * mm / picture_range_mm(survey);
+}
+
+static spot_t place_of(const tmini_point_t *point, const survey_t *survey)
+{
+    return at_bearing(point->angle_q6 / 64.0, pixels(survey, point->distance_mm));
 }
 
 static void ink(cairo_t *cr, colour_t colour, double width)
@@ -71,8 +91,7 @@ static void line(cairo_t *cr, spot_t from, spot_t to)
     cairo_stroke(cr);
 }
 
-/* A line from a place to itself has round ends and nothing between: the shortest way to say "disc".
- * */
+/* A line from a place to itself has round ends and nothing between. */
 static void disc(cairo_t *cr, spot_t at, double radius, colour_t colour)
 {
     ink(cr, colour, 2 * radius);
@@ -99,17 +118,17 @@ static double text(cairo_t *cr, spot_t at, double align, double size, colour_t c
     return extents.x_advance;
 }
 
-static void draw_rings(cairo_t *cr, const scale_t *scale)
+static void draw_rings(cairo_t *cr, const survey_t *survey)
 {
-    char label[16];
-    for (unsigned mm = scale->step_mm; mm <= scale->range_mm; mm += scale->step_mm) {
-        ink(cr, mm == scale->range_mm ? grid : faint, 1.5);
-        ring(cr, (spot_t){MIDDLE_X, MIDDLE_Y}, pixels(scale, mm));
-    }
-    for (unsigned mm = scale->step_mm; mm <= scale->range_mm; mm += scale->step_mm) {
-        spot_t at = at_bearing(15, pixels(scale, mm) - 16);
+    const unsigned step_mm = ring_step_mm(survey);
+    const unsigned range_mm = picture_range_mm(survey);
+    for (unsigned mm = step_mm; mm <= range_mm; mm += step_mm) {
+        ink(cr, mm == range_mm ? grid : faint, 1.5);
+        ring(cr, (spot_t){MIDDLE_X, MIDDLE_Y}, pixels(survey, mm));
+        spot_t at = at_bearing(15, pixels(survey, mm) - 16);
+        char label[16];
         at.y += 6;
-        (void)snprintf(label, sizeof label, "%.*f m", scale->decimals, mm / 1000.0);
+        (void)snprintf(label, sizeof label, "%g m", mm / 1000.0);
         (void)text(cr, at, 0.5, 16, muted, label);
     }
 }
@@ -137,15 +156,15 @@ static void draw_bearings(cairo_t *cr)
 }
 
 /* What the lidar has looked through: faint beams that add up to light. */
-static void draw_beams(cairo_t *cr, const figure_t *figure, const scale_t *scale)
+static void draw_beams(cairo_t *cr, const figure_t *figure)
 {
     cairo_set_line_width(cr, 1.6);
     cairo_set_source_rgba(cr, 0.35, 0.59, 1,
-                          BEAM_ALPHA * fmin(1, BEAM_POINTS / (double)(scale->valid + 1)));
-    for (size_t i = 0; i < figure->count; i++) {
+                          BEAM_ALPHA * fmin(1, BEAM_POINTS / (double)(figure->survey.valid + 1)));
+    for (size_t i = 0; i < figure->survey.count; i++) {
         const tmini_point_t *const point = &figure->points[i];
         if (point->distance_mm > 0) {
-            line(cr, at_bearing(point->angle_q6 / 64.0, 14), place_of(point, scale));
+            line(cr, at_bearing(point->angle_q6 / 64.0, 14), place_of(point, &figure->survey));
         }
     }
 }
@@ -163,31 +182,35 @@ static void draw_mark(cairo_t *cr, spot_t at, unsigned flag)
     }
 }
 
-/* Some units flag every sample (section 9.9): marks on all of them would hide the room. */
-static bool is_marking(const scale_t *scale)
+bool picture_marks_flags(const survey_t *survey)
 {
-    return 2 * (scale->specular + scale->ambient) <= scale->valid;
+    return 2 * (survey->specular + survey->ambient) <= survey->valid;
 }
 
-static void draw_points(cairo_t *cr, const figure_t *figure, const scale_t *scale)
+/* The marks are above all points. */
+static void draw_points(cairo_t *cr, const figure_t *figure)
 {
-    for (size_t i = 0; i < figure->count; i++) {
+    const survey_t *const survey = &figure->survey;
+    for (size_t i = 0; i < survey->count; i++) {
         const tmini_point_t *const point = &figure->points[i];
         if (point->distance_mm > 0) {
-            disc(cr, place_of(point, scale), 3.4, scale_colour(scale, point->intensity));
+            disc(cr, place_of(point, survey), 3.4, points_colour(survey, point->intensity));
         }
     }
-    for (size_t i = 0; i < figure->count && is_marking(scale); i++) {
+    for (size_t i = 0; i < survey->count && picture_marks_flags(survey); i++) {
         const tmini_point_t *const point = &figure->points[i];
         if (point->distance_mm > 0) {
-            draw_mark(cr, place_of(point, scale), point->flag);
+            draw_mark(cr, place_of(point, survey), point->flag);
         }
     }
-    if (scale->nearest != NULL) {
+    if (survey->nearest != NULL) {
         ink(cr, amber, 2.2);
-        ring(cr, place_of(scale->nearest, scale), 12);
+        ring(cr, place_of(survey->nearest, survey), 12);
     } else {
-        (void)text(cr, (spot_t){MIDDLE_X, MIDDLE_Y - 150}, 0.5, 30, amber,
+        ink(cr, ground, 60); /* Hides the rings behind the words. */
+        line(cr, (spot_t){MIDDLE_X - 370, MIDDLE_Y + 140},
+             (spot_t){MIDDLE_X + 370, MIDDLE_Y + 140});
+        (void)text(cr, (spot_t){MIDDLE_X, MIDDLE_Y + 150}, 0.5, 30, amber,
                    "no point has a distance: is the window covered?");
     }
 }
@@ -237,55 +260,54 @@ static void heading(cairo_t *cr, double y, double size, colour_t colour, const c
     (void)text(cr, (spot_t){MIDDLE_X, y}, 0.5, size * share, colour, copy);
 }
 
-static void draw_intensities(cairo_t *cr, const scale_t *scale)
+static void draw_intensities(cairo_t *cr, const survey_t *survey)
 {
     char words[24];
-    (void)snprintf(words, sizeof words, "intensity %d ", scale->darkest);
+    (void)snprintf(words, sizeof words, "intensity %d ", survey->darkest);
     const double x = 50 + text(cr, (spot_t){50, LEGEND_Y}, 0, 17, muted, words);
     for (int i = 0; i < 64; i++) {
-        const double share = scale->darkest + (scale->brightest - scale->darkest) * i / 63.0;
-        ink(cr, scale_colour(scale, (uint8_t)lround(share)), 12);
+        const double share = survey->darkest + (survey->brightest - survey->darkest) * i / 63.0;
+        ink(cr, points_colour(survey, (uint8_t)lround(share)), 12);
         cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
         line(cr, (spot_t){x + 3 * i, LEGEND_Y - 6}, (spot_t){x + 3 * i + 3, LEGEND_Y - 6});
     }
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
-    (void)snprintf(words, sizeof words, " %d", scale->brightest);
+    (void)snprintf(words, sizeof words, " %d", survey->brightest);
     (void)text(cr, (spot_t){x + 3 * 64, LEGEND_Y}, 0, 17, muted, words);
 }
 
-static void draw_flags(cairo_t *cr, const scale_t *scale)
+/* In the colours of the marks. */
+static void draw_flags(cairo_t *cr, const survey_t *survey)
 {
     char words[80];
-    double x = 470;
-    if (!is_marking(scale)) {
+    if (picture_marks_flags(survey)) {
+        (void)snprintf(words, sizeof words, "ring: specular (%zu)", survey->specular);
+        (void)text(cr, (spot_t){450, LEGEND_Y}, 0, 17, specular, words);
+        (void)snprintf(words, sizeof words, "cross: ambient light (%zu)", survey->ambient);
+        (void)text(cr, (spot_t){645, LEGEND_Y}, 0, 17, ambient, words);
+    } else {
         (void)snprintf(words, sizeof words, "%zu of %zu points flagged: not marked",
-                       scale->specular + scale->ambient, scale->valid);
-        (void)text(cr, (spot_t){x, LEGEND_Y}, 0, 17, muted, words);
-        return;
+                       survey->specular + survey->ambient, survey->valid);
+        (void)text(cr, (spot_t){450, LEGEND_Y}, 0, 17, muted, words);
     }
-    draw_mark(cr, (spot_t){x, LEGEND_Y - 6}, TMINI_FLAG_SPECULAR);
-    (void)snprintf(words, sizeof words, "specular (%zu)", scale->specular);
-    x += 52 + text(cr, (spot_t){x + 18, LEGEND_Y}, 0, 17, muted, words);
-    draw_mark(cr, (spot_t){x, LEGEND_Y - 6}, TMINI_FLAG_AMBIENT);
-    (void)snprintf(words, sizeof words, "ambient light (%zu)", scale->ambient);
-    (void)text(cr, (spot_t){x + 18, LEGEND_Y}, 0, 17, muted, words);
 }
 
-static void draw_words(cairo_t *cr, const figure_t *figure, const scale_t *scale)
+static void draw_words(cairo_t *cr, const figure_t *figure)
 {
+    const survey_t *const survey = &figure->survey;
+    char words[64];
     cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_BOLD);
     heading(cr, 62, 36, bright, figure->title);
     cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     heading(cr, 98, 20, muted, figure->subtitle);
-    if (scale->nearest != NULL) {
-        draw_intensities(cr, scale);
-        draw_flags(cr, scale);
-        char words[64];
+    if (survey->nearest != NULL) {
+        draw_intensities(cr, survey);
+        draw_flags(cr, survey);
+        /* An angle a little below 360 degrees is not to become 360.0. */
         (void)snprintf(words, sizeof words, "nearest %.3f m at %.1f\xC2\xB0",
-                       scale->nearest->distance_mm / 1000.0, scale->nearest->angle_q6 / 64.0);
-        const double width = text(cr, (spot_t){1150, LEGEND_Y}, 1, 17, bright, words);
-        ink(cr, amber, 2.2);
-        ring(cr, (spot_t){1150 - width - 18, LEGEND_Y - 6}, 8);
+                       survey->nearest->distance_mm / 1000.0,
+                       survey->nearest->angle_q6 * 10 / 64 / 10.0);
+        (void)text(cr, (spot_t){1150, LEGEND_Y}, 1, 17, amber, words);
     }
     heading(cr, LEGEND_Y + 42, 15, muted,
             "seen from above \xC2\xB7 the lidar in the middle, its front up \xC2\xB7 "
@@ -294,19 +316,17 @@ static void draw_words(cairo_t *cr, const figure_t *figure, const scale_t *scale
 
 static void draw(cairo_t *cr, const figure_t *figure)
 {
-    scale_t scale;
-    scale_fit(&scale, figure->points, figure->count);
     ink(cr, background, 1);
     cairo_paint(cr);
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
     cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     disc(cr, (spot_t){MIDDLE_X, MIDDLE_Y}, RADIUS, ground);
-    draw_beams(cr, figure, &scale);
-    draw_rings(cr, &scale);
+    draw_beams(cr, figure);
+    draw_rings(cr, &figure->survey);
     draw_bearings(cr);
-    draw_points(cr, figure, &scale);
+    draw_points(cr, figure);
     draw_lidar(cr);
-    draw_words(cr, figure, &scale);
+    draw_words(cr, figure);
 }
 
 static bool ends_with(const char *path, const char *ending)
@@ -354,16 +374,14 @@ static cairo_status_t save(const char *path, FILE *file, const figure_t *figure)
 
 int picture_write(const char *path, const figure_t *figure)
 {
-    FILE *const file = strcmp(path, "-") == 0 ? stdout : fopen(path, "wb");
+    FILE *const file = output_open(path);
     if (file == NULL) {
-        return message_fail("cannot write %s: %s", path, strerror(errno));
+        return STATUS_FAILED;
     }
-    errno = 0;
     const cairo_status_t status = save(path, file, figure);
-    const bool is_written = (file == stdout ? fflush(file) : fclose(file)) == 0;
-    if (status != CAIRO_STATUS_SUCCESS || !is_written) {
-        return message_fail("cannot write %s: %s", path,
-                            errno != 0 ? strerror(errno) : cairo_status_to_string(status));
+    const int written = output_close(file, path, STATUS_OK);
+    if (written == STATUS_OK && status != CAIRO_STATUS_SUCCESS && ferror(stdout) == 0) {
+        return message_fail("cannot write %s: %s", path, cairo_status_to_string(status));
     }
-    return STATUS_OK;
+    return written;
 }

@@ -9,17 +9,24 @@
 
 #include <stdbool.h>
 
-#include "tmini/tmini_packet.h"
+#include "points.h"
 
 typedef struct {
-    const char *title;
-    const char *subtitle; /* UTF-8, or nearly so: it may hold a file's name. */
+    char title[80];
+    char subtitle[600]; /* UTF-8, or nearly so: it may hold a file's name. */
     const tmini_point_t *points;
-    size_t count;
+    survey_t survey; /* Of these points. */
 } figure_t;
 
 /* True if the name ends in .svg, .png or .pdf, or is "-". */
 bool picture_is_known(const char *path);
+
+/* How far the outermost ring is, in a picture of points with this survey. */
+unsigned picture_range_mm(const survey_t *survey);
+
+/* Whether flagged points are marked: some units flag every sample (section 9.9), and marks on all of
+ * them would hide the room. */
+bool picture_marks_flags(const survey_t *survey);
 
 /* Draws the figure and writes the file; SVG to standard output for "-". Returns the status to leave
  * with, and says what went wrong. */

@@ -3,31 +3,59 @@
 
 #include "points.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "tmini/tmini_names.h"
 
+/* Exactly: 1/64 degree has six decimals. */
+#define DEGREES "%.6f"
+
 #define EIGHTH_Q6 (TMINI_FULL_CIRCLE_Q6 / 8)
 
-const tmini_point_t *points_nearest(const tmini_point_t *points, size_t count)
+/* A point with a distance. */
+static void look_at(survey_t *survey, const tmini_point_t *point)
 {
-    const tmini_point_t *nearest = NULL;
-    for (size_t i = 0; i < count; i++) {
-        const bool is_nearer = nearest == NULL || points[i].distance_mm < nearest->distance_mm;
-        if (points[i].distance_mm > 0 && is_nearer) {
-            nearest = &points[i];
-        }
+    survey->valid++;
+    survey->specular += point->flag == TMINI_FLAG_SPECULAR ? 1 : 0;
+    survey->ambient += point->flag == TMINI_FLAG_AMBIENT ? 1 : 0;
+    if (survey->nearest == NULL || point->distance_mm < survey->nearest->distance_mm) {
+        survey->nearest = point;
     }
-    return nearest;
+    if (point->distance_mm > survey->farthest_mm) {
+        survey->farthest_mm = point->distance_mm;
+    }
+    survey->darkest = point->intensity < survey->darkest ? point->intensity : survey->darkest;
+    survey->brightest = point->intensity > survey->brightest ? point->intensity : survey->brightest;
 }
 
-size_t points_valid(const tmini_point_t *points, size_t count)
+survey_t points_survey(const tmini_point_t *points, size_t count)
 {
-    size_t valid = 0;
+    survey_t survey = {.count = count, .darkest = UINT8_MAX};
     for (size_t i = 0; i < count; i++) {
-        valid += points[i].distance_mm > 0 ? 1 : 0;
+        if (points[i].distance_mm > 0) {
+            look_at(&survey, &points[i]);
+        }
     }
-    return valid;
+    return survey;
+}
+
+colour_t points_colour(const survey_t *survey, uint8_t intensity)
+{
+    static const colour_t stops[] = {
+        {0.32, 0.36, 0.89}, {0.13, 0.59, 0.89}, {0.18, 0.80, 0.67},
+        {0.66, 0.89, 0.36}, {1.00, 0.84, 0.33},
+    };
+    const int last = (int)(sizeof stops / sizeof stops[0]) - 1;
+    const double span = fmax(survey->brightest - survey->darkest, 1);
+    const double place = fmin(fmax((intensity - survey->darkest) / span, 0), 1) * last;
+    const int below = (int)fmin(floor(place), last - 1);
+    const double share = place - below;
+    const colour_t from = stops[below];
+    const colour_t to = stops[below + 1];
+    return (colour_t){from.red + (to.red - from.red) * share,
+                      from.green + (to.green - from.green) * share,
+                      from.blue + (to.blue - from.blue) * share};
 }
 
 const char *direction_name(uint16_t angle_q6)
@@ -37,6 +65,15 @@ const char *direction_name(uint16_t angle_q6)
         "behind", "behind to the left", "left",  "ahead to the left",
     };
     return names[(angle_q6 + EIGHTH_Q6 / 2) / EIGHTH_Q6 % 8];
+}
+
+/* An angle a little below 360 degrees is not to become 360.0. */
+const char *place_text(const tmini_point_t *point)
+{
+    static char text[64];
+    (void)snprintf(text, sizeof text, "%.3f m at %.1f degrees, %s", point->distance_mm / 1000.0,
+                   point->angle_q6 * 10 / 64 / 10.0, direction_name(point->angle_q6));
+    return text;
 }
 
 const char *faults_text(unsigned faults, char text[FAULTS_TEXT_SIZE])
@@ -49,14 +86,29 @@ const char *faults_text(unsigned faults, char text[FAULTS_TEXT_SIZE])
     return faults == 0 ? "healthy" : text;
 }
 
+const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE])
+{
+    if (stream->faults != FAULTS_UNKNOWN) {
+        return faults_text(stream->faults, text);
+    }
+    return stream_tells_nothing(stream)
+               ? "not told: this unit sends no information within the stream"
+               : "unknown: no revolution arrived whole";
+}
+
 const char *frequency_text(unsigned frequency_chz)
 {
     static char text[24];
-    if (frequency_chz == 0) {
-        return "unknown";
-    }
     (void)snprintf(text, sizeof text, "%u.%u Hz", frequency_chz / 100, frequency_chz / 10 % 10);
-    return text;
+    return frequency_chz > 0 ? text : "unknown";
+}
+
+const char *damaged_text(const stream_t *stream)
+{
+    static char text[24];
+    const unsigned permille = stream_damaged_permille(stream);
+    (void)snprintf(text, sizeof text, "%u.%u %%", permille / 10, permille % 10);
+    return stream->damaged > 0 && permille == 0 ? "under 0.1 %" : text;
 }
 
 const char rows_help[] =
@@ -71,48 +123,40 @@ const char rows_help[] =
     "Distance 0: no valid range. Flag 2: specular interference, 3: ambient light.\n"
     "Angles count clockwise, seen from above.";
 
-void rows_print_packet(const stream_t *stream, const tmini_packet_t *packet)
+/* In hertz, or what stands for an unknown one. */
+static const char *hertz(unsigned frequency_chz, const char *unknown)
 {
-    char told[24] = "";
-    tmini_point_t point;
-    if (stream->frequency_chz > 0) {
-        (void)snprintf(told, sizeof told, "%u.%02u", stream->frequency_chz / 100,
-                       stream->frequency_chz % 100);
-    }
-    for (size_t i = 0; tmini_packet_point(packet, i, &point); i++) {
-        (void)printf("%" PRIu64 ",%" PRIu64 ",%zu," ANGLE_FORMAT ",%d,%d,%d,%" PRIu32 ",%s\n",
-                     stream->start_packets, stream->packets - 1, i, ANGLE_VALUES(point.angle_q6),
-                     point.distance_mm, point.intensity, point.flag, stream->packet_ms, told);
-    }
+    static char text[24];
+    (void)snprintf(text, sizeof text, "%u.%02u", frequency_chz / 100, frequency_chz % 100);
+    return frequency_chz > 0 ? text : unknown;
 }
 
-static void print_or_null(const char *name, bool is_known, unsigned whole, const char *rest)
+void rows_print_packet(const stream_t *stream, const tmini_packet_t *packet)
 {
-    if (is_known) {
-        (void)printf("\"%s\":%u%s,", name, whole, rest);
-    } else {
-        (void)printf("\"%s\":null,", name);
+    const char *const told = hertz(stream->frequency_chz, "");
+    tmini_point_t point;
+    for (size_t i = 0; tmini_packet_point(packet, i, &point); i++) {
+        (void)printf("%llu,%llu,%zu," DEGREES ",%d,%d,%d,%u,%s\n", stream->start_packets,
+                     stream->packets - 1, i, point.angle_q6 / 64.0, point.distance_mm,
+                     point.intensity, point.flag, stream->packet_ms, told);
     }
 }
 
 void rows_print_scan(const stream_t *stream)
 {
     const tmini_scan_t *const scan = &stream->scan;
-    char hundredths[8];
-    (void)snprintf(hundredths, sizeof hundredths, ".%02d", scan->frequency_chz % 100);
-    (void)printf("{\"scan\":%" PRIu64 ",\"time_ms\":%" PRIu32 ",", stream->number, scan->start_ms);
-    print_or_null("frequency_hz", scan->frequency_chz > 0, scan->frequency_chz / 100u, hundredths);
-    (void)printf(
-        "\"complete\":%s,\"packets\":%d,\"gaps\":%d,\"dropped\":%d,\"checksum_errors\":%d,",
-        scan->complete ? "true" : "false", scan->packets, scan->gaps, scan->dropped,
-        scan->checksum_errors);
-    print_or_null("faults", stream->faults != FAULTS_UNKNOWN, stream->faults, "");
-    (void)fputs("\"points\":[", stdout);
+    char faults[16];
+    (void)snprintf(faults, sizeof faults, "%u", stream->faults);
+    (void)printf("{\"scan\":%llu,\"time_ms\":%u"
+                 ",\"frequency_hz\":%s,\"complete\":%s,\"packets\":%d,\"gaps\":%d,\"dropped\":%d,"
+                 "\"checksum_errors\":%d,\"faults\":%s,\"points\":[",
+                 stream->number, scan->start_ms, hertz(scan->frequency_chz, "null"),
+                 scan->complete ? "true" : "false", scan->packets, scan->gaps, scan->dropped,
+                 scan->checksum_errors, stream->faults != FAULTS_UNKNOWN ? faults : "null");
     for (size_t i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
-        (void)printf("%s[" ANGLE_FORMAT ",%d,%d,%d]", i > 0 ? "," : "",
-                     ANGLE_VALUES(point->angle_q6), point->distance_mm, point->intensity,
-                     point->flag);
+        (void)printf("%s[" DEGREES ",%d,%d,%d]", i > 0 ? "," : "", point->angle_q6 / 64.0,
+                     point->distance_mm, point->intensity, point->flag);
     }
     (void)fputs("]}\n", stdout);
 }

@@ -1,38 +1,57 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What a lidar sends, in words and for other programs: the same whether it is live or recorded. */
+/* What points show, in numbers, colours and words, and as rows for other programs: the same whether
+ * they are live or recorded. Texts without a buffer of the caller's are valid until the same
+ * function's next call. */
 
 #ifndef POINTS_H
 #define POINTS_H
 
-#include <inttypes.h>
-#include <stdint.h>
-
 #include "stream.h"
 
-/* An angle in degrees, exactly: 1/64 degree has six decimals. For printf, with ANGLE_VALUES(). */
-#define ANGLE_FORMAT "%" PRIu32 ".%06" PRIu32
-#define ANGLE_VALUES(angle_q6) \
-    (uint32_t)(angle_q6) / 64u, (uint32_t)(angle_q6) % 64u * (uint32_t)15625
+/* What points show as a whole. All but `count` is of the points with a distance. */
+typedef struct {
+    size_t count;
+    size_t valid; /* How many have a distance, and which of them are flagged (section 5). */
+    size_t specular;
+    size_t ambient;
+    unsigned farthest_mm;
+    uint8_t darkest; /* Intensities; 255 and 0 if there is no point. */
+    uint8_t brightest;
+    const tmini_point_t *nearest; /* NULL: there is none. */
+} survey_t;
 
-/* The nearest point with a distance, or NULL. */
-const tmini_point_t *points_nearest(const tmini_point_t *points, size_t count);
+survey_t points_survey(const tmini_point_t *points, size_t count);
 
-/* How many have a distance. */
-size_t points_valid(const tmini_point_t *points, size_t count);
+/* Red, green and blue, from 0 to 1. */
+typedef struct {
+    double red, green, blue;
+} colour_t;
+
+/* The colour of an intensity, from blue for the darkest to yellow for the brightest of a survey. */
+colour_t points_colour(const survey_t *survey, uint8_t intensity);
 
 /* "ahead", "behind to the left", … */
 const char *direction_name(uint16_t angle_q6);
 
-/* Space for any text of faults_text(). */
+/* "1.023 m at 134.5 degrees, behind to the right" */
+const char *place_text(const tmini_point_t *point);
+
+/* Space for any text of faults_text() and health_text(). */
 #define FAULTS_TEXT_SIZE 120
 
 /* "healthy", or "faulty: " and the modules with what to look at, in `text`. */
 const char *faults_text(unsigned faults, char text[FAULTS_TEXT_SIZE]);
 
-/* "6.0 Hz" or "unknown"; valid until the next call. */
+/* The same of what the stream tells; or why it tells nothing. */
+const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE]);
+
+/* "6.0 Hz" or "unknown" */
 const char *frequency_text(unsigned frequency_chz);
+
+/* What share of the packets is damaged: "0.0 %", "under 0.1 %", "10.7 %". */
+const char *damaged_text(const stream_t *stream);
 
 /* A row for each sample of each valid packet. */
 #define ROWS_HEADER "scan,packet,point,angle_deg,distance_mm,intensity,flag,time_ms,frequency_hz"

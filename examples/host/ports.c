@@ -6,14 +6,14 @@
 
 #define _XOPEN_SOURCE 700
 
-#include "ports.h"
+#include "options.h"
 
 #include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "message.h"
+#include "output.h"
 
 #define PORTS_MAX 32
 #define PATH_SIZE 600
@@ -21,9 +21,11 @@
 typedef struct {
     char name[PATH_SIZE];   /* The most stable one. */
     char device[PATH_SIZE]; /* What that leads to. */
-    char maker[20];         /* "vendor:product", or "" if not known. */
+    char maker[20];         /* "vendor:product", or ":" if not known. */
     const char *chip;       /* NULL: not one of those that lidars come with. */
 } adapter_t;
+
+static adapter_t adapters[PORTS_MAX + 1];
 
 /* What lidars' adapters are made of; 60-tmini.rules knows the same. */
 static const struct {
@@ -70,15 +72,14 @@ static void find_maker(adapter_t *adapter)
     char product[8];
     read_word(adapter, "idVendor", vendor);
     read_word(adapter, "idProduct", product);
-    (void)snprintf(adapter->maker, sizeof adapter->maker, "%s%s%s", vendor,
-                   vendor[0] != '\0' ? ":" : "", product);
+    (void)snprintf(adapter->maker, sizeof adapter->maker, "%s:%s", vendor, product);
     for (size_t i = 0; i < sizeof chips / sizeof chips[0]; i++) {
         adapter->chip = strcmp(adapter->maker, chips[i].maker) == 0 ? chips[i].chip : adapter->chip;
     }
 }
 
 /* Adds the adapter of that name, unless it has been found under another one. */
-static size_t add(adapter_t *adapters, size_t count, const char *name)
+static size_t add(size_t count, const char *name)
 {
     adapter_t *const adapter = &adapters[count];
     char *const device = realpath(name, NULL);
@@ -99,7 +100,7 @@ static size_t add(adapter_t *adapters, size_t count, const char *name)
     return count + 1;
 }
 
-static size_t find_adapters(adapter_t *adapters)
+static size_t find_adapters(void)
 {
     size_t count = 0;
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
@@ -108,7 +109,7 @@ static size_t find_adapters(adapter_t *adapters)
         (void)snprintf(pattern, sizeof pattern, "%s%s", root(), places[i]);
         if (glob(pattern, 0, NULL, &found) == 0) {
             for (size_t j = 0; j < found.gl_pathc; j++) {
-                count = add(adapters, count, found.gl_pathv[j]);
+                count = add(count, found.gl_pathv[j]);
             }
             globfree(&found);
         }
@@ -116,20 +117,18 @@ static size_t find_adapters(adapter_t *adapters)
     return count;
 }
 
-static void print(FILE *file, const adapter_t *adapters, size_t count)
+static void print(FILE *file, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        const adapter_t *const adapter = &adapters[i];
-        (void)fprintf(file, "%s  (%s%s%s)  %s\n", adapter->name,
-                      strcmp(adapter->name, adapter->device) == 0 ? "" : adapter->device,
-                      strcmp(adapter->name, adapter->device) == 0 ? "" : ", ",
-                      adapter->maker[0] != '\0' ? adapter->maker : "maker unknown",
-                      adapter->chip != NULL ? adapter->chip : "");
+        const bool is_known = adapters[i].maker[1] != '\0'; /* Else it is ":". */
+        (void)fprintf(file, "%s  (%s, %s)  %s\n", adapters[i].name, adapters[i].device,
+                      is_known ? adapters[i].maker : "maker unknown",
+                      adapters[i].chip != NULL ? adapters[i].chip : "");
     }
 }
 
 /* The only one that may be a lidar's, or else the only one at all; NULL: there is no such. */
-static const adapter_t *only_one(const adapter_t *adapters, size_t count)
+static const adapter_t *only_one(size_t count)
 {
     const adapter_t *likely = NULL;
     size_t likely_count = 0;
@@ -142,7 +141,6 @@ static const adapter_t *only_one(const adapter_t *adapters, size_t count)
 
 const char *ports_choose(const options_t *options)
 {
-    static adapter_t adapters[PORTS_MAX + 1];
     const char *const usual = getenv("TMINI_PORT");
     if (options->port != NULL) {
         return options->port;
@@ -150,8 +148,8 @@ const char *ports_choose(const options_t *options)
     if (usual != NULL && usual[0] != '\0') {
         return usual;
     }
-    const size_t count = find_adapters(adapters);
-    const adapter_t *const adapter = only_one(adapters, count);
+    const size_t count = find_adapters();
+    const adapter_t *const adapter = only_one(count);
     if (adapter != NULL) {
         message_note("using %s", adapter->name);
         return adapter->name;
@@ -161,16 +159,15 @@ const char *ports_choose(const options_t *options)
                               "For example: -p /dev/ttyUSB0"
                             : "on which port is the lidar? Say, for example, -p %s; there are:",
                         adapters[0].name);
-    print(stderr, adapters, count);
+    print(stderr, count);
     return NULL;
 }
 
 static int run(const options_t *options)
 {
-    static adapter_t adapters[PORTS_MAX + 1];
-    const size_t count = find_adapters(adapters);
+    const size_t count = find_adapters();
     (void)options;
-    print(stdout, adapters, count);
+    print(stdout, count);
     return count > 0 ? STATUS_OK
                      : message_fail("no USB serial adapter is plugged in, or its driver is missing "
                                     "(on Linux, `dmesg` tells)");

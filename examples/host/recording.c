@@ -7,14 +7,13 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <inttypes.h>
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "message.h"
+#include "output.h"
 
 /* With the largest packet waiting for its last byte (775), this much still fits in the ring. */
 #define BLOCK_SIZE 2048u
@@ -25,6 +24,17 @@
 #define US_A_SAMPLE 250u /* Section 1. */
 
 const uint8_t recording_magic[8] = {0x89, 't', 'm', 'i', 'n', 'i', 1, '\n'};
+
+/* To someone who waits for a long one. */
+static void show_progress(recording_t *recording)
+{
+    const unsigned percent =
+        recording->size < LONG_SIZE ? 0 : (unsigned)(recording->consumed * 100 / recording->size);
+    if (percent != recording->shown_percent && !recording->is_impatient) {
+        recording->shown_percent = percent;
+        message_progress(percent >= 100, "%3u %% of %s", percent, recording->name);
+    }
+}
 
 /* What is there, rather than all that fits: it may come through a pipe, and live. Returns false at
  * the end, or when there is nothing yet. */
@@ -46,16 +56,8 @@ static bool fill(recording_t *recording)
     recording->error = more < 0 ? errno : 0;
     recording->count += more > 0 ? (size_t)more : 0;
     recording->consumed += more > 0 ? (size_t)more : 0;
+    show_progress(recording);
     return more > 0;
-}
-
-static void detect_format(recording_t *recording)
-{
-    while (recording->count < sizeof recording_magic && fill(recording)) {
-    }
-    recording->is_timed = recording->count >= sizeof recording_magic &&
-                          memcmp(recording->buffer, recording_magic, sizeof recording_magic) == 0;
-    recording->at = recording->is_timed ? sizeof recording_magic : 0;
 }
 
 static bool begin_chunk(recording_t *recording)
@@ -100,21 +102,16 @@ static void begin(recording_t *recording)
 {
     recording->at = recording->count = 0;
     recording->bytes = recording->bytes_in_packets = recording->consumed = 0;
-    recording->chunk_us = recording->chunk_left = recording->parser_errors = 0;
-    recording->checksum_errors = 0;
+    recording->chunk_us = recording->chunk_left = 0;
     recording->is_at_end = false;
     (void)tmini_ring_init(&recording->ring, recording->memory, sizeof recording->memory, false);
     (void)tmini_parser_init(&recording->parser, &recording->ring, recording->max_samples);
     stream_init(&recording->stream);
-    detect_format(recording);
-}
-
-static void count_errors(recording_t *recording)
-{
-    tmini_parser_counters_t counters;
-    tmini_parser_counters(&recording->parser, &counters);
-    recording->checksum_errors += (uint32_t)(counters.checksum_errors - recording->parser_errors);
-    recording->parser_errors = counters.checksum_errors;
+    while (recording->count < sizeof recording_magic && fill(recording)) {
+    }
+    recording->is_timed = recording->count >= sizeof recording_magic &&
+                          memcmp(recording->buffer, recording_magic, sizeof recording_magic) == 0;
+    recording->at = recording->is_timed ? sizeof recording_magic : 0;
 }
 
 static void take(recording_t *recording)
@@ -122,7 +119,7 @@ static void take(recording_t *recording)
     tmini_packet_open(&recording->packet, tmini_parser_frame(&recording->parser));
     recording->time_us =
         recording->is_timed ? recording->chunk_us : recording->stream.points * US_A_SAMPLE;
-    recording->bytes_in_packets += TMINI_PACKET_SIZE((uint64_t)recording->packet.count);
+    recording->bytes_in_packets += TMINI_PACKET_SIZE((count_t)recording->packet.count);
     (void)stream_take(&recording->stream, &recording->packet,
                       (uint32_t)(recording->time_us / 1000));
     recording->bytes_until = recording_skipped(recording);
@@ -135,7 +132,6 @@ bool recording_next(recording_t *recording)
 {
     while (!recording->is_at_end) {
         const tmini_frame_type_t frame = tmini_parser_next(&recording->parser);
-        count_errors(recording);
         if (frame == TMINI_FRAME_PACKET) {
             take(recording);
             return true;
@@ -151,7 +147,14 @@ bool recording_next(recording_t *recording)
     return false;
 }
 
-uint64_t recording_skipped(const recording_t *recording)
+count_t recording_checksum_errors(const recording_t *recording)
+{
+    tmini_parser_counters_t counters;
+    tmini_parser_counters(&recording->parser, &counters);
+    return counters.checksum_errors;
+}
+
+count_t recording_skipped(const recording_t *recording)
 {
     return recording->bytes - recording->bytes_in_packets -
            tmini_parser_pending(&recording->parser);
@@ -168,7 +171,7 @@ int recording_open(recording_t *recording, const options_t *options)
         return message_fail("cannot open %s: %s", options->operand, strerror(errno));
     }
     if (fstat(recording->fd, &status) == 0 && S_ISREG(status.st_mode)) {
-        recording->size = (uint64_t)status.st_size;
+        recording->size = (count_t)status.st_size;
     }
     begin(recording);
     return STATUS_OK;
@@ -190,17 +193,6 @@ bool recording_rewind(recording_t *recording)
     return true;
 }
 
-void recording_show_progress(recording_t *recording, const options_t *options)
-{
-    const unsigned percent =
-        recording->size < LONG_SIZE ? 0 : (unsigned)(recording->consumed * 100 / recording->size);
-    if (percent != recording->shown_percent && !options->quiet && isatty(STDERR_FILENO) != 0) {
-        recording->shown_percent = percent;
-        (void)fprintf(stderr, "%3u %% of %s%s", percent, recording->name,
-                      percent < 100 ? "\r" : "\n");
-    }
-}
-
 int recording_verdict(const recording_t *recording)
 {
     if (recording->error != 0) {
@@ -211,7 +203,7 @@ int recording_verdict(const recording_t *recording)
                             recording->name);
     }
     if (recording->stream.packets == 0) {
-        return message_fail("%s holds no lidar packet in %" PRIu64 " bytes: it is not a recording "
+        return message_fail("%s holds no lidar packet in %llu bytes: it is not a recording "
                             "of a T-mini Plus,\nor was recorded with another baud rate than "
                             "230400, or before the lidar scanned.",
                             recording->name, recording->bytes);
@@ -221,11 +213,6 @@ int recording_verdict(const recording_t *recording)
 
 const char *recording_base_name(const char *path)
 {
-    const char *name = path;
-    for (; *path != '\0'; path++) {
-        if (*path == '/' && path[1] != '\0') {
-            name = path + 1;
-        }
-    }
-    return name;
+    const char *const slash = strrchr(path, '/');
+    return slash != NULL && slash[1] != '\0' ? slash + 1 : path;
 }

@@ -23,15 +23,13 @@
 
 extern const uint8_t recording_magic[8];
 
-/* Members down to `stream` may be read. 64 bits, because a recording may be longer than the
- * parser's counters reach. */
+/* Members down to `stream` may be read. */
 typedef struct {
     const char *name;
-    uint64_t bytes; /* Of the lidar's. */
-    uint64_t bytes_in_packets;
-    uint64_t bytes_before; /* The first packet, and up to the latest one: skipped ones. */
-    uint64_t bytes_until;
-    uint64_t checksum_errors;
+    count_t bytes; /* Of the lidar's. */
+    count_t bytes_in_packets;
+    count_t bytes_before; /* The first packet, and up to the latest one: skipped ones. */
+    count_t bytes_until;
     uint64_t time_us; /* Of the latest packet. */
     bool is_timed;    /* Otherwise the time is that of 4000 samples a second. */
     bool is_at_end;
@@ -41,12 +39,11 @@ typedef struct {
 
     int fd;
     bool is_waiting;
-    int error;     /* errno of a failed read, or 0. */
-    uint64_t size; /* Of the file; 0: not known. */
-    uint64_t consumed;
+    int error;    /* errno of a failed read, or 0. */
+    count_t size; /* Of the file; 0: not known. */
+    count_t consumed;
     uint64_t chunk_us;
     uint32_t chunk_left;
-    uint32_t parser_errors; /* Of the parser's checksum errors, those that are counted. */
     uint8_t max_samples;
     unsigned shown_percent;
     size_t at, count; /* In `buffer`: what has been read and not yet decoded. */
@@ -70,10 +67,10 @@ bool recording_next(recording_t *recording);
 bool recording_rewind(recording_t *recording);
 
 /* Bytes that belonged to no packet, of those decoded so far. */
-uint64_t recording_skipped(const recording_t *recording);
+count_t recording_skipped(const recording_t *recording);
 
-/* Shows on standard error, if that is a terminal, how much of a long recording has been read. */
-void recording_show_progress(recording_t *recording, const options_t *options);
+/* Wrong checksums so far. */
+count_t recording_checksum_errors(const recording_t *recording);
 
 /* At the end: says what is wrong if the file could not be read, was empty, or holds nothing of a
  * lidar. Returns the status to leave with. */

@@ -104,14 +104,11 @@ void stream_break(stream_t *stream)
 
 unsigned stream_damaged_permille(const stream_t *stream)
 {
-    const uint64_t all = stream->packets + stream->damaged;
+    const count_t all = stream->packets + stream->damaged;
     return all == 0 ? 0 : (unsigned)((stream->damaged * 1000 + all / 2) / all);
 }
 
-telling_t stream_telling(const stream_t *stream)
+bool stream_tells_nothing(const stream_t *stream)
 {
-    if (stream->confirmed > 0) {
-        return TELLS;
-    }
-    return stream->complete > 0 && stream->guard_bytes == 0 ? TELLS_NOTHING : TELLS_UNKNOWN;
+    return stream->confirmed == 0 && stream->complete > 0 && stream->guard_bytes == 0;
 }

@@ -11,6 +11,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -21,6 +22,13 @@
 
 #define OTHER_SCREEN "\033[?1049h\033[?25l\033[2J"
 #define OWN_SCREEN "\033[0m\033[?25h\033[?1049l"
+
+#define BRAILLE 0x2800u
+
+/* A cell takes a change of colour and a character of three bytes at most; a row's end a little
+ * more. */
+#define CELL_SIZE 16u
+#define ROW_SIZE 32u
 
 /* How long the rest of an arrow's sequence may take. */
 #define SEQUENCE_MS 50
@@ -37,18 +45,13 @@ static const char *variable(const char *name)
     return value != NULL ? value : "";
 }
 
-bool terminal_has_cursor(void)
+static bool has_cursor(void)
 {
     return variable("TERM")[0] != '\0' && strcmp(variable("TERM"), "dumb") != 0;
 }
 
-bool terminal_has_colours(void)
-{
-    return variable("NO_COLOR")[0] == '\0' && terminal_has_cursor();
-}
-
 /* By the variables, not by setlocale(): over ssh they name locales that are not installed here. */
-bool terminal_has_unicode(void)
+static bool has_unicode(void)
 {
     static const char *const names[] = {"LC_ALL", "LC_CTYPE", "LANG"};
     size_t i = 0;
@@ -56,8 +59,7 @@ bool terminal_has_unicode(void)
         i++;
     }
     const char *const locale = variable(names[i]);
-    return strstr(locale, "UTF-8") != NULL || strstr(locale, "utf8") != NULL ||
-           strstr(locale, "utf-8") != NULL || strstr(locale, "UTF8") != NULL;
+    return strstr(locale, "UTF") != NULL || strstr(locale, "utf") != NULL;
 }
 
 /* Keys at once and unseen. Ctrl-C remains a signal; Ctrl-Z becomes a key, because the terminal has
@@ -110,12 +112,32 @@ static void restore_at_once(void)
     }
 }
 
+static void write_all(const char *text, size_t size)
+{
+    while (size > 0) {
+        const ssize_t written = write(STDOUT_FILENO, text, size);
+        if (written < 0 && errno != EINTR && errno != EAGAIN) {
+            return; /* The terminal has gone; a signal says so too. */
+        }
+        if (written < 0 && interrupt_has_come()) {
+            return; /* What the terminal does not take is not to keep the program. */
+        }
+        if (written < 0) {
+            struct pollfd entry = {.fd = STDOUT_FILENO, .events = POLLOUT};
+            (void)poll(&entry, 1, SEQUENCE_MS);
+        } else {
+            text += written;
+            size -= (size_t)written;
+        }
+    }
+}
+
 bool terminal_take(void)
 {
     if (isatty(STDOUT_FILENO) == 0) {
         return false;
     }
-    own_screen_size = terminal_has_cursor() ? sizeof OWN_SCREEN - 1 : 0;
+    own_screen_size = has_cursor() ? sizeof OWN_SCREEN - 1 : 0;
     take_keys();
     is_taken = 1;
     if (!is_at_exit) {
@@ -123,7 +145,7 @@ bool terminal_take(void)
     }
     interrupt_last_words(restore_at_once);
     (void)signal(SIGTSTP, SIG_IGN); /* Stopped, the program could not give the terminal back. */
-    terminal_write(OTHER_SCREEN, terminal_has_cursor() ? strlen(OTHER_SCREEN) : 0);
+    write_all(OTHER_SCREEN, has_cursor() ? strlen(OTHER_SCREEN) : 0);
     return true;
 }
 
@@ -133,17 +155,6 @@ void terminal_restore(void)
         restore_at_once();
         (void)signal(SIGTSTP, SIG_DFL);
     }
-}
-
-bool terminal_size(unsigned *columns, unsigned *rows)
-{
-    struct winsize size;
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) {
-        return false;
-    }
-    *columns = size.ws_col;
-    *rows = size.ws_row;
-    return true;
 }
 
 /* The next byte from the keyboard, or 0 if none comes in time. */
@@ -181,19 +192,147 @@ void terminal_suspend(void)
     (void)terminal_take();
 }
 
-void terminal_write(const char *text, size_t size)
+/* ------------------------------------------------------------------------------------- screen */
+
+screen_t screen_begin(void)
 {
-    while (size > 0) {
-        const ssize_t written = write(STDOUT_FILENO, text, size);
-        if (written < 0 && errno != EINTR && errno != EAGAIN) {
-            return; /* The terminal has gone; a signal says so too. */
-        }
-        if (written < 0 && interrupt_has_come()) {
-            return; /* What the terminal does not take is not to keep the program. */
-        }
-        if (written > 0) {
-            text += written;
-            size -= (size_t)written;
-        }
+    return (screen_t){.has_cursor = has_cursor(),
+                      .has_colours = has_cursor() && variable("NO_COLOR")[0] == '\0',
+                      .has_unicode = has_unicode()};
+}
+
+void screen_free(screen_t *screen)
+{
+    free(screen->cells);
+    free(screen->output);
+    screen->cells = NULL;
+    screen->output = NULL;
+    screen->rows = 0;
+}
+
+void screen_clear(screen_t *screen)
+{
+    for (size_t i = 0; i < (size_t)screen->columns * screen->rows; i++) {
+        screen->cells[i] = (cell_t){' ', COLOUR_PLAIN, LAYER_NONE};
     }
+}
+
+bool screen_fit(screen_t *screen)
+{
+    struct winsize size;
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) {
+        size = (struct winsize){.ws_col = 80, .ws_row = 24};
+    }
+    if (size.ws_col == screen->columns && size.ws_row == screen->rows) {
+        return false;
+    }
+    screen_free(screen);
+    screen->columns = size.ws_col;
+    screen->rows = size.ws_row;
+    screen->cells = calloc((size_t)size.ws_col * size.ws_row, sizeof *screen->cells);
+    screen->output =
+        malloc((size_t)size.ws_row * ((size_t)size.ws_col * CELL_SIZE + ROW_SIZE) + ROW_SIZE);
+    if (screen->cells == NULL || screen->output == NULL) {
+        screen_free(screen);
+    }
+    screen_clear(screen);
+    return true;
+}
+
+static cell_t *cell_at(const screen_t *screen, int column, int row)
+{
+    if (column < 0 || row < 0 || (unsigned)column >= screen->columns ||
+        (unsigned)row >= screen->rows) {
+        return NULL;
+    }
+    return &screen->cells[(size_t)row * screen->columns + (size_t)column];
+}
+
+void screen_put(screen_t *screen, int column, int row, uint16_t character, char plain,
+                uint8_t colour)
+{
+    cell_t *const cell = cell_at(screen, column, row);
+    if (cell != NULL) {
+        const uint16_t put = screen->has_unicode ? character : (unsigned char)plain;
+        *cell = (cell_t){put, colour, LAYER_TEXT};
+    }
+}
+
+void screen_text(screen_t *screen, int column, int row, const char *text, uint8_t colour)
+{
+    for (; *text != '\0'; text++) {
+        const unsigned char character = (unsigned char)*text;
+        const char put = character >= ' ' && character < 127 ? *text : '?';
+        screen_put(screen, column++, row, (uint16_t)put, put, colour);
+    }
+}
+
+/* Which bit of a braille character is which dot (the lowest row of dots came later). */
+static uint16_t braille_bit(int x, int y)
+{
+    static const uint8_t bits[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
+    return bits[y][x];
+}
+
+void screen_dot(screen_t *screen, int x, int y, layer_t layer, uint8_t colour)
+{
+    cell_t *const cell = x >= 0 && y >= 0 ? cell_at(screen, x / 2, y / 4) : NULL;
+    if (cell == NULL || cell->layer > layer) {
+        return;
+    }
+    if (cell->layer < layer) {
+        *cell = (cell_t){BRAILLE, colour, (uint8_t)layer};
+    }
+    if (screen->has_unicode) {
+        cell->character |= braille_bit(x % 2, y % 4);
+    } else {
+        cell->character = layer == LAYER_GRID ? '.' : '*';
+    }
+    cell->colour = colour;
+}
+
+static char *put_utf8(char *out, unsigned character)
+{
+    if (character < 0x80) {
+        *out++ = (char)character;
+    } else if (character < 0x800) {
+        *out++ = (char)(0xC0u | character >> 6);
+        *out++ = (char)(0x80u | (character & 0x3Fu));
+    } else {
+        *out++ = (char)(0xE0u | character >> 12);
+        *out++ = (char)(0x80u | (character >> 6 & 0x3Fu));
+        *out++ = (char)(0x80u | (character & 0x3Fu));
+    }
+    return out;
+}
+
+/* A row without a cursor ends with its last character. */
+static unsigned width_of(const screen_t *screen, unsigned row)
+{
+    unsigned width = screen->columns;
+    while (!screen->has_cursor && width > 0 &&
+           cell_at(screen, (int)width - 1, (int)row)->character == ' ') {
+        width--;
+    }
+    return width;
+}
+
+void screen_show(screen_t *screen)
+{
+    char *out = screen->output;
+    int colour = -1;
+    for (unsigned row = 0; row < screen->rows; row++) {
+        out += screen->has_cursor ? sprintf(out, "\033[%u;1H", row + 1) : 0;
+        const unsigned width = width_of(screen, row);
+        for (unsigned column = 0; column < width; column++) {
+            const cell_t *const cell = cell_at(screen, (int)column, (int)row);
+            if (screen->has_colours && cell->character != ' ' && cell->colour != colour) {
+                colour = cell->colour;
+                out += sprintf(out, "\033[38;5;%dm", colour);
+            }
+            out = put_utf8(out, cell->character);
+        }
+        out += screen->has_cursor ? 0 : sprintf(out, "\n");
+    }
+    write_all(screen->output, (size_t)(out - screen->output));
 }

@@ -1,13 +1,45 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The terminal, for a picture that fills it: taken over, asked for keys and size, given back. */
+/* The terminal, filled with characters: taken over, drawn on, asked for keys, given back. Each
+ * character has a colour, and some are made of dots: Unicode's braille characters have two columns
+ * and four rows of them, which makes a terminal of 80 x 24 a picture of 160 x 96. */
 
 #ifndef TERMINAL_H
 #define TERMINAL_H
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
+
+/* Colours of the 256 that terminals have. */
+enum {
+    COLOUR_PLAIN = 252,
+    COLOUR_DIM = 242,
+    COLOUR_GRID = 238,
+    COLOUR_AMBER = 214,
+    COLOUR_ALARM = 203,
+};
+
+/* Dots of a higher layer hide those of lower ones in the same character. */
+typedef enum { LAYER_NONE, LAYER_GRID, LAYER_POINTS, LAYER_TEXT } layer_t;
+
+typedef struct {
+    uint16_t character; /* Unicode */
+    uint8_t colour;
+    uint8_t layer;
+} cell_t;
+
+/* What is to be shown. `columns`, `rows` and `has_cursor` may be read. */
+typedef struct {
+    unsigned columns;
+    unsigned rows;
+    bool has_cursor;  /* By TERM; otherwise the rows are printed one below the other. */
+    bool has_colours; /* By NO_COLOR. */
+    bool has_unicode; /* By the locale; otherwise a cell of dots is one character of ASCII. */
+    cell_t *cells;
+    char *output;
+} screen_t;
 
 /* Keys that are no characters. */
 enum {
@@ -17,11 +49,6 @@ enum {
     KEY_LEFT = 0x100,
     KEY_RIGHT,
 };
-
-/* What it can do, by TERM, NO_COLOR and the locale's variables. */
-bool terminal_has_cursor(void);
-bool terminal_has_colours(void);
-bool terminal_has_unicode(void);
 
 /* Takes the terminal over: another screen, no echo, no cursor. The keys are the terminal's even
  * when standard input is not. Returns false if standard output is no terminal. It is given back by
@@ -33,13 +60,28 @@ void terminal_restore(void);
  * over again. */
 void terminal_suspend(void);
 
-/* The size now, in characters; false if it is not known. */
-bool terminal_size(unsigned *columns, unsigned *rows);
-
 /* The key that was pressed, or KEY_NONE. Does not wait, but to tell Esc from the arrows. */
 int terminal_key(void);
 
-/* Writes to the terminal. */
-void terminal_write(const char *text, size_t size);
+/* A screen with what the terminal can do; no size yet. */
+screen_t screen_begin(void);
+
+/* Follows the terminal's size: true if it has changed, and the screen is empty. Without memory it
+ * becomes one without rows. */
+bool screen_fit(screen_t *screen);
+void screen_free(screen_t *screen);
+void screen_clear(screen_t *screen);
+
+/* Puts a character, or ASCII text; `plain` takes the character's place where there is no Unicode.
+ * What is outside of the screen is left out. */
+void screen_put(screen_t *screen, int column, int row, uint16_t character, char plain,
+                uint8_t colour);
+void screen_text(screen_t *screen, int column, int row, const char *text, uint8_t colour);
+
+/* Puts a dot; (0, 0) is the upper left one. */
+void screen_dot(screen_t *screen, int x, int y, layer_t layer, uint8_t colour);
+
+/* Shows it on the terminal. */
+void screen_show(screen_t *screen);
 
 #endif

@@ -3,8 +3,8 @@
 
 #include "view.h"
 
-#include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -26,6 +26,7 @@ static const struct {
     {500, 250},   {1000, 500},  {2000, 500},   {3000, 1000},  {4000, 1000},
     {6000, 2000}, {8000, 2000}, {12000, 4000}, {17000, 5000},
 };
+#define EMPTY_MM 3000u /* Of a picture in which there is nothing yet. */
 #define ZOOMS (sizeof zooms / sizeof zooms[0])
 
 /* Where the picture is: in dots, which are as far apart across as down. */
@@ -46,34 +47,24 @@ static size_t zoom_of(unsigned range_mm)
     return i;
 }
 
-static const tmini_scan_t *scan_of(const view_t *view)
-{
-    return view->stream->scans > 0 ? &view->stream->scan : NULL;
-}
-
 /* By themselves range and colours only widen: a picture that breathes is hard to look at. */
 static void choose_scale(view_t *view)
 {
-    const tmini_scan_t *const scan = scan_of(view);
-    scale_t *const colours = &view->colours;
-    unsigned farthest_mm = 0;
-    for (size_t i = 0; scan != NULL && i < scan->count; i++) {
-        const tmini_point_t *const point = &scan->points[i];
-        if (point->distance_mm > 0) {
-            const bool is_first = colours->brightest == 0;
-            farthest_mm = point->distance_mm > farthest_mm ? point->distance_mm : farthest_mm;
-            colours->darkest = is_first || point->intensity < colours->darkest ? point->intensity
-                                                                               : colours->darkest;
-            colours->brightest =
-                point->intensity > colours->brightest ? point->intensity : colours->brightest;
-        }
+    const survey_t *const survey = &view->survey;
+    survey_t *const colours = &view->colours;
+    if (view->range_mm == 0 || survey->darkest < colours->darkest) {
+        colours->darkest = survey->darkest;
+    }
+    if (view->range_mm == 0 || survey->brightest > colours->brightest) {
+        colours->brightest = survey->brightest;
     }
     if (view->zoom_mm > 0) {
         view->range_mm = view->zoom_mm;
-    } else if (farthest_mm > view->range_mm) {
-        view->range_mm = zooms[zoom_of(farthest_mm)].range_mm;
+    } else if (survey->farthest_mm > view->range_mm) {
+        view->range_mm = zooms[zoom_of(survey->farthest_mm)].range_mm;
+    } else if (view->range_mm == 0) {
+        view->range_mm = EMPTY_MM;
     }
-    view->range_mm = view->range_mm > 0 ? view->range_mm : zooms[3].range_mm;
 }
 
 void view_zoom(view_t *view, bool in)
@@ -160,15 +151,15 @@ static uint8_t terminal_colour(colour_t colour)
                      lround(colour.blue * 5));
 }
 
-static void draw_points(screen_t *screen, const frame_t *frame, const scale_t *colours,
-                        const tmini_scan_t *scan)
+static void draw_points(screen_t *screen, const frame_t *frame, const view_t *view)
 {
+    const tmini_scan_t *const scan = &view->stream->scan;
     for (size_t i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
         if (point->distance_mm > 0 && point->distance_mm <= frame->range_mm) {
             const spot_t spot = place_of_point(frame, point);
             screen_dot(screen, (int)lround(spot.x), (int)lround(spot.y), LAYER_POINTS,
-                       terminal_colour(scale_colour(colours, point->intensity)));
+                       terminal_colour(points_colour(&view->colours, point->intensity)));
         }
     }
 }
@@ -185,22 +176,23 @@ static void mark_nearest(screen_t *screen, const frame_t *frame, const tmini_poi
 static void draw_picture(screen_t *screen, const view_t *view)
 {
     const frame_t frame = frame_of(screen, view);
-    const tmini_scan_t *const scan = scan_of(view);
     draw_grid(screen, &frame);
-    if (scan != NULL) {
-        draw_points(screen, &frame, &view->colours, scan);
-    }
+    draw_points(screen, &frame, view);
     label_rings(screen, &frame);
-    if (scan != NULL) {
-        mark_nearest(screen, &frame, points_nearest(scan->points, scan->count));
-    }
+    mark_nearest(screen, &frame, view->survey.nearest);
     screen_put(screen, (int)(frame.x / 2), (int)(frame.y / 4), LIDAR_CHARACTER, 'A', COLOUR_PLAIN);
 }
 
 /* The last row is for keys, the one above for faults. */
-static void say(screen_t *screen, int *row, const char *name, const char *value, uint8_t colour)
+static void say(screen_t *screen, int *row, const char *name, uint8_t colour, const char *format,
+                ...)
 {
     const int column = (int)screen->columns - PANEL_COLUMNS + 1;
+    char value[40];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(value, sizeof value, format, arguments);
+    va_end(arguments);
     if (*row < (int)screen->rows - 2) {
         screen_text(screen, column, *row, name, COLOUR_DIM);
         screen_text(screen, column + 10, *row, value, colour);
@@ -212,29 +204,20 @@ static void say(screen_t *screen, int *row, const char *name, const char *value,
 static void say_right(screen_t *screen, int from, int row, const char *text, uint8_t colour)
 {
     const int column = (int)screen->columns - (int)strlen(text) - 1;
-    if (column >= from) {
-        screen_text(screen, column, row, text, colour);
-    } else {
-        screen_text(screen, from, row, text, colour);
-    }
+    screen_text(screen, column > from ? column : from, row, text, colour);
 }
 
-static void say_nearest(screen_t *screen, int *row, const tmini_scan_t *scan)
+static void say_nearest(screen_t *screen, int *row, const tmini_point_t *nearest)
 {
-    const tmini_point_t *const nearest = points_nearest(scan->points, scan->count);
     if (nearest == NULL) {
-        say(screen, row, "nearest", "nothing", COLOUR_AMBER);
+        say(screen, row, "nearest", COLOUR_AMBER, "nothing");
         *row += 2;
         return;
     }
-    char text[24];
-    (void)snprintf(text, sizeof text, "%d.%03d m", nearest->distance_mm / 1000,
-                   nearest->distance_mm % 1000);
-    say(screen, row, "nearest", text, COLOUR_AMBER);
-    (void)snprintf(text, sizeof text, "at %d deg,", nearest->angle_q6 / 64);
-    say(screen, row, "", text, COLOUR_AMBER);
-    const char *const name = direction_name(nearest->angle_q6);
-    say_right(screen, (int)screen->columns - PANEL_COLUMNS, (*row)++, name, COLOUR_AMBER);
+    say(screen, row, "nearest", COLOUR_AMBER, "%.3f m", nearest->distance_mm / 1000.0);
+    say(screen, row, "", COLOUR_AMBER, "at %d deg,", nearest->angle_q6 / 64);
+    say_right(screen, (int)screen->columns - PANEL_COLUMNS, (*row)++,
+              direction_name(nearest->angle_q6), COLOUR_AMBER);
 }
 
 /* The nearest obstacle of each of eight sectors, where the sector is. */
@@ -251,8 +234,7 @@ static void say_sectors(screen_t *screen, int *row, const tmini_scan_t *scan)
     for (size_t i = 0; i < 8; i++) {
         char text[16] = "-";
         if (nearest_mm[i] > 0) {
-            (void)snprintf(text, sizeof text, "%d.%02d", nearest_mm[i] / 1000,
-                           nearest_mm[i] % 1000 / 10);
+            (void)snprintf(text, sizeof text, "%.2f", nearest_mm[i] / 1000.0);
         }
         screen_text(screen, column + places[i].column, *row + places[i].row, text, COLOUR_PLAIN);
     }
@@ -260,52 +242,54 @@ static void say_sectors(screen_t *screen, int *row, const tmini_scan_t *scan)
     *row += 5;
 }
 
+static bool is_faulty(const view_t *view)
+{
+    return view->faults != 0 && view->faults != FAULTS_UNKNOWN;
+}
+
+static const char *health_name(const view_t *view)
+{
+    if (view->faults == FAULTS_UNKNOWN) {
+        return stream_tells_nothing(view->stream) ? "not told" : "unknown";
+    }
+    return view->faults == 0 ? "healthy" : "FAULTY";
+}
+
 static void draw_panel(screen_t *screen, const view_t *view)
 {
-    const tmini_scan_t *const scan = scan_of(view);
-    const unsigned permille = stream_damaged_permille(view->stream);
-    const telling_t telling = stream_telling(view->stream);
-    char text[24];
+    const stream_t *const stream = view->stream;
     int row = 2;
-    if (scan != NULL && screen->rows >= PANEL_ROWS) {
-        say_nearest(screen, &row, scan);
+    if (stream->scans > 0 && screen->rows >= PANEL_ROWS) {
+        say_nearest(screen, &row, view->survey.nearest);
         row++;
-        say_sectors(screen, &row, scan);
+        say_sectors(screen, &row, &stream->scan);
         row++;
     }
-    if (scan != NULL) {
-        (void)snprintf(text, sizeof text, "%d, %zu valid", scan->count,
-                       points_valid(scan->points, scan->count));
-        say(screen, &row, "points", text, COLOUR_PLAIN);
+    if (stream->scans > 0) {
+        say(screen, &row, "points", COLOUR_PLAIN, "%zu, %zu valid", view->survey.count,
+            view->survey.valid);
     }
-    (void)snprintf(text, sizeof text, "%g m%s", view->range_mm / 1000.0,
-                   view->zoom_mm > 0 ? "" : ", auto");
-    say(screen, &row, "range", text, COLOUR_PLAIN);
-    (void)snprintf(text, sizeof text, "%" PRIu64, view->stream->packets);
-    say(screen, &row, "packets", text, COLOUR_PLAIN);
-    (void)snprintf(text, sizeof text, "%u.%u %%", permille / 10, permille % 10);
-    say(screen, &row, "damaged", text, permille > 0 ? COLOUR_ALARM : COLOUR_PLAIN);
-    say(screen, &row, "health",
-        view->faults == 0                ? "healthy"
-        : view->faults != FAULTS_UNKNOWN ? "FAULTY"
-        : telling == TELLS_NOTHING       ? "not told"
-                                         : "unknown",
-        view->faults != 0 && view->faults != FAULTS_UNKNOWN ? COLOUR_ALARM : COLOUR_PLAIN);
+    say(screen, &row, "range", COLOUR_PLAIN, "%g m%s", view->range_mm / 1000.0,
+        view->zoom_mm > 0 ? "" : ", auto");
+    say(screen, &row, "packets", COLOUR_PLAIN, "%llu", stream->packets);
+    say(screen, &row, "damaged", stream->damaged > 0 ? COLOUR_ALARM : COLOUR_PLAIN, "%s",
+        damaged_text(stream));
+    say(screen, &row, "health", is_faulty(view) ? COLOUR_ALARM : COLOUR_PLAIN, "%s",
+        health_name(view));
 }
 
 static void draw_lines(screen_t *screen, const view_t *view)
 {
     char text[FAULTS_TEXT_SIZE];
     const int last = (int)screen->rows - 1;
-    const tmini_scan_t *const scan = scan_of(view);
+    const tmini_scan_t *const scan = &view->stream->scan;
     screen_text(screen, 1, 0, view->source, COLOUR_PLAIN);
-    if (scan != NULL) {
-        (void)snprintf(text, sizeof text, "  %sscan %" PRIu64 "  %s",
-                       scan->complete ? "" : "incomplete ", view->stream->number,
-                       frequency_text(scan->frequency_chz));
+    if (view->stream->scans > 0) {
+        (void)snprintf(text, sizeof text, "  %sscan %llu  %s", scan->complete ? "" : "incomplete ",
+                       view->stream->number, frequency_text(scan->frequency_chz));
         say_right(screen, 0, 0, text, scan->complete ? COLOUR_PLAIN : COLOUR_ALARM);
     }
-    if (view->faults != 0 && view->faults != FAULTS_UNKNOWN) {
+    if (is_faulty(view)) {
         say_right(screen, 0, last - 1, faults_text(view->faults, text), COLOUR_ALARM);
     }
     const int keys = (int)strlen(view->keys);
@@ -316,6 +300,7 @@ static void draw_lines(screen_t *screen, const view_t *view)
 
 void view_draw(view_t *view, screen_t *screen)
 {
+    view->survey = points_survey(view->stream->scan.points, view->stream->scan.count);
     choose_scale(view);
     screen_clear(screen);
     draw_picture(screen, view);

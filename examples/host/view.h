@@ -6,9 +6,9 @@
 #ifndef VIEW_H
 #define VIEW_H
 
-#include "scale.h"
-#include "screen.h"
 #include "stream.h"
+#include "points.h"
+#include "terminal.h"
 
 /* The whole state of the view; the caller fills it in. */
 typedef struct {
@@ -18,8 +18,9 @@ typedef struct {
     const stream_t *stream;
     unsigned faults;   /* A combination of tmini_fault_t, or FAULTS_UNKNOWN. */
     unsigned zoom_mm;  /* The range chosen by hand; 0: as far as there is something. */
-    unsigned range_mm; /* The range shown: view_draw()'s own. */
-    scale_t colours;   /* So that an intensity keeps its colour: view_draw()'s own. */
+    unsigned range_mm; /* The range shown; 0: to be chosen anew. The rest is view_draw()'s own: */
+    survey_t survey;   /* of the scan, and */
+    survey_t colours;  /* what its colours are fitted to, so that an intensity keeps its colour. */
 } view_t;
 
 /* Draws the view on the screen, whatever its size. */

@@ -160,7 +160,7 @@ void test_a_good_lidar_is_good(void)
     expect_said("\nok    health     healthy\n");
     expect_said("\nok    line       0.0 % of ");
     expect_said("\nok    frequency  6.0 Hz measured, 6.0 Hz set\n");
-    expect_said("\nok    faults     none told while scanning\n");
+    expect_said("\nok    faults     healthy\n");
     expect_said(" % of the points have a distance\n");
     expect_said("\nverdict: ");
     end_case("socket", 0, "ok    port       tcp:127.0.0.1:");
@@ -170,7 +170,7 @@ void test_a_good_lidar_is_good(void)
 void test_a_unit_that_tells_nothing_within_the_stream_is_good_too(void)
 {
     end_case("no_ct", 0, "\nverdict: ");
-    expect_said("\nok    faults     this unit tells none while scanning\n");
+    expect_said("\nok    faults     not told: this unit sends no information within the stream\n");
     expect_unsaid("BAD");
 }
 

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the tool says on standard error, and with which status it leaves. */
+/* What the tool says on standard error, with which status it leaves, and the files it writes. */
 
-#ifndef MESSAGE_H
-#define MESSAGE_H
+#ifndef OUTPUT_H
+#define OUTPUT_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 enum {
     STATUS_OK = 0,
@@ -28,7 +29,18 @@ int message_print(int status, const char *format, ...) MESSAGE_FORMAT;
 #define message_fail(...) message_print(STATUS_FAILED, __VA_ARGS__)
 #define message_usage(...) message_print(STATUS_USAGE, __VA_ARGS__)
 
-/* After message_silence(true) there are no remarks. */
+/* Shows how far the work is, over what this showed before: on a terminal, and unless silenced.
+ * What is the last stays there. */
+void message_progress(bool is_last, const char *format, ...) MESSAGE_FORMAT;
+
+/* After message_silence(true) there are no remarks and no progress. */
 void message_silence(bool silent);
+
+/* Opens a file to write; "-" is standard output. Returns NULL, and says why, if that cannot be. */
+FILE *output_open(const char *path);
+
+/* Closes it. Returns `status`; or STATUS_FAILED, and says so, if not all could be written. (Of
+ * standard output main() says it.) */
+int output_close(FILE *file, const char *path, int status);
 
 #endif
