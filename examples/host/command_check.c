@@ -164,7 +164,7 @@ static void judge_supply(check_t *check)
     } else if (device->silences > 0) {
         answer(check, BAD, "supply", advice, "the lidar fell silent %u times in %u s",
                (unsigned)device->silences, check->seconds);
-    } else if (check->full_speed_ms > SPIN_UP_MS) {
+    } else if (check->full_speed_ms > SPIN_UP_MS && device->noises == 0) {
         answer(check, REMARK, "supply", advice, "the motor took %.1f s to come up to speed",
                full_speed_s);
     } else {

@@ -51,6 +51,7 @@ static void set_up(device_t *device)
     patience = tmini_timing_default;
     patience.frame_timeout_ms = 250;
     patience.reply_timeout_ms = 1000;
+    patience.quiet_line_ms = 120;
     const tmini_config_t config = {
         .port = &tmini_posix_port,
         .port_context = &device->serial,

@@ -223,6 +223,9 @@ bool screen_fit(screen_t *screen)
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) {
         size = (struct winsize){.ws_col = 80, .ws_row = 24};
     }
+    if (!screen->has_cursor && size.ws_row > 1) {
+        size.ws_row--; /* The cursor ends below the last row. */
+    }
     if (size.ws_col == screen->columns && size.ws_row == screen->rows) {
         return false;
     }

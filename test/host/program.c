@@ -69,6 +69,19 @@ void program_write_file(const char *path, const void *bytes, size_t size)
     TEST_ASSERT_EQUAL_INT(0, fclose(file));
 }
 
+const char *program_wait_for(const char *name, const char *text)
+{
+    for (int waited_ms = 0; waited_ms < PATIENCE_MS; waited_ms += 10) {
+        const char *const content = program_read_file(0, program_path(name), NULL);
+        if (strstr(content, text) != NULL) {
+            return content;
+        }
+        (void)poll(NULL, 0, 10);
+    }
+    TEST_FAIL_MESSAGE(files[0]);
+    return NULL;
+}
+
 static void redirect(int to, const char *path, int flags)
 {
     const int fd = open(path, flags, 0666);

@@ -56,6 +56,10 @@ void program_give_up_rights(bool gives_up);
 /* The exit status of a program that could not be started. */
 #define PROGRAM_CANNOT_START 127
 
+/* Waits until a file in the folder for files holds this text; the test fails if it does not after a
+ * minute. Returns all that it holds, valid as long as from program_read_file() with slot 0. */
+const char *program_wait_for(const char *name, const char *text);
+
 /* Starts the tool; program_finish() waits for its end, after sending it a signal unless that is 0.
  * */
 pid_t program_start_tmini(const char *const words[]);

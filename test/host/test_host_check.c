@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* `tmini check`: the right verdict on each fault of the simulated lidar, and on what is no lidar.
- * All are examined at the same time, each by a tool of its own; the tests look at what it said. A
+ * Some are examined at the same time, each by a tool of its own; the tests look at what it said. A
  * busy computer may be told of as well ("pace", "computer"): that is no fault of the lidar's. */
 
 #define _XOPEN_SOURCE 700
@@ -50,13 +50,19 @@ static case_t cases[] = {
 
 #define CASES (sizeof cases / sizeof cases[0])
 
+/* At a time: more would keep the computer too busy to be a lidar. */
+#define AT_ONCE 8u
+
+/* How many have begun, in their order. */
+static size_t begun;
+
 /* On a busy computer the simulated lidar or the tool may stand still for a second: what the tool
- * says of that is true, but not what the case is about. Such a case is tried again, alone; so often
- * in all. */
+ * says of that is true, but not what the case is about. Such a case is tried again; so often in
+ * all. */
 static unsigned retries = 20;
 
 /* What is no simulated lidar. */
-static pid_t silent, noisy, deaf, half, gone;
+static pid_t silent, noisy, deaf, half;
 
 static void begin_case(case_t *one)
 {
@@ -71,8 +77,8 @@ static void begin_cases(void)
                                             6,    0,    3,    1, 7, 0, 0,    0,    1, 2, 3, 4, 5};
     size_t size = 0;
     program_begin_background();
-    for (size_t i = 0; i < CASES; i++) {
-        begin_case(&cases[i]);
+    while (begun < AT_ONCE) {
+        begin_case(&cases[begun++]);
     }
     const char *const room = program_read_file(1, RECORDINGS "sim-6hz.bin", &size);
     silent = program_start_as("silent", WORDS("check", "-p", program_start_talker(NULL, 0)));
@@ -82,8 +88,6 @@ static void begin_cases(void)
         "deaf", WORDS("check", "-p", program_start_talker((const uint8_t *)room + 7, size - 7)));
     half = program_start_as("half",
                             WORDS("check", "-p", program_start_answerer(0x90, information, 27)));
-    const char *const port = program_start_lidar(WORDS("--seed", "8"));
-    gone = program_start_as("gone", WORDS("check", "-p", port, "-q", "-s600"));
     program_end_background();
 }
 
@@ -118,16 +122,31 @@ static bool computer_was_busy(void)
            strstr(program_output, "\nlook  computer ") != NULL;
 }
 
+/* Waits for the end of a case, and begins another in its place. Returns the exit status. */
+static int finish_case(case_t *one)
+{
+    program_begin_background();
+    while (begun <= (size_t)(one - cases)) {
+        begin_case(&cases[begun++]);
+    }
+    const int ended = program_finish_as(one->name, one->tool);
+    if (begun < CASES) {
+        begin_case(&cases[begun++]);
+    }
+    program_end_background();
+    return ended;
+}
+
 /* Ends the case, which has this exit status and says this. */
 static void end_case(const char *name, int status, const char *text)
 {
     case_t *const one = find_case(name);
-    int ended = program_finish_as(name, one->tool);
+    int ended = finish_case(one);
     while (retries > 0 && computer_was_busy() &&
            (ended != status || strstr(program_output, text) == NULL)) {
         retries--;
         begin_case(one);
-        ended = program_finish_as(name, one->tool);
+        ended = finish_case(one);
     }
     TEST_ASSERT_EQUAL_INT_MESSAGE(status, ended, program_output);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_output, text), program_output);
@@ -194,7 +213,11 @@ void test_bytes_that_come_late_are_no_damage(void)
 
 void test_a_wrong_baud_rate_for_a_while_is_a_line(void)
 {
-    expect_bad("garble", "line");
+    /* Perhaps no revolution comes through. */
+    end_case("garble", 1, "\nverdict: not good: line");
+    expect_said("bytes came that are no lidar's: a wrong baud rate for a while");
+    expect_unsaid("pace"); /* Nor is it slow, or the motor. */
+    expect_unsaid("the motor took");
 }
 
 void test_a_lidar_that_restarts_has_a_weak_supply(void)
@@ -267,6 +290,9 @@ void test_a_lidar_that_answers_but_does_not_scan(void)
 
 void test_an_interrupted_examination_has_no_verdict(void)
 {
+    const char *const port = program_start_lidar(WORDS("--seed", "8"));
+    const pid_t gone = program_start_as("gone", WORDS("check", "-p", port));
+    program_wait_for("goneerrors", "scanning for ");
     (void)kill(gone, SIGINT);
     TEST_ASSERT_EQUAL_INT(1, program_finish_as("gone", gone));
     expect_unsaid("verdict");

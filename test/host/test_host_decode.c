@@ -247,6 +247,52 @@ void test_what_a_damaged_recording_does_not_tell_is_unknown(void)
     expect_summary("health      not told: this unit sends no information within the stream\n");
 }
 
+/* So many packets of one sample, with so many other bytes somewhere among them. */
+static void summarise_damage(unsigned count, size_t gap)
+{
+    const encode_sample_t sample = {1000, 10, 0};
+    const encode_packet_t packet = {0, 1, 224, 224, &sample};
+    TEST_ASSERT_TRUE(count * 13u + gap <= sizeof bytes);
+    size = 0;
+    for (unsigned i = 0; i < count; i++) {
+        size += encode_packet(bytes + size, &packet);
+        memset(bytes + size, 0, i == 0 ? gap : 0);
+        size += i == 0 ? gap : 0;
+    }
+    program_write_file(program_path("gap.bin"), bytes, size);
+    summarise(program_path("gap.bin"));
+}
+
+/* A packet is 130 bytes: it counts from the half on, and where there is a gap at least one is
+ * damaged. */
+void test_the_bytes_of_a_gap_tell_how_many_packets_are_damaged(void)
+{
+    summarise_damage(3, 1);
+    expect_summary(", 1 stray bytes between packets: about 1 packets damaged (25.0 %)\n");
+    summarise_damage(3, 194);
+    expect_summary(", 194 stray bytes between packets: about 1 packets damaged (25.0 %)\n");
+    summarise_damage(3, 195);
+    expect_summary(", 195 stray bytes between packets: about 2 packets damaged (40.0 %)\n");
+    summarise_damage(3, 324);
+    expect_summary(": about 2 packets damaged (40.0 %)\n");
+    summarise_damage(3, 325);
+    expect_summary(": about 3 packets damaged (50.0 %)\n");
+}
+
+void test_a_small_share_of_damage_is_rounded_but_never_to_nothing(void)
+{
+    summarise_damage(665, 1); /* 1 of 666 is 0.1502 %, */
+    expect_summary(": about 1 packets damaged (0.2 %)\n");
+    summarise_damage(666, 1); /* 1 of 667 is 0.1499 %, */
+    expect_summary(": about 1 packets damaged (0.1 %)\n");
+    summarise_damage(1999, 1); /* and 1 of 2000 is 0.05 %. */
+    expect_summary(": about 1 packets damaged (0.1 %)\n");
+    summarise_damage(2000, 1);
+    expect_summary(": about 1 packets damaged (under 0.1 %)\n");
+    summarise_damage(2000, 0);
+    expect_summary(", 0 stray bytes between packets\n");
+}
+
 void test_a_frequency_that_was_not_told_is_unknown(void)
 {
     make_one_scan(1);

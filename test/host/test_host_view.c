@@ -294,6 +294,38 @@ void test_a_recording_can_be_paused_stepped_through_and_played_again(void)
     wait_for("end of the recording");
 }
 
+static unsigned scan_shown(void)
+{
+    unsigned number = 0;
+    const char *const at = strstr(vt_text(&vt), "scan ");
+    TEST_ASSERT_NOT_NULL(at);
+    TEST_ASSERT_EQUAL_INT(1, sscanf(at, "scan %u", &number));
+    return number;
+}
+
+/* The time of the pause is no time of the recording's: 2 s are 12 scans. */
+void test_after_a_pause_a_recording_goes_on_where_it_was(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, system("cat " ROOM " " ROOM " " ROOM " " ROOM " >" LONG_ROOM));
+    begin(80, 24, WORDS("view", LONG_ROOM));
+    wait_for("scan 2 ");
+    press(' ');
+    wait_for("paused");
+    const unsigned before_pause = scan_shown();
+    watch(2000);
+    TEST_ASSERT_EQUAL_UINT(before_pause, scan_shown());
+    press(' ');
+    wait_for("playing");
+    TEST_ASSERT_TRUE(scan_shown() < before_pause + 8);
+    for (int i = 0; i < 300 && scan_shown() == before_pause; i++) {
+        watch(10);
+    }
+    TEST_ASSERT_TRUE(scan_shown() > before_pause);
+    TEST_ASSERT_TRUE(scan_shown() < before_pause + 8);
+    press('q');
+    expect_end(0);
+}
+
 void test_keys_come_from_the_terminal_also_when_the_recording_comes_through_a_pipe(void)
 {
     (void)setenv("TOOL", TMINI, 1);
@@ -501,8 +533,7 @@ void test_a_second_signal_gives_the_terminal_back_and_stops_the_lidar(void)
     }
     TEST_ASSERT_TRUE(WIFSIGNALED(status));
     expect_terminal_as_before();
-    (void)poll(NULL, 0, 1000); /* The lidar's tail. */
-    TEST_ASSERT_NOT_NULL(strstr(program_read_file(0, log, NULL), "stopping -> idle"));
+    (void)program_wait_for("log", "stopping -> idle");
 }
 
 void test_without_a_terminal_there_is_no_view(void)
@@ -530,7 +561,7 @@ void test_a_lidar_is_shown_live_and_stopped_in_the_end(void)
     TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "behind to the right"));
     press('q');
     expect_end(0);
-    TEST_ASSERT_NOT_NULL(strstr(program_read_file(0, log, NULL), "stopping -> idle"));
+    (void)program_wait_for("log", "stopping -> idle");
 }
 
 void test_a_blocked_rotor_is_shown(void)

