@@ -43,6 +43,7 @@ wish_for_machines() {
     wish /usr/lib/picolibc/riscv64-unknown-elf picolibc-riscv64-unknown-elf
     wish xtensa-lx106-elf-gcc gcc-xtensa-lx106
     wish /usr/share/doc/picolibc-xtensa-lx106-elf picolibc-xtensa-lx106-elf
+    [ -n "${PICO_SDK_PATH:-}" ] || wish /usr/src/pico-sdk/pico_sdk_init.cmake pico-sdk-source
     wish avr-gcc gcc-avr
     wish /usr/lib/avr/include/avr/io.h avr-libc
     wish simavr simavr

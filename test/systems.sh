@@ -9,7 +9,7 @@
 #
 #   test/systems.sh [NAME …]    debian-12 debian-13 ubuntu-24.04 debian-12-i386; all unless given
 #
-# Needs root and debootstrap, 4 GB of disk for the system under test, and a quarter of an hour for
+# Needs root and debootstrap, 12 GB of disk for the system under test, and a quarter of an hour for
 # each. Everything lies in build-systems/: NAME.demo.log and NAME.tests.log say what happened; a
 # system is deleted after its run unless TMINI_KEEP=yes; packages are kept in cache/ for the next
 # time. TMINI_DEBIAN_MIRROR and TMINI_UBUNTU_MIRROR name other mirrors.
