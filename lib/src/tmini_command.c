@@ -23,7 +23,8 @@ enum phase {
 #define COARSE_STEP_CHZ 100
 #define FINE_STEP_CHZ 10
 
-/* No unit turns faster: a reply that says so is none. Section 1 has 12 Hz at most. */
+/* No unit turns slower or faster: a reply that says so is none. Section 1 has 6 to 12 Hz. */
+#define PLAUSIBLE_CHZ_MIN 100
 #define PLAUSIBLE_CHZ_MAX 2000
 
 /* A phase that has lasted `timeout_ms` is over, one way or the other; 0 for no limit. */
@@ -174,7 +175,7 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
 {
     tmini_command_t *const command = &lidar->command;
     const bool is_step = command->code != TMINI_COMMAND_GET_FREQUENCY;
-    if (frequency_chz > PLAUSIBLE_CHZ_MAX) {
+    if (frequency_chz < PLAUSIBLE_CHZ_MIN || frequency_chz > PLAUSIBLE_CHZ_MAX) {
         return fail(lidar, TMINI_ERROR_REPLY);
     }
     if (is_step && frequency_chz == command->frequency_chz) {
