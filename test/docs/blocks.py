@@ -197,6 +197,12 @@ def installed(place):
     return prefix
 
 
+def generator(place):
+    """That of this build: another one may want a program that is not there."""
+    cache = (place.build / "CMakeCache.txt").read_text(encoding="utf-8")
+    return re.search(r"^CMAKE_GENERATOR:INTERNAL=(.*)$", cache, re.MULTILINE)[1]
+
+
 def check_cmake(block, place):
     """Configures a project of which the block is the end."""
     project = place.folder / f"cmake-{block.number}"
@@ -213,8 +219,9 @@ def check_cmake(block, place):
     if USE not in text and "include(" not in text.replace("include(FetchContent)", ""):
         text += "target_link_libraries(firmware PRIVATE tmini::tmini)\n"
     (project / "CMakeLists.txt").write_text(CMAKE_BEFORE + text)
-    run("cmake", "-S", project, "-B", project / "build", f"-DFETCHCONTENT_SOURCE_DIR_TMINI={ROOT}",
-        f"-DCMAKE_PREFIX_PATH={installed(place)}", f"-DCMAKE_C_COMPILER={place.compilers['c']}")
+    run("cmake", "-S", project, "-B", project / "build", "-G", generator(place),
+        f"-DFETCHCONTENT_SOURCE_DIR_TMINI={ROOT}", f"-DCMAKE_PREFIX_PATH={installed(place)}",
+        f"-DCMAKE_C_COMPILER={place.compilers['c']}")
 
 
 # ---------------------------------------------------------------------------------- the others

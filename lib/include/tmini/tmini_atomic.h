@@ -56,7 +56,7 @@
 #endif
 
 /** @def TMINI_UNROLL
- * Before a loop that is worth eight times its size where the compiler optimizes for speed. */
+ * Before a loop that is worth eight times its size where the compiler optimises for speed. */
 #if defined(__GNUC__) && __GNUC__ >= 8 && !defined(__clang__)
 #define TMINI_UNROLL _Pragma("GCC unroll 8")
 #else
