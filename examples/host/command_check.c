@@ -158,7 +158,7 @@ static void judge_supply(check_t *check)
     static const char advice[] =
         "a supply of its own (5 V, up to 1 A) and short wires; a loose plug does the same";
     const device_t *const device = check->device;
-    const double full_speed_s = check->full_speed_ms / 100 / 10.0;
+    const double full_speed_s = check->full_speed_ms / 1000.0;
     if (device->serial.state != TMINI_POSIX_OK) {
         answer(check, BAD, "supply", advice, "the port went away while the motor was on");
     } else if (device->silences > 0) {
@@ -256,17 +256,13 @@ static void judge_stop(check_t *check)
 
 static int conclude(const check_t *check)
 {
-    const bool is_bad = check->names[BAD][0] != '\0';
-    const bool is_good = !is_bad && check->names[REMARK][0] == '\0';
+    static const char *const verdicts[GRADES] = {"good", "usable, but look at: ", "not good: "};
+    const grade_t worst = grade(check->names[BAD][0] != '\0', check->names[REMARK][0] != '\0');
     if (interrupt_has_come()) {
         return message_fail("interrupted: no verdict");
     }
-    (void)printf("verdict: %s%s\n",
-                 is_bad    ? "not good: "
-                 : is_good ? "good"
-                           : "usable, but look at: ",
-                 is_good ? "" : check->names[is_bad ? BAD : REMARK]);
-    return is_bad ? STATUS_FAILED : STATUS_OK;
+    (void)printf("verdict: %s%s\n", verdicts[worst], worst == GOOD ? "" : check->names[worst]);
+    return worst == BAD ? STATUS_FAILED : STATUS_OK;
 }
 
 static void examine(check_t *check)
@@ -319,9 +315,8 @@ const command_t command_check = {
     .usage = "[-p PORT] [--seconds N]",
     .summary = "ten seconds, one verdict: port, wires, supply, lidar",
     .details =
-        "A line a question: ok; look (it works, but could be better); BAD. Each that is not ok "
-        "says\n"
-        "what to do about it. Watches for 10 seconds, or N. Exit status 1 if anything is BAD.",
+        "A line a question: ok; look (it works, but could be better); BAD. Each that is not ok\n"
+        "says what to do about it. Watches for 10 seconds, or N. Exit status 1 if anything is BAD.",
     .accepts = "psq",
     .run = run,
 };

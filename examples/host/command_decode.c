@@ -99,9 +99,8 @@ static void print_summary(const gist_t *gist, const recording_t *recording)
     if (stream->damaged > 0) {
         (void)printf(": about %llu packets damaged (%s)", stream->damaged, damaged_text(stream));
     }
-    (void)printf("\nstream      %llu bytes in %.3f s%s: %llu packets, %llu"
-                 " guard bytes; %llu bytes before the first packet, %llu"
-                 " after the last\n",
+    (void)printf("\nstream      %llu bytes in %.3f s%s: %llu packets, %llu guard bytes; "
+                 "%llu bytes before the first packet, %llu after the last\n",
                  recording->bytes, (double)recording->time_us / 1e6,
                  recording->is_timed ? "" : " (at 4000 samples a second)", stream->packets,
                  stream->guard_bytes, recording->bytes_before,
@@ -124,17 +123,15 @@ static int report_counters(const recording_t *recording, const options_t *option
             return STATUS_FAILED;
         }
         print_counters(file,
-                       "{\"packets\":%llu,\"start_packets\":%llu,\"points\":%llu"
-                       ",\"checksum_errors\":%llu,\"bytes\":%llu"
-                       ",\"bytes_skipped\":%llu}\n",
+                       "{\"packets\":%llu,\"start_packets\":%llu,\"points\":%llu,"
+                       "\"checksum_errors\":%llu,\"bytes\":%llu,\"bytes_skipped\":%llu}\n",
                        recording);
         return output_close(file, options->stats, STATUS_OK);
     }
     if ((options->csv || options->json) && !options->quiet) {
         print_counters(stderr,
-                       "packets %llu, start packets %llu, points %llu"
-                       ", checksum errors %llu, bytes %llu, bytes skipped %llu"
-                       "\n",
+                       "packets %llu, start packets %llu, points %llu, "
+                       "checksum errors %llu, bytes %llu, bytes skipped %llu\n",
                        recording);
     }
     return STATUS_OK;

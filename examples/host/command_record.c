@@ -74,12 +74,10 @@ static const char *tape_text(const device_t *device, const tape_t *tape)
     static char text[120];
     tmini_counters_t counters;
     tmini_counters(&device->lidar, &counters);
-    (void)snprintf(text, sizeof text,
-                   "%.1f s, %llu bytes, %llu scans, %u"
-                   " wrong checksums, %u bytes overrun",
-                   (double)(tape->stamp_us - tape->begun_us) / 1e6, tape->bytes,
-                   device->stream.scans, counters.parser.checksum_errors,
-                   counters.parser.bytes_overrun);
+    (void)snprintf(
+        text, sizeof text, "%.1f s, %llu bytes, %llu scans, %u wrong checksums, %u bytes overrun",
+        (double)(tape->stamp_us - tape->begun_us) / 1e6, tape->bytes, device->stream.scans,
+        counters.parser.checksum_errors, counters.parser.bytes_overrun);
     return text;
 }
 

@@ -151,6 +151,7 @@ static bool play_to(player_t *player, uint32_t until_ms, bool by_scan)
 {
     recording_t *const recording = &player->recording;
     bool has_scan = false;
+    recording->until_us = (uint64_t)until_ms * 1000;
     while (recording->time_us / 1000 <= until_ms && !(has_scan && by_scan) &&
            !interrupt_has_come() && recording_next(recording)) {
         has_scan |= recording->stream.has_scan;
@@ -265,13 +266,11 @@ const command_t command_view = {
     .usage = "[-p PORT|FILE|-]",
     .summary = "a picture in the terminal, of a lidar live or of a recording",
     .details =
-        "Keys: + and - zoom, a chooses the range automatically, q or Esc ends, Ctrl-Z suspends. In "
-        "a\n"
-        "recording: space pauses, . and , go a scan further or back, the arrows (or < and >) five\n"
-        "seconds. The marked point is the nearest obstacle; the numbers around the triangle are "
-        "the nearest\n"
-        "ones of each sector, in metres. A locale without UTF-8 gets characters instead of dots,\n"
-        "NO_COLOR=1 no colours, and TERM=dumb one picture below the other.",
+        "Keys: + and - zoom, a chooses the range automatically, q or Esc ends, Ctrl-Z suspends.\n"
+        "In a recording: space pauses, . and , go a scan further or back, the arrows (or < and >)\n"
+        "five seconds. The marked point is the nearest obstacle; the numbers around the triangle\n"
+        "are the nearest ones of each sector, in metres. A locale without UTF-8 gets characters\n"
+        "instead of dots, NO_COLOR=1 no colours, and TERM=dumb one picture below the other.",
     .accepts = "pMq",
     .has_operand = true,
     .run = run,

@@ -303,10 +303,8 @@ static void draw_words(cairo_t *cr, const figure_t *figure)
     if (survey->nearest != NULL) {
         draw_intensities(cr, survey);
         draw_flags(cr, survey);
-        /* An angle a little below 360 degrees is not to become 360.0. */
         (void)snprintf(words, sizeof words, "nearest %.3f m at %.1f\xC2\xB0",
-                       survey->nearest->distance_mm / 1000.0,
-                       survey->nearest->angle_q6 * 10 / 64 / 10.0);
+                       survey->nearest->distance_mm / 1000.0, points_degrees(survey->nearest));
         (void)text(cr, (spot_t){1150, LEGEND_Y}, 1, 17, amber, words);
     }
     heading(cr, LEGEND_Y + 42, 15, muted,

@@ -67,12 +67,16 @@ const char *direction_name(uint16_t angle_q6)
     return names[(angle_q6 + EIGHTH_Q6 / 2) / EIGHTH_Q6 % 8];
 }
 
-/* An angle a little below 360 degrees is not to become 360.0. */
+double points_degrees(const tmini_point_t *point)
+{
+    return floor(point->angle_q6 / 64.0 * 10) / 10;
+}
+
 const char *place_text(const tmini_point_t *point)
 {
     static char text[64];
     (void)snprintf(text, sizeof text, "%.3f m at %.1f degrees, %s", point->distance_mm / 1000.0,
-                   point->angle_q6 * 10 / 64 / 10.0, direction_name(point->angle_q6));
+                   points_degrees(point), direction_name(point->angle_q6));
     return text;
 }
 

@@ -32,6 +32,9 @@ typedef struct {
 /* The colour of an intensity, from blue for the darkest to yellow for the brightest of a survey. */
 colour_t points_colour(const survey_t *survey, uint8_t intensity);
 
+/* Its angle, with one decimal: 360.0 is not among them. */
+double points_degrees(const tmini_point_t *point);
+
 /* "ahead", "behind to the left", … */
 const char *direction_name(uint16_t angle_q6);
 

@@ -178,10 +178,9 @@ const command_t command_ports = {
     .usage = "",
     .summary = "the serial adapters of this computer",
     .details =
-        "A line for each: its most stable name, the device behind it, the USB numbers of its "
-        "maker,\n"
-        "and its chip if it is one of those that lidars come with. A command without -p takes the\n"
-        "port of the environment's TMINI_PORT, or else the only such adapter.",
+        "A line for each: its most stable name, the device behind it, the USB numbers of its\n"
+        "maker, and its chip if it is one of those that lidars come with. A command without -p\n"
+        "takes the port of the environment's TMINI_PORT, or else the only such adapter.",
     .accepts = "q",
     .run = run,
 };

@@ -83,7 +83,8 @@ static bool refill(recording_t *recording)
             return false;
         }
     }
-    if (recording->at == recording->count && !fill(recording)) {
+    recording->is_waiting = recording->is_timed && recording->chunk_us > recording->until_us;
+    if (recording->is_waiting || (recording->at == recording->count && !fill(recording))) {
         return false;
     }
     size_t count = recording->count - recording->at;
@@ -164,7 +165,8 @@ int recording_open(recording_t *recording, const options_t *options)
 {
     const bool is_standard = strcmp(options->operand, "-") == 0;
     struct stat status;
-    *recording = (recording_t){.max_samples = (uint8_t)options->max_samples};
+    *recording =
+        (recording_t){.max_samples = (uint8_t)options->max_samples, .until_us = UINT64_MAX};
     recording->name = is_standard ? "standard input" : options->operand;
     recording->fd = is_standard ? STDIN_FILENO : open(options->operand, O_RDONLY);
     if (recording->fd < 0) {

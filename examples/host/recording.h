@@ -34,6 +34,7 @@ typedef struct {
     bool is_timed;    /* Otherwise the time is that of 4000 samples a second. */
     bool is_at_end;
     bool is_impatient;     /* May be set: recording_next() then does not wait for a pipe's bytes. */
+    uint64_t until_us;     /* May be set: what came later in a timed one is not there yet. */
     tmini_packet_t packet; /* The latest. */
     stream_t stream;
 

@@ -220,21 +220,19 @@ void screen_clear(screen_t *screen)
 bool screen_fit(screen_t *screen)
 {
     struct winsize size;
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) {
+    const unsigned spare = screen->has_cursor ? 0 : 1; /* It would go to the row below the last. */
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row <= spare) {
         size = (struct winsize){.ws_col = 80, .ws_row = 24};
     }
-    if (!screen->has_cursor && size.ws_row > 1) {
-        size.ws_row--; /* The cursor ends below the last row. */
-    }
-    if (size.ws_col == screen->columns && size.ws_row == screen->rows) {
+    if (size.ws_col == screen->columns && size.ws_row - spare == screen->rows) {
         return false;
     }
     screen_free(screen);
     screen->columns = size.ws_col;
-    screen->rows = size.ws_row;
-    screen->cells = calloc((size_t)size.ws_col * size.ws_row, sizeof *screen->cells);
+    screen->rows = size.ws_row - spare;
+    screen->cells = calloc((size_t)screen->columns * screen->rows, sizeof *screen->cells);
     screen->output =
-        malloc((size_t)size.ws_row * ((size_t)size.ws_col * CELL_SIZE + ROW_SIZE) + ROW_SIZE);
+        malloc((size_t)screen->rows * ((size_t)screen->columns * CELL_SIZE + ROW_SIZE) + ROW_SIZE);
     if (screen->cells == NULL || screen->output == NULL) {
         screen_free(screen);
     }

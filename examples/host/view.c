@@ -31,8 +31,7 @@ static const struct {
 
 /* Where the picture is: in dots, which are as far apart across as down. */
 typedef struct {
-    int columns; /* Of the screen, that the picture may use. */
-    double x;    /* The lidar. */
+    double x; /* The lidar. */
     double y;
     double radius;
     unsigned range_mm;
@@ -77,19 +76,20 @@ void view_zoom(view_t *view, bool in)
     }
 }
 
+static bool has_panel(const screen_t *screen)
+{
+    return screen->columns >= PANEL_COLUMNS + PICTURE_COLUMNS_MIN;
+}
+
 /* The largest circle that fits between the first and the last row. */
 static frame_t frame_of(const screen_t *screen, const view_t *view)
 {
     const int rows = screen->rows > 2 ? (int)screen->rows - 2 : 1;
-    int columns = (int)screen->columns;
-    if (columns >= PANEL_COLUMNS + PICTURE_COLUMNS_MIN) {
-        columns -= PANEL_COLUMNS;
-    }
-    frame_t frame = {.columns = columns, .range_mm = view->range_mm};
-    frame.x = columns - 0.5;
-    frame.y = 4 + 2 * rows - 0.5;
-    frame.radius = fmin(columns - 1, 2 * rows - 1);
-    return frame;
+    const int columns = (int)screen->columns - (has_panel(screen) ? PANEL_COLUMNS : 0);
+    return (frame_t){.x = columns - 0.5,
+                     .y = 4 + 2 * rows - 0.5,
+                     .radius = fmin(columns - 1, 2 * rows - 1),
+                     .range_mm = view->range_mm};
 }
 
 typedef struct {
@@ -304,7 +304,7 @@ void view_draw(view_t *view, screen_t *screen)
     choose_scale(view);
     screen_clear(screen);
     draw_picture(screen, view);
-    if (screen->columns >= PANEL_COLUMNS + PICTURE_COLUMNS_MIN) {
+    if (has_panel(screen)) {
         draw_panel(screen, view);
     }
     draw_lines(screen, view);

@@ -283,6 +283,11 @@ void program_freeze_lidar(void)
     TEST_ASSERT_EQUAL_INT(0, kill(lidar, SIGSTOP));
 }
 
+void program_thaw_lidar(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, kill(lidar, SIGCONT));
+}
+
 /* What the host sends is read and forgotten; but for the command that is answered, if any. */
 static void talk(int fd, const uint8_t *bytes, size_t size, uint8_t code)
 {

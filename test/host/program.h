@@ -96,6 +96,9 @@ void program_stop_lidar(void);
 /* As if its supply failed: the port stays, but nothing comes any more. */
 void program_freeze_lidar(void);
 
+/* As if it had come back. */
+void program_thaw_lidar(void);
+
 /* Opens a pseudo-terminal and repeats these bytes on it for ever, at about the lidar's speed; says
  * nothing if `size` is 0. Returns the port, which stays valid. */
 const char *program_start_talker(const uint8_t *bytes, size_t size);

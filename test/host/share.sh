@@ -70,6 +70,9 @@ if command -v bash >/dev/null; then
         done
     done
     [ "$(offers scan --js)" = --json ] || complain "bash offers more than --json for scan --js"
+    for port in -p --port; do
+        [ "$(offers "$port" /dev/x deco)" = decode ] || complain "bash takes the port for a command"
+    done
     [ -z "$(offers info --cs)" ] || complain "bash offers --csv for info"
     cd "$work"
     touch "room one.bin"

@@ -544,6 +544,20 @@ void test_a_lidar_that_falls_silent_while_scanning_is_told(void)
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "has fallen silent and does not come back"));
 }
 
+void test_a_lidar_that_comes_back_is_told(void)
+{
+    begin();
+    const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
+    wait_for_lines(2);
+    program_freeze_lidar();
+    (void)program_wait_for("errors", "the lidar has fallen silent; starting it again\n");
+    program_thaw_lidar();
+    (void)program_wait_for("errors", "the lidar is back\n");
+    const unsigned lines = count_of(program_read_file(0, WORK_DIR "/output", NULL), "\n");
+    wait_for_lines(lines + 2);
+    TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGINT));
+}
+
 void test_a_recording_survives_a_pulled_cable(void)
 {
     begin();

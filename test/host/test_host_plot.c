@@ -396,6 +396,14 @@ void test_all_scans_of_a_long_recording_fit_in_bounded_memory(void)
     (void)remove("big.bin");
 }
 
+void test_a_dash_is_a_recording_from_standard_input(void)
+{
+    TEST_ASSERT_EQUAL_INT(
+        0, program_tmini_from(RECORDINGS "sim-6hz.bin", WORDS("plot", "-", "-o", "picture.svg")));
+    expect_said("picture.svg: Scan 8; ");
+    expect_said("standard input; ");
+}
+
 void test_a_dash_is_standard_output_as_svg(void)
 {
     TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("plot", RECORDINGS "sim-6hz.bin", "-qo", "-")));

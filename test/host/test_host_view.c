@@ -299,6 +299,41 @@ void test_a_recording_can_be_paused_stepped_through_and_played_again(void)
     wait_for("end of the recording");
 }
 
+/* The cross, of which the scan's end comes two seconds after its beginning. */
+static void write_slow_cross(const char *path)
+{
+    size_t size = 0;
+    const char *const cross = program_read_file(0, cross_recording(), &size);
+    const size_t first = 13; /* The start packet. */
+    uint8_t file[200] = {0x89, 't', 'm', 'i', 'n', 'i', 1, '\n', 0, 0, 0, 0, (uint8_t)first, 0};
+    size_t length = 14;
+    memcpy(file + length, cross, first);
+    length += first;
+    const uint8_t head[6] = {0x80, 0x84, 0x1E, 0, (uint8_t)(size - first), 0}; /* 2000000 us */
+    memcpy(file + length, head, sizeof head);
+    length += sizeof head;
+    memcpy(file + length, cross + first, size - first);
+    program_write_file(path, file, length + size - first);
+}
+
+void test_a_timed_recording_is_played_at_its_own_pace(void)
+{
+    write_slow_cross(program_path("slow.tmini"));
+    begin(80, 24, WORDS("view", program_path("slow.tmini")));
+    wait_for("playing");
+    struct timespec since;
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &since);
+    TEST_ASSERT_NULL(strstr(vt_text(&vt), "scan 1 "));
+    wait_for("scan 1 ");
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    const long passed_ms =
+        (now.tv_sec - since.tv_sec) * 1000 + (now.tv_nsec - since.tv_nsec) / 1000000;
+    TEST_ASSERT_TRUE(passed_ms > 1000); /* The terminal was looked at a little late. */
+    press('q');
+    expect_end(0);
+}
+
 static unsigned scan_shown(void)
 {
     unsigned number = 0;
@@ -567,6 +602,19 @@ void test_a_lidar_is_shown_live_and_stopped_in_the_end(void)
     press('q');
     expect_end(0);
     (void)program_wait_for("log", "stopping -> idle");
+}
+
+void test_a_lidar_that_falls_silent_is_called_so_until_it_is_back(void)
+{
+    begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--seed", "3"))));
+    wait_for("scan 2 ");
+    program_freeze_lidar();
+    wait_for("SILENT: starting it again\n");
+    program_thaw_lidar();
+    wait_for("scanning\n");
+    TEST_ASSERT_NULL(strstr(vt_text(&vt), "SILENT"));
+    press('q');
+    expect_end(0);
 }
 
 void test_a_blocked_rotor_is_shown(void)

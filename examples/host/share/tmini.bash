@@ -12,7 +12,11 @@ _tmini()
         case ${COMP_WORDS[i]} in
             -*) ;;
             *)
-                [[ ${COMP_WORDS[i - 1]} == -[ponsNM]* ]] || command=${command:-${COMP_WORDS[i]}}
+                case ${COMP_WORDS[i - 1]} in # An option's value is no command.
+                    -[pnso] | --port | --count | --seconds | --output) ;;
+                    --stats | --scan | --max-samples) ;;
+                    *) command=${command:-${COMP_WORDS[i]}} ;;
+                esac
                 ;;
         esac
     done
