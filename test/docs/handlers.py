@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The interrupt handlers that documents show for USARTs with SR and DR survive an overrun: they run
-over such a USART, in which reading SR and then DR clears it, and nothing else does.
+"""The interrupt handlers that documents show for STM32's USARTs survive an overrun: they run over a
+USART with SR and DR, where reading SR and then DR clears it, or over one with ISR, RDR and ICR,
+where writing to ICR does; and nothing else does.
 
     handlers.py BUILD C++-COMPILER
 
@@ -23,40 +24,61 @@ PROGRAM = """
 #include <cstdio>
 #include <vector>
 
-enum : uint32_t { USART_SR_ORE = 1u << 3, USART_SR_RXNE = 1u << 5 };
+enum : uint32_t { ORE = 1u << 3, RXNE = 1u << 5 };
 
-/* As the reference manuals of STM32F1 and F4 have it. */
+/* As the reference manuals have it. */
 struct Usart {
     uint32_t status = 0;
     uint8_t data = 0;
     bool is_ore_seen = false;
 
-    struct Status {
+    struct Register {
         Usart *usart;
+    };
+    struct Status : Register {
         operator uint32_t() const
         {
-            usart->is_ore_seen = (usart->status & USART_SR_ORE) != 0;
+            usart->is_ore_seen = (usart->status & ORE) != 0;
             return usart->status;
         }
-    } SR{this};
-
-    struct Data {
-        Usart *usart;
+    };
+    struct Data : Register {
         operator uint32_t() const
         {
-            usart->status &= ~(USART_SR_RXNE | (usart->is_ore_seen ? USART_SR_ORE : 0u));
+            usart->status &= ~(RXNE | (HAS_SR && usart->is_ore_seen ? ORE : 0u));
             usart->is_ore_seen = false;
             return usart->data;
         }
-    } DR{this};
+    };
+    struct Clear : Register {
+        void operator=(uint32_t flags)
+        {
+            usart->status &= ~(flags & ORE);
+        }
+    };
+#if HAS_SR
+#define USART_SR_ORE ORE
+#define USART_SR_RXNE RXNE
+    Status SR;
+    Data DR;
+    Usart() { SR.usart = this; DR.usart = this; }
+#else
+#define USART_ISR_ORE ORE
+#define USART_ISR_RXNE RXNE
+#define USART_ICR_ORECF ORE
+    Status ISR;
+    Data RDR;
+    Clear ICR;
+    Usart() { ISR.usart = this; RDR.usart = this; ICR.usart = this; }
+#endif
 
     void receive(uint8_t byte)
     {
-        if ((status & USART_SR_RXNE) != 0) {
-            status |= USART_SR_ORE;
+        if ((status & RXNE) != 0) {
+            status |= ORE;
         } else {
             data = byte;
-            status |= USART_SR_RXNE;
+            status |= RXNE;
         }
     }
 };
@@ -101,7 +123,7 @@ int main()
     if (!serve()) {
         return std::puts("an overrun interrupts for ever"), 1;
     }
-    registers.status = USART_SR_ORE;
+    registers.status = ORE;
     if (!serve()) {
         return std::puts("an overrun without a byte interrupts for ever"), 1;
     }
@@ -121,9 +143,10 @@ def handlers():
 def survives(handler, folder, compiler):
     """None, or what is wrong."""
     program = folder / "handler"
-    built = subprocess.run([compiler, "-std=c++11", "-x", "c++", "-", "-o", program], text=True,
+    kind = "-DHAS_SR=" + str(int("->DR" in handler))
+    built = subprocess.run([compiler, "-std=c++11", kind, "-x", "c++", "-", "-o", program],
                            input=PROGRAM.replace("HANDLER\n", handler), stdout=subprocess.PIPE,
-                           stderr=subprocess.STDOUT, check=False)
+                           stderr=subprocess.STDOUT, text=True, check=False)
     if built.returncode != 0:
         return built.stdout
     result = subprocess.run([program], text=True, stdout=subprocess.PIPE, check=False)
@@ -133,9 +156,10 @@ def survives(handler, folder, compiler):
 def main():
     folder = Path(sys.argv[1]) / "test" / "docs" / "handlers"
     folder.mkdir(parents=True, exist_ok=True)
-    if survives("void USART1_IRQHandler(void) { tmini_feed_byte(&lidar, (uint8_t)USART1->DR); }\n",
-                folder, sys.argv[2]) is None:
-        sys.exit("a handler that reads DR alone seems to survive: is this check still one?")
+    for data in ("DR", "RDR"):
+        naive = f"tmini_feed_byte(&lidar, (uint8_t)USART1->{data});"
+        if survives(f"void USART1_IRQHandler(void) {{ {naive} }}\n", folder, sys.argv[2]) is None:
+            sys.exit(f"a handler that reads {data} alone seems to survive: is this check still one?")
     failed, count = False, 0
     for block, handler in handlers():
         count += 1
@@ -144,7 +168,7 @@ def main():
             failed = True
             print(f"{block}: {wrong.strip()}")
     print(f"{count} handlers tried")
-    sys.exit(1 if failed or count < 3 else 0)
+    sys.exit(1 if failed or count < 4 else 0)
 
 
 main()

@@ -2,25 +2,28 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* What programs in the documents take for granted of a board and of the reader's own program.
- * Registers are named and laid out as by the makers of the chips. */
+ * Registers are named as by the makers of the chips. */
 
 #ifndef BOARD_H
 #define BOARD_H
 
 #include "tmini/tmini.h"
 
-/* A USART of an STM32F1, F2, F4 or L1. */
+/* A USART of an STM32: SR and DR have F1, F2, F4 and L1, the others have ISR, RDR and ICR. That
+ * they are not mixed is for ../handlers.py to see. */
 typedef struct {
     volatile uint32_t SR;
     volatile uint32_t DR;
-    volatile uint32_t BRR;
-    volatile uint32_t CR1;
-    volatile uint32_t CR2;
-    volatile uint32_t CR3;
+    volatile uint32_t ISR;
+    volatile uint32_t RDR;
+    volatile uint32_t ICR;
 } board_usart_t;
 
 #define USART_SR_ORE (1u << 3)
 #define USART_SR_RXNE (1u << 5)
+#define USART_ISR_ORE (1u << 3)
+#define USART_ISR_RXNE (1u << 5)
+#define USART_ICR_ORECF (1u << 3)
 
 extern board_usart_t *const USART1;
 
