@@ -23,6 +23,11 @@ wish_for_fuzzer() {
     [ -z "$version" ] || wish "/usr/share/doc/libclang-rt-$version-dev" "libclang-rt-$version-dev"
 }
 
+# The model checker is not in all systems' packages.
+wish_for_checker() {
+    ! apt-cache show --no-all-versions cbmc >/dev/null 2>&1 || wish cbmc cbmc
+}
+
 # The viewer is compiled by Clang, linked by lld, and tried out in a browser.
 wish_for_browser() {
     wish wasm-ld lld
@@ -34,6 +39,7 @@ wish_for_browser() {
 wish_for_machines() {
     wish clang clang
     wish_for_fuzzer
+    wish_for_checker
     wish_for_browser
     wish g++ g++
     wish arm-none-eabi-gcc gcc-arm-none-eabi

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "invariants.h"
 #include "tmini/tmini.h"
 
 #define RX_SIZE 512u
@@ -136,7 +137,7 @@ static void poll_events(uint8_t times)
 {
     for (unsigned i = 0; i <= times % 8u; i++) {
         const tmini_event_t event = tmini_poll(&world.lidar);
-        demand(event <= TMINI_EVENT_SCAN);
+        demand(event <= TMINI_EVENT_MORE && lidar_is_sound(&world.lidar));
         if (event == TMINI_EVENT_SCAN) {
             demand(tmini_scan(&world.lidar)->count <= POINTS);
         }
@@ -208,6 +209,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     demand(tmini_init(&world.lidar, &config) == TMINI_OK);
     while (world.left > 0) {
         act(dma);
+        demand(lidar_is_sound(&world.lidar));
+        account();
     }
     world.now_ms += 1000;
     for (unsigned i = 0; i < 64; i++) {

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "invariants.h"
 #include "reference_decoder.h"
 #include "tmini/tmini_parser.h"
 #include "tmini/tmini_scan.h"
@@ -66,7 +67,9 @@ static void gather(tmini_scan_builder_t *builder, const tmini_packet_t *packet)
 static void drain(tmini_parser_t *parser, tmini_scan_builder_t *builder)
 {
     for (;;) {
-        switch (tmini_parser_next(parser)) {
+        const tmini_frame_type_t type = tmini_parser_next(parser);
+        demand(parser_is_sound(parser) && builder_is_sound(builder));
+        switch (type) {
         case TMINI_FRAME_NONE:
             return;
         case TMINI_FRAME_MORE:

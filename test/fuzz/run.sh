@@ -28,8 +28,9 @@ fuzz() {
     target=$1
     shift
     "$compiler" -std=c99 -g -O1 -Wall -Wextra -fsanitize=fuzzer,address,undefined \
-        -fno-sanitize-recover=all -I"$root/lib/include" -I"$root/test/support" \
-        "$root/test/fuzz/$target.c" "$@" "$root"/lib/src/*.c -o "$build/$target"
+        -fno-sanitize-recover=all -I"$root/lib/include" -I"$root/lib/src" -I"$root/test/support" \
+        "$root/test/fuzz/$target.c" "$root/test/support/invariants.c" "$@" \
+        "$root"/lib/src/*.c -o "$build/$target"
     mkdir -p "$build/corpus_$target"
     status=0
     (cd "$build" && exec "./$target" -max_total_time="$seconds" -max_len=4096 \

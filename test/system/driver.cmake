@@ -2,8 +2,9 @@
 # Copyright (c) 2026 The tmini authors
 
 # The driver against the simulated lidar, over a line on which everything goes wrong.
-add_library(tmini_world STATIC EXCLUDE_FROM_ALL world.c truth.c)
+add_library(tmini_world STATIC EXCLUDE_FROM_ALL world.c truth.c ../support/invariants.c)
 target_include_directories(tmini_world PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
+target_include_directories(tmini_world PRIVATE ../support ${PROJECT_SOURCE_DIR}/lib/src)
 target_link_libraries(tmini_world PUBLIC tmini_simulator tmini::tmini)
 target_compile_options(tmini_world PRIVATE -O2 -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
 set_target_properties(tmini_world PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)

@@ -3,6 +3,8 @@
 
 #include "world.h"
 
+#include "invariants.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -12,10 +14,10 @@
 #define CLOCK_AT_THE_BEGINNING 0xFFFF0000u /* It wraps around after a minute. */
 
 static const char *const violation_names[VIOLATION_KINDS] = {
-    "packets lost",   "false packets",           "wrong scans",
-    "mixed scans",    "bytes not accounted for", "forbidden commands",
-    "false faults",   "missed faults",           "wrong answers",
-    "slow recoveries"};
+    "packets lost",    "false packets",           "wrong scans",
+    "mixed scans",     "bytes not accounted for", "forbidden commands",
+    "false faults",    "missed faults",           "wrong answers",
+    "slow recoveries", "impossible states"};
 
 const char *world_violation_name(violation_t violation)
 {
@@ -383,6 +385,13 @@ static void close_cycle(world_t *world, bool was_scanning)
     world->counts.points = world->truth.points;
 }
 
+static void check_state(world_t *world)
+{
+    if (!lidar_is_sound(&world->lidar)) {
+        world_violate(world, VIOLATION_STATE, "see invariants.h");
+    }
+}
+
 static unsigned poll_all(world_t *world)
 {
     const bool was_scanning = tmini_state(&world->lidar) == TMINI_STATE_SCANNING;
@@ -390,7 +399,9 @@ static unsigned poll_all(world_t *world)
     tmini_event_t event;
 
     note_silence(world);
+    check_state(world); /* After commands and what has been fed. */
     while ((event = tmini_poll(&world->lidar)) != TMINI_EVENT_NONE) {
+        check_state(world);
         events |= BIT(event);
         handle(world, event);
     }

@@ -52,6 +52,7 @@ typedef enum {
     VIOLATION_MISSED_FAULT,  /* There, but not reported in time; or gone, but still reported. */
     VIOLATION_ANSWER,        /* A command on an undisturbed line: none, or not the truth. */
     VIOLATION_SLOW_RECOVERY, /* Later than WORLD_RECOVERY_MS after the last trouble. */
+    VIOLATION_STATE,         /* One that cannot be: test/support/invariants.h. */
     VIOLATION_KINDS
 } violation_t;
 

@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The parser, from any sound state on a ring of 32 bytes (with DMA,
+ * 16 of them), whatever comes
+ * between two accesses: each step is memory-safe, keeps the state sound and every byte accounted
+ * for. The steps are private, so the source is included.
+ *
+ * tmini_parser_next() itself puts these steps together in a loop of a dozen lines, in which each step's
+ * assumption is what the one before has claimed; as a whole it takes the checker hours. In classify()
+ * the checksum is right or wrong as it likes. */
+
+#include "tmini_parser.c"
+
+#include "parser_contract.h"
+
+static tmini_ring_t ring;
+static tmini_parser_t parser;
+static tmini_parser_t before;
+static uint32_t before_account;
+static size_t before_head;
+static size_t before_overrun;
+
+static void begin(void)
+{
+    ring = any_early_ring(RING_SIZE);
+    parser = any_parser(&ring);
+    before = parser;
+    before_account = parser_account(&parser);
+    before_head = ring.head;
+    before_overrun = ring.overrun;
+    let_bytes_come(&ring);
+}
+
+/* What has come is in exactly one place. */
+static bool is_accounted_for(void)
+{
+    let_bytes_come(NULL);
+    const size_t came = ring.head - before_head + (ring.overrun - before_overrun);
+    return parser_account(&parser) == before_account + (uint32_t)came;
+}
+
+void prove_parser_init(void)
+{
+    ring = any_early_ring(LARGE_RING_SIZE);
+    const uint8_t max_samples = nondet_byte();
+    const unsigned largest = max_samples == 0 ? 250 : 10 + 3 * max_samples;
+    const tmini_status_t status = tmini_parser_init(&parser, &ring, max_samples);
+    CLAIM((status == TMINI_OK) == (ring.window >= largest && ring.window >= 27));
+    CLAIM(status != TMINI_OK || parser_is_sound(&parser));
+    CLAIM(tmini_parser_init(NULL, &ring, max_samples) == TMINI_ERROR_ARGUMENT);
+    CLAIM(tmini_parser_init(&parser, NULL, max_samples) == TMINI_ERROR_ARGUMENT);
+    REACHED();
+}
+
+void prove_parser_await(void)
+{
+    begin();
+    const tmini_reply_header_t header = {nondet_byte(), nondet_byte(), nondet_byte()};
+    const bool is_null = any_bool();
+    const tmini_status_t status = tmini_parser_await(&parser, is_null ? NULL : &header);
+    CLAIM(is_accounted_for());
+    CLAIM(parser_is_sound(&parser));
+    CLAIM((status == TMINI_OK) == (is_null || 7u + header.length <= ring.window));
+    CLAIM(parser.awaiting == (status == TMINI_OK && !is_null));
+    CLAIM(parser.frame.size == before.frame.size);
+    REACHED();
+}
+
+/* Nothing but looking, unless it fails; and what is complete is what the contract says. */
+void prove_parser_classify(void)
+{
+    begin();
+    ASSUME(parser.frame.size == 0);
+    const size_t unread = nondet_size();
+    ASSUME(unread >= parser.need && unread <= tmini_ring_unread(&ring) && unread <= ring.window);
+    const enum verdict verdict = classify(&parser, unread);
+    CLAIM(is_accounted_for());
+    CLAIM(same_expectations(&before, &parser) && parser.frame.size == 0);
+    CLAIM(parser_is_sound(&parser));
+    CLAIM(verdict != INCOMPLETE || unread < parser.need);
+    CLAIM(verdict != COMPLETE || (unread >= parser.need && parser.kind != TMINI_FRAME_NONE));
+    REACHED();
+}
+
+/* What samples contribute to the checksum as section 5 has it: byte by byte. */
+static unsigned contribution(const uint8_t *bytes, size_t samples)
+{
+    unsigned sum = 0;
+    for (size_t i = 0; i < 3 * samples; i++) {
+        sum ^= (unsigned)bytes[i] << (i % 3 == 2 ? 8 : 0);
+    }
+    return sum;
+}
+
+/* Two blocks and a rest. */
+void prove_parser_xor_piece(void)
+{
+    uint8_t bytes[3 * 9];
+    for (size_t i = 0; i < sizeof bytes; i++) {
+        bytes[i] = nondet_byte();
+    }
+    const size_t samples = nondet_size();
+    ASSUME(samples <= 9);
+    CLAIM(xor_piece(bytes, samples) == contribution(bytes, samples));
+    REACHED();
+}
+
+/* Wherever the samples lie in the ring, also across its end. */
+void prove_parser_checksum(void)
+{
+    ring = any_early_ring(RING_SIZE);
+    tmini_frame_t frame = {.ring = &ring};
+    uint8_t samples[3 * 3];
+    unsigned sum = 0x55AA;
+    for (size_t i = 0; i < sizeof frame.header; i++) {
+        frame.header[i] = i == LSN ? nondet_byte() : 0;
+        sum ^= (unsigned)frame.header[i] << (i % 2 * 8);
+    }
+    frame.header[6] = nondet_byte(); /* The checksum itself. */
+    frame.header[7] = nondet_byte();
+    sum ^= frame.header[6] | (unsigned)frame.header[7] << 8;
+    ASSUME(frame.header[LSN] <= 3);
+    for (size_t i = 0; i < sizeof samples; i++) {
+        samples[i] = tmini_ring_peek(&ring, TMINI_PACKET_HEADER_SIZE + i);
+    }
+    sum ^= contribution(samples, frame.header[LSN]);
+    CLAIM(checksum_matches(&frame) == (sum == 0));
+    REACHED();
+}
+
+void prove_parser_skip(void)
+{
+    begin();
+    ASSUME(parser.frame.size == 0);
+    const size_t unread = nondet_size();
+    const size_t tail = tmini_ring_tail(&ring);
+    ASSUME(unread >= 1 && unread <= tmini_ring_unread(&ring) && unread <= ring.window);
+    const size_t place = nondet_size();
+    const uint8_t byte = tmini_ring_peek(&ring, place);
+    skip(&parser, unread);
+    CLAIM(is_accounted_for());
+    CLAIM(skip_keeps_its_word(&before, &parser));
+    const size_t skipped = tmini_ring_tail(&ring) - tail;
+    CLAIM(skipped >= 1 && skipped <= unread);
+    CLAIM(place < 1 || place >= skipped || begins_no_frame(&parser, byte)); /* No frame is lost. */
+    CLAIM(place != skipped - 1 || parser.frame.last_skipped == byte);
+    CLAIM(parser.frame.gap >= before.frame.gap);
+    REACHED();
+}
+
+/* With DMA, bytes that may have been overwritten are not looked at. */
+void prove_parser_intact_bytes(void)
+{
+    begin();
+    ASSUME(parser.frame.size == 0);
+    const size_t unread = intact_bytes(&parser);
+    CLAIM(is_accounted_for());
+    CLAIM(skip_keeps_its_word(&before, &parser));
+    CLAIM(unread <= ring.window);
+    CLAIM(parser.frame.gap == before.frame.gap || parser.frame.gap == TMINI_GAP_UNKNOWN);
+    REACHED();
+}
+
+void prove_parser_pass_lost_bytes(void)
+{
+    begin();
+    ASSUME(parser.frame.size == 0 && tmini_ring_unread(&ring) <= ring.window);
+    const bool was_closed = tmini_ring_is_closed(&ring);
+    const size_t stored = ring.head;
+    (void)pass_lost_bytes(&parser);
+    CLAIM(is_accounted_for());
+    CLAIM(skip_keeps_its_word(&before, &parser));
+    CLAIM(!was_closed || tmini_ring_is_closed(&ring) || tmini_ring_tail(&ring) == stored);
+    REACHED();
+}
+
+void prove_parser_release(void)
+{
+    begin();
+    release_frame(&parser);
+    CLAIM(is_accounted_for());
+    CLAIM(skip_keeps_its_word(&before, &parser));
+    CLAIM(before.frame.size == 0 || parser.frame.gap == 0);
+    REACHED();
+}
+
+void prove_parser_deliver(void)
+{
+    begin();
+    ASSUME(parser.frame.size == 0 && parser.kind != TMINI_FRAME_NONE);
+    ASSUME(tmini_ring_unread(&ring) >= parser.need);
+    const tmini_frame_type_t type = deliver(&parser);
+    CLAIM(is_accounted_for());
+    CLAIM(next_keeps_its_word(&before, &parser, type));
+    CLAIM(type == before.kind && parser.frame.size == before.need);
+    REACHED();
+}
+
+void prove_parser_skip_to(void)
+{
+    begin();
+    const size_t place = nondet_size();
+    let_bytes_come(NULL);
+    const size_t from = tmini_parser_position(&parser);
+    const size_t pending = tmini_parser_pending(&parser);
+    tmini_parser_skip_to(&parser, place);
+    CLAIM(is_accounted_for());
+    CLAIM(skip_keeps_its_word(&before, &parser));
+    const size_t skipped = tmini_parser_position(&parser) - from;
+    CLAIM(skipped == (place - from <= pending ? place - from : 0));
+    REACHED();
+}
+
+void prove_parser_abandon(void)
+{
+    begin();
+    tmini_parser_abandon(&parser);
+    CLAIM(is_accounted_for());
+    CLAIM(parser_is_sound(&parser) && same_expectations(&before, &parser));
+    CLAIM(parser.awaiting == before.awaiting && parser.frame.size == before.frame.size);
+    REACHED();
+}

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What may be used besides: ranges, sectors, mounting, times. Nothing is written outside, nothing
+ * overflows, for all angles and all numbers of bins or sectors. */
+
+#include "proof.h"
+#include "tmini/tmini_mount.h"
+#include "tmini/tmini_ranges.h"
+#include "tmini/tmini_sectors.h"
+#include "tmini/tmini_time.h"
+
+#define POINTS 3u
+
+static tmini_point_t points[POINTS];
+
+tmini_scan_t nondet_scan(void);
+tmini_point_t nondet_point(void);
+
+static tmini_scan_t any_scan(void)
+{
+    tmini_scan_t scan = nondet_scan();
+    for (size_t i = 0; i < POINTS; i++) {
+        points[i] = nondet_point();
+        ASSUME(points[i].angle_q6 < TMINI_FULL_CIRCLE_Q6);
+    }
+    scan.points = points;
+    scan.complete = any_bool();
+    ASSUME(scan.count <= POINTS);
+    return scan;
+}
+
+/* The centre of the bin is not further than half a bin's width. */
+void prove_ranges_bin(void)
+{
+    const uint16_t angle_q6 = nondet_half();
+    const size_t count = nondet_half();
+    ASSUME(angle_q6 < TMINI_FULL_CIRCLE_Q6 && count >= 1);
+    CLAIM(tmini_ranges_bin(angle_q6, count) < count);
+    REACHED();
+}
+
+void prove_ranges_of_scan(void)
+{
+    const tmini_scan_t scan = any_scan();
+    uint16_t ranges_mm[4];
+    uint8_t intensities[4];
+    const size_t count = nondet_size();
+    ASSUME(count <= 4);
+    const tmini_status_t status =
+        tmini_ranges_of_scan(&scan, ranges_mm, any_bool() ? intensities : NULL, count);
+    CLAIM((status == TMINI_OK) == (count > 0));
+    REACHED();
+}
+
+void prove_sectors(void)
+{
+    const tmini_scan_t scan = any_scan();
+    uint16_t nearest_mm[4];
+    tmini_sectors_t sectors;
+    const size_t count = nondet_size();
+    const uint16_t front_q6 = nondet_half();
+    ASSUME(count <= 4);
+    if (tmini_sectors_init(&sectors, nearest_mm, count, front_q6, nondet_byte()) == TMINI_OK) {
+        tmini_sectors_add_scan(&sectors, &scan);
+    }
+    REACHED();
+}
+
+void prove_sectors_at(void)
+{
+    const tmini_sectors_t sectors = {.count = nondet_half(), .front_q6 = nondet_half()};
+    const uint16_t angle_q6 = nondet_half();
+    ASSUME(sectors.count >= 1 && sectors.front_q6 < TMINI_FULL_CIRCLE_Q6);
+    ASSUME(angle_q6 < TMINI_FULL_CIRCLE_Q6);
+    CLAIM(tmini_sectors_at(&sectors, angle_q6) < sectors.count);
+    REACHED();
+}
+
+void prove_mount(void)
+{
+    const tmini_scan_t scan = any_scan();
+    const tmini_arc_t arc = {nondet_half(), nondet_half()};
+    const tmini_mount_t mount = {.front_q6 = nondet_half(),
+                                 .is_upside_down = any_bool(),
+                                 .min_mm = nondet_half(),
+                                 .max_mm = nondet_half(),
+                                 .masked = &arc,
+                                 .masked_count = any_bool() ? 1 : 0,
+                                 .drops = any_bool()};
+    const size_t index = nondet_size();
+    ASSUME(mount.front_q6 < TMINI_FULL_CIRCLE_Q6);
+    ASSUME(arc.from_q6 < TMINI_FULL_CIRCLE_Q6 && arc.to_q6 < TMINI_FULL_CIRCLE_Q6);
+    const size_t kept = tmini_mount_apply(&mount, points, scan.count);
+    CLAIM(kept <= scan.count && (mount.drops || kept == scan.count));
+    CLAIM(index >= kept || points[index].angle_q6 < TMINI_FULL_CIRCLE_Q6);
+    REACHED();
+}
+
+/* Within a revolution, and its jitter. */
+void prove_time(void)
+{
+    const tmini_scan_t scan = any_scan();
+    const size_t index = nondet_size();
+    ASSUME(scan.count >= 1 && index < scan.count);
+    const uint32_t period_ms = tmini_scan_period_ms(&scan);
+    const uint32_t time_us = tmini_point_time_us(&scan, index);
+    CLAIM(period_ms == 0 || period_ms > 3000 || time_us <= period_ms * 1000u * 5 / 4 + 1);
+    REACHED();
+}

@@ -1,0 +1,261 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""Runs the proofs with CBMC, and prints a table. run.sh calls it.
+
+    prove.py --work DIR [--jail DIR] [--quick] [--broken] [NAME …]
+
+Each proof is one function prove_NAME() in a file beside this one. All its claims must hold but one: the
+last, that its end is not reached, which must fail, or the proof would say nothing. With --broken the
+library is broken first, in a copy, in the one place that the table below names for each proof; then
+a claim must fail.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+FOLDERS = ("lib/include", "lib/src", "test/proof", "test/support")
+
+RING = ["tmini_ring.c"]
+FRAME = RING + ["tmini_frame.c"]
+SCAN = FRAME + ["tmini_packet.c", "tmini_scan.c", "tmini_ct.c"]
+USE = SCAN + ["tmini_ranges.c", "tmini_sectors.c", "tmini_mount.c", "tmini_time.c"]
+DRIVER = RING + ["tmini_command.c", "tmini_recovery.c", "tmini_monitor.c", "tmini_reply.c"]
+PARSER_FILES = ["proof_parser.c", "parser_contract.c"]
+DRIVER_FILES = ["proof_driver.c", "stubs.c", "parser_contract.c"]
+
+ANY_RING = "ring of 32 bytes, all indices"
+EARLY = "ring of 32 bytes"
+PARSED = "ring of 32 bytes, DMA 16; bytes come between accesses"
+ANY_SCAN = "packets of up to 3 samples, buffer of up to 4 points"
+ANY_LIDAR = "ring of 64 bytes; parser, packet, scan, ct by contract"
+
+
+class Proof:
+    """One function: what it is made of, how far its loops go, and how the library is broken."""
+
+    def __init__(self, name, files, sources, unwind, bounds, broken, loops="", stubs=(), defines=(),
+                 options=(), function=None, slow=False):
+        self.name, self.files, self.sources, self.unwind = name, files, sources, unwind
+        self.bounds, self.broken, self.loops, self.stubs = bounds, broken, loops, stubs
+        self.defines, self.options, self.slow = defines, options, slow
+        self.function = "prove_" + (function or name)
+
+
+def ring(name, *broken):
+    return Proof("ring_" + name, ["proof_ring.c"], RING, 37, EARLY if name == "write" else ANY_RING, broken,
+                 slow=name == "write")
+
+
+def parser(name, *broken, unwind=33, bounds=PARSED, **more):
+    return Proof("parser_" + name, PARSER_FILES, FRAME, unwind, bounds, broken, **more)
+
+
+def scan(name, *broken):
+    return Proof(name, ["proof_scan.c"], SCAN, 10, ANY_SCAN, broken, loops="any_early_ring.0:33")
+
+
+def angle(samples, *broken, **more):
+    return Proof(f"angle_{samples}", ["proof_angle.c"], FRAME + ["tmini_packet.c"], 4,
+                 f"all FSA, LSA; {samples} samples", broken, loops="any_early_ring.0:33",
+                 defines=[f"SAMPLES={samples}u"], function="angle", **more)
+
+
+def use(name, bounds, *broken, **more):
+    return Proof(name, ["proof_use.c"], USE, 5, bounds, broken, **more)
+
+
+def driver(name, *broken, **more):
+    return Proof("driver_" + name, DRIVER_FILES, DRIVER, 22, ANY_LIDAR, broken,
+                 loops="any_early_ring.0:65", **more)
+
+
+PROOFS = [
+    ring("init", "lib/src/tmini_ring.c", " || (size & (size - 1)) != 0", ""),
+    ring("put", "lib/include/tmini/tmini_ring.h", "memory[head & gate] = byte", "memory[head] = byte"),
+    ring("write", "lib/src/tmini_ring.c", "memcpy(ring->memory, &bytes[first],", "memcpy(ring->memory, bytes,"),
+    ring("publish", "lib/src/tmini_ring.c", "((position - head) & (ring->size - 1))", "(position - head)"),
+    ring("gap", "lib/src/tmini_ring.c", "ring->head + ring->size", "ring->head"),
+    ring("discard", "lib/src/tmini_ring.c", "ring->limit + count);", "ring->limit + count + 1);"),
+    ring("open", "lib/src/tmini_ring.c", "tmini_store(&ring->gate, ring->size - 1);", "tmini_store(&ring->gate, 1);"),
+    ring("read", "lib/src/tmini_ring.c", "memory[index++ & mask]", "memory[index++]"),
+    Proof("frame_samples", ["proof_frame.c"], FRAME, 4, ANY_RING,
+          ("lib/src/tmini_frame.c", "if (bytes >= TMINI_SAMPLE_SIZE)", "if (bytes > 1)"), loops="any_ring_of.0:33"),
+    Proof("frame_content", ["proof_frame.c"], FRAME, 65, "ring of 64 bytes, all indices",
+          ("lib/include/tmini/tmini_frame.h", "TMINI_REPLY_HEADER_SIZE, content, count", "0, content, count")),
+    parser("init", "lib/src/tmini_parser.c", "ring->window >= TMINI_REPLY_SIZE_MAX;", "true;", unwind=65,
+           bounds="ring of 64 bytes, DMA 32"),
+    parser("await", "lib/src/tmini_parser.c", "> parser->frame.ring->window", "> parser->frame.ring->size"),
+    parser("classify", "lib/src/tmini_parser.c", "header[LSN] >= 1 && ", "", stubs=["checksum_matches"]),
+    parser("xor_piece", "lib/src/tmini_parser.c", "third ^= tmini_word(sample + 8)", "third ^= tmini_word(sample + 4)",
+           bounds="up to 9 samples in one piece"),
+    parser("checksum", "lib/src/tmini_parser.c", "left -= count;", "left = 0;", unwind=5,
+           bounds=EARLY + ", up to 3 samples", loops="any_early_ring.0:33,prove_parser_checksum.0:10,"
+           "prove_parser_checksum.1:10,contribution.0:10"),
+    parser("skip", "lib/src/tmini_parser.c", "skipped < count && begins_no_frame(parser, bytes[skipped])",
+           "skipped < count"),
+    parser("intact_bytes", "lib/src/tmini_parser.c", "parser->counters.bytes_overrun += (uint32_t)lost;", ""),
+    parser("pass_lost_bytes", "lib/src/tmini_parser.c", "if (unread == 0) {", "if (unread < 2) {"),
+    parser("release", "lib/src/tmini_parser.c", "        frame->gap = 0;", ""),
+    parser("deliver", "lib/src/tmini_parser.c", "parser->counters.bytes_in_packets += frame->size;", ""),
+    parser("skip_to", "lib/src/tmini_parser.c", "count > 0 && count <=", "count > 0 && 1 <="),
+    parser("abandon", "lib/src/tmini_parser.c", "if (unread > 0 && unread < parser->need)",
+           "if (unread < parser->need)"),
+    scan("packet_open", "lib/src/tmini_packet.c", "angle < TMINI_FULL_CIRCLE_Q6 ?", "angle <= TMINI_FULL_CIRCLE_Q6 ?"),
+    scan("packet_points", "lib/src/tmini_packet.c", "packet->count < max_points ? packet->count : max_points",
+         "packet->count"),
+    angle(2, "lib/src/tmini_packet.c", "    wrap(point, 1);", ""),
+    angle(3, "lib/src/tmini_packet.c", "(STEP_BITS - 1))", "(STEP_BITS - 2))"),
+    angle(40, "lib/src/tmini_packet.c", "+ intervals - 1) / intervals", ") / intervals", slow=True),
+    scan("scan_init", "lib/src/tmini_scan.c", "capacity == 0 || ", ""),
+    scan("scan_step", "lib/src/tmini_scan.c", "(size_t)builder->capacity - scan->count)", "(size_t)builder->capacity)"),
+    scan("scan_refute", "lib/src/tmini_scan.c", "add_up(&builder->scan.gaps, 1);\n}\n\nvoid tmini_scan_add",
+         "}\n\nvoid tmini_scan_add"),
+    scan("ct_crc", "lib/src/tmini_ct.c", "0x9D", "0x9C"),
+    scan("ct_add", "lib/src/tmini_ct.c", " || start->gap != 1", ""),
+    scan("ct_read", "lib/src/tmini_ct.c", "trusted[DAY] >> 3", "trusted[DAY] >> 2"),
+    use("ranges_bin", "all angles, 1 to 65535 bins", "lib/src/tmini_ranges.c", "(bin < count ? bin : 0)", "(bin)"),
+    use("ranges_of_scan", "up to 3 points, 4 bins", "lib/src/tmini_ranges.c", "count == 0 || ", ""),
+    use("sectors", "up to 3 points, 4 sectors", "lib/src/tmini_sectors.c",
+        "(sector < sectors->count ? sector : 0)", "(sector)"),
+    use("sectors_at", "all angles, 1 to 65535 sectors", "lib/src/tmini_sectors.c",
+        "(sector < sectors->count ? sector : 0)", "(sector)"),
+    use("mount", "up to 3 points, 1 arc", "lib/src/tmini_mount.c", "points[kept++] = point", "points[++kept] = point"),
+    use("time", "up to 3 points", "lib/src/tmini_time.c", "* 25u /", "* 26u /"),
+    driver("init", "lib/src/tmini.c", "config->points == NULL && config->max_points == 0", "config->points == NULL"),
+    driver("update_time", "lib/src/tmini.c", "if (lidar->state == TMINI_STATE_IDLE && ",
+           "if (lidar->state >= TMINI_STATE_IDLE && "),
+    driver("take_event", "lib/src/tmini.c", "unsigned event = TMINI_EVENT_STARTED;",
+           "unsigned event = TMINI_EVENT_STOPPED;"),
+    driver("add_held_packet", "lib/src/tmini.c", "lidar->is_held = false;", ""),
+    driver("packet", "lib/src/tmini_command.c", "end(lidar, PHASE_NONE); /* So", "/* So"),
+    driver("reply", "lib/src/tmini_command.c", "if (frequency_chz > PLAUSIBLE_CHZ_MAX)", "if (frequency_chz > 65535)"),
+    driver("nothing", "lib/src/tmini.c", "tmini_parser_abandon(&lidar->parser);", "tmini_command_cancel(lidar);"),
+    driver("keep_time", "lib/src/tmini_command.c", "command->steps < STEPS_MAX", "command->steps <= STEPS_MAX"),
+    driver("start", "lib/src/tmini.c", "TMINI_STATE_STARTING, TMINI_OPERATION_START",
+           "TMINI_STATE_STARTING, TMINI_OPERATION_STOP"),
+    driver("request_info", "lib/src/tmini.c", "lidar->state > TMINI_STATE_IDLE)", "lidar->state > TMINI_STATE_BUSY)"),
+    driver("request_health", "lib/src/tmini.c", "lidar->state >= TMINI_STATE_SCANNING)",
+           "lidar->state > TMINI_STATE_SCANNING)"),
+    driver("request_frequency", "lib/src/tmini_command.c", "lidar->command.sync_sent ? 1 : 2", "2"),
+    driver("set_frequency", "lib/src/tmini.c", "frequency_chz > TMINI_FREQUENCY_MAX_CHZ ||", ""),
+    driver("stop", "lib/src/tmini_command.c", "(taken < unsent ? unsent - taken : 0)", "(unsent - taken)"),
+    driver("reboot", "lib/src/tmini.c", "tmini_reboot(tmini_t *lidar)\n{\n    return request(lidar, TMINI_STATE_BUSY",
+           "tmini_reboot(tmini_t *lidar)\n{\n    return request(lidar, TMINI_STATE_STARTING"),
+    driver("cancel", "lib/src/tmini.c", "tmini_command_cancel(lidar);\n    lidar->state = TMINI_STATE_UNKNOWN;",
+           "tmini_command_cancel(lidar);"),
+]
+
+
+class Checker:
+    """CBMC over a copy of the sources, where it is installed or in a jail of its own."""
+
+    def __init__(self, work, jail):
+        self.jail = jail
+        self.folder = os.path.join(jail, "tmini") if jail else work
+        self.seen = "/tmini" if jail else work
+        self.prefix = ["chroot", jail] if jail else []
+
+    def copy_sources(self):
+        for folder in FOLDERS:
+            target = os.path.join(self.folder, folder)
+            shutil.rmtree(target, ignore_errors=True)
+            shutil.copytree(os.path.join(ROOT, folder), target)
+
+    def break_source(self, path, old, new):
+        name = os.path.join(self.folder, path)
+        with open(name, encoding="utf-8") as file:
+            text = file.read()
+        if text.count(old) != 1:
+            sys.exit(f"{path} has {text.count(old)} times {old!r}: bring the table in prove.py up to date")
+        with open(name, "w", encoding="utf-8") as file:
+            file.write(text.replace(old, new))
+
+    def call(self, *command):
+        return subprocess.run(["nice"] + self.prefix + list(command), capture_output=True, text=True, check=False)
+
+    def demand(self, *command):
+        done = self.call(*command)
+        if done.returncode != 0:
+            sys.exit(done.stdout + done.stderr)
+
+    def check(self, proof):
+        """Returns the number of properties and those that failed."""
+        program = f"{self.seen}/program"
+        folders = [option for folder in FOLDERS for option in ("-I", f"{self.seen}/{folder}")]
+        defines = ["-D", 'TMINI_ATOMIC_HEADER="proof_atomic.h"']
+        for define in proof.defines:
+            defines += ["-D", define]
+        files = [f"{self.seen}/test/proof/{name}" for name in ["any.c"] + proof.files]
+        files += [f"{self.seen}/test/support/invariants.c"]
+        files += [f"{self.seen}/lib/src/{name}" for name in proof.sources]
+        self.demand("goto-cc", "-o", program, "--function", proof.function, *folders, *defines, *files)
+        for stub in proof.stubs:
+            self.demand("goto-instrument", "--remove-function-body", stub, program, program)
+            self.demand("goto-instrument", "--generate-function-body", stub, "--generate-function-body-options",
+                        "nondet-return", program, program)
+        loops = ["--unwindset", proof.loops] if proof.loops else []
+        done = self.call("cbmc", "--drop-unused-functions", "--unwind", str(proof.unwind), *loops,
+                         *proof.options, program)
+        count = re.search(r"^\*\* \d+ of (\d+) failed", done.stdout, re.MULTILINE)
+        if not count:
+            sys.exit(f"{proof.name}: CBMC has not come to an end\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+        return int(count.group(1)), re.findall(r"^\[.*: FAILURE$", done.stdout, re.MULTILINE)
+
+
+def is_end(failure):
+    return "the end is not reached" in failure
+
+
+def prove(checker, proof, broken):
+    """Returns the number of properties and whether all is as it should be; tells what is not."""
+    checker.copy_sources()
+    if broken:
+        checker.break_source(*proof.broken)
+    count, failures = checker.check(proof)
+    others = [failure for failure in failures if not is_end(failure)]
+    if broken:
+        return count, len(others) > 0, [] if others else ["nothing failed although the library is broken"]
+    if len(others) == len(failures):
+        others.append("the end is not reached: nothing was proved")
+    return count, not others, others
+
+
+def main():
+    parser_ = argparse.ArgumentParser(description="Proves what proof_….c claim.")
+    parser_.add_argument("--work", required=True, help="a folder to work in")
+    parser_.add_argument("--jail", help="a Debian of its own that has CBMC")
+    parser_.add_argument("--quick", action="store_true", help="only what takes seconds")
+    parser_.add_argument("--broken", action="store_true", help="break the library: each proof must fail")
+    parser_.add_argument("names", nargs="*", metavar="NAME", help="proofs, or the beginnings of their names")
+    arguments = parser_.parse_args()
+    chosen = [proof for proof in PROOFS
+              if (not arguments.names or any(proof.name.startswith(name) for name in arguments.names)) and
+              not (arguments.quick and proof.slow)]
+    if not chosen:
+        sys.exit("no such proof; there are: " + " ".join(proof.name for proof in PROOFS))
+    checker = Checker(arguments.work, arguments.jail)
+    total = failed = 0
+    print(f"{'proof':26} {'result':8} {'properties':>10} {'s':>5}  bounds")
+    for proof in chosen:
+        begin = time.monotonic()
+        count, is_right, complaints = prove(checker, proof, arguments.broken)
+        result = ("fails" if arguments.broken else "proved") if is_right else "WRONG"
+        print(f"{proof.name:26} {result:8} {count:10} {time.monotonic() - begin:5.0f}  {proof.bounds}", flush=True)
+        for complaint in complaints:
+            print(f"    {complaint}")
+        total += count
+        failed += not is_right
+    print(f"{len(chosen)} proofs, {total} properties, {failed} wrong")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,284 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "invariants.h"
+
+#include "tmini_driver.h"
+
+/* As in tmini_command.c, whose own they are. */
+enum {
+    PHASE_NONE,
+    PHASE_IDLE,
+    PHASE_QUIESCING,
+    PHASE_AWAITING_REPLY,
+    PHASE_AWAITING_STEP,
+    PHASE_SETTLING,
+    PHASE_SPINNING_UP,
+    PHASE_WAITING,
+};
+
+#define STEPS_MAX 20
+#define PLAUSIBLE_CHZ_MAX 2000
+
+/* The last value of `doubt`, as in tmini.c. */
+#define DOUBT_MAX 3
+
+/* As in tmini_scan.c: 4 degrees back, 360.25 on. */
+#define SWEPT_MIN_Q6 (-256)
+#define SWEPT_MAX_Q6 (23040 + 16)
+
+/* All that may be pending: from STARTED to SCAN. */
+#define EVENTS ((1u << (TMINI_EVENT_SCAN + 1)) - (1u << TMINI_EVENT_STARTED))
+
+/* ---- Ring, parser ---- */
+
+static bool is_dma(const tmini_ring_t *ring)
+{
+    return ring->window != ring->size;
+}
+
+bool ring_is_sound(const tmini_ring_t *ring)
+{
+    const size_t size = ring->size;
+    const size_t gate = tmini_load(&ring->gate);
+    if (ring->memory == NULL || size < 2 || (size & (size - 1)) != 0) {
+        return false;
+    }
+    if (is_dma(ring)) { /* Which may run away; and nobody closes the gate before it. */
+        return ring->window == size / 2 && gate == size - 1;
+    }
+    return (gate == 0 || gate == size - 1) && tmini_ring_unread(ring) <= size;
+}
+
+static uint8_t samples_in(const tmini_frame_t *frame)
+{
+    return frame->header[1];
+}
+
+static bool has_packet_header(const tmini_parser_t *parser)
+{
+    const uint8_t *const header = parser->frame.header;
+    const bool is_start = (header[0] & 1u) != 0;
+    return samples_in(&parser->frame) >= 1 &&
+           samples_in(&parser->frame) <= (is_start ? 1 : parser->max_samples) &&
+           (header[2] & 1u) != 0 && (header[4] & 1u) != 0;
+}
+
+/* What `need` says of the candidate. */
+static bool candidate_is_sound(const tmini_parser_t *parser)
+{
+    const unsigned need = parser->need;
+    switch (parser->kind) {
+    case TMINI_FRAME_NONE:
+        return need == 1 || need == 2 || need == TMINI_PACKET_HEADER_SIZE ||
+               (need == TMINI_REPLY_HEADER_SIZE && parser->awaiting);
+    case TMINI_FRAME_PACKET:
+        return has_packet_header(parser) && need == TMINI_PACKET_SIZE(samples_in(&parser->frame));
+    case TMINI_FRAME_REPLY:
+        return parser->awaiting && need == TMINI_REPLY_HEADER_SIZE + parser->awaited.length;
+    default:
+        return false;
+    }
+}
+
+bool parser_is_sound(const tmini_parser_t *parser)
+{
+    const tmini_frame_t *const frame = &parser->frame;
+    if (frame->ring == NULL || !ring_is_sound(frame->ring)) {
+        return false;
+    }
+    const size_t window = frame->ring->window;
+    /* The newest bytes of a frame delivered are still there. */
+    const bool frame_is_sound =
+        frame->size == 0 ||
+        (frame->size <= window && frame->size <= tmini_ring_unread(frame->ring) &&
+         parser->kind == TMINI_FRAME_NONE && parser->need == 1);
+    return parser->max_samples >= 1 && TMINI_PACKET_SIZE(parser->max_samples) <= window &&
+           (!parser->awaiting || TMINI_REPLY_HEADER_SIZE + parser->awaited.length <= window) &&
+           frame_is_sound && candidate_is_sound(parser);
+}
+
+uint32_t parser_account(const tmini_parser_t *parser)
+{
+    tmini_parser_counters_t counters;
+    tmini_parser_counters(parser, &counters);
+    return counters.bytes_in_packets + counters.bytes_in_replies + counters.bytes_skipped +
+           counters.bytes_overrun + (uint32_t)tmini_parser_pending(parser);
+}
+
+/* ---- Packet, CT information, scan ---- */
+
+bool packet_is_sound(const tmini_packet_t *packet, const tmini_frame_t *frame)
+{
+    return packet->frame == frame && packet->first_angle_q6 < TMINI_FULL_CIRCLE_Q6 &&
+           packet->last_angle_q6 < TMINI_FULL_CIRCLE_Q6 && packet->count >= 1 &&
+           (packet->count == 1 || !tmini_packet_is_start(packet)) &&
+           packet->step <= TMINI_FULL_CIRCLE_Q6 << 17 && (packet->count > 1 || packet->step == 0);
+}
+
+/* The fields have the indices 1, 3, 4, 5 and 9 to 13: of so many packets so many have come. */
+static unsigned fields_among(unsigned packets)
+{
+    static const uint8_t fields[TMINI_CT_INDICES] = {0, 0, 1, 1, 2, 3, 4, 4, 4, 4, 5, 6, 7, 8};
+    return packets < TMINI_CT_INDICES ? fields[packets] : TMINI_CT_FIELDS;
+}
+
+bool ct_is_sound(const tmini_ct_t *ct)
+{
+    return ct->fields == fields_among(ct->packets) && ct->known < 1u << TMINI_CT_INDICES;
+}
+
+bool builder_is_sound(const tmini_scan_builder_t *builder)
+{
+    const tmini_scan_t *const scan = &builder->scan;
+    return builder->capacity > 0 && scan->points != NULL && scan->count <= builder->capacity &&
+           (builder->filter & ~(unsigned)TMINI_FILTER_BOTH) == 0 &&
+           builder->previous_angle_q6 < TMINI_FULL_CIRCLE_Q6 && builder->swept_q6 >= SWEPT_MIN_Q6 &&
+           builder->swept_q6 <= SWEPT_MAX_Q6;
+}
+
+/* ---- Driver ---- */
+
+static bool is_code(uint8_t code)
+{
+    switch (code) {
+    case TMINI_COMMAND_FASTER_TENTH:
+    case TMINI_COMMAND_SLOWER_TENTH:
+    case TMINI_COMMAND_FASTER_ONE:
+    case TMINI_COMMAND_SLOWER_ONE:
+    case TMINI_COMMAND_GET_FREQUENCY:
+    case TMINI_COMMAND_REBOOT:
+    case TMINI_COMMAND_START:
+    case TMINI_COMMAND_STOP:
+    case TMINI_COMMAND_GET_INFO:
+    case TMINI_COMMAND_GET_HEALTH:
+        return true;
+    default:
+        return false;
+    }
+}
+
+static bool is_step(uint8_t code)
+{
+    return code >= TMINI_COMMAND_FASTER_TENTH && code <= TMINI_COMMAND_SLOWER_ONE;
+}
+
+/* The question that the operation is about. */
+static bool asks_for(uint8_t operation, uint8_t code)
+{
+    switch (operation) {
+    case TMINI_OPERATION_START:
+        return code == TMINI_COMMAND_START;
+    case TMINI_OPERATION_INFO:
+        return code == TMINI_COMMAND_GET_INFO;
+    case TMINI_OPERATION_HEALTH:
+        return code == TMINI_COMMAND_GET_HEALTH;
+    case TMINI_OPERATION_FREQUENCY:
+        return code == TMINI_COMMAND_GET_FREQUENCY;
+    case TMINI_OPERATION_SET_FREQUENCY:
+        return code == TMINI_COMMAND_GET_FREQUENCY || is_step(code);
+    default:
+        return false;
+    }
+}
+
+/* The reply that is awaited is that to the command sent. */
+static bool awaits_its_reply(const tmini_t *lidar)
+{
+    const tmini_reply_header_t *const awaited = &lidar->parser.awaited;
+    tmini_reply_header_t reply;
+    return lidar->parser.awaiting &&
+           tmini_reply_header((tmini_command_code_t)lidar->command.code, &reply) &&
+           awaited->type == reply.type && awaited->mode == reply.mode &&
+           awaited->length == reply.length;
+}
+
+/* Which phases an operation has. Also when scanning, and between attempts, the time is kept by
+ * PHASE_WAITING. */
+static bool phase_fits(const tmini_t *lidar)
+{
+    const tmini_command_t *const command = &lidar->command;
+    switch (command->phase) {
+    case PHASE_AWAITING_REPLY:
+        return asks_for(command->operation, command->code) && awaits_its_reply(lidar);
+    case PHASE_AWAITING_STEP:
+        return command->operation == TMINI_OPERATION_SET_FREQUENCY && is_step(command->code) &&
+               awaits_its_reply(lidar);
+    case PHASE_SETTLING:
+        return command->operation == TMINI_OPERATION_SET_FREQUENCY && !lidar->parser.awaiting;
+    case PHASE_SPINNING_UP:
+        return command->operation == TMINI_OPERATION_START && !lidar->parser.awaiting;
+    default:
+        return command->phase <= PHASE_WAITING && !lidar->parser.awaiting;
+    }
+}
+
+static bool state_fits(const tmini_t *lidar)
+{
+    const uint8_t operation = lidar->command.operation;
+    const uint8_t phase = lidar->command.phase;
+    const bool is_waiting = phase == PHASE_WAITING;
+    switch (lidar->state) {
+    case TMINI_STATE_UNKNOWN:
+        return phase <= PHASE_IDLE;
+    case TMINI_STATE_IDLE:
+        return phase == PHASE_IDLE;
+    case TMINI_STATE_BUSY:
+        return operation >= TMINI_OPERATION_INFO && phase >= PHASE_QUIESCING &&
+               (!is_waiting || operation == TMINI_OPERATION_REBOOT);
+    case TMINI_STATE_STOPPING:
+        return operation == TMINI_OPERATION_STOP && phase == PHASE_QUIESCING;
+    case TMINI_STATE_STARTING:
+        return operation == TMINI_OPERATION_START && phase >= PHASE_QUIESCING && !is_waiting;
+    case TMINI_STATE_SCANNING:
+        return is_waiting && lidar->command.unsent == 0;
+    case TMINI_STATE_RECOVERING:
+        return lidar->recovery.is_pausing
+                   ? is_waiting
+                   : phase >= PHASE_QUIESCING &&
+                         (operation == TMINI_OPERATION_REBOOT ||
+                          (operation == TMINI_OPERATION_START && !is_waiting));
+    default:
+        return false;
+    }
+}
+
+static bool command_is_sound(const tmini_command_t *command)
+{
+    return command->operation <= TMINI_OPERATION_REBOOT &&
+           command->unsent <= (command->sync_sent ? 1 : 2) &&
+           (command->sync_sent || command->unsent != 1) &&
+           (command->unsent == 0 || (is_code(command->code) && command->phase > PHASE_IDLE)) &&
+           command->steps <= STEPS_MAX && command->frequency_chz <= PLAUSIBLE_CHZ_MAX &&
+           (command->operation != TMINI_OPERATION_SET_FREQUENCY ||
+            (command->target_chz >= TMINI_FREQUENCY_MIN_CHZ &&
+             command->target_chz <= TMINI_FREQUENCY_MAX_CHZ));
+}
+
+static bool monitor_is_sound(const tmini_monitor_t *monitor)
+{
+    return ((monitor->faults | monitor->observed) & ~TMINI_FAULT_MASK) == 0 &&
+           ct_is_sound(&monitor->ct);
+}
+
+/* Streaming, nothing is gathered. A packet that is held is there. */
+static bool results_are_sound(const tmini_t *lidar)
+{
+    const bool streaming = lidar->builder.capacity == 0;
+    return (streaming ? !lidar->builder.open : builder_is_sound(&lidar->builder)) &&
+           (!lidar->is_held ||
+            (!streaming && packet_is_sound(&lidar->latest.packet, &lidar->parser.frame)));
+}
+
+bool lidar_is_sound(const tmini_t *lidar)
+{
+    if (lidar->link.port == NULL) {
+        return true;
+    }
+    return lidar->link.port->write != NULL && lidar->link.port->now_ms != NULL &&
+           lidar->link.timing != NULL && lidar->parser.frame.ring == &lidar->ring &&
+           lidar->ring.window >= TMINI_REPLY_SIZE_MAX && parser_is_sound(&lidar->parser) &&
+           (lidar->pending & ~EVENTS) == 0 && lidar->doubt <= DOUBT_MAX &&
+           command_is_sound(&lidar->command) && phase_fits(lidar) && state_fits(lidar) &&
+           monitor_is_sound(&lidar->monitor) && results_are_sound(lidar);
+}
