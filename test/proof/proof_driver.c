@@ -61,7 +61,8 @@ static void any_lidar(void)
     lidar.ring = any_early_ring(LARGE_RING_SIZE);
     lidar.parser.frame.ring = &lidar.ring;
     lidar.parser.awaiting = any_bool();
-    lidar.is_held = any_bool();
+    lidar.packet_waits = any_bool();
+    lidar.is_settled = any_bool();
     lidar.disable_recovery = any_bool();
     lidar.is_unwatched = any_bool();
     lidar.command.sync_sent = any_bool();
@@ -106,9 +107,21 @@ void prove_driver_init(void)
 
 /* ---- The steps of a poll ---- */
 
-void prove_driver_update_time(void)
+static void any_polled_lidar(void)
 {
     any_lidar();
+    ASSUME(!lidar.is_settled);
+}
+
+static void any_receiving_lidar(void)
+{
+    any_polled_lidar();
+    ASSUME(!lidar.packet_waits && lidar.pending == 0);
+}
+
+void prove_driver_update_time(void)
+{
+    any_polled_lidar();
     update_time(&lidar);
     CLAIM(is_sound());
     REACHED();
@@ -116,7 +129,7 @@ void prove_driver_update_time(void)
 
 void prove_driver_take_event(void)
 {
-    any_lidar();
+    any_polled_lidar();
     ASSUME(lidar.pending != 0);
     const unsigned before = lidar.pending;
     const tmini_event_t event = take_event(&lidar);
@@ -127,18 +140,17 @@ void prove_driver_take_event(void)
     REACHED();
 }
 
-void prove_driver_add_held_packet(void)
+void prove_driver_add_waiting_packet(void)
 {
-    any_lidar();
-    add_held_packet(&lidar);
-    CLAIM(is_sound() && !lidar.is_held);
+    any_polled_lidar();
+    add_waiting_packet(&lidar);
+    CLAIM(is_sound() && !lidar.packet_waits);
     REACHED();
 }
 
 void prove_driver_packet(void)
 {
-    any_lidar();
-    ASSUME(!lidar.is_held && lidar.pending == 0);
+    any_receiving_lidar();
     ASSUME(tmini_parser_next(&lidar.parser) == TMINI_FRAME_PACKET);
     take_packet(&lidar);
     CLAIM(is_sound());
@@ -147,8 +159,7 @@ void prove_driver_packet(void)
 
 void prove_driver_reply(void)
 {
-    any_lidar();
-    ASSUME(!lidar.is_held && lidar.pending == 0);
+    any_receiving_lidar();
     ASSUME(tmini_parser_next(&lidar.parser) == TMINI_FRAME_REPLY);
     take_reply(&lidar);
     CLAIM(is_sound());
@@ -157,8 +168,7 @@ void prove_driver_reply(void)
 
 void prove_driver_nothing(void)
 {
-    any_lidar();
-    ASSUME(!lidar.is_held && lidar.pending == 0);
+    any_receiving_lidar();
     const tmini_frame_type_t type = tmini_parser_next(&lidar.parser);
     ASSUME(type == TMINI_FRAME_NONE || type == TMINI_FRAME_MORE);
     if (type == TMINI_FRAME_NONE) {
@@ -170,10 +180,23 @@ void prove_driver_nothing(void)
 
 void prove_driver_keep_time(void)
 {
-    any_lidar();
-    ASSUME(!lidar.is_held && lidar.pending == 0);
+    any_receiving_lidar();
     keep_time(&lidar);
     CLAIM(is_sound());
+    REACHED();
+}
+
+/* What tmini_poll() adds to its steps, which do nothing here. */
+void prove_driver_poll(void)
+{
+    any_lidar();
+    ASSUME(!lidar.packet_waits); /* receive() has added it. */
+    const unsigned before = lidar.pending;
+    const tmini_event_t event = tmini_poll(&lidar);
+    CLAIM(is_sound());
+    CLAIM(event <= TMINI_EVENT_MORE);
+    CLAIM(before == 0 || (before >> event & 1u) != 0);
+    CLAIM(before != 0 || event == TMINI_EVENT_NONE || event == TMINI_EVENT_MORE);
     REACHED();
 }
 

@@ -80,13 +80,13 @@ void prove_scan_step(void)
     const bool was_open = builder.open;
     const uint32_t now_ms = nondet_word();
     points[builder.capacity].angle_q6 = 0xEEEE;
-    if (tmini_scan_close(&builder, &packet, now_ms)) {
+    if (tmini_scan_add(&builder, &packet, now_ms)) {
         CLAIM(builder_is_sound(&builder) && was_open && !builder.open);
         CLAIM(!builder.scan.complete || tmini_packet_is_start(&packet));
         CLAIM(!builder.scan.complete || packet.gap <= 1);
         CLAIM(!builder.scan.complete || (builder.scan.gaps == 0 && builder.scan.dropped == 0));
+        CLAIM(!tmini_scan_add(&builder, &packet, now_ms));
     }
-    tmini_scan_add(&builder, &packet, now_ms);
     CLAIM(builder_is_sound(&builder));
     CLAIM(builder.open || !tmini_packet_is_start(&packet));
     CLAIM(points[builder.capacity].angle_q6 == 0xEEEE);

@@ -66,11 +66,6 @@ size_t tmini_parser_pending(const tmini_parser_t *parser)
     return tmini_ring_unread(parser->frame.ring) - parser->frame.size;
 }
 
-size_t tmini_parser_position(const tmini_parser_t *parser)
-{
-    return tmini_ring_tail(parser->frame.ring) + parser->frame.size;
-}
-
 void tmini_parser_counters(const tmini_parser_t *parser, tmini_parser_counters_t *counters)
 {
     *counters = parser->counters;
@@ -140,17 +135,6 @@ void tmini_scan_discard(tmini_scan_builder_t *builder)
     builder->open = false;
 }
 
-bool tmini_scan_close(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
-{
-    (void)now_ms;
-    CLAIM(builder_is_sound(builder) && packet_is_sound(packet, packet->frame));
-    if (!builder->open || (!tmini_packet_is_start(packet) && any_bool())) {
-        return false;
-    }
-    change_builder(builder, false);
-    return true;
-}
-
 void tmini_scan_refute(tmini_scan_builder_t *builder)
 {
     if (builder->scan.gaps < UINT16_MAX) {
@@ -158,13 +142,16 @@ void tmini_scan_refute(tmini_scan_builder_t *builder)
     }
 }
 
-void tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
+bool tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
 {
+    const bool is_start = tmini_packet_is_start(packet);
     (void)now_ms;
     CLAIM(builder_is_sound(builder) && packet_is_sound(packet, packet->frame));
-    if (builder->open || tmini_packet_is_start(packet)) {
-        change_builder(builder, true);
+    const bool closes = builder->open && (is_start || any_bool());
+    if (builder->open || is_start) {
+        change_builder(builder, !closes);
     }
+    return closes;
 }
 
 /* ---- CT information ---- */

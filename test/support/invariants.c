@@ -261,12 +261,14 @@ static bool monitor_is_sound(const tmini_monitor_t *monitor)
            ct_is_sound(&monitor->ct);
 }
 
-/* Streaming, nothing is gathered. A packet that is held is there. */
+/* Streaming, nothing is gathered. A packet that waits is there. Settled: nothing is left to do. */
 static bool results_are_sound(const tmini_t *lidar)
 {
     const bool streaming = lidar->builder.capacity == 0;
     return (streaming ? !lidar->builder.open : builder_is_sound(&lidar->builder)) &&
-           (!lidar->is_held ||
+           (!lidar->is_settled ||
+            (lidar->pending == 0 && !lidar->packet_waits && lidar->command.unsent == 0)) &&
+           (!lidar->packet_waits ||
             (!streaming && packet_is_sound(&lidar->latest.packet, &lidar->parser.frame)));
 }
 

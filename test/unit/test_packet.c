@@ -299,6 +299,21 @@ void test_a_lone_sample_is_at_fsa_whatever_lsa_says(void)
     TEST_ASSERT_EQUAL_UINT16(23039, points[0].angle_q6);
 }
 
+/* 2 / 3 of 2^17 are 87381.3, 1 / 3 are 43690.7. */
+void test_the_step_between_samples_is_rounded_up_and_that_of_a_lone_one_is_0(void)
+{
+    open_angles(4, 0, 2);
+    TEST_ASSERT_EQUAL_UINT32(87382, receiver.packet.step);
+    open_angles(4, 0, 1);
+    TEST_ASSERT_EQUAL_UINT32(43691, receiver.packet.step);
+    open_angles(2, 0, 1);
+    TEST_ASSERT_EQUAL_UINT32(131072, receiver.packet.step);
+    open_angles(1, 17, 10);
+    TEST_ASSERT_EQUAL_UINT32(0, receiver.packet.step);
+    open_angles(2, 100, 100);
+    TEST_ASSERT_EQUAL_UINT32(0, receiver.packet.step);
+}
+
 void test_the_last_sample_is_at_lsa(void)
 {
     open_angles(255, 5, 22000);

@@ -127,6 +127,29 @@ void test_intensities_may_be_left_out(void)
     TEST_ASSERT_EQUAL_HEX8(0xEE, intensities[4]);
 }
 
+/* 128 KB are too much for a small machine. */
+void test_65535_ranges_are_given(void)
+{
+#if defined(__linux__)
+    static uint16_t many_mm[65536];
+    many_mm[65534] = 0x5555;
+    many_mm[65535] = 0x5555;
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ranges_of_scan(&scan, many_mm, NULL, 65535));
+    TEST_ASSERT_EQUAL_UINT16(0, many_mm[65534]);
+    TEST_ASSERT_EQUAL_HEX16(0x5555, many_mm[65535]);
+#endif
+}
+
+void test_a_scan_gives_all_its_points_and_none_behind_them(void)
+{
+    static const uint16_t expected_mm[BINS] = {0, 0, 700, 0, 900, 0, 0, 0};
+    add(0, 900, 9);
+    add(90 * DEGREE, 700, 7);
+    points[scan.count] = (tmini_point_t){270 * DEGREE, 600, 6, 0};
+    resample();
+    TEST_ASSERT_EQUAL_UINT16_ARRAY(expected_mm, ranges_mm, BINS);
+}
+
 void test_arguments_out_of_range_are_refused_and_nothing_is_written(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ranges_of_scan(NULL, ranges_mm, NULL, BINS));

@@ -428,6 +428,18 @@ void test_checksum_errors_are_counted_while_the_scan_is_received(void)
     TEST_ASSERT_EQUAL_UINT16(0, scan->checksum_errors);
 }
 
+void test_a_count_reaches_65535_exactly(void)
+{
+    (void)start(0);
+    builder.scan.gaps = 65533;
+    tmini_scan_refute(&builder);
+    TEST_ASSERT_EQUAL_UINT16(65534, scan->gaps);
+    tmini_scan_refute(&builder);
+    TEST_ASSERT_EQUAL_UINT16(65535, scan->gaps);
+    tmini_scan_refute(&builder);
+    TEST_ASSERT_EQUAL_UINT16(65535, scan->gaps);
+}
+
 void test_counts_stop_at_65535(void)
 {
     begin_with(2, TMINI_FILTER_NONE);

@@ -149,15 +149,16 @@ void test_clearing_forgets_all_obstacles(void)
     TEST_ASSERT_EQUAL_UINT16(0, nearest_mm[7]);
 }
 
-void test_a_scan_adds_all_its_points(void)
+void test_a_scan_adds_all_its_points_and_none_behind_them(void)
 {
-    static tmini_point_t points[3] = {
-        {0, 900, 50, 0}, {90 * DEGREE, 800, 50, 0}, {359 * DEGREE, 700, 50, 0}};
+    static tmini_point_t points[4] = {{0, 900, 50, 0},
+                                      {90 * DEGREE, 800, 50, 0},
+                                      {270 * DEGREE, 700, 50, 0},
+                                      {180 * DEGREE, 600, 50, 0}};
+    static const uint16_t expected_mm[8] = {900, 0, 800, 0, 0, 0, 700, 0};
     const tmini_scan_t scan = {.points = points, .count = 3};
     tmini_sectors_add_scan(&sectors, &scan);
-    TEST_ASSERT_EQUAL_UINT16(700, nearest_mm[0]);
-    TEST_ASSERT_EQUAL_UINT16(800, nearest_mm[2]);
-    TEST_ASSERT_EQUAL_UINT16(0, nearest_mm[4]);
+    TEST_ASSERT_EQUAL_UINT16_ARRAY(expected_mm, nearest_mm, 8);
 }
 
 /* 0, 45 and 90 degrees. */
@@ -204,6 +205,19 @@ void test_arguments_out_of_range_are_refused(void)
 #if SIZE_MAX > 65535
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT,
                           tmini_sectors_init(&sectors, nearest_mm, 65536, 0, 0));
+#endif
+}
+
+/* 128 KB are too much for a small machine. */
+void test_65535_sectors_are_taken(void)
+{
+#if defined(__linux__)
+    static uint16_t many_mm[65536];
+    many_mm[65534] = 0x5555;
+    many_mm[65535] = 0x5555;
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_sectors_init(&sectors, many_mm, 65535, 0, 0));
+    TEST_ASSERT_EQUAL_UINT16(0, many_mm[65534]);
+    TEST_ASSERT_EQUAL_HEX16(0x5555, many_mm[65535]);
 #endif
 }
 

@@ -893,6 +893,26 @@ void test_a_longer_pause_ends_the_scan(void)
     TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&rig.lidar)->gaps);
 }
 
+/* Seven events end a command, STARTED (bit 1) to COMMAND_FAILED (bit 7); six, to SCAN (bit 13), say
+ * other things. */
+void test_a_command_drops_the_end_of_the_one_before_and_nothing_else(void)
+{
+    rig_go_idle();
+    rig.lidar.pending = 0x3FFE;
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    TEST_ASSERT_EQUAL_HEX16(0x3F00, rig.lidar.pending);
+}
+
+void test_events_are_returned_in_their_order(void)
+{
+    rig.lidar.pending = 0x3FFE;
+    for (unsigned event = TMINI_EVENT_STARTED; event <= TMINI_EVENT_SCAN; event++) {
+        polls_to(event);
+    }
+    polls_to(TMINI_EVENT_NONE);
+}
+
 void test_a_pause_counts_from_poll_to_poll_however_often_it_is_polled(void)
 {
     judge_pauses();
