@@ -17,9 +17,9 @@ A mutant that no test notices is a finding, unless test/mutants.txt has it with 
 
 import argparse
 import glob
+import hashlib
 import json
 import os
-import random
 import re
 import shlex
 import subprocess
@@ -225,9 +225,8 @@ def main():
     files = arguments.files or sorted(os.path.relpath(path, ROOT)
                                       for path in glob.glob(os.path.join(glob.escape(ROOT), "lib/src/*.c")))
     mutants = list({mutant.key + str(mutant.line): mutant for path in files for mutant in mutants_of(path)}.values())
-    draw = random.Random(arguments.seed)
-    if arguments.sample:
-        draw.shuffle(mutants)
+    if arguments.sample: # By hash, so that a change of one line does not draw all others anew.
+        mutants.sort(key=lambda mutant: hashlib.sha256(f"{arguments.seed} {mutant.key}".encode()).digest())
     if arguments.list:
         print(*mutants, f"{len(mutants)} mutants", sep="\n")
         return

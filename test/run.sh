@@ -93,7 +93,7 @@ install_tools
 # What goes well before the tests is not worth reading.
 echo "Building in $root/build"
 quietly cmake -S "$root" -B "$root/build" -DTMINI_BUILD_TESTS=ON \
-    -DTMINI_BUILD_EXAMPLES=ON -DTMINI_WERROR=ON
+    -DTMINI_BUILD_EXAMPLES=ON -DTMINI_WERROR=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
 quietly cmake --build "$root/build" --parallel "$(job_count)"
 
 cd "$root/build"

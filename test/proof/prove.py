@@ -59,7 +59,8 @@ def parser(name, *broken, unwind=33, bounds=PARSED, **more):
 
 
 def scan(name, *broken):
-    return Proof(name, ["proof_scan.c"], SCAN, 10, ANY_SCAN, broken, loops="any_early_ring.0:33")
+    return Proof(name, ["proof_scan.c"], SCAN, 10, ANY_SCAN, broken, loops="any_early_ring.0:33",
+                 slow=name in ("scan_step", "packet_points"))
 
 
 def angle(samples, *broken, **more):

@@ -4,10 +4,13 @@
 # The driver, on a mocked port.
 foreach(test test_tmini test_command test_recovery test_monitor test_states test_blocking)
     tmini_add_unit_test(${test}
-        SOURCES ${test}.c ../support/rig.c
+        SOURCES ${test}.c ../support/rig.c ../support/invariants.c
         MOCKS ../support/port_functions.h
         LIBRARIES tmini_test_support
         )
+    if(TARGET ${test})
+        target_include_directories(${test} PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
+    endif()
 endforeach()
 
 tmini_add_unit_test(test_effort

@@ -4,6 +4,7 @@
 /* The commands that wait. The port's `wait` lets a millisecond pass, in which bytes come as a
  * script says: what comes when, counted from the test's beginning. */
 
+#include "invariants.h"
 #include "rig.h"
 
 #include "mock_port_functions.h"
@@ -50,7 +51,10 @@ void setUp(void)
     script.waits = 0;
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+    TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
+}
 
 static void feed_healthy(void)
 {

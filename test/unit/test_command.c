@@ -4,6 +4,7 @@
 /* What is said to the lidar, and when: every command, its replies, late and lost ones, its waits
  * and its failures. Which command may be begun in which state is in test_states.c. */
 
+#include "invariants.h"
 #include "rig.h"
 
 #include "mock_port_functions.h"
@@ -16,7 +17,10 @@ void setUp(void)
     rig_open();
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+    TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
+}
 
 static void fails_with(tmini_status_t status)
 {

@@ -3,6 +3,7 @@
 
 /* While the lidar scans: packets in, faults out. */
 
+#include "invariants.h"
 #include "rig.h"
 
 #include "mock_port_functions.h"
@@ -13,7 +14,10 @@ void setUp(void)
     rig_open();
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+    TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
+}
 
 /* ---- Faults from CT information ---- */
 

@@ -3,6 +3,7 @@
 
 /* A lidar that is lost while it scans, and the ladder that brings it back. */
 
+#include "invariants.h"
 #include "rig.h"
 
 #include "mock_port_functions.h"
@@ -13,7 +14,10 @@ void setUp(void)
     rig_open();
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+    TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
+}
 
 static tmini_counters_t counters(void)
 {

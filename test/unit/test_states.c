@@ -3,6 +3,7 @@
 
 /* The table of docs/design.md, "States and commands": what each command does in each state. */
 
+#include "invariants.h"
 #include "rig.h"
 
 #include "mock_port_functions.h"
@@ -24,7 +25,10 @@ void setUp(void)
     rig_open();
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+    TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
+}
 
 static tmini_status_t set_frequency(tmini_t *lidar)
 {

@@ -3,6 +3,7 @@
 
 /* The driver's frame: setting it up, feeding it, its events and results, its clock, its misuse. */
 
+#include "invariants.h"
 #include "rig.h"
 
 #include "mock_port_functions.h"
@@ -15,7 +16,10 @@ void setUp(void)
     rig_open();
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+    TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
+}
 
 static tmini_counters_t counters(void)
 {
@@ -891,6 +895,15 @@ void test_a_longer_pause_ends_the_scan(void)
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
     TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&rig.lidar)->gaps);
+}
+
+void test_what_is_fed_before_a_lidar_is_set_up_is_counted_as_refused(void)
+{
+    rig.lidar = (tmini_t){0};
+    tmini_feed_byte(&rig.lidar, 0xAA);
+    tmini_feed_byte(&rig.lidar, 0x55);
+    TEST_ASSERT_EQUAL_UINT32(2, counters().parser.bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
 }
 
 /* Seven events end a command, STARTED (bit 1) to COMMAND_FAILED (bit 7); six, to SCAN (bit 13), say
