@@ -16,6 +16,7 @@ folder=$(cd "$folder" && pwd)
 
 command -v doxygen >/dev/null || { echo "SKIPPED: doxygen is not installed"; exit 77; }
 
+rm -rf "$folder/html"
 cd "$root"
 complaints=$({
     cat docs/Doxyfile
