@@ -40,9 +40,12 @@ static case_t cases[] = {
     {"covered", {"--covered"}, 0},
     {"covered_no_ct", {"--covered", "--no-ct"}, 0},
     {"sensor", {"--health", "0x01"}, 0},
+    {"encoder", {"--health", "0x02"}, 0},
     {"power", {"--health", "0x04"}, 0},
     {"pd", {"--health", "0x08"}, 0},
     {"ld", {"--health", "0x10"}, 0},
+    {"data", {"--health", "0x20"}, 0},
+    {"field", {"--begin", "unmarked", "--firmware", "1.3"}, 0},
     {"slow", {"--motor", "70"}, 0},
     {"brake", {"--motor", "85"}, 0},
     {"weak", {"--spin-up", "8"}, 0},
@@ -193,14 +196,30 @@ void test_a_unit_that_tells_nothing_within_the_stream_is_good_too(void)
     expect_unsaid("BAD");
 }
 
-void test_a_damaged_line_is_a_line(void)
+void test_lost_bytes_are_a_line(void)
 {
     expect_bad("drop", "line");
     expect_said(" packets damaged, ");
     expect_said("GND beside them");
+}
+
+void test_flipped_bits_are_a_line(void)
+{
     expect_bad("flip", "line");
+}
+
+void test_inserted_bytes_are_a_line(void)
+{
     expect_bad("insert", "line");
+}
+
+void test_bursts_are_a_line(void)
+{
     expect_bad("burst", "line");
+}
+
+void test_packets_that_are_cut_off_are_a_line(void)
+{
     expect_bad("cut", "line");
 }
 
@@ -245,17 +264,48 @@ void test_a_covered_window_however_it_is_told(void)
     expect_bad("covered_no_ct", "faults");
 }
 
-void test_a_broken_module_is_named(void)
+/* What the lidar tells of itself is believed. */
+static void expect_broken(const char *name, const char *told)
 {
-    expect_bad("sensor", "health");
-    expect_said("faulty: sensor\n");
-    expect_bad("power", "health");
-    expect_said("faulty: wireless power\n");
-    expect_bad("pd", "health");
-    expect_said("faulty: PD\n");
-    expect_bad("ld", "health");
-    expect_said("faulty: LD\n");
+    expect_bad(name, "health");
+    expect_said(told);
+}
+
+void test_a_broken_sensor_is_named(void)
+{
+    expect_broken("sensor", "faulty: sensor\n");
     expect_said("ask its maker");
+}
+
+void test_a_broken_encoder_is_named(void)
+{
+    expect_broken("encoder", "faulty: encoder (is the rotor blocked?)\n");
+}
+
+void test_a_broken_supply_of_the_rotor_is_named(void)
+{
+    expect_broken("power", "faulty: wireless power\n");
+}
+
+void test_a_broken_photodiode_is_named(void)
+{
+    expect_broken("pd", "faulty: PD\n");
+}
+
+void test_a_broken_laser_is_named(void)
+{
+    expect_broken("ld", "faulty: LD\n");
+}
+
+void test_data_that_the_lidar_does_not_trust_are_named(void)
+{
+    expect_broken("data", "faulty: data (is the window covered?)\n");
+}
+
+void test_a_unit_as_in_the_field_is_good(void)
+{
+    end_case("field", 0, "firmware 1.3, ");
+    expect_unsaid("BAD");
 }
 
 void test_a_motor_that_does_not_come_up_to_its_speed(void)
