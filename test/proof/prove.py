@@ -162,9 +162,8 @@ class Checker:
     """CBMC over a copy of the sources, where it is installed or in a jail of its own."""
 
     def __init__(self, work, jail):
-        self.jail = jail
-        self.folder = os.path.join(jail, "tmini") if jail else work
-        self.seen = "/tmini" if jail else work
+        self.folder = work
+        self.seen = "/" + os.path.relpath(work, jail) if jail else work
         self.prefix = ["chroot", jail] if jail else []
 
     def copy_sources(self):
@@ -188,7 +187,7 @@ class Checker:
     def demand(self, *command):
         done = self.call(*command)
         if done.returncode != 0:
-            sys.exit(done.stdout + done.stderr)
+            sys.exit(f"{command[0]} ended with {done.returncode}\n{done.stdout}{done.stderr}")
 
     def check(self, proof):
         """Returns the number of properties and those that failed."""
@@ -234,7 +233,7 @@ def prove(checker, proof, broken):
 
 def main():
     parser_ = argparse.ArgumentParser(description="Proves what proof_….c claim.")
-    parser_.add_argument("--work", required=True, help="a folder to work in")
+    parser_.add_argument("--work", required=True, help="a folder to work in, inside the jail if there is one")
     parser_.add_argument("--jail", help="a Debian of its own that has CBMC")
     parser_.add_argument("--quick", action="store_true", help="only what takes seconds")
     parser_.add_argument("--broken", action="store_true", help="break the library: each proof must fail")

@@ -37,7 +37,9 @@ extern "C" {
  *
  * The indices count bytes since init and wrap with size_t; the memory's size is a power of two, so
  * that a count modulo the size is always the right place. An all-zero ring is safe: its head stands
- * at its limit, so it refuses every byte. */
+ * at its limit, so it refuses every byte. A side reads its own index as a plain variable: nobody
+ * else writes it, so nothing can race with that; what the other side reads is stored atomically.
+ * The gate, which both write, is always loaded atomically. */
 typedef struct {
     size_t head;  /**< Written by the producer: bytes stored. */
     size_t limit; /**< Written by the consumer: where head must stop, one size ahead of the oldest
