@@ -38,6 +38,10 @@ typedef char events_fit_their_mask[TMINI_EVENT_MORE <= 16 ? 1 : -1];
  * come from a layer that holds them back. */
 #define HELD_MS 16u
 
+/* What becomes of a frame costs as much as looking at its bytes once again, and at so many more: a
+ * packet's samples are read for its points, its time is told, and its place in the scan found. */
+#define FRAME_EFFORT 44u
+
 /* Which packets others may be missing before: each that begins among the doubtful bytes, and
  * AHEAD: the first one behind them, if none has been marked; AROUND: the first one behind them
  * in any case. */
@@ -350,7 +354,7 @@ static void add_waiting_packet(tmini_t *lidar)
 static bool give_up_candidate(tmini_t *lidar)
 {
     const tmini_link_t *const link = &lidar->link;
-    if (link->silent_ms < link->timing->frame_timeout_ms ||
+    if (link->silent_ms == 0 || link->silent_ms < link->timing->frame_timeout_ms ||
         tmini_ring_stored(&lidar->ring) != link->received ||
         tmini_parser_pending(&lidar->parser) == 0) {
         return false;
@@ -363,12 +367,13 @@ static bool give_up_candidate(tmini_t *lidar)
  * than one poll may do. */
 static bool receive(tmini_t *lidar)
 {
+    size_t effort = 0;
     add_waiting_packet(lidar);
-    for (size_t effort = 0; lidar->pending == 0; effort += lidar->parser.effort + 1u) {
+    while (lidar->pending == 0) {
         if (effort >= TMINI_PARSER_EFFORT) {
             return false;
         }
-        const tmini_frame_type_t type = tmini_parser_next(&lidar->parser);
+        const tmini_frame_type_t type = tmini_parser_next_after(&lidar->parser, effort);
         if (type == TMINI_FRAME_PACKET) {
             take_packet(lidar);
         } else if (type == TMINI_FRAME_REPLY) {
@@ -376,6 +381,7 @@ static bool receive(tmini_t *lidar)
         } else if (type == TMINI_FRAME_NONE && !give_up_candidate(lidar)) {
             return true;
         }
+        effort = FRAME_EFFORT + lidar->parser.effort + tmini_parser_frame(&lidar->parser)->size;
     }
     return true;
 }

@@ -10,7 +10,8 @@
  *
  * Each writes its own group of members of tmini_t (`command`, `recovery`, `monitor`; tmini.c `link`
  * and those without a group). Ring, parser and builder are written by their own modules only, which
- * know nothing of tmini_t. test/layers.sh checks both. docs/design.md has the states and phases as a drawing. */
+ * know nothing of tmini_t. test/layers.sh checks both. docs/design.md has the states and phases as
+ * a drawing. */
 
 #ifndef TMINI_DRIVER_H
 #define TMINI_DRIVER_H

@@ -25,9 +25,10 @@ static uint16_t clockwise_difference(uint16_t from, uint16_t to)
     return (uint16_t)(to + (to < from ? TMINI_FULL_CIRCLE_Q6 : 0) - from);
 }
 
-/* Decodes `count` samples, at least one, that lie in one piece, from sample `index` of the packet on: the hottest
- * loop there is. A function of its own, so that all that it needs stays in registers; each sample
- * is read before its point is written, because the two might overlap for all the compiler knows. */
+/* Decodes `count` samples, at least one, that lie in one piece, from sample `index` of the packet
+ * on: the hottest loop there is. A function of its own, so that all that it needs stays in
+ * registers; each sample is read before its point is written, because the two might overlap for all
+ * the compiler knows. */
 TMINI_NOINLINE static void decode(const tmini_packet_t *packet, size_t index, const uint8_t *sample,
                                   size_t count, tmini_point_t *point)
 {

@@ -223,12 +223,14 @@ static void discard_skipped(tmini_parser_t *parser, size_t count)
     begin_candidate(parser);
 }
 
-/* Skips the candidate's first byte, and those behind it, as far as they lie in one piece, that can
- * begin no frame. */
+/* Skips the candidate's first byte, and those behind it that can begin no frame, as far as they lie
+ * in one piece and there is effort left. */
 static void skip(tmini_parser_t *parser, size_t unread)
 {
     tmini_frame_t *const frame = &parser->frame;
-    size_t count = unread < TMINI_PARSER_EFFORT ? unread : TMINI_PARSER_EFFORT;
+    const size_t done = parser->effort;
+    const size_t left = done < TMINI_PARSER_EFFORT ? TMINI_PARSER_EFFORT - done : 1;
+    size_t count = unread < left ? unread : left;
     const uint8_t *const bytes = tmini_ring_piece(frame->ring, 0, &count);
     size_t skipped = 1;
     while (skipped < count && begins_no_frame(parser, bytes[skipped])) {
@@ -319,11 +321,11 @@ tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uin
     return fits ? TMINI_OK : TMINI_ERROR_ARGUMENT;
 }
 
-tmini_frame_type_t tmini_parser_next(tmini_parser_t *parser)
+tmini_frame_type_t tmini_parser_next_after(tmini_parser_t *parser, size_t effort)
 {
-    parser->effort = 0;
+    parser->effort = (uint16_t)effort;
     release_frame(parser);
-    while (parser->effort < TMINI_PARSER_EFFORT) {
+    do {
         const size_t unread = intact_bytes(parser);
         if (unread < parser->need) {
             if (!pass_lost_bytes(parser)) {
@@ -337,7 +339,7 @@ tmini_frame_type_t tmini_parser_next(tmini_parser_t *parser)
         } else if (verdict == COMPLETE && tmini_frame_intact(&parser->frame)) {
             return deliver(parser);
         }
-    }
+    } while (parser->effort < TMINI_PARSER_EFFORT);
     return TMINI_FRAME_MORE;
 }
 

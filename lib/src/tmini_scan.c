@@ -26,10 +26,10 @@ static uint16_t end_of(const tmini_packet_t *packet)
     return packet->count > 1 ? packet->last_angle_q6 : packet->first_angle_q6;
 }
 
-/* True if a packet that begins `ahead` of the last one's end, and ends `angle` from the start packet,
- * may continue the revolution: not if half a turn or more may be missing before it, by bytes or by
- * angle, nor if it would lead beyond the circle or behind its beginning. A lost start packet shows
- * here. */
+/* True if a packet that begins `ahead` of the last one's end, and ends `angle` from the start
+ * packet, may continue the revolution: not if half a turn or more may be missing before it, by
+ * bytes or by angle, nor if it would lead beyond the circle or behind its beginning. A lost start
+ * packet shows here. */
 static bool continues(const tmini_packet_t *packet, int32_t ahead, int32_t angle)
 {
     return packet->gap <= GAP_MAX && ahead <= CIRCLE_Q6 / 2 && angle <= SWEPT_MAX_Q6 &&

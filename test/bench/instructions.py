@@ -10,7 +10,7 @@ from emulator import Machine
 from targets import HERE, ROOT, BenchError
 
 RX_SIZE = 1024
-LARGEST_RING = 2048
+LARGEST_RING = 4096
 TICK_MS = 10             # How often is polled: about once a packet.
 BYTES_A_TICK = 131       # At the lidar's mean data rate (section 1).
 LINE_BYTES_A_TICK = 230  # At the line's full rate, 230400 baud.
@@ -193,15 +193,15 @@ def resynchronisation(target, program, clean, hostile):
     return session.poll_total / skipped
 
 
-def longest_poll(target, program, clean, hostile):
-    """The costliest single poll when the largest ring is full of the worst that can be sent, while
-    the lidar scans and a scan is under way."""
+def longest_poll(target, program, clean, full):
+    """The costliest single poll when the largest ring is full of such a stream, while the lidar
+    scans and a scan is under way."""
     session = Session(target, program, "blocks", rx_size=LARGEST_RING)
     session.spin_up()
     session.run(clean)
     session.worst_poll = {}
     for _ in range(4):
-        session.tick(hostile[:LARGEST_RING])
+        session.tick(full[:LARGEST_RING])
     if "MORE" not in session.worst_poll:
         raise BenchError("a full ring is not too much for one poll")
     return max(session.worst_poll.values())
@@ -309,7 +309,8 @@ def measure(target, level, objects, folder, streams):
     hostile = {name: resynchronisation(target, program, streams["turn"], streams[name])
                for name in streams if name.startswith(("random", "headers"))}
     longest = {name: longest_poll(target, program, streams["turn"], streams[name])
-               for name in hostile}
+               for name in streams
+               if name in hostile or name == "clean" or name.startswith(("points", "marks"))}
     by_frequency = {name: sum(through(target, program, streams[name], "blocks")[0])
                     for name in streams if name.endswith("Hz")}
     return {"costs": costs, "feed worst": feed_worst, "idle poll": idle, "worst poll": worst,

@@ -8,7 +8,10 @@
  *   streams faulty REVOLUTIONS POINTS  the same from a lidar that reports a fault of its encoder
  *   streams corrupted REVOLUTIONS POINTS  as clean, one fault in about 500 bytes
  *   streams random SIZE 0              bytes without structure
- *   streams headers SIZE STEP          a false header every STEP bytes, claiming 80 samples */
+ *   streams headers SIZE STEP          a false header every STEP bytes, claiming 80 samples
+ *   streams points SIZE SAMPLES        valid packets of so many samples, all without a range and
+ *                                      across 0 degrees: those that are most work
+ *   streams marks SIZE COUNT           so many AA, which might each begin a packet, then zeros */
 
 #include "corrupt.h"
 #include "encoder.h"
@@ -115,6 +118,28 @@ static void make_headers(uint32_t bytes, uint32_t step)
     }
 }
 
+/* A start packet before them, so that there is room for their points. */
+static void make_points(uint32_t bytes, uint32_t count)
+{
+    static const encode_sample_t samples[MOST_SAMPLES];
+    const encode_packet_t start = {.ct = encode_ct(&turn, 0), .lsn = 1, .samples = samples};
+    const encode_packet_t packet = {.lsn = (uint8_t)count,
+                                    .first_q6 = count > 1 ? ENCODE_FULL_TURN_Q6 - 1 : 0,
+                                    .last_q6 = 0,
+                                    .samples = samples};
+    size = encode_packet(stream, &start);
+    while (size < bytes && size + ENCODE_PACKET_MAX < CAPACITY) {
+        size += encode_packet(&stream[size], &packet);
+    }
+}
+
+static void make_marks(uint32_t bytes, uint32_t count)
+{
+    for (size = 0; size < bytes && size < CAPACITY; size++) {
+        stream[size] = size < count ? 0xAA : 0;
+    }
+}
+
 static bool make(const char *kind, uint32_t amount, uint32_t parameter)
 {
     points_a_revolution = parameter;
@@ -130,6 +155,10 @@ static bool make(const char *kind, uint32_t amount, uint32_t parameter)
         make_noise(amount);
     } else if (strcmp(kind, "headers") == 0 && parameter > 0) {
         make_headers(amount, parameter);
+    } else if (strcmp(kind, "points") == 0 && parameter > 0 && parameter <= MOST_SAMPLES) {
+        make_points(amount, parameter);
+    } else if (strcmp(kind, "marks") == 0) {
+        make_marks(amount, parameter);
     } else {
         return false;
     }
@@ -144,7 +173,7 @@ static uint32_t number(const char *word)
 int main(int argc, char **argv)
 {
     if (argc != 4 || !make(argv[1], number(argv[2]), number(argv[3]))) {
-        fputs("usage: streams clean|faulty|corrupted|random|headers AMOUNT PARAMETER\n", stderr);
+        fputs("usage: streams KIND AMOUNT PARAMETER\n", stderr);
         return 2;
     }
     return fwrite(stream, 1, size, stdout) == size ? 0 : 1;

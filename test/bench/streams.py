@@ -18,6 +18,10 @@ POINTS = {6: 667, 8: 500, 10: 400, 12: 333}
 HOSTILE_SIZE = 8000
 HEADER_STEPS = range(2, 13)
 
+# What else makes a poll long: packets of so many samples, and so many AA before a long skip.
+POINTS_A_PACKET = (1, 2, 3, 4, 6, 8, 12, 20, 40, 80)
+MARKS = (68, 136)
+
 
 def make(folder):
     """All streams by name, and how many packets the clean one has."""
@@ -40,5 +44,9 @@ def make(folder):
         streams[f"{frequency} Hz"] = made("clean", REVOLUTIONS, points)
     for step in HEADER_STEPS:
         streams[f"headers {step}"] = made("headers", HOSTILE_SIZE, step)
+    for count in POINTS_A_PACKET:
+        streams[f"points {count}"] = made("points", HOSTILE_SIZE, count)
+    for count in MARKS:
+        streams[f"marks {count}"] = made("marks", HOSTILE_SIZE, count)
     streams["clean packets"] = REVOLUTIONS * PACKETS_A_REVOLUTION
     return streams

@@ -6,9 +6,9 @@
  * between two accesses: each step is memory-safe, keeps the state sound and every byte accounted
  * for. The steps are private, so the source is included.
  *
- * tmini_parser_next() itself puts these steps together in a loop of a dozen lines, in which each step's
- * assumption is what the one before has claimed; as a whole it takes the checker hours. In classify()
- * the checksum is right or wrong as it likes. */
+ * tmini_parser_next_after() puts these steps together in a loop of a dozen lines, in which each
+ * step's assumption is what the one before has claimed; as a whole it takes the checker hours. In
+ * classify() the checksum is right or wrong as it likes. */
 
 #include "tmini_parser.c"
 

@@ -140,7 +140,7 @@ PROOFS = [
     driver("poll", "lib/src/tmini.c", "if (lidar->pending != 0) {\n        return take_event", "if (is_done) {\n        return take_event",
            stubs=["update_time", "receive", "keep_time"]),
     driver("packet", "lib/src/tmini_command.c", "end(lidar, PHASE_NONE); /* So", "/* So"),
-    driver("reply", "lib/src/tmini_command.c", "if (frequency_chz > PLAUSIBLE_CHZ_MAX)", "if (frequency_chz > 65535)"),
+    driver("reply", "lib/src/tmini_command.c", "|| frequency_chz > PLAUSIBLE_CHZ_MAX", "|| frequency_chz > 65535"),
     driver("nothing", "lib/src/tmini.c", "tmini_parser_abandon(&lidar->parser);", "tmini_command_cancel(lidar);"),
     driver("keep_time", "lib/src/tmini_command.c", "command->steps < STEPS_MAX", "command->steps <= STEPS_MAX"),
     driver("start", "lib/src/tmini.c", "TMINI_STATE_STARTING, TMINI_OPERATION_START",
@@ -153,8 +153,8 @@ PROOFS = [
     driver("stop", "lib/src/tmini_command.c", "(taken < unsent ? unsent - taken : 0)", "(unsent - taken)"),
     driver("reboot", "lib/src/tmini.c", "tmini_reboot(tmini_t *lidar)\n{\n    return request(lidar, TMINI_STATE_BUSY",
            "tmini_reboot(tmini_t *lidar)\n{\n    return request(lidar, TMINI_STATE_STARTING"),
-    driver("cancel", "lib/src/tmini.c", "tmini_command_cancel(lidar);\n    lidar->state = TMINI_STATE_UNKNOWN;",
-           "tmini_command_cancel(lidar);"),
+    driver("cancel", "lib/src/tmini.c", "lidar->is_settled = false;\n    lidar->state = TMINI_STATE_UNKNOWN;",
+           "lidar->is_settled = false;"),
 ]
 
 

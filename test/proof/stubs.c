@@ -38,11 +38,11 @@ tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uin
     return TMINI_OK;
 }
 
-tmini_frame_type_t tmini_parser_next(tmini_parser_t *parser)
+tmini_frame_type_t tmini_parser_next_after(tmini_parser_t *parser, size_t effort)
 {
     const tmini_parser_t before = *parser;
     const uint8_t type = nondet_byte();
-    CLAIM(parser_is_sound(parser));
+    CLAIM(parser_is_sound(parser) && effort < TMINI_PARSER_EFFORT);
     change(parser);
     ASSUME(type <= TMINI_FRAME_REPLY);
     ASSUME(next_keeps_its_word(&before, parser, (tmini_frame_type_t)type));

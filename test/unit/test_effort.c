@@ -42,7 +42,8 @@ static tmini_parser_counters_t parser_counters(void)
     return counters;
 }
 
-/* One call looks at 2048 bytes and at most one packet more. */
+/* One call looks at 2048 bytes and at most one packet more; of the candidate that used up the last
+ * of them it skips the first byte only. */
 void test_a_call_looks_at_no_more_bytes_than_it_may(void)
 {
     open_parser();
@@ -52,7 +53,7 @@ void test_a_call_looks_at_no_more_bytes_than_it_may(void)
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_MORE, tmini_parser_next(&parser));
     const uint32_t errors = parser_counters().checksum_errors;
     TEST_ASSERT_TRUE(errors >= 7 && errors <= 8);
-    TEST_ASSERT_EQUAL_UINT32(10 * errors, parser_counters().bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(10 * errors - 9, parser_counters().bytes_skipped);
     unsigned calls = 1;
     while (tmini_parser_next(&parser) == TMINI_FRAME_MORE) {
         calls++;
@@ -89,18 +90,94 @@ void test_candidates_without_a_packet_are_bounded_too(void)
     TEST_ASSERT_EQUAL_UINT32(0, parser_counters().checksum_errors);
 }
 
-static uint32_t checksum_errors(void)
+/* What is skipped behind candidates counts with them: 99 of one byte, 15 each, and for the last
+ * one and what follows it are left 563. */
+void test_garbage_behind_candidates_is_bounded_with_them(void)
+{
+    open_parser();
+    for (size_t i = 0; i < sizeof memory; i++) {
+        tmini_ring_put(&ring, i < 100 ? 0xAA : 0);
+    }
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_MORE, tmini_parser_next(&parser));
+    TEST_ASSERT_EQUAL_UINT32(99 + 563, parser_counters().bytes_skipped);
+}
+
+void test_a_call_is_bounded_by_what_others_have_left(void)
+{
+    open_parser();
+    for (size_t i = 0; i < sizeof memory; i++) {
+        tmini_ring_put(&ring, 0);
+    }
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_MORE, tmini_parser_next_after(&parser, 2000));
+    TEST_ASSERT_EQUAL_UINT32(48, parser_counters().bytes_skipped);
+}
+
+static tmini_parser_counters_t poll_counters(void)
 {
     tmini_counters_t counters;
     tmini_counters(&rig.lidar, &counters);
-    return counters.parser.checksum_errors;
+    return counters.parser;
 }
 
-void test_a_poll_that_has_more_to_do_says_so_and_goes_on_with_the_next(void)
+static void open_driver(void)
 {
     rig.config.rx_buffer = memory;
     rig.config.rx_size = sizeof memory;
     rig_init();
+}
+
+/* A packet of one sample costs its 13 bytes twice, and 44: 2048 / 70, rounded up. */
+static void check_that_short_packets_are_bounded(void)
+{
+    const uint32_t before = poll_counters().packets;
+    for (unsigned i = 0; i < 200; i++) {
+        rig_feed_packet(0, 1, 1000);
+    }
+    polls_to(TMINI_EVENT_MORE);
+    TEST_ASSERT_EQUAL_UINT32(30, poll_counters().packets - before);
+    while (tmini_poll(&rig.lidar) == TMINI_EVENT_MORE) {
+    }
+    TEST_ASSERT_EQUAL_UINT32(200, poll_counters().packets - before);
+}
+
+void test_packets_that_nobody_asked_for_are_bounded(void)
+{
+    open_driver();
+    check_that_short_packets_are_bounded();
+}
+
+void test_packets_of_a_scan_are_bounded(void)
+{
+    open_driver();
+    rig_go_scanning();
+    rig_feed_start_packet(1000);
+    TEST_ASSERT_EQUAL_UINT(0, rig_drain());
+    check_that_short_packets_are_bounded();
+}
+
+/* Ten packets of 4 samples cost 88 each; for the garbage behind them 1168 are left. */
+void test_packets_and_the_garbage_behind_them_share_a_polls_effort(void)
+{
+    open_driver();
+    for (unsigned i = 0; i < 10; i++) {
+        rig_feed_point_packet(1000);
+    }
+    for (unsigned i = 0; i < 4096; i++) {
+        rig_feed_byte(0);
+    }
+    polls_to(TMINI_EVENT_MORE);
+    TEST_ASSERT_EQUAL_UINT32(10, poll_counters().packets);
+    TEST_ASSERT_EQUAL_UINT32(1168, poll_counters().bytes_skipped);
+}
+
+static uint32_t checksum_errors(void)
+{
+    return poll_counters().checksum_errors;
+}
+
+void test_a_poll_that_has_more_to_do_says_so_and_goes_on_with_the_next(void)
+{
+    open_driver();
     for (unsigned i = 0; i < HEADERS; i++) {
         rig_feed(header, sizeof header);
     }

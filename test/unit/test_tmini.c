@@ -339,6 +339,38 @@ void test_a_line_on_which_bytes_come_while_the_clock_is_read_is_not_quiet(void)
     polls_to(TMINI_EVENT_STOPPED);
 }
 
+void test_without_a_frame_timeout_a_reply_that_comes_in_two_is_taken_all_the_same(void)
+{
+    static const uint8_t begin[] = {0xA5, 0x5A, 0x03, 0x00, 0x00};
+    static const uint8_t rest[] = {0x00, 0x06, 0x00, 0x00, 0x00};
+
+    rig.timing.frame_timeout_ms = 0;
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    rig_feed(begin, sizeof begin);
+    polls_to(TMINI_EVENT_NONE);
+    rig.now_ms += 1;
+    rig_feed(rest, sizeof rest);
+    polls_to(TMINI_EVENT_HEALTH);
+}
+
+void test_without_a_frame_timeout_a_silent_poll_gives_up_a_reply(void)
+{
+    static const uint8_t begin[] = {0xA5, 0x5A, 0x03, 0x00, 0x00};
+
+    rig.timing.frame_timeout_ms = 0;
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    rig_feed(begin, sizeof begin);
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT32(sizeof begin, counters().bytes_pending);
+    rig.now_ms += 1;
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
+}
+
 /* A header that promises more than comes: it hides the packet behind it. */
 static void feed_false_header_and_packet(void)
 {

@@ -67,7 +67,8 @@ extern "C" {
 
 /** How long the driver waits for what, in milliseconds. Change a copy of tmini_timing_default. */
 typedef struct {
-    /** A packet that stops coming is given up after this silence. 0: with the next silent poll. */
+    /** A packet that stops coming is given up after this silence. 0: with the first poll that finds
+     * time passed and nothing come. */
     uint16_t frame_timeout_ms;
     /** What comes after a longer pause of the line does not continue a scan: at 12 Hz half a turn
      * takes 42 ms. Bytes that were held back count by the time in which the line could have sent

@@ -83,7 +83,7 @@ typedef struct {
 typedef struct {
     tmini_frame_t frame; /**< Delivered last; its size is 0 while the next one is sought. */
     uint16_t need;       /**< Bytes without which the candidate cannot be told further. */
-    uint16_t effort;     /**< Done by the last call of tmini_parser_next(), as above. */
+    uint16_t effort;     /**< Done up to the end of the last call that sought a frame, as above. */
     uint8_t max_samples; /**< Packets with more are not valid. */
     uint8_t kind;        /**< What the candidate is by its plausible header: tmini_frame_type_t. */
     bool awaiting;       /**< A reply is awaited, */
@@ -97,8 +97,15 @@ typedef struct {
 tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uint8_t max_samples);
 
 /** Goes on to the next frame, which tmini_parser_frame() then tells. The frame lies at the ring's
- * tail until the next call gives it back. Bounded by TMINI_PARSER_EFFORT and one frame. */
-tmini_frame_type_t tmini_parser_next(tmini_parser_t *parser);
+ * tail until the next call gives it back. `effort` has been done already, less than
+ * TMINI_PARSER_EFFORT: the call is bounded by what is left of that, and one frame. */
+tmini_frame_type_t tmini_parser_next_after(tmini_parser_t *parser, size_t effort);
+
+/** The same, when nothing has been done yet. */
+static inline tmini_frame_type_t tmini_parser_next(tmini_parser_t *parser)
+{
+    return tmini_parser_next_after(parser, 0);
+}
 
 /** The frame delivered last, valid until the next call of tmini_parser_next(). */
 static inline const tmini_frame_t *tmini_parser_frame(const tmini_parser_t *parser)

@@ -76,8 +76,8 @@ typedef struct {
     uint16_t error_code; /**< Details of the faulty module; undocumented. */
 } tmini_health_t;
 
-/** Writes to `header` the header of the reply that `command` is answered with. Returns false for the
- * commands that are not answered: stop and reboot. */
+/** Writes to `header` the header of the reply that `command` is answered with. Returns false for
+ * the commands that are not answered: stop and reboot. */
 bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header);
 
 /** Device information from a reply's 20 bytes. The firmware's minor number comes first: real units

@@ -64,8 +64,8 @@ tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buf
 /** Forgets the scan under way: what comes next does not continue it. */
 void tmini_scan_discard(tmini_scan_builder_t *builder);
 
-/** Adds `packet`, which came at `now_ms`, to the scan under way; a start packet begins one. If it no
- * longer belongs to the scan under way, finishes that instead and returns true: builder->scan is
+/** Adds `packet`, which came at `now_ms`, to the scan under way; a start packet begins one. If it
+ * no longer belongs to the scan under way, finishes that instead and returns true: builder->scan is
  * then valid until the same packet is added again. A packet that DMA overwrote meanwhile leaves a
  * gap, never a wrong point. */
 bool tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
