@@ -5,7 +5,6 @@
 
 #define _POSIX_C_SOURCE 200809L
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -51,8 +50,8 @@ static void put(tape_t *tape, const uint8_t *bytes, size_t count)
     }
 }
 
-/* The port's tap: a block is far smaller than CHUNK_MAX. A pause of more than the 71 minutes that
- * fit in 32 bits is shortened to them. */
+/* The port's tap: its blocks are far smaller than the 64 KiB of a chunk. A pause of more than the 71
+ * minutes that fit in 32 bits is shortened to them. */
 static void write_tape(void *context, const uint8_t *bytes, size_t count)
 {
     tape_t *const tape = context;

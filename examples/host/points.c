@@ -92,7 +92,7 @@ const char *faults_text(unsigned faults, char text[FAULTS_TEXT_SIZE])
 
 const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE])
 {
-    if (stream->faults != FAULTS_UNKNOWN) {
+    if (stream->faults != TMINI_FAULTS_UNKNOWN) {
         return faults_text(stream->faults, text);
     }
     return stream_tells_nothing(stream)
@@ -156,7 +156,7 @@ void rows_print_scan(const stream_t *stream)
                  "\"checksum_errors\":%d,\"faults\":%s,\"points\":[",
                  stream->number, scan->start_ms, hertz(scan->frequency_chz, "null"),
                  scan->complete ? "true" : "false", scan->packets, scan->gaps, scan->dropped,
-                 scan->checksum_errors, stream->faults != FAULTS_UNKNOWN ? faults : "null");
+                 scan->checksum_errors, stream->faults != TMINI_FAULTS_UNKNOWN ? faults : "null");
     for (size_t i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
         (void)printf("%s[" DEGREES ",%d,%d,%d]", i > 0 ? "," : "", point->angle_q6 / 64.0,

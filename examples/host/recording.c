@@ -8,7 +8,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -75,16 +74,23 @@ static bool begin_chunk(recording_t *recording)
     return true;
 }
 
-/* More bytes of the lidar's into the ring; returns false at the end. */
-static bool refill(recording_t *recording)
+/* Bytes of a chunk are next; false at the end, or when its time has not come yet. */
+static bool find_chunk(recording_t *recording)
 {
-    while (recording->is_timed && recording->chunk_left == 0) {
+    while (recording->chunk_left == 0) {
         if (!begin_chunk(recording)) {
             return false;
         }
     }
-    recording->is_waiting = recording->is_timed && recording->chunk_us > recording->until_us;
-    if (recording->is_waiting || (recording->at == recording->count && !fill(recording))) {
+    recording->is_waiting = recording->chunk_us > recording->until_us;
+    return !recording->is_waiting;
+}
+
+/* More bytes of the lidar's into the ring; returns false at the end, or when there are none yet. */
+static bool refill(recording_t *recording)
+{
+    if ((recording->is_timed && !find_chunk(recording)) ||
+        (recording->at == recording->count && !fill(recording))) {
         return false;
     }
     size_t count = recording->count - recording->at;

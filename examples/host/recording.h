@@ -17,9 +17,8 @@
 #include "stream.h"
 #include "tmini/tmini_parser.h"
 
-/* Bytes of a chunk's head, and the most that follow. */
+/* Bytes of a chunk's head. */
 #define CHUNK_HEAD_SIZE 6u
-#define CHUNK_MAX UINT16_MAX
 
 extern const uint8_t recording_magic[8];
 

@@ -15,7 +15,7 @@
 
 void stream_init(stream_t *stream)
 {
-    *stream = (stream_t){.faults = FAULTS_UNKNOWN};
+    *stream = (stream_t){.faults = TMINI_FAULTS_UNKNOWN};
     tmini_ct_init(&stream->ct);
     (void)tmini_scan_init(&stream->builder, stream->building, STREAM_POINTS_MAX, TMINI_FILTER_NONE);
 }

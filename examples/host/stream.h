@@ -16,8 +16,6 @@
 /* 64 bits at least: a recording may be long. */
 typedef unsigned long long count_t;
 
-#define FAULTS_UNKNOWN TMINI_FAULTS_UNKNOWN
-
 typedef struct {
     tmini_scan_t scan; /* The latest one, if there is one; its points stay until the next. */
     count_t number;    /* Its number: start packets up to and including its own. */
@@ -34,7 +32,7 @@ typedef struct {
     uint32_t packet_ms;     /* When the latest packet came. */
     uint32_t longest_ms;    /* The longest pause between two packets. */
     unsigned frequency_chz; /* As told last; 0: not yet. */
-    unsigned faults;        /* A combination of tmini_fault_t, or FAULTS_UNKNOWN. */
+    unsigned faults;        /* A combination of tmini_fault_t, or TMINI_FAULTS_UNKNOWN. */
     bool has_scan;          /* The latest packet has completed `scan`. */
     bool is_open;
     count_t open_number;

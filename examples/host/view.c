@@ -244,12 +244,12 @@ static void say_sectors(screen_t *screen, int *row, const tmini_scan_t *scan)
 
 static bool is_faulty(const view_t *view)
 {
-    return view->faults != 0 && view->faults != FAULTS_UNKNOWN;
+    return view->faults != 0 && view->faults != TMINI_FAULTS_UNKNOWN;
 }
 
 static const char *health_name(const view_t *view)
 {
-    if (view->faults == FAULTS_UNKNOWN) {
+    if (view->faults == TMINI_FAULTS_UNKNOWN) {
         return stream_tells_nothing(view->stream) ? "not told" : "unknown";
     }
     return view->faults == 0 ? "healthy" : "FAULTY";

@@ -16,7 +16,7 @@ typedef struct {
     const char *state;  /* "scanning", "end of the recording", … */
     const char *keys;   /* What they do. */
     const stream_t *stream;
-    unsigned faults;   /* A combination of tmini_fault_t, or FAULTS_UNKNOWN. */
+    unsigned faults;   /* A combination of tmini_fault_t, or TMINI_FAULTS_UNKNOWN. */
     unsigned zoom_mm;  /* The range chosen by hand; 0: as far as there is something. */
     unsigned range_mm; /* The range shown; 0: to be chosen anew. The rest is view_draw()'s own: */
     survey_t survey;   /* of the scan, and */
