@@ -202,7 +202,7 @@ static inline void tmini_feed_dma(tmini_t *lidar, size_t position);
  * queue overflowed, or DMA may have gone a whole lap unseen (then call it before tmini_feed_dma()).
  * No scan continues across the gap. Without DMA nothing is stored until polling has emptied the
  * buffer: look at tmini_feed_room(). With DMA it counts a lap (rx_size bytes) as overrun, how many
- * there may have been. */
+ * there may have been; if there was none, what came last may be delivered a second time. */
 static inline void tmini_feed_gap(tmini_t *lidar);
 
 /* -------------------------------------------------------- everything else: the polling context */
