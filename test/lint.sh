@@ -124,8 +124,8 @@ check_cppcheck() {
 
 # Rules that are broken, each with a reason, are in a table: no other is.
 check_misra() {
-    broken=$(cppcheck --addon=misra --quiet --std=c99 --enable=style --template='{id} {file}:{line}' \
-        --suppress=missingIncludeSystem --suppress=preprocessorErrorDirective -D__GNUC__=12 \
+    broken=$(cppcheck --addon=misra --quiet --std=c99 --enable=style \
+        --template='{id} {file}:{line}' --suppress=missingIncludeSystem --suppress=preprocessorErrorDirective -D__GNUC__=12 \
         -U__AVR__ -UTMINI_ATOMIC_HEADER -I lib/include lib/src 2>&1 |
         sed -n 's/^misra-c2012-\([0-9.]*\) /\1 /p' | sort -u)
     [ -n "$broken" ] || { echo "cppcheck's MISRA addon says nothing at all"; return 1; }
@@ -144,7 +144,8 @@ analyse() {
 # file for none, and what finds an entry that exists for something that may return none.
 check_analyzer() {
     clean=0
-    for source in lib/src/*.c port/posix/*.c port/template/*.c examples/obstacle_stop/obstacle*.c; do
+    for source in lib/src/*.c port/posix/*.c port/template/*.c \
+        examples/obstacle_stop/obstacle*.c; do
         analyse -Iport/template "$source" || clean=1
     done
     for source in examples/host/*.c; do

@@ -4,8 +4,8 @@
 /* The driver, from any sound state: whatever phase and operation, whatever the port answers and the
  * clock says, whatever is set up. Each step of tmini_poll() and each public function leaves a sound
  * state; only events that there are become pending; and only whole commands of two bytes leave.
- * stubs.c stands in for parser, packets, scans and CT information, by their contracts. The steps are
- * private, so the source is included. */
+ * stubs.c stands in for parser, packets, scans and CT information, by their contracts. The steps
+ * are private, so the source is included. */
 
 #include "tmini.c"
 
@@ -210,6 +210,7 @@ static void prove_command(tmini_status_t (*command)(tmini_t *))
     CLAIM(is_sound());
     CLAIM(status == TMINI_OK || status == TMINI_ERROR_STATE || status == TMINI_ERROR_BUSY);
     CLAIM((status == TMINI_OK) == (before.state <= TMINI_STATE_IDLE));
+    CLAIM((status == TMINI_ERROR_STATE) == (before.state >= TMINI_STATE_SCANNING));
     CLAIM(status == TMINI_OK || (lidar.state == before.state && lidar.pending == before.pending &&
                                  lidar.command.phase == before.command.phase &&
                                  lidar.command.unsent == before.command.unsent &&

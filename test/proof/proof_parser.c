@@ -42,7 +42,7 @@ static bool is_accounted_for(void)
 
 void prove_parser_init(void)
 {
-    ring = any_early_ring(LARGE_RING_SIZE);
+    ring = any_early_ring(RING_SIZE);
     const uint8_t max_samples = nondet_byte();
     const unsigned largest = max_samples == 0 ? 250 : 10 + 3 * max_samples;
     const tmini_status_t status = tmini_parser_init(&parser, &ring, max_samples);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands in for parser, packets, scans and CT information in the driver's proofs: does anything that
- * their contracts permit, which proof_parser.c and proof_scan.c claim of them. */
+/* Stands in for parser, packets, scans and CT information in the driver's proofs: does anything
+ * that their contracts permit, which proof_parser.c and proof_scan.c claim of them. */
 
 #include "parser_contract.h"
 

@@ -6,8 +6,8 @@
 #
 #   test/proof/threads.sh [MILLIONS]      of bytes; 100 unless given
 #
-# First with one order taken out, which ThreadSanitizer must find, or it would see nothing at all (as
-# that of GCC 12 does not: so by Clang).
+# First with one order taken out, which ThreadSanitizer must find, or it would see nothing at all
+# (as that of GCC 12 does not: so by Clang).
 
 set -eu
 

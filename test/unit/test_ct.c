@@ -433,6 +433,16 @@ void test_a_discarded_revolution_is_not_continued_but_what_is_known_is_kept(void
     TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
 }
 
+/* EB is the CRC of those eight alone. */
+void test_what_comes_between_a_discarded_revolution_and_a_start_packet_is_no_revolution(void)
+{
+    add_six_hertz();
+    tmini_ct_discard(&ct_state);
+    add_points(&six_hertz[9], 8);
+    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0xEB));
+    expect_nothing_known();
+}
+
 void test_a_discarded_revolution_does_not_spoil_the_next_one(void)
 {
     (void)add(0x79, 0, 0);

@@ -1354,6 +1354,14 @@ void test_a_reply_longer_than_the_ring_is_not_awaited(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_parser_await(&receiver.parser, &longest));
 }
 
+void test_a_single_byte_before_a_place_is_skipped(void)
+{
+    feed(start_packet, 13);
+    tmini_parser_skip_to(&receiver.parser, 1);
+    TEST_ASSERT_EQUAL_UINT(1, tmini_parser_position(&receiver.parser));
+    expect_skipped(1);
+}
+
 void test_bytes_before_a_place_are_skipped_without_a_look(void)
 {
     feed(start_packet, 13);
