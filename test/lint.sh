@@ -125,8 +125,9 @@ check_cppcheck() {
 # Rules that are broken, each with a reason, are in a table: no other is.
 check_misra() {
     broken=$(cppcheck --addon=misra --quiet --std=c99 --enable=style \
-        --template='{id} {file}:{line}' --suppress=missingIncludeSystem --suppress=preprocessorErrorDirective -D__GNUC__=12 \
-        -U__AVR__ -UTMINI_ATOMIC_HEADER -I lib/include lib/src 2>&1 |
+        --template='{id} {file}:{line}' --suppress=missingIncludeSystem \
+        --suppress=preprocessorErrorDirective -D__GNUC__=12 -U__AVR__ \
+        -UTMINI_ATOMIC_HEADER -I lib/include lib/src 2>&1 |
         sed -n 's/^misra-c2012-\([0-9.]*\) /\1 /p' | sort -u)
     [ -n "$broken" ] || { echo "cppcheck's MISRA addon says nothing at all"; return 1; }
     ! printf '%s\n' "$broken" | awk '
