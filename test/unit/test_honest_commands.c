@@ -150,7 +150,8 @@ void test_a_stop_that_cuts_a_packet_does_not_delay_the_next_answer(void)
     TEST_ASSERT_EQUAL_UINT16(600, tmini_frequency_chz(&turns.lidar));
 }
 
-/* No lidar turns at 655.35 Hz, nor at 1310.72 Hz, nor at 0; the vendor's range is 6 to 12 Hz (section 1). */
+/* No lidar turns at 655.35 Hz, nor at 1310.72 Hz, nor at 0; the vendor says 6 to 12 Hz (section
+ * 1). */
 void test_a_frequency_that_cannot_be_is_not_taken_as_one(void)
 {
     static const uint32_t impossible[] = {0, 99, 65535, 131072, 0xFFFFFFFF};
