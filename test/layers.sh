@@ -60,12 +60,13 @@ calls=$({
         for (file in known) if (!(file in files)) print "no such file in the library: " file ".c"
     }')
 
-# written_outside MEMBER OWNER: assignments to lidar->MEMBER in other files; an OWNER of - stands for
-# a module that is handed the member and knows nothing of tmini_t.
+# written_outside MEMBER OWNER: assignments to lidar->MEMBER in other files; an OWNER of - stands
+# for a module that is handed the member and knows nothing of tmini_t.
 written_outside() {
     for file in "$root"/lib/src/*.c; do
         [ "$(basename "$file")" = "$2" ] ||
-            grep -nE "lidar->$1\.[a-z_.]+ *([-+|&]?=[^=]|\+\+|--)|tmini_$1_t \*const [a-z]+ = &lidar" "$file" |
+            grep -nE -e "lidar->$1\.[a-z_.]+ *([-+|&]?=[^=]|\+\+|--)" \
+                -e "tmini_$1_t \*const [a-z]+ = &lidar" "$file" |
             grep -v "const tmini_$1_t" |
             sed "s|^|$(basename "$file"):|; s|$|  (only $2 writes lidar->$1)|"
     done

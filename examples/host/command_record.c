@@ -50,8 +50,8 @@ static void put(tape_t *tape, const uint8_t *bytes, size_t count)
     }
 }
 
-/* The port's tap: its blocks are far smaller than the 64 KiB of a chunk. A pause of more than the 71
- * minutes that fit in 32 bits is shortened to them. */
+/* The port's tap: its blocks are far smaller than the 64 KiB of a chunk. A pause of more than the
+ * 71 minutes that fit in 32 bits is shortened to them. */
 static void write_tape(void *context, const uint8_t *bytes, size_t count)
 {
     tape_t *const tape = context;

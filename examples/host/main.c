@@ -134,7 +134,7 @@ static bool take(options_t *options, int answer)
                          : apply(options, find(answer), optarg);
 }
 
-/* Reads all words, in any order. Returns STATUS_OK, or STATUS_USAGE when it has been said why not. */
+/* Reads all words, in any order. STATUS_OK, or STATUS_USAGE when it has been said why not. */
 static int parse(options_t *options, int argc, char **argv)
 {
     static char name[] = "tmini";
@@ -161,8 +161,8 @@ static bool is_accepted(const command_t *command, char letter)
     return letter == 'h' || letter == 'V' || strchr(command->accepts, letter) != NULL;
 }
 
-/* Whether the command takes what was given: STATUS_OK, or STATUS_USAGE when it has been said what it
- * does not take. */
+/* Whether the command takes what was given: STATUS_OK, or STATUS_USAGE when it has been said what
+ * it does not take. */
 static int check(const options_t *options, const command_t *command)
 {
     const char *const excess = options->words[command->has_operand ? 2 : 1];

@@ -24,8 +24,8 @@ bool picture_is_known(const char *path);
 /* How far the outermost ring is, in a picture of points with this survey. */
 unsigned picture_range_mm(const survey_t *survey);
 
-/* Whether flagged points are marked: some units flag every sample (section 9.9), and marks on all of
- * them would hide the room. */
+/* Whether flagged points are marked: some units flag every sample (section 9.9), and marks on all
+ * of them would hide the room. */
 bool picture_marks_flags(const survey_t *survey);
 
 /* Draws the figure and writes the file; SVG to standard output for "-". Returns the status to leave

@@ -59,7 +59,7 @@ static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
 static unsigned xor_piece(const uint8_t *sample, size_t count)
 {
     unsigned sum = 0;
-    const size_t ahead = (uintptr_t)sample % TMINI_WORD_ALIGNMENT;
+    const size_t ahead = (uintptr_t)sample & (TMINI_WORD_ALIGNMENT - 1);
     if (ahead > 0 && count > ahead) {
         sum = xor_samples(sample, ahead);
         sample += TMINI_SAMPLE_SIZE * ahead;

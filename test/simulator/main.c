@@ -19,8 +19,8 @@
 
 #define EXIT_WRONG_USAGE 2
 
-/* While bytes come every 43 us: how long to let them gather, as an adapter does (many tests run many
- * simulated lidars on one computer); and the longest sleep otherwise. */
+/* While bytes come every 43 us: how long to let them gather, as an adapter does (many tests run
+ * many simulated lidars on one computer); and the longest sleep otherwise. */
 #define TICK_MS 8
 #define LONGEST_SLEEP_MS 500
 
