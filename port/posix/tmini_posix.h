@@ -21,7 +21,7 @@
  *
  * A computer has other things to do, and may bring bytes late: let the configuration's timing
  * be a copy of tmini_timing_default with a frame_timeout_ms of 250, as examples/obstacle_stop
- * does.
+ * does; and with a max_pause_ms of 250 if scans have gaps that nothing else explains.
  *
  * There is no interrupt here: the one context that polls also receives. The port's `wait`
  * receives as well, so that the functions of tmini_blocking.h work. Any number of lidars, each
