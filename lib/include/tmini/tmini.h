@@ -24,8 +24,8 @@
  * Time. No function waits. Commands only begin something; how it ends is an event. tmini_poll()
  * must be called often enough that the receive buffer does not overflow: at least every 38 ms with
  * 1024 bytes, or every 16 ms with DMA, which can use half of them (docs/footprint.md, "How often to
- * poll", has other sizes). Call it until it returns TMINI_EVENT_NONE: only then does it look after
- * time.
+ * poll", has other sizes). Call it until it returns TMINI_EVENT_NONE: only then does it look for
+ * time-outs.
  *
  * "Section" in these headers means the section of docs/protocol.md. */
 
@@ -67,8 +67,8 @@ extern "C" {
 
 /** How long the driver waits for what, in milliseconds. Change a copy of tmini_timing_default. */
 typedef struct {
-    /** A packet that stops coming is given up after this silence. 0: with the first poll that finds
-     * time passed and nothing come. */
+    /** A packet that stops coming is given up after this silence. 0: at the first poll before which
+     * time has passed and nothing has come. */
     uint16_t frame_timeout_ms;
     /** What comes after a longer pause of the line does not continue a scan: at 12 Hz half a turn
      * takes 42 ms. Bytes that were held back count by the time in which the line could have sent
@@ -184,7 +184,7 @@ TMINI_INLINE void tmini_feed_byte(tmini_t *lidar, uint8_t byte);
  * refused and counted. Bytes must not be held back for longer than frame_timeout_ms, or their
  * packet is given up. What a layer below has held back is best handed over at once, before the next
  * poll; if it has waited for room longer than max_pause_ms, drop it and call tmini_feed_gap() once:
- * the pauses of the line do not show in it. No wait; two block copies. */
+ * it no longer shows whether the line has paused. No wait; two block copies. */
 static inline size_t tmini_feed(tmini_t *lidar, const uint8_t *bytes, size_t count);
 
 /** How many bytes tmini_feed() would store now, at least: for a receiver with a queue of its
@@ -201,8 +201,8 @@ static inline void tmini_feed_dma(tmini_t *lidar, size_t position);
 /** Says that bytes were lost on their way, behind those fed so far, and not how many: a receiver's
  * queue overflowed, or DMA may have gone a whole lap unseen (then call it before tmini_feed_dma()).
  * No scan continues across the gap. Without DMA nothing is stored until polling has emptied the
- * buffer: look at tmini_feed_room(). With DMA it counts a lap (rx_size bytes) as overrun, how many
- * there may have been; if there was none, what came last may be delivered a second time. */
+ * buffer: look at tmini_feed_room(). With DMA it counts a lap (rx_size bytes) as overrun, because
+ * so many may be lost; if there was none, what came last may be delivered a second time. */
 static inline void tmini_feed_gap(tmini_t *lidar);
 
 /* -------------------------------------------------------- everything else: the polling context */

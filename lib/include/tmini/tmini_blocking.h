@@ -8,8 +8,8 @@
  * Each function polls until the command has ended or `timeout_ms` has passed on the port's clock,
  * calling the port's `wait`, if there is one, whenever there is nothing to do. Meanwhile bytes must
  * come in from an interrupt, from another task, or from the port's `wait`. Events that do not
- * belong to the command, scans among them, are swallowed. A command that has not ended in time is
- * aborted; the lidar's state is then unknown, which the next command mends.
+ * belong to the command, scans among them, are dropped. A command that has not ended in time is
+ * aborted; the lidar's state is then unknown, and the next command stops it first.
  *
  * Context: the one that polls. All return
  *
