@@ -300,17 +300,34 @@ void test_a_lidar_that_streams_after_a_query_is_stopped_too(void)
 
 /* ---- Silence ---- */
 
-/* A clock that takes so long to read that five bytes of a health reply come meanwhile. */
+/* A clock that takes so long to read that five bytes of a health reply come meanwhile: with the
+ * first reading of a poll, which looks whether there is news, or with the second. */
+static unsigned readings_left;
+
 static uint32_t slow_clock(void *context)
 {
     static const uint8_t reply[] = {0xA5, 0x5A, 0x03, 0x00, 0x00};
 
     (void)context;
-    rig_feed(reply, sizeof reply);
+    readings_left--;
+    if (readings_left == 0) {
+        rig_feed(reply, sizeof reply);
+    }
     return rig.now_ms;
 }
 
-void test_bytes_that_come_while_the_clock_is_read_are_not_given_up(void)
+static void polls_with_bytes_at(unsigned reading)
+{
+    readings_left = reading;
+    rig.now_ms += 1;
+    rig.port.now_ms = slow_clock;
+    polls_to(TMINI_EVENT_NONE);
+    rig.port.now_ms = port_now_ms;
+    TEST_ASSERT_EQUAL_UINT(reading < 2 ? (unsigned)-1 : 0, readings_left);
+}
+
+/* As long as the line is silent in the clock's eyes: 100 ms. */
+static void bytes_are_not_given_up_that_come_at(unsigned reading)
 {
     static const uint8_t rest[] = {0x00, 0x06, 0x00, 0x00, 0x00};
 
@@ -318,25 +335,40 @@ void test_bytes_that_come_while_the_clock_is_read_are_not_given_up(void)
     sends(GET_HEALTH);
     begins(tmini_request_health(&rig.lidar));
     passes(100);
-    rig.port.now_ms = slow_clock; /* As long as the line is silent in its eyes: 100 ms. */
-    (void)tmini_poll(&rig.lidar);
-    rig.port.now_ms = port_now_ms;
+    polls_with_bytes_at(reading);
     rig_feed(rest, sizeof rest);
     polls_to(TMINI_EVENT_HEALTH);
 }
 
-void test_a_line_on_which_bytes_come_while_the_clock_is_read_is_not_quiet(void)
+void test_bytes_that_come_while_a_poll_looks_for_news_are_not_given_up(void)
+{
+    bytes_are_not_given_up_that_come_at(1);
+}
+
+void test_bytes_that_come_while_the_clock_is_read_are_not_given_up(void)
+{
+    bytes_are_not_given_up_that_come_at(2);
+}
+
+static void line_is_not_quiet_with_bytes_at(unsigned reading)
 {
     sends(STOP);
     begins(tmini_stop(&rig.lidar));
     passes(49);
-    rig.now_ms += 1;
-    rig.port.now_ms = slow_clock;
-    polls_to(TMINI_EVENT_NONE);
-    rig.port.now_ms = port_now_ms;
+    polls_with_bytes_at(reading);
     is_in(TMINI_STATE_STOPPING);
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
+}
+
+void test_a_line_on_which_bytes_come_while_a_poll_looks_for_news_is_not_quiet(void)
+{
+    line_is_not_quiet_with_bytes_at(1);
+}
+
+void test_a_line_on_which_bytes_come_while_the_clock_is_read_is_not_quiet(void)
+{
+    line_is_not_quiet_with_bytes_at(2);
 }
 
 void test_without_a_frame_timeout_a_reply_that_comes_in_two_is_taken_all_the_same(void)

@@ -156,8 +156,11 @@ TMINI_INLINE void tmini_fence(void)
 #endif
 
 /** @def TMINI_WORD_ALIGNMENT
- * A word is loaded at addresses that are a multiple of this. */
-#if defined(__ARM_FEATURE_UNALIGNED) || defined(__x86_64__) || defined(__i386__) || \
+ * A word is loaded at addresses that are a multiple of this: 4, or 1 where any will do. Define it
+ * as 4u for the whole build to overrule that. */
+#if defined(TMINI_WORD_ALIGNMENT)
+/* As defined. */
+#elif defined(__ARM_FEATURE_UNALIGNED) || defined(__x86_64__) || defined(__i386__) || \
     defined(__riscv_misaligned_fast) || defined(__AVR__)
 #define TMINI_WORD_ALIGNMENT 1u
 #else
