@@ -66,7 +66,7 @@ typedef enum {
 #define WORLD_FAULT_MS 5000u
 
 typedef struct {
-    uint32_t events[TMINI_EVENT_SCAN + 1];
+    uint32_t events[TMINI_EVENT_MORE + 1];
     uint32_t polls;
     uint64_t points;            /* In scans and packets, all compared. */
     uint32_t packets_checked;   /* Sent, arrived unharmed, and delivered. */
