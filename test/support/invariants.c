@@ -113,7 +113,8 @@ bool packet_is_sound(const tmini_packet_t *packet, const tmini_frame_t *frame)
     return packet->frame == frame && packet->first_angle_q6 < TMINI_FULL_CIRCLE_Q6 &&
            packet->last_angle_q6 < TMINI_FULL_CIRCLE_Q6 && packet->count >= 1 &&
            (packet->count == 1 || !tmini_packet_is_start(packet)) &&
-           packet->step <= TMINI_FULL_CIRCLE_Q6 << 17 && (packet->count > 1 || packet->step == 0);
+           packet->step <= (uint32_t)TMINI_FULL_CIRCLE_Q6 << 17 &&
+           (packet->count > 1 || packet->step == 0);
 }
 
 /* The fields have the indices 1, 3, 4, 5 and 9 to 13: of so many packets so many have come. */
