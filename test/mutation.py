@@ -129,13 +129,19 @@ class Bench:
         source = os.path.join(ROOT, path)
         return [entry for entry in self.commands if os.path.realpath(entry["file"]) == os.path.realpath(source)]
 
+    def folders_of_tests(self):
+        """Where the unit tests' objects lie. Not through links, which may lead round in a circle."""
+        return sorted(os.path.join(place, name)
+                      for place, names, _ in os.walk(os.path.join(self.build, "test"))
+                      for name in names if name.startswith("test_") and name.endswith(".dir"))
+
     def tests(self, path):
         """For each unit test: its name, its objects, and how the source is compiled for it."""
         entries = self.entries(path)
         library = [entry for entry in entries if "/test/" not in object_of(entry)[len(self.build):]]
         own = {os.path.dirname(object_of(entry)).split(".dir")[0]: entry for entry in entries if entry not in library}
         found = []
-        for folder in glob.glob(os.path.join(self.build, "test", "**", "test_*.dir"), recursive=True):
+        for folder in self.folders_of_tests():
             name = os.path.basename(folder)[:-4]
             program = glob.glob(os.path.join(self.build, "test", "bin", name))
             entry = own.get(folder[:-4], library[0] if library and "/test/unit/" in folder else None)

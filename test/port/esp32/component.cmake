@@ -96,6 +96,7 @@ file(CREATE_LINK ${ROOT} ${WORK}/named/tmini SYMBOLIC)
 file(CREATE_LINK ${ROOT} ${WORK}/named/main SYMBOLIC)
 build(in_the_repository ${WORK}/named/tmini/examples/esp32_idf)
 refuse(in_a_folder_called_main ${WORK}/named/main/examples/esp32_idf "please rename")
+file(REMOVE_RECURSE ${WORK}/named) # Who searches the build would go round in a circle.
 
 file(COPY ${WORK}/packed/tmini/examples/esp32_idf DESTINATION ${WORK})
 file(COPY ${WORK}/packed/tmini DESTINATION ${WORK}/esp32_idf/components)
