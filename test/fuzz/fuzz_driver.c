@@ -4,18 +4,28 @@
 /* Fuzz target: the whole driver as a hostile world would use it. The input is a list of actions:
  * bytes received, by interrupt, block or DMA, time passing, polls, commands at any moment, a port
  * that takes none, one or both bytes, or fails. Nothing may crash, hang or lose count, and nothing
- * but whole two-byte commands may leave. */
+ * but whole two-byte commands may leave.
+ *
+ * Or the bytes are those of a lidar that tells the truth (turning_lidar.h), over a line that loses
+ * and damages some at any time, and may come in the middle of a poll: then no scan may be of two
+ * revolutions, or say that it is complete if it is not. */
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "invariants.h"
 #include "tmini/tmini.h"
+#include "turning_lidar.h"
 
 #define RX_SIZE 512u
-#define POINTS 100u
+#define POINTS 700u
+#define FEW_POINTS 100u
+
+/* Bits of the first byte; two more are the filter's. */
+enum { DMA = 1, STREAMING = 2, NO_RECOVERY = 16, TRUE_LIDAR = 32, MANY_POINTS = 64 };
 
 static struct {
     const uint8_t *data;
@@ -25,6 +35,12 @@ static struct {
     size_t position; /* Of the DMA in the ring's memory. */
     uint32_t fed;
     bool half_sent;
+    bool dma;
+    bool is_true;      /* The bytes are the turning lidar's, */
+    uint8_t reply[16]; /* which answers next with this, */
+    size_t reply_size;
+    unsigned surprises;  /* and sends as many packets while the clock is read, */
+    bool surprise_first; /* before it or after. */
     tmini_t lidar;
     uint8_t rx[RX_SIZE];
     tmini_point_t points[POINTS];
@@ -62,15 +78,75 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
     for (int i = 0; i < taken; i++) {
         demand(world.half_sent ? is_command(bytes[i]) : bytes[i] == 0xA5);
         world.half_sent = !world.half_sent;
+        if (world.is_true && !world.half_sent) {
+            world.reply_size = turning_command(bytes[i], world.reply);
+        }
     }
     return taken;
+}
+
+static void receive_byte(uint8_t byte)
+{
+    if (world.dma) {
+        world.rx[world.position] = byte;
+        world.position = (world.position + 1) % RX_SIZE;
+        tmini_feed_dma(&world.lidar, world.position);
+    } else {
+        tmini_feed_byte(&world.lidar, byte);
+    }
+    world.fed++;
+}
+
+/* ---- The turning lidar's line ---- */
+
+static void arrive(const uint8_t *bytes, size_t count)
+{
+    if (!turning_received(bytes, count)) {
+        world.left = 0; /* Enough for one input. */
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        receive_byte(bytes[i]);
+    }
+}
+
+/* The next packet; of its bytes those from `from` up to `to` are lost. */
+static void pass_packet(size_t from, size_t to, uint8_t flipped)
+{
+    uint8_t packet[TURNING_PACKET_MAX];
+    if (world.reply_size > 0) {
+        world.now_ms += 3;
+        arrive(world.reply, world.reply_size);
+        world.reply_size = 0;
+    }
+    const size_t size = turning_packet(packet, &world.now_ms);
+    if (size > 0) {
+        packet[flipped % size] ^= flipped;
+        from = from < size ? from : size;
+        to = to < from ? from : to < size ? to : size;
+        arrive(packet, from);
+        arrive(&packet[to], size - to);
+    }
+}
+
+static void surprise(bool is_due)
+{
+    if (is_due && world.surprises > 0) {
+        world.surprises--;
+        pass_packet(0, 0, 0);
+    }
 }
 
 static uint32_t port_now_ms(void *context)
 {
     demand(context == &world);
-    return world.now_ms;
+    surprise(world.surprise_first);
+    const uint32_t now_ms = world.now_ms;
+    surprise(!world.surprise_first);
+    return now_ms;
 }
+
+/* ---- Actions ---- */
 
 static void command(uint8_t which)
 {
@@ -90,27 +166,15 @@ static void command(uint8_t which)
     }
 }
 
-static void receive_byte(uint8_t byte, bool dma)
-{
-    if (dma) {
-        world.rx[world.position] = byte;
-        world.position = (world.position + 1) % RX_SIZE;
-        tmini_feed_dma(&world.lidar, world.position);
-    } else {
-        tmini_feed_byte(&world.lidar, byte);
-    }
-    world.fed++;
-}
-
-static void receive(uint8_t count, bool dma)
+static void receive(uint8_t count)
 {
     while (count-- > 0) {
-        receive_byte(take(), dma);
+        receive_byte(take());
     }
 }
 
 /* What a lidar would say, so that the fuzzer need not find a checksum first. */
-static void receive_packet(uint8_t ct, uint8_t samples, bool dma)
+static void receive_packet(uint8_t ct, uint8_t samples)
 {
     uint8_t packet[10 + 3 * 40] = {0xAA, 0x55, ct, (uint8_t)((ct & 1) != 0 ? 1 : 1 + samples % 40)};
     for (size_t i = 4; i < 8; i++) {
@@ -129,7 +193,7 @@ static void receive_packet(uint8_t ct, uint8_t samples, bool dma)
         }
     }
     for (size_t i = 0; i < size; i++) {
-        receive_byte(packet[i], dma);
+        receive_byte(packet[i]);
     }
 }
 
@@ -139,7 +203,10 @@ static void poll_events(uint8_t times)
         const tmini_event_t event = tmini_poll(&world.lidar);
         demand(event <= TMINI_EVENT_MORE && lidar_is_sound(&world.lidar));
         if (event == TMINI_EVENT_SCAN) {
-            demand(tmini_scan(&world.lidar)->count <= POINTS);
+            demand(tmini_scan(&world.lidar)->count <= world.lidar.builder.capacity);
+            if (world.is_true) {
+                turning_judge(tmini_scan(&world.lidar));
+            }
         }
         if (event == TMINI_EVENT_COMMAND_FAILED) {
             demand(tmini_command_error(&world.lidar) < 0);
@@ -157,15 +224,15 @@ static void account(void)
            world.fed);
 }
 
-static void act(bool dma)
+static void act(void)
 {
     const uint8_t action = take();
     switch (action % 8) {
     case 0:
-        receive(take(), dma);
+        receive(take());
         break;
     case 1:
-        receive_packet(take(), action, dma);
+        receive_packet(take(), action);
         break;
     case 2:
         world.now_ms += (uint32_t)take() * (action / 8u);
@@ -182,6 +249,74 @@ static void act(bool dma)
     }
 }
 
+/* Packets pass; they come, or all is lost; and are polled for, or not. */
+static void turn(unsigned packets, bool come, bool polled)
+{
+    for (unsigned i = 0; i < packets; i++) {
+        pass_packet(0, come ? 0 : TURNING_PACKET_MAX, 0);
+        if (polled) {
+            poll_events(2);
+        }
+    }
+}
+
+/* Of a packet, or of many, something is lost, or wrong. */
+static void damage(uint8_t how)
+{
+    const uint8_t from = take();
+    const uint8_t to = take();
+    const uint8_t flipped = (how & 1) != 0 ? take() : 0;
+    const unsigned packets = (how & 2) != 0 ? take() % 64u : 1;
+    for (unsigned i = 0; i < packets; i++) {
+        pass_packet(from, to, flipped);
+        if ((how & 4) != 0) {
+            poll_events(2);
+        }
+    }
+}
+
+static void act_truly(void)
+{
+    const uint8_t action = take();
+    const uint8_t detail = action / 8;
+    switch (action % 8) {
+    case 0:
+    case 1:
+        turn(1u + detail, true, action % 8 == 0);
+        break;
+    case 2:
+        turn(take() % 64u, false, (detail & 1) != 0);
+        break;
+    case 3:
+        damage(detail);
+        break;
+    case 4:
+        command(take());
+        break;
+    case 5:
+        world.write_behaviour = detail % 4 - 1;
+        break;
+    case 6:
+        world.surprises = 1u + detail / 2 % 4u;
+        world.surprise_first = (detail & 1) != 0;
+        break;
+    default:
+        poll_events(detail);
+        break;
+    }
+}
+
+/* It has been started, scans, and goes on with this input. */
+static void start_truly(void)
+{
+    turning_begin();
+    (void)tmini_start(&world.lidar);
+    poll_events(1);
+    world.now_ms += 100; /* The line is quiet. */
+    turn(4, true, true);
+    demand(tmini_state(&world.lidar) == TMINI_STATE_SCANNING);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -192,23 +327,33 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     world.left = size;
     world.write_behaviour = 2;
     const uint8_t setup = take();
-    const bool dma = (setup & 1) != 0;
-    const bool streaming = (setup & 2) != 0;
+    world.dma = (setup & DMA) != 0;
+    world.is_true = (setup & TRUE_LIDAR) != 0;
+    const bool streaming = (setup & STREAMING) != 0 && !world.is_true;
     world.now_ms = 0u - (uint32_t)setup * 100u; /* The clock wraps on the way. */
     const tmini_config_t config = {
         .port = &port,
         .port_context = &world,
         .rx_buffer = world.rx,
         .rx_size = RX_SIZE,
-        .rx_dma = dma,
+        .rx_dma = world.dma,
         .points = streaming ? NULL : world.points,
-        .max_points = streaming ? 0 : POINTS,
+        .max_points = streaming                    ? 0
+                      : (setup & MANY_POINTS) != 0 ? POINTS
+                                                   : FEW_POINTS,
         .filter = (uint8_t)(setup & TMINI_FILTER_BOTH),
-        .disable_recovery = (setup & 16) != 0,
+        .disable_recovery = (setup & NO_RECOVERY) != 0,
     };
     demand(tmini_init(&world.lidar, &config) == TMINI_OK);
+    if (world.is_true) {
+        start_truly();
+    }
     while (world.left > 0) {
-        act(dma);
+        if (world.is_true) {
+            act_truly();
+        } else {
+            act();
+        }
         demand(lidar_is_sound(&world.lidar));
         account();
     }
@@ -217,5 +362,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         (void)tmini_poll(&world.lidar);
     }
     account();
+    if (world.is_true && turning_verdict() != NULL) {
+        (void)fprintf(stderr, "%s\n", turning_verdict());
+        abort();
+    }
     return 0;
 }

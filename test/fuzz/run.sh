@@ -14,6 +14,7 @@ set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
 seconds=${1:-60}
+support=$root/test/support
 build=$root/build-fuzz
 compiler=${TMINI_FUZZ_CC:-clang}
 
@@ -28,9 +29,9 @@ fuzz() {
     target=$1
     shift
     "$compiler" -std=c99 -g -O1 -Wall -Wextra -fsanitize=fuzzer,address,undefined \
-        -fno-sanitize-recover=all -I"$root/lib/include" -I"$root/lib/src" -I"$root/test/support" \
-        "$root/test/fuzz/$target.c" "$root/test/support/invariants.c" "$@" \
-        "$root"/lib/src/*.c -o "$build/$target"
+        -fno-sanitize-recover=all -I"$root/lib/include" -I"$root/lib/src" -I"$support" \
+        "$root/test/fuzz/$target.c" "$support/invariants.c" "$support/encoder.c" \
+        "$support/reference_decoder.c" "$@" "$root"/lib/src/*.c -o "$build/$target"
     mkdir -p "$build/corpus_$target"
     status=0
     (cd "$build" && exec "./$target" -max_total_time="$seconds" -max_len=4096 \
@@ -40,6 +41,6 @@ fuzz() {
 }
 
 mkdir -p "$build"
-fuzz fuzz_parser "$root/test/support/reference_decoder.c"
-fuzz fuzz_driver
+fuzz fuzz_parser "$support/reference_scans.c" "$support/random.c"
+fuzz fuzz_driver "$root/test/fuzz/turning_lidar.c"
 echo "nothing found"

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* A lidar that turns and tells the truth: each sample says by its distance which revolution it is
+ * of, by its angle and intensity which sample of that. So whoever is given a scan can tell whether
+ * it is one revolution, whatever the line has lost on the way. Shares no code with the library. */
+
+#ifndef TURNING_LIDAR_H
+#define TURNING_LIDAR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tmini/tmini_scan.h"
+
+#define TURNING_PACKET_MAX 130u
+#define TURNING_POINTS 658u /* Of a revolution. */
+
+/* Switched on; it does not scan yet. */
+void turning_begin(void);
+
+/* The code of a command has come. Returns the reply's size, 0 if there is none. */
+size_t turning_command(uint8_t code, uint8_t *reply);
+
+/* Puts the packet that it sends next to `out`, and goes on; returns its size, 0 if it does not
+ * scan. Adds to the clock how long that takes, in any case. */
+size_t turning_packet(uint8_t *out, uint32_t *now_ms);
+
+/* These bytes have come through the line. Returns false if the account of them is full. */
+bool turning_received(const uint8_t *bytes, size_t count);
+
+/* Looks at a scan that the library has delivered. */
+void turning_judge(const tmini_scan_t *scan);
+
+/* What is wrong with one of them, or NULL. Where two ends of what came look like one packet, with
+ * its checksum, nobody can tell it from a true one: then nothing is. */
+const char *turning_verdict(void);
+
+#endif

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "reference_scans.h"
+
+#define FULL 23040 /* In 1/64 degree, as all angles here. */
+#define DEGREES(n) ((n)*64)
+
+static int angle(uint16_t field)
+{
+    return (field >> 1) % FULL;
+}
+
+static int first_angle(const reference_item_t *packet)
+{
+    return angle(packet->fsa);
+}
+
+/* The last angle of a single sample means nothing (section 9.6). */
+static int last_angle(const reference_item_t *packet)
+{
+    return packet->lsn == 1 ? angle(packet->fsa) : angle(packet->lsa);
+}
+
+/* Clockwise from one to the other; from -4 degrees on, because the encoder jitters. */
+static int turn(int from, int to)
+{
+    const int clockwise = (to - from + FULL) % FULL;
+
+    return clockwise > FULL - DEGREES(4) ? clockwise - FULL : clockwise;
+}
+
+/* Skipped between an item and the one before it. */
+static size_t bytes_before(const reference_item_t *items, size_t at)
+{
+    return at == 0 ? items[at].offset
+                   : items[at].offset - (items[at - 1].offset + items[at - 1].length);
+}
+
+static size_t next_packet(const reference_item_t *items, size_t count, size_t at)
+{
+    while (at < count && !items[at].is_packet) {
+        at++;
+    }
+    return at;
+}
+
+static size_t next_start(const reference_item_t *items, size_t count, size_t at)
+{
+    while (at < count && !(items[at].is_packet && items[at].starts_revolution)) {
+        at++;
+    }
+    return at;
+}
+
+static void include(reference_scan_t *scan, const reference_item_t *packet)
+{
+    scan->points += packet->lsn;
+    scan->packets++;
+}
+
+/* Follows the scan from its start packet; false if nothing ends it. */
+static bool follow(const reference_item_t *items, size_t count, reference_scan_t *scan)
+{
+    size_t at = scan->first;
+    int swept = turn(first_angle(&items[at]), last_angle(&items[at]));
+
+    include(scan, &items[at]);
+    for (;;) {
+        const size_t next = next_packet(items, count, at + 1);
+
+        if (next == count) {
+            return false;
+        }
+        const reference_item_t *const packet = &items[next];
+        const int ahead = turn(last_angle(&items[at]), first_angle(packet));
+        const int began = swept + ahead;
+        const int ended = began + turn(first_angle(packet), last_angle(packet));
+        const size_t skipped = bytes_before(items, next);
+
+        if (packet->starts_revolution) {
+            /* Before it, one byte may be LastCRC. */
+            scan->gaps += skipped > 1 || ahead > DEGREES(4) ? 1 : 0;
+            scan->is_whole =
+                scan->gaps == 0 && began >= FULL - DEGREES(4) && began <= FULL + DEGREES(4);
+            scan->decihertz = packet->ct / 2;
+            scan->end = next;
+            return true;
+        }
+        if (skipped > 500 || ahead > FULL / 2 || ended > FULL + DEGREES(1) / 4 ||
+            ended < -DEGREES(4)) {
+            scan->gaps++;
+            scan->end = next;
+            return true;
+        }
+        scan->gaps += skipped > 0 || ahead > DEGREES(4) ? 1 : 0;
+        include(scan, packet);
+        swept = ended;
+        at = next;
+    }
+}
+
+bool reference_scan(const reference_item_t *items, size_t count, size_t from,
+                    reference_scan_t *scan)
+{
+    *scan = (reference_scan_t){.first = next_start(items, count, from)};
+    return scan->first < count && follow(items, count, scan);
+}
