@@ -112,7 +112,6 @@ static void note_bytes(tmini_t *lidar, size_t count, uint32_t passed_ms)
     const uint16_t max_pause_ms = link->timing->max_pause_ms;
     const uint32_t due_ms = transit_ms(count);
     const bool are_held = lidar->is_unwatched || wire_ms(count) > passed_ms + HELD_MS;
-    link->received += count;
     link->silent_ms = 0;
     lidar->is_unwatched = false;
     if (count > lidar->ring.size) {
@@ -127,10 +126,12 @@ static void note_bytes(tmini_t *lidar, size_t count, uint32_t passed_ms)
 static void update_time(tmini_t *lidar)
 {
     tmini_link_t *const link = &lidar->link;
-    const size_t count = tmini_ring_stored(&lidar->ring) - link->received;
+    const size_t head = tmini_ring_head(&lidar->ring);
+    const size_t count = tmini_ring_distance(link->received, head);
     const uint32_t now_ms = link->port->now_ms(link->port_context);
     const uint32_t passed_ms = now_ms - link->now_ms;
     link->now_ms = now_ms;
+    link->received = head;
     link->pause_ms = add_ms(link->pause_ms, passed_ms);
     lidar->is_unwatched = lidar->is_unwatched || passed_ms > link->timing->max_pause_ms;
     if (count > 0) {
@@ -149,10 +150,10 @@ static void update_time(tmini_t *lidar)
 static uint32_t arrival_ms(tmini_t *lidar)
 {
     const size_t position = tmini_parser_position(&lidar->parser);
-    if (lidar->link.received - position > SIZE_MAX / 2) {
+    if (tmini_ring_distance(position, lidar->link.received) > TMINI_RING_CLOSED / 2) {
         update_time(lidar);
     }
-    return lidar->link.now_ms - transit_ms(lidar->link.received - position);
+    return lidar->link.now_ms - transit_ms(tmini_ring_distance(position, lidar->link.received));
 }
 
 /* ----------------------------------------------------------------------------------- commands */
@@ -263,7 +264,8 @@ static void note_scanning(tmini_t *lidar)
 /* A packet begins at that place in the stream. */
 static void mark_doubtful(tmini_t *lidar, size_t begins_at)
 {
-    const bool is_among = lidar->doubtful_to - begins_at - 1 < SIZE_MAX / 2;
+    const size_t left = tmini_ring_distance(begins_at, lidar->doubtful_to);
+    const bool is_among = left > 0 && left <= TMINI_RING_CLOSED / 2;
     if (is_among || lidar->doubt != DOUBT_MARKED) {
         lidar->latest.packet.gap = TMINI_GAP_UNKNOWN;
     }
@@ -355,7 +357,7 @@ static bool give_up_candidate(tmini_t *lidar)
 {
     const tmini_link_t *const link = &lidar->link;
     if (link->silent_ms == 0 || link->silent_ms < link->timing->frame_timeout_ms ||
-        tmini_ring_stored(&lidar->ring) != link->received ||
+        tmini_ring_head(&lidar->ring) != link->received ||
         tmini_parser_pending(&lidar->parser) == 0) {
         return false;
     }
@@ -421,8 +423,7 @@ static void keep_time(tmini_t *lidar)
 static bool has_news(const tmini_t *lidar)
 {
     const tmini_link_t *const link = &lidar->link;
-    return tmini_ring_stored(&lidar->ring) != link->received ||
-           tmini_ring_is_closed(&lidar->ring) ||
+    return tmini_ring_head(&lidar->ring) != link->received ||
            link->port->now_ms(link->port_context) != link->now_ms;
 }
 

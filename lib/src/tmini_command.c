@@ -197,7 +197,7 @@ static bool is_quiet(const tmini_t *lidar)
     const uint16_t quiet_ms = lidar->link.timing->quiet_line_ms;
     return lidar->link.silent_ms >= quiet_ms &&
            tmini_has_elapsed(lidar, lidar->command.since_ms, quiet_ms) &&
-           tmini_ring_stored(&lidar->ring) == lidar->link.received;
+           tmini_ring_head(&lidar->ring) == lidar->link.received;
 }
 
 /* What each operation's first command is, once the line is quiet. A frequency is changed by steps,

@@ -245,11 +245,14 @@ static void skip(tmini_parser_t *parser, size_t unread)
 static size_t intact_bytes(tmini_parser_t *parser)
 {
     tmini_ring_t *const ring = parser->frame.ring;
-    const size_t unread = tmini_ring_unread(ring);
-    if (unread <= ring->window) {
-        return unread;
+    const size_t ahead = tmini_ring_ahead(ring);
+    if (ahead <= ring->window) {
+        return ahead;
     }
-    const size_t lost = unread - ring->window;
+    if (!tmini_ring_is_dma(ring)) {
+        return tmini_ring_unread(ring); /* It is closed. */
+    }
+    const size_t lost = ahead - ring->window;
     tmini_ring_discard(ring, lost);
     begin_candidate(parser);
     parser->counters.bytes_overrun += (uint32_t)lost;
@@ -372,7 +375,7 @@ void tmini_parser_counters(const tmini_parser_t *parser, tmini_parser_counters_t
 void tmini_parser_skip_to(tmini_parser_t *parser, size_t position)
 {
     release_frame(parser);
-    const size_t count = position - tmini_parser_position(parser);
+    const size_t count = tmini_ring_distance(tmini_parser_position(parser), position);
     if (count > 0 && count <= tmini_ring_unread(parser->frame.ring)) {
         parser->frame.last_skipped = tmini_ring_peek(parser->frame.ring, count - 1);
         discard_skipped(parser, count);

@@ -5,36 +5,38 @@
 
 #include <string.h>
 
-/* DMA may use half of the ring only; a ring that the CPU feeds, all of it. */
-static bool is_fed_by_cpu(const tmini_ring_t *ring)
-{
-    return ring->window == ring->size;
-}
-
 tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size, bool dma)
 {
     if (ring == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
     *ring = (tmini_ring_t){0};
-    if (memory == NULL || size < 2 || (size & (size - 1)) != 0) {
+    if (memory == NULL || size < 2 || size > TMINI_RING_SIZE_MAX || (size & (size - 1)) != 0) {
         return TMINI_ERROR_ARGUMENT;
     }
     ring->memory = memory;
     ring->size = size;
+    ring->mask = size - 1;
     ring->window = dma ? size / 2 : size;
-    ring->gate = size - 1;
     tmini_store(&ring->limit, size); /* Last: until then a byte that comes early is refused. */
     return TMINI_OK;
 }
 
+/* How far head may go. A closed ring's is ahead of the limit. */
+static size_t room_behind(const tmini_ring_t *ring, size_t past)
+{
+    const size_t room = 0 - past;
+    return room <= ring->size ? room : 0;
+}
+
 size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
 {
-    const size_t room = tmini_ring_room(ring);
+    const size_t head = ring->head;
+    const size_t past = head - tmini_load(&ring->limit);
+    const size_t room = room_behind(ring, past);
     const size_t taken = count < room ? count : room;
     if (taken > 0) {
-        const size_t head = ring->head;
-        const size_t at = head & (ring->size - 1);
+        const size_t at = head & ring->mask;
         const size_t to_end = ring->size - at;
         const size_t first = taken < to_end ? taken : to_end;
         memcpy(&ring->memory[at], bytes, first);
@@ -42,7 +44,7 @@ size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
         tmini_store(&ring->head, head + taken);
     }
     if (taken < count) {
-        tmini_ring_refuse(ring, count - taken);
+        tmini_ring_refuse(ring, head + taken, past + taken, count - taken);
     }
     return taken;
 }
@@ -50,8 +52,7 @@ size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
 /* What the consumer does meanwhile can only make more room, never less. */
 size_t tmini_ring_room(const tmini_ring_t *ring)
 {
-    const size_t limit = tmini_load(&ring->limit);
-    return tmini_load(&ring->gate) != 0 ? limit - ring->head : 0;
+    return room_behind(ring, ring->head - tmini_load(&ring->limit));
 }
 
 /* The position says where in its lap the hardware is, not in which lap: it is taken for the next
@@ -59,16 +60,17 @@ size_t tmini_ring_room(const tmini_ring_t *ring)
 void tmini_ring_publish(tmini_ring_t *ring, size_t position)
 {
     const size_t head = ring->head;
-    tmini_store(&ring->head, head + ((position - head) & (ring->size - 1)));
+    tmini_store(&ring->head, head + ((position - head) & ring->mask));
 }
 
 void tmini_ring_gap(tmini_ring_t *ring)
 {
-    if (is_fed_by_cpu(ring)) {
-        /* As a refused byte does, but there is no number to count. */
-        tmini_store(&ring->gate, 0);
-    } else {
-        tmini_store(&ring->head, ring->head + ring->size); /* A lap that nobody saw. */
+    const size_t head = ring->head;
+    if (tmini_ring_is_dma(ring)) {
+        tmini_store(&ring->head, head + ring->size); /* A lap that nobody saw. */
+    } else if (tmini_load(&ring->limit) - head <= ring->size) {
+        /* It is open: closed as by a refused byte, but there is no number to count. */
+        tmini_store(&ring->head, head + TMINI_RING_CLOSED);
     }
 }
 
@@ -76,7 +78,7 @@ void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, si
 {
     /* In locals, because `bytes` might overlap the ring for all the compiler knows. */
     const uint8_t *const memory = ring->memory;
-    const size_t mask = ring->size - 1;
+    const size_t mask = ring->mask;
     size_t index = ring->limit + offset; /* A size ahead of the tail is the same place. */
     for (const uint8_t *const end = bytes + count; bytes != end; bytes++) {
         *bytes = memory[index++ & mask];
@@ -91,5 +93,5 @@ void tmini_ring_discard(tmini_ring_t *ring, size_t count)
 
 void tmini_ring_open(tmini_ring_t *ring)
 {
-    tmini_store(&ring->gate, ring->size - 1);
+    tmini_store(&ring->limit, ring->limit + TMINI_RING_CLOSED);
 }

@@ -129,11 +129,11 @@ static inline bool tmini_stm32_circle_is_for(const tmini_t *lidar)
 static inline void tmini_stm32_circle_rewind(tmini_t *lidar)
 {
     const size_t size = tmini_stm32_circle_size(lidar);
-    const size_t position = tmini_ring_stored(&lidar->ring) & (size - 1);
+    const size_t position = tmini_ring_head(&lidar->ring) & (size - 1);
     if (position > 0) {
         memset(&lidar->ring.memory[position], 0, size - position);
         tmini_feed_dma(lidar, size);
-    } else if (tmini_ring_stored(&lidar->ring) > 0) {
+    } else if (tmini_ring_head(&lidar->ring) > 0) {
         tmini_feed_gap(lidar); /* Nothing else would show that bytes are missing. */
     }
 }

@@ -34,20 +34,20 @@ enum {
 
 static bool is_dma(const tmini_ring_t *ring)
 {
-    return ring->window != ring->size;
+    return tmini_ring_is_dma(ring);
 }
 
 bool ring_is_sound(const tmini_ring_t *ring)
 {
     const size_t size = ring->size;
-    const size_t gate = tmini_load(&ring->gate);
-    if (ring->memory == NULL || size < 2 || (size & (size - 1)) != 0) {
+    if (ring->memory == NULL || size < 2 || size > TMINI_RING_SIZE_MAX || ring->mask != size - 1 ||
+        (size & ring->mask) != 0) {
         return false;
     }
-    if (is_dma(ring)) { /* Which may run away; and nobody closes the gate before it. */
-        return ring->window == size / 2 && gate == size - 1;
+    if (is_dma(ring)) { /* Which may run away. */
+        return ring->window == size / 2;
     }
-    return (gate == 0 || gate == size - 1) && tmini_ring_unread(ring) <= size;
+    return ring->window == size && tmini_ring_unread(ring) <= size;
 }
 
 static uint8_t samples_in(const tmini_frame_t *frame)

@@ -117,6 +117,8 @@ void test_overflow_after_overflow_during_polls_mixes_no_turns(void)
     for (chosen = 0; chosen < 3; chosen++) {
         turns_open_scanning(256, false);
         sent = 0;
+        turns_feed_packets(TURNS_PACKETS - 1, TURNS_PACKETS - 1,
+                           100); /* Some work for the first. */
         for (unsigned i = 0; i < 200; i++) {
             if (poll_with(packets_come_one_by_one) == TMINI_EVENT_SCAN) {
                 expect_one_turn(tmini_scan(&turns.lidar));

@@ -80,6 +80,18 @@ void test_a_size_that_is_no_power_of_two_is_an_argument_error(void)
     expect_refused_arguments(memory, 12);
     expect_refused_arguments(memory, 15);
     expect_refused_arguments(memory, SIZE_MAX);
+    expect_refused_arguments(memory, SIZE_MAX / 2 + 1);
+    expect_refused_arguments(memory, SIZE_MAX / 4 + 1);
+}
+
+void test_the_largest_size_is_an_eighth_of_what_an_index_can_count(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE_MAX / 8 + 1, false));
+    TEST_ASSERT_EQUAL_UINT(SIZE_MAX / 8 + 1, tmini_ring_room(&ring));
+    tmini_ring_gap(&ring);
+    TEST_ASSERT_TRUE(tmini_ring_is_closed(&ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring));
 }
 
 void test_every_power_of_two_is_a_size(void)
@@ -91,23 +103,29 @@ void test_every_power_of_two_is_a_size(void)
     }
 }
 
+/* Whatever is tried, and in which order. */
+static void expect_refusal(void)
+{
+    tmini_ring_put(&ring, 'a');
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_write(&ring, letters, 5));
+    tmini_ring_gap(&ring);
+    tmini_ring_publish(&ring, 3);
+    tmini_ring_put(&ring, 'b');
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring));
+    TEST_ASSERT_EQUAL_UINT(7, tmini_ring_overrun(&ring));
+}
+
 void test_a_ring_that_was_not_initialised_refuses_every_byte(void)
 {
     ring = (tmini_ring_t){0};
-    tmini_ring_put(&ring, 'a');
-    tmini_ring_write(&ring, letters, 5);
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
-    TEST_ASSERT_EQUAL_UINT(6, tmini_ring_overrun(&ring));
+    expect_refusal();
 }
 
 void test_a_ring_whose_initialisation_failed_refuses_every_byte(void)
 {
     put_letters(0, 3);
     (void)tmini_ring_init(&ring, memory, 12, false);
-    tmini_ring_put(&ring, 'a');
-    tmini_ring_write(&ring, letters, 5);
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
-    TEST_ASSERT_EQUAL_UINT(6, tmini_ring_overrun(&ring));
+    expect_refusal();
 }
 
 void test_initialisation_empties_a_ring(void)
@@ -132,15 +150,15 @@ void test_bytes_come_out_in_the_order_in_which_they_went_in(void)
     expect_unread("");
 }
 
-void test_stored_bytes_are_counted_whether_read_or_not(void)
+void test_the_head_tells_how_many_were_stored_whether_read_or_not(void)
 {
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_stored(&ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_head(&ring));
     put_letters(0, 3);
     tmini_ring_discard(&ring, 2);
     put_letters(3, 2);
-    TEST_ASSERT_EQUAL_UINT(5, tmini_ring_stored(&ring));
+    TEST_ASSERT_EQUAL_UINT(5, tmini_ring_head(&ring));
     put_letters(0, SIZE); /* Three are refused. */
-    TEST_ASSERT_EQUAL_UINT(18, tmini_ring_stored(&ring));
+    TEST_ASSERT_EQUAL_UINT(18, tmini_ring_distance(0, tmini_ring_head(&ring)));
 }
 
 void test_a_full_ring_refuses_bytes_and_keeps_what_it_has(void)
@@ -268,6 +286,41 @@ void test_indices_wrap_around_with_size_t(void)
 
 /* -------------------------------------------------------------------------------- a closed ring */
 
+/* Each time the indices move by a quarter of their range; after four they are round. */
+void test_a_ring_may_be_closed_and_opened_any_number_of_times(void)
+{
+    const size_t begin = SIZE_MAX - 2;
+    age(begin);
+    for (size_t time = 1; time <= 9; time++) {
+        put_letters(0, SIZE + 1);
+        TEST_ASSERT_TRUE(tmini_ring_is_closed(&ring));
+        expect_unread("abcdefghijklmnop");
+        TEST_ASSERT_TRUE(tmini_ring_intact(&ring));
+        tmini_ring_discard(&ring, SIZE);
+        expect_unread("");
+        put_letters(0, 1);
+        tmini_ring_open(&ring);
+        TEST_ASSERT_FALSE(tmini_ring_is_closed(&ring));
+        TEST_ASSERT_EQUAL_UINT(SIZE, tmini_ring_room(&ring));
+        TEST_ASSERT_EQUAL_UINT(2 * time, tmini_ring_overrun(&ring));
+        TEST_ASSERT_EQUAL_UINT(time * SIZE, tmini_ring_distance(begin, tmini_ring_head(&ring)));
+        TEST_ASSERT_EQUAL_UINT(time * SIZE, tmini_ring_distance(begin, tmini_ring_tail(&ring)));
+    }
+}
+
+void test_a_closed_ring_that_is_closed_again_stays_so(void)
+{
+    put_letters(0, 3);
+    tmini_ring_gap(&ring);
+    tmini_ring_gap(&ring);
+    tmini_ring_put(&ring, 'x');
+    expect_unread("abc");
+    tmini_ring_discard(&ring, 3);
+    tmini_ring_open(&ring);
+    put_letters(3, 2);
+    expect_unread("de");
+}
+
 void test_a_refused_byte_closes_the_ring_however_much_room_there_is_then(void)
 {
     put_letters(0, SIZE);
@@ -297,7 +350,7 @@ void test_a_ring_that_was_opened_again_takes_bytes_from_where_it_was(void)
     TEST_ASSERT_FALSE(tmini_ring_is_closed(&ring));
     put_letters(3, 2);
     expect_unread("de");
-    TEST_ASSERT_EQUAL_UINT(SIZE + 2, tmini_ring_stored(&ring));
+    TEST_ASSERT_EQUAL_UINT(SIZE + 2, tmini_ring_distance(0, tmini_ring_head(&ring)));
 }
 
 void test_a_gap_closes_the_ring_without_counting_bytes(void)

@@ -354,7 +354,7 @@ typedef struct {
     void *port_context;
     const tmini_timing_t *timing;
     uint32_t now_ms;
-    size_t received;    /* Bytes stored in the ring since init. */
+    size_t received;    /* The place in the stream up to which bytes had come. */
     uint16_t pause_ms;  /* How long ago others were seen to have come; 65535: or longer. */
     uint16_t silent_ms; /* The same, as far as anybody looked. */
 } tmini_link_t;

@@ -122,8 +122,8 @@ tmini_status_t tmini_parser_await(tmini_parser_t *parser, const tmini_reply_head
 /** The bytes that wait in the ring for more to come. */
 size_t tmini_parser_pending(const tmini_parser_t *parser);
 
-/** How many bytes have been parsed or lost since init, the frame delivered last among them, modulo
- * the range of size_t: the place in the stream of the byte behind that frame. */
+/** The place in the stream of the byte behind the frame delivered last, to be compared by
+ * tmini_ring_distance(): where parsing goes on. */
 static inline size_t tmini_parser_position(const tmini_parser_t *parser)
 {
     return tmini_ring_tail(parser->frame.ring) + parser->frame.size;

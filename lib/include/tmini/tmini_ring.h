@@ -33,55 +33,60 @@
 extern "C" {
 #endif
 
+/** The producer closes a ring by moving its index so far ahead, a quarter of what an index can
+ * count, and the consumer opens it by moving its own as far: each has one writer. */
+#define TMINI_RING_CLOSED (SIZE_MAX / 4 + 1)
+
+/** The largest ring: an eighth of what an index can count, 8192 bytes where size_t has 16 bits. */
+#define TMINI_RING_SIZE_MAX (TMINI_RING_CLOSED / 2)
+
 /** A ring. Treat the members as private.
  *
- * The indices count bytes since init and wrap with size_t; the memory's size is a power of two, so
- * that a count modulo the size is always the right place. An all-zero ring is safe: its head stands
- * at its limit, so it refuses every byte. A side reads its own index as a plain variable: nobody
- * else writes it, so nothing can race with that; what the other side reads is stored atomically.
- * The gate, which both write, is always loaded atomically. */
+ * The indices count bytes and wrap with size_t; the memory's size is a power of two, so that an
+ * index modulo the size is always the right place. An all-zero ring is safe: its head stands at its
+ * limit, so it refuses every byte. A side reads its own index as a plain variable: nobody else
+ * writes it, so nothing can race with that; what the other side reads is stored atomically. */
 typedef struct {
-    size_t head;  /**< Written by the producer: bytes stored. */
+    size_t head;  /**< Written by the producer: where the next byte goes. */
     size_t limit; /**< Written by the consumer: where head must stop, one size ahead of the oldest
-                      * byte not yet given back. */
-    size_t gate;  /**< size - 1 while the ring is open. The producer closes it by writing 0, the
-                      * consumer opens it; while it is closed, head does not move. */
+                      * byte not yet given back. Nothing is stored unless head is behind it. */
     uint8_t *memory; /**< The caller's. */
+    size_t mask;     /**< size - 1: what of an index is a place in memory. */
     size_t overrun;  /**< Written by the producer: bytes refused. */
     size_t size;     /**< Of the memory. */
     size_t window;   /**< Unread bytes that are certainly intact: the size, with DMA half of it. */
 } tmini_ring_t;
 
 /** Empties the ring over `memory`, which the caller owns and keeps for as long as the ring is used.
- * `size` is a power of two, at least 2. The producer must not run meanwhile.
+ * `size` is a power of two, 2 to TMINI_RING_SIZE_MAX. The producer must not run meanwhile.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT (null pointer, wrong size): the ring then refuses every
  * byte. */
 tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size, bool dma);
 
 /* ----------------------------------------------------------------------- the producer's context */
 
-/** Producer of a CPU-fed ring: `count` bytes found the ring full or closed. Counts them and closes
- * it. Interrupt-safe; no loop, no wait. */
-TMINI_INLINE void tmini_ring_refuse(tmini_ring_t *ring, size_t count)
+/** Producer of a CPU-fed ring, whose head is `past` the limit: `count` bytes found it full (0) or
+ * closed. Counts them and closes it. Interrupt-safe; no loop, no wait. */
+TMINI_INLINE void tmini_ring_refuse(tmini_ring_t *ring, size_t head, size_t past, size_t count)
 {
     tmini_store(&ring->overrun, ring->overrun + count);
-    tmini_store(&ring->gate, 0); /* Last: whoever sees it closed sees all bytes and the count. */
+    if (past == 0) { /* Last: whoever sees it closed sees all bytes and the count. */
+        tmini_store(&ring->head, head + TMINI_RING_CLOSED);
+    }
 }
 
 /** Producer of a CPU-fed ring: stores one byte. Interrupt-safe; no loop, no wait. Raises overrun
  * when the ring is full or closed. In the header, because a call would cost as much as the act. */
 TMINI_INLINE void tmini_ring_put(tmini_ring_t *ring, uint8_t byte)
 {
-    const size_t head = ring->head; /* Its own: nobody else writes it. */
-    if (head != tmini_load(&ring->limit)) {
-        const size_t gate = tmini_load(&ring->gate);
-        if (gate != 0) {
-            ring->memory[head & gate] = byte;
-            tmini_store(&ring->head, ring->head + 1); /* Read again, it needs no register. */
-            return;
-        }
+    const size_t head = ring->head;
+    const size_t past = head - tmini_load(&ring->limit);
+    if (past > SIZE_MAX / 2) { /* It is behind. */
+        ring->memory[head & ring->mask] = byte;
+        tmini_store(&ring->head, TMINI_AGAIN(ring->head, head) + 1);
+    } else {
+        tmini_ring_refuse(ring, head, past, 1);
     }
-    tmini_ring_refuse(ring, 1);
 }
 
 /** Producer of a CPU-fed ring: stores as many of `count` bytes as fit, refuses the rest, and
@@ -107,31 +112,57 @@ void tmini_ring_gap(tmini_ring_t *ring);
 
 /* ----------------------------------------------------------------------- the consumer's context */
 
-/** The number of bytes stored since init, modulo the range of size_t. */
-static inline size_t tmini_ring_stored(const tmini_ring_t *ring)
+/** The place in the stream where the next byte goes. Places are to be compared with
+ * tmini_ring_distance() only: they leap when a ring is closed and opened. */
+static inline size_t tmini_ring_head(const tmini_ring_t *ring)
 {
     return tmini_load(&ring->head);
 }
 
-/** The number of bytes given back since init, modulo the range of size_t: where the oldest lies. */
+/** The place in the stream of the oldest byte that has not been given back. */
 static inline size_t tmini_ring_tail(const tmini_ring_t *ring)
 {
     return ring->limit - ring->size;
 }
 
-/** Bytes stored and not yet discarded. More than `window` of them (DMA only) means that the
- * hardware may have overwritten the oldest. */
+/** How many bytes were stored between two places in the stream, below TMINI_RING_CLOSED. When `to`
+ * lies before `from`, TMINI_RING_CLOSED less that number. */
+static inline size_t tmini_ring_distance(size_t from, size_t to)
+{
+    return (to - from) % TMINI_RING_CLOSED;
+}
+
+/** Bytes stored and not yet discarded, below TMINI_RING_CLOSED. */
 static inline size_t tmini_ring_unread(const tmini_ring_t *ring)
 {
-    return tmini_load(&ring->head) - tmini_ring_tail(ring);
+    return tmini_ring_distance(tmini_ring_tail(ring), tmini_ring_head(ring));
+}
+
+/** How far the head is ahead of the tail: bytes that are unread, and with DMA perhaps overwritten,
+ * if it is more than the window; of a closed ring TMINI_RING_CLOSED more than are unread. */
+static inline size_t tmini_ring_ahead(const tmini_ring_t *ring)
+{
+    return tmini_ring_head(ring) - tmini_ring_tail(ring);
+}
+
+/** True for a ring that DMA writes: what is unread may be overwritten, and it is never closed. */
+static inline bool tmini_ring_is_dma(const tmini_ring_t *ring)
+{
+    return ring->window != ring->size;
+}
+
+/** True if bytes are missing behind the last one stored: the ring is closed. */
+static inline bool tmini_ring_is_closed(const tmini_ring_t *ring)
+{
+    return tmini_ring_ahead(ring) > ring->window && !tmini_ring_is_dma(ring);
 }
 
 /** The unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger offset reads
  * another byte of the ring's memory, never one outside it. */
 static inline uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 {
-    /* The limit is a size ahead of the tail: the same place. */
-    return ring->memory[(ring->limit + offset) & (ring->size - 1)];
+    /* The limit is a size ahead of the oldest byte: the same place. */
+    return ring->memory[(ring->limit + offset) & ring->mask];
 }
 
 /** True if nothing that has been read so far can have been overwritten. Only DMA can make it
@@ -139,7 +170,7 @@ static inline uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 static inline bool tmini_ring_intact(const tmini_ring_t *ring)
 {
     tmini_fence(); /* What has been read was read before the producer's index is read again. */
-    return tmini_ring_unread(ring) <= ring->window;
+    return tmini_ring_ahead(ring) <= ring->window || !tmini_ring_is_dma(ring);
 }
 
 /** Copies `count` unread bytes from `offset` on to `bytes`; offset + count is at most
@@ -151,7 +182,7 @@ void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, si
 static inline const uint8_t *tmini_ring_piece(const tmini_ring_t *ring, size_t offset,
                                               size_t *count)
 {
-    const size_t at = (ring->limit + offset) & (ring->size - 1);
+    const size_t at = (ring->limit + offset) & ring->mask;
     const size_t to_end = ring->size - at;
     if (*count > to_end) {
         *count = to_end;
@@ -161,12 +192,6 @@ static inline const uint8_t *tmini_ring_piece(const tmini_ring_t *ring, size_t o
 
 /** Gives the oldest `count` bytes back to the producer; at most tmini_ring_unread(). */
 void tmini_ring_discard(tmini_ring_t *ring, size_t count);
-
-/** True if bytes are missing behind the last one stored: the ring is closed. */
-static inline bool tmini_ring_is_closed(const tmini_ring_t *ring)
-{
-    return tmini_load(&ring->gate) == 0;
-}
 
 /** Opens a closed ring again, once everything in it has been discarded. */
 void tmini_ring_open(tmini_ring_t *ring);

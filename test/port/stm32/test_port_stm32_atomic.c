@@ -36,7 +36,7 @@ void test_bytes_come_out_of_the_ring_in_the_order_they_went_in(void)
 {
     for (unsigned i = 0; i < 100; i++) {
         tmini_ring_put(&ring, (uint8_t)i);
-        TEST_ASSERT_EQUAL_UINT32(i + 1, tmini_ring_stored(&ring));
+        TEST_ASSERT_EQUAL_UINT32(i + 1, tmini_ring_head(&ring));
         TEST_ASSERT_EQUAL_HEX8(i, memory[i % sizeof memory]);
         tmini_store(&ring.limit, i + 1 + sizeof memory); /* The consumer has taken it. */
     }

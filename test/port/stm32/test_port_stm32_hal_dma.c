@@ -109,7 +109,7 @@ static void check_shares_callbacks(hal_rig_way_t way)
     tmini_stm32_hal_rx_half_complete(&hal_rig.port, &other);
     tmini_stm32_hal_rx_complete(&hal_rig.port, &other);
     tmini_stm32_hal_error(&hal_rig.port, &other);
-    TEST_ASSERT_EQUAL_UINT32(0, tmini_ring_stored(&hal_rig.lidar.ring));
+    TEST_ASSERT_EQUAL_UINT32(0, tmini_ring_head(&hal_rig.lidar.ring));
     TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().framing_errors);
 }
 

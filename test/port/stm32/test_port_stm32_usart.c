@@ -285,9 +285,9 @@ void test_an_idle_line_hands_over_what_dma_has_written(void)
 {
     start_dma();
     dma_writes_packets(3);
-    TEST_ASSERT_EQUAL_UINT32(0, tmini_ring_stored(&lidar.ring));
+    TEST_ASSERT_EQUAL_UINT32(0, tmini_ring_head(&lidar.ring));
     interrupt_with(IDLE, 0);
-    TEST_ASSERT_EQUAL_UINT32(3 * PACKET, tmini_ring_stored(&lidar.ring));
+    TEST_ASSERT_EQUAL_UINT32(3 * PACKET, tmini_ring_head(&lidar.ring));
     TEST_ASSERT_EQUAL_UINT32(3, packets());
 }
 
