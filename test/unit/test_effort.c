@@ -155,6 +155,19 @@ void test_packets_of_a_scan_are_bounded(void)
     check_that_short_packets_are_bounded();
 }
 
+/* A packet of 32 samples costs its 106 bytes twice, and 44: eight of them cost 2048. */
+void test_a_poll_ends_when_its_effort_is_used_up_to_the_last(void)
+{
+    open_driver();
+    for (unsigned i = 0; i < 9; i++) {
+        rig_feed_packet(0, 32, 1000);
+    }
+    polls_to(TMINI_EVENT_MORE);
+    TEST_ASSERT_EQUAL_UINT32(8, poll_counters().packets);
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT32(9, poll_counters().packets);
+}
+
 /* Ten packets of 4 samples cost 88 each; for the garbage behind them 1168 are left. */
 void test_packets_and_the_garbage_behind_them_share_a_polls_effort(void)
 {

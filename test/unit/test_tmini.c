@@ -300,25 +300,32 @@ void test_a_lidar_that_streams_after_a_query_is_stopped_too(void)
 
 /* ---- Silence ---- */
 
-/* A clock that takes so long to read that five bytes of a health reply come meanwhile: with the
- * first reading of a poll, which looks whether there is news, or with the second. */
+/* A clock that takes so long to read that bytes come meanwhile: with the first reading of a poll,
+ * which looks whether there is news, or with the second. */
 static unsigned readings_left;
+static void (*feed_meanwhile)(void);
 
 static uint32_t slow_clock(void *context)
 {
-    static const uint8_t reply[] = {0xA5, 0x5A, 0x03, 0x00, 0x00};
-
     (void)context;
     readings_left--;
     if (readings_left == 0) {
-        rig_feed(reply, sizeof reply);
+        feed_meanwhile();
     }
     return rig.now_ms;
+}
+
+static void feed_half_a_health_reply(void)
+{
+    static const uint8_t reply[] = {0xA5, 0x5A, 0x03, 0x00, 0x00};
+
+    rig_feed(reply, sizeof reply);
 }
 
 static void polls_with_bytes_at(unsigned reading)
 {
     readings_left = reading;
+    feed_meanwhile = feed_half_a_health_reply;
     rig.now_ms += 1;
     rig.port.now_ms = slow_clock;
     polls_to(TMINI_EVENT_NONE);
@@ -369,6 +376,22 @@ void test_a_line_on_which_bytes_come_while_a_poll_looks_for_news_is_not_quiet(vo
 void test_a_line_on_which_bytes_come_while_the_clock_is_read_is_not_quiet(void)
 {
     line_is_not_quiet_with_bytes_at(2);
+}
+
+/* Two pauses of 60 ms between polls are 100 ms of silence; the byte is given up after 101. */
+void test_the_time_between_two_polls_is_silence_for_50_ms_at_most(void)
+{
+    rig.timing.frame_timeout_ms = 101;
+    rig_feed_byte(0xAA);
+    polls_to(TMINI_EVENT_NONE);
+    for (unsigned i = 0; i < 2; i++) {
+        rig.now_ms += 60;
+        polls_to(TMINI_EVENT_NONE);
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, counters().bytes_pending);
+    rig.now_ms += 1;
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
 }
 
 void test_without_a_frame_timeout_a_reply_that_comes_in_two_is_taken_all_the_same(void)
@@ -505,6 +528,25 @@ void test_a_scan_is_delivered_with_the_start_packet_that_follows_it(void)
     TEST_ASSERT_EQUAL_UINT16(1000, scan->points[1].distance_mm);
     TEST_ASSERT_EQUAL_UINT16(1001, scan->points[8].distance_mm);
     TEST_ASSERT_EQUAL_UINT32(1, counters().scans);
+}
+
+static void feed_start_packet(void)
+{
+    rig_feed_start_packet(800);
+}
+
+/* It came before the clock's reading, and nothing came behind it. */
+void test_a_packet_that_comes_while_the_clock_is_read_has_the_time_of_that_reading(void)
+{
+    rig_go_scanning();
+    feed_turn(700);
+    polls_to(TMINI_EVENT_NONE);
+    rig.now_ms = 5166;
+    readings_left = 2;
+    feed_meanwhile = feed_start_packet;
+    rig.port.now_ms = slow_clock;
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT32(5166, tmini_scan(&rig.lidar)->end_ms);
 }
 
 void test_a_scan_is_valid_until_the_next_poll_whatever_is_fed(void)
@@ -686,6 +728,50 @@ void test_streaming_reports_faults_and_losses_as_well(void)
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
     passes(1000);
     polls_to(TMINI_EVENT_LOST);
+}
+
+/* Pauses of more than 30 ms are judged: what they may have cost is a gap before a packet. */
+static void go_streaming_without_pauses(void)
+{
+    rig.timing.max_pause_ms = 30;
+    go_streaming();
+    rig_feed_packet(0x79, 1, 700);
+    polls_to(TMINI_EVENT_STARTED);
+    polls_to(TMINI_EVENT_PACKET);
+    polls_to(TMINI_EVENT_NONE);
+}
+
+static void two_packets_come_with_gaps(uint16_t before_first, uint16_t before_second)
+{
+    rig_feed_point_packet(1000);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_PACKET);
+    TEST_ASSERT_EQUAL_UINT16(before_first, tmini_packet(&rig.lidar)->gap);
+    polls_to(TMINI_EVENT_PACKET);
+    TEST_ASSERT_EQUAL_UINT16(before_second, tmini_packet(&rig.lidar)->gap);
+    polls_to(TMINI_EVENT_NONE);
+}
+
+/* The line was watched: what is missing came before those bytes, or among them. */
+void test_after_a_pause_all_packets_that_come_at_once_are_doubtful_and_no_others(void)
+{
+    go_streaming_without_pauses();
+    passes(50);
+    two_packets_come_with_gaps(TMINI_GAP_UNKNOWN, TMINI_GAP_UNKNOWN);
+    rig.now_ms += 2;
+    two_packets_come_with_gaps(0, 0);
+}
+
+/* A layer below may have held the bytes: what is missing may have come behind them as well. */
+void test_after_a_pause_between_polls_the_first_packet_behind_is_doubtful_too(void)
+{
+    go_streaming_without_pauses();
+    rig.now_ms += 50;
+    two_packets_come_with_gaps(TMINI_GAP_UNKNOWN, TMINI_GAP_UNKNOWN);
+    rig.now_ms += 2;
+    two_packets_come_with_gaps(TMINI_GAP_UNKNOWN, 0);
+    rig.now_ms += 2;
+    two_packets_come_with_gaps(0, 0);
 }
 
 /* ---- Results ---- */
