@@ -2,33 +2,42 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Changes the library in one small place at a time, and asks whether a unit test notices.
+"""Changes the library or a port in one small place at a time, and asks whether a unit test notices.
 
-    mutation.py --build DIR [--sample N [--seed S]] [--results FILE] [--list] [FILE …]
+    mutation.py --build DIR [--sample N [--seed S]] [--results FILE] [--jobs N] [--list] [FILE …]
 
-DIR is a build folder with the unit tests in it, configured with CMAKE_EXPORT_COMPILE_COMMANDS=ON (as
-test/run.sh does). FILE: sources below lib/src or port, all of lib/src unless given. A mutant is
-compiled as its file is, linked with each test's own objects, and the tests run until one fails. One
-whose machine code is that of the original is none. With --results a run can be broken off and goes on
-where it was.
+DIR is a build folder with the tests in it, configured with CMAKE_EXPORT_COMPILE_COMMANDS=ON (as
+test/run.sh does). FILE: sources below lib/src or port, or folders of such; lib/src unless given. A source
+of the library is tried by all of test/unit, one of a port by that port's tests. With --results a run can
+be broken off and goes on where it was.
 
-A mutant that no test notices is a finding, unless test/mutants.txt has it with the reason why nobody can.
+A test is linked once, against a shared object of the one source, which each mutant replaces: so a mutant
+costs one quick compilation. The tests that are named like the source come first, then those that have
+killed the most in the time they take. One that computes much longer than it should is stopped, and has
+noticed. A mutant that lives, but whose optimised machine code is that of the original, is none.
+
+A mutant that no test notices is a finding, unless test/mutants.txt has it with the reason why nobody can;
+and so is an entry there of a mutant that there no longer is.
 """
 
 import argparse
+import contextlib
 import glob
 import hashlib
+import itertools
 import json
+import multiprocessing
 import os
 import re
+import resource
 import shlex
+import signal
 import subprocess
 import sys
 import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 KNOWN = os.path.join(ROOT, "test", "mutants.txt")
-TIME_LIMIT_S = 20
 
 # What is put in the place of what: C's operators and constants, as people confuse them.
 REPLACEMENTS = [
@@ -60,6 +69,11 @@ def code_only(text):
     return re.sub(r"^#\s*(?!define\s+\w+ [-(]*\d)[^\n]*(?:\\\n[^\n]*)*", blank, text, flags=re.MULTILINE)
 
 
+def read(path):
+    with open(os.path.join(ROOT, path), encoding="utf-8") as file:
+        return file.read()
+
+
 class Mutant:
     def __init__(self, path, line, begin, end, replacement, lines):
         self.path, self.line = path, line
@@ -69,27 +83,28 @@ class Mutant:
         self.after = new.strip()
         self.text = "\n".join(lines[:line] + [new] + lines[line + 1:])
         self.key = f"{path} | {self.before} | {self.after}"
+        self.id = hashlib.sha256(f"{path}\n{self.text}".encode()).hexdigest()[:16]
 
     def __str__(self):
         return f"{self.path}:{self.line + 1}: {self.before}  ->  {self.after}"
 
 
 def mutants_of(path):
-    with open(os.path.join(ROOT, path), encoding="utf-8") as file:
-        text = file.read()
+    text = read(path)
     lines = text.split("\n")
-    found = []
+    found = {}
     for number, line in enumerate(code_only(text).split("\n")):
         for pattern, replacements in REPLACEMENTS:
             for match in re.finditer(pattern, line):
                 for replacement in replacements:
-                    found.append(Mutant(path, number, match.start(), match.end(),
-                                        replacement.format(match.group(0)), lines))
-    return found
+                    mutant = Mutant(path, number, match.start(), match.end(),
+                                    replacement.format(match.group(0)), lines)
+                    found[mutant.id] = mutant
+    return list(found.values())
 
 
 def arguments_of(entry):
-    """The compiler's command line, without what is about warnings, dependencies and caches."""
+    """The compiler's command line, without source and object, and what is about dependencies and caches."""
     words = shlex.split(entry["command"])
     while os.path.basename(words[0]) in ("ccache", "sccache"):
         words.pop(0)
@@ -100,10 +115,10 @@ def arguments_of(entry):
             skip = False
         elif word in ("-MF", "-MT", "-o"):
             skip = True
-        elif word not in ("-MD", "-c", "-Werror") and os.path.abspath(os.path.join(entry["directory"], word)) != \
-                os.path.abspath(entry["file"]):
+        elif word not in ("-MD", "-c", "-Werror") and \
+                os.path.abspath(os.path.join(entry["directory"], word)) != os.path.abspath(entry["file"]):
             kept.append(word)
-    return kept + ["-w", "-g0", "-O1", "-iquote", os.path.dirname(entry["file"])]
+    return kept + ["-w", "-g0"]
 
 
 def object_of(entry):
@@ -111,102 +126,224 @@ def object_of(entry):
     return os.path.join(entry["directory"], words[words.index("-o") + 1])
 
 
+def files_of(folder):
+    return sorted(os.path.relpath(file, ROOT) for kind in ("c", "cpp", "h")
+                  for file in glob.glob(os.path.join(glob.escape(os.path.join(ROOT, folder)), "*." + kind)))
+
+
+def has_functions(path):
+    return re.search(r"^\{", read(path), re.MULTILINE)
+
+
+def sources_with(path):
+    """The sources in a file's folder that it is part of: itself, or those that include it."""
+    found = {path}
+    for _ in files_of(os.path.dirname(path)): # As many rounds as a chain of inclusions may be long.
+        names = [f'#include "{os.path.basename(file)}"' for file in found]
+        found |= {file for file in files_of(os.path.dirname(path)) if any(name in read(file) for name in names)}
+    return sorted(file for file in found if not file.endswith(".h"))
+
+
+class Build:
+    """What the build folder has: how sources are compiled, and what test programs consist of."""
+
+    def __init__(self, folder):
+        self.folder = os.path.abspath(folder)
+        with open(os.path.join(self.folder, "compile_commands.json"), encoding="utf-8") as file:
+            self.entries = json.load(file)
+        self.archives, self.folders = [], []
+        for place, folders, files in os.walk(self.folder): # Not through links: they may lead round in a circle.
+            if "CMakeCache.txt" in files and place != self.folder:
+                folders.clear() # A build of its own.
+            self.archives += [os.path.join(place, file) for file in sorted(files) if file.endswith(".a")]
+            self.folders += [os.path.join(place, name) for name in sorted(folders) if re.match(r"test_.*\.dir$", name)]
+
+    def entries_of(self, source):
+        path = os.path.realpath(os.path.join(ROOT, source))
+        return [entry for entry in self.entries if os.path.realpath(entry["file"]) == path]
+
+    def tests_of(self, source):
+        """The tests of a source, each with how it is compiled for it."""
+        place = "unit" if source.startswith("lib/") else os.path.dirname(source).replace("/", "[/_]")
+        entries = self.entries_of(source)
+        own = {object_of(entry).split(".dir")[0]: entry for entry in entries}
+        library = [entry for entry in entries if not object_of(entry).startswith(os.path.join(self.folder, "test", ""))]
+        for folder in self.folders:
+            entry = own.get(folder[:-len(".dir")], library[0] if library else None)
+            name = os.path.basename(folder)[:-len(".dir")]
+            if re.search(f"/test/.*{place}/", folder) and entry and \
+                    os.path.exists(os.path.join(self.folder, "test", "bin", name)):
+                yield Test(name, folder, entry)
+
+
+class Test:
+    def __init__(self, name, folder, entry):
+        self.name, self.folder, self.entry = name, folder, entry
+        self.compiler, *self.flags = arguments_of(entry)
+        self.variant = hashlib.sha256(f"{entry['file']} {self.flags}".encode()).hexdigest()[:16]
+        self.program = None # Linked when first needed.
+        self.seconds = 6.0 # What it computes with the original, once that has been seen.
+        self.kills = 0
+
+    def objects(self):
+        found = glob.glob(os.path.join(glob.escape(self.folder), "**", "*.o"), recursive=True)
+        return [obj for obj in found if os.path.realpath(obj) != os.path.realpath(object_of(self.entry))]
+
+    def work_folder(self):
+        """Where ctest runs it, if it needs a place of its own."""
+        place = re.sub(r"CMakeFiles/(\w+)\.dir$", r"\1.work", self.folder)
+        return place if os.path.isdir(place) else None
+
+    def promise(self, path):
+        module = re.sub(r"^tmini_|\.\w+$", "", os.path.basename(path))
+        return (module not in self.name, -(self.kills + 1) / self.seconds, self.name)
+
+
+class Unable(Exception):
+    """Nothing can be said about mutants."""
+
+
 class Bench:
-    """Compiles a source as the build does, links it into tests, and runs those."""
+    """Compiles mutants, and runs tests with them. One process has one, with a folder of its own."""
 
     def __init__(self, build, work):
-        self.build, self.work = build, work
-        try:
-            with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
-                self.commands = json.load(file)
-        except FileNotFoundError:
-            print(f"SKIPPED: {build} was configured without CMAKE_EXPORT_COMPILE_COMMANDS")
-            sys.exit(0)
-        self.archives = sorted(glob.glob(os.path.join(build, "**", "*.a"), recursive=True))
-        self.originals = {}
+        self.build, self.work = Build(build), work
+        self.tests, self.originals = {}, {}
 
-    def entries(self, path):
-        source = os.path.join(ROOT, path)
-        return [entry for entry in self.commands if os.path.realpath(entry["file"]) == os.path.realpath(source)]
+    def tests_of(self, path):
+        if path not in self.tests:
+            self.tests[path] = [test for source in sources_with(path) for test in self.build.tests_of(source)]
+            if not self.tests[path]:
+                raise Unable(f"{self.build.folder} has no test of {path}")
+        return self.tests[path]
 
-    def folders_of_tests(self):
-        """Where the unit tests' objects lie. Not through links, which may lead round in a circle."""
-        return sorted(os.path.join(place, name)
-                      for place, names, _ in os.walk(os.path.join(self.build, "test"))
-                      for name in names if name.startswith("test_") and name.endswith(".dir"))
+    @contextlib.contextmanager
+    def changed(self, mutant):
+        """The mutant among links to the other files of its folder: those include one another."""
+        folder = os.path.join(self.work, os.path.dirname(mutant.path))
+        if not os.path.isdir(folder):
+            os.makedirs(folder)
+            for file in files_of(os.path.dirname(mutant.path)):
+                os.symlink(os.path.join(ROOT, file), os.path.join(self.work, file))
+        place = os.path.join(self.work, mutant.path)
+        os.remove(place)
+        with open(place, "w", encoding="utf-8") as file:
+            file.write(mutant.text)
+        yield
+        os.remove(place)
+        os.symlink(os.path.join(ROOT, mutant.path), place)
 
-    def tests(self, path):
-        """For each unit test: its name, its objects, and how the source is compiled for it."""
-        entries = self.entries(path)
-        library = [entry for entry in entries if "/test/" not in object_of(entry)[len(self.build):]]
-        own = {os.path.dirname(object_of(entry)).split(".dir")[0]: entry for entry in entries if entry not in library}
-        found = []
-        for folder in self.folders_of_tests():
-            name = os.path.basename(folder)[:-4]
-            program = glob.glob(os.path.join(self.build, "test", "bin", name))
-            entry = own.get(folder[:-4], library[0] if library and "/test/unit/" in folder else None)
-            objects = glob.glob(os.path.join(folder, "**", "*.o"), recursive=True)
-            if entry and program and objects:
-                found.append((name, [obj for obj in objects if obj != object_of(entry)], entry))
-        module = os.path.basename(path)[len("tmini_"):-2] if path != "lib/src/tmini.c" else "tmini"
-        return sorted(found, key=lambda test: (module not in test[0], "honest" in test[0], test[0]))
+    def changed_source(self, test):
+        return os.path.join(self.work, os.path.relpath(os.path.realpath(test.entry["file"]), os.path.realpath(ROOT)))
 
-    def compile(self, text, entry, name):
-        source = os.path.join(self.work, "mutant.c")
-        with open(source, "w", encoding="utf-8") as file:
-            file.write(text)
-        target = os.path.join(self.work, name)
-        done = subprocess.run(arguments_of(entry) + ["-c", source, "-o", target], cwd=entry["directory"],
-                              capture_output=True, check=False)
-        return target if done.returncode == 0 else None
+    def compile(self, test, source, target, *options):
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        return subprocess.run([test.compiler, *test.flags, *options, source, "-o", target],
+                              cwd=test.entry["directory"], stderr=subprocess.DEVNULL, check=False).returncode == 0
 
-    def code(self, text, entry):
-        target = self.compile(text, entry, "code.o")
-        if target is None:
-            return None
+    def compile_shared(self, test, source, folder):
+        """Not optimised: that is the quickest. The tests know it as mutant.so, wherever it lies."""
+        target = os.path.join(self.work, folder, test.variant, "mutant.so")
+        is_compiled = self.compile(test, source, target, "-O0", "-fPIC", "-shared", "-Wl,-soname,mutant.so")
+        return target if is_compiled else None
+
+    def optimised(self, test, source):
+        target = os.path.join(self.work, "optimised.o")
+        self.compile(test, source, target, "-O2", "-c")
         with open(target, "rb") as file:
             return file.read()
 
-    def passes(self, test, compiled):
-        name, objects, _ = test
-        program = os.path.join(self.work, name)
-        done = subprocess.run(["cc", "-o", program, *objects, compiled, "-Wl,--start-group", *self.archives,
-                               "-Wl,--end-group", "-lm", "-lpthread"], capture_output=True, check=False)
-        if done.returncode != 0:
-            return None
+    def is_same_code(self, tests):
+        """In all the ways in which the tests have the source compiled."""
+        for variant, test in {test.variant: test for test in tests}.items():
+            if variant not in self.originals:
+                self.originals[variant] = self.optimised(test, test.entry["file"])
+            if self.optimised(test, self.changed_source(test)) != self.originals[variant]:
+                return False
+        return True
+
+    def link(self, test):
+        """Also makes sure that the test passes with the original, and sees how long that takes."""
+        original = self.compile_shared(test, test.entry["file"], "original")
+        test.program = os.path.join(self.work, os.path.dirname(original), test.name)
+        subprocess.run([test.compiler, "-o", test.program, *test.objects(), "-Wl,--no-as-needed", original,
+                        "-Wl,--start-group", *self.build.archives, "-Wl,--end-group", "-lm", "-lpthread"], check=True)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        if not self.passes(test, original):
+            raise Unable(f"{test.name} fails without any mutant")
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        test.seconds = max(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, 0.001)
+
+    def run(self, test, shared):
+        """The exit status; what computes much longer than it should, or waits, is ended by a signal."""
         try:
-            return subprocess.run([program], capture_output=True, stdin=subprocess.DEVNULL, timeout=TIME_LIMIT_S,
-                                  check=False).returncode == 0
+            return subprocess.run([test.program], cwd=test.work_folder() or self.work, stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                  env={**os.environ, "LD_LIBRARY_PATH": os.path.dirname(shared)},
+                                  preexec_fn=lambda: signal.setitimer(signal.ITIMER_PROF, 0.25 + 4 * test.seconds),
+                                  timeout=20 + 20 * test.seconds, check=False).returncode
         except subprocess.TimeoutExpired:
-            return False
-        finally:
-            os.remove(program)
+            return -signal.SIGKILL
+
+    def passes(self, test, shared):
+        """What fails must do so twice: some tests look at the real time."""
+        status = self.run(test, shared)
+        return status == 0 or status > 0 and self.run(test, shared) == 0
 
     def fate(self, mutant):
         """'killed by …', 'survived', 'the same code' or 'not C'."""
-        tests = self.tests(mutant.path)
-        if not tests:
-            sys.exit(f"{self.build} has no test of {mutant.path}")
-        if mutant.path not in self.originals:
-            with open(os.path.join(ROOT, mutant.path), encoding="utf-8") as file:
-                original = file.read()
-            self.originals[mutant.path] = (original, self.code(original, tests[0][2]))
+        tests = sorted(self.tests_of(mutant.path), key=lambda test: test.promise(mutant.path))
+        is_other = False # Not looked at yet; worth it before the first test that takes long.
+        with self.changed(mutant):
+            shared = {}
             for test in tests:
-                if self.passes(test, self.compile(original, test[2], "original.o")) is False:
-                    sys.exit(f"{test[0]} fails without any mutant")
-        code = self.code(mutant.text, tests[0][2])
-        if code is None:
-            return "not C"
-        if code == self.originals[mutant.path][1]:
-            return "the same code"
-        compiled = {}
-        for test in tests:
-            command = tuple(arguments_of(test[2]))
-            if command not in compiled:
-                compiled[command] = self.compile(mutant.text, test[2], f"mutant{len(compiled)}.o")
-            if compiled[command] is None or self.passes(test, compiled[command]) is False:
-                return "killed by " + test[0]
-        return "survived"
+                if test.program is None:
+                    self.link(test)
+                if not is_other and test.seconds > 0.5:
+                    if self.is_same_code(tests):
+                        return "the same code"
+                    is_other = True
+                if test.variant not in shared:
+                    shared[test.variant] = self.compile_shared(test, self.changed_source(test), "changed")
+                if shared[test.variant] is None:
+                    return "not C"
+                if not self.passes(test, shared[test.variant]):
+                    test.kills += 1
+                    return "killed by " + test.name
+            return "survived" if is_other or not self.is_same_code(tests) else "the same code"
+
+
+def begin_worker(build, work):
+    global bench
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    bench = Bench(build, tempfile.mkdtemp(dir=work))
+
+
+def fate_of(mutant):
+    return bench.fate(mutant)
+
+
+class Results:
+    """The fates of mutants, kept in a file if one is named."""
+
+    def __init__(self, path):
+        self.path, self.fates = path, {}
+        if path and os.path.exists(path):
+            with open(path, encoding="utf-8") as file:
+                self.fates = {key: fate for key, fate, _ in (line.split("\t", 2) for line in file)}
+
+    def note(self, mutant, fate):
+        if self.path and mutant.id not in self.fates:
+            with open(self.path, "a", encoding="utf-8") as file:
+                file.write(f"{mutant.id}\t{fate}\t{mutant}\n")
+
+    def of(self, mutants, pool):
+        """Mutants with their fates, in order; those not known yet are tried."""
+        fresh = pool.imap(fate_of, [mutant for mutant in mutants if mutant.id not in self.fates])
+        for mutant in mutants:
+            fate = self.fates.get(mutant.id) or next(fresh)
+            self.note(mutant, fate)
+            yield mutant, fate
 
 
 def known_survivors():
@@ -219,49 +356,67 @@ def known_survivors():
     return known
 
 
+def outdated(known):
+    """What is known of mutants that there no longer are, since their lines have changed."""
+    paths = {key.split(" | ")[0] for key in known}
+    there = {mutant.key for path in paths if os.path.exists(os.path.join(ROOT, path)) for mutant in mutants_of(path)}
+    return [key for key in known if key not in there]
+
+
+def files_among(names):
+    """The files that are named, and those with functions in the folders that are."""
+    for name in names:
+        if os.path.isfile(name):
+            yield os.path.relpath(os.path.abspath(name), ROOT)
+        for place, folders, _ in os.walk(name):
+            folders.sort()
+            yield from filter(has_functions, files_of(os.path.abspath(place)))
+
+
+def try_mutants(mutants, wanted, pool, results, known):
+    """Counts fates until so many mutants that can be noticed have been tried; returns also the survivors."""
+    counts = {"killed": 0, "survived": 0, "equivalent": 0, "not": 0, "the": 0}
+    tried = lambda: counts["killed"] + counts["survived"] + counts["equivalent"]
+    remaining = iter(mutants)
+    while batch := list(itertools.islice(remaining, wanted - tried())):
+        for mutant, fate in results.of(batch, pool):
+            if fate == "survived" and mutant.key in known:
+                fate = "equivalent"
+            if fate == "survived":
+                print(f"survived: {mutant}", flush=True)
+            counts[fate.split()[0]] += 1
+    print(f"{tried()} mutants: {counts['killed']} killed, {counts['equivalent']} known to be equivalent, "
+          f"{counts['survived']} survived; besides {counts['the']} of the same machine code and {counts['not']} "
+          "that do not compile")
+    return counts["survived"]
+
+
 def main():
-    parser = argparse.ArgumentParser(description="Mutates the library and runs its unit tests.")
+    parser = argparse.ArgumentParser(description="Mutates the library or ports and runs their unit tests.")
     parser.add_argument("--build", required=True)
     parser.add_argument("--sample", type=int, help="only so many mutants, drawn at random")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--results", help="a file to which each mutant's fate is appended, and read from")
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--list", action="store_true", help="only prints the mutants")
-    parser.add_argument("files", nargs="*", metavar="FILE")
+    parser.add_argument("files", nargs="*", metavar="FILE", default=[os.path.join(ROOT, "lib", "src")])
     arguments = parser.parse_args()
-    files = arguments.files or sorted(os.path.relpath(path, ROOT)
-                                      for path in glob.glob(os.path.join(glob.escape(ROOT), "lib/src/*.c")))
-    mutants = list({mutant.key + str(mutant.line): mutant for path in files for mutant in mutants_of(path)}.values())
+    mutants = [mutant for path in files_among(arguments.files) for mutant in mutants_of(path)]
     if arguments.sample: # By hash, so that a change of one line does not draw all others anew.
         mutants.sort(key=lambda mutant: hashlib.sha256(f"{arguments.seed} {mutant.key}".encode()).digest())
     if arguments.list:
         print(*mutants, f"{len(mutants)} mutants", sep="\n")
         return
-    fates = {}
-    if arguments.results and os.path.exists(arguments.results):
-        with open(arguments.results, encoding="utf-8") as file:
-            fates = dict(line.rstrip("\n").rsplit("\t", 1) for line in file if "\t" in line)
+    if not os.path.exists(os.path.join(arguments.build, "compile_commands.json")):
+        print(f"SKIPPED: {arguments.build} was configured without CMAKE_EXPORT_COMPILE_COMMANDS")
+        return
     known = known_survivors()
-    survivors, counts = [], {"killed": 0, "survived": 0, "equivalent": 0, "not": 0, "the": 0}
-    with tempfile.TemporaryDirectory() as work:
-        bench = Bench(os.path.abspath(arguments.build), work)
-        for mutant in mutants:
-            fate = fates.get(str(mutant)) or bench.fate(mutant)
-            if arguments.results and str(mutant) not in fates:
-                with open(arguments.results, "a", encoding="utf-8") as file:
-                    file.write(f"{mutant}\t{fate}\n")
-            if fate == "survived" and mutant.key in known:
-                fate = "equivalent"
-            if fate == "survived":
-                survivors.append(mutant)
-                print(f"survived: {mutant}", flush=True)
-            counts[fate.split()[0]] += 1
-            if arguments.sample and sum(counts[kind] for kind in ("killed", "survived", "equivalent")) == \
-                    arguments.sample:
-                break
-    print(f"{counts['killed'] + counts['survived'] + counts['equivalent']} mutants: {counts['killed']} killed, "
-          f"{counts['equivalent']} known to be equivalent, {counts['survived']} survived; besides {counts['the']} "
-          f"of the same machine code and {counts['not']} that do not compile")
-    sys.exit(1 if survivors else 0)
+    stale = outdated(known)
+    print(*(f"in {KNOWN}, but no mutant any more: {key}" for key in stale), sep="\n", end="\n" if stale else "")
+    with tempfile.TemporaryDirectory() as work, \
+            multiprocessing.Pool(arguments.jobs, begin_worker, (arguments.build, work)) as pool:
+        survivors = try_mutants(mutants, arguments.sample or len(mutants), pool, Results(arguments.results), known)
+    sys.exit(1 if survivors or stale else 0)
 
 
 if __name__ == "__main__":
