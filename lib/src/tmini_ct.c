@@ -20,11 +20,9 @@ enum {
     NUMBER_LOW,
 };
 
-/* At which index each stands (section 7). The others are production data. */
-static const uint8_t index_of[TMINI_CT_FIELDS] = {
-    [USER_VERSION] = 1, [HEALTH] = 3, [HARDWARE] = 4,     [FIRMWARE_MINOR] = 5, [YEAR] = 9,
-    [MONTH] = 10,       [DAY] = 11,   [NUMBER_HIGH] = 12, [NUMBER_LOW] = 13,
-};
+/* A bit for the index at which each stands (section 7). The others are production data. */
+#define KEPT_MASK                                                                            \
+    (1u << 1 | 1u << 3 | 1u << 4 | 1u << 5 | 1u << 9 | 1u << 10 | 1u << 11 | 1u << 12 | 1u << 13)
 
 #define KNOWN_MASK                                                                                 \
     (TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE | TMINI_KNOWN_FIRMWARE | \
@@ -32,9 +30,8 @@ static const uint8_t index_of[TMINI_CT_FIELDS] = {
 
 static void trust_current(tmini_ct_t *ct)
 {
-    const unsigned count = ct->packets < TMINI_CT_INDICES ? ct->packets : TMINI_CT_INDICES;
     memcpy(ct->trusted, ct->current, ct->fields);
-    ct->known |= (uint16_t)((1u << count) - 1);
+    ct->known |= (uint16_t)((1u << ct->packets) - 1);
 }
 
 static void begin_revolution(tmini_ct_t *ct)
@@ -42,15 +39,15 @@ static void begin_revolution(tmini_ct_t *ct)
     ct->packets = 0;
     ct->fields = 0;
     ct->crc = 0;
-    ct->complete = true;
-    ct->informative = false;
+    ct->cts = 0;
+    ct->gaps = 0;
 }
 
 /* Exactly one byte between the last point packet and this start packet is LastCRC. Units without CT
  * information send none: there it is noise. */
 static tmini_ct_verdict_t check_revolution(const tmini_ct_t *ct, const tmini_packet_t *start)
 {
-    if (!ct->informative || !ct->complete || start->gap != 1) {
+    if (ct->cts == 0 || ct->gaps != 0 || start->gap != 1) {
         return TMINI_CT_UNKNOWN;
     }
     return start->frame->last_skipped == ct->crc ? TMINI_CT_CONFIRMED : TMINI_CT_REFUTED;
@@ -59,12 +56,13 @@ static tmini_ct_verdict_t check_revolution(const tmini_ct_t *ct, const tmini_pac
 static void append(tmini_ct_t *ct, uint8_t byte)
 {
     ct->crc = tmini_ct_crc8(ct->crc, byte);
-    if (ct->fields < TMINI_CT_FIELDS && ct->packets == index_of[ct->fields]) {
+    if (ct->packets == TMINI_CT_INDICES) {
+        return;
+    }
+    if ((KEPT_MASK >> ct->packets & 1u) != 0) {
         ct->current[ct->fields++] = byte;
     }
-    if (ct->packets < UINT8_MAX) {
-        ct->packets++;
-    }
+    ct->packets++;
 }
 
 void tmini_ct_init(tmini_ct_t *ct)
@@ -89,8 +87,8 @@ tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)
     } else if (ct->packets == 0) {
         return TMINI_CT_UNKNOWN; /* Before the first start packet: the index is not known. */
     } else {
-        ct->complete = ct->complete && packet->gap == 0;
-        ct->informative = ct->informative || packet->ct != 0;
+        ct->cts |= packet->ct;
+        ct->gaps |= packet->gap;
     }
     append(ct, packet->ct);
     return verdict;
@@ -129,10 +127,8 @@ void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
 
 uint8_t tmini_ct_crc8(uint8_t crc, uint8_t byte)
 {
-    /* What four steps of the reflected polynomial 0x8C make of the low four bits. */
-    static const uint8_t steps[16] = {0x00, 0x9D, 0x23, 0xBE, 0x46, 0xDB, 0x65, 0xF8,
-                                      0x8C, 0x11, 0xAF, 0x32, 0xCA, 0x57, 0xE9, 0x74};
-    crc ^= byte;
-    crc = (uint8_t)(crc >> 4 ^ steps[crc & 0x0Fu]);
-    return (uint8_t)(crc >> 4 ^ steps[crc & 0x0Fu]);
+    /* Eight steps at once: the quotient by the polynomial, and what that leaves of it. */
+    const unsigned sum = crc ^ (unsigned)byte;
+    const unsigned quotient = (sum ^ sum << 3 ^ sum << 4 ^ sum << 6) & 0xFFu;
+    return (uint8_t)(quotient ^ quotient >> 4 ^ quotient >> 5);
 }

@@ -72,8 +72,6 @@ static void any_lidar(void)
     lidar.builder.scan.complete = any_bool();
     lidar.monitor.is_complete = any_bool();
     lidar.monitor.has_range = any_bool();
-    lidar.monitor.ct.complete = any_bool();
-    lidar.monitor.ct.informative = any_bool();
     lidar.link.port = &port;
     lidar.link.timing = &timing;
     lidar.builder.scan.points = points;

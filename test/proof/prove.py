@@ -120,7 +120,7 @@ PROOFS = [
     scan("scan_step", "lib/src/tmini_scan.c", "(size_t)builder->capacity - scan->count)", "(size_t)builder->capacity)"),
     scan("scan_refute", "lib/src/tmini_scan.c", "add_up(&builder->scan.gaps, 1);\n}\n\nbool tmini_scan_add",
          "}\n\nbool tmini_scan_add"),
-    scan("ct_crc", "lib/src/tmini_ct.c", "0x9D", "0x9C"),
+    scan("ct_crc", "lib/src/tmini_ct.c", "sum << 6", "sum << 5"),
     scan("ct_add", "lib/src/tmini_ct.c", " || start->gap != 1", ""),
     scan("ct_read", "lib/src/tmini_ct.c", "trusted[DAY] >> 3", "trusted[DAY] >> 2"),
     use("ranges_bin", "all angles, 1 to 65535 bins", "lib/src/tmini_ranges.c", "(bin < count ? bin : 0)", "(bin)"),

@@ -126,7 +126,8 @@ static unsigned fields_among(unsigned packets)
 
 bool ct_is_sound(const tmini_ct_t *ct)
 {
-    return ct->fields == fields_among(ct->packets) && ct->known < 1u << TMINI_CT_INDICES;
+    return ct->packets <= TMINI_CT_INDICES && ct->fields == fields_among(ct->packets) &&
+           ct->known < 1u << TMINI_CT_INDICES;
 }
 
 bool builder_is_sound(const tmini_scan_builder_t *builder)
