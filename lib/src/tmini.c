@@ -86,20 +86,6 @@ static uint32_t wire_ms(size_t bytes)
     return (uint32_t)bytes * 45u >> 10;
 }
 
-static uint16_t add_ms(uint16_t sum_ms, uint32_t more_ms)
-{
-    const uint32_t room_ms = UINT16_MAX - (uint32_t)sum_ms;
-    return (uint16_t)(sum_ms + (more_ms < room_ms ? more_ms : room_ms));
-}
-
-/* Between, or around, the bytes noted last others may be missing. */
-static void doubt(tmini_t *lidar, uint8_t where)
-{
-    lidar->doubt = where;
-    lidar->doubtful_to = lidar->link.received;
-    lidar->link.pause_ms = 0;
-}
-
 /* Bytes have come, `passed_ms` after the last look. While the lidar scans they never pause for
  * long: if they are too few for the time since others came, then others may be missing, before
  * or among them. If they do not come straight from the wire, but a layer below has held them
@@ -111,15 +97,26 @@ static void note_bytes(tmini_t *lidar, size_t count, uint32_t passed_ms)
     tmini_link_t *const link = &lidar->link;
     const uint16_t max_pause_ms = link->timing->max_pause_ms;
     const uint32_t due_ms = transit_ms(count);
-    const bool are_held = lidar->is_unwatched || wire_ms(count) > passed_ms + HELD_MS;
-    link->silent_ms = 0;
+    const uint32_t pause_ms = link->now_ms - link->heard_ms;
+    const bool is_gap = count > lidar->ring.size;
+    const bool are_held = is_gap || lidar->is_unwatched || wire_ms(count) > passed_ms + HELD_MS;
+    lidar->silent_ms = 0;
     lidar->is_unwatched = false;
-    if (count > lidar->ring.size) {
-        doubt(lidar, DOUBT_AROUND);
-    } else if (max_pause_ms > 0 && link->pause_ms > max_pause_ms + due_ms) {
-        doubt(lidar, are_held ? DOUBT_AROUND : DOUBT_AHEAD);
+    if (is_gap || (max_pause_ms > 0 && pause_ms > max_pause_ms + due_ms)) {
+        lidar->doubt = are_held ? DOUBT_AROUND : DOUBT_AHEAD;
+        lidar->doubtful_to = link->received;
+    } else if (are_held && pause_ms > due_ms) {
+        link->heard_ms += due_ms;
+        return;
     }
-    link->pause_ms = (uint16_t)(are_held && link->pause_ms > due_ms ? link->pause_ms - due_ms : 0);
+    link->heard_ms = link->now_ms;
+}
+
+static void note_silence(tmini_t *lidar, uint32_t passed_ms)
+{
+    const uint32_t seen_ms = passed_ms < UNSEEN_SILENCE_MAX_MS ? passed_ms : UNSEEN_SILENCE_MAX_MS;
+    const uint32_t silent_ms = lidar->silent_ms + seen_ms;
+    lidar->silent_ms = (uint16_t)(silent_ms < UINT16_MAX ? silent_ms : UINT16_MAX);
 }
 
 /* Reads the clock and notes whether bytes have come. */
@@ -132,41 +129,31 @@ static void update_time(tmini_t *lidar)
     const uint32_t passed_ms = now_ms - link->now_ms;
     link->now_ms = now_ms;
     link->received = head;
-    link->pause_ms = add_ms(link->pause_ms, passed_ms);
-    lidar->is_unwatched = lidar->is_unwatched || passed_ms > link->timing->max_pause_ms;
-    if (count > 0) {
-        note_bytes(lidar, count, passed_ms);
-    } else {
-        link->silent_ms = add_ms(
-            link->silent_ms, passed_ms < UNSEEN_SILENCE_MAX_MS ? passed_ms : UNSEEN_SILENCE_MAX_MS);
+    if (passed_ms > link->timing->max_pause_ms) {
+        lidar->is_unwatched = true;
     }
-    if (lidar->state == TMINI_STATE_IDLE && !tmini_command_line_is_quiet(lidar)) {
+    if (count == 0) {
+        note_silence(lidar, passed_ms);
+        return;
+    }
+    note_bytes(lidar, count, passed_ms);
+    if (lidar->state == TMINI_STATE_IDLE) {
         lidar->state = TMINI_STATE_UNKNOWN;
     }
 }
 
-/* When the frame delivered last came: before the bytes behind it. Those that came during this poll
- * have not been noted yet: a pause before them is to be known first. */
-static uint32_t arrival_ms(tmini_t *lidar)
+/* A frame has been found. If its bytes came during this poll, they have not been noted yet: a pause
+ * before them is to be known first. Returns how many have come behind it. */
+static size_t bytes_behind_frame(tmini_t *lidar)
 {
     const size_t position = tmini_parser_position(&lidar->parser);
     if (tmini_ring_distance(position, lidar->link.received) > TMINI_RING_CLOSED / 2) {
         update_time(lidar);
     }
-    return lidar->link.now_ms - transit_ms(tmini_ring_distance(position, lidar->link.received));
+    return tmini_ring_distance(position, lidar->link.received);
 }
 
 /* ----------------------------------------------------------------------------------- commands */
-
-/* The event with which each operation ends well. A start ends with its first packet. */
-static const uint8_t end_event[] = {
-    [TMINI_OPERATION_STOP] = TMINI_EVENT_STOPPED,
-    [TMINI_OPERATION_INFO] = TMINI_EVENT_INFO,
-    [TMINI_OPERATION_HEALTH] = TMINI_EVENT_HEALTH,
-    [TMINI_OPERATION_FREQUENCY] = TMINI_EVENT_FREQUENCY,
-    [TMINI_OPERATION_SET_FREQUENCY] = TMINI_EVENT_FREQUENCY,
-    [TMINI_OPERATION_REBOOT] = TMINI_EVENT_REBOOTED,
-};
 
 static void fail(tmini_t *lidar, tmini_status_t status)
 {
@@ -174,54 +161,88 @@ static void fail(tmini_t *lidar, tmini_status_t status)
     raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
 }
 
-/* Draws the consequences of how the user's command stands: the only place where one ends. */
-static void take_result(tmini_t *lidar, int result)
+static void lose(tmini_t *lidar)
 {
-    if (result == TMINI_UNDER_WAY) {
-        return;
-    }
-    lidar->state = tmini_command_left_idle(lidar) ? TMINI_STATE_IDLE : TMINI_STATE_UNKNOWN;
+    lidar->state = TMINI_STATE_RECOVERING;
+    raise_event(lidar, TMINI_EVENT_LOST);
+    tmini_recovery_begin(lidar);
+}
+
+/* The user's command has ended. What has been heard behind its last reply leaves the line not
+ * surely quiet. */
+static void end_command(tmini_t *lidar, int result)
+{
+    const size_t position = tmini_parser_position(&lidar->parser);
+    const bool is_quiet = tmini_ring_distance(position, lidar->link.received) == 0;
+    lidar->state =
+        is_quiet && tmini_command_left_idle(lidar) ? TMINI_STATE_IDLE : TMINI_STATE_UNKNOWN;
     if (result == TMINI_OK) {
-        raise_event(lidar, (tmini_event_t)end_event[lidar->command.operation]);
+        raise_event(lidar, (tmini_event_t)lidar->end_event);
     } else {
         fail(lidar, (tmini_status_t)result);
     }
 }
 
-/* The first bytes leave at once, as far as the port takes them. */
-static void begin(tmini_t *lidar, tmini_state_t state, tmini_operation_t operation,
-                  uint16_t frequency_chz)
+/* Draws the consequences of how what is under way stands. While scanning, what ends is the time in
+ * which a packet should have come. */
+static void take_result(tmini_t *lidar, int result)
 {
-    lidar->state = (uint8_t)state;
-    lidar->is_settled = false;
-    tmini_command_begin(lidar, operation, lidar->link.timing->max_attempts, frequency_chz);
-    take_result(lidar, tmini_command_poll(lidar));
+    if (result == TMINI_UNDER_WAY) {
+        return;
+    }
+    if (lidar->state == TMINI_STATE_RECOVERING) {
+        tmini_recovery_go_on(lidar, result);
+    } else if (lidar->state == TMINI_STATE_SCANNING) {
+        lose(lidar);
+    } else {
+        end_command(lidar, result);
+    }
 }
 
-/* An answer to a question is read here; the rest is the command's. */
-static void take_answer(tmini_t *lidar, const uint8_t *content)
+static tmini_state_t state_until(tmini_event_t end_event)
 {
-    if (lidar->command.operation == TMINI_OPERATION_INFO) {
-        tmini_reply_info(content, &lidar->latest.info);
-    } else if (lidar->command.operation == TMINI_OPERATION_HEALTH) {
-        tmini_reply_health(content, &lidar->latest.health);
+    switch (end_event) {
+    case TMINI_EVENT_STARTED:
+        return TMINI_STATE_STARTING;
+    case TMINI_EVENT_STOPPED:
+        return TMINI_STATE_STOPPING;
+    default:
+        return TMINI_STATE_BUSY;
     }
-    take_result(lidar, tmini_command_reply(lidar, content));
+}
+
+/* The first bytes leave at once, as far as the port takes them. A lidar that is known to be idle
+ * needs no stop before another command. */
+static void begin(tmini_t *lidar, tmini_command_code_t operation, tmini_event_t end_event,
+                  uint16_t frequency_chz)
+{
+    const bool is_idle = lidar->state == TMINI_STATE_IDLE;
+    lidar->state = (uint8_t)state_until(end_event);
+    lidar->end_event = (uint8_t)end_event;
+    lidar->is_settled = false;
+    tmini_command_begin(lidar, operation, lidar->link.timing->max_attempts, frequency_chz);
+    if (is_idle && operation != TMINI_COMMAND_STOP) {
+        tmini_command_skip_stop(lidar);
+    }
+    take_result(lidar, tmini_command_poll(lidar));
 }
 
 /* Not inlined, so that its content does not lie on the stack below a packet's points. */
 TMINI_NOINLINE static void take_reply(tmini_t *lidar)
 {
     uint8_t content[TMINI_INFO_SIZE];
-    const tmini_reply_header_t header = lidar->parser.awaited;
-    if (!tmini_frame_content(tmini_parser_frame(&lidar->parser), content, header.length)) {
-        /* DMA was faster: as if it had not come. */
-        (void)tmini_parser_await(&lidar->parser, &header);
-    } else if (lidar->state == TMINI_STATE_RECOVERING) {
-        tmini_recovery_reply(lidar, content);
-    } else {
-        take_answer(lidar, content);
+    const tmini_reply_header_t *const header = &lidar->parser.awaited;
+    (void)bytes_behind_frame(lidar);
+    if (!tmini_frame_content(tmini_parser_frame(&lidar->parser), content, header->length)) {
+        (void)tmini_parser_await(&lidar->parser, header); /* DMA was faster: it has not come. */
+        return;
     }
+    if (lidar->command.operation == TMINI_COMMAND_GET_INFO) {
+        tmini_reply_info(content, &lidar->latest.info);
+    } else if (lidar->command.operation == TMINI_COMMAND_GET_HEALTH) {
+        tmini_reply_health(content, &lidar->latest.health);
+    }
+    take_result(lidar, tmini_command_reply(lidar, content));
 }
 
 /* ------------------------------------------------------------------------------------ scanning */
@@ -232,12 +253,17 @@ static void expect_packet(tmini_t *lidar)
     tmini_command_wait(lidar, lidar->link.timing->data_timeout_ms);
 }
 
-static void begin_scanning(tmini_t *lidar, tmini_event_t event)
+static void begin_scanning(tmini_t *lidar)
 {
+    if (lidar->state == TMINI_STATE_RECOVERING) {
+        tmini_recovery_end(lidar);
+        raise_event(lidar, TMINI_EVENT_RECOVERED);
+    } else {
+        raise_event(lidar, TMINI_EVENT_STARTED);
+    }
     lidar->state = TMINI_STATE_SCANNING;
     tmini_scan_discard(&lidar->builder);
     tmini_monitor_begin(lidar);
-    raise_event(lidar, event);
 }
 
 /* A lidar that was left idle streams: the stop was lost on the wire. Nobody polls for its scans, so
@@ -245,16 +271,15 @@ static void begin_scanning(tmini_t *lidar, tmini_event_t event)
 static void stop_again(tmini_t *lidar)
 {
     raise_event(lidar, TMINI_EVENT_STREAMING);
-    begin(lidar, TMINI_STATE_STOPPING, TMINI_OPERATION_STOP, 0);
+    begin(lidar, TMINI_COMMAND_STOP, TMINI_EVENT_STOPPED, 0);
 }
 
 /* A packet has come: does it mean that the lidar has begun to scan, or scans again? */
 static void note_scanning(tmini_t *lidar)
 {
-    const bool is_lost = lidar->state == TMINI_STATE_RECOVERING;
-    if (is_lost || lidar->state == TMINI_STATE_STARTING) {
-        if (is_lost ? tmini_recovery_packet(lidar) : tmini_command_packet(lidar)) {
-            begin_scanning(lidar, is_lost ? TMINI_EVENT_RECOVERED : TMINI_EVENT_STARTED);
+    if (lidar->state == TMINI_STATE_RECOVERING || lidar->state == TMINI_STATE_STARTING) {
+        if (tmini_command_packet(lidar)) {
+            begin_scanning(lidar);
         }
     } else if (lidar->state <= TMINI_STATE_IDLE && tmini_command_left_idle(lidar)) {
         stop_again(lidar);
@@ -278,10 +303,9 @@ static void mark_doubtful(tmini_t *lidar, size_t begins_at)
 
 static void open_packet(tmini_t *lidar)
 {
-    const tmini_frame_t *const frame = tmini_parser_frame(&lidar->parser);
-    tmini_packet_open(&lidar->latest.packet, frame);
+    tmini_packet_open(&lidar->latest.packet, tmini_parser_frame(&lidar->parser));
     if (lidar->doubt != DOUBT_NONE) {
-        mark_doubtful(lidar, tmini_parser_position(&lidar->parser) - frame->size);
+        mark_doubtful(lidar, tmini_ring_tail(&lidar->ring));
     }
 }
 
@@ -326,9 +350,11 @@ static void deliver_packet(tmini_t *lidar, uint32_t came_ms)
     }
 }
 
+/* When a packet came: before the bytes behind it. */
 static void take_packet(tmini_t *lidar)
 {
-    const uint32_t came_ms = arrival_ms(lidar);
+    const uint32_t behind_ms = transit_ms(bytes_behind_frame(lidar));
+    const uint32_t came_ms = lidar->link.now_ms - behind_ms;
     note_scanning(lidar);
     if (lidar->state != TMINI_STATE_SCANNING) {
         return; /* The tail behind a stop, or a stream that nobody asked for. */
@@ -356,7 +382,7 @@ static void add_waiting_packet(tmini_t *lidar)
 static bool give_up_candidate(tmini_t *lidar)
 {
     const tmini_link_t *const link = &lidar->link;
-    if (link->silent_ms == 0 || link->silent_ms < link->timing->frame_timeout_ms ||
+    if (lidar->silent_ms == 0 || lidar->silent_ms < link->timing->frame_timeout_ms ||
         tmini_ring_head(&lidar->ring) != link->received ||
         tmini_parser_pending(&lidar->parser) == 0) {
         return false;
@@ -388,33 +414,12 @@ static bool receive(tmini_t *lidar)
     return true;
 }
 
-static void lose(tmini_t *lidar)
-{
-    lidar->state = TMINI_STATE_RECOVERING;
-    raise_event(lidar, TMINI_EVENT_LOST);
-    tmini_recovery_begin(lidar);
-}
-
 /* Looks after what is due by time, or by the line's quiet. */
 static void keep_time(tmini_t *lidar)
 {
-    switch (lidar->state) {
-    case TMINI_STATE_UNKNOWN:
-    case TMINI_STATE_IDLE:
-        break;
-    case TMINI_STATE_RECOVERING:
-        tmini_recovery_poll(lidar);
-        break;
-    case TMINI_STATE_SCANNING:
-        if (tmini_command_poll(lidar) == TMINI_OK) {
-            lose(lidar);
-        } else if (tmini_monitor_poll(lidar)) {
-            raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
-        }
-        break;
-    default:
-        take_result(lidar, tmini_command_poll(lidar));
-        break;
+    take_result(lidar, tmini_command_poll(lidar));
+    if (lidar->state == TMINI_STATE_SCANNING && tmini_monitor_poll(lidar)) {
+        raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
     }
 }
 
@@ -485,67 +490,61 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
 
 /* ------------------------------------------------------------------------- the user's commands */
 
-/* Begins a command. The end of an earlier one, not polled yet, is not the end of this one. */
-static void begin_users(tmini_t *lidar, tmini_state_t state, tmini_operation_t operation,
-                        uint16_t frequency_chz)
-{
-    update_time(lidar);
-    tmini_recovery_forget(lidar);
-    lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
-    begin(lidar, state, operation, frequency_chz);
-}
-
-/* Begins a command other than stop, if it may be begun now. */
-static tmini_status_t request(tmini_t *lidar, tmini_state_t state, tmini_operation_t operation,
-                              uint16_t frequency_chz)
+/* Begins a command, if it may be begun now; stop may always. The end of an earlier one, not polled
+ * yet, is not the end of this one. */
+static tmini_status_t request(tmini_t *lidar, tmini_command_code_t operation,
+                              tmini_event_t end_event, uint16_t frequency_chz)
 {
     if (!is_set_up(lidar)) {
         return TMINI_ERROR_ARGUMENT;
     }
-    if (lidar->state >= TMINI_STATE_SCANNING) {
-        return TMINI_ERROR_STATE;
+    if (operation != TMINI_COMMAND_STOP) {
+        if (lidar->state >= TMINI_STATE_SCANNING) {
+            return TMINI_ERROR_STATE;
+        }
+        if (lidar->state > TMINI_STATE_IDLE) {
+            return TMINI_ERROR_BUSY;
+        }
     }
-    if (lidar->state > TMINI_STATE_IDLE) {
-        return TMINI_ERROR_BUSY;
-    }
-    begin_users(lidar, state, operation, frequency_chz);
+    update_time(lidar);
+    tmini_recovery_forget(lidar);
+    lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
+    begin(lidar, operation, end_event, frequency_chz);
     return TMINI_OK;
 }
 
 tmini_status_t tmini_start(tmini_t *lidar)
 {
-    return request(lidar, TMINI_STATE_STARTING, TMINI_OPERATION_START, 0);
+    return request(lidar, TMINI_COMMAND_START, TMINI_EVENT_STARTED, 0);
 }
 
 tmini_status_t tmini_stop(tmini_t *lidar)
 {
-    if (!is_set_up(lidar)) {
-        return TMINI_ERROR_ARGUMENT;
-    }
-    if (lidar->state == TMINI_STATE_STOPPING) {
+    const tmini_state_t before = tmini_state(lidar);
+    if (before == TMINI_STATE_STOPPING) {
         return TMINI_OK; /* It is being stopped already. */
     }
-    const bool aborts = lidar->state == TMINI_STATE_BUSY || lidar->state == TMINI_STATE_STARTING;
-    begin_users(lidar, TMINI_STATE_STOPPING, TMINI_OPERATION_STOP, 0);
+    const tmini_status_t status = request(lidar, TMINI_COMMAND_STOP, TMINI_EVENT_STOPPED, 0);
+    const bool aborts = before == TMINI_STATE_BUSY || before == TMINI_STATE_STARTING;
     if (aborts && lidar->state == TMINI_STATE_STOPPING) {
         fail(lidar, TMINI_ERROR_ABORTED);
     }
-    return TMINI_OK;
+    return status;
 }
 
 tmini_status_t tmini_request_info(tmini_t *lidar)
 {
-    return request(lidar, TMINI_STATE_BUSY, TMINI_OPERATION_INFO, 0);
+    return request(lidar, TMINI_COMMAND_GET_INFO, TMINI_EVENT_INFO, 0);
 }
 
 tmini_status_t tmini_request_health(tmini_t *lidar)
 {
-    return request(lidar, TMINI_STATE_BUSY, TMINI_OPERATION_HEALTH, 0);
+    return request(lidar, TMINI_COMMAND_GET_HEALTH, TMINI_EVENT_HEALTH, 0);
 }
 
 tmini_status_t tmini_request_frequency(tmini_t *lidar)
 {
-    return request(lidar, TMINI_STATE_BUSY, TMINI_OPERATION_FREQUENCY, 0);
+    return request(lidar, TMINI_COMMAND_GET_FREQUENCY, TMINI_EVENT_FREQUENCY, 0);
 }
 
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
@@ -554,12 +553,12 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
         frequency_chz % TMINI_FREQUENCY_STEP_CHZ != 0) {
         return TMINI_ERROR_ARGUMENT;
     }
-    return request(lidar, TMINI_STATE_BUSY, TMINI_OPERATION_SET_FREQUENCY, frequency_chz);
+    return request(lidar, TMINI_COMMAND_GET_FREQUENCY, TMINI_EVENT_FREQUENCY, frequency_chz);
 }
 
 tmini_status_t tmini_reboot(tmini_t *lidar)
 {
-    return request(lidar, TMINI_STATE_BUSY, TMINI_OPERATION_REBOOT, 0);
+    return request(lidar, TMINI_COMMAND_REBOOT, TMINI_EVENT_REBOOTED, 0);
 }
 
 void tmini_cancel(tmini_t *lidar)
@@ -573,7 +572,7 @@ void tmini_cancel(tmini_t *lidar)
 
 tmini_state_t tmini_state(const tmini_t *lidar)
 {
-    return is_set_up(lidar) ? (tmini_state_t)lidar->state : TMINI_STATE_UNKNOWN;
+    return lidar != NULL ? (tmini_state_t)lidar->state : TMINI_STATE_UNKNOWN;
 }
 
 const tmini_scan_t *tmini_scan(const tmini_t *lidar)
@@ -613,21 +612,20 @@ uint8_t tmini_faults(const tmini_t *lidar)
 
 void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info)
 {
-    tmini_ct_read(&lidar->monitor.ct, info);
+    tmini_ct_read(&lidar->ct, info);
 }
 
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
 {
-    *counters = (tmini_counters_t){.scans = lidar->scans,
-                                   .timeouts = lidar->command.timeouts,
-                                   .losses = lidar->recovery.losses,
-                                   .recoveries = lidar->recovery.recoveries,
-                                   .restarts = lidar->recovery.restarts,
-                                   .reboots = lidar->recovery.reboots};
-    if (is_set_up(lidar)) {
-        tmini_parser_counters(&lidar->parser, &counters->parser);
-        counters->bytes_pending = (uint32_t)tmini_parser_pending(&lidar->parser);
-    } else {
-        counters->parser.bytes_overrun = (uint32_t)tmini_ring_overrun(&lidar->ring);
-    }
+    const tmini_ring_t *const ring = &lidar->ring;
+    const size_t pending = tmini_ring_unread(ring) - tmini_parser_frame(&lidar->parser)->size;
+    counters->parser = lidar->parser.counters;
+    counters->parser.bytes_overrun += (uint32_t)tmini_ring_overrun(ring);
+    counters->bytes_pending = (uint32_t)pending;
+    counters->scans = lidar->scans;
+    counters->timeouts = lidar->command.timeouts;
+    counters->losses = lidar->recovery.losses;
+    counters->recoveries = lidar->recovery.recoveries;
+    counters->restarts = lidar->recovery.restarts;
+    counters->reboots = lidar->recovery.reboots;
 }

@@ -10,10 +10,9 @@
 enum phase {
     PHASE_NONE,           /* Nothing is under way; the lidar may be streaming. */
     PHASE_IDLE,           /* Nothing is under way; the lidar was left idle, and the line quiet. */
-    PHASE_QUIESCING,      /* Stop has been sent: until the line is quiet. */
+    PHASE_QUIESCING,      /* After a stop, or before another frequency step: until it is quiet. */
     PHASE_AWAITING_REPLY, /* A command has been sent: until its reply. */
     PHASE_AWAITING_STEP,  /* The same, but one has come that shows no step: until another. */
-    PHASE_SETTLING,       /* Between two frequency commands: until the line is quiet. */
     PHASE_SPINNING_UP,    /* The start has been acknowledged: until the first packet. */
     PHASE_WAITING,        /* A reboot has been sent, or nothing: for as long as it takes. */
 };
@@ -61,12 +60,18 @@ static bool transmit(tmini_t *lidar)
     return true;
 }
 
-/* First stop, which is permitted always, and wait until the line is quiet (section 9.10). */
+/* Until the line is quiet; if it is not in time, that is a failed attempt. */
+static void await_quiet(tmini_t *lidar)
+{
+    enter(lidar, PHASE_QUIESCING, lidar->link.timing->stop_timeout_ms);
+}
+
+/* First stop, which is permitted always (section 9.10). */
 static void quiesce(tmini_t *lidar)
 {
     (void)tmini_parser_await(&lidar->parser, NULL);
     send(lidar, TMINI_COMMAND_STOP);
-    enter(lidar, PHASE_QUIESCING, lidar->link.timing->stop_timeout_ms);
+    await_quiet(lidar);
 }
 
 /* Sends a command when the line is quiet, and awaits what it is answered with, if anything. */
@@ -89,14 +94,13 @@ static void end(tmini_t *lidar, enum phase phase)
 {
     (void)tmini_parser_await(&lidar->parser, NULL);
     lidar->command.unsent = 0;
-    lidar->command.quiet_at = tmini_parser_position(&lidar->parser);
     enter(lidar, phase, 0);
 }
 
 /* After a second attempt, the reply to the first may still come: the line is not surely quiet. */
 static int succeed(tmini_t *lidar)
 {
-    end(lidar, lidar->command.is_repeated ? PHASE_NONE : PHASE_IDLE);
+    end(lidar, lidar->command.attempts > 1 ? PHASE_NONE : PHASE_IDLE);
     return TMINI_OK;
 }
 
@@ -111,9 +115,8 @@ static int time_out(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     command->timeouts++;
-    if (command->attempts_left > 0) {
-        command->attempts_left--;
-        command->is_repeated = true;
+    if (command->attempts < command->attempts_max) {
+        command->attempts++;
         quiesce(lidar);
         return TMINI_UNDER_WAY;
     }
@@ -135,7 +138,7 @@ static bool is_reached(const tmini_command_t *command)
 }
 
 /* Never beyond the target, so never out of the permitted range. */
-static tmini_command_code_t next_step(const tmini_command_t *command)
+static uint8_t next_step(const tmini_command_t *command)
 {
     const int32_t left = chz_to_go(command);
     if (left >= COARSE_STEP_CHZ) {
@@ -147,26 +150,10 @@ static tmini_command_code_t next_step(const tmini_command_t *command)
     return left > 0 ? TMINI_COMMAND_FASTER_TENTH : TMINI_COMMAND_SLOWER_TENTH;
 }
 
-/* A step's reply tells the new frequency. When that has come to the target, it is read back. */
-static int continue_frequency_change(tmini_t *lidar)
-{
-    tmini_command_t *const command = &lidar->command;
-    if (is_reached(command)) {
-        request(lidar, TMINI_COMMAND_GET_FREQUENCY);
-    } else if (command->steps < STEPS_MAX) {
-        command->steps++;
-        request(lidar, next_step(command));
-    } else {
-        return fail(lidar, TMINI_ERROR_REPLY);
-    }
-    return TMINI_UNDER_WAY;
-}
-
 /* A late reply to the step before looks like one to this step that was refused. Time tells. */
 static int await_another_frequency(tmini_t *lidar)
 {
-    const tmini_reply_header_t same = lidar->parser.awaited;
-    (void)tmini_parser_await(&lidar->parser, &same);
+    (void)tmini_parser_await(&lidar->parser, &lidar->parser.awaited);
     lidar->command.phase = PHASE_AWAITING_STEP; /* For what is left of the time. */
     return TMINI_UNDER_WAY;
 }
@@ -182,10 +169,10 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
         return await_another_frequency(lidar);
     }
     command->frequency_chz = (uint16_t)frequency_chz;
-    if (command->operation == TMINI_OPERATION_FREQUENCY || (!is_step && is_reached(command))) {
+    if (command->target_chz == 0 || (!is_step && is_reached(command))) {
         return succeed(lidar);
     }
-    enter(lidar, PHASE_SETTLING, lidar->link.timing->stop_timeout_ms);
+    await_quiet(lidar);
     return TMINI_UNDER_WAY;
 }
 
@@ -195,33 +182,32 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
 static bool is_quiet(const tmini_t *lidar)
 {
     const uint16_t quiet_ms = lidar->link.timing->quiet_line_ms;
-    return lidar->link.silent_ms >= quiet_ms &&
+    return lidar->silent_ms >= quiet_ms &&
            tmini_has_elapsed(lidar, lidar->command.since_ms, quiet_ms) &&
            tmini_ring_head(&lidar->ring) == lidar->link.received;
 }
 
-/* What each operation's first command is, once the line is quiet. A frequency is changed by steps,
- * so that it must be known where they begin. */
-static const uint8_t first_command[] = {
-    [TMINI_OPERATION_START] = TMINI_COMMAND_START,
-    [TMINI_OPERATION_INFO] = TMINI_COMMAND_GET_INFO,
-    [TMINI_OPERATION_HEALTH] = TMINI_COMMAND_GET_HEALTH,
-    [TMINI_OPERATION_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
-    [TMINI_OPERATION_SET_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
-    [TMINI_OPERATION_REBOOT] = TMINI_COMMAND_REBOOT,
-};
-
-/* The line is quiet: what was asked for may be sent (section 2). What has come before a question is
- * not its answer, not even what a packet that was cut off hides. */
+/* The line is quiet: the next command may be sent (section 2). What has come before a question is
+ * not its answer, not even what a packet that was cut off hides. Behind a stop the operation's own
+ * command is next. A frequency is changed by steps, so that it is asked for before them, to know
+ * where they begin, and behind them. */
 static int proceed(tmini_t *lidar)
 {
-    const uint8_t operation = lidar->command.operation;
+    tmini_command_t *const command = &lidar->command;
+    uint8_t next = command->operation;
     tmini_parser_skip_to(&lidar->parser, lidar->link.received);
-    if (operation == TMINI_OPERATION_STOP) {
+    if (next == TMINI_COMMAND_STOP) {
         end(lidar, PHASE_IDLE);
         return TMINI_OK;
     }
-    request(lidar, (tmini_command_code_t)first_command[operation]);
+    if (command->code != TMINI_COMMAND_STOP && !is_reached(command)) {
+        if (command->steps == STEPS_MAX) {
+            return fail(lidar, TMINI_ERROR_REPLY);
+        }
+        command->steps++;
+        next = next_step(command);
+    }
+    request(lidar, (tmini_command_code_t)next);
     return TMINI_UNDER_WAY;
 }
 
@@ -249,10 +235,6 @@ int tmini_command_poll(tmini_t *lidar)
     if (command->phase == PHASE_QUIESCING && is_quiet(lidar)) {
         return proceed(lidar);
     }
-    if (command->phase == PHASE_SETTLING && is_quiet(lidar)) {
-        tmini_parser_skip_to(&lidar->parser, lidar->link.received);
-        return continue_frequency_change(lidar);
-    }
     if (command->timeout_ms == 0 ||
         !tmini_has_elapsed(lidar, command->since_ms, command->timeout_ms)) {
         return TMINI_UNDER_WAY;
@@ -266,22 +248,21 @@ int tmini_command_poll(tmini_t *lidar)
 
 /* ------------------------------------------------------------------------ for the layers above */
 
-void tmini_command_begin(tmini_t *lidar, tmini_operation_t operation, uint8_t attempts,
+void tmini_command_begin(tmini_t *lidar, tmini_command_code_t operation, uint8_t attempts,
                          uint16_t frequency_chz)
 {
     tmini_command_t *const command = &lidar->command;
-    /* A lidar that is known to be idle needs no stop before its command. */
-    const bool may_send = tmini_command_line_is_quiet(lidar) && operation != TMINI_OPERATION_STOP;
     command->operation = (uint8_t)operation;
-    command->attempts_left = (uint8_t)(attempts > 0 ? attempts - 1 : 0);
-    command->is_repeated = false;
+    command->attempts_max = attempts;
+    command->attempts = 1;
     command->steps = 0;
     command->target_chz = frequency_chz;
-    if (may_send) {
-        (void)proceed(lidar);
-    } else {
-        quiesce(lidar);
-    }
+    quiesce(lidar);
+}
+
+void tmini_command_skip_stop(tmini_t *lidar)
+{
+    (void)proceed(lidar);
 }
 
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content)
@@ -309,6 +290,7 @@ bool tmini_command_packet(tmini_t *lidar)
 
 void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms)
 {
+    lidar->command.operation = 0;
     enter(lidar, PHASE_WAITING, wait_ms);
 }
 
@@ -320,9 +302,4 @@ void tmini_command_cancel(tmini_t *lidar)
 bool tmini_command_left_idle(const tmini_t *lidar)
 {
     return lidar->command.phase == PHASE_IDLE;
-}
-
-bool tmini_command_line_is_quiet(const tmini_t *lidar)
-{
-    return tmini_command_left_idle(lidar) && lidar->command.quiet_at == lidar->link.received;
 }

@@ -21,7 +21,7 @@ enum {
 };
 
 /* A bit for the index at which each stands (section 7). The others are production data. */
-#define KEPT_MASK                                                                            \
+#define KEPT_MASK \
     (1u << 1 | 1u << 3 | 1u << 4 | 1u << 5 | 1u << 9 | 1u << 10 | 1u << 11 | 1u << 12 | 1u << 13)
 
 #define KNOWN_MASK                                                                                 \

@@ -31,25 +31,19 @@ void tmini_cancel(tmini_t *lidar);
 
 /* ---------------------------------------------------------------------------- tmini_command.c */
 
-/* What the user or the recovery asks for. */
-typedef enum {
-    TMINI_OPERATION_STOP,
-    TMINI_OPERATION_START,
-    TMINI_OPERATION_INFO,
-    TMINI_OPERATION_HEALTH,
-    TMINI_OPERATION_FREQUENCY,
-    TMINI_OPERATION_SET_FREQUENCY,
-    TMINI_OPERATION_REBOOT,
-} tmini_operation_t;
-
 /* How a command stands: TMINI_OK, it has ended well; an error, it has failed; or this. */
 #define TMINI_UNDER_WAY 1
 
-/* Begins an operation, in the place of one that may be under way; its first bytes leave with the
- * next tmini_command_poll(). A time-out is followed by another attempt, up to `attempts` in all.
- * `frequency_chz` is for TMINI_OPERATION_SET_FREQUENCY. */
-void tmini_command_begin(tmini_t *lidar, tmini_operation_t operation, uint8_t attempts,
+/* Begins an operation, in the place of one that may be under way, and names it by its command;
+ * first comes a stop, whose bytes leave with the next tmini_command_poll(). A time-out is followed
+ * by another attempt, up to `attempts` in all. A `frequency_chz` other than 0 is where a question
+ * for the frequency is to lead: it is then set. */
+void tmini_command_begin(tmini_t *lidar, tmini_command_code_t operation, uint8_t attempts,
                          uint16_t frequency_chz);
+
+/* The lidar is known to be idle, and the line quiet: an operation just begun, other than a stop,
+ * needs none before its command. */
+void tmini_command_skip_stop(tmini_t *lidar);
 
 /* Goes on with what is due now: bytes to send, a line that is quiet, a time that is over. */
 int tmini_command_poll(tmini_t *lidar);
@@ -68,11 +62,7 @@ void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms);
 /* Gives up what is under way, without a word. */
 void tmini_command_cancel(tmini_t *lidar);
 
-/* True while nothing is under way, and since the last command ended nothing has been heard: the
- * next one may be sent at once. */
-bool tmini_command_line_is_quiet(const tmini_t *lidar);
-
-/* True while nothing is under way, and the lidar was left idle. */
+/* True while nothing is under way, and the lidar was left idle: the line was quiet then. */
 bool tmini_command_left_idle(const tmini_t *lidar);
 
 /* --------------------------------------------------------------------------- tmini_recovery.c */
@@ -80,14 +70,11 @@ bool tmini_command_left_idle(const tmini_t *lidar);
 /* Begins to bring back a lidar that has been lost. */
 void tmini_recovery_begin(tmini_t *lidar);
 
-/* Goes on with it. */
-void tmini_recovery_poll(tmini_t *lidar);
+/* What is under way has ended, well or not: goes on with the next. */
+void tmini_recovery_go_on(tmini_t *lidar, int result);
 
-/* The awaited reply to an attempt has come. */
-void tmini_recovery_reply(tmini_t *lidar, const uint8_t *content);
-
-/* A packet has come. True if it means that the lidar is back, by an attempt or by itself. */
-bool tmini_recovery_packet(tmini_t *lidar);
+/* The lidar is back, by an attempt or by itself. */
+void tmini_recovery_end(tmini_t *lidar);
 
 /* A complete revolution has come: the next loss is a new one. */
 void tmini_recovery_forget(tmini_t *lidar);

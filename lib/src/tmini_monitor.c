@@ -22,38 +22,40 @@ static bool observe(tmini_monitor_t *monitor, uint8_t faults)
     return is_seen_twice && report(monitor, faults);
 }
 
-/* Without CT information: whether the revolution had any range. Of one that was not received
- * completely, the rest may have had one. */
-static bool judge_by_range(tmini_monitor_t *monitor)
+/* A start packet: the revolution that it ends is judged by what the unit itself says of its health
+ * (section 7). If it says nothing, by whether there was any range; of a revolution that was not
+ * received completely, the rest may have had one. */
+static bool judge_revolution(tmini_t *lidar, tmini_ct_verdict_t verdict)
 {
-    if (monitor->has_range) {
-        return observe(monitor, 0);
+    tmini_monitor_t *const monitor = &lidar->monitor;
+    unsigned faults = tmini_ct_faults(&lidar->ct);
+    bool is_known = verdict == TMINI_CT_CONFIRMED;
+    if (faults == TMINI_FAULTS_UNKNOWN) {
+        faults = monitor->has_range ? 0 : TMINI_FAULT_DATA;
+        is_known = monitor->has_range || monitor->is_complete;
     }
-    return monitor->is_complete && observe(monitor, TMINI_FAULT_DATA);
+    return is_known && observe(monitor, (uint8_t)faults);
 }
 
-/* A start packet: the revolution that it ends is judged, by what the unit itself says of its health
- * (section 7), if it does. */
-static unsigned end_revolution(tmini_monitor_t *monitor, tmini_ct_verdict_t verdict)
+static unsigned end_revolution(tmini_t *lidar, tmini_ct_verdict_t verdict)
 {
-    const unsigned faults = tmini_ct_faults(&monitor->ct);
-    bool have_changed = false;
-    if (faults == TMINI_FAULTS_UNKNOWN) {
-        have_changed = judge_by_range(monitor);
-    } else if (verdict == TMINI_CT_CONFIRMED) {
-        have_changed = observe(monitor, (uint8_t)faults);
+    tmini_monitor_t *const monitor = &lidar->monitor;
+    unsigned shown = judge_revolution(lidar, verdict) ? TMINI_SHOWN_FAULTS : 0u;
+    if (monitor->is_complete) {
+        shown |= TMINI_SHOWN_COMPLETE;
     }
-    const bool was_complete = monitor->is_complete;
+    if (verdict == TMINI_CT_REFUTED) {
+        shown |= TMINI_SHOWN_LOSS;
+    }
     monitor->is_complete = true;
     monitor->has_range = false;
-    return (have_changed ? TMINI_SHOWN_FAULTS : 0u) | (was_complete ? TMINI_SHOWN_COMPLETE : 0u) |
-           (verdict == TMINI_CT_REFUTED ? TMINI_SHOWN_LOSS : 0u);
+    return shown;
 }
 
 void tmini_monitor_begin(tmini_t *lidar)
 {
     tmini_monitor_t *const monitor = &lidar->monitor;
-    tmini_ct_discard(&monitor->ct);
+    tmini_ct_discard(&lidar->ct);
     monitor->is_complete = false;
     monitor->has_range = false;
     monitor->observed = monitor->faults;
@@ -64,14 +66,14 @@ unsigned tmini_monitor_packet(tmini_t *lidar)
 {
     tmini_monitor_t *const monitor = &lidar->monitor;
     const tmini_packet_t *const packet = &lidar->latest.packet;
-    const tmini_ct_verdict_t verdict = tmini_ct_add(&monitor->ct, packet);
+    const tmini_ct_verdict_t verdict = tmini_ct_add(&lidar->ct, packet);
     const bool is_start = tmini_packet_is_start(packet);
     unsigned shown = 0;
     if (packet->gap > 1) { /* One byte may be LastCRC; with more, a packet may be lost. */
         monitor->is_complete = false;
     }
     if (is_start) {
-        shown = end_revolution(monitor, verdict);
+        shown = end_revolution(lidar, verdict);
     }
     const bool has_range = tmini_packet_has_range(packet);
     if (has_range) {

@@ -6,74 +6,34 @@
 
 #include "tmini_driver.h"
 
-/* Every third attempt to recover reboots the lidar first. */
-#define REBOOT_ATTEMPT 3
+/* Every third attempt that fails is followed by one that reboots the lidar first. */
+#define REBOOT_AFTER 3
 
-/* Until it is over, nothing is tried; 0: for ever. */
-static void begin_pause(tmini_t *lidar, uint16_t pause_ms)
-{
-    lidar->recovery.is_pausing = true;
-    tmini_command_wait(lidar, pause_ms);
-}
-
-/* The pause after so many failed attempts: doubles with each. */
-static uint16_t back_off_ms(const tmini_t *lidar)
-{
-    const tmini_timing_t *const timing = lidar->link.timing;
-    const unsigned doublings = lidar->recovery.attempts - 1u;
-    const uint32_t pause = doublings < 16 ? (uint32_t)timing->back_off_ms << doublings : UINT32_MAX;
-    return (uint16_t)(pause < timing->back_off_max_ms ? pause : timing->back_off_max_ms);
-}
-
-/* An attempt has failed. After very many, the last ones are repeated again and again. */
+/* An attempt has failed: a pause, and then the next. */
 static void back_off(tmini_t *lidar)
 {
-    const uint8_t attempts = lidar->recovery.attempts;
-    lidar->recovery.attempts =
-        (uint8_t)(attempts < UINT8_MAX ? attempts + 1 : UINT8_MAX - REBOOT_ATTEMPT + 1);
-    begin_pause(lidar, back_off_ms(lidar));
+    const tmini_timing_t *const timing = lidar->link.timing;
+    tmini_recovery_t *const recovery = &lidar->recovery;
+    const uint32_t longer_ms =
+        recovery->attempts == 0 ? timing->back_off_ms : (uint32_t)recovery->pause_ms * 2;
+    const uint16_t max_ms = timing->back_off_max_ms;
+    recovery->attempts = (uint16_t)(recovery->attempts < REBOOT_AFTER ? recovery->attempts + 1 : 1);
+    recovery->pause_ms = (uint16_t)(longer_ms < max_ms ? longer_ms : max_ms);
+    tmini_command_wait(lidar, recovery->pause_ms);
 }
 
-/* One attempt each: the ladder repeats them, not the command. */
-static void begin(tmini_t *lidar, tmini_operation_t operation)
-{
-    lidar->recovery.is_pausing = false;
-    tmini_command_begin(lidar, operation, 1, 0);
-}
-
-static void restart(tmini_t *lidar)
-{
-    lidar->recovery.restarts++;
-    begin(lidar, TMINI_OPERATION_START);
-}
-
-static void reboot(tmini_t *lidar)
-{
-    lidar->recovery.reboots++;
-    begin(lidar, TMINI_OPERATION_REBOOT);
-}
-
-/* A reboot takes seconds, and a lidar that is only unplugged does not hear it: first what is
- * quick. */
+/* One attempt each: the ladder repeats them, not the command. A reboot takes seconds, and a lidar
+ * that is only unplugged does not hear it: first what is quick. When it is over, start. */
 static void make_attempt(tmini_t *lidar)
 {
-    const uint8_t failed = lidar->recovery.attempts;
-    if (failed > 0 && failed % REBOOT_ATTEMPT == 0) {
-        reboot(lidar);
+    tmini_recovery_t *const recovery = &lidar->recovery;
+    const bool has_rebooted = lidar->command.operation == TMINI_COMMAND_REBOOT;
+    if (recovery->attempts == REBOOT_AFTER && !has_rebooted) {
+        recovery->reboots++;
+        tmini_command_begin(lidar, TMINI_COMMAND_REBOOT, 1, 0);
     } else {
-        restart(lidar);
-    }
-}
-
-/* A start goes on until a packet comes; it is a reboot that ends well, or a pause. */
-static void take_result(tmini_t *lidar, int result)
-{
-    if (result < 0) {
-        back_off(lidar);
-    } else if (result == TMINI_OK && lidar->recovery.is_pausing) {
-        make_attempt(lidar);
-    } else if (result == TMINI_OK) {
-        restart(lidar);
+        recovery->restarts++;
+        tmini_command_begin(lidar, TMINI_COMMAND_START, 1, 0);
     }
 }
 
@@ -81,7 +41,7 @@ void tmini_recovery_begin(tmini_t *lidar)
 {
     lidar->recovery.losses++;
     if (lidar->disable_recovery) {
-        begin_pause(lidar, 0);
+        tmini_command_wait(lidar, 0);
     } else if (lidar->recovery.attempts == 0) {
         make_attempt(lidar);
     } else {
@@ -89,23 +49,19 @@ void tmini_recovery_begin(tmini_t *lidar)
     }
 }
 
-void tmini_recovery_poll(tmini_t *lidar)
+/* A start goes on until a packet comes; it is a reboot that ends well, or a pause. */
+void tmini_recovery_go_on(tmini_t *lidar, int result)
 {
-    take_result(lidar, tmini_command_poll(lidar));
-}
-
-void tmini_recovery_reply(tmini_t *lidar, const uint8_t *content)
-{
-    take_result(lidar, tmini_command_reply(lidar, content));
-}
-
-bool tmini_recovery_packet(tmini_t *lidar)
-{
-    const bool is_back = tmini_command_packet(lidar);
-    if (is_back) {
-        lidar->recovery.recoveries++;
+    if (result == TMINI_OK) {
+        make_attempt(lidar);
+    } else {
+        back_off(lidar);
     }
-    return is_back;
+}
+
+void tmini_recovery_end(tmini_t *lidar)
+{
+    lidar->recovery.recoveries++;
 }
 
 void tmini_recovery_forget(tmini_t *lidar)

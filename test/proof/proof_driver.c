@@ -66,8 +66,6 @@ static void any_lidar(void)
     lidar.disable_recovery = any_bool();
     lidar.is_unwatched = any_bool();
     lidar.command.sync_sent = any_bool();
-    lidar.command.is_repeated = any_bool();
-    lidar.recovery.is_pausing = any_bool();
     lidar.builder.open = any_bool();
     lidar.builder.scan.complete = any_bool();
     lidar.monitor.is_complete = any_bool();

@@ -12,7 +12,6 @@ enum {
     PHASE_QUIESCING,
     PHASE_AWAITING_REPLY,
     PHASE_AWAITING_STEP,
-    PHASE_SETTLING,
     PHASE_SPINNING_UP,
     PHASE_WAITING,
 };
@@ -165,23 +164,16 @@ static bool is_step(uint8_t code)
     return code >= TMINI_COMMAND_FASTER_TENTH && code <= TMINI_COMMAND_SLOWER_ONE;
 }
 
-/* The question that the operation is about. */
-static bool asks_for(uint8_t operation, uint8_t code)
+/* What an operation may be named by; 0: none. */
+static bool is_operation(uint8_t code)
 {
-    switch (operation) {
-    case TMINI_OPERATION_START:
-        return code == TMINI_COMMAND_START;
-    case TMINI_OPERATION_INFO:
-        return code == TMINI_COMMAND_GET_INFO;
-    case TMINI_OPERATION_HEALTH:
-        return code == TMINI_COMMAND_GET_HEALTH;
-    case TMINI_OPERATION_FREQUENCY:
-        return code == TMINI_COMMAND_GET_FREQUENCY;
-    case TMINI_OPERATION_SET_FREQUENCY:
-        return code == TMINI_COMMAND_GET_FREQUENCY || is_step(code);
-    default:
-        return false;
-    }
+    return code == 0 || (is_code(code) && !is_step(code));
+}
+
+/* A frequency is set by steps. */
+static bool steps_frequency(const tmini_command_t *command)
+{
+    return command->operation == TMINI_COMMAND_GET_FREQUENCY && command->target_chz > 0;
 }
 
 /* The reply that is awaited is that to the command sent. */
@@ -202,14 +194,16 @@ static bool phase_fits(const tmini_t *lidar)
     const tmini_command_t *const command = &lidar->command;
     switch (command->phase) {
     case PHASE_AWAITING_REPLY:
-        return asks_for(command->operation, command->code) && awaits_its_reply(lidar);
-    case PHASE_AWAITING_STEP:
-        return command->operation == TMINI_OPERATION_SET_FREQUENCY && is_step(command->code) &&
+        return (command->code == command->operation ||
+                (steps_frequency(command) && is_step(command->code))) &&
                awaits_its_reply(lidar);
-    case PHASE_SETTLING:
-        return command->operation == TMINI_OPERATION_SET_FREQUENCY && !lidar->parser.awaiting;
+    case PHASE_AWAITING_STEP:
+        return steps_frequency(command) && is_step(command->code) && awaits_its_reply(lidar);
+    case PHASE_QUIESCING:
+        return (command->code == TMINI_COMMAND_STOP || steps_frequency(command)) &&
+               !lidar->parser.awaiting;
     case PHASE_SPINNING_UP:
-        return command->operation == TMINI_OPERATION_START && !lidar->parser.awaiting;
+        return command->operation == TMINI_COMMAND_START && !lidar->parser.awaiting;
     default:
         return command->phase <= PHASE_WAITING && !lidar->parser.awaiting;
     }
@@ -226,20 +220,17 @@ static bool state_fits(const tmini_t *lidar)
     case TMINI_STATE_IDLE:
         return phase == PHASE_IDLE;
     case TMINI_STATE_BUSY:
-        return operation >= TMINI_OPERATION_INFO && phase >= PHASE_QUIESCING &&
-               (!is_waiting || operation == TMINI_OPERATION_REBOOT);
+        return operation != TMINI_COMMAND_STOP && operation != TMINI_COMMAND_START &&
+               phase >= PHASE_QUIESCING && (!is_waiting || operation == TMINI_COMMAND_REBOOT);
     case TMINI_STATE_STOPPING:
-        return operation == TMINI_OPERATION_STOP && phase == PHASE_QUIESCING;
+        return operation == TMINI_COMMAND_STOP && phase == PHASE_QUIESCING;
     case TMINI_STATE_STARTING:
-        return operation == TMINI_OPERATION_START && phase >= PHASE_QUIESCING && !is_waiting;
+        return operation == TMINI_COMMAND_START && phase >= PHASE_QUIESCING && !is_waiting;
     case TMINI_STATE_SCANNING:
         return is_waiting && lidar->command.unsent == 0;
     case TMINI_STATE_RECOVERING:
-        return lidar->recovery.is_pausing
-                   ? is_waiting
-                   : phase >= PHASE_QUIESCING &&
-                         (operation == TMINI_OPERATION_REBOOT ||
-                          (operation == TMINI_OPERATION_START && !is_waiting));
+        return phase >= PHASE_QUIESCING && (operation == TMINI_COMMAND_REBOOT ||
+                                            is_waiting == (operation != TMINI_COMMAND_START));
     default:
         return false;
     }
@@ -247,20 +238,17 @@ static bool state_fits(const tmini_t *lidar)
 
 static bool command_is_sound(const tmini_command_t *command)
 {
-    return command->operation <= TMINI_OPERATION_REBOOT &&
-           command->unsent <= (command->sync_sent ? 1 : 2) &&
+    return is_operation(command->operation) && command->unsent <= (command->sync_sent ? 1 : 2) &&
            (command->sync_sent || command->unsent != 1) &&
            (command->unsent == 0 || (is_code(command->code) && command->phase > PHASE_IDLE)) &&
            command->steps <= STEPS_MAX && command->frequency_chz <= PLAUSIBLE_CHZ_MAX &&
-           (command->operation != TMINI_OPERATION_SET_FREQUENCY ||
-            (command->target_chz >= TMINI_FREQUENCY_MIN_CHZ &&
-             command->target_chz <= TMINI_FREQUENCY_MAX_CHZ));
+           (command->target_chz == 0 || (command->target_chz >= TMINI_FREQUENCY_MIN_CHZ &&
+                                         command->target_chz <= TMINI_FREQUENCY_MAX_CHZ));
 }
 
 static bool monitor_is_sound(const tmini_monitor_t *monitor)
 {
-    return ((monitor->faults | monitor->observed) & ~TMINI_FAULT_MASK) == 0 &&
-           ct_is_sound(&monitor->ct);
+    return ((monitor->faults | monitor->observed) & ~TMINI_FAULT_MASK) == 0;
 }
 
 /* Streaming, nothing is gathered. A packet that waits is there. Settled: nothing is left to do. */
@@ -284,5 +272,5 @@ bool lidar_is_sound(const tmini_t *lidar)
            lidar->ring.window >= TMINI_REPLY_SIZE_MAX && parser_is_sound(&lidar->parser) &&
            (lidar->pending & ~EVENTS) == 0 && lidar->doubt <= DOUBT_MAX &&
            command_is_sound(&lidar->command) && phase_fits(lidar) && state_fits(lidar) &&
-           monitor_is_sound(&lidar->monitor) && results_are_sound(lidar);
+           monitor_is_sound(&lidar->monitor) && ct_is_sound(&lidar->ct) && results_are_sound(lidar);
 }

@@ -308,30 +308,29 @@ void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters);
 /* ------------------------------------------------------------------------------------- private */
 
 /* What a lidar consists of, grouped by the file of lib/src that writes it. The small members come
- * first: Thumb code reaches them with short instructions. */
+ * first: Thumb code reaches bytes at 0 to 31 with short instructions, halves at 0 to 62. */
 
 /* tmini_command.c */
 typedef struct {
-    uint8_t operation; /* Under way, or the last one. */
+    uint8_t operation; /* Under way, or the last one: the command that it is named by; 0: none. */
     uint8_t phase;     /* What goes on on the wire. */
-    uint8_t code;      /* The command code on its way, */
+    uint8_t code;      /* The command on its way, */
     uint8_t unsent;    /* and how many of its two bytes the port has not taken yet. */
     bool sync_sent;    /* The lidar has got the first byte of a command, and no second. */
-    uint8_t attempts_left;
-    bool is_repeated;    /* This is not the first attempt. */
+    uint8_t attempts;  /* The how-manieth this is, from 1, */
+    uint8_t attempts_max;
     uint8_t steps;       /* Frequency steps sent. */
     uint16_t timeout_ms; /* How long the phase may last; 0: as long as it likes. */
-    uint16_t target_chz;
+    uint16_t target_chz; /* The frequency to be set; 0: none. */
     uint16_t frequency_chz;
     uint16_t timeouts;
     uint32_t since_ms; /* When the phase began. */
-    size_t quiet_at;   /* The place in the stream behind which nothing has come since the end. */
 } tmini_command_t;
 
 /* tmini_recovery.c */
 typedef struct {
-    uint8_t attempts; /* Failed ones, since the last complete revolution. */
-    bool is_pausing;  /* Between two attempts. */
+    uint16_t attempts; /* Failed ones, since the last complete revolution or a reboot. */
+    uint16_t pause_ms; /* Behind the last of them. */
     uint16_t losses;
     uint16_t recoveries;
     uint16_t restarts;
@@ -345,7 +344,6 @@ typedef struct {
     bool is_complete;     /* Nothing has been lost since the last start packet. */
     bool has_range;       /* A valid range has come since then. */
     uint32_t rotating_ms; /* When a start packet or a range last came. */
-    tmini_ct_t ct;
 } tmini_monitor_t;
 
 /* tmini.c: the port, and what was seen when time was last looked at. */
@@ -354,24 +352,26 @@ typedef struct {
     void *port_context;
     const tmini_timing_t *timing;
     uint32_t now_ms;
-    size_t received;    /* The place in the stream up to which bytes had come. */
-    uint16_t pause_ms;  /* How long ago others were seen to have come; 65535: or longer. */
-    uint16_t silent_ms; /* The same, as far as anybody looked. */
+    size_t received;   /* The place in the stream up to which bytes had come. */
+    uint32_t heard_ms; /* When bytes came; earlier, if a layer below may have held them back. */
 } tmini_link_t;
 
 struct tmini {
     uint8_t state; /* A tmini_state_t. */
     int8_t command_error;
-    uint16_t pending;  /* A bit for each event not yet returned. */
-    bool packet_waits; /* The packet that closed the scan has not been added to the next. */
-    uint8_t doubt;     /* Whether, between the bytes before `doubtful_to`, others may be missing. */
+    uint16_t pending;   /* A bit for each event not yet returned. */
+    uint16_t silent_ms; /* For how long nobody who looked has seen bytes come; at most 65535. */
+    uint8_t end_event;  /* With which the user's command ends well. */
+    uint8_t doubt;      /* Whether, between the bytes before `doubtful_to`, some may be missing. */
+    bool is_unwatched;  /* Since bytes came, nobody looked for longer than the line may pause. */
+    bool packet_waits;  /* The packet that closed the scan has not been added to the next. */
+    bool is_settled;    /* The last poll left nothing to do until bytes come or time passes. */
     bool disable_recovery;
-    bool is_unwatched; /* Since bytes came, nobody looked for longer than the line may pause. */
-    size_t doubtful_to;
-    uint32_t scans;
+    tmini_monitor_t monitor;
     tmini_command_t command;
     tmini_recovery_t recovery;
-    bool is_settled; /* The last poll left nothing to do until bytes come or time passes. */
+    size_t doubtful_to;
+    uint32_t scans;
     tmini_link_t link;
     tmini_ring_t ring;
     tmini_parser_t parser;
@@ -381,7 +381,7 @@ struct tmini {
         tmini_info_t info;     /* The answers to commands, which are not sent while scanning. */
         tmini_health_t health;
     } latest;
-    tmini_monitor_t monitor;
+    tmini_ct_t ct; /* While scanning: what tmini_monitor.c judges by. */
 };
 
 /** @endcond */
