@@ -317,7 +317,7 @@ typedef struct {
     uint8_t code;      /* The command on its way, */
     uint8_t unsent;    /* and how many of its two bytes the port has not taken yet. */
     bool sync_sent;    /* The lidar has got the first byte of a command, and no second. */
-    uint8_t attempts;  /* The how-manieth this is, from 1, */
+    uint8_t attempts;  /* The number of this one, from 1, */
     uint8_t attempts_max;
     uint8_t steps;       /* Frequency steps sent. */
     uint16_t timeout_ms; /* How long the phase may last; 0: as long as it likes. */

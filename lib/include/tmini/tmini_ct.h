@@ -36,11 +36,11 @@ extern "C" {
 /** What has been learned from a unit's CT bytes. Treat the members as private. */
 typedef struct {
     uint16_t known;  /**< A bit for each index whose trusted CT is valid; all others are 0. */
-    uint16_t gaps;   /**< ORed, those of the revolution under way: 0 if nothing was lost. */
+    uint16_t gaps;   /**< Of the revolution under way, joined by OR: 0 if nothing was lost. */
     uint8_t packets; /**< Of that revolution, at most 14; 0 before the first. */
     uint8_t fields;  /**< Of its fields, so many have come. */
     uint8_t crc;     /**< Of its CT bytes so far. */
-    uint8_t cts;     /**< ORed, those of its point packets: 0 if they carry no information. */
+    uint8_t cts;     /**< Those of its point packets, joined by OR: 0 if they say nothing. */
     uint8_t current[TMINI_CT_FIELDS]; /**< CTs of the revolution under way. */
     uint8_t trusted[TMINI_CT_FIELDS]; /**< The newest trusted CT of each field. */
 } tmini_ct_t;
