@@ -31,8 +31,9 @@ make_jail() {
         *" --quick "*) skip "CBMC is not installed (package cbmc)" ;;
     esac
     command -v debootstrap >/dev/null || apt-get install -y -qq debootstrap >/dev/null
-    debootstrap --variant=minbase --include=gcc,libc6-dev,cbmc trixie "$jail" \
-        "$(mirror_of debian)" >"$root/build-proof.log" 2>&1
+    mkdir -p "$jail"
+    debootstrap --variant=minbase --include=gcc,libc6-dev,cbmc,z3 trixie "$jail" \
+        "$(mirror_of debian)" >"$jail/made.log" 2>&1
 }
 
 command -v python3 >/dev/null || skip "Python 3 is not installed"
