@@ -23,9 +23,14 @@ wish_for_fuzzer() {
     [ -z "$version" ] || wish "/usr/share/doc/libclang-rt-$version-dev" "libclang-rt-$version-dev"
 }
 
-# The model checker is not in all systems' packages.
+# The model checker is not in all systems' packages; that for Debian 12 is fetched below.
 wish_for_checker() {
     ! apt-cache show --no-all-versions cbmc >/dev/null 2>&1 || wish cbmc cbmc
+}
+
+fetch_checker() {
+    is_present cbmc || "$root/test/proof/run.sh" --fetch ||
+        echo "CBMC could not be fetched (why: above): its proofs are skipped."
 }
 
 # The viewer is compiled by Clang, linked by lld, and tried out in a browser.
@@ -89,6 +94,7 @@ need_drawing
 [ "${TMINI_OPTIONAL:-yes}" = no ] || wish_for_documents
 install_tools
 [ "${TMINI_OPTIONAL:-yes}" = no ] || prepare_python_tools
+[ "${TMINI_OPTIONAL:-yes}" = no ] || fetch_checker
 
 # What goes well before the tests is not worth reading.
 echo "Building in $root/build"

@@ -6,6 +6,7 @@
 uint8_t ring_memory[LARGE_RING_SIZE];
 
 static tmini_ring_t *fed; /* NULL: nothing comes. */
+static bool has_come;
 
 tmini_parser_t nondet_parser(void);
 
@@ -64,9 +65,22 @@ tmini_parser_t any_parser(tmini_ring_t *ring)
     return parser;
 }
 
+tmini_ring_t any_ring_like(const tmini_ring_t *ring)
+{
+    const tmini_ring_t other = any_early_ring(ring->size);
+    ASSUME(other.window == ring->window);
+    return other;
+}
+
 void let_bytes_come(tmini_ring_t *ring)
 {
     fed = ring;
+    has_come = has_come && ring == NULL;
+}
+
+bool have_bytes_come(void)
+{
+    return has_come;
 }
 
 /* The producer, between two accesses of the consumer. */
@@ -86,6 +100,7 @@ static void come(tmini_ring_t *ring)
 void proof_access(void)
 {
     if (fed != NULL && any_bool()) {
+        has_come = true;
         come(fed);
     }
 }

@@ -1,18 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The parser, from any sound state on a ring of 32 bytes (with DMA,
- * 16 of them), whatever comes
+/* The parser, from any sound state on a ring of 32 bytes (with DMA, 16 of them), whatever comes
  * between two accesses: each step is memory-safe, keeps the state sound and every byte accounted
  * for. The steps are private, so the source is included.
  *
- * tmini_parser_next_after() puts these steps together in a loop of a dozen lines, in which each
- * step's assumption is what the one before has claimed; as a whole it takes the checker hours. In
- * classify() the checksum is right or wrong as it likes. */
+ * tmini_parser_next_after() puts these steps together in a loop. It is proved one turn of it from
+ * any state that the turns before may have left: at_loop_head(). In classify() the checksum is right
+ * or wrong as it likes. */
+
+void at_loop_head(void);
 
 #include "tmini_parser.c"
 
 #include "parser_contract.h"
+
+enum verdict any_classify(tmini_parser_t *same, size_t unread);
+void any_skip(tmini_parser_t *same, size_t unread);
 
 static tmini_ring_t ring;
 static tmini_parser_t parser;
@@ -80,6 +84,9 @@ void prove_parser_classify(void)
     CLAIM(parser_is_sound(&parser));
     CLAIM(verdict != INCOMPLETE || unread < parser.need);
     CLAIM(verdict != COMPLETE || (unread >= parser.need && parser.kind != TMINI_FRAME_NONE));
+    CLAIM(parser.effort == before.effort ||
+          (verdict == NOT_A_FRAME && parser.effort == (uint16_t)(before.effort + parser.need)));
+    CLAIM(parser.frame.gap == before.frame.gap);
     REACHED();
 }
 
@@ -146,6 +153,8 @@ void prove_parser_skip(void)
     CLAIM(place < 1 || place >= skipped || begins_no_frame(&parser, byte)); /* No frame is lost. */
     CLAIM(place != skipped - 1 || parser.frame.last_skipped == byte);
     CLAIM(parser.frame.gap >= before.frame.gap);
+    CLAIM(skipped == 1 || skipped + before.effort <= TMINI_PARSER_EFFORT);
+    CLAIM(parser.effort == (uint16_t)(before.effort + skipped + TMINI_CANDIDATE_EFFORT));
     REACHED();
 }
 
@@ -219,5 +228,91 @@ void prove_parser_abandon(void)
     CLAIM(is_accounted_for());
     CLAIM(parser_is_sound(&parser) && same_expectations(&before, &parser));
     CLAIM(parser.awaiting == before.awaiting && parser.frame.size == before.frame.size);
+    REACHED();
+}
+
+/* ---- The loop of tmini_parser_next_after(), which is cut at its head ---- */
+
+/* In place of classify() and skip(): they may be called so, and do no more than was proved. */
+
+enum verdict any_classify(tmini_parser_t *same, size_t unread)
+{
+    const tmini_parser_t was = parser;
+    const enum verdict verdict = (enum verdict)(nondet_byte() % 3);
+    CLAIM(same == &parser && parser.frame.size == 0);
+    CLAIM(unread >= parser.need && unread <= ring.window && unread <= tmini_ring_unread(&ring));
+    parser = any_parser(&ring);
+    ASSUME(same_expectations(&was, &parser) && parser.awaiting == was.awaiting);
+    ASSUME(parser.frame.size == 0 && parser.frame.gap == was.frame.gap);
+    ASSUME(verdict != INCOMPLETE || unread < parser.need);
+    ASSUME(verdict != COMPLETE || (unread >= parser.need && parser.kind != TMINI_FRAME_NONE));
+    ASSUME(parser.effort == was.effort ||
+           (verdict == NOT_A_FRAME && parser.effort == (uint16_t)(was.effort + parser.need)));
+    parser.counters = was.counters;
+    return verdict;
+}
+
+void any_skip(tmini_parser_t *same, size_t unread)
+{
+    const size_t skipped = nondet_size();
+    CLAIM(same == &parser && parser.frame.size == 0);
+    CLAIM(unread >= 1 && unread <= ring.window && unread <= tmini_ring_unread(&ring));
+    ASSUME(skipped >= 1 && skipped <= unread);
+    ASSUME(skipped == 1 || skipped + parser.effort <= TMINI_PARSER_EFFORT);
+    discard_skipped(&parser, skipped);
+    parser.effort = (uint16_t)(parser.effort + skipped + TMINI_CANDIDATE_EFFORT);
+}
+
+static bool is_second_turn;
+static uint16_t effort_before;
+static unsigned rank_before;
+
+/* How many turns without effort may follow, if nothing comes: one in which a candidate turns out
+ * to be longer than what there is, and one that opens a closed ring. */
+static unsigned rank(void)
+{
+    let_bytes_come(NULL);
+    const bool is_enough = tmini_ring_unread(&ring) >= parser.need;
+    return is_enough ? 2 : tmini_ring_is_closed(&ring) ? 1 : 0;
+}
+
+/* Called where each turn begins: prove.py puts it there. What holds here the first time, and again
+ * after a turn from any state in which it holds, holds always. And each turn has done some of the
+ * work that there may be, or leads nearer to the end, unless something has come meanwhile. */
+void at_loop_head(void)
+{
+    CLAIM(skip_keeps_its_word(&before, &parser));
+    CLAIM(parser.effort < TMINI_PARSER_EFFORT);
+    CLAIM(is_accounted_for());
+    if (is_second_turn) {
+        CLAIM(parser.effort > effort_before + TMINI_CANDIDATE_EFFORT || have_bytes_come() ||
+              rank() < rank_before);
+        ASSUME(false);
+    }
+    is_second_turn = true;
+    ring = any_ring_like(&ring);
+    parser = any_parser(&ring);
+    ASSUME(skip_keeps_its_word(&before, &parser) && parser.effort < TMINI_PARSER_EFFORT);
+    before_account = parser_account(&parser);
+    before_head = ring.head;
+    before_overrun = ring.overrun;
+    effort_before = parser.effort;
+    rank_before = rank();
+    let_bytes_come(&ring);
+}
+
+void prove_parser_next(void)
+{
+    begin();
+    const size_t effort = nondet_size();
+    ASSUME(effort < TMINI_PARSER_EFFORT);
+    const tmini_frame_type_t type = tmini_parser_next_after(&parser, effort);
+    CLAIM(is_accounted_for());
+    CLAIM(next_keeps_its_word(&before, &parser, type));
+    CLAIM((type == TMINI_FRAME_MORE) == (parser.effort >= TMINI_PARSER_EFFORT) ||
+          type == TMINI_FRAME_PACKET || type == TMINI_FRAME_REPLY);
+    /* The last turn: a damaged candidate, its bytes skipped; or a frame. */
+    CLAIM(parser.effort <
+          TMINI_PARSER_EFFORT + TMINI_PACKET_SIZE(255) + TMINI_CANDIDATE_EFFORT + 1);
     REACHED();
 }

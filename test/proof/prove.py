@@ -4,7 +4,7 @@
 
 """Runs the proofs with CBMC, and prints a table. run.sh calls it.
 
-    prove.py --work DIR [--jail DIR] [--quick] [--broken] [NAME …]
+    prove.py --work DIR [--quick] [--broken] [NAME …]
 
 Each proof is one function prove_NAME() in a file beside this one. All its claims must hold but one: the
 last, that its end is not reached, which must fail, or the proof would say nothing. With --broken the
@@ -42,10 +42,11 @@ class Proof:
     """One function: what it is made of, how far its loops go, and how the library is broken."""
 
     def __init__(self, name, files, sources, unwind, bounds, broken, loops="", stubs=(), defines=(),
-                 options=(), function=None, slow=False):
+                 options=(), function=None, slow=False, inserted=(), replaced=()):
         self.name, self.files, self.sources, self.unwind = name, files, sources, unwind
         self.bounds, self.broken, self.loops, self.stubs = bounds, broken, loops, stubs
         self.defines, self.options, self.slow = defines, options, slow
+        self.inserted, self.replaced = inserted, replaced
         self.function = "prove_" + (function or name)
 
 
@@ -110,6 +111,11 @@ PROOFS = [
     parser("skip_to", "lib/src/tmini_parser.c", "count > 0 && count <=", "count > 0 && 1 <="),
     parser("abandon", "lib/src/tmini_parser.c", "if (unread > 0 && unread < parser->need)",
            "if (unread < parser->need)"),
+    parser("next", "lib/src/tmini_parser.c", "        if (verdict == NOT_A_FRAME) {\n            skip(parser, unread);\n        } else if",
+           "        if", replaced=["classify:any_classify", "skip:any_skip"],
+           loops="tmini_parser_next_after.0:3",
+           inserted=("lib/src/tmini_parser.c", "    do {\n        const size_t unread = intact_bytes(parser);",
+                     "    do {\n        at_loop_head();\n        const size_t unread = intact_bytes(parser);")),
     scan("packet_open", "lib/src/tmini_packet.c", "angle < TMINI_FULL_CIRCLE_Q6 ?", "angle <= TMINI_FULL_CIRCLE_Q6 ?"),
     scan("packet_points", "lib/src/tmini_packet.c", "packet->count < max_points ? packet->count : max_points",
          "packet->count"),
@@ -160,12 +166,10 @@ PROOFS = [
 
 
 class Checker:
-    """CBMC over a copy of the sources, where it is installed or in a jail of its own."""
+    """CBMC over a copy of the sources."""
 
-    def __init__(self, work, jail):
+    def __init__(self, work):
         self.folder = work
-        self.seen = "/" + os.path.relpath(work, jail) if jail else work
-        self.prefix = ["chroot", jail] if jail else []
 
     def copy_sources(self):
         for folder in FOLDERS:
@@ -173,7 +177,7 @@ class Checker:
             shutil.rmtree(target, ignore_errors=True)
             shutil.copytree(os.path.join(ROOT, folder), target)
 
-    def break_source(self, path, old, new):
+    def replace(self, path, old, new):
         name = os.path.join(self.folder, path)
         with open(name, encoding="utf-8") as file:
             text = file.read()
@@ -183,7 +187,7 @@ class Checker:
             file.write(text.replace(old, new))
 
     def call(self, *command):
-        return subprocess.run(["nice"] + self.prefix + list(command), capture_output=True, text=True, check=False)
+        return subprocess.run(["nice", *command], capture_output=True, text=True, check=False)
 
     def demand(self, *command):
         done = self.call(*command)
@@ -192,19 +196,21 @@ class Checker:
 
     def check(self, proof):
         """Returns the number of properties and those that failed."""
-        program = f"{self.seen}/program"
-        folders = [option for folder in FOLDERS for option in ("-I", f"{self.seen}/{folder}")]
+        program = f"{self.folder}/program"
+        folders = [option for folder in FOLDERS for option in ("-I", f"{self.folder}/{folder}")]
         defines = ["-D", 'TMINI_ATOMIC_HEADER="proof_atomic.h"']
         for define in proof.defines:
             defines += ["-D", define]
-        files = [f"{self.seen}/test/proof/{name}" for name in ["any.c"] + proof.files]
-        files += [f"{self.seen}/test/support/invariants.c"]
-        files += [f"{self.seen}/lib/src/{name}" for name in proof.sources]
+        files = [f"{self.folder}/test/proof/{name}" for name in ["any.c"] + proof.files]
+        files += [f"{self.folder}/test/support/invariants.c"]
+        files += [f"{self.folder}/lib/src/{name}" for name in proof.sources]
         self.demand("goto-cc", "-o", program, "--function", proof.function, *folders, *defines, *files)
         for stub in proof.stubs:
             self.demand("goto-instrument", "--remove-function-body", stub, program, program)
             self.demand("goto-instrument", "--generate-function-body", stub, "--generate-function-body-options",
                         "nondet-return", program, program)
+        for calls in proof.replaced:
+            self.demand("goto-instrument", "--replace-calls", calls, program, program)
         loops = ["--unwindset", proof.loops] if proof.loops else []
         done = self.call("cbmc", "--drop-unused-functions", "--unwind", str(proof.unwind), *loops,
                          *proof.options, program)
@@ -222,7 +228,9 @@ def prove(checker, proof, broken):
     """Returns the number of properties and whether all is as it should be; tells what is not."""
     checker.copy_sources()
     if broken:
-        checker.break_source(*proof.broken)
+        checker.replace(*proof.broken)
+    if proof.inserted:
+        checker.replace(*proof.inserted)
     count, failures = checker.check(proof)
     others = [failure for failure in failures if not is_end(failure)]
     if broken:
@@ -234,8 +242,7 @@ def prove(checker, proof, broken):
 
 def main():
     parser_ = argparse.ArgumentParser(description="Proves what proof_….c claim.")
-    parser_.add_argument("--work", required=True, help="a folder to work in, inside the jail if there is one")
-    parser_.add_argument("--jail", help="a Debian of its own that has CBMC")
+    parser_.add_argument("--work", required=True, help="a folder to work in")
     parser_.add_argument("--quick", action="store_true", help="only what takes seconds")
     parser_.add_argument("--broken", action="store_true", help="break the library: each proof must fail")
     parser_.add_argument("names", nargs="*", metavar="NAME", help="proofs, or the beginnings of their names")
@@ -245,7 +252,7 @@ def main():
               not (arguments.quick and proof.slow)]
     if not chosen:
         sys.exit("no such proof; there are: " + " ".join(proof.name for proof in PROOFS))
-    checker = Checker(arguments.work, arguments.jail)
+    checker = Checker(arguments.work)
     total = failed = 0
     print(f"{'proof':26} {'result':8} {'properties':>10} {'s':>5}  bounds")
     for proof in chosen:
