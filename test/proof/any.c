@@ -20,14 +20,12 @@ tmini_ring_t any_ring_of(size_t size)
     for (size_t i = 0; i < size; i++) {
         ring_memory[i] = nondet_byte();
     }
-    const bool dma = any_bool();
-    const size_t limit = nondet_size();
     const tmini_ring_t ring = {.memory = ring_memory,
                                .size = size,
-                               .window = dma ? size / 2 : size,
-                               .gate = dma || any_bool() ? size - 1 : 0,
-                               .limit = limit,
-                               .head = limit - size + nondet_size(),
+                               .mask = size - 1,
+                               .window = any_bool() ? size / 2 : size,
+                               .limit = nondet_size(),
+                               .head = nondet_size(),
                                .overrun = nondet_size()};
     ASSUME(ring_is_sound(&ring));
     return ring;
@@ -44,15 +42,17 @@ tmini_ring_t any_early_ring(size_t size)
         ring_memory[i] = nondet_byte();
     }
     const bool dma = any_bool();
+    const bool is_closed = !dma && any_bool();
     const uint8_t limit = nondet_byte();
     const uint16_t unread = nondet_half();
     ASSUME(dma || unread <= size);
     return (tmini_ring_t){.memory = ring_memory,
                           .size = size,
+                          .mask = size - 1,
                           .window = dma ? size / 2 : size,
-                          .gate = dma || any_bool() ? size - 1 : 0,
                           .limit = limit,
-                          .head = (size_t)limit - size + unread};
+                          .head =
+                              (size_t)limit - size + unread + (is_closed ? TMINI_RING_CLOSED : 0)};
 }
 
 tmini_parser_t any_parser(tmini_ring_t *ring)
@@ -83,15 +83,18 @@ bool have_bytes_come(void)
     return has_come;
 }
 
-/* The producer, between two accesses of the consumer. */
+/* The producer, between two accesses of the consumer: of a ring that the CPU feeds, it may store
+ * what there is room for, and, full or not, close it. */
 static void come(tmini_ring_t *ring)
 {
     const size_t count = nondet_byte();
-    if (ring->window == ring->size) {
-        ASSUME(count <= (ring->gate != 0 ? ring->limit - ring->head : 0));
+    if (!tmini_ring_is_dma(ring)) {
+        const size_t room = ring->limit - ring->head;
+        const bool is_open = room <= ring->size;
+        ASSUME(count <= (is_open ? room : 0));
         if (any_bool()) {
             ring->overrun += nondet_byte();
-            ring->gate = 0;
+            ring->head += is_open ? TMINI_RING_CLOSED : 0;
         }
     }
     ring->head += count;

@@ -8,16 +8,19 @@
  * a time weakened to relaxed. Exit status 0 if it holds as it is, and each weakened barrier does
  * what the table at the end says: break it, or (those that order nothing by themselves) not.
  *
- * The model. Each index has a list of the values stored to it, in modification order. A thread has
- * a view: how far it has seen each list. A load returns any value from there on, and an acquire
- * load takes over the view that its release store had. A store goes behind what the thread has
- * seen; of the gate, which has two writers, also before what it has not. The ring's bytes are plain
+ * The model. Each index has a list of the values stored to it, by its one writer. A thread has a
+ * view: how far it has seen each list. A load returns any value from there on, and an acquire load
+ * takes over the view that its release store had; that a later relaxed store of the same thread
+ * would do as well in C11, but no longer in C++20, is not relied upon. The ring's bytes are plain
  * memory when the CPU feeds it: two accesses that are not ordered are a race. DMA writes them
  * behind the CPU's back: a load of one returns any that the view permits, and the hardware's writes
  * are in the order of time, that is behind what was published before.
  *
+ * Indices have 8 bits, of which a quarter, 64, closes the ring: they wrap.
+ *
  * What is asked: no race; the bytes come in order; where some are missing the ring was found
- * closed, and nowhere else; with DMA, what was read and found intact afterwards is the right byte.
+ * closed, and nowhere else; whoever finds it closed finds what was refused before counted; with
+ * DMA, what was read and found intact afterwards is the right byte.
  *
  * States that have been seen are remembered by 64 bits of hash. */
 
@@ -28,13 +31,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { HEAD, LIMIT, GATE, OVERRUN, CELL, CELLS = 4, LOCATIONS = CELL + CELLS };
+enum { HEAD, LIMIT, OVERRUN, CELL, CELLS = 4, LOCATIONS = CELL + CELLS };
 enum { PRODUCER, CONSUMER, THREADS };
+
+/* Where a thread's program stands when it has come to its end. */
+#define ENDED 255
 
 #define STORES_MAX 12
 
+/* By so much the producer moves its index to close the ring. */
+#define CLOSED 64u
+
 typedef struct {
     uint8_t value;
+    uint8_t refused; /* Before it, if it closes the ring. */
     uint8_t seen[LOCATIONS];
     uint8_t clock[THREADS];
 } store_t;
@@ -45,10 +55,10 @@ typedef struct {
     uint8_t clock[THREADS];
     uint8_t unfenced[LOCATIONS]; /* What a fence would let it see. */
     uint8_t index;               /* Its own: head, or tail. */
-    uint8_t gate;
-    uint8_t value;
-    uint8_t turns; /* Bytes put, or looks taken. */
-    uint8_t last;  /* The byte taken last. */
+    uint8_t value;               /* Loaded last, */
+    uint8_t refused; /* and what its store tells of that: or, of the producer, all of them. */
+    uint8_t turns;   /* Bytes put, or looks taken. */
+    uint8_t last;    /* The byte taken last. */
     bool found_closed;
 } thread_t;
 
@@ -66,14 +76,15 @@ typedef enum {
     NOTHING,
     CELLS_OWN, /* Of DMA's bytes: never weakened. */
     PUT_LOADS_LIMIT,
-    PUT_LOADS_GATE,
     PUT_STORES_HEAD,
     REFUSE_STORES_OVERRUN,
-    REFUSE_CLOSES_GATE,
+    REFUSE_CLOSES,
+    GAP_LOADS_LIMIT,
+    GAP_CLOSES,
     TAKE_LOADS_HEAD,
     TAKE_STORES_LIMIT,
-    TAKE_LOADS_GATE,
-    TAKE_OPENS_GATE,
+    TAKE_OPENS,
+    COUNT_LOADS_OVERRUN,
     PUBLISH_STORES_HEAD,
     DMA_TAKE_LOADS_HEAD,
     INTACT_FENCES,
@@ -164,6 +175,7 @@ static bool load(state_t *state, thread_t *thread, unsigned location, access_t a
     const store_t *const store = &state->stores[location][at];
     thread->seen[location] = (uint8_t)at;
     thread->value = store->value;
+    thread->refused = store->refused;
     see(thread->unfenced, store->seen, LOCATIONS);
     if (access != weakened && location < CELL) {
         see(thread->seen, store->seen, LOCATIONS);
@@ -172,52 +184,24 @@ static bool load(state_t *state, thread_t *thread, unsigned location, access_t a
     return true;
 }
 
-static void move_on(uint8_t *seen, unsigned at)
+/* By the location's one writer, which has seen all that is there. */
+static void store(state_t *state, thread_t *thread, unsigned location, access_t access,
+                  unsigned value)
 {
-    if (*seen >= at) {
-        (*seen)++;
-    }
-}
-
-/* The views that looked at stores from `at` on now find them one further. */
-static void shift(state_t *state, unsigned location, unsigned at)
-{
-    for (unsigned i = 0; i < THREADS; i++) {
-        thread_t *const thread = &state->threads[i];
-        move_on(&thread->seen[location], at);
-        move_on(&thread->unfenced[location], at);
-    }
-    for (unsigned other = 0; other < LOCATIONS; other++) {
-        for (unsigned i = 0; i < state->counts[other]; i++) {
-            move_on(&state->stores[other][i].seen[location], at);
-        }
-    }
-}
-
-static bool store(state_t *state, thread_t *thread, unsigned location, access_t access,
-                  unsigned value, unsigned choice)
-{
-    const unsigned at = thread->seen[location] + 1u + choice;
-    if (at > state->counts[location]) {
-        return false;
-    }
-    if (state->counts[location] == STORES_MAX) {
+    const unsigned at = state->counts[location];
+    if (at == STORES_MAX) {
         (void)fprintf(stderr, "too many stores for the model\n");
         exit(2);
     }
-    shift(state, location, at);
-    store_t *const list = state->stores[location];
-    memmove(&list[at + 1], &list[at], (state->counts[location] - at) * sizeof *list);
+    store_t *const stored = &state->stores[location][at];
     state->counts[location]++;
     thread->seen[location] = (uint8_t)at;
-    memset(&list[at], 0, sizeof list[at]);
-    list[at].value = (uint8_t)value;
-    list[at].seen[location] = (uint8_t)at;
+    stored->value = (uint8_t)value;
+    stored->seen[location] = (uint8_t)at;
     if (access != weakened) {
-        see(list[at].seen, thread->seen, LOCATIONS);
-        see(list[at].clock, thread->clock, THREADS);
+        see(stored->seen, thread->seen, LOCATIONS);
+        see(stored->clock, thread->clock, THREADS);
     }
-    return true;
 }
 
 static void write_byte(state_t *state, unsigned at, uint8_t value)
@@ -240,16 +224,54 @@ static uint8_t read_byte(state_t *state, unsigned at)
     return state->bytes[at];
 }
 
-/* ---- tmini_ring_put(), an access a step ---- */
+/* ---- tmini_ring_put() and tmini_ring_gap(), an access a step ---- */
 
-enum { PUT_BEGINS, PUT_GATE, PUT_BYTE, PUT_HEAD, PUT_REFUSES, PUT_CLOSES, ENDED };
+enum { PUT_BEGINS, PUT_BYTE, PUT_HEAD, PUT_REFUSES, PUT_REFUSES_FULL, PUT_CLOSES, GAP_CLOSE };
+
+/* Of the choices at the beginning of a put, those from here on are a gap instead: the byte was lost
+ * before it came to the ring. */
+#define GAP STORES_MAX
 
 static void next_put(thread_t *thread)
 {
     thread->turns++;
     thread->at = thread->turns == bounds.turns[PRODUCER] ? ENDED : PUT_BEGINS;
-    thread->gate = 0;
     thread->value = 0;
+}
+
+static bool begin_put(state_t *state, thread_t *thread, unsigned choice)
+{
+    const uint8_t refused = thread->refused;
+    if (!load(state, thread, LIMIT, PUT_LOADS_LIMIT, choice)) {
+        return false;
+    }
+    const uint8_t past = (uint8_t)(thread->index - thread->value);
+    thread->refused = refused;
+    thread->at = past > UINT8_MAX / 2 ? PUT_BYTE : past == 0 ? PUT_REFUSES_FULL : PUT_REFUSES;
+    return true;
+}
+
+static bool begin_gap(state_t *state, thread_t *thread, unsigned choice)
+{
+    const uint8_t refused = thread->refused;
+    if (!load(state, thread, LIMIT, GAP_LOADS_LIMIT, choice)) {
+        return false;
+    }
+    thread->refused = refused;
+    if ((uint8_t)(thread->value - thread->index) <= bounds.size) {
+        thread->at = GAP_CLOSE;
+    } else {
+        next_put(thread);
+    }
+    return true;
+}
+
+static void close_ring(state_t *state, thread_t *thread, access_t access)
+{
+    thread->index = (uint8_t)(thread->index + CLOSED);
+    store(state, thread, HEAD, access, thread->index);
+    state->stores[HEAD][thread->seen[HEAD]].refused = thread->refused;
+    next_put(thread);
 }
 
 static bool put(state_t *state, unsigned choice)
@@ -257,52 +279,58 @@ static bool put(state_t *state, unsigned choice)
     thread_t *const thread = &state->threads[PRODUCER];
     switch (thread->at) {
     case PUT_BEGINS:
-        if (!load(state, thread, LIMIT, PUT_LOADS_LIMIT, choice)) {
-            return false;
-        }
-        thread->at = thread->index != thread->value ? PUT_GATE : PUT_REFUSES;
-        return true;
-    case PUT_GATE:
-        if (!load(state, thread, GATE, PUT_LOADS_GATE, choice)) {
-            return false;
-        }
-        thread->gate = thread->value;
-        thread->at = thread->gate != 0 ? PUT_BYTE : PUT_REFUSES;
-        return true;
+        return choice < GAP ? begin_put(state, thread, choice)
+                            : begin_gap(state, thread, choice - GAP);
     case PUT_BYTE:
-        write_byte(state, thread->index & thread->gate, (uint8_t)(thread->turns + 1));
+        write_byte(state, thread->index & (bounds.size - 1), (uint8_t)(thread->turns + 1));
         thread->at = PUT_HEAD;
-        return choice == 0;
+        break;
     case PUT_HEAD:
-        if (!store(state, thread, HEAD, PUT_STORES_HEAD, thread->index + 1u, choice)) {
-            return false;
-        }
         thread->index++;
+        store(state, thread, HEAD, PUT_STORES_HEAD, thread->index);
         next_put(thread);
-        return true;
+        break;
     case PUT_REFUSES:
-        thread->at = PUT_CLOSES;
-        return store(state, thread, OVERRUN, REFUSE_STORES_OVERRUN, 0, choice);
-    case PUT_CLOSES:
-        if (!store(state, thread, GATE, REFUSE_CLOSES_GATE, 0, choice)) {
-            return false;
+    case PUT_REFUSES_FULL:
+        thread->refused++;
+        store(state, thread, OVERRUN, REFUSE_STORES_OVERRUN, thread->refused);
+        if (thread->at == PUT_REFUSES_FULL) {
+            thread->at = PUT_CLOSES;
+        } else {
+            next_put(thread);
         }
-        next_put(thread);
-        return true;
+        break;
+    case PUT_CLOSES:
+        close_ring(state, thread, REFUSE_CLOSES);
+        break;
+    case GAP_CLOSE:
+        close_ring(state, thread, GAP_CLOSES);
+        break;
     default:
         return false;
     }
+    return choice == 0;
 }
 
 /* ---- The parser: takes a byte, or, if there is none and the ring closed, opens it ---- */
 
-enum { TAKE_BEGINS, TAKE_BYTE, TAKE_LIMIT, TAKE_GATE, TAKE_AGAIN, TAKE_OPENS };
+enum {
+    TAKE_BEGINS,
+    TAKE_UNREAD,
+    TAKE_BYTE,
+    TAKE_LIMIT,
+    TAKE_CLOSED,
+    TAKE_AGAIN,
+    TAKE_COUNT,
+    TAKE_OPEN
+};
 
 static void next_take(thread_t *thread)
 {
     thread->turns++;
     thread->at = thread->turns == bounds.turns[CONSUMER] ? ENDED : TAKE_BEGINS;
     thread->value = 0;
+    thread->refused = 0;
 }
 
 static void judge(thread_t *thread, uint8_t byte)
@@ -318,57 +346,89 @@ static void judge(thread_t *thread, uint8_t byte)
     thread->found_closed = false;
 }
 
+/* What tmini_ring_ahead() says of the head loaded. */
+static uint8_t ahead(const thread_t *thread)
+{
+    return (uint8_t)(thread->value - thread->index);
+}
+
+/* The parser's looks at the head: intact_bytes(), then pass_lost_bytes(). */
+static bool look(state_t *state, thread_t *thread, unsigned choice)
+{
+    if (!load(state, thread, HEAD, TAKE_LOADS_HEAD, choice)) {
+        return false;
+    }
+    const bool is_closed = ahead(thread) > bounds.size;
+    const bool is_empty = ahead(thread) % CLOSED == 0;
+    switch (thread->at) {
+    case TAKE_BEGINS:
+        thread->at = is_closed ? TAKE_UNREAD : is_empty ? TAKE_CLOSED : TAKE_BYTE;
+        break;
+    case TAKE_UNREAD:
+        thread->at = is_empty ? TAKE_CLOSED : TAKE_BYTE;
+        break;
+    case TAKE_CLOSED:
+        thread->at = TAKE_AGAIN;
+        if (!is_closed) {
+            next_take(thread);
+        }
+        break;
+    default:
+        thread->at = TAKE_COUNT;
+        if (!is_empty) {
+            next_take(thread);
+        }
+        break;
+    }
+    return true;
+}
+
+static void give_back(state_t *state, thread_t *thread, access_t access, unsigned count)
+{
+    thread->index = (uint8_t)(thread->index + count);
+    store(state, thread, LIMIT, access, thread->index + bounds.size);
+    next_take(thread);
+}
+
+static bool count_refused(state_t *state, thread_t *thread, unsigned choice)
+{
+    const uint8_t refused = thread->refused;
+    if (!load(state, thread, OVERRUN, COUNT_LOADS_OVERRUN, choice)) {
+        return false;
+    }
+    if (thread->value < refused) {
+        wrong = "the ring is found closed, and what was refused is not counted";
+    }
+    thread->at = TAKE_OPEN;
+    return true;
+}
+
 static bool take(state_t *state, unsigned choice)
 {
     thread_t *const thread = &state->threads[CONSUMER];
     switch (thread->at) {
     case TAKE_BEGINS:
-        if (!load(state, thread, HEAD, TAKE_LOADS_HEAD, choice)) {
-            return false;
-        }
-        thread->at = thread->value != thread->index ? TAKE_BYTE : TAKE_GATE;
-        return true;
+    case TAKE_UNREAD:
+    case TAKE_CLOSED:
+    case TAKE_AGAIN:
+        return look(state, thread, choice);
     case TAKE_BYTE:
         judge(thread, read_byte(state, thread->index & (bounds.size - 1)));
         thread->at = TAKE_LIMIT;
-        return choice == 0;
+        break;
     case TAKE_LIMIT:
-        thread->index++;
-        if (!store(state, thread, LIMIT, TAKE_STORES_LIMIT, thread->index + bounds.size, choice)) {
-            return false;
-        }
-        next_take(thread);
-        return true;
-    case TAKE_GATE:
-        if (!load(state, thread, GATE, TAKE_LOADS_GATE, choice)) {
-            return false;
-        }
-        if (thread->value != 0) {
-            next_take(thread);
-        } else {
-            thread->at = TAKE_AGAIN;
-        }
-        return true;
-    case TAKE_AGAIN:
-        if (!load(state, thread, HEAD, TAKE_LOADS_HEAD, choice)) {
-            return false;
-        }
-        if (thread->value != thread->index) {
-            next_take(thread);
-        } else {
-            thread->at = TAKE_OPENS;
-        }
-        return true;
-    case TAKE_OPENS:
-        if (!store(state, thread, GATE, TAKE_OPENS_GATE, bounds.size - 1, choice)) {
-            return false;
-        }
+        give_back(state, thread, TAKE_STORES_LIMIT, 1);
+        break;
+    case TAKE_COUNT:
+        return count_refused(state, thread, choice);
+    case TAKE_OPEN:
         thread->found_closed = true;
-        next_take(thread);
-        return true;
+        give_back(state, thread, TAKE_OPENS, CLOSED);
+        break;
     default:
         return false;
     }
+    return choice == 0;
 }
 
 /* ---- DMA, and tmini_ring_publish() in its interrupts ---- */
@@ -379,15 +439,18 @@ static bool run_dma(state_t *state, unsigned choice)
     thread_t *const thread = &state->threads[PRODUCER];
     const unsigned written = thread->turns;
     const unsigned published = thread->index;
-    if (choice == 0) {
+    if (choice == 0 && written < bounds.turns[PRODUCER] &&
+        written + 1 <= published + bounds.size / 2) {
         thread->turns++;
-        return written < bounds.turns[PRODUCER] && written + 1 <= published + bounds.size / 2 &&
-               store(state, thread, CELL + (written & (bounds.size - 1)), CELLS_OWN, written + 1,
-                     0);
+        store(state, thread, CELL + (written & (bounds.size - 1)), CELLS_OWN, written + 1);
+        return true;
     }
-    thread->index = thread->turns;
-    return choice == 1 && written > published &&
-           store(state, thread, HEAD, PUBLISH_STORES_HEAD, written, 0);
+    if (choice == 1 && written > published) {
+        thread->index = thread->turns;
+        store(state, thread, HEAD, PUBLISH_STORES_HEAD, written);
+        return true;
+    }
+    return false;
 }
 
 enum { DMA_BEGINS, DMA_DROPS, DMA_BYTE, DMA_FENCE, DMA_AGAIN };
@@ -455,7 +518,7 @@ static bool step(state_t *state, unsigned thread, unsigned choice)
 static void explore(const state_t *state)
 {
     for (unsigned thread = 0; thread < THREADS; thread++) {
-        for (unsigned choice = 0; choice < STORES_MAX && wrong == NULL; choice++) {
+        for (unsigned choice = 0; choice < 2 * STORES_MAX && wrong == NULL; choice++) {
             state_t next = *state;
             if (step(&next, thread, choice) && wrong == NULL && is_new(&next)) {
                 states++;
@@ -472,7 +535,6 @@ static void begin(state_t *state)
         state->counts[location] = 1;
     }
     state->stores[LIMIT][0].value = (uint8_t)bounds.size;
-    state->stores[GATE][0].value = (uint8_t)(bounds.size - 1);
 }
 
 /* Returns what goes wrong, or NULL. */
@@ -499,14 +561,15 @@ static const struct {
 } barriers[] = {
     {NOTHING, "as it is", false, false},
     {PUT_LOADS_LIMIT, "put: limit, acquire", false, true},
-    {PUT_LOADS_GATE, "put: gate, acquire", false, false},
     {PUT_STORES_HEAD, "put: head, release", false, true},
     {REFUSE_STORES_OVERRUN, "refuse: overrun, release", false, false},
-    {REFUSE_CLOSES_GATE, "refuse: gate, release", false, true},
-    {TAKE_LOADS_HEAD, "unread: head, acquire", false, true},
+    {REFUSE_CLOSES, "refuse: head, release", false, true},
+    {GAP_LOADS_LIMIT, "gap: limit, acquire", false, false},
+    {GAP_CLOSES, "gap: head, release", false, true},
+    {TAKE_LOADS_HEAD, "unread, closed: head, acquire", false, true},
     {TAKE_STORES_LIMIT, "discard: limit, release", false, true},
-    {TAKE_LOADS_GATE, "is_closed: gate, acquire", false, true},
-    {TAKE_OPENS_GATE, "open: gate, release", false, false},
+    {TAKE_OPENS, "open: limit, release", false, true},
+    {COUNT_LOADS_OVERRUN, "overrun, acquire", false, false},
     {NOTHING, "DMA, as it is", true, false},
     {PUBLISH_STORES_HEAD, "publish: head, release", true, true},
     {DMA_TAKE_LOADS_HEAD, "DMA, unread: head, acquire", true, true},
@@ -529,7 +592,7 @@ int main(int argc, char **argv)
     for (size_t i = 0; i < sizeof barriers / sizeof barriers[0]; i++) {
         const char *const found = run(barriers[i].dma ? by_dma : by_cpu, barriers[i].access);
         const bool is_expected = (found != NULL) == barriers[i].is_needed;
-        printf("%-28s %9" PRIu64 " states  %s%s\n", barriers[i].name, states,
+        printf("%-30s %9" PRIu64 " states  %s%s\n", barriers[i].name, states,
                found != NULL ? found : "holds", is_expected ? "" : "  UNEXPECTED");
         is_right = is_right && is_expected;
     }

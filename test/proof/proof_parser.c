@@ -36,11 +36,17 @@ static void begin(void)
     let_bytes_come(&ring);
 }
 
+/* DMA may run as far ahead as it likes; and a ring that the CPU feeds may be closed, and opened. */
+static size_t stored_since(size_t head)
+{
+    return tmini_ring_is_dma(&ring) ? ring.head - head : tmini_ring_distance(head, ring.head);
+}
+
 /* What has come is in exactly one place. */
 static bool is_accounted_for(void)
 {
     let_bytes_come(NULL);
-    const size_t came = ring.head - before_head + (ring.overrun - before_overrun);
+    const size_t came = stored_since(before_head) + (ring.overrun - before_overrun);
     return parser_account(&parser) == before_account + (uint32_t)came;
 }
 
@@ -180,7 +186,8 @@ void prove_parser_pass_lost_bytes(void)
     (void)pass_lost_bytes(&parser);
     CLAIM(is_accounted_for());
     CLAIM(skip_keeps_its_word(&before, &parser));
-    CLAIM(!was_closed || tmini_ring_is_closed(&ring) || tmini_ring_tail(&ring) == stored);
+    CLAIM(!was_closed || tmini_ring_is_closed(&ring) ||
+          tmini_ring_distance(stored, tmini_ring_tail(&ring)) == 0);
     REACHED();
 }
 

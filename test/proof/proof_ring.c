@@ -19,7 +19,7 @@ void prove_ring_init(void)
     if (status == TMINI_OK) {
         CLAIM(ring_is_sound(&ring));
         CLAIM(tmini_ring_unread(&ring) == 0 && tmini_ring_overrun(&ring) == 0);
-        CLAIM(ring.window == (dma ? size / 2 : size));
+        CLAIM(ring.window == (dma ? size / 2 : size) && !tmini_ring_is_closed(&ring));
     } else {
         CLAIM(tmini_ring_room(&ring) == 0); /* It refuses every byte. */
         tmini_ring_put(&ring, 0);
@@ -99,13 +99,14 @@ void prove_ring_gap(void)
 {
     tmini_ring_t ring = any_ring();
     const size_t unread = tmini_ring_unread(&ring);
+    const size_t ahead = tmini_ring_ahead(&ring);
     tmini_ring_gap(&ring);
     CLAIM(ring_is_sound(&ring));
     if (ring.window == ring.size) {
         CLAIM(tmini_ring_is_closed(&ring) && tmini_ring_room(&ring) == 0);
         CLAIM(tmini_ring_unread(&ring) == unread);
     } else {
-        CLAIM(tmini_ring_unread(&ring) == unread + RING_SIZE);
+        CLAIM(tmini_ring_ahead(&ring) == ahead + RING_SIZE);
     }
     REACHED();
 }
@@ -128,10 +129,12 @@ void prove_ring_discard(void)
 void prove_ring_open(void)
 {
     tmini_ring_t ring = any_ring();
-    ASSUME(tmini_ring_unread(&ring) == 0);
+    ASSUME(tmini_ring_is_closed(&ring) && tmini_ring_unread(&ring) == 0);
+    const size_t tail = tmini_ring_tail(&ring);
     tmini_ring_open(&ring);
     CLAIM(ring_is_sound(&ring) && !tmini_ring_is_closed(&ring));
-    CLAIM(ring.window < ring.size || tmini_ring_room(&ring) == RING_SIZE);
+    CLAIM(tmini_ring_unread(&ring) == 0 && tmini_ring_room(&ring) == RING_SIZE);
+    CLAIM(tmini_ring_distance(tail, tmini_ring_tail(&ring)) == 0); /* Nothing was passed over. */
     REACHED();
 }
 

@@ -23,6 +23,9 @@ static void change(tmini_parser_t *parser)
     parser->awaited = awaited;
     parser->awaiting = any_bool();
     ring->limit += nondet_byte();
+    if (tmini_ring_is_closed(ring) && any_bool()) {
+        ring->limit += TMINI_RING_CLOSED;
+    }
 }
 
 tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uint8_t max_samples)

@@ -46,7 +46,8 @@ bool ring_is_sound(const tmini_ring_t *ring)
     if (is_dma(ring)) { /* Which may run away. */
         return ring->window == size / 2;
     }
-    return ring->window == size && tmini_ring_unread(ring) <= size;
+    return ring->window == size && tmini_ring_unread(ring) <= size &&
+           tmini_ring_ahead(ring) / TMINI_RING_CLOSED <= 1; /* It is closed once, or open. */
 }
 
 static uint8_t samples_in(const tmini_frame_t *frame)
