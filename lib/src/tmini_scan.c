@@ -36,10 +36,12 @@ static bool continues(const tmini_packet_t *packet, int32_t ahead, int32_t angle
            angle >= -JUMP_Q6;
 }
 
-static void add_up(uint16_t *total, size_t amount)
+/* One more, as far as it can count. */
+static void count_one(uint16_t *total)
 {
-    const size_t room = UINT16_MAX - (size_t)*total;
-    *total = (uint16_t)(*total + (amount < room ? amount : room));
+    if (*total < UINT16_MAX) {
+        (*total)++;
+    }
 }
 
 /* The scan ends with what has been received before `packet`, which begins `ahead` of it. It is
@@ -52,7 +54,7 @@ static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet, 
     const int32_t beyond = builder->swept_q6 + ahead - CIRCLE_Q6;
     const bool is_start = tmini_packet_is_start(packet);
     if (!is_start || packet->gap > 1 || ahead > JUMP_Q6) {
-        add_up(&scan->gaps, 1);
+        count_one(&scan->gaps);
     }
     scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - builder->errors_before);
     /* A start packet carries the frequency of the revolution before it (section 9.8). */
@@ -75,12 +77,14 @@ static void append_points(tmini_scan_builder_t *builder, const tmini_packet_t *p
     const size_t count = tmini_packet_points(packet, builder->filter, &scan->points[scan->count],
                                              (size_t)builder->capacity - scan->count);
     if (!tmini_frame_intact(packet->frame)) {
-        add_up(&scan->gaps, 1);
+        count_one(&scan->gaps);
         return;
     }
     scan->count = (uint16_t)(scan->count + count);
-    add_up(&scan->dropped, packet->count - count);
-    add_up(&scan->packets, 1);
+    count_one(&scan->packets);
+    for (size_t dropped = packet->count - count; dropped > 0; dropped--) {
+        count_one(&scan->dropped);
+    }
 }
 
 tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buffer,
@@ -102,7 +106,7 @@ void tmini_scan_discard(tmini_scan_builder_t *builder)
 
 void tmini_scan_refute(tmini_scan_builder_t *builder)
 {
-    add_up(&builder->scan.gaps, 1);
+    count_one(&builder->scan.gaps);
 }
 
 bool tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
@@ -117,7 +121,7 @@ bool tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet,
             return true;
         }
         if (packet->gap > 0 || ahead > JUMP_Q6) {
-            add_up(&builder->scan.gaps, 1);
+            count_one(&builder->scan.gaps);
         }
     } else if (is_start) {
         begin(builder, packet, now_ms);
