@@ -213,7 +213,7 @@ static void begin_candidate(tmini_parser_t *parser)
 
 /* -------------------------------------------------------------------- skipping and losing bytes */
 
-static void discard_skipped(tmini_parser_t *parser, size_t count)
+TMINI_NOINLINE static void discard_skipped(tmini_parser_t *parser, size_t count)
 {
     tmini_frame_t *const frame = &parser->frame;
     const size_t room = TMINI_GAP_UNKNOWN - (size_t)frame->gap;
@@ -250,7 +250,7 @@ static size_t intact_bytes(tmini_parser_t *parser)
         return ahead;
     }
     if (!tmini_ring_is_dma(ring)) {
-        return tmini_ring_unread(ring); /* It is closed. */
+        return ahead - TMINI_RING_CLOSED; /* It is closed. */
     }
     const size_t lost = ahead - ring->window;
     tmini_ring_discard(ring, lost);
@@ -265,10 +265,11 @@ static size_t intact_bytes(tmini_parser_t *parser)
 static bool pass_lost_bytes(tmini_parser_t *parser)
 {
     tmini_ring_t *const ring = parser->frame.ring;
-    if (!tmini_ring_is_closed(ring)) {
+    const size_t ahead = tmini_ring_ahead(ring);
+    if (ahead <= ring->window || tmini_ring_is_dma(ring)) {
         return false;
     }
-    const size_t unread = tmini_ring_unread(ring); /* Nothing is stored any more. */
+    const size_t unread = ahead - TMINI_RING_CLOSED; /* Nothing is stored any more. */
     if (unread == 0) {
         parser->frame.gap = TMINI_GAP_UNKNOWN;
         tmini_ring_open(ring);
