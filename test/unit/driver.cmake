@@ -13,11 +13,17 @@ foreach(test test_tmini test_command test_recovery test_monitor test_states test
     endif()
 endforeach()
 
-tmini_add_unit_test(test_effort
-    SOURCES test_effort.c ../support/rig.c
-    MOCKS ../support/port_functions.h
-    LIBRARIES tmini_test_support
-    NOT_ON int16)
+# Those with large rings.
+foreach(test test_effort test_pauses)
+    tmini_add_unit_test(${test}
+        SOURCES ${test}.c ../support/rig.c ../support/invariants.c
+        MOCKS ../support/port_functions.h
+        LIBRARIES tmini_test_support
+        NOT_ON int16)
+    if(TARGET ${test})
+        target_include_directories(${test} PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
+    endif()
+endforeach()
 
 # The driver before a lidar that turns, on a port that notes what is written.
 foreach(test test_honest_scans test_honest_commands test_real_bytes)

@@ -773,6 +773,18 @@ void test_a_read_back_that_differs_is_stepped_further(void)
     arrives_at(700);
 }
 
+/* A header that promises a packet of 250 bytes. */
+void test_a_packet_that_was_cut_off_between_two_steps_does_not_hide_the_next_reply(void)
+{
+    static const uint8_t header[] = {0xAA, 0x55, 0x00, 0x50, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00};
+
+    begins_to_set(700, 600);
+    steps(FASTER_ONE, 700);
+    rig_feed(header, sizeof header);
+    steps(GET_FREQUENCY, 700);
+    arrives_at(700);
+}
+
 /* 20 Hz; the lidar is made for 12. */
 void test_the_largest_plausible_frequency_is_reported(void)
 {
@@ -782,6 +794,17 @@ void test_the_largest_plausible_frequency_is_reported(void)
     rig_feed_frequency(2000);
     polls_to(TMINI_EVENT_FREQUENCY);
     TEST_ASSERT_EQUAL_UINT16(2000, tmini_frequency_chz(&rig.lidar));
+}
+
+/* 1 Hz. */
+void test_the_smallest_plausible_frequency_is_reported(void)
+{
+    rig_go_idle();
+    sends(GET_FREQUENCY);
+    begins(tmini_request_frequency(&rig.lidar));
+    rig_feed_frequency(100);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    TEST_ASSERT_EQUAL_UINT16(100, tmini_frequency_chz(&rig.lidar));
 }
 
 void test_an_absurd_frequency_fails_the_command(void)
@@ -827,6 +850,35 @@ void test_both_ends_of_the_frequency_range_are_accepted(void)
     arrives_at(1200);
 }
 
+/* ---- One command after the other ---- */
+
+void test_that_one_command_was_repeated_does_not_make_the_line_unsure_after_the_next(void)
+{
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_HEALTH);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_health(0, 0);
+    polls_to(TMINI_EVENT_HEALTH);
+    is_in(TMINI_STATE_UNKNOWN);
+    sends(STOP);
+    begins(tmini_request_health(&rig.lidar));
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_HEALTH);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_health(0, 0);
+    polls_to(TMINI_EVENT_HEALTH);
+    is_in(TMINI_STATE_IDLE);
+}
+
 /* ---- A port that is slow, or fails ---- */
 
 void test_what_the_port_does_not_take_is_offered_again_at_each_poll(void)
@@ -843,6 +895,16 @@ void test_what_the_port_does_not_take_is_offered_again_at_each_poll(void)
     polls_to(TMINI_EVENT_NONE);
     passes(50); /* From when the last byte has left. */
     polls_to(TMINI_EVENT_STOPPED);
+}
+
+void test_it_is_offered_again_even_if_nothing_has_happened_since(void)
+{
+    polls_to(TMINI_EVENT_NONE);
+    sends_both_taking(STOP, 1);
+    begins(tmini_stop(&rig.lidar));
+    sends_rest_taking(STOP, 1);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
 }
 
 void test_the_wait_for_a_quiet_line_begins_when_the_command_has_left(void)

@@ -5,6 +5,7 @@
  * the worst that can be sent. */
 
 #include "rig.h"
+#include "tmini_driver.h"
 
 #include "tmini/tmini_parser.h"
 #include "unity.h"
@@ -202,4 +203,16 @@ void test_a_poll_that_has_more_to_do_says_so_and_goes_on_with_the_next(void)
     }
     TEST_ASSERT_TRUE(polls > 20);
     TEST_ASSERT_EQUAL_UINT32(CANDIDATES, checksum_errors());
+}
+
+void test_a_command_given_up_does_not_end_what_a_poll_has_left_over(void)
+{
+    open_driver();
+    for (unsigned i = 0; i < 60; i++) {
+        rig_feed_packet(0, 1, 1000);
+    }
+    polls_to(TMINI_EVENT_MORE);
+    tmini_cancel(&rig.lidar);
+    (void)rig_drain();
+    TEST_ASSERT_EQUAL_UINT32(60, poll_counters().packets);
 }

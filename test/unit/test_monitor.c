@@ -56,6 +56,17 @@ void test_a_fault_is_cleared_by_two_trusted_turns_without_it(void)
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
 
+/* The second time only its first packets have come: what they say is not trusted. */
+void test_a_fault_seen_in_one_trusted_turn_and_one_that_is_not_is_not_reported(void)
+{
+    rig_go_scanning();
+    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
+    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0)); /* The first trusted one has ended. */
+    rig.crc ^= 1u;                                /* LastCRC is wrong. */
+    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0));
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+}
+
 void test_a_second_fault_is_reported_beside_the_first(void)
 {
     rig_go_scanning();

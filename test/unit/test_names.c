@@ -128,6 +128,6 @@ void test_a_text_that_does_not_fit_is_cut_off_and_nothing_is_written_behind_it(v
     (void)tmini_faults_text(0, text, 1);
     TEST_ASSERT_EQUAL_STRING("", text);
     text[0] = 'x';
-    (void)tmini_faults_text(0x22, text, 0);
+    TEST_ASSERT_EQUAL_PTR(text, tmini_faults_text(0x22, text, 0));
     TEST_ASSERT_EQUAL_INT('x', text[0]);
 }

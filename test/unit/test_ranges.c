@@ -107,6 +107,15 @@ void test_the_nearest_point_of_a_bin_counts(void)
     TEST_ASSERT_EQUAL_UINT8(5, intensities[4]);
 }
 
+void test_of_points_that_are_equally_near_the_first_counts(void)
+{
+    add(0, 500, 5);
+    add(64, 500, 6);
+    resample();
+    TEST_ASSERT_EQUAL_UINT16(500, ranges_mm[4]);
+    TEST_ASSERT_EQUAL_UINT8(5, intensities[4]);
+}
+
 void test_a_point_without_distance_is_no_range(void)
 {
     add(0, 0, 9);

@@ -223,6 +223,33 @@ void test_a_loss_before_a_whole_turn_goes_on_up_the_ladder(void)
     tries_with_a_reboot_in_vain(2000);
 }
 
+/* The turn lacks two bytes, but shows that there are ranges again. */
+void test_a_turn_that_is_not_whole_but_ends_a_fault_does_not_count_as_whole(void)
+{
+    rig_go_scanning();
+    for (unsigned i = 0; i < 3; i++) {
+        (void)rig_plain_turn_events(0);
+    }
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    finds_quiet_and_sends(START);
+    gets_no_reply();
+    tries_in_vain(500);
+    rig_feed_point_packet(1000);
+    rig_feed_start_packet(1000);
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_RECOVERED), rig_drain());
+    rig_feed_byte(0);
+    rig_feed_byte(0);
+    rig_feed_point_packet(1000);
+    rig_feed_start_packet(1000);
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED) | BIT(TMINI_EVENT_SCAN), rig_drain());
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    tries_with_a_reboot_in_vain(2000);
+}
+
 void test_a_pause_that_is_configured_longer_than_the_longest_is_cut(void)
 {
     tmini_timing_t timing = tmini_timing_default;
@@ -246,6 +273,26 @@ void test_the_longest_pause_there_is_can_be_configured(void)
     rig_go_backing_off();
     tries_in_vain(40000);
     pauses_and_stops(65535);
+}
+
+/* From 1 ms on: 2, 4, 8, … */
+void test_a_pause_doubles_as_often_as_it_can(void)
+{
+    tmini_timing_t timing = tmini_timing_default;
+
+    timing.back_off_ms = 1;
+    timing.back_off_max_ms = 65535;
+    rig.config.timing = &timing;
+    rig_init();
+    rig_go_backing_off();
+    for (unsigned failed = 1; failed < 16; failed++) {
+        if (failed % 3 == 0) {
+            tries_with_a_reboot_in_vain(1u << (failed - 1));
+        } else {
+            tries_in_vain(1u << (failed - 1));
+        }
+    }
+    pauses_and_stops(32768);
 }
 
 void test_no_pause_can_be_configured(void)
@@ -360,6 +407,7 @@ void test_packets_between_the_stop_and_a_quiet_line_are_not_yet_a_recovery(void)
     rig_feed_point_packet(1000);
     passes(50);
     is_in(TMINI_STATE_RECOVERING);
+    TEST_ASSERT_EQUAL_UINT16(0, counters().recoveries);
     polls_to(TMINI_EVENT_NONE);
     sends(START);
     polls_to(TMINI_EVENT_NONE);

@@ -54,6 +54,14 @@ void test_a_period_that_nobody_knows_is_0(void)
     TEST_ASSERT_EQUAL_UINT32(0, tmini_scan_period_ms(&scan));
 }
 
+/* 0.01 Hz. */
+void test_the_lowest_frequency_has_a_period_too(void)
+{
+    scan.complete = false;
+    scan.frequency_chz = 1;
+    TEST_ASSERT_EQUAL_UINT32(100000, tmini_scan_period_ms(&scan));
+}
+
 /* A quarter of 100 ms is 25,000 us. The start angle need not be 0 (section 9.8). */
 void test_a_points_time_goes_with_its_angle(void)
 {
@@ -75,6 +83,32 @@ void test_a_late_point_a_hair_beyond_the_circle_is_a_turn_later(void)
 {
     has_angles(10, 90 * DEGREE, 180 * DEGREE, 16);
     is_at(3, 100026);
+}
+
+/* What lies behind is the last quarter of the turn: more than 270 degrees. */
+void test_an_early_point_in_the_last_quarter_is_behind_the_first(void)
+{
+    has_angles(0, 270 * DEGREE, 280 * DEGREE, 300 * DEGREE);
+    is_at(1, 75000);
+    has_angles(0, 270 * DEGREE + 1, 280 * DEGREE, 300 * DEGREE);
+    is_at(1, 0);
+}
+
+/* What lies beyond is the first quarter of the turn: less than 90 degrees. 5759 + 23040 of 23040
+ * are 124,995 us. */
+void test_a_late_point_in_the_first_quarter_is_beyond_the_circle(void)
+{
+    has_angles(0, 1 * DEGREE, 90 * DEGREE, 90 * DEGREE - 1);
+    is_at(2, 25000);
+    is_at(3, 124995);
+}
+
+/* 24 / 23040 of 100 ms are 104 us. */
+void test_the_second_half_of_the_points_are_the_late_ones(void)
+{
+    has_angles(0, 24, 24, 24);
+    is_at(1, 104);
+    is_at(2, 100104);
 }
 
 void test_with_an_unknown_period_a_sample_takes_250_us(void)

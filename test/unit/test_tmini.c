@@ -549,6 +549,25 @@ void test_a_packet_that_comes_while_the_clock_is_read_has_the_time_of_that_readi
     TEST_ASSERT_EQUAL_UINT32(5166, tmini_scan(&rig.lidar)->end_ms);
 }
 
+static uint32_t clock_that_goes_on(void *context)
+{
+    (void)context;
+    rig.now_ms += 5;
+    return rig.now_ms;
+}
+
+void test_a_packet_has_the_time_of_the_poll_however_long_that_takes(void)
+{
+    rig_go_scanning();
+    feed_turn(700);
+    polls_to(TMINI_EVENT_NONE);
+    rig.now_ms = 5166;
+    rig_feed_start_packet(800);
+    rig.port.now_ms = clock_that_goes_on;
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT32(5171, tmini_scan(&rig.lidar)->end_ms);
+}
+
 void test_a_scan_is_valid_until_the_next_poll_whatever_is_fed(void)
 {
     rig_go_scanning();
@@ -674,6 +693,53 @@ void test_a_new_start_does_not_continue_the_scan_before_the_stop(void)
     TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&rig.lidar)->gaps);
 }
 
+/* A millisecond of garbage after the other, for 30 ms and as long as the packet's 22 bytes take at
+ * least, 1 ms. */
+static void packet_after_garbage(uint32_t ms, uint16_t gap)
+{
+    for (uint32_t i = 0; i < ms; i++) {
+        rig.now_ms += 1;
+        if (i < ms - 1) {
+            rig_feed_byte(0);
+            polls_to(TMINI_EVENT_NONE);
+        }
+    }
+    rig_feed_point_packet(1000);
+    (void)rig_drain();
+    TEST_ASSERT_EQUAL_UINT16(gap, tmini_packet(&rig.lidar)->gap);
+}
+
+static void begin_scan_with_pauses_of(uint16_t max_pause_ms)
+{
+    rig.timing.max_pause_ms = max_pause_ms;
+    rig_go_scanning();
+    for (unsigned i = 0; i < 2; i++) {
+        feed_turn(700);
+        (void)rig_drain();
+        rig.now_ms += 1;
+    }
+    rig_feed_point_packet(1000);
+    (void)rig_drain();
+}
+
+void test_a_packet_that_comes_in_time_has_a_gap_of_the_bytes_before_it(void)
+{
+    begin_scan_with_pauses_of(30);
+    packet_after_garbage(31, 30);
+}
+
+void test_a_packet_that_comes_too_late_has_an_unknown_gap_though_the_line_was_never_silent(void)
+{
+    begin_scan_with_pauses_of(30);
+    packet_after_garbage(32, TMINI_GAP_UNKNOWN);
+}
+
+void test_with_pauses_of_1_ms_likewise(void)
+{
+    begin_scan_with_pauses_of(1);
+    packet_after_garbage(3, TMINI_GAP_UNKNOWN);
+}
+
 /* ---- Streaming ---- */
 
 static void go_streaming(void)
@@ -730,51 +796,42 @@ void test_streaming_reports_faults_and_losses_as_well(void)
     polls_to(TMINI_EVENT_LOST);
 }
 
-/* Pauses of more than 30 ms are judged: what they may have cost is a gap before a packet. */
-static void go_streaming_without_pauses(void)
-{
-    rig.timing.max_pause_ms = 30;
-    go_streaming();
-    rig_feed_packet(0x79, 1, 700);
-    polls_to(TMINI_EVENT_STARTED);
-    polls_to(TMINI_EVENT_PACKET);
-    polls_to(TMINI_EVENT_NONE);
-}
-
-static void two_packets_come_with_gaps(uint16_t before_first, uint16_t before_second)
-{
-    rig_feed_point_packet(1000);
-    rig_feed_point_packet(1000);
-    polls_to(TMINI_EVENT_PACKET);
-    TEST_ASSERT_EQUAL_UINT16(before_first, tmini_packet(&rig.lidar)->gap);
-    polls_to(TMINI_EVENT_PACKET);
-    TEST_ASSERT_EQUAL_UINT16(before_second, tmini_packet(&rig.lidar)->gap);
-    polls_to(TMINI_EVENT_NONE);
-}
-
-/* The line was watched: what is missing came before those bytes, or among them. */
-void test_after_a_pause_all_packets_that_come_at_once_are_doubtful_and_no_others(void)
-{
-    go_streaming_without_pauses();
-    passes(50);
-    two_packets_come_with_gaps(TMINI_GAP_UNKNOWN, TMINI_GAP_UNKNOWN);
-    rig.now_ms += 2;
-    two_packets_come_with_gaps(0, 0);
-}
-
-/* A layer below may have held the bytes: what is missing may have come behind them as well. */
-void test_after_a_pause_between_polls_the_first_packet_behind_is_doubtful_too(void)
-{
-    go_streaming_without_pauses();
-    rig.now_ms += 50;
-    two_packets_come_with_gaps(TMINI_GAP_UNKNOWN, TMINI_GAP_UNKNOWN);
-    rig.now_ms += 2;
-    two_packets_come_with_gaps(TMINI_GAP_UNKNOWN, 0);
-    rig.now_ms += 2;
-    two_packets_come_with_gaps(0, 0);
-}
-
 /* ---- Results ---- */
+
+void test_the_answer_to_another_question_leaves_the_health_as_it_was_told(void)
+{
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    rig_feed_health(2, 0x1234);
+    polls_to(TMINI_EVENT_HEALTH);
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_FREQUENCY);
+    begins(tmini_request_frequency(&rig.lidar));
+    rig_feed_frequency(600);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    TEST_ASSERT_EQUAL_HEX8(0x02, tmini_health(&rig.lidar)->faults);
+    TEST_ASSERT_EQUAL_HEX16(0x1234, tmini_health(&rig.lidar)->error_code);
+}
+
+/* The first turn is not complete, of the second not all has come: a range they have all the same. */
+void test_ranges_in_two_incomplete_turns_clear_a_data_fault(void)
+{
+    rig_go_scanning();
+    for (unsigned i = 0; i < 3; i++) {
+        (void)rig_plain_turn_events(0);
+    }
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
+    for (unsigned i = 0; i < 2; i++) {
+        rig_feed_byte(0);
+        rig_feed_byte(0);
+        rig_feed_point_packet(1000);
+        rig_feed_start_packet(0);
+        (void)rig_drain();
+    }
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+}
 
 void test_what_the_lidar_tells_of_itself_while_scanning_is_known_once_a_turn_was_trusted(void)
 {
