@@ -40,7 +40,9 @@ size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
         const size_t to_end = ring->size - at;
         const size_t first = taken < to_end ? taken : to_end;
         memcpy(&ring->memory[at], bytes, first);
-        memcpy(ring->memory, &bytes[first], taken - first);
+        if (first < taken) {
+            memcpy(ring->memory, &bytes[first], taken - first);
+        }
         tmini_store(&ring->head, head + taken);
     }
     if (taken < count) {
