@@ -56,7 +56,7 @@ static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
 
 /* The same of samples in one piece, most of them by blocks. An address that is `ahead` above a
  * multiple of 4 becomes one by so many samples of three bytes. */
-static unsigned xor_piece(const uint8_t *sample, size_t count)
+TMINI_NOINLINE static unsigned xor_piece(const uint8_t *sample, size_t count)
 {
     unsigned sum = 0;
     const size_t ahead = (uintptr_t)sample & (TMINI_WORD_ALIGNMENT - 1);
