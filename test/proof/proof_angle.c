@@ -2,7 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* The angle of each sample is the exact rational value of section 5, rounded to nearest, halves up:
- * for every FSA, LSA and index; a number of samples at a time, SAMPLES. */
+ * for every FSA and LSA; a number of samples at a time, SAMPLES, and of those an index at a time,
+ * INDEX: with both known, nothing but known numbers is multiplied or divided by. */
 
 #include "proof.h"
 
@@ -21,14 +22,14 @@ void prove_angle(void)
     tmini_point_t point;
     const uint16_t fsa = nondet_half();
     const uint16_t lsa = nondet_half();
-    const uint32_t index = nondet_byte();
+    const uint32_t index = INDEX;
     frame.header[1] = SAMPLES;
     frame.header[2] = (uint8_t)fsa;
     frame.header[3] = (uint8_t)(fsa >> 8);
     frame.header[4] = (uint8_t)lsa;
     frame.header[5] = (uint8_t)(lsa >> 8);
-    ASSUME(index < SAMPLES);
     tmini_packet_open(&packet, &frame);
+    CLAIM(!tmini_packet_point(&packet, SAMPLES, &point));
     (void)tmini_packet_point(&packet, index, &point);
     const uint32_t from = angle_of(fsa);
     const uint32_t to = angle_of(lsa) + (angle_of(lsa) < from ? 23040 : 0);

@@ -41,11 +41,11 @@ ANY_LIDAR = "ring of 64 bytes; parser, packet, scan, ct by contract"
 class Proof:
     """One function: what it is made of, how far its loops go, and how the library is broken."""
 
-    def __init__(self, name, files, sources, unwind, bounds, broken, loops="", stubs=(), defines=(),
+    def __init__(self, name, files, sources, unwind, bounds, broken, loops="", stubs=(), cases=((),),
                  options=(), function=None, slow=False, inserted=(), replaced=()):
         self.name, self.files, self.sources, self.unwind = name, files, sources, unwind
         self.bounds, self.broken, self.loops, self.stubs = bounds, broken, loops, stubs
-        self.defines, self.options, self.slow = defines, options, slow
+        self.cases, self.options, self.slow = cases, options, slow
         self.inserted, self.replaced = inserted, replaced
         self.function = "prove_" + (function or name)
 
@@ -66,8 +66,9 @@ def scan(name, *broken):
 
 def angle(samples, *broken, **more):
     return Proof(f"angle_{samples}", ["proof_angle.c"], FRAME + ["tmini_packet.c"], 4,
-                 f"all FSA, LSA; {samples} samples", broken, loops="any_early_ring.0:33",
-                 defines=[f"SAMPLES={samples}u"], function="angle", **more)
+                 f"all FSA, LSA; {samples} samples, one at a time", broken, loops="any_early_ring.0:33",
+                 cases=[[f"SAMPLES={samples}u", f"INDEX={index}u"] for index in range(samples)],
+                 function="angle", **more)
 
 
 def use(name, bounds, *broken, **more):
@@ -112,7 +113,8 @@ PROOFS = [
     parser("abandon", "lib/src/tmini_parser.c", "if (unread > 0 && unread < parser->need)",
            "if (unread < parser->need)"),
     parser("next", "lib/src/tmini_parser.c",
-           "        if (verdict == NOT_A_FRAME) {\n            skip(parser, unread);\n        } else if", "        if", slow=True,
+           "        if (verdict == NOT_A_FRAME) {\n            skip(parser, unread);\n        } else if", "        if",
+           slow=True,
            replaced=["classify:any_classify", "skip:any_skip"],
            loops="tmini_parser_next_after.0:3",
            inserted=("lib/src/tmini_parser.c", "    do {\n        const size_t unread = intact_bytes(parser);",
@@ -195,12 +197,12 @@ class Checker:
         if done.returncode != 0:
             sys.exit(f"{command[0]} ended with {done.returncode}\n{done.stdout}{done.stderr}")
 
-    def check(self, proof):
-        """Returns the number of properties and those that failed."""
+    def check(self, proof, case):
+        """Returns the number of properties and those that failed; `case` are macros."""
         program = f"{self.folder}/program"
         folders = [option for folder in FOLDERS for option in ("-I", f"{self.folder}/{folder}")]
         defines = ["-D", 'TMINI_ATOMIC_HEADER="proof_atomic.h"']
-        for define in proof.defines:
+        for define in case:
             defines += ["-D", define]
         files = [f"{self.folder}/test/proof/{name}" for name in ["any.c"] + proof.files]
         files += [f"{self.folder}/test/support/invariants.c"]
@@ -232,13 +234,18 @@ def prove(checker, proof, broken):
         checker.replace(*proof.broken)
     if proof.inserted:
         checker.replace(*proof.inserted)
-    count, failures = checker.check(proof)
-    others = [failure for failure in failures if not is_end(failure)]
+    total, complaints = 0, []
+    for case in proof.cases:
+        count, failures = checker.check(proof, case)
+        total += count
+        complaints += [failure for failure in failures if not is_end(failure)]
+        if broken and complaints:
+            return total, True, []
+        if not broken and not any(is_end(failure) for failure in failures):
+            complaints.append("the end is not reached: nothing was proved")
     if broken:
-        return count, len(others) > 0, [] if others else ["nothing failed although the library is broken"]
-    if len(others) == len(failures):
-        others.append("the end is not reached: nothing was proved")
-    return count, not others, others
+        return total, False, ["nothing failed although the library is broken"]
+    return total, not complaints, complaints
 
 
 def main():
