@@ -25,7 +25,14 @@
 #define FEW_POINTS 100u
 
 /* Bits of the first byte; two more are the filter's. */
-enum { DMA = 1, STREAMING = 2, NO_RECOVERY = 16, TRUE_LIDAR = 32, MANY_POINTS = 64 };
+enum {
+    DMA = 1,
+    STREAMING = 2,
+    NO_RECOVERY = 16,
+    TRUE_LIDAR = 32,
+    MANY_POINTS = 64,
+    CT_INFORMATION = 128
+};
 
 static struct {
     const uint8_t *data;
@@ -36,8 +43,8 @@ static struct {
     uint32_t fed;
     bool half_sent;
     bool dma;
-    bool is_true;      /* The bytes are the turning lidar's, */
-    uint8_t reply[16]; /* which answers next with this, */
+    bool is_true;                     /* The bytes are the turning lidar's, */
+    uint8_t reply[TURNING_REPLY_MAX]; /* which answers next with this, */
     size_t reply_size;
     unsigned surprises;  /* and sends as many packets while the clock is read, */
     bool surprise_first; /* before it or after. */
@@ -156,12 +163,16 @@ static void command(uint8_t which)
     };
     const tmini_state_t before = tmini_state(&world.lidar);
     tmini_status_t status;
-    if (which % 7 == 6) {
+    if (which % 8 == 7) {
+        tmini_cancel(&world.lidar);
+        return;
+    }
+    if (which % 8 == 6) {
         status = tmini_set_frequency(&world.lidar, (uint16_t)(600 + 10 * (take() % 61)));
     } else {
-        status = commands[which % 7](&world.lidar);
+        status = commands[which % 8](&world.lidar);
     }
-    if (before == TMINI_STATE_SCANNING && which % 7 != 1) {
+    if (before == TMINI_STATE_SCANNING && which % 8 != 1) {
         demand(status == TMINI_ERROR_STATE);
     }
 }
@@ -197,6 +208,30 @@ static void receive_packet(uint8_t ct, uint8_t samples)
     }
 }
 
+/* The same for replies: of each shape that there is, with any content. */
+static void receive_reply(uint8_t shape)
+{
+    static const uint8_t headers[][7] = {{0xA5, 0x5A, 5, 0, 0, 0x40, 0x81},
+                                         {0xA5, 0x5A, 20, 0, 0, 0, 0x04},
+                                         {0xA5, 0x5A, 3, 0, 0, 0, 0x06},
+                                         {0xA5, 0x5A, 4, 0, 0, 0, 0x04}};
+    const uint8_t *const header = headers[shape % 4u];
+    for (size_t i = 0; i < sizeof headers[0]; i++) {
+        receive_byte(header[i]);
+    }
+    receive(shape % 4u == 0 ? 0 : header[2]);
+}
+
+/* What may be asked for at any time. */
+static void look_around(void)
+{
+    tmini_ct_info_t info;
+    tmini_ct_info(&world.lidar, &info);
+    demand(tmini_faults(&world.lidar) <= TMINI_FAULT_MASK);
+    demand(tmini_info(&world.lidar) != NULL && tmini_health(&world.lidar) != NULL);
+    demand(tmini_frequency_chz(&world.lidar) <= 2000);
+}
+
 static void poll_events(uint8_t times)
 {
     for (unsigned i = 0; i <= times % 8u; i++) {
@@ -211,6 +246,7 @@ static void poll_events(uint8_t times)
         if (event == TMINI_EVENT_COMMAND_FAILED) {
             demand(tmini_command_error(&world.lidar) < 0);
         }
+        look_around();
     }
 }
 
@@ -242,6 +278,9 @@ static void act(void)
         break;
     case 4:
         world.write_behaviour = action / 8 % 4 - 1;
+        break;
+    case 5:
+        receive_reply(action / 8);
         break;
     default:
         poll_events(action / 8);
@@ -307,9 +346,9 @@ static void act_truly(void)
 }
 
 /* It has been started, scans, and goes on with this input. */
-static void start_truly(void)
+static void start_truly(bool ct_information)
 {
-    turning_begin();
+    turning_begin(ct_information);
     (void)tmini_start(&world.lidar);
     poll_events(1);
     world.now_ms += 100; /* The line is quiet. */
@@ -346,7 +385,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     };
     demand(tmini_init(&world.lidar, &config) == TMINI_OK);
     if (world.is_true) {
-        start_truly();
+        start_truly((setup & CT_INFORMATION) != 0);
     }
     while (world.left > 0) {
         if (world.is_true) {

@@ -6,17 +6,20 @@
 # sanitizers:
 #
 #   test/fuzz/run.sh [SECONDS]      for each target; 60 unless given
+#   test/fuzz/run.sh --keep         puts what was collected, minimised, into test/fuzz/corpus_….txt
+#   test/fuzz/run.sh --coverage     what of lib/ the kept inputs reach
 #
 # What it finds lies in build-fuzz/; give that file to build-fuzz/fuzz_… to see it again. The inputs
-# that it collected stay in build-fuzz/corpus_… and are where the next run goes on.
+# that it collected stay in build-fuzz/corpus_… and are where the next run goes on; the first one
+# begins with those that are kept, an input a line, in base64.
 
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
-seconds=${1:-60}
 support=$root/test/support
 build=$root/build-fuzz
 compiler=${TMINI_FUZZ_CC:-clang}
+action=${1:-60}
 
 if ! echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' |
     "$compiler" -x c -fsanitize=fuzzer,address - -o /dev/null 2>/dev/null; then
@@ -24,23 +27,82 @@ if ! echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' |
     exit 0
 fi
 
-# fuzz TARGET SOURCE…
+# sources TARGET: what it consists of, a file a line.
+sources() {
+    printf '%s\n' "$root/test/fuzz/$1.c" "$support/invariants.c" "$support/encoder.c" \
+        "$support/reference_decoder.c" "$root"/lib/src/*.c
+    case $1 in
+        fuzz_parser) printf '%s\n' "$support/reference_scans.c" "$support/random.c" ;;
+        *) printf '%s\n' "$root/test/fuzz/turning_lidar.c" ;;
+    esac
+}
+
+# compile PROGRAM TARGET FLAG…
+compile() {
+    program=$1
+    target=$2
+    shift 2
+    sources "$target" | tr '\n' '\0' | xargs -0 "$compiler" -std=c99 -g -O1 -Wall -Wextra "$@" \
+        -I"$root/lib/include" -I"$root/lib/src" -I"$support" -o "$build/$program"
+}
+
+# unpack TARGET: the kept inputs, into its corpus.
+unpack() {
+    mkdir -p "$build/corpus_$1"
+    count=0
+    while read -r line; do
+        count=$((count + 1))
+        echo "$line" | base64 -d >"$build/corpus_$1/kept_$count"
+    done <"$root/test/fuzz/corpus_$1.txt"
+}
+
 fuzz() {
-    target=$1
-    shift
-    "$compiler" -std=c99 -g -O1 -Wall -Wextra -fsanitize=fuzzer,address,undefined \
-        -fno-sanitize-recover=all -I"$root/lib/include" -I"$root/lib/src" -I"$support" \
-        "$root/test/fuzz/$target.c" "$support/invariants.c" "$support/encoder.c" \
-        "$support/reference_decoder.c" "$@" "$root"/lib/src/*.c -o "$build/$target"
-    mkdir -p "$build/corpus_$target"
+    compile "$1" "$1" -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all
+    unpack "$1"
     status=0
-    (cd "$build" && exec "./$target" -max_total_time="$seconds" -max_len=4096 \
-        -print_final_stats=1 -verbosity=0 "corpus_$target") >"$build/$target.log" 2>&1 || status=$?
-    grep -E 'stat::number_of_executed|ERROR|SUMMARY|Test unit' "$build/$target.log"
-    [ "$status" -eq 0 ] || { echo "$target: found something, see $build/$target.log"; exit 1; }
+    (cd "$build" && exec "./$1" -max_total_time="$action" -max_len=4096 \
+        -print_final_stats=1 -verbosity=0 "corpus_$1") >"$build/$1.log" 2>&1 || status=$?
+    grep -E 'stat::number_of_executed|ERROR|SUMMARY|Test unit' "$build/$1.log"
+    [ "$status" -eq 0 ] || { echo "$1: found something, see $build/$1.log"; exit 1; }
+}
+
+# Of inputs that reach the same edges of the program, the shortest.
+keep() {
+    rm -rf "$build/kept"
+    mkdir -p "$build/kept"
+    (cd "$build" && "./$1" -merge=1 -use_counters=0 -max_len=4096 kept "corpus_$1") \
+        >"$build/$1.log" 2>&1 || { tail "$build/$1.log"; exit 1; }
+    for input in "$build"/kept/*; do
+        base64 -w 0 "$input"
+        echo
+    done >"$root/test/fuzz/corpus_$1.txt"
+    wc -lc "$root/test/fuzz/corpus_$1.txt"
+}
+
+# Compiled without sanitizers, with counters.
+cover() {
+    compile "cover_$1" "$1" -fsanitize=fuzzer -fprofile-instr-generate -fcoverage-mapping
+    rm -rf "$build/corpus_$1"
+    unpack "$1"
+    LLVM_PROFILE_FILE=$build/$1.profraw "$build/cover_$1" "$build/corpus_$1"/* >"$build/$1.log" 2>&1
 }
 
 mkdir -p "$build"
-fuzz fuzz_parser "$support/reference_scans.c" "$support/random.c"
-fuzz fuzz_driver "$root/test/fuzz/turning_lidar.c"
-echo "nothing found"
+case $action in
+    --keep)
+        keep fuzz_parser
+        keep fuzz_driver
+        ;;
+    --coverage)
+        cover fuzz_parser
+        cover fuzz_driver
+        llvm-profdata merge -o "$build/profile" "$build"/fuzz_*.profraw
+        llvm-cov report "$build/cover_fuzz_driver" -object "$build/cover_fuzz_parser" \
+            -instr-profile="$build/profile" "$root"/lib
+        ;;
+    *)
+        fuzz fuzz_parser
+        fuzz fuzz_driver
+        echo "nothing found"
+        ;;
+esac

@@ -18,6 +18,9 @@
 
 static struct {
     bool scans;
+    bool ct_information;
+    uint8_t crc;
+    uint32_t frequency_chz;
     uint16_t revolution;
     unsigned packet; /* Of it, to come next. */
     uint8_t received[RECEIVED_MAX];
@@ -25,23 +28,53 @@ static struct {
     const char *wrong;
 } lidar;
 
-void turning_begin(void)
+void turning_begin(bool ct_information)
 {
     lidar.scans = false;
+    lidar.ct_information = ct_information;
+    lidar.crc = 0;
+    lidar.frequency_chz = 600;
     lidar.revolution = 0;
     lidar.packet = PACKETS - 1;
     lidar.received_count = 0;
     lidar.wrong = NULL;
 }
 
+static size_t step_frequency(int32_t chz, uint8_t *reply)
+{
+    const int32_t wanted = (int32_t)lidar.frequency_chz + chz;
+    lidar.frequency_chz = (uint32_t)(wanted < 600 ? 600 : wanted > 1200 ? 1200 : wanted);
+    return encode_frequency_reply(reply, lidar.frequency_chz);
+}
+
 size_t turning_command(uint8_t code, uint8_t *reply)
 {
-    if (code == 0x60) {
+    static const encode_information_t information = {.model = 151, .serial = {2, 0, 2, 6}};
+    if (lidar.scans) {
+        lidar.scans = code != 0x65 && code != 0x40;
+        return 0;
+    }
+    switch (code) {
+    case 0x60:
         lidar.scans = true;
         return encode_scan_reply(reply);
+    case 0x90:
+        return encode_information_reply(reply, &information);
+    case 0x92:
+        return encode_health_reply(reply, 0, 0);
+    case 0x0D:
+        return step_frequency(0, reply);
+    case 0x09:
+        return step_frequency(10, reply);
+    case 0x0A:
+        return step_frequency(-10, reply);
+    case 0x0B:
+        return step_frequency(100, reply);
+    case 0x0C:
+        return step_frequency(-100, reply);
+    default:
+        return 0;
     }
-    lidar.scans = lidar.scans && code != 0x65 && code != 0x40;
-    return 0;
 }
 
 static unsigned samples_of(unsigned packet)
@@ -49,12 +82,19 @@ static unsigned samples_of(unsigned packet)
     return packet == 0 ? 1 : packet == PACKETS - 1 ? LAST_SAMPLES : 40;
 }
 
+static uint8_t ct_of(unsigned packet)
+{
+    static const encode_turn_t turn = {
+        .frequency_dhz = 61, .user_major = 1, .hardware = 1, .firmware_major = 1, .year = 2026};
+    return packet == 0 || lidar.ct_information ? encode_ct(&turn, packet) : 0;
+}
+
 static size_t make_packet(uint8_t *out, unsigned packet, uint16_t revolution)
 {
     encode_sample_t samples[40];
     const unsigned count = samples_of(packet);
     const unsigned before = packet == 0 ? 0 : 1 + 40 * (packet - 1);
-    const encode_packet_t content = {.ct = packet == 0 ? 61 * 2 + 1 : 0,
+    const encode_packet_t content = {.ct = ct_of(packet),
                                      .lsn = (uint8_t)count,
                                      .first_q6 = (uint16_t)(before * STEP_Q6),
                                      .last_q6 = (uint16_t)((before + count - 1) * STEP_Q6),
@@ -75,7 +115,10 @@ size_t turning_packet(uint8_t *out, uint32_t *now_ms)
     if (lidar.packet == 0) {
         lidar.revolution = (uint16_t)((revolution + 1) % 8192);
     }
-    return lidar.scans ? make_packet(out, packet, revolution) : 0;
+    const size_t guard = packet == 0 && lidar.ct_information ? 1 : 0;
+    out[0] = lidar.crc;
+    lidar.crc = encode_crc8(packet == 0 ? 0 : lidar.crc, ct_of(packet));
+    return lidar.scans ? guard + make_packet(out + guard, packet, revolution) : 0;
 }
 
 bool turning_received(const uint8_t *bytes, size_t count)

@@ -14,13 +14,15 @@
 
 #include "tmini/tmini_scan.h"
 
-#define TURNING_PACKET_MAX 130u
+#define TURNING_PACKET_MAX 131u /* With LastCRC. */
+#define TURNING_REPLY_MAX 27u
 #define TURNING_POINTS 658u /* Of a revolution. */
 
-/* Switched on; it does not scan yet. */
-void turning_begin(void);
+/* Switched on; it does not scan yet. With CT information and LastCRC (section 7), or neither. */
+void turning_begin(bool ct_information);
 
-/* The code of a command has come. Returns the reply's size, 0 if there is none. */
+/* The code of a command has come. Returns the reply's size, 0 if there is none: it ignores all but
+ * stop and reboot while it scans. */
 size_t turning_command(uint8_t code, uint8_t *reply);
 
 /* Puts the packet that it sends next to `out`, and goes on; returns its size, 0 if it does not
