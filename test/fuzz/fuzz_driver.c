@@ -17,7 +17,7 @@
 #include <string.h>
 
 #include "invariants.h"
-#include "tmini/tmini.h"
+#include "tmini_driver.h"
 #include "turning_lidar.h"
 
 #define RX_SIZE 512u

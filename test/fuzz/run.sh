@@ -42,7 +42,7 @@ compile() {
     program=$1
     target=$2
     shift 2
-    sources "$target" | tr '\n' '\0' | xargs -0 "$compiler" -std=c99 -g -O1 -Wall -Wextra "$@" \
+    sources "$target" | tr '\n' '\0' | xargs -0 "$compiler" -std=c99 -g -O1 -Wall -Wextra -Werror "$@" \
         -I"$root/lib/include" -I"$root/lib/src" -I"$support" -o "$build/$program"
 }
 
