@@ -579,7 +579,7 @@ static const struct {
 int main(int argc, char **argv)
 {
     const bool is_long = argc > 1 && strcmp(argv[1], "--long") == 0;
-    const bounds_t by_cpu = {is_long ? 4 : 2, {is_long ? 7 : 5, is_long ? 9 : 7}, false};
+    const bounds_t by_cpu = {is_long ? 4 : 2, {is_long ? 6 : 5, is_long ? 8 : 7}, false};
     const bounds_t by_dma = {4, {is_long ? 10 : 8, is_long ? 5 : 4}, true};
     bool is_right = true;
     if (argc > (is_long ? 2 : 1)) {

@@ -190,7 +190,7 @@ class Checker:
             file.write(text.replace(old, new))
 
     def call(self, *command):
-        return subprocess.run(["nice", *command], capture_output=True, text=True, check=False)
+        return subprocess.run(["nice", "-n", "19", *command], capture_output=True, text=True, check=False)
 
     def demand(self, *command):
         done = self.call(*command)

@@ -210,6 +210,27 @@ static bool phase_fits(const tmini_t *lidar)
     }
 }
 
+/* The event with which the user's command ends well is that of its operation. */
+static bool end_event_fits(const tmini_t *lidar)
+{
+    switch (lidar->command.operation) {
+    case TMINI_COMMAND_START:
+        return lidar->end_event == TMINI_EVENT_STARTED;
+    case TMINI_COMMAND_STOP:
+        return lidar->end_event == TMINI_EVENT_STOPPED;
+    case TMINI_COMMAND_GET_INFO:
+        return lidar->end_event == TMINI_EVENT_INFO;
+    case TMINI_COMMAND_GET_HEALTH:
+        return lidar->end_event == TMINI_EVENT_HEALTH;
+    case TMINI_COMMAND_GET_FREQUENCY:
+        return lidar->end_event == TMINI_EVENT_FREQUENCY;
+    case TMINI_COMMAND_REBOOT:
+        return lidar->end_event == TMINI_EVENT_REBOOTED;
+    default:
+        return false;
+    }
+}
+
 static bool state_fits(const tmini_t *lidar)
 {
     const uint8_t operation = lidar->command.operation;
@@ -221,12 +242,14 @@ static bool state_fits(const tmini_t *lidar)
     case TMINI_STATE_IDLE:
         return phase == PHASE_IDLE;
     case TMINI_STATE_BUSY:
-        return operation != TMINI_COMMAND_STOP && operation != TMINI_COMMAND_START &&
-               phase >= PHASE_QUIESCING && (!is_waiting || operation == TMINI_COMMAND_REBOOT);
+        return end_event_fits(lidar) && operation != TMINI_COMMAND_STOP &&
+               operation != TMINI_COMMAND_START && phase >= PHASE_QUIESCING &&
+               (!is_waiting || operation == TMINI_COMMAND_REBOOT);
     case TMINI_STATE_STOPPING:
-        return operation == TMINI_COMMAND_STOP && phase == PHASE_QUIESCING;
+        return end_event_fits(lidar) && operation == TMINI_COMMAND_STOP && phase == PHASE_QUIESCING;
     case TMINI_STATE_STARTING:
-        return operation == TMINI_COMMAND_START && phase >= PHASE_QUIESCING && !is_waiting;
+        return end_event_fits(lidar) && operation == TMINI_COMMAND_START &&
+               phase >= PHASE_QUIESCING && !is_waiting;
     case TMINI_STATE_SCANNING:
         return is_waiting && lidar->command.unsent == 0;
     case TMINI_STATE_RECOVERING:
