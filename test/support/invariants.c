@@ -265,6 +265,7 @@ static bool command_is_sound(const tmini_command_t *command)
     return is_operation(command->operation) && command->unsent <= (command->sync_sent ? 1 : 2) &&
            (command->sync_sent || command->unsent != 1) &&
            (command->unsent == 0 || (is_code(command->code) && command->phase > PHASE_IDLE)) &&
+           (command->timeout_ms == 0 || command->phase > PHASE_IDLE) &&
            command->steps <= STEPS_MAX && command->frequency_chz <= PLAUSIBLE_CHZ_MAX &&
            (command->target_chz == 0 || (command->target_chz >= TMINI_FREQUENCY_MIN_CHZ &&
                                          command->target_chz <= TMINI_FREQUENCY_MAX_CHZ));
