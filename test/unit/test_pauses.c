@@ -189,6 +189,19 @@ void test_more_bytes_than_the_wire_can_have_brought_were_held(void)
     two_packets_come_of_which_doubtful_are(0);
 }
 
+/* Of 62 ms these bytes explain 32: the others count for the next ones, which explain 3. */
+void test_what_held_bytes_do_not_explain_counts_for_the_next_ones(void)
+{
+    for (unsigned more_ms = 3; more_ms <= 4; more_ms++) {
+        nothing_comes_for(62);
+        feed_packets(5, 24);
+        doubtful_are_the_first(0, 5);
+        rig.now_ms += more_ms;
+        feed_packets(2, 4);
+        doubtful_are_the_first(more_ms == 3 ? 0 : 2, 2);
+    }
+}
+
 /* Three packets of 31 samples and one of 30. */
 void test_409_bytes_the_wire_can_have_brought(void)
 {

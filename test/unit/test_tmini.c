@@ -815,7 +815,8 @@ void test_the_answer_to_another_question_leaves_the_health_as_it_was_told(void)
     TEST_ASSERT_EQUAL_HEX16(0x1234, tmini_health(&rig.lidar)->error_code);
 }
 
-/* The first turn is not complete, of the second not all has come: a range they have all the same. */
+/* The first turn is not complete, of the second not all has come: they have a range all the
+ * same. */
 void test_ranges_in_two_incomplete_turns_clear_a_data_fault(void)
 {
     rig_go_scanning();

@@ -772,6 +772,24 @@ void test_an_overflow_of_an_empty_driver_is_a_gap_at_once(void)
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
 }
 
+static esp_err_t tell_nothing(uart_port_t uart, size_t *size, int calls)
+{
+    (void)uart;
+    (void)size;
+    (void)calls;
+    return ESP_FAIL;
+}
+
+void test_an_overflow_of_a_driver_that_does_not_tell_what_it_holds_is_a_gap_at_once(void)
+{
+    static const uint8_t bytes[50];
+    start_without_task();
+    uart_get_buffered_data_len_Stub(tell_nothing);
+    hold(bytes, sizeof bytes);
+    TEST_ASSERT_EQUAL_UINT(0, receive_event(UART_FIFO_OVF));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
+}
+
 void test_a_gap_that_the_ring_has_no_room_to_reach_is_not_forgotten(void)
 {
     static const uint8_t bytes[600];

@@ -317,6 +317,11 @@ unsigned pico_model_claimed_channels(void)
     return claimed;
 }
 
+bool pico_model_is_claimed(unsigned channel)
+{
+    return chip.channels[channel].claimed;
+}
+
 void pico_model_take_channels(unsigned count)
 {
     for (unsigned i = 0; i < count; i++) {
@@ -519,6 +524,11 @@ static void handle_for_somebody_else(void) {}
 void pico_model_take_interrupt(unsigned number)
 {
     chip.handlers[number] = handle_for_somebody_else;
+}
+
+bool pico_model_is_interrupt_enabled(unsigned number)
+{
+    return chip.irq_enabled[number];
 }
 
 bool pico_model_has_handler(void)

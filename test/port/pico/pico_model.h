@@ -74,6 +74,8 @@ void pico_model_set_baud_error(int permille);
 void pico_model_fill_transmitter(unsigned places_left);
 
 unsigned pico_model_claimed_channels(void);
+bool pico_model_is_claimed(unsigned channel);
+bool pico_model_is_interrupt_enabled(unsigned number);
 bool pico_model_has_handler(void);
 bool pico_model_asks_for_interrupts(void);
 

@@ -247,6 +247,23 @@ void test_start_takes_what_it_needs_or_nothing(void)
     pico_model_begin(NULL);
 }
 
+void test_channels_and_interrupts_of_others_stay_theirs(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&board, &wiring));
+    pico_model_take_channels(1);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&board, &lidar));
+    tmini_pico_stop(&board);
+    TEST_ASSERT_TRUE(pico_model_is_claimed(0));
+    TEST_ASSERT_EQUAL_UINT(1, pico_model_claimed_channels());
+    pico_model_begin(NULL);
+    receive_by_interrupt();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&board, &lidar));
+    TEST_ASSERT_TRUE(pico_model_is_interrupt_enabled(UART1_IRQ));
+    tmini_pico_stop(&board);
+    TEST_ASSERT_FALSE(pico_model_is_interrupt_enabled(UART1_IRQ)); /* Who is next may rely on it. */
+}
+
 void test_starting_twice_is_refused_and_changes_nothing(void)
 {
     start();

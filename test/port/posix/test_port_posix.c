@@ -127,6 +127,13 @@ void test_a_lidar_can_be_behind_a_socket(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_start(&serial, &lidar)); /* Refused. */
 }
 
+/* A port of one digit. */
+void test_an_address_where_nobody_listens_is_one_all_the_same(void)
+{
+    tmini_posix_init(&serial, "tcp:127.0.0.1:1");
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_start(&serial, NULL));
+}
+
 void test_an_address_that_is_none_is_told(void)
 {
     static const char *const wrong[] = {"tcp:", "tcp:host", "tcp::1",

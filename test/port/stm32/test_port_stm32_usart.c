@@ -377,6 +377,33 @@ void test_started_again_dma_begins_at_the_buffers_start(void)
     TEST_ASSERT_EQUAL_UINT32(65, packets());
 }
 
+void test_started_again_an_error_that_still_shows_is_counted_anew(void)
+{
+    start_dma();
+    interrupt_with(FRAMING_ERROR | RECEIVE_NOT_EMPTY, 0);
+    TEST_ASSERT_EQUAL_UINT32(1, port.framing_errors);
+    tmini_stm32_usart_stop(&port);
+    remaining = RX_SIZE;
+    TEST_ASSERT_EQUAL(TMINI_OK, tmini_stm32_usart_start_dma(&port, &lidar, 84000000, &remaining));
+    interrupt_with(FRAMING_ERROR | RECEIVE_NOT_EMPTY, 0);
+    TEST_ASSERT_EQUAL_UINT32(2, port.framing_errors);
+}
+
+/* The buffer is full to its end: nothing but a gap shows that reception was interrupted. */
+void test_started_again_at_the_buffers_start_there_is_a_gap(void)
+{
+    start_dma();
+    poll_and_write_packets(39); /* 507 bytes. */
+    dma_writes((const uint8_t[5]){0xAA, 0x55, 0x75, 0x01, 0x3F}, 5);
+    tmini_stm32_usart_interrupt(&port);
+    (void)packets();
+    tmini_stm32_usart_stop(&port);
+    TEST_ASSERT_EQUAL_UINT32(512, tmini_ring_head(&lidar.ring));
+    remaining = RX_SIZE;
+    TEST_ASSERT_EQUAL(TMINI_OK, tmini_stm32_usart_start_dma(&port, &lidar, 84000000, &remaining));
+    TEST_ASSERT_EQUAL_UINT32(1024, tmini_ring_head(&lidar.ring)); /* A lap that nobody saw. */
+}
+
 /* -------------------------------------------------------------------------------------- sending */
 
 void test_an_empty_transmitter_takes_a_command(void)

@@ -95,6 +95,14 @@ void test_every_point_arrives_byte_by_byte(void)
     TEST_ASSERT_EQUAL_UINT32(zephyr_model_line_bytes(), counted().bytes);
 }
 
+void test_every_point_arrives_through_a_fifo_that_takes_several_readings(void)
+{
+    zephyr_model_set_fifo(64);
+    start();
+    assert_true_scans(1, 10);
+    TEST_ASSERT_EQUAL_UINT32(zephyr_model_line_bytes(), counted().bytes);
+}
+
 /* An interrupt a byte must not be a switch of threads a byte. */
 void test_the_polling_thread_is_woken_once_in_64_bytes(void)
 {

@@ -12,7 +12,8 @@
 #include "zephyr_api.h"
 
 #define STEP_US 20u
-#define FIFO_MAX 16u
+#define FIFO_MAX 64u
+#define FIFO_USUAL 16u
 
 const struct device zephyr_model_uart = {.name = "uart"};
 
@@ -47,7 +48,7 @@ void zephyr_model_begin(const sim_observer_t *observer)
     const sim_config_t config = sim_default_config();
     sim_init(&board.lidar, &config);
     sim_observe(&board.lidar, observer);
-    board.fifo_size = FIFO_MAX;
+    board.fifo_size = FIFO_USUAL;
     board.ready = true;
 }
 

@@ -5,7 +5,7 @@
  * semaphore to sleep on, and the simulated lidar. Time goes on only while the thread sleeps or the
  * test makes it.
  *
- * The UART is one of two kinds that Zephyr's drivers have: with a FIFO of 16 bytes, or of 1; with
+ * The UART is one of two kinds that Zephyr's drivers have: with a FIFO of 1 to 64 bytes; with
  * errors told by uart_err_check(), or not. As with some drivers, reading data clears the errors. */
 
 #ifndef ZEPHYR_MODEL_H
