@@ -56,7 +56,6 @@ void test_a_fault_is_cleared_by_two_trusted_turns_without_it(void)
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
 
-/* The second time only its first packets have come: what they say is not trusted. */
 void test_a_fault_seen_in_one_trusted_turn_and_one_that_is_not_is_not_reported(void)
 {
     rig_go_scanning();
@@ -64,6 +63,23 @@ void test_a_fault_seen_in_one_trusted_turn_and_one_that_is_not_is_not_reported(v
     TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0)); /* The first trusted one has ended. */
     rig.crc ^= 1u;                                /* LastCRC is wrong. */
     TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0));
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+}
+
+void test_a_data_fault_that_ends_in_turns_of_which_a_packet_is_missing_is_reported(void)
+{
+    unsigned events = 0;
+
+    rig_go_scanning();
+    for (unsigned i = 0; i < 3; i++) {
+        (void)rig_plain_turn_events(0);
+    }
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
+    for (unsigned i = 0; i < 3; i++) {
+        rig.crc ^= 1u; /* LastCRC is wrong. */
+        events |= rig_turn_events(0);
+    }
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), events);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
 

@@ -12,7 +12,9 @@
 
 #include <string.h>
 
-static uint8_t memory[1024];
+static uint8_t memory[2048];
+
+#define RING_SIZE 1024u
 
 /* Streaming, and the pauses before that are forgotten. */
 static void open_with(uint16_t max_pause_ms, bool dma)
@@ -20,7 +22,7 @@ static void open_with(uint16_t max_pause_ms, bool dma)
     rig_open();
     rig.timing.max_pause_ms = max_pause_ms;
     rig.config.rx_buffer = memory;
-    rig.config.rx_size = sizeof memory;
+    rig.config.rx_size = RING_SIZE;
     rig.config.rx_dma = dma;
     rig.config.points = NULL;
     rig.config.max_points = 0;
@@ -114,6 +116,15 @@ void test_many_bytes_explain_a_long_pause(void)
     nothing_comes_for(62);
     feed_packets(5, 24);
     doubtful_are_the_first(0, 5);
+}
+
+/* 487 bytes, in one packet of 38 samples and three of 37, are 38.96 ms; whole ones count. */
+void test_what_bytes_explain_is_rounded_down(void)
+{
+    nothing_comes_for(69);
+    feed_packets(1, 38);
+    feed_packets(3, 37);
+    doubtful_are_the_first(4, 4);
 }
 
 void test_many_bytes_do_not_explain_every_pause(void)
@@ -229,6 +240,37 @@ void test_a_pause_that_has_been_judged_does_not_count_for_the_next_one(void)
     doubtful_are_the_first(2, 3);
 }
 
+/* The last look was `unseen_ms` before these packets came, of 31 and of 30 samples, after a pause of
+ * more than 100 ms. */
+static void come_after_a_look(uint32_t pause_ms, uint32_t unseen_ms, unsigned of_31, unsigned of_30)
+{
+    open_with(100, false);
+    rig.config.rx_size = 2 * RING_SIZE;
+    rig_init();
+    go_streaming();
+    nothing_comes_for(pause_ms - unseen_ms + 1);
+    rig.now_ms--;
+    polls_to(TMINI_EVENT_NONE);
+    rig.now_ms += unseen_ms;
+    feed_packets(of_31, 31);
+    feed_packets(of_30, 30);
+    doubtful_are_the_first(of_31 + of_30, of_31 + of_30);
+}
+
+/* 1024 bytes take the wire 45 ms: 28 and 16 before them are too few. */
+void test_1024_bytes_in_28_ms_were_held(void)
+{
+    come_after_a_look(183, 28, 8, 2);
+    two_packets_come_of_which_doubtful_are(1);
+}
+
+/* 1115 bytes take it 48.999 ms, of which 48 count: 32 and 16. */
+void test_1115_bytes_in_32_ms_may_have_come(void)
+{
+    come_after_a_look(190, 32, 5, 6);
+    two_packets_come_of_which_doubtful_are(0);
+}
+
 /* ---- More than the ring holds ---- */
 
 /* 1024 bytes: eight packets of 31 samples and two of 30. */
@@ -245,6 +287,7 @@ void test_behind_a_lap_of_dma_all_packets_that_come_at_once_are_doubtful_and_the
 {
     static const encode_sample_t samples[4] = {{1000, 50, 0}};
     const encode_packet_t packet = {0, 4, 640, 736, samples};
+    tmini_counters_t counters;
     size_t position = 0;
 
     memset(memory, 0, sizeof memory);
@@ -260,6 +303,8 @@ void test_behind_a_lap_of_dma_all_packets_that_come_at_once_are_doubtful_and_the
     position += encode_packet(&memory[position], &packet);
     tmini_feed_dma(&rig.lidar, position);
     doubtful_are_the_first(5, 5);
+    tmini_counters(&rig.lidar, &counters);
+    TEST_ASSERT_EQUAL_UINT32(556, counters.parser.bytes_overrun); /* 1024 + 44 - 512 */
     position += encode_packet(&memory[position], &packet);
     position += encode_packet(&memory[position], &packet);
     tmini_feed_dma(&rig.lidar, position);

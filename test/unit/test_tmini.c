@@ -259,6 +259,18 @@ void test_bytes_that_find_the_buffer_full_are_counted(void)
     TEST_ASSERT_EQUAL_UINT32(RIG_RX_SIZE, counters().parser.bytes_skipped);
 }
 
+void test_those_of_a_second_overflow_are_counted_with_the_first_ones(void)
+{
+    static const uint8_t zeros[RIG_RX_SIZE] = {0};
+
+    rig_feed(zeros, sizeof zeros);
+    rig_feed(zeros, 7);
+    (void)rig_drain();
+    rig_feed(zeros, sizeof zeros);
+    rig_feed(zeros, 5);
+    TEST_ASSERT_EQUAL_UINT32(12, counters().parser.bytes_overrun);
+}
+
 void test_packets_of_an_unknown_lidar_are_parsed_and_counted_but_are_no_event(void)
 {
     rig_feed_start_packet(1000);
@@ -355,6 +367,29 @@ void test_bytes_that_come_while_a_poll_looks_for_news_are_not_given_up(void)
 void test_bytes_that_come_while_the_clock_is_read_are_not_given_up(void)
 {
     bytes_are_not_given_up_that_come_at(2);
+}
+
+static void feed_health_reply(void)
+{
+    rig_feed_health(0, 0);
+}
+
+/* It is known by then: the next poll does not take it for something new. */
+void test_a_reply_that_comes_while_the_clock_is_read_leaves_the_lidar_idle(void)
+{
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    polls_to(TMINI_EVENT_NONE);
+    readings_left = 2;
+    feed_meanwhile = feed_health_reply;
+    rig.now_ms += 1;
+    rig.port.now_ms = slow_clock;
+    polls_to(TMINI_EVENT_HEALTH);
+    rig.port.now_ms = port_now_ms;
+    rig.now_ms += 1;
+    polls_to(TMINI_EVENT_NONE);
+    is_in(TMINI_STATE_IDLE);
 }
 
 static void line_is_not_quiet_with_bytes_at(unsigned reading)
