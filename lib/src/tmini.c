@@ -99,9 +99,12 @@ static void note_bytes(tmini_t *lidar, size_t count, uint32_t passed_ms)
     const uint32_t due_ms = transit_ms(count);
     const uint32_t pause_ms = link->now_ms - link->heard_ms;
     const bool is_gap = count > lidar->ring.size;
-    const bool are_held = is_gap || lidar->is_unwatched || wire_ms(count) > passed_ms + HELD_MS;
+    if (is_gap || wire_ms(count) > passed_ms + HELD_MS) {
+        lidar->are_held = true;
+    }
+    const bool are_held = lidar->are_held;
     lidar->silent_ms = 0;
-    lidar->is_unwatched = false;
+    lidar->are_held = false;
     if (is_gap || (max_pause_ms > 0 && pause_ms > max_pause_ms + due_ms)) {
         lidar->doubt = are_held ? DOUBT_AROUND : DOUBT_AHEAD;
         lidar->doubtful_to = link->received;
@@ -130,7 +133,7 @@ static void update_time(tmini_t *lidar)
     link->now_ms = now_ms;
     link->received = head;
     if (passed_ms > link->timing->max_pause_ms) {
-        lidar->is_unwatched = true;
+        lidar->are_held = true;
     }
     if (count == 0) {
         note_silence(lidar, passed_ms);
@@ -142,15 +145,15 @@ static void update_time(tmini_t *lidar)
     }
 }
 
-/* A frame has been found. If its bytes came during this poll, they have not been noted yet: a pause
- * before them is to be known first. Returns how many have come behind it. */
-static size_t bytes_behind_frame(tmini_t *lidar)
+/* When the packet delivered last came: before the bytes behind it. Those that came during this poll
+ * have not been noted yet: a pause before them is to be known first. */
+static uint32_t arrival_ms(tmini_t *lidar)
 {
     const size_t position = tmini_parser_position(&lidar->parser);
-    if (tmini_ring_distance(position, lidar->link.received) > TMINI_RING_CLOSED / 2) {
+    if (tmini_ring_head(&lidar->ring) != lidar->link.received) {
         update_time(lidar);
     }
-    return tmini_ring_distance(position, lidar->link.received);
+    return lidar->link.now_ms - transit_ms(tmini_ring_distance(position, lidar->link.received));
 }
 
 /* ----------------------------------------------------------------------------------- commands */
@@ -172,10 +175,9 @@ static void lose(tmini_t *lidar)
  * surely quiet. */
 static void end_command(tmini_t *lidar, int result)
 {
-    const size_t position = tmini_parser_position(&lidar->parser);
-    const bool is_quiet = tmini_ring_distance(position, lidar->link.received) == 0;
-    lidar->state =
-        is_quiet && tmini_command_left_idle(lidar) ? TMINI_STATE_IDLE : TMINI_STATE_UNKNOWN;
+    const bool is_quiet = tmini_parser_pending(&lidar->parser) == 0;
+    lidar->state = is_quiet && lidar->command.phase == TMINI_PHASE_IDLE ? TMINI_STATE_IDLE
+                                                                        : TMINI_STATE_UNKNOWN;
     if (result == TMINI_OK) {
         raise_event(lidar, (tmini_event_t)lidar->end_event);
     } else {
@@ -190,6 +192,7 @@ static void take_result(tmini_t *lidar, int result)
     if (result == TMINI_UNDER_WAY) {
         return;
     }
+    tmini_command_end(lidar, result);
     if (lidar->state == TMINI_STATE_RECOVERING) {
         tmini_recovery_go_on(lidar, result);
     } else if (lidar->state == TMINI_STATE_SCANNING) {
@@ -222,9 +225,38 @@ static void begin(tmini_t *lidar, tmini_command_code_t operation, tmini_event_t 
     lidar->is_settled = false;
     tmini_command_begin(lidar, operation, lidar->link.timing->max_attempts, frequency_chz);
     if (is_idle && operation != TMINI_COMMAND_STOP) {
-        tmini_command_skip_stop(lidar);
+        (void)tmini_command_proceed(lidar);
     }
     take_result(lidar, tmini_command_poll(lidar));
+}
+
+/* Begins a command, if it may be begun now; stop may always, and aborts another. The end of an
+ * earlier one, not polled yet, is not the end of this one. */
+static tmini_status_t request(tmini_t *lidar, tmini_command_code_t operation,
+                              tmini_event_t end_event, uint16_t frequency_chz)
+{
+    if (!is_set_up(lidar)) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    const bool is_under_way =
+        lidar->state > TMINI_STATE_IDLE && lidar->state < TMINI_STATE_SCANNING;
+    if (operation == TMINI_COMMAND_STOP) {
+        if (lidar->state == TMINI_STATE_STOPPING) {
+            return TMINI_OK; /* It is being stopped already. */
+        }
+    } else if (lidar->state >= TMINI_STATE_SCANNING) {
+        return TMINI_ERROR_STATE;
+    } else if (is_under_way) {
+        return TMINI_ERROR_BUSY;
+    }
+    update_time(lidar);
+    tmini_recovery_forget(lidar);
+    lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
+    begin(lidar, operation, end_event, frequency_chz);
+    if (is_under_way && lidar->state == TMINI_STATE_STOPPING) {
+        fail(lidar, TMINI_ERROR_ABORTED);
+    }
+    return TMINI_OK;
 }
 
 /* Not inlined, so that its content does not lie on the stack below a packet's points. */
@@ -232,7 +264,7 @@ TMINI_NOINLINE static void take_reply(tmini_t *lidar)
 {
     uint8_t content[TMINI_INFO_SIZE];
     const tmini_reply_header_t *const header = &lidar->parser.awaited;
-    (void)bytes_behind_frame(lidar);
+    update_time(lidar); /* What came during this poll has not been noted yet. */
     if (!tmini_frame_content(tmini_parser_frame(&lidar->parser), content, header->length)) {
         (void)tmini_parser_await(&lidar->parser, header); /* DMA was faster: it has not come. */
         return;
@@ -253,8 +285,10 @@ static void expect_packet(tmini_t *lidar)
     tmini_command_wait(lidar, lidar->link.timing->data_timeout_ms);
 }
 
+/* A start that is no longer needed is not sent, and its reply not awaited (section 2). */
 static void begin_scanning(tmini_t *lidar)
 {
+    tmini_command_end(lidar, TMINI_ERROR_ABORTED);
     if (lidar->state == TMINI_STATE_RECOVERING) {
         tmini_recovery_end(lidar);
         raise_event(lidar, TMINI_EVENT_RECOVERED);
@@ -271,70 +305,66 @@ static void begin_scanning(tmini_t *lidar)
 static void stop_again(tmini_t *lidar)
 {
     raise_event(lidar, TMINI_EVENT_STREAMING);
-    begin(lidar, TMINI_COMMAND_STOP, TMINI_EVENT_STOPPED, 0);
+    (void)tmini_stop(lidar);
 }
 
-/* A packet has come: does it mean that the lidar has begun to scan, or scans again? */
+/* A packet has come: does it mean that the lidar has begun to scan, or scans again? Not so the tail
+ * behind a stop (section 9.10); in other phases the reply to the start may have been lost. */
 static void note_scanning(tmini_t *lidar)
 {
+    const uint8_t phase = lidar->command.phase;
     if (lidar->state == TMINI_STATE_RECOVERING || lidar->state == TMINI_STATE_STARTING) {
-        if (tmini_command_packet(lidar)) {
+        if (phase != TMINI_PHASE_QUIESCING) {
             begin_scanning(lidar);
         }
-    } else if (lidar->state <= TMINI_STATE_IDLE && tmini_command_left_idle(lidar)) {
+    } else if (phase == TMINI_PHASE_IDLE) {
         stop_again(lidar);
     }
 }
 
-/* A packet begins at that place in the stream. */
-static void mark_doubtful(tmini_t *lidar, size_t begins_at)
+/* Others may be missing before the packet that has come: it begins among the doubtful bytes, or is
+ * the first one behind them. */
+static bool is_doubtful(tmini_t *lidar)
 {
-    const size_t left = tmini_ring_distance(begins_at, lidar->doubtful_to);
-    const bool is_among = left > 0 && left <= TMINI_RING_CLOSED / 2;
-    if (is_among || lidar->doubt != DOUBT_MARKED) {
-        lidar->latest.packet.gap = TMINI_GAP_UNKNOWN;
+    const size_t left = tmini_ring_distance(tmini_ring_tail(&lidar->ring), lidar->doubtful_to);
+    const uint8_t doubt = lidar->doubt;
+    if (doubt == DOUBT_NONE) {
+        return false;
     }
-    if (!is_among) {
-        lidar->doubt = DOUBT_NONE;
-    } else if (lidar->doubt == DOUBT_AHEAD) {
-        lidar->doubt = DOUBT_MARKED;
+    if (left > 0 && left <= TMINI_RING_CLOSED / 2) {
+        lidar->doubt = doubt == DOUBT_AHEAD ? DOUBT_MARKED : doubt;
+        return true;
     }
+    lidar->doubt = DOUBT_NONE;
+    return doubt != DOUBT_MARKED;
 }
 
-static void open_packet(tmini_t *lidar)
+/* Since the last packet of the scan, damaged ones may have come instead of others, a few bytes of
+ * each: neither silence nor many bytes, but too long. */
+static bool is_late(const tmini_t *lidar, uint32_t came_ms)
+{
+    const uint16_t max_pause_ms = lidar->link.timing->max_pause_ms;
+    const uint32_t due_ms = transit_ms(tmini_parser_frame(&lidar->parser)->size);
+    const int32_t since_ms = (int32_t)(came_ms - lidar->builder.scan.end_ms);
+    return lidar->builder.open && max_pause_ms > 0 && since_ms > (int32_t)(max_pause_ms + due_ms);
+}
+
+static void open_packet(tmini_t *lidar, uint32_t came_ms)
 {
     tmini_packet_open(&lidar->latest.packet, tmini_parser_frame(&lidar->parser));
-    if (lidar->doubt != DOUBT_NONE) {
-        mark_doubtful(lidar, tmini_ring_tail(&lidar->ring));
+    if (is_doubtful(lidar) || is_late(lidar, came_ms)) {
+        lidar->latest.packet.gap = TMINI_GAP_UNKNOWN;
     }
 }
 
 static void monitor_packet(tmini_t *lidar)
 {
-    const unsigned shown = tmini_monitor_packet(lidar);
-    if (shown == 0) {
-        return;
-    }
-    if ((shown & TMINI_SHOWN_FAULTS) != 0) {
-        raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
-    }
-    if ((shown & TMINI_SHOWN_COMPLETE) != 0) {
-        tmini_recovery_forget(lidar); /* It has truly recovered, if it was lost. */
-    }
-    if ((shown & TMINI_SHOWN_LOSS) != 0) {
+    const tmini_ct_verdict_t verdict = tmini_ct_add(&lidar->ct, &lidar->latest.packet);
+    if (verdict == TMINI_CT_REFUTED) {
         tmini_scan_refute(&lidar->builder);
     }
-}
-
-/* Since the last packet of the scan, damaged ones may have come instead of others, a few bytes of
- * each: neither silence nor many bytes, but too long. */
-static void judge_interval(tmini_t *lidar, uint32_t came_ms)
-{
-    const uint16_t max_pause_ms = lidar->link.timing->max_pause_ms;
-    const uint32_t due_ms = transit_ms(tmini_parser_frame(&lidar->parser)->size);
-    const int32_t since_ms = (int32_t)(came_ms - lidar->builder.scan.end_ms);
-    if (lidar->builder.open && max_pause_ms > 0 && since_ms > (int32_t)(max_pause_ms + due_ms)) {
-        lidar->latest.packet.gap = TMINI_GAP_UNKNOWN;
+    if (tmini_monitor_packet(lidar, verdict)) {
+        tmini_recovery_forget(lidar); /* It has truly recovered, if it was lost. */
     }
 }
 
@@ -350,18 +380,15 @@ static void deliver_packet(tmini_t *lidar, uint32_t came_ms)
     }
 }
 
-/* When a packet came: before the bytes behind it. */
 static void take_packet(tmini_t *lidar)
 {
-    const uint32_t behind_ms = transit_ms(bytes_behind_frame(lidar));
-    const uint32_t came_ms = lidar->link.now_ms - behind_ms;
+    const uint32_t came_ms = arrival_ms(lidar);
     note_scanning(lidar);
     if (lidar->state != TMINI_STATE_SCANNING) {
         return; /* The tail behind a stop, or a stream that nobody asked for. */
     }
     expect_packet(lidar);
-    open_packet(lidar);
-    judge_interval(lidar, came_ms);
+    open_packet(lidar, came_ms);
     monitor_packet(lidar);
     deliver_packet(lidar, came_ms);
 }
@@ -418,8 +445,8 @@ static bool receive(tmini_t *lidar)
 static void keep_time(tmini_t *lidar)
 {
     take_result(lidar, tmini_command_poll(lidar));
-    if (lidar->state == TMINI_STATE_SCANNING && tmini_monitor_poll(lidar)) {
-        raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
+    if (lidar->state == TMINI_STATE_SCANNING) {
+        tmini_monitor_poll(lidar);
     }
 }
 
@@ -437,11 +464,15 @@ tmini_event_t tmini_poll(tmini_t *lidar)
     if (!is_set_up(lidar) || (lidar->is_settled && !has_news(lidar))) {
         return TMINI_EVENT_NONE;
     }
+    const uint8_t faults = lidar->monitor.faults;
     lidar->is_settled = false;
     update_time(lidar);
     const bool is_done = lidar->pending != 0 || receive(lidar);
     if (lidar->pending == 0) {
         keep_time(lidar);
+    }
+    if (lidar->monitor.faults != faults) {
+        raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
     }
     if (lidar->pending != 0) {
         return take_event(lidar);
@@ -464,12 +495,12 @@ static bool has_required_members(const tmini_config_t *config)
 /* Ring, parser and builder check their own parts of the configuration. */
 static bool init_modules(tmini_t *lidar, const tmini_config_t *config)
 {
-    const bool by_packets = config->points == NULL && config->max_points == 0;
     return tmini_ring_init(&lidar->ring, config->rx_buffer, config->rx_size, config->rx_dma) ==
                TMINI_OK &&
            tmini_parser_init(&lidar->parser, &lidar->ring, config->max_samples) == TMINI_OK &&
-           (by_packets || tmini_scan_init(&lidar->builder, config->points, config->max_points,
-                                          config->filter) == TMINI_OK);
+           ((config->points == NULL && config->max_points == 0) || /* By packets. */
+            tmini_scan_init(&lidar->builder, config->points, config->max_points, config->filter) ==
+                TMINI_OK);
 }
 
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
@@ -490,29 +521,6 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
 
 /* ------------------------------------------------------------------------- the user's commands */
 
-/* Begins a command, if it may be begun now; stop may always. The end of an earlier one, not polled
- * yet, is not the end of this one. */
-static tmini_status_t request(tmini_t *lidar, tmini_command_code_t operation,
-                              tmini_event_t end_event, uint16_t frequency_chz)
-{
-    if (!is_set_up(lidar)) {
-        return TMINI_ERROR_ARGUMENT;
-    }
-    if (operation != TMINI_COMMAND_STOP) {
-        if (lidar->state >= TMINI_STATE_SCANNING) {
-            return TMINI_ERROR_STATE;
-        }
-        if (lidar->state > TMINI_STATE_IDLE) {
-            return TMINI_ERROR_BUSY;
-        }
-    }
-    update_time(lidar);
-    tmini_recovery_forget(lidar);
-    lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
-    begin(lidar, operation, end_event, frequency_chz);
-    return TMINI_OK;
-}
-
 tmini_status_t tmini_start(tmini_t *lidar)
 {
     return request(lidar, TMINI_COMMAND_START, TMINI_EVENT_STARTED, 0);
@@ -520,16 +528,7 @@ tmini_status_t tmini_start(tmini_t *lidar)
 
 tmini_status_t tmini_stop(tmini_t *lidar)
 {
-    const tmini_state_t before = tmini_state(lidar);
-    if (before == TMINI_STATE_STOPPING) {
-        return TMINI_OK; /* It is being stopped already. */
-    }
-    const tmini_status_t status = request(lidar, TMINI_COMMAND_STOP, TMINI_EVENT_STOPPED, 0);
-    const bool aborts = before == TMINI_STATE_BUSY || before == TMINI_STATE_STARTING;
-    if (aborts && lidar->state == TMINI_STATE_STOPPING) {
-        fail(lidar, TMINI_ERROR_ABORTED);
-    }
-    return status;
+    return request(lidar, TMINI_COMMAND_STOP, TMINI_EVENT_STOPPED, 0);
 }
 
 tmini_status_t tmini_request_info(tmini_t *lidar)
@@ -563,7 +562,7 @@ tmini_status_t tmini_reboot(tmini_t *lidar)
 
 void tmini_cancel(tmini_t *lidar)
 {
-    tmini_command_cancel(lidar);
+    tmini_command_end(lidar, TMINI_ERROR_ABORTED);
     lidar->is_settled = false;
     lidar->state = TMINI_STATE_UNKNOWN;
 }

@@ -6,17 +6,6 @@
 
 #include "tmini_driver.h"
 
-/* What goes on on the wire. */
-enum phase {
-    PHASE_NONE,           /* Nothing is under way; the lidar may be streaming. */
-    PHASE_IDLE,           /* Nothing is under way; the lidar was left idle, and the line quiet. */
-    PHASE_QUIESCING,      /* After a stop, or before another frequency step: until it is quiet. */
-    PHASE_AWAITING_REPLY, /* A command has been sent: until its reply. */
-    PHASE_AWAITING_STEP,  /* The same, but one has come that shows no step: until another. */
-    PHASE_SPINNING_UP,    /* The start has been acknowledged: until the first packet. */
-    PHASE_WAITING,        /* A reboot has been sent, or nothing: for as long as it takes. */
-};
-
 /* More frequency steps than any change needs (6 of 1 Hz and 9 of 0.1 Hz). */
 #define STEPS_MAX 20
 #define COARSE_STEP_CHZ 100
@@ -27,7 +16,7 @@ enum phase {
 #define PLAUSIBLE_CHZ_MAX 2000
 
 /* A phase that has lasted `timeout_ms` is over, one way or the other; 0 for no limit. */
-static void enter(tmini_t *lidar, enum phase phase, uint16_t timeout_ms)
+static void enter(tmini_t *lidar, tmini_phase_t phase, uint16_t timeout_ms)
 {
     lidar->command.phase = (uint8_t)phase;
     lidar->command.since_ms = lidar->link.now_ms;
@@ -63,7 +52,7 @@ static bool transmit(tmini_t *lidar)
 /* Until the line is quiet; if it is not in time, that is a failed attempt. */
 static void await_quiet(tmini_t *lidar)
 {
-    enter(lidar, PHASE_QUIESCING, lidar->link.timing->stop_timeout_ms);
+    enter(lidar, TMINI_PHASE_QUIESCING, lidar->link.timing->stop_timeout_ms);
 }
 
 /* First stop, which is permitted always (section 9.10). */
@@ -78,37 +67,16 @@ static void quiesce(tmini_t *lidar)
 static void request(tmini_t *lidar, tmini_command_code_t code)
 {
     tmini_reply_header_t reply;
-    const bool is_answered = tmini_reply_header(code, &reply);
-    (void)tmini_parser_await(&lidar->parser, is_answered ? &reply : NULL);
     send(lidar, code);
-    if (is_answered) {
-        enter(lidar, PHASE_AWAITING_REPLY, lidar->link.timing->reply_timeout_ms);
+    if (tmini_reply_header(code, &reply)) {
+        (void)tmini_parser_await(&lidar->parser, &reply);
+        enter(lidar, TMINI_PHASE_AWAITING_REPLY, lidar->link.timing->reply_timeout_ms);
     } else {
-        enter(lidar, PHASE_WAITING, lidar->link.timing->reboot_time_ms);
+        enter(lidar, TMINI_PHASE_WAITING, lidar->link.timing->reboot_time_ms);
     }
 }
 
 /* --------------------------------------------------------------------------- how commands end */
-
-static void end(tmini_t *lidar, enum phase phase)
-{
-    (void)tmini_parser_await(&lidar->parser, NULL);
-    lidar->command.unsent = 0;
-    enter(lidar, phase, 0);
-}
-
-/* After a second attempt, the reply to the first may still come: the line is not surely quiet. */
-static int succeed(tmini_t *lidar)
-{
-    end(lidar, lidar->command.attempts > 1 ? PHASE_NONE : PHASE_IDLE);
-    return TMINI_OK;
-}
-
-static int fail(tmini_t *lidar, tmini_status_t status)
-{
-    end(lidar, PHASE_NONE);
-    return status;
-}
 
 /* A time is over: another attempt, unless it was the last. */
 static int time_out(tmini_t *lidar)
@@ -120,8 +88,7 @@ static int time_out(tmini_t *lidar)
         quiesce(lidar);
         return TMINI_UNDER_WAY;
     }
-    return fail(lidar,
-                command->phase == PHASE_AWAITING_STEP ? TMINI_ERROR_REPLY : TMINI_ERROR_TIMEOUT);
+    return command->phase == TMINI_PHASE_AWAITING_STEP ? TMINI_ERROR_REPLY : TMINI_ERROR_TIMEOUT;
 }
 
 /* ----------------------------------------------------------------------------- frequency change */
@@ -141,20 +108,17 @@ static bool is_reached(const tmini_command_t *command)
 static uint8_t next_step(const tmini_command_t *command)
 {
     const int32_t left = chz_to_go(command);
-    if (left >= COARSE_STEP_CHZ) {
-        return TMINI_COMMAND_FASTER_ONE;
+    if (left < 0) {
+        return left > -COARSE_STEP_CHZ ? TMINI_COMMAND_SLOWER_TENTH : TMINI_COMMAND_SLOWER_ONE;
     }
-    if (left <= -COARSE_STEP_CHZ) {
-        return TMINI_COMMAND_SLOWER_ONE;
-    }
-    return left > 0 ? TMINI_COMMAND_FASTER_TENTH : TMINI_COMMAND_SLOWER_TENTH;
+    return left < COARSE_STEP_CHZ ? TMINI_COMMAND_FASTER_TENTH : TMINI_COMMAND_FASTER_ONE;
 }
 
 /* A late reply to the step before looks like one to this step that was refused. Time tells. */
 static int await_another_frequency(tmini_t *lidar)
 {
     (void)tmini_parser_await(&lidar->parser, &lidar->parser.awaited);
-    lidar->command.phase = PHASE_AWAITING_STEP; /* For what is left of the time. */
+    lidar->command.phase = TMINI_PHASE_AWAITING_STEP; /* For what is left of the time. */
     return TMINI_UNDER_WAY;
 }
 
@@ -163,14 +127,14 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
     tmini_command_t *const command = &lidar->command;
     const bool is_step = command->code != TMINI_COMMAND_GET_FREQUENCY;
     if (frequency_chz < PLAUSIBLE_CHZ_MIN || frequency_chz > PLAUSIBLE_CHZ_MAX) {
-        return fail(lidar, TMINI_ERROR_REPLY);
+        return TMINI_ERROR_REPLY;
     }
     if (is_step && frequency_chz == command->frequency_chz) {
         return await_another_frequency(lidar);
     }
     command->frequency_chz = (uint16_t)frequency_chz;
     if (command->target_chz == 0 || (!is_step && is_reached(command))) {
-        return succeed(lidar);
+        return TMINI_OK;
     }
     await_quiet(lidar);
     return TMINI_UNDER_WAY;
@@ -191,18 +155,18 @@ static bool is_quiet(const tmini_t *lidar)
  * not its answer, not even what a packet that was cut off hides. Behind a stop the operation's own
  * command is next. A frequency is changed by steps, so that it is asked for before them, to know
  * where they begin, and behind them. */
-static int proceed(tmini_t *lidar)
+int tmini_command_proceed(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     uint8_t next = command->operation;
     tmini_parser_skip_to(&lidar->parser, lidar->link.received);
     if (next == TMINI_COMMAND_STOP) {
-        end(lidar, PHASE_IDLE);
+        command->attempts = 1; /* However many it took, the line is quiet now. */
         return TMINI_OK;
     }
     if (command->code != TMINI_COMMAND_STOP && !is_reached(command)) {
         if (command->steps == STEPS_MAX) {
-            return fail(lidar, TMINI_ERROR_REPLY);
+            return TMINI_ERROR_REPLY;
         }
         command->steps++;
         next = next_step(command);
@@ -218,7 +182,7 @@ static int send_rest(tmini_t *lidar)
     if (!transmit(lidar) ||
         (command->unsent > 0 &&
          tmini_has_elapsed(lidar, command->since_ms, lidar->link.timing->write_timeout_ms))) {
-        return fail(lidar, TMINI_ERROR_WRITE);
+        return TMINI_ERROR_WRITE;
     }
     if (command->unsent == 0) {
         command->since_ms = lidar->link.now_ms;
@@ -232,18 +196,14 @@ int tmini_command_poll(tmini_t *lidar)
     if (command->unsent > 0) {
         return send_rest(lidar);
     }
-    if (command->phase == PHASE_QUIESCING && is_quiet(lidar)) {
-        return proceed(lidar);
+    if (command->phase == TMINI_PHASE_QUIESCING && is_quiet(lidar)) {
+        return tmini_command_proceed(lidar);
     }
     if (command->timeout_ms == 0 ||
         !tmini_has_elapsed(lidar, command->since_ms, command->timeout_ms)) {
         return TMINI_UNDER_WAY;
     }
-    if (command->phase == PHASE_WAITING) {
-        end(lidar, PHASE_NONE);
-        return TMINI_OK;
-    }
-    return time_out(lidar);
+    return command->phase == TMINI_PHASE_WAITING ? TMINI_OK : time_out(lidar);
 }
 
 /* ------------------------------------------------------------------------ for the layers above */
@@ -260,46 +220,32 @@ void tmini_command_begin(tmini_t *lidar, tmini_command_code_t operation, uint8_t
     quiesce(lidar);
 }
 
-void tmini_command_skip_stop(tmini_t *lidar)
-{
-    (void)proceed(lidar);
-}
-
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content)
 {
     switch (lidar->command.code) {
     case TMINI_COMMAND_START:
-        enter(lidar, PHASE_SPINNING_UP, lidar->link.timing->spin_up_timeout_ms);
+        enter(lidar, TMINI_PHASE_SPINNING_UP, lidar->link.timing->spin_up_timeout_ms);
         return TMINI_UNDER_WAY;
     case TMINI_COMMAND_GET_INFO:
     case TMINI_COMMAND_GET_HEALTH:
-        return succeed(lidar);
+        return TMINI_OK;
     default:
         return take_frequency(lidar, tmini_reply_frequency_chz(content));
     }
 }
 
-bool tmini_command_packet(tmini_t *lidar)
-{
-    if (lidar->command.phase == PHASE_QUIESCING) {
-        return false; /* The tail. In other phases the reply to the start may have been lost. */
-    }
-    end(lidar, PHASE_NONE); /* So a start that is no longer needed is not sent (section 2). */
-    return true;
-}
-
 void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms)
 {
     lidar->command.operation = 0;
-    enter(lidar, PHASE_WAITING, wait_ms);
+    enter(lidar, TMINI_PHASE_WAITING, wait_ms);
 }
 
-void tmini_command_cancel(tmini_t *lidar)
+void tmini_command_end(tmini_t *lidar, int result)
 {
-    end(lidar, PHASE_NONE);
-}
-
-bool tmini_command_left_idle(const tmini_t *lidar)
-{
-    return lidar->command.phase == PHASE_IDLE;
+    tmini_command_t *const command = &lidar->command;
+    const bool is_idle =
+        result == TMINI_OK && command->phase != TMINI_PHASE_WAITING && command->attempts == 1;
+    (void)tmini_parser_await(&lidar->parser, NULL);
+    command->unsent = 0;
+    enter(lidar, is_idle ? TMINI_PHASE_IDLE : TMINI_PHASE_NONE, 0);
 }

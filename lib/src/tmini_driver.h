@@ -31,6 +31,17 @@ void tmini_cancel(tmini_t *lidar);
 
 /* ---------------------------------------------------------------------------- tmini_command.c */
 
+/* What goes on on the wire. */
+typedef enum {
+    TMINI_PHASE_NONE,           /* Nothing is under way; the lidar may be streaming. */
+    TMINI_PHASE_IDLE,           /* The same; the lidar was left idle, and the line quiet. */
+    TMINI_PHASE_QUIESCING,      /* Behind a stop, or between frequency steps: until it is quiet. */
+    TMINI_PHASE_AWAITING_REPLY, /* A command has been sent: until its reply. */
+    TMINI_PHASE_AWAITING_STEP,  /* The same; one has come that shows no step: until another. */
+    TMINI_PHASE_SPINNING_UP,    /* The start has been acknowledged: until the first packet. */
+    TMINI_PHASE_WAITING,        /* A reboot has been sent, or nothing: as long as it takes. */
+} tmini_phase_t;
+
 /* How a command stands: TMINI_OK, it has ended well; an error, it has failed; or this. */
 #define TMINI_UNDER_WAY 1
 
@@ -41,9 +52,9 @@ void tmini_cancel(tmini_t *lidar);
 void tmini_command_begin(tmini_t *lidar, tmini_command_code_t operation, uint8_t attempts,
                          uint16_t frequency_chz);
 
-/* The lidar is known to be idle, and the line quiet: an operation just begun, other than a stop,
- * needs none before its command. */
-void tmini_command_skip_stop(tmini_t *lidar);
+/* The line is quiet: the next command of the operation may be sent. Called from above, after
+ * tmini_command_begin(), when the lidar is known to be idle: then it needs no stop before. */
+int tmini_command_proceed(tmini_t *lidar);
 
 /* Goes on with what is due now: bytes to send, a line that is quiet, a time that is over. */
 int tmini_command_poll(tmini_t *lidar);
@@ -51,19 +62,13 @@ int tmini_command_poll(tmini_t *lidar);
 /* The awaited reply has come, with this content. */
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content);
 
-/* A packet has come while a start or a reboot is under way. True if it shows that the start has
- * ended well, or that a lidar being rebooted scans: the command is then over. Not so the tail
- * behind a stop (section 9.10). */
-bool tmini_command_packet(tmini_t *lidar);
-
 /* Sends nothing and ends well after a time; 0: never. While it runs, nothing else is under way. */
 void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms);
 
-/* Gives up what is under way, without a word. */
-void tmini_command_cancel(tmini_t *lidar);
-
-/* True while nothing is under way, and the lidar was left idle: the line was quiet then. */
-bool tmini_command_left_idle(const tmini_t *lidar);
+/* What is under way has ended with `result`, or is given up with an error. After a stop the lidar
+ * is idle, and after an answer to the first attempt; after a second one, the reply to the first may
+ * still come. */
+void tmini_command_end(tmini_t *lidar, int result);
 
 /* --------------------------------------------------------------------------- tmini_recovery.c */
 
@@ -74,27 +79,27 @@ void tmini_recovery_begin(tmini_t *lidar);
 void tmini_recovery_go_on(tmini_t *lidar, int result);
 
 /* The lidar is back, by an attempt or by itself. */
-void tmini_recovery_end(tmini_t *lidar);
+static inline void tmini_recovery_end(tmini_t *lidar)
+{
+    lidar->recovery.recoveries++;
+}
 
 /* A complete revolution has come: the next loss is a new one. */
-void tmini_recovery_forget(tmini_t *lidar);
+static inline void tmini_recovery_forget(tmini_t *lidar)
+{
+    lidar->recovery.attempts = 0;
+}
 
 /* ---------------------------------------------------------------------------- tmini_monitor.c */
-
-/* What a packet showed; a combination. */
-enum {
-    TMINI_SHOWN_FAULTS = 1,   /* The faults have changed. */
-    TMINI_SHOWN_COMPLETE = 2, /* A complete revolution has ended with it. */
-    TMINI_SHOWN_LOSS = 4,     /* LastCRC says that a packet of the revolution was lost. */
-};
 
 /* Scanning begins, anew or again: nothing continues what was before. */
 void tmini_monitor_begin(tmini_t *lidar);
 
-/* Takes the packet in lidar->latest. */
-unsigned tmini_monitor_packet(tmini_t *lidar);
+/* Takes the packet in lidar->latest, and what it tells of the revolution that it ends. True if a
+ * complete revolution has ended with it. */
+bool tmini_monitor_packet(tmini_t *lidar, tmini_ct_verdict_t verdict);
 
-/* Looks after time while scanning. True if the faults have changed. */
-bool tmini_monitor_poll(tmini_t *lidar);
+/* Looks after time while scanning. */
+void tmini_monitor_poll(tmini_t *lidar);
 
 #endif

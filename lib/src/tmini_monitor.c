@@ -5,27 +5,19 @@
 
 #include "tmini_driver.h"
 
-/* Returns true if that is news. */
-static bool report(tmini_monitor_t *monitor, uint8_t faults)
-{
-    const bool has_changed = faults != monitor->faults;
-    monitor->observed = faults;
-    monitor->faults = faults;
-    return has_changed;
-}
-
 /* What one revolution shows is believed when the next one shows it too. */
-static bool observe(tmini_monitor_t *monitor, uint8_t faults)
+static void observe(tmini_monitor_t *monitor, uint8_t faults)
 {
-    const bool is_seen_twice = faults == monitor->observed;
+    if (faults == monitor->observed) {
+        monitor->faults = faults;
+    }
     monitor->observed = faults;
-    return is_seen_twice && report(monitor, faults);
 }
 
 /* A start packet: the revolution that it ends is judged by what the unit itself says of its health
  * (section 7). If it says nothing, by whether there was any range; of a revolution that was not
  * received completely, the rest may have had one. */
-static bool judge_revolution(tmini_t *lidar, tmini_ct_verdict_t verdict)
+static void judge_revolution(tmini_t *lidar, tmini_ct_verdict_t verdict)
 {
     tmini_monitor_t *const monitor = &lidar->monitor;
     unsigned faults = tmini_ct_faults(&lidar->ct);
@@ -34,22 +26,9 @@ static bool judge_revolution(tmini_t *lidar, tmini_ct_verdict_t verdict)
         faults = monitor->has_range ? 0 : TMINI_FAULT_DATA;
         is_known = monitor->has_range || monitor->is_complete;
     }
-    return is_known && observe(monitor, (uint8_t)faults);
-}
-
-static unsigned end_revolution(tmini_t *lidar, tmini_ct_verdict_t verdict)
-{
-    tmini_monitor_t *const monitor = &lidar->monitor;
-    unsigned shown = judge_revolution(lidar, verdict) ? TMINI_SHOWN_FAULTS : 0u;
-    if (monitor->is_complete) {
-        shown |= TMINI_SHOWN_COMPLETE;
+    if (is_known) {
+        observe(monitor, (uint8_t)faults);
     }
-    if (verdict == TMINI_CT_REFUTED) {
-        shown |= TMINI_SHOWN_LOSS;
-    }
-    monitor->is_complete = true;
-    monitor->has_range = false;
-    return shown;
 }
 
 void tmini_monitor_begin(tmini_t *lidar)
@@ -62,34 +41,38 @@ void tmini_monitor_begin(tmini_t *lidar)
     monitor->rotating_ms = lidar->link.now_ms;
 }
 
-unsigned tmini_monitor_packet(tmini_t *lidar)
+bool tmini_monitor_packet(tmini_t *lidar, tmini_ct_verdict_t verdict)
 {
     tmini_monitor_t *const monitor = &lidar->monitor;
     const tmini_packet_t *const packet = &lidar->latest.packet;
-    const tmini_ct_verdict_t verdict = tmini_ct_add(&lidar->ct, packet);
     const bool is_start = tmini_packet_is_start(packet);
-    unsigned shown = 0;
+    const bool has_range = tmini_packet_has_range(packet);
+    bool is_whole = false;
     if (packet->gap > 1) { /* One byte may be LastCRC; with more, a packet may be lost. */
         monitor->is_complete = false;
     }
     if (is_start) {
-        shown = end_revolution(lidar, verdict);
+        judge_revolution(lidar, verdict);
+        is_whole = monitor->is_complete;
+        monitor->is_complete = true;
+        monitor->has_range = false;
     }
-    const bool has_range = tmini_packet_has_range(packet);
     if (has_range) {
         monitor->has_range = true;
     }
     if (is_start || has_range) {
         monitor->rotating_ms = lidar->link.now_ms;
     }
-    return shown;
+    return is_whole;
 }
 
-bool tmini_monitor_poll(tmini_t *lidar)
+void tmini_monitor_poll(tmini_t *lidar)
 {
     tmini_monitor_t *const monitor = &lidar->monitor;
     /* No start packet and no range for so long: the rotor is blocked (section 8). */
     const uint16_t timeout_ms = lidar->link.timing->rotation_timeout_ms;
-    return timeout_ms > 0 && tmini_has_elapsed(lidar, monitor->rotating_ms, timeout_ms) &&
-           report(monitor, (uint8_t)(monitor->faults | TMINI_FAULT_ENCODER));
+    if (timeout_ms > 0 && tmini_has_elapsed(lidar, monitor->rotating_ms, timeout_ms)) {
+        monitor->faults |= TMINI_FAULT_ENCODER;
+        monitor->observed = monitor->faults;
+    }
 }

@@ -28,13 +28,14 @@ static void make_attempt(tmini_t *lidar)
 {
     tmini_recovery_t *const recovery = &lidar->recovery;
     const bool has_rebooted = lidar->command.operation == TMINI_COMMAND_REBOOT;
+    tmini_command_code_t operation = TMINI_COMMAND_START;
     if (recovery->attempts == REBOOT_AFTER && !has_rebooted) {
+        operation = TMINI_COMMAND_REBOOT;
         recovery->reboots++;
-        tmini_command_begin(lidar, TMINI_COMMAND_REBOOT, 1, 0);
     } else {
         recovery->restarts++;
-        tmini_command_begin(lidar, TMINI_COMMAND_START, 1, 0);
     }
+    tmini_command_begin(lidar, operation, 1, 0);
 }
 
 void tmini_recovery_begin(tmini_t *lidar)
@@ -57,14 +58,4 @@ void tmini_recovery_go_on(tmini_t *lidar, int result)
     } else {
         back_off(lidar);
     }
-}
-
-void tmini_recovery_end(tmini_t *lidar)
-{
-    lidar->recovery.recoveries++;
-}
-
-void tmini_recovery_forget(tmini_t *lidar)
-{
-    lidar->recovery.attempts = 0;
 }

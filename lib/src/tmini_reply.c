@@ -8,25 +8,23 @@
 /* Most commands are answered with a frequency: the question for it, and each of its steps. */
 bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header)
 {
-    *header = (tmini_reply_header_t){.type = 0x04, .length = TMINI_FREQUENCY_SIZE};
-    switch (command) {
-    case TMINI_COMMAND_STOP:
-    case TMINI_COMMAND_REBOOT:
+    if (command == TMINI_COMMAND_STOP || command == TMINI_COMMAND_REBOOT) {
         return false;
-    case TMINI_COMMAND_START:
+    }
+    header->type = 0x04;
+    header->mode = TMINI_REPLY_MODE_SINGLE;
+    header->length = TMINI_FREQUENCY_SIZE;
+    if (command == TMINI_COMMAND_START) {
         header->type = 0x81;
         header->mode = TMINI_REPLY_MODE_CONTINUOUS;
         header->length = 0;
-        break;
-    case TMINI_COMMAND_GET_INFO:
+    }
+    if (command == TMINI_COMMAND_GET_INFO) {
         header->length = TMINI_INFO_SIZE;
-        break;
-    case TMINI_COMMAND_GET_HEALTH:
+    }
+    if (command == TMINI_COMMAND_GET_HEALTH) {
         header->type = 0x06;
         header->length = TMINI_HEALTH_SIZE;
-        break;
-    default:
-        break;
     }
     return true;
 }

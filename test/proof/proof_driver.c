@@ -64,7 +64,7 @@ static void any_lidar(void)
     lidar.packet_waits = any_bool();
     lidar.is_settled = any_bool();
     lidar.disable_recovery = any_bool();
-    lidar.is_unwatched = any_bool();
+    lidar.are_held = any_bool();
     lidar.command.sync_sent = any_bool();
     lidar.builder.open = any_bool();
     lidar.builder.scan.complete = any_bool();

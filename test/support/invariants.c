@@ -6,16 +6,6 @@
 #include "tmini_driver.h"
 
 /* As in tmini_command.c, whose own they are. */
-enum {
-    PHASE_NONE,
-    PHASE_IDLE,
-    PHASE_QUIESCING,
-    PHASE_AWAITING_REPLY,
-    PHASE_AWAITING_STEP,
-    PHASE_SPINNING_UP,
-    PHASE_WAITING,
-};
-
 #define STEPS_MAX 20
 #define PLAUSIBLE_CHZ_MAX 2000
 
@@ -189,24 +179,24 @@ static bool awaits_its_reply(const tmini_t *lidar)
 }
 
 /* Which phases an operation has. Also when scanning, and between attempts, the time is kept by
- * PHASE_WAITING. */
+ * TMINI_PHASE_WAITING. */
 static bool phase_fits(const tmini_t *lidar)
 {
     const tmini_command_t *const command = &lidar->command;
     switch (command->phase) {
-    case PHASE_AWAITING_REPLY:
+    case TMINI_PHASE_AWAITING_REPLY:
         return (command->code == command->operation ||
                 (steps_frequency(command) && is_step(command->code))) &&
                awaits_its_reply(lidar);
-    case PHASE_AWAITING_STEP:
+    case TMINI_PHASE_AWAITING_STEP:
         return steps_frequency(command) && is_step(command->code) && awaits_its_reply(lidar);
-    case PHASE_QUIESCING:
+    case TMINI_PHASE_QUIESCING:
         return (command->code == TMINI_COMMAND_STOP || steps_frequency(command)) &&
                !lidar->parser.awaiting;
-    case PHASE_SPINNING_UP:
+    case TMINI_PHASE_SPINNING_UP:
         return command->operation == TMINI_COMMAND_START && !lidar->parser.awaiting;
     default:
-        return command->phase <= PHASE_WAITING && !lidar->parser.awaiting;
+        return command->phase <= TMINI_PHASE_WAITING && !lidar->parser.awaiting;
     }
 }
 
@@ -235,26 +225,27 @@ static bool state_fits(const tmini_t *lidar)
 {
     const uint8_t operation = lidar->command.operation;
     const uint8_t phase = lidar->command.phase;
-    const bool is_waiting = phase == PHASE_WAITING;
+    const bool is_waiting = phase == TMINI_PHASE_WAITING;
     switch (lidar->state) {
     case TMINI_STATE_UNKNOWN:
-        return phase <= PHASE_IDLE;
+        return phase <= TMINI_PHASE_IDLE;
     case TMINI_STATE_IDLE:
-        return phase == PHASE_IDLE;
+        return phase == TMINI_PHASE_IDLE;
     case TMINI_STATE_BUSY:
         return end_event_fits(lidar) && operation != TMINI_COMMAND_STOP &&
-               operation != TMINI_COMMAND_START && phase >= PHASE_QUIESCING &&
+               operation != TMINI_COMMAND_START && phase >= TMINI_PHASE_QUIESCING &&
                (!is_waiting || operation == TMINI_COMMAND_REBOOT);
     case TMINI_STATE_STOPPING:
-        return end_event_fits(lidar) && operation == TMINI_COMMAND_STOP && phase == PHASE_QUIESCING;
+        return end_event_fits(lidar) && operation == TMINI_COMMAND_STOP &&
+               phase == TMINI_PHASE_QUIESCING;
     case TMINI_STATE_STARTING:
         return end_event_fits(lidar) && operation == TMINI_COMMAND_START &&
-               phase >= PHASE_QUIESCING && !is_waiting;
+               phase >= TMINI_PHASE_QUIESCING && !is_waiting;
     case TMINI_STATE_SCANNING:
         return is_waiting && lidar->command.unsent == 0;
     case TMINI_STATE_RECOVERING:
-        return phase >= PHASE_QUIESCING && (operation == TMINI_COMMAND_REBOOT ||
-                                            is_waiting == (operation != TMINI_COMMAND_START));
+        return phase >= TMINI_PHASE_QUIESCING && (operation == TMINI_COMMAND_REBOOT ||
+                                                  is_waiting == (operation != TMINI_COMMAND_START));
     default:
         return false;
     }
@@ -264,8 +255,9 @@ static bool command_is_sound(const tmini_command_t *command)
 {
     return is_operation(command->operation) && command->unsent <= (command->sync_sent ? 1 : 2) &&
            (command->sync_sent || command->unsent != 1) &&
-           (command->unsent == 0 || (is_code(command->code) && command->phase > PHASE_IDLE)) &&
-           (command->timeout_ms == 0 || command->phase > PHASE_IDLE) &&
+           (command->unsent == 0 ||
+            (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
+           (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE) &&
            command->steps <= STEPS_MAX && command->frequency_chz <= PLAUSIBLE_CHZ_MAX &&
            (command->target_chz == 0 || (command->target_chz >= TMINI_FREQUENCY_MIN_CHZ &&
                                          command->target_chz <= TMINI_FREQUENCY_MAX_CHZ));

@@ -330,11 +330,11 @@ typedef struct {
 /* tmini_recovery.c */
 typedef struct {
     uint16_t attempts; /* Failed ones, since the last complete revolution or a reboot. */
-    uint16_t pause_ms; /* Behind the last of them. */
     uint16_t losses;
     uint16_t recoveries;
     uint16_t restarts;
     uint16_t reboots;
+    uint16_t pause_ms; /* Behind the last failed attempt. */
 } tmini_recovery_t;
 
 /* tmini_monitor.c */
@@ -363,7 +363,7 @@ struct tmini {
     uint16_t silent_ms; /* For how long nobody who looked has seen bytes come; at most 65535. */
     uint8_t end_event;  /* With which the user's command ends well. */
     uint8_t doubt;      /* Whether, between the bytes before `doubtful_to`, some may be missing. */
-    bool is_unwatched;  /* Since bytes came, nobody looked for longer than the line may pause. */
+    bool are_held;      /* A layer below may have held back the bytes that come next. */
     bool packet_waits;  /* The packet that closed the scan has not been added to the next. */
     bool is_settled;    /* The last poll left nothing to do until bytes come or time passes. */
     bool disable_recovery;
