@@ -24,6 +24,16 @@ void test_a_buffer_that_is_not_aligned_to_cache_lines_is_refused(void)
                                                 &hal_rig.port, &hal_rig.lidar, hal_rig_block, 80));
 }
 
+/* By the interrupts themselves, whether anybody polls or not: 79 packets are 1027 bytes. */
+void test_up_to_the_buffers_end_everything_is_read_anew(void)
+{
+    hal_rig_open(BY_DMA);
+    TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+    hal_rig_line_packets(HAL_RIG_RX_SIZE / 13 + 1);
+    model_pass(100000);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(model.ram, hal_rig_rx, HAL_RIG_RX_SIZE);
+}
+
 /* Else what the CPU has written there would go to memory later, on its own. */
 void test_a_buffer_is_written_to_memory_before_dma_begins(void)
 {

@@ -470,6 +470,26 @@ void test_after_stop_dma_is_off_and_what_had_come_is_there(void)
     check_both(check_stop);
 }
 
+static void check_others_reception(hal_rig_way_t way)
+{
+    static uint8_t others[64];
+    hal_rig_open_and_start(way);
+    hal_rig_line_packets(5);
+    hal_rig_run();
+    tmini_stm32_hal_stop(&hal_rig.port);
+    TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_Receive_DMA(&hal_rig.uart, others, sizeof others));
+    hal_rig_line_packets(2);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(5 * PACKET, bytes_accounted_for());
+    TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_AbortReceive(&hal_rig.uart));
+}
+
+void test_after_stop_what_others_receive_by_the_same_dma_is_theirs(void)
+{
+    check_both(check_others_reception);
+}
+
 static void check_new_lidar(hal_rig_way_t way)
 {
     hal_rig_open_and_start(way);
