@@ -155,7 +155,8 @@ class Build:
         for place, folders, files in os.walk(self.folder): # Not through links: they may lead round in a circle.
             if "CMakeCache.txt" in files and place != self.folder:
                 folders.clear() # A build of its own.
-            self.archives += [os.path.join(place, file) for file in sorted(files) if file.endswith(".a")]
+            self.archives += [os.path.join(place, file) for file in sorted(files) if file.endswith(".a") and
+                              os.path.isdir(os.path.join(place, "CMakeFiles", file[3:-2] + ".dir"))] # Made here.
             self.folders += [os.path.join(place, name) for name in sorted(folders) if re.match(r"test_.*\.dir$", name)]
 
     def entries_of(self, source):

@@ -461,6 +461,21 @@ void test_a_single_attempt_is_one_attempt(void)
     fails_with(TMINI_ERROR_TIMEOUT);
 }
 
+void test_two_attempts_are_two(void)
+{
+    tmini_timing_t timing = tmini_timing_default;
+
+    timing.max_attempts = 2;
+    rig.config.timing = &timing;
+    rig_init();
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    asks_in_vain(GET_HEALTH);
+    passes(2000);
+    fails_with(TMINI_ERROR_TIMEOUT);
+}
+
 void test_no_attempts_count_as_one(void)
 {
     tmini_timing_t timing = tmini_timing_default;

@@ -478,7 +478,7 @@ static void check_others_reception(hal_rig_way_t way)
     hal_rig_run();
     tmini_stm32_hal_stop(&hal_rig.port);
     TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_Receive_DMA(&hal_rig.uart, others, sizeof others));
-    hal_rig_line_packets(2);
+    hal_rig_line_packets(10);
     hal_rig_run();
     TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
     TEST_ASSERT_EQUAL_UINT32(5 * PACKET, bytes_accounted_for());
