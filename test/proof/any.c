@@ -65,13 +65,6 @@ tmini_parser_t any_parser(tmini_ring_t *ring)
     return parser;
 }
 
-tmini_ring_t any_ring_like(const tmini_ring_t *ring)
-{
-    const tmini_ring_t other = any_early_ring(ring->size);
-    ASSUME(other.window == ring->window);
-    return other;
-}
-
 void let_bytes_come(tmini_ring_t *ring)
 {
     fed = ring;

@@ -47,9 +47,6 @@ tmini_ring_t any_ring(void);
  * one another and taken modulo the size. */
 tmini_ring_t any_early_ring(size_t size);
 
-/* Any such ring of the same size, fed the same way. */
-tmini_ring_t any_ring_like(const tmini_ring_t *ring);
-
 /* Any parser on it, but that its counters, which are only ever added to, are 0. */
 tmini_parser_t any_parser(tmini_ring_t *ring);
 

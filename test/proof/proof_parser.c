@@ -272,7 +272,6 @@ void any_skip(tmini_parser_t *same, size_t unread)
 }
 
 static bool is_second_turn;
-static uint16_t effort_before;
 static unsigned rank_before;
 
 /* How many turns without effort may follow, if nothing comes: one in which a candidate turns out
@@ -284,37 +283,31 @@ static unsigned rank(void)
     return is_enough ? 2 : tmini_ring_is_closed(&ring) ? 1 : 0;
 }
 
-/* Called where each turn begins: prove.py puts it there. What holds here the first time, and again
- * after a turn from any state in which it holds, holds always. And each turn has done some of the
- * work that there may be, or leads nearer to the end, unless something has come meanwhile. */
+/* Called where each turn begins: prove.py puts it there. What holds before a turn, any sound state
+ * without a frame, as release_frame() leaves it, holds before the next one. And each turn has done
+ * some of the work that there may be, or leads nearer to the end, unless something has come
+ * meanwhile. */
 void at_loop_head(void)
 {
-    CLAIM(skip_keeps_its_word(&before, &parser));
-    CLAIM(parser.effort < TMINI_PARSER_EFFORT);
-    CLAIM(is_accounted_for());
     if (is_second_turn) {
-        CLAIM(parser.effort > effort_before + TMINI_CANDIDATE_EFFORT || have_bytes_come() ||
+        CLAIM(is_accounted_for());
+        CLAIM(skip_keeps_its_word(&before, &parser));
+        CLAIM(parser.effort < TMINI_PARSER_EFFORT);
+        CLAIM(parser.effort > before.effort + TMINI_CANDIDATE_EFFORT || have_bytes_come() ||
               rank() < rank_before);
         ASSUME(false);
     }
     is_second_turn = true;
-    ring = any_ring_like(&ring);
-    parser = any_parser(&ring);
-    ASSUME(skip_keeps_its_word(&before, &parser) && parser.effort < TMINI_PARSER_EFFORT);
-    before_account = parser_account(&parser);
-    before_head = ring.head;
-    before_overrun = ring.overrun;
-    effort_before = parser.effort;
-    rank_before = rank();
     let_bytes_come(&ring);
 }
 
 void prove_parser_next(void)
 {
     begin();
-    const size_t effort = nondet_size();
-    ASSUME(effort < TMINI_PARSER_EFFORT);
-    const tmini_frame_type_t type = tmini_parser_next_after(&parser, effort);
+    let_bytes_come(NULL);
+    ASSUME(parser.frame.size == 0 && parser.effort < TMINI_PARSER_EFFORT);
+    rank_before = rank();
+    const tmini_frame_type_t type = tmini_parser_next_after(&parser, parser.effort);
     CLAIM(is_accounted_for());
     CLAIM(next_keeps_its_word(&before, &parser, type));
     CLAIM((type == TMINI_FRAME_MORE) == (parser.effort >= TMINI_PARSER_EFFORT) ||
