@@ -1362,6 +1362,15 @@ void test_a_single_byte_before_a_place_is_skipped(void)
     expect_skipped(1);
 }
 
+void test_the_last_byte_before_a_place_is_the_one_skipped_last(void)
+{
+    static const uint8_t noise[3] = {0x11, 0x22, 0x33};
+    feed(noise, sizeof noise);
+    feed(start_packet, 13);
+    tmini_parser_skip_to(&receiver.parser, 2);
+    TEST_ASSERT_EQUAL_HEX8(0x22, tmini_parser_frame(&receiver.parser)->last_skipped);
+}
+
 void test_bytes_before_a_place_are_skipped_without_a_look(void)
 {
     feed(start_packet, 13);

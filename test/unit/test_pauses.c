@@ -240,8 +240,8 @@ void test_a_pause_that_has_been_judged_does_not_count_for_the_next_one(void)
     doubtful_are_the_first(2, 3);
 }
 
-/* The last look was `unseen_ms` before these packets came, of 31 and of 30 samples, after a pause of
- * more than 100 ms. */
+/* The last look was `unseen_ms` before these packets came, of 31 and of 30 samples, after a pause
+ * of more than 100 ms. */
 static void come_after_a_look(uint32_t pause_ms, uint32_t unseen_ms, unsigned of_31, unsigned of_30)
 {
     open_with(100, false);

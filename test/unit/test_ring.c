@@ -237,6 +237,14 @@ void test_a_block_that_ends_at_the_memorys_end_fits(void)
     TEST_ASSERT_EQUAL_INT('a', memory[0]); /* The first of the twelve. */
 }
 
+void test_a_block_that_just_fits_does_not_close_the_ring(void)
+{
+    TEST_ASSERT_EQUAL_UINT(SIZE, tmini_ring_write(&ring, letters, SIZE));
+    TEST_ASSERT_FALSE(tmini_ring_is_closed(&ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_write(&ring, letters, 0));
+    TEST_ASSERT_FALSE(tmini_ring_is_closed(&ring));
+}
+
 void test_a_block_of_the_rings_size_fits_at_every_position(void)
 {
     for (size_t start = 0; start < 2 * SIZE; start++) {

@@ -371,6 +371,33 @@ void test_a_jump_of_more_than_4_degrees_is_a_gap(void)
     TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
 }
 
+void test_a_jump_of_more_than_half_a_turn_ends_the_scan(void)
+{
+    (void)start(0);
+    (void)point(64, 640);
+    TEST_ASSERT_FALSE(point(640 + 180 * DEGREE, 700 + 180 * DEGREE));
+    begin_with(ROOM, TMINI_FILTER_NONE);
+    (void)start(0);
+    (void)point(64, 640);
+    TEST_ASSERT_TRUE(point(641 + 180 * DEGREE, 700 + 180 * DEGREE));
+}
+
+/* It came back to 4 degrees before the first point; to one 64th more. */
+void test_a_turn_that_lacks_4_degrees_is_complete_and_no_more(void)
+{
+    static const uint16_t ends[] = {0, 23039};
+    for (unsigned i = 0; i < 2; i++) {
+        begin_with(ROOM, TMINI_FILTER_NONE);
+        (void)start(256);
+        (void)point(300, 10000);
+        (void)point(10100, 20000);
+        (void)point(20100, 23030);
+        TEST_ASSERT_TRUE(arrive(0x79, 1, ends[i], ends[i]));
+        TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
+        TEST_ASSERT_EQUAL(i == 0, scan->complete);
+    }
+}
+
 void test_a_jump_at_the_end_of_a_turn_is_a_gap(void)
 {
     (void)start(0);
