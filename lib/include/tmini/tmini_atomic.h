@@ -64,7 +64,7 @@
 #endif
 
 /** @def TMINI_AGAIN
- * What was read from a variable of one's own: kept, or at -Os, where registers are few, read again. */
+ * What was read from a variable of one's own: kept; at -Os, where registers are few, read again. */
 #if defined(__OPTIMIZE_SIZE__)
 #define TMINI_AGAIN(variable, kept) (variable)
 #else
