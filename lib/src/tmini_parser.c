@@ -266,7 +266,7 @@ static bool pass_lost_bytes(tmini_parser_t *parser)
 {
     tmini_ring_t *const ring = parser->frame.ring;
     const size_t ahead = tmini_ring_ahead(ring);
-    if (ahead <= ring->window || tmini_ring_is_dma(ring)) {
+    if (tmini_ring_is_dma(ring) || ahead <= ring->window) {
         return false;
     }
     const size_t unread = ahead - TMINI_RING_CLOSED; /* Nothing is stored any more. */

@@ -6,8 +6,8 @@
  * for. The steps are private, so the source is included.
  *
  * tmini_parser_next_after() puts these steps together in a loop. It is proved one turn of it from
- * any state that the turns before may have left: at_loop_head(). In classify() the checksum is right
- * or wrong as it likes. */
+ * any state that the turns before may have left: at_loop_head(). In classify() the checksum is
+ * right or wrong as it likes. */
 
 void at_loop_head(void);
 

@@ -154,7 +154,7 @@ static inline bool tmini_ring_is_dma(const tmini_ring_t *ring)
 /** True if bytes are missing behind the last one stored: the ring is closed. */
 static inline bool tmini_ring_is_closed(const tmini_ring_t *ring)
 {
-    return tmini_ring_ahead(ring) > ring->window && !tmini_ring_is_dma(ring);
+    return !tmini_ring_is_dma(ring) && tmini_ring_ahead(ring) > ring->window;
 }
 
 /** The unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger offset reads
