@@ -107,7 +107,8 @@ typedef struct {
     const tmini_port_t *port; /**< Required. */
     void *port_context;       /**< Passed to its functions. */
     uint8_t *rx_buffer;       /**< Received bytes. Required. */
-    size_t rx_size;           /**< A power of two; 256 or more (512 with DMA) for 80 samples. */
+    size_t rx_size;           /**< A power of two; 256 or more (512 with DMA) for 80 samples, up to
+                                 * TMINI_RING_SIZE_MAX. */
     bool rx_dma;           /**< The buffer is the target of circular DMA: use tmini_feed_dma(). */
     tmini_point_t *points; /**< One scan. NULL: an event for each packet instead. */
     size_t max_points;     /**< 1 to 65535, or 0 with no points. */

@@ -112,8 +112,9 @@ void tmini_ring_gap(tmini_ring_t *ring);
 
 /* ----------------------------------------------------------------------- the consumer's context */
 
-/** The place in the stream where the next byte goes. Places are to be compared with
- * tmini_ring_distance() only: they leap when a ring is closed and opened. */
+/** The place in the stream where the next byte goes. It differs from what it was if bytes have been
+ * stored since, or the ring has been closed. How far two places are apart tmini_ring_distance()
+ * tells, not their difference: they leap when a ring is closed and opened. */
 static inline size_t tmini_ring_head(const tmini_ring_t *ring)
 {
     return tmini_load(&ring->head);
