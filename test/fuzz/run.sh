@@ -42,8 +42,8 @@ compile() {
     program=$1
     target=$2
     shift 2
-    sources "$target" | tr '\n' '\0' | xargs -0 "$compiler" -std=c99 -g -O1 -Wall -Wextra -Werror "$@" \
-        -I"$root/lib/include" -I"$root/lib/src" -I"$support" -o "$build/$program"
+    sources "$target" | tr '\n' '\0' | xargs -0 "$compiler" -std=c99 -g -O1 -Wall -Wextra -Werror \
+        "$@" -I"$root/lib/include" -I"$root/lib/src" -I"$support" -o "$build/$program"
 }
 
 # unpack TARGET: the kept inputs, into its corpus.
