@@ -114,7 +114,7 @@ PROOFS = [
            "if (unread < parser->need)"),
     parser("next", "lib/src/tmini_parser.c",
            "        if (verdict == NOT_A_FRAME) {\n            skip(parser, unread);\n        } else if", "        if",
-           slow=True,
+           slow=True, cases=[["FED_BY_DMA=true"], ["FED_BY_DMA=false"]],
            replaced=["classify:any_classify", "skip:any_skip"],
            loops="tmini_parser_next_after.0:3",
            inserted=("lib/src/tmini_parser.c", "    do {\n        const size_t unread = intact_bytes(parser);",
