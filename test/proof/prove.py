@@ -128,7 +128,7 @@ PROOFS = [
     angle(40, "lib/src/tmini_packet.c", "(STEP_BITS - 1))", "(STEP_BITS - 2))", slow=True),
     scan("scan_init", "lib/src/tmini_scan.c", "capacity == 0 || ", ""),
     scan("scan_step", "lib/src/tmini_scan.c", "(size_t)builder->capacity - scan->count)", "(size_t)builder->capacity)"),
-    scan("scan_refute", "lib/src/tmini_scan.c", "add_up(&builder->scan.gaps, 1);\n}\n\nbool tmini_scan_add",
+    scan("scan_refute", "lib/src/tmini_scan.c", "count_one(&builder->scan.gaps);\n}\n\nbool tmini_scan_add",
          "}\n\nbool tmini_scan_add"),
     scan("ct_crc", "lib/src/tmini_ct.c", "sum << 6", "sum << 5"),
     scan("ct_add", "lib/src/tmini_ct.c", " || start->gap != 1", ""),
