@@ -490,6 +490,25 @@ void test_after_stop_what_others_receive_by_the_same_dma_is_theirs(void)
     check_both(check_others_reception);
 }
 
+/* The HAL has ended the reception; where its DMA stands then means nothing. */
+static void check_late_event(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    hal_rig_line_packets(5);
+    hal_rig_run();
+    const size_t head = tmini_ring_head(&hal_rig.lidar.ring);
+    hal_rig.uart.RxState = HAL_UART_STATE_READY;
+    hal_rig_line_packets(1);
+    model_pass(10000);
+    tmini_stm32_hal_rx_half_complete(&hal_rig.port, &hal_rig.uart);
+    TEST_ASSERT_EQUAL_UINT32(head, tmini_ring_head(&hal_rig.lidar.ring));
+}
+
+void test_an_event_that_comes_after_the_reception_has_ended_hands_nothing_over(void)
+{
+    check_both(check_late_event);
+}
+
 static void check_new_lidar(hal_rig_way_t way)
 {
     hal_rig_open_and_start(way);
