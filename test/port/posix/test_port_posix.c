@@ -13,6 +13,7 @@
 #include "unity.h"
 
 #include <fcntl.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -142,6 +143,21 @@ void test_an_address_that_is_none_is_told(void)
         tmini_posix_init(&serial, wrong[i]);
         TEST_ASSERT_EQUAL_INT(TMINI_POSIX_ADDRESS, tmini_posix_start(&serial, NULL));
     }
+}
+
+static tmini_posix_status_t start_at_host_of_zeros(int digits)
+{
+    char path[sizeof "tcp:" + 256 + sizeof ":1"];
+    (void)snprintf(path, sizeof path, "tcp:%0*d:1", digits, 0);
+    tmini_posix_init(&serial, path);
+    return tmini_posix_start(&serial, NULL);
+}
+
+/* Any number of zeros is an address, at which nobody listens. */
+void test_the_longest_host_name_has_255_characters(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, start_at_host_of_zeros(255));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_ADDRESS, start_at_host_of_zeros(256));
 }
 
 void test_silence_is_no_error(void)
