@@ -42,9 +42,12 @@ typedef char events_fit_their_mask[TMINI_EVENT_MORE <= 16 ? 1 : -1];
  * packet's samples are read for its points, its time is told, and its place in the scan found. */
 #define FRAME_EFFORT 44u
 
-/* Which packets others may be missing before: each that begins among the doubtful bytes, and
- * AHEAD: the first one behind them, if none has been marked; AROUND: the first one behind them
- * in any case. */
+/* Which packets others may be missing before, when bytes are doubtful, because the line has paused
+ * or nobody knows how many came: each packet that begins among them, and
+ *
+ *   AHEAD   if it has been before them: the first packet behind them too, unless (MARKED) one
+ *           began among them
+ *   AROUND  if it may as well have been behind them: the first packet behind them in any case */
 enum { DOUBT_NONE, DOUBT_AHEAD, DOUBT_MARKED, DOUBT_AROUND };
 
 static bool is_set_up(const tmini_t *lidar)
@@ -122,7 +125,7 @@ static void note_silence(tmini_t *lidar, uint32_t passed_ms)
     lidar->silent_ms = (uint16_t)(silent_ms < UINT16_MAX ? silent_ms : UINT16_MAX);
 }
 
-/* Reads the clock and notes whether bytes have come. */
+/* Reads the clock and notes whether bytes have come, or may have. */
 static void update_time(tmini_t *lidar)
 {
     tmini_link_t *const link = &lidar->link;
@@ -135,11 +138,14 @@ static void update_time(tmini_t *lidar)
     if (passed_ms > link->timing->max_pause_ms) {
         lidar->are_held = true;
     }
-    if (count == 0) {
+    if (count > 0) {
+        note_bytes(lidar, count, passed_ms);
+    } else if (tmini_ring_is_full(&lidar->ring)) {
+        lidar->silent_ms = 0; /* Who knows what there was no room for? */
+    } else {
         note_silence(lidar, passed_ms);
         return;
     }
-    note_bytes(lidar, count, passed_ms);
     if (lidar->state == TMINI_STATE_IDLE) {
         lidar->state = TMINI_STATE_UNKNOWN;
     }

@@ -210,6 +210,50 @@ void test_a_lidar_that_is_still_streaming_is_stopped(void)
     check_world(&world);
 }
 
+/* The program looks at the lidar each 60 ms. */
+static unsigned run_at_leisure(uint32_t ms)
+{
+    unsigned events = 0;
+
+    for (; ms > 0; ms -= 60) {
+        world.busy_until_us = world.now_us + 60000u;
+        events |= world_run_ms(&world, 60);
+    }
+    return events & ~BIT(TMINI_EVENT_MORE);
+}
+
+/* Much else is to be done before, so that the ring is full. What there is no room for is not to be
+ * taken for a quiet line. */
+static void streams_on_while_the_program_is_busy(void)
+{
+    config.rx_size = 4096;
+    config.overruns_expected = true;
+    config.sim.stop_tail_ms = 300;
+    streams_on_while_the_program_restarts();
+    world.busy_until_us = world.now_us + 800000u;
+    (void)world_run_ms(&world, 799);
+}
+
+void test_a_lidar_whose_bytes_have_filled_the_ring_is_stopped_before_it_is_started(void)
+{
+    streams_on_while_the_program_is_busy();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&world.lidar));
+    TEST_ASSERT_EQUAL_HEX(0, run_at_leisure(300));
+    TEST_ASSERT_TRUE((run_at_leisure(3000) & BIT(TMINI_EVENT_STARTED)) != 0);
+    TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_LOST));
+    check_world(&world);
+}
+
+void test_a_lidar_whose_bytes_have_filled_the_ring_is_said_to_be_stopped_when_it_is(void)
+{
+    streams_on_while_the_program_is_busy();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
+    TEST_ASSERT_EQUAL_HEX(0, run_at_leisure(300));
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_STOPPED), run_at_leisure(600));
+    TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
+    check_world(&world);
+}
+
 /* ---- Commands in adverse conditions ---- */
 
 void test_every_frequency_can_be_set_from_where_the_last_one_left_it(void)

@@ -73,6 +73,57 @@ void test_each_byte_that_is_heard_puts_the_command_off_by_the_quiet_time(void)
     was_sent();
 }
 
+/* The ring has no room for what comes: it waits in a layer below, or is refused. Of these two,
+ * only a refused byte leaves a trace in the ring. */
+static void is_quiet_only_after_room_was_made(size_t bytes)
+{
+    for (size_t i = 0; i < bytes; i++) {
+        rig_feed_byte(0x00);
+    }
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    rig.now_ms += 60;
+    polls_to(TMINI_EVENT_NONE);
+    is_in(TMINI_STATE_STOPPING);
+    passes(49);
+    polls_to(TMINI_EVENT_NONE);
+    passes(1);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
+void test_while_the_ring_is_full_nobody_knows_that_the_line_is_quiet(void)
+{
+    is_quiet_only_after_room_was_made(RIG_RX_SIZE);
+}
+
+void test_while_the_ring_is_closed_nobody_knows_that_the_line_is_quiet(void)
+{
+    is_quiet_only_after_room_was_made(RIG_RX_SIZE + 1);
+}
+
+void test_with_room_for_a_byte_more_the_line_is_known_to_be_quiet(void)
+{
+    for (size_t i = 1; i < RIG_RX_SIZE; i++) {
+        rig_feed_byte(0x00);
+    }
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    rig.now_ms += 60;
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
+/* They may have been a packet's. */
+void test_bytes_that_were_lost_while_idle_are_heard_as_well(void)
+{
+    rig_go_idle();
+    tmini_feed_gap(&rig.lidar);
+    polls_to(TMINI_EVENT_NONE);
+    is_in(TMINI_STATE_UNKNOWN);
+    sends(STOP);
+    begins(tmini_request_info(&rig.lidar));
+    was_sent();
+}
+
 void test_packets_of_the_tail_behind_a_stop_are_no_scan(void)
 {
     rig_go_scanning();

@@ -342,6 +342,26 @@ void test_a_refused_byte_closes_the_ring_however_much_room_there_is_then(void)
     TEST_ASSERT_EQUAL_UINT(6, tmini_ring_overrun(&ring));
 }
 
+void test_a_ring_is_full_from_the_last_byte_that_fits_until_room_is_made(void)
+{
+    age(SIZE_MAX - 3); /* The indices wrap on the way. */
+    put_letters(0, SIZE - 1);
+    TEST_ASSERT_FALSE(tmini_ring_is_full(&ring));
+    put_letters(SIZE - 1, 1);
+    TEST_ASSERT_TRUE(tmini_ring_is_full(&ring));
+    tmini_ring_discard(&ring, 1);
+    TEST_ASSERT_FALSE(tmini_ring_is_full(&ring));
+}
+
+void test_a_closed_ring_is_full_until_it_is_opened(void)
+{
+    put_letters(0, SIZE + 1);
+    tmini_ring_discard(&ring, SIZE);
+    TEST_ASSERT_TRUE(tmini_ring_is_full(&ring));
+    tmini_ring_open(&ring);
+    TEST_ASSERT_FALSE(tmini_ring_is_full(&ring));
+}
+
 void test_a_block_that_was_cut_closes_the_ring_too(void)
 {
     put_letters(0, 10);

@@ -158,6 +158,12 @@ static inline bool tmini_ring_is_closed(const tmini_ring_t *ring)
     return !tmini_ring_is_dma(ring) && tmini_ring_ahead(ring) > ring->window;
 }
 
+/** True if there is no room for a byte: the whole memory is unread, or the ring is closed. */
+static inline bool tmini_ring_is_full(const tmini_ring_t *ring)
+{
+    return tmini_ring_head(ring) - ring->limit <= SIZE_MAX / 2; /* As for the producer. */
+}
+
 /** The unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger offset reads
  * another byte of the ring's memory, never one outside it. */
 static inline uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
@@ -175,7 +181,7 @@ static inline bool tmini_ring_intact(const tmini_ring_t *ring)
 }
 
 /** Copies `count` unread bytes from `offset` on to `bytes`; offset + count is at most
- * tmini_ring_unread(). Two block copies at most. */
+ * tmini_ring_unread(). A loop over bytes, for a few of them. */
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count);
 
 /** The unread bytes from `offset` on that lie in one piece, so that loops over them need not wrap:
