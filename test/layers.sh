@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Checks that the library's files call only those below them, and that each member of tmini_t is
-# written by the file that owns it:
+# Checks that the library's files call only those below them, and that each group of members of
+# tmini_t is written by the file that owns it:
 #
 #   test/layers.sh LIBRARY.a
 #

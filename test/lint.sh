@@ -3,7 +3,7 @@
 # Copyright (c) 2026 The tmini authors
 
 # Reads the sources without running them: formatting, static analysis, and strict compilation for
-# each target of test/compile.sh. Does all checks, then fails if any has found something.
+# most targets of test/compile.sh. Does all checks, then fails if any has found something.
 #
 #   test/lint.sh [--fix]       --fix puts the formatting right in place first
 

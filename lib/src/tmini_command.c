@@ -104,7 +104,7 @@ static bool is_reached(const tmini_command_t *command)
     return left >= -FINE_STEP_CHZ / 2 && left <= FINE_STEP_CHZ / 2;
 }
 
-/* Never beyond the target, so never out of the permitted range. */
+/* Never beyond the target by as much as the finest step, so never out of the permitted range. */
 static uint8_t next_step(const tmini_command_t *command)
 {
     const int32_t left = chz_to_go(command);

@@ -10,8 +10,8 @@
  *
  * Each writes its own group of members of tmini_t (`command`, `recovery`, `monitor`; tmini.c `link`
  * and those without a group). Ring, parser and builder are written by their own modules only, which
- * know nothing of tmini_t. test/layers.sh checks both. docs/design.md has the states and phases as
- * a drawing. */
+ * know nothing of tmini_t. test/layers.sh checks both. docs/design.md draws the states and
+ * lists the phases. */
 
 #ifndef TMINI_DRIVER_H
 #define TMINI_DRIVER_H
@@ -62,7 +62,8 @@ int tmini_command_poll(tmini_t *lidar);
 /* The awaited reply has come, with this content. */
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content);
 
-/* Sends nothing and ends well after a time; 0: never. While it runs, nothing else is under way. */
+/* Sends nothing and ends well after a time; 0: never. While it runs, nothing else is under way.
+ * Begun anew by each packet it is a watchdog: its end says that none has come. */
 void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms);
 
 /* What is under way has ended with `result`, or is given up with an error. After a stop the lidar
@@ -84,7 +85,7 @@ static inline void tmini_recovery_end(tmini_t *lidar)
     lidar->recovery.recoveries++;
 }
 
-/* A complete revolution has come: the next loss is a new one. */
+/* A complete revolution has come, or a command from the user: the next loss is a new one. */
 static inline void tmini_recovery_forget(tmini_t *lidar)
 {
     lidar->recovery.attempts = 0;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* While the lidar scans: is it well? Packets in, faults out, each seen in two revolutions. */
+/* While the lidar scans: is it well? Packets in, faults out: what revolutions show, once two have
+ * shown it; a rotor that stands still, by time. */
 
 #include "tmini_driver.h"
 

@@ -16,16 +16,16 @@
  *         }
  *     }
  *
- * Contexts. The three feed functions belong to the one context that receives: an interrupt, a
- * DMA interrupt or a task. All other functions belong to one other context, a main loop or a task.
+ * Contexts. The functions tmini_feed…() belong to the one context that receives: an interrupt, a
+ * DMA interrupt or a task. All others belong to one other context, a main loop or a task.
  * Nothing is locked and no interrupt is disabled (but see tmini_atomic.h for 8-bit machines). Any
  * number of lidars, each with a tmini_t of its own.
  *
  * Time. No function waits. Commands only begin something; how it ends is an event. tmini_poll()
  * must be called often enough that the receive buffer does not overflow: at least every 38 ms with
  * 1024 bytes, or every 16 ms with DMA, which can use half of them (docs/footprint.md, "How often to
- * poll", has other sizes). Call it until it returns TMINI_EVENT_NONE: only then does it look for
- * time-outs.
+ * poll", has other sizes). Call it until it returns TMINI_EVENT_NONE: while other events are due,
+ * it does not look for time-outs.
  *
  * "Section" in these headers means the section of docs/protocol.md. */
 
@@ -202,8 +202,9 @@ static inline void tmini_feed_dma(tmini_t *lidar, size_t position);
 /** Says that bytes were lost on their way, behind those fed so far, and not how many: a receiver's
  * queue overflowed, or DMA may have gone a whole lap unseen (then call it before tmini_feed_dma()).
  * No scan continues across the gap. Without DMA nothing is stored until polling has emptied the
- * buffer: look at tmini_feed_room(). With DMA it counts a lap (rx_size bytes) as overrun, because
- * so many may be lost; if there was none, what came last may be delivered a second time. */
+ * buffer: look at tmini_feed_room(). With DMA it drops all but the newest half of rx_buffer, and
+ * counts as overrun what that makes of a lap (rx_size bytes); if there was none, that half may be
+ * delivered a second time. */
 static inline void tmini_feed_gap(tmini_t *lidar);
 
 /* -------------------------------------------------------- everything else: the polling context */
@@ -281,8 +282,9 @@ const tmini_info_t *tmini_info(const tmini_t *lidar);
  * 4). */
 const tmini_health_t *tmini_health(const tmini_t *lidar);
 
-/** The scan frequency that TMINI_EVENT_FREQUENCY announced, as it is set, in 0.01 Hz; 0 before.
- * What is measured is in each scan. */
+/** The scan frequency as it is set, in 0.01 Hz, that the lidar has told last: what
+ * TMINI_EVENT_FREQUENCY announced, or how far a change has come; 0 before. What is measured is in
+ * each scan. */
 uint16_t tmini_frequency_chz(const tmini_t *lidar);
 
 /** Why the last failed command failed: TMINI_ERROR_TIMEOUT, _WRITE, _REPLY or _ABORTED. TMINI_OK if

@@ -95,8 +95,8 @@ tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet);
  * TMINI_FAULTS_UNKNOWN if none has. */
 unsigned tmini_ct_faults(const tmini_ct_t *ct);
 
-/** Writes what is known from trusted revolutions to `info`; each field keeps its value once
- * known. */
+/** Writes what is known from trusted revolutions to `info`; each field keeps its value until a
+ * newer one is trusted. */
 void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info);
 
 /** The guard's CRC-8 (CRC-8/MAXIM: reflected polynomial 0x8C, initial value 0; section 7), `crc` so

@@ -5,8 +5,9 @@
  * What the driver needs of the board: something to send bytes with, and a clock. Received bytes
  * come the other way, through tmini_feed_byte(), tmini_feed() or tmini_feed_dma().
  *
- * All members are called from within tmini_poll() or a command function, hence in the context that
- * calls those, never from an interrupt, and never two at a time for one lidar. */
+ * All members are called from within tmini_poll(), a command function or a blocking helper, hence
+ * in the context that calls those, never from an interrupt, and never two at a time for one
+ * lidar. */
 
 #ifndef TMINI_PORT_H
 #define TMINI_PORT_H
