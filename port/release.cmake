@@ -39,9 +39,9 @@ set(work ${out}/work)
 set(documents CHANGELOG.md LICENSE README.md)
 
 # The examples need the simulated lidar, and that the encoder.
-set(source_contents ${documents} CONTRIBUTING.md SECURITY.md CMakeLists.txt CMakePresets.json Kconfig
-    idf_component.yml library.json docs examples lib port zephyr
-    test/CMakeLists.txt test/simulator test/support)
+set(source_contents ${documents} CONTRIBUTING.md SECURITY.md
+    CMakeLists.txt CMakePresets.json Kconfig idf_component.yml library.json
+    docs examples lib port zephyr test/CMakeLists.txt test/simulator test/support)
 
 # What the component manager packs.
 file(STRINGS ${root}/idf_component.yml manifest)
