@@ -812,9 +812,11 @@ class OneFile(Viewer):
     """Nothing beside the file is needed, and nobody is asked for anything."""
 
     def requests(self):
+        """What has been asked for, but by pages of the browser's own: its new tab may still be loading."""
         messages = [json.loads(entry["message"])["message"] for entry in self.page.log("performance")]
-        return [message["params"]["request"]["url"] for message in messages
-                if message["method"] == "Network.requestWillBeSent"]
+        sent = [message["params"] for message in messages if message["method"] == "Network.requestWillBeSent"]
+        return [request["request"]["url"] for request in sent
+                if not request["documentURL"].startswith("chrome:")]
 
     def test_is_small(self):
         self.assertLessEqual(PAGE.stat().st_size, SIZE_MAX)
