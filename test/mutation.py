@@ -403,6 +403,8 @@ def main():
     parser.add_argument("files", nargs="*", metavar="FILE", default=[os.path.join(ROOT, "lib", "src")])
     arguments = parser.parse_args()
     mutants = [mutant for path in files_among(arguments.files) for mutant in mutants_of(path)]
+    if not mutants:
+        parser.error(f"nothing to change in {' '.join(arguments.files)}")
     if arguments.sample: # By hash, so that a change of one line does not draw all others anew.
         mutants.sort(key=lambda mutant: hashlib.sha256(f"{arguments.seed} {mutant.key}".encode()).digest())
     if arguments.list:
