@@ -39,6 +39,7 @@ void prove_ring_put(void)
     const size_t refused = tmini_ring_overrun(&ring);
     const bool was_closed = tmini_ring_is_closed(&ring);
     const uint8_t byte = nondet_byte();
+    CLAIM(tmini_ring_is_full(&ring) == (unread == RING_SIZE || was_closed));
     tmini_ring_put(&ring, byte);
     CLAIM(ring_is_sound(&ring));
     CLAIM(offset >= unread || tmini_ring_peek(&ring, offset) == before);
