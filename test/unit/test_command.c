@@ -73,9 +73,8 @@ void test_each_byte_that_is_heard_puts_the_command_off_by_the_quiet_time(void)
     was_sent();
 }
 
-/* The ring has no room for what comes: it waits in a layer below, or is refused. Of these two,
- * only a refused byte leaves a trace in the ring. */
-static void is_quiet_only_after_room_was_made(size_t bytes)
+/* A stop is sent behind so many bytes, and nobody looks for 60 ms. */
+static void stop_unwatched_behind(size_t bytes)
 {
     for (size_t i = 0; i < bytes; i++) {
         rig_feed_byte(0x00);
@@ -83,6 +82,13 @@ static void is_quiet_only_after_room_was_made(size_t bytes)
     sends(STOP);
     begins(tmini_stop(&rig.lidar));
     rig.now_ms += 60;
+}
+
+/* The ring has no room for what comes: it waits in a layer below, or is refused. Of these two,
+ * only a refused byte leaves a trace in the ring. */
+static void is_quiet_only_after_room_was_made(size_t bytes)
+{
+    stop_unwatched_behind(bytes);
     polls_to(TMINI_EVENT_NONE);
     is_in(TMINI_STATE_STOPPING);
     passes(49);
@@ -103,12 +109,7 @@ void test_while_the_ring_is_closed_nobody_knows_that_the_line_is_quiet(void)
 
 void test_with_room_for_a_byte_more_the_line_is_known_to_be_quiet(void)
 {
-    for (size_t i = 1; i < RIG_RX_SIZE; i++) {
-        rig_feed_byte(0x00);
-    }
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
-    rig.now_ms += 60;
+    stop_unwatched_behind(RIG_RX_SIZE - 1);
     polls_to(TMINI_EVENT_STOPPED);
 }
 
