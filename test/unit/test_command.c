@@ -113,6 +113,20 @@ void test_with_room_for_a_byte_more_the_line_is_known_to_be_quiet(void)
     polls_to(TMINI_EVENT_STOPPED);
 }
 
+void test_bytes_that_were_lost_put_the_command_off_by_the_quiet_time(void)
+{
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    passes(30);
+    polls_to(TMINI_EVENT_NONE);
+    tmini_feed_gap(&rig.lidar);
+    polls_to(TMINI_EVENT_NONE);
+    passes(49);
+    polls_to(TMINI_EVENT_NONE);
+    passes(1);
+    polls_to(TMINI_EVENT_STOPPED);
+}
+
 /* They may have been a packet's. */
 void test_bytes_that_were_lost_while_idle_are_heard_as_well(void)
 {
