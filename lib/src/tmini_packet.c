@@ -25,10 +25,35 @@ static uint16_t clockwise_difference(uint16_t from, uint16_t to)
     return (uint16_t)(to + (to < from ? TMINI_FULL_CIRCLE_Q6 : 0) - from);
 }
 
+/* In a sample's second byte the flag is below the distance (section 5). */
+#define FLAG_MASK 3u
+#define FLAG_BITS 2
+
+/* What a sample says of a point. Intensity and flag follow each other in both, and are one access
+ * where any address will do. The sample is read first, because for all the compiler knows the point
+ * might overlap it. */
+static inline void set_point(tmini_point_t *point, uint32_t angle_q6, const uint8_t *sample)
+{
+    const unsigned distance_and_flag = sample[1] | (unsigned)sample[2] << 8;
+#if TMINI_WORD_ALIGNMENT == 1
+    tmini_copy_pair((uint8_t *)point + offsetof(tmini_point_t, intensity), sample, FLAG_MASK);
+    point->angle_q6 = (uint16_t)angle_q6;
+    point->distance_mm = (uint16_t)(distance_and_flag >> FLAG_BITS);
+#else
+    const uint8_t intensity = sample[0];
+    *point = (tmini_point_t){.angle_q6 = (uint16_t)angle_q6,
+                             .distance_mm = (uint16_t)(distance_and_flag >> FLAG_BITS),
+                             .intensity = intensity,
+                             .flag = distance_and_flag & FLAG_MASK};
+#endif
+}
+
+typedef char flag_follows_intensity
+    [offsetof(tmini_point_t, flag) == offsetof(tmini_point_t, intensity) + 1 ? 1 : -1];
+
 /* Decodes `count` samples, at least one, that lie in one piece, from sample `index` of the packet
  * on: the hottest loop there is. A function of its own, so that all that it needs stays in
- * registers; each sample is read before its point is written, because the two might overlap for all
- * the compiler knows. */
+ * registers. */
 TMINI_NOINLINE static void decode(const tmini_packet_t *packet, size_t index, const uint8_t *sample,
                                   size_t count, tmini_point_t *point)
 {
@@ -37,12 +62,7 @@ TMINI_NOINLINE static void decode(const tmini_packet_t *packet, size_t index, co
     uint32_t turned = HALF + (uint32_t)index * step;
     TMINI_UNROLL
     do {
-        const uint8_t intensity = sample[0];
-        const unsigned distance_and_flag = sample[1] | (unsigned)sample[2] << 8;
-        *point++ = (tmini_point_t){.angle_q6 = (uint16_t)(first_angle + (turned >> STEP_BITS)),
-                                   .distance_mm = (uint16_t)(distance_and_flag >> 2),
-                                   .intensity = intensity,
-                                   .flag = distance_and_flag & 3u};
+        set_point(point++, first_angle + (turned >> STEP_BITS), sample);
         sample += TMINI_SAMPLE_SIZE;
         turned += step;
     } while (--count > 0);

@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * The primitives: memory order between the two sides of the ring, reading a word of bytes, and what
- * a compiler is to be told of the hottest loops. The only file with compiler extensions.
+ * The primitives: memory order between the two sides of the ring, several bytes in one access, and
+ * what a compiler is to be told of the hottest loops. The only file with compiler extensions.
  *
  * tmini_load() reads a size_t that the other side writes, and no later access moves before it;
  * tmini_store() writes one, and no earlier access moves behind it (acquire and release, in C11's
@@ -185,6 +185,19 @@ TMINI_INLINE uint32_t tmini_word(const uint8_t *bytes)
     memcpy(&word, bytes, sizeof word);
 #endif
     return word;
+}
+
+/** Copies two bytes, and of the second one only the bits in `mask`: one load and one store where
+ * TMINI_WORD_ALIGNMENT is 1. */
+TMINI_INLINE void tmini_copy_pair(uint8_t *to, const uint8_t *from, uint8_t mask)
+{
+    const uint8_t masks[] = {0xFF, mask};
+    uint16_t pair;
+    uint16_t pair_mask;
+    memcpy(&pair, from, sizeof pair);
+    memcpy(&pair_mask, masks, sizeof pair_mask);
+    pair &= pair_mask;
+    memcpy(to, &pair, sizeof pair);
 }
 
 #endif

@@ -82,7 +82,7 @@ bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_
 
 /** Reads the first points, as many as the packet has and at most `max_points`, applying `filter` (a
  * combination of tmini_filter_t). Returns how many. tmini_frame_intact() then tells whether they
- * may be used. About 14 instructions a point on a Cortex-M4. */
+ * may be used. About 12 instructions a point on a Cortex-M4. */
 size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_point_t *points,
                            size_t max_points);
 
