@@ -94,6 +94,7 @@ def mutants_of(path):
     lines = text.split("\n")
     found = {}
     for number, line in enumerate(code_only(text).split("\n")):
+        line = line.rstrip()  # A comment may stand behind a statement.
         for pattern, replacements in REPLACEMENTS:
             for match in re.finditer(pattern, line):
                 for replacement in replacements:
