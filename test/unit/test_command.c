@@ -169,6 +169,7 @@ void test_a_stop_that_gets_lost_is_sent_again(void)
     TEST_ASSERT_EQUAL_UINT(1, timeouts());
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
+    is_in(TMINI_STATE_IDLE); /* However many it took. */
 }
 
 void test_a_lidar_that_will_not_be_stopped_fails_the_command_after_three_attempts(void)
