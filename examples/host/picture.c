@@ -276,26 +276,41 @@ static void draw_intensities(cairo_t *cr, const survey_t *survey)
     (void)text(cr, (spot_t){x + 3 * 64, LEGEND_Y}, 0, 17, muted, words);
 }
 
-/* In the colours of the marks. */
+/* The mark of the points with this flag, and how many they are. */
+static void draw_flag(cairo_t *cr, double x, unsigned flag, const char *name, size_t count)
+{
+    char words[40];
+    draw_mark(cr, (spot_t){x, LEGEND_Y - 6}, flag);
+    (void)snprintf(words, sizeof words, "%s (%zu)", name, count);
+    (void)text(cr, (spot_t){x + 18, LEGEND_Y}, 0, 17, muted, words);
+}
+
 static void draw_flags(cairo_t *cr, const survey_t *survey)
 {
-    char words[80];
     if (picture_marks_flags(survey)) {
-        (void)snprintf(words, sizeof words, "ring: specular (%zu)", survey->specular);
-        (void)text(cr, (spot_t){450, LEGEND_Y}, 0, 17, specular, words);
-        (void)snprintf(words, sizeof words, "cross: ambient light (%zu)", survey->ambient);
-        (void)text(cr, (spot_t){645, LEGEND_Y}, 0, 17, ambient, words);
+        draw_flag(cr, 470, TMINI_FLAG_SPECULAR, "specular", survey->specular);
+        draw_flag(cr, 625, TMINI_FLAG_AMBIENT, "ambient light", survey->ambient);
     } else {
+        char words[80];
         (void)snprintf(words, sizeof words, "%zu of %zu points flagged: not marked",
                        survey->specular + survey->ambient, survey->valid);
         (void)text(cr, (spot_t){450, LEGEND_Y}, 0, 17, muted, words);
     }
 }
 
+static void draw_nearest(cairo_t *cr, const tmini_point_t *nearest)
+{
+    char words[64];
+    (void)snprintf(words, sizeof words, "nearest %.3f m at %.1f\xC2\xB0",
+                   nearest->distance_mm / 1000.0, points_degrees(nearest));
+    const double width = text(cr, (spot_t){1150, LEGEND_Y}, 1, 17, bright, words);
+    ink(cr, amber, 2.2);
+    ring(cr, (spot_t){1150 - width - 18, LEGEND_Y - 6}, 8);
+}
+
 static void draw_words(cairo_t *cr, const figure_t *figure)
 {
     const survey_t *const survey = &figure->survey;
-    char words[64];
     cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_BOLD);
     heading(cr, 62, 36, bright, figure->title);
     cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
@@ -303,9 +318,7 @@ static void draw_words(cairo_t *cr, const figure_t *figure)
     if (survey->nearest != NULL) {
         draw_intensities(cr, survey);
         draw_flags(cr, survey);
-        (void)snprintf(words, sizeof words, "nearest %.3f m at %.1f\xC2\xB0",
-                       survey->nearest->distance_mm / 1000.0, points_degrees(survey->nearest));
-        (void)text(cr, (spot_t){1150, LEGEND_Y}, 1, 17, amber, words);
+        draw_nearest(cr, survey->nearest);
     }
     heading(cr, LEGEND_Y + 42, 15, muted,
             "seen from above \xC2\xB7 the lidar in the middle, its front up \xC2\xB7 "
