@@ -21,6 +21,7 @@ and so is an entry there of a mutant that there no longer is.
 """
 
 import argparse
+import collections
 import contextlib
 import glob
 import hashlib
@@ -377,7 +378,7 @@ def files_among(names):
 
 def try_mutants(mutants, wanted, pool, results, known):
     """Counts fates until so many mutants that can be noticed have been tried; returns also the survivors."""
-    counts = {"killed": 0, "survived": 0, "equivalent": 0, "not": 0, "the": 0}
+    counts = collections.Counter()
     tried = lambda: counts["killed"] + counts["survived"] + counts["equivalent"]
     remaining = iter(mutants)
     while batch := list(itertools.islice(remaining, wanted - tried())):
@@ -386,9 +387,9 @@ def try_mutants(mutants, wanted, pool, results, known):
                 fate = "equivalent"
             if fate == "survived":
                 print(f"survived: {mutant}", flush=True)
-            counts[fate.split()[0]] += 1
+            counts[fate.partition(" by ")[0]] += 1
     print(f"{tried()} mutants: {counts['killed']} killed, {counts['equivalent']} known to be equivalent, "
-          f"{counts['survived']} survived; besides {counts['the']} of the same machine code and {counts['not']} "
+          f"{counts['survived']} survived; besides {counts['the same code']} of the same machine code and {counts['not C']} "
           "that do not compile")
     return counts["survived"]
 
@@ -406,7 +407,7 @@ def main():
     mutants = [mutant for path in files_among(arguments.files) for mutant in mutants_of(path)]
     if not mutants:
         parser.error(f"nothing to change in {' '.join(arguments.files)}")
-    if arguments.sample: # By hash, so that a change of one line does not draw all others anew.
+    if arguments.sample:  # By hash, so that a change of one line does not draw all others anew.
         mutants.sort(key=lambda mutant: hashlib.sha256(f"{arguments.seed} {mutant.key}".encode()).digest())
     if arguments.list:
         print(*mutants, f"{len(mutants)} mutants", sep="\n")

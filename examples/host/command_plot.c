@@ -27,7 +27,7 @@ typedef struct {
     count_t number; /* Of it; 0: there is none yet. */
     count_t first;  /* Of all scans that have come. */
     count_t last;
-    count_t every; /* Of all scans' points, each so-manieth is kept, */
+    count_t every; /* Of all scans' points, one in so many is kept, */
     count_t seen;  /* after so many. */
     size_t count;
     tmini_point_t points[POINTS_MAX];
@@ -100,7 +100,8 @@ static int write_picture(const options_t *options, const char *source)
     figure_t figure = {.points = drawing.points,
                        .survey = points_survey(drawing.points, drawing.count)};
     const survey_t *const survey = &figure.survey;
-    (options->all ? name_all : name_one)(&figure, recording_base_name(source));
+    const char *const name = options->operand != NULL ? recording_base_name(source) : source;
+    (options->all ? name_all : name_one)(&figure, name);
     if (picture_write(options->output, &figure) != STATUS_OK) {
         return STATUS_FAILED;
     }

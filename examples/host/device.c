@@ -290,7 +290,7 @@ int device_why(device_t *device)
 }
 
 /* Why a port cannot be opened, and what to do. */
-static const char *advice_for(tmini_posix_status_t status)
+static const char *advice_for(tmini_posix_status_t status, const char *path)
 {
     static const char *const texts[] = {
         [-TMINI_POSIX_NO_DEVICE] = "there is no such device. Is the adapter plugged in? `tmini "
@@ -307,7 +307,10 @@ static const char *advice_for(tmini_posix_status_t status)
         [-TMINI_POSIX_ADDRESS] = "a lidar behind a socket is tcp:HOST:PORT, and there must be such "
                                  "a host.",
     };
-    const size_t index = (size_t)-status;
+    const bool is_address = strchr(path, ':') != NULL && strchr(path, '/') == NULL;
+    const size_t index = is_address && status == TMINI_POSIX_NO_DEVICE
+                             ? (size_t)-TMINI_POSIX_ADDRESS
+                             : (size_t)-status;
     const bool is_known = index < sizeof texts / sizeof texts[0] && texts[index] != NULL;
     return is_known ? texts[index] : strerror(errno);
 }
@@ -322,7 +325,7 @@ int device_use(const options_t *options, int (*use)(device_t *device, const opti
     set_up(&device);
     const tmini_posix_status_t opened = tmini_posix_start(&device.serial, &device.lidar);
     if (opened != TMINI_POSIX_OK) {
-        return message_fail("cannot use %s: %s", device.path, advice_for(opened));
+        return message_fail("cannot use %s: %s", device.path, advice_for(opened, device.path));
     }
     device.begun_ms = tmini_posix_port.now_ms(&device.serial);
     interrupt_watch();

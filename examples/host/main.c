@@ -127,9 +127,17 @@ static bool take_word(options_t *options, const char *word)
 }
 
 /* getopt_long() itself says what it cannot take. */
+static bool refuse(const options_t *options)
+{
+    const bool has_command = options->word_count > 0;
+    (void)message_usage("see tmini %s%s--help", has_command ? options->words[0] : "",
+                        has_command ? " " : "");
+    return false;
+}
+
 static bool take(options_t *options, int answer)
 {
-    return answer == '?' ? message_usage("see tmini --help") == STATUS_OK
+    return answer == '?' ? refuse(options)
            : answer == 1 ? take_word(options, optarg)
                          : apply(options, find(answer), optarg);
 }

@@ -7,7 +7,7 @@
 
 const tmini_timing_t tmini_timing_default = {
     .frame_timeout_ms = 100, /* A line at work: 5 ms; but a task or bridge may hold bytes back. */
-    .max_pause_ms = 30,      /* A line at work: 10 ms, a packet's time. */
+    .max_pause_ms = 30,      /* A line at work: a packet every 10 ms. */
     .quiet_line_ms = 50,
     .stop_timeout_ms = 600, /* Twice the longest tail seen after a stop (section 9.10). */
     .reply_timeout_ms = 2000,
@@ -42,12 +42,12 @@ typedef char events_fit_their_mask[TMINI_EVENT_MORE <= 16 ? 1 : -1];
  * packet's samples are read for its points, its time is told, and its place in the scan found. */
 #define FRAME_EFFORT 44u
 
-/* Which packets others may be missing before, when bytes are doubtful, because the line has paused
- * or nobody knows how many came: each packet that begins among them, and
+/* Bytes are doubtful if the line has paused at them, or nobody knows how many came. Others may then
+ * be missing before each packet that begins among them. As for the first packet behind them:
  *
- *   AHEAD   if it has been before them: the first packet behind them too, unless (MARKED) one
- *           began among them
- *   AROUND  if it may as well have been behind them: the first packet behind them in any case */
+ *   AHEAD   the pause was before them: there too, if no packet begins among them
+ *   MARKED  the same, and one has begun among them: not there
+ *   AROUND  the pause may as well have been behind them: there in any case */
 enum { DOUBT_NONE, DOUBT_AHEAD, DOUBT_MARKED, DOUBT_AROUND };
 
 static bool is_set_up(const tmini_t *lidar)
@@ -620,6 +620,7 @@ void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info)
     tmini_ct_read(&lidar->ct, info);
 }
 
+/* The ring is asked directly: before tmini_init() the parser knows none. */
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
 {
     const tmini_ring_t *const ring = &lidar->ring;

@@ -3,25 +3,17 @@
 
 #include "tmini/tmini_mount.h"
 
-#define CIRCLE_Q6 ((uint16_t)TMINI_FULL_CIRCLE_Q6)
-
-/* From one angle clockwise to another. */
-static uint16_t clockwise(uint16_t from_q6, uint16_t to_q6)
-{
-    return (uint16_t)(to_q6 + (to_q6 < from_q6 ? CIRCLE_Q6 : 0) - from_q6);
-}
-
 uint16_t tmini_mount_angle(const tmini_mount_t *mount, uint16_t angle_q6)
 {
-    return mount->is_upside_down ? clockwise(angle_q6, mount->front_q6)
-                                 : clockwise(mount->front_q6, angle_q6);
+    return mount->is_upside_down ? tmini_clockwise(angle_q6, mount->front_q6)
+                                 : tmini_clockwise(mount->front_q6, angle_q6);
 }
 
 static bool is_masked(const tmini_mount_t *mount, uint16_t angle_q6)
 {
     for (size_t i = 0; i < mount->masked_count; i++) {
         const tmini_arc_t *const arc = &mount->masked[i];
-        if (clockwise(arc->from_q6, angle_q6) <= clockwise(arc->from_q6, arc->to_q6)) {
+        if (tmini_clockwise(arc->from_q6, angle_q6) <= tmini_clockwise(arc->from_q6, arc->to_q6)) {
             return true;
         }
     }

@@ -20,14 +20,13 @@ static uint16_t angle_of(const uint8_t *field)
     return (uint16_t)(angle < TMINI_FULL_CIRCLE_Q6 ? angle : angle - TMINI_FULL_CIRCLE_Q6);
 }
 
-static uint16_t clockwise_difference(uint16_t from, uint16_t to)
-{
-    return (uint16_t)(to + (to < from ? TMINI_FULL_CIRCLE_Q6 : 0) - from);
-}
-
 /* In a sample's second byte the flag is below the distance (section 5). */
 #define FLAG_MASK 3u
 #define FLAG_BITS 2
+
+/* As in a sample: set_point() stores both at once. */
+typedef char flag_follows_intensity
+    [offsetof(tmini_point_t, flag) == offsetof(tmini_point_t, intensity) + 1 ? 1 : -1];
 
 /* What a sample says of a point. Intensity and flag follow each other in both, and are one access
  * where any address will do. The sample is read first, because for all the compiler knows the point
@@ -47,9 +46,6 @@ static inline void set_point(tmini_point_t *point, uint32_t angle_q6, const uint
                              .flag = distance_and_flag & FLAG_MASK};
 #endif
 }
-
-typedef char flag_follows_intensity
-    [offsetof(tmini_point_t, flag) == offsetof(tmini_point_t, intensity) + 1 ? 1 : -1];
 
 /* Decodes `count` samples, at least one, that lie in one piece, from sample `index` of the packet
  * on: the hottest loop there is. A function of its own, so that all that it needs stays in
@@ -88,7 +84,7 @@ void tmini_packet_open(tmini_packet_t *packet, const tmini_frame_t *frame)
     packet->step = 0;
     if (packet->count > 1) {
         const uint32_t intervals = packet->count - 1u;
-        const uint32_t swept = clockwise_difference(packet->first_angle_q6, packet->last_angle_q6);
+        const uint32_t swept = tmini_clockwise(packet->first_angle_q6, packet->last_angle_q6);
         packet->step = ((swept << STEP_BITS) + intervals - 1) / intervals;
     }
 }
@@ -134,12 +130,14 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
     return wanted;
 }
 
+/* The distance is what lies above the flag. */
 bool tmini_packet_has_range(const tmini_packet_t *packet)
 {
     const tmini_frame_t *const frame = packet->frame;
     for (size_t i = 0; i < packet->count; i++) {
         const size_t sample = TMINI_SAMPLE_OFFSET(i);
-        if (tmini_frame_peek(frame, sample + 1) > 3 || tmini_frame_peek(frame, sample + 2) > 0) {
+        if (tmini_frame_peek(frame, sample + 1) > FLAG_MASK ||
+            tmini_frame_peek(frame, sample + 2) > 0) {
             return true;
         }
     }

@@ -5,7 +5,8 @@
 
 #include <string.h>
 
-/* Most commands are answered with a frequency: the question for it, and each of its steps. */
+/* Most commands are answered with a frequency: the question for it, and each of its steps (sections
+ * 3 and 4). */
 bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header)
 {
     if (command == TMINI_COMMAND_STOP || command == TMINI_COMMAND_REBOOT) {

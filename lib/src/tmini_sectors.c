@@ -32,7 +32,7 @@ void tmini_sectors_clear(tmini_sectors_t *sectors)
 size_t tmini_sectors_at(const tmini_sectors_t *sectors, uint16_t angle_q6)
 {
     const uint32_t circle = TMINI_FULL_CIRCLE_Q6;
-    const uint32_t from_front = ((uint32_t)angle_q6 + circle - sectors->front_q6) % circle;
+    const uint32_t from_front = tmini_clockwise(sectors->front_q6, angle_q6);
     const uint32_t sector = (2 * from_front * sectors->count + circle) / (2 * circle);
     return (size_t)(sector < sectors->count ? sector : 0);
 }

@@ -21,9 +21,7 @@ uint32_t tmini_scan_period_ms(const tmini_scan_t *scan)
  * little behind the first, late ones a little beyond the full circle. */
 static uint32_t swept_q6(const tmini_scan_t *scan, size_t index)
 {
-    const uint32_t first = scan->points[0].angle_q6;
-    const uint32_t angle = scan->points[index].angle_q6;
-    const uint32_t swept = angle + (angle < first ? CIRCLE_Q6 : 0) - first;
+    const uint32_t swept = tmini_clockwise(scan->points[0].angle_q6, scan->points[index].angle_q6);
     const bool is_early = index < scan->count / 2u;
     if (is_early && swept > CIRCLE_Q6 / 4 * 3) {
         return 0;

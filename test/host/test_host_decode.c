@@ -450,7 +450,8 @@ void test_wrong_usage_ends_with_2_and_says_why(void)
     expect_failure(2, "decode what?", (const char *const[]){"decode", NULL});
     /* What getopt_long() finds it says itself, in the words of the C library. */
     expect_failure(2, "speed", (const char *const[]){"decode", "--speed", NULL});
-    expect_failure(2, "see tmini --help", (const char *const[]){"decode", "--speed", NULL});
+    expect_failure(2, "see tmini decode --help", (const char *const[]){"decode", "--speed", NULL});
+    expect_failure(2, "see tmini --help", (const char *const[]){"--speed", NULL});
     expect_failure(2, "x", (const char *const[]){"decode", "-qx", NULL});
     expect_failure(2, "stats", (const char *const[]){"decode", "--stats", NULL});
     expect_failure(2, "csv", (const char *const[]){"decode", "--csv=1", NULL});

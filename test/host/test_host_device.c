@@ -644,6 +644,7 @@ void test_without_an_adapter_ports_says_so(void)
 void test_a_port_that_does_not_exist(void)
 {
     expect_failure(1, "there is no such device", WORDS("info", "-p", "/dev/nowhere"));
+    expect_failure(1, "tcp:HOST:PORT", WORDS("info", "-p", "127.0.0.1:4000"));
     expect_failure(1, "/dev/nowhere/deep", WORDS("scan", "-p", "/dev/nowhere/deep"));
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Which scans a sequence of packets makes, as directly as docs/design.md ("Scans never mix
+/* Which scans a sequence of packets makes, as directly as docs/design.md ("No complete scan mixes
  * revolutions") can be written down: by looking at all of them, those behind included. The library
  * sees one packet at a time; it is compared with this. */
 

@@ -124,6 +124,16 @@ static const uint16_t manual_distances[19] = {11842, 11819, 11710, 11618, 11158,
                                               10846, 10829, 11121, 11213, 11166, 11083, 0,
                                               11096, 11096, 11004, 11106, 11135};
 
+void test_an_angle_from_one_direction_clockwise_to_another_is_below_a_full_circle(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_clockwise(0, 0));
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_clockwise(23039, 23039));
+    TEST_ASSERT_EQUAL_UINT16(640, tmini_clockwise(0, 640));
+    TEST_ASSERT_EQUAL_UINT16(1, tmini_clockwise(23039, 0));
+    TEST_ASSERT_EQUAL_UINT16(23039, tmini_clockwise(0, 23039));
+    TEST_ASSERT_EQUAL_UINT16(22400, tmini_clockwise(640, 0));
+}
+
 void test_the_manuals_packet_has_its_distances_intensities_and_flags(void)
 {
     open_packet(manual_packet, 67);
@@ -180,6 +190,15 @@ void test_points_can_be_read_one_at_a_time(void)
         TEST_ASSERT_TRUE(tmini_packet_point(&receiver.packet, i, &point));
         TEST_ASSERT_EQUAL_MEMORY(&points[i], &point, sizeof point);
     }
+}
+
+void test_a_point_that_is_read_alone_leaves_what_lies_behind_it(void)
+{
+    open_packet(manual_packet, sizeof manual_packet);
+    points[1].angle_q6 = 23040; /* As one that is to be reduced. */
+    TEST_ASSERT_TRUE(tmini_packet_point(&receiver.packet, 0, points));
+    TEST_ASSERT_EQUAL_UINT16(23040, points[1].angle_q6);
+    TEST_ASSERT_EQUAL_HEX16(0xEEEE, points[1].distance_mm);
 }
 
 void test_there_is_no_point_at_an_index_of_count_or_more(void)

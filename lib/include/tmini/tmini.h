@@ -36,6 +36,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "tmini_ct.h"
 #include "tmini_packet.h"
 #include "tmini_parser.h"
 #include "tmini_port.h"
@@ -43,7 +44,6 @@
 #include "tmini_ring.h"
 #include "tmini_scan.h"
 #include "tmini_status.h"
-#include "tmini_ct.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -26,6 +26,13 @@ extern "C" {
 /** A full circle in 1/64 degree. */
 #define TMINI_FULL_CIRCLE_Q6 23040u
 
+/** The angle from one direction clockwise to another; all in 1/64 degree, below a full circle. Any
+ * context; no waiting. */
+static inline uint16_t tmini_clockwise(uint16_t from_q6, uint16_t to_q6)
+{
+    return (uint16_t)(to_q6 + (to_q6 < from_q6 ? TMINI_FULL_CIRCLE_Q6 : 0) - from_q6);
+}
+
 /** What the lidar notes of a sample (section 5). Not trustworthy on every unit (section 9.9). */
 typedef enum {
     TMINI_FLAG_SPECULAR = 2, /**< Interference by specular reflection. */

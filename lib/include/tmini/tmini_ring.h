@@ -152,7 +152,8 @@ static inline bool tmini_ring_is_dma(const tmini_ring_t *ring)
     return ring->window != ring->size;
 }
 
-/** True if bytes are missing behind the last one stored: the ring is closed. */
+/** True if bytes are missing behind the last one stored: the ring is closed until all that it holds
+ * has been discarded. */
 static inline bool tmini_ring_is_closed(const tmini_ring_t *ring)
 {
     return !tmini_ring_is_dma(ring) && tmini_ring_ahead(ring) > ring->window;
