@@ -57,7 +57,7 @@ static bool is_set_up(const tmini_t *lidar)
 
 /* ------------------------------------------------------------------------------------- events */
 
-static void raise_event(tmini_t *lidar, tmini_event_t event)
+TMINI_NOINLINE static void raise_event(tmini_t *lidar, tmini_event_t event)
 {
     lidar->pending |= (uint16_t)(1u << event);
 }
@@ -167,6 +167,7 @@ static uint32_t arrival_ms(tmini_t *lidar)
 static void fail(tmini_t *lidar, tmini_status_t status)
 {
     lidar->command_error = (int8_t)status;
+    lidar->is_settled = false;
     raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
 }
 
@@ -220,20 +221,21 @@ static tmini_state_t state_until(tmini_event_t end_event)
     }
 }
 
-/* The first bytes leave at once, as far as the port takes them. A lidar that is known to be idle
- * needs no stop before another command. */
+/* The first bytes leave at once, as far as the port takes them. If it refuses, it is asked once more
+ * when time has passed, and until then there is nothing to do: a loop that polls until then, and
+ * asks again whenever a command has failed, comes to an end. A lidar that is known to be idle needs
+ * no stop before. */
 static void begin(tmini_t *lidar, tmini_command_code_t operation, tmini_event_t end_event,
                   uint16_t frequency_chz)
 {
     const bool is_idle = lidar->state == TMINI_STATE_IDLE;
     lidar->state = (uint8_t)state_until(end_event);
     lidar->end_event = (uint8_t)end_event;
-    lidar->is_settled = false;
     tmini_command_begin(lidar, operation, lidar->link.timing->max_attempts, frequency_chz);
-    if (is_idle && operation != TMINI_COMMAND_STOP) {
+    if (is_idle) {
         (void)tmini_command_proceed(lidar);
     }
-    take_result(lidar, tmini_command_poll(lidar));
+    lidar->is_settled = tmini_command_poll(lidar) != TMINI_UNDER_WAY;
 }
 
 /* Begins a command, if it may be begun now; stop may always, and aborts another. The end of an
@@ -259,7 +261,7 @@ static tmini_status_t request(tmini_t *lidar, tmini_command_code_t operation,
     tmini_recovery_forget(lidar);
     lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
     begin(lidar, operation, end_event, frequency_chz);
-    if (is_under_way && lidar->state == TMINI_STATE_STOPPING) {
+    if (is_under_way) {
         fail(lidar, TMINI_ERROR_ABORTED);
     }
     return TMINI_OK;

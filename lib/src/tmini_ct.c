@@ -111,12 +111,14 @@ unsigned tmini_ct_faults(const tmini_ct_t *ct)
 void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
 {
     const uint8_t *const trusted = ct->trusted; /* 0 where it is not known. */
+    const unsigned user_version = trusted[USER_VERSION];
+    const unsigned hardware = trusted[HARDWARE];
     info->known = ct->known & KNOWN_MASK;
-    info->user_major = trusted[USER_VERSION] >> 6;
-    info->user_minor = trusted[USER_VERSION] >> 1 & 0x1Fu;
+    info->user_major = (uint8_t)(user_version >> 6);
+    info->user_minor = user_version >> 1 & 0x1Fu;
     info->faults = trusted[HEALTH] >> 1 & TMINI_FAULT_MASK;
-    info->hardware = trusted[HARDWARE] >> 5;
-    info->firmware_major = trusted[HARDWARE] >> 1 & 0x0Fu;
+    info->hardware = (uint8_t)(hardware >> 5);
+    info->firmware_major = hardware >> 1 & 0x0Fu;
     info->firmware_minor = trusted[FIRMWARE_MINOR] >> 1;
     info->year =
         (uint16_t)((info->known & TMINI_KNOWN_YEAR) != 0 ? 2020u + (trusted[YEAR] >> 3) : 0);

@@ -241,7 +241,8 @@ static void skip(tmini_parser_t *parser, size_t unread)
     parser->effort = (uint16_t)(parser->effort + skipped + TMINI_CANDIDATE_EFFORT);
 }
 
-/* The unread bytes, less those that DMA may have overwritten: they are dropped. */
+/* The unread bytes, less those that DMA may have overwritten: they are dropped. Behind a lap that
+ * nobody saw (tmini_ring_gap()) so are those that may have been read before, if there was none. */
 static size_t intact_bytes(tmini_parser_t *parser)
 {
     tmini_ring_t *const ring = parser->frame.ring;
@@ -252,12 +253,14 @@ static size_t intact_bytes(tmini_parser_t *parser)
     if (!tmini_ring_is_dma(ring)) {
         return ahead - TMINI_RING_CLOSED; /* It is closed. */
     }
-    const size_t lost = ahead - ring->window;
+    const size_t beyond = ahead - ring->size; /* Of less than a lap: more than any window. */
+    const size_t kept = beyond < ring->window ? beyond : ring->window;
+    const size_t lost = ahead - kept;
     tmini_ring_discard(ring, lost);
     begin_candidate(parser);
     parser->counters.bytes_overrun += (uint32_t)lost;
     parser->frame.gap = TMINI_GAP_UNKNOWN;
-    return ring->window;
+    return kept;
 }
 
 /* There are not enough bytes for the candidate. If the ring is closed, what would complete it has

@@ -9,13 +9,17 @@
 /* Every third attempt that fails is followed by one that reboots the lidar first. */
 #define REBOOT_AFTER 3
 
+/* In the place of a number of failed attempts: the first has not failed yet. */
+#define FIRST_ATTEMPT (REBOOT_AFTER + 1)
+
 /* An attempt has failed: a pause, and then the next. */
 static void back_off(tmini_t *lidar)
 {
     const tmini_timing_t *const timing = lidar->link.timing;
     tmini_recovery_t *const recovery = &lidar->recovery;
-    const uint32_t longer_ms =
-        recovery->attempts == 0 ? timing->back_off_ms : (uint32_t)recovery->pause_ms * 2;
+    const uint32_t longer_ms = recovery->attempts == FIRST_ATTEMPT
+                                   ? timing->back_off_ms
+                                   : (uint32_t)recovery->pause_ms * 2;
     const uint16_t max_ms = timing->back_off_max_ms;
     recovery->attempts = (uint16_t)(recovery->attempts < REBOOT_AFTER ? recovery->attempts + 1 : 1);
     recovery->pause_ms = (uint16_t)(longer_ms < max_ms ? longer_ms : max_ms);
@@ -44,6 +48,7 @@ void tmini_recovery_begin(tmini_t *lidar)
     if (lidar->disable_recovery) {
         tmini_command_wait(lidar, 0);
     } else if (lidar->recovery.attempts == 0) {
+        lidar->recovery.attempts = FIRST_ATTEMPT;
         make_attempt(lidar);
     } else {
         back_off(lidar); /* Lost again before it made a complete revolution. */

@@ -59,7 +59,7 @@ static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet, 
     scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - builder->errors_before);
     /* A start packet carries the frequency of the revolution before it (section 9.8). */
     scan->frequency_chz = (uint16_t)(is_start ? (packet->ct >> 1) * 10 : 0);
-    scan->end_ms = now_ms;
+    scan->end_ms = (int32_t)(now_ms - scan->start_ms) < 0 ? scan->start_ms : now_ms;
     scan->complete = (scan->gaps | scan->dropped) == 0 && beyond >= -JUMP_Q6 && beyond <= JUMP_Q6;
     builder->open = false;
 }

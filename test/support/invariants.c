@@ -273,8 +273,7 @@ static bool results_are_sound(const tmini_t *lidar)
 {
     const bool streaming = lidar->builder.capacity == 0;
     return (streaming ? !lidar->builder.open : builder_is_sound(&lidar->builder)) &&
-           (!lidar->is_settled ||
-            (lidar->pending == 0 && !lidar->packet_waits && lidar->command.unsent == 0)) &&
+           (!lidar->is_settled || (lidar->pending == 0 && !lidar->packet_waits)) &&
            (!lidar->packet_waits ||
             (!streaming && packet_is_sound(&lidar->latest.packet, &lidar->parser.frame)));
 }

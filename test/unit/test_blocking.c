@@ -261,6 +261,7 @@ void test_a_command_that_fails_says_why(void)
     tmini_info_t info;
 
     sends_both_taking(GET_INFO, -1);
+    sends_both_taking(GET_INFO, -1);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_read_info(&rig.lidar, &info, 100));
 }
 
@@ -282,6 +283,7 @@ void test_a_stop_that_fails_after_aborting_says_why(void)
 {
     sends(GET_INFO);
     begins(tmini_request_info(&rig.lidar));
+    sends_both_taking(STOP, -1);
     sends_both_taking(STOP, -1);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_stop_and_wait(&rig.lidar, 100));
 }

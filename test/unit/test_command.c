@@ -6,6 +6,7 @@
 
 #include "invariants.h"
 #include "rig.h"
+#include "tmini_driver.h"
 
 #include "mock_port_functions.h"
 #include "unity.h"
@@ -364,8 +365,11 @@ void test_stop_aborts_a_query(void)
 
 void test_a_command_swallows_the_end_of_the_one_before_that_nobody_polled_for(void)
 {
-    sends_both_taking(STOP, -1);
-    begins(tmini_request_info(&rig.lidar)); /* Fails at once, */
+    sends(STOP);
+    begins(tmini_request_info(&rig.lidar));
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar)); /* Aborts it, */
+    tmini_cancel(&rig.lidar);
     sends(STOP);
     begins(tmini_request_info(&rig.lidar)); /* which would look like the end of this one. */
     passes(50);
@@ -1019,12 +1023,53 @@ void test_a_port_that_claims_more_than_it_was_given_has_taken_all(void)
     polls_to(TMINI_EVENT_STOPPED);
 }
 
-void test_a_port_that_fails_fails_the_command_at_once(void)
+void test_a_port_that_fails_is_asked_once_more_when_time_has_passed_and_then_fails_the_command(void)
 {
     sends_both_taking(STOP, -1);
     begins(tmini_stop(&rig.lidar));
+    is_in(TMINI_STATE_STOPPING);
+    polls_to(TMINI_EVENT_NONE);
+    rig.now_ms += 1;
+    sends_both_taking(STOP, -1);
     fails_with(TMINI_ERROR_WRITE);
     TEST_ASSERT_EQUAL_UINT(0, timeouts());
+}
+
+void test_a_port_that_fails_once_fails_no_command(void)
+{
+    sends_both_taking(STOP, -1);
+    begins(tmini_request_info(&rig.lidar));
+    rig.now_ms += 1;
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_INFO);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_info();
+    polls_to(TMINI_EVENT_INFO);
+}
+
+/* As in a main loop that polls until there is nothing left, and asks again at once. */
+void test_asking_again_whenever_a_command_fails_keeps_no_loop_for_ever(void)
+{
+    for (unsigned ms = 0; ms < 5; ms++) {
+        tmini_event_t event;
+
+        if (ms > 0) {
+            sends_both_taking(STOP, -1);
+        }
+        sends_both_taking(STOP, -1);
+        if (ms == 0) {
+            begins(tmini_start(&rig.lidar));
+        }
+        while ((event = tmini_poll(&rig.lidar)) != TMINI_EVENT_NONE) {
+            TEST_ASSERT_EQUAL_INT(TMINI_EVENT_COMMAND_FAILED, event);
+            begins(tmini_start(&rig.lidar));
+        }
+        was_sent();
+        rig.now_ms += 1;
+    }
 }
 
 void test_a_port_that_takes_nothing_fails_the_command_after_100_ms(void)
@@ -1083,13 +1128,16 @@ void test_the_first_byte_serves_for_the_next_command_also_when_the_second_failed
     begins(tmini_request_info(&rig.lidar));
 }
 
-void test_a_failing_stop_is_the_end_of_the_command_it_aborts_too(void)
+void test_a_stop_that_fails_behind_the_command_it_aborts_is_an_end_of_its_own(void)
 {
     rig_go_idle();
     sends(GET_INFO);
     begins(tmini_request_info(&rig.lidar));
     sends_both_taking(STOP, -1);
     begins(tmini_stop(&rig.lidar));
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ABORTED, tmini_command_error(&rig.lidar));
+    sends_both_taking(STOP, -1);
     fails_with(TMINI_ERROR_WRITE);
     passes(1000);
 }

@@ -1282,6 +1282,7 @@ void test_a_candidate_that_dma_overran_is_forgotten(void)
     feed(bytes, 230);                    /* 34 are lost. */
     expect_packet(1, 60);
     TEST_ASSERT_EQUAL_UINT32(34, receiver_counters(&receiver).bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(0, receiver_counters(&receiver).checksum_errors);
     expect_skipped(26);
 }
 
@@ -1295,6 +1296,32 @@ void test_many_laps_of_dma_are_counted_and_survived(void)
     expect_packet(1, 1800);
     TEST_ASSERT_EQUAL_UINT32(1557, receiver_counters(&receiver).bytes_overrun);
     expect_skipped(243);
+}
+
+/* A lap is assumed, as if so many bytes had come. */
+static void lap_was_perhaps_missed(void)
+{
+    tmini_ring_gap(&receiver.ring);
+    receiver.received += 512;
+}
+
+void test_behind_a_lap_that_was_none_nothing_is_found_twice(void)
+{
+    open_dma();
+    feed(start_packet, 13);
+    expect_packet(1, 0);
+    lap_was_perhaps_missed();
+    expect_nothing();
+    TEST_ASSERT_EQUAL_UINT32(512, receiver_counters(&receiver).bytes_overrun);
+    memset(bytes, 0, 300);
+    memcpy(bytes, start_packet, 13);
+    memcpy(&bytes[187], start_packet, 13);
+    feed(bytes, 200);
+    lap_was_perhaps_missed();
+    expect_packet(1, 1024 + 13);
+    TEST_ASSERT_EQUAL_UINT16(65535, receiver.packet.gap);
+    expect_packet(1, 1024 + 13 + 187);
+    TEST_ASSERT_EQUAL_UINT32(1024, receiver_counters(&receiver).bytes_overrun);
 }
 
 void test_a_packet_that_dma_overwrites_while_it_is_read_is_not_intact(void)

@@ -284,7 +284,7 @@ void test_a_full_ring_is_no_reason_to_doubt(void)
 /* A lap that nobody has seen, within a time that still counts as watched: the newest half of the
  * ring is taken, which here holds the three packets from before it once more, and two behind
  * them. */
-void test_behind_a_lap_of_dma_all_packets_that_come_at_once_are_doubtful_and_the_next(void)
+void test_behind_a_lap_of_dma_what_comes_at_once_is_doubtful_and_the_next(void)
 {
     static const encode_sample_t samples[4] = {{1000, 50, 0}};
     const encode_packet_t packet = {0, 4, 640, 736, samples};
@@ -304,9 +304,9 @@ void test_behind_a_lap_of_dma_all_packets_that_come_at_once_are_doubtful_and_the
     position += encode_packet(&memory[position], &packet);
     position += encode_packet(&memory[position], &packet);
     tmini_feed_dma(&rig.lidar, position);
-    doubtful_are_the_first(5, 5);
+    doubtful_are_the_first(2, 2); /* Not again those that have been delivered. */
     tmini_counters(&rig.lidar, &counters);
-    TEST_ASSERT_EQUAL_UINT32(556, counters.parser.bytes_overrun); /* 1024 + 44 - 512 */
+    TEST_ASSERT_EQUAL_UINT32(1024, counters.parser.bytes_overrun);
     position += encode_packet(&memory[position], &packet);
     position += encode_packet(&memory[position], &packet);
     tmini_feed_dma(&rig.lidar, position);

@@ -209,7 +209,33 @@ void test_a_loss_after_a_whole_turn_begins_at_the_ladders_foot(void)
     tries_in_vain(500);
 }
 
-/* A weak supply: it starts, and dies of the motor's current. */
+/* A weak supply: it starts, and dies of the motor's current, again and again. */
+void test_an_attempt_that_brings_no_whole_turn_is_none_that_succeeds(void)
+{
+    rig_go_scanning();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    finds_quiet_and_sends(START);
+    for (uint32_t pause_ms = 500; pause_ms < 2000; pause_ms *= 2) {
+        rig_feed_point_packet(1000);
+        polls_to(TMINI_EVENT_RECOVERED);
+        (void)rig_drain();
+        passes(1000);
+        polls_to(TMINI_EVENT_LOST);
+        pauses_and_stops(pause_ms);
+        finds_quiet_and_sends(START);
+    }
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+    (void)rig_drain();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    tries_with_a_reboot_in_vain(2000);
+}
+
+/* The same, when the first attempts have failed. */
 void test_a_loss_before_a_whole_turn_goes_on_up_the_ladder(void)
 {
     rig_go_backing_off();

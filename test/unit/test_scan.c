@@ -169,7 +169,19 @@ void test_a_scan_goes_from_a_start_packet_to_the_next(void)
     TEST_ASSERT_EQUAL_UINT16(0, scan->dropped);
     TEST_ASSERT_EQUAL_UINT16(0, scan->checksum_errors);
     TEST_ASSERT_EQUAL_UINT32(5000, scan->start_ms);
+    TEST_ASSERT_EQUAL_UINT32(5167, scan->end_ms);
     TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz); /* Of the start packet behind it. */
+}
+
+/* What is known of the time at which held-back bytes came may go backwards a little. */
+void test_a_scan_does_not_end_before_it_began(void)
+{
+    (void)start(0);
+    rest_of_turn(0);
+    now_ms = 4999;
+    expect_scan(0, 0, true);
+    TEST_ASSERT_EQUAL_UINT32(5000, scan->start_ms);
+    TEST_ASSERT_EQUAL_UINT32(5000, scan->end_ms);
 }
 
 void test_points_are_in_order_of_arrival(void)

@@ -17,7 +17,7 @@ void setUp(void)
                           .count = 4,
                           .start_ms = 0xFFFFFFF0u,
                           .end_ms = 84, /* 100 ms later, across the clock's wrap-around. */
-                          .frequency_chz = 625,
+                          .frequency_chz = 1000,
                           .complete = true};
 }
 
@@ -38,12 +38,31 @@ static void is_at(size_t index, uint32_t time_us)
 
 void test_a_complete_scans_period_is_its_own_time(void)
 {
+    scan.frequency_chz = 1010;
+    TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
+    scan.frequency_chz = 0;
+    TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
+}
+
+/* Start packets that were held back, and came in one block or in neighbouring ones. */
+void test_a_time_that_no_revolution_took_is_not_believed(void)
+{
+    scan.end_ms = scan.start_ms;
+    TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
+    scan.end_ms = scan.start_ms + 75;
+    TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
+    scan.end_ms = scan.start_ms + 76;
+    TEST_ASSERT_EQUAL_UINT32(76, tmini_scan_period_ms(&scan));
+    scan.end_ms = scan.start_ms + 124;
+    TEST_ASSERT_EQUAL_UINT32(124, tmini_scan_period_ms(&scan));
+    scan.end_ms = scan.start_ms + 125;
     TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
 }
 
 void test_an_incomplete_scans_period_is_what_the_lidar_measured(void)
 {
     scan.complete = false;
+    scan.frequency_chz = 625;
     TEST_ASSERT_EQUAL_UINT32(160, tmini_scan_period_ms(&scan));
 }
 
@@ -85,22 +104,30 @@ void test_a_late_point_a_hair_beyond_the_circle_is_a_turn_later(void)
     is_at(3, 100026);
 }
 
-/* What lies behind is the last quarter of the turn: more than 270 degrees. */
-void test_an_early_point_in_the_last_quarter_is_behind_the_first(void)
+/* The encoder jitters by less than 4 degrees: 22784 of 23040 of 100 ms are 98,888 us. */
+void test_an_early_point_less_than_4_degrees_behind_the_first_is_not_a_turn_later(void)
 {
-    has_angles(0, 270 * DEGREE, 280 * DEGREE, 300 * DEGREE);
-    is_at(1, 75000);
-    has_angles(0, 270 * DEGREE + 1, 280 * DEGREE, 300 * DEGREE);
+    has_angles(0, 356 * DEGREE, 357 * DEGREE, 358 * DEGREE);
+    is_at(1, 98888);
+    has_angles(0, 356 * DEGREE + 1, 357 * DEGREE, 358 * DEGREE);
     is_at(1, 0);
 }
 
-/* What lies beyond is the first quarter of the turn: less than 90 degrees. 5759 + 23040 of 23040
- * are 124,995 us. */
-void test_a_late_point_in_the_first_quarter_is_beyond_the_circle(void)
+/* 256 / 23040 of 100 ms are 1111 us; 255 + 23040 of 23040 are 101,106 us. */
+void test_a_late_point_less_than_4_degrees_beyond_the_circle_is_a_turn_later(void)
 {
-    has_angles(0, 1 * DEGREE, 90 * DEGREE, 90 * DEGREE - 1);
-    is_at(2, 25000);
-    is_at(3, 124995);
+    has_angles(0, 1 * DEGREE, 4 * DEGREE, 4 * DEGREE - 1);
+    is_at(2, 1111);
+    is_at(3, 101106);
+}
+
+/* Of a scan that ended early all points lie in the first part of the turn. */
+void test_the_late_points_of_a_part_of_a_turn_are_no_turn_later(void)
+{
+    has_angles(0, 20 * DEGREE, 40 * DEGREE, 80 * DEGREE);
+    scan.complete = false;
+    is_at(2, 11111);
+    is_at(3, 22222);
 }
 
 /* 24 / 23040 of 100 ms are 104 us. */
@@ -123,6 +150,7 @@ void test_with_an_unknown_period_a_sample_takes_250_us(void)
 void test_the_longest_period_does_not_overflow(void)
 {
     has_angles(0, 90 * DEGREE, 180 * DEGREE, 23039);
+    scan.frequency_chz = 0;
     scan.start_ms = 0;
     scan.end_ms = 3000;
     is_at(3, 2999869);  /* 23039 / 23040 of 3 s. */

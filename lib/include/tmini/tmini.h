@@ -24,8 +24,8 @@
  * Time. No function waits. Commands only begin something; how it ends is an event. tmini_poll()
  * must be called often enough that the receive buffer does not overflow: at least every 38 ms with
  * 1024 bytes, or every 16 ms with DMA, which can use half of them (docs/footprint.md, "How often to
- * poll", has other sizes). Call it until it returns TMINI_EVENT_NONE: while other events are due,
- * it does not look for time-outs.
+ * poll", has other sizes). Call it until it returns TMINI_EVENT_NONE: while events other than
+ * TMINI_EVENT_MORE are due, it does not look for time-outs.
  *
  * "Section" in these headers means the section of docs/protocol.md. */
 
@@ -130,7 +130,8 @@ typedef enum {
     TMINI_EVENT_FREQUENCY,      /**< tmini_frequency_chz() has been read, or set and read back. */
     TMINI_EVENT_REBOOTED,       /**< The soft reboot's time is over. */
     TMINI_EVENT_COMMAND_FAILED, /**< tmini_command_error() says why. */
-    TMINI_EVENT_STREAMING, /**< A lidar left idle scans all the same; it is being stopped again. */
+    TMINI_EVENT_STREAMING, /**< A lidar left idle scans all the same; it is being stopped again,
+                             * which ends like tmini_stop(). */
     TMINI_EVENT_LOST, /**< No valid packets any more; being recovered unless configured not to. */
     TMINI_EVENT_RECOVERED,      /**< Valid packets again. */
     TMINI_EVENT_FAULTS_CHANGED, /**< tmini_faults() has changed, to 0 as well. */
@@ -155,7 +156,8 @@ typedef struct {
     tmini_parser_counters_t parser; /**< Packets, checksum errors, and where each byte went. */
     uint32_t bytes_pending;         /**< Received and waiting for more. */
     uint32_t scans;                 /**< Delivered as TMINI_EVENT_SCAN. */
-    uint16_t timeouts;              /**< Waits that ended without what was waited for. */
+    uint16_t timeouts;              /**< Attempts at commands that ended without the reply, the
+                                       * quiet line or the first packet that they waited for. */
     uint16_t losses;                /**< TMINI_EVENT_LOST. */
     uint16_t recoveries;            /**< TMINI_EVENT_RECOVERED. */
     uint16_t restarts;              /**< Attempts to recover by a start. */
@@ -202,9 +204,9 @@ static inline void tmini_feed_dma(tmini_t *lidar, size_t position);
 /** Says that bytes were lost on their way, behind those fed so far, and not how many: a receiver's
  * queue overflowed, or DMA may have gone a whole lap unseen (then call it before tmini_feed_dma()).
  * No scan continues across the gap. Without DMA nothing is stored until polling has emptied the
- * buffer: look at tmini_feed_room(). With DMA it drops all but the newest half of rx_buffer, and
- * counts as overrun what that makes of a lap (rx_size bytes); if there was none, that half may be
- * delivered a second time. */
+ * buffer: look at tmini_feed_room(). With DMA a lap of the oldest bytes (rx_size) is dropped and
+ * counted as overrun, and what is then left beyond half a lap: so nothing is delivered twice, even
+ * if there was no lap. */
 static inline void tmini_feed_gap(tmini_t *lidar);
 
 /* -------------------------------------------------------- everything else: the polling context */
@@ -228,7 +230,9 @@ tmini_event_t tmini_poll(tmini_t *lidar);
  *
  * and touch nothing unless they return TMINI_OK. If the event that ended the command before has not
  * been polled yet, it is dropped. From the polling context. None waits, and each sends two bytes at
- * most; the rest of a command is done by tmini_poll(). */
+ * most; the rest of a command is done by tmini_poll(). If the port refuses, it is asked once more when
+ * time has passed; the command may be begun anew whenever it has failed, even in a loop that polls
+ * until TMINI_EVENT_NONE. */
 /** @{ */
 
 /** Starts scanning [STARTED]; after that each revolution is TMINI_EVENT_SCAN (section 2). */
@@ -332,7 +336,8 @@ typedef struct {
 
 /* tmini_recovery.c */
 typedef struct {
-    uint16_t attempts; /* Failed ones, since the last complete revolution or a reboot. */
+    uint16_t attempts; /* Failed ones, since the last complete revolution or a reboot; 0: none has
+                          been made. */
     uint16_t losses;
     uint16_t recoveries;
     uint16_t restarts;

@@ -68,7 +68,8 @@ typedef struct {
     uint16_t last_angle_q6; /**< LSA, below 23040. Without meaning when count is 1 (section 9.6). */
     uint8_t ct;             /**< As sent: bit 0 start packet, bits 1 to 7 CT information. */
     uint8_t count;          /**< Samples: 1 to 255. */
-    uint16_t gap;           /**< Bytes skipped before it, or TMINI_GAP_UNKNOWN: bytes were lost. */
+    uint16_t gap;           /**< Bytes skipped before it, or TMINI_GAP_UNKNOWN: packets may be
+                               * missing (bytes were lost, the line has paused, it came late). */
     uint32_t step;          /**< From sample to sample, in 1/64 degree / 2^17, rounded up. */
     const tmini_frame_t *frame; /**< Where its bytes lie. */
 } tmini_packet_t;

@@ -74,9 +74,9 @@ static inline float tmini_ranges_scan_time(const tmini_scan_t *scan)
 }
 
 /** A LaserScan's time_increment, in seconds from bin to bin: negative, because the bins run
- * counter-clockwise and the rotor clockwise. Bin 0, behind the lidar, is measured half a period
- * after the scan's start_ms, bin count / 2 at its beginning; the bins beyond, on the left, a
- * period later than this says: at its end. */
+ * counter-clockwise and the rotor clockwise. Of a scan that begins at 0 degrees bin 0, behind the
+ * lidar, is measured half a period after the scan's start_ms, bin count / 2 at its beginning; the
+ * bins beyond, on the left, a period later than this says: at its end. */
 static inline float tmini_ranges_time_increment(const tmini_scan_t *scan, size_t count)
 {
     return -tmini_ranges_scan_time(scan) / (float)count;

@@ -28,6 +28,8 @@ void tearDown(void) {}
 void test_a_command_through_the_unfilled_template_fails_as_a_write_error(void)
 {
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_request_info(&lidar));
+    TEST_ASSERT_EQUAL(TMINI_EVENT_NONE, tmini_poll(&lidar));
+    tmini_port_template_tick(&port);
     TEST_ASSERT_EQUAL(TMINI_EVENT_COMMAND_FAILED, tmini_poll(&lidar));
     TEST_ASSERT_EQUAL(TMINI_ERROR_WRITE, tmini_command_error(&lidar));
 }
