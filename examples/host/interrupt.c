@@ -7,8 +7,12 @@
 
 #include <signal.h>
 #include <stddef.h>
+#include <unistd.h>
 
-static volatile sig_atomic_t has_come;
+/* Stopping a lidar that does not hear takes up to 2 s. */
+#define GRACE_S 5
+
+static volatile sig_atomic_t has_come; /* The first signal's number. */
 
 static void (*volatile last_words[2])(void);
 
@@ -22,12 +26,14 @@ static void leave(int signal_number)
     (void)raise(signal_number);
 }
 
+/* The program may be held up, by a reader that does not read: then it does not end by itself. */
 static void note(int signal_number)
 {
     if (has_come == 0) {
-        has_come = 1;
+        has_come = signal_number;
+        (void)alarm(GRACE_S);
     } else {
-        leave(signal_number);
+        leave(signal_number == SIGALRM ? has_come : signal_number);
     }
 }
 
@@ -48,14 +54,19 @@ static void handle(int signal_number, void (*handler)(int))
 void interrupt_watch_pipes(void)
 {
     handle(SIGPIPE, leave);
+    (void)signal(SIGXFSZ, SIG_IGN); /* Writing then fails, as on a full disk. */
 }
 
+/* A signal that is ignored stays so: `nohup`, jobs in the background of a script. */
 void interrupt_watch(void)
 {
-    handle(SIGINT, note);
-    handle(SIGTERM, note);
-    handle(SIGHUP, note);
-    handle(SIGQUIT, note);
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGALRM};
+    for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
+        struct sigaction before;
+        if (sigaction(signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
+            handle(signals[i], note);
+        }
+    }
 }
 
 bool interrupt_has_come(void)

@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Ctrl-C, and the other signals that ask a program to end: they are noted, so that the lidar can be
- * stopped and the terminal restored before leaving. A second one ends the program at once, after
- * the little that must be done even then. */
+ * stopped and the terminal restored before leaving. A second one, or five seconds, end the program
+ * at once, after the little that must be done even then. */
 
 #ifndef INTERRUPT_H
 #define INTERRUPT_H
@@ -11,10 +11,10 @@
 #include <stdbool.h>
 
 /* From now on a reader that has gone (`| head`) ends the program at once and without a word, as it
- * does other programs, but for the last words. */
+ * does other programs, but for the last words; and a file that may not grow is as a full disk. */
 void interrupt_watch_pipes(void);
 
-/* From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT are only noted. */
+/* From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT are only noted, unless they are ignored. */
 void interrupt_watch(void);
 
 /* What to do when a second one comes, or a pipe is closed: called from the signal's handler. Up to

@@ -167,7 +167,6 @@ static uint32_t arrival_ms(tmini_t *lidar)
 static void fail(tmini_t *lidar, tmini_status_t status)
 {
     lidar->command_error = (int8_t)status;
-    lidar->is_settled = false;
     raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
 }
 
@@ -235,7 +234,7 @@ static void begin(tmini_t *lidar, tmini_command_code_t operation, tmini_event_t 
     if (is_idle) {
         (void)tmini_command_proceed(lidar);
     }
-    lidar->is_settled = tmini_command_poll(lidar) != TMINI_UNDER_WAY;
+    lidar->is_settled = tmini_command_poll(lidar) != TMINI_UNDER_WAY && lidar->pending == 0;
 }
 
 /* Begins a command, if it may be begun now; stop may always, and aborts another. The end of an
@@ -260,10 +259,10 @@ static tmini_status_t request(tmini_t *lidar, tmini_command_code_t operation,
     update_time(lidar);
     tmini_recovery_forget(lidar);
     lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
-    begin(lidar, operation, end_event, frequency_chz);
     if (is_under_way) {
         fail(lidar, TMINI_ERROR_ABORTED);
     }
+    begin(lidar, operation, end_event, frequency_chz);
     return TMINI_OK;
 }
 

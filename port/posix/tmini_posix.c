@@ -58,7 +58,7 @@ static tmini_posix_status_t status_of_open(int error)
 /* TIOCEXCL keeps other users out, flock() also those with all rights, if they ask. */
 static tmini_posix_status_t claim(int fd)
 {
-    if (isatty(fd) == 0) {
+    if (isatty(fd) == 0 || tcgetpgrp(fd) >= 0) { /* It has foreground processes: ours. */
         return TMINI_POSIX_NOT_A_TERMINAL;
     }
     if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
@@ -109,7 +109,12 @@ static tmini_posix_status_t open_device(tmini_posix_t *serial)
         return status_of_open(errno);
     }
     const tmini_posix_status_t status = claim(serial->fd);
-    return status == TMINI_POSIX_OK ? set_up(serial->fd) : status;
+    if (status != TMINI_POSIX_OK) {
+        (void)close(serial->fd); /* Not by tmini_posix_stop(): another program's claim stays. */
+        serial->fd = -1;
+        return status;
+    }
+    return set_up(serial->fd);
 }
 
 /* Returns the socket, or -1 with errno set. */
@@ -118,9 +123,12 @@ static int connect_to(const struct addrinfo *place)
     const struct timeval patience = {.tv_sec = CONNECT_S};
     const int on = 1;
     const int fd = socket(place->ai_family, place->ai_socktype, place->ai_protocol);
+    if (fd < 0) {
+        return -1;
+    }
     (void)setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
     (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    if (fd >= 0 && connect(fd, place->ai_addr, place->ai_addrlen) != 0) {
+    if (connect(fd, place->ai_addr, place->ai_addrlen) != 0) {
         const int error = errno;
         (void)close(fd);
         errno = error == EINPROGRESS ? ETIMEDOUT : error;
@@ -129,21 +137,33 @@ static int connect_to(const struct addrinfo *place)
     return fd;
 }
 
-/* "tcp:HOST:PORT"; the last colon counts, because HOST may be an IPv6 address. */
-static tmini_posix_status_t open_socket(tmini_posix_t *serial)
+/* Where "HOST:PORT" is; NULL: nowhere. The last colon counts, because HOST may be an IPv6 address,
+ * in brackets or not. */
+static struct addrinfo *places_of(const char *address)
 {
     const struct addrinfo hints = {.ai_socktype = SOCK_STREAM};
-    const char *const host = serial->path + sizeof SOCKET_PREFIX - 1;
-    const char *const colon = strrchr(host, ':');
+    const char *const colon = strrchr(address, ':');
     struct addrinfo *places = NULL;
     char name[256];
-    if (colon == NULL || colon == host || colon[1] == '\0' ||
-        (size_t)(colon - host) >= sizeof name) {
-        return TMINI_POSIX_ADDRESS;
+    if (colon == NULL || colon == address || colon[1] == '\0') {
+        return NULL;
     }
-    memcpy(name, host, (size_t)(colon - host));
-    name[colon - host] = '\0';
-    if (getaddrinfo(name, colon + 1, &hints, &places) != 0) {
+    const bool in_brackets = address[0] == '[' && colon[-1] == ']';
+    const char *const host = in_brackets ? address + 1 : address;
+    const size_t length = (size_t)(colon - host) - (in_brackets ? 1 : 0);
+    if (length >= sizeof name) {
+        return NULL;
+    }
+    memcpy(name, host, length);
+    name[length] = '\0';
+    return getaddrinfo(name, colon + 1, &hints, &places) == 0 ? places : NULL;
+}
+
+/* "tcp:HOST:PORT". */
+static tmini_posix_status_t open_socket(tmini_posix_t *serial)
+{
+    struct addrinfo *const places = places_of(serial->path + sizeof SOCKET_PREFIX - 1);
+    if (places == NULL) {
         return TMINI_POSIX_ADDRESS;
     }
     for (const struct addrinfo *place = places; place != NULL && serial->fd < 0;
@@ -246,10 +266,24 @@ static size_t room(const tmini_posix_t *serial)
     return space < BLOCK_SIZE ? space : BLOCK_SIZE;
 }
 
+/* True if there may be more, and room for it: what has waited is handed over at once, so that the
+ * lidar can tell when it came. */
+static bool take_block(tmini_posix_t *serial)
+{
+    uint8_t block[BLOCK_SIZE];
+    const size_t wanted = room(serial);
+    const ssize_t count = wanted > 0 ? read(serial->fd, block, wanted) : 0;
+    if (count > 0) {
+        take(serial, block, (size_t)count);
+    } else if (wanted > 0) {
+        serial->state = count == 0 ? TMINI_POSIX_UNPLUGGED : status_of_transfer(errno);
+    }
+    return serial->lidar != NULL && wanted > 0 && count == (ssize_t)wanted;
+}
+
 tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms)
 {
-    const size_t wanted = room(serial);
-    if (serial->state != TMINI_POSIX_OK || wanted == 0) {
+    if (serial->state != TMINI_POSIX_OK || room(serial) == 0) {
         return serial->state;
     }
     struct pollfd device = {.fd = serial->fd, .events = POLLIN};
@@ -258,12 +292,7 @@ tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms)
         serial->state = ready == 0 ? TMINI_POSIX_OK : status_of_transfer(errno);
         return serial->state;
     }
-    uint8_t block[BLOCK_SIZE];
-    const ssize_t count = read(serial->fd, block, wanted);
-    if (count > 0) {
-        take(serial, block, (size_t)count);
-    } else {
-        serial->state = count == 0 ? TMINI_POSIX_UNPLUGGED : status_of_transfer(errno);
+    while (take_block(serial)) {
     }
     return serial->state;
 }

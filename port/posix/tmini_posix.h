@@ -45,7 +45,8 @@ typedef enum {
     TMINI_POSIX_NO_DEVICE = -1,      /**< There is no device of that name. */
     TMINI_POSIX_PERMISSION = -2,     /**< It may not be opened by this user. */
     TMINI_POSIX_BUSY = -3,           /**< Another program uses it. */
-    TMINI_POSIX_NOT_A_TERMINAL = -4, /**< It is a file or another kind of device. */
+    TMINI_POSIX_NOT_A_TERMINAL = -4, /**< It is a file, another kind of device, or this program's
+                                        * own terminal. */
     TMINI_POSIX_BAUD_RATE = -5,      /**< It cannot do 230400 baud. */
     TMINI_POSIX_UNPLUGGED = -6,      /**< It was there, and has gone. */
     TMINI_POSIX_FAILED = -7,         /**< Something else; errno tells. */
@@ -90,8 +91,8 @@ tmini_posix_status_t tmini_posix_start(tmini_posix_t *serial, tmini_t *lidar);
  * its UART. It becomes the port's own: tmini_posix_stop() closes it. Returns TMINI_POSIX_OK. */
 tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *serial, int fd, tmini_t *lidar);
 
-/** Waits up to `timeout_ms` for bytes and feeds them to the lidar, at most 128 and no more than its
- * ring has room for: call tmini_poll() until it returns TMINI_EVENT_NONE in between. Without room
+/** Waits up to `timeout_ms` for bytes and feeds them to the lidar, all that have come and no more
+ * than its ring has room for: call tmini_poll() until it returns TMINI_EVENT_NONE in between. Without room
  * it returns at once; the bytes stay with the system. A signal ends the waiting early. Returns
  * TMINI_POSIX_OK, also when nothing came; TMINI_POSIX_UNPLUGGED or TMINI_POSIX_FAILED, then also
  * ever after. */

@@ -466,6 +466,49 @@ void test_ctrl_c_stops_the_lidar_before_leaving(void)
     TEST_ASSERT_NOT_NULL(strstr(start, "A5 65 stop"));
 }
 
+/* What else is in the pipe leaves it little room: a line of a scan is written in several pieces,
+ * each of which waits for ever. */
+void test_a_signal_ends_a_scan_whose_reader_stands_still_and_stops_the_lidar(void)
+{
+    const char *const log = program_path("log");
+    (void)setenv("TMINI_PORT", program_start_lidar(WORDS("--log", log)), 1);
+    TEST_ASSERT_EQUAL_INT(0, system("(head -c 61440 /dev/zero; sh -c 'echo $$ >tool; exec "
+                                    "\"$TOOL\" scan --json --count 10000' 2>errors; "
+                                    "echo $? >status) | sleep 90 & echo $! >reader"));
+    (void)program_wait_for("log", "-> scanning");
+    (void)sleep(3);
+    TEST_ASSERT_EQUAL_INT(0, system("kill -TERM \"$(cat tool)\""));
+    TEST_ASSERT_NOT_EQUAL(0, atoi(program_wait_for("status", "\n")));
+    const char *const text = program_wait_for("log", "stopping -> idle");
+    TEST_ASSERT_NOT_NULL(strstr(strstr(text, "A5 60 start"), "A5 65 stop"));
+    TEST_ASSERT_EQUAL_INT(0, system("kill \"$(cat reader)\""));
+}
+
+/* As `nohup` does. 1.5 s are 19,000 bytes. */
+void test_a_signal_that_is_ignored_stays_ignored(void)
+{
+    size_t size = 0;
+    (void)remove(program_path("it.bin"));
+    (void)setenv("TMINI_PORT", program_start_lidar(WORDS(NULL)), 1);
+    const pid_t tool =
+        program_start("/bin/sh", WORDS("-c", "trap '' HUP; exec \"$TOOL\" record -q it.bin "
+                                             "--seconds 2"));
+    wait_for_bytes(program_path("it.bin"), 1000);
+    TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGHUP));
+    (void)program_read_file(0, program_path("it.bin"), &size);
+    TEST_ASSERT_TRUE(size > 19000);
+}
+
+void test_a_file_that_may_not_grow_is_a_failure_and_the_lidar_is_stopped(void)
+{
+    const char *const log = program_path("log");
+    (void)setenv("TMINI_PORT", program_start_lidar(WORDS("--log", log)), 1);
+    TEST_ASSERT_EQUAL_INT(256, system("(ulimit -f 8; \"$TOOL\" record short.bin 2>errors)"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(program_read_file(0, program_path("errors"), NULL), "cannot write short.bin"));
+    (void)program_wait_for("log", "stopping -> idle");
+}
+
 void test_a_lidar_that_is_still_streaming_is_stopped_first(void)
 {
     const char *const log = program_path("log");

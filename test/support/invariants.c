@@ -268,12 +268,12 @@ static bool monitor_is_sound(const tmini_monitor_t *monitor)
     return ((monitor->faults | monitor->observed) & ~TMINI_FAULT_MASK) == 0;
 }
 
-/* Streaming, nothing is gathered. A packet that waits is there. Settled: nothing is left to do. */
+/* Streaming, nothing is gathered. A packet that waits is there. Settled: there is nothing to tell. */
 static bool results_are_sound(const tmini_t *lidar)
 {
     const bool streaming = lidar->builder.capacity == 0;
     return (streaming ? !lidar->builder.open : builder_is_sound(&lidar->builder)) &&
-           (!lidar->is_settled || (lidar->pending == 0 && !lidar->packet_waits)) &&
+           (!lidar->is_settled || lidar->pending == 0) &&
            (!lidar->packet_waits ||
             (!streaming && packet_is_sound(&lidar->latest.packet, &lidar->parser.frame)));
 }

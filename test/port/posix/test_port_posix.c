@@ -12,12 +12,15 @@
 
 #include "unity.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -160,6 +163,38 @@ void test_the_longest_host_name_has_255_characters(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_ADDRESS, start_at_host_of_zeros(256));
 }
 
+void test_an_address_may_be_one_of_ipv6_in_brackets(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, start(&serial, "tcp:[::1]:1"));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, start(&serial, "tcp:::1:1"));
+}
+
+void test_a_system_without_a_free_descriptor_says_so(void)
+{
+    struct rlimit limit;
+    TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &limit));
+    const struct rlimit few = {3, limit.rlim_max};
+    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &few));
+    const tmini_posix_status_t status = start(&serial, "tcp:127.0.0.1:1");
+    const int error = errno;
+    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &limit));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, status);
+    TEST_ASSERT_EQUAL_INT(EMFILE, error);
+}
+
+void test_what_has_waited_is_handed_over_at_once(void)
+{
+    static const uint8_t bytes[700];
+    int ends[2];
+    begin();
+    TEST_ASSERT_EQUAL_INT(0, socketpair(AF_UNIX, SOCK_STREAM, 0, ends));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start_on(&serial, ends[0], &lidar));
+    TEST_ASSERT_EQUAL_INT(sizeof bytes, write(ends[1], bytes, sizeof bytes));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_receive(&serial, 1000));
+    TEST_ASSERT_EQUAL_UINT64(sizeof bytes, serial.received);
+    close(ends[1]);
+}
+
 void test_silence_is_no_error(void)
 {
     begin();
@@ -207,6 +242,44 @@ void test_a_device_is_used_by_one_program_at_a_time(void)
     tmini_posix_stop(&serial);
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&other, port));
     tmini_posix_stop(&other);
+}
+
+/* Root may open a device that is claimed, and is refused all the same. */
+void test_who_is_refused_takes_nobodys_claim_away(void)
+{
+#if defined(TIOCGEXCL)
+    tmini_posix_t other;
+    int is_claimed = 0;
+    const char *const port = program_start_lidar((const char *const[]){NULL});
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&serial, port));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_BUSY, start(&other, port));
+    TEST_ASSERT_EQUAL_INT(0, ioctl(serial.fd, TIOCGEXCL, &is_claimed));
+    TEST_ASSERT_EQUAL_INT(1, is_claimed);
+#else
+    TEST_IGNORE_MESSAGE("this system does not tell");
+#endif
+}
+
+/* Else Ctrl-C would be a byte like any other, and nothing typed be shown any more. */
+void test_the_programs_own_terminal_is_refused(void)
+{
+    const int master = posix_openpt(O_RDWR | O_NOCTTY);
+    TEST_ASSERT_EQUAL_INT(0, grantpt(master));
+    TEST_ASSERT_EQUAL_INT(0, unlockpt(master));
+    const pid_t child = fork();
+    if (child == 0) {
+        (void)setsid();
+        (void)open(ptsname(master), O_RDWR); /* Becomes the session's terminal. */
+        (void)ioctl(open(ptsname(master), O_RDWR), TIOCSCTTY, 0);
+        _exit(start(&serial, "/dev/tty") == TMINI_POSIX_NOT_A_TERMINAL &&
+                      start(&serial, ptsname(master)) == TMINI_POSIX_NOT_A_TERMINAL
+                  ? 0
+                  : 1);
+    }
+    int status = -1;
+    TEST_ASSERT_EQUAL_INT(child, waitpid(child, &status, 0));
+    TEST_ASSERT_EQUAL_INT(0, status);
+    close(master);
 }
 
 void test_a_device_is_started_again_after_it_was_stopped(void)
