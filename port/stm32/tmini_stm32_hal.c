@@ -109,6 +109,20 @@ static HAL_StatusTypeDef receive_by_dma(tmini_stm32_hal_t *port)
 #endif
 }
 
+/* A channel of linked lists that has stopped by an error goes on with the rest of its block when it
+ * is started again, in the middle of the buffer: the HAL forgets that rest only where it stops the
+ * channel itself. With nothing left the channel reads its list, and begins at the start. */
+static void forget_rest_of_block(const tmini_stm32_hal_t *port)
+{
+#ifdef DMA_LINKEDLIST_CIRCULAR
+    if (port->uart->hdmarx->State == HAL_DMA_STATE_READY) {
+        port->uart->hdmarx->Instance->CBR1 = 0;
+    }
+#else
+    (void)port;
+#endif
+}
+
 /* Errors of the line would stop the DMA for good: the HAL takes any of them as the end. Without
  * their interrupt each costs its byte. The UART goes on by itself also after an overrun. */
 static void ignore_line_errors(tmini_stm32_hal_t *port)
@@ -148,6 +162,11 @@ static HAL_StatusTypeDef receive_by_dma(const tmini_stm32_hal_t *port)
 {
     (void)port;
     return HAL_ERROR;
+}
+
+static void forget_rest_of_block(const tmini_stm32_hal_t *port)
+{
+    (void)port;
 }
 
 static void ignore_line_errors(const tmini_stm32_hal_t *port)
@@ -281,6 +300,7 @@ static void forget_reception(tmini_stm32_hal_t *port)
 
 static void prepare_circle(tmini_stm32_hal_t *port)
 {
+    forget_rest_of_block(port);
     if (port->reception == RECEPTION_DMA) {
         tmini_stm32_circle_rewind(port->lidar);
     }

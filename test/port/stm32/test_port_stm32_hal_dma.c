@@ -332,6 +332,35 @@ void test_a_dma_that_fails_is_started_again_by_the_poll_and_not_in_the_interrupt
     check_both(check_dma_error);
 }
 
+/* A poll that follows a command asks for the time once only: so one poll begins the reception anew
+ * and reads all that there is, and another hands over for the first time. */
+static void check_dma_error_behind(hal_rig_way_t way, unsigned packets)
+{
+    hal_rig_open_and_start(way);
+    hal_rig_line_packets(packets);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL(TMINI_OK, tmini_request_info(&hal_rig.lidar));
+    model.dma.flags |= MODEL_DMA_TE;
+    model_pass(5000);
+    (void)hal_rig_poll();
+    hal_rig_line_packets(100);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(packets + 100, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
+}
+
+static void check_dma_error_anywhere(hal_rig_way_t way)
+{
+    for (unsigned packets = 10; packets < 110; packets += 20) {
+        check_dma_error_behind(way, packets);
+    }
+}
+
+void test_what_came_before_a_dma_failed_is_not_delivered_again(void)
+{
+    check_both(check_dma_error_anywhere);
+}
+
 /* An error in the middle of a packet; half of it has come before. */
 void test_what_came_before_a_restart_is_no_packet_again(void)
 {

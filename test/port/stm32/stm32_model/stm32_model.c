@@ -23,18 +23,18 @@ static void dma_write(uint8_t byte)
 {
     model_dma_t *const dma = &model.dma;
 #ifdef STM32_MODEL_DCACHE
-    model.ram[dma->size - dma->left] = byte;
+    model.ram[dma->size - dma->channel.CBR1] = byte;
 #else
-    dma->memory[dma->size - dma->left] = byte;
+    dma->memory[dma->size - dma->channel.CBR1] = byte;
 #endif
-    dma->left--;
-    if (dma->left == dma->size / 2u) {
+    dma->channel.CBR1--;
+    if (dma->channel.CBR1 == dma->size / 2u) {
         dma->flags |= MODEL_DMA_HT;
     }
-    if (dma->left == 0) {
+    if (dma->channel.CBR1 == 0) {
         dma->flags |= MODEL_DMA_TC;
         dma->enabled = dma->circular;
-        dma->left = dma->circular ? dma->size : 0;
+        dma->channel.CBR1 = dma->circular ? dma->size : 0;
     }
 }
 
@@ -206,7 +206,7 @@ void model_unset(volatile uint32_t *reg, uint32_t bits)
 uint32_t model_dma_left(void)
 {
     model_step();
-    const uint32_t left = model.dma.left;
+    const uint32_t left = model.dma.channel.CBR1;
     model_step(); /* What is read is old already when it is used. */
     return left;
 }

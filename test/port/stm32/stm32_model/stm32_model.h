@@ -39,12 +39,17 @@ typedef struct {
     volatile uint32_t CR3;
 } USART_TypeDef;
 
+/* What is left of this round, by its name where the channel runs linked lists. */
+typedef struct {
+    volatile uint32_t CBR1;
+} DMA_Channel_TypeDef;
+
 typedef struct {
     bool enabled;
     bool circular;
     uint8_t *memory;
     uint16_t size;
-    uint32_t left; /* In this round. */
+    DMA_Channel_TypeDef channel;
     uint32_t flags;
     uint32_t interrupts;
 } model_dma_t;

@@ -102,6 +102,18 @@ static void dma_error_reported(DMA_HandleTypeDef *dma)
     HAL_UART_ErrorCallback(dma_user);
 }
 
+/* Linked lists: the start names the list, and the channel reads it as soon as nothing is left of
+ * the block that it has. */
+static uint32_t first_round(uint16_t size)
+{
+#ifdef STM32_MODEL_LINKED_LISTS
+    const uint32_t left = model.dma.channel.CBR1;
+    return left > 0 ? left : size;
+#else
+    return size;
+#endif
+}
+
 static bool dma_start(UART_HandleTypeDef *uart, uint8_t *memory, uint16_t size)
 {
     DMA_HandleTypeDef *const dma = uart->hdmarx;
@@ -111,8 +123,9 @@ static bool dma_start(UART_HandleTypeDef *uart, uint8_t *memory, uint16_t size)
     dma_user = uart;
     dma->State = HAL_DMA_STATE_BUSY;
     model_step();
+    const uint32_t left = first_round(size);
     model.dma = (model_dma_t){.circular = is_circular(dma), .memory = memory, .size = size};
-    model.dma.left = size;
+    model.dma.channel.CBR1 = left;
     model_step();
     model.dma.interrupts = MODEL_DMA_HT | MODEL_DMA_TC | MODEL_DMA_TE;
     model.dma.enabled = true;
@@ -120,6 +133,7 @@ static bool dma_start(UART_HandleTypeDef *uart, uint8_t *memory, uint16_t size)
     return true;
 }
 
+/* As an error does: what is left of the block stays. */
 static void dma_stop(DMA_HandleTypeDef *dma)
 {
     model.dma.enabled = false;
@@ -127,6 +141,12 @@ static void dma_stop(DMA_HandleTypeDef *dma)
     model.dma.flags = 0;
     model_step();
     dma->State = HAL_DMA_STATE_READY;
+}
+
+static void dma_abort(DMA_HandleTypeDef *dma)
+{
+    dma_stop(dma);
+    model.dma.channel.CBR1 = 0;
 }
 
 /* Streams say by an interrupt that they have stopped; the others stop at once. */
@@ -141,7 +161,7 @@ static bool dma_stop_later(DMA_HandleTypeDef *dma)
     model.dma.flags |= MODEL_DMA_TC;
     model_step();
 #else
-    dma_stop(dma);
+    dma_abort(dma);
     dma->XferAbortCallback(dma);
 #endif
     return true;
@@ -178,7 +198,7 @@ void HAL_DMA_IRQHandler(DMA_HandleTypeDef *hdma)
     model_step();
     const uint32_t flags = model.dma.flags & model.dma.interrupts;
     if (hdma->State == HAL_DMA_STATE_ABORT) {
-        dma_stop(hdma);
+        dma_abort(hdma);
         if (hdma->XferAbortCallback != NULL) {
             hdma->XferAbortCallback(hdma);
         }
@@ -323,7 +343,7 @@ HAL_StatusTypeDef HAL_UART_AbortReceive(UART_HandleTypeDef *huart)
         model_unset(&model_usart.CR3, MODEL_CR3_DMAR);
         if (huart->hdmarx != NULL && huart->hdmarx->State == HAL_DMA_STATE_BUSY) {
             huart->hdmarx->XferAbortCallback = NULL;
-            dma_stop(huart->hdmarx);
+            dma_abort(huart->hdmarx);
         }
     }
 #endif

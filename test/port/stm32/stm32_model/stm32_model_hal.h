@@ -54,6 +54,7 @@ typedef enum {
 typedef enum { HAL_DMA_STATE_READY, HAL_DMA_STATE_BUSY, HAL_DMA_STATE_ABORT } model_dma_state_t;
 
 typedef struct DMA_HandleTypeDef {
+    DMA_Channel_TypeDef *Instance;
     struct {
         uint32_t Mode;
         uint32_t FIFOMode;
