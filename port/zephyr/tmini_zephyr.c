@@ -13,6 +13,15 @@
 
 #define CHUNK 32
 
+/* The result of a function that has none in old versions of Zephyr: there 0. Whatever compiles so
+ * old a Zephyr knows GCC's built-ins. */
+#ifdef __GNUC__
+#define RESULT_OR_0(call) \
+    __builtin_choose_expr(__builtin_types_compatible_p(__typeof__(call), void), ((call), 0), (call))
+#else
+#define RESULT_OR_0(call) (call)
+#endif
+
 /* ------------------------------------------------------------------------------------ receiving */
 
 /* Counts the errors since the last call; true if bytes were lost. Negative: the driver cannot
@@ -103,6 +112,12 @@ int tmini_zephyr_init(tmini_zephyr_t *board, const struct device *uart)
     return 0;
 }
 
+/* Zephyr has said since 3.3 whether the driver has interrupts. */
+static int take_callback(tmini_zephyr_t *board)
+{
+    return RESULT_OR_0(uart_irq_callback_user_data_set(board->uart, on_interrupt, board));
+}
+
 int tmini_zephyr_start(tmini_zephyr_t *board, tmini_t *lidar)
 {
     if (board == NULL || lidar == NULL || board->uart == NULL) {
@@ -113,11 +128,14 @@ int tmini_zephyr_start(tmini_zephyr_t *board, tmini_t *lidar)
     }
     uart_irq_rx_disable(board->uart);
     uart_irq_tx_disable(board->uart);
+    const int error = take_callback(board);
+    if (error != 0) {
+        return error;
+    }
     board->counters = (tmini_zephyr_counters_t){0};
     board->unannounced = 0;
     board->lidar = lidar;
     (void)uart_err_check(board->uart); /* Of bytes from before. */
-    (void)uart_irq_callback_user_data_set(board->uart, on_interrupt, board);
     uart_irq_rx_enable(board->uart);
     return 0;
 }

@@ -72,7 +72,10 @@ int tmini_zephyr_init(tmini_zephyr_t *board, const struct device *uart);
 /** Received bytes go to `lidar`, which has been through tmini_init(); the counters begin anew.
  * Takes the UART's callback. Returns 0,
  *   -EINVAL    null pointer, or no tmini_zephyr_init() before
- *   -EALREADY  started already */
+ *   -EALREADY  started already
+ *   -ENOSYS    the UART's driver has no interrupt-driven API (before Zephyr 3.3 nothing says so)
+ *   -ENOTSUP   CONFIG_UART_INTERRUPT_DRIVEN is off
+ * After an error nothing is received. */
 int tmini_zephyr_start(tmini_zephyr_t *board, tmini_t *lidar);
 
 /** Ends reception. Stop the lidar before, or it goes on scanning. */

@@ -149,6 +149,22 @@ void test_what_cannot_work_is_refused(void)
     TEST_ASSERT_EQUAL_INT(-EALREADY, tmini_zephyr_start(&board, &lidar));
 }
 
+void test_a_driver_without_interrupts_is_refused_and_not_started(void)
+{
+#ifdef ZEPHYR_BEFORE_3_3
+    TEST_IGNORE_MESSAGE("Zephyr before 3.3 does not tell");
+#endif
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
+    zephyr_model_set_interrupts(-ENOSYS);
+    TEST_ASSERT_EQUAL_INT(-ENOSYS, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_FALSE(zephyr_model_is_receiving());
+    zephyr_model_set_interrupts(-ENOTSUP);
+    TEST_ASSERT_EQUAL_INT(-ENOTSUP, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_FALSE(zephyr_model_is_receiving());
+    zephyr_model_set_interrupts(0);
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&board, &lidar));
+}
+
 void test_without_a_uart_nothing_is_sent(void)
 {
     static const uint8_t byte = 0xA5;

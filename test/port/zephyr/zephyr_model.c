@@ -28,6 +28,7 @@ static struct {
     bool lose_while_reading;
     int error_check;
     int configure;
+    int interrupts;
     bool ready;
     bool receiving;
     bool held_up;
@@ -65,6 +66,11 @@ void zephyr_model_set_error_check(int result)
 void zephyr_model_set_configure(int result)
 {
     board.configure = result;
+}
+
+void zephyr_model_set_interrupts(int result)
+{
+    board.interrupts = result;
 }
 
 void zephyr_model_set_ready(bool ready)
@@ -212,16 +218,21 @@ void uart_poll_out(const struct device *device, unsigned char byte)
     sim_receive(&board.lidar, &byte, 1, board.now_us);
 }
 
-int uart_irq_callback_user_data_set(const struct device *device,
-                                    uart_irq_callback_user_data_t callback, void *user_data)
+UART_CALLBACK_RESULT uart_irq_callback_user_data_set(const struct device *device,
+                                                     uart_irq_callback_user_data_t callback,
+                                                     void *user_data)
 {
     (void)device;
     if (board.receiving) {
         abort(); /* An interrupt could come in between. */
     }
-    board.callback = callback;
-    board.user_data = user_data;
-    return 0;
+    if (board.interrupts == 0) {
+        board.callback = callback;
+        board.user_data = user_data;
+    }
+#ifndef ZEPHYR_BEFORE_3_3
+    return board.interrupts;
+#endif
 }
 
 void uart_irq_rx_enable(const struct device *device)

@@ -26,6 +26,9 @@ void zephyr_model_set_fifo(unsigned size);
 void zephyr_model_set_error_check(int result);
 void zephyr_model_set_configure(int result);
 
+/* -ENOSYS for a driver without the interrupt-driven API, -ENOTSUP if it is off; 0: it has it. */
+void zephyr_model_set_interrupts(int result);
+
 void zephyr_model_set_ready(bool ready);
 
 /* The lidar; see simulator.h. */

@@ -42,6 +42,13 @@ struct uart_config {
     uint8_t flow_ctrl;
 };
 
+/* Zephyr has told since 3.3 whether the callback was taken. */
+#ifdef ZEPHYR_BEFORE_3_3
+#define UART_CALLBACK_RESULT void
+#else
+#define UART_CALLBACK_RESULT int
+#endif
+
 #define UART_ERROR_OVERRUN 1
 #define UART_ERROR_PARITY 2
 #define UART_ERROR_FRAMING 4
@@ -52,8 +59,9 @@ typedef void (*uart_irq_callback_user_data_t)(const struct device *device, void 
 int uart_configure(const struct device *device, const struct uart_config *config);
 int uart_err_check(const struct device *device);
 void uart_poll_out(const struct device *device, unsigned char byte);
-int uart_irq_callback_user_data_set(const struct device *device,
-                                    uart_irq_callback_user_data_t callback, void *user_data);
+UART_CALLBACK_RESULT uart_irq_callback_user_data_set(const struct device *device,
+                                                     uart_irq_callback_user_data_t callback,
+                                                     void *user_data);
 void uart_irq_rx_enable(const struct device *device);
 void uart_irq_rx_disable(const struct device *device);
 void uart_irq_tx_disable(const struct device *device);
