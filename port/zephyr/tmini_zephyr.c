@@ -38,23 +38,30 @@ static bool has_lost_bytes(tmini_zephyr_t *board)
     return (errors & UART_ERROR_OVERRUN) != 0;
 }
 
+/* Tells the lidar at once: with some drivers clearing an error takes the byte away as well, and
+ * there is nothing left to read. Once bytes were lost, the rest of this interrupt's is not used. */
+static bool tell_losses(tmini_zephyr_t *board, bool lost_before)
+{
+    const bool lost = has_lost_bytes(board) || lost_before;
+    if (lost) {
+        tmini_feed_gap(board->lidar);
+    }
+    return lost;
+}
+
 /* Whether bytes were lost is asked before reading, because reading clears the error with some
- * drivers, and again behind it, because they may have been lost among those just read. Then none of
- * these is used. */
+ * drivers, and again behind it, because they may have been lost among those just read. */
 static uint32_t empty_fifo(tmini_zephyr_t *board)
 {
     uint8_t chunk[CHUNK];
     uint32_t received = 0;
-    bool lost = has_lost_bytes(board);
+    bool lost = tell_losses(board, false);
     while (uart_irq_rx_ready(board->uart) > 0) {
         const int count = uart_fifo_read(board->uart, chunk, sizeof chunk);
         if (count <= 0) {
             break;
         }
-        lost = has_lost_bytes(board) || lost;
-        if (lost) {
-            tmini_feed_gap(board->lidar);
-        }
+        lost = tell_losses(board, lost);
         tmini_feed(board->lidar, chunk, (size_t)count);
         received += (uint32_t)count;
     }

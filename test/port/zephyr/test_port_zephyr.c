@@ -270,6 +270,22 @@ void test_no_packet_is_put_together_across_a_loss(void)
     TEST_ASSERT_EQUAL_UINT32(0, packets());
 }
 
+/* Such USARTs hold one byte, and reading it is how their driver clears the error. */
+void test_an_overrun_behind_which_there_is_nothing_to_read_is_a_gap(void)
+{
+    zephyr_model_set_fifo(1);
+    zephyr_model_set_clearing_reads_data();
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&board, &lidar));
+    zephyr_model_receive(truth_packet, 10);
+    TEST_ASSERT_EQUAL_size_t(sizeof rx - 10, tmini_feed_room(&lidar));
+    zephyr_model_damage(UART_ERROR_OVERRUN);
+    zephyr_model_receive(&truth_packet[10], 1);
+    TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
+    TEST_ASSERT_EQUAL_UINT32(10, counted().bytes);
+    TEST_ASSERT_EQUAL_size_t(0, tmini_feed_room(&lidar));
+}
+
 void test_an_interrupt_that_is_late_for_the_stop_stores_nothing(void)
 {
     start();

@@ -26,6 +26,7 @@ static struct {
     int errors;
     int damage;
     bool lose_while_reading;
+    bool clearing_reads_data;
     int error_check;
     int configure;
     int interrupts;
@@ -111,6 +112,11 @@ unsigned zephyr_model_wakes(void)
 void zephyr_model_damage(int errors)
 {
     board.damage = errors;
+}
+
+void zephyr_model_set_clearing_reads_data(void)
+{
+    board.clearing_reads_data = true;
 }
 
 void zephyr_model_lose_while_reading(void)
@@ -209,6 +215,9 @@ int uart_err_check(const struct device *device)
     (void)device;
     const int errors = board.errors;
     board.errors = 0;
+    if (errors != 0 && board.clearing_reads_data) {
+        board.count = 0;
+    }
     return board.error_check != 0 ? board.error_check : errors;
 }
 

@@ -52,6 +52,9 @@ void zephyr_model_interrupt_late(void);
 /* The error that comes with the next byte. */
 void zephyr_model_damage(int errors);
 
+/* Clearing errors reads the data register, as on USARTs with SR and DR: what it held is gone. */
+void zephyr_model_set_clearing_reads_data(void);
+
 /* The next reading of the FIFO finds it full, and one byte is lost while it is being read. */
 void zephyr_model_lose_while_reading(void);
 
