@@ -13,8 +13,9 @@
 #define STREAM_SIZE_MIN 128u
 
 /* The receiving task wakes after so many bytes, or so much time: a packet's end must not wait for
- * the next packet. */
-#define TRIGGER_BYTES 32u
+ * the next packet. It sleeps on its notification and not on the stream, whose senders alone wake
+ * those who do: a stream that is closed would wake nobody. */
+#define RECEIVER_WAKE_BYTES 32u
 #define PATIENCE_MS 10u
 
 #define CHUNK 64u
@@ -28,13 +29,13 @@ static TickType_t ticks_of(uint32_t ms)
 
 /* ----------------------------------------------------------------- the UART's interrupt context */
 
-/* Notifies the polling task, once it has slept for the first time. */
-static void announce_from_isr(tmini_freertos_t *board, size_t count, BaseType_t *woken)
+/* The polling task has no name before it has slept for the first time, and the receiving one not
+ * quite from its first moment. */
+static void notify_from_isr(tmini_freertos_t *board, TaskHandle_t task, BaseType_t *woken)
 {
-    board->unannounced += (uint32_t)count;
-    if (board->unannounced >= TMINI_FREERTOS_WAKE_BYTES && board->poller != NULL) {
+    if (task != NULL) {
         board->unannounced = 0;
-        vTaskNotifyGiveIndexedFromISR(board->poller, TMINI_FREERTOS_NOTIFICATION, woken);
+        vTaskNotifyGiveIndexedFromISR(task, TMINI_FREERTOS_NOTIFICATION, woken);
     }
 }
 
@@ -51,6 +52,17 @@ static void send_to_stream(tmini_freertos_t *board, const uint8_t *bytes, size_t
         board->counters.bytes_lost += (uint32_t)(count - sent);
         board->is_closed = true;
     }
+    if (board->is_closed || board->unannounced >= RECEIVER_WAKE_BYTES) {
+        notify_from_isr(board, board->receiver, woken);
+    }
+}
+
+static void feed(tmini_freertos_t *board, const uint8_t *bytes, size_t count, BaseType_t *woken)
+{
+    tmini_feed(board->lidar, bytes, count);
+    if (board->unannounced >= TMINI_FREERTOS_WAKE_BYTES) {
+        notify_from_isr(board, board->poller, woken);
+    }
 }
 
 void tmini_freertos_receive_from_isr(tmini_freertos_t *board, const uint8_t *bytes, size_t count,
@@ -60,11 +72,11 @@ void tmini_freertos_receive_from_isr(tmini_freertos_t *board, const uint8_t *byt
         return;
     }
     board->counters.bytes += (uint32_t)count;
+    board->unannounced += (uint32_t)count;
     if (board->stream != NULL) {
         send_to_stream(board, bytes, count, woken);
     } else {
-        tmini_feed(board->lidar, bytes, count);
-        announce_from_isr(board, count, woken);
+        feed(board, bytes, count, woken);
     }
 }
 
@@ -90,13 +102,20 @@ static void announce(const tmini_freertos_t *board)
     }
 }
 
-/* While it is closed the interrupt sends nothing: what is empty stays so. */
+/* While it is closed the interrupt sends nothing: what is empty stays so. The polling task must
+ * empty the lidar's ring before that takes more. */
 static void open_when_empty(tmini_freertos_t *board)
 {
     if (board->is_closed && xStreamBufferIsEmpty(board->stream) == pdTRUE) {
         tmini_feed_gap(board->lidar);
         board->is_closed = false;
+        announce(board);
     }
+}
+
+static void await_notification(TickType_t ticks)
+{
+    (void)ulTaskNotifyTakeIndexed(TMINI_FREERTOS_NOTIFICATION, pdTRUE, ticks);
 }
 
 /* Takes no more than the lidar has room for: the rest is better kept in the stream than refused. */
@@ -108,13 +127,15 @@ static void hand_on(tmini_freertos_t *board)
         vTaskDelay(1); /* The polling task's turn. */
         return;
     }
-    const size_t count = xStreamBufferReceive(board->stream, chunk, room < CHUNK ? room : CHUNK,
-                                              ticks_of(PATIENCE_MS));
+    const size_t count = xStreamBufferReceive(board->stream, chunk, room < CHUNK ? room : CHUNK, 0);
     if (count > 0) {
         tmini_feed(board->lidar, chunk, count);
         announce(board);
     }
     open_when_empty(board);
+    if (count == 0) {
+        await_notification(ticks_of(PATIENCE_MS));
+    }
 }
 
 static void receive_task(void *argument)
@@ -124,8 +145,9 @@ static void receive_task(void *argument)
         if (board->is_receiving) {
             hand_on(board);
         } else {
+            await_notification(0); /* Of bytes from before; the next notification is the start's. */
             board->is_parked = true;
-            (void)ulTaskNotifyTakeIndexed(TMINI_FREERTOS_NOTIFICATION, pdTRUE, portMAX_DELAY);
+            await_notification(portMAX_DELAY);
         }
     }
 }
@@ -150,8 +172,8 @@ tmini_status_t tmini_freertos_init(tmini_freertos_t *board, const tmini_freertos
     }
     board->wiring = *wiring;
     if (wiring->stream != NULL) {
-        board->stream = xStreamBufferCreateStatic(wiring->stream_size, TRIGGER_BYTES,
-                                                  wiring->stream, &board->stream_memory);
+        board->stream = xStreamBufferCreateStatic(wiring->stream_size, 1, wiring->stream,
+                                                  &board->stream_memory);
     }
     return TMINI_OK;
 }
@@ -205,7 +227,7 @@ void tmini_freertos_stop(tmini_freertos_t *board)
 void tmini_freertos_wait(tmini_freertos_t *board, TickType_t ticks)
 {
     board->poller = xTaskGetCurrentTaskHandle();
-    (void)ulTaskNotifyTakeIndexed(TMINI_FREERTOS_NOTIFICATION, pdTRUE, ticks > 0 ? ticks : 1);
+    await_notification(ticks > 0 ? ticks : 1);
 }
 
 void tmini_freertos_counters(const tmini_freertos_t *board, tmini_freertos_counters_t *counters)

@@ -399,6 +399,11 @@ void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count)
     }
 }
 
+void freertos_model_overrun(void)
+{
+    world.overrun = true;
+}
+
 void freertos_model_skip(uint64_t us)
 {
     world.skipped_us += us;

@@ -35,6 +35,9 @@ void freertos_model_work_undisturbed(uint32_t us);
 /* Bytes as if the lidar had sent them now, behind an overrun or not; no task runs meanwhile. */
 void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count);
 
+/* The UART reports an overrun with the next interrupt. */
+void freertos_model_overrun(void);
+
 /* Time passes for the clock alone: no byte comes, nobody runs. */
 void freertos_model_skip(uint64_t us);
 

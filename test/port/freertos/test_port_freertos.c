@@ -218,6 +218,34 @@ void test_an_overrun_of_the_uart_before_the_stream_is_a_gap(void)
     TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
 }
 
+/* What the interrupt brings that tells of it: the receiving task is woken at once, and does not
+ * first run out of patience. */
+void test_an_overrun_costs_no_more_than_a_fifo_behind_it(void)
+{
+    receive_by_stream();
+    start();
+    assert_true_scans(1, 2);
+    for (unsigned i = 0; i < 20; i++) {
+        freertos_model_overrun();
+        poll_until(TMINI_EVENT_SCAN);
+    }
+    TEST_ASSERT_EQUAL_UINT32(20, counted().overruns);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(20 * 16, counted().bytes_lost);
+}
+
+/* Before it has emptied rx_buffer the lidar takes nothing more. */
+void test_an_overrun_before_the_stream_wakes_the_polling_task(void)
+{
+    receive_by_stream();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    tmini_freertos_wait(&board, 1); /* From here on it is known who is to be woken. */
+    freertos_model_receive(true, truth_packet, 1);
+    const uint64_t begun_us = freertos_model_now_us();
+    tmini_freertos_wait(&board, pdMS_TO_TICKS(1000));
+    TEST_ASSERT_TRUE(freertos_model_now_us() - begun_us < 100000);
+}
+
 /* A line that pauses in the middle of a packet must not keep what came before from the lidar. */
 void test_fewer_bytes_than_the_stream_wakes_at_are_handed_on_in_time(void)
 {
