@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * A tmini port for STM32 with ST's HAL, any family, any version. README.md beside this file has the
- * CubeMX settings.
+ * A tmini port for STM32 with ST's HAL, of any family and any year; not the HAL2 of the STM32C5,
+ * whose types and callbacks are others. README.md beside this file has the CubeMX settings.
  *
  *     tmini_stm32_hal_init(&port, &huart1);    after the HAL's own initialisation
  *     tmini_init(&lidar, &config);             .port = &tmini_stm32_hal_port, .port_context = &port
