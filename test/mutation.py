@@ -389,8 +389,8 @@ def try_mutants(mutants, wanted, pool, results, known):
                 print(f"survived: {mutant}", flush=True)
             counts[fate.partition(" by ")[0]] += 1
     print(f"{tried()} mutants: {counts['killed']} killed, {counts['equivalent']} known to be equivalent, "
-          f"{counts['survived']} survived; besides {counts['the same code']} of the same machine code and {counts['not C']} "
-          "that do not compile")
+          f"{counts['survived']} survived; besides {counts['the same code']} of the same machine code and "
+          f"{counts['not C']} that do not compile")
     return counts["survived"]
 
 

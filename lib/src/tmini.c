@@ -220,10 +220,10 @@ static tmini_state_t state_until(tmini_event_t end_event)
     }
 }
 
-/* The first bytes leave at once, as far as the port takes them. If it refuses, it is asked once more
- * when time has passed, and until then there is nothing to do: a loop that polls until then, and
- * asks again whenever a command has failed, comes to an end. A lidar that is known to be idle needs
- * no stop before. */
+/* The first bytes leave at once, as far as the port takes them. If it refuses, it is asked once
+ * more when time has passed, and until then there is nothing to do: a loop that polls until then,
+ * and asks again whenever a command has failed, comes to an end. A lidar that is known to be idle
+ * needs no stop before. */
 static void begin(tmini_t *lidar, tmini_command_code_t operation, tmini_event_t end_event,
                   uint16_t frequency_chz)
 {

@@ -92,10 +92,10 @@ tmini_posix_status_t tmini_posix_start(tmini_posix_t *serial, tmini_t *lidar);
 tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *serial, int fd, tmini_t *lidar);
 
 /** Waits up to `timeout_ms` for bytes and feeds them to the lidar, all that have come and no more
- * than its ring has room for: call tmini_poll() until it returns TMINI_EVENT_NONE in between. Without room
- * it returns at once; the bytes stay with the system. A signal ends the waiting early. Returns
- * TMINI_POSIX_OK, also when nothing came; TMINI_POSIX_UNPLUGGED or TMINI_POSIX_FAILED, then also
- * ever after. */
+ * than its ring has room for: call tmini_poll() until it returns TMINI_EVENT_NONE in between.
+ * Without room it returns at once; the bytes stay with the system. A signal ends the waiting early.
+ * Returns TMINI_POSIX_OK, also when nothing came; TMINI_POSIX_UNPLUGGED or TMINI_POSIX_FAILED, then
+ * also ever after. */
 tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms);
 
 /** Closes the device, if it is open. Stop the lidar before, or it goes on scanning. */

@@ -268,7 +268,7 @@ static bool monitor_is_sound(const tmini_monitor_t *monitor)
     return ((monitor->faults | monitor->observed) & ~TMINI_FAULT_MASK) == 0;
 }
 
-/* Streaming, nothing is gathered. A packet that waits is there. Settled: there is nothing to tell. */
+/* Streaming, nothing is gathered. A packet that waits is there. Settled: nothing is to be told. */
 static bool results_are_sound(const tmini_t *lidar)
 {
     const bool streaming = lidar->builder.capacity == 0;

@@ -230,9 +230,9 @@ tmini_event_t tmini_poll(tmini_t *lidar);
  *
  * and touch nothing unless they return TMINI_OK. If the event that ended the command before has not
  * been polled yet, it is dropped. From the polling context. None waits, and each sends two bytes at
- * most; the rest of a command is done by tmini_poll(). If the port refuses, it is asked once more when
- * time has passed; the command may be begun anew whenever it has failed, even in a loop that polls
- * until TMINI_EVENT_NONE. */
+ * most; the rest of a command is done by tmini_poll(). If the port refuses, it is asked once more
+ * when time has passed; a command may be begun anew whenever it has failed, even in a loop that
+ * polls until TMINI_EVENT_NONE. */
 /** @{ */
 
 /** Starts scanning [STARTED]; after that each revolution is TMINI_EVENT_SCAN (section 2). */

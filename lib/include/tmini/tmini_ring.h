@@ -105,8 +105,8 @@ void tmini_ring_publish(tmini_ring_t *ring, size_t position);
 
 /** Producer: bytes were lost on their way here, behind the last one stored, and their number is not
  * known: a receiver's queue overflowed, or circular DMA may have gone a whole lap unseen (then call
- * this before publishing). A CPU-fed ring is closed, as after an overrun; of a DMA ring a lap of the
- * oldest bytes counts as overwritten, and what is left beyond the window: so nothing is read a
+ * this before publishing). A CPU-fed ring is closed, as after an overrun; of a DMA ring a lap of
+ * the oldest bytes counts as overwritten, and what is left beyond the window: so nothing is read a
  * second time, even if there was no lap. Interrupt-safe; no loop, no wait. */
 void tmini_ring_gap(tmini_ring_t *ring);
 

@@ -24,8 +24,8 @@ extern "C" {
 #endif
 
 /** How long the revolution took, in milliseconds: by the clock if the scan is complete, and its two
- * start packets did not come in one block; else by the frequency that the lidar measured, from which
- * the clock's period may differ by a quarter. 0 if that is not known either. */
+ * start packets did not come in one block; else by the frequency that the lidar measured, from
+ * which the clock's period may differ by a quarter. 0 if that is not known either. */
 uint32_t tmini_scan_period_ms(const tmini_scan_t *scan);
 
 /** When point `index` (below scan->count) was measured, in microseconds after scan->start_ms: by
