@@ -17,12 +17,15 @@ static const char *const TAG = "tmini";
 
 #define FIFO_SIZE 128
 
+/* With fewer, one event that waits would pass for a full queue, and so for a loss. */
+#define QUEUE_LENGTH_MIN 4
+
 /* The tightest limits in the family, those of the ESP32 itself. */
 #define FIFO_THRESHOLD_MAX 126
 #define TIMEOUT_SYMBOLS_MAX 100
 
 /* How long the receiving task waits for an event before it looks by itself, and so how long
- * stopping may take. An event that found the queue full is made up for then, if not by the next
+ * stopping may take. Bytes whose event found the queue full are fetched then, if not by the next
  * one. Not 0 where ticks are longer, or the task would never wait, and nothing of lower priority
  * ever run. */
 #define LOOK_MS 20
@@ -90,12 +93,20 @@ static size_t smaller(size_t a, size_t b)
     return a < b ? a : b;
 }
 
+/* A place in the stream of bytes is counted as counters.bytes counts what has been handed on. How
+ * far ahead of that it is; 0 when it has been passed. */
+static size_t distance_to(const tmini_esp32_t *board, uint32_t place)
+{
+    const uint32_t distance = place - board->counters.bytes;
+    return distance <= INT32_MAX ? distance : 0;
+}
+
 /* Takes no more than the lidar's ring has room for: what the ring would have to refuse is safe in
  * the driver's buffer, until the poll has made room. And nothing from behind a gap yet. */
 static size_t wanted_now(const tmini_esp32_t *board)
 {
     const size_t wanted = smaller(tmini_feed_room(board->lidar), sizeof board->chunk);
-    return board->gap_ahead ? smaller(wanted, board->before_gap) : wanted;
+    return board->gap_ahead ? smaller(wanted, distance_to(board, board->gap)) : wanted;
 }
 
 static size_t take(tmini_esp32_t *board, size_t wanted)
@@ -108,29 +119,27 @@ static size_t take(tmini_esp32_t *board, size_t wanted)
     return count > 0 ? tmini_feed(board->lidar, board->chunk, (size_t)count) : 0;
 }
 
-/* The driver has forgotten the FIFO's bytes, behind those that it holds now. (If it has received
- * more since, the gap is a little earlier: the parser finds its way, and only the scan that it
- * counts for may differ.) */
-static void note_gap(tmini_esp32_t *board)
+/* The driver stores bytes before it announces them: once it holds none, all that were announced
+ * have been handed on, and no gap is ahead any more but here. */
+static void catch_up(tmini_esp32_t *board)
 {
-    if (!board->gap_ahead) {
-        board->before_gap = 0;
-        (void)uart_get_buffered_data_len((uart_port_t)board->config.uart, &board->before_gap);
-        board->gap_ahead = true;
+    if (distance_to(board, board->announced) > 0) {
+        board->announced = board->counters.bytes;
     }
+    board->gap = board->counters.bytes;
 }
 
-static void pass_gap(tmini_esp32_t *board, size_t wanted, size_t count)
+static void pass_gap(tmini_esp32_t *board)
 {
-    board->before_gap -= board->gap_ahead ? count : 0;
-    if (board->gap_ahead && (board->before_gap == 0 || count < wanted)) {
+    if (board->gap_ahead && distance_to(board, board->gap) == 0) {
         board->gap_ahead = false;
         tmini_feed_gap(board->lidar);
     }
 }
 
-/* Reads until nothing is left, whatever size an event has named: then neither a lost event nor one
- * that comes late matters. Reading is also what sets a driver with a full buffer going again.
+/* Reads until nothing is left, or up to a gap, whatever size an event has named: then neither a
+ * lost event nor one that comes late matters. Reading is also what sets a driver with a full buffer
+ * going again.
  *
  * There is no flushing here, after overflows either. What the driver holds was received whole; what
  * overflowed is gone already. Flushing would only add intact packets to the loss: the parser finds
@@ -143,11 +152,38 @@ static size_t drain(tmini_esp32_t *board)
     do {
         wanted = wanted_now(board);
         count = take(board, wanted);
-        pass_gap(board, wanted, count);
+        add(&board->counters.bytes, (uint32_t)count);
         drained += count;
     } while (count > 0 && count == wanted);
-    add(&board->counters.bytes, (uint32_t)drained);
+    if (count < wanted) {
+        catch_up(board);
+    }
+    pass_gap(board);
     return drained;
+}
+
+/* What overflowed came behind all that had been announced by then: on an overflow, the driver saves
+ * the FIFO's bytes and announces them, if its buffer has room, and then tells of the overflow. */
+static void note_gap(tmini_esp32_t *board)
+{
+    if (!board->gap_ahead) {
+        board->gap = board->announced;
+        board->gap_ahead = true;
+    } else if (board->gap != board->announced) {
+        board->lost_more = true;
+    }
+}
+
+/* Each gap costs the lidar's ring a poll. So however many there are behind the first one, or of
+ * however many the events were lost, there is one more: behind all that the driver can hold, or
+ * turns out to hold. */
+static void note_later_gaps(tmini_esp32_t *board)
+{
+    if (board->lost_more && !board->gap_ahead) {
+        board->announced += (uint32_t)(board->config.buffer_size + FIFO_SIZE);
+        board->lost_more = false;
+        note_gap(board);
+    }
 }
 
 static void count_event(tmini_esp32_counters_t *counters, uart_event_type_t type)
@@ -173,19 +209,39 @@ static void count_event(tmini_esp32_counters_t *counters, uart_event_type_t type
     }
 }
 
+/* Bytes that did not fit into the driver's buffer are announced, too: they follow when there is
+ * room. */
+static void take_event(tmini_esp32_t *board, const uart_event_t *event)
+{
+    count_event(&board->counters, event->type);
+    if (event->type == UART_DATA || event->type == UART_BUFFER_FULL) {
+        board->announced += (uint32_t)event->size;
+    } else if (event->type == UART_FIFO_OVF) {
+        note_gap(board);
+    }
+}
+
+/* Nobody else takes events: so a queue that was full has stayed so until now, when there is room
+ * for the one that has been taken, if no more. Any event may have been lost. */
+static void look_for_lost_events(tmini_esp32_t *board)
+{
+    if (uxQueueSpacesAvailable(board->events) <= 1) {
+        add(&board->counters.queues_full, 1);
+        board->lost_more = true;
+    }
+}
+
+/* All events before any bytes: an overflow is among bytes that came before it and behind it. */
 static size_t receive(tmini_esp32_t *board, TickType_t ticks)
 {
     uart_event_t event;
-    const bool was_full = uxQueueSpacesAvailable(board->events) == 0;
-    if (xQueueReceive(board->events, &event, ticks) == pdTRUE) {
-        count_event(&board->counters, event.type);
-        if (event.type == UART_FIFO_OVF) {
-            note_gap(board);
-        }
-        if (was_full) {
-            add(&board->counters.queues_full, 1);
-        }
+    TickType_t wait = ticks;
+    while (xQueueReceive(board->events, &event, wait) == pdTRUE) {
+        take_event(board, &event);
+        look_for_lost_events(board);
+        wait = 0;
     }
+    note_later_gaps(board);
     return drain(board);
 }
 
@@ -247,8 +303,8 @@ static const char *mistake_in(const tmini_esp32_config_t *config)
     if (config->buffer_size <= FIFO_SIZE) {
         return "buffer_size: more than the FIFO's 128 bytes";
     }
-    if (config->queue_length <= 0) {
-        return "queue_length";
+    if (config->queue_length < QUEUE_LENGTH_MIN) {
+        return "queue_length: 4 or more";
     }
     if (!is_within(config->fifo_threshold, 1, FIFO_THRESHOLD_MAX)) {
         return "fifo_threshold: 1 to 126";
@@ -389,7 +445,9 @@ esp_err_t tmini_esp32_start(tmini_esp32_t *board, tmini_t *lidar)
     }
     board->lidar = lidar;
     board->stopping = false;
+    board->announced = 0;
     board->gap_ahead = false;
+    board->lost_more = false;
     board->counters = (tmini_esp32_counters_t){.bytes = 0};
     esp_err_t error = hold_clock(board);
     if (error == ESP_OK) {

@@ -51,7 +51,7 @@ typedef struct {
     int tx_pin;          /**< The GPIO wired to the lidar's RX. */
     int rx_pin;          /**< The GPIO wired to the lidar's TX. Its pull-up is switched on. */
     int buffer_size;     /**< Of the UART driver's ring buffer: more than the FIFO's 128 bytes. */
-    int queue_length;    /**< Of the UART driver's event queue. */
+    int queue_length;    /**< Of the UART driver's event queue: 4 or more. */
     int fifo_threshold;  /**< Bytes in the FIFO that raise the interrupt: 1 to 126. */
     int timeout_symbols; /**< Or so many byte times of silence behind the last byte: 1 to 100. */
     bool with_task; /**< Start a receiving task; else the caller calls tmini_esp32_receive(). */
@@ -76,10 +76,12 @@ typedef struct {
 /** What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. What
  * the parser then makes of them is in tmini_counters(). */
 typedef struct {
-    uint32_t bytes;          /**< Handed to the lidar. */
-    uint32_t fifo_overflows; /**< The interrupt came too late; the FIFO's 128 bytes were lost. */
+    uint32_t bytes; /**< Handed to the lidar. */
+    /** The interrupt came too late: what came behind the FIFO's 128 bytes was lost; with the
+     * driver's buffer full, those too. */
+    uint32_t fifo_overflows;
     uint32_t buffers_full;  /**< Poll or task came too late; bytes waited, and may then overflow. */
-    uint32_t queues_full;   /**< Events may have been lost, but no bytes. */
+    uint32_t queues_full;   /**< Events were lost; of an overflow perhaps, so a gap was assumed. */
     uint32_t breaks;        /**< The line was low for longer than a byte: unplugged? */
     uint32_t frame_errors;  /**< A stop bit was missing: wrong baud rate, noise? */
     uint32_t parity_errors; /**< Cannot happen without a parity bit; counted all the same. */
@@ -94,8 +96,10 @@ typedef struct {
     esp_pm_lock_handle_t pm_lock; /* NULL: power management is not compiled in. */
     bool is_ready;                /* tmini_esp32_init() has found nothing wrong. */
     bool is_started;
-    bool gap_ahead;                  /* Bytes were lost, */
-    size_t before_gap;               /* behind so many that are still in the driver's buffer. */
+    uint32_t announced;              /* By the driver's events: counts on as counters.bytes will. */
+    uint32_t gap;                    /* Bytes were lost there, as counters.bytes will count, */
+    bool gap_ahead;                  /* and the lidar has not been told yet. */
+    bool lost_more;                  /* Bytes were lost behind that, too, or nobody knows where. */
     bool stopping;                   /* Written by tmini_esp32_stop(), read by the task. */
     bool receiving;                  /* Written by the task: cleared when it ends. */
     tmini_esp32_counters_t counters; /* Written by the receiving context alone. */

@@ -131,26 +131,6 @@ void test_every_point_arrives_through_the_callers_own_loop(void)
     assert_ten_true_scans();
 }
 
-void test_every_point_arrives_when_most_events_find_the_queue_full(void)
-{
-    tmini_esp32_counters_t counters;
-    wiring.queue_length = 1;
-    wiring.with_task = false; /* Polled every 10 ms, for some twenty events. */
-    start_port_and_lidar();
-    for (uint32_t revolution = 1; revolution <= 3;) {
-        vTaskDelay(1);
-        (void)tmini_esp32_receive(&board, 0);
-        for (tmini_event_t event = tmini_poll(&lidar); event != TMINI_EVENT_NONE;
-             event = tmini_poll(&lidar)) {
-            if (event == TMINI_EVENT_SCAN) {
-                assert_scan_is_revolution(revolution++);
-            }
-        }
-    }
-    tmini_esp32_counters(&board, &counters);
-    TEST_ASSERT_TRUE(counters.queues_full > 0);
-}
-
 /* 20 ms of bytes, 262, are twice the FIFO. */
 void test_an_overflow_costs_the_packets_that_it_hit_and_no_other(void)
 {
@@ -187,6 +167,111 @@ static void receive_and_poll_all(void)
         received = tmini_esp32_receive(&board, 0);
         poll_all();
     } while (received > 0);
+}
+
+/* Without a receiving task, so that a test decides when events are taken; the lidar scans, and all
+ * that has come so far is handed on. */
+static void start_by_hand(void)
+{
+    wiring.with_task = false;
+    start_port_and_lidar();
+    poll_until(TMINI_EVENT_SCAN);
+    receive_and_poll_all();
+}
+
+/* Once more bytes are refused, a gap has been told: behind so many. */
+static void assert_gap_behind(size_t count)
+{
+    TEST_ASSERT_EQUAL_UINT(count, tmini_esp32_receive(&board, 0));
+    TEST_ASSERT_EQUAL_UINT(count, tmini_ring_unread(&lidar.ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
+}
+
+/* The FIFO's bytes, the overflow, and ten milliseconds of bytes behind it. */
+void test_an_overflow_is_told_of_where_it_was_however_late_the_events_are_taken(void)
+{
+    start_by_hand();
+    virtual_idf_hold_interrupts(20000);
+    vTaskDelay(3);
+    assert_gap_behind(128);
+    poll_all();
+    TEST_ASSERT_TRUE(tmini_esp32_receive(&board, 0) > 60);
+    TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_feed_room(&lidar)); /* No second gap. */
+}
+
+/* Each gap costs a poll: however many there are, they are told of as two. */
+void test_of_several_overflows_the_first_is_told_of_where_it_was_and_one_behind_the_others(void)
+{
+    start_by_hand();
+    for (unsigned i = 0; i < 3; i++) {
+        virtual_idf_hold_interrupts(20000);
+        vTaskDelay(2);
+    }
+    vTaskDelay(1);
+    assert_gap_behind(128);
+    poll_all();
+    const size_t rest = tmini_esp32_receive(&board, 0);
+    TEST_ASSERT_TRUE(rest > 256);
+    TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
+    poll_all();
+    (void)tmini_esp32_receive(&board, 0);
+    TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_feed_room(&lidar));
+}
+
+/* The buffer holds 256 bytes at most, and what did not fit was put aside, not lost. */
+void test_with_a_full_buffer_an_overflow_lies_behind_what_was_put_aside(void)
+{
+    wiring.buffer_size = 256;
+    start_by_hand();
+    vTaskDelay(5);
+    const size_t received = tmini_esp32_receive(&board, 0);
+    TEST_ASSERT_TRUE(received > 256);
+    TEST_ASSERT_EQUAL_UINT(received, tmini_ring_unread(&lidar.ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
+}
+
+/* Polled every 30 ms, for some nine events: each time some are lost, and nobody knows which. A gap
+ * that may have been costs the packet that is arriving. */
+void test_when_events_are_lost_no_scan_passes_for_complete(void)
+{
+    const unsigned rounds = 30;
+    unsigned scans = 0;
+    tmini_esp32_counters_t uart;
+    tmini_counters_t counters;
+    wiring.queue_length = 4;
+    start_by_hand();
+    for (unsigned i = 0; i < rounds; i++) {
+        vTaskDelay(3);
+        (void)tmini_esp32_receive(&board, 0);
+        tmini_event_t event;
+        while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) {
+            scans += event == TMINI_EVENT_SCAN;
+            TEST_ASSERT_FALSE(event == TMINI_EVENT_SCAN && tmini_scan(&lidar)->complete);
+        }
+    }
+    tmini_esp32_counters(&board, &uart);
+    tmini_counters(&lidar, &counters);
+    TEST_ASSERT_EQUAL_UINT32(rounds, uart.queues_full);
+    TEST_ASSERT_NOT_EQUAL_UINT(0, scans);
+    TEST_ASSERT_TRUE(packets_sent - counters.parser.packets <= rounds + 2);
+}
+
+void test_an_overflow_whose_event_was_lost_is_told_of_all_the_same(void)
+{
+    tmini_esp32_counters_t uart;
+    wiring.queue_length = 4;
+    start_by_hand();
+    vTaskDelay(2); /* Fills the queue. */
+    virtual_idf_hold_interrupts(20000);
+    vTaskDelay(3);
+    TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_esp32_receive(&board, 0));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
+    tmini_esp32_counters(&board, &uart);
+    TEST_ASSERT_EQUAL_UINT32(0, uart.fifo_overflows); /* Nobody has heard of it. */
+    TEST_ASSERT_EQUAL_UINT32(1, uart.queues_full);
+
+    poll_until(TMINI_EVENT_SCAN);
+    TEST_ASSERT_FALSE(tmini_scan(&lidar)->complete);
 }
 
 static void assert_nothing_was_lost(void)

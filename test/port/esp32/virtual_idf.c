@@ -45,7 +45,9 @@ static struct {
     unsigned stray_calls;
     uint8_t fifo[FIFO_SIZE];
     size_t fifo_count;
+    size_t fifo_threshold;
     bool fifo_overflowed;
+    bool line_pauses;
     uint8_t buffer[BUFFER_MAX];
     size_t buffer_size;
     size_t buffer_count;
@@ -86,6 +88,7 @@ static void fill_fifo(void)
 {
     uint8_t bytes[256];
     const size_t count = sim_transmit(&world.lidar, world.now_us, bytes, sizeof bytes);
+    world.line_pauses = count == 0; /* A step is longer than the UART's receive timeout. */
     for (size_t i = 0; i < count; i++) {
         if (world.fifo_count < FIFO_SIZE) {
             world.fifo[world.fifo_count++] = bytes[i];
@@ -105,6 +108,11 @@ static bool keep(const uint8_t *bytes, size_t count)
     return true;
 }
 
+static bool has_cause_to_read(void)
+{
+    return world.fifo_count >= world.fifo_threshold || (world.fifo_count > 0 && world.line_pauses);
+}
+
 static void empty_fifo(void)
 {
     if (keep(world.fifo, world.fifo_count)) {
@@ -119,19 +127,20 @@ static void empty_fifo(void)
 
 /* ESP-IDF's interrupt handler empties the FIFO into its buffer while that has room; once it has
  * not, it puts the FIFO's bytes aside, says so once, and does not come back before somebody has
- * read. On overflow it resets the FIFO, whatever is in it. */
+ * read. Only then does it look for an overflow, and resets the FIFO: what it has just taken is
+ * safe, and lost is what came behind that; or, if it could take nothing, the FIFO's bytes too. */
 static void serve_interrupt(void)
 {
     if (!world.installed || world.now_us < world.held_until_us) {
         return;
     }
+    if (has_cause_to_read() && world.stash_count == 0) {
+        empty_fifo();
+    }
     if (world.fifo_overflowed) {
         world.fifo_overflowed = false;
         world.fifo_count = 0;
         post(UART_FIFO_OVF, 0);
-    }
-    if (world.fifo_count > 0 && world.stash_count == 0) {
-        empty_fifo();
     }
 }
 
@@ -307,6 +316,7 @@ esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffe
         world.queue_count = 0;
         world.stash_count = 0;
         world.fifo_count = 0;
+        world.fifo_threshold = 120; /* ESP-IDF's own choice. */
         world.fifo_overflowed = false;
     }
     *queue = (QueueHandle_t)(void *)&world.queue;
@@ -342,8 +352,12 @@ esp_err_t uart_set_pin(uart_port_t uart, int tx, int rx, int rts, int cts)
 esp_err_t uart_set_rx_full_threshold(uart_port_t uart, int threshold)
 {
     (void)uart;
-    (void)threshold;
-    return check_driver();
+    if (!enter_driver()) {
+        return ESP_FAIL;
+    }
+    world.fifo_threshold = (size_t)threshold;
+    unlock();
+    return ESP_OK;
 }
 
 esp_err_t uart_set_rx_timeout(uart_port_t uart, const uint8_t symbols)
@@ -360,30 +374,37 @@ esp_err_t uart_enable_intr_mask(uart_port_t uart, uint32_t mask)
     return check_driver();
 }
 
-esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size)
+/* Moves up to `length` bytes out of the buffer. */
+static size_t take_from_buffer(uint8_t *bytes, size_t length)
 {
-    (void)uart;
-    if (!enter_driver()) {
-        return ESP_FAIL;
-    }
-    *size = world.buffer_count;
-    unlock();
-    return ESP_OK;
+    const size_t count = world.buffer_count < length ? world.buffer_count : length;
+    memcpy(bytes, world.buffer, count);
+    world.buffer_count -= count;
+    memmove(world.buffer, &world.buffer[count], world.buffer_count);
+    return count;
 }
 
+static bool put_stash_back(void)
+{
+    if (world.stash_count == 0 || !keep(world.stash, world.stash_count)) {
+        return false;
+    }
+    world.stash_count = 0;
+    return true;
+}
+
+/* As soon as there is room, what was put aside follows; also within one call. */
 int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t ticks)
 {
+    uint8_t *const bytes = buffer;
     (void)uart;
     (void)ticks;
     if (!enter_driver()) {
         return -1;
     }
-    const size_t count = world.buffer_count < length ? world.buffer_count : length;
-    memcpy(buffer, world.buffer, count);
-    world.buffer_count -= count;
-    memmove(world.buffer, &world.buffer[count], world.buffer_count);
-    if (world.stash_count > 0 && keep(world.stash, world.stash_count)) {
-        world.stash_count = 0;
+    size_t count = take_from_buffer(bytes, length);
+    if (put_stash_back()) {
+        count += take_from_buffer(&bytes[count], length - count);
     }
     unlock();
     return (int)count;

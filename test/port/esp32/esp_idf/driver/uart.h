@@ -68,7 +68,6 @@ esp_err_t uart_set_pin(uart_port_t uart, int tx, int rx, int rts, int cts);
 esp_err_t uart_set_rx_full_threshold(uart_port_t uart, int threshold);
 esp_err_t uart_set_rx_timeout(uart_port_t uart, const uint8_t symbols);
 esp_err_t uart_enable_intr_mask(uart_port_t uart, uint32_t mask);
-esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size);
 int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t ticks);
 int uart_tx_chars(uart_port_t uart, const char *buffer, uint32_t length);
 
