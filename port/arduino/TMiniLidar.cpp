@@ -17,7 +17,8 @@ static const unsigned long BAUD_RATE = 230400;
 static const size_t SERIAL_RX_SIZE = 1024;
 #endif
 
-/* Where the core's receive buffer can be chosen, that is before the port is opened. */
+/* Where the core's receive buffer can be chosen, that is before the port is opened. On the ESP32 an
+ * open port refuses: closing it here would lose the pins that the sketch may have chosen. */
 static void enlarge(TMiniSerial &serial)
 {
 #if defined(ESP32) || defined(ESP8266)
@@ -38,6 +39,16 @@ static void quicken(TMiniSerial &serial)
     serial.setRxFIFOFull(64);
 #else
     (void)serial;
+#endif
+}
+
+static bool isOpen(TMiniSerial &serial)
+{
+#if defined(ESP32)
+    return static_cast<bool>(serial); /* Not without memory, for one. */
+#else
+    (void)serial;
+    return true;
 #endif
 }
 
@@ -95,16 +106,19 @@ bool TMiniLidarBase::begin(TMiniSerial &serial)
     enlarge(serial);
     serial.begin(BAUD_RATE);
     quicken(serial);
-    return listen(serial);
+    return isOpen(serial) && listen(serial);
 }
 
 #if defined(ESP32)
 bool TMiniLidarBase::begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin)
 {
+    if (isOpen(serial)) {
+        serial.end(); /* Open, it would keep its buffer. */
+    }
     enlarge(serial);
     serial.begin(BAUD_RATE, SERIAL_8N1, rxPin, txPin);
     quicken(serial);
-    return listen(serial);
+    return isOpen(serial) && listen(serial);
 }
 #elif TMINI_LIDAR_ON_RP2040
 bool TMiniLidarBase::begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin)

@@ -127,10 +127,12 @@ class TMiniLidarBase
 {
   public:
     /** Opens the serial port at the lidar's 230400 baud; on an ESP32, ESP8266, RP2040 and RP2350
-     * with a large receive buffer. False when something is wrong with the buffers' sizes. */
+     * with a large receive buffer. (On an ESP32, a port that the sketch has opened already keeps
+     * its pins, and its buffer.) False when something is wrong with the buffers' sizes; on an ESP32
+     * also when the port could not be opened. */
     bool begin(TMiniSerial &serial);
 #if defined(ESP32) || TMINI_LIDAR_ON_RP2040
-    /** The same on these pins. */
+    /** The same on these pins; a port that is open already is closed and opened again. */
     bool begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin);
 #endif
 #if TMINI_LIDAR_ON_RP2040

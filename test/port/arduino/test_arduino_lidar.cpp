@@ -81,15 +81,49 @@ static void a_hardware_port_on_its_usual_pins_is_opened_just_so(void)
 #endif
 }
 
+static void a_port_that_the_sketch_has_opened_is_enlarged_on_the_pins_it_is_given(void)
+{
+    TMiniLidar lidar;
+    Serial1.begin(9600);
+    TEST_ASSERT_TRUE(lidar.begin(Serial1, 16, 17));
+    TEST_ASSERT_EQUAL_UINT(1024, Serial1.size_at_begin);
+    TEST_ASSERT_EQUAL_UINT(230400, Serial1.baud_rate);
+    TEST_ASSERT_EQUAL_INT(16, Serial1.rx_pin);
+    TEST_ASSERT_EQUAL_INT(17, Serial1.tx_pin);
+}
+
+#if defined(ESP32)
+/* Closed, it would forget them; open, it cannot be enlarged. */
+static void a_port_that_the_sketch_has_opened_on_its_pins_stays_on_them(void)
+{
+    TMiniLidar lidar;
+    Serial1.begin(9600, SERIAL_8N1, 26, 27);
+    TEST_ASSERT_TRUE(lidar.begin(Serial1));
+    TEST_ASSERT_EQUAL_UINT(256, Serial1.size_at_begin);
+    TEST_ASSERT_EQUAL_UINT(230400, Serial1.baud_rate);
+    TEST_ASSERT_EQUAL_INT(26, Serial1.rx_pin);
+    TEST_ASSERT_EQUAL_INT(27, Serial1.tx_pin);
+}
+
+static void a_port_that_cannot_be_opened_is_reported(void)
+{
+    TMiniLidar lidar;
+    Serial1.refuses = true;
+    TEST_ASSERT_FALSE(lidar.begin(Serial1));
+    TEST_ASSERT_FALSE(lidar.begin(Serial1, 16, 17));
+    TEST_ASSERT_FALSE(lidar.start());
+    Serial1.refuses = false;
+    TEST_ASSERT_TRUE(lidar.begin(Serial1, 16, 17));
+}
+#else
 static void a_port_that_the_sketch_has_opened_is_enlarged_all_the_same(void)
 {
     TMiniLidar lidar;
     Serial1.begin(9600);
     TEST_ASSERT_TRUE(lidar.begin(Serial1));
     TEST_ASSERT_EQUAL_UINT(1024, Serial1.size_at_begin);
-    TEST_ASSERT_TRUE(lidar.begin(Serial1, 16, 17));
-    TEST_ASSERT_EQUAL_INT(16, Serial1.rx_pin);
 }
+#endif
 
 /* Runs for `ms`, with a sketch that comes round every `pause` ms. */
 static void run_with_pauses(TMiniLidarBase &lidar, unsigned ms, unsigned pause)
@@ -276,7 +310,13 @@ int main(void)
     UnityBegin("test_arduino_lidar.cpp");
     RUN_TEST(beginning_enlarges_the_buffer_before_it_opens_the_port);
     RUN_TEST(a_hardware_port_on_its_usual_pins_is_opened_just_so);
+    RUN_TEST(a_port_that_the_sketch_has_opened_is_enlarged_on_the_pins_it_is_given);
+#if defined(ESP32)
+    RUN_TEST(a_port_that_the_sketch_has_opened_on_its_pins_stays_on_them);
+    RUN_TEST(a_port_that_cannot_be_opened_is_reported);
+#else
     RUN_TEST(a_port_that_the_sketch_has_opened_is_enlarged_all_the_same);
+#endif
     RUN_TEST(what_the_lidars_buffer_has_no_room_for_stays_in_the_cores);
     RUN_TEST(any_other_stream_is_left_as_the_sketch_has_opened_it);
     RUN_TEST(a_stream_that_promises_bytes_and_gives_none_holds_nobody_up);

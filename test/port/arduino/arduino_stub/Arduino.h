@@ -96,6 +96,7 @@ class HardwareSerial : public Stream
     }
     virtual void begin(unsigned long baud)
     {
+        is_open = !refuses;
         baud_rate = baud;
         size_at_begin = rx_size;
         fifo_full = 120; /* As the ESP32's core does at this baud rate. */
@@ -117,9 +118,21 @@ class HardwareSerial : public Stream
         rx_pin = rx;
         tx_pin = tx;
     }
+    /* The pins are then the board's own again. */
+    void end()
+    {
+        is_open = false;
+        rx_pin = -1;
+        tx_pin = -1;
+    }
+    operator bool() const
+    {
+        return is_open;
+    }
     size_t setRxBufferSize(size_t size)
     {
-        return rx_size = size;
+        rx_size = is_open ? rx_size : size;
+        return is_open ? 0 : size;
     }
     bool setRxFIFOFull(uint8_t bytes)
     {
@@ -138,6 +151,8 @@ class HardwareSerial : public Stream
     int rx_pin = -1;
     int tx_pin = -1;
     int fifo_full = 0;
+    bool is_open = false;
+    bool refuses = false; /* To be opened, as without memory. */
 };
 
 #if defined(ARDUINO_ARCH_RP2040)
@@ -150,11 +165,6 @@ class SerialUART : public HardwareSerial
     SerialUART()
     {
         rx_size = 32;
-    }
-    void begin(unsigned long baud) override
-    {
-        HardwareSerial::begin(baud);
-        is_open = true;
     }
     void end()
     {
@@ -175,8 +185,6 @@ class SerialUART : public HardwareSerial
         tx_pin = is_open ? tx_pin : pin;
         return !is_open;
     }
-
-    bool is_open = false;
 };
 
 typedef SerialUART SerialPort;
