@@ -9,8 +9,8 @@
  * angle swept since the last one tells: the scan is closed when it has turned full circle, and what
  * follows waits for the next start packet. (The start angle is not 0 on every unit, section 9.8.) A
  * gap that may hold half a turn or more, by bytes, by angle, or because the caller says so (a pause
- * of the line, an overflow: the packet's gap is TMINI_GAP_UNKNOWN), closes it as well: any number of
- * turns may be missing.
+ * of the line, an overflow: the packet's gap is TMINI_GAP_UNKNOWN), closes it as well: any number
+ * of turns may be missing.
  *
  * All functions: one context, the one that parses; no waiting. */
 

@@ -66,6 +66,7 @@ static void beginning_enlarges_the_buffer_before_it_opens_the_port(void)
 #if defined(ESP32)
     TEST_ASSERT_EQUAL_HEX32(SERIAL_8N1, Serial1.line);
     TEST_ASSERT_EQUAL_INT(64, Serial1.fifo_full);
+    TEST_ASSERT_EQUAL_UINT(0, Serial1.vain_ends);
 #endif
 }
 
@@ -231,6 +232,32 @@ static void points_are_gone_with_the_next_loop(void)
     TEST_ASSERT_EQUAL_UINT(0, lidar.points().size());
 }
 
+static void points_are_gone_when_it_begins_again(void)
+{
+    static TMiniLidar lidar;
+    lidar.begin(Serial1);
+    lidar.start();
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    lidar.begin(Serial1);
+    TEST_ASSERT_EQUAL_UINT(0, lidar.available());
+}
+
+static void assert_taken_in_one_loop(TMiniLidarBase &lidar, size_t count)
+{
+    Serial1.received.assign(count, 0x11);
+    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, lidar.loop());
+    TEST_ASSERT_EQUAL_UINT(0, Serial1.received.size());
+}
+
+/* A single byte, and one more than the lidar's buffer holds. */
+static void a_loop_takes_all_that_is_there(void)
+{
+    static TMiniLidarWith<256, 0> lidar;
+    lidar.begin(Serial1);
+    assert_taken_in_one_loop(lidar, 1);
+    assert_taken_in_one_loop(lidar, 257);
+}
+
 static void it_never_asks_for_more_than_is_there(void)
 {
     static TMiniLidar lidar;
@@ -261,13 +288,35 @@ static void the_frequency_is_set_in_hertz(void)
     TEST_ASSERT_EQUAL_UINT(730, tmini_frequency_chz(lidar.driver()));
 }
 
+/* Returns what the lidar then says, in hundredths; 0 when it was refused. */
+static unsigned frequency_set_to(float hertz)
+{
+    TMiniLidar lidar;
+    lidar.begin(Serial1);
+    if (!lidar.setFrequency(hertz) || !happens(lidar, TMINI_EVENT_FREQUENCY, 30000)) {
+        return 0;
+    }
+    return tmini_frequency_chz(lidar.driver());
+}
+
+static void the_slowest_and_the_fastest_frequency_are_possible(void)
+{
+    TEST_ASSERT_EQUAL_UINT(1200, frequency_set_to(12.0f));
+    TEST_ASSERT_EQUAL_UINT(600, frequency_set_to(6.0f));
+}
+
+/* 5.99 and 12.01 would be rounded to what is possible. */
 static void a_frequency_out_of_range_is_refused(void)
 {
     TMiniLidar lidar;
     lidar.begin(Serial1);
-    TEST_ASSERT_FALSE(lidar.setFrequency(5.9f));
-    TEST_ASSERT_FALSE(lidar.setFrequency(12.1f));
+    TEST_ASSERT_FALSE(lidar.setFrequency(5.99f));
+    TEST_ASSERT_FALSE(lidar.setFrequency(12.01f));
+    TEST_ASSERT_FALSE(lidar.setFrequency(0.0f));
     TEST_ASSERT_FALSE(lidar.setFrequency(-1.0f));
+    TEST_ASSERT_FALSE(lidar.setFrequency(-7.0f));
+    TEST_ASSERT_FALSE(lidar.setFrequency(1000.0f));
+    TEST_ASSERT_FALSE(lidar.setFrequency(INFINITY));
     TEST_ASSERT_FALSE(lidar.setFrequency(NAN));
 }
 
@@ -325,9 +374,12 @@ int main(void)
     RUN_TEST(every_point_of_every_scan_is_there);
     RUN_TEST(every_point_of_every_packet_is_there_when_streaming);
     RUN_TEST(points_are_gone_with_the_next_loop);
+    RUN_TEST(points_are_gone_when_it_begins_again);
+    RUN_TEST(a_loop_takes_all_that_is_there);
     RUN_TEST(it_never_asks_for_more_than_is_there);
     RUN_TEST(information_and_health_are_read);
     RUN_TEST(the_frequency_is_set_in_hertz);
+    RUN_TEST(the_slowest_and_the_fastest_frequency_are_possible);
     RUN_TEST(a_frequency_out_of_range_is_refused);
     RUN_TEST(while_scanning_only_stop_is_possible);
     RUN_TEST(without_a_lidar_a_command_fails_and_says_why);

@@ -121,6 +121,7 @@ class HardwareSerial : public Stream
     /* The pins are then the board's own again. */
     void end()
     {
+        vain_ends += is_open ? 0 : 1;
         is_open = false;
         rx_pin = -1;
         tx_pin = -1;
@@ -152,6 +153,7 @@ class HardwareSerial : public Stream
     int tx_pin = -1;
     int fifo_full = 0;
     bool is_open = false;
+    unsigned vain_ends = 0;
     bool refuses = false; /* To be opened, as without memory. */
 };
 
