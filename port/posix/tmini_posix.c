@@ -266,24 +266,23 @@ static size_t room(const tmini_posix_t *serial)
     return space < BLOCK_SIZE ? space : BLOCK_SIZE;
 }
 
-/* True if there may be more, and room for it: what has waited is handed over at once, so that the
- * lidar can tell when it came. */
-static bool take_block(tmini_posix_t *serial)
+/* True if as many have come as were wanted: there may be more. */
+static bool take_block(tmini_posix_t *serial, size_t wanted)
 {
     uint8_t block[BLOCK_SIZE];
-    const size_t wanted = room(serial);
-    const ssize_t count = wanted > 0 ? read(serial->fd, block, wanted) : 0;
+    const ssize_t count = read(serial->fd, block, wanted);
     if (count > 0) {
         take(serial, block, (size_t)count);
-    } else if (wanted > 0) {
+    } else {
         serial->state = count == 0 ? TMINI_POSIX_UNPLUGGED : status_of_transfer(errno);
     }
-    return serial->lidar != NULL && wanted > 0 && count == (ssize_t)wanted;
+    return count == (ssize_t)wanted;
 }
 
 tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms)
 {
-    if (serial->state != TMINI_POSIX_OK || room(serial) == 0) {
+    size_t wanted = room(serial);
+    if (serial->state != TMINI_POSIX_OK || wanted == 0) {
         return serial->state;
     }
     struct pollfd device = {.fd = serial->fd, .events = POLLIN};
@@ -292,7 +291,9 @@ tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms)
         serial->state = ready == 0 ? TMINI_POSIX_OK : status_of_transfer(errno);
         return serial->state;
     }
-    while (take_block(serial)) {
+    /* What has waited is handed over at once, so that the lidar can tell when it came. */
+    while (wanted > 0 && take_block(serial, wanted)) {
+        wanted = serial->lidar != NULL ? room(serial) : 0;
     }
     return serial->state;
 }

@@ -373,7 +373,7 @@ struct tmini {
     uint8_t doubt;      /* Whether, between the bytes before `doubtful_to`, some may be missing. */
     bool are_held;      /* A layer below may have held back the bytes that come next. */
     bool packet_waits;  /* The packet that closed the scan has not been added to the next. */
-    bool is_settled;    /* The last poll left nothing to do until bytes come or time passes. */
+    bool is_settled;    /* There is nothing to do until bytes come or time passes. */
     bool disable_recovery;
     tmini_monitor_t monitor;
     tmini_command_t command;
