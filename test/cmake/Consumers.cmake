@@ -33,12 +33,3 @@ else()
     add_test(NAME manifests COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/consumer/manifests.py)
     set_tests_properties(manifests PROPERTIES LABELS consumer)
 endif()
-
-# What docs/ecosystems.md claims. Where there is no C++, several of its tests are not there either.
-if(missing OR NOT CMAKE_CXX_COMPILER)
-    tmini_add_skipped_test(ecosystems "python3 or a C++ compiler is not installed")
-else()
-    add_test(NAME ecosystems
-        COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/consumer/ecosystems.py ${CMAKE_BINARY_DIR})
-    set_tests_properties(ecosystems PROPERTIES LABELS docs)
-endif()

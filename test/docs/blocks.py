@@ -56,13 +56,6 @@ BOARD = [*C, *prelude("board")]
 
 # How programs are compiled, by document, and by section where that matters; else as BOARD.
 CONTEXTS = {
-    "docs/ecosystems.md#STM32Cube": [*C, *HAL],
-    "docs/ecosystems.md#Arduino": ARDUINO,
-    "docs/ecosystems.md#ESP-IDF": ESP_IDF,
-    "docs/ecosystems.md#Zephyr": ZEPHYR,
-    "docs/ecosystems.md#FreeRTOS": FREERTOS,
-    "docs/ecosystems.md#Raspberry Pi Pico": PICO,
-    "docs/ecosystems.md#micro-ROS": MICRO_ROS,
     "examples/micro_ros/README.md": [*MICRO_ROS, *prelude("micro_ros")],
     "examples/stm32_cube/README.md": [*C, *HAL, *prelude("cube")],
     "port/README.md": [*C, "-Iport/template", *prelude("template")],

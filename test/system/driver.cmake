@@ -15,7 +15,7 @@ tmini_add_unit_test(test_driver
     LABELS system
     NOT_ON others)
 
-# build/test/bin/soak HOURS [SEED]; docs/soak.md has the result of a whole day.
+# build/test/bin/soak HOURS [SEED]; docs/results.md has the result of a whole day.
 add_executable(soak soak.c)
 target_link_libraries(soak PRIVATE tmini_world)
 target_compile_options(soak PRIVATE -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
