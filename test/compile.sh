@@ -47,8 +47,8 @@ check_sources() {
 check_headers() {
     language=$1
     shift
-    for header in "$lib"/include/tmini/*.h; do
-        include="#include \"tmini/$(basename "$header")\""
+    for header in "$lib"/include/tmini/*.h "$lib"/include/tmini/parts/*.h; do
+        include="#include \"${header#"$lib"/include/}\""
         printf '%s\n%s\nextern int not_empty;\n' "$include" "$include" >"$work/includer"
         compile "$language" "$work/includer" "$@"
     done

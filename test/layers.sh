@@ -22,18 +22,18 @@ tmini_parser    tmini_ring tmini_frame
 tmini_packet    tmini_ring tmini_frame
 tmini_reply
 tmini_ct
-tmini_scan      tmini_packet
+tmini_builder      tmini_packet
 tmini_command   tmini_ring tmini_parser tmini_reply
 tmini_recovery  tmini_command
 tmini_monitor   tmini_packet tmini_ct
-tmini           tmini_ring tmini_parser tmini_frame tmini_packet tmini_reply tmini_ct tmini_scan
+tmini           tmini_ring tmini_parser tmini_frame tmini_packet tmini_reply tmini_ct tmini_builder
 tmini           tmini_command tmini_recovery tmini_monitor
 tmini_blocking  tmini
 tmini_sectors   tmini_packet tmini_frame
 tmini_ranges
 tmini_mount
 tmini_names
-tmini_time
+tmini_units
 '
 
 # Prints "FILE SYMBOL TYPE" of every symbol in the archive.

@@ -143,8 +143,8 @@ static void report_each_second(void)
     tell("", counters.scans, " scans");
     tell(", nearest in front ", obstacle.nearest_mm[0], must_stop() ? " mm, STOP" : " mm, go");
     tell("; bytes ", uart.bytes, "");
-    tell(", lost: ", counters.parser.checksum_errors, " checksums");
-    tell(", ", counters.parser.bytes_overrun + uart.bytes_lost + uart.overruns, " bytes");
+    tell(", lost: ", counters.checksum_errors, " checksums");
+    tell(", ", counters.bytes_overrun + uart.bytes_lost + uart.overruns, " bytes");
     tell(", ", gaps, " gaps\n");
 }
 

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "tmini/tmini_names.h"
 #include "device.h"
 #include "interrupt.h"
 #include "output.h"
@@ -192,10 +193,10 @@ static void judge_line(check_t *check)
             ? "bytes came that are no lidar's: a wrong baud rate for a while, GND, interference"
             : "shorter wires, GND beside them, away from motors; another adapter; 3.3 V levels",
         "%s of %llu packets damaged, %u wrong checksums", damaged_text(stream), stream->packets,
-        (unsigned)counters.parser.checksum_errors);
-    if (counters.parser.bytes_overrun > 0) {
+        (unsigned)counters.checksum_errors);
+    if (counters.bytes_overrun > 0) {
         answer(check, REMARK, "computer", "end other programs", "%u bytes lost here: too busy",
-               (unsigned)counters.parser.bytes_overrun);
+               (unsigned)counters.bytes_overrun);
     }
     if (stream->longest_ms > PAUSE_MS && device->silences + device->noises == 0) {
         answer(check, REMARK, "pace",

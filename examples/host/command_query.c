@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "tmini/tmini_names.h"
 #include "device.h"
 #include "output.h"
 #include "points.h"

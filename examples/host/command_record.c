@@ -76,7 +76,7 @@ static const char *tape_text(const device_t *device, const tape_t *tape)
     (void)snprintf(
         text, sizeof text, "%.1f s, %llu bytes, %llu scans, %u wrong checksums, %u bytes overrun",
         (double)(tape->stamp_us - tape->begun_us) / 1e6, tape->bytes, device->stream.scans,
-        counters.parser.checksum_errors, counters.parser.bytes_overrun);
+        counters.checksum_errors, counters.bytes_overrun);
     return text;
 }
 

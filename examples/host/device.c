@@ -87,7 +87,7 @@ static void tell(const device_t *device, tmini_event_t event)
         message_note("the lidar has fallen silent; starting it again");
     } else if (event == TMINI_EVENT_RECOVERED) {
         message_note("the lidar is back");
-    } else if (event == TMINI_EVENT_STREAMING) {
+    } else if (event == TMINI_EVENT_UNWANTED_SCANNING) {
         message_note("the lidar scans although it was stopped; stopping it again");
     }
 }
@@ -105,7 +105,7 @@ static tmini_event_t follow(device_t *device, tmini_event_t event)
         stream_break(&device->stream);
         *(is_noise ? &device->noises : &device->silences) += 1;
     }
-    device->strays += event == TMINI_EVENT_STREAMING ? 1 : 0;
+    device->strays += event == TMINI_EVENT_UNWANTED_SCANNING ? 1 : 0;
     tell(device, event);
     return event;
 }
@@ -164,7 +164,7 @@ bool device_stop(device_t *device)
     device->ignores_interrupt = true;
     for (int i = 0; i < STOPS && !stays; i++) {
         is_stopped = device_await(device, begun, TMINI_EVENT_STOPPED);
-        stays = !is_stopped || device_wait(device, STAYS_MS) != TMINI_EVENT_STREAMING;
+        stays = !is_stopped || device_wait(device, STAYS_MS) != TMINI_EVENT_UNWANTED_SCANNING;
         begun = TMINI_OK; /* The driver itself stops a lidar that streams unasked. */
     }
     device->ignores_interrupt = false;
@@ -195,10 +195,10 @@ trouble_t trouble_find(const device_t *device)
     if (device->serial.received == 0) {
         return TROUBLE_SILENCE;
     }
-    if (counters.parser.bytes_in_replies > 0) {
+    if (counters.bytes_in_replies > 0) {
         return TROUBLE_OTHER;
     }
-    return counters.parser.packets > 0 ? TROUBLE_DEAF : TROUBLE_NOISE;
+    return counters.packets > 0 ? TROUBLE_DEAF : TROUBLE_NOISE;
 }
 
 const char *trouble_text(trouble_t trouble)

@@ -15,7 +15,7 @@
 
 #include "options.h"
 #include "stream.h"
-#include "tmini/tmini_parser.h"
+#include "tmini/parts/tmini_parser.h"
 
 /* Bytes of a chunk's head. */
 #define CHUNK_HEAD_SIZE 6u

@@ -17,7 +17,7 @@ void stream_init(stream_t *stream)
 {
     *stream = (stream_t){.faults = TMINI_FAULTS_UNKNOWN};
     tmini_ct_init(&stream->ct);
-    (void)tmini_scan_init(&stream->builder, stream->building, STREAM_POINTS_MAX, TMINI_FILTER_NONE);
+    (void)tmini_builder_init(&stream->builder, stream->building, STREAM_POINTS_MAX, TMINI_FILTER_NONE);
 }
 
 static void keep(stream_t *stream)
@@ -73,11 +73,11 @@ bool stream_take(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms
     stream->faults = tmini_ct_faults(&stream->ct);
     count(stream, packet, now_ms);
     if (verdict == TMINI_CT_REFUTED) {
-        tmini_scan_refute(&stream->builder);
+        tmini_builder_refute(&stream->builder);
     }
-    if (tmini_scan_add(&stream->builder, &taken, now_ms)) {
+    if (tmini_builder_add(&stream->builder, &taken, now_ms)) {
         keep(stream);
-        (void)tmini_scan_add(&stream->builder, &taken, now_ms);
+        (void)tmini_builder_add(&stream->builder, &taken, now_ms);
     }
     if (tmini_packet_is_start(packet)) {
         stream->is_open = true;
@@ -97,7 +97,7 @@ bool stream_end(stream_t *stream)
 
 void stream_break(stream_t *stream)
 {
-    tmini_scan_discard(&stream->builder);
+    tmini_builder_discard(&stream->builder);
     tmini_ct_discard(&stream->ct);
     stream->is_open = false;
 }

@@ -7,8 +7,8 @@
 #ifndef STREAM_H
 #define STREAM_H
 
-#include "tmini/tmini_ct.h"
-#include "tmini/tmini_scan.h"
+#include "tmini/parts/tmini_ct.h"
+#include "tmini/parts/tmini_builder.h"
 
 /* More points than any revolution has: 4000 a second at well below 1 Hz. */
 #define STREAM_POINTS_MAX 8192
@@ -37,7 +37,7 @@ typedef struct {
     bool is_open;
     count_t open_number;
     tmini_ct_t ct;
-    tmini_scan_builder_t builder;
+    tmini_builder_t builder;
     tmini_point_t building[STREAM_POINTS_MAX];
     tmini_point_t kept[STREAM_POINTS_MAX];
 } stream_t;

@@ -117,7 +117,7 @@ static tmini_posix_status_t run(void)
         status = tmini_posix_receive(&serial, 10);
     }
     show(false); /* Without a lidar, whatever the reason, the robot stops. */
-    (void)tmini_stop_and_wait(&lidar, 1000);
+    (void)tmini_blocking_stop(&lidar, 1000);
     tmini_posix_stop(&serial);
     return status;
 }

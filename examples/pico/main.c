@@ -109,11 +109,11 @@ static void report_each_second(void)
     reported_ms += REPORT_MS;
     tmini_counters(&lidar, &counters);
     tmini_pico_counters(&board, &uart);
-    const uint32_t lost = counters.parser.bytes_overrun + uart.bytes_lost + uart.overruns;
+    const uint32_t lost = counters.bytes_overrun + uart.bytes_lost + uart.overruns;
     printf("%lu scans, nearest in front %u mm, %s; bytes %lu, lost: %lu checksums, %lu bytes, "
            "%lu gaps\n",
            (unsigned long)counters.scans, obstacle.nearest_mm[0], must_stop() ? "STOP" : "go",
-           (unsigned long)uart.bytes, (unsigned long)counters.parser.checksum_errors,
+           (unsigned long)uart.bytes, (unsigned long)counters.checksum_errors,
            (unsigned long)lost, (unsigned long)gaps);
 }
 

@@ -70,8 +70,8 @@ static void report(void)
            tmini_state_name(tmini_state(&lidar)),
            tmini_faults_text(tmini_faults(&lidar), faults, sizeof faults),
            (unsigned long)counters.scans, (unsigned)lidar_ahead_mm(),
-           (unsigned long)counters.parser.checksum_errors,
-           (unsigned long)counters.parser.bytes_overrun);
+           (unsigned long)counters.checksum_errors,
+           (unsigned long)counters.bytes_overrun);
 #endif
 }
 

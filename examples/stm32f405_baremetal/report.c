@@ -122,8 +122,8 @@ void report_status(const tmini_counters_t *counters, const obstacle_t *obstacle,
     console_value("nearest_mm", nearest(obstacle));
     console_value("ahead_mm", obstacle->nearest_mm[0]);
     console_text(status->may_move ? " drive on" : " drive off");
-    console_value("errors", counters->parser.checksum_errors);
-    console_value("overrun", counters->parser.bytes_overrun);
+    console_value("errors", counters->checksum_errors);
+    console_value("overrun", counters->bytes_overrun);
     console_hundredths("isr_us", status->worst_cycles * 100u / CYCLES_PER_US);
     console_line_end();
 }
@@ -146,13 +146,13 @@ void report_counters(const tmini_t *lidar, const tmini_stm32_usart_t *port)
     const uint32_t bytes = take_counters(lidar, port, &counters);
     console_text("counters");
     console_value("bytes", bytes);
-    console_value("in_packets", counters.parser.bytes_in_packets);
-    console_value("in_replies", counters.parser.bytes_in_replies);
-    console_value("skipped", counters.parser.bytes_skipped);
-    console_value("overrun", counters.parser.bytes_overrun);
+    console_value("in_packets", counters.bytes_in_packets);
+    console_value("in_replies", counters.bytes_in_replies);
+    console_value("skipped", counters.bytes_skipped);
+    console_value("overrun", counters.bytes_overrun);
     console_value("pending", counters.bytes_pending);
-    console_value("packets", counters.parser.packets);
-    console_value("checksum_errors", counters.parser.checksum_errors);
+    console_value("packets", counters.packets);
+    console_value("checksum_errors", counters.checksum_errors);
     console_value("scans", counters.scans);
     console_value("timeouts", counters.timeouts);
     console_value("losses", counters.losses);

@@ -303,7 +303,7 @@ static void begin_scanning(tmini_t *lidar)
         raise_event(lidar, TMINI_EVENT_STARTED);
     }
     lidar->state = TMINI_STATE_SCANNING;
-    tmini_scan_discard(&lidar->builder);
+    tmini_builder_discard(&lidar->builder);
     tmini_monitor_begin(lidar);
 }
 
@@ -311,7 +311,7 @@ static void begin_scanning(tmini_t *lidar)
  * it would wear out its motor unnoticed. */
 static void stop_again(tmini_t *lidar)
 {
-    raise_event(lidar, TMINI_EVENT_STREAMING);
+    raise_event(lidar, TMINI_EVENT_UNWANTED_SCANNING);
     (void)tmini_stop(lidar);
 }
 
@@ -368,7 +368,7 @@ static void monitor_packet(tmini_t *lidar)
 {
     const tmini_ct_verdict_t verdict = tmini_ct_add(&lidar->ct, &lidar->latest.packet);
     if (verdict == TMINI_CT_REFUTED) {
-        tmini_scan_refute(&lidar->builder);
+        tmini_builder_refute(&lidar->builder);
     }
     if (tmini_monitor_packet(lidar, verdict)) {
         tmini_recovery_forget(lidar); /* It has truly recovered, if it was lost. */
@@ -380,7 +380,7 @@ static void deliver_packet(tmini_t *lidar, uint32_t came_ms)
     const tmini_packet_t *const packet = &lidar->latest.packet;
     if (lidar->builder.capacity == 0) {
         raise_event(lidar, TMINI_EVENT_PACKET);
-    } else if (tmini_scan_add(&lidar->builder, packet, came_ms)) {
+    } else if (tmini_builder_add(&lidar->builder, packet, came_ms)) {
         lidar->packet_waits = true;
         lidar->scans++;
         raise_event(lidar, TMINI_EVENT_SCAN);
@@ -406,7 +406,7 @@ static void add_waiting_packet(tmini_t *lidar)
 {
     if (lidar->packet_waits) {
         lidar->packet_waits = false;
-        (void)tmini_scan_add(&lidar->builder, &lidar->latest.packet, lidar->builder.scan.end_ms);
+        (void)tmini_builder_add(&lidar->builder, &lidar->latest.packet, lidar->builder.scan.end_ms);
     }
 }
 
@@ -506,7 +506,7 @@ static bool init_modules(tmini_t *lidar, const tmini_config_t *config)
                TMINI_OK &&
            tmini_parser_init(&lidar->parser, &lidar->ring, config->max_samples) == TMINI_OK &&
            ((config->points == NULL && config->max_points == 0) || /* By packets. */
-            tmini_scan_init(&lidar->builder, config->points, config->max_points, config->filter) ==
+            tmini_builder_init(&lidar->builder, config->points, config->max_points, config->filter) ==
                 TMINI_OK);
 }
 
@@ -522,7 +522,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
     lidar->link.port = config->port; /* From now on the lidar is set up. */
     lidar->link.port_context = config->port_context;
     lidar->link.timing = config->timing != NULL ? config->timing : &tmini_timing_default;
-    lidar->disable_recovery = config->disable_recovery;
+    lidar->is_recovery_off = config->recovery == TMINI_RECOVERY_OFF;
     return TMINI_OK;
 }
 
@@ -625,9 +625,14 @@ void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info)
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
 {
     const tmini_ring_t *const ring = &lidar->ring;
+    const tmini_parser_counters_t *const parser = &lidar->parser.counters;
     const size_t pending = tmini_ring_unread(ring) - tmini_parser_frame(&lidar->parser)->size;
-    counters->parser = lidar->parser.counters;
-    counters->parser.bytes_overrun += (uint32_t)tmini_ring_overrun(ring);
+    counters->packets = parser->packets;
+    counters->checksum_errors = parser->checksum_errors;
+    counters->bytes_in_packets = parser->bytes_in_packets;
+    counters->bytes_in_replies = parser->bytes_in_replies;
+    counters->bytes_skipped = parser->bytes_skipped;
+    counters->bytes_overrun = parser->bytes_overrun + (uint32_t)tmini_ring_overrun(ring);
     counters->bytes_pending = (uint32_t)pending;
     counters->scans = lidar->scans;
     counters->timeouts = lidar->command.timeouts;

@@ -38,7 +38,7 @@ static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event
     return TMINI_ERROR_TIMEOUT;
 }
 
-tmini_status_t tmini_read_info(tmini_t *lidar, tmini_info_t *info, uint32_t timeout_ms)
+tmini_status_t tmini_blocking_read_info(tmini_t *lidar, tmini_info_t *info, uint32_t timeout_ms)
 {
     if (info == NULL) {
         return TMINI_ERROR_ARGUMENT;
@@ -51,7 +51,8 @@ tmini_status_t tmini_read_info(tmini_t *lidar, tmini_info_t *info, uint32_t time
     return status;
 }
 
-tmini_status_t tmini_read_health(tmini_t *lidar, tmini_health_t *health, uint32_t timeout_ms)
+tmini_status_t tmini_blocking_read_health(tmini_t *lidar, tmini_health_t *health,
+                                          uint32_t timeout_ms)
 {
     if (health == NULL) {
         return TMINI_ERROR_ARGUMENT;
@@ -64,7 +65,8 @@ tmini_status_t tmini_read_health(tmini_t *lidar, tmini_health_t *health, uint32_
     return status;
 }
 
-tmini_status_t tmini_read_frequency(tmini_t *lidar, uint16_t *frequency_chz, uint32_t timeout_ms)
+tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency_chz,
+                                             uint32_t timeout_ms)
 {
     if (frequency_chz == NULL) {
         return TMINI_ERROR_ARGUMENT;
@@ -77,20 +79,21 @@ tmini_status_t tmini_read_frequency(tmini_t *lidar, uint16_t *frequency_chz, uin
     return status;
 }
 
-tmini_status_t tmini_write_frequency(tmini_t *lidar, uint16_t frequency_chz, uint32_t timeout_ms)
+tmini_status_t tmini_blocking_set_frequency(tmini_t *lidar, uint16_t frequency_chz,
+                                            uint32_t timeout_ms)
 {
     return wait_for(lidar, tmini_set_frequency(lidar, frequency_chz), TMINI_EVENT_FREQUENCY,
                     timeout_ms);
 }
 
-tmini_status_t tmini_start_and_wait(tmini_t *lidar, uint32_t timeout_ms)
+tmini_status_t tmini_blocking_start(tmini_t *lidar, uint32_t timeout_ms)
 {
     const tmini_status_t begun = tmini_start(lidar);
     const bool by_packets = begun == TMINI_OK && lidar->builder.capacity == 0;
     return wait_for(lidar, begun, by_packets ? TMINI_EVENT_PACKET : TMINI_EVENT_SCAN, timeout_ms);
 }
 
-tmini_status_t tmini_stop_and_wait(tmini_t *lidar, uint32_t timeout_ms)
+tmini_status_t tmini_blocking_stop(tmini_t *lidar, uint32_t timeout_ms)
 {
     return wait_for(lidar, tmini_stop(lidar), TMINI_EVENT_STOPPED, timeout_ms);
 }

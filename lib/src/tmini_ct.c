@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-#include "tmini/tmini_ct.h"
+#include "tmini/parts/tmini_ct.h"
 
 #include <string.h>
 
-#include "tmini/tmini_reply.h"
+#include "tmini/parts/tmini_reply.h"
 
 /* The fields that are kept, in the order of their indices. */
 enum {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-#include "tmini/tmini_frame.h"
+#include "tmini/parts/tmini_frame.h"
 
 const uint8_t *tmini_frame_samples(const tmini_frame_t *frame, size_t index, size_t *count,
                                    uint8_t joined[TMINI_SAMPLE_SIZE])

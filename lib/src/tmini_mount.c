@@ -5,8 +5,8 @@
 
 uint16_t tmini_mount_angle(const tmini_mount_t *mount, uint16_t angle_q6)
 {
-    return mount->is_upside_down ? tmini_clockwise(angle_q6, mount->front_q6)
-                                 : tmini_clockwise(mount->front_q6, angle_q6);
+    return mount->upside_down ? tmini_clockwise(angle_q6, mount->front_q6)
+                              : tmini_clockwise(mount->front_q6, angle_q6);
 }
 
 static bool is_masked(const tmini_mount_t *mount, uint16_t angle_q6)

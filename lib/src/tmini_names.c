@@ -15,6 +15,7 @@ static const char *const status_names[] = {
     [-TMINI_ERROR_WRITE] = "write failed",
     [-TMINI_ERROR_REPLY] = "unexpected reply",
     [-TMINI_ERROR_ABORTED] = "aborted",
+    [-TMINI_ERROR_LISTEN_ONLY] = "listen only: nothing is sent",
 };
 
 static const char *const event_names[] = {
@@ -26,7 +27,7 @@ static const char *const event_names[] = {
     [TMINI_EVENT_FREQUENCY] = "frequency",
     [TMINI_EVENT_REBOOTED] = "rebooted",
     [TMINI_EVENT_COMMAND_FAILED] = "command failed",
-    [TMINI_EVENT_STREAMING] = "streaming unasked",
+    [TMINI_EVENT_UNWANTED_SCANNING] = "unwanted scanning",
     [TMINI_EVENT_LOST] = "lost",
     [TMINI_EVENT_RECOVERED] = "recovered",
     [TMINI_EVENT_FAULTS_CHANGED] = "faults changed",
@@ -47,7 +48,7 @@ static const char *const state_names[] = {
 
 /* By the number of the fault's bit. */
 static const char *const fault_names[] = {
-    "sensor", "encoder", "wireless power", "PD", "LD", "data",
+    "sensor", "encoder", "wireless power", "PD", "LD", "data", "frequency",
 };
 
 static const char *name_of(const char *const *names, size_t count, size_t index,
@@ -109,4 +110,12 @@ const char *tmini_faults_text(uint8_t faults, char *text, size_t size)
         text[append(text, size, 0, "none")] = '\0';
     }
     return text;
+}
+
+void tmini_serial_text(const tmini_info_t *info, char text[TMINI_SERIAL_DIGITS + 1])
+{
+    for (unsigned i = 0; i < TMINI_SERIAL_DIGITS; i++) {
+        text[i] = info->serial[i] <= 9 ? (char)('0' + info->serial[i]) : '?';
+    }
+    text[TMINI_SERIAL_DIGITS] = '\0';
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-#include "tmini/tmini_packet.h"
+#include "tmini/parts/tmini_packet.h"
 
 #include "tmini_packet_header.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-#include "tmini/tmini_parser.h"
+#include "tmini/parts/tmini_parser.h"
 
 #include <string.h>
 

@@ -45,7 +45,7 @@ static void make_attempt(tmini_t *lidar)
 void tmini_recovery_begin(tmini_t *lidar)
 {
     lidar->recovery.losses++;
-    if (lidar->disable_recovery) {
+    if (lidar->is_recovery_off) {
         tmini_command_wait(lidar, 0);
     } else if (lidar->recovery.attempts == 0) {
         lidar->recovery.attempts = FIRST_ATTEMPT;

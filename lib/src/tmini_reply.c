@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-#include "tmini/tmini_reply.h"
+#include "tmini/parts/tmini_reply.h"
 
 #include <string.h>
 
@@ -49,12 +49,4 @@ uint32_t tmini_reply_frequency_chz(const uint8_t content[TMINI_FREQUENCY_SIZE])
 {
     return content[0] | (uint32_t)content[1] << 8 | (uint32_t)content[2] << 16 |
            (uint32_t)content[3] << 24;
-}
-
-void tmini_serial_text(const tmini_info_t *info, char text[TMINI_SERIAL_DIGITS + 1])
-{
-    for (unsigned i = 0; i < TMINI_SERIAL_DIGITS; i++) {
-        text[i] = info->serial[i] <= 9 ? (char)('0' + info->serial[i]) : '?';
-    }
-    text[TMINI_SERIAL_DIGITS] = '\0';
 }

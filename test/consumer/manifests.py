@@ -210,7 +210,8 @@ def check_esp_idf_lists():
     for pattern in patterns:
         if not glob.glob(path(pattern)):
             complain("idf_component.yml: nothing to include: %s" % pattern)
-    for needed in ("lib/src/*.c", "lib/src/*.h", "lib/include/tmini/*.h"):
+    for needed in ("lib/src/*.c", "lib/src/*.h", "lib/include/tmini/*.h",
+                   "lib/include/tmini/parts/*.h"):
         if needed not in patterns:
             complain("idf_component.yml does not include %s" % needed)
 

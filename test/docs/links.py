@@ -73,7 +73,7 @@ def main():
         for number, target in links(path):
             count += 1
             complaints.append(check_link(path, number, target))
-    sources = [*documents(), *sorted(ROOT.glob("lib/include/tmini/*.h")),
+    sources = [*documents(), *sorted(ROOT.glob("lib/include/tmini/**/*.h")),
                *sorted(ROOT.glob("port/*/*.[ch]"))]
     for path in sources:
         for number, named in named_paths(path):

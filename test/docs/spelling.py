@@ -61,7 +61,7 @@ def misspelt(lines):
 
 
 def check_documents():
-    paths = [*documents(), *sorted(ROOT.glob("lib/include/tmini/*.h")),
+    paths = [*documents(), *sorted(ROOT.glob("lib/include/tmini/**/*.h")),
              *sorted(ROOT.glob("port/*/*.h"))]
     lines = {path: text_of(path) for path in paths}
     complaints = []

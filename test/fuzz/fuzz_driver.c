@@ -254,9 +254,8 @@ static void account(void)
 {
     tmini_counters_t counters;
     tmini_counters(&world.lidar, &counters);
-    demand(counters.parser.bytes_in_packets + counters.parser.bytes_in_replies +
-               counters.parser.bytes_skipped + counters.parser.bytes_overrun +
-               counters.bytes_pending ==
+    demand(counters.bytes_in_packets + counters.bytes_in_replies + counters.bytes_skipped +
+               counters.bytes_overrun + counters.bytes_pending ==
            world.fed);
 }
 
@@ -381,7 +380,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                       : (setup & MANY_POINTS) != 0 ? POINTS
                                                    : FEW_POINTS,
         .filter = (uint8_t)(setup & TMINI_FILTER_BOTH),
-        .disable_recovery = (setup & NO_RECOVERY) != 0,
+        .recovery = (setup & NO_RECOVERY) != 0 ? TMINI_RECOVERY_OFF : TMINI_RECOVERY_ON,
     };
     demand(tmini_init(&world.lidar, &config) == TMINI_OK);
     if (world.is_true) {

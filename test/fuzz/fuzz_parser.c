@@ -14,8 +14,8 @@
 #include "invariants.h"
 #include "random.h"
 #include "reference_scans.h"
-#include "tmini/tmini_parser.h"
-#include "tmini/tmini_scan.h"
+#include "tmini/parts/tmini_parser.h"
+#include "tmini/parts/tmini_builder.h"
 
 #define FRAMES_MAX 4096
 #define SCAN_POINTS 200 /* Fewer than a scan has: overflow is part of the game. */
@@ -86,15 +86,15 @@ static void compare_scan(const tmini_scan_t *scan)
     compare_points(scan, &wanted);
 }
 
-static void gather(tmini_scan_builder_t *builder, const tmini_packet_t *packet)
+static void gather(tmini_builder_t *builder, const tmini_packet_t *packet)
 {
-    if (tmini_scan_add(builder, packet, 0)) {
+    if (tmini_builder_add(builder, packet, 0)) {
         compare_scan(&builder->scan);
-        demand(!tmini_scan_add(builder, packet, 0));
+        demand(!tmini_builder_add(builder, packet, 0));
     }
 }
 
-static void drain(tmini_parser_t *parser, tmini_scan_builder_t *builder)
+static void drain(tmini_parser_t *parser, tmini_builder_t *builder)
 {
     for (;;) {
         const tmini_frame_type_t type = tmini_parser_next(parser);
@@ -146,10 +146,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     tmini_ring_t ring;
     tmini_parser_t parser;
-    tmini_scan_builder_t builder;
+    tmini_builder_t builder;
     demand(tmini_ring_init(&ring, memory, sizeof memory, false) == TMINI_OK);
     demand(tmini_parser_init(&parser, &ring, max_samples) == TMINI_OK);
-    demand(tmini_scan_init(&builder, points, SCAN_POINTS, TMINI_FILTER_BOTH) == TMINI_OK);
+    demand(tmini_builder_init(&builder, points, SCAN_POINTS, TMINI_FILTER_BOTH) == TMINI_OK);
     demand(tmini_parser_await(&parser, waits ? &header : NULL) == TMINI_OK);
     for (size_t at = 0; at < size; at += chunk) {
         tmini_ring_write(&ring, stream + at, size - at < chunk ? size - at : chunk);

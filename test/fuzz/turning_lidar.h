@@ -12,7 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tmini/tmini_scan.h"
+#include "tmini/parts/tmini_builder.h"
 
 #define TURNING_PACKET_MAX 131u /* With LastCRC. */
 #define TURNING_REPLY_MAX 27u

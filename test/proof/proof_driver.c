@@ -63,7 +63,7 @@ static void any_lidar(void)
     lidar.parser.awaiting = any_bool();
     lidar.packet_waits = any_bool();
     lidar.is_settled = any_bool();
-    lidar.disable_recovery = any_bool();
+    lidar.is_recovery_off = any_bool();
     lidar.are_held = any_bool();
     lidar.command.sync_sent = any_bool();
     lidar.builder.open = any_bool();
@@ -91,7 +91,7 @@ void prove_driver_init(void)
     config.filter = nondet_byte();
     config.max_samples = nondet_byte();
     config.timing = any_bool() ? &timing : NULL;
-    config.disable_recovery = any_bool();
+    config.recovery = any_bool() ? TMINI_RECOVERY_OFF : TMINI_RECOVERY_ON;
     ASSUME(config.rx_size <= LARGE_RING_SIZE);
     const tmini_status_t status = tmini_init(&lidar, &config);
     CLAIM(is_sound());

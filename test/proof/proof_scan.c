@@ -11,10 +11,10 @@ static tmini_ring_t ring;
 static tmini_frame_t frame;
 static tmini_packet_t packet;
 static tmini_point_t points[CAPACITY + 1];
-static tmini_scan_builder_t builder;
+static tmini_builder_t builder;
 
 tmini_frame_t nondet_frame(void);
-tmini_scan_builder_t nondet_builder(void);
+tmini_builder_t nondet_builder(void);
 tmini_ct_t nondet_ct(void);
 
 static void any_packet(void)
@@ -65,7 +65,7 @@ void prove_scan_init(void)
     const unsigned filter = nondet_word();
     const bool is_null = any_bool();
     const tmini_status_t status =
-        tmini_scan_init(&builder, is_null ? NULL : points, capacity, filter);
+        tmini_builder_init(&builder, is_null ? NULL : points, capacity, filter);
     CLAIM((status == TMINI_OK) ==
           (!is_null && capacity >= 1 && capacity <= 65535 && (filter & ~12u) == 0));
     CLAIM(status != TMINI_OK || builder_is_sound(&builder));
@@ -80,12 +80,12 @@ void prove_scan_step(void)
     const bool was_open = builder.open;
     const uint32_t now_ms = nondet_word();
     points[builder.capacity].angle_q6 = 0xEEEE;
-    if (tmini_scan_add(&builder, &packet, now_ms)) {
+    if (tmini_builder_add(&builder, &packet, now_ms)) {
         CLAIM(builder_is_sound(&builder) && was_open && !builder.open);
         CLAIM(!builder.scan.complete || tmini_packet_is_start(&packet));
         CLAIM(!builder.scan.complete || packet.gap <= 1);
         CLAIM(!builder.scan.complete || (builder.scan.gaps == 0 && builder.scan.dropped == 0));
-        CLAIM(!tmini_scan_add(&builder, &packet, now_ms));
+        CLAIM(!tmini_builder_add(&builder, &packet, now_ms));
     }
     CLAIM(builder_is_sound(&builder));
     CLAIM(builder.open || !tmini_packet_is_start(&packet));
@@ -97,9 +97,9 @@ void prove_scan_refute(void)
 {
     any_builder();
     ASSUME(builder.open);
-    tmini_scan_refute(&builder);
+    tmini_builder_refute(&builder);
     CLAIM(builder_is_sound(&builder) && builder.scan.gaps > 0);
-    tmini_scan_discard(&builder);
+    tmini_builder_discard(&builder);
     CLAIM(!builder.open);
     REACHED();
 }

@@ -8,7 +8,7 @@
 #include "tmini/tmini_mount.h"
 #include "tmini/tmini_ranges.h"
 #include "tmini/tmini_sectors.h"
-#include "tmini/tmini_time.h"
+#include "tmini/tmini_units.h"
 
 #define POINTS 3u
 
@@ -82,7 +82,7 @@ void prove_mount(void)
     const tmini_scan_t scan = any_scan();
     const tmini_arc_t arc = {nondet_half(), nondet_half()};
     const tmini_mount_t mount = {.front_q6 = nondet_half(),
-                                 .is_upside_down = any_bool(),
+                                 .upside_down = any_bool(),
                                  .min_mm = nondet_half(),
                                  .max_mm = nondet_half(),
                                  .masked = &arc,

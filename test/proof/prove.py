@@ -25,8 +25,8 @@ FOLDERS = ("lib/include", "lib/src", "test/proof", "test/support")
 
 RING = ["tmini_ring.c"]
 FRAME = RING + ["tmini_frame.c"]
-SCAN = FRAME + ["tmini_packet.c", "tmini_scan.c", "tmini_ct.c"]
-USE = SCAN + ["tmini_ranges.c", "tmini_sectors.c", "tmini_mount.c", "tmini_time.c"]
+SCAN = FRAME + ["tmini_packet.c", "tmini_builder.c", "tmini_ct.c"]
+USE = SCAN + ["tmini_ranges.c", "tmini_sectors.c", "tmini_mount.c", "tmini_units.c"]
 DRIVER = RING + ["tmini_command.c", "tmini_recovery.c", "tmini_monitor.c", "tmini_reply.c"]
 PARSER_FILES = ["proof_parser.c", "parser_contract.c"]
 DRIVER_FILES = ["proof_driver.c", "stubs.c", "parser_contract.c"]
@@ -126,10 +126,10 @@ PROOFS = [
     angle(3, "lib/src/tmini_packet.c", "(STEP_BITS - 1))", "(STEP_BITS - 2))"),
     angle(7, "lib/src/tmini_packet.c", "+ intervals - 1) / intervals", ") / intervals"),
     angle(40, "lib/src/tmini_packet.c", "(STEP_BITS - 1))", "(STEP_BITS - 2))", slow=True),
-    scan("scan_init", "lib/src/tmini_scan.c", "capacity == 0 || ", ""),
-    scan("scan_step", "lib/src/tmini_scan.c", "(size_t)builder->capacity - scan->count)", "(size_t)builder->capacity)"),
-    scan("scan_refute", "lib/src/tmini_scan.c", "count_one(&builder->scan.gaps);\n}\n\nbool tmini_scan_add",
-         "}\n\nbool tmini_scan_add"),
+    scan("scan_init", "lib/src/tmini_builder.c", "capacity == 0 || ", ""),
+    scan("scan_step", "lib/src/tmini_builder.c", "(size_t)builder->capacity - scan->count)", "(size_t)builder->capacity)"),
+    scan("scan_refute", "lib/src/tmini_builder.c", "count_one(&builder->scan.gaps);\n}\n\nbool tmini_builder_add",
+         "}\n\nbool tmini_builder_add"),
     scan("ct_crc", "lib/src/tmini_ct.c", "sum << 6", "sum << 5"),
     scan("ct_add", "lib/src/tmini_ct.c", " || start->gap != 1", ""),
     scan("ct_read", "lib/src/tmini_ct.c", "trusted[DAY] >> 3", "trusted[DAY] >> 2"),
@@ -140,7 +140,7 @@ PROOFS = [
     use("sectors_at", "all angles, 1 to 65535 sectors", "lib/src/tmini_sectors.c",
         "(sector < sectors->count ? sector : 0)", "(sector)"),
     use("mount", "up to 3 points, 1 arc", "lib/src/tmini_mount.c", "points[kept++] = point", "points[++kept] = point"),
-    use("time", "up to 3 points", "lib/src/tmini_time.c", "* 25u /", "* 26u /"),
+    use("time", "up to 3 points", "lib/src/tmini_units.c", "* 25u /", "* 26u /"),
     driver("init", "lib/src/tmini.c", "config->points == NULL && config->max_points == 0", "config->points == NULL"),
     driver("update_time", "lib/src/tmini.c", "if (lidar->state == TMINI_STATE_IDLE) {",
            "if (lidar->state >= TMINI_STATE_IDLE) {"),

@@ -8,7 +8,7 @@
 
 tmini_parser_t nondet_parser(void);
 tmini_packet_t nondet_packet(void);
-tmini_scan_builder_t nondet_builder(void);
+tmini_builder_t nondet_builder(void);
 tmini_ct_t nondet_ct(void);
 
 /* ---- Parser ---- */
@@ -109,9 +109,9 @@ bool tmini_packet_has_range(const tmini_packet_t *packet)
 
 /* ---- Scan ---- */
 
-static void change_builder(tmini_scan_builder_t *builder, bool open)
+static void change_builder(tmini_builder_t *builder, bool open)
 {
-    const tmini_scan_builder_t before = *builder;
+    const tmini_builder_t before = *builder;
     *builder = nondet_builder();
     builder->capacity = before.capacity;
     builder->scan.points = before.scan.points;
@@ -120,7 +120,7 @@ static void change_builder(tmini_scan_builder_t *builder, bool open)
     ASSUME(builder_is_sound(builder));
 }
 
-tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buffer,
+tmini_status_t tmini_builder_init(tmini_builder_t *builder, tmini_point_t *buffer,
                                size_t capacity, unsigned filter)
 {
     (void)filter;
@@ -133,19 +133,19 @@ tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buf
     return TMINI_OK;
 }
 
-void tmini_scan_discard(tmini_scan_builder_t *builder)
+void tmini_builder_discard(tmini_builder_t *builder)
 {
     builder->open = false;
 }
 
-void tmini_scan_refute(tmini_scan_builder_t *builder)
+void tmini_builder_refute(tmini_builder_t *builder)
 {
     if (builder->scan.gaps < UINT16_MAX) {
         builder->scan.gaps++;
     }
 }
 
-bool tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
+bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
 {
     const bool is_start = tmini_packet_is_start(packet);
     (void)now_ms;

@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "tmini/tmini_ring.h"
+#include "tmini/parts/tmini_ring.h"
 
 #define SIZE 256u
 

@@ -12,7 +12,7 @@
 /* The last value of `doubt`, as in tmini.c. */
 #define DOUBT_MAX 3
 
-/* As in tmini_scan.c: 4 degrees back, 360.25 on. */
+/* As in tmini_builder.c: 4 degrees back, 360.25 on. */
 #define SWEPT_MIN_Q6 (-256)
 #define SWEPT_MAX_Q6 (23040 + 16)
 
@@ -120,7 +120,7 @@ bool ct_is_sound(const tmini_ct_t *ct)
            ct->known < 1u << TMINI_CT_INDICES;
 }
 
-bool builder_is_sound(const tmini_scan_builder_t *builder)
+bool builder_is_sound(const tmini_builder_t *builder)
 {
     const tmini_scan_t *const scan = &builder->scan;
     return builder->capacity > 0 && scan->points != NULL && scan->count <= builder->capacity &&

@@ -27,7 +27,7 @@ bool packet_is_sound(const tmini_packet_t *packet, const tmini_frame_t *frame);
 bool ct_is_sound(const tmini_ct_t *ct);
 
 /* Of a builder that has been set up. */
-bool builder_is_sound(const tmini_scan_builder_t *builder);
+bool builder_is_sound(const tmini_builder_t *builder);
 
 /* And all that it consists of. True as well of a lidar that was not set up. */
 bool lidar_is_sound(const tmini_t *lidar);

@@ -9,8 +9,8 @@
 
 #include "random.h"
 #include "reference_decoder.h"
-#include "tmini/tmini_packet.h"
-#include "tmini/tmini_parser.h"
+#include "tmini/parts/tmini_packet.h"
+#include "tmini/parts/tmini_parser.h"
 
 typedef struct {
     tmini_ring_t ring;

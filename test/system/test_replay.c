@@ -9,8 +9,8 @@
 #include "effort.h"
 #include "receiver.h"
 
-#include "tmini/tmini_scan.h"
-#include "tmini/tmini_ct.h"
+#include "tmini/parts/tmini_builder.h"
+#include "tmini/parts/tmini_ct.h"
 #include "unity.h"
 
 #include <stdio.h>
@@ -26,7 +26,7 @@ static size_t size;
 static uint8_t memory[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL + 200];
 static receiver_t receiver;
-static tmini_scan_builder_t builder;
+static tmini_builder_t builder;
 static tmini_ct_t turn;
 
 typedef struct {
@@ -72,10 +72,10 @@ static void handle_packet(uint32_t now_ms)
     replay.starts += tmini_packet_is_start(packet) ? 1 : 0;
     replay.packets_before_first += replay.starts == 0 ? 1 : 0;
     replay.trusted += tmini_ct_add(&turn, packet) == TMINI_CT_CONFIRMED ? 1 : 0;
-    if (tmini_scan_add(&builder, packet, now_ms)) {
+    if (tmini_builder_add(&builder, packet, now_ms)) {
         TEST_ASSERT_TRUE(replay.scans < SCANS_MAX);
         replay.scan[replay.scans++] = builder.scan;
-        TEST_ASSERT_FALSE(tmini_scan_add(&builder, packet, now_ms));
+        TEST_ASSERT_FALSE(tmini_builder_add(&builder, packet, now_ms));
     }
 }
 
@@ -84,8 +84,8 @@ static void replay_in_chunks(size_t chunk)
 {
     replay = (replay_t){0};
     tmini_ct_init(&turn);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK,
-                          tmini_scan_init(&builder, points, sizeof points / sizeof points[0], 0));
+    TEST_ASSERT_EQUAL_INT(
+        TMINI_OK, tmini_builder_init(&builder, points, sizeof points / sizeof points[0], 0));
     receiver_open(&receiver, memory, sizeof memory, 0);
     for (size_t fed = 0; fed < size; fed += chunk) {
         chunk = chunk < size - fed ? chunk : size - fed;

@@ -96,7 +96,7 @@ void world_restart_library(world_t *world)
         .rx_dma = world->config.dma,
         .points = world->config.streaming ? NULL : world->points,
         .max_points = world->config.streaming ? 0 : WORLD_POINTS,
-        .disable_recovery = world->config.disable_recovery,
+        .recovery = world->config.recovery,
     };
 
     world->port.write = port_write;
@@ -183,8 +183,8 @@ static void receive(world_t *world)
 /* Bytes that the library has parsed, in packets, replies or skipped; as a place on the line. */
 static uint64_t parsed(const world_t *world, const tmini_counters_t *counters)
 {
-    return world->fed_before + counters->parser.bytes_in_packets +
-           counters->parser.bytes_in_replies + counters->parser.bytes_skipped;
+    return world->fed_before + counters->bytes_in_packets + counters->bytes_in_replies +
+           counters->bytes_skipped;
 }
 
 static uint64_t parsed_now(const world_t *world)
@@ -262,13 +262,13 @@ static void check_recovery(world_t *world)
 
 static void check_bytes(world_t *world, const tmini_counters_t *counters)
 {
-    const uint64_t in = parsed(world, counters) - world->fed_before +
-                        counters->parser.bytes_overrun + counters->bytes_pending;
+    const uint64_t in = parsed(world, counters) - world->fed_before + counters->bytes_overrun +
+                        counters->bytes_pending;
 
     if (in != world->told) {
         world_violate(world, VIOLATION_BYTES, "the sum differs");
     }
-    if (counters->parser.bytes_overrun > 0 && !world->config.overruns_expected) {
+    if (counters->bytes_overrun > 0 && !world->config.overruns_expected) {
         world_violate(world, VIOLATION_BYTES, "an overrun");
     }
 }
@@ -332,7 +332,8 @@ static void note_trouble(world_t *world)
     if (tmini_state(&world->lidar) != TMINI_STATE_RECOVERING) {
         world->in_trouble = false; /* The program has stopped it. */
     }
-    if (world->in_trouble && !world->config.disable_recovery && world->now_us > world->trouble_us &&
+    if (world->in_trouble && world->config.recovery == TMINI_RECOVERY_ON &&
+        world->now_us > world->trouble_us &&
         world->now_us - world->trouble_us > WORLD_RECOVERY_MS * 1000u) {
         world->in_trouble = false;
         world_violate(world, VIOLATION_SLOW_RECOVERY, "still no packets");

@@ -30,7 +30,7 @@ typedef struct {
     size_t rx_size; /* At most WORLD_RX_MAX. */
     bool dma;
     bool streaming;
-    bool disable_recovery;
+    tmini_recovery_mode_t recovery;
     bool short_writes;      /* The port takes 0, 1 or 2 bytes, by chance. */
     uint16_t busy_one_in;   /* How often the main loop is busy; 0: never. */
     uint16_t busy_ms;       /* At most for so long. */

@@ -72,7 +72,7 @@ void test_info_is_read(void)
 
     comes(5, rig_feed_info);
     sends(GET_INFO);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&rig.lidar, &info, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&rig.lidar, &info, 100));
     TEST_ASSERT_EQUAL_UINT8(151, info.model);
     TEST_ASSERT_EQUAL_UINT8(4, info.serial[15]);
     TEST_ASSERT_EQUAL_UINT(5, script.waits);
@@ -85,7 +85,7 @@ void test_health_is_read(void)
 
     comes(5, feed_healthy);
     sends(GET_HEALTH);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_health(&rig.lidar, &health, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_health(&rig.lidar, &health, 100));
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_LD, health.faults);
     TEST_ASSERT_EQUAL_UINT16(7, health.error_code);
 }
@@ -96,7 +96,7 @@ void test_the_frequency_is_read(void)
 
     comes(5, feed_frequency);
     sends(GET_FREQUENCY);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_frequency(&rig.lidar, &frequency_chz, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_frequency(&rig.lidar, &frequency_chz, 100));
     TEST_ASSERT_EQUAL_UINT16(640, frequency_chz);
 }
 
@@ -104,7 +104,7 @@ void test_the_frequency_is_set(void)
 {
     comes(5, feed_frequency);
     sends(GET_FREQUENCY);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_write_frequency(&rig.lidar, 640, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
     TEST_ASSERT_EQUAL_UINT16(640, tmini_frequency_chz(&rig.lidar));
 }
 
@@ -118,7 +118,7 @@ void test_start_waits_for_the_first_scan(void)
     comes(10, feed_turn);
     script.every_ms = 160;
     sends(START);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start_and_wait(&rig.lidar, 1000));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 1000));
     TEST_ASSERT_EQUAL_UINT32(1170, rig.now_ms - script.begun_ms + 1000);
     TEST_ASSERT_EQUAL_UINT16(17, tmini_scan(&rig.lidar)->count);
     is_in(TMINI_STATE_SCANNING);
@@ -134,7 +134,7 @@ void test_nothing_is_waited_for_while_there_are_events(void)
 {
     comes(10, feed_two_turns);
     sends(START);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start_and_wait(&rig.lidar, 1000));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 1000));
     TEST_ASSERT_EQUAL_UINT(10, script.waits);
 }
 
@@ -147,11 +147,11 @@ void test_start_waits_for_the_first_packet_when_streaming(void)
     comes(60, rig_feed_scan_reply); /* Behind the stop and the quiet time. */
     sends(STOP);
     sends(START);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_start_and_wait(&rig.lidar, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 100));
     comes(60, feed_turn);
     sends(STOP);
     sends(START);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start_and_wait(&rig.lidar, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 100));
     TEST_ASSERT_EQUAL_UINT8(1, tmini_packet(&rig.lidar)->count);
 }
 
@@ -159,7 +159,7 @@ void test_stop_waits_for_a_quiet_line(void)
 {
     script.begun_ms = rig.now_ms;
     sends(STOP);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop_and_wait(&rig.lidar, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_stop(&rig.lidar, 100));
     TEST_ASSERT_EQUAL_UINT32(50, rig.now_ms - script.begun_ms);
     is_in(TMINI_STATE_IDLE);
 }
@@ -169,7 +169,7 @@ void test_stop_waits_past_the_end_of_the_command_that_it_aborts(void)
     sends(GET_INFO);
     begins(tmini_request_info(&rig.lidar));
     sends(STOP);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop_and_wait(&rig.lidar, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_stop(&rig.lidar, 100));
     is_in(TMINI_STATE_IDLE);
 }
 
@@ -183,7 +183,7 @@ void test_events_that_do_not_belong_to_the_command_are_swallowed(void)
     }
     rig_feed_plain_turn(0); /* A fault and a scan. */
     sends(STOP);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop_and_wait(&rig.lidar, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_stop(&rig.lidar, 100));
     TEST_ASSERT_EQUAL_HEX(0, rig_drain());
 }
 
@@ -195,14 +195,14 @@ void test_time_that_is_up_gives_the_command_up_and_the_next_one_stops_first(void
 
     script.begun_ms = rig.now_ms;
     sends(GET_INFO);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_read_info(&rig.lidar, &info, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_read_info(&rig.lidar, &info, 100));
     TEST_ASSERT_EQUAL_UINT32(100, rig.now_ms - script.begun_ms);
     is_in(TMINI_STATE_UNKNOWN);
     TEST_ASSERT_EQUAL_HEX(0, rig_drain());
     comes(55, rig_feed_info);
     sends(STOP);
     sends(GET_INFO);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&rig.lidar, &info, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&rig.lidar, &info, 100));
 }
 
 void test_time_runs_across_the_clocks_wrap_around(void)
@@ -212,7 +212,7 @@ void test_time_runs_across_the_clocks_wrap_around(void)
     rig.now_ms = UINT32_MAX - 50;
     script.begun_ms = rig.now_ms;
     sends(GET_INFO);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_read_info(&rig.lidar, &info, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_read_info(&rig.lidar, &info, 100));
     TEST_ASSERT_EQUAL_UINT32(100, rig.now_ms - script.begun_ms);
 }
 
@@ -222,7 +222,7 @@ void test_a_command_given_up_half_sent_is_not_sent_any_further(void)
 
     sends_both_taking(GET_INFO, 1);
     sends_rest_taking(GET_INFO, 0);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_read_info(&rig.lidar, &info, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_read_info(&rig.lidar, &info, 0));
     TEST_ASSERT_EQUAL_HEX(0, rig_drain());
 }
 
@@ -232,7 +232,7 @@ void test_a_start_given_up_while_the_lidar_is_being_recovered_leaves_it_alone(vo
     sends(START);
     sends(STOP); /* Lost after a second. */
     sends(START);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_start_and_wait(&rig.lidar, 1500));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 1500));
     is_in(TMINI_STATE_UNKNOWN);
     rig.now_ms += 60000;
     TEST_ASSERT_EQUAL_HEX(0, rig_drain());
@@ -245,12 +245,12 @@ void test_a_result_is_not_touched_by_a_failure(void)
     uint16_t frequency_chz = 3;
 
     sends(GET_INFO);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_read_info(&rig.lidar, &info, 10));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_read_info(&rig.lidar, &info, 10));
     sends(STOP);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_read_health(&rig.lidar, &health, 10));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_read_health(&rig.lidar, &health, 10));
     sends(STOP);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT,
-                          tmini_read_frequency(&rig.lidar, &frequency_chz, 10));
+                          tmini_blocking_read_frequency(&rig.lidar, &frequency_chz, 10));
     TEST_ASSERT_EQUAL_UINT8(1, info.model);
     TEST_ASSERT_EQUAL_UINT8(2, health.faults);
     TEST_ASSERT_EQUAL_UINT16(3, frequency_chz);
@@ -262,7 +262,7 @@ void test_a_command_that_fails_says_why(void)
 
     sends_both_taking(GET_INFO, -1);
     sends_both_taking(GET_INFO, -1);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_read_info(&rig.lidar, &info, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_blocking_read_info(&rig.lidar, &info, 100));
 }
 
 void test_a_command_that_uses_up_its_attempts_says_why(void)
@@ -275,7 +275,7 @@ void test_a_command_that_uses_up_its_attempts_says_why(void)
     sends(STOP);
     sends(GET_INFO);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT,
-                          tmini_read_info(&rig.lidar, &info, TMINI_BLOCKING_TIMEOUT_MS));
+                          tmini_blocking_read_info(&rig.lidar, &info, TMINI_BLOCKING_TIMEOUT_MS));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_command_error(&rig.lidar));
 }
 
@@ -285,7 +285,7 @@ void test_a_stop_that_fails_after_aborting_says_why(void)
     begins(tmini_request_info(&rig.lidar));
     sends_both_taking(STOP, -1);
     sends_both_taking(STOP, -1);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_stop_and_wait(&rig.lidar, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_blocking_stop(&rig.lidar, 100));
 }
 
 void test_a_command_that_cannot_be_begun_does_not_wait(void)
@@ -296,11 +296,12 @@ void test_a_command_that_cannot_be_begun_does_not_wait(void)
 
     rig_go_scanning();
     port_wait_StubWithCallback(wait);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_read_info(&rig.lidar, &info, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_read_health(&rig.lidar, &health, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_read_frequency(&rig.lidar, &frequency_chz, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_write_frequency(&rig.lidar, 700, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_start_and_wait(&rig.lidar, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_blocking_read_info(&rig.lidar, &info, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_blocking_read_health(&rig.lidar, &health, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE,
+                          tmini_blocking_read_frequency(&rig.lidar, &frequency_chz, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_blocking_set_frequency(&rig.lidar, 700, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_blocking_start(&rig.lidar, 100));
     is_in(TMINI_STATE_SCANNING);
     TEST_ASSERT_EQUAL_UINT(0, script.waits);
 }
@@ -311,15 +312,17 @@ void test_null_pointers_are_refused(void)
     tmini_health_t health;
     uint16_t frequency_chz;
 
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_read_info(&rig.lidar, NULL, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_read_health(&rig.lidar, NULL, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_read_frequency(&rig.lidar, NULL, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_read_info(NULL, &info, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_read_health(NULL, &health, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_read_frequency(NULL, &frequency_chz, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_write_frequency(NULL, 700, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_start_and_wait(NULL, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_stop_and_wait(NULL, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_blocking_read_info(&rig.lidar, NULL, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_blocking_read_health(&rig.lidar, NULL, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT,
+                          tmini_blocking_read_frequency(&rig.lidar, NULL, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_blocking_read_info(NULL, &info, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_blocking_read_health(NULL, &health, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT,
+                          tmini_blocking_read_frequency(NULL, &frequency_chz, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_blocking_set_frequency(NULL, 700, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_blocking_start(NULL, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_blocking_stop(NULL, 100));
     is_in(TMINI_STATE_IDLE);
 }
 
@@ -337,6 +340,6 @@ void test_a_port_without_wait_is_polled_without_a_pause(void)
     rig.port.wait = NULL;
     port_now_ms_StubWithCallback(running_clock);
     sends(STOP);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop_and_wait(&rig.lidar, 1000));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_stop(&rig.lidar, 1000));
     TEST_ASSERT_EQUAL_UINT(0, script.waits);
 }

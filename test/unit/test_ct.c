@@ -3,8 +3,8 @@
 
 /* CT information: what a revolution's CT bytes say, and when that is trusted (section 7). */
 
-#include "tmini/tmini_reply.h"
-#include "tmini/tmini_ct.h"
+#include "tmini/parts/tmini_reply.h"
+#include "tmini/parts/tmini_ct.h"
 
 #include "unity.h"
 

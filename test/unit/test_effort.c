@@ -7,7 +7,7 @@
 #include "rig.h"
 #include "tmini_driver.h"
 
-#include "tmini/tmini_parser.h"
+#include "tmini/parts/tmini_parser.h"
 #include "unity.h"
 
 /* The header of a packet of 80 samples, 250 bytes. Repeated, it makes candidates that are complete,
@@ -113,11 +113,11 @@ void test_a_call_is_bounded_by_what_others_have_left(void)
     TEST_ASSERT_EQUAL_UINT32(48, parser_counters().bytes_skipped);
 }
 
-static tmini_parser_counters_t poll_counters(void)
+static tmini_counters_t poll_counters(void)
 {
     tmini_counters_t counters;
     tmini_counters(&rig.lidar, &counters);
-    return counters.parser;
+    return counters;
 }
 
 static void open_driver(void)

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "tmini/tmini_frame.h"
+#include "tmini/parts/tmini_frame.h"
 #include "unity.h"
 
 #define SIZE 32u

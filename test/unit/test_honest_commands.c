@@ -5,7 +5,7 @@
 
 #include "turns.h"
 
-#include "tmini/tmini_parser.h"
+#include "tmini/parts/tmini_parser.h"
 #include "unity.h"
 
 #include <string.h>
@@ -78,7 +78,7 @@ void test_a_stop_that_is_lost_in_spin_up_is_sent_again_when_the_lidar_streams(vo
         events |= turns_pass(0, TURNS_PACKETS - 1, turn);
     }
     TEST_ASSERT_TRUE_MESSAGE(writes_of(STOP) > stops, "stopped again");
-    TEST_ASSERT_TRUE_MESSAGE((events & BIT(TMINI_EVENT_STREAMING)) != 0, "told");
+    TEST_ASSERT_TRUE_MESSAGE((events & BIT(TMINI_EVENT_UNWANTED_SCANNING)) != 0, "told");
     events = pass_ms(200);
     TEST_ASSERT_TRUE_MESSAGE((events & BIT(TMINI_EVENT_STOPPED)) != 0, "and stopped");
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_IDLE, tmini_state(&turns.lidar));
@@ -202,7 +202,7 @@ void test_a_late_reply_among_packets_costs_none_of_them(void)
     (void)turns_pass(6, TURNS_PACKETS - 1, 100);
     (void)turns_pass(0, 0, 101);
     tmini_counters(&turns.lidar, &counters);
-    TEST_ASSERT_EQUAL_UINT32(sizeof late, counters.parser.bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(sizeof late, counters.bytes_skipped);
     TEST_ASSERT_EQUAL_UINT16(TURNS_POINTS, turns_scans.last.count);
 }
 

@@ -68,7 +68,7 @@ void test_a_lidar_mounted_turned_is_turned_back(void)
 /* From above, the angles of a lidar that hangs run counter-clockwise. */
 void test_a_lidar_upside_down_is_mirrored(void)
 {
-    static const tmini_mount_t mount = {.is_upside_down = true};
+    static const tmini_mount_t mount = {.upside_down = true};
     add(0, 1000);
     add(10 * DEGREE, 1001);
     add(350 * DEGREE, 1002);
@@ -80,7 +80,7 @@ void test_a_lidar_upside_down_is_mirrored(void)
 
 void test_a_lidar_upside_down_and_turned_is_mirrored_about_the_front(void)
 {
-    static const tmini_mount_t mount = {.front_q6 = 30 * DEGREE, .is_upside_down = true};
+    static const tmini_mount_t mount = {.front_q6 = 30 * DEGREE, .upside_down = true};
     add(30 * DEGREE, 1000);
     add(40 * DEGREE, 1001);
     add(20 * DEGREE, 1002);
@@ -152,7 +152,7 @@ void test_arcs_are_the_robots_directions(void)
 {
     static const tmini_arc_t arcs[] = {{59 * DEGREE, 61 * DEGREE}};
     static const tmini_mount_t mount = {
-        .front_q6 = 180 * DEGREE, .is_upside_down = true, .masked = arcs, .masked_count = 1};
+        .front_q6 = 180 * DEGREE, .upside_down = true, .masked = arcs, .masked_count = 1};
     add(120 * DEGREE, 300);
     add(60 * DEGREE, 1001);
     apply(&mount, 2);

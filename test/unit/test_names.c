@@ -23,6 +23,8 @@ void test_each_status_has_a_phrase_that_tells_it_from_the_others(void)
     TEST_ASSERT_EQUAL_STRING("write failed", tmini_status_name(TMINI_ERROR_WRITE));
     TEST_ASSERT_EQUAL_STRING("unexpected reply", tmini_status_name(TMINI_ERROR_REPLY));
     TEST_ASSERT_EQUAL_STRING("aborted", tmini_status_name(TMINI_ERROR_ABORTED));
+    TEST_ASSERT_EQUAL_STRING("listen only: nothing is sent",
+                             tmini_status_name(TMINI_ERROR_LISTEN_ONLY));
 }
 
 void test_success_is_0_and_errors_are_negative(void)
@@ -40,7 +42,7 @@ void test_success_is_0_and_errors_are_negative(void)
 void test_any_other_value_has_a_name_too(void)
 {
     TEST_ASSERT_EQUAL_STRING("unknown status", tmini_status_name((tmini_status_t)1));
-    TEST_ASSERT_EQUAL_STRING("unknown status", tmini_status_name((tmini_status_t)-8));
+    TEST_ASSERT_EQUAL_STRING("unknown status", tmini_status_name((tmini_status_t)-9));
 }
 
 /* Fewer than two are equal, and none is the name of what is no event or state. */
@@ -87,13 +89,14 @@ void test_each_fault_has_the_name_of_its_module(void)
     TEST_ASSERT_EQUAL_STRING("PD", tmini_fault_name(TMINI_FAULT_PD));
     TEST_ASSERT_EQUAL_STRING("LD", tmini_fault_name(TMINI_FAULT_LD));
     TEST_ASSERT_EQUAL_STRING("data", tmini_fault_name(TMINI_FAULT_DATA));
+    TEST_ASSERT_EQUAL_STRING("frequency", tmini_fault_name(TMINI_FAULT_FREQUENCY));
 }
 
 void test_what_is_not_one_fault_has_a_name_too(void)
 {
     TEST_ASSERT_EQUAL_STRING("unknown fault", tmini_fault_name((tmini_fault_t)0));
     TEST_ASSERT_EQUAL_STRING("unknown fault", tmini_fault_name((tmini_fault_t)3));
-    TEST_ASSERT_EQUAL_STRING("unknown fault", tmini_fault_name((tmini_fault_t)64));
+    TEST_ASSERT_EQUAL_STRING("unknown fault", tmini_fault_name((tmini_fault_t)128));
 }
 
 static void faults_read(uint8_t faults, const char *expected)
@@ -108,13 +111,13 @@ void test_faults_are_listed_in_the_order_of_their_bits(void)
     faults_read(0, "none");
     faults_read(0x02, "encoder");
     faults_read(0x22, "encoder, data");
-    faults_read(0x3F, "sensor, encoder, wireless power, PD, LD, data");
+    faults_read(0x7F, "sensor, encoder, wireless power, PD, LD, data, frequency");
 }
 
-void test_reserved_bits_are_no_faults(void)
+void test_the_reserved_bit_is_no_fault(void)
 {
-    faults_read(0xC0, "none");
-    faults_read(0xC1, "sensor");
+    faults_read(0x80, "none");
+    faults_read(0x81, "sensor");
 }
 
 void test_a_text_that_does_not_fit_is_cut_off_and_nothing_is_written_behind_it(void)

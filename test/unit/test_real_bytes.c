@@ -9,6 +9,7 @@
  *
  * No capture of a unit that sends LastCRC was to be had. */
 
+#include "tmini/tmini_names.h"
 #include "turns.h"
 
 #include "unity.h"

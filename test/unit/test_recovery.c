@@ -547,7 +547,7 @@ void test_stop_ends_the_recovery(void)
 
 static void go_lost_without_recovery(void)
 {
-    rig.config.disable_recovery = true;
+    rig.config.recovery = TMINI_RECOVERY_OFF;
     rig_init();
     rig_go_scanning();
     passes(1000);

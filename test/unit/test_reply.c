@@ -3,7 +3,8 @@
 
 /* Replies: which shape each command's has, and what its content says (sections 3, 4 and 9). */
 
-#include "tmini/tmini_reply.h"
+#include "tmini/tmini_names.h"
+#include "tmini/parts/tmini_reply.h"
 
 #include "unity.h"
 

@@ -3,7 +3,7 @@
 
 /* The ring of received bytes: filled by a CPU or by DMA, read by the parser. */
 
-#include "tmini/tmini_ring.h"
+#include "tmini/parts/tmini_ring.h"
 
 #include "unity.h"
 

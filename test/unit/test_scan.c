@@ -7,7 +7,7 @@
 #include "receiver.h"
 #include "stream.h"
 
-#include "tmini/tmini_scan.h"
+#include "tmini/parts/tmini_builder.h"
 #include "unity.h"
 
 #include <string.h>
@@ -20,7 +20,7 @@ static uint8_t bytes[300];
 static stream_t stream;
 static receiver_t receiver;
 static tmini_point_t points[ROOM + 1];
-static tmini_scan_builder_t builder;
+static tmini_builder_t builder;
 static const tmini_scan_t *const scan = &builder.scan;
 static uint32_t now_ms;
 static uint8_t strays; /* Bytes put before the next packet. */
@@ -28,7 +28,7 @@ static uint8_t strays; /* Bytes put before the next packet. */
 static void begin_with(size_t capacity, unsigned filter)
 {
     memset(points, 0xEE, sizeof points);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_scan_init(&builder, points, capacity, filter));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_builder_init(&builder, points, capacity, filter));
 }
 
 void setUp(void)
@@ -62,13 +62,13 @@ static void receive(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_
 static bool arrive(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_q6)
 {
     receive(ct, count, first_q6, last_q6);
-    return tmini_scan_add(&builder, &receiver.packet, now_ms);
+    return tmini_builder_add(&builder, &receiver.packet, now_ms);
 }
 
 /* The packet that has closed a scan does not close another. */
 static void add(void)
 {
-    TEST_ASSERT_FALSE(tmini_scan_add(&builder, &receiver.packet, now_ms));
+    TEST_ASSERT_FALSE(tmini_builder_add(&builder, &receiver.packet, now_ms));
 }
 
 /* A start packet, at 6.0 Hz. Returns whether it has closed a scan. */
@@ -117,23 +117,24 @@ static void expect_scan(uint32_t at_q6, uint16_t gaps, bool complete)
 
 void test_null_pointers_are_an_argument_error(void)
 {
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_scan_init(NULL, points, ROOM, 0));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_scan_init(&builder, NULL, ROOM, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_builder_init(NULL, points, ROOM, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_builder_init(&builder, NULL, ROOM, 0));
 }
 
 void test_a_capacity_of_0_is_an_argument_error(void)
 {
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_scan_init(&builder, points, 0, 0));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_scan_init(&builder, points, 1, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_builder_init(&builder, points, 0, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_builder_init(&builder, points, 1, 0));
 }
 
 void test_a_capacity_above_65535_is_an_argument_error(void)
 {
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_scan_init(&builder, points, 65535, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_builder_init(&builder, points, 65535, 0));
     if (SIZE_MAX > 65535u) {
         TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT,
-                              tmini_scan_init(&builder, points, (size_t)65535 + 1, 0));
-        TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_scan_init(&builder, points, SIZE_MAX, 0));
+                              tmini_builder_init(&builder, points, (size_t)65535 + 1, 0));
+        TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT,
+                              tmini_builder_init(&builder, points, SIZE_MAX, 0));
     }
 }
 
@@ -143,7 +144,7 @@ void test_only_defined_filters_are_taken(void)
         const bool is_defined = filter == TMINI_FILTER_NONE || filter == TMINI_FILTER_SPECULAR ||
                                 filter == TMINI_FILTER_AMBIENT || filter == TMINI_FILTER_BOTH;
         TEST_ASSERT_EQUAL_INT(is_defined ? TMINI_OK : TMINI_ERROR_ARGUMENT,
-                              tmini_scan_init(&builder, points, ROOM, filter));
+                              tmini_builder_init(&builder, points, ROOM, filter));
     }
 }
 
@@ -249,7 +250,7 @@ void test_a_discarded_scan_is_not_continued(void)
 {
     (void)start(0);
     quarter(0);
-    tmini_scan_discard(&builder);
+    tmini_builder_discard(&builder);
     quarter(90 * DEGREE);
     TEST_ASSERT_FALSE(start(0));
     TEST_ASSERT_EQUAL_UINT16(1, scan->count);
@@ -471,11 +472,11 @@ void test_a_count_reaches_65535_exactly(void)
 {
     (void)start(0);
     builder.scan.gaps = 65533;
-    tmini_scan_refute(&builder);
+    tmini_builder_refute(&builder);
     TEST_ASSERT_EQUAL_UINT16(65534, scan->gaps);
-    tmini_scan_refute(&builder);
+    tmini_builder_refute(&builder);
     TEST_ASSERT_EQUAL_UINT16(65535, scan->gaps);
-    tmini_scan_refute(&builder);
+    tmini_builder_refute(&builder);
     TEST_ASSERT_EQUAL_UINT16(65535, scan->gaps);
 }
 
@@ -675,6 +676,6 @@ void test_a_scan_that_is_refuted_is_not_complete(void)
 {
     (void)start(0);
     rest_of_turn(0);
-    tmini_scan_refute(&builder);
+    tmini_builder_refute(&builder);
     expect_scan(0, 1, false);
 }

@@ -3,7 +3,7 @@
 
 /* When the points of a scan were measured. */
 
-#include "tmini/tmini_time.h"
+#include "tmini/tmini_units.h"
 #include "unity.h"
 
 #define DEGREE 64u

@@ -124,7 +124,7 @@ static void report_each_second(void)
              "%" PRIu32 " scans, nearest in front %u mm, %s; lost: %" PRIu32 " checksums, %" PRIu32
              " bytes, %" PRIu32 " overflows",
              scans, obstacle.nearest_mm[0], must_stop() ? "STOP" : "go",
-             counters.parser.checksum_errors, counters.parser.bytes_overrun, uart.fifo_overflows);
+             counters.checksum_errors, counters.bytes_overrun, uart.fifo_overflows);
     scans = 0;
 }
 

@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 
+#include "tmini/tmini_names.h"
 #include "tmini/tmini.h"
 
 /* Two seconds and more of data: a page in the background is called rarely. */
@@ -171,12 +172,12 @@ EXPORTED uint32_t lidar_numbers(void)
     tmini_ct_info(&live.lidar, &ct);
     numbers_clear();
     numbers_put("bytes", live.received);
-    numbers_put("packets", counters.parser.packets);
-    numbers_put("checksumErrors", counters.parser.checksum_errors);
-    numbers_put("bytesInPackets", counters.parser.bytes_in_packets);
-    numbers_put("bytesInReplies", counters.parser.bytes_in_replies);
-    numbers_put("bytesSkipped", counters.parser.bytes_skipped);
-    numbers_put("bytesOverrun", counters.parser.bytes_overrun);
+    numbers_put("packets", counters.packets);
+    numbers_put("checksumErrors", counters.checksum_errors);
+    numbers_put("bytesInPackets", counters.bytes_in_packets);
+    numbers_put("bytesInReplies", counters.bytes_in_replies);
+    numbers_put("bytesSkipped", counters.bytes_skipped);
+    numbers_put("bytesOverrun", counters.bytes_overrun);
     numbers_put("scans", counters.scans);
     numbers_put("timeouts", counters.timeouts);
     numbers_put("losses", counters.losses);

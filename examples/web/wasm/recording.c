@@ -8,8 +8,8 @@
 
 #include <stdbool.h>
 
-#include "tmini/tmini_packet.h"
-#include "tmini/tmini_parser.h"
+#include "tmini/parts/tmini_packet.h"
+#include "tmini/parts/tmini_parser.h"
 
 /* With a packet waiting for its last byte, a block of JavaScript's fits in: see
  * recording_feed(). */
@@ -22,7 +22,7 @@ static struct {
     tmini_ring_t ring;
     tmini_parser_t parser;
     tmini_packet_t packet;
-    tmini_scan_builder_t builder;
+    tmini_builder_t builder;
     tmini_ct_t ct;
     tmini_point_t points[UINT8_MAX];
     uint32_t packets;
@@ -45,7 +45,7 @@ EXPORTED void recording_rewind(uint32_t is_timed, uint32_t is_shown)
 {
     (void)tmini_ring_init(&tape.ring, tape.memory, RING_SIZE, false);
     (void)tmini_parser_init(&tape.parser, &tape.ring, 0);
-    (void)tmini_scan_init(&tape.builder, tape.scan, WEB_SCAN_POINTS, TMINI_FILTER_NONE);
+    (void)tmini_builder_init(&tape.builder, tape.scan, WEB_SCAN_POINTS, TMINI_FILTER_NONE);
     tmini_ct_init(&tape.ct);
     tape.packets = 0;
     tape.start_packets = 0;
@@ -102,14 +102,14 @@ static next_t take_packet(void)
     const uint32_t at_ms = now_ms();
     open_packet(at_ms);
     if (tmini_ct_add(&tape.ct, &tape.packet) == TMINI_CT_REFUTED) {
-        tmini_scan_refute(&tape.builder);
+        tmini_builder_refute(&tape.builder);
     }
-    const bool is_scan = tmini_scan_add(&tape.builder, &tape.packet, at_ms);
+    const bool is_scan = tmini_builder_add(&tape.builder, &tape.packet, at_ms);
     if (is_scan) {
         if (tape.is_shown) {
             shown_take(&tape.builder.scan);
         }
-        (void)tmini_scan_add(&tape.builder, &tape.packet, at_ms);
+        (void)tmini_builder_add(&tape.builder, &tape.packet, at_ms);
     }
     (void)tmini_packet_points(&tape.packet, TMINI_FILTER_NONE, tape.points, UINT8_MAX);
     count_packet();

@@ -87,10 +87,10 @@ EXPORTED void shown_forget(void)
 }
 
 /* How the lidar sits on the robot; the scan that is shown follows at once. */
-EXPORTED void shown_mount(uint32_t front_q6, uint32_t is_upside_down)
+EXPORTED void shown_mount(uint32_t front_q6, uint32_t upside_down)
 {
     shown.mount.front_q6 = (uint16_t)(front_q6 % TMINI_FULL_CIRCLE_Q6);
-    shown.mount.is_upside_down = is_upside_down != 0;
+    shown.mount.upside_down = upside_down != 0;
     mount();
 }
 

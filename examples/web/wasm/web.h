@@ -11,8 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tmini/tmini_ct.h"
-#include "tmini/tmini_scan.h"
+#include "tmini/parts/tmini_ct.h"
+#include "tmini/parts/tmini_builder.h"
 
 #define EXPORTED __attribute__((visibility("default")))
 

@@ -97,8 +97,8 @@ static void report_each_second(void)
     printk(
         "%u scans, nearest in front %u mm, %s; bytes %u, lost: %u checksums, %u bytes, %u gaps\n",
         (unsigned)counters.scans, obstacle.nearest_mm[0], must_stop() ? "STOP" : "go",
-        (unsigned)uart.bytes, (unsigned)counters.parser.checksum_errors,
-        (unsigned)(counters.parser.bytes_overrun + uart.overruns), (unsigned)gaps);
+        (unsigned)uart.bytes, (unsigned)counters.checksum_errors,
+        (unsigned)(counters.bytes_overrun + uart.overruns), (unsigned)gaps);
 }
 
 static bool start_lidar(void)

@@ -36,14 +36,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tmini_ct.h"
-#include "tmini_packet.h"
-#include "tmini_parser.h"
 #include "tmini_port.h"
-#include "tmini_reply.h"
-#include "tmini_ring.h"
-#include "tmini_scan.h"
-#include "tmini_status.h"
+#include "tmini_types.h"
+/* For the structure's sake: what a lidar consists of. */
+#include "parts/tmini_builder.h"
+#include "parts/tmini_ct.h"
+#include "parts/tmini_parser.h"
+#include "parts/tmini_reply.h"
+#include "parts/tmini_ring.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -102,6 +102,12 @@ typedef struct {
 /** The values used when the configuration gives none; they fit the real device. */
 extern const tmini_timing_t tmini_timing_default;
 
+/** Whether the driver brings back a lidar that it has lost. */
+typedef enum {
+    TMINI_RECOVERY_ON,  /**< By stop and start, and every so often a soft reboot. */
+    TMINI_RECOVERY_OFF, /**< The loss is reported, and nothing is sent. */
+} tmini_recovery_mode_t;
+
 /** What tmini_init() needs to know. Members that are not named may be 0. */
 typedef struct {
     const tmini_port_t *port; /**< Required. */
@@ -114,8 +120,8 @@ typedef struct {
     size_t max_points;     /**< 1 to 65535, or 0 with no points. */
     uint8_t max_samples;   /**< Packets with more are not valid; 0: the default, 80. */
     uint8_t filter;        /**< Of scans: a combination of tmini_filter_t; 0: keep all. */
-    bool disable_recovery; /**< A lost lidar is reported, but not restarted. */
-    const tmini_timing_t *timing; /**< NULL: tmini_timing_default. It must outlive the lidar. */
+    tmini_recovery_mode_t recovery; /**< 0: on. */
+    const tmini_timing_t *timing;   /**< NULL: tmini_timing_default. It must outlive the lidar. */
 } tmini_config_t;
 
 /* ----------------------------------------------------------------------------- events, states */
@@ -130,7 +136,7 @@ typedef enum {
     TMINI_EVENT_FREQUENCY,      /**< tmini_frequency_chz() has been read, or set and read back. */
     TMINI_EVENT_REBOOTED,       /**< The soft reboot's time is over. */
     TMINI_EVENT_COMMAND_FAILED, /**< tmini_command_error() says why. */
-    TMINI_EVENT_STREAMING, /**< A lidar left idle scans all the same; it is being stopped again,
+    TMINI_EVENT_UNWANTED_SCANNING, /**< A lidar left idle scans all the same; it is being stopped again,
                              * which ends like tmini_stop(). */
     TMINI_EVENT_LOST, /**< No valid packets any more; being recovered unless configured not to. */
     TMINI_EVENT_RECOVERED,      /**< Valid packets again. */
@@ -151,17 +157,23 @@ typedef enum {
     TMINI_STATE_RECOVERING, /**< Lost while scanning; brought back, or waited for. */
 } tmini_state_t;
 
-/** Running totals, modulo the range of their type. */
+/** Running totals, modulo the range of their type. Whatever arrives, every byte received is in
+ * exactly one of the five that begin with `bytes`. */
 typedef struct {
-    tmini_parser_counters_t parser; /**< Packets, checksum errors, and where each byte went. */
-    uint32_t bytes_pending;         /**< Received and waiting for more. */
-    uint32_t scans;                 /**< Delivered as TMINI_EVENT_SCAN. */
-    uint16_t timeouts;              /**< Attempts at commands that ended without the reply, the
-                                       * quiet line or the first packet that they waited for. */
-    uint16_t losses;                /**< TMINI_EVENT_LOST. */
-    uint16_t recoveries;            /**< TMINI_EVENT_RECOVERED. */
-    uint16_t restarts;              /**< Attempts to recover by a start. */
-    uint16_t reboots;               /**< Attempts to recover by a soft reboot. */
+    uint32_t packets;          /**< Valid packets. */
+    uint32_t checksum_errors;  /**< Complete, plausible candidates whose checksum did not match. */
+    uint32_t bytes_in_packets; /**< Of valid packets. */
+    uint32_t bytes_in_replies; /**< Of replies that were awaited. */
+    uint32_t bytes_skipped;    /**< In no packet or reply; LastCRC bytes are among them. */
+    uint32_t bytes_overrun; /**< Refused by a full ring, or overwritten by DMA before being read. */
+    uint32_t bytes_pending; /**< Received and waiting for more. */
+    uint32_t scans;         /**< Delivered as TMINI_EVENT_SCAN. */
+    uint16_t timeouts;      /**< Attempts at commands that ended without the reply, the quiet line
+                               * or the first packet that they waited for. */
+    uint16_t losses;        /**< TMINI_EVENT_LOST. */
+    uint16_t recoveries;    /**< TMINI_EVENT_RECOVERED. */
+    uint16_t restarts;      /**< Attempts to recover by a start. */
+    uint16_t reboots;       /**< Attempts to recover by a soft reboot. */
 } tmini_counters_t;
 
 /** One lidar: allocated by the caller, set up by tmini_init(). Its members are private. */
@@ -374,7 +386,7 @@ struct tmini {
     bool are_held;      /* A layer below may have held back the bytes that come next. */
     bool packet_waits;  /* The packet that closed the scan has not been added to the next. */
     bool is_settled;    /* There is nothing to do until bytes come or time passes. */
-    bool disable_recovery;
+    bool is_recovery_off;
     tmini_monitor_t monitor;
     tmini_command_t command;
     tmini_recovery_t recovery;
@@ -383,7 +395,7 @@ struct tmini {
     tmini_link_t link;
     tmini_ring_t ring;
     tmini_parser_t parser;
-    tmini_scan_builder_t builder; /* Without a capacity: by packets. */
+    tmini_builder_t builder; /* Without a capacity: by packets. */
     union {
         tmini_packet_t packet; /* While scanning. */
         tmini_info_t info;     /* The answers to commands, which are not sent while scanning. */

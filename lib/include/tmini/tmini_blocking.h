@@ -34,30 +34,33 @@ extern "C" {
 
 /** Asks for the device information and copies it to `info` (sections 3 and 4). Waits `timeout_ms`
  * at most. Returns what is listed above; TMINI_ERROR_ARGUMENT also if `info` is null. */
-tmini_status_t tmini_read_info(tmini_t *lidar, tmini_info_t *info, uint32_t timeout_ms);
+tmini_status_t tmini_blocking_read_info(tmini_t *lidar, tmini_info_t *info, uint32_t timeout_ms);
 
 /** Asks for the health status and copies it to `health` (sections 3 and 4). Waits `timeout_ms` at
  * most. Returns what is listed above; TMINI_ERROR_ARGUMENT also if `health` is null. */
-tmini_status_t tmini_read_health(tmini_t *lidar, tmini_health_t *health, uint32_t timeout_ms);
+tmini_status_t tmini_blocking_read_health(tmini_t *lidar, tmini_health_t *health,
+                                          uint32_t timeout_ms);
 
 /** Asks for the scan frequency that is set and writes it to `frequency_chz`, in 0.01 Hz (sections 3
  * and 4). Waits `timeout_ms` at most. Returns what is listed above; TMINI_ERROR_ARGUMENT also if
  * `frequency_chz` is null. */
-tmini_status_t tmini_read_frequency(tmini_t *lidar, uint16_t *frequency_chz, uint32_t timeout_ms);
+tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency_chz,
+                                             uint32_t timeout_ms);
 
 /** Sets the scan frequency, in 0.01 Hz: 600 to 1200, a multiple of 10 (section 3). Waits
  * `timeout_ms` at most: allow 2 s more than for a query, for up to 15 steps. Returns what is
  * listed above; TMINI_ERROR_ARGUMENT also for another frequency. */
-tmini_status_t tmini_write_frequency(tmini_t *lidar, uint16_t frequency_chz, uint32_t timeout_ms);
+tmini_status_t tmini_blocking_set_frequency(tmini_t *lidar, uint16_t frequency_chz,
+                                            uint32_t timeout_ms);
 
 /** Starts scanning and waits for the first scan, or for the first packet when streaming, for
  * `timeout_ms` at most. The scan is valid until the next tmini_poll(). Returns what is listed
  * above; after TMINI_ERROR_TIMEOUT the lidar may turn all the same: stop it. */
-tmini_status_t tmini_start_and_wait(tmini_t *lidar, uint32_t timeout_ms);
+tmini_status_t tmini_blocking_start(tmini_t *lidar, uint32_t timeout_ms);
 
 /** Stops the lidar and waits until the line is quiet, `timeout_ms` at most (section 9.10). In any
  * state. Returns what is listed above. */
-tmini_status_t tmini_stop_and_wait(tmini_t *lidar, uint32_t timeout_ms);
+tmini_status_t tmini_blocking_stop(tmini_t *lidar, uint32_t timeout_ms);
 
 #ifdef __cplusplus
 }

@@ -24,7 +24,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tmini_packet.h"
+#include "tmini_types.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -39,11 +39,11 @@ typedef struct {
 
 /** How the lidar is mounted, and what is to be left out. All 0: nothing changes. */
 typedef struct {
-    uint16_t front_q6;   /**< The lidar's angle that looks to the robot's front, below 23040. */
-    bool is_upside_down; /**< The lidar hangs: its angles run the other way round. */
-    bool drops;          /**< What is masked or out of range is removed; else its distance is 0. */
-    uint16_t min_mm;     /**< Distances below are out of range. */
-    uint16_t max_mm;     /**< Distances above are; 0: none. */
+    uint16_t front_q6; /**< The lidar's angle that looks to the robot's front, below 23040. */
+    bool upside_down;  /**< The lidar hangs: its angles run the other way round. */
+    bool drops;        /**< What is masked or out of range is removed; else its distance is 0. */
+    uint16_t min_mm;   /**< Distances below are out of range. */
+    uint16_t max_mm;   /**< Distances above are; 0: none. */
     const tmini_arc_t *masked; /**< Directions in which the robot sees itself. */
     size_t masked_count;       /**< How many. */
 } tmini_mount_t;

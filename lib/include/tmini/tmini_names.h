@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 /** A buffer of this size holds the text of any combination of faults. */
-#define TMINI_FAULTS_TEXT_SIZE 48u
+#define TMINI_FAULTS_TEXT_SIZE 64u
 
 /** A status as text, for example "timeout". Never NULL, whatever the value: then "unknown
  * status". */
@@ -39,6 +39,9 @@ const char *tmini_fault_name(tmini_fault_t fault);
  * "encoder, data"; "none" for 0. `size`: the bytes there are in `text`, the terminating 0 included;
  * what does not fit is cut off, and nothing is written if it is 0. Returns `text`. */
 const char *tmini_faults_text(uint8_t faults, char *text, size_t size);
+
+/** The serial number as text: 16 characters and a terminating 0; '?' for what is not a digit. */
+void tmini_serial_text(const tmini_info_t *info, char text[TMINI_SERIAL_DIGITS + 1]);
 
 #ifdef __cplusplus
 }

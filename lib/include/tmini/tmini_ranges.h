@@ -25,8 +25,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tmini_scan.h"
-#include "tmini_status.h"
+#include "tmini_types.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -18,12 +18,12 @@ static uint16_t nearest_mm[SECTORS];
 
 static void waiting_commands(void)
 {
-    (void)tmini_read_info(&lidar, &info, TMINI_BLOCKING_TIMEOUT_MS);
-    (void)tmini_read_health(&lidar, &health, TMINI_BLOCKING_TIMEOUT_MS);
-    (void)tmini_read_frequency(&lidar, &frequency_chz, TMINI_BLOCKING_TIMEOUT_MS);
-    (void)tmini_write_frequency(&lidar, 1000, TMINI_BLOCKING_TIMEOUT_MS);
-    (void)tmini_start_and_wait(&lidar, TMINI_BLOCKING_TIMEOUT_MS);
-    (void)tmini_stop_and_wait(&lidar, TMINI_BLOCKING_TIMEOUT_MS);
+    (void)tmini_blocking_read_info(&lidar, &info, TMINI_BLOCKING_TIMEOUT_MS);
+    (void)tmini_blocking_read_health(&lidar, &health, TMINI_BLOCKING_TIMEOUT_MS);
+    (void)tmini_blocking_read_frequency(&lidar, &frequency_chz, TMINI_BLOCKING_TIMEOUT_MS);
+    (void)tmini_blocking_set_frequency(&lidar, 1000, TMINI_BLOCKING_TIMEOUT_MS);
+    (void)tmini_blocking_start(&lidar, TMINI_BLOCKING_TIMEOUT_MS);
+    (void)tmini_blocking_stop(&lidar, TMINI_BLOCKING_TIMEOUT_MS);
 }
 
 static void look_around(void)

@@ -3,8 +3,8 @@
 
 /* Parser and decoding only: bytes in, points out. */
 
-#include "tmini/tmini_packet.h"
-#include "tmini/tmini_parser.h"
+#include "tmini/parts/tmini_packet.h"
+#include "tmini/parts/tmini_parser.h"
 
 static uint8_t rx[512];
 static tmini_ring_t ring;

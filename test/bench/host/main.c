@@ -81,17 +81,17 @@ static unsigned long decode_all(size_t size)
 {
     static tmini_ring_t ring;
     static tmini_parser_t parser;
-    static tmini_scan_builder_t builder;
+    static tmini_builder_t builder;
     (void)tmini_ring_init(&ring, rx, sizeof rx, false);
     (void)tmini_parser_init(&parser, &ring, 0);
-    (void)tmini_scan_init(&builder, points, TMINI_SCAN_POINTS_TYPICAL, TMINI_FILTER_NONE);
+    (void)tmini_builder_init(&builder, points, TMINI_SCAN_POINTS_TYPICAL, TMINI_FILTER_NONE);
     for (size_t at = 0; at < size; at += BLOCK) {
         tmini_ring_write(&ring, &recording[at], size - at < BLOCK ? size - at : BLOCK);
         while (tmini_parser_next(&parser) == TMINI_FRAME_PACKET) {
             tmini_packet_t packet;
             tmini_packet_open(&packet, tmini_parser_frame(&parser));
-            if (tmini_scan_add(&builder, &packet, 0)) {
-                (void)tmini_scan_add(&builder, &packet, 0);
+            if (tmini_builder_add(&builder, &packet, 0)) {
+                (void)tmini_builder_add(&builder, &packet, 0);
             }
         }
     }
@@ -106,7 +106,7 @@ static unsigned long drive_all(size_t size, bool by_bytes)
     start();
     feed_all(size, by_bytes);
     tmini_counters(&lidar, &counters);
-    return (unsigned long)counters.parser.packets;
+    return (unsigned long)counters.packets;
 }
 
 static size_t read_file(const char *name)

@@ -789,9 +789,9 @@ void test_after_an_overflow_the_packets_beside_the_hole_are_all_there(void)
     now_us = 1000 * 1000; /* Long silence: nothing more will come. */
     tmini_poll(&lidar);
     tmini_counters(&lidar, &counters);
-    TEST_ASSERT_EQUAL_UINT32(2, counters.parser.packets);
-    TEST_ASSERT_EQUAL_UINT32(32, counters.parser.bytes_in_packets);
-    TEST_ASSERT_EQUAL_UINT32(12, counters.parser.bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(2, counters.packets);
+    TEST_ASSERT_EQUAL_UINT32(32, counters.bytes_in_packets);
+    TEST_ASSERT_EQUAL_UINT32(12, counters.bytes_skipped);
 }
 
 void test_an_overflow_is_a_gap_between_what_was_announced_before_it_and_after_it(void)

@@ -189,7 +189,7 @@ void test_the_stream_keeps_what_the_lidar_has_no_room_for(void)
         assert_true_scans(revolution, revolution);
     }
     tmini_counters(&lidar, &counters);
-    TEST_ASSERT_EQUAL_UINT32(0, counters.parser.bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
 }
 
@@ -204,7 +204,7 @@ void test_a_stream_that_overflows_is_one_gap(void)
     assert_gap();
     tmini_counters(&lidar, &counters);
     TEST_ASSERT_UINT_WITHIN(500, 3930 - 2047, counted().bytes_lost);
-    TEST_ASSERT_EQUAL_UINT32(0, counters.parser.bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
     TEST_ASSERT_EQUAL_UINT32(freertos_model_line_bytes(), counted().bytes);
 }
 
@@ -254,7 +254,7 @@ void test_fewer_bytes_than_the_stream_wakes_at_are_handed_on_in_time(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
     board_enable_lidar_interrupt();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 1000));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 1000));
     TEST_ASSERT_EQUAL_UINT(151, info.model);
 }
 
@@ -267,7 +267,7 @@ static uint32_t packets(void)
         (void)tmini_poll(&lidar);
     }
     tmini_counters(&lidar, &counters);
-    return counters.parser.packets;
+    return counters.packets;
 }
 
 /* The packet's two parts fit together, whatever was lost between them. */

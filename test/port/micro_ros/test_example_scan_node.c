@@ -97,7 +97,7 @@ static uint32_t overruns(void)
 {
     tmini_counters_t counters;
     tmini_counters(&lidar, &counters);
-    return counters.parser.bytes_overrun;
+    return counters.bytes_overrun;
 }
 
 void setUp(void)

@@ -338,14 +338,14 @@ void test_blocking_commands_work_either_way(void)
     tmini_info_t info;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&board, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&board, &lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 1000));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 1000));
     TEST_ASSERT_EQUAL_UINT(151, info.model);
     tmini_pico_stop(&board);
     receive_by_interrupt();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&board, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&board, &lidar));
     memset(&info, 0, sizeof info);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 1000));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 1000));
     TEST_ASSERT_EQUAL_UINT(151, info.model);
 }
 
@@ -375,7 +375,7 @@ void test_an_interrupt_that_comes_too_late_costs_the_packets_that_it_hit(void)
     assert_true_scans(4, 6, 1);
     TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
     tmini_counters(&lidar, &counters);
-    TEST_ASSERT_TRUE(truth_packets() - counters.parser.packets <= 4 + 1);
+    TEST_ASSERT_TRUE(truth_packets() - counters.packets <= 4 + 1);
 }
 
 void test_errors_of_the_line_are_counted_and_the_byte_is_stored(void)
@@ -404,7 +404,7 @@ static uint32_t packets(void)
         (void)receive_and_poll();
     }
     tmini_counters(&lidar, &counters);
-    return counters.parser.packets;
+    return counters.packets;
 }
 
 /* The packet's two parts fit together, whatever was lost between them: who sees only bytes, sees a
@@ -487,7 +487,7 @@ void test_a_lidar_with_little_room_takes_the_ring_in_portions(void)
         }
     }
     tmini_counters(&lidar, &counters);
-    TEST_ASSERT_EQUAL_UINT32(truth_packets(), counters.parser.packets);
+    TEST_ASSERT_EQUAL_UINT32(truth_packets(), counters.packets);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
     TEST_ASSERT_EQUAL_UINT32(pico_model_line_bytes(), counted().bytes);
 }

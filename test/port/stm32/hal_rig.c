@@ -157,7 +157,7 @@ tmini_counters_t hal_rig_poll(void)
 
 uint32_t hal_rig_packets(void)
 {
-    return hal_rig_poll().parser.packets;
+    return hal_rig_poll().packets;
 }
 
 void hal_rig_run(void)

@@ -4,7 +4,7 @@
 /* The primitives for IAR and ARMCC 5, with what these compilers bring played by GCC: the ring,
  * compiled with them, works. That the real compilers understand them, this cannot show. */
 
-#include "tmini/tmini_ring.h"
+#include "tmini/parts/tmini_ring.h"
 
 #include <string.h>
 

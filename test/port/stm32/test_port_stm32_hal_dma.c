@@ -20,8 +20,8 @@ void tearDown(void) {}
 static uint32_t bytes_accounted_for(void)
 {
     const tmini_counters_t counters = hal_rig_poll();
-    return counters.parser.bytes_in_packets + counters.parser.bytes_skipped +
-           counters.parser.bytes_overrun + counters.bytes_pending;
+    return counters.bytes_in_packets + counters.bytes_skipped +
+           counters.bytes_overrun + counters.bytes_pending;
 }
 
 /* ------------------------------------------------------------------------------ what is refused */
@@ -261,7 +261,7 @@ static void check_framing_errors(hal_rig_way_t way)
     }
     hal_rig_run();
     TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(20, hal_rig_poll().parser.bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(20, hal_rig_poll().bytes_skipped);
     TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
     TEST_ASSERT_GREATER_THAN_UINT32(4, hal_rig_errors().framing_errors);
     TEST_ASSERT_GREATER_THAN_UINT32(4, hal_rig_errors().noise_errors);
@@ -429,7 +429,7 @@ void test_a_lap_that_no_interrupt_has_seen_is_noticed(void)
 void test_what_a_lap_has_overwritten_counts_as_lost(void)
 {
     (void)packets_with_interrupts_held(BY_DMA, LAP_US + 1000);
-    TEST_ASSERT_GREATER_THAN_UINT32(500, hal_rig_poll().parser.bytes_overrun);
+    TEST_ASSERT_GREATER_THAN_UINT32(500, hal_rig_poll().bytes_overrun);
 }
 
 /* As when the DMA's interrupt has come into the idle line's: both find the DMA's kind noted. */

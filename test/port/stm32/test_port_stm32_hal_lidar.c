@@ -164,7 +164,7 @@ void test_a_framing_error_costs_its_packet_and_nothing_else(void)
         const uint32_t errors = bytes_sent / error_every - bytes_before / error_every;
         TEST_ASSERT_UINT32_WITHIN(4, 26, errors);
         TEST_ASSERT_UINT32_WITHIN(1 + errors, sim.counts.packets - sent_before,
-                                  after.parser.packets - before.parser.packets);
+                                  after.packets - before.packets);
         TEST_ASSERT_GREATER_OR_EQUAL_UINT32(scans - errors, complete_scans);
         TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
         TEST_ASSERT_GREATER_OR_EQUAL_UINT32(errors / 2, hal_rig_errors().framing_errors);

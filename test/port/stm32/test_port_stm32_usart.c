@@ -98,13 +98,13 @@ static tmini_counters_t counters_after_polling(void)
 
 static uint32_t packets(void)
 {
-    return counters_after_polling().parser.packets;
+    return counters_after_polling().packets;
 }
 
 static uint32_t bytes_stored(void)
 {
     const tmini_counters_t counters = counters_after_polling();
-    return counters.parser.bytes_skipped + counters.parser.bytes_in_packets +
+    return counters.bytes_skipped + counters.bytes_in_packets +
            counters.bytes_pending;
 }
 

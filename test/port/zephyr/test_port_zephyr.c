@@ -195,7 +195,7 @@ void test_blocking_commands_work(void)
     tmini_info_t info;
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&board, &lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_read_info(&lidar, &info, 1000));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 1000));
     TEST_ASSERT_EQUAL_UINT(151, info.model);
 }
 
@@ -244,7 +244,7 @@ static uint32_t packets(void)
         (void)tmini_poll(&lidar);
     }
     tmini_counters(&lidar, &counters);
-    return counters.parser.packets;
+    return counters.packets;
 }
 
 /* The packet's two parts fit together, whatever was lost between them. */

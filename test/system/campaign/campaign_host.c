@@ -262,7 +262,7 @@ void host_begin(host_t *host, const host_config_t *config, line_t *line, random_
                                     .rx_dma = config->feed == FEED_DMA,
                                     .points = host->points,
                                     .max_points = config->max_points,
-                                    .disable_recovery = true};
+                                    .recovery = TMINI_RECOVERY_OFF};
 
     memset(host, 0, offsetof(host_t, points));
     memset(&host->now_ns, 0, sizeof *host - offsetof(host_t, now_ns));

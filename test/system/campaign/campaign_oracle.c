@@ -174,8 +174,8 @@ void oracle_judge_account(oracle_t *oracle, const host_t *host)
 
     tmini_counters(&host->lidar, &counters);
     note(oracle, WRONG_ACCOUNT,
-         host->told != counters.parser.bytes_in_packets + counters.parser.bytes_in_replies +
-                           counters.parser.bytes_skipped + counters.parser.bytes_overrun +
+         host->told != counters.bytes_in_packets + counters.bytes_in_replies +
+                           counters.bytes_skipped + counters.bytes_overrun +
                            counters.bytes_pending);
 }
 
@@ -210,12 +210,12 @@ void oracle_end(oracle_t *oracle, const host_t *host)
 
     tmini_counters(&host->lidar, &counters);
     oracle->verdicts->bytes += host->told;
-    oracle->verdicts->overrun += counters.parser.bytes_overrun;
+    oracle->verdicts->overrun += counters.bytes_overrun;
     oracle->verdicts->gaps_told += host->gaps_told;
     oracle_judge_account(oracle, host);
     note(oracle, WRONG_REMAINDER, counters.bytes_pending > 0);
     /* What an overflow has cost cannot be known from outside. */
-    if (counters.parser.bytes_overrun == 0 &&
+    if (counters.bytes_overrun == 0 &&
         (host->gaps_told == 0 || host->config.feed != FEED_DMA)) {
         judge_cost(oracle, host);
     }

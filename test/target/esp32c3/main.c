@@ -5,6 +5,7 @@
  * What it sees goes as text into memory, `log_text`, where the test reads it; the UART is the
  * lidar's. */
 
+#include "tmini/tmini_names.h"
 #include "board.h"
 
 #define SCANS 4u
@@ -100,9 +101,9 @@ static void log_totals(void)
     const board_statistics_t board = board_statistics();
     tmini_counters_t counters;
     tmini_counters(&lidar, &counters);
-    put_named("packets", counters.parser.packets);
-    put_named("checksum_errors", counters.parser.checksum_errors);
-    put_named("bytes_overrun", counters.parser.bytes_overrun);
+    put_named("packets", counters.packets);
+    put_named("checksum_errors", counters.checksum_errors);
+    put_named("bytes_overrun", counters.bytes_overrun);
     put_named("losses", counters.losses);
     put_named("timeouts", counters.timeouts);
     put_named("interrupts", board.interrupts);

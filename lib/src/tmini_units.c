@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-#include "tmini/tmini_time.h"
+#include "tmini/tmini_units.h"
 
 #define CIRCLE_Q6 ((uint32_t)TMINI_FULL_CIRCLE_Q6)
 #define JITTER_Q6 256u /* 4 degrees. */

@@ -28,7 +28,6 @@
 
 #include "tmini_frame.h"
 #include "tmini_ring.h"
-#include "tmini_status.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -40,42 +40,6 @@ typedef enum {
 #define TMINI_HEALTH_SIZE 3u
 /** Bytes of a scan frequency reply's content (section 4). */
 #define TMINI_FREQUENCY_SIZE 4u
-/** Digits of a serial number (section 4). */
-#define TMINI_SERIAL_DIGITS 16u
-
-/** The model number of the T-mini Pro, which speaks the same protocol (section 9.15). */
-#define TMINI_MODEL_T_MINI_PRO 150u
-/** The model number of the T-mini Plus (section 4). */
-#define TMINI_MODEL_T_MINI_PLUS 151u
-
-/** What the lidar tells of itself (section 4). */
-typedef struct {
-    uint8_t model;                       /**< TMINI_MODEL_T_MINI_PLUS, … */
-    uint8_t firmware_major;              /**< As in 1.2: the 1. */
-    uint8_t firmware_minor;              /**< As in 1.2: the 2. */
-    uint8_t hardware;                    /**< Hardware version. */
-    uint8_t serial[TMINI_SERIAL_DIGITS]; /**< Digits as numbers 0 to 9, not characters. */
-} tmini_info_t;
-
-/** Faulty modules. The same bits in a health reply and in CT information (sections 4 and 7). */
-typedef enum {
-    TMINI_FAULT_SENSOR = 1 << 0,         /**< The ranging sensor. */
-    TMINI_FAULT_ENCODER = 1 << 1,        /**< Rotor blocked, opto-coupler or code disc. */
-    TMINI_FAULT_WIRELESS_POWER = 1 << 2, /**< Tested once, at power-up, like the next two. */
-    TMINI_FAULT_PD = 1 << 3,             /**< Laser feedback voltage. */
-    TMINI_FAULT_LD = 1 << 4,             /**< Laser drive current. */
-    TMINI_FAULT_DATA = 1 << 5,           /**< A revolution without one valid range: covered? */
-} tmini_fault_t;
-
-/** All faults; the two bits beside them are reserved (section 4). */
-#define TMINI_FAULT_MASK 0x3Fu
-
-/** The answer to a health request (section 4). */
-typedef struct {
-    uint8_t faults;      /**< A combination of tmini_fault_t; 0: healthy. */
-    uint16_t error_code; /**< Details of the faulty module; undocumented. */
-} tmini_health_t;
-
 /** Writes to `header` the header of the reply that `command` is answered with. Returns false for
  * the commands that are not answered: stop and reboot. */
 bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header);
@@ -89,9 +53,6 @@ void tmini_reply_health(const uint8_t content[TMINI_HEALTH_SIZE], tmini_health_t
 
 /** The scan frequency that is set, in 0.01 Hz, from a reply's 4 bytes. */
 uint32_t tmini_reply_frequency_chz(const uint8_t content[TMINI_FREQUENCY_SIZE]);
-
-/** The serial number as text: 16 characters and a terminating 0; '?' for what is not a digit. */
-void tmini_serial_text(const tmini_info_t *info, char text[TMINI_SERIAL_DIGITS + 1]);
 
 #ifdef __cplusplus
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-#include "tmini/tmini_scan.h"
+#include "tmini/parts/tmini_builder.h"
 
 #define CIRCLE_Q6 ((int32_t)TMINI_FULL_CIRCLE_Q6)
 
@@ -47,7 +47,7 @@ static void count_one(uint16_t *total)
 /* The scan ends with what has been received before `packet`, which begins `ahead` of it. It is
  * complete when a start packet comes back to where it began, and nothing is missing: one byte
  * before a start packet is LastCRC. */
-static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
+static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
                    uint32_t now_ms)
 {
     tmini_scan_t *const scan = &builder->scan;
@@ -64,14 +64,14 @@ static void finish(tmini_scan_builder_t *builder, const tmini_packet_t *packet, 
     builder->open = false;
 }
 
-static void begin(tmini_scan_builder_t *builder, const tmini_packet_t *start, uint32_t now_ms)
+static void begin(tmini_builder_t *builder, const tmini_packet_t *start, uint32_t now_ms)
 {
     builder->scan = (tmini_scan_t){.points = builder->scan.points, .start_ms = now_ms};
     builder->errors_before = start->frame->checksum_errors;
     builder->open = true;
 }
 
-static void append_points(tmini_scan_builder_t *builder, const tmini_packet_t *packet)
+static void append_points(tmini_builder_t *builder, const tmini_packet_t *packet)
 {
     tmini_scan_t *const scan = &builder->scan;
     const size_t count = tmini_packet_points(packet, builder->filter, &scan->points[scan->count],
@@ -87,29 +87,29 @@ static void append_points(tmini_scan_builder_t *builder, const tmini_packet_t *p
     }
 }
 
-tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buffer,
-                               size_t capacity, unsigned filter)
+tmini_status_t tmini_builder_init(tmini_builder_t *builder, tmini_point_t *buffer, size_t capacity,
+                                  unsigned filter)
 {
     if (builder == NULL || buffer == NULL || capacity == 0 || capacity > UINT16_MAX ||
         (filter & ~(unsigned)TMINI_FILTER_BOTH) != 0) {
         return TMINI_ERROR_ARGUMENT;
     }
-    *builder = (tmini_scan_builder_t){
+    *builder = (tmini_builder_t){
         .scan.points = buffer, .capacity = (uint16_t)capacity, .filter = (uint8_t)filter};
     return TMINI_OK;
 }
 
-void tmini_scan_discard(tmini_scan_builder_t *builder)
+void tmini_builder_discard(tmini_builder_t *builder)
 {
     builder->open = false;
 }
 
-void tmini_scan_refute(tmini_scan_builder_t *builder)
+void tmini_builder_refute(tmini_builder_t *builder)
 {
     count_one(&builder->scan.gaps);
 }
 
-bool tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
+bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
 {
     const bool is_start = tmini_packet_is_start(packet);
     int32_t angle = swept(packet->first_angle_q6, end_of(packet));

@@ -26,8 +26,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tmini_atomic.h"
-#include "tmini_status.h"
+#include "../tmini_atomic.h"
+#include "../tmini_types.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -14,8 +14,8 @@
  *
  * All functions: one context, the one that parses; no waiting. */
 
-#ifndef TMINI_SCAN_H
-#define TMINI_SCAN_H
+#ifndef TMINI_BUILDER_H
+#define TMINI_BUILDER_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,24 +27,6 @@
 extern "C" {
 #endif
 
-/** A buffer of this many points holds any revolution at 6 Hz and above (section 9.7). While the
- * motor comes up to speed, the first ones may have more: those are counted as dropped. */
-#define TMINI_SCAN_POINTS_TYPICAL 800u
-
-/** One revolution, and how good it is. */
-typedef struct {
-    tmini_point_t *points;    /**< The caller's own buffer, in order of arrival. */
-    uint16_t count;           /**< Points in the buffer. */
-    uint16_t dropped;         /**< Points that did not fit in it. */
-    uint16_t packets;         /**< Packets received of this revolution. */
-    uint16_t gaps;            /**< Places where bytes were lost or damaged: packets may be lost. */
-    uint16_t checksum_errors; /**< While it was received, modulo 2^16. */
-    uint16_t frequency_chz;   /**< Measured, 0.01 Hz, from the start packet after it; 0: unknown. */
-    uint32_t start_ms;        /**< The port's clock when its start packet came, and */
-    uint32_t end_ms;          /**< when the packet came that ended it. */
-    bool complete;            /**< A full circle to the next start packet; no gap, none dropped. */
-} tmini_scan_t;
-
 /** A scan under way. Treat the members as private, but for `scan` as documented below. */
 typedef struct {
     uint8_t filter;             /**< A combination of tmini_filter_t. */
@@ -54,26 +36,26 @@ typedef struct {
     uint16_t errors_before;     /**< The parser's checksum errors when it began, modulo 2^16. */
     int16_t swept_q6;           /**< Angle swept since the start packet: -4 to 360.25 degrees. */
     tmini_scan_t scan;          /**< What there is of it. */
-} tmini_scan_builder_t;
+} tmini_builder_t;
 
 /** Gathers into `buffer`, which has room for `capacity` points and stays the caller's; applies
  * `filter`, a combination of tmini_filter_t. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null
  * pointer, capacity 0 or above 65535, undefined filter bits. */
-tmini_status_t tmini_scan_init(tmini_scan_builder_t *builder, tmini_point_t *buffer,
-                               size_t capacity, unsigned filter);
+tmini_status_t tmini_builder_init(tmini_builder_t *builder, tmini_point_t *buffer, size_t capacity,
+                                  unsigned filter);
 
 /** Forgets the scan under way: what comes next does not continue it. */
-void tmini_scan_discard(tmini_scan_builder_t *builder);
+void tmini_builder_discard(tmini_builder_t *builder);
 
 /** Adds `packet`, which came at `now_ms`, to the scan under way; a start packet begins one. If it
  * no longer belongs to the scan under way, finishes that instead and returns true: builder->scan is
  * then valid until the same packet is added again. A packet that DMA overwrote meanwhile leaves a
  * gap, never a wrong point. */
-bool tmini_scan_add(tmini_scan_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
+bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
 
 /** Something outside the packets proves that one of the scan under way was lost (LastCRC, section
  * 7): it has a gap and is not complete. Call it before adding the packet that shows it. */
-void tmini_scan_refute(tmini_scan_builder_t *builder);
+void tmini_builder_refute(tmini_builder_t *builder);
 
 #ifdef __cplusplus
 }

@@ -52,34 +52,6 @@ typedef enum {
     TMINI_CT_REFUTED,   /**< LastCRC is wrong: a packet was lost, if not LastCRC itself damaged. */
 } tmini_ct_verdict_t;
 
-/** Which fields of tmini_ct_info_t are valid: a bit for the index that completes each. Fast scans
- * have fewer than 14 packets, so that the later ones may never arrive (section 9.7). */
-typedef enum {
-    TMINI_KNOWN_USER_VERSION = 1 << 1, /**< Both of the protocol version's numbers. */
-    TMINI_KNOWN_FAULTS = 1 << 3,   /**< Not 4, as one sentence of the manual says (section 9.3). */
-    TMINI_KNOWN_HARDWARE = 1 << 4, /**< And the firmware's major number. */
-    TMINI_KNOWN_FIRMWARE = 1 << 5, /**< Both of the firmware's numbers. */
-    TMINI_KNOWN_YEAR = 1 << 9,     /**< The serial number's year. */
-    TMINI_KNOWN_MONTH = 1 << 10,   /**< The serial number's month. */
-    TMINI_KNOWN_DAY = 1 << 11,     /**< The serial number's day. */
-    TMINI_KNOWN_SERIAL = 1 << 13,  /**< The whole serial number: date and number. */
-} tmini_known_t;
-
-/** What the unit has told of itself while scanning. Fields that are not known are 0. */
-typedef struct {
-    uint16_t known;         /**< A combination of tmini_known_t. */
-    uint8_t user_major;     /**< Protocol version, currently 1.0. */
-    uint8_t user_minor;     /**< Its second number. */
-    uint8_t faults;         /**< A combination of tmini_fault_t; 0: healthy. */
-    uint8_t hardware;       /**< Hardware version, 0 to 7. */
-    uint8_t firmware_major; /**< 0 to 15. */
-    uint8_t firmware_minor; /**< 0 to 127. */
-    uint8_t month;          /**< The serial number's month, 0 to 15 as sent. */
-    uint8_t day;            /**< The serial number's day, 0 to 31 as sent. */
-    uint16_t year;          /**< The serial number's year, 2020 to 2051. */
-    uint32_t number;        /**< The serial number's last eight digits, 0 to 2097151. */
-} tmini_ct_info_t;
-
 /** Forgets everything. For a new `ct`, and after a unit may have been exchanged. */
 void tmini_ct_init(tmini_ct_t *ct);
 

@@ -36,11 +36,8 @@ extern "C" {
 /** The bytes of a packet of so many samples. */
 #define TMINI_PACKET_SIZE(samples) TMINI_SAMPLE_OFFSET(samples)
 
-/** A gap of this many bytes may be any number more. */
-#define TMINI_GAP_UNKNOWN UINT16_MAX
-
 /** A packet or reply that the parser has found. Members may be read. */
-typedef struct {
+typedef struct tmini_frame {
     tmini_ring_t *ring;       /**< Holds the bytes, the frame's first one being the oldest. */
     uint16_t size;            /**< Bytes. */
     uint16_t gap;             /**< Bytes skipped since the last one, or TMINI_GAP_UNKNOWN: lost. */
