@@ -22,19 +22,50 @@ tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size,
     return TMINI_OK;
 }
 
-/* How far head may go. A closed ring's is ahead of the limit. */
-static size_t room_behind(const tmini_ring_t *ring, size_t past)
+/* How far head may go. Of a closed ring it is more than the size. */
+static size_t room_ahead(const tmini_ring_t *ring)
 {
-    const size_t room = 0 - past;
-    return room <= ring->size ? room : 0;
+    return tmini_load(&ring->limit) - ring->head;
+}
+
+/* The next byte that is put looks at the limit first. */
+TMINI_INLINE void move_head(tmini_ring_t *ring, size_t head)
+{
+    ring->stop = head;
+    tmini_store(&ring->head, head);
+}
+
+/* These bytes found the ring full (no room), or closed. Counts them and closes it. */
+static void refuse(tmini_ring_t *ring, size_t room, size_t count)
+{
+    tmini_store(&ring->overrun, ring->overrun + count);
+    if (room == 0) { /* Last: whoever sees it closed sees all bytes and the count. */
+        move_head(ring, ring->head + TMINI_RING_CLOSED);
+    }
+}
+
+void tmini_ring_put_at_stop(tmini_ring_t *ring, uint8_t byte)
+{
+    const size_t head = ring->head;
+    const size_t room = room_ahead(ring);
+    if (room == 0 || room > ring->size) {
+        refuse(ring, room, 1);
+        return;
+    }
+    uint8_t *const place = &ring->memory[head & ring->mask];
+    const size_t to_end = ring->size - (head & ring->mask);
+    *place = byte;
+    ring->origin = (uintptr_t)place - head;
+    ring->stop = head + (room < to_end ? room : to_end);
+    tmini_store(&ring->head, head + 1);
 }
 
 size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
 {
     const size_t head = ring->head;
-    const size_t past = head - tmini_load(&ring->limit);
-    const size_t room = room_behind(ring, past);
-    const size_t taken = count < room ? count : room;
+    const size_t room = room_ahead(ring);
+    const size_t usable = room <= ring->size ? room : 0;
+    const size_t taken = count < usable ? count : usable;
     if (taken > 0) {
         const size_t at = head & ring->mask;
         const size_t to_end = ring->size - at;
@@ -43,10 +74,10 @@ size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
         if (first < taken) {
             memcpy(ring->memory, &bytes[first], taken - first);
         }
-        tmini_store(&ring->head, head + taken);
+        move_head(ring, head + taken);
     }
     if (taken < count) {
-        tmini_ring_refuse(ring, head + taken, past + taken, count - taken);
+        refuse(ring, room - taken, count - taken);
     }
     return taken;
 }
@@ -54,7 +85,8 @@ size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
 /* What the consumer does meanwhile can only make more room, never less. */
 size_t tmini_ring_room(const tmini_ring_t *ring)
 {
-    return room_behind(ring, ring->head - tmini_load(&ring->limit));
+    const size_t room = room_ahead(ring);
+    return room <= ring->size ? room : 0;
 }
 
 /* The position says where in its lap the hardware is, not in which lap: it is taken for the next
@@ -62,17 +94,16 @@ size_t tmini_ring_room(const tmini_ring_t *ring)
 void tmini_ring_publish(tmini_ring_t *ring, size_t position)
 {
     const size_t head = ring->head;
-    tmini_store(&ring->head, head + ((position - head) & ring->mask));
+    move_head(ring, head + ((position - head) & ring->mask));
 }
 
 void tmini_ring_gap(tmini_ring_t *ring)
 {
-    const size_t head = ring->head;
     if (tmini_ring_is_dma(ring)) {
-        tmini_store(&ring->head, head + ring->size); /* A lap that nobody saw. */
-    } else if (tmini_load(&ring->limit) - head <= ring->size) {
+        move_head(ring, ring->head + ring->size); /* A lap that nobody saw. */
+    } else if (room_ahead(ring) <= ring->size) {
         /* It is open: closed as by a refused byte, but there is no number to count. */
-        tmini_store(&ring->head, head + TMINI_RING_CLOSED);
+        move_head(ring, ring->head + TMINI_RING_CLOSED);
     }
 }
 

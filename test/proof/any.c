@@ -20,19 +20,32 @@ bool any_bool(void)
     return (nondet_byte() & 1u) != 0;
 }
 
-tmini_ring_t any_ring_of(size_t size)
+/* The producer may know of some room already. */
+static void let_stop_be_ahead(tmini_ring_t *ring)
+{
+    ring->origin = (uintptr_t)&ring->memory[ring->head & ring->mask] - ring->head;
+    ring->stop = nondet_size();
+    ASSUME(ring_is_sound(ring));
+}
+
+static void fill_memory(size_t size)
 {
     for (size_t i = 0; i < size; i++) {
         ring_memory[i] = nondet_byte();
     }
-    const tmini_ring_t ring = {.memory = ring_memory,
-                               .size = size,
-                               .mask = size - 1,
-                               .window = any_bool() ? size / 2 : size,
-                               .limit = nondet_size(),
-                               .head = nondet_size(),
-                               .overrun = nondet_size()};
-    ASSUME(ring_is_sound(&ring));
+}
+
+tmini_ring_t any_ring_of(size_t size)
+{
+    fill_memory(size);
+    tmini_ring_t ring = {.memory = ring_memory,
+                         .size = size,
+                         .mask = size - 1,
+                         .window = any_bool() ? size / 2 : size,
+                         .limit = nondet_size(),
+                         .head = nondet_size(),
+                         .overrun = nondet_size()};
+    let_stop_be_ahead(&ring);
     return ring;
 }
 
@@ -43,21 +56,21 @@ tmini_ring_t any_ring(void)
 
 tmini_ring_t any_early_ring(size_t size)
 {
-    for (size_t i = 0; i < size; i++) {
-        ring_memory[i] = nondet_byte();
-    }
+    fill_memory(size);
     const bool dma = FED_BY_DMA;
     const bool is_closed = !dma && any_bool();
     const uint8_t limit = nondet_byte();
     const uint16_t unread = nondet_half();
     ASSUME(dma || unread <= size);
-    return (tmini_ring_t){.memory = ring_memory,
-                          .size = size,
-                          .mask = size - 1,
-                          .window = dma ? size / 2 : size,
-                          .limit = limit,
-                          .head =
-                              (size_t)limit - size + unread + (is_closed ? TMINI_RING_CLOSED : 0)};
+    tmini_ring_t ring = {.memory = ring_memory,
+                         .size = size,
+                         .mask = size - 1,
+                         .window = dma ? size / 2 : size,
+                         .limit = limit,
+                         .head =
+                             (size_t)limit - size + unread + (is_closed ? TMINI_RING_CLOSED : 0)};
+    let_stop_be_ahead(&ring);
+    return ring;
 }
 
 tmini_parser_t any_parser(tmini_ring_t *ring)
@@ -96,6 +109,7 @@ static void come(tmini_ring_t *ring)
         }
     }
     ring->head += count;
+    ring->stop = ring->head;
 }
 
 void proof_access(void)

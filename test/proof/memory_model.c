@@ -55,6 +55,7 @@ typedef struct {
     uint8_t clock[THREADS];
     uint8_t unfenced[LOCATIONS]; /* What a fence would let it see. */
     uint8_t index;               /* Its own: head, or tail. */
+    uint8_t stop;                /* The producer's: where it looks at the limit again. */
     uint8_t value;               /* Loaded last, */
     uint8_t refused; /* and what its store tells of that: or, of the producer, all of them. */
     uint8_t turns;   /* Bytes put, or looks taken. */
@@ -239,16 +240,38 @@ static void next_put(thread_t *thread)
     thread->value = 0;
 }
 
-static bool begin_put(state_t *state, thread_t *thread, unsigned choice)
+/* At its stop the producer looks how far it may go: not beyond the memory's end, either. */
+static bool look_ahead(state_t *state, thread_t *thread, unsigned choice)
 {
     const uint8_t refused = thread->refused;
     if (!load(state, thread, LIMIT, PUT_LOADS_LIMIT, choice)) {
         return false;
     }
-    const uint8_t past = (uint8_t)(thread->index - thread->value);
+    const uint8_t room = (uint8_t)(thread->value - thread->index);
+    const uint8_t to_end = (uint8_t)(bounds.size - (thread->index & (bounds.size - 1)));
     thread->refused = refused;
-    thread->at = past > UINT8_MAX / 2 ? PUT_BYTE : past == 0 ? PUT_REFUSES_FULL : PUT_REFUSES;
+    if (room == 0 || room > bounds.size) {
+        thread->at = room == 0 ? PUT_REFUSES_FULL : PUT_REFUSES;
+    } else {
+        thread->stop = (uint8_t)(thread->index + (room < to_end ? room : to_end));
+        thread->at = PUT_BYTE;
+    }
     return true;
+}
+
+static void put_byte(state_t *state, thread_t *thread)
+{
+    write_byte(state, thread->index & (bounds.size - 1), (uint8_t)(thread->turns + 1));
+    thread->at = PUT_HEAD;
+}
+
+static bool begin_put(state_t *state, thread_t *thread, unsigned choice)
+{
+    if (thread->index == thread->stop) {
+        return look_ahead(state, thread, choice);
+    }
+    put_byte(state, thread);
+    return choice == 0;
 }
 
 static bool begin_gap(state_t *state, thread_t *thread, unsigned choice)
@@ -269,6 +292,7 @@ static bool begin_gap(state_t *state, thread_t *thread, unsigned choice)
 static void close_ring(state_t *state, thread_t *thread, access_t access)
 {
     thread->index = (uint8_t)(thread->index + CLOSED);
+    thread->stop = thread->index;
     store(state, thread, HEAD, access, thread->index);
     state->stores[HEAD][thread->seen[HEAD]].refused = thread->refused;
     next_put(thread);
@@ -282,8 +306,7 @@ static bool put(state_t *state, unsigned choice)
         return choice < GAP ? begin_put(state, thread, choice)
                             : begin_gap(state, thread, choice - GAP);
     case PUT_BYTE:
-        write_byte(state, thread->index & (bounds.size - 1), (uint8_t)(thread->turns + 1));
-        thread->at = PUT_HEAD;
+        put_byte(state, thread);
         break;
     case PUT_HEAD:
         thread->index++;

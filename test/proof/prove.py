@@ -60,13 +60,13 @@ def parser(name, *broken, unwind=33, bounds=PARSED, **more):
 
 
 def scan(name, *broken):
-    return Proof(name, ["proof_scan.c"], SCAN, 10, ANY_SCAN, broken, loops="any_early_ring.0:33",
+    return Proof(name, ["proof_scan.c"], SCAN, 10, ANY_SCAN, broken, loops="fill_memory.0:33",
                  slow=name in ("scan_step", "packet_points"))
 
 
 def angle(samples, *broken, **more):
     return Proof(f"angle_{samples}", ["proof_angle.c"], FRAME + ["tmini_packet.c"], 4,
-                 f"all FSA, LSA; {samples} samples, one at a time", broken, loops="any_early_ring.0:33",
+                 f"all FSA, LSA; {samples} samples, one at a time", broken, loops="fill_memory.0:33",
                  cases=[[f"SAMPLES={samples}u", f"INDEX={index}u"] for index in range(samples)],
                  function="angle", **more)
 
@@ -77,20 +77,20 @@ def use(name, bounds, *broken, **more):
 
 def driver(name, *broken, **more):
     return Proof("driver_" + name, DRIVER_FILES, DRIVER, 22, ANY_LIDAR, broken,
-                 loops="any_early_ring.0:65", **more)
+                 loops="fill_memory.0:65", **more)
 
 
 PROOFS = [
     ring("init", "lib/src/tmini_ring.c", " || (size & (size - 1)) != 0", ""),
-    ring("put", "lib/include/tmini/tmini_ring.h", "memory[head & ring->mask] = byte", "memory[head] = byte"),
+    ring("put", "lib/src/tmini_ring.c", "(room < to_end ? room : to_end)", "room"),
     ring("write", "lib/src/tmini_ring.c", "memcpy(ring->memory, &bytes[first],", "memcpy(ring->memory, bytes,"),
     ring("publish", "lib/src/tmini_ring.c", "((position - head) & ring->mask)", "(position - head)"),
-    ring("gap", "lib/src/tmini_ring.c", "head + TMINI_RING_CLOSED", "head + 2 * TMINI_RING_CLOSED"),
+    ring("gap", "lib/src/tmini_ring.c", "room_ahead(ring) <= ring->size", "room_ahead(ring) < ring->size"),
     ring("discard", "lib/src/tmini_ring.c", "ring->limit + count);", "ring->limit + count + 1);"),
     ring("open", "lib/src/tmini_ring.c", "ring->limit + TMINI_RING_CLOSED);", "ring->limit + TMINI_RING_CLOSED / 2);"),
     ring("read", "lib/src/tmini_ring.c", "memory[index++ & mask]", "memory[index++]"),
     Proof("frame_samples", ["proof_frame.c"], FRAME, 4, ANY_RING,
-          ("lib/src/tmini_frame.c", "if (bytes >= TMINI_SAMPLE_SIZE)", "if (bytes > 1)"), loops="any_ring_of.0:33"),
+          ("lib/src/tmini_frame.c", "if (bytes >= TMINI_SAMPLE_SIZE)", "if (bytes > 1)"), loops="fill_memory.0:33"),
     Proof("frame_content", ["proof_frame.c"], FRAME, 65, "ring of 64 bytes, all indices",
           ("lib/include/tmini/tmini_frame.h", "TMINI_REPLY_HEADER_SIZE, content, count", "0, content, count")),
     parser("init", "lib/src/tmini_parser.c", "ring->window >= TMINI_REPLY_SIZE_MAX;", "true;",
@@ -101,7 +101,7 @@ PROOFS = [
            unwind=5, bounds="up to 9 samples in one piece",
            loops="prove_parser_xor_piece.0:28,contribution.0:28"),
     parser("checksum", "lib/src/tmini_parser.c", "left -= count;", "left = 0;", unwind=5,
-           bounds=EARLY + ", up to 3 samples", loops="any_early_ring.0:33,prove_parser_checksum.0:10,"
+           bounds=EARLY + ", up to 3 samples", loops="fill_memory.0:33,prove_parser_checksum.0:10,"
            "prove_parser_checksum.1:10,contribution.0:10"),
     parser("skip", "lib/src/tmini_parser.c", "skipped < count && begins_no_frame(parser, bytes[skipped])",
            "skipped < count", slow=True),

@@ -26,6 +26,16 @@ static bool is_dma(const tmini_ring_t *ring)
     return tmini_ring_is_dma(ring);
 }
 
+/* The producer may go on to its stop unasked: there is room up to there, and no end of memory. */
+static bool stop_is_sound(const tmini_ring_t *ring)
+{
+    const size_t known = ring->stop - ring->head;
+    const size_t at = ring->head & ring->mask;
+    return known == 0 || (known <= ring->size - at && known <= ring->limit - ring->head &&
+                          ring->limit - ring->head <= ring->size &&
+                          ring->origin + ring->head == (uintptr_t)&ring->memory[at]);
+}
+
 bool ring_is_sound(const tmini_ring_t *ring)
 {
     const size_t size = ring->size;
@@ -34,9 +44,9 @@ bool ring_is_sound(const tmini_ring_t *ring)
         return false;
     }
     if (is_dma(ring)) { /* Which may run away. */
-        return ring->window == size / 2;
+        return ring->window == size / 2 && ring->stop == ring->head;
     }
-    return ring->window == size && tmini_ring_unread(ring) <= size &&
+    return ring->window == size && stop_is_sound(ring) && tmini_ring_unread(ring) <= size &&
            tmini_ring_ahead(ring) / TMINI_RING_CLOSED <= 1; /* It is closed once, or open. */
 }
 

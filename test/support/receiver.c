@@ -55,6 +55,7 @@ void receiver_open_dma(receiver_t *receiver, uint8_t *memory, size_t size, uint8
 void receiver_age(receiver_t *receiver, size_t count)
 {
     receiver->ring.head = count;
+    receiver->ring.stop = count;
     receiver->ring.limit = count + receiver->size;
     receiver->position = count % receiver->size;
 }

@@ -12,9 +12,9 @@
 #define SIZE 16u
 #define GUARD 0xEEu
 
-/* A guard byte on each side: the ring must never write there. */
-static uint8_t area[SIZE + 2];
-static uint8_t *const memory = &area[1];
+/* Guards on each side: the ring must never write there. */
+static uint8_t area[3 * SIZE];
+static uint8_t *const memory = &area[SIZE];
 static tmini_ring_t ring;
 static const uint8_t letters[] = "abcdefghijklmnopqrstuvwxyz";
 
@@ -26,8 +26,8 @@ void setUp(void)
 
 void tearDown(void)
 {
-    TEST_ASSERT_EQUAL_HEX8(GUARD, area[0]);
-    TEST_ASSERT_EQUAL_HEX8(GUARD, area[SIZE + 1]);
+    TEST_ASSERT_EACH_EQUAL_HEX8(GUARD, area, SIZE);
+    TEST_ASSERT_EACH_EQUAL_HEX8(GUARD, &area[2 * SIZE], SIZE);
 }
 
 static void use_dma(void)
@@ -39,6 +39,7 @@ static void use_dma(void)
 static void age(size_t count)
 {
     ring.head = count;
+    ring.stop = count;
     ring.limit = count + SIZE;
 }
 
@@ -177,6 +178,34 @@ void test_a_discarded_byte_makes_room_for_exactly_one(void)
     tmini_ring_discard(&ring, 1);
     put_letters(SIZE, 2);
     expect_unread("bcdefghijklmnopq");
+    TEST_ASSERT_EQUAL_UINT(1, tmini_ring_overrun(&ring));
+}
+
+/* Across the memory's end, the wrap of size_t, and whatever room was known before. */
+void test_bytes_and_blocks_in_turn_lose_nothing_at_any_place(void)
+{
+    uint8_t put = 0;
+    uint8_t taken = 0;
+    age(SIZE_MAX - 5 * SIZE + 3);
+    for (unsigned round = 0; round < 1000; round++) {
+        const uint8_t block[] = {(uint8_t)(put + 1), (uint8_t)(put + 2), (uint8_t)(put + 3)};
+        tmini_ring_put(&ring, put);
+        put = (uint8_t)(put + 1 + tmini_ring_write(&ring, block, round % 4));
+        while (tmini_ring_unread(&ring) > round % 7) {
+            TEST_ASSERT_EQUAL_HEX8(taken++, tmini_ring_peek(&ring, 0));
+            tmini_ring_discard(&ring, 1);
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&ring));
+}
+
+void test_room_that_is_made_late_is_found(void)
+{
+    put_letters(0, SIZE - 1);
+    tmini_ring_discard(&ring, SIZE - 1);
+    put_letters(0, SIZE);
+    expect_unread("abcdefghijklmnop");
+    put_letters(0, 1);
     TEST_ASSERT_EQUAL_UINT(1, tmini_ring_overrun(&ring));
 }
 
@@ -527,6 +556,19 @@ void test_dma_positions_are_right_across_the_wrap_of_size_t(void)
     tmini_ring_discard(&ring, 5);
     dma_writes(7, 4, 4);
     expect_unread("fghijk");
+}
+
+/* A mistake, but no harm: tearDown() looks at the guards. */
+void test_bytes_put_into_a_dma_ring_stay_inside_its_memory(void)
+{
+    use_dma();
+    for (size_t i = 0; i < 5 * SIZE; i++) {
+        put_letters(0, 1);
+        tmini_ring_gap(&ring);
+        put_letters(0, 1);
+        tmini_ring_publish(&ring, (3 * i) % SIZE);
+        tmini_ring_discard(&ring, tmini_ring_unread(&ring));
+    }
 }
 
 /* ----------------------------------------------------------------------------- reading in place */

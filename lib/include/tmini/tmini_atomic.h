@@ -63,14 +63,6 @@
 #define TMINI_UNROLL
 #endif
 
-/** @def TMINI_AGAIN
- * What was read from a variable of one's own: kept; at -Os, where registers are few, read again. */
-#if defined(__OPTIMIZE_SIZE__)
-#define TMINI_AGAIN(variable, kept) (variable)
-#else
-#define TMINI_AGAIN(variable, kept) (kept)
-#endif
-
 #if defined(TMINI_ATOMIC_HEADER)
 
 #include TMINI_ATOMIC_HEADER

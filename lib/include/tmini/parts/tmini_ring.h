@@ -43,18 +43,27 @@ extern "C" {
 /** A ring. Treat the members as private.
  *
  * The indices count bytes and wrap with size_t; the memory's size is a power of two, so that an
- * index modulo the size is always the right place. An all-zero ring is safe: its head stands at its
- * limit, so it refuses every byte. A side reads its own index as a plain variable: nobody else
- * writes it, so nothing can race with that; what the other side reads is stored atomically. */
+ * index modulo the size is always the right place. A side reads its own index as a plain variable:
+ * nobody else writes it, so nothing can race with that; what the other side reads is stored
+ * atomically.
+ *
+ * The producer remembers how far it may go: `stop` is the limit as it was when the producer last
+ * looked, or the memory's end if that comes first, so that `origin` plus an index is a place up to
+ * there. The limit never moves back. So a byte costs a comparison and two stores, and only at the
+ * stop, about twice a lap, the producer looks at the limit again. When something else moves head,
+ * stop moves with it, and the next byte looks. The head of an all-zero ring is at its stop and at
+ * its limit: it refuses every byte. */
 typedef struct {
-    size_t head;  /**< Written by the producer: where the next byte goes. */
-    size_t limit; /**< Written by the consumer: where head must stop, one size ahead of the oldest
-                      * byte not yet given back. Nothing is stored unless head is behind it. */
-    uint8_t *memory; /**< The caller's. */
-    size_t mask;     /**< size - 1: what of an index is a place in memory. */
-    size_t overrun;  /**< Written by the producer: bytes refused. */
-    size_t size;     /**< Of the memory. */
-    size_t window;   /**< Unread bytes that are certainly intact: the size, with DMA half of it. */
+    size_t head;      /**< Written by the producer: where the next byte goes. */
+    size_t stop;      /**< The producer's own: where head must look at limit again. */
+    uintptr_t origin; /**< The producer's own: before stop, head's place is this plus head. */
+    size_t limit;     /**< Written by the consumer: where head must stop, one size ahead of the
+                        * oldest byte not yet given back. */
+    uint8_t *memory;  /**< The caller's. */
+    size_t mask;      /**< size - 1: what of an index is a place in memory. */
+    size_t overrun;   /**< Written by the producer: bytes refused. */
+    size_t size;      /**< Of the memory. */
+    size_t window;    /**< Unread bytes that are certainly intact: the size, with DMA half of it. */
 } tmini_ring_t;
 
 /** Empties the ring over `memory`, which the caller owns and keeps for as long as the ring is used.
@@ -65,27 +74,20 @@ tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size,
 
 /* ----------------------------------------------------------------------- the producer's context */
 
-/** Producer of a CPU-fed ring, whose head is `past` the limit: `count` bytes found it full (0) or
- * closed. Counts them and closes it. Interrupt-safe; no loop, no wait. */
-TMINI_INLINE void tmini_ring_refuse(tmini_ring_t *ring, size_t head, size_t past, size_t count)
-{
-    tmini_store(&ring->overrun, ring->overrun + count);
-    if (past == 0) { /* Last: whoever sees it closed sees all bytes and the count. */
-        tmini_store(&ring->head, head + TMINI_RING_CLOSED);
-    }
-}
+/** Producer of a CPU-fed ring whose head is at its stop: what tmini_ring_put() does then. */
+void tmini_ring_put_at_stop(tmini_ring_t *ring, uint8_t byte);
 
-/** Producer of a CPU-fed ring: stores one byte. Interrupt-safe; no loop, no wait. Raises overrun
- * when the ring is full or closed. In the header, because a call would cost as much as the act. */
+/** Producer of a CPU-fed ring: stores one byte. Interrupt-safe; no loop, no wait: 7 instructions on
+ * Cortex-M4, about 30 at the stop. Raises overrun when the ring is full or closed. In the header,
+ * because a call would cost as much as the act. */
 TMINI_INLINE void tmini_ring_put(tmini_ring_t *ring, uint8_t byte)
 {
     const size_t head = ring->head;
-    const size_t past = head - tmini_load(&ring->limit);
-    if (past > SIZE_MAX / 2) { /* It is behind. */
-        ring->memory[head & ring->mask] = byte;
-        tmini_store(&ring->head, TMINI_AGAIN(ring->head, head) + 1);
+    if (head == ring->stop) {
+        tmini_ring_put_at_stop(ring, byte);
     } else {
-        tmini_ring_refuse(ring, head, past, 1);
+        *(uint8_t *)(ring->origin + head) = byte;
+        tmini_store(&ring->head, head + 1);
     }
 }
 
@@ -162,7 +164,7 @@ static inline bool tmini_ring_is_closed(const tmini_ring_t *ring)
 /** True if there is no room for a byte: the whole memory is unread, or the ring is closed. */
 static inline bool tmini_ring_is_full(const tmini_ring_t *ring)
 {
-    return tmini_ring_head(ring) - ring->limit <= SIZE_MAX / 2; /* As for the producer. */
+    return tmini_ring_head(ring) - ring->limit <= SIZE_MAX / 2;
 }
 
 /** The unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger offset reads

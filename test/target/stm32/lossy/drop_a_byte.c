@@ -18,5 +18,6 @@ void __wrap_tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port)
     __real_tmini_stm32_usart_interrupt(port);
     if (port->bytes != before && port->bytes % INTERVAL == 0) {
         port->lidar->ring.head--;
+        port->lidar->ring.stop = port->lidar->ring.head;
     }
 }
