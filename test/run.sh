@@ -2,105 +2,73 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Installs what the tests need, builds in build/ and runs all tests:
+# Installs what the tests need, builds in build/ and runs tests:
 #
-#   test/run.sh [ctest's options …]        for example: test/run.sh -L unit
+#   test/run.sh                 the short run, minutes
+#   test/run.sh --all           the long run: installs whatever it can use, browsers and compilers
+#                               for other machines as well
+#   test/run.sh [--all] LABEL … all tests of these labels; builds only what they need
+#   test/run.sh … -- OPTION …   with ctest's options, for example -R ring
 #
-# Emulated machines and their compilers are installed where the system has them; what is missing is
-# skipped and said. TMINI_OPTIONAL=no installs none of them.
+# test/CMakeLists.txt names the labels. What is not installed is skipped, and said.
 
 set -eu
 
 root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=test/support/environment.sh
 . "$root/test/support/environment.sh"
-# shellcheck source=test/support/python.sh
-. "$root/test/support/python.sh"
 
-# Clang's fuzzing runtime is in a package that is named for Clang's version.
-wish_for_fuzzer() {
-    version=$(apt-cache depends clang 2>/dev/null | sed -n 's/.*Depends: clang-\([0-9]*\)$/\1/p')
-    [ -z "$version" ] || wish "/usr/share/doc/libclang-rt-$version-dev" "libclang-rt-$version-dev"
-}
-
-# The model checker is not in all systems' packages; that for Debian 12 is fetched below.
-wish_for_checker() {
-    ! apt-cache show --no-all-versions cbmc >/dev/null 2>&1 || wish cbmc cbmc
-}
-
-fetch_checker() {
-    is_present cbmc || "$root/test/proof/run.sh" --fetch ||
-        echo "CBMC could not be fetched (why: above): its proofs are skipped."
-}
-
-# The viewer is compiled by Clang, linked by lld, and tried out in a browser.
-wish_for_browser() {
-    wish wasm-ld lld
-    is_present google-chrome || wish chromium chromium
-    wish chromedriver chromium-driver
-}
-
-# Compilers and emulators for the checks labelled compile, and for the tests on other machines.
-wish_for_machines() {
-    wish clang clang
-    wish_for_fuzzer
-    wish_for_checker
-    wish_for_browser
-    wish g++ g++
-    wish arm-none-eabi-gcc gcc-arm-none-eabi
-    wish qemu-system-arm qemu-system-arm
-    wish /usr/lib/arm-none-eabi/newlib libnewlib-arm-none-eabi
-    wish riscv64-unknown-elf-gcc gcc-riscv64-unknown-elf
-    wish /usr/lib/picolibc/riscv64-unknown-elf picolibc-riscv64-unknown-elf
-    wish xtensa-lx106-elf-gcc gcc-xtensa-lx106
-    wish /usr/share/doc/picolibc-xtensa-lx106-elf picolibc-xtensa-lx106-elf
-    [ -n "${PICO_SDK_PATH:-}" ] || wish /usr/src/pico-sdk/pico_sdk_init.cmake pico-sdk-source
-    wish avr-gcc gcc-avr
-    wish /usr/lib/avr/include/avr/io.h avr-libc
-    wish simavr simavr
-    wish /usr/share/arduino/hardware/arduino/avr arduino-core-avr
-    wish arduino-builder arduino-builder
-    wish arduino-ctags arduino-ctags
-    wish powerpc-linux-gnu-gcc gcc-powerpc-linux-gnu
-    wish /usr/powerpc-linux-gnu/include/stdio.h libc6-dev-powerpc-cross
-    wish qemu-system-riscv32 qemu-system-misc
-    wish_for_python
-    is_present qemu-ppc-static || wish qemu-ppc qemu-user
-    wish valgrind valgrind
-}
-
-# What the documents are checked with.
-wish_for_documents() {
-    wish doxygen doxygen
-    wish shellcheck shellcheck
-    wish dtc device-tree-compiler
-    wish hunspell hunspell
-    wish /usr/share/hunspell/en_GB.dic hunspell-en-gb
-    wish codespell codespell
-}
-
-prepare_python_tools() {
-    # shellcheck disable=SC2086 # the packages are several words
-    prepare_python_packages "$root/build/labwired" $labwired_packages
-    # shellcheck disable=SC2086
-    prepare_python_packages "$root/build/platformio" $platformio_packages
-    # shellcheck disable=SC2086
-    prepare_python_packages "$root/build/esp-idf-packer" $component_packages
-}
+all=no labels=
+while [ $# -gt 0 ]; do
+    case $1 in
+        --all) all=yes ;;
+        --)
+            shift
+            break
+            ;;
+        -*)
+            sed -n '5,13s/^# \{0,1\}//p' "$0" >&2
+            exit 2
+            ;;
+        *) labels="$labels $1" ;;
+    esac
+    shift
+done
 
 need_test_tools
 need_drawing
-[ "${TMINI_OPTIONAL:-yes}" = no ] || wish_for_machines
-[ "${TMINI_OPTIONAL:-yes}" = no ] || wish_for_documents
+if [ "$all" = yes ]; then
+    # shellcheck source=test/support/optional.sh
+    . "$root/test/support/optional.sh"
+    wish_for_everything
+fi
 install_tools
-[ "${TMINI_OPTIONAL:-yes}" = no ] || prepare_python_tools
-[ "${TMINI_OPTIONAL:-yes}" = no ] || fetch_checker
+[ "$all" = no ] || prepare_everything
+
+# targets: what to build.
+targets() {
+    if [ -n "$labels" ]; then
+        # shellcheck disable=SC2086 # labels are several words
+        printf 'tests-%s\n' $labels
+    elif [ "$all" = yes ]; then
+        echo tests-all
+    else
+        echo tests
+    fi
+}
 
 # What goes well before the tests is not worth reading.
 echo "Building in $root/build"
 quietly cmake -S "$root" -B "$root/build" -DTMINI_BUILD_TESTS=ON \
     -DTMINI_BUILD_EXAMPLES=ON -DTMINI_WERROR=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
-quietly cmake --build "$root/build" --parallel "$(job_count)"
+# shellcheck disable=SC2046 # targets are several words
+quietly cmake --build "$root/build" --parallel "$(job_count)" --target $(targets)
 
 cd "$root/build"
+if [ -n "$labels" ]; then
+    set -- -L "^($(echo "${labels# }" | tr ' ' '|'))\$" "$@"
+fi
+if [ "$all" = yes ] || [ -n "$labels" ]; then
+    set -- -C All "$@"
+fi
 exec ctest --output-on-failure --no-tests=error --parallel "$(job_count)" "$@"

@@ -7,15 +7,9 @@
 #      vendor/unity;
 #   2. the package `cmock` of Debian (trixie and later) and Ubuntu (24.04 and later);
 #   3. a download, pinned by commit: a git commit is the hash of all that it contains.
-# Sets TMINI_CMOCK_DIR, TMINI_UNITY_DIR, TMINI_RUBY. Where something is missing it says so, and
-# turns TMINI_BUILD_TESTS off: whoever only wants the library and the tool shall have them.
+# Sets TMINI_CMOCK_DIR, TMINI_UNITY_DIR, TMINI_RUBY.
 
 set(CMOCK_ROOT "$ENV{CMOCK_ROOT}" CACHE PATH "Folder of CMock, with Unity in vendor/unity")
-
-macro(tmini_do_without_tests)
-    message("-- The tests are left out: " ${ARGN})
-    set(TMINI_BUILD_TESTS OFF)
-endmacro()
 
 function(tmini_run_git out)
     execute_process(COMMAND ${GIT_EXECUTABLE} ${ARGN} RESULT_VARIABLE status
@@ -53,9 +47,8 @@ endfunction()
 
 find_program(TMINI_RUBY ruby)
 if(NOT TMINI_RUBY)
-    tmini_do_without_tests("they need Ruby, for the generators of Unity and CMock. test/run.sh "
+    message(FATAL_ERROR "The tests need Ruby, for the generators of Unity and CMock. test/run.sh "
         "installs what they need.")
-    return()
 endif()
 
 if(CMOCK_ROOT)
@@ -66,9 +59,8 @@ elseif(EXISTS /usr/share/cmock/lib/cmock.rb)
 else()
     tmini_download_cmock(TMINI_CMOCK_DIR)
     if(NOT TMINI_CMOCK_DIR)
-        tmini_do_without_tests("they need CMock, which is neither installed nor to be downloaded. "
-            "test/run.sh installs what they need; -DCMOCK_ROOT=DIR names a copy.")
-        return()
+        message(FATAL_ERROR "The tests need CMock, which is neither installed nor to be "
+            "downloaded. test/run.sh installs what they need; -DCMOCK_ROOT=DIR names a copy.")
     endif()
 endif()
 set(TMINI_UNITY_DIR ${TMINI_CMOCK_DIR}/vendor/unity)

@@ -5,31 +5,29 @@
 # of ours has reached that project's own targets.
 
 foreach(way add_subdirectory FetchContent find_package)
-    add_test(NAME consumer.${way} COMMAND ${CMAKE_COMMAND}
+    tmini_add_check(consumer.${way} consumer COMMAND ${CMAKE_COMMAND}
         -D WAY=${way} -D TMINI_SOURCE=${PROJECT_SOURCE_DIR}
         -D BUILD=${CMAKE_CURRENT_BINARY_DIR}/consumer.${way}
         -D COMPILER=${CMAKE_C_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
         -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/run.cmake)
-    set_tests_properties(consumer.${way} PROPERTIES LABELS consumer TIMEOUT 900)
 endforeach()
 
 # Everything installed and uninstalled.
 if(TARGET tmini_tool)
     find_program(TMINI_PKG_CONFIG pkg-config)
     mark_as_advanced(TMINI_PKG_CONFIG)
-    add_test(NAME consumer.install COMMAND ${CMAKE_COMMAND}
+    tmini_add_check(consumer.install consumer COMMAND ${CMAKE_COMMAND}
         -D TMINI_SOURCE=${PROJECT_SOURCE_DIR} -D BUILD=${CMAKE_CURRENT_BINARY_DIR}/consumer.install
         -D COMPILER=${CMAKE_C_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
         -D PKG_CONFIG=${TMINI_PKG_CONFIG}
         -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/install.cmake)
-    set_tests_properties(consumer.install PROPERTIES LABELS consumer TIMEOUT 900)
 endif()
 
 # What the ecosystems' manifests repeat, compared.
 tmini_missing_programs(missing python3)
 if(missing)
-    tmini_add_skipped_test(manifests "${missing} is not installed")
+    tmini_add_skipped_test(manifests consumer "${missing} is not installed")
 else()
-    add_test(NAME manifests COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/consumer/manifests.py)
-    set_tests_properties(manifests PROPERTIES LABELS consumer)
+    tmini_add_check(manifests consumer
+        COMMAND ${TMINI_PROGRAM_python3} ${CMAKE_CURRENT_SOURCE_DIR}/consumer/manifests.py)
 endif()

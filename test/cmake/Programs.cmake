@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# What tests need of this machine, and how a test says that it is not there.
+# What tests need of this machine, how a test says that it is not there, and how a test is declared
+# that is no program of ours.
 
 find_program(TMINI_SH sh)
 mark_as_advanced(TMINI_SH)
@@ -41,9 +42,57 @@ function(tmini_missing_programs out)
     set(${out} "${missing}" PARENT_SCOPE)
 endfunction()
 
-# A test that only tells why it does nothing.
-function(tmini_add_skipped_test label reason)
-    message(STATUS "Tests `${label}` are skipped: ${reason}")
-    add_test(NAME ${label} COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: ${reason}")
-    set_tests_properties(${label} PROPERTIES LABELS ${label} SKIP_REGULAR_EXPRESSION "^SKIPPED")
+# The targets `tests-LABEL` build what the tests of a label need, `tests` what the short run needs,
+# `tests-all` everything.
+add_custom_target(tests)
+add_custom_target(tests-all)
+add_dependencies(tests-all tests)
+
+# tmini_label_needs(LABEL TIER TARGET …), TIER being `tests` or `tests-all`.
+function(tmini_label_needs label tier)
+    if(NOT TARGET tests-${label})
+        add_custom_target(tests-${label})
+    endif()
+    if(ARGN)
+        add_dependencies(tests-${label} ${ARGN})
+        add_dependencies(${tier} ${ARGN})
+    endif()
+endfunction()
+
+# tmini_add_check(NAME LABEL
+#     COMMAND program argument …
+#     [ALL]               only in the long run, `ctest -C All`
+#     [NEEDS target …]    to be built before
+#     [TIMEOUT seconds]   300 unless given
+#     [PROPERTIES name value …]
+# )
+#
+# A ctest whose command says by exit status 77, or by a line that begins with SKIPPED, that
+# something is not installed.
+function(tmini_add_check name label)
+    cmake_parse_arguments(arg "ALL" "TIMEOUT" "COMMAND;NEEDS;PROPERTIES" ${ARGN})
+    if(arg_UNPARSED_ARGUMENTS OR NOT arg_COMMAND)
+        message(FATAL_ERROR "tmini_add_check(${name}): needs COMMAND; "
+            "not understood: ${arg_UNPARSED_ARGUMENTS}")
+    endif()
+    if(NOT arg_TIMEOUT)
+        set(arg_TIMEOUT 300)
+    endif()
+    set(tier tests)
+    set(configurations "")
+    if(arg_ALL)
+        set(tier tests-all)
+        set(configurations CONFIGURATIONS All)
+    endif()
+    add_test(NAME ${name} COMMAND ${arg_COMMAND} ${configurations})
+    set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT ${arg_TIMEOUT}
+        SKIP_RETURN_CODE 77 SKIP_REGULAR_EXPRESSION "^SKIPPED" ${arg_PROPERTIES})
+    tmini_label_needs(${label} ${tier} ${arg_NEEDS})
+endfunction()
+
+# tmini_add_skipped_test(NAME LABEL REASON [ALL]): a test that only tells why it does nothing.
+function(tmini_add_skipped_test name label reason)
+    message(STATUS "Not tested: ${name}: ${reason}")
+    tmini_add_check(${name} ${label} ${ARGN}
+        COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: ${reason}")
 endfunction()

@@ -6,15 +6,15 @@
 #     [MOCKS header.h …]               functions declared there are mocked; in the test file,
 #                                      #include "mock_header.h"
 #     [LIBRARIES target …]             linked besides the library, Unity and CMock
-#     [LABELS label …]                 ctest labels; `unit` unless given
+#     [LABEL label]                    of the ctest; that of the folder, TMINI_TEST_LABEL, unless
+#                                      given
 #     [NOT_ON machine …]               other machines it does not run on: `int16` for tests whose
 #                                      arrays do not fit in 8 KB of RAM, `bigendian`, …, or
 #                                      `others`: none but this computer
 # )
 #
 # One executable and one ctest. The main function (the "runner") and the mocks are generated at
-# build time. The tests run on this computer and, unless excepted, on each machine of
-# OtherMachines.cmake.
+# build time. OtherMachines.cmake says what is also built for other machines.
 
 set(TMINI_CMOCK_CONFIG ${CMAKE_CURRENT_LIST_DIR}/cmock.yml)
 set(TMINI_SHORTEN_RUNNER ${CMAKE_CURRENT_LIST_DIR}/ShortenRunner.cmake)
@@ -77,9 +77,8 @@ function(tmini_configure_unit_test target generated_dir)
 endfunction()
 
 # Adds the ctest; what a machine without exit statuses prints decides there.
-function(tmini_register_unit_test name)
-    add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES LABELS "${ARGN}" TIMEOUT 600)
+function(tmini_register_unit_test name label)
+    tmini_add_check(${name} ${label} COMMAND ${name} NEEDS ${name})
     if(TMINI_TEST_PASS_PATTERN)
         set_tests_properties(${name} PROPERTIES
             PASS_REGULAR_EXPRESSION "${TMINI_TEST_PASS_PATTERN}"
@@ -87,23 +86,18 @@ function(tmini_register_unit_test name)
     endif()
 endfunction()
 
-# Remembers, for OtherMachines.cmake, that the test NAME runs on all machines but those given.
-function(tmini_note_machines name)
-    set_property(GLOBAL APPEND PROPERTY TMINI_UNIT_TESTS ${name})
-    set_property(GLOBAL PROPERTY TMINI_${name}_NOT_ON "${ARGN}")
-endfunction()
-
 function(tmini_add_unit_test name)
-    cmake_parse_arguments(arg "" "" "SOURCES;MOCKS;LIBRARIES;LABELS;NOT_ON" ${ARGN})
+    cmake_parse_arguments(arg "" "LABEL" "SOURCES;MOCKS;LIBRARIES;NOT_ON" ${ARGN})
     if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
         message(FATAL_ERROR "tmini_add_unit_test(${name}): needs SOURCES; "
             "not understood: ${arg_UNPARSED_ARGUMENTS}")
     endif()
-    if(TMINI_TEST_MACHINE IN_LIST arg_NOT_ON)
+    if(TMINI_TEST_MACHINE IN_LIST arg_NOT_ON OR
+            (CMAKE_CROSSCOMPILING AND "others" IN_LIST arg_NOT_ON))
         return()
     endif()
-    if(NOT arg_LABELS)
-        set(arg_LABELS unit)
+    if(NOT arg_LABEL)
+        set(arg_LABEL ${TMINI_TEST_LABEL})
     endif()
 
     set(dir ${CMAKE_CURRENT_BINARY_DIR}/${name}.generated)
@@ -117,6 +111,5 @@ function(tmini_add_unit_test name)
     add_executable(${name} ${arg_SOURCES} ${runner} ${mocks})
     tmini_configure_unit_test(${name} ${dir} ${arg_MOCKS})
     target_link_libraries(${name} PRIVATE ${arg_LIBRARIES})
-    tmini_register_unit_test(${name} ${arg_LABELS})
-    tmini_note_machines(${name} ${arg_NOT_ON})
+    tmini_register_unit_test(${name} ${arg_LABEL})
 endfunction()

@@ -4,7 +4,7 @@
 # shellcheck disable=SC2154 # $root is the sourcing script's
 
 # need_cmock: the package `cmock` (CMock with Unity), to be installed by install_missing of
-# packages.sh, which is to be sourced first.
+# packages.sh, which is to be sourced before.
 #
 # Debian 12 does not have it, but the package of the next release is architecture-independent and
 # runs there.
@@ -20,30 +20,29 @@ remove_cmock_download() {
     [ -z "$cmock_dir" ] || rm -rf "$cmock_dir"
 }
 
-need_cmock_from_trixie() {
+# Puts the file of the next release in the place of the package's name.
+take_cmock_from_trixie() {
     cmock_dir=$(mktemp -d)
     chmod 755 "$cmock_dir" # apt reads it as a user of its own.
     if download_from_trixie "$cmock_dir" cmock; then
-        need "$cmock_script" "$(ls "$cmock_dir"/cmock_*.deb)"
+        file=$(ls "$cmock_dir"/cmock_*.deb)
+        required_packages=$(echo "$required_packages" | sed "s|\\<cmock\\>|$file|")
         return
     fi
-    remove_cmock_download
-    cat >&2 <<'EOF'
+    cat >&2 <<'END'
 This Debian has no package cmock, and that of the next release could not be had from the machine's
 own package sources (why: above). Please install CMock by hand and name its folder:
 CMOCK_ROOT=DIR test/run.sh
-EOF
-    return 1
+END
+}
+
+find_cmock() {
+    is_present "$cmock_script" || is_available cmock || take_cmock_from_trixie
 }
 
 need_cmock() {
-    if [ -n "${CMOCK_ROOT:-}" ] || is_present "$cmock_script" || ! can_install; then
-        return 0 # What cannot be installed here, CMake downloads.
-    fi
-    refresh_index
-    if is_available cmock; then
+    if [ -z "${CMOCK_ROOT:-}" ] && can_install; then
         need "$cmock_script" cmock
-    elif [ "$(system_name)" = "debian bookworm" ]; then
-        need_cmock_from_trixie
-    fi
+        finders="$finders find_cmock"
+    fi # What cannot be installed here, CMake downloads.
 }

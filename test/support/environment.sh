@@ -12,6 +12,7 @@
 
 need_test_tools() {
     need_build_tools
+    because "to generate the unit tests' mocks and main functions"
     need ruby ruby
     need_cmock
 }

@@ -6,17 +6,22 @@
 # To be sourced by POSIX shell scripts:
 #
 #   . "$root/test/support/packages.sh"
+#   because "to build the library"         # the reason for what follows
 #   need cmake cmake                       # a command, and the packages that bring it
 #   need /usr/include/stdio.h libc6-dev    # or a file
 #   wish clang clang                       # the same, but the script can do without
 #   install_missing
 #
-# install_missing calls apt-get once for all, and fails if something needed is still missing then.
-# It neither asks questions nor touches the configured package sources.
+# install_missing says what it will install, and why; then it calls apt-get once for all, and fails
+# if something needed is still missing. It does not touch the configured package sources; the only
+# question is sudo's, for a password.
 
 required_packages=
 optional_packages=
 required_checks=
+reason=
+announcement=
+finders= # What else to do about packages when apt's list of them is up to date.
 index_is_fresh=false
 
 apt_options="-o DPkg::Lock::Timeout=300 -o APT::Install-Recommends=false"
@@ -43,12 +48,30 @@ is_settled() {
     esac
 }
 
+# because REASON
+because() {
+    reason=$1
+}
+
+# announce PACKAGE…: a line for each reason.
+announce() {
+    case $announcement in
+        *"
+  $reason:"*) announcement="$announcement $*" ;;
+        *)
+            announcement="$announcement
+  $reason: $*"
+            ;;
+    esac
+}
+
 # need COMMAND|FILE PACKAGE…
 need() {
     is_settled "$1" && return
     required_checks="$required_checks $1"
     shift
     required_packages="$required_packages $*"
+    announce "$@"
 }
 
 # wish COMMAND|FILE PACKAGE…
@@ -56,6 +79,7 @@ wish() {
     is_settled "$1" && return
     shift
     optional_packages="$optional_packages $*"
+    announce "$@"
 }
 
 can_install() {
@@ -122,12 +146,17 @@ install_separately() {
     done
 }
 
+
 install_with_apt() {
+    how="apt-get installs it now"
+    [ "$(id -u)" -eq 0 ] || how="$how, by sudo, which may ask for your password"
+    echo "Missing here; $how:$announcement"
     refresh_index
+    for finder in $finders; do
+        "$finder" || true
+    done
     drop_unavailable
     [ -n "$required_packages$optional_packages" ] || return 0
-    # shellcheck disable=SC2086
-    echo "Installing:" $required_packages $optional_packages
     # shellcheck disable=SC2086
     quietly apt_get install -y $required_packages $optional_packages || install_separately
 }
@@ -156,6 +185,7 @@ install_missing() {
 
 # What any build of this project takes.
 need_build_tools() {
+    because "to build the library and the tool"
     is_present cc || need gcc gcc
     need /usr/include/stdio.h libc6-dev
     need cmake cmake
@@ -164,6 +194,7 @@ need_build_tools() {
 
 # What the host tool draws with.
 need_drawing() {
+    because "to draw with the tool's command plot"
     need pkg-config pkg-config
     need /usr/include/cairo/cairo.h libcairo2-dev
 }

@@ -11,14 +11,4 @@ set_target_properties(tmini_world PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 
 tmini_add_unit_test(test_driver
     SOURCES test_driver.c
-    LIBRARIES tmini_world
-    LABELS system
-    NOT_ON others)
-
-# build/test/bin/soak HOURS [SEED]; docs/results.md has the result of a whole day.
-add_executable(soak soak.c)
-target_link_libraries(soak PRIVATE tmini_world)
-target_compile_options(soak PRIVATE -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
-set_target_properties(soak PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
-add_test(NAME soak COMMAND soak 1)
-set_tests_properties(soak PROPERTIES LABELS system TIMEOUT 1800)
+    LIBRARIES tmini_world)

@@ -11,3 +11,6 @@ set(CORTEX_M_RAM 0x20000000)
 include(${CMAKE_CURRENT_LIST_DIR}/../../target/cortex_m.cmake)
 
 set(TMINI_TEST_MACHINE cortex-m0)
+
+# An STM32F0, L0 or G0 has such a one.
+set(TMINI_TEST_PORTS stm32)

@@ -21,3 +21,5 @@ set(CMAKE_CROSSCOMPILING_EMULATOR ${TMINI_QEMU_RISCV32} -M virt -bios none -disp
     -serial none -monitor none -semihosting-config enable=on,target=native -kernel)
 
 set(TMINI_TEST_MACHINE rv32imc)
+
+set(TMINI_TEST_PORTS esp32)

@@ -177,7 +177,7 @@ def check_document(document, names, figures):
     sys.stdout.writelines(difflib.unified_diff(
         old.splitlines(True), new.splitlines(True), f"{document.name} as committed",
         f"{document.name} as measured", n=0))
-    print(f"OUT OF DATE: {document.name}; test/bench/run.sh --update rewrites its tables")
+    print(f"OUT OF DATE: {document.name}; test/qa/bench/run.sh --update rewrites its tables")
     return False
 
 

@@ -7,8 +7,8 @@ import pathlib
 import re
 import subprocess
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-HERE = ROOT / "test" / "bench"
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+HERE = ROOT / "test" / "qa" / "bench"
 LIB_SOURCES = sorted((ROOT / "lib" / "src").glob("*.c"))
 LEVELS = ("-Os", "-O2")
 

@@ -5,7 +5,7 @@
 # Measures flash, RAM, stack and instructions of the library, prints the tables, and fails when a
 # budget (budgets.txt) is exceeded or a committed table (docs/footprint.md, README.md) differs:
 #
-#   test/bench/run.sh [--update] [--no-install]
+#   test/qa/bench/run.sh [--update] [--no-install]
 #
 # --update rewrites the tables instead of comparing them. Tables are compared only under the
 # compilers that they were made with; budgets always are. Installs what it needs, unless told not
@@ -14,7 +14,7 @@
 
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(cd "$(dirname "$0")/../../.." && pwd)
 work=$root/build/bench
 python=$work/venv/bin/python
 # shellcheck source=test/support/environment.sh
@@ -68,16 +68,16 @@ make_environment() {
     rm -rf "$work/venv"
     python3 -m venv "$work/venv" &&
         "$python" -m pip install --quiet --disable-pip-version-check \
-            -r "$root/test/bench/requirements.txt" &&
-        cp "$root/test/bench/requirements.txt" "$work/venv/requirements.txt"
+            -r "$root/test/qa/bench/requirements.txt" &&
+        cp "$root/test/qa/bench/requirements.txt" "$work/venv/requirements.txt"
 }
 
 mkdir -p "$work"
-if ! cmp -s "$root/test/bench/requirements.txt" "$work/venv/requirements.txt"; then
+if ! cmp -s "$root/test/qa/bench/requirements.txt" "$work/venv/requirements.txt"; then
     make_environment >"$work/install.log" 2>&1 ||
         skip "the emulator cannot be installed; see $work/install.log"
 fi
 
 # shellcheck disable=SC2086 # $update is one word or none
 export PYTHONDONTWRITEBYTECODE=1
-exec "$python" "$root/test/bench/bench.py" "$work" $update
+exec "$python" "$root/test/qa/bench/bench.py" "$work" $update

@@ -4,14 +4,14 @@
 
 # The ring between two threads under ThreadSanitizer:
 #
-#   test/proof/threads.sh [MILLIONS]      of bytes; 100 unless given
+#   test/qa/proof/threads.sh [MILLIONS]      of bytes; 100 unless given
 #
 # First with one order taken out, which ThreadSanitizer must find, or it would see nothing at all
 # (as that of GCC 12 does not: so by Clang).
 
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(cd "$(dirname "$0")/../../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -20,7 +20,7 @@ build() {
     name=$1
     shift
     clang -std=gnu99 -O2 -g -fsanitize=thread -pthread "$@" -I"$work/$name" -I"$root/lib/include" \
-        "$root/test/proof/threads.c" "$root/lib/src/tmini_ring.c" -o "$work/threads_$name"
+        "$root/test/qa/proof/threads.c" "$root/lib/src/tmini_ring.c" -o "$work/threads_$name"
 }
 
 command -v clang >/dev/null || { echo "SKIPPED: clang is not installed"; exit 0; }

@@ -4,7 +4,7 @@
 # What the release tests have in common. They get VERSION, ARCHIVES, ROOT, WORK, COMPILER and
 # GENERATOR.
 
-include(${CMAKE_CURRENT_LIST_DIR}/../steps.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/../../consumer/steps.cmake)
 
 # Unpacks the archive of that ending in WORK, which is emptied before.
 function(unpack ending)
@@ -24,7 +24,7 @@ endfunction()
 function(build source)
     run_or_fail(${CMAKE_COMMAND} -S ${source} -B ${WORK}/build -G ${GENERATOR}
         -DCMAKE_C_COMPILER=${COMPILER} ${ARGN})
-    run_or_fail(${CMAKE_COMMAND} --build ${WORK}/build)
+    run_or_fail(${CMAKE_COMMAND} --build ${WORK}/build --parallel 2)
 endfunction()
 
 function(expect_nothing_named)

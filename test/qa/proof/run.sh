@@ -4,8 +4,8 @@
 
 # Proves what proof_….c claim, with the model checker CBMC: for all values at once. Prints a table.
 #
-#   test/proof/run.sh [--quick] [--broken] [NAME …]
-#   test/proof/run.sh --fetch
+#   test/qa/proof/run.sh [--quick] [--broken] [NAME …]
+#   test/qa/proof/run.sh --fetch
 #
 # NAME: a proof, or the beginning of some proofs' names. --quick: only what takes seconds. --broken:
 # the library is broken in a copy, in a place for each proof, which must then fail.
@@ -16,7 +16,7 @@
 
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(cd "$(dirname "$0")/../../.." && pwd)
 fetched=$root/build-proof
 
 skip() {
@@ -54,8 +54,8 @@ fetch() {
 PATH=$fetched/bin:$PATH
 command -v python3 >/dev/null || skip "Python 3 is not installed"
 if ! command -v cbmc >/dev/null || ! command -v goto-instrument >/dev/null; then
-    skip "CBMC is not installed (package cbmc); on Debian 12, test/proof/run.sh --fetch gets it"
+    skip "CBMC is not installed (package cbmc); on Debian 12, test/qa/proof/run.sh --fetch gets it"
 fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-python3 "$root/test/proof/prove.py" --work "$work" "$@"
+python3 "$root/test/qa/proof/prove.py" --work "$work" "$@"

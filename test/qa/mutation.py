@@ -16,7 +16,7 @@ costs one quick compilation. The tests that are named like the source come first
 killed the most in the time they take. One that computes much longer than it should is stopped, and has
 noticed. A mutant that lives, but whose optimised machine code is that of the original, is none.
 
-A mutant that no test notices is a finding, unless test/mutants.txt has it with the reason why nobody can;
+A mutant that no test notices is a finding, unless test/qa/mutants.txt has it with the reason why nobody can;
 and so is an entry there of a mutant that there no longer is.
 """
 
@@ -37,8 +37,8 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-KNOWN = os.path.join(ROOT, "test", "mutants.txt")
+ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+KNOWN = os.path.join(ROOT, "test", "qa", "mutants.txt")
 
 # What is put in the place of what: C's operators and constants, as people confuse them.
 REPLACEMENTS = [

@@ -5,9 +5,9 @@
 # Fuzzes the parser and the driver with libFuzzer under the address and undefined-behaviour
 # sanitizers:
 #
-#   test/fuzz/run.sh [SECONDS]      for each target; 60 unless given
-#   test/fuzz/run.sh --keep         puts what was collected, minimised, into test/fuzz/corpus_….txt
-#   test/fuzz/run.sh --coverage     what of lib/ the kept inputs reach
+#   test/qa/fuzz/run.sh [SECONDS]      for each target; 60 unless given
+#   test/qa/fuzz/run.sh --keep         puts what was collected, minimised, into test/qa/fuzz/corpus_….txt
+#   test/qa/fuzz/run.sh --coverage     what of lib/ the kept inputs reach
 #
 # What it finds lies in build-fuzz/; give that file to build-fuzz/fuzz_… to see it again. The inputs
 # that it collected stay in build-fuzz/corpus_… and are where the next run goes on; the first one
@@ -15,7 +15,7 @@
 
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(cd "$(dirname "$0")/../../.." && pwd)
 support=$root/test/support
 build=$root/build-fuzz
 compiler=${TMINI_FUZZ_CC:-clang}
@@ -29,11 +29,11 @@ fi
 
 # sources TARGET: what it consists of, a file a line.
 sources() {
-    printf '%s\n' "$root/test/fuzz/$1.c" "$support/invariants.c" "$support/encoder.c" \
+    printf '%s\n' "$root/test/qa/fuzz/$1.c" "$support/invariants.c" "$support/encoder.c" \
         "$support/reference_decoder.c" "$root"/lib/src/*.c
     case $1 in
         fuzz_parser) printf '%s\n' "$support/reference_scans.c" "$support/random.c" ;;
-        *) printf '%s\n' "$root/test/fuzz/turning_lidar.c" ;;
+        *) printf '%s\n' "$root/test/qa/fuzz/turning_lidar.c" ;;
     esac
 }
 
@@ -53,7 +53,7 @@ unpack() {
     while read -r line; do
         count=$((count + 1))
         echo "$line" | base64 -d >"$build/corpus_$1/kept_$count"
-    done <"$root/test/fuzz/corpus_$1.txt"
+    done <"$root/test/qa/fuzz/corpus_$1.txt"
 }
 
 fuzz() {
@@ -75,8 +75,8 @@ keep() {
     for input in "$build"/kept/*; do
         base64 -w 0 "$input"
         echo
-    done >"$root/test/fuzz/corpus_$1.txt"
-    wc -lc "$root/test/fuzz/corpus_$1.txt"
+    done >"$root/test/qa/fuzz/corpus_$1.txt"
+    wc -lc "$root/test/qa/fuzz/corpus_$1.txt"
 }
 
 # Compiled without sanitizers, with counters.

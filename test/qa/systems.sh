@@ -7,7 +7,7 @@
 # folder whose name has spaces and accents. The user there has no root rights, but sudo. Prints a
 # table.
 #
-#   test/systems.sh [NAME …]    debian-12 debian-13 ubuntu-24.04 debian-12-i386; all unless given
+#   test/qa/systems.sh [NAME …]    debian-12 debian-13 ubuntu-24.04 debian-12-i386; all unless given
 #
 # Needs root and debootstrap, 12 GB of disk for the system under test, and a quarter of an hour for
 # each. Everything lies in build-systems/: NAME.demo.log and NAME.tests.log say what happened; a
@@ -17,7 +17,7 @@
 
 set -eu
 
-root=$(cd "$(dirname "$0")/.." && pwd)
+root=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=test/support/mirrors.sh
 . "$root/test/support/mirrors.sh"
 

@@ -20,8 +20,8 @@ import shutil
 import subprocess
 import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-FOLDERS = ("lib/include", "lib/src", "test/proof", "test/support")
+ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
+FOLDERS = ("lib/include", "lib/src", "test/qa/proof", "test/support")
 
 RING = ["tmini_ring.c"]
 FRAME = RING + ["tmini_frame.c"]
@@ -207,7 +207,7 @@ class Checker:
         defines = ["-D", 'TMINI_ATOMIC_HEADER="proof_atomic.h"']
         for define in case:
             defines += ["-D", define]
-        files = [f"{self.folder}/test/proof/{name}" for name in ["any.c"] + proof.files]
+        files = [f"{self.folder}/test/qa/proof/{name}" for name in ["any.c"] + proof.files]
         files += [f"{self.folder}/test/support/invariants.c"]
         files += [f"{self.folder}/lib/src/{name}" for name in proof.sources]
         self.demand("goto-cc", "-o", program, "--function", proof.function, *folders, *defines, *files)
