@@ -92,11 +92,14 @@ void receiver_feed(receiver_t *receiver, const uint8_t *bytes, size_t count)
 
 tmini_frame_type_t receiver_next(receiver_t *receiver)
 {
+    const bool had_work = tmini_parser_has_work(&receiver->parser);
     tmini_frame_type_t frame;
     do {
         frame = tmini_parser_next(&receiver->parser);
         check_accounts(receiver);
     } while (frame == TMINI_FRAME_MORE);
+    TEST_ASSERT_TRUE(had_work || frame == TMINI_FRAME_NONE);
+    TEST_ASSERT_FALSE(frame == TMINI_FRAME_NONE && tmini_parser_has_work(&receiver->parser));
     if (frame == TMINI_FRAME_PACKET) {
         tmini_packet_open(&receiver->packet, tmini_parser_frame(&receiver->parser));
     }

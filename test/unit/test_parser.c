@@ -209,6 +209,43 @@ void test_a_packet_is_delivered_with_its_last_byte_and_not_before(void)
     expect_pending(0);
 }
 
+/* Its first byte, its start sign, its header, all of it. */
+void test_a_candidate_is_no_work_until_it_can_be_looked_at_further(void)
+{
+    size_t moments[4] = {0};
+    size_t count = 0;
+    for (size_t i = 0; i < sizeof start_packet; i++) {
+        feed_byte(start_packet[i]);
+        if (tmini_parser_has_work(&receiver.parser)) {
+            moments[count++] = i + 1;
+            (void)receiver_next(&receiver);
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT(4, count);
+    TEST_ASSERT_EQUAL_UINT(1, moments[0]);
+    TEST_ASSERT_EQUAL_UINT(2, moments[1]);
+    TEST_ASSERT_EQUAL_UINT(10, moments[2]);
+    TEST_ASSERT_EQUAL_UINT(13, moments[3]);
+}
+
+void test_a_frame_delivered_is_no_work_and_a_byte_after_it_is(void)
+{
+    feed(start_packet, sizeof start_packet);
+    expect_frame(TMINI_FRAME_PACKET);
+    TEST_ASSERT_FALSE(tmini_parser_has_work(&receiver.parser));
+    feed_byte(0xAA);
+    TEST_ASSERT_TRUE(tmini_parser_has_work(&receiver.parser));
+}
+
+void test_a_candidate_whose_rest_was_lost_is_work(void)
+{
+    feed(start_packet, 5);
+    expect_nothing();
+    TEST_ASSERT_FALSE(tmini_parser_has_work(&receiver.parser));
+    tmini_ring_gap(&receiver.ring);
+    TEST_ASSERT_TRUE(tmini_parser_has_work(&receiver.parser));
+}
+
 void test_packets_in_a_row_are_delivered_one_at_a_time(void)
 {
     feed(start_packet, 13);

@@ -121,6 +121,14 @@ tmini_status_t tmini_parser_await(tmini_parser_t *parser, const tmini_reply_head
 /** The bytes that wait in the ring for more to come. */
 size_t tmini_parser_pending(const tmini_parser_t *parser);
 
+/** True if tmini_parser_next() has bytes to look at: those that the candidate needs next have come,
+ * or will not come because some were lost. While it is false, the call returns TMINI_FRAME_NONE. */
+static inline bool tmini_parser_has_work(const tmini_parser_t *parser)
+{
+    const tmini_frame_t *const frame = &parser->frame;
+    return tmini_ring_ahead(frame->ring) >= (size_t)frame->size + parser->need;
+}
+
 /** The place in the stream of the byte behind the frame delivered last, to be compared by
  * tmini_ring_distance(): where parsing goes on. */
 static inline size_t tmini_parser_position(const tmini_parser_t *parser)
