@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""The Python package, against `tmini decode` and the simulated lidar."""
+
+import json
+import os
+import pathlib
+import struct
+import subprocess
+import time
+
+import numpy as np
+import pytest
+
+import tmini
+
+RECORDINGS = pathlib.Path(__file__).resolve().parents[1] / "recordings"
+TOOL, SIM = os.environ["TMINI_TOOL"], os.environ["TMINI_SIM"]
+
+
+# ------------------------------------------------------------------------------------- recordings
+
+
+def decode(path, *options):
+    """What the tool makes of it."""
+    result = subprocess.run([TOOL, "decode", "-q", "--json", *options, path],
+                            capture_output=True, check=False)
+    return [json.loads(line) for line in result.stdout.splitlines()]
+
+
+def as_json(scan):
+    millimetres = np.nan_to_num(scan.ranges_m * 1000).round().astype(int)
+    return {
+        "scan": scan.number, "time_ms": round(scan.start_s * 1000),
+        "frequency_hz": scan.frequency_hz, "complete": scan.complete, "packets": scan.packets,
+        "gaps": scan.gaps, "dropped": scan.dropped, "checksum_errors": scan.checksum_errors,
+        "faults": scan.faults,
+        "points": [list(point) for point in zip(scan.angles_deg.tolist(), millimetres.tolist(),
+                                                scan.intensities.tolist(), scan.flags.tolist())],
+    }
+
+
+def chunked(content):
+    """As `tmini record` writes it: 100 bytes each 8 ms, and a pause of two seconds."""
+    chunks = [content[i:i + 100] for i in range(0, len(content), 100)]
+    pause = len(chunks) // 2
+    return b"\x89tmini\x01\n" + b"".join(
+        struct.pack("<IH", 2_000_000 if i == pause else 8000, len(chunk)) + chunk
+        for i, chunk in enumerate(chunks))
+
+
+@pytest.mark.parametrize("path", sorted(RECORDINGS.glob("*.bin")), ids=lambda path: path.stem)
+def test_a_recording_holds_the_scans_that_the_tool_decodes(path, tmp_path):
+    assert [as_json(scan) for scan in tmini.read(path)] == decode(path)
+    timed = tmp_path / "timed.tmini"
+    timed.write_bytes(chunked(path.read_bytes()))
+    assert [as_json(scan) for scan in tmini.read(timed)] == decode(timed)
+
+
+def test_a_minute_of_recording_takes_a_sixth_of_a_second(tmp_path):
+    path = tmp_path / "minute.bin"
+    subprocess.run([SIM, "--write", path, "--seconds", "60"], check=True)
+    begun = time.process_time()
+    assert sum(scan.complete for scan in tmini.read(path)) > 340
+    assert time.process_time() - begun < 10 / 60
+
+
+def test_angles_of_ros_count_the_other_way_round():
+    scan = next(tmini.read(RECORDINGS / "sim-6hz.bin"))
+    for degrees, radians in zip(scan.angles_deg, scan.angles_rad):
+        turned = -degrees if degrees <= 180 else 360 - degrees
+        assert radians == pytest.approx(turned * np.pi / 180, abs=1e-12)
+
+
+def test_points_are_a_quarter_of_a_millisecond_apart():
+    scan = list(tmini.read(RECORDINGS / "sim-6hz.bin"))[-2]
+    assert np.median(np.diff(scan.times_s)) == pytest.approx(1 / 4000, rel=0.05)
+    assert scan.times_s[0] >= scan.start_s
+
+
+def test_a_recording_that_is_not_there_is_an_error():
+    with pytest.raises(FileNotFoundError):
+        next(tmini.read("nothing.tmini"))
+
+
+# -------------------------------------------------------------------------------------- live ones
+
+
+class Simulator:
+    """tmini-sim on a pseudo-terminal whose name stays, as that of a USB adapter does."""
+
+    def __init__(self, folder):
+        self.port = str(folder / "lidar")
+        self.log = folder / "log"
+        self.process = None
+
+    def start(self, *options):
+        command = [SIM, "--pty", "--log", str(self.log), *options]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        os.symlink(self.process.stdout.readline().strip(), self.port)
+        return self.port
+
+    def stop(self):
+        if self.process is not None:
+            os.unlink(self.port)
+            self.process.terminate()
+            self.process.wait()
+            self.process.stdout.close()
+            self.process = None
+
+
+@pytest.fixture
+def simulator(tmp_path):
+    simulated = Simulator(tmp_path)
+    yield simulated
+    simulated.stop()
+
+
+def test_a_lidar_scans_at_the_frequency_wanted_and_is_stopped_in_the_end(simulator):
+    with tmini.Lidar(simulator.start(), frequency_hz=10) as lidar:
+        scans = [scan for scan, _ in zip(lidar, range(15))]
+        assert lidar.info == tmini.Info(151, "1.2", 1, "2026031700012345")
+        assert lidar.is_scanning
+        assert lidar.faults == tmini.Fault(0)
+    assert all(scan.complete for scan in scans)
+    assert scans[-1].frequency_hz == pytest.approx(10, abs=0.2)
+    assert len(scans[-1]) == pytest.approx(400, abs=5)
+    assert abs(scans[-1].times_s[-1] - time.monotonic()) < 3
+    # The room: 2.2 m to the left wall, 1.7 m to the one behind.
+    for degrees, metres in ((270, 2.2), (180, 1.7)):
+        near = np.abs(scans[-1].angles_deg - degrees) < 2
+        assert np.nanmedian(scans[-1].ranges_m[near]) == pytest.approx(metres, abs=0.02)
+    assert lidar.read() is None
+    time.sleep(0.1)
+    assert "idle" in simulator.log.read_text().splitlines()[-1]
+
+
+def test_a_second_of_scanning_takes_20_ms_of_processor_time(simulator):
+    with tmini.Lidar(simulator.start(), frequency_hz=12) as lidar:
+        begun, used = time.monotonic(), time.process_time()
+        while time.monotonic() - begun < 2:
+            lidar.read()
+        assert (time.process_time() - used) / (time.monotonic() - begun) < 0.02
+
+
+def test_after_the_cable_was_out_it_goes_on(simulator):
+    with tmini.Lidar(simulator.start()) as lidar:
+        assert lidar.read(1) is not None
+        simulator.stop()
+        while lidar.read(0.5) is not None:
+            pass
+        assert not lidar.is_scanning
+        simulator.start()
+        assert lidar.read(8).gaps >= 0
+        assert lidar.counters["losses"] == 1
+
+
+def test_a_slow_program_gets_the_newest_scan(simulator):
+    with tmini.Lidar(simulator.start()) as lidar:
+        first = lidar.read(1)
+        time.sleep(1)
+        scan = lidar.read(1)
+        assert scan.number > first.number + 2
+        assert time.monotonic() - scan.start_s < 0.5
+
+
+def test_a_program_that_wants_all_scans_keeps_a_backlog(simulator):
+    with tmini.Lidar(simulator.start(), backlog=20) as lidar:
+        time.sleep(1)
+        assert [lidar.read(1).number for _ in range(4)] == [1, 2, 3, 4]
+
+
+def test_a_lidar_on_a_socket_scans():
+    process = subprocess.Popen([SIM, "--tcp", "0"], stdout=subprocess.PIPE, text=True)
+    try:
+        with tmini.Lidar("tcp:" + process.stdout.readline().strip()) as lidar:
+            assert lidar.read(1) is not None
+    finally:
+        process.terminate()
+        process.communicate()
+
+
+def test_what_the_lidar_reports_is_in_each_scan(simulator):
+    with tmini.Lidar(simulator.start("--covered")) as lidar:
+        for scan in lidar:
+            if scan.faults:
+                break
+    assert scan.faults == tmini.Fault.DATA
+    assert np.isnan(scan.ranges_m).all()
+
+
+def test_a_silent_line_is_an_error_that_says_what_to_look_at():
+    _, device = os.openpty()
+    with pytest.raises(tmini.LidarError, match="not one byte"):
+        tmini.Lidar(os.ttyname(device), timeout=0.5)
+
+
+def test_a_port_that_is_not_there_is_an_error_or_waited_for(simulator):
+    with pytest.raises(OSError):
+        tmini.Lidar(simulator.port)
+    with tmini.Lidar(simulator.port, timeout=None) as lidar:
+        assert lidar.read(0.1) is None
+        simulator.start()
+        assert lidar.read(5) is not None
+
+
+@pytest.mark.parametrize("wrong", [5.9, 12.1, 6.05])
+def test_a_frequency_that_the_lidar_does_not_have_is_refused(wrong):
+    with pytest.raises(ValueError):
+        tmini.Lidar("tcp:127.0.0.1:1", frequency_hz=wrong)
+
+
+def test_an_address_without_a_port_is_refused():
+    with pytest.raises(ValueError):
+        tmini.Lidar("tcp:robot")
