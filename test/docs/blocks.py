@@ -279,9 +279,13 @@ def check_ld(block, place):
     run(need("ld"), "-r", "-T", script, "-o", os.devnull, "-b", "binary", script)
 
 
+def check_python(block, _place):
+    compile(block.text, str(block), "exec")
+
+
 CHECKS = {"c": check_c, "cpp": check_cxx, "cmake": check_cmake, "sh": check_sh, "ini": check_ini,
           "json": check_json, "yaml": check_yaml, "conf": check_conf, "dts": check_dts,
-          "ld": check_ld}
+          "ld": check_ld, "python": check_python}
 
 
 class Place:
@@ -305,7 +309,7 @@ def check(block, place):
         CHECKS[block.language](block, place)
     except Failed as failure:
         return f"{block}: {failure}", None
-    except (configparser.Error, json.JSONDecodeError) as failure:
+    except (configparser.Error, json.JSONDecodeError, SyntaxError) as failure:
         return f"{block}: {failure}", None
     except Missing as reason:
         return None, str(reason)
