@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Uses of tmini and tmini-sim in documents: each command and option must be one that --help tells."""
+"""Uses of tmini and tmini-sim in documents: each command and option must be one that --help lists."""
 
 import re
 import subprocess
@@ -43,7 +43,7 @@ def spans(path):
 
 
 def unknown_options(text, words):
-    """Those of `words` that the help does not tell. Short ones may be joined: -n3, -qn1."""
+    """Those of `words` that the help does not list. Short ones may be joined: -n3, -qn1."""
     known = options(text)
     return [word for word in (word.split("=")[0].strip("[]") for word in words)
             if re.match(r"--?[a-zA-Z]", word) and word not in known

@@ -39,7 +39,7 @@ have_apt() {
 }
 
 # is_settled COMMAND|FILE: nothing is to be done about it. Where a file lies is only known on
-# systems that have Debian's packages; elsewhere the compiler will tell.
+# systems that have Debian's packages; elsewhere the compiler will report it.
 is_settled() {
     is_present "$1" && return
     case $1 in
@@ -86,7 +86,7 @@ can_install() {
     have_apt && { [ "$(id -u)" -eq 0 ] || is_present sudo; }
 }
 
-# Without a terminal nobody is there to answer: sudo then must do without a password.
+# Without a terminal no one can answer: sudo must then work without a password.
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then
         "$@" </dev/null
@@ -124,7 +124,7 @@ is_available() {
     esac
 }
 
-# Reduces the optional packages to those that apt knows, and tells the others.
+# Reduces the optional packages to those that apt knows, and reports the others.
 drop_unavailable() {
     available=
     for package in $optional_packages; do
@@ -161,7 +161,7 @@ install_with_apt() {
     quietly apt_get install -y $required_packages $optional_packages || install_separately
 }
 
-# True when all that is needed is there; tells what is not.
+# True when all that is needed is there; reports what is not.
 check_required() {
     missing=
     for item in $required_checks; do

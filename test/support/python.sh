@@ -4,7 +4,7 @@
 # shellcheck disable=SC2034 # the packages' names are for the sourcing script
 
 # Test tools that are Python packages, each in a virtual environment of its own. To be sourced
-# behind packages.sh.
+# after packages.sh.
 
 # Models microcontrollers down to their registers.
 labwired_packages="labwired==0.25.0"

@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Which scans a sequence of packets makes, as directly as docs/design.md ("No complete scan mixes
- * revolutions") can be written down: by looking at all of them, those behind included. The library
+ * revolutions") can be written down: by looking at all of them, later ones included. The library
  * sees one packet at a time; it is compared with this. */
 
 #ifndef REFERENCE_SCANS_H
@@ -17,10 +17,10 @@ typedef struct {
     size_t packets;
     size_t gaps;       /* between them, or before the one that ended it. */
     bool is_whole;     /* The circle is full, without a gap. */
-    uint8_t decihertz; /* From the start packet behind it; 0: none. */
+    uint8_t decihertz; /* From the start packet after it; 0: none. */
 } reference_scan_t;
 
-/* Finds the first scan that begins at items[from] or behind, and is ended. Returns false if none
+/* Finds the first scan that begins at items[from] or later, and has ended. Returns false if none
  * is. The items are those of one decoding, in order, and nothing was lost before it. */
 bool reference_scan(const reference_item_t *items, size_t count, size_t from,
                     reference_scan_t *scan);

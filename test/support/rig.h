@@ -105,7 +105,7 @@ void rig_feed_point_packet(uint16_t distance_mm); /* 4 samples. */
 /* A start packet and four point packets, as units send them that have no CT information. */
 void rig_feed_plain_turn(uint16_t distance_mm);
 
-/* The same from a unit with CT information, which tells this health; with the LastCRC of the turn
+/* The same from a unit with CT information, which reports this health; with the LastCRC of the turn
  * before. That turn is then over: it is the one that is judged. */
 void rig_feed_turn(uint8_t health, uint16_t distance_mm);
 

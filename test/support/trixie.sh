@@ -31,7 +31,7 @@ convert_deb822() {
     ' "$1"
 }
 
-# The same for a file with one source a line: deb [options] URI bookworm main …
+# The same for a file with one source per line: deb [options] URI bookworm main …
 convert_one_line() {
     sed -n 's/^[ \t]*deb[ \t]\(.*\)[ \t]bookworm[ \t].*\bmain\b.*$/deb \1 trixie main/p' "$1"
 }

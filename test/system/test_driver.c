@@ -556,7 +556,7 @@ static void reports(uint8_t expected)
     (void)world_run_ms(&world, WORLD_FAULT_MS);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&world.lidar));
     TEST_ASSERT_EQUAL_UINT32(2, count(TMINI_EVENT_FAULTS_CHANGED));
-    /* It was told, not "repaired". */
+    /* It was reported, not "repaired". */
     TEST_ASSERT_EQUAL_UINT32(losses, count(TMINI_EVENT_LOST));
     TEST_ASSERT_EQUAL_UINT32(commands, world.sim.counts.commands);
     check_world(&world);

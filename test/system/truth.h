@@ -68,7 +68,7 @@ void truth_arrived(truth_t *truth, const uint8_t *bytes, size_t count);
 /* The host has seen the bytes before `end`, and then none for so long that it gives up on more. */
 void truth_fell_silent(truth_t *truth, uint64_t end);
 
-/* Packets that end before `end` need not have been delivered: nobody was listening. */
+/* Packets that end before `end` need not have been delivered: the library was not receiving. */
 void truth_forget(truth_t *truth, uint64_t end);
 
 /* Packets that end at `end` or before must have been delivered. */

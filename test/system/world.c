@@ -307,7 +307,7 @@ static void note_faults(world_t *world)
 {
     uint8_t faults = sim_health(&world->sim);
 
-    /* What a unit without CT information can tell (section 8), and what a blocked rotor hides. */
+    /* What a unit without CT information can report (section 8), and what a blocked rotor hides. */
     if (world->sim.window_covered || world->sim.rotor_blocked) {
         faults |= SIM_HEALTH_DATA;
     }

@@ -70,7 +70,7 @@ typedef struct {
     uint32_t polls;
     uint64_t points;            /* In scans and packets, all compared. */
     uint32_t packets_checked;   /* Sent, arrived unharmed, and delivered. */
-    uint32_t packets_by_chance; /* Damaged, but the checksum matches: no parser can tell. */
+    uint32_t packets_by_chance; /* Damaged, but the checksum matches: no parser can know. */
     uint32_t packets_split;     /* Arrived with a silence inside, and were given up. */
     uint32_t packets_eclipsed;  /* Began inside one of those by chance. */
     uint32_t recoveries;        /* Of which the time was measured. */
@@ -91,7 +91,7 @@ typedef struct {
     tmini_point_t points[WORLD_POINTS];
     size_t dma_position;
     uint64_t fed;             /* Bytes that came since the library was set up, */
-    uint64_t told;            /* and those of them that it has been told of. */
+    uint64_t told;            /* and those of them that it knows of. */
     uint64_t fed_before;      /* Bytes that came before that. */
     uint64_t silent_since_us; /* The last poll that found new bytes, */
     uint64_t told_at_poll;    /* which were these. */
