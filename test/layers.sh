@@ -22,13 +22,15 @@ tmini_parser    tmini_ring tmini_frame
 tmini_packet    tmini_ring tmini_frame
 tmini_reply
 tmini_ct
-tmini_builder      tmini_packet
+tmini_builder   tmini_packet
+tmini_decoder   tmini_parser tmini_packet tmini_ct tmini_builder
+tmini_line      tmini_ring
 tmini_command   tmini_ring tmini_parser tmini_reply
 tmini_recovery  tmini_command
 tmini_monitor   tmini_packet tmini_ct
-tmini           tmini_ring tmini_parser tmini_frame tmini_packet tmini_reply tmini_ct tmini_builder
-tmini           tmini_command tmini_recovery tmini_monitor
-tmini_blocking  tmini
+tmini           tmini_ring tmini_parser tmini_frame tmini_packet tmini_reply tmini_ct tmini_decoder
+tmini           tmini_command tmini_recovery tmini_monitor tmini_line
+tmini_blocking  tmini tmini_command
 tmini_sectors   tmini_packet tmini_frame
 tmini_ranges
 tmini_mount
@@ -78,8 +80,8 @@ written=$(
     written_outside monitor tmini_monitor.c
     written_outside link tmini.c
     written_outside ring -
-    written_outside parser -
-    written_outside builder -
+    written_outside line tmini_line.c
+    written_outside decoder -
 )
 
 if [ -n "$calls$written" ]; then

@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -60,7 +61,9 @@ static void set_up(device_t *device)
         .timing = &patience,
     };
     tmini_posix_init(&device->serial, device->path);
-    (void)tmini_init(&device->lidar, &config);
+    if (tmini_init(&device->lidar, &config) != TMINI_OK) {
+        abort(); /* Nothing in it depends on the user. */
+    }
     stream_init(&device->stream);
 }
 

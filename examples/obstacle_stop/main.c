@@ -104,7 +104,9 @@ static tmini_posix_status_t set_up(const char *path)
         .timing = &timing,
     };
     tmini_posix_init(&serial, path);
-    (void)tmini_init(&lidar, &config);
+    if (tmini_init(&lidar, &config) != TMINI_OK) {
+        return TMINI_POSIX_FAILED;
+    }
     return tmini_posix_start(&serial, &lidar);
 }
 

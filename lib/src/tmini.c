@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
+/* What the user wants, and the state it is in; events; the public functions. */
+
 #include "tmini/tmini.h"
 
 #include "tmini_driver.h"
@@ -9,21 +11,10 @@ const tmini_timing_t tmini_timing_default = {
     .frame_timeout_ms = 100, /* A line at work: 5 ms; but a task or bridge may hold bytes back. */
     .max_pause_ms = 30,      /* A line at work: a packet every 10 ms. */
     .quiet_line_ms = 50,
-    .stop_timeout_ms = 600, /* Twice the longest tail seen after a stop (section 9.10). */
     .reply_timeout_ms = 2000,
-    .write_timeout_ms = 100,
-    .spin_up_timeout_ms = 3000,
-    .data_timeout_ms = 1000,
-    .rotation_timeout_ms = 3000,
-    .reboot_time_ms = 5000,
-    .back_off_ms = 500,
     .back_off_max_ms = 4000,
     .max_attempts = 3,
 };
-
-/* Nobody knows what happened on the line, or in layers below that hold bytes back, since the last
- * look at it: it counts as no more silence than this. */
-#define UNSEEN_SILENCE_MAX_MS 50
 
 /* The events with which commands end. */
 #define END_EVENTS                                                                         \
@@ -34,25 +25,27 @@ const tmini_timing_t tmini_timing_default = {
 /* Each event has a bit in tmini_t.pending. */
 typedef char events_fit_their_mask[TMINI_EVENT_MORE <= 16 ? 1 : -1];
 
-/* More bytes at a look than the wire can have brought since the last one, and in a UART's FIFO,
- * come from a layer that holds them back. */
-#define HELD_MS 16u
-
-/* What becomes of a frame costs as much as looking at its bytes once again, and at so many more: a
- * packet's samples are read for its points, its time is told, and its place in the scan found. */
+/* Processing a frame costs as much as looking at its bytes once again, and 44 bytes more: a
+ * packet's samples are read for its points, its time is computed, and its place in the scan
+ * found. */
 #define FRAME_EFFORT 44u
-
-/* Bytes are doubtful if the line has paused at them, or nobody knows how many came. Others may then
- * be missing before each packet that begins among them. As for the first packet behind them:
- *
- *   AHEAD   the pause was before them: there too, if no packet begins among them
- *   MARKED  the same, and one has begun among them: not there
- *   AROUND  the pause may as well have been behind them: there in any case */
-enum { DOUBT_NONE, DOUBT_AHEAD, DOUBT_MARKED, DOUBT_AROUND };
 
 static bool is_set_up(const tmini_t *lidar)
 {
     return lidar != NULL && lidar->link.port != NULL;
+}
+
+/* A command of the user's is under way that ends with an event; a start, too. */
+static bool is_busy(const tmini_t *lidar)
+{
+    return lidar->state > TMINI_STATE_IDLE && lidar->state < TMINI_STATE_SCANNING;
+}
+
+/* The driver sends what it takes to scan. */
+static bool is_to_scan(const tmini_t *lidar)
+{
+    return lidar->state >= TMINI_STATE_STARTING &&
+           (lidar->state != TMINI_STATE_RECOVERING || !lidar->is_recovery_off);
 }
 
 /* ------------------------------------------------------------------------------------- events */
@@ -74,195 +67,226 @@ static tmini_event_t take_event(tmini_t *lidar)
     return (tmini_event_t)event;
 }
 
-/* --------------------------------------------------------------------------------------- time */
-
-/* How long so many bytes take a lidar that scans: 13.1 a millisecond (section 1), less some for the
- * clocks' sake; 12.5. */
-static uint32_t transit_ms(size_t bytes)
+static void fail(tmini_t *lidar, int status)
 {
-    return (uint32_t)bytes * 41u >> 9;
+    lidar->command_error = (int8_t)status;
+    raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
 }
 
-/* How long they take on the wire at least: 23 a millisecond. */
-static uint32_t wire_ms(size_t bytes)
+/* The event with which a query ends well. */
+static tmini_event_t end_event(tmini_command_code_t operation)
 {
-    return (uint32_t)bytes * 45u >> 10;
+    switch (operation) {
+    case TMINI_COMMAND_STOP:
+        return TMINI_EVENT_STOPPED;
+    case TMINI_COMMAND_GET_INFO:
+        return TMINI_EVENT_INFO;
+    case TMINI_COMMAND_GET_HEALTH:
+        return TMINI_EVENT_HEALTH;
+    case TMINI_COMMAND_REBOOT:
+        return TMINI_EVENT_REBOOTED;
+    default:
+        return TMINI_EVENT_FREQUENCY;
+    }
 }
 
-/* Bytes have come, `passed_ms` after the last look. While the lidar scans they never pause for
- * long: if they are too few for the time since others came, then others may be missing, before
- * or among them. If they do not come straight from the wire, but a layer below has held them
- * back, the pause may as well be behind them, or go on: what is left of the time counts for the
- * next ones. And if there are more than the ring holds, a gap of DMA, nobody knows how many
- * there were. */
-static void note_bytes(tmini_t *lidar, size_t count, uint32_t passed_ms)
+/* What is heard leaves the line not surely quiet. */
+TMINI_NOINLINE static void look(tmini_t *lidar)
 {
-    tmini_link_t *const link = &lidar->link;
-    const uint16_t max_pause_ms = link->timing->max_pause_ms;
-    const uint32_t due_ms = transit_ms(count);
-    const uint32_t pause_ms = link->now_ms - link->heard_ms;
-    const bool is_gap = count > lidar->ring.size;
-    if (is_gap || wire_ms(count) > passed_ms + HELD_MS) {
-        lidar->are_held = true;
-    }
-    const bool are_held = lidar->are_held;
-    lidar->silent_ms = 0;
-    lidar->are_held = false;
-    if (is_gap || (max_pause_ms > 0 && pause_ms > max_pause_ms + due_ms)) {
-        lidar->doubt = are_held ? DOUBT_AROUND : DOUBT_AHEAD;
-        lidar->doubtful_to = link->received;
-    } else if (are_held && pause_ms > due_ms) {
-        link->heard_ms += due_ms;
-        return;
-    }
-    link->heard_ms = link->now_ms;
-}
-
-static void note_silence(tmini_t *lidar, uint32_t passed_ms)
-{
-    const uint32_t seen_ms = passed_ms < UNSEEN_SILENCE_MAX_MS ? passed_ms : UNSEEN_SILENCE_MAX_MS;
-    const uint32_t silent_ms = lidar->silent_ms + seen_ms;
-    lidar->silent_ms = (uint16_t)(silent_ms < UINT16_MAX ? silent_ms : UINT16_MAX);
-}
-
-/* Reads the clock and notes whether bytes have come, or may have. */
-static void update_time(tmini_t *lidar)
-{
-    tmini_link_t *const link = &lidar->link;
-    const size_t head = tmini_ring_head(&lidar->ring);
-    const size_t count = tmini_ring_distance(link->received, head);
-    const uint32_t now_ms = link->port->now_ms(link->port_context);
-    const uint32_t passed_ms = now_ms - link->now_ms;
-    link->now_ms = now_ms;
-    link->received = head;
-    if (passed_ms > link->timing->max_pause_ms) {
-        lidar->are_held = true;
-    }
-    if (count > 0) {
-        note_bytes(lidar, count, passed_ms);
-    } else if (tmini_ring_is_full(&lidar->ring)) {
-        lidar->silent_ms = 0; /* Who knows what there was no room for? */
-    } else {
-        note_silence(lidar, passed_ms);
-        return;
-    }
-    if (lidar->state == TMINI_STATE_IDLE) {
+    if (tmini_line_look(lidar) && lidar->state == TMINI_STATE_IDLE) {
         lidar->state = TMINI_STATE_UNKNOWN;
     }
 }
 
-/* When the packet delivered last came: before the bytes behind it. Those that came during this poll
- * have not been noted yet: a pause before them is to be known first. */
-static uint32_t arrival_ms(tmini_t *lidar)
+/* ------------------------------------------------------------------------------ wanted to scan */
+
+/* Listening, nothing is sent: until a packet comes. Reception is begun anew every so often. */
+static void listen(tmini_t *lidar)
 {
-    const size_t position = tmini_parser_position(&lidar->parser);
-    if (tmini_ring_head(&lidar->ring) != lidar->link.received) {
-        update_time(lidar);
-    }
-    return lidar->link.now_ms - transit_ms(tmini_ring_distance(position, lidar->link.received));
+    tmini_command_wait(lidar, TMINI_DATA_TIMEOUT_MS);
 }
 
-/* ----------------------------------------------------------------------------------- commands */
-
-static void fail(tmini_t *lidar, tmini_status_t status)
+/* From the foot of the ladder. */
+static void begin_start(tmini_t *lidar, bool is_idle)
 {
-    lidar->command_error = (int8_t)status;
-    raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
+    lidar->start_follows = false;
+    lidar->state = TMINI_STATE_STARTING;
+    if (lidar->is_listen_only) {
+        listen(lidar);
+    } else {
+        tmini_recovery_start(lidar, is_idle);
+    }
+}
+
+/* The same for a lidar that scans, or is about to: so the wanted frequency is set. */
+static void restart(tmini_t *lidar)
+{
+    if (lidar->state != TMINI_STATE_RECOVERING) {
+        lidar->state = TMINI_STATE_STARTING;
+    }
+    tmini_recovery_start(lidar, false);
+}
+
+static void restart_reception(const tmini_t *lidar)
+{
+    const tmini_port_t *const port = lidar->link.port;
+    if (port->restart != NULL) {
+        port->restart(lidar->link.port_context);
+    }
 }
 
 static void lose(tmini_t *lidar)
 {
     lidar->state = TMINI_STATE_RECOVERING;
     raise_event(lidar, TMINI_EVENT_LOST);
+    tmini_command_forget_frequency(lidar);
+    restart_reception(lidar);
     tmini_recovery_begin(lidar);
-}
-
-/* The user's command has ended. What has been heard behind its last reply leaves the line not
- * surely quiet. */
-static void end_command(tmini_t *lidar, int result)
-{
-    const bool is_quiet = tmini_parser_pending(&lidar->parser) == 0;
-    lidar->state = is_quiet && lidar->command.phase == TMINI_PHASE_IDLE ? TMINI_STATE_IDLE
-                                                                        : TMINI_STATE_UNKNOWN;
-    if (result == TMINI_OK) {
-        raise_event(lidar, (tmini_event_t)lidar->end_event);
-    } else {
-        fail(lidar, (tmini_status_t)result);
+    if (lidar->is_listen_only) {
+        listen(lidar);
     }
 }
 
-/* Draws the consequences of how what is under way stands. While scanning, what ends is the time in
- * which a packet should have come. */
+/* An attempt to start or to recover has failed. A lidar that was lost before has been reported.
+ * False if there is to be no other. */
+static bool fail_attempt(tmini_t *lidar, int result)
+{
+    const bool is_start = lidar->state == TMINI_STATE_STARTING;
+    restart_reception(lidar);
+    if (is_start) {
+        fail(lidar, result);
+    }
+    if (is_start && lidar->is_recovery_off) {
+        lidar->state = TMINI_STATE_UNKNOWN;
+        return false;
+    }
+    return true;
+}
+
+/* While the lidar is to scan: a rung of the ladder has ended. Until a packet comes, a start ends by
+ * failing. A frequency that could not be set is reported when scanning begins. */
+static void climb(tmini_t *lidar, tmini_command_code_t operation, int result, bool is_idle)
+{
+    if (lidar->is_listen_only) {
+        restart_reception(lidar);
+        listen(lidar);
+        return;
+    }
+    if (operation == TMINI_COMMAND_GET_FREQUENCY) {
+        if (result == TMINI_OK) {
+            raise_event(lidar, TMINI_EVENT_FREQUENCY);
+        } else if (lidar->state == TMINI_STATE_STARTING) {
+            lidar->command_error = (int8_t)result;
+        }
+    } else if (result != TMINI_OK && !fail_attempt(lidar, result)) {
+        return;
+    }
+    tmini_recovery_go_on(lidar, operation, result, is_idle);
+}
+
+/* The first packet has come. A start that is no longer needed is not sent, and its reply not
+ * awaited (section 2). */
+static void begin_scanning(tmini_t *lidar)
+{
+    (void)tmini_command_end(lidar, TMINI_ERROR_ABORTED);
+    if (lidar->state == TMINI_STATE_RECOVERING) {
+        tmini_recovery_end(lidar);
+        raise_event(lidar, TMINI_EVENT_RECOVERED);
+    } else {
+        tmini_recovery_forget(lidar);
+        raise_event(lidar, TMINI_EVENT_STARTED);
+        if (!tmini_command_has_frequency(lidar)) {
+            fail(lidar, lidar->command_error);
+        }
+    }
+    lidar->state = TMINI_STATE_SCANNING;
+    tmini_decoder_restart(&lidar->decoder);
+    tmini_monitor_begin(lidar);
+}
+
+/* ------------------------------------------------------------------------------------- commands */
+
+/* The user's command has ended. */
+static void end_command(tmini_t *lidar, tmini_command_code_t operation, int result, bool is_idle)
+{
+    lidar->state = is_idle ? TMINI_STATE_IDLE : TMINI_STATE_UNKNOWN;
+    if (result == TMINI_OK) {
+        raise_event(lidar, end_event(operation));
+    } else {
+        fail(lidar, result);
+    }
+    if (lidar->start_follows) {
+        begin_start(lidar, is_idle);
+    }
+}
+
+/* Acts on the result of what is under way. While scanning, what ends is the time in which a packet
+ * should have come. What has been heard after the last reply leaves the line not surely quiet. */
 static void take_result(tmini_t *lidar, int result)
 {
+    const tmini_command_code_t operation = (tmini_command_code_t)lidar->command.operation;
     if (result == TMINI_UNDER_WAY) {
         return;
     }
-    tmini_command_end(lidar, result);
-    if (lidar->state == TMINI_STATE_RECOVERING) {
-        tmini_recovery_go_on(lidar, result);
-    } else if (lidar->state == TMINI_STATE_SCANNING) {
+    const bool is_idle =
+        tmini_command_end(lidar, result) && tmini_parser_pending(&lidar->decoder.parser) == 0;
+    if (lidar->state == TMINI_STATE_SCANNING) {
         lose(lidar);
+    } else if (lidar->state == TMINI_STATE_STARTING || lidar->state == TMINI_STATE_RECOVERING) {
+        climb(lidar, operation, result, is_idle);
     } else {
-        end_command(lidar, result);
+        end_command(lidar, operation, result, is_idle);
     }
 }
 
-static tmini_state_t state_until(tmini_event_t end_event)
+/* What a command from the user changes, whichever it is. The end of an earlier one, not polled yet,
+ * is not the end of this one. */
+static void take_over(tmini_t *lidar)
 {
-    switch (end_event) {
-    case TMINI_EVENT_STARTED:
-        return TMINI_STATE_STARTING;
-    case TMINI_EVENT_STOPPED:
-        return TMINI_STATE_STOPPING;
-    default:
-        return TMINI_STATE_BUSY;
-    }
+    look(lidar);
+    tmini_recovery_forget(lidar);
+    lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
 }
 
 /* The first bytes leave at once, as far as the port takes them. If it refuses, it is asked once
  * more when time has passed, and until then there is nothing to do: a loop that polls until then,
- * and asks again whenever a command has failed, comes to an end. A lidar that is known to be idle
- * needs no stop before. */
-static void begin(tmini_t *lidar, tmini_command_code_t operation, tmini_event_t end_event,
-                  uint16_t frequency_chz)
+ * and asks again whenever a command has failed, ends. */
+static void send_first(tmini_t *lidar)
 {
-    const bool is_idle = lidar->state == TMINI_STATE_IDLE;
-    lidar->state = (uint8_t)state_until(end_event);
-    lidar->end_event = (uint8_t)end_event;
-    tmini_command_begin(lidar, operation, lidar->link.timing->max_attempts, frequency_chz);
-    if (is_idle) {
-        (void)tmini_command_proceed(lidar);
-    }
+    lidar->wake_ms = lidar->line.now_ms;
     lidar->is_settled = tmini_command_poll(lidar) != TMINI_UNDER_WAY && lidar->pending == 0;
 }
 
-/* Begins a command, if it may be begun now; stop may always, and aborts another. The end of an
- * earlier one, not polled yet, is not the end of this one. */
-static tmini_status_t request(tmini_t *lidar, tmini_command_code_t operation,
-                              tmini_event_t end_event, uint16_t frequency_chz)
+/* A lidar that is known to be idle needs no stop before. */
+static void begin(tmini_t *lidar, tmini_command_code_t operation)
+{
+    const bool is_idle = lidar->state == TMINI_STATE_IDLE;
+    lidar->state =
+        operation == TMINI_COMMAND_STOP ? TMINI_STATE_STOPPING : (uint8_t)TMINI_STATE_BUSY;
+    tmini_command_begin(lidar, operation, lidar->link.timing->max_attempts);
+    if (is_idle) {
+        (void)tmini_command_proceed(lidar);
+    }
+    send_first(lidar);
+}
+
+/* Begins a query, if it may be begun now. */
+static tmini_status_t request(tmini_t *lidar, tmini_command_code_t operation)
 {
     if (!is_set_up(lidar)) {
         return TMINI_ERROR_ARGUMENT;
     }
-    const bool is_under_way =
-        lidar->state > TMINI_STATE_IDLE && lidar->state < TMINI_STATE_SCANNING;
-    if (operation == TMINI_COMMAND_STOP) {
-        if (lidar->state == TMINI_STATE_STOPPING) {
-            return TMINI_OK; /* It is being stopped already. */
-        }
-    } else if (lidar->state >= TMINI_STATE_SCANNING) {
+    if (lidar->is_listen_only) {
+        return TMINI_ERROR_LISTEN_ONLY;
+    }
+    if (lidar->state >= TMINI_STATE_SCANNING) {
         return TMINI_ERROR_STATE;
-    } else if (is_under_way) {
+    }
+    if (is_busy(lidar)) {
         return TMINI_ERROR_BUSY;
     }
-    update_time(lidar);
-    tmini_recovery_forget(lidar);
-    lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
-    if (is_under_way) {
-        fail(lidar, TMINI_ERROR_ABORTED);
-    }
-    begin(lidar, operation, end_event, frequency_chz);
+    take_over(lidar);
+    begin(lidar, operation);
     return TMINI_OK;
 }
 
@@ -270,16 +294,17 @@ static tmini_status_t request(tmini_t *lidar, tmini_command_code_t operation,
 TMINI_NOINLINE static void take_reply(tmini_t *lidar)
 {
     uint8_t content[TMINI_INFO_SIZE];
-    const tmini_reply_header_t *const header = &lidar->parser.awaited;
-    update_time(lidar); /* What came during this poll has not been noted yet. */
-    if (!tmini_frame_content(tmini_parser_frame(&lidar->parser), content, header->length)) {
-        (void)tmini_parser_await(&lidar->parser, header); /* DMA was faster: it has not come. */
+    tmini_parser_t *const parser = &lidar->decoder.parser;
+    const tmini_reply_header_t *const header = &parser->awaited;
+    look(lidar); /* What came during this poll has not been noted yet. */
+    if (!tmini_frame_content(tmini_parser_frame(parser), content, header->length)) {
+        (void)tmini_parser_await(parser, header); /* DMA was faster: it has not come. */
         return;
     }
     if (lidar->command.operation == TMINI_COMMAND_GET_INFO) {
-        tmini_reply_info(content, &lidar->latest.info);
+        tmini_reply_info(content, &lidar->info);
     } else if (lidar->command.operation == TMINI_COMMAND_GET_HEALTH) {
-        tmini_reply_health(content, &lidar->latest.health);
+        tmini_reply_health(content, &lidar->health);
     }
     take_result(lidar, tmini_command_reply(lidar, content));
 }
@@ -289,39 +314,27 @@ TMINI_NOINLINE static void take_reply(tmini_t *lidar)
 /* The lidar is lost if this is not called again in time. */
 static void expect_packet(tmini_t *lidar)
 {
-    tmini_command_wait(lidar, lidar->link.timing->data_timeout_ms);
+    tmini_command_wait(lidar, TMINI_DATA_TIMEOUT_MS);
 }
 
-/* A start that is no longer needed is not sent, and its reply not awaited (section 2). */
-static void begin_scanning(tmini_t *lidar)
-{
-    tmini_command_end(lidar, TMINI_ERROR_ABORTED);
-    if (lidar->state == TMINI_STATE_RECOVERING) {
-        tmini_recovery_end(lidar);
-        raise_event(lidar, TMINI_EVENT_RECOVERED);
-    } else {
-        raise_event(lidar, TMINI_EVENT_STARTED);
-    }
-    lidar->state = TMINI_STATE_SCANNING;
-    tmini_builder_discard(&lidar->builder);
-    tmini_monitor_begin(lidar);
-}
-
-/* A lidar that was left idle streams: the stop was lost on the wire. Nobody polls for its scans, so
+/* A lidar that was left idle scans: the stop was lost on the wire. Nobody polls for its scans, so
  * it would wear out its motor unnoticed. */
 static void stop_again(tmini_t *lidar)
 {
     raise_event(lidar, TMINI_EVENT_UNWANTED_SCANNING);
-    (void)tmini_stop(lidar);
+    look(lidar);
+    begin(lidar, TMINI_COMMAND_STOP);
 }
 
 /* A packet has come: does it mean that the lidar has begun to scan, or scans again? Not so the tail
- * behind a stop (section 9.10); in other phases the reply to the start may have been lost. */
+ * after a stop (section 9.10), nor what comes while the frequency is being set; in other phases the
+ * reply to the start may have been lost. */
 static void note_scanning(tmini_t *lidar)
 {
     const uint8_t phase = lidar->command.phase;
     if (lidar->state == TMINI_STATE_RECOVERING || lidar->state == TMINI_STATE_STARTING) {
-        if (phase != TMINI_PHASE_QUIESCING) {
+        if (phase != TMINI_PHASE_QUIESCING &&
+            lidar->command.operation != TMINI_COMMAND_GET_FREQUENCY) {
             begin_scanning(lidar);
         }
     } else if (phase == TMINI_PHASE_IDLE) {
@@ -329,62 +342,40 @@ static void note_scanning(tmini_t *lidar)
     }
 }
 
-/* Others may be missing before the packet that has come: it begins among the doubtful bytes, or is
- * the first one behind them. */
-static bool is_doubtful(tmini_t *lidar)
-{
-    const size_t left = tmini_ring_distance(tmini_ring_tail(&lidar->ring), lidar->doubtful_to);
-    const uint8_t doubt = lidar->doubt;
-    if (doubt == DOUBT_NONE) {
-        return false;
-    }
-    if (left > 0 && left <= TMINI_RING_CLOSED / 2) {
-        lidar->doubt = doubt == DOUBT_AHEAD ? DOUBT_MARKED : doubt;
-        return true;
-    }
-    lidar->doubt = DOUBT_NONE;
-    return doubt != DOUBT_MARKED;
-}
-
-/* Since the last packet of the scan, damaged ones may have come instead of others, a few bytes of
- * each: neither silence nor many bytes, but too long. */
-static bool is_late(const tmini_t *lidar, uint32_t came_ms)
-{
-    const uint16_t max_pause_ms = lidar->link.timing->max_pause_ms;
-    const uint32_t due_ms = transit_ms(tmini_parser_frame(&lidar->parser)->size);
-    const int32_t since_ms = (int32_t)(came_ms - lidar->builder.scan.end_ms);
-    return lidar->builder.open && max_pause_ms > 0 && since_ms > (int32_t)(max_pause_ms + due_ms);
-}
-
-static void open_packet(tmini_t *lidar, uint32_t came_ms)
-{
-    tmini_packet_open(&lidar->latest.packet, tmini_parser_frame(&lidar->parser));
-    if (is_doubtful(lidar) || is_late(lidar, came_ms)) {
-        lidar->latest.packet.gap = TMINI_GAP_UNKNOWN;
-    }
-}
-
 static void monitor_packet(tmini_t *lidar)
 {
-    const tmini_ct_verdict_t verdict = tmini_ct_add(&lidar->ct, &lidar->latest.packet);
-    if (verdict == TMINI_CT_REFUTED) {
-        tmini_builder_refute(&lidar->builder);
-    }
-    if (tmini_monitor_packet(lidar, verdict)) {
+    if (tmini_monitor_packet(lidar)) {
         tmini_recovery_forget(lidar); /* It has truly recovered, if it was lost. */
+    }
+    if (tmini_monitor_wants_frequency(lidar) && !lidar->is_recovery_off) {
+        restart(lidar); /* It turns otherwise than wanted. */
     }
 }
 
-static void deliver_packet(tmini_t *lidar, uint32_t came_ms)
+/* The scan is copied, so that the builder can go on, and its points change places with the spare
+ * ones, if there are any. */
+static void deliver_scan(tmini_t *lidar)
 {
-    const tmini_packet_t *const packet = &lidar->latest.packet;
-    if (lidar->builder.capacity == 0) {
-        raise_event(lidar, TMINI_EVENT_PACKET);
-    } else if (tmini_builder_add(&lidar->builder, packet, came_ms)) {
-        lidar->packet_waits = true;
-        lidar->scans++;
-        raise_event(lidar, TMINI_EVENT_SCAN);
+    lidar->scan = lidar->decoder.builder.scan;
+    if (lidar->link.spare_points != NULL) {
+        tmini_builder_use(&lidar->decoder.builder, lidar->link.spare_points);
+        lidar->link.spare_points = lidar->scan.points;
     }
+    if (lidar->link.step != NULL) {
+        lidar->link.step(lidar->link.step_data, &lidar->scan);
+    }
+    lidar->scans++;
+    raise_event(lidar, TMINI_EVENT_SCAN);
+}
+
+/* When the packet came: before the bytes after it. Those that came during this poll have not been
+ * noted yet: a pause before them is to be known first. */
+static uint32_t arrival_ms(tmini_t *lidar)
+{
+    if (tmini_ring_head(&lidar->ring) != lidar->line.received) {
+        look(lidar);
+    }
+    return tmini_line_arrival_ms(lidar);
 }
 
 static void take_packet(tmini_t *lidar)
@@ -392,22 +383,15 @@ static void take_packet(tmini_t *lidar)
     const uint32_t came_ms = arrival_ms(lidar);
     note_scanning(lidar);
     if (lidar->state != TMINI_STATE_SCANNING) {
-        return; /* The tail behind a stop, or a stream that nobody asked for. */
+        return; /* The tail after a stop, or of a lidar that is not to scan. */
     }
     expect_packet(lidar);
-    open_packet(lidar, came_ms);
-    monitor_packet(lidar);
-    deliver_packet(lidar, came_ms);
-}
-
-/* The packet that closed the scan which has been returned begins the next one. It had to wait,
- * because the application reads the scan until it polls again. */
-static void add_waiting_packet(tmini_t *lidar)
-{
-    if (lidar->packet_waits) {
-        lidar->packet_waits = false;
-        (void)tmini_builder_add(&lidar->builder, &lidar->latest.packet, lidar->builder.scan.end_ms);
+    if (tmini_decoder_take(&lidar->decoder, tmini_line_is_doubtful(lidar, came_ms), came_ms)) {
+        deliver_scan(lidar);
+    } else if (lidar->decoder.builder.capacity == 0) {
+        raise_event(lidar, TMINI_EVENT_PACKET);
     }
+    monitor_packet(lidar);
 }
 
 /* ------------------------------------------------------------------------------------- polling */
@@ -415,13 +399,13 @@ static void add_waiting_packet(tmini_t *lidar)
 /* A candidate that has stopped coming is given up, so that what it hides is looked at. */
 static bool give_up_candidate(tmini_t *lidar)
 {
-    const tmini_link_t *const link = &lidar->link;
-    if (lidar->silent_ms == 0 || lidar->silent_ms < link->timing->frame_timeout_ms ||
-        tmini_ring_head(&lidar->ring) != link->received ||
-        tmini_parser_pending(&lidar->parser) == 0) {
+    const uint16_t silent_ms = lidar->line.silent_ms;
+    if (silent_ms == 0 || silent_ms < lidar->link.timing->frame_timeout_ms ||
+        tmini_ring_head(&lidar->ring) != lidar->line.received ||
+        tmini_parser_pending(&lidar->decoder.parser) == 0) {
         return false;
     }
-    tmini_parser_abandon(&lidar->parser);
+    tmini_parser_abandon(&lidar->decoder.parser);
     return true;
 }
 
@@ -429,13 +413,13 @@ static bool give_up_candidate(tmini_t *lidar)
  * than one poll may do. */
 static bool receive(tmini_t *lidar)
 {
+    const tmini_parser_t *const parser = &lidar->decoder.parser;
     size_t effort = 0;
-    add_waiting_packet(lidar);
     while (lidar->pending == 0) {
         if (effort >= TMINI_PARSER_EFFORT) {
             return false;
         }
-        const tmini_frame_type_t type = tmini_parser_next_after(&lidar->parser, effort);
+        const tmini_frame_type_t type = tmini_decoder_next(&lidar->decoder, effort);
         if (type == TMINI_FRAME_PACKET) {
             take_packet(lidar);
         } else if (type == TMINI_FRAME_REPLY) {
@@ -443,7 +427,7 @@ static bool receive(tmini_t *lidar)
         } else if (type == TMINI_FRAME_NONE && !give_up_candidate(lidar)) {
             return true;
         }
-        effort = FRAME_EFFORT + lidar->parser.effort + tmini_parser_frame(&lidar->parser)->size;
+        effort = FRAME_EFFORT + parser->effort + tmini_parser_frame(parser)->size;
     }
     return true;
 }
@@ -452,28 +436,49 @@ static bool receive(tmini_t *lidar)
 static void keep_time(tmini_t *lidar)
 {
     take_result(lidar, tmini_command_poll(lidar));
-    if (lidar->state == TMINI_STATE_SCANNING) {
-        tmini_monitor_poll(lidar);
+    if (lidar->state == TMINI_STATE_SCANNING && !tmini_monitor_poll(lidar)) {
+        lose(lidar);
     }
 }
 
-/* True if something has happened since the last poll: bytes have come, or were lost, or time has
- * passed. Most polls of a fast loop end here. */
-static bool has_news(const tmini_t *lidar)
+static uint32_t least(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
+/* There is nothing to do until a frame may be complete, or until the next time-out, which is
+ * computed here, once, instead of at each poll. */
+static void settle(tmini_t *lidar)
+{
+    const uint32_t frame_ms = lidar->link.timing->frame_timeout_ms;
+    const uint32_t silent_ms = lidar->line.silent_ms;
+    uint32_t idle_ms =
+        least(frame_ms > silent_ms ? frame_ms - silent_ms : frame_ms, tmini_command_idle_ms(lidar));
+    if (lidar->state == TMINI_STATE_SCANNING) {
+        idle_ms = least(idle_ms, tmini_monitor_idle_ms(lidar));
+    }
+    lidar->wake_ms = lidar->line.now_ms + idle_ms;
+    lidar->is_settled = lidar->command.unsent == 0;
+}
+
+/* Looks at the line, if anything has happened since the last poll. True if there may be something
+ * to do. Most polls of a fast loop end here. */
+static bool has_news(tmini_t *lidar)
 {
     const tmini_link_t *const link = &lidar->link;
-    return tmini_ring_head(&lidar->ring) != link->received ||
-           link->port->now_ms(link->port_context) != link->now_ms;
+    if (tmini_ring_head(&lidar->ring) == lidar->line.received &&
+        link->port->now_ms(link->port_context) == lidar->line.now_ms) {
+        return false;
+    }
+    look(lidar);
+    return tmini_parser_has_work(&lidar->decoder.parser) ||
+           (int32_t)(lidar->line.now_ms - lidar->wake_ms) >= 0;
 }
 
-tmini_event_t tmini_poll(tmini_t *lidar)
+/* What is due, of a poll that has looked at the line. */
+static tmini_event_t work(tmini_t *lidar)
 {
-    if (!is_set_up(lidar) || (lidar->is_settled && !has_news(lidar))) {
-        return TMINI_EVENT_NONE;
-    }
     const uint8_t faults = lidar->monitor.faults;
-    lidar->is_settled = false;
-    update_time(lidar);
     const bool is_done = lidar->pending != 0 || receive(lidar);
     if (lidar->pending == 0) {
         keep_time(lidar);
@@ -487,27 +492,59 @@ tmini_event_t tmini_poll(tmini_t *lidar)
     if (!is_done) {
         return TMINI_EVENT_MORE;
     }
-    lidar->is_settled = lidar->command.unsent == 0;
+    settle(lidar);
     return TMINI_EVENT_NONE;
+}
+
+tmini_event_t tmini_poll(tmini_t *lidar)
+{
+    if (lidar == NULL) {
+        return TMINI_EVENT_NONE;
+    }
+    if (lidar->link.port == NULL) {
+        return lidar->pending != 0 ? take_event(lidar) : TMINI_EVENT_NONE; /* Not set up. */
+    }
+    if (!lidar->is_settled) {
+        look(lidar);
+    } else if (!has_news(lidar)) {
+        return TMINI_EVENT_NONE;
+    }
+    lidar->is_settled = false;
+    return work(lidar);
 }
 
 /* ---------------------------------------------------------------------------------- life cycle */
 
-static bool has_required_members(const tmini_config_t *config)
+/* 0: none. */
+static bool is_frequency(uint16_t frequency_chz)
 {
-    return config != NULL && config->port != NULL && config->port->write != NULL &&
-           config->port->now_ms != NULL;
+    return frequency_chz == 0 ||
+           (frequency_chz >= TMINI_FREQUENCY_MIN_CHZ && frequency_chz <= TMINI_FREQUENCY_MAX_CHZ &&
+            frequency_chz % TMINI_FREQUENCY_STEP_CHZ == 0);
 }
 
-/* Ring, parser and builder check their own parts of the configuration. */
+static bool has_port(const tmini_config_t *config)
+{
+    const tmini_port_t *const port = config->port;
+    return port != NULL && port->now_ms != NULL && (port->write != NULL || config->listen_only);
+}
+
+/* Members that need others, or exclude them. */
+static bool fits_together(const tmini_config_t *config)
+{
+    return is_frequency(config->frequency_chz) &&
+           (config->frequency_chz == 0 || !config->listen_only) &&
+           (config->points != NULL || (config->step == NULL && config->spare_points == NULL)) &&
+           (config->step != NULL || config->step_data == NULL);
+}
+
+/* Ring and decoder check their own parts of the configuration. */
 static bool init_modules(tmini_t *lidar, const tmini_config_t *config)
 {
     return tmini_ring_init(&lidar->ring, config->rx_buffer, config->rx_size, config->rx_dma) ==
                TMINI_OK &&
-           tmini_parser_init(&lidar->parser, &lidar->ring, config->max_samples) == TMINI_OK &&
-           ((config->points == NULL && config->max_points == 0) || /* By packets. */
-            tmini_builder_init(&lidar->builder, config->points, config->max_points, config->filter) ==
-                TMINI_OK);
+           tmini_decoder_init(&lidar->decoder, &lidar->ring, config->max_samples, config->points,
+                              config->max_points, config->filter) == TMINI_OK;
 }
 
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
@@ -516,61 +553,121 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
         return TMINI_ERROR_ARGUMENT;
     }
     *lidar = (tmini_t){0}; /* Also state, phase and CT information: unknown, none, nothing known. */
-    if (!has_required_members(config) || !init_modules(lidar, config)) {
+    if (config == NULL || !has_port(config) || !fits_together(config) ||
+        !init_modules(lidar, config)) {
+        fail(lidar, TMINI_ERROR_ARGUMENT);
         return TMINI_ERROR_ARGUMENT;
     }
-    lidar->link.port = config->port; /* From now on the lidar is set up. */
-    lidar->link.port_context = config->port_context;
-    lidar->link.timing = config->timing != NULL ? config->timing : &tmini_timing_default;
+    lidar->link = (tmini_link_t){
+        .port = config->port, /* From now on the lidar is set up. */
+        .port_context = config->port_context,
+        .timing = config->timing != NULL ? config->timing : &tmini_timing_default,
+        .step = config->step,
+        .step_data = config->step_data,
+        .spare_points = config->spare_points,
+    };
+    lidar->wanted_chz = config->frequency_chz;
     lidar->is_recovery_off = config->recovery == TMINI_RECOVERY_OFF;
+    lidar->is_listen_only = config->listen_only;
     return TMINI_OK;
 }
 
-/* ------------------------------------------------------------------------- the user's commands */
+/* -------------------------------------------------------------------------- wishes and queries */
 
 tmini_status_t tmini_start(tmini_t *lidar)
 {
-    return request(lidar, TMINI_COMMAND_START, TMINI_EVENT_STARTED, 0);
+    if (!is_set_up(lidar)) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    if (lidar->state == TMINI_STATE_BUSY || lidar->state == TMINI_STATE_STOPPING) {
+        lidar->start_follows = true;
+    } else if (lidar->state <= TMINI_STATE_IDLE) {
+        take_over(lidar);
+        begin_start(lidar, lidar->state == TMINI_STATE_IDLE);
+        send_first(lidar);
+    }
+    return TMINI_OK;
+}
+
+/* Nothing was sent to begin with. */
+static void stop_listening(tmini_t *lidar)
+{
+    (void)tmini_command_end(lidar, TMINI_ERROR_ABORTED);
+    lidar->state = TMINI_STATE_UNKNOWN;
+    lidar->is_settled = false;
+    raise_event(lidar, TMINI_EVENT_STOPPED);
 }
 
 tmini_status_t tmini_stop(tmini_t *lidar)
 {
-    return request(lidar, TMINI_COMMAND_STOP, TMINI_EVENT_STOPPED, 0);
+    if (!is_set_up(lidar)) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    lidar->start_follows = false;
+    if (lidar->state == TMINI_STATE_STOPPING) {
+        return TMINI_OK;
+    }
+    const bool was_busy = is_busy(lidar);
+    take_over(lidar);
+    if (was_busy) {
+        fail(lidar, TMINI_ERROR_ABORTED);
+    }
+    if (lidar->is_listen_only) {
+        stop_listening(lidar);
+    } else {
+        begin(lidar, TMINI_COMMAND_STOP);
+    }
+    return TMINI_OK;
+}
+
+/* Only a changed wish disturbs a lidar that scans or is about to. */
+tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
+{
+    if (!is_set_up(lidar) || frequency_chz == 0 || !is_frequency(frequency_chz)) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    if (lidar->is_listen_only) {
+        return TMINI_ERROR_LISTEN_ONLY;
+    }
+    const bool is_changed = lidar->wanted_chz != frequency_chz;
+    lidar->wanted_chz = frequency_chz;
+    if (lidar->state <= TMINI_STATE_IDLE) {
+        return request(lidar, TMINI_COMMAND_GET_FREQUENCY);
+    }
+    tmini_monitor_forget_frequency(lidar);
+    if (is_changed && is_to_scan(lidar)) {
+        look(lidar);
+        restart(lidar);
+        send_first(lidar);
+    }
+    return TMINI_OK;
 }
 
 tmini_status_t tmini_request_info(tmini_t *lidar)
 {
-    return request(lidar, TMINI_COMMAND_GET_INFO, TMINI_EVENT_INFO, 0);
+    return request(lidar, TMINI_COMMAND_GET_INFO);
 }
 
 tmini_status_t tmini_request_health(tmini_t *lidar)
 {
-    return request(lidar, TMINI_COMMAND_GET_HEALTH, TMINI_EVENT_HEALTH, 0);
+    return request(lidar, TMINI_COMMAND_GET_HEALTH);
 }
 
 tmini_status_t tmini_request_frequency(tmini_t *lidar)
 {
-    return request(lidar, TMINI_COMMAND_GET_FREQUENCY, TMINI_EVENT_FREQUENCY, 0);
-}
-
-tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
-{
-    if (frequency_chz < TMINI_FREQUENCY_MIN_CHZ || frequency_chz > TMINI_FREQUENCY_MAX_CHZ ||
-        frequency_chz % TMINI_FREQUENCY_STEP_CHZ != 0) {
-        return TMINI_ERROR_ARGUMENT;
-    }
-    return request(lidar, TMINI_COMMAND_GET_FREQUENCY, TMINI_EVENT_FREQUENCY, frequency_chz);
+    return request(lidar, TMINI_COMMAND_GET_FREQUENCY);
 }
 
 tmini_status_t tmini_reboot(tmini_t *lidar)
 {
-    return request(lidar, TMINI_COMMAND_REBOOT, TMINI_EVENT_REBOOTED, 0);
+    return request(lidar, TMINI_COMMAND_REBOOT);
 }
 
 void tmini_cancel(tmini_t *lidar)
 {
-    tmini_command_end(lidar, TMINI_ERROR_ABORTED);
+    (void)tmini_command_end(lidar, TMINI_ERROR_ABORTED);
     lidar->is_settled = false;
+    lidar->start_follows = false;
     lidar->state = TMINI_STATE_UNKNOWN;
 }
 
@@ -583,22 +680,22 @@ tmini_state_t tmini_state(const tmini_t *lidar)
 
 const tmini_scan_t *tmini_scan(const tmini_t *lidar)
 {
-    return &lidar->builder.scan;
+    return &lidar->scan;
 }
 
 const tmini_packet_t *tmini_packet(const tmini_t *lidar)
 {
-    return &lidar->latest.packet;
+    return &lidar->decoder.packet;
 }
 
 const tmini_info_t *tmini_info(const tmini_t *lidar)
 {
-    return &lidar->latest.info;
+    return &lidar->info;
 }
 
 const tmini_health_t *tmini_health(const tmini_t *lidar)
 {
-    return &lidar->latest.health;
+    return &lidar->health;
 }
 
 uint16_t tmini_frequency_chz(const tmini_t *lidar)
@@ -618,15 +715,16 @@ uint8_t tmini_faults(const tmini_t *lidar)
 
 void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info)
 {
-    tmini_ct_read(&lidar->ct, info);
+    tmini_ct_read(&lidar->decoder.ct, info);
 }
 
 /* The ring is asked directly: before tmini_init() the parser knows none. */
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
 {
     const tmini_ring_t *const ring = &lidar->ring;
-    const tmini_parser_counters_t *const parser = &lidar->parser.counters;
-    const size_t pending = tmini_ring_unread(ring) - tmini_parser_frame(&lidar->parser)->size;
+    const tmini_parser_counters_t *const parser = &lidar->decoder.parser.counters;
+    const size_t pending =
+        tmini_ring_unread(ring) - tmini_parser_frame(&lidar->decoder.parser)->size;
     counters->packets = parser->packets;
     counters->checksum_errors = parser->checksum_errors;
     counters->bytes_in_packets = parser->bytes_in_packets;

@@ -12,7 +12,12 @@ static void idle(const tmini_t *lidar)
     }
 }
 
-/* Polls until `wanted` comes or the command fails; gives it up when time is up. A command that
+static uint32_t now_ms(const tmini_t *lidar)
+{
+    return lidar->link.port->now_ms(lidar->link.port_context);
+}
+
+/* Polls until `wanted` comes, or a command has failed that nothing follows, or time is up. What
  * could not be begun has ended already. */
 static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event_t wanted,
                                uint32_t timeout_ms)
@@ -20,22 +25,31 @@ static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event
     if (begun != TMINI_OK) {
         return begun;
     }
-    const uint32_t begun_ms = lidar->link.port->now_ms(lidar->link.port_context);
+    const uint32_t begun_ms = now_ms(lidar);
     do {
         const tmini_event_t event = tmini_poll(lidar);
         if (event == wanted) {
             return TMINI_OK;
         }
-        if (event == TMINI_EVENT_COMMAND_FAILED &&
-            tmini_command_error(lidar) != TMINI_ERROR_ABORTED) {
+        if (event == TMINI_EVENT_COMMAND_FAILED && tmini_state(lidar) <= TMINI_STATE_IDLE) {
             return tmini_command_error(lidar);
         }
         if (event == TMINI_EVENT_NONE) {
             idle(lidar);
         }
-    } while (lidar->link.port->now_ms(lidar->link.port_context) - begun_ms < timeout_ms);
-    tmini_cancel(lidar);
+    } while (now_ms(lidar) - begun_ms < timeout_ms);
     return TMINI_ERROR_TIMEOUT;
+}
+
+/* The same for a query, which is given up when time is up. */
+static tmini_status_t query(tmini_t *lidar, tmini_status_t begun, tmini_event_t wanted,
+                            uint32_t timeout_ms)
+{
+    const tmini_status_t status = wait_for(lidar, begun, wanted, timeout_ms);
+    if (status == TMINI_ERROR_TIMEOUT && tmini_state(lidar) == TMINI_STATE_BUSY) {
+        tmini_cancel(lidar);
+    }
+    return status;
 }
 
 tmini_status_t tmini_blocking_read_info(tmini_t *lidar, tmini_info_t *info, uint32_t timeout_ms)
@@ -44,7 +58,7 @@ tmini_status_t tmini_blocking_read_info(tmini_t *lidar, tmini_info_t *info, uint
         return TMINI_ERROR_ARGUMENT;
     }
     const tmini_status_t status =
-        wait_for(lidar, tmini_request_info(lidar), TMINI_EVENT_INFO, timeout_ms);
+        query(lidar, tmini_request_info(lidar), TMINI_EVENT_INFO, timeout_ms);
     if (status == TMINI_OK) {
         *info = *tmini_info(lidar);
     }
@@ -58,7 +72,7 @@ tmini_status_t tmini_blocking_read_health(tmini_t *lidar, tmini_health_t *health
         return TMINI_ERROR_ARGUMENT;
     }
     const tmini_status_t status =
-        wait_for(lidar, tmini_request_health(lidar), TMINI_EVENT_HEALTH, timeout_ms);
+        query(lidar, tmini_request_health(lidar), TMINI_EVENT_HEALTH, timeout_ms);
     if (status == TMINI_OK) {
         *health = *tmini_health(lidar);
     }
@@ -72,7 +86,7 @@ tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency
         return TMINI_ERROR_ARGUMENT;
     }
     const tmini_status_t status =
-        wait_for(lidar, tmini_request_frequency(lidar), TMINI_EVENT_FREQUENCY, timeout_ms);
+        query(lidar, tmini_request_frequency(lidar), TMINI_EVENT_FREQUENCY, timeout_ms);
     if (status == TMINI_OK) {
         *frequency_chz = tmini_frequency_chz(lidar);
     }
@@ -82,14 +96,18 @@ tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency
 tmini_status_t tmini_blocking_set_frequency(tmini_t *lidar, uint16_t frequency_chz,
                                             uint32_t timeout_ms)
 {
-    return wait_for(lidar, tmini_set_frequency(lidar, frequency_chz), TMINI_EVENT_FREQUENCY,
-                    timeout_ms);
+    const tmini_status_t begun = tmini_set_frequency(lidar, frequency_chz);
+    if (begun == TMINI_OK && tmini_state(lidar) == TMINI_STATE_SCANNING &&
+        tmini_command_has_frequency(lidar)) {
+        return TMINI_OK; /* It was wanted before: nothing is to be done. */
+    }
+    return query(lidar, begun, TMINI_EVENT_FREQUENCY, timeout_ms);
 }
 
 tmini_status_t tmini_blocking_start(tmini_t *lidar, uint32_t timeout_ms)
 {
     const tmini_status_t begun = tmini_start(lidar);
-    const bool by_packets = begun == TMINI_OK && lidar->builder.capacity == 0;
+    const bool by_packets = begun == TMINI_OK && lidar->decoder.builder.capacity == 0;
     return wait_for(lidar, begun, by_packets ? TMINI_EVENT_PACKET : TMINI_EVENT_SCAN, timeout_ms);
 }
 

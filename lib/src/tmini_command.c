@@ -9,7 +9,6 @@
 /* More frequency steps than any change needs (6 of 1 Hz and 9 of 0.1 Hz). */
 #define STEPS_MAX 20
 #define COARSE_STEP_CHZ 100
-#define FINE_STEP_CHZ 10
 
 /* No unit turns slower or faster: a reply that says so is none. Section 1 has 6 to 12 Hz. */
 #define PLAUSIBLE_CHZ_MIN 100
@@ -19,7 +18,7 @@
 static void enter(tmini_t *lidar, tmini_phase_t phase, uint16_t timeout_ms)
 {
     lidar->command.phase = (uint8_t)phase;
-    lidar->command.since_ms = lidar->link.now_ms;
+    lidar->command.since_ms = lidar->line.now_ms;
     lidar->command.timeout_ms = timeout_ms;
 }
 
@@ -52,13 +51,13 @@ static bool transmit(tmini_t *lidar)
 /* Until the line is quiet; if it is not in time, that is a failed attempt. */
 static void await_quiet(tmini_t *lidar)
 {
-    enter(lidar, TMINI_PHASE_QUIESCING, lidar->link.timing->stop_timeout_ms);
+    enter(lidar, TMINI_PHASE_QUIESCING, TMINI_STOP_TIMEOUT_MS);
 }
 
 /* First stop, which is permitted always (section 9.10). */
 static void quiesce(tmini_t *lidar)
 {
-    (void)tmini_parser_await(&lidar->parser, NULL);
+    (void)tmini_parser_await(&lidar->decoder.parser, NULL);
     send(lidar, TMINI_COMMAND_STOP);
     await_quiet(lidar);
 }
@@ -69,10 +68,11 @@ static void request(tmini_t *lidar, tmini_command_code_t code)
     tmini_reply_header_t reply;
     send(lidar, code);
     if (tmini_reply_header(code, &reply)) {
-        (void)tmini_parser_await(&lidar->parser, &reply);
+        (void)tmini_parser_await(&lidar->decoder.parser, &reply);
         enter(lidar, TMINI_PHASE_AWAITING_REPLY, lidar->link.timing->reply_timeout_ms);
     } else {
-        enter(lidar, TMINI_PHASE_WAITING, lidar->link.timing->reboot_time_ms);
+        tmini_command_forget_frequency(lidar);
+        enter(lidar, TMINI_PHASE_WAITING, TMINI_REBOOT_TIME_MS);
     }
 }
 
@@ -93,21 +93,27 @@ static int time_out(tmini_t *lidar)
 
 /* ----------------------------------------------------------------------------- frequency change */
 
-static int32_t chz_to_go(const tmini_command_t *command)
+static int32_t chz_to_go(const tmini_t *lidar)
 {
-    return (int32_t)command->target_chz - command->frequency_chz;
+    return (int32_t)lidar->wanted_chz - lidar->command.frequency_chz;
 }
 
-static bool is_reached(const tmini_command_t *command)
+bool tmini_command_has_frequency(const tmini_t *lidar)
 {
-    const int32_t left = chz_to_go(command);
-    return left >= -FINE_STEP_CHZ / 2 && left <= FINE_STEP_CHZ / 2;
+    const int32_t left = chz_to_go(lidar);
+    return lidar->wanted_chz == 0 ||
+           (left >= -TMINI_FREQUENCY_TOLERANCE_CHZ && left <= TMINI_FREQUENCY_TOLERANCE_CHZ);
+}
+
+void tmini_command_forget_frequency(tmini_t *lidar)
+{
+    lidar->command.frequency_chz = 0;
 }
 
 /* Never beyond the target by as much as the finest step, so never out of the permitted range. */
-static uint8_t next_step(const tmini_command_t *command)
+static uint8_t next_step(const tmini_t *lidar)
 {
-    const int32_t left = chz_to_go(command);
+    const int32_t left = chz_to_go(lidar);
     if (left < 0) {
         return left > -COARSE_STEP_CHZ ? TMINI_COMMAND_SLOWER_TENTH : TMINI_COMMAND_SLOWER_ONE;
     }
@@ -117,7 +123,7 @@ static uint8_t next_step(const tmini_command_t *command)
 /* A late reply to the step before looks like one to this step that was refused. Time tells. */
 static int await_another_frequency(tmini_t *lidar)
 {
-    (void)tmini_parser_await(&lidar->parser, &lidar->parser.awaited);
+    (void)tmini_parser_await(&lidar->decoder.parser, &lidar->decoder.parser.awaited);
     lidar->command.phase = TMINI_PHASE_AWAITING_STEP; /* For what is left of the time. */
     return TMINI_UNDER_WAY;
 }
@@ -133,7 +139,7 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
         return await_another_frequency(lidar);
     }
     command->frequency_chz = (uint16_t)frequency_chz;
-    if (command->target_chz == 0 || (!is_step && is_reached(command))) {
+    if (!is_step && tmini_command_has_frequency(lidar)) {
         return TMINI_OK;
     }
     await_quiet(lidar);
@@ -146,30 +152,30 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
 static bool is_quiet(const tmini_t *lidar)
 {
     const uint16_t quiet_ms = lidar->link.timing->quiet_line_ms;
-    return lidar->silent_ms >= quiet_ms &&
+    return lidar->line.silent_ms >= quiet_ms &&
            tmini_has_elapsed(lidar, lidar->command.since_ms, quiet_ms) &&
-           tmini_ring_head(&lidar->ring) == lidar->link.received;
+           tmini_ring_head(&lidar->ring) == lidar->line.received;
 }
 
 /* The line is quiet: the next command may be sent (section 2). What has come before a question is
- * not its answer, not even what a packet that was cut off hides. Behind a stop the operation's own
+ * not its answer, not even what a packet that was cut off hides. After a stop the operation's own
  * command is next. A frequency is changed by steps, so that it is asked for before them, to know
- * where they begin, and behind them. */
+ * where they begin, and after them. */
 int tmini_command_proceed(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     uint8_t next = command->operation;
-    tmini_parser_skip_to(&lidar->parser, lidar->link.received);
+    tmini_parser_skip_to(&lidar->decoder.parser, lidar->line.received);
     if (next == TMINI_COMMAND_STOP) {
         command->attempts = 1; /* However many it took, the line is quiet now. */
         return TMINI_OK;
     }
-    if (command->code != TMINI_COMMAND_STOP && !is_reached(command)) {
+    if (command->code != TMINI_COMMAND_STOP && !tmini_command_has_frequency(lidar)) {
         if (command->steps == STEPS_MAX) {
             return TMINI_ERROR_REPLY;
         }
         command->steps++;
-        next = next_step(command);
+        next = next_step(lidar);
     }
     request(lidar, (tmini_command_code_t)next);
     return TMINI_UNDER_WAY;
@@ -179,13 +185,12 @@ int tmini_command_proceed(tmini_t *lidar)
 static int send_rest(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
-    if (!transmit(lidar) ||
-        (command->unsent > 0 &&
-         tmini_has_elapsed(lidar, command->since_ms, lidar->link.timing->write_timeout_ms))) {
+    if (!transmit(lidar) || (command->unsent > 0 &&
+                             tmini_has_elapsed(lidar, command->since_ms, TMINI_WRITE_TIMEOUT_MS))) {
         return TMINI_ERROR_WRITE;
     }
     if (command->unsent == 0) {
-        command->since_ms = lidar->link.now_ms;
+        command->since_ms = lidar->line.now_ms;
     }
     return TMINI_UNDER_WAY;
 }
@@ -206,17 +211,26 @@ int tmini_command_poll(tmini_t *lidar)
     return command->phase == TMINI_PHASE_WAITING ? TMINI_OK : time_out(lidar);
 }
 
+uint32_t tmini_command_idle_ms(const tmini_t *lidar)
+{
+    const tmini_command_t *const command = &lidar->command;
+    if (command->phase == TMINI_PHASE_QUIESCING) {
+        return 0;
+    }
+    return command->timeout_ms == 0
+               ? UINT16_MAX
+               : command->timeout_ms - (lidar->line.now_ms - command->since_ms);
+}
+
 /* ------------------------------------------------------------------------ for the layers above */
 
-void tmini_command_begin(tmini_t *lidar, tmini_command_code_t operation, uint8_t attempts,
-                         uint16_t frequency_chz)
+void tmini_command_begin(tmini_t *lidar, tmini_command_code_t operation, uint8_t attempts)
 {
     tmini_command_t *const command = &lidar->command;
     command->operation = (uint8_t)operation;
     command->attempts_max = attempts;
     command->attempts = 1;
     command->steps = 0;
-    command->target_chz = frequency_chz;
     quiesce(lidar);
 }
 
@@ -224,7 +238,7 @@ int tmini_command_reply(tmini_t *lidar, const uint8_t *content)
 {
     switch (lidar->command.code) {
     case TMINI_COMMAND_START:
-        enter(lidar, TMINI_PHASE_SPINNING_UP, lidar->link.timing->spin_up_timeout_ms);
+        enter(lidar, TMINI_PHASE_SPINNING_UP, TMINI_SPIN_UP_TIMEOUT_MS);
         return TMINI_UNDER_WAY;
     case TMINI_COMMAND_GET_INFO:
     case TMINI_COMMAND_GET_HEALTH:
@@ -240,12 +254,15 @@ void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms)
     enter(lidar, TMINI_PHASE_WAITING, wait_ms);
 }
 
-void tmini_command_end(tmini_t *lidar, int result)
+bool tmini_command_end(tmini_t *lidar, int result)
 {
     tmini_command_t *const command = &lidar->command;
+    const uint8_t operation = command->operation;
     const bool is_idle =
         result == TMINI_OK && command->phase != TMINI_PHASE_WAITING && command->attempts == 1;
-    (void)tmini_parser_await(&lidar->parser, NULL);
+    const bool may_scan = operation == TMINI_COMMAND_START || operation == TMINI_COMMAND_REBOOT;
+    (void)tmini_parser_await(&lidar->decoder.parser, NULL);
     command->unsent = 0;
-    enter(lidar, is_idle ? TMINI_PHASE_IDLE : TMINI_PHASE_NONE, 0);
+    enter(lidar, operation == 0 || may_scan ? TMINI_PHASE_NONE : TMINI_PHASE_IDLE, 0);
+    return is_idle;
 }

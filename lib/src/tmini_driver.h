@@ -3,54 +3,80 @@
 
 /* What the driver's files ask of each other. Calls go downwards only:
  *
- *     tmini.c              state, events, public functions, the time of this poll
- *      ├ tmini_recovery.c  what to try next, and when
- *      │  └ tmini_command.c  one command at a time
- *      └ tmini_monitor.c   packets to faults
+ *     tmini.c               wishes, state, events, public functions
+ *      ├ tmini_recovery.c   the ladder: what to try next, and when
+ *      │  └ tmini_command.c one command at a time
+ *      ├ tmini_monitor.c    packets to faults
+ *      ├ tmini_line.c       the time of bytes: arrival, silence, pauses, doubt
+ *      └ tmini_decoder.c    bytes to packets, replies and scans
  *
- * Each writes its own group of members of tmini_t (`command`, `recovery`, `monitor`; tmini.c `link`
- * and those without a group). Ring, parser and builder are written by their own modules only, which
- * know nothing of tmini_t. test/layers.sh checks both. docs/design.md draws the states and
- * lists the phases. */
+ * Each writes its own group of members of tmini_t (`command`, `recovery`, `monitor`, `line`; tmini.c
+ * `link` and those without a group). Ring and decoder are written by their own modules only, which
+ * know nothing of tmini_t. test/layers.sh checks both. docs/design.md draws the states and lists
+ * the phases. */
 
 #ifndef TMINI_DRIVER_H
 #define TMINI_DRIVER_H
 
 #include "tmini/tmini.h"
 
+/* How long the driver waits, in milliseconds, where nobody needs to choose. */
+#define TMINI_STOP_TIMEOUT_MS 600     /* Twice the longest tail seen after a stop (section 9.10). */
+#define TMINI_WRITE_TIMEOUT_MS 100    /* For the port to take two bytes, of 87 us. */
+#define TMINI_SPIN_UP_TIMEOUT_MS 3000 /* From the start reply to the first packet. */
+#define TMINI_DATA_TIMEOUT_MS 1000    /* Without a valid packet for this long it is lost. */
+#define TMINI_ROTATION_TIMEOUT_MS 3000 /* No range and no start packet: it does not turn. */
+#define TMINI_REBOOT_TIME_MS 5000      /* "Some seconds" (section 9.11). */
+#define TMINI_BACK_OFF_MS 500          /* The first pause after an attempt that failed. */
+
+/* How far the frequency that is set may be from the wanted one: half the finest step. */
+#define TMINI_FREQUENCY_TOLERANCE_CHZ 5
+
 /* True when a time that began at `since_ms` is over; across the clock's wrap-around too. */
 static inline bool tmini_has_elapsed(const tmini_t *lidar, uint32_t since_ms, uint32_t wait_ms)
 {
-    return lidar->link.now_ms - since_ms >= wait_ms;
+    return lidar->line.now_ms - since_ms >= wait_ms;
 }
 
 /* ------------------------------------------------------------------------------------ tmini.c */
 
-/* Gives up the command under way: for the blocking helpers, which stand above. */
+/* Gives up the query under way: for the blocking helpers, which stand above. */
 void tmini_cancel(tmini_t *lidar);
+
+/* ------------------------------------------------------------------------------- tmini_line.c */
+
+/* Reads the clock, and notes whether bytes have come since the last look. True if they have, or may
+ * have: the line is not quiet. */
+bool tmini_line_look(tmini_t *lidar);
+
+/* When the packet found last came, less what the bytes after it took. Look first. */
+uint32_t tmini_line_arrival_ms(const tmini_t *lidar);
+
+/* True if others may be missing before the packet found last, which came then: the line has paused,
+ * or it came late. To be asked once for each packet. */
+bool tmini_line_is_doubtful(tmini_t *lidar, uint32_t came_ms);
 
 /* ---------------------------------------------------------------------------- tmini_command.c */
 
 /* What goes on on the wire. */
 typedef enum {
-    TMINI_PHASE_NONE,           /* Nothing is under way; the lidar may be streaming. */
-    TMINI_PHASE_IDLE,           /* The same; the lidar was left idle, and the line quiet. */
-    TMINI_PHASE_QUIESCING,      /* Behind a stop, or between frequency steps: until it is quiet. */
+    TMINI_PHASE_NONE,           /* Nothing is under way; the lidar may be scanning. */
+    TMINI_PHASE_IDLE,           /* The same; it was stopped, or should be idle. */
+    TMINI_PHASE_QUIESCING,      /* After a stop, or between frequency steps: until it is quiet. */
     TMINI_PHASE_AWAITING_REPLY, /* A command has been sent: until its reply. */
     TMINI_PHASE_AWAITING_STEP,  /* The same; one has come that shows no step: until another. */
     TMINI_PHASE_SPINNING_UP,    /* The start has been acknowledged: until the first packet. */
     TMINI_PHASE_WAITING,        /* A reboot has been sent, or nothing: as long as it takes. */
 } tmini_phase_t;
 
-/* How a command stands: TMINI_OK, it has ended well; an error, it has failed; or this. */
+/* Result of a command: TMINI_OK, an error, or this. */
 #define TMINI_UNDER_WAY 1
 
 /* Begins an operation, in the place of one that may be under way, and names it by its command;
  * first comes a stop, whose bytes leave with the next tmini_command_poll(). A time-out is followed
- * by another attempt, up to `attempts` in all. A `frequency_chz` other than 0 is where a question
- * for the frequency is to lead: it is then set. */
-void tmini_command_begin(tmini_t *lidar, tmini_command_code_t operation, uint8_t attempts,
-                         uint16_t frequency_chz);
+ * by another attempt, up to `attempts` in all. TMINI_COMMAND_GET_FREQUENCY also sets the wanted
+ * frequency, if there is one. */
+void tmini_command_begin(tmini_t *lidar, tmini_command_code_t operation, uint8_t attempts);
 
 /* The line is quiet: the next command of the operation may be sent. Called from above, after
  * tmini_command_begin(), when the lidar is known to be idle: then it needs no stop before. */
@@ -59,25 +85,38 @@ int tmini_command_proceed(tmini_t *lidar);
 /* Goes on with what is due now: bytes to send, a line that is quiet, a time that is over. */
 int tmini_command_poll(tmini_t *lidar);
 
+/* For how long tmini_command_poll() has nothing to do unless bytes come; 0: look each time. */
+uint32_t tmini_command_idle_ms(const tmini_t *lidar);
+
 /* The awaited reply has come, with this content. */
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content);
 
 /* Sends nothing and ends well after a time; 0: never. While it runs, nothing else is under way.
- * Begun anew by each packet it is a watchdog: its end says that none has come. */
+ * Begun anew by each packet it is a watchdog: its end means that none has come. */
 void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms);
 
-/* What is under way has ended with `result`, or is given up with an error. After a stop the lidar
- * is idle, and after an answer to the first attempt; after a second one, the reply to the first may
- * still come. */
-void tmini_command_end(tmini_t *lidar, int result);
+/* What is under way has ended with `result`, or is given up with an error. True if the lidar is
+ * idle and the line quiet: after a stop, and after an answer to the first attempt; after a second
+ * one, the reply to the first may still come. */
+bool tmini_command_end(tmini_t *lidar, int result);
+
+/* The frequency that is set is not known any more. */
+void tmini_command_forget_frequency(tmini_t *lidar);
+
+/* True if the lidar has reported the wanted frequency, or none is wanted. */
+bool tmini_command_has_frequency(const tmini_t *lidar);
 
 /* --------------------------------------------------------------------------- tmini_recovery.c */
 
-/* Begins to bring back a lidar that has been lost. */
+/* Begins to bring the lidar to scan, from the foot of the ladder; `is_idle`: it is known to be, and
+ * the line quiet. */
+void tmini_recovery_start(tmini_t *lidar, bool is_idle);
+
+/* The same for a lidar that has been lost: from where the ladder stands. */
 void tmini_recovery_begin(tmini_t *lidar);
 
-/* What is under way has ended, well or not: goes on with the next. */
-void tmini_recovery_go_on(tmini_t *lidar, int result);
+/* `operation` has ended, well or not: goes on with the next. `is_idle`: as above. */
+void tmini_recovery_go_on(tmini_t *lidar, tmini_command_code_t operation, int result, bool is_idle);
 
 /* The lidar is back, by an attempt or by itself. */
 static inline void tmini_recovery_end(tmini_t *lidar)
@@ -96,11 +135,21 @@ static inline void tmini_recovery_forget(tmini_t *lidar)
 /* Scanning begins, anew or again: nothing continues what was before. */
 void tmini_monitor_begin(tmini_t *lidar);
 
-/* Takes the packet in lidar->latest, and what it tells of the revolution that it ends. True if a
- * complete revolution has ended with it. */
-bool tmini_monitor_packet(tmini_t *lidar, tmini_ct_verdict_t verdict);
+/* Takes the latest packet, and what it shows of the revolution that it ends. True if a complete
+ * revolution has ended with it. */
+bool tmini_monitor_packet(tmini_t *lidar);
 
-/* Looks after time while scanning. */
-void tmini_monitor_poll(tmini_t *lidar);
+/* True, once, if the lidar turns otherwise than wanted. */
+bool tmini_monitor_wants_frequency(tmini_t *lidar);
+
+/* The wanted frequency is another now. */
+void tmini_monitor_forget_frequency(tmini_t *lidar);
+
+/* Looks after time while scanning. False if packets come, with ranges, but no start packets: the
+ * lidar is lost. */
+bool tmini_monitor_poll(tmini_t *lidar);
+
+/* For how long tmini_monitor_poll() has nothing to do. */
+uint32_t tmini_monitor_idle_ms(const tmini_t *lidar);
 
 #endif

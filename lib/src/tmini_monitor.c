@@ -2,78 +2,159 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* While the lidar scans: is it well? Packets in, faults out: what revolutions show, once two have
- * shown it; a rotor that stands still, by time. */
+ * shown it; a rotor that stands still, by time; a rotor that does not turn as wanted, by the
+ * frequency that it reports. */
 
 #include "tmini_driver.h"
 
+/* A frequency that differs by more than a twentieth for so long, and so many turns, will not become
+ * the wanted one by itself. */
+#define OFF_PART 20u
+#define OFF_SECONDS 3u
+#define OFF_TURNS 3u
+
+/* Of 4000 a second (section 1): three seconds. */
+#define TURN_SAMPLES_MAX 12000u
+
 /* What one revolution shows is believed when the next one shows it too. */
-static void observe(tmini_monitor_t *monitor, uint8_t faults)
+static void observe(tmini_monitor_t *monitor, unsigned faults)
 {
     if (faults == monitor->observed) {
-        monitor->faults = faults;
+        monitor->faults = (uint8_t)(faults | (monitor->faults & TMINI_FAULT_FREQUENCY));
     }
-    monitor->observed = faults;
+    monitor->observed = (uint8_t)faults;
 }
 
-/* A start packet: the revolution that it ends is judged by what the unit itself says of its health
- * (section 7). If it says nothing, by whether there was any range; of a revolution that was not
- * received completely, the rest may have had one. */
-static void judge_revolution(tmini_t *lidar, tmini_ct_verdict_t verdict)
+/* A start packet: the revolution that it ends is judged by what the unit itself reports of its
+ * health (section 7). If it reports nothing, by whether there was any range; of a revolution that
+ * was not received completely, the rest may have had one. */
+static void judge_revolution(tmini_t *lidar)
 {
     tmini_monitor_t *const monitor = &lidar->monitor;
-    unsigned faults = tmini_ct_faults(&lidar->ct);
-    bool is_known = verdict == TMINI_CT_CONFIRMED;
+    unsigned faults = tmini_ct_faults(&lidar->decoder.ct);
+    bool is_known = lidar->decoder.verdict == TMINI_CT_CONFIRMED;
     if (faults == TMINI_FAULTS_UNKNOWN) {
         faults = monitor->has_range ? 0 : TMINI_FAULT_DATA;
         is_known = monitor->has_range || monitor->is_complete;
     }
     if (is_known) {
-        observe(monitor, (uint8_t)faults);
+        observe(monitor, faults);
     }
+}
+
+/* Counts revolutions in a row that took another time than wanted. Their number, by the frequency
+ * that they report, is also how long that has lasted. */
+static void judge_frequency(tmini_t *lidar)
+{
+    tmini_monitor_t *const monitor = &lidar->monitor;
+    const unsigned wanted_chz = lidar->wanted_chz;
+    const unsigned chz = (lidar->decoder.packet.ct >> 1) * 10u; /* Section 7. */
+    const unsigned off_chz = chz > wanted_chz ? chz - wanted_chz : wanted_chz - chz;
+    if (wanted_chz == 0 || chz == 0 || off_chz <= wanted_chz / OFF_PART) {
+        tmini_monitor_forget_frequency(lidar);
+        return;
+    }
+    monitor->off_turns = (uint8_t)(monitor->off_turns + (monitor->off_turns < UINT8_MAX));
+    if (monitor->off_turns >= OFF_TURNS && monitor->off_turns * 100u >= OFF_SECONDS * chz) {
+        monitor->faults |= TMINI_FAULT_FREQUENCY;
+    }
+}
+
+void tmini_monitor_forget_frequency(tmini_t *lidar)
+{
+    tmini_monitor_t *const monitor = &lidar->monitor;
+    monitor->off_turns = 0;
+    monitor->is_tried_again = false;
+    monitor->faults = monitor->faults & TMINI_FAULT_MASK;
+}
+
+bool tmini_monitor_wants_frequency(tmini_t *lidar)
+{
+    tmini_monitor_t *const monitor = &lidar->monitor;
+    if ((monitor->faults & TMINI_FAULT_FREQUENCY) == 0 || monitor->is_tried_again) {
+        return false;
+    }
+    monitor->is_tried_again = true;
+    return true;
 }
 
 void tmini_monitor_begin(tmini_t *lidar)
 {
     tmini_monitor_t *const monitor = &lidar->monitor;
-    tmini_ct_discard(&lidar->ct);
     monitor->is_complete = false;
     monitor->has_range = false;
-    monitor->observed = monitor->faults;
-    monitor->rotating_ms = lidar->link.now_ms;
+    monitor->samples = 0;
+    monitor->off_turns = 0;
+    monitor->observed = monitor->faults & TMINI_FAULT_MASK;
+    monitor->rotating_ms = lidar->line.now_ms;
 }
 
-bool tmini_monitor_packet(tmini_t *lidar, tmini_ct_verdict_t verdict)
+/* A revolution has ended, and the next begins. */
+static void begin_revolution(tmini_t *lidar)
 {
     tmini_monitor_t *const monitor = &lidar->monitor;
-    const tmini_packet_t *const packet = &lidar->latest.packet;
-    const bool is_start = tmini_packet_is_start(packet);
-    const bool has_range = tmini_packet_has_range(packet);
+    judge_revolution(lidar);
+    judge_frequency(lidar);
+    monitor->is_complete = true;
+    monitor->has_range = false;
+    monitor->samples = 0;
+    monitor->rotating_ms = lidar->line.now_ms;
+}
+
+bool tmini_monitor_packet(tmini_t *lidar)
+{
+    tmini_monitor_t *const monitor = &lidar->monitor;
+    const tmini_packet_t *const packet = &lidar->decoder.packet;
     bool is_whole = false;
+    monitor->samples = (uint16_t)(monitor->samples + packet->count);
     if (packet->gap > 1) { /* One byte may be LastCRC; with more, a packet may be lost. */
         monitor->is_complete = false;
     }
-    if (is_start) {
-        judge_revolution(lidar, verdict);
+    if (tmini_packet_is_start(packet)) {
         is_whole = monitor->is_complete;
-        monitor->is_complete = true;
-        monitor->has_range = false;
+        begin_revolution(lidar);
     }
-    if (has_range) {
+    if (tmini_packet_has_range(packet)) {
         monitor->has_range = true;
-    }
-    if (is_start || has_range) {
-        monitor->rotating_ms = lidar->link.now_ms;
+        monitor->rotating_ms = lidar->line.now_ms;
     }
     return is_whole;
 }
 
-void tmini_monitor_poll(tmini_t *lidar)
+static void note_standstill(tmini_monitor_t *monitor)
+{
+    monitor->faults |= TMINI_FAULT_ENCODER;
+    monitor->observed = monitor->faults & TMINI_FAULT_MASK;
+}
+
+/* More samples than any turn has, and no start packet. If ranges have come after the fault was
+ * noted, it turns. */
+static bool turns_without_start(tmini_monitor_t *monitor)
+{
+    if (monitor->samples < TURN_SAMPLES_MAX) {
+        return false;
+    }
+    const bool turns = monitor->has_range && (monitor->faults & TMINI_FAULT_ENCODER) != 0;
+    note_standstill(monitor);
+    monitor->samples = 0;
+    monitor->is_complete = false;
+    monitor->has_range = false;
+    return turns;
+}
+
+/* No start packet and no range for this long: the rotor is blocked (section 8). */
+bool tmini_monitor_poll(tmini_t *lidar)
 {
     tmini_monitor_t *const monitor = &lidar->monitor;
-    /* No start packet and no range for so long: the rotor is blocked (section 8). */
-    const uint16_t timeout_ms = lidar->link.timing->rotation_timeout_ms;
-    if (timeout_ms > 0 && tmini_has_elapsed(lidar, monitor->rotating_ms, timeout_ms)) {
-        monitor->faults |= TMINI_FAULT_ENCODER;
-        monitor->observed = monitor->faults;
+    if (tmini_has_elapsed(lidar, monitor->rotating_ms, TMINI_ROTATION_TIMEOUT_MS)) {
+        note_standstill(monitor);
     }
+    return !turns_without_start(monitor);
+}
+
+uint32_t tmini_monitor_idle_ms(const tmini_t *lidar)
+{
+    const uint32_t still_ms = lidar->line.now_ms - lidar->monitor.rotating_ms;
+    return still_ms < TMINI_ROTATION_TIMEOUT_MS ? TMINI_ROTATION_TIMEOUT_MS - still_ms
+                                                : TMINI_ROTATION_TIMEOUT_MS;
 }

@@ -52,7 +52,7 @@ static bool isOpen(TMiniSerial &serial)
 #endif
 }
 
-const tmini_port_t TMiniLidarBase::port_ = {writeBytes, nowMs, NULL};
+const tmini_port_t TMiniLidarBase::port_ = {writeBytes, nowMs, NULL, NULL};
 
 TMiniPoint TMiniPoints::operator[](size_t index) const
 {

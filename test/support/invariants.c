@@ -174,15 +174,15 @@ static bool is_operation(uint8_t code)
 /* A frequency is set by steps. */
 static bool steps_frequency(const tmini_command_t *command)
 {
-    return command->operation == TMINI_COMMAND_GET_FREQUENCY && command->target_chz > 0;
+    return command->operation == TMINI_COMMAND_GET_FREQUENCY;
 }
 
 /* The reply that is awaited is that to the command sent. */
 static bool awaits_its_reply(const tmini_t *lidar)
 {
-    const tmini_reply_header_t *const awaited = &lidar->parser.awaited;
+    const tmini_reply_header_t *const awaited = &lidar->decoder.parser.awaited;
     tmini_reply_header_t reply;
-    return lidar->parser.awaiting &&
+    return lidar->decoder.parser.awaiting &&
            tmini_reply_header((tmini_command_code_t)lidar->command.code, &reply) &&
            awaited->type == reply.type && awaited->mode == reply.mode &&
            awaited->length == reply.length;
@@ -202,33 +202,29 @@ static bool phase_fits(const tmini_t *lidar)
         return steps_frequency(command) && is_step(command->code) && awaits_its_reply(lidar);
     case TMINI_PHASE_QUIESCING:
         return (command->code == TMINI_COMMAND_STOP || steps_frequency(command)) &&
-               !lidar->parser.awaiting;
+               !lidar->decoder.parser.awaiting;
     case TMINI_PHASE_SPINNING_UP:
-        return command->operation == TMINI_COMMAND_START && !lidar->parser.awaiting;
+        return command->operation == TMINI_COMMAND_START && !lidar->decoder.parser.awaiting;
     default:
-        return command->phase <= TMINI_PHASE_WAITING && !lidar->parser.awaiting;
+        return command->phase <= TMINI_PHASE_WAITING && !lidar->decoder.parser.awaiting;
     }
 }
 
-/* The event with which the user's command ends well is that of its operation. */
-static bool end_event_fits(const tmini_t *lidar)
+static bool is_query(uint8_t operation)
 {
-    switch (lidar->command.operation) {
-    case TMINI_COMMAND_START:
-        return lidar->end_event == TMINI_EVENT_STARTED;
-    case TMINI_COMMAND_STOP:
-        return lidar->end_event == TMINI_EVENT_STOPPED;
-    case TMINI_COMMAND_GET_INFO:
-        return lidar->end_event == TMINI_EVENT_INFO;
-    case TMINI_COMMAND_GET_HEALTH:
-        return lidar->end_event == TMINI_EVENT_HEALTH;
-    case TMINI_COMMAND_GET_FREQUENCY:
-        return lidar->end_event == TMINI_EVENT_FREQUENCY;
-    case TMINI_COMMAND_REBOOT:
-        return lidar->end_event == TMINI_EVENT_REBOOTED;
-    default:
-        return false;
-    }
+    return operation == TMINI_COMMAND_GET_INFO || operation == TMINI_COMMAND_GET_HEALTH ||
+           operation == TMINI_COMMAND_GET_FREQUENCY || operation == TMINI_COMMAND_REBOOT;
+}
+
+/* Listening, and in the pauses of the ladder, time is waited for; otherwise one of its rungs is
+ * under way. */
+static bool ladder_fits(const tmini_t *lidar)
+{
+    const uint8_t operation = lidar->command.operation;
+    const bool is_waiting = lidar->command.phase == TMINI_PHASE_WAITING;
+    return lidar->command.phase >= TMINI_PHASE_QUIESCING &&
+           (operation == TMINI_COMMAND_REBOOT || operation == TMINI_COMMAND_GET_FREQUENCY ||
+            is_waiting == (operation != TMINI_COMMAND_START));
 }
 
 static bool state_fits(const tmini_t *lidar)
@@ -242,20 +238,15 @@ static bool state_fits(const tmini_t *lidar)
     case TMINI_STATE_IDLE:
         return phase == TMINI_PHASE_IDLE;
     case TMINI_STATE_BUSY:
-        return end_event_fits(lidar) && operation != TMINI_COMMAND_STOP &&
-               operation != TMINI_COMMAND_START && phase >= TMINI_PHASE_QUIESCING &&
+        return is_query(operation) && phase >= TMINI_PHASE_QUIESCING &&
                (!is_waiting || operation == TMINI_COMMAND_REBOOT);
     case TMINI_STATE_STOPPING:
-        return end_event_fits(lidar) && operation == TMINI_COMMAND_STOP &&
-               phase == TMINI_PHASE_QUIESCING;
-    case TMINI_STATE_STARTING:
-        return end_event_fits(lidar) && operation == TMINI_COMMAND_START &&
-               phase >= TMINI_PHASE_QUIESCING && !is_waiting;
+        return operation == TMINI_COMMAND_STOP && phase == TMINI_PHASE_QUIESCING;
     case TMINI_STATE_SCANNING:
         return is_waiting && lidar->command.unsent == 0;
+    case TMINI_STATE_STARTING:
     case TMINI_STATE_RECOVERING:
-        return phase >= TMINI_PHASE_QUIESCING && (operation == TMINI_COMMAND_REBOOT ||
-                                                  is_waiting == (operation != TMINI_COMMAND_START));
+        return ladder_fits(lidar) && !lidar->start_follows;
     default:
         return false;
     }
@@ -268,24 +259,33 @@ static bool command_is_sound(const tmini_command_t *command)
            (command->unsent == 0 ||
             (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
            (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE) &&
-           command->steps <= STEPS_MAX && command->frequency_chz <= PLAUSIBLE_CHZ_MAX &&
-           (command->target_chz == 0 || (command->target_chz >= TMINI_FREQUENCY_MIN_CHZ &&
-                                         command->target_chz <= TMINI_FREQUENCY_MAX_CHZ));
+           command->steps <= STEPS_MAX && command->frequency_chz <= PLAUSIBLE_CHZ_MAX;
 }
 
 static bool monitor_is_sound(const tmini_monitor_t *monitor)
 {
-    return ((monitor->faults | monitor->observed) & ~TMINI_FAULT_MASK) == 0;
+    return (monitor->faults & ~(TMINI_FAULT_MASK | TMINI_FAULT_FREQUENCY)) == 0 &&
+           (monitor->observed & ~TMINI_FAULT_MASK) == 0;
 }
 
-/* Streaming, nothing is gathered. A packet that waits is there. Settled: nothing is to be told. */
+/* Listening, nothing is sent, and nothing is wanted but to scan. */
+static bool wish_is_sound(const tmini_t *lidar)
+{
+    const uint16_t chz = lidar->wanted_chz;
+    return (chz == 0 || (chz >= TMINI_FREQUENCY_MIN_CHZ && chz <= TMINI_FREQUENCY_MAX_CHZ)) &&
+           (!lidar->is_listen_only || (chz == 0 && lidar->command.operation == 0));
+}
+
+/* Without points nothing is gathered. A packet that waits is there. Settled: nothing is to be
+ * reported. */
 static bool results_are_sound(const tmini_t *lidar)
 {
-    const bool streaming = lidar->builder.capacity == 0;
-    return (streaming ? !lidar->builder.open : builder_is_sound(&lidar->builder)) &&
+    const tmini_decoder_t *const decoder = &lidar->decoder;
+    const bool by_packets = decoder->builder.capacity == 0;
+    return (by_packets ? !decoder->builder.open : builder_is_sound(&decoder->builder)) &&
            (!lidar->is_settled || lidar->pending == 0) &&
-           (!lidar->packet_waits ||
-            (!streaming && packet_is_sound(&lidar->latest.packet, &lidar->parser.frame)));
+           (!decoder->packet_waits ||
+            (!by_packets && packet_is_sound(&decoder->packet, &decoder->parser.frame)));
 }
 
 bool lidar_is_sound(const tmini_t *lidar)
@@ -293,10 +293,12 @@ bool lidar_is_sound(const tmini_t *lidar)
     if (lidar->link.port == NULL) {
         return true;
     }
-    return lidar->link.port->write != NULL && lidar->link.port->now_ms != NULL &&
-           lidar->link.timing != NULL && lidar->parser.frame.ring == &lidar->ring &&
-           lidar->ring.window >= TMINI_REPLY_SIZE_MAX && parser_is_sound(&lidar->parser) &&
-           (lidar->pending & ~EVENTS) == 0 && lidar->doubt <= DOUBT_MAX &&
+    return (lidar->link.port->write != NULL || lidar->is_listen_only) &&
+           lidar->link.port->now_ms != NULL && lidar->link.timing != NULL &&
+           lidar->decoder.parser.frame.ring == &lidar->ring &&
+           lidar->ring.window >= TMINI_REPLY_SIZE_MAX && parser_is_sound(&lidar->decoder.parser) &&
+           (lidar->pending & ~EVENTS) == 0 && lidar->line.doubt <= DOUBT_MAX &&
            command_is_sound(&lidar->command) && phase_fits(lidar) && state_fits(lidar) &&
-           monitor_is_sound(&lidar->monitor) && ct_is_sound(&lidar->ct) && results_are_sound(lidar);
+           monitor_is_sound(&lidar->monitor) && ct_is_sound(&lidar->decoder.ct) &&
+           wish_is_sound(lidar) && results_are_sound(lidar);
 }

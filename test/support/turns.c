@@ -3,6 +3,8 @@
 
 #include "turns.h"
 
+#include "unity.h"
+
 #include <string.h>
 
 turns_t turns;
@@ -118,7 +120,7 @@ void turns_open(size_t rx_size, bool dma)
     turns.config.rx_dma = dma;
     turns.config.points = turns.points;
     turns.config.max_points = 800;
-    (void)tmini_init(&turns.lidar, &turns.config);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&turns.lidar, &turns.config));
 }
 
 void turns_open_scanning(size_t rx_size, bool dma)

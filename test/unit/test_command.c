@@ -503,10 +503,14 @@ void test_each_command_has_all_its_attempts(void)
     polls_to(TMINI_EVENT_HEALTH);
 }
 
-void test_a_start_that_is_acknowledged_but_brings_no_packet_is_tried_again(void)
+void test_a_start_that_is_acknowledged_but_brings_no_packet_is_reported_and_tried_again(void)
 {
     rig_go_spinning_up();
     passes(3000);
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_command_error(&rig.lidar));
+    is_in(TMINI_STATE_STARTING);
+    passes(500);
     polls_to(TMINI_EVENT_NONE);
     sends(STOP);
     polls_to(TMINI_EVENT_NONE);
@@ -1054,7 +1058,7 @@ void test_a_port_that_fails_once_fails_no_command(void)
 void test_asking_again_whenever_a_command_fails_keeps_no_loop_for_ever(void)
 {
     sends_both_taking(STOP, -1);
-    begins(tmini_start(&rig.lidar));
+    begins(tmini_request_info(&rig.lidar));
     polls_to(TMINI_EVENT_NONE);
     for (unsigned ms = 1; ms < 5; ms++) {
         tmini_event_t event;
@@ -1064,7 +1068,7 @@ void test_asking_again_whenever_a_command_fails_keeps_no_loop_for_ever(void)
         sends_both_taking(STOP, -1); /* and anew. */
         while ((event = tmini_poll(&rig.lidar)) != TMINI_EVENT_NONE) {
             TEST_ASSERT_EQUAL_INT(TMINI_EVENT_COMMAND_FAILED, event);
-            begins(tmini_start(&rig.lidar));
+            begins(tmini_request_info(&rig.lidar));
         }
         was_sent();
     }

@@ -357,25 +357,3 @@ void test_a_blocked_rotor_keeps_the_faults_reported_before(void)
     polls_to(TMINI_EVENT_FAULTS_CHANGED);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_PD | TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
 }
-
-void test_a_blocked_rotor_need_not_be_looked_for(void)
-{
-    rig_go_scanning();
-    rig.timing.rotation_timeout_ms = 0;
-    rig.config.timing = &rig.timing;
-    stands_still_for(60000);
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-}
-
-void test_a_millisecond_can_be_too_long_for_the_rotor(void)
-{
-    rig.timing.rotation_timeout_ms = 1;
-    rig.config.timing = &rig.timing;
-    rig_init();
-    rig_go_scanning();
-    (void)rig_drain();
-    rig.now_ms += 1;
-    rig_feed_point_packet(0);
-    TEST_ASSERT_TRUE((rig_drain() & BIT(TMINI_EVENT_FAULTS_CHANGED)) != 0);
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
-}

@@ -21,7 +21,7 @@ void setUp(void)
     turns_open(1024, false);
     turns.config.points = NULL;
     turns.config.max_points = 0;
-    (void)tmini_init(&turns.lidar, &turns.config);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&turns.lidar, &turns.config));
     (void)tmini_start(&turns.lidar);
     (void)turns_poll();
     turns.now_ms += 100;

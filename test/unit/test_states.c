@@ -109,11 +109,10 @@ void test_in_the_idle_state_every_command_is_sent_at_once(void)
     check_all(rig_go_idle, TMINI_STATE_IDLE, cells);
 }
 
-void test_in_the_busy_state_every_command_but_stop_is_told_so(void)
+void test_in_the_busy_state_queries_are_refused_and_wishes_kept(void)
 {
     static const cell_t cells[7] = {
-        {"busy x start", tmini_start, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
-         TMINI_EVENT_NONE},
+        {"busy x start", tmini_start, TMINI_OK, NOTHING, TMINI_STATE_BUSY, TMINI_EVENT_NONE},
         {"busy x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING,
          TMINI_EVENT_COMMAND_FAILED},
         {"busy x info", tmini_request_info, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
@@ -122,7 +121,7 @@ void test_in_the_busy_state_every_command_but_stop_is_told_so(void)
          TMINI_EVENT_NONE},
         {"busy x frequency", tmini_request_frequency, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
          TMINI_EVENT_NONE},
-        {"busy x set frequency", set_frequency, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
+        {"busy x set frequency", set_frequency, TMINI_OK, NOTHING, TMINI_STATE_BUSY,
          TMINI_EVENT_NONE},
         {"busy x reboot", tmini_reboot, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_BUSY,
          TMINI_EVENT_NONE},
@@ -131,10 +130,10 @@ void test_in_the_busy_state_every_command_but_stop_is_told_so(void)
     check_all(go_busy, TMINI_STATE_BUSY, cells);
 }
 
-void test_in_the_stopping_state_every_command_but_stop_is_told_busy(void)
+void test_in_the_stopping_state_queries_are_refused_and_wishes_kept(void)
 {
     static const cell_t cells[7] = {
-        {"stopping x start", tmini_start, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
+        {"stopping x start", tmini_start, TMINI_OK, NOTHING, TMINI_STATE_STOPPING,
          TMINI_EVENT_NONE},
         {"stopping x stop", tmini_stop, TMINI_OK, NOTHING, TMINI_STATE_STOPPING, TMINI_EVENT_NONE},
         {"stopping x info", tmini_request_info, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
@@ -143,7 +142,7 @@ void test_in_the_stopping_state_every_command_but_stop_is_told_busy(void)
          TMINI_EVENT_NONE},
         {"stopping x frequency", tmini_request_frequency, TMINI_ERROR_BUSY, NOTHING,
          TMINI_STATE_STOPPING, TMINI_EVENT_NONE},
-        {"stopping x set frequency", set_frequency, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
+        {"stopping x set frequency", set_frequency, TMINI_OK, NOTHING, TMINI_STATE_STOPPING,
          TMINI_EVENT_NONE},
         {"stopping x reboot", tmini_reboot, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STOPPING,
          TMINI_EVENT_NONE},
@@ -152,10 +151,10 @@ void test_in_the_stopping_state_every_command_but_stop_is_told_busy(void)
     check_all(go_stopping, TMINI_STATE_STOPPING, cells);
 }
 
-void test_in_the_starting_state_every_command_but_stop_is_told_busy(void)
+void test_in_the_starting_state_queries_are_refused_and_a_new_frequency_starts_anew(void)
 {
     static const cell_t cells[7] = {
-        {"starting x start", tmini_start, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
+        {"starting x start", tmini_start, TMINI_OK, NOTHING, TMINI_STATE_STARTING,
          TMINI_EVENT_NONE},
         {"starting x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING,
          TMINI_EVENT_COMMAND_FAILED},
@@ -165,7 +164,7 @@ void test_in_the_starting_state_every_command_but_stop_is_told_busy(void)
          TMINI_EVENT_NONE},
         {"starting x frequency", tmini_request_frequency, TMINI_ERROR_BUSY, NOTHING,
          TMINI_STATE_STARTING, TMINI_EVENT_NONE},
-        {"starting x set frequency", set_frequency, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
+        {"starting x set frequency", set_frequency, TMINI_OK, STOP, TMINI_STATE_STARTING,
          TMINI_EVENT_NONE},
         {"starting x reboot", tmini_reboot, TMINI_ERROR_BUSY, NOTHING, TMINI_STATE_STARTING,
          TMINI_EVENT_NONE},
@@ -174,10 +173,10 @@ void test_in_the_starting_state_every_command_but_stop_is_told_busy(void)
     check_all(rig_go_starting, TMINI_STATE_STARTING, cells);
 }
 
-void test_in_the_scanning_state_only_stop_is_sent(void)
+void test_in_the_scanning_state_queries_are_refused_and_a_new_frequency_starts_anew(void)
 {
     static const cell_t cells[7] = {
-        {"scanning x start", tmini_start, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_SCANNING,
+        {"scanning x start", tmini_start, TMINI_OK, NOTHING, TMINI_STATE_SCANNING,
          TMINI_EVENT_NONE},
         {"scanning x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_NONE},
         {"scanning x info", tmini_request_info, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_SCANNING,
@@ -186,8 +185,8 @@ void test_in_the_scanning_state_only_stop_is_sent(void)
          TMINI_STATE_SCANNING, TMINI_EVENT_NONE},
         {"scanning x frequency", tmini_request_frequency, TMINI_ERROR_STATE, NOTHING,
          TMINI_STATE_SCANNING, TMINI_EVENT_NONE},
-        {"scanning x set frequency", set_frequency, TMINI_ERROR_STATE, NOTHING,
-         TMINI_STATE_SCANNING, TMINI_EVENT_NONE},
+        {"scanning x set frequency", set_frequency, TMINI_OK, STOP, TMINI_STATE_STARTING,
+         TMINI_EVENT_NONE},
         {"scanning x reboot", tmini_reboot, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_SCANNING,
          TMINI_EVENT_NONE},
     };
@@ -195,10 +194,10 @@ void test_in_the_scanning_state_only_stop_is_sent(void)
     check_all(rig_go_scanning, TMINI_STATE_SCANNING, cells);
 }
 
-void test_in_the_recovering_state_only_stop_is_sent(void)
+void test_in_the_recovering_state_queries_are_refused_and_a_new_frequency_tries_anew(void)
 {
     static const cell_t cells[7] = {
-        {"recovering x start", tmini_start, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_RECOVERING,
+        {"recovering x start", tmini_start, TMINI_OK, NOTHING, TMINI_STATE_RECOVERING,
          TMINI_EVENT_NONE},
         {"recovering x stop", tmini_stop, TMINI_OK, STOP, TMINI_STATE_STOPPING, TMINI_EVENT_NONE},
         {"recovering x info", tmini_request_info, TMINI_ERROR_STATE, NOTHING,
@@ -207,8 +206,8 @@ void test_in_the_recovering_state_only_stop_is_sent(void)
          TMINI_STATE_RECOVERING, TMINI_EVENT_NONE},
         {"recovering x frequency", tmini_request_frequency, TMINI_ERROR_STATE, NOTHING,
          TMINI_STATE_RECOVERING, TMINI_EVENT_NONE},
-        {"recovering x set frequency", set_frequency, TMINI_ERROR_STATE, NOTHING,
-         TMINI_STATE_RECOVERING, TMINI_EVENT_NONE},
+        {"recovering x set frequency", set_frequency, TMINI_OK, STOP, TMINI_STATE_RECOVERING,
+         TMINI_EVENT_NONE},
         {"recovering x reboot", tmini_reboot, TMINI_ERROR_STATE, NOTHING, TMINI_STATE_RECOVERING,
          TMINI_EVENT_NONE},
     };

@@ -40,12 +40,14 @@ void test_a_lidar_just_set_up_is_in_the_unknown_state_and_nothing_has_been_sent(
     TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
 }
 
-/* And then it refuses commands and polls to nothing. */
+/* And then it refuses commands, and reports that once. */
 static void is_refused(const tmini_config_t *config)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_init(&rig.lidar, config));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_start(&rig.lidar));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_stop(&rig.lidar));
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_command_error(&rig.lidar));
     polls_to(TMINI_EVENT_NONE);
     is_in(TMINI_STATE_UNKNOWN);
 }
@@ -975,10 +977,7 @@ void test_waiting_for_the_first_packet_survives_the_clocks_wrap_around(void)
     begin_near_the_end(3000);
     rig_feed_scan_reply();
     passes(3000);
-    polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
 }
 
 void test_waiting_between_steps_survives_the_clocks_wrap_around(void)
@@ -1028,9 +1027,11 @@ void test_waiting_for_a_turn_survives_the_clocks_wrap_around(void)
 
 void test_the_pause_between_attempts_survives_the_clocks_wrap_around(void)
 {
-    rig_go_asking_again();
-    begin_near_the_end(500);
-    polls_to(TMINI_EVENT_NONE); /* So late that the attempt has failed. */
+    rig_go_backing_off();
+    const uint32_t took_ms = rig.now_ms - 1000;
+    rig.now_ms = 0 - took_ms - 250;
+    rig_init();
+    rig_go_backing_off();
     passes(500);
     polls_to(TMINI_EVENT_NONE);
     sends(STOP);

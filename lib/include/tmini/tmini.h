@@ -4,10 +4,18 @@
 /** @file
  * tmini: a driver for the YDLIDAR T-mini Plus, a spinning 2D lidar.
  *
- * The receive interrupt only stores bytes (tmini_feed_byte(), or tmini_feed() for blocks, or
- * tmini_feed_dma() for circular DMA). Everything else happens in tmini_poll(), which returns one
- * event a call and never waits:
+ * You state what you want; the driver brings the lidar there and keeps it there, at the start,
+ * after a lost connection, a reboot or a power failure. The receive interrupt only stores bytes
+ * (tmini_feed_byte(), or tmini_feed() for blocks, or tmini_feed_dma() for circular DMA). Everything
+ * else happens in tmini_poll(), which returns one event per call and never waits:
  *
+ *     static const tmini_config_t config = {
+ *         .port = &board_port, .rx_buffer = rx, .rx_size = sizeof rx,
+ *         .points = points, .max_points = 800, .frequency_chz = 1000,
+ *     };
+ *
+ *     if (tmini_init(&lidar, &config) != TMINI_OK) { halt(); }
+ *     tmini_start(&lidar);                   stands until tmini_stop()
  *     for (;;) {
  *         switch (tmini_poll(&lidar)) {
  *         case TMINI_EVENT_SCAN:  avoid_obstacles(tmini_scan(&lidar)); break;
@@ -21,11 +29,11 @@
  * Nothing is locked and no interrupt is disabled (but see tmini_atomic.h for 8-bit machines). Any
  * number of lidars, each with a tmini_t of its own.
  *
- * Time. No function waits. Commands only begin something; how it ends is an event. tmini_poll()
- * must be called often enough that the receive buffer does not overflow: at least every 38 ms with
- * 1024 bytes, or every 16 ms with DMA, which can use half of them (docs/footprint.md, "How often to
- * poll", has other sizes). Call it until it returns TMINI_EVENT_NONE: while events other than
- * TMINI_EVENT_MORE are due, it does not look for time-outs.
+ * Time. No function waits. tmini_poll() must be called often enough that the receive buffer does
+ * not overflow: at least every 38 ms with 1024 bytes, or every 16 ms with DMA, which can use half
+ * of them (docs/footprint.md, "How often to poll", has other sizes). Call it until it returns
+ * TMINI_EVENT_NONE: while events other than TMINI_EVENT_MORE are due, it does not look for
+ * time-outs.
  *
  * "Section" in these headers means the section of docs/protocol.md. */
 
@@ -39,9 +47,7 @@
 #include "tmini_port.h"
 #include "tmini_types.h"
 /* For the structure's sake: what a lidar consists of. */
-#include "parts/tmini_builder.h"
-#include "parts/tmini_ct.h"
-#include "parts/tmini_parser.h"
+#include "parts/tmini_decoder.h"
 #include "parts/tmini_reply.h"
 #include "parts/tmini_ring.h"
 
@@ -74,39 +80,29 @@ typedef struct {
      * takes 42 ms. Bytes that were held back count by the time in which the line could have sent
      * them. 0: pauses are not looked for. */
     uint16_t max_pause_ms;
-    /** A line silent for so long after stop is quiet. 0: at once. */
+    /** A line silent for this long after a stop is quiet. 0: at once. */
     uint16_t quiet_line_ms;
-    /** If the line is not quiet by then, stop is sent again (section 9.10). 0: it never is. */
-    uint16_t stop_timeout_ms;
     /** For a reply (section 9.11). 0: for ever. */
     uint16_t reply_timeout_ms;
-    /** For the port to take a command's two bytes. 0: at once. */
-    uint16_t write_timeout_ms;
-    /** From the start reply to the first packet. 0: for ever. */
-    uint16_t spin_up_timeout_ms;
-    /** Without a valid packet for so long, the lidar is lost. 0: it never is. */
-    uint16_t data_timeout_ms;
-    /** Packets, but neither a range nor a start packet for so long: the rotor is blocked. 0: that
-     * is not looked for. */
-    uint16_t rotation_timeout_ms;
-    /** What a soft reboot takes (section 9.11). 0: for ever. */
-    uint16_t reboot_time_ms;
-    /** The first pause between attempts to recover; it doubles each time. 0: no next attempt. */
-    uint16_t back_off_ms;
-    /** The longest such pause. 0: no next attempt. */
+    /** The pause between attempts to start doubles from 500 ms up to this. 0: no next attempt. */
     uint16_t back_off_max_ms;
-    /** How often a command is tried. 0: once. */
+    /** How often a query, a stop or a reboot is tried. 0: once. */
     uint8_t max_attempts;
 } tmini_timing_t;
 
 /** The values used when the configuration gives none; they fit the real device. */
 extern const tmini_timing_t tmini_timing_default;
 
-/** Whether the driver brings back a lidar that it has lost. */
+/** Whether the driver goes on trying when a start has failed or the lidar is lost. */
 typedef enum {
     TMINI_RECOVERY_ON,  /**< By stop and start, and every so often a soft reboot. */
-    TMINI_RECOVERY_OFF, /**< The loss is reported, and nothing is sent. */
+    TMINI_RECOVERY_OFF, /**< A start fails once; a loss is reported, and nothing is sent. */
 } tmini_recovery_mode_t;
+
+/** A step that changes a finished scan in place before it is delivered: tmini_mount_step(), or a
+ * function of yours. Called from tmini_poll() with the configuration's `step_data`. Points keep
+ * their order and number. */
+typedef void (*tmini_step_t)(const void *data, tmini_scan_t *scan);
 
 /** What tmini_init() needs to know. Members that are not named may be 0. */
 typedef struct {
@@ -114,13 +110,21 @@ typedef struct {
     void *port_context;       /**< Passed to its functions. */
     uint8_t *rx_buffer;       /**< Received bytes. Required. */
     size_t rx_size;           /**< A power of two; 256 or more (512 with DMA) for 80 samples, up to
-                                 * TMINI_RING_SIZE_MAX. */
+                       * TMINI_RING_SIZE_MAX. */
     bool rx_dma;           /**< The buffer is the target of circular DMA: use tmini_feed_dma(). */
     tmini_point_t *points; /**< One scan. NULL: an event for each packet instead. */
-    size_t max_points;     /**< 1 to 65535, or 0 with no points. */
-    uint8_t max_samples;   /**< Packets with more are not valid; 0: the default, 80. */
-    uint8_t filter;        /**< Of scans: a combination of tmini_filter_t; 0: keep all. */
+    tmini_point_t *spare_points; /**< A second buffer of max_points: then a scan stays valid until
+                                    * the next TMINI_EVENT_SCAN. NULL: until the next poll. */
+    size_t max_points;           /**< 1 to 65535, or 0 with no points. */
+    uint8_t max_samples;         /**< Packets with more are not valid; 0: the default, 80. */
+    uint8_t filter;              /**< Of scans: a combination of tmini_filter_t; 0: keep all. */
+    uint16_t frequency_chz; /**< The scan frequency that is wanted, as for tmini_set_frequency(); 0:
+                               * whatever the lidar has. */
+    bool listen_only;       /**< Nothing is ever sent: for a lidar that something else controls, or
+                               * whose RX wire is off. Without a frequency. */
     tmini_recovery_mode_t recovery; /**< 0: on. */
+    tmini_step_t step;              /**< Applied to each scan, NULL: none. Needs points. */
+    const void *step_data;          /**< Passed to it; must outlive the lidar. */
     const tmini_timing_t *timing;   /**< NULL: tmini_timing_default. It must outlive the lidar. */
 } tmini_config_t;
 
@@ -135,24 +139,29 @@ typedef enum {
     TMINI_EVENT_HEALTH,         /**< tmini_health() has been read. */
     TMINI_EVENT_FREQUENCY,      /**< tmini_frequency_chz() has been read, or set and read back. */
     TMINI_EVENT_REBOOTED,       /**< The soft reboot's time is over. */
-    TMINI_EVENT_COMMAND_FAILED, /**< tmini_command_error() says why. */
-    TMINI_EVENT_UNWANTED_SCANNING, /**< A lidar left idle scans all the same; it is being stopped again,
-                             * which ends like tmini_stop(). */
-    TMINI_EVENT_LOST, /**< No valid packets any more; being recovered unless configured not to. */
+    TMINI_EVENT_COMMAND_FAILED, /**< tmini_command_error() says why. In TMINI_STATE_STARTING an
+                                   * attempt to start has failed, and the next follows; in
+                                   * TMINI_STATE_SCANNING the wanted frequency could not be set. */
+    TMINI_EVENT_UNWANTED_SCANNING, /**< A lidar that was stopped scans all the same; it is being
+                                      * stopped again, which ends like tmini_stop(). */
+    TMINI_EVENT_LOST, /**< No valid packets, or no start packets, any more; being recovered unless
+                         * configured not to. */
     TMINI_EVENT_RECOVERED,      /**< Valid packets again. */
     TMINI_EVENT_FAULTS_CHANGED, /**< tmini_faults() has changed, to 0 as well. */
-    TMINI_EVENT_PACKET, /**< Streaming: tmini_packet() is valid until the next tmini_poll(). */
-    TMINI_EVENT_SCAN,   /**< tmini_scan() is valid until the next tmini_poll(). */
+    TMINI_EVENT_PACKET, /**< Without points: tmini_packet() is valid until the next tmini_poll(). */
+    TMINI_EVENT_SCAN,   /**< tmini_scan() is valid until the next tmini_poll(), or, with
+                           * spare_points, until the next TMINI_EVENT_SCAN. */
     TMINI_EVENT_MORE,   /**< Nothing yet, but bytes wait: a poll's work is bounded. Poll again. */
 } tmini_event_t;
 
-/** What the lidar does, as far as the driver knows (docs/design.md has a diagram). */
+/** What the lidar does, as far as the driver knows (docs/design.md has a diagram). In the last
+ * three it is wanted to scan. */
 typedef enum {
-    TMINI_STATE_UNKNOWN,    /**< The lidar may be streaming: after init, reboot or a failure. */
+    TMINI_STATE_UNKNOWN,    /**< The lidar may be scanning: after init, reboot or a failure. */
     TMINI_STATE_IDLE,       /**< Not scanning, and the line is quiet. */
     TMINI_STATE_BUSY,       /**< Carrying out a query, a frequency change or a reboot. */
     TMINI_STATE_STOPPING,   /**< Waiting for the line to fall quiet after a stop. */
-    TMINI_STATE_STARTING,   /**< Until the first packet. */
+    TMINI_STATE_STARTING,   /**< Until the first packet, however many attempts it takes. */
     TMINI_STATE_SCANNING,   /**< Packets come. */
     TMINI_STATE_RECOVERING, /**< Lost while scanning; brought back, or waited for. */
 } tmini_state_t;
@@ -173,7 +182,7 @@ typedef struct {
     uint16_t losses;        /**< TMINI_EVENT_LOST. */
     uint16_t recoveries;    /**< TMINI_EVENT_RECOVERED. */
     uint16_t restarts;      /**< Attempts to recover by a start. */
-    uint16_t reboots;       /**< Attempts to recover by a soft reboot. */
+    uint16_t reboots;       /**< Attempts to start or recover by a soft reboot. */
 } tmini_counters_t;
 
 /** One lidar: allocated by the caller, set up by tmini_init(). Its members are private. */
@@ -182,10 +191,12 @@ typedef struct tmini tmini_t;
 /* ---------------------------------------------------------------------------------- life cycle */
 
 /** Sets up a lidar; sends nothing, waits for nothing. From the polling context. Nothing may be fed
- * meanwhile; what is fed to an all-zero tmini_t before is refused. Port, timing and buffers stay
- * the caller's and must outlive the lidar; the configuration itself may go.
- * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: a required member missing or out of range; the lidar
- * then refuses commands and polls to nothing. */
+ * meanwhile; what is fed to an all-zero tmini_t before is refused. Port, timing, step data and
+ * buffers stay the caller's and must outlive the lidar; the configuration itself may go.
+ * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: a required member missing or out of range, or members
+ * that do not go together; the lidar then refuses commands and reports TMINI_EVENT_COMMAND_FAILED
+ * once. Check it: most compilers warn if you do not. */
+TMINI_MUST_CHECK
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config);
 
 /* -------------------------------------------------------- receiving: interrupt or task context */
@@ -221,6 +232,10 @@ static inline void tmini_feed_dma(tmini_t *lidar, size_t position);
  * if there was no lap. */
 static inline void tmini_feed_gap(tmini_t *lidar);
 
+/** The receive buffer, for a port that hands it to circular DMA; its size goes to `size`. NULL, and
+ * 0, unless the lidar has been set up with rx_dma. Any context, after tmini_init(). */
+static inline uint8_t *tmini_rx_buffer(const tmini_t *lidar, size_t *size);
+
 /* -------------------------------------------------------- everything else: the polling context */
 
 /** Parses what has been received, keeps time, sends what is due; returns the next event or
@@ -231,14 +246,50 @@ static inline void tmini_feed_gap(tmini_t *lidar);
  * other work allows. */
 tmini_event_t tmini_poll(tmini_t *lidar);
 
-/** @name Commands
- * Each only begins; the event in brackets or TMINI_EVENT_COMMAND_FAILED is its end. From an unknown
- * state each first stops the lidar and waits for a quiet line (section 9.10). All return
+/** @name Wishes
+ * They stand until they are changed; what they need is done by tmini_poll(). From the polling
+ * context; none waits, and each sends two bytes at most. */
+/** @{ */
+
+/** The lidar is to scan, until tmini_stop(): at once, or when the command under way has ended; also
+ * one that is powered later, restarts or is plugged in again. TMINI_EVENT_STARTED with the first
+ * packet; after that each revolution is TMINI_EVENT_SCAN (section 2). Each attempt that fails is
+ * one TMINI_EVENT_COMMAND_FAILED, and the next follows after a pause. With TMINI_RECOVERY_OFF the
+ * first one ends the wish. Nothing happens if it scans, or starts, already.
+ * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, or a lidar that was not set up. */
+tmini_status_t tmini_start(tmini_t *lidar);
+
+/** The lidar is to stop, whatever is under way [TMINI_EVENT_STOPPED]. In any state; an unfinished
+ * command or start ends with TMINI_EVENT_COMMAND_FAILED, TMINI_ERROR_ABORTED. A lidar that scans
+ * later all the same is stopped again, TMINI_EVENT_UNWANTED_SCANNING (section 9.10). If it cannot
+ * be stopped, TMINI_EVENT_COMMAND_FAILED comes once per round of attempts.
+ * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, or a lidar that was not set up. */
+tmini_status_t tmini_stop(tmini_t *lidar);
+
+/** The lidar is to turn at this frequency, in 0.01 Hz: 600 to 1200, a multiple of 10. It is set
+ * before every start from now on, also after a loss or a reboot, and read back
+ * [TMINI_EVENT_FREQUENCY]; within 0.05 Hz is there. Idle, it is set now. While the lidar scans, or
+ * is to scan, a changed wish stops it, sets it and starts again [TMINI_EVENT_STARTED, or
+ * TMINI_EVENT_RECOVERED while it is being recovered]. During a query it is kept for the next start
+ * or query of the frequency. Scanning comes first: if the frequency cannot be set, the lidar scans
+ * as it is, and TMINI_EVENT_COMMAND_FAILED comes with TMINI_EVENT_STARTED. One that turns otherwise
+ * than wanted for three seconds has TMINI_FAULT_FREQUENCY, and the wish is brought about once more.
+ * Returns TMINI_OK; TMINI_ERROR_ARGUMENT: null pointer, not set up, or another frequency;
+ * TMINI_ERROR_LISTEN_ONLY. The wish is then unchanged. */
+tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
+
+/** @} */
+
+/** @name Queries
+ * Each call starts a command; the bracketed event, or TMINI_EVENT_COMMAND_FAILED, reports its end.
+ * From an unknown state each first stops the lidar and waits for a quiet line (section 9.10). All
+ * return
  *
- *     TMINI_OK              begun
- *     TMINI_ERROR_ARGUMENT  null pointer, or a lidar that was not set up
- *     TMINI_ERROR_STATE     the lidar is scanning or being recovered: only stop is possible
- *     TMINI_ERROR_BUSY      another command is under way
+ *     TMINI_OK                 begun
+ *     TMINI_ERROR_ARGUMENT     null pointer, or a lidar that was not set up
+ *     TMINI_ERROR_STATE        the lidar is scanning or being recovered: only stop may be sent
+ *     TMINI_ERROR_BUSY         another command is under way
+ *     TMINI_ERROR_LISTEN_ONLY  nothing is sent
  *
  * and touch nothing unless they return TMINI_OK. If the event that ended the command before has not
  * been polled yet, it is dropped. From the polling context. None waits, and each sends two bytes at
@@ -247,30 +298,17 @@ tmini_event_t tmini_poll(tmini_t *lidar);
  * polls until TMINI_EVENT_NONE. */
 /** @{ */
 
-/** Starts scanning [STARTED]; after that each revolution is TMINI_EVENT_SCAN (section 2). */
-tmini_status_t tmini_start(tmini_t *lidar);
-
-/** Stops scanning, and whatever else is under way [STOPPED]. In any state, so never
- * TMINI_ERROR_STATE or _BUSY; an unfinished command ends with TMINI_EVENT_COMMAND_FAILED,
- * TMINI_ERROR_ABORTED (section 9.10). */
-tmini_status_t tmini_stop(tmini_t *lidar);
-
 /** Asks for the device information [INFO]: tmini_info() (section 4). */
 tmini_status_t tmini_request_info(tmini_t *lidar);
 
 /** Asks for the health status [HEALTH]: tmini_health() (section 4). */
 tmini_status_t tmini_request_health(tmini_t *lidar);
 
-/** Asks for the scan frequency that is set [FREQUENCY]: tmini_frequency_chz() (section 4). */
+/** Asks for the scan frequency that is set [FREQUENCY]: tmini_frequency_chz() (section 4). One that
+ * is not the wanted one is set. */
 tmini_status_t tmini_request_frequency(tmini_t *lidar);
 
-/** Sets the scan frequency, in steps of 1 and 0.1 Hz, and reads it back [FREQUENCY]. In 0.01 Hz:
- * 600 to 1200, a multiple of 10; TMINI_ERROR_ARGUMENT otherwise, and nothing is sent. Within
- * 0.05 Hz is there. A lidar that answers but does not get there ends with
- * TMINI_EVENT_COMMAND_FAILED, TMINI_ERROR_REPLY (section 3). */
-tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
-
-/** Reboots the lidar [REBOOTED], which takes timing.reboot_time_ms (section 9.11). */
+/** Reboots the lidar [REBOOTED], which takes five seconds (section 9.11). */
 tmini_status_t tmini_reboot(tmini_t *lidar);
 
 /** @} */
@@ -283,34 +321,35 @@ tmini_status_t tmini_reboot(tmini_t *lidar);
 /** What the lidar does. */
 tmini_state_t tmini_state(const tmini_t *lidar);
 
-/** The scan that TMINI_EVENT_SCAN announced, valid until the next tmini_poll() (section 6). */
+/** The scan that TMINI_EVENT_SCAN announced, valid as it says there (section 6). */
 const tmini_scan_t *tmini_scan(const tmini_t *lidar);
 
-/** Streaming: the packet that TMINI_EVENT_PACKET announced, valid until the next tmini_poll()
+/** Without points: the packet that TMINI_EVENT_PACKET announced, valid until the next tmini_poll()
  * (section 5). */
 const tmini_packet_t *tmini_packet(const tmini_t *lidar);
 
-/** The device information that TMINI_EVENT_INFO announced, valid until the next command (section
- * 4). */
+/** The device information that TMINI_EVENT_INFO announced, valid until the next; all 0 before
+ * (section 4). */
 const tmini_info_t *tmini_info(const tmini_t *lidar);
 
-/** The health status that TMINI_EVENT_HEALTH announced, valid until the next command (section
+/** The health status that TMINI_EVENT_HEALTH announced, valid until the next; all 0 before (section
  * 4). */
 const tmini_health_t *tmini_health(const tmini_t *lidar);
 
-/** The scan frequency as it is set, in 0.01 Hz, that the lidar has told last: what
- * TMINI_EVENT_FREQUENCY announced, or how far a change has come; 0 before. What is measured is in
- * each scan. */
+/** The scan frequency that is set, in 0.01 Hz, as the lidar has reported it last; 0: not known, also
+ * after a loss or a reboot. What is measured is in each scan. */
 uint16_t tmini_frequency_chz(const tmini_t *lidar);
 
-/** Why the last failed command failed: TMINI_ERROR_TIMEOUT, _WRITE, _REPLY or _ABORTED. TMINI_OK if
- * none has. */
+/** Why the last failed command failed: TMINI_ERROR_TIMEOUT, _WRITE, _REPLY or _ABORTED; _ARGUMENT
+ * if tmini_init() did. TMINI_OK if none has. */
 tmini_status_t tmini_command_error(const tmini_t *lidar);
 
 /** What is wrong with the lidar while scanning, a combination of tmini_fault_t; 0: nothing known.
  * From CT information when the unit sends it, seen in two revolutions. A unit that sends none has
  * TMINI_FAULT_DATA when two whole revolutions bring no valid range. Either has TMINI_FAULT_ENCODER
- * when packets come without any range and without a revolution (section 8). */
+ * when packets come without any range and without a revolution for three seconds (section 8), or
+ * 12,000 samples without a start packet; TMINI_FAULT_FREQUENCY when it
+ * has turned otherwise than wanted, by more than 5 %, for three seconds. */
 uint8_t tmini_faults(const tmini_t *lidar);
 
 /** Copies CT information to `info`: version, health and serial number as sent while scanning, each
@@ -339,8 +378,7 @@ typedef struct {
     uint8_t attempts;  /* The number of this one, from 1, */
     uint8_t attempts_max;
     uint8_t steps;       /* Frequency steps sent. */
-    uint16_t timeout_ms; /* How long the phase may last; 0: as long as it likes. */
-    uint16_t target_chz; /* The frequency to be set; 0: none. */
+    uint16_t timeout_ms; /* How long the phase may last; 0: without limit. */
     uint16_t frequency_chz;
     uint16_t timeouts;
     uint32_t since_ms; /* When the phase began. */
@@ -354,7 +392,7 @@ typedef struct {
     uint16_t recoveries;
     uint16_t restarts;
     uint16_t reboots;
-    uint16_t pause_ms; /* Behind the last failed attempt. */
+    uint16_t pause_ms; /* After the last failed attempt. */
 } tmini_recovery_t;
 
 /* tmini_monitor.c */
@@ -363,45 +401,54 @@ typedef struct {
     uint8_t observed;     /* As seen in the last revolution; reported when seen twice. */
     bool is_complete;     /* Nothing has been lost since the last start packet. */
     bool has_range;       /* A valid range has come since then. */
+    uint8_t off_turns;    /* In a row, that took another time than wanted. */
+    bool is_tried_again;  /* The wanted frequency has been set once more. */
+    uint16_t samples;     /* Since the last start packet. */
     uint32_t rotating_ms; /* When a start packet or a range last came. */
 } tmini_monitor_t;
 
-/* tmini.c: the port, and what was seen when time was last looked at. */
+/* tmini_line.c */
+typedef struct {
+    uint8_t doubt;      /* Whether, between the bytes before `doubtful_to`, some may be missing. */
+    bool are_held;      /* A layer below may have held back the bytes that come next. */
+    uint16_t silent_ms; /* Observed silence; at most 65535. */
+    uint32_t now_ms;    /* When the line was last looked at. */
+    uint32_t heard_ms;  /* When bytes came; earlier, if a layer below may have held them back. */
+    size_t received;    /* The place in the stream up to which bytes had come. */
+    size_t doubtful_to;
+} tmini_line_t;
+
+/* tmini.c: what the configuration says. */
 typedef struct {
     const tmini_port_t *port;
     void *port_context;
     const tmini_timing_t *timing;
-    uint32_t now_ms;
-    size_t received;   /* The place in the stream up to which bytes had come. */
-    uint32_t heard_ms; /* When bytes came; earlier, if a layer below may have held them back. */
+    tmini_step_t step;
+    const void *step_data;
+    tmini_point_t *spare_points; /* Not in use; NULL: there are none. */
 } tmini_link_t;
 
 struct tmini {
     uint8_t state; /* A tmini_state_t. */
     int8_t command_error;
-    uint16_t pending;   /* A bit for each event not yet returned. */
-    uint16_t silent_ms; /* For how long nobody who looked has seen bytes come; at most 65535. */
-    uint8_t end_event;  /* With which the user's command ends well. */
-    uint8_t doubt;      /* Whether, between the bytes before `doubtful_to`, some may be missing. */
-    bool are_held;      /* A layer below may have held back the bytes that come next. */
-    bool packet_waits;  /* The packet that closed the scan has not been added to the next. */
-    bool is_settled;    /* There is nothing to do until bytes come or time passes. */
-    bool is_recovery_off;
-    tmini_monitor_t monitor;
+    uint16_t pending; /* A bit for each event not yet returned. */
     tmini_command_t command;
+    tmini_monitor_t monitor;
     tmini_recovery_t recovery;
-    size_t doubtful_to;
+    uint16_t wanted_chz; /* 0: any. */
+    bool start_follows;  /* The command under way is followed by a start. */
+    bool is_settled;     /* Nothing to do until a frame may be complete or `wake_ms` has come. */
+    bool is_recovery_off;
+    bool is_listen_only;
+    uint32_t wake_ms;
     uint32_t scans;
     tmini_link_t link;
+    tmini_line_t line;
     tmini_ring_t ring;
-    tmini_parser_t parser;
-    tmini_builder_t builder; /* Without a capacity: by packets. */
-    union {
-        tmini_packet_t packet; /* While scanning. */
-        tmini_info_t info;     /* The answers to commands, which are not sent while scanning. */
-        tmini_health_t health;
-    } latest;
-    tmini_ct_t ct; /* While scanning: what tmini_monitor.c judges by. */
+    tmini_decoder_t decoder;
+    tmini_scan_t scan; /* The one delivered last. */
+    tmini_info_t info;
+    tmini_health_t health;
 };
 
 /** @endcond */
@@ -429,6 +476,13 @@ static inline void tmini_feed_dma(tmini_t *lidar, size_t position)
 static inline void tmini_feed_gap(tmini_t *lidar)
 {
     tmini_ring_gap(&lidar->ring);
+}
+
+static inline uint8_t *tmini_rx_buffer(const tmini_t *lidar, size_t *size)
+{
+    const bool is_target = lidar->link.port != NULL && tmini_ring_is_dma(&lidar->ring);
+    *size = is_target ? lidar->ring.size : 0;
+    return is_target ? lidar->ring.memory : NULL;
 }
 
 #ifdef __cplusplus

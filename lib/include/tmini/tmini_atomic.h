@@ -55,6 +55,14 @@
 #define TMINI_NOINLINE
 #endif
 
+/** @def TMINI_MUST_CHECK
+ * For a function whose result a program must look at. */
+#if defined(__GNUC__)
+#define TMINI_MUST_CHECK __attribute__((warn_unused_result))
+#else
+#define TMINI_MUST_CHECK
+#endif
+
 /** @def TMINI_UNROLL
  * Before a loop that is worth eight times its size where the compiler optimises for speed. */
 #if defined(__GNUC__) && __GNUC__ >= 8 && !defined(__clang__)

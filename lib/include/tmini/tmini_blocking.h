@@ -2,20 +2,22 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * The commands in a form that waits: for start-up code and for tools. A thin layer over
+ * Wishes and queries in a form that waits: for start-up code and for tools. A thin layer over
  * tmini_poll().
  *
- * Each function polls until the command has ended or `timeout_ms` has passed on the port's clock,
- * calling the port's `wait`, if there is one, whenever there is nothing to do. Meanwhile bytes must
- * come in from an interrupt, from another task, or from the port's `wait`. Events that do not
- * belong to the command, scans among them, are dropped. A command that has not ended in time is
- * aborted; the lidar's state is then unknown, and the next command stops it first.
+ * Each function polls until what it waits for has come or `timeout_ms` has passed on the port's
+ * clock, calling the port's `wait`, if there is one, whenever there is nothing to do. Meanwhile
+ * bytes must come in from an interrupt, from another task, or from the port's `wait`. Events that
+ * do not belong to it, scans among them, are dropped. A query that has not ended in time is given
+ * up; the lidar's state is then unknown, and the next command stops it first. A wish stands, though
+ * the waiting for it has ended.
  *
  * Context: the one that polls. All return
  *
- *     TMINI_OK                                  done
- *     TMINI_ERROR_ARGUMENT, _STATE, _BUSY       not begun, as the command in tmini.h says
- *     TMINI_ERROR_TIMEOUT, _WRITE, _REPLY       failed, as tmini_command_error() says, or too late
+ *     TMINI_OK                                         done
+ *     TMINI_ERROR_ARGUMENT, _STATE, _BUSY, _LISTEN_ONLY not begun, as tmini.h says
+ *     TMINI_ERROR_TIMEOUT, _WRITE, _REPLY              failed, as tmini_command_error() says, or
+ *                                                      too late
  *
  * and write their result only with TMINI_OK. */
 
@@ -47,15 +49,15 @@ tmini_status_t tmini_blocking_read_health(tmini_t *lidar, tmini_health_t *health
 tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency_chz,
                                              uint32_t timeout_ms);
 
-/** Sets the scan frequency, in 0.01 Hz: 600 to 1200, a multiple of 10 (section 3). Waits
- * `timeout_ms` at most: allow 2 s more than for a query, for up to 15 steps. Returns what is
- * listed above; TMINI_ERROR_ARGUMENT also for another frequency. */
+/** States the wish for a scan frequency, in 0.01 Hz, as tmini_set_frequency() does, and waits until
+ * it has been set: `timeout_ms` at most; allow 2 s more than for a query, for up to 15 steps.
+ * Returns what is listed above. */
 tmini_status_t tmini_blocking_set_frequency(tmini_t *lidar, uint16_t frequency_chz,
                                             uint32_t timeout_ms);
 
-/** Starts scanning and waits for the first scan, or for the first packet when streaming, for
- * `timeout_ms` at most. The scan is valid until the next tmini_poll(). Returns what is listed
- * above; after TMINI_ERROR_TIMEOUT the lidar may turn all the same: stop it. */
+/** States the wish to scan and waits for the first scan, or, without points, for the first packet,
+ * for `timeout_ms` at most: not only for the first attempt. The scan is valid as tmini_scan() says.
+ * Returns what is listed above; after TMINI_ERROR_TIMEOUT the lidar is still to scan. */
 tmini_status_t tmini_blocking_start(tmini_t *lidar, uint32_t timeout_ms);
 
 /** Stops the lidar and waits until the line is quiet, `timeout_ms` at most (section 9.10). In any

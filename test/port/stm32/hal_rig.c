@@ -109,7 +109,7 @@ static void open_lidar(void)
         .max_points = sizeof hal_rig.points / sizeof hal_rig.points[0],
     };
     (void)tmini_stm32_hal_init(&hal_rig.port, &hal_rig.uart);
-    (void)tmini_init(&hal_rig.lidar, &config);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&hal_rig.lidar, &config));
 }
 
 void hal_rig_open(hal_rig_way_t wanted)

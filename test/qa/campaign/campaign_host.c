@@ -5,6 +5,7 @@
 
 #include "interrupting_atomic.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define NEVER UINT64_MAX
@@ -270,7 +271,9 @@ void host_begin(host_t *host, const host_config_t *config, line_t *line, random_
     host->line = line;
     host->random = random;
     host->now_ns = (uint64_t)random_u32(random) * 1000000u; /* The clock may wrap around. */
-    (void)tmini_init(&host->lidar, &library);
+    if (tmini_init(&host->lidar, &library) != TMINI_OK) {
+        abort();
+    }
     (void)tmini_start(&host->lidar);
     while (!host->started) {
         (void)tmini_poll(&host->lidar);

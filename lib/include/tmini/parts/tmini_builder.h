@@ -44,6 +44,13 @@ typedef struct {
 tmini_status_t tmini_builder_init(tmini_builder_t *builder, tmini_point_t *buffer, size_t capacity,
                                   unsigned filter);
 
+/** The next scan is to be gathered in `points`, of the same capacity. For a builder whose scan has
+ * just been finished. */
+static inline void tmini_builder_use(tmini_builder_t *builder, tmini_point_t *points)
+{
+    builder->scan.points = points;
+}
+
 /** Forgets the scan under way: what comes next does not continue it. */
 void tmini_builder_discard(tmini_builder_t *builder);
 

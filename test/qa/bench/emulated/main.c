@@ -54,7 +54,10 @@ void bench_begin(bool dma, bool streaming, size_t rx_size)
                                    .rx_dma = dma,
                                    .points = streaming ? NULL : points,
                                    .max_points = streaming ? 0 : TMINI_SCAN_POINTS_TYPICAL};
-    (void)tmini_init(&bench_lidar, &config);
+    if (tmini_init(&bench_lidar, &config) != TMINI_OK) {
+        for (;;) {
+        }
+    }
 }
 
 tmini_status_t bench_command(tmini_command_code_t command)

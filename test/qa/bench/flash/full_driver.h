@@ -45,7 +45,9 @@ static void full_driver(void)
                                    .rx_size = sizeof rx,
                                    .points = points,
                                    .max_points = TMINI_SCAN_POINTS_TYPICAL};
-    (void)tmini_init(&lidar, &config);
+    if (tmini_init(&lidar, &config) != TMINI_OK) {
+        return;
+    }
     commands();
     while (tmini_poll(&lidar) != TMINI_EVENT_COMMAND_FAILED) {
         results();

@@ -11,7 +11,9 @@ static tmini_point_t points[TMINI_MAX_SAMPLES_DEFAULT];
 void bench_main(void)
 {
     const tmini_config_t config = {.port = &board, .rx_buffer = rx, .rx_size = sizeof rx};
-    (void)tmini_init(&lidar, &config);
+    if (tmini_init(&lidar, &config) != TMINI_OK) {
+        return;
+    }
     (void)tmini_start(&lidar);
     for (;;) {
         if (tmini_poll(&lidar) == TMINI_EVENT_PACKET) {

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "tmini/parts/tmini_decoder.h"
+
+tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring, uint8_t max_samples,
+                                  tmini_point_t *points, size_t max_points, unsigned filter)
+{
+    if (decoder == NULL) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    *decoder = (tmini_decoder_t){0};
+    const tmini_status_t status = tmini_parser_init(&decoder->parser, ring, max_samples);
+    if (status != TMINI_OK || (points == NULL && max_points == 0)) {
+        return status;
+    }
+    return tmini_builder_init(&decoder->builder, points, max_points, filter);
+}
+
+/* The packet that ended the scan begins the next one. It had to wait, because the scan was to be
+ * read first. */
+static void add_waiting_packet(tmini_decoder_t *decoder)
+{
+    if (decoder->packet_waits) {
+        decoder->packet_waits = false;
+        (void)tmini_builder_add(&decoder->builder, &decoder->packet, decoder->builder.scan.end_ms);
+    }
+}
+
+tmini_frame_type_t tmini_decoder_next(tmini_decoder_t *decoder, size_t effort)
+{
+    add_waiting_packet(decoder);
+    return tmini_parser_next_after(&decoder->parser, effort);
+}
+
+static void open_packet(tmini_decoder_t *decoder, bool is_doubtful)
+{
+    tmini_packet_t *const packet = &decoder->packet;
+    tmini_packet_open(packet, tmini_parser_frame(&decoder->parser));
+    if (is_doubtful) {
+        packet->gap = TMINI_GAP_UNKNOWN;
+    }
+    decoder->verdict = (uint8_t)tmini_ct_add(&decoder->ct, packet);
+}
+
+bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now_ms)
+{
+    open_packet(decoder, is_doubtful);
+    if (decoder->builder.capacity == 0) {
+        return false;
+    }
+    if (decoder->verdict == TMINI_CT_REFUTED) {
+        tmini_builder_refute(&decoder->builder);
+    }
+    decoder->packet_waits = tmini_builder_add(&decoder->builder, &decoder->packet, now_ms);
+    return decoder->packet_waits;
+}
+
+void tmini_decoder_restart(tmini_decoder_t *decoder)
+{
+    tmini_builder_discard(&decoder->builder);
+    tmini_ct_discard(&decoder->ct);
+}
