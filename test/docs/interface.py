@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""docs/interface.md names every public function, and no other: those of the headers outside parts/.
+
+    interface.py
+
+Exit status: 0 it does, 1 not; every difference is reported.
+"""
+
+import re
+import sys
+
+from documents import ROOT
+
+# For the library's own use: several bytes in one access.
+NOT_PUBLIC = {"tmini_word", "tmini_copy_pair"}
+
+
+def declared():
+    """Functions are declared from the first column on; comments and types are not."""
+    for header in ROOT.glob("lib/include/tmini/*.h"):
+        text = re.sub(r"/\*.*?\*/|^typedef[^;]*;", "", header.read_text(encoding="utf-8"), flags=re.S | re.M)
+        text = re.sub(r"^#.*(\\\n.*)*", "", text, flags=re.M)
+        yield from re.findall(r"^(?:TMINI_\w+\s+)?[a-z][\w *]*?\b(tmini_\w+)\(", text, flags=re.M)
+
+
+def main():
+    document = (ROOT / "docs/interface.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"`(tmini_\w+)\(\)`", document))
+    wanted = set(declared()) - NOT_PUBLIC
+    for name in sorted(wanted - named):
+        print(f"docs/interface.md does not name {name}()")
+    for name in sorted(named - wanted):
+        print(f"there is no public function {name}()")
+    print(f"{len(wanted)} public functions")
+    sys.exit(named != wanted or len(wanted) < 40)
+
+
+main()
