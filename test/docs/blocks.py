@@ -31,6 +31,10 @@ WARNINGS = ["-Wall", "-Wextra", "-Werror", "-Wno-unused", "-Wno-unused-parameter
 C = ["-std=c99", "-Ilib/include"]
 CXX = ["-std=c++11", "-Ilib/include"]
 
+# Documents whose programs in C must be right in C++ as well.
+BOTH = ("README.md",)
+AS_CXX = ["-std=gnu++11", "-Wno-missing-field-initializers", "-x", "c++"]
+
 
 def stand_ins(*folders):
     """The tests' stand-ins for platforms; what they do oddly is not the documents' concern."""
@@ -56,6 +60,7 @@ BOARD = [*C, *prelude("board")]
 
 # How programs are compiled, by document, and by section where that matters; else as BOARD.
 CONTEXTS = {
+    "README.md#On Arduino": ARDUINO,
     "examples/micro_ros/README.md": [*MICRO_ROS, *prelude("micro_ros")],
     "examples/stm32_cube/README.md": [*C, *HAL, *prelude("cube")],
     "port/README.md": [*C, "-Iport/template", *prelude("template")],
@@ -158,6 +163,9 @@ def check_c(block, place, language="c"):
     flags = CONTEXTS.get(f"{document}#{block.section}") or CONTEXTS.get(document) or BOARD
     text = program(block) if language == "c" else block.text
     run(compiler, "-fsyntax-only", *WARNINGS, *flags, "-x", language, "-", input=text, cwd=ROOT)
+    if document in BOTH and language == "c" and place.compilers["c++"]:
+        run(place.compilers["c++"], "-fsyntax-only", *WARNINGS, *flags[1:], *AS_CXX, "-",
+            input=text, cwd=ROOT)
 
 
 def check_cxx(block, place):

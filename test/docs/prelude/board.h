@@ -21,6 +21,7 @@ typedef struct {
 
 #define USART_SR_ORE (1u << 3)
 #define USART_SR_RXNE (1u << 5)
+#define USART_SR_TXE (1u << 7)
 #define USART_ISR_ORE (1u << 3)
 #define USART_ISR_RXNE (1u << 5)
 #define USART_ICR_ORECF (1u << 3)
@@ -32,7 +33,8 @@ extern int board_uart;
 
 /* The reader's own. */
 void avoid_obstacles(const tmini_scan_t *scan);
-void signal_fault(uint8_t faults);
+void signal_faults(uint8_t faults);
+void halt(void);
 void use(const tmini_scan_t *scan);
 void handle(tmini_event_t event);
 void stop_the_robot(void);

@@ -144,42 +144,24 @@ def summary(figures):
     m4 = figures["targets"]["cortex-m4", "-Os"]
     m0 = figures["targets"]["cortex-m0", "-Os"]
     rows = [
-        ["flash, parser and decoding", *(f["flash"]["parser"]["own"] for f in (m0, m4))],
         ["flash, full driver", *(f["flash"]["driver"]["own"] for f in (m0, m4))],
-        ["flash, with blocking helpers and sectors as well",
-         *(f["flash"]["everything"]["own"] for f in (m0, m4))],
-        ["RAM a lidar, besides your buffers",
+        ["RAM per lidar, excluding your buffers",
          *(figures["ram"][name]["tmini_t"] for name in ("cortex-m0", "cortex-m4"))],
         ["stack, at most", *(f["stack"]["polling"][0] for f in (m0, m4))],
         ["instructions in the receive interrupt's call",
          *(f["counts"]["feed worst"] for f in (m0, m4))],
-        ["instructions a byte, in to point out, fed by blocks",
+        ["instructions per byte, in to point out, fed by blocks",
          *(one(sum(f["counts"]["costs"]["blocks"])) for f in (m0, m4))],
-        ["load at full data rate, 8 and 168 MHz, an interrupt a byte",
+        ["load at full data rate, 8 and 168 MHz, an interrupt per byte",
          *(one(load.percent(f["counts"], megahertz, "bytes")) + " %"
            for f, megahertz in ((m0, 8), (m4, 168)))],
     ]
     return table(["`-Os`", "Cortex-M0", "Cortex-M4"], rows)
 
 
-# Measured once, in November 2026: what other public drivers for this lidar took for a real unit's
-# recording of 1,042,510 bytes; x86-64 by callgrind, Cortex-M4 by exact emulation. They are not here.
-OTHERS = (("the fastest other public driver, which leaves out angles", "36.0", "36.2"),
-          ("the vendor's SDK, in C++", "83.6", "–"))
-
-
-def comparison(figures):
-    m4 = figures["targets"]["cortex-m4", "-Os"]["counts"]["costs"]
-    rows = [[f"tmini, {what}", one(figures["host"][feed]["own"]), one(sum(m4[feed]))]
-            for feed, what in (("blocks", "fed by blocks"), ("bytes", "a call for each byte"))]
-    return table(["instructions a byte, in to point out", "x86-64 `-O2`", "Cortex-M4 `-Os`"],
-                 [*rows, *OTHERS])
-
-
 BLOCKS = {"versions": versions, "budgets": budgets, "flash": flash, "modules": modules, "ram": ram,
           "stack": stack, "instructions": instructions, "polls": polls, "hostile": hostile,
-          "host": host, "load": cpu, "pauses": pauses, "growth": growth, "footprint": summary,
-          "comparison": comparison}
+          "host": host, "load": cpu, "pauses": pauses, "growth": growth, "footprint": summary}
 
 
 def between(name):
