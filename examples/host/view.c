@@ -226,15 +226,15 @@ static void say_sectors(screen_t *screen, int *row, const tmini_scan_t *scan)
     static const struct {
         int column, row;
     } places[8] = {{9, 0}, {17, 1}, {20, 2}, {17, 3}, {9, 4}, {1, 3}, {-2, 2}, {1, 1}};
-    uint16_t nearest_mm[8];
+    tmini_sector_t held[8];
     tmini_sectors_t sectors;
-    (void)tmini_sectors_init(&sectors, nearest_mm, 8, 0, TMINI_FILTER_NONE);
+    (void)tmini_sectors_init(&sectors, held, 8, TMINI_FILTER_NONE);
     tmini_sectors_add_scan(&sectors, scan);
     const int column = (int)screen->columns - PANEL_COLUMNS + 3;
     for (size_t i = 0; i < 8; i++) {
         char text[16] = "-";
-        if (nearest_mm[i] > 0) {
-            (void)snprintf(text, sizeof text, "%.2f", nearest_mm[i] / 1000.0);
+        if (!tmini_sector_is_blind(&held[i])) {
+            (void)snprintf(text, sizeof text, "%.2f", held[i].nearest_mm / 1000.0);
         }
         screen_text(screen, column + places[i].column, *row + places[i].row, text, COLOUR_PLAIN);
     }

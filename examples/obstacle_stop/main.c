@@ -41,7 +41,7 @@ static void show(bool may_move)
 {
     (void)printf("%s", may_move ? "go  " : "STOP");
     for (unsigned i = 0; i < OBSTACLE_SECTORS; i++) {
-        (void)printf("  %5d", obstacle.nearest_mm[i]);
+        (void)printf("  %5d", obstacle.sectors[i].nearest_mm);
     }
     (void)putchar('\n');
     (void)fflush(stdout);

@@ -5,12 +5,11 @@
 
 #define AHEAD 0
 
-/* Nothing at all in any direction: a covered window or a blocked rotor, rather than an empty
- * hall. */
+/* Nothing at all in any direction: a covered window or a blocked rotor. */
 static bool is_dark(const obstacle_t *obstacle)
 {
     for (unsigned i = 0; i < OBSTACLE_SECTORS; i++) {
-        if (obstacle->nearest_mm[i] != 0) {
+        if (!tmini_sector_is_blind(&obstacle->sectors[i])) {
             return false;
         }
     }
@@ -19,19 +18,17 @@ static bool is_dark(const obstacle_t *obstacle)
 
 void obstacle_see(obstacle_t *obstacle, const tmini_scan_t *scan, uint32_t now_ms)
 {
+    const tmini_sector_t *const ahead = &obstacle->sectors[AHEAD];
     tmini_sectors_t sectors;
-    (void)tmini_sectors_init(&sectors, obstacle->nearest_mm, OBSTACLE_SECTORS, 0,
-                             TMINI_FILTER_NONE);
+    (void)tmini_sectors_init(&sectors, obstacle->sectors, OBSTACLE_SECTORS, TMINI_FILTER_NONE);
     tmini_sectors_add_scan(&sectors, scan);
     if (is_dark(obstacle)) {
         obstacle_blind(obstacle);
         return;
     }
-
-    const uint16_t ahead_mm = obstacle->nearest_mm[AHEAD];
-    if (ahead_mm != 0 && ahead_mm < OBSTACLE_STOP_MM) {
+    if (!tmini_sector_is_free(ahead, OBSTACLE_STOP_MM)) {
         obstacle->clear = false;
-    } else if (scan->complete && (ahead_mm == 0 || ahead_mm >= OBSTACLE_GO_MM)) {
+    } else if (scan->complete && tmini_sector_is_free(ahead, OBSTACLE_GO_MM)) {
         obstacle->clear = true;
     }
     if (scan->complete) {

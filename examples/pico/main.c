@@ -112,7 +112,7 @@ static void report_each_second(void)
     const uint32_t lost = counters.bytes_overrun + uart.bytes_lost + uart.overruns;
     printf("%lu scans, nearest in front %u mm, %s; bytes %lu, lost: %lu checksums, %lu bytes, "
            "%lu gaps\n",
-           (unsigned long)counters.scans, obstacle.nearest_mm[0], must_stop() ? "STOP" : "go",
+           (unsigned long)counters.scans, obstacle.sectors[0].nearest_mm, must_stop() ? "STOP" : "go",
            (unsigned long)uart.bytes, (unsigned long)counters.checksum_errors,
            (unsigned long)lost, (unsigned long)gaps);
 }

@@ -132,5 +132,5 @@ void lidar_work(void)
 
 uint16_t lidar_ahead_mm(void)
 {
-    return obstacle.nearest_mm[0];
+    return obstacle.sectors[0].nearest_mm;
 }

@@ -105,7 +105,7 @@ static uint16_t nearest(const obstacle_t *obstacle)
 {
     uint16_t least_mm = 0;
     for (unsigned i = 0; i < OBSTACLE_SECTORS; i++) {
-        const uint16_t mm = obstacle->nearest_mm[i];
+        const uint16_t mm = obstacle->sectors[i].nearest_mm;
         if (mm != 0 && (least_mm == 0 || mm < least_mm)) {
             least_mm = mm;
         }
@@ -120,7 +120,7 @@ void report_status(const tmini_counters_t *counters, const obstacle_t *obstacle,
     console_value("scans", counters->scans);
     console_value("points", status->points);
     console_value("nearest_mm", nearest(obstacle));
-    console_value("ahead_mm", obstacle->nearest_mm[0]);
+    console_value("ahead_mm", obstacle->sectors[0].nearest_mm);
     console_text(status->may_move ? " drive on" : " drive off");
     console_value("errors", counters->checksum_errors);
     console_value("overrun", counters->bytes_overrun);

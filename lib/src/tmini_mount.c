@@ -3,17 +3,34 @@
 
 #include "tmini/tmini_mount.h"
 
+#define Q6_PER_DEGREE 64
+
+/* Whole degrees, negative ones too, as an angle of 0 to 23039. */
+static uint16_t from_degrees(int16_t degrees)
+{
+    const int16_t within = (int16_t)(degrees % 360);
+    return (uint16_t)((within < 0 ? within + 360 : within) * Q6_PER_DEGREE);
+}
+
 uint16_t tmini_mount_angle(const tmini_mount_t *mount, uint16_t angle_q6)
 {
-    return mount->upside_down ? tmini_clockwise(angle_q6, mount->front_q6)
-                              : tmini_clockwise(mount->front_q6, angle_q6);
+    const uint16_t front_q6 = from_degrees(mount->front_deg);
+    return mount->upside_down ? tmini_clockwise(angle_q6, front_q6)
+                              : tmini_clockwise(front_q6, angle_q6);
+}
+
+static bool is_in_arc(const tmini_arc_t *arc, uint16_t angle_q6)
+{
+    const uint16_t from_q6 = from_degrees(arc->from_deg);
+    const uint16_t wide_q6 = tmini_clockwise(from_q6, from_degrees(arc->to_deg));
+    const bool is_all_around = (int32_t)arc->to_deg - arc->from_deg >= 360;
+    return is_all_around || tmini_clockwise(from_q6, angle_q6) <= wide_q6;
 }
 
 static bool is_masked(const tmini_mount_t *mount, uint16_t angle_q6)
 {
     for (size_t i = 0; i < mount->masked_count; i++) {
-        const tmini_arc_t *const arc = &mount->masked[i];
-        if (tmini_clockwise(arc->from_q6, angle_q6) <= tmini_clockwise(arc->from_q6, arc->to_q6)) {
+        if (is_in_arc(&mount->masked[i], angle_q6)) {
             return true;
         }
     }
@@ -22,23 +39,25 @@ static bool is_masked(const tmini_mount_t *mount, uint16_t angle_q6)
 
 static bool is_in_range(const tmini_mount_t *mount, uint16_t distance_mm)
 {
-    return distance_mm == 0 ||
-           (distance_mm >= mount->min_mm && (mount->max_mm == 0 || distance_mm <= mount->max_mm));
+    return distance_mm >= mount->min_mm && (mount->max_mm == 0 || distance_mm <= mount->max_mm);
 }
 
-size_t tmini_mount_apply(const tmini_mount_t *mount, tmini_point_t *points, size_t count)
+void tmini_mount_point(const tmini_mount_t *mount, tmini_point_t *point)
 {
-    size_t kept = 0;
-    for (size_t i = 0; i < count; i++) {
-        tmini_point_t point = points[i];
-        point.angle_q6 = tmini_mount_angle(mount, point.angle_q6);
-        if (!is_in_range(mount, point.distance_mm) || is_masked(mount, point.angle_q6)) {
-            if (mount->drops) {
-                continue;
-            }
-            point.distance_mm = 0;
-        }
-        points[kept++] = point;
+    point->angle_q6 = tmini_mount_angle(mount, point->angle_q6);
+    if (!is_in_range(mount, point->distance_mm) || is_masked(mount, point->angle_q6)) {
+        point->distance_mm = 0;
     }
-    return kept;
+}
+
+void tmini_mount_step(const void *mount, tmini_scan_t *scan)
+{
+    const tmini_mount_t *const mounted = mount;
+    if (mounted == NULL) {
+        return;
+    }
+    scan->upside_down = mounted->upside_down;
+    for (size_t i = 0; i < scan->count; i++) {
+        tmini_mount_point(mounted, &scan->points[i]);
+    }
 }

@@ -3,15 +3,13 @@
 
 #include "tmini/tmini_ranges.h"
 
-/* The angle from behind, counter-clockwise, in bins, rounded to nearest.
- * 2 * 23040 * 65535 + 23040 is below 2^32. */
+#include "tmini_bins.h"
+
+/* Counter-clockwise from behind. */
 size_t tmini_ranges_bin(uint16_t angle_q6, size_t count)
 {
-    const uint32_t circle = TMINI_FULL_CIRCLE_Q6;
-    const uint32_t behind = circle / 2;
-    const uint32_t from_behind = behind + (angle_q6 > behind ? circle : 0) - angle_q6;
-    const uint32_t bin = (2 * from_behind * (uint32_t)count + circle) / (2 * circle);
-    return (size_t)(bin < count ? bin : 0);
+    const uint32_t behind = TMINI_FULL_CIRCLE_Q6 / 2;
+    return tmini_bin(behind + (angle_q6 > behind ? TMINI_FULL_CIRCLE_Q6 : 0) - angle_q6, count);
 }
 
 static void clear(uint16_t *ranges_mm, uint8_t *intensities, size_t count)
@@ -27,8 +25,7 @@ static void clear(uint16_t *ranges_mm, uint8_t *intensities, size_t count)
 /* The nearest point of a bin is its range. */
 static void take(const tmini_point_t *point, uint16_t *range_mm, uint8_t *intensity)
 {
-    const bool is_nearer = *range_mm == 0 || point->distance_mm < *range_mm;
-    if (point->distance_mm == 0 || !is_nearer) {
+    if (!tmini_is_nearer(point, *range_mm)) {
         return;
     }
     *range_mm = point->distance_mm;

@@ -3,66 +3,81 @@
 
 #include "tmini/tmini_sectors.h"
 
-tmini_status_t tmini_sectors_init(tmini_sectors_t *sectors, uint16_t *nearest_mm, size_t count,
-                                  uint16_t front_q6, unsigned filter)
+#include "tmini_bins.h"
+
+tmini_status_t tmini_sectors_init(tmini_sectors_t *sectors, tmini_sector_t *array, size_t count,
+                                  unsigned filter)
 {
-    if (sectors == NULL || nearest_mm == NULL || count == 0 || count > UINT16_MAX ||
-        front_q6 >= TMINI_FULL_CIRCLE_Q6 || (filter & ~(unsigned)TMINI_FILTER_BOTH) != 0) {
+    if (sectors == NULL || array == NULL || count == 0 || count > UINT16_MAX ||
+        (filter & ~(unsigned)TMINI_FILTER_BOTH) != 0) {
         return TMINI_ERROR_ARGUMENT;
     }
-    *sectors = (tmini_sectors_t){
-        .nearest_mm = nearest_mm,
-        .count = (uint16_t)count,
-        .front_q6 = front_q6,
-        .filter = (uint8_t)filter,
-    };
+    *sectors =
+        (tmini_sectors_t){.sectors = array, .count = (uint16_t)count, .filter = (uint8_t)filter};
     tmini_sectors_clear(sectors);
     return TMINI_OK;
 }
 
 void tmini_sectors_clear(tmini_sectors_t *sectors)
 {
+    sectors->has_ended = false;
     for (size_t i = 0; i < sectors->count; i++) {
-        sectors->nearest_mm[i] = 0;
+        sectors->sectors[i] = (tmini_sector_t){0};
     }
 }
 
-/* The angle from the front, in sectors, rounded to nearest: so sector 0 reaches as far to the left
- * as to the right. 2 * 23039 * 65535 + 23040 is below 2^32. */
 size_t tmini_sectors_at(const tmini_sectors_t *sectors, uint16_t angle_q6)
 {
-    const uint32_t circle = TMINI_FULL_CIRCLE_Q6;
-    const uint32_t from_front = tmini_clockwise(sectors->front_q6, angle_q6);
-    const uint32_t sector = (2 * from_front * sectors->count + circle) / (2 * circle);
-    return (size_t)(sector < sectors->count ? sector : 0);
+    return tmini_bin(angle_q6, sectors->count);
 }
 
 void tmini_sectors_add(tmini_sectors_t *sectors, const tmini_point_t *point)
 {
-    if (point->distance_mm == 0 || ((unsigned)sectors->filter >> (point->flag & 3u) & 1u) != 0) {
+    tmini_sector_t *const sector = &sectors->sectors[tmini_sectors_at(sectors, point->angle_q6)];
+    const bool is_filtered = ((unsigned)sectors->filter >> (point->flag & 3u) & 1u) != 0;
+    sector->points++;
+    if (point->distance_mm == 0 || is_filtered) {
         return;
     }
-    uint16_t *const nearest_mm = &sectors->nearest_mm[tmini_sectors_at(sectors, point->angle_q6)];
-    if (*nearest_mm == 0 || point->distance_mm < *nearest_mm) {
-        *nearest_mm = point->distance_mm;
+    sector->ranges++;
+    if (tmini_is_nearer(point, sector->nearest_mm)) {
+        sector->nearest_mm = point->distance_mm;
+        sector->angle_q6 = point->angle_q6;
     }
 }
 
 void tmini_sectors_add_scan(tmini_sectors_t *sectors, const tmini_scan_t *scan)
 {
+    tmini_sectors_clear(sectors);
     for (size_t i = 0; i < scan->count; i++) {
         tmini_sectors_add(sectors, &scan->points[i]);
     }
 }
 
+/* A start packet ended the revolution, and its own point begins this one. */
+static void begin_revolution(tmini_sectors_t *sectors)
+{
+    const tmini_point_t first = sectors->first;
+    tmini_sectors_clear(sectors);
+    tmini_sectors_add(sectors, &first);
+}
+
 bool tmini_sectors_add_packet(tmini_sectors_t *sectors, const tmini_packet_t *packet)
 {
-    for (size_t i = 0; i < packet->count; i++) {
-        tmini_point_t point;
-        if (!tmini_packet_point(packet, i, &point)) {
-            return false;
-        }
+    tmini_point_t point;
+    if (sectors->has_ended) {
+        begin_revolution(sectors);
+    }
+    if (tmini_packet_is_start(packet)) {
+        const bool is_whole = sectors->has_begun;
+        sectors->first = (tmini_point_t){0};
+        (void)tmini_packet_point(packet, 0, &sectors->first);
+        sectors->has_begun = true;
+        sectors->has_ended = true;
+        return is_whole;
+    }
+    for (size_t i = 0; tmini_packet_point(packet, i, &point); i++) {
         tmini_sectors_add(sectors, &point);
     }
-    return true;
+    return false;
 }

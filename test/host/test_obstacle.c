@@ -47,18 +47,31 @@ void test_it_may_not_when_something_is_near_in_front(void)
     TEST_ASSERT_FALSE(may_move_after(299, 338));
 }
 
+/* And something far in front. */
+static bool may_move_with(uint16_t distance_mm, unsigned degrees)
+{
+    scan.count = 2;
+    points[1] = (tmini_point_t){.angle_q6 = 5 * DEGREE_Q6, .distance_mm = 2000};
+    return may_move_after(distance_mm, degrees);
+}
+
 void test_what_is_near_elsewhere_does_not_stop_it(void)
 {
-    TEST_ASSERT_TRUE(may_move_after(100, 23));
-    TEST_ASSERT_TRUE(may_move_after(100, 180));
-    TEST_ASSERT_TRUE(may_move_after(100, 337));
+    TEST_ASSERT_TRUE(may_move_with(100, 23));
+    TEST_ASSERT_TRUE(may_move_with(100, 180));
+    TEST_ASSERT_TRUE(may_move_with(100, 337));
 }
 
 void test_a_point_without_range_is_not_near(void)
 {
-    scan.count = 2;
-    points[1] = (tmini_point_t){.angle_q6 = 180 * DEGREE_Q6, .distance_mm = 2000};
-    TEST_ASSERT_TRUE(may_move_after(0, 0));
+    TEST_ASSERT_TRUE(may_move_with(0, 0));
+}
+
+void test_without_any_range_in_front_it_may_not(void)
+{
+    TEST_ASSERT_TRUE(may_move_with(2000, 0));
+    scan.count = 1;
+    TEST_ASSERT_FALSE(may_move_after(2000, 180));
 }
 
 void test_a_scan_without_any_range_is_blindness_not_room(void)
@@ -107,6 +120,6 @@ void test_each_sector_knows_its_nearest_point(void)
     points[1] = (tmini_point_t){.angle_q6 = 100 * DEGREE_Q6, .distance_mm = 600};
     points[2] = (tmini_point_t){.angle_q6 = 80 * DEGREE_Q6, .distance_mm = 800};
     obstacle_see(&obstacle, &scan, 1000);
-    TEST_ASSERT_EQUAL_UINT16(600, obstacle.nearest_mm[2]);
-    TEST_ASSERT_EQUAL_UINT16(0, obstacle.nearest_mm[0]);
+    TEST_ASSERT_EQUAL_UINT16(600, obstacle.sectors[2].nearest_mm);
+    TEST_ASSERT_EQUAL_UINT16(0, obstacle.sectors[0].nearest_mm);
 }

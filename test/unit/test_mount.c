@@ -32,9 +32,12 @@ static void is_point(size_t index, uint16_t angle_q6, uint16_t distance_mm)
     TEST_ASSERT_EQUAL_UINT16(distance_mm, points[index].distance_mm);
 }
 
-static void apply(const tmini_mount_t *mount, size_t left)
+static void apply(const tmini_mount_t *mount)
 {
-    TEST_ASSERT_EQUAL_UINT(left, tmini_mount_apply(mount, points, count));
+    tmini_scan_t scan = {.points = points, .count = (uint16_t)count};
+    tmini_mount_step(mount, &scan);
+    TEST_ASSERT_EQUAL_UINT16(count, scan.count);
+    TEST_ASSERT_EQUAL_INT(mount->upside_down, scan.upside_down);
 }
 
 void test_a_mount_of_zeros_changes_nothing(void)
@@ -42,7 +45,7 @@ void test_a_mount_of_zeros_changes_nothing(void)
     static const tmini_mount_t mount = {0};
     add(0, 0);
     add(23039, 16383);
-    apply(&mount, 2);
+    apply(&mount);
     is_point(0, 0, 0);
     is_point(1, 23039, 16383);
     TEST_ASSERT_EQUAL_UINT8(11, points[1].intensity);
@@ -53,12 +56,12 @@ void test_a_mount_of_zeros_changes_nothing(void)
  * front. */
 void test_a_lidar_mounted_turned_is_turned_back(void)
 {
-    static const tmini_mount_t mount = {.front_q6 = 90 * DEGREE};
+    static const tmini_mount_t mount = {.front_deg = 90};
     add(90 * DEGREE, 1000);
     add(100 * DEGREE, 1001);
     add(89 * DEGREE, 1002);
     add(0, 1003);
-    apply(&mount, 4);
+    apply(&mount);
     is_point(0, 0, 1000);
     is_point(1, 10 * DEGREE, 1001);
     is_point(2, 359 * DEGREE, 1002);
@@ -72,7 +75,7 @@ void test_a_lidar_upside_down_is_mirrored(void)
     add(0, 1000);
     add(10 * DEGREE, 1001);
     add(350 * DEGREE, 1002);
-    apply(&mount, 3);
+    apply(&mount);
     is_point(0, 0, 1000);
     is_point(1, 350 * DEGREE, 1001);
     is_point(2, 10 * DEGREE, 1002);
@@ -80,11 +83,11 @@ void test_a_lidar_upside_down_is_mirrored(void)
 
 void test_a_lidar_upside_down_and_turned_is_mirrored_about_the_front(void)
 {
-    static const tmini_mount_t mount = {.front_q6 = 30 * DEGREE, .upside_down = true};
+    static const tmini_mount_t mount = {.front_deg = 30, .upside_down = true};
     add(30 * DEGREE, 1000);
     add(40 * DEGREE, 1001);
     add(20 * DEGREE, 1002);
-    apply(&mount, 3);
+    apply(&mount);
     is_point(0, 0, 1000);
     is_point(1, 350 * DEGREE, 1001);
     is_point(2, 10 * DEGREE, 1002);
@@ -99,7 +102,7 @@ void test_distances_out_of_range_become_unknown(void)
     add(2, 5000);
     add(3, 5001);
     add(4, 0);
-    apply(&mount, 5);
+    apply(&mount);
     is_point(0, 0, 0);
     is_point(1, 1, 100);
     is_point(2, 2, 5000);
@@ -111,19 +114,19 @@ void test_without_a_largest_distance_none_is_too_far(void)
 {
     static const tmini_mount_t mount = {.min_mm = 1};
     add(0, 16383);
-    apply(&mount, 1);
+    apply(&mount);
     is_point(0, 0, 16383);
 }
 
 void test_an_arc_masks_the_directions_from_its_beginning_to_its_end(void)
 {
-    static const tmini_arc_t arcs[] = {{10 * DEGREE, 20 * DEGREE}};
+    static const tmini_arc_t arcs[] = {{10, 20}};
     static const tmini_mount_t mount = {.masked = arcs, .masked_count = 1};
     add(10 * DEGREE - 1, 1000);
     add(10 * DEGREE, 1001);
     add(20 * DEGREE, 1002);
     add(20 * DEGREE + 1, 1003);
-    apply(&mount, 4);
+    apply(&mount);
     is_point(0, 10 * DEGREE - 1, 1000);
     is_point(1, 10 * DEGREE, 0);
     is_point(2, 20 * DEGREE, 0);
@@ -132,14 +135,14 @@ void test_an_arc_masks_the_directions_from_its_beginning_to_its_end(void)
 
 void test_an_arc_may_go_through_the_front(void)
 {
-    static const tmini_arc_t arcs[] = {{100, 200}, {350 * DEGREE, 10 * DEGREE}};
+    static const tmini_arc_t arcs[] = {{100, 110}, {350, 10}};
     static const tmini_mount_t mount = {.masked = arcs, .masked_count = 2};
     add(350 * DEGREE - 1, 1000);
     add(350 * DEGREE, 1001);
     add(0, 1002);
     add(10 * DEGREE, 1003);
     add(10 * DEGREE + 1, 1004);
-    apply(&mount, 5);
+    apply(&mount);
     is_point(0, 350 * DEGREE - 1, 1000);
     is_point(1, 350 * DEGREE, 0);
     is_point(2, 0, 0);
@@ -150,35 +153,67 @@ void test_an_arc_may_go_through_the_front(void)
 /* The lidar hangs, and sees a mast at its 120 degrees; for the robot that is at 60. */
 void test_arcs_are_the_robots_directions(void)
 {
-    static const tmini_arc_t arcs[] = {{59 * DEGREE, 61 * DEGREE}};
+    static const tmini_arc_t arcs[] = {{59, 61}};
     static const tmini_mount_t mount = {
-        .front_q6 = 180 * DEGREE, .upside_down = true, .masked = arcs, .masked_count = 1};
+        .front_deg = 180, .upside_down = true, .masked = arcs, .masked_count = 1};
     add(120 * DEGREE, 300);
     add(60 * DEGREE, 1001);
-    apply(&mount, 2);
+    apply(&mount);
     is_point(0, 60 * DEGREE, 0);
     is_point(1, 120 * DEGREE, 1001);
 }
 
-void test_a_mount_that_drops_removes_points_and_keeps_the_others_in_order(void)
+/* As somebody writes it who counts from the front to the left. */
+void test_arcs_and_front_may_be_negative(void)
 {
-    static const tmini_arc_t arcs[] = {{100, 200}};
-    static const tmini_mount_t mount = {
-        .drops = true, .min_mm = 50, .masked = arcs, .masked_count = 1};
-    add(10, 1000);
-    add(150, 1001);
-    add(250, 49);
-    add(300, 0); /* Unknown, which is a measurement too. */
-    add(350, 1004);
-    apply(&mount, 3);
-    is_point(0, 10, 1000);
-    is_point(1, 300, 0);
-    is_point(2, 350, 1004);
-    TEST_ASSERT_EQUAL_UINT8(14, points[2].intensity);
+    static const tmini_arc_t arcs[] = {{-10, 10}, {-190, -170}};
+    static const tmini_mount_t mount = {.front_deg = -90, .masked = arcs, .masked_count = 2};
+    add(270 * DEGREE, 1000);
+    add(281 * DEGREE, 1001);
+    add(259 * DEGREE, 1002);
+    add(100 * DEGREE, 1003);
+    add(79 * DEGREE, 1004);
+    apply(&mount);
+    is_point(0, 0, 0);
+    is_point(1, 11 * DEGREE, 1001);
+    is_point(2, 349 * DEGREE, 1002);
+    is_point(3, 190 * DEGREE, 0);
+    is_point(4, 169 * DEGREE, 1004);
 }
 
-void test_no_points_stay_no_points(void)
+void test_an_arc_may_be_the_whole_circle_or_a_single_direction(void)
 {
-    static const tmini_mount_t mount = {.drops = true};
-    apply(&mount, 0);
+    static const tmini_arc_t all[] = {{0, 360}};
+    static const tmini_arc_t one[] = {{-180, 180}, {90, 90}};
+    tmini_mount_t mount = {.masked = one + 1, .masked_count = 1};
+    add(90 * DEGREE, 1000);
+    add(90 * DEGREE + 1, 1001);
+    apply(&mount);
+    is_point(0, 90 * DEGREE, 0);
+    is_point(1, 90 * DEGREE + 1, 1001);
+    mount.masked = one;
+    apply(&mount);
+    is_point(1, 90 * DEGREE + 1, 0);
+    points[0].distance_mm = 1000;
+    mount.masked = all;
+    apply(&mount);
+    is_point(0, 90 * DEGREE, 0);
+}
+
+void test_any_number_of_degrees_is_an_angle(void)
+{
+    static const tmini_mount_t least = {.front_deg = -32768}; /* -91 * 360 - 8 */
+    static const tmini_mount_t most = {.front_deg = 32767};   /* 91 * 360 + 7 */
+    TEST_ASSERT_EQUAL_UINT16(8 * DEGREE, tmini_mount_angle(&least, 0));
+    TEST_ASSERT_EQUAL_UINT16(353 * DEGREE, tmini_mount_angle(&most, 0));
+}
+
+void test_no_points_and_no_mount_change_nothing(void)
+{
+    static const tmini_mount_t mount = {.front_deg = 1};
+    tmini_scan_t scan = {.points = points, .count = 1};
+    apply(&mount);
+    add(7, 1000);
+    tmini_mount_step(NULL, &scan);
+    is_point(0, 7, 1000);
 }

@@ -11,30 +11,29 @@
 
 #define DEGREE 64u
 
-static uint16_t nearest_mm[9];
+static tmini_sector_t array[9];
 static tmini_sectors_t sectors;
 static uint8_t memory[512];
 static uint8_t bytes[300];
 static receiver_t receiver;
 
-static void begin(size_t count, uint16_t front_q6, unsigned filter)
+static void begin(size_t count, unsigned filter)
 {
-    nearest_mm[8] = 0xEEEE;
-    TEST_ASSERT_EQUAL_INT(TMINI_OK,
-                          tmini_sectors_init(&sectors, nearest_mm, count, front_q6, filter));
+    array[8].nearest_mm = 0xEEEE;
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_sectors_init(&sectors, array, count, filter));
 }
 
 void setUp(void)
 {
     for (size_t i = 0; i < 8; i++) {
-        nearest_mm[i] = 0x5555;
+        array[i] = (tmini_sector_t){0x5555, 0x5555, 0x5555, 0x5555};
     }
-    begin(8, 0, TMINI_FILTER_NONE);
+    begin(8, TMINI_FILTER_NONE);
 }
 
 void tearDown(void)
 {
-    TEST_ASSERT_EQUAL_HEX16(0xEEEE, nearest_mm[8]);
+    TEST_ASSERT_EQUAL_HEX16(0xEEEE, array[8].nearest_mm);
 }
 
 static void see(uint16_t angle_q6, uint16_t distance_mm, uint8_t flag)
@@ -43,10 +42,18 @@ static void see(uint16_t angle_q6, uint16_t distance_mm, uint8_t flag)
     tmini_sectors_add(&sectors, &point);
 }
 
-void test_sectors_are_clear_to_begin_with(void)
+static void holds(size_t index, uint16_t nearest_mm, uint16_t points, uint16_t ranges)
+{
+    TEST_ASSERT_EQUAL_UINT16(nearest_mm, array[index].nearest_mm);
+    TEST_ASSERT_EQUAL_UINT16(points, array[index].points);
+    TEST_ASSERT_EQUAL_UINT16(ranges, array[index].ranges);
+}
+
+void test_sectors_are_blind_to_begin_with(void)
 {
     for (size_t i = 0; i < 8; i++) {
-        TEST_ASSERT_EQUAL_UINT16(0, nearest_mm[i]);
+        holds(i, 0, 0, 0);
+        TEST_ASSERT_TRUE(tmini_sector_is_blind(&array[i]));
     }
 }
 
@@ -57,7 +64,8 @@ void test_eight_sectors_go_clockwise_from_the_front(void)
         see((uint16_t)(angles[i] * DEGREE), (uint16_t)(1000 + i), 0);
     }
     for (uint16_t i = 0; i < 8; i++) {
-        TEST_ASSERT_EQUAL_UINT16(1000 + i, nearest_mm[i]);
+        TEST_ASSERT_EQUAL_UINT16(1000 + i, array[i].nearest_mm);
+        TEST_ASSERT_EQUAL_UINT16(angles[i] * DEGREE, array[i].angle_q6);
     }
 }
 
@@ -73,7 +81,7 @@ void test_the_front_sector_reaches_as_far_left_as_right(void)
 
 void test_one_sector_holds_everything(void)
 {
-    begin(1, 0, TMINI_FILTER_NONE);
+    begin(1, TMINI_FILTER_NONE);
     TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 0));
     TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 11520));
     TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 23039));
@@ -81,7 +89,7 @@ void test_one_sector_holds_everything(void)
 
 void test_three_sectors_are_120_degrees_wide(void)
 {
-    begin(3, 0, TMINI_FILTER_NONE);
+    begin(3, TMINI_FILTER_NONE);
     TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 60 * DEGREE - 1));
     TEST_ASSERT_EQUAL_size_t(1, tmini_sectors_at(&sectors, 60 * DEGREE));
     TEST_ASSERT_EQUAL_size_t(2, tmini_sectors_at(&sectors, 180 * DEGREE));
@@ -96,69 +104,79 @@ void test_so_many_sectors_as_fit_in_16_bits_do_not_overflow(void)
     sectors.count = 8;
 }
 
-void test_the_front_can_be_any_angle_of_the_lidar(void)
-{
-    begin(8, 90 * DEGREE, TMINI_FILTER_NONE);
-    TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 90 * DEGREE));
-    TEST_ASSERT_EQUAL_size_t(2, tmini_sectors_at(&sectors, 180 * DEGREE));
-    TEST_ASSERT_EQUAL_size_t(6, tmini_sectors_at(&sectors, 0));
-}
-
-void test_the_nearest_point_counts(void)
+void test_the_nearest_range_counts_and_where_it_is(void)
 {
     see(0, 700, 0);
-    see(0, 500, 0);
-    see(0, 600, 0);
-    TEST_ASSERT_EQUAL_UINT16(500, nearest_mm[0]);
+    see(10, 500, 0);
+    see(20, 600, 0);
+    holds(0, 500, 3, 3);
+    TEST_ASSERT_EQUAL_UINT16(10, array[0].angle_q6);
 }
 
-void test_a_point_without_distance_is_no_obstacle(void)
+void test_points_without_a_range_leave_a_sector_blind_and_not_free(void)
 {
     see(0, 0, 0);
-    TEST_ASSERT_EQUAL_UINT16(0, nearest_mm[0]);
-    see(0, 16383, 0);
+    see(1, 0, 0);
+    holds(0, 0, 2, 0);
+    TEST_ASSERT_TRUE(tmini_sector_is_blind(&array[0]));
+    TEST_ASSERT_FALSE(tmini_sector_is_free(&array[0], 300));
+    TEST_ASSERT_TRUE(array[0].nearest_mm < 300); /* As people write it: then stop. */
+}
+
+void test_a_sector_is_free_up_to_its_nearest_range(void)
+{
     see(0, 0, 0);
-    TEST_ASSERT_EQUAL_UINT16(16383, nearest_mm[0]);
+    see(0, 16383, 0);
+    see(0, 300, 0);
+    holds(0, 300, 3, 2);
+    TEST_ASSERT_FALSE(tmini_sector_is_blind(&array[0]));
+    TEST_ASSERT_TRUE(tmini_sector_is_free(&array[0], 300));
+    TEST_ASSERT_FALSE(tmini_sector_is_free(&array[0], 301));
 }
 
 void test_flagged_points_count_unless_filtered(void)
 {
     see(0, 400, TMINI_FLAG_SPECULAR);
     see(90 * DEGREE, 500, TMINI_FLAG_AMBIENT);
-    TEST_ASSERT_EQUAL_UINT16(400, nearest_mm[0]);
-    TEST_ASSERT_EQUAL_UINT16(500, nearest_mm[2]);
+    holds(0, 400, 1, 1);
+    holds(2, 500, 1, 1);
 }
 
-void test_a_filter_leaves_out_the_points_with_its_flag(void)
+void test_a_filter_takes_no_range_from_the_points_with_its_flag(void)
 {
-    begin(8, 0, TMINI_FILTER_SPECULAR);
+    begin(8, TMINI_FILTER_SPECULAR);
     see(0, 400, TMINI_FLAG_SPECULAR);
     see(90 * DEGREE, 500, TMINI_FLAG_AMBIENT);
     see(180 * DEGREE, 600, 0);
-    TEST_ASSERT_EQUAL_UINT16(0, nearest_mm[0]);
-    TEST_ASSERT_EQUAL_UINT16(500, nearest_mm[2]);
-    TEST_ASSERT_EQUAL_UINT16(600, nearest_mm[4]);
+    holds(0, 0, 1, 0);
+    holds(2, 500, 1, 1);
+    holds(4, 600, 1, 1);
 }
 
-void test_clearing_forgets_all_obstacles(void)
+void test_clearing_forgets_all_points(void)
 {
     see(0, 400, 0);
     see(315 * DEGREE, 500, 0);
     tmini_sectors_clear(&sectors);
-    TEST_ASSERT_EQUAL_UINT16(0, nearest_mm[0]);
-    TEST_ASSERT_EQUAL_UINT16(0, nearest_mm[7]);
+    holds(0, 0, 0, 0);
+    holds(7, 0, 0, 0);
 }
 
-void test_a_scan_adds_all_its_points_and_none_behind_them(void)
+void test_a_scan_takes_the_place_of_what_was_there(void)
 {
     static tmini_point_t points[4] = {{0, 900, 50, 0},
                                       {90 * DEGREE, 800, 50, 0},
                                       {270 * DEGREE, 700, 50, 0},
                                       {180 * DEGREE, 600, 50, 0}};
-    static const uint16_t expected_mm[8] = {900, 0, 800, 0, 0, 0, 700, 0};
     const tmini_scan_t scan = {.points = points, .count = 3};
+    see(0, 100, 0);
+    see(45 * DEGREE, 100, 0);
     tmini_sectors_add_scan(&sectors, &scan);
-    TEST_ASSERT_EQUAL_UINT16_ARRAY(expected_mm, nearest_mm, 8);
+    holds(0, 900, 1, 1);
+    holds(1, 0, 0, 0);
+    holds(2, 800, 1, 1);
+    holds(4, 0, 0, 0); /* Beyond the scan's count. */
+    holds(6, 700, 1, 1);
 }
 
 /* 0, 45 and 90 degrees. */
@@ -169,61 +187,91 @@ static size_t make_packet(void)
     return encode_packet(bytes, &packet);
 }
 
-void test_a_packet_adds_all_its_points(void)
+static void receive(size_t count)
+{
+    receiver_feed(&receiver, bytes, count);
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next(&receiver));
+}
+
+static bool receive_start(uint16_t distance_mm)
+{
+    const encode_sample_t sample = {distance_mm, 10, 0};
+    const encode_packet_t packet = {0x79, 1, 0, 0, &sample};
+    receive(encode_packet(bytes, &packet));
+    return tmini_sectors_add_packet(&sectors, &receiver.packet);
+}
+
+static bool receive_points(void)
+{
+    receive(make_packet());
+    return tmini_sectors_add_packet(&sectors, &receiver.packet);
+}
+
+void test_packets_add_their_points(void)
 {
     receiver_open(&receiver, memory, sizeof memory, 0);
-    receiver_feed(&receiver, bytes, make_packet());
-    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next(&receiver));
+    TEST_ASSERT_FALSE(receive_points());
+    holds(0, 300, 1, 1);
+    holds(1, 0, 1, 0);
+    holds(2, 200, 1, 1);
+}
 
-    TEST_ASSERT_TRUE(tmini_sectors_add_packet(&sectors, &receiver.packet));
-    TEST_ASSERT_EQUAL_UINT16(300, nearest_mm[0]);
-    TEST_ASSERT_EQUAL_UINT16(0, nearest_mm[1]);
-    TEST_ASSERT_EQUAL_UINT16(200, nearest_mm[2]);
+void test_what_precedes_the_first_start_packet_is_no_revolution(void)
+{
+    receiver_open(&receiver, memory, sizeof memory, 0);
+    TEST_ASSERT_FALSE(receive_points());
+    TEST_ASSERT_FALSE(receive_start(250));
+    TEST_ASSERT_FALSE(receive_points());
+    holds(0, 250, 2, 2);
+}
+
+void test_a_start_packet_reports_the_revolution_that_it_ends_and_begins_another(void)
+{
+    receiver_open(&receiver, memory, sizeof memory, 0);
+    (void)receive_start(100);
+    (void)receive_points();
+    TEST_ASSERT_TRUE(receive_start(250));
+    holds(0, 100, 2, 2);
+    holds(2, 200, 1, 1);
+    TEST_ASSERT_FALSE(receive_points());
+    holds(0, 250, 2, 2);
+    TEST_ASSERT_TRUE(receive_start(150));
+    holds(0, 250, 2, 2);
 }
 
 void test_a_packet_that_dma_has_overwritten_adds_nothing(void)
 {
     receiver_open_dma(&receiver, memory, sizeof memory, 0);
-    receiver_feed(&receiver, bytes, make_packet());
-    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next(&receiver));
+    receive(make_packet());
     receiver_feed(&receiver, bytes, sizeof bytes);
 
     TEST_ASSERT_FALSE(tmini_sectors_add_packet(&sectors, &receiver.packet));
-    TEST_ASSERT_EQUAL_UINT16(0, nearest_mm[0]);
-    TEST_ASSERT_EQUAL_UINT16(0, nearest_mm[2]);
+    holds(0, 0, 0, 0);
+    holds(2, 0, 0, 0);
 }
 
 void test_arguments_out_of_range_are_refused(void)
 {
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(NULL, nearest_mm, 8, 0, 0));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(&sectors, NULL, 8, 0, 0));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(&sectors, nearest_mm, 0, 0, 0));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT,
-                          tmini_sectors_init(&sectors, nearest_mm, 8, 23040, 0));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(&sectors, nearest_mm, 8, 0, 2));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(&sectors, nearest_mm, 8, 0, 16));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(NULL, array, 8, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(&sectors, NULL, 8, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(&sectors, array, 0, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(&sectors, array, 8, 2));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(&sectors, array, 8, 16));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_sectors_init(&sectors, array, 8, TMINI_FILTER_BOTH));
 #if SIZE_MAX > 65535
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT,
-                          tmini_sectors_init(&sectors, nearest_mm, 65536, 0, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(&sectors, array, 65536, 0));
 #endif
 }
 
-/* 128 KB are too much for a small machine. */
+/* Half a megabyte is too much for a small machine. */
 void test_65535_sectors_are_taken(void)
 {
 #if defined(__linux__)
-    static uint16_t many_mm[65536];
-    many_mm[65534] = 0x5555;
-    many_mm[65535] = 0x5555;
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_sectors_init(&sectors, many_mm, 65535, 0, 0));
-    TEST_ASSERT_EQUAL_UINT16(0, many_mm[65534]);
-    TEST_ASSERT_EQUAL_HEX16(0x5555, many_mm[65535]);
+    static tmini_sector_t many[65536];
+    many[65534].points = 0x5555;
+    many[65535].points = 0x5555;
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_sectors_init(&sectors, many, 65535, 0));
+    TEST_ASSERT_EQUAL_UINT16(0, many[65534].points);
+    TEST_ASSERT_EQUAL_HEX16(0x5555, many[65535].points);
 #endif
-}
-
-void test_the_last_permitted_front_and_both_filters_are_taken(void)
-{
-    TEST_ASSERT_EQUAL_INT(TMINI_OK,
-                          tmini_sectors_init(&sectors, nearest_mm, 8, 23039, TMINI_FILTER_BOTH));
-    TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 23039));
 }

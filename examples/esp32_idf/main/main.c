@@ -123,7 +123,7 @@ static void report_each_second(void)
     ESP_LOGI(TAG,
              "%" PRIu32 " scans, nearest in front %u mm, %s; lost: %" PRIu32 " checksums, %" PRIu32
              " bytes, %" PRIu32 " overflows",
-             scans, obstacle.nearest_mm[0], must_stop() ? "STOP" : "go",
+             scans, obstacle.sectors[0].nearest_mm, must_stop() ? "STOP" : "go",
              counters.checksum_errors, counters.bytes_overrun, uart.fifo_overflows);
     scans = 0;
 }

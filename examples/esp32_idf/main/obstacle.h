@@ -4,7 +4,7 @@
 /* Obstacle stop: from scans to "may the robot move?". Pure, integers only; the same on a PC and in
  * firmware.
  *
- * It may while something has been seen lately and nothing of it was near in front. A scan with gaps
+ * It may while something has been seen lately in front and nothing of it was near. A scan with gaps
  * may have missed what was there: it can stop the robot, but does not let it go on. A scan without
  * any distance means that the lidar sees nothing, not that nothing is there. */
 
@@ -23,10 +23,10 @@
 #define OBSTACLE_BLIND_MS 500u
 
 typedef struct {
-    uint16_t nearest_mm[OBSTACLE_SECTORS]; /* Clockwise, the first one ahead; 0: nothing seen. */
-    uint32_t seen_ms;                      /* When the last complete scan came. */
-    bool clear;                            /* Nothing near in front, as of the last scans. */
-    bool seeing;                           /* A complete scan has come. */
+    tmini_sector_t sectors[OBSTACLE_SECTORS]; /* Clockwise, the first one ahead. */
+    uint32_t seen_ms;                         /* When the last complete scan came. */
+    bool clear;                               /* Nothing near in front, as of the last scans. */
+    bool seeing;                              /* A complete scan has come. */
 } obstacle_t;
 
 /* Takes a scan. */

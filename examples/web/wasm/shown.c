@@ -26,6 +26,7 @@ static struct {
     tmini_point_t mounted[WEB_SCAN_POINTS];
     uint16_t nearest_mm[SECTORS];
     tmini_sectors_t sectors;
+    tmini_sector_t held[SECTORS];
     const tmini_point_t *nearest;
     uint32_t valid;
     uint32_t flagged;
@@ -59,12 +60,15 @@ static void mount(void)
     shown.farthest_mm = 0;
     shown.darkest = UINT8_MAX;
     shown.brightest = 0;
-    (void)tmini_sectors_init(&shown.sectors, shown.nearest_mm, SECTORS, 0, TMINI_FILTER_NONE);
+    (void)tmini_sectors_init(&shown.sectors, shown.held, SECTORS, TMINI_FILTER_NONE);
     memcpy(shown.mounted, shown.raw, shown.scan.count * sizeof *shown.raw);
-    (void)tmini_mount_apply(&shown.mount, shown.mounted, shown.scan.count);
     for (size_t i = 0; i < shown.scan.count; i++) {
+        tmini_mount_point(&shown.mount, &shown.mounted[i]);
         look_at(&shown.mounted[i]);
         tmini_sectors_add(&shown.sectors, &shown.mounted[i]);
+    }
+    for (size_t i = 0; i < SECTORS; i++) {
+        shown.nearest_mm[i] = shown.held[i].nearest_mm;
     }
 }
 
@@ -89,7 +93,7 @@ EXPORTED void shown_forget(void)
 /* How the lidar sits on the robot; the scan that is shown follows at once. */
 EXPORTED void shown_mount(uint32_t front_q6, uint32_t upside_down)
 {
-    shown.mount.front_q6 = (uint16_t)(front_q6 % TMINI_FULL_CIRCLE_Q6);
+    shown.mount.front_deg = (int16_t)(front_q6 % TMINI_FULL_CIRCLE_Q6 / 64u);
     shown.mount.upside_down = upside_down != 0;
     mount();
 }

@@ -96,7 +96,7 @@ static void report_each_second(void)
     tmini_zephyr_counters(&board, &uart);
     printk(
         "%u scans, nearest in front %u mm, %s; bytes %u, lost: %u checksums, %u bytes, %u gaps\n",
-        (unsigned)counters.scans, obstacle.nearest_mm[0], must_stop() ? "STOP" : "go",
+        (unsigned)counters.scans, obstacle.sectors[0].nearest_mm, must_stop() ? "STOP" : "go",
         (unsigned)uart.bytes, (unsigned)counters.checksum_errors,
         (unsigned)(counters.bytes_overrun + uart.overruns), (unsigned)gaps);
 }

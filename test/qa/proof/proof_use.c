@@ -56,12 +56,11 @@ void prove_ranges_of_scan(void)
 void prove_sectors(void)
 {
     const tmini_scan_t scan = any_scan();
-    uint16_t nearest_mm[4];
+    tmini_sector_t array[4];
     tmini_sectors_t sectors;
     const size_t count = nondet_size();
-    const uint16_t front_q6 = nondet_half();
     ASSUME(count <= 4);
-    if (tmini_sectors_init(&sectors, nearest_mm, count, front_q6, nondet_byte()) == TMINI_OK) {
+    if (tmini_sectors_init(&sectors, array, count, nondet_byte()) == TMINI_OK) {
         tmini_sectors_add_scan(&sectors, &scan);
     }
     REACHED();
@@ -69,9 +68,9 @@ void prove_sectors(void)
 
 void prove_sectors_at(void)
 {
-    const tmini_sectors_t sectors = {.count = nondet_half(), .front_q6 = nondet_half()};
+    const tmini_sectors_t sectors = {.count = nondet_half()};
     const uint16_t angle_q6 = nondet_half();
-    ASSUME(sectors.count >= 1 && sectors.front_q6 < TMINI_FULL_CIRCLE_Q6);
+    ASSUME(sectors.count >= 1);
     ASSUME(angle_q6 < TMINI_FULL_CIRCLE_Q6);
     CLAIM(tmini_sectors_at(&sectors, angle_q6) < sectors.count);
     REACHED();
@@ -79,21 +78,17 @@ void prove_sectors_at(void)
 
 void prove_mount(void)
 {
-    const tmini_scan_t scan = any_scan();
-    const tmini_arc_t arc = {nondet_half(), nondet_half()};
-    const tmini_mount_t mount = {.front_q6 = nondet_half(),
+    tmini_scan_t scan = any_scan();
+    const tmini_arc_t arc = {(int16_t)nondet_half(), (int16_t)nondet_half()};
+    const tmini_mount_t mount = {.front_deg = (int16_t)nondet_half(),
                                  .upside_down = any_bool(),
                                  .min_mm = nondet_half(),
                                  .max_mm = nondet_half(),
                                  .masked = &arc,
-                                 .masked_count = any_bool() ? 1 : 0,
-                                 .drops = any_bool()};
+                                 .masked_count = any_bool() ? 1 : 0};
     const size_t index = nondet_size();
-    ASSUME(mount.front_q6 < TMINI_FULL_CIRCLE_Q6);
-    ASSUME(arc.from_q6 < TMINI_FULL_CIRCLE_Q6 && arc.to_q6 < TMINI_FULL_CIRCLE_Q6);
-    const size_t kept = tmini_mount_apply(&mount, points, scan.count);
-    CLAIM(kept <= scan.count && (mount.drops || kept == scan.count));
-    CLAIM(index >= kept || points[index].angle_q6 < TMINI_FULL_CIRCLE_Q6);
+    tmini_mount_step(&mount, &scan);
+    CLAIM(index >= scan.count || points[index].angle_q6 < TMINI_FULL_CIRCLE_Q6);
     REACHED();
 }
 

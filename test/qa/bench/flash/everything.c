@@ -14,7 +14,7 @@ static tmini_info_t info;
 static tmini_health_t health;
 static uint16_t frequency_chz;
 static tmini_sectors_t sectors;
-static uint16_t nearest_mm[SECTORS];
+static tmini_sector_t held[SECTORS];
 
 static void waiting_commands(void)
 {
@@ -28,10 +28,10 @@ static void waiting_commands(void)
 
 static void look_around(void)
 {
-    (void)tmini_sectors_init(&sectors, nearest_mm, SECTORS, 0, TMINI_FILTER_NONE);
+    (void)tmini_sectors_init(&sectors, held, SECTORS, TMINI_FILTER_NONE);
     tmini_sectors_add_scan(&sectors, tmini_scan(&lidar));
     (void)tmini_sectors_add_packet(&sectors, tmini_packet(&lidar));
-    sink = nearest_mm[tmini_sectors_at(&sectors, 0)];
+    sink = held[tmini_sectors_at(&sectors, 0)].nearest_mm;
 }
 
 void bench_main(void)

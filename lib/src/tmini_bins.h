@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What sectors and ranges share: equal parts of a circle, and the nearest point in each. */
+
+#ifndef TMINI_BINS_H
+#define TMINI_BINS_H
+
+#include "tmini/tmini_types.h"
+
+/* The part, of `count` (1 to 65535), that lies at an angle, of at most a full circle, from the
+ * middle of part 0: rounded to nearest. 2 * 23040 * 65535 + 23040 is below 2^32. */
+static inline size_t tmini_bin(uint32_t angle_q6, size_t count)
+{
+    const uint32_t circle = TMINI_FULL_CIRCLE_Q6;
+    const uint32_t bin = (2 * angle_q6 * (uint32_t)count + circle) / (2 * circle);
+    return (size_t)(bin < count ? bin : 0);
+}
+
+/* True if the point has a range, nearer than the nearest so far; 0: there is none yet. */
+static inline bool tmini_is_nearer(const tmini_point_t *point, uint16_t nearest_mm)
+{
+    return point->distance_mm != 0 && (nearest_mm == 0 || point->distance_mm < nearest_mm);
+}
+
+#endif
