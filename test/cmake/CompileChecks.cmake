@@ -2,7 +2,7 @@
 # Copyright (c) 2026 The tmini authors
 
 # One test for each way of compiling the library that ../compile.sh knows, and which file calls
-# which.
+# which; and the barriers that reach the machine code.
 
 if(NOT TMINI_SH)
     return()
@@ -10,6 +10,10 @@ endif()
 foreach(target gcc clang c++ cortex-m0 avr rv32imc xtensa powerpc)
     tmini_add_check(compile.${target} compile ALL
         COMMAND ${TMINI_SH} ${CMAKE_CURRENT_SOURCE_DIR}/compile.sh ${target})
+endforeach()
+foreach(target esp32-c3 rp2040 cortex-m4)
+    tmini_add_check(barriers.${target} compile
+        COMMAND ${TMINI_SH} ${CMAKE_CURRENT_SOURCE_DIR}/barriers.sh ${target})
 endforeach()
 tmini_add_check(layers compile NEEDS tmini
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/layers.sh $<TARGET_FILE:tmini>)

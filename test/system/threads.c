@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* threads RECORDING
+ *
+ * The public functions between two threads, as between two cores: one feeds a recording, byte by
+ * byte and in blocks, the other polls and reads the scans. threads.sh builds it, with the library,
+ * under ThreadSanitizer. Exit status 0 unless no scan came. */
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdio.h>
+
+#include "tmini/tmini.h"
+
+#define TURNS 5
+
+static uint8_t recording[100000];
+static size_t size;
+
+static uint8_t rx[512];
+static tmini_point_t points[800];
+static tmini_t lidar;
+static int is_fed;
+
+static uint32_t now_ms(void *context)
+{
+    static uint32_t calls; /* Of the polling thread alone. */
+    (void)context;
+    return calls++ / 64;
+}
+
+static const tmini_port_t port = {.now_ms = now_ms};
+
+static void wait_for_room(size_t wanted)
+{
+    while (tmini_feed_room(&lidar) < wanted) {
+        sched_yield();
+    }
+}
+
+static void *feed(void *unused)
+{
+    for (size_t at = 0; at < TURNS * size;) {
+        const size_t from = at % size;
+        const size_t count = from + 40 < size && at % 80 == 0 ? 40 : 1;
+        wait_for_room(count);
+        if (count == 1) {
+            tmini_feed_byte(&lidar, recording[from]);
+        } else {
+            (void)tmini_feed(&lidar, recording + from, count);
+        }
+        at += count;
+    }
+    __atomic_store_n(&is_fed, 1, __ATOMIC_RELAXED); /* Orders nothing. */
+    return unused;
+}
+
+static unsigned long brightness(const tmini_scan_t *scan)
+{
+    unsigned long sum = 0;
+    for (size_t i = 0; i < scan->count; i++) {
+        sum += scan->points[i].intensity;
+    }
+    return sum;
+}
+
+int main(int argc, char **argv)
+{
+    static const tmini_config_t config = {.port = &port,
+                                          .rx_buffer = rx,
+                                          .rx_size = sizeof rx,
+                                          .points = points,
+                                          .max_points = 800,
+                                          .listen_only = true};
+    unsigned scans = 0;
+    unsigned long sum = 0;
+    pthread_t feeder;
+    FILE *const file = argc == 2 ? fopen(argv[1], "rb") : NULL;
+    if (file == NULL) {
+        return 2;
+    }
+    size = fread(recording, 1, sizeof recording, file);
+    fclose(file);
+    if (tmini_init(&lidar, &config) != TMINI_OK || tmini_start(&lidar) != TMINI_OK ||
+        pthread_create(&feeder, NULL, feed, NULL) != 0) {
+        return 1;
+    }
+    while (__atomic_load_n(&is_fed, __ATOMIC_RELAXED) == 0) {
+        if (tmini_poll(&lidar) == TMINI_EVENT_SCAN) {
+            scans++;
+            sum += brightness(tmini_scan(&lidar));
+        }
+    }
+    pthread_join(feeder, NULL);
+    printf("%u scans, brightness %lu\n", scans, sum);
+    return scans > 0 ? 0 : 1;
+}
