@@ -7,7 +7,7 @@ import re
 
 import load
 from flash import CONFIGURATIONS
-from streams import HEADER_STEPS, POINTS
+from streams import HEADER_STEPS
 from targets import LEVELS, TARGETS
 
 
@@ -29,6 +29,11 @@ def machines(figures):
             yield f"{target.title} `{level}`", figures["targets"][target.name, level]
 
 
+def small(figures):
+    """Those at -Os, the level that firmware mostly has."""
+    return [(title, f) for title, f in machines(figures) if title.endswith("`-Os`")]
+
+
 def versions(figures):
     return table(["tool", "version"], [[name, text] for name, text in figures["versions"]]) \
         .replace("---:", "---")
@@ -41,7 +46,7 @@ def flash(figures):
 
 
 def modules(figures):
-    chosen = [(title, f["flash"]["everything"]["modules"]) for title, f in machines(figures)]
+    chosen = [(title, f["flash"]["everything"]["modules"]) for title, f in small(figures)]
     names = sorted(set().union(*(module for _, module in chosen)))
     rows = [[f"`{name}`", *(module.get(name, 0) for _, module in chosen)] for name in names]
     rows.append(["all", *(sum(module.values()) for _, module in chosen)])
@@ -77,16 +82,8 @@ def instructions(figures):
                   "a byte, corrupted", "idle `tmini_poll()`", "the same, 1 ms later"], rows)
 
 
-def polls(figures):
-    chosen = [(title, f["counts"]["worst poll"]) for title, f in machines(figures)
-              if title.endswith("`-Os`")]
-    names = list(chosen[0][1])
-    rows = [[f"`{name}`", *(worst[name] for _, worst in chosen)] for name in sorted(names)]
-    return table(["event, instructions at most", *(title for title, _ in chosen)], rows)
-
-
 def hostile(figures):
-    chosen = [(title, f["counts"]["hostile"]) for title, f in machines(figures)]
+    chosen = [(title, f["counts"]["hostile"]) for title, f in small(figures)]
     rows = [["random", *(one(cost["random"]) for _, cost in chosen)]]
     rows += [[f"a header every {step} bytes", *(one(cost[f"headers {step}"]) for _, cost in chosen)]
              for step in HEADER_STEPS]
@@ -121,18 +118,6 @@ def pauses(_figures):
     return table(["receive buffer", "interrupt or blocks", "DMA"], rows)
 
 
-def growth(figures):
-    counts = figures["targets"]["cortex-m4", "-Os"]["counts"]["by frequency"]
-    rows = []
-    for frequency in POINTS:
-        rate = load.bytes_a_second(frequency)
-        each = counts[f"{frequency} Hz"]
-        rows.append([f"{frequency} Hz", load.packets_a_revolution(frequency), f"{rate:,}",
-                     one(each), f"{round(rate * each / 1000):,} k"])
-    return table(["scan frequency", "packets a revolution", "bytes a second",
-                  "instructions a byte", "instructions a second"], rows)
-
-
 def budgets(figures):
     rows = [[budget.title, f"{budget.limit:g}", f"{budget.shown()}", f"{budget.margin():.0f} %"]
             for budget in figures["budgets"]]
@@ -160,8 +145,8 @@ def summary(figures):
 
 
 BLOCKS = {"versions": versions, "budgets": budgets, "flash": flash, "modules": modules, "ram": ram,
-          "stack": stack, "instructions": instructions, "polls": polls, "hostile": hostile,
-          "host": host, "load": cpu, "pauses": pauses, "growth": growth, "footprint": summary}
+          "stack": stack, "instructions": instructions, "hostile": hostile,
+          "host": host, "load": cpu, "pauses": pauses, "footprint": summary}
 
 
 def between(name):
