@@ -245,12 +245,14 @@ static size_t receive(tmini_esp32_t *board, TickType_t ticks)
     return drain(board);
 }
 
-size_t tmini_esp32_receive(tmini_esp32_t *board, TickType_t ticks)
+/* With a task, or with nothing to receive, it is time alone that ends the wait. */
+size_t tmini_esp32_wait(tmini_esp32_t *board, TickType_t ticks)
 {
-    if (board == NULL || !board->is_started || board->config.with_task) {
-        return 0;
+    if (board != NULL && board->is_started && !board->config.with_task) {
+        return receive(board, ticks);
     }
-    return receive(board, ticks);
+    vTaskDelay(ticks > 0 ? ticks : 1);
+    return 0;
 }
 
 /* With a full ring it is the poll that makes it go on, and no event tells of that: look each tick.
@@ -331,6 +333,13 @@ esp_err_t tmini_esp32_init(tmini_esp32_t *board, const tmini_esp32_config_t *con
 
 /* ------------------------------------------------------------------------ starting and stopping */
 
+/* A pin that was an output before would go on driving the line: newer versions of ESP-IDF route a
+ * receive pin without switching its output off. */
+static void release(int pin)
+{
+    (void)gpio_reset_pin((gpio_num_t)pin);
+}
+
 /* An unplugged lidar must not leave the line floating: noise would be bytes, and frame errors
  * interrupts. Older versions of ESP-IDF did this by themselves. Pins without a pull-up (34 to 39 of
  * the ESP32) say so in the log, and work. */
@@ -353,6 +362,7 @@ static esp_err_t set_up_uart(const tmini_esp32_config_t *config)
     };
     esp_err_t error = uart_param_config(uart, &line);
     if (error == ESP_OK) {
+        release(config->rx_pin);
         error = uart_set_pin(uart, config->tx_pin, config->rx_pin, UART_PIN_NO_CHANGE,
                              UART_PIN_NO_CHANGE);
     }
@@ -510,12 +520,7 @@ static uint32_t port_now_ms(void *context)
 
 static void port_wait(void *context)
 {
-    tmini_esp32_t *const board = context;
-    if (board->is_started && !board->config.with_task) {
-        (void)receive(board, 1);
-    } else {
-        vTaskDelay(1);
-    }
+    (void)tmini_esp32_wait(context, 1);
 }
 
 const tmini_port_t tmini_esp32_port = {

@@ -17,10 +17,18 @@
  *     config.port_context = &board;
  *     tmini_init(&lidar, &config);
  *     ESP_ERROR_CHECK(tmini_esp32_start(&board, &lidar));   bytes come from here on
+ *     tmini_start(&lidar);                                  the lidar scans
+ *     for (;;) {
+ *         switch (tmini_poll(&lidar)) {
+ *         case TMINI_EVENT_SCAN: use(tmini_scan(&lidar)); break;
+ *         case TMINI_EVENT_NONE: tmini_esp32_wait(&board, pdMS_TO_TICKS(10)); break;
+ *         default: break;
+ *         }
+ *     }
  *
  * With a task (the default), that task feeds and the one that polls is another, on the same core or
- * not: the lidar's ring is made for that. Without (`with_task` false), one task calls both
- * tmini_esp32_receive(), which sleeps until bytes come, and tmini_poll(). */
+ * not: the lidar's ring is made for that. Without (`with_task` false), one task does both:
+ * tmini_esp32_wait() then receives, too. */
 
 #ifndef TMINI_ESP32_H
 #define TMINI_ESP32_H
@@ -47,14 +55,14 @@ extern "C" {
 
 /** How the lidar is connected, and how it is received. */
 typedef struct {
-    int uart;            /**< 1 for UART1, and so on; not a low-power one. UART0 is the console. */
-    int tx_pin;          /**< The GPIO wired to the lidar's RX. */
-    int rx_pin;          /**< The GPIO wired to the lidar's TX. Its pull-up is switched on. */
-    int buffer_size;     /**< Of the UART driver's ring buffer: more than the FIFO's 128 bytes. */
-    int queue_length;    /**< Of the UART driver's event queue: 4 or more. */
-    int fifo_threshold;  /**< Bytes in the FIFO that raise the interrupt: 1 to 126. */
-    int timeout_symbols; /**< Or so many byte times of silence behind the last byte: 1 to 100. */
-    bool with_task; /**< Start a receiving task; else the caller calls tmini_esp32_receive(). */
+    int uart;             /**< 1 for UART1, and so on; not a low-power one. UART0 is the console. */
+    int tx_pin;           /**< The GPIO wired to the lidar's RX. */
+    int rx_pin;           /**< The GPIO wired to the lidar's TX. Its pull-up is switched on. */
+    int buffer_size;      /**< Of the UART driver's ring buffer: more than the FIFO's 128 bytes. */
+    int queue_length;     /**< Of the UART driver's event queue: 4 or more. */
+    int fifo_threshold;   /**< Bytes in the FIFO that raise the interrupt: 1 to 126. */
+    int timeout_symbols;  /**< Or so many byte times of silence behind the last byte: 1 to 100. */
+    bool with_task;       /**< Start a receiving task; else tmini_esp32_wait() receives. */
     int task_stack_bytes; /**< The rest is for that task alone. */
     int task_priority;    /**< Above the task that polls, below FreeRTOS's configMAX_PRIORITIES. */
     int task_core;        /**< A core that FreeRTOS runs on (0, 1), or TMINI_ESP32_ANY_CORE. */
@@ -137,12 +145,13 @@ esp_err_t tmini_esp32_start(tmini_esp32_t *board, tmini_t *lidar);
  * Returns ESP_OK, ESP_ERR_INVALID_STATE when not started, or what the UART driver gave. */
 esp_err_t tmini_esp32_stop(tmini_esp32_t *board);
 
-/** Waits up to `ticks` for bytes, and hands to the lidar what fits into its ring; the rest waits in
- * the UART driver's buffer for the next call. Returns how many. For use without a receiving task
- * only; with one, or when stopped, it returns 0 at once.
+/** For a polling task that has nothing left to do. With a receiving task, or when stopped: sleeps
+ * for `ticks`, at least one, and returns 0. Without a receiving task: waits up to `ticks` for bytes,
+ * hands to the lidar what fits into its ring (the rest waits in the UART driver's buffer for the
+ * next call), and returns how many.
  *
  * Context: the task that polls. */
-size_t tmini_esp32_receive(tmini_esp32_t *board, TickType_t ticks);
+size_t tmini_esp32_wait(tmini_esp32_t *board, TickType_t ticks);
 
 /** Copies the counters; any task. */
 void tmini_esp32_counters(const tmini_esp32_t *board, tmini_esp32_counters_t *counters);

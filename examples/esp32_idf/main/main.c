@@ -8,8 +8,6 @@
 
 #include "driver/gpio.h"
 #include "esp_log.h"
-#include "freertos/FreeRTOS.h"
-#include "freertos/task.h"
 
 #include "obstacle.h"
 #include "tmini/tmini_names.h"
@@ -43,17 +41,21 @@ static bool must_stop(void)
     return !obstacle_may_move(&obstacle, now_ms());
 }
 
-static void open_stop_pin(void)
-{
-    if (CONFIG_EXAMPLE_STOP_GPIO >= 0) {
-        ESP_ERROR_CHECK(gpio_set_direction(CONFIG_EXAMPLE_STOP_GPIO, GPIO_MODE_OUTPUT));
-    }
-}
-
 static void set_stop_pin(bool stop)
 {
     if (CONFIG_EXAMPLE_STOP_GPIO >= 0) {
         (void)gpio_set_level(CONFIG_EXAMPLE_STOP_GPIO, stop ? 1 : 0);
+    }
+}
+
+/* Reset, because some pins are JTAG's at first; the level before the direction, because an output
+ * that is low for a moment says go. */
+static void open_stop_pin(void)
+{
+    if (CONFIG_EXAMPLE_STOP_GPIO >= 0) {
+        ESP_ERROR_CHECK(gpio_reset_pin(CONFIG_EXAMPLE_STOP_GPIO));
+        set_stop_pin(true);
+        ESP_ERROR_CHECK(gpio_set_direction(CONFIG_EXAMPLE_STOP_GPIO, GPIO_MODE_OUTPUT));
     }
 }
 
@@ -140,7 +142,6 @@ static void set_up(void)
     };
     const tmini_esp32_config_t wiring = TMINI_ESP32_CONFIG_DEFAULT;
     open_stop_pin();
-    set_stop_pin(true);
     ESP_ERROR_CHECK(tmini_esp32_init(&board, &wiring));
     if (tmini_init(&lidar, &config) != TMINI_OK) {
         ESP_LOGE(TAG, "the configuration is wrong");
@@ -159,7 +160,7 @@ void app_main(void)
         if (event == TMINI_EVENT_NONE) {
             set_stop_pin(must_stop());
             report_each_second();
-            vTaskDelay(1);
+            (void)tmini_esp32_wait(&board, pdMS_TO_TICKS(10));
         }
     }
 }

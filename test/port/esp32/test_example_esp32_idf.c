@@ -7,10 +7,11 @@
 
 #include "unity.h"
 
+#include "freertos/FreeRTOS.h"
 #include "freertos/task.h"
 #include "virtual_idf.h"
 
-#define STOP_PIN 10 /* CONFIG_EXAMPLE_STOP_GPIO */
+#define STOP_PIN VIRTUAL_IDF_JTAG_PIN /* CONFIG_EXAMPLE_STOP_GPIO */
 
 void app_main(void);
 
@@ -38,7 +39,8 @@ void test_it_tells_who_the_lidar_is_and_stops_the_robot_only_while_it_must(void)
     xTaskCreatePinnedToCore(run_program, "main", 3584, NULL, 1, NULL, 0);
 
     vTaskDelay(20);
-    TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN)); /* Nothing seen yet. */
+    TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN));       /* Nothing seen yet, */
+    TEST_ASSERT_FALSE(virtual_idf_pin_has_been_low(STOP_PIN)); /* not even for a moment. */
 
     vTaskDelay(300);
     assert_logged("I lidar: model 151, firmware 1.2, hardware 1, serial 2026031700012345\n");

@@ -198,6 +198,7 @@ static void expect_param_config(esp_err_t result)
 
 static void expect_set_pin(esp_err_t result)
 {
+    gpio_reset_pin_ExpectAndReturn(CONFIG_TMINI_ESP32_RX_PIN, ESP_OK); /* An output before? */
     uart_set_pin_ExpectAndReturn(UART_NUM_1, CONFIG_TMINI_ESP32_TX_PIN, CONFIG_TMINI_ESP32_RX_PIN,
                                  UART_PIN_NO_CHANGE, UART_PIN_NO_CHANGE, result);
     if (result == ESP_OK) {
@@ -270,7 +271,7 @@ static size_t receive(void)
 {
     xQueueReceive_Stub(give_event);
     next_wait = 7;
-    const size_t received = tmini_esp32_receive(&board, 7);
+    const size_t received = tmini_esp32_wait(&board, 7);
     TEST_ASSERT_EQUAL_UINT32(0, next_wait);
     TEST_ASSERT_EQUAL_UINT(0, event_count);
     return received;
@@ -371,6 +372,7 @@ void test_a_receive_pin_without_a_pull_up_is_taken_all_the_same(void)
 {
     expect_install(ESP_OK);
     expect_param_config(ESP_OK);
+    gpio_reset_pin_ExpectAndReturn(34, ESP_OK);
     uart_set_pin_ExpectAndReturn(UART_NUM_1, CONFIG_TMINI_ESP32_TX_PIN, 34, UART_PIN_NO_CHANGE,
                                  UART_PIN_NO_CHANGE, ESP_OK);
     gpio_pullup_en_ExpectAndReturn(34, ESP_ERR_INVALID_ARG);
@@ -530,7 +532,8 @@ void test_null_pointers_are_refused(void)
     TEST_ASSERT_EQUAL_INT(ESP_ERR_INVALID_ARG, tmini_esp32_start(NULL, &lidar));
     TEST_ASSERT_EQUAL_INT(ESP_ERR_INVALID_ARG, tmini_esp32_start(&board, NULL));
     TEST_ASSERT_EQUAL_INT(ESP_ERR_INVALID_STATE, tmini_esp32_stop(NULL));
-    TEST_ASSERT_EQUAL_UINT(0, tmini_esp32_receive(NULL, 7));
+    vTaskDelay_Expect(7);
+    TEST_ASSERT_EQUAL_UINT(0, tmini_esp32_wait(NULL, 7));
 }
 
 /* -------------------------------------------------------------------------------- configuration */
@@ -1048,10 +1051,13 @@ void test_a_driver_that_fails_to_read_ends_the_call(void)
     TEST_ASSERT_EQUAL_UINT(0, receive());
 }
 
-void test_with_a_task_the_caller_receives_nothing_itself(void)
+void test_with_a_task_waiting_is_sleeping_for_a_tick_or_more(void)
 {
     start_with_task();
-    TEST_ASSERT_EQUAL_UINT(0, tmini_esp32_receive(&board, 7));
+    vTaskDelay_Expect(1);
+    TEST_ASSERT_EQUAL_UINT(0, tmini_esp32_wait(&board, 0));
+    vTaskDelay_Expect(7);
+    TEST_ASSERT_EQUAL_UINT(0, tmini_esp32_wait(&board, 7));
 }
 
 /* ---------------------------------------------------------------------------- task and stopping */

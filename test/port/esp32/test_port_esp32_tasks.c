@@ -7,6 +7,7 @@
 
 #include "unity.h"
 
+#include "freertos/FreeRTOS.h"
 #include "freertos/task.h"
 #include "reference_decoder.h"
 #include "tmini/tmini_blocking.h"
@@ -164,7 +165,7 @@ static void receive_and_poll_all(void)
 {
     size_t received = 0;
     do {
-        received = tmini_esp32_receive(&board, 0);
+        received = tmini_esp32_wait(&board, 0);
         poll_all();
     } while (received > 0);
 }
@@ -182,7 +183,7 @@ static void start_by_hand(void)
 /* Once more bytes are refused, a gap has been told: behind so many. */
 static void assert_gap_behind(size_t count)
 {
-    TEST_ASSERT_EQUAL_UINT(count, tmini_esp32_receive(&board, 0));
+    TEST_ASSERT_EQUAL_UINT(count, tmini_esp32_wait(&board, 0));
     TEST_ASSERT_EQUAL_UINT(count, tmini_ring_unread(&lidar.ring));
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
 }
@@ -195,7 +196,7 @@ void test_an_overflow_is_told_of_where_it_was_however_late_the_events_are_taken(
     vTaskDelay(3);
     assert_gap_behind(128);
     poll_all();
-    TEST_ASSERT_TRUE(tmini_esp32_receive(&board, 0) > 60);
+    TEST_ASSERT_TRUE(tmini_esp32_wait(&board, 0) > 60);
     TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_feed_room(&lidar)); /* No second gap. */
 }
 
@@ -210,11 +211,11 @@ void test_of_several_overflows_the_first_is_told_of_where_it_was_and_one_behind_
     vTaskDelay(1);
     assert_gap_behind(128);
     poll_all();
-    const size_t rest = tmini_esp32_receive(&board, 0);
+    const size_t rest = tmini_esp32_wait(&board, 0);
     TEST_ASSERT_TRUE(rest > 256);
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
     poll_all();
-    (void)tmini_esp32_receive(&board, 0);
+    (void)tmini_esp32_wait(&board, 0);
     TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_feed_room(&lidar));
 }
 
@@ -224,7 +225,7 @@ void test_with_a_full_buffer_an_overflow_lies_behind_what_was_put_aside(void)
     wiring.buffer_size = 256;
     start_by_hand();
     vTaskDelay(5);
-    const size_t received = tmini_esp32_receive(&board, 0);
+    const size_t received = tmini_esp32_wait(&board, 0);
     TEST_ASSERT_TRUE(received > 256);
     TEST_ASSERT_EQUAL_UINT(received, tmini_ring_unread(&lidar.ring));
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
@@ -242,7 +243,7 @@ void test_when_events_are_lost_no_scan_passes_for_complete(void)
     start_by_hand();
     for (unsigned i = 0; i < rounds; i++) {
         vTaskDelay(3);
-        (void)tmini_esp32_receive(&board, 0);
+        (void)tmini_esp32_wait(&board, 0);
         tmini_event_t event;
         while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) {
             scans += event == TMINI_EVENT_SCAN;
@@ -264,7 +265,7 @@ void test_an_overflow_whose_event_was_lost_is_told_of_all_the_same(void)
     vTaskDelay(2); /* Fills the queue. */
     virtual_idf_hold_interrupts(20000);
     vTaskDelay(3);
-    TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_esp32_receive(&board, 0));
+    TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_esp32_wait(&board, 0));
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
     tmini_esp32_counters(&board, &uart);
     TEST_ASSERT_EQUAL_UINT32(0, uart.fifo_overflows); /* Nobody has heard of it. */

@@ -14,6 +14,7 @@
 #include "esp_log.h"
 #include "esp_pm.h"
 #include "esp_timer.h"
+#include "freertos/FreeRTOS.h"
 #include "freertos/task.h"
 
 #define STEP_US 500u
@@ -30,6 +31,13 @@ typedef struct {
     bool for_event; /* Or for time alone. */
     uint64_t until_us;
 } waiter_t;
+
+typedef struct {
+    bool is_gpio; /* And not JTAG's, say. */
+    bool is_output;
+    int level;
+    bool has_been_low;
+} virtual_pin_t;
 
 static struct {
     pthread_mutex_t lock;
@@ -59,7 +67,7 @@ static struct {
     size_t queue_count;
 
     unsigned locks_held; /* Of the power management. */
-    int pins[PINS];
+    virtual_pin_t pins[PINS];
     char log[16384];
     size_t log_length;
 } world = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
@@ -463,11 +471,27 @@ esp_err_t esp_pm_lock_delete(esp_pm_lock_handle_t held)
     return ESP_OK;
 }
 
+/* A pin drives the line as soon as it is an output, with the level that its register has by then;
+ * one that belongs to another function (JTAG) is no GPIO before it has been reset. */
+static void drive(virtual_pin_t *pin)
+{
+    pin->has_been_low = pin->has_been_low || (pin->is_gpio && pin->is_output && pin->level == 0);
+}
+
+esp_err_t gpio_reset_pin(gpio_num_t pin)
+{
+    lock();
+    world.pins[pin].is_gpio = true;
+    world.pins[pin].is_output = false;
+    unlock();
+    return ESP_OK;
+}
+
 esp_err_t gpio_set_direction(gpio_num_t pin, gpio_mode_t mode)
 {
-    (void)mode;
     lock();
-    world.pins[pin] = 0;
+    world.pins[pin].is_output = mode == GPIO_MODE_OUTPUT;
+    drive(&world.pins[pin]);
     unlock();
     return ESP_OK;
 }
@@ -475,7 +499,8 @@ esp_err_t gpio_set_direction(gpio_num_t pin, gpio_mode_t mode)
 esp_err_t gpio_set_level(gpio_num_t pin, uint32_t level)
 {
     lock();
-    world.pins[pin] = (int)level;
+    world.pins[pin].level = (int)level;
+    drive(&world.pins[pin]);
     unlock();
     return ESP_OK;
 }
@@ -519,7 +544,7 @@ void virtual_idf_begin(const sim_observer_t *observer)
     world.log_length = 0;
     world.log[0] = '\0';
     for (unsigned i = 0; i < PINS; i++) {
-        world.pins[i] = -1;
+        world.pins[i] = (virtual_pin_t){.is_gpio = i != VIRTUAL_IDF_JTAG_PIN};
     }
     sim_init(&world.lidar, &config);
     sim_observe(&world.lidar, observer);
@@ -601,7 +626,15 @@ const char *virtual_idf_log(void)
 int virtual_idf_pin(int pin)
 {
     lock();
-    const int level = world.pins[pin];
+    const virtual_pin_t state = world.pins[pin];
     unlock();
-    return level;
+    return state.is_gpio && state.is_output ? state.level : -1;
+}
+
+bool virtual_idf_pin_has_been_low(int pin)
+{
+    lock();
+    const bool has_been_low = world.pins[pin].has_been_low;
+    unlock();
+    return has_been_low;
 }

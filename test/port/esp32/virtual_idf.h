@@ -41,7 +41,13 @@ unsigned virtual_idf_stray_calls(void);
 /* What has been logged, as text. */
 const char *virtual_idf_log(void);
 
+/* At the start another function's, and no GPIO before gpio_reset_pin(). */
+#define VIRTUAL_IDF_JTAG_PIN 10
+
 /* The level of a pin; -1 if it is no output. */
 int virtual_idf_pin(int pin);
+
+/* Whether it has ever been an output that was low. */
+bool virtual_idf_pin_has_been_low(int pin);
 
 #endif

@@ -13,6 +13,7 @@
 typedef int gpio_num_t;
 typedef enum { GPIO_MODE_OUTPUT = 2 } gpio_mode_t;
 
+esp_err_t gpio_reset_pin(gpio_num_t pin);
 esp_err_t gpio_pullup_en(gpio_num_t pin);
 esp_err_t gpio_set_direction(gpio_num_t pin, gpio_mode_t mode);
 esp_err_t gpio_set_level(gpio_num_t pin, uint32_t level);

@@ -3,8 +3,8 @@
 
 /* FreeRTOS as in ESP-IDF: types and the length of a tick. */
 
-#ifndef FREERTOS_H
-#define FREERTOS_H
+#ifndef INC_FREERTOS_H
+#define INC_FREERTOS_H
 
 #include <stdint.h>
 

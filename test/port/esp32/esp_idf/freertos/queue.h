@@ -6,7 +6,10 @@
 #ifndef QUEUE_H
 #define QUEUE_H
 
-#include "freertos/FreeRTOS.h"
+/* As the original. */
+#ifndef INC_FREERTOS_H
+#error "include FreeRTOS.h must appear in source files before include queue.h"
+#endif
 
 typedef struct QueueDefinition *QueueHandle_t;
 

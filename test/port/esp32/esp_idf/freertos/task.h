@@ -6,7 +6,10 @@
 #ifndef TASK_H
 #define TASK_H
 
-#include "freertos/FreeRTOS.h"
+/* As the original. */
+#ifndef INC_FREERTOS_H
+#error "include FreeRTOS.h must appear in source files before include task.h"
+#endif
 
 typedef void (*TaskFunction_t)(void *);
 typedef struct tskTaskControlBlock *TaskHandle_t;
