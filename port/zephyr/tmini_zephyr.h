@@ -34,6 +34,12 @@
 
 #include "tmini/tmini.h"
 
+#ifndef CONFIG_TMINI_UART
+#error \
+    "tmini: CONFIG_TMINI_UART is off. It needs CONFIG_SERIAL, CONFIG_MULTITHREADING and a UART \
+driver with the interrupt-driven API (CONFIG_SERIAL_SUPPORT_INTERRUPT)"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -8,10 +8,11 @@
 
 #include "unity.h"
 
+#include <zephyr/drivers/uart.h>
+
 #include "tmini/tmini_blocking.h"
 #include "tmini_zephyr.h"
 #include "truth.h"
-#include "zephyr_api.h"
 #include "zephyr_model.h"
 
 #define ENOUGH_POINTS 2000u

@@ -9,7 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "zephyr_api.h"
+#include <zephyr/drivers/uart.h>
+#include <zephyr/kernel.h>
+#include <zephyr/sys/printk.h>
 
 #define STEP_US 20u
 #define FIFO_MAX 64u
@@ -262,10 +264,12 @@ void uart_irq_tx_disable(const struct device *device)
     (void)device;
 }
 
-int uart_irq_update(const struct device *device)
+UART_UPDATE_RESULT uart_irq_update(const struct device *device)
 {
     (void)device;
+#ifdef ZEPHYR_BEFORE_3_3
     return 1;
+#endif
 }
 
 static void check_context(void)

@@ -1,6 +1,55 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands in for Zephyr's header of this name. */
+/* Zephyr: the interrupt-driven UART API. */
 
-#include "zephyr_api.h"
+#ifndef ZEPHYR_DRIVERS_UART_H
+#define ZEPHYR_DRIVERS_UART_H
+
+#include <stdint.h>
+#include <zephyr/device.h>
+
+enum uart_config_parity { UART_CFG_PARITY_NONE, UART_CFG_PARITY_ODD };
+enum uart_config_stop_bits { UART_CFG_STOP_BITS_0_5, UART_CFG_STOP_BITS_1 };
+enum uart_config_data_bits { UART_CFG_DATA_BITS_5, UART_CFG_DATA_BITS_8 = 3 };
+enum uart_config_flow_control { UART_CFG_FLOW_CTRL_NONE, UART_CFG_FLOW_CTRL_RTS_CTS };
+
+struct uart_config {
+    uint32_t baudrate;
+    uint8_t parity;
+    uint8_t stop_bits;
+    uint8_t data_bits;
+    uint8_t flow_ctrl;
+};
+
+/* Zephyr has reported since 3.3 whether the callback was taken, and since May 2026 (pull request
+ * 105231) no longer returns anything from uart_irq_update(). */
+#ifdef ZEPHYR_BEFORE_3_3
+#define UART_CALLBACK_RESULT void
+#define UART_UPDATE_RESULT int
+#else
+#define UART_CALLBACK_RESULT int
+#define UART_UPDATE_RESULT void
+#endif
+
+#define UART_ERROR_OVERRUN 1
+#define UART_ERROR_PARITY 2
+#define UART_ERROR_FRAMING 4
+#define UART_BREAK 8
+
+typedef void (*uart_irq_callback_user_data_t)(const struct device *device, void *user_data);
+
+int uart_configure(const struct device *device, const struct uart_config *config);
+int uart_err_check(const struct device *device);
+void uart_poll_out(const struct device *device, unsigned char byte);
+UART_CALLBACK_RESULT uart_irq_callback_user_data_set(const struct device *device,
+                                                     uart_irq_callback_user_data_t callback,
+                                                     void *user_data);
+void uart_irq_rx_enable(const struct device *device);
+void uart_irq_rx_disable(const struct device *device);
+void uart_irq_tx_disable(const struct device *device);
+UART_UPDATE_RESULT uart_irq_update(const struct device *device);
+int uart_irq_rx_ready(const struct device *device);
+int uart_fifo_read(const struct device *device, uint8_t *bytes, int size);
+
+#endif
