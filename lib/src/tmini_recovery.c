@@ -73,7 +73,7 @@ void tmini_recovery_start(tmini_t *lidar, bool is_idle)
 void tmini_recovery_begin(tmini_t *lidar)
 {
     lidar->recovery.losses++;
-    if (lidar->is_recovery_off) {
+    if (lidar->is_recovery_off || lidar->is_listen_only) {
         tmini_command_wait(lidar, 0);
     } else if (lidar->recovery.attempts == 0) {
         tmini_recovery_start(lidar, false);

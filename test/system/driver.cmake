@@ -9,6 +9,9 @@ target_link_libraries(tmini_world PUBLIC tmini_simulator tmini::tmini)
 target_compile_options(tmini_world PRIVATE -O2 -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
 set_target_properties(tmini_world PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 
+tmini_add_unit_test(test_wishes
+    SOURCES test_wishes.c
+    LIBRARIES tmini_world)
 tmini_add_unit_test(test_driver
     SOURCES test_driver.c
     LIBRARIES tmini_world)

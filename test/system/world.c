@@ -53,7 +53,10 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
     if (world->config.short_writes) {
         count = random_below(&world->random, (uint32_t)count + 1);
     }
-    sim_link_write(&world->link, bytes, count, world->now_us);
+    world->writes++;
+    if (!world->deaf) {
+        sim_link_write(&world->link, bytes, count, world->now_us);
+    }
     return (int)count;
 }
 
@@ -95,7 +98,11 @@ void world_restart_library(world_t *world)
         .rx_size = world->config.rx_size,
         .rx_dma = world->config.dma,
         .points = world->config.streaming ? NULL : world->points,
-        .max_points = world->config.streaming ? 0 : WORLD_POINTS,
+        .max_points = world->config.streaming         ? 0
+                      : world->config.max_points != 0 ? world->config.max_points
+                                                      : WORLD_POINTS,
+        .frequency_chz = world->config.frequency_chz,
+        .listen_only = world->config.listen_only,
         .recovery = world->config.recovery,
     };
 
@@ -311,6 +318,7 @@ static void note_faults(world_t *world)
     if (world->sim.window_covered || world->sim.rotor_blocked) {
         faults |= SIM_HEALTH_DATA;
     }
+    world->fault_on_us[6] = world->now_us; /* TMINI_FAULT_FREQUENCY: not judged here. */
     for (unsigned bit = 0; bit < 8; bit++) {
         if ((faults >> bit & 1u) != 0) {
             world->fault_on_us[bit] = world->now_us;

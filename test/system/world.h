@@ -31,6 +31,9 @@ typedef struct {
     bool dma;
     bool streaming;
     tmini_recovery_mode_t recovery;
+    uint16_t frequency_chz; /* As configured; 0: none is wanted. */
+    bool listen_only;
+    uint16_t max_points;    /* 0: WORLD_POINTS. */
     bool short_writes;      /* The port takes 0, 1 or 2 bytes, by chance. */
     uint16_t busy_one_in;   /* How often the main loop is busy; 0: never. */
     uint16_t busy_ms;       /* At most for so long. */
@@ -82,6 +85,8 @@ typedef struct {
     world_config_t config;
     sim_t sim;
     sim_link_t link;
+    bool deaf; /* What the library sends does not arrive. */
+    uint32_t writes;
     tmini_t lidar;
     tmini_port_t port;
     random_t random;
