@@ -91,10 +91,10 @@ export class Library {
         return this.faultBits().filter(({ bit }) => faults & bit).map(({ name }) => name);
     }
 
-    // "encoder, data", or "none".
+    // "encoder, data", or "no faults".
     faultsText(faults) {
         this.call('faults_text', faults);
-        return this.takeText();
+        return faults === 0 ? 'no faults' : this.takeText();
     }
 
     #string(address) {

@@ -12,12 +12,24 @@ import { Player } from './player.js';
 import { offerSwitches, resetSwitches } from './switches.js';
 import { Picture } from './picture.js';
 import { Recorder, save } from './saving.js';
+import { Pointer } from './pointer.js';
 import { explainOpening, faultAdvice, problems, recordingProblems } from './problems.js';
 import { element, enable, hertz, isEnabled, log, setText, show, showCounters, showCt, showProblem, showScan,
          showUnit } from './panels.js';
 
 const COUNTERS_MS = 250;
 const SECTORS = 8;
+const STALE_MS = 1000; // A scan older than that is not what is there now.
+
+// "170..190, 350..10" as pairs of degrees; none if it is written in another way.
+function arcsOf(input) {
+    const parts = input.value.split(',').map((part) => part.trim()).filter((part) => part !== '');
+    const arcs = parts.map((part) => part.match(/^(-?\d{1,3})\s*\.\.\s*(-?\d{1,3})$/)?.slice(1).map(Number));
+    const isGood = !arcs.includes(undefined) && arcs.length <= 8;
+    input.setCustomValidity(isGood ? '' : 'Like this: 170..190, 350..10');
+    input.setAttribute('aria-invalid', String(!isGood));
+    return isGood ? arcs : [];
+}
 
 class Viewer {
     #library;
@@ -26,6 +38,7 @@ class Viewer {
     #lidar = null;
     #player = null;
     #recorder = new Recorder();
+    #scannedAt = null; // When the lidar's latest scan came.
     #change = Promise.resolve(); // From one source to another: one at a time.
 
     constructor(library) {
@@ -113,6 +126,7 @@ class Viewer {
         }
         this.#lidar = null;
         this.#recorder.clear();
+        this.#scannedAt = null;
         this.#library.call('shown_forget');
         this.#picture.clear();
         resetSwitches();
@@ -131,14 +145,31 @@ class Viewer {
 
     #takeScan() {
         const [points, numbers, sectors] = this.#shown();
+        this.#scannedAt = performance.now();
         this.#picture.add(points, numbers, sectors);
+        this.#showAge();
         showScan(numbers, sectors);
+    }
+
+    // A lidar that is lost, or stopped, must not look as if it saw something.
+    #showAge() {
+        const age = this.#lidar && this.#scannedAt !== null ? performance.now() - this.#scannedAt : 0;
+        const isStale = age > STALE_MS;
+        this.#picture.isStale = isStale;
+        show('age', isStale);
+        if (isStale) {
+            const text = `No scan for ${Math.floor(age / 1000)} s`;
+            setText('age', text);
+            showScan(null);
+            setText('summary', `${text}.`);
+        }
     }
 
     #showAgain() {
         const [points, numbers, sectors] = this.#shown();
         this.#picture.replace(points, numbers, sectors);
         showScan(numbers, sectors);
+        this.#showAge();
     }
 
     // ------------------------------------------------------------------------------------- state
@@ -147,6 +178,7 @@ class Viewer {
         const numbers = this.#lidar ? this.#library.numbers('lidar_numbers')
             : this.#player ? this.#library.numbers('recording_numbers') : null;
         const faultsText = (bits) => this.#library.faultsText(bits);
+        this.#showAge();
         showCounters(numbers);
         showCt(numbers, this.#constants, faultsText);
         this.#showFaults(numbers);
@@ -263,14 +295,25 @@ class Viewer {
             this.#picture.persistence = Number(target.value);
             setText('persistence-value', target.value === '1' ? '1 revolution' : `${target.value} revolutions`);
         });
-        for (const id of ['mount-front', 'mount-upside-down']) {
+        for (const id of ['mount-front', 'mount-upside-down', 'mount-mask']) {
             this.#on(id, 'input', () => this.#mount());
         }
+        this.#on('light', 'change', ({ target }) => {
+            document.documentElement.classList.toggle('light', target.checked);
+            this.#picture.retheme();
+        });
+        this.#on('zoom-in', 'click', () => this.#picture.enlarge(1.5));
+        this.#on('zoom-out', 'click', () => this.#picture.enlarge(1 / 1.5));
+        this.#on('zoom-whole', 'click', () => this.#picture.enlarge(0));
+        new Pointer(element('picture'), this.#picture);
     }
 
     #mount() {
         const frontQ6 = Math.round(Number(element('mount-front').value) * 64);
         const circle = this.#constants.FULL_CIRCLE_Q6;
+        const arcs = arcsOf(element('mount-mask'));
+        this.#library.hand(new Uint8Array(Int16Array.from(arcs.flat()).buffer));
+        this.#library.call('shown_mask', arcs.length);
         this.#library.call('shown_mount', ((frontQ6 % circle) + circle) % circle,
                            element('mount-upside-down').checked ? 1 : 0);
         this.#showAgain();

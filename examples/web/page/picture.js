@@ -2,17 +2,18 @@
 // Copyright (c) 2026 The tmini authors
 
 // The picture of the latest scans, seen from above, the front up: rings in metres, points coloured by
-// intensity, flagged ones marked, the nearest obstacle of each sector as an arc.
+// intensity, flagged ones marked, the nearest obstacle of each sector as an arc. It can be enlarged and moved.
 
 // Ranges to choose from, and how far apart the rings are then.
 const SCALES = [[500, 100], [1000, 200], [1500, 500], [2000, 500], [2500, 500], [3000, 1000], [4000, 1000],
                 [5000, 1000], [6000, 1000], [8000, 2000], [12000, 2000], [16500, 4000]];
 const COLOURS = 16; // Shades of intensity.
-const POINT_SIZE = 2.5;
+const ZOOM_MAX = 40;
+const MARGIN = 40; // Around the outermost ring, for the angles.
 
-// From little light to much, in equal steps between these; darker on white, brighter on black.
+// From little light to much, in equal steps between these: those of the tool's pictures, and darker ones on white.
 const RAMPS = {
-    dark: [[104, 116, 240], [34, 150, 226], [46, 205, 170], [168, 226, 92], [255, 214, 84]],
+    dark: [[82, 92, 227], [33, 150, 227], [46, 204, 171], [168, 227, 92], [255, 214, 84]],
     light: [[74, 108, 214], [18, 121, 168], [14, 118, 92], [96, 104, 10], [168, 72, 0]],
 };
 
@@ -42,6 +43,9 @@ export class Picture {
     #sines;
     #theme = {};
     #isDue = false;
+    #isStale = false;
+    #zoom = 1;
+    #shift = [0, 0]; // Of the lidar from the middle, in pixels.
 
     constructor(canvas, constants) {
         const circle = constants.FULL_CIRCLE_Q6;
@@ -53,10 +57,46 @@ export class Picture {
                                         (_, i) => Math.sin((i / circle) * 2 * Math.PI));
         this.#readTheme();
         new ResizeObserver(() => this.draw()).observe(canvas);
-        matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
-            this.#readTheme();
+    }
+
+    // The colours have changed.
+    retheme() {
+        this.#readTheme();
+        this.draw();
+    }
+
+    // What is shown is no longer what is there: grey.
+    set isStale(isStale) {
+        if (this.#isStale !== isStale) {
+            this.#isStale = isStale;
             this.draw();
-        });
+        }
+    }
+
+    // Larger or smaller by a factor; the place (x, y) of the picture stays where it is.
+    enlarge(factor, x = this.#canvas.clientWidth / 2, y = this.#canvas.clientHeight / 2) {
+        const zoom = Math.min(Math.max(this.#zoom * factor, 1), ZOOM_MAX);
+        const { clientWidth, clientHeight } = this.#canvas;
+        const middle = [x - clientWidth / 2, y - clientHeight / 2];
+        const change = zoom / this.#zoom;
+        this.#zoom = zoom;
+        this.#shift = zoom === 1 ? [0, 0] : this.#shift.map((shift, i) => middle[i] + (shift - middle[i]) * change);
+        this.draw();
+    }
+
+    // Moved by some pixels, if it is enlarged.
+    move(dx, dy) {
+        if (this.#zoom > 1) {
+            this.#shift = [this.#shift[0] + dx, this.#shift[1] + dy];
+            this.draw();
+        }
+    }
+
+    // What lies there: distance in metres, and angle in degrees clockwise from the front.
+    at(px, py) {
+        const { x, y, scale } = this.#frame();
+        const degrees = (Math.atan2(px - x, y - py) / Math.PI) * 180;
+        return { metres: Math.hypot(px - x, y - py) / scale / 1000, degrees: (degrees + 360) % 360 };
     }
 
     // One more scan: its points, its numbers, the nearest distance in each sector.
@@ -108,11 +148,11 @@ export class Picture {
     #readTheme() {
         const style = getComputedStyle(document.documentElement);
         const colour = (name) => style.getPropertyValue(`--${name}`).trim();
-        for (const name of ['ground', 'grid', 'text', 'dim', 'accent', 'alarm']) {
+        for (const name of ['ground', 'page', 'grid', 'edge', 'text', 'dim', 'nearest', 'specular', 'ambient', 'beam']) {
             this.#theme[name] = colour(name);
         }
         this.#theme.font = style.fontFamily;
-        this.#theme.ramp = rampColours(matchMedia('(prefers-color-scheme: dark)').matches ? RAMPS.dark : RAMPS.light);
+        this.#theme.ramp = rampColours(style.colorScheme === 'light' ? RAMPS.light : RAMPS.dark);
     }
 
     get #shownMm() {
@@ -122,98 +162,172 @@ export class Picture {
     #paint() {
         const frame = this.#fit();
         const context = this.#context;
-        context.fillStyle = this.#theme.ground;
+        context.fillStyle = this.#theme.page;
         context.fillRect(0, 0, frame.width, frame.height);
+        this.#paintDisc(frame);
+        this.#paintBeams(frame);
         this.#paintGrid(frame);
+        this.#paintAngles(frame);
         for (let age = this.#scans.length - 1; age >= 0; age--) {
             context.globalAlpha = age === 0 ? 1 : 0.55 * (1 - age / this.#scans.length);
             this.#paintPoints(frame, this.#scans[age]);
         }
         context.globalAlpha = 1;
-        this.#paintSectors(frame);
-        this.#paintNearest(frame);
+        if (!this.#isStale) {
+            this.#paintSectors(frame);
+            this.#paintNearest(frame);
+            this.#paintLegend(frame);
+        }
         this.#paintLidar(frame);
-        this.#paintLegend(frame);
     }
 
     // As many pixels as the screen has, in the units of CSS.
     #fit() {
         const ratio = devicePixelRatio;
-        const { clientWidth: width, clientHeight: height } = this.#canvas;
-        const [columns, rows] = [Math.round(width * ratio), Math.round(height * ratio)];
+        const frame = this.#frame();
+        const [columns, rows] = [Math.round(frame.width * ratio), Math.round(frame.height * ratio)];
         if (this.#canvas.width !== columns || this.#canvas.height !== rows) {
             this.#canvas.width = columns;
             this.#canvas.height = rows;
         }
         this.#context.setTransform(ratio, 0, 0, ratio, 0, 0);
-        const radius = Math.max(Math.min(width, height) / 2 - 22, 10);
-        return { width, height, x: width / 2, y: height / 2, radius, scale: radius / this.#shownMm };
+        return frame;
     }
 
-    #paintGrid({ x, y, radius, scale }) {
+    // Where the lidar is, and how large a millimetre. `size`: a point's, which grows with the picture.
+    #frame() {
+        const { clientWidth: width, clientHeight: height } = this.#canvas;
+        const whole = Math.max(Math.min(width, height) / 2 - MARGIN, 10);
+        const radius = whole * this.#zoom;
+        return { width, height, x: width / 2 + this.#shift[0], y: height / 2 + this.#shift[1], radius,
+                 scale: radius / this.#shownMm, size: Math.max(whole * 0.0068, 1) * Math.sqrt(this.#zoom) };
+    }
+
+    // The place at an angle clockwise from the front, in 1/64 degree, and a distance in pixels.
+    #place({ x, y }, angleQ6, distance) {
+        const angle = angleQ6 % this.#constants.FULL_CIRCLE_Q6;
+        return [x + distance * this.#sines[angle],
+                y - distance * this.#sines[angle + this.#constants.FULL_CIRCLE_Q6 / 4]];
+    }
+
+    #paintDisc({ x, y, radius }) {
+        const context = this.#context;
+        context.beginPath();
+        context.arc(x, y, radius, 0, 2 * Math.PI);
+        context.fillStyle = this.#theme.ground;
+        context.fill();
+        context.strokeStyle = this.#theme.edge;
+        context.lineWidth = 1.5;
+        context.stroke();
+    }
+
+    // What the lidar has looked through: from it to each point, as wide as the points are apart.
+    #paintBeams(frame) {
+        const points = this.#isStale ? undefined : this.#scans[0];
+        if (points === undefined || points.count === 0) {
+            return;
+        }
+        const context = this.#context;
+        const half = Math.ceil(this.#constants.FULL_CIRCLE_Q6 / points.count / 2);
+        context.beginPath();
+        for (let i = 0; i < points.count; i++) {
+            const distance = Math.min(points.distanceMm(i), this.#shownMm) * frame.scale;
+            const angle = points.angleQ6(i) + this.#constants.FULL_CIRCLE_Q6;
+            if (distance > 0) {
+                context.moveTo(frame.x, frame.y);
+                context.lineTo(...this.#place(frame, angle - half, distance));
+                context.lineTo(...this.#place(frame, angle + half, distance));
+            }
+        }
+        context.fillStyle = this.#theme.beam;
+        context.fill();
+    }
+
+    #paintGrid({ x, y, scale }) {
         const context = this.#context;
         const rangeMm = this.#shownMm;
-        const [, step] = scaleFor(rangeMm);
+        const [, step] = scaleFor(rangeMm / this.#zoom);
         context.strokeStyle = this.#theme.grid;
         context.lineWidth = 1;
         context.beginPath();
-        for (let mm = step; mm <= rangeMm; mm += step) {
+        for (let mm = step; mm < rangeMm; mm += step) {
             context.moveTo(x + mm * scale, y);
             context.arc(x, y, mm * scale, 0, 2 * Math.PI);
-        }
-        for (let eighth = 0; eighth < 8; eighth++) {
-            const [sine, cosine] = [Math.sin((eighth * Math.PI) / 4), Math.cos((eighth * Math.PI) / 4)];
-            context.moveTo(x + 14 * sine, y - 14 * cosine);
-            context.lineTo(x + radius * sine, y - radius * cosine);
         }
         context.stroke();
         context.fillStyle = this.#theme.dim;
         context.font = `12px ${this.#theme.font}`;
-        context.textAlign = 'left';
+        context.textAlign = 'center';
         const labelled = step * scale >= 28 ? step : 2 * step; // With room between them.
         for (let mm = labelled; mm <= rangeMm; mm += labelled) {
-            context.fillText(`${mm / 1000} m`, x + 4, y + mm * scale - 4);
+            const [tx, ty] = this.#place({ x, y }, 15 * 64, mm * scale - 10);
+            context.fillText(`${mm / 1000} m`, tx, ty + 4);
         }
-        context.textAlign = 'center';
-        context.fillText('front', x, y - radius - 8);
     }
 
-    #paintPoints({ x, y, scale }, points) {
+    #paintAngles(frame) {
         const context = this.#context;
-        const { FULL_CIRCLE_Q6: circle, FLAG_SPECULAR } = this.#constants;
+        const sides = { 0: 'front', 90: 'right', 180: 'back', 270: 'left' };
+        context.strokeStyle = this.#theme.grid;
+        context.lineWidth = 1;
+        context.textAlign = 'center';
+        context.beginPath();
+        for (let degrees = 0; degrees < 360; degrees += 30) {
+            context.moveTo(...this.#place(frame, degrees * 64, 14));
+            context.lineTo(...this.#place(frame, degrees * 64, frame.radius));
+            const [x, y] = this.#place(frame, degrees * 64, frame.radius + 20);
+            context.fillStyle = this.#theme.text;
+            context.fillText(`${degrees}°`, x, sides[degrees] ? y - 2 : y + 4);
+            context.fillStyle = this.#theme.dim;
+            context.fillText(sides[degrees] ?? '', x, y + 11);
+        }
+        context.stroke();
+    }
+
+    // Those of one shade together.
+    #paintPoints(frame, points) {
+        const context = this.#context;
         const { darkest, brightest } = this.#numbers;
         const shade = (COLOURS - 1) / Math.max(brightest - darkest, 1);
-        const limit = this.#shownMm;
-        let last = -1;
+        const shades = Array.from({ length: COLOURS }, () => []);
+        const marks = [];
         for (let i = 0; i < points.count; i++) {
             const distance = points.distanceMm(i);
-            if (distance === 0 || distance > limit) {
+            if (distance === 0 || distance > this.#shownMm) {
                 continue;
             }
-            const angle = points.angleQ6(i);
-            const px = x + distance * scale * this.#sines[angle];
-            const py = y - distance * scale * this.#sines[angle + circle / 4];
+            const place = this.#place(frame, points.angleQ6(i), distance * frame.scale);
             const colour = Math.min(Math.max(Math.round((points.intensity(i) - darkest) * shade), 0), COLOURS - 1);
-            if (colour !== last) {
-                context.fillStyle = this.#theme.ramp[colour];
-                last = colour;
-            }
-            context.fillRect(px - POINT_SIZE / 2, py - POINT_SIZE / 2, POINT_SIZE, POINT_SIZE);
-            if (points.flag(i) >= FLAG_SPECULAR) {
-                this.#paintFlag(px, py, points.flag(i) === FLAG_SPECULAR);
+            shades[colour].push(place);
+            if (points.flag(i) >= this.#constants.FLAG_SPECULAR && !this.#isStale) {
+                marks.push([...place, points.flag(i) === this.#constants.FLAG_SPECULAR]);
             }
         }
+        shades.forEach((places, colour) => {
+            context.fillStyle = this.#isStale ? this.#theme.dim : this.#theme.ramp[colour];
+            context.beginPath();
+            for (const [x, y] of places) {
+                context.moveTo(x + frame.size, y);
+                context.arc(x, y, frame.size, 0, 2 * Math.PI);
+            }
+            context.fill();
+        });
+        marks.forEach((mark) => this.#paintFlag(...mark));
     }
 
-    // A cross for a specular reflection, a plus for ambient light: told apart without colour.
+    // A ring for a specular reflection, a cross for ambient light: told apart without colour.
     #paintFlag(x, y, isSpecular) {
         const context = this.#context;
-        context.strokeStyle = this.#theme.alarm;
-        context.lineWidth = 1.25;
+        context.strokeStyle = isSpecular ? this.#theme.specular : this.#theme.ambient;
+        context.lineWidth = 1.5;
         context.beginPath();
-        for (const [dx, dy] of isSpecular ? [[3, 3], [3, -3]] : [[4, 0], [0, 4]]) {
-            context.moveTo(x - dx, y - dy);
-            context.lineTo(x + dx, y + dy);
+        if (isSpecular) {
+            context.arc(x, y, 5, 0, 2 * Math.PI);
+        } else {
+            context.moveTo(x - 4, y - 4);
+            context.lineTo(x + 4, y + 4);
+            context.moveTo(x + 4, y - 4);
+            context.lineTo(x - 4, y + 4);
         }
         context.stroke();
     }
@@ -226,30 +340,32 @@ export class Picture {
                 return;
             }
             const middle = i * width - Math.PI / 2;
-            context.strokeStyle = i === this.#numbers.nearestSector ? this.#theme.accent : this.#theme.dim;
-            context.lineWidth = i === this.#numbers.nearestSector ? 2 : 1;
+            const isNearest = i === this.#numbers.nearestSector;
+            context.strokeStyle = isNearest ? this.#theme.nearest : this.#theme.dim;
+            context.lineWidth = isNearest ? 2 : 1;
             context.beginPath();
             context.arc(x, y, mm * scale, middle - width * 0.46, middle + width * 0.46);
             context.stroke();
         });
     }
 
-    #paintNearest({ width, x, y, scale }) {
+    #paintNearest(frame) {
         const context = this.#context;
         const { nearestMm, nearestQ6 } = this.#numbers ?? {};
         if (!nearestMm || nearestMm > this.#shownMm) {
             return;
         }
-        const px = x + nearestMm * scale * this.#sines[nearestQ6];
-        const py = y - nearestMm * scale * this.#sines[nearestQ6 + this.#constants.FULL_CIRCLE_Q6 / 4];
-        context.strokeStyle = this.#theme.accent;
+        const [px, py] = this.#place(frame, nearestQ6, nearestMm * frame.scale);
+        context.strokeStyle = this.#theme.nearest;
         context.lineWidth = 2;
-        context.strokeRect(px - 5, py - 5, 10, 10);
-        context.fillStyle = this.#theme.accent;
+        context.beginPath();
+        context.arc(px, py, 8, 0, 2 * Math.PI);
+        context.stroke();
+        context.fillStyle = this.#theme.nearest;
         context.font = `600 13px ${this.#theme.font}`;
-        const isRight = px > x && px + 80 < width; // Outwards, if there is room.
+        const isRight = px > frame.x && px + 80 < frame.width; // Outwards, if there is room.
         context.textAlign = isRight ? 'left' : 'right';
-        const place = [`${(nearestMm / 1000).toFixed(3)} m`, px + (isRight ? 9 : -9), py + 4];
+        const place = [`${(nearestMm / 1000).toFixed(3)} m`, px + (isRight ? 12 : -12), py + 4];
         context.strokeStyle = this.#theme.ground;
         context.lineWidth = 4;
         context.strokeText(...place);
@@ -282,7 +398,7 @@ export class Picture {
         context.textAlign = 'left';
         context.fillText(`intensity ${numbers.darkest} to ${numbers.brightest}`, 12, height - 24);
         if (numbers.flagged > 0) {
-            context.fillText(`× + flagged: ${numbers.flagged}`, 12, height - 42);
+            context.fillText(`○ × flagged: ${numbers.flagged}`, 12, height - 42);
         }
     }
 }

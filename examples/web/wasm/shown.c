@@ -12,6 +12,7 @@
 #include "tmini/tmini_sectors.h"
 
 #define SECTORS 8u
+#define MASKED_MAX 8u
 
 /* JavaScript reads points where they are. */
 typedef char point_is_six_bytes[sizeof(tmini_point_t) == 6 ? 1 : -1];
@@ -34,6 +35,7 @@ static struct {
     uint8_t darkest;
     uint8_t brightest;
     tmini_mount_t mount;
+    tmini_arc_t masked[MASKED_MAX];
 } shown;
 
 static void look_at(const tmini_point_t *point)
@@ -96,6 +98,20 @@ EXPORTED void shown_mount(uint32_t front_q6, uint32_t upside_down)
     shown.mount.front_deg = (int16_t)(front_q6 % TMINI_FULL_CIRCLE_Q6 / 64u);
     shown.mount.upside_down = upside_down != 0;
     mount();
+}
+
+/* Where the robot sees itself: `count` pairs of whole degrees in `transfer`, 16 bits each. */
+EXPORTED void shown_mask(uint32_t count)
+{
+    int16_t degrees[2 * MASKED_MAX];
+    count = count < MASKED_MAX ? count : MASKED_MAX;
+    memcpy(degrees, web_transfer, count * 2u * sizeof *degrees);
+    for (uint32_t i = 0; i < count; i++) {
+        shown.masked[i].from_q6 = (uint16_t)((degrees[2 * i] + 720) % 360 * 64);
+        shown.masked[i].to_q6 = (uint16_t)((degrees[2 * i + 1] + 720) % 360 * 64);
+    }
+    shown.mount.masked = shown.masked;
+    shown.mount.masked_count = count;
 }
 
 EXPORTED const void *shown_points(void)
