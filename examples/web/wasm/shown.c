@@ -107,8 +107,7 @@ EXPORTED void shown_mask(uint32_t count)
     count = count < MASKED_MAX ? count : MASKED_MAX;
     memcpy(degrees, web_transfer, count * 2u * sizeof *degrees);
     for (uint32_t i = 0; i < count; i++) {
-        shown.masked[i].from_q6 = (uint16_t)((degrees[2 * i] + 720) % 360 * 64);
-        shown.masked[i].to_q6 = (uint16_t)((degrees[2 * i + 1] + 720) % 360 * 64);
+        shown.masked[i] = (tmini_arc_t){degrees[2 * i], degrees[2 * i + 1]};
     }
     shown.mount.masked = shown.masked;
     shown.mount.masked_count = count;
