@@ -52,6 +52,9 @@ REPLACEMENTS = [
     (r"(?<= )/(?= )", ["*"]), (r"(?<= )%(?= )", ["*"]),
     (r"\+\+", ["--"]), (r"--(?!-)", ["++"]),
     (r"\+=", ["-=", "="]), (r"-=", ["+="]), (r"\|=", ["&=", "="]), (r"\^=", ["="]), (r"&=", ["|="]),
+    # Types too narrow for what they count: loops, times.
+    (r"\b(?:size_t|uint32_t|unsigned)(?= \w+(?: = |;|,|\)))", ["uint16_t", "uint8_t"]),
+    (r"\buint16_t(?= \w+(?: = |;|,|\)))", ["uint8_t"]),
     (r"\btrue\b", ["false"]), (r"\bfalse\b", ["true"]),
     (r"(?<=[( ,+&|<>=-])!(?=[a-z(])", [""]),
     (r"\b(?:0x[0-9A-Fa-f]+|\d+)(?=[uU]?\b)", ["{0} + 1", "{0} - 1"]),
@@ -75,6 +78,19 @@ def read(path):
         return file.read()
 
 
+def function_at(lines, line):
+    """The function that a line is part of; what stands outside of all is called so."""
+    if lines[line].startswith("}"):
+        return "-"
+    for above in reversed(lines[:line + 1]):
+        match = re.match(r"[A-Za-z_][^;=]*?\b(\w+)\(", above)
+        if match:
+            return match.group(1)
+        if above.startswith("}"):
+            break
+    return "-"
+
+
 class Mutant:
     def __init__(self, path, line, begin, end, replacement, lines):
         self.path, self.line = path, line
@@ -83,7 +99,9 @@ class Mutant:
         new = old[:begin] + replacement + old[end:]
         self.after = new.strip()
         self.text = "\n".join(lines[:line] + [new] + lines[line + 1:])
-        self.key = f"{path} | {self.before} | {self.after}"
+        change = (f"{old[begin:end].strip()} -> {replacement.strip()}" if replacement != ";" else
+                  f"{' '.join(old[begin:end].split('(')[0].split('=')[0].split())} removed")
+        self.key = f"{path} | {function_at(lines, line)} | {change}"
         self.id = hashlib.sha256(f"{path}\n{self.text}".encode()).hexdigest()[:16]
 
     def __str__(self):
@@ -128,6 +146,17 @@ def object_of(entry):
     return os.path.join(entry["directory"], words[words.index("-o") + 1])
 
 
+def objects_of(folder):
+    """What a program is linked of, besides archives, by its folder among CMake's files."""
+    link = os.path.join(folder, "link.txt")
+    if not os.path.exists(link):
+        return []
+    with open(link, encoding="utf-8") as file:
+        words = shlex.split(file.read())
+    place = os.path.dirname(os.path.dirname(folder))
+    return [os.path.realpath(os.path.join(place, word)) for word in words if word.endswith(".o")]
+
+
 def files_of(folder):
     return sorted(os.path.relpath(file, ROOT) for kind in ("c", "cpp", "h")
                   for file in glob.glob(os.path.join(glob.escape(os.path.join(ROOT, folder)), "*." + kind)))
@@ -157,6 +186,7 @@ class Build:
         for place, folders, files in os.walk(self.folder): # Not through links: they may lead round in a circle.
             if "CMakeCache.txt" in files and place != self.folder:
                 folders.clear() # A build of its own.
+                continue
             self.archives += [os.path.join(place, file) for file in sorted(files) if file.endswith(".a") and
                               os.path.isdir(os.path.join(place, "CMakeFiles", file[3:-2] + ".dir"))] # Made here.
             self.folders += [os.path.join(place, name) for name in sorted(folders) if re.match(r"test_.*\.dir$", name)]
@@ -169,10 +199,11 @@ class Build:
         """The tests of a source, each with how it is compiled for it."""
         place = "unit" if source.startswith("lib/") else os.path.dirname(source).replace("/", "[/_]")
         entries = self.entries_of(source)
-        own = {object_of(entry).split(".dir")[0]: entry for entry in entries}
+        own = {os.path.realpath(object_of(entry)): entry for entry in entries}
         library = [entry for entry in entries if not object_of(entry).startswith(os.path.join(self.folder, "test", ""))]
         for folder in self.folders:
-            entry = own.get(folder[:-len(".dir")], library[0] if library else None)
+            linked = [own[obj] for obj in objects_of(folder) if obj in own]
+            entry = (linked + library + [None])[0]
             name = os.path.basename(folder)[:-len(".dir")]
             if re.search(f"/test/.*{place}/", folder) and entry and \
                     os.path.exists(os.path.join(self.folder, "test", "bin", name)):
@@ -189,8 +220,7 @@ class Test:
         self.kills = 0
 
     def objects(self):
-        found = glob.glob(os.path.join(glob.escape(self.folder), "**", "*.o"), recursive=True)
-        return [obj for obj in found if os.path.realpath(obj) != os.path.realpath(object_of(self.entry))]
+        return [obj for obj in objects_of(self.folder) if obj != os.path.realpath(object_of(self.entry))]
 
     def work_folder(self):
         """Where ctest runs it, if it needs a place of its own."""
