@@ -29,11 +29,29 @@
 #define CR1_RE (1u << 2)
 #define CR1_TE (1u << 3)
 #define CR1_IDLEIE (1u << 4)
-#define CR1_RXNEIE (1u << 5) /**< Also for overruns. */
+#define CR1_RXNEIE (1u << 5)  /**< Also for overruns. */
+#define CR1_INTERRUPTS 0x1F0u /**< These two, TCIE, TXEIE, PEIE. */
 #define CR3_EIE (1u << 0)
 #define CR3_DMAR (1u << 6)
 
 #define DMA_COUNT 0xFFFFu
+
+/* A test lets a model stand for the registers. */
+#ifdef TMINI_STM32_ACCESS_HEADER
+#include TMINI_STM32_ACCESS_HEADER
+#else
+static inline uint32_t read_register(const volatile uint32_t *at)
+{
+    return *at;
+}
+
+static inline void write_register(volatile uint32_t *at, uint32_t value)
+{
+    *at = value;
+}
+#endif
+
+static inline void clear_flags(volatile uint32_t *registers, uint32_t status);
 
 /* ------------------------------------------------------------------------------- receiving */
 
@@ -46,11 +64,11 @@ static void count_errors(tmini_stm32_usart_t *port, uint32_t errors)
 
 static void take_byte(tmini_stm32_usart_t *port)
 {
-    const uint32_t status = port->registers[STATUS];
+    const uint32_t status = read_register(&port->registers[STATUS]);
     count_errors(port, status);
     clear_flags(port->registers, status);
     if ((status & STATUS_RXNE) != 0) {
-        const uint8_t byte = (uint8_t)port->registers[DATA_IN];
+        const uint8_t byte = (uint8_t)read_register(&port->registers[DATA_IN]);
         port->bytes = port->bytes + 1;
         tmini_feed_byte(port->lidar, byte);
     }
@@ -59,10 +77,10 @@ static void take_byte(tmini_stm32_usart_t *port)
 /** A flag that still shows the error of a byte counted before is not counted again. */
 static void look_at_line(tmini_stm32_usart_t *port)
 {
-    const uint32_t status = port->registers[STATUS];
+    const uint32_t status = read_register(&port->registers[STATUS]);
     count_errors(port, status & ~port->line_flags);
     clear_flags(port->registers, status);
-    port->line_flags = port->registers[STATUS] & STATUS_ERRORS;
+    port->line_flags = read_register(&port->registers[STATUS]) & STATUS_ERRORS;
 }
 
 static void hand_over(tmini_stm32_usart_t *port)
@@ -71,13 +89,13 @@ static void hand_over(tmini_stm32_usart_t *port)
     const uint8_t middles =
         circle->middles; /* Before the position: it may only be ahead of them. */
     const uint8_t ends = circle->ends;
-    const uint16_t position = (uint16_t)(circle->size - (*port->remaining & DMA_COUNT));
+    const uint16_t position =
+        (uint16_t)(circle->size - (read_register(port->remaining) & DMA_COUNT));
     if (tmini_stm32_circle_advance(circle, position, middles, ends)) {
         port->laps = port->laps + 1;
         tmini_feed_gap(port->lidar);
     }
     tmini_feed_dma(port->lidar, circle->position);
-    look_at_line(port);
 }
 
 static void hand_over_new(tmini_stm32_usart_t *port)
@@ -90,9 +108,12 @@ static void hand_over_new(tmini_stm32_usart_t *port)
     } while (tmini_stm32_circle_leave(&port->circle));
 }
 
+/** Cleared first, whoever is handing over: the idle line would interrupt for ever, and the poll
+ * never come to its end. */
 void tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port)
 {
     if (port->remaining != NULL) {
+        look_at_line(port);
         hand_over_new(port);
     } else {
         take_byte(port);
@@ -113,8 +134,8 @@ static int send_bytes(void *context, const uint8_t *bytes, size_t count)
 {
     const tmini_stm32_usart_t *const port = context;
     int taken = 0;
-    while ((size_t)taken < count && (port->registers[STATUS] & STATUS_TXE) != 0) {
-        port->registers[DATA_OUT] = bytes[taken];
+    while ((size_t)taken < count && (read_register(&port->registers[STATUS]) & STATUS_TXE) != 0) {
+        write_register(&port->registers[DATA_OUT], bytes[taken]);
         taken++;
     }
     return taken;
@@ -126,6 +147,7 @@ static uint32_t time_now_ms(void *context)
     tmini_stm32_usart_t *const port = context;
     if (port->remaining != NULL) {
         hand_over_new(port);
+        look_at_line(port); /* An overrun may hold back the bytes, and with them the interrupts. */
     }
     return *port->time_ms;
 }
@@ -165,20 +187,25 @@ static bool is_good_clock(uint32_t clock_hz)
            (divider(clock_hz) >= 16 && error_hz <= made_hz / 1000 * BAUD_ERROR_MAX);
 }
 
+static void change(volatile uint32_t *at, uint32_t clear, uint32_t set)
+{
+    write_register(at, (read_register(at) & ~clear) | set);
+}
+
 /* The other registers may be written only while the USART is off. */
 static void switch_on(volatile uint32_t *registers, uint32_t clock_hz, uint32_t interrupt,
                       uint32_t dma)
 {
-    registers[CR1] &= ~(CR1_UE | CR1_RXNEIE | CR1_IDLEIE);
+    change(&registers[CR1], CR1_UE | CR1_INTERRUPTS, 0);
     if (clock_hz != 0) {
-        registers[CR1] = 0;
-        registers[CR2] = 0;
-        registers[CR3] = 0;
-        registers[BRR] = divider(clock_hz);
+        write_register(&registers[CR1], 0);
+        write_register(&registers[CR2], 0);
+        write_register(&registers[CR3], 0);
+        write_register(&registers[BRR], divider(clock_hz));
     }
-    registers[CR3] = (registers[CR3] & ~(CR3_EIE | CR3_DMAR)) | dma;
-    clear_flags(registers, registers[STATUS]);
-    registers[CR1] |= CR1_UE | CR1_TE | CR1_RE | interrupt;
+    change(&registers[CR3], CR3_EIE | CR3_DMAR, dma);
+    clear_flags(registers, read_register(&registers[STATUS]));
+    change(&registers[CR1], 0, CR1_UE | CR1_TE | CR1_RE | interrupt);
 }
 
 tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar, uint32_t clock_hz)
@@ -200,7 +227,7 @@ static bool is_good_channel(const tmini_t *lidar, const volatile uint32_t *remai
 {
     const size_t size = tmini_stm32_circle_size(lidar);
     return tmini_stm32_circle_is_for(lidar) && size <= TMINI_STM32_CIRCLE_MAX &&
-           remaining != NULL && (*remaining & DMA_COUNT) == size;
+           remaining != NULL && (read_register(remaining) & DMA_COUNT) == size;
 }
 
 tmini_status_t tmini_stm32_usart_start_dma(tmini_stm32_usart_t *port, tmini_t *lidar,
@@ -223,8 +250,8 @@ tmini_status_t tmini_stm32_usart_start_dma(tmini_stm32_usart_t *port, tmini_t *l
 
 void tmini_stm32_usart_stop(tmini_stm32_usart_t *port)
 {
-    port->registers[CR1] &= ~(CR1_RXNEIE | CR1_IDLEIE);
-    port->registers[CR3] &= ~CR3_DMAR;
+    change(&port->registers[CR1], CR1_INTERRUPTS, 0);
+    change(&port->registers[CR3], CR3_DMAR, 0);
     if (port->remaining != NULL) {
         hand_over_new(port);
         port->remaining = NULL;

@@ -10,8 +10,6 @@ enum { STATUS = 0, DATA_IN = 1, DATA_OUT = 1, BRR = 2, CR1 = 3, CR2 = 4, CR3 = 5
 
 #define CR1_UE (1u << 13)
 
-static inline void clear_flags(volatile uint32_t *registers, uint32_t status);
-
 #include "tmini_stm32_usart_common.h"
 
 /* SR has been read; reading DR behind it clears the errors and the idle line: also an overrun that
@@ -20,6 +18,6 @@ static inline void clear_flags(volatile uint32_t *registers, uint32_t status);
 static inline void clear_flags(volatile uint32_t *registers, uint32_t status)
 {
     if ((status & (STATUS_ERRORS | STATUS_IDLE)) != 0 && (status & STATUS_RXNE) == 0) {
-        (void)registers[DATA_IN];
+        (void)read_register(&registers[DATA_IN]);
     }
 }

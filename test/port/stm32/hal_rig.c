@@ -86,7 +86,7 @@ static void open_dma(void)
     hal_rig.dma.Mode = DMA_LINKEDLIST_CIRCULAR;
 #endif
     hal_rig.uart.hdmarx = &hal_rig.dma;
-    model.handler[MODEL_DMA_IRQ] = dma_interrupt;
+    irq.lines[MODEL_DMA_IRQ].handler = dma_interrupt;
     model.cached = way == BY_BLOCKS ? hal_rig_block : hal_rig_rx;
     model.cached_size = way == BY_BLOCKS ? sizeof hal_rig_block : sizeof hal_rig_rx;
 }
@@ -119,7 +119,7 @@ void hal_rig_open(hal_rig_way_t wanted)
     memset(hal_rig_rx, 0, sizeof hal_rig_rx);
     model_reset();
     line_open();
-    model.handler[MODEL_USART_IRQ] = usart_interrupt;
+    irq.lines[MODEL_USART_IRQ].handler = usart_interrupt;
     open_uart();
     open_dma();
     open_lidar();

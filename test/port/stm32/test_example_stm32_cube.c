@@ -89,8 +89,8 @@ void setUp(void)
     day_us += 1000000000u;
     model.tick_ns = day_us * 1000u;
     model.now_ns = day_us * 1000u;
-    model.handler[MODEL_USART_IRQ] = usart_interrupt;
-    model.handler[MODEL_DMA_IRQ] = dma_interrupt;
+    irq.lines[MODEL_USART_IRQ].handler = usart_interrupt;
+    irq.lines[MODEL_DMA_IRQ].handler = dma_interrupt;
     model.sent = note_sent;
     line_open();
     dma = (DMA_HandleTypeDef){.Init.Mode = DMA_CIRCULAR};

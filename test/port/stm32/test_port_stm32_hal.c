@@ -36,7 +36,7 @@ void test_bytes_reach_the_lidar(void)
     hal_rig_line_packets(200);
     hal_rig_run();
     TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(200 * PACKET, model.interrupts[MODEL_USART_IRQ]);
+    TEST_ASSERT_EQUAL_UINT32(200 * PACKET, irq.lines[MODEL_USART_IRQ].served);
 }
 
 void test_bytes_errors_of_the_line_are_counted_and_cost_no_byte(void)
@@ -75,7 +75,7 @@ void test_bytes_an_overrun_without_a_byte_stops_nothing_for_longer_than_a_poll(v
     model_pass(1000);
     (void)hal_rig_poll();
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().overruns);
-    TEST_ASSERT_LESS_THAN_UINT32(20, model.interrupts[MODEL_USART_IRQ]);
+    TEST_ASSERT_LESS_THAN_UINT32(20, irq.lines[MODEL_USART_IRQ].served);
     hal_rig_line_packets(2);
     hal_rig_run();
     TEST_ASSERT_EQUAL_UINT32(3, hal_rig_packets());
@@ -215,10 +215,10 @@ void test_a_busy_transmitter_takes_nothing_and_keeps_what_it_sends(void)
     static const uint8_t second[] = {0xA5, 0x65};
     hal_rig_open_and_start(BY_BYTES);
     model.sent = note_sent;
-    model.disabled[MODEL_USART_IRQ] = true;
+    irq.lines[MODEL_USART_IRQ].disabled = true;
     TEST_ASSERT_EQUAL_INT(2, tmini_stm32_hal_port.write(&hal_rig.port, first, 2));
     TEST_ASSERT_EQUAL_INT(0, tmini_stm32_hal_port.write(&hal_rig.port, second, 2));
-    model.disabled[MODEL_USART_IRQ] = false;
+    irq.lines[MODEL_USART_IRQ].disabled = false;
     model_pass(1000);
     TEST_ASSERT_EQUAL_UINT32(2, commands_sent);
     TEST_ASSERT_EQUAL_HEX8(0x60, last_sent[1]);

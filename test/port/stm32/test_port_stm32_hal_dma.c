@@ -20,8 +20,8 @@ void tearDown(void) {}
 static uint32_t bytes_accounted_for(void)
 {
     const tmini_counters_t counters = hal_rig_poll();
-    return counters.bytes_in_packets + counters.bytes_skipped +
-           counters.bytes_overrun + counters.bytes_pending;
+    return counters.bytes_in_packets + counters.bytes_skipped + counters.bytes_overrun +
+           counters.bytes_pending;
 }
 
 /* ------------------------------------------------------------------------------ what is refused */
@@ -91,7 +91,7 @@ static void check_receives(hal_rig_way_t way)
     TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
     TEST_ASSERT_EQUAL_UINT32(200 * PACKET, bytes_accounted_for());
     TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
-    TEST_ASSERT_LESS_THAN_UINT32(50, model.interrupts[MODEL_USART_IRQ]);
+    TEST_ASSERT_LESS_THAN_UINT32(50, irq.lines[MODEL_USART_IRQ].served);
 }
 
 void test_dma_brings_every_byte(void)
@@ -141,7 +141,7 @@ static void check_priorities(hal_rig_way_t way)
 {
     for (unsigned usart = 4; usart <= 6; usart++) {
         hal_rig_open_and_start(way);
-        model.priority[MODEL_USART_IRQ] = usart;
+        irq.lines[MODEL_USART_IRQ].priority = usart;
         model.access_ns = 2000; /* A slow controller: interrupts meet. */
         hal_rig_line_packets(200);
         hal_rig_run();
@@ -155,35 +155,30 @@ void test_priorities_of_the_two_interrupts_may_be_any(void)
     check_both(check_priorities);
 }
 
-/* Between reading the position and using it. */
-static unsigned accesses;
-
 static void idle_event(void)
 {
+    if (!irq_is_in_handler() && hal_rig.uart.RxState == HAL_UART_STATE_BUSY_RX) {
 #ifdef HAL_UART_RXEVENT_IDLE
-    hal_rig.uart.RxEventType = HAL_UART_RXEVENT_IDLE;
+        hal_rig.uart.RxEventType = HAL_UART_RXEVENT_IDLE;
 #endif
-    tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart);
-}
-
-static void event_at_every_seventh_access(void)
-{
-    if (++accesses % 7 == 0 && model.level == 100 &&
-        hal_rig.uart.RxState == HAL_UART_STATE_BUSY_RX) {
-        model.level = 0;
-        idle_event();
-        model.level = 100;
+        tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart);
     }
 }
 
+/* At each access of a register or an index. */
 static void check_events_inside(hal_rig_way_t way)
 {
+    random_t random;
     hal_rig_open_and_start(way);
-    model.on_access = event_at_every_seventh_access;
-    model.access_ns = 20000;
-    hal_rig_line_packets(300);
+    random_seed(&random, 1);
+    hal_rig_line_packets(600);
+    for (uint32_t place = 0; place < 60; place = irq_next_place(&random, place)) {
+        model_pass(1000);
+        irq_happen_after(place, idle_event);
+        (void)hal_rig_poll();
+    }
     hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(300, hal_rig_packets());
+    TEST_ASSERT_EQUAL_UINT32(600, hal_rig_packets());
 }
 
 void test_an_event_between_reading_the_position_and_using_it_harms_nothing(void)
@@ -194,8 +189,8 @@ void test_an_event_between_reading_the_position_and_using_it_harms_nothing(void)
 static void check_polls_alone(hal_rig_way_t way)
 {
     hal_rig_open_and_start(way);
-    model.disabled[MODEL_USART_IRQ] = true;
-    model.disabled[MODEL_DMA_IRQ] = true;
+    irq.lines[MODEL_USART_IRQ].disabled = true;
+    irq.lines[MODEL_DMA_IRQ].disabled = true;
     hal_rig_line_packets(200);
     hal_rig_run();
     TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
@@ -241,7 +236,7 @@ static void check_error_inside_start(hal_rig_way_t way)
         hal_rig_run();
         TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
         TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
-        TEST_ASSERT_LESS_THAN_UINT32(50, model.interrupts[MODEL_USART_IRQ]);
+        TEST_ASSERT_LESS_THAN_UINT32(50, irq.lines[MODEL_USART_IRQ].served);
     }
 }
 
@@ -464,7 +459,7 @@ void test_interrupts_late_by_less_than_half_a_lap_lose_nothing(void)
 void test_an_event_taken_for_another_is_no_lap(void)
 {
     hal_rig_open_and_start(BY_DMA);
-    model.priority[MODEL_DMA_IRQ] = 4;
+    irq.lines[MODEL_DMA_IRQ].priority = 4;
     model.access_ns = 5000;
     for (unsigned i = 0; i < 2000; i++) {
         hal_rig_line_packets(1);

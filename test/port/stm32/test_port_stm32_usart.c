@@ -104,8 +104,7 @@ static uint32_t packets(void)
 static uint32_t bytes_stored(void)
 {
     const tmini_counters_t counters = counters_after_polling();
-    return counters.bytes_skipped + counters.bytes_in_packets +
-           counters.bytes_pending;
+    return counters.bytes_skipped + counters.bytes_in_packets + counters.bytes_pending;
 }
 
 /* ----------------------------------------------------------------------------------- life cycle */

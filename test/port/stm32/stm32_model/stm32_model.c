@@ -3,19 +3,15 @@
 
 #include "stm32_model.h"
 
-#define NOTHING_RUNS 100u
+#include "interrupting_atomic.h"
+#include "unity.h"
+
 #define STEP_NS 5000u
+
+#define ERRORS (MODEL_FE | MODEL_NE | MODEL_ORE)
 
 model_t model;
 USART_TypeDef model_usart;
-
-void model_reset(void)
-{
-    model = (model_t){.access_ns = 100, .level = NOTHING_RUNS, .flags = MODEL_TXE | MODEL_TC};
-    model.priority[MODEL_USART_IRQ] = 5;
-    model.priority[MODEL_DMA_IRQ] = 5;
-    model_usart = (USART_TypeDef){0};
-}
 
 /* ----------------------------------------------------------------------------------- DMA, USART */
 
@@ -45,24 +41,30 @@ static uint8_t take_data(void)
     return model.data;
 }
 
+static bool is_dma_requested(void)
+{
+    const bool held = (model_usart.CR3 & MODEL_CR3_DDRE) != 0 && (model.flags & ERRORS) != 0;
+    return (model.flags & MODEL_RXNE) != 0 && (model_usart.CR3 & MODEL_CR3_DMAR) != 0 && !held;
+}
+
 static void serve_dma(void)
 {
-    if ((model.flags & MODEL_RXNE) != 0 && (model_usart.CR3 & MODEL_CR3_DMAR) != 0 &&
-        model.dma.enabled) {
+    if (is_dma_requested() && model.dma.enabled) {
         dma_write(take_data());
     }
 }
 
 static void receive(const model_byte_t *byte)
 {
-    if ((model.flags & MODEL_RXNE) != 0) {
+    const bool held = model.ore_holds_rxne && (model.flags & MODEL_ORE) != 0;
+    if (held || (model.flags & MODEL_RXNE) != 0) {
         model.flags |= MODEL_ORE;
         model.overruns++;
     } else {
         model.data = byte->byte;
         model.flags |= MODEL_RXNE | byte->errors;
     }
-    model.was_busy = true;
+    model.was_busy = model.was_busy || !held;
     model.idle_ns = byte->at_ns + MODEL_BYTE_NS;
     serve_dma();
 }
@@ -84,70 +86,72 @@ static void catch_up(void)
 
 /* ----------------------------------------------------------------------------------- interrupts */
 
+static bool is_held(void)
+{
+    return model.now_ns < model.held_until_ns;
+}
+
 static bool usart_interrupts(void)
 {
     const uint32_t cr1 = model_usart.CR1;
-    const bool errors = (model.flags & (MODEL_FE | MODEL_NE | MODEL_ORE)) != 0;
     return ((cr1 & MODEL_CR1_RXNEIE) != 0 && (model.flags & (MODEL_RXNE | MODEL_ORE)) != 0) ||
            ((cr1 & MODEL_CR1_IDLEIE) != 0 && (model.flags & MODEL_IDLE) != 0) ||
            ((cr1 & MODEL_CR1_TXEIE) != 0 && (model.flags & MODEL_TXE) != 0) ||
-           ((model_usart.CR3 & MODEL_CR3_EIE) != 0 && errors);
+           ((model_usart.CR3 & MODEL_CR3_EIE) != 0 && (model.flags & ERRORS) != 0);
 }
 
-static bool is_pending(model_irq_t irq)
+static bool is_usart_up(void)
 {
-    return irq == MODEL_USART_IRQ ? usart_interrupts()
-                                  : (model.dma.flags & model.dma.interrupts) != 0;
+    return usart_interrupts() && !is_held();
 }
 
-static bool may_run(model_irq_t irq)
+static bool is_dma_up(void)
 {
-    return is_pending(irq) && !model.disabled[irq] && model.handler[irq] != NULL &&
-           model.priority[irq] < model.level && model.now_ns >= model.irq_held_until_ns[irq];
+    return (model.dma.flags & model.dma.interrupts) != 0 && !is_held();
 }
 
-static void run(model_irq_t irq)
+static void fail(unsigned line)
 {
-    const unsigned level = model.level;
-    model.level = model.priority[irq];
-    model.interrupts[irq]++;
-    model.nested += level != NOTHING_RUNS;
-    model.handler[irq]();
-    model.level = level;
+    TEST_FAIL_MESSAGE(line == MODEL_USART_IRQ ? "the USART's handler leaves its flag: a lock-up"
+                                              : "the DMA's handler leaves its flag: a lock-up");
 }
 
-static void interrupt(void)
+void model_reset(void)
 {
-    while (!model.masked && model.now_ns >= model.held_until_ns) {
-        const bool usart = may_run(MODEL_USART_IRQ);
-        const bool dma = may_run(MODEL_DMA_IRQ);
-        if (!usart && !dma) {
-            return;
-        }
-        const bool dma_first =
-            dma && model.priority[MODEL_DMA_IRQ] < model.priority[MODEL_USART_IRQ];
-        run(usart && !dma_first ? MODEL_USART_IRQ : MODEL_DMA_IRQ);
-    }
+    model = (model_t){.access_ns = 100, .flags = MODEL_TXE | MODEL_TC};
+    model_usart = (USART_TypeDef){0};
+    irq_reset(fail);
+    irq.lines[MODEL_USART_IRQ] = (irq_line_t){.is_up = is_usart_up, .priority = 5};
+    irq.lines[MODEL_DMA_IRQ] = (irq_line_t){.is_up = is_dma_up, .priority = 5};
 }
 
 /* The tick's interrupt is held back like all others, and what it has missed it does not catch up
  * with. */
-static void advance(uint64_t ns)
+static void pass(uint64_t ns)
 {
     model.now_ns += ns;
-    if (model.now_ns >= model.held_until_ns) {
+    if (!is_held()) {
         model.tick_ns += ns;
     }
     catch_up();
-    interrupt();
+}
+
+static void advance(uint64_t ns)
+{
+    pass(ns);
+    irq_serve();
 }
 
 void model_step(void)
 {
-    if (model.on_access != NULL) {
-        model.on_access();
-    }
-    advance(model.access_ns);
+    pass(model.access_ns);
+    irq_access();
+}
+
+/* An index of the library is accessed. */
+void interrupt(void)
+{
+    model_step();
 }
 
 void model_pass(uint64_t us)
@@ -209,6 +213,48 @@ uint32_t model_dma_left(void)
     const uint32_t left = model.dma.channel.CBR1;
     model_step(); /* What is read is old already when it is used. */
     return left;
+}
+
+uint32_t model_read(const volatile uint32_t *at)
+{
+#ifdef STM32_MODEL_SR
+    const volatile uint32_t *const status = &model_usart.SR;
+    const volatile uint32_t *const data = &model_usart.DR;
+#else
+    const volatile uint32_t *const status = &model_usart.ISR;
+    const volatile uint32_t *const data = &model_usart.RDR;
+#endif
+    if (at == status) {
+        return model_status();
+    }
+    if (at == data) {
+        return model_read_data();
+    }
+    if (at == &model.dma.channel.CBR1) {
+        return model_dma_left();
+    }
+    model_step();
+    return *at;
+}
+
+void model_write(volatile uint32_t *at, uint32_t value)
+{
+#ifdef STM32_MODEL_SR
+    volatile uint32_t *const to_send = &model_usart.DR;
+#else
+    volatile uint32_t *const to_send = &model_usart.TDR;
+    if (at == &model_usart.ICR) {
+        model_clear(value);
+        return;
+    }
+#endif
+    if (at == to_send) {
+        model_write_data((uint8_t)value);
+        return;
+    }
+    model_step();
+    *at = value;
+    advance(0);
 }
 
 uint32_t model_tick_ms(void)

@@ -165,18 +165,18 @@ void __WFI(void);
 
 static inline uint32_t __get_PRIMASK(void)
 {
-    return model.masked;
+    return irq.masked;
 }
 
 static inline void __set_PRIMASK(uint32_t primask)
 {
-    model.masked = primask != 0;
+    irq.masked = primask != 0;
     model_step();
 }
 
 static inline void __disable_irq(void)
 {
-    model.masked = true;
+    irq.masked = true;
 }
 
 /* Only there, as the macro says, on a Cortex-M7. */
