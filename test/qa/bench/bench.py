@@ -28,7 +28,8 @@ from targets import HERE, LEVELS, ROOT, TARGETS, BenchError, run, target_named
 FOOTPRINT = ROOT / "docs" / "footprint.md"
 README = ROOT / "README.md"
 README_TABLES = ["footprint"]
-FOOTPRINT_TABLES = [name for name in tables.BLOCKS if name not in README_TABLES]
+PRINTED_TABLES = ["modules"]  # In no document.
+FOOTPRINT_TABLES = [name for name in tables.BLOCKS if name not in README_TABLES + PRINTED_TABLES]
 RECORDINGS = os.environ.get("TMINI_RECORDINGS_DIR", ROOT / "test" / "recordings" / "real")
 ROOM = pathlib.Path(RECORDINGS) / "t-mini-plus-room.bin"
 
