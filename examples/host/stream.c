@@ -79,10 +79,8 @@ bool stream_take(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms
         keep(stream);
         (void)tmini_builder_add(&stream->builder, &taken, now_ms);
     }
-    if (tmini_packet_is_start(packet)) {
-        stream->is_open = true;
-        stream->open_number = stream->start_packets;
-    }
+    stream->is_open = stream->builder.open;
+    stream->open_number = stream->start_packets;
     return stream->has_scan;
 }
 

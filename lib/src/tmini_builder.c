@@ -9,8 +9,14 @@
 #define JUMP_Q6 256 /* 4 degrees: further than this, at least one packet is missing. */
 #define SWEPT_MAX_Q6 (CIRCLE_Q6 + 16) /* 360.25 degrees: further, it is another revolution. */
 
+/* No start packet has come. */
+#define NO_ORIGIN UINT16_MAX
+
 /* More bytes than this may have been half a turn: at 12 Hz a turn has about 1100 (section 9.7). */
 #define GAP_MAX 500
+
+/* A sample is measured in 250 us (section 1), and is on the wire for 130. */
+#define SAMPLE_US 380u
 
 /* The angle swept from one direction to another, clockwise, or slightly back: a hair of jitter
  * backwards (section 9.6) is not nearly a whole turn forwards. */
@@ -36,6 +42,11 @@ static bool continues(const tmini_packet_t *packet, int32_t ahead, int32_t angle
            angle >= -JUMP_Q6;
 }
 
+static uint16_t frequency_chz(const tmini_packet_t *start)
+{
+    return (uint16_t)((start->ct >> 1) * 10);
+}
+
 /* One more, as far as it can count. */
 static void count_one(uint16_t *total)
 {
@@ -44,31 +55,73 @@ static void count_one(uint16_t *total)
     }
 }
 
-/* The scan ends with what has been received before `packet`, which begins `ahead` of it. It is
- * complete when a start packet comes back to where it began, and nothing is missing: one byte
- * before a start packet is LastCRC. */
+/* Bytes may be missing before the packet; one byte before a start packet is LastCRC. */
+static bool is_gap(const tmini_packet_t *packet, uint16_t bytes)
+{
+    return bytes > (tmini_packet_is_start(packet) ? 1 : 0);
+}
+
+/* The scan took more than one and a half of the turns that the lidar reports, if it does. */
+static bool took_too_long(const tmini_scan_t *scan)
+{
+    return scan->frequency_chz > 0 && scan->end_ms - scan->start_ms > 150000u / scan->frequency_chz;
+}
+
+/* Notes what the next packet, which begins `ahead` of the scan's end and came at `now_ms`, shows of
+ * it. It carries the frequency of the revolution before it if it is a start packet (section 9.8);
+ * else what has been reported last remains. */
+static void note_end(tmini_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
+                     uint32_t now_ms)
+{
+    tmini_scan_t *const scan = &builder->scan;
+    const bool is_start = tmini_packet_is_start(packet);
+    if (is_start) {
+        scan->frequency_chz = frequency_chz(packet);
+    }
+    scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - builder->errors_before);
+    scan->end_ms = (int32_t)(now_ms - scan->start_ms) < 0 ? scan->start_ms : now_ms;
+    if (!is_start || is_gap(packet, packet->gap) || ahead > JUMP_Q6) {
+        count_one(&scan->gaps);
+    }
+}
+
+/* The scan ends before `packet`. It is complete when a start packet comes back to where it began,
+ * and nothing is missing. A gap that only the caller knows of is one of time. */
 static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
                    uint32_t now_ms)
 {
     tmini_scan_t *const scan = &builder->scan;
     const int32_t beyond = builder->swept_q6 + ahead - CIRCLE_Q6;
-    const bool is_start = tmini_packet_is_start(packet);
-    if (!is_start || packet->gap > 1 || ahead > JUMP_Q6) {
-        count_one(&scan->gaps);
-    }
-    scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - builder->errors_before);
-    /* A start packet carries the frequency of the revolution before it (section 9.8). */
-    scan->frequency_chz = (uint16_t)(is_start ? (packet->ct >> 1) * 10 : 0);
-    scan->end_ms = (int32_t)(now_ms - scan->start_ms) < 0 ? scan->start_ms : now_ms;
-    scan->complete = (scan->gaps | scan->dropped) == 0 && beyond >= -JUMP_Q6 && beyond <= JUMP_Q6;
+    note_end(builder, packet, ahead, now_ms);
+    const bool is_full =
+        (scan->gaps | scan->dropped) == 0 && beyond >= -JUMP_Q6 && beyond <= JUMP_Q6;
+    scan->complete = is_full && !took_too_long(scan);
     builder->open = false;
+    if (is_full != scan->complete) {
+        count_one(&scan->gaps);
+        builder->late_scans++;
+    } else if (packet->gap == TMINI_GAP_UNKNOWN && ahead <= JUMP_Q6 &&
+               !is_gap(packet, packet->frame->gap)) {
+        builder->late_scans++;
+    }
 }
 
-static void begin(tmini_builder_t *builder, const tmini_packet_t *start, uint32_t now_ms)
+/* Begins a scan, and returns how far its revolution has turned by then. One that does not begin
+ * with a start packet has a gap there, and began when the packet's first sample was measured. */
+static int32_t begin(tmini_builder_t *builder, const tmini_packet_t *first, uint32_t now_ms)
 {
-    builder->scan = (tmini_scan_t){.points = builder->scan.points, .start_ms = now_ms};
-    builder->errors_before = start->frame->checksum_errors;
+    tmini_scan_t *const scan = &builder->scan;
+    const bool is_start = tmini_packet_is_start(first);
+    *scan = (tmini_scan_t){.points = scan->points, .frequency_chz = scan->frequency_chz};
+    if (is_start) {
+        builder->origin_q6 = first->first_angle_q6;
+        scan->frequency_chz = frequency_chz(first);
+    }
+    scan->gaps = is_start ? 0 : 1;
+    scan->start_ms = now_ms - (first->count - 1u) * SAMPLE_US / 1000u;
+    builder->errors_before = first->frame->checksum_errors;
     builder->open = true;
+    return tmini_clockwise(builder->origin_q6, first->first_angle_q6);
 }
 
 static void append_points(tmini_builder_t *builder, const tmini_packet_t *packet)
@@ -94,14 +147,17 @@ tmini_status_t tmini_builder_init(tmini_builder_t *builder, tmini_point_t *buffe
         (filter & ~(unsigned)TMINI_FILTER_BOTH) != 0) {
         return TMINI_ERROR_ARGUMENT;
     }
-    *builder = (tmini_builder_t){
-        .scan.points = buffer, .capacity = (uint16_t)capacity, .filter = (uint8_t)filter};
+    *builder = (tmini_builder_t){.scan.points = buffer,
+                                 .capacity = (uint16_t)capacity,
+                                 .filter = (uint8_t)filter,
+                                 .origin_q6 = NO_ORIGIN};
     return TMINI_OK;
 }
 
 void tmini_builder_discard(tmini_builder_t *builder)
 {
     builder->open = false;
+    builder->origin_q6 = NO_ORIGIN;
 }
 
 void tmini_builder_refute(tmini_builder_t *builder)
@@ -123,12 +179,12 @@ bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, u
         if (packet->gap > 0 || ahead > JUMP_Q6) {
             count_one(&builder->scan.gaps);
         }
-    } else if (is_start) {
-        begin(builder, packet, now_ms);
+    } else if (is_start || builder->origin_q6 != NO_ORIGIN) {
+        angle += begin(builder, packet, now_ms);
     } else {
-        return false; /* Of a revolution whose beginning was not received. */
+        return false; /* Before the first start packet. */
     }
-    builder->swept_q6 = (int16_t)angle;
+    builder->swept_q6 = (int16_t)(angle < INT16_MAX ? angle : INT16_MAX);
     builder->previous_angle_q6 = end_of(packet);
     builder->scan.end_ms = now_ms; /* So far. */
     append_points(builder, packet);

@@ -201,7 +201,7 @@ void test_json_is_an_object_a_line_for_each_scan(void)
         "{\"scan\":1,\"time_ms\":0,\"frequency_hz\":6.00,\"complete\":true,\"packets\":2,"
         "\"gaps\":0,\"dropped\":0,\"checksum_errors\":0,\"faults\":null,\"points\":["
         "[0.000000,1000,10,0],[3.500000,1000,10,0],[180.750000,0,0,0],[358.000000,3000,30,2]]}\n"
-        "{\"scan\":2,\"time_ms\":1,\"frequency_hz\":null,\"complete\":false,\"packets\":1,"
+        "{\"scan\":2,\"time_ms\":1,\"frequency_hz\":6.00,\"complete\":false,\"packets\":1,"
         "\"gaps\":0,\"dropped\":0,\"checksum_errors\":0,\"faults\":null,\"points\":["
         "[0.000000,1000,10,0]]}\n",
         program_output);

@@ -12,9 +12,8 @@
 /* The last value of `doubt`, as in tmini.c. */
 #define DOUBT_MAX 3
 
-/* As in tmini_builder.c: 4 degrees back, 360.25 on. */
+/* As in tmini_builder.c: 4 degrees back. */
 #define SWEPT_MIN_Q6 (-256)
-#define SWEPT_MAX_Q6 (23040 + 16)
 
 /* All that may be pending: from STARTED to SCAN. */
 #define EVENTS ((1u << (TMINI_EVENT_SCAN + 1)) - (1u << TMINI_EVENT_STARTED))
@@ -136,7 +135,8 @@ bool builder_is_sound(const tmini_builder_t *builder)
     return builder->capacity > 0 && scan->points != NULL && scan->count <= builder->capacity &&
            (builder->filter & ~(unsigned)TMINI_FILTER_BOTH) == 0 &&
            builder->previous_angle_q6 < TMINI_FULL_CIRCLE_Q6 && builder->swept_q6 >= SWEPT_MIN_Q6 &&
-           builder->swept_q6 <= SWEPT_MAX_Q6;
+           (builder->origin_q6 < TMINI_FULL_CIRCLE_Q6 ||
+            (builder->origin_q6 == UINT16_MAX && !builder->open));
 }
 
 /* ---- Driver ---- */

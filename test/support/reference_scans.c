@@ -45,26 +45,36 @@ static size_t next_packet(const reference_item_t *items, size_t count, size_t at
     return at;
 }
 
-static size_t next_start(const reference_item_t *items, size_t count, size_t at)
-{
-    while (at < count && !(items[at].is_packet && items[at].starts_revolution)) {
-        at++;
-    }
-    return at;
-}
-
 static void include(reference_scan_t *scan, const reference_item_t *packet)
 {
     scan->points += packet->lsn;
     scan->packets++;
 }
 
-/* Follows the scan from its start packet; false if nothing ends it. */
-static bool follow(const reference_item_t *items, size_t count, reference_scan_t *scan)
+/* The last start packet among items[0] to items[at]; false if there is none. */
+static bool last_start(const reference_item_t *items, size_t at, size_t *start)
+{
+    for (*start = at;; --*start) {
+        if (items[*start].is_packet && items[*start].starts_revolution) {
+            return true;
+        }
+        if (*start == 0) {
+            return false;
+        }
+    }
+}
+
+/* Follows the scan from its first packet; false if nothing ends it. Its revolution began with
+ * `start`. */
+static bool follow(const reference_item_t *items, size_t count, size_t start,
+                   reference_scan_t *scan)
 {
     size_t at = scan->first;
-    int swept = turn(first_angle(&items[at]), last_angle(&items[at]));
+    int swept = (first_angle(&items[at]) - first_angle(&items[start]) + FULL) % FULL +
+                turn(first_angle(&items[at]), last_angle(&items[at]));
 
+    scan->decihertz = items[start].ct / 2;
+    scan->gaps = start == at ? 0 : 1;
     include(scan, &items[at]);
     for (;;) {
         const size_t next = next_packet(items, count, at + 1);
@@ -103,6 +113,13 @@ static bool follow(const reference_item_t *items, size_t count, reference_scan_t
 bool reference_scan(const reference_item_t *items, size_t count, size_t from,
                     reference_scan_t *scan)
 {
-    *scan = (reference_scan_t){.first = next_start(items, count, from)};
-    return scan->first < count && follow(items, count, scan);
+    for (size_t at = from; at < count; at++) {
+        size_t start;
+
+        if (items[at].is_packet && last_start(items, at, &start)) {
+            *scan = (reference_scan_t){.first = at};
+            return follow(items, count, start, scan);
+        }
+    }
+    return false;
 }

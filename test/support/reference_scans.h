@@ -11,17 +11,17 @@
 #include "reference_decoder.h"
 
 typedef struct {
-    size_t first;  /* Its start packet among the items, */
+    size_t first;  /* Its first packet among the items, */
     size_t end;    /* and the packet that ended it. */
     size_t points; /* Of all its packets; */
     size_t packets;
-    size_t gaps;       /* between them, or before the one that ended it. */
+    size_t gaps;       /* between them, or before the one that ended it, or a lost start packet. */
     bool is_whole;     /* The circle is full, without a gap. */
-    uint8_t decihertz; /* From the start packet after it; 0: none. */
+    uint8_t decihertz; /* From the start packet after it; if that was lost, from the last one. */
 } reference_scan_t;
 
-/* Finds the first scan that begins at items[from] or later, and has ended. Returns false if none
- * is. The items are those of one decoding, in order, and nothing was lost before it. */
+/* Finds the first scan that begins at items[from] or after it. Returns false if there is none, or
+ * nothing ends it. The items are those of one decoding, in order, and nothing was lost before. */
 bool reference_scan(const reference_item_t *items, size_t count, size_t from,
                     reference_scan_t *scan);
 

@@ -38,6 +38,9 @@ typedef struct {
     tmini_scan_t scan[SCANS_MAX];
 } replay_t;
 
+/* Section 1. */
+#define BYTES_PER_MS 13u
+
 static replay_t replay;
 
 void setUp(void) {}
@@ -91,11 +94,11 @@ static void replay_in_chunks(size_t chunk)
         chunk = chunk < size - fed ? chunk : size - fed;
         receiver_feed(&receiver, &bytes[fed], chunk);
         while (receiver_next(&receiver) == TMINI_FRAME_PACKET) {
-            handle_packet((uint32_t)fed);
+            handle_packet((uint32_t)(fed / BYTES_PER_MS));
         }
     }
     while (receiver_next_at_end(&receiver) == TMINI_FRAME_PACKET) {
-        handle_packet((uint32_t)size);
+        handle_packet((uint32_t)(size / BYTES_PER_MS));
     }
 }
 

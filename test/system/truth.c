@@ -108,12 +108,18 @@ static truth_verdict_t pop_missing(truth_t *truth, uint64_t offset)
     return verdict;
 }
 
-void truth_forget(truth_t *truth, uint64_t end)
+static void pop_until(truth_t *truth, uint64_t end)
 {
     truth->compared = end;
     while (truth->count > 0 && entry(truth, 0)->offset + entry(truth, 0)->length <= end) {
         pop(truth);
     }
+}
+
+void truth_forget(truth_t *truth, uint64_t end)
+{
+    pop_until(truth, end);
+    truth->has_start = false;
 }
 
 truth_verdict_t truth_must_be_empty(truth_t *truth, uint64_t end)
@@ -233,6 +239,12 @@ static void take(truth_t *truth, comparison_t *comparison, uint64_t offset)
     truth->delivered_end = comparison->at;
 }
 
+/* What precedes the first start packet is in no scan, all else is. */
+static bool may_be_next(const truth_t *truth, const comparison_t *comparison, bool is_start)
+{
+    return comparison->index > 0 || truth->has_start || is_start;
+}
+
 /* The scan may contain damaged packets whose checksum happens to match. */
 static bool take_by_chance(truth_t *truth, comparison_t *comparison, uint64_t to)
 {
@@ -240,7 +252,7 @@ static bool take_by_chance(truth_t *truth, comparison_t *comparison, uint64_t to
 
     for (uint64_t offset = comparison->at; offset < to; offset++) {
         copy(truth, offset, bytes, sizeof bytes);
-        if (is_valid(bytes) && (comparison->index > 0 || (bytes[2] & 1u) != 0) &&
+        if (is_valid(bytes) && may_be_next(truth, comparison, (bytes[2] & 1u) != 0) &&
             fits(truth, comparison, offset)) {
             take(truth, comparison, offset);
             comparison->by_chance = true;
@@ -269,7 +281,7 @@ static void note_revolution(comparison_t *comparison, const truth_packet_t *sent
 static bool take_sent(truth_t *truth, comparison_t *comparison)
 {
     const truth_packet_t *const sent = entry(truth, 0);
-    const bool belongs = comparison->index > 0 || sent->starts_revolution;
+    const bool belongs = may_be_next(truth, comparison, sent->starts_revolution);
 
     if (belongs && fits(truth, comparison, sent->offset)) {
         take(truth, comparison, sent->offset);
@@ -331,6 +343,7 @@ truth_verdict_t truth_compare_scan(truth_t *truth, uint64_t end, unsigned closin
     if (scan->dropped == 0) {
         verdict = compare(truth, &comparison);
     }
-    truth_forget(truth, comparison.to);
+    pop_until(truth, comparison.to);
+    truth->has_start = true;
     return verdict;
 }

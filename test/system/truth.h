@@ -50,7 +50,8 @@ typedef struct {
     uint64_t splits[TRUTH_SPLITS];
     uint32_t split_count;
     uint64_t delivered_end; /* Of the packet delivered last. */
-    uint64_t compared;      /* Scans begin here or later. */
+    uint64_t compared;      /* Scans begin here or later; */
+    bool has_start;         /* with any packet. */
     uint32_t checked;
     uint32_t split;
     uint32_t eclipsed;

@@ -78,8 +78,8 @@ void test_a_silence_of_whole_turns_ends_the_scan(void)
         turns_open_scanning(1024, false);
         continue_after(later);
         TEST_ASSERT_EQUAL_UINT(0, turns_scans.mixed);
-        TEST_ASSERT_EQUAL_UINT(2, turns_scans.count);
-        TEST_ASSERT_EQUAL_UINT(1, turns_scans.complete); /* That of the whole turn. */
+        TEST_ASSERT_EQUAL_UINT(3, turns_scans.count);    /* Two parts, and */
+        TEST_ASSERT_EQUAL_UINT(1, turns_scans.complete); /* that of the whole turn. */
     }
 }
 
@@ -101,7 +101,7 @@ void test_a_silence_of_nearly_a_whole_turn_ends_the_scan(void)
     be_silent(TURN_MS - 2);
     (void)turns_pass(7, TURNS_PACKETS - 1, 101);
     (void)turns_pass(0, 0, 102);
-    TEST_ASSERT_EQUAL_UINT(1, turns_scans.count);
+    TEST_ASSERT_EQUAL_UINT(2, turns_scans.count);
     TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
 }
 
@@ -300,10 +300,12 @@ void test_a_lone_packet_behind_a_lost_start_packet_is_not_of_the_old_turn(void)
 {
     pass_whole_turn(100);
     pass_arc(0x00, 1, TURNS_STEP_Q6);
-    (void)turns_pass(1, TURNS_PACKETS - 1, 101);
-    (void)turns_pass(0, 0, 102);
     TEST_ASSERT_EQUAL_UINT(1, turns_scans.count);
     TEST_ASSERT_EQUAL_UINT16(TURNS_POINTS, turns_scans.last.count);
+    TEST_ASSERT_FALSE(turns_scans.last.complete);
+    (void)turns_pass(1, TURNS_PACKETS - 1, 500); /* Like the lone one. */
+    (void)turns_pass(0, 0, 501);
+    TEST_ASSERT_EQUAL_UINT(2, turns_scans.count);
     TEST_ASSERT_FALSE(turns_scans.last.complete);
 }
 

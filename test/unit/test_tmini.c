@@ -1133,9 +1133,10 @@ void test_a_longer_pause_ends_the_scan(void)
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
     TEST_ASSERT_FALSE(tmini_scan(&rig.lidar)->complete);
-    polls_to(TMINI_EVENT_NONE);
-    feed_turn(800); /* What comes at once continues: the next scan is as usual. */
+    feed_turn(800); /* What comes at once continues: the next scan but one is as usual. */
     feed_turn(900);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(32, tmini_scan(&rig.lidar)->count);
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
     TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&rig.lidar)->gaps);

@@ -78,6 +78,7 @@ void prove_scan_step(void)
     any_packet();
     any_builder();
     const bool was_open = builder.open;
+    const bool had_start = builder.origin_q6 != UINT16_MAX;
     const uint32_t now_ms = nondet_word();
     points[builder.capacity].angle_q6 = 0xEEEE;
     if (tmini_builder_add(&builder, &packet, now_ms)) {
@@ -88,7 +89,7 @@ void prove_scan_step(void)
         CLAIM(!tmini_builder_add(&builder, &packet, now_ms));
     }
     CLAIM(builder_is_sound(&builder));
-    CLAIM(builder.open || !tmini_packet_is_start(&packet));
+    CLAIM(builder.open == (was_open || tmini_packet_is_start(&packet) || had_start));
     CLAIM(points[builder.capacity].angle_q6 == 0xEEEE);
     REACHED();
 }

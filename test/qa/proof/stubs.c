@@ -136,6 +136,7 @@ tmini_status_t tmini_builder_init(tmini_builder_t *builder, tmini_point_t *buffe
 void tmini_builder_discard(tmini_builder_t *builder)
 {
     builder->open = false;
+    builder->origin_q6 = UINT16_MAX;
 }
 
 void tmini_builder_refute(tmini_builder_t *builder)
@@ -151,7 +152,7 @@ bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, u
     (void)now_ms;
     CLAIM(builder_is_sound(builder) && packet_is_sound(packet, packet->frame));
     const bool closes = builder->open && (is_start || any_bool());
-    if (builder->open || is_start) {
+    if (builder->open || is_start || builder->origin_q6 != UINT16_MAX) {
         change_builder(builder, !closes);
     }
     return closes;

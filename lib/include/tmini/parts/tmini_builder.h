@@ -4,13 +4,17 @@
 /** @file
  * Scans: the packets of one revolution gathered in the caller's buffer (section 6).
  *
- * A scan runs from a start packet to the next one. What precedes the first start packet is no scan.
- * Packets that can be told to be of two revolutions never meet. If a start packet is lost, the
- * angle swept since the last one tells: the scan is closed when it has turned full circle, and what
- * follows waits for the next start packet. (The start angle is not 0 on every unit, section 9.8.) A
- * gap that may hold half a turn or more, by bytes, by angle, or because the caller says so (a pause
- * of the line, an overflow: the packet's gap is TMINI_GAP_UNKNOWN), closes it as well: any number
- * of turns may be missing.
+ * A scan runs from a start packet to the next one. What precedes the first start packet is no scan;
+ * after it each packet is in exactly one. Packets that can be known to be of two revolutions never
+ * meet. If a start packet is lost, the angle swept since the last one shows it: the scan is closed
+ * when it has turned full circle. (The start angle is not 0 on every unit, section 9.8.) A gap that
+ * may hold half a turn or more, by bytes, by angle, or because the caller says so (a pause of the
+ * line, an overflow: the packet's gap is TMINI_GAP_UNKNOWN), closes it as well: any number of turns
+ * may be missing. What follows is a scan without a beginning, never complete: it ends with the next
+ * start packet, or where that would be, by the angle of the last one that came.
+ *
+ * A scan that took more than one and a half turns, by the frequency that the lidar reports, is not
+ * complete: two revolutions that join without a seam are whole turns apart.
  *
  * All functions: one context, the one that parses; no waiting. */
 
@@ -27,14 +31,16 @@
 extern "C" {
 #endif
 
-/** A scan under way. Treat the members as private, but for `scan` as documented below. */
+/** A scan under way. Treat the members as private, but for `scan` and `late_scans`. */
 typedef struct {
     uint8_t filter;             /**< A combination of tmini_filter_t. */
     bool open;                  /**< A scan is under way. */
     uint16_t capacity;          /**< Points that the buffer has room for. */
     uint16_t previous_angle_q6; /**< Where the last packet ended. */
+    uint16_t origin_q6;         /**< Where the last start packet was; UINT16_MAX: none has come. */
     uint16_t errors_before;     /**< The parser's checksum errors when it began, modulo 2^16. */
-    int16_t swept_q6;           /**< Angle swept since the start packet: -4 to 360.25 degrees. */
+    int16_t swept_q6;           /**< Angle swept since the origin: from -4 degrees on. */
+    uint32_t late_scans;        /**< Ended, or not complete, because of time alone. */
     tmini_scan_t scan;          /**< What there is of it. */
 } tmini_builder_t;
 
@@ -51,12 +57,13 @@ static inline void tmini_builder_use(tmini_builder_t *builder, tmini_point_t *po
     builder->scan.points = points;
 }
 
-/** Forgets the scan under way: what comes next does not continue it. */
+/** Forgets the scan under way and where revolutions begin: nothing is a scan until the next start
+ * packet. */
 void tmini_builder_discard(tmini_builder_t *builder);
 
-/** Adds `packet`, which came at `now_ms`, to the scan under way; a start packet begins one. If it
- * no longer belongs to the scan under way, finishes that instead and returns true: builder->scan is
- * then valid until the same packet is added again. A packet that DMA overwrote meanwhile leaves a
+/** Adds `packet`, which came at `now_ms`, to the scan under way, or begins one. If it does not
+ * belong to the scan under way, finishes that instead and returns true: builder->scan is then valid
+ * until the same packet is added again. Where there is no time, `now_ms` is the same at each call. A packet that DMA overwrote meanwhile leaves a
  * gap, never a wrong point. */
 bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
 

@@ -215,7 +215,6 @@ void test_a_scan_stays_as_it_is_until_the_packet_that_closed_it_is_added(void)
     TEST_ASSERT_EQUAL_UINT16(1, scan->count);
     TEST_ASSERT_EQUAL_UINT16(1, scan->packets);
     TEST_ASSERT_EQUAL_UINT32(5167, scan->start_ms);
-    TEST_ASSERT_EQUAL_UINT16(0, scan->frequency_chz);
     TEST_ASSERT_FALSE(scan->complete);
 }
 
@@ -251,7 +250,7 @@ void test_a_discarded_scan_is_not_continued(void)
     (void)start(0);
     quarter(0);
     tmini_builder_discard(&builder);
-    quarter(90 * DEGREE);
+    quarter(90 * DEGREE); /* Where a turn begins has been forgotten, too. */
     TEST_ASSERT_FALSE(start(0));
     TEST_ASSERT_EQUAL_UINT16(1, scan->count);
 }
@@ -380,7 +379,7 @@ void test_a_jump_of_more_than_4_degrees_is_a_gap(void)
     TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
     (void)point(2257, 3000);
     TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
-    (void)point(3000 + 200 * DEGREE, 4000 + 200 * DEGREE);
+    (void)point(3000 + 170 * DEGREE, 3100 + 170 * DEGREE);
     TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
 }
 
@@ -501,8 +500,9 @@ void test_counts_stop_at_65535(void)
 
 /* --------------------------------------------------------------------------- lost start packets */
 
-/* Two revolutions from `from_q6` on, but the second one's start packet is missing. */
-static void expect_closed_without_start(uint32_t from_q6)
+/* Two revolutions from `from_q6` on, but the second one's start packet is missing: what is left of
+ * it is a scan of its own. */
+static void expect_two_scans_without_start(uint32_t from_q6)
 {
     begin_with(ROOM, TMINI_FILTER_NONE);
     (void)start(from_q6);
@@ -511,13 +511,15 @@ static void expect_closed_without_start(uint32_t from_q6)
     TEST_ASSERT_EQUAL_UINT16(21, scan->count);
     TEST_ASSERT_EQUAL_UINT16(5, scan->packets);
     TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
-    TEST_ASSERT_EQUAL_UINT16(0, scan->frequency_chz);
     TEST_ASSERT_FALSE(scan->complete);
     add();
     quarter(from_q6 + 90 * DEGREE);
     quarter(from_q6 + 180 * DEGREE);
-    TEST_ASSERT_EQUAL_UINT16(21, scan->count); /* They wait for a start packet. */
-    TEST_ASSERT_FALSE(start(from_q6));
+    quarter(from_q6 + 270 * DEGREE);
+    expect_scan(from_q6, 1, false);
+    TEST_ASSERT_EQUAL_UINT16(20, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(4, scan->packets);
+    add();
     rest_of_turn(from_q6);
     expect_scan(from_q6, 0, true);
     add();
@@ -525,14 +527,14 @@ static void expect_closed_without_start(uint32_t from_q6)
 
 void test_a_lost_start_packet_never_merges_two_revolutions(void)
 {
-    expect_closed_without_start(0);
+    expect_two_scans_without_start(0);
 }
 
 void test_a_lost_start_packet_is_noticed_wherever_revolutions_start(void)
 {
     for (uint32_t degrees = 4; degrees < 360; degrees += 28) {
-        expect_closed_without_start(degrees * DEGREE);
-        expect_closed_without_start(degrees * DEGREE + 1);
+        expect_two_scans_without_start(degrees * DEGREE);
+        expect_two_scans_without_start(degrees * DEGREE + 1);
     }
 }
 
@@ -549,8 +551,96 @@ void test_packets_lost_around_a_start_do_not_merge_revolutions(void)
         TEST_ASSERT_EQUAL_UINT16(11, scan->count);
         TEST_ASSERT_FALSE(scan->complete);
         add();
-        TEST_ASSERT_FALSE(start(from_q6));
+        TEST_ASSERT_TRUE(start(from_q6));
     }
+}
+
+/* Nor does a second one in a row: where a turn ends counts from the last start packet. */
+void test_a_scan_without_its_start_packet_ends_where_the_next_start_packet_is_missing(void)
+{
+    const uint32_t from_q6 = 116 * DEGREE;
+    (void)start(from_q6);
+    rest_of_turn(from_q6);
+    for (unsigned turn = 0; turn < 3; turn++) {
+        TEST_ASSERT_TRUE(arrive(0x00, 5, from_q6 + 40 * DEGREE, from_q6 + 90 * DEGREE));
+        TEST_ASSERT_EQUAL_UINT16(turn == 0 ? 21 : 20, scan->count);
+        add();
+        quarter(from_q6 + 90 * DEGREE);
+        quarter(from_q6 + 180 * DEGREE);
+        quarter(from_q6 + 270 * DEGREE);
+    }
+    expect_scan(from_q6, 1, false);
+    TEST_ASSERT_EQUAL_UINT16(20, scan->count);
+}
+
+/* The tail of a turn, up to where it ends, is not of the next one. */
+void test_a_last_packet_alone_is_a_scan_of_its_own(void)
+{
+    (void)start(0);
+    quarter(0);
+    TEST_ASSERT_TRUE(arrive(0x00, 2, 358 * DEGREE, 359 * DEGREE));
+    add();
+    TEST_ASSERT_TRUE(point(DEGREE, 90 * DEGREE));
+    TEST_ASSERT_EQUAL_UINT16(5, scan->count);
+    quarter(90 * DEGREE);
+    TEST_ASSERT_EQUAL_UINT16(10, scan->count);
+}
+
+/* 14 degrees before where the revolution began and 14 beyond: it fits in no revolution. Nothing
+ * continues it. */
+void test_a_packet_across_the_end_of_a_turn_is_a_scan_of_its_own(void)
+{
+    (void)start(0);
+    for (unsigned i = 0; i < 2; i++) {
+        garbage(501);
+        (void)point(346 * DEGREE, 14 * DEGREE);
+        TEST_ASSERT_TRUE(point(11 * DEGREE, 90 * DEGREE));
+        TEST_ASSERT_EQUAL_UINT16(5, scan->count);
+    }
+}
+
+/* Its angles may claim nearly two turns. */
+void test_the_widest_packet_at_the_end_of_a_turn_is_a_scan_of_its_own(void)
+{
+    (void)start(0);
+    garbage(501);
+    (void)point(359 * DEGREE, 354 * DEGREE);
+    TEST_ASSERT_TRUE(point(355 * DEGREE, 356 * DEGREE));
+    TEST_ASSERT_EQUAL_UINT16(5, builder.scan.count);
+}
+
+void test_each_packet_behind_a_gap_of_unknown_size_is_a_scan_of_its_own(void)
+{
+    (void)start(0);
+    for (uint32_t turned = 0; turned < 3; turned++) {
+        garbage(501);
+        TEST_ASSERT_TRUE(point(turned * 90 * DEGREE + DEGREE, (turned + 1) * 90 * DEGREE));
+        TEST_ASSERT_EQUAL_UINT16(5, scan->count);
+    }
+}
+
+/* At 6.1 Hz, as the start packet before it reports, until the one after it does. */
+void test_a_scan_whose_end_is_missing_has_the_frequency_reported_last(void)
+{
+    (void)arrive(0x7B, 1, 0, 0);
+    rest_of_turn(0);
+    TEST_ASSERT_TRUE(arrive(0x00, 5, DEGREE, 90 * DEGREE));
+    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz);
+    add();
+    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz);
+    expect_scan(0, 2, false);
+    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz);
+}
+
+/* The 40 samples of a packet that comes at 5000 ms take 39 * 250 us, and as bytes 39 * 3 more than
+ * those of a start packet: 39 * 130 us. */
+void test_a_scan_without_its_start_packet_begins_when_its_first_point_was_measured(void)
+{
+    (void)start(0);
+    garbage(501);
+    TEST_ASSERT_TRUE(arrive(0x00, 40, 90 * DEGREE, 112 * DEGREE));
+    add();
+    TEST_ASSERT_EQUAL_UINT32(5000 - 14, scan->start_ms);
 }
 
 /* The last sample lies a hair before the next start packet, whose angle varies; a lone sample
@@ -585,6 +675,89 @@ void test_a_start_packet_a_little_before_a_full_turn_closes_the_scan(void)
     expect_scan(115 * DEGREE, 0, true);
 }
 
+/* ----------------------------------------------------------------------------------------- time */
+
+/* A turn, in so many ms, that ends with the report of a frequency. */
+static void pass_turn_in(uint32_t ms, uint8_t ct)
+{
+    begin_with(ROOM, TMINI_FILTER_NONE);
+    (void)start(0);
+    rest_of_turn(0);
+    now_ms += ms;
+    TEST_ASSERT_TRUE(arrive(ct, 1, 0, 0));
+    TEST_ASSERT_EQUAL_UINT16(scan->complete ? 0 : 1, scan->gaps);
+}
+
+static void a_turn_takes_at_most(uint32_t ms, uint8_t ct)
+{
+    pass_turn_in(ms, ct);
+    TEST_ASSERT_TRUE(scan->complete);
+    TEST_ASSERT_EQUAL_UINT32(0, builder.late_scans);
+    pass_turn_in(ms + 1, ct);
+    TEST_ASSERT_FALSE(scan->complete);
+    TEST_ASSERT_EQUAL_UINT32(1, builder.late_scans);
+}
+
+/* Two revolutions that join without a seam are whole turns apart. */
+void test_a_scan_that_took_more_than_one_and_a_half_turns_is_not_complete(void)
+{
+    a_turn_takes_at_most(250, 0x79); /* 6.0 Hz. */
+    a_turn_takes_at_most(125, 0xF1); /* 12.0 Hz: 1.5 * 83.3 ms. */
+    a_turn_takes_at_most(121, 0xF7); /* 12.3 Hz: 1.5 * 81.3 = 121.95 ms. */
+    a_turn_takes_at_most(15000, 0x03);
+}
+
+void test_a_turn_of_an_unknown_frequency_may_take_any_time(void)
+{
+    pass_turn_in(UINT32_MAX / 2, 0x01);
+    TEST_ASSERT_TRUE(scan->complete);
+}
+
+/* The longest time that a clock can show times the frequency does not fit in 32 bits. */
+void test_a_turn_of_49_days_is_too_long(void)
+{
+    pass_turn_in(0x7FFFFFFFu, 0x79);
+    TEST_ASSERT_FALSE(scan->complete);
+    pass_turn_in(3381803, 0xFF); /* Times 1270: 142,514 modulo 2^32. */
+    TEST_ASSERT_FALSE(scan->complete);
+}
+
+/* The pause is the only thing that speaks against it: no byte is missing, and no angle. */
+static void arrive_after_a_pause(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_q6)
+{
+    receive(ct, count, first_q6, last_q6);
+    receiver.packet.gap = TMINI_GAP_UNKNOWN;
+    TEST_ASSERT_TRUE(tmini_builder_add(&builder, &receiver.packet, now_ms));
+    TEST_ASSERT_FALSE(scan->complete);
+    add();
+}
+
+void test_scans_that_time_alone_has_ended_are_counted(void)
+{
+    (void)start(0);
+    quarter(0);
+    arrive_after_a_pause(0x00, 5, 91 * DEGREE, 180 * DEGREE);
+    TEST_ASSERT_EQUAL_UINT32(1, builder.late_scans);
+    quarter(180 * DEGREE);
+    quarter(270 * DEGREE);
+    strays = 1; /* LastCRC. */
+    arrive_after_a_pause(0x79, 1, 0, 0);
+    TEST_ASSERT_EQUAL_UINT32(2, builder.late_scans);
+}
+
+void test_scans_that_bytes_or_angles_would_have_ended_as_well_are_not(void)
+{
+    (void)start(0);
+    garbage(501);
+    (void)point(DEGREE, 90 * DEGREE);
+    strays = 1;
+    arrive_after_a_pause(0x00, 5, 91 * DEGREE, 180 * DEGREE);
+    arrive_after_a_pause(0x00, 5, 185 * DEGREE, 190 * DEGREE);
+    strays = 2;
+    arrive_after_a_pause(0x79, 1, 191 * DEGREE, 191 * DEGREE);
+    TEST_ASSERT_EQUAL_UINT32(0, builder.late_scans);
+}
+
 /* ------------------------------------------------------------------------------------------ DMA */
 
 static void overrun(void)
@@ -606,7 +779,7 @@ void test_a_packet_that_dma_has_overwritten_is_a_gap_and_no_point(void)
     TEST_ASSERT_EQUAL_UINT16(2, scan->packets);
     TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
     TEST_ASSERT_EQUAL_UINT16(0, scan->dropped);
-    TEST_ASSERT_TRUE(arrive(0x00, 5, 181 * DEGREE, 270 * DEGREE)); /* Nobody knows of which turn. */
+    TEST_ASSERT_TRUE(arrive(0x00, 5, 181 * DEGREE, 270 * DEGREE)); /* Of an unknown turn. */
     TEST_ASSERT_EQUAL_UINT16(6, scan->count);
     TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
     TEST_ASSERT_FALSE(scan->complete);
