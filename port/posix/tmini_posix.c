@@ -14,11 +14,11 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <sys/time.h>
 #include <termios.h>
 #include <time.h>
 #include <unistd.h>
@@ -31,7 +31,7 @@
 #define BLOCK_SIZE 128
 
 #define SOCKET_PREFIX "tcp:"
-#define CONNECT_S 5
+#define CONNECT_MS 5000u
 
 /* ----------------------------------------------------------------------------------- starting */
 
@@ -102,9 +102,23 @@ void tmini_posix_init(tmini_posix_t *serial, const char *path)
     *serial = (tmini_posix_t){.path = path, .fd = -1, .state = TMINI_POSIX_NO_DEVICE};
 }
 
+/* Children do not inherit it: one of system() would keep the device claimed. Neither waiting nor,
+ * where only the socket itself can be asked, a signal when the other end has gone. */
+static void make_own(int fd)
+{
+    (void)fcntl(fd, F_SETFD, FD_CLOEXEC);
+    (void)fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) | O_NONBLOCK);
+#if !defined(MSG_NOSIGNAL) && defined(SO_NOSIGPIPE)
+    const int on = 1;
+    (void)setsockopt(fd, SOL_SOCKET, SO_NOSIGPIPE, &on, sizeof on);
+#endif
+}
+
 static tmini_posix_status_t open_device(tmini_posix_t *serial)
 {
-    serial->fd = open(serial->path, O_RDWR | O_NOCTTY | O_NONBLOCK);
+    do {
+        serial->fd = open(serial->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    } while (serial->fd < 0 && errno == EINTR);
     if (serial->fd < 0) {
         return status_of_open(errno);
     }
@@ -117,24 +131,60 @@ static tmini_posix_status_t open_device(tmini_posix_t *serial)
     return set_up(serial->fd);
 }
 
-/* Returns the socket, or -1 with errno set. */
+static uint32_t now_ms(void *context)
+{
+    (void)context;
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint32_t)((uint64_t)now.tv_sec * 1000u + (uint64_t)now.tv_nsec / 1000000u);
+}
+
+/* Returns 0, or why a connection under way has failed. */
+static int await_connection(int fd)
+{
+    const uint32_t begun_ms = now_ms(NULL);
+    struct pollfd socket = {.fd = fd, .events = POLLOUT};
+    socklen_t size = sizeof(int);
+    int error = 0;
+    int ready = 0;
+    do {
+        const uint32_t passed_ms = now_ms(NULL) - begun_ms;
+        ready = poll(&socket, 1, passed_ms < CONNECT_MS ? (int)(CONNECT_MS - passed_ms) : 0);
+    } while (ready < 0 && errno == EINTR);
+    if (ready <= 0) {
+        return ready == 0 ? ETIMEDOUT : errno;
+    }
+    return getsockopt(fd, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
+}
+
+/* Returns the socket, or -1 with errno set. A connection that a signal has interrupted goes on. */
 static int connect_to(const struct addrinfo *place)
 {
-    const struct timeval patience = {.tv_sec = CONNECT_S};
     const int on = 1;
     const int fd = socket(place->ai_family, place->ai_socktype, place->ai_protocol);
     if (fd < 0) {
         return -1;
     }
-    (void)setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+    make_own(fd);
     (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    if (connect(fd, place->ai_addr, place->ai_addrlen) != 0) {
-        const int error = errno;
+    int error = connect(fd, place->ai_addr, place->ai_addrlen) == 0 ? 0 : errno;
+    if (error == EINPROGRESS || error == EINTR) {
+        error = await_connection(fd);
+    }
+    if (error != 0) {
         (void)close(fd);
-        errno = error == EINPROGRESS ? ETIMEDOUT : error;
+        errno = error;
         return -1;
     }
     return fd;
+}
+
+/* The system would take 99999 for 34463. */
+static bool is_port_number(const char *text)
+{
+    const size_t digits = strspn(text, "0123456789");
+    return digits >= 1 && digits <= 5 && text[digits] == '\0' && atol(text) >= 1 &&
+           atol(text) <= 65535;
 }
 
 /* Where "HOST:PORT" is; NULL: nowhere. The last colon counts, because HOST may be an IPv6 address,
@@ -145,7 +195,7 @@ static struct addrinfo *places_of(const char *address)
     const char *const colon = strrchr(address, ':');
     struct addrinfo *places = NULL;
     char name[256];
-    if (colon == NULL || colon == address || colon[1] == '\0') {
+    if (colon == NULL || colon == address || !is_port_number(colon + 1)) {
         return NULL;
     }
     const bool in_brackets = address[0] == '[' && colon[-1] == ']';
@@ -176,7 +226,6 @@ static tmini_posix_status_t open_socket(tmini_posix_t *serial)
     if (serial->fd < 0) {
         return TMINI_POSIX_FAILED;
     }
-    (void)fcntl(serial->fd, F_SETFL, fcntl(serial->fd, F_GETFL) | O_NONBLOCK);
     return TMINI_POSIX_OK;
 }
 
@@ -187,7 +236,7 @@ tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *serial, int fd, tmini_t
     serial->received = 0;
     serial->fd = fd;
     serial->state = TMINI_POSIX_OK;
-    (void)fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) | O_NONBLOCK);
+    make_own(fd);
     return serial->state;
 }
 
@@ -324,14 +373,6 @@ static int write_bytes(void *context, const uint8_t *bytes, size_t count)
     }
     serial->state = status_of_transfer(errno);
     return serial->state == TMINI_POSIX_OK ? 0 : -1;
-}
-
-static uint32_t now_ms(void *context)
-{
-    (void)context;
-    struct timespec now;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (uint32_t)((uint64_t)now.tv_sec * 1000u + (uint64_t)now.tv_nsec / 1000000u);
 }
 
 static void wait_a_moment(void *context)

@@ -14,12 +14,16 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
@@ -140,8 +144,15 @@ void test_an_address_where_nobody_listens_is_one_all_the_same(void)
 
 void test_an_address_that_is_none_is_told(void)
 {
-    static const char *const wrong[] = {"tcp:", "tcp:host", "tcp::1",
-                                        "tcp:host:", "tcp:no.such.host.invalid:1"};
+    static const char *const wrong[] = {"tcp:",
+                                        "tcp:host",
+                                        "tcp::1",
+                                        "tcp:host:",
+                                        "tcp:127.0.0.1:0",
+                                        "tcp:127.0.0.1:65536",
+                                        "tcp:127.0.0.1:99999",
+                                        "tcp:127.0.0.1:1x",
+                                        "tcp:no.such.host.invalid:1"};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         tmini_posix_init(&serial, wrong[i]);
         TEST_ASSERT_EQUAL_INT(TMINI_POSIX_ADDRESS, tmini_posix_start(&serial, NULL));
@@ -280,6 +291,63 @@ void test_the_programs_own_terminal_is_refused(void)
     TEST_ASSERT_EQUAL_INT(child, waitpid(child, &status, 0));
     TEST_ASSERT_EQUAL_INT(0, status);
     close(master);
+}
+
+/* Else a child of system() keeps the device claimed after the stop. */
+void test_children_inherit_neither_device_nor_socket(void)
+{
+    int ends[2];
+    begin();
+    TEST_ASSERT_EQUAL_INT(FD_CLOEXEC, fcntl(serial.fd, F_GETFD));
+    TEST_ASSERT_EQUAL_INT(0, socketpair(AF_UNIX, SOCK_STREAM, 0, ends));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start_on(&serial, ends[0], &lidar));
+    TEST_ASSERT_EQUAL_INT(FD_CLOEXEC, fcntl(serial.fd, F_GETFD));
+    close(ends[1]);
+    tmini_posix_init(&serial, program_start_lidar((const char *const[]){"--tcp", "0", NULL}));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&serial, &lidar));
+    TEST_ASSERT_EQUAL_INT(FD_CLOEXEC, fcntl(serial.fd, F_GETFD));
+}
+
+static void note_alarm(int number)
+{
+    (void)number;
+}
+
+static void alarm_every_20_ms(bool on)
+{
+    const struct sigaction action = {.sa_handler = note_alarm}; /* No SA_RESTART. */
+    const struct itimerval interval = {{0, on ? 20000 : 0}, {0, on ? 20000 : 0}};
+    TEST_ASSERT_EQUAL_INT(0, sigaction(SIGALRM, &action, NULL));
+    TEST_ASSERT_EQUAL_INT(0, setitimer(ITIMER_REAL, &interval, NULL));
+}
+
+/* A listener whose queue is full lets the next one wait: here for ever, so that time ends it. */
+void test_connecting_ends_after_5_s_and_not_by_a_signal(void)
+{
+    struct sockaddr_in address = {.sin_family = AF_INET};
+    socklen_t size = sizeof address;
+    char path[32];
+    const int listener = socket(AF_INET, SOCK_STREAM, 0);
+    const int first = socket(AF_INET, SOCK_STREAM, 0);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    TEST_ASSERT_EQUAL_INT(0, bind(listener, (struct sockaddr *)&address, size));
+    TEST_ASSERT_EQUAL_INT(0, listen(listener, 0));
+    TEST_ASSERT_EQUAL_INT(0, getsockname(listener, (struct sockaddr *)&address, &size));
+    TEST_ASSERT_EQUAL_INT(0, connect(first, (struct sockaddr *)&address, size));
+    (void)snprintf(path, sizeof path, "tcp:127.0.0.1:%u", ntohs(address.sin_port));
+    const uint32_t begun_ms = tmini_posix_port.now_ms(&serial);
+    alarm_every_20_ms(true);
+    const tmini_posix_status_t status = start(&serial, path);
+    const int error = errno;
+    alarm_every_20_ms(false);
+    if (status == TMINI_POSIX_OK) {
+        TEST_IGNORE_MESSAGE("this system takes more than its queue holds");
+    }
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, status);
+    TEST_ASSERT_EQUAL_INT(ETIMEDOUT, error);
+    TEST_ASSERT_UINT32_WITHIN(1000, 5000, tmini_posix_port.now_ms(&serial) - begun_ms);
+    close(first);
+    close(listener);
 }
 
 void test_a_device_is_started_again_after_it_was_stopped(void)
