@@ -93,9 +93,38 @@ static bool has_fifo(const DMA_HandleTypeDef *dma)
 #endif
 }
 
+/* Linked lists have width and increment in their node, which CubeMX sets for the UART. */
+static bool is_by_byte(const DMA_HandleTypeDef *dma)
+{
+#ifdef DMA_LINKEDLIST_CIRCULAR
+    (void)dma;
+    return true;
+#else
+    return dma->Init.PeriphDataAlignment == DMA_PDATAALIGN_BYTE &&
+           dma->Init.MemDataAlignment == DMA_MDATAALIGN_BYTE &&
+           dma->Init.PeriphInc == DMA_PINC_DISABLE && dma->Init.MemInc == DMA_MINC_ENABLE;
+#endif
+}
+
 static bool has_good_dma(const UART_HandleTypeDef *uart)
 {
-    return uart->hdmarx != NULL && is_circular(uart->hdmarx) && !has_fifo(uart->hdmarx);
+    return uart->hdmarx != NULL && is_circular(uart->hdmarx) && !has_fifo(uart->hdmarx) &&
+           is_by_byte(uart->hdmarx);
+}
+
+/* The UART asks for it, and the channel has not been stopped by somebody else. */
+static bool is_dma_running(const UART_HandleTypeDef *uart)
+{
+    return (uart->Instance->CR3 & USART_CR3_DMAR) != 0 &&
+           uart->hdmarx->State != HAL_DMA_STATE_READY;
+}
+
+/* The HAL stops the channel only if the UART still asks for it: not after HAL_UART_Init(). */
+static void stop_dma(const UART_HandleTypeDef *uart)
+{
+    if (uart->hdmarx != NULL && uart->hdmarx->State == HAL_DMA_STATE_BUSY) {
+        (void)HAL_DMA_Abort(uart->hdmarx);
+    }
 }
 
 /* With the idle line, where the HAL also says which event it reports (since 2022). Without, half
@@ -124,10 +153,12 @@ static void forget_rest_of_block(const tmini_stm32_hal_t *port)
 }
 
 /* Errors of the line would stop the DMA for good: the HAL takes any of them as the end. Without
- * their interrupt each costs its byte. The UART goes on by itself also after an overrun. */
+ * their interrupt each costs its byte. HALs up to 2022 enable the parity's as well, whatever the
+ * parity: then their handler serves an error that shows, and nothing else, for ever. */
 static void ignore_line_errors(tmini_stm32_hal_t *port)
 {
     CLEAR_SHARED_BIT(port->uart->Instance->CR3, USART_CR3_EIE);
+    CLEAR_SHARED_BIT(port->uart->Instance->CR1, USART_CR1_PEIE);
 }
 
 /* The index that DMA writes next; the size itself when it has just come full circle. */
@@ -156,6 +187,17 @@ static bool has_good_dma(const UART_HandleTypeDef *uart)
 {
     (void)uart;
     return false;
+}
+
+static bool is_dma_running(const UART_HandleTypeDef *uart)
+{
+    (void)uart;
+    return true;
+}
+
+static void stop_dma(const UART_HandleTypeDef *uart)
+{
+    (void)uart;
 }
 
 static HAL_StatusTypeDef receive_by_dma(const tmini_stm32_hal_t *port)
@@ -218,6 +260,11 @@ static void look_at_line_errors(tmini_stm32_hal_t *port)
         __HAL_UART_CLEAR_FLAG(port->uart, UART_CLEAR_OREF | UART_CLEAR_FEF | UART_CLEAR_NEF);
         port->line_flags = 0;
     }
+#else
+    if ((errors & HAL_UART_ERROR_ORE) != 0 && !__HAL_UART_GET_FLAG(port->uart, UART_FLAG_RXNE)) {
+        __HAL_UART_CLEAR_OREFLAG(port->uart); /* It may hold back the bytes that would clear it. */
+        port->line_flags = 0;
+    }
 #endif
 }
 
@@ -273,7 +320,8 @@ static void hand_over(tmini_stm32_hal_t *port)
 
 static bool is_receiving(const tmini_stm32_hal_t *port)
 {
-    return port->is_started && port->uart->RxState == HAL_UART_STATE_BUSY_RX;
+    return port->is_started && port->uart->RxState == HAL_UART_STATE_BUSY_RX &&
+           (port->reception == RECEPTION_BYTES || is_dma_running(port->uart));
 }
 
 /* In any context. The position is the hardware's, never the event's: an idle event may overtake the
@@ -295,6 +343,9 @@ static void forget_reception(tmini_stm32_hal_t *port)
 {
     port->is_started = false;
     (void)HAL_UART_AbortReceive(port->uart);
+    if (port->reception != RECEPTION_BYTES) {
+        stop_dma(port->uart);
+    }
     __HAL_UART_CLEAR_OREFLAG(port->uart);
 }
 
@@ -339,7 +390,7 @@ static bool begin_reception(tmini_stm32_hal_t *port)
     return begin_uninterrupted(port) == HAL_OK;
 }
 
-static void restart(tmini_stm32_hal_t *port)
+static void begin_anew(tmini_stm32_hal_t *port)
 {
     port->counters.restarts = port->counters.restarts + 1;
     if (port->reception != RECEPTION_DMA) {
@@ -356,7 +407,7 @@ static void look_after_reception(tmini_stm32_hal_t *port, uint32_t time_ms)
     }
     if (!is_receiving(port)) {
         if (time_ms - port->started_ms >= RESTART_PAUSE_MS) {
-            restart(port);
+            begin_anew(port);
         }
     } else if (port->reception != RECEPTION_BYTES) {
         hand_over_new(port);
@@ -447,6 +498,15 @@ static uint32_t time_now_ms(void *context)
     return time_ms;
 }
 
+/* The lidar is lost: perhaps reception only seems to be under way. */
+static void restart(void *context)
+{
+    tmini_stm32_hal_t *const port = context;
+    if (port->reception != RECEPTION_NONE) {
+        begin_anew(port);
+    }
+}
+
 static void wait_for_interrupt(void *context)
 {
     (void)context;
@@ -454,7 +514,7 @@ static void wait_for_interrupt(void *context)
 }
 
 const tmini_port_t tmini_stm32_hal_port = {
-    .write = send_bytes, .now_ms = time_now_ms, .wait = wait_for_interrupt};
+    .write = send_bytes, .now_ms = time_now_ms, .wait = wait_for_interrupt, .restart = restart};
 
 /* -------------------------------------------------------------------------------- life cycle */
 
@@ -536,6 +596,6 @@ void tmini_stm32_hal_stop(tmini_stm32_hal_t *port)
     if (port->reception != RECEPTION_BYTES) {
         hand_over_new(port);
     }
-    port->reception = RECEPTION_NONE;
     forget_reception(port);
+    port->reception = RECEPTION_NONE;
 }

@@ -81,7 +81,8 @@ static void dma_interrupt(void)
 
 static void open_dma(void)
 {
-    hal_rig.dma = (DMA_HandleTypeDef){.Instance = &model.dma.channel, .Init.Mode = DMA_CIRCULAR};
+    hal_rig.dma = (DMA_HandleTypeDef){
+        .Instance = &model.dma.channel, .Init.Mode = DMA_CIRCULAR, .Init.MemInc = DMA_MINC_ENABLE};
 #ifdef DMA_LINKEDLIST_CIRCULAR
     hal_rig.dma.Mode = DMA_LINKEDLIST_CIRCULAR;
 #endif

@@ -93,7 +93,7 @@ void setUp(void)
     irq.lines[MODEL_DMA_IRQ].handler = dma_interrupt;
     model.sent = note_sent;
     line_open();
-    dma = (DMA_HandleTypeDef){.Init.Mode = DMA_CIRCULAR};
+    dma = (DMA_HandleTypeDef){.Init = {.Mode = DMA_CIRCULAR, .MemInc = DMA_MINC_ENABLE}};
     huart1 = (UART_HandleTypeDef){
         .Instance = &model_usart,
         .Init = {.BaudRate = 230400},

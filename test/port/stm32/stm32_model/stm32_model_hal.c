@@ -149,6 +149,15 @@ static void dma_abort(DMA_HandleTypeDef *dma)
     model.dma.channel.CBR1 = 0;
 }
 
+HAL_StatusTypeDef HAL_DMA_Abort(DMA_HandleTypeDef *hdma)
+{
+    if (hdma->State != HAL_DMA_STATE_BUSY) {
+        return HAL_ERROR;
+    }
+    dma_abort(hdma);
+    return HAL_OK;
+}
+
 /* Streams say by an interrupt that they have stopped; the others stop at once. */
 static bool dma_stop_later(DMA_HandleTypeDef *dma)
 {
@@ -222,7 +231,7 @@ void HAL_DMA_IRQHandler(DMA_HandleTypeDef *hdma)
 
 static void end_reception(UART_HandleTypeDef *uart)
 {
-    model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE);
+    model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE | MODEL_CR1_PEIE);
     model_unset(&model_usart.CR3, MODEL_CR3_EIE);
     if (uart->ReceptionType == TO_IDLE) {
         model_unset(&model_usart.CR1, MODEL_CR1_IDLEIE);
@@ -305,6 +314,9 @@ static HAL_StatusTypeDef start_dma(UART_HandleTypeDef *uart, uint8_t *memory, ui
     (void)model_read_data();
 #endif
     unlock(uart);
+    if (STM32_MODEL_YEAR <= 2021) { /* Whatever the parity. */
+        model_set(&model_usart.CR1, MODEL_CR1_PEIE);
+    }
     model_set(&model_usart.CR3, MODEL_CR3_EIE);
     model_set(&model_usart.CR3, MODEL_CR3_DMAR);
     return HAL_OK;
@@ -333,7 +345,7 @@ HAL_StatusTypeDef HAL_UARTEx_ReceiveToIdle_DMA(UART_HandleTypeDef *huart, uint8_
 
 HAL_StatusTypeDef HAL_UART_AbortReceive(UART_HandleTypeDef *huart)
 {
-    model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE);
+    model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE | MODEL_CR1_PEIE);
     model_unset(&model_usart.CR3, MODEL_CR3_EIE);
     if (huart->ReceptionType == TO_IDLE) {
         model_unset(&model_usart.CR1, MODEL_CR1_IDLEIE);
@@ -369,7 +381,7 @@ static void receive_byte(UART_HandleTypeDef *uart)
     if (uart->RxXferCount > 0) {
         return;
     }
-    model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE);
+    model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE | MODEL_CR1_PEIE);
     model_unset(&model_usart.CR3, MODEL_CR3_EIE);
     uart->RxState = HAL_UART_STATE_READY;
     if (uart->ReceptionType == TO_IDLE) {
@@ -463,7 +475,8 @@ void HAL_UART_IRQHandler(UART_HandleTypeDef *huart)
     const uint32_t flags = model_status();
     const uint32_t cr1 = model_usart.CR1;
     const uint32_t cr3 = model_usart.CR3;
-    const bool errors_wanted = (cr3 & MODEL_CR3_EIE) != 0 || (cr1 & MODEL_CR1_RXNEIE) != 0;
+    const bool errors_wanted =
+        (cr3 & MODEL_CR3_EIE) != 0 || (cr1 & (MODEL_CR1_RXNEIE | MODEL_CR1_PEIE)) != 0;
     if ((flags & ERRORS) != 0 && errors_wanted) {
         handle_errors(huart, flags, cr1, cr3);
     } else if ((flags & MODEL_RXNE) != 0 && (cr1 & MODEL_CR1_RXNEIE) != 0) {

@@ -43,6 +43,11 @@ typedef enum {
 #define HAL_DMA_MODULE_ENABLED
 #define DMA_NORMAL 0x00000000u
 #define DMA_CIRCULAR 0x00000100u
+#define DMA_PINC_DISABLE 0x00000000u
+#define DMA_MINC_ENABLE 0x00000400u
+#define DMA_PDATAALIGN_BYTE 0x00000000u
+#define DMA_MDATAALIGN_BYTE 0x00000000u
+#define DMA_MDATAALIGN_WORD 0x00004000u
 #ifdef STM32_MODEL_STREAMS
 #define DMA_FIFOMODE_DISABLE 0x00000000u
 #define DMA_FIFOMODE_ENABLE 0x00000004u
@@ -58,6 +63,10 @@ typedef struct DMA_HandleTypeDef {
     struct {
         uint32_t Mode;
         uint32_t FIFOMode;
+        uint32_t PeriphInc;
+        uint32_t MemInc;
+        uint32_t PeriphDataAlignment;
+        uint32_t MemDataAlignment;
     } Init;
     uint32_t Mode; /* Of linked lists. */
     volatile model_dma_state_t State;
@@ -66,6 +75,7 @@ typedef struct DMA_HandleTypeDef {
 
 #define __HAL_DMA_GET_COUNTER(handle) ((void)(handle), model_dma_left())
 
+HAL_StatusTypeDef HAL_DMA_Abort(DMA_HandleTypeDef *hdma);
 void HAL_DMA_IRQHandler(DMA_HandleTypeDef *hdma);
 
 #endif
@@ -96,6 +106,9 @@ typedef struct {
 } UART_HandleTypeDef;
 
 #define USART_CR3_EIE MODEL_CR3_EIE
+#define USART_CR3_DMAR MODEL_CR3_DMAR
+#define USART_CR1_PEIE MODEL_CR1_PEIE
+#define UART_FLAG_RXNE MODEL_RXNE
 #define UART_FLAG_ORE MODEL_ORE
 #define UART_FLAG_NE MODEL_NE
 #define UART_FLAG_FE MODEL_FE
