@@ -34,7 +34,7 @@ static const int8_t TX_PIN = 5;
 #endif
 
 static const uint16_t STOP_MM = 400;
-static const float FRONT_DEGREES = 30.0f;  /* To either side of 0 degrees. */
+static const uint16_t FRONT_Q6 = 30 * 64;  /* To either side of 0 degrees, in 1/64 degree. */
 static const unsigned long BLIND_MS = 500; /* Without a complete scan for so long, stop. */
 
 /* At 6 revolutions a second one has 667 points; TMiniLidar has room for 800. */
@@ -48,9 +48,10 @@ static uint16_t nearest;     /* In front, in the last scan that could tell; 0: n
 static unsigned long seenMs; /* When a complete scan came. */
 static bool seen;
 
+/* Integers: floats would take an AVR longer than its receive buffer lasts. */
 static bool isInFront(const TMiniPoint &point)
 {
-    return point.angleDegrees() <= FRONT_DEGREES || point.angleDegrees() >= 360.0f - FRONT_DEGREES;
+    return point.angle_q6 <= FRONT_Q6 || point.angle_q6 >= TMINI_FULL_CIRCLE_Q6 - FRONT_Q6;
 }
 
 static bool isNear(uint16_t distance)
@@ -95,7 +96,6 @@ static void handle(tmini_event_t event)
     case TMINI_EVENT_INFO:
         Serial.print("lidar model ");
         Serial.println(lidar.info().model);
-        lidar.start();
         break;
     case TMINI_EVENT_FAULTS_CHANGED:
         Serial.print("lidar faults ");
@@ -104,7 +104,6 @@ static void handle(tmini_event_t event)
     case TMINI_EVENT_COMMAND_FAILED:
         Serial.print("no lidar: ");
         Serial.println(lidar.error());
-        lidar.start(); /* Tried again until there is one. */
         break;
     default:
         break;
@@ -137,6 +136,7 @@ void setup()
     lidar.begin(Serial1);
 #endif
     lidar.requestInfo();
+    lidar.start(); /* After the answer; stands until stop(). */
 }
 
 void loop()

@@ -40,8 +40,6 @@ void loop()
     while (tmini_event_t event = lidar.loop()) {
         if (event == TMINI_EVENT_PACKET) {
             lookAtPacket();
-        } else if (event == TMINI_EVENT_COMMAND_FAILED) {
-            lidar.start();
         }
     }
 }
