@@ -9,6 +9,9 @@
 /* How often the agent is looked for: to find it, and to notice that it has gone. */
 static const uint32_t LOOK_EVERY_MS = 1000;
 
+/* Two clocks drift apart by some 40 us per second. */
+static const uint32_t SYNCHRONISE_EVERY_MS = 60000;
+
 static const int64_t NS_PER_MS = 1000000;
 
 static uint32_t now_ms(const scan_node_t *node)
@@ -84,12 +87,25 @@ static void close_all(scan_node_t *node)
     count_unclosed(node, rclc_support_fini(&node->support));
 }
 
+/* Before it has succeeded once, the time would be 1970's. */
+static void synchronise_if_due(scan_node_t *node)
+{
+    if (node->synchronised && now_ms(node) - node->synchronised_ms < SYNCHRONISE_EVERY_MS) {
+        return;
+    }
+    if (rmw_uros_sync_session(SCAN_NODE_WAIT_MS) == RMW_RET_OK) {
+        node->synchronised = true;
+        node->synchronised_ms = now_ms(node);
+    }
+}
+
 static void connect_if_possible(scan_node_t *node)
 {
     node->connected = agent_answers() && open_all(node);
     if (node->connected) {
         node->counters.connections++;
-        (void)rmw_uros_sync_session(SCAN_NODE_WAIT_MS);
+        node->synchronised = false;
+        synchronise_if_due(node);
     }
 }
 
@@ -98,7 +114,9 @@ static void disconnect_if_gone(scan_node_t *node)
     if (!agent_answers()) {
         close_all(node);
         node->connected = false;
+        return;
     }
+    synchronise_if_due(node);
 }
 
 static void look_for_agent(scan_node_t *node)
@@ -124,7 +142,7 @@ static int64_t end_ns(const scan_node_t *node, const tmini_scan_t *scan)
 static bool publish(scan_node_t *node)
 {
     const tmini_scan_t *const scan = tmini_scan(node->lidar);
-    return node->connected &&
+    return node->connected && node->synchronised &&
            laser_scan_fill(&node->message, &node->memory, scan, end_ns(node, scan)) &&
            rcl_publish(&node->publisher, &node->message, NULL) == RCL_RET_OK;
 }
@@ -137,8 +155,6 @@ static void handle(scan_node_t *node, tmini_event_t event)
         } else {
             node->counters.unpublished++;
         }
-    } else if (event == TMINI_EVENT_COMMAND_FAILED) {
-        (void)tmini_start(node->lidar); /* Tried until there is a lidar. */
     }
 }
 

@@ -20,8 +20,9 @@
 #include "tmini/tmini.h"
 
 typedef struct {
-    uint32_t published;   /* Scans handed over to micro-ROS. */
-    uint32_t unpublished; /* Scans that it did not take, or that came without an agent. */
+    uint32_t published; /* Scans handed over to micro-ROS. */
+    uint32_t
+        unpublished; /* Scans that it did not take, or that came without an agent or its clock. */
     uint32_t connections; /* To an agent. */
     uint32_t unclosed;    /* Entities that micro-ROS failed to close. */
 } scan_node_counters_t;
@@ -38,7 +39,9 @@ typedef struct {
     rcl_node_t node;
     rcl_publisher_t publisher;
     bool connected;
-    uint32_t looked_ms; /* When the agent was last looked for. */
+    bool synchronised;        /* With the agent's clock, since it was connected. */
+    uint32_t synchronised_ms; /* When, the last time. */
+    uint32_t looked_ms;       /* When the agent was last looked for. */
     scan_node_counters_t counters;
 } scan_node_t;
 

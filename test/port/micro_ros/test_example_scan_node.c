@@ -164,6 +164,24 @@ void test_a_message_bears_the_scans_end_in_the_agents_clock(void)
     TEST_ASSERT_TRUE(stamp_is_late_ns() >= 0 && stamp_is_late_ns() <= 1000000);
 }
 
+void test_without_the_agents_clock_nothing_is_published(void)
+{
+    virtual_agent.present = true;
+    virtual_agent.keeps_its_clock = true;
+    run_for(5000);
+    TEST_ASSERT_EQUAL_UINT(0, virtual_agent.published);
+    virtual_agent.keeps_its_clock = false;
+    run_for(3000);
+    TEST_ASSERT_NOT_EQUAL_UINT(0, virtual_agent.published);
+}
+
+void test_the_clock_is_synchronised_again_each_minute(void)
+{
+    virtual_agent.present = true;
+    run_for(185000);
+    TEST_ASSERT_EQUAL_UINT(4, virtual_agent.synchronisations);
+}
+
 /* The bytes that came behind it tell a part of a scan's age: the line brings 23 a millisecond at
  * most, the lidar 13. */
 void test_a_scan_that_is_found_late_keeps_its_time(void)

@@ -46,7 +46,8 @@ rmw_ret_t rmw_uros_ping_agent(int timeout_ms, uint8_t attempts)
 rmw_ret_t rmw_uros_sync_session(int timeout_ms)
 {
     TEST_ASSERT_TRUE(virtual_agent.support_open);
-    virtual_agent.synchronised = answers_within(timeout_ms);
+    virtual_agent.synchronised = answers_within(timeout_ms) && !virtual_agent.keeps_its_clock;
+    virtual_agent.synchronisations += virtual_agent.synchronised;
     return virtual_agent.synchronised ? RMW_RET_OK : RMW_RET_ERROR;
 }
 

@@ -17,6 +17,7 @@ typedef struct {
     bool refuses_publisher;
     bool takes_nothing; /* rcl_publish() fails. */
     bool closes_badly;
+    bool keeps_its_clock; /* Synchronising fails. */
     int64_t epoch_ns;
     void (*wait)(int ms); /* Called for each time that a call waits. */
 
@@ -25,6 +26,7 @@ typedef struct {
     bool node_open;
     bool publisher_open;
     bool synchronised;
+    unsigned synchronisations;
     int longest_wait_ms;
     unsigned published;
     char topic[16];
