@@ -79,9 +79,6 @@ static void drive(void)
     if (tmini_faults(&lidar) != 0 || tmini_state(&lidar) != TMINI_STATE_SCANNING) {
         obstacle_blind(&obstacle);
     }
-    if (tmini_state(&lidar) == TMINI_STATE_UNKNOWN) {
-        (void)tmini_start(&lidar); /* At first, and when it has failed. */
-    }
     const bool may_move = obstacle_may_move(&obstacle, now_ms);
     if (is_news || may_move != could_move) {
         show(may_move); /* A robot sets its motors here, each time round. */
@@ -114,6 +111,7 @@ static tmini_posix_status_t set_up(const char *path)
 static tmini_posix_status_t run(void)
 {
     tmini_posix_status_t status = TMINI_POSIX_OK;
+    (void)tmini_start(&lidar); /* Stands until it is stopped. */
     while (ended == 0 && status == TMINI_POSIX_OK) {
         drive();
         status = tmini_posix_receive(&serial, 10);
