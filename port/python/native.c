@@ -5,6 +5,7 @@
 #include "tmini/parts/tmini_ct.h"
 #include "tmini/parts/tmini_parser.h"
 #include "tmini/tmini.h"
+#include "tmini/tmini_mount.h"
 #include "tmini/tmini_units.h"
 
 static void point_times_us(const tmini_scan_t *scan, uint32_t *times_us)

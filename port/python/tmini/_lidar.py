@@ -10,11 +10,12 @@ import atexit
 import threading
 import time
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from ._line import Line, open_line
+from ._mount import Mount
 from ._native import ffi, lib
 from ._scan import Fault, Scan
 
@@ -57,9 +58,12 @@ class Lidar:
     A program that is slower than the lidar gets the newest scan, and Scan.number shows how many it
     has missed; `backlog` is the number of scans that wait for it."""
 
-    def __init__(self, port: str, frequency_hz: float | None = None, *, backlog: int = 1,
+    def __init__(self, port: str, frequency_hz: float | None = None, *, front: int = 0,
+                 upside_down: bool = False, mask: Sequence[tuple[int, int]] = (),
+                 listen_only: bool = False, backlog: int = 1,
                  timeout: float | None = 10.0) -> None:
-        """`frequency_hz`: 6 to 12, in steps of 0.1; None: left as it is. Waits up to `timeout`
+        """`frequency_hz`: 6 to 12, in steps of 0.1; None: left as it is. `front`, `upside_down` and
+        `mask`: see Mount. `listen_only`: sends nothing, ever. Waits up to `timeout`
         seconds for the first scan, and raises LidarError if there is none, OSError if there is no
         such port; None: waits for nothing, and also for the port to appear."""
         self.port = port
@@ -71,6 +75,8 @@ class Lidar:
         self._received = 0
         self._number = 0
         self._line: Line | None = None
+        self._mount = Mount(front, upside_down, mask)
+        self._listen_only = listen_only
         self._set_up(frequency_hz)
         try:
             self._line = open_line(port)
@@ -144,19 +150,19 @@ class Lidar:
         self._totals = ffi.new("tmini_counters_t *")
         self._lidar = ffi.new("tmini_t *")
         self._timing = ffi.new("tmini_timing_t *", lib.tmini_timing_default)
-        self._timing.frame_timeout_ms = 250
+        self._timing.frame_timeout_ms = 250  # Python may be busy for a while.
+        self._timing.max_pause_ms = 250
         self._timing.reply_timeout_ms = 1000
         self._port = ffi.new("tmini_port_t *", {"write": lib.python_write,
                                                 "now_ms": lib.python_now_ms})
         config = ffi.new("tmini_config_t *", {
             "port": self._port, "port_context": self._handle, "rx_buffer": self._rx,
             "rx_size": _RING, "points": self._points, "max_points": _POINTS,
+            "frequency_chz": round((frequency_hz or 0) * 100), "listen_only": self._listen_only,
+            "step": ffi.addressof(lib, "tmini_mount_step"), "step_data": self._mount.native,
             "timing": self._timing})
-        self._frequency_chz = round((frequency_hz or 0) * 100)
-        if self._frequency_chz and not (600 <= self._frequency_chz <= 1200
-                                        and self._frequency_chz % 10 == 0):
-            raise ValueError("frequency_hz is 6 to 12, in steps of 0.1")
-        lib.tmini_init(self._lidar, config)
+        if lib.tmini_init(self._lidar, config) != 0:
+            raise ValueError("frequency_hz is 6 to 12, in steps of 0.1, and None if listen_only")
 
     def _write(self, data: bytes) -> int:
         try:
@@ -182,16 +188,6 @@ class Lidar:
             self._changed.notify_all()
         elif event == lib.TMINI_EVENT_INFO:
             self.info = _info(lib.tmini_info(self._lidar))
-            self._go_on()
-        elif event in (lib.TMINI_EVENT_FREQUENCY, lib.TMINI_EVENT_COMMAND_FAILED):
-            self._go_on()
-
-    def _go_on(self) -> None:
-        frequency_chz, self._frequency_chz = self._frequency_chz, 0
-        if frequency_chz:
-            lib.tmini_set_frequency(self._lidar, frequency_chz)
-        elif not self._closing:
-            lib.tmini_start(self._lidar)
 
     def _faults(self) -> int:
         """None found is none only if the unit reports them."""
@@ -216,6 +212,7 @@ class Lidar:
     def _work(self) -> None:
         with self._changed:
             lib.tmini_request_info(self._lidar)
+            lib.tmini_start(self._lidar)  # Follows the query.
         while not self._closing:
             self._turn()
             time.sleep(_PERIOD_S if self._line is not None else _REOPEN_S)

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import os
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import BinaryIO
 
+from ._mount import Mount
 from ._native import ffi, lib
 from ._scan import Scan
 
@@ -44,7 +45,8 @@ def _blocks(file: BinaryIO) -> Iterator[tuple[int | None, bytes]]:
 class _Decoder:
     """Bytes to scans, as `tmini decode` makes them."""
 
-    def __init__(self) -> None:
+    def __init__(self, mount: Mount) -> None:
+        self._mount = mount
         self._memory = ffi.new("uint8_t[]", _RING)
         self._points = ffi.new("tmini_point_t[]", _POINTS)
         self._ring = ffi.new("tmini_ring_t *")
@@ -101,15 +103,17 @@ class _Decoder:
 
     def _scan(self) -> Scan:
         native = self._builder.scan
+        lib.tmini_mount_step(self._mount.native, ffi.addressof(native))
         number, self._number = self._number, 0
         return Scan(native, number, lib.tmini_ct_faults(self._ct), native.start_ms / 1000)
 
 
-def read(path: str | os.PathLike[str]) -> Iterator[Scan]:
+def read(path: str | os.PathLike[str], *, front: int = 0, upside_down: bool = False,
+         mask: Sequence[tuple[int, int]] = ()) -> Iterator[Scan]:
     """The scans of a recording, one after the other: of a file of `tmini record` or of the viewer
-    (.tmini), or of bytes as they came (.bin)."""
+    (.tmini), or of bytes as they came (.bin). The rest: see Mount."""
     with open(path, "rb") as file:
-        decoder = _Decoder()
+        decoder = _Decoder(Mount(front, upside_down, mask))
         at_ms: int | None = None
         for at_ms, data in _blocks(file):
             yield from decoder.feed(data, at_ms)
