@@ -137,7 +137,7 @@ export function showProblem(place, problem) {
 }
 
 export function log(text, detail) {
-    const entry = document.createElement('li');
+    const entry = document.createElement('div');
     const time = document.createElement('time');
     time.textContent = new Date().toTimeString().slice(0, 8);
     entry.append(time, ` ${text}${detail ? `: ${detail}` : ''}`);

@@ -58,7 +58,7 @@ static const tmini_timing_t *patience(void)
 
 EXPORTED int lidar_init(uint32_t now_ms)
 {
-    static const tmini_port_t port = {port_write, port_now_ms, NULL};
+    static const tmini_port_t port = {port_write, port_now_ms, NULL, NULL};
     const tmini_config_t config = {
         .port = &port,
         .rx_buffer = live.rx,

@@ -100,17 +100,12 @@ EXPORTED void shown_mount(uint32_t front_q6, uint32_t upside_down)
     mount();
 }
 
-/* Where the robot sees itself: `count` pairs of whole degrees in `transfer`, 16 bits each. */
+/* Where the robot sees itself: `count` arcs in `transfer`. */
 EXPORTED void shown_mask(uint32_t count)
 {
-    int16_t degrees[2 * MASKED_MAX];
-    count = count < MASKED_MAX ? count : MASKED_MAX;
-    memcpy(degrees, web_transfer, count * 2u * sizeof *degrees);
-    for (uint32_t i = 0; i < count; i++) {
-        shown.masked[i] = (tmini_arc_t){degrees[2 * i], degrees[2 * i + 1]};
-    }
     shown.mount.masked = shown.masked;
-    shown.mount.masked_count = count;
+    shown.mount.masked_count = count < MASKED_MAX ? count : MASKED_MAX;
+    memcpy(shown.masked, web_transfer, shown.mount.masked_count * sizeof *shown.masked);
 }
 
 EXPORTED const void *shown_points(void)
