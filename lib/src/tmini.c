@@ -733,6 +733,7 @@ void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
     counters->bytes_overrun = parser->bytes_overrun + (uint32_t)tmini_ring_overrun(ring);
     counters->bytes_pending = (uint32_t)pending;
     counters->scans = lidar->scans;
+    counters->late_scans = lidar->decoder.builder.late_scans;
     counters->timeouts = lidar->command.timeouts;
     counters->losses = lidar->recovery.losses;
     counters->recoveries = lidar->recovery.recoveries;

@@ -7,35 +7,62 @@
 #define JITTER_Q6 256u /* 4 degrees. */
 #define SAMPLE_US 250u
 
-/* No revolution takes longer; so nothing below overflows: 2 * 23040 * 3000 * 25 < 2^32. */
-#define PERIOD_MAX_MS 3000u
+/* No revolution takes longer; so nothing below overflows: 23295 * 2900000 / 16 < 2^32. */
+#define PERIOD_MAX_US 2900000u
+
+/* A complete scan has all samples of its revolution, 4000 in a second (section 1): that is better
+ * than the reported frequency, which has steps of 0.1 Hz. Stamps are not used: they are as late as
+ * the bytes. */
+static uint32_t period_us(const tmini_scan_t *scan)
+{
+    const uint32_t reported_us = scan->frequency_chz > 0 ? 100000000u / scan->frequency_chz : 0;
+    const uint32_t counted_us = (uint32_t)scan->count * SAMPLE_US;
+    const uint32_t apart_us =
+        counted_us > reported_us ? counted_us - reported_us : reported_us - counted_us;
+    const bool is_counted = reported_us == 0 || apart_us < reported_us / 16;
+    return scan->complete && is_counted ? counted_us : reported_us;
+}
 
 uint32_t tmini_scan_period_ms(const tmini_scan_t *scan)
 {
-    const uint32_t told_ms = scan->frequency_chz > 0 ? 100000u / scan->frequency_chz : 0;
-    const uint32_t timed_ms = scan->end_ms - scan->start_ms;
-    const bool is_timed =
-        told_ms == 0 || (timed_ms > told_ms / 4 * 3 && timed_ms < told_ms / 4 * 5);
-    return scan->complete && is_timed ? timed_ms : told_ms;
+    return (period_us(scan) + 500u) / 1000u;
 }
 
-/* The angle from the scan's first point to this one. The encoder jitters: early points may lie a
- * little behind the first, late ones a little beyond the full circle. */
+/* The angle from the scan's first point to this one, as the rotor turns. */
+static uint32_t turned_q6(const tmini_scan_t *scan, size_t index)
+{
+    const uint16_t first = scan->points[0].angle_q6;
+    const uint16_t point = scan->points[index].angle_q6;
+    return scan->upside_down ? tmini_clockwise(point, first) : tmini_clockwise(first, point);
+}
+
+static bool is_near_first(const tmini_scan_t *scan, size_t index)
+{
+    const uint32_t turned = turned_q6(scan, index);
+    return turned < JITTER_Q6 || turned > CIRCLE_Q6 - JITTER_Q6;
+}
+
+/* The same, of up to a little more than a circle. The encoder jitters: early points may lie a
+ * little before the first, late ones a little beyond the full circle. Late are those after a point
+ * that is away from both. */
 static uint32_t swept_q6(const tmini_scan_t *scan, size_t index)
 {
-    const uint32_t swept = tmini_clockwise(scan->points[0].angle_q6, scan->points[index].angle_q6);
-    const bool is_early = index < scan->count / 2u;
-    if (is_early && swept > CIRCLE_Q6 - JITTER_Q6) {
-        return 0;
+    const uint32_t turned = turned_q6(scan, index);
+    size_t away = index;
+    while (away > 0 && is_near_first(scan, away)) {
+        away--;
     }
-    return swept + (!is_early && swept < JITTER_Q6 ? CIRCLE_Q6 : 0);
+    if (away > 0) {
+        return turned + (turned < JITTER_Q6 ? CIRCLE_Q6 : 0);
+    }
+    return turned > CIRCLE_Q6 - JITTER_Q6 ? 0 : turned;
 }
 
 uint32_t tmini_point_time_us(const tmini_scan_t *scan, size_t index)
 {
-    const uint32_t period_ms = tmini_scan_period_ms(scan);
-    if (period_ms == 0 || period_ms > PERIOD_MAX_MS) {
+    const uint32_t turn_us = period_us(scan);
+    if (turn_us == 0 || turn_us > PERIOD_MAX_US) {
         return (uint32_t)index * SAMPLE_US;
     }
-    return swept_q6(scan, index) * period_ms * 25u / (CIRCLE_Q6 / 40u); /* 1000 / 23040 */
+    return swept_q6(scan, index) * (turn_us / 16u) / (CIRCLE_Q6 / 16u);
 }

@@ -8,7 +8,7 @@
 
 #define DEGREE 64u
 
-static tmini_point_t points[4];
+static tmini_point_t points[640];
 static tmini_scan_t scan;
 
 void setUp(void)
@@ -36,27 +36,39 @@ static void is_at(size_t index, uint32_t time_us)
     TEST_ASSERT_EQUAL_UINT32(time_us, tmini_point_time_us(&scan, index));
 }
 
-void test_a_complete_scans_period_is_its_own_time(void)
+/* 640 samples at 4000 a second. */
+void test_a_complete_scans_period_is_that_of_its_samples(void)
 {
-    scan.frequency_chz = 1010;
-    TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
+    scan.count = 640;
+    scan.frequency_chz = 630;
+    TEST_ASSERT_EQUAL_UINT32(160, tmini_scan_period_ms(&scan));
     scan.frequency_chz = 0;
+    TEST_ASSERT_EQUAL_UINT32(160, tmini_scan_period_ms(&scan));
+}
+
+/* A sixteenth from 100 ms, 400 samples, are 425 and 375. */
+void test_a_number_of_samples_that_no_revolution_has_is_not_believed(void)
+{
+    static const uint16_t counts[] = {375, 376, 424, 425};
+    static const uint8_t periods_ms[] = {100, 94, 106, 100};
+    for (unsigned i = 0; i < 4; i++) {
+        scan.count = counts[i];
+        TEST_ASSERT_EQUAL_UINT32(periods_ms[i], tmini_scan_period_ms(&scan));
+    }
+}
+
+/* Start packets that were held back come at any time. */
+void test_the_clock_is_not_asked_for_a_period(void)
+{
+    scan.end_ms = scan.start_ms + 120;
     TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
 }
 
-/* Start packets that were held back, and came in one block or in neighbouring ones. */
-void test_a_time_that_no_revolution_took_is_not_believed(void)
+/* 163.93 ms. */
+void test_a_period_is_rounded_to_the_nearest(void)
 {
-    scan.end_ms = scan.start_ms;
-    TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
-    scan.end_ms = scan.start_ms + 75;
-    TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
-    scan.end_ms = scan.start_ms + 76;
-    TEST_ASSERT_EQUAL_UINT32(76, tmini_scan_period_ms(&scan));
-    scan.end_ms = scan.start_ms + 124;
-    TEST_ASSERT_EQUAL_UINT32(124, tmini_scan_period_ms(&scan));
-    scan.end_ms = scan.start_ms + 125;
-    TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
+    scan.frequency_chz = 610;
+    TEST_ASSERT_EQUAL_UINT32(164, tmini_scan_period_ms(&scan));
 }
 
 void test_an_incomplete_scans_period_is_what_the_lidar_measured(void)
@@ -131,11 +143,51 @@ void test_the_late_points_of_a_part_of_a_turn_are_no_turn_later(void)
 }
 
 /* 24 / 23040 of 100 ms are 104 us. */
-void test_the_second_half_of_the_points_are_the_late_ones(void)
+void test_points_of_a_short_scan_are_not_a_turn_later(void)
 {
     has_angles(0, 24, 24, 24);
     is_at(1, 104);
-    is_at(2, 100104);
+    is_at(3, 104);
+}
+
+void test_a_scan_of_a_start_packet_alone_has_its_point_at_0(void)
+{
+    scan.count = 1;
+    has_angles(116 * DEGREE, 0, 0, 0);
+    is_at(0, 0);
+}
+
+void test_the_angles_of_a_lidar_upside_down_run_against_time(void)
+{
+    scan.upside_down = true;
+    has_angles(115 * DEGREE, 25 * DEGREE, 295 * DEGREE, 205 * DEGREE);
+    is_at(0, 0);
+    is_at(1, 25000);
+    is_at(2, 50000);
+    is_at(3, 75000);
+    has_angles(10, 280 * DEGREE, 90 * DEGREE, 4);
+    is_at(3, 100026);
+}
+
+/* A lidar of exactly `chz`, 4000 samples in a second, which reports 0.05 Hz less. */
+static void is_at_most_off(uint16_t chz, uint16_t count, bool complete, uint32_t off_us)
+{
+    scan = (tmini_scan_t){.points = points, .count = count, .complete = complete};
+    scan.frequency_chz = (uint16_t)(chz - 5);
+    for (uint16_t i = 0; i < count; i++) {
+        points[i].angle_q6 = (uint16_t)((uint32_t)i * chz / 100u * 576u / 100u % 23040u);
+        const uint32_t true_us = (uint32_t)i * 250u;
+        const uint32_t time_us = tmini_point_time_us(&scan, i);
+        TEST_ASSERT_UINT32_WITHIN(off_us, true_us, time_us);
+    }
+}
+
+void test_points_are_a_millisecond_and_a_half_off_at_most(void)
+{
+    is_at_most_off(650, 615, true, 300);
+    is_at_most_off(650, 600, false, 1500);
+    is_at_most_off(1200, 333, true, 300);
+    is_at_most_off(1200, 300, false, 1000);
 }
 
 void test_with_an_unknown_period_a_sample_takes_250_us(void)
@@ -147,13 +199,16 @@ void test_with_an_unknown_period_a_sample_takes_250_us(void)
     is_at(3, 750);
 }
 
+/* 23039 / 23040 of 2,857,142 us, to 16 of them; 0.34 Hz are less than any revolution has. */
 void test_the_longest_period_does_not_overflow(void)
 {
     has_angles(0, 90 * DEGREE, 180 * DEGREE, 23039);
-    scan.frequency_chz = 0;
-    scan.start_ms = 0;
-    scan.end_ms = 3000;
-    is_at(3, 2999869);  /* 23039 / 23040 of 3 s. */
-    scan.end_ms = 3001; /* No revolution is so slow. */
+    points[2].angle_q6 = 180 * DEGREE;
+    scan.count = 5;
+    points[4].angle_q6 = 355 * DEGREE;
+    points[3].angle_q6 = 23039;
+    scan.frequency_chz = 35;
+    is_at(3, 2857011);
+    scan.frequency_chz = 34;
     is_at(3, 750);
 }

@@ -65,7 +65,7 @@ void test_ranges_in_metres_name_what_is_missing_as_the_caller_wishes(void)
 
 void test_a_scan_takes_its_period_and_a_bin_its_share_backwards(void)
 {
-    const tmini_scan_t scan = {.start_ms = 1000, .end_ms = 1100, .complete = true};
+    const tmini_scan_t scan = {.frequency_chz = 1000, .complete = true};
     expect_near(0.1f, tmini_ranges_scan_time(&scan));
     expect_near(-0.00025f, tmini_ranges_time_increment(&scan, 400));
 }

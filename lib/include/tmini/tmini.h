@@ -176,13 +176,15 @@ typedef struct {
     uint32_t bytes_skipped;    /**< In no packet or reply; LastCRC bytes are among them. */
     uint32_t bytes_overrun; /**< Refused by a full ring, or overwritten by DMA before being read. */
     uint32_t bytes_pending; /**< Received and waiting for more. */
-    uint32_t scans;         /**< Delivered as TMINI_EVENT_SCAN. */
-    uint16_t timeouts;      /**< Attempts at commands that ended without the reply, the quiet line
+    uint32_t scans;         /**< Delivered as TMINI_EVENT_SCAN, */
+    uint32_t late_scans; /**< and those ended, or made incomplete, by time alone: no byte was lost.
+                               * A layer below may hold bytes back for more than max_pause_ms. */
+    uint16_t timeouts;   /**< Attempts at commands that ended without the reply, the quiet line
                                * or the first packet that they waited for. */
-    uint16_t losses;        /**< TMINI_EVENT_LOST. */
-    uint16_t recoveries;    /**< TMINI_EVENT_RECOVERED. */
-    uint16_t restarts;      /**< Attempts to recover by a start. */
-    uint16_t reboots;       /**< Attempts to start or recover by a soft reboot. */
+    uint16_t losses;     /**< TMINI_EVENT_LOST. */
+    uint16_t recoveries; /**< TMINI_EVENT_RECOVERED. */
+    uint16_t restarts;   /**< Attempts to recover by a start. */
+    uint16_t reboots;    /**< Attempts to start or recover by a soft reboot. */
 } tmini_counters_t;
 
 /** One lidar: allocated by the caller, set up by tmini_init(). Its members are private. */

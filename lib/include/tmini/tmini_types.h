@@ -79,7 +79,7 @@ typedef struct {
  * motor comes up to speed, the first ones may have more: those are counted as dropped. */
 #define TMINI_SCAN_POINTS_TYPICAL 800u
 
-/** One revolution, and how good it is. */
+/** One revolution, or what came of it, and how good it is. */
 typedef struct {
     tmini_point_t *points;    /**< The caller's own buffer, in order of arrival. */
     uint16_t count;           /**< Points in the buffer. */
@@ -87,11 +87,15 @@ typedef struct {
     uint16_t packets;         /**< Packets received of this revolution. */
     uint16_t gaps;            /**< Places where bytes were lost or damaged: packets may be lost. */
     uint16_t checksum_errors; /**< While it was received, modulo 2^16. */
-    uint16_t frequency_chz;   /**< Measured, 0.01 Hz, from the start packet after it; 0: unknown. */
-    uint32_t start_ms;        /**< The port's clock when its start packet came, and */
-    uint32_t end_ms;          /**< when the packet came that ended it. */
-    bool complete;            /**< A full circle to the next start packet; no gap, none dropped. */
-    bool upside_down; /**< Its angles run against time: turned over by tmini_mount_step(). */
+    uint16_t
+        frequency_chz; /**< Measured, 0.01 Hz, from the start packet after it; if that was lost,
+                                * from the last one. 0: unknown. */
+    uint32_t start_ms; /**< The port's clock when its first sample came, and */
+    uint32_t end_ms;   /**< when the packet came that ended it. */
+    bool complete;     /**< A full circle to the next start packet, in the time of one turn; no
+                       * gap, none dropped. Where the unit sends no LastCRC, up to 4 degrees may be
+                       * missing at its end: nothing shows that. */
+    bool upside_down;  /**< Its angles run against time: turned over by tmini_mount_step(). */
 } tmini_scan_t;
 
 /* -------------------------------------------------------------------------------------- packets */

@@ -24,14 +24,15 @@
 extern "C" {
 #endif
 
-/** How long the revolution took, in milliseconds: by the clock if the scan is complete, and its two
- * start packets did not come in one block; else by the frequency that the lidar measured, from
- * which the clock's period may differ by a quarter. 0 if that is not known either. */
+/** How long the revolution took, in milliseconds: of a complete scan by its number of samples, 4000
+ * in a second (section 1), where that agrees with the reported frequency; else by that, which has
+ * steps of 0.1 Hz. The clock is not asked. 0 if neither is known. */
 uint32_t tmini_scan_period_ms(const tmini_scan_t *scan);
 
-/** When point `index` (below scan->count) was measured, in microseconds after scan->start_ms: by
- * its angle, or, when the period is not known, by its place at 4000 samples a second (section
- * 1). Two divisions. */
+/** When point `index` (below scan->count) was measured, in microseconds after the scan's first
+ * point: by its angle, however the scan is mounted; or, when the period is not known, by its place
+ * at 4000 samples a second (section 1). Two divisions, and a look at each point between it and the
+ * last one before it that is 4 degrees from the first: at most some twenty in a true scan. */
 uint32_t tmini_point_time_us(const tmini_scan_t *scan, size_t index);
 
 /** The circle's constant, as a float. */
