@@ -45,7 +45,7 @@ def prelude(header):
     return ["-Itest/docs/prelude", "-include", f"test/docs/prelude/{header}.h"]
 
 
-HAL = ["-Iport/stm32", *stand_ins("test/port/stm32/stm32_model"), "-DSTM32_MODEL_SR",
+HAL = ["-Iport/stm32", *stand_ins("test/port/stm32/stm32_model", "test/support"), "-DSTM32_MODEL_SR",
        "-DSTM32_MODEL_STREAMS", "-DSTM32_MODEL_YEAR=2024"]
 KERNEL = ["-Iport/freertos", *stand_ins("test/port/freertos/kernel_stub")]
 STM32 = [*C, *HAL, *KERNEL, *prelude("stm32"), "-Wno-pointer-to-int-cast"]
