@@ -112,9 +112,9 @@ static void report_each_second(void)
     const uint32_t lost = counters.bytes_overrun + uart.bytes_lost + uart.overruns;
     printf("%lu scans, nearest in front %u mm, %s; bytes %lu, lost: %lu checksums, %lu bytes, "
            "%lu gaps\n",
-           (unsigned long)counters.scans, obstacle.sectors[0].nearest_mm, must_stop() ? "STOP" : "go",
-           (unsigned long)uart.bytes, (unsigned long)counters.checksum_errors,
-           (unsigned long)lost, (unsigned long)gaps);
+           (unsigned long)counters.scans, obstacle.sectors[0].nearest_mm,
+           must_stop() ? "STOP" : "go", (unsigned long)uart.bytes,
+           (unsigned long)counters.checksum_errors, (unsigned long)lost, (unsigned long)gaps);
 }
 
 static tmini_status_t start_lidar(void)
@@ -133,6 +133,7 @@ static tmini_status_t start_lidar(void)
         .rx_size = sizeof rx,
         .points = points,
         .max_points = TMINI_SCAN_POINTS_TYPICAL,
+        .frequency_chz = 1000, /* 10 Hz, also after a power failure. */
     };
     tmini_status_t status = tmini_pico_init(&board, &wiring);
     if (status == TMINI_OK) {
@@ -151,8 +152,8 @@ int main(void)
 {
     stdio_init_all();
     gpio_init(STOP_PIN);
+    gpio_put(STOP_PIN, true); /* Before it is an output: low means go. */
     gpio_set_dir(STOP_PIN, GPIO_OUT);
-    gpio_put(STOP_PIN, true);
     const tmini_status_t status = start_lidar();
     for (;;) {
         if (status != TMINI_OK) {

@@ -70,6 +70,7 @@ static struct {
     random_t random;
     int functions[PICO_PINS];
     int levels[PICO_PINS];
+    bool values[PICO_PINS]; /* Of the output registers. */
     bool pulled_up[PICO_PINS];
     void (*on_sleep)(void);
     char console[8192];
@@ -600,15 +601,18 @@ void pico_model_on_sleep(void (*callback)(void))
 void gpio_init(uint gpio)
 {
     chip.levels[gpio] = -1;
+    chip.values[gpio] = false;
 }
 
+/* An output has the level that was put before, too. */
 void gpio_set_dir(uint gpio, bool out)
 {
-    chip.levels[gpio] = out ? 0 : -1;
+    chip.levels[gpio] = out ? chip.values[gpio] : -1;
 }
 
 void gpio_put(uint gpio, bool value)
 {
+    chip.values[gpio] = value;
     if (chip.levels[gpio] >= 0) {
         chip.levels[gpio] = value ? 1 : 0;
     }
