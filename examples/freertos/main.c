@@ -163,6 +163,7 @@ static bool start_lidar(void)
         .rx_size = sizeof rx,
         .points = points,
         .max_points = TMINI_SCAN_POINTS_TYPICAL,
+        .frequency_chz = 1000, /* 10 Hz, also after a power failure. */
     };
     if (tmini_freertos_init(&board, &wiring) != TMINI_OK ||
         tmini_init(&lidar, &config) != TMINI_OK ||

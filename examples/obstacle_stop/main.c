@@ -98,6 +98,7 @@ static tmini_posix_status_t set_up(const char *path)
         .rx_size = sizeof rx,
         .points = points,
         .max_points = TMINI_SCAN_POINTS_TYPICAL,
+        .frequency_chz = 1000, /* 10 Hz, also after a power failure. */
         .timing = &timing,
     };
     tmini_posix_init(&serial, path);

@@ -139,6 +139,7 @@ static void set_up(void)
         .rx_size = sizeof rx,
         .points = points,
         .max_points = TMINI_SCAN_POINTS_TYPICAL,
+        .frequency_chz = 1000, /* 10 Hz, also after a power failure. */
     };
     const tmini_esp32_config_t wiring = TMINI_ESP32_CONFIG_DEFAULT;
     open_stop_pin();

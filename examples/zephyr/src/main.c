@@ -110,6 +110,7 @@ static bool start_lidar(void)
         .rx_size = sizeof rx,
         .points = points,
         .max_points = TMINI_SCAN_POINTS_TYPICAL,
+        .frequency_chz = 1000, /* 10 Hz, also after a power failure. */
     };
     return tmini_zephyr_init(&board, LIDAR_UART) == 0 && tmini_init(&lidar, &config) == TMINI_OK &&
            tmini_zephyr_start(&board, &lidar) == 0 && tmini_request_info(&lidar) == TMINI_OK;
