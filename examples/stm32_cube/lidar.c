@@ -15,7 +15,6 @@
 #include "tmini/tmini_names.h"
 #endif
 
-#define RETRY_MS 1000u
 #define REPORT_MS 1000u
 
 /* Aligned for the data cache of a Cortex-M7; elsewhere that does no harm. It must lie in a RAM that
@@ -26,7 +25,6 @@ static tmini_t lidar;
 static tmini_stm32_hal_t port;
 
 static obstacle_t obstacle;
-static uint32_t tried_ms;
 
 /* --------------------------------------------- the HAL's callbacks: share them with other UARTs */
 
@@ -35,6 +33,19 @@ void HAL_UARTEx_RxEventCallback(UART_HandleTypeDef *huart, uint16_t Size)
     (void)Size;
     tmini_stm32_hal_rx_event(&port, huart);
 }
+
+/* An older HAL does not say which event it reports. */
+#ifndef HAL_UART_RXEVENT_HT
+void HAL_UART_RxHalfCpltCallback(UART_HandleTypeDef *huart)
+{
+    tmini_stm32_hal_rx_half_complete(&port, huart);
+}
+
+void HAL_UART_RxCpltCallback(UART_HandleTypeDef *huart)
+{
+    tmini_stm32_hal_rx_complete(&port, huart);
+}
+#endif
 
 void HAL_UART_ErrorCallback(UART_HandleTypeDef *huart)
 {
@@ -70,8 +81,7 @@ static void report(void)
            tmini_state_name(tmini_state(&lidar)),
            tmini_faults_text(tmini_faults(&lidar), faults, sizeof faults),
            (unsigned long)counters.scans, (unsigned)lidar_ahead_mm(),
-           (unsigned long)counters.checksum_errors,
-           (unsigned long)counters.bytes_overrun);
+           (unsigned long)counters.checksum_errors, (unsigned long)counters.bytes_overrun);
 #endif
 }
 
@@ -85,15 +95,6 @@ static void drive(void)
     }
     HAL_GPIO_WritePin(DRIVE_ENABLE_GPIO_Port, DRIVE_ENABLE_Pin,
                       obstacle_may_move(&obstacle, HAL_GetTick()) ? GPIO_PIN_SET : GPIO_PIN_RESET);
-}
-
-/* At first, and after a failure. A lidar lost while it scans is brought back by the library. */
-static void try_to_scan(void)
-{
-    if (HAL_GetTick() - tried_ms >= RETRY_MS) {
-        tried_ms = HAL_GetTick();
-        (void)tmini_start(&lidar); /* Refused while it is under way, or done. */
-    }
 }
 
 void lidar_start(UART_HandleTypeDef *uart)
@@ -111,8 +112,7 @@ void lidar_start(UART_HandleTypeDef *uart)
         tmini_stm32_hal_start(&port, &lidar) == TMINI_ERROR_ARGUMENT) {
         Error_Handler(); /* Baud rate, or no circular DMA: see README.md. */
     }
-    tried_ms = HAL_GetTick();
-    (void)tmini_start(&lidar);
+    (void)tmini_start(&lidar); /* Stands: the library tries until the lidar scans. */
 }
 
 /* All that has come: what is left in the buffer might be overwritten before the next call. */
@@ -125,7 +125,6 @@ void lidar_work(void)
             blink(tmini_scan(&lidar));
         }
     }
-    try_to_scan();
     drive();
     report();
 }

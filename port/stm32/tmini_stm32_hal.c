@@ -127,7 +127,7 @@ static void stop_dma(const UART_HandleTypeDef *uart)
     }
 }
 
-/* With the idle line, where the HAL also says which event it reports (since 2022). Without, half
+/* With the idle line, where the HAL also says which event it reports. Without, half
  * and whole buffer and the polls do as well. */
 static HAL_StatusTypeDef receive_by_dma(tmini_stm32_hal_t *port)
 {

@@ -30,7 +30,7 @@
  * better.
  *
  * Everything that can fail is mended by the poll, never in an interrupt: a reception that has
- * stopped, for whatever reason, is started again by the next tmini_poll(). */
+ * stopped is started again by the next tmini_poll(), and once more whenever the lidar is lost. */
 
 #ifndef TMINI_STM32_HAL_H
 #define TMINI_STM32_HAL_H
@@ -97,8 +97,8 @@ tmini_status_t tmini_stm32_hal_init(tmini_stm32_hal_t *port, UART_HandleTypeDef 
  * is circular, byte-wide, with its FIFO off. From the polling context.
  * Returns TMINI_OK;
  *   TMINI_ERROR_STATE     lidar or port not set up; or the HAL refuses to start: polls try again
- *   TMINI_ERROR_ARGUMENT  the UART is not set to 230400 8N1; or DMA: none, not circular, with
- *                         FIFO, or a buffer too large or not aligned */
+ *   TMINI_ERROR_ARGUMENT  the UART is not set to 230400 8N1; or DMA: none, not circular, not by
+ *                         byte, with FIFO, or a buffer too large or not aligned */
 tmini_status_t tmini_stm32_hal_start(tmini_stm32_hal_t *port, tmini_t *lidar);
 
 /** Receives by circular DMA into `block`, a buffer of its own, and copies everything from there
@@ -117,12 +117,12 @@ void tmini_stm32_hal_stop(tmini_stm32_hal_t *port);
  * context, as the three below; none waits, and none does anything for another UART. */
 void tmini_stm32_hal_rx_event(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 
-/** For HAL_UART_RxHalfCpltCallback(), with DMA and blocks and a HAL from before 2022, which does
- * not say which event it reports. */
+/** For HAL_UART_RxHalfCpltCallback(), with DMA and blocks and a HAL that does not define
+ * HAL_UART_RXEVENT_HT, and so does not say which event it reports. */
 void tmini_stm32_hal_rx_half_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 
 /** For HAL_UART_RxCpltCallback(): with bytes takes the one that has come; with DMA and blocks
- * needed under a HAL from before 2022. */
+ * needed under a HAL without HAL_UART_RXEVENT_HT. */
 void tmini_stm32_hal_rx_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 
 /** For HAL_UART_ErrorCallback(): counts the error, so that reception goes on. */
