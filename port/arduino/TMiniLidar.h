@@ -168,9 +168,9 @@ class TMiniLidarBase
 
     /** True while packets come. */
     bool isScanning() const;
-    /** Model, versions, serial number; after TMINI_EVENT_INFO, until the next command. */
+    /** Model, versions, serial number; after TMINI_EVENT_INFO, for good. */
     const tmini_info_t &info() const;
-    /** Faults by request; after TMINI_EVENT_HEALTH, until the next command. */
+    /** Faults by request; after TMINI_EVENT_HEALTH, until the next one. */
     const tmini_health_t &health() const;
     /** A combination of tmini_fault_t; see TMINI_EVENT_FAULTS_CHANGED. */
     uint8_t faults() const;

@@ -27,7 +27,8 @@ file(COPY ${sources} ${CMAKE_CURRENT_LIST_DIR}/TMiniLidar.cpp ${CMAKE_CURRENT_LI
     ${CMAKE_CURRENT_LIST_DIR}/tmini.h
     DESTINATION ${folder}/src)
 file(COPY ${root}/lib/include/tmini DESTINATION ${folder}/src)
-file(COPY ${CMAKE_CURRENT_LIST_DIR}/library.properties ${CMAKE_CURRENT_LIST_DIR}/README.md
+file(COPY ${CMAKE_CURRENT_LIST_DIR}/library.properties ${CMAKE_CURRENT_LIST_DIR}/keywords.txt
+    ${CMAKE_CURRENT_LIST_DIR}/README.md
     ${root}/LICENSE DESTINATION ${folder})
 foreach(sketch ${sketches})
     get_filename_component(name ${sketch} NAME_WE)
