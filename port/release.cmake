@@ -130,6 +130,8 @@ pack(-platformio.tar.gz ${work}/platformio czf)
 
 if(PAGE)
     configure_file(${PAGE} ${out}/tmini-${VERSION}.html COPYONLY)
+    # The page that lies ready in the repository is renewed here and nowhere else.
+    configure_file(${PAGE} ${root}/examples/web/tmini.html COPYONLY)
     message("${out}/tmini-${VERSION}.html")
 endif()
 file(REMOVE_RECURSE ${work})

@@ -107,6 +107,10 @@ def of_documents():
     }
 
 
+def of_page():
+    return {"version": find("examples/web/tmini.html", r"<h1>tmini viewer <small>([0-9.]+)<")}
+
+
 def of_readme():
     return {
         "version": find("README.md", r"^Version ([0-9.]+)\."),
@@ -123,6 +127,7 @@ SAID = {
     "idf_component.yml": (of_esp_idf, "version description licence keywords"),
     "CHANGELOG.md and LICENSE": (of_documents, "version licence author"),
     "README.md": (of_readme, "version licence"),
+    "examples/web/tmini.html": (of_page, "version"),
 }
 
 
