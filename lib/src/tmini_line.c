@@ -13,13 +13,9 @@
  * come from a layer that holds them back. */
 #define HELD_MS 16u
 
-/* Bytes are doubtful if the line has paused at them, or their number is unknown. Others may then be
- * missing before each packet that begins among them. As for the first packet after them:
- *
- *   AHEAD   the pause was before them: there too, if no packet begins among them
- *   MARKED  the same, and one has begun among them: not there
- *   AROUND  the pause may as well have been after them: there in any case */
-enum { DOUBT_NONE, DOUBT_AHEAD, DOUBT_MARKED, DOUBT_AROUND };
+/* A clock that steps back by no more than this shows no time until it has caught up. At the first
+ * look nothing is known of it: 0. */
+#define STEP_BACK_MAX_MS 1000u
 
 /* How long a lidar that scans takes to send them: 13.1 bytes a millisecond (section 1), less some
  * because clocks differ: 12.5. */
@@ -53,7 +49,7 @@ static void note_bytes(tmini_t *lidar, size_t count, uint32_t passed_ms)
     line->silent_ms = 0;
     line->are_held = false;
     if (is_gap || (max_pause_ms > 0 && pause_ms > max_pause_ms + due_ms)) {
-        line->doubt = are_held ? DOUBT_AROUND : DOUBT_AHEAD;
+        line->doubt = true;
         line->doubtful_to = line->received;
     } else if (are_held && pause_ms > due_ms) {
         line->heard_ms += due_ms;
@@ -74,7 +70,9 @@ bool tmini_line_look(tmini_t *lidar)
     tmini_line_t *const line = &lidar->line;
     const size_t head = tmini_ring_head(&lidar->ring);
     const size_t count = tmini_ring_distance(line->received, head);
-    const uint32_t now_ms = lidar->link.port->now_ms(lidar->link.port_context);
+    const uint32_t clock_ms = lidar->link.port->now_ms(lidar->link.port_context);
+    const bool is_back = line->now_ms != 0 && line->now_ms - clock_ms <= STEP_BACK_MAX_MS;
+    const uint32_t now_ms = is_back ? line->now_ms : clock_ms;
     const uint32_t passed_ms = now_ms - line->now_ms;
     line->now_ms = now_ms;
     line->received = head;
@@ -98,21 +96,17 @@ uint32_t tmini_line_arrival_ms(const tmini_t *lidar)
     return lidar->line.now_ms - transit_ms(tmini_ring_distance(position, lidar->line.received));
 }
 
-/* True if the packet delivered begins among the doubtful bytes, or is the first one after them. */
+/* Bytes are doubtful if the line has paused at them, or their number is unknown. Whether it paused
+ * before, among or after them cannot be known: a receiver that was held up hands over late what
+ * came before the pause. So others may be missing before each packet that begins among them, and
+ * before the first one after them. */
 static bool is_in_doubt(tmini_t *lidar)
 {
     tmini_line_t *const line = &lidar->line;
     const size_t left = tmini_ring_distance(tmini_ring_tail(&lidar->ring), line->doubtful_to);
-    const uint8_t doubt = line->doubt;
-    if (doubt == DOUBT_NONE) {
-        return false;
-    }
-    if (left > 0 && left <= TMINI_RING_CLOSED / 2) {
-        line->doubt = doubt == DOUBT_AHEAD ? DOUBT_MARKED : doubt;
-        return true;
-    }
-    line->doubt = DOUBT_NONE;
-    return doubt != DOUBT_MARKED;
+    const bool is_doubtful = line->doubt;
+    line->doubt = is_doubtful && left > 0 && left <= TMINI_RING_CLOSED / 2;
+    return is_doubtful;
 }
 
 /* Since the last packet of the scan, damaged ones may have come instead of others, a few bytes of

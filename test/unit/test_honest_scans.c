@@ -78,7 +78,7 @@ void test_a_silence_of_whole_turns_ends_the_scan(void)
         turns_open_scanning(1024, false);
         continue_after(later);
         TEST_ASSERT_EQUAL_UINT(0, turns_scans.mixed);
-        TEST_ASSERT_EQUAL_UINT(3, turns_scans.count);    /* Two parts, and */
+        TEST_ASSERT_EQUAL_UINT(4, turns_scans.count);    /* Three parts, and */
         TEST_ASSERT_EQUAL_UINT(1, turns_scans.complete); /* that of the whole turn. */
     }
 }
@@ -101,7 +101,7 @@ void test_a_silence_of_nearly_a_whole_turn_ends_the_scan(void)
     be_silent(TURN_MS - 2);
     (void)turns_pass(7, TURNS_PACKETS - 1, 101);
     (void)turns_pass(0, 0, 102);
-    TEST_ASSERT_EQUAL_UINT(2, turns_scans.count);
+    TEST_ASSERT_EQUAL_UINT(3, turns_scans.count);
     TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
 }
 
@@ -148,15 +148,43 @@ void test_packets_cut_to_a_few_bytes_for_a_turn_end_the_scan(void)
     TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
 }
 
-void test_a_silence_between_two_turns_costs_no_scan_but_that_one(void)
+void test_a_silence_between_two_turns_costs_no_scan_but_the_two(void)
 {
     pass_whole_turn(100);
     be_silent(3 * TURN_MS);
     pass_whole_turn(101);
     pass_whole_turn(102);
     (void)turns_pass(0, 0, 103);
-    TEST_ASSERT_TRUE(turns_scans.complete >= 2);
+    TEST_ASSERT_EQUAL_UINT(1, turns_scans.complete);
     TEST_ASSERT_TRUE(turns_scans.last.complete);
+}
+
+/* The receiving task is held up for `held_ms` while the program polls each millisecond, and hands
+ * over at once what came before the line fell silent for a turn. */
+static void be_held_up(unsigned held_packets, uint32_t held_ms)
+{
+    pass_part(TURNS_PACKETS - 2, 100);
+    be_silent(held_ms);
+    turns.now_ms -= held_packets * 10;
+    turns_feed_packets(TURNS_PACKETS - 2, TURNS_PACKETS - 1, 100);
+    if (held_packets > 2) {
+        turns_feed_packets(0, held_packets - 3, 101);
+    }
+    (void)turns_poll();
+    be_silent(TURN_MS - held_ms + held_packets * 10);
+    (void)turns_pass(held_packets - 2, TURNS_PACKETS - 1, 102);
+    (void)turns_pass(0, 0, 103);
+}
+
+void test_a_receiver_that_is_held_up_before_a_silence_mixes_no_turns(void)
+{
+    for (unsigned held_packets = 3; held_packets <= 5; held_packets++) {
+        for (uint32_t held_ms = 60; held_ms <= 160; held_ms += 5) {
+            turns_open_scanning(1024, false);
+            be_held_up(held_packets, held_ms);
+            TEST_ASSERT_EQUAL_UINT(0, turns_scans.mixed);
+        }
+    }
 }
 
 /* ---- The ring overflows while the program is busy ---- */

@@ -31,7 +31,7 @@ typedef struct {
     int (*write)(void *context, const uint8_t *bytes, size_t count);
 
     /** Milliseconds since any moment, running on modulo 2^32; steps of up to 10 ms will do. Must
-     * not wait. Required. */
+     * not wait. A step back of up to a second counts as no time. Required. */
     uint32_t (*now_ms)(void *context);
 
     /** Lets other work run (an RTOS delay, a sleep until the next interrupt) for about a
