@@ -29,7 +29,7 @@ tmini_command   tmini_ring tmini_parser tmini_reply
 tmini_recovery  tmini_command
 tmini_monitor   tmini_packet tmini_ct
 tmini           tmini_ring tmini_parser tmini_frame tmini_packet tmini_reply tmini_ct tmini_decoder
-tmini           tmini_command tmini_recovery tmini_monitor tmini_line
+tmini           tmini_command tmini_recovery tmini_monitor tmini_line tmini_builder
 tmini_blocking  tmini tmini_command
 tmini_sectors   tmini_packet tmini_frame
 tmini_ranges

@@ -516,7 +516,7 @@ tmini_event_t tmini_poll(tmini_t *lidar)
 /* ---------------------------------------------------------------------------------- life cycle */
 
 /* 0: none. */
-static bool is_frequency(uint16_t frequency_chz)
+TMINI_NOINLINE static bool is_frequency(uint16_t frequency_chz)
 {
     return frequency_chz == 0 ||
            (frequency_chz >= TMINI_FREQUENCY_MIN_CHZ && frequency_chz <= TMINI_FREQUENCY_MAX_CHZ &&
@@ -543,8 +543,10 @@ static bool init_modules(tmini_t *lidar, const tmini_config_t *config)
 {
     return tmini_ring_init(&lidar->ring, config->rx_buffer, config->rx_size, config->rx_dma) ==
                TMINI_OK &&
-           tmini_decoder_init(&lidar->decoder, &lidar->ring, config->max_samples, config->points,
-                              config->max_points, config->filter) == TMINI_OK;
+           tmini_decoder_init(&lidar->decoder, &lidar->ring, config->max_samples) == TMINI_OK &&
+           ((config->points == NULL && config->max_points == 0) || /* By packets. */
+            tmini_builder_init(&lidar->decoder.builder, config->points, config->max_points,
+                               config->filter) == TMINI_OK);
 }
 
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)

@@ -3,18 +3,13 @@
 
 #include "tmini/parts/tmini_decoder.h"
 
-tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring, uint8_t max_samples,
-                                  tmini_point_t *points, size_t max_points, unsigned filter)
+tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring, uint8_t max_samples)
 {
     if (decoder == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
     *decoder = (tmini_decoder_t){0};
-    const tmini_status_t status = tmini_parser_init(&decoder->parser, ring, max_samples);
-    if (status != TMINI_OK || (points == NULL && max_points == 0)) {
-        return status;
-    }
-    return tmini_builder_init(&decoder->builder, points, max_points, filter);
+    return tmini_parser_init(&decoder->parser, ring, max_samples);
 }
 
 /* The packet that ended the scan begins the next one. It had to wait, because the scan was to be

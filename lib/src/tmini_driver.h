@@ -10,10 +10,10 @@
  *      ├ tmini_line.c       the time of bytes: arrival, silence, pauses, doubt
  *      └ tmini_decoder.c    bytes to packets, replies and scans
  *
- * Each writes its own group of members of tmini_t (`command`, `recovery`, `monitor`, `line`; tmini.c
- * `link` and those without a group). Ring and decoder are written by their own modules only, which
- * know nothing of tmini_t. test/layers.sh checks both. docs/design.md draws the states and lists
- * the phases. */
+ * Each writes its own group of members of tmini_t (`command`, `recovery`, `monitor`, `line`;
+ * tmini.c `link` and those without a group). Ring and decoder are written by their own modules
+ * only, which know nothing of tmini_t. test/layers.sh checks both. docs/design.md draws the states
+ * and lists the phases. */
 
 #ifndef TMINI_DRIVER_H
 #define TMINI_DRIVER_H

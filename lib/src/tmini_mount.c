@@ -14,9 +14,8 @@ static uint16_t from_degrees(int16_t degrees)
 
 uint16_t tmini_mount_angle(const tmini_mount_t *mount, uint16_t angle_q6)
 {
-    const uint16_t front_q6 = from_degrees(mount->front_deg);
-    return mount->upside_down ? tmini_clockwise(angle_q6, front_q6)
-                              : tmini_clockwise(front_q6, angle_q6);
+    const uint16_t from_front_q6 = tmini_clockwise(from_degrees(mount->front_deg), angle_q6);
+    return mount->upside_down ? tmini_clockwise(from_front_q6, 0) : from_front_q6;
 }
 
 static bool is_in_arc(const tmini_arc_t *arc, uint16_t angle_q6)

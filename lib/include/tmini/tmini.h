@@ -338,8 +338,8 @@ const tmini_info_t *tmini_info(const tmini_t *lidar);
  * 4). */
 const tmini_health_t *tmini_health(const tmini_t *lidar);
 
-/** The scan frequency that is set, in 0.01 Hz, as the lidar has reported it last; 0: not known, also
- * after a loss or a reboot. What is measured is in each scan. */
+/** The scan frequency that is set, in 0.01 Hz, as the lidar has reported it last; 0: not known,
+ * also after a loss or a reboot. What is measured is in each scan. */
 uint16_t tmini_frequency_chz(const tmini_t *lidar);
 
 /** Why the last failed command failed: TMINI_ERROR_TIMEOUT, _WRITE, _REPLY or _ABORTED; _ARGUMENT

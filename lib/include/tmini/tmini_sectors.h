@@ -76,9 +76,9 @@ void tmini_sectors_add(tmini_sectors_t *sectors, const tmini_point_t *point);
 /** Takes all points of a scan, in the place of what was there. */
 void tmini_sectors_add_scan(tmini_sectors_t *sectors, const tmini_scan_t *scan);
 
-/** Takes all points of a packet, but those that DMA has overwritten. Returns true if it is the start
- * packet that ends a revolution: the sectors hold that one until the next packet is added. What was
- * lost of it is blind; what precedes the first start packet is no revolution. */
+/** Takes all points of a packet, but those that DMA has overwritten. Returns true if it is the
+ * start packet that ends a revolution: the sectors hold that one until the next packet is added.
+ * What was lost of it is blind; what precedes the first start packet is no revolution. */
 bool tmini_sectors_add_packet(tmini_sectors_t *sectors, const tmini_packet_t *packet);
 
 /** The sector, 0 to count - 1, of an angle in 1/64 degree, below TMINI_FULL_CIRCLE_Q6. */

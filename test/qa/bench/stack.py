@@ -60,10 +60,11 @@ class Graph:
 
 
 def is_port_call(place):
-    """True if the source at file:line:column calls one of the port's functions."""
+    """True if the source at file:line:column calls a function of the user's: the port's, or a step."""
     name, line, _ = place.rsplit(":", 2)
     path = ROOT / name.removeprefix("./")
-    return "port->" in path.read_text().splitlines()[int(line) - 1]
+    code = path.read_text().splitlines()[int(line) - 1]
+    return "port->" in code or "link.step(" in code
 
 
 def add_frames(graph, text):

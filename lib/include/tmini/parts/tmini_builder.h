@@ -63,8 +63,8 @@ void tmini_builder_discard(tmini_builder_t *builder);
 
 /** Adds `packet`, which came at `now_ms`, to the scan under way, or begins one. If it does not
  * belong to the scan under way, finishes that instead and returns true: builder->scan is then valid
- * until the same packet is added again. Where there is no time, `now_ms` is the same at each call. A packet that DMA overwrote meanwhile leaves a
- * gap, never a wrong point. */
+ * until the same packet is added again. Where there is no time, `now_ms` is the same at each call.
+ * A packet that DMA overwrote meanwhile leaves a gap, never a wrong point. */
 bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms);
 
 /** Something outside the packets proves that one of the scan under way was lost (LastCRC, section

@@ -5,7 +5,8 @@
  * Bytes to packets, replies and scans: parser, CT information and scan builder joined. The driver
  * is built on it, and so is a program that decodes a recording:
  *
- *     tmini_decoder_init(&decoder, &ring, 0, points, max_points, TMINI_FILTER_NONE);
+ *     tmini_decoder_init(&decoder, &ring, 0);
+ *     tmini_builder_init(&decoder.builder, points, max_points, TMINI_FILTER_NONE);
  *     ...
  *     while (tmini_decoder_next(&decoder, 0) == TMINI_FRAME_PACKET) {
  *         if (tmini_decoder_take(&decoder, false, now_ms)) { use(&decoder.builder.scan); }
@@ -29,7 +30,8 @@
 extern "C" {
 #endif
 
-/** A decoder over one ring. Members may be read; `parser` may be used by its own functions. */
+/** A decoder over one ring. Members may be read; `parser` and `builder` may be used by their own
+ * functions. */
 typedef struct {
     bool packet_waits; /**< The packet that ended the scan has not been added to the next one. */
     uint8_t verdict;   /**< What the latest packet shows of the revolution that it ends: a
@@ -41,11 +43,10 @@ typedef struct {
 } tmini_decoder_t;
 
 /** Decodes what arrives in `ring`, which must outlive the decoder. `max_samples`: packets with more
- * are not valid; 0: the default. Scans go to `points`, of which there are `max_points`; NULL and 0:
- * packets only. `filter`: of scans, a combination of tmini_filter_t. Returns TMINI_OK, or
- * TMINI_ERROR_ARGUMENT: a null pointer, a ring too small, or what tmini_builder_init() refuses. */
-tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring, uint8_t max_samples,
-                                  tmini_point_t *points, size_t max_points, unsigned filter);
+ * are not valid; 0: the default. It finds packets; for scans set up its builder next. Returns what
+ * tmini_parser_init() does, and TMINI_ERROR_ARGUMENT for a null pointer. */
+tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring,
+                                  uint8_t max_samples);
 
 /** Goes on to the next frame, as tmini_parser_next_after() does. The scan delivered last ends to be
  * valid. */

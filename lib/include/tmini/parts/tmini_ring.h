@@ -86,7 +86,7 @@ TMINI_INLINE void tmini_ring_put(tmini_ring_t *ring, uint8_t byte)
     if (head == ring->stop) {
         tmini_ring_put_at_stop(ring, byte);
     } else {
-        *(uint8_t *)(ring->origin + head) = byte;
+        *(uint8_t *)(ring->origin + head) = byte; /* NOLINT(performance-no-int-to-ptr) */
         tmini_store(&ring->head, head + 1);
     }
 }
