@@ -87,6 +87,7 @@ def test_a_scan_comes_out_as_the_robot_sees_it():
     masked = (turned.angles_deg <= 10) | (turned.angles_deg >= 350)
     assert np.isnan(turned.ranges_m[masked]).all() and masked.any()
     assert np.array_equal(turned.ranges_m[~masked], plain.ranges_m[~masked], equal_nan=True)
+    assert np.array_equal(turned.times_s, plain.times_s)
 
 
 def test_a_recording_that_is_not_there_is_an_error():

@@ -60,7 +60,6 @@ class _Decoder:
         lib.tmini_builder_init(self._builder, self._points, _POINTS, 0)
         self._samples = 0
         self._starts = 0
-        self._number = 0  # Of the scan under way; 0: there is none.
         self._packet_ms: int | None = None
 
     def feed(self, data: bytes, at_ms: int | None) -> Iterator[Scan]:
@@ -74,7 +73,7 @@ class _Decoder:
         while lib.tmini_parser_pending(self._parser) > 0:
             lib.tmini_parser_abandon(self._parser)
             yield from self._parse(at_ms)
-        if self._number:
+        if self._builder.open:
             yield self._scan()
 
     def _parse(self, at_ms: int | None) -> Iterator[Scan]:
@@ -98,14 +97,12 @@ class _Decoder:
             lib.tmini_builder_add(builder, packet, now_ms)
         if packet.ct & 1:
             self._starts += 1
-            self._number = self._starts
         return scan
 
     def _scan(self) -> Scan:
         native = self._builder.scan
         lib.tmini_mount_step(self._mount.native, ffi.addressof(native))
-        number, self._number = self._number, 0
-        return Scan(native, number, lib.tmini_ct_faults(self._ct), native.start_ms / 1000)
+        return Scan(native, self._starts, lib.tmini_ct_faults(self._ct), native.start_ms / 1000)
 
 
 def read(path: str | os.PathLike[str], *, front: int = 0, upside_down: bool = False,
