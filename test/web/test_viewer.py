@@ -667,7 +667,7 @@ class Serial(Viewer):
         self.page.wait_text("#state", "scanning")
         self.wait_scans(2)
         self.note_qualities()
-        self.page.run("bench.line = 'held'; setTimeout(() => { bench.line = 'good'; }, 50)")
+        self.page.run("bench.line = 'held'; setTimeout(() => { bench.line = 'good'; }, 20)")
         self.wait_scans(3)
         self.assertEqual([], self.page.run("return qualities.filter((quality) => quality !== 'complete')"))
 
