@@ -141,7 +141,8 @@ static void report_each_second(void)
     tmini_counters(&lidar, &counters);
     tmini_freertos_counters(&board, &uart);
     tell("", counters.scans, " scans");
-    tell(", nearest in front ", obstacle.sectors[0].nearest_mm, must_stop() ? " mm, STOP" : " mm, go");
+    tell(", nearest in front ", obstacle.sectors[0].nearest_mm,
+         must_stop() ? " mm, STOP" : " mm, go");
     tell("; bytes ", uart.bytes, "");
     tell(", lost: ", counters.checksum_errors, " checksums");
     tell(", ", counters.bytes_overrun + uart.bytes_lost + uart.overruns, " bytes");

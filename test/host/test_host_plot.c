@@ -199,7 +199,7 @@ void test_an_unfinished_scan_can_be_chosen_and_is_called_so(void)
     plot(RECORDINGS "sim-6hz.bin", "--scan", "9");
     decode(RECORDINGS "sim-6hz.bin", 9);
     expect_points(6);
-    expect_said(": Scan 9 (incomplete); frequency unknown ");
+    expect_said(": Scan 9 (incomplete); 6.0 Hz ");
 }
 
 void test_all_scans_fit_in_one_picture(void)

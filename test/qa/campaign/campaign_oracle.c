@@ -215,8 +215,7 @@ void oracle_end(oracle_t *oracle, const host_t *host)
     oracle_judge_account(oracle, host);
     note(oracle, WRONG_REMAINDER, counters.bytes_pending > 0);
     /* What an overflow has cost cannot be known from outside. */
-    if (counters.bytes_overrun == 0 &&
-        (host->gaps_told == 0 || host->config.feed != FEED_DMA)) {
+    if (counters.bytes_overrun == 0 && (host->gaps_told == 0 || host->config.feed != FEED_DMA)) {
         judge_cost(oracle, host);
     }
 }

@@ -120,8 +120,8 @@ static void change_builder(tmini_builder_t *builder, bool open)
     ASSUME(builder_is_sound(builder));
 }
 
-tmini_status_t tmini_builder_init(tmini_builder_t *builder, tmini_point_t *buffer,
-                               size_t capacity, unsigned filter)
+tmini_status_t tmini_builder_init(tmini_builder_t *builder, tmini_point_t *buffer, size_t capacity,
+                                  unsigned filter)
 {
     (void)filter;
     if (buffer == NULL || capacity == 0 || capacity > UINT16_MAX || any_bool()) {
