@@ -151,7 +151,12 @@ static void watch(check_t *check)
             see_scan(check);
         }
         check->faults |= tmini_faults(&device->lidar);
+        message_progress(false, "%2u s of %u, %llu packets",
+                         (unsigned)(device_ms(device) - begun_ms) / 1000, check->seconds,
+                         device->stream.packets);
     }
+    message_progress(true, "%u s watched, %llu packets",
+                     (unsigned)(device_ms(device) - begun_ms) / 1000, device->stream.packets);
 }
 
 static void judge_supply(check_t *check)
@@ -170,7 +175,8 @@ static void judge_supply(check_t *check)
                full_speed_s);
     } else {
         char until[40] = "";
-        if (check->full_speed_ms > 0) {
+        if (check->full_speed_ms > 0 &&
+            ((check->faults | check->idle_faults) & TMINI_FAULT_ENCODER) == 0) {
             (void)snprintf(until, sizeof until, ", full speed after %.1f s", full_speed_s);
         }
         answer(check, GOOD, "supply", NULL, "no restart; first packet after %.2f s%s",
@@ -208,6 +214,7 @@ static void judge_line(check_t *check)
 
 static void judge_speed(check_t *check)
 {
+    const unsigned faults = check->faults | check->idle_faults;
     const unsigned set_chz = check->set_chz;
     const unsigned speed_chz = check->speed_chz;
     const unsigned off_chz = set_chz > speed_chz ? set_chz - speed_chz : speed_chz - set_chz;
@@ -215,6 +222,8 @@ static void judge_speed(check_t *check)
     if (speed_chz == 0) {
         answer(check, BAD, "frequency", "does it turn? Is something in its way?",
                "no revolution was completed");
+    } else if ((faults & TMINI_FAULT_ENCODER) != 0) {
+        return; /* Its speed means nothing, as has been said. */
     } else if (set_chz > 0) {
         answer(check, grade(percent > SPEED_PERCENT, percent > SPEED_REMARK_PERCENT), "frequency",
                "the supply may be weak, or something may brake the rotor",

@@ -40,13 +40,9 @@ static void note_packet(gist_t *gist, const recording_t *recording)
 /* The scan that the recording's end cuts off is nobody's fault. */
 static void print_scans(const gist_t *gist, const stream_t *stream)
 {
-    const count_t incomplete = stream->scans - stream->complete;
-    (void)printf("scans       %llu complete", stream->complete);
-    if (incomplete > 0) {
-        (void)printf(", %llu with packets missing", incomplete);
-    }
-    (void)printf("%s\npoints      %llu, %llu of them with a distance",
-                 stream->is_open ? "; the next one has begun" : "", stream->points, gist->valid);
+    (void)printf("scans       %s%s\npoints      %llu, %llu of them with a distance",
+                 scans_text(stream), stream->is_open ? "; the next one has begun" : "",
+                 stream->points, gist->valid);
     if (stream->points_before > 0) {
         (void)printf("; %llu before the first start packet", stream->points_before);
     }
@@ -99,10 +95,11 @@ static void print_summary(const gist_t *gist, const recording_t *recording)
     if (stream->damaged > 0) {
         (void)printf(": about %llu packets damaged (%s)", stream->damaged, damaged_text(stream));
     }
-    (void)printf("\nstream      %llu bytes in %.3f s%s: %llu packets, %llu guard bytes; "
-                 "%llu bytes before the first packet, %llu after the last\n",
+    (void)printf("\nstream      %llu bytes in %.3f s%s: %llu packets,\n"
+                 "            %llu guard bytes, %llu bytes before the first packet, "
+                 "%llu after the last\n",
                  recording->bytes, (double)recording->time_us / 1e6,
-                 recording->is_timed ? "" : " (at 4000 samples a second)", stream->packets,
+                 recording->is_timed ? "" : " (at 4000 samples per second)", stream->packets,
                  stream->guard_bytes, recording->bytes_before,
                  recording_skipped(recording) - recording->bytes_until);
 }

@@ -10,8 +10,10 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "chunk.h"
 #include "device.h"
 #include "output.h"
+#include "points.h"
 #include "recording.h"
 
 /* How often progress is shown. */
@@ -20,15 +22,14 @@
 /* More than comes through the line in the time that a start may take. */
 #define HELD_MAX 400000u
 
-/* Until the lidar has started, what it says is held: a file that exists is not to be lost to a
+/* Until the lidar has started, what it sends is held: a file that exists is not to be lost to a
  * lidar that does not answer. */
 typedef struct {
     const char *path;
     FILE *file; /* NULL until then. */
-    bool is_timed;
     uint64_t begun_us;
-    uint64_t stamp_us; /* Of the chunk before. */
-    count_t bytes;     /* Of the lidar's. */
+    uint64_t stamp_us;     /* Of the chunk before. */
+    recording_t recording; /* The same bytes, as they will be read. */
     size_t held_count;
     uint8_t held[HELD_MAX];
 } tape_t;
@@ -50,33 +51,29 @@ static void put(tape_t *tape, const uint8_t *bytes, size_t count)
     }
 }
 
-/* The port's tap: its blocks are far smaller than the 64 KiB of a chunk. A pause of more than the
- * 71 minutes that fit in 32 bits is shortened to them. */
+/* The port's tap: its blocks are smaller than a chunk may be. A pause of more than the 71 minutes
+ * that fit in 32 bits is shortened to them. */
 static void write_tape(void *context, const uint8_t *bytes, size_t count)
 {
     tape_t *const tape = context;
     const uint64_t now = now_us();
     const uint64_t since = now - tape->stamp_us;
-    const uint32_t delta = since < UINT32_MAX ? (uint32_t)since : UINT32_MAX;
-    const uint8_t head[CHUNK_HEAD_SIZE] = {(uint8_t)delta,         (uint8_t)(delta >> 8),
-                                           (uint8_t)(delta >> 16), (uint8_t)(delta >> 24),
-                                           (uint8_t)count,         (uint8_t)(count >> 8)};
-    put(tape, head, tape->is_timed ? sizeof head : 0);
+    uint8_t head[CHUNK_HEAD_SIZE];
+    chunk_write_head(head, since < UINT32_MAX ? (uint32_t)since : UINT32_MAX, bytes, count);
+    put(tape, head, tape->recording.is_timed ? sizeof head : 0);
     put(tape, bytes, count);
+    recording_feed(&tape->recording, bytes, count, now - tape->begun_us);
     tape->stamp_us = now;
-    tape->bytes += count;
 }
 
 /* What is there of the recording, and how good it is. */
-static const char *tape_text(const device_t *device, const tape_t *tape)
+static const char *tape_text(const tape_t *tape)
 {
-    static char text[120];
-    tmini_counters_t counters;
-    tmini_counters(&device->lidar, &counters);
-    (void)snprintf(
-        text, sizeof text, "%.1f s, %llu bytes, %llu scans, %u wrong checksums, %u bytes overrun",
-        (double)(tape->stamp_us - tape->begun_us) / 1e6, tape->bytes, device->stream.scans,
-        counters.checksum_errors, counters.bytes_overrun);
+    static char text[160];
+    (void)snprintf(text, sizeof text, "%.1f s, %llu bytes; scans: %s; %llu wrong checksums",
+                   (double)(tape->stamp_us - tape->begun_us) / 1e6, tape->recording.bytes,
+                   scans_text(&tape->recording.stream),
+                   recording_checksum_errors(&tape->recording));
     return text;
 }
 
@@ -92,7 +89,7 @@ static int roll(device_t *device, const options_t *options, tape_t *tape)
         is_over = options->seconds > 0 && device_ms(device) - begun_ms >= options->seconds * 1000;
         if (device_ms(device) - shown_ms >= PROGRESS_MS) {
             shown_ms = device_ms(device);
-            message_progress(false, "%s", tape_text(device, tape));
+            message_progress(false, "%s", tape_text(tape));
             (void)fflush(tape->file); /* For who reads along, and against a power failure. */
         }
     }
@@ -109,9 +106,10 @@ static int record(device_t *device, const options_t *options)
         return device_why(device);
     }
     tape.path = options->operand;
-    tape.is_timed = options->timed || (ending != NULL && strcmp(ending, ".tmini") == 0);
+    recording_begin_live(&tape.recording,
+                         options->timed || (ending != NULL && strcmp(ending, ".tmini") == 0));
     tape.begun_us = tape.stamp_us = now_us();
-    put(&tape, recording_magic, tape.is_timed ? sizeof recording_magic : 0);
+    put(&tape, chunk_magic, tape.recording.is_timed ? sizeof chunk_magic : 0);
     tmini_posix_tap(&device->serial, write_tape, &tape);
     int status = device_start(device);
     if (status == STATUS_OK) {
@@ -123,8 +121,8 @@ static int record(device_t *device, const options_t *options)
     if (tape.file == NULL) {
         return status;
     }
-    message_note("%s: %s", tape.file == stdout ? "standard output" : tape.path,
-                 tape_text(device, &tape));
+    recording_end_live(&tape.recording);
+    message_note("%s: %s", tape.file == stdout ? "standard output" : tape.path, tape_text(&tape));
     return output_close(tape.file, tape.path, status);
 }
 

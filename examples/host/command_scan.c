@@ -20,11 +20,11 @@ static void print_scan(const stream_t *stream, const options_t *options)
     if (options->json) {
         rows_print_scan(stream);
     } else if (!options->csv) {
-        (void)printf("scan %-4llu  %s  %3zu points, %3zu with a distance%s%s%s\n", stream->number,
-                     frequency_text(stream->scan.frequency_chz), survey.count, survey.valid,
+        (void)printf("%s %-4llu  %7s  %3zu/%3zu points%s%s\n",
+                     stream->scan.complete ? "scan" : "part", stream->number,
+                     frequency_text(stream->scan.frequency_chz), survey.valid, survey.count,
                      survey.nearest != NULL ? "  nearest " : "",
-                     survey.nearest != NULL ? place_text(survey.nearest) : "",
-                     stream->scan.complete ? "" : "  (incomplete)");
+                     survey.nearest != NULL ? place_text(survey.nearest) : "");
     }
     (void)fflush(stdout); /* So that who reads along does so at once. */
 }
@@ -67,8 +67,8 @@ static int scan(device_t *device, const options_t *options)
         return status;
     }
     status = print_scans(device, options);
-    message_note("%llu scans, %llu complete, %llu with a distance; %s of the packets damaged",
-                 stream->scans, stream->complete, scans_with_range, damaged_text(stream));
+    message_note("scans: %s; %llu with a distance; %s of the packets damaged", scans_text(stream),
+                 scans_with_range, damaged_text(stream));
     if (status == STATUS_OK && stream->scans > 0 && scans_with_range == 0) {
         return message_fail("no scan had a distance: is the window covered, or the rotor blocked? "
                             "`tmini health` tells more");
@@ -81,9 +81,10 @@ const command_t command_scan = {
     .usage = "[-p PORT] [-n N] [--csv|--json]",
     .summary = "scans as they come, until Ctrl-C or N of them",
     .details =
-        "A line a scan; or, with the same columns and members as `tmini decode`, --csv or\n"
-        "--json. Exit status 1 also when no scan had a distance. While the motor comes up to\n"
-        "speed, the first scans have more points than the later ones.",
+        "A line per scan: its number, the frequency, the points with a distance of all points,\n"
+        "and the nearest one; \"part\": packets of it are missing. Or, with the same columns and\n"
+        "members as `tmini decode`, --csv or --json. Exit status 1 also when no scan had a\n"
+        "distance. While the motor comes up to speed, the first scans have more points.",
     .accepts = "pnCJq",
     .use = scan,
 };

@@ -47,7 +47,7 @@ static int open_viewer(viewer_t *viewer, const char *source, const stream_t *str
 {
     *viewer = (viewer_t){.view = {.source = source, .state = "", .stream = stream},
                          .screen = screen_begin()};
-    interrupt_watch();
+    interrupt_watch(false);
     return terminal_take() ? STATUS_OK
                            : message_fail("view draws in a terminal, and there is none; try `tmini "
                                           "scan`, `decode` or `plot`");

@@ -178,9 +178,11 @@ bool device_stop(device_t *device)
 bool device_next_scan(device_t *device,
                       void (*print)(const stream_t *stream, const tmini_packet_t *packet))
 {
-    const uint32_t begun_ms = device_ms(device);
-    while (device_is_usable(device) && device_ms(device) - begun_ms < SCAN_MS) {
+    uint32_t waited_ms = 0;
+    while (device_is_usable(device) && waited_ms < SCAN_MS) {
+        const uint32_t begun_ms = device_ms(device);
         const tmini_event_t event = device_wait(device, SLICE_MS);
+        waited_ms += device_ms(device) - begun_ms; /* Not while the reader of a pipe pauses. */
         if (print != NULL && (event == TMINI_EVENT_PACKET || event == TMINI_EVENT_SCAN)) {
             print(&device->stream, tmini_packet(&device->lidar));
         }
@@ -233,8 +235,18 @@ static bool answers_info(device_t *device)
     return is_stopped && device_await(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO);
 }
 
+static bool is_socket(const char *path)
+{
+    return strncmp(path, "tcp:", 4) == 0;
+}
+
 static int explain_port(const device_t *device)
 {
+    if (device->serial.state == TMINI_POSIX_UNPLUGGED && is_socket(device->path)) {
+        return message_fail("%s has gone: the other end closed the connection. Does it still run, "
+                            "and is it\nin reach? Then try again.",
+                            device->path);
+    }
     if (device->serial.state == TMINI_POSIX_UNPLUGGED) {
         return message_fail(
             "%s has gone: the adapter was unplugged, or has lost its supply. Plug it "
@@ -307,9 +319,17 @@ static const char *advice_for(tmini_posix_status_t status, const char *path)
                                         "decode`, `plot FILE` or `view FILE`.",
         [-TMINI_POSIX_BAUD_RATE] = "it cannot do 230400 baud, the lidar's only baud rate. Use an "
                                    "adapter that can.",
-        [-TMINI_POSIX_ADDRESS] = "a lidar behind a socket is tcp:HOST:PORT, and there must be such "
-                                 "a host.",
+        [-TMINI_POSIX_ADDRESS] = "a lidar on the network is tcp:HOST:PORT, for example "
+                                 "tcp:192.168.4.1:3333.",
     };
+    const char *const colon = strrchr(path, ':');
+    if (status == TMINI_POSIX_ADDRESS && colon - path > 4 && colon[1] != '\0') {
+        return "there is no host of that name, or the port is no number. Is it spelled right, and "
+               "is this\ncomputer on the same network?";
+    }
+    if (is_socket(path) && errno == ECONNREFUSED) {
+        return "Connection refused: the host is there, but nothing serves that port.";
+    }
     const bool is_address = strchr(path, ':') != NULL && strchr(path, '/') == NULL;
     const size_t index = is_address && status == TMINI_POSIX_NO_DEVICE
                              ? (size_t)-TMINI_POSIX_ADDRESS
@@ -331,7 +351,7 @@ int device_use(const options_t *options, int (*use)(device_t *device, const opti
         return message_fail("cannot use %s: %s", device.path, advice_for(opened, device.path));
     }
     device.begun_ms = tmini_posix_port.now_ms(&device.serial);
-    interrupt_watch();
+    interrupt_watch(true);
     interrupt_last_words(stop_at_once);
     const int status = use(&device, options);
     if (device.was_started) {

@@ -44,27 +44,27 @@ void interrupt_last_words(void (*speak)(void))
 }
 
 /* One after another, so that the last words are whole. */
-static void handle(int signal_number, void (*handler)(int))
+static void handle(int signal_number, void (*handler)(int), int flags)
 {
-    struct sigaction action = {.sa_handler = handler};
+    struct sigaction action = {.sa_handler = handler, .sa_flags = flags};
     (void)sigfillset(&action.sa_mask);
     (void)sigaction(signal_number, &action, NULL);
 }
 
 void interrupt_watch_pipes(void)
 {
-    handle(SIGPIPE, leave);
+    handle(SIGPIPE, leave, 0);
     (void)signal(SIGXFSZ, SIG_IGN); /* Writing then fails, as on a full disk. */
 }
 
 /* A signal that is ignored stays so: `nohup`, jobs in the background of a script. */
-void interrupt_watch(void)
+void interrupt_watch(bool writes_whole)
 {
     static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGALRM};
     for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
         struct sigaction before;
         if (sigaction(signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
-            handle(signals[i], note);
+            handle(signals[i], note, writes_whole ? SA_RESTART : 0);
         }
     }
 }

@@ -14,8 +14,10 @@
  * does other programs, but for the last words; and a file that may not grow is as a full disk. */
 void interrupt_watch_pipes(void);
 
-/* From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT are only noted, unless they are ignored. */
-void interrupt_watch(void);
+/* From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT are only noted, unless they are ignored. With
+ * `writes_whole` output that has begun is written to its end, if its reader takes it in time;
+ * otherwise the signal cuts it short. */
+void interrupt_watch(bool writes_whole);
 
 /* What to do when a second one comes, or a pipe is closed: called from the signal's handler. Up to
  * two functions; one that is there already is not added again. */

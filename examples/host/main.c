@@ -19,6 +19,7 @@
 #include "options.h"
 #include "output.h"
 #include "points.h"
+#include "words.h"
 
 /* ------------------------------------------------------------------------------------- options */
 
@@ -102,11 +103,12 @@ static bool apply(options_t *options, const option_t *option, const char *value)
     return true;
 }
 
-/* For getopt_long(): the short options, after a "-" that asks for all words in their order; and the
- * long ones. */
+/* For getopt_long(): the short options, after a "-" that asks for all words in their order and a ":"
+ * that asks it to say nothing; and the long ones. */
 static void list_options(char *short_ones, struct option *long_ones)
 {
     *short_ones++ = '-';
+    *short_ones++ = ':';
     for (size_t i = 0; i < OPTIONS; i++) {
         const int has_value = table[i].value != NULL ? required_argument : no_argument;
         long_ones[i] = (struct option){table[i].name, has_value, NULL, table[i].letter};
@@ -126,35 +128,60 @@ static bool take_word(options_t *options, const char *word)
     return true;
 }
 
-/* getopt_long() itself says what it cannot take. */
-static bool refuse(const options_t *options)
+static const char *nearest_option(const char *typed)
 {
-    const bool has_command = options->word_count > 0;
-    (void)message_usage("see tmini %s%s--help", has_command ? options->words[0] : "",
-                        has_command ? " " : "");
+    const char *names[OPTIONS];
+    for (size_t i = 0; i < OPTIONS; i++) {
+        names[i] = table[i].name;
+    }
+    return words_nearest(typed, names, OPTIONS);
+}
+
+static const char *advice(const char *nearest, const char *before)
+{
+    static char text[60];
+    (void)snprintf(text, sizeof text, nearest != NULL ? "; did you mean %s%s?" : "", before,
+                   nearest);
+    return text;
+}
+
+/* Says what getopt_long() could not take. */
+static bool refuse(const options_t *options, int answer, const char *word)
+{
+    const char *const command = options->word_count > 0 ? options->words[0] : "COMMAND";
+    char name[24] = "";
+    if (answer == ':') {
+        (void)message_usage("%s needs a value; see tmini %s --help", word, command);
+    } else if (word[0] == '-' && word[1] != '-') {
+        (void)message_usage("there is no option -%c; see tmini %s --help", optopt, command);
+    } else if (optopt != 0) {
+        (void)message_usage("%s: --%s takes no value", word, find(optopt)->name);
+    } else {
+        (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(word, "="), word);
+        (void)message_usage("there is no option %s%s\nSee tmini %s --help.", name,
+                            advice(nearest_option(name + 2), "--"), command);
+    }
     return false;
 }
 
-static bool take(options_t *options, int answer)
+static bool take(options_t *options, int answer, const char *word)
 {
-    return answer == '?' ? refuse(options)
-           : answer == 1 ? take_word(options, optarg)
-                         : apply(options, find(answer), optarg);
+    return answer == '?' || answer == ':' ? refuse(options, answer, word)
+           : answer == 1                  ? take_word(options, optarg)
+                                          : apply(options, find(answer), optarg);
 }
 
 /* Reads all words, in any order. STATUS_OK, or STATUS_USAGE when it has been said why not. */
 static int parse(options_t *options, int argc, char **argv)
 {
-    static char name[] = "tmini";
-    char short_ones[2 * OPTIONS + 2];
+    char short_ones[2 * OPTIONS + 3];
     struct option long_ones[OPTIONS + 1] = {{0}};
     bool is_good = true;
     int answer = 0;
     *options = (options_t){0};
     list_options(short_ones, long_ones);
-    argv[0] = argc > 0 ? name : NULL; /* For getopt_long()'s messages. */
     while (is_good && (answer = getopt_long(argc, argv, short_ones, long_ones, NULL)) != -1) {
-        is_good = take(options, answer);
+        is_good = take(options, answer, argv[optind - 1]);
     }
     for (int i = optind; is_good && i < argc; i++) {
         is_good = take_word(options, argv[i]); /* After "--". */
@@ -266,14 +293,29 @@ static int run_command(const command_t *command, const options_t *options, bool 
     return command->run != NULL ? command->run(options) : device_use(options, command->use);
 }
 
-/* `tmini help scan` is `tmini scan --help`. */
+static int refuse_command(const char *typed)
+{
+    const char *names[COMMANDS + 2] = {"help", "version"};
+    for (size_t i = 0; i < COMMANDS; i++) {
+        names[i + 2] = commands[i]->name;
+    }
+    return message_usage("there is no command \"%s\"%s\n`tmini help` lists them all.", typed,
+                         advice(words_nearest(typed, names, COMMANDS + 2), "tmini "));
+}
+
+static bool is_word(const options_t *options, const char *word)
+{
+    return options->command != NULL && strcmp(options->command, word) == 0;
+}
+
+/* `tmini help scan` is `tmini scan --help`, and `tmini version` is `tmini --version`. */
 static int run(const options_t *options)
 {
-    const bool is_help = options->command != NULL && strcmp(options->command, "help") == 0;
+    const bool is_help = is_word(options, "help");
     const bool wants_help = is_help || options->help;
     const char *const name = is_help ? options->operand : options->command;
     const command_t *const command = name != NULL ? find_command(name) : NULL;
-    if (options->version) {
+    if (options->version || is_word(options, "version")) {
         (void)printf("tmini %d.%d.%d\n", TMINI_VERSION_MAJOR, TMINI_VERSION_MINOR,
                      TMINI_VERSION_PATCH);
         return STATUS_OK;
@@ -282,8 +324,7 @@ static int run(const options_t *options)
         return wants_help ? print_usage(stdout, STATUS_OK) : print_usage(stderr, STATUS_USAGE);
     }
     if (command == NULL) {
-        (void)print_usage(stderr, STATUS_USAGE);
-        return message_usage("there is no command \"%s\"", name);
+        return refuse_command(name);
     }
     return run_command(command, options, wants_help);
 }

@@ -61,8 +61,8 @@ colour_t points_colour(const survey_t *survey, uint8_t intensity)
 const char *direction_name(uint16_t angle_q6)
 {
     static const char *const names[8] = {
-        "ahead",  "ahead to the right", "right", "behind to the right",
-        "behind", "behind to the left", "left",  "ahead to the left",
+        "ahead",  "ahead right", "right", "behind right",
+        "behind", "behind left", "left",  "ahead left",
     };
     return names[(angle_q6 + EIGHTH_Q6 / 2) / EIGHTH_Q6 % 8];
 }
@@ -75,7 +75,7 @@ double points_degrees(const tmini_point_t *point)
 const char *place_text(const tmini_point_t *point)
 {
     static char text[64];
-    (void)snprintf(text, sizeof text, "%.3f m at %.1f degrees, %s", point->distance_mm / 1000.0,
+    (void)snprintf(text, sizeof text, "%.3f m at %.1f deg, %s", point->distance_mm / 1000.0,
                    points_degrees(point), direction_name(point->angle_q6));
     return text;
 }
@@ -98,6 +98,18 @@ const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE])
     return stream_tells_nothing(stream)
                ? "not told: this unit sends no information within the stream"
                : "unknown: no revolution arrived whole";
+}
+
+const char *scans_text(const stream_t *stream)
+{
+    static char text[80];
+    const count_t incomplete = stream->scans - stream->complete;
+    const int length = snprintf(text, sizeof text, "%llu complete", stream->complete);
+    if (incomplete > 0) {
+        (void)snprintf(text + length, sizeof text - (size_t)length, ", %llu with packets missing",
+                       incomplete);
+    }
+    return text;
 }
 
 const char *frequency_text(unsigned frequency_chz)

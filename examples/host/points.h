@@ -35,10 +35,10 @@ colour_t points_colour(const survey_t *survey, uint8_t intensity);
 /* Its angle, with one decimal: 360.0 is not among them. */
 double points_degrees(const tmini_point_t *point);
 
-/* "ahead", "behind to the left", … */
+/* "ahead", "behind left", … */
 const char *direction_name(uint16_t angle_q6);
 
-/* "1.023 m at 134.5 degrees, behind to the right" */
+/* "1.023 m at 134.5 deg, behind right" */
 const char *place_text(const tmini_point_t *point);
 
 /* Space for any text of faults_text() and health_text(). */
@@ -49,6 +49,9 @@ const char *faults_text(unsigned faults, char text[FAULTS_TEXT_SIZE]);
 
 /* The same of what the stream tells; or why it tells nothing. */
 const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE]);
+
+/* "8 complete, 1 with packets missing" */
+const char *scans_text(const stream_t *stream);
 
 /* "6.0 Hz" or "unknown" */
 const char *frequency_text(unsigned frequency_chz);

@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "chunk.h"
 #include "output.h"
 
 /* With the largest packet waiting for its last byte (775), this much still fits in the ring. */
@@ -21,8 +22,6 @@
 #define LONG_SIZE 20000000u
 
 #define US_A_SAMPLE 250u /* Section 1. */
-
-const uint8_t recording_magic[8] = {0x89, 't', 'm', 'i', 'n', 'i', 1, '\n'};
 
 /* To someone who waits for a long one. */
 static void show_progress(recording_t *recording)
@@ -59,18 +58,44 @@ static bool fill(recording_t *recording)
     return more > 0;
 }
 
+/* What begins at the next byte, with as much of the file as it takes to tell. */
+static chunk_state_t look_at_chunk(recording_t *recording, chunk_t *chunk)
+{
+    bool is_end = false;
+    for (;;) {
+        const size_t count = recording->count - recording->at;
+        const chunk_state_t state =
+            chunk_read(recording->version, recording->buffer + recording->at, count, is_end,
+                       recording->is_lost, chunk);
+        if (state != CHUNK_SHORT || is_end || recording->is_waiting) {
+            return state;
+        }
+        is_end = count == sizeof recording->buffer || !fill(recording);
+    }
+}
+
+/* Where no chunk begins is damage: its bytes are taken as the lidar's, whose packets have checksums
+ * of their own, until a chunk is found again. The file's last chunk may be cut short. */
 static bool begin_chunk(recording_t *recording)
 {
-    while (recording->count - recording->at < CHUNK_HEAD_SIZE) {
-        if (!fill(recording)) {
-            return false;
-        }
+    chunk_t chunk;
+    const chunk_state_t state = look_at_chunk(recording, &chunk);
+    if (recording->is_waiting || recording->at == recording->count) {
+        return false;
     }
-    const uint8_t *const head = recording->buffer + recording->at;
-    recording->at += CHUNK_HEAD_SIZE;
-    recording->chunk_us += (uint32_t)head[0] | (uint32_t)head[1] << 8 | (uint32_t)head[2] << 16 |
-                           (uint32_t)head[3] << 24;
-    recording->chunk_left = (uint32_t)head[4] | (uint32_t)head[5] << 8;
+    const bool is_good =
+        state == CHUNK_WHOLE || (state == CHUNK_SHORT && !recording->is_lost && chunk.is_plausible);
+    if (is_good) {
+        recording->chunk_us += chunk.delta_us;
+        recording->chunk_left = chunk.size;
+        recording->at += chunk.head_size;
+    } else if (chunk.is_plausible && !recording->is_lost) {
+        recording->at += chunk.head_size; /* Only its bytes are damaged. */
+    } else {
+        recording->chunk_left = 1;
+    }
+    recording->damages += !is_good && !recording->is_lost ? 1 : 0;
+    recording->is_lost = !is_good;
     return true;
 }
 
@@ -89,6 +114,10 @@ static bool find_chunk(recording_t *recording)
 /* More bytes of the lidar's into the ring; returns false at the end, or when there are none yet. */
 static bool refill(recording_t *recording)
 {
+    recording->is_waiting = recording->is_live;
+    if (recording->fd < 0) {
+        return false;
+    }
     if ((recording->is_timed && !find_chunk(recording)) ||
         (recording->at == recording->count && !fill(recording))) {
         return false;
@@ -105,20 +134,38 @@ static bool refill(recording_t *recording)
     return true;
 }
 
+/* 0: not timed. */
+static unsigned version_of(const recording_t *recording)
+{
+    uint8_t magic[sizeof chunk_magic];
+    if (recording->count < sizeof magic) {
+        return 0;
+    }
+    memcpy(magic, recording->buffer, sizeof magic);
+    const unsigned version = magic[CHUNK_VERSION_AT];
+    magic[CHUNK_VERSION_AT] = chunk_magic[CHUNK_VERSION_AT];
+    return memcmp(magic, chunk_magic, sizeof magic) == 0 ? version : 0;
+}
+
 static void begin(recording_t *recording)
 {
     recording->at = recording->count = 0;
     recording->bytes = recording->bytes_in_packets = recording->consumed = 0;
     recording->chunk_us = recording->chunk_left = 0;
-    recording->is_at_end = false;
+    recording->damages = 0;
+    recording->is_lost = recording->is_at_end = false;
     (void)tmini_ring_init(&recording->ring, recording->memory, sizeof recording->memory, false);
     (void)tmini_parser_init(&recording->parser, &recording->ring, recording->max_samples);
     stream_init(&recording->stream);
-    while (recording->count < sizeof recording_magic && fill(recording)) {
+}
+
+static void read_magic(recording_t *recording)
+{
+    while (recording->count < sizeof chunk_magic && fill(recording)) {
     }
-    recording->is_timed = recording->count >= sizeof recording_magic &&
-                          memcmp(recording->buffer, recording_magic, sizeof recording_magic) == 0;
-    recording->at = recording->is_timed ? sizeof recording_magic : 0;
+    recording->version = version_of(recording);
+    recording->is_timed = recording->version > 0;
+    recording->at = recording->is_timed ? sizeof chunk_magic : 0;
 }
 
 static void take(recording_t *recording)
@@ -182,7 +229,39 @@ int recording_open(recording_t *recording, const options_t *options)
         recording->size = (count_t)status.st_size;
     }
     begin(recording);
+    read_magic(recording);
+    if (recording->version > chunk_magic[CHUNK_VERSION_AT]) {
+        recording_close(recording);
+        return message_fail("%s is of version %u: this tmini is too old for it", recording->name,
+                            recording->version);
+    }
     return STATUS_OK;
+}
+
+void recording_begin_live(recording_t *recording, bool is_timed)
+{
+    *recording = (recording_t){.fd = -1, .is_live = true, .is_timed = is_timed};
+    begin(recording);
+}
+
+void recording_feed(recording_t *recording, const uint8_t *bytes, size_t count, uint64_t time_us)
+{
+    recording->chunk_us = time_us;
+    recording->bytes += count;
+    while (count > 0) {
+        const size_t stored = tmini_ring_write(&recording->ring, bytes, count);
+        bytes += stored;
+        count -= stored;
+        while (recording_next(recording)) {
+        }
+    }
+}
+
+void recording_end_live(recording_t *recording)
+{
+    recording->is_live = false;
+    while (recording_next(recording)) {
+    }
 }
 
 void recording_close(recording_t *recording)
@@ -198,6 +277,7 @@ bool recording_rewind(recording_t *recording)
         return false;
     }
     begin(recording);
+    read_magic(recording);
     return true;
 }
 
@@ -215,6 +295,10 @@ int recording_verdict(const recording_t *recording)
                             "of a T-mini Plus,\nor was recorded with another baud rate than "
                             "230400, or before the lidar scanned.",
                             recording->name, recording->bytes);
+    }
+    if (recording->damages > 0) {
+        message_note("%s is damaged in %llu place%s: bytes are missing or wrong there",
+                     recording->name, recording->damages, recording->damages == 1 ? "" : "s");
     }
     return STATUS_OK;
 }

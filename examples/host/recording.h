@@ -3,12 +3,7 @@
 
 /* Recordings: raw bytes as the lidar sent them, or the same in chunks with time stamps. Read packet
  * by packet, with the library's ring, parser and packet modules and without any port; in constant
- * memory, however long. No reply is awaited, so replies in a recording count as skipped bytes.
- *
- * A timed recording (FILE.tmini) begins with the eight bytes 89 74 6D 69 6E 69 01 0A ("tmini",
- * version 1). Then come chunks: the microseconds since the chunk before, or since the recording's
- * beginning (four bytes, least significant first); how many bytes follow (two bytes, likewise);
- * these bytes. */
+ * memory, however long. No reply is awaited, so replies in a recording count as skipped bytes. */
 
 #ifndef RECORDING_H
 #define RECORDING_H
@@ -16,11 +11,6 @@
 #include "options.h"
 #include "stream.h"
 #include "tmini/parts/tmini_parser.h"
-
-/* Bytes of a chunk's head. */
-#define CHUNK_HEAD_SIZE 6u
-
-extern const uint8_t recording_magic[8];
 
 /* Members down to `stream` may be read. */
 typedef struct {
@@ -30,15 +20,19 @@ typedef struct {
     count_t bytes_before; /* The first packet, and up to the latest one: skipped ones. */
     count_t bytes_until;
     uint64_t time_us; /* Of the latest packet. */
-    bool is_timed;    /* Otherwise the time is that of 4000 samples a second. */
+    count_t damages;  /* Places of a timed file where no chunk was. */
+    bool is_timed;    /* Otherwise the time is that of 4000 samples per second. */
     bool is_at_end;
     bool is_impatient;     /* May be set: recording_next() then does not wait for a pipe's bytes. */
     uint64_t until_us;     /* May be set: what came later in a timed one is not there yet. */
     tmini_packet_t packet; /* The latest. */
     stream_t stream;
 
-    int fd;
+    int fd; /* -1: a live one. */
+    unsigned version;
     bool is_waiting;
+    bool is_live;
+    bool is_lost; /* Looking for the next chunk. */
     int error;    /* errno of a failed read, or 0. */
     count_t size; /* Of the file; 0: not known. */
     count_t consumed;
@@ -47,7 +41,7 @@ typedef struct {
     uint8_t max_samples;
     unsigned shown_percent;
     size_t at, count; /* In `buffer`: what has been read and not yet decoded. */
-    uint8_t buffer[16384];
+    uint8_t buffer[32768];
     tmini_ring_t ring;
     tmini_parser_t parser;
     uint8_t memory[4096];
@@ -57,6 +51,12 @@ typedef struct {
  * the status to leave with, and says why. */
 int recording_open(recording_t *recording, const options_t *options);
 void recording_close(recording_t *recording);
+
+/* One that is being made: its bytes are fed as they come, and its packets counted as they will be
+ * when it is read. */
+void recording_begin_live(recording_t *recording, bool is_timed);
+void recording_feed(recording_t *recording, const uint8_t *bytes, size_t count, uint64_t time_us);
+void recording_end_live(recording_t *recording);
 
 /* Finds the next valid packet and gives it to the stream. At the end of the file, what waits for
  * more bytes is re-examined byte by byte. Returns false when nothing is left (`is_at_end`), or
@@ -72,8 +72,8 @@ count_t recording_skipped(const recording_t *recording);
 /* Wrong checksums so far. */
 count_t recording_checksum_errors(const recording_t *recording);
 
-/* At the end: says what is wrong if the file could not be read, was empty, or holds nothing of a
- * lidar. Returns the status to leave with. */
+/* At the end: says what is wrong if the file could not be read, was empty, damaged, or holds nothing
+ * of a lidar. Returns the status to leave with. */
 int recording_verdict(const recording_t *recording);
 
 /* The path without its folders. */

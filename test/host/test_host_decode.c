@@ -232,7 +232,7 @@ void test_without_a_format_a_person_gets_a_summary(void)
         "scans       8 complete; the next one has begun\n"); /* Nothing is "cut short". */
     expect_summary("points      7133, 6934 of them with a distance; 1037 before the first start");
     expect_summary("frequency   3.9 Hz to 6.0 Hz\n");
-    expect_summary(" degrees, behind to the right (scan 8)\n");
+    expect_summary(" deg, behind right (scan 8)\n");
     expect_summary("0 wrong checksums, 0 stray bytes between packets\n");
     expect_summary("health      healthy\n");
     expect_summary("made on 2026-03-17, serial 2026031700012345\n");

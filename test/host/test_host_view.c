@@ -598,7 +598,7 @@ void test_a_lidar_is_shown_live_and_stopped_in_the_end(void)
     begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--log", log))));
     wait_for("scanning");
     wait_for("scan 5 ");
-    wait_for("behind to the right"); /* In the next scan, if one has a gap there. */
+    wait_for("behind right"); /* In the next scan, if one has a gap there. */
     press('q');
     expect_end(0);
     (void)program_wait_for("log", "stopping -> idle");

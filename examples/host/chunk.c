@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "chunk.h"
+
+#include <string.h>
+
+/* A head of version 1 is plausible if less than that has passed: 67 s. */
+#define PLAUSIBLE_US 0x04000000u
+
+/* After damage: so many plausible heads of version 1, one after the other. */
+#define CHAIN 4u
+
+#define OLD_HEAD_SIZE 6u
+
+static const uint8_t marker[2] = {0xA7, 0xC3};
+
+const uint8_t chunk_magic[8] = {0x89, 't', 'm', 'i', 'n', 'i', 2, '\n'};
+
+static uint32_t number_at(const uint8_t *bytes, unsigned size)
+{
+    uint32_t number = 0;
+    for (unsigned i = 0; i < size; i++) {
+        number |= (uint32_t)bytes[i] << (8 * i);
+    }
+    return number;
+}
+
+/* Four bits at a time. */
+static uint16_t crc16(uint16_t crc, const uint8_t *bytes, size_t count)
+{
+    static const uint16_t table[16] = {0x0000, 0x1021, 0x2042, 0x3063, 0x4084, 0x50A5,
+                                       0x60C6, 0x70E7, 0x8108, 0x9129, 0xA14A, 0xB16B,
+                                       0xC18C, 0xD1AD, 0xE1CE, 0xF1EF};
+    for (size_t i = 0; i < count; i++) {
+        crc = (uint16_t)(table[(crc >> 12) ^ (bytes[i] >> 4)] ^ (crc << 4));
+        crc = (uint16_t)(table[(crc >> 12) ^ (bytes[i] & 0xFu)] ^ (crc << 4));
+    }
+    return crc;
+}
+
+static uint16_t crc_of(const uint8_t *head, const uint8_t *bytes, size_t count)
+{
+    return crc16(crc16(0xFFFF, head + sizeof marker, 6), bytes, count);
+}
+
+void chunk_write_head(uint8_t head[CHUNK_HEAD_SIZE], uint32_t delta_us, const uint8_t *bytes,
+                      size_t count)
+{
+    memcpy(head, marker, sizeof marker);
+    for (unsigned i = 0; i < 4; i++) {
+        head[2 + i] = (uint8_t)(delta_us >> (8 * i));
+    }
+    head[6] = (uint8_t)count;
+    head[7] = (uint8_t)(count >> 8);
+    const uint16_t crc = crc_of(head, bytes, count);
+    head[8] = (uint8_t)crc;
+    head[9] = (uint8_t)(crc >> 8);
+}
+
+static chunk_state_t read_new(const uint8_t *bytes, size_t count, chunk_t *chunk)
+{
+    if (count < CHUNK_HEAD_SIZE) {
+        return CHUNK_SHORT;
+    }
+    const uint32_t size = number_at(bytes + 6, 2);
+    if (memcmp(bytes, marker, sizeof marker) != 0 || size == 0 || size > CHUNK_MAX) {
+        return CHUNK_NONE;
+    }
+    *chunk = (chunk_t){CHUNK_HEAD_SIZE, number_at(bytes + 2, 4), size, true};
+    if (count - CHUNK_HEAD_SIZE < size) {
+        return CHUNK_SHORT;
+    }
+    return crc_of(bytes, bytes + CHUNK_HEAD_SIZE, size) == number_at(bytes + 8, 2) ? CHUNK_WHOLE
+                                                                                   : CHUNK_NONE;
+}
+
+/* Whether `length` plausible heads of version 1 follow each other from here on. */
+static chunk_state_t follow_chain(const uint8_t *bytes, size_t count, bool is_end, unsigned length)
+{
+    size_t at = 0;
+    for (unsigned i = 0; i < length; i++) {
+        if (count < at + OLD_HEAD_SIZE) {
+            return is_end ? CHUNK_WHOLE : CHUNK_SHORT;
+        }
+        const uint32_t size = number_at(bytes + at + 4, 2);
+        if (number_at(bytes + at, 4) >= PLAUSIBLE_US || size == 0 || size > CHUNK_MAX) {
+            return CHUNK_NONE;
+        }
+        at += OLD_HEAD_SIZE + size;
+    }
+    return CHUNK_WHOLE;
+}
+
+/* One that follows a good chunk is believed if a plausible head, or one after a long pause and two
+ * plausible ones, follow it. */
+static chunk_state_t read_old(const uint8_t *bytes, size_t count, bool is_end, bool is_lost,
+                              chunk_t *chunk)
+{
+    if (count < OLD_HEAD_SIZE) {
+        return CHUNK_SHORT;
+    }
+    const uint32_t size = number_at(bytes + 4, 2);
+    const size_t next = OLD_HEAD_SIZE + size;
+    *chunk = (chunk_t){OLD_HEAD_SIZE, number_at(bytes, 4), size,
+                       follow_chain(bytes, count, false, 1) != CHUNK_NONE};
+    if (is_lost) {
+        return follow_chain(bytes, count, is_end, CHAIN);
+    }
+    if (count < next + OLD_HEAD_SIZE) {
+        return is_end && count >= next ? CHUNK_WHOLE : CHUNK_SHORT;
+    }
+    const chunk_state_t state = follow_chain(bytes + next, count - next, is_end, 1);
+    const size_t after = next + OLD_HEAD_SIZE + number_at(bytes + next + 4, 2);
+    if (state != CHUNK_NONE || number_at(bytes + next + 4, 2) == 0) {
+        return state != CHUNK_NONE ? state : CHUNK_WHOLE;
+    }
+    return count < after ? (is_end ? CHUNK_NONE : CHUNK_SHORT)
+                         : follow_chain(bytes + after, count - after, is_end, 2);
+}
+
+chunk_state_t chunk_read(unsigned version, const uint8_t *bytes, size_t count, bool is_end,
+                         bool is_lost, chunk_t *chunk)
+{
+    *chunk = (chunk_t){0};
+    return version == 1 ? read_old(bytes, count, is_end, is_lost, chunk)
+                        : read_new(bytes, count, chunk);
+}
