@@ -11,6 +11,7 @@ const CSV_HEADER = 'scan,packet,point,angle_deg,distance_mm,intensity,flag,time_
 // A timed recording begins so; then come chunks: microseconds since the one before (32 bits, the least
 // significant byte first), how many bytes follow (16 bits, likewise), these bytes.
 export const MAGIC = Uint8Array.of(0x89, 0x74, 0x6D, 0x69, 0x6E, 0x69, 1, 0x0A);
+const VERSION_AT = 6;
 export const CHUNK_HEAD_SIZE = 6;
 export const CHUNK_MAX = 0xFFFF;
 
@@ -20,10 +21,13 @@ class Tape {
     #at = 0;
     #chunkEnd;
     #timeUs = 0;
+    #extra;
 
     constructor(bytes) {
         this.#bytes = bytes;
-        this.isTimed = MAGIC.every((byte, i) => bytes[i] === byte);
+        // Version 2 has a marker of two bytes before each head, and a CRC of two after it.
+        this.#extra = bytes[VERSION_AT] === 2 ? 2 : 0;
+        this.isTimed = MAGIC.every((byte, i) => bytes[i] === byte || (i === VERSION_AT && this.#extra > 0));
         this.rewind();
     }
 
@@ -47,12 +51,12 @@ class Tape {
 
     #beginChunk() {
         const bytes = this.#bytes;
-        if (!this.isTimed || this.#at + CHUNK_HEAD_SIZE > bytes.length) {
+        if (!this.isTimed || this.#at + CHUNK_HEAD_SIZE + 2 * this.#extra > bytes.length) {
             return false;
         }
-        const head = new DataView(bytes.buffer, bytes.byteOffset + this.#at, CHUNK_HEAD_SIZE);
+        const head = new DataView(bytes.buffer, bytes.byteOffset + this.#at + this.#extra, CHUNK_HEAD_SIZE);
         this.#timeUs += head.getUint32(0, true);
-        this.#at += CHUNK_HEAD_SIZE;
+        this.#at += CHUNK_HEAD_SIZE + 2 * this.#extra;
         this.#chunkEnd = Math.min(this.#at + head.getUint16(4, true), bytes.length);
         return true;
     }

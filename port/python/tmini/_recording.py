@@ -16,6 +16,7 @@ from ._native import ffi, lib
 from ._scan import Scan
 
 _MAGIC = b"\x89tmini\x01\n"
+_MAGIC_2 = b"\x89tmini\x02\n"
 _BLOCK = 2048  # With the largest packet waiting for its last byte, this still fits in the ring.
 _RING = 4096
 _POINTS = 8192  # More than any revolution has.
@@ -31,11 +32,23 @@ def _timed(file: BinaryIO) -> Iterator[tuple[int, bytes]]:
         yield at_us // 1000, file.read(count)
 
 
+def _timed_2(file: BinaryIO) -> Iterator[tuple[int, bytes]]:
+    """The same with a marker before and a CRC after the header; damage is not looked for."""
+    at_us = 0
+    while len(head := file.read(10)) == 10:
+        passed_us, count = struct.unpack("<2xIH2x", head)
+        at_us += passed_us
+        yield at_us // 1000, file.read(count)
+
+
 def _blocks(file: BinaryIO) -> Iterator[tuple[int | None, bytes]]:
     """Bytes, and when they came in milliseconds; None: as 4000 samples per second do."""
     begun = file.read(len(_MAGIC))
     if begun == _MAGIC:
         yield from _timed(file)
+        return
+    if begun == _MAGIC_2:
+        yield from _timed_2(file)
         return
     while begun:
         yield None, begun
