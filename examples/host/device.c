@@ -128,13 +128,21 @@ tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
     return TMINI_EVENT_NONE;
 }
 
+/* A stop first ends what is under way, a start that stands for example: no failure of the stop. */
+static bool is_aborted(const device_t *device, tmini_event_t wanted)
+{
+    return wanted == TMINI_EVENT_STOPPED &&
+           tmini_command_error(&device->lidar) == TMINI_ERROR_ABORTED;
+}
+
 bool device_await(device_t *device, tmini_status_t begun, tmini_event_t wanted)
 {
     const uint32_t begun_ms = device_ms(device);
     while (begun == TMINI_OK && device_is_usable(device) &&
            device_ms(device) - begun_ms < COMMAND_MS) {
         const tmini_event_t event = device_wait(device, SLICE_MS);
-        if (event == wanted || event == TMINI_EVENT_COMMAND_FAILED) {
+        if (event == wanted ||
+            (event == TMINI_EVENT_COMMAND_FAILED && !is_aborted(device, wanted))) {
             return event == wanted;
         }
     }

@@ -487,7 +487,7 @@ void test_who_waits_for_a_long_recording_is_told_how_far_it_is(void)
         " >two; mv two " LONG_ROOM "; done; \"$TOOL\" decode " LONG_ROOM " | tail -n 1",
         &master, &line, &before);
     wait_for("100 % of " LONG_ROOM);
-    wait_for("stream  ");
+    wait_for("guard bytes");
     (void)remove(LONG_ROOM);
 }
 
