@@ -103,8 +103,8 @@ static bool apply(options_t *options, const option_t *option, const char *value)
     return true;
 }
 
-/* For getopt_long(): the short options, after a "-" that asks for all words in their order and a ":"
- * that asks it to say nothing; and the long ones. */
+/* For getopt_long(): the short options, after a "-" that asks for all words in their order and a
+ * ":" that asks it to say nothing; and the long ones. */
 static void list_options(char *short_ones, struct option *long_ones)
 {
     *short_ones++ = '-';

@@ -72,8 +72,8 @@ count_t recording_skipped(const recording_t *recording);
 /* Wrong checksums so far. */
 count_t recording_checksum_errors(const recording_t *recording);
 
-/* At the end: says what is wrong if the file could not be read, was empty, damaged, or holds nothing
- * of a lidar. Returns the status to leave with. */
+/* At the end: says what is wrong if the file could not be read, was empty, damaged, or holds
+ * nothing of a lidar. Returns the status to leave with. */
 int recording_verdict(const recording_t *recording);
 
 /* The path without its folders. */
