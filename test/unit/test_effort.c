@@ -43,7 +43,7 @@ static tmini_parser_counters_t parser_counters(void)
     return counters;
 }
 
-/* One call looks at 2048 bytes and at most one packet more; of the candidate that used up the last
+/* One call looks at 1536 bytes and at most one packet more; of the candidate that used up the last
  * of them it skips the first byte only. */
 void test_a_call_looks_at_no_more_bytes_than_it_may(void)
 {
@@ -53,7 +53,7 @@ void test_a_call_looks_at_no_more_bytes_than_it_may(void)
     }
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_MORE, tmini_parser_next(&parser));
     const uint32_t errors = parser_counters().checksum_errors;
-    TEST_ASSERT_TRUE(errors >= 7 && errors <= 8);
+    TEST_ASSERT_TRUE(errors >= 5 && errors <= 6);
     TEST_ASSERT_EQUAL_UINT32(10 * errors - 9, parser_counters().bytes_skipped);
     unsigned calls = 1;
     while (tmini_parser_next(&parser) == TMINI_FRAME_MORE) {
@@ -70,13 +70,13 @@ void test_garbage_without_a_candidate_is_passed_in_bounded_steps_too(void)
         tmini_ring_put(&ring, 0);
     }
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_MORE, tmini_parser_next(&parser));
-    TEST_ASSERT_EQUAL_UINT32(2048, parser_counters().bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(1536, parser_counters().bytes_skipped);
     while (tmini_parser_next(&parser) == TMINI_FRAME_MORE) {
     }
     TEST_ASSERT_EQUAL_UINT32(8192, parser_counters().bytes_skipped);
 }
 
-/* Each costs two bytes skipped and what it takes to look at it, 14: 2048 / 16. */
+/* Each costs two bytes skipped and what it takes to look at it, 14: 1536 / 16. */
 void test_candidates_without_a_packet_are_bounded_too(void)
 {
     open_parser();
@@ -84,7 +84,7 @@ void test_candidates_without_a_packet_are_bounded_too(void)
         tmini_ring_put(&ring, (i & 1u) == 0 ? 0xAA : 0x55); /* LSN would be 85. */
     }
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_MORE, tmini_parser_next(&parser));
-    TEST_ASSERT_EQUAL_UINT32(2 * 128, parser_counters().bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(2 * 96, parser_counters().bytes_skipped);
     while (tmini_parser_next(&parser) == TMINI_FRAME_MORE) {
     }
     TEST_ASSERT_TRUE(parser_counters().bytes_skipped >= sizeof memory - 10);
@@ -92,7 +92,7 @@ void test_candidates_without_a_packet_are_bounded_too(void)
 }
 
 /* What is skipped behind candidates counts with them: 99 of one byte, 15 each, and for the last
- * one and what follows it are left 563. */
+ * one and what follows it are left 51. */
 void test_garbage_behind_candidates_is_bounded_with_them(void)
 {
     open_parser();
@@ -100,7 +100,7 @@ void test_garbage_behind_candidates_is_bounded_with_them(void)
         tmini_ring_put(&ring, i < 100 ? 0xAA : 0);
     }
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_MORE, tmini_parser_next(&parser));
-    TEST_ASSERT_EQUAL_UINT32(99 + 563, parser_counters().bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(99 + 51, parser_counters().bytes_skipped);
 }
 
 void test_a_call_is_bounded_by_what_others_have_left(void)
@@ -109,7 +109,7 @@ void test_a_call_is_bounded_by_what_others_have_left(void)
     for (size_t i = 0; i < sizeof memory; i++) {
         tmini_ring_put(&ring, 0);
     }
-    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_MORE, tmini_parser_next_after(&parser, 2000));
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_MORE, tmini_parser_next_after(&parser, 1488));
     TEST_ASSERT_EQUAL_UINT32(48, parser_counters().bytes_skipped);
 }
 
@@ -127,7 +127,7 @@ static void open_driver(void)
     rig_init();
 }
 
-/* A packet of one sample costs its 13 bytes twice, and 44: 2048 / 70, rounded up. */
+/* A packet of one sample costs its 13 bytes twice, and 44: 1536 / 70, rounded up. */
 static void check_that_short_packets_are_bounded(void)
 {
     const uint32_t before = poll_counters().packets;
@@ -135,7 +135,7 @@ static void check_that_short_packets_are_bounded(void)
         rig_feed_packet(0, 1, 1000);
     }
     polls_to(TMINI_EVENT_MORE);
-    TEST_ASSERT_EQUAL_UINT32(30, poll_counters().packets - before);
+    TEST_ASSERT_EQUAL_UINT32(22, poll_counters().packets - before);
     while (tmini_poll(&rig.lidar) == TMINI_EVENT_MORE) {
     }
     TEST_ASSERT_EQUAL_UINT32(200, poll_counters().packets - before);
@@ -156,20 +156,20 @@ void test_packets_of_a_scan_are_bounded(void)
     check_that_short_packets_are_bounded();
 }
 
-/* A packet of 32 samples costs its 106 bytes twice, and 44: eight of them cost 2048. */
+/* A packet of 32 samples costs its 106 bytes twice, and 44: six of them cost 1536. */
 void test_a_poll_ends_when_its_effort_is_used_up_to_the_last(void)
 {
     open_driver();
-    for (unsigned i = 0; i < 9; i++) {
+    for (unsigned i = 0; i < 7; i++) {
         rig_feed_packet(0, 32, 1000);
     }
     polls_to(TMINI_EVENT_MORE);
-    TEST_ASSERT_EQUAL_UINT32(8, poll_counters().packets);
+    TEST_ASSERT_EQUAL_UINT32(6, poll_counters().packets);
     polls_to(TMINI_EVENT_NONE);
-    TEST_ASSERT_EQUAL_UINT32(9, poll_counters().packets);
+    TEST_ASSERT_EQUAL_UINT32(7, poll_counters().packets);
 }
 
-/* Ten packets of 4 samples cost 88 each; for the garbage behind them 1168 are left. */
+/* Ten packets of 4 samples cost 88 each; for the garbage behind them 656 are left. */
 void test_packets_and_the_garbage_behind_them_share_a_polls_effort(void)
 {
     open_driver();
@@ -181,7 +181,7 @@ void test_packets_and_the_garbage_behind_them_share_a_polls_effort(void)
     }
     polls_to(TMINI_EVENT_MORE);
     TEST_ASSERT_EQUAL_UINT32(10, poll_counters().packets);
-    TEST_ASSERT_EQUAL_UINT32(1168, poll_counters().bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(656, poll_counters().bytes_skipped);
 }
 
 static uint32_t checksum_errors(void)

@@ -41,7 +41,7 @@ extern "C" {
 
 /** The work that one call of tmini_parser_next() may do, in bytes looked at. A candidate's bytes
  * are looked at once, and again for every false header before it whose packet would reach it. */
-#define TMINI_PARSER_EFFORT 2048u
+#define TMINI_PARSER_EFFORT 1536u
 
 /** To find that a candidate is no frame costs as much as looking at so many bytes. */
 #define TMINI_CANDIDATE_EFFORT 14u
