@@ -15,6 +15,7 @@ from unicorn import (UC_ARCH_ARM, UC_ARCH_RISCV, UC_HOOK_BLOCK, UC_HOOK_CODE, UC
 from unicorn import arm_const as arm
 from unicorn import riscv_const as riscv
 
+RAM = 0x20000000, 0x40000
 STACK_TOP = 0x30010000
 STACK_SIZE = 0x10000
 STACK_FILL = 0xA7
@@ -72,6 +73,13 @@ class Machine:
         self.count = 0
         self.uc.hook_add(UC_HOOK_BLOCK, self._block)
 
+    def save(self):
+        """All that the program has in memory."""
+        return self.read(*RAM)
+
+    def restore(self, saved):
+        self.uc.mem_write(RAM[0], saved)
+
     def _make_processor(self, name):
         if name in CORTEX:
             self.uc = Uc(UC_ARCH_ARM, UC_MODE_THUMB | UC_MODE_MCLASS)
@@ -83,7 +91,7 @@ class Machine:
 
     def _load(self, segments):
         self.uc.mem_map(0x00010000, 0x10000)
-        self.uc.mem_map(0x20000000, 0x40000)
+        self.uc.mem_map(*RAM)
         self.uc.mem_map(STACK_TOP - STACK_SIZE, STACK_SIZE)
         self.uc.mem_map(RETURN, 0x1000)
         for address, data, size in segments:

@@ -1,75 +1,45 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Instructions a byte on this computer, counted by callgrind."""
+"""Instructions per byte on this computer, counted by callgrind: the library's, those of the C
+library's copies and of the port, and the loop that a program has around them."""
 
 import re
 
 from targets import HERE, LIB_SOURCES, ROOT, BenchError, run
 
-# What the compiler makes of copies: counted too, but these functions differ between computers.
-COPIES = re.compile(r"mem(cpy|move|set)")
+PACKET = 131  # Bytes at a time: about a packet, 10 ms.
 
 
 def build(folder):
     """The host's program with the library at -O2."""
     program = folder / "host"
-    run("cc", "-std=c99", "-O2", "-g", f"-ffile-prefix-map={ROOT}=.", "-I",
-        ROOT / "lib" / "include", HERE / "host" / "main.c", *LIB_SOURCES, "-o", program)
+    run("cc", "-std=c99", "-O2", "-g", f"-ffile-prefix-map={ROOT}=.", "-I", ROOT / "lib" / "include",
+        "-I", HERE, HERE / "host" / "main.c", HERE / "limit.c", *LIB_SOURCES, "-o", program)
     return program
 
 
-def read_profile(text):
-    """Instructions spent in the library's own sources, and in copies, from callgrind's output."""
-    names = {}
-
-    def full(compressed):
-        number, _, name = compressed.partition(" ")
-        if name:
-            names[number] = name
-        return names[number]
-
-    own = copies = 0
-    file = function = ""
-    called = False
-    for line in text.splitlines():
-        key, equals, value = line.partition("=")
-        if equals and key in ("fl", "fi", "fe"):
-            file = full("f" + value)
-        elif equals and key == "fn":
-            function = full("n" + value)
-        elif equals and key in ("cfi", "cfl"):
-            full("f" + value)
-        elif equals and key == "cfn":
-            full("n" + value)
-        elif key == "calls":
-            called = True  # The next line's cost is the callee's.
-        elif re.match(r"[+*\-\d]", line):
-            cost = 0 if called else int(line.split()[1])
-            called = False
-            if "lib/src/" in file or "lib/include/" in file:
-                own += cost
-            elif COPIES.search(function):
-                copies += cost
-    return own, copies
+def count(program, way, recording, block, folder):
+    """Instructions per byte of one way through the library; checks that it finds all packets."""
+    out = folder / f"callgrind.{way}"
+    packets = run("valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "-q",
+                  "--collect-atstart=no", "--toggle-collect=counted_run*", program, way, recording,
+                  block)
+    total = re.search(r"^(?:summary|totals): (\d+)", out.read_text(), re.MULTILINE)
+    if total is None or int(total[1]) == 0:
+        raise BenchError("callgrind has counted nothing")
+    return int(total[1]) / recording.stat().st_size, int(packets)
 
 
-def count(program, feed, recording, folder):
-    """(packets found, the library's own instructions, instructions in copies)."""
-    out = folder / f"callgrind.{feed}"
-    printed = run("valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "-q", program,
-                  feed, recording)
-    own, copies = read_profile(out.read_text())
-    if own == 0:
-        raise BenchError("callgrind's output shows none of the library's sources")
-    return int(printed), own, copies
+def measure(program, recording, folder, packets, blocks):
+    """Instructions per byte by way of feeding, and by bytes between polls."""
+    def cost(way, block=PACKET, expected=packets):
+        each, found = count(program, way, recording, block, folder)
+        if found != expected:
+            raise BenchError(f"{way}: {found} packets are found instead of {expected}")
+        return each
 
-
-def measure(program, recording, folder):
-    """Instructions a byte by way of feeding: the library's own and those of copies."""
-    size = recording.stat().st_size
-    results = {}
-    for feed in ("bytes", "blocks", "decode"):
-        packets, own, copies = count(program, feed, recording, folder)
-        results[feed] = {"packets": packets, "own": own / size, "copies": copies / size}
-    return results
+    return {"bytes": cost("bytes"), "blocks": cost("blocks"), "decode": cost("decode"),
+            "limit": cost("limit", expected=0),
+            "per poll": {block: {way: cost(way, block) for way in ("bytes", "blocks")}
+                         for block in blocks}}

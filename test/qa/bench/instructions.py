@@ -6,14 +6,16 @@
 import re
 
 import load
+import worst
 from emulator import Machine
 from targets import HERE, ROOT, BenchError
 
 RX_SIZE = 1024
-LARGEST_RING = 4096
-TICK_MS = 10             # How often is polled: about once a packet.
-BYTES_A_TICK = 131       # At the lidar's mean data rate (section 1).
-LINE_BYTES_A_TICK = 230  # At the line's full rate, 230400 baud.
+TICK_MS = 10        # How often is polled: about once per packet.
+BYTES_A_TICK = 131  # At the lidar's mean data rate (section 1).
+BYTES_A_MS = 13
+BYTES_A_POLL = (1, 4, 13, 64, 131, 512)
+FALSE_HEADERS = bytes([0xAA, 0x55, 0, 80, 1, 1, 1, 1, 1, 1]) * 102
 SCAN_REPLY = bytes.fromhex("A5 5A 05 00 00 40 81")
 START, STOP, INFO, HEALTH, GET_FREQUENCY, REBOOT = 0x60, 0x65, 0x90, 0x92, 0x0D, 0x40
 STEPS_CHZ = {0x09: 10, 0x0A: -10, 0x0B: 100, 0x0C: -100}
@@ -126,14 +128,17 @@ class Session:
         if self.machine.call("bench_command", code) != 0:
             raise BenchError(f"the command {code:#x} is refused")
 
+    def reach_scanning(self):
+        """Carries on the conversation up to the lidar's reply to the start."""
+        reply = b""
+        while reply != SCAN_REPLY:
+            reply = self.answer()
+            self.tick(reply)
+
     def spin_up(self):
         """Starts, up to the lidar's reply."""
         self.command(START)
-        while True:
-            reply = self.answer()
-            self.tick(reply)
-            if reply:
-                return
+        self.reach_scanning()
 
     def run(self, stream, bytes_a_tick=BYTES_A_TICK):
         """Feeds a whole stream."""
@@ -156,13 +161,8 @@ class Session:
         return self.poll_total - before
 
 
-def merge_worst(into, worst):
-    for name, cost in worst.items():
-        into[name] = max(into.get(name, 0), cost)
-
-
 def through(target, program, stream, feed, streaming=False, packets=None):
-    """A stream's cost a byte: (feeding, polling), and the session."""
+    """A stream's cost per byte: (feeding, polling), and the session."""
     session = Session(target, program, feed, streaming)
     session.spin_up()
     session.feed_total = session.poll_total = session.feed_worst = 0
@@ -179,38 +179,56 @@ def full_ring(target, program):
     return session.feed_worst
 
 
-def resynchronisation(target, program, clean, hostile):
-    """Polling's cost a skipped byte in a stream that is no stream."""
-    session = Session(target, program, "blocks")
+def per_poll(target, program, stream, feed, count):
+    """A stream's cost per byte, when it is polled after every `count` bytes as they come."""
+    session = Session(target, program, feed)
+    session.spin_up()
+    session.run(stream)
+    session.feed_total = session.poll_total = 0
+    begin_ms = session.now_ms
+    for at in range(0, len(stream), count):
+        part = stream[at:at + count]
+        now_ms = begin_ms + (at + len(part)) // BYTES_A_MS
+        session.tick(part, now_ms - session.now_ms)
+    return (session.feed_total + session.poll_total) / len(stream)
+
+
+def longest_poll(target, program, clean):
+    """The costliest single poll that a search finds, and what the ring was full of: the lidar scans,
+    and a scan is under way."""
+    session = Session(target, program, "blocks", rx_size=worst.SIZE)
     session.spin_up()
     session.run(clean)
-    skipped = session.counters()[4]
-    session.poll_total = 0
-    session.run(hostile, LINE_BYTES_A_TICK)
-    skipped = session.counters()[4] - skipped
-    if skipped < len(hostile) / 2:
-        raise BenchError("the hostile stream is not hostile")
-    return session.poll_total / skipped
+    saved = session.machine.save(), session.now_ms
+
+    def cost(mix):
+        session.machine.restore(saved[0])
+        session.now_ms = saved[1]
+        session.tick(bytes(mix[0]))
+        session.worst_poll = {}
+        session.tick(worst.stream_of(mix), mix[1])
+        return max(session.worst_poll.values())
+
+    return worst.search(cost)
 
 
-def longest_poll(target, program, clean, full):
-    """The costliest single poll when the largest ring is full of such a stream, while the lidar
-    scans and a scan is under way."""
-    session = Session(target, program, "blocks", rx_size=LARGEST_RING)
-    session.spin_up()
-    session.run(clean)
-    session.worst_poll = {}
-    for _ in range(4):
-        session.tick(full[:LARGEST_RING])
-    if "MORE" not in session.worst_poll:
-        raise BenchError("a full ring is not too much for one poll")
-    return max(session.worst_poll.values())
+def limit(target, program, stream):
+    """The least that decoding can cost, per byte."""
+    machine = Machine(target.name, program)
+    at = cost = 0
+    while len(stream) - at >= 13:
+        block = stream[at:at + 4096]
+        machine.write("bench_block", block)
+        used, count = machine.cost("bench_limit", len(block))
+        at += used
+        cost += count
+    return cost / at
 
 
-def conversation(target, program, clean, faulty, hostile):
-    """Every event there is; returns the costliest poll of each, and the deepest stack."""
+def conversation(target, program, clean, faulty):
+    """Every event there is; returns the deepest stack."""
     session = Session(target, program)
-    if "MORE" not in session.tick(hostile[:RX_SIZE]):
+    if "MORE" not in session.tick(FALSE_HEADERS):
         raise BenchError("a full ring of false headers is not too much for one poll")
     for code, event in ((STOP, "STOPPED"), (INFO, "INFO"), (HEALTH, "HEALTH"),
                         (GET_FREQUENCY, "FREQUENCY"), (REBOOT, "REBOOTED")):
@@ -225,21 +243,19 @@ def conversation(target, program, clean, faulty, hostile):
     session.lidar.answers = True
     session.command(STOP)
     session.until("STOPPED")
-    if "STREAMING" not in session.tick(clean[:BYTES_A_TICK]):
+    if "UNWANTED_SCANNING" not in session.tick(clean[:BYTES_A_TICK]):
         raise BenchError("an idle lidar that streams is not noticed")
     session.until("STOPPED")
     session.spin_up()
     session.run(clean)
     session.run(faulty)
     session.until("LOST")
-    while not session.answer():
-        session.tick()
-    session.tick(SCAN_REPLY)
+    session.reach_scanning()
     session.run(clean)
     missing = set(session.names) - set(session.worst_poll) - {"PACKET"}
     if missing:
         raise BenchError(f"events that were not seen: {sorted(missing)}")
-    return session.worst_poll, session.machine.stack_used()
+    return session.machine.stack_used()
 
 
 def overrun(target, program, stream, rx_size, dma, pause_ms):
@@ -287,31 +303,27 @@ def check_counting(target, program, clean):
 
 def measure(target, level, objects, folder, streams):
     """Everything that is counted on one processor."""
-    main = target.compile(HERE / "emulated" / "main.c", level, folder / "emulated")
-    program, _ = target.link([*objects, main], folder / "emulated.elf")
+    sources = (HERE / "emulated" / "main.c", HERE / "limit.c")
+    extra = [target.compile(source, level, folder / "emulated", "-I", HERE) for source in sources]
+    program, _ = target.link([*objects, *extra], folder / "emulated.elf")
     clean = streams["clean"]
     check_counting(target, program, clean)
-    if (target.name, level) == ("cortex-m4", "-Os"):
-        check_pauses(target, program, clean)
-    costs, worst = {}, {}
+    costs = {}
     for name, feed, streaming in (("bytes", "bytes", False), ("blocks", "blocks", False),
                                   ("dma", "dma", False), ("streaming", "blocks", True)):
         costs[name], session = through(target, program, clean, feed, streaming,
                                        streams["clean packets"])
-        merge_worst(worst, session.worst_poll)
         if name == "bytes":
             idle = {ms: session.idle_poll(ms) for ms in (0, 1)}
             feed_worst = max(session.feed_worst, full_ring(target, program))
+            caller = session.machine.cost("interrupt_nothing")[1]
     costs["corrupted"], _ = through(target, program, streams["corrupted"], "blocks")
-    conversed, stack = conversation(target, program, streams["turn"], streams["faulty"],
-                                    streams["headers 10"])
-    merge_worst(worst, conversed)
-    hostile = {name: resynchronisation(target, program, streams["turn"], streams[name])
-               for name in streams if name.startswith(("random", "headers"))}
-    longest = {name: longest_poll(target, program, streams["turn"], streams[name])
-               for name in streams
-               if name in hostile or name == "clean" or name.startswith(("points", "marks"))}
-    by_frequency = {name: sum(through(target, program, streams[name], "blocks")[0])
-                    for name in streams if name.endswith("Hz")}
-    return {"costs": costs, "feed worst": feed_worst, "idle poll": idle, "worst poll": worst,
-            "hostile": hostile, "longest poll": longest, "by frequency": by_frequency, "stack seen": stack}
+    figures = {"costs": costs, "feed worst": feed_worst, "idle poll": idle, "caller": caller,
+               "limit": limit(target, program, clean),
+               "per poll": {count: {feed: per_poll(target, program, streams["turn"], feed, count)
+                                    for feed in ("bytes", "blocks")} for count in BYTES_A_POLL},
+               "stack seen": conversation(target, program, streams["turn"], streams["faulty"])}
+    if (target.name, level) == ("cortex-m4", "-Os"):
+        check_pauses(target, program, clean)
+        figures["longest poll"] = longest_poll(target, program, streams["turn"])
+    return figures

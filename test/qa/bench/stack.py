@@ -21,7 +21,8 @@ RELOCATED = re.compile(r"(R_ARM_THM_CALL|R_ARM_THM_JUMP24|R_RISCV_CALL(?:_PLT)?)
 DIRECT_CALL = re.compile(r"\t(?:bl|blx|b|b\.n|b\.w|jal|j)\s+(?:ra,)?[0-9a-f]+ <(\w+)>")
 
 # What the interrupt calls; everything else is called where the user polls.
-INTERRUPT = ("tmini_ring_write", "tmini_ring_room", "tmini_ring_publish", "tmini_ring_gap")
+INTERRUPT = ("tmini_ring_put_at_stop", "tmini_ring_write", "tmini_ring_room", "tmini_ring_publish",
+             "tmini_ring_gap")
 
 
 class Graph:

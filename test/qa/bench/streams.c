@@ -6,12 +6,7 @@
  *   streams clean REVOLUTIONS POINTS   as a lidar sends them, with CT information; 667 points a
  *                                      revolution are 6 Hz
  *   streams faulty REVOLUTIONS POINTS  the same from a lidar that reports a fault of its encoder
- *   streams corrupted REVOLUTIONS POINTS  as clean, one fault in about 500 bytes
- *   streams random SIZE 0              bytes without structure
- *   streams headers SIZE STEP          a false header every STEP bytes, claiming 80 samples
- *   streams points SIZE SAMPLES        valid packets of so many samples, all without a range and
- *                                      across 0 degrees: those that are most work
- *   streams marks SIZE COUNT           so many AA, which might each begin a packet, then zeros */
+ *   streams corrupted REVOLUTIONS POINTS  as clean, one fault in about 500 bytes */
 
 #include "corrupt.h"
 #include "encoder.h"
@@ -24,7 +19,6 @@
 
 #define CAPACITY (1u << 20)
 #define FULL_PACKET 40u
-#define MOST_SAMPLES 80u
 #define BYTES_A_FAULT 500u
 #define HEALTH_ENCODER 2u /* section 4 */
 
@@ -98,48 +92,6 @@ static void corrupt(void)
     size = corrupt_some(&random, (unsigned)(size / BYTES_A_FAULT), stream, size, CAPACITY);
 }
 
-static void make_noise(uint32_t bytes)
-{
-    random_t random;
-    random_seed(&random, 3);
-    for (size = 0; size < bytes && size < CAPACITY; size++) {
-        stream[size] = (uint8_t)random_below(&random, 256);
-    }
-}
-
-/* A header is AA 55 CT LSN FSA FSA LSA LSA CS CS; it is believed if LSN is not too large and the
- * first bytes of FSA and LSA are odd. With a STEP below 10 headers overlap. */
-static void make_headers(uint32_t bytes, uint32_t step)
-{
-    const uint8_t header[] = {0xAA, 0x55, 0x00, MOST_SAMPLES};
-    for (size = 0; size < bytes && size < CAPACITY; size++) {
-        const size_t at = size % step;
-        stream[size] = at < sizeof header ? header[at] : 0x01;
-    }
-}
-
-/* A start packet before them, so that there is room for their points. */
-static void make_points(uint32_t bytes, uint32_t count)
-{
-    static const encode_sample_t samples[MOST_SAMPLES];
-    const encode_packet_t start = {.ct = encode_ct(&turn, 0), .lsn = 1, .samples = samples};
-    const encode_packet_t packet = {.lsn = (uint8_t)count,
-                                    .first_q6 = count > 1 ? ENCODE_FULL_TURN_Q6 - 1 : 0,
-                                    .last_q6 = 0,
-                                    .samples = samples};
-    size = encode_packet(stream, &start);
-    while (size < bytes && size + ENCODE_PACKET_MAX < CAPACITY) {
-        size += encode_packet(&stream[size], &packet);
-    }
-}
-
-static void make_marks(uint32_t bytes, uint32_t count)
-{
-    for (size = 0; size < bytes && size < CAPACITY; size++) {
-        stream[size] = size < count ? 0xAA : 0;
-    }
-}
-
 static bool make(const char *kind, uint32_t amount, uint32_t parameter)
 {
     points_a_revolution = parameter;
@@ -151,14 +103,6 @@ static bool make(const char *kind, uint32_t amount, uint32_t parameter)
     } else if (strcmp(kind, "corrupted") == 0) {
         make_scans(amount);
         corrupt();
-    } else if (strcmp(kind, "random") == 0) {
-        make_noise(amount);
-    } else if (strcmp(kind, "headers") == 0 && parameter > 0) {
-        make_headers(amount, parameter);
-    } else if (strcmp(kind, "points") == 0 && parameter > 0 && parameter <= MOST_SAMPLES) {
-        make_points(amount, parameter);
-    } else if (strcmp(kind, "marks") == 0) {
-        make_marks(amount, parameter);
     } else {
         return false;
     }

@@ -7,8 +7,7 @@ import re
 
 import load
 from flash import CONFIGURATIONS
-from streams import HEADER_STEPS
-from targets import LEVELS, TARGETS
+from targets import LEVELS, TARGETS, target_named
 
 
 def table(head, rows):
@@ -39,10 +38,15 @@ def versions(figures):
         .replace("---:", "---")
 
 
-def flash(figures):
-    rows = [[title, *(f["flash"][name]["own"] for name, _ in CONFIGURATIONS),
-             f["flash"]["everything"]["support"]] for title, f in small(figures)]
-    return table(["bytes of flash", *(title for _, title in CONFIGURATIONS), "C library"], rows)
+def memory(figures):
+    rows = []
+    for name in (target.name for target in TARGETS):
+        f = figures["targets"][name, "-Os"]
+        rows.append([f"{target_named(name).title} `-Os`", *(f["flash"][part]["own"] for part, _ in CONFIGURATIONS),
+                     f["flash"]["everything"]["support"], figures["ram"][name]["tmini_t"],
+                     f["stack"]["polling"][0], f["counts"]["stack seen"], f["stack"]["interrupt"][0]])
+    return table(["bytes", *(title for _, title in CONFIGURATIONS), "C library", "RAM: `tmini_t`",
+                  "stack, polling, at most", "seen", "interrupt, at most"], rows)
 
 
 def modules(figures):
@@ -53,23 +57,6 @@ def modules(figures):
     return table(["bytes of flash", *(title for title, _ in chosen)], rows)
 
 
-def ram(figures):
-    sizes = figures["ram"]
-    rows = [[f"`{name}`", *(sizes[target.name][name] for target in TARGETS)]
-            for name in sizes[TARGETS[0].name]]
-    writable = [max(figures["targets"][target.name, level]["flash"]["everything"]["writable"]
-                    for level in LEVELS) for target in TARGETS]
-    rows.append(["variables of the library's own", *writable])
-    return table(["bytes of RAM", *(target.title for target in TARGETS)], rows)
-
-
-def stack(figures):
-    rows = [[title, f["stack"]["polling"][0], f["counts"]["stack seen"],
-             f["stack"]["interrupt"][0]] for title, f in small(figures)]
-    return table(["bytes of stack", "polling, at most", "polling, seen", "interrupt, at most"],
-                 rows)
-
-
 def instructions(figures):
     rows = []
     for title, f in small(figures):
@@ -77,26 +64,33 @@ def instructions(figures):
         rows.append([title, f["counts"]["feed worst"], *(one(sum(costs[name])) for name in
                      ("bytes", "blocks", "dma", "streaming", "corrupted")),
                      *f["counts"]["idle poll"].values()])
-    return table(["instructions", "`tmini_feed_byte()`, worst", "a byte, by bytes",
-                  "a byte, by blocks", "a byte, by DMA", "a byte, streaming",
-                  "a byte, corrupted", "idle `tmini_poll()`", "the same, 1 ms later"], rows)
+    return table(["instructions", "`tmini_feed_byte()`, worst", "per byte, by bytes",
+                  "per byte, by blocks", "per byte, by DMA", "per byte, streaming",
+                  "per byte, corrupted", "idle `tmini_poll()`", "the same, 1 ms later"], rows)
 
 
-def hostile(figures):
-    chosen = [(title, f["counts"]["hostile"]) for title, f in small(figures)]
-    rows = [["random", *(one(cost["random"]) for _, cost in chosen)]]
-    rows += [[f"a header every {step} bytes", *(one(cost[f"headers {step}"]) for _, cost in chosen)]
-             for step in HEADER_STEPS if step <= 7]
-    return table(["instructions a byte", *(title for title, _ in chosen)], rows)
+def per_poll(figures):
+    m4 = figures["targets"]["cortex-m4", "-Os"]["counts"]["per poll"]
+    m0 = figures["targets"]["cortex-m0", "-Os"]["counts"]["per poll"]
+    x86 = figures["host"]["per poll"]
+    rows = [[count, *(one(f[count][feed]) for f in (m0, m4, x86) for feed in ("bytes", "blocks"))]
+            for count in m4]
+    return table(["bytes per poll", *(f"{title}, by {feed}" for title in
+                                      ("Cortex-M0", "Cortex-M4", "x86-64")
+                                      for feed in ("bytes", "blocks"))], rows)
 
 
-def host(figures):
-    ways = {"bytes": "whole driver, fed by bytes", "blocks": "whole driver, fed by blocks",
-            "decode": "ring to scan, fed by blocks"}
-    rows = [[ways[feed], one(f["own"]), one(f["own"] * figures["host size"])]
-            for feed, f in figures["host"].items()]
-    return table(["x86-64 `-O2`", "instructions a byte", "instructions"],
-                 [[name, each, total.removesuffix(".0")] for name, each, total in rows])
+def compared(figures):
+    """All that a program executes: on x86-64 its loop, on Cortex-M4 its interrupt's function."""
+    host = figures["host"]
+    m4 = [figures["targets"]["cortex-m4", level]["counts"] for level in LEVELS]
+    rows = [["the limit", one(host["limit"]), *(one(f["limit"]) for f in m4)],
+            ["ring to scan, by blocks", one(host["decode"]), "–", "–"]]
+    rows += [[f"full driver, by {feed}", one(host[feed]),
+              *(one(sum(f["costs"][feed]) + (f["caller"] if feed == "bytes" else 0)) for f in m4)]
+             for feed in ("blocks", "bytes")]
+    return table(["instructions per byte", "x86-64 `-O2`", "Cortex-M4 `-Os`", "Cortex-M4 `-O2`"],
+                 rows)
 
 
 def cpu(figures):
@@ -105,7 +99,7 @@ def cpu(figures):
         f = figures["targets"][name, "-Os"]["counts"]
         rows.append([title, *(one(load.percent(f, megahertz, feed)) + " %"
                               for feed in ("bytes", "dma"))])
-    return table(["load, library at `-Os`", "interrupt a byte", "DMA"], rows)
+    return table(["load, library at `-Os`", "interrupt per byte", "DMA"], rows)
 
 
 def pauses(_figures):
@@ -144,9 +138,9 @@ def summary(figures):
     return table(["`-Os`", "Cortex-M0", "Cortex-M4"], rows)
 
 
-BLOCKS = {"versions": versions, "budgets": budgets, "flash": flash, "modules": modules, "ram": ram,
-          "stack": stack, "instructions": instructions, "hostile": hostile,
-          "host": host, "load": cpu, "pauses": pauses, "footprint": summary}
+BLOCKS = {"versions": versions, "budgets": budgets, "memory": memory, "modules": modules,
+          "instructions": instructions, "per-poll": per_poll,
+          "compared": compared, "load": cpu, "pauses": pauses, "footprint": summary}
 
 
 def between(name):

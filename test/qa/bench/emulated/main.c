@@ -5,6 +5,7 @@
  * UART are variables. Only the library's instructions are counted, none of this file but those of
  * the function that the library lends to the interrupt. */
 
+#include "limit.h"
 #include "tmini/tmini.h"
 
 #define RX_SIZE 4096
@@ -18,6 +19,7 @@ uint8_t bench_sent;
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_point_t packet_points[TMINI_MAX_SAMPLES_DEFAULT];
 static tmini_counters_t counters;
+static limit_point_t limit_points[LIMIT_POINTS];
 
 void bench_main(void);
 void bench_begin(bool dma, bool streaming, size_t rx_size);
@@ -30,6 +32,7 @@ void bench_feed_dma(size_t position);
 tmini_event_t bench_poll(void);
 void bench_decode(void);
 const tmini_counters_t *bench_counters(void);
+size_t bench_limit(size_t count);
 
 static int bench_write(void *context, const uint8_t *bytes, size_t count)
 {
@@ -123,6 +126,11 @@ const tmini_counters_t *bench_counters(void)
 {
     tmini_counters(&bench_lidar, &counters);
     return &counters;
+}
+
+size_t bench_limit(size_t count)
+{
+    return limit_decode(bench_block, count, limit_points);
 }
 
 /* The program's entry: nothing is run from here. */

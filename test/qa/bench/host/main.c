@@ -3,23 +3,29 @@
 
 /* Feeds a recording to the library on this computer, for an instruction counter to watch:
  *
- *   host bytes|blocks FILE     about a packet at a time, then tmini_poll() until there is nothing
- *   host decode FILE           the same by blocks, with ring, parser, packet and scan alone
+ *   host bytes|blocks FILE BYTES   BYTES at a time, then tmini_poll() until there is nothing
+ *   host decode FILE BYTES         the same by blocks, with ring, parser, packet and scan alone
+ *   host limit FILE BYTES          the least that it can cost (limit.h); BYTES has no meaning
  *
- * Prints how many scan packets were found. */
+ * Prints how many scan packets were found. Counted is all that counted_run() does: the library, the
+ * C library's copies, the clock, and the loop that a program has around them. */
 
+#include "limit.h"
 #include "tmini/tmini.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#define BLOCK 131u /* 10 ms at the lidar's data rate. */
+#define BYTES_A_MS 13u /* The lidar's data rate. */
 #define CAPACITY (1u << 20)
 
 static uint8_t recording[CAPACITY];
 static uint8_t rx[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_t lidar;
+static tmini_parser_t parser;
+static limit_point_t limit_points[CAPACITY / 3];
 static uint32_t now_ms;
 static uint8_t sent;
 
@@ -40,7 +46,6 @@ static const tmini_port_t port = {.write = note_command, .now_ms = read_clock};
 
 static void poll_all(void)
 {
-    now_ms += 10;
     while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
     }
 }
@@ -50,6 +55,7 @@ static void start(void)
     static const uint8_t reply[] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
     (void)tmini_start(&lidar);
     while (sent != TMINI_COMMAND_START) {
+        now_ms += 10;
         poll_all();
     }
     tmini_feed(&lidar, reply, sizeof reply);
@@ -63,30 +69,31 @@ static void feed_bytes(const uint8_t *bytes, size_t count)
     }
 }
 
-static void feed_all(size_t size, bool by_bytes)
+static void drive_all(size_t size, size_t block, bool by_bytes)
 {
-    for (size_t at = 0; at < size; at += BLOCK) {
-        const size_t count = size - at < BLOCK ? size - at : BLOCK;
+    const uint32_t begin_ms = now_ms;
+    for (size_t at = 0; at < size; at += block) {
+        const size_t count = size - at < block ? size - at : block;
         if (by_bytes) {
             feed_bytes(&recording[at], count);
         } else {
             tmini_feed(&lidar, &recording[at], count);
         }
+        now_ms = begin_ms + (uint32_t)((at + count) / BYTES_A_MS);
         poll_all();
     }
 }
 
-/* What decoders without a driver do: from bytes to scans. Returns the number of packets. */
-static unsigned long decode_all(size_t size)
+/* What decoders without a driver do: from bytes to scans. */
+static void decode_all(size_t size, size_t block)
 {
     static tmini_ring_t ring;
-    static tmini_parser_t parser;
     static tmini_builder_t builder;
     (void)tmini_ring_init(&ring, rx, sizeof rx, false);
     (void)tmini_parser_init(&parser, &ring, 0);
     (void)tmini_builder_init(&builder, points, TMINI_SCAN_POINTS_TYPICAL, TMINI_FILTER_NONE);
-    for (size_t at = 0; at < size; at += BLOCK) {
-        tmini_ring_write(&ring, &recording[at], size - at < BLOCK ? size - at : BLOCK);
+    for (size_t at = 0; at < size; at += block) {
+        tmini_ring_write(&ring, &recording[at], size - at < block ? size - at : block);
         while (tmini_parser_next(&parser) == TMINI_FRAME_PACKET) {
             tmini_packet_t packet;
             tmini_packet_open(&packet, tmini_parser_frame(&parser));
@@ -95,18 +102,18 @@ static unsigned long decode_all(size_t size)
             }
         }
     }
-    tmini_parser_counters_t counters;
-    tmini_parser_counters(&parser, &counters);
-    return (unsigned long)counters.packets;
 }
 
-static unsigned long drive_all(size_t size, bool by_bytes)
+/* All that is counted. */
+TMINI_NOINLINE static void counted_run(const char *way, size_t size, size_t block)
 {
-    tmini_counters_t counters;
-    start();
-    feed_all(size, by_bytes);
-    tmini_counters(&lidar, &counters);
-    return (unsigned long)counters.packets;
+    if (way[0] == 'l') {
+        (void)limit_decode(recording, size, limit_points);
+    } else if (way[0] == 'd') {
+        decode_all(size, block);
+    } else {
+        drive_all(size, block, way[1] == 'y');
+    }
 }
 
 static size_t read_file(const char *name)
@@ -127,13 +134,16 @@ int main(int argc, char **argv)
                                    .rx_size = sizeof rx,
                                    .points = points,
                                    .max_points = TMINI_SCAN_POINTS_TYPICAL};
-    const size_t size = argc == 3 ? read_file(argv[2]) : 0;
-    if (size == 0 || tmini_init(&lidar, &config) != TMINI_OK) {
-        fputs("usage: host bytes|blocks|decode FILE\n", stderr);
+    const size_t size = argc == 4 ? read_file(argv[2]) : 0;
+    const size_t block = argc == 4 ? (size_t)strtoul(argv[3], NULL, 10) : 0;
+    tmini_counters_t counters;
+    if (size == 0 || block == 0 || tmini_init(&lidar, &config) != TMINI_OK) {
+        fputs("usage: host bytes|blocks|decode|limit FILE BYTES\n", stderr);
         return 2;
     }
-    printf("%lu\n", strcmp(argv[1], "decode") == 0
-                        ? decode_all(size)
-                        : drive_all(size, strcmp(argv[1], "bytes") == 0));
+    start();
+    counted_run(argv[1], size, block);
+    tmini_counters(&lidar, &counters);
+    printf("%lu\n", (unsigned long)(counters.packets + parser.counters.packets));
     return 0;
 }
