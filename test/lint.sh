@@ -86,7 +86,7 @@ check_tidy() {
     tidy_programs || clean=1
     tidy_firmware port/template/*.c -- -I port/template || clean=1
     tidy_firmware port/stm32/*.c examples/stm32_cube/*.c -- -I port/stm32 -I examples/stm32_cube \
-        -isystem test/port/stm32/stm32_model || clean=1
+        -isystem test/port/stm32/stm32_model -isystem test/support || clean=1
     tidy_firmware port/esp32/*.c examples/esp32_idf/main/*.c -- -I port/esp32 \
         -isystem test/port/esp32/esp_idf || clean=1
     tidy_firmware port/pico/*.c examples/pico/*.c -- -I port/pico -D_DEFAULT_SOURCE \
@@ -156,7 +156,8 @@ check_analyzer() {
             -Wno-analyzer-malloc-leak -Wno-analyzer-null-dereference "$source" || clean=1
     done
     for source in port/stm32/*.c examples/stm32_cube/*.c; do
-        analyse -Iport/stm32 -Iexamples/stm32_cube -isystem test/port/stm32/stm32_model "$source" ||
+        analyse -Iport/stm32 -Iexamples/stm32_cube -isystem test/port/stm32/stm32_model \
+            -isystem test/support "$source" ||
             clean=1
     done
     for source in port/esp32/*.c examples/esp32_idf/main/*.c; do

@@ -183,8 +183,8 @@ static int connect_to(const struct addrinfo *place)
 static bool is_port_number(const char *text)
 {
     const size_t digits = strspn(text, "0123456789");
-    return digits >= 1 && digits <= 5 && text[digits] == '\0' && atol(text) >= 1 &&
-           atol(text) <= 65535;
+    const long number = strtol(text, NULL, 10);
+    return digits >= 1 && digits <= 5 && text[digits] == '\0' && number >= 1 && number <= 65535;
 }
 
 /* Where "HOST:PORT" is; NULL: nowhere. The last colon counts, because HOST may be an IPv6 address,

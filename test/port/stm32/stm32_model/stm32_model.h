@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The hardware: one USART at 230400 baud with one DMA channel, on two interrupt lines. Registers are
- * read and written by these functions alone, since reading has effects. Time passes with every
+/* The hardware: one USART at 230400 baud with one DMA channel, on two interrupt lines. Registers
+ * are read and written by these functions alone, since reading has effects. Time passes with every
  * access, in nanoseconds; what is due happens then, interrupts included. */
 
 #ifndef STM32_MODEL_H
