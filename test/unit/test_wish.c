@@ -1,0 +1,564 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What the user wants stands: a start, a stop, a frequency; listening; and what is made of a
+ * finished scan before it is delivered. */
+
+#include "invariants.h"
+#include "rig.h"
+
+#include "mock_port_functions.h"
+#include "unity.h"
+
+static unsigned restarts;
+
+void setUp(void)
+{
+    rig_open();
+    restarts = 0;
+}
+
+void tearDown(void)
+{
+    TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
+}
+
+static void count_restart(void *context)
+{
+    TEST_ASSERT_EQUAL_PTR(&rig.port, context);
+    restarts++;
+}
+
+static void want(uint16_t frequency_chz)
+{
+    rig.config.frequency_chz = frequency_chz;
+    rig_init();
+}
+
+static void goes_on_with(uint8_t code)
+{
+    sends(code);
+    polls_to(TMINI_EVENT_NONE);
+    was_sent();
+}
+
+static void becomes_quiet(void)
+{
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+}
+
+/* The stop has been sent; the question is, after the quiet time. */
+static void asks_for_the_frequency(void)
+{
+    sends(STOP);
+    begins(tmini_start(&rig.lidar));
+    becomes_quiet();
+    goes_on_with(GET_FREQUENCY);
+}
+
+static void starts_scanning(void)
+{
+    rig_feed_scan_reply();
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+}
+
+/* ---- The frequency, before every start ---- */
+
+void test_a_start_asks_for_the_wanted_frequency_first(void)
+{
+    want(1000);
+    asks_for_the_frequency();
+    rig_feed_frequency(1000);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    is_in(TMINI_STATE_STARTING);
+    goes_on_with(START); /* The line is quiet: no stop. */
+    starts_scanning();
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT16(1000, tmini_frequency_chz(&rig.lidar));
+}
+
+void test_a_start_sets_another_frequency_first(void)
+{
+    want(700);
+    asks_for_the_frequency();
+    rig_feed_frequency(600);
+    becomes_quiet();
+    goes_on_with(FASTER_ONE);
+    rig_feed_frequency(700);
+    becomes_quiet();
+    goes_on_with(GET_FREQUENCY);
+    rig_feed_frequency(700);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    goes_on_with(START);
+}
+
+void test_packets_while_the_frequency_is_asked_for_are_no_start(void)
+{
+    want(1000);
+    asks_for_the_frequency();
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_NONE);
+    is_in(TMINI_STATE_STARTING);
+}
+
+void test_without_an_answer_the_start_follows_all_the_same_and_says_so_when_it_scans(void)
+{
+    want(1000);
+    asks_for_the_frequency();
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    goes_on_with(STOP);
+    becomes_quiet();
+    goes_on_with(START);
+    starts_scanning();
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_command_error(&rig.lidar));
+    is_in(TMINI_STATE_SCANNING);
+}
+
+void test_a_round_without_any_answer_is_reported_once(void)
+{
+    want(1000);
+    asks_for_the_frequency();
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    goes_on_with(STOP);
+    becomes_quiet();
+    goes_on_with(START);
+    passes(2000);
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    is_in(TMINI_STATE_STARTING);
+    passes(500);
+    polls_to(TMINI_EVENT_NONE);
+    goes_on_with(STOP);
+}
+
+void test_after_a_loss_the_frequency_is_not_known_and_asked_for_again(void)
+{
+    want(1000);
+    asks_for_the_frequency();
+    rig_feed_frequency(1000);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    goes_on_with(START);
+    starts_scanning();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
+    goes_on_with(STOP);
+    becomes_quiet();
+    goes_on_with(GET_FREQUENCY);
+    passes(2000); /* In vain, and nothing new to report. */
+    polls_to(TMINI_EVENT_NONE);
+    goes_on_with(STOP);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_command_error(&rig.lidar));
+}
+
+void test_a_reboot_leaves_the_frequency_unknown(void)
+{
+    rig_go_idle();
+    sends(GET_FREQUENCY);
+    begins(tmini_request_frequency(&rig.lidar));
+    rig_feed_frequency(800);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    TEST_ASSERT_EQUAL_UINT16(800, tmini_frequency_chz(&rig.lidar));
+    sends(REBOOT);
+    begins(tmini_reboot(&rig.lidar));
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
+}
+
+void test_a_wish_during_a_query_is_kept_for_the_start_that_follows(void)
+{
+    rig_go_idle();
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    begins(tmini_set_frequency(&rig.lidar, 900));
+    begins(tmini_start(&rig.lidar));
+    is_in(TMINI_STATE_BUSY);
+    rig_feed_info();
+    polls_to(TMINI_EVENT_INFO);
+    is_in(TMINI_STATE_STARTING);
+    goes_on_with(GET_FREQUENCY);
+}
+
+void test_a_start_follows_a_stop_that_is_under_way(void)
+{
+    rig_go_idle();
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    begins(tmini_start(&rig.lidar));
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+    is_in(TMINI_STATE_STARTING);
+    goes_on_with(START);
+}
+
+void test_a_stop_takes_back_the_start_that_was_to_follow(void)
+{
+    rig_go_idle();
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    begins(tmini_start(&rig.lidar));
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    passes(50);
+    polls_to(TMINI_EVENT_STOPPED);
+    is_in(TMINI_STATE_IDLE);
+}
+
+void test_the_same_wish_again_disturbs_no_scan(void)
+{
+    want(1000);
+    asks_for_the_frequency();
+    rig_feed_frequency(1000);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    goes_on_with(START);
+    starts_scanning();
+    begins(tmini_set_frequency(&rig.lidar, 1000));
+    begins(tmini_start(&rig.lidar));
+    is_in(TMINI_STATE_SCANNING);
+    polls_to(TMINI_EVENT_NONE);
+}
+
+void test_a_new_wish_while_recovering_still_ends_with_recovered(void)
+{
+    rig_go_recovering();
+    sends(STOP);
+    begins(tmini_set_frequency(&rig.lidar, 900));
+    is_in(TMINI_STATE_RECOVERING);
+    becomes_quiet();
+    goes_on_with(GET_FREQUENCY);
+    rig_feed_frequency(900);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    goes_on_with(START);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+}
+
+void test_a_new_wish_for_a_lost_lidar_that_is_not_recovered_waits(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    rig_init();
+    rig_go_scanning();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    begins(tmini_set_frequency(&rig.lidar, 900));
+    passes(60000);
+    is_in(TMINI_STATE_RECOVERING);
+}
+
+/* ---- Measured against wished ---- */
+
+static void turns(unsigned count, uint8_t dhz)
+{
+    for (unsigned i = 0; i < count; i++) {
+        rig.now_ms += 150;
+        rig_feed_packet((uint8_t)(dhz << 1 | 1), 1, 1000);
+        (void)rig_drain();
+    }
+}
+
+static void scans_wishing(uint16_t frequency_chz)
+{
+    want(frequency_chz);
+    asks_for_the_frequency();
+    rig_feed_frequency(frequency_chz);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    goes_on_with(START);
+    starts_scanning();
+}
+
+/* At 6.0 Hz, 18 revolutions are 3 seconds. */
+void test_three_seconds_of_another_frequency_are_a_fault_and_one_more_try(void)
+{
+    scans_wishing(1000);
+    turns(17, 60);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+    sends(STOP);
+    turns(1, 60);
+    was_sent();
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+    is_in(TMINI_STATE_STARTING);
+    becomes_quiet();
+    goes_on_with(GET_FREQUENCY);
+    rig_feed_frequency(1000);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    goes_on_with(START);
+    starts_scanning();
+    turns(40, 60); /* No other try. */
+    is_in(TMINI_STATE_SCANNING);
+    turns(1, 100);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+}
+
+void test_five_percent_are_no_other_frequency(void)
+{
+    scans_wishing(1000);
+    turns(40, 95);
+    turns(40, 105);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+    sends(STOP);
+    turns(32, 106);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+}
+
+void test_a_frequency_that_is_right_now_and_then_is_no_fault(void)
+{
+    scans_wishing(1000);
+    for (unsigned i = 0; i < 10; i++) {
+        turns(17, 60);
+        turns(1, 100);
+    }
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+}
+
+void test_without_recovery_another_frequency_is_only_a_fault(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    scans_wishing(1000);
+    turns(300, 60);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+    is_in(TMINI_STATE_SCANNING);
+}
+
+void test_without_a_wish_any_frequency_is_right(void)
+{
+    rig_go_scanning();
+    turns(100, 60);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+}
+
+/* ---- A lidar without start packets ---- */
+
+static void ranges_without_start(unsigned samples)
+{
+    for (; samples > 0; samples -= 40) {
+        rig_feed_packet(0, 40, 1000);
+        (void)rig_drain();
+    }
+}
+
+void test_three_seconds_of_ranges_without_a_start_packet_are_a_fault_and_three_more_a_loss(void)
+{
+    rig_go_scanning();
+    rig_feed_start_packet(1000);
+    (void)rig_drain();
+    ranges_without_start(11960);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+    ranges_without_start(40);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
+    is_in(TMINI_STATE_SCANNING);
+    ranges_without_start(11960);
+    is_in(TMINI_STATE_SCANNING);
+    sends(STOP);
+    ranges_without_start(40);
+    is_in(TMINI_STATE_RECOVERING);
+}
+
+/* ---- Without recovery ---- */
+
+void test_without_recovery_a_start_fails_once_after_all_its_attempts(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    rig.timing.max_attempts = 1;
+    rig_init();
+    rig_go_starting();
+    passes(2000);
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    is_in(TMINI_STATE_UNKNOWN);
+    passes(60000);
+    sends(STOP);
+    begins(tmini_start(&rig.lidar));
+    is_in(TMINI_STATE_STARTING);
+}
+
+/* ---- The port's receiver ---- */
+
+void test_the_port_restarts_its_reception_at_a_loss_and_after_each_attempt_that_failed(void)
+{
+    rig.port.restart = count_restart;
+    rig_go_recovering();
+    TEST_ASSERT_EQUAL_UINT(1, restarts);
+    becomes_quiet();
+    goes_on_with(START);
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT(2, restarts);
+}
+
+/* ---- Listening ---- */
+
+static void listen(void)
+{
+    rig.config.listen_only = true;
+    rig.port.write = NULL;
+    rig.port.restart = count_restart;
+    rig_init();
+    begins(tmini_start(&rig.lidar));
+}
+
+void test_a_listener_scans_from_the_first_packet(void)
+{
+    listen();
+    is_in(TMINI_STATE_STARTING);
+    passes(1000);
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT(1, restarts); /* Every so often, while nothing comes. */
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+    is_in(TMINI_STATE_SCANNING);
+}
+
+void test_a_listener_that_hears_nothing_for_a_second_has_lost_its_lidar(void)
+{
+    listen();
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    passes(1000);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_RECOVERED);
+}
+
+void test_a_listener_stops_at_once_and_hears_no_more(void)
+{
+    listen();
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+    begins(tmini_stop(&rig.lidar));
+    polls_to(TMINI_EVENT_STOPPED);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_NONE);
+    is_in(TMINI_STATE_UNKNOWN);
+}
+
+void test_a_listener_refuses_every_query_and_frequency(void)
+{
+    listen();
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_LISTEN_ONLY, tmini_request_info(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_LISTEN_ONLY, tmini_request_health(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_LISTEN_ONLY, tmini_request_frequency(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_LISTEN_ONLY, tmini_reboot(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_LISTEN_ONLY, tmini_set_frequency(&rig.lidar, 700));
+}
+
+/* ---- Configurations ---- */
+
+static void is_refused(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_init(&rig.lidar, &rig.config));
+}
+
+static void is_taken(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&rig.lidar, &rig.config));
+}
+
+void test_a_wanted_frequency_is_6_to_12_hz_in_tenths(void)
+{
+    static const uint16_t wrong[] = {590, 599, 605, 1201, 1210};
+    for (unsigned i = 0; i < 5; i++) {
+        rig.config.frequency_chz = wrong[i];
+        is_refused();
+    }
+    rig.config.frequency_chz = 600;
+    is_taken();
+    rig.config.frequency_chz = 1200;
+    is_taken();
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_set_frequency(&rig.lidar, 0));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_set_frequency(NULL, 600));
+}
+
+void test_who_only_listens_sets_no_frequency(void)
+{
+    rig.config.listen_only = true;
+    rig.config.frequency_chz = 600;
+    is_refused();
+}
+
+static void step(const void *data, tmini_scan_t *scan)
+{
+    TEST_ASSERT_EQUAL_PTR(&rig, data);
+    for (unsigned i = 0; i < scan->count; i++) {
+        scan->points[i].distance_mm++;
+    }
+}
+
+void test_steps_and_spare_points_need_points_and_data_needs_a_step(void)
+{
+    static tmini_point_t spare[RIG_POINTS];
+    rig.config.step_data = &rig;
+    is_refused();
+    rig.config.step = step;
+    is_taken();
+    rig.config.points = NULL;
+    rig.config.max_points = 0;
+    is_refused();
+    rig.config.step = NULL;
+    rig.config.step_data = NULL;
+    is_taken();
+    rig.config.spare_points = spare;
+    is_refused();
+}
+
+/* ---- What is made of a finished scan ---- */
+
+static void scan_turns(unsigned count)
+{
+    for (unsigned i = 0; i < count; i++) {
+        rig.now_ms += 160;
+        rig_feed_plain_turn((uint16_t)(1000 + 100 * i));
+    }
+}
+
+void test_a_step_changes_each_scan_once_before_it_is_delivered(void)
+{
+    rig.config.step = step;
+    rig.config.step_data = &rig;
+    rig_init();
+    rig_go_scanning();
+    scan_turns(2);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(1001, tmini_scan(&rig.lidar)->points[0].distance_mm);
+    scan_turns(1);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(1101, tmini_scan(&rig.lidar)->points[0].distance_mm);
+}
+
+void test_with_spare_points_a_scan_stays_until_the_next(void)
+{
+    static tmini_point_t spare[RIG_POINTS];
+    rig.config.spare_points = spare;
+    rig_init();
+    rig_go_scanning();
+    scan_turns(2);
+    polls_to(TMINI_EVENT_SCAN);
+    const tmini_scan_t *const scan = tmini_scan(&rig.lidar);
+    TEST_ASSERT_EQUAL_PTR(rig.points, scan->points);
+    polls_to(TMINI_EVENT_NONE); /* The next one is being gathered, */
+    TEST_ASSERT_EQUAL_UINT16(17, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(1000, scan->points[1].distance_mm); /* elsewhere. */
+    scan_turns(1);
+    polls_to(TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_PTR(spare, tmini_scan(&rig.lidar)->points);
+    TEST_ASSERT_EQUAL_UINT16(1100, spare[1].distance_mm);
+}
+
+/* ---- The receive buffer of a port with DMA ---- */
+
+void test_the_receive_buffer_is_for_ports_with_dma(void)
+{
+    size_t size = 1;
+    TEST_ASSERT_NULL(tmini_rx_buffer(&rig.lidar, &size));
+    TEST_ASSERT_EQUAL_size_t(0, size);
+    rig.config.rx_dma = true;
+    rig.config.max_samples = 39;
+    rig_init();
+    TEST_ASSERT_EQUAL_PTR(rig.rx, tmini_rx_buffer(&rig.lidar, &size));
+    TEST_ASSERT_EQUAL_size_t(sizeof rig.rx, size);
+}
