@@ -8,6 +8,7 @@
 
 #include "unity.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -216,6 +217,34 @@ int program_tmini_from(const char *input, const char *const words[])
     return program_finish(start(TMINI, "", input, words), 0);
 }
 
+static bool is_in_real_time;
+
+void program_use_real_time(void)
+{
+    is_in_real_time = true;
+}
+
+void program_skip_idle_time(void)
+{
+/* Sanitizers want to be loaded first. */
+#if defined(IDLE_CLOCK) && !defined(__SANITIZE_ADDRESS__)
+    static const char nothing[4096];
+    static unsigned count;
+    file_name_t name;
+    (void)snprintf(name, sizeof name, "%s/clock.%u", WORK_DIR, count++);
+    program_write_file(name, nothing, sizeof nothing);
+    (void)setenv("TMINI_IDLE_CLOCK", name, 1);
+    (void)setenv("LD_PRELOAD", IDLE_CLOCK, 1);
+#endif
+}
+
+static void begin_clock(void)
+{
+    if (!is_in_real_time) {
+        program_skip_idle_time();
+    }
+}
+
 static char *new_port(void)
 {
     static char ports[PORTS_MAX][100];
@@ -243,6 +272,7 @@ const char *program_start_lidar(const char *const options[])
 {
     char *const port = new_port();
     int ends[2];
+    begin_clock();
     const char *words[PROGRAM_WORDS_MAX] = {"--pty"};
     const bool is_socket = options[0] != NULL && strcmp(options[0], "--tcp") == 0;
     for (size_t i = 0; options[i] != NULL; i++) {
@@ -288,6 +318,20 @@ void program_thaw_lidar(void)
     TEST_ASSERT_EQUAL_INT(0, kill(lidar, SIGCONT));
 }
 
+/* Waits on the clock that it shares with the tool. */
+static void wait_10_ms(void)
+{
+    static int (*wait)(struct pollfd * fds, nfds_t count, int timeout_ms) = poll;
+#ifdef IDLE_CLOCK
+    void *const library = getenv("LD_PRELOAD") != NULL ? dlopen(IDLE_CLOCK, RTLD_NOW) : NULL;
+    void *const function = library != NULL ? dlsym(library, "poll") : NULL;
+    if (function != NULL) {
+        memcpy(&wait, &function, sizeof wait);
+    }
+#endif
+    (void)wait(NULL, 0, 10);
+}
+
 /* What the host sends is read and forgotten; but for the command that is answered, if any. */
 static void talk(int fd, const uint8_t *bytes, size_t size, uint8_t code)
 {
@@ -301,7 +345,7 @@ static void talk(int fd, const uint8_t *bytes, size_t size, uint8_t code)
             at = sent > 0 ? (at + (size_t)sent) % size : at;
         }
         if (read(fd, &heard, 1) < 0) {
-            (void)poll(NULL, 0, 10);
+            wait_10_ms();
         } else {
             if (code != 0 && before == 0xA5 && heard == code && write(fd, bytes, size) < 0) {
                 _exit(1);
@@ -328,6 +372,7 @@ static const char *start_talker(const uint8_t *bytes, size_t size, uint8_t code)
     int master = -1;
     int line = -1;
     struct termios settings;
+    begin_clock();
     open_terminal(&master, &line);
     /* Raw, so that there is no echo. */
     TEST_ASSERT_EQUAL_INT(0, tcgetattr(line, &settings));
@@ -408,6 +453,8 @@ void program_clean_up(void)
 {
     static bool is_at_exit;
     is_at_exit = is_at_exit || atexit(end_all) == 0;
+    (void)unsetenv("LD_PRELOAD"); /* The clock of what has ended. */
+    (void)unsetenv("TMINI_IDLE_CLOCK");
     while (child_count > background) {
         end(children[--child_count]);
     }

@@ -90,6 +90,12 @@ pid_t program_start_shell_on_terminal(unsigned columns, unsigned rows, const cha
  * options up to a NULL. Returns the port as the tool wants it, which stays valid. */
 const char *program_start_lidar(const char *const options[]);
 
+/* Programs that are started from now on share a clock that skips the time in which nothing happens
+ * (idle_clock.c); until the test ends. Each lidar begins such a clock by itself, for those started
+ * after it; unless real time is to be used. */
+void program_skip_idle_time(void);
+void program_use_real_time(void);
+
 /* As if its cable were pulled. */
 void program_stop_lidar(void);
 

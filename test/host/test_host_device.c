@@ -476,7 +476,7 @@ void test_a_signal_ends_a_scan_whose_reader_stands_still_and_stops_the_lidar(voi
                                     "\"$TOOL\" scan --json --count 10000' 2>errors; "
                                     "echo $? >status) | sleep 90 & echo $! >reader"));
     (void)program_wait_for("log", "-> scanning");
-    (void)sleep(3);
+    (void)sleep(1);
     TEST_ASSERT_EQUAL_INT(0, system("kill -TERM \"$(cat tool)\""));
     TEST_ASSERT_NOT_EQUAL(0, atoi(program_wait_for("status", "\n")));
     const char *const text = program_wait_for("log", "stopping -> idle");

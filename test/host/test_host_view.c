@@ -35,8 +35,10 @@ static int line = -1;
 static pid_t tool;
 static struct termios before;
 
+/* A live picture that is drawn ever faster would never stand still to be looked at. */
 void setUp(void)
 {
+    program_use_real_time();
     (void)unsetenv("NO_COLOR");
     (void)unsetenv("TMINI_PORT");
     (void)setenv("TERM", "xterm-256color", 1);
@@ -187,6 +189,7 @@ void test_the_panel_says_what_is_seen(void)
 
 void test_a_room_looks_as_it_did_when_a_person_looked_at_it(void)
 {
+    program_skip_idle_time();
     size_t size = 0;
     begin(80, 24, WORDS("view", RECORDINGS "sim-6hz.bin"));
     wait_for("end of the recording");
@@ -253,6 +256,7 @@ void test_the_picture_follows_the_terminals_size(void)
 
 void test_a_tiny_terminal_does_no_harm(void)
 {
+    program_skip_idle_time();
     begin(7, 3, WORDS("view", cross_recording()));
     watch(500);
     resize(1, 1);
@@ -368,6 +372,7 @@ void test_after_a_pause_a_recording_goes_on_where_it_was(void)
 
 void test_keys_come_from_the_terminal_also_when_the_recording_comes_through_a_pipe(void)
 {
+    program_skip_idle_time();
     (void)setenv("TOOL", TMINI, 1);
     vt_init(&vt, 80, 24);
     tool = program_start_shell_on_terminal(80, 24, "cat " ROOM " | \"$TOOL\" view -", &master,
@@ -382,6 +387,7 @@ void test_keys_come_from_the_terminal_also_when_the_recording_comes_through_a_pi
 
 void test_ctrl_z_gives_the_terminal_back_and_fg_takes_it_again(void)
 {
+    program_skip_idle_time();
     (void)setenv("TOOL", TMINI, 1);
     vt_init(&vt, 80, 24);
     tool = program_start_shell_on_terminal(80, 24, "set -m; \"$TOOL\" view " ROOM "; fg >/dev/null",
@@ -439,6 +445,7 @@ void test_the_locale_is_the_one_that_the_variables_say(void)
 
 void test_a_dumb_terminal_gets_one_picture_below_the_other(void)
 {
+    program_skip_idle_time();
     (void)setenv("TERM", "dumb", 1);
     begin(80, 24, WORDS("view", cross_recording()));
     wait_for("end of the recording");
@@ -465,6 +472,7 @@ void test_an_empty_no_color_means_nothing(void)
 
 void test_a_small_terminal_has_the_picture_the_state_and_the_way_out(void)
 {
+    program_skip_idle_time();
     begin(30, 10, WORDS("view", ROOM));
     wait_for("end of the recording");
     TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "\n q quit  end of the recording\n"));
@@ -493,6 +501,7 @@ void test_who_waits_for_a_long_recording_is_told_how_far_it_is(void)
 
 void test_a_damaged_recording_says_so(void)
 {
+    program_skip_idle_time();
     begin(80, 24, WORDS("view", RECORDINGS "sim-6hz-damaged.bin"));
     wait_for("end of the recording");
     TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "  incomplete scan "));
