@@ -461,18 +461,17 @@ static void settle(tmini_t *lidar)
     lidar->is_settled = lidar->command.unsent == 0;
 }
 
-/* Looks at the line, if anything has happened since the last poll. True if there may be something
- * to do. Most polls of a fast loop end here. */
+/* Looks at the line, if a frame may be complete or time has passed since the last poll. True if
+ * there may be something to do. Most polls of a fast loop end here. */
 static bool has_news(tmini_t *lidar)
 {
     const tmini_link_t *const link = &lidar->link;
-    if (tmini_ring_head(&lidar->ring) == lidar->line.received &&
-        link->port->now_ms(link->port_context) == lidar->line.now_ms) {
+    const bool has_work = tmini_parser_has_work(&lidar->decoder.parser);
+    if (!has_work && link->port->now_ms(link->port_context) == lidar->line.now_ms) {
         return false;
     }
     look(lidar);
-    return tmini_parser_has_work(&lidar->decoder.parser) ||
-           (int32_t)(lidar->line.now_ms - lidar->wake_ms) >= 0;
+    return has_work || (int32_t)(lidar->line.now_ms - lidar->wake_ms) >= 0;
 }
 
 /* What is due, of a poll that has looked at the line. */
