@@ -3,7 +3,7 @@
 # Copyright (c) 2026 The tmini authors
 
 # Checks that the library's files call only those below them, and that each group of members of
-# tmini_t is written by the file that owns it:
+# tmini_t is written by the file that owns it, and none is touched by a port or an example:
 #
 #   test/layers.sh LIBRARY.a
 #
@@ -84,8 +84,15 @@ written=$(
     written_outside decoder -
 )
 
-if [ -n "$calls$written" ]; then
-    printf '%s\n' "$calls" "$written"
+members=$(sed -n '/^struct tmini {/,/^};/s/^ .*[ *]\([a-z_]*\);.*/\1/p' \
+    "$root/lib/include/tmini/tmini.h" | paste -s -d '|' -)
+# A name followed by ( is a function of a class.
+touched=$(cd "$root" && grep -rnE --include='*.[ch]' --include='*.cpp' --include='*.ino' \
+    --include='*.py' "(lidar|driver)_?(\[[a-z0-9]+\])?(\.|->)($members)([^a-z_(]|\$)" port examples |
+    sed 's|$|  (members of tmini_t are private)|')
+
+if [ -n "$calls$written$touched" ]; then
+    printf '%s\n' "$calls" "$written" "$touched"
     exit 1
 fi
-echo "every call goes downwards, and every member has one writer"
+echo "every call goes downwards, every member has one writer, and ports and examples touch none"

@@ -107,20 +107,18 @@ static inline bool tmini_stm32_circle_advance(tmini_stm32_circle_t *circle, uint
 
 /* ------------------------------------------------------------------- the lidar's receive buffer */
 
+/** A lidar that is not set up has no room, and nothing has come; one that is full has had bytes. */
 static inline bool tmini_stm32_circle_is_set_up(const tmini_t *lidar)
 {
-    return lidar != NULL && lidar->ring.memory != NULL;
+    return lidar != NULL && (tmini_feed_room(lidar) > 0 || tmini_feed_position(lidar) > 0);
 }
 
+/** 0 unless it was announced as the target of DMA (rx_dma). */
 static inline size_t tmini_stm32_circle_size(const tmini_t *lidar)
 {
-    return lidar->ring.size;
-}
-
-/** Whether it was announced as the target of DMA (rx_dma): then half of it counts. */
-static inline bool tmini_stm32_circle_is_for(const tmini_t *lidar)
-{
-    return lidar->ring.window < tmini_stm32_circle_size(lidar);
+    size_t size;
+    (void)tmini_rx_buffer(lidar, &size);
+    return size;
 }
 
 /** DMA that is started begins at the buffer's start, wherever it was before. The old bytes from
@@ -128,12 +126,13 @@ static inline bool tmini_stm32_circle_is_for(const tmini_t *lidar)
  * Before reception begins, in the polling context. */
 static inline void tmini_stm32_circle_rewind(tmini_t *lidar)
 {
-    const size_t size = tmini_stm32_circle_size(lidar);
-    const size_t position = tmini_ring_head(&lidar->ring) & (size - 1);
+    size_t size;
+    uint8_t *const memory = tmini_rx_buffer(lidar, &size);
+    const size_t position = tmini_feed_position(lidar) & (size - 1);
     if (position > 0) {
-        memset(&lidar->ring.memory[position], 0, size - position);
+        memset(&memory[position], 0, size - position);
         tmini_feed_dma(lidar, size);
-    } else if (tmini_ring_head(&lidar->ring) > 0) {
+    } else if (tmini_feed_position(lidar) > 0) {
         tmini_feed_gap(lidar); /* Nothing else would show that bytes are missing. */
     }
 }

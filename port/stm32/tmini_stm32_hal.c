@@ -563,11 +563,11 @@ tmini_status_t tmini_stm32_hal_start(tmini_stm32_hal_t *port, tmini_t *lidar)
     if (!is_230400_8n1(port->uart)) {
         return TMINI_ERROR_ARGUMENT;
     }
-    if (!tmini_stm32_circle_is_for(lidar)) {
+    size_t size;
+    uint8_t *const memory = tmini_rx_buffer(lidar, &size);
+    if (memory == NULL) {
         return start_reception(port, lidar, RECEPTION_BYTES, NULL, 0);
     }
-    uint8_t *const memory = lidar->ring.memory;
-    const size_t size = tmini_stm32_circle_size(lidar);
     if (!is_good_circle(port->uart, memory, size)) {
         return TMINI_ERROR_ARGUMENT;
     }
@@ -581,7 +581,7 @@ tmini_status_t tmini_stm32_hal_start_blocks(tmini_stm32_hal_t *port, tmini_t *li
         return TMINI_ERROR_STATE;
     }
     if (block == NULL || block_size < BLOCK_SIZE_MIN || block_size % 2 != 0 ||
-        tmini_stm32_circle_is_for(lidar) || !is_230400_8n1(port->uart) ||
+        tmini_stm32_circle_size(lidar) != 0 || !is_230400_8n1(port->uart) ||
         !is_good_circle(port->uart, block, block_size)) {
         return TMINI_ERROR_ARGUMENT;
     }

@@ -213,7 +213,7 @@ tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar
     if (!are_set_up(port, lidar)) {
         return TMINI_ERROR_STATE;
     }
-    if (tmini_stm32_circle_is_for(lidar) || !is_good_clock(clock_hz)) {
+    if (tmini_stm32_circle_size(lidar) != 0 || !is_good_clock(clock_hz)) {
         return TMINI_ERROR_ARGUMENT;
     }
     port->lidar = lidar;
@@ -226,8 +226,8 @@ tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar
 static bool is_good_channel(const tmini_t *lidar, const volatile uint32_t *remaining)
 {
     const size_t size = tmini_stm32_circle_size(lidar);
-    return tmini_stm32_circle_is_for(lidar) && size <= TMINI_STM32_CIRCLE_MAX &&
-           remaining != NULL && (read_register(remaining) & DMA_COUNT) == size;
+    return size != 0 && size <= TMINI_STM32_CIRCLE_MAX && remaining != NULL &&
+           (read_register(remaining) & DMA_COUNT) == size;
 }
 
 tmini_status_t tmini_stm32_usart_start_dma(tmini_stm32_usart_t *port, tmini_t *lidar,

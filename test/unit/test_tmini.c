@@ -193,6 +193,31 @@ void test_a_lidar_never_set_up_takes_bytes_without_harm_and_has_empty_results(vo
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&untouched));
 }
 
+void test_a_port_that_starts_dma_anew_finds_buffer_and_position(void)
+{
+    size_t size = 0;
+    rig.config.rx_dma = true;
+    rig.config.max_samples = 39;
+    rig_init();
+    TEST_ASSERT_EQUAL_PTR(rig.config.rx_buffer, tmini_rx_buffer(&rig.lidar, &size));
+    TEST_ASSERT_EQUAL_size_t(rig.config.rx_size, size);
+    TEST_ASSERT_EQUAL_size_t(0, tmini_feed_position(&rig.lidar));
+    tmini_feed_dma(&rig.lidar, 100);
+    TEST_ASSERT_EQUAL_size_t(100, tmini_feed_position(&rig.lidar));
+    tmini_feed_dma(&rig.lidar, 30); /* In the next lap. */
+    TEST_ASSERT_EQUAL_size_t(rig.config.rx_size + 30, tmini_feed_position(&rig.lidar));
+    tmini_feed_gap(&rig.lidar);
+    TEST_ASSERT_EQUAL_size_t(2 * rig.config.rx_size + 30, tmini_feed_position(&rig.lidar));
+}
+
+void test_without_dma_no_port_gets_the_receive_buffer(void)
+{
+    size_t size = 1;
+    rig_init();
+    TEST_ASSERT_NULL(tmini_rx_buffer(&rig.lidar, &size));
+    TEST_ASSERT_EQUAL_size_t(0, size);
+}
+
 /* ---- Feeding ---- */
 
 void test_single_bytes_blocks_and_dma_bring_the_same_packet(void)

@@ -238,6 +238,12 @@ static inline void tmini_feed_gap(tmini_t *lidar);
  * 0, unless the lidar has been set up with rx_dma. Any context, after tmini_init(). */
 static inline uint8_t *tmini_rx_buffer(const tmini_t *lidar, size_t *size);
 
+/** For a port that starts circular DMA anew: how far it was published, in bytes since tmini_init(),
+ * a gap counting as a lap, modulo the range of size_t. Modulo rx_size it is the index in the receive
+ * buffer where the next byte goes. 0: nothing has been published. Only for a lidar set up with
+ * rx_dma, or not set up: 0. Any context; no loop, no wait. */
+static inline size_t tmini_feed_position(const tmini_t *lidar);
+
 /* -------------------------------------------------------- everything else: the polling context */
 
 /** Parses what has been received, keeps time, sends what is due; returns the next event or
@@ -485,6 +491,11 @@ static inline uint8_t *tmini_rx_buffer(const tmini_t *lidar, size_t *size)
     const bool is_target = lidar->link.port != NULL && tmini_ring_is_dma(&lidar->ring);
     *size = is_target ? lidar->ring.size : 0;
     return is_target ? lidar->ring.memory : NULL;
+}
+
+static inline size_t tmini_feed_position(const tmini_t *lidar)
+{
+    return tmini_ring_head(&lidar->ring);
 }
 
 #ifdef __cplusplus
