@@ -343,7 +343,8 @@ static void check_comes_back(void)
     TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
 }
 
-/* HAL_UART_DeInit() and HAL_UART_Init(), the DMA running on; HAL_UART_DMAPause(); HAL_DMA_Abort(). */
+/* HAL_UART_DeInit() and HAL_UART_Init(), the DMA running on; HAL_UART_DMAPause();
+ * HAL_DMA_Abort(). */
 static void check_stopped_by_others(hal_rig_way_t way)
 {
     hal_rig_open_and_start(way);
