@@ -108,6 +108,45 @@ void test_the_frequency_is_set(void)
     TEST_ASSERT_EQUAL_UINT16(640, tmini_frequency_chz(&rig.lidar));
 }
 
+void test_a_frequency_that_is_there_already_is_not_waited_for_while_scanning(void)
+{
+    comes(5, feed_frequency);
+    sends(GET_FREQUENCY);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    sends(GET_FREQUENCY);
+    begins(tmini_start(&rig.lidar));
+    rig_feed_frequency(640);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    sends(START);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    is_in(TMINI_STATE_SCANNING);
+}
+
+void test_a_frequency_that_could_not_be_set_is_waited_for_in_vain_while_scanning(void)
+{
+    rig.config.frequency_chz = 640;
+    rig_init();
+    sends(STOP);
+    begins(tmini_start(&rig.lidar));
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_FREQUENCY);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_frequency(99); /* No lidar turns so slowly. */
+    sends(STOP);
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(START);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_point_packet(1000);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    is_in(TMINI_STATE_SCANNING);
+}
+
 static void feed_turn(void)
 {
     rig_feed_plain_turn(1000);

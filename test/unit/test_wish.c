@@ -324,6 +324,13 @@ void test_without_recovery_another_frequency_is_only_a_fault(void)
     is_in(TMINI_STATE_SCANNING);
 }
 
+void test_a_frequency_that_is_not_reported_is_no_fault(void)
+{
+    scans_wishing(1000);
+    turns(100, 0);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+}
+
 void test_without_a_wish_any_frequency_is_right(void)
 {
     rig_go_scanning();
@@ -356,6 +363,18 @@ void test_three_seconds_of_ranges_without_a_start_packet_are_a_fault_and_three_m
     sends(STOP);
     ranges_without_start(40);
     is_in(TMINI_STATE_RECOVERING);
+}
+
+/* Neither start packets nor ranges: a rotor that stands. */
+void test_samples_without_a_range_and_without_a_start_packet_are_no_loss(void)
+{
+    rig_go_scanning();
+    for (unsigned samples = 0; samples < 60000; samples += 40) {
+        rig_feed_packet(0, 40, 0);
+        (void)rig_drain();
+    }
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
+    is_in(TMINI_STATE_SCANNING);
 }
 
 /* ---- Without recovery ---- */
@@ -452,6 +471,11 @@ void test_a_listener_refuses_every_query_and_frequency(void)
 static void is_refused(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_init(&rig.lidar, &rig.config));
+}
+
+void test_a_decoder_needs_a_place(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_decoder_init(NULL, &rig.lidar.ring, 0));
 }
 
 static void is_taken(void)
@@ -553,7 +577,9 @@ void test_with_spare_points_a_scan_stays_until_the_next(void)
 
 void test_the_receive_buffer_is_for_ports_with_dma(void)
 {
+    static const tmini_t nothing;
     size_t size = 1;
+    TEST_ASSERT_NULL(tmini_rx_buffer(&nothing, &size));
     TEST_ASSERT_NULL(tmini_rx_buffer(&rig.lidar, &size));
     TEST_ASSERT_EQUAL_size_t(0, size);
     rig.config.rx_dma = true;
