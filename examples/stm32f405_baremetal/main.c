@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Obstacle stop on an STM32F405, without an operating system and without vendor code: asks the
- * lidar who it is and how it is, sets its scan frequency, scans, and lets the robot move while
- * nothing is near in front. Says each second on the console what it sees. */
+ * lidar who it is and how it is, scans at 10 Hz, and lets the robot move while nothing is near in
+ * front. Reports each second on the console what it sees. */
 
 #include "board.h"
 #include "console.h"
@@ -16,7 +16,6 @@
 
 #define FREQUENCY_CHZ 1000u
 #define STATUS_MS 1000u
-#define RETRY_MS 1000u
 
 static uint8_t rx[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
@@ -25,9 +24,7 @@ static tmini_stm32_usart_t port;
 static obstacle_t obstacle;
 static report_status_t status;
 static volatile uint32_t worst_cycles;
-static uint32_t failed_ms;
-static bool wants_to_scan = true;
-static bool has_failed;
+static bool is_asking = true;
 static bool says_digests;
 
 void USART1_IRQHandler(void);
@@ -51,7 +48,15 @@ static void see(const tmini_scan_t *scan)
     }
 }
 
-/* Each answer leads to the next question, and the last one to scanning. */
+/* Answered or not, the questions lead to scanning, which then stands until it is stopped. */
+static void end_questions(void)
+{
+    if (is_asking) {
+        is_asking = false;
+        (void)tmini_start(&lidar);
+    }
+}
+
 static void handle(tmini_event_t event)
 {
     switch (event) {
@@ -61,11 +66,10 @@ static void handle(tmini_event_t event)
         break;
     case TMINI_EVENT_HEALTH:
         report_health(tmini_health(&lidar));
-        (void)tmini_set_frequency(&lidar, FREQUENCY_CHZ);
+        end_questions();
         break;
     case TMINI_EVENT_FREQUENCY:
         report_frequency(tmini_frequency_chz(&lidar));
-        (void)tmini_start(&lidar);
         break;
     case TMINI_EVENT_STARTED:
         report_word("started");
@@ -88,21 +92,10 @@ static void handle(tmini_event_t event)
         break;
     case TMINI_EVENT_COMMAND_FAILED:
         report_failure(tmini_command_error(&lidar));
-        has_failed = true;
-        failed_ms = board_time_ms;
+        end_questions();
         break;
     default:
         break;
-    }
-}
-
-/* Begins from the beginning, at first and after a failure. A lidar that is still streaming, because
- * only this controller was restarted, is stopped first by the library. */
-static void ask_again(void)
-{
-    if (has_failed && wants_to_scan && board_time_ms - failed_ms >= RETRY_MS) {
-        has_failed = false;
-        (void)tmini_request_info(&lidar);
     }
 }
 
@@ -110,12 +103,12 @@ static void obey(char key)
 {
     switch (key) {
     case 's':
-        wants_to_scan = false;
+        is_asking = false;
         obstacle_blind(&obstacle);
         (void)tmini_stop(&lidar);
         break;
     case 'g':
-        wants_to_scan = true;
+        is_asking = false;
         (void)tmini_start(&lidar);
         break;
     case 'c':
@@ -162,6 +155,7 @@ static void start_lidar(void)
         .rx_dma = reception_uses_dma,
         .points = points,
         .max_points = sizeof points / sizeof points[0],
+        .frequency_chz = FREQUENCY_CHZ,
     };
     if (tmini_stm32_usart_init(&port, (volatile void *)USART1_BASE, &board_time_ms) != TMINI_OK ||
         tmini_init(&lidar, &config) != TMINI_OK ||
@@ -181,7 +175,6 @@ int main(void)
     for (;;) {
         const tmini_event_t event = tmini_poll(&lidar);
         handle(event);
-        ask_again();
         obey(console_key());
         drive();
         say_status();
