@@ -17,7 +17,7 @@ install(DIRECTORY include/tmini DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT tmini NAMESPACE tmini:: FILE tmini-config.cmake DESTINATION ${package_dir})
 
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/tmini-config-version.cmake
-    VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
+    VERSION ${PROJECT_VERSION} COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/tmini-config-version.cmake DESTINATION ${package_dir})
 
 # Sets OUT to a folder as tmini.pc names it: below the prefix, unless it was given as an absolute

@@ -19,7 +19,7 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
         set(release_page -D PAGE=${PROJECT_BINARY_DIR}/bin/tmini.html)
     endif()
     add_custom_target(release
-        COMMAND ${CMAKE_COMMAND} -D VERSION=${PROJECT_VERSION} -D OUT=${PROJECT_BINARY_DIR}/release
+        COMMAND ${CMAKE_COMMAND} -D VERSION=${TMINI_VERSION} -D OUT=${PROJECT_BINARY_DIR}/release
             ${release_page} -P ${CMAKE_CURRENT_LIST_FILE}
         COMMENT "Packing the release"
         VERBATIM)

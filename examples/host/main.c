@@ -316,8 +316,7 @@ static int run(const options_t *options)
     const char *const name = is_help ? options->operand : options->command;
     const command_t *const command = name != NULL ? find_command(name) : NULL;
     if (options->version || is_word(options, "version")) {
-        (void)printf("tmini %d.%d.%d\n", TMINI_VERSION_MAJOR, TMINI_VERSION_MINOR,
-                     TMINI_VERSION_PATCH);
+        (void)puts("tmini " TMINI_VERSION_TEXT);
         return STATUS_OK;
     }
     if (name == NULL) {

@@ -148,8 +148,7 @@ static const char *read_options(int argc, char **argv, int *status)
             return NULL;
         case 'V':
             *status = 0;
-            (void)printf("obstacle_stop %d.%d.%d\n", TMINI_VERSION_MAJOR, TMINI_VERSION_MINOR,
-                         TMINI_VERSION_PATCH);
+            (void)puts("obstacle_stop " TMINI_VERSION_TEXT);
             return NULL;
         default:
             *status = usage(stderr, 2);

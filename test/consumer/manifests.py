@@ -49,7 +49,8 @@ def without_comments(text):
 def of_cmake():
     name = "CMakeLists.txt"
     return {
-        "version": find(name, r"project\(tmini VERSION ([0-9.]+)"),
+        "version": "%s%s" % (find(name, r"project\(tmini VERSION ([0-9.]+)"),
+                             find(name, r"^set\(TMINI_VERSION_SUFFIX *(\S*)\)")),
         "description": find(name, r'DESCRIPTION\s+("[^"]*")'),
         "home page": find(name, r"HOMEPAGE_URL\s+(\S+)"),
     }
@@ -59,7 +60,9 @@ def of_header():
     name = "lib/include/tmini/tmini.h"
     parts = [find(name, r"#define TMINI_VERSION_%s ([0-9]+)" % part)
              for part in ("MAJOR", "MINOR", "PATCH")]
-    return {"version": ".".join(str(part) for part in parts)}
+    numbers = ".".join(str(part) for part in parts)
+    text = find(name, r"#define TMINI_VERSION_TEXT (.*)$") or ""
+    return {"version": text if text.split("-")[0] == numbers else "%s, %s" % (numbers, text)}
 
 
 def of_platformio():
@@ -101,19 +104,38 @@ def of_esp_idf():
 
 def of_documents():
     return {
-        "version": find("CHANGELOG.md", r"^## ([0-9][0-9.]*) \([0-9]{4}-[0-9]{2}-[0-9]{2}\)$"),
+        "version": find("CHANGELOG.md", r"^## ([0-9]\S*) \([0-9]{4}-[0-9]{2}-[0-9]{2}\)$"),
         "licence": (find("LICENSE", r"^(.*)$") or "").replace(" License", ""),
         "author": find("LICENSE", r"^Copyright \(c\) [0-9-]+ (.*)$"),
     }
 
 
 def of_page():
-    return {"version": find("examples/web/tmini.html", r"<h1>tmini viewer <small>([0-9.]+)<")}
+    return {"version": find("examples/web/tmini.html", r"<h1>tmini viewer <small>([^<]+)<")}
+
+
+def of_manual():
+    return {"version": find("examples/host/share/tmini.1", r'^\.TH .* "tmini ([^"]+)"')}
+
+
+def of_python():
+    """PEP 440 writes 1.0.0-rc.1 as 1.0.0rc1."""
+    name = "port/python/pyproject.toml"
+    version = find(name, r"^version = (.*)$") or ""
+    return {
+        "name": find(name, r"^name = (.*)$"),
+        "version": re.sub(r"rc([0-9]+)$", r"-rc.\1", version),
+        "licence": find(name, r"^license = (.*)$"),
+    }
+
+
+def of_consumer():
+    return {"version": find("test/consumer/CMakeLists.txt", r"GIT_TAG v([^)]+)\)")}
 
 
 def of_readme():
     return {
-        "version": find("README.md", r"^Version ([0-9.]+)\."),
+        "version": find("README.md", r"^Version (\S+) "),
         "licence": find("README.md", r"^(\w+) licence\."),
     }
 
@@ -128,6 +150,9 @@ SAID = {
     "CHANGELOG.md and LICENSE": (of_documents, "version licence author"),
     "README.md": (of_readme, "version licence"),
     "examples/web/tmini.html": (of_page, "version"),
+    "tmini.1": (of_manual, "version"),
+    "pyproject.toml": (of_python, "name version licence"),
+    "test/consumer/CMakeLists.txt": (of_consumer, "version"),
 }
 
 

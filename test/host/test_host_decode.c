@@ -494,7 +494,7 @@ void test_version_and_help_are_everywhere(void)
         {"--version", NULL}, {"-V", NULL}, {"scan", "-V", NULL}, {"check", "--vers", NULL}};
     for (size_t i = 0; i < 4; i++) {
         TEST_ASSERT_EQUAL_INT(0, program_tmini(ways[i]));
-        TEST_ASSERT_EQUAL_STRING_LEN("tmini 0.", program_output, 8);
+        TEST_ASSERT_EQUAL_STRING_LEN("tmini 1.", program_output, 8);
     }
     TEST_ASSERT_EQUAL_INT(0, program_tmini((const char *const[]){"help", "scan", NULL}));
     TEST_ASSERT_EQUAL_STRING_LEN("tmini scan ", program_output, 11);

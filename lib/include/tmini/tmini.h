@@ -55,12 +55,14 @@
 extern "C" {
 #endif
 
-/** The library's version, as in 0.1.2: the 0. Versioning is semantic (CHANGELOG.md). */
-#define TMINI_VERSION_MAJOR 0
-/** As in 0.1.2: the 1. */
-#define TMINI_VERSION_MINOR 1
-/** As in 0.1.2: the 2. */
+/** The library's version, as in 1.2.3: the 1. Versioning is semantic (CHANGELOG.md). */
+#define TMINI_VERSION_MAJOR 1
+/** As in 1.2.3: the 2. */
+#define TMINI_VERSION_MINOR 0
+/** As in 1.2.3: the 3. */
 #define TMINI_VERSION_PATCH 0
+/** All of it, with what makes it a release candidate. */
+#define TMINI_VERSION_TEXT "1.0.0-rc.1"
 
 /** The lowest scan frequency that may be set, in 0.01 Hz (section 1). */
 #define TMINI_FREQUENCY_MIN_CHZ 600u
