@@ -17,7 +17,8 @@ void stream_init(stream_t *stream)
 {
     *stream = (stream_t){.faults = TMINI_FAULTS_UNKNOWN};
     tmini_ct_init(&stream->ct);
-    (void)tmini_builder_init(&stream->builder, stream->building, STREAM_POINTS_MAX, TMINI_FILTER_NONE);
+    (void)tmini_builder_init(&stream->builder, stream->building, STREAM_POINTS_MAX,
+                             TMINI_FILTER_NONE);
 }
 
 static void keep(stream_t *stream)

@@ -146,7 +146,8 @@ esp_err_t tmini_esp32_start(tmini_esp32_t *board, tmini_t *lidar);
 esp_err_t tmini_esp32_stop(tmini_esp32_t *board);
 
 /** For a polling task that has nothing left to do. With a receiving task, or when stopped: sleeps
- * for `ticks`, at least one, and returns 0. Without a receiving task: waits up to `ticks` for bytes,
+ * for `ticks`, at least one, and returns 0. Without a receiving task: waits up to `ticks` for
+ * bytes,
  * hands to the lidar what fits into its ring (the rest waits in the UART driver's buffer for the
  * next call), and returns how many.
  *

@@ -403,8 +403,7 @@ void test_an_address_that_is_none_is_told(void)
 {
     expect_failure(1, "tcp:HOST:PORT", WORDS("info", "-p", "tcp:localhost"));
     expect_failure(1, "tcp:HOST:PORT", WORDS("info", "-p", "tcp:"));
-    expect_failure(1, "no host of that name",
-                   WORDS("info", "-p", "tcp:no.such.host.invalid:1"));
+    expect_failure(1, "no host of that name", WORDS("info", "-p", "tcp:no.such.host.invalid:1"));
 }
 
 void test_a_recording_tells_its_size(void)

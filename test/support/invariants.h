@@ -2,7 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* What is true of each module's state between any two calls of its functions, whatever was received
- * and whoever made those calls. test/qa/proof shows that every function keeps it; fuzzers and soak ask
+ * and whoever made those calls. test/qa/proof shows that every function keeps it; fuzzers and soak
+ * ask
  * after each call. To be asked in the consumer's context. */
 
 #ifndef INVARIANTS_H

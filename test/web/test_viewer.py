@@ -436,7 +436,8 @@ class Simulated(Viewer):
     def test_lidar_that_is_lost_does_not_look_live(self):
         self.switch("unplugged")
         self.page.wait_text("#age", "No scan for 2 s")
-        self.assertEqual(["–"] * 4, [self.page.text(f"#{key}") for key in ("frequency", "points", "nearest", "sector0")])
+        keys = ("frequency", "points", "nearest", "sector0")
+        self.assertEqual(["–"] * 4, [self.page.text(f"#{key}") for key in keys])
         self.page.wait("grey points", lambda: self.coloured() == 0)
         self.switch("unplugged")
         self.page.wait("a scan", lambda: not self.page.is_shown("#age"), 15)
@@ -771,7 +772,8 @@ class Appearance(Viewer):
         colours = self.page.run("""const probe = document.createElement('canvas')
                 .getContext('2d', {willReadFrequently: true});
             const style = getComputedStyle(document.documentElement);
-            return Object.fromEntries(['ground', 'page', 'text', 'dim', 'accent', 'on-accent', 'nearest', 'alarm', 'alarm-ground']
+            return Object.fromEntries([
+                'ground', 'page', 'text', 'dim', 'accent', 'on-accent', 'nearest', 'alarm', 'alarm-ground']
                 .map((name) => {
                     probe.fillStyle = style.getPropertyValue('--' + name);
                     probe.fillRect(0, 0, 1, 1);

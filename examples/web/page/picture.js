@@ -148,7 +148,8 @@ export class Picture {
     #readTheme() {
         const style = getComputedStyle(document.documentElement);
         const colour = (name) => style.getPropertyValue(`--${name}`).trim();
-        for (const name of ['ground', 'page', 'grid', 'edge', 'text', 'dim', 'nearest', 'specular', 'ambient', 'beam']) {
+        const names = ['ground', 'page', 'grid', 'edge', 'text', 'dim', 'nearest', 'specular', 'ambient', 'beam'];
+        for (const name of names) {
             this.#theme[name] = colour(name);
         }
         this.#theme.font = style.fontFamily;

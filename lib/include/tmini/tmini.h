@@ -241,9 +241,9 @@ static inline void tmini_feed_gap(tmini_t *lidar);
 static inline uint8_t *tmini_rx_buffer(const tmini_t *lidar, size_t *size);
 
 /** For a port that starts circular DMA anew: how far it was published, in bytes since tmini_init(),
- * a gap counting as a lap, modulo the range of size_t. Modulo rx_size it is the index in the receive
- * buffer where the next byte goes. 0: nothing has been published. Only for a lidar set up with
- * rx_dma, or not set up: 0. Any context; no loop, no wait. */
+ * a gap counting as a lap, modulo the range of size_t. Modulo rx_size it is the index in the
+ * receive buffer where the next byte goes. 0: nothing has been published. Only for a lidar set up
+ * with rx_dma, or not set up: 0. Any context; no loop, no wait. */
 static inline size_t tmini_feed_position(const tmini_t *lidar);
 
 /* -------------------------------------------------------- everything else: the polling context */

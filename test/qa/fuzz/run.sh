@@ -6,7 +6,7 @@
 # sanitizers:
 #
 #   test/qa/fuzz/run.sh [SECONDS]      for each target; 60 unless given
-#   test/qa/fuzz/run.sh --keep         puts what was collected, minimised, into test/qa/fuzz/corpus_….txt
+#   test/qa/fuzz/run.sh --keep         puts what was collected, minimised, into corpus_….txt
 #   test/qa/fuzz/run.sh --coverage     what of lib/ the kept inputs reach
 #
 # What it finds lies in build-fuzz/; give that file to build-fuzz/fuzz_… to see it again. The inputs
