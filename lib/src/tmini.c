@@ -466,12 +466,13 @@ static void settle(tmini_t *lidar)
 static bool has_news(tmini_t *lidar)
 {
     const tmini_link_t *const link = &lidar->link;
-    const bool has_work = tmini_parser_has_work(&lidar->decoder.parser);
-    if (!has_work && link->port->now_ms(link->port_context) == lidar->line.now_ms) {
+    if (!tmini_parser_has_work(&lidar->decoder.parser) &&
+        link->port->now_ms(link->port_context) == lidar->line.now_ms) {
         return false;
     }
-    look(lidar);
-    return has_work || (int32_t)(lidar->line.now_ms - lidar->wake_ms) >= 0;
+    look(lidar); /* A port may hand over bytes when it is asked for the time. */
+    return tmini_parser_has_work(&lidar->decoder.parser) ||
+           (int32_t)(lidar->line.now_ms - lidar->wake_ms) >= 0;
 }
 
 /* What is due, of a poll that has looked at the line. */

@@ -412,9 +412,8 @@ void test_a_reply_that_comes_while_the_clock_is_read_leaves_the_lidar_idle(void)
     feed_meanwhile = feed_health_reply;
     rig.now_ms += 1;
     rig.port.now_ms = slow_clock;
-    polls_to(TMINI_EVENT_NONE);
-    rig.port.now_ms = port_now_ms;
     polls_to(TMINI_EVENT_HEALTH);
+    rig.port.now_ms = port_now_ms;
     rig.now_ms += 1;
     polls_to(TMINI_EVENT_NONE);
     is_in(TMINI_STATE_IDLE);
