@@ -18,7 +18,7 @@ endfunction()
 function(install_project build prefix tool)
     run_or_fail(${CMAKE_COMMAND} -S ${TMINI_SOURCE} -B ${build} -G ${GENERATOR}
         -DCMAKE_C_COMPILER=${COMPILER} -DCMAKE_INSTALL_LIBDIR=lib
-        -DTMINI_BUILD_TESTS=OFF -DTMINI_BUILD_EXAMPLES=${tool})
+        -DTMINI_BUILD_TESTS=OFF -DTMINI_BUILD_EXAMPLES=${tool} -DTMINI_INSTALL_UDEV_RULE=${tool})
     run_or_fail(${CMAKE_COMMAND} --build ${build} --parallel 2)
     run_or_fail(${CMAKE_COMMAND} --install ${build} --prefix ${prefix})
 endfunction()
