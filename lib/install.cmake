@@ -12,6 +12,7 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tmini)
 
 install(TARGETS tmini EXPORT tmini ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/tmini DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # Without dependencies the exported targets are all the package's configuration.
 install(EXPORT tmini NAMESPACE tmini:: FILE tmini-config.cmake DESTINATION ${package_dir})

@@ -258,7 +258,7 @@ static void send_first(tmini_t *lidar)
 }
 
 /* A lidar that is known to be idle needs no stop before. */
-static void begin(tmini_t *lidar, tmini_command_code_t operation)
+static void begin_command(tmini_t *lidar, tmini_command_code_t operation)
 {
     const bool is_idle = lidar->state == TMINI_STATE_IDLE;
     lidar->state =
@@ -271,7 +271,7 @@ static void begin(tmini_t *lidar, tmini_command_code_t operation)
 }
 
 /* Begins a query, if it may be begun now. */
-static tmini_status_t request(tmini_t *lidar, tmini_command_code_t operation)
+static tmini_status_t request_command(tmini_t *lidar, tmini_command_code_t operation)
 {
     if (!is_set_up(lidar)) {
         return TMINI_ERROR_ARGUMENT;
@@ -286,7 +286,7 @@ static tmini_status_t request(tmini_t *lidar, tmini_command_code_t operation)
         return TMINI_ERROR_BUSY;
     }
     take_over(lidar);
-    begin(lidar, operation);
+    begin_command(lidar, operation);
     return TMINI_OK;
 }
 
@@ -323,7 +323,7 @@ static void stop_again(tmini_t *lidar)
 {
     raise_event(lidar, TMINI_EVENT_UNWANTED_SCANNING);
     look(lidar);
-    begin(lidar, TMINI_COMMAND_STOP);
+    begin_command(lidar, TMINI_COMMAND_STOP);
 }
 
 /* A packet has come: does it mean that the lidar has begun to scan, or scans again? Not so the tail
@@ -617,7 +617,7 @@ tmini_status_t tmini_stop(tmini_t *lidar)
     if (lidar->is_listen_only) {
         stop_listening(lidar);
     } else {
-        begin(lidar, TMINI_COMMAND_STOP);
+        begin_command(lidar, TMINI_COMMAND_STOP);
     }
     return TMINI_OK;
 }
@@ -634,7 +634,7 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
     const bool is_changed = lidar->wanted_chz != frequency_chz;
     lidar->wanted_chz = frequency_chz;
     if (lidar->state <= TMINI_STATE_IDLE) {
-        return request(lidar, TMINI_COMMAND_GET_FREQUENCY);
+        return request_command(lidar, TMINI_COMMAND_GET_FREQUENCY);
     }
     tmini_monitor_forget_frequency(lidar);
     if (is_changed && is_to_scan(lidar)) {
@@ -647,22 +647,22 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
 
 tmini_status_t tmini_request_info(tmini_t *lidar)
 {
-    return request(lidar, TMINI_COMMAND_GET_INFO);
+    return request_command(lidar, TMINI_COMMAND_GET_INFO);
 }
 
 tmini_status_t tmini_request_health(tmini_t *lidar)
 {
-    return request(lidar, TMINI_COMMAND_GET_HEALTH);
+    return request_command(lidar, TMINI_COMMAND_GET_HEALTH);
 }
 
 tmini_status_t tmini_request_frequency(tmini_t *lidar)
 {
-    return request(lidar, TMINI_COMMAND_GET_FREQUENCY);
+    return request_command(lidar, TMINI_COMMAND_GET_FREQUENCY);
 }
 
 tmini_status_t tmini_reboot(tmini_t *lidar)
 {
-    return request(lidar, TMINI_COMMAND_REBOOT);
+    return request_command(lidar, TMINI_COMMAND_REBOOT);
 }
 
 void tmini_cancel(tmini_t *lidar)

@@ -16,7 +16,7 @@
 #define GAP_MAX 500
 
 /* A sample is measured in 250 us (section 1), and is on the wire for 130. */
-#define SAMPLE_US 380u
+#define SAMPLE_SENT_US 380u
 
 /* The angle swept from one direction to another, clockwise, or slightly back: a hair of jitter
  * backwards (section 9.6) is not nearly a whole turn forwards. */
@@ -108,7 +108,7 @@ static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32
 
 /* Begins a scan, and returns how far its revolution has turned by then. One that does not begin
  * with a start packet has a gap there, and began when the packet's first sample was measured. */
-static int32_t begin(tmini_builder_t *builder, const tmini_packet_t *first, uint32_t now_ms)
+static int32_t begin_scan(tmini_builder_t *builder, const tmini_packet_t *first, uint32_t now_ms)
 {
     tmini_scan_t *const scan = &builder->scan;
     const bool is_start = tmini_packet_is_start(first);
@@ -118,7 +118,7 @@ static int32_t begin(tmini_builder_t *builder, const tmini_packet_t *first, uint
         scan->frequency_chz = frequency_chz(first);
     }
     scan->gaps = is_start ? 0 : 1;
-    scan->start_ms = now_ms - (first->count - 1u) * SAMPLE_US / 1000u;
+    scan->start_ms = now_ms - (first->count - 1u) * SAMPLE_SENT_US / 1000u;
     builder->errors_before = first->frame->checksum_errors;
     builder->open = true;
     return tmini_clockwise(builder->origin_q6, first->first_angle_q6);
@@ -180,7 +180,7 @@ bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, u
             count_one(&builder->scan.gaps);
         }
     } else if (is_start || builder->origin_q6 != NO_ORIGIN) {
-        angle += begin(builder, packet, now_ms);
+        angle += begin_scan(builder, packet, now_ms);
     } else {
         return false; /* Before the first start packet. */
     }

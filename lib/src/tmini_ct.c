@@ -34,7 +34,7 @@ static void trust_current(tmini_ct_t *ct)
     ct->known |= (uint16_t)((1u << ct->packets) - 1);
 }
 
-static void begin_revolution(tmini_ct_t *ct)
+static void begin_information(tmini_ct_t *ct)
 {
     ct->packets = 0;
     ct->fields = 0;
@@ -53,7 +53,7 @@ static tmini_ct_verdict_t check_revolution(const tmini_ct_t *ct, const tmini_pac
     return start->frame->last_skipped == ct->crc ? TMINI_CT_CONFIRMED : TMINI_CT_REFUTED;
 }
 
-static void append(tmini_ct_t *ct, uint8_t byte)
+static void append_byte(tmini_ct_t *ct, uint8_t byte)
 {
     ct->crc = tmini_ct_crc8(ct->crc, byte);
     if (ct->packets == TMINI_CT_INDICES) {
@@ -72,7 +72,7 @@ void tmini_ct_init(tmini_ct_t *ct)
 
 void tmini_ct_discard(tmini_ct_t *ct)
 {
-    begin_revolution(ct);
+    begin_information(ct);
 }
 
 tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)
@@ -83,14 +83,14 @@ tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)
         if (verdict == TMINI_CT_CONFIRMED) {
             trust_current(ct);
         }
-        begin_revolution(ct);
+        begin_information(ct);
     } else if (ct->packets == 0) {
         return TMINI_CT_UNKNOWN; /* Before the first start packet: the index is not known. */
     } else {
         ct->cts |= packet->ct;
         ct->gaps |= packet->gap;
     }
-    append(ct, packet->ct);
+    append_byte(ct, packet->ct);
     return verdict;
 }
 

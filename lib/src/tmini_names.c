@@ -85,7 +85,7 @@ const char *tmini_fault_name(tmini_fault_t fault)
 
 /* Appends `word` at `length` as far as it fits, with room for the terminating 0; returns the
  * length. */
-static size_t append(char *text, size_t size, size_t length, const char *word)
+static size_t append_word(char *text, size_t size, size_t length, const char *word)
 {
     while (*word != '\0' && length + 1 < size) {
         text[length++] = *word++;
@@ -101,13 +101,13 @@ const char *tmini_faults_text(uint8_t faults, char *text, size_t size)
     size_t length = 0;
     for (size_t bit = 0; bit < COUNT(fault_names); bit++) {
         if (((unsigned)faults >> bit & 1u) != 0) {
-            length = append(text, size, length, length > 0 ? ", " : "");
-            length = append(text, size, length, fault_names[bit]);
+            length = append_word(text, size, length, length > 0 ? ", " : "");
+            length = append_word(text, size, length, fault_names[bit]);
         }
     }
     text[length] = '\0';
     if (length == 0) {
-        text[append(text, size, 0, "none")] = '\0';
+        text[append_word(text, size, 0, "none")] = '\0';
     }
     return text;
 }

@@ -55,7 +55,7 @@ void tmini_sectors_add_scan(tmini_sectors_t *sectors, const tmini_scan_t *scan)
 }
 
 /* A start packet ended the revolution, and its own point begins this one. */
-static void begin_revolution(tmini_sectors_t *sectors)
+static void begin_sweep(tmini_sectors_t *sectors)
 {
     const tmini_point_t first = sectors->first;
     tmini_sectors_clear(sectors);
@@ -66,7 +66,7 @@ bool tmini_sectors_add_packet(tmini_sectors_t *sectors, const tmini_packet_t *pa
 {
     tmini_point_t point;
     if (sectors->has_ended) {
-        begin_revolution(sectors);
+        begin_sweep(sectors);
     }
     if (tmini_packet_is_start(packet)) {
         const bool is_whole = sectors->has_begun;

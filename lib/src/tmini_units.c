@@ -3,7 +3,7 @@
 
 #include "tmini/tmini_units.h"
 
-#define CIRCLE_Q6 ((uint32_t)TMINI_FULL_CIRCLE_Q6)
+#define TURN_Q6 ((uint32_t)TMINI_FULL_CIRCLE_Q6)
 #define JITTER_Q6 256u /* 4 degrees. */
 #define SAMPLE_US 250u
 
@@ -39,7 +39,7 @@ static uint32_t turned_q6(const tmini_scan_t *scan, size_t index)
 static bool is_near_first(const tmini_scan_t *scan, size_t index)
 {
     const uint32_t turned = turned_q6(scan, index);
-    return turned < JITTER_Q6 || turned > CIRCLE_Q6 - JITTER_Q6;
+    return turned < JITTER_Q6 || turned > TURN_Q6 - JITTER_Q6;
 }
 
 /* The same, of up to a little more than a circle. The encoder jitters: early points may lie a
@@ -53,9 +53,9 @@ static uint32_t swept_q6(const tmini_scan_t *scan, size_t index)
         away--;
     }
     if (away > 0) {
-        return turned + (turned < JITTER_Q6 ? CIRCLE_Q6 : 0);
+        return turned + (turned < JITTER_Q6 ? TURN_Q6 : 0);
     }
-    return turned > CIRCLE_Q6 - JITTER_Q6 ? 0 : turned;
+    return turned > TURN_Q6 - JITTER_Q6 ? 0 : turned;
 }
 
 uint32_t tmini_point_time_us(const tmini_scan_t *scan, size_t index)
@@ -64,5 +64,5 @@ uint32_t tmini_point_time_us(const tmini_scan_t *scan, size_t index)
     if (turn_us == 0 || turn_us > PERIOD_MAX_US) {
         return (uint32_t)index * SAMPLE_US;
     }
-    return swept_q6(scan, index) * (turn_us / 16u) / (CIRCLE_Q6 / 16u);
+    return swept_q6(scan, index) * (turn_us / 16u) / (TURN_Q6 / 16u);
 }

@@ -4,7 +4,8 @@
 # cmake -D TMINI_SOURCE=… -D BUILD=… -D COMPILER=… -D GENERATOR=… -D PKG_CONFIG=… -P install.cmake
 #
 # Installs everything into a scratch folder, tries it there, with pkg-config if there is one, and
-# uninstalls it: then nothing is left.
+# uninstalls it: then nothing is left. The library is built in one unit, as some packagers do; a
+# shared one is refused.
 
 include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 
@@ -20,7 +21,7 @@ endfunction()
 function(expect_all_files)
     foreach(file lib/libtmini.a lib/pkgconfig/tmini.pc bin/tmini
             lib/cmake/tmini/tmini-config.cmake lib/cmake/tmini/tmini-config-version.cmake
-            share/man/man1/tmini.1 share/bash-completion/completions/tmini
+            share/doc/tmini/LICENSE share/man/man1/tmini.1 share/bash-completion/completions/tmini
             lib/udev/rules.d/60-tmini.rules)
         expect_file(${file})
     endforeach()
@@ -53,7 +54,25 @@ function(expect_nothing_left)
     endif()
 endfunction()
 
+function(expect_shared_refused)
+    execute_process(COMMAND ${CMAKE_COMMAND} -S ${TMINI_SOURCE} -B ${BUILD}/shared -G ${GENERATOR}
+        -DCMAKE_C_COMPILER=${COMPILER} -DBUILD_SHARED_LIBS=ON
+        RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE text)
+    if(status EQUAL 0 OR NOT text MATCHES "static library only")
+        message(FATAL_ERROR "BUILD_SHARED_LIBS=ON was not refused in words: ${text}")
+    endif()
+endfunction()
+
+function(build_in_one_unit)
+    run_or_fail(${CMAKE_COMMAND} -S ${TMINI_SOURCE} -B ${BUILD}/unity -G ${GENERATOR}
+        -DCMAKE_C_COMPILER=${COMPILER} -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0
+        -DTMINI_BUILD_EXAMPLES=OFF -DTMINI_WERROR=ON)
+    run_or_fail(${CMAKE_COMMAND} --build ${BUILD}/unity)
+endfunction()
+
 file(REMOVE_RECURSE ${BUILD})
+expect_shared_refused()
+build_in_one_unit()
 install_project(${BUILD}/build ${prefix} ON)
 expect_all_files()
 run_or_fail(${prefix}/bin/tmini --help)
