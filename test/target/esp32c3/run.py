@@ -21,8 +21,8 @@ PROCESSOR_HZ = 20_000_000  # What the chip comes out of reset with; TICKS_PER_MS
 SLICE_US = 250  # Six byte times.
 END_US = 4_000_000
 
-# The manual's command codes. From an unknown state the first thing is a stop. The frequency is asked
-# for, 11 Hz, raised by 1 Hz and asked for again.
+# The manual's command codes. From an unknown state the first thing is a stop. Before the start the
+# frequency is asked for, 11 Hz, raised by 1 Hz and asked for again.
 EXPECTED_COMMANDS = [0x65, 0x90, 0x92, 0x0D, 0x0B, 0x0D, 0x60, 0x65]
 EXPECTED_FACTS = {
     "model": ["151"],
