@@ -252,7 +252,7 @@ static int explain_port(const device_t *device)
 {
     if (device->serial.state == TMINI_POSIX_UNPLUGGED && is_socket(device->path)) {
         return message_fail("%s has gone: the other end closed the connection. Does it still run, "
-                            "and is it\nin reach? Then try again.",
+                            "and can it\nbe reached? Then try again.",
                             device->path);
     }
     if (device->serial.state == TMINI_POSIX_UNPLUGGED) {

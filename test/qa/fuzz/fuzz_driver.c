@@ -238,7 +238,7 @@ static void poll_events(uint8_t times)
         const tmini_event_t event = tmini_poll(&world.lidar);
         demand(event <= TMINI_EVENT_MORE && lidar_is_sound(&world.lidar));
         if (event == TMINI_EVENT_SCAN) {
-            demand(tmini_scan(&world.lidar)->count <= world.lidar.builder.capacity);
+            demand(tmini_scan(&world.lidar)->count <= world.lidar.decoder.builder.capacity);
             if (world.is_true) {
                 turning_judge(tmini_scan(&world.lidar));
             }
