@@ -172,8 +172,9 @@ static void command(uint8_t which)
     } else {
         status = commands[which % 8](&world.lidar);
     }
-    if (before == TMINI_STATE_SCANNING && which % 8 != 1) {
-        demand(status == TMINI_ERROR_STATE);
+    const bool is_query = which % 8 >= 2 && which % 8 <= 5;
+    if (before == TMINI_STATE_SCANNING) {
+        demand(status == (is_query ? TMINI_ERROR_STATE : TMINI_OK));
     }
 }
 
@@ -227,7 +228,7 @@ static void look_around(void)
 {
     tmini_ct_info_t info;
     tmini_ct_info(&world.lidar, &info);
-    demand(tmini_faults(&world.lidar) <= TMINI_FAULT_MASK);
+    demand(tmini_faults(&world.lidar) <= (TMINI_FAULT_MASK | TMINI_FAULT_FREQUENCY));
     demand(tmini_info(&world.lidar) != NULL && tmini_health(&world.lidar) != NULL);
     demand(tmini_frequency_chz(&world.lidar) <= 2000);
 }
