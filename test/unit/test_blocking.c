@@ -143,6 +143,7 @@ void test_a_frequency_that_could_not_be_set_is_waited_for_in_vain_while_scanning
     sends(START);
     polls_to(TMINI_EVENT_NONE);
     rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
     is_in(TMINI_STATE_SCANNING);
 }
