@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The firmware: asks the lidar everything, takes four scans at 12 Hz and stops it. What it sees goes
- * as text into memory, `log_text`, where the test reads it; the UART is the lidar's. */
+/* The firmware: asks the lidar everything, takes four scans at 12 Hz and stops it. What it sees
+ * goes as text into memory, `log_text`, where the test reads it; the UART is the lidar's. */
 
 #include "tmini/tmini_names.h"
 #include "board.h"
@@ -145,7 +145,7 @@ static void take_scan(void)
     if (scans == SCANS) {
         log_turn();
         next_step();
-        scans++; /* Scans that are still under way are nobody's business. */
+        scans++; /* Scans that are still under way are left out. */
     }
 }
 
