@@ -87,8 +87,9 @@ written=$(
 members=$(sed -n '/^struct tmini {/,/^};/s/^ .*[ *]\([a-z_]*\);.*/\1/p' \
     "$root/lib/include/tmini/tmini.h" | paste -s -d '|' -)
 # A name followed by ( is a function of a class.
+access="(lidar|driver)_?(\[[a-z0-9]+\])?(\.|->)($members)([^a-z_(]|\$)"
 touched=$(cd "$root" && grep -rnE --include='*.[ch]' --include='*.cpp' --include='*.ino' \
-    --include='*.py' "(lidar|driver)_?(\[[a-z0-9]+\])?(\.|->)($members)([^a-z_(]|\$)" port examples |
+    --include='*.py' "$access" port examples |
     sed 's|$|  (members of tmini_t are private)|')
 
 if [ -n "$calls$written$touched" ]; then
