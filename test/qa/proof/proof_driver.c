@@ -16,6 +16,7 @@
 static tmini_t lidar;
 static tmini_timing_t timing;
 static tmini_point_t points[POINTS];
+static tmini_point_t spare_points[POINTS];
 static bool is_half_sent; /* A command's first byte has left, and not its second. */
 
 tmini_t nondet_lidar(void);
@@ -32,6 +33,7 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
 {
     const int taken = nondet_int();
     (void)context;
+    CLAIM(!lidar.is_listen_only);
     CLAIM(count == (is_half_sent ? 1 : 2));
     CLAIM(is_half_sent || bytes[0] == 0xA5);
     CLAIM(is_command(bytes[count - 1]));
@@ -47,11 +49,68 @@ static uint32_t port_now_ms(void *context)
     return nondet_word();
 }
 
-static const tmini_port_t port = {.write = port_write, .now_ms = port_now_ms};
+static void port_restart(void *context)
+{
+    (void)context;
+}
+
+static tmini_port_t port = {.write = port_write, .now_ms = port_now_ms};
+
+/* The user's step has the finished scan to itself. */
+static void step(const void *data, tmini_scan_t *scan)
+{
+    CLAIM(data == lidar.link.step_data && scan == &lidar.scan);
+    CLAIM(scan->count <= lidar.decoder.builder.capacity);
+    CLAIM(lidar.link.spare_points == NULL || scan->points != lidar.decoder.builder.scan.points);
+}
+
+/* Listening, nothing is on its way; a start follows only what ends with an event; and what is not
+ * wanted does not fail. */
+static bool wish_fits(void)
+{
+    const uint8_t phase = lidar.command.phase;
+    return (!lidar.is_listen_only ||
+            (lidar.command.unsent == 0 && !lidar.command.sync_sent &&
+             (phase == TMINI_PHASE_NONE || phase == TMINI_PHASE_WAITING))) &&
+           (!lidar.start_follows || lidar.state == TMINI_STATE_BUSY ||
+            lidar.state == TMINI_STATE_STOPPING) &&
+           (lidar.wanted_chz != 0 || (lidar.monitor.faults & TMINI_FAULT_FREQUENCY) == 0);
+}
+
+/* The next scan is not gathered where the one delivered lies. */
+static bool buffers_are_apart(void)
+{
+    return lidar.link.spare_points == NULL ||
+           lidar.link.spare_points != lidar.decoder.builder.scan.points;
+}
 
 static bool is_sound(void)
 {
-    return lidar_is_sound(&lidar) && is_half_sent == lidar.command.sync_sent;
+    return lidar_is_sound(&lidar) && is_half_sent == lidar.command.sync_sent && wish_fits() &&
+           buffers_are_apart();
+}
+
+static void any_link(void)
+{
+    port.restart = any_bool() ? port_restart : NULL;
+    lidar.link.port = &port;
+    lidar.link.timing = &timing;
+    lidar.link.step = any_bool() ? step : NULL;
+    lidar.link.spare_points = any_bool() ? spare_points : NULL;
+}
+
+static void any_decoder(void)
+{
+    tmini_decoder_t *const decoder = &lidar.decoder;
+    decoder->parser.frame.ring = &lidar.ring;
+    decoder->parser.awaiting = any_bool();
+    decoder->packet_waits = any_bool();
+    decoder->packet.frame = &decoder->parser.frame;
+    decoder->builder.open = any_bool();
+    decoder->builder.scan.complete = any_bool();
+    decoder->builder.scan.upside_down = any_bool();
+    decoder->builder.scan.points = points;
+    ASSUME(decoder->builder.capacity <= POINTS);
 }
 
 static void any_lidar(void)
@@ -59,44 +118,47 @@ static void any_lidar(void)
     lidar = nondet_lidar();
     timing = nondet_timing();
     lidar.ring = any_early_ring(LARGE_RING_SIZE);
-    lidar.parser.frame.ring = &lidar.ring;
-    lidar.parser.awaiting = any_bool();
-    lidar.packet_waits = any_bool();
+    lidar.start_follows = any_bool();
     lidar.is_settled = any_bool();
     lidar.is_recovery_off = any_bool();
-    lidar.are_held = any_bool();
+    lidar.is_listen_only = any_bool();
+    lidar.line.are_held = any_bool();
     lidar.command.sync_sent = any_bool();
-    lidar.builder.open = any_bool();
-    lidar.builder.scan.complete = any_bool();
     lidar.monitor.is_complete = any_bool();
     lidar.monitor.has_range = any_bool();
-    lidar.link.port = &port;
-    lidar.link.timing = &timing;
-    lidar.builder.scan.points = points;
-    lidar.latest.packet.frame = &lidar.parser.frame;
+    lidar.monitor.is_tried_again = any_bool();
+    any_link();
+    any_decoder();
     is_half_sent = lidar.command.sync_sent;
-    ASSUME(lidar.builder.capacity <= POINTS);
-    ASSUME(lidar_is_sound(&lidar));
+    ASSUME(is_sound());
 }
 
 void prove_driver_init(void)
 {
     tmini_config_t config;
     config.port = &port;
+    config.port_context = NULL;
     config.rx_buffer = any_bool() ? ring_memory : NULL;
     config.rx_size = nondet_size();
     config.rx_dma = any_bool();
     config.points = any_bool() ? points : NULL;
+    config.spare_points = any_bool() ? spare_points : NULL;
     config.max_points = nondet_size();
-    config.filter = nondet_byte();
     config.max_samples = nondet_byte();
-    config.timing = any_bool() ? &timing : NULL;
+    config.filter = nondet_byte();
+    config.frequency_chz = nondet_half();
+    config.listen_only = any_bool();
     config.recovery = any_bool() ? TMINI_RECOVERY_OFF : TMINI_RECOVERY_ON;
+    config.step = any_bool() ? step : NULL;
+    config.step_data = any_bool() ? &timing : NULL;
+    config.timing = any_bool() ? &timing : NULL;
     ASSUME(config.rx_size <= LARGE_RING_SIZE);
     const tmini_status_t status = tmini_init(&lidar, &config);
     CLAIM(is_sound());
     CLAIM((status == TMINI_OK) == (lidar.link.port != NULL));
     CLAIM(status != TMINI_OK || (config.points == NULL) == (config.max_points == 0));
+    CLAIM(status != TMINI_OK || config.frequency_chz == 0 || !config.listen_only);
+    CLAIM(status != TMINI_OK || lidar.wanted_chz == config.frequency_chz);
     CLAIM(tmini_init(NULL, &config) == TMINI_ERROR_ARGUMENT);
     REACHED();
 }
@@ -112,13 +174,13 @@ static void any_polled_lidar(void)
 static void any_receiving_lidar(void)
 {
     any_polled_lidar();
-    ASSUME(!lidar.packet_waits && lidar.pending == 0);
+    ASSUME(!lidar.decoder.packet_waits && lidar.pending == 0);
 }
 
-void prove_driver_update_time(void)
+void prove_driver_look(void)
 {
     any_polled_lidar();
-    update_time(&lidar);
+    look(&lidar);
     CLAIM(is_sound());
     REACHED();
 }
@@ -136,18 +198,21 @@ void prove_driver_take_event(void)
     REACHED();
 }
 
-void prove_driver_add_waiting_packet(void)
+/* The packet that waits is added, and only then is the next frame looked for. */
+void prove_driver_next(void)
 {
     any_polled_lidar();
-    add_waiting_packet(&lidar);
-    CLAIM(is_sound() && !lidar.packet_waits);
+    ASSUME(lidar.pending == 0);
+    const tmini_frame_type_t type = tmini_decoder_next(&lidar.decoder, 0);
+    CLAIM(!lidar.decoder.packet_waits);
+    CLAIM(type == TMINI_FRAME_REPLY || is_sound());
     REACHED();
 }
 
 void prove_driver_packet(void)
 {
     any_receiving_lidar();
-    ASSUME(tmini_parser_next(&lidar.parser) == TMINI_FRAME_PACKET);
+    ASSUME(tmini_decoder_next(&lidar.decoder, 0) == TMINI_FRAME_PACKET);
     take_packet(&lidar);
     CLAIM(is_sound());
     REACHED();
@@ -156,7 +221,7 @@ void prove_driver_packet(void)
 void prove_driver_reply(void)
 {
     any_receiving_lidar();
-    ASSUME(tmini_parser_next(&lidar.parser) == TMINI_FRAME_REPLY);
+    ASSUME(tmini_decoder_next(&lidar.decoder, 0) == TMINI_FRAME_REPLY);
     take_reply(&lidar);
     CLAIM(is_sound());
     REACHED();
@@ -165,7 +230,7 @@ void prove_driver_reply(void)
 void prove_driver_nothing(void)
 {
     any_receiving_lidar();
-    const tmini_frame_type_t type = tmini_parser_next(&lidar.parser);
+    const tmini_frame_type_t type = tmini_decoder_next(&lidar.decoder, 0);
     ASSUME(type == TMINI_FRAME_NONE || type == TMINI_FRAME_MORE);
     if (type == TMINI_FRAME_NONE) {
         (void)give_up_candidate(&lidar);
@@ -186,7 +251,7 @@ void prove_driver_keep_time(void)
 void prove_driver_poll(void)
 {
     any_lidar();
-    ASSUME(!lidar.packet_waits); /* receive() has added it. */
+    ASSUME(!lidar.decoder.packet_waits); /* receive() has added it. */
     const unsigned before = lidar.pending;
     const tmini_event_t event = tmini_poll(&lidar);
     CLAIM(is_sound());
@@ -198,49 +263,63 @@ void prove_driver_poll(void)
 
 /* ---- Commands ---- */
 
-static void prove_command(tmini_status_t (*command)(tmini_t *))
+/* Begun only where a query may be; otherwise nothing is touched. */
+static void prove_query(tmini_status_t (*query)(tmini_t *), tmini_command_code_t operation)
 {
     any_lidar();
     const tmini_t before = lidar;
-    const tmini_status_t status = command(&lidar);
+    const bool may_send = !lidar.is_listen_only;
+    const tmini_status_t status = query(&lidar);
     CLAIM(is_sound());
-    CLAIM(status == TMINI_OK || status == TMINI_ERROR_STATE || status == TMINI_ERROR_BUSY);
-    CLAIM((status == TMINI_OK) == (before.state <= TMINI_STATE_IDLE));
-    CLAIM((status == TMINI_ERROR_STATE) == (before.state >= TMINI_STATE_SCANNING));
+    CLAIM((status == TMINI_ERROR_LISTEN_ONLY) == !may_send);
+    CLAIM((status == TMINI_ERROR_STATE) == (may_send && before.state >= TMINI_STATE_SCANNING));
+    CLAIM((status == TMINI_OK) == (may_send && before.state <= TMINI_STATE_IDLE));
+    CLAIM(status == TMINI_OK || status == TMINI_ERROR_STATE || status == TMINI_ERROR_BUSY ||
+          status == TMINI_ERROR_LISTEN_ONLY);
     CLAIM(status == TMINI_OK || (lidar.state == before.state && lidar.pending == before.pending &&
                                  lidar.command.phase == before.command.phase &&
                                  lidar.command.unsent == before.command.unsent &&
-                                 lidar.link.now_ms == before.link.now_ms));
-    CLAIM(status != TMINI_OK || lidar.state != TMINI_STATE_SCANNING);
-}
-
-void prove_driver_start(void)
-{
-    prove_command(tmini_start);
-    REACHED();
+                                 lidar.line.now_ms == before.line.now_ms));
+    CLAIM(status != TMINI_OK ||
+          (lidar.state == TMINI_STATE_BUSY && lidar.command.operation == operation &&
+           (lidar.pending & END_EVENTS) == 0));
 }
 
 void prove_driver_request_info(void)
 {
-    prove_command(tmini_request_info);
+    prove_query(tmini_request_info, TMINI_COMMAND_GET_INFO);
     REACHED();
 }
 
 void prove_driver_request_health(void)
 {
-    prove_command(tmini_request_health);
+    prove_query(tmini_request_health, TMINI_COMMAND_GET_HEALTH);
     REACHED();
 }
 
 void prove_driver_request_frequency(void)
 {
-    prove_command(tmini_request_frequency);
+    prove_query(tmini_request_frequency, TMINI_COMMAND_GET_FREQUENCY);
     REACHED();
 }
 
 void prove_driver_reboot(void)
 {
-    prove_command(tmini_reboot);
+    prove_query(tmini_reboot, TMINI_COMMAND_REBOOT);
+    REACHED();
+}
+
+/* At once, or after what is under way; nothing if it is to scan already. */
+void prove_driver_start(void)
+{
+    any_lidar();
+    const uint8_t before = lidar.state;
+    const uint8_t phase = lidar.command.phase;
+    CLAIM(tmini_start(&lidar) == TMINI_OK);
+    CLAIM(is_sound());
+    CLAIM(lidar.state == (before <= TMINI_STATE_IDLE ? (uint8_t)TMINI_STATE_STARTING : before));
+    CLAIM(before <= TMINI_STATE_IDLE || lidar.command.phase == phase);
+    CLAIM((before != TMINI_STATE_BUSY && before != TMINI_STATE_STOPPING) || lidar.start_follows);
     REACHED();
 }
 
@@ -248,9 +327,15 @@ void prove_driver_set_frequency(void)
 {
     any_lidar();
     const uint16_t frequency_chz = nondet_half();
+    const uint16_t before_chz = lidar.wanted_chz;
+    const bool is_permitted =
+        frequency_chz >= 600 && frequency_chz <= 1200 && frequency_chz % 10 == 0;
     const tmini_status_t status = tmini_set_frequency(&lidar, frequency_chz);
     CLAIM(is_sound());
-    CLAIM(status == TMINI_ERROR_ARGUMENT || (frequency_chz >= 600 && frequency_chz <= 1200));
+    CLAIM((status == TMINI_ERROR_ARGUMENT) == !is_permitted);
+    CLAIM((status == TMINI_ERROR_LISTEN_ONLY) == (is_permitted && lidar.is_listen_only));
+    CLAIM((status == TMINI_OK) == (is_permitted && !lidar.is_listen_only));
+    CLAIM(lidar.wanted_chz == (status == TMINI_OK ? frequency_chz : before_chz));
     REACHED();
 }
 
@@ -258,9 +343,8 @@ void prove_driver_stop(void)
 {
     any_lidar();
     CLAIM(tmini_stop(&lidar) == TMINI_OK);
-    CLAIM(is_sound());
-    CLAIM(lidar.state == TMINI_STATE_STOPPING || lidar.state == TMINI_STATE_UNKNOWN ||
-          lidar.state == TMINI_STATE_IDLE);
+    CLAIM(is_sound() && !lidar.start_follows);
+    CLAIM(lidar.state == (lidar.is_listen_only ? TMINI_STATE_UNKNOWN : TMINI_STATE_STOPPING));
     REACHED();
 }
 
@@ -268,6 +352,6 @@ void prove_driver_cancel(void)
 {
     any_lidar();
     tmini_cancel(&lidar);
-    CLAIM(is_sound());
+    CLAIM(is_sound() && lidar.state == TMINI_STATE_UNKNOWN && lidar.command.unsent == 0);
     REACHED();
 }

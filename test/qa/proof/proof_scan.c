@@ -31,6 +31,7 @@ static void any_builder(void)
     builder = nondet_builder();
     builder.open = any_bool();
     builder.scan.complete = any_bool();
+    builder.scan.upside_down = any_bool();
     builder.scan.points = points;
     ASSUME(builder.capacity <= CAPACITY && builder_is_sound(&builder));
 }

@@ -26,6 +26,7 @@ static tmini_scan_t any_scan(void)
     }
     scan.points = points;
     scan.complete = any_bool();
+    scan.upside_down = any_bool();
     ASSUME(scan.count <= POINTS);
     return scan;
 }
@@ -100,7 +101,10 @@ void prove_time(void)
     ASSUME(scan.count >= 1 && index < scan.count);
     const uint32_t period_ms = tmini_scan_period_ms(&scan);
     const uint32_t time_us = tmini_point_time_us(&scan, index);
-    /* The last points may lie 4 degrees beyond the circle. */
-    CLAIM(period_ms == 0 || period_ms > 3000 || time_us <= period_ms * 1000u / 90 * 91 + 91);
+    /* The last points may lie 4 degrees beyond the circle. The period has been rounded. */
+    CLAIM(time_us <= (period_ms * 1000u + 500u) / 90 * 91 + 91);
+    /* By the frequency that is reported where it is known; 3 points are no revolution of any. */
+    CLAIM(scan.frequency_chz == 0 || period_ms == (100000000u / scan.frequency_chz + 500u) / 1000u);
+    CLAIM(scan.frequency_chz > 0 || scan.complete || time_us == index * 250u);
     REACHED();
 }

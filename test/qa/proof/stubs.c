@@ -117,6 +117,7 @@ static void change_builder(tmini_builder_t *builder, bool open)
     builder->scan.points = before.scan.points;
     builder->open = open;
     builder->scan.complete = any_bool();
+    builder->scan.upside_down = any_bool();
     ASSUME(builder_is_sound(builder));
 }
 
