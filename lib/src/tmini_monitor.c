@@ -16,6 +16,10 @@
 /* Of 4000 a second (section 1): three seconds. */
 #define TURN_SAMPLES_MAX 12000u
 
+/* Of 300 packets without a start packet, this many with a range are not chance: damaged packets
+ * whose checksum matches. */
+#define TURNING_RANGES 100u
+
 /* What one revolution shows is believed when the next one shows it too. */
 static void observe(tmini_monitor_t *monitor, unsigned faults)
 {
@@ -34,8 +38,8 @@ static void judge_revolution(tmini_t *lidar)
     unsigned faults = tmini_ct_faults(&lidar->decoder.ct);
     bool is_known = lidar->decoder.verdict == TMINI_CT_CONFIRMED;
     if (faults == TMINI_FAULTS_UNKNOWN) {
-        faults = monitor->has_range ? 0 : TMINI_FAULT_DATA;
-        is_known = monitor->has_range || monitor->is_complete;
+        faults = monitor->ranges > 0 ? 0 : TMINI_FAULT_DATA;
+        is_known = monitor->ranges > 0 || monitor->is_complete;
     }
     if (is_known) {
         observe(monitor, faults);
@@ -82,7 +86,7 @@ void tmini_monitor_begin(tmini_t *lidar)
 {
     tmini_monitor_t *const monitor = &lidar->monitor;
     monitor->is_complete = false;
-    monitor->has_range = false;
+    monitor->ranges = 0;
     monitor->samples = 0;
     monitor->off_turns = 0;
     monitor->observed = monitor->faults & TMINI_FAULT_MASK;
@@ -96,7 +100,7 @@ static void begin_revolution(tmini_t *lidar)
     judge_revolution(lidar);
     judge_frequency(lidar);
     monitor->is_complete = true;
-    monitor->has_range = false;
+    monitor->ranges = 0;
     monitor->samples = 0;
     monitor->rotating_ms = lidar->line.now_ms;
 }
@@ -115,7 +119,7 @@ bool tmini_monitor_packet(tmini_t *lidar)
         begin_revolution(lidar);
     }
     if (tmini_packet_has_range(packet)) {
-        monitor->has_range = true;
+        monitor->ranges = (uint8_t)(monitor->ranges + (monitor->ranges < UINT8_MAX));
         monitor->rotating_ms = lidar->line.now_ms;
     }
     return is_whole;
@@ -134,11 +138,12 @@ static bool turns_without_start(tmini_monitor_t *monitor)
     if (monitor->samples < TURN_SAMPLES_MAX) {
         return false;
     }
-    const bool turns = monitor->has_range && (monitor->faults & TMINI_FAULT_ENCODER) != 0;
+    const bool turns =
+        monitor->ranges >= TURNING_RANGES && (monitor->faults & TMINI_FAULT_ENCODER) != 0;
     note_standstill(monitor);
     monitor->samples = 0;
     monitor->is_complete = false;
-    monitor->has_range = false;
+    monitor->ranges = 0;
     return turns;
 }
 

@@ -143,7 +143,7 @@ void test_wrong_usage_and_a_wrong_port_are_told(void)
                              program_errors);
     TEST_ASSERT_EQUAL_INT(2, program_finish(program_start(OBSTACLE_STOP, WORDS("a", "b")), 0));
     TEST_ASSERT_EQUAL_INT(0, program_finish(program_start(OBSTACLE_STOP, WORDS("--vers")), 0));
-    TEST_ASSERT_EQUAL_STRING_LEN("obstacle_stop 0.", program_output, 16);
+    TEST_ASSERT_EQUAL_STRING_LEN("obstacle_stop 1.", program_output, 16);
     TEST_ASSERT_EQUAL_INT(0, program_finish(program_start(OBSTACLE_STOP, WORDS("-h")), 0));
     TEST_ASSERT_EQUAL_INT(1, program_finish(program_start(OBSTACLE_STOP, WORDS("-p/dev/none")), 0));
     TEST_ASSERT_EQUAL_STRING("/dev/none: no such device\n", program_errors);

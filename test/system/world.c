@@ -379,7 +379,7 @@ static void close_cycle(world_t *world, bool was_scanning)
 
     tmini_counters(&world->lidar, &counters);
     check_bytes(world, &counters);
-    if (world->config.streaming && was_scanning) {
+    if (world->config.streaming && was_scanning && scanning) {
         judge(world, truth_must_be_empty(&world->truth, parsed(world, &counters)),
               VIOLATION_FALSE_PACKET);
     } else if (!scanning) {

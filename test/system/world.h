@@ -61,8 +61,9 @@ typedef enum {
 
 /* Scans have resumed that long after the last trouble has ended. The worst case: the lidar comes
  * back just after a start was sent (2 s until that is given up), the longest pause follows (4 s),
- * and then it is the reboot's turn (5 s); start and first revolution take the rest. */
-#define WORLD_RECOVERY_MS 13000u
+ * then it is the reboot's turn (5 s), and the question for the frequency is lost (2 s); start and
+ * first revolution take the rest. */
+#define WORLD_RECOVERY_MS 15000u
 
 /* A fault of the lidar must be reported, and its end too, within that time: three revolutions, or
  * the 3 s that it takes to notice that there are none. */

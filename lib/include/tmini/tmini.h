@@ -410,7 +410,7 @@ typedef struct {
     uint8_t faults;       /* As reported. */
     uint8_t observed;     /* As seen in the last revolution; reported when seen twice. */
     bool is_complete;     /* Nothing has been lost since the last start packet. */
-    bool has_range;       /* A valid range has come since then. */
+    uint8_t ranges;       /* Packets with a valid range since then; at most 255. */
     uint8_t off_turns;    /* In a row, that took another time than wanted. */
     bool is_tried_again;  /* The wanted frequency has been set once more. */
     uint16_t samples;     /* Since the last start packet. */
