@@ -125,7 +125,7 @@ static void any_lidar(void)
     lidar.line.are_held = any_bool();
     lidar.command.sync_sent = any_bool();
     lidar.monitor.is_complete = any_bool();
-    lidar.monitor.has_range = any_bool();
+    lidar.monitor.ranges = nondet_byte();
     lidar.monitor.is_tried_again = any_bool();
     any_link();
     any_decoder();
