@@ -1152,6 +1152,14 @@ void test_a_scan_goes_on_after_a_pause_that_cannot_hold_half_a_turn(void)
     polls_to(TMINI_EVENT_NONE);
 }
 
+void test_pauses_longer_than_a_quarter_of_a_second_can_be_allowed(void)
+{
+    judge_pauses();
+    rig.timing.max_pause_ms = 300;
+    comes_after(250);
+    polls_to(TMINI_EVENT_NONE);
+}
+
 void test_a_longer_pause_ends_the_scan(void)
 {
     judge_pauses();
