@@ -18,7 +18,7 @@
 /* A sample is measured in 250 us (section 1), and is on the wire for 130. */
 #define SAMPLE_SENT_US 380u
 
-/* The angle swept from one direction to another, clockwise, or slightly back: a hair of jitter
+/* The angle swept from one direction to another, clockwise, or slightly back: a small jitter
  * backwards (section 9.6) is not nearly a whole turn forwards. */
 static int32_t swept(uint16_t from, uint16_t to)
 {
