@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Compares the ESP-IDF component that we have packed with what ESP-IDF's own packer makes.
+"""ESP-IDF's own packer takes the component that we have packed as it is, and leaves nothing out.
 
-    component.py SOURCES ARCHIVE WORK
+    component.py ARCHIVE WORK
 
-SOURCES is the archive of all sources, which is what theirs is made from. Run by the Python that has
-the package idf-component-manager. Exit status: 0 the same files, 1 not.
+Run by the Python that has the package idf-component-manager. Exit status: 0 the same files, 1 not.
 """
 
 import os
@@ -19,35 +18,29 @@ import zipfile
 PREFIX = "tmini/"
 
 
-def names_of_ours(archive):
+def unpack(archive, work):
     with zipfile.ZipFile(archive) as file:
-        names = [name for name in file.namelist() if not name.endswith("/")]
+        file.extractall(work)
+        names = file.namelist()
     assert all(name.startswith(PREFIX) for name in names), names
     return sorted(name[len(PREFIX):] for name in names)
 
 
-def unpack(archive, folder):
-    """Returns the only folder in it."""
-    with tarfile.open(archive) as file:
-        file.extractall(folder)
-    (name,) = os.listdir(folder)
-    return os.path.join(folder, name)
-
-
-def names_of_theirs(sources, work):
-    root = unpack(sources, os.path.join(work, "sources"))
+def names_of_theirs(work):
     packed = os.path.join(work, "packed")
-    subprocess.run([os.path.join(os.path.dirname(sys.executable), "compote"), "component", "pack",
-                    "--name", "tmini", "--project-dir", root, "--dest-dir", packed], check=True)
+    compote, project = os.path.join(os.path.dirname(sys.executable), "compote"), os.path.join(work, PREFIX)
+    subprocess.run([compote, "manifest", "lint"], cwd=project, check=True)
+    subprocess.run([compote, "component", "pack", "--name", "tmini", "--project-dir", project, "--dest-dir", packed],
+                   check=True)
     (archive,) = [name for name in os.listdir(packed) if name.endswith(".tgz")]
     with tarfile.open(os.path.join(packed, archive)) as file:
         return sorted(os.path.normpath(member.name) for member in file if member.isfile())
 
 
 def main():
-    sources, archive, work = sys.argv[1:]
+    archive, work = sys.argv[1:]
     shutil.rmtree(work, ignore_errors=True)
-    ours, theirs = names_of_ours(archive), names_of_theirs(sources, work)
+    ours, theirs = unpack(archive, work), names_of_theirs(work)
     for name in sorted(set(ours) ^ set(theirs)):
         print(name, "is in", "ours" if name in ours else "theirs", "only")
     sys.exit(0 if ours == theirs else 1)

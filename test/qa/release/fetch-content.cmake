@@ -6,5 +6,5 @@
 include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 
 file(REMOVE_RECURSE ${WORK})
-build(${CMAKE_CURRENT_LIST_DIR}/fetch_content -DARCHIVE=${ARCHIVES}/tmini-${VERSION}.tar.gz)
+build(${CMAKE_CURRENT_LIST_DIR}/fetch_content -DARCHIVE=${ARCHIVES}/tmini-${VERSION}-source.tar.gz)
 run_or_fail(${WORK}/build/consumer)

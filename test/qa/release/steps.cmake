@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# What the release tests have in common. They get VERSION, ARCHIVES, ROOT, WORK, COMPILER and
-# GENERATOR.
+# What the release tests have in common. They get VERSION, ARCHIVES, ROOT, WORK, PYTHON,
+# COMPILER, LAUNCHER and GENERATOR.
 
 include(${CMAKE_CURRENT_LIST_DIR}/../../consumer/steps.cmake)
 
@@ -23,7 +23,7 @@ endfunction()
 # build(SOURCE OPTION…), in WORK/build.
 function(build source)
     run_or_fail(${CMAKE_COMMAND} -S ${source} -B ${WORK}/build -G ${GENERATOR}
-        -DCMAKE_C_COMPILER=${COMPILER} ${ARGN})
+        -DCMAKE_C_COMPILER=${COMPILER} -DCMAKE_C_COMPILER_LAUNCHER=${LAUNCHER} ${ARGN})
     run_or_fail(${CMAKE_COMMAND} --build ${WORK}/build --parallel 2)
 endfunction()
 
