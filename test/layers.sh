@@ -22,7 +22,7 @@ tmini_parser    tmini_ring tmini_frame
 tmini_packet    tmini_ring tmini_frame
 tmini_reply
 tmini_ct
-tmini_builder   tmini_packet
+tmini_builder   tmini_ring tmini_packet
 tmini_decoder   tmini_parser tmini_packet tmini_ct tmini_builder
 tmini_line      tmini_ring
 tmini_command   tmini_ring tmini_parser tmini_reply
@@ -77,7 +77,7 @@ written_outside() {
 written=$(
     written_outside command tmini_command.c
     written_outside recovery tmini_recovery.c
-    written_outside monitor tmini_monitor.c
+    written_outside monitor -
     written_outside link tmini.c
     written_outside ring -
     written_outside line tmini_line.c

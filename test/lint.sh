@@ -52,7 +52,7 @@ check_lengths() {
     found=0
     find_files \( -name '*.c' -o -name '*.h' -o -name '*.cpp' -o -name '*.ino' -o -name '*.sh' \
         -o -name '*.cmake' -o -name 'CMakeLists.txt' -o -name '*.ld' -o -name '*.yml' \
-        -o -name 'Kconfig*' -o -path './.ci/run' \) |
+        -o -name 'Kconfig*' -o -path './.ci/run' -o -path './.ci/release' \) |
         LC_ALL=C.UTF-8 xargs grep -nE '^.{101,}' && found=1
     find_files \( -name '*.py' -o -name '*.js' \) |
         LC_ALL=C.UTF-8 xargs grep -nE '^.{121,}' && found=1
@@ -68,7 +68,8 @@ tidy() {
 # Firmware is compiled as the tests compile it, over the stand-ins for its platforms. Registers are
 # integers made pointers there.
 tidy_firmware() {
-    tidy --checks=-performance-no-int-to-ptr "$@" -std=c99 -I lib/include -I examples/obstacle_stop
+    tidy --checks=-performance-no-int-to-ptr "$@" -std=c99 -I lib/include -I examples/common \
+        -I examples/obstacle_stop
 }
 
 # With cmake's list of commands, in as many processes as there are processors.
@@ -84,14 +85,14 @@ tidy_programs() {
 check_tidy() {
     clean=0
     tidy_programs || clean=1
-    tidy_firmware port/template/*.c -- -I port/template || clean=1
+    tidy_firmware port/template/*.c examples/common/*.c -- -I port/template || clean=1
     tidy_firmware port/stm32/*.c examples/stm32_cube/*.c -- -I port/stm32 -I examples/stm32_cube \
         -isystem test/port/stm32/stm32_model -isystem test/support || clean=1
     tidy_firmware port/esp32/*.c examples/esp32_idf/main/*.c -- -I port/esp32 \
         -isystem test/port/esp32/esp_idf || clean=1
     tidy_firmware port/pico/*.c examples/pico/*.c -- -I port/pico -D_DEFAULT_SOURCE \
         -isystem test/port/pico/sdk_stub || clean=1
-    tidy_firmware port/zephyr/*.c examples/zephyr/src/*.c -- -I port/zephyr \
+    tidy_firmware port/zephyr/*.c examples/zephyr/src/*.c -- -I port/zephyr -DZEPHYR_ASYNC \
         -isystem test/port/zephyr/zephyr_stub || clean=1
     tidy_firmware port/freertos/*.c examples/freertos/*.c -- -I port/freertos -I examples/freertos \
         -isystem test/port/freertos/kernel_stub || clean=1
@@ -120,7 +121,7 @@ check_cppcheck() {
         --suppress=wrongPrintfScanfArgNum \
         --suppress=zerodivcond --suppress=ctuuninitvar \
         --suppress=normalCheckLevelMaxBranches --error-exitcode=1 \
-        -I lib/include -I examples/obstacle_stop lib/src port examples
+        -I lib/include -I examples/common -I examples/obstacle_stop lib/src port examples
 }
 
 # Rules that are broken, each with a reason, are in a list: no other is.
@@ -139,14 +140,15 @@ check_misra() {
 
 # analyse FLAG… FILE…: GCC's own analyser.
 analyse() {
-    gcc -std=c99 -O2 -fanalyzer -Werror -Ilib/include -Iexamples/obstacle_stop -S -o /dev/null "$@"
+    gcc -std=c99 -O2 -fanalyzer -Werror -Ilib/include -Iexamples/common -Iexamples/obstacle_stop \
+        -S -o /dev/null "$@"
 }
 
 # Firmware over the stand-ins, as above. In examples/host it takes the only branch that closes a
 # file for none, and what finds an entry that exists for something that may return none.
 check_analyzer() {
     clean=0
-    for source in lib/src/*.c port/posix/*.c port/template/*.c \
+    for source in lib/src/*.c port/posix/*.c port/template/*.c examples/common/*.c \
         examples/obstacle_stop/obstacle*.c; do
         analyse -Iport/template "$source" || clean=1
     done
@@ -167,7 +169,8 @@ check_analyzer() {
         analyse -Iport/pico -D_DEFAULT_SOURCE -isystem test/port/pico/sdk_stub "$source" || clean=1
     done
     for source in port/zephyr/*.c examples/zephyr/src/*.c; do
-        analyse -Iport/zephyr -isystem test/port/zephyr/zephyr_stub "$source" || clean=1
+        analyse -Iport/zephyr -DZEPHYR_ASYNC -isystem test/port/zephyr/zephyr_stub "$source" ||
+            clean=1
     done
     for source in port/freertos/*.c examples/freertos/*.c; do
         analyse -Iport/freertos -Iexamples/freertos -isystem test/port/freertos/kernel_stub \
@@ -177,7 +180,7 @@ check_analyzer() {
 }
 
 check_scripts() {
-    find_files -name '*.sh' -o -path './.ci/run' | xargs shellcheck -x
+    find_files -name '*.sh' -o -path './.ci/run' -o -path './.ci/release' | xargs shellcheck -x
 }
 
 # An absent compiler is said by compile.sh, and is no finding.

@@ -140,7 +140,7 @@ void board_print(const char *text)
     }
 }
 
-void board_print_number(uint32_t number)
+static void print_number(uint32_t number)
 {
     char text[11];
     char *digit = &text[sizeof text - 1];
@@ -157,7 +157,7 @@ void board_assert(const char *file, int line)
     board_print("assertion in ");
     board_print(file);
     board_print(", line ");
-    board_print_number((uint32_t)line);
+    print_number((uint32_t)line);
     board_print("\n");
     for (;;) {
     }

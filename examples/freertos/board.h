@@ -24,7 +24,6 @@ size_t board_lidar_read(uint8_t *bytes, size_t max, int *overrun);
 
 /* The console; waits while the transmitter is busy. */
 void board_print(const char *text);
-void board_print_number(uint32_t number);
 
 /* Sleeps until the next interrupt. */
 void board_sleep(void);

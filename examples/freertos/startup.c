@@ -43,7 +43,7 @@ static void stop_handler(void)
 
 typedef void (*handler_t)(void);
 
-/* Places behind the initial stack pointer. */
+/* Places after the initial stack pointer. */
 enum { RESET, NMI, HARD_FAULT, SVC = 10, PENDSV = 13, SYSTICK = 14, EXCEPTIONS };
 enum { UART1_IRQ = 6, IRQS = 44 };
 

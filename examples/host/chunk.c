@@ -8,14 +8,34 @@
 /* A head of version 1 is plausible if less than that has passed: 67 s. */
 #define PLAUSIBLE_US 0x04000000u
 
-/* After damage: so many plausible heads of version 1, one after the other. */
-#define CHAIN 4u
+/* While a lidar sends, a chunk comes sooner than that after the one before: 1 s. */
+#define SOON_US 0x00100000u
+
+/* So many plausible heads of version 1, one after the other, after a good chunk; and so many that
+ * come soon after each other, after damage or a long pause. */
+#define CHAIN 1u
+#define LONG_CHAIN 8u
 
 #define OLD_HEAD_SIZE 6u
 
+#define VERSION_AT 6u /* In the magic bytes. */
+
+typedef struct {
+    size_t head_size;
+    uint32_t delta_us;
+    uint32_t size; /* Of the bytes after the head. */
+    bool is_plausible;
+} chunk_t;
+
+typedef enum {
+    CHUNK_NONE,  /* No chunk begins here, or it is damaged. */
+    CHUNK_SHORT, /* There may be one: that depends on what follows. */
+    CHUNK_WHOLE,
+} chunk_state_t;
+
 static const uint8_t marker[2] = {0xA7, 0xC3};
 
-const uint8_t chunk_magic[8] = {0x89, 't', 'm', 'i', 'n', 'i', 2, '\n'};
+const uint8_t chunk_magic[CHUNK_MAGIC_SIZE] = {0x89, 't', 'm', 'i', 'n', 'i', CHUNK_VERSION, '\n'};
 
 static uint32_t number_at(const uint8_t *bytes, unsigned size)
 {
@@ -75,8 +95,9 @@ static chunk_state_t read_new(const uint8_t *bytes, size_t count, chunk_t *chunk
                                                                                    : CHUNK_NONE;
 }
 
-/* Whether `length` plausible heads of version 1 follow each other from here on. */
-static chunk_state_t follow_chain(const uint8_t *bytes, size_t count, bool is_end, unsigned length)
+/* Whether `length` heads of version 1 follow each other from here on, none later than that. */
+static chunk_state_t follow_chain(const uint8_t *bytes, size_t count, bool is_end, unsigned length,
+                                  uint32_t max_us)
 {
     size_t at = 0;
     for (unsigned i = 0; i < length; i++) {
@@ -84,7 +105,7 @@ static chunk_state_t follow_chain(const uint8_t *bytes, size_t count, bool is_en
             return is_end ? CHUNK_WHOLE : CHUNK_SHORT;
         }
         const uint32_t size = number_at(bytes + at + 4, 2);
-        if (number_at(bytes + at, 4) >= PLAUSIBLE_US || size == 0 || size > CHUNK_MAX) {
+        if (number_at(bytes + at, 4) >= max_us || size == 0 || size > CHUNK_MAX) {
             return CHUNK_NONE;
         }
         at += OLD_HEAD_SIZE + size;
@@ -92,8 +113,21 @@ static chunk_state_t follow_chain(const uint8_t *bytes, size_t count, bool is_en
     return CHUNK_WHOLE;
 }
 
-/* One that follows a good chunk is believed if a plausible head, or one after a long pause and two
- * plausible ones, follow it. */
+/* The chunk after the first one here, whenever it comes, and then a long chain. */
+static chunk_state_t follow_pause(const uint8_t *bytes, size_t count, bool is_end)
+{
+    const size_t next = OLD_HEAD_SIZE + number_at(bytes + 4, 2);
+    if (next > OLD_HEAD_SIZE + CHUNK_MAX) {
+        return CHUNK_NONE;
+    }
+    if (count < next) {
+        return is_end ? CHUNK_NONE : CHUNK_SHORT;
+    }
+    return follow_chain(bytes + next, count - next, is_end, LONG_CHAIN, SOON_US);
+}
+
+/* One that follows a good chunk is believed if plausible heads follow it, or a long pause and then
+ * a long chain. */
 static chunk_state_t read_old(const uint8_t *bytes, size_t count, bool is_end, bool is_lost,
                               chunk_t *chunk)
 {
@@ -103,26 +137,53 @@ static chunk_state_t read_old(const uint8_t *bytes, size_t count, bool is_end, b
     const uint32_t size = number_at(bytes + 4, 2);
     const size_t next = OLD_HEAD_SIZE + size;
     *chunk = (chunk_t){OLD_HEAD_SIZE, number_at(bytes, 4), size,
-                       follow_chain(bytes, count, false, 1) != CHUNK_NONE};
+                       follow_chain(bytes, count, false, 1, PLAUSIBLE_US) != CHUNK_NONE};
     if (is_lost) {
-        return follow_chain(bytes, count, is_end, CHAIN);
+        return follow_chain(bytes, count, is_end, LONG_CHAIN, SOON_US);
+    }
+    if (!chunk->is_plausible) {
+        return follow_pause(bytes, count, is_end);
     }
     if (count < next + OLD_HEAD_SIZE) {
         return is_end && count >= next ? CHUNK_WHOLE : CHUNK_SHORT;
     }
-    const chunk_state_t state = follow_chain(bytes + next, count - next, is_end, 1);
-    const size_t after = next + OLD_HEAD_SIZE + number_at(bytes + next + 4, 2);
-    if (state != CHUNK_NONE || number_at(bytes + next + 4, 2) == 0) {
-        return state != CHUNK_NONE ? state : CHUNK_WHOLE;
-    }
-    return count < after ? (is_end ? CHUNK_NONE : CHUNK_SHORT)
-                         : follow_chain(bytes + after, count - after, is_end, 2);
+    const chunk_state_t state =
+        follow_chain(bytes + next, count - next, is_end, CHAIN, PLAUSIBLE_US);
+    return state != CHUNK_NONE ? state : follow_pause(bytes + next, count - next, is_end);
 }
 
-chunk_state_t chunk_read(unsigned version, const uint8_t *bytes, size_t count, bool is_end,
-                         bool is_lost, chunk_t *chunk)
+/* After damage the proof must be stronger. */
+static chunk_state_t read_chunk(const chunks_t *chunks, const uint8_t *bytes, size_t count,
+                                bool is_end, chunk_t *chunk)
 {
     *chunk = (chunk_t){0};
-    return version == 1 ? read_old(bytes, count, is_end, is_lost, chunk)
-                        : read_new(bytes, count, chunk);
+    return chunks->version == 1 ? read_old(bytes, count, is_end, chunks->is_lost, chunk)
+                                : read_new(bytes, count, chunk);
+}
+
+/* The file's last chunk may be cut short. */
+bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_end, size_t *head)
+{
+    chunk_t chunk;
+    const chunk_state_t state = read_chunk(chunks, bytes, count, is_end, &chunk);
+    if (count == 0 || (state == CHUNK_SHORT && !is_end)) {
+        return false;
+    }
+    const bool was_lost = chunks->is_lost;
+    const bool is_believed = chunk.is_plausible && !was_lost;
+    const bool is_good = state == CHUNK_WHOLE || (state == CHUNK_SHORT && is_believed);
+    chunks->is_lost = !is_good;
+    chunks->damages += !is_good && !was_lost ? 1 : 0;
+    chunks->time_us += is_good ? chunk.delta_us : 0;
+    chunks->left = is_good ? chunk.size : is_believed ? 0 : 1;
+    *head = is_good || is_believed ? chunk.head_size : 0; /* Or only its bytes are damaged. */
+    return true;
+}
+
+unsigned chunk_version(const uint8_t *bytes, size_t count)
+{
+    return count >= CHUNK_MAGIC_SIZE && memcmp(bytes, chunk_magic, VERSION_AT) == 0 &&
+                   bytes[CHUNK_MAGIC_SIZE - 1] == '\n'
+               ? bytes[VERSION_AT]
+               : 0;
 }

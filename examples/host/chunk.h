@@ -21,29 +21,29 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define CHUNK_VERSION_AT 6 /* In the magic bytes. */
+#define CHUNK_MAGIC_SIZE 8u
+#define CHUNK_VERSION 2u
 #define CHUNK_MAX 4096u
 #define CHUNK_HEAD_SIZE 10u
 
-extern const uint8_t chunk_magic[8];
+extern const uint8_t chunk_magic[CHUNK_MAGIC_SIZE];
 
+/* Reads one chunk after the other; begins as {.version = ...}. */
 typedef struct {
-    size_t head_size;
-    uint32_t delta_us;
-    uint32_t size; /* Of the bytes after the head. */
-    bool is_plausible;
-} chunk_t;
+    unsigned version;
+    uint64_t time_us; /* When the bytes came that are next, */
+    uint32_t left;    /* and how many they are; who takes them counts down. */
+    unsigned damages; /* Places where no chunk was. */
+    bool is_lost;     /* Looking for the next chunk. */
+} chunks_t;
 
-typedef enum {
-    CHUNK_NONE,  /* No chunk begins here, or it is damaged. */
-    CHUNK_SHORT, /* There may be one: that depends on what follows. */
-    CHUNK_WHOLE,
-} chunk_state_t;
+/* The version of a file that begins so; 0: it has no chunks. */
+unsigned chunk_version(const uint8_t *bytes, size_t count);
 
-/* What begins at `bytes`. `is_end`: nothing follows them. After damage (`is_lost`) the proof must
- * be stronger. */
-chunk_state_t chunk_read(unsigned version, const uint8_t *bytes, size_t count, bool is_end,
-                         bool is_lost, chunk_t *chunk);
+/* `bytes` follow a chunk: sets `left` and *head, the size of what precedes the lidar's bytes. Where
+ * no chunk begins is damage: a byte there is taken as the lidar's, whose packets have checksums of
+ * their own. Returns false if it takes more bytes to tell; with `is_end` there are no more. */
+bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_end, size_t *head);
 
 /* Fills in the head of a chunk of version 2. */
 void chunk_write_head(uint8_t head[CHUNK_HEAD_SIZE], uint32_t delta_us, const uint8_t *bytes,

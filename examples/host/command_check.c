@@ -11,6 +11,7 @@
 #include "tmini/tmini_names.h"
 #include "device.h"
 #include "interrupt.h"
+#include "mount.h"
 #include "output.h"
 #include "points.h"
 
@@ -39,6 +40,7 @@ typedef struct {
     unsigned faults;        /* and since. */
     count_t points;
     count_t valid;
+    tmini_point_t nearest;   /* Of the latest scan; a distance of 0: none. */
     char names[GRADES][160]; /* Of the questions with this answer. */
 } check_t;
 
@@ -69,10 +71,23 @@ static grade_t grade(bool is_bad, bool is_remarkable)
     return is_bad ? BAD : is_remarkable ? REMARK : GOOD;
 }
 
+/* Why nothing of what was wanted came. */
+static void answer_trouble(check_t *check, const char *missing)
+{
+    static const char *const names[] = {"wiring", "baud", "command", "answers"};
+    const device_t *const device = check->device;
+    if (device->port.state != TMINI_POSIX_OK) {
+        answer(check, BAD, "port", "plug it in again; give the lidar a supply of its own",
+               "it has gone: unplugged, or its supply has failed");
+    } else {
+        const trouble_t trouble = trouble_find(device);
+        answer(check, BAD, names[trouble], trouble_text(trouble), "%s", missing);
+    }
+}
+
 /* Returns false if the lidar does not answer at all. */
 static bool ask_info(check_t *check)
 {
-    static const char *const names[] = {"wiring", "baud", "command", "answers"};
     device_t *const device = check->device;
     if (device_await(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO)) {
         const tmini_info_t *const info = tmini_info(&device->lidar);
@@ -86,13 +101,7 @@ static bool ask_info(check_t *check)
                info->firmware_major, info->firmware_minor, info->hardware, serial);
         return true;
     }
-    if (device->serial.state != TMINI_POSIX_OK) {
-        answer(check, BAD, "port", "plug it in again; give the lidar a supply of its own",
-               "it has gone: unplugged, or its supply has failed");
-    } else {
-        const trouble_t trouble = trouble_find(device);
-        answer(check, BAD, names[trouble], trouble_text(trouble), "no device information");
-    }
+    answer_trouble(check, "no device information");
     return false;
 }
 
@@ -130,12 +139,23 @@ static void ask_frequency(check_t *check)
     }
 }
 
+/* What the robot hides by itself is no missing range. */
+static bool is_seen(const check_t *check, const tmini_point_t *point)
+{
+    const tmini_mount_t *const mount = check->device->stream.mount;
+    return mount == NULL || !mount_hides(mount, point->angle_q6);
+}
+
 static void see_scan(check_t *check)
 {
     const tmini_scan_t *const scan = &check->device->stream.scan;
     const unsigned nearly_chz = check->set_chz - check->set_chz * SPEED_REMARK_PERCENT / 100;
-    check->points += scan->count;
-    check->valid += points_survey(scan->points, scan->count).valid;
+    const survey_t survey = points_survey(scan->points, scan->count);
+    for (size_t i = 0; i < scan->count; i++) {
+        check->points += is_seen(check, &scan->points[i]) ? 1 : 0;
+    }
+    check->valid += survey.valid;
+    check->nearest = survey.nearest != NULL ? *survey.nearest : (tmini_point_t){0};
     check->speed_chz = scan->frequency_chz > 0 ? scan->frequency_chz : check->speed_chz;
     if (check->full_speed_ms == 0 && check->speed_chz > 0 && check->speed_chz >= nearly_chz) {
         check->full_speed_ms = device_ms(check->device);
@@ -165,7 +185,7 @@ static void judge_supply(check_t *check)
         "a supply of its own (5 V, up to 1 A) and short wires; a loose plug does the same";
     const device_t *const device = check->device;
     const double full_speed_s = check->full_speed_ms / 1000.0;
-    if (device->serial.state != TMINI_POSIX_OK) {
+    if (device->port.state != TMINI_POSIX_OK) {
         answer(check, BAD, "supply", advice, "the port went away while the motor was on");
     } else if (device->silences > 0) {
         answer(check, BAD, "supply", advice, "the lidar fell silent %u times in %u s",
@@ -224,7 +244,9 @@ static void judge_speed(check_t *check)
                "no revolution was completed");
     } else if ((faults & TMINI_FAULT_ENCODER) != 0) {
         return; /* Its speed means nothing, as has been said. */
-    } else if (set_chz > 0) {
+    } else if (set_chz == 0) {
+        answer(check, GOOD, "frequency", NULL, "%.1f Hz measured", speed_chz / 100.0);
+    } else {
         answer(check, grade(percent > SPEED_PERCENT, percent > SPEED_REMARK_PERCENT), "frequency",
                "the supply may be weak, or something may brake the rotor",
                "%.1f Hz measured, %.1f Hz set", speed_chz / 100.0, set_chz / 100.0);
@@ -246,7 +268,9 @@ static void judge_scans(check_t *check)
     if (check->faults == 0 && check->points > 0) {
         answer(check, grade(check->valid == 0, percent < FEW_PERCENT), "ranges",
                "uncover or clean the window; or there is nothing within 12 m",
-               "%u %% of the points have a distance", percent);
+               "%u %% of the points have a distance%s%s", percent,
+               check->nearest.distance_mm > 0 ? "; nearest " : "",
+               check->nearest.distance_mm > 0 ? place_text(&check->nearest) : "");
     }
 }
 
@@ -254,7 +278,7 @@ static void judge_stop(check_t *check)
 {
     static const char advice[] = "check the wire from the adapter's TX to the lidar's RX";
     device_t *const device = check->device;
-    if (device->serial.state != TMINI_POSIX_OK) {
+    if (device->port.state != TMINI_POSIX_OK || device->listens) {
         return;
     }
     if (!device_stop(device)) {
@@ -275,18 +299,34 @@ static int conclude(const check_t *check)
     return worst == BAD ? STATUS_FAILED : STATUS_OK;
 }
 
+/* Returns false if the lidar does not answer at all. */
+static bool ask(check_t *check)
+{
+    if (check->device->listens) {
+        return true;
+    }
+    if (!ask_info(check)) {
+        return false;
+    }
+    ask_health(check);
+    ask_frequency(check);
+    return true;
+}
+
 static void examine(check_t *check)
 {
     device_t *const device = check->device;
     answer(check, GOOD, "port", NULL, "%s", device->path);
-    if (!ask_info(check)) {
+    if (!ask(check)) {
         return;
     }
-    ask_health(check);
-    ask_frequency(check);
-    message_note("scanning for %u s …", check->seconds);
+    message_note(device->listens ? "listening for %u s …" : "scanning for %u s …", check->seconds);
     device_begin(device);
     if (!device_await(device, tmini_start(&device->lidar), TMINI_EVENT_STARTED)) {
+        if (device->listens) {
+            answer_trouble(check, "no packet; has another program or controller started it?");
+            return;
+        }
         answer(check, BAD, "start", "its supply may fail when the motor starts (5 V, up to 1 A)",
                "it answers, but does not scan");
         return;
@@ -322,11 +362,11 @@ static int run(const options_t *options)
 
 const command_t command_check = {
     .name = "check",
-    .usage = "[-p PORT] [--seconds N]",
+    .usage = "[-p PORT] [--seconds N] [--listen] [--front DEG] [--upside-down] [--mask FROM:TO]",
     .summary = "ten seconds, one verdict: port, wires, supply, lidar",
     .details =
         "A line a question: ok; look (it works, but could be better); BAD. Each that is not ok\n"
         "says what to do about it. Watches for 10 seconds, or N. Exit status 1 if anything is BAD.",
-    .accepts = "psq",
+    .accepts = "psLFUKq",
     .run = run,
 };

@@ -15,7 +15,7 @@
 /* From a lidar: by this scan the motor has come up to speed. */
 #define DEVICE_SCANS 4u
 
-/* On a damaged line none may be complete: after so many more it is enough. */
+/* On a damaged line none may be complete: after this many more it is enough. */
 #define PATIENCE_SCANS 40u
 
 /* More than the eye tells apart in one picture. */
@@ -27,8 +27,8 @@ typedef struct {
     count_t number; /* Of it; 0: there is none yet. */
     count_t first;  /* Of all scans that have come. */
     count_t last;
-    count_t every; /* Of all scans' points, one in so many is kept, */
-    count_t seen;  /* after so many. */
+    count_t every; /* Of all scans' points, one in N is kept, */
+    count_t seen;  /* after the first N. */
     size_t count;
     tmini_point_t points[POINTS_MAX];
 } drawing_t;
@@ -186,13 +186,14 @@ static int run(const options_t *options)
 
 const command_t command_plot = {
     .name = "plot",
-    .usage = "[FILE|-|-p PORT] -o OUT.svg|OUT.png|OUT.pdf|- [--scan N|--all]",
+    .usage = "[FILE|-|-p PORT] -o OUT.svg|OUT.png|OUT.pdf|- [--scan N|--all] [--front DEG]\n"
+             "           [--upside-down] [--mask FROM:TO]",
     .summary = "a picture of a scan",
     .details =
         "Draws the last complete scan, seen from above with the lidar's front up: range\n"
         "rings in metres, points coloured by intensity, interference marked. From a lidar, waits\n"
         "some scans until it is up to speed. -o - writes SVG to standard output.",
-    .accepts = "poNAMq",
+    .accepts = "poNAMFUKq",
     .has_operand = true,
     .run = run,
 };

@@ -93,7 +93,7 @@ static int roll(device_t *device, const options_t *options, tape_t *tape)
             (void)fflush(tape->file); /* For who reads along, and against a power failure. */
         }
     }
-    return device->serial.state == TMINI_POSIX_OK ? STATUS_OK : device_why(device);
+    return device_is_there(device) ? STATUS_OK : device_why(device);
 }
 
 /* From before the start command, on a quiet line, to the last byte after the stop command: so the
@@ -110,14 +110,14 @@ static int record(device_t *device, const options_t *options)
                          options->timed || (ending != NULL && strcmp(ending, ".tmini") == 0));
     tape.begun_us = tape.stamp_us = now_us();
     put(&tape, chunk_magic, tape.recording.is_timed ? sizeof chunk_magic : 0);
-    tmini_posix_tap(&device->serial, write_tape, &tape);
+    tmini_posix_tap(&device->port, write_tape, &tape);
     int status = device_start(device);
     if (status == STATUS_OK) {
         tape.file = output_open(tape.path);
         status = tape.file != NULL ? roll(device, options, &tape) : STATUS_FAILED;
     }
     (void)device_stop(device);
-    tmini_posix_tap(&device->serial, NULL, NULL);
+    tmini_posix_tap(&device->port, NULL, NULL);
     if (tape.file == NULL) {
         return status;
     }
@@ -141,13 +141,13 @@ static int run(const options_t *options)
 
 const command_t command_record = {
     .name = "record",
-    .usage = "[-p PORT] FILE|- [--seconds N] [--timed]",
+    .usage = "[-p PORT] FILE|- [--seconds N] [--timed] [--wait] [--listen]",
     .summary = "what the lidar sends into a file, until Ctrl-C or for N seconds",
     .details =
         "FILE then holds all that the lidar sent from the start command on, for `tmini decode`,\n"
         "`plot` and `view`. A FILE.tmini, or any with --timed, also holds when it came; others\n"
         "hold the raw bytes alone.",
-    .accepts = "psTq",
+    .accepts = "psTWLq",
     .has_operand = true,
     .run = run,
 };

@@ -110,7 +110,8 @@ static void follow(device_t *device, viewer_t *viewer)
     const unsigned faults = tmini_faults(&device->lidar);
     viewer->has_news |= event != TMINI_EVENT_NONE && event != TMINI_EVENT_PACKET;
     viewer->view.faults = faults != 0 ? faults : device->stream.faults;
-    viewer->view.state = tmini_state(&device->lidar) == TMINI_STATE_SCANNING
+    viewer->view.state = device->is_away ? "UNPLUGGED: waiting for it"
+                         : tmini_state(&device->lidar) == TMINI_STATE_SCANNING
                              ? "scanning"
                              : "SILENT: starting it again";
 }
@@ -126,7 +127,7 @@ static int watch(device_t *device, const options_t *options)
     device->is_secretive = true; /* The picture tells. */
     status = open_viewer(&viewer, device->path, &device->stream);
     viewer.view.keys = "q quit   + - zoom   a auto";
-    while (status == STATUS_OK && !viewer.is_over && device->serial.state == TMINI_POSIX_OK) {
+    while (status == STATUS_OK && !viewer.is_over && device_is_there(device)) {
         follow(device, &viewer);
         (void)attend(&viewer);
     }
@@ -263,7 +264,7 @@ static int run(const options_t *options)
 
 const command_t command_view = {
     .name = "view",
-    .usage = "[-p PORT|FILE|-]",
+    .usage = "[-p PORT|FILE|-] [--wait] [--listen] [--front DEG] [--upside-down] [--mask FROM:TO]",
     .summary = "a picture in the terminal, of a lidar live or of a recording",
     .details =
         "Keys: + and - zoom, a chooses the range automatically, q or Esc ends, Ctrl-Z suspends.\n"
@@ -271,7 +272,7 @@ const command_t command_view = {
         "five seconds. The marked point is the nearest obstacle; the numbers around the triangle\n"
         "are the nearest ones of each sector, in metres. A locale without UTF-8 gets characters\n"
         "instead of dots, NO_COLOR=1 no colours, and TERM=dumb one picture below the other.",
-    .accepts = "pMq",
+    .accepts = "pMWLFUKq",
     .has_operand = true,
     .run = run,
 };

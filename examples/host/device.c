@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "interrupt.h"
+#include "mount.h"
 #include "output.h"
 #include "points.h"
 #include "tmini/tmini_names.h"
@@ -17,7 +18,10 @@
 /* Longer than any command takes that the driver tries three times. */
 #define COMMAND_MS 15000u
 
-/* Without a scan for so long something is wrong: the driver has tried to restart the lidar. */
+/* A lidar that has just been plugged in boots for some seconds. */
+#define START_MS 8000u
+
+/* Without a scan for this long something is wrong: the driver has tried to restart the lidar. */
 #define SCAN_MS 4000u
 
 /* More than a packet that breaks off, and than the answer to a restart. */
@@ -26,7 +30,7 @@
 /* No longer at once, so that Ctrl-C is noticed and time is kept. */
 #define SLICE_MS 10
 
-/* A stop may be lost while the line is quiet for another reason, a USB hub's for example. So many
+/* A stop may be lost while the line is quiet for another reason, a USB hub's for example. This many
  * times a lidar that goes on within this time is stopped again. */
 #define STAYS_MS 200u
 #define STOPS 3
@@ -47,7 +51,7 @@ static void stop_at_once(void)
     }
 }
 
-static void set_up(device_t *device)
+static void set_up(device_t *device, const tmini_mount_t *mount)
 {
     patience = tmini_timing_default;
     patience.frame_timeout_ms = 250;
@@ -55,16 +59,18 @@ static void set_up(device_t *device)
     patience.quiet_line_ms = 120;
     const tmini_config_t config = {
         .port = &tmini_posix_port,
-        .port_context = &device->serial,
+        .port_context = &device->port,
         .rx_buffer = device->rx,
         .rx_size = sizeof device->rx,
         .timing = &patience,
+        .listen_only = device->listens,
     };
-    tmini_posix_init(&device->serial, device->path);
+    tmini_posix_init(&device->port, device->path);
+    tmini_posix_reconnect(&device->port, device->waits);
     if (tmini_init(&device->lidar, &config) != TMINI_OK) {
         abort(); /* Nothing in it depends on the user. */
     }
-    stream_init(&device->stream);
+    stream_init(&device->stream, mount);
 }
 
 uint32_t device_ms(const device_t *device)
@@ -72,10 +78,34 @@ uint32_t device_ms(const device_t *device)
     return tmini_posix_port.now_ms(NULL) - device->begun_ms;
 }
 
+bool device_is_there(const device_t *device)
+{
+    return device->waits || device->port.state == TMINI_POSIX_OK;
+}
+
 bool device_is_usable(const device_t *device)
 {
-    return device->serial.state == TMINI_POSIX_OK &&
-           (device->ignores_interrupt || !interrupt_has_come());
+    return device_is_there(device) && (device->ignores_interrupt || !interrupt_has_come());
+}
+
+/* For a second Ctrl-C: which descriptor it is changes when the adapter comes back. */
+static void note_line(const device_t *device)
+{
+    started_fd = device->was_started && !device->listens ? device->port.fd : -1;
+}
+
+/* --wait: says that the adapter has gone, or is back. */
+static void watch_adapter(device_t *device)
+{
+    const bool is_away = device->port.state != TMINI_POSIX_OK;
+    if (is_away == device->is_away || !device->waits) {
+        return;
+    }
+    device->is_away = is_away;
+    note_line(device);
+    if (!device->is_secretive) {
+        message_note(is_away ? "%s is not there; waiting for it" : "%s is there", device->path);
+    }
 }
 
 static void tell(const device_t *device, tmini_event_t event)
@@ -98,13 +128,13 @@ static void tell(const device_t *device, tmini_event_t event)
 static tmini_event_t follow(device_t *device, tmini_event_t event)
 {
     if (event == TMINI_EVENT_PACKET) {
-        device->good_at = device->serial.received;
+        device->good_at = device->port.received;
         const bool is_scan =
             stream_take(&device->stream, tmini_packet(&device->lidar), device_ms(device));
         return is_scan ? TMINI_EVENT_SCAN : TMINI_EVENT_PACKET;
     }
     if (event == TMINI_EVENT_LOST) {
-        const bool is_noise = device->serial.received - device->good_at > NOISE_BYTES;
+        const bool is_noise = device->port.received - device->good_at > NOISE_BYTES;
         stream_break(&device->stream);
         *(is_noise ? &device->noises : &device->silences) += 1;
     }
@@ -116,13 +146,15 @@ static tmini_event_t follow(device_t *device, tmini_event_t event)
 tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
 {
     const uint32_t begun_ms = device_ms(device);
+    (void)tmini_posix_wait(&device->port, 0); /* What has come while the output was blocked. */
     do {
         const tmini_event_t event = tmini_poll(&device->lidar);
         if (event != TMINI_EVENT_NONE && event != TMINI_EVENT_MORE) {
             return follow(device, event);
         }
         if (event == TMINI_EVENT_NONE) {
-            (void)tmini_posix_receive(&device->serial, SLICE_MS);
+            (void)tmini_posix_wait(&device->port, SLICE_MS);
+            watch_adapter(device);
         }
     } while (device_is_usable(device) && device_ms(device) - begun_ms < timeout_ms);
     return TMINI_EVENT_NONE;
@@ -157,14 +189,31 @@ int device_finish(device_t *device, tmini_status_t begun, tmini_event_t wanted)
 void device_begin(device_t *device)
 {
     device->was_started = true;
-    device->begun_ms = tmini_posix_port.now_ms(&device->serial);
-    started_fd = device->serial.fd;
+    device->begun_ms = tmini_posix_port.now_ms(&device->port);
+    note_line(device);
 }
 
+static bool may_still_start(const device_t *device)
+{
+    return device_is_usable(device) && (device->waits || device_ms(device) < START_MS);
+}
+
+/* The driver's start stands: each failed attempt is only told. */
 int device_start(device_t *device)
 {
+    tmini_event_t event = TMINI_EVENT_NONE;
+    bool is_told = false;
     device_begin(device);
-    return device_finish(device, tmini_start(&device->lidar), TMINI_EVENT_STARTED);
+    (void)tmini_start(&device->lidar);
+    while (event != TMINI_EVENT_STARTED && may_still_start(device)) {
+        event = device_wait(device, SLICE_MS);
+        if (event == TMINI_EVENT_COMMAND_FAILED && !is_told && !device->is_away) {
+            message_note("the lidar does not start: %s; trying again",
+                         tmini_status_name(tmini_command_error(&device->lidar)));
+            is_told = true;
+        }
+    }
+    return event == TMINI_EVENT_STARTED ? STATUS_OK : device_why(device);
 }
 
 bool device_stop(device_t *device)
@@ -187,7 +236,7 @@ bool device_next_scan(device_t *device,
                       void (*print)(const stream_t *stream, const tmini_packet_t *packet))
 {
     uint32_t waited_ms = 0;
-    while (device_is_usable(device) && waited_ms < SCAN_MS) {
+    while (device_is_usable(device) && (device->waits || waited_ms < SCAN_MS)) {
         const uint32_t begun_ms = device_ms(device);
         const tmini_event_t event = device_wait(device, SLICE_MS);
         waited_ms += device_ms(device) - begun_ms; /* Not while the reader of a pipe pauses. */
@@ -205,7 +254,7 @@ trouble_t trouble_find(const device_t *device)
 {
     tmini_counters_t counters;
     tmini_counters(&device->lidar, &counters);
-    if (device->serial.received == 0) {
+    if (device->port.received == 0) {
         return TROUBLE_SILENCE;
     }
     if (counters.bytes_in_replies > 0) {
@@ -228,7 +277,8 @@ const char *trouble_text(trouble_t trouble)
                           "- lidar and adapter share GND, and the wires are short.",
         [TROUBLE_DEAF] =
             "the lidar sends, but does not do what it is told. Check the wire from the "
-            "adapter's TX\nto the lidar's RX, and that its level is 3.3 V.",
+            "adapter's TX\nto the lidar's RX, and that its level is 3.3 V. Without that wire: "
+            "--listen.",
         [TROUBLE_OTHER] = "",
     };
     return texts[trouble];
@@ -250,12 +300,12 @@ static bool is_socket(const char *path)
 
 static int explain_port(const device_t *device)
 {
-    if (device->serial.state == TMINI_POSIX_UNPLUGGED && is_socket(device->path)) {
+    if (device->port.state == TMINI_POSIX_UNPLUGGED && is_socket(device->path)) {
         return message_fail("%s has gone: the other end closed the connection. Does it still run, "
                             "and can it\nbe reached? Then try again.",
                             device->path);
     }
-    if (device->serial.state == TMINI_POSIX_UNPLUGGED) {
+    if (device->port.state == TMINI_POSIX_UNPLUGGED) {
         return message_fail(
             "%s has gone: the adapter was unplugged, or has lost its supply. Plug it "
             "in and try again;\nif it happens when the motor starts, give the lidar "
@@ -285,7 +335,7 @@ static int explain_scanning(const device_t *device)
 
 int device_why(device_t *device)
 {
-    if (device->serial.state != TMINI_POSIX_OK) {
+    if (device->port.state != TMINI_POSIX_OK) {
         return explain_port(device);
     }
     if (interrupt_has_come()) {
@@ -297,6 +347,11 @@ int device_why(device_t *device)
     }
     const char *const reason = tmini_status_name(tmini_command_error(&device->lidar));
     const trouble_t trouble = trouble_find(device);
+    if (device->listens) {
+        return message_fail("%s: nothing is sent with --listen: has another program or controller "
+                            "started the lidar?",
+                            device->path);
+    }
     if (trouble == TROUBLE_NOISE || trouble == TROUBLE_DEAF || !answers_info(device)) {
         return trouble == TROUBLE_OTHER
                    ? message_fail(
@@ -353,19 +408,24 @@ int device_use(const options_t *options, int (*use)(device_t *device, const opti
     if (device.path == NULL) {
         return STATUS_USAGE;
     }
-    set_up(&device);
-    const tmini_posix_status_t opened = tmini_posix_start(&device.serial, &device.lidar);
-    if (opened != TMINI_POSIX_OK) {
+    device.waits = options->wait;
+    device.listens = options->listen;
+    device.path = device.waits ? ports_stable_name(device.path) : device.path;
+    set_up(&device, mount_of(options));
+    const tmini_posix_status_t opened = tmini_posix_start(&device.port, &device.lidar);
+    if (opened != TMINI_POSIX_OK && !device.waits) {
         return message_fail("cannot use %s: %s", device.path, advice_for(opened, device.path));
     }
-    device.begun_ms = tmini_posix_port.now_ms(&device.serial);
+    device.begun_ms = tmini_posix_port.now_ms(&device.port);
     interrupt_watch(true);
     interrupt_last_words(stop_at_once);
     const int status = use(&device, options);
+    tmini_posix_reconnect(&device.port, false);
+    device.waits = false;
     if (device.was_started) {
         (void)device_stop(&device);
     }
     started_fd = -1;
-    tmini_posix_stop(&device.serial);
+    tmini_posix_stop(&device.port);
     return status;
 }

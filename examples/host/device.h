@@ -14,7 +14,7 @@
 
 typedef struct device {
     tmini_t lidar;
-    tmini_posix_t serial;
+    tmini_posix_t port;
     stream_t stream;
     const char *path;
     uint32_t begun_ms; /* When it was opened, and then when it was told to start. */
@@ -23,6 +23,9 @@ typedef struct device {
     uint32_t strays;   /* and how often it scanned although it had been stopped. */
     uint64_t good_at;  /* Bytes received by the latest packet. */
     bool is_secretive; /* May be set: what happens is for the caller to tell. */
+    bool waits;        /* --wait: an adapter that has gone is no end. */
+    bool is_away;      /* It has gone, and is waited for. */
+    bool listens;      /* --listen: nothing is sent. */
     bool was_started;
     bool ignores_interrupt; /* While stopping. */
     uint8_t rx[4096];
@@ -41,8 +44,11 @@ uint32_t device_ms(const device_t *device);
  * Ctrl-C was pressed: ask device_is_usable(). */
 tmini_event_t device_wait(device_t *device, uint32_t timeout_ms);
 
-/* False once the port has failed or Ctrl-C was pressed. */
+/* False once the port has failed, and is not waited for, or Ctrl-C was pressed. */
 bool device_is_usable(const device_t *device);
+
+/* The same without Ctrl-C. */
+bool device_is_there(const device_t *device);
 
 /* Waits for the end of a command: `begun` is what the command's function returned, `wanted` the
  * event that ends it. Returns whether it ended well. */
@@ -54,7 +60,8 @@ int device_finish(device_t *device, tmini_status_t begun, tmini_event_t wanted);
 /* The lidar is about to be told to start: the time begins, and it will be stopped in the end. */
 void device_begin(device_t *device);
 
-/* Begins to scan, and waits for the first packet. Returns as device_finish(). */
+/* Begins to scan, and waits for the first packet, through failures that may pass: a lidar that is
+ * booting, an adapter that is waited for. Returns as device_finish(). */
 int device_start(device_t *device);
 
 /* Stops scanning, and waits until the line is quiet and stays so. Returns whether it does. */

@@ -16,6 +16,7 @@
 
 #include "device.h"
 #include "interrupt.h"
+#include "mount.h"
 #include "options.h"
 #include "output.h"
 #include "points.h"
@@ -30,28 +31,43 @@ typedef struct {
     const char *help;
     size_t place;      /* Of the member in options_t: */
     unsigned min, max; /* a number from here to there; a text, if both are 0; or a bool. */
+    bool (*read)(options_t *options, const char *value); /* NULL; or reads it, and complains. */
 } option_t;
 
 #define PLACE(member) offsetof(options_t, member)
 
 static const option_t table[] = {
     {'p', "port", "PORT", "the lidar: /dev/ttyUSB0, tcp:HOST:PORT; else $TMINI_PORT", PLACE(port),
-     0, 0},
-    {'n', "count", "N", "how many scans; 0: until Ctrl-C", PLACE(count), 0, 1000000},
-    {'s', "seconds", "N", "how long", PLACE(seconds), 1, 1000000},
-    {'o', "output", "FILE", "where to draw: FILE.svg, FILE.png or FILE.pdf", PLACE(output), 0, 0},
-    {'C', "csv", NULL, "comma-separated values", PLACE(csv), 0, 0},
-    {'J', "json", NULL, "JSON, one object a line", PLACE(json), 0, 0},
-    {'S', "stats", "FILE", "write the counters to FILE, as a JSON object", PLACE(stats), 0, 0},
+     0, 0, NULL},
+    {'n', "count", "N", "how many scans; 0: until Ctrl-C", PLACE(count), 0, 1000000, NULL},
+    {'s', "seconds", "N", "how long", PLACE(seconds), 1, 1000000, NULL},
+    {'o', "output", "FILE", "where to draw: FILE.svg, FILE.png or FILE.pdf", PLACE(output), 0, 0,
+     NULL},
+    {'C', "csv", NULL, "comma-separated values", PLACE(csv), 0, 0, NULL},
+    {'J', "json", NULL, "JSON, one object a line", PLACE(json), 0, 0, NULL},
+    {'S', "stats", "FILE", "write the counters to FILE, as a JSON object", PLACE(stats), 0, 0,
+     NULL},
     {'M', "max-samples", "N", "accept packets of up to N samples (1 to 255; default 80)",
-     PLACE(max_samples), 1, 255},
+     PLACE(max_samples), 1, 255, NULL},
     {'N', "scan", "N", "the scan with number N, as `decode --csv` counts them", PLACE(scan), 1,
-     1000000000},
-    {'A', "all", NULL, "all scans in one picture", PLACE(all), 0, 0},
-    {'T', "timed", NULL, "with time stamps, as for a FILE.tmini", PLACE(timed), 0, 0},
-    {'q', "quiet", NULL, "no progress or remarks, only results and errors", PLACE(quiet), 0, 0},
-    {'h', "help", NULL, "this text", PLACE(help), 0, 0},
-    {'V', "version", NULL, "the version", PLACE(version), 0, 0},
+     1000000000, NULL},
+    {'A', "all", NULL, "all scans in one picture", PLACE(all), 0, 0, NULL},
+    {'T', "timed", NULL, "with time stamps, as for a FILE.tmini", PLACE(timed), 0, 0, NULL},
+    {'W', "wait", NULL, "wait for an adapter that is not there, or goes, and go on", PLACE(wait), 0,
+     0, NULL},
+    {'L', "listen", NULL, "send nothing: another program or controller has started the lidar",
+     PLACE(listen), 0, 0, NULL},
+    {'F', "front", "DEG", "the lidar's angle, clockwise, that looks to the robot's front",
+     PLACE(mount), 0, 0, mount_read_front},
+    {'U', "upside-down", NULL, "the lidar hangs", PLACE(mount.upside_down), 0, 0, NULL},
+    {'K', "mask", "FROM:TO", "leave out these degrees, clockwise from the front; repeatable",
+     PLACE(masked), 0, 0, mount_read_mask},
+    {'I', "with-serial", NULL, "the serial number too, and a recording", PLACE(with_serial), 0, 0,
+     NULL},
+    {'q', "quiet", NULL, "no progress or remarks, only results and errors", PLACE(quiet), 0, 0,
+     NULL},
+    {'h', "help", NULL, "this text", PLACE(help), 0, 0, NULL},
+    {'V', "version", NULL, "the version", PLACE(version), 0, 0, NULL},
 };
 
 #define OPTIONS (sizeof table / sizeof table[0])
@@ -92,6 +108,9 @@ static bool apply(options_t *options, const option_t *option, const char *value)
     void *const member = (char *)options + option->place;
     if (strchr(options->given, option->letter) == NULL) {
         options->given[strlen(options->given)] = option->letter; /* There is room for all. */
+    }
+    if (option->read != NULL) {
+        return option->read(options, value);
     }
     if (option->value == NULL) {
         *(bool *)member = true;
@@ -178,7 +197,7 @@ static int parse(options_t *options, int argc, char **argv)
     struct option long_ones[OPTIONS + 1] = {{0}};
     bool is_good = true;
     int answer = 0;
-    *options = (options_t){0};
+    *options = (options_t){.mount = {.masked = options->masked}};
     list_options(short_ones, long_ones);
     while (is_good && (answer = getopt_long(argc, argv, short_ones, long_ones, NULL)) != -1) {
         is_good = take(options, answer, argv[optind - 1]);
@@ -240,7 +259,7 @@ static void explain(const command_t *command)
 static const command_t *const commands[] = {
     &command_ports,     &command_check,  &command_info, &command_health,
     &command_frequency, &command_reboot, &command_scan, &command_record,
-    &command_decode,    &command_plot,   &command_view,
+    &command_survey,    &command_decode, &command_plot, &command_view,
 };
 
 #define COMMANDS (sizeof commands / sizeof commands[0])

@@ -10,7 +10,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "tmini/tmini_mount.h"
+
 #define OPTIONS_WORDS 3u
+#define OPTIONS_MASKS 8u
 
 /* All options of all commands; 0 or NULL: not given. */
 typedef struct {
@@ -29,6 +32,11 @@ typedef struct {
     bool json;
     bool all;
     bool timed;
+    bool wait;
+    bool listen;
+    bool with_serial;
+    tmini_mount_t mount;
+    tmini_arc_t masked[OPTIONS_MASKS]; /* The mount's. */
     bool quiet;
     bool help;
     bool version;
@@ -52,9 +60,13 @@ typedef struct {
  * there is. NULL, and said why, if that does not tell. Valid until the next call. */
 const char *ports_choose(const options_t *options);
 
+/* The name that the adapter on this port will have again when it is plugged in again, or `path`
+ * itself. Valid until the next call of either. */
+const char *ports_stable_name(const char *path);
+
 /* Each in a file of its own, or beside its relatives. */
 extern const command_t command_ports, command_check, command_info, command_health,
     command_frequency, command_reboot, command_scan, command_record, command_decode, command_plot,
-    command_view;
+    command_survey, command_view;
 
 #endif

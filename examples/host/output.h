@@ -21,7 +21,7 @@ enum {
 #define MESSAGE_FORMAT
 #endif
 
-/* Prints a line: a remark, unless silenced; or behind "tmini: " why the program leaves with this
+/* Prints a line: a remark, unless silenced; or after "tmini: " why the program leaves with this
  * status. Returns the status, so that a command can end with it. */
 int message_print(int status, const char *format, ...) MESSAGE_FORMAT;
 

@@ -25,7 +25,7 @@
 #define EMPTY_MM 6000u /* Of a picture in which there is nothing. */
 #define TURN (2 * 3.14159265358979323846)
 
-/* Light of the beams in a picture of one scan, which has about so many points. */
+/* Light of the beams in a picture of one scan, which has about this many points. */
 #define BEAM_ALPHA 0.05
 #define BEAM_POINTS 700.0
 

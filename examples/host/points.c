@@ -152,6 +152,9 @@ void rows_print_packet(const stream_t *stream, const tmini_packet_t *packet)
     const char *const told = hertz(stream->frequency_chz, "");
     tmini_point_t point;
     for (size_t i = 0; tmini_packet_point(packet, i, &point); i++) {
+        if (stream->mount != NULL) {
+            tmini_mount_point(stream->mount, &point);
+        }
         (void)printf("%llu,%llu,%zu," DEGREES ",%d,%d,%d,%u,%s\n", stream->start_packets,
                      stream->packets - 1, i, point.angle_q6 / 64.0, point.distance_mm,
                      point.intensity, point.flag, stream->packet_ms, told);

@@ -38,8 +38,8 @@ static const struct {
 
 /* By stability of the name. */
 static const char *const places[] = {
-    "/dev/tmini*",  "/dev/serial/by-id/*", "/dev/ttyUSB*",          "/dev/ttyACM*",
-    "/dev/cu.usb*", "/dev/cu.SLAB*",       "/dev/cu.wchusbserial*",
+    "/dev/tmini*",  "/dev/serial/by-id/*", "/dev/serial/by-path/*", "/dev/ttyUSB*",
+    "/dev/ttyACM*", "/dev/cu.usb*",        "/dev/cu.SLAB*",         "/dev/cu.wchusbserial*",
 };
 
 static const char *root(void)
@@ -161,6 +161,20 @@ const char *ports_choose(const options_t *options)
                         adapters[0].name);
     print(stderr, count);
     return NULL;
+}
+
+const char *ports_stable_name(const char *path)
+{
+    char *const device = realpath(path, NULL);
+    const size_t count = find_adapters();
+    const char *name = path;
+    for (size_t i = 0; i < count; i++) {
+        if (device != NULL && strcmp(adapters[i].device, device) == 0) {
+            name = adapters[i].name;
+        }
+    }
+    free(device);
+    return name;
 }
 
 static int run(const options_t *options)

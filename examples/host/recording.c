@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "chunk.h"
+#include "mount.h"
 #include "output.h"
 
 /* With the largest packet waiting for its last byte (775), this much still fits in the ring. */
@@ -58,56 +58,32 @@ static bool fill(recording_t *recording)
     return more > 0;
 }
 
-/* What begins at the next byte, with as much of the file as it takes to tell. */
-static chunk_state_t look_at_chunk(recording_t *recording, chunk_t *chunk)
-{
-    bool is_end = false;
-    for (;;) {
-        const size_t count = recording->count - recording->at;
-        const chunk_state_t state =
-            chunk_read(recording->version, recording->buffer + recording->at, count, is_end,
-                       recording->is_lost, chunk);
-        if (state != CHUNK_SHORT || is_end || recording->is_waiting) {
-            return state;
-        }
-        is_end = count == sizeof recording->buffer || !fill(recording);
-    }
-}
-
-/* Where no chunk begins is damage: its bytes are taken as the lidar's, whose packets have checksums
- * of their own, until a chunk is found again. The file's last chunk may be cut short. */
+/* With as much of the file as it takes to tell. Returns false at the end, or when there is not
+ * enough yet. */
 static bool begin_chunk(recording_t *recording)
 {
-    chunk_t chunk;
-    const chunk_state_t state = look_at_chunk(recording, &chunk);
-    if (recording->is_waiting || recording->at == recording->count) {
-        return false;
+    bool is_end = false;
+    size_t head = 0;
+    while (!chunks_begin(&recording->chunks, recording->buffer + recording->at,
+                         recording->count - recording->at, is_end, &head)) {
+        if (is_end || recording->is_waiting) {
+            return false;
+        }
+        is_end = recording->count - recording->at == sizeof recording->buffer || !fill(recording);
     }
-    const bool is_good =
-        state == CHUNK_WHOLE || (state == CHUNK_SHORT && !recording->is_lost && chunk.is_plausible);
-    if (is_good) {
-        recording->chunk_us += chunk.delta_us;
-        recording->chunk_left = chunk.size;
-        recording->at += chunk.head_size;
-    } else if (chunk.is_plausible && !recording->is_lost) {
-        recording->at += chunk.head_size; /* Only its bytes are damaged. */
-    } else {
-        recording->chunk_left = 1;
-    }
-    recording->damages += !is_good && !recording->is_lost ? 1 : 0;
-    recording->is_lost = !is_good;
+    recording->at += head;
     return true;
 }
 
 /* Bytes of a chunk are next; false at the end, or when its time has not come yet. */
 static bool find_chunk(recording_t *recording)
 {
-    while (recording->chunk_left == 0) {
+    while (recording->chunks.left == 0) {
         if (!begin_chunk(recording)) {
             return false;
         }
     }
-    recording->is_waiting = recording->chunk_us > recording->until_us;
+    recording->is_waiting = recording->chunks.time_us > recording->until_us;
     return !recording->is_waiting;
 }
 
@@ -125,8 +101,8 @@ static bool refill(recording_t *recording)
     size_t count = recording->count - recording->at;
     count = count < BLOCK_SIZE ? count : BLOCK_SIZE;
     if (recording->is_timed) {
-        count = count < recording->chunk_left ? count : recording->chunk_left;
-        recording->chunk_left -= (uint32_t)count;
+        count = count < recording->chunks.left ? count : recording->chunks.left;
+        recording->chunks.left -= (uint32_t)count;
     }
     tmini_ring_write(&recording->ring, recording->buffer + recording->at, count);
     recording->at += count;
@@ -134,45 +110,31 @@ static bool refill(recording_t *recording)
     return true;
 }
 
-/* 0: not timed. */
-static unsigned version_of(const recording_t *recording)
-{
-    uint8_t magic[sizeof chunk_magic];
-    if (recording->count < sizeof magic) {
-        return 0;
-    }
-    memcpy(magic, recording->buffer, sizeof magic);
-    const unsigned version = magic[CHUNK_VERSION_AT];
-    magic[CHUNK_VERSION_AT] = chunk_magic[CHUNK_VERSION_AT];
-    return memcmp(magic, chunk_magic, sizeof magic) == 0 ? version : 0;
-}
-
 static void begin(recording_t *recording)
 {
     recording->at = recording->count = 0;
     recording->bytes = recording->bytes_in_packets = recording->consumed = 0;
-    recording->chunk_us = recording->chunk_left = 0;
-    recording->damages = 0;
-    recording->is_lost = recording->is_at_end = false;
+    recording->chunks = (chunks_t){0};
+    recording->is_at_end = false;
     (void)tmini_ring_init(&recording->ring, recording->memory, sizeof recording->memory, false);
     (void)tmini_parser_init(&recording->parser, &recording->ring, recording->max_samples);
-    stream_init(&recording->stream);
+    stream_init(&recording->stream, recording->mount);
 }
 
 static void read_magic(recording_t *recording)
 {
-    while (recording->count < sizeof chunk_magic && fill(recording)) {
+    while (recording->count < CHUNK_MAGIC_SIZE && fill(recording)) {
     }
-    recording->version = version_of(recording);
-    recording->is_timed = recording->version > 0;
-    recording->at = recording->is_timed ? sizeof chunk_magic : 0;
+    recording->chunks.version = chunk_version(recording->buffer, recording->count);
+    recording->is_timed = recording->chunks.version > 0;
+    recording->at = recording->is_timed ? CHUNK_MAGIC_SIZE : 0;
 }
 
 static void take(recording_t *recording)
 {
     tmini_packet_open(&recording->packet, tmini_parser_frame(&recording->parser));
     recording->time_us =
-        recording->is_timed ? recording->chunk_us : recording->stream.points * US_A_SAMPLE;
+        recording->is_timed ? recording->chunks.time_us : recording->stream.points * US_A_SAMPLE;
     recording->bytes_in_packets += TMINI_PACKET_SIZE((count_t)recording->packet.count);
     (void)stream_take(&recording->stream, &recording->packet,
                       (uint32_t)(recording->time_us / 1000));
@@ -218,8 +180,9 @@ int recording_open(recording_t *recording, const options_t *options)
 {
     const bool is_standard = strcmp(options->operand, "-") == 0;
     struct stat status;
-    *recording =
-        (recording_t){.max_samples = (uint8_t)options->max_samples, .until_us = UINT64_MAX};
+    *recording = (recording_t){.max_samples = (uint8_t)options->max_samples,
+                               .until_us = UINT64_MAX,
+                               .mount = mount_of(options)};
     recording->name = is_standard ? "standard input" : options->operand;
     recording->fd = is_standard ? STDIN_FILENO : open(options->operand, O_RDONLY);
     if (recording->fd < 0) {
@@ -230,10 +193,10 @@ int recording_open(recording_t *recording, const options_t *options)
     }
     begin(recording);
     read_magic(recording);
-    if (recording->version > chunk_magic[CHUNK_VERSION_AT]) {
+    if (recording->chunks.version > CHUNK_VERSION) {
         recording_close(recording);
         return message_fail("%s is of version %u: this tmini is too old for it", recording->name,
-                            recording->version);
+                            recording->chunks.version);
     }
     return STATUS_OK;
 }
@@ -246,7 +209,7 @@ void recording_begin_live(recording_t *recording, bool is_timed)
 
 void recording_feed(recording_t *recording, const uint8_t *bytes, size_t count, uint64_t time_us)
 {
-    recording->chunk_us = time_us;
+    recording->chunks.time_us = time_us;
     recording->bytes += count;
     while (count > 0) {
         const size_t stored = tmini_ring_write(&recording->ring, bytes, count);
@@ -296,9 +259,10 @@ int recording_verdict(const recording_t *recording)
                             "230400, or before the lidar scanned.",
                             recording->name, recording->bytes);
     }
-    if (recording->damages > 0) {
-        message_note("%s is damaged in %llu place%s: bytes are missing or wrong there",
-                     recording->name, recording->damages, recording->damages == 1 ? "" : "s");
+    if (recording->chunks.damages > 0) {
+        message_note("%s is damaged in %u place%s: bytes are missing or wrong there",
+                     recording->name, recording->chunks.damages,
+                     recording->chunks.damages == 1 ? "" : "s");
     }
     return STATUS_OK;
 }

@@ -8,6 +8,7 @@
 #ifndef RECORDING_H
 #define RECORDING_H
 
+#include "chunk.h"
 #include "options.h"
 #include "stream.h"
 #include "tmini/parts/tmini_parser.h"
@@ -20,7 +21,6 @@ typedef struct {
     count_t bytes_before; /* The first packet, and up to the latest one: skipped ones. */
     count_t bytes_until;
     uint64_t time_us; /* Of the latest packet. */
-    count_t damages;  /* Places of a timed file where no chunk was. */
     bool is_timed;    /* Otherwise the time is that of 4000 samples per second. */
     bool is_at_end;
     bool is_impatient;     /* May be set: recording_next() then does not wait for a pipe's bytes. */
@@ -28,17 +28,15 @@ typedef struct {
     tmini_packet_t packet; /* The latest. */
     stream_t stream;
 
-    int fd; /* -1: a live one. */
-    unsigned version;
+    int fd;          /* -1: a live one. */
+    chunks_t chunks; /* Of a timed one. */
     bool is_waiting;
     bool is_live;
-    bool is_lost; /* Looking for the next chunk. */
     int error;    /* errno of a failed read, or 0. */
     count_t size; /* Of the file; 0: not known. */
     count_t consumed;
-    uint64_t chunk_us;
-    uint32_t chunk_left;
     uint8_t max_samples;
+    const tmini_mount_t *mount;
     unsigned shown_percent;
     size_t at, count; /* In `buffer`: what has been read and not yet decoded. */
     uint8_t buffer[32768];

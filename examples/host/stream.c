@@ -8,14 +8,18 @@
 /* A full packet (section 9.6), by which damaged bytes are counted as packets. */
 #define PACKET_SIZE 130u
 
-/* After so long without a packet any number of turns may be missing, whatever the angles say: no
- * computer holds so many bytes back. (Live, the driver knows better, and says so by the packet's
+/* After this long without a packet any number of turns may be missing, whatever the angles say: no
+ * computer holds that many bytes back. (Live, the driver knows better, and says so by the packet's
  * gap.) */
 #define PAUSE_MS 1000u
 
-void stream_init(stream_t *stream)
+/* After a pause the driver may doubt a whole batch of packets: the first one begins a scan of its
+ * own, the others only make theirs incomplete. Some bytes, but not the one of LastCRC. */
+#define MORE_DOUBT 2u
+
+void stream_init(stream_t *stream, const tmini_mount_t *mount)
 {
-    *stream = (stream_t){.faults = TMINI_FAULTS_UNKNOWN};
+    *stream = (stream_t){.faults = TMINI_FAULTS_UNKNOWN, .mount = mount};
     tmini_ct_init(&stream->ct);
     (void)tmini_builder_init(&stream->builder, stream->building, STREAM_POINTS_MAX,
                              TMINI_FILTER_NONE);
@@ -26,6 +30,7 @@ static void keep(stream_t *stream)
     stream->scan = stream->builder.scan;
     memcpy(stream->kept, stream->scan.points, stream->scan.count * sizeof *stream->kept);
     stream->scan.points = stream->kept;
+    tmini_mount_step(stream->mount, &stream->scan);
     stream->number = stream->open_number;
     stream->is_open = false;
     stream->has_scan = true;
@@ -68,6 +73,10 @@ bool stream_take(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms
     if (stream->packets > 0 && now_ms - stream->packet_ms > PAUSE_MS) {
         taken.gap = TMINI_GAP_UNKNOWN;
     }
+    if (taken.gap == TMINI_GAP_UNKNOWN && stream->is_in_doubt) {
+        taken.gap = MORE_DOUBT;
+    }
+    stream->is_in_doubt = packet->gap == TMINI_GAP_UNKNOWN;
     stream->has_scan = false;
     const tmini_ct_verdict_t verdict = tmini_ct_add(&stream->ct, &taken);
     stream->confirmed += verdict == TMINI_CT_CONFIRMED ? 1 : 0;
@@ -77,7 +86,9 @@ bool stream_take(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms
         tmini_builder_refute(&stream->builder);
     }
     if (tmini_builder_add(&stream->builder, &taken, now_ms)) {
-        keep(stream);
+        if (stream->builder.scan.packets > 1 || taken.gap != TMINI_GAP_UNKNOWN) {
+            keep(stream); /* A start packet and then a pause is no scan. */
+        }
         (void)tmini_builder_add(&stream->builder, &taken, now_ms);
     }
     stream->is_open = stream->builder.open;

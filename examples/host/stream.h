@@ -9,6 +9,7 @@
 
 #include "tmini/parts/tmini_ct.h"
 #include "tmini/parts/tmini_builder.h"
+#include "tmini/tmini_mount.h"
 
 /* More points than any revolution has: 4000 a second at well below 1 Hz. */
 #define STREAM_POINTS_MAX 8192
@@ -27,7 +28,7 @@ typedef struct {
     count_t points_before;  /* The first start packet. */
     count_t damaged;        /* Packets that must have been where damaged bytes were. */
     count_t stray_bytes;    /* Between packets, LastCRC not counted, */
-    count_t guard_bytes;    /* of which (section 7) there were so many. */
+    count_t guard_bytes;    /* of which (section 7) there were this many. */
     count_t confirmed;      /* Revolutions that LastCRC confirmed. */
     uint32_t packet_ms;     /* When the latest packet came. */
     uint32_t longest_ms;    /* The longest pause between two packets. */
@@ -35,14 +36,17 @@ typedef struct {
     unsigned faults;        /* A combination of tmini_fault_t, or TMINI_FAULTS_UNKNOWN. */
     bool has_scan;          /* The latest packet has completed `scan`. */
     bool is_open;
+    bool is_in_doubt; /* Others may be missing before the latest packet. */
     count_t open_number;
+    const tmini_mount_t *mount; /* NULL: none. */
     tmini_ct_t ct;
     tmini_builder_t builder;
     tmini_point_t building[STREAM_POINTS_MAX];
     tmini_point_t kept[STREAM_POINTS_MAX];
 } stream_t;
 
-void stream_init(stream_t *stream);
+/* With a mount, scans and points are as the robot sees them. It must last as long as the stream. */
+void stream_init(stream_t *stream, const tmini_mount_t *mount);
 
 /* Takes the next packet, which came at that time. Returns true if it ends a scan: see `scan`. */
 bool stream_take(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms);

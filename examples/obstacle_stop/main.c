@@ -20,7 +20,7 @@
 static uint8_t rx[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_t lidar;
-static tmini_posix_t serial;
+static tmini_posix_t port;
 static tmini_timing_t timing;
 static obstacle_t obstacle;
 static volatile sig_atomic_t ended;
@@ -66,7 +66,7 @@ static void drive(void)
 {
     static bool could_move;
     bool is_news = false;
-    const uint32_t now_ms = tmini_posix_port.now_ms(&serial);
+    const uint32_t now_ms = tmini_posix_port.now_ms(&port);
     tmini_event_t event = TMINI_EVENT_NONE;
     while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) {
         tell(event);
@@ -93,7 +93,7 @@ static tmini_posix_status_t set_up(const char *path)
     timing.max_pause_ms = 250;     /* and in bursts. */
     const tmini_config_t config = {
         .port = &tmini_posix_port,
-        .port_context = &serial,
+        .port_context = &port,
         .rx_buffer = rx,
         .rx_size = sizeof rx,
         .points = points,
@@ -101,11 +101,13 @@ static tmini_posix_status_t set_up(const char *path)
         .frequency_chz = 1000, /* 10 Hz, also after a power failure. */
         .timing = &timing,
     };
-    tmini_posix_init(&serial, path);
+    tmini_posix_init(&port, path);
     if (tmini_init(&lidar, &config) != TMINI_OK) {
         return TMINI_POSIX_FAILED;
     }
-    return tmini_posix_start(&serial, &lidar);
+    const tmini_posix_status_t status = tmini_posix_start(&port, &lidar);
+    tmini_posix_reconnect(&port, true); /* A cable that is pulled later is no end. */
+    return status;
 }
 
 /* Until the user or the port ends it. */
@@ -115,11 +117,11 @@ static tmini_posix_status_t run(void)
     (void)tmini_start(&lidar); /* Stands until it is stopped. */
     while (ended == 0 && status == TMINI_POSIX_OK) {
         drive();
-        status = tmini_posix_receive(&serial, 10);
+        status = tmini_posix_wait(&port, 10);
     }
     show(false); /* Without a lidar, whatever the reason, the robot stops. */
     (void)tmini_blocking_stop(&lidar, 1000);
-    tmini_posix_stop(&serial);
+    tmini_posix_stop(&port);
     return status;
 }
 

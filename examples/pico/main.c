@@ -9,6 +9,7 @@
 #include "hardware/gpio.h"
 #include "pico/stdlib.h"
 
+#include "lidar_log.h"
 #include "obstacle.h"
 #include "tmini/tmini_names.h"
 #include "tmini_pico.h"
@@ -31,9 +32,15 @@ TMINI_PICO_RING(ring, 1024);
 static uint8_t rx[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_t lidar;
-static tmini_pico_t board;
+static tmini_pico_t port;
 static obstacle_t obstacle;
-static uint32_t gaps;
+
+static void print(const char *text)
+{
+    printf("%s", text);
+}
+
+static lidar_log_t console = {.lidar = &lidar, .print = print};
 
 static uint32_t now_ms(void)
 {
@@ -49,72 +56,14 @@ static bool must_stop(void)
     return !obstacle_may_move(&obstacle, now_ms());
 }
 
-static void tell_info(const tmini_info_t *info)
-{
-    char serial[TMINI_SERIAL_DIGITS + 1];
-    tmini_serial_text(info, serial);
-    printf("model %u, firmware %u.%u, hardware %u, serial %s\n", info->model, info->firmware_major,
-           info->firmware_minor, info->hardware, serial);
-}
-
-static void tell_faults(uint8_t faults)
-{
-    char text[TMINI_FAULTS_TEXT_SIZE];
-    printf("faults: %s\n", tmini_faults_text(faults, text, sizeof text));
-}
-
-static void see(const tmini_scan_t *scan)
-{
-    obstacle_see(&obstacle, scan, now_ms());
-    gaps += scan->gaps;
-}
-
-/* Information, then scanning; from the beginning when something fails. */
-static void handle(tmini_event_t event)
-{
-    switch (event) {
-    case TMINI_EVENT_INFO:
-        tell_info(tmini_info(&lidar));
-        (void)tmini_start(&lidar);
-        break;
-    case TMINI_EVENT_SCAN:
-        see(tmini_scan(&lidar));
-        break;
-    case TMINI_EVENT_FAULTS_CHANGED:
-        tell_faults(tmini_faults(&lidar));
-        break;
-    case TMINI_EVENT_LOST:
-        printf("lost; trying to get it back\n");
-        break;
-    case TMINI_EVENT_RECOVERED:
-        printf("back again\n");
-        break;
-    case TMINI_EVENT_COMMAND_FAILED:
-        printf("no answer: %s. Wiring, 5 V?\n", tmini_status_name(tmini_command_error(&lidar)));
-        (void)tmini_request_info(&lidar);
-        break;
-    default:
-        break;
-    }
-}
-
 static void report_each_second(void)
 {
-    static uint32_t reported_ms;
-    tmini_counters_t counters;
     tmini_pico_counters_t uart;
-    if (now_ms() - reported_ms < REPORT_MS) {
-        return;
+    if (lidar_log_is_due(&console, now_ms())) {
+        tmini_pico_counters(&port, &uart);
+        lidar_log_status(&console, obstacle.sectors[0].nearest_mm, must_stop(), uart.bytes,
+                         uart.bytes_lost + uart.overruns);
     }
-    reported_ms += REPORT_MS;
-    tmini_counters(&lidar, &counters);
-    tmini_pico_counters(&board, &uart);
-    const uint32_t lost = counters.bytes_overrun + uart.bytes_lost + uart.overruns;
-    printf("%lu scans, nearest in front %u mm, %s; bytes %lu, lost: %lu checksums, %lu bytes, "
-           "%lu gaps\n",
-           (unsigned long)counters.scans, obstacle.sectors[0].nearest_mm,
-           must_stop() ? "STOP" : "go", (unsigned long)uart.bytes,
-           (unsigned long)counters.checksum_errors, (unsigned long)lost, (unsigned long)gaps);
 }
 
 static tmini_status_t start_lidar(void)
@@ -128,22 +77,23 @@ static tmini_status_t start_lidar(void)
     };
     const tmini_config_t config = {
         .port = &tmini_pico_port,
-        .port_context = &board,
+        .port_context = &port,
         .rx_buffer = rx,
         .rx_size = sizeof rx,
         .points = points,
         .max_points = TMINI_SCAN_POINTS_TYPICAL,
         .frequency_chz = 1000, /* 10 Hz, also after a power failure. */
     };
-    tmini_status_t status = tmini_pico_init(&board, &wiring);
+    tmini_status_t status = tmini_pico_init(&port, &wiring);
     if (status == TMINI_OK) {
         status = tmini_init(&lidar, &config);
     }
     if (status == TMINI_OK) {
-        status = tmini_pico_start(&board, &lidar);
+        status = tmini_pico_start(&port, &lidar);
     }
     if (status == TMINI_OK) {
-        status = tmini_request_info(&lidar);
+        (void)tmini_request_info(&lidar);
+        (void)tmini_start(&lidar); /* After the answer; stands. */
     }
     return status;
 }
@@ -161,12 +111,14 @@ int main(void)
             sleep_ms(REPORT_MS);
             continue;
         }
-        (void)tmini_pico_receive(&board);
+        (void)tmini_pico_wait(&port, 1);
         for (tmini_event_t event; (event = tmini_poll(&lidar)) != TMINI_EVENT_NONE;) {
-            handle(event);
+            lidar_log_event(&console, event);
+            if (event == TMINI_EVENT_SCAN) {
+                obstacle_see(&obstacle, tmini_scan(&lidar), now_ms());
+            }
         }
         gpio_put(STOP_PIN, must_stop());
         report_each_second();
-        sleep_ms(1);
     }
 }

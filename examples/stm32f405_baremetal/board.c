@@ -28,7 +28,7 @@ void board_wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t bits)
     }
 }
 
-/* 168 MHz by the PLL: source / M * 336 / 2, with 1 MHz behind M. (The bits for 2 are 0.) */
+/* 168 MHz by the PLL: source / M * 336 / 2, with 1 MHz after M. (The bits for 2 are 0.) */
 static void start_clock(void)
 {
     const uint32_t source_hz = BOARD_CRYSTAL_HZ != 0 ? BOARD_CRYSTAL_HZ : INTERNAL_OSCILLATOR_HZ;

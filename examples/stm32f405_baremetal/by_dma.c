@@ -7,7 +7,12 @@
 #include "reception.h"
 #include "stm32f405.h"
 
-const bool reception_uses_dma = true;
+const tmini_stm32_usart_wiring_t reception_wiring = {
+    .usart = (volatile void *)USART1_BASE,
+    .clock_hz = BOARD_USART1_CLOCK_HZ,
+    .time_ms = &board_time_ms,
+    .remaining = &DMA2_S2NDTR,
+};
 
 static tmini_stm32_usart_t *usart_port;
 
@@ -43,5 +48,5 @@ tmini_status_t reception_start(tmini_stm32_usart_t *port, tmini_t *lidar, uint8_
     usart_port = port;
     start_stream(rx, rx_size);
     NVIC_ISER(DMA2_STREAM2_IRQ) = NVIC_BIT(DMA2_STREAM2_IRQ);
-    return tmini_stm32_usart_start_dma(port, lidar, BOARD_USART1_CLOCK_HZ, &DMA2_S2NDTR);
+    return tmini_stm32_usart_start(port, lidar);
 }

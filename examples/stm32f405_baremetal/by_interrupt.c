@@ -3,13 +3,18 @@
 
 #include "board.h"
 #include "reception.h"
+#include "stm32f405.h"
 
-const bool reception_uses_dma = false;
+const tmini_stm32_usart_wiring_t reception_wiring = {
+    .usart = (volatile void *)USART1_BASE,
+    .clock_hz = BOARD_USART1_CLOCK_HZ,
+    .time_ms = &board_time_ms,
+};
 
 tmini_status_t reception_start(tmini_stm32_usart_t *port, tmini_t *lidar, uint8_t *rx,
                                uint16_t rx_size)
 {
     (void)rx;
     (void)rx_size;
-    return tmini_stm32_usart_start(port, lidar, BOARD_USART1_CLOCK_HZ);
+    return tmini_stm32_usart_start(port, lidar);
 }

@@ -152,12 +152,12 @@ static void start_lidar(void)
         .port_context = &port,
         .rx_buffer = rx,
         .rx_size = sizeof rx,
-        .rx_dma = reception_uses_dma,
+        .rx_dma = reception_wiring.remaining != NULL,
         .points = points,
         .max_points = sizeof points / sizeof points[0],
         .frequency_chz = FREQUENCY_CHZ,
     };
-    if (tmini_stm32_usart_init(&port, (volatile void *)USART1_BASE, &board_time_ms) != TMINI_OK ||
+    if (tmini_stm32_usart_init(&port, &reception_wiring) != TMINI_OK ||
         tmini_init(&lidar, &config) != TMINI_OK ||
         reception_start(&port, &lidar, rx, sizeof rx) != TMINI_OK) {
         report_word("wrong configuration");

@@ -7,12 +7,10 @@
 #ifndef RECEPTION_H
 #define RECEPTION_H
 
-#include <stdbool.h>
-
 #include "tmini_stm32_usart.h"
 
-/* The rx_dma of tmini_config_t. */
-extern const bool reception_uses_dma;
+/* For the port's init; by DMA if it names what is left. */
+extern const tmini_stm32_usart_wiring_t reception_wiring;
 
 /* Starts the port, which has been through its init, for a lidar that has been through
  * tmini_init() with `rx`. Returns what the port does. */

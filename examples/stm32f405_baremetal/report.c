@@ -129,23 +129,25 @@ void report_status(const tmini_counters_t *counters, const obstacle_t *obstacle,
 }
 
 /* Bytes go on coming in: takes the library's counters at a moment when none came in between. */
-static uint32_t take_counters(const tmini_t *lidar, const tmini_stm32_usart_t *port,
-                              tmini_counters_t *counters)
+static void take_counters(const tmini_t *lidar, const tmini_stm32_usart_t *port,
+                          tmini_counters_t *counters, tmini_stm32_usart_counters_t *received)
 {
     uint32_t bytes;
     do {
-        bytes = port->bytes;
+        tmini_stm32_usart_counters(port, received);
+        bytes = received->bytes;
         tmini_counters(lidar, counters);
-    } while (bytes != port->bytes);
-    return bytes;
+        tmini_stm32_usart_counters(port, received);
+    } while (bytes != received->bytes);
 }
 
 void report_counters(const tmini_t *lidar, const tmini_stm32_usart_t *port)
 {
     tmini_counters_t counters;
-    const uint32_t bytes = take_counters(lidar, port, &counters);
+    tmini_stm32_usart_counters_t received;
+    take_counters(lidar, port, &counters, &received);
     console_text("counters");
-    console_value("bytes", bytes);
+    console_value("bytes", received.bytes);
     console_value("in_packets", counters.bytes_in_packets);
     console_value("in_replies", counters.bytes_in_replies);
     console_value("skipped", counters.bytes_skipped);
@@ -158,7 +160,7 @@ void report_counters(const tmini_t *lidar, const tmini_stm32_usart_t *port)
     console_value("losses", counters.losses);
     console_value("recoveries", counters.recoveries);
     console_value("restarts", counters.restarts);
-    console_value("usart_overruns", port->overruns);
+    console_value("usart_overruns", received.overruns);
     console_value("stack", board_stack_used());
     console_line_end();
 }

@@ -65,7 +65,7 @@ static void stop_handler(void)
 
 typedef void (*handler_t)(void);
 
-/* Places behind the initial stack pointer. */
+/* Places after the initial stack pointer. */
 enum { RESET, NMI, HARD_FAULT, MEMORY_FAULT, BUS_FAULT, USAGE_FAULT, SYSTICK = 14, EXCEPTIONS };
 
 #define IRQS 82u

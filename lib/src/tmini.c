@@ -7,6 +7,8 @@
 
 #include "tmini_driver.h"
 
+#include <string.h>
+
 const tmini_timing_t tmini_timing_default = {
     .frame_timeout_ms = 100, /* A line at work: 5 ms; but a task or bridge may hold bytes back. */
     .max_pause_ms = 30,      /* A line at work: a packet every 10 ms. */
@@ -55,15 +57,17 @@ TMINI_NOINLINE static void raise_event(tmini_t *lidar, tmini_event_t event)
     lidar->pending |= (uint16_t)(1u << event);
 }
 
-/* Of the events that are pending, the first in the order of tmini_event_t. Scan and packet are
- * last: they are valid until parsing goes on. */
-static tmini_event_t take_event(tmini_t *lidar)
+/* Of the events that are pending, the first in the order of tmini_event_t, if any. Scan and packet
+ * are last: they are valid until parsing goes on. */
+TMINI_NOINLINE static tmini_event_t take_event(tmini_t *lidar)
 {
-    unsigned event = TMINI_EVENT_STARTED;
-    while ((lidar->pending >> event & 1u) == 0) {
+    const uint16_t pending = lidar->pending;
+    uint8_t event = TMINI_EVENT_NONE;
+    const uint16_t rest = (uint16_t)(pending & (pending - 1)); /* Without the lowest bit. */
+    for (uint16_t first = (uint16_t)(pending ^ rest); first > 1; first >>= 1) {
         event++;
     }
-    lidar->pending = (uint16_t)(lidar->pending & ~(1u << event));
+    lidar->pending = rest;
     return (tmini_event_t)event;
 }
 
@@ -71,23 +75,6 @@ static void fail(tmini_t *lidar, int status)
 {
     lidar->command_error = (int8_t)status;
     raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
-}
-
-/* The event with which a query ends well. */
-static tmini_event_t end_event(tmini_command_code_t operation)
-{
-    switch (operation) {
-    case TMINI_COMMAND_STOP:
-        return TMINI_EVENT_STOPPED;
-    case TMINI_COMMAND_GET_INFO:
-        return TMINI_EVENT_INFO;
-    case TMINI_COMMAND_GET_HEALTH:
-        return TMINI_EVENT_HEALTH;
-    case TMINI_COMMAND_REBOOT:
-        return TMINI_EVENT_REBOOTED;
-    default:
-        return TMINI_EVENT_FREQUENCY;
-    }
 }
 
 /* What is heard leaves the line not surely quiet. */
@@ -100,26 +87,16 @@ TMINI_NOINLINE static void look(tmini_t *lidar)
 
 /* ------------------------------------------------------------------------------ wanted to scan */
 
-/* Listening, nothing is sent: until a packet comes. Reception is begun anew every so often. */
-static void listen(tmini_t *lidar)
-{
-    tmini_command_wait(lidar, TMINI_DATA_TIMEOUT_MS);
-}
-
 /* From the foot of the ladder. */
 static void begin_start(tmini_t *lidar, bool is_idle)
 {
     lidar->start_follows = false;
     lidar->state = TMINI_STATE_STARTING;
-    if (lidar->is_listen_only) {
-        listen(lidar);
-    } else {
-        tmini_recovery_start(lidar, is_idle);
-    }
+    tmini_recovery_start(lidar, is_idle);
 }
 
 /* The same for a lidar that scans, or is about to: so the wanted frequency is set. */
-static void restart(tmini_t *lidar)
+TMINI_NOINLINE static void restart(tmini_t *lidar)
 {
     if (lidar->state != TMINI_STATE_RECOVERING) {
         lidar->state = TMINI_STATE_STARTING;
@@ -127,59 +104,31 @@ static void restart(tmini_t *lidar)
     tmini_recovery_start(lidar, false);
 }
 
-static void restart_reception(const tmini_t *lidar)
-{
-    const tmini_port_t *const port = lidar->link.port;
-    if (port->restart != NULL) {
-        port->restart(lidar->link.port_context);
-    }
-}
-
 static void lose(tmini_t *lidar)
 {
     lidar->state = TMINI_STATE_RECOVERING;
     raise_event(lidar, TMINI_EVENT_LOST);
     tmini_command_forget_frequency(lidar);
-    restart_reception(lidar);
     tmini_recovery_begin(lidar);
-    if (lidar->is_listen_only) {
-        listen(lidar);
-    }
-}
-
-/* An attempt to start or to recover has failed. A lidar that was lost before has been reported.
- * False if there is to be no other. */
-static bool fail_attempt(tmini_t *lidar, int result)
-{
-    const bool is_start = lidar->state == TMINI_STATE_STARTING;
-    restart_reception(lidar);
-    if (is_start) {
-        fail(lidar, result);
-    }
-    if (is_start && lidar->is_recovery_off) {
-        lidar->state = TMINI_STATE_UNKNOWN;
-        return false;
-    }
-    return true;
 }
 
 /* While the lidar is to scan: a rung of the ladder has ended. Until a packet comes, a start ends by
- * failing. A frequency that could not be set is reported when scanning begins. */
-static void climb(tmini_t *lidar, tmini_command_code_t operation, int result, bool is_idle)
+ * failing; a lidar that was lost before has been reported. A frequency that could not be set is
+ * reported when scanning begins. */
+static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
-    if (lidar->is_listen_only) {
-        restart_reception(lidar);
-        listen(lidar);
-        return;
-    }
-    if (operation == TMINI_COMMAND_GET_FREQUENCY) {
-        if (result == TMINI_OK) {
-            raise_event(lidar, TMINI_EVENT_FREQUENCY);
-        } else if (lidar->state == TMINI_STATE_STARTING) {
-            lidar->command_error = (int8_t)result;
+    const bool is_start = lidar->state == TMINI_STATE_STARTING;
+    if (operation == TMINI_EVENT_FREQUENCY && result == TMINI_OK) {
+        raise_event(lidar, TMINI_EVENT_FREQUENCY);
+    } else if (operation == TMINI_EVENT_FREQUENCY && is_start) {
+        lidar->command_error = (int8_t)result;
+    } else if (result != TMINI_OK && is_start) {
+        fail(lidar, result);
+        if (lidar->is_recovery_off) {
+            tmini_recovery_restart_reception(lidar);
+            lidar->state = TMINI_STATE_UNKNOWN;
+            return;
         }
-    } else if (result != TMINI_OK && !fail_attempt(lidar, result)) {
-        return;
     }
     tmini_recovery_go_on(lidar, operation, result, is_idle);
 }
@@ -201,17 +150,17 @@ static void begin_scanning(tmini_t *lidar)
     }
     lidar->state = TMINI_STATE_SCANNING;
     tmini_decoder_restart(&lidar->decoder);
-    tmini_monitor_begin(lidar);
+    tmini_monitor_begin(&lidar->monitor);
 }
 
 /* ------------------------------------------------------------------------------------- commands */
 
 /* The user's command has ended. */
-static void end_command(tmini_t *lidar, tmini_command_code_t operation, int result, bool is_idle)
+static void end_command(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
     lidar->state = is_idle ? TMINI_STATE_IDLE : TMINI_STATE_UNKNOWN;
     if (result == TMINI_OK) {
-        raise_event(lidar, end_event(operation));
+        raise_event(lidar, operation);
     } else {
         fail(lidar, result);
     }
@@ -224,12 +173,13 @@ static void end_command(tmini_t *lidar, tmini_command_code_t operation, int resu
  * should have come. What has been heard after the last reply leaves the line not surely quiet. */
 static void take_result(tmini_t *lidar, int result)
 {
-    const tmini_command_code_t operation = (tmini_command_code_t)lidar->command.operation;
+    const tmini_event_t operation = (tmini_event_t)lidar->command.operation;
     if (result == TMINI_UNDER_WAY) {
         return;
     }
     const bool is_idle =
-        tmini_command_end(lidar, result) && tmini_parser_pending(&lidar->decoder.parser) == 0;
+        tmini_command_end(lidar, result) &&
+        tmini_ring_head(&lidar->ring) == tmini_parser_position(&lidar->decoder.parser);
     if (lidar->state == TMINI_STATE_SCANNING) {
         lose(lidar);
     } else if (lidar->state == TMINI_STATE_STARTING || lidar->state == TMINI_STATE_RECOVERING) {
@@ -241,10 +191,9 @@ static void take_result(tmini_t *lidar, int result)
 
 /* What a command from the user changes, whichever it is. The end of an earlier one, not polled yet,
  * is not the end of this one. */
-static void take_over(tmini_t *lidar)
+TMINI_NOINLINE static void take_over(tmini_t *lidar)
 {
     look(lidar);
-    tmini_recovery_forget(lidar);
     lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
 }
 
@@ -258,11 +207,11 @@ static void send_first(tmini_t *lidar)
 }
 
 /* A lidar that is known to be idle needs no stop before. */
-static void begin_command(tmini_t *lidar, tmini_command_code_t operation)
+static void begin_command(tmini_t *lidar, tmini_event_t operation)
 {
     const bool is_idle = lidar->state == TMINI_STATE_IDLE;
     lidar->state =
-        operation == TMINI_COMMAND_STOP ? TMINI_STATE_STOPPING : (uint8_t)TMINI_STATE_BUSY;
+        operation == TMINI_EVENT_STOPPED ? TMINI_STATE_STOPPING : (uint8_t)TMINI_STATE_BUSY;
     tmini_command_begin(lidar, operation, lidar->link.timing->max_attempts);
     if (is_idle) {
         (void)tmini_command_proceed(lidar);
@@ -271,7 +220,7 @@ static void begin_command(tmini_t *lidar, tmini_command_code_t operation)
 }
 
 /* Begins a query, if it may be begun now. */
-static tmini_status_t request_command(tmini_t *lidar, tmini_command_code_t operation)
+static tmini_status_t request_command(tmini_t *lidar, tmini_event_t operation)
 {
     if (!is_set_up(lidar)) {
         return TMINI_ERROR_ARGUMENT;
@@ -301,11 +250,6 @@ TMINI_NOINLINE static void take_reply(tmini_t *lidar)
         (void)tmini_parser_await(parser, header); /* DMA was faster: it has not come. */
         return;
     }
-    if (lidar->command.operation == TMINI_COMMAND_GET_INFO) {
-        tmini_reply_info(content, &lidar->info);
-    } else if (lidar->command.operation == TMINI_COMMAND_GET_HEALTH) {
-        tmini_reply_health(content, &lidar->health);
-    }
     take_result(lidar, tmini_command_reply(lidar, content));
 }
 
@@ -322,8 +266,7 @@ static void expect_packet(tmini_t *lidar)
 static void stop_again(tmini_t *lidar)
 {
     raise_event(lidar, TMINI_EVENT_UNWANTED_SCANNING);
-    look(lidar);
-    begin_command(lidar, TMINI_COMMAND_STOP);
+    begin_command(lidar, TMINI_EVENT_STOPPED);
 }
 
 /* A packet has come: does it mean that the lidar has begun to scan, or scans again? Not so the tail
@@ -333,8 +276,7 @@ static void note_scanning(tmini_t *lidar)
 {
     const uint8_t phase = lidar->command.phase;
     if (lidar->state == TMINI_STATE_RECOVERING || lidar->state == TMINI_STATE_STARTING) {
-        if (phase != TMINI_PHASE_QUIESCING &&
-            lidar->command.operation != TMINI_COMMAND_GET_FREQUENCY) {
+        if (phase != TMINI_PHASE_QUIESCING && lidar->command.operation != TMINI_EVENT_FREQUENCY) {
             begin_scanning(lidar);
         }
     } else if (phase == TMINI_PHASE_IDLE) {
@@ -344,11 +286,14 @@ static void note_scanning(tmini_t *lidar)
 
 static void monitor_packet(tmini_t *lidar)
 {
-    if (tmini_monitor_packet(lidar)) {
+    const tmini_turn_t turn =
+        tmini_monitor_packet(&lidar->monitor, &lidar->decoder, lidar->wanted_chz);
+    if (turn == TMINI_TURN_WHOLE) {
         tmini_recovery_forget(lidar); /* It has truly recovered, if it was lost. */
-    }
-    if (tmini_monitor_wants_frequency(lidar) && !lidar->is_recovery_off) {
-        restart(lidar); /* It turns otherwise than wanted. */
+    } else if (turn == TMINI_TURN_ENDLESS) {
+        lose(lidar);
+    } else if (turn == TMINI_TURN_OFF && !lidar->is_recovery_off) {
+        restart(lidar);
     }
 }
 
@@ -382,11 +327,12 @@ static void take_packet(tmini_t *lidar)
 {
     const uint32_t came_ms = arrival_ms(lidar);
     note_scanning(lidar);
+    const bool is_doubtful = tmini_line_is_doubtful(lidar, came_ms);
     if (lidar->state != TMINI_STATE_SCANNING) {
         return; /* The tail after a stop, or of a lidar that is not to scan. */
     }
     expect_packet(lidar);
-    if (tmini_decoder_take(&lidar->decoder, tmini_line_is_doubtful(lidar, came_ms), came_ms)) {
+    if (tmini_decoder_take(&lidar->decoder, is_doubtful, came_ms, lidar->line.late_ms)) {
         deliver_scan(lidar);
     } else if (lidar->decoder.builder.capacity == 0) {
         raise_event(lidar, TMINI_EVENT_PACKET);
@@ -401,12 +347,10 @@ static bool give_up_candidate(tmini_t *lidar)
 {
     const uint16_t silent_ms = lidar->line.silent_ms;
     if (silent_ms == 0 || silent_ms < lidar->link.timing->frame_timeout_ms ||
-        tmini_ring_head(&lidar->ring) != lidar->line.received ||
-        tmini_parser_pending(&lidar->decoder.parser) == 0) {
+        tmini_ring_head(&lidar->ring) != lidar->line.received) {
         return false;
     }
-    tmini_parser_abandon(&lidar->decoder.parser);
-    return true;
+    return tmini_parser_abandon(&lidar->decoder.parser);
 }
 
 /* Handles frames until one raises an event or none is left. Returns false if that takes more work
@@ -414,7 +358,7 @@ static bool give_up_candidate(tmini_t *lidar)
 static bool receive(tmini_t *lidar)
 {
     const tmini_parser_t *const parser = &lidar->decoder.parser;
-    size_t effort = 0;
+    uint16_t effort = 0;
     while (lidar->pending == 0) {
         if (effort >= TMINI_PARSER_EFFORT) {
             return false;
@@ -427,7 +371,7 @@ static bool receive(tmini_t *lidar)
         } else if (type == TMINI_FRAME_NONE && !give_up_candidate(lidar)) {
             return true;
         }
-        effort = FRAME_EFFORT + parser->effort + tmini_parser_frame(parser)->size;
+        effort = (uint16_t)(FRAME_EFFORT + parser->effort + tmini_parser_frame(parser)->size);
     }
     return true;
 }
@@ -436,28 +380,17 @@ static bool receive(tmini_t *lidar)
 static void keep_time(tmini_t *lidar)
 {
     take_result(lidar, tmini_command_poll(lidar));
-    if (lidar->state == TMINI_STATE_SCANNING && !tmini_monitor_poll(lidar)) {
-        lose(lidar);
-    }
-}
-
-static uint32_t least(uint32_t a, uint32_t b)
-{
-    return a < b ? a : b;
 }
 
 /* There is nothing to do until a frame may be complete, or until the next time-out, which is
  * computed here, once, instead of at each poll. */
 static void settle(tmini_t *lidar)
 {
-    const uint32_t frame_ms = lidar->link.timing->frame_timeout_ms;
-    const uint32_t silent_ms = lidar->line.silent_ms;
-    uint32_t idle_ms =
-        least(frame_ms > silent_ms ? frame_ms - silent_ms : frame_ms, tmini_command_idle_ms(lidar));
-    if (lidar->state == TMINI_STATE_SCANNING) {
-        idle_ms = least(idle_ms, tmini_monitor_idle_ms(lidar));
-    }
-    lidar->wake_ms = lidar->line.now_ms + idle_ms;
+    const uint16_t frame_ms = lidar->link.timing->frame_timeout_ms;
+    const int32_t left_ms = (int32_t)frame_ms - lidar->line.silent_ms;
+    const uint16_t give_up_ms = left_ms > 0 ? (uint16_t)left_ms : frame_ms;
+    const uint16_t command_ms = tmini_command_idle_ms(lidar);
+    lidar->wake_ms = lidar->line.now_ms + (give_up_ms < command_ms ? give_up_ms : command_ms);
     lidar->is_settled = lidar->command.unsent == 0;
 }
 
@@ -476,7 +409,7 @@ static bool has_news(tmini_t *lidar)
 }
 
 /* What is due, of a poll that has looked at the line. */
-static tmini_event_t work(tmini_t *lidar)
+TMINI_NOINLINE static tmini_event_t work(tmini_t *lidar)
 {
     const uint8_t faults = lidar->monitor.faults;
     const bool is_done = lidar->pending != 0 || receive(lidar);
@@ -486,8 +419,9 @@ static tmini_event_t work(tmini_t *lidar)
     if (lidar->monitor.faults != faults) {
         raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
     }
-    if (lidar->pending != 0) {
-        return take_event(lidar);
+    const tmini_event_t event = take_event(lidar);
+    if (event != TMINI_EVENT_NONE) {
+        return event;
     }
     if (!is_done) {
         return TMINI_EVENT_MORE;
@@ -502,7 +436,7 @@ tmini_event_t tmini_poll(tmini_t *lidar)
         return TMINI_EVENT_NONE;
     }
     if (lidar->link.port == NULL) {
-        return lidar->pending != 0 ? take_event(lidar) : TMINI_EVENT_NONE; /* Not set up. */
+        return take_event(lidar); /* Not set up. */
     }
     if (!lidar->is_settled) {
         look(lidar);
@@ -515,12 +449,10 @@ tmini_event_t tmini_poll(tmini_t *lidar)
 
 /* ---------------------------------------------------------------------------------- life cycle */
 
-/* 0: none. */
 TMINI_NOINLINE static bool is_frequency(uint16_t frequency_chz)
 {
-    return frequency_chz == 0 ||
-           (frequency_chz >= TMINI_FREQUENCY_MIN_CHZ && frequency_chz <= TMINI_FREQUENCY_MAX_CHZ &&
-            frequency_chz % TMINI_FREQUENCY_STEP_CHZ == 0);
+    return frequency_chz >= TMINI_FREQUENCY_MIN_CHZ && frequency_chz <= TMINI_FREQUENCY_MAX_CHZ &&
+           frequency_chz % TMINI_FREQUENCY_STEP_CHZ == 0;
 }
 
 static bool has_port(const tmini_config_t *config)
@@ -532,8 +464,8 @@ static bool has_port(const tmini_config_t *config)
 /* Members that need others, or exclude them. */
 static bool fits_together(const tmini_config_t *config)
 {
-    return is_frequency(config->frequency_chz) &&
-           (config->frequency_chz == 0 || !config->listen_only) &&
+    return (config->frequency_chz == 0 ||
+            (is_frequency(config->frequency_chz) && !config->listen_only)) &&
            (config->points != NULL || (config->step == NULL && config->spare_points == NULL)) &&
            (config->step != NULL || config->step_data == NULL);
 }
@@ -591,15 +523,6 @@ tmini_status_t tmini_start(tmini_t *lidar)
     return TMINI_OK;
 }
 
-/* Nothing was sent to begin with. */
-static void stop_listening(tmini_t *lidar)
-{
-    (void)tmini_command_end(lidar, TMINI_ERROR_ABORTED);
-    lidar->state = TMINI_STATE_UNKNOWN;
-    lidar->is_settled = false;
-    raise_event(lidar, TMINI_EVENT_STOPPED);
-}
-
 tmini_status_t tmini_stop(tmini_t *lidar)
 {
     if (!is_set_up(lidar)) {
@@ -615,9 +538,10 @@ tmini_status_t tmini_stop(tmini_t *lidar)
         fail(lidar, TMINI_ERROR_ABORTED);
     }
     if (lidar->is_listen_only) {
-        stop_listening(lidar);
+        tmini_cancel(lidar); /* Nothing was sent to begin with. */
+        raise_event(lidar, TMINI_EVENT_STOPPED);
     } else {
-        begin_command(lidar, TMINI_COMMAND_STOP);
+        begin_command(lidar, TMINI_EVENT_STOPPED);
     }
     return TMINI_OK;
 }
@@ -625,7 +549,7 @@ tmini_status_t tmini_stop(tmini_t *lidar)
 /* Only a changed wish disturbs a lidar that scans or is about to. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
 {
-    if (!is_set_up(lidar) || frequency_chz == 0 || !is_frequency(frequency_chz)) {
+    if (!is_set_up(lidar) || !is_frequency(frequency_chz)) {
         return TMINI_ERROR_ARGUMENT;
     }
     if (lidar->is_listen_only) {
@@ -633,10 +557,14 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
     }
     const bool is_changed = lidar->wanted_chz != frequency_chz;
     lidar->wanted_chz = frequency_chz;
-    if (lidar->state <= TMINI_STATE_IDLE) {
-        return request_command(lidar, TMINI_COMMAND_GET_FREQUENCY);
+    if ((lidar->monitor.faults & TMINI_FAULT_FREQUENCY) != 0) {
+        raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
+        lidar->is_settled = false;
     }
-    tmini_monitor_forget_frequency(lidar);
+    tmini_monitor_forget_frequency(&lidar->monitor);
+    if (lidar->state <= TMINI_STATE_IDLE) {
+        return request_command(lidar, TMINI_EVENT_FREQUENCY);
+    }
     if (is_changed && is_to_scan(lidar)) {
         look(lidar);
         restart(lidar);
@@ -647,22 +575,22 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
 
 tmini_status_t tmini_request_info(tmini_t *lidar)
 {
-    return request_command(lidar, TMINI_COMMAND_GET_INFO);
+    return request_command(lidar, TMINI_EVENT_INFO);
 }
 
 tmini_status_t tmini_request_health(tmini_t *lidar)
 {
-    return request_command(lidar, TMINI_COMMAND_GET_HEALTH);
+    return request_command(lidar, TMINI_EVENT_HEALTH);
 }
 
 tmini_status_t tmini_request_frequency(tmini_t *lidar)
 {
-    return request_command(lidar, TMINI_COMMAND_GET_FREQUENCY);
+    return request_command(lidar, TMINI_EVENT_FREQUENCY);
 }
 
 tmini_status_t tmini_reboot(tmini_t *lidar)
 {
-    return request_command(lidar, TMINI_COMMAND_REBOOT);
+    return request_command(lidar, TMINI_EVENT_REBOOTED);
 }
 
 void tmini_cancel(tmini_t *lidar)
@@ -675,50 +603,14 @@ void tmini_cancel(tmini_t *lidar)
 
 /* ------------------------------------------------------------------------------------- results */
 
-tmini_state_t tmini_state(const tmini_t *lidar)
-{
-    return lidar != NULL ? (tmini_state_t)lidar->state : TMINI_STATE_UNKNOWN;
-}
-
-const tmini_scan_t *tmini_scan(const tmini_t *lidar)
-{
-    return &lidar->scan;
-}
-
-const tmini_packet_t *tmini_packet(const tmini_t *lidar)
-{
-    return &lidar->decoder.packet;
-}
-
-const tmini_info_t *tmini_info(const tmini_t *lidar)
-{
-    return &lidar->info;
-}
-
-const tmini_health_t *tmini_health(const tmini_t *lidar)
-{
-    return &lidar->health;
-}
-
-uint16_t tmini_frequency_chz(const tmini_t *lidar)
-{
-    return lidar->command.frequency_chz;
-}
-
-tmini_status_t tmini_command_error(const tmini_t *lidar)
-{
-    return (tmini_status_t)lidar->command_error;
-}
-
-uint8_t tmini_faults(const tmini_t *lidar)
-{
-    return lidar->monitor.faults;
-}
-
-void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info)
-{
-    tmini_ct_read(&lidar->decoder.ct, info);
-}
+/* The parser's counters come first, in the same order: they are copied in one piece. */
+typedef char
+    counters_begin_with_the_parsers[offsetof(tmini_counters_t, bytes_overrun) ==
+                                                offsetof(tmini_parser_counters_t, bytes_overrun) &&
+                                            offsetof(tmini_counters_t, bytes_pending) ==
+                                                sizeof(tmini_parser_counters_t)
+                                        ? 1
+                                        : -1];
 
 /* The ring is asked directly: before tmini_init() the parser knows none. */
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
@@ -727,12 +619,8 @@ void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
     const tmini_parser_counters_t *const parser = &lidar->decoder.parser.counters;
     const size_t pending =
         tmini_ring_unread(ring) - tmini_parser_frame(&lidar->decoder.parser)->size;
-    counters->packets = parser->packets;
-    counters->checksum_errors = parser->checksum_errors;
-    counters->bytes_in_packets = parser->bytes_in_packets;
-    counters->bytes_in_replies = parser->bytes_in_replies;
-    counters->bytes_skipped = parser->bytes_skipped;
-    counters->bytes_overrun = parser->bytes_overrun + (uint32_t)tmini_ring_overrun(ring);
+    memcpy(counters, parser, sizeof *parser);
+    counters->bytes_overrun += (uint32_t)tmini_ring_overrun(ring);
     counters->bytes_pending = (uint32_t)pending;
     counters->scans = lidar->scans;
     counters->late_scans = lidar->decoder.builder.late_scans;

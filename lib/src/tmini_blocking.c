@@ -17,8 +17,21 @@ static uint32_t now_ms(const tmini_t *lidar)
     return lidar->link.port->now_ms(lidar->link.port_context);
 }
 
-/* Polls until `wanted` comes, or a command has failed that nothing follows, or time is up. What
- * could not be begun has ended already. */
+/* A clock that has stepped back to before `begun_ms` shows no time. */
+static bool is_time_left(const tmini_t *lidar, uint32_t begun_ms, uint32_t timeout_ms)
+{
+    const uint32_t passed_ms = now_ms(lidar) - begun_ms;
+    return passed_ms < timeout_ms || passed_ms > UINT32_MAX / 2;
+}
+
+/* A start that follows a query waits for data, and the wish stands. */
+static bool is_query(tmini_event_t wanted)
+{
+    return wanted < TMINI_EVENT_COMMAND_FAILED;
+}
+
+/* Polls until `wanted` comes, or a command has failed that nothing follows, or time is up; then a
+ * query is given up. What could not be begun has ended already. */
 static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event_t wanted,
                                uint32_t timeout_ms)
 {
@@ -37,19 +50,11 @@ static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event
         if (event == TMINI_EVENT_NONE) {
             idle(lidar);
         }
-    } while (now_ms(lidar) - begun_ms < timeout_ms);
-    return TMINI_ERROR_TIMEOUT;
-}
-
-/* The same for a query, which is given up when time is up. */
-static tmini_status_t query(tmini_t *lidar, tmini_status_t begun, tmini_event_t wanted,
-                            uint32_t timeout_ms)
-{
-    const tmini_status_t status = wait_for(lidar, begun, wanted, timeout_ms);
-    if (status == TMINI_ERROR_TIMEOUT && tmini_state(lidar) == TMINI_STATE_BUSY) {
+    } while (is_time_left(lidar, begun_ms, timeout_ms));
+    if (is_query(wanted) && tmini_state(lidar) == TMINI_STATE_BUSY) {
         tmini_cancel(lidar);
     }
-    return status;
+    return TMINI_ERROR_TIMEOUT;
 }
 
 tmini_status_t tmini_blocking_read_info(tmini_t *lidar, tmini_info_t *info, uint32_t timeout_ms)
@@ -58,7 +63,7 @@ tmini_status_t tmini_blocking_read_info(tmini_t *lidar, tmini_info_t *info, uint
         return TMINI_ERROR_ARGUMENT;
     }
     const tmini_status_t status =
-        query(lidar, tmini_request_info(lidar), TMINI_EVENT_INFO, timeout_ms);
+        wait_for(lidar, tmini_request_info(lidar), TMINI_EVENT_INFO, timeout_ms);
     if (status == TMINI_OK) {
         *info = *tmini_info(lidar);
     }
@@ -72,7 +77,7 @@ tmini_status_t tmini_blocking_read_health(tmini_t *lidar, tmini_health_t *health
         return TMINI_ERROR_ARGUMENT;
     }
     const tmini_status_t status =
-        query(lidar, tmini_request_health(lidar), TMINI_EVENT_HEALTH, timeout_ms);
+        wait_for(lidar, tmini_request_health(lidar), TMINI_EVENT_HEALTH, timeout_ms);
     if (status == TMINI_OK) {
         *health = *tmini_health(lidar);
     }
@@ -86,7 +91,7 @@ tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency
         return TMINI_ERROR_ARGUMENT;
     }
     const tmini_status_t status =
-        query(lidar, tmini_request_frequency(lidar), TMINI_EVENT_FREQUENCY, timeout_ms);
+        wait_for(lidar, tmini_request_frequency(lidar), TMINI_EVENT_FREQUENCY, timeout_ms);
     if (status == TMINI_OK) {
         *frequency_chz = tmini_frequency_chz(lidar);
     }
@@ -101,7 +106,7 @@ tmini_status_t tmini_blocking_set_frequency(tmini_t *lidar, uint16_t frequency_c
         tmini_command_has_frequency(lidar)) {
         return TMINI_OK; /* It was wanted before: nothing is to be done. */
     }
-    return query(lidar, begun, TMINI_EVENT_FREQUENCY, timeout_ms);
+    return wait_for(lidar, begun, TMINI_EVENT_FREQUENCY, timeout_ms);
 }
 
 tmini_status_t tmini_blocking_start(tmini_t *lidar, uint32_t timeout_ms)

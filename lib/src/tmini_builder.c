@@ -34,7 +34,7 @@ static uint16_t end_of(const tmini_packet_t *packet)
 
 /* True if a packet that begins `ahead` of the last one's end, and ends `angle` from the start
  * packet, may continue the revolution: not if half a turn or more may be missing before it, by
- * bytes or by angle, nor if it would lead beyond the circle or behind its beginning. A lost start
+ * bytes or by angle, nor if it would lead beyond the circle or before its beginning. A lost start
  * packet shows here. */
 static bool continues(const tmini_packet_t *packet, int32_t ahead, int32_t angle)
 {
@@ -62,9 +62,11 @@ static bool is_gap(const tmini_packet_t *packet, uint16_t bytes)
 }
 
 /* The scan took more than one and a half of the turns that the lidar reports, if it does. */
-static bool took_too_long(const tmini_scan_t *scan)
+static bool took_too_long(const tmini_builder_t *builder)
 {
-    return scan->frequency_chz > 0 && scan->end_ms - scan->start_ms > 150000u / scan->frequency_chz;
+    const tmini_scan_t *const scan = &builder->scan;
+    const uint32_t took_ms = scan->end_ms - scan->start_ms + builder->late_ms;
+    return scan->frequency_chz > 0 && took_ms > 150000u / scan->frequency_chz;
 }
 
 /* Notes what the next packet, which begins `ahead` of the scan's end and came at `now_ms`, shows of
@@ -78,26 +80,28 @@ static void note_end(tmini_builder_t *builder, const tmini_packet_t *packet, int
     if (is_start) {
         scan->frequency_chz = frequency_chz(packet);
     }
-    scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - builder->errors_before);
+    scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - scan->checksum_errors);
     scan->end_ms = (int32_t)(now_ms - scan->start_ms) < 0 ? scan->start_ms : now_ms;
     if (!is_start || is_gap(packet, packet->gap) || ahead > JUMP_Q6) {
         count_one(&scan->gaps);
     }
 }
 
-/* The scan ends before `packet`. It is complete when a start packet comes back to where it began,
- * and nothing is missing. A gap that only the caller knows of is one of time. */
+/* The scan ends before `packet`. One that took too long has a gap somewhere. It is complete when a
+ * start packet comes back to where it began, and nothing is missing. A gap that only the caller
+ * knows of is one of time, too. */
 static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
                    uint32_t now_ms)
 {
     tmini_scan_t *const scan = &builder->scan;
     const int32_t beyond = builder->swept_q6 + ahead - CIRCLE_Q6;
     note_end(builder, packet, ahead, now_ms);
-    const bool is_full =
-        (scan->gaps | scan->dropped) == 0 && beyond >= -JUMP_Q6 && beyond <= JUMP_Q6;
-    scan->complete = is_full && !took_too_long(scan);
+    const bool is_whole = (scan->gaps | scan->dropped) == 0;
+    const bool is_long = is_whole && took_too_long(builder);
+    scan->complete = is_whole && !is_long && beyond >= -JUMP_Q6 && beyond <= JUMP_Q6;
     builder->open = false;
-    if (is_full != scan->complete) {
+    builder->ended = true;
+    if (is_long) {
         count_one(&scan->gaps);
         builder->late_scans++;
     } else if (packet->gap == TMINI_GAP_UNKNOWN && ahead <= JUMP_Q6 &&
@@ -112,15 +116,21 @@ static int32_t begin_scan(tmini_builder_t *builder, const tmini_packet_t *first,
 {
     tmini_scan_t *const scan = &builder->scan;
     const bool is_start = tmini_packet_is_start(first);
-    *scan = (tmini_scan_t){.points = scan->points, .frequency_chz = scan->frequency_chz};
+    scan->count = 0;
+    scan->dropped = 0;
+    scan->packets = 0;
+    scan->complete = false;
+    scan->upside_down = false;
     if (is_start) {
         builder->origin_q6 = first->first_angle_q6;
         scan->frequency_chz = frequency_chz(first);
     }
     scan->gaps = is_start ? 0 : 1;
     scan->start_ms = now_ms - (first->count - 1u) * SAMPLE_SENT_US / 1000u;
-    builder->errors_before = first->frame->checksum_errors;
+    scan->checksum_errors = first->frame->checksum_errors; /* Before it. */
+    builder->late_ms = builder->next_late_ms;
     builder->open = true;
+    builder->ended = false;
     return tmini_clockwise(builder->origin_q6, first->first_angle_q6);
 }
 
@@ -157,6 +167,7 @@ tmini_status_t tmini_builder_init(tmini_builder_t *builder, tmini_point_t *buffe
 void tmini_builder_discard(tmini_builder_t *builder)
 {
     builder->open = false;
+    builder->ended = false;
     builder->origin_q6 = NO_ORIGIN;
 }
 

@@ -14,6 +14,16 @@
 #define PLAUSIBLE_CHZ_MIN 100
 #define PLAUSIBLE_CHZ_MAX 2000
 
+/* The commands of operations. */
+static const uint8_t codes[] = {
+    [TMINI_EVENT_STARTED] = TMINI_COMMAND_START,
+    [TMINI_EVENT_STOPPED] = TMINI_COMMAND_STOP,
+    [TMINI_EVENT_INFO] = TMINI_COMMAND_GET_INFO,
+    [TMINI_EVENT_HEALTH] = TMINI_COMMAND_GET_HEALTH,
+    [TMINI_EVENT_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
+    [TMINI_EVENT_REBOOTED] = TMINI_COMMAND_REBOOT,
+};
+
 /* A phase that has lasted `timeout_ms` is over, one way or the other; 0 for no limit. */
 static void enter(tmini_t *lidar, tmini_phase_t phase, uint16_t timeout_ms)
 {
@@ -55,7 +65,7 @@ static void await_quiet(tmini_t *lidar)
 }
 
 /* First stop, which is permitted always (section 9.10). */
-static void quiesce(tmini_t *lidar)
+TMINI_NOINLINE static void quiesce(tmini_t *lidar)
 {
     (void)tmini_parser_await(&lidar->decoder.parser, NULL);
     send(lidar, TMINI_COMMAND_STOP);
@@ -164,8 +174,8 @@ static bool is_quiet(const tmini_t *lidar)
 int tmini_command_proceed(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
-    uint8_t next = command->operation;
-    tmini_parser_skip_to(&lidar->decoder.parser, lidar->line.received);
+    uint8_t next = codes[command->operation];
+    tmini_parser_skip_all(&lidar->decoder.parser);
     if (next == TMINI_COMMAND_STOP) {
         command->attempts = 1; /* However many it took, the line is quiet now. */
         return TMINI_OK;
@@ -211,7 +221,7 @@ int tmini_command_poll(tmini_t *lidar)
     return command->phase == TMINI_PHASE_WAITING ? TMINI_OK : time_out(lidar);
 }
 
-uint32_t tmini_command_idle_ms(const tmini_t *lidar)
+uint16_t tmini_command_idle_ms(const tmini_t *lidar)
 {
     const tmini_command_t *const command = &lidar->command;
     if (command->phase == TMINI_PHASE_QUIESCING) {
@@ -219,12 +229,12 @@ uint32_t tmini_command_idle_ms(const tmini_t *lidar)
     }
     return command->timeout_ms == 0
                ? UINT16_MAX
-               : command->timeout_ms - (lidar->line.now_ms - command->since_ms);
+               : (uint16_t)(command->timeout_ms - (lidar->line.now_ms - command->since_ms));
 }
 
 /* ------------------------------------------------------------------------ for the layers above */
 
-void tmini_command_begin(tmini_t *lidar, tmini_command_code_t operation, uint8_t attempts)
+void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, uint8_t attempts)
 {
     tmini_command_t *const command = &lidar->command;
     command->operation = (uint8_t)operation;
@@ -241,7 +251,10 @@ int tmini_command_reply(tmini_t *lidar, const uint8_t *content)
         enter(lidar, TMINI_PHASE_SPINNING_UP, TMINI_SPIN_UP_TIMEOUT_MS);
         return TMINI_UNDER_WAY;
     case TMINI_COMMAND_GET_INFO:
+        tmini_reply_info(content, &lidar->info);
+        return TMINI_OK;
     case TMINI_COMMAND_GET_HEALTH:
+        tmini_reply_health(content, &lidar->health);
         return TMINI_OK;
     default:
         return take_frequency(lidar, tmini_reply_frequency_chz(content));
@@ -260,9 +273,9 @@ bool tmini_command_end(tmini_t *lidar, int result)
     const uint8_t operation = command->operation;
     const bool is_idle =
         result == TMINI_OK && command->phase != TMINI_PHASE_WAITING && command->attempts == 1;
-    const bool may_scan = operation == TMINI_COMMAND_START || operation == TMINI_COMMAND_REBOOT;
+    const bool was_stopped = operation >= TMINI_EVENT_STOPPED && operation <= TMINI_EVENT_FREQUENCY;
     (void)tmini_parser_await(&lidar->decoder.parser, NULL);
     command->unsent = 0;
-    enter(lidar, operation == 0 || may_scan ? TMINI_PHASE_NONE : TMINI_PHASE_IDLE, 0);
+    enter(lidar, was_stopped ? TMINI_PHASE_IDLE : TMINI_PHASE_NONE, 0);
     return is_idle;
 }

@@ -7,6 +7,8 @@
 
 #include "tmini/parts/tmini_reply.h"
 
+#if !defined(TMINI_NO_CT)
+
 /* The fields that are kept, in the order of their indices. */
 enum {
     USER_VERSION,
@@ -24,6 +26,8 @@ enum {
 #define KEPT_MASK \
     (1u << 1 | 1u << 3 | 1u << 4 | 1u << 5 | 1u << 9 | 1u << 10 | 1u << 11 | 1u << 12 | 1u << 13)
 
+#define HEALTH_INDEX 3u
+
 #define KNOWN_MASK                                                                                 \
     (TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE | TMINI_KNOWN_FIRMWARE | \
      TMINI_KNOWN_YEAR | TMINI_KNOWN_MONTH | TMINI_KNOWN_DAY | TMINI_KNOWN_SERIAL)
@@ -31,23 +35,14 @@ enum {
 static void trust_current(tmini_ct_t *ct)
 {
     memcpy(ct->trusted, ct->current, ct->fields);
-    ct->known |= (uint16_t)((1u << ct->packets) - 1);
-}
-
-static void begin_information(tmini_ct_t *ct)
-{
-    ct->packets = 0;
-    ct->fields = 0;
-    ct->crc = 0;
-    ct->cts = 0;
-    ct->gaps = 0;
+    ct->known = ct->packets > ct->known ? ct->packets : ct->known;
 }
 
 /* Exactly one byte between the last point packet and this start packet is LastCRC. Units without CT
  * information send none: there it is noise. */
 static tmini_ct_verdict_t check_revolution(const tmini_ct_t *ct, const tmini_packet_t *start)
 {
-    if (ct->cts == 0 || ct->gaps != 0 || start->gap != 1) {
+    if (ct->cts == 0 || start->gap != 1) {
         return TMINI_CT_UNKNOWN;
     }
     return start->frame->last_skipped == ct->crc ? TMINI_CT_CONFIRMED : TMINI_CT_REFUTED;
@@ -72,7 +67,10 @@ void tmini_ct_init(tmini_ct_t *ct)
 
 void tmini_ct_discard(tmini_ct_t *ct)
 {
-    begin_information(ct);
+    ct->packets = 0;
+    ct->fields = 0;
+    ct->crc = 0;
+    ct->cts = 0;
 }
 
 tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)
@@ -83,12 +81,12 @@ tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)
         if (verdict == TMINI_CT_CONFIRMED) {
             trust_current(ct);
         }
-        begin_information(ct);
-    } else if (ct->packets == 0) {
-        return TMINI_CT_UNKNOWN; /* Before the first start packet: the index is not known. */
+        tmini_ct_discard(ct);
+    } else if (ct->packets == 0 || packet->gap > 0) {
+        tmini_ct_discard(ct); /* Until the next start packet the index is not known. */
+        return TMINI_CT_UNKNOWN;
     } else {
         ct->cts |= packet->ct;
-        ct->gaps |= packet->gap;
     }
     append_byte(ct, packet->ct);
     return verdict;
@@ -104,8 +102,8 @@ static uint32_t serial_number(const uint8_t *ct)
 
 unsigned tmini_ct_faults(const tmini_ct_t *ct)
 {
-    return (ct->known & TMINI_KNOWN_FAULTS) != 0 ? ct->trusted[HEALTH] >> 1 & TMINI_FAULT_MASK
-                                                 : TMINI_FAULTS_UNKNOWN;
+    return ct->known > HEALTH_INDEX ? ct->trusted[HEALTH] >> 1 & TMINI_FAULT_MASK
+                                    : TMINI_FAULTS_UNKNOWN;
 }
 
 void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
@@ -113,7 +111,7 @@ void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
     const uint8_t *const trusted = ct->trusted; /* 0 where it is not known. */
     const unsigned user_version = trusted[USER_VERSION];
     const unsigned hardware = trusted[HARDWARE];
-    info->known = ct->known & KNOWN_MASK;
+    info->known = ((1u << ct->known) - 1) & KNOWN_MASK;
     info->user_major = (uint8_t)(user_version >> 6);
     info->user_minor = user_version >> 1 & 0x1Fu;
     info->faults = trusted[HEALTH] >> 1 & TMINI_FAULT_MASK;
@@ -126,6 +124,8 @@ void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
     info->day = trusted[DAY] >> 3;
     info->number = (info->known & TMINI_KNOWN_SERIAL) != 0 ? serial_number(trusted) : 0;
 }
+
+#endif
 
 uint8_t tmini_ct_crc8(uint8_t crc, uint8_t byte)
 {

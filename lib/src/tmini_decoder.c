@@ -16,9 +16,9 @@ tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring, 
  * read first. */
 static void add_waiting_packet(tmini_decoder_t *decoder)
 {
-    if (decoder->packet_waits) {
-        decoder->packet_waits = false;
-        (void)tmini_builder_add(&decoder->builder, &decoder->packet, decoder->builder.scan.end_ms);
+    tmini_builder_t *const builder = &decoder->builder;
+    if (builder->ended) {
+        (void)tmini_builder_add(builder, &decoder->packet, builder->scan.end_ms);
     }
 }
 
@@ -38,7 +38,8 @@ static void open_packet(tmini_decoder_t *decoder, bool is_doubtful)
     decoder->verdict = (uint8_t)tmini_ct_add(&decoder->ct, packet);
 }
 
-bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now_ms)
+bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now_ms,
+                        uint16_t late_ms)
 {
     open_packet(decoder, is_doubtful);
     if (decoder->builder.capacity == 0) {
@@ -47,8 +48,8 @@ bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now
     if (decoder->verdict == TMINI_CT_REFUTED) {
         tmini_builder_refute(&decoder->builder);
     }
-    decoder->packet_waits = tmini_builder_add(&decoder->builder, &decoder->packet, now_ms);
-    return decoder->packet_waits;
+    tmini_builder_backdate(&decoder->builder, late_ms);
+    return tmini_builder_add(&decoder->builder, &decoder->packet, now_ms);
 }
 
 void tmini_decoder_restart(tmini_decoder_t *decoder)

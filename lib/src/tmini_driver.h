@@ -20,14 +20,13 @@
 
 #include "tmini/tmini.h"
 
-/* How long the driver waits, in milliseconds, where nobody needs to choose. */
+/* How long the driver waits, in milliseconds, where no user needs to choose. */
 #define TMINI_STOP_TIMEOUT_MS 600     /* Twice the longest tail seen after a stop (section 9.10). */
 #define TMINI_WRITE_TIMEOUT_MS 100    /* For the port to take two bytes, of 87 us. */
 #define TMINI_SPIN_UP_TIMEOUT_MS 3000 /* From the start reply to the first packet. */
 #define TMINI_DATA_TIMEOUT_MS 1000    /* Without a valid packet for this long it is lost. */
-#define TMINI_ROTATION_TIMEOUT_MS 3000 /* No range and no start packet: it does not turn. */
-#define TMINI_REBOOT_TIME_MS 5000      /* "Some seconds" (section 9.11). */
-#define TMINI_BACK_OFF_MS 500          /* The first pause after an attempt that failed. */
+#define TMINI_REBOOT_TIME_MS 5000     /* "Some seconds" (section 9.11). */
+#define TMINI_BACK_OFF_MS 500         /* The first pause after an attempt that failed. */
 
 /* How far the frequency that is set may be from the wanted one: half the finest step. */
 #define TMINI_FREQUENCY_TOLERANCE_CHZ 5
@@ -72,11 +71,11 @@ typedef enum {
 /* Result of a command: TMINI_OK, an error, or this. */
 #define TMINI_UNDER_WAY 1
 
-/* Begins an operation, in the place of one that may be under way, and names it by its command;
+/* Begins an operation, in the place of one that may be under way, named by the event of its end;
  * first comes a stop, whose bytes leave with the next tmini_command_poll(). A time-out is followed
- * by another attempt, up to `attempts` in all. TMINI_COMMAND_GET_FREQUENCY also sets the wanted
+ * by another attempt, up to `attempts` in all. TMINI_EVENT_FREQUENCY also sets the wanted
  * frequency, if there is one. */
-void tmini_command_begin(tmini_t *lidar, tmini_command_code_t operation, uint8_t attempts);
+void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, uint8_t attempts);
 
 /* The line is quiet: the next command of the operation may be sent. Called from above, after
  * tmini_command_begin(), when the lidar is known to be idle: then it needs no stop before. */
@@ -86,7 +85,7 @@ int tmini_command_proceed(tmini_t *lidar);
 int tmini_command_poll(tmini_t *lidar);
 
 /* For how long tmini_command_poll() has nothing to do unless bytes come; 0: look each time. */
-uint32_t tmini_command_idle_ms(const tmini_t *lidar);
+uint16_t tmini_command_idle_ms(const tmini_t *lidar);
 
 /* The awaited reply has come, with this content. */
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content);
@@ -115,8 +114,11 @@ void tmini_recovery_start(tmini_t *lidar, bool is_idle);
 /* The same for a lidar that has been lost: from where the ladder stands. */
 void tmini_recovery_begin(tmini_t *lidar);
 
+/* Asks the port to start its reception anew, if it can: after an attempt that failed. */
+void tmini_recovery_restart_reception(const tmini_t *lidar);
+
 /* `operation` has ended, well or not: goes on with the next. `is_idle`: as above. */
-void tmini_recovery_go_on(tmini_t *lidar, tmini_command_code_t operation, int result, bool is_idle);
+void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle);
 
 /* The lidar is back, by an attempt or by itself. */
 static inline void tmini_recovery_end(tmini_t *lidar)
@@ -124,7 +126,7 @@ static inline void tmini_recovery_end(tmini_t *lidar)
     lidar->recovery.recoveries++;
 }
 
-/* A complete revolution has come, or a command from the user: the next loss is a new one. */
+/* It has started, or a complete revolution has come: the next loss is a new one. */
 static inline void tmini_recovery_forget(tmini_t *lidar)
 {
     lidar->recovery.attempts = 0;
@@ -133,23 +135,21 @@ static inline void tmini_recovery_forget(tmini_t *lidar)
 /* ---------------------------------------------------------------------------- tmini_monitor.c */
 
 /* Scanning begins, anew or again: nothing continues what was before. */
-void tmini_monitor_begin(tmini_t *lidar);
+void tmini_monitor_begin(tmini_monitor_t *monitor);
 
-/* Takes the latest packet, and what it shows of the revolution that it ends. True if a complete
- * revolution has ended with it. */
-bool tmini_monitor_packet(tmini_t *lidar);
+/* What a packet shows of the lidar's turning. */
+typedef enum {
+    TMINI_TURN_GOES_ON,
+    TMINI_TURN_WHOLE,   /* A complete revolution has ended with it. */
+    TMINI_TURN_OFF,     /* Revolutions take another time than wanted: reported once. */
+    TMINI_TURN_ENDLESS, /* Packets come, with ranges, but no start packets: the lidar is lost. */
+} tmini_turn_t;
 
-/* True, once, if the lidar turns otherwise than wanted. */
-bool tmini_monitor_wants_frequency(tmini_t *lidar);
+/* Takes the latest packet, and what it shows of the revolution it ends; `wanted_chz` 0: any. */
+tmini_turn_t tmini_monitor_packet(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
+                                  uint16_t wanted_chz);
 
 /* The wanted frequency is another now. */
-void tmini_monitor_forget_frequency(tmini_t *lidar);
-
-/* Looks after time while scanning. False if packets come, with ranges, but no start packets: the
- * lidar is lost. */
-bool tmini_monitor_poll(tmini_t *lidar);
-
-/* For how long tmini_monitor_poll() has nothing to do. */
-uint32_t tmini_monitor_idle_ms(const tmini_t *lidar);
+void tmini_monitor_forget_frequency(tmini_monitor_t *monitor);
 
 #endif

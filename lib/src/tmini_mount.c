@@ -4,12 +4,20 @@
 #include "tmini/tmini_mount.h"
 
 #define Q6_PER_DEGREE 64
+#define CIRCLE_DEG 360
 
-/* Whole degrees, negative ones too, as an angle of 0 to 23039. */
+/* Whole degrees, negative ones too, as an angle of 0 to 23039. This is done for each point: a
+ * division takes an 8-bit machine longer than all the rest. */
 static uint16_t from_degrees(int16_t degrees)
 {
-    const int16_t within = (int16_t)(degrees % 360);
-    return (uint16_t)((within < 0 ? within + 360 : within) * Q6_PER_DEGREE);
+    int16_t within = degrees;
+    while (within < 0) {
+        within = (int16_t)(within + CIRCLE_DEG);
+    }
+    while (within >= CIRCLE_DEG) {
+        within = (int16_t)(within - CIRCLE_DEG);
+    }
+    return (uint16_t)(within * Q6_PER_DEGREE);
 }
 
 uint16_t tmini_mount_angle(const tmini_mount_t *mount, uint16_t angle_q6)
@@ -22,7 +30,7 @@ static bool is_in_arc(const tmini_arc_t *arc, uint16_t angle_q6)
 {
     const uint16_t from_q6 = from_degrees(arc->from_deg);
     const uint16_t wide_q6 = tmini_clockwise(from_q6, from_degrees(arc->to_deg));
-    const bool is_all_around = (int32_t)arc->to_deg - arc->from_deg >= 360;
+    const bool is_all_around = (int32_t)arc->to_deg - arc->from_deg >= CIRCLE_DEG;
     return is_all_around || tmini_clockwise(from_q6, angle_q6) <= wide_q6;
 }
 
@@ -56,7 +64,7 @@ void tmini_mount_step(const void *mount, tmini_scan_t *scan)
         return;
     }
     scan->upside_down = mounted->upside_down;
-    for (size_t i = 0; i < scan->count; i++) {
+    for (uint16_t i = 0; i < scan->count; i++) {
         tmini_mount_point(mounted, &scan->points[i]);
     }
 }

@@ -12,7 +12,7 @@ enum verdict { NOT_A_FRAME, INCOMPLETE, COMPLETE };
 /* The start signs (sections 4 and 5). */
 enum { PACKET_FIRST = 0xAA, PACKET_SECOND = 0x55, REPLY_FIRST = 0xA5, REPLY_SECOND = 0x5A };
 
-/* Offsets in a reply's header behind the start sign (section 4); a packet's are in
+/* Offsets in a reply's header after the start sign (section 4); a packet's are in
  * tmini_packet_header.h. */
 enum { REPLY_LENGTH = 0, REPLY_MODE_AND_LENGTH = 3, REPLY_TYPE = 4 };
 
@@ -23,7 +23,7 @@ enum { REPLY_LENGTH = 0, REPLY_MODE_AND_LENGTH = 3, REPLY_TYPE = 4 };
 
 /* -------------------------------------------------------------------------------- the checksum */
 
-/* What so many samples contribute, at least one: S1 and S2 count in the low byte, S3 in the high
+/* What this many samples contribute, at least one: S1 and S2 count in the low byte, S3 in the high
  * byte (section 5). */
 static unsigned xor_samples(const uint8_t *sample, size_t count)
 {
@@ -55,7 +55,7 @@ static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
 }
 
 /* The same of samples in one piece, most of them by blocks. An address that is `ahead` above a
- * multiple of 4 becomes one by so many samples of three bytes. */
+ * multiple of 4 becomes one by that many samples of three bytes. */
 TMINI_NOINLINE static unsigned xor_piece(const uint8_t *sample, size_t count)
 {
     unsigned sum = 0;
@@ -216,14 +216,14 @@ static void begin_candidate(tmini_parser_t *parser)
 TMINI_NOINLINE static void discard_skipped(tmini_parser_t *parser, size_t count)
 {
     tmini_frame_t *const frame = &parser->frame;
-    const size_t room = TMINI_GAP_UNKNOWN - (size_t)frame->gap;
+    const uint32_t gap = frame->gap + (uint32_t)count;
     tmini_ring_discard(frame->ring, count);
-    frame->gap = (uint16_t)(frame->gap + (count < room ? count : room));
+    frame->gap = (uint16_t)(gap < TMINI_GAP_UNKNOWN ? gap : TMINI_GAP_UNKNOWN);
     parser->counters.bytes_skipped += (uint32_t)count;
     begin_candidate(parser);
 }
 
-/* Skips the candidate's first byte, and those behind it that can begin no frame, as far as they lie
+/* Skips the candidate's first byte, and those after it that can begin no frame, as far as they lie
  * in one piece and there is effort left. */
 static void skip(tmini_parser_t *parser, size_t unread)
 {
@@ -241,8 +241,9 @@ static void skip(tmini_parser_t *parser, size_t unread)
     parser->effort = (uint16_t)(parser->effort + skipped + TMINI_CANDIDATE_EFFORT);
 }
 
-/* The unread bytes, less those that DMA may have overwritten: they are dropped. Behind a lap that
- * nobody saw (tmini_ring_gap()) so are those that may have been read before, if there was none. */
+/* The unread bytes, less those that DMA may have overwritten: they are dropped. After laps that
+ * were not observed (tmini_ring_gap()) so are those that may have been read before, if there were
+ * none: what is left of the last lap is new in either case. */
 static size_t intact_bytes(tmini_parser_t *parser)
 {
     tmini_ring_t *const ring = parser->frame.ring;
@@ -253,8 +254,8 @@ static size_t intact_bytes(tmini_parser_t *parser)
     if (!tmini_ring_is_dma(ring)) {
         return ahead - TMINI_RING_CLOSED; /* It is closed. */
     }
-    const size_t beyond = ahead - ring->size; /* Of less than a lap: more than any window. */
-    const size_t kept = beyond < ring->window ? beyond : ring->window;
+    const size_t fresh = ahead < ring->size ? ahead : ahead & (ring->size - 1);
+    const size_t kept = fresh < ring->window ? fresh : ring->window;
     const size_t lost = ahead - kept;
     tmini_ring_discard(ring, lost);
     begin_candidate(parser);
@@ -376,20 +377,22 @@ void tmini_parser_counters(const tmini_parser_t *parser, tmini_parser_counters_t
     counters->bytes_overrun += (uint32_t)tmini_ring_overrun(parser->frame.ring);
 }
 
-void tmini_parser_skip_to(tmini_parser_t *parser, size_t position)
+void tmini_parser_skip_all(tmini_parser_t *parser)
 {
     release_frame(parser);
-    const size_t count = tmini_ring_distance(tmini_parser_position(parser), position);
-    if (count > 0 && count <= tmini_ring_unread(parser->frame.ring)) {
+    const size_t count = tmini_ring_unread(parser->frame.ring);
+    if (count > 0) {
         parser->frame.last_skipped = tmini_ring_peek(parser->frame.ring, count - 1);
         discard_skipped(parser, count);
     }
 }
 
-void tmini_parser_abandon(tmini_parser_t *parser)
+bool tmini_parser_abandon(tmini_parser_t *parser)
 {
     const size_t unread = tmini_ring_unread(parser->frame.ring);
-    if (unread > 0 && unread < parser->need) {
-        skip(parser, unread);
+    if (unread == 0 || unread >= parser->need) {
+        return false;
     }
+    skip(parser, unread);
+    return true;
 }

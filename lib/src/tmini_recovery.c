@@ -14,48 +14,57 @@
 #define FIRST_ATTEMPT (REBOOT_AFTER + 1)
 
 /* In the place of an operation that has ended: none, or a pause. */
-#define NO_OPERATION ((tmini_command_code_t)0)
+#define NO_OPERATION TMINI_EVENT_NONE
+
+TMINI_NOINLINE void tmini_recovery_restart_reception(const tmini_t *lidar)
+{
+    const tmini_port_t *const port = lidar->link.port;
+    if (port->restart != NULL) {
+        port->restart(lidar->link.port_context);
+    }
+}
 
 /* An attempt has failed: a pause, and then the next. */
 static void back_off(tmini_t *lidar)
 {
+    tmini_recovery_restart_reception(lidar);
     tmini_recovery_t *const recovery = &lidar->recovery;
-    const uint32_t longer_ms =
-        recovery->attempts == FIRST_ATTEMPT ? TMINI_BACK_OFF_MS : (uint32_t)recovery->pause_ms * 2;
     const uint16_t max_ms = lidar->link.timing->back_off_max_ms;
-    recovery->attempts = (uint16_t)(recovery->attempts < REBOOT_AFTER ? recovery->attempts + 1 : 1);
-    recovery->pause_ms = (uint16_t)(longer_ms < max_ms ? longer_ms : max_ms);
-    tmini_command_wait(lidar, recovery->pause_ms);
+    const uint32_t pause_ms = (uint32_t)TMINI_BACK_OFF_MS << recovery->doublings;
+    const bool is_longest = pause_ms >= max_ms;
+    recovery->attempts = (uint8_t)(recovery->attempts < REBOOT_AFTER ? recovery->attempts + 1 : 1);
+    recovery->doublings = (uint8_t)(recovery->doublings + !is_longest);
+    tmini_command_wait(lidar, is_longest ? max_ms : (uint16_t)pause_ms);
 }
 
 /* What comes after an operation that has ended. A reboot takes seconds, and a lidar that is only
  * unplugged does not hear it: first what is quick. Scanning matters more than the frequency: it
  * follows however the frequency's setting ended. */
-static tmini_command_code_t next_operation(const tmini_t *lidar, tmini_command_code_t ended)
+static tmini_event_t next_operation(const tmini_t *lidar, tmini_event_t ended)
 {
-    if (ended == TMINI_COMMAND_GET_FREQUENCY) {
-        return TMINI_COMMAND_START;
+    if (ended == TMINI_EVENT_FREQUENCY) {
+        return TMINI_EVENT_STARTED;
     }
     if (ended == NO_OPERATION && lidar->recovery.attempts == REBOOT_AFTER) {
-        return TMINI_COMMAND_REBOOT;
+        return TMINI_EVENT_REBOOTED;
     }
-    return lidar->wanted_chz != 0 ? TMINI_COMMAND_GET_FREQUENCY : TMINI_COMMAND_START;
+    return lidar->wanted_chz != 0 ? TMINI_EVENT_FREQUENCY : TMINI_EVENT_STARTED;
 }
 
-static void count(tmini_t *lidar, tmini_command_code_t operation)
+static void count(tmini_t *lidar, tmini_event_t operation)
 {
-    if (operation == TMINI_COMMAND_REBOOT) {
+    if (operation == TMINI_EVENT_REBOOTED) {
         lidar->recovery.reboots++;
-    } else if (operation == TMINI_COMMAND_START && lidar->state == TMINI_STATE_RECOVERING) {
+    } else if (operation == TMINI_EVENT_STARTED && lidar->state == TMINI_STATE_RECOVERING) {
         lidar->recovery.restarts++;
     }
 }
 
 /* One attempt each: the ladder repeats them, not the command. Without the ladder the command
  * does. */
-static void make_attempt(tmini_t *lidar, tmini_command_code_t ended, bool is_idle)
+static void make_attempt(tmini_t *lidar, tmini_event_t ended, bool is_idle)
 {
-    const tmini_command_code_t operation = next_operation(lidar, ended);
+    const tmini_event_t operation = next_operation(lidar, ended);
     count(lidar, operation);
     tmini_command_begin(lidar, operation,
                         lidar->is_recovery_off ? lidar->link.timing->max_attempts : 1);
@@ -64,29 +73,39 @@ static void make_attempt(tmini_t *lidar, tmini_command_code_t ended, bool is_idl
     }
 }
 
+/* Listening, nothing is sent: until a packet comes. */
 void tmini_recovery_start(tmini_t *lidar, bool is_idle)
 {
     lidar->recovery.attempts = FIRST_ATTEMPT;
-    make_attempt(lidar, NO_OPERATION, is_idle);
+    lidar->recovery.doublings = 0;
+    if (lidar->is_listen_only) {
+        tmini_command_wait(lidar, TMINI_DATA_TIMEOUT_MS);
+    } else {
+        make_attempt(lidar, NO_OPERATION, is_idle);
+    }
 }
 
 void tmini_recovery_begin(tmini_t *lidar)
 {
     lidar->recovery.losses++;
-    if (lidar->is_recovery_off || lidar->is_listen_only) {
-        tmini_command_wait(lidar, 0);
-    } else if (lidar->recovery.attempts == 0) {
-        tmini_recovery_start(lidar, false);
-    } else {
+    if (lidar->recovery.attempts > 0) {
         back_off(lidar); /* Lost again before it made a complete revolution. */
+        return;
+    }
+    tmini_recovery_restart_reception(lidar);
+    if (lidar->is_recovery_off) {
+        tmini_command_wait(lidar, 0);
+    } else {
+        tmini_recovery_start(lidar, false);
     }
 }
 
 /* A start goes on until a packet comes; what ends well is a pause, a reboot, or a frequency that
  * has been set: then the line is quiet. */
-void tmini_recovery_go_on(tmini_t *lidar, tmini_command_code_t operation, int result, bool is_idle)
+void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
-    if (result == TMINI_OK || operation == TMINI_COMMAND_GET_FREQUENCY) {
+    const bool is_rung = result == TMINI_OK || operation == TMINI_EVENT_FREQUENCY;
+    if (is_rung && !lidar->is_listen_only) {
         make_attempt(lidar, operation, is_idle);
     } else {
         back_off(lidar);

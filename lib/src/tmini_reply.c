@@ -30,13 +30,11 @@ bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *head
     return true;
 }
 
+typedef char information_is_sent_as_it_is_kept[sizeof(tmini_info_t) == TMINI_INFO_SIZE ? 1 : -1];
+
 void tmini_reply_info(const uint8_t content[TMINI_INFO_SIZE], tmini_info_t *info)
 {
-    info->model = content[0];
-    info->firmware_minor = content[1];
-    info->firmware_major = content[2];
-    info->hardware = content[3];
-    memcpy(info->serial, &content[4], TMINI_SERIAL_DIGITS);
+    memcpy(info, content, TMINI_INFO_SIZE);
 }
 
 void tmini_reply_health(const uint8_t content[TMINI_HEALTH_SIZE], tmini_health_t *health)

@@ -15,17 +15,16 @@ tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size,
         return TMINI_ERROR_ARGUMENT;
     }
     ring->memory = memory;
-    ring->size = size;
-    ring->mask = size - 1;
     ring->window = dma ? size / 2 : size;
-    tmini_store(&ring->limit, size); /* Last: until then a byte that comes early is refused. */
+    tmini_store(&ring->size, size); /* Last: until then a byte that comes early is refused. */
     return TMINI_OK;
 }
 
-/* How far head may go. Of a closed ring it is more than the size. */
-static size_t room_ahead(const tmini_ring_t *ring)
+/* How far head may go: up to one size ahead of the tail. Of a closed ring it is more than the
+ * size. */
+static size_t room_ahead(const tmini_ring_t *ring, size_t head)
 {
-    return tmini_load(&ring->limit) - ring->head;
+    return tmini_load(&ring->tail) + ring->size - head;
 }
 
 /* The next byte that is put looks at the limit first. */
@@ -47,13 +46,14 @@ static void refuse(tmini_ring_t *ring, size_t room, size_t count)
 void tmini_ring_put_at_stop(tmini_ring_t *ring, uint8_t byte)
 {
     const size_t head = ring->head;
-    const size_t room = room_ahead(ring);
+    const size_t room = room_ahead(ring, head);
     if (room == 0 || room > ring->size) {
         refuse(ring, room, 1);
         return;
     }
-    uint8_t *const place = &ring->memory[head & ring->mask];
-    const size_t to_end = ring->size - (head & ring->mask);
+    const size_t at = head & (ring->size - 1);
+    uint8_t *const place = &ring->memory[at];
+    const size_t to_end = ring->size - at;
     *place = byte;
     ring->origin = (uintptr_t)place - head;
     ring->stop = head + (room < to_end ? room : to_end);
@@ -63,11 +63,11 @@ void tmini_ring_put_at_stop(tmini_ring_t *ring, uint8_t byte)
 size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
 {
     const size_t head = ring->head;
-    const size_t room = room_ahead(ring);
+    const size_t room = room_ahead(ring, head);
     const size_t usable = room <= ring->size ? room : 0;
     const size_t taken = count < usable ? count : usable;
     if (taken > 0) {
-        const size_t at = head & ring->mask;
+        const size_t at = head & (ring->size - 1);
         const size_t to_end = ring->size - at;
         const size_t first = taken < to_end ? taken : to_end;
         memcpy(&ring->memory[at], bytes, first);
@@ -85,7 +85,7 @@ size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
 /* What the consumer does meanwhile can only make more room, never less. */
 size_t tmini_ring_room(const tmini_ring_t *ring)
 {
-    const size_t room = room_ahead(ring);
+    const size_t room = room_ahead(ring, ring->head);
     return room <= ring->size ? room : 0;
 }
 
@@ -94,25 +94,36 @@ size_t tmini_ring_room(const tmini_ring_t *ring)
 void tmini_ring_publish(tmini_ring_t *ring, size_t position)
 {
     const size_t head = ring->head;
-    move_head(ring, head + ((position - head) & ring->mask));
+    if (ring->size > 0) {
+        move_head(ring, head + ((position - head) & (ring->size - 1)));
+    }
 }
 
 void tmini_ring_gap(tmini_ring_t *ring)
 {
     if (tmini_ring_is_dma(ring)) {
-        move_head(ring, ring->head + ring->size); /* A lap that nobody saw. */
-    } else if (room_ahead(ring) <= ring->size) {
+        move_head(ring, ring->head + ring->size); /* A lap that was not seen. */
+    } else if (room_ahead(ring, ring->head) <= ring->size) {
         /* It is open: closed as by a refused byte, but there is no number to count. */
         move_head(ring, ring->head + TMINI_RING_CLOSED);
     }
+}
+
+bool tmini_ring_intact(const tmini_ring_t *ring)
+{
+    if (!tmini_ring_is_dma(ring)) {
+        return true;
+    }
+    tmini_fence(); /* What has been read was read before the producer's index is read again. */
+    return tmini_ring_ahead(ring) <= ring->window;
 }
 
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count)
 {
     /* In locals, because `bytes` might overlap the ring for all the compiler knows. */
     const uint8_t *const memory = ring->memory;
-    const size_t mask = ring->mask;
-    size_t index = ring->limit + offset; /* A size ahead of the tail is the same place. */
+    const size_t mask = ring->size - 1;
+    size_t index = ring->tail + offset;
     for (const uint8_t *const end = bytes + count; bytes != end; bytes++) {
         *bytes = memory[index++ & mask];
     }
@@ -121,10 +132,10 @@ void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, si
 /* From now on the producer may write there; so everything must have been read by now. */
 void tmini_ring_discard(tmini_ring_t *ring, size_t count)
 {
-    tmini_store(&ring->limit, ring->limit + count);
+    tmini_store(&ring->tail, ring->tail + count);
 }
 
 void tmini_ring_open(tmini_ring_t *ring)
 {
-    tmini_store(&ring->limit, ring->limit + TMINI_RING_CLOSED);
+    tmini_store(&ring->tail, ring->tail + TMINI_RING_CLOSED);
 }

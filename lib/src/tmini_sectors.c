@@ -70,8 +70,9 @@ bool tmini_sectors_add_packet(tmini_sectors_t *sectors, const tmini_packet_t *pa
     }
     if (tmini_packet_is_start(packet)) {
         const bool is_whole = sectors->has_begun;
-        sectors->first = (tmini_point_t){0};
-        (void)tmini_packet_point(packet, 0, &sectors->first);
+        if (!tmini_packet_point(packet, 0, &sectors->first)) {
+            sectors->first = (tmini_point_t){0}; /* DMA has overwritten it: no range. */
+        }
         sectors->has_begun = true;
         sectors->has_ended = true;
         return is_whole;

@@ -14,7 +14,11 @@ static const unsigned long BAUD_RATE = 230400;
 #if defined(ESP32) || defined(ESP8266) || TMINI_LIDAR_ON_RP2040
 /* The core's own receive buffer: 44 ms of a busy line, instead of 11 with 256 bytes, or 1 with
  * 32. */
-static const size_t SERIAL_RX_SIZE = 1024;
+static const int SERIAL_RX_SIZE = 1024;
+#elif defined(SERIAL_RX_BUFFER_SIZE)
+static const int SERIAL_RX_SIZE = SERIAL_RX_BUFFER_SIZE; /* As the core has it. */
+#else
+static const int SERIAL_RX_SIZE = 0x7FFF; /* Not known. */
 #endif
 
 /* Where the core's receive buffer can be chosen, that is before the port is opened. On the ESP32 an
@@ -52,7 +56,7 @@ static bool isOpen(TMiniSerial &serial)
 #endif
 }
 
-const tmini_port_t TMiniLidarBase::port_ = {writeBytes, nowMs, NULL, NULL};
+const tmini_port_t TMiniLidarBase::port_ = {writeBytes, nowMs, NULL, restart};
 
 TMiniPoint TMiniPoints::operator[](size_t index) const
 {
@@ -60,28 +64,32 @@ TMiniPoint TMiniPoints::operator[](size_t index) const
     static_cast<tmini_point_t &>(point) = tmini_point_t();
     if (scan_ != NULL) {
         static_cast<tmini_point_t &>(point) = scan_[index];
-    } else {
-        tmini_packet_point(packet_, index, &point);
+    } else if (tmini_packet_point(&lidar_.packet(), index, &point) && lidar_.mount_ != NULL) {
+        lidar_.mountPoint_(lidar_.mount_, &point);
     }
     return point;
 }
 
-TMiniLidarBase::TMiniLidarBase(uint8_t *rx, size_t rxSize, tmini_point_t *points, size_t maxPoints)
-    : lidar_(), config_(), serial_(NULL), event_(TMINI_EVENT_NONE)
+TMiniLidarBase::TMiniLidarBase(uint8_t *rx, size_t rxSize, tmini_point_t *points,
+                               tmini_point_t *spare, size_t maxPoints)
+    : lidar_(), config_(), stream_(NULL), serial_(NULL), mount_(NULL), mountPoint_(NULL),
+      event_(TMINI_EVENT_NONE), status_(TMINI_OK), overruns_(0), rxPin_(-1), txPin_(-1),
+      beforeLoss_(0)
 {
     config_.port = &port_;
     config_.port_context = this;
     config_.rx_buffer = rx;
     config_.rx_size = rxSize;
     config_.points = points;
+    config_.spare_points = spare;
     config_.max_points = maxPoints;
 }
 
 /* Two bytes always fit in the core's transmit buffer: nothing else is ever sent. */
 int TMiniLidarBase::writeBytes(void *context, const uint8_t *bytes, size_t count)
 {
-    Stream *const serial = static_cast<TMiniLidarBase *>(context)->serial_;
-    return static_cast<int>(serial->write(bytes, count));
+    Stream *const stream = static_cast<TMiniLidarBase *>(context)->stream_;
+    return static_cast<int>(stream->write(bytes, count));
 }
 
 uint32_t TMiniLidarBase::nowMs(void *)
@@ -89,43 +97,120 @@ uint32_t TMiniLidarBase::nowMs(void *)
     return static_cast<uint32_t>(millis());
 }
 
-bool TMiniLidarBase::listen(Stream &serial)
+static void open(TMiniSerial &serial)
 {
-    serial_ = &serial;
-    event_ = TMINI_EVENT_NONE;
-    return tmini_init(&lidar_, &config_) == TMINI_OK;
-}
-
-bool TMiniLidarBase::begin(Stream &serial)
-{
-    return listen(serial);
-}
-
-bool TMiniLidarBase::begin(TMiniSerial &serial)
-{
-    enlarge(serial);
     serial.begin(BAUD_RATE);
     quicken(serial);
-    return isOpen(serial) && listen(serial);
 }
 
 #if defined(ESP32)
-bool TMiniLidarBase::begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin)
+/* An open port would keep its buffer; and where its pins are not given, early cores take others. */
+static void open(TMiniSerial &serial, int8_t rxPin, int8_t txPin)
 {
     if (isOpen(serial)) {
-        serial.end(); /* Open, it would keep its buffer. */
+        serial.end();
     }
     enlarge(serial);
     serial.begin(BAUD_RATE, SERIAL_8N1, rxPin, txPin);
     quicken(serial);
-    return isOpen(serial) && listen(serial);
+}
+#endif
+
+/* Whatever has stopped or changed the port. */
+void TMiniLidarBase::restart(void *context)
+{
+    TMiniLidarBase *const port = static_cast<TMiniLidarBase *>(context);
+#if defined(ESP32)
+    if (port->serial_ != NULL && port->rxPin_ >= 0) {
+        open(*port->serial_, port->rxPin_, port->txPin_);
+    }
+#else
+    if (port->serial_ != NULL) {
+        open(*port->serial_);
+    }
+#endif
+}
+
+/* As tmini_mount_step(), which would take longer on an 8-bit board than its buffer lasts. */
+void TMiniLidarBase::mountScan(const void *context, tmini_scan_t *scan)
+{
+    TMiniLidarBase *const port = static_cast<TMiniLidarBase *>(const_cast<void *>(context));
+    scan->upside_down = port->mount_->upside_down;
+    for (uint16_t i = 0; i < scan->count; i++) {
+        port->mountPoint_(port->mount_, &scan->points[i]);
+        if (i % 8 == 0) {
+            port->receive();
+        }
+    }
+}
+
+bool TMiniLidarBase::succeeds(tmini_status_t status)
+{
+    status_ = status;
+    return status == TMINI_OK;
+}
+
+/* In 0.01 Hz. What is out of range becomes a frequency that is refused; so does what is no
+ * number. */
+static uint16_t toHundredths(float hertz)
+{
+    if (!(hertz >= 6.0f && hertz <= 12.0f)) {
+        return 1;
+    }
+    return static_cast<uint16_t>(static_cast<uint16_t>(hertz * 10.0f + 0.5f) * 10u);
+}
+
+bool TMiniLidarBase::listen(Stream &serial, TMiniSerial *port, float hertz)
+{
+    stream_ = &serial;
+    serial_ = port;
+    event_ = TMINI_EVENT_NONE;
+    overruns_ = 0;
+    beforeLoss_ = 0;
+    config_.frequency_chz = hertz == 0.0f ? 0 : toHundredths(hertz);
+    if (mount_ != NULL && config_.step != NULL && config_.step != mountScan) {
+        return succeeds(TMINI_ERROR_ARGUMENT); /* There is room for one. */
+    }
+    if (mount_ != NULL && config_.points != NULL) {
+        config_.step = mountScan;
+        config_.step_data = this;
+    }
+    return succeeds(tmini_init(&lidar_, &config_));
+}
+
+bool TMiniLidarBase::isReady(TMiniSerial &serial)
+{
+    return succeeds(isOpen(serial) ? TMINI_OK : TMINI_ERROR_WRITE);
+}
+
+bool TMiniLidarBase::begin(Stream &serial, float hertz)
+{
+    return listen(serial, NULL, hertz);
+}
+
+bool TMiniLidarBase::begin(TMiniSerial &serial, float hertz)
+{
+    enlarge(serial);
+    open(serial);
+    rxPin_ = -1;
+    return isReady(serial) && listen(serial, &serial, hertz);
+}
+
+#if defined(ESP32)
+bool TMiniLidarBase::begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin, float hertz)
+{
+    open(serial, rxPin, txPin);
+    rxPin_ = rxPin;
+    txPin_ = txPin;
+    return isReady(serial) && listen(serial, &serial, hertz);
 }
 #elif TMINI_LIDAR_ON_RP2040
-bool TMiniLidarBase::begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin)
+bool TMiniLidarBase::begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin, float hertz)
 {
     serial.end(); /* Open, it would keep its pins. */
-    return serial.setRX(static_cast<pin_size_t>(rxPin)) &&
-           serial.setTX(static_cast<pin_size_t>(txPin)) && begin(serial);
+    const bool fit = serial.setRX(static_cast<pin_size_t>(rxPin)) &&
+                     serial.setTX(static_cast<pin_size_t>(txPin));
+    return succeeds(fit ? TMINI_OK : TMINI_ERROR_ARGUMENT) && begin(serial, hertz);
 }
 #endif
 
@@ -134,38 +219,81 @@ static size_t smaller(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* Only what is there is asked for, so that readBytes() has nothing to wait for; and only what the
- * lidar's ring has room for: the rest waits in the core's buffer. */
-size_t TMiniLidarBase::receivable()
+/* An AVR's readBytes() looks at the clock for each byte, which takes three times as long as the
+ * byte's own reading; elsewhere it takes a block at once. */
+static size_t readSome(Stream &stream, uint8_t *bytes, size_t count)
 {
-    const int waiting = serial_->available();
-    return smaller(waiting > 0 ? static_cast<size_t>(waiting) : 0, tmini_feed_room(&lidar_));
+#if defined(ARDUINO_ARCH_AVR)
+    size_t done = 0;
+    for (int byte = 0; done < count && (byte = stream.read()) >= 0; done++) {
+        bytes[done] = static_cast<uint8_t>(byte);
+    }
+    return done;
+#else
+    return stream.readBytes(bytes, count);
+#endif
 }
 
-bool TMiniLidarBase::receive()
+/* Only what is there is asked for, so that readBytes() has nothing to wait for. False if the stream
+ * promises bytes and gives none. */
+bool TMiniLidarBase::take(size_t count)
 {
     uint8_t chunk[64];
-    size_t left = receivable();
-    while (left > 0) {
-        const size_t count = serial_->readBytes(chunk, smaller(left, sizeof chunk));
-        if (count == 0) {
+    while (count > 0) {
+        const size_t taken = readSome(*stream_, chunk, smaller(count, sizeof chunk));
+        if (taken == 0) {
             return false;
         }
-        tmini_feed(&lidar_, chunk, count);
-        left -= count;
+        tmini_feed(&lidar_, chunk, taken);
+        count -= taken;
     }
     return true;
 }
 
-/* Polling makes room: nothing has happened only when nothing is left that could be received. */
+/* A core's buffer that is full drops what comes: the gap is noted once all is taken that it held
+ * then. True if some was left for lack of room. */
+bool TMiniLidarBase::receiveSome()
+{
+    const int held = stream_->available();
+    const size_t waiting = held > 0 ? static_cast<size_t>(held) : 0;
+    size_t count = smaller(waiting, tmini_feed_room(&lidar_));
+    if (serial_ != NULL && held >= SERIAL_RX_SIZE - 1 && beforeLoss_ == 0) {
+        beforeLoss_ = waiting;
+    }
+    const bool hasLoss = beforeLoss_ > 0;
+    const size_t intact = hasLoss ? beforeLoss_ : waiting;
+    count = smaller(count, intact);
+    if (!take(count)) {
+        return false;
+    }
+    tmini_feed_held(&lidar_, intact - count);
+    beforeLoss_ -= hasLoss ? count : 0;
+    if (hasLoss && beforeLoss_ == 0) {
+        overruns_++;
+        tmini_feed_gap(&lidar_);
+    }
+    return count < waiting;
+}
+
+void TMiniLidarBase::receive()
+{
+    if (stream_ != NULL) {
+        receiveSome();
+    }
+}
+
+/* What comes meanwhile is left for the next time, so that this ends. */
 tmini_event_t TMiniLidarBase::loop()
 {
+    bool more = stream_ != NULL;
     event_ = TMINI_EVENT_NONE;
-    bool can_receive = serial_ != NULL;
-    while (can_receive && event_ == TMINI_EVENT_NONE) {
-        can_receive = receive();
+    while (more && event_ == TMINI_EVENT_NONE) {
+        more = receiveSome();
         event_ = tmini_poll(&lidar_);
-        can_receive = can_receive && receivable() > 0;
+        more = more && tmini_feed_room(&lidar_) > 0;
+    }
+    if (event_ == TMINI_EVENT_COMMAND_FAILED) {
+        status_ = TMINI_OK; /* What comes now is the newer reason. */
     }
     return event_;
 }
@@ -182,45 +310,61 @@ size_t TMiniLidarBase::available() const
     }
 }
 
-TMiniPoints TMiniLidarBase::points() const
+/* A scan's, not a packet's. */
+bool TMiniLidarBase::hasPoints() const
 {
-    const tmini_point_t *const scan =
-        event_ == TMINI_EVENT_SCAN ? tmini_scan(&lidar_)->points : NULL;
-    return TMiniPoints(scan, tmini_packet(&lidar_), available());
+    return event_ == TMINI_EVENT_SCAN || config_.spare_points != NULL;
+}
+
+TMiniPoints TMiniLidarBase::points()
+{
+    return hasPoints() ? TMiniPoints(*this, scan().points, scan().count)
+                       : TMiniPoints(*this, NULL, available());
+}
+
+const tmini_scan_t &TMiniLidarBase::scan() const
+{
+    return *tmini_scan(&lidar_);
+}
+
+const tmini_packet_t &TMiniLidarBase::packet() const
+{
+    return *tmini_packet(&lidar_);
 }
 
 bool TMiniLidarBase::start()
 {
-    return tmini_start(&lidar_) == TMINI_OK;
+    return succeeds(tmini_start(&lidar_));
 }
 
 bool TMiniLidarBase::stop()
 {
-    return tmini_stop(&lidar_) == TMINI_OK;
+    return succeeds(tmini_stop(&lidar_));
 }
 
 bool TMiniLidarBase::requestInfo()
 {
-    return tmini_request_info(&lidar_) == TMINI_OK;
+    return succeeds(tmini_request_info(&lidar_));
 }
 
 bool TMiniLidarBase::requestHealth()
 {
-    return tmini_request_health(&lidar_) == TMINI_OK;
+    return succeeds(tmini_request_health(&lidar_));
 }
 
 bool TMiniLidarBase::setFrequency(float hertz)
 {
-    if (!(hertz >= 6.0f && hertz <= 12.0f)) {
-        return false;
-    }
-    const uint16_t tenths = static_cast<uint16_t>(hertz * 10.0f + 0.5f);
-    return tmini_set_frequency(&lidar_, static_cast<uint16_t>(tenths * 10u)) == TMINI_OK;
+    return succeeds(tmini_set_frequency(&lidar_, toHundredths(hertz)));
 }
 
 bool TMiniLidarBase::reboot()
 {
-    return tmini_reboot(&lidar_) == TMINI_OK;
+    return succeeds(tmini_reboot(&lidar_));
+}
+
+tmini_state_t TMiniLidarBase::state() const
+{
+    return tmini_state(&lidar_);
 }
 
 bool TMiniLidarBase::isScanning() const
@@ -243,9 +387,19 @@ uint8_t TMiniLidarBase::faults() const
     return tmini_faults(&lidar_);
 }
 
+tmini_status_t TMiniLidarBase::status() const
+{
+    return status_ != TMINI_OK ? status_ : tmini_command_error(&lidar_);
+}
+
 const char *TMiniLidarBase::error() const
 {
-    return tmini_status_name(tmini_command_error(&lidar_));
+    return tmini_status_name(status());
+}
+
+uint16_t TMiniLidarBase::overruns() const
+{
+    return overruns_;
 }
 
 tmini_t *TMiniLidarBase::driver()

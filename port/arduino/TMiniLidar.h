@@ -7,22 +7,28 @@
  *     TMiniLidar lidar;
  *
  *     void setup() {
- *         lidar.begin(Serial1, 26, 27);    // ESP32: RX pin, TX pin; elsewhere begin(Serial1)
- *         lidar.start();
+ *         lidar.begin(Serial1, 10);        // 10 Hz. ESP32, own pins: begin(Serial1, 26, 27, 10)
+ *         lidar.start();                   // stands until stop()
  *     }
  *     void loop() {
  *         while (lidar.loop()) {           // as long as something happens
  *             if (lidar.available()) {
  *                 for (TMiniPoint point : lidar.points()) {
- *                     if (point.isValid()) { use(point.angleDegrees(), point.distanceMm()); }
+ *                     if (point.isValid()) { use(point.angle_q6, point.distanceMm()); }
  *                 }
  *             }
  *         }
  *     }
  *
  * Nothing waits, and nothing is allocated. TMiniLidar gathers whole revolutions (6 KB of RAM);
- * TMiniLidarStreaming hands over each packet of up to 40 points as it comes (0.8 KB). All that the
- * library can do besides is behind driver(). */
+ * TMiniLidarStreaming hands over each packet of up to 40 points as it comes (0.8 KB). What the
+ * library can do besides is reached by config(), before begin(), and driver().
+ *
+ * Time. The lidar sends a byte each 43 us; what the sketch does not take in time is lost in the
+ * core's receive buffer: 64 bytes last 2.8 ms (most boards), 1024 last 44 ms (ESP32, ESP8266,
+ * RP2040, RP2350). loop() takes them, and so does going through points(); in longer work of your
+ * own, call receive(). On an 8-bit board a float costs 10 us, and print() waits while its own 64
+ * bytes are full. */
 
 #ifndef TMINI_LIDAR_H
 #define TMINI_LIDAR_H
@@ -30,6 +36,7 @@
 #include <Arduino.h>
 
 #include "tmini/tmini.h"
+#include "tmini/tmini_mount.h"
 
 /* The class of the board's serial ports that begin() opens. That of Raspberry Pi's controllers (the
  * core of Earle Philhower) has a buffer of 32 bytes, 1.4 ms, and only its own class can enlarge
@@ -65,7 +72,10 @@ struct TMiniPoint : public tmini_point_t {
     }
 };
 
-/** The points of a scan or of a packet, for a range-based for; valid until the next loop(). */
+class TMiniLidarBase;
+
+/** The points of a scan or of a packet, for a range-based for, which also takes what the lidar
+ * sends meanwhile. */
 class TMiniPoints
 {
   public:
@@ -81,6 +91,7 @@ class TMiniPoints
         Iterator &operator++()
         {
             index_++;
+            points_.keepUp(index_);
             return *this;
         }
         bool operator!=(const Iterator &other) const
@@ -93,8 +104,8 @@ class TMiniPoints
         size_t index_;
     };
 
-    TMiniPoints(const tmini_point_t *scan, const tmini_packet_t *packet, size_t count)
-        : scan_(scan), packet_(packet), count_(count)
+    TMiniPoints(TMiniLidarBase &lidar, const tmini_point_t *scan, size_t count)
+        : lidar_(lidar), scan_(scan), count_(count)
     {
     }
     /** @endcond */
@@ -110,15 +121,17 @@ class TMiniPoints
     {
         return Iterator(*this, 0);
     }
-    /** Behind the last one. */
+    /** After the last one. */
     Iterator end() const
     {
         return Iterator(*this, count_);
     }
 
   private:
-    const tmini_point_t *scan_;
-    const tmini_packet_t *packet_;
+    inline void keepUp(size_t index) const;
+
+    TMiniLidarBase &lidar_;
+    const tmini_point_t *scan_; /* NULL: those of the packet. */
     size_t count_;
 };
 
@@ -128,101 +141,173 @@ class TMiniLidarBase
   public:
     /** Opens the serial port at the lidar's 230400 baud; on an ESP32, ESP8266, RP2040 and RP2350
      * with a large receive buffer. (On an ESP32, a port that the sketch has opened already keeps
-     * its pins, and its buffer.) False when something is wrong with the buffers' sizes; on an ESP32
-     * also when the port could not be opened. */
-    bool begin(TMiniSerial &serial);
+     * its pins, and its buffer.) `hertz`: scans per second, 6 to 12, also after a power failure; 0:
+     * whatever the lidar has. False, and then error() says why: the configuration is wrong, such as
+     * the buffers' sizes or the frequency; on an ESP32 also when the port could not be opened. */
+    bool begin(TMiniSerial &serial, float hertz = 0);
 #if defined(ESP32) || TMINI_LIDAR_ON_RP2040
     /** The same on these pins; a port that is open already is closed and opened again. */
-    bool begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin);
+    bool begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin, float hertz = 0);
 #endif
 #if TMINI_LIDAR_ON_RP2040
     /** Name the port itself (Serial1): a HardwareSerial & to it cannot enlarge its buffer. Other
      * kinds of port with a buffer of their own, such as SerialPIO: open it, then
      * begin(static_cast<Stream &>(port)). */
-    bool begin(HardwareSerial &serial) = delete;
+    bool begin(HardwareSerial &serial, float hertz = 0) = delete;
 #endif
     /** For any other Stream: the sketch has opened it, at 230400 baud. */
-    bool begin(Stream &serial);
+    bool begin(Stream &serial, float hertz = 0);
+
+    /** @name Before begin() */
+    /** @{ */
+
+    /** How the lidar is mounted, and what it is not to see: points come as the robot sees them.
+     * `mount` must outlive the lidar. Not with a `step` of yours. */
+    void setMount(const tmini_mount_t &mount)
+    {
+        mount_ = &mount;
+        mountPoint_ = tmini_mount_point; /* Here, so that it is linked only where it is used. */
+    }
+    /** One that does not outlive the call. */
+    void setMount(const tmini_mount_t &&mount) = delete;
+
+    /** Everything else that tmini_init() takes, such as `config().filter = TMINI_FILTER_BOTH` or
+     * `config().listen_only = true`. Port, buffers and frequency are begin()'s. */
+    tmini_config_t &config()
+    {
+        return config_;
+    }
+    /** @} */
 
     /** Takes what has been received, and does what is due. Returns what has happened, or
      * TMINI_EVENT_NONE (0) when nothing has: call it until then. Never waits. */
     tmini_event_t loop();
 
+    /** Takes what has been received, and nothing else: for the middle of work that takes longer
+     * than the core's buffer lasts. The lidar's own buffer lasts 22 ms per 512 bytes. */
+    void receive();
+
     /** How many points the last loop() has brought: those of a whole revolution, or when streaming
-     * those of a packet. They are there until the next loop(). */
+     * those of a packet. */
     size_t available() const;
-    /** The points of the last loop(); there until the next one. */
-    TMiniPoints points() const;
+    /** The points of the last loop(), there until the next one; with a spare buffer, those of the
+     * last scan, there until the next scan. */
+    TMiniPoints points();
+    /** The scan that points() are of, valid as long: complete, frequency, times, gaps. */
+    const tmini_scan_t &scan() const;
+    /** When streaming: the packet that points() are of, until the next loop(). */
+    const tmini_packet_t &packet() const;
 
     /** @name Commands
-     * False: not possible now. How they end comes from loop(), as the event in brackets or as
-     * TMINI_EVENT_COMMAND_FAILED; error() then says why. */
+     * False: not possible now, error() says why. How they end comes from loop(), as the event in
+     * brackets or as TMINI_EVENT_COMMAND_FAILED; error() then says why. */
     /** @{ */
-    bool start();                   /**< Starts scanning [STARTED]. */
+    bool start();                   /**< Scans until stop(), whatever happens [STARTED]. */
     bool stop();                    /**< Stops scanning [STOPPED]. */
     bool requestInfo();             /**< Asks for info() [INFO]. */
     bool requestHealth();           /**< Asks for health() [HEALTH]. */
-    bool setFrequency(float hertz); /**< Scans a second, 6 to 12 in steps of 0.1 [FREQUENCY]. */
+    bool setFrequency(float hertz); /**< Scans per second, 6 to 12 in steps of 0.1 [FREQUENCY]. */
     bool reboot();                  /**< Restarts the lidar [REBOOTED]. */
     /** @} */
 
     /** True while packets come. */
     bool isScanning() const;
+    /** What the lidar does. */
+    tmini_state_t state() const;
     /** Model, versions, serial number; after TMINI_EVENT_INFO, for good. */
     const tmini_info_t &info() const;
     /** Faults by request; after TMINI_EVENT_HEALTH, until the next one. */
     const tmini_health_t &health() const;
     /** A combination of tmini_fault_t; see TMINI_EVENT_FAULTS_CHANGED. */
     uint8_t faults() const;
-    /** Why the last failed command failed, as text. */
+    /** Why the last call returned false, or else the last failed command failed; TMINI_OK: neither
+     * has happened. */
+    tmini_status_t status() const;
+    /** The same as text. */
     const char *error() const;
+    /** How often the core's receive buffer was found full, so that bytes may have been lost: the
+     * sketch was too slow. Known where its size is: begin() has set it, or the core names it (AVR,
+     * STM32). */
+    uint16_t overruns() const;
 
-    /** The library's own handle, for what has no method here: counters, CT information, states. */
+    /** The library's own handle, for what has no method here: counters, CT information. */
     tmini_t *driver();
 
   protected:
     /** For the classes below, which bring the buffers. */
-    TMiniLidarBase(uint8_t *rx, size_t rxSize, tmini_point_t *points, size_t maxPoints);
+    TMiniLidarBase(uint8_t *rx, size_t rxSize, tmini_point_t *points, tmini_point_t *spare,
+                   size_t maxPoints);
 
   private:
+    friend class TMiniPoints;
     TMiniLidarBase(const TMiniLidarBase &);
     TMiniLidarBase &operator=(const TMiniLidarBase &);
-    bool listen(Stream &serial);
-    size_t receivable();
-    bool receive();
+    bool listen(Stream &serial, TMiniSerial *port, float hertz);
+    bool isReady(TMiniSerial &serial);
+    bool succeeds(tmini_status_t status);
+    bool take(size_t count);
+    bool receiveSome();
+    bool hasPoints() const;
     static int writeBytes(void *context, const uint8_t *bytes, size_t count);
     static uint32_t nowMs(void *context);
+    static void restart(void *context);
+    static void mountScan(const void *context, tmini_scan_t *scan);
 
     static const tmini_port_t port_;
     tmini_t lidar_;
     tmini_config_t config_;
-    Stream *serial_;
+    Stream *stream_;
+    TMiniSerial *serial_; /* The same, if begin() has opened it. */
+    const tmini_mount_t *mount_;
+    void (*mountPoint_)(const tmini_mount_t *mount, tmini_point_t *point);
     tmini_event_t event_;
+    tmini_status_t status_;
+    uint16_t overruns_;
+    int8_t rxPin_; /* On an ESP32, if begin() was given them; else -1. */
+    int8_t txPin_;
+    size_t beforeLoss_; /* Bytes that wait in the core's buffer, and after them some are missing. */
 };
 
-/** A lidar with its buffers: RxSize received bytes (a power of two, from 256), MaxPoints points. */
-template <size_t RxSize, size_t MaxPoints> class TMiniLidarWith : public TMiniLidarBase
+inline void TMiniPoints::keepUp(size_t index) const
+{
+    if (index % 16 == 0) { /* A few hundred microseconds of work on an 8-bit board. */
+        lidar_.receive();
+    }
+}
+
+/** A lidar with its buffers: RxSize received bytes (a power of two, from 256), MaxPoints points;
+ * with Spare twice, so that a scan stays until the next one. */
+template <size_t RxSize, size_t MaxPoints, bool Spare = false>
+class TMiniLidarWith : public TMiniLidarBase
 {
   public:
-    TMiniLidarWith() : TMiniLidarBase(rx_, RxSize, points_, MaxPoints) {}
+    TMiniLidarWith() : TMiniLidarBase(rx_, RxSize, points_, Spare ? spare_ : NULL, MaxPoints) {}
 
   private:
     uint8_t rx_[RxSize];
     tmini_point_t points_[MaxPoints];
+    tmini_point_t spare_[Spare ? MaxPoints : 1];
 };
 
 /** The same without room for points: each packet as it comes. */
-template <size_t RxSize> class TMiniLidarWith<RxSize, 0> : public TMiniLidarBase
+template <size_t RxSize> class TMiniLidarWith<RxSize, 0, false> : public TMiniLidarBase
 {
   public:
-    TMiniLidarWith() : TMiniLidarBase(rx_, RxSize, NULL, 0) {}
+    TMiniLidarWith() : TMiniLidarBase(rx_, RxSize, NULL, NULL, 0) {}
 
   private:
     uint8_t rx_[RxSize];
 };
 
-/** Whole revolutions, in 6 KB of RAM. */
+/** Whole revolutions, in 6 KB of RAM; on an 8-bit board with smaller buffers, in 5.1 KB: room for
+ * revolutions at 6 Hz and above. */
+#if defined(ARDUINO_ARCH_AVR)
+typedef TMiniLidarWith<512, 700> TMiniLidar;
+#else
 typedef TMiniLidarWith<1024, TMINI_SCAN_POINTS_TYPICAL> TMiniLidar;
+/** The same with a spare buffer, in 11 KB: a scan stays until the next one. */
+typedef TMiniLidarWith<1024, TMINI_SCAN_POINTS_TYPICAL, true> TMiniLidarSpare;
+#endif
 /** Each packet of up to 40 points, in 0.8 KB of RAM. */
 typedef TMiniLidarWith<512, 0> TMiniLidarStreaming;
 

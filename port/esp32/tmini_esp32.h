@@ -9,19 +9,19 @@
  * hands them on to the lidar. Everything else happens in tmini_poll(), as on every platform.
  *
  *     static tmini_t lidar;
- *     static tmini_esp32_t board;
+ *     static tmini_esp32_t port;
  *
- *     const tmini_esp32_config_t wiring = TMINI_ESP32_CONFIG_DEFAULT;
- *     ESP_ERROR_CHECK(tmini_esp32_init(&board, &wiring));
+ *     const tmini_esp32_wiring_t wiring = TMINI_ESP32_WIRING_DEFAULT;
+ *     ESP_ERROR_CHECK(tmini_esp32_init(&port, &wiring));
  *     config.port = &tmini_esp32_port;
- *     config.port_context = &board;
+ *     config.port_context = &port;
  *     tmini_init(&lidar, &config);
- *     ESP_ERROR_CHECK(tmini_esp32_start(&board, &lidar));   bytes come from here on
+ *     ESP_ERROR_CHECK(tmini_esp32_start(&port, &lidar));   bytes come from here on
  *     tmini_start(&lidar);                                  the lidar scans
  *     for (;;) {
  *         switch (tmini_poll(&lidar)) {
  *         case TMINI_EVENT_SCAN: use(tmini_scan(&lidar)); break;
- *         case TMINI_EVENT_NONE: tmini_esp32_wait(&board, pdMS_TO_TICKS(10)); break;
+ *         case TMINI_EVENT_NONE: tmini_esp32_wait(&port, pdMS_TO_TICKS(10)); break;
  *         default: break;
  *         }
  *     }
@@ -61,15 +61,15 @@ typedef struct {
     int buffer_size;      /**< Of the UART driver's ring buffer: more than the FIFO's 128 bytes. */
     int queue_length;     /**< Of the UART driver's event queue: 4 or more. */
     int fifo_threshold;   /**< Bytes in the FIFO that raise the interrupt: 1 to 126. */
-    int timeout_symbols;  /**< Or so many byte times of silence behind the last byte: 1 to 100. */
+    int timeout_symbols;  /**< Or byte times of silence after the last byte: 1 to 100. */
     bool with_task;       /**< Start a receiving task; else tmini_esp32_wait() receives. */
     int task_stack_bytes; /**< The rest is for that task alone. */
     int task_priority;    /**< Above the task that polls, below FreeRTOS's configMAX_PRIORITIES. */
     int task_core;        /**< A core that FreeRTOS runs on (0, 1), or TMINI_ESP32_ANY_CORE. */
-} tmini_esp32_config_t;
+} tmini_esp32_wiring_t;
 
 /** Wiring and sizes as chosen in menuconfig, "T-mini lidar". Kconfig says what each is good for. */
-#define TMINI_ESP32_CONFIG_DEFAULT                                                          \
+#define TMINI_ESP32_WIRING_DEFAULT                                                          \
     {                                                                                       \
         .uart = CONFIG_TMINI_ESP32_UART, .tx_pin = CONFIG_TMINI_ESP32_TX_PIN,               \
         .rx_pin = CONFIG_TMINI_ESP32_RX_PIN, .buffer_size = CONFIG_TMINI_ESP32_BUFFER_SIZE, \
@@ -81,24 +81,24 @@ typedef struct {
         .task_core = CONFIG_TMINI_ESP32_TASK_CORE,                                          \
     }
 
-/** What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. What
- * the parser then makes of them is in tmini_counters(). */
+/** Received bytes on their way to the lidar. Running totals, modulo 2^32. After that
+ * tmini_counters() counts. */
 typedef struct {
     uint32_t bytes; /**< Handed to the lidar. */
-    /** The interrupt came too late: what came behind the FIFO's 128 bytes was lost; with the
+    /** The interrupt came too late: what came after the FIFO's 128 bytes was lost; with the
      * driver's buffer full, those too. */
-    uint32_t fifo_overflows;
-    uint32_t buffers_full;  /**< Poll or task came too late; bytes waited, and may then overflow. */
-    uint32_t queues_full;   /**< Events were lost; of an overflow perhaps, so a gap was assumed. */
-    uint32_t breaks;        /**< The line was low for longer than a byte: unplugged? */
-    uint32_t frame_errors;  /**< A stop bit was missing: wrong baud rate, noise? */
-    uint32_t parity_errors; /**< Cannot happen without a parity bit; counted all the same. */
+    uint32_t overruns;
+    uint32_t buffers_full; /**< Poll or task came too late; bytes waited, and may then overflow. */
+    uint32_t queues_full;  /**< Events were lost; of an overflow perhaps, so a gap was assumed. */
+    uint32_t breaks;       /**< The line was low for longer than a byte: unplugged? */
+    uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
+    uint32_t parity_errors;  /**< Cannot happen without a parity bit; counted all the same. */
 } tmini_esp32_counters_t;
 
 /** One UART with a lidar. Treat the members as private. */
 typedef struct {
     /** @cond private */
-    tmini_esp32_config_t config;
+    tmini_esp32_wiring_t wiring;
     tmini_t *lidar;
     QueueHandle_t events;
     esp_pm_lock_handle_t pm_lock; /* NULL: power management is not compiled in. */
@@ -106,10 +106,11 @@ typedef struct {
     bool is_started;
     uint32_t announced;              /* By the driver's events: counts on as counters.bytes will. */
     uint32_t gap;                    /* Bytes were lost there, as counters.bytes will count, */
-    bool gap_ahead;                  /* and the lidar has not been told yet. */
-    bool lost_more;                  /* Bytes were lost behind that, too, or nobody knows where. */
+    bool gap_ahead;                  /* and this has not been reported to the lidar. */
+    bool lost_more;                  /* Bytes were lost after that, too, or at an unknown place. */
     bool stopping;                   /* Written by tmini_esp32_stop(), read by the task. */
     bool receiving;                  /* Written by the task: cleared when it ends. */
+    bool restarting;                 /* Set by the poll, cleared by the receiving context. */
     tmini_esp32_counters_t counters; /* Written by the receiving context alone. */
     uint8_t chunk[128];
     /** @endcond */
@@ -118,32 +119,32 @@ typedef struct {
 /** The lidar's port. Its context is the tmini_esp32_t. */
 extern const tmini_port_t tmini_esp32_port;
 
-/** Checks and copies the configuration; touches no hardware. Not while `board` is started. Returns
+/** Checks and copies the wiring; touches no hardware. Not while `port` is started. Returns
  * ESP_OK, or ESP_ERR_INVALID_ARG for a null pointer or a value outside its documented range, with a
  * line in the log that names it. */
-esp_err_t tmini_esp32_init(tmini_esp32_t *board, const tmini_esp32_config_t *config);
+esp_err_t tmini_esp32_init(tmini_esp32_t *port, const tmini_esp32_wiring_t *wiring);
 
 /** Installs the UART driver, sets it up for the lidar and starts the receiving task. The UART's
  * interrupt is served by the core that makes this call. `lidar` has been through tmini_init(); both
- * it and `board` stay the caller's and must last until tmini_esp32_stop(). The counters start anew.
+ * it and `port` stay the caller's and must last until tmini_esp32_stop(). The counters start anew.
  *
  * Until then a lock of the power management is held, if that is compiled in (CONFIG_PM_ENABLE): no
  * light sleep, in which a UART receives nothing; and on the ESP32 and the ESP32-S2, whose UARTs
  * take their clock from the APB, no slower APB.
  *
- * Context: a task. Waits only for memory. Returns ESP_OK, or with nothing left behind
+ * Context: a task. Waits only for memory. Returns ESP_OK, or with nothing left of it
  *   ESP_ERR_INVALID_ARG    null pointer
  *   ESP_ERR_INVALID_STATE  started already, or tmini_esp32_init() has not succeeded
  *   ESP_ERR_NO_MEM         no memory for the task or the lock
  *   another                as the UART driver gave it; ESP_FAIL if the UART is taken */
-esp_err_t tmini_esp32_start(tmini_esp32_t *board, tmini_t *lidar);
+esp_err_t tmini_esp32_start(tmini_esp32_t *port, tmini_t *lidar);
 
 /** Ends the receiving task and removes the UART driver; also while bytes come in. Stop the lidar
- * before, or it goes on scanning. `board` may be started again.
+ * before, or it goes on scanning. `port` may be started again.
  *
  * Context: the task that polls. Waits for the receiving task to end: 20 ms and two ticks at most.
  * Returns ESP_OK, ESP_ERR_INVALID_STATE when not started, or what the UART driver gave. */
-esp_err_t tmini_esp32_stop(tmini_esp32_t *board);
+esp_err_t tmini_esp32_stop(tmini_esp32_t *port);
 
 /** For a polling task that has nothing left to do. With a receiving task, or when stopped: sleeps
  * for `ticks`, at least one, and returns 0. Without a receiving task: waits up to `ticks` for
@@ -152,10 +153,10 @@ esp_err_t tmini_esp32_stop(tmini_esp32_t *board);
  * next call), and returns how many.
  *
  * Context: the task that polls. */
-size_t tmini_esp32_wait(tmini_esp32_t *board, TickType_t ticks);
+size_t tmini_esp32_wait(tmini_esp32_t *port, TickType_t ticks);
 
 /** Copies the counters; any task. */
-void tmini_esp32_counters(const tmini_esp32_t *board, tmini_esp32_counters_t *counters);
+void tmini_esp32_counters(const tmini_esp32_t *port, tmini_esp32_counters_t *counters);
 
 #ifdef __cplusplus
 }

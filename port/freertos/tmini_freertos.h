@@ -5,17 +5,17 @@
  * The lidar under FreeRTOS, on any chip: bytes go from your UART interrupt to the lidar, and the
  * task that polls sleeps until there are some. Nothing is allocated; no interrupt is disabled.
  *
- *     static tmini_freertos_t board;
+ *     static tmini_freertos_t port;
  *     static tmini_t lidar;
  *
- *     tmini_freertos_init(&board, &wiring);
- *     tmini_init(&lidar, &config);              its port: &tmini_freertos_port; context: &board
- *     tmini_freertos_start(&board, &lidar);     bytes are taken
+ *     tmini_freertos_init(&port, &wiring);
+ *     tmini_init(&lidar, &config);              its port: &tmini_freertos_port; context: &port
+ *     tmini_freertos_start(&port, &lidar);     bytes are taken
  *     tmini_start(&lidar);                      the lidar scans
  *     for (;;) {
  *         switch (tmini_poll(&lidar)) {
  *         case TMINI_EVENT_SCAN: use(tmini_scan(&lidar)); break;
- *         case TMINI_EVENT_NONE: tmini_freertos_wait(&board, pdMS_TO_TICKS(10)); break;
+ *         case TMINI_EVENT_NONE: tmini_freertos_wait(&port, pdMS_TO_TICKS(10)); break;
  *         default: break;
  *         }
  *     }
@@ -24,7 +24,7 @@
  *     {
  *         BaseType_t woken = pdFALSE;
  *         … take `count` bytes out of the UART …
- *         tmini_freertos_receive_from_isr(&board, bytes, count, &woken);
+ *         tmini_freertos_receive_from_isr(&port, bytes, count, &woken);
  *         portYIELD_FROM_ISR(woken);
  *     }
  *
@@ -59,7 +59,7 @@ extern "C" {
 #endif
 
 #ifndef TMINI_FREERTOS_WAKE_BYTES
-/** The polling task is woken after so many bytes: 13,100 come each second while scanning. Fewer
+/** The polling task is woken after this many bytes: 13,100 come per second while scanning. Fewer
  * wait for the time-out of tmini_freertos_wait(). */
 #define TMINI_FREERTOS_WAKE_BYTES 64
 #endif
@@ -73,13 +73,14 @@ extern "C" {
 typedef struct {
     /** Sends, as `write` of tmini_port_t does: required. */
     int (*write)(void *uart, const uint8_t *bytes, size_t count);
-    void *uart;           /**< Passed to it. */
+    void *uart;                  /**< Passed to it. */
+    void (*restart)(void *uart); /**< As `restart` of tmini_port_t; NULL: none. */
     uint8_t *stream;      /**< The stream buffer's memory; NULL: no stream and no receiving task. */
     size_t stream_size;   /**< 128 or more; 1024 bytes last 44 ms. */
     UBaseType_t priority; /**< Of the receiving task: above the task that polls. */
 } tmini_freertos_wiring_t;
 
-/** What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. */
+/** Received bytes on their way to the lidar. Running totals, modulo 2^32. */
 typedef struct {
     uint32_t bytes;      /**< From the interrupt. */
     uint32_t bytes_lost; /**< Of them, those that the stream had no room for. */
@@ -117,36 +118,36 @@ extern const tmini_port_t tmini_freertos_port;
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer, no `write`, a stream below 128 bytes, a priority that the
  *                         kernel does not have */
-tmini_status_t tmini_freertos_init(tmini_freertos_t *board, const tmini_freertos_wiring_t *wiring);
+tmini_status_t tmini_freertos_init(tmini_freertos_t *port, const tmini_freertos_wiring_t *wiring);
 
 /** From now on received bytes go to `lidar`, which has been through tmini_init(); the counters
  * begin anew. Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer, or no tmini_freertos_init() before
  *   TMINI_ERROR_STATE     started already */
-tmini_status_t tmini_freertos_start(tmini_freertos_t *board, tmini_t *lidar);
+tmini_status_t tmini_freertos_start(tmini_freertos_t *port, tmini_t *lidar);
 
 /** From now on received bytes are dropped. With a stream it waits until the receiving task rests:
  * at most 10 ms and two ticks. Stop the lidar before, or it goes on scanning. The UART's interrupt
  * must not be under way on another core. */
-void tmini_freertos_stop(tmini_freertos_t *board);
+void tmini_freertos_stop(tmini_freertos_t *port);
 
 /** Sleeps until bytes have come, at most `ticks` (at least one): for a polling task that has
  * nothing left to do. The driver also keeps time, so let it be some 10 ms. The caller is the task
  * that will be woken. */
-void tmini_freertos_wait(tmini_freertos_t *board, TickType_t ticks);
+void tmini_freertos_wait(tmini_freertos_t *port, TickType_t ticks);
 
 /** Takes received bytes; for the UART's interrupt. *woken becomes pdTRUE if a task of higher
  * priority has been woken, as with FreeRTOS's own functions of this kind. No loop but a copy, no
  * wait. */
-void tmini_freertos_receive_from_isr(tmini_freertos_t *board, const uint8_t *bytes, size_t count,
+void tmini_freertos_receive_from_isr(tmini_freertos_t *port, const uint8_t *bytes, size_t count,
                                      BaseType_t *woken);
 
 /** Says that bytes were lost before those received next: the UART has reported an overrun. */
-void tmini_freertos_gap_from_isr(tmini_freertos_t *board);
+void tmini_freertos_gap_from_isr(tmini_freertos_t *port);
 
 /** Copies the counters. */
-void tmini_freertos_counters(const tmini_freertos_t *board, tmini_freertos_counters_t *counters);
+void tmini_freertos_counters(const tmini_freertos_t *port, tmini_freertos_counters_t *counters);
 
 #ifdef __cplusplus
 }

@@ -17,7 +17,7 @@
 
 #define FIFO_SIZE 32u
 
-/* Interrupt at half a FIFO: 820 a second while scanning, and each may come 0.7 ms late. */
+/* Interrupt at half a FIFO: 820 per second while scanning, and each may come 0.7 ms late. */
 #define FIFO_HALF 2u
 
 #define FRAMING_ERROR UART_UARTDR_FE_BITS
@@ -34,7 +34,7 @@
 #define TURN 0x08000000u
 #define COUNT_MASK (2 * TURN - 1)
 
-/* So many bytes may be on their way through the DMA controller, written but not counted yet. */
+/* This many bytes may be on their way through the DMA controller, written but not counted yet. */
 #define IN_FLIGHT 16u
 
 #define CHUNK 64u
@@ -42,9 +42,9 @@
 /* ---------------------------------------------------------------------------------- line errors */
 
 /* Counts errors by the bits of the data register. */
-static void count_errors(tmini_pico_t *board, uint32_t errors)
+static void count_errors(tmini_pico_t *port, uint32_t errors)
 {
-    tmini_pico_counters_t *const counters = &board->counters;
+    tmini_pico_counters_t *const counters = &port->counters;
     counters->framing_errors += (errors & (FRAMING_ERROR | BREAK_ERROR)) == FRAMING_ERROR;
     counters->breaks += (errors & BREAK_ERROR) != 0;
     counters->overruns += (errors & OVERRUN_ERROR) != 0;
@@ -56,20 +56,19 @@ static void count_errors(tmini_pico_t *board, uint32_t errors)
 static tmini_pico_t *receivers[2];
 
 /* A byte that comes with an error is stored as well: the parser's checks decide what it is worth.
- * The UART marks the first byte behind an overrun: the lidar is told of the gap before it gets that
- * one. */
-static void empty_fifo(tmini_pico_t *board)
+ * The UART marks the first byte after an overrun: the gap is reported before that byte. */
+static void empty_fifo(tmini_pico_t *port)
 {
-    while (uart_is_readable(board->uart)) {
-        const uint32_t entry = uart_get_hw(board->uart)->dr;
+    while (uart_is_readable(port->uart)) {
+        const uint32_t entry = uart_get_hw(port->uart)->dr;
         if ((entry & DR_ERRORS) != 0) {
-            count_errors(board, entry);
+            count_errors(port, entry);
         }
         if ((entry & OVERRUN_ERROR) != 0) {
-            tmini_feed_gap(board->lidar);
+            tmini_feed_gap(port->lidar);
         }
-        tmini_feed_byte(board->lidar, (uint8_t)entry);
-        board->counters.bytes++;
+        tmini_feed_byte(port->lidar, (uint8_t)entry);
+        port->counters.bytes++;
     }
 }
 
@@ -83,32 +82,37 @@ static void receive_uart1(void)
     empty_fifo(receivers[1]);
 }
 
-static irq_handler_t handler_of(const tmini_pico_t *board)
+static irq_handler_t handler_of(const tmini_pico_t *port)
 {
-    return uart_get_index(board->uart) == 0 ? receive_uart0 : receive_uart1;
+    return uart_get_index(port->uart) == 0 ? receive_uart0 : receive_uart1;
 }
 
-static tmini_status_t start_interrupt(tmini_pico_t *board)
+static void ask_for_interrupts(const tmini_pico_t *port)
 {
-    const uint irq = UART_IRQ_NUM(board->uart);
+    uart_set_irqs_enabled(port->uart, true, false);
+    hw_write_masked(&uart_get_hw(port->uart)->ifls, FIFO_HALF << UART_UARTIFLS_RXIFLSEL_LSB,
+                    UART_UARTIFLS_RXIFLSEL_BITS);
+}
+
+static tmini_status_t start_interrupt(tmini_pico_t *port)
+{
+    const uint irq = UART_IRQ_NUM(port->uart);
     if (irq_has_handler(irq)) {
         return TMINI_ERROR_STATE;
     }
-    receivers[uart_get_index(board->uart)] = board;
-    irq_set_exclusive_handler(irq, handler_of(board));
+    receivers[uart_get_index(port->uart)] = port;
+    irq_set_exclusive_handler(irq, handler_of(port));
     irq_set_enabled(irq, true);
-    uart_set_irqs_enabled(board->uart, true, false);
-    hw_write_masked(&uart_get_hw(board->uart)->ifls, FIFO_HALF << UART_UARTIFLS_RXIFLSEL_LSB,
-                    UART_UARTIFLS_RXIFLSEL_BITS);
+    ask_for_interrupts(port);
     return TMINI_OK;
 }
 
-static void stop_interrupt(tmini_pico_t *board)
+static void stop_interrupt(tmini_pico_t *port)
 {
-    const uint irq = UART_IRQ_NUM(board->uart);
-    uart_set_irqs_enabled(board->uart, false, false);
+    const uint irq = UART_IRQ_NUM(port->uart);
+    uart_set_irqs_enabled(port->uart, false, false);
     irq_set_enabled(irq, false);
-    irq_remove_handler(irq, handler_of(board));
+    irq_remove_handler(irq, handler_of(port));
 }
 
 /* ----------------------------------------------------------------------------- receiving by DMA */
@@ -121,15 +125,15 @@ static uint32_t left_to_transfer(uint8_t channel)
 /* Bytes that DMA has written since the start, modulo 2 TURN: whole laps of the ring included. The
  * channel whose turn it is counts down to 0, and the other one stands at 0. Both do only for the
  * moment between two turns; should that last, because DMA has been stopped, there is no telling. */
-static bool read_written(const tmini_pico_t *board, uint32_t *written)
+static bool read_written(const tmini_pico_t *port, uint32_t *written)
 {
     for (unsigned attempt = 0; attempt < 4; attempt++) {
-        const uint32_t first = left_to_transfer(board->channels[0]);
+        const uint32_t first = left_to_transfer(port->channels[0]);
         if (first != 0) {
             *written = TURN - first;
             return true;
         }
-        const uint32_t second = left_to_transfer(board->channels[1]);
+        const uint32_t second = left_to_transfer(port->channels[1]);
         if (second != 0) {
             *written = 2 * TURN - second;
             return true;
@@ -138,30 +142,30 @@ static bool read_written(const tmini_pico_t *board, uint32_t *written)
     return false;
 }
 
-/* False if it cannot be told. */
-static bool read_unread(const tmini_pico_t *board, uint32_t *unread)
+/* False if it is not known. */
+static bool read_unread(const tmini_pico_t *port, uint32_t *unread)
 {
     uint32_t written;
-    if (!read_written(board, &written)) {
+    if (!read_written(port, &written)) {
         return false;
     }
-    *unread = (written - board->taken) & COUNT_MASK;
+    *unread = (written - port->taken) & COUNT_MASK;
     return true;
 }
 
 /* Whether DMA has not come round yet to the oldest of `unread` bytes. */
-static bool is_intact(const tmini_pico_t *board, uint32_t unread)
+static bool is_intact(const tmini_pico_t *port, uint32_t unread)
 {
-    return unread + IN_FLIGHT <= board->ring_size;
+    return unread + IN_FLIGHT <= port->ring_size;
 }
 
-/* Passes over all unread bytes but the newest `kept`. The lidar is told, and takes nothing more
- * before it has dealt with what it had from before the gap: the next polls go on. */
-static void pass_over(tmini_pico_t *board, uint32_t unread, uint32_t kept)
+/* Passes over all unread bytes but the newest `kept`. This is reported to the lidar, which takes
+ * nothing more before it has dealt with what it had from before the gap: the next polls go on. */
+static void pass_over(tmini_pico_t *port, uint32_t unread, uint32_t kept)
 {
-    board->taken += unread - kept;
-    board->counters.bytes_lost += unread - kept;
-    tmini_feed_gap(board->lidar);
+    port->taken += unread - kept;
+    port->counters.bytes_lost += unread - kept;
+    tmini_feed_gap(port->lidar);
 }
 
 static size_t least(size_t a, size_t b)
@@ -170,61 +174,62 @@ static size_t least(size_t a, size_t b)
 }
 
 /* Copies the oldest unread bytes, up to CHUNK; returns how many. None are certain until DMA's
- * position has been read once more behind the copy: we may have been held up meanwhile, for any
+ * position has been read once more after the copy: we may have been held up meanwhile, for any
  * length of time. */
-static size_t copy_oldest(const tmini_pico_t *board, uint32_t unread, uint8_t *chunk)
+static size_t copy_oldest(const tmini_pico_t *port, uint32_t unread, uint8_t *chunk)
 {
-    const size_t at = board->taken & (board->ring_size - 1);
-    const size_t to_end = board->ring_size - at;
-    const size_t room = tmini_feed_room(board->lidar);
+    const size_t at = port->taken & (port->ring_size - 1);
+    const size_t to_end = port->ring_size - at;
+    const size_t room = tmini_feed_room(port->lidar);
     const size_t count = least(least(unread, room), least(to_end, CHUNK));
-    memcpy(chunk, &board->ring[at], count);
+    memcpy(chunk, &port->ring[at], count);
     __dmb();
-    return read_unread(board, &unread) && is_intact(board, unread) ? count : 0;
+    return read_unread(port, &unread) && is_intact(port, unread) ? count : 0;
 }
 
 /* Hands on what has come, as far as the lidar has room for it; the rest stays in the ring. Where
  * DMA has come round, the newer half of what the ring holds is kept. */
-static size_t empty_ring(tmini_pico_t *board)
+static size_t empty_ring(tmini_pico_t *port)
 {
     uint8_t chunk[CHUNK];
     uint32_t unread;
     size_t received = 0;
-    while (read_unread(board, &unread)) {
-        if (!is_intact(board, unread)) {
-            pass_over(board, unread, board->ring_size / 2);
+    while (read_unread(port, &unread)) {
+        if (!is_intact(port, unread)) {
+            pass_over(port, unread, port->ring_size / 2);
             break;
         }
         __dmb();
-        const size_t count = copy_oldest(board, unread, chunk);
+        const size_t count = copy_oldest(port, unread, chunk);
         if (count == 0) {
+            tmini_feed_held(port->lidar, unread);
             break;
         }
-        tmini_feed(board->lidar, chunk, count);
-        board->taken += (uint32_t)count;
+        tmini_feed(port->lidar, chunk, count);
+        port->taken += (uint32_t)count;
         received += count;
     }
-    board->counters.bytes += (uint32_t)received;
+    port->counters.bytes += (uint32_t)received;
     return received;
 }
 
 /* DMA does not see the errors that come with a byte, but the UART remembers that there were some.
- * An overrun is somewhere among the unread bytes, and nobody knows where: none of them is used. */
-static void look_at_errors(tmini_pico_t *board)
+ * An overrun is somewhere among the unread bytes, at an unknown place: none of them is used. */
+static void look_at_errors(tmini_pico_t *port)
 {
-    uart_hw_t *const hw = uart_get_hw(board->uart);
+    uart_hw_t *const hw = uart_get_hw(port->uart);
     const uint32_t errors = hw->ris & RIS_ERRORS;
     uint32_t unread;
     if (errors != 0) {
         hw->icr = errors;
-        count_errors(board, errors << RIS_TO_DR);
+        count_errors(port, errors << RIS_TO_DR);
     }
-    if ((errors & UART_UARTRIS_OERIS_BITS) != 0 && read_unread(board, &unread)) {
-        pass_over(board, unread, 0);
+    if ((errors & UART_UARTRIS_OERIS_BITS) != 0 && read_unread(port, &unread)) {
+        pass_over(port, unread, 0);
     }
 }
 
-static bool claim_channels(tmini_pico_t *board)
+static bool claim_channels(tmini_pico_t *port)
 {
     const int first = dma_claim_unused_channel(false);
     const int second = dma_claim_unused_channel(false);
@@ -234,45 +239,62 @@ static bool claim_channels(tmini_pico_t *board)
         }
         return false;
     }
-    board->channels[0] = (uint8_t)first;
-    board->channels[1] = (uint8_t)second;
+    port->channels[0] = (uint8_t)first;
+    port->channels[1] = (uint8_t)second;
     return true;
 }
 
 /* When its turn ends, the other channel begins. */
-static void configure_channel(const tmini_pico_t *board, unsigned index, bool begins)
+static void configure_channel(const tmini_pico_t *port, unsigned index, bool begins)
 {
-    const uint channel = board->channels[index];
+    const uint channel = port->channels[index];
     dma_channel_config config = dma_channel_get_default_config(channel);
     channel_config_set_transfer_data_size(&config, DMA_SIZE_8);
     channel_config_set_read_increment(&config, false);
     channel_config_set_write_increment(&config, true);
-    channel_config_set_ring(&config, true, (uint)__builtin_ctz((unsigned)board->ring_size));
-    channel_config_set_dreq(&config, uart_get_dreq(board->uart, false));
-    channel_config_set_chain_to(&config, board->channels[1 - index]);
-    dma_channel_configure(channel, &config, board->ring, &uart_get_hw(board->uart)->dr, TURN,
-                          begins);
+    channel_config_set_ring(&config, true, (uint)__builtin_ctz((unsigned)port->ring_size));
+    channel_config_set_dreq(&config, uart_get_dreq(port->uart, false));
+    channel_config_set_chain_to(&config, port->channels[1 - index]);
+    dma_channel_configure(channel, &config, port->ring, &uart_get_hw(port->uart)->dr, TURN, begins);
 }
 
-static tmini_status_t start_dma(tmini_pico_t *board)
+static void begin_dma(tmini_pico_t *port)
 {
-    if (!claim_channels(board)) {
+    port->taken = 0;
+    configure_channel(port, 1, false);
+    configure_channel(port, 0, true);
+}
+
+static tmini_status_t start_dma(tmini_pico_t *port)
+{
+    if (!claim_channels(port)) {
         return TMINI_ERROR_STATE;
     }
-    board->taken = 0;
-    configure_channel(board, 1, false);
-    configure_channel(board, 0, true);
+    begin_dma(port);
     return TMINI_OK;
 }
 
 /* dma_channel_cleanup() unchains a channel before it aborts it: an abort must not start the
  * other. */
-static void stop_dma(tmini_pico_t *board)
+static void end_dma(const tmini_pico_t *port)
 {
-    for (unsigned i = 0; i < 2; i++) {
-        dma_channel_cleanup(board->channels[i]);
-        dma_channel_unclaim(board->channels[i]);
-    }
+    dma_channel_cleanup(port->channels[0]);
+    dma_channel_cleanup(port->channels[1]);
+}
+
+static void stop_dma(const tmini_pico_t *port)
+{
+    end_dma(port);
+    dma_channel_unclaim(port->channels[0]);
+    dma_channel_unclaim(port->channels[1]);
+}
+
+/* After an error on the bus a channel stands still for good. */
+static void restart_dma(tmini_pico_t *port)
+{
+    end_dma(port);
+    begin_dma(port);
+    tmini_feed_gap(port->lidar);
 }
 
 /* ------------------------------------------------------------------------------- start and stop */
@@ -302,12 +324,12 @@ static bool is_good_wiring(const tmini_pico_wiring_t *wiring)
            (wiring->ring == NULL || is_good_ring(wiring->ring, wiring->ring_size));
 }
 
-tmini_status_t tmini_pico_init(tmini_pico_t *board, const tmini_pico_wiring_t *wiring)
+tmini_status_t tmini_pico_init(tmini_pico_t *port, const tmini_pico_wiring_t *wiring)
 {
-    if (board == NULL) {
+    if (port == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    *board = (tmini_pico_t){0};
+    *port = (tmini_pico_t){0};
     if (wiring == NULL || !is_good_wiring(wiring)) {
         return TMINI_ERROR_ARGUMENT;
     }
@@ -318,77 +340,100 @@ tmini_status_t tmini_pico_init(tmini_pico_t *board, const tmini_pico_wiring_t *w
     gpio_set_function(wiring->tx_pin, UART_FUNCSEL_NUM(wiring->uart, wiring->tx_pin));
     gpio_set_function(wiring->rx_pin, UART_FUNCSEL_NUM(wiring->uart, wiring->rx_pin));
     gpio_pull_up(wiring->rx_pin); /* The line is idle, not noisy, while no lidar is plugged in. */
-    board->ring = wiring->ring;
-    board->ring_size = (uint32_t)wiring->ring_size;
-    board->uart = wiring->uart;
+    port->ring = wiring->ring;
+    port->ring_size = (uint32_t)wiring->ring_size;
+    port->uart = wiring->uart;
     return TMINI_OK;
 }
 
-static void drop_received(tmini_pico_t *board)
+static void drop_received(tmini_pico_t *port)
 {
-    uart_hw_t *const hw = uart_get_hw(board->uart);
-    for (unsigned i = 0; i < FIFO_SIZE && uart_is_readable(board->uart); i++) {
+    uart_hw_t *const hw = uart_get_hw(port->uart);
+    for (unsigned i = 0; i < FIFO_SIZE && uart_is_readable(port->uart); i++) {
         (void)hw->dr;
     }
     hw->icr = RIS_ERRORS;
 }
 
-tmini_status_t tmini_pico_start(tmini_pico_t *board, tmini_t *lidar)
+tmini_status_t tmini_pico_start(tmini_pico_t *port, tmini_t *lidar)
 {
-    if (board == NULL || lidar == NULL || board->uart == NULL) {
+    if (port == NULL || lidar == NULL || port->uart == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    if (board->lidar != NULL) {
+    if (port->lidar != NULL) {
         return TMINI_ERROR_STATE;
     }
-    board->counters = (tmini_pico_counters_t){0};
-    drop_received(board);
-    board->lidar = lidar;
-    const tmini_status_t status = board->ring == NULL ? start_interrupt(board) : start_dma(board);
+    port->counters = (tmini_pico_counters_t){0};
+    port->taken = 0;
+    drop_received(port);
+    port->lidar = lidar;
+    const tmini_status_t status = port->ring == NULL ? start_interrupt(port) : start_dma(port);
     if (status != TMINI_OK) {
-        board->lidar = NULL;
+        port->lidar = NULL;
     }
     return status;
 }
 
-size_t tmini_pico_receive(tmini_pico_t *board)
+/* What an interrupt has stored is with the lidar already. */
+static size_t stored_by_interrupt(tmini_pico_t *port)
 {
-    if (board == NULL || board->lidar == NULL || board->ring == NULL) {
+    const uint32_t bytes = port->counters.bytes;
+    const size_t stored = bytes - port->taken;
+    port->taken = bytes;
+    return stored;
+}
+
+static size_t receive(tmini_pico_t *port)
+{
+    if (port->ring == NULL) {
+        return stored_by_interrupt(port);
+    }
+    look_at_errors(port);
+    return empty_ring(port);
+}
+
+size_t tmini_pico_wait(tmini_pico_t *port, uint32_t timeout_ms)
+{
+    if (port == NULL || port->lidar == NULL) {
         return 0;
     }
-    look_at_errors(board);
-    return empty_ring(board);
+    size_t received = receive(port);
+    for (uint32_t waited_ms = 0; received == 0 && waited_ms < timeout_ms; waited_ms++) {
+        sleep_ms(1);
+        received = receive(port);
+    }
+    return received;
 }
 
-void tmini_pico_stop(tmini_pico_t *board)
+void tmini_pico_stop(tmini_pico_t *port)
 {
-    if (board == NULL || board->lidar == NULL) {
+    if (port == NULL || port->lidar == NULL) {
         return;
     }
-    if (board->ring == NULL) {
-        stop_interrupt(board);
+    if (port->ring == NULL) {
+        stop_interrupt(port);
     } else {
-        stop_dma(board);
+        stop_dma(port);
     }
-    board->lidar = NULL;
+    port->lidar = NULL;
 }
 
-void tmini_pico_counters(const tmini_pico_t *board, tmini_pico_counters_t *counters)
+void tmini_pico_counters(const tmini_pico_t *port, tmini_pico_counters_t *counters)
 {
-    *counters = board->counters;
+    *counters = port->counters;
 }
 
 /* ------------------------------------------------------------------------------------- the port */
 
 static int port_write(void *context, const uint8_t *bytes, size_t count)
 {
-    const tmini_pico_t *const board = context;
-    if (board->uart == NULL) {
+    const tmini_pico_t *const port = context;
+    if (port->uart == NULL) {
         return -1;
     }
     int taken = 0;
-    while ((size_t)taken < count && uart_is_writable(board->uart)) {
-        uart_putc_raw(board->uart, (char)bytes[taken]);
+    while ((size_t)taken < count && uart_is_writable(port->uart)) {
+        uart_putc_raw(port->uart, (char)bytes[taken]);
         taken++;
     }
     return taken;
@@ -402,9 +447,21 @@ static uint32_t port_now_ms(void *context)
 
 static void port_wait(void *context)
 {
-    sleep_ms(1);
-    (void)tmini_pico_receive(context);
+    (void)tmini_pico_wait(context, 1);
+}
+
+static void port_restart(void *context)
+{
+    tmini_pico_t *const port = context;
+    if (port->lidar == NULL) {
+        return;
+    }
+    if (port->ring == NULL) {
+        ask_for_interrupts(port);
+    } else {
+        restart_dma(port);
+    }
 }
 
 const tmini_port_t tmini_pico_port = {
-    .write = port_write, .now_ms = port_now_ms, .wait = port_wait};
+    .write = port_write, .now_ms = port_now_ms, .wait = port_wait, .restart = port_restart};

@@ -5,23 +5,26 @@
  * The lidar on a UART of an RP2040 or RP2350 (Raspberry Pi Pico, Pico 2), with the Pico SDK.
  *
  *     TMINI_PICO_RING(ring, 1024);
- *     static tmini_pico_t board;
+ *     static tmini_pico_t port;
  *     static tmini_t lidar;
  *
  *     const tmini_pico_wiring_t wiring = {
  *         .uart = uart1, .tx_pin = 4, .rx_pin = 5, .ring = ring, .ring_size = sizeof ring,
  *     };
- *     tmini_pico_init(&board, &wiring);
- *     tmini_init(&lidar, &config);           .port = &tmini_pico_port, .port_context = &board
- *     tmini_pico_start(&board, &lidar);      bytes come
+ *     tmini_pico_init(&port, &wiring);
+ *     tmini_init(&lidar, &config);           .port = &tmini_pico_port, .port_context = &port
+ *     tmini_pico_start(&port, &lidar);      bytes come
  *     tmini_start(&lidar);                   the lidar scans
  *     for (;;) {
- *         tmini_pico_receive(&board);
- *         while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) { … }
+ *         switch (tmini_poll(&lidar)) {
+ *         case TMINI_EVENT_SCAN: use(tmini_scan(&lidar)); break;
+ *         case TMINI_EVENT_NONE: tmini_pico_wait(&port, 10); break;
+ *         default: break;
+ *         }
  *     }
  *
  * With a ring, two DMA channels take turns at writing into it, for ever and without any interrupt;
- * tmini_pico_receive() takes out what has come since the last time. Without (`ring` NULL) an
+ * tmini_pico_wait() takes out what has come since the last time. Without (`ring` NULL) an
  * interrupt empties the UART's FIFO. README.md says which suits whom, and why the ring is safe.
  *
  * Contexts. All functions belong to the context that polls. The interrupt, if there is one, is
@@ -59,7 +62,7 @@ typedef struct {
     size_t ring_size;  /**< A power of two from 256 to 32768; 1024 bytes last 43 ms. */
 } tmini_pico_wiring_t;
 
-/** What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. */
+/** Received bytes on their way to the lidar. Running totals, modulo 2^32. */
 typedef struct {
     uint32_t bytes;          /**< Handed to the lidar. */
     uint32_t bytes_lost;     /**< DMA had come round to them before they were taken. */
@@ -75,14 +78,14 @@ typedef struct {
     uart_inst_t *uart;
     uint8_t *ring;
     uint32_t ring_size;
-    uint32_t taken; /* Bytes taken out of the ring, as the two channels count. */
+    uint32_t taken; /* Bytes taken out of the ring, as the two channels count; or seen so far. */
     uint8_t channels[2];
     tmini_pico_counters_t counters;
     /** @endcond */
 } tmini_pico_t;
 
 /** The `port` of tmini_config_t; its `port_context` is the tmini_pico_t. `rx_dma` stays false: the
- * ring that DMA writes is the port's own. Its `wait` receives, too. */
+ * ring that DMA writes is the port's own. */
 extern const tmini_port_t tmini_pico_port;
 
 /** Sets up UART and pins: 230400 baud, 8N1, pull-up on RX. Nothing is received yet. The ring stays
@@ -91,28 +94,27 @@ extern const tmini_port_t tmini_pico_port;
  *   TMINI_ERROR_ARGUMENT  null pointer; pins that this UART does not have; a ring that is too small
  *                         or too large, no power of two, or not at a multiple of its size
  *   TMINI_ERROR_STATE     the UART's clock does not make 230400 baud within 2 % */
-tmini_status_t tmini_pico_init(tmini_pico_t *board, const tmini_pico_wiring_t *wiring);
+tmini_status_t tmini_pico_init(tmini_pico_t *port, const tmini_pico_wiring_t *wiring);
 
 /** Received bytes go to `lidar`, which has been through tmini_init(). What came before is dropped,
  * and the counters begin anew. Takes two DMA channels, or the UART's interrupt handler. Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer, or no tmini_pico_init() before
  *   TMINI_ERROR_STATE     started already; no two DMA channels are free; the UART's interrupt has a
- *                         handler of somebody else */
-tmini_status_t tmini_pico_start(tmini_pico_t *board, tmini_t *lidar);
+ *                         handler of something else */
+tmini_status_t tmini_pico_start(tmini_pico_t *port, tmini_t *lidar);
 
-/** Hands what DMA has written to the lidar, as far as that has room for it, and returns how many
- * bytes: call it before polling. `rx_buffer` should be as large as the ring, so that all comes at
- * once; else call it and poll until it returns 0. Does nothing when an interrupt receives, or
- * nothing has been started. No wait; a copy of the bytes. */
-size_t tmini_pico_receive(tmini_pico_t *board);
+/** Waits until bytes have come, at most `timeout_ms` (0: not at all), and returns how many. With a
+ * ring it hands them to the lidar, as far as that has room: call it at least as often as the ring
+ * lasts. By interrupt they are there already. Returns 0 at once if nothing has been started. */
+size_t tmini_pico_wait(tmini_pico_t *port, uint32_t timeout_ms);
 
 /** Ends reception and gives back what tmini_pico_start() took. Stop the lidar before, or it goes on
  * scanning. On the core that started. */
-void tmini_pico_stop(tmini_pico_t *board);
+void tmini_pico_stop(tmini_pico_t *port);
 
 /** Copies the counters. */
-void tmini_pico_counters(const tmini_pico_t *board, tmini_pico_counters_t *counters);
+void tmini_pico_counters(const tmini_pico_t *port, tmini_pico_counters_t *counters);
 
 #ifdef __cplusplus
 }

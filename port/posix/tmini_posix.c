@@ -23,6 +23,10 @@
 #include <time.h>
 #include <unistd.h>
 
+#ifdef __linux__
+#include <linux/serial.h>
+#endif
+
 #ifndef B230400
 #error "this system's termios.h has no 230400 baud, the lidar's only baud rate"
 #endif
@@ -32,6 +36,9 @@
 
 #define SOCKET_PREFIX "tcp:"
 #define CONNECT_MS 5000u
+
+/* How often a device that has gone is looked for. */
+#define RETRY_MS 200u
 
 /* ----------------------------------------------------------------------------------- starting */
 
@@ -97,9 +104,9 @@ static tmini_posix_status_t set_up(int fd)
     return TMINI_POSIX_OK;
 }
 
-void tmini_posix_init(tmini_posix_t *serial, const char *path)
+void tmini_posix_init(tmini_posix_t *port, const char *path)
 {
-    *serial = (tmini_posix_t){.path = path, .fd = -1, .state = TMINI_POSIX_NO_DEVICE};
+    *port = (tmini_posix_t){.path = path, .fd = -1, .state = TMINI_POSIX_NO_DEVICE};
 }
 
 /* Children do not inherit it: one of system() would keep the device claimed. Neither waiting nor,
@@ -114,21 +121,21 @@ static void make_own(int fd)
 #endif
 }
 
-static tmini_posix_status_t open_device(tmini_posix_t *serial)
+static tmini_posix_status_t open_device(tmini_posix_t *port)
 {
     do {
-        serial->fd = open(serial->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    } while (serial->fd < 0 && errno == EINTR);
-    if (serial->fd < 0) {
+        port->fd = open(port->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    } while (port->fd < 0 && errno == EINTR);
+    if (port->fd < 0) {
         return status_of_open(errno);
     }
-    const tmini_posix_status_t status = claim(serial->fd);
+    const tmini_posix_status_t status = claim(port->fd);
     if (status != TMINI_POSIX_OK) {
-        (void)close(serial->fd); /* Not by tmini_posix_stop(): another program's claim stays. */
-        serial->fd = -1;
+        (void)close(port->fd); /* Not by tmini_posix_stop(): another program's claim stays. */
+        port->fd = -1;
         return status;
     }
-    return set_up(serial->fd);
+    return set_up(port->fd);
 }
 
 static uint32_t now_ms(void *context)
@@ -210,68 +217,118 @@ static struct addrinfo *places_of(const char *address)
 }
 
 /* "tcp:HOST:PORT". */
-static tmini_posix_status_t open_socket(tmini_posix_t *serial)
+static tmini_posix_status_t open_socket(tmini_posix_t *port)
 {
-    struct addrinfo *const places = places_of(serial->path + sizeof SOCKET_PREFIX - 1);
+    struct addrinfo *const places = places_of(port->path + sizeof SOCKET_PREFIX - 1);
     if (places == NULL) {
         return TMINI_POSIX_ADDRESS;
     }
-    for (const struct addrinfo *place = places; place != NULL && serial->fd < 0;
+    for (const struct addrinfo *place = places; place != NULL && port->fd < 0;
          place = place->ai_next) {
-        serial->fd = connect_to(place);
+        port->fd = connect_to(place);
     }
     const int error = errno;
     freeaddrinfo(places);
     errno = error;
-    if (serial->fd < 0) {
+    if (port->fd < 0) {
         return TMINI_POSIX_FAILED;
     }
     return TMINI_POSIX_OK;
 }
 
-tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *serial, int fd, tmini_t *lidar)
+tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *port, int fd, tmini_t *lidar)
 {
-    tmini_posix_stop(serial);
-    serial->lidar = lidar;
-    serial->received = 0;
-    serial->fd = fd;
-    serial->state = TMINI_POSIX_OK;
+    tmini_posix_stop(port);
+    port->lidar = lidar;
+    port->received = 0;
+    port->fd = fd;
+    port->state = TMINI_POSIX_OK;
     make_own(fd);
-    return serial->state;
+    return port->state;
 }
 
-tmini_posix_status_t tmini_posix_start(tmini_posix_t *serial, tmini_t *lidar)
+static void close_port(tmini_posix_t *port, tmini_posix_status_t state)
 {
-    tmini_posix_stop(serial); /* Started twice: from the beginning, and nothing is left open. */
-    serial->lidar = lidar;
-    serial->received = 0;
-    const bool is_socket = strncmp(serial->path, SOCKET_PREFIX, sizeof SOCKET_PREFIX - 1) == 0;
-    const tmini_posix_status_t status = is_socket ? open_socket(serial) : open_device(serial);
-    if (status != TMINI_POSIX_OK) {
+    if (port->fd >= 0) {
+        (void)ioctl(port->fd, TIOCNXCL);
+        (void)close(port->fd);
+    }
+    port->fd = -1;
+    port->state = state;
+}
+
+static void open_port(tmini_posix_t *port)
+{
+    const bool is_socket = strncmp(port->path, SOCKET_PREFIX, sizeof SOCKET_PREFIX - 1) == 0;
+    port->state = is_socket ? open_socket(port) : open_device(port);
+    if (port->state != TMINI_POSIX_OK) {
         const int error = errno;
-        tmini_posix_stop(serial);
+        close_port(port, port->state);
         errno = error;
     }
-    serial->state = status;
-    return status;
+    port->tried_ms = now_ms(NULL);
 }
 
-void tmini_posix_stop(tmini_posix_t *serial)
+tmini_posix_status_t tmini_posix_start(tmini_posix_t *port, tmini_t *lidar)
 {
-    if (serial->fd >= 0) {
-        (void)ioctl(serial->fd, TIOCNXCL);
-        (void)close(serial->fd);
+    tmini_posix_stop(port); /* Started twice: from the beginning, and nothing is left open. */
+    port->lidar = lidar;
+    port->received = 0;
+    port->reconnections = 0;
+    port->is_started = true;
+    open_port(port);
+    return port->state;
+}
+
+void tmini_posix_stop(tmini_posix_t *port)
+{
+    close_port(port, TMINI_POSIX_NO_DEVICE);
+    port->is_started = false;
+}
+
+/* ------------------------------------------------------------------------------- reconnecting */
+
+void tmini_posix_reconnect(tmini_posix_t *port, bool reconnects)
+{
+    port->reconnects = reconnects;
+}
+
+static bool is_away(const tmini_posix_t *port)
+{
+    return port->reconnects && port->is_started && port->state != TMINI_POSIX_OK;
+}
+
+/* What was under way when the device went is lost. */
+static void open_again(tmini_posix_t *port)
+{
+    close_port(port, TMINI_POSIX_UNPLUGGED);
+    open_port(port);
+    if (port->state == TMINI_POSIX_OK) {
+        port->reconnections++;
+        if (port->lidar != NULL) {
+            tmini_feed_gap(port->lidar);
+        }
     }
-    serial->fd = -1;
-    serial->state = TMINI_POSIX_NO_DEVICE;
+}
+
+/* A pause no longer than `timeout_ms`, and one look if it is time. */
+static void wait_for_device(tmini_posix_t *port, int timeout_ms)
+{
+    const uint32_t passed_ms = now_ms(NULL) - port->tried_ms;
+    const int left_ms = passed_ms < RETRY_MS ? (int)(RETRY_MS - passed_ms) : 0;
+    const bool is_early = timeout_ms >= 0 && timeout_ms < left_ms;
+    (void)poll(NULL, 0, is_early ? timeout_ms : left_ms);
+    if (!is_early) {
+        open_again(port);
+    }
 }
 
 /* ---------------------------------------------------------------------------------- receiving */
 
-void tmini_posix_tap(tmini_posix_t *serial, tmini_posix_tap_t tap, void *context)
+void tmini_posix_tap(tmini_posix_t *port, tmini_posix_tap_t tap, void *context)
 {
-    serial->tap = tap;
-    serial->tap_context = context;
+    port->tap = tap;
+    port->tap_context = context;
 }
 
 /* What a failure of read() or write() means. Nothing there yet, or a signal, is none. */
@@ -297,54 +354,84 @@ static tmini_posix_status_t status_of_transfer(int error)
     }
 }
 
-static void take(tmini_posix_t *serial, const uint8_t *bytes, size_t count)
+static void take(tmini_posix_t *port, const uint8_t *bytes, size_t count)
 {
-    serial->received += count;
-    if (serial->tap != NULL) {
-        serial->tap(serial->tap_context, bytes, count);
+    port->received += count;
+    if (port->tap != NULL) {
+        port->tap(port->tap_context, bytes, count);
     }
-    if (serial->lidar != NULL) {
-        tmini_feed(serial->lidar, bytes, count);
+    if (port->lidar != NULL) {
+        tmini_feed(port->lidar, bytes, count);
     }
 }
 
 /* What the ring would have to refuse is safe with the system, until polling has made room. */
-static size_t room(const tmini_posix_t *serial)
+static size_t room(const tmini_posix_t *port)
 {
-    const size_t space = serial->lidar != NULL ? tmini_feed_room(serial->lidar) : BLOCK_SIZE;
+    const size_t space = port->lidar != NULL ? tmini_feed_room(port->lidar) : BLOCK_SIZE;
     return space < BLOCK_SIZE ? space : BLOCK_SIZE;
 }
 
 /* True if as many have come as were wanted: there may be more. */
-static bool take_block(tmini_posix_t *serial, size_t wanted)
+static bool take_block(tmini_posix_t *port, size_t wanted)
 {
     uint8_t block[BLOCK_SIZE];
-    const ssize_t count = read(serial->fd, block, wanted);
+    const ssize_t count = read(port->fd, block, wanted);
     if (count > 0) {
-        take(serial, block, (size_t)count);
+        take(port, block, (size_t)count);
     } else {
-        serial->state = count == 0 ? TMINI_POSIX_UNPLUGGED : status_of_transfer(errno);
+        port->state = count == 0 ? TMINI_POSIX_UNPLUGGED : status_of_transfer(errno);
     }
     return count == (ssize_t)wanted;
 }
 
-tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms)
+/* What the system keeps until there is room. */
+static void report_held(const tmini_posix_t *port)
 {
-    size_t wanted = room(serial);
-    if (serial->state != TMINI_POSIX_OK || wanted == 0) {
-        return serial->state;
+    int held = 0;
+    if (port->lidar != NULL && ioctl(port->fd, FIONREAD, &held) == 0) {
+        tmini_feed_held(port->lidar, held > 0 ? (size_t)held : 0);
     }
-    struct pollfd device = {.fd = serial->fd, .events = POLLIN};
-    const int ready = poll(&device, 1, timeout_ms);
-    if (ready <= 0) {
-        serial->state = ready == 0 ? TMINI_POSIX_OK : status_of_transfer(errno);
-        return serial->state;
+}
+
+static void receive(tmini_posix_t *port, int timeout_ms)
+{
+    size_t wanted = room(port);
+    struct pollfd device = {.fd = port->fd, .events = POLLIN};
+    const int ready = wanted == 0 ? 0 : poll(&device, 1, timeout_ms);
+    if (ready < 0) {
+        port->state = status_of_transfer(errno);
     }
     /* What has waited is handed over at once, so that the lidar can tell when it came. */
-    while (wanted > 0 && take_block(serial, wanted)) {
-        wanted = serial->lidar != NULL ? room(serial) : 0;
+    while (ready > 0 && wanted > 0 && take_block(port, wanted)) {
+        wanted = port->lidar != NULL ? room(port) : 0;
     }
-    return serial->state;
+    report_held(port);
+}
+
+tmini_posix_status_t tmini_posix_wait(tmini_posix_t *port, int timeout_ms)
+{
+    if (is_away(port)) {
+        wait_for_device(port, timeout_ms);
+    } else if (port->state == TMINI_POSIX_OK) {
+        receive(port, timeout_ms);
+    }
+    return is_away(port) ? TMINI_POSIX_OK : port->state;
+}
+
+void tmini_posix_counters(const tmini_posix_t *port, tmini_posix_counters_t *counters)
+{
+    *counters = (tmini_posix_counters_t){0};
+#ifdef TIOCGICOUNT
+    struct serial_icounter_struct counted;
+    if (ioctl(port->fd, TIOCGICOUNT, &counted) == 0) {
+        counters->overruns = (uint32_t)counted.overrun + (uint32_t)counted.buf_overrun;
+        counters->framing_errors = (uint32_t)counted.frame;
+        counters->parity_errors = (uint32_t)counted.parity;
+    }
+#else
+    (void)port;
+#endif
 }
 
 /* ----------------------------------------------------------------------------------- the port */
@@ -363,27 +450,37 @@ static ssize_t write_quietly(int fd, const uint8_t *bytes, size_t count)
 
 static int write_bytes(void *context, const uint8_t *bytes, size_t count)
 {
-    tmini_posix_t *const serial = context;
-    if (serial->state != TMINI_POSIX_OK) {
+    tmini_posix_t *const port = context;
+    if (port->state != TMINI_POSIX_OK) {
         return -1;
     }
-    const ssize_t written = write_quietly(serial->fd, bytes, count);
+    const ssize_t written = write_quietly(port->fd, bytes, count);
     if (written >= 0) {
         return (int)written;
     }
-    serial->state = status_of_transfer(errno);
-    return serial->state == TMINI_POSIX_OK ? 0 : -1;
+    port->state = status_of_transfer(errno);
+    return port->state == TMINI_POSIX_OK ? 0 : -1;
 }
 
 static void wait_a_moment(void *context)
 {
-    (void)tmini_posix_receive(context, 1);
+    (void)tmini_posix_wait(context, 1);
+}
+
+/* A driver that hangs is set up anew, a connection that has died unnoticed is made again. */
+static void restart(void *context)
+{
+    tmini_posix_t *const port = context;
+    if (port->reconnects && port->is_started) {
+        open_again(port);
+    }
 }
 
 const tmini_port_t tmini_posix_port = {
     .write = write_bytes,
     .now_ms = now_ms,
     .wait = wait_a_moment,
+    .restart = restart,
 };
 
 const char *tmini_posix_status_name(tmini_posix_status_t status)

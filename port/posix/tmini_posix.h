@@ -6,22 +6,25 @@
  * /dev/ttyUSB0. Works on pseudo-terminals too. Written for macOS as well (/dev/cu.usbserial-110),
  * but not tried on macOS.
  *
- *     static tmini_posix_t serial;
+ *     static tmini_posix_t port;
  *
- *     tmini_posix_init(&serial, "/dev/ttyUSB0");
+ *     tmini_posix_init(&port, "/dev/ttyUSB0");
  *     config.port = &tmini_posix_port;
- *     config.port_context = &serial;
+ *     config.port_context = &port;
  *     tmini_init(&lidar, &config);
- *     if (tmini_posix_start(&serial, &lidar) != TMINI_POSIX_OK) { … }
+ *     if (tmini_posix_start(&port, &lidar) != TMINI_POSIX_OK) { … }
  *     tmini_start(&lidar);
- *     while (tmini_posix_receive(&serial, 10) == TMINI_POSIX_OK) {
+ *     while (tmini_posix_wait(&port, 10) == TMINI_POSIX_OK) {
  *         while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) { … }
  *     }
- *     tmini_posix_stop(&serial);
+ *     tmini_posix_stop(&port);
+ *
+ * After tmini_posix_reconnect() the loop survives a cable that is pulled and plugged in again.
  *
  * A computer has other things to do, and may bring bytes late: let the configuration's timing
  * be a copy of tmini_timing_default with a frame_timeout_ms of 250, as examples/obstacle_stop
- * does; and with a max_pause_ms of 250 if scans have gaps that nothing else explains.
+ * does (timing = tmini_timing_default; timing.frame_timeout_ms = 250); and with a max_pause_ms
+ * of 250 if scans have gaps that nothing else explains.
  *
  * There is no interrupt here: the one context that polls also receives. The port's `wait`
  * receives as well, so that the functions of tmini_blocking.h work. Any number of lidars, each
@@ -30,6 +33,7 @@
 #ifndef TMINI_POSIX_H
 #define TMINI_POSIX_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -39,7 +43,7 @@
 extern "C" {
 #endif
 
-/** What became of the device. */
+/** The state of the device. */
 typedef enum {
     TMINI_POSIX_OK = 0,              /**< It is open, or was never opened. */
     TMINI_POSIX_NO_DEVICE = -1,      /**< There is no device of that name. */
@@ -53,18 +57,29 @@ typedef enum {
     TMINI_POSIX_ADDRESS = -8,        /**< It is no tcp:HOST:PORT, or there is no such host. */
 } tmini_posix_status_t;
 
+/** Errors of the line; a byte of each has been lost, or is wrong. */
+typedef struct {
+    uint32_t overruns;       /**< The adapter or the system was too slow. */
+    uint32_t framing_errors; /**< No stop bit: another baud rate, or interference. */
+    uint32_t parity_errors;  /**< Not with 8N1. */
+} tmini_posix_counters_t;
+
 /** Called with all bytes that are received, before the lidar gets them; for recordings. */
 typedef void (*tmini_posix_tap_t)(void *context, const uint8_t *bytes, size_t count);
 
-/** One serial device. `received` may be read, the rest is private. */
+/** One serial device. The documented members may be read, the rest is private. */
 typedef struct {
-    uint64_t received; /**< Bytes since it was started. */
+    uint64_t received;          /**< Bytes since it was started. */
+    uint32_t reconnections;     /**< How often it was opened again since. */
+    tmini_posix_status_t state; /**< TMINI_POSIX_OK while it is open, or else why not. */
     /** @cond private */
     const char *path;
     tmini_t *lidar;
     tmini_posix_tap_t tap;
     void *tap_context;
-    tmini_posix_status_t state;
+    uint32_t tried_ms;
+    bool reconnects;
+    bool is_started;
     int fd;
     /** @endcond */
 } tmini_posix_t;
@@ -73,33 +88,45 @@ typedef struct {
 extern const tmini_port_t tmini_posix_port;
 
 /** Names the device, or the socket to a controller that forwards its UART: "tcp:HOST:PORT". Touches
- * nothing yet. `path` stays the caller's, and must last as long as `serial` is used. Not between
+ * nothing yet. `path` stays the caller's, and must last as long as `port` is used. Not between
  * tmini_posix_start() and tmini_posix_stop(). */
-void tmini_posix_init(tmini_posix_t *serial, const char *path);
+void tmini_posix_init(tmini_posix_t *port, const char *path);
 
 /** From now on, what is received goes to `tap` too; none when NULL. */
-void tmini_posix_tap(tmini_posix_t *serial, tmini_posix_tap_t tap, void *context);
+void tmini_posix_tap(tmini_posix_t *port, tmini_posix_tap_t tap, void *context);
 
 /** Opens the device at 230400 baud, 8N1, without flow control, for this program alone, and drops
  * what it received before; or connects the socket, for some seconds at most. From then on received
  * bytes go to `lidar`, which has been through tmini_init(); NULL: to the tap alone. May wait as
  * long as the system's open does. A device that was stopped, or could not be opened, may be started
  * again. */
-tmini_posix_status_t tmini_posix_start(tmini_posix_t *serial, tmini_t *lidar);
+tmini_posix_status_t tmini_posix_start(tmini_posix_t *port, tmini_t *lidar);
 
 /** The same over a descriptor that is open already, such as a socket to a controller that forwards
  * its UART. It becomes the port's own: tmini_posix_stop() closes it. Returns TMINI_POSIX_OK. */
-tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *serial, int fd, tmini_t *lidar);
+tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *port, int fd, tmini_t *lidar);
+
+/** From now on a device that has gone is opened again as soon as it is back, and until then
+ * tmini_posix_wait() goes on to return TMINI_POSIX_OK; the driver reports TMINI_EVENT_LOST, and
+ * TMINI_EVENT_RECOVERED once the lidar scans again. So too a device that was not there yet when it
+ * was started, and a lidar that has fallen silent. A name in /dev/serial/by-id or by-path is the
+ * same adapter whenever it is plugged in, /dev/ttyUSB0 the first one. While a socket is connected
+ * again, tmini_poll() and tmini_posix_wait() may take seconds. Not for tmini_posix_start_on(). */
+void tmini_posix_reconnect(tmini_posix_t *port, bool reconnects);
 
 /** Waits up to `timeout_ms` for bytes and feeds them to the lidar, all that have come and no more
  * than its ring has room for: call tmini_poll() until it returns TMINI_EVENT_NONE in between.
  * Without room it returns at once; the bytes stay with the system. A signal ends the waiting early.
  * Returns TMINI_POSIX_OK, also when nothing came; TMINI_POSIX_UNPLUGGED or TMINI_POSIX_FAILED, then
  * also ever after. */
-tmini_posix_status_t tmini_posix_receive(tmini_posix_t *serial, int timeout_ms);
+tmini_posix_status_t tmini_posix_wait(tmini_posix_t *port, int timeout_ms);
+
+/** What the system has counted of the line since the adapter was plugged in. All 0 where it does
+ * not count: sockets, pseudo-terminals, systems other than Linux. */
+void tmini_posix_counters(const tmini_posix_t *port, tmini_posix_counters_t *counters);
 
 /** Closes the device, if it is open. Stop the lidar before, or it goes on scanning. */
-void tmini_posix_stop(tmini_posix_t *serial);
+void tmini_posix_stop(tmini_posix_t *port);
 
 /** The status as a short English phrase, for example "no such device". Never NULL. */
 const char *tmini_posix_status_name(tmini_posix_status_t status);

@@ -93,12 +93,14 @@ static bool has_fifo(const DMA_HandleTypeDef *dma)
 #endif
 }
 
-/* Linked lists have width and increment in their node, which CubeMX sets for the UART. */
+/* Linked lists have width and increment in their node. */
 static bool is_by_byte(const DMA_HandleTypeDef *dma)
 {
 #ifdef DMA_LINKEDLIST_CIRCULAR
-    (void)dma;
-    return true;
+    const DMA_QListTypeDef *const list = dma->LinkedListQueue;
+    const uint32_t mask = DMA_CTR1_SDW_LOG2 | DMA_CTR1_DDW_LOG2 | DMA_CTR1_SINC | DMA_CTR1_DINC;
+    return list != NULL && list->Head != NULL &&
+           (list->Head->LinkRegisters[NODE_CTR1_DEFAULT_OFFSET] & mask) == DMA_CTR1_DINC;
 #else
     return dma->Init.PeriphDataAlignment == DMA_PDATAALIGN_BYTE &&
            dma->Init.MemDataAlignment == DMA_MDATAALIGN_BYTE &&
@@ -112,16 +114,39 @@ static bool has_good_dma(const UART_HandleTypeDef *uart)
            is_by_byte(uart->hdmarx);
 }
 
+/* HAL_DMA_Abort() refuses a channel of linked lists that has been suspended. */
+static bool is_suspended(const DMA_HandleTypeDef *dma)
+{
+#ifdef DMA_LINKEDLIST_CIRCULAR
+    return dma->State == HAL_DMA_STATE_SUSPEND;
+#else
+    (void)dma;
+    return false;
+#endif
+}
+
+static void resume(DMA_HandleTypeDef *dma)
+{
+#ifdef DMA_LINKEDLIST_CIRCULAR
+    (void)HAL_DMAEx_Resume(dma);
+#else
+    (void)dma;
+#endif
+}
+
 /* The UART asks for it, and the channel has not been stopped by somebody else. */
 static bool is_dma_running(const UART_HandleTypeDef *uart)
 {
     return (uart->Instance->CR3 & USART_CR3_DMAR) != 0 &&
-           uart->hdmarx->State != HAL_DMA_STATE_READY;
+           uart->hdmarx->State != HAL_DMA_STATE_READY && !is_suspended(uart->hdmarx);
 }
 
 /* The HAL stops the channel only if the UART still asks for it: not after HAL_UART_Init(). */
 static void stop_dma(const UART_HandleTypeDef *uart)
 {
+    if (uart->hdmarx != NULL && is_suspended(uart->hdmarx)) {
+        resume(uart->hdmarx);
+    }
     if (uart->hdmarx != NULL && uart->hdmarx->State == HAL_DMA_STATE_BUSY) {
         (void)HAL_DMA_Abort(uart->hdmarx);
     }
@@ -232,10 +257,12 @@ static void tell_event(const tmini_stm32_hal_t *port)
 
 static void count_errors(volatile tmini_stm32_hal_counters_t *counters, uint32_t code)
 {
-    const uint32_t known = HAL_UART_ERROR_ORE | HAL_UART_ERROR_FE | HAL_UART_ERROR_NE;
+    const uint32_t known =
+        HAL_UART_ERROR_ORE | HAL_UART_ERROR_FE | HAL_UART_ERROR_NE | HAL_UART_ERROR_PE;
     counters->overruns = counters->overruns + ((code & HAL_UART_ERROR_ORE) != 0);
     counters->framing_errors = counters->framing_errors + ((code & HAL_UART_ERROR_FE) != 0);
     counters->noise_errors = counters->noise_errors + ((code & HAL_UART_ERROR_NE) != 0);
+    counters->parity_errors = counters->parity_errors + ((code & HAL_UART_ERROR_PE) != 0);
     counters->other_errors = counters->other_errors + ((code & ~known) != 0);
 }
 
@@ -442,11 +469,20 @@ void tmini_stm32_hal_rx_half_complete(tmini_stm32_hal_t *port, const UART_Handle
     }
 }
 
+/* With bytes an overrun says that some were lost after the last one, and not how many. */
+static void note_errors(tmini_stm32_hal_t *port, uint32_t code)
+{
+    count_errors(&port->counters, code);
+    if (port->reception == RECEPTION_BYTES && (code & HAL_UART_ERROR_ORE) != 0) {
+        tmini_feed_gap(port->lidar);
+    }
+}
+
 /* Errors first: asking for the next byte clears the HAL's note of them. */
 static void take_byte(tmini_stm32_hal_t *port)
 {
-    count_errors(&port->counters, port->uart->ErrorCode);
     tmini_feed_byte(port->lidar, port->byte);
+    note_errors(port, port->uart->ErrorCode);
     (void)HAL_UART_Receive_IT(port->uart, &port->byte, 1); /* If it fails, the poll starts anew. */
 }
 
@@ -465,7 +501,7 @@ void tmini_stm32_hal_rx_complete(tmini_stm32_hal_t *port, const UART_HandleTypeD
 void tmini_stm32_hal_error(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
 {
     if (is_ours(port, uart)) {
-        count_errors(&port->counters, uart->ErrorCode);
+        note_errors(port, uart->ErrorCode);
     }
 }
 
@@ -598,4 +634,9 @@ void tmini_stm32_hal_stop(tmini_stm32_hal_t *port)
     }
     forget_reception(port);
     port->reception = RECEPTION_NONE;
+}
+
+void tmini_stm32_hal_counters(const tmini_stm32_hal_t *port, tmini_stm32_hal_counters_t *counters)
+{
+    *counters = port->counters;
 }

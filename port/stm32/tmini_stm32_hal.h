@@ -59,12 +59,13 @@ typedef struct {
     uint32_t overruns;       /**< Bytes came faster than interrupt or DMA took them. */
     uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
     uint32_t noise_errors;   /**< A bit's samples differed. */
-    uint32_t other_errors;   /**< Parity, DMA. */
+    uint32_t parity_errors;  /**< Cannot happen without a parity bit; counted all the same. */
+    uint32_t other_errors;   /**< Of the DMA, mostly. */
     uint32_t restarts;       /**< Of a reception that had stopped. */
     uint32_t laps; /**< Times that DMA may have lapped its interrupts: they came far too late. */
 } tmini_stm32_hal_counters_t;
 
-/** One lidar's UART; `counters` may be read, the rest is private. */
+/** One lidar's UART. Treat the members as private. */
 typedef struct {
     /** @cond private */
     UART_HandleTypeDef *uart;
@@ -78,8 +79,8 @@ typedef struct {
     uint8_t sending[2]; /* The HAL reads it while it sends. */
     uint32_t started_ms;
     tmini_stm32_circle_t circle;
+    volatile tmini_stm32_hal_counters_t counters;
     /** @endcond */
-    volatile tmini_stm32_hal_counters_t counters; /**< What has gone wrong. */
 } tmini_stm32_hal_t;
 
 /** The `port` of tmini_config_t; its `port_context` is the address of a tmini_stm32_hal_t. Sends by
@@ -112,6 +113,9 @@ tmini_status_t tmini_stm32_hal_start_blocks(tmini_stm32_hal_t *port, tmini_t *li
  * What had come is handed over. Waits some microseconds for the DMA; if the hardware does not let
  * go, 5 ms. From the polling context. */
 void tmini_stm32_hal_stop(tmini_stm32_hal_t *port);
+
+/** What has gone wrong on the line so far. From the polling context. */
+void tmini_stm32_hal_counters(const tmini_stm32_hal_t *port, tmini_stm32_hal_counters_t *counters);
 
 /** For HAL_UARTEx_RxEventCallback(), with DMA and blocks: hands over what has come. In interrupt
  * context, as the three below; none waits, and none does anything for another UART. */

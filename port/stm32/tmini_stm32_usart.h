@@ -9,10 +9,11 @@
  *   tmini_stm32_usart_rdr.c   registers ISR and RDR: all others (C0, F0, F3, F7, G0, G4, H5, H7,
  *                             L0, L4, L5, U0, U5, WB, WL, …), and every LPUART
  *
- *     tmini_stm32_usart_init(&port, USART1, &time_ms);
+ *     static const tmini_stm32_usart_wiring_t wiring = {
+ *         .usart = USART1, .clock_hz = 84000000, .time_ms = &time_ms};
+ *     tmini_stm32_usart_init(&port, &wiring);
  *     tmini_init(&lidar, &config);          .port = &tmini_stm32_usart_port, .port_context = &port
- *     tmini_stm32_usart_start(&port, &lidar, 84000000);    an interrupt a byte; or, with rx_dma,
- *     tmini_stm32_usart_start_dma(&port, &lidar, 84000000, &DMA2_Stream2->NDTR);
+ *     tmini_stm32_usart_start(&port, &lidar);    an interrupt a byte; with rx_dma, by DMA
  *     NVIC_EnableIRQ(USART1_IRQn);
  *     …
  *     tmini_stm32_usart_stop(&port);
@@ -36,55 +37,64 @@
 extern "C" {
 #endif
 
-/** One lidar's USART; the counters may be read, the rest is private. With DMA, several errors
- * between two looks at the USART (idle line, half a buffer, poll) count as one. */
+/** What the port is to know of the hardware. */
+typedef struct {
+    volatile void *usart; /**< The USART's base address: USART1 of ST's headers will do. */
+    uint32_t clock_hz; /**< That feeds it, at least 3.7 MHz; 0: baud rate and format are set up. */
+    const volatile uint32_t *time_ms;   /**< Milliseconds, counted by an interrupt of yours. */
+    const volatile uint32_t *remaining; /**< For rx_dma: the DMA channel's register of items left
+                                           (NDTR, CNDTR, CBR1). */
+} tmini_stm32_usart_wiring_t;
+
+/** Running totals, for diagnostics. With DMA, several errors between two looks at the USART (idle
+ * line, half a buffer, poll) count as one. */
+typedef struct {
+    uint32_t bytes;          /**< Received by interrupt; compare with tmini_counters(). */
+    uint32_t overruns;       /**< Bytes came faster than interrupt or DMA took them. */
+    uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
+    uint32_t noise_errors;   /**< A bit's samples differed. */
+    uint32_t laps;           /**< Times that DMA may have lapped the interrupts: far too late. */
+} tmini_stm32_usart_counters_t;
+
+/** One lidar's USART. Treat the members as private. */
 typedef struct {
     /** @cond private */
-    volatile uint32_t *registers;
-    tmini_t *lidar;
-    const volatile uint32_t *time_ms;
-    const volatile uint32_t *remaining; /* The DMA channel's count; NULL: an interrupt a byte. */
-    tmini_stm32_circle_t circle;
-    uint32_t line_flags; /* Errors that have been counted and still show. */
+    tmini_stm32_usart_wiring_t wiring;
+    tmini_t *lidar;              /* NULL: not receiving. */
+    tmini_stm32_circle_t circle; /* Of size 0: an interrupt a byte. */
+    uint32_t line_flags;         /* Errors that have been counted and still show. */
+    volatile tmini_stm32_usart_counters_t counters;
     /** @endcond */
-    volatile uint32_t bytes;          /**< Received by interrupt; compare with tmini_counters(). */
-    volatile uint32_t overruns;       /**< Bytes came faster than interrupt or DMA took them. */
-    volatile uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
-    volatile uint32_t noise_errors;   /**< A bit's samples differed. */
-    volatile uint32_t laps; /**< Times that DMA may have lapped the interrupts: far too late. */
 } tmini_stm32_usart_t;
 
 /** The `port` of tmini_config_t; its `port_context` is the address of a tmini_stm32_usart_t. Never
- * waits: takes what the transmitter has room for. */
+ * waits: takes what the transmitter has room for. When the lidar is lost, sets the USART up
+ * anew. */
 extern const tmini_port_t tmini_stm32_usart_port;
 
-/** Names the USART. `usart` is the USART's base address (USART1 of ST's headers
- * will do). `time_ms` is a count of milliseconds, kept by an interrupt of yours. Touches no
- * register. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
-tmini_status_t tmini_stm32_usart_init(tmini_stm32_usart_t *port, volatile void *usart,
-                                      const volatile uint32_t *time_ms);
+/** Notes the wiring, which may go. Touches no register. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT:
+ * null pointer (but `remaining`), or a clock that makes no baud rate within 2 % of 230400. */
+tmini_status_t tmini_stm32_usart_init(tmini_stm32_usart_t *port,
+                                      const tmini_stm32_usart_wiring_t *wiring);
 
-/** Sets the USART to 230400 8N1 and receives for `lidar`, which has been through tmini_init(), by
- * an interrupt a byte. `clock_hz` is the clock that feeds the USART, at least 3.7 MHz; 0 leaves
- * baud rate and format as you have set them (LL, LPUART).
+/** Sets the USART to 230400 8N1, where `clock_hz` is given, and receives for `lidar`, which has
+ * been through tmini_init(): by an interrupt a byte; or, with rx_dma, by circular DMA into the
+ * buffer given there, of 512 to 32768 bytes. For that the DMA channel is set up and enabled: from
+ * the USART's data register, byte-wide, circular, FIFO off, at the buffer's start, over its whole
+ * size; and the processor has no data cache, or the buffer lies where it does not cache. After
+ * _stop() set the channel up anew before starting again.
  * Returns TMINI_OK;
  *   TMINI_ERROR_STATE     port or lidar not set up
- *   TMINI_ERROR_ARGUMENT  the clock makes no baud rate within 2 % of 230400; or rx_dma is set */
-tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar,
-                                       uint32_t clock_hz);
-
-/** The same by circular DMA into the buffer given to tmini_init() with rx_dma, 512 to 32768 bytes.
- * The DMA channel is set up and enabled: from the USART's data register, byte-wide, circular, FIFO
- * off, at the buffer's start, over its whole size. `remaining` is its register of items left (NDTR,
- * CNDTR, CBR1). The processor has no data cache, or the buffer lies where it does not cache. After
- * _stop() set the channel up anew before starting again. Returns as above; TMINI_ERROR_ARGUMENT
- * also if rx_dma is not set, or `remaining` is null or not at the size. */
-tmini_status_t tmini_stm32_usart_start_dma(tmini_stm32_usart_t *port, tmini_t *lidar,
-                                           uint32_t clock_hz, const volatile uint32_t *remaining);
+ *   TMINI_ERROR_ARGUMENT  with rx_dma: `remaining` is null or not at the size */
+tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar);
 
 /** Ends reception: no more interrupts, no more requests to the DMA channel, which is yours to
  * disable. What had come is handed over. Sending goes on to work. From the polling context. */
 void tmini_stm32_usart_stop(tmini_stm32_usart_t *port);
+
+/** What has gone wrong on the line so far. From the polling context. */
+void tmini_stm32_usart_counters(const tmini_stm32_usart_t *port,
+                                tmini_stm32_usart_counters_t *counters);
 
 /** To be called from the USART's interrupt. No loop over bytes, no wait. A byte that came with a
  * framing or noise error is counted and stored all the same: the packet's checksum decides what it

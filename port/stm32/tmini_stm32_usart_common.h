@@ -55,32 +55,60 @@ static inline void clear_flags(volatile uint32_t *registers, uint32_t status);
 
 /* ------------------------------------------------------------------------------- receiving */
 
-static void count_errors(tmini_stm32_usart_t *port, uint32_t errors)
+static volatile uint32_t *registers_of(const tmini_stm32_usart_t *port)
 {
-    port->overruns = port->overruns + ((errors & STATUS_ORE) != 0);
-    port->framing_errors = port->framing_errors + ((errors & STATUS_FE) != 0);
-    port->noise_errors = port->noise_errors + ((errors & STATUS_NE) != 0);
+    return port->wiring.usart;
 }
 
+static bool is_by_dma(const tmini_stm32_usart_t *port)
+{
+    return port->circle.size != 0;
+}
+
+static void count_errors(tmini_stm32_usart_t *port, uint32_t errors)
+{
+    volatile tmini_stm32_usart_counters_t *const counters = &port->counters;
+    counters->overruns = counters->overruns + ((errors & STATUS_ORE) != 0);
+    counters->framing_errors = counters->framing_errors + ((errors & STATUS_FE) != 0);
+    counters->noise_errors = counters->noise_errors + ((errors & STATUS_NE) != 0);
+}
+
+/** An overrun says that bytes were lost after the one that is there, and not how many. */
 static void take_byte(tmini_stm32_usart_t *port)
 {
-    const uint32_t status = read_register(&port->registers[STATUS]);
+    volatile uint32_t *const registers = registers_of(port);
+    const uint32_t status = read_register(&registers[STATUS]);
     count_errors(port, status);
-    clear_flags(port->registers, status);
+    clear_flags(registers, status);
     if ((status & STATUS_RXNE) != 0) {
-        const uint8_t byte = (uint8_t)read_register(&port->registers[DATA_IN]);
-        port->bytes = port->bytes + 1;
+        const uint8_t byte = (uint8_t)read_register(&registers[DATA_IN]);
+        port->counters.bytes = port->counters.bytes + 1;
         tmini_feed_byte(port->lidar, byte);
+    }
+    if ((status & STATUS_ORE) != 0) {
+        tmini_feed_gap(port->lidar);
     }
 }
 
-/** A flag that still shows the error of a byte counted before is not counted again. */
+static void change(volatile uint32_t *at, uint32_t clear, uint32_t set)
+{
+    write_register(at, (read_register(at) & ~clear) | set);
+}
+
+/** A flag that still shows the error of a byte counted before is not counted again. An idle line
+ * that cannot be cleared, because a byte waits that is the DMA's, would interrupt for ever if the
+ * channel has stopped: no more of that until the next poll. */
 static void look_at_line(tmini_stm32_usart_t *port)
 {
-    const uint32_t status = read_register(&port->registers[STATUS]);
+    volatile uint32_t *const registers = registers_of(port);
+    const uint32_t status = read_register(&registers[STATUS]);
     count_errors(port, status & ~port->line_flags);
-    clear_flags(port->registers, status);
-    port->line_flags = read_register(&port->registers[STATUS]) & STATUS_ERRORS;
+    clear_flags(registers, status);
+    const uint32_t left = read_register(&registers[STATUS]);
+    port->line_flags = left & STATUS_ERRORS;
+    if ((left & (STATUS_IDLE | STATUS_RXNE)) == (STATUS_IDLE | STATUS_RXNE)) {
+        change(&registers[CR1], CR1_IDLEIE, 0);
+    }
 }
 
 static void hand_over(tmini_stm32_usart_t *port)
@@ -90,9 +118,9 @@ static void hand_over(tmini_stm32_usart_t *port)
         circle->middles; /* Before the position: it may only be ahead of them. */
     const uint8_t ends = circle->ends;
     const uint16_t position =
-        (uint16_t)(circle->size - (read_register(port->remaining) & DMA_COUNT));
+        (uint16_t)(circle->size - (read_register(port->wiring.remaining) & DMA_COUNT));
     if (tmini_stm32_circle_advance(circle, position, middles, ends)) {
-        port->laps = port->laps + 1;
+        port->counters.laps = port->counters.laps + 1;
         tmini_feed_gap(port->lidar);
     }
     tmini_feed_dma(port->lidar, circle->position);
@@ -112,17 +140,17 @@ static void hand_over_new(tmini_stm32_usart_t *port)
  * never come to its end. */
 void tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port)
 {
-    if (port->remaining != NULL) {
+    if (is_by_dma(port)) {
         look_at_line(port);
         hand_over_new(port);
-    } else {
+    } else if (port->lidar != NULL) {
         take_byte(port);
     }
 }
 
 void tmini_stm32_usart_dma_interrupt(tmini_stm32_usart_t *port, bool half, bool complete)
 {
-    if (port->remaining != NULL) {
+    if (is_by_dma(port)) {
         tmini_stm32_circle_tell(&port->circle, half, complete);
         hand_over_new(port);
     }
@@ -132,10 +160,10 @@ void tmini_stm32_usart_dma_interrupt(tmini_stm32_usart_t *port, bool half, bool 
 
 static int send_bytes(void *context, const uint8_t *bytes, size_t count)
 {
-    const tmini_stm32_usart_t *const port = context;
+    volatile uint32_t *const registers = registers_of(context);
     int taken = 0;
-    while ((size_t)taken < count && (read_register(&port->registers[STATUS]) & STATUS_TXE) != 0) {
-        write_register(&port->registers[DATA_OUT], bytes[taken]);
+    while ((size_t)taken < count && (read_register(&registers[STATUS]) & STATUS_TXE) != 0) {
+        write_register(&registers[DATA_OUT], bytes[taken]);
         taken++;
     }
     return taken;
@@ -145,32 +173,18 @@ static int send_bytes(void *context, const uint8_t *bytes, size_t count)
 static uint32_t time_now_ms(void *context)
 {
     tmini_stm32_usart_t *const port = context;
-    if (port->remaining != NULL) {
+    volatile uint32_t *const registers = registers_of(port);
+    if (is_by_dma(port)) {
         hand_over_new(port);
         look_at_line(port); /* An overrun may hold back the bytes, and with them the interrupts. */
+        if ((read_register(&registers[CR1]) & CR1_IDLEIE) == 0) {
+            change(&registers[CR1], 0, CR1_IDLEIE);
+        }
     }
-    return *port->time_ms;
+    return *port->wiring.time_ms;
 }
 
-const tmini_port_t tmini_stm32_usart_port = {
-    .write = send_bytes, .now_ms = time_now_ms, .wait = NULL};
-
-/* -------------------------------------------------------------------------------- life cycle */
-
-tmini_status_t tmini_stm32_usart_init(tmini_stm32_usart_t *port, volatile void *usart,
-                                      const volatile uint32_t *time_ms)
-{
-    if (port == NULL || usart == NULL || time_ms == NULL) {
-        return TMINI_ERROR_ARGUMENT;
-    }
-    *port = (tmini_stm32_usart_t){.registers = usart, .time_ms = time_ms};
-    return TMINI_OK;
-}
-
-static bool are_set_up(const tmini_stm32_usart_t *port, const tmini_t *lidar)
-{
-    return port != NULL && port->registers != NULL && tmini_stm32_circle_is_set_up(lidar);
-}
+/* --------------------------------------------------------------------------- the USART's set-up */
 
 /* With 16-fold oversampling BRR is the divider in sixteenths, that is the clock by the baud
  * rate. */
@@ -187,15 +201,11 @@ static bool is_good_clock(uint32_t clock_hz)
            (divider(clock_hz) >= 16 && error_hz <= made_hz / 1000 * BAUD_ERROR_MAX);
 }
 
-static void change(volatile uint32_t *at, uint32_t clear, uint32_t set)
-{
-    write_register(at, (read_register(at) & ~clear) | set);
-}
-
 /* The other registers may be written only while the USART is off. */
-static void switch_on(volatile uint32_t *registers, uint32_t clock_hz, uint32_t interrupt,
-                      uint32_t dma)
+static void switch_on(const tmini_stm32_usart_t *port)
 {
+    volatile uint32_t *const registers = registers_of(port);
+    const uint32_t clock_hz = port->wiring.clock_hz;
     change(&registers[CR1], CR1_UE | CR1_INTERRUPTS, 0);
     if (clock_hz != 0) {
         write_register(&registers[CR1], 0);
@@ -203,59 +213,85 @@ static void switch_on(volatile uint32_t *registers, uint32_t clock_hz, uint32_t 
         write_register(&registers[CR3], 0);
         write_register(&registers[BRR], divider(clock_hz));
     }
-    change(&registers[CR3], CR3_EIE | CR3_DMAR, dma);
+    change(&registers[CR3], CR3_EIE | CR3_DMAR, is_by_dma(port) ? CR3_DMAR : 0);
     clear_flags(registers, read_register(&registers[STATUS]));
-    change(&registers[CR1], 0, CR1_UE | CR1_TE | CR1_RE | interrupt);
+    change(&registers[CR1], 0,
+           CR1_UE | CR1_TE | CR1_RE | (is_by_dma(port) ? CR1_IDLEIE : CR1_RXNEIE));
 }
 
-tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar, uint32_t clock_hz)
+/* The lidar is lost: perhaps somebody has changed the USART. */
+static void restart(void *context)
 {
-    if (!are_set_up(port, lidar)) {
-        return TMINI_ERROR_STATE;
+    const tmini_stm32_usart_t *const port = context;
+    if (port->lidar != NULL) {
+        switch_on(port);
     }
-    if (tmini_stm32_circle_size(lidar) != 0 || !is_good_clock(clock_hz)) {
+}
+
+const tmini_port_t tmini_stm32_usart_port = {
+    .write = send_bytes, .now_ms = time_now_ms, .wait = NULL, .restart = restart};
+
+/* -------------------------------------------------------------------------------- life cycle */
+
+tmini_status_t tmini_stm32_usart_init(tmini_stm32_usart_t *port,
+                                      const tmini_stm32_usart_wiring_t *wiring)
+{
+    if (port == NULL || wiring == NULL || wiring->usart == NULL || wiring->time_ms == NULL ||
+        !is_good_clock(wiring->clock_hz)) {
         return TMINI_ERROR_ARGUMENT;
     }
-    port->lidar = lidar;
-    port->remaining = NULL;
-    switch_on(port->registers, clock_hz, CR1_RXNEIE, 0);
+    *port = (tmini_stm32_usart_t){.wiring = *wiring};
     return TMINI_OK;
 }
 
-/* The DMA channel stands at the buffer's start and is as long as the buffer. */
-static bool is_good_channel(const tmini_t *lidar, const volatile uint32_t *remaining)
+static bool are_set_up(const tmini_stm32_usart_t *port, const tmini_t *lidar)
 {
-    const size_t size = tmini_stm32_circle_size(lidar);
-    return size != 0 && size <= TMINI_STM32_CIRCLE_MAX && remaining != NULL &&
+    return port != NULL && port->wiring.usart != NULL && tmini_stm32_circle_is_set_up(lidar);
+}
+
+/* The DMA channel stands at the buffer's start and is as long as the buffer. */
+static bool is_good_channel(const tmini_stm32_usart_t *port, size_t size)
+{
+    const volatile uint32_t *const remaining = port->wiring.remaining;
+    return size <= TMINI_STM32_CIRCLE_MAX && remaining != NULL &&
            (read_register(remaining) & DMA_COUNT) == size;
 }
 
-tmini_status_t tmini_stm32_usart_start_dma(tmini_stm32_usart_t *port, tmini_t *lidar,
-                                           uint32_t clock_hz, const volatile uint32_t *remaining)
+tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar)
 {
     if (!are_set_up(port, lidar)) {
         return TMINI_ERROR_STATE;
     }
-    if (!is_good_channel(lidar, remaining) || !is_good_clock(clock_hz)) {
-        return TMINI_ERROR_ARGUMENT;
+    const size_t size = tmini_stm32_circle_size(lidar);
+    if (size != 0) {
+        if (!is_good_channel(port, size)) {
+            return TMINI_ERROR_ARGUMENT;
+        }
+        tmini_stm32_circle_rewind(lidar);
     }
-    port->lidar = lidar;
-    tmini_stm32_circle_rewind(lidar);
-    tmini_stm32_circle_begin(&port->circle, tmini_stm32_circle_size(lidar));
+    tmini_stm32_circle_begin(&port->circle, size);
     port->line_flags = 0;
-    port->remaining = remaining;
-    switch_on(port->registers, clock_hz, CR1_IDLEIE, CR3_DMAR);
+    port->lidar = lidar;
+    switch_on(port);
     return TMINI_OK;
 }
 
 void tmini_stm32_usart_stop(tmini_stm32_usart_t *port)
 {
-    change(&port->registers[CR1], CR1_INTERRUPTS, 0);
-    change(&port->registers[CR3], CR3_DMAR, 0);
-    if (port->remaining != NULL) {
+    volatile uint32_t *const registers = registers_of(port);
+    change(&registers[CR1], CR1_INTERRUPTS, 0);
+    change(&registers[CR3], CR3_DMAR, 0);
+    if (is_by_dma(port)) {
         hand_over_new(port);
-        port->remaining = NULL;
+        port->circle.size = 0;
     }
+    port->lidar = NULL;
+}
+
+void tmini_stm32_usart_counters(const tmini_stm32_usart_t *port,
+                                tmini_stm32_usart_counters_t *counters)
+{
+    *counters = port->counters;
 }
 
 #endif

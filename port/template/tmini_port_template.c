@@ -43,12 +43,7 @@ static uint32_t time_now_ms(void *context)
     return time_ms;
 }
 
-/* FILL IN 3 (optional): a function that lets other work run for about a millisecond: an RTOS delay,
- * or a sleep until the next interrupt. Only the functions of tmini_blocking.h call it, while they
- * wait; NULL makes them spin. */
-const tmini_port_t tmini_port_template = {.write = send_bytes, .now_ms = time_now_ms, .wait = NULL};
-
-/* FILL IN 4: switches the UART's receive interrupt on and off. Whatever was pending before, an
+/* FILL IN 3: switches the UART's receive interrupt on and off. Whatever was pending before, an
  * overrun above all, is cleared first: this controller may have been reset while the lidar went on
  * sending. */
 static void enable_receive_interrupt(void *uart, bool enable)
@@ -57,21 +52,51 @@ static void enable_receive_interrupt(void *uart, bool enable)
     (void)enable;
 }
 
-void tmini_port_template_init(tmini_port_template_t *port, void *uart)
+/* The lidar is lost: whatever has stopped the receiver, it begins anew. */
+static void restart(void *context)
 {
-    *port = (tmini_port_template_t){.uart = uart};
+    const tmini_port_template_t *const port = context;
+    if (port->lidar != NULL) {
+        enable_receive_interrupt(port->uart, false);
+        enable_receive_interrupt(port->uart, true);
+    }
 }
 
-void tmini_port_template_start(tmini_port_template_t *port, tmini_t *lidar)
+/* FILL IN 4 (optional): `wait`, a function that lets other work run for about a millisecond: an
+ * RTOS delay, or a sleep until the next interrupt. Only the functions of tmini_blocking.h call it,
+ * while they wait; NULL makes them spin. */
+const tmini_port_t tmini_port_template = {
+    .write = send_bytes, .now_ms = time_now_ms, .wait = NULL, .restart = restart};
+
+tmini_status_t tmini_port_template_init(tmini_port_template_t *port, void *uart)
 {
+    if (port == NULL) {
+        return TMINI_ERROR_ARGUMENT;
+    }
+    *port = (tmini_port_template_t){.uart = uart};
+    return TMINI_OK;
+}
+
+tmini_status_t tmini_port_template_start(tmini_port_template_t *port, tmini_t *lidar)
+{
+    if (port == NULL || lidar == NULL) {
+        return TMINI_ERROR_ARGUMENT;
+    }
     port->lidar = lidar;
     enable_receive_interrupt(port->uart, true);
+    return TMINI_OK;
 }
 
 void tmini_port_template_stop(tmini_port_template_t *port)
 {
     enable_receive_interrupt(port->uart, false);
     port->lidar = NULL;
+}
+
+void tmini_port_template_counters(const tmini_port_template_t *port,
+                                  tmini_port_template_counters_t *counters)
+{
+    *counters = (tmini_port_template_counters_t){.line_errors = port->line_errors};
 }
 
 void tmini_port_template_tick(tmini_port_template_t *port)
@@ -83,7 +108,7 @@ void tmini_port_template_tick(tmini_port_template_t *port)
 void tmini_port_template_receive(tmini_port_template_t *port, uint8_t byte, bool is_error)
 {
     if (is_error) {
-        port->receive_errors = port->receive_errors + 1;
+        port->line_errors = port->line_errors + 1;
     }
     if (port->lidar != NULL) {
         tmini_feed_byte(port->lidar, byte);

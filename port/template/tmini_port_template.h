@@ -26,29 +26,37 @@
 extern "C" {
 #endif
 
+/** Running totals, for diagnostics. Split them up where your UART does. */
+typedef struct {
+    uint32_t line_errors; /**< Framing, noise and overrun errors. */
+} tmini_port_template_counters_t;
+
 /** What the port knows of one lidar's connection; one of these a lidar, allocated by you. Its
  * address is the `port_context` of tmini_config_t. */
 typedef struct {
     tmini_t *lidar; /**< Where received bytes go; NULL: nowhere. */
     void *uart; /**< Whatever your board calls the UART: a handle, a number, a register address. */
-    volatile uint32_t time_ms; /**< Milliseconds counted by tmini_port_template_tick(). */
-    volatile uint32_t
-        receive_errors; /**< Framing, noise and overrun errors: for your diagnostics. */
+    volatile uint32_t time_ms;     /**< Milliseconds counted by tmini_port_template_tick(). */
+    volatile uint32_t line_errors; /**< As in tmini_port_template_counters_t. */
 } tmini_port_template_t;
 
 /** The `port` of tmini_config_t. */
 extern const tmini_port_t tmini_port_template;
 
 /** Names the UART, which is set up (230400 baud, 8 data bits, no parity, 1 stop bit), its receive
- * interrupt not yet enabled. Call once. */
-void tmini_port_template_init(tmini_port_template_t *port, void *uart);
+ * interrupt not yet enabled. Call once. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
+tmini_status_t tmini_port_template_init(tmini_port_template_t *port, void *uart);
 
 /** From now on received bytes go to `lidar`, which has been through tmini_init(). Not from an
- * interrupt. */
-void tmini_port_template_start(tmini_port_template_t *port, tmini_t *lidar);
+ * interrupt. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
+tmini_status_t tmini_port_template_start(tmini_port_template_t *port, tmini_t *lidar);
 
 /** Until now. Not from an interrupt; may be started again. */
 void tmini_port_template_stop(tmini_port_template_t *port);
+
+/** Copies the counters. */
+void tmini_port_template_counters(const tmini_port_template_t *port,
+                                  tmini_port_template_counters_t *counters);
 
 /** Call from an interrupt every millisecond. */
 void tmini_port_template_tick(tmini_port_template_t *port);

@@ -8,91 +8,39 @@
 
 #include <zephyr/drivers/uart.h>
 
+#include "tmini_zephyr_reception.h"
+
 /* The protocol's section 1. */
 #define BAUD_RATE 230400
 
-#define CHUNK 32
+/* UART_ERROR_NOISE, which older versions of Zephyr do not have. */
+#define ERROR_NOISE (1 << 5)
 
-/* The result of a function that has none in old versions of Zephyr: there 0. Whatever compiles so
- * old a Zephyr knows GCC's built-ins. */
-#ifdef __GNUC__
-#define RESULT_OR_0(call) \
-    __builtin_choose_expr(__builtin_types_compatible_p(__typeof__(call), void), ((call), 0), (call))
-#else
-#define RESULT_OR_0(call) (call)
-#endif
+/* --------------------------------------------------------------------------------- the callback */
 
-/* ------------------------------------------------------------------------------------ receiving */
-
-/* Counts the errors since the last call; true if bytes were lost. Negative: the driver cannot
- * tell. */
-static bool has_lost_bytes(tmini_zephyr_t *board)
+bool tmini_zephyr_count_errors(tmini_zephyr_t *port, int errors)
 {
-    const int errors = uart_err_check(board->uart);
-    if (errors <= 0) {
-        return false;
-    }
-    board->counters.overruns += (errors & UART_ERROR_OVERRUN) != 0;
-    board->counters.framing_errors += (errors & UART_ERROR_FRAMING) != 0;
-    board->counters.breaks += (errors & UART_BREAK) != 0;
+    port->counters.overruns += (errors & UART_ERROR_OVERRUN) != 0;
+    port->counters.framing_errors += (errors & UART_ERROR_FRAMING) != 0;
+    port->counters.noise_errors += (errors & ERROR_NOISE) != 0;
+    port->counters.breaks += (errors & UART_BREAK) != 0;
     return (errors & UART_ERROR_OVERRUN) != 0;
 }
 
-/* Tells the lidar at once: with some drivers clearing an error takes the byte away as well, and
- * there is nothing left to read. Once bytes were lost, the rest of this interrupt's is not used. */
-static bool tell_losses(tmini_zephyr_t *board, bool lost_before)
+void tmini_zephyr_take(tmini_zephyr_t *port, const uint8_t *bytes, size_t count)
 {
-    const bool lost = has_lost_bytes(board) || lost_before;
-    if (lost) {
-        tmini_feed_gap(board->lidar);
+    tmini_feed(port->lidar, bytes, count);
+    port->counters.bytes += (uint32_t)count;
+    port->unannounced += (uint32_t)count;
+    if (port->unannounced >= CONFIG_TMINI_WAKE_BYTES) {
+        port->unannounced = 0;
+        k_sem_give(&port->received);
     }
-    return lost;
-}
-
-/* Whether bytes were lost is asked before reading, because reading clears the error with some
- * drivers, and again behind it, because they may have been lost among those just read. */
-static uint32_t empty_fifo(tmini_zephyr_t *board)
-{
-    uint8_t chunk[CHUNK];
-    uint32_t received = 0;
-    bool lost = tell_losses(board, false);
-    while (uart_irq_rx_ready(board->uart) > 0) {
-        const int count = uart_fifo_read(board->uart, chunk, sizeof chunk);
-        if (count <= 0) {
-            break;
-        }
-        lost = tell_losses(board, lost);
-        tmini_feed(board->lidar, chunk, (size_t)count);
-        received += (uint32_t)count;
-    }
-    return received;
-}
-
-static void receive(tmini_zephyr_t *board)
-{
-    const uint32_t received = empty_fifo(board);
-    board->counters.bytes += received;
-    board->unannounced += received;
-    if (board->unannounced >= CONFIG_TMINI_WAKE_BYTES) {
-        board->unannounced = 0;
-        k_sem_give(&board->received);
-    }
-}
-
-static void on_interrupt(const struct device *uart, void *user_data)
-{
-    tmini_zephyr_t *const board = user_data;
-    const k_spinlock_key_t key = k_spin_lock(&board->lock);
-    (void)uart_irq_update(uart); /* Its result has never meant anything; since 4.5 it has none. */
-    if (board->lidar != NULL) {
-        receive(board);
-    }
-    k_spin_unlock(&board->lock, key);
 }
 
 /* ------------------------------------------------------------------------- init, start and stop */
 
-int tmini_zephyr_init(tmini_zephyr_t *board, const struct device *uart)
+int tmini_zephyr_init(tmini_zephyr_t *port, const struct device *uart)
 {
     const struct uart_config line = {
         .baudrate = BAUD_RATE,
@@ -101,10 +49,10 @@ int tmini_zephyr_init(tmini_zephyr_t *board, const struct device *uart)
         .data_bits = UART_CFG_DATA_BITS_8,
         .flow_ctrl = UART_CFG_FLOW_CTRL_NONE,
     };
-    if (board == NULL) {
+    if (port == NULL) {
         return -EINVAL;
     }
-    *board = (tmini_zephyr_t){0};
+    *port = (tmini_zephyr_t){0};
     if (uart == NULL) {
         return -EINVAL;
     }
@@ -115,59 +63,45 @@ int tmini_zephyr_init(tmini_zephyr_t *board, const struct device *uart)
     if (error != 0 && error != -ENOSYS && error != -ENOTSUP) {
         return error;
     }
-    k_sem_init(&board->received, 0, 1);
-    board->uart = uart;
+    k_sem_init(&port->received, 0, 1);
+    port->uart = uart;
     return 0;
 }
 
-/* Zephyr has said since 3.3 whether the driver has interrupts. */
-static int take_callback(tmini_zephyr_t *board)
+int tmini_zephyr_start(tmini_zephyr_t *port, tmini_t *lidar)
 {
-    return RESULT_OR_0(uart_irq_callback_user_data_set(board->uart, on_interrupt, board));
-}
-
-int tmini_zephyr_start(tmini_zephyr_t *board, tmini_t *lidar)
-{
-    if (board == NULL || lidar == NULL || board->uart == NULL) {
+    if (port == NULL || lidar == NULL || port->uart == NULL) {
         return -EINVAL;
     }
-    if (board->lidar != NULL) {
+    if (port->lidar != NULL) {
         return -EALREADY;
     }
-    uart_irq_rx_disable(board->uart);
-    uart_irq_tx_disable(board->uart);
-    const int error = take_callback(board);
+    port->counters = (tmini_zephyr_counters_t){0};
+    port->unannounced = 0;
+    port->lidar = lidar;
+    const int error = tmini_zephyr_begin_reception(port);
     if (error != 0) {
-        return error;
+        port->lidar = NULL;
     }
-    board->counters = (tmini_zephyr_counters_t){0};
-    board->unannounced = 0;
-    board->lidar = lidar;
-    (void)uart_err_check(board->uart); /* Of bytes from before. */
-    uart_irq_rx_enable(board->uart);
-    return 0;
+    return error;
 }
 
-/* Behind the lock no callback is under way any more, on another core either. */
-void tmini_zephyr_stop(tmini_zephyr_t *board)
+void tmini_zephyr_stop(tmini_zephyr_t *port)
 {
-    if (board == NULL || board->lidar == NULL) {
-        return;
+    if (port != NULL && port->lidar != NULL) {
+        tmini_zephyr_end_reception(port);
     }
-    uart_irq_rx_disable(board->uart);
-    const k_spinlock_key_t key = k_spin_lock(&board->lock);
-    board->lidar = NULL;
-    k_spin_unlock(&board->lock, key);
 }
 
-void tmini_zephyr_wait(tmini_zephyr_t *board, k_timeout_t timeout)
+void tmini_zephyr_wait(tmini_zephyr_t *port, k_timeout_t timeout)
 {
-    (void)k_sem_take(&board->received, timeout);
+    (void)k_sem_take(&port->received, timeout);
+    tmini_zephyr_keep_receiving(port);
 }
 
-void tmini_zephyr_counters(const tmini_zephyr_t *board, tmini_zephyr_counters_t *counters)
+void tmini_zephyr_counters(const tmini_zephyr_t *port, tmini_zephyr_counters_t *counters)
 {
-    *counters = board->counters;
+    *counters = port->counters;
 }
 
 /* ------------------------------------------------------------------------------------- the port */
@@ -175,12 +109,12 @@ void tmini_zephyr_counters(const tmini_zephyr_t *board, tmini_zephyr_counters_t 
 /* uart_poll_out() waits while the transmitter is busy: at most for the byte before, 43 µs. */
 static int port_write(void *context, const uint8_t *bytes, size_t count)
 {
-    const tmini_zephyr_t *const board = context;
-    if (board->uart == NULL) {
+    const tmini_zephyr_t *const port = context;
+    if (port->uart == NULL) {
         return -1;
     }
     for (size_t i = 0; i < count; i++) {
-        uart_poll_out(board->uart, bytes[i]);
+        uart_poll_out(port->uart, bytes[i]);
     }
     return (int)count;
 }
@@ -196,5 +130,16 @@ static void port_wait(void *context)
     tmini_zephyr_wait(context, K_MSEC(1));
 }
 
+static void port_restart(void *context)
+{
+    tmini_zephyr_t *const port = context;
+    tmini_t *const lidar = port->lidar;
+    if (lidar != NULL) {
+        tmini_zephyr_end_reception(port);
+        port->lidar = lidar;
+        (void)tmini_zephyr_begin_reception(port);
+    }
+}
+
 const tmini_port_t tmini_zephyr_port = {
-    .write = port_write, .now_ms = port_now_ms, .wait = port_wait};
+    .write = port_write, .now_ms = port_now_ms, .wait = port_wait, .restart = port_restart};

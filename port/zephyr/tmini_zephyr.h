@@ -2,21 +2,23 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * The lidar on a UART of any board that Zephyr knows, over the interrupt-driven UART API.
+ * The lidar on a UART of any board that Zephyr knows, over the interrupt-driven or the async UART
+ * API, for a thread of your own that polls. With a node in the devicetree tmini_zephyr_device.h
+ * brings one.
  *
  *     #define UART DEVICE_DT_GET(DT_BUS(DT_NODELABEL(lidar)))
  *
- *     static tmini_zephyr_t board;
+ *     static tmini_zephyr_t port;
  *     static tmini_t lidar;
  *
- *     tmini_zephyr_init(&board, UART);
- *     tmini_init(&lidar, &config);             .port = &tmini_zephyr_port, .port_context = &board
- *     tmini_zephyr_start(&board, &lidar);      bytes come
+ *     tmini_zephyr_init(&port, UART);
+ *     tmini_init(&lidar, &config);             .port = &tmini_zephyr_port, .port_context = &port
+ *     tmini_zephyr_start(&port, &lidar);      bytes come
  *     tmini_start(&lidar);                     the lidar scans
  *     for (;;) {
  *         switch (tmini_poll(&lidar)) {
  *         case TMINI_EVENT_SCAN: use(tmini_scan(&lidar)); break;
- *         case TMINI_EVENT_NONE: tmini_zephyr_wait(&board, K_MSEC(10)); break;
+ *         case TMINI_EVENT_NONE: tmini_zephyr_wait(&port, K_MSEC(10)); break;
  *         default: break;
  *         }
  *     }
@@ -27,6 +29,7 @@
 #ifndef TMINI_ZEPHYR_H
 #define TMINI_ZEPHYR_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include <zephyr/device.h>
@@ -37,19 +40,20 @@
 #ifndef CONFIG_TMINI_UART
 #error \
     "tmini: CONFIG_TMINI_UART is off. It needs CONFIG_SERIAL, CONFIG_MULTITHREADING and a UART \
-driver with the interrupt-driven API (CONFIG_SERIAL_SUPPORT_INTERRUPT)"
+driver with the interrupt-driven or the async API (CONFIG_SERIAL_SUPPORT_INTERRUPT, _ASYNC)"
 #endif
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/** What became of the received bytes before the lidar saw them. Running totals, modulo 2^32. Errors
- * stay 0 with UART drivers that do not tell them. */
+/** Received bytes on their way to the lidar. Running totals, modulo 2^32. Errors stay 0 with UART
+ * drivers that do not report them. */
 typedef struct {
     uint32_t bytes;          /**< Handed to the lidar. */
     uint32_t overruns;       /**< The interrupt came too late; bytes were lost. */
     uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
+    uint32_t noise_errors;   /**< A bit's samples differed. */
     uint32_t breaks;         /**< The line was low for longer than a byte: unplugged? */
 } tmini_zephyr_counters_t;
 
@@ -61,6 +65,11 @@ typedef struct {
     struct k_sem received;
     struct k_spinlock lock; /* Between the callback and stopping, on several cores. */
     uint32_t unannounced;   /* Bytes since the polling thread was last woken. */
+#ifdef CONFIG_TMINI_UART_ASYNC
+    uint8_t buffers[2][CONFIG_TMINI_UART_BUFFER];
+    uint8_t buffer;           /* The one given last. */
+    volatile bool is_enabled; /* The UART driver receives; its callback clears it. */
+#endif
     tmini_zephyr_counters_t counters;
     /** @endcond */
 } tmini_zephyr_t;
@@ -73,7 +82,7 @@ extern const tmini_port_t tmini_zephyr_port;
  *   -EINVAL  null pointer
  *   -ENODEV  the UART is not ready
  *   or what the UART driver gave */
-int tmini_zephyr_init(tmini_zephyr_t *board, const struct device *uart);
+int tmini_zephyr_init(tmini_zephyr_t *port, const struct device *uart);
 
 /** Received bytes go to `lidar`, which has been through tmini_init(); the counters begin anew.
  * Takes the UART's callback. Returns 0,
@@ -82,17 +91,17 @@ int tmini_zephyr_init(tmini_zephyr_t *board, const struct device *uart);
  *   -ENOSYS    the UART's driver has no interrupt-driven API (before Zephyr 3.3 nothing says so)
  *   -ENOTSUP   CONFIG_UART_INTERRUPT_DRIVEN is off
  * After an error nothing is received. */
-int tmini_zephyr_start(tmini_zephyr_t *board, tmini_t *lidar);
+int tmini_zephyr_start(tmini_zephyr_t *port, tmini_t *lidar);
 
 /** Ends reception. Stop the lidar before, or it goes on scanning. */
-void tmini_zephyr_stop(tmini_zephyr_t *board);
+void tmini_zephyr_stop(tmini_zephyr_t *port);
 
 /** Sleeps until bytes have come (CONFIG_TMINI_WAKE_BYTES), at most `timeout`: for a polling thread
  * that has nothing left to do. The driver also keeps time, so let `timeout` be some 10 ms. */
-void tmini_zephyr_wait(tmini_zephyr_t *board, k_timeout_t timeout);
+void tmini_zephyr_wait(tmini_zephyr_t *port, k_timeout_t timeout);
 
 /** Copies the counters. */
-void tmini_zephyr_counters(const tmini_zephyr_t *board, tmini_zephyr_counters_t *counters);
+void tmini_zephyr_counters(const tmini_zephyr_t *port, tmini_zephyr_counters_t *counters);
 
 #ifdef __cplusplus
 }

@@ -30,4 +30,6 @@ if(missing)
 else()
     tmini_add_check(manifests consumer
         COMMAND ${TMINI_PROGRAM_python3} ${CMAKE_CURRENT_SOURCE_DIR}/consumer/manifests.py)
+    tmini_add_check(version consumer
+        COMMAND ${TMINI_PROGRAM_python3} ${PROJECT_SOURCE_DIR}/.ci/version.py)
 endif()

@@ -19,7 +19,8 @@ function(expect_file file)
 endfunction()
 
 function(expect_all_files)
-    foreach(file lib/libtmini.a lib/pkgconfig/tmini.pc bin/tmini
+    foreach(file lib/libtmini.a lib/libtmini_posix.a include/tmini/tmini_posix.h
+            lib/pkgconfig/tmini.pc bin/tmini
             lib/cmake/tmini/tmini-config.cmake lib/cmake/tmini/tmini-config-version.cmake
             share/doc/tmini/LICENSE share/man/man1/tmini.1 share/bash-completion/completions/tmini
             lib/udev/rules.d/60-tmini.rules)
@@ -63,17 +64,10 @@ function(expect_shared_refused)
     endif()
 endfunction()
 
-function(build_in_one_unit)
-    run_or_fail(${CMAKE_COMMAND} -S ${TMINI_SOURCE} -B ${BUILD}/unity -G ${GENERATOR}
-        -DCMAKE_C_COMPILER=${COMPILER} -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0
-        -DTMINI_BUILD_EXAMPLES=OFF -DTMINI_WERROR=ON)
-    run_or_fail(${CMAKE_COMMAND} --build ${BUILD}/unity)
-endfunction()
-
 file(REMOVE_RECURSE ${BUILD})
 expect_shared_refused()
-build_in_one_unit()
-install_project(${BUILD}/build ${prefix} ON)
+install_project(${BUILD}/build ${prefix} ON -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0
+    -DTMINI_WERROR=ON)
 expect_all_files()
 run_or_fail(${prefix}/bin/tmini --help)
 if(PKG_CONFIG)

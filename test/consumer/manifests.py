@@ -5,8 +5,8 @@
 
     manifests.py [ROOT]
 
-Compares what each of them says of version, description, licence, author, keywords and home page,
-and looks for every source of the library in each list of sources. Exit status: 0 they agree, 1 not;
+Compares what each of them says of description, licence, author and keywords (version and address:
+.ci/version.py), and looks for every source of the library in each list of sources. Exit status: 0 they agree, 1 not;
 every disagreement is told.
 """
 
@@ -48,34 +48,17 @@ def without_comments(text):
 
 def of_cmake():
     name = "CMakeLists.txt"
-    return {
-        "version": "%s%s" % (find(name, r"project\(tmini VERSION ([0-9.]+)"),
-                             find(name, r"^set\(TMINI_VERSION_SUFFIX *(\S*)\)")),
-        "description": find(name, r'DESCRIPTION\s+("[^"]*")'),
-        "home page": find(name, r"HOMEPAGE_URL\s+(\S+)"),
-    }
-
-
-def of_header():
-    name = "lib/include/tmini/tmini.h"
-    parts = [find(name, r"#define TMINI_VERSION_%s ([0-9]+)" % part)
-             for part in ("MAJOR", "MINOR", "PATCH")]
-    numbers = ".".join(str(part) for part in parts)
-    text = find(name, r"#define TMINI_VERSION_TEXT (.*)$") or ""
-    return {"version": text if text.split("-")[0] == numbers else "%s, %s" % (numbers, text)}
+    return {"description": find(name, r'DESCRIPTION\s+("[^"]*")')}
 
 
 def of_platformio():
     manifest = json.loads(read("library.json"))
-    repository = manifest.get("repository") or {}
     return {
         "name": manifest.get("name"),
-        "version": manifest.get("version"),
         "description": manifest.get("description"),
         "licence": manifest.get("license"),
         "author": ", ".join(author["name"] for author in manifest.get("authors", [])),
         "keywords": sorted(manifest.get("keywords", [])),
-        "home page": manifest.get("homepage") or repository.get("url"),
     }
 
 
@@ -83,10 +66,8 @@ def of_arduino():
     name = "port/arduino/library.properties"
     return {
         "name": find(name, r"^name=(.*)$"),
-        "version": find(name, r"^version=(.*)$"),
         "description": (find(name, r"^sentence=(.*)$") or "").rstrip("."),
         "author": find(name, r"^author=(.*)$"),
-        "home page": find(name, r"^url=(.*)$"),
     }
 
 
@@ -94,65 +75,37 @@ def of_esp_idf():
     name = "idf_component.yml"
     tags = re.search(r"^tags:\n((?:  - .*\n)+)", read(name), re.MULTILINE)
     return {
-        "version": find(name, r"^version: (.*)$"),
         "description": find(name, r"^description: (.*)$"),
         "licence": find(name, r"^license: (.*)$"),
         "keywords": sorted(re.findall(r"- (.*)", tags.group(1))) if tags else None,
-        "home page": find(name, r"^url: (.*)$"),
     }
 
 
-def of_documents():
+def of_licence():
     return {
-        "version": find("CHANGELOG.md", r"^## ([0-9]\S*) \([0-9]{4}-[0-9]{2}-[0-9]{2}\)$"),
         "licence": (find("LICENSE", r"^(.*)$") or "").replace(" License", ""),
         "author": find("LICENSE", r"^Copyright \(c\) [0-9-]+ (.*)$"),
     }
 
 
-def of_page():
-    return {"version": find("examples/web/tmini.html", r"<h1>tmini viewer <small>([^<]+)<")}
-
-
-def of_manual():
-    return {"version": find("examples/host/share/tmini.1", r'^\.TH .* "tmini ([^"]+)"')}
-
-
 def of_python():
-    """PEP 440 writes 1.0.0-rc.1 as 1.0.0rc1."""
     name = "port/python/pyproject.toml"
-    version = find(name, r"^version = (.*)$") or ""
-    return {
-        "name": find(name, r"^name = (.*)$"),
-        "version": re.sub(r"rc([0-9]+)$", r"-rc.\1", version),
-        "licence": find(name, r"^license = (.*)$"),
-    }
-
-
-def of_consumer():
-    return {"version": find("test/consumer/CMakeLists.txt", r"GIT_TAG v([^)]+)\)")}
+    return {"name": find(name, r"^name = (.*)$"), "licence": find(name, r"^license = (.*)$")}
 
 
 def of_readme():
-    return {
-        "version": find("README.md", r"^Version (\S+) "),
-        "licence": find("README.md", r"^(\w+) licence\."),
-    }
+    return {"licence": find("README.md", r"^(\w+) licence\.")}
 
 
-# What each must say; a home page is compared where there is one.
+# What each must say.
 SAID = {
-    "CMakeLists.txt": (of_cmake, "version description"),
-    "tmini.h": (of_header, "version"),
-    "library.json": (of_platformio, "name version description licence author keywords"),
-    "library.properties": (of_arduino, "name version description author"),
-    "idf_component.yml": (of_esp_idf, "version description licence keywords"),
-    "CHANGELOG.md and LICENSE": (of_documents, "version licence author"),
-    "README.md": (of_readme, "version licence"),
-    "examples/web/tmini.html": (of_page, "version"),
-    "tmini.1": (of_manual, "version"),
-    "pyproject.toml": (of_python, "name version licence"),
-    "test/consumer/CMakeLists.txt": (of_consumer, "version"),
+    "CMakeLists.txt": (of_cmake, "description"),
+    "library.json": (of_platformio, "name description licence author keywords"),
+    "library.properties": (of_arduino, "name description author"),
+    "idf_component.yml": (of_esp_idf, "description licence keywords"),
+    "LICENSE": (of_licence, "licence author"),
+    "README.md": (of_readme, "licence"),
+    "pyproject.toml": (of_python, "name licence"),
 }
 
 
@@ -202,7 +155,7 @@ def check_sources():
 
 
 # Those that take whatever is there.
-TAKERS = ["port/arduino/pack.cmake", "port/esp32/component.cmake", "port/pico/CMakeLists.txt",
+TAKERS = ["port/esp32/component.cmake", "port/pico/CMakeLists.txt",
           "port/zephyr/CMakeLists.txt"]
 
 

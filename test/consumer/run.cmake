@@ -32,3 +32,6 @@ run_or_fail(${CMAKE_COMMAND} --build ${BUILD})
 
 # In the place where the consumer expects it, not in an output folder of ours.
 run_or_fail(${BUILD}/consumer)
+if(EXISTS ${BUILD}/with_port)
+    run_or_fail(${BUILD}/with_port)
+endif()

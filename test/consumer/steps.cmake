@@ -14,11 +14,13 @@ function(run_or_fail)
     endif()
 endfunction()
 
-# Builds the library in BUILD, and the programs if TOOL, and installs them below PREFIX.
+# install_project(BUILD PREFIX TOOL OPTION…): builds the library in BUILD, and the programs if TOOL,
+# and installs them below PREFIX.
 function(install_project build prefix tool)
     run_or_fail(${CMAKE_COMMAND} -S ${TMINI_SOURCE} -B ${build} -G ${GENERATOR}
         -DCMAKE_C_COMPILER=${COMPILER} -DCMAKE_INSTALL_LIBDIR=lib
-        -DTMINI_BUILD_TESTS=OFF -DTMINI_BUILD_EXAMPLES=${tool} -DTMINI_INSTALL_UDEV_RULE=${tool})
+        -DTMINI_BUILD_TESTS=OFF -DTMINI_BUILD_EXAMPLES=${tool}
+        -DTMINI_INSTALL_UDEV_RULE=${tool} ${ARGN})
     run_or_fail(${CMAKE_COMMAND} --build ${build} --parallel 2)
     run_or_fail(${CMAKE_COMMAND} --install ${build} --prefix ${prefix})
 endfunction()

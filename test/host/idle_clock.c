@@ -27,8 +27,9 @@
 #include <time.h>
 #include <unistd.h>
 
-/* How long nothing must have come: a pseudo-terminal's bytes are some microseconds under way. */
-#define QUIET_NS 500000
+/* How long nothing must have come: a pseudo-terminal's bytes take some microseconds, more on a busy
+ * computer. */
+#define QUIET_NS 1000000
 #define NEVER INT64_MAX
 #define PROGRAMS_MAX 16
 #define HIGH_FD 100 /* Out of the way of programs whose standard output is closed. */
@@ -49,23 +50,7 @@ typedef struct {
 static clock_file_t *shared;
 static int lock_fd;
 
-static void join(void)
-{
-    static bool has_tried;
-    const char *const path = getenv("TMINI_IDLE_CLOCK");
-    if (has_tried || path == NULL) {
-        return;
-    }
-    has_tried = true;
-    const int fd = open(path, O_RDWR | O_CLOEXEC);
-    if (fd < 0) {
-        return;
-    }
-    lock_fd = fcntl(fd, F_DUPFD_CLOEXEC, HIGH_FD);
-    void *const memory = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-    shared = memory != MAP_FAILED && lock_fd >= 0 ? memory : NULL;
-    close(fd);
-}
+static void join(void);
 
 static int real_clock(clockid_t clock, struct timespec *now)
 {
@@ -169,6 +154,27 @@ static void go_on(void)
         shared->events++;
     }
     (void)flock(lock_fd, LOCK_UN);
+}
+
+static void join(void)
+{
+    static bool has_tried;
+    const char *const path = getenv("TMINI_IDLE_CLOCK");
+    if (has_tried || path == NULL) {
+        return;
+    }
+    has_tried = true;
+    const int fd = open(path, O_RDWR | O_CLOEXEC);
+    if (fd < 0) {
+        return;
+    }
+    lock_fd = fcntl(fd, F_DUPFD_CLOEXEC, HIGH_FD);
+    void *const memory = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+    shared = memory != MAP_FAILED && lock_fd >= 0 ? memory : NULL;
+    close(fd);
+    if (shared != NULL) {
+        go_on(); /* No time is skipped before it waits for the first time. */
+    }
 }
 
 int poll(struct pollfd *fds, nfds_t count, int timeout_ms)

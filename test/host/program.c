@@ -224,6 +224,8 @@ void program_use_real_time(void)
     is_in_real_time = true;
 }
 
+static file_name_t clock_link;
+
 void program_skip_idle_time(void)
 {
 /* Sanitizers want to be loaded first. */
@@ -234,7 +236,13 @@ void program_skip_idle_time(void)
     (void)snprintf(name, sizeof name, "%s/clock.%u", WORK_DIR, count++);
     program_write_file(name, nothing, sizeof nothing);
     (void)setenv("TMINI_IDLE_CLOCK", name, 1);
-    (void)setenv("LD_PRELOAD", IDLE_CLOCK, 1);
+    /* By a name without blanks: in LD_PRELOAD those part one library from the next. */
+    if (clock_link[0] == '\0') {
+        (void)snprintf(clock_link, sizeof clock_link, "/tmp/tmini-clock.%ld", (long)getpid());
+        (void)unlink(clock_link);
+        TEST_ASSERT_EQUAL_INT(0, symlink(IDLE_CLOCK, clock_link));
+    }
+    (void)setenv("LD_PRELOAD", clock_link, 1);
 #endif
 }
 
@@ -270,9 +278,14 @@ static void read_port(int fd, char *port, size_t size)
 
 const char *program_start_lidar(const char *const options[])
 {
+    begin_clock();
+    return program_start_lidar_again(options);
+}
+
+const char *program_start_lidar_again(const char *const options[])
+{
     char *const port = new_port();
     int ends[2];
-    begin_clock();
     const char *words[PROGRAM_WORDS_MAX] = {"--pty"};
     const bool is_socket = options[0] != NULL && strcmp(options[0], "--tcp") == 0;
     for (size_t i = 0; options[i] != NULL; i++) {
@@ -290,6 +303,13 @@ const char *program_start_lidar(const char *const options[])
     read_port(ends[0], port, 100);
     close(ends[0]);
     return port;
+}
+
+void program_plug_in(const char *device)
+{
+    const char *const name = program_path("adapter");
+    (void)remove(name);
+    TEST_ASSERT_TRUE(device == NULL || symlink(device, name) == 0);
 }
 
 static void end(pid_t pid)
@@ -447,6 +467,7 @@ static void end_all(void)
 {
     background = 0;
     program_clean_up();
+    (void)unlink(clock_link);
 }
 
 void program_clean_up(void)

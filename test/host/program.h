@@ -37,7 +37,7 @@ extern const char *program_errors;
 /* A file's path in the folder for files; valid until the fourth call after this one. */
 const char *program_path(const char *name);
 
-/* The whole file, with a 0 behind it; the test fails if there is none. Valid until the next call
+/* The whole file, with a 0 after it; the test fails if there is none. Valid until the next call
  * with the same slot, 0 to 3. */
 const char *program_read_file(unsigned slot, const char *path, size_t *size);
 
@@ -89,6 +89,13 @@ pid_t program_start_shell_on_terminal(unsigned columns, unsigned rows, const cha
 /* Starts the simulated lidar on a pseudo-terminal, or on a socket if the options say so, with more
  * options up to a NULL. Returns the port as the tool wants it, which stays valid. */
 const char *program_start_lidar(const char *const options[]);
+
+/* One for programs that run already: their clock is its own. */
+const char *program_start_lidar_again(const char *const options[]);
+
+/* Lets the file "adapter" lead to this device, as the system's names of an adapter do to what is
+ * plugged in; NULL: to none. */
+void program_plug_in(const char *device);
 
 /* Programs that are started from now on share a clock that skips the time in which nothing happens
  * (idle_clock.c); until the test ends. Each lidar begins such a clock by itself, for those started

@@ -183,7 +183,7 @@ void test_a_good_lidar_is_good(void)
     expect_said("\nok    line       0.0 % of ");
     expect_said("\nok    frequency  6.0 Hz measured, 6.0 Hz set\n");
     expect_said("\nok    faults     healthy\n");
-    expect_said(" % of the points have a distance\n");
+    expect_said(" % of the points have a distance; nearest ");
     expect_said("\nverdict: ");
     end_case("socket", 0, "ok    port       tcp:127.0.0.1:");
     expect_unsaid("BAD");

@@ -247,7 +247,7 @@ void test_what_a_damaged_recording_does_not_tell_is_unknown(void)
     expect_summary("health      not told: this unit sends no information within the stream\n");
 }
 
-/* So many packets of one sample, with so many other bytes somewhere among them. */
+/* This many packets of one sample, with this many other bytes somewhere among them. */
 static void summarise_damage(unsigned count, size_t gap)
 {
     const encode_sample_t sample = {1000, 10, 0};
@@ -411,7 +411,6 @@ static size_t make_timed(uint8_t *file)
     memcpy(file, magic, sizeof magic);
     size_t length = sizeof magic;
     length += put_chunk(file + length, 500000, bytes, 13);
-    length += put_chunk(file + length, 0, bytes, 0);
     length += put_chunk(file + length, 20000, bytes + 13, 5);
     length += put_chunk(file + length, 69980000, bytes + 18, 14);
     length += put_chunk(file + length, 200000, bytes + 32, 13);

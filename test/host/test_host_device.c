@@ -117,12 +117,17 @@ static void begin(void)
     port = program_start_lidar(NO_OPTIONS);
 }
 
-static void expect_output(const char *expected, const char *const words[])
+static void expect_success(const char *const words[])
 {
     const int status = program_tmini(words);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, status, program_errors);
+}
+
+static void expect_output(const char *expected, const char *const words[])
+{
+    expect_success(words);
     TEST_ASSERT_EQUAL_STRING(expected, program_output);
     TEST_ASSERT_EQUAL_STRING("", program_errors);
-    TEST_ASSERT_EQUAL_INT(0, status);
 }
 
 static void expect_failure(int status, const char *reason, const char *const words[])
@@ -142,7 +147,7 @@ static unsigned count_of(const char *text, const char *part)
     return count;
 }
 
-/* Waits until the tool has printed so many lines. */
+/* Waits until the tool has printed this many lines. */
 static void wait_for_lines(unsigned lines)
 {
     for (int i = 0; i < 1000; i++) {
@@ -256,7 +261,7 @@ void test_a_frequency_is_lost_in_a_reboot(void)
 void test_scan_prints_a_line_for_each_scan(void)
 {
     begin();
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-n", "4")));
+    expect_success(WORDS("scan", "-p", port, "-n", "4"));
     TEST_ASSERT_EQUAL_UINT(4, count_of(program_output, "\n"));
     /* The nearest thing in the simulated room is the corner of a box, 1.0 m away. */
     const char *const last = strstr(program_output, "scan 4 ");
@@ -268,18 +273,18 @@ void test_scan_prints_a_line_for_each_scan(void)
 void test_scan_ends_with_a_summary(void)
 {
     begin();
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-n3")));
+    expect_success(WORDS("scan", "-p", port, "-n3"));
     TEST_ASSERT_EQUAL_STRING_LEN("scans: ", program_errors, 7);
     TEST_ASSERT_NOT_NULL(
         strstr(program_errors, "; 3 with a distance; 0.0 % of the packets damaged\n"));
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-qn1")));
+    expect_success(WORDS("scan", "-p", port, "-qn1"));
     TEST_ASSERT_EQUAL_STRING("", program_errors);
 }
 
 void test_scan_as_json_has_the_members_of_decode(void)
 {
     begin();
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-n", "2", "--json")));
+    expect_success(WORDS("scan", "-p", port, "-n", "2", "--json"));
     TEST_ASSERT_EQUAL_STRING_LEN("{\"scan\":1,\"time_ms\":", program_output, 20);
     TEST_ASSERT_NOT_NULL(strstr(program_output, ",\"frequency_hz\":"));
     TEST_ASSERT_NOT_NULL(strstr(program_output, ",\"complete\":"));
@@ -292,7 +297,7 @@ void test_scan_as_json_has_the_members_of_decode(void)
 void test_scan_as_csv_has_the_columns_of_decode(void)
 {
     begin();
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-p", port, "-n", "2", "--csv")));
+    expect_success(WORDS("scan", "-p", port, "-n", "2", "--csv"));
     TEST_ASSERT_EQUAL_STRING_LEN(
         "scan,packet,point,angle_deg,distance_mm,intensity,flag,time_ms,frequency_hz\n1,",
         program_output, 78);
@@ -305,8 +310,8 @@ void test_scan_as_csv_has_the_columns_of_decode(void)
 void test_a_scan_live_and_recorded_is_the_same(void)
 {
     begin();
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("record", "-p", port, "rec.tmini", "-q", "-s1")));
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("decode", "rec.tmini", "-q", "--csv")));
+    expect_success(WORDS("record", "-p", port, "rec.tmini", "-q", "-s1"));
+    expect_success(WORDS("decode", "rec.tmini", "-q", "--csv"));
     const char *const row = strstr(program_output, "\n1,");
     TEST_ASSERT_NOT_NULL(row);
     unsigned number[9] = {0};
@@ -321,8 +326,8 @@ void test_a_long_recording_holds_every_packet(void)
 {
     TEST_ASSERT_EQUAL_INT(0, end_job(LONG_RECORD));
     TEST_ASSERT_EQUAL_STRING("", program_errors);
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("decode", "long.bin", "--csv", "--quiet",
-                                                 "--stats", program_path("stats"))));
+    expect_success(
+        WORDS("decode", "long.bin", "--csv", "--quiet", "--stats", program_path("stats")));
     unsigned packets = 0;
     unsigned starts = 0;
     unsigned points = 0;
@@ -384,7 +389,7 @@ void test_a_lidar_can_be_behind_a_socket(void)
     port = program_start_lidar(WORDS("--tcp", "0"));
     TEST_ASSERT_EQUAL_STRING_LEN("tcp:127.0.0.1:", port, 14);
     expect_output("healthy\n", WORDS("health", "-p", port));
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("scan", "-qn2", "-p", port)));
+    expect_success(WORDS("scan", "-qn2", "-p", port));
     TEST_ASSERT_EQUAL_UINT(2, count_of(program_output, "\n"));
 }
 
@@ -412,8 +417,7 @@ void test_a_recording_tells_its_size(void)
     const char *const recording = program_path("one.bin");
     size_t size = 0;
     char line[100];
-    TEST_ASSERT_EQUAL_INT(0,
-                          program_tmini(WORDS("record", "-p", port, recording, "--seconds", "1")));
+    expect_success(WORDS("record", "-p", port, recording, "--seconds", "1"));
     (void)program_read_file(0, recording, &size);
     (void)snprintf(line, sizeof line, " s, %zu bytes; scans: ", size);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, line), program_errors);
@@ -431,7 +435,7 @@ void test_a_recording_ends_with_ctrl_c_and_is_whole(void)
     const pid_t tool = program_start_tmini(WORDS("record", "-p", port, recording, "--quiet"));
     wait_for_bytes(recording, 8000);
     TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGINT));
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("decode", recording)));
+    expect_success(WORDS("decode", recording));
     TEST_ASSERT_NOT_NULL(strstr(program_output, "0 stray bytes between packets"));
     TEST_ASSERT_NOT_NULL(
         strstr(program_output, "7 bytes before the first packet, 0 after the last"));
@@ -463,6 +467,20 @@ void test_ctrl_c_stops_the_lidar_before_leaving(void)
     const char *const start = strstr(text, "A5 60 start");
     TEST_ASSERT_NOT_NULL(start);
     TEST_ASSERT_NOT_NULL(strstr(start, "A5 65 stop"));
+}
+
+/* The system keeps what the lidar sends meanwhile: it is not lost, and the pause leaves no scans of
+ * single packets. */
+void test_a_reader_that_pauses_costs_a_few_scans(void)
+{
+    (void)setenv("TMINI_PORT", program_start_lidar(NO_OPTIONS), 1);
+    TEST_ASSERT_EQUAL_INT(0, system("{ \"$TOOL\" scan --json -n 40 2>errors; echo $? >code; } | "
+                                    "(head -c 1000 >head; sleep 3; cat >rest)"));
+    TEST_ASSERT_EQUAL_STRING("0\n", program_read_file(0, program_path("code"), NULL));
+    TEST_ASSERT_NULL(strstr(program_read_file(0, program_path("errors"), NULL), "silent"));
+    const char *const rest = program_read_file(0, program_path("rest"), NULL);
+    TEST_ASSERT_TRUE(count_of(rest, "\"complete\":true") >= 30);
+    TEST_ASSERT_EQUAL_UINT(0, count_of(rest, "\"packets\":1,"));
 }
 
 /* What else is in the pipe leaves it little room: a line of a scan is written in several pieces,
@@ -600,33 +618,6 @@ void test_a_lidar_that_comes_back_is_told(void)
     TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGINT));
 }
 
-void test_a_recording_survives_a_pulled_cable(void)
-{
-    begin();
-    const char *const recording = program_path("pulled.bin");
-    (void)remove(recording);
-    const pid_t tool = program_start_tmini(WORDS("record", "-p", port, recording, "-q"));
-    wait_for_bytes(recording, 16000);
-    program_stop_lidar();
-    TEST_ASSERT_EQUAL_INT(1, program_finish(tool, 0));
-    TEST_ASSERT_NOT_NULL(strstr(program_errors, "has gone"));
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("decode", recording)));
-    TEST_ASSERT_NOT_NULL(strstr(program_output, " complete"));
-}
-
-/* -------------------------------------------------------------------------- what can be wrong */
-
-void test_a_command_without_a_port_asks_for_one(void)
-{
-    static const char *const commands[] = {"info", "health", "frequency", "reboot", "scan", "view"};
-    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
-        expect_failure(2, "-p /dev/ttyUSB0", WORDS(commands[i]));
-    }
-    expect_failure(2, "-p /dev/ttyUSB0", WORDS("record", "x"));
-    expect_failure(2, "record into which file?", WORDS("record", "-p", "x"));
-    expect_failure(2, "view what?", WORDS("view", "-p", "x", "file"));
-}
-
 /* A computer's folders, made up: an adapter is what the links lead to. */
 static void plug_in(const char *name, const char *line, const char *vendor, const char *product)
 {
@@ -647,13 +638,182 @@ static void unplug_all(void)
     TEST_ASSERT_EQUAL_INT(0, system("rm -rf root"));
 }
 
+void test_with_wait_a_cable_pulled_and_plugged_in_again_is_no_end(void)
+{
+    begin();
+    program_plug_in(port);
+    const pid_t tool = program_start_tmini(WORDS("scan", "-p", "adapter", "--wait"));
+    wait_for_lines(2);
+    program_stop_lidar();
+    program_plug_in(NULL);
+    (void)program_wait_for("errors", "adapter is not there; waiting for it\n");
+    (void)program_wait_for("errors", "fallen silent");
+    const unsigned lines = count_of(program_read_file(0, WORK_DIR "/output", NULL), "\n");
+    program_plug_in(program_start_lidar_again(WORDS("--log", "log")));
+    wait_for_lines(lines + 2);
+    TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGINT));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "adapter is there\n"));
+    TEST_ASSERT_NULL(strstr(program_errors, "tmini: "));
+    (void)program_wait_for("log", "stopping -> idle");
+}
+
+void test_a_recording_with_wait_goes_on_after_a_pulled_cable(void)
+{
+    begin();
+    program_plug_in(port);
+    (void)remove("waits.tmini");
+    const pid_t tool =
+        program_start_tmini(WORDS("record", "-p", "adapter", "--wait", "waits.tmini"));
+    wait_for_bytes("waits.tmini", 16000);
+    program_stop_lidar();
+    (void)program_wait_for("errors", "waiting for it\n");
+    size_t size = 0;
+    (void)program_read_file(0, "waits.tmini", &size);
+    program_plug_in(program_start_lidar_again(NO_OPTIONS));
+    wait_for_bytes("waits.tmini", size + 30000);
+    TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGINT));
+    expect_success(WORDS("decode", "waits.tmini"));
+    TEST_ASSERT_NULL(strstr(program_errors, "damaged"));
+}
+
+void test_with_wait_a_port_that_is_not_there_yet_is_waited_for(void)
+{
+    program_plug_in(NULL);
+    program_skip_idle_time();
+    const pid_t tool = program_start_tmini(WORDS("scan", "-p", "adapter", "--wait", "-n", "1"));
+    (void)program_wait_for("errors", "adapter is not there; waiting for it\n");
+    program_plug_in(program_start_lidar_again(NO_OPTIONS));
+    TEST_ASSERT_EQUAL_INT(0, program_finish(tool, 0));
+    TEST_ASSERT_EQUAL_UINT(1, count_of(program_output, "\n"));
+}
+
+/* The command line names the device, which the next adapter would have too. */
+void test_with_wait_the_adapter_keeps_its_identity(void)
+{
+    unplug_all();
+    begin();
+    plug_in("usb-Lidar_0001", port, "10c4", "ea60");
+    const pid_t tool = program_start_tmini(WORDS("scan", "-p", port, "--wait"));
+    wait_for_lines(2);
+    program_stop_lidar();
+    (void)program_wait_for("errors", "root/dev/serial/by-id/usb-Lidar_0001 is not there");
+    plug_in("usb-Lidar_0001", program_start_lidar_again(NO_OPTIONS), "10c4", "ea60");
+    (void)program_wait_for("errors", "usb-Lidar_0001 is there\n");
+    TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGINT));
+}
+
+/* ---------------------------------------------------------------------- mounting and listening */
+
+/* The nearest thing in the simulated room is 1 m away at 143 degrees: 53 clockwise from a front at
+ * 90, and so 53 anti-clockwise for a lidar that hangs. */
+void test_a_lidar_that_is_mounted_turned_is_shown_as_the_robot_sees(void)
+{
+    begin();
+    const char *const turned[] = {"scan",          "-p", port, "-n", "1", "--front", "90", "-q",
+                                  "--upside-down", NULL};
+    expect_success(turned);
+    TEST_ASSERT_NOT_NULL(strstr(program_output, " at 30"));
+    TEST_ASSERT_NOT_NULL(strstr(program_output, " deg, ahead left\n"));
+    expect_success(WORDS("scan", "-p", port, "-n", "1", "-q", "--mask", "90:-90"));
+    TEST_ASSERT_NULL(strstr(program_output, "behind"));
+}
+
+void test_what_is_masked_is_no_missing_range(void)
+{
+    begin();
+    expect_success(WORDS("check", "-p", port, "-s1", "--mask", "150:130"));
+    const char *const ranges = strstr(program_output, "ok    ranges     ");
+    TEST_ASSERT_NOT_NULL_MESSAGE(ranges, program_output);
+    TEST_ASSERT_TRUE(atoi(ranges + 17) > 90);
+    TEST_ASSERT_NOT_NULL(strstr(ranges, " deg, behind right\n"));
+}
+
+void test_a_mounting_that_is_none_is_told(void)
+{
+    expect_failure(2, "\"a:1\" is not FROM:TO", WORDS("scan", "-p", "x", "--mask", "a:1"));
+    expect_failure(2, "\"1:\" is not FROM:TO", WORDS("scan", "-p", "x", "--mask", "1:"));
+    expect_failure(2, "\"361\" is not a whole", WORDS("scan", "-p", "x", "--front", "361"));
+    expect_failure(2, "decode has no option --mask", WORDS("decode", "x", "--mask", "1:2"));
+}
+
+void test_listening_sends_nothing(void)
+{
+    const char *const log = program_path("log");
+    port = program_start_lidar(WORDS("--log", log));
+    const int line = open(port, O_RDWR | O_NOCTTY);
+    TEST_ASSERT_EQUAL_INT(2, (int)write(line, "\xA5\x60", 2));
+    (void)program_wait_for("log", "idle -> scanning");
+    expect_success(WORDS("scan", "-p", port, "--listen", "-n", "2"));
+    expect_success(WORDS("check", "-p", port, "--listen", "-s", "1"));
+    TEST_ASSERT_NULL_MESSAGE(strstr(program_output, "BAD"), program_output);
+    expect_success(WORDS("record", "-p", port, "--listen", "heard.bin", "-s", "1"));
+    TEST_ASSERT_EQUAL_UINT(1, count_of(program_read_file(0, log, NULL), "command "));
+    close(line);
+}
+
+void test_listening_to_a_silent_lidar_is_told(void)
+{
+    begin();
+    expect_failure(1, "has another program or controller started the lidar?",
+                   WORDS("scan", "-p", port, "--listen"));
+}
+
+/* Its questions are tested in virtual time: test_survey. */
+void test_survey_writes_a_report_and_leaves_the_lidar_stopped_as_it_was(void)
+{
+    const char *const log = program_path("log");
+    port = program_start_lidar(WORDS("--log", log, "--frequency", "7"));
+    expect_success(WORDS("survey", "-p", port, "unit", "--with-serial", "-s10"));
+    TEST_ASSERT_NOT_NULL(strstr(program_output, "as expected 9.15  model "));
+    TEST_ASSERT_NOT_NULL(strstr(program_output, "differs     1     frequency at first, Hz"));
+    const char *const report = program_read_file(1, "unit", NULL);
+    TEST_ASSERT_NOT_NULL(strstr(report, "\nfrequency_hz = 7.00\n"));
+    TEST_ASSERT_NOT_NULL(strstr(report, "\nserial = 2026031700012345\n"));
+    expect_success(WORDS("decode", "unit.tmini"));
+    expect_output("7.00 Hz\n", WORDS("frequency", "-p", port));
+    expect_output("7.00 Hz\n",
+                  WORDS("frequency", "-p", program_start_lidar(WORDS("--like", "unit"))));
+}
+
+void test_a_survey_of_nothing_is_told(void)
+{
+    expect_failure(1, "not one byte came", WORDS("survey", "-p", program_start_talker(NULL, 0)));
+}
+
+void test_a_recording_survives_a_pulled_cable(void)
+{
+    begin();
+    const char *const recording = program_path("pulled.bin");
+    (void)remove(recording);
+    const pid_t tool = program_start_tmini(WORDS("record", "-p", port, recording, "-q"));
+    wait_for_bytes(recording, 16000);
+    program_stop_lidar();
+    TEST_ASSERT_EQUAL_INT(1, program_finish(tool, 0));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "has gone"));
+    expect_success(WORDS("decode", recording));
+    TEST_ASSERT_NOT_NULL(strstr(program_output, " complete"));
+}
+
+/* -------------------------------------------------------------------------- what can be wrong */
+
+void test_a_command_without_a_port_asks_for_one(void)
+{
+    static const char *const commands[] = {"info", "health", "frequency", "reboot", "scan", "view"};
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        expect_failure(2, "-p /dev/ttyUSB0", WORDS(commands[i]));
+    }
+    expect_failure(2, "-p /dev/ttyUSB0", WORDS("record", "x"));
+    expect_failure(2, "record into which file?", WORDS("record", "-p", "x"));
+    expect_failure(2, "view what?", WORDS("view", "-p", "x", "file"));
+}
+
 void test_ports_lists_adapters_by_their_stable_names(void)
 {
     unplug_all();
     begin();
     plug_in("usb-Lidar_0001", port, "10c4", "ea60");
     plug_in("usb-Printer", program_start_talker(NULL, 0), "dead", "beef");
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("ports")));
+    expect_success(WORDS("ports"));
     const char *const lidars =
         strstr(program_output, "root/dev/serial/by-id/usb-Lidar_0001  (/dev/");
     TEST_ASSERT_NOT_NULL(lidars);
@@ -668,7 +828,7 @@ void test_the_only_adapter_that_may_be_a_lidars_is_taken(void)
     begin();
     plug_in("usb-Lidar_0001", port, "1a86", "55d4");
     plug_in("usb-Printer", program_start_talker(NULL, 0), "dead", "beef");
-    TEST_ASSERT_EQUAL_INT(0, program_tmini(WORDS("health")));
+    expect_success(WORDS("health"));
     TEST_ASSERT_EQUAL_STRING("using root/dev/serial/by-id/usb-Lidar_0001\n", program_errors);
     TEST_ASSERT_EQUAL_STRING("healthy\n", program_output);
     plug_in("usb-Lidar_0002", program_start_lidar(NO_OPTIONS), "10c4", "ea60");
@@ -750,6 +910,7 @@ void test_a_lidar_at_the_wrong_baud_rate(void)
 void test_a_lidar_that_sends_but_does_not_hear(void)
 {
     expect_failed_job(DEAF_INFO, "does not do what it is told");
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "--listen"));
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "the adapter's TX"));
 }
 

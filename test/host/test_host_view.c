@@ -478,6 +478,9 @@ void test_a_small_terminal_has_the_picture_the_state_and_the_way_out(void)
     TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "\n q quit  end of the recording\n"));
     TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), " sim-6hz.bin   scan 8  6.0 Hz\n"));
     TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "\xE2\x96\xB2")); /* the lidar */
+    resize(18, 5);
+    wait_for("\n q quit  end of th\n");
+    TEST_ASSERT_EQUAL_STRING_LEN("   scan 8  6.0 Hz\n", vt_text(&vt), 18);
     press('q');
     expect_end(0);
 }

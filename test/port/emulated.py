@@ -39,7 +39,7 @@ def run(args):
 
 
 def watch(qemu, scans):
-    """The last line of the console, once there are so many scans; None if that takes too long."""
+    """The last line of the console, once there are this many scans; None if that takes too long."""
     end = time.monotonic() + MOST_SECONDS
     has_info = False
     for line in qemu.stdout:

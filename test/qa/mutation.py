@@ -7,8 +7,8 @@
     mutation.py --build DIR [--sample N [--seed S]] [--results FILE] [--jobs N] [--list] [FILE …]
 
 DIR is a build folder with the tests in it, configured with CMAKE_EXPORT_COMPILE_COMMANDS=ON (as
-test/run.sh does). FILE: sources below lib/src or port, or folders of such; lib/src unless given. A source
-of the library is tried by all of test/unit, one of a port by that port's tests. With --results a run can
+test/run.sh does). FILE: sources below lib/src or port, public headers, or folders of such; lib/src unless given.
+What is the library's is tried by all of test/unit, what is a port's by that port's tests. With --results a run can
 be broken off and goes on where it was.
 
 A test is linked once, against a shared object of the one source, which each mutant replaces: so a mutant
@@ -29,15 +29,18 @@ import itertools
 import json
 import multiprocessing
 import os
+import pathlib
 import re
 import resource
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+PUBLIC = os.path.join("lib", "include", "")
 KNOWN = os.path.join(ROOT, "test", "qa", "mutants.txt")
 
 # What is put in the place of what: C's operators and constants, as people confuse them.
@@ -113,7 +116,7 @@ def mutants_of(path):
     lines = text.split("\n")
     found = {}
     for number, line in enumerate(code_only(text).split("\n")):
-        line = line.rstrip()  # A comment may stand behind a statement.
+        line = line.rstrip()  # A comment may stand after a statement.
         for pattern, replacements in REPLACEMENTS:
             for match in re.finditer(pattern, line):
                 for replacement in replacements:
@@ -182,6 +185,7 @@ class Build:
         self.folder = os.path.abspath(folder)
         with open(os.path.join(self.folder, "compile_commands.json"), encoding="utf-8") as file:
             self.entries = json.load(file)
+        self.entry_of = {os.path.realpath(object_of(entry)): entry for entry in self.entries}
         self.archives, self.folders = [], []
         for place, folders, files in os.walk(self.folder): # Not through links: they may lead round in a circle.
             if "CMakeCache.txt" in files and place != self.folder:
@@ -323,8 +327,74 @@ class Bench:
         status = self.run(test, shared)
         return status == 0 or status > 0 and self.run(test, shared) == 0
 
+    # A public header is part of the library and of the tests: both are compiled anew with it.
+
+    def headers(self):
+        """The public headers, as links, of which one is about to be changed."""
+        folder = os.path.join(self.work, PUBLIC)
+        if not os.path.isdir(folder):
+            shutil.copytree(os.path.join(ROOT, PUBLIC), folder)
+        return folder
+
+    def with_headers(self, entry):
+        compiler, *flags = arguments_of(entry)
+        original = os.path.realpath(os.path.join(ROOT, PUBLIC))
+        return [compiler] + [f"-I{self.headers()}" if word[:2] == "-I" and os.path.realpath(word[2:]) == original else
+                             word for word in flags]
+
+    def compile_all(self, entries, target, *options):
+        """Programs and libraries are linked at once. False if that fails."""
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        sources = [os.path.realpath(entry["file"]) for entry in entries]
+        return subprocess.run([*self.with_headers(entries[0]), *sources, *options, "-o", target], check=False,
+                              cwd=entries[0]["directory"], stderr=subprocess.DEVNULL).returncode == 0
+
+    def compile_library(self, *options):
+        library = os.path.join(self.build.folder, "lib", "")
+        entries = [entry for obj, entry in self.build.entry_of.items() if obj.startswith(library)]
+        target = os.path.join(self.work, "anew", "mutant.so")
+        return target if self.compile_all(entries, target, *options, "-fPIC", "-shared") else None
+
+    def compile_test(self, test, library, *options):
+        """With what the test support has of the library's headers, too; None if it is not C any more."""
+        test.program = os.path.join(self.work, "anew", test.name)
+        own = [self.build.entry_of[obj] for obj in objects_of(test.folder)]
+        support = [entry for entry in self.build.entries if entry["file"].endswith("/test/support/receiver.c")]
+        return test.program if self.compile_all(own + support, test.program, *options, library, "-Wl,--start-group",
+                                                *self.build.archives, "-Wl,--end-group", "-lm") else None
+
+    def code_with(self, tests):
+        """The machine code of everything, optimised."""
+        library = self.compile_library("-O2")
+        programs = [library] + sorted(self.compile_test(test, library, "-O2") for test in tests)
+        return [pathlib.Path(program).read_bytes() for program in programs]
+
+    def fate_of_header(self, mutant):
+        tests = sorted(self.tests_of("lib/src/tmini_ring.c"), key=lambda test: test.promise(mutant.path))
+        if "headers" not in self.originals:
+            self.originals["headers"] = self.code_with(tests)
+            for test in tests:
+                if not self.passes(test, os.path.join(self.work, "anew", "mutant.so")):
+                    raise Unable(f"{test.name} fails without any mutant")
+        changed = os.path.join(self.work, mutant.path)
+        with open(changed, "w", encoding="utf-8") as file:
+            file.write(mutant.text)
+        try:
+            library = self.compile_library("-O0")
+            if library is None:
+                return "not C"
+            for test in tests:
+                if self.compile_test(test, library, "-O0") is None or not self.passes(test, library):
+                    test.kills += 1
+                    return "killed by " + test.name
+            return "the same code" if self.code_with(tests) == self.originals["headers"] else "survived"
+        finally:
+            shutil.copy(os.path.join(ROOT, mutant.path), changed)
+
     def fate(self, mutant):
         """'killed by …', 'survived', 'the same code' or 'not C'."""
+        if mutant.path.startswith(PUBLIC):
+            return self.fate_of_header(mutant)
         tests = sorted(self.tests_of(mutant.path), key=lambda test: test.promise(mutant.path))
         is_other = False # Not looked at yet; worth it before the first test that takes long.
         with self.changed(mutant):
@@ -407,7 +477,7 @@ def files_among(names):
 
 
 def try_mutants(mutants, wanted, pool, results, known):
-    """Counts fates until so many mutants that can be noticed have been tried; returns also the survivors."""
+    """Counts fates until this many mutants that can be noticed have been tried; returns also the survivors."""
     counts = collections.Counter()
     tried = lambda: counts["killed"] + counts["survived"] + counts["equivalent"]
     remaining = iter(mutants)
@@ -427,7 +497,7 @@ def try_mutants(mutants, wanted, pool, results, known):
 def main():
     parser = argparse.ArgumentParser(description="Mutates the library or ports and runs their unit tests.")
     parser.add_argument("--build", required=True)
-    parser.add_argument("--sample", type=int, help="only so many mutants, drawn at random")
+    parser.add_argument("--sample", type=int, help="only this many mutants, drawn at random")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--results", help="a file to which each mutant's fate is appended, and read from")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))

@@ -3,8 +3,8 @@
 # Copyright (c) 2026 The tmini authors
 
 # Runs the README's two commands, examples/demo.sh and test/run.sh, on bare systems: each is made by
-# debootstrap, from where this machine's own packages come, and gets the project's last commit in a
-# folder whose name has spaces and accents. The user there has no root rights, but sudo. Prints a
+# debootstrap, from where this machine's own packages come, and gets the release's source archive in
+# a folder whose name has spaces and accents. The user there has no root rights, but sudo. Prints a
 # table.
 #
 #   test/qa/systems.sh [NAME …]    debian-12 debian-13 ubuntu-24.04 debian-12-i386; all unless given
@@ -75,10 +75,11 @@ make_system() {
     echo 'user ALL=(ALL) NOPASSWD: ALL' >"$system/etc/sudoers.d/user"
 }
 
-# What Git knows of the project, as a user would clone it.
-clone_project() {
+# The release's source archive, and nothing else.
+unpack_project() {
+    python3 -B "$root/.ci/pack.py" --allow-placeholder "$work/release" >/dev/null
     mkdir -p "$system$folder"
-    git -C "$root" archive HEAD | tar x -C "$system$folder"
+    tar xzf "$work"/release/*-source.tar.gz -C "$system$folder" --strip-components=1
     chroot "$system" chown -R user: /home/user
 }
 
@@ -127,7 +128,7 @@ run_system() {
         echo "| $1 | could not be made: $(tail -n 1 "$work/$1.make.log") | | | | | |" >>"$table"
         return 1
     fi
-    clone_project
+    unpack_project
     made=$(date +%s)
     demo=green tests=0
     as_user "$1" examples/demo.sh >"$work/$1.demo.log" 2>&1 || demo="**RED**"

@@ -5,6 +5,8 @@
 
 #include "options.h"
 
+#include "like.h"
+
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -223,6 +225,11 @@ static bool set_fault(options_t *options, const char *value)
     return true;
 }
 
+static bool set_like(options_t *options, const char *value)
+{
+    return like_read(options, value);
+}
+
 static const option_t known[] = {
     {0, "pty", NULL, "serve a pseudo-terminal; its path is the first line printed", set_pty},
     {0, "tcp", "PORT", "serve 127.0.0.1:PORT (0: any free port; the first line says)", set_tcp},
@@ -234,6 +241,7 @@ static const option_t known[] = {
      "first packets after a start: anywhere, unmarked (they pass the start\n"
      "                          packet's place without one), start (the first is one) (anywhere)",
      set_beginning},
+    {0, "like", "REPORT", "as the unit that `tmini survey` has written this report of", set_like},
     {0, "no-ct", NULL, "send neither CT information nor LastCRC", set_no_ct},
     {0, "blocked", NULL, "the rotor does not turn", set_blocked},
     {0, "covered", NULL, "the window is covered: no ranges", set_covered},

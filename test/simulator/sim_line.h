@@ -35,7 +35,7 @@ typedef struct {
     size_t length;
     size_t offset; /* of the first of them in its frame */
     size_t frame_length;
-    size_t packet_at;           /* where the packet begins in the frame: 1 behind a LastCRC */
+    size_t packet_at;           /* where the packet begins in the frame: 1 after a LastCRC */
     const sim_packet_t *packet; /* NULL in a reply */
     uint64_t start_us;          /* when the frame's first bit went on the line */
     bool completes;             /* nothing more comes of this frame, and nothing was cut off */

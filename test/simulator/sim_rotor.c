@@ -5,7 +5,7 @@
 
 #define FULL_TURN_Q16 (UINT32_C(23040) << 16)
 #define SAMPLE_US 250u  /* section 1: 4000 samples a second */
-#define FULL_PACKET 40u /* section 9.6 */
+#define FULL_PACKET 40u /* section 9.6, or fewer by configuration */
 #define SPEED_PER_CHZ 1000u
 #define HAIR_Q6 7u /* section 9.6: 0.266 - 0.156 degrees */
 
@@ -54,10 +54,12 @@ static int32_t draw_wobble(sim_t *sim)
     return (int32_t)random_between(&sim->random, 0, 2u * most) - (int32_t)most;
 }
 
-static uint32_t samples_to_full_turn(const sim_rotor_t *rotor)
+static uint32_t samples_to_full_turn(const sim_t *sim)
 {
+    const sim_rotor_t *rotor = &sim->rotor;
+
     if (rotor->step == 0u || rotor->unmarked) {
-        return FULL_PACKET;
+        return sim->config.samples_per_packet;
     }
     return (FULL_TURN_Q16 - rotor->phase + rotor->step - 1u) / rotor->step;
 }
@@ -70,12 +72,12 @@ static bool happens(sim_t *sim, uint16_t permille)
 /* Section 9.6: full packets, a short last one, now and then one with a single sample. */
 static uint32_t draw_packet_samples(sim_t *sim)
 {
-    const uint32_t left = samples_to_full_turn(&sim->rotor);
+    const uint32_t left = samples_to_full_turn(sim);
 
     if (sim->rotor.at_start || happens(sim, sim->config.lone_packet_permille)) {
         return 1;
     }
-    return left < FULL_PACKET ? left : FULL_PACKET;
+    return left < sim->config.samples_per_packet ? left : sim->config.samples_per_packet;
 }
 
 static void plan_packet(sim_t *sim, uint64_t from_us)

@@ -33,6 +33,7 @@ sim_config_t sim_default_config(void)
     config.invalid_permille = 3;
     config.flagged_permille = 5;
     config.lone_packet_permille = 2;
+    config.samples_per_packet = 40;
     config.blocked_sends_starts = true;
     config.information.model = 151;
     config.information.firmware_major = 1;
@@ -173,9 +174,18 @@ static void stop(sim_t *sim)
 
 static void answer_information(sim_t *sim)
 {
+    encode_information_t information = sim->config.information;
     uint8_t reply[ENCODE_REPLY_MAX];
-    const size_t length = encode_information_reply(reply, &sim->config.information);
+    size_t length;
 
+    if (sim->config.firmware_major_first) {
+        information.firmware_major = sim->config.information.firmware_minor;
+        information.firmware_minor = sim->config.information.firmware_major;
+    }
+    for (size_t i = 0; i < sizeof information.serial && sim->config.ascii_serial; i++) {
+        information.serial[i] = (uint8_t)(information.serial[i] + '0');
+    }
+    length = encode_information_reply(reply, &information);
     answer(sim, reply, length);
 }
 
@@ -205,7 +215,7 @@ static void step_frequency(sim_t *sim, int step_chz)
     uint8_t reply[ENCODE_REPLY_MAX];
     size_t length;
 
-    if (frequency >= (int)sim->config.min_frequency_chz &&
+    if (!sim->config.refuses_steps && frequency >= (int)sim->config.min_frequency_chz &&
         frequency <= (int)sim->config.max_frequency_chz) {
         sim->frequency_chz = (uint16_t)frequency;
     }
@@ -221,7 +231,9 @@ static void reset(sim_t *sim, sim_mode_t mode, uint64_t due_us)
     sim->rotor.data_fault = false;
     sim->reply_count = 0;
     sim->half_command = false;
-    sim->frequency_chz = sim->config.frequency_chz;
+    if (!sim->config.keeps_frequency) {
+        sim->frequency_chz = sim->config.frequency_chz;
+    }
     set_mode(sim, mode, due_us);
 }
 

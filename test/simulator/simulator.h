@@ -84,14 +84,19 @@ typedef struct {
     uint16_t start_angle_q6;   /* where the start packet is; not 0 on every unit (9.8) */
     uint8_t motor_percent;     /* of the set frequency, which it comes up to: 100 */
     uint8_t wobble_permille;   /* of the speed, drawn anew every revolution */
-    uint8_t angle_jitter_q6;   /* of FSA and LSA, up to so much either way */
-    uint8_t noise_mm;          /* of distances, up to so much either way */
+    uint8_t angle_jitter_q6;   /* of FSA and LSA, up to this much either way */
+    uint8_t noise_mm;          /* of distances, up to this much either way */
     uint16_t invalid_permille; /* samples without range besides the scene's own */
     uint16_t flagged_permille; /* samples flagged 2 or 3, half and half (section 9.9) */
     uint16_t
-        lone_packet_permille;  /* point packets cut down to LSN 1, LSA a hair before FSA (9.6) */
-    bool blocked_sends_starts; /* rotor blocked: do start packets go on coming? */
-    uint8_t fatal_health;      /* health bits that put the device into SIM_FAULT */
+        lone_packet_permille;   /* point packets cut down to LSN 1, LSA a hair before FSA (9.6) */
+    uint8_t samples_per_packet; /* 1..40 (9.6) */
+    bool keeps_frequency;       /* the set frequency survives reboot and loss of power */
+    bool refuses_steps;         /* frequency commands change nothing */
+    bool firmware_major_first;  /* in the information reply: as the manual says (9.4) */
+    bool ascii_serial;          /* there too: characters instead of numbers (9.5) */
+    bool blocked_sends_starts;  /* rotor blocked: do start packets go on coming? */
+    uint8_t fatal_health;       /* health bits that put the device into SIM_FAULT */
     encode_information_t information;
     uint8_t user_major; /* protocol version in the CT information */
     uint8_t user_minor;

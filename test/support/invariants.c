@@ -10,7 +10,6 @@
 #define PLAUSIBLE_CHZ_MAX 2000
 
 /* The last value of `doubt`, as in tmini.c. */
-#define DOUBT_MAX 3
 
 /* As in tmini_builder.c: 4 degrees back. */
 #define SWEPT_MIN_Q6 (-256)
@@ -29,17 +28,17 @@ static bool is_dma(const tmini_ring_t *ring)
 static bool stop_is_sound(const tmini_ring_t *ring)
 {
     const size_t known = ring->stop - ring->head;
-    const size_t at = ring->head & ring->mask;
-    return known == 0 || (known <= ring->size - at && known <= ring->limit - ring->head &&
-                          ring->limit - ring->head <= ring->size &&
+    const size_t at = ring->head & (ring->size - 1);
+    const size_t room = ring->tail + ring->size - ring->head;
+    return known == 0 || (known <= ring->size - at && known <= room && room <= ring->size &&
                           ring->origin + ring->head == (uintptr_t)&ring->memory[at]);
 }
 
 bool ring_is_sound(const tmini_ring_t *ring)
 {
     const size_t size = ring->size;
-    if (ring->memory == NULL || size < 2 || size > TMINI_RING_SIZE_MAX || ring->mask != size - 1 ||
-        (size & ring->mask) != 0) {
+    if (ring->memory == NULL || size < 2 || size > TMINI_RING_SIZE_MAX ||
+        (size & (size - 1)) != 0) {
         return false;
     }
     if (is_dma(ring)) { /* Which may run away. */
@@ -116,7 +115,7 @@ bool packet_is_sound(const tmini_packet_t *packet, const tmini_frame_t *frame)
            (packet->count > 1 || packet->step == 0);
 }
 
-/* The fields have the indices 1, 3, 4, 5 and 9 to 13: of so many packets so many have come. */
+/* The fields have the indices 1, 3, 4, 5 and 9 to 13: of this many packets, so many have one. */
 static unsigned fields_among(unsigned packets)
 {
     static const uint8_t fields[TMINI_CT_INDICES] = {0, 0, 1, 1, 2, 3, 4, 4, 4, 4, 5, 6, 7, 8};
@@ -126,17 +125,18 @@ static unsigned fields_among(unsigned packets)
 bool ct_is_sound(const tmini_ct_t *ct)
 {
     return ct->packets <= TMINI_CT_INDICES && ct->fields == fields_among(ct->packets) &&
-           ct->known < 1u << TMINI_CT_INDICES;
+           ct->known <= TMINI_CT_INDICES;
 }
 
 bool builder_is_sound(const tmini_builder_t *builder)
 {
     const tmini_scan_t *const scan = &builder->scan;
-    return builder->capacity > 0 && scan->points != NULL && scan->count <= builder->capacity &&
+    return builder->capacity > 0 && !(builder->ended && builder->open) && scan->points != NULL &&
+           scan->count <= builder->capacity &&
            (builder->filter & ~(unsigned)TMINI_FILTER_BOTH) == 0 &&
            builder->previous_angle_q6 < TMINI_FULL_CIRCLE_Q6 && builder->swept_q6 >= SWEPT_MIN_Q6 &&
            (builder->origin_q6 < TMINI_FULL_CIRCLE_Q6 ||
-            (builder->origin_q6 == UINT16_MAX && !builder->open));
+            (builder->origin_q6 == UINT16_MAX && !builder->open && !builder->ended));
 }
 
 /* ---- Driver ---- */
@@ -165,16 +165,34 @@ static bool is_step(uint8_t code)
     return code >= TMINI_COMMAND_FASTER_TENTH && code <= TMINI_COMMAND_SLOWER_ONE;
 }
 
-/* What an operation may be named by; 0: none. */
-static bool is_operation(uint8_t code)
+/* What an operation is named by, the event of its end; none: the time is kept. */
+static bool is_operation(uint8_t event)
 {
-    return code == 0 || (is_code(code) && !is_step(code));
+    return event <= TMINI_EVENT_REBOOTED;
+}
+
+static uint8_t code_of(uint8_t operation)
+{
+    switch (operation) {
+    case TMINI_EVENT_STARTED:
+        return TMINI_COMMAND_START;
+    case TMINI_EVENT_STOPPED:
+        return TMINI_COMMAND_STOP;
+    case TMINI_EVENT_INFO:
+        return TMINI_COMMAND_GET_INFO;
+    case TMINI_EVENT_HEALTH:
+        return TMINI_COMMAND_GET_HEALTH;
+    case TMINI_EVENT_FREQUENCY:
+        return TMINI_COMMAND_GET_FREQUENCY;
+    default:
+        return TMINI_COMMAND_REBOOT;
+    }
 }
 
 /* A frequency is set by steps. */
 static bool steps_frequency(const tmini_command_t *command)
 {
-    return command->operation == TMINI_COMMAND_GET_FREQUENCY;
+    return command->operation == TMINI_EVENT_FREQUENCY;
 }
 
 /* The reply that is awaited is that to the command sent. */
@@ -195,7 +213,7 @@ static bool phase_fits(const tmini_t *lidar)
     const tmini_command_t *const command = &lidar->command;
     switch (command->phase) {
     case TMINI_PHASE_AWAITING_REPLY:
-        return (command->code == command->operation ||
+        return (command->code == code_of(command->operation) ||
                 (steps_frequency(command) && is_step(command->code))) &&
                awaits_its_reply(lidar);
     case TMINI_PHASE_AWAITING_STEP:
@@ -204,7 +222,7 @@ static bool phase_fits(const tmini_t *lidar)
         return (command->code == TMINI_COMMAND_STOP || steps_frequency(command)) &&
                !lidar->decoder.parser.awaiting;
     case TMINI_PHASE_SPINNING_UP:
-        return command->operation == TMINI_COMMAND_START && !lidar->decoder.parser.awaiting;
+        return command->operation == TMINI_EVENT_STARTED && !lidar->decoder.parser.awaiting;
     default:
         return command->phase <= TMINI_PHASE_WAITING && !lidar->decoder.parser.awaiting;
     }
@@ -212,8 +230,7 @@ static bool phase_fits(const tmini_t *lidar)
 
 static bool is_query(uint8_t operation)
 {
-    return operation == TMINI_COMMAND_GET_INFO || operation == TMINI_COMMAND_GET_HEALTH ||
-           operation == TMINI_COMMAND_GET_FREQUENCY || operation == TMINI_COMMAND_REBOOT;
+    return operation >= TMINI_EVENT_INFO && operation <= TMINI_EVENT_REBOOTED;
 }
 
 /* Listening, and in the pauses of the ladder, time is waited for; otherwise one of its rungs is
@@ -223,8 +240,8 @@ static bool ladder_fits(const tmini_t *lidar)
     const uint8_t operation = lidar->command.operation;
     const bool is_waiting = lidar->command.phase == TMINI_PHASE_WAITING;
     return lidar->command.phase >= TMINI_PHASE_QUIESCING &&
-           (operation == TMINI_COMMAND_REBOOT || operation == TMINI_COMMAND_GET_FREQUENCY ||
-            is_waiting == (operation != TMINI_COMMAND_START));
+           (operation == TMINI_EVENT_REBOOTED || operation == TMINI_EVENT_FREQUENCY ||
+            is_waiting == (operation != TMINI_EVENT_STARTED));
 }
 
 static bool state_fits(const tmini_t *lidar)
@@ -239,9 +256,9 @@ static bool state_fits(const tmini_t *lidar)
         return phase == TMINI_PHASE_IDLE;
     case TMINI_STATE_BUSY:
         return is_query(operation) && phase >= TMINI_PHASE_QUIESCING &&
-               (!is_waiting || operation == TMINI_COMMAND_REBOOT);
+               (!is_waiting || operation == TMINI_EVENT_REBOOTED);
     case TMINI_STATE_STOPPING:
-        return operation == TMINI_COMMAND_STOP && phase == TMINI_PHASE_QUIESCING;
+        return operation == TMINI_EVENT_STOPPED && phase == TMINI_PHASE_QUIESCING;
     case TMINI_STATE_SCANNING:
         return is_waiting && lidar->command.unsent == 0;
     case TMINI_STATE_STARTING:
@@ -264,8 +281,14 @@ static bool command_is_sound(const tmini_command_t *command)
 
 static bool monitor_is_sound(const tmini_monitor_t *monitor)
 {
-    return (monitor->faults & ~(TMINI_FAULT_MASK | TMINI_FAULT_FREQUENCY)) == 0 &&
-           (monitor->observed & ~TMINI_FAULT_MASK) == 0;
+    return ((monitor->faults | monitor->observed) & ~(TMINI_FAULT_MASK | TMINI_FAULT_FREQUENCY)) ==
+           0;
+}
+
+/* 500 ms doubled 8 times is longer than the longest pause. */
+static bool recovery_is_sound(const tmini_recovery_t *recovery)
+{
+    return recovery->attempts <= 4 && recovery->doublings <= 8;
 }
 
 /* Listening, nothing is sent, and nothing is wanted but to scan. */
@@ -282,10 +305,10 @@ static bool results_are_sound(const tmini_t *lidar)
 {
     const tmini_decoder_t *const decoder = &lidar->decoder;
     const bool by_packets = decoder->builder.capacity == 0;
-    return (by_packets ? !decoder->builder.open : builder_is_sound(&decoder->builder)) &&
+    return (by_packets ? !decoder->builder.open && !decoder->builder.ended
+                       : builder_is_sound(&decoder->builder)) &&
            (!lidar->is_settled || lidar->pending == 0) &&
-           (!decoder->packet_waits ||
-            (!by_packets && packet_is_sound(&decoder->packet, &decoder->parser.frame)));
+           (!decoder->builder.ended || packet_is_sound(&decoder->packet, &decoder->parser.frame));
 }
 
 bool lidar_is_sound(const tmini_t *lidar)
@@ -297,8 +320,8 @@ bool lidar_is_sound(const tmini_t *lidar)
            lidar->link.port->now_ms != NULL && lidar->link.timing != NULL &&
            lidar->decoder.parser.frame.ring == &lidar->ring &&
            lidar->ring.window >= TMINI_REPLY_SIZE_MAX && parser_is_sound(&lidar->decoder.parser) &&
-           (lidar->pending & ~EVENTS) == 0 && lidar->line.doubt <= DOUBT_MAX &&
-           command_is_sound(&lidar->command) && phase_fits(lidar) && state_fits(lidar) &&
-           monitor_is_sound(&lidar->monitor) && ct_is_sound(&lidar->decoder.ct) &&
+           (lidar->pending & ~EVENTS) == 0 && command_is_sound(&lidar->command) &&
+           phase_fits(lidar) && state_fits(lidar) && monitor_is_sound(&lidar->monitor) &&
+           recovery_is_sound(&lidar->recovery) && ct_is_sound(&lidar->decoder.ct) &&
            wish_is_sound(lidar) && results_are_sound(lidar);
 }

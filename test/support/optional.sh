@@ -82,11 +82,10 @@ wish_for_everything() {
 
 # What is no package of the system.
 prepare_everything() {
-    # shellcheck disable=SC2086 # the packages are several words
-    prepare_python_packages "$root/build/labwired" $labwired_packages
-    # shellcheck disable=SC2086
-    prepare_python_packages "$root/build/platformio" $platformio_packages
-    # shellcheck disable=SC2086
-    prepare_python_packages "$root/build/esp-idf-packer" $component_packages
+    prepare_python_packages "$root/build/labwired" "$root/test/target/esp32c3/requirements.txt"
+    prepare_python_packages "$root/build/platformio" \
+        "$root/test/consumer/platformio/requirements.txt"
+    prepare_python_packages "$root/build/esp-idf-packer" "$root/test/qa/release/requirements.txt"
+    prepare_python_packages "$root/build/axe" "$root/test/web/requirements.txt"
     fetch_checker
 }

@@ -1,19 +1,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 # shellcheck shell=sh
-# shellcheck disable=SC2034 # the packages' names are for the sourcing script
 
-# Test tools that are Python packages, each in a virtual environment of its own. To be sourced
-# after packages.sh.
-
-# Models microcontrollers down to their registers.
-labwired_packages="labwired==0.25.0"
-
-# PlatformIO's core, and the build tool that it would otherwise download.
-platformio_packages="platformio==6.2.0 scons==4.11.1"
-
-# Packs components for ESP-IDF.
-component_packages="idf-component-manager==3.1.2"
+# Test tools that are Python packages, each with a requirements.txt that names all of them,
+# with versions and hashes, in a virtual environment of its own. To be sourced after packages.sh.
 
 # What it takes to install them: Python with its module venv.
 wish_for_python() {
@@ -21,35 +11,22 @@ wish_for_python() {
     python3 -c 'import ensurepip, venv' 2>/dev/null || wish python3-venv python3-venv
 }
 
-# have_python_packages FOLDER NAME==VERSION…
-have_python_packages() {
-    python=$1/bin/python
-    shift
-    [ -x "$python" ] && "$python" - "$@" <<'EOF' 2>/dev/null
-import importlib.metadata, sys
-for wanted in sys.argv[1:]:
-    name, version = wanted.split("==")
-    if importlib.metadata.version(name) != version:
-        sys.exit(1)
-EOF
+# install_requirements FOLDER REQUIREMENTS: makes the environment unless it is there as required.
+install_requirements() {
+    ! cmp -s "$2" "$1/requirements.txt" || return 0
+    rm -rf "$1"
+    python3 -m venv "$1" &&
+        "$1/bin/pip" install --quiet --disable-pip-version-check --retries 1 --require-hashes \
+            --no-deps -r "$2" &&
+        cp "$2" "$1/requirements.txt"
 }
 
-# create_python_environment FOLDER NAME==VERSION…
-create_python_environment() {
-    folder=$1
-    shift
-    rm -rf "$folder"
-    python3 -m venv "$folder" &&
-        "$folder/bin/pip" install --quiet --disable-pip-version-check --retries 1 "$@"
-}
-
-# prepare_python_packages FOLDER NAME==VERSION…: installs them there unless they are there; where
-# that fails, tests do without.
+# prepare_python_packages FOLDER REQUIREMENTS: where that fails, tests do without.
 prepare_python_packages() {
-    have_python_packages "$@" && return
-    echo "Installing Python packages in $*"
-    if ! (create_python_environment "$@") >/dev/null 2>&1 || ! have_python_packages "$@"; then
+    ! cmp -s "$2" "$1/requirements.txt" || return 0
+    echo "Installing Python packages in $1"
+    if ! install_requirements "$@" >/dev/null 2>&1; then
         rm -rf "$1"
-        echo "not available here, done without: $*"
+        echo "not available here, done without: $1"
     fi
 }

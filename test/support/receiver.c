@@ -56,7 +56,7 @@ void receiver_age(receiver_t *receiver, size_t count)
 {
     receiver->ring.head = count;
     receiver->ring.stop = count;
-    receiver->ring.limit = count + receiver->size;
+    receiver->ring.tail = count;
     receiver->position = count % receiver->size;
 }
 

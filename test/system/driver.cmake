@@ -12,6 +12,12 @@ set_target_properties(tmini_world PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 tmini_add_unit_test(test_wishes
     SOURCES test_wishes.c
     LIBRARIES tmini_world)
+tmini_add_unit_test(test_stamps
+    SOURCES test_stamps.c
+    LIBRARIES tmini_test_support)
+tmini_add_unit_test(test_intact
+    SOURCES test_intact.c ../support/turns.c
+    LIBRARIES tmini_test_support)
 tmini_add_unit_test(test_driver
     SOURCES test_driver.c
     LIBRARIES tmini_world)

@@ -218,7 +218,6 @@ typedef struct {
     unsigned index; /* Of the scan's next point; 0: its start packet has not been found yet. */
     unsigned packets;
     uint32_t revolution; /* Of the scan's first packet that arrived as it was sent. */
-    bool is_of_partial;
     bool has_revolution;
     bool mixed;
     bool by_chance;
@@ -262,18 +261,21 @@ static bool take_by_chance(truth_t *truth, comparison_t *comparison, uint64_t to
     return false;
 }
 
-/* All of a scan's points are of one revolution; or of one turn: where the lidar began with a start
- * packet anywhere and the next one is lost, nothing shows it, and nothing is overlaid. */
-static void note_revolution(comparison_t *comparison, const truth_packet_t *sent)
+/* All of a scan's points are of one revolution. But where the lidar began with a start packet
+ * anywhere (section 9.8), and no other has come since, nothing shows where revolutions begin: a
+ * scan is then one turn from that packet's angle on, and may be of two revolutions. Nothing is
+ * overlaid. */
+static void note_revolution(truth_t *truth, comparison_t *comparison, const truth_packet_t *sent)
 {
-    const uint32_t before = comparison->revolution;
-    const bool continues =
-        sent->revolution == before || (comparison->is_of_partial && sent->revolution == before + 1);
-
-    comparison->mixed |= comparison->has_revolution && !continues;
-    comparison->revolution = sent->revolution;
-    comparison->is_of_partial = sent->is_of_partial;
-    comparison->has_revolution = true;
+    if (sent->starts_revolution) {
+        truth->origin_is_partial = sent->is_of_partial;
+    }
+    if (!comparison->has_revolution) {
+        comparison->has_revolution = true;
+        comparison->revolution = sent->revolution;
+    }
+    const uint32_t later = sent->revolution - comparison->revolution;
+    comparison->mixed |= later > (truth->origin_is_partial ? 1u : 0u);
 }
 
 /* The next packet that was sent must be next in the scan. Returns false if it is not, for no
@@ -285,7 +287,7 @@ static bool take_sent(truth_t *truth, comparison_t *comparison)
 
     if (belongs && fits(truth, comparison, sent->offset)) {
         take(truth, comparison, sent->offset);
-        note_revolution(comparison, sent);
+        note_revolution(truth, comparison, sent);
         truth->checked++;
     } else if (take_by_chance(truth, comparison, sent->offset)) {
         return true;

@@ -52,6 +52,7 @@ typedef struct {
     uint64_t delivered_end; /* Of the packet delivered last. */
     uint64_t compared;      /* Scans begin here or later; */
     bool has_start;         /* with any packet. */
+    bool origin_is_partial; /* The last start packet that came is of a turn's part. */
     uint32_t checked;
     uint32_t split;
     uint32_t eclipsed;

@@ -12,7 +12,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Just behind the static data (there is no heap): the first place that a stack too deep reaches. */
+/* Just after the static data (there is no heap): the first place that a stack too deep reaches. */
 extern uint8_t __heap_start;
 
 #define GUARD_SIZE 16u

@@ -14,7 +14,7 @@ foreach(test test_tmini test_wish test_command test_recovery test_monitor test_s
 endforeach()
 
 # Those with large rings.
-foreach(test test_effort test_pauses)
+foreach(test test_effort test_pauses test_line)
     tmini_add_unit_test(${test}
         SOURCES ${test}.c ../support/rig.c ../support/invariants.c
         MOCKS ../support/port_functions.h
@@ -31,6 +31,9 @@ foreach(test test_honest_scans test_honest_commands test_real_bytes)
         LIBRARIES tmini_test_support NOT_ON int16)
 endforeach()
 
+tmini_add_unit_test(test_honest_pauses SOURCES test_honest_pauses.c
+    LIBRARIES tmini_test_support NOT_ON others)
+
 # The same, with the library built once more with an atomic header that lets the test come between
 # any two accesses of an index.
 file(GLOB library_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/src/*.c)
@@ -41,4 +44,14 @@ if(TARGET test_honest_moments)
     target_compile_definitions(test_honest_moments
         PRIVATE TMINI_ATOMIC_HEADER="interrupting_atomic.h")
     target_include_directories(test_honest_moments PRIVATE ../support)
+endif()
+
+# The library built once more without CT information.
+tmini_add_unit_test(test_no_ct
+    SOURCES test_no_ct.c ../support/rig.c ../support/invariants.c ${library_sources}
+    MOCKS ../support/port_functions.h
+    LIBRARIES tmini_test_support NOT_ON int16)
+if(TARGET test_no_ct)
+    target_compile_definitions(test_no_ct PRIVATE TMINI_NO_CT)
+    target_include_directories(test_no_ct PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
 endif()

@@ -369,6 +369,30 @@ static uint32_t running_clock(void *context, int calls)
     return rig.now_ms++;
 }
 
+static int looks_left; /* Until the clock steps back by 100 ms. */
+
+static uint32_t jumping_clock(void *context, int calls)
+{
+    (void)context;
+    (void)calls;
+    return rig.now_ms - (looks_left-- > 0 ? 0 : 100);
+}
+
+/* 70,000 ms are 4464 in 16 bits. */
+void test_a_clock_that_steps_back_ends_no_waiting(void)
+{
+    tmini_info_t info;
+
+    for (int looks = 1; looks <= 8; looks++) {
+        setUp();
+        port_now_ms_StubWithCallback(jumping_clock);
+        looks_left = looks;
+        comes(55, rig_feed_info);
+        sends(GET_INFO);
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&rig.lidar, &info, 70000));
+    }
+}
+
 void test_a_port_without_wait_is_polled_without_a_pause(void)
 {
     rig.port.wait = NULL;

@@ -23,7 +23,7 @@ static tmini_point_t points[ROOM + 1];
 static tmini_builder_t builder;
 static const tmini_scan_t *const scan = &builder.scan;
 static uint32_t now_ms;
-static uint8_t strays; /* Bytes put before the next packet. */
+static unsigned strays; /* Bytes put before the next packet. */
 
 static void begin_with(size_t capacity, unsigned filter)
 {
@@ -171,7 +171,7 @@ void test_a_scan_goes_from_a_start_packet_to_the_next(void)
     TEST_ASSERT_EQUAL_UINT16(0, scan->checksum_errors);
     TEST_ASSERT_EQUAL_UINT32(5000, scan->start_ms);
     TEST_ASSERT_EQUAL_UINT32(5167, scan->end_ms);
-    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz); /* Of the start packet behind it. */
+    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz); /* Of the start packet after it. */
 }
 
 /* What is known of the time at which held-back bytes came may go backwards a little. */
@@ -325,6 +325,14 @@ void test_two_bytes_before_a_start_packet_are_a_gap(void)
     (void)start(0);
     rest_of_turn(0);
     strays = 2;
+    expect_scan(0, 1, false);
+}
+
+void test_257_bytes_before_a_start_packet_are_a_gap(void)
+{
+    (void)start(0);
+    rest_of_turn(0);
+    strays = 257;
     expect_scan(0, 1, false);
 }
 
@@ -643,8 +651,19 @@ void test_a_scan_without_its_start_packet_begins_when_its_first_point_was_measur
     TEST_ASSERT_EQUAL_UINT32(5000 - 14, scan->start_ms);
 }
 
+/* It ends where the start packet that is lost would be. */
+void test_a_scan_without_its_start_packet_counts_its_first_packet_as_swept(void)
+{
+    (void)start(0);
+    garbage(501);
+    TEST_ASSERT_TRUE(point(91 * DEGREE, 180 * DEGREE));
+    quarter(180 * DEGREE);
+    quarter(270 * DEGREE);
+    TEST_ASSERT_TRUE(point(1 * DEGREE, 90 * DEGREE));
+}
+
 /* The last sample lies a hair before the next start packet, whose angle varies; a lone sample
- * behind a start packet that was lost lies half a degree beyond it. */
+ * after a start packet that was lost lies half a degree beyond it. */
 void test_a_revolution_may_take_a_quarter_of_a_degree_more_than_a_circle_and_no_more(void)
 {
     (void)start(0);
@@ -677,7 +696,7 @@ void test_a_start_packet_a_little_before_a_full_turn_closes_the_scan(void)
 
 /* ----------------------------------------------------------------------------------------- time */
 
-/* A turn, in so many ms, that ends with the report of a frequency. */
+/* A turn, in this many ms, that ends with the report of a frequency. */
 static void pass_turn_in(uint32_t ms, uint8_t ct)
 {
     begin_with(ROOM, TMINI_FILTER_NONE);
@@ -756,6 +775,16 @@ void test_scans_that_bytes_or_angles_would_have_ended_as_well_are_not(void)
     strays = 2;
     arrive_after_a_pause(0x79, 1, 191 * DEGREE, 191 * DEGREE);
     TEST_ASSERT_EQUAL_UINT32(0, builder.late_scans);
+}
+
+void test_a_jump_of_4_degrees_is_not_what_ends_a_scan(void)
+{
+    (void)start(0);
+    quarter(0);
+    arrive_after_a_pause(0x00, 5, 94 * DEGREE, 180 * DEGREE);
+    TEST_ASSERT_EQUAL_UINT32(1, builder.late_scans);
+    arrive_after_a_pause(0x00, 5, 184 * DEGREE + 1, 190 * DEGREE);
+    TEST_ASSERT_EQUAL_UINT32(1, builder.late_scans);
 }
 
 /* ------------------------------------------------------------------------------------------ DMA */
@@ -851,4 +880,13 @@ void test_a_scan_that_is_refuted_is_not_complete(void)
     rest_of_turn(0);
     tmini_builder_refute(&builder);
     expect_scan(0, 1, false);
+}
+
+/* A part that begins in mid-turn: its first packet turns as far as the others. From 299 degrees to
+ * 340, and on to 2. */
+void test_a_part_ends_where_its_turn_would(void)
+{
+    TEST_ASSERT_FALSE(start(0));
+    TEST_ASSERT_TRUE(point(299 * DEGREE, 340 * DEGREE));
+    TEST_ASSERT_TRUE(point(341 * DEGREE, 362 * DEGREE));
 }

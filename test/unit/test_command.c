@@ -74,7 +74,7 @@ void test_each_byte_that_is_heard_puts_the_command_off_by_the_quiet_time(void)
     was_sent();
 }
 
-/* A stop is sent behind so many bytes, and nobody looks for 60 ms. */
+/* A stop is sent after this many bytes, and nobody looks for 60 ms. */
 static void stop_unwatched_behind(size_t bytes)
 {
     for (size_t i = 0; i < bytes; i++) {
@@ -373,6 +373,24 @@ void test_a_command_swallows_the_end_of_the_one_before_that_nobody_polled_for(vo
     sends(STOP);
     begins(tmini_request_info(&rig.lidar)); /* which would look like the end of this one. */
     passes(50);
+}
+
+void test_a_command_that_is_cancelled_takes_the_start_after_it_along(void)
+{
+    rig_go_idle();
+    sends(GET_HEALTH);
+    begins(tmini_request_health(&rig.lidar));
+    begins(tmini_start(&rig.lidar));
+    tmini_cancel(&rig.lidar);
+    sends(STOP);
+    begins(tmini_request_info(&rig.lidar));
+    passes(50);
+    polls_to(TMINI_EVENT_NONE);
+    sends(GET_INFO);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_info();
+    polls_to(TMINI_EVENT_INFO);
+    is_in(TMINI_STATE_IDLE);
 }
 
 /* ---- Replies: the awaited one only ---- */

@@ -91,7 +91,7 @@ void test_candidates_without_a_packet_are_bounded_too(void)
     TEST_ASSERT_EQUAL_UINT32(0, parser_counters().checksum_errors);
 }
 
-/* What is skipped behind candidates counts with them: 99 of one byte, 15 each, and for the last
+/* What is skipped after candidates counts with them: 99 of one byte, 15 each, and for the last
  * one and what follows it are left 51. */
 void test_garbage_behind_candidates_is_bounded_with_them(void)
 {
@@ -169,7 +169,7 @@ void test_a_poll_ends_when_its_effort_is_used_up_to_the_last(void)
     TEST_ASSERT_EQUAL_UINT32(7, poll_counters().packets);
 }
 
-/* Ten packets of 4 samples cost 88 each; for the garbage behind them 656 are left. */
+/* Ten packets of 4 samples cost 88 each; for the garbage after them 656 are left. */
 void test_packets_and_the_garbage_behind_them_share_a_polls_effort(void)
 {
     open_driver();

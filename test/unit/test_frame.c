@@ -24,7 +24,7 @@ static void hold_letters_from(size_t place, bool dma)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE, dma));
     ring.head = place;
     ring.stop = place;
-    ring.limit = place + SIZE;
+    ring.tail = place;
     for (size_t i = 0; i < SIZE; i++) {
         memory[(place + i) % SIZE] = letters[i];
     }

@@ -105,7 +105,7 @@ static void go_idle(void)
     TEST_ASSERT_TRUE((pass_ms(200) & BIT(TMINI_EVENT_STOPPED)) != 0);
 }
 
-/* Scanning, then stopped; the last thing that comes is a packet cut off by the stop and, behind it,
+/* Scanning, then stopped; the last thing that comes is a packet cut off by the stop and, after it,
  * the reply to a question asked long ago. */
 static void stop_in_mid_packet(bool stale_reply)
 {

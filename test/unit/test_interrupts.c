@@ -101,7 +101,7 @@ static void last_byte_and_an_overflow_come(void)
     }
 }
 
-/* Or bytes are known to be missing behind it. */
+/* Or bytes are known to be missing after it. */
 static void last_byte_and_a_gap_come(void)
 {
     if (accesses == chosen) {

@@ -9,7 +9,7 @@
 
 #define DEGREE 64u
 
-static tmini_point_t points[8];
+static tmini_point_t points[257];
 static size_t count;
 
 void setUp(void)
@@ -208,11 +208,37 @@ void test_any_number_of_degrees_is_an_angle(void)
     TEST_ASSERT_EQUAL_UINT16(353 * DEGREE, tmini_mount_angle(&most, 0));
 }
 
+void test_full_circles_are_no_angle(void)
+{
+    static const tmini_mount_t mount = {.front_deg = -1};
+    TEST_ASSERT_EQUAL_UINT16(1 * DEGREE, tmini_mount_angle(&mount, 0));
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_mount_angle(&mount, 359 * DEGREE));
+}
+
+void test_more_than_256_points_are_mounted_and_more_than_256_arcs_masked(void)
+{
+    static tmini_arc_t arcs[257];
+    const tmini_mount_t mount = {.max_mm = 5000, .masked = arcs, .masked_count = 257};
+    arcs[256] = (tmini_arc_t){90, 90};
+    for (unsigned i = 0; i < 255; i++) {
+        add(DEGREE, 5001);
+    }
+    add(90 * DEGREE, 1000);
+    add(91 * DEGREE, 1000);
+    apply(&mount);
+    is_point(0, DEGREE, 0);
+    is_point(254, DEGREE, 0);
+    is_point(255, 90 * DEGREE, 0);
+    is_point(256, 91 * DEGREE, 1000);
+}
+
 void test_no_points_and_no_mount_change_nothing(void)
 {
     static const tmini_mount_t mount = {.front_deg = 1};
     tmini_scan_t scan = {.points = points, .count = 1};
+    points[0] = (tmini_point_t){7, 1000, 0, 0};
     apply(&mount);
+    is_point(0, 7, 1000);
     add(7, 1000);
     tmini_mount_step(NULL, &scan);
     is_point(0, 7, 1000);

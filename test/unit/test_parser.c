@@ -228,10 +228,11 @@ void test_a_candidate_is_no_work_until_it_can_be_looked_at_further(void)
     TEST_ASSERT_EQUAL_UINT(13, moments[3]);
 }
 
-void test_a_frame_delivered_is_no_work_and_a_byte_after_it_is(void)
+void test_a_byte_after_a_frame_is_work(void)
 {
     feed(start_packet, sizeof start_packet);
     expect_frame(TMINI_FRAME_PACKET);
+    expect_nothing();
     TEST_ASSERT_FALSE(tmini_parser_has_work(&receiver.parser));
     feed_byte(0xAA);
     TEST_ASSERT_TRUE(tmini_parser_has_work(&receiver.parser));
@@ -1156,7 +1157,7 @@ void test_each_of_several_overflows_leaves_its_gap_where_it_was(void)
     }
 }
 
-/* What stands before the gap and what stands behind it would make a packet. */
+/* What stands before the gap and what stands after it would make a packet. */
 void test_no_packet_spans_a_gap(void)
 {
     feed(manual_packet, 40);
@@ -1299,7 +1300,7 @@ void test_an_overrun_of_dma_is_a_gap_of_65535(void)
     feed(start_packet, 13);
     expect_packet(1, 0);
     memset(bytes, 0, 300);
-    memcpy(&bytes[44], start_packet, 13); /* Right behind what is lost. */
+    memcpy(&bytes[44], start_packet, 13); /* Right after what is lost. */
     feed(bytes, 300);
     expect_packet(1, 57);
     TEST_ASSERT_EQUAL_UINT16(65535, receiver.packet.gap);
@@ -1335,7 +1336,7 @@ void test_many_laps_of_dma_are_counted_and_survived(void)
     expect_skipped(243);
 }
 
-/* A lap is assumed, as if so many bytes had come. */
+/* A lap is assumed, as if this many bytes had come. */
 static void lap_was_perhaps_missed(void)
 {
     tmini_ring_gap(&receiver.ring);
@@ -1403,8 +1404,7 @@ void test_counters_wrap_around_modulo_2_to_the_32(void)
     TEST_ASSERT_EQUAL_UINT32(2, receiver_counters(&receiver).bytes_in_packets);
 }
 
-/* ------------------------------------------------------------------------------- replies and
- * places */
+/* -------------------------------------------------------------------------- replies, skipping */
 
 void test_a_reply_longer_than_the_ring_is_not_awaited(void)
 {
@@ -1418,36 +1418,24 @@ void test_a_reply_longer_than_the_ring_is_not_awaited(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_parser_await(&receiver.parser, &longest));
 }
 
-void test_a_single_byte_before_a_place_is_skipped(void)
+void test_all_that_has_come_is_skipped_without_a_look(void)
 {
     feed(start_packet, 13);
-    tmini_parser_skip_to(&receiver.parser, 1);
-    TEST_ASSERT_EQUAL_UINT(1, tmini_parser_position(&receiver.parser));
-    expect_skipped(1);
-}
-
-void test_the_last_byte_before_a_place_is_the_one_skipped_last(void)
-{
-    static const uint8_t noise[3] = {0x11, 0x22, 0x33};
-    feed(noise, sizeof noise);
-    feed(start_packet, 13);
-    tmini_parser_skip_to(&receiver.parser, 2);
+    feed_byte(0x22);
+    tmini_parser_skip_all(&receiver.parser);
+    expect_skipped(14);
+    expect_pending(0);
     TEST_ASSERT_EQUAL_HEX8(0x22, tmini_parser_frame(&receiver.parser)->last_skipped);
+    feed(manual_packet, 67);
+    expect_packet(19, 14);
+    TEST_ASSERT_EQUAL_UINT16(14, receiver.packet.gap);
 }
 
-void test_bytes_before_a_place_are_skipped_without_a_look(void)
+void test_a_frame_delivered_is_not_skipped(void)
 {
-    feed(start_packet, 13);
     feed(manual_packet, 67);
-    tmini_parser_skip_to(&receiver.parser, 13);
-    TEST_ASSERT_EQUAL_UINT(13, tmini_parser_position(&receiver.parser));
-    expect_packet(19, 13);
-    TEST_ASSERT_EQUAL_UINT16(13, receiver.packet.gap);
-    TEST_ASSERT_EQUAL_UINT(80, tmini_parser_position(&receiver.parser));
-    tmini_parser_skip_to(&receiver.parser,
-                         80); /* The packet has been parsed: nothing is skipped. */
-    expect_skipped(13);
-    tmini_parser_skip_to(&receiver.parser, 81); /* It has not come. */
-    expect_skipped(13);
+    expect_packet(19, 0);
+    tmini_parser_skip_all(&receiver.parser);
+    expect_skipped(0);
     expect_nothing();
 }

@@ -2,8 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Pauses of the line while the lidar scans, and the packets that become doubtful by them: those
- * before which others may be missing. A pause is too long by more than max_pause_ms, 30, if it is
- * longer than the bytes that end it explain, 12.5 a millisecond. */
+ * before which others may be missing. A pause is too long by more than half a turn, 41 ms at 12 Hz,
+ * or by more than max_pause_ms if that is longer: so much longer than the bytes that end it
+ * explain, 13.1 per millisecond. */
 
 #include "invariants.h"
 #include "rig.h"
@@ -93,18 +94,19 @@ static void two_packets_come_of_which_doubtful_are(unsigned doubtful)
 /* ---- How long a pause may be ---- */
 
 /* 44 bytes explain 3 ms. */
-void test_a_pause_of_30_ms_and_what_the_bytes_explain_is_none(void)
+void test_a_pause_of_41_ms_and_what_the_bytes_explain_is_none(void)
 {
     for (unsigned i = 0; i < 3; i++) {
-        nothing_comes_for(33);
+        nothing_comes_for(44);
         feed_packets(2, 4);
         doubtful_are_the_first(0, 2);
+        two_packets_come_of_which_doubtful_are(0);
     }
 }
 
 void test_a_longer_one_makes_the_packets_around_it_doubtful_and_no_others(void)
 {
-    nothing_comes_for(34);
+    nothing_comes_for(45);
     feed_packets(2, 4);
     doubtful_are_the_first(2, 2);
     two_packets_come_of_which_doubtful_are(1); /* The pause may have been after those. */
@@ -124,40 +126,56 @@ void test_a_clock_that_steps_back_shows_no_time(void)
     }
 }
 
-/* 410 bytes explain 32 ms: 410 / 12.5. */
+/* 410 bytes explain 31 ms. */
 void test_many_bytes_explain_a_long_pause(void)
 {
-    nothing_comes_for(62);
+    nothing_comes_for(72);
     feed_packets(5, 24);
     doubtful_are_the_first(0, 5);
 }
 
-/* 487 bytes, in one packet of 38 samples and three of 37, are 38.96 ms; whole ones count. */
-void test_what_bytes_explain_is_rounded_down(void)
-{
-    nothing_comes_for(69);
-    feed_packets(1, 38);
-    feed_packets(3, 37);
-    doubtful_are_the_first(4, 4);
-}
-
 void test_many_bytes_do_not_explain_every_pause(void)
 {
-    nothing_comes_for(63);
+    nothing_comes_for(73);
     feed_packets(5, 24);
     doubtful_are_the_first(5, 5);
 }
 
-void test_a_limit_of_1_ms_is_one(void)
+/* 170 bytes are 12.95 ms; whole ones count. */
+void test_what_bytes_explain_is_rounded_down(void)
 {
-    open_with(1, false);
-    go_streaming();
-    for (unsigned i = 0; i < 5; i++) {
-        polls_to(TMINI_EVENT_NONE);
-        rig.now_ms += 1;
-    }
-    feed_packets(2, 4);
+    nothing_comes_for(54);
+    feed_packets(2, 25);
     doubtful_are_the_first(2, 2);
+}
+
+/* With this max_pause_ms, of two pauses, 1 ms apart, the first is none. */
+static void longest_pause_is(uint16_t max_pause_ms, uint32_t pause_ms)
+{
+    for (unsigned longer = 0; longer < 2; longer++) {
+        open_with(max_pause_ms, false);
+        go_streaming();
+        nothing_comes_for(pause_ms + longer + 3);
+        feed_packets(2, 4);
+        doubtful_are_the_first(2 * longer, 2);
+    }
+}
+
+void test_a_limit_counts_from_half_a_turn_on(void)
+{
+    longest_pause_is(1, 41);
+    longest_pause_is(41, 41);
+    longest_pause_is(42, 42);
+    longest_pause_is(249, 249);
+}
+
+void test_without_a_limit_no_pause_is_one(void)
+{
+    open_with(0, false);
+    go_streaming();
+    nothing_comes_for(900);
+    feed_packets(2, 4);
+    doubtful_are_the_first(0, 2);
 }
 
 /* Of the second one only the first byte, but that is enough. */
@@ -168,7 +186,7 @@ void test_a_packet_is_doubtful_if_it_begins_among_the_bytes_behind_a_pause(void)
     uint8_t bytes[22];
 
     TEST_ASSERT_EQUAL_UINT(22, encode_packet(bytes, &packet));
-    nothing_comes_for(34);
+    nothing_comes_for(45);
     feed_packets(1, 4);
     rig_feed(bytes, 1);
     doubtful_are_the_first(1, 1);
@@ -179,17 +197,20 @@ void test_a_packet_is_doubtful_if_it_begins_among_the_bytes_behind_a_pause(void)
 }
 
 /* 65,546 ms: 10 in 16 bits. */
-void test_a_pause_of_more_than_a_minute_is_one(void)
+void test_before_a_lidar_scans_the_pause_was_before_the_bytes_if_the_line_was_watched(void)
 {
-    open_with(30, false);
-    rig_go_idle();
-    rig.now_ms = 65546;
-    sends(START);
-    begins(tmini_start(&rig.lidar));
-    rig_feed_scan_reply();
-    feed_packets(2, 4);
-    polls_to(TMINI_EVENT_STARTED);
-    doubtful_are_the_first(2, 2);
+    for (uint32_t unseen_ms = 30; unseen_ms <= 31; unseen_ms++) {
+        open_with(30, false);
+        rig_go_idle();
+        rig.now_ms = 65546;
+        sends(START);
+        begins(tmini_start(&rig.lidar));
+        rig.now_ms += unseen_ms;
+        rig_feed_scan_reply();
+        feed_packets(2, 4);
+        polls_to(TMINI_EVENT_STARTED);
+        doubtful_are_the_first(unseen_ms == 30 ? 1 : 2, 2);
+    }
 }
 
 /* ---- Bytes that a layer below has held back ---- */
@@ -203,41 +224,60 @@ void test_after_a_pause_between_polls_the_first_packet_behind_is_doubtful_too(vo
     two_packets_come_of_which_doubtful_are(0);
 }
 
-/* The wire brings 22.8 bytes a millisecond, and a UART's FIFO may hold those of 16 ms: within 17 ms
- * come 409 bytes at most, and these are 410. */
-void test_more_bytes_than_the_wire_can_have_brought_were_held(void)
-{
-    nothing_comes_for(63);
-    feed_packets(5, 24);
-    doubtful_are_the_first(5, 5);
-    two_packets_come_of_which_doubtful_are(1);
-    two_packets_come_of_which_doubtful_are(0);
-}
-
-/* Of 62 ms these bytes explain 32: the others count for the next ones, which explain 3. */
-void test_what_held_bytes_do_not_explain_counts_for_the_next_ones(void)
+/* 44 bytes explain 3 ms, and each is judged for itself and with the one before. */
+void test_what_bytes_do_not_explain_counts_once_more(void)
 {
     for (unsigned more_ms = 3; more_ms <= 4; more_ms++) {
-        nothing_comes_for(62);
-        feed_packets(5, 24);
-        doubtful_are_the_first(0, 5);
+        nothing_comes_for(44);
+        feed_packets(2, 4);
+        doubtful_are_the_first(0, 2);
         rig.now_ms += more_ms;
         feed_packets(2, 4);
         doubtful_are_the_first(more_ms == 3 ? 0 : 2, 2);
+        two_packets_come_of_which_doubtful_are(more_ms == 3 ? 0 : 1);
     }
 }
 
-/* Three packets of 31 samples and one of 30. */
-void test_409_bytes_the_wire_can_have_brought(void)
+/* ---- Bytes that the port holds, and says so ---- */
+
+/* 544 bytes explain 41 ms. */
+void test_bytes_that_the_port_holds_explain_a_pause_as_well(void)
 {
-    nothing_comes_for(63);
-    feed_packets(3, 31);
-    feed_packets(1, 30);
-    doubtful_are_the_first(4, 4);
-    two_packets_come_of_which_doubtful_are(1);
+    for (unsigned longer = 0; longer < 2; longer++) {
+        nothing_comes_for(82 + longer);
+        feed_packets(2, 4);
+        tmini_feed_held(&rig.lidar, 500);
+        doubtful_are_the_first(2 * longer, 2);
+    }
 }
 
-/* 30 ms and 4 for 54 bytes, counted from the 12 that were held. */
+/* 500 bytes had come when 410 of them were fed: when others follow, they explain nothing again. */
+void test_they_do_so_once(void)
+{
+    for (unsigned longer = 0; longer < 2; longer++) {
+        tmini_feed_held(&rig.lidar, 500);
+        feed_packets(5, 24);
+        (void)rig_drain();
+        nothing_comes_for(41 + longer);
+        feed_packets(2, 4);
+        doubtful_are_the_first(2 * longer, 2);
+    }
+}
+
+/* More than 65,535 are none: the place is an old one. */
+void test_a_place_that_has_been_passed_explains_nothing(void)
+{
+    tmini_feed_held(&rig.lidar, 65535 + 44);
+    nothing_comes_for(900);
+    feed_packets(2, 4);
+    doubtful_are_the_first(0, 2);
+    tmini_feed_held(&rig.lidar, 65536 + 44);
+    nothing_comes_for(45);
+    feed_packets(2, 4);
+    doubtful_are_the_first(2, 2);
+}
+
+/* 41 ms and 4 for 54 bytes, counted from the 12 that were late. */
 void test_a_pause_that_has_been_judged_does_not_count_for_the_next_one(void)
 {
     static const encode_sample_t samples[4] = {{1000, 50, 0}};
@@ -248,41 +288,10 @@ void test_a_pause_that_has_been_judged_does_not_count_for_the_next_one(void)
     rig.now_ms += 50;
     rig_feed(bytes, 12);
     polls_to(TMINI_EVENT_NONE);
-    nothing_comes_for(34);
+    nothing_comes_for(45);
     rig_feed(&bytes[12], 10);
     feed_packets(2, 4);
     doubtful_are_the_first(2, 3);
-}
-
-/* The last look was `unseen_ms` before these packets came, of 31 and of 30 samples, after a pause
- * of more than 100 ms. */
-static void come_after_a_look(uint32_t pause_ms, uint32_t unseen_ms, unsigned of_31, unsigned of_30)
-{
-    open_with(100, false);
-    rig.config.rx_size = 2 * RING_SIZE;
-    rig_init();
-    go_streaming();
-    nothing_comes_for(pause_ms - unseen_ms + 1);
-    rig.now_ms--;
-    polls_to(TMINI_EVENT_NONE);
-    rig.now_ms += unseen_ms;
-    feed_packets(of_31, 31);
-    feed_packets(of_30, 30);
-    doubtful_are_the_first(of_31 + of_30, of_31 + of_30);
-}
-
-/* 1024 bytes take the wire 45 ms: 28 and 16 before them are too few. */
-void test_1024_bytes_in_28_ms_were_held(void)
-{
-    come_after_a_look(183, 28, 8, 2);
-    two_packets_come_of_which_doubtful_are(1);
-}
-
-/* 1115 bytes take it 48.999 ms, of which 48 count: 32 and 16. */
-void test_1115_bytes_in_32_ms_may_have_come(void)
-{
-    come_after_a_look(190, 32, 5, 6);
-    two_packets_come_of_which_doubtful_are(1);
 }
 
 /* ---- More than the ring holds ---- */
@@ -295,10 +304,9 @@ void test_a_full_ring_is_no_reason_to_doubt(void)
     doubtful_are_the_first(0, 10);
 }
 
-/* A lap that nobody has seen, within a time that still counts as watched: the newest half of the
- * ring is taken, which here holds the three packets from before it once more, and two behind
- * them. */
-void test_behind_a_lap_of_dma_what_comes_at_once_is_doubtful_and_the_next(void)
+/* Laps that were not seen, and reported before the next poll: in the ring are the three packets
+ * from before them once more, and two after them. */
+static void go_round_unseen(unsigned laps)
 {
     static const encode_sample_t samples[4] = {{1000, 50, 0}};
     const encode_packet_t packet = {0, 4, 640, 736, samples};
@@ -314,15 +322,24 @@ void test_behind_a_lap_of_dma_what_comes_at_once_is_doubtful_and_the_next(void)
         TEST_ASSERT_NOT_EQUAL(0, rig_drain());
     }
     rig.now_ms += 60;
-    tmini_feed_gap(&rig.lidar);
+    for (unsigned lap = 0; lap < laps; lap++) {
+        tmini_feed_gap(&rig.lidar);
+    }
     position += encode_packet(&memory[position], &packet);
     position += encode_packet(&memory[position], &packet);
     tmini_feed_dma(&rig.lidar, position);
     doubtful_are_the_first(2, 2); /* Not again those that have been delivered. */
     tmini_counters(&rig.lidar, &counters);
-    TEST_ASSERT_EQUAL_UINT32(1024, counters.bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(laps * 1024, counters.bytes_overrun);
     position += encode_packet(&memory[position], &packet);
     position += encode_packet(&memory[position], &packet);
     tmini_feed_dma(&rig.lidar, position);
     doubtful_are_the_first(1, 2);
+}
+
+void test_after_laps_of_dma_what_comes_at_once_is_doubtful_and_the_next(void)
+{
+    go_round_unseen(1);
+    go_round_unseen(2);
+    go_round_unseen(5);
 }

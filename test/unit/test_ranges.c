@@ -159,6 +159,24 @@ void test_a_scan_gives_all_its_points_and_none_behind_them(void)
     TEST_ASSERT_EQUAL_UINT16_ARRAY(expected_mm, ranges_mm, BINS);
 }
 
+/* 720 points, each half a degree, in 360 bins around the whole degrees; not on a machine that has
+ * no room for them. */
+void test_more_points_and_bins_than_256_are_all_there(void)
+{
+#if SIZE_MAX > 65535
+    static uint16_t many_mm[360];
+    static tmini_point_t many[720];
+    scan = (tmini_scan_t){.points = many, .count = 720};
+    for (uint16_t i = 0; i < 720; i++) {
+        many[i] = (tmini_point_t){(uint16_t)(i * 32u), (uint16_t)(i + 1u), 0, 0};
+    }
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ranges_of_scan(&scan, many_mm, NULL, 360));
+    for (uint16_t degree = 0; degree < 360; degree++) { /* That and half a degree more. */
+        TEST_ASSERT_EQUAL_UINT16(2 * degree + 1, many_mm[(180 + 360 - degree) % 360]);
+    }
+#endif
+}
+
 void test_arguments_out_of_range_are_refused_and_nothing_is_written(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ranges_of_scan(NULL, ranges_mm, NULL, BINS));

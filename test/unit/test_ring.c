@@ -40,7 +40,7 @@ static void age(size_t count)
 {
     ring.head = count;
     ring.stop = count;
-    ring.limit = count + SIZE;
+    ring.tail = count;
 }
 
 static void put_letters(size_t first, size_t count)

@@ -250,6 +250,42 @@ void test_a_packet_that_dma_has_overwritten_adds_nothing(void)
     holds(2, 0, 0, 0);
 }
 
+void test_a_start_packet_that_dma_has_overwritten_leaves_nothing_of_the_one_before(void)
+{
+    receiver_open_dma(&receiver, memory, sizeof memory, 0);
+    (void)receive_start(100);
+    const encode_sample_t sample = {200, 10, 0};
+    const encode_packet_t packet = {0x79, 1, 0, 0, &sample};
+    receive(encode_packet(bytes, &packet));
+    receiver_feed(&receiver, bytes, sizeof bytes);
+    TEST_ASSERT_TRUE(tmini_sectors_add_packet(&sectors, &receiver.packet));
+    holds(0, 100, 1, 1);
+    (void)tmini_sectors_add_packet(&sectors, &receiver.packet); /* The next revolution begins. */
+    holds(0, 0, 1, 0);
+}
+
+/* 720 points, each half a degree, in 360 sectors around the whole degrees; not on a machine
+ * that has no room for them. */
+void test_more_points_and_sectors_than_256_are_all_there(void)
+{
+#if SIZE_MAX > 65535
+    static tmini_sector_t many[360];
+    static tmini_point_t points[720];
+    const tmini_scan_t scan = {.points = points, .count = 720};
+    for (uint16_t i = 0; i < 720; i++) {
+        points[i] = (tmini_point_t){(uint16_t)(i * 32u), (uint16_t)(i + 1u), 0, 0};
+    }
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_sectors_init(&sectors, many, 360, 0));
+    tmini_sectors_add_scan(&sectors, &scan);
+    TEST_ASSERT_EQUAL_UINT16(1, many[0].nearest_mm);
+    for (uint16_t degree = 1; degree < 360; degree++) {
+        TEST_ASSERT_EQUAL_UINT16(2 * degree, many[degree].nearest_mm); /* Half a degree before. */
+        TEST_ASSERT_EQUAL_UINT16(64 * degree - 32, many[degree].angle_q6);
+        TEST_ASSERT_EQUAL_UINT16(2, many[degree].ranges);
+    }
+#endif
+}
+
 void test_arguments_out_of_range_are_refused(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_sectors_init(NULL, array, 8, 0));

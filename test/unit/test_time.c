@@ -57,6 +57,14 @@ void test_a_number_of_samples_that_no_revolution_has_is_not_believed(void)
     }
 }
 
+/* 513 samples are 128,250 us, and 7.31 Hz 136,798: one microsecond less than a sixteenth apart. */
+void test_a_number_of_samples_just_less_than_a_sixteenth_apart_is_believed(void)
+{
+    scan.count = 513;
+    scan.frequency_chz = 731;
+    TEST_ASSERT_EQUAL_UINT32(128, tmini_scan_period_ms(&scan));
+}
+
 /* Start packets that were held back come at any time. */
 void test_the_clock_is_not_asked_for_a_period(void)
 {
@@ -64,11 +72,16 @@ void test_the_clock_is_not_asked_for_a_period(void)
     TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
 }
 
-/* 163.93 ms. */
+/* 163.93 and 81.499 ms; and 642 samples are 160.5. */
 void test_a_period_is_rounded_to_the_nearest(void)
 {
     scan.frequency_chz = 610;
     TEST_ASSERT_EQUAL_UINT32(164, tmini_scan_period_ms(&scan));
+    scan.frequency_chz = 1227;
+    TEST_ASSERT_EQUAL_UINT32(81, tmini_scan_period_ms(&scan));
+    scan.frequency_chz = 0;
+    scan.count = 642;
+    TEST_ASSERT_EQUAL_UINT32(161, tmini_scan_period_ms(&scan));
 }
 
 void test_an_incomplete_scans_period_is_what_the_lidar_measured(void)
@@ -131,6 +144,27 @@ void test_a_late_point_less_than_4_degrees_beyond_the_circle_is_a_turn_later(voi
     has_angles(0, 1 * DEGREE, 4 * DEGREE, 4 * DEGREE - 1);
     is_at(2, 1111);
     is_at(3, 101106);
+}
+
+/* The first point but one is away from the first. */
+void test_the_third_of_three_points_may_be_a_turn_later(void)
+{
+    has_angles(10, 90 * DEGREE, 16, 0);
+    is_at(2, 100026);
+}
+
+/* A turn of 128.5 ms, taken as 16 times 8031 us; the last point is 5 / 23040 beyond it. */
+void test_late_points_beyond_256_are_a_turn_later(void)
+{
+    scan.count = 514;
+    scan.frequency_chz = 781;
+    for (uint16_t i = 0; i < 512; i++) {
+        points[i].angle_q6 = (uint16_t)(i * 45u);
+    }
+    points[512].angle_q6 = 0;
+    points[513].angle_q6 = 5;
+    is_at(512, 128496);
+    is_at(513, 128523);
 }
 
 /* Of a scan that ended early all points lie in the first part of the turn. */

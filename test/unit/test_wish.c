@@ -250,6 +250,17 @@ void test_a_new_wish_for_a_lost_lidar_that_is_not_recovered_waits(void)
     is_in(TMINI_STATE_RECOVERING);
 }
 
+/* The line's silence before the stop says nothing of the lidar's answer to it. */
+void test_a_new_wish_after_a_pause_of_polls_awaits_a_quiet_line(void)
+{
+    rig_go_scanning();
+    rig.now_ms += 60;
+    sends(STOP);
+    begins(tmini_set_frequency(&rig.lidar, 700));
+    becomes_quiet();
+    goes_on_with(GET_FREQUENCY);
+}
+
 /* ---- Measured against wished ---- */
 
 static void turns(unsigned count, uint8_t dhz)
@@ -305,6 +316,54 @@ void test_five_percent_are_no_other_frequency(void)
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
 }
 
+/* By 2.6 Hz: 260 in 8 bits would be 4. At 7.4 Hz, 23 turns take 3.1 s. */
+void test_a_frequency_far_off_is_a_fault(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    scans_wishing(1000);
+    turns(23, 74);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+}
+
+/* At 0.6 Hz two turns take 3.3 s. */
+void test_two_slow_turns_are_no_fault_and_three_are(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    scans_wishing(1000);
+    turns(2, 6);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+    turns(1, 6);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+}
+
+void test_another_frequency_is_a_fault_beside_the_others(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    scans_wishing(1000);
+    for (unsigned i = 0; i < 18; i++) {
+        (void)rig_turn_events(TMINI_FAULT_PD);
+    }
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_PD | TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+}
+
+void test_what_was_off_before_a_stop_does_not_count_after_it(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    scans_wishing(1000);
+    turns(17, 60);
+    rig_go_idle();
+    sends(GET_FREQUENCY);
+    begins(tmini_start(&rig.lidar));
+    rig_feed_frequency(1000);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    goes_on_with(START);
+    starts_scanning();
+    turns(17, 60);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+    turns(1, 60);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+}
+
 void test_a_frequency_that_is_right_now_and_then_is_no_fault(void)
 {
     scans_wishing(1000);
@@ -322,6 +381,32 @@ void test_without_recovery_another_frequency_is_only_a_fault(void)
     turns(300, 60);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
     is_in(TMINI_STATE_SCANNING);
+}
+
+void test_a_wish_that_is_stated_again_clears_the_fault_and_says_so(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    scans_wishing(1000);
+    turns(300, 60);
+    (void)rig_drain();
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&rig.lidar, 1000));
+    polls_to(TMINI_EVENT_FAULTS_CHANGED);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&rig.lidar, 1000));
+    polls_to(TMINI_EVENT_NONE);
+}
+
+void test_another_wish_of_an_idle_lidar_clears_the_fault_as_well(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    scans_wishing(1000);
+    turns(300, 60);
+    (void)rig_drain();
+    rig.lidar.state = TMINI_STATE_IDLE;
+    sends(GET_FREQUENCY);
+    begins(tmini_set_frequency(&rig.lidar, 800));
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+    polls_to(TMINI_EVENT_FAULTS_CHANGED);
 }
 
 void test_a_frequency_that_is_not_reported_is_no_fault(void)
@@ -354,14 +439,39 @@ void test_three_seconds_of_ranges_without_a_start_packet_are_a_fault_and_three_m
     rig_feed_start_packet(1000);
     (void)rig_drain();
     ranges_without_start(11960);
+    rig_feed_packet(0, 39, 1000);
+    (void)rig_drain();
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-    ranges_without_start(40);
+    rig_feed_packet(0, 1, 1000);
+    (void)rig_drain();
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
     is_in(TMINI_STATE_SCANNING);
     ranges_without_start(11960);
     is_in(TMINI_STATE_SCANNING);
     sends(STOP);
     ranges_without_start(40);
+    is_in(TMINI_STATE_RECOVERING);
+}
+
+/* Three seconds: 300 packets. */
+static void packets_with_a_range(unsigned count)
+{
+    for (unsigned i = 0; i < 300; i++) {
+        rig_feed_packet(0, 40, i < count ? 1000 : 0);
+        (void)rig_drain();
+    }
+}
+
+void test_of_300_packets_without_a_start_99_with_a_range_are_chance_and_100_a_loss(void)
+{
+    rig_go_scanning();
+    rig_feed_start_packet(0);
+    (void)rig_drain();
+    packets_with_a_range(0);
+    packets_with_a_range(99);
+    is_in(TMINI_STATE_SCANNING);
+    sends(STOP);
+    packets_with_a_range(100);
     is_in(TMINI_STATE_RECOVERING);
 }
 
@@ -408,6 +518,18 @@ void test_the_port_restarts_its_reception_at_a_loss_and_after_each_attempt_that_
     TEST_ASSERT_EQUAL_UINT(2, restarts);
 }
 
+void test_without_recovery_a_start_that_failed_restarts_the_reception_as_well(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    rig.port.restart = count_restart;
+    rig.timing.max_attempts = 1;
+    rig_init();
+    rig_go_starting();
+    passes(2000);
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    TEST_ASSERT_EQUAL_UINT(1, restarts);
+}
+
 /* ---- Listening ---- */
 
 static void listen(void)
@@ -449,6 +571,7 @@ void test_a_listener_stops_at_once_and_hears_no_more(void)
     listen();
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
+    polls_to(TMINI_EVENT_NONE); /* Nothing to do for a while. */
     begins(tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_STOPPED);
     rig_feed_point_packet(1000);
@@ -570,7 +693,9 @@ void test_with_spare_points_a_scan_stays_until_the_next(void)
     scan_turns(1);
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_PTR(spare, tmini_scan(&rig.lidar)->points);
-    TEST_ASSERT_EQUAL_UINT16(1100, spare[1].distance_mm);
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT16(1100, spare[1].distance_mm); /* The third is gathered in the first. */
+    TEST_ASSERT_EQUAL_UINT16(1000, rig.points[1].distance_mm);
 }
 
 /* ---- The receive buffer of a port with DMA ---- */

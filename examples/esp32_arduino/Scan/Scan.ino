@@ -3,7 +3,8 @@
 
 /* Whole revolutions from a T-mini Plus on Serial1. Once a second a line with the nearest thing in
  * front, and STOP when it is nearer than STOP_MM, or when the lidar sees nothing. Any board with 8
- * KB of RAM and a second serial port; wiring: README.md, one folder up. */
+ * KB of RAM and a second serial port, from an Arduino Mega 2560 on; wiring: README.md, one folder
+ * up. */
 
 #include <TMiniLidar.h>
 
@@ -35,20 +36,16 @@ static const int8_t TX_PIN = 5;
 
 static const uint16_t STOP_MM = 400;
 static const uint16_t FRONT_Q6 = 30 * 64;  /* To either side of 0 degrees, in 1/64 degree. */
-static const unsigned long BLIND_MS = 500; /* Without a complete scan for so long, stop. */
+static const unsigned long BLIND_MS = 500; /* Without a complete scan for this long, stop. */
 
-/* At 6 revolutions a second one has 667 points; TMiniLidar has room for 800. */
-#if defined(__AVR__)
-static TMiniLidarWith<512, 700> lidar;
-#else
 static TMiniLidar lidar;
-#endif
 static unsigned scans;
+static unsigned complete; /* Of them. */
 static uint16_t nearest;     /* In front, in the last scan that could tell; 0: nothing. */
 static unsigned long seenMs; /* When a complete scan came. */
 static bool seen;
 
-/* Integers: floats would take an AVR longer than its receive buffer lasts. */
+/* Integers: at ten microseconds per float, those of a scan would take an AVR ten milliseconds. */
 static bool isInFront(const TMiniPoint &point)
 {
     return point.angle_q6 <= FRONT_Q6 || point.angle_q6 >= TMINI_FULL_CIRCLE_Q6 - FRONT_Q6;
@@ -72,11 +69,12 @@ static void lookAhead()
             ahead = point.distanceMm();
         }
     }
-    const bool complete = any && tmini_scan(lidar.driver())->complete;
-    if (complete || isNear(ahead)) {
+    const bool sees = any && lidar.scan().complete;
+    if (sees || isNear(ahead)) {
         nearest = ahead;
     }
-    if (complete) {
+    if (sees) {
+        complete++;
         seenMs = millis();
         seen = true;
     }
@@ -118,11 +116,13 @@ static void report()
     }
     reported = millis();
     Serial.print(scans);
+    Serial.print(" scans, ");
+    Serial.print(complete);
     if (isBlind()) {
-        Serial.println(" scans, blind: STOP");
+        Serial.println(" complete, blind: STOP");
         return;
     }
-    Serial.print(" scans, nearest in front ");
+    Serial.print(" complete, nearest in front ");
     Serial.print(nearest);
     Serial.println(isNear(nearest) ? " mm: STOP" : " mm");
 }

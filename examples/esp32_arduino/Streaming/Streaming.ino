@@ -1,24 +1,48 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Boards with little RAM, such as the Arduino Mega 2560: packet by packet, nothing is kept but the
- * nearest distance of the revolution. Lidar on Serial1; what 16 MHz boards can and cannot do with
- * it is in README.md, one folder up. */
+/* Boards with little RAM, from an Arduino Mega 2560 on: packet by packet, nothing is kept but the
+ * nearest distance of the revolution, which is printed at its end. Lidar on Serial1; what 16 MHz
+ * boards can and cannot do with it is in README.md, one folder up. */
 
 #include <TMiniLidar.h>
 
 static TMiniLidarStreaming lidar;
-static uint16_t nearest; /* Of the revolution under way; 0: nothing yet. */
+static unsigned scans;
+static unsigned complete; /* Of them. */
+static uint16_t nearest;  /* Of the revolution under way; 0: nothing yet. */
+static bool whole;        /* Nothing of it has been lost so far. */
 
+static void print()
+{
+    Serial.print(scans);
+    Serial.print(" scans, ");
+    Serial.print(complete);
+    Serial.print(" complete, nearest ");
+    Serial.print(nearest);
+    Serial.println(" mm");
+}
+
+/* What came before the first start packet was no revolution. */
 static void endRevolution()
 {
-    Serial.println(nearest);
+    static bool begun;
+    if (begun) {
+        scans++;
+        complete += whole ? 1 : 0;
+        print();
+    }
+    begun = true;
+    whole = true;
     nearest = 0;
 }
 
 static void lookAtPacket()
 {
-    if (tmini_packet_is_start(tmini_packet(lidar.driver()))) {
+    if (lidar.packet().gap > 1) { /* Between revolutions the lidar sends a byte of its own. */
+        whole = false;
+    }
+    if (tmini_packet_is_start(&lidar.packet())) {
         endRevolution();
     }
     for (TMiniPoint point : lidar.points()) {

@@ -20,14 +20,14 @@ static const char *const TAG = "lidar";
 static uint8_t rx[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_t lidar;
-static tmini_esp32_t board;
+static tmini_esp32_t port;
 
 static obstacle_t obstacle;
 static uint32_t scans; /* Since the last line on the console. */
 
 static uint32_t now_ms(void)
 {
-    return tmini_esp32_port.now_ms(&board);
+    return tmini_esp32_port.now_ms(&port);
 }
 
 /* -------------------------------------------------------------------------------- obstacle stop */
@@ -75,7 +75,7 @@ static void tell_info(const tmini_info_t *info)
              info->firmware_major, info->firmware_minor, info->hardware, serial);
 }
 
-/* Information, then health, then scanning; from the beginning when something fails. */
+/* Information, then health; answered or not, scanning. */
 static void handle(tmini_event_t event)
 {
     char faults[TMINI_FAULTS_TEXT_SIZE];
@@ -104,7 +104,7 @@ static void handle(tmini_event_t event)
     case TMINI_EVENT_COMMAND_FAILED:
         ESP_LOGE(TAG, "no answer: %s. Wiring, 5 V?",
                  tmini_status_name(tmini_command_error(&lidar)));
-        (void)tmini_request_info(&lidar);
+        (void)tmini_start(&lidar);
         break;
     default:
         break;
@@ -121,12 +121,12 @@ static void report_each_second(void)
     }
     reported_ms = now_ms();
     tmini_counters(&lidar, &counters);
-    tmini_esp32_counters(&board, &uart);
+    tmini_esp32_counters(&port, &uart);
     ESP_LOGI(TAG,
              "%" PRIu32 " scans, nearest in front %u mm, %s; lost: %" PRIu32 " checksums, %" PRIu32
              " bytes, %" PRIu32 " overflows",
              scans, obstacle.sectors[0].nearest_mm, must_stop() ? "STOP" : "go",
-             counters.checksum_errors, counters.bytes_overrun, uart.fifo_overflows);
+             counters.checksum_errors, counters.bytes_overrun, uart.overruns);
     scans = 0;
 }
 
@@ -134,21 +134,21 @@ static void set_up(void)
 {
     const tmini_config_t config = {
         .port = &tmini_esp32_port,
-        .port_context = &board,
+        .port_context = &port,
         .rx_buffer = rx,
         .rx_size = sizeof rx,
         .points = points,
         .max_points = TMINI_SCAN_POINTS_TYPICAL,
         .frequency_chz = 1000, /* 10 Hz, also after a power failure. */
     };
-    const tmini_esp32_config_t wiring = TMINI_ESP32_CONFIG_DEFAULT;
+    const tmini_esp32_wiring_t wiring = TMINI_ESP32_WIRING_DEFAULT;
     open_stop_pin();
-    ESP_ERROR_CHECK(tmini_esp32_init(&board, &wiring));
+    ESP_ERROR_CHECK(tmini_esp32_init(&port, &wiring));
     if (tmini_init(&lidar, &config) != TMINI_OK) {
         ESP_LOGE(TAG, "the configuration is wrong");
         return;
     }
-    ESP_ERROR_CHECK(tmini_esp32_start(&board, &lidar));
+    ESP_ERROR_CHECK(tmini_esp32_start(&port, &lidar));
     (void)tmini_request_info(&lidar);
 }
 
@@ -161,7 +161,7 @@ void app_main(void)
         if (event == TMINI_EVENT_NONE) {
             set_stop_pin(must_stop());
             report_each_second();
-            (void)tmini_esp32_wait(&board, pdMS_TO_TICKS(10));
+            (void)tmini_esp32_wait(&port, pdMS_TO_TICKS(10));
         }
     }
 }

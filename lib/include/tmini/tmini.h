@@ -18,14 +18,15 @@
  *     tmini_start(&lidar);                   stands until tmini_stop()
  *     for (;;) {
  *         switch (tmini_poll(&lidar)) {
- *         case TMINI_EVENT_SCAN:  avoid_obstacles(tmini_scan(&lidar)); break;
+ *         case TMINI_EVENT_SCAN: avoid_obstacles(tmini_scan(&lidar)); break;
+ *         case TMINI_EVENT_LOST: stop_robot(); break;    until scans come again
  *         case TMINI_EVENT_FAULTS_CHANGED: signal_faults(tmini_faults(&lidar)); break;
  *         default: break;
  *         }
  *     }
  *
  * Contexts. The functions tmini_feed…() belong to the one context that receives: an interrupt, a
- * DMA interrupt or a task. All others belong to one other context, a main loop or a task.
+ * DMA interrupt or a task. All others belong to one context, another or the same.
  * Nothing is locked and no interrupt is disabled (but see tmini_atomic.h for 8-bit machines). Any
  * number of lidars, each with a tmini_t of its own.
  *
@@ -78,9 +79,11 @@ typedef struct {
     /** A packet that stops coming is given up after this silence. 0: at the first poll before which
      * time has passed and nothing has come. */
     uint16_t frame_timeout_ms;
-    /** What comes after a longer pause of the line does not continue a scan: at 12 Hz half a turn
-     * takes 42 ms. Bytes that were held back count by the time in which the line could have sent
-     * them. 0: pauses are not looked for. */
+    /** What comes after a longer pause of the line does not continue a scan, if the pause is also
+     * longer than half a turn (at 12 Hz 42 ms): the angles do not show a missing turn. Bytes that
+     * were held back count by the time in which the line could have sent them. A layer below that
+     * delays them needs more: 250 for a computer. Then a scan that took more than one and a half
+     * turns still has a gap. 0: pauses are not looked for, only that. */
     uint16_t max_pause_ms;
     /** A line silent for this long after a stop is quiet. 0: at once. */
     uint16_t quiet_line_ms;
@@ -106,7 +109,8 @@ typedef enum {
  * their order and number. */
 typedef void (*tmini_step_t)(const void *data, tmini_scan_t *scan);
 
-/** What tmini_init() needs to know. Members that are not named may be 0. */
+/** What tmini_init() needs to know. Members that are not named may be 0; C++ wants the others in
+ * this order. */
 typedef struct {
     const tmini_port_t *port; /**< Required. */
     void *port_context;       /**< Passed to its functions. */
@@ -207,19 +211,24 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config);
 
 /** Stores one received byte: the call for a UART's receive interrupt. No loop, no wait, a handful
  * of instructions. Once the buffer is full, bytes are refused and counted (bytes_overrun) until
- * polling has emptied it. From the receiving context only, as the next four. */
+ * polling has emptied it. From the receiving context only, as the next five. */
 TMINI_INLINE void tmini_feed_byte(tmini_t *lidar, uint8_t byte);
 
 /** Stores a block of received bytes and returns how many it stored: those that do not fit are
  * refused and counted. Bytes must not be held back for longer than frame_timeout_ms, or their
  * packet is given up. What a layer below has held back is best handed over at once, before the next
- * poll; if it has waited for room longer than max_pause_ms, drop it and call tmini_feed_gap() once:
- * it no longer shows whether the line has paused. No wait; two block copies. */
+ * poll; for what has to wait for room call tmini_feed_held(). No wait; two block copies. */
 static inline size_t tmini_feed(tmini_t *lidar, const uint8_t *bytes, size_t count);
 
 /** How many bytes tmini_feed() would store now, at least: for a receiver with a queue of its
  * own. */
 static inline size_t tmini_feed_room(const tmini_t *lidar);
+
+/** Reports that `held` more bytes have arrived and wait in the port, or below it, and that none was
+ * lost: for a receiver with a queue, each time it has fed bytes, also when none are left (0). Then
+ * a pause of the program that the queue bridges costs no scan. Without this call it may cost some,
+ * or hide that the line was silent. No loop, no wait. Not with DMA. */
+static inline void tmini_feed_held(tmini_t *lidar, size_t held);
 
 /** Publishes how far circular DMA has written rx_buffer: `position` is the index it writes next
  * (rx_size less the channel's remaining count), and never goes back. Call it from the
@@ -228,8 +237,8 @@ static inline size_t tmini_feed_room(const tmini_t *lidar);
  * Overwritten bytes are noticed when polling, counted (bytes_overrun), and never become points. */
 static inline void tmini_feed_dma(tmini_t *lidar, size_t position);
 
-/** Says that bytes were lost on their way, behind those fed so far, and not how many: a receiver's
- * queue overflowed, or DMA may have gone a whole lap unseen (then call it before tmini_feed_dma()).
+/** Reports that an unknown number of bytes was lost after those fed so far: a receiver's queue
+ * overflowed, or DMA may have gone a whole lap unseen (then call it before tmini_feed_dma()).
  * No scan continues across the gap. Without DMA nothing is stored until polling has emptied the
  * buffer: look at tmini_feed_room(). With DMA a lap of the oldest bytes (rx_size) is dropped and
  * counted as overrun, and what is then left beyond half a lap: so nothing is delivered twice, even
@@ -252,8 +261,8 @@ static inline size_t tmini_feed_position(const tmini_t *lidar);
  * TMINI_EVENT_NONE when there is nothing left to do. Call it until then. From the polling context,
  * never from within itself. It never waits, and its work is bounded: it looks at no more than
  * TMINI_PARSER_EFFORT bytes and one packet (docs/footprint.md says what that costs at worst), and
- * sends two. With more to look at and no event it returns TMINI_EVENT_MORE: call it again when
- * other work allows. */
+ * sends at most two bytes. With more to look at and no event it returns TMINI_EVENT_MORE: call it
+ * again when other work allows. */
 tmini_event_t tmini_poll(tmini_t *lidar);
 
 /** @name Wishes
@@ -329,42 +338,42 @@ tmini_status_t tmini_reboot(tmini_t *lidar);
 /** @{ */
 
 /** What the lidar does. */
-tmini_state_t tmini_state(const tmini_t *lidar);
+static inline tmini_state_t tmini_state(const tmini_t *lidar);
 
 /** The scan that TMINI_EVENT_SCAN announced, valid as it says there (section 6). */
-const tmini_scan_t *tmini_scan(const tmini_t *lidar);
+static inline const tmini_scan_t *tmini_scan(const tmini_t *lidar);
 
 /** Without points: the packet that TMINI_EVENT_PACKET announced, valid until the next tmini_poll()
  * (section 5). */
-const tmini_packet_t *tmini_packet(const tmini_t *lidar);
+static inline const tmini_packet_t *tmini_packet(const tmini_t *lidar);
 
 /** The device information that TMINI_EVENT_INFO announced, valid until the next; all 0 before
  * (section 4). */
-const tmini_info_t *tmini_info(const tmini_t *lidar);
+static inline const tmini_info_t *tmini_info(const tmini_t *lidar);
 
 /** The health status that TMINI_EVENT_HEALTH announced, valid until the next; all 0 before (section
  * 4). */
-const tmini_health_t *tmini_health(const tmini_t *lidar);
+static inline const tmini_health_t *tmini_health(const tmini_t *lidar);
 
 /** The scan frequency that is set, in 0.01 Hz, as the lidar has reported it last; 0: not known,
  * also after a loss or a reboot. What is measured is in each scan. */
-uint16_t tmini_frequency_chz(const tmini_t *lidar);
+static inline uint16_t tmini_frequency_chz(const tmini_t *lidar);
 
 /** Why the last failed command failed: TMINI_ERROR_TIMEOUT, _WRITE, _REPLY or _ABORTED; _ARGUMENT
  * if tmini_init() did. TMINI_OK if none has. */
-tmini_status_t tmini_command_error(const tmini_t *lidar);
+static inline tmini_status_t tmini_command_error(const tmini_t *lidar);
 
 /** What is wrong with the lidar while scanning, a combination of tmini_fault_t; 0: nothing known.
  * From CT information when the unit sends it, seen in two revolutions. A unit that sends none has
  * TMINI_FAULT_DATA when two whole revolutions bring no valid range. Either has TMINI_FAULT_ENCODER
- * when packets come without any range and without a revolution for three seconds (section 8), or
- * 12,000 samples without a start packet; TMINI_FAULT_FREQUENCY when it
- * has turned otherwise than wanted, by more than 5 %, for three seconds. */
-uint8_t tmini_faults(const tmini_t *lidar);
+ * when 12,000 samples, three seconds, come without a start packet (section 8);
+ * TMINI_FAULT_FREQUENCY when it has turned otherwise than wanted, by more than 5 %, for three
+ * seconds. */
+static inline uint8_t tmini_faults(const tmini_t *lidar);
 
 /** Copies CT information to `info`: version, health and serial number as sent while scanning, each
  * if known (section 7). */
-void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info);
+static inline void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info);
 
 /** Copies the counters to `counters`; they run from tmini_init(). */
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters);
@@ -380,7 +389,7 @@ void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters);
 
 /* tmini_command.c */
 typedef struct {
-    uint8_t operation; /* Under way, or the last one: the command that it is named by; 0: none. */
+    uint8_t operation; /* Under way, or the last one: the event with which it ends well; 0: none. */
     uint8_t phase;     /* What goes on on the wire. */
     uint8_t code;      /* The command on its way, */
     uint8_t unsent;    /* and how many of its two bytes the port has not taken yet. */
@@ -396,35 +405,34 @@ typedef struct {
 
 /* tmini_recovery.c */
 typedef struct {
-    uint16_t attempts; /* Failed ones, since the last complete revolution or a reboot; 0: none has
+    uint8_t attempts;  /* Failed ones, since the last complete revolution or a reboot; 0: none has
                           been made. */
+    uint8_t doublings; /* Of the pause after a failed attempt. */
     uint16_t losses;
     uint16_t recoveries;
     uint16_t restarts;
     uint16_t reboots;
-    uint16_t pause_ms; /* After the last failed attempt. */
 } tmini_recovery_t;
 
 /* tmini_monitor.c */
 typedef struct {
-    uint8_t faults;       /* As reported. */
-    uint8_t observed;     /* As seen in the last revolution; reported when seen twice. */
-    bool is_complete;     /* Nothing has been lost since the last start packet. */
-    uint8_t ranges;       /* Packets with a valid range since then; at most 255. */
-    uint8_t off_turns;    /* In a row, that took another time than wanted. */
-    bool is_tried_again;  /* The wanted frequency has been set once more. */
-    uint16_t samples;     /* Since the last start packet. */
-    uint32_t rotating_ms; /* When a start packet or a range last came. */
+    uint8_t faults;    /* As reported. */
+    uint8_t observed;  /* As seen in the last revolution; reported when seen twice. */
+    bool is_complete;  /* Nothing has been lost since the last start packet. */
+    uint8_t ranges;    /* Packets with a valid range since then; at most 255. */
+    uint8_t off_turns; /* In a row, that took another time than wanted. */
+    uint16_t samples;  /* Since the last start packet. */
 } tmini_monitor_t;
 
 /* tmini_line.c */
 typedef struct {
-    uint8_t doubt;      /* Whether, between the bytes before `doubtful_to`, some may be missing. */
-    bool are_held;      /* A layer below may have held back the bytes that come next. */
+    bool doubt;         /* Whether some bytes may be missing up to `doubtful_to`. */
+    uint16_t late_ms;   /* How much earlier the latest bytes may have come, if not in doubt. */
     uint16_t silent_ms; /* Observed silence; at most 65535. */
     uint32_t now_ms;    /* When the line was last looked at. */
-    uint32_t heard_ms;  /* When bytes came; earlier, if a layer below may have held them back. */
-    size_t received;    /* The place in the stream up to which bytes had come. */
+    uint32_t heard_ms;  /* When bytes came. */
+    size_t received;    /* The place in the stream up to which bytes had come, */
+    size_t arrived;     /* and up to which they had at least come into the port, at `heard_ms`. */
     size_t doubtful_to;
 } tmini_line_t;
 
@@ -441,19 +449,20 @@ typedef struct {
 struct tmini {
     uint8_t state; /* A tmini_state_t. */
     int8_t command_error;
-    uint16_t pending; /* A bit for each event not yet returned. */
-    tmini_command_t command;
-    tmini_monitor_t monitor;
-    tmini_recovery_t recovery;
-    uint16_t wanted_chz; /* 0: any. */
-    bool start_follows;  /* The command under way is followed by a start. */
-    bool is_settled;     /* Nothing to do until a frame may be complete or `wake_ms` has come. */
+    uint16_t pending;   /* A bit for each event not yet returned. */
+    bool start_follows; /* The command under way is followed by a start. */
+    bool is_settled;    /* Nothing to do until a frame may be complete or `wake_ms` has come. */
     bool is_recovery_off;
     bool is_listen_only;
+    tmini_recovery_t recovery;
+    uint16_t wanted_chz; /* 0: any. */
+    tmini_command_t command;
+    tmini_monitor_t monitor;
     uint32_t wake_ms;
     uint32_t scans;
     tmini_link_t link;
     tmini_line_t line;
+    size_t held_to; /* The receiving context's: up to where bytes wait in the port; 0: unknown. */
     tmini_ring_t ring;
     tmini_decoder_t decoder;
     tmini_scan_t scan; /* The one delivered last. */
@@ -478,6 +487,11 @@ static inline size_t tmini_feed_room(const tmini_t *lidar)
     return tmini_ring_room(&lidar->ring);
 }
 
+static inline void tmini_feed_held(tmini_t *lidar, size_t held)
+{
+    tmini_store(&lidar->held_to, lidar->ring.head + held);
+}
+
 static inline void tmini_feed_dma(tmini_t *lidar, size_t position)
 {
     tmini_ring_publish(&lidar->ring, position);
@@ -498,6 +512,51 @@ static inline uint8_t *tmini_rx_buffer(const tmini_t *lidar, size_t *size)
 static inline size_t tmini_feed_position(const tmini_t *lidar)
 {
     return tmini_ring_head(&lidar->ring);
+}
+
+static inline tmini_state_t tmini_state(const tmini_t *lidar)
+{
+    return lidar != NULL ? (tmini_state_t)lidar->state : TMINI_STATE_UNKNOWN;
+}
+
+static inline const tmini_scan_t *tmini_scan(const tmini_t *lidar)
+{
+    return &lidar->scan;
+}
+
+static inline const tmini_packet_t *tmini_packet(const tmini_t *lidar)
+{
+    return &lidar->decoder.packet;
+}
+
+static inline const tmini_info_t *tmini_info(const tmini_t *lidar)
+{
+    return &lidar->info;
+}
+
+static inline const tmini_health_t *tmini_health(const tmini_t *lidar)
+{
+    return &lidar->health;
+}
+
+static inline uint16_t tmini_frequency_chz(const tmini_t *lidar)
+{
+    return lidar->command.frequency_chz;
+}
+
+static inline tmini_status_t tmini_command_error(const tmini_t *lidar)
+{
+    return (tmini_status_t)lidar->command_error;
+}
+
+static inline uint8_t tmini_faults(const tmini_t *lidar)
+{
+    return lidar->monitor.faults;
+}
+
+static inline void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info)
+{
+    tmini_ct_read(&lidar->decoder.ct, info);
 }
 
 #ifdef __cplusplus

@@ -3,10 +3,10 @@
 
 /** @file
  * The primitives: memory order between the two sides of the ring, several bytes in one access, and
- * what a compiler is to be told of the hottest loops. The only file with compiler extensions.
+ * hints for compilers in the hottest loops. The only file with compiler extensions.
  *
  * tmini_load() reads a size_t that the other side writes, and no later access moves before it;
- * tmini_store() writes one, and no earlier access moves behind it (acquire and release, in C11's
+ * tmini_store() writes one, and no earlier access moves after it (acquire and release, in C11's
  * words). Both are one access wide, so that the other side sees the old value or the new one.
  * tmini_fence() keeps earlier reads before later ones.
  *
@@ -92,7 +92,7 @@ TMINI_INLINE size_t tmini_load(const size_t *value)
     return loaded;
 }
 
-/** Writes an index that the other side reads; no earlier access moves behind it. Any context; two
+/** Writes an index that the other side reads; no earlier access moves after it. Any context; two
  * accesses on this 8-bit machine, with interrupts kept out. */
 TMINI_INLINE void tmini_store(size_t *value, size_t stored)
 {
@@ -121,7 +121,7 @@ TMINI_INLINE size_t tmini_load(const size_t *value)
     return loaded;
 }
 
-/** Writes an index that the other side reads; no earlier access moves behind it. Any context; one
+/** Writes an index that the other side reads; no earlier access moves after it. Any context; one
  * access. */
 TMINI_INLINE void tmini_store(size_t *value, size_t stored)
 {
@@ -144,7 +144,7 @@ TMINI_INLINE size_t tmini_load(const size_t *value)
     return __atomic_load_n(value, __ATOMIC_ACQUIRE);
 }
 
-/** Writes an index that the other side reads; no earlier access moves behind it. Any context; one
+/** Writes an index that the other side reads; no earlier access moves after it. Any context; one
  * access. */
 TMINI_INLINE void tmini_store(size_t *value, size_t stored)
 {

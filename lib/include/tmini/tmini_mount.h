@@ -40,10 +40,10 @@ typedef struct {
 
 /** How the lidar is mounted, and what is to be left out. All 0: nothing changes. */
 typedef struct {
-    int16_t front_deg; /**< The lidar's angle, clockwise, that looks to the robot's front. */
-    bool upside_down;  /**< The lidar hangs: its angles run the other way round. */
-    uint16_t min_mm;   /**< Distances below are out of range. */
-    uint16_t max_mm;   /**< Distances above are; 0: none. */
+    int16_t front_deg;         /**< What the lidar reports for the robot's front, also hanging. */
+    bool upside_down;          /**< The lidar hangs: its angles run the other way round. */
+    uint16_t min_mm;           /**< Distances below are out of range. */
+    uint16_t max_mm;           /**< Distances above are; 0: none. */
     const tmini_arc_t *masked; /**< Directions in which the robot sees itself. */
     size_t masked_count;       /**< How many. */
 } tmini_mount_t;

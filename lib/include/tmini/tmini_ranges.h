@@ -7,7 +7,7 @@
  * library needs it.
  *
  * The lidar counts angles clockwise and its points lie where they fall; ROS counts
- * counter-clockwise (x ahead, y to the left) and wants one range every so many degrees. With
+ * counter-clockwise (x ahead, y to the left) and wants one range every few degrees. With
  * `count` bins:
  *
  *     bin i is centred on the ROS angle   -180 degrees + i * 360 degrees / count

@@ -24,6 +24,12 @@
  *         if (!tmini_sector_is_free(&sectors.sectors[0], 300)) { stop(); }
  *     }
  *
+ * A lidar that is lost brings no scans, and the sectors keep what they had. TMINI_EVENT_LOST comes
+ * after a second only, and the state is TMINI_STATE_SCANNING again before the first new scan. So,
+ * each time round the loop, also stop unless that is the state, tmini_faults() is 0 and the last
+ * complete scan is younger than half a second; and clear the sectors when the lidar is lost and
+ * before each start.
+ *
  * A sector without a single valid range is blind, not free: a covered lidar, a lost packet, but
  * also open space beyond 12 m. Its nearest_mm is 0, which is less than any limit. All functions:
  * one context, the one that polls; no waiting. */
@@ -90,7 +96,8 @@ static inline bool tmini_sector_is_blind(const tmini_sector_t *sector)
     return sector->ranges == 0;
 }
 
-/** True if the sector is seen, and nothing in it is nearer than `distance_mm`. */
+/** True if the sector is seen, and nothing in it is nearer than `distance_mm`. What is missing of a
+ * scan that is not complete may be the obstacle: then it is a reason to stop, not to go on. */
 static inline bool tmini_sector_is_free(const tmini_sector_t *sector, uint16_t distance_mm)
 {
     return sector->ranges > 0 && sector->nearest_mm >= distance_mm;

@@ -85,7 +85,8 @@ typedef struct {
     uint16_t count;           /**< Points in the buffer. */
     uint16_t dropped;         /**< Points that did not fit in it. */
     uint16_t packets;         /**< Packets received of this revolution. */
-    uint16_t gaps;            /**< Places where bytes were lost or damaged: packets may be lost. */
+    uint16_t gaps;            /**< Places where packets may be missing: bytes were lost, damaged or
+                               * late. */
     uint16_t checksum_errors; /**< While it was received, modulo 2^16. */
     uint16_t
         frequency_chz; /**< Measured, 0.01 Hz, from the start packet after it; if that was lost,
@@ -93,8 +94,10 @@ typedef struct {
     uint32_t start_ms; /**< The port's clock when its first sample came, and */
     uint32_t end_ms;   /**< when the packet came that ended it. */
     bool complete;     /**< A full circle to the next start packet, in the time of one turn; no
-                       * gap, none dropped. Where the unit sends no LastCRC, up to 4 degrees may be
-                       * missing at its end: nothing shows that. */
+                       * gap, none dropped. What nothing shows: up to 4 degrees missing at its end,
+                       * where the unit sends no LastCRC; and a turn lost between polls so rare that
+                       * clocks differ by half a turn in twice that time (by 3 %: 0.7 s at 12 Hz),
+                       * or when somebody delays the bytes on purpose. */
     bool upside_down;  /**< Its angles run against time: turned over by tmini_mount_step(). */
 } tmini_scan_t;
 
@@ -126,7 +129,7 @@ static inline bool tmini_packet_is_start(const tmini_packet_t *packet)
 bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_t *point);
 
 /** Reads the first points, as many as the packet has and at most `max_points`, applying `filter` (a
- * combination of tmini_filter_t). Returns how many. tmini_frame_intact() then tells whether they
+ * combination of tmini_filter_t). Returns how many. tmini_frame_intact() then shows whether they
  * may be used. About 12 instructions a point on a Cortex-M4. */
 size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_point_t *points,
                            size_t max_points);
@@ -144,11 +147,11 @@ bool tmini_packet_has_range(const tmini_packet_t *packet);
 /** The model number of the T-mini Plus (section 4). */
 #define TMINI_MODEL_T_MINI_PLUS 151u
 
-/** What the lidar tells of itself (section 4). */
+/** What the lidar reports of itself, in the order in which it is sent (section 4). */
 typedef struct {
     uint8_t model;                       /**< TMINI_MODEL_T_MINI_PLUS, … */
-    uint8_t firmware_major;              /**< As in 1.2: the 1. */
     uint8_t firmware_minor;              /**< As in 1.2: the 2. */
+    uint8_t firmware_major;              /**< As in 1.2: the 1. */
     uint8_t hardware;                    /**< Hardware version. */
     uint8_t serial[TMINI_SERIAL_DIGITS]; /**< Digits as numbers 0 to 9, not characters. */
 } tmini_info_t;
@@ -188,7 +191,7 @@ typedef enum {
     TMINI_KNOWN_SERIAL = 1 << 13,  /**< The whole serial number: date and number. */
 } tmini_known_t;
 
-/** What the unit has told of itself while scanning. Fields that are not known are 0. */
+/** What the unit has reported of itself while scanning. Fields that are not known are 0. */
 typedef struct {
     uint16_t known;         /**< A combination of tmini_known_t. */
     uint8_t user_major;     /**< Protocol version, currently 1.0. */

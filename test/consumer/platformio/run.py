@@ -4,11 +4,11 @@
 """PlatformIO itself, off the network, with small platforms of our own (platforms/).
 
     run.py native|scan|streaming ROOT WORK
-    run.py archive ROOT WORK SOURCES ARCHIVE
+    run.py archive ROOT WORK ARCHIVE
 
 Run by the Python that has the packages platformio and scons. Builds the consumer's program, or a
-sketch of examples/esp32_arduino; `archive` compares the archive that we have packed with what
-PlatformIO's packer makes from the archive of all sources, and builds the program with ours. Exit
+sketch of examples/esp32_arduino; `archive` packs the archive that we have packed with
+PlatformIO's packer again, which must leave nothing out, and builds the program with it. Exit
 status: 0 it builds, 1 not, 77 a compiler is not installed.
 """
 
@@ -114,12 +114,11 @@ def names_in(archive):
         return sorted(member.name for member in file if member.isfile())
 
 
-def check_archive(sources, archive, work, env):
-    folder = unpack(sources, os.path.join(work, "sources"))
-    (name,) = os.listdir(folder)
-    ours, theirs = names_in(archive), names_in(pack(os.path.join(folder, name), work))
+def check_archive(archive, work, env):
+    folder = unpack(archive, os.path.join(work, "unpacked"))
+    ours, theirs = names_in(archive), names_in(pack(folder, work))
     assert ours == theirs, sorted(set(ours) ^ set(theirs))
-    check_native(unpack(archive, os.path.join(work, "unpacked")), env)
+    check_native(folder, env)
 
 
 def unpack(archive, folder):
@@ -147,7 +146,7 @@ def main():
     if part == "native":
         check_native(root, env)
     elif part == "archive":
-        check_archive(sys.argv[4], sys.argv[5], work, env)
+        check_archive(sys.argv[4], work, env)
     elif part == "scan":
         subprocess.run([check_sketch(root, "scan", env)], check=True)
     elif part == "streaming":

@@ -8,6 +8,8 @@
 #   build.sh CMAKE SKETCH BOARD RAM [ARCHIVE]
 #
 # for example: build.sh cmake Streaming mega:cpu=atmega2560 8192
+# SKETCH may be a folder with a sketch of its name. In the environment, FIRMWARE names the file that
+# the program goes to, if it is wanted, and FLAGS more of the compiler's options.
 # Exit status: 0 it links, without a warning about our code, and leaves a quarter of the board's RAM
 # for the stack; 1 not; 77 builder, compiler or core is not installed.
 
@@ -19,7 +21,7 @@ hardware=/usr/share/arduino/hardware
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-for needed in arduino-builder arduino-ctags avr-g++; do
+for needed in arduino-builder arduino-ctags avr-g++ python3; do
     if ! command -v "$needed" >/dev/null; then
         echo "skipped: $needed is not installed"
         exit 77
@@ -31,13 +33,18 @@ if [ ! -e "$hardware/arduino/avr/cores/arduino/Arduino.h" ]; then
 fi
 
 mkdir "$work/libraries" "$work/tools" "$work/build"
-if [ -n "$archive" ]; then
-    # CMake 3.31 unpacks nothing from a path with accents where the locale is C.
-    cp "$archive" "$work/library.zip"
-    (cd "$work/libraries" && "$cmake" -E tar xf ../library.zip)
-else
-    "$cmake" -D OUT="$work/libraries/tmini" -P "$root/port/arduino/pack.cmake"
+case $sketch in
+*/*) folder=$sketch ;;
+*) folder=$work/libraries/tmini/examples/$sketch ;;
+esac
+sketch=$(basename "$sketch")
+if [ -z "$archive" ]; then
+    python3 -B "$root/.ci/pack.py" --allow-placeholder "$work/release"
+    archive=$(echo "$work"/release/*-arduino.zip)
 fi
+# CMake 3.31 unpacks nothing from a path with accents where the locale is C.
+cp "$archive" "$work/library.zip"
+(cd "$work/libraries" && "$cmake" -E tar xf ../library.zip)
 
 # Where Debian has the tool that looks for a sketch's functions; Arduino brings it along otherwise.
 ctags='"{cmd.path}" -u --language-force=c++ -f - --c++-kinds=svpf --fields=KSTtzns'
@@ -47,8 +54,8 @@ ctags="$ctags --line-directives \"{source_file}\""
 arduino-builder -compile -core-api-version 10819 -warnings all -fqbn "arduino:avr:$board" \
     -hardware "$hardware" -tools "$work/tools" -libraries "$work/libraries" \
     -prefs "tools.ctags.cmd.path=$(command -v arduino-ctags)" -prefs "tools.ctags.pattern=$ctags" \
-    -prefs compiler.cpp.extra_flags=-DDECIMAL_DIG=__DECIMAL_DIG__ -build-path "$work/build" \
-    "$work/libraries/tmini/examples/$sketch/$sketch.ino" >"$work/log" 2>&1 || {
+    -prefs "compiler.cpp.extra_flags=-DDECIMAL_DIG=__DECIMAL_DIG__ ${FLAGS:-}" \
+    -build-path "$work/build" "$folder/$sketch.ino" >"$work/log" 2>&1 || {
     cat "$work/log"
     exit 1
 }
@@ -62,3 +69,4 @@ used=$(sed -n 's/^Global variables use \([0-9]*\) bytes.*/\1/p' "$work/log")
     echo "too much RAM: $used of $ram bytes"
     exit 1
 }
+[ -z "${FIRMWARE:-}" ] || cp "$work/build/$sketch.ino.elf" "$FIRMWARE"

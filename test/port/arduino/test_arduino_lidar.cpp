@@ -40,10 +40,9 @@ static bool happens(TMiniLidarBase &lidar, tmini_event_t wanted, unsigned limit_
 }
 
 static void assert_same_points(const std::vector<reference_point_t> &expected,
-                               const TMiniLidarBase &lidar)
+                               TMiniLidarBase &lidar)
 {
     size_t index = 0;
-    TEST_ASSERT_EQUAL_UINT(expected.size(), lidar.available());
     TEST_ASSERT_EQUAL_UINT(expected.size(), lidar.points().size());
     for (TMiniPoint point : lidar.points()) {
         TEST_ASSERT_EQUAL_UINT(expected[index].angle_q6, point.angle_q6);
@@ -55,6 +54,7 @@ static void assert_same_points(const std::vector<reference_point_t> &expected,
     TEST_ASSERT_EQUAL_UINT(expected.size(), index);
 }
 
+#if defined(ESP32) || defined(ARDUINO_ARCH_RP2040)
 static void beginning_enlarges_the_buffer_before_it_opens_the_port(void)
 {
     TMiniLidar lidar;
@@ -93,6 +93,8 @@ static void a_port_that_the_sketch_has_opened_is_enlarged_on_the_pins_it_is_give
     TEST_ASSERT_EQUAL_INT(17, Serial1.tx_pin);
 }
 
+#endif
+
 #if defined(ESP32)
 /* Closed, it would forget them; open, it cannot be enlarged. */
 static void a_port_that_the_sketch_has_opened_on_its_pins_stays_on_them(void)
@@ -116,7 +118,7 @@ static void a_port_that_cannot_be_opened_is_reported(void)
     Serial1.refuses = false;
     TEST_ASSERT_TRUE(lidar.begin(Serial1, 16, 17));
 }
-#else
+#elif defined(ARDUINO_ARCH_RP2040)
 static void a_port_that_the_sketch_has_opened_is_enlarged_all_the_same(void)
 {
     TMiniLidar lidar;
@@ -136,6 +138,7 @@ static void run_with_pauses(TMiniLidarBase &lidar, unsigned ms, unsigned pause)
     }
 }
 
+#if !defined(SERIAL_RX_BUFFER_SIZE)
 /* 50 ms are 660 bytes: more than the lidar's own buffer here, less than the core's. */
 static void what_the_lidars_buffer_has_no_room_for_stays_in_the_cores(void)
 {
@@ -149,6 +152,42 @@ static void what_the_lidars_buffer_has_no_room_for_stays_in_the_cores(void)
     TEST_ASSERT_EQUAL_UINT(0, counters.bytes_overrun);
     TEST_ASSERT_TRUE(counters.packets > 200);
 }
+#else
+/* 20 ms are 260 bytes, of which 63 find room. */
+static void what_the_cores_buffer_has_dropped_is_known_and_no_scan_is_complete(void)
+{
+    static TMiniLidar lidar;
+    lidar.begin(Serial1);
+    lidar.start();
+    run_with_pauses(lidar, 2000, 1);
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000) && lidar.scan().complete);
+    TEST_ASSERT_EQUAL_UINT(0, lidar.overruns());
+    run_with_pauses(lidar, 20, 20);
+    TEST_ASSERT_EQUAL_UINT(1, lidar.overruns());
+    for (unsigned i = 0; i < 2; i++) { /* What came before the gap, and what came after it. */
+        TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000) && !lidar.scan().complete);
+    }
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000) && lidar.scan().complete);
+}
+
+/* A millisecond for every 20 points: without it the 63 bytes would last for three. */
+static void going_through_the_points_takes_what_comes_meanwhile(void)
+{
+    static TMiniLidar lidar;
+    size_t points = 0;
+    lidar.begin(Serial1);
+    lidar.start();
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    for (TMiniPoint point : lidar.points()) {
+        points += point.isValid() ? 1 : 0;
+        if (points % 20 == 0) {
+            unit->pass();
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT(0, Serial1.lost);
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000) && lidar.scan().complete);
+}
+#endif
 
 static void any_other_stream_is_left_as_the_sketch_has_opened_it(void)
 {
@@ -206,6 +245,7 @@ static void every_point_of_every_scan_is_there(void)
     for (uint32_t revolution = 1; revolution <= 5; revolution++) {
         TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
         assert_same_points(unit->revolutions[revolution], lidar);
+        TEST_ASSERT_EQUAL_UINT(unit->revolutions[revolution].size(), lidar.available());
     }
     TEST_ASSERT_TRUE(lidar.isScanning());
 }
@@ -218,7 +258,72 @@ static void every_point_of_every_packet_is_there_when_streaming(void)
     for (size_t packet = 0; packet < 50; packet++) {
         TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_PACKET, 2000));
         assert_same_points(unit->packets[packet], lidar);
+        TEST_ASSERT_EQUAL_UINT(unit->packets[packet].size(), lidar.available());
     }
+}
+
+static void with_a_spare_buffer_a_scan_stays_until_the_next(void)
+{
+    static TMiniLidarWith<1024, 2000, true> lidar;
+    lidar.begin(Serial1);
+    lidar.start();
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    TEST_ASSERT_FALSE(happens(lidar, TMINI_EVENT_SCAN, 100));
+    TEST_ASSERT_EQUAL_UINT(0, lidar.available());
+    assert_same_points(unit->revolutions[1], lidar);
+}
+
+/* Upside down the angles run the other way; 80 to 100 degrees of the robot are masked. */
+static void assert_mounted(std::vector<reference_point_t> points, TMiniLidarBase &lidar)
+{
+    for (reference_point_t &point : points) {
+        point.angle_q6 = (23040u - point.angle_q6) % 23040u;
+        point.distance_mm *= point.angle_q6 >= 5120 && point.angle_q6 <= 6400 ? 0 : 1;
+    }
+    assert_same_points(points, lidar);
+}
+
+static void points_come_as_the_robot_sees_them(void)
+{
+    static const tmini_arc_t masts[] = {{80, 100}};
+    tmini_mount_t mount = tmini_mount_t();
+    static TMiniLidarWith<1024, 2000> lidar;
+    static TMiniLidarStreaming streaming;
+    mount.upside_down = true;
+    mount.masked = masts;
+    mount.masked_count = 1;
+    lidar.setMount(mount);
+    TEST_ASSERT_TRUE(lidar.begin(Serial1));
+    lidar.start();
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    TEST_ASSERT_TRUE(lidar.scan().upside_down);
+    assert_mounted(unit->revolutions[1], lidar);
+    unit->packets.clear();
+    streaming.setMount(mount);
+    TEST_ASSERT_TRUE(streaming.begin(Serial1));
+    streaming.start(); /* Stops it first. */
+    TEST_ASSERT_TRUE(happens(streaming, TMINI_EVENT_PACKET, 2000));
+    assert_mounted(unit->packets.back(), streaming);
+}
+
+static void leave(const void *data, tmini_scan_t *scan)
+{
+    (void)data;
+    (void)scan;
+}
+
+/* There is room for one step. */
+static void a_mount_and_a_step_of_ones_own_exclude_each_other(void)
+{
+    static const tmini_mount_t mount = tmini_mount_t();
+    static TMiniLidarWith<1024, 2000> lidar;
+    lidar.config().step = leave;
+    TEST_ASSERT_TRUE(lidar.begin(Serial1));
+    lidar.setMount(mount);
+    TEST_ASSERT_FALSE(lidar.begin(Serial1));
+    lidar.config().step = NULL;
+    TEST_ASSERT_TRUE(lidar.begin(Serial1));
+    TEST_ASSERT_TRUE(lidar.begin(Serial1));
 }
 
 static void points_are_gone_with_the_next_loop(void)
@@ -279,13 +384,33 @@ static void information_and_health_are_read(void)
     TEST_ASSERT_EQUAL_UINT(0, lidar.health().faults);
 }
 
-static void the_frequency_is_set_in_hertz(void)
+static void a_frequency_in_begin_is_set_before_the_start(void)
 {
-    TMiniLidar lidar;
+    static TMiniLidar lidar;
+    TEST_ASSERT_TRUE(lidar.begin(Serial1, 10));
+    lidar.start();
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 5000));
+    TEST_ASSERT_EQUAL_UINT(1000, tmini_frequency_chz(lidar.driver()));
+    TEST_ASSERT_FALSE(lidar.begin(Serial1, 13));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, lidar.status());
+}
+
+/* As a library does that closes the port. An ESP32 needs to be told the pins again. */
+static void a_port_that_something_has_closed_is_opened_again(void)
+{
+    static TMiniLidar lidar;
+#if defined(ESP32)
+    lidar.begin(Serial1, 16, 17);
+#else
     lidar.begin(Serial1);
-    TEST_ASSERT_TRUE(lidar.setFrequency(7.3f));
-    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_FREQUENCY, 3000));
-    TEST_ASSERT_EQUAL_UINT(730, tmini_frequency_chz(lidar.driver()));
+#endif
+    const int pin = Serial1.rx_pin;
+    lidar.start();
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    Serial1.is_open = false;
+    Serial1.rx_pin = -1;
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_RECOVERED, 10000));
+    TEST_ASSERT_EQUAL_INT(pin, Serial1.rx_pin);
 }
 
 /* Returns what the lidar then says, in hundredths; 0 when it was refused. */
@@ -302,6 +427,7 @@ static unsigned frequency_set_to(float hertz)
 static void the_slowest_and_the_fastest_frequency_are_possible(void)
 {
     TEST_ASSERT_EQUAL_UINT(1200, frequency_set_to(12.0f));
+    TEST_ASSERT_EQUAL_UINT(730, frequency_set_to(7.3f));
     TEST_ASSERT_EQUAL_UINT(600, frequency_set_to(6.0f));
 }
 
@@ -327,6 +453,7 @@ static void while_scanning_only_stop_is_possible(void)
     lidar.start();
     TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
     TEST_ASSERT_FALSE(lidar.requestInfo());
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, lidar.status());
     TEST_ASSERT_FALSE(lidar.reboot());
     TEST_ASSERT_TRUE(lidar.stop());
     TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_STOPPED, 1000));
@@ -357,28 +484,39 @@ static void degrees_are_a_sixty_fourth_of_the_units_and_zero_is_no_distance(void
 int main(void)
 {
     UnityBegin("test_arduino_lidar.cpp");
+#if defined(ESP32) || defined(ARDUINO_ARCH_RP2040)
     RUN_TEST(beginning_enlarges_the_buffer_before_it_opens_the_port);
     RUN_TEST(a_hardware_port_on_its_usual_pins_is_opened_just_so);
     RUN_TEST(a_port_that_the_sketch_has_opened_is_enlarged_on_the_pins_it_is_given);
+#endif
 #if defined(ESP32)
     RUN_TEST(a_port_that_the_sketch_has_opened_on_its_pins_stays_on_them);
     RUN_TEST(a_port_that_cannot_be_opened_is_reported);
-#else
+#elif defined(ARDUINO_ARCH_RP2040)
     RUN_TEST(a_port_that_the_sketch_has_opened_is_enlarged_all_the_same);
 #endif
+#if !defined(SERIAL_RX_BUFFER_SIZE)
     RUN_TEST(what_the_lidars_buffer_has_no_room_for_stays_in_the_cores);
+#else
+    RUN_TEST(what_the_cores_buffer_has_dropped_is_known_and_no_scan_is_complete);
+    RUN_TEST(going_through_the_points_takes_what_comes_meanwhile);
+#endif
     RUN_TEST(any_other_stream_is_left_as_the_sketch_has_opened_it);
     RUN_TEST(a_stream_that_promises_bytes_and_gives_none_holds_nobody_up);
     RUN_TEST(before_begin_nothing_happens);
     RUN_TEST(buffers_of_a_wrong_size_are_refused);
     RUN_TEST(every_point_of_every_scan_is_there);
     RUN_TEST(every_point_of_every_packet_is_there_when_streaming);
+    RUN_TEST(with_a_spare_buffer_a_scan_stays_until_the_next);
+    RUN_TEST(a_mount_and_a_step_of_ones_own_exclude_each_other);
+    RUN_TEST(points_come_as_the_robot_sees_them);
     RUN_TEST(points_are_gone_with_the_next_loop);
     RUN_TEST(points_are_gone_when_it_begins_again);
     RUN_TEST(a_loop_takes_all_that_is_there);
     RUN_TEST(it_never_asks_for_more_than_is_there);
     RUN_TEST(information_and_health_are_read);
-    RUN_TEST(the_frequency_is_set_in_hertz);
+    RUN_TEST(a_frequency_in_begin_is_set_before_the_start);
+    RUN_TEST(a_port_that_something_has_closed_is_opened_again);
     RUN_TEST(the_slowest_and_the_fastest_frequency_are_possible);
     RUN_TEST(a_frequency_out_of_range_is_refused);
     RUN_TEST(while_scanning_only_stop_is_possible);

@@ -64,11 +64,11 @@ static void the_sketch_tells_the_model_and_every_second_what_is_in_front(void)
     setup();
     run_for(3500);
     TEST_ASSERT_TRUE(has_printed("lidar model 151\r\n"));
-    TEST_ASSERT_TRUE(scans >= 12);
+    TEST_ASSERT_TRUE(scans >= 12 && complete >= scans - 1); /* The first was too slow. */
     const std::string line = next_line();
     const unsigned truth = nearest_in_front(unit->revolutions[scans]);
-    const std::string expected =
-        std::to_string(scans) + " scans, nearest in front " + std::to_string(truth) + " mm\r\n";
+    const std::string expected = std::to_string(scans) + " scans, " + std::to_string(complete) +
+                                 " complete, nearest in front " + std::to_string(truth) + " mm\r\n";
     TEST_ASSERT_EQUAL_STRING(expected.c_str(), line.c_str());
 }
 
@@ -87,7 +87,7 @@ static void a_faulty_lidar_is_a_stop_whatever_it_measures(void)
     unit->setHealth(SIM_HEALTH_PD);
     run_for(1500);
     TEST_ASSERT_TRUE(has_printed("lidar faults 8\r\n"));
-    TEST_ASSERT_TRUE(has_printed(" scans, blind: STOP\r\n"));
+    TEST_ASSERT_TRUE(has_printed(" complete, blind: STOP\r\n"));
     unit->setHealth(0);
     run_for(1500);
     TEST_ASSERT_FALSE(next_line().find("STOP") != std::string::npos);
@@ -97,8 +97,7 @@ static void a_lidar_that_has_gone_is_a_stop(void)
 {
     unit->unplug();
     run_for(600);
-    const std::string expected = std::to_string(scans) + " scans, blind: STOP\r\n";
-    TEST_ASSERT_EQUAL_STRING(expected.c_str(), next_line().c_str());
+    TEST_ASSERT_TRUE(next_line().find(" complete, blind: STOP\r\n") != std::string::npos);
 }
 
 int main(void)

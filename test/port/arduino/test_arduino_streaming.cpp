@@ -15,17 +15,17 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-/* The numbers that the sketch has printed, a line each. */
+/* The nearest distances that the sketch has printed, a line each. */
 static std::vector<unsigned> printed_numbers()
 {
     std::vector<unsigned> numbers;
-    std::string digits;
+    std::string line;
     for (uint8_t byte : Serial.sent) {
+        line += static_cast<char>(byte);
         if (byte == '\n') {
-            numbers.push_back(static_cast<unsigned>(std::stoul(digits)));
-            digits.clear();
-        } else {
-            digits += static_cast<char>(byte);
+            numbers.push_back(
+                static_cast<unsigned>(std::stoul(line.substr(line.rfind("nearest ") + 8))));
+            line.clear();
         }
     }
     return numbers;
@@ -50,12 +50,13 @@ static void the_sketch_prints_the_nearest_distance_of_each_revolution(void)
         unit.pass();
         loop();
     }
-    /* Number 0 is what came before the first start packet. */
     const std::vector<unsigned> numbers = printed_numbers();
     TEST_ASSERT_TRUE(numbers.size() >= 8);
-    for (size_t revolution = 0; revolution < numbers.size(); revolution++) {
-        TEST_ASSERT_EQUAL_UINT(nearest_of(unit.revolutions[static_cast<uint32_t>(revolution)]),
-                               numbers[revolution]);
+    TEST_ASSERT_EQUAL_UINT(scans, complete);
+    /* Revolution 0 is what came before the first start packet. */
+    for (size_t i = 0; i < numbers.size(); i++) {
+        TEST_ASSERT_EQUAL_UINT(nearest_of(unit.revolutions[static_cast<uint32_t>(i + 1)]),
+                               numbers[i]);
     }
 }
 

@@ -6,6 +6,8 @@
 unsigned long arduino_millis;
 HardwareSerial Serial;
 SerialPort Serial1;
+SerialPort Serial2;
+uint8_t arduino_pins[64];
 
 VirtualLidar::VirtualLidar() : now_us_(0), plugged_(true)
 {
@@ -52,9 +54,9 @@ void VirtualLidar::unplug()
     plugged_ = false;
 }
 
-void VirtualLidar::placeObstacle(uint16_t distance_mm)
+void VirtualLidar::placeObstacle(uint16_t distance_mm, uint16_t angle_q6)
 {
-    sim_place_obstacle(&sim_, 0, 640, distance_mm);
+    sim_place_obstacle(&sim_, angle_q6, 640, distance_mm);
 }
 
 void VirtualLidar::clearObstacles()

@@ -25,8 +25,8 @@ class VirtualLidar
     void pass();
     /* Unplugged: nothing comes any more. */
     void unplug();
-    /* 10 degrees wide, in front. */
-    void placeObstacle(uint16_t distance_mm);
+    /* 10 degrees wide, in front or at another of the lidar's angles. */
+    void placeObstacle(uint16_t distance_mm, uint16_t angle_q6 = 0);
     void clearObstacles();
     /* Reports these faults (section 4), and goes on measuring. */
     void setHealth(uint8_t bits);

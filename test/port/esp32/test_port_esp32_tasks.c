@@ -9,61 +9,45 @@
 
 #include "freertos/FreeRTOS.h"
 #include "freertos/task.h"
-#include "reference_decoder.h"
+#include "esp_timer.h"
+#include "scanning.h"
 #include "tmini/tmini_blocking.h"
 #include "tmini_esp32.h"
 #include "virtual_idf.h"
 
-#define REVOLUTIONS 16u
-#define POINTS_MAX 2000u
+static tmini_esp32_t port;
+static tmini_esp32_wiring_t wiring;
 
-static reference_point_t truth[REVOLUTIONS][POINTS_MAX];
-static size_t truth_count[REVOLUTIONS];
-static uint32_t packets_sent;
-
-static uint8_t rx[1024];
-static tmini_point_t points[POINTS_MAX];
-static tmini_t lidar;
-static tmini_esp32_t board;
-static tmini_esp32_config_t wiring;
-
-static void note_packet(void *context, const sim_packet_t *packet)
+static uint64_t now_us(void)
 {
-    (void)context;
-    packets_sent++;
-    if (packet->revolution >= REVOLUTIONS) {
-        return;
-    }
-    size_t *const count = &truth_count[packet->revolution];
-    const unsigned samples = packet->bytes[3]; /* LSN */
-    for (unsigned i = 0; i < samples && *count < POINTS_MAX; i++) {
-        truth[packet->revolution][(*count)++] = reference_point(packet->bytes, i);
-    }
+    return (uint64_t)esp_timer_get_time();
+}
+
+static void wait(void)
+{
+    (void)tmini_esp32_wait(&port, pdMS_TO_TICKS(10));
+}
+
+static void work(uint32_t us)
+{
+    vTaskDelay(us / 10000u);
 }
 
 void setUp(void)
 {
-    const sim_observer_t observer = {.on_packet = note_packet};
-    const tmini_config_t config = {
-        .port = &tmini_esp32_port,
-        .port_context = &board,
-        .rx_buffer = rx,
-        .rx_size = sizeof rx,
-        .points = points,
-        .max_points = POINTS_MAX,
-    };
-    memset(truth_count, 0, sizeof truth_count);
-    packets_sent = 0;
+    const sim_observer_t observer = truth_begin();
+    const scanning_t program = {
+        .port = &tmini_esp32_port, .context = &port, .now_us = now_us, .wait = wait, .work = work};
     virtual_idf_begin(&observer);
-    memset(&board, 0, sizeof board);
-    wiring = (tmini_esp32_config_t)TMINI_ESP32_CONFIG_DEFAULT;
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+    memset(&port, 0, sizeof port);
+    wiring = (tmini_esp32_wiring_t)TMINI_ESP32_WIRING_DEFAULT;
+    scanning_begin(&program, 1024);
 }
 
 /* Whatever a test did: nothing is left behind, and nobody used what was not there. */
 void tearDown(void)
 {
-    (void)tmini_esp32_stop(&board);
+    (void)tmini_esp32_stop(&port);
     TEST_ASSERT_EQUAL_UINT(0, virtual_idf_tasks());
     TEST_ASSERT_FALSE(virtual_idf_driver_is_installed());
     TEST_ASSERT_EQUAL_UINT(0, virtual_idf_locks_held());
@@ -72,8 +56,8 @@ void tearDown(void)
 
 static void start_port(void)
 {
-    TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_init(&board, &wiring));
-    TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_init(&port, &wiring));
+    TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_start(&port, &lidar));
 }
 
 static void start_port_and_lidar(void)
@@ -82,54 +66,17 @@ static void start_port_and_lidar(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
 }
 
-/* Polls until `wanted` happens; fails when it does not within two seconds. */
-static void poll_until(tmini_event_t wanted)
-{
-    const uint32_t begun_ms = tmini_esp32_port.now_ms(&board);
-    while (tmini_esp32_port.now_ms(&board) - begun_ms < 2000) {
-        const tmini_event_t event = tmini_poll(&lidar);
-        if (event == wanted) {
-            return;
-        }
-        if (event == TMINI_EVENT_NONE) {
-            tmini_esp32_port.wait(&board);
-        }
-    }
-    TEST_FAIL_MESSAGE("it did not happen in time");
-}
-
-static void assert_scan_is_revolution(uint32_t revolution)
-{
-    const tmini_scan_t *const scan = tmini_scan(&lidar);
-    TEST_ASSERT_TRUE(scan->complete);
-    TEST_ASSERT_EQUAL_UINT(truth_count[revolution], scan->count);
-    for (unsigned i = 0; i < scan->count; i++) {
-        TEST_ASSERT_EQUAL_UINT(truth[revolution][i].angle_q6, scan->points[i].angle_q6);
-        TEST_ASSERT_EQUAL_UINT(truth[revolution][i].distance_mm, scan->points[i].distance_mm);
-        TEST_ASSERT_EQUAL_UINT(truth[revolution][i].intensity, scan->points[i].intensity);
-        TEST_ASSERT_EQUAL_UINT(truth[revolution][i].flag, scan->points[i].flag);
-    }
-}
-
-static void assert_ten_true_scans(void)
-{
-    for (uint32_t revolution = 1; revolution <= 10; revolution++) {
-        poll_until(TMINI_EVENT_SCAN);
-        assert_scan_is_revolution(revolution);
-    }
-}
-
 void test_every_point_arrives_through_a_task_of_its_own(void)
 {
     start_port_and_lidar();
-    assert_ten_true_scans();
+    assert_true_scans(1, 10);
 }
 
 void test_every_point_arrives_through_the_callers_own_loop(void)
 {
     wiring.with_task = false;
     start_port_and_lidar();
-    assert_ten_true_scans();
+    assert_true_scans(1, 10);
 }
 
 /* 20 ms of bytes, 262, are twice the FIFO. */
@@ -146,14 +93,14 @@ void test_an_overflow_costs_the_packets_that_it_hit_and_no_other(void)
     while (!tmini_scan(&lidar)->complete) { /* The parts before and after the gap. */
         poll_until(TMINI_EVENT_SCAN);
     }
-    assert_scan_is_revolution(3);
+    truth_assert_revolution(tmini_scan(&lidar), 3);
 
-    tmini_esp32_counters(&board, &uart);
+    tmini_esp32_counters(&port, &uart);
     tmini_counters(&lidar, &counters);
-    TEST_ASSERT_EQUAL_UINT32(1, uart.fifo_overflows);
+    TEST_ASSERT_EQUAL_UINT32(1, uart.overruns);
     /* Two whole packets' time, and the two that it only touched; the last may still be on its
      * way. */
-    TEST_ASSERT_TRUE(packets_sent - counters.packets <= 4 + 1);
+    TEST_ASSERT_TRUE(truth_packets() - counters.packets <= 4 + 1);
 }
 
 static void poll_all(void)
@@ -167,7 +114,7 @@ static void receive_and_poll_all(void)
 {
     size_t received = 0;
     do {
-        received = tmini_esp32_wait(&board, 0);
+        received = tmini_esp32_wait(&port, 0);
         poll_all();
     } while (received > 0);
 }
@@ -182,15 +129,15 @@ static void start_by_hand(void)
     receive_and_poll_all();
 }
 
-/* Once more bytes are refused, a gap has been told: behind so many. */
+/* Once more bytes are refused, a gap has been told: after this many. */
 static void assert_gap_behind(size_t count)
 {
-    TEST_ASSERT_EQUAL_UINT(count, tmini_esp32_wait(&board, 0));
+    TEST_ASSERT_EQUAL_UINT(count, tmini_esp32_wait(&port, 0));
     TEST_ASSERT_EQUAL_UINT(count, tmini_ring_unread(&lidar.ring));
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
 }
 
-/* The FIFO's bytes, the overflow, and ten milliseconds of bytes behind it. */
+/* The FIFO's bytes, the overflow, and ten milliseconds of bytes after it. */
 void test_an_overflow_is_told_of_where_it_was_however_late_the_events_are_taken(void)
 {
     start_by_hand();
@@ -198,7 +145,7 @@ void test_an_overflow_is_told_of_where_it_was_however_late_the_events_are_taken(
     vTaskDelay(3);
     assert_gap_behind(128);
     poll_all();
-    TEST_ASSERT_TRUE(tmini_esp32_wait(&board, 0) > 60);
+    TEST_ASSERT_TRUE(tmini_esp32_wait(&port, 0) > 60);
     TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_feed_room(&lidar)); /* No second gap. */
 }
 
@@ -213,11 +160,11 @@ void test_of_several_overflows_the_first_is_told_of_where_it_was_and_one_behind_
     vTaskDelay(1);
     assert_gap_behind(128);
     poll_all();
-    const size_t rest = tmini_esp32_wait(&board, 0);
+    const size_t rest = tmini_esp32_wait(&port, 0);
     TEST_ASSERT_TRUE(rest > 256);
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
     poll_all();
-    (void)tmini_esp32_wait(&board, 0);
+    (void)tmini_esp32_wait(&port, 0);
     TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_feed_room(&lidar));
 }
 
@@ -227,7 +174,7 @@ void test_with_a_full_buffer_an_overflow_lies_behind_what_was_put_aside(void)
     wiring.buffer_size = 256;
     start_by_hand();
     vTaskDelay(5);
-    const size_t received = tmini_esp32_wait(&board, 0);
+    const size_t received = tmini_esp32_wait(&port, 0);
     TEST_ASSERT_TRUE(received > 256);
     TEST_ASSERT_EQUAL_UINT(received, tmini_ring_unread(&lidar.ring));
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
@@ -245,18 +192,18 @@ void test_when_events_are_lost_no_scan_passes_for_complete(void)
     start_by_hand();
     for (unsigned i = 0; i < rounds; i++) {
         vTaskDelay(3);
-        (void)tmini_esp32_wait(&board, 0);
+        (void)tmini_esp32_wait(&port, 0);
         tmini_event_t event;
         while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) {
             scans += event == TMINI_EVENT_SCAN;
             TEST_ASSERT_FALSE(event == TMINI_EVENT_SCAN && tmini_scan(&lidar)->complete);
         }
     }
-    tmini_esp32_counters(&board, &uart);
+    tmini_esp32_counters(&port, &uart);
     tmini_counters(&lidar, &counters);
     TEST_ASSERT_EQUAL_UINT32(rounds, uart.queues_full);
     TEST_ASSERT_NOT_EQUAL_UINT(0, scans);
-    TEST_ASSERT_TRUE(packets_sent - counters.packets <= rounds + 2);
+    TEST_ASSERT_TRUE(truth_packets() - counters.packets <= rounds + 2);
 }
 
 void test_an_overflow_whose_event_was_lost_is_told_of_all_the_same(void)
@@ -267,10 +214,10 @@ void test_an_overflow_whose_event_was_lost_is_told_of_all_the_same(void)
     vTaskDelay(2); /* Fills the queue. */
     virtual_idf_hold_interrupts(20000);
     vTaskDelay(3);
-    TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_esp32_wait(&board, 0));
+    TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_esp32_wait(&port, 0));
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
-    tmini_esp32_counters(&board, &uart);
-    TEST_ASSERT_EQUAL_UINT32(0, uart.fifo_overflows); /* Nobody has heard of it. */
+    tmini_esp32_counters(&port, &uart);
+    TEST_ASSERT_EQUAL_UINT32(0, uart.overruns); /* Nobody has heard of it. */
     TEST_ASSERT_EQUAL_UINT32(1, uart.queues_full);
 
     poll_until(TMINI_EVENT_SCAN);
@@ -281,13 +228,27 @@ static void assert_nothing_was_lost(void)
 {
     tmini_esp32_counters_t uart;
     tmini_counters_t counters;
-    tmini_esp32_counters(&board, &uart);
+    tmini_esp32_counters(&port, &uart);
     tmini_counters(&lidar, &counters);
     TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
-    TEST_ASSERT_EQUAL_UINT32(0, uart.fifo_overflows);
+    TEST_ASSERT_EQUAL_UINT32(0, uart.overruns);
     TEST_ASSERT_EQUAL_UINT32(0, uart.buffers_full);
-    TEST_ASSERT_TRUE(packets_sent > 200);
-    TEST_ASSERT_TRUE(packets_sent - counters.packets <= 12); /* Still in the buffers. */
+    TEST_ASSERT_TRUE(truth_packets() > 200);
+    TEST_ASSERT_TRUE(truth_packets() - counters.packets <= 12); /* Still in the buffers. */
+}
+
+void test_pauses_that_the_drivers_buffer_bridges_cost_no_scan(void)
+{
+    for (unsigned i = 0; i < 2; i++) {
+        wiring.with_task = i == 0;
+        wiring.buffer_size = 8192;
+        wiring.queue_length = 128;
+        start_port_and_lidar();
+        assert_pauses_cost_no_scan((uint32_t)wiring.buffer_size);
+        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
+        tearDown();
+        setUp();
+    }
 }
 
 /* 1570 bytes, more than the lidar's ring holds. In between, the loop comes round every 10 ms. */
@@ -319,9 +280,23 @@ void test_a_port_is_stopped_while_bytes_come_and_started_again(void)
         start_port();
         (void)tmini_start(&lidar); /* The first time; after that it scans already. */
         vTaskDelay(20 + i);
-        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&board));
+        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
         TEST_ASSERT_EQUAL_UINT(0, virtual_idf_tasks());
         TEST_ASSERT_FALSE(virtual_idf_driver_is_installed());
+    }
+}
+
+void test_reception_begins_anew_whatever_has_stopped_it(void)
+{
+    for (unsigned i = 0; i < 2; i++) {
+        wiring.with_task = i == 0;
+        start_port_and_lidar();
+        poll_until(TMINI_EVENT_SCAN);
+        virtual_idf_break_reception();
+        assert_recovery();
+        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
+        tmini_esp32_port.restart(&port); /* Of a stopped port: nothing. */
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&lidar));
     }
 }
 
@@ -333,6 +308,6 @@ void test_commands_that_wait_work_with_a_task_and_without(void)
         start_port();
         TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 1000));
         TEST_ASSERT_EQUAL_UINT(151, info.model);
-        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&board));
+        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
     }
 }

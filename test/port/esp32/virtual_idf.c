@@ -56,6 +56,8 @@ static struct {
     size_t fifo_threshold;
     bool fifo_overflowed;
     bool line_pauses;
+    bool is_routed;
+    bool has_interrupts;
     uint8_t buffer[BUFFER_MAX];
     size_t buffer_size;
     size_t buffer_count;
@@ -98,6 +100,9 @@ static void fill_fifo(void)
     const size_t count = sim_transmit(&world.lidar, world.now_us, bytes, sizeof bytes);
     world.line_pauses = count == 0; /* A step is longer than the UART's receive timeout. */
     for (size_t i = 0; i < count; i++) {
+        if (!world.is_routed) {
+            continue;
+        }
         if (world.fifo_count < FIFO_SIZE) {
             world.fifo[world.fifo_count++] = bytes[i];
         } else {
@@ -136,10 +141,10 @@ static void empty_fifo(void)
 /* ESP-IDF's interrupt handler empties the FIFO into its buffer while that has room; once it has
  * not, it puts the FIFO's bytes aside, says so once, and does not come back before somebody has
  * read. Only then does it look for an overflow, and resets the FIFO: what it has just taken is
- * safe, and lost is what came behind that; or, if it could take nothing, the FIFO's bytes too. */
+ * safe, and lost is what came after that; or, if it could take nothing, the FIFO's bytes too. */
 static void serve_interrupt(void)
 {
-    if (!world.installed || world.now_us < world.held_until_us) {
+    if (!world.installed || !world.has_interrupts || world.now_us < world.held_until_us) {
         return;
     }
     if (has_cause_to_read() && world.stash_count == 0) {
@@ -318,6 +323,7 @@ esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffe
     const bool was_installed = world.installed;
     if (!was_installed) {
         world.installed = true;
+        world.has_interrupts = true;
         world.buffer_size = (size_t)rx_buffer_size;
         world.buffer_count = 0;
         world.queue_size = (size_t)queue_size;
@@ -354,6 +360,9 @@ esp_err_t uart_set_pin(uart_port_t uart, int tx, int rx, int rts, int cts)
     (void)uart;
     (void)rts;
     (void)cts;
+    lock();
+    world.is_routed = tx != rx;
+    unlock();
     return tx != rx ? ESP_OK : ESP_FAIL;
 }
 
@@ -380,6 +389,49 @@ esp_err_t uart_enable_intr_mask(uart_port_t uart, uint32_t mask)
     (void)uart;
     (void)mask;
     return check_driver();
+}
+
+esp_err_t uart_enable_rx_intr(uart_port_t uart)
+{
+    (void)uart;
+    if (!enter_driver()) {
+        return ESP_FAIL;
+    }
+    world.has_interrupts = true;
+    unlock();
+    return ESP_OK;
+}
+
+esp_err_t uart_flush_input(uart_port_t uart)
+{
+    (void)uart;
+    if (!enter_driver()) {
+        return ESP_FAIL;
+    }
+    world.fifo_count = 0;
+    world.stash_count = 0;
+    world.buffer_count = 0;
+    unlock();
+    return ESP_OK;
+}
+
+esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size)
+{
+    (void)uart;
+    if (!enter_driver()) {
+        return ESP_FAIL;
+    }
+    *size = world.buffer_count;
+    unlock();
+    return ESP_OK;
+}
+
+void virtual_idf_break_reception(void)
+{
+    lock();
+    world.has_interrupts = false;
+    world.is_routed = false;
+    unlock();
 }
 
 /* Moves up to `length` bytes out of the buffer. */

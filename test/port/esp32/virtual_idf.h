@@ -18,8 +18,11 @@
 /* A world without tasks but the caller's, in which the lidar is told to `observer`. */
 void virtual_idf_begin(const sim_observer_t *observer);
 
-/* The UART's interrupt is held off for so long, as by an operation on the flash. */
+/* The UART's interrupt is held off for this long, as by an operation on the flash. */
 void virtual_idf_hold_interrupts(uint32_t duration_us);
+
+/* Something else switches the UART's interrupts off and takes its receive pin away. */
+void virtual_idf_break_reception(void);
 
 /* What happens to the lidar: simulator.h. */
 void virtual_idf_place_obstacle(uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm);

@@ -8,8 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "FreeRTOS.h"
 #include "board.h"
-#include "freertos_api.h"
+#include "irq_lines.h"
+#include "stream_buffer.h"
+#include "task.h"
 
 #define STEP_US 20u
 #define FIFO_SIZE 16u
@@ -37,8 +40,7 @@ static struct {
     struct freertos_task tasks[TASKS]; /* The first is the test's. */
     struct freertos_task *current;
     bool ending;
-    bool undisturbed;
-    bool in_interrupt;
+    bool pending; /* The UART's interrupt, raised by the test. */
     uint64_t now_us;
     uint64_t skipped_us;
     sim_t lidar;
@@ -91,15 +93,28 @@ static bool wants_interrupt(void)
     return world.interrupt_enabled && (world.count >= FIFO_SIZE / 2 || timed_out);
 }
 
+static bool line_is_up(void)
+{
+    return world.pending || wants_interrupt();
+}
+
+static void serve_line(void)
+{
+    world.pending = false;
+    UART1_Handler();
+}
+
+static void fail(unsigned line)
+{
+    (void)line;
+    freertos_model_assert("a handler leaves its flag: the processor is locked up");
+}
+
 static void pass_step(void)
 {
     world.now_us += STEP_US;
     receive_bytes();
-    if (!world.undisturbed && wants_interrupt()) {
-        world.in_interrupt = true;
-        UART1_Handler();
-        world.in_interrupt = false;
-    }
+    irq_serve();
 }
 
 /* --------------------------------------------------------------------------------------- tasks */
@@ -154,6 +169,17 @@ static void yield_to_more_urgent(void)
     }
 }
 
+/* At each access of the library's indices an interrupt may come, and another task's turn. */
+void interrupt(void)
+{
+    if (world.current != NULL) {
+        irq_access();
+        if (!irq_is_in_handler()) {
+            yield_to_more_urgent();
+        }
+    }
+}
+
 static uint64_t after(TickType_t ticks)
 {
     if (ticks == portMAX_DELAY) {
@@ -165,7 +191,7 @@ static uint64_t after(TickType_t ticks)
 static void wait_until(uint64_t until_us, bool for_notice)
 {
     struct freertos_task *const self = world.current;
-    demand(!world.in_interrupt, "no waiting in an interrupt");
+    demand(!irq_is_in_handler(), "no waiting in an interrupt");
     self->waiting = true;
     self->for_notice = for_notice;
     self->until_us = until_us;
@@ -221,6 +247,8 @@ void freertos_model_begin(const sim_observer_t *observer, unsigned priority)
     }
     end_tasks();
     memset(&world, 0, sizeof world);
+    irq_reset(fail);
+    irq.lines[0] = (irq_line_t){.is_up = line_is_up, .handler = serve_line};
     sim_init(&world.lidar, &config);
     sim_observe(&world.lidar, observer);
     world.current = new_task(priority);
@@ -270,7 +298,7 @@ void vTaskStartScheduler(void) {}
 BaseType_t xTaskNotifyGiveIndexed(TaskHandle_t task, UBaseType_t index)
 {
     demand(index < configTASK_NOTIFICATION_ARRAY_ENTRIES, "an index");
-    demand(!world.in_interrupt, "not from an interrupt");
+    demand(!irq_is_in_handler(), "not from an interrupt");
     task->notices++;
     yield_to_more_urgent();
     return pdPASS;
@@ -279,7 +307,7 @@ BaseType_t xTaskNotifyGiveIndexed(TaskHandle_t task, UBaseType_t index)
 void vTaskNotifyGiveIndexedFromISR(TaskHandle_t task, UBaseType_t index, BaseType_t *woken)
 {
     demand(index < configTASK_NOTIFICATION_ARRAY_ENTRIES, "an index");
-    demand(world.in_interrupt, "from an interrupt only");
+    demand(irq_is_in_handler(), "from an interrupt only");
     task->notices++;
     if (task->priority > world.current->priority) {
         *woken = pdTRUE;
@@ -315,7 +343,7 @@ size_t xStreamBufferSendFromISR(StreamBufferHandle_t stream, const void *bytes, 
 {
     const size_t room = stream->size - 1 - stream->count;
     const size_t sent = count < room ? count : room;
-    demand(world.in_interrupt, "from an interrupt only");
+    demand(irq_is_in_handler(), "from an interrupt only");
     memcpy(&stream->memory[stream->count], bytes, sent);
     stream->count += sent;
     if (stream->waiting != NULL && stream->count >= stream->trigger) {
@@ -345,6 +373,11 @@ size_t xStreamBufferReceive(StreamBufferHandle_t stream, void *bytes, size_t siz
 BaseType_t xStreamBufferIsEmpty(StreamBufferHandle_t stream)
 {
     return stream->count == 0 ? pdTRUE : pdFALSE;
+}
+
+size_t xStreamBufferBytesAvailable(StreamBufferHandle_t stream)
+{
+    return stream->count;
 }
 
 BaseType_t xStreamBufferReset(StreamBufferHandle_t stream)
@@ -378,11 +411,11 @@ void freertos_model_work(uint32_t us)
 
 void freertos_model_work_undisturbed(uint32_t us)
 {
-    world.undisturbed = true;
+    irq.masked = true;
     for (const uint64_t end_us = world.now_us + us; world.now_us < end_us;) {
         pass_step();
     }
-    world.undisturbed = false;
+    irq.masked = false;
 }
 
 void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count)
@@ -392,9 +425,8 @@ void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count)
         world.fifo[world.count++] = bytes[i];
         world.line_bytes++;
         if (world.count == FIFO_SIZE / 2 || i + 1 == count) {
-            world.in_interrupt = true;
-            UART1_Handler();
-            world.in_interrupt = false;
+            world.pending = true;
+            irq_serve();
         }
     }
 }
@@ -456,10 +488,15 @@ void board_enable_lidar_interrupt(void)
     world.interrupt_enabled = true;
 }
 
+void freertos_model_disable_interrupt(void)
+{
+    world.interrupt_enabled = false;
+}
+
 size_t board_lidar_read(uint8_t *bytes, size_t max, int *overrun)
 {
     const size_t taken = world.count < max ? world.count : max;
-    demand(world.in_interrupt, "in the interrupt only");
+    demand(irq_is_in_handler(), "in the interrupt only");
     memcpy(bytes, world.fifo, taken);
     world.count -= (unsigned)taken;
     memmove(world.fifo, &world.fifo[taken], world.count);
@@ -475,11 +512,4 @@ void board_print(const char *text)
         memcpy(&world.console[world.console_length], text, length + 1);
         world.console_length += length;
     }
-}
-
-void board_print_number(uint32_t number)
-{
-    char text[12];
-    snprintf(text, sizeof text, "%lu", (unsigned long)number);
-    board_print(text);
 }

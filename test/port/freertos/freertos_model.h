@@ -26,17 +26,20 @@ sim_t *freertos_model_lidar(void);
 
 uint64_t freertos_model_now_us(void);
 
-/* The running task is busy for so long. */
+/* The running task is busy for this long. */
 void freertos_model_work(uint32_t us);
 
 /* The same, with interrupts disabled. */
 void freertos_model_work_undisturbed(uint32_t us);
 
-/* Bytes as if the lidar had sent them now, behind an overrun or not; no task runs meanwhile. */
+/* Bytes as if the lidar had sent them now, after an overrun or not; no task runs meanwhile. */
 void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count);
 
 /* The UART reports an overrun with the next interrupt. */
 void freertos_model_overrun(void);
+
+/* Something else switches the UART's interrupt off. */
+void freertos_model_disable_interrupt(void);
 
 /* Time passes for the clock alone: no byte comes, nobody runs. */
 void freertos_model_skip(uint64_t us);

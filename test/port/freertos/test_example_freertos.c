@@ -7,7 +7,8 @@
 
 #include "unity.h"
 
-#include "freertos_api.h"
+#include "FreeRTOS.h"
+#include "task.h"
 #include "freertos_model.h"
 
 #define WATCHING_PRIORITY 3u

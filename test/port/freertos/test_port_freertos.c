@@ -10,20 +10,16 @@
 
 #include "board.h"
 #include "freertos_model.h"
+#include "scanning.h"
 #include "tmini/tmini_blocking.h"
 #include "tmini_freertos.h"
-#include "truth.h"
 
-#define ENOUGH_POINTS 2000u
 #define POLLING_PRIORITY 1u
 #define RECEIVING_PRIORITY 2u
 #define TICK_US (1000000u / configTICK_RATE_HZ + 1)
 
-static uint8_t rx[1024];
-static uint8_t stream[1024];
-static tmini_point_t points[ENOUGH_POINTS];
-static tmini_t lidar;
-static tmini_freertos_t board;
+static uint8_t stream[8192];
+static tmini_freertos_t port;
 static tmini_freertos_wiring_t wiring;
 
 /* As the example has it. */
@@ -34,99 +30,60 @@ void UART1_Handler(void)
     BaseType_t woken = pdFALSE;
     const size_t count = board_lidar_read(bytes, sizeof bytes, &overrun);
     if (overrun) {
-        tmini_freertos_gap_from_isr(&board);
+        tmini_freertos_gap_from_isr(&port);
     }
-    tmini_freertos_receive_from_isr(&board, bytes, count, &woken);
+    tmini_freertos_receive_from_isr(&port, bytes, count, &woken);
     portYIELD_FROM_ISR(woken);
+}
+
+static void wait(void)
+{
+    tmini_freertos_wait(&port, pdMS_TO_TICKS(10));
 }
 
 static void init_lidar(size_t rx_size)
 {
-    const tmini_config_t config = {
-        .port = &tmini_freertos_port,
-        .port_context = &board,
-        .rx_buffer = rx,
-        .rx_size = rx_size,
-        .points = points,
-        .max_points = ENOUGH_POINTS,
-    };
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+    const scanning_t program = {.port = &tmini_freertos_port,
+                                .context = &port,
+                                .now_us = freertos_model_now_us,
+                                .wait = wait,
+                                .work = freertos_model_work};
+    scanning_begin(&program, rx_size);
 }
 
 void setUp(void)
 {
     const sim_observer_t observer = truth_begin();
     freertos_model_begin(&observer, POLLING_PRIORITY);
-    memset(&board, 0, sizeof board);
+    memset(&port, 0, sizeof port);
     wiring = (tmini_freertos_wiring_t){.write = board_lidar_write};
-    init_lidar(sizeof rx);
+    init_lidar(1024);
 }
 
 void tearDown(void)
 {
-    tmini_freertos_stop(&board);
+    tmini_freertos_stop(&port);
 }
 
 static void receive_by_stream(void)
 {
     wiring.stream = stream;
-    wiring.stream_size = sizeof stream;
+    wiring.stream_size = 1024;
     wiring.priority = RECEIVING_PRIORITY;
 }
 
 static void start(void)
 {
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     board_enable_lidar_interrupt();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
-}
-
-static void poll_until(tmini_event_t wanted)
-{
-    const uint64_t begun_us = freertos_model_now_us();
-    while (freertos_model_now_us() - begun_us < 2000000) {
-        const tmini_event_t event = tmini_poll(&lidar);
-        if (event == wanted) {
-            return;
-        }
-        if (event == TMINI_EVENT_NONE) {
-            tmini_freertos_wait(&board, pdMS_TO_TICKS(10));
-        }
-    }
-    TEST_FAIL_MESSAGE("it did not happen in time");
-}
-
-static void assert_true_scans(uint32_t first, uint32_t last)
-{
-    for (uint32_t revolution = first; revolution <= last; revolution++) {
-        poll_until(TMINI_EVENT_SCAN);
-        truth_assert_revolution(tmini_scan(&lidar), revolution);
-    }
-}
-
-/* Some scans that say that something is missing, and then true ones. */
-static void assert_true_again(void)
-{
-    poll_until(TMINI_EVENT_SCAN);
-    for (unsigned part = 0; part < 24 && !tmini_scan(&lidar)->complete; part++) {
-        truth_assert_nothing_invented(tmini_scan(&lidar));
-        poll_until(TMINI_EVENT_SCAN);
-    }
-    truth_assert_some_revolution(tmini_scan(&lidar));
-}
-
-static void assert_gap(void)
-{
-    poll_until(TMINI_EVENT_SCAN);
-    TEST_ASSERT_FALSE(tmini_scan(&lidar)->complete);
-    assert_true_again();
 }
 
 static tmini_freertos_counters_t counted(void)
 {
     tmini_freertos_counters_t counters;
-    tmini_freertos_counters(&board, &counters);
+    tmini_freertos_counters(&port, &counters);
     return counters;
 }
 
@@ -156,6 +113,12 @@ void test_a_polling_task_that_works_60_ms_loses_nothing(void)
         freertos_model_work(60000);
         assert_true_scans(revolution, revolution);
     }
+}
+
+void test_wherever_an_interrupt_comes_every_point_arrives(void)
+{
+    start();
+    assert_true_scans_wherever_bytes_come();
 }
 
 void test_an_overrun_of_the_uart_is_a_gap(void)
@@ -195,6 +158,14 @@ void test_the_stream_keeps_what_the_lidar_has_no_room_for(void)
     tmini_counters(&lidar, &counters);
     TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
+}
+
+void test_pauses_that_the_stream_bridges_cost_no_scan(void)
+{
+    receive_by_stream();
+    wiring.stream_size = sizeof stream;
+    start();
+    assert_pauses_cost_no_scan(sizeof stream);
 }
 
 /* 300 ms are 3930 bytes; stream and rx_buffer together keep 2047. */
@@ -241,12 +212,12 @@ void test_an_overrun_costs_no_more_than_a_fifo_behind_it(void)
 void test_an_overrun_before_the_stream_wakes_the_polling_task(void)
 {
     receive_by_stream();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
-    tmini_freertos_wait(&board, 1); /* From here on it is known who is to be woken. */
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
+    tmini_freertos_wait(&port, 1); /* From here on it is known who is to be woken. */
     freertos_model_receive(true, truth_packet, 1);
     const uint64_t begun_us = freertos_model_now_us();
-    tmini_freertos_wait(&board, pdMS_TO_TICKS(1000));
+    tmini_freertos_wait(&port, pdMS_TO_TICKS(1000));
     TEST_ASSERT_TRUE(freertos_model_now_us() - begun_us < 100000);
 }
 
@@ -255,8 +226,8 @@ void test_fewer_bytes_than_the_stream_wakes_at_are_handed_on_in_time(void)
 {
     tmini_info_t info;
     receive_by_stream(); /* The reply has 27 bytes, the stream wakes at 32. */
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     board_enable_lidar_interrupt();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 1000));
     TEST_ASSERT_EQUAL_UINT(151, info.model);
@@ -277,8 +248,8 @@ static uint32_t packets(void)
 /* The packet's two parts fit together, whatever was lost between them. */
 static void receive_packet(bool overrun)
 {
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     freertos_model_receive(false, truth_packet, TRUTH_PACKET_CUT);
     vTaskDelay(pdMS_TO_TICKS(20));
     TEST_ASSERT_EQUAL_UINT32(0, packets());
@@ -292,11 +263,11 @@ void test_no_packet_is_put_together_across_an_overrun(void)
     for (unsigned way = 0; way < 2; way++) {
         receive_packet(false);
         TEST_ASSERT_EQUAL_UINT32(1, packets());
-        tmini_freertos_stop(&board);
-        init_lidar(sizeof rx);
+        tmini_freertos_stop(&port);
+        init_lidar(1024);
         receive_packet(true);
         TEST_ASSERT_EQUAL_UINT32(0, packets());
-        tmini_freertos_stop(&board);
+        tmini_freertos_stop(&port);
         setUp();
         receive_by_stream();
     }
@@ -307,8 +278,8 @@ static void fill_small_stream(void)
     static const uint8_t nothing[97] = {0};
     receive_by_stream();
     wiring.stream_size = 128; /* Takes 127. */
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     freertos_model_receive(false, nothing, sizeof nothing);
     freertos_model_receive(false, truth_packet, TRUTH_PACKET_CUT);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
@@ -332,7 +303,7 @@ void test_a_stream_that_was_full_takes_nothing_before_it_is_empty(void)
 {
     uint8_t taken[60];
     fill_small_stream();
-    TEST_ASSERT_EQUAL_UINT(60, xStreamBufferReceive(board.stream, taken, sizeof taken, 0));
+    TEST_ASSERT_EQUAL_UINT(60, xStreamBufferReceive(port.stream, taken, sizeof taken, 0));
     freertos_model_receive(false, &truth_packet[TRUTH_PACKET_CUT],
                            TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT);
     TEST_ASSERT_EQUAL_UINT32(10 + TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT, counted().bytes_lost);
@@ -341,8 +312,8 @@ void test_a_stream_that_was_full_takes_nothing_before_it_is_empty(void)
 void test_a_stream_that_was_full_when_stopped_is_open_at_the_next_start(void)
 {
     fill_small_stream();
-    tmini_freertos_stop(&board);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+    tmini_freertos_stop(&port);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     freertos_model_receive(false, truth_packet, TRUTH_PACKET_SIZE);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
     TEST_ASSERT_EQUAL_UINT32(TRUTH_PACKET_SIZE, counted().bytes);
@@ -353,31 +324,31 @@ void test_a_stream_that_was_full_when_stopped_is_open_at_the_next_start(void)
 void test_what_cannot_work_is_refused(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(NULL, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&board, NULL));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&port, NULL));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(NULL, &lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(&port, &lidar));
     receive_by_stream();
     wiring.stream_size = 127;
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&port, &wiring));
     wiring.stream_size = 128;
     wiring.priority = configMAX_PRIORITIES;
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&port, &wiring));
     wiring.priority = configMAX_PRIORITIES - 1;
     wiring.write = NULL;
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&board, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_init(&port, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(&port, &lidar));
     wiring.write = board_lidar_write;
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(&board, NULL));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_freertos_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(&port, NULL));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_freertos_start(&port, &lidar));
     TEST_ASSERT_EQUAL_UINT(1, freertos_model_tasks());
 }
 
 void test_bytes_before_the_start_are_dropped(void)
 {
     static const uint8_t start_scanning[2] = {0xA5, 0x60};
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
     board_enable_lidar_interrupt();
     (void)board_lidar_write(NULL, start_scanning, 2);
     freertos_model_work(600000);
@@ -390,15 +361,15 @@ static void assert_stops_and_starts(unsigned tasks)
     start();
     assert_true_scans(1, 1);
     for (unsigned i = 0; i < 20; i++) {
-        tmini_freertos_stop(&board);
+        tmini_freertos_stop(&port);
         const uint32_t bytes = counted().bytes;
         freertos_model_work(5000 + 100 * i);
         TEST_ASSERT_EQUAL_UINT32(bytes, counted().bytes);
-        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
         poll_until(TMINI_EVENT_SCAN);
         truth_assert_nothing_invented(tmini_scan(&lidar));
     }
-    assert_true_again();
+    (void)scans_until_complete();
     TEST_ASSERT_EQUAL_UINT(tasks, freertos_model_tasks());
 }
 
@@ -417,12 +388,12 @@ void test_the_receiving_task_rests_while_stopped_and_is_the_same_again(void)
 void test_stopping_waits_for_the_receiving_task_every_time(void)
 {
     receive_by_stream();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
     for (unsigned i = 0; i < 3; i++) {
-        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
         vTaskDelay(1);
         const uint64_t begun_us = freertos_model_now_us();
-        tmini_freertos_stop(&board);
+        tmini_freertos_stop(&port);
         TEST_ASSERT_TRUE(freertos_model_now_us() > begun_us);
         TEST_ASSERT_TRUE(freertos_model_now_us() - begun_us <= 10000 + 2 * TICK_US);
     }
@@ -435,9 +406,9 @@ void test_what_the_stream_held_when_stopped_is_not_handed_on_later(void)
     start();
     assert_true_scans(1, 1);
     freertos_model_work(50000); /* rx_buffer is full, the stream half. */
-    tmini_freertos_stop(&board);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&board, &lidar));
-    TEST_ASSERT_EQUAL_INT(pdTRUE, xStreamBufferIsEmpty(board.stream));
+    tmini_freertos_stop(&port);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
+    TEST_ASSERT_EQUAL_INT(pdTRUE, xStreamBufferIsEmpty(port.stream));
 }
 
 /* ----------------------------------------------------------------------------------- the clock */
@@ -446,13 +417,13 @@ void test_what_the_stream_held_when_stopped_is_not_handed_on_later(void)
  * and 16 bits, 50 Hz. */
 void test_the_clock_runs_in_milliseconds_across_every_wrap_of_the_tick(void)
 {
-    const uint32_t begun_ms = tmini_freertos_port.now_ms(&board);
+    const uint32_t begun_ms = tmini_freertos_port.now_ms(&port);
     uint64_t passed_us = 0;
     for (unsigned i = 0; i < 3000; i++) {
         freertos_model_skip(4294967 +
                             i); /* A thousand times, and 32 bits of milliseconds have wrapped. */
         passed_us += 4294967 + i;
-        const uint32_t shown_ms = tmini_freertos_port.now_ms(&board) - begun_ms;
+        const uint32_t shown_ms = tmini_freertos_port.now_ms(&port) - begun_ms;
         const uint32_t error_ms = shown_ms - (uint32_t)(passed_us / 1000u);
         TEST_ASSERT_TRUE(error_ms + TICK_US / 1000u + 1u <=
                          TICK_US / 1000u + 2u); /* A tick late. */
@@ -462,13 +433,34 @@ void test_the_clock_runs_in_milliseconds_across_every_wrap_of_the_tick(void)
 void test_waiting_for_no_time_is_waiting_for_a_tick(void)
 {
     const uint64_t begun_us = freertos_model_now_us();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&board, &wiring));
-    tmini_freertos_wait(&board, 0);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
+    tmini_freertos_wait(&port, 0);
     TEST_ASSERT_TRUE(freertos_model_now_us() > begun_us);
+}
+
+static void begin_anew(void *uart)
+{
+    (void)uart;
+    board_enable_lidar_interrupt();
+}
+
+void test_the_programs_uart_begins_anew_when_the_lidar_is_lost(void)
+{
+    wiring.restart = begin_anew;
+    start();
+    assert_true_scans(1, 1);
+    freertos_model_disable_interrupt();
+    assert_recovery();
+    freertos_model_disable_interrupt();
+    tmini_freertos_stop(&port);
+    tmini_freertos_port.restart(&port); /* Of a stopped port: nothing. */
+    wiring.restart = NULL;
+    start();
+    tmini_freertos_port.restart(&port);
 }
 
 void test_without_wiring_nothing_is_sent(void)
 {
     static const uint8_t byte = 0xA5;
-    TEST_ASSERT_EQUAL_INT(-1, tmini_freertos_port.write(&board, &byte, 1));
+    TEST_ASSERT_EQUAL_INT(-1, tmini_freertos_port.write(&port, &byte, 1));
 }

@@ -182,7 +182,7 @@ void test_the_clock_is_synchronised_again_each_minute(void)
     TEST_ASSERT_EQUAL_UINT(4, virtual_agent.synchronisations);
 }
 
-/* The bytes that came behind it tell a part of a scan's age: the line brings 23 a millisecond at
+/* The bytes that came after it tell a part of a scan's age: the line brings 23 a millisecond at
  * most, the lidar 13. */
 void test_a_scan_that_is_found_late_keeps_its_time(void)
 {

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "irq_lines.h"
 #include "pico_sdk.h"
 #include "random.h"
 
@@ -56,9 +57,6 @@ static struct {
     bool dma_blocked;
     irq_handler_t handlers[IRQS];
     bool irq_enabled[IRQS];
-    bool held_up;
-    bool in_interrupt;
-    unsigned interrupts;
     uint32_t line_bytes;
     unsigned baud_rate;
     int baud_error_permille;
@@ -77,6 +75,10 @@ static struct {
     size_t console_length;
 } chip;
 
+static bool line_is_up(void);
+static void serve_line(void);
+static void fail(unsigned line);
+
 void pico_model_begin(const sim_observer_t *observer)
 {
     memset(&chip, 0, sizeof chip);
@@ -84,6 +86,8 @@ void pico_model_begin(const sim_observer_t *observer)
     sim_init(&chip.lidar, &config);
     sim_observe(&chip.lidar, observer);
     chip.uart.places_to_send = FIFO_SIZE;
+    irq_reset(fail);
+    irq.lines[0] = (irq_line_t){.is_up = line_is_up, .handler = serve_line};
     for (unsigned i = 0; i < PICO_PINS; i++) {
         chip.functions[i] = -1;
         chip.levels[i] = -1;
@@ -238,7 +242,7 @@ static void pass_erratically(void)
     }
 }
 
-/* The value is that of now; what passes behind it shows in the ring's memory, and at the next
+/* The value is that of now; what passes after it shows in the ring's memory, and at the next
  * reading. */
 dma_channel_hw_t *dma_channel_hw_addr(uint channel)
 {
@@ -377,19 +381,26 @@ static bool wants_interrupt(void)
     return uart->receive_irq && (uart->count >= interrupt_level() || timed_out);
 }
 
-static void serve_interrupts(void)
+static bool line_is_up(void)
 {
-    const uint number = UART_IRQ_NUM(uart1);
-    if (chip.held_up || chip.in_interrupt || !chip.irq_enabled[number] || !wants_interrupt()) {
-        return;
-    }
-    chip.in_interrupt = true;
-    chip.interrupts++;
-    chip.handlers[number]();
-    chip.in_interrupt = false;
-    if (wants_interrupt()) {
-        abort(); /* It would come again and again. */
-    }
+    return chip.irq_enabled[UART_IRQ_NUM(uart1)] && wants_interrupt();
+}
+
+static void serve_line(void)
+{
+    chip.handlers[UART_IRQ_NUM(uart1)]();
+}
+
+static void fail(unsigned line)
+{
+    (void)line;
+    abort(); /* A handler leaves its flag: the processor is locked up. */
+}
+
+/* At each access of the library's indices, too. */
+void interrupt(void)
+{
+    irq_access();
 }
 
 /* Writing ones clears; the port does so by a store that this model sees only afterwards. */
@@ -426,6 +437,7 @@ uart_hw_t *uart_get_hw(uart_inst_t *uart)
 
 unsigned pico_model_take_entry(void)
 {
+    irq_access();
     clear_status();
     if (chip.uart.count > 0) {
         chip.uart.hw.taken[0] = take_entry();
@@ -435,6 +447,7 @@ unsigned pico_model_take_entry(void)
 
 bool uart_is_readable(uart_inst_t *uart)
 {
+    irq_access();
     return uart == uart1 && chip.uart.count > 0;
 }
 
@@ -464,6 +477,7 @@ void uart_set_irqs_enabled(uart_inst_t *uart, bool rx_has_data, bool tx_needs_da
     if (rx_has_data) {
         chip.uart.hw.ifls = 0; /* The SDK chooses the lowest level. */
     }
+    irq_access();
 }
 
 uint uart_get_dreq(uart_inst_t *uart, bool is_tx)
@@ -516,6 +530,7 @@ void irq_remove_handler(uint number, irq_handler_t handler)
 void irq_set_enabled(uint number, bool enabled)
 {
     chip.irq_enabled[number] = enabled;
+    irq_access();
 }
 
 void __dmb(void) {}
@@ -544,7 +559,7 @@ bool pico_model_asks_for_interrupts(void)
 
 unsigned pico_model_interrupts(void)
 {
-    return chip.interrupts;
+    return irq.lines[0].served;
 }
 
 /* ----------------------------------------------------------------------------------------- time */
@@ -558,19 +573,19 @@ void pico_model_pass(uint32_t us)
         while (sim_transmit(&chip.lidar, chip.now_us, &byte, 1) == 1) {
             receive_byte(0, byte);
             run_dma();
-            serve_interrupts();
+            irq_serve();
         }
         run_dma();
-        serve_interrupts();
+        irq_serve();
     }
 }
 
 void pico_model_pass_held_up(uint32_t us)
 {
-    chip.held_up = true;
+    irq.masked = true;
     pico_model_pass(us);
-    chip.held_up = false;
-    serve_interrupts();
+    irq.masked = false;
+    irq_serve();
 }
 
 absolute_time_t get_absolute_time(void)

@@ -49,7 +49,7 @@ void pico_model_be_erratic(uint64_t seed);
 /* How often DMA's position has been read. */
 unsigned pico_model_reads(void);
 
-/* The channel at work moves so many bytes at once, as if much time had passed; nothing is
+/* The channel at work moves this many bytes at once, as if much time had passed; nothing is
  * written. */
 void pico_model_move_on(uint32_t bytes);
 

@@ -85,6 +85,9 @@ static void open_dma(void)
         .Instance = &model.dma.channel, .Init.Mode = DMA_CIRCULAR, .Init.MemInc = DMA_MINC_ENABLE};
 #ifdef DMA_LINKEDLIST_CIRCULAR
     hal_rig.dma.Mode = DMA_LINKEDLIST_CIRCULAR;
+    hal_rig.node.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET] = DMA_CTR1_DINC;
+    hal_rig.list.Head = &hal_rig.node;
+    hal_rig.dma.LinkedListQueue = &hal_rig.list;
 #endif
     hal_rig.uart.hdmarx = &hal_rig.dma;
     irq.lines[MODEL_DMA_IRQ].handler = dma_interrupt;
@@ -142,7 +145,9 @@ void hal_rig_open_and_start(hal_rig_way_t wanted)
 
 tmini_stm32_hal_counters_t hal_rig_errors(void)
 {
-    return hal_rig.port.counters;
+    tmini_stm32_hal_counters_t counters;
+    tmini_stm32_hal_counters(&hal_rig.port, &counters);
+    return counters;
 }
 
 /* -------------------------------------------------------------------------------------- running */

@@ -20,6 +20,10 @@ typedef struct {
 #ifdef HAL_DMA_MODULE_ENABLED
     DMA_HandleTypeDef dma;
 #endif
+#ifdef DMA_LINKEDLIST_CIRCULAR
+    DMA_NodeTypeDef node;
+    DMA_QListTypeDef list;
+#endif
     tmini_t lidar;
     tmini_stm32_hal_t port;
     tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];

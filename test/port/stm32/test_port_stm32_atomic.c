@@ -38,7 +38,7 @@ void test_bytes_come_out_of_the_ring_in_the_order_they_went_in(void)
         tmini_ring_put(&ring, (uint8_t)i);
         TEST_ASSERT_EQUAL_UINT32(i + 1, tmini_ring_head(&ring));
         TEST_ASSERT_EQUAL_HEX8(i, memory[i % sizeof memory]);
-        tmini_store(&ring.limit, i + 1 + sizeof memory); /* The consumer has taken it. */
+        tmini_store(&ring.tail, i + 1); /* The consumer has taken it. */
     }
     TEST_ASSERT_EQUAL_UINT32(0, tmini_ring_overrun(&ring));
 }

@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* The HAL port on the model of USART, DMA and HAL, a situation at a time. Compiled for several
- * families and years of the HAL; see stm32_model/README.md. */
+ * families and years of the HAL; see stm32_model/stm32_model.h. */
 
 #include "hal_rig.h"
 
@@ -63,6 +63,19 @@ void test_bytes_an_interrupt_that_comes_too_late_is_an_overrun_that_is_counted_a
     hal_rig_run();
     TEST_ASSERT_EQUAL_UINT32(2, hal_rig_packets());
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().overruns);
+}
+
+/* Of two packets the bytes 7 to 19 are lost, as many as a packet has: 13 are left, which look like
+ * one. */
+void test_bytes_no_packet_continues_across_an_overrun(void)
+{
+    hal_rig_open_and_start(BY_BYTES);
+    hal_rig_line_packets(2);
+    model_pass(MODEL_BYTE_NS * 13 / 2000);
+    model.held_until_ns = model.now_ns + 14 * MODEL_BYTE_NS;
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().overruns);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_packets());
 }
 
 /* The flag alone: the byte that came before it has been taken already. */

@@ -35,6 +35,15 @@ static void set_dma_mode(uint32_t mode)
 #endif
 }
 
+#ifdef DMA_LINKEDLIST_CIRCULAR
+static void check_node_refused(hal_rig_way_t way, uint32_t how)
+{
+    hal_rig_open(way);
+    hal_rig.node.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET] = how;
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, hal_rig_start());
+}
+#endif
+
 static void check_refused(hal_rig_way_t way)
 {
     hal_rig_open(way);
@@ -45,7 +54,17 @@ static void check_refused(hal_rig_way_t way)
     hal_rig.dma.Init.FIFOMode = DMA_FIFOMODE_ENABLE;
     TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, hal_rig_start());
 #endif
-#ifndef DMA_LINKEDLIST_CIRCULAR
+#ifdef DMA_LINKEDLIST_CIRCULAR
+    check_node_refused(way, DMA_CTR1_DINC | DMA_CTR1_SDW_LOG2);
+    check_node_refused(way, DMA_CTR1_DINC | DMA_CTR1_DDW_LOG2);
+    check_node_refused(way, DMA_CTR1_DINC | DMA_CTR1_SINC);
+    check_node_refused(way, 0);
+    hal_rig_open(way);
+    hal_rig.list.Head = NULL;
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, hal_rig_start());
+    hal_rig.dma.LinkedListQueue = NULL;
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, hal_rig_start());
+#else
     hal_rig_open(way);
     hal_rig.dma.Init.MemDataAlignment = DMA_MDATAALIGN_WORD;
     TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, hal_rig_start());
@@ -313,6 +332,29 @@ void test_an_overrun_that_holds_bytes_back_is_cleared_by_the_poll(void)
     check_both(check_overrun_that_holds);
 }
 
+/* With DDRE any error holds the DMA's requests back until it is cleared. */
+static void check_error_that_holds(hal_rig_way_t way)
+{
+    hal_rig_open_and_start(way);
+    model_usart.CR3 |= MODEL_CR3_DDRE;
+    line_send_with(MODEL_FE);
+    hal_rig_line_packets(20);
+    hal_rig_run();
+    TEST_ASSERT_UINT32_WITHIN(3, 17, hal_rig_packets()); /* Polls every ms: 23 bytes. */
+    const uint32_t before = hal_rig_packets();
+    hal_rig_line_packets(10);
+    hal_rig_run();
+    TEST_ASSERT_EQUAL_UINT32(before + 10, hal_rig_packets());
+}
+
+void test_an_error_that_holds_dma_back_is_cleared_by_the_poll(void)
+{
+#ifdef STM32_MODEL_SR
+    TEST_IGNORE_MESSAGE("not with SR and DR");
+#endif
+    check_both(check_error_that_holds);
+}
+
 /* The lidar loses its supply; the next command is sent while the error still shows. */
 static void check_sending_after_error(hal_rig_way_t way)
 {
@@ -348,7 +390,7 @@ static void check_comes_back(void)
 static void check_stopped_by_others(hal_rig_way_t way)
 {
     hal_rig_open_and_start(way);
-    model_usart.CR1 = 0;
+    model_usart.CR1 = MODEL_CR1_UE | MODEL_CR1_RE | MODEL_CR1_TE;
     model_usart.CR3 = 0;
     hal_rig.uart.RxState = HAL_UART_STATE_READY;
     check_comes_back();
@@ -358,6 +400,12 @@ static void check_stopped_by_others(hal_rig_way_t way)
     hal_rig_open_and_start(way);
     TEST_ASSERT_EQUAL(HAL_OK, HAL_DMA_Abort(&hal_rig.dma));
     check_comes_back();
+#ifdef DMA_LINKEDLIST_CIRCULAR
+    hal_rig_open_and_start(way); /* HAL_UART_DMAPause() of a newer HAL. */
+    model.dma.enabled = false;
+    hal_rig.dma.State = HAL_DMA_STATE_SUSPEND;
+    check_comes_back();
+#endif
 }
 
 void test_a_reception_that_others_have_stopped_is_started_again(void)

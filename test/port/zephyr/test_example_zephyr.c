@@ -18,6 +18,7 @@ static unsigned chapter;
 void setUp(void)
 {
     zephyr_model_begin(NULL);
+    zephyr_model_boot();
     chapter = 0;
 }
 
@@ -110,7 +111,9 @@ void test_it_tells_who_the_lidar_is_and_stops_the_robot_only_while_it_must(void)
 
 void test_it_says_so_when_the_lidar_cannot_be_started(void)
 {
+    zephyr_model_begin(NULL);
     zephyr_model_set_ready(false);
+    zephyr_model_boot();
     TEST_ASSERT_EQUAL_INT(0, example_main());
     assert_said("the lidar cannot be started");
 }

@@ -4,113 +4,63 @@
 /* The Zephyr port on a model of a board, against the simulated lidar. */
 
 #include <errno.h>
-#include <string.h>
 
 #include "unity.h"
 
 #include <zephyr/drivers/uart.h>
 
+#include "irq_lines.h"
+#include "scanning.h"
 #include "tmini/tmini_blocking.h"
-#include "tmini_zephyr.h"
-#include "truth.h"
 #include "zephyr_model.h"
-
-#define ENOUGH_POINTS 2000u
-
-static uint8_t rx[1024];
-static tmini_point_t points[ENOUGH_POINTS];
-static tmini_t lidar;
-static tmini_zephyr_t board;
+#include "zephyr_rig.h"
 
 void setUp(void)
 {
-    const sim_observer_t observer = truth_begin();
-    const tmini_config_t config = {
-        .port = &tmini_zephyr_port,
-        .port_context = &board,
-        .rx_buffer = rx,
-        .rx_size = sizeof rx,
-        .points = points,
-        .max_points = ENOUGH_POINTS,
-    };
-    zephyr_model_begin(&observer);
-    memset(&board, 0, sizeof board);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+    zephyr_rig_begin();
 }
 
 void tearDown(void)
 {
-    tmini_zephyr_stop(&board);
-    TEST_ASSERT_FALSE(zephyr_model_is_receiving());
-}
-
-static void start(void)
-{
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&board, &lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
-}
-
-static void poll_until(tmini_event_t wanted)
-{
-    const uint64_t begun_us = zephyr_model_now_us();
-    while (zephyr_model_now_us() - begun_us < 2000000) {
-        const tmini_event_t event = tmini_poll(&lidar);
-        if (event == wanted) {
-            return;
-        }
-        if (event == TMINI_EVENT_NONE) {
-            tmini_zephyr_wait(&board, K_MSEC(10));
-        }
-    }
-    TEST_FAIL_MESSAGE("it did not happen in time");
-}
-
-static void assert_true_scans(uint32_t first, uint32_t last)
-{
-    for (uint32_t revolution = first; revolution <= last; revolution++) {
-        poll_until(TMINI_EVENT_SCAN);
-        truth_assert_revolution(tmini_scan(&lidar), revolution);
-    }
-}
-
-static tmini_zephyr_counters_t counted(void)
-{
-    tmini_zephyr_counters_t counters;
-    tmini_zephyr_counters(&board, &counters);
-    return counters;
+    zephyr_rig_end();
 }
 
 void test_every_point_arrives_through_a_fifo(void)
 {
-    start();
+    zephyr_rig_start();
     assert_true_scans(1, 10);
-    TEST_ASSERT_EQUAL_UINT32(zephyr_model_line_bytes(), counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(zephyr_model_line_bytes(), zephyr_rig_counters().bytes);
 }
 
 void test_every_point_arrives_byte_by_byte(void)
 {
     zephyr_model_set_fifo(1);
-    start();
+    zephyr_rig_start();
     assert_true_scans(1, 10);
-    TEST_ASSERT_EQUAL_UINT32(zephyr_model_line_bytes(), counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(zephyr_model_line_bytes(), zephyr_rig_counters().bytes);
+}
+
+void test_wherever_an_interrupt_comes_every_point_arrives(void)
+{
+    zephyr_rig_start();
+    assert_true_scans_wherever_bytes_come();
 }
 
 void test_a_fifo_that_takes_several_readings_is_emptied(void)
 {
     static const uint8_t bytes[64];
     zephyr_model_set_fifo(64);
-    start();
-    const uint32_t before = counted().bytes;
+    zephyr_rig_start();
+    const uint32_t before = zephyr_rig_counters().bytes;
     zephyr_model_receive(bytes, sizeof bytes);
-    TEST_ASSERT_EQUAL_UINT32(before + 64, counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(before + 64, zephyr_rig_counters().bytes);
 }
 
 /* An interrupt a byte must not be a switch of threads a byte. */
 void test_the_polling_thread_is_woken_once_in_64_bytes(void)
 {
     zephyr_model_set_fifo(1);
-    start();
+    zephyr_rig_start();
     assert_true_scans(1, 10);
     TEST_ASSERT_UINT_WITHIN(zephyr_model_line_bytes() / 64 / 10, zephyr_model_line_bytes() / 64,
                             zephyr_model_wakes());
@@ -118,36 +68,36 @@ void test_the_polling_thread_is_woken_once_in_64_bytes(void)
 
 void test_the_uart_gets_the_lidars_baud_rate(void)
 {
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
     TEST_ASSERT_EQUAL_UINT32(230400, zephyr_model_baud_rate());
 }
 
 void test_a_driver_that_cannot_change_the_baud_rate_keeps_the_devicetrees(void)
 {
     zephyr_model_set_configure(-ENOSYS);
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
     zephyr_model_set_configure(-ENOTSUP);
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
 }
 
 void test_what_cannot_work_is_refused(void)
 {
     TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_init(NULL, &zephyr_model_uart));
-    TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_init(&board, NULL));
+    TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_init(&port, NULL));
     TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_start(NULL, &lidar));
-    TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_start(&port, &lidar));
     zephyr_model_set_ready(false);
-    TEST_ASSERT_EQUAL_INT(-ENODEV, tmini_zephyr_init(&board, &zephyr_model_uart));
+    TEST_ASSERT_EQUAL_INT(-ENODEV, tmini_zephyr_init(&port, &zephyr_model_uart));
     zephyr_model_set_ready(true);
     zephyr_model_set_configure(-EIO);
-    TEST_ASSERT_EQUAL_INT(-EIO, tmini_zephyr_init(&board, &zephyr_model_uart));
-    TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(-EIO, tmini_zephyr_init(&port, &zephyr_model_uart));
+    TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_start(&port, &lidar));
     zephyr_model_set_configure(0);
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
-    TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_start(&board, NULL));
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&board, &lidar));
-    TEST_ASSERT_EQUAL_INT(-EALREADY, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
+    TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_start(&port, NULL));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
+    TEST_ASSERT_EQUAL_INT(-EALREADY, tmini_zephyr_start(&port, &lidar));
 }
 
 void test_a_driver_without_interrupts_is_refused_and_not_started(void)
@@ -155,35 +105,36 @@ void test_a_driver_without_interrupts_is_refused_and_not_started(void)
 #ifdef ZEPHYR_BEFORE_3_3
     TEST_IGNORE_MESSAGE("Zephyr before 3.3 does not tell");
 #endif
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
     zephyr_model_set_interrupts(-ENOSYS);
-    TEST_ASSERT_EQUAL_INT(-ENOSYS, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(-ENOSYS, tmini_zephyr_start(&port, &lidar));
     TEST_ASSERT_FALSE(zephyr_model_is_receiving());
     zephyr_model_set_interrupts(-ENOTSUP);
-    TEST_ASSERT_EQUAL_INT(-ENOTSUP, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(-ENOTSUP, tmini_zephyr_start(&port, &lidar));
     TEST_ASSERT_FALSE(zephyr_model_is_receiving());
     zephyr_model_set_interrupts(0);
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
 }
 
 void test_without_a_uart_nothing_is_sent(void)
 {
     static const uint8_t byte = 0xA5;
-    TEST_ASSERT_EQUAL_INT(-1, tmini_zephyr_port.write(&board, &byte, 1));
+    TEST_ASSERT_EQUAL_INT(-1, tmini_zephyr_port.write(&port, &byte, 1));
 }
 
 void test_it_stops_and_starts_while_the_lidar_streams(void)
 {
-    start();
+    zephyr_rig_start();
     assert_true_scans(1, 1);
     for (unsigned i = 0; i < 20; i++) {
-        tmini_zephyr_stop(&board);
-        const uint32_t bytes = counted().bytes;
+        tmini_zephyr_stop(&port);
+        const uint32_t bytes = zephyr_rig_counters().bytes;
         zephyr_model_pass(5000 + 100 * i);
-        TEST_ASSERT_EQUAL_UINT32(bytes, counted().bytes);
-        TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&board, &lidar));
-        TEST_ASSERT_EQUAL_UINT32(0, counted().overruns); /* Those of the time in between. */
-        TEST_ASSERT_TRUE(counted().bytes <= 16);         /* They begin anew, with the FIFO. */
+        TEST_ASSERT_EQUAL_UINT32(bytes, zephyr_rig_counters().bytes);
+        TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
+        TEST_ASSERT_EQUAL_UINT32(
+            0, zephyr_rig_counters().overruns);              /* Those of the time in between. */
+        TEST_ASSERT_TRUE(zephyr_rig_counters().bytes <= 16); /* They begin anew, with the FIFO. */
         poll_until(TMINI_EVENT_SCAN);
         truth_assert_nothing_invented(tmini_scan(&lidar));
     }
@@ -194,8 +145,8 @@ void test_it_stops_and_starts_while_the_lidar_streams(void)
 void test_blocking_commands_work(void)
 {
     tmini_info_t info;
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 1000));
     TEST_ASSERT_EQUAL_UINT(151, info.model);
 }
@@ -215,7 +166,7 @@ static void assert_gap_in_revolution(uint32_t revolution)
 /* 20 ms are 262 bytes, two whole packets among them: cut out so, their neighbours fit together. */
 static void assert_overrun_is_a_gap(void)
 {
-    start();
+    zephyr_rig_start();
     assert_true_scans(1, 2);
     zephyr_model_pass_held_up(20000);
     assert_gap_in_revolution(3);
@@ -224,23 +175,23 @@ static void assert_overrun_is_a_gap(void)
 void test_an_overrun_of_the_fifo_is_a_gap(void)
 {
     assert_overrun_is_a_gap();
-    TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
+    TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().overruns);
 }
 
 void test_an_overrun_without_a_fifo_is_a_gap(void)
 {
     zephyr_model_set_fifo(1);
     assert_overrun_is_a_gap();
-    TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
+    TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().overruns);
 }
 
 void test_a_byte_lost_while_the_fifo_is_read_is_a_gap(void)
 {
-    start();
+    zephyr_rig_start();
     assert_true_scans(1, 2);
     zephyr_model_lose_while_reading();
     assert_gap_in_revolution(3);
-    TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
+    TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().overruns);
 }
 
 static uint32_t packets(void)
@@ -256,8 +207,8 @@ static uint32_t packets(void)
 /* The packet's two parts fit together, whatever was lost between them. */
 static void receive_packet_with_loss(bool lost)
 {
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
     zephyr_model_receive(truth_packet, TRUTH_PACKET_SIZE - 16);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
     if (lost) {
@@ -270,7 +221,7 @@ void test_no_packet_is_put_together_across_a_loss(void)
 {
     receive_packet_with_loss(false);
     TEST_ASSERT_EQUAL_UINT32(1, packets());
-    tmini_zephyr_stop(&board);
+    tmini_zephyr_stop(&port);
     setUp();
     receive_packet_with_loss(true);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
@@ -281,55 +232,66 @@ void test_an_overrun_behind_which_there_is_nothing_to_read_is_a_gap(void)
 {
     zephyr_model_set_fifo(1);
     zephyr_model_set_clearing_reads_data();
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&board, &zephyr_model_uart));
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&board, &lidar));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
     zephyr_model_receive(truth_packet, 10);
-    TEST_ASSERT_EQUAL_size_t(sizeof rx - 10, tmini_feed_room(&lidar));
+    TEST_ASSERT_EQUAL_size_t(1024 - 10, tmini_feed_room(&lidar));
     zephyr_model_damage(UART_ERROR_OVERRUN);
     zephyr_model_receive(&truth_packet[10], 1);
-    TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
-    TEST_ASSERT_EQUAL_UINT32(10, counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().overruns);
+    TEST_ASSERT_EQUAL_UINT32(10, zephyr_rig_counters().bytes);
     TEST_ASSERT_EQUAL_size_t(0, tmini_feed_room(&lidar));
 }
 
 void test_an_interrupt_that_is_late_for_the_stop_stores_nothing(void)
 {
-    start();
+    zephyr_rig_start();
     assert_true_scans(1, 1);
-    tmini_zephyr_stop(&board);
-    const uint32_t bytes = counted().bytes;
+    tmini_zephyr_stop(&port);
+    const uint32_t bytes = zephyr_rig_counters().bytes;
     zephyr_model_receive(truth_packet, 10);
     zephyr_model_interrupt_late();
-    TEST_ASSERT_EQUAL_UINT32(bytes, counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(bytes, zephyr_rig_counters().bytes);
 }
 
 void test_a_uart_that_somebody_has_left_on_is_switched_off_first(void)
 {
     zephyr_model_leave_receiving();
-    start();
+    zephyr_rig_start();
     assert_true_scans(1, 1);
+}
+
+void test_reception_that_somebody_has_switched_off_begins_anew(void)
+{
+    zephyr_rig_start();
+    assert_true_scans(1, 1);
+    uart_irq_rx_disable(&zephyr_model_uart);
+    uart_irq_callback_user_data_set(&zephyr_model_uart, NULL, NULL);
+    assert_recovery();
+    tmini_zephyr_stop(&port);
+    tmini_zephyr_port.restart(&port); /* Of a stopped port: nothing. */
 }
 
 void test_errors_of_the_line_are_counted_by_kind(void)
 {
-    start();
+    zephyr_rig_start();
     assert_true_scans(1, 1);
     zephyr_model_damage(UART_ERROR_FRAMING);
     zephyr_model_pass(20000);
     zephyr_model_damage(UART_BREAK);
     zephyr_model_pass(20000);
-    TEST_ASSERT_EQUAL_UINT32(1, counted().framing_errors);
-    TEST_ASSERT_EQUAL_UINT32(1, counted().breaks);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().overruns);
+    TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().framing_errors);
+    TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().breaks);
+    TEST_ASSERT_EQUAL_UINT32(0, zephyr_rig_counters().overruns);
 }
 
 /* Negative results are no error flags. */
 void test_a_driver_that_tells_no_errors_has_none(void)
 {
     zephyr_model_set_error_check(-ENOSYS);
-    start();
+    zephyr_rig_start();
     assert_true_scans(1, 3);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().overruns);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().framing_errors);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().breaks);
+    TEST_ASSERT_EQUAL_UINT32(0, zephyr_rig_counters().overruns);
+    TEST_ASSERT_EQUAL_UINT32(0, zephyr_rig_counters().framing_errors);
+    TEST_ASSERT_EQUAL_UINT32(0, zephyr_rig_counters().breaks);
 }

@@ -3,6 +3,9 @@
 
 #include "zephyr_model.h"
 
+#include "irq_lines.h"
+#include "zephyr_board.h"
+
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -34,17 +37,48 @@ static struct {
     int interrupts;
     bool ready;
     bool receiving;
-    bool held_up;
-    bool in_interrupt;
+    bool late; /* An interrupt that was under way when it was switched off. */
+    bool lidar_ready;
+    uint64_t last_us;
     uint32_t baud_rate;
     uint32_t line_bytes;
     uart_irq_callback_user_data_t callback;
     void *user_data;
-    unsigned wakes;
-    void (*on_sleep)(void);
     char console[8192];
     size_t console_length;
 } board;
+
+/* ------------------------------------------------------------------------- the UART's interrupt */
+
+static bool is_up(void)
+{
+    return zephyr_async_is_up() ||
+           ((board.late || (board.receiving && board.count > 0)) && board.callback != NULL);
+}
+
+static void serve(void)
+{
+    if (zephyr_async_is_up()) {
+        zephyr_async_serve();
+    } else {
+        board.late = false;
+        board.callback(&zephyr_model_uart, board.user_data);
+    }
+}
+
+static void fail(unsigned line)
+{
+    (void)line;
+    abort(); /* A handler leaves its flag: the processor is locked up. */
+}
+
+/* At each access of the library's indices, too. */
+void interrupt(void)
+{
+    irq_access();
+}
+
+/* ------------------------------------------------------------------------------------ the board */
 
 void zephyr_model_begin(const sim_observer_t *observer)
 {
@@ -54,6 +88,10 @@ void zephyr_model_begin(const sim_observer_t *observer)
     sim_observe(&board.lidar, observer);
     board.fifo_size = FIFO_USUAL;
     board.ready = true;
+    irq_reset(fail);
+    irq.lines[0] = (irq_line_t){.is_up = is_up, .handler = serve};
+    zephyr_kernel_begin();
+    zephyr_async_begin();
 }
 
 void zephyr_model_set_fifo(unsigned size)
@@ -81,6 +119,11 @@ void zephyr_model_set_ready(bool ready)
     board.ready = ready;
 }
 
+void zephyr_model_set_lidar_ready(bool ready)
+{
+    board.lidar_ready = ready;
+}
+
 sim_t *zephyr_model_lidar(void)
 {
     return &board.lidar;
@@ -103,12 +146,7 @@ uint32_t zephyr_model_baud_rate(void)
 
 bool zephyr_model_is_receiving(void)
 {
-    return board.receiving;
-}
-
-unsigned zephyr_model_wakes(void)
-{
-    return board.wakes;
+    return board.receiving || zephyr_async_is_enabled();
 }
 
 void zephyr_model_damage(int errors)
@@ -131,6 +169,7 @@ void zephyr_model_lose_while_reading(void)
 static void receive_byte(uint8_t byte)
 {
     board.line_bytes++;
+    board.last_us = board.now_us;
     board.errors |= board.damage;
     board.damage = 0;
     if (board.count < board.fifo_size) {
@@ -140,14 +179,35 @@ static void receive_byte(uint8_t byte)
     }
 }
 
-static void serve_interrupt(void)
+bool zephyr_board_has_byte(void)
 {
-    if (!board.held_up && !board.in_interrupt && board.receiving && board.count > 0 &&
-        board.callback != NULL) {
-        board.in_interrupt = true;
-        board.callback(&zephyr_model_uart, board.user_data);
-        board.in_interrupt = false;
-    }
+    return board.count > 0;
+}
+
+static void take(uint8_t *bytes, unsigned count)
+{
+    memcpy(bytes, board.fifo, count);
+    board.count -= count;
+    memmove(board.fifo, &board.fifo[count], board.count);
+}
+
+uint8_t zephyr_board_take_byte(void)
+{
+    uint8_t byte;
+    take(&byte, 1);
+    return byte;
+}
+
+uint64_t zephyr_board_last_byte_us(void)
+{
+    return board.last_us;
+}
+
+int zephyr_board_take_errors(void)
+{
+    const int errors = board.errors;
+    board.errors = 0;
+    return errors;
 }
 
 void zephyr_model_receive(const uint8_t *bytes, size_t count)
@@ -155,7 +215,7 @@ void zephyr_model_receive(const uint8_t *bytes, size_t count)
     for (size_t i = 0; i < count; i++) {
         receive_byte(bytes[i]);
         if (board.count == board.fifo_size || i + 1 == count) {
-            serve_interrupt();
+            irq_serve();
         }
     }
 }
@@ -167,9 +227,8 @@ void zephyr_model_leave_receiving(void)
 
 void zephyr_model_interrupt_late(void)
 {
-    board.in_interrupt = true;
-    board.callback(&zephyr_model_uart, board.user_data);
-    board.in_interrupt = false;
+    board.late = true;
+    irq_serve();
 }
 
 void zephyr_model_pass(uint32_t us)
@@ -180,25 +239,25 @@ void zephyr_model_pass(uint32_t us)
         board.now_us += STEP_US;
         while (sim_transmit(&board.lidar, board.now_us, &byte, 1) == 1) {
             receive_byte(byte);
-            serve_interrupt();
+            irq_serve();
         }
-        serve_interrupt();
+        irq_serve();
     }
 }
 
 void zephyr_model_pass_held_up(uint32_t us)
 {
-    board.held_up = true;
+    irq.masked = true;
     zephyr_model_pass(us);
-    board.held_up = false;
-    serve_interrupt();
+    irq.masked = false;
+    irq_serve();
 }
 
 /* ----------------------------------------------------------------------------------------- UART */
 
 bool device_is_ready(const struct device *device)
 {
-    return device == &zephyr_model_uart && board.ready;
+    return device == &zephyr_model_uart ? board.ready : board.lidar_ready;
 }
 
 int uart_configure(const struct device *device, const struct uart_config *config)
@@ -215,8 +274,8 @@ int uart_configure(const struct device *device, const struct uart_config *config
 int uart_err_check(const struct device *device)
 {
     (void)device;
-    const int errors = board.errors;
-    board.errors = 0;
+    irq_access();
+    const int errors = zephyr_board_take_errors();
     if (errors != 0 && board.clearing_reads_data) {
         board.count = 0;
     }
@@ -250,7 +309,7 @@ void uart_irq_rx_enable(const struct device *device)
 {
     (void)device;
     board.receiving = true;
-    serve_interrupt();
+    irq_access();
 }
 
 void uart_irq_rx_disable(const struct device *device)
@@ -274,7 +333,8 @@ UART_UPDATE_RESULT uart_irq_update(const struct device *device)
 
 static void check_context(void)
 {
-    if (!board.in_interrupt) {
+    irq_access();
+    if (!irq_is_in_handler()) {
         abort(); /* Zephyr allows these in the callback only. */
     }
 }
@@ -291,9 +351,7 @@ int uart_fifo_read(const struct device *device, uint8_t *bytes, int size)
     (void)device;
     check_context();
     const unsigned taken = board.count < (unsigned)size ? board.count : (unsigned)size;
-    memcpy(bytes, board.fifo, taken);
-    board.count -= taken;
-    memmove(board.fifo, &board.fifo[taken], board.count);
+    take(bytes, taken);
     board.errors = 0; /* Some drivers do so. */
     if (board.lose_while_reading) {
         board.lose_while_reading = false;
@@ -302,65 +360,7 @@ int uart_fifo_read(const struct device *device, uint8_t *bytes, int size)
     return (int)taken;
 }
 
-/* --------------------------------------------------------------------------------------- kernel */
-
-int k_sem_init(struct k_sem *sem, unsigned initial, unsigned limit)
-{
-    *sem = (struct k_sem){.count = initial, .limit = limit};
-    return 0;
-}
-
-void k_sem_give(struct k_sem *sem)
-{
-    if (sem->limit == 0) {
-        abort(); /* It has not been made. */
-    }
-    if (sem->count < sem->limit) {
-        sem->count++;
-    }
-}
-
-int k_sem_take(struct k_sem *sem, k_timeout_t timeout)
-{
-    const uint64_t end_us = board.now_us + (uint64_t)timeout.ms * 1000u;
-    while (sem->count == 0 && board.now_us < end_us) {
-        zephyr_model_pass(STEP_US);
-    }
-    if (board.on_sleep != NULL) {
-        board.on_sleep();
-    }
-    if (sem->count == 0) {
-        return -EAGAIN;
-    }
-    sem->count--;
-    board.wakes++;
-    return 0;
-}
-
-k_spinlock_key_t k_spin_lock(struct k_spinlock *lock)
-{
-    if (lock->held) {
-        abort(); /* It would never end. */
-    }
-    lock->held = true;
-    return (k_spinlock_key_t){0};
-}
-
-void k_spin_unlock(struct k_spinlock *lock, k_spinlock_key_t key)
-{
-    (void)key;
-    lock->held = false;
-}
-
-uint32_t k_uptime_get_32(void)
-{
-    return (uint32_t)(board.now_us / 1000u);
-}
-
-void zephyr_model_on_sleep(void (*callback)(void))
-{
-    board.on_sleep = callback;
-}
+/* -------------------------------------------------------------------------------------- console */
 
 int printk(const char *format, ...)
 {

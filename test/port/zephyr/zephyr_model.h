@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A board under Zephyr as far as the port sees it: one thread, one UART with its interrupt, a
- * semaphore to sleep on, and the simulated lidar. Time goes on only while the thread sleeps or the
- * test makes it.
+/* A board under Zephyr as far as the port sees it: the test's thread and one that the port makes,
+ * one UART with its interrupt line (irq_lines.h), and the simulated lidar. Time goes on only while
+ * all threads sleep or the test makes it.
  *
  * The UART is one of two kinds that Zephyr's drivers have: with a FIFO of 1 to 64 bytes; with
  * errors told by uart_err_check(), or not. As with some drivers, reading data clears the errors. */
@@ -29,7 +29,19 @@ void zephyr_model_set_configure(int result);
 /* -ENOSYS for a driver without the interrupt-driven API, -ENOTSUP if it is off; 0: it has it. */
 void zephyr_model_set_interrupts(int result);
 
+/* The same of the async API; and of its uart_rx_enable(). */
+void zephyr_model_set_async(int result);
+void zephyr_model_set_async_enable(int result);
+
 void zephyr_model_set_ready(bool ready);
+
+/* The lidar's device is initialised: DEVICE_DT_INST_DEFINE() makes the function. */
+int zephyr_model_init_lidar(void);
+void zephyr_model_set_lidar_ready(bool ready);
+static inline void zephyr_model_boot(void)
+{
+    zephyr_model_set_lidar_ready(zephyr_model_init_lidar() == 0);
+}
 
 /* The lidar; see simulator.h. */
 sim_t *zephyr_model_lidar(void);
@@ -62,7 +74,7 @@ void zephyr_model_lose_while_reading(void);
 uint32_t zephyr_model_line_bytes(void);
 
 uint32_t zephyr_model_baud_rate(void);
-bool zephyr_model_is_receiving(void);
+bool zephyr_model_is_receiving(void); /* By whichever API. */
 
 /* How often the polling thread has been woken by the semaphore, and not by its time-out. */
 unsigned zephyr_model_wakes(void);

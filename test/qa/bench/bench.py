@@ -18,6 +18,7 @@ import sys
 import flash
 import host
 import instructions
+import python_package
 import stack
 import streams
 import tables
@@ -30,7 +31,7 @@ PRINTED_TABLES = ["modules", "budgets"]  # In no document.
 FOOTPRINT_TABLES = [name for name in tables.BLOCKS if name not in README_TABLES + PRINTED_TABLES]
 
 # The limits are for the compilers that the committed tables were made with; with others the library
-# may cost so many percent more.
+# may cost this many percent more.
 OTHER_TOOLS_PERCENT = 10
 
 
@@ -93,6 +94,7 @@ def measure_all(folder):
                 for target in TARGETS for level in LEVELS}
         figures["host"] = host.measure(host.build(folder), recording, folder,
                                        made["clean packets"], instructions.BYTES_A_POLL)
+        figures["python"] = python_package.measure(folder, made["clean"])
         for key, job in jobs.items():
             figures["targets"][key] = job.result()
     for target in TARGETS:
@@ -125,8 +127,11 @@ def measured_for_budgets(figures):
         "decode_x86": figures["host"]["decode"],
         "blocks_x86": figures["host"]["blocks"],
         "bytes_x86": figures["host"]["bytes"],
+        "python_hour_x86": figures["python"]["hour"],
+        "python_live_x86": figures["python"]["percent"],
         "flash_parser_m4": m4[0]["flash"]["parser"]["own"],
         "flash_driver_m4": m4[0]["flash"]["driver"]["own"],
+        "flash_no_ct_m4": m4[0]["flash"]["no_ct"]["own"],
         "ram": max(figures["ram"][target.name]["tmini_t"] +
                    figures["targets"][target.name, level]["flash"]["everything"]["writable"]
                    for target in TARGETS for level in LEVELS),

@@ -12,6 +12,7 @@ CONFIGURATIONS = (
     ("parser", "parser + decoding"),
     ("streaming", "streaming, no scan buffer"),
     ("driver", "full driver"),
+    ("no_ct", "the same without CT information"),
     ("everything", "full driver + blocking helpers + sectors"),
 )
 
@@ -46,10 +47,18 @@ def weigh(map_file):
             "writable": writable}
 
 
+def weigh_without_ct(target, level, folder):
+    """The full driver, all of it built with TMINI_NO_CT."""
+    sources = [*LIB_SOURCES, HERE / "flash" / "driver.c"]
+    objects = [target.compile(source, level, folder / "no_ct", "-DTMINI_NO_CT") for source in sources]
+    _, map_file = target.link(objects, folder / "no_ct.elf")
+    return weigh(map_file)
+
+
 def measure(target, level, objects, folder):
     """All configurations for one target and level."""
-    weights = {}
-    for name, _ in CONFIGURATIONS:
+    weights = {"no_ct": weigh_without_ct(target, level, folder)}
+    for name in ("parser", "streaming", "driver", "everything"):
         main = target.compile(HERE / "flash" / f"{name}.c", level, folder / "flash")
         _, map_file = target.link([*objects, main], folder / f"{name}.elf")
         weights[name] = weigh(map_file)

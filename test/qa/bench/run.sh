@@ -18,6 +18,8 @@ work=$root/build/bench
 python=$work/venv/bin/python
 # shellcheck source=test/support/environment.sh
 . "$root/test/support/environment.sh"
+# shellcheck source=test/support/python.sh
+. "$root/test/support/python.sh"
 
 install=yes update=
 for word in "$@"; do
@@ -62,20 +64,14 @@ has_library arm-none-eabi-gcc --specs=nano.specs ||
 has_library riscv64-unknown-elf-gcc --specs=picolibc.specs ||
     skip "riscv64-unknown-elf-gcc or picolibc is not installed"
 
-# The emulator, in an environment of its own.
-make_environment() {
-    rm -rf "$work/venv"
-    python3 -m venv "$work/venv" &&
-        "$python" -m pip install --quiet --disable-pip-version-check \
-            -r "$root/test/qa/bench/requirements.txt" &&
-        cp "$root/test/qa/bench/requirements.txt" "$work/venv/requirements.txt"
-}
-
+# The emulator, and the Python package, in environments of their own.
 mkdir -p "$work"
-if ! cmp -s "$root/test/qa/bench/requirements.txt" "$work/venv/requirements.txt"; then
-    make_environment >"$work/install.log" 2>&1 ||
-        skip "the emulator cannot be installed; see $work/install.log"
-fi
+install_requirements "$work/venv" "$root/test/qa/bench/requirements.txt" \
+    >"$work/install.log" 2>&1 ||
+    skip "the emulator cannot be installed; see $work/install.log"
+install_requirements "$work/python" "$root/test/python/requirements.txt" \
+    >"$work/install.log" 2>&1 ||
+    skip "what the Python package needs cannot be installed; see $work/install.log"
 
 # shellcheck disable=SC2086 # $update is one word or none
 export PYTHONDONTWRITEBYTECODE=1

@@ -10,7 +10,7 @@
 
 #define NEVER UINT64_MAX
 #define IDLE_LINE_US 90u /* Two bytes' time. */
-#define STALE_US 30000u  /* Bytes held back for longer have outlived their time. */
+#define BYTE_US 76u      /* Of a lidar that scans (section 1). */
 
 static host_t *polling; /* While tmini_poll() is at work, and no interrupt is. */
 
@@ -24,21 +24,48 @@ static uint64_t arrival_us(const host_t *host, uint32_t byte)
     return byte < host->line->size ? host->begun_us + host->line->at_us[byte] : NEVER;
 }
 
+static bool happens(host_t *host, uint32_t one_in)
+{
+    return one_in > 0 && random_below(host->random, one_in) == 0;
+}
+
 static void tell_gap(host_t *host)
 {
     host->gaps_told++;
-    tmini_feed_gap(&host->lidar);
+    for (uint32_t times = host->config.tells_twice ? 2 : 1; times > 0; times--) {
+        tmini_feed_gap(&host->lidar);
+    }
+}
+
+/* A block is handed over; of it, the library may refuse the end. */
+static void feed(host_t *host, uint32_t from, uint32_t count)
+{
+    const size_t stored = tmini_feed(&host->lidar, &host->line->bytes[from], count);
+
+    line_lose(host->line, from + (uint32_t)stored, from + count);
+    host->told += count;
 }
 
 /* ---- An interrupt for each byte ---- */
+
+static void receive_byte(host_t *host)
+{
+    const size_t refused = tmini_ring_overrun(&host->lidar.ring);
+
+    tmini_feed_byte(&host->lidar, host->line->bytes[host->next]);
+    if (tmini_ring_overrun(&host->lidar.ring) != refused) {
+        line_lose(host->line, host->next, host->next + 1);
+    }
+    host->next++;
+    host->told++;
+}
 
 static uint64_t receive_bytes(host_t *host)
 {
     const uint64_t until_us = now_us(host);
 
     while (arrival_us(host, host->next) <= until_us) {
-        tmini_feed_byte(&host->lidar, host->line->bytes[host->next++]);
-        host->told++;
+        receive_byte(host);
     }
     return arrival_us(host, host->next);
 }
@@ -50,39 +77,42 @@ static uint32_t room(const host_t *host)
     return host->config.asks_room ? (uint32_t)tmini_feed_room(&host->lidar) : UINT32_MAX;
 }
 
-/* What finds no room is kept below. When that lasts, the library sees bytes without a pause where
- * the line may have had one: all that has waited is stale, and let go. */
-static void drop_if_stale(host_t *host)
+/* The layer below is closed from its overflow until it is emptied. */
+static void lose_what_overflowed(host_t *host)
 {
-    if (host->holds_back && now_us(host) - arrival_us(host, host->fed) > STALE_US) {
-        line_touch(host->line, host->fed, host->next);
-        host->fed = host->next;
-        tell_gap(host);
-    }
+    line_lose(host->line, host->fed, host->next);
+    host->fed = host->next;
+    host->closed_at = 0;
+    tell_gap(host);
 }
 
+static uint32_t held_bytes(const host_t *host)
+{
+    return (host->closed_at > 0 ? host->closed_at : host->next) - host->fed;
+}
+
+/* What finds no room is kept below, and may be reported. */
 static void hand_over(host_t *host)
 {
-    drop_if_stale(host);
-    const uint32_t arrived = host->next - host->fed;
-    const uint32_t held = arrived < host->config.block_size ? arrived : host->config.block_size;
     const uint32_t fits = room(host);
-    const uint32_t count = held < fits ? held : fits;
+    const uint32_t count = held_bytes(host) < fits ? held_bytes(host) : fits;
 
-    tmini_feed(&host->lidar, &host->line->bytes[host->fed], count);
-    host->told += count;
+    feed(host, host->fed, count);
     host->fed += count;
-    host->holds_back = count < held;
-    if (count == held && arrived > held) {
-        line_touch(host->line, host->fed, host->next);
-        host->fed = host->next;
-        tell_gap(host);
+    if (host->closed_at > 0 && held_bytes(host) == 0) {
+        lose_what_overflowed(host);
+    }
+    if (host->config.reports_held) {
+        tmini_feed_held(&host->lidar, held_bytes(host));
     }
 }
 
 static void hold_bytes(host_t *host, uint64_t until_us)
 {
     while (arrival_us(host, host->next) <= until_us) {
+        if (host->closed_at == 0 && held_bytes(host) == host->config.block_size) {
+            host->closed_at = host->next;
+        }
         host->next++;
     }
 }
@@ -94,7 +124,9 @@ static uint64_t receive_blocks(host_t *host)
     while (host->config.block_us > 0 && host->block_due_us <= until_us) {
         hold_bytes(host, host->block_due_us);
         hand_over(host);
-        host->block_due_us += host->config.block_us;
+        host->block_due_us += happens(host, host->config.hold_one_in)
+                                  ? random_between(host->random, 20000, 95000)
+                                  : host->config.block_us;
     }
     hold_bytes(host, until_us);
     return host->config.block_us > 0 ? host->block_due_us : NEVER;
@@ -108,16 +140,15 @@ static void serve_dma(host_t *host)
     if (!host->half && !host->full && !host->idle) {
         return;
     }
-    if (host->half && host->full) {
+    if ((host->half && host->full) || happens(host, host->config.false_gap_one_in)) {
         tell_gap(host);
-        host->told += (uint32_t)host->config.rx_size; /* The library counts an unseen lap as one. */
     }
     host->half = false;
     host->full = false;
     host->idle = false;
-    host->told += (uint32_t)((host->position - host->published) & (host->config.rx_size - 1));
     host->published = host->position;
     tmini_feed_dma(&host->lidar, host->position);
+    host->told = (uint32_t)tmini_feed_position(&host->lidar); /* A gap counts as a lap. */
 }
 
 static void write_byte(host_t *host)
@@ -189,11 +220,6 @@ static void stall(host_t *host)
     receive(host);
 }
 
-static bool happens(host_t *host, uint32_t one_in)
-{
-    return one_in > 0 && random_below(host->random, one_in) == 0;
-}
-
 static bool may_stall(host_t *host)
 {
     return host->config.feed == FEED_DMA && host->started && host->next < host->line->size &&
@@ -234,7 +260,9 @@ void interrupt(void)
 
 static uint32_t read_clock(void *context)
 {
-    return (uint32_t)(now_us((const host_t *)context) / 1000u);
+    const host_t *const host = context;
+
+    return (uint32_t)(now_us(host) * (uint64_t)(1000000 + host->config.clock_ppm) / 1000000000u);
 }
 
 static int take_command(void *context, const uint8_t *bytes, size_t count)
@@ -263,11 +291,14 @@ void host_begin(host_t *host, const host_config_t *config, line_t *line, random_
                                     .rx_dma = config->feed == FEED_DMA,
                                     .points = host->points,
                                     .max_points = config->max_points,
-                                    .recovery = TMINI_RECOVERY_OFF};
+                                    .recovery = TMINI_RECOVERY_OFF,
+                                    .timing = &host->timing};
 
     memset(host, 0, offsetof(host_t, points));
     memset(&host->now_ns, 0, sizeof *host - offsetof(host_t, now_ns));
     host->config = *config;
+    host->timing = tmini_timing_default;
+    host->timing.max_pause_ms = config->max_pause_ms;
     host->line = line;
     host->random = random;
     host->now_ns = (uint64_t)random_u32(random) * 1000000u; /* The clock may wrap around. */
@@ -294,6 +325,7 @@ tmini_event_t host_poll(host_t *host)
     polling = host;
     event = tmini_poll(&host->lidar);
     polling = NULL;
+    host->was_lost |= event == TMINI_EVENT_LOST;
     return event;
 }
 
@@ -320,7 +352,13 @@ void host_rest(host_t *host)
 void host_handle_scan(host_t *host)
 {
     if (happens(host, host->config.handle_one_in)) {
-        host_wait_us(host, random_between(host->random, 1000, host->config.handler_us));
+        const uint32_t free = host->config.block_size - held_bytes(host);
+        const uint32_t bridged_us = free * 9 / 10 * BYTE_US;
+        const uint32_t most_us = host->config.is_bridged && bridged_us < host->config.handler_us
+                                     ? bridged_us
+                                     : host->config.handler_us;
+
+        host_wait_us(host, random_between(host->random, 1000, most_us > 1000 ? most_us : 1000));
     }
 }
 

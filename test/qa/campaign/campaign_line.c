@@ -19,9 +19,6 @@
 #define SPIN_UP_CHZ 240u
 #define SPIN_UP_US 1000000u
 
-/* The largest packet that a receiver of up to 80 samples tries. */
-#define MAX_SAMPLES 80u
-
 /* ---- Marks: 11 bits of sample, 13 of revolution, scrambled, so that data look like data ---- */
 
 #define MARK_BITS 24u
@@ -169,6 +166,7 @@ static void send(line_t *line, rotor_t *rotor, const uint8_t *bytes, uint32_t si
     for (uint32_t i = 0; i < size; i++) {
         line->bytes[line->size] = bytes[i];
         line->owner[line->size] = (uint16_t)line->packet_count;
+        line->is_guard[line->size] = size == 1;
         line->at_us[line->size++] = (uint32_t)(begins_us + (i + 1) * 1000000u / 23040u);
     }
     rotor->free_us = begins_us + size * 1000000u / 23040u;
@@ -233,10 +231,13 @@ static void make_packet(line_t *line, rotor_t *rotor)
     *packet = (line_packet_t){.from = line->size,
                               .turned_q6 = rotor->phase >> 16,
                               .ends_q6 = (rotor->phase + (count - 1) * rotor->step) >> 16,
+                              .first = line->counts[rotor->revolution],
+                              .samples = (uint16_t)count,
                               .revolution = (uint16_t)rotor->revolution,
                               .is_start = rotor->at_start};
     send(line, rotor, bytes, encode(line, rotor, count, bytes));
     packet->to = line->size;
+    packet->sent_us = line->at_us[line->size - 1];
     line->packet_count++;
     turn_on(rotor, count);
 }
@@ -275,15 +276,21 @@ void line_make(line_t *line, const line_config_t *config, random_t *random)
 /* ---- What does not arrive ---- */
 
 /* A start packet closes the revolution before it. */
-void line_touch(line_t *line, uint32_t from, uint32_t to)
+static void touch(line_t *line, uint32_t byte)
+{
+    const line_packet_t *const packet = &line->packets[line->owner[byte]];
+
+    line->touched[packet->revolution] = true;
+    if (packet->is_start && packet->revolution > 0) {
+        line->touched[packet->revolution - 1] = true;
+    }
+}
+
+void line_lose(line_t *line, uint32_t from, uint32_t to)
 {
     for (uint32_t i = from; i < to; i++) {
-        const line_packet_t *const packet = &line->packets[line->owner[i]];
-
-        line->touched[packet->revolution] = true;
-        if (packet->is_start && packet->revolution > 0) {
-            line->touched[packet->revolution - 1] = true;
-        }
+        touch(line, i);
+        line->packets[line->owner[i]].missing += line->is_guard[i] ? 0 : 1;
     }
 }
 
@@ -319,6 +326,30 @@ static void cut_whole_turns(line_t *line, random_t *random, uint32_t cut[2])
             .from;
 }
 
+/* The same by time, a few milliseconds more or less. */
+static void cut_turns_of_time(line_t *line, random_t *random, uint32_t cut[2])
+{
+    const line_packet_t *const last =
+        &line->packets[random_between(random, 1, line->packet_count - 2)];
+    const uint32_t turns_us =
+        random_between(random, 1, 5) * 100000000u / line->config.frequency_chz;
+
+    cut[0] = last->to;
+    cut[1] =
+        byte_at_time(line, cut[0], last->sent_us + turns_us + random_below(random, 16000) - 8000);
+}
+
+static void cut_start_packet(line_t *line, random_t *random, uint32_t cut[2])
+{
+    uint32_t packet = random_below(random, line->packet_count);
+
+    while (packet > 0 && !line->packets[packet].is_start) {
+        packet--;
+    }
+    cut[0] = line->packets[packet].from;
+    cut[1] = random_below(random, 2) == 0 ? line->packets[packet].to : cut[0] + 1;
+}
+
 /* From any byte on, for any time of up to five turns; now and then for some bytes only. */
 static void cut_anywhere(line_t *line, random_t *random, uint32_t cut[2])
 {
@@ -342,7 +373,10 @@ static void remove_lost(line_t *line)
         if (!line->lost[i]) {
             line->bytes[left] = line->bytes[i];
             line->owner[left] = line->owner[i];
+            line->is_guard[left] = line->is_guard[i];
             line->at_us[left++] = line->at_us[i];
+        } else {
+            line_lose(line, i, i + 1);
         }
     }
     line->size = left;
@@ -364,17 +398,17 @@ static uint32_t gather(const line_t *line, uint32_t from, uint8_t *bytes, uint32
 static bool is_valid_packet(const uint8_t *bytes, uint32_t count, uint32_t *size)
 {
     if (count < ENCODE_PACKET_HEADER || bytes[0] != 0xAA || bytes[1] != 0x55 || bytes[3] == 0 ||
-        bytes[3] > MAX_SAMPLES) {
+        bytes[3] > LINE_MAX_SAMPLES) {
         return false;
     }
     *size = ENCODE_PACKET_HEADER + ENCODE_SAMPLE_SIZE * bytes[3];
     return *size <= count && encode_checksum(bytes) == (bytes[8] | bytes[9] << 8);
 }
 
-/* Whether a packet that was not sent begins before the hole at `cut` and ends behind it. */
+/* Whether a packet that was not sent begins before the hole at `cut` and ends after it. */
 static bool forges_a_packet(const line_t *line, uint32_t cut)
 {
-    uint8_t bytes[ENCODE_PACKET_HEADER + ENCODE_SAMPLE_SIZE * MAX_SAMPLES];
+    uint8_t bytes[ENCODE_PACKET_HEADER + ENCODE_SAMPLE_SIZE * LINE_MAX_SAMPLES];
     uint32_t seen = 0;
 
     if (!line->lost[cut] || cut == 0 || line->lost[cut - 1]) {
@@ -397,7 +431,6 @@ static bool forges_a_packet(const line_t *line, uint32_t cut)
 
 static void lose(line_t *line, uint32_t from, uint32_t to)
 {
-    line_touch(line, from, to);
     memset(&line->lost[from], 1, to - from);
 }
 
@@ -427,23 +460,47 @@ static void forge_nothing(line_t *line)
     }
 }
 
+static void draw_cut(line_t *line, random_t *random, uint32_t cut[2])
+{
+    static void (*const cuts[])(line_t * line, random_t * random, uint32_t cut[2]) = {
+        cut_whole_turns,  cut_whole_turns, cut_turns_of_time,
+        cut_start_packet, cut_anywhere,    cut_anywhere};
+
+    cuts[random_below(random, sizeof cuts / sizeof cuts[0])](line, random, cut);
+}
+
+/* As far away from the cut that was just made as a few packets are long. */
+static void move_near(const line_t *line, random_t *random, uint32_t before, uint32_t cut[2])
+{
+    const uint32_t away = before + random_between(random, 0, 500);
+
+    cut[1] = cut[1] - cut[0] + away;
+    cut[0] = away < line->size ? away : line->size;
+}
+
+static void make_cut(line_t *line, random_t *random, uint32_t cut[2])
+{
+    cut[1] = cut[1] < line->size ? cut[1] : line->size;
+    lose(line, cut[0], cut[1] > cut[0] ? cut[1] : cut[0]);
+    if (random_below(random, 3) == 0) {
+        let_dribble(line, random, cut[0], cut[1]);
+    }
+}
+
 void line_interrupt(line_t *line, random_t *random)
 {
     const uint32_t count = random_between(random, 1, LINE_CUTS);
+    uint32_t before = 0;
 
     for (uint32_t i = 0; i < count; i++) {
         uint32_t cut[2];
 
-        if (random_below(random, 3) == 0) {
-            cut_whole_turns(line, random, cut);
-        } else {
-            cut_anywhere(line, random, cut);
+        draw_cut(line, random, cut);
+        if (i > 0 && random_below(random, 4) == 0) {
+            move_near(line, random, before, cut);
         }
-        cut[1] = cut[1] < line->size ? cut[1] : line->size;
-        lose(line, cut[0], cut[1] > cut[0] ? cut[1] : cut[0]);
-        if (random_below(random, 3) == 0) {
-            let_dribble(line, random, cut[0], cut[1]);
-        }
+        make_cut(line, random, cut);
+        before = cut[1];
     }
     forge_nothing(line);
     remove_lost(line);

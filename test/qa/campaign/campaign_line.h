@@ -24,6 +24,9 @@
 #define LINE_PACKETS (LINE_REVOLUTIONS * 200u)
 #define LINE_CUTS 4u
 
+/* The largest packet that a receiver of up to 80 samples tries. */
+#define LINE_MAX_SAMPLES 80u
+
 typedef struct {
     uint32_t frequency_chz;
     uint32_t start_angle_q6; /* Where the start packets are (section 9.8). */
@@ -35,6 +38,10 @@ typedef struct {
 typedef struct {
     uint32_t from; /* Its first byte; LastCRC, if it has one, is before it. */
     uint32_t to;
+    uint32_t sent_us;   /* When its last byte was on the wire. */
+    uint16_t first;     /* Its first sample, of those of its revolution, */
+    uint16_t samples;   /* and how many it has. */
+    uint16_t missing;   /* Bytes that the library has not got. */
     uint64_t turned_q6; /* Of its first sample, since the beginning. */
     uint64_t ends_q6;   /* Of its last one. */
     uint16_t revolution;
@@ -47,7 +54,8 @@ typedef struct {
 
     uint8_t bytes[LINE_BYTES];
     uint32_t at_us[LINE_BYTES]; /* Since the start command. */
-    uint16_t owner[LINE_BYTES]; /* The packet that it is of. */
+    uint16_t owner[LINE_BYTES]; /* The packet that it is of, or before: */
+    bool is_guard[LINE_BYTES];  /* LastCRC. */
     bool lost[LINE_BYTES];
     uint32_t size;
 
@@ -56,7 +64,7 @@ typedef struct {
 
     uint16_t counts[LINE_REVOLUTIONS]; /* Samples of each revolution. */
     uint16_t angles_q6[LINE_REVOLUTIONS][LINE_SAMPLES];
-    bool touched[LINE_REVOLUTIONS]; /* Not all of it has come, or not the start packet behind it. */
+    bool touched[LINE_REVOLUTIONS]; /* Not all of it has come, or not the start packet after it. */
 } line_t;
 
 /* What a point was sent as. */
@@ -68,13 +76,14 @@ typedef struct {
 /* The revolutions, beginning with the reply to the start command. */
 void line_make(line_t *line, const line_config_t *config, random_t *random);
 
-/* The bytes from `from` up to `to` never arrive: their revolutions are touched. */
-void line_touch(line_t *line, uint32_t from, uint32_t to);
+/* The bytes from `from` up to `to` do not reach the library: their revolutions are touched. */
+void line_lose(line_t *line, uint32_t from, uint32_t to);
 
-/* The line is silent for up to five turns, a few times, from any byte to any byte, often for nearly
- * a whole number of turns between two packets; or of each packet some bytes come all the same. What
- * is left never happens to look like a packet where two ends meet: one in 65536 would, and no
- * receiver could tell it from a true one. */
+/* The line is silent for up to five turns, a few times, now and then twice in a row: from any byte
+ * to any byte, often for nearly a whole number of turns, by angle or by time; or of each packet
+ * some bytes come all the same; or it loses start packets only. What is left never happens to look
+ * like a packet where two ends meet: one in 65536 would, and no receiver could tell it from a true
+ * one. */
 void line_interrupt(line_t *line, random_t *random);
 
 /* Finds out what a point was sent as. Returns false if no such sample was sent. */

@@ -4,6 +4,7 @@
 #include "campaign_oracle.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* Without LastCRC and without a trace on the line, a hole of less than 4 degrees between two
  * packets cannot be told from jitter by whom it has only angles to go by. */
@@ -12,7 +13,9 @@
 /* What the points of one scan come to. */
 typedef struct {
     line_mark_t first;
-    line_mark_t odd;    /* The point that first does not belong, */
+    line_mark_t last;   /* The point before. */
+    line_mark_t before; /* The last one that belongs, */
+    line_mark_t odd;    /* the first that does not, */
     uint32_t odd_at;    /* and its index. */
     uint32_t next;      /* The sample expected. */
     uint32_t missing;   /* Samples skipped so far, */
@@ -25,7 +28,10 @@ typedef struct {
 
 void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, const line_t *line)
 {
-    *oracle = (oracle_t){.verdicts = verdicts, .trial = trial, .line = line};
+    memset(oracle, 0, sizeof *oracle);
+    oracle->verdicts = verdicts;
+    oracle->trial = trial;
+    oracle->line = line;
     verdicts->trials++;
 }
 
@@ -62,9 +68,11 @@ static void follow(reading_t *reading, uint32_t index, const tmini_point_t *poin
         mark->revolution != reading->first.revolution || mark->sample < reading->next;
 
     if (is_odd && !reading->merged && !reading->disorder) {
+        reading->before = reading->last;
         reading->odd = *mark;
         reading->odd_at = index;
     }
+    reading->last = *mark;
     if (mark->revolution != reading->first.revolution) {
         reading->merged = true;
     } else if (mark->sample < reading->next) {
@@ -77,6 +85,19 @@ static void follow(reading_t *reading, uint32_t index, const tmini_point_t *poin
     }
     reading->next = mark->sample + 1;
     reading->angle_q6 = point->angle_q6;
+}
+
+static uint32_t sent_us(const line_t *line, const line_mark_t *mark)
+{
+    for (uint32_t i = 0; i < line->packet_count; i++) {
+        const line_packet_t *const packet = &line->packets[i];
+
+        if (packet->revolution == mark->revolution &&
+            mark->sample < packet->first + packet->samples) {
+            return packet->sent_us;
+        }
+    }
+    return 0;
 }
 
 static reading_t read_points(const line_t *line, const tmini_scan_t *scan)
@@ -148,7 +169,80 @@ static void say(const reading_t *reading, const line_t *line, const tmini_scan_t
     }
 }
 
-void oracle_judge_scan(oracle_t *oracle, const tmini_scan_t *scan)
+/* A point that is in no other scan. */
+static void mark_points(oracle_t *oracle, const tmini_scan_t *scan)
+{
+    bool again = false;
+
+    for (uint32_t i = 0; i < scan->count; i++) {
+        const tmini_point_t *const point = &scan->points[i];
+        line_mark_t mark;
+
+        if (line_identify(oracle->line, point->distance_mm, point->intensity, point->flag, &mark)) {
+            again |= oracle->seen[mark.revolution][mark.sample]++ > 0;
+        }
+    }
+    note(oracle, WRONG_TWICE, again);
+}
+
+/* A look, or a hand-over, may have come later than the longest pause allowed. */
+static bool looks_late(const host_config_t *config)
+{
+    const uint32_t pause_us = config->max_pause_ms * 1000u;
+
+    return config->poll_us > pause_us || config->block_us > pause_us || config->hold_one_in > 0 ||
+           (config->feed == FEED_BLOCKS && config->block_us == 0) || config->stall_one_in > 0 ||
+           (config->handle_one_in > 0 && config->handler_us > pause_us);
+}
+
+/* The longest silence among the bytes sent from one packet's end to the other's. */
+static uint32_t longest_silence_us(const line_t *line, uint32_t from_us, uint32_t to_us)
+{
+    uint32_t longest = 0;
+
+    for (uint32_t i = 1; i < line->size && line->at_us[i] <= to_us; i++) {
+        const uint32_t silence_us = line->at_us[i] - line->at_us[i - 1];
+
+        if (line->at_us[i] > from_us && silence_us > longest) {
+            longest = silence_us;
+        }
+    }
+    return longest;
+}
+
+/* The program knows a pause by the times of its looks. */
+static mixed_t explain(const line_t *line, const host_config_t *config, const reading_t *reading)
+{
+    const uint32_t pause_us = config->max_pause_ms * 1040u + config->poll_us + config->preempt_us +
+                              (config->feed == FEED_BLOCKS ? config->block_us : 0) + 10000u;
+    const uint32_t from_us = sent_us(line, &reading->before);
+    const uint32_t to_us = sent_us(line, &reading->odd);
+
+    if (config->max_pause_ms == 0) {
+        return MIXED_UNTIMED;
+    }
+    if (looks_late(config)) {
+        return MIXED_UNSEEN;
+    }
+    return longest_silence_us(line, from_us, to_us) < pause_us ? MIXED_DRIBBLE : MIXED_STRANGE;
+}
+
+static void judge_mixture(oracle_t *oracle, const host_t *host, const reading_t *reading,
+                          const tmini_scan_t *scan)
+{
+    note(oracle, WRONG_MERGED_COMPLETE, scan->complete);
+    if (!scan->complete) {
+        const mixed_t mixed = explain(oracle->line, &host->config, reading);
+
+        oracle->verdicts->mixed[mixed]++;
+        note(oracle, WRONG_MERGED, mixed == MIXED_STRANGE);
+        if (oracle->speaks) {
+            printf("  mixed: %s\n", oracle_mixed_name(mixed));
+        }
+    }
+}
+
+void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t *scan)
 {
     reading_t reading = read_points(oracle->line, scan);
 
@@ -159,9 +253,11 @@ void oracle_judge_scan(oracle_t *oracle, const tmini_scan_t *scan)
     oracle->verdicts->points += scan->count;
     oracle->verdicts->complete += scan->complete ? 1 : 0;
     note(oracle, WRONG_POINT, reading.false_point);
-    note(oracle, WRONG_MERGED, reading.merged);
-    note(oracle, WRONG_MERGED_COMPLETE, reading.merged && scan->complete);
+    if (reading.merged) {
+        judge_mixture(oracle, host, &reading, scan);
+    }
     note(oracle, WRONG_ORDER, reading.disorder && !reading.merged);
+    mark_points(oracle, scan);
     if (!reading.merged && !reading.false_point) {
         read_end(&reading, oracle->line, scan);
         judge_completeness(oracle, &reading, scan);
@@ -179,27 +275,73 @@ void oracle_judge_account(oracle_t *oracle, const host_t *host)
                            counters.bytes_pending);
 }
 
-/* The first revolution begins before its start packet, and the next one may be in the first bytes
- * that come at all: nobody knows how long the line was silent before those. Who holds bytes for 250
- * ms does not know it of the first 250 ms, nor of the last. */
-#define UNCERTAIN_REVOLUTIONS 4u
+/* Whose looks are rare, below which bytes may be held, does not know how long the line was silent
+ * before the first bytes, nor after the last; and at its end the line is silent while bytes that
+ * wait for room still come. */
+#define UNCERTAIN_US 250000u
+#define WATCHED_US 30000u
+#define BYTE_US 76u
 
-static uint32_t first_certain(const host_t *host)
+static bool is_certain(const line_t *line, const host_config_t *config, uint32_t revolution)
 {
-    const bool holds = host->config.feed == FEED_BLOCKS && host->config.block_us == 0;
+    const uint32_t turn_us = 100000000u / line->config.frequency_chz;
+    const uint32_t waits_us = config->asks_room ? config->block_size * BYTE_US : 0;
+    const uint32_t look_us = config->poll_us > UNCERTAIN_US ? config->poll_us : UNCERTAIN_US;
+    const bool is_watched = config->poll_us <= WATCHED_US && config->block_us > 0;
 
-    return holds ? UNCERTAIN_REVOLUTIONS : 2;
+    return revolution > (is_watched ? 0 : look_us / turn_us + 2) &&
+           revolution + 2 + (look_us + waits_us) / turn_us < line->config.revolutions;
 }
 
 static void judge_cost(oracle_t *oracle, const host_t *host)
 {
     const line_t *const line = oracle->line;
 
-    for (uint32_t i = first_certain(host); i + UNCERTAIN_REVOLUTIONS < line->config.revolutions;
-         i++) {
-        if (!line->touched[i] && line->counts[i] <= host->config.max_points) {
+    for (uint32_t i = 0; i < line->config.revolutions; i++) {
+        if (!line->touched[i] && line->counts[i] <= host->config.max_points &&
+            is_certain(line, &host->config, i)) {
             oracle->verdicts->untouched++;
             note(oracle, WRONG_COST, !oracle->delivered[i]);
+        }
+    }
+}
+
+/* Of a packet, how many points are in exactly one scan. */
+static uint32_t in_one_scan(const oracle_t *oracle, const line_packet_t *packet)
+{
+    uint32_t count = 0;
+
+    for (uint32_t i = 0; i < packet->samples; i++) {
+        count += oracle->seen[packet->revolution][packet->first + i] == 1 ? 1 : 0;
+    }
+    return count;
+}
+
+/* From the first start packet on; a scan that is not finished is one. */
+static void judge_points(oracle_t *oracle, const host_t *host)
+{
+    const line_t *const line = oracle->line;
+    const tmini_builder_t *const builder = &host->lidar.decoder.builder;
+    bool begun = false;
+
+    if (builder->open) {
+        mark_points(oracle, &builder->scan);
+    }
+    for (uint32_t i = 0; i < line->packet_count; i++) {
+        const line_packet_t *const packet = &line->packets[i];
+
+        begun |= packet->is_start && packet->missing == 0;
+        if (begun && packet->missing == 0) {
+            const uint32_t in_one = in_one_scan(oracle, packet);
+
+            oracle->verdicts->intact += packet->samples;
+            oracle->verdicts->in_one += in_one;
+            note(oracle, WRONG_LOSS, in_one < packet->samples);
+            if (oracle->speaks && in_one < packet->samples) {
+                printf("  packet of revolution %u, samples %u to %u, sent at %u ms\n",
+                       packet->revolution, packet->first, packet->first + packet->samples - 1,
+                       packet->sent_us / 1000);
+            }
         }
     }
 }
@@ -214,24 +356,40 @@ void oracle_end(oracle_t *oracle, const host_t *host)
     oracle->verdicts->gaps_told += host->gaps_told;
     oracle_judge_account(oracle, host);
     note(oracle, WRONG_REMAINDER, counters.bytes_pending > 0);
-    /* What an overflow has cost cannot be known from outside. */
-    if (counters.bytes_overrun == 0 && (host->gaps_told == 0 || host->config.feed != FEED_DMA)) {
+    /* What DMA has overwritten cannot be known from outside. */
+    if (host->config.feed != FEED_DMA || (counters.bytes_overrun == 0 && host->gaps_told == 0)) {
         judge_cost(oracle, host);
+        if (!host->was_lost && host->config.max_points == HOST_POINTS) {
+            judge_points(oracle, host);
+        }
     }
 }
 
 const char *oracle_name(wrong_t wrong)
 {
     static const char *const names[WRONG_KINDS] = {
-        [WRONG_MERGED] = "scans of two revolutions",
-        [WRONG_MERGED_COMPLETE] = "  of which complete",
+        [WRONG_MERGED_COMPLETE] = "complete scans of two revolutions",
+        [WRONG_MERGED] = "others of two, unexplained",
         [WRONG_POINT] = "scans with points never sent",
         [WRONG_ORDER] = "scans out of order",
         [WRONG_COMPLETE] = "complete, but something is missing",
         [WRONG_SILENCE] = "something missing, without a word",
+        [WRONG_TWICE] = "scans with points of an earlier one",
+        [WRONG_LOSS] = "intact packets in no scan",
         [WRONG_ACCOUNT] = "accounts that do not balance",
         [WRONG_REMAINDER] = "bytes left for ever",
         [WRONG_COST] = "whole revolutions not complete"};
 
     return names[wrong];
+}
+
+const char *oracle_mixed_name(mixed_t mixed)
+{
+    static const char *const names[MIXED_KINDS] = {[MIXED_UNTIMED] = "pauses are not judged",
+                                                   [MIXED_UNSEEN] =
+                                                       "a look or a hand-over came late",
+                                                   [MIXED_DRIBBLE] = "silences too short to count",
+                                                   [MIXED_STRANGE] = "unexplained"};
+
+    return names[mixed];
 }

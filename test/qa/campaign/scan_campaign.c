@@ -4,7 +4,7 @@
 /* campaign SCANS [SEED [MODE [TRIAL]]]
  *
  * Do scans ever lie? Runs the library in virtual time over a line that falls silent in mid-scan,
- * under programs that are busy for too long, with receivers that lose bytes, until so many scans
+ * under programs that are busy for too long, with receivers that lose bytes, until SCANS scans
  * have been delivered in each mode (or in the one given), and judges every one of them:
  * campaign_oracle.h says how. Exit status 0 if none lied, 1 if any did, 2 on wrong usage. The same
  * seed does the same; TRIAL runs that one alone. */
@@ -60,15 +60,33 @@ static host_config_t draw_host(random_t *random)
                            .access_ns = one_of(random, accesses_ns, 4),
                            .block_us = random_between(random, 500, 10000),
                            .asks_room = random_below(random, 2) == 0,
+                           .reports_held = random_below(random, 2) == 0,
                            .block_size = 2048,
                            .preempt_us = 5000,
-                           .preempt_one_in = 20};
+                           .preempt_one_in = 20,
+                           .clock_ppm = (int32_t)random_between(random, 0, 60000) - 30000,
+                           .max_pause_ms = 30,
+                           .tells_twice = random_below(random, 2) == 0};
 }
 
 static void draw_nothing(host_config_t *config, random_t *random)
 {
     (void)config;
     (void)random;
+}
+
+/* The program is busy for nine tenths of what the layer below can hold, which it reports. */
+static void draw_bridged(host_config_t *config, random_t *random)
+{
+    config->feed = FEED_BLOCKS;
+    config->poll_us = random_between(random, 200, 10000);
+    config->block_us = random_between(random, 200, 2000);
+    config->asks_room = true;
+    config->reports_held = true;
+    config->block_size = random_below(random, 2) == 0 ? 2048 : 8192;
+    config->handle_one_in = random_between(random, 1, 20);
+    config->handler_us = 600000;
+    config->is_bridged = true;
 }
 
 static void draw_overflow(host_config_t *config, random_t *random)
@@ -89,8 +107,40 @@ static void draw_stalls(host_config_t *config, random_t *random)
     config->feed = FEED_DMA;
     config->rx_size = (size_t)1 << random_between(random, 9, 13);
     config->stall_laps = 9;
+    config->false_gap_one_in = random_below(random, 2) == 0 ? 100 : 0;
     config->stall_one_in = random_between(random, 50, 400);
     config->preempt_one_in = random_between(random, 20, 400);
+}
+
+/* The task that hands over is held up again and again. */
+static void draw_hold_ups(host_config_t *config, random_t *random)
+{
+    config->feed = FEED_BLOCKS;
+    config->rx_size = (size_t)1 << random_between(random, 10, 16);
+    config->poll_us = 1000;
+    config->block_us = 1000;
+    config->block_size = 4096;
+    config->hold_one_in = random_between(random, 20, 400);
+}
+
+/* The program polls rarely, and the ring is large. */
+static void draw_rare_polls(host_config_t *config, random_t *random)
+{
+    static const uint32_t polls_us[] = {100000, 350000, 500000, 700000, 1100000};
+
+    config->poll_us = one_of(random, polls_us, 5);
+    config->rx_size = (size_t)1 << random_between(random, 13, 16);
+}
+
+static void draw_limits(host_config_t *config, random_t *random)
+{
+    static const uint32_t limits_ms[] = {0, 70, 250};
+
+    config->max_pause_ms = (uint16_t)one_of(random, limits_ms, 3);
+    config->rx_size = (size_t)1 << random_between(random, 11, 16);
+    if (random_below(random, 3) == 0) {
+        draw_hold_ups(config, random);
+    }
 }
 
 /* A layer below holds all bytes, and the program asks for them only now and then. */
@@ -111,6 +161,10 @@ static void draw_everything(host_config_t *config, random_t *random)
     draw_overflow(config, random);
     if (random_below(random, 4) == 0) {
         draw_held(config, random);
+    } else if (random_below(random, 4) == 0) {
+        draw_hold_ups(config, random);
+    } else if (random_below(random, 4) == 0) {
+        draw_limits(config, random);
     }
     if (random_below(random, 8) == 0) {
         config->max_points = random_between(random, 1, 500);
@@ -121,7 +175,15 @@ static const campaign_mode_t modes[] = {
     {"healthy", "nothing goes wrong", false, true, draw_nothing},
     {"held", "nothing goes wrong; 100 to 250 ms between polls, bytes held below", false, true,
      draw_held},
+    {"bridged",
+     "nothing goes wrong; the program is busy for as long as a layer below can hold bytes", false,
+     true, draw_bridged},
     {"pause", "the line falls silent for 0 to 5 turns", true, false, draw_nothing},
+    {"hold-up", "the same; polled each millisecond, and what comes is held up for 20 to 95 ms",
+     true, false, draw_hold_ups},
+    {"rare", "the same; polled each 100 to 1100 ms, ring of 8192 to 65536", true, false,
+     draw_rare_polls},
+    {"limits", "the same; max_pause_ms of 0, 70 or 250", true, false, draw_limits},
     {"overflow", "the program is busy for 1 to 600 ms, ring of 256 to 8192", false, false,
      draw_overflow},
     {"stall", "DMA goes on for 0 to 9 laps while the CPU stands still", false, false, draw_stalls},
@@ -138,7 +200,7 @@ static void poll_until_nothing(oracle_t *oracle)
 
     while ((event = host_poll(&host)) != TMINI_EVENT_NONE) {
         if (event == TMINI_EVENT_SCAN) {
-            oracle_judge_scan(oracle, tmini_scan(&host.lidar));
+            oracle_judge_scan(oracle, &host, tmini_scan(&host.lidar));
             host_handle_scan(&host);
         }
     }
@@ -165,11 +227,15 @@ static void say_what_is_tried(void)
                    line.at_us[i] / 1000, before->revolution, after->revolution);
         }
     }
-    printf("fed by %s, ring %zu, polled every %u us, blocks of %u every %u us, busy one in %u for "
-           "up to %u us, pre-empted one in %u for up to %u us, stalled one in %u\n",
-           feeds[config->feed], config->rx_size, config->poll_us, config->block_size,
-           config->block_us, config->handle_one_in, config->handler_us, config->preempt_one_in,
-           config->preempt_us, config->stall_one_in);
+    printf("fed by %s%s%s, ring %zu, polled every %u us, blocks of %u every %u us\n",
+           feeds[config->feed], config->asks_room ? " that wait for room" : "",
+           config->reports_held ? " and are reported" : "", config->rx_size, config->poll_us,
+           config->block_size, config->block_us);
+    printf(
+        "busy for up to %u us: one scan in %u; pre-empted for up to %u us: one poll in %u; stalled "
+        "one in %u, held up one in %u; clock %+d ppm, max_pause_ms %u\n",
+        config->handler_us, config->handle_one_in, config->preempt_us, config->preempt_one_in,
+        config->stall_one_in, config->hold_one_in, (int)config->clock_ppm, config->max_pause_ms);
 }
 
 static void run_trial(const campaign_mode_t *mode, uint64_t seed, uint64_t trial, bool speaks,
@@ -182,6 +248,7 @@ static void run_trial(const campaign_mode_t *mode, uint64_t seed, uint64_t trial
     const line_config_t line_config = draw_line(&random);
     host_config_t host_config = draw_host(&random);
     mode->draw(&host_config, &random);
+    host_config.reports_held |= host_config.asks_room; /* As tmini_feed() demands. */
     line_make(&line, &line_config, &random);
     if (mode->interrupts_line) {
         line_interrupt(&line, &random);
@@ -215,7 +282,7 @@ static bool lied(const campaign_mode_t *mode, const verdicts_t *verdicts)
     uint64_t wrongs = 0;
 
     for (unsigned wrong = 0; wrong < WRONG_KINDS; wrong++) {
-        if (wrong != WRONG_COST || mode->costs_nothing) {
+        if ((wrong != WRONG_COST && wrong != WRONG_LOSS) || mode->costs_nothing) {
             wrongs += verdicts->wrongs[wrong];
         }
     }
@@ -226,7 +293,7 @@ static void report(const campaign_mode_t *mode, const verdicts_t *verdicts)
 {
     printf("%s: %s\n", mode->name, mode->what);
     printf("  %llu trials, %llu scans (%llu complete), %llu points, %llu bytes, "
-           "%llu overrun, %llu losses told\n",
+           "%llu overrun, %llu losses reported\n",
            (unsigned long long)verdicts->trials, (unsigned long long)verdicts->scans,
            (unsigned long long)verdicts->complete, (unsigned long long)verdicts->points,
            (unsigned long long)verdicts->bytes, (unsigned long long)verdicts->overrun,
@@ -234,6 +301,16 @@ static void report(const campaign_mode_t *mode, const verdicts_t *verdicts)
     printf("  %llu revolutions came whole for certain; %llu holes of less than 4 degrees left no "
            "trace\n",
            (unsigned long long)verdicts->untouched, (unsigned long long)verdicts->invisible);
+    printf("  %llu intact points, %llu of them in exactly one scan: %.4f %%\n",
+           (unsigned long long)verdicts->intact, (unsigned long long)verdicts->in_one,
+           verdicts->intact > 0 ? 100.0 * (double)verdicts->in_one / (double)verdicts->intact
+                                : 0.0);
+    for (unsigned mixed = 0; mixed < MIXED_STRANGE; mixed++) {
+        if (verdicts->mixed[mixed] > 0) {
+            printf("  %8llu incomplete scans of two revolutions: %s\n",
+                   (unsigned long long)verdicts->mixed[mixed], oracle_mixed_name((mixed_t)mixed));
+        }
+    }
     for (unsigned wrong = 0; wrong < WRONG_KINDS; wrong++) {
         printf("  %8llu %s", (unsigned long long)verdicts->wrongs[wrong],
                oracle_name((wrong_t)wrong));

@@ -196,7 +196,7 @@ static void seal(uint8_t *data, size_t size)
     }
 }
 
-/* Puts a packet of up to `lsn` samples over `width` behind the rest; returns the new size. */
+/* Puts a packet of up to `lsn` samples over `width` after the rest; returns the new size. */
 static size_t append(uint8_t *data, size_t size, size_t max_size, uint8_t lsn, uint16_t from,
                      uint16_t width)
 {

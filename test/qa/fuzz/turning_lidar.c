@@ -8,7 +8,7 @@
 #include "encoder.h"
 #include "reference_decoder.h"
 
-/* As a unit at 6.08 Hz, section 9.6, but that no packet behind the first is so small that its loss
+/* As a unit at 6.08 Hz, section 9.6, but that no packet after the first is so small that its loss
  * without a trace would be within the jitter of 4 degrees. */
 #define PACKETS 18u
 #define LAST_SAMPLES 17u

@@ -23,7 +23,7 @@ bool any_bool(void)
 /* The producer may know of some room already. */
 static void let_stop_be_ahead(tmini_ring_t *ring)
 {
-    ring->origin = (uintptr_t)&ring->memory[ring->head & ring->mask] - ring->head;
+    ring->origin = (uintptr_t)&ring->memory[ring->head & (ring->size - 1)] - ring->head;
     ring->stop = nondet_size();
     ASSUME(ring_is_sound(ring));
 }
@@ -40,9 +40,8 @@ tmini_ring_t any_ring_of(size_t size)
     fill_memory(size);
     tmini_ring_t ring = {.memory = ring_memory,
                          .size = size,
-                         .mask = size - 1,
                          .window = any_bool() ? size / 2 : size,
-                         .limit = nondet_size(),
+                         .tail = nondet_size(),
                          .head = nondet_size(),
                          .overrun = nondet_size()};
     let_stop_be_ahead(&ring);
@@ -59,16 +58,14 @@ tmini_ring_t any_early_ring(size_t size)
     fill_memory(size);
     const bool dma = FED_BY_DMA;
     const bool is_closed = !dma && any_bool();
-    const uint8_t limit = nondet_byte();
+    const size_t tail = (size_t)nondet_byte() - size;
     const uint16_t unread = nondet_half();
     ASSUME(dma || unread <= size);
     tmini_ring_t ring = {.memory = ring_memory,
                          .size = size,
-                         .mask = size - 1,
                          .window = dma ? size / 2 : size,
-                         .limit = limit,
-                         .head =
-                             (size_t)limit - size + unread + (is_closed ? TMINI_RING_CLOSED : 0)};
+                         .tail = tail,
+                         .head = tail + unread + (is_closed ? TMINI_RING_CLOSED : 0)};
     let_stop_be_ahead(&ring);
     return ring;
 }
@@ -100,7 +97,7 @@ static void come(tmini_ring_t *ring)
 {
     const size_t count = nondet_byte();
     if (!tmini_ring_is_dma(ring)) {
-        const size_t room = ring->limit - ring->head;
+        const size_t room = ring->tail + ring->size - ring->head;
         const bool is_open = room <= ring->size;
         ASSUME(count <= (is_open ? room : 0));
         if (any_bool()) {

@@ -31,7 +31,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { HEAD, LIMIT, OVERRUN, CELL, CELLS = 4, LOCATIONS = CELL + CELLS };
+enum { HEAD, TAIL, OVERRUN, CELL, CELLS = 4, LOCATIONS = CELL + CELLS };
 enum { PRODUCER, CONSUMER, THREADS };
 
 /* Where a thread's program stands when it has come to its end. */
@@ -39,7 +39,7 @@ enum { PRODUCER, CONSUMER, THREADS };
 
 #define STORES_MAX 12
 
-/* By so much the producer moves its index to close the ring. */
+/* By this much the producer moves its index to close the ring. */
 #define CLOSED 64u
 
 typedef struct {
@@ -55,7 +55,7 @@ typedef struct {
     uint8_t clock[THREADS];
     uint8_t unfenced[LOCATIONS]; /* What a fence would let it see. */
     uint8_t index;               /* Its own: head, or tail. */
-    uint8_t stop;                /* The producer's: where it looks at the limit again. */
+    uint8_t stop;                /* The producer's: where it looks at the tail again. */
     uint8_t value;               /* Loaded last, */
     uint8_t refused; /* and what its store tells of that: or, of the producer, all of them. */
     uint8_t turns;   /* Bytes put, or looks taken. */
@@ -76,14 +76,14 @@ typedef struct {
 typedef enum {
     NOTHING,
     CELLS_OWN, /* Of DMA's bytes: never weakened. */
-    PUT_LOADS_LIMIT,
+    PUT_LOADS_TAIL,
     PUT_STORES_HEAD,
     REFUSE_STORES_OVERRUN,
     REFUSE_CLOSES,
-    GAP_LOADS_LIMIT,
+    GAP_LOADS_TAIL,
     GAP_CLOSES,
     TAKE_LOADS_HEAD,
-    TAKE_STORES_LIMIT,
+    TAKE_STORES_TAIL,
     TAKE_OPENS,
     COUNT_LOADS_OVERRUN,
     PUBLISH_STORES_HEAD,
@@ -165,7 +165,7 @@ static void see(uint8_t *seen, const uint8_t *other, size_t count)
     }
 }
 
-/* The load's `choice`th possibility, if there are so many. */
+/* The load's `choice`th possibility, if there are this many. */
 static bool load(state_t *state, thread_t *thread, unsigned location, access_t access,
                  unsigned choice)
 {
@@ -244,10 +244,10 @@ static void next_put(thread_t *thread)
 static bool look_ahead(state_t *state, thread_t *thread, unsigned choice)
 {
     const uint8_t refused = thread->refused;
-    if (!load(state, thread, LIMIT, PUT_LOADS_LIMIT, choice)) {
+    if (!load(state, thread, TAIL, PUT_LOADS_TAIL, choice)) {
         return false;
     }
-    const uint8_t room = (uint8_t)(thread->value - thread->index);
+    const uint8_t room = (uint8_t)(thread->value + bounds.size - thread->index);
     const uint8_t to_end = (uint8_t)(bounds.size - (thread->index & (bounds.size - 1)));
     thread->refused = refused;
     if (room == 0 || room > bounds.size) {
@@ -277,11 +277,11 @@ static bool begin_put(state_t *state, thread_t *thread, unsigned choice)
 static bool begin_gap(state_t *state, thread_t *thread, unsigned choice)
 {
     const uint8_t refused = thread->refused;
-    if (!load(state, thread, LIMIT, GAP_LOADS_LIMIT, choice)) {
+    if (!load(state, thread, TAIL, GAP_LOADS_TAIL, choice)) {
         return false;
     }
     thread->refused = refused;
-    if ((uint8_t)(thread->value - thread->index) <= bounds.size) {
+    if ((uint8_t)(thread->value + bounds.size - thread->index) <= bounds.size) {
         thread->at = GAP_CLOSE;
     } else {
         next_put(thread);
@@ -341,7 +341,7 @@ enum {
     TAKE_BEGINS,
     TAKE_UNREAD,
     TAKE_BYTE,
-    TAKE_LIMIT,
+    TAKE_TAIL,
     TAKE_CLOSED,
     TAKE_AGAIN,
     TAKE_COUNT,
@@ -409,7 +409,7 @@ static bool look(state_t *state, thread_t *thread, unsigned choice)
 static void give_back(state_t *state, thread_t *thread, access_t access, unsigned count)
 {
     thread->index = (uint8_t)(thread->index + count);
-    store(state, thread, LIMIT, access, thread->index + bounds.size);
+    store(state, thread, TAIL, access, thread->index);
     next_take(thread);
 }
 
@@ -437,10 +437,10 @@ static bool take(state_t *state, unsigned choice)
         return look(state, thread, choice);
     case TAKE_BYTE:
         judge(thread, read_byte(state, thread->index & (bounds.size - 1)));
-        thread->at = TAKE_LIMIT;
+        thread->at = TAKE_TAIL;
         break;
-    case TAKE_LIMIT:
-        give_back(state, thread, TAKE_STORES_LIMIT, 1);
+    case TAKE_TAIL:
+        give_back(state, thread, TAKE_STORES_TAIL, 1);
         break;
     case TAKE_COUNT:
         return count_refused(state, thread, choice);
@@ -557,7 +557,6 @@ static void begin(state_t *state)
     for (unsigned location = 0; location < LOCATIONS; location++) {
         state->counts[location] = 1;
     }
-    state->stores[LIMIT][0].value = (uint8_t)bounds.size;
 }
 
 /* Returns what goes wrong, or NULL. */
@@ -583,15 +582,15 @@ static const struct {
     bool is_needed;
 } barriers[] = {
     {NOTHING, "as it is", false, false},
-    {PUT_LOADS_LIMIT, "put: limit, acquire", false, true},
+    {PUT_LOADS_TAIL, "put: tail, acquire", false, true},
     {PUT_STORES_HEAD, "put: head, release", false, true},
     {REFUSE_STORES_OVERRUN, "refuse: overrun, release", false, false},
     {REFUSE_CLOSES, "refuse: head, release", false, true},
-    {GAP_LOADS_LIMIT, "gap: limit, acquire", false, false},
+    {GAP_LOADS_TAIL, "gap: tail, acquire", false, false},
     {GAP_CLOSES, "gap: head, release", false, true},
     {TAKE_LOADS_HEAD, "unread, closed: head, acquire", false, true},
-    {TAKE_STORES_LIMIT, "discard: limit, release", false, true},
-    {TAKE_OPENS, "open: limit, release", false, true},
+    {TAKE_STORES_TAIL, "discard: tail, release", false, true},
+    {TAKE_OPENS, "open: tail, release", false, true},
     {COUNT_LOADS_OVERRUN, "overrun, acquire", false, false},
     {NOTHING, "DMA, as it is", true, false},
     {PUBLISH_STORES_HEAD, "publish: head, release", true, true},

@@ -17,7 +17,7 @@ bool same_expectations(const tmini_parser_t *before, const tmini_parser_t *after
 bool next_keeps_its_word(const tmini_parser_t *before, const tmini_parser_t *after,
                          tmini_frame_type_t type);
 
-/* Of tmini_parser_skip_to() and tmini_parser_abandon(). */
+/* Of tmini_parser_skip_all() and tmini_parser_abandon(). */
 bool skip_keeps_its_word(const tmini_parser_t *before, const tmini_parser_t *after);
 
 #endif

@@ -104,9 +104,9 @@ static void any_decoder(void)
     tmini_decoder_t *const decoder = &lidar.decoder;
     decoder->parser.frame.ring = &lidar.ring;
     decoder->parser.awaiting = any_bool();
-    decoder->packet_waits = any_bool();
     decoder->packet.frame = &decoder->parser.frame;
     decoder->builder.open = any_bool();
+    decoder->builder.ended = any_bool();
     decoder->builder.scan.complete = any_bool();
     decoder->builder.scan.upside_down = any_bool();
     decoder->builder.scan.points = points;
@@ -122,11 +122,10 @@ static void any_lidar(void)
     lidar.is_settled = any_bool();
     lidar.is_recovery_off = any_bool();
     lidar.is_listen_only = any_bool();
-    lidar.line.are_held = any_bool();
+    lidar.line.late_ms = nondet_half();
     lidar.command.sync_sent = any_bool();
     lidar.monitor.is_complete = any_bool();
     lidar.monitor.ranges = nondet_byte();
-    lidar.monitor.is_tried_again = any_bool();
     any_link();
     any_decoder();
     is_half_sent = lidar.command.sync_sent;
@@ -174,7 +173,7 @@ static void any_polled_lidar(void)
 static void any_receiving_lidar(void)
 {
     any_polled_lidar();
-    ASSUME(!lidar.decoder.packet_waits && lidar.pending == 0);
+    ASSUME(!lidar.decoder.builder.ended && lidar.pending == 0);
 }
 
 void prove_driver_look(void)
@@ -204,7 +203,7 @@ void prove_driver_next(void)
     any_polled_lidar();
     ASSUME(lidar.pending == 0);
     const tmini_frame_type_t type = tmini_decoder_next(&lidar.decoder, 0);
-    CLAIM(!lidar.decoder.packet_waits);
+    CLAIM(!lidar.decoder.builder.ended);
     CLAIM(type == TMINI_FRAME_REPLY || is_sound());
     REACHED();
 }
@@ -251,7 +250,7 @@ void prove_driver_keep_time(void)
 void prove_driver_poll(void)
 {
     any_lidar();
-    ASSUME(!lidar.decoder.packet_waits); /* receive() has added it. */
+    ASSUME(!lidar.decoder.builder.ended); /* receive() has added it. */
     const unsigned before = lidar.pending;
     const tmini_event_t event = tmini_poll(&lidar);
     CLAIM(is_sound());
@@ -264,7 +263,7 @@ void prove_driver_poll(void)
 /* ---- Commands ---- */
 
 /* Begun only where a query may be; otherwise nothing is touched. */
-static void prove_query(tmini_status_t (*query)(tmini_t *), tmini_command_code_t operation)
+static void prove_query(tmini_status_t (*query)(tmini_t *), tmini_event_t operation)
 {
     any_lidar();
     const tmini_t before = lidar;
@@ -287,25 +286,25 @@ static void prove_query(tmini_status_t (*query)(tmini_t *), tmini_command_code_t
 
 void prove_driver_request_info(void)
 {
-    prove_query(tmini_request_info, TMINI_COMMAND_GET_INFO);
+    prove_query(tmini_request_info, TMINI_EVENT_INFO);
     REACHED();
 }
 
 void prove_driver_request_health(void)
 {
-    prove_query(tmini_request_health, TMINI_COMMAND_GET_HEALTH);
+    prove_query(tmini_request_health, TMINI_EVENT_HEALTH);
     REACHED();
 }
 
 void prove_driver_request_frequency(void)
 {
-    prove_query(tmini_request_frequency, TMINI_COMMAND_GET_FREQUENCY);
+    prove_query(tmini_request_frequency, TMINI_EVENT_FREQUENCY);
     REACHED();
 }
 
 void prove_driver_reboot(void)
 {
-    prove_query(tmini_reboot, TMINI_COMMAND_REBOOT);
+    prove_query(tmini_reboot, TMINI_EVENT_REBOOTED);
     REACHED();
 }
 

@@ -22,9 +22,9 @@ static void change(tmini_parser_t *parser)
     parser->frame.ring = ring;
     parser->awaited = awaited;
     parser->awaiting = any_bool();
-    ring->limit += nondet_byte();
+    ring->tail += nondet_byte();
     if (tmini_ring_is_closed(ring) && any_bool()) {
-        ring->limit += TMINI_RING_CLOSED;
+        ring->tail += TMINI_RING_CLOSED;
     }
 }
 
@@ -74,21 +74,21 @@ void tmini_parser_counters(const tmini_parser_t *parser, tmini_parser_counters_t
     *counters = parser->counters;
 }
 
-void tmini_parser_skip_to(tmini_parser_t *parser, size_t position)
+void tmini_parser_skip_all(tmini_parser_t *parser)
 {
     const tmini_parser_t before = *parser;
-    (void)position;
     CLAIM(parser_is_sound(parser));
     change(parser);
     ASSUME(skip_keeps_its_word(&before, parser));
 }
 
-void tmini_parser_abandon(tmini_parser_t *parser)
+bool tmini_parser_abandon(tmini_parser_t *parser)
 {
     const tmini_parser_t before = *parser;
     CLAIM(parser_is_sound(parser) && parser->frame.size == 0);
     change(parser);
     ASSUME(skip_keeps_its_word(&before, parser));
+    return any_bool();
 }
 
 /* ---- Packet ---- */
@@ -109,13 +109,14 @@ bool tmini_packet_has_range(const tmini_packet_t *packet)
 
 /* ---- Scan ---- */
 
-static void change_builder(tmini_builder_t *builder, bool open)
+static void change_builder(tmini_builder_t *builder, bool open, bool ended)
 {
     const tmini_builder_t before = *builder;
     *builder = nondet_builder();
     builder->capacity = before.capacity;
     builder->scan.points = before.scan.points;
     builder->open = open;
+    builder->ended = ended;
     builder->scan.complete = any_bool();
     builder->scan.upside_down = any_bool();
     ASSUME(builder_is_sound(builder));
@@ -130,13 +131,14 @@ tmini_status_t tmini_builder_init(tmini_builder_t *builder, tmini_point_t *buffe
     }
     builder->scan.points = buffer;
     builder->capacity = (uint16_t)capacity;
-    change_builder(builder, false);
+    change_builder(builder, false, false);
     return TMINI_OK;
 }
 
 void tmini_builder_discard(tmini_builder_t *builder)
 {
     builder->open = false;
+    builder->ended = false;
     builder->origin_q6 = UINT16_MAX;
 }
 
@@ -154,7 +156,7 @@ bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, u
     CLAIM(builder_is_sound(builder) && packet_is_sound(packet, packet->frame));
     const bool closes = builder->open && (is_start || any_bool());
     if (builder->open || is_start || builder->origin_q6 != UINT16_MAX) {
-        change_builder(builder, !closes);
+        change_builder(builder, !closes, closes);
     }
     return closes;
 }

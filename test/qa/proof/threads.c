@@ -3,7 +3,7 @@
 
 /* threads MILLIONS
  *
- * The ring between two threads, for so many million bytes put: those taken must be in order, and
+ * The ring between two threads, for this many million bytes put: those taken must be in order, and
  * where some are missing the ring was found closed. threads.sh runs it under ThreadSanitizer. Exit
  * status 0 if all was right, 1 if not, 2 on wrong usage. */
 

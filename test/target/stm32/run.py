@@ -241,7 +241,7 @@ def read_truth(path):
 
 
 def beginnings(packets):
-    """The scans that these packets make when a pause cuts it short behind one of them."""
+    """The scans that these packets make when a pause cuts it short after one of them."""
     count, crc = 0, 0
     for packet in packets:
         count += len(packet.points)
@@ -286,7 +286,7 @@ def scan_of(line):
 
 
 def unseen_at_the_end(texts, packets):
-    """How many revolutions came behind the last one that became a scan."""
+    """How many revolutions came after the last one that became a scan."""
     seen = {scan_of(line) for line in scan_lines(texts)}
     count = 0
     for revolution in reversed(read_revolutions(packets)):
@@ -430,8 +430,8 @@ def parse_arguments():
     parser.add_argument("--fault", action="append", default=[], help="KIND=RATE, as tmini-sim's")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--scans", type=int, default=20,
-                        help="at least so many complete ones; with --lossy, of any kind")
-    parser.add_argument("--seconds", type=float, default=0, help="at least so long")
+                        help="at least this many complete ones; with --lossy, of any kind")
+    parser.add_argument("--seconds", type=float, default=0, help="at least this long")
     parser.add_argument("--lossy", action="store_true",
                         help="the firmware loses bytes: pass if, and only if, that is found")
     return parser.parse_args()

@@ -13,8 +13,8 @@
  * may be missing. What follows is a scan without a beginning, never complete: it ends with the next
  * start packet, or where that would be, by the angle of the last one that came.
  *
- * A scan that took more than one and a half turns, by the frequency that the lidar reports, is not
- * complete: two revolutions that join without a seam are whole turns apart.
+ * A scan that took more than one and a half turns, by the frequency that the lidar reports, has a
+ * gap: two revolutions that join without a seam are whole turns apart.
  *
  * All functions: one context, the one that parses; no waiting. */
 
@@ -35,10 +35,12 @@ extern "C" {
 typedef struct {
     uint8_t filter;             /**< A combination of tmini_filter_t. */
     bool open;                  /**< A scan is under way. */
+    bool ended;                 /**< One was finished: the packet that ended it is to come again. */
     uint16_t capacity;          /**< Points that the buffer has room for. */
     uint16_t previous_angle_q6; /**< Where the last packet ended. */
     uint16_t origin_q6;         /**< Where the last start packet was; UINT16_MAX: none has come. */
-    uint16_t errors_before;     /**< The parser's checksum errors when it began, modulo 2^16. */
+    uint16_t late_ms;           /**< How much earlier the scan may have begun, */
+    uint16_t next_late_ms;      /**< or the next packet may have come. */
     int16_t swept_q6;           /**< Angle swept since the origin: from -4 degrees on. */
     uint32_t late_scans;        /**< Ended, or not complete, because of time alone. */
     tmini_scan_t scan;          /**< What there is of it. */
@@ -60,6 +62,14 @@ static inline void tmini_builder_use(tmini_builder_t *builder, tmini_point_t *po
 /** Forgets the scan under way and where revolutions begin: nothing is a scan until the next start
  * packet. */
 void tmini_builder_discard(tmini_builder_t *builder);
+
+/** The packets added from now on may have come up to `late_ms` earlier than is said, because their
+ * bytes may have waited: a scan that begins with one took so much longer at most, as far as it
+ * matters for its being complete. */
+static inline void tmini_builder_backdate(tmini_builder_t *builder, uint16_t late_ms)
+{
+    builder->next_late_ms = late_ms;
+}
 
 /** Adds `packet`, which came at `now_ms`, to the scan under way, or begins one. If it does not
  * belong to the scan under way, finishes that instead and returns true: builder->scan is then valid

@@ -11,13 +11,16 @@
  * is dropped whole. Units that send neither LastCRC nor CT information (section 9.1) never become
  * "healthy, version 0.0": their information stays unknown.
  *
- * All functions: one context, the one that parses; no waiting. */
+ * All functions: one context, the one that parses; no waiting.
+ *
+ * With TMINI_NO_CT defined for the whole build, CT information is left out: none is ever known. */
 
 #ifndef TMINI_CT_H
 #define TMINI_CT_H
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "tmini_packet.h"
 
@@ -35,22 +38,24 @@ extern "C" {
 
 /** What has been learned from a unit's CT bytes. Treat the members as private. */
 typedef struct {
-    uint16_t known;  /**< A bit for each index whose trusted CT is valid; all others are 0. */
-    uint16_t gaps;   /**< Of the revolution under way, joined by OR: 0 if nothing was lost. */
-    uint8_t packets; /**< Of that revolution, at most 14; 0 before the first. */
-    uint8_t fields;  /**< Of its fields, so many have come. */
+    uint8_t known;   /**< Indices below this have a trusted CT; all others are 0. */
+    uint8_t packets; /**< Of the revolution under way, at most 14; 0 if its beginning, or a packet
+                      * since, is missing. */
+    uint8_t fields;  /**< How many of its fields have come. */
     uint8_t crc;     /**< Of its CT bytes so far. */
     uint8_t cts;     /**< Those of its point packets, joined by OR: 0 if they say nothing. */
     uint8_t current[TMINI_CT_FIELDS]; /**< CTs of the revolution under way. */
     uint8_t trusted[TMINI_CT_FIELDS]; /**< The newest trusted CT of each field. */
 } tmini_ct_t;
 
-/** What a start packet tells of the revolution that it ends. */
+/** What a start packet shows of the revolution that it ends. */
 typedef enum {
     TMINI_CT_UNKNOWN,   /**< Nothing: no LastCRC, or no CT information. */
     TMINI_CT_CONFIRMED, /**< LastCRC is right: no packet was lost. */
     TMINI_CT_REFUTED,   /**< LastCRC is wrong: a packet was lost, if not LastCRC itself damaged. */
 } tmini_ct_verdict_t;
+
+#if !defined(TMINI_NO_CT)
 
 /** Forgets everything. For a new `ct`, and after a unit may have been exchanged. */
 void tmini_ct_init(tmini_ct_t *ct);
@@ -58,18 +63,46 @@ void tmini_ct_init(tmini_ct_t *ct);
 /** Forgets the revolution under way, which was interrupted; keeps what is known. */
 void tmini_ct_discard(tmini_ct_t *ct);
 
-/** Takes the next packet, and returns what it tells of the revolution that it ends;
+/** Takes the next packet, and returns what it shows of the revolution that it ends;
  * TMINI_CT_UNKNOWN if it ends none. When confirmed, what tmini_ct_read() says is as of now. A few
  * instructions. */
 tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet);
 
-/** The faults that the last trusted revolution told, a combination of tmini_fault_t, or
+/** The faults that the last trusted revolution reported, a combination of tmini_fault_t, or
  * TMINI_FAULTS_UNKNOWN if none has. */
 unsigned tmini_ct_faults(const tmini_ct_t *ct);
 
 /** Writes what is known from trusted revolutions to `info`; each field keeps its value until a
  * newer one is trusted. */
 void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info);
+
+#else /* Left out: units without it are common (section 9.1), and one fault remains known. */
+
+static inline void tmini_ct_discard(tmini_ct_t *ct)
+{
+    (void)ct;
+}
+
+static inline tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)
+{
+    (void)ct;
+    (void)packet;
+    return TMINI_CT_UNKNOWN;
+}
+
+static inline unsigned tmini_ct_faults(const tmini_ct_t *ct)
+{
+    (void)ct;
+    return TMINI_FAULTS_UNKNOWN;
+}
+
+static inline void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
+{
+    (void)ct;
+    memset(info, 0, sizeof *info);
+}
+
+#endif
 
 /** The guard's CRC-8 (CRC-8/MAXIM: reflected polynomial 0x8C, initial value 0; section 7), `crc` so
  * far and then `byte`. Any context. */

@@ -3,7 +3,7 @@
 
 /** @file
  * A frame: a scan packet or a reply that the parser has found (sections 4 and 5). What reads frames
- * (packet, ct, scan) knows this and nothing behind it.
+ * (packet, ct, scan) knows this and nothing below it.
  *
  * The frame's bytes lie in the ring until the parser goes on to the next one. With DMA they may be
  * overwritten there meanwhile: after reading them, ask tmini_frame_intact(). All functions: the
@@ -33,7 +33,7 @@ extern "C" {
 
 /** Where sample `index`, from 0, lies in a packet: bytes from its beginning. */
 #define TMINI_SAMPLE_OFFSET(index) (TMINI_PACKET_HEADER_SIZE + TMINI_SAMPLE_SIZE * (index))
-/** The bytes of a packet of so many samples. */
+/** The bytes of a packet with this many samples. */
 #define TMINI_PACKET_SIZE(samples) TMINI_SAMPLE_OFFSET(samples)
 
 /** A packet or reply that the parser has found. Members may be read. */

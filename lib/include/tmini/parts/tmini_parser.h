@@ -6,7 +6,7 @@
  *
  * The parser works in place: the ring's oldest bytes are the candidate, and stay there until they
  * have proved to be a frame or not. A candidate that fails costs exactly one byte; parsing resumes
- * at the byte behind its first. Hence no intact packet is ever lost to a neighbour's corruption,
+ * at the byte after its first. Hence no intact packet is ever lost to a neighbour's corruption,
  * and what is delivered does not depend on how the bytes were chunked:
  *
  *   If a valid packet begins here, it is delivered; else if the awaited reply begins here, that is;
@@ -41,22 +41,26 @@ extern "C" {
 
 /** The work that one call of tmini_parser_next() may do, in bytes looked at. A candidate's bytes
  * are looked at once, and again for every false header before it whose packet would reach it. */
+#if defined(ARDUINO_ARCH_AVR) /* So that a poll takes less time than the core's 64 bytes last. */
+#define TMINI_PARSER_EFFORT 256u
+#else
 #define TMINI_PARSER_EFFORT 1536u
+#endif
 
-/** To find that a candidate is no frame costs as much as looking at so many bytes. */
+/** To find that a candidate is no frame costs as much as looking at this many bytes. */
 #define TMINI_CANDIDATE_EFFORT 14u
 
 /** What tmini_parser_next() has found. */
 typedef enum {
-    TMINI_FRAME_NONE,   /**< Nothing more can be told from the bytes received so far. */
+    TMINI_FRAME_NONE,   /**< Nothing more is known from the bytes received so far. */
     TMINI_FRAME_MORE,   /**< Nothing yet, but not all bytes have been looked at: call again. */
     TMINI_FRAME_PACKET, /**< A valid scan packet. */
     TMINI_FRAME_REPLY,  /**< The awaited reply. */
 } tmini_frame_type_t;
 
-/** How a reply goes on behind its header (section 4). */
+/** How a reply goes on after its header (section 4). */
 typedef enum {
-    TMINI_REPLY_MODE_SINGLE = 0,     /**< With content of the length that it tells. */
+    TMINI_REPLY_MODE_SINGLE = 0,     /**< With content of the length in its header. */
     TMINI_REPLY_MODE_CONTINUOUS = 1, /**< Without end: packets follow, its length is meaningless. */
 } tmini_reply_mode_t;
 
@@ -81,7 +85,7 @@ typedef struct {
 /** A parser over one ring. Treat the members as private. */
 typedef struct {
     tmini_frame_t frame; /**< Delivered last; its size is 0 while the next one is sought. */
-    uint16_t need;       /**< Bytes without which the candidate cannot be told further. */
+    uint16_t need;       /**< Bytes without which the candidate cannot be judged further. */
     uint16_t effort;     /**< Done up to the end of the last call that sought a frame, as above. */
     uint8_t max_samples; /**< Packets with more are not valid. */
     uint8_t kind;        /**< What the candidate is by its plausible header: tmini_frame_type_t. */
@@ -95,7 +99,7 @@ typedef struct {
  * smaller than the largest packet or reply. */
 tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uint8_t max_samples);
 
-/** Goes on to the next frame, which tmini_parser_frame() then tells. The frame lies at the ring's
+/** Goes on to the next frame, which tmini_parser_frame() then returns. The frame lies at the ring's
  * tail until the next call gives it back. `effort` has been done already, less than
  * TMINI_PARSER_EFFORT: the call is bounded by what is left of that, and one frame. */
 tmini_frame_type_t tmini_parser_next_after(tmini_parser_t *parser, size_t effort);
@@ -121,15 +125,14 @@ tmini_status_t tmini_parser_await(tmini_parser_t *parser, const tmini_reply_head
 /** The bytes that wait in the ring for more to come. */
 size_t tmini_parser_pending(const tmini_parser_t *parser);
 
-/** True if tmini_parser_next() has bytes to look at: those that the candidate needs next have come,
- * or will not come because some were lost. While it is false, the call returns TMINI_FRAME_NONE. */
+/** After tmini_parser_next() has returned TMINI_FRAME_NONE: true if it has bytes to look at again.
+ * Those that the candidate needs next have come, or will not come because some were lost. */
 static inline bool tmini_parser_has_work(const tmini_parser_t *parser)
 {
-    const tmini_frame_t *const frame = &parser->frame;
-    return tmini_ring_ahead(frame->ring) >= (size_t)frame->size + parser->need;
+    return tmini_ring_ahead(parser->frame.ring) >= parser->need;
 }
 
-/** The place in the stream of the byte behind the frame delivered last, to be compared by
+/** The place in the stream of the byte after the frame delivered last, to be compared by
  * tmini_ring_distance(): where parsing goes on. */
 static inline size_t tmini_parser_position(const tmini_parser_t *parser)
 {
@@ -139,14 +142,15 @@ static inline size_t tmini_parser_position(const tmini_parser_t *parser)
 /** Copies the counters. */
 void tmini_parser_counters(const tmini_parser_t *parser, tmini_parser_counters_t *counters);
 
-/** Gives back the frame delivered last, and skips all bytes before that place in the stream,
- * without looking at them. Not for more bytes than have come: then it skips none. */
-void tmini_parser_skip_to(tmini_parser_t *parser, size_t position);
+/** Gives back the frame delivered last, and skips all bytes that have come, without looking at
+ * them. */
+void tmini_parser_skip_all(tmini_parser_t *parser);
 
 /** No more bytes will come (silence, end of a recording): gives up the incomplete candidate by
- * skipping its first byte, and those behind it that can begin no frame. Call tmini_parser_next()
- * again, and both until nothing is pending. Without a pending candidate it does nothing. */
-void tmini_parser_abandon(tmini_parser_t *parser);
+ * skipping its first byte, and those after it that can begin no frame. Call tmini_parser_next()
+ * again, and both until nothing is pending. Returns false, and does nothing, without a pending
+ * candidate. */
+bool tmini_parser_abandon(tmini_parser_t *parser);
 
 #ifdef __cplusplus
 }

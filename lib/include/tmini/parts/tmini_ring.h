@@ -11,7 +11,7 @@
  *   CPU-fed ring   The producer hands over bytes. Once one has found the ring full, the ring is
  *                  closed: it refuses all that follows, and counts it, until the consumer has taken
  *                  everything stored before and opens it again. So bytes are never missing anywhere
- *                  but behind the last one stored, however many were refused, and however often.
+ *                  but after the last one stored, however many were refused, and however often.
  *   DMA ring       Circular DMA writes straight into the ring's memory; the producer only
  *                  publishes how far. The hardware does not see the consumer and may overwrite
  *                  unread bytes: the consumer detects it, because no more than half the ring may
@@ -44,23 +44,22 @@ extern "C" {
  *
  * The indices count bytes and wrap with size_t; the memory's size is a power of two, so that an
  * index modulo the size is always the right place. A side reads its own index as a plain variable:
- * nobody else writes it, so nothing can race with that; what the other side reads is stored
+ * nothing else writes it, so nothing can race with that; what the other side reads is stored
  * atomically.
  *
- * The producer remembers how far it may go: `stop` is the limit as it was when the producer last
- * looked, or the memory's end if that comes first, so that `origin` plus an index is a place up to
- * there. The limit never moves back. So a byte costs a comparison and two stores, and only at the
- * stop, about twice a lap, the producer looks at the limit again. When something else moves head,
- * stop moves with it, and the next byte looks. The head of an all-zero ring is at its stop and at
- * its limit: it refuses every byte. */
+ * The producer remembers how far it may go: `stop` is one size ahead of the tail as it was when the
+ * producer last looked, or the memory's end if that comes first, so that `origin` plus an index is
+ * a place up to there. The tail never moves back. So a byte costs a comparison and two stores, and
+ * only at the stop, about twice a lap, the producer looks at the tail again. When something else
+ * moves head, stop moves with it, and the next byte looks. An all-zero ring has no room: it refuses
+ * every byte. */
 typedef struct {
     size_t head;      /**< Written by the producer: where the next byte goes. */
-    size_t stop;      /**< The producer's own: where head must look at limit again. */
+    size_t stop;      /**< The producer's own: where head must look at the tail again. */
     uintptr_t origin; /**< The producer's own: before stop, head's place is this plus head. */
-    size_t limit;     /**< Written by the consumer: where head must stop, one size ahead of the
-                        * oldest byte not yet given back. */
+    size_t tail;      /**< Written by the consumer: the oldest byte not yet given back. Head stops
+                        * one size ahead of it. */
     uint8_t *memory;  /**< The caller's. */
-    size_t mask;      /**< size - 1: what of an index is a place in memory. */
     size_t overrun;   /**< Written by the producer: bytes refused. */
     size_t size;      /**< Of the memory. */
     size_t window;    /**< Unread bytes that are certainly intact: the size, with DMA half of it. */
@@ -105,7 +104,7 @@ size_t tmini_ring_room(const tmini_ring_t *ring);
  * packet that has come in part. Interrupt-safe; no loop, no wait. */
 void tmini_ring_publish(tmini_ring_t *ring, size_t position);
 
-/** Producer: bytes were lost on their way here, behind the last one stored, and their number is not
+/** Producer: bytes were lost on their way here, after the last one stored, and their number is not
  * known: a receiver's queue overflowed, or circular DMA may have gone a whole lap unseen (then call
  * this before publishing). A CPU-fed ring is closed, as after an overrun; of a DMA ring a lap of
  * the oldest bytes counts as overwritten, and what is left beyond the window: so nothing is read a
@@ -125,7 +124,7 @@ static inline size_t tmini_ring_head(const tmini_ring_t *ring)
 /** The place in the stream of the oldest byte that has not been given back. */
 static inline size_t tmini_ring_tail(const tmini_ring_t *ring)
 {
-    return ring->limit - ring->size;
+    return ring->tail;
 }
 
 /** How many bytes were stored between two places in the stream, below TMINI_RING_CLOSED. When `to`
@@ -154,7 +153,7 @@ static inline bool tmini_ring_is_dma(const tmini_ring_t *ring)
     return ring->window != ring->size;
 }
 
-/** True if bytes are missing behind the last one stored: the ring is closed until all that it holds
+/** True if bytes are missing after the last one stored: the ring is closed until all that it holds
  * has been discarded. */
 static inline bool tmini_ring_is_closed(const tmini_ring_t *ring)
 {
@@ -164,24 +163,19 @@ static inline bool tmini_ring_is_closed(const tmini_ring_t *ring)
 /** True if there is no room for a byte: the whole memory is unread, or the ring is closed. */
 static inline bool tmini_ring_is_full(const tmini_ring_t *ring)
 {
-    return tmini_ring_head(ring) - ring->limit <= SIZE_MAX / 2;
+    return tmini_ring_ahead(ring) >= ring->size;
 }
 
 /** The unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger offset reads
  * another byte of the ring's memory, never one outside it. */
 static inline uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 {
-    /* The limit is a size ahead of the oldest byte: the same place. */
-    return ring->memory[(ring->limit + offset) & ring->mask];
+    return ring->memory[(ring->tail + offset) & (ring->size - 1)];
 }
 
 /** True if nothing that has been read so far can have been overwritten. Only DMA can make it
  * false. */
-static inline bool tmini_ring_intact(const tmini_ring_t *ring)
-{
-    tmini_fence(); /* What has been read was read before the producer's index is read again. */
-    return tmini_ring_ahead(ring) <= ring->window || !tmini_ring_is_dma(ring);
-}
+bool tmini_ring_intact(const tmini_ring_t *ring);
 
 /** Copies `count` unread bytes from `offset` on to `bytes`; offset + count is at most
  * tmini_ring_unread(). A loop over bytes, for a few of them. */
@@ -192,7 +186,7 @@ void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, si
 static inline const uint8_t *tmini_ring_piece(const tmini_ring_t *ring, size_t offset,
                                               size_t *count)
 {
-    const size_t at = (ring->limit + offset) & ring->mask;
+    const size_t at = (ring->tail + offset) & (ring->size - 1);
     const size_t to_end = ring->size - at;
     if (*count > to_end) {
         *count = to_end;

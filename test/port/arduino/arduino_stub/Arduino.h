@@ -24,10 +24,26 @@ inline unsigned long millis()
     return arduino_millis;
 }
 
+enum { INPUT, OUTPUT };
+enum { LOW, HIGH };
+const uint8_t LED_BUILTIN = 13;
+extern uint8_t arduino_pins[64];
+
+inline void pinMode(uint8_t, uint8_t) {}
+
+inline void digitalWrite(uint8_t pin, uint8_t level)
+{
+    arduino_pins[pin] = level;
+}
+
 class Print
 {
   public:
     virtual ~Print() {}
+    virtual int availableForWrite()
+    {
+        return 0;
+    }
     virtual size_t write(uint8_t byte) = 0;
     virtual size_t write(const uint8_t *bytes, size_t count)
     {
@@ -80,6 +96,10 @@ class HardwareSerial : public Stream
     {
         return static_cast<int>(received.size());
     }
+    int availableForWrite() override
+    {
+        return 64;
+    }
     int read() override
     {
         if (received.empty()) {
@@ -104,7 +124,7 @@ class HardwareSerial : public Stream
     /* A byte comes in: into the buffer, or nowhere. */
     void take(uint8_t byte)
     {
-        if (received.size() < rx_size) {
+        if (received.size() < rx_size && is_open) {
             received.push_back(byte);
         } else {
             lost++;
@@ -147,7 +167,11 @@ class HardwareSerial : public Stream
     std::deque<uint8_t> sent;
     unsigned long baud_rate = 0;
     uint32_t line = 0;
+#if defined(SERIAL_RX_BUFFER_SIZE)
+    size_t rx_size = SERIAL_RX_BUFFER_SIZE - 1; /* As where head and tail must differ. */
+#else
     size_t rx_size = 256;
+#endif
     size_t size_at_begin = 0;
     int rx_pin = -1;
     int tx_pin = -1;
@@ -196,5 +220,6 @@ typedef HardwareSerial SerialPort;
 
 extern HardwareSerial Serial;
 extern SerialPort Serial1;
+extern SerialPort Serial2;
 
 #endif

@@ -3,6 +3,8 @@
 
 #include "stm32_model.h"
 
+#include <string.h>
+
 #include "interrupting_atomic.h"
 #include "unity.h"
 
@@ -34,11 +36,34 @@ static void dma_write(uint8_t byte)
     }
 }
 
+static bool has_fifo(void)
+{
+#ifdef STM32_MODEL_SR
+    return false;
+#else
+    return (model_usart.CR1 & MODEL_CR1_FIFOEN) != 0;
+#endif
+}
+
+/* RXNE says that a byte waits, with the FIFO too. */
+static void note_waiting(void)
+{
+    const bool half = has_fifo() && model.waiting >= MODEL_FIFO / 2;
+    model.flags &= ~(MODEL_RXNE | MODEL_RXFT);
+    model.flags |= (model.waiting > 0 ? MODEL_RXNE : 0u) | (half ? MODEL_RXFT : 0u);
+}
+
 static uint8_t take_data(void)
 {
-    model.flags &= ~(MODEL_RXNE | model.seen);
+    const uint8_t byte = model.data[0];
+    if (model.waiting > 1) { /* The last one stays readable. */
+        memmove(model.data, &model.data[1], MODEL_FIFO - 1);
+    }
+    model.waiting = (uint8_t)(model.waiting - (model.waiting > 0));
+    model.flags &= ~model.seen;
     model.seen = 0;
-    return model.data;
+    note_waiting();
+    return byte;
 }
 
 static bool is_dma_requested(void)
@@ -49,33 +74,42 @@ static bool is_dma_requested(void)
 
 static void serve_dma(void)
 {
-    if (is_dma_requested() && model.dma.enabled) {
+    while (is_dma_requested() && model.dma.enabled) {
         dma_write(take_data());
     }
+}
+
+static bool receives(void)
+{
+    const uint32_t on = MODEL_CR1_UE | MODEL_CR1_RE;
+    return (model_usart.CR1 & on) == on;
 }
 
 static void receive(const model_byte_t *byte)
 {
     const bool held = model.ore_holds_rxne && (model.flags & MODEL_ORE) != 0;
-    if (held || (model.flags & MODEL_RXNE) != 0) {
+    if (held || model.waiting >= (has_fifo() ? MODEL_FIFO : 1u)) {
         model.flags |= MODEL_ORE;
         model.overruns++;
     } else {
-        model.data = byte->byte;
-        model.flags |= MODEL_RXNE | byte->errors;
+        model.data[model.waiting++] = byte->byte;
+        model.flags |= byte->errors;
+        note_waiting();
     }
     model.was_busy = model.was_busy || !held;
     model.idle_ns = byte->at_ns + MODEL_BYTE_NS;
     serve_dma();
 }
 
-/* What has come by now, and the silence behind it. */
+/* What has come by now, and the silence after it. */
 static void catch_up(void)
 {
     model_byte_t byte;
     while (model.next != NULL && model.next(&byte) && byte.at_ns <= model.now_ns) {
         model.take();
-        receive(&byte);
+        if (receives()) {
+            receive(&byte);
+        }
     }
     if (model.was_busy && model.now_ns >= model.idle_ns) {
         model.was_busy = false;
@@ -97,6 +131,7 @@ static bool usart_interrupts(void)
     return ((cr1 & MODEL_CR1_RXNEIE) != 0 && (model.flags & (MODEL_RXNE | MODEL_ORE)) != 0) ||
            ((cr1 & MODEL_CR1_IDLEIE) != 0 && (model.flags & MODEL_IDLE) != 0) ||
            ((cr1 & MODEL_CR1_TXEIE) != 0 && (model.flags & MODEL_TXE) != 0) ||
+           ((model_usart.CR3 & MODEL_CR3_RXFTIE) != 0 && (model.flags & MODEL_RXFT) != 0) ||
            ((model_usart.CR3 & MODEL_CR3_EIE) != 0 && (model.flags & ERRORS) != 0);
 }
 
@@ -119,7 +154,7 @@ static void fail(unsigned line)
 void model_reset(void)
 {
     model = (model_t){.access_ns = 100, .flags = MODEL_TXE | MODEL_TC};
-    model_usart = (USART_TypeDef){0};
+    model_usart = (USART_TypeDef){.CR1 = MODEL_CR1_UE | MODEL_CR1_RE | MODEL_CR1_TE};
     irq_reset(fail);
     irq.lines[MODEL_USART_IRQ] = (irq_line_t){.is_up = is_usart_up, .priority = 5};
     irq.lines[MODEL_DMA_IRQ] = (irq_line_t){.is_up = is_dma_up, .priority = 5};
@@ -231,7 +266,7 @@ uint32_t model_read(const volatile uint32_t *at)
         return model_read_data();
     }
     if (at == &model.dma.channel.CBR1) {
-        return model_dma_left();
+        return model_dma_left() | 0xFFFF0000u; /* The upper half is something else's. */
     }
     model_step();
     return *at;

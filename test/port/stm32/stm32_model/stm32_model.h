@@ -3,7 +3,19 @@
 
 /* The hardware: one USART at 230400 baud with one DMA channel, on two interrupt lines. Registers
  * are read and written by these functions alone, since reading has effects. Time passes with every
- * access, in nanoseconds; what is due happens then, interrupts included. */
+ * access, in nanoseconds; what is due happens then, interrupts included.
+ *
+ * Variants, by macros:
+ *   STM32_MODEL_SR            registers SR and DR (F1, F2, F4, L1), where reading clears flags;
+ *                             else ISR, ICR, RDR
+ *   STM32_MODEL_STREAMS       a DMA with FIFO whose abort takes an interrupt more (F2, F4, F7, H7)
+ *   STM32_MODEL_LINKED_LISTS  a DMA that runs in circles by linked lists (H5, U5), and after an
+ *                             error goes on with the rest of its block
+ *   STM32_MODEL_DCACHE        what DMA writes is seen once its cache lines have been invalidated
+ *   STM32_MODEL_YEAR          of the HAL in stm32_model_hal.h. 2019: no reception up to an idle
+ *                             line, a lock; 2021: with it, but without the event's type; 2024: an
+ *                             idle event at the full buffer; 2025: real positions at half and full
+ *   STM32_MODEL_NO_DMA        the HAL's DMA module switched off */
 
 #ifndef STM32_MODEL_H
 #define STM32_MODEL_H
@@ -24,14 +36,27 @@
 #define MODEL_RXNE (1u << 5)
 #define MODEL_TC (1u << 6)
 #define MODEL_TXE (1u << 7)
+#define MODEL_RXFT (1u << 26) /* As many bytes wait in the FIFO as CR3 names. */
 
+#ifdef STM32_MODEL_SR
+#define MODEL_CR1_UE (1u << 13)
+#else
+#define MODEL_CR1_UE (1u << 0)
+#endif
+#define MODEL_CR1_RE (1u << 2)
+#define MODEL_CR1_TE (1u << 3)
 #define MODEL_CR1_IDLEIE (1u << 4)
 #define MODEL_CR1_RXNEIE (1u << 5)
 #define MODEL_CR1_TXEIE (1u << 7)
 #define MODEL_CR1_PEIE (1u << 8)
+#define MODEL_CR1_FIFOEN (1u << 29)
 #define MODEL_CR3_EIE (1u << 0)
 #define MODEL_CR3_DMAR (1u << 6)
 #define MODEL_CR3_DDRE (1u << 13) /* An error holds the DMA's requests back until it is cleared. */
+#define MODEL_CR3_RXFTCFG_HALF (2u << 25)
+#define MODEL_CR3_RXFTIE (1u << 28)
+
+#define MODEL_FIFO 8u
 
 /* DMA flags and the interrupts that they raise. */
 #define MODEL_DMA_TE (1u << 2)
@@ -91,8 +116,9 @@ typedef struct {
     uint64_t now_ns;
     uint64_t tick_ns; /* Time in which the tick's interrupt has run. */
     uint32_t flags;
-    uint32_t seen; /* Read in SR: reading DR clears them. */
-    uint8_t data;
+    uint32_t seen;            /* Read in SR: reading DR clears them. */
+    uint8_t data[MODEL_FIFO]; /* One without the FIFO. */
+    uint8_t waiting;
     bool was_busy;
     uint64_t idle_ns;
     model_dma_t dma;
@@ -102,7 +128,8 @@ typedef struct {
 extern model_t model;
 extern USART_TypeDef model_usart;
 
-/* An idle USART, lines of equal priority without handlers. A lock-up fails the test. */
+/* An idle USART that is switched on, lines of equal priority without handlers. A lock-up fails the
+ * test. */
 void model_reset(void);
 
 /* `us` pass. Nothing runs but interrupts. */

@@ -158,6 +158,16 @@ HAL_StatusTypeDef HAL_DMA_Abort(DMA_HandleTypeDef *hdma)
     return HAL_OK;
 }
 
+HAL_StatusTypeDef HAL_DMAEx_Resume(DMA_HandleTypeDef *hdma)
+{
+    if (hdma->State != HAL_DMA_STATE_SUSPEND) {
+        return HAL_ERROR;
+    }
+    model.dma.enabled = true;
+    hdma->State = HAL_DMA_STATE_BUSY;
+    return HAL_OK;
+}
+
 /* Streams say by an interrupt that they have stopped; the others stop at once. */
 static bool dma_stop_later(DMA_HandleTypeDef *dma)
 {

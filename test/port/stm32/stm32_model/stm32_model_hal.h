@@ -54,9 +54,27 @@ typedef enum {
 #endif
 #ifdef STM32_MODEL_LINKED_LISTS
 #define DMA_LINKEDLIST_CIRCULAR 0x0081u
+#define DMA_CTR1_SDW_LOG2 0x00000003u
+#define DMA_CTR1_SINC 0x00000008u
+#define DMA_CTR1_DDW_LOG2 0x00030000u
+#define DMA_CTR1_DINC 0x00080000u
+#define NODE_CTR1_DEFAULT_OFFSET 0u
+
+typedef struct {
+    uint32_t LinkRegisters[8];
+} DMA_NodeTypeDef;
+
+typedef struct {
+    DMA_NodeTypeDef *Head;
+} DMA_QListTypeDef;
 #endif
 
-typedef enum { HAL_DMA_STATE_READY, HAL_DMA_STATE_BUSY, HAL_DMA_STATE_ABORT } model_dma_state_t;
+typedef enum {
+    HAL_DMA_STATE_READY,
+    HAL_DMA_STATE_BUSY,
+    HAL_DMA_STATE_ABORT,
+    HAL_DMA_STATE_SUSPEND,
+} model_dma_state_t;
 
 typedef struct DMA_HandleTypeDef {
     DMA_Channel_TypeDef *Instance;
@@ -69,6 +87,9 @@ typedef struct DMA_HandleTypeDef {
         uint32_t MemDataAlignment;
     } Init;
     uint32_t Mode; /* Of linked lists. */
+#ifdef STM32_MODEL_LINKED_LISTS
+    DMA_QListTypeDef *LinkedListQueue;
+#endif
     volatile model_dma_state_t State;
     void (*XferAbortCallback)(struct DMA_HandleTypeDef *dma);
 } DMA_HandleTypeDef;
@@ -76,6 +97,7 @@ typedef struct DMA_HandleTypeDef {
 #define __HAL_DMA_GET_COUNTER(handle) ((void)(handle), model_dma_left())
 
 HAL_StatusTypeDef HAL_DMA_Abort(DMA_HandleTypeDef *hdma);
+HAL_StatusTypeDef HAL_DMAEx_Resume(DMA_HandleTypeDef *hdma);
 void HAL_DMA_IRQHandler(DMA_HandleTypeDef *hdma);
 
 #endif

@@ -14,9 +14,9 @@ void __wrap_tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port);
 
 void __wrap_tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port)
 {
-    const uint32_t before = port->bytes;
+    const uint32_t before = port->counters.bytes;
     __real_tmini_stm32_usart_interrupt(port);
-    if (port->bytes != before && port->bytes % INTERVAL == 0) {
+    if (port->counters.bytes != before && port->counters.bytes % INTERVAL == 0) {
         port->lidar->ring.head--;
         port->lidar->ring.stop = port->lidar->ring.head;
     }

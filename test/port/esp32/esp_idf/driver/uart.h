@@ -16,7 +16,7 @@
 
 #define UART_PIN_NO_CHANGE (-1)
 
-/* The low-power UART has the number behind the last of the others. */
+/* The low-power UART has the number after the last of the others. */
 #ifdef MODEL_ESP32
 #define SOC_UART_HP_NUM (3)
 typedef enum { UART_NUM_0, UART_NUM_1, UART_NUM_2, UART_NUM_MAX } uart_port_t;
@@ -68,6 +68,9 @@ esp_err_t uart_set_pin(uart_port_t uart, int tx, int rx, int rts, int cts);
 esp_err_t uart_set_rx_full_threshold(uart_port_t uart, int threshold);
 esp_err_t uart_set_rx_timeout(uart_port_t uart, const uint8_t symbols);
 esp_err_t uart_enable_intr_mask(uart_port_t uart, uint32_t mask);
+esp_err_t uart_enable_rx_intr(uart_port_t uart);
+esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size);
+esp_err_t uart_flush_input(uart_port_t uart);
 int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t ticks);
 int uart_tx_chars(uart_port_t uart, const char *buffer, uint32_t length);
 

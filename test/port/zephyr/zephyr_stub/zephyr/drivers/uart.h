@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Zephyr: the interrupt-driven UART API. */
+/* Zephyr: the interrupt-driven and the async UART API. */
 
 #ifndef ZEPHYR_DRIVERS_UART_H
 #define ZEPHYR_DRIVERS_UART_H
 
+#include <stddef.h>
 #include <stdint.h>
 #include <zephyr/device.h>
 
@@ -32,10 +33,13 @@ struct uart_config {
 #define UART_UPDATE_RESULT void
 #endif
 
-#define UART_ERROR_OVERRUN 1
-#define UART_ERROR_PARITY 2
-#define UART_ERROR_FRAMING 4
-#define UART_BREAK 8
+enum uart_rx_stop_reason {
+    UART_ERROR_OVERRUN = 1,
+    UART_ERROR_PARITY = 2,
+    UART_ERROR_FRAMING = 4,
+    UART_BREAK = 8,
+    UART_ERROR_NOISE = 32
+};
 
 typedef void (*uart_irq_callback_user_data_t)(const struct device *device, void *user_data);
 
@@ -51,5 +55,42 @@ void uart_irq_tx_disable(const struct device *device);
 UART_UPDATE_RESULT uart_irq_update(const struct device *device);
 int uart_irq_rx_ready(const struct device *device);
 int uart_fifo_read(const struct device *device, uint8_t *bytes, int size);
+
+enum uart_event_type {
+    UART_TX_DONE,
+    UART_TX_ABORTED,
+    UART_RX_RDY,
+    UART_RX_BUF_REQUEST,
+    UART_RX_BUF_RELEASED,
+    UART_RX_DISABLED,
+    UART_RX_STOPPED
+};
+struct uart_event_rx {
+    uint8_t *buf;
+    size_t offset;
+    size_t len;
+};
+struct uart_event_rx_buf {
+    uint8_t *buf;
+};
+struct uart_event_rx_stop {
+    enum uart_rx_stop_reason reason;
+    struct uart_event_rx data;
+};
+struct uart_event {
+    enum uart_event_type type;
+    union {
+        struct uart_event_rx rx;
+        struct uart_event_rx_buf rx_buf;
+        struct uart_event_rx_stop rx_stop;
+    } data;
+};
+typedef void (*uart_callback_t)(const struct device *device, struct uart_event *event,
+                                void *user_data);
+
+int uart_callback_set(const struct device *device, uart_callback_t callback, void *user_data);
+int uart_rx_enable(const struct device *device, uint8_t *buffer, size_t size, int32_t timeout_us);
+int uart_rx_buf_rsp(const struct device *device, uint8_t *buffer, size_t size);
+int uart_rx_disable(const struct device *device);
 
 #endif

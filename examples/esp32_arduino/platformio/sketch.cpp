@@ -3,4 +3,6 @@
 
 /* PlatformIO looks for sketches in one folder only; the Arduino IDE wants each in its own. */
 
-#include "../Scan/Scan.ino"
+#include <Arduino.h>
+
+#include SKETCH

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What the obstacle stops of examples/ write to their consoles: a line per event that a person
+ * wants to know of, and one per second. Without stdio. A program of yours can do without. */
+
+#ifndef LIDAR_LOG_H
+#define LIDAR_LOG_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "tmini/tmini.h"
+
+typedef struct {
+    const tmini_t *lidar;
+    void (*print)(const char *text); /* Pieces of lines, "\n" among them. */
+    uint32_t gaps;                   /* Of all scans. */
+    uint32_t reported_ms;            /* When the last second's line was due. */
+} lidar_log_t;
+
+/* For each event of tmini_poll(). */
+void lidar_log_event(lidar_log_t *log, tmini_event_t event);
+
+/* True once per second: write the line then. */
+bool lidar_log_is_due(lidar_log_t *log, uint32_t now_ms);
+
+/* `bytes` and `lost`: what the port has received, and what did not reach the library. */
+void lidar_log_status(const lidar_log_t *log, uint16_t ahead_mm, bool stop, uint32_t bytes,
+                      uint32_t lost);
+
+#endif

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Eight LEDs in a ring, each on while something is nearer than a metre in its direction, or while
+ * nothing is known of it. Packet by packet, in 1 KB of RAM; lidar on Serial1. Any board with eight
+ * free pins, from an Arduino Mega 2560 on. */
+
+#include <TMiniLidar.h>
+#include <tmini/tmini_sectors.h>
+
+static const uint8_t LEDS = 8;
+static const uint8_t FIRST_PIN = 22; /* Clockwise from the front. */
+static const uint16_t NEAR_MM = 1000;
+
+static TMiniLidarStreaming lidar;
+static tmini_sector_t sector[LEDS];
+static tmini_sectors_t sectors;
+static unsigned scans;
+static unsigned complete;
+static bool begun; /* A start packet has come. */
+static bool whole;
+
+static void endRevolution()
+{
+    for (uint8_t i = 0; i < LEDS; i++) {
+        digitalWrite(FIRST_PIN + i, tmini_sector_is_free(&sector[i], NEAR_MM) ? LOW : HIGH);
+    }
+    scans += begun ? 1 : 0;
+    complete += begun && whole ? 1 : 0;
+    begun = true;
+    whole = true;
+    tmini_sectors_clear(&sectors);
+}
+
+/* A lidar that is lost or faulty sees nothing. */
+static void showNothing()
+{
+    for (uint8_t i = 0; i < LEDS; i++) {
+        digitalWrite(FIRST_PIN + i, HIGH);
+    }
+}
+
+static void lookAtPacket()
+{
+    if (lidar.packet().gap > 1) { /* Between revolutions the lidar sends a byte of its own. */
+        whole = false;
+    }
+    if (tmini_packet_is_start(&lidar.packet())) {
+        endRevolution();
+    }
+    for (TMiniPoint point : lidar.points()) { /* Keeps up; tmini_sectors_add_packet() is one go. */
+        tmini_sectors_add(&sectors, &point);
+    }
+}
+
+static void report()
+{
+    static unsigned long reportedMs;
+    if (millis() - reportedMs < 1000) {
+        return;
+    }
+    reportedMs = millis();
+    Serial.print(scans);
+    Serial.print(" scans, ");
+    Serial.print(complete);
+    Serial.println(" complete");
+}
+
+void setup()
+{
+    for (uint8_t i = 0; i < LEDS; i++) {
+        pinMode(FIRST_PIN + i, OUTPUT);
+    }
+    showNothing();
+    Serial.begin(115200);
+    if (tmini_sectors_init(&sectors, sector, LEDS, 0) != TMINI_OK || !lidar.begin(Serial1)) {
+        Serial.println(lidar.error());
+        return;
+    }
+    lidar.start();
+}
+
+void loop()
+{
+    while (tmini_event_t event = lidar.loop()) {
+        if (event == TMINI_EVENT_PACKET) {
+            lookAtPacket();
+        }
+    }
+    if (!lidar.isScanning() || lidar.faults() != 0) {
+        showNothing();
+    }
+    report();
+}

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "mount.h"
+
+#include <stdlib.h>
+
+#include "output.h"
+
+/* A whole number of degrees that ends at `end`. */
+static const char *read_degrees(const char *text, char end, int16_t *degrees)
+{
+    char *after = NULL;
+    const long value = strtol(text, &after, 10);
+    *degrees = (int16_t)value;
+    return after != text && *after == end && value >= -360 && value <= 360 ? after : NULL;
+}
+
+bool mount_read_front(options_t *options, const char *text)
+{
+    if (read_degrees(text, '\0', &options->mount.front_deg) == NULL) {
+        (void)message_usage("--front: \"%s\" is not a whole number of degrees, -360 to 360", text);
+        return false;
+    }
+    return true;
+}
+
+bool mount_read_mask(options_t *options, const char *text)
+{
+    tmini_arc_t *const arc = &options->masked[options->mount.masked_count];
+    if (options->mount.masked_count == OPTIONS_MASKS) {
+        (void)message_usage("--mask: no more than %u", OPTIONS_MASKS);
+        return false;
+    }
+    const char *const colon = read_degrees(text, ':', &arc->from_deg);
+    if (colon == NULL || read_degrees(colon + 1, '\0', &arc->to_deg) == NULL) {
+        (void)message_usage("--mask: \"%s\" is not FROM:TO in whole degrees, as in 170:190", text);
+        return false;
+    }
+    options->mount.masked_count++;
+    return true;
+}
+
+const tmini_mount_t *mount_of(const options_t *options)
+{
+    const tmini_mount_t *const mount = &options->mount;
+    const bool is_given = mount->front_deg != 0 || mount->upside_down || mount->masked_count > 0;
+    return is_given ? mount : NULL;
+}
+
+bool mount_hides(const tmini_mount_t *mount, uint16_t angle_q6)
+{
+    const tmini_mount_t masks = {.masked = mount->masked, .masked_count = mount->masked_count};
+    tmini_point_t probe = {.angle_q6 = angle_q6, .distance_mm = 1};
+    tmini_mount_point(&masks, &probe);
+    return probe.distance_mm == 0;
+}

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Every question that the protocol leaves open, put to a unit: survey.c asks, survey_scan.c looks
+ * at what it sends while it scans, survey_table.c compares with what is expected (docs/protocol.md,
+ * section 9 above all) and writes the report, which the simulated lidar takes as its settings
+ * (test/simulator/like.c). */
+
+#ifndef SURVEY_H
+#define SURVEY_H
+
+#include <stdio.h>
+
+#include "tmini/parts/tmini_decoder.h"
+#include "tmini/parts/tmini_reply.h"
+
+/* The line to the unit, and the time. */
+typedef struct {
+    void *context;
+    uint64_t (*now_us)(void *context);
+    void (*send)(void *context, const uint8_t *bytes, size_t count);
+    /* What has come; waits for the first byte until that time. 0: none came. */
+    size_t (*receive)(void *context, uint8_t *bytes, size_t max, uint64_t until_us);
+    bool (*is_over)(void *context);               /* Ctrl-C, or the port has failed. */
+    void (*say)(void *context, const char *text); /* What comes next. */
+} survey_wire_t;
+
+/* What came after a command; `bytes` are the first of `count`. */
+typedef struct {
+    uint8_t bytes[32];
+    size_t count;
+    uint64_t after_us; /* The first one. */
+} survey_reply_t;
+
+#define SURVEY_EARLY 1200u
+
+/* What a unit sends from start to stop. */
+typedef struct {
+    uint16_t set_chz;
+    survey_reply_t reply;
+    uint64_t start_us;
+    uint64_t first_us;  /* When the first packet's measuring began. */
+    uint64_t stop_us;   /* The command, */
+    uint64_t last_us;   /* the last byte, */
+    uint64_t steady_us; /* and when the motor is up to speed for certain. */
+    uint32_t packets, start_packets, lone_packets;
+    uint32_t guards, confirmed, refuted, guards_aa, stray_bytes, damages;
+    uint32_t samples, flagged;
+    bool has_ct, begins_with_start;
+    uint8_t longest;
+    uint32_t until_start_q6; /* Turned from the first packet to the first start packet. */
+    uint16_t first_q6;
+    uint16_t start_q6;    /* The steady start packets' angle: the first one's, */
+    int32_t start_sum_q6; /* the others' difference from it, */
+    uint32_t turns;       /* how many, their samples and what they told of the frequency, */
+    uint32_t turn_samples, turn_told_dhz;
+    uint32_t steady_samples; /* all samples in that time, and its end. */
+    uint64_t steady_end_us;
+    uint32_t before_error, after_error; /* The told frequency against the turns around it. */
+    uint32_t now_samples, before_samples, told_dhz;
+    uint8_t crc, latest_count, latest_is_point;
+    uint32_t early_count;
+    struct {
+        uint32_t us; /* Since first_us. */
+        uint16_t chz;
+    } early[SURVEY_EARLY];
+    tmini_ct_info_t ct;
+    tmini_ring_t ring;
+    tmini_decoder_t decoder;
+    uint8_t memory[4096];
+} survey_scan_t;
+
+enum { SURVEY_SLOW, SURVEY_MEDIUM, SURVEY_FAST, SURVEY_SCANS };
+
+typedef enum {
+    SURVEY_UNKNOWN,
+    SURVEY_STEPS_OBEYED,
+    SURVEY_STEPS_REFUSED,
+    SURVEY_STEPS_OTHER,
+} survey_steps_t;
+
+typedef struct {
+    const survey_wire_t *wire;
+    survey_reply_t info, health, frequency, stop;
+    uint32_t frequency_chz; /* At the beginning; 0: not told, as all of these. */
+    uint32_t min_chz, max_chz;
+    survey_steps_t steps;
+    uint32_t boot_ms;
+    uint32_t unasked_bytes; /* While it boots. */
+    uint32_t changed_chz;   /* Set before the reboot, */
+    uint32_t kept_chz;      /* and after. */
+    survey_scan_t scans[SURVEY_SCANS];
+} survey_t;
+
+#define SURVEY_SECONDS 40u
+#define SURVEY_SECONDS_MIN 10u
+
+/* Asks everything, and scans for that long at 6 Hz, and for 15 s at most at 10 and 12 Hz.
+ * Returns false if the wire has failed, or nothing was answered. The
+ * unit is left idle, at the frequency that it had. */
+bool survey_run(survey_t *survey, const survey_wire_t *wire, uint32_t seconds);
+
+/* The first bytes of a reply's content; NULL if it is not of this type and size. */
+const uint8_t *survey_content(const survey_reply_t *reply, uint8_t type, size_t size);
+
+/* ---- survey_scan.c ---- */
+
+void survey_scan_begin(survey_scan_t *scan, uint16_t set_chz, uint64_t now_us);
+void survey_scan_feed(survey_scan_t *scan, const uint8_t *bytes, size_t count, uint64_t now_us);
+
+/* In 0.01 Hz, by the samples of whole turns; 0: none. */
+uint32_t survey_scan_measured_chz(const survey_scan_t *scan);
+
+/* ---- survey_table.c ---- */
+
+/* A line per statement: whether what was seen is as expected. */
+void survey_print_table(const survey_t *survey, FILE *file, const char *before);
+
+/* The table as remarks, and what was seen as `key = value`. Without its serial number, unless it is
+ * wanted. */
+void survey_print_report(const survey_t *survey, FILE *file, bool with_serial);
+
+#endif

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Receiving over the interrupt-driven UART API. */
+
+#include <zephyr/drivers/uart.h>
+
+#include "tmini_zephyr_reception.h"
+
+#define CHUNK 32
+
+/* The result of a function that has none in some versions of Zephyr: there 0. Whatever compiles
+ * these knows GCC's built-ins. */
+#ifdef __GNUC__
+#define RESULT_OR_0(call) \
+    __builtin_choose_expr(__builtin_types_compatible_p(__typeof__(call), void), ((call), 0), (call))
+#else
+#define RESULT_OR_0(call) (call)
+#endif
+
+/* Negative: the driver reports none. A loss goes to the lidar at once: with some drivers clearing
+ * an error takes the byte away as well, and there is nothing left to read. Once bytes were lost,
+ * the rest of this interrupt's is not used. */
+static bool report_losses(tmini_zephyr_t *port, bool lost_before)
+{
+    const int errors = uart_err_check(port->uart);
+    const bool lost = (errors > 0 && tmini_zephyr_count_errors(port, errors)) || lost_before;
+    if (lost) {
+        tmini_feed_gap(port->lidar);
+    }
+    return lost;
+}
+
+/* Whether bytes were lost is asked before reading, because reading clears the error with some
+ * drivers, and again after it, because they may have been lost among those just read. */
+static void empty_fifo(tmini_zephyr_t *port)
+{
+    uint8_t chunk[CHUNK];
+    bool lost = report_losses(port, false);
+    while (uart_irq_rx_ready(port->uart) > 0) {
+        const int count = uart_fifo_read(port->uart, chunk, sizeof chunk);
+        if (count <= 0) {
+            break;
+        }
+        lost = report_losses(port, lost);
+        tmini_zephyr_take(port, chunk, (size_t)count);
+    }
+}
+
+static void on_interrupt(const struct device *uart, void *user_data)
+{
+    tmini_zephyr_t *const port = user_data;
+    const k_spinlock_key_t key = k_spin_lock(&port->lock);
+    (void)uart_irq_update(uart); /* Its result has never meant anything; since 4.5 it has none. */
+    if (port->lidar != NULL) {
+        empty_fifo(port);
+    }
+    k_spin_unlock(&port->lock, key);
+}
+
+/* Zephyr has said since 3.3 whether the driver has interrupts. */
+int tmini_zephyr_begin_reception(tmini_zephyr_t *port)
+{
+    uart_irq_rx_disable(port->uart);
+    uart_irq_tx_disable(port->uart);
+    const int error = RESULT_OR_0(uart_irq_callback_user_data_set(port->uart, on_interrupt, port));
+    if (error == 0) {
+        (void)uart_err_check(port->uart); /* Of bytes from before. */
+        uart_irq_rx_enable(port->uart);
+    }
+    return error;
+}
+
+/* After the lock no callback is under way any more, on another core either. */
+void tmini_zephyr_end_reception(tmini_zephyr_t *port)
+{
+    uart_irq_rx_disable(port->uart);
+    const k_spinlock_key_t key = k_spin_lock(&port->lock);
+    port->lidar = NULL;
+    k_spin_unlock(&port->lock, key);
+}
+
+/* An error ends nothing here. */
+void tmini_zephyr_keep_receiving(tmini_zephyr_t *port)
+{
+    (void)port;
+}

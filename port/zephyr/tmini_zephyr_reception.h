@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Private to the Zephyr port: what its two ways of receiving (interrupt-driven, async) do for it,
+ * and it for them. */
+
+#ifndef TMINI_ZEPHYR_RECEPTION_H
+#define TMINI_ZEPHYR_RECEPTION_H
+
+#include "tmini_zephyr.h"
+
+/* Takes the UART's callback and begins. Returns 0 or what the UART driver gave. */
+int tmini_zephyr_begin_reception(tmini_zephyr_t *port);
+
+/* No callback feeds the lidar any more once this has returned. */
+void tmini_zephyr_end_reception(tmini_zephyr_t *port);
+
+/* Begins again what the driver has ended after an error; in the polling thread, often. */
+void tmini_zephyr_keep_receiving(tmini_zephyr_t *port);
+
+/* From the callback: bytes for the lidar. */
+void tmini_zephyr_take(tmini_zephyr_t *port, const uint8_t *bytes, size_t count);
+
+/* From the callback: counts errors, given by their flags; true if bytes were lost. */
+bool tmini_zephyr_count_errors(tmini_zephyr_t *port, int errors);
+
+#endif

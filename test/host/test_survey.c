@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The survey against the simulated lidar, in virtual time: a documented unit is as expected, each
+ * deviation is seen, and a lidar like the one surveyed gives the same report. */
+
+#define _POSIX_C_SOURCE 200809L
+
+#include "like.h"
+#include "survey.h"
+
+#include "unity.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define REPORT "survey.txt"
+
+static sim_t device;
+static uint64_t time_us;
+static survey_t survey;
+static char report[8192];
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+static uint64_t now_us(void *context)
+{
+    (void)context;
+    return time_us;
+}
+
+static void send_bytes(void *context, const uint8_t *bytes, size_t count)
+{
+    (void)context;
+    sim_receive(&device, bytes, count, time_us);
+}
+
+/* To the microsecond at which something comes. */
+static size_t receive(void *context, uint8_t *bytes, size_t max, uint64_t until_us)
+{
+    size_t count = 0;
+    (void)context;
+    while (count == 0 && time_us < until_us) {
+        const uint64_t next_us = sim_next_us(&device);
+        const uint64_t soon_us = next_us < until_us ? next_us : until_us;
+        time_us = soon_us > time_us ? soon_us : time_us;
+        count = sim_transmit(&device, time_us, bytes, max);
+        time_us += count == 0 && soon_us == next_us ? 1 : 0;
+    }
+    return count;
+}
+
+static bool is_over(void *context)
+{
+    (void)context;
+    return false;
+}
+
+static void say(void *context, const char *text)
+{
+    (void)context;
+    (void)text;
+}
+
+static const survey_wire_t wire = {
+    .now_us = now_us, .send = send_bytes, .receive = receive, .is_over = is_over, .say = say};
+
+static options_t documented(void)
+{
+    options_t options = {.device = sim_default_config()};
+    return options;
+}
+
+/* Surveys such a lidar; its report is then in REPORT, and in `report`. */
+static void survey_of(const options_t *options)
+{
+    time_us = 0;
+    sim_init(&device, &options->device);
+    sim_set_health(&device, options->health);
+    TEST_ASSERT_TRUE(survey_run(&survey, &wire, SURVEY_SECONDS));
+    FILE *const file = fopen(REPORT, "w+");
+    TEST_ASSERT_NOT_NULL(file);
+    survey_print_report(&survey, file, false);
+    rewind(file);
+    report[fread(report, 1, sizeof report - 1, file)] = '\0';
+    TEST_ASSERT_EQUAL_INT(0, fclose(file));
+}
+
+static void expect(const char *line)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(report, line), report);
+}
+
+void test_a_documented_unit_is_as_expected(void)
+{
+    const options_t options = documented();
+    survey_of(&options);
+    TEST_ASSERT_NULL_MESSAGE(strstr(report, "# differs"), report);
+    expect("\nmodel = 151\n");
+    expect("\nfirmware = 1.2\n");
+    expect("\nfrequency_hz = 6.00\n");
+    expect("\nmin_frequency_hz = 5.00\n");
+    expect("\nmax_frequency_hz = 12.00\n");
+    expect("\nreply_ms = 3\n");
+    expect("\nboot_ms = 2500\n");
+    expect("\nfirst_packet_ms = 200\n");
+    expect("\nspin_up_ms = 1000\n");
+    expect("\nspin_up_percent = 40\n");
+    expect("\nstop_tail_ms = 50\n");
+    expect("\nsamples_per_second = 4000\n");
+    expect("\npoints_slow = 670\n");
+    expect("\nflagged_permille = 5\n");
+    expect("\nreply_92 = A5 5A 03 00 00 00 06 00 00 00\n");
+    expect("\nreply_60 = A5 5A 05 00 00 40 81\n");
+}
+
+/* Of the number 2026031700012345. */
+void test_the_serial_number_is_left_out_unless_it_is_wanted(void)
+{
+    const options_t options = documented();
+    survey_of(&options);
+    expect(
+        "\nreply_90 = A5 5A 14 00 00 00 04 97 02 01 01 ** ** ** ** ** ** ** ** ** ** ** ** ** ** "
+        "** **\n");
+    TEST_ASSERT_NULL(strstr(report, "12345"));
+    FILE *const file = fopen(REPORT, "w+");
+    survey_print_report(&survey, file, true);
+    rewind(file);
+    report[fread(report, 1, sizeof report - 1, file)] = '\0';
+    TEST_ASSERT_EQUAL_INT(0, fclose(file));
+    expect("\nserial = 2026031700012345\n");
+    expect(" 01 02 03 04 05\n");
+}
+
+/* The line that a deviation must lead to, and what the simulated lidar has to be like. */
+static const struct {
+    const char *line;
+    const char *like;
+} deviations[] = {
+    {"9.15  model                          150", "model = 150"},
+    {"9.4   firmware's bytes               major-first", "firmware_order = major-first"},
+    {"9.5   serial number's digits         ascii", "serial_digits = ascii"},
+    {"4     health, 0 is well              16", "health = 16"},
+    {"9.11  time to a reply, ms            400", "reply_ms = 400"},
+    {"1     frequency at first, Hz         7.00", "frequency_hz = 7"},
+    {"3     frequency commands             refused", "steps = refused"},
+    {"1     lowest frequency, Hz           4.00", "min_frequency_hz = 4"},
+    {"1     highest frequency, Hz          15.00", "max_frequency_hz = 15"},
+    {"3     frequency survives reboot      yes", "frequency_survives = yes"},
+    {"9.11  time of a reboot, ms           8000", "boot_ms = 8000"},
+    {"9.11  first packet after reply, ms   2500", "first_packet_ms = 2500"},
+    {"9.8   first packets begin            start", "first_packets = start"},
+    {"9.8   spin-up, ms                    6000", "spin_up_ms = 6000"},
+    {"9.7   measured of set speed, percent 80", "motor_percent = 80"},
+    {"9.10  tail after a stop, ms          500", "stop_tail_ms = 500"},
+    {"9.6   samples of a full packet       32", "samples_per_packet = 32"},
+    {"9.8   start packet's angle, degrees  116", "start_angle_deg = 116"},
+    {"9.9   samples flagged, permille      1000", "flagged_permille = 1000"},
+    {"9.1   CT information                 no", "ct_information = no"},
+    {"9.1   LastCRC                        absent", "ct_information = no"},
+    {"7     protocol's version             2.1", "user_version = 2.1"},
+};
+
+#define DEVIATIONS (sizeof deviations / sizeof deviations[0])
+
+static options_t like(const char *text)
+{
+    options_t options = documented();
+    FILE *const file = fopen("like.txt", "w");
+    TEST_ASSERT_NOT_NULL(file);
+    (void)fprintf(file, "# as written by hand\n%s\nno_such_key = 1\nboot_ms = unknown\n", text);
+    TEST_ASSERT_EQUAL_INT(0, fclose(file));
+    TEST_ASSERT_TRUE_MESSAGE(like_read(&options, "like.txt"), text);
+    return options;
+}
+
+void test_each_deviation_is_seen(void)
+{
+    for (size_t i = 0; i < DEVIATIONS; i++) {
+        char line[100];
+        const options_t options = like(deviations[i].like);
+        survey_of(&options);
+        (void)snprintf(line, sizeof line, "\n# differs     %s ", deviations[i].line);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(report, line), report);
+    }
+}
+
+void test_a_start_packet_place_passed_unmarked_is_seen(void)
+{
+    const options_t options = like("first_packets = unmarked\nfirst_angle_deg = 330");
+    survey_of(&options);
+    expect("\nfirst_packets = unmarked\nfirst_angle_deg = 330\n");
+}
+
+void test_without_lone_packets_nothing_is_said_about_them(void)
+{
+    const options_t options = like("lone_packets = no");
+    survey_of(&options);
+    expect("\nlone_packets = unknown\n");
+}
+
+/* Whether one of its check bytes is AA is chance. */
+static void remove_chance(char *text)
+{
+    static const char *const marks[] = {"LastCRC of AA", "last_crc_aa"};
+    for (size_t i = 0; i < 2; i++) {
+        char *const at = strstr(text, marks[i]);
+        TEST_ASSERT_NOT_NULL(at);
+        char *begin = at;
+        while (begin[-1] != '\n') {
+            begin--;
+        }
+        const char *const next = strchr(at, '\n') + 1;
+        memmove(begin, next, strlen(next) + 1);
+    }
+}
+
+/* With each deviation: what a lidar like the one surveyed is seen as is what that one was. */
+void test_a_lidar_like_the_one_surveyed_gives_the_same_report(void)
+{
+    static char first[sizeof report];
+    for (size_t i = 0; i < DEVIATIONS; i++) {
+        options_t options = like(deviations[i].like);
+        survey_of(&options);
+        memcpy(first, report, sizeof first);
+        remove_chance(first);
+        options = documented();
+        options.device.seed = 7;
+        TEST_ASSERT_TRUE(like_read(&options, REPORT));
+        survey_of(&options);
+        remove_chance(report);
+        TEST_ASSERT_EQUAL_STRING(first, report);
+    }
+}
+
+void test_a_report_that_is_none_is_refused(void)
+{
+    options_t options = documented();
+    FILE *const file = fopen("like.txt", "w");
+    TEST_ASSERT_NOT_NULL(file);
+    (void)fputs("boot_ms = soon\n", file);
+    TEST_ASSERT_EQUAL_INT(0, fclose(file));
+    TEST_ASSERT_FALSE(like_read(&options, "like.txt"));
+    TEST_ASSERT_FALSE(like_read(&options, "no/such/report"));
+}

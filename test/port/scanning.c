@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "scanning.h"
+
+#include "unity.h"
+
+#include "irq_lines.h"
+
+#define ENOUGH_POINTS 2000u
+#define PATIENCE_US 10000000u
+#define BYTES_PER_MS 13u /* Of a scanning lidar (section 1). */
+#define PLACES 150u
+#define CATCH_UP 6u   /* Scans of a second. */
+#define PARTS_MAX 24u /* Of scans, after the worst. */
+
+tmini_t lidar;
+
+static uint8_t rx[1024];
+static tmini_point_t points[ENOUGH_POINTS];
+static scanning_t program;
+
+void scanning_begin(const scanning_t *the_program, size_t rx_size)
+{
+    program = *the_program;
+    const tmini_config_t config = {
+        .port = program.port,
+        .port_context = program.context,
+        .rx_buffer = rx,
+        .rx_size = rx_size,
+        .points = points,
+        .max_points = ENOUGH_POINTS,
+    };
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+}
+
+void poll_until(tmini_event_t wanted)
+{
+    const uint64_t begun_us = program.now_us();
+    while (program.now_us() - begun_us < PATIENCE_US) {
+        const tmini_event_t event = tmini_poll(&lidar);
+        if (event == wanted) {
+            return;
+        }
+        if (event == TMINI_EVENT_NONE) {
+            program.wait();
+        }
+    }
+    TEST_FAIL_MESSAGE("it did not happen in time");
+}
+
+void assert_true_scans(uint32_t first, uint32_t last)
+{
+    for (uint32_t revolution = first; revolution <= last; revolution++) {
+        poll_until(TMINI_EVENT_SCAN);
+        truth_assert_revolution(tmini_scan(&lidar), revolution);
+    }
+}
+
+unsigned scans_until_complete(void)
+{
+    for (unsigned scans = 1; scans <= PARTS_MAX; scans++) {
+        poll_until(TMINI_EVENT_SCAN);
+        if (tmini_scan(&lidar)->complete) {
+            truth_assert_some_revolution(tmini_scan(&lidar));
+            return scans;
+        }
+        truth_assert_nothing_invented(tmini_scan(&lidar));
+    }
+    TEST_FAIL_MESSAGE("no scan is complete any more");
+    return 0;
+}
+
+void assert_gap(void)
+{
+    TEST_ASSERT_NOT_EQUAL_UINT(1, scans_until_complete());
+}
+
+void assert_recovery(void)
+{
+    poll_until(TMINI_EVENT_LOST);
+    poll_until(TMINI_EVENT_RECOVERED);
+    (void)scans_until_complete();
+}
+
+static void pass_some_time(void)
+{
+    program.work(300); /* Less than a FIFO of 16 bytes lasts. */
+}
+
+void assert_true_scans_wherever_bytes_come(void)
+{
+    random_t random;
+    uint32_t revolution = 1;
+    random_seed(&random, 1);
+    for (uint32_t place = 0; place < PLACES; place = irq_next_place(&random, place)) {
+        irq_happen_after(place, pass_some_time);
+        assert_true_scans(revolution, revolution);
+        revolution++;
+    }
+}
+
+/* After a pause it is polled until it has caught up. */
+void assert_pauses_cost_no_scan(uint32_t bytes)
+{
+    const uint32_t longest_us = bytes * 900u / BYTES_PER_MS;
+    uint32_t revolution = 1;
+    for (uint32_t tenths = 1; tenths <= 10; tenths++) {
+        assert_true_scans(revolution, revolution + CATCH_UP);
+        revolution += CATCH_UP + 1;
+        program.work(longest_us * tenths / 10);
+    }
+    assert_true_scans(revolution, revolution + CATCH_UP);
+}

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The Zephyr port over the async UART API. */
+
+#include <errno.h>
+
+#include "unity.h"
+
+#include <zephyr/drivers/uart.h>
+
+#include "irq_lines.h"
+#include "scanning.h"
+#include "zephyr_model.h"
+#include "zephyr_rig.h"
+
+void setUp(void)
+{
+    zephyr_rig_begin();
+}
+
+void tearDown(void)
+{
+    zephyr_rig_end();
+}
+
+void test_every_point_arrives_through_two_buffers_in_turn(void)
+{
+    zephyr_rig_start();
+    assert_true_scans(1, 10);
+    zephyr_model_pass(3000); /* The driver's time-out. */
+    TEST_ASSERT_UINT_WITHIN(64, zephyr_model_line_bytes(), zephyr_rig_counters().bytes);
+}
+
+void test_wherever_an_interrupt_comes_every_point_arrives(void)
+{
+    zephyr_rig_start();
+    assert_true_scans_wherever_bytes_come();
+}
+
+void test_pauses_that_the_receive_buffer_lasts_cost_no_scan(void)
+{
+    zephyr_rig_start();
+    assert_pauses_cost_no_scan(1024 / 2); /* As always, at the line's full rate. */
+}
+
+void test_an_overrun_ends_reception_which_begins_anew_and_is_a_gap(void)
+{
+    zephyr_rig_start();
+    assert_true_scans(1, 1);
+    zephyr_model_pass_held_up(20000);
+    assert_gap();
+    TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().overruns);
+}
+
+void test_errors_of_the_line_are_counted_by_kind_and_end_nothing_for_good(void)
+{
+    static const int errors[] = {UART_ERROR_FRAMING, UART_ERROR_NOISE, UART_BREAK};
+    zephyr_rig_start();
+    assert_true_scans(1, 1);
+    for (unsigned i = 0; i < 3; i++) {
+        zephyr_model_damage(errors[i]);
+        assert_gap();
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().framing_errors);
+    TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().noise_errors);
+    TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().breaks);
+    TEST_ASSERT_EQUAL_UINT32(0, zephyr_rig_counters().overruns);
+}
+
+/* A line held low is an error at each byte: an interrupt per 10 ms, no more. */
+void test_a_line_that_is_held_low_is_no_storm_of_interrupts(void)
+{
+    zephyr_rig_start();
+    assert_true_scans(1, 1);
+    sim_power(zephyr_model_lidar(), false, zephyr_model_now_us());
+    const uint32_t before = zephyr_rig_counters().breaks;
+    for (unsigned i = 0; i < 1000; i++) {
+        zephyr_model_damage(UART_BREAK);
+        zephyr_model_receive((const uint8_t *)"", 1);
+    }
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(before + 2, zephyr_rig_counters().breaks);
+}
+
+void test_a_driver_without_the_async_api_is_refused_and_not_started(void)
+{
+    zephyr_model_set_async(-ENOSYS);
+    TEST_ASSERT_EQUAL_INT(-ENOSYS, zephyr_rig_start_port());
+    zephyr_model_set_async(0);
+    zephyr_model_set_async_enable(-ENODEV);
+    TEST_ASSERT_EQUAL_INT(-ENODEV, tmini_zephyr_start(&port, &lidar));
+    zephyr_model_set_async_enable(0);
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
+    TEST_ASSERT_EQUAL_INT(-EALREADY, tmini_zephyr_start(&port, &lidar));
+}
+
+void test_it_stops_and_starts_while_the_lidar_streams(void)
+{
+    zephyr_rig_start();
+    for (unsigned i = 0; i < 5; i++) {
+        (void)scans_until_complete();
+        tmini_zephyr_stop(&port);
+        TEST_ASSERT_FALSE(zephyr_model_is_receiving());
+        zephyr_model_pass(3000 + 7000 * i);
+        TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
+    }
+}
+
+void test_reception_that_somebody_has_ended_begins_anew(void)
+{
+    zephyr_rig_start();
+    assert_true_scans(1, 1);
+    TEST_ASSERT_EQUAL_INT(0, uart_rx_disable(&zephyr_model_uart));
+    assert_gap();
+    tmini_zephyr_port.restart(&port); /* As after a loss. */
+    (void)scans_until_complete();
+    tmini_zephyr_stop(&port);
+    tmini_zephyr_port.restart(&port); /* Of a stopped port: nothing. */
+}

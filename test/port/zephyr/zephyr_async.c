@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Zephyr's async UART API on the model: fills a buffer, asks for the next, reports what has come
+ * when a buffer is full or the line pauses, and ends with any error. */
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <zephyr/drivers/uart.h>
+
+#include "irq_lines.h"
+#include "zephyr_board.h"
+#include "zephyr_model.h"
+
+static struct {
+    uart_callback_t callback;
+    void *user_data;
+    int result;
+    int enable_result;
+    bool enabled;
+    bool ending;
+    uint64_t end_us; /* Not at once: the UART is busy. */
+    uint8_t *buffer;
+    size_t size;
+    size_t reported;
+    size_t count;
+    uint8_t *next;
+    size_t next_size;
+    int32_t timeout_us;
+} async;
+
+void zephyr_async_begin(void)
+{
+    memset(&async, 0, sizeof async);
+}
+
+void zephyr_model_set_async(int result)
+{
+    async.result = result;
+}
+
+void zephyr_model_set_async_enable(int result)
+{
+    async.enable_result = result;
+}
+
+bool zephyr_async_is_enabled(void)
+{
+    return async.enabled;
+}
+
+static void post(struct uart_event event)
+{
+    async.callback(&zephyr_model_uart, &event, async.user_data);
+}
+
+static void report(void)
+{
+    const size_t from = async.reported;
+    async.reported = async.count;
+    if (async.count > from) {
+        post((struct uart_event){
+            .type = UART_RX_RDY,
+            .data.rx = {.buf = async.buffer, .offset = from, .len = async.count - from}});
+    }
+}
+
+static void release(uint8_t *buffer)
+{
+    if (buffer != NULL) {
+        memset(buffer, 0xFF, async.size); /* Whoever reads it now is late. */
+        post((struct uart_event){.type = UART_RX_BUF_RELEASED, .data.rx_buf.buf = buffer});
+    }
+}
+
+static void use(uint8_t *buffer, size_t size)
+{
+    async.buffer = buffer;
+    async.size = size;
+    async.count = 0;
+    async.reported = 0;
+    async.next = NULL;
+}
+
+static void end(void)
+{
+    report();
+    release(async.buffer);
+    release(async.next);
+    async.enabled = false;
+    async.ending = false;
+    post((struct uart_event){.type = UART_RX_DISABLED});
+}
+
+static void change_buffers(void)
+{
+    uint8_t *const full = async.buffer;
+    uint8_t *const next = async.next;
+    report();
+    release(full);
+    use(next, async.next_size);
+    if (next == NULL) {
+        end();
+    } else {
+        post((struct uart_event){.type = UART_RX_BUF_REQUEST});
+    }
+}
+
+static bool has_paused(void)
+{
+    return async.count > async.reported &&
+           zephyr_model_now_us() - zephyr_board_last_byte_us() >= (uint64_t)async.timeout_us;
+}
+
+static bool is_over(void)
+{
+    return async.ending && zephyr_model_now_us() >= async.end_us;
+}
+
+bool zephyr_async_is_up(void)
+{
+    return async.enabled && (is_over() || zephyr_board_has_byte() || has_paused());
+}
+
+void zephyr_async_serve(void)
+{
+    const int errors = zephyr_board_take_errors();
+    while (async.enabled && zephyr_board_has_byte()) {
+        async.buffer[async.count++] = zephyr_board_take_byte();
+        if (async.count == async.size) {
+            change_buffers();
+        }
+    }
+    if (errors != 0) {
+        post((struct uart_event){.type = UART_RX_STOPPED,
+                                 .data.rx_stop.reason = (enum uart_rx_stop_reason)errors});
+    }
+    if (async.enabled && (errors != 0 || is_over())) {
+        end();
+    } else if (has_paused()) {
+        report();
+    }
+}
+
+int uart_callback_set(const struct device *device, uart_callback_t callback, void *user_data)
+{
+    (void)device;
+    async.callback = callback;
+    async.user_data = user_data;
+    return async.result;
+}
+
+int uart_rx_enable(const struct device *device, uint8_t *buffer, size_t size, int32_t timeout_us)
+{
+    (void)device;
+    if (async.enabled || async.enable_result != 0) {
+        return async.enabled ? -EBUSY : async.enable_result;
+    }
+    use(buffer, size);
+    async.timeout_us = timeout_us;
+    async.enabled = true;
+    (void)zephyr_board_take_errors();
+    post((struct uart_event){.type = UART_RX_BUF_REQUEST});
+    irq_access();
+    return 0;
+}
+
+int uart_rx_buf_rsp(const struct device *device, uint8_t *buffer, size_t size)
+{
+    (void)device;
+    if (buffer == async.buffer) {
+        abort(); /* It is being filled. */
+    }
+    if (!async.enabled || async.next != NULL) {
+        return async.enabled ? -EBUSY : -EACCES;
+    }
+    async.next = buffer;
+    async.next_size = size;
+    return 0;
+}
+
+/* Ends in the interrupt. */
+int uart_rx_disable(const struct device *device)
+{
+    (void)device;
+    if (!async.enabled) {
+        return -EFAULT;
+    }
+    async.ending = true;
+    async.end_us = zephyr_model_now_us() + 500u;
+    irq_access();
+    return 0;
+}

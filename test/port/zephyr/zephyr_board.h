@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Private to the model: what the UART's two APIs and the kernel share. */
+
+#ifndef ZEPHYR_BOARD_H
+#define ZEPHYR_BOARD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+void zephyr_kernel_begin(void);
+void zephyr_async_begin(void);
+
+/* Of the UART's interrupt while the async API is in use. */
+bool zephyr_async_is_enabled(void);
+bool zephyr_async_is_up(void);
+void zephyr_async_serve(void);
+
+/* The FIFO: whether there is a byte, the oldest one, and when the last one came. */
+bool zephyr_board_has_byte(void);
+uint8_t zephyr_board_take_byte(void);
+uint64_t zephyr_board_last_byte_us(void);
+
+/* The line's errors since the last call. */
+int zephyr_board_take_errors(void);
+
+#endif

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* A lidar like the one that `tmini survey` has seen: its report's lines of `key = value` as the
+ * simulated lidar's settings. */
+
+#ifndef LIKE_H
+#define LIKE_H
+
+#include "options.h"
+
+/* Reads the file. False if it cannot be read, or a value is none. Keys that are no settings, the
+ * value "unknown" and lines that begin with # change nothing. */
+bool like_read(options_t *options, const char *path);
+
+#endif

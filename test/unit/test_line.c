@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The time of the line by itself: numbers of bytes and milliseconds at their limits, and multiples
+ * of 256 and 65536 that a type too narrow takes for none. No byte is stored: only the ring's head
+ * moves. What the packets come to: test_pauses.c. */
+
+#include "tmini_driver.h"
+
+#include "unity.h"
+
+static tmini_t lidar;
+static tmini_timing_t timing;
+static uint32_t now_ms;
+
+static uint32_t read_clock(void *context)
+{
+    (void)context;
+    return now_ms;
+}
+
+static const tmini_port_t port = {.now_ms = read_clock};
+
+/* A lidar that scans at this frequency was looked at. */
+static void open_at(uint16_t frequency_chz)
+{
+    lidar = (tmini_t){.state = TMINI_STATE_SCANNING, .is_settled = true};
+    lidar.link.port = &port;
+    lidar.link.timing = &timing;
+    lidar.ring.size = (size_t)1 << 24;
+    lidar.decoder.parser.frame.ring = &lidar.ring;
+    lidar.decoder.builder.scan.frequency_chz = frequency_chz;
+    now_ms = 5000;
+    lidar.line = (tmini_line_t){.now_ms = now_ms, .heard_ms = now_ms};
+}
+
+void setUp(void)
+{
+    timing = tmini_timing_default;
+    open_at(1000);
+}
+
+void tearDown(void) {}
+
+static bool look_after(uint32_t passed_ms, size_t count)
+{
+    now_ms += passed_ms;
+    lidar.ring.head += count;
+    return tmini_line_look(&lidar);
+}
+
+/* A single byte comes after a silence: is it doubted? */
+static bool is_doubted_after(uint32_t silent_ms)
+{
+    lidar.line.doubt = false;
+    lidar.line.late_ms = 0;
+    (void)look_after(silent_ms, 1);
+    return lidar.line.doubt;
+}
+
+/* ---- Half a turn ---- */
+
+void test_half_a_turn_is_none_and_a_millisecond_more_is(void)
+{
+    TEST_ASSERT_FALSE(is_doubted_after(50)); /* 10 Hz. */
+    TEST_ASSERT_TRUE(is_doubted_after(51));
+}
+
+void test_below_5_7_hz_a_lidar_is_on_its_way_up_and_may_turn_at_12(void)
+{
+    open_at(570);
+    TEST_ASSERT_FALSE(is_doubted_after(87));
+    TEST_ASSERT_TRUE(is_doubted_after(88));
+    open_at(569);
+    TEST_ASSERT_FALSE(is_doubted_after(41));
+    TEST_ASSERT_TRUE(is_doubted_after(42));
+}
+
+void test_a_silence_of_any_length_is_doubted(void)
+{
+    TEST_ASSERT_TRUE(is_doubted_after(65536));
+    TEST_ASSERT_TRUE(is_doubted_after(0x7FFFFFFF));
+    TEST_ASSERT_TRUE(is_doubted_after(0x80000000));
+}
+
+/* ---- What bytes explain ---- */
+
+/* 131 bytes take 9.979 ms, 132 take 10.055. */
+void test_bytes_take_13_128_per_millisecond_rounded_down(void)
+{
+    static const struct {
+        size_t count;
+        uint16_t late_ms;
+    } cases[] = {{13, 20}, {14, 19}, {105, 13}, {131, 11}, {132, 10}};
+
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        open_at(1000);
+        (void)look_after(20, cases[i].count);
+        TEST_ASSERT_EQUAL_UINT16(cases[i].late_ms, lidar.line.late_ms);
+    }
+}
+
+/* 860,374 bytes take 65,536 ms: they explain all of it. */
+void test_a_minute_of_bytes_explains_a_minute(void)
+{
+    (void)look_after(65537, 860374);
+    TEST_ASSERT_FALSE(lidar.line.doubt);
+}
+
+/* The ring holds 65,536: of one more an unknown number is missing. */
+void test_more_bytes_than_the_ring_holds_are_doubted(void)
+{
+    lidar.ring.size = 65536;
+    (void)look_after(5000, 65536);
+    TEST_ASSERT_FALSE(lidar.line.doubt);
+    (void)look_after(5000, 65537);
+    TEST_ASSERT_TRUE(lidar.line.doubt);
+}
+
+void test_65536_bytes_are_some(void)
+{
+    TEST_ASSERT_TRUE(look_after(5000, 65536));
+    TEST_ASSERT_FALSE(look_after(1, 0));
+}
+
+/* ---- Bytes that a port holds ---- */
+
+void test_a_port_may_hold_65535_bytes(void)
+{
+    lidar.held_to = 13 + 65535;
+    (void)look_after(1, 13);
+    TEST_ASSERT_EQUAL_size_t(13 + 65535, lidar.line.arrived);
+    open_at(1000);
+    lidar.held_to = 13 + 65536;
+    (void)look_after(1, 13);
+    TEST_ASSERT_EQUAL_size_t(13, lidar.line.arrived);
+}
+
+/* A place that is not known is not one that is soon to come. */
+void test_a_port_that_never_says_what_it_holds_holds_nothing(void)
+{
+    lidar.line.received = lidar.ring.head = TMINI_RING_CLOSED - 100;
+    (void)look_after(1, 13);
+    TEST_ASSERT_EQUAL_size_t(TMINI_RING_CLOSED - 87, lidar.line.arrived);
+}
+
+void test_bytes_that_had_arrived_before_explain_nothing(void)
+{
+    lidar.line.arrived = 100; /* The port has forgotten them. */
+    TEST_ASSERT_FALSE(is_doubted_after(50));
+    lidar.line.arrived = lidar.line.received + 100;
+    TEST_ASSERT_TRUE(is_doubted_after(51));
+}
+
+/* ---- How late bytes may be ---- */
+
+void test_bytes_are_late_by_a_second_at_most(void)
+{
+    timing.max_pause_ms = 0;
+    (void)look_after(1000, 1);
+    TEST_ASSERT_EQUAL_UINT16(1000, lidar.line.late_ms);
+    (void)look_after(1001, 1);
+    TEST_ASSERT_EQUAL_UINT16(0, lidar.line.late_ms);
+}
+
+void test_as_long_as_others_are_left_what_they_are_late_by_stands(void)
+{
+    (void)look_after(20, 1);
+    lidar.is_settled = false;
+    (void)look_after(3, 1);
+    TEST_ASSERT_EQUAL_UINT16(20, lidar.line.late_ms);
+    lidar.is_settled = true;
+    (void)look_after(3, 1);
+    TEST_ASSERT_EQUAL_UINT16(3, lidar.line.late_ms);
+}
+
+/* ---- Before a lidar scans ---- */
+
+/* Are they doubted, or only what was before them? */
+static bool first_ones_are_doubted(uint32_t passed_ms, size_t count)
+{
+    open_at(0);
+    lidar.state = TMINI_STATE_STARTING;
+    now_ms += 1000000;
+    (void)tmini_line_look(&lidar);
+    (void)look_after(passed_ms, count);
+    TEST_ASSERT_TRUE(lidar.line.doubt);
+    TEST_ASSERT_TRUE(lidar.line.doubtful_to == count || lidar.line.doubtful_to == 0);
+    return lidar.line.doubtful_to == count;
+}
+
+void test_first_bytes_in_a_fifo_come_straight_from_the_wire(void)
+{
+    TEST_ASSERT_FALSE(first_ones_are_doubted(1, 144)); /* 10 ms. */
+    TEST_ASSERT_TRUE(first_ones_are_doubted(1, 145));
+    TEST_ASSERT_TRUE(first_ones_are_doubted(1, 3361)); /* 256 ms. */
+}
+
+void test_first_bytes_that_nobody_watched_may_have_paused(void)
+{
+    TEST_ASSERT_FALSE(first_ones_are_doubted(30, 13));
+    TEST_ASSERT_TRUE(first_ones_are_doubted(31, 13));
+    TEST_ASSERT_TRUE(first_ones_are_doubted(256, 13));
+    TEST_ASSERT_TRUE(first_ones_are_doubted(65536, 13));
+}
+
+/* ---- Silence ---- */
+
+void test_time_between_two_looks_is_50_ms_of_silence_at_most(void)
+{
+    static const uint32_t passed_ms[] = {50, 51, 256, 65536};
+
+    for (unsigned i = 0; i < 4; i++) {
+        open_at(1000);
+        TEST_ASSERT_FALSE(look_after(passed_ms[i], 0));
+        TEST_ASSERT_EQUAL_UINT16(50, lidar.line.silent_ms);
+    }
+}
+
+void test_silence_counts_up_to_65535_ms(void)
+{
+    lidar.line.silent_ms = 65500;
+    (void)look_after(50, 0);
+    TEST_ASSERT_EQUAL_UINT16(65535, lidar.line.silent_ms);
+}
+
+void test_a_clock_may_step_back_by_a_second(void)
+{
+    (void)look_after((uint32_t)-1000, 0);
+    TEST_ASSERT_EQUAL_UINT32(5000, lidar.line.now_ms);
+    (void)look_after((uint32_t)-1, 0);
+    TEST_ASSERT_EQUAL_UINT32(3999, lidar.line.now_ms);
+}
+
+/* ---- When a packet came ---- */
+
+/* 70,000 bytes after it, which take 5332 ms. */
+void test_a_packet_came_before_the_bytes_after_it(void)
+{
+    (void)look_after(9000, 70000);
+    TEST_ASSERT_EQUAL_UINT32(14000 - 5332, tmini_line_arrival_ms(&lidar));
+    lidar.ring.tail = 69900;
+    TEST_ASSERT_EQUAL_UINT32(14000 - 7, tmini_line_arrival_ms(&lidar));
+}
+
+void test_a_packet_may_come_half_a_turn_after_the_one_before(void)
+{
+    lidar.decoder.builder.open = true;
+    lidar.decoder.builder.scan.end_ms = 70000;
+    TEST_ASSERT_FALSE(tmini_line_is_doubtful(&lidar, 70050));
+    TEST_ASSERT_TRUE(tmini_line_is_doubtful(&lidar, 70051));
+    lidar.decoder.builder.open = false;
+    TEST_ASSERT_FALSE(tmini_line_is_doubtful(&lidar, 70051));
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Without CT information (TMINI_NO_CT): units that send it are like those that do not. */
+
+#include "invariants.h"
+#include "rig.h"
+
+#include "mock_port_functions.h"
+#include "unity.h"
+
+void setUp(void)
+{
+    rig_open();
+    rig_go_scanning();
+}
+
+void tearDown(void)
+{
+    TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
+}
+
+void test_nothing_is_known_of_a_unit_that_reports_itself(void)
+{
+    tmini_ct_info_t info;
+    for (unsigned i = 0; i < 4; i++) {
+        TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
+    }
+    tmini_ct_info(&rig.lidar, &info);
+    TEST_ASSERT_EQUAL_HEX16(0, info.known);
+    TEST_ASSERT_EQUAL_UINT8(0, info.user_major);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+}
+
+void test_turns_without_any_range_are_a_data_fault(void)
+{
+    for (unsigned i = 0; i < 3; i++) {
+        (void)rig_plain_turn_events(0);
+    }
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
+}
+
+void test_last_crc_is_no_gap(void)
+{
+    rig_feed_turn(0, 1000);
+    rig_feed_turn(0, 1000);
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_SCAN), rig_drain());
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&rig.lidar)->gaps);
+}
