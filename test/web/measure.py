@@ -116,7 +116,8 @@ def report(before, after, memory, heap):
 def main(path, seconds=60, width=1280, height=800):
     driver = webdriver.Driver()
     try:
-        page = webdriver.Page(driver, int(width), int(height), before=COUNTER)
+        page = webdriver.Page(driver, int(width), int(height))
+        page.prepare(COUNTER)
         scan_at_12_hz(page, pathlib.Path(path).resolve().as_uri())
         before = snapshot(page)
         time.sleep(float(seconds))

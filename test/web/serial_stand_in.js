@@ -8,7 +8,8 @@
 //     bench.plug()  bench.unplug()         the cable
 //     bench.choice = 'none'                the user closes the list of ports
 //     bench.opening = 'NetworkError'       open() fails so
-//     bench.line = 'dead' | 'garbled' | 'deaf' | 'held' (until it is good again) | 'good'
+//     bench.line = 'dead' | 'garbled' | 'deaf' | 'held' (until it is good again) | 'good' |
+//                 'late' (each second time there is nothing)
 //     bench.lineError('ParityError')       the stream ends so, the port goes on
 //     bench.writeError()                   the next thing written fails so, the port goes on
 //     bench.answers = (code) => …          whether the lidar gets to hear that command
@@ -20,6 +21,7 @@ const PORTION = 64; // As USB carries them.
 class Device {
     #exports = null;
     #plugged = true;
+    #turn = 0;
 
     async #power() {
         const text = document.getElementById('library').textContent.trim();
@@ -53,7 +55,8 @@ class Device {
 
     // What has come since it was asked last; bytes that nobody takes are lost.
     send() {
-        if (bench.line === 'held') {
+        this.#turn++;
+        if (bench.line === 'held' || (bench.line === 'late' && this.#turn % 2 === 0)) {
             return new Uint8Array(0);
         }
         const count = this.#exports.simulation_read(this.#now);

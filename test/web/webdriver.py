@@ -83,9 +83,9 @@ class Driver:
 class Page:
     """A browser of its own with one page in it."""
 
-    def __init__(self, driver, width=1280, height=800, dark=False, before=""):
-        """`before` is JavaScript that runs in each page before the page's own."""
+    def __init__(self, driver, width=1280, height=800):
         self.driver = driver
+        self.script = None
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=driver.folder))
         self.downloads = self.folder / "downloads"
         arguments = BROWSER_OPTIONS + [f"--user-data-dir={self.folder / 'profile'}"]
@@ -93,10 +93,12 @@ class Page:
         self.path = f"/session/{session['sessionId']}"
         self.process_id = session["capabilities"].get("goog:processID")
         self.resize(width, height)
-        self.devtools("Emulation.setEmulatedMedia", features=[
-            {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
-        if before:
-            self.devtools("Page.addScriptToEvaluateOnNewDocument", source=before)
+
+    def prepare(self, script):
+        """JavaScript that runs in each page from now on, before the page's own; instead of the one before."""
+        if self.script is not None:
+            self.devtools("Page.removeScriptToEvaluateOnNewDocument", identifier=self.script)
+        self.script = self.devtools("Page.addScriptToEvaluateOnNewDocument", source=script)["identifier"]
 
     def _open_session(self, arguments):
         options = {
@@ -138,6 +140,10 @@ class Page:
     def click(self, selector):
         self.ask("POST", f"/element/{self.element(selector)}/click", {})
 
+    def press(self, selector):
+        """A click that is not the mouse's: quick, and wherever the element is."""
+        self.run("document.querySelector(arguments[0]).click()", selector)
+
     def type(self, selector, text):
         self.ask("POST", f"/element/{self.element(selector)}/value", {"text": text})
 
@@ -170,7 +176,7 @@ class Page:
                 return value
             if time.monotonic() > end:
                 raise AssertionError(f"in vain waited {seconds} s for: {what}")
-            time.sleep(0.05)
+            time.sleep(0.02)
 
     def wait_text(self, selector, part, seconds=10):
         """Until the text there contains `part`."""

@@ -62,6 +62,11 @@ export class Library {
         return new Uint8Array(this.#memory, this.#exports.transfer(), count).slice();
     }
 
+    // Bytes that a function of the library's returns the address of: a copy.
+    bytes(count, name, ...values) {
+        return new Uint8Array(this.#memory, this.#exports[name](...values), count).slice();
+    }
+
     // The text that the library has handed over.
     takeText() {
         return this.#string(this.#exports.transfer());

@@ -21,12 +21,12 @@ const COUNTERS_MS = 250;
 const SECTORS = 8;
 const STALE_MS = 1000; // A scan older than that is not what is there now.
 
-// "170..190, 350..10" as pairs of degrees; none if it is written in another way.
+// "170:190, 350:10" as pairs of degrees; none if it is written in another way.
 function arcsOf(input) {
     const parts = input.value.split(',').map((part) => part.trim()).filter((part) => part !== '');
-    const arcs = parts.map((part) => part.match(/^(-?\d{1,3})\s*\.\.\s*(-?\d{1,3})$/)?.slice(1).map(Number));
+    const arcs = parts.map((part) => part.match(/^(-?\d{1,3})\s*:\s*(-?\d{1,3})$/)?.slice(1).map(Number));
     const isGood = !arcs.includes(undefined) && arcs.length <= 8;
-    input.setCustomValidity(isGood ? '' : 'Like this: 170..190, 350..10');
+    input.setCustomValidity(isGood ? '' : 'Like this: 170:190, 350:10');
     input.setAttribute('aria-invalid', String(!isGood));
     return isGood ? arcs : [];
 }
@@ -37,13 +37,15 @@ class Viewer {
     #picture;
     #lidar = null;
     #player = null;
-    #recorder = new Recorder();
-    #scannedAt = null; // When the lidar's latest scan came.
+    #recorder;
+    #scannedAt = null; // When the lidar's latest scan came,
+    #isStale = false; // and whether that is long ago.
     #change = Promise.resolve(); // From one source to another: one at a time.
 
     constructor(library) {
         this.#library = library;
         this.#constants = library.constants;
+        this.#recorder = new Recorder(library);
         this.#picture = new Picture(element('picture'), library.constants);
         this.#listen();
         this.#offerFrequencies();
@@ -155,6 +157,7 @@ class Viewer {
     #showAge() {
         const age = this.#lidar && this.#scannedAt !== null ? performance.now() - this.#scannedAt : 0;
         const isStale = age > STALE_MS;
+        this.#isStale = isStale;
         this.#picture.isStale = isStale;
         show('age', isStale);
         if (isStale) {
@@ -200,7 +203,7 @@ class Viewer {
     }
 
     #showFaults(numbers) {
-        const faults = this.#faults(numbers);
+        const faults = this.#isStale ? this.#constants.FAULTS_UNKNOWN : this.#faults(numbers);
         const isKnown = faults !== this.#constants.FAULTS_UNKNOWN;
         setText('faults', isKnown ? this.#library.faultsText(faults) : '–');
         element('faults').classList.toggle('bad', isKnown && faults !== 0);
@@ -226,6 +229,7 @@ class Viewer {
         setText('source', source?.name ?? '');
         setText('state', this.#stateName());
         show('welcome', !source);
+        show('zoom', Boolean(source));
         show('disconnect', Boolean(source));
         show('panel-lidar', lidar !== null);
         show('panel-recording', this.#player !== null);
@@ -309,12 +313,10 @@ class Viewer {
     }
 
     #mount() {
-        const frontQ6 = Math.round(Number(element('mount-front').value) * 64);
-        const circle = this.#constants.FULL_CIRCLE_Q6;
         const arcs = arcsOf(element('mount-mask'));
         this.#library.hand(new Uint8Array(Int16Array.from(arcs.flat()).buffer));
         this.#library.call('shown_mask', arcs.length);
-        this.#library.call('shown_mount', ((frontQ6 % circle) + circle) % circle,
+        this.#library.call('shown_mount', Math.round(Number(element('mount-front').value)),
                            element('mount-upside-down').checked ? 1 : 0);
         this.#showAgain();
     }

@@ -29,6 +29,7 @@ export function enable(ids, isOn) {
 export const isEnabled = (target) => target.getAttribute('aria-disabled') !== 'true';
 
 export const metres = (mm) => (mm === 0 ? '–' : `${(mm / 1000).toFixed(3)} m`);
+export const degrees = (q6) => (Math.floor(q6 / 6.4) / 10).toFixed(1);
 export const hertz = (chz) => (chz === 0 ? '–' : `${(chz / 100).toFixed(2)} Hz`);
 
 function setCount(id, count) {
@@ -46,7 +47,7 @@ function quality(scan) {
 }
 
 function inWords(scan, nearest) {
-    return scan.nearestMm > 0 ? `Nearest obstacle: ${nearest}.` : 'Nothing in sight.';
+    return scan.nearestMm > 0 ? `Nearest obstacle: ${nearest}.` : 'No point has a distance.';
 }
 
 // The numbers of the scan that is shown; null before the first.
@@ -57,7 +58,7 @@ export function showScan(scan, sectors) {
     setText('quality', has ? quality(scan) : '–');
     setText('flagged', has ? scan.flagged : '–');
     const nearest = has && scan.nearestMm > 0
-        ? `${metres(scan.nearestMm)} at ${(scan.nearestQ6 / 64).toFixed(1)}°, ${DIRECTIONS[scan.nearestSector]}`
+        ? `${metres(scan.nearestMm)} at ${degrees(scan.nearestQ6)}°, ${DIRECTIONS[scan.nearestSector]}`
         : '–';
     setText('nearest', nearest);
     setText('summary', has ? `${hertz(scan.frequencyChz)}, ${scan.points} points. ${inWords(scan, nearest)}` : '');
@@ -69,6 +70,7 @@ export function showCounters(numbers) {
     setText('bytes', numbers?.bytes ?? '–');
     setText('packets', numbers?.packets ?? '–');
     setText('scans', numbers?.scans ?? '–');
+    setText('guards', numbers?.guardBytes ?? '–');
     setText('skipped', numbers?.bytesSkipped ?? '–');
     setCount('checksums', numbers?.checksumErrors);
     setCount('overrun', numbers?.bytesOverrun);
@@ -86,12 +88,12 @@ function ctVersion(numbers, constants) {
     if (numbers.known & KNOWN_USER_VERSION) {
         parts.push(`protocol ${numbers.userMajor}.${numbers.userMinor}`);
     }
-    return parts.join(', ') || 'not told by this unit';
+    return parts.join(', ') || 'not sent by this unit';
 }
 
 function ctSerial(numbers, constants) {
     if (!(numbers.known & constants.KNOWN_SERIAL)) {
-        return 'not told';
+        return 'not sent';
     }
     const two = (number) => String(number).padStart(2, '0');
     return `${numbers.year}${two(numbers.month)}${two(numbers.day)}${String(numbers.number).padStart(8, '0')}`;
@@ -102,7 +104,7 @@ export function showCt(numbers, constants, faultsText) {
     setText('ct-version', numbers ? ctVersion(numbers, constants) : '–');
     setText('ct-serial', numbers ? ctSerial(numbers, constants) : '–');
     const known = numbers && numbers.known & constants.KNOWN_FAULTS;
-    setText('ct-health', known ? faultsText(numbers.ctFaults) : numbers ? 'not told' : '–');
+    setText('ct-health', known ? faultsText(numbers.ctFaults) : numbers ? 'not sent' : '–');
 }
 
 // What the lidar answered when it was asked; nulls as long as it was not.

@@ -4,12 +4,18 @@
 // The picture of the latest scans, seen from above, the front up: rings in metres, points coloured by
 // intensity, flagged ones marked, the nearest obstacle of each sector as an arc. It can be enlarged and moved.
 
+import { degrees, metres } from './panels.js';
+
 // Ranges to choose from, and how far apart the rings are then.
 const SCALES = [[500, 100], [1000, 200], [1500, 500], [2000, 500], [2500, 500], [3000, 1000], [4000, 1000],
                 [5000, 1000], [6000, 1000], [8000, 2000], [12000, 2000], [16500, 4000]];
 const COLOURS = 16; // Shades of intensity.
 const ZOOM_MAX = 40;
-const MARGIN = 40; // Around the outermost ring, for the angles.
+const EMPTY_MM = 6000; // The range while there is nothing.
+const MARGIN = 44; // Around the outermost ring, for the angles.
+const LEGEND_ROW = 24;
+const LEGEND_ROWS = [[560, 3], [860, 2], [Infinity, 1]]; // On a canvas narrower than that.
+const BEAM_CORE = 0.2; // Of the radius: there the beams are close together.
 
 // From little light to much, in equal steps between these: those of the tool's pictures, and darker ones on white.
 const RAMPS = {
@@ -76,10 +82,11 @@ export class Picture {
     // Larger or smaller by a factor; the place (x, y) of the picture stays where it is.
     enlarge(factor, x = this.#canvas.clientWidth / 2, y = this.#canvas.clientHeight / 2) {
         const zoom = Math.min(Math.max(this.#zoom * factor, 1), ZOOM_MAX);
-        const { clientWidth, clientHeight } = this.#canvas;
-        const middle = [x - clientWidth / 2, y - clientHeight / 2];
+        const frame = this.#frame();
+        const middle = [x - frame.x + this.#shift[0], y - frame.y + this.#shift[1]];
         const change = zoom / this.#zoom;
         this.#zoom = zoom;
+        this.#canvas.style.touchAction = zoom > 1 ? 'none' : ''; // Else a finger scrolls the page.
         this.#shift = zoom === 1 ? [0, 0] : this.#shift.map((shift, i) => middle[i] + (shift - middle[i]) * change);
         this.draw();
     }
@@ -148,7 +155,8 @@ export class Picture {
     #readTheme() {
         const style = getComputedStyle(document.documentElement);
         const colour = (name) => style.getPropertyValue(`--${name}`).trim();
-        const names = ['ground', 'page', 'grid', 'edge', 'text', 'dim', 'nearest', 'specular', 'ambient', 'beam'];
+        const names = ['ground', 'page', 'grid', 'edge', 'text', 'dim', 'nearest', 'specular', 'ambient', 'beam',
+                       'beam-core'];
         for (const name of names) {
             this.#theme[name] = colour(name);
         }
@@ -157,7 +165,12 @@ export class Picture {
     }
 
     get #shownMm() {
-        return this.rangeMm || this.#autoMm;
+        return this.rangeMm || (this.#numbers ? this.#autoMm : EMPTY_MM);
+    }
+
+    // A unit that flags most of its points marks none by that.
+    get #marksFlags() {
+        return 2 * this.#numbers.flagged <= this.#numbers.valid;
     }
 
     #paint() {
@@ -174,7 +187,8 @@ export class Picture {
             this.#paintPoints(frame, this.#scans[age]);
         }
         context.globalAlpha = 1;
-        if (!this.#isStale) {
+        if (!this.#isStale && this.#numbers?.points > 0) {
+            this.#paintMarks(frame);
             this.#paintSectors(frame);
             this.#paintNearest(frame);
             this.#paintLegend(frame);
@@ -195,13 +209,16 @@ export class Picture {
         return frame;
     }
 
-    // Where the lidar is, and how large a millimetre. `size`: a point's, which grows with the picture.
+    // Where the lidar is, and how large a millimetre. `size`: a point's, which grows with the picture; a mark's
+    // is `mark`.
     #frame() {
         const { clientWidth: width, clientHeight: height } = this.#canvas;
-        const whole = Math.max(Math.min(width, height) / 2 - MARGIN, 10);
+        const legend = LEGEND_ROW * LEGEND_ROWS.find(([limit]) => width < limit)[1] + 8;
+        const whole = Math.max(Math.min(width, height - legend) / 2 - MARGIN, 10);
         const radius = whole * this.#zoom;
-        return { width, height, x: width / 2 + this.#shift[0], y: height / 2 + this.#shift[1], radius,
-                 scale: radius / this.#shownMm, size: Math.max(whole * 0.0068, 1) * Math.sqrt(this.#zoom) };
+        return { width, height, legend, x: width / 2 + this.#shift[0], y: (height - legend) / 2 + this.#shift[1],
+                 radius, scale: radius / this.#shownMm, size: Math.max(whole * 0.0068, 1) * Math.sqrt(this.#zoom),
+                 mark: Math.max(whole * 0.0148, 3.5) };
     }
 
     // The place at an angle clockwise from the front, in 1/64 degree, and a distance in pixels.
@@ -240,7 +257,11 @@ export class Picture {
                 context.lineTo(...this.#place(frame, angle + half, distance));
             }
         }
-        context.fillStyle = this.#theme.beam;
+        const light = context.createRadialGradient(frame.x, frame.y, 0, frame.x, frame.y, frame.radius);
+        light.addColorStop(0, this.#theme['beam-core']);
+        light.addColorStop(BEAM_CORE, this.#theme.beam);
+        light.addColorStop(1, this.#theme.beam);
+        context.fillStyle = light;
         context.fill();
     }
 
@@ -269,18 +290,25 @@ export class Picture {
     #paintAngles(frame) {
         const context = this.#context;
         const sides = { 0: 'front', 90: 'right', 180: 'back', 270: 'left' };
-        context.strokeStyle = this.#theme.grid;
-        context.lineWidth = 1;
         context.textAlign = 'center';
+        context.lineWidth = 1;
+        context.strokeStyle = this.#theme.grid;
         context.beginPath();
         for (let degrees = 0; degrees < 360; degrees += 30) {
-            context.moveTo(...this.#place(frame, degrees * 64, 14));
+            context.moveTo(...this.#place(frame, degrees * 64, 20));
             context.lineTo(...this.#place(frame, degrees * 64, frame.radius));
-            const [x, y] = this.#place(frame, degrees * 64, frame.radius + 20);
+            const [x, y] = this.#place(frame, degrees * 64, frame.radius + 24);
             context.fillStyle = this.#theme.text;
             context.fillText(`${degrees}°`, x, sides[degrees] ? y - 2 : y + 4);
             context.fillStyle = this.#theme.dim;
-            context.fillText(sides[degrees] ?? '', x, y + 11);
+            context.fillText(sides[degrees] ?? '', x, y + 12);
+        }
+        context.stroke();
+        context.strokeStyle = this.#theme.edge;
+        context.beginPath();
+        for (let degrees = 0; degrees < 360; degrees += 5) {
+            context.moveTo(...this.#place(frame, degrees * 64, frame.radius));
+            context.lineTo(...this.#place(frame, degrees * 64, frame.radius + (degrees % 10 === 0 ? 7 : 4)));
         }
         context.stroke();
     }
@@ -291,7 +319,6 @@ export class Picture {
         const { darkest, brightest } = this.#numbers;
         const shade = (COLOURS - 1) / Math.max(brightest - darkest, 1);
         const shades = Array.from({ length: COLOURS }, () => []);
-        const marks = [];
         for (let i = 0; i < points.count; i++) {
             const distance = points.distanceMm(i);
             if (distance === 0 || distance > this.#shownMm) {
@@ -300,9 +327,6 @@ export class Picture {
             const place = this.#place(frame, points.angleQ6(i), distance * frame.scale);
             const colour = Math.min(Math.max(Math.round((points.intensity(i) - darkest) * shade), 0), COLOURS - 1);
             shades[colour].push(place);
-            if (points.flag(i) >= this.#constants.FLAG_SPECULAR && !this.#isStale) {
-                marks.push([...place, points.flag(i) === this.#constants.FLAG_SPECULAR]);
-            }
         }
         shades.forEach((places, colour) => {
             context.fillStyle = this.#isStale ? this.#theme.dim : this.#theme.ramp[colour];
@@ -313,22 +337,34 @@ export class Picture {
             }
             context.fill();
         });
-        marks.forEach((mark) => this.#paintFlag(...mark));
     }
 
-    // A ring for a specular reflection, a cross for ambient light: told apart without colour.
-    #paintFlag(x, y, isSpecular) {
+    // Of the newest scan's flagged points.
+    #paintMarks(frame) {
+        const [points] = this.#scans;
+        for (let i = 0; i < points.count && this.#marksFlags; i++) {
+            const distance = points.distanceMm(i);
+            if (distance > 0 && distance <= this.#shownMm && points.flag(i) >= this.#constants.FLAG_SPECULAR) {
+                this.#paintFlag(...this.#place(frame, points.angleQ6(i), distance * frame.scale), frame.mark,
+                                points.flag(i) === this.#constants.FLAG_SPECULAR);
+            }
+        }
+    }
+
+    // A ring for a specular reflection, a cross for ambient light: different without colour too.
+    #paintFlag(x, y, size, isSpecular) {
         const context = this.#context;
         context.strokeStyle = isSpecular ? this.#theme.specular : this.#theme.ambient;
         context.lineWidth = 1.5;
         context.beginPath();
         if (isSpecular) {
-            context.arc(x, y, 5, 0, 2 * Math.PI);
+            context.arc(x, y, size, 0, 2 * Math.PI);
         } else {
-            context.moveTo(x - 4, y - 4);
-            context.lineTo(x + 4, y + 4);
-            context.moveTo(x + 4, y - 4);
-            context.lineTo(x - 4, y + 4);
+            const arm = 0.8 * size;
+            context.moveTo(x - arm, y - arm);
+            context.lineTo(x + arm, y + arm);
+            context.moveTo(x + arm, y - arm);
+            context.lineTo(x - arm, y + arm);
         }
         context.stroke();
     }
@@ -351,55 +387,100 @@ export class Picture {
     }
 
     #paintNearest(frame) {
-        const context = this.#context;
-        const { nearestMm, nearestQ6 } = this.#numbers ?? {};
-        if (!nearestMm || nearestMm > this.#shownMm) {
-            return;
+        const { nearestMm, nearestQ6 } = this.#numbers;
+        if (nearestMm > 0 && nearestMm <= this.#shownMm) {
+            this.#paintRing(...this.#place(frame, nearestQ6, nearestMm * frame.scale), 1.7 * frame.mark);
         }
-        const [px, py] = this.#place(frame, nearestQ6, nearestMm * frame.scale);
+    }
+
+    #paintRing(x, y, radius) {
+        const context = this.#context;
         context.strokeStyle = this.#theme.nearest;
         context.lineWidth = 2;
         context.beginPath();
-        context.arc(px, py, 8, 0, 2 * Math.PI);
+        context.arc(x, y, radius, 0, 2 * Math.PI);
         context.stroke();
-        context.fillStyle = this.#theme.nearest;
-        context.font = `600 13px ${this.#theme.font}`;
-        const isRight = px > frame.x && px + 80 < frame.width; // Outwards, if there is room.
-        context.textAlign = isRight ? 'left' : 'right';
-        const place = [`${(nearestMm / 1000).toFixed(3)} m`, px + (isRight ? 12 : -12), py + 4];
-        context.strokeStyle = this.#theme.ground;
-        context.lineWidth = 4;
-        context.strokeText(...place);
-        context.fillText(...place);
     }
 
-    // A triangle that points to the front.
+    // An arrow that points to the front.
     #paintLidar({ x, y }) {
         const context = this.#context;
+        context.fillStyle = this.#theme.page;
+        context.strokeStyle = this.#theme.text;
+        context.lineWidth = 1.5;
+        context.beginPath();
+        context.arc(x, y, 8, 0, 2 * Math.PI);
+        context.fill();
+        context.moveTo(x, y - 8);
+        context.lineTo(x, y - 23);
+        context.moveTo(x - 4, y - 17);
+        context.lineTo(x, y - 23);
+        context.lineTo(x + 4, y - 17);
+        context.stroke();
         context.fillStyle = this.#theme.text;
         context.beginPath();
-        context.moveTo(x, y - 8);
-        context.lineTo(x + 6, y + 6);
-        context.lineTo(x - 6, y + 6);
+        context.arc(x, y, 2.5, 0, 2 * Math.PI);
         context.fill();
     }
 
-    #paintLegend({ height }) {
+    // What the signs mean: [width of the sign, how it is drawn at (x, y), words].
+    #legend() {
+        const { darkest, brightest, flagged, valid, specular, ambient, nearestMm, nearestQ6 } = this.#numbers;
         const context = this.#context;
-        const numbers = this.#numbers;
-        if (!numbers || numbers.valid === 0) {
+        const ramp = (x, y) => this.#theme.ramp.forEach((colour, i) => {
+            context.fillStyle = colour;
+            context.fillRect(x + 4 * i, y - 4, 4, 8);
+        });
+        const arc = (x, y) => {
+            context.strokeStyle = this.#theme.dim;
+            context.lineWidth = 1;
+            context.beginPath();
+            context.arc(x + 8, y + 10, 14, -0.7 * Math.PI, -0.3 * Math.PI);
+            context.stroke();
+        };
+        const flags = this.#marksFlags
+            ? [[12, (x, y) => this.#paintFlag(x + 6, y, 5, true), `specular (${specular})`],
+               [12, (x, y) => this.#paintFlag(x + 6, y, 5, false), `ambient light (${ambient})`]]
+            : [[0, () => {}, `${flagged} of ${valid} points flagged: not marked`]];
+        return [
+            [4 * COLOURS, ramp, `intensity ${darkest} to ${brightest}`],
+            ...flags,
+            [16, arc, 'nearest in its eighth'],
+            [16, (x, y) => this.#paintRing(x + 8, y, 7), `nearest ${metres(nearestMm)} at ${degrees(nearestQ6)}°`],
+        ];
+    }
+
+    // Row by row, as much as there is room for in each.
+    #paintLegend({ width, height, legend }) {
+        const context = this.#context;
+        if (this.#numbers.valid === 0) {
             return;
         }
-        this.#theme.ramp.forEach((colour, i) => {
-            context.fillStyle = colour;
-            context.fillRect(12 + 5 * i, height - 18, 5, 8);
-        });
-        context.fillStyle = this.#theme.dim;
+        context.fillStyle = this.#theme.page;
+        context.fillRect(0, height - legend, width, legend);
         context.font = `12px ${this.#theme.font}`;
         context.textAlign = 'left';
-        context.fillText(`intensity ${numbers.darkest} to ${numbers.brightest}`, 12, height - 24);
-        if (numbers.flagged > 0) {
-            context.fillText(`○ × flagged: ${numbers.flagged}`, 12, height - 42);
+        const rows = [{ items: [], width: 0 }];
+        for (const [sign, paint, words] of this.#legend()) {
+            const item = { sign, paint, words, width: sign + 6 + context.measureText(words).width };
+            const room = width - 24 - rows.at(-1).width - 20 * rows.at(-1).items.length;
+            if (room < item.width) {
+                rows.push({ items: [], width: 0 });
+            }
+            rows.at(-1).items.push(item);
+            rows.at(-1).width += item.width;
         }
+        rows.forEach((row, i) => {
+            const gap = row.items.length > 1 && rows.length === 1
+                ? Math.min((width - 24 - row.width) / (row.items.length - 1), 44) : 20;
+            let x = (width - row.width - gap * (row.items.length - 1)) / 2;
+            const y = height - legend / 2 + LEGEND_ROW * (i - (rows.length - 1) / 2);
+            for (const { sign, paint, words, width: wide } of row.items) {
+                paint(x, y);
+                context.fillStyle = this.#theme.dim;
+                context.fillText(words, x + sign + 6, y + 4);
+                x += wide + gap;
+            }
+        });
     }
 }

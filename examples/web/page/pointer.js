@@ -3,7 +3,7 @@
 
 // The mouse, the pen or the fingers on the picture: what lies under them, moving it, enlarging it.
 
-import { setText } from './panels.js';
+import { degrees, setText } from './panels.js';
 
 const WHEEL_STEP = 0.002; // Of the zoom's logarithm, per pixel of the wheel.
 
@@ -33,8 +33,8 @@ export class Pointer {
 
     #move(event) {
         const { offsetX: x, offsetY: y, pointerId } = event;
-        const { metres, degrees } = this.#picture.at(x, y);
-        setText('pointer', `${metres.toFixed(3)} m at ${degrees.toFixed(1)}°`);
+        const place = this.#picture.at(x, y);
+        setText('pointer', `${place.metres.toFixed(3)} m at ${degrees(place.degrees * 64)}°`);
         const before = this.#held.get(pointerId);
         if (before === undefined) {
             return;

@@ -43,13 +43,13 @@ export const problems = {
                  'Does its TX go to the adapter’s RX, and its RX to the adapter’s TX?'],
     },
     noise: {
-        title: 'Bytes come, but nothing that a T-mini Plus says: a wrong baud rate, or another device.',
+        title: 'Bytes come, but nothing that a T-mini Plus sends: a wrong baud rate, or another device.',
         advice: ['Is it this lidar, and not another device?',
                  'Does the adapter really run at 230400 baud? Try another one.',
                  'Do lidar and adapter share GND, and are the wires short?'],
     },
     deafness: {
-        title: 'The lidar sends, but does not do what it is told.',
+        title: 'The lidar sends, but does not do what it is asked.',
         advice: ['Check the wire from the adapter’s TX to the lidar’s RX, and that its level is 3.3 V.'],
     },
     fellSilent: {
@@ -90,7 +90,7 @@ export function diagnose(numbers, command, why) {
 export function explainOpening(error) {
     switch (error.name) {
     case 'NotFoundError':
-        return null; // Nobody chose a port: no problem.
+        return null; // No port was chosen: no problem.
     case 'SecurityError':
         return problems.forbidden;
     case 'NetworkError':
@@ -115,10 +115,17 @@ export const recordingProblems = {
         title: `${name} holds ${packets} packets, but no whole revolution: there is nothing to draw.`,
         advice: ['Its points can be saved as CSV.'],
     }),
+    damaged: (name, places) => ({
+        title: `${name} is damaged in ${places} place${places === 1 ? '' : 's'}: bytes are missing or wrong there.`,
+        advice: ['The rest is shown.'],
+    }),
+    tooNew: (name, version) => ({
+        title: `${name} is of version ${version}: this page is too old for it.`, advice: [],
+    }),
     unreadable: (name, why) => ({ title: `${name} cannot be read: ${why}`, advice: [] }),
 };
 
-// What may be behind a fault that the lidar tells, by the library's name of it.
+// What may cause a fault that the lidar reports, by the library's name of it.
 export const faultAdvice = {
     encoder: 'Is the rotor blocked?',
     data: 'Is the window covered?',

@@ -3,8 +3,6 @@
 
 // What is saved: what comes from the lidar, the picture, the points.
 
-import { CHUNK_HEAD_SIZE, CHUNK_MAX, MAGIC } from './recording.js';
-
 // "2026-05-04-130501", for names of files.
 function stamp() {
     const now = new Date();
@@ -31,7 +29,12 @@ const KEPT_MS = 10000;
 export class Recorder {
     isRunning = false;
     bytes = 0;
+    #library;
     #chunks = []; // [time, bytes]
+
+    constructor(library) {
+        this.#library = library;
+    }
 
     start() {
         this.isRunning = true;
@@ -46,6 +49,7 @@ export class Recorder {
 
     add(bytes) {
         const now = performance.now();
+        const { CHUNK_MAX } = this.#library.constants;
         this.bytes += bytes.length;
         for (let from = 0; from < bytes.length; from += CHUNK_MAX) {
             this.#chunks.push([now, bytes.slice(from, from + CHUNK_MAX)]);
@@ -63,15 +67,15 @@ export class Recorder {
 
     // All that is kept, in the tool's format of timed recordings.
     parts() {
+        const library = this.#library;
+        const { CHUNK_MAGIC_SIZE, CHUNK_HEAD_SIZE } = library.constants;
         const begun = this.#chunks[0]?.[0] ?? 0;
-        let timeUs = 0; // As far as the chunks have told it: rounding must not add up.
-        return [MAGIC, ...this.#chunks.flatMap(([time, bytes]) => {
-            const head = new DataView(new ArrayBuffer(CHUNK_HEAD_SIZE));
+        let timeUs = 0; // Up to the chunk before: rounding must not add up.
+        return [library.bytes(CHUNK_MAGIC_SIZE, 'recording_magic'), ...this.#chunks.flatMap(([time, bytes]) => {
             const passedUs = Math.round((time - begun) * 1000) - timeUs;
             timeUs += passedUs;
-            head.setUint32(0, passedUs, true);
-            head.setUint16(4, bytes.length, true);
-            return [head, bytes];
+            library.hand(bytes);
+            return [library.bytes(CHUNK_HEAD_SIZE, 'recording_head', passedUs, bytes.length), bytes];
         })];
     }
 }

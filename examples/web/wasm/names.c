@@ -5,6 +5,7 @@
 
 #include "web.h"
 
+#include "tape.h"
 #include "tmini/tmini.h"
 #include "tmini/tmini_names.h"
 
@@ -47,9 +48,14 @@ EXPORTED uint32_t constants(void)
     numbers_put("MODEL_T_MINI_PRO", TMINI_MODEL_T_MINI_PRO);
     numbers_put("MODEL_T_MINI_PLUS", TMINI_MODEL_T_MINI_PLUS);
     numbers_put("ERROR_ABORTED", (uint32_t)TMINI_ERROR_ABORTED);
-    numbers_put("NEXT_NEEDS_BYTES", NEXT_NEEDS_BYTES);
-    numbers_put("NEXT_SCAN", NEXT_SCAN);
-    numbers_put("NEXT_END", NEXT_END);
+    numbers_put("TAPE_NEEDS_BYTES", TAPE_NEEDS_BYTES);
+    numbers_put("TAPE_SCAN", TAPE_SCAN);
+    numbers_put("TAPE_REST", TAPE_REST);
+    numbers_put("TAPE_END", TAPE_END);
+    numbers_put("CHUNK_MAGIC_SIZE", CHUNK_MAGIC_SIZE);
+    numbers_put("CHUNK_HEAD_SIZE", CHUNK_HEAD_SIZE);
+    numbers_put("CHUNK_MAX", CHUNK_MAX);
+    numbers_put("CHUNK_VERSION", CHUNK_VERSION);
     return numbers_count();
 }
 

@@ -30,7 +30,7 @@ static struct {
     tmini_sector_t held[SECTORS];
     const tmini_point_t *nearest;
     uint32_t valid;
-    uint32_t flagged;
+    uint32_t flags[4]; /* Points with a distance, by their flags. */
     uint32_t farthest_mm;
     uint8_t darkest;
     uint8_t brightest;
@@ -40,11 +40,11 @@ static struct {
 
 static void look_at(const tmini_point_t *point)
 {
-    shown.flagged += point->flag >= TMINI_FLAG_SPECULAR ? 1u : 0u;
     if (point->distance_mm == 0) {
         return;
     }
     shown.valid++;
+    shown.flags[point->flag & 3u]++;
     if (shown.nearest == NULL || point->distance_mm < shown.nearest->distance_mm) {
         shown.nearest = point;
     }
@@ -58,17 +58,18 @@ static void mount(void)
 {
     shown.nearest = NULL;
     shown.valid = 0;
-    shown.flagged = 0;
+    memset(shown.flags, 0, sizeof shown.flags);
     shown.farthest_mm = 0;
     shown.darkest = UINT8_MAX;
     shown.brightest = 0;
-    (void)tmini_sectors_init(&shown.sectors, shown.held, SECTORS, TMINI_FILTER_NONE);
     memcpy(shown.mounted, shown.raw, shown.scan.count * sizeof *shown.raw);
+    shown.scan.points = shown.mounted;
+    tmini_mount_step(&shown.mount, &shown.scan);
     for (size_t i = 0; i < shown.scan.count; i++) {
-        tmini_mount_point(&shown.mount, &shown.mounted[i]);
         look_at(&shown.mounted[i]);
-        tmini_sectors_add(&shown.sectors, &shown.mounted[i]);
     }
+    (void)tmini_sectors_init(&shown.sectors, shown.held, SECTORS, TMINI_FILTER_NONE);
+    tmini_sectors_add_scan(&shown.sectors, &shown.scan);
     for (size_t i = 0; i < SECTORS; i++) {
         shown.nearest_mm[i] = shown.held[i].nearest_mm;
     }
@@ -93,9 +94,9 @@ EXPORTED void shown_forget(void)
 }
 
 /* How the lidar sits on the robot; the scan that is shown follows at once. */
-EXPORTED void shown_mount(uint32_t front_q6, uint32_t upside_down)
+EXPORTED void shown_mount(int front_deg, uint32_t upside_down)
 {
-    shown.mount.front_deg = (int16_t)(front_q6 % TMINI_FULL_CIRCLE_Q6 / 64u);
+    shown.mount.front_deg = (int16_t)front_deg;
     shown.mount.upside_down = upside_down != 0;
     mount();
 }
@@ -125,7 +126,9 @@ EXPORTED uint32_t shown_numbers(void)
     numbers_clear();
     numbers_put("points", shown.scan.count);
     numbers_put("valid", shown.valid);
-    numbers_put("flagged", shown.flagged);
+    numbers_put("specular", shown.flags[TMINI_FLAG_SPECULAR]);
+    numbers_put("ambient", shown.flags[TMINI_FLAG_AMBIENT]);
+    numbers_put("flagged", shown.flags[TMINI_FLAG_SPECULAR] + shown.flags[TMINI_FLAG_AMBIENT]);
     numbers_put("dropped", shown.scan.dropped);
     numbers_put("packets", shown.scan.packets);
     numbers_put("gaps", shown.scan.gaps);

@@ -16,6 +16,19 @@ void *memcpy(void *to, const void *from, size_t count)
     return to;
 }
 
+void *memmove(void *to, const void *from, size_t count)
+{
+    unsigned char *target = to;
+    const unsigned char *source = from;
+    if (target <= source) {
+        return memcpy(to, from, count);
+    }
+    for (size_t i = count; i > 0; i--) {
+        target[i - 1] = source[i - 1];
+    }
+    return to;
+}
+
 void *memset(void *to, int value, size_t count)
 {
     unsigned char *target = to;

@@ -28,9 +28,6 @@ void numbers_put(const char *name, uint32_t value);
 void numbers_put_ct(const tmini_ct_info_t *info);
 uint32_t numbers_count(void);
 
-/* What recording_next() comes to. */
-typedef enum { NEXT_NEEDS_BYTES, NEXT_PACKET, NEXT_SCAN, NEXT_END } next_t;
-
 /* Makes `scan` the one that is shown; it is copied. */
 void shown_take(const tmini_scan_t *scan);
 

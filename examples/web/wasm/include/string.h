@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What WebAssembly lacks: a C library. These four are all that the library and the simulated lidar
+/* What WebAssembly lacks: a C library. These are all that the library and the simulated lidar
  * use of it; they are in string.c. */
 
 #ifndef WEB_STRING_H
@@ -10,6 +10,7 @@
 #include <stddef.h>
 
 void *memcpy(void *to, const void *from, size_t count);
+void *memmove(void *to, const void *from, size_t count);
 void *memset(void *to, int value, size_t count);
 int memcmp(const void *one, const void *other, size_t count);
 int strcmp(const char *one, const char *other);
