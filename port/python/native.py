@@ -14,5 +14,5 @@ ffi.set_source(
     "tmini._native",
     pathlib.Path("native.c").read_text(encoding="utf-8"),
     sources=sorted(path.as_posix() for path in pathlib.Path("lib/src").glob("*.c")),
-    include_dirs=["lib/include"],
+    include_dirs=["lib/include", "lib/src"],
 )

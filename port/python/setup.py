@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The package is built from the sources of lib/. A source distribution carries them; in the
-checkout they lie two folders up, and are here while setuptools works, which takes no others."""
+"""The package is built from the sources of lib/, and two of the tool's that read recordings. A source
+distribution carries them; in the checkout they lie two folders up, and are here while setuptools
+works, which takes no others. (So a checkout installs once at a time.)"""
 
 import pathlib
 import shutil
@@ -11,18 +12,21 @@ from setuptools import setup
 
 HERE = pathlib.Path(__file__).resolve().parent
 CARRIED = HERE / "lib"
-CHECKOUT = HERE.parents[1] / "lib"
+CHECKOUT = HERE.parents[1]
 IS_DISTRIBUTION = (HERE / "PKG-INFO").exists()
 
 if not IS_DISTRIBUTION:
-    if not (CHECKOUT / "include" / "tmini").is_dir():
-        raise SystemExit(f"no library in {CHECKOUT}: install from the whole checkout "
+    if not (CHECKOUT / "lib" / "include" / "tmini").is_dir():
+        raise SystemExit(f"no library in {CHECKOUT}/lib: install from the whole checkout "
                          "(pip install ./port/python), with pip 21.3 or later")
-    shutil.copytree(CHECKOUT, CARRIED, dirs_exist_ok=True)
-    shutil.copy(CHECKOUT.parent / "LICENSE", HERE)
+    shutil.copytree(CHECKOUT / "lib", CARRIED, dirs_exist_ok=True)
+    for name in ("chunk.c", "chunk.h", "tape.c", "tape.h"):
+        shutil.copy(CHECKOUT / "examples" / "host" / name, CARRIED / "src")
+    shutil.copy(CHECKOUT / "LICENSE", HERE)
 try:
     setup(cffi_modules=["native.py:ffi"])
 finally:
     if not IS_DISTRIBUTION:
         shutil.rmtree(CARRIED)
+        shutil.rmtree(HERE / "build", ignore_errors=True)
         (HERE / "LICENSE").unlink()

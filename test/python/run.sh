@@ -17,24 +17,12 @@ shift 3
 here=$(cd "$(dirname "$0")" && pwd)
 python=$folder/venv/bin/python
 
-skip() {
-    echo "SKIPPED: $1"
-    exit 77
+sdist=$("$here/sdist.sh" "$folder") || {
+    status=$?
+    echo "$sdist"
+    exit "$status"
 }
-
-install() {
-    "$python" -m pip install --quiet --disable-pip-version-check --retries 1 "$@"
-}
-
-python3 -c 'import ensurepip, venv' 2>/dev/null || skip "python3-venv is not installed"
-if ! "$python" -c 'import build, cffi, numpy, pytest, serial, wheel' 2>/dev/null; then
-    rm -rf "$folder/venv"
-    python3 -m venv "$folder/venv"
-    install --upgrade build cffi numpy pyserial pytest setuptools wheel ||
-        skip "Python's packages cannot be installed here"
-fi
-rm -rf "$folder/dist"
-"$python" -m build --quiet --sdist --no-isolation --outdir "$folder/dist" "$here/../../port/python"
-install --force-reinstall --no-deps --no-build-isolation "$folder"/dist/tmini-*.tar.gz
+"$python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps \
+    --no-build-isolation "$sdist"
 cd "$here"
 exec "$python" -m pytest -q -p no:cacheprovider "$@"

@@ -3,9 +3,11 @@
 
 """The Python package, against `tmini decode` and the simulated lidar."""
 
+import binascii
 import json
 import os
 import pathlib
+import socket
 import struct
 import subprocess
 import time
@@ -41,21 +43,59 @@ def as_json(scan):
     }
 
 
-def chunked(content):
+def chunked(content, version=2):
     """As `tmini record` writes it: 100 bytes each 8 ms, and a pause of two seconds."""
     chunks = [content[i:i + 100] for i in range(0, len(content), 100)]
-    pause = len(chunks) // 2
-    return b"\x89tmini\x01\n" + b"".join(
-        struct.pack("<IH", 2_000_000 if i == pause else 8000, len(chunk)) + chunk
-        for i, chunk in enumerate(chunks))
+    file = b"\x89tmini" + bytes([version]) + b"\n"
+    for i, chunk in enumerate(chunks):
+        head = struct.pack("<IH", 2_000_000 if i == len(chunks) // 2 else 8000, len(chunk))
+        crc = struct.pack("<H", binascii.crc_hqx(head + chunk, 0xFFFF))
+        file += (b"\xA7\xC3" + head + crc if version == 2 else head) + chunk
+    return file
 
 
 @pytest.mark.parametrize("path", sorted(RECORDINGS.glob("*.bin")), ids=lambda path: path.stem)
 def test_a_recording_holds_the_scans_that_the_tool_decodes(path, tmp_path):
     assert [as_json(scan) for scan in tmini.read(path)] == decode(path)
     timed = tmp_path / "timed.tmini"
-    timed.write_bytes(chunked(path.read_bytes()))
-    assert [as_json(scan) for scan in tmini.read(timed)] == decode(timed)
+    for version in (1, 2):
+        timed.write_bytes(chunked(path.read_bytes(), version))
+        assert [as_json(scan) for scan in tmini.read(timed)] == decode(timed)
+
+
+def test_a_start_packet_before_a_pause_is_no_scan(tmp_path):
+    content = (RECORDINGS / "sim-6hz.bin").read_bytes()
+    end = content.index(bytes.fromhex("aa5579"), 9000) + 13  # A start packet's, at 6.0 Hz.
+    path = tmp_path / "paused.tmini"
+    path.write_bytes(b"\x89tmini\x01\n" + b"".join(
+        struct.pack("<IH", passed, len(chunk)) + chunk for passed, chunk in
+        [(0, content[:4000]), (0, content[4000:8000]), (0, content[8000:end]), (2_000_000, content[end:end + 4000])]))
+    scans = [as_json(scan) for scan in tmini.read(path)]
+    assert scans == decode(path)
+    assert min(scan["packets"] for scan in scans[:-1]) > 1
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_a_byte_dropped_from_a_file_costs_at_most_a_hundredth_and_is_said(version, tmp_path):
+    path = tmp_path / "damaged.tmini"
+    file = chunked((RECORDINGS / "sim-6hz.bin").read_bytes(), version)
+    path.write_bytes(file)
+    all_packets = sum(scan.packets for scan in tmini.read(path))
+    for at in (500, 502, len(file) // 3):
+        path.write_bytes(file[:at] + file[at + 1:])
+        with pytest.warns(RuntimeWarning, match="is damaged in 1 place: bytes are missing"):
+            scans = list(tmini.read(path))
+        assert [as_json(scan) for scan in scans] == decode(path)
+        assert sum(scan.packets for scan in scans) >= all_packets - 1  # Of 190.
+
+
+def test_what_is_no_recording_of_a_lidar_is_said(tmp_path):
+    path = tmp_path / "letter.bin"
+    for content, words in ((b"", "is empty"), (b"Dear lidar, ", "no lidar packet in 12 bytes"),
+                           (b"\x89tmini\x03\n12345678", "is of version 3: too new")):
+        path.write_bytes(content)
+        with pytest.raises(ValueError, match=words):
+            list(tmini.read(path))
 
 
 def test_a_minute_of_recording_takes_a_sixth_of_a_second(tmp_path):
@@ -190,6 +230,18 @@ def test_a_lidar_on_a_socket_scans():
     finally:
         process.terminate()
         process.communicate()
+
+
+def test_a_connection_that_brings_nothing_is_made_again():
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        lidar = tmini.Lidar(f"tcp:127.0.0.1:{port}", timeout=None)
+        first, _ = server.accept()
+        server.settimeout(10)
+        second, _ = server.accept()
+        lidar.close()
+        first.close()
+        second.close()
 
 
 def test_what_the_lidar_reports_is_in_each_scan(simulator):

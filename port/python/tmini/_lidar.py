@@ -51,6 +51,11 @@ def python_now_ms(_context: Any) -> int:
     return int(time.monotonic() * 1000) & 0xFFFFFFFF
 
 
+@ffi.def_extern()
+def python_restart(context: Any) -> None:
+    ffi.from_handle(context)._is_stale = True
+
+
 class Lidar:
     """A lidar on a serial port ("/dev/ttyUSB0", "COM3") or on a socket ("tcp:HOST:PORT"). It scans
     from the beginning to close(); when it is lost, or the cable was out, it is brought back.
@@ -75,6 +80,7 @@ class Lidar:
         self._received = 0
         self._number = 0
         self._line: Line | None = None
+        self._is_stale = False  # The line brings nothing, and is to be opened anew.
         self._mount = Mount(front, upside_down, mask)
         self._listen_only = listen_only
         self._set_up(frequency_hz)
@@ -154,7 +160,8 @@ class Lidar:
         self._timing.max_pause_ms = 250
         self._timing.reply_timeout_ms = 1000
         self._port = ffi.new("tmini_port_t *", {"write": lib.python_write,
-                                                "now_ms": lib.python_now_ms})
+                                                "now_ms": lib.python_now_ms,
+                                                "restart": lib.python_restart})
         config = ffi.new("tmini_config_t *", {
             "port": self._port, "port_context": self._handle, "rx_buffer": self._rx,
             "rx_size": _RING, "points": self._points, "max_points": _POINTS,
@@ -175,6 +182,7 @@ class Lidar:
         for begin in range(0, max(len(data), 1), _BLOCK):
             block = data[begin:begin + _BLOCK]
             lib.tmini_feed(self._lidar, block, len(block))
+            lib.tmini_feed_held(self._lidar, len(data) - begin - len(block))
             while (event := lib.tmini_poll(self._lidar)) != lib.TMINI_EVENT_NONE:
                 self._take(event)
 
@@ -228,17 +236,22 @@ class Lidar:
         """What has come goes to the driver; a line that is gone is opened again."""
         data = b""
         try:
+            if self._is_stale:
+                self._drop_line()
             if self._line is None:
                 self._line = open_line(self.port)
                 with self._changed:
                     lib.tmini_feed_gap(self._lidar)
             data = self._line.read()
         except OSError:
-            line, self._line = self._line, None
-            if line is not None:
-                line.close()
+            self._drop_line()
         with self._changed:
             self._feed(data)
+
+    def _drop_line(self) -> None:
+        line, self._line, self._is_stale = self._line, None, False
+        if line is not None:
+            line.close()
 
     def _await_first(self, timeout: float) -> None:
         try:
