@@ -16,10 +16,11 @@ def is_ours(folder):
     return not folder.startswith("build") and folder not in (".git", ".pio", "managed_components")
 
 
-def documents():
-    """All documents but those in build folders, as paths."""
+def documents(language=""):
+    """All documents in English, or in another language, but those in build folders, as paths."""
     return [path for path in sorted(ROOT.rglob("*.md"))
-            if all(is_ours(folder) for folder in path.relative_to(ROOT).parts[:-1])]
+            if path.name.partition(".")[2] == language + "md" and
+            all(is_ours(folder) for folder in path.relative_to(ROOT).parts[:-1])]
 
 
 def name(path):

@@ -69,7 +69,7 @@ def check_path(path, number, named):
 
 def main():
     complaints, count = [], 0
-    for path in documents():
+    for path in [*documents(), *documents("zh-CN.")]:
         for number, target in links(path):
             count += 1
             complaints.append(check_link(path, number, target))

@@ -26,7 +26,8 @@ typedef struct {
 #define USART_ISR_RXNE (1u << 5)
 #define USART_ICR_ORECF (1u << 3)
 
-extern board_usart_t *const USART1;
+extern board_usart_t board_usart1;
+#define USART1 (&board_usart1)
 
 extern const tmini_port_t board_port;
 extern int board_uart;
@@ -34,6 +35,7 @@ extern int board_uart;
 /* The reader's own. */
 void avoid_obstacles(const tmini_scan_t *scan);
 void signal_faults(uint8_t faults);
+void stop_robot(void);
 void halt(void);
 void use(const tmini_scan_t *scan);
 void handle(tmini_event_t event);
