@@ -77,11 +77,27 @@ void prove_sectors_at(void)
     REACHED();
 }
 
+void prove_mount_angle(void)
+{
+    const tmini_mount_t mount = {.front_deg = (int16_t)nondet_half(), .upside_down = any_bool()};
+    const uint16_t angle_q6 = nondet_half();
+    ASSUME(angle_q6 < TMINI_FULL_CIRCLE_Q6);
+    CLAIM(tmini_mount_angle(&mount, angle_q6) < TMINI_FULL_CIRCLE_Q6);
+    REACHED();
+}
+
+static int16_t any_direction(void)
+{
+    const int16_t degrees = (int16_t)nondet_half();
+    ASSUME(degrees >= -720 && degrees <= 720);
+    return degrees;
+}
+
 void prove_mount(void)
 {
     tmini_scan_t scan = any_scan();
-    const tmini_arc_t arc = {(int16_t)nondet_half(), (int16_t)nondet_half()};
-    const tmini_mount_t mount = {.front_deg = (int16_t)nondet_half(),
+    const tmini_arc_t arc = {any_direction(), any_direction()};
+    const tmini_mount_t mount = {.front_deg = any_direction(),
                                  .upside_down = any_bool(),
                                  .min_mm = nondet_half(),
                                  .max_mm = nondet_half(),
