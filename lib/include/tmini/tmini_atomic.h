@@ -2,23 +2,23 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * The primitives: memory order between the two sides of the ring, several bytes in one access, and
- * hints for compilers in the hottest loops. The only file with compiler extensions.
+ * Primitives: memory order between the two sides of the ring, access to several bytes at once, and
+ * compiler hints for the innermost loops. This is the only file with compiler extensions.
  *
  * tmini_load() reads a size_t that the other side writes, and no later access moves before it;
  * tmini_store() writes one, and no earlier access moves after it (acquire and release, in C11's
- * words). Both are one access wide, so that the other side sees the old value or the new one.
+ * words). Both are a single access, so that the other side sees the old value or the new one.
  * tmini_fence() keeps earlier reads before later ones.
  *
- * GCC and Clang map them to instructions that are right on several cores too (ESP32). On one core,
- * which always sees its own accesses in order, interrupts included, keeping the compiler in order
- * is enough and costs nothing: TMINI_SINGLE_CORE says so. It is 1 on Cortex-M unless the chip is
- * known to have two cores; define it as 0 or 1 for the whole build to overrule that. Circular DMA
- * counts as another core only on processors that reorder reads (Cortex-M7): tmini_fence() stays
- * real there.
+ * GCC and Clang translate them to instructions that are also right on several cores (ESP32). One
+ * core always sees its own accesses in order, also from its interrupts. There it is enough to stop
+ * the compiler from reordering, which costs nothing: TMINI_SINGLE_CORE is then 1. It is 1 on
+ * Cortex-M unless the chip is known to have two cores; define it as 0 or 1 for the whole build to
+ * overrule that. Where the processor itself may reorder reads (Cortex-M7), circular DMA acts like
+ * another core: tmini_fence() remains an instruction there.
  *
- * For another compiler, or a machine with needs of its own, name a header that defines the three
- * functions: -DTMINI_ATOMIC_HEADER='"my_atomic.h"'. */
+ * For another compiler or an unusual machine, name a header that defines the three functions:
+ * -DTMINI_ATOMIC_HEADER='"my_atomic.h"'. */
 
 #ifndef TMINI_ATOMIC_H
 #define TMINI_ATOMIC_H
@@ -28,7 +28,8 @@
 #include <string.h>
 
 /** @def TMINI_SINGLE_CORE
- * 1: feeding and polling run on the same core; 0: perhaps on two. Define it to overrule. */
+ * 1: feeding and polling run on the same core; 0: they may run on two. Define it to overrule the
+ * default. */
 #if !defined(TMINI_SINGLE_CORE)
 #if defined(PICO_RP2040) || defined(PICO_RP2350) || defined(ARDUINO_ARCH_RP2040)
 #define TMINI_SINGLE_CORE 0
@@ -40,7 +41,7 @@
 #endif
 
 /** @def TMINI_INLINE
- * For functions of which each instruction counts: at -Os a compiler might call them instead. */
+ * For functions where each instruction counts: at -Os a compiler might not inline them. */
 #if defined(__GNUC__) && defined(__OPTIMIZE__)
 #define TMINI_INLINE static inline __attribute__((always_inline))
 #else
@@ -48,7 +49,7 @@
 #endif
 
 /** @def TMINI_NOINLINE
- * For a function that is to have its registers, or its stack, for itself. */
+ * For a function that must not share its registers, or its stack, with its caller. */
 #if defined(__GNUC__)
 #define TMINI_NOINLINE __attribute__((noinline))
 #else
@@ -64,7 +65,7 @@
 #endif
 
 /** @def TMINI_UNROLL
- * Before a loop that is worth eight times its size where the compiler optimises for speed. */
+ * Before a loop that the compiler may unroll eight times when it optimises for speed. */
 #if defined(__GNUC__) && __GNUC__ >= 8 && !defined(__clang__)
 #define TMINI_UNROLL _Pragma("GCC unroll 8")
 #else
@@ -77,7 +78,7 @@
 
 #elif defined(__AVR__)
 
-/* A size_t takes two accesses on this 8-bit machine: keep interrupts out for those two. */
+/* This 8-bit machine needs two accesses for a size_t: interrupts are disabled meanwhile. */
 #include <util/atomic.h>
 
 /** Reads an index that the other side writes; no later access moves before it. Any context; two
@@ -102,8 +103,8 @@ TMINI_INLINE void tmini_store(size_t *value, size_t stored)
     }
 }
 
-/** Keeps earlier reads before later ones. One core that reads in order: only the compiler might
- * not. */
+/** Keeps earlier reads before later ones. This core reads in order; only the compiler has to be
+ * stopped. */
 TMINI_INLINE void tmini_fence(void)
 {
     __asm__ volatile("" ::: "memory");
@@ -112,8 +113,8 @@ TMINI_INLINE void tmini_fence(void)
 #elif defined(__GNUC__) && TMINI_SINGLE_CORE
 
 /** Reads an index that the other side writes; no later access moves before it. Any context; one
- * access. A plain read: the compiler may join it with its neighbour's (LDRD), but not keep what it
- * has read. */
+ * access. A plain read: the compiler may join it with a read of the neighbouring member (LDRD), but
+ * may not reuse an earlier value. */
 TMINI_INLINE size_t tmini_load(const size_t *value)
 {
     const size_t loaded = *value;
@@ -164,8 +165,8 @@ TMINI_INLINE void tmini_fence(void)
 #endif
 
 /** @def TMINI_WORD_ALIGNMENT
- * A word is loaded at addresses that are a multiple of this: 4, or 1 where any will do. Define it
- * as 4u for the whole build to overrule that. */
+ * Words are loaded from addresses that are a multiple of this: 4, or 1 where any address works.
+ * Define it as 4u for the whole build to overrule 1. */
 #if defined(TMINI_WORD_ALIGNMENT)
 /* As defined. */
 #elif defined(__ARM_FEATURE_UNALIGNED) || defined(__x86_64__) || defined(__i386__) || \
@@ -175,7 +176,8 @@ TMINI_INLINE void tmini_fence(void)
 #define TMINI_WORD_ALIGNMENT 4u
 #endif
 
-/** Four bytes from such an address, as the machine orders them: one load. */
+/** Four bytes, in the machine's byte order, in one load. The address is a multiple of
+ * TMINI_WORD_ALIGNMENT. */
 TMINI_INLINE uint32_t tmini_word(const uint8_t *bytes)
 {
     uint32_t word;
@@ -187,7 +189,7 @@ TMINI_INLINE uint32_t tmini_word(const uint8_t *bytes)
     return word;
 }
 
-/** Copies two bytes, and of the second one only the bits in `mask`: one load and one store where
+/** Copies two bytes, the second one reduced to the bits in `mask`. One load and one store where
  * TMINI_WORD_ALIGNMENT is 1. */
 TMINI_INLINE void tmini_copy_pair(uint8_t *to, const uint8_t *from, uint8_t mask)
 {

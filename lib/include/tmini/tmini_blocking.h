@@ -2,24 +2,22 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * Wishes and queries in a form that waits: for start-up code and for tools. A thin layer over
- * tmini_poll().
+ * Optional: wishes and queries that wait for their result, for start-up code and tools. A thin
+ * layer over tmini_poll().
  *
- * Each function polls until what it waits for has come or `timeout_ms` has passed on the port's
- * clock, calling the port's `wait`, if there is one, whenever there is nothing to do. Meanwhile
- * bytes must come in from an interrupt, from another task, or from the port's `wait`. Events that
- * do not belong to it, scans among them, are dropped. A query that has not ended in time is given
- * up; the lidar's state is then unknown, and the next command stops it first. A wish stands, though
- * the waiting for it has ended.
+ * Each function polls until its result has come or `timeout_ms` has passed on the port's clock.
+ * When there is nothing to do it calls the port's `wait`, if there is one. Meanwhile bytes must
+ * come in from an interrupt, from another task, or from the port's `wait`. Other events, scans
+ * included, are dropped. A query that has not ended in time is given up; the lidar's state is then
+ * unknown, and the next command stops it first. A wish remains when the waiting ends.
  *
  * Context: the one that polls. All return
  *
- *     TMINI_OK                                         done
- *     TMINI_ERROR_ARGUMENT, _STATE, _BUSY, _LISTEN_ONLY not begun, as tmini.h says
- *     TMINI_ERROR_TIMEOUT, _WRITE, _REPLY              failed, as tmini_command_error() says, or
- *                                                      too late
+ *     TMINI_OK                                           done
+ *     TMINI_ERROR_ARGUMENT, _STATE, _BUSY, _LISTEN_ONLY  not begun, for the reasons in tmini.h
+ *     TMINI_ERROR_TIMEOUT, _WRITE, _REPLY                the command's error, or too late
  *
- * and write their result only with TMINI_OK. */
+ * and write their result only if they return TMINI_OK. */
 
 #ifndef TMINI_BLOCKING_H
 #define TMINI_BLOCKING_H
@@ -49,15 +47,17 @@ tmini_status_t tmini_blocking_read_health(tmini_t *lidar, tmini_health_t *health
 tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency_chz,
                                              uint32_t timeout_ms);
 
-/** States the wish for a scan frequency, in 0.01 Hz, as tmini_set_frequency() does, and waits until
- * it has been set: `timeout_ms` at most; allow 2 s more than for a query, for up to 15 steps.
- * Returns what is listed above. */
+/** Wishes a scan frequency, in 0.01 Hz, as tmini_set_frequency() does, and waits until it has been
+ * set, at most `timeout_ms`. Allow 2 s more than for a query: up to 15 steps may be needed. Returns
+ * what is listed above. */
 tmini_status_t tmini_blocking_set_frequency(tmini_t *lidar, uint16_t frequency_chz,
                                             uint32_t timeout_ms);
 
-/** States the wish to scan and waits for the first scan, or, without points, for the first packet,
- * for `timeout_ms` at most: not only for the first attempt. The scan is valid as tmini_scan() says.
- * Returns what is listed above; after TMINI_ERROR_TIMEOUT the lidar is still to scan. */
+/** Wishes to scan and waits for the first scan (without a scan buffer, for the first packet), at
+ * most `timeout_ms`. Attempts that fail meanwhile do not end the waiting, except with
+ * TMINI_RECOVERY_OFF. The scan is valid as described at tmini_scan(). Returns what is listed above;
+ * after TMINI_ERROR_TIMEOUT the wish to scan
+ * remains. */
 tmini_status_t tmini_blocking_start(tmini_t *lidar, uint32_t timeout_ms);
 
 /** Stops the lidar and waits until the line is quiet, `timeout_ms` at most (section 9.10). In any

@@ -2,9 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * Optional: scans as the robot sees them, from a lidar that is mounted turned or upside down,
- * without what the robot itself is in the way of, or what is nearer or farther than wanted. A step
- * of the configuration: each scan is changed once, before it is delivered. Integers only.
+ * Optional: scans in the robot's own directions, for a lidar that is mounted turned or upside down.
+ * It also removes the robot's own parts, and ranges that are too near or too far. It is a step of
+ * the configuration: each scan is changed once, before it is delivered. Integers only.
  *
  *     static const tmini_arc_t masts[] = {{170, 190}};
  *     static const tmini_mount_t mount = {.front_deg = 90, .upside_down = true, .min_mm = 100,
@@ -30,29 +30,30 @@
 extern "C" {
 #endif
 
-/** The directions from `from_deg` clockwise to `to_deg`, both included, in whole degrees; as the
- * robot counts them, 0 to its front: {350, 10} and {-10, 10} are the same 20 degrees, {0, 360} all
- * around. */
+/** The directions from `from_deg` clockwise to `to_deg`, both included, in whole degrees. They are
+ * the robot's directions: 0 is its front. {350, 10} and {-10, 10} are the same 20 degrees; {0, 360}
+ * is the full circle. */
 typedef struct {
     int16_t from_deg; /**< Where it begins. */
     int16_t to_deg;   /**< Where it ends. */
 } tmini_arc_t;
 
-/** How the lidar is mounted, and what is to be left out. All 0: nothing changes. */
+/** How the lidar is mounted, and what is removed. All 0: nothing changes. */
 typedef struct {
-    int16_t front_deg;         /**< What the lidar reports for the robot's front, also hanging. */
+    int16_t front_deg;         /**< The angle that the lidar reports for the robot's front, also if
+                                * it hangs. */
     bool upside_down;          /**< The lidar hangs: its angles run the other way round. */
-    uint16_t min_mm;           /**< Distances below are out of range. */
-    uint16_t max_mm;           /**< Distances above are; 0: none. */
-    const tmini_arc_t *masked; /**< Directions in which the robot sees itself. */
-    size_t masked_count;       /**< How many. */
+    uint16_t min_mm;           /**< Smaller distances become 0. */
+    uint16_t max_mm;           /**< Larger distances become 0; 0: no limit. */
+    const tmini_arc_t *masked; /**< Directions in which the lidar sees the robot itself. */
+    size_t masked_count;       /**< How many such directions there are. */
 } tmini_mount_t;
 
-/** The robot's angle of a lidar's angle, both clockwise, in 1/64 degree, 0 to 23039. */
+/** Converts an angle of the lidar to the robot's: both clockwise, in 1/64 degree, 0 to 23039. */
 uint16_t tmini_mount_angle(const tmini_mount_t *mount, uint16_t angle_q6);
 
-/** Changes one point: its angle becomes the robot's; its distance 0, unknown, if it is masked or
- * out of range. */
+/** Changes one point: its angle becomes the robot's, and its distance becomes 0 (unknown) if it is
+ * masked or out of range. */
 void tmini_mount_point(const tmini_mount_t *mount, tmini_point_t *point);
 
 /** The step for the configuration's `step`, with a tmini_mount_t as its `step_data`; NULL changes

@@ -24,23 +24,24 @@ extern "C" {
  * status". */
 const char *tmini_status_name(tmini_status_t status);
 
-/** An event as text, for example "faults changed"; "unknown event" for what is none. Never NULL. */
+/** An event as text, for example "faults changed"; "unknown event" for any other value. Never
+ * NULL. */
 const char *tmini_event_name(tmini_event_t event);
 
-/** A state as text, for example "scanning"; "unknown state" for what is none, and "unknown" for the
- * state that is called so. Never NULL. */
+/** A state as text, for example "scanning"; "unknown state" for any other value ("unknown" is
+ * TMINI_STATE_UNKNOWN). Never NULL. */
 const char *tmini_state_name(tmini_state_t state);
 
-/** The name of one fault, for example "encoder"; "unknown fault" for none or several. Never
+/** The name of one fault, for example "encoder"; "unknown fault" for 0 or several faults. Never
  * NULL. */
 const char *tmini_fault_name(tmini_fault_t fault);
 
 /** Writes the names of all faults in `faults` (a combination of tmini_fault_t) to `text`, as in
- * "encoder, data"; "none" for 0. `size`: the bytes there are in `text`, the terminating 0 included;
- * what does not fit is cut off, and nothing is written if it is 0. Returns `text`. */
+ * "encoder, data"; "none" for 0. `size` is the size of `text` in bytes, including the terminating
+ * 0. Text that does not fit is cut off; with size 0 nothing is written. Returns `text`. */
 const char *tmini_faults_text(uint8_t faults, char *text, size_t size);
 
-/** The serial number as text: 16 characters and a terminating 0; '?' for what is not a digit. */
+/** The serial number as text: 16 characters and a terminating 0; '?' where there is no digit. */
 void tmini_serial_text(const tmini_info_t *info, char text[TMINI_SERIAL_DIGITS + 1]);
 
 #ifdef __cplusplus

@@ -2,12 +2,11 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * What the driver needs of the board: something to send bytes with, and a clock. Received bytes
- * come the other way, through tmini_feed_byte(), tmini_feed() or tmini_feed_dma().
+ * What the driver needs from the board: a way to send bytes, and a clock. Received bytes come the
+ * other way, through tmini_feed_byte(), tmini_feed() or tmini_feed_dma().
  *
- * All members are called from within tmini_poll(), a command function or a blocking helper, hence
- * in the context that calls those, never from an interrupt, and never two at a time for one
- * lidar. */
+ * The driver calls the members from tmini_poll(), from a wish or query, or from a blocking helper.
+ * So they run in the polling context, and never two at a time for one lidar. */
 
 #ifndef TMINI_PORT_H
 #define TMINI_PORT_H
@@ -19,28 +18,28 @@
 extern "C" {
 #endif
 
-/** The functions of a board. All get the configuration's `port_context`. The structure must
+/** The functions of a board. Each gets the configuration's `port_context`. The structure must
  * outlive the lidar; it may be constant, and several lidars may share it. */
 typedef struct {
     /** Hands up to `count` (at most 2) bytes to the UART and returns how many it took, 0 to count,
-     * or a negative number when sending has failed. It may take fewer, even none, when the
-     * transmitter is busy: the driver offers the rest again at the next tmini_poll(). It must not
-     * wait longer than the bytes take on the wire (87 µs for two). The bytes are the driver's only
-     * during the call: copy what is sent later. Required, unless the configuration says
-     * listen_only. */
+     * or a negative number when sending has failed. It may take fewer, even none, while the
+     * transmitter is busy: the driver offers the rest again at a later tmini_poll(). It must not
+     * wait longer than the bytes take on the wire (87 µs for two). The bytes are valid during the
+     * call only: copy what is sent later. Required, unless the configuration says listen_only. */
     int (*write)(void *context, const uint8_t *bytes, size_t count);
 
-    /** Milliseconds since any moment, running on modulo 2^32; steps of up to 10 ms will do. Must
-     * not wait. A step back of up to a second counts as no time. Required. */
+    /** Milliseconds since any moment, modulo 2^32; steps of up to 10 ms are fine enough. Must not
+     * wait. If the clock steps back by up to a second, no time counts until it has caught up.
+     * Required. */
     uint32_t (*now_ms)(void *context);
 
-    /** Lets other work run (an RTOS delay, a sleep until the next interrupt) for about a
-     * millisecond. Only the blocking helpers of tmini_blocking.h call it, while they wait.
-     * Optional: NULL makes them spin. */
+    /** Lets other work run for about a millisecond (an RTOS delay, a sleep until the next
+     * interrupt). Only the blocking helpers of tmini_blocking.h call it, while they wait. Optional:
+     * with NULL they poll without a pause. */
     void (*wait)(void *context);
 
-    /** Begins reception anew, where the receiver may have stopped for good: called when the lidar
-     * is lost and after each attempt to start it that failed. Must not wait. Optional: NULL. */
+    /** Starts reception again, in case the receiver has stopped. Called when the lidar is lost, and
+     * after each failed attempt to start it. Must not wait. Optional: NULL. */
     void (*restart)(void *context);
 } tmini_port_t;
 

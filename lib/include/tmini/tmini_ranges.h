@@ -2,12 +2,12 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * Optional: a scan as ranges at equal angles, counter-clockwise, as ROS wants them in a LaserScan
- * message. Integers only; tmini_units.h turns them into metres and radians. Nothing else in the
+ * Optional: a scan as ranges at equal angles, counter-clockwise, as a ROS LaserScan message needs
+ * them. Integers only; tmini_units.h turns them into metres and radians. Nothing else in the
  * library needs it.
  *
- * The lidar counts angles clockwise and its points lie where they fall; ROS counts
- * counter-clockwise (x ahead, y to the left) and wants one range every few degrees. With
+ * The lidar counts angles clockwise, and its points have no fixed angles. ROS counts
+ * counter-clockwise (x ahead, y to the left) and wants ranges at fixed steps. With
  * `count` bins:
  *
  *     bin i is centred on the ROS angle   -180 degrees + i * 360 degrees / count
@@ -16,8 +16,8 @@
  *     bin count / 2        is ahead
  *     bin 3 * count / 4    is to the left
  *
- * so `count` is best a multiple of 4. The measured points of a bin give its nearest range; 720 bins
- * at 6 Hz leave some empty, 360 hardly any. */
+ * so `count` is best a multiple of 4. A bin's range is that of its nearest point. At 6 Hz some of
+ * 720 bins are empty, and hardly any of 360. */
 
 #ifndef TMINI_RANGES_H
 #define TMINI_RANGES_H
@@ -31,15 +31,15 @@
 extern "C" {
 #endif
 
-/** Writes `count` ranges in mm to `ranges_mm`, 0 where nothing was measured, and, unless it is
- * null, the intensities of the same points to `intensities`. Any context; no waiting; a division a
- * point.
+/** Writes `count` ranges in mm to `ranges_mm`, 0 where nothing was measured, and the intensities of
+ * the same points to `intensities`, unless that is null. Both have room for `count` values. Any
+ * context; no waiting; one division per point.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: scan or ranges null, count 0 or above 65535. */
 tmini_status_t tmini_ranges_of_scan(const tmini_scan_t *scan, uint16_t *ranges_mm,
                                     uint8_t *intensities, size_t count);
 
-/** The bin, of `count` (1 to 65535), in which an angle of the lidar lies: in 1/64 degree, below
- * TMINI_FULL_CIRCLE_Q6. Any context; no waiting; one division. */
+/** The bin, of `count` (1 to 65535), that contains an angle of the lidar (in 1/64 degree, below
+ * TMINI_FULL_CIRCLE_Q6). Any context; no waiting; one division. */
 size_t tmini_ranges_bin(uint16_t angle_q6, size_t count);
 
 #ifdef __cplusplus

@@ -2,18 +2,17 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * Optional: when each point of a scan was measured, in integers, and the library's integers as
- * floats in degrees, radians, hertz and metres. The only place with floats; nothing else includes
- * it, and it needs neither a C library nor an FPU. All functions: any context; no waiting.
+ * Optional: the time at which each point of a scan was measured, in integers; and conversions to
+ * floats in degrees, radians, hertz and metres. Floats occur only here. No other header includes
+ * this one, and it needs neither a C library nor an FPU. All functions: any context; no waiting.
  *
- * How well it is known: a scan's start_ms and end_ms are when its start packet and the next one
- * came, less what the bytes after them took on the line. Compared with when their samples were
- * measured they are late, by up to 6 ms at polls every 1 ms (a start packet waits until the packet
- * before it has been sent), 11 ms at 10 and 38 (where packets are lost, 12 and 22), and by the time
- * that bytes waited where nothing counts them (a UART's FIFO, a task's queue, a USB adapter: some
- * milliseconds). From point to point of a scan, or of a part of one, times are good to 1.5 ms at 6
- * Hz and 1 ms at 12 Hz, however rare the polls: the rotor turns evenly, and the clock is not
- * asked. */
+ * Accuracy. start_ms and end_ms are the arrival times of a scan's start packet and of the next one,
+ * corrected for the bytes that came after them. They are later than the measurement: by up to 6 ms
+ * if you poll every 1 ms (a start packet waits until the packet before it has been sent), and by up
+ * to 11 ms if you poll every 10 or 38 ms; where packets are lost, by up to 12 and 22 ms. Time that
+ * bytes spend in a UART's FIFO, a task's queue or a USB adapter comes on top: some milliseconds.
+ * Within a scan, or a part of one, the times of points are accurate to 1.5 ms at 6 Hz and 1 ms at
+ * 12 Hz, however rare the polls, because they follow the rotor's even turning and not the clock. */
 
 #ifndef TMINI_UNITS_H
 #define TMINI_UNITS_H
@@ -27,15 +26,17 @@
 extern "C" {
 #endif
 
-/** How long the revolution took, in milliseconds: of a complete scan by its number of samples, 4000
- * in a second (section 1), where that agrees with the reported frequency; else by that, which has
- * steps of 0.1 Hz. The clock is not asked. 0 if neither is known. */
+/** The duration of the revolution, in milliseconds; 0: unknown. For a complete scan it follows from
+ * the number of samples, at 4000 per second (section 1), if that agrees with the reported
+ * frequency. Otherwise it follows from the reported frequency, which has steps of 0.1 Hz. The clock
+ * is not used. */
 uint32_t tmini_scan_period_ms(const tmini_scan_t *scan);
 
 /** When point `index` (below scan->count) was measured, in microseconds after the scan's first
- * point: by its angle, however the scan is mounted; or, when the period is not known, by its place
- * at 4000 samples a second (section 1). Two divisions, and a look at each point between it and the
- * last one before it that is 4 degrees from the first: at most some twenty in a true scan. */
+ * point. It follows from the point's angle, also in a scan that was turned over; if the period is
+ * unknown, from its index at 4000 samples per second (section 1). Two divisions. For a point within
+ * 4 degrees of the first one it also searches back for a point that is farther away: at most about
+ * twenty steps in a real scan. */
 uint32_t tmini_point_time_us(const tmini_scan_t *scan, size_t index);
 
 /** The circle's constant, as a float. */
@@ -53,8 +54,8 @@ static inline float tmini_radians(uint16_t angle_q6)
     return (float)angle_q6 * (2.0f * TMINI_PI / (float)TMINI_FULL_CIRCLE_Q6);
 }
 
-/** An angle of the lidar as ROS counts: counter-clockwise from straight ahead, in radians, -pi to
- * pi. Then x = range * cos(angle) points ahead and y = range * sin(angle) to the left. */
+/** An angle of the lidar in the ROS convention: counter-clockwise from straight ahead, in radians,
+ * -pi to pi. Then x = range * cos(angle) points ahead and y = range * sin(angle) to the left. */
 static inline float tmini_ros_radians(uint16_t angle_q6)
 {
     const uint16_t half = (uint16_t)(TMINI_FULL_CIRCLE_Q6 / 2u);
@@ -80,8 +81,8 @@ static inline float tmini_ranges_angle_min(void)
     return -TMINI_PI;
 }
 
-/** For ranges from tmini_ranges.h: the angle from bin to bin in radians, of `count` bins (not 0); a
- * LaserScan's angle_increment. */
+/** For ranges from tmini_ranges.h: the angle from bin to bin in radians, for `count` bins (not 0);
+ * a LaserScan's angle_increment. */
 static inline float tmini_ranges_increment(size_t count)
 {
     return 2.0f * TMINI_PI / (float)count;
@@ -94,9 +95,10 @@ static inline float tmini_ranges_scan_time(const tmini_scan_t *scan)
 }
 
 /** A LaserScan's time_increment, in seconds from bin to bin: negative, because the bins run
- * counter-clockwise and the rotor clockwise. Of a scan that begins at 0 degrees bin 0, behind the
- * lidar, is measured half a period after the scan's start_ms, bin count / 2 at its beginning; the
- * bins beyond, on the left, a period later than this says: at its end. */
+ * counter-clockwise and the rotor clockwise. In a scan that begins at 0 degrees, bin count / 2
+ * (ahead) is measured first, and bin 0 (behind the lidar) half a period later. The bins above count
+ * / 2 (on the left) are measured last: one period later than this increment gives for them. `count`
+ * is not 0. */
 static inline float tmini_ranges_time_increment(const tmini_scan_t *scan, size_t count)
 {
     return -tmini_ranges_scan_time(scan) / (float)count;

@@ -2,18 +2,19 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * CT information: what the packets of one revolution say in bits 1 to 7 of their CT bytes, each by
- * its index within the revolution (section 7).
+ * CT information: bits 1 to 7 of the CT bytes of one revolution's packets. What they mean depends
+ * on the packet's index within the revolution (section 7).
  *
  * Packets do not carry that index, so a lost one would shift the meaning of every later CT. The
  * lidar therefore sends a CRC-8 over a revolution's CT bytes, LastCRC, just before the next start
- * packet. A revolution is trusted only if LastCRC is there, equals, and nothing was lost; else it
- * is dropped whole. Units that send neither LastCRC nor CT information (section 9.1) never become
- * "healthy, version 0.0": their information stays unknown.
+ * packet. A revolution's information is used only if LastCRC is present and equal and nothing was
+ * lost; otherwise all of it is dropped. Units that send neither LastCRC nor CT information (section
+ * 9.1) never become "healthy, version 0.0": their information stays unknown.
  *
  * All functions: one context, the one that parses; no waiting.
  *
- * With TMINI_NO_CT defined for the whole build, CT information is left out: none is ever known. */
+ * If TMINI_NO_CT is defined for the whole build, the code for CT information is left out, and none
+ * is ever known. */
 
 #ifndef TMINI_CT_H
 #define TMINI_CT_H
@@ -30,7 +31,7 @@ extern "C" {
 
 /** Indices with a documented meaning: 0 to 13. */
 #define TMINI_CT_INDICES 14u
-/** The fields among them that are kept. */
+/** How many of these are kept. */
 #define TMINI_CT_FIELDS 9u
 
 /** What tmini_ct_faults() returns when nothing is known; no combination of tmini_fault_t. */
@@ -39,32 +40,32 @@ extern "C" {
 /** What has been learned from a unit's CT bytes. Treat the members as private. */
 typedef struct {
     uint8_t known;   /**< Indices below this have a trusted CT; all others are 0. */
-    uint8_t packets; /**< Of the revolution under way, at most 14; 0 if its beginning, or a packet
-                      * since, is missing. */
-    uint8_t fields;  /**< How many of its fields have come. */
-    uint8_t crc;     /**< Of its CT bytes so far. */
-    uint8_t cts;     /**< Those of its point packets, joined by OR: 0 if they say nothing. */
-    uint8_t current[TMINI_CT_FIELDS]; /**< CTs of the revolution under way. */
-    uint8_t trusted[TMINI_CT_FIELDS]; /**< The newest trusted CT of each field. */
+    uint8_t packets; /**< Packets of the current revolution, at most 14; 0 if its beginning or a
+                      * later packet is missing. */
+    uint8_t fields;  /**< How many fields of the current revolution have come. */
+    uint8_t crc;     /**< The CRC of its CT bytes so far. */
+    uint8_t cts;     /**< The OR of its point packets' CT bytes; 0: they carry no information. */
+    uint8_t current[TMINI_CT_FIELDS]; /**< CT bytes of the current revolution. */
+    uint8_t trusted[TMINI_CT_FIELDS]; /**< The newest trusted CT byte of each field. */
 } tmini_ct_t;
 
 /** What a start packet shows of the revolution that it ends. */
 typedef enum {
-    TMINI_CT_UNKNOWN,   /**< Nothing: no LastCRC, or no CT information. */
+    TMINI_CT_UNKNOWN,   /**< Nothing: there is no LastCRC, or no CT information. */
     TMINI_CT_CONFIRMED, /**< LastCRC is right: no packet was lost. */
-    TMINI_CT_REFUTED,   /**< LastCRC is wrong: a packet was lost, if not LastCRC itself damaged. */
+    TMINI_CT_REFUTED,   /**< LastCRC is wrong: a packet was lost, or LastCRC itself is damaged. */
 } tmini_ct_verdict_t;
 
 #if !defined(TMINI_NO_CT)
 
-/** Forgets everything. For a new `ct`, and after a unit may have been exchanged. */
+/** Forgets everything. Call it for a new `ct`, and when the unit may have been exchanged. */
 void tmini_ct_init(tmini_ct_t *ct);
 
-/** Forgets the revolution under way, which was interrupted; keeps what is known. */
+/** Forgets the current revolution, because it was interrupted. Trusted information is kept. */
 void tmini_ct_discard(tmini_ct_t *ct);
 
-/** Takes the next packet, and returns what it shows of the revolution that it ends;
- * TMINI_CT_UNKNOWN if it ends none. When confirmed, what tmini_ct_read() says is as of now. A few
+/** Takes the next packet. Returns what it shows of the revolution that it ends, or TMINI_CT_UNKNOWN
+ * if it ends none. After TMINI_CT_CONFIRMED, tmini_ct_read() includes that revolution. A few
  * instructions. */
 tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet);
 
@@ -72,7 +73,7 @@ tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet);
  * TMINI_FAULTS_UNKNOWN if none has. */
 unsigned tmini_ct_faults(const tmini_ct_t *ct);
 
-/** Writes what is known from trusted revolutions to `info`; each field keeps its value until a
+/** Writes the information of trusted revolutions to `info`. Each field keeps its value until a
  * newer one is trusted. */
 void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info);
 
@@ -104,8 +105,8 @@ static inline void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
 
 #endif
 
-/** The guard's CRC-8 (CRC-8/MAXIM: reflected polynomial 0x8C, initial value 0; section 7), `crc` so
- * far and then `byte`. Any context. */
+/** The CRC-8 of the CT bytes (CRC-8/MAXIM: reflected polynomial 0x8C, initial value 0; section 7).
+ * Returns `crc`, continued by `byte`. Any context. */
 uint8_t tmini_ct_crc8(uint8_t crc, uint8_t byte);
 
 #ifdef __cplusplus

@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * Bytes to packets, replies and scans: parser, CT information and scan builder joined. The driver
- * is built on it, and so is a program that decodes a recording:
+ * From bytes to packets, replies and scans: joins parser, CT information and scan builder. The
+ * driver is built on it, and so is a program that decodes a recording:
  *
  *     tmini_decoder_init(&decoder, &ring, 0);
  *     tmini_builder_init(&decoder.builder, points, max_points, TMINI_FILTER_NONE);
@@ -33,31 +33,32 @@ extern "C" {
 /** A decoder over one ring. Members may be read; `parser` and `builder` may be used by their own
  * functions. */
 typedef struct {
-    tmini_packet_t packet;   /**< The latest; valid until the next tmini_decoder_next(). */
-    tmini_builder_t builder; /**< Its `scan`; without a capacity no scans are built. */
-    tmini_parser_t parser;   /**< Finds the frames. */
-    tmini_ct_t ct;           /**< What the unit reports of itself within the stream. */
+    tmini_packet_t packet;   /**< The latest packet; valid until the next tmini_decoder_next(). */
+    tmini_builder_t builder; /**< Holds the `scan`; if it was not set up, no scans are built. */
+    tmini_parser_t parser;   /**< Finds packets and replies. */
+    tmini_ct_t ct;           /**< The unit's reports about itself in the stream. */
     uint8_t verdict;         /**< What the latest packet shows of the revolution that it ends: a
                                 * tmini_ct_verdict_t. */
 } tmini_decoder_t;
 
-/** Decodes what arrives in `ring`, which must outlive the decoder. `max_samples`: packets with more
- * are not valid; 0: the default. It finds packets; for scans set up its builder next. Returns what
- * tmini_parser_init() does, and TMINI_ERROR_ARGUMENT for a null pointer. */
+/** Sets up a decoder of the bytes in `ring`, which must outlive it. `max_samples`: packets with
+ * more samples are not valid; 0: the default. The decoder finds packets; to get scans, set up its
+ * builder next. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, or a ring too small (see
+ * tmini_parser_init()). */
 tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring,
                                   uint8_t max_samples);
 
-/** Goes on to the next frame, as tmini_parser_next_after() does. The scan delivered last ends to be
+/** Finds the next frame, as tmini_parser_next_after() does. The scan delivered last is no longer
  * valid. */
 tmini_frame_type_t tmini_decoder_next(tmini_decoder_t *decoder, size_t effort);
 
-/** Takes the packet that tmini_decoder_next() has found, which came at `now_ms`, or up to `late_ms`
- * earlier. `is_doubtful`: others may be missing before it. Returns true if it ends a scan, which is
- * then builder.scan. */
+/** Takes the packet that tmini_decoder_next() has found. It came at `now_ms`, or up to `late_ms`
+ * earlier. `is_doubtful`: packets may be missing before it. Returns true if it ends a scan, which
+ * is then builder.scan. */
 bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now_ms,
                         uint16_t late_ms);
 
-/** Forgets scan and revolution under way: what comes next continues nothing. */
+/** Forgets the scan and the revolution in progress: the next packet does not continue them. */
 void tmini_decoder_restart(tmini_decoder_t *decoder);
 
 #ifdef __cplusplus

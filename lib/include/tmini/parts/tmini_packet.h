@@ -5,7 +5,8 @@
  * One valid scan packet (section 5): its header fields, and its samples as points.
  *
  * Pure integer arithmetic. Angles are in the protocol's own unit, 1/64 degree, clockwise seen from
- * above, 0 to 23039. Interpolated ones are the exact rational value rounded to nearest, halves up.
+ * above, 0 to 23039. Interpolated angles are the exact rational value, rounded to nearest, halves
+ * up.
  *
  * A packet is a view of a frame's bytes: valid from tmini_packet_open() to the next
  * tmini_parser_next(), and only for the ring's consumer context. No function waits. */
@@ -24,8 +25,8 @@
 extern "C" {
 #endif
 
-/** Opens the packet that the parser has delivered as `frame` (TMINI_FRAME_PACKET), which it goes on
- * using. One division. */
+/** Opens the packet that the parser has delivered as `frame` (TMINI_FRAME_PACKET). The packet
+ * refers to `frame` from then on. One division. */
 void tmini_packet_open(tmini_packet_t *packet, const tmini_frame_t *frame);
 
 #ifdef __cplusplus

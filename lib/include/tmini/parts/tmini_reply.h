@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * Commands, the replies they are answered with, and what those replies say (sections 3 and 4).
+ * Commands, their replies, and the content of the replies (sections 3 and 4).
  * Pure functions, any context; they read `content`, keep nothing and never wait. */
 
 #ifndef TMINI_REPLY_H
@@ -40,15 +40,15 @@ typedef enum {
 #define TMINI_HEALTH_SIZE 3u
 /** Bytes of a scan frequency reply's content (section 4). */
 #define TMINI_FREQUENCY_SIZE 4u
-/** Writes to `header` the header of the reply that `command` is answered with. Returns false for
- * the commands that are not answered: stop and reboot. */
+/** Writes the header of the reply to `command` to `header`. Returns false for the commands that
+ * have no reply: stop and reboot. */
 bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header);
 
-/** Device information from a reply's 20 bytes. The firmware's minor number comes first: real units
- * do so, against the manual (section 9.4). */
+/** Reads the device information from a reply's 20 bytes. The firmware's minor number comes first:
+ * real units send it so, although the manual says otherwise (section 9.4). */
 void tmini_reply_info(const uint8_t content[TMINI_INFO_SIZE], tmini_info_t *info);
 
-/** Health from a reply's 3 bytes. The two reserved bits are left out. */
+/** Reads the health status from a reply's 3 bytes. The two reserved bits are ignored. */
 void tmini_reply_health(const uint8_t content[TMINI_HEALTH_SIZE], tmini_health_t *health);
 
 /** The scan frequency that is set, in 0.01 Hz, from a reply's 4 bytes. */

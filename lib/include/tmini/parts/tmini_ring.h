@@ -2,11 +2,11 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * A ring of received bytes: the only thing that the receive interrupt and the rest share.
+ * A ring of received bytes: the only data that the receive interrupt shares with the rest.
  *
  * One producer (an interrupt, a DMA channel or a receiving task) and one consumer (the context
- * that parses), without locks. The producer functions are for the producer's context, init is for
- * before either runs; everything else is the consumer's.
+ * that parses), without locks. The producer calls the producer's functions, the consumer all
+ * others. Call init before either runs.
  *
  *   CPU-fed ring   The producer hands over bytes. Once one has found the ring full, the ring is
  *                  closed: it refuses all that follows, and counts it, until the consumer has taken
@@ -33,52 +33,54 @@
 extern "C" {
 #endif
 
-/** The producer closes a ring by moving its index so far ahead, a quarter of what an index can
- * count, and the consumer opens it by moving its own as far: each has one writer. */
+/** The producer closes a ring by moving its index this far ahead, a quarter of an index's range.
+ * The consumer opens it by moving its own index as far. So each index has one writer. */
 #define TMINI_RING_CLOSED (SIZE_MAX / 4 + 1)
 
-/** The largest ring: an eighth of what an index can count, 8192 bytes where size_t has 16 bits. */
+/** The largest ring, in bytes: an eighth of an index's range; 8192 if size_t has 16 bits. */
 #define TMINI_RING_SIZE_MAX (TMINI_RING_CLOSED / 2)
 
 /** A ring. Treat the members as private.
  *
- * The indices count bytes and wrap with size_t; the memory's size is a power of two, so that an
- * index modulo the size is always the right place. A side reads its own index as a plain variable:
- * nothing else writes it, so nothing can race with that; what the other side reads is stored
- * atomically.
+ * The indices count bytes and wrap with size_t. The memory's size is a power of two, so that an
+ * index modulo the size is always the right place. Each side reads its own index as a plain
+ * variable, because only this side writes it. It stores the index atomically for the other side.
  *
- * The producer remembers how far it may go: `stop` is one size ahead of the tail as it was when the
- * producer last looked, or the memory's end if that comes first, so that `origin` plus an index is
- * a place up to there. The tail never moves back. So a byte costs a comparison and two stores, and
- * only at the stop, about twice a lap, the producer looks at the tail again. When something else
- * moves head, stop moves with it, and the next byte looks. An all-zero ring has no room: it refuses
- * every byte. */
+ * The producer remembers how far it may write, so that a byte costs one comparison and two stores.
+ * `stop` is one size ahead of the tail that the producer saw last (the tail never moves back), or
+ * the memory's end if that comes first. Up to there `origin` plus an index is an address. At the
+ * stop, about twice per lap, the producer reads the tail again. All other functions that move
+ * `head` move `stop` with it, so that the next byte reads the tail again. An all-zero ring has no
+ * room and refuses every byte. */
 typedef struct {
-    size_t head;      /**< Written by the producer: where the next byte goes. */
-    size_t stop;      /**< The producer's own: where head must look at the tail again. */
-    uintptr_t origin; /**< The producer's own: before stop, head's place is this plus head. */
-    size_t tail;      /**< Written by the consumer: the oldest byte not yet given back. Head stops
-                        * one size ahead of it. */
-    uint8_t *memory;  /**< The caller's. */
+    size_t head;      /**< Written by the producer: the place of the next byte. */
+    size_t stop;      /**< The producer's own: where it must read the tail again. */
+    uintptr_t origin; /**< The producer's own: below stop, origin + head is the address of the next
+                       * byte. */
+    size_t tail;      /**< Written by the consumer: the oldest byte not yet given back. Head is at
+                       * most one size ahead. */
+    uint8_t *memory;  /**< The caller's memory. */
     size_t overrun;   /**< Written by the producer: bytes refused. */
-    size_t size;      /**< Of the memory. */
-    size_t window;    /**< Unread bytes that are certainly intact: the size, with DMA half of it. */
+    size_t size;      /**< Size of the memory. */
+    size_t window;    /**< How many unread bytes are certainly intact: the size; with DMA half of
+                       * it. */
 } tmini_ring_t;
 
-/** Empties the ring over `memory`, which the caller owns and keeps for as long as the ring is used.
- * `size` is a power of two, 2 to TMINI_RING_SIZE_MAX. The producer must not run meanwhile.
+/** Sets up an empty ring over `memory`, which stays the caller's and must outlive the ring. `size`
+ * is a power of two, 2 to TMINI_RING_SIZE_MAX. `dma`: circular DMA writes the memory. The producer
+ * must not run meanwhile.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT (null pointer, wrong size): the ring then refuses every
  * byte. */
 tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size, bool dma);
 
 /* ----------------------------------------------------------------------- the producer's context */
 
-/** Producer of a CPU-fed ring whose head is at its stop: what tmini_ring_put() does then. */
+/** Producer of a CPU-fed ring: the part of tmini_ring_put() for a head that is at its stop. */
 void tmini_ring_put_at_stop(tmini_ring_t *ring, uint8_t byte);
 
 /** Producer of a CPU-fed ring: stores one byte. Interrupt-safe; no loop, no wait: 8 instructions on
- * Cortex-M4, at most 32 at the stop. Raises overrun when the ring is full or closed. In the header,
- * because a call would cost as much as the act. */
+ * Cortex-M4, at most 32 at the stop. Counts an overrun when the ring is full or closed. In the
+ * header, because a call would cost as much as the work. */
 TMINI_INLINE void tmini_ring_put(tmini_ring_t *ring, uint8_t byte)
 {
     const size_t head = ring->head;
@@ -90,8 +92,8 @@ TMINI_INLINE void tmini_ring_put(tmini_ring_t *ring, uint8_t byte)
     }
 }
 
-/** Producer of a CPU-fed ring: stores as many of `count` bytes as fit, refuses the rest, and
- * returns how many were stored. Interrupt-safe; two block copies at most. */
+/** Producer of a CPU-fed ring: stores those of `count` bytes that fit, refuses the rest, and
+ * returns how many were stored. Interrupt-safe; at most two block copies. */
 size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count);
 
 /** Producer of a CPU-fed ring: how many bytes tmini_ring_write() would store now, at least.
@@ -100,22 +102,22 @@ size_t tmini_ring_room(const tmini_ring_t *ring);
 
 /** Producer of a DMA ring: the hardware's next write goes to memory[position]; `position` equal to
  * the size means 0. It must never go back. Call it from the half-transfer, transfer-complete and
- * idle-line interrupts: the first two alone publish half a ring at once, and nothing is left for a
- * packet that has come in part. Interrupt-safe; no loop, no wait. */
+ * idle-line interrupts: the first two alone publish half a ring at once, which leaves no room for
+ * the part of a packet that came before. Interrupt-safe; no loop, no wait. */
 void tmini_ring_publish(tmini_ring_t *ring, size_t position);
 
-/** Producer: bytes were lost on their way here, after the last one stored, and their number is not
- * known: a receiver's queue overflowed, or circular DMA may have gone a whole lap unseen (then call
- * this before publishing). A CPU-fed ring is closed, as after an overrun; of a DMA ring a lap of
- * the oldest bytes counts as overwritten, and what is left beyond the window: so nothing is read a
- * second time, even if there was no lap. Interrupt-safe; no loop, no wait. */
+/** Producer: an unknown number of bytes was lost after the last one stored: a receiver's queue
+ * overflowed, or circular DMA may have written a whole lap unseen (then call this before
+ * publishing). A CPU-fed ring is closed, as after an overrun. In a DMA ring one lap of the oldest
+ * bytes counts as overwritten, and so do bytes beyond the window that are left after it. So no byte
+ * is read twice, even if DMA had not written a whole lap. Interrupt-safe; no loop, no wait. */
 void tmini_ring_gap(tmini_ring_t *ring);
 
 /* ----------------------------------------------------------------------- the consumer's context */
 
-/** The place in the stream where the next byte goes. It differs from what it was if bytes have been
- * stored since, or the ring has been closed. How far two places are apart tmini_ring_distance()
- * tells, not their difference: they leap when a ring is closed and opened. */
+/** The place in the stream of the next byte to come. It changes when bytes are stored, and when the
+ * ring is closed. Compare places with tmini_ring_distance(), not by subtraction: they jump when a
+ * ring is closed and opened. */
 static inline size_t tmini_ring_head(const tmini_ring_t *ring)
 {
     return tmini_load(&ring->head);
@@ -134,27 +136,28 @@ static inline size_t tmini_ring_distance(size_t from, size_t to)
     return (to - from) % TMINI_RING_CLOSED;
 }
 
-/** Bytes stored and not yet discarded, below TMINI_RING_CLOSED. */
+/** How many bytes are stored and not yet discarded; below TMINI_RING_CLOSED. */
 static inline size_t tmini_ring_unread(const tmini_ring_t *ring)
 {
     return tmini_ring_distance(tmini_ring_tail(ring), tmini_ring_head(ring));
 }
 
-/** How far the head is ahead of the tail: bytes that are unread, and with DMA perhaps overwritten,
- * if it is more than the window; of a closed ring TMINI_RING_CLOSED more than are unread. */
+/** How far the head is ahead of the tail. For an open ring this is the number of unread bytes; with
+ * DMA some of them may be overwritten if it exceeds the window. For a closed ring it is
+ * TMINI_RING_CLOSED more than the number of unread bytes. */
 static inline size_t tmini_ring_ahead(const tmini_ring_t *ring)
 {
     return tmini_ring_head(ring) - tmini_ring_tail(ring);
 }
 
-/** True for a ring that DMA writes: what is unread may be overwritten, and it is never closed. */
+/** True for a ring that DMA writes: unread bytes may be overwritten, and it is never closed. */
 static inline bool tmini_ring_is_dma(const tmini_ring_t *ring)
 {
     return ring->window != ring->size;
 }
 
-/** True if bytes are missing after the last one stored: the ring is closed until all that it holds
- * has been discarded. */
+/** True if bytes are missing after the last one stored: the ring stays closed until everything in
+ * it has been discarded. */
 static inline bool tmini_ring_is_closed(const tmini_ring_t *ring)
 {
     return !tmini_ring_is_dma(ring) && tmini_ring_ahead(ring) > ring->window;
@@ -166,8 +169,8 @@ static inline bool tmini_ring_is_full(const tmini_ring_t *ring)
     return tmini_ring_ahead(ring) >= ring->size;
 }
 
-/** The unread byte `offset` bytes from the oldest, below tmini_ring_unread(). A larger offset reads
- * another byte of the ring's memory, never one outside it. */
+/** The unread byte at `offset`, counted from the oldest; `offset` is below tmini_ring_unread(). A
+ * larger one reads some other byte of the ring's memory, never one outside it. */
 static inline uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 {
     return ring->memory[(ring->tail + offset) & (ring->size - 1)];
@@ -178,7 +181,7 @@ static inline uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 bool tmini_ring_intact(const tmini_ring_t *ring);
 
 /** Copies `count` unread bytes from `offset` on to `bytes`; offset + count is at most
- * tmini_ring_unread(). A loop over bytes, for a few of them. */
+ * tmini_ring_unread(). A loop per byte: meant for a few bytes. */
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count);
 
 /** The unread bytes from `offset` on that lie in one piece, so that loops over them need not wrap:
