@@ -47,3 +47,16 @@ void test_last_crc_is_no_gap(void)
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_SCAN), rig_drain());
     TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&rig.lidar)->gaps);
 }
+
+void test_every_function_of_ct_information_is_there(void)
+{
+    tmini_ct_t ct;
+    tmini_ct_info_t info;
+    tmini_ct_init(&ct);
+    tmini_ct_discard(&ct);
+    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, tmini_ct_add(&ct, tmini_packet(&rig.lidar)));
+    TEST_ASSERT_EQUAL_HEX(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&ct));
+    tmini_ct_read(&ct, &info);
+    TEST_ASSERT_EQUAL_HEX16(0, info.known);
+    TEST_ASSERT_EQUAL_HEX8(0xA1, tmini_ct_crc8(0x07, '9')); /* Its check value's last step. */
+}
