@@ -104,11 +104,13 @@ TMINI_NOINLINE static void restart(tmini_t *lidar)
     tmini_recovery_start(lidar, false);
 }
 
+/* It may be another unit when it comes back. */
 static void lose(tmini_t *lidar)
 {
     lidar->state = TMINI_STATE_RECOVERING;
     raise_event(lidar, TMINI_EVENT_LOST);
     tmini_command_forget_frequency(lidar);
+    tmini_ct_init(&lidar->decoder.ct);
     tmini_recovery_begin(lidar);
 }
 
@@ -202,7 +204,7 @@ TMINI_NOINLINE static void take_over(tmini_t *lidar)
  * and asks again whenever a command has failed, ends. */
 static void send_first(tmini_t *lidar)
 {
-    lidar->wake_ms = lidar->line.now_ms;
+    lidar->idle_ms = 0;
     lidar->is_settled = tmini_command_poll(lidar) != TMINI_UNDER_WAY && lidar->pending == 0;
 }
 
@@ -390,7 +392,8 @@ static void settle(tmini_t *lidar)
     const int32_t left_ms = (int32_t)frame_ms - lidar->line.silent_ms;
     const uint16_t give_up_ms = left_ms > 0 ? (uint16_t)left_ms : frame_ms;
     const uint16_t command_ms = tmini_command_idle_ms(lidar);
-    lidar->wake_ms = lidar->line.now_ms + (give_up_ms < command_ms ? give_up_ms : command_ms);
+    lidar->settled_ms = lidar->line.now_ms;
+    lidar->idle_ms = give_up_ms < command_ms ? give_up_ms : command_ms;
     lidar->is_settled = lidar->command.unsent == 0;
 }
 
@@ -405,7 +408,7 @@ static bool has_news(tmini_t *lidar)
     }
     look(lidar); /* A port may hand over bytes when it is asked for the time. */
     return tmini_parser_has_work(&lidar->decoder.parser) ||
-           (int32_t)(lidar->line.now_ms - lidar->wake_ms) >= 0;
+           tmini_has_elapsed(lidar, lidar->settled_ms, lidar->idle_ms);
 }
 
 /* What is due, of a poll that has looked at the line. */
@@ -515,7 +518,7 @@ tmini_status_t tmini_start(tmini_t *lidar)
     }
     if (lidar->state == TMINI_STATE_BUSY || lidar->state == TMINI_STATE_STOPPING) {
         lidar->start_follows = true;
-    } else if (lidar->state <= TMINI_STATE_IDLE) {
+    } else if (!is_to_scan(lidar)) {
         take_over(lidar);
         begin_start(lidar, lidar->state == TMINI_STATE_IDLE);
         send_first(lidar);

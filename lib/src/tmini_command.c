@@ -207,7 +207,10 @@ static int send_rest(tmini_t *lidar)
 
 int tmini_command_poll(tmini_t *lidar)
 {
-    const tmini_command_t *const command = &lidar->command;
+    tmini_command_t *const command = &lidar->command;
+    if ((int32_t)(lidar->line.now_ms - command->since_ms) < 0) {
+        command->since_ms = lidar->line.now_ms; /* The clock was set back. */
+    }
     if (command->unsent > 0) {
         return send_rest(lidar);
     }

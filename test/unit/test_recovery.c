@@ -568,3 +568,75 @@ void test_without_recovery_stop_and_start_are_the_users(void)
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
 }
+
+void test_without_recovery_a_start_after_a_loss_starts(void)
+{
+    go_lost_without_recovery();
+    sends(STOP);
+    begins(tmini_start(&rig.lidar));
+    is_in(TMINI_STATE_STARTING);
+    begins(tmini_start(&rig.lidar)); /* Under way: once. */
+    finds_quiet_and_sends(START);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+    is_in(TMINI_STATE_SCANNING);
+}
+
+void test_without_recovery_a_start_after_a_loss_may_fail_and_be_made_again(void)
+{
+    rig.timing.max_attempts = 1;
+    go_lost_without_recovery();
+    sends(STOP);
+    begins(tmini_start(&rig.lidar));
+    finds_quiet_and_sends(START);
+    passes(2000);
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    is_in(TMINI_STATE_UNKNOWN);
+    sends(STOP);
+    begins(tmini_start(&rig.lidar));
+    is_in(TMINI_STATE_STARTING);
+}
+
+/* ---- A clock that is set back ---- */
+
+/* What is under way begins anew: it ends neither at once nor years later. */
+void test_a_clock_that_is_set_back_delays_a_time_out_by_its_own_length(void)
+{
+    static const uint32_t back_ms[] = {1001, 3600000, 0x7FFFFFFF};
+
+    for (unsigned i = 0; i < 3; i++) {
+        rig_open();
+        rig_go_scanning();
+        passes(600);
+        polls_to(TMINI_EVENT_NONE);
+        rig.now_ms -= back_ms[i];
+        passes(1000);
+        polls_to(TMINI_EVENT_LOST);
+    }
+}
+
+void test_a_clock_that_is_set_back_ends_no_pause_of_the_ladder(void)
+{
+    rig_go_backing_off();
+    rig.now_ms -= 2000;
+    pauses_and_stops(500);
+}
+
+/* ---- Another unit ---- */
+
+void test_what_the_unit_reported_of_itself_is_not_known_after_a_loss(void)
+{
+    tmini_ct_info_t turn;
+
+    rig_go_scanning();
+    for (unsigned i = 0; i < 3; i++) {
+        (void)rig_turn_events(0);
+    }
+    tmini_ct_info(&rig.lidar, &turn);
+    TEST_ASSERT_EQUAL_UINT8(1, turn.user_major);
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    tmini_ct_info(&rig.lidar, &turn);
+    TEST_ASSERT_EQUAL_HEX16(0, turn.known);
+    TEST_ASSERT_EQUAL_UINT8(0, turn.user_major);
+}

@@ -105,7 +105,7 @@ typedef enum {
     TMINI_RECOVERY_ON,  /**< It does, by stop and start; after every third failure it reboots the
                          * lidar first. */
     TMINI_RECOVERY_OFF, /**< It does not: a failed start ends the wish; a loss is reported, and
-                         * nothing is sent. */
+                         * nothing is sent until the next start. */
 } tmini_recovery_mode_t;
 
 /** A step that changes a finished scan in place before it is delivered: tmini_mount_step(), or a
@@ -395,7 +395,8 @@ static inline tmini_status_t tmini_command_error(const tmini_t *lidar);
 static inline uint8_t tmini_faults(const tmini_t *lidar);
 
 /** Copies the CT information to `info`: versions, health and serial number as the unit sends them
- * while scanning. `info->known` shows which are known (section 7). */
+ * while scanning. `info->known` shows which are known (section 7). After a loss
+ * none is: the unit may have been exchanged. */
 static inline void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info);
 
 /** Copies the counters to `counters`. They count from tmini_init() on. */
@@ -476,15 +477,16 @@ struct tmini {
     int8_t command_error;
     uint16_t pending;   /* A bit for each event not yet returned. */
     bool start_follows; /* The command under way is followed by a start. */
-    bool is_settled;    /* Nothing is to be done until a frame may be complete, or until
-                         * `wake_ms`. */
+    bool is_settled;    /* Nothing is to be done until a frame may be complete, or for
+                         * `idle_ms`. */
     bool is_recovery_off;
     bool is_listen_only;
     tmini_recovery_t recovery;
     uint16_t wanted_chz; /* 0: any. */
+    uint16_t idle_ms;
     tmini_command_t command;
     tmini_monitor_t monitor;
-    uint32_t wake_ms;
+    uint32_t settled_ms;
     uint32_t scans;
     tmini_link_t link;
     tmini_line_t line;
