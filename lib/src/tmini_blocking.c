@@ -21,17 +21,26 @@ static uint32_t now_ms(const tmini_t *lidar)
 static bool is_time_left(const tmini_t *lidar, uint32_t begun_ms, uint32_t timeout_ms)
 {
     const uint32_t passed_ms = now_ms(lidar) - begun_ms;
-    return passed_ms < timeout_ms || passed_ms > UINT32_MAX / 2;
+    return passed_ms < timeout_ms || (int32_t)passed_ms < 0;
 }
 
-/* A start that follows a query waits for data, and the wish stands. */
-static bool is_query(tmini_event_t wanted)
+/* What `event` says of the wait for `wanted`. A command that has failed ends it if nothing follows;
+ * that for a frequency also when the lidar scans without it. A lost lidar reports no failure. */
+static int result_of(const tmini_t *lidar, tmini_event_t event, tmini_event_t wanted)
 {
-    return wanted < TMINI_EVENT_COMMAND_FAILED;
+    const tmini_state_t state = tmini_state(lidar);
+    const bool is_without = wanted == TMINI_EVENT_FREQUENCY && state == TMINI_STATE_SCANNING;
+    if (event == wanted) {
+        return TMINI_OK;
+    }
+    if (event == TMINI_EVENT_COMMAND_FAILED && (is_without || state == TMINI_STATE_UNKNOWN)) {
+        return tmini_command_error(lidar);
+    }
+    return event == TMINI_EVENT_RECOVERED && is_without ? TMINI_ERROR_STATE : TMINI_UNDER_WAY;
 }
 
-/* Polls until `wanted` comes, or a command has failed that nothing follows, or time is up; then a
- * query is given up. What could not be begun has ended already. */
+/* Polls until `wanted` comes, or will not come any more, or time is up; then a query is given up,
+ * but not one of earlier that the start follows. What could not be begun has ended already. */
 static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event_t wanted,
                                uint32_t timeout_ms)
 {
@@ -41,17 +50,15 @@ static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event
     const uint32_t begun_ms = now_ms(lidar);
     do {
         const tmini_event_t event = tmini_poll(lidar);
-        if (event == wanted) {
-            return TMINI_OK;
-        }
-        if (event == TMINI_EVENT_COMMAND_FAILED && tmini_state(lidar) <= TMINI_STATE_IDLE) {
-            return tmini_command_error(lidar);
+        const int result = result_of(lidar, event, wanted);
+        if (result != TMINI_UNDER_WAY) {
+            return (tmini_status_t)result;
         }
         if (event == TMINI_EVENT_NONE) {
             idle(lidar);
         }
     } while (is_time_left(lidar, begun_ms, timeout_ms));
-    if (is_query(wanted) && tmini_state(lidar) == TMINI_STATE_BUSY) {
+    if (tmini_state(lidar) == TMINI_STATE_BUSY && !lidar->start_follows) {
         tmini_cancel(lidar);
     }
     return TMINI_ERROR_TIMEOUT;
@@ -98,15 +105,33 @@ tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency
     return status;
 }
 
+/* What is known of a wish for a frequency that was stated in the state `before`. An idle lidar is
+ * asked in any case. */
+static int result_of_wish(const tmini_t *lidar, tmini_state_t before)
+{
+    if (before <= TMINI_STATE_IDLE) {
+        return TMINI_UNDER_WAY;
+    }
+    if (tmini_command_has_frequency(lidar)) {
+        return TMINI_OK;
+    }
+    if (before == TMINI_STATE_BUSY || before == TMINI_STATE_STOPPING) {
+        return TMINI_ERROR_BUSY;
+    }
+    const bool is_lost = lidar->state == TMINI_STATE_RECOVERING && lidar->is_recovery_off;
+    return is_lost || lidar->state == TMINI_STATE_SCANNING ? TMINI_ERROR_STATE : TMINI_UNDER_WAY;
+}
+
 tmini_status_t tmini_blocking_set_frequency(tmini_t *lidar, uint16_t frequency_chz,
                                             uint32_t timeout_ms)
 {
+    const tmini_state_t before = tmini_state(lidar);
     const tmini_status_t begun = tmini_set_frequency(lidar, frequency_chz);
-    if (begun == TMINI_OK && tmini_state(lidar) == TMINI_STATE_SCANNING &&
-        tmini_command_has_frequency(lidar)) {
-        return TMINI_OK; /* It was wanted before: nothing is to be done. */
+    const int result = begun == TMINI_OK ? result_of_wish(lidar, before) : (int)begun;
+    if (result != TMINI_UNDER_WAY) {
+        return (tmini_status_t)result;
     }
-    return wait_for(lidar, begun, TMINI_EVENT_FREQUENCY, timeout_ms);
+    return wait_for(lidar, TMINI_OK, TMINI_EVENT_FREQUENCY, timeout_ms);
 }
 
 tmini_status_t tmini_blocking_start(tmini_t *lidar, uint32_t timeout_ms)

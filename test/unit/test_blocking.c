@@ -66,6 +66,11 @@ static void feed_frequency(void)
     rig_feed_frequency(640);
 }
 
+static void feed_turn(void)
+{
+    rig_feed_plain_turn(1000);
+}
+
 void test_info_is_read(void)
 {
     tmini_info_t info;
@@ -125,7 +130,8 @@ void test_a_frequency_that_is_there_already_is_not_waited_for_while_scanning(voi
     is_in(TMINI_STATE_SCANNING);
 }
 
-void test_a_frequency_that_could_not_be_set_is_waited_for_in_vain_while_scanning(void)
+/* The wish stands: it is not tried again by this one while the lidar scans. */
+void test_a_frequency_that_could_not_be_set_is_not_waited_for_while_scanning(void)
 {
     rig.config.frequency_chz = 640;
     rig_init();
@@ -144,13 +150,163 @@ void test_a_frequency_that_could_not_be_set_is_waited_for_in_vain_while_scanning
     polls_to(TMINI_EVENT_NONE);
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    is_in(TMINI_STATE_SCANNING);
+    TEST_ASSERT_EQUAL_UINT(0, script.waits);
+}
+
+/* A frequency that no lidar has, 55 ms from now, when it is asked for; then a packet, in answer to
+ * the start, 60 ms later. */
+static void feed_packet(void)
+{
+    rig_feed_point_packet(1000);
+}
+
+static void feed_refusal(void)
+{
+    rig_feed_frequency(99);
+    script.feed = feed_packet;
+}
+
+static void refuses_the_frequency(void)
+{
+    comes(55, feed_refusal);
+    script.every_ms = 60;
+    sends(STOP);
+    sends(GET_FREQUENCY);
+    sends(STOP);
+    sends(START);
+}
+
+void test_a_frequency_that_a_scanning_lidar_refuses_is_waited_for_until_it_scans_again(void)
+{
+    rig_go_scanning();
+    port_wait_StubWithCallback(wait);
+    refuses_the_frequency();
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_REPLY,
+                          tmini_blocking_set_frequency(&rig.lidar, 640, TMINI_BLOCKING_TIMEOUT_MS));
+    TEST_ASSERT_EQUAL_UINT(115, script.waits);
+    is_in(TMINI_STATE_SCANNING);
+    TEST_ASSERT_EQUAL_HEX(0, rig_drain());
+}
+
+/* After a loss no failure is reported. */
+void test_a_frequency_that_a_lost_lidar_refuses_is_waited_for_until_it_scans_again(void)
+{
+    rig_go_recovering();
+    port_wait_StubWithCallback(wait);
+    refuses_the_frequency();
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE,
+                          tmini_blocking_set_frequency(&rig.lidar, 640, TMINI_BLOCKING_TIMEOUT_MS));
+    TEST_ASSERT_EQUAL_UINT(115, script.waits);
     is_in(TMINI_STATE_SCANNING);
 }
 
-static void feed_turn(void)
+/* Also while a start tries again and again. */
+void test_the_same_frequency_is_not_waited_for_once_it_has_been_set(void)
 {
-    rig_feed_plain_turn(1000);
+    rig.config.frequency_chz = 640;
+    rig_init();
+    rig_go_idle();
+    port_wait_StubWithCallback(wait);
+    sends(GET_FREQUENCY);
+    begins(tmini_start(&rig.lidar));
+    rig_feed_frequency(640);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    TEST_ASSERT_EQUAL_UINT(0, script.waits);
+    is_in(TMINI_STATE_STARTING);
+}
+
+void test_the_same_frequency_is_waited_for_while_a_start_asks_for_it(void)
+{
+    rig.config.frequency_chz = 640;
+    rig_init();
+    rig_go_idle();
+    port_wait_StubWithCallback(wait);
+    sends(GET_FREQUENCY);
+    begins(tmini_start(&rig.lidar));
+    comes(5, feed_frequency);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    TEST_ASSERT_EQUAL_UINT(5, script.waits);
+}
+
+void test_a_frequency_is_not_waited_for_while_another_command_is_under_way(void)
+{
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_BUSY, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    is_in(TMINI_STATE_BUSY);
+    sends(STOP);
+    begins(tmini_stop(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_BUSY, tmini_blocking_set_frequency(&rig.lidar, 700, 100));
+    is_in(TMINI_STATE_STOPPING);
+    TEST_ASSERT_EQUAL_UINT(0, script.waits);
+}
+
+void test_a_frequency_is_not_waited_for_when_nothing_recovers_the_lidar(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    rig_init();
+    rig_go_scanning();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    port_wait_StubWithCallback(wait);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    TEST_ASSERT_EQUAL_UINT(0, script.waits);
+    is_in(TMINI_STATE_RECOVERING);
+}
+
+/* Each attempt that fails is reported, and the next asks again. */
+void test_a_frequency_is_waited_for_past_attempts_to_start_that_fail(void)
+{
+    rig.config.frequency_chz = 640;
+    rig_init();
+    rig_go_idle();
+    port_wait_StubWithCallback(wait);
+    sends(GET_FREQUENCY);
+    begins(tmini_start(&rig.lidar));
+    comes(4655, feed_frequency);
+    sends(STOP); /* After 2 s. */
+    sends(START);
+    sends(STOP); /* After 2 s more, and a pause. */
+    sends(GET_FREQUENCY);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 8000));
+    TEST_ASSERT_EQUAL_UINT(4655, script.waits);
+}
+
+void test_a_start_waits_for_a_scan_though_the_frequency_was_refused(void)
+{
+    rig.config.frequency_chz = 640;
+    rig_init();
+    rig_go_idle();
+    port_wait_StubWithCallback(wait);
+    sends(GET_FREQUENCY);
+    sends(STOP);
+    sends(START);
+    comes(2055, feed_turn);
+    script.every_ms = 160;
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 8000));
+    TEST_ASSERT_EQUAL_UINT(2215, script.waits);
+}
+
+void test_an_idle_lidar_is_asked_in_any_case(void)
+{
+    comes(5, feed_frequency);
+    script.every_ms = 5;
+    sends(GET_FREQUENCY);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    sends(GET_FREQUENCY);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    TEST_ASSERT_EQUAL_UINT(10, script.waits);
+}
+
+void test_a_frequency_that_an_idle_lidar_does_not_take_says_why(void)
+{
+    comes(5, feed_refusal);
+    sends(GET_FREQUENCY);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_REPLY, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
+    TEST_ASSERT_EQUAL_UINT(5, script.waits);
 }
 
 void test_start_waits_for_the_first_scan(void)
@@ -369,28 +525,58 @@ static uint32_t running_clock(void *context, int calls)
     return rig.now_ms++;
 }
 
-static int looks_left; /* Until the clock steps back by 100 ms. */
+static int looks_left; /* Until the clock steps back */
+static uint32_t back_ms;
 
 static uint32_t jumping_clock(void *context, int calls)
 {
     (void)context;
     (void)calls;
-    return rig.now_ms - (looks_left-- > 0 ? 0 : 100);
+    return rig.now_ms - (looks_left-- > 0 ? 0 : back_ms);
 }
 
 /* 70,000 ms are 4464 in 16 bits. */
-void test_a_clock_that_steps_back_ends_no_waiting(void)
+void test_a_wait_may_be_longer_than_a_minute(void)
 {
     tmini_info_t info;
 
-    for (int looks = 1; looks <= 8; looks++) {
+    rig.timing.reply_timeout_ms = 0;
+    sends(GET_INFO);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_read_info(&rig.lidar, &info, 70000));
+    TEST_ASSERT_EQUAL_UINT(70000, script.waits);
+}
+
+void test_a_query_of_earlier_is_not_given_up_with_the_start_that_follows_it(void)
+{
+    sends(GET_INFO);
+    begins(tmini_request_info(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 100));
+    is_in(TMINI_STATE_BUSY);
+}
+
+void test_a_clock_that_steps_back_ends_no_waiting(void)
+{
+    static const uint32_t backs_ms[] = {2, 100, 5000};
+    tmini_info_t info;
+
+    for (int i = 0; i < 24; i++) {
         setUp();
         port_now_ms_StubWithCallback(jumping_clock);
-        looks_left = looks;
+        back_ms = backs_ms[i / 8];
+        looks_left = 1 + i % 8;
         comes(55, rig_feed_info);
         sends(GET_INFO);
         TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&rig.lidar, &info, 70000));
     }
+}
+
+void test_without_time_it_is_polled_once(void)
+{
+    tmini_info_t info;
+
+    rig.port.wait = NULL;
+    sends(GET_INFO);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_read_info(&rig.lidar, &info, 0));
 }
 
 void test_a_port_without_wait_is_polled_without_a_pause(void)
