@@ -28,28 +28,35 @@ tmini_frame_type_t tmini_decoder_next(tmini_decoder_t *decoder, size_t effort)
     return tmini_parser_next_after(&decoder->parser, effort);
 }
 
-static void open_packet(tmini_decoder_t *decoder, bool is_doubtful)
+/* Inlined twice, so that a firmware, which needs it once, pays no call. */
+TMINI_INLINE bool take(tmini_decoder_t *decoder, uint32_t now_ms)
 {
-    tmini_packet_t *const packet = &decoder->packet;
-    tmini_packet_open(packet, tmini_parser_frame(&decoder->parser));
-    if (is_doubtful) {
-        packet->gap = TMINI_GAP_UNKNOWN;
-    }
-    decoder->verdict = (uint8_t)tmini_ct_add(&decoder->ct, packet);
-}
-
-bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now_ms,
-                        uint16_t late_ms)
-{
-    open_packet(decoder, is_doubtful);
+    decoder->verdict = (uint8_t)tmini_ct_add(&decoder->ct, &decoder->packet);
     if (decoder->builder.capacity == 0) {
         return false;
     }
     if (decoder->verdict == TMINI_CT_REFUTED) {
         tmini_builder_refute(&decoder->builder);
     }
-    tmini_builder_backdate(&decoder->builder, late_ms);
     return tmini_builder_add(&decoder->builder, &decoder->packet, now_ms);
+}
+
+bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now_ms,
+                        uint16_t late_ms)
+{
+    tmini_packet_open(&decoder->packet, tmini_parser_frame(&decoder->parser));
+    if (is_doubtful) {
+        decoder->packet.gap = TMINI_GAP_UNKNOWN;
+    }
+    tmini_builder_backdate(&decoder->builder, late_ms);
+    return take(decoder, now_ms);
+}
+
+bool tmini_decoder_take_packet(tmini_decoder_t *decoder, const tmini_packet_t *packet,
+                               uint32_t now_ms)
+{
+    decoder->packet = *packet;
+    return take(decoder, now_ms);
 }
 
 void tmini_decoder_restart(tmini_decoder_t *decoder)

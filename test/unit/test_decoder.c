@@ -16,10 +16,12 @@ static stream_t stream;
 static tmini_ring_t ring;
 static tmini_decoder_t decoder;
 static tmini_point_t points[40];
+static uint8_t ct_of_first_third;
 static const tmini_scan_t *const scan = &decoder.builder.scan;
 
 void setUp(void)
 {
+    ct_of_first_third = 0;
     memset(&decoder, 0xFF, sizeof decoder); /* Whatever it was. */
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, sizeof memory, false));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_decoder_init(&decoder, &ring, 0));
@@ -32,9 +34,10 @@ void tearDown(void) {}
 static bool come(unsigned third, uint32_t at_ms, uint16_t late_ms)
 {
     const uint16_t first_q6 = (uint16_t)(third == 0 ? 0 : (third - 1) * 7680 + 64);
+    const uint8_t ct = third == 1 ? ct_of_first_third : 0;
 
     stream = (stream_t){bytes, 0, sizeof bytes};
-    (void)stream_add_packet(&stream, third == 0 ? 200 + 1 : 0, third == 0 ? 1 : 5, first_q6,
+    (void)stream_add_packet(&stream, third == 0 ? 200 + 1 : ct, third == 0 ? 1 : 5, first_q6,
                             (uint16_t)(third == 0 ? 0 : third * 7680 % 23040));
     (void)tmini_ring_write(&ring, bytes, stream.size);
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, tmini_decoder_next(&decoder, 0));
@@ -124,4 +127,87 @@ void test_a_scan_of_more_than_a_minute_is_not_complete(void)
     rest_of_turn(70000);
     TEST_ASSERT_TRUE(come(0, 70000 + 65636, 0));
     TEST_ASSERT_FALSE(scan->complete);
+}
+
+/* ------------------------------------------------------- packets that something else has found */
+
+static tmini_decoder_t other;
+static tmini_point_t others[40];
+
+static void begin_other(void)
+{
+    other = (tmini_decoder_t){0};
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_builder_init(&other.builder, others, 40, 0));
+}
+
+/* Comes to the decoder, which hands it on. */
+static bool hand_on(unsigned third, uint32_t at_ms)
+{
+    (void)come(third, at_ms, 0);
+    const bool is_scan = tmini_decoder_take_packet(&other, &decoder.packet, at_ms);
+    if (is_scan) {
+        TEST_ASSERT_FALSE(tmini_builder_add(&other.builder, &decoder.packet, at_ms));
+    }
+    return is_scan;
+}
+
+static void hand_on_rest_of_turn(uint32_t from_ms)
+{
+    for (unsigned third = 1; third <= 3; third++) {
+        TEST_ASSERT_FALSE(hand_on(third, from_ms + 25 * third));
+    }
+}
+
+void test_packets_handed_on_make_the_same_scans(void)
+{
+    begin_other();
+    TEST_ASSERT_FALSE(hand_on(0, 70000));
+    hand_on_rest_of_turn(70000);
+    TEST_ASSERT_EQUAL_UINT16(16, other.builder.scan.count);
+    TEST_ASSERT_TRUE(hand_on(0, 70100));
+    TEST_ASSERT_EQUAL_UINT16(1, other.builder.scan.count); /* It has begun the next. */
+    hand_on_rest_of_turn(70100);
+    TEST_ASSERT_TRUE(hand_on(0, 70200));
+    TEST_ASSERT_EQUAL_UINT8(0, other.packet.gap);
+    TEST_ASSERT_EQUAL_UINT8(201, other.packet.ct);
+}
+
+void test_a_packet_handed_on_in_doubt_ends_the_scan(void)
+{
+    begin_other();
+    TEST_ASSERT_FALSE(hand_on(0, 70000));
+    TEST_ASSERT_FALSE(hand_on(1, 70025));
+    (void)come(2, 70050, 0);
+    tmini_packet_t packet = decoder.packet;
+    packet.gap = TMINI_GAP_UNKNOWN;
+    TEST_ASSERT_TRUE(tmini_decoder_take_packet(&other, &packet, 70050));
+    TEST_ASSERT_EQUAL_UINT16(6, other.builder.scan.count);
+}
+
+/* CT bytes 201, 2, 0 and 0 have the CRC 0xE5 (bit by bit, section 7); it comes, or another. */
+void test_last_crc_judges_packets_handed_on(void)
+{
+    static const uint8_t last_crcs[2] = {0xE5, 0xE4};
+    for (unsigned i = 0; i < 2; i++) {
+        setUp();
+        begin_other();
+        ct_of_first_third = 2;
+        TEST_ASSERT_FALSE(hand_on(0, 70000));
+        hand_on_rest_of_turn(70000);
+        (void)tmini_ring_write(&ring, &last_crcs[i], 1);
+        (void)come(0, 70100, 0);
+        TEST_ASSERT_TRUE(tmini_decoder_take_packet(&other, &decoder.packet, 70100));
+        TEST_ASSERT_EQUAL_UINT8(i == 0 ? TMINI_CT_CONFIRMED : TMINI_CT_REFUTED, other.verdict);
+        TEST_ASSERT_EQUAL(i == 0, other.builder.scan.complete);
+    }
+}
+
+void test_without_a_builder_packets_handed_on_are_judged_all_the_same(void)
+{
+    other = (tmini_decoder_t){0};
+    TEST_ASSERT_FALSE(hand_on(0, 70000));
+    hand_on_rest_of_turn(70000);
+    TEST_ASSERT_FALSE(hand_on(0, 70100));
+    TEST_ASSERT_EQUAL_UINT8(201, other.packet.ct);
+    TEST_ASSERT_FALSE(other.builder.open);
 }

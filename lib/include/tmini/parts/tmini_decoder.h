@@ -58,6 +58,12 @@ tmini_frame_type_t tmini_decoder_next(tmini_decoder_t *decoder, size_t effort);
 bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now_ms,
                         uint16_t late_ms);
 
+/** Takes a packet that something else has found, a driver for example; its gap reports doubt. The
+ * decoder needs no ring, and begins as zeros. If the function returns true, add `packet` to the
+ * builder once more, while `packet` is valid. */
+bool tmini_decoder_take_packet(tmini_decoder_t *decoder, const tmini_packet_t *packet,
+                               uint32_t now_ms);
+
 /** Forgets the scan and the revolution in progress: the next packet does not continue them. */
 void tmini_decoder_restart(tmini_decoder_t *decoder);
 
