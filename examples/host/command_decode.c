@@ -12,19 +12,23 @@
 
 /* What the summary says of scans that are gone by then. */
 typedef struct {
-    count_t valid; /* Points with a distance. */
+    count_t valid;        /* Points with a distance. */
+    count_t bytes_before; /* The first packet, and up to the latest one: skipped ones. */
+    count_t bytes_until;
     unsigned lowest_chz, highest_chz;
     count_t nearest_scan; /* Of the last complete scan. */
     tmini_point_t nearest;
 } gist_t;
 
-static void note_packet(gist_t *gist, const recording_t *recording)
+static void note_packet(gist_t *gist, const tape_t *tape)
 {
-    const stream_t *const stream = &recording->stream;
+    const stream_t *const stream = &tape->stream;
     const unsigned chz = stream->frequency_chz;
     tmini_point_t points[UINT8_MAX];
     const size_t count =
-        tmini_packet_points(&recording->packet, TMINI_FILTER_NONE, points, UINT8_MAX);
+        tmini_packet_points(&stream->decoder.packet, TMINI_FILTER_NONE, points, UINT8_MAX);
+    gist->bytes_until = tape_skipped(tape);
+    gist->bytes_before = stream->packets == 1 ? gist->bytes_until : gist->bytes_before;
     gist->valid += points_survey(points, count).valid;
     if (chz > 0) {
         gist->lowest_chz = gist->lowest_chz == 0 || chz < gist->lowest_chz ? chz : gist->lowest_chz;
@@ -41,7 +45,7 @@ static void note_packet(gist_t *gist, const recording_t *recording)
 static void print_scans(const gist_t *gist, const stream_t *stream)
 {
     (void)printf("scans       %s%s\npoints      %llu, %llu of them with a distance",
-                 scans_text(stream), stream->is_open ? "; the next one has begun" : "",
+                 scans_text(stream), stream->decoder.builder.open ? "; the next one has begun" : "",
                  stream->points, gist->valid);
     if (stream->points_before > 0) {
         (void)printf("; %llu before the first start packet", stream->points_before);
@@ -69,7 +73,7 @@ static void print_unit(const stream_t *stream)
 {
     tmini_ct_info_t info;
     char text[FAULTS_TEXT_SIZE];
-    tmini_ct_read(&stream->ct, &info);
+    tmini_ct_read(&stream->decoder.ct, &info);
     if ((info.known & TMINI_KNOWN_FIRMWARE) != 0) {
         (void)printf("unit        firmware %d.%d, hardware %d", info.firmware_major,
                      info.firmware_minor, info.hardware);
@@ -84,35 +88,34 @@ static void print_unit(const stream_t *stream)
     (void)printf("health      %s\n", health_text(stream, text));
 }
 
-static void print_summary(const gist_t *gist, const recording_t *recording)
+static void print_summary(const gist_t *gist, const tape_t *tape)
 {
-    const stream_t *const stream = &recording->stream;
+    const stream_t *const stream = &tape->stream;
     print_scans(gist, stream);
     print_nearest(gist);
     print_unit(stream);
     (void)printf("errors      %llu wrong checksums, %llu stray bytes between packets",
-                 recording_checksum_errors(recording), stream->stray_bytes);
+                 tape_checksum_errors(tape), stream->stray_bytes);
     if (stream->damaged > 0) {
         (void)printf(": about %llu packets damaged (%s)", stream->damaged, damaged_text(stream));
     }
     (void)printf("\nstream      %llu bytes in %.3f s%s: %llu packets,\n"
                  "            %llu guard bytes, %llu bytes before the first packet, "
                  "%llu after the last\n",
-                 recording->bytes, (double)recording->time_us / 1e6,
-                 recording->is_timed ? "" : " (at 4000 samples per second)", stream->packets,
-                 stream->guard_bytes, recording->bytes_before,
-                 recording_skipped(recording) - recording->bytes_until);
+                 tape->bytes, (double)tape->time_us / 1e6,
+                 tape->chunks.version > 0 ? "" : " (at 4000 samples per second)", stream->packets,
+                 stream->guard_bytes, gist->bytes_before, tape_skipped(tape) - gist->bytes_until);
 }
 
-static void print_counters(FILE *file, const char *format, const recording_t *recording)
+static void print_counters(FILE *file, const char *format, const tape_t *tape)
 {
-    (void)fprintf(file, format, recording->stream.packets, recording->stream.start_packets,
-                  recording->stream.points, recording_checksum_errors(recording), recording->bytes,
-                  recording_skipped(recording));
+    const stream_t *const stream = &tape->stream;
+    (void)fprintf(file, format, stream->packets, stream->start_packets, stream->points,
+                  tape_checksum_errors(tape), tape->bytes, tape_skipped(tape));
 }
 
 /* Into the file, if one is wanted; or else beside what another program reads, for people. */
-static int report_counters(const recording_t *recording, const options_t *options)
+static int report_counters(const tape_t *tape, const options_t *options)
 {
     if (options->stats != NULL) {
         FILE *const file = output_open(options->stats);
@@ -122,14 +125,14 @@ static int report_counters(const recording_t *recording, const options_t *option
         print_counters(file,
                        "{\"packets\":%llu,\"start_packets\":%llu,\"points\":%llu,"
                        "\"checksum_errors\":%llu,\"bytes\":%llu,\"bytes_skipped\":%llu}\n",
-                       recording);
+                       tape);
         return output_close(file, options->stats, STATUS_OK);
     }
     if ((options->csv || options->json) && !options->quiet) {
         print_counters(stderr,
                        "packets %llu, start packets %llu, points %llu, "
                        "checksum errors %llu, bytes %llu, bytes skipped %llu\n",
-                       recording);
+                       tape);
     }
     return STATUS_OK;
 }
@@ -137,18 +140,19 @@ static int report_counters(const recording_t *recording, const options_t *option
 /* A disk that is full is not written to for ever; main() says why. */
 static int print_packets(recording_t *recording, const options_t *options)
 {
+    stream_t *const stream = &recording->tape.stream;
     if (options->csv) {
         (void)puts(ROWS_HEADER);
     }
     while (ferror(stdout) == 0 && recording_next(recording)) {
         if (options->csv) {
-            rows_print_packet(&recording->stream, &recording->packet);
-        } else if (recording->stream.has_scan) {
-            rows_print_scan(&recording->stream);
+            rows_print_packet(stream);
+        } else if (stream->has_scan) {
+            rows_print_scan(stream);
         }
     }
-    if (options->json && stream_end(&recording->stream)) {
-        rows_print_scan(&recording->stream);
+    if (options->json && stream_end(stream)) {
+        rows_print_scan(stream);
     }
     return ferror(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
 }
@@ -157,10 +161,10 @@ static int summarise(recording_t *recording)
 {
     gist_t gist = {0};
     while (recording_next(recording)) {
-        note_packet(&gist, recording);
+        note_packet(&gist, &recording->tape);
     }
-    if (recording->stream.packets > 0) {
-        print_summary(&gist, recording);
+    if (recording->tape.stream.packets > 0) {
+        print_summary(&gist, &recording->tape);
     }
     return STATUS_OK;
 }
@@ -177,7 +181,7 @@ static int run(const options_t *options)
     }
     status =
         options->csv || options->json ? print_packets(&recording, options) : summarise(&recording);
-    status = status == STATUS_OK ? report_counters(&recording, options) : status;
+    status = status == STATUS_OK ? report_counters(&recording.tape, options) : status;
     recording_close(&recording);
     return status == STATUS_OK ? recording_verdict(&recording) : status;
 }

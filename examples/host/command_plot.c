@@ -135,17 +135,18 @@ static int draw(const options_t *options, const char *source)
 static int plot_recording(const options_t *options)
 {
     static recording_t recording;
+    stream_t *const stream = &recording.tape.stream;
     int status = recording_open(&recording, options);
     if (status != STATUS_OK) {
         return status;
     }
     while (recording_next(&recording)) {
-        if (recording.stream.has_scan) {
-            take_scan(&recording.stream, options);
+        if (stream->has_scan) {
+            take_scan(stream, options);
         }
     }
-    if (stream_end(&recording.stream)) {
-        take_scan(&recording.stream, options);
+    if (stream_end(stream)) {
+        take_scan(stream, options);
     }
     recording_close(&recording);
     status = recording_verdict(&recording);

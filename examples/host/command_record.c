@@ -10,11 +10,10 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "chunk.h"
 #include "device.h"
 #include "output.h"
 #include "points.h"
-#include "recording.h"
+#include "tape.h"
 
 /* How often progress is shown. */
 #define PROGRESS_MS 200u
@@ -27,12 +26,13 @@
 typedef struct {
     const char *path;
     FILE *file; /* NULL until then. */
+    bool is_timed;
     uint64_t begun_us;
-    uint64_t stamp_us;     /* Of the chunk before. */
-    recording_t recording; /* The same bytes, as they will be read. */
+    uint64_t stamp_us; /* Of the chunk before. */
+    tape_t tape;       /* The same bytes, as they will be read. */
     size_t held_count;
     uint8_t held[HELD_MAX];
-} tape_t;
+} recorder_t;
 
 static uint64_t now_us(void)
 {
@@ -41,56 +41,62 @@ static uint64_t now_us(void)
     return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
 }
 
-static void put(tape_t *tape, const uint8_t *bytes, size_t count)
+static void put(recorder_t *recorder, const uint8_t *bytes, size_t count)
 {
-    if (tape->file != NULL) {
-        (void)fwrite(bytes, 1, count, tape->file);
-    } else if (count <= HELD_MAX - tape->held_count) {
-        memcpy(tape->held + tape->held_count, bytes, count);
-        tape->held_count += count;
+    if (recorder->file != NULL) {
+        (void)fwrite(bytes, 1, count, recorder->file);
+    } else if (count <= HELD_MAX - recorder->held_count) {
+        memcpy(recorder->held + recorder->held_count, bytes, count);
+        recorder->held_count += count;
+    }
+    while (count > 0) {
+        const size_t taken = tape_feed(&recorder->tape, bytes, count);
+        bytes += taken;
+        count -= taken;
+        while (tape_next(&recorder->tape) != TAPE_NEEDS_BYTES) {
+        }
     }
 }
 
 /* The port's tap: its blocks are smaller than a chunk may be. A pause of more than the 71 minutes
  * that fit in 32 bits is shortened to them. */
-static void write_tape(void *context, const uint8_t *bytes, size_t count)
+static void write_block(void *context, const uint8_t *bytes, size_t count)
 {
-    tape_t *const tape = context;
+    recorder_t *const recorder = context;
     const uint64_t now = now_us();
-    const uint64_t since = now - tape->stamp_us;
+    const uint64_t since = now - recorder->stamp_us;
     uint8_t head[CHUNK_HEAD_SIZE];
     chunk_write_head(head, since < UINT32_MAX ? (uint32_t)since : UINT32_MAX, bytes, count);
-    put(tape, head, tape->recording.is_timed ? sizeof head : 0);
-    put(tape, bytes, count);
-    recording_feed(&tape->recording, bytes, count, now - tape->begun_us);
-    tape->stamp_us = now;
+    put(recorder, head, recorder->is_timed ? sizeof head : 0);
+    put(recorder, bytes, count);
+    recorder->stamp_us = now;
 }
 
 /* What is there of the recording, and how good it is. */
-static const char *tape_text(const tape_t *tape)
+static const char *recorder_text(const recorder_t *recorder)
 {
+    const tape_t *const tape = &recorder->tape;
     static char text[160];
     (void)snprintf(text, sizeof text, "%.1f s, %llu bytes; scans: %s; %llu wrong checksums",
-                   (double)(tape->stamp_us - tape->begun_us) / 1e6, tape->recording.bytes,
-                   scans_text(&tape->recording.stream),
-                   recording_checksum_errors(&tape->recording));
+                   (double)(recorder->stamp_us - recorder->begun_us) / 1e6, tape->bytes,
+                   scans_text(&tape->stream), tape_checksum_errors(tape));
     return text;
 }
 
 /* Until the time is over or Ctrl-C is pressed, neither of which is a failure. */
-static int roll(device_t *device, const options_t *options, tape_t *tape)
+static int roll(device_t *device, const options_t *options, recorder_t *recorder)
 {
-    put(tape, tape->held, tape->held_count);
+    (void)fwrite(recorder->held, 1, recorder->held_count, recorder->file);
     const uint32_t begun_ms = device_ms(device);
     uint32_t shown_ms = begun_ms;
     bool is_over = false;
-    while (!is_over && device_is_usable(device) && ferror(tape->file) == 0) {
+    while (!is_over && device_is_usable(device) && ferror(recorder->file) == 0) {
         (void)device_wait(device, PROGRESS_MS / 4);
         is_over = options->seconds > 0 && device_ms(device) - begun_ms >= options->seconds * 1000;
         if (device_ms(device) - shown_ms >= PROGRESS_MS) {
             shown_ms = device_ms(device);
-            message_progress(false, "%s", tape_text(tape));
-            (void)fflush(tape->file); /* For who reads along, and against a power failure. */
+            message_progress(false, "%s", recorder_text(recorder));
+            (void)fflush(recorder->file); /* For who reads along, and against a power failure. */
         }
     }
     return device_is_there(device) ? STATUS_OK : device_why(device);
@@ -100,30 +106,33 @@ static int roll(device_t *device, const options_t *options, tape_t *tape)
  * recording begins and ends with whole packets. */
 static int record(device_t *device, const options_t *options)
 {
-    static tape_t tape;
+    static recorder_t recorder;
     const char *const ending = strrchr(options->operand, '.');
     if (!device_stop(device)) {
         return device_why(device);
     }
-    tape.path = options->operand;
-    recording_begin_live(&tape.recording,
-                         options->timed || (ending != NULL && strcmp(ending, ".tmini") == 0));
-    tape.begun_us = tape.stamp_us = now_us();
-    put(&tape, chunk_magic, tape.recording.is_timed ? sizeof chunk_magic : 0);
-    tmini_posix_tap(&device->port, write_tape, &tape);
+    recorder.path = options->operand;
+    recorder.is_timed = options->timed || (ending != NULL && strcmp(ending, ".tmini") == 0);
+    recorder.begun_us = recorder.stamp_us = now_us();
+    tape_begin(&recorder.tape, NULL, 0);
+    put(&recorder, chunk_magic, recorder.is_timed ? sizeof chunk_magic : 0);
+    tmini_posix_tap(&device->port, write_block, &recorder);
     int status = device_start(device);
     if (status == STATUS_OK) {
-        tape.file = output_open(tape.path);
-        status = tape.file != NULL ? roll(device, options, &tape) : STATUS_FAILED;
+        recorder.file = output_open(recorder.path);
+        status = recorder.file != NULL ? roll(device, options, &recorder) : STATUS_FAILED;
     }
     (void)device_stop(device);
     tmini_posix_tap(&device->port, NULL, NULL);
-    if (tape.file == NULL) {
+    if (recorder.file == NULL) {
         return status;
     }
-    recording_end_live(&tape.recording);
-    message_note("%s: %s", tape.file == stdout ? "standard output" : tape.path, tape_text(&tape));
-    return output_close(tape.file, tape.path, status);
+    (void)tape_feed(&recorder.tape, recorder.held, 0);
+    while (tape_next(&recorder.tape) != TAPE_END) {
+    }
+    message_note("%s: %s", recorder.file == stdout ? "standard output" : recorder.path,
+                 recorder_text(&recorder));
+    return output_close(recorder.file, recorder.path, status);
 }
 
 static int run(const options_t *options)

@@ -36,10 +36,10 @@ static bool is_enough(const stream_t *stream)
 
 /* What precedes the first start packet is no scan, and what ends the last one belongs to the
  * next. */
-static void print_packet(const stream_t *stream, const tmini_packet_t *packet)
+static void print_packet(const stream_t *stream)
 {
     if (stream->start_packets > 0 && !is_enough(stream)) {
-        rows_print_packet(stream, packet);
+        rows_print_packet(stream);
     }
 }
 

@@ -109,7 +109,7 @@ static void follow(device_t *device, viewer_t *viewer)
     const tmini_event_t event = device_wait(device, SLICE_MS);
     const unsigned faults = tmini_faults(&device->lidar);
     viewer->has_news |= event != TMINI_EVENT_NONE && event != TMINI_EVENT_PACKET;
-    viewer->view.faults = faults != 0 ? faults : device->stream.faults;
+    viewer->view.faults = faults != 0 ? faults : stream_faults(&device->stream);
     viewer->view.state = device->is_away ? "UNPLUGGED: waiting for it"
                          : tmini_state(&device->lidar) == TMINI_STATE_SCANNING
                              ? "scanning"
@@ -150,12 +150,12 @@ static void set_position(player_t *player, uint32_t position_ms)
 /* Takes packets up to that time, or to the next scan if `by_scan`. Returns whether a scan came. */
 static bool play_to(player_t *player, uint32_t until_ms, bool by_scan)
 {
-    recording_t *const recording = &player->recording;
+    tape_t *const tape = &player->recording.tape;
     bool has_scan = false;
-    recording->until_us = (uint64_t)until_ms * 1000;
-    while (recording->time_us / 1000 <= until_ms && !(has_scan && by_scan) &&
-           !interrupt_has_come() && recording_next(recording)) {
-        has_scan |= recording->stream.has_scan;
+    tape->until_us = (uint64_t)until_ms * 1000;
+    while (tape->time_us / 1000 <= until_ms && !(has_scan && by_scan) && !interrupt_has_come() &&
+           recording_next(&player->recording)) {
+        has_scan |= tape->stream.has_scan;
     }
     return has_scan;
 }
@@ -163,17 +163,18 @@ static bool play_to(player_t *player, uint32_t until_ms, bool by_scan)
 /* A scan further, or back by playing again from the beginning. */
 static void step(player_t *player, bool is_back)
 {
-    const count_t number = player->recording.stream.number;
+    const tape_t *const tape = &player->recording.tape;
+    const count_t number = tape->stream.number;
     player->is_paused = true;
     if (!is_back) {
         (void)play_to(player, UINT32_MAX, true);
     } else if (number > 1 && recording_rewind(&player->recording)) {
         do {
             (void)play_to(player, UINT32_MAX, true);
-        } while (player->recording.stream.number + 1 < number && !player->recording.is_at_end &&
+        } while (tape->stream.number + 1 < number && !player->recording.is_at_end &&
                  !interrupt_has_come());
     }
-    set_position(player, (uint32_t)(player->recording.time_us / 1000));
+    set_position(player, (uint32_t)(tape->time_us / 1000));
 }
 
 static void seek(player_t *player, bool is_back)
@@ -182,7 +183,7 @@ static void seek(player_t *player, bool is_back)
     const uint32_t target = !is_back ? now + SEEK_MS : now > SEEK_MS ? now - SEEK_MS : 0;
     if (!is_back || recording_rewind(&player->recording)) {
         (void)play_to(player, target, false);
-        const uint32_t reached = (uint32_t)(player->recording.time_us / 1000);
+        const uint32_t reached = (uint32_t)(player->recording.tape.time_us / 1000);
         set_position(player, player->recording.is_at_end && reached < target ? reached : target);
     }
 }
@@ -214,7 +215,7 @@ static int play(const options_t *options, player_t *player)
     static viewer_t viewer;
     const recording_t *const recording = &player->recording;
     const char *const name = recording_base_name(options->operand);
-    const int status = open_viewer(&viewer, name, &recording->stream);
+    const int status = open_viewer(&viewer, name, &recording->tape.stream);
     viewer.view.keys = "q quit  +- zoom  a auto  space pause  ,. step  <> 5 s";
     player->recording.is_impatient = true;
     set_position(player, 0);
@@ -222,7 +223,7 @@ static int play(const options_t *options, player_t *player)
         const bool was_at_end = recording->is_at_end;
         viewer.has_news |= !player->is_paused && play_to(player, position(player), true);
         viewer.has_news |= recording->is_at_end != was_at_end;
-        viewer.view.faults = recording->stream.faults;
+        viewer.view.faults = stream_faults(&recording->tape.stream);
         viewer.view.state = recording->is_at_end ? "end of the recording"
                             : player->is_paused  ? "paused"
                                                  : "playing";

@@ -232,8 +232,7 @@ bool device_stop(device_t *device)
     return is_stopped && stays;
 }
 
-bool device_next_scan(device_t *device,
-                      void (*print)(const stream_t *stream, const tmini_packet_t *packet))
+bool device_next_scan(device_t *device, void (*print)(const stream_t *stream))
 {
     uint32_t waited_ms = 0;
     while (device_is_usable(device) && (device->waits || waited_ms < SCAN_MS)) {
@@ -241,7 +240,7 @@ bool device_next_scan(device_t *device,
         const tmini_event_t event = device_wait(device, SLICE_MS);
         waited_ms += device_ms(device) - begun_ms; /* Not while the reader of a pipe pauses. */
         if (print != NULL && (event == TMINI_EVENT_PACKET || event == TMINI_EVENT_SCAN)) {
-            print(&device->stream, tmini_packet(&device->lidar));
+            print(&device->stream);
         }
         if (event == TMINI_EVENT_SCAN) {
             return true;

@@ -69,8 +69,7 @@ bool device_stop(device_t *device);
 
 /* Waits for the next scan; `print`, if not NULL, is called for each packet. Returns false if none
  * comes, and then device_why() says why. */
-bool device_next_scan(device_t *device,
-                      void (*print)(const stream_t *stream, const tmini_packet_t *packet));
+bool device_next_scan(device_t *device, void (*print)(const stream_t *stream));
 
 /* Says why the lidar does not do what it should, and what to try. Returns STATUS_FAILED; after
  * Ctrl-C says nothing. */

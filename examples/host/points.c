@@ -92,8 +92,9 @@ const char *faults_text(unsigned faults, char text[FAULTS_TEXT_SIZE])
 
 const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE])
 {
-    if (stream->faults != TMINI_FAULTS_UNKNOWN) {
-        return faults_text(stream->faults, text);
+    const unsigned faults = stream_faults(stream);
+    if (faults != TMINI_FAULTS_UNKNOWN) {
+        return faults_text(faults, text);
     }
     return stream_tells_nothing(stream)
                ? "not told: this unit sends no information within the stream"
@@ -147,11 +148,11 @@ static const char *hertz(unsigned frequency_chz, const char *unknown)
     return frequency_chz > 0 ? text : unknown;
 }
 
-void rows_print_packet(const stream_t *stream, const tmini_packet_t *packet)
+void rows_print_packet(const stream_t *stream)
 {
     const char *const told = hertz(stream->frequency_chz, "");
     tmini_point_t point;
-    for (size_t i = 0; tmini_packet_point(packet, i, &point); i++) {
+    for (size_t i = 0; tmini_packet_point(&stream->decoder.packet, i, &point); i++) {
         if (stream->mount != NULL) {
             tmini_mount_point(stream->mount, &point);
         }
@@ -164,14 +165,15 @@ void rows_print_packet(const stream_t *stream, const tmini_packet_t *packet)
 void rows_print_scan(const stream_t *stream)
 {
     const tmini_scan_t *const scan = &stream->scan;
-    char faults[16];
-    (void)snprintf(faults, sizeof faults, "%u", stream->faults);
+    const unsigned faults = stream_faults(stream);
+    char number[16];
+    (void)snprintf(number, sizeof number, "%u", faults);
     (void)printf("{\"scan\":%llu,\"time_ms\":%u"
                  ",\"frequency_hz\":%s,\"complete\":%s,\"packets\":%d,\"gaps\":%d,\"dropped\":%d,"
                  "\"checksum_errors\":%d,\"faults\":%s,\"points\":[",
                  stream->number, scan->start_ms, hertz(scan->frequency_chz, "null"),
                  scan->complete ? "true" : "false", scan->packets, scan->gaps, scan->dropped,
-                 scan->checksum_errors, stream->faults != TMINI_FAULTS_UNKNOWN ? faults : "null");
+                 scan->checksum_errors, faults != TMINI_FAULTS_UNKNOWN ? number : "null");
     for (size_t i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
         (void)printf("%s[" DEGREES ",%d,%d,%d]", i > 0 ? "," : "", point->angle_q6 / 64.0,

@@ -65,8 +65,8 @@ const char *damaged_text(const stream_t *stream);
 /* What the columns and members mean, for --help. */
 extern const char rows_help[];
 
-/* Prints the rows of a packet that the stream has just taken. */
-void rows_print_packet(const stream_t *stream, const tmini_packet_t *packet);
+/* Prints the rows of the packet that the stream has just taken. */
+void rows_print_packet(const stream_t *stream);
 
 /* Prints the stream's latest scan as a JSON object on a line of its own. */
 void rows_print_scan(const stream_t *stream);

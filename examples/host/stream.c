@@ -19,20 +19,22 @@
 
 void stream_init(stream_t *stream, const tmini_mount_t *mount)
 {
-    *stream = (stream_t){.faults = TMINI_FAULTS_UNKNOWN, .mount = mount};
-    tmini_ct_init(&stream->ct);
-    (void)tmini_builder_init(&stream->builder, stream->building, STREAM_POINTS_MAX,
+    memset(stream, 0, sizeof *stream);
+    stream->mount = mount;
+    stream->spare = stream->points_of[1];
+    (void)tmini_builder_init(&stream->decoder.builder, stream->points_of[0], STREAM_POINTS_MAX,
                              TMINI_FILTER_NONE);
 }
 
-static void keep(stream_t *stream)
+/* The next scan is built in the points of the one before. */
+static void keep_scan(stream_t *stream)
 {
-    stream->scan = stream->builder.scan;
-    memcpy(stream->kept, stream->scan.points, stream->scan.count * sizeof *stream->kept);
-    stream->scan.points = stream->kept;
+    tmini_builder_t *const builder = &stream->decoder.builder;
+    stream->scan = builder->scan;
+    tmini_builder_use(builder, stream->spare);
+    stream->spare = stream->scan.points;
     tmini_mount_step(stream->mount, &stream->scan);
-    stream->number = stream->open_number;
-    stream->is_open = false;
+    stream->number = stream->start_packets;
     stream->has_scan = true;
     stream->scans++;
     stream->complete += stream->scan.complete ? 1 : 0;
@@ -53,10 +55,9 @@ static void count_gap(stream_t *stream, const tmini_packet_t *packet)
 
 static void count(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms)
 {
-    const uint32_t pause_ms = now_ms - stream->packet_ms;
+    const uint32_t pause_ms = stream->packets > 0 ? now_ms - stream->packet_ms : 0;
     count_gap(stream, packet);
-    stream->longest_ms =
-        stream->packets > 0 && pause_ms > stream->longest_ms ? pause_ms : stream->longest_ms;
+    stream->longest_ms = pause_ms > stream->longest_ms ? pause_ms : stream->longest_ms;
     stream->packet_ms = now_ms;
     stream->packets++;
     stream->points += packet->count;
@@ -67,49 +68,55 @@ static void count(stream_t *stream, const tmini_packet_t *packet, uint32_t now_m
     stream->points_before += stream->start_packets == 0 ? packet->count : 0;
 }
 
+/* The packet, with the gap that scans are to see. */
+static tmini_packet_t judge_gap(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms)
+{
+    const bool is_in_doubt = packet->gap != packet->frame->gap;
+    tmini_packet_t judged = *packet;
+    if (is_in_doubt && stream->is_in_doubt) {
+        judged.gap = MORE_DOUBT;
+    }
+    if (stream->packets > 0 && now_ms - stream->packet_ms > PAUSE_MS) {
+        judged.gap = TMINI_GAP_UNKNOWN;
+    }
+    stream->is_in_doubt = is_in_doubt;
+    return judged;
+}
+
 bool stream_take(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms)
 {
-    tmini_packet_t taken = *packet;
-    if (stream->packets > 0 && now_ms - stream->packet_ms > PAUSE_MS) {
-        taken.gap = TMINI_GAP_UNKNOWN;
-    }
-    if (taken.gap == TMINI_GAP_UNKNOWN && stream->is_in_doubt) {
-        taken.gap = MORE_DOUBT;
-    }
-    stream->is_in_doubt = packet->gap == TMINI_GAP_UNKNOWN;
+    tmini_builder_t *const builder = &stream->decoder.builder;
+    const tmini_packet_t judged = judge_gap(stream, packet, now_ms);
     stream->has_scan = false;
-    const tmini_ct_verdict_t verdict = tmini_ct_add(&stream->ct, &taken);
-    stream->confirmed += verdict == TMINI_CT_CONFIRMED ? 1 : 0;
-    stream->faults = tmini_ct_faults(&stream->ct);
-    count(stream, packet, now_ms);
-    if (verdict == TMINI_CT_REFUTED) {
-        tmini_builder_refute(&stream->builder);
-    }
-    if (tmini_builder_add(&stream->builder, &taken, now_ms)) {
-        if (stream->builder.scan.packets > 1 || taken.gap != TMINI_GAP_UNKNOWN) {
-            keep(stream); /* A start packet and then a pause is no scan. */
+    if (tmini_decoder_take_packet(&stream->decoder, &judged, now_ms)) {
+        if (builder->scan.packets > 1 || judged.gap != TMINI_GAP_UNKNOWN) {
+            keep_scan(stream); /* A start packet and then a pause is no scan. */
         }
-        (void)tmini_builder_add(&stream->builder, &taken, now_ms);
+        (void)tmini_builder_add(builder, &judged, now_ms);
     }
-    stream->is_open = stream->builder.open;
-    stream->open_number = stream->start_packets;
+    stream->confirmed += stream->decoder.verdict == TMINI_CT_CONFIRMED ? 1 : 0;
+    count(stream, packet, now_ms);
     return stream->has_scan;
 }
 
 bool stream_end(stream_t *stream)
 {
     stream->has_scan = false;
-    if (stream->is_open) {
-        keep(stream);
+    if (stream->decoder.builder.open) {
+        stream->decoder.builder.open = false;
+        keep_scan(stream);
     }
     return stream->has_scan;
 }
 
 void stream_break(stream_t *stream)
 {
-    tmini_builder_discard(&stream->builder);
-    tmini_ct_discard(&stream->ct);
-    stream->is_open = false;
+    tmini_decoder_restart(&stream->decoder);
+}
+
+unsigned stream_faults(const stream_t *stream)
+{
+    return tmini_ct_faults(&stream->decoder.ct);
 }
 
 unsigned stream_damaged_permille(const stream_t *stream)

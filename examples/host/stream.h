@@ -2,13 +2,12 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* A lidar's packets, live or recorded, in the order in which they came: the scans that they make,
- * what they tell about the unit, and how much of the stream was damaged. */
+ * what they report about the unit, and how much of the stream was damaged. */
 
 #ifndef STREAM_H
 #define STREAM_H
 
-#include "tmini/parts/tmini_ct.h"
-#include "tmini/parts/tmini_builder.h"
+#include "tmini/parts/tmini_decoder.h"
 #include "tmini/tmini_mount.h"
 
 /* More points than any revolution has: 4000 a second at well below 1 Hz. */
@@ -25,24 +24,20 @@ typedef struct {
     count_t packets;
     count_t start_packets;
     count_t points;
-    count_t points_before;  /* The first start packet. */
-    count_t damaged;        /* Packets that must have been where damaged bytes were. */
-    count_t stray_bytes;    /* Between packets, LastCRC not counted, */
-    count_t guard_bytes;    /* of which (section 7) there were this many. */
-    count_t confirmed;      /* Revolutions that LastCRC confirmed. */
-    uint32_t packet_ms;     /* When the latest packet came. */
-    uint32_t longest_ms;    /* The longest pause between two packets. */
-    unsigned frequency_chz; /* As told last; 0: not yet. */
-    unsigned faults;        /* A combination of tmini_fault_t, or TMINI_FAULTS_UNKNOWN. */
-    bool has_scan;          /* The latest packet has completed `scan`. */
-    bool is_open;
-    bool is_in_doubt; /* Others may be missing before the latest packet. */
-    count_t open_number;
+    count_t points_before;      /* The first start packet. */
+    count_t damaged;            /* Packets that must have been where damaged bytes were. */
+    count_t stray_bytes;        /* Between packets, LastCRC not counted, */
+    count_t guard_bytes;        /* of which (section 7) there were this many. */
+    count_t confirmed;          /* Revolutions that LastCRC confirmed. */
+    uint32_t packet_ms;         /* When the latest packet came. */
+    uint32_t longest_ms;        /* The longest pause between two packets. */
+    unsigned frequency_chz;     /* As reported last; 0: not yet. */
+    bool has_scan;              /* The latest packet has completed `scan`. */
+    bool is_in_doubt;           /* The driver doubts that nothing is missing before it. */
     const tmini_mount_t *mount; /* NULL: none. */
-    tmini_ct_t ct;
-    tmini_builder_t builder;
-    tmini_point_t building[STREAM_POINTS_MAX];
-    tmini_point_t kept[STREAM_POINTS_MAX];
+    tmini_decoder_t decoder;    /* Its `packet` is the latest, its builder has the next scan. */
+    tmini_point_t *spare;       /* For the scan after that. */
+    tmini_point_t points_of[2][STREAM_POINTS_MAX];
 } stream_t;
 
 /* With a mount, scans and points are as the robot sees them. It must last as long as the stream. */
@@ -57,6 +52,9 @@ bool stream_end(stream_t *stream);
 
 /* The stream was interrupted: forgets the scan under way. */
 void stream_break(stream_t *stream);
+
+/* A combination of tmini_fault_t, or TMINI_FAULTS_UNKNOWN. */
+unsigned stream_faults(const stream_t *stream);
 
 /* How many of a thousand packets were damaged. */
 unsigned stream_damaged_permille(const stream_t *stream);

@@ -10,16 +10,20 @@
 
 #define US_A_SAMPLE 250u /* Section 1. */
 
-/* After this long without a packet any number of turns may be missing, whatever the angles say: no
- * computer holds that many bytes back. */
-#define PAUSE_US 1000000u
-
-void tape_begin(tape_t *tape, tmini_point_t *points, size_t max_points)
+void tape_begin(tape_t *tape, const tmini_mount_t *mount, uint8_t max_samples)
 {
     memset(tape, 0, sizeof *tape);
+    tape->until_us = UINT64_MAX;
     (void)tmini_ring_init(&tape->ring, tape->memory, sizeof tape->memory, false);
-    (void)tmini_decoder_init(&tape->decoder, &tape->ring, 0);
-    (void)tmini_builder_init(&tape->decoder.builder, points, max_points, TMINI_FILTER_NONE);
+    stream_init(&tape->stream, mount);
+    (void)tmini_parser_init(&tape->stream.decoder.parser, &tape->ring, max_samples);
+}
+
+static void begin_chunks(tape_t *tape)
+{
+    tape->is_begun = tape->count >= CHUNK_MAGIC_SIZE || tape->is_at_end;
+    tape->chunks.version = chunk_version(tape->buffer, tape->count);
+    tape->at = tape->chunks.version > 0 ? CHUNK_MAGIC_SIZE : 0;
 }
 
 size_t tape_feed(tape_t *tape, const uint8_t *bytes, size_t count)
@@ -32,18 +36,10 @@ size_t tape_feed(tape_t *tape, const uint8_t *bytes, size_t count)
     tape->at = 0;
     tape->count = left + taken;
     tape->is_at_end = count == 0;
-    return taken;
-}
-
-static bool begin(tape_t *tape)
-{
-    if (tape->count < CHUNK_MAGIC_SIZE && !tape->is_at_end) {
-        return false;
+    if (!tape->is_begun) {
+        begin_chunks(tape);
     }
-    tape->is_begun = true;
-    tape->chunks.version = chunk_version(tape->buffer, tape->count);
-    tape->at = tape->chunks.version > 0 ? CHUNK_MAGIC_SIZE : 0;
-    return true;
+    return taken;
 }
 
 /* Bytes of a chunk are next; false if there are not enough to tell. */
@@ -61,14 +57,17 @@ static bool find_chunk(tape_t *tape)
     return true;
 }
 
+/* A chunk is next whose time has not come yet. */
+static bool is_early(const tape_t *tape)
+{
+    return tape->chunks.left > 0 && tape->chunks.time_us > tape->until_us;
+}
+
 /* More bytes of the lidar's into the ring; false if there are none. */
 static bool refill(tape_t *tape)
 {
-    if (!tape->is_begun && !begin(tape)) {
-        return false;
-    }
     const bool is_timed = tape->chunks.version > 0;
-    if (is_timed && !find_chunk(tape)) {
+    if (!tape->is_begun || (is_timed && (!find_chunk(tape) || is_early(tape)))) {
         return false;
     }
     size_t count = tape->count - tape->at;
@@ -83,56 +82,46 @@ static bool refill(tape_t *tape)
     return count > 0;
 }
 
-static void count_packet(tape_t *tape)
-{
-    const tmini_packet_t *const packet = &tape->decoder.packet;
-    tape->packets++;
-    tape->samples += packet->count;
-    if (tmini_packet_is_start(packet)) {
-        tape->start_packets++;
-        tape->guard_bytes += tape->decoder.parser.frame.gap == 1 ? 1 : 0;
-    }
-}
-
 static tape_next_t take(tape_t *tape)
 {
-    const uint64_t before_us = tape->time_us;
-    tape->time_us = tape->chunks.version > 0 ? tape->chunks.time_us : tape->samples * US_A_SAMPLE;
-    const bool is_doubtful = tape->packets > 0 && tape->time_us - before_us > PAUSE_US;
-    const bool is_scan =
-        tmini_decoder_take(&tape->decoder, is_doubtful, (uint32_t)(tape->time_us / 1000), 0);
-    tape->scan_number = tape->start_packets;
-    count_packet(tape);
-    const bool is_stub = is_doubtful && tape->decoder.builder.scan.packets == 1;
-    return is_scan && !is_stub ? TAPE_SCAN : TAPE_PACKET; /* A start packet and a pause: no scan. */
-}
-
-static tape_next_t finish(tape_t *tape)
-{
-    tmini_builder_t *const builder = &tape->decoder.builder;
-    if (!builder->open) {
-        return TAPE_END;
-    }
-    builder->open = false;
-    tape->scan_number = tape->start_packets;
-    return TAPE_REST;
+    stream_t *const stream = &tape->stream;
+    tmini_packet_t packet;
+    tmini_packet_open(&packet, tmini_parser_frame(&stream->decoder.parser));
+    tape->time_us = tape->chunks.version > 0 ? tape->chunks.time_us : stream->points * US_A_SAMPLE;
+    return stream_take(stream, &packet, (uint32_t)(tape->time_us / 1000)) ? TAPE_SCAN : TAPE_PACKET;
 }
 
 tape_next_t tape_next(tape_t *tape)
 {
+    tmini_decoder_t *const decoder = &tape->stream.decoder;
     for (;;) {
-        const tmini_frame_type_t frame = tmini_decoder_next(&tape->decoder, 0);
+        const tmini_frame_type_t frame = tmini_decoder_next(decoder, 0);
         if (frame == TMINI_FRAME_PACKET) {
             return take(tape);
         }
-        if (frame == TMINI_FRAME_NONE && !refill(tape)) {
-            if (!tape->is_at_end) {
-                return TAPE_NEEDS_BYTES;
-            }
-            if (tmini_parser_pending(&tape->decoder.parser) == 0) {
-                return finish(tape);
-            }
-            tmini_parser_abandon(&tape->decoder.parser);
+        if (frame == TMINI_FRAME_MORE || refill(tape)) {
+            continue;
+        }
+        if (is_early(tape)) {
+            return TAPE_LATER;
+        }
+        if (!tape->is_at_end) {
+            return TAPE_NEEDS_BYTES;
+        }
+        if (!tmini_parser_abandon(&decoder->parser)) {
+            return TAPE_END;
         }
     }
+}
+
+count_t tape_skipped(const tape_t *tape)
+{
+    const stream_t *const stream = &tape->stream;
+    return tape->bytes - TMINI_PACKET_HEADER_SIZE * stream->packets -
+           TMINI_SAMPLE_SIZE * stream->points - tmini_parser_pending(&stream->decoder.parser);
+}
+
+count_t tape_checksum_errors(const tape_t *tape)
+{
+    return tape->stream.decoder.parser.counters.checksum_errors;
 }

@@ -1,37 +1,33 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A recording's bytes, as they are in the file, to packets and scans: what the viewer and the
- * Python package decode with, where files are read by others. No reply is awaited, so replies count
- * as skipped bytes. */
+/* A recording played: its bytes, as they are in the file, to packets and scans, by the library's
+ * decoder, in constant memory, however long. Everything that reads recordings does so by this: the
+ * tool, the viewer, the Python package. No reply is awaited, so replies count as skipped bytes. */
 
 #ifndef TAPE_H
 #define TAPE_H
 
 #include "chunk.h"
-#include "tmini/parts/tmini_decoder.h"
+#include "stream.h"
 
 typedef enum {
     TAPE_NEEDS_BYTES,
-    TAPE_PACKET, /* decoder.packet */
-    TAPE_SCAN,   /* The same, and it ends a scan: decoder.builder.scan, valid until the next. */
-    TAPE_REST,   /* What the end cuts off of a scan. */
-    TAPE_END,
+    TAPE_LATER,  /* What comes next came after `until_us`. */
+    TAPE_PACKET, /* stream.decoder.packet */
+    TAPE_SCAN,   /* The same, and it ends a scan: stream.scan. */
+    TAPE_END,    /* stream_end() gives what it cuts off of a scan. */
 } tape_next_t;
 
-/* Members down to `decoder` may be read. */
+/* Members down to `stream` may be read. */
 typedef struct {
-    uint64_t time_us; /* When the latest packet came; untimed: by 4000 samples per second. */
-    uint64_t bytes;   /* Of the lidar's. */
-    uint64_t samples;
-    uint32_t packets;
-    uint32_t start_packets;
-    uint32_t guard_bytes; /* LastCRC (section 7): skipped, but no damage. */
-    uint32_t scan_number; /* Start packets up to and including that of the scan delivered last. */
+    uint64_t time_us;  /* When the latest packet came; untimed: by 4000 samples per second. */
+    uint64_t until_us; /* May be set: what came later in a timed one is not there yet. */
+    count_t bytes;     /* Of the lidar's. */
+    bool is_begun;     /* It is known whether there are chunks: chunks.version. */
     chunks_t chunks;
-    tmini_decoder_t decoder;
+    stream_t stream;
 
-    bool is_begun; /* It is known whether there are chunks. */
     bool is_at_end;
     size_t at, count; /* In `buffer`: what has been fed and not yet decoded. */
     tmini_ring_t ring;
@@ -39,12 +35,18 @@ typedef struct {
     uint8_t buffer[32768];
 } tape_t;
 
-/* From the beginning; scans are built in `points`. */
-void tape_begin(tape_t *tape, tmini_point_t *points, size_t max_points);
+/* From the beginning. `mount` as in stream_init(); packets of more than `max_samples` samples are
+ * not valid, 0: as the library has it. */
+void tape_begin(tape_t *tape, const tmini_mount_t *mount, uint8_t max_samples);
 
 /* The file's next bytes, when they are needed; 0: there are no more. Returns how many it took. */
 size_t tape_feed(tape_t *tape, const uint8_t *bytes, size_t count);
 
+/* At the end, what waits for more bytes is re-examined byte by byte. */
 tape_next_t tape_next(tape_t *tape);
+
+/* Bytes that belonged to no packet, of those decoded so far; and wrong checksums. */
+count_t tape_skipped(const tape_t *tape);
+count_t tape_checksum_errors(const tape_t *tape);
 
 #endif

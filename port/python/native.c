@@ -13,11 +13,12 @@ static void point_times_us(const tmini_scan_t *scan, uint32_t *times_us)
     }
 }
 
+/* The last one is what the end leaves of a scan. */
 static int tape_next_scan(tape_t *tape)
 {
     tape_next_t next = TAPE_PACKET;
     while (next == TAPE_PACKET) {
         next = tape_next(tape);
     }
-    return next;
+    return next == TAPE_END && stream_end(&tape->stream) ? TAPE_SCAN : next;
 }

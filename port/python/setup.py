@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The package is built from the sources of lib/, and two of the tool's that read recordings. A source
+"""The package is built from the sources of lib/, and those of the tool that read recordings. A source
 distribution carries them; in the checkout they lie two folders up, and are here while setuptools
 works, which takes no others. (So a checkout installs once at a time.)"""
 
@@ -20,8 +20,9 @@ if not IS_DISTRIBUTION:
         raise SystemExit(f"no library in {CHECKOUT}/lib: install from the whole checkout "
                          "(pip install ./port/python), with pip 21.3 or later")
     shutil.copytree(CHECKOUT / "lib", CARRIED, dirs_exist_ok=True)
-    for name in ("chunk.c", "chunk.h", "tape.c", "tape.h"):
-        shutil.copy(CHECKOUT / "examples" / "host" / name, CARRIED / "src")
+    for module in ("chunk", "stream", "tape"):
+        for suffix in (".c", ".h"):
+            shutil.copy(CHECKOUT / "examples" / "host" / (module + suffix), CARRIED / "src")
     shutil.copy(CHECKOUT / "LICENSE", HERE)
 try:
     setup(cffi_modules=["native.py:ffi"])

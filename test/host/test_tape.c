@@ -1,27 +1,33 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Timed recordings (FILE.tmini), written here from the format's description, with one byte lost,
- * changed or added anywhere: what is read of them. */
+/* Recordings, played from memory: raw ones put together here, and timed ones written from the
+ * format's description, with one byte lost, changed or added anywhere. */
 
-#include "recording.h"
+#include "encoder.h"
 #include "simulator.h"
+#include "tape.h"
 
 #include "unity.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#define NAME "damaged.tmini"
 #define FILE_MAX 200000u
 #define SECONDS 10u
 #define FIRST_CHUNK 150u /* It ends before. */
 
 static uint8_t file[FILE_MAX + 1];
 static size_t size;
-static recording_t recording;
+static tape_t tape;
+static unsigned scans;
 
-void setUp(void) {}
+void setUp(void)
+{
+    size = 0;
+    scans = 0;
+    tape_begin(&tape, NULL, 0);
+}
 
 void tearDown(void) {}
 
@@ -66,6 +72,14 @@ static void put_chunk(unsigned version, uint32_t delta_us, const uint8_t *bytes,
     }
 }
 
+static void put_magic(unsigned version)
+{
+    for (size_t i = 0; i < 8; i++) {
+        put("\x89tmini\x02\n"[i]);
+    }
+    file[6] = (uint8_t)version;
+}
+
 /* What a lidar sends in ten seconds, read each 5 ms, after a second in which nothing comes. */
 static void write_whole(unsigned version)
 {
@@ -75,11 +89,7 @@ static void write_whole(unsigned version)
     uint64_t stamp_us = 0;
     sim_init(&lidar, &config);
     sim_receive(&lidar, start, sizeof start, 1000000);
-    size = 0;
-    for (size_t i = 0; i < 8; i++) {
-        put("\x89tmini\x02\n"[i]);
-    }
-    file[6] = (uint8_t)version;
+    put_magic(version);
     for (uint64_t now_us = 1000000; now_us < (SECONDS + 1) * 1000000u; now_us += 5000) {
         uint8_t bytes[512];
         const size_t count = sim_transmit(&lidar, now_us, bytes, sizeof bytes);
@@ -90,28 +100,32 @@ static void write_whole(unsigned version)
     }
 }
 
-static void write_to(FILE *out, const uint8_t *bytes, size_t count)
+/* Up to where more bytes are needed, or nothing is left. */
+static tape_next_t play(void)
 {
-    if (count > 0) {
-        (void)fwrite(bytes, 1, count, out);
+    tape_next_t next = TAPE_PACKET;
+    while (next == TAPE_PACKET || next == TAPE_SCAN) {
+        next = tape_next(&tape);
+        scans += next == TAPE_SCAN ? 1 : 0;
+    }
+    return next;
+}
+
+static void feed(const uint8_t *bytes, size_t count)
+{
+    while (count > 0) {
+        TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
+        const size_t taken = tape_feed(&tape, bytes, count);
+        bytes += taken;
+        count -= taken;
     }
 }
 
-/* Reads the first bytes of it, then others, then its last ones. */
-static void read_back(const uint8_t *first, size_t count, const uint8_t *added, size_t added_count,
-                      const uint8_t *last, size_t last_count)
+static void finish(void)
 {
-    const options_t options = {.operand = NAME};
-    FILE *const out = fopen(NAME, "wb");
-    TEST_ASSERT_NOT_NULL(out);
-    write_to(out, first, count);
-    write_to(out, added, added_count);
-    write_to(out, last, last_count);
-    TEST_ASSERT_EQUAL_INT(0, fclose(out));
-    TEST_ASSERT_EQUAL_INT(0, recording_open(&recording, &options));
-    while (recording_next(&recording)) {
-    }
-    recording_close(&recording);
+    TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
+    (void)tape_feed(&tape, file, 0);
+    TEST_ASSERT_EQUAL_INT(TAPE_END, play());
 }
 
 typedef enum { DROPPED, CHANGED, ADDED, KINDS } damage_t;
@@ -119,28 +133,33 @@ typedef enum { DROPPED, CHANGED, ADDED, KINDS } damage_t;
 static void read_damaged(size_t at, damage_t damage)
 {
     const uint8_t other = (uint8_t)(file[at] ^ 0x55);
-    read_back(file, at, &other, damage == DROPPED ? 0 : 1, file + at + (damage == ADDED ? 0 : 1),
-              size - at - (damage == ADDED ? 0 : 1));
+    tape_begin(&tape, NULL, 0);
+    feed(file, at);
+    feed(&other, damage == DROPPED ? 0 : 1);
+    at += damage == ADDED ? 0 : 1;
+    feed(file + at, size - at);
+    finish();
 }
 
 static void expect_one_percent_at_most(unsigned version)
 {
     char at_fault[60];
     write_whole(version);
-    read_back(file, size, NULL, 0, NULL, 0);
-    const count_t packets = recording.stream.packets;
-    const uint64_t time_us = recording.time_us;
+    feed(file, size);
+    finish();
+    const count_t packets = tape.stream.packets;
+    const uint64_t time_us = tape.time_us;
     TEST_ASSERT_TRUE(packets > 900);
-    TEST_ASSERT_EQUAL_UINT64(0, recording.chunks.damages);
+    TEST_ASSERT_EQUAL_UINT(0, tape.chunks.damages);
     for (size_t at = FIRST_CHUNK; at < size; at += 509) {
         for (damage_t damage = DROPPED; damage < KINDS; damage++) {
             (void)snprintf(at_fault, sizeof at_fault, "version %u, damage %d at %zu", version,
                            damage, at);
             read_damaged(at, damage);
-            TEST_ASSERT_TRUE_MESSAGE(recording.stream.packets * 100 >= packets * 99, at_fault);
-            TEST_ASSERT_TRUE_MESSAGE(recording.stream.packets <= packets, at_fault);
+            TEST_ASSERT_TRUE_MESSAGE(tape.stream.packets * 100 >= packets * 99, at_fault);
+            TEST_ASSERT_TRUE_MESSAGE(tape.stream.packets <= packets, at_fault);
             if (version == 2) { /* In version 1 a changed pause is one. */
-                TEST_ASSERT_UINT64_WITHIN_MESSAGE(20000, time_us, recording.time_us, at_fault);
+                TEST_ASSERT_UINT64_WITHIN_MESSAGE(20000, time_us, tape.time_us, at_fault);
             }
         }
     }
@@ -162,6 +181,323 @@ void test_no_byte_of_version_2_is_lost_silently(void)
     write_whole(2);
     for (size_t at = 8; at + 600 < size; at += 607) {
         read_damaged(at, DROPPED);
-        TEST_ASSERT_TRUE(recording.chunks.damages >= 1);
+        TEST_ASSERT_TRUE(tape.chunks.damages >= 1);
     }
+}
+
+/* -------------------------------------------------------------------------------- what is played */
+
+/* The manual's own packet (section 5): 19 samples, no start packet. */
+static const uint8_t manual[] =
+    "\xAA\x55\x20\x13\x95\xA9\x63\x00\x5A\xE8\x01\x08\xB9\x01\xAC\xB8\x01\xF8\xB6\x01\x88\xB5\x01"
+    "\x58\xAE\x01\xC0\xAB\x01\x04\xAA\x01\x78\xA9\x01\x34\xA9\x01\xC4\xAD\x01\x34\xAF\x01\x78\xAE"
+    "\x01\x2C\xAD\x01\x02\x00\x00\x62\xAD\x01\x60\xAD\x01\xF0\xAB\x01\x88\xAD\x01\xFE\xAD";
+#define MANUAL_SIZE 67u
+
+static void put_bytes(const uint8_t *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        put(bytes[i]);
+    }
+}
+
+/* A start packet at 6 Hz, or a quarter of a turn: 40 samples. */
+static size_t packet_of(unsigned quarter, uint8_t packet[ENCODE_PACKET_MAX])
+{
+    static const encode_sample_t samples[40];
+    const encode_packet_t fields = {
+        .ct = quarter == 0 ? 60 << 1 | 1 : 0,
+        .lsn = quarter == 0 ? 1 : 40,
+        .first_q6 = (uint16_t)(quarter == 0 ? 0 : (quarter - 1) * 5760 + 144),
+        .last_q6 = (uint16_t)(quarter == 0 ? 0 : quarter * 5760 % 23040),
+        .samples = samples,
+    };
+    return encode_packet(packet, &fields);
+}
+
+static void put_packet(unsigned quarter)
+{
+    uint8_t packet[ENCODE_PACKET_MAX];
+    put_bytes(packet, packet_of(quarter, packet));
+}
+
+static void put_turn(void)
+{
+    for (unsigned quarter = 0; quarter <= 4; quarter++) {
+        put_packet(quarter);
+    }
+}
+
+/* The same in chunks, 42 ms apart; the first comes at another time. */
+static void put_turn_at(uint32_t delta_us)
+{
+    uint8_t packet[ENCODE_PACKET_MAX];
+    for (unsigned quarter = 0; quarter <= 4; quarter++) {
+        put_chunk(2, quarter == 0 ? delta_us : 42000, packet, packet_of(quarter, packet));
+    }
+}
+
+/* A candidate that the end cuts off hides a packet. */
+void test_at_the_end_the_rest_is_looked_at_again(void)
+{
+    put_bytes((const uint8_t *)"\xAA\x55\x20\x28\x95\xA9\x63\x01\x00\x00", 10);
+    put_bytes(manual, MANUAL_SIZE);
+    feed(file, size);
+    TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
+    TEST_ASSERT_EQUAL_UINT64(0, tape.stream.packets);
+    (void)tape_feed(&tape, file, 0);
+    TEST_ASSERT_EQUAL_INT(TAPE_PACKET, tape_next(&tape));
+    TEST_ASSERT_EQUAL_UINT8(19, tape.stream.decoder.packet.count);
+    TEST_ASSERT_EQUAL_INT(TAPE_END, tape_next(&tape));
+    TEST_ASSERT_EQUAL_INT(TAPE_END, tape_next(&tape));
+    TEST_ASSERT_EQUAL_UINT64(77, tape.bytes);
+    TEST_ASSERT_EQUAL_UINT64(10, tape_skipped(&tape));
+}
+
+void test_bytes_in_no_packet_and_wrong_checksums_are_counted(void)
+{
+    put_bytes(manual, MANUAL_SIZE);
+    put_bytes(manual, MANUAL_SIZE);
+    file[30] ^= 1;
+    put(0xAA);
+    feed(file, size);
+    TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
+    TEST_ASSERT_EQUAL_UINT64(67, tape_skipped(&tape)); /* The last byte still waits. */
+    finish();
+    TEST_ASSERT_EQUAL_UINT64(68, tape_skipped(&tape));
+    TEST_ASSERT_EQUAL_UINT64(1, tape_checksum_errors(&tape));
+    TEST_ASSERT_EQUAL_UINT64(1, tape.stream.packets);
+}
+
+void test_fewer_bytes_than_a_file_begins_with_are_looked_at_in_the_end(void)
+{
+    feed(manual, 5);
+    TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
+    TEST_ASSERT_FALSE(tape.is_begun);
+    finish();
+    TEST_ASSERT_TRUE(tape.is_begun);
+    TEST_ASSERT_EQUAL_UINT64(5, tape.bytes);
+}
+
+/* The start packet's sample and 40 others come each 250 us. */
+void test_a_raw_recording_has_the_time_of_its_samples(void)
+{
+    put_packet(0);
+    put_packet(1);
+    put_packet(2);
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT64(41 * 250, tape.time_us);
+    TEST_ASSERT_EQUAL_UINT32(10, tape.stream.packet_ms);
+}
+
+void test_packets_of_more_samples_than_wanted_are_none(void)
+{
+    tape_begin(&tape, NULL, 39);
+    put_turn();
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT64(1, tape.stream.packets);
+}
+
+void test_blocks_of_any_size_give_the_same(void)
+{
+    for (unsigned turn = 0; turn < 30; turn++) {
+        put_turn();
+    }
+    for (size_t block = 1; block < 2 * size; block = 3 * block + 1) {
+        tape_begin(&tape, NULL, 0);
+        scans = 0;
+        for (size_t at = 0; at < size; at += block) {
+            feed(file + at, size - at < block ? size - at : block);
+        }
+        finish();
+        TEST_ASSERT_EQUAL_UINT64(150, tape.stream.packets);
+        TEST_ASSERT_EQUAL_UINT(29, scans);
+        TEST_ASSERT_EQUAL_UINT64(29, tape.stream.complete);
+    }
+}
+
+void test_what_came_later_is_not_there_yet(void)
+{
+    put_magic(2);
+    put_turn_at(1000);
+    feed(file, size);
+    tape.until_us = 999;
+    TEST_ASSERT_EQUAL_INT(TAPE_LATER, play());
+    TEST_ASSERT_EQUAL_UINT64(0, tape.stream.packets);
+    tape.until_us = 1000 + 42000;
+    TEST_ASSERT_EQUAL_INT(TAPE_LATER, play());
+    TEST_ASSERT_EQUAL_UINT64(2, tape.stream.packets);
+    tape.until_us = UINT64_MAX;
+    TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
+    TEST_ASSERT_EQUAL_UINT64(5, tape.stream.packets);
+}
+
+/* -------------------------------------------------------------------------------- what is a scan */
+
+void test_a_scan_has_the_number_of_its_start_packet(void)
+{
+    put_packet(4); /* Before the first start packet. */
+    put_turn();
+    put_turn();
+    put_packet(0);
+    feed(file, size);
+    for (unsigned number = 1; number <= 2; number++) {
+        while (tape_next(&tape) != TAPE_SCAN) {
+        }
+        TEST_ASSERT_EQUAL_UINT64(number, tape.stream.number);
+        TEST_ASSERT_EQUAL_UINT16(161, tape.stream.scan.count);
+        TEST_ASSERT_TRUE(tape.stream.scan.complete);
+    }
+    TEST_ASSERT_EQUAL_UINT64(40, tape.stream.points_before);
+}
+
+void test_a_scan_stays_until_the_next(void)
+{
+    put_turn();
+    put_turn();
+    feed(file, size);
+    while (tape_next(&tape) != TAPE_SCAN) {
+    }
+    const tmini_scan_t scan = tape.stream.scan;
+    tmini_point_t points[161];
+    memcpy(points, scan.points, sizeof points);
+    finish();
+    TEST_ASSERT_EQUAL_PTR(scan.points, tape.stream.scan.points);
+    TEST_ASSERT_EQUAL_MEMORY(points, scan.points, sizeof points);
+}
+
+/* 161 points, then 41 that the end cuts off. */
+void test_the_end_leaves_the_rest_of_a_scan_once(void)
+{
+    put_turn();
+    put_packet(0);
+    put_packet(1);
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT(1, scans);
+    TEST_ASSERT_TRUE(stream_end(&tape.stream));
+    TEST_ASSERT_EQUAL_UINT64(2, tape.stream.number);
+    TEST_ASSERT_EQUAL_UINT16(41, tape.stream.scan.count);
+    TEST_ASSERT_FALSE(tape.stream.scan.complete);
+    TEST_ASSERT_FALSE(stream_end(&tape.stream));
+    TEST_ASSERT_EQUAL_INT(TAPE_END, play());
+}
+
+void test_a_start_packet_and_then_a_pause_is_no_scan(void)
+{
+    uint8_t packet[ENCODE_PACKET_MAX];
+    put_magic(2);
+    put_turn_at(0);
+    put_chunk(2, 42000, packet, packet_of(0, packet));
+    put_turn_at(1001000); /* Longer than a second. */
+    put_turn_at(42000);
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT(2, scans);
+    TEST_ASSERT_EQUAL_UINT64(2, tape.stream.complete);
+    TEST_ASSERT_EQUAL_UINT64(3, tape.stream.number);
+    TEST_ASSERT_EQUAL_UINT32(1001, tape.stream.longest_ms);
+}
+
+/* Quarter by quarter, it fits: but turns may be missing. */
+void test_a_scan_does_not_go_on_after_a_pause(void)
+{
+    uint8_t packet[ENCODE_PACKET_MAX];
+    for (uint32_t pause_us = 1000000; pause_us <= 1001000; pause_us += 1000) {
+        setUp();
+        put_magic(2);
+        put_chunk(2, 0, packet, packet_of(0, packet));
+        put_chunk(2, 42000, packet, packet_of(1, packet));
+        put_chunk(2, pause_us, packet, packet_of(2, packet));
+        feed(file, size);
+        finish();
+        TEST_ASSERT_EQUAL_UINT(pause_us > 1000000 ? 1 : 0, scans);
+    }
+}
+
+/* 70,000 bytes that are none of the lidar's, and once more: no reason to join what is between. */
+void test_a_scan_does_not_go_on_after_unreadable_bytes(void)
+{
+    put_packet(0);
+    put_packet(1);
+    for (unsigned quarter = 2; quarter <= 3; quarter++) {
+        for (unsigned i = 0; i < 70000; i++) {
+            put(0);
+        }
+        put_packet(quarter);
+    }
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT64(4, tape.stream.packets);
+    TEST_ASSERT_EQUAL_UINT(1, scans);
+    TEST_ASSERT_TRUE(stream_end(&tape.stream));
+    TEST_ASSERT_EQUAL_UINT16(1, tape.stream.scan.packets);
+    TEST_ASSERT_EQUAL_UINT64(0, tape.stream.damaged); /* How many is unknown. */
+}
+
+void test_a_mount_turns_scans_once(void)
+{
+    const tmini_mount_t mount = {.front_deg = 90};
+    tape_begin(&tape, &mount, 0);
+    put_turn();
+    put_packet(0);
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT(1, scans);
+    TEST_ASSERT_EQUAL_UINT16(17280, tape.stream.scan.points[0].angle_q6); /* 0 - 90 degrees. */
+}
+
+/* ------------------------------------------------------------------- what a driver hands on: live */
+
+/* A packet of the library's own parser; the driver reports its doubt by the gap. */
+static bool come(unsigned quarter, bool is_doubted, uint32_t now_ms)
+{
+    static tmini_parser_t parser;
+    static tmini_ring_t ring;
+    static uint8_t memory[1024];
+    uint8_t bytes[ENCODE_PACKET_MAX];
+    tmini_packet_t packet;
+    (void)tmini_ring_init(&ring, memory, sizeof memory, false);
+    (void)tmini_parser_init(&parser, &ring, 0);
+    (void)tmini_ring_write(&ring, bytes, packet_of(quarter, bytes));
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, tmini_parser_next(&parser));
+    tmini_packet_open(&packet, tmini_parser_frame(&parser));
+    packet.gap = is_doubted ? TMINI_GAP_UNKNOWN : packet.gap;
+    return stream_take(&tape.stream, &packet, now_ms);
+}
+
+/* After a pause all packets of a batch may be doubted: the first begins another scan, which the
+ * others belong to. */
+void test_a_doubted_batch_is_one_scan(void)
+{
+    TEST_ASSERT_FALSE(come(0, false, 0));
+    TEST_ASSERT_FALSE(come(1, false, 42));
+    TEST_ASSERT_TRUE(come(2, true, 400));
+    TEST_ASSERT_FALSE(come(3, true, 400));
+    TEST_ASSERT_FALSE(come(4, false, 440));
+    TEST_ASSERT_TRUE(come(0, false, 480));
+    TEST_ASSERT_EQUAL_UINT16(3, tape.stream.scan.packets);
+    TEST_ASSERT_FALSE(tape.stream.scan.complete);
+    TEST_ASSERT_EQUAL_UINT64(2, tape.stream.scans);
+    TEST_ASSERT_EQUAL_UINT64(0, tape.stream.damaged);
+}
+
+void test_a_pause_ends_a_scan_also_in_doubt(void)
+{
+    TEST_ASSERT_FALSE(come(0, false, 0));
+    TEST_ASSERT_FALSE(come(1, false, 42));
+    TEST_ASSERT_TRUE(come(2, true, 400));
+    TEST_ASSERT_FALSE(come(3, true, 400));
+    TEST_ASSERT_TRUE(come(4, true, 1401));
+}
+
+void test_what_was_interrupted_is_no_scan(void)
+{
+    TEST_ASSERT_FALSE(come(0, false, 0));
+    TEST_ASSERT_FALSE(come(1, false, 42));
+    stream_break(&tape.stream);
+    TEST_ASSERT_FALSE(come(2, false, 84));
+    TEST_ASSERT_FALSE(stream_end(&tape.stream));
 }

@@ -65,14 +65,12 @@ export class Recording {
 
     // All samples of all valid packets, as `tmini decode --csv` prints them.
     csv() {
-        const { TAPE_REST, TAPE_END } = this.#library.constants;
+        const { TAPE_END } = this.#library.constants;
         const timeMs = this.timeMs;
         const lines = [CSV_HEADER];
         this.rewind();
-        for (let next; (next = this.#next()) !== TAPE_END;) {
-            if (next !== TAPE_REST) {
-                this.#addRows(lines);
-            }
+        while (this.#next() !== TAPE_END) {
+            this.#addRows(lines);
         }
         this.seek(timeMs);
         return `${lines.join('\n')}\n`;

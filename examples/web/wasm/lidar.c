@@ -176,8 +176,8 @@ EXPORTED uint32_t lidar_numbers(void)
     tmini_ct_info_t ct;
     tmini_counters(&live.lidar, &counters);
     tmini_ct_info(&live.lidar, &ct);
-    const uint32_t guards = live.tape.guard_bytes < counters.bytes_skipped ? live.tape.guard_bytes
-                                                                           : counters.bytes_skipped;
+    uint32_t guards = (uint32_t)live.tape.stream.guard_bytes;
+    guards = guards < counters.bytes_skipped ? guards : counters.bytes_skipped;
     numbers_clear();
     numbers_put("bytes", live.received);
     numbers_put("packets", counters.packets);

@@ -50,7 +50,6 @@ EXPORTED uint32_t constants(void)
     numbers_put("ERROR_ABORTED", (uint32_t)TMINI_ERROR_ABORTED);
     numbers_put("TAPE_NEEDS_BYTES", TAPE_NEEDS_BYTES);
     numbers_put("TAPE_SCAN", TAPE_SCAN);
-    numbers_put("TAPE_REST", TAPE_REST);
     numbers_put("TAPE_END", TAPE_END);
     numbers_put("CHUNK_MAGIC_SIZE", CHUNK_MAGIC_SIZE);
     numbers_put("CHUNK_HEAD_SIZE", CHUNK_HEAD_SIZE);

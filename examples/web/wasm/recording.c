@@ -12,16 +12,13 @@
 static struct {
     tape_t tape;
     tmini_point_t points[UINT8_MAX]; /* Of the latest packet. */
-    tmini_point_t scan[WEB_SCAN_POINTS];
-    uint32_t frequency_chz;
     bool is_shown;
 } played;
 
 /* From the beginning. Whether its scans are to be the ones shown. */
 EXPORTED void recording_rewind(uint32_t is_shown)
 {
-    tape_begin(&played.tape, played.scan, WEB_SCAN_POINTS);
-    played.frequency_chz = 0;
+    tape_begin(&played.tape, NULL, 0);
     played.is_shown = is_shown != 0;
     if (played.is_shown) {
         shown_clear();
@@ -37,16 +34,14 @@ EXPORTED uint32_t recording_feed(uint32_t count)
 
 EXPORTED uint32_t recording_next(void)
 {
-    const tmini_decoder_t *const decoder = &played.tape.decoder;
+    const stream_t *const stream = &played.tape.stream;
     const tape_next_t next = tape_next(&played.tape);
     if (next == TAPE_SCAN && played.is_shown) {
-        shown_take(&decoder->builder.scan);
+        shown_take(&stream->scan);
     }
     if (next == TAPE_PACKET || next == TAPE_SCAN) {
-        (void)tmini_packet_points(&decoder->packet, TMINI_FILTER_NONE, played.points, UINT8_MAX);
-        if (tmini_packet_is_start(&decoder->packet)) {
-            played.frequency_chz = decoder->packet.ct / 2u * 10u; /* Section 7. */
-        }
+        (void)tmini_packet_points(&stream->decoder.packet, TMINI_FILTER_NONE, played.points,
+                                  UINT8_MAX);
     }
     return next;
 }
@@ -61,45 +56,46 @@ EXPORTED const void *recording_points(void)
 EXPORTED uint32_t recording_time_ms(void)
 {
     const tape_t *const tape = &played.tape;
-    return (uint32_t)(tape->chunks.version > 0 ? tape->time_us / 1000u : tape->samples / 4u);
+    return (uint32_t)(tape->chunks.version > 0 ? tape->time_us / 1000u : tape->stream.points / 4u);
 }
 
 /* What each row of the latest packet's points begins and ends with. */
 EXPORTED uint32_t recording_packet_numbers(void)
 {
-    const tape_t *const tape = &played.tape;
+    const stream_t *const stream = &played.tape.stream;
     numbers_clear();
-    numbers_put("count", tape->decoder.packet.count);
-    numbers_put("packet", tape->packets - 1u);
-    numbers_put("scan", tape->start_packets);
-    numbers_put("timeMs", (uint32_t)(tape->time_us / 1000u));
-    numbers_put("frequencyChz", played.frequency_chz);
+    numbers_put("count", stream->decoder.packet.count);
+    numbers_put("packet", (uint32_t)stream->packets - 1u);
+    numbers_put("scan", (uint32_t)stream->start_packets);
+    numbers_put("timeMs", stream->packet_ms);
+    numbers_put("frequencyChz", stream->frequency_chz);
     return numbers_count();
 }
 
 /* As CT information reports them, or unknown: TMINI_FAULTS_UNKNOWN. */
 EXPORTED uint32_t recording_faults(void)
 {
-    return tmini_ct_faults(&played.tape.decoder.ct);
+    return stream_faults(&played.tape.stream);
 }
 
 EXPORTED uint32_t recording_numbers(void)
 {
     const tape_t *const tape = &played.tape;
+    const stream_t *const stream = &tape->stream;
     tmini_parser_counters_t counters;
     tmini_ct_info_t ct;
-    tmini_parser_counters(&tape->decoder.parser, &counters);
-    tmini_ct_read(&tape->decoder.ct, &ct);
+    tmini_parser_counters(&stream->decoder.parser, &counters);
+    tmini_ct_read(&stream->decoder.ct, &ct);
     numbers_clear();
     numbers_put("bytes", (uint32_t)tape->bytes);
     numbers_put("version", tape->chunks.version);
     numbers_put("damages", tape->chunks.damages);
     numbers_put("packets", counters.packets);
     numbers_put("checksumErrors", counters.checksum_errors);
-    numbers_put("bytesSkipped", counters.bytes_skipped - tape->guard_bytes);
-    numbers_put("guardBytes", tape->guard_bytes);
+    numbers_put("bytesSkipped", counters.bytes_skipped - (uint32_t)stream->guard_bytes);
+    numbers_put("guardBytes", (uint32_t)stream->guard_bytes);
     numbers_put("bytesOverrun", counters.bytes_overrun);
-    numbers_put("scans", tape->start_packets);
+    numbers_put("scans", (uint32_t)stream->start_packets);
     numbers_put_ct(&ct);
     return numbers_count();
 }

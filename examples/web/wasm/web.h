@@ -11,13 +11,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tmini/parts/tmini_ct.h"
-#include "tmini/parts/tmini_builder.h"
+#include "stream.h"
 
 #define EXPORTED __attribute__((visibility("default")))
 
-/* The motor comes up to speed from two revolutions a second: 4000 samples of those fit, nearly. */
-#define WEB_SCAN_POINTS 2400u
+#define WEB_SCAN_POINTS STREAM_POINTS_MAX
 
 #define WEB_TRANSFER_SIZE 16384u
 extern uint8_t web_transfer[WEB_TRANSFER_SIZE];

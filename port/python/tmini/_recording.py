@@ -16,7 +16,6 @@ from ._native import ffi, lib
 from ._scan import Scan
 
 _BLOCK = 16384
-_POINTS = 8192  # More than any revolution has.
 
 
 def read(path: str | os.PathLike[str], *, front: int = 0, upside_down: bool = False,
@@ -25,9 +24,8 @@ def read(path: str | os.PathLike[str], *, front: int = 0, upside_down: bool = Fa
     (.tmini), or of bytes as they came (.bin). The rest: see Mount. A recording of no lidar is a
     ValueError; of a damaged one all that is whole is read, and a RuntimeWarning says so."""
     mount = Mount(front, upside_down, mask)
-    points = ffi.new("tmini_point_t[]", _POINTS)
     tape = ffi.new("tape_t *")
-    lib.tape_begin(tape, points, _POINTS)
+    lib.tape_begin(tape, mount.native, 0)
     data = b""
     with open(path, "rb") as file:
         while (found := lib.tape_next_scan(tape)) != lib.TAPE_END:
@@ -35,15 +33,14 @@ def read(path: str | os.PathLike[str], *, front: int = 0, upside_down: bool = Fa
                 data = data or file.read(_BLOCK)
                 data = data[lib.tape_feed(tape, data, len(data)):]
             else:
-                yield _scan(tape, mount)
+                yield _scan(tape.stream)
     _judge(path, tape)
 
 
-def _scan(tape: Any, mount: Mount) -> Scan:
-    native = tape.decoder.builder.scan
-    lib.tmini_mount_step(mount.native, ffi.addressof(native))
-    faults = lib.tmini_ct_faults(ffi.addressof(tape.decoder.ct))
-    return Scan(native, tape.scan_number, faults, native.start_ms / 1000)
+def _scan(stream: Any) -> Scan:
+    native = stream.scan
+    faults = lib.stream_faults(ffi.addressof(stream))
+    return Scan(native, stream.number, faults, native.start_ms / 1000)
 
 
 def _judge(path: str | os.PathLike[str], tape: Any) -> None:
@@ -52,7 +49,7 @@ def _judge(path: str | os.PathLike[str], tape: Any) -> None:
         raise ValueError(f"{name} is of version {tape.chunks.version}: too new for this package")
     if tape.bytes == 0:
         raise ValueError(f"{name} is empty: nothing was recorded")
-    if tape.packets == 0:
+    if tape.stream.packets == 0:
         raise ValueError(f"{name} holds no lidar packet in {tape.bytes} bytes: another device, or "
                          "another baud rate than 230400, or the lidar did not scan")
     if tape.chunks.damages > 0:
