@@ -48,7 +48,7 @@
 
 #include "tmini_port.h"
 #include "tmini_types.h"
-/* For the members of struct tmini. */
+/* The types of a lidar's members. */
 #include "parts/tmini_decoder.h"
 #include "parts/tmini_reply.h"
 #include "parts/tmini_ring.h"
