@@ -32,6 +32,9 @@ typedef char events_fit_their_mask[TMINI_EVENT_MORE <= 16 ? 1 : -1];
  * found. */
 #define FRAME_EFFORT 44u
 
+/* The line is looked at this often, also when there is nothing to do: about once per packet. */
+#define IDLE_MAX_MS 10u
+
 static bool is_set_up(const tmini_t *lidar)
 {
     return lidar != NULL && lidar->link.port != NULL;
@@ -204,7 +207,7 @@ TMINI_NOINLINE static void take_over(tmini_t *lidar)
  * and asks again whenever a command has failed, ends. */
 static void send_first(tmini_t *lidar)
 {
-    lidar->idle_ms = 0;
+    lidar->idle_ms = 1;
     lidar->is_settled = tmini_command_poll(lidar) != TMINI_UNDER_WAY && lidar->pending == 0;
 }
 
@@ -392,23 +395,20 @@ static void settle(tmini_t *lidar)
     const int32_t left_ms = (int32_t)frame_ms - lidar->line.silent_ms;
     const uint16_t give_up_ms = left_ms > 0 ? (uint16_t)left_ms : frame_ms;
     const uint16_t command_ms = tmini_command_idle_ms(lidar);
-    lidar->settled_ms = lidar->line.now_ms;
-    lidar->idle_ms = give_up_ms < command_ms ? give_up_ms : command_ms;
+    const uint16_t due_ms = give_up_ms < command_ms ? give_up_ms : command_ms;
+    const uint16_t idle_ms = due_ms < IDLE_MAX_MS ? due_ms : IDLE_MAX_MS;
+    lidar->idle_ms = idle_ms > 0 ? idle_ms : 1;
     lidar->is_settled = lidar->command.unsent == 0;
 }
 
-/* Looks at the line, if a frame may be complete or time has passed since the last poll. True if
- * there may be something to do. Most polls of a fast loop end here. */
-static bool has_news(tmini_t *lidar)
+/* A settled lidar has been idle for long enough, or a frame may be complete; asked in this order,
+ * because a port may hand over bytes when it is asked for the time. Most polls of a fast loop end
+ * here. */
+static bool has_news(const tmini_t *lidar)
 {
     const tmini_link_t *const link = &lidar->link;
-    if (!tmini_parser_has_work(&lidar->decoder.parser) &&
-        link->port->now_ms(link->port_context) == lidar->line.now_ms) {
-        return false;
-    }
-    look(lidar); /* A port may hand over bytes when it is asked for the time. */
-    return tmini_parser_has_work(&lidar->decoder.parser) ||
-           tmini_has_elapsed(lidar, lidar->settled_ms, lidar->idle_ms);
+    const uint32_t passed_ms = link->port->now_ms(link->port_context) - lidar->line.now_ms;
+    return passed_ms >= lidar->idle_ms || tmini_parser_has_work(&lidar->decoder.parser);
 }
 
 /* What is due, of a poll that has looked at the line. */
@@ -422,9 +422,8 @@ TMINI_NOINLINE static tmini_event_t work(tmini_t *lidar)
     if (lidar->monitor.faults != faults) {
         raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
     }
-    const tmini_event_t event = take_event(lidar);
-    if (event != TMINI_EVENT_NONE) {
-        return event;
+    if (lidar->pending != 0) {
+        return take_event(lidar);
     }
     if (!is_done) {
         return TMINI_EVENT_MORE;
@@ -438,14 +437,14 @@ tmini_event_t tmini_poll(tmini_t *lidar)
     if (lidar == NULL) {
         return TMINI_EVENT_NONE;
     }
-    if (lidar->link.port == NULL) {
+    if (lidar->is_settled) {
+        if (!has_news(lidar)) {
+            return TMINI_EVENT_NONE;
+        }
+    } else if (lidar->link.port == NULL) {
         return take_event(lidar); /* Not set up. */
     }
-    if (!lidar->is_settled) {
-        look(lidar);
-    } else if (!has_news(lidar)) {
-        return TMINI_EVENT_NONE;
-    }
+    look(lidar);
     lidar->is_settled = false;
     return work(lidar);
 }

@@ -340,7 +340,8 @@ void test_a_lidar_that_streams_after_a_query_is_stopped_too(void)
 /* ---- Silence ---- */
 
 /* A clock that takes so long to read that bytes come meanwhile: with the first reading of a poll,
- * which looks whether there is news, or with the second. */
+ * which looks whether there is news, or with the second. A poll looks 10 ms after the last look, or
+ * earlier. */
 static unsigned readings_left;
 static void (*feed_meanwhile)(void);
 
@@ -365,7 +366,7 @@ static void polls_with_bytes_at(unsigned reading)
 {
     readings_left = reading;
     feed_meanwhile = feed_half_a_health_reply;
-    rig.now_ms += 1;
+    rig.now_ms += 10;
     rig.port.now_ms = slow_clock;
     polls_to(TMINI_EVENT_NONE);
     rig.port.now_ms = port_now_ms;
@@ -410,13 +411,39 @@ void test_a_reply_that_comes_while_the_clock_is_read_leaves_the_lidar_idle(void)
     polls_to(TMINI_EVENT_NONE);
     readings_left = 2;
     feed_meanwhile = feed_health_reply;
-    rig.now_ms += 1;
+    rig.now_ms += 10;
     rig.port.now_ms = slow_clock;
     polls_to(TMINI_EVENT_HEALTH);
     rig.port.now_ms = port_now_ms;
     rig.now_ms += 1;
     polls_to(TMINI_EVENT_NONE);
     is_in(TMINI_STATE_IDLE);
+}
+
+/* One reading to see whether there is news, one more to look at the line. */
+static void reads_the_clock(unsigned times, uint32_t later_ms)
+{
+    readings_left = 0;
+    rig.now_ms += later_ms;
+    rig.port.now_ms = slow_clock;
+    polls_to(TMINI_EVENT_NONE);
+    rig.port.now_ms = port_now_ms;
+    TEST_ASSERT_EQUAL_UINT(times, 0 - readings_left);
+}
+
+void test_bytes_that_complete_nothing_are_looked_at_every_10_ms(void)
+{
+    static const uint8_t begin[] = {0xAA, 0x55, 0x00, 0x28};
+
+    rig_go_scanning();
+    rig_feed(begin, sizeof begin);
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_byte(0x01);
+    reads_the_clock(1, 9);
+    reads_the_clock(2, 1);
+    rig_feed_byte(0x01);
+    reads_the_clock(1, 9);
+    reads_the_clock(2, 1);
 }
 
 static void line_is_not_quiet_with_bytes_at(unsigned reading)
@@ -645,6 +672,7 @@ static uint32_t clock_that_goes_on(void *context)
     return rig.now_ms;
 }
 
+/* Of its second reading, with which it looks at the line. */
 void test_a_packet_has_the_time_of_the_poll_however_long_that_takes(void)
 {
     rig_go_scanning();
@@ -654,7 +682,7 @@ void test_a_packet_has_the_time_of_the_poll_however_long_that_takes(void)
     rig_feed_start_packet(800);
     rig.port.now_ms = clock_that_goes_on;
     polls_to(TMINI_EVENT_SCAN);
-    TEST_ASSERT_EQUAL_UINT32(5171, tmini_scan(&rig.lidar)->end_ms);
+    TEST_ASSERT_EQUAL_UINT32(5176, tmini_scan(&rig.lidar)->end_ms);
 }
 
 void test_a_scan_is_valid_until_the_next_poll_whatever_is_fed(void)

@@ -483,10 +483,9 @@ struct tmini {
     bool is_listen_only;
     tmini_recovery_t recovery;
     uint16_t wanted_chz; /* 0: any. */
-    uint16_t idle_ms;
+    uint16_t idle_ms;    /* From the last look at the line on; at least 1. */
     tmini_command_t command;
     tmini_monitor_t monitor;
-    uint32_t settled_ms;
     uint32_t scans;
     tmini_link_t link;
     tmini_line_t line;
