@@ -144,7 +144,7 @@ void test_a_recording_cut_anywhere_is_re_examined_to_its_last_byte(void)
 
 /* The last header claims 80 samples, of which but a few come: what it swallowed is looked at
  * again. */
-void test_a_packet_behind_a_false_header_at_the_end_is_found(void)
+void test_a_packet_after_a_false_header_at_the_end_is_found(void)
 {
     static const uint8_t header[10] = {0xAA, 0x55, 0, 80, 1, 0, 1, 0, 0, 0};
     load("manual-packet.bin");
@@ -293,7 +293,7 @@ void test_a_small_share_of_damage_is_rounded_but_never_to_nothing(void)
     expect_summary(", 0 stray bytes between packets\n");
 }
 
-void test_a_frequency_that_was_not_told_is_unknown(void)
+void test_a_frequency_that_was_not_reported_is_unknown(void)
 {
     make_one_scan(1);
     summarise(program_path("one.bin"));
@@ -329,7 +329,7 @@ void test_a_missing_file_is_named(void)
                    (const char *const[]){"plot", "nowhere.bin", "-o", "x.svg", NULL});
 }
 
-void test_an_empty_file_is_told_from_one_that_is_no_recording(void)
+void test_an_empty_file_and_one_that_is_no_recording_have_different_messages(void)
 {
     program_write_file(program_path("empty"), "", 0);
     expect_failure(1, "is empty", (const char *const[]){"decode", program_path("empty"), NULL});
@@ -516,7 +516,7 @@ void test_a_mistyped_word_is_answered_with_the_one_that_was_meant(void)
     TEST_ASSERT_EQUAL_INT(0, program_tmini((const char *const[]){"version", NULL}));
 }
 
-void test_an_unknown_command_is_told_which_there_are(void)
+void test_an_unknown_command_is_answered_by_the_list_of_commands(void)
 {
     TEST_ASSERT_EQUAL_INT(2, program_tmini((const char *const[]){"fly", NULL}));
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "there is no command \"fly\""));

@@ -219,7 +219,7 @@ void test_health_of_a_lidar_that_does_not_turn(void)
 }
 
 /* `tmini scan && drive` must not drive. */
-void test_a_covered_window_is_told_while_scanning_and_is_a_failure(void)
+void test_a_covered_window_is_reported_while_scanning_and_is_a_failure(void)
 {
     port = program_start_lidar(WORDS("--covered"));
     TEST_ASSERT_EQUAL_INT(1, program_tmini(WORDS("scan", "-p", port, "-n", "5")));
@@ -384,7 +384,7 @@ void test_with_closed_output_nothing_goes_to_the_lidar(void)
     TEST_ASSERT_EQUAL_UINT(0, count_of(program_read_file(0, log, NULL), "unknown"));
 }
 
-void test_a_lidar_can_be_behind_a_socket(void)
+void test_a_lidar_can_be_reached_through_a_socket(void)
 {
     port = program_start_lidar(WORDS("--tcp", "0"));
     TEST_ASSERT_EQUAL_STRING_LEN("tcp:127.0.0.1:", port, 14);
@@ -404,7 +404,7 @@ void test_a_socket_that_is_closed_is_told(void)
     expect_failure(1, "Connection refused", WORDS("info", "-p", port));
 }
 
-void test_an_address_that_is_none_is_told(void)
+void test_an_invalid_address_is_reported(void)
 {
     expect_failure(1, "tcp:HOST:PORT", WORDS("info", "-p", "tcp:localhost"));
     expect_failure(1, "tcp:HOST:PORT", WORDS("info", "-p", "tcp:"));
@@ -559,7 +559,7 @@ static int run_against_a_stubborn_lidar(const char *command, const char *option)
 }
 
 /* On a busy computer the moment may be missed. */
-void test_a_lidar_that_scans_although_it_was_stopped_is_told_and_stopped_again(void)
+void test_a_lidar_that_scans_although_it_was_stopped_is_reported_and_stopped_again(void)
 {
     bool is_told = false;
     for (int i = 0; i < 5 && !is_told; i++) {
@@ -570,7 +570,7 @@ void test_a_lidar_that_scans_although_it_was_stopped_is_told_and_stopped_again(v
     TEST_ASSERT_TRUE(is_told);
 }
 
-void test_check_tells_of_a_lidar_that_scans_although_it_was_stopped(void)
+void test_check_reports_a_lidar_that_scans_although_it_was_stopped(void)
 {
     bool is_told = false;
     for (int i = 0; i < 5 && !is_told; i++) {
@@ -728,7 +728,7 @@ void test_what_is_masked_is_no_missing_range(void)
     TEST_ASSERT_NOT_NULL(strstr(ranges, " deg, behind right\n"));
 }
 
-void test_a_mounting_that_is_none_is_told(void)
+void test_an_invalid_mounting_is_reported(void)
 {
     expect_failure(2, "\"a:1\" is not FROM:TO", WORDS("scan", "-p", "x", "--mask", "a:1"));
     expect_failure(2, "\"1:\" is not FROM:TO", WORDS("scan", "-p", "x", "--mask", "1:"));

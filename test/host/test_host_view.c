@@ -170,7 +170,7 @@ void test_points_are_where_they_should_be(void)
     TEST_ASSERT_EQUAL_HEX32(0x2801, vt.cells[12][5]);  /* left: dot 10, 48 */
 }
 
-void test_the_panel_says_what_is_seen(void)
+void test_the_panel_reports_what_is_seen(void)
 {
     begin(80, 24, WORDS("view", cross_recording()));
     wait_for("end of the recording");
@@ -488,7 +488,7 @@ void test_a_small_terminal_has_the_picture_the_state_and_the_way_out(void)
 /* ------------------------------------------------------------------------ what is not perfect */
 
 /* Of `decode` and `plot`, but a terminal is needed to see it. */
-void test_who_waits_for_a_long_recording_is_told_how_far_it_is(void)
+void test_reading_a_long_recording_shows_its_progress(void)
 {
     (void)setenv("TOOL", TMINI, 1);
     vt_init(&vt, 80, 24);
@@ -595,7 +595,7 @@ void test_without_a_terminal_there_is_no_view(void)
     TEST_ASSERT_EQUAL_STRING("", program_output);
 }
 
-void test_a_file_that_is_no_recording_is_told_at_once(void)
+void test_a_file_that_is_no_recording_is_reported_at_once(void)
 {
     begin(80, 24, WORDS("view", RECORDINGS "README.md"));
     expect_end(1);

@@ -142,7 +142,7 @@ void test_a_fault_that_stays_stops_the_robot_although_ranges_come(void)
     expect_to_stand("faults: LD", WORDS("--health", "0x10"));
 }
 
-void test_a_lidar_that_does_not_answer_is_told_and_started_again(void)
+void test_a_lidar_that_does_not_answer_is_reported_and_started_again(void)
 {
     const char *const port = program_start_talker(NULL, 0);
     const pid_t program = program_start(OBSTACLE_STOP, WORDS(port));

@@ -235,7 +235,7 @@ void test_a_lidar_like_the_one_surveyed_gives_the_same_report(void)
     }
 }
 
-void test_a_report_that_is_none_is_refused(void)
+void test_a_file_that_is_no_report_is_refused(void)
 {
     options_t options = documented();
     FILE *const file = fopen("like.txt", "w");

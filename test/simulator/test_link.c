@@ -339,7 +339,7 @@ void test_a_packet_cut_by_a_reboot_is_reported_as_hit(void)
     TEST_ASSERT_EQUAL_size_t(fate_count - 1u, intact_packets());
 }
 
-void test_a_packet_cut_behind_the_wires_back_is_reported_as_hit(void)
+void test_a_packet_cut_without_the_wires_knowledge_is_reported_as_hit(void)
 {
     scan_with(SIM_LINK_UNPLUG, 0, 3);
     run_ms(1);

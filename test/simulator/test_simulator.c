@@ -239,7 +239,7 @@ void test_a_reply_comes_after_the_latency_at_the_lines_speed(void)
     TEST_ASSERT_EQUAL_size_t(10, size);
 }
 
-void test_one_reply_can_be_delayed_and_the_next_one_waits_behind_it(void)
+void test_one_reply_can_be_delayed_and_the_next_one_waits_for_it(void)
 {
     sim_delay_next_reply(&sim, 3000);
     send(0x92);
@@ -351,7 +351,7 @@ void test_packets_are_full_but_for_the_start_and_the_last(void)
     }
 }
 
-void test_lone_point_packets_end_a_hair_before_they_begin(void)
+void test_lone_point_packets_end_slightly_before_they_begin(void)
 {
     unsigned lone = 0;
 

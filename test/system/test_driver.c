@@ -367,7 +367,7 @@ void test_a_lost_reply_to_the_start_does_not_keep_scans_away(void)
     check_world(&world);
 }
 
-void test_a_tail_of_300_ms_behind_a_stop_is_waited_out(void)
+void test_a_tail_of_300_ms_after_a_stop_is_waited_for(void)
 {
     config.sim.stop_tail_ms = 300;
     begin();

@@ -617,7 +617,7 @@ void test_the_widest_packet_at_the_end_of_a_turn_is_a_scan_of_its_own(void)
     TEST_ASSERT_EQUAL_UINT16(5, builder.scan.count);
 }
 
-void test_each_packet_behind_a_gap_of_unknown_size_is_a_scan_of_its_own(void)
+void test_each_packet_after_a_gap_of_unknown_size_is_a_scan_of_its_own(void)
 {
     (void)start(0);
     for (uint32_t turned = 0; turned < 3; turned++) {

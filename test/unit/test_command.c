@@ -140,7 +140,7 @@ void test_bytes_that_were_lost_while_idle_are_heard_as_well(void)
     was_sent();
 }
 
-void test_packets_of_the_tail_behind_a_stop_are_no_scan(void)
+void test_packets_of_the_tail_after_a_stop_are_no_scan(void)
 {
     rig_go_scanning();
     sends(STOP);
@@ -210,7 +210,7 @@ void test_a_byte_that_no_poll_has_seen_yet_counts_as_heard(void)
     begins(tmini_request_health(&rig.lidar));
 }
 
-void test_bytes_behind_a_reply_make_the_state_unknown(void)
+void test_bytes_after_a_reply_make_the_state_unknown(void)
 {
     rig_go_idle();
     sends(GET_HEALTH);
@@ -315,7 +315,7 @@ void test_a_packet_means_scanning_even_if_the_start_reply_was_lost(void)
     is_in(TMINI_STATE_SCANNING);
 }
 
-void test_the_start_reply_may_come_behind_the_first_packet(void)
+void test_the_start_reply_may_come_after_the_first_packet(void)
 {
     rig_go_starting();
     rig_feed_point_packet(1000);
@@ -743,7 +743,7 @@ void test_less_than_half_a_fine_step_short_is_stepped(void)
     arrives_at(654);
 }
 
-void test_a_step_is_sent_only_when_the_line_is_quiet_behind_the_reply(void)
+void test_a_step_is_sent_only_when_the_line_is_quiet_after_the_reply(void)
 {
     begins_to_set(700, 600);
     passes(40);
@@ -1073,7 +1073,7 @@ void test_a_port_that_fails_once_fails_no_command(void)
 }
 
 /* As in a main loop that polls until there is nothing left, and asks again at once. */
-void test_asking_again_whenever_a_command_fails_keeps_no_loop_for_ever(void)
+void test_a_loop_that_repeats_every_failed_command_ends(void)
 {
     sends_both_taking(STOP, -1);
     begins(tmini_request_info(&rig.lidar));
@@ -1148,7 +1148,7 @@ void test_the_first_byte_serves_for_the_next_command_also_when_the_second_failed
     begins(tmini_request_info(&rig.lidar));
 }
 
-void test_a_stop_that_fails_behind_the_command_it_aborts_is_an_end_of_its_own(void)
+void test_a_stop_that_fails_is_reported_apart_from_the_command_it_aborts(void)
 {
     rig_go_idle();
     sends(GET_INFO);

@@ -93,7 +93,7 @@ void test_candidates_without_a_packet_are_bounded_too(void)
 
 /* What is skipped after candidates counts with them: 99 of one byte, 15 each, and for the last
  * one and what follows it are left 51. */
-void test_garbage_behind_candidates_is_bounded_with_them(void)
+void test_garbage_after_candidates_is_bounded_with_them(void)
 {
     open_parser();
     for (size_t i = 0; i < sizeof memory; i++) {
@@ -170,7 +170,7 @@ void test_a_poll_ends_when_its_effort_is_used_up_to_the_last(void)
 }
 
 /* Ten packets of 4 samples cost 88 each; for the garbage after them 656 are left. */
-void test_packets_and_the_garbage_behind_them_share_a_polls_effort(void)
+void test_packets_and_the_garbage_after_them_share_a_polls_effort(void)
 {
     open_driver();
     for (unsigned i = 0; i < 10; i++) {

@@ -122,7 +122,7 @@ static void stop_in_mid_packet(bool stale_reply)
     TEST_ASSERT_TRUE((pass_ms(60) & BIT(TMINI_EVENT_STOPPED)) != 0);
 }
 
-void test_a_stale_reply_behind_a_packet_cut_off_by_the_stop_is_no_answer(void)
+void test_a_stale_reply_after_a_packet_cut_off_by_the_stop_is_no_answer(void)
 {
     unsigned events = 0;
 

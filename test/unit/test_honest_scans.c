@@ -296,7 +296,7 @@ void test_an_arc_between_two_start_packets_is_not_complete(void)
 
 /* The start packet is lost, and what comes next is a point packet of one sample (section 9.6): it
  * lies less than two degrees beyond the old turn's end. */
-void test_a_lone_packet_behind_a_lost_start_packet_is_not_of_the_old_turn(void)
+void test_a_lone_packet_after_a_lost_start_packet_is_not_of_the_old_turn(void)
 {
     pass_whole_turn(100);
     pass_arc(0x00, 1, TURNS_STEP_Q6);

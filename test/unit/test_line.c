@@ -60,7 +60,7 @@ static bool is_doubted_after(uint32_t silent_ms)
 
 /* ---- Half a turn ---- */
 
-void test_half_a_turn_is_none_and_a_millisecond_more_is(void)
+void test_a_silence_of_half_a_turn_is_no_pause_and_a_millisecond_more_is_one(void)
 {
     TEST_ASSERT_FALSE(is_doubted_after(50)); /* 10 Hz. */
     TEST_ASSERT_TRUE(is_doubted_after(51));
@@ -163,7 +163,7 @@ void test_bytes_are_late_by_a_second_at_most(void)
     TEST_ASSERT_EQUAL_UINT16(0, lidar.line.late_ms);
 }
 
-void test_as_long_as_others_are_left_what_they_are_late_by_stands(void)
+void test_a_delay_is_kept_until_all_bytes_that_it_concerns_are_read(void)
 {
     (void)look_after(20, 1);
     lidar.is_settled = false;

@@ -120,7 +120,7 @@ void test_the_reserved_bit_is_no_fault(void)
     faults_read(0x81, "sensor");
 }
 
-void test_a_text_that_does_not_fit_is_cut_off_and_nothing_is_written_behind_it(void)
+void test_a_text_that_does_not_fit_is_cut_off_and_nothing_is_written_after_it(void)
 {
     char text[8] = "1234567";
     (void)tmini_faults_text(0x22, text, 6);

@@ -192,7 +192,7 @@ void test_points_can_be_read_one_at_a_time(void)
     }
 }
 
-void test_a_point_that_is_read_alone_leaves_what_lies_behind_it(void)
+void test_a_point_that_is_read_alone_leaves_memory_after_it(void)
 {
     open_packet(manual_packet, sizeof manual_packet);
     points[1].angle_q6 = 23040; /* As one that is to be reduced. */
@@ -288,7 +288,7 @@ void test_the_ambient_filter_zeroes_the_distance_where_the_flag_is_3(void)
     expect_filtered(TMINI_FILTER_AMBIENT, 1014, 0);
 }
 
-void test_the_first_point_is_filtered_too_and_what_lies_behind_the_last_is_not(void)
+void test_the_first_point_is_filtered_and_memory_after_the_last_is_not(void)
 {
     const encode_sample_t sample = {500, 9, 2};
     const encode_packet_t packet = {0x79, 1, 10, 10, &sample};

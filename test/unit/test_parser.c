@@ -301,7 +301,7 @@ void test_garbage_is_skipped_as_soon_as_it_cannot_begin_a_packet(void)
     expect_pending(0);
 }
 
-void test_garbage_behind_a_packet_is_skipped_as_soon_too(void)
+void test_garbage_after_a_packet_is_skipped_in_the_same_poll(void)
 {
     feed(start_packet, 13);
     expect_packet(1, 0);
@@ -320,7 +320,7 @@ void test_aa_before_a_packet_does_not_hide_it(void)
     expect_skipped(2);
 }
 
-void test_the_gap_before_a_packet_is_told_with_its_last_byte(void)
+void test_the_gap_before_a_packet_is_reported_with_its_last_byte(void)
 {
     feed(start_packet, 13);
     feed_byte(0x11);
@@ -787,7 +787,7 @@ static void expect_reply(size_t offset, const uint8_t *reply, size_t content)
     expect_skipped((uint32_t)offset);
 }
 
-void test_an_awaited_start_reply_is_found_and_the_packets_behind_it(void)
+void test_an_awaited_start_reply_is_found_and_the_packets_after_it(void)
 {
     receiver_await(&receiver, 1, 0x81, 0);
     feed(start_reply, 7);
@@ -830,7 +830,7 @@ void test_a_reply_is_delivered_with_its_last_byte_and_not_before(void)
     expect_pending(0);
 }
 
-void test_a_reply_is_found_behind_garbage_and_half_a_sign(void)
+void test_a_reply_is_found_after_garbage_and_half_a_start_sign(void)
 {
     receiver_await(&receiver, 0, 0x06, 3);
     feed_byte(0x5A);
@@ -1188,7 +1188,7 @@ void test_refused_bytes_leave_a_gap(void)
     TEST_ASSERT_EQUAL_UINT16(0, receiver.packet.gap);
 }
 
-void test_refused_bytes_leave_a_gap_behind_the_packets_that_came_before_them(void)
+void test_refused_bytes_leave_a_gap_after_the_packets_that_came_before_them(void)
 {
     receiver_open(&receiver, memory, 256, 82);
     (void)stream_add_packet(&stream, 0, 82, 0, 5000); /* Fills the ring. */
@@ -1343,7 +1343,7 @@ static void lap_was_perhaps_missed(void)
     receiver.received += 512;
 }
 
-void test_behind_a_lap_that_was_none_nothing_is_found_twice(void)
+void test_after_a_lap_reported_by_mistake_nothing_is_found_twice(void)
 {
     open_dma();
     feed(start_packet, 13);
@@ -1379,7 +1379,7 @@ void test_a_packet_that_dma_overwrites_while_it_is_read_is_not_intact(void)
     expect_skipped(190);
 }
 
-void test_an_overrun_behind_a_packet_is_a_gap_before_the_next_one(void)
+void test_an_overrun_after_a_packet_is_a_gap_before_the_next_one(void)
 {
     open_dma();
     feed(manual_packet, 67);

@@ -94,7 +94,7 @@ static void two_packets_come_of_which_doubtful_are(unsigned doubtful)
 /* ---- How long a pause may be ---- */
 
 /* 44 bytes explain 3 ms. */
-void test_a_pause_of_41_ms_and_what_the_bytes_explain_is_none(void)
+void test_41_ms_more_than_the_bytes_explain_are_no_pause(void)
 {
     for (unsigned i = 0; i < 3; i++) {
         nothing_comes_for(44);
@@ -179,7 +179,7 @@ void test_without_a_limit_no_pause_is_one(void)
 }
 
 /* Of the second one only the first byte, but that is enough. */
-void test_a_packet_is_doubtful_if_it_begins_among_the_bytes_behind_a_pause(void)
+void test_a_packet_is_doubtful_if_it_begins_among_the_bytes_after_a_pause(void)
 {
     static const encode_sample_t samples[4] = {{1000, 50, 0}};
     const encode_packet_t packet = {0, 4, 640, 736, samples};
@@ -215,7 +215,7 @@ void test_before_a_lidar_scans_the_pause_was_before_the_bytes_if_the_line_was_wa
 
 /* ---- Bytes that a layer below has held back ---- */
 
-void test_after_a_pause_between_polls_the_first_packet_behind_is_doubtful_too(void)
+void test_after_a_pause_between_polls_the_first_packet_after_it_is_doubtful_too(void)
 {
     rig.now_ms += 50;
     feed_packets(2, 4);
@@ -337,7 +337,7 @@ static void go_round_unseen(unsigned laps)
     doubtful_are_the_first(1, 2);
 }
 
-void test_after_laps_of_dma_what_comes_at_once_is_doubtful_and_the_next(void)
+void test_after_laps_of_dma_the_bytes_at_hand_and_the_next_packet_are_doubtful(void)
 {
     go_round_unseen(1);
     go_round_unseen(2);

@@ -39,7 +39,7 @@ static void resample(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ranges_of_scan(&scan, ranges_mm, intensities, BINS));
 }
 
-void test_the_bins_go_counter_clockwise_from_behind(void)
+void test_the_bins_go_counter_clockwise_from_the_back(void)
 {
     TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(180 * DEGREE, 360));
     TEST_ASSERT_EQUAL_size_t(90, tmini_ranges_bin(90 * DEGREE, 360));   /* right, -90 in ROS */
@@ -69,7 +69,7 @@ void test_one_bin_holds_everything(void)
     TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(11521, 1));
 }
 
-void test_so_many_bins_as_fit_in_16_bits_do_not_overflow(void)
+void test_65535_bins_do_not_overflow(void)
 {
     TEST_ASSERT_EQUAL_size_t(32768, tmini_ranges_bin(0, 65535));     /* 32767.5 */
     TEST_ASSERT_EQUAL_size_t(65532, tmini_ranges_bin(11521, 65535)); /* 65532.16 */
@@ -149,7 +149,7 @@ void test_65535_ranges_are_given(void)
 #endif
 }
 
-void test_a_scan_gives_all_its_points_and_none_behind_them(void)
+void test_a_scan_gives_all_its_points_and_none_after_them(void)
 {
     static const uint16_t expected_mm[BINS] = {0, 0, 700, 0, 900, 0, 0, 0};
     add(0, 900, 9);

@@ -210,7 +210,7 @@ void test_a_loss_after_a_whole_turn_begins_at_the_ladders_foot(void)
 }
 
 /* A weak supply: it starts, and dies of the motor's current, again and again. */
-void test_an_attempt_that_brings_no_whole_turn_is_none_that_succeeds(void)
+void test_an_attempt_that_brings_no_whole_turn_has_not_succeeded(void)
 {
     rig_go_scanning();
     passes(1000);
@@ -434,7 +434,7 @@ void test_packets_before_the_reboot_of_the_ladder_are_not_yet_a_recovery(void)
     finds_quiet_and_sends(REBOOT);
 }
 
-void test_a_recovered_turn_does_not_continue_the_one_before_the_loss(void)
+void test_after_a_recovery_no_scan_continues_one_from_before_the_loss(void)
 {
     rig_go_scanning();
     rig_feed_start_packet(1000);

@@ -512,7 +512,7 @@ void test_a_position_equal_to_the_size_means_0(void)
     expect_unread("abcdefghijklmnop");
 }
 
-void test_a_position_behind_the_last_one_has_wrapped_around_the_memorys_end(void)
+void test_a_position_before_the_last_one_has_wrapped_around_the_memorys_end(void)
 {
     use_dma();
     dma_writes(0, 8, 0);

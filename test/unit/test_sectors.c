@@ -96,7 +96,7 @@ void test_three_sectors_are_120_degrees_wide(void)
     TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 300 * DEGREE));
 }
 
-void test_so_many_sectors_as_fit_in_16_bits_do_not_overflow(void)
+void test_65535_sectors_do_not_overflow(void)
 {
     sectors.count = 65535;
     TEST_ASSERT_EQUAL_size_t(32768, tmini_sectors_at(&sectors, 11520)); /* 32767.5 */

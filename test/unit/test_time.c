@@ -116,21 +116,21 @@ void test_a_points_time_goes_with_its_angle(void)
     is_at(3, 75000);
 }
 
-void test_an_early_point_a_hair_behind_the_first_is_not_a_turn_later(void)
+void test_an_early_point_just_before_the_first_is_not_a_turn_later(void)
 {
     has_angles(10, 8, 180 * DEGREE, 300 * DEGREE);
     is_at(1, 0);
 }
 
 /* 6 / 23040 of 100 ms are 26 us. */
-void test_a_late_point_a_hair_beyond_the_circle_is_a_turn_later(void)
+void test_a_late_point_just_beyond_the_circle_is_a_turn_later(void)
 {
     has_angles(10, 90 * DEGREE, 180 * DEGREE, 16);
     is_at(3, 100026);
 }
 
 /* The encoder jitters by less than 4 degrees: 22784 of 23040 of 100 ms are 98,888 us. */
-void test_an_early_point_less_than_4_degrees_behind_the_first_is_not_a_turn_later(void)
+void test_an_early_point_less_than_4_degrees_before_the_first_is_not_a_turn_later(void)
 {
     has_angles(0, 356 * DEGREE, 357 * DEGREE, 358 * DEGREE);
     is_at(1, 98888);

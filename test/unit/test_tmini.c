@@ -286,7 +286,7 @@ void test_bytes_that_find_the_buffer_full_are_counted(void)
     TEST_ASSERT_EQUAL_UINT32(RIG_RX_SIZE, counters().bytes_skipped);
 }
 
-void test_those_of_a_second_overflow_are_counted_with_the_first_ones(void)
+void test_bytes_of_a_second_overflow_are_counted_with_the_first_ones(void)
 {
     static const uint8_t zeros[RIG_RX_SIZE] = {0};
 
@@ -562,7 +562,7 @@ void test_silence_gives_a_candidate_up_so_that_the_packet_it_hides_is_delivered(
     TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
 }
 
-void test_silence_gives_up_one_candidate_behind_the_other(void)
+void test_silence_gives_up_one_candidate_after_the_other(void)
 {
     rig_go_scanning();
     rig_feed_start_packet(1000);
@@ -728,7 +728,7 @@ void test_a_scan_is_delivered_after_the_fault_that_came_with_it(void)
     polls_to(TMINI_EVENT_NONE);
 }
 
-void test_a_scan_that_waits_behind_a_fault_is_no_loss_however_late_the_next_poll(void)
+void test_a_scan_that_waits_after_a_fault_is_no_loss_however_late_the_next_poll(void)
 {
     rig_go_scanning();
     for (unsigned i = 0; i < 2; i++) {
@@ -775,7 +775,7 @@ void test_the_filter_of_the_configuration_is_applied(void)
     TEST_ASSERT_EQUAL_UINT16(2000, tmini_scan(&rig.lidar)->points[2].distance_mm);
 }
 
-void test_a_stop_does_not_take_back_a_scan_that_waits_behind_a_fault(void)
+void test_a_stop_does_not_take_back_a_scan_that_waits_after_a_fault(void)
 {
     rig_go_scanning();
     for (unsigned i = 0; i < 2; i++) {
@@ -945,7 +945,7 @@ void test_ranges_in_two_incomplete_turns_clear_a_data_fault(void)
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
 
-void test_what_the_lidar_tells_of_itself_while_scanning_is_known_once_a_turn_was_trusted(void)
+void test_ct_information_is_known_once_a_turn_was_trusted(void)
 {
     tmini_ct_info_t turn;
 

@@ -33,7 +33,7 @@ static void assert_logged(const char *text)
 }
 
 /* One program, one story: it runs for ever. */
-void test_it_tells_who_the_lidar_is_and_stops_the_robot_only_while_it_must(void)
+void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
 {
     virtual_idf_begin(NULL);
     xTaskCreatePinnedToCore(run_program, "main", 3584, NULL, 1, NULL, 0);

@@ -138,7 +138,7 @@ static void assert_gap_behind(size_t count)
 }
 
 /* The FIFO's bytes, the overflow, and ten milliseconds of bytes after it. */
-void test_an_overflow_is_told_of_where_it_was_however_late_the_events_are_taken(void)
+void test_an_overflow_is_reported_in_its_place_however_late_the_events_are_taken(void)
 {
     start_by_hand();
     virtual_idf_hold_interrupts(20000);
@@ -150,7 +150,7 @@ void test_an_overflow_is_told_of_where_it_was_however_late_the_events_are_taken(
 }
 
 /* Each gap costs a poll: however many there are, they are told of as two. */
-void test_of_several_overflows_the_first_is_told_of_where_it_was_and_one_behind_the_others(void)
+void test_of_several_overflows_the_first_is_reported_in_its_place_and_one_after_the_others(void)
 {
     start_by_hand();
     for (unsigned i = 0; i < 3; i++) {
@@ -169,7 +169,7 @@ void test_of_several_overflows_the_first_is_told_of_where_it_was_and_one_behind_
 }
 
 /* The buffer holds 256 bytes at most, and what did not fit was put aside, not lost. */
-void test_with_a_full_buffer_an_overflow_lies_behind_what_was_put_aside(void)
+void test_with_a_full_buffer_an_overflow_is_after_the_bytes_that_were_kept(void)
 {
     wiring.buffer_size = 256;
     start_by_hand();
@@ -206,7 +206,7 @@ void test_when_events_are_lost_no_scan_passes_for_complete(void)
     TEST_ASSERT_TRUE(truth_packets() - counters.packets <= rounds + 2);
 }
 
-void test_an_overflow_whose_event_was_lost_is_told_of_all_the_same(void)
+void test_an_overflow_whose_event_was_lost_is_reported_too(void)
 {
     tmini_esp32_counters_t uart;
     wiring.queue_length = 4;

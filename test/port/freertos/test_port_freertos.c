@@ -195,7 +195,7 @@ void test_an_overrun_of_the_uart_before_the_stream_is_a_gap(void)
 
 /* What the interrupt brings that tells of it: the receiving task is woken at once, and does not
  * first run out of patience. */
-void test_an_overrun_costs_no_more_than_a_fifo_behind_it(void)
+void test_an_overrun_costs_no_more_than_the_fifo_after_it(void)
 {
     receive_by_stream();
     start();

@@ -71,7 +71,7 @@ void test_the_range_limits_are_those_of_the_data_sheet(void)
     TEST_ASSERT_FLOAT_WITHIN(NEAR, 12.0f, message.range_max);
 }
 
-void test_what_lies_ahead_left_behind_and_right_is_there(void)
+void test_points_ahead_left_back_and_right_are_in_their_bins(void)
 {
     add(0, 1000, 1);
     add(90 * DEGREE, 2000, 2); /* Right: the lidar counts clockwise. */

@@ -264,7 +264,7 @@ void dma_channel_cleanup(uint channel)
     chip.channels[channel].config.chain_to = channel;
 }
 
-void pico_model_pass_behind_read(unsigned reads, uint32_t us)
+void pico_model_pass_after_read(unsigned reads, uint32_t us)
 {
     chip.pass_behind = reads;
     chip.pass_us = us;

@@ -40,7 +40,7 @@ void pico_model_pass(uint32_t us);
 void pico_model_pass_held_up(uint32_t us);
 
 /* When DMA's position has been read `reads` times more, time passes before the reader goes on. */
-void pico_model_pass_behind_read(unsigned reads, uint32_t us);
+void pico_model_pass_after_read(unsigned reads, uint32_t us);
 
 /* Time passes at random behind readings of DMA's position: mostly some bytes' worth, at times
  * laps. */

@@ -101,7 +101,7 @@ static void tell_story(void)
 }
 
 /* One program, one story: it runs for ever. */
-void test_it_tells_who_the_lidar_is_and_stops_the_robot_only_while_it_must(void)
+void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
 {
     pico_model_on_sleep(tell_story);
     if (setjmp(end_of_story) == 0) {

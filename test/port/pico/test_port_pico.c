@@ -496,7 +496,7 @@ void test_errors_are_counted_though_dma_does_not_see_them(void)
     TEST_ASSERT_EQUAL_UINT32(0, counted().overruns);
 }
 
-void test_an_overrun_of_the_uart_behind_a_busy_bus_is_noticed(void)
+void test_an_overrun_of_the_uart_on_a_busy_bus_is_noticed(void)
 {
     start();
     assert_true_scans(1, 2);
@@ -562,7 +562,7 @@ void test_a_poll_that_is_held_up_anywhere_in_its_midst_delivers_nothing_wrong(vo
             start();
             assert_true_scans(1, 2);
             stall_bytes(300);
-            pico_model_pass_behind_read(reads, stalls[i] * 76u); /* 76 µs a byte while scanning. */
+            pico_model_pass_after_read(reads, stalls[i] * 76u); /* 76 µs a byte while scanning. */
             (void)scans_until_complete();
             tmini_pico_stop(&port);
             setUp();

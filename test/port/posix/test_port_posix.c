@@ -128,7 +128,7 @@ void test_a_line_without_counters_has_no_errors(void)
     TEST_ASSERT_EQUAL_UINT32(0, counters.parity_errors);
 }
 
-void test_a_lidar_can_be_behind_a_socket(void)
+void test_a_lidar_can_be_reached_through_a_socket(void)
 {
     tmini_info_t info;
     const tmini_config_t config = {
@@ -151,7 +151,7 @@ void test_an_address_where_nobody_listens_is_one_all_the_same(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_start(&port, NULL));
 }
 
-void test_an_address_that_is_none_is_told(void)
+void test_an_invalid_address_is_reported(void)
 {
     static const char *const wrong[] = {"tcp:",
                                         "tcp:host",
@@ -501,7 +501,7 @@ void test_a_pause_of_the_program_costs_no_scan(void)
     TEST_ASSERT_EQUAL_UINT(0, gaps);
 }
 
-void test_reasons_for_not_opening_are_told_apart(void)
+void test_each_reason_for_not_opening_has_its_own_status(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, start(&port, "/dev/nowhere"));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_wait(&port, 0));

@@ -213,7 +213,7 @@ void test_something_near_in_front_stops_the_robot(void)
     TEST_ASSERT_EQUAL_UINT16(250, lidar_ahead_mm());
 }
 
-void test_something_near_behind_does_not(void)
+void test_something_near_at_the_back_does_not(void)
 {
     scan_with(180, 250);
     TEST_ASSERT_TRUE(may_move);

@@ -573,7 +573,7 @@ void test_what_a_lap_has_overwritten_counts_as_lost(void)
 }
 
 /* As when the DMA's interrupt has come into the idle line's: both find the DMA's kind noted. */
-void test_an_event_told_once_is_not_told_again(void)
+void test_an_event_is_reported_once_only(void)
 {
     hal_rig_open_and_start(BY_DMA);
     hal_rig_line_packets(60);

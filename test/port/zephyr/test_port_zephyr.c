@@ -228,7 +228,7 @@ void test_no_packet_is_put_together_across_a_loss(void)
 }
 
 /* Such USARTs hold one byte, and reading it is how their driver clears the error. */
-void test_an_overrun_behind_which_there_is_nothing_to_read_is_a_gap(void)
+void test_an_overrun_without_a_byte_to_read_is_a_gap(void)
 {
     zephyr_model_set_fifo(1);
     zephyr_model_set_clearing_reads_data();
