@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the user wants, and the state it is in; events; the public functions. */
+/* Wishes, the state of the lidar, events, and the public functions. */
 
 #include "tmini/tmini.h"
 
@@ -10,8 +10,9 @@
 #include <string.h>
 
 const tmini_timing_t tmini_timing_default = {
-    .frame_timeout_ms = 100, /* A line at work: 5 ms; but a task or bridge may hold bytes back. */
-    .max_pause_ms = 30,      /* A line at work: a packet every 10 ms. */
+    .frame_timeout_ms = 100, /* A busy line pauses for 5 ms; a task or bridge may hold bytes
+                              * back. */
+    .max_pause_ms = 30,      /* A busy line brings a packet every 10 ms. */
     .quiet_line_ms = 50,
     .reply_timeout_ms = 2000,
     .back_off_max_ms = 4000,
@@ -27,9 +28,9 @@ const tmini_timing_t tmini_timing_default = {
 /* Each event has a bit in tmini_t.pending. */
 typedef char events_fit_their_mask[TMINI_EVENT_MORE <= 16 ? 1 : -1];
 
-/* Processing a frame costs as much as looking at its bytes once again, and 44 bytes more: a
- * packet's samples are read for its points, its time is computed, and its place in the scan
- * found. */
+/* The work for a frame, besides looking at its bytes: as much as looking at them once more, and at
+ * 44 further bytes. A packet's samples become points, and its time and its place in the scan are
+ * computed. */
 #define FRAME_EFFORT 44u
 
 /* The line is looked at this often, also when there is nothing to do: about once per packet. */
@@ -40,13 +41,13 @@ static bool is_set_up(const tmini_t *lidar)
     return lidar != NULL && lidar->link.port != NULL;
 }
 
-/* A command of the user's is under way that ends with an event; a start, too. */
+/* A command of the user is in progress that will end with an event; this includes a start. */
 static bool is_busy(const tmini_t *lidar)
 {
     return lidar->state > TMINI_STATE_IDLE && lidar->state < TMINI_STATE_SCANNING;
 }
 
-/* The driver sends what it takes to scan. */
+/* The driver works towards scanning, or the lidar scans. */
 static bool is_to_scan(const tmini_t *lidar)
 {
     return lidar->state >= TMINI_STATE_STARTING &&
@@ -60,8 +61,8 @@ TMINI_NOINLINE static void raise_event(tmini_t *lidar, tmini_event_t event)
     lidar->pending |= (uint16_t)(1u << event);
 }
 
-/* Of the events that are pending, the first in the order of tmini_event_t, if any. Scan and packet
- * are last: they are valid until parsing goes on. */
+/* Takes the first pending event in the order of tmini_event_t, if there is one. Scan and packet
+ * come last, because they are valid only until parsing continues. */
 TMINI_NOINLINE static tmini_event_t take_event(tmini_t *lidar)
 {
     const uint16_t pending = lidar->pending;
@@ -80,7 +81,7 @@ static void fail(tmini_t *lidar, int status)
     raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
 }
 
-/* What is heard leaves the line not surely quiet. */
+/* After received bytes the line is no longer known to be quiet. */
 TMINI_NOINLINE static void look(tmini_t *lidar)
 {
     if (tmini_line_look(lidar) && lidar->state == TMINI_STATE_IDLE) {
@@ -90,7 +91,7 @@ TMINI_NOINLINE static void look(tmini_t *lidar)
 
 /* ------------------------------------------------------------------------------ wanted to scan */
 
-/* From the foot of the ladder. */
+/* Begins with the first step of the ladder. */
 static void begin_start(tmini_t *lidar, bool is_idle)
 {
     lidar->start_follows = false;
@@ -98,7 +99,7 @@ static void begin_start(tmini_t *lidar, bool is_idle)
     tmini_recovery_start(lidar, is_idle);
 }
 
-/* The same for a lidar that scans, or is about to: so the wanted frequency is set. */
+/* The same for a lidar that scans or is to scan: it is stopped, and the wanted frequency is set. */
 TMINI_NOINLINE static void restart(tmini_t *lidar)
 {
     if (lidar->state != TMINI_STATE_RECOVERING) {
@@ -117,9 +118,9 @@ static void lose(tmini_t *lidar)
     tmini_recovery_begin(lidar);
 }
 
-/* While the lidar is to scan: a rung of the ladder has ended. Until a packet comes, a start ends by
- * failing; a lidar that was lost before has been reported. A frequency that could not be set is
- * reported when scanning begins. */
+/* A step of the ladder has ended, and no packet has come yet. A failed attempt to start is reported
+ * each time; while recovering it is not, because the loss has been reported. A frequency that could
+ * not be set is reported when scanning begins. */
 static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
     const bool is_start = lidar->state == TMINI_STATE_STARTING;
@@ -138,8 +139,8 @@ static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_i
     tmini_recovery_go_on(lidar, operation, result, is_idle);
 }
 
-/* The first packet has come. A start that is no longer needed is not sent, and its reply not
- * awaited (section 2). */
+/* The first packet has come. The start command is no longer sent, and its reply no longer awaited
+ * (section 2). */
 static void begin_scanning(tmini_t *lidar)
 {
     (void)tmini_command_end(lidar, TMINI_ERROR_ABORTED);
@@ -174,8 +175,9 @@ static void end_command(tmini_t *lidar, tmini_event_t operation, int result, boo
     }
 }
 
-/* Acts on the result of what is under way. While scanning, what ends is the time in which a packet
- * should have come. What has been heard after the last reply leaves the line not surely quiet. */
+/* Acts on the result of the current operation. While scanning, the operation is to wait for the
+ * next packet: its end is a loss. If bytes have come after the last reply, the line is not known to
+ * be quiet. */
 static void take_result(tmini_t *lidar, int result)
 {
     const tmini_event_t operation = (tmini_event_t)lidar->command.operation;
@@ -194,24 +196,24 @@ static void take_result(tmini_t *lidar, int result)
     }
 }
 
-/* What a command from the user changes, whichever it is. The end of an earlier one, not polled yet,
- * is not the end of this one. */
+/* The first part of every command from the user. The end of an earlier command that has not been
+ * polled yet is dropped: it must not be taken for the end of this one. */
 TMINI_NOINLINE static void take_over(tmini_t *lidar)
 {
     look(lidar);
     lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
 }
 
-/* The first bytes leave at once, as far as the port takes them. If it refuses, it is asked once
- * more when time has passed, and until then there is nothing to do: a loop that polls until then,
- * and asks again whenever a command has failed, ends. */
+/* Offers the first bytes to the port at once. If it refuses, it is asked again when time has
+ * passed, and until then a poll has nothing to do. So a loop that polls until TMINI_EVENT_NONE
+ * ends, even if it repeats a command whenever that has failed. */
 static void send_first(tmini_t *lidar)
 {
     lidar->idle_ms = 1;
     lidar->is_settled = tmini_command_poll(lidar) != TMINI_UNDER_WAY && lidar->pending == 0;
 }
 
-/* A lidar that is known to be idle needs no stop before. */
+/* A lidar that is known to be idle is not stopped first. */
 static void begin_command(tmini_t *lidar, tmini_event_t operation)
 {
     const bool is_idle = lidar->state == TMINI_STATE_IDLE;
@@ -244,7 +246,7 @@ static tmini_status_t request_command(tmini_t *lidar, tmini_event_t operation)
     return TMINI_OK;
 }
 
-/* Not inlined, so that its content does not lie on the stack below a packet's points. */
+/* Not inlined: while packets are processed, its buffer must not take stack. */
 TMINI_NOINLINE static void take_reply(tmini_t *lidar)
 {
     uint8_t content[TMINI_INFO_SIZE];
@@ -252,7 +254,8 @@ TMINI_NOINLINE static void take_reply(tmini_t *lidar)
     const tmini_reply_header_t *const header = &parser->awaited;
     look(lidar); /* What came during this poll has not been noted yet. */
     if (!tmini_frame_content(tmini_parser_frame(parser), content, header->length)) {
-        (void)tmini_parser_await(parser, header); /* DMA was faster: it has not come. */
+        (void)tmini_parser_await(parser, header); /* DMA has overwritten the reply: it is still
+                                                   * awaited. */
         return;
     }
     take_result(lidar, tmini_command_reply(lidar, content));
@@ -266,16 +269,16 @@ static void expect_packet(tmini_t *lidar)
     tmini_command_wait(lidar, TMINI_DATA_TIMEOUT_MS);
 }
 
-/* A lidar that was left idle scans: the stop was lost on the wire. Nobody polls for its scans, so
- * it would wear out its motor unnoticed. */
+/* The lidar scans although it was stopped: the stop was lost on the wire. The program expects no
+ * scans, so the motor would wear out unnoticed. */
 static void stop_again(tmini_t *lidar)
 {
     raise_event(lidar, TMINI_EVENT_UNWANTED_SCANNING);
     begin_command(lidar, TMINI_EVENT_STOPPED);
 }
 
-/* A packet has come: does it mean that the lidar has begun to scan, or scans again? Not so the tail
- * after a stop (section 9.10), nor what comes while the frequency is being set; in other phases the
+/* Decides whether a packet means that the lidar scans now. It does not in the tail after a stop
+ * (section 9.10), nor while the frequency is being set. It does in all other phases, because the
  * reply to the start may have been lost. */
 static void note_scanning(tmini_t *lidar)
 {
@@ -294,7 +297,7 @@ static void monitor_packet(tmini_t *lidar)
     const tmini_turn_t turn =
         tmini_monitor_packet(&lidar->monitor, &lidar->decoder, lidar->wanted_chz);
     if (turn == TMINI_TURN_WHOLE) {
-        tmini_recovery_forget(lidar); /* It has truly recovered, if it was lost. */
+        tmini_recovery_forget(lidar); /* If it was lost, it has recovered now. */
     } else if (turn == TMINI_TURN_ENDLESS) {
         lose(lidar);
     } else if (turn == TMINI_TURN_OFF && !lidar->is_recovery_off) {
@@ -302,8 +305,8 @@ static void monitor_packet(tmini_t *lidar)
     }
 }
 
-/* The scan is copied, so that the builder can go on, and its points change places with the spare
- * ones, if there are any. */
+/* Copies the scan, so that the builder can continue. If there is a spare buffer, the builder
+ * continues in that one. */
 static void deliver_scan(tmini_t *lidar)
 {
     lidar->scan = lidar->decoder.builder.scan;
@@ -318,8 +321,8 @@ static void deliver_scan(tmini_t *lidar)
     raise_event(lidar, TMINI_EVENT_SCAN);
 }
 
-/* When the packet came: before the bytes after it. Those that came during this poll have not been
- * noted yet: a pause before them is to be known first. */
+/* When the packet came: earlier than the bytes after it. Bytes that came during this poll are noted
+ * first, because there may have been a pause before them. */
 static uint32_t arrival_ms(tmini_t *lidar)
 {
     if (tmini_ring_head(&lidar->ring) != lidar->line.received) {
@@ -334,7 +337,7 @@ static void take_packet(tmini_t *lidar)
     note_scanning(lidar);
     const bool is_doubtful = tmini_line_is_doubtful(lidar, came_ms);
     if (lidar->state != TMINI_STATE_SCANNING) {
-        return; /* The tail after a stop, or of a lidar that is not to scan. */
+        return; /* The tail after a stop, or packets of a lidar that is not to scan. */
     }
     expect_packet(lidar);
     if (tmini_decoder_take(&lidar->decoder, is_doubtful, came_ms, lidar->line.late_ms)) {
@@ -347,7 +350,8 @@ static void take_packet(tmini_t *lidar)
 
 /* ------------------------------------------------------------------------------------- polling */
 
-/* A candidate that has stopped coming is given up, so that what it hides is looked at. */
+/* Gives up a candidate whose bytes have stopped coming, so that the bytes after its first one are
+ * examined. */
 static bool give_up_candidate(tmini_t *lidar)
 {
     const uint16_t silent_ms = lidar->line.silent_ms;
@@ -381,7 +385,7 @@ static bool receive(tmini_t *lidar)
     return true;
 }
 
-/* Looks after what is due by time, or by the line's quiet. */
+/* Does what is due because time has passed or the line is quiet. */
 static void keep_time(tmini_t *lidar)
 {
     take_result(lidar, tmini_command_poll(lidar));
@@ -411,7 +415,7 @@ static bool has_news(const tmini_t *lidar)
     return passed_ms >= lidar->idle_ms || tmini_parser_has_work(&lidar->decoder.parser);
 }
 
-/* What is due, of a poll that has looked at the line. */
+/* The rest of a poll, after it has looked at the line. */
 TMINI_NOINLINE static tmini_event_t work(tmini_t *lidar)
 {
     const uint8_t faults = lidar->monitor.faults;
@@ -463,7 +467,7 @@ static bool has_port(const tmini_config_t *config)
     return port != NULL && port->now_ms != NULL && (port->write != NULL || config->listen_only);
 }
 
-/* Members that need others, or exclude them. */
+/* Checks members that require or exclude each other. */
 static bool fits_together(const tmini_config_t *config)
 {
     return (config->frequency_chz == 0 ||
@@ -488,7 +492,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
     if (lidar == NULL) {
         return TMINI_ERROR_ARGUMENT;
     }
-    *lidar = (tmini_t){0}; /* Also state, phase and CT information: unknown, none, nothing known. */
+    *lidar = (tmini_t){0}; /* State unknown, no phase, no CT information. */
     if (config == NULL || !has_port(config) || !fits_together(config) ||
         !init_modules(lidar, config)) {
         fail(lidar, TMINI_ERROR_ARGUMENT);
@@ -548,7 +552,7 @@ tmini_status_t tmini_stop(tmini_t *lidar)
     return TMINI_OK;
 }
 
-/* Only a changed wish disturbs a lidar that scans or is about to. */
+/* A lidar that scans, or is to scan, is interrupted only if the wish has changed. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
 {
     if (!is_set_up(lidar) || !is_frequency(frequency_chz)) {
@@ -614,7 +618,7 @@ typedef char
                                         ? 1
                                         : -1];
 
-/* The ring is asked directly: before tmini_init() the parser knows none. */
+/* Reads the ring directly, because before tmini_init() the parser has none. */
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
 {
     const tmini_ring_t *const ring = &lidar->ring;

@@ -8,13 +8,14 @@
 
 #include "tmini/tmini_types.h"
 
-/* The part, of `count` (1 to 65535), that lies at an angle, of at most a full circle, from the
- * middle of part 0: rounded to nearest. 2 * 23040 * 65535 + 23040 is below 2^32. */
+/* The part, of `count` (1 to 65535), that contains an angle. The angle is at most a full circle and
+ * counts from the middle of part 0. No overflow: 2 * 23040 * 65535 + 23040 is below 2^32. */
 static inline size_t tmini_bin(uint32_t angle_q6, size_t count)
 {
     const uint32_t circle = TMINI_FULL_CIRCLE_Q6;
-    const uint32_t parts = (2 * angle_q6 * (uint32_t)count + circle) / 1024u; /* 2 circles: 45. */
-#if defined(__AVR__) /* There a short division takes a quarter of a long one's time. */
+    const uint32_t parts = (2 * angle_q6 * (uint32_t)count + circle) / 1024u; /* Two circles are 45
+                                                                               * * 1024. */
+#if defined(__AVR__) /* A 16-bit division takes a quarter of a 32-bit one's time. */
     const uint32_t bin = parts <= UINT16_MAX ? (uint16_t)parts / 45u : parts / 45u;
 #else
     const uint32_t bin = parts / 45u;
@@ -22,7 +23,8 @@ static inline size_t tmini_bin(uint32_t angle_q6, size_t count)
     return (size_t)(bin < count ? bin : 0);
 }
 
-/* True if the point has a range, nearer than the nearest so far; 0: there is none yet. */
+/* True if the point has a range and is nearer than `nearest_mm`, the nearest so far (0: none
+ * yet). */
 static inline bool tmini_is_nearer(const tmini_point_t *point, uint16_t nearest_mm)
 {
     return point->distance_mm != 0 && (nearest_mm == 0 || point->distance_mm < nearest_mm);

@@ -6,8 +6,8 @@
 #define CIRCLE_Q6 ((int32_t)TMINI_FULL_CIRCLE_Q6)
 
 /* Samples are at most 1.08 degrees apart (12 Hz), and the encoder jitters by less than that. */
-#define JUMP_Q6 256 /* 4 degrees: further than this, at least one packet is missing. */
-#define SWEPT_MAX_Q6 (CIRCLE_Q6 + 16) /* 360.25 degrees: further, it is another revolution. */
+#define JUMP_Q6 256 /* 4 degrees: after a larger jump at least one packet is missing. */
+#define SWEPT_MAX_Q6 (CIRCLE_Q6 + 16) /* 360.25 degrees: beyond it, another revolution has begun. */
 
 /* No start packet has come. */
 #define NO_ORIGIN UINT16_MAX
@@ -26,16 +26,16 @@ static int32_t swept(uint16_t from, uint16_t to)
     return forwards > CIRCLE_Q6 - JUMP_Q6 ? forwards - CIRCLE_Q6 : forwards;
 }
 
-/* The LSA of a single sample is without meaning. */
+/* The LSA of a packet with one sample has no meaning. */
 static uint16_t end_of(const tmini_packet_t *packet)
 {
     return packet->count > 1 ? packet->last_angle_q6 : packet->first_angle_q6;
 }
 
-/* True if a packet that begins `ahead` of the last one's end, and ends `angle` from the start
- * packet, may continue the revolution: not if half a turn or more may be missing before it, by
- * bytes or by angle, nor if it would lead beyond the circle or before its beginning. A lost start
- * packet shows here. */
+/* True if the packet may continue the revolution. It begins `ahead` of the last one's end and ends
+ * at `angle`, counted from the start packet. It does not continue if half a turn or more may be
+ * missing before it, by bytes or by angle, or if it leaves the circle at either end, which shows a
+ * lost start packet. */
 static bool continues(const tmini_packet_t *packet, int32_t ahead, int32_t angle)
 {
     return packet->gap <= GAP_MAX && ahead <= CIRCLE_Q6 / 2 && angle <= SWEPT_MAX_Q6 &&
@@ -47,7 +47,7 @@ static uint16_t frequency_chz(const tmini_packet_t *start)
     return (uint16_t)((start->ct >> 1) * 10);
 }
 
-/* One more, as far as it can count. */
+/* Counts one more; the highest number stays. */
 static void count_one(uint16_t *total)
 {
     if (*total < UINT16_MAX) {
@@ -61,7 +61,8 @@ static bool is_gap(const tmini_packet_t *packet, uint16_t bytes)
     return bytes > (tmini_packet_is_start(packet) ? 1 : 0);
 }
 
-/* The scan took more than one and a half of the turns that the lidar reports, if it does. */
+/* True if the scan took more than one and a half turns at the reported frequency, if there is
+ * one. */
 static bool took_too_long(const tmini_builder_t *builder)
 {
     const tmini_scan_t *const scan = &builder->scan;
@@ -69,9 +70,9 @@ static bool took_too_long(const tmini_builder_t *builder)
     return scan->frequency_chz > 0 && took_ms > 150000u / scan->frequency_chz;
 }
 
-/* Notes what the next packet, which begins `ahead` of the scan's end and came at `now_ms`, shows of
- * it. It carries the frequency of the revolution before it if it is a start packet (section 9.8);
- * else what has been reported last remains. */
+/* Notes what the next packet shows about the scan. It begins `ahead` of the scan's end and came at
+ * `now_ms`. A start packet carries the frequency of the revolution before it (section 9.8);
+ * otherwise the frequency reported last remains. */
 static void note_end(tmini_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
                      uint32_t now_ms)
 {
@@ -89,7 +90,7 @@ static void note_end(tmini_builder_t *builder, const tmini_packet_t *packet, int
 
 /* The scan ends before `packet`. One that took too long has a gap somewhere. It is complete when a
  * start packet comes back to where it began, and nothing is missing. A gap that only the caller
- * knows of is one of time, too. */
+ * reports, without missing bytes or angle, is one of time. */
 static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
                    uint32_t now_ms)
 {
@@ -110,8 +111,8 @@ static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32
     }
 }
 
-/* Begins a scan, and returns how far its revolution has turned by then. One that does not begin
- * with a start packet has a gap there, and began when the packet's first sample was measured. */
+/* Begins a scan and returns how far its revolution has turned by then. If it does not begin with a
+ * start packet, it has a gap there, and its time is that of the packet's first sample. */
 static int32_t begin_scan(tmini_builder_t *builder, const tmini_packet_t *first, uint32_t now_ms)
 {
     tmini_scan_t *const scan = &builder->scan;
@@ -127,7 +128,8 @@ static int32_t begin_scan(tmini_builder_t *builder, const tmini_packet_t *first,
     }
     scan->gaps = is_start ? 0 : 1;
     scan->start_ms = now_ms - (first->count - 1u) * SAMPLE_SENT_US / 1000u;
-    scan->checksum_errors = first->frame->checksum_errors; /* Before it. */
+    scan->checksum_errors = first->frame->checksum_errors; /* The scan's own are counted from
+                                                            * here. */
     builder->late_ms = builder->next_late_ms;
     builder->open = true;
     builder->ended = false;
@@ -197,7 +199,7 @@ bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, u
     }
     builder->swept_q6 = (int16_t)(angle < INT16_MAX ? angle : INT16_MAX);
     builder->previous_angle_q6 = end_of(packet);
-    builder->scan.end_ms = now_ms; /* So far. */
+    builder->scan.end_ms = now_ms; /* The latest so far. */
     append_points(builder, packet);
     return false;
 }

@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* One command at a time: sends it when the line is quiet, awaits its reply, tries again, and
- * reports how it ended. What that means is for others to decide. */
+ * returns the result. The callers decide what the result means. */
 
 #include "tmini_driver.h"
 
@@ -10,7 +10,7 @@
 #define STEPS_MAX 20
 #define COARSE_STEP_CHZ 100
 
-/* No unit turns slower or faster: a reply that says so is none. Section 1 has 6 to 12 Hz. */
+/* No unit turns slower or faster, so such a reply is garbage. Section 1 gives 6 to 12 Hz. */
 #define PLAUSIBLE_CHZ_MIN 100
 #define PLAUSIBLE_CHZ_MAX 2000
 
@@ -24,7 +24,7 @@ static const uint8_t codes[] = {
     [TMINI_EVENT_REBOOTED] = TMINI_COMMAND_REBOOT,
 };
 
-/* A phase that has lasted `timeout_ms` is over, one way or the other; 0 for no limit. */
+/* Begins a phase that lasts at most `timeout_ms`; 0: no limit. */
 static void enter(tmini_t *lidar, tmini_phase_t phase, uint16_t timeout_ms)
 {
     lidar->command.phase = (uint8_t)phase;
@@ -34,8 +34,8 @@ static void enter(tmini_t *lidar, tmini_phase_t phase, uint16_t timeout_ms)
 
 /* ------------------------------------------------------------------------------------- sending */
 
-/* The bytes leave with the next transmit(). If the first byte of a command that was given up has
- * left already, it serves for this one: it is the same in all. */
+/* transmit() sends the bytes. If the first byte of an abandoned command has already been sent, it
+ * is not sent again: it is the same in all commands. */
 static void send(tmini_t *lidar, tmini_command_code_t code)
 {
     lidar->command.code = (uint8_t)code;
@@ -52,19 +52,19 @@ static bool transmit(tmini_t *lidar)
     if (taken < 0) {
         return false;
     }
-    /* A port that claims to have taken more than it was given is believed to have taken all. */
+    /* If a port reports more bytes than it was given, it has taken all. */
     command->unsent = (uint8_t)(taken < unsent ? unsent - taken : 0);
     command->sync_sent = command->unsent == 1;
     return true;
 }
 
-/* Until the line is quiet; if it is not in time, that is a failed attempt. */
+/* Waits for a quiet line; if it does not become quiet in time, the attempt has failed. */
 static void await_quiet(tmini_t *lidar)
 {
     enter(lidar, TMINI_PHASE_QUIESCING, TMINI_STOP_TIMEOUT_MS);
 }
 
-/* First stop, which is permitted always (section 9.10). */
+/* Stops the lidar first, which is always permitted (section 9.10). */
 TMINI_NOINLINE static void quiesce(tmini_t *lidar)
 {
     (void)tmini_parser_await(&lidar->decoder.parser, NULL);
@@ -72,7 +72,7 @@ TMINI_NOINLINE static void quiesce(tmini_t *lidar)
     await_quiet(lidar);
 }
 
-/* Sends a command when the line is quiet, and awaits what it is answered with, if anything. */
+/* Sends a command (the line is quiet) and awaits its reply, if it has one. */
 static void request(tmini_t *lidar, tmini_command_code_t code)
 {
     tmini_reply_header_t reply;
@@ -88,7 +88,7 @@ static void request(tmini_t *lidar, tmini_command_code_t code)
 
 /* --------------------------------------------------------------------------- how commands end */
 
-/* A time is over: another attempt, unless it was the last. */
+/* A phase has taken too long: makes another attempt, unless this was the last. */
 static int time_out(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
@@ -120,7 +120,7 @@ void tmini_command_forget_frequency(tmini_t *lidar)
     lidar->command.frequency_chz = 0;
 }
 
-/* Never beyond the target by as much as the finest step, so never out of the permitted range. */
+/* Overshoots by less than the finest step, so the frequency never leaves the permitted range. */
 static uint8_t next_step(const tmini_t *lidar)
 {
     const int32_t left = chz_to_go(lidar);
@@ -130,11 +130,12 @@ static uint8_t next_step(const tmini_t *lidar)
     return left < COARSE_STEP_CHZ ? TMINI_COMMAND_FASTER_TENTH : TMINI_COMMAND_FASTER_ONE;
 }
 
-/* A late reply to the step before looks like one to this step that was refused. Time tells. */
+/* A late reply to the previous step looks like the reply to a step that was refused. So another
+ * reply is awaited for the rest of the time. */
 static int await_another_frequency(tmini_t *lidar)
 {
     (void)tmini_parser_await(&lidar->decoder.parser, &lidar->decoder.parser.awaited);
-    lidar->command.phase = TMINI_PHASE_AWAITING_STEP; /* For what is left of the time. */
+    lidar->command.phase = TMINI_PHASE_AWAITING_STEP; /* Without a new time limit. */
     return TMINI_UNDER_WAY;
 }
 
@@ -158,7 +159,7 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
 
 /* -------------------------------------------------------------------------------- keeping time */
 
-/* Bytes that an interrupt has brought since time was looked at are not judged by it. */
+/* Not quiet if an interrupt has brought bytes after the line was last looked at. */
 static bool is_quiet(const tmini_t *lidar)
 {
     const uint16_t quiet_ms = lidar->link.timing->quiet_line_ms;
@@ -167,17 +168,17 @@ static bool is_quiet(const tmini_t *lidar)
            tmini_ring_head(&lidar->ring) == lidar->line.received;
 }
 
-/* The line is quiet: the next command may be sent (section 2). What has come before a question is
- * not its answer, not even what a packet that was cut off hides. After a stop the operation's own
- * command is next. A frequency is changed by steps, so that it is asked for before them, to know
- * where they begin, and after them. */
+/* The line is quiet: the next command may be sent (section 2). Bytes that came before a question
+ * cannot be its answer, so all are skipped, including an incomplete packet. After a stop the
+ * operation's own command is next. To change the frequency, the driver asks for it, sends the
+ * steps, and asks again. */
 int tmini_command_proceed(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     uint8_t next = codes[command->operation];
     tmini_parser_skip_all(&lidar->decoder.parser);
     if (next == TMINI_COMMAND_STOP) {
-        command->attempts = 1; /* However many it took, the line is quiet now. */
+        command->attempts = 1; /* The line is quiet now, whatever the number of attempts. */
         return TMINI_OK;
     }
     if (command->code != TMINI_COMMAND_STOP && !tmini_command_has_frequency(lidar)) {
@@ -191,7 +192,7 @@ int tmini_command_proceed(tmini_t *lidar)
     return TMINI_UNDER_WAY;
 }
 
-/* The command's bytes leave; a phase's time runs from then on. */
+/* Sends the command's bytes; the phase's time begins when all have been taken. */
 static int send_rest(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;

@@ -22,7 +22,7 @@ enum {
     NUMBER_LOW,
 };
 
-/* A bit for the index at which each stands (section 7). The others are production data. */
+/* One bit for each field's index (section 7). The other indices are production data. */
 #define KEPT_MASK \
     (1u << 1 | 1u << 3 | 1u << 4 | 1u << 5 | 1u << 9 | 1u << 10 | 1u << 11 | 1u << 12 | 1u << 13)
 
@@ -38,8 +38,8 @@ static void trust_current(tmini_ct_t *ct)
     ct->known = ct->packets > ct->known ? ct->packets : ct->known;
 }
 
-/* Exactly one byte between the last point packet and this start packet is LastCRC. Units without CT
- * information send none: there it is noise. */
+/* If there is exactly one byte between the last point packet and this start packet, it is LastCRC.
+ * From units without CT information it is noise, because they send no LastCRC. */
 static tmini_ct_verdict_t check_revolution(const tmini_ct_t *ct, const tmini_packet_t *start)
 {
     if (ct->cts == 0 || start->gap != 1) {
@@ -129,7 +129,7 @@ void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
 
 uint8_t tmini_ct_crc8(uint8_t crc, uint8_t byte)
 {
-    /* Eight steps at once: the quotient by the polynomial, and what that leaves of it. */
+    /* All eight steps at once: divides by the polynomial and returns the remainder. */
     const unsigned sum = crc ^ (unsigned)byte;
     const unsigned quotient = (sum ^ sum << 3 ^ sum << 4 ^ sum << 6) & 0xFFu;
     return (uint8_t)(quotient ^ quotient >> 4 ^ quotient >> 5);

@@ -12,8 +12,8 @@ tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring, 
     return tmini_parser_init(&decoder->parser, ring, max_samples);
 }
 
-/* The packet that ended the scan begins the next one. It had to wait, because the scan was to be
- * read first. */
+/* The packet that ended a scan begins the next one. It is added only now, so that the finished scan
+ * could be read before. */
 static void add_waiting_packet(tmini_decoder_t *decoder)
 {
     tmini_builder_t *const builder = &decoder->builder;

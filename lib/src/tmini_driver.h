@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the driver's files ask of each other. Calls go downwards only:
+/* The interfaces between the driver's files. Calls go downwards only:
  *
  *     tmini.c               wishes, state, events, public functions
  *      ├ tmini_recovery.c   the ladder: what to try next, and when
@@ -20,18 +20,18 @@
 
 #include "tmini/tmini.h"
 
-/* How long the driver waits, in milliseconds, where no user needs to choose. */
+/* Waiting times in milliseconds that no user needs to change. */
 #define TMINI_STOP_TIMEOUT_MS 600     /* Twice the longest tail seen after a stop (section 9.10). */
-#define TMINI_WRITE_TIMEOUT_MS 100    /* For the port to take two bytes, of 87 us. */
+#define TMINI_WRITE_TIMEOUT_MS 100    /* For the port to take two bytes, which last 87 us. */
 #define TMINI_SPIN_UP_TIMEOUT_MS 3000 /* From the start reply to the first packet. */
-#define TMINI_DATA_TIMEOUT_MS 1000    /* Without a valid packet for this long it is lost. */
+#define TMINI_DATA_TIMEOUT_MS 1000    /* A lidar without a valid packet for this long is lost. */
 #define TMINI_REBOOT_TIME_MS 5000     /* "Some seconds" (section 9.11). */
 #define TMINI_BACK_OFF_MS 500         /* The first pause after an attempt that failed. */
 
 /* How far the frequency that is set may be from the wanted one: half the finest step. */
 #define TMINI_FREQUENCY_TOLERANCE_CHZ 5
 
-/* True when a time that began at `since_ms` is over; across the clock's wrap-around too. */
+/* True if `wait_ms` have passed since `since_ms`, also across the clock's wrap-around. */
 static inline bool tmini_has_elapsed(const tmini_t *lidar, uint32_t since_ms, uint32_t wait_ms)
 {
     return lidar->line.now_ms - since_ms >= wait_ms;
@@ -39,7 +39,7 @@ static inline bool tmini_has_elapsed(const tmini_t *lidar, uint32_t since_ms, ui
 
 /* ------------------------------------------------------------------------------------ tmini.c */
 
-/* Gives up the query under way: for the blocking helpers, which stand above. */
+/* Gives up the current query. Used by the blocking helpers. */
 void tmini_cancel(tmini_t *lidar);
 
 /* ------------------------------------------------------------------------------- tmini_line.c */
@@ -48,58 +48,59 @@ void tmini_cancel(tmini_t *lidar);
  * have: the line is not quiet. */
 bool tmini_line_look(tmini_t *lidar);
 
-/* When the packet found last came, less what the bytes after it took. Look first. */
+/* When the packet found last came: when the newest bytes came, less the line time of those after
+ * the packet. Call tmini_line_look() first. */
 uint32_t tmini_line_arrival_ms(const tmini_t *lidar);
 
-/* True if others may be missing before the packet found last, which came then: the line has paused,
- * or it came late. To be asked once for each packet. */
+/* True if packets may be missing before the packet found last, which came at `came_ms`: the line
+ * has paused, or the packet is late. Call it once for each packet. */
 bool tmini_line_is_doubtful(tmini_t *lidar, uint32_t came_ms);
 
 /* ---------------------------------------------------------------------------- tmini_command.c */
 
-/* What goes on on the wire. */
+/* What happens on the wire. */
 typedef enum {
-    TMINI_PHASE_NONE,           /* Nothing is under way; the lidar may be scanning. */
-    TMINI_PHASE_IDLE,           /* The same; it was stopped, or should be idle. */
-    TMINI_PHASE_QUIESCING,      /* After a stop, or between frequency steps: until it is quiet. */
-    TMINI_PHASE_AWAITING_REPLY, /* A command has been sent: until its reply. */
-    TMINI_PHASE_AWAITING_STEP,  /* The same; one has come that shows no step: until another. */
-    TMINI_PHASE_SPINNING_UP,    /* The start has been acknowledged: until the first packet. */
-    TMINI_PHASE_WAITING,        /* A reboot has been sent, or nothing: as long as it takes. */
+    TMINI_PHASE_NONE,           /* No command is in progress; the lidar may be scanning. */
+    TMINI_PHASE_IDLE,           /* The same, but it was stopped or should be idle. */
+    TMINI_PHASE_QUIESCING,      /* After a stop, or between frequency steps, until the line is
+                                 * quiet. */
+    TMINI_PHASE_AWAITING_REPLY, /* From sending a command until its reply. */
+    TMINI_PHASE_AWAITING_STEP,  /* The same, after a reply that shows no change of frequency. */
+    TMINI_PHASE_SPINNING_UP,    /* From the reply to the start until the first packet. */
+    TMINI_PHASE_WAITING,        /* For a fixed time: after a reboot, or in a pause. */
 } tmini_phase_t;
 
 /* Result of a command: TMINI_OK, an error, or this. */
 #define TMINI_UNDER_WAY 1
 
-/* Begins an operation, in the place of one that may be under way, named by the event of its end;
- * first comes a stop, whose bytes leave with the next tmini_command_poll(). A time-out is followed
- * by another attempt, up to `attempts` in all. TMINI_EVENT_FREQUENCY also sets the wanted
- * frequency, if there is one. */
+/* Begins an operation, named by the event of its success; it replaces the current one. A stop comes
+ * first, sent by the next tmini_command_poll(). After a time-out there is another attempt, up to
+ * `attempts` in all. TMINI_EVENT_FREQUENCY also sets the wanted frequency, if there is one. */
 void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, uint8_t attempts);
 
-/* The line is quiet: the next command of the operation may be sent. Called from above, after
- * tmini_command_begin(), when the lidar is known to be idle: then it needs no stop before. */
+/* The line is quiet: the next command of the operation may be sent. Callers may use it right after
+ * tmini_command_begin() if the lidar is known to be idle: then it is not stopped first. */
 int tmini_command_proceed(tmini_t *lidar);
 
-/* Goes on with what is due now: bytes to send, a line that is quiet, a time that is over. */
+/* Does what is due now: bytes to send, a line that has become quiet, a time-out. */
 int tmini_command_poll(tmini_t *lidar);
 
-/* For how long tmini_command_poll() has nothing to do unless bytes come; 0: look each time. */
+/* For how long tmini_command_poll() has nothing to do unless bytes come; 0: call it each time. */
 uint16_t tmini_command_idle_ms(const tmini_t *lidar);
 
 /* The awaited reply has come, with this content. */
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content);
 
-/* Sends nothing and ends well after a time; 0: never. While it runs, nothing else is under way.
- * Begun anew by each packet it is a watchdog: its end means that none has come. */
+/* An operation that sends nothing and succeeds after `wait_ms`; 0: never. If each packet begins it
+ * again, it is a watchdog: its end means that no packet has come. */
 void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms);
 
-/* What is under way has ended with `result`, or is given up with an error. True if the lidar is
- * idle and the line quiet: after a stop, and after an answer to the first attempt; after a second
- * one, the reply to the first may still come. */
+/* The current operation has ended with `result`, or is given up with an error. True if the lidar is
+ * idle and the line quiet: after a stop, and after an answer to the first attempt. After a later
+ * attempt the reply to an earlier one may still come. */
 bool tmini_command_end(tmini_t *lidar, int result);
 
-/* The frequency that is set is not known any more. */
+/* The frequency that is set is no longer known. */
 void tmini_command_forget_frequency(tmini_t *lidar);
 
 /* True if the lidar has reported the wanted frequency, or none is wanted. */
@@ -107,17 +108,17 @@ bool tmini_command_has_frequency(const tmini_t *lidar);
 
 /* --------------------------------------------------------------------------- tmini_recovery.c */
 
-/* Begins to bring the lidar to scan, from the foot of the ladder; `is_idle`: it is known to be, and
- * the line quiet. */
+/* Begins the ladder at its first step. `is_idle`: the lidar is known to be idle, and the line
+ * quiet. */
 void tmini_recovery_start(tmini_t *lidar, bool is_idle);
 
-/* The same for a lidar that has been lost: from where the ladder stands. */
+/* The same for a lidar that has been lost; a recent loss continues the ladder. */
 void tmini_recovery_begin(tmini_t *lidar);
 
-/* Asks the port to start its reception anew, if it can: after an attempt that failed. */
+/* Asks the port to start its reception again, if it can. For a failed attempt. */
 void tmini_recovery_restart_reception(const tmini_t *lidar);
 
-/* `operation` has ended, well or not: goes on with the next. `is_idle`: as above. */
+/* `operation` has ended with `result`: begins the next one. `is_idle`: as above. */
 void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle);
 
 /* The lidar is back, by an attempt or by itself. */
@@ -126,7 +127,8 @@ static inline void tmini_recovery_end(tmini_t *lidar)
     lidar->recovery.recoveries++;
 }
 
-/* It has started, or a complete revolution has come: the next loss is a new one. */
+/* The lidar has started, or a complete revolution has come: after the next loss the ladder begins
+ * again. */
 static inline void tmini_recovery_forget(tmini_t *lidar)
 {
     lidar->recovery.attempts = 0;
@@ -134,18 +136,19 @@ static inline void tmini_recovery_forget(tmini_t *lidar)
 
 /* ---------------------------------------------------------------------------- tmini_monitor.c */
 
-/* Scanning begins, anew or again: nothing continues what was before. */
+/* Scanning begins: the next packet continues no earlier revolution. */
 void tmini_monitor_begin(tmini_monitor_t *monitor);
 
-/* What a packet shows of the lidar's turning. */
+/* What a packet shows about the rotor. */
 typedef enum {
     TMINI_TURN_GOES_ON,
     TMINI_TURN_WHOLE,   /* A complete revolution has ended with it. */
-    TMINI_TURN_OFF,     /* Revolutions take another time than wanted: reported once. */
-    TMINI_TURN_ENDLESS, /* Packets come, with ranges, but no start packets: the lidar is lost. */
+    TMINI_TURN_OFF,     /* Revolutions are not at the wanted frequency: returned once. */
+    TMINI_TURN_ENDLESS, /* Packets with ranges come, but no start packets: the lidar is lost. */
 } tmini_turn_t;
 
-/* Takes the latest packet, and what it shows of the revolution it ends; `wanted_chz` 0: any. */
+/* Takes the latest packet and judges the revolution that it ends, if it does. `wanted_chz` 0:
+ * any. */
 tmini_turn_t tmini_monitor_packet(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
                                   uint16_t wanted_chz);
 

@@ -1,35 +1,34 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The time of the line: when bytes came, how long it has been silent, and where bytes may be
- * missing because it paused. Of packets it knows when the scan's last one came, and how long a turn
- * takes. */
+/* The timing of the line: when bytes came, how long it has been silent, and where bytes may be
+ * missing because it paused. About packets it uses only when the scan's last one came and how long
+ * a turn takes. */
 
 #include "tmini_driver.h"
 
 /* Silence that was not observed counts at most this long: bytes may wait in a layer below. */
 #define UNSEEN_SILENCE_MAX_MS 50
 
-/* Polled less often, or handed over more late than by a UART's FIFO, bytes do not show when they
- * came. */
+/* If polls are farther apart than the first, or bytes are later than the second (a UART's FIFO), it
+ * is unknown when the bytes came. */
 #define WATCHED_MS 30u
 #define FIFO_MS 9u
 
-/* No layer below holds bytes for longer. */
+/* A layer below holds bytes for this long at most. */
 #define LATE_MAX_MS 1000
 
 /* Longer silence counts as this. */
 #define SILENCE_MAX_MS UINT16_MAX
 
-/* A port holds no more. A place that lies before what has been received, because bytes were fed and
- * this not reported again, seems farther ahead. */
+/* A port holds at most this many bytes. If `held_to` seems farther ahead, it lies before the bytes
+ * received, because the port has fed bytes and not reported again. */
 #define HELD_MAX (TMINI_RING_CLOSED / 2 < 65535u ? TMINI_RING_CLOSED / 2 : 65535u)
 
-/* A clock that steps back by no more than this shows no time until it has caught up. (0: it has not
- * been read yet.) */
+/* If the clock steps back by up to this much, no time passes until it has caught up. */
 #define STEP_BACK_MAX_MS 1000u
 
-/* How long a lidar that scans takes to send them: 13.1 bytes per millisecond (section 1). */
+/* How long a scanning lidar takes to send this many bytes: 13.1 per millisecond (section 1). */
 static uint32_t transit_ms(size_t bytes)
 {
     return (uint32_t)bytes * 39u >> 9;
@@ -44,7 +43,7 @@ static size_t arrived_to(const tmini_t *lidar)
     return are_held ? held_to : received;
 }
 
-/* How long the bytes have taken that have arrived since it was asked last. */
+/* The line time of the bytes that have arrived since the last call. */
 static uint32_t take_arrived_ms(tmini_t *lidar)
 {
     tmini_line_t *const line = &lidar->line;
@@ -54,9 +53,9 @@ static uint32_t take_arrived_ms(tmini_t *lidar)
     return count <= TMINI_RING_CLOSED / 2 ? transit_ms(count) : 0;
 }
 
-/* A silence that may hide a turn lasts half of one or more, as the lidar reports it, or at 12 Hz
- * while it is not up to speed. What a shorter one hides, the angles show, even if it is half a turn
- * longer than it seems. */
+/* True for a silence that may hide a turn: longer than half a turn at the reported frequency, or at
+ * 12 Hz while the lidar is not up to speed. What a shorter one hides is visible in the angles, even
+ * if the true silence is half a turn longer. */
 static bool may_hide_turn(const tmini_t *lidar, int32_t silent_ms)
 {
     const int32_t max_pause_ms = lidar->link.timing->max_pause_ms;
@@ -69,14 +68,14 @@ static bool may_hide_turn(const tmini_t *lidar, int32_t silent_ms)
     return (uint32_t)silent_ms * frequency_chz > 100000u / 2;
 }
 
-/* The bytes have come since the last look, and straight from the wire. */
+/* All these bytes have come from the wire since the last look. */
 static bool are_fresh(uint32_t due_ms, uint32_t passed_ms)
 {
     return passed_ms <= WATCHED_MS && due_ms <= passed_ms + FIFO_MS;
 }
 
-/* The bytes that have come may be so late. As long as others are left from before, what holds for
- * those is not forgotten. */
+/* Notes that the bytes that have come may be late. A larger delay of earlier bytes is kept until
+ * these have been parsed. */
 static void note_delay(tmini_t *lidar, int32_t late_ms)
 {
     tmini_line_t *const line = &lidar->line;
@@ -88,12 +87,12 @@ static void note_delay(tmini_t *lidar, int32_t late_ms)
     }
 }
 
-/* Bytes have come, `passed_ms` after the last look. While the lidar scans they never pause for
- * long: if they are too few for the time since others came, then others may be missing. Where, is
- * not known: a layer below that was held up hands over late what came before the silence. So the
- * bytes may be as much older as they are too few, and that time counts for the next ones once more:
- * the silence may go on. Only before a lidar begins to scan, if the line was watched, it was before
- * them. And if there are more than the ring holds, a gap of DMA, their number is unknown. */
+/* Bytes have come, `passed_ms` after the last look. A scanning lidar never pauses for long, so if
+ * the bytes are too few for the time since others came, bytes may be missing. The place is unknown:
+ * a layer below that was held up may deliver late what came before the silence. So these bytes may
+ * be older by the missing time. That time counts again for the next bytes, because the silence may
+ * continue. Only if the line was watched and the lidar does not scan yet, the silence was before
+ * these bytes. More bytes than the ring holds mean a gap of DMA: then their number is unknown. */
 static void note_bytes(tmini_t *lidar, size_t count, uint32_t passed_ms)
 {
     tmini_line_t *const line = &lidar->line;
@@ -135,7 +134,7 @@ bool tmini_line_look(tmini_t *lidar)
     if (count > 0) {
         note_bytes(lidar, count, passed_ms);
     } else if (tmini_ring_is_full(&lidar->ring)) {
-        line->silent_ms = 0; /* There was no room: what came is unknown. */
+        line->silent_ms = 0; /* No room: whether bytes have come is unknown. */
     } else {
         note_silence(line, passed_ms);
         return false;
@@ -150,7 +149,7 @@ uint32_t tmini_line_arrival_ms(const tmini_t *lidar)
     return lidar->line.heard_ms - transit_ms(after);
 }
 
-/* Others may be missing before each packet that begins among doubtful bytes, and before the first
+/* Packets may be missing before each packet that begins among doubtful bytes, and before the first
  * one after them. */
 static bool is_in_doubt(tmini_t *lidar)
 {
@@ -161,8 +160,8 @@ static bool is_in_doubt(tmini_t *lidar)
     return is_doubtful;
 }
 
-/* Since the last packet of the scan, damaged ones may have come instead of others, a few bytes of
- * each: neither silence nor many bytes, but too long. */
+/* True if too much time has passed since the scan's last packet. Damaged packets of which only a
+ * few bytes came cause neither a long silence nor many skipped bytes: only the time shows them. */
 static bool is_late(const tmini_t *lidar, uint32_t came_ms)
 {
     const tmini_builder_t *const builder = &lidar->decoder.builder;

@@ -1,26 +1,26 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* While the lidar scans: is it well? Packets in, faults out: what revolutions show, once two have
- * shown it; a rotor that stands still, by samples; a rotor that does not turn as wanted, by the
- * frequency that it reports. */
+/* Finds faults while the lidar scans. Faults of a revolution count when the next one has them too.
+ * A blocked rotor shows by its number of samples without a start packet, and a wrong frequency by
+ * the start packets. */
 
 #include "tmini_driver.h"
 
-/* A frequency that differs by more than a twentieth for this long, and this many turns, will not
- * become the wanted one by itself. */
+/* A frequency that differs by more than 1/20 for this many seconds and turns will not correct
+ * itself. */
 #define OFF_PART 20u
 #define OFF_SECONDS 3u
 #define OFF_TURNS 3u
 
-/* No turn has more: of 4000 per second (section 1), three seconds. */
+/* No turn has more samples than three seconds, at 4000 per second (section 1). */
 #define TURN_SAMPLES_MAX 12000u
 
-/* Of 300 packets without a start packet, this many with a range are not chance: damaged packets
- * whose checksum matches. */
+/* If this many of 300 packets without a start packet have a range, the rotor turns. Fewer may be
+ * damaged packets whose checksum matches by chance. */
 #define TURNING_RANGES 100u
 
-/* What one revolution shows is believed when the next one shows it too. */
+/* The faults of a revolution count when the next one has the same. */
 static void observe(tmini_monitor_t *monitor, uint8_t faults)
 {
     if (faults == monitor->observed) {
@@ -29,9 +29,9 @@ static void observe(tmini_monitor_t *monitor, uint8_t faults)
     monitor->observed = faults;
 }
 
-/* A start packet: the revolution that it ends is judged by what the unit itself reports of its
- * health (section 7). If it reports nothing, by whether there was any range; of a revolution that
- * was not received completely, the rest may have had one. */
+/* A start packet ends a revolution, which is judged by the health that the unit reports (section
+ * 7). If it reports none, a revolution without any range has a fault, provided that it was received
+ * completely. */
 static void judge_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *decoder)
 {
     uint16_t faults = (uint16_t)tmini_ct_faults(&decoder->ct);
@@ -45,8 +45,8 @@ static void judge_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *de
     }
 }
 
-/* Counts revolutions in a row that took another time than wanted. Their number, by the frequency
- * that they report, is also how long that has lasted. True when it is a fault from now on. */
+/* Counts consecutive revolutions at another frequency than wanted. Their number, divided by the
+ * frequency that they report, is the time that this has lasted. True when it becomes a fault. */
 static bool has_become_off(tmini_monitor_t *monitor, uint8_t ct, uint16_t wanted_chz)
 {
     const uint16_t chz = (uint16_t)((ct >> 1) * 10u); /* Section 7. */
@@ -72,7 +72,7 @@ void tmini_monitor_forget_frequency(tmini_monitor_t *monitor)
     monitor->faults = monitor->faults & TMINI_FAULT_MASK;
 }
 
-/* `is_complete`: it is known to begin here. */
+/* `is_complete`: a start packet shows that it begins here. */
 static void begin_revolution(tmini_monitor_t *monitor, bool is_complete)
 {
     monitor->is_complete = is_complete;
@@ -87,8 +87,9 @@ void tmini_monitor_begin(tmini_monitor_t *monitor)
     monitor->observed = monitor->faults;
 }
 
-/* The latest packet does not begin a revolution. If it has more samples than any turn, the rotor
- * is blocked (section 8). If ranges come after that was noted, it turns: start packets are lost. */
+/* The latest packet continues a revolution. If the revolution has more samples than any turn, the
+ * rotor is blocked (section 8). If many of its packets have a range although that fault is already
+ * known, the rotor turns and only start packets are lost. */
 static tmini_turn_t go_on(tmini_monitor_t *monitor, const tmini_packet_t *packet)
 {
     monitor->samples = (uint16_t)(monitor->samples + packet->count);

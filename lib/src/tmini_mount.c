@@ -6,8 +6,8 @@
 #define Q6_PER_DEGREE 64
 #define CIRCLE_DEG 360
 
-/* Whole degrees, negative ones too, as an angle of 0 to 23039. This is done for each point: a
- * division takes an 8-bit machine longer than all the rest. */
+/* Converts whole degrees, also negative ones, to 0 to 23039. It runs for each point, so it avoids a
+ * division: on an 8-bit machine that would take longer than everything else. */
 static uint16_t from_degrees(int16_t degrees)
 {
     int16_t within = degrees;

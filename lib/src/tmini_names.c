@@ -5,7 +5,7 @@
 
 #define COUNT(table) (sizeof(table) / sizeof *(table))
 
-/* By the negated value of a status. */
+/* The index is the negated status. */
 static const char *const status_names[] = {
     [-TMINI_OK] = "ok",
     [-TMINI_ERROR_ARGUMENT] = "invalid argument",
@@ -46,7 +46,7 @@ static const char *const state_names[] = {
     [TMINI_STATE_RECOVERING] = "recovering",
 };
 
-/* By the number of the fault's bit. */
+/* The index is the number of the fault's bit. */
 static const char *const fault_names[] = {
     "sensor", "encoder", "wireless power", "PD", "LD", "data", "frequency",
 };
@@ -59,7 +59,7 @@ static const char *name_of(const char *const *names, size_t count, size_t index,
 
 const char *tmini_status_name(tmini_status_t status)
 {
-    /* A value above 0 becomes a very large one. */
+    /* A positive status becomes a very large index. */
     return name_of(status_names, COUNT(status_names), (size_t)0 - (size_t)status, "unknown status");
 }
 

@@ -24,13 +24,13 @@ static uint16_t angle_of(const uint8_t *field)
 #define FLAG_MASK 3u
 #define FLAG_BITS 2
 
-/* As in a sample: set_point() stores both at once. */
+/* Intensity and flag are neighbours, as in a sample: set_point() stores both at once. */
 typedef char flag_follows_intensity
     [offsetof(tmini_point_t, flag) == offsetof(tmini_point_t, intensity) + 1 ? 1 : -1];
 
-/* What a sample says of a point. Intensity and flag follow each other in both, and are one access
- * where any address will do. The sample is read first, because for all the compiler knows the point
- * might overlap it. */
+/* Fills a point from a sample. Intensity and flag are neighbours in both, so they are copied in one
+ * access where any address is allowed. The sample is read first, because the compiler must assume
+ * that the point overlaps it. */
 static inline void set_point(tmini_point_t *point, uint32_t angle_q6, const uint8_t *sample)
 {
     const unsigned distance_and_flag = sample[1] | (unsigned)sample[2] << 8;
@@ -47,9 +47,9 @@ static inline void set_point(tmini_point_t *point, uint32_t angle_q6, const uint
 #endif
 }
 
-/* Decodes `count` samples, at least one, that lie in one piece, from sample `index` of the packet
- * on: the hottest loop there is. A function of its own, so that all that it needs stays in
- * registers. */
+/* Decodes `count` contiguous samples (at least one), beginning with sample `index` of the packet.
+ * This is the innermost loop of the library. It is a separate function so that all its variables
+ * stay in registers. */
 TMINI_NOINLINE static void decode(const tmini_packet_t *packet, size_t index, const uint8_t *sample,
                                   size_t count, tmini_point_t *point)
 {
@@ -130,7 +130,7 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
     return wanted;
 }
 
-/* The distance is what lies above the flag. */
+/* The distance occupies the bits above the flag. */
 bool tmini_packet_has_range(const tmini_packet_t *packet)
 {
     const tmini_frame_t *const frame = packet->frame;

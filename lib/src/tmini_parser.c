@@ -23,8 +23,8 @@ enum { REPLY_LENGTH = 0, REPLY_MODE_AND_LENGTH = 3, REPLY_TYPE = 4 };
 
 /* -------------------------------------------------------------------------------- the checksum */
 
-/* What this many samples contribute, at least one: S1 and S2 count in the low byte, S3 in the high
- * byte (section 5). */
+/* The contribution of `count` samples (at least one): S1 and S2 count in the low byte, S3 in the
+ * high byte (section 5). */
 static unsigned xor_samples(const uint8_t *sample, size_t count)
 {
     unsigned sum = 0;
@@ -35,7 +35,7 @@ static unsigned xor_samples(const uint8_t *sample, size_t count)
     return sum;
 }
 
-/* The same by blocks: three words that are XORed in one go contribute what their own bytes do. */
+/* The same by blocks. XORing whole words gives the same result as XORing their bytes one by one. */
 static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
 {
     uint32_t first = 0;
@@ -54,8 +54,8 @@ static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
     return low ^ (unsigned)(s[2] ^ s[5] ^ s[8] ^ s[11]) << 8;
 }
 
-/* The same of samples in one piece, most of them by blocks. An address that is `ahead` above a
- * multiple of 4 becomes one by that many samples of three bytes. */
+/* The same for contiguous samples, most of them by blocks. If the address is `ahead` bytes above a
+ * multiple of 4, `ahead` samples of three bytes lead to the next multiple. */
 TMINI_NOINLINE static unsigned xor_piece(const uint8_t *sample, size_t count)
 {
     unsigned sum = 0;
@@ -73,8 +73,7 @@ TMINI_NOINLINE static unsigned xor_piece(const uint8_t *sample, size_t count)
     return count > 0 ? sum ^ xor_samples(sample, count) : sum;
 }
 
-/* XORs the candidate's 16-bit words. The checksum itself is among them, so that nothing remains if
- * it is right. */
+/* XORs all 16-bit words of the candidate, the checksum included: the result is 0 if it is right. */
 static bool checksum_matches(const tmini_frame_t *frame)
 {
     const uint8_t *const header = frame->header;
@@ -102,8 +101,8 @@ static bool packet_header_is_plausible(const tmini_parser_t *parser)
     return check_bits && header[LSN] >= 1 && header[LSN] <= (is_start ? 1 : parser->max_samples);
 }
 
-/* Of the length only the lowest byte can be other than 0: no reply is longer than 20 bytes. When
- * continuous it has no meaning. */
+/* Only the lowest byte of the length can be other than 0, because no reply is longer than 20 bytes.
+ * A continuous reply's length has no meaning. */
 static bool reply_header_is_awaited(const tmini_parser_t *parser)
 {
     const uint8_t *const header = parser->frame.header;
@@ -123,13 +122,14 @@ static bool begins_no_frame(const tmini_parser_t *parser, uint8_t byte)
     return byte != PACKET_FIRST && !(parser->awaiting && byte == REPLY_FIRST);
 }
 
-/* Copies what follows the start sign; of a reply, a little more than its header. */
+/* Copies the bytes after the start sign. For a reply this is slightly more than its header. */
 static void read_header(tmini_frame_t *frame)
 {
     size_t count = sizeof frame->header;
     const uint8_t *const piece = tmini_ring_piece(frame->ring, TMINI_START_SIGN_SIZE, &count);
     if (count == sizeof frame->header) {
-        memcpy(frame->header, piece, sizeof frame->header); /* Of constant size: a few moves. */
+        memcpy(frame->header, piece, sizeof frame->header); /* A constant size: a few
+                                                             * instructions. */
     } else {
         tmini_ring_copy(frame->ring, TMINI_START_SIGN_SIZE, frame->header, sizeof frame->header);
     }
@@ -148,7 +148,7 @@ static enum verdict classify_packet_header(tmini_parser_t *parser)
     return COMPLETE;
 }
 
-/* The same of the awaited reply. */
+/* The same for the awaited reply. */
 static enum verdict classify_reply_header(tmini_parser_t *parser)
 {
     tmini_frame_t *const frame = &parser->frame;
@@ -161,7 +161,7 @@ static enum verdict classify_reply_header(tmini_parser_t *parser)
     return COMPLETE;
 }
 
-/* Looks at the candidate's start sign, then at its header, as soon as they have come. */
+/* Checks the candidate's start sign, then its header, as soon as these bytes have come. */
 static enum verdict classify_header(tmini_parser_t *parser, size_t unread)
 {
     const tmini_ring_t *const ring = parser->frame.ring;
@@ -184,7 +184,7 @@ static enum verdict classify_header(tmini_parser_t *parser, size_t unread)
     return is_packet ? classify_packet_header(parser) : classify_reply_header(parser);
 }
 
-/* What the ring's oldest bytes are; `need` of them, if they are complete. */
+/* Decides what the ring's oldest bytes are. If they are a complete frame, it has `need` bytes. */
 static enum verdict classify(tmini_parser_t *parser, size_t unread)
 {
     if (parser->kind == TMINI_FRAME_NONE) {
@@ -241,9 +241,9 @@ static void skip(tmini_parser_t *parser, size_t unread)
     parser->effort = (uint16_t)(parser->effort + skipped + TMINI_CANDIDATE_EFFORT);
 }
 
-/* The unread bytes, less those that DMA may have overwritten: they are dropped. After laps that
- * were not observed (tmini_ring_gap()) so are those that may have been read before, if there were
- * none: what is left of the last lap is new in either case. */
+/* The number of unread bytes, after dropping those that DMA may have overwritten. After a lap that
+ * was reported but perhaps never happened (tmini_ring_gap()), bytes that may have been read before
+ * are dropped too: what is kept of the last lap is new in either case. */
 static size_t intact_bytes(tmini_parser_t *parser)
 {
     tmini_ring_t *const ring = parser->frame.ring;
@@ -264,8 +264,8 @@ static size_t intact_bytes(tmini_parser_t *parser)
     return kept;
 }
 
-/* There are not enough bytes for the candidate. If the ring is closed, what would complete it has
- * been lost: it is given up, and the ring opened when it is empty. Returns false if it is not. */
+/* Called when the candidate needs more bytes. In a closed ring these have been lost, so the
+ * candidate is given up; an empty ring is opened again. Returns false if the ring is not closed. */
 static bool pass_lost_bytes(tmini_parser_t *parser)
 {
     tmini_ring_t *const ring = parser->frame.ring;
@@ -273,7 +273,7 @@ static bool pass_lost_bytes(tmini_parser_t *parser)
     if (tmini_ring_is_dma(ring) || ahead <= ring->window) {
         return false;
     }
-    const size_t unread = ahead - TMINI_RING_CLOSED; /* Nothing is stored any more. */
+    const size_t unread = ahead - TMINI_RING_CLOSED; /* Final: a closed ring stores nothing. */
     if (unread == 0) {
         parser->frame.gap = TMINI_GAP_UNKNOWN;
         tmini_ring_open(ring);
@@ -296,7 +296,7 @@ static void release_frame(tmini_parser_t *parser)
     }
 }
 
-/* The complete candidate becomes a frame: `need` has come to its size. */
+/* The complete candidate becomes a frame of `need` bytes. */
 static tmini_frame_type_t deliver(tmini_parser_t *parser)
 {
     tmini_frame_t *const frame = &parser->frame;
@@ -353,7 +353,7 @@ tmini_frame_type_t tmini_parser_next_after(tmini_parser_t *parser, size_t effort
 
 tmini_status_t tmini_parser_await(tmini_parser_t *parser, const tmini_reply_header_t *header)
 {
-    begin_candidate(parser); /* What the candidate may be has changed: look at it again. */
+    begin_candidate(parser); /* The candidate may now be something else: examine it again. */
     parser->awaiting = false;
     if (header == NULL) {
         return TMINI_OK;

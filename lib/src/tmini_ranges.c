@@ -5,7 +5,7 @@
 
 #include "tmini_bins.h"
 
-/* Counter-clockwise from behind. */
+/* Counter-clockwise, beginning at the back. */
 size_t tmini_ranges_bin(uint16_t angle_q6, size_t count)
 {
     const uint32_t behind = TMINI_FULL_CIRCLE_Q6 / 2;

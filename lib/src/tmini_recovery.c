@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The ladder that brings a lidar to scan, at the start and after a loss: set the wanted frequency,
- * then start, and every so often a soft reboot first; after each failure a pause, which doubles up
- * to a limit. */
+/* The ladder of attempts that makes a lidar scan, at the start and after a loss. An attempt sets
+ * the wanted frequency, then starts. After a failure comes a pause, which doubles up to a limit;
+ * after every third failure a soft reboot. */
 
 #include "tmini_driver.h"
 
 /* Every third attempt that fails is followed by one that reboots the lidar first. */
 #define REBOOT_AFTER 3
 
-/* In the place of a number of failed attempts: the first has not failed yet. */
+/* Value of `attempts` while the first attempt has not failed yet. */
 #define FIRST_ATTEMPT (REBOOT_AFTER + 1)
 
-/* In the place of an operation that has ended: none, or a pause. */
+/* Stands for "no operation has ended", or for a pause that has ended. */
 #define NO_OPERATION TMINI_EVENT_NONE
 
 TMINI_NOINLINE void tmini_recovery_restart_reception(const tmini_t *lidar)
@@ -24,7 +24,7 @@ TMINI_NOINLINE void tmini_recovery_restart_reception(const tmini_t *lidar)
     }
 }
 
-/* An attempt has failed: a pause, and then the next. */
+/* An attempt has failed: begins the pause before the next one. */
 static void back_off(tmini_t *lidar)
 {
     tmini_recovery_restart_reception(lidar);
@@ -37,9 +37,9 @@ static void back_off(tmini_t *lidar)
     tmini_command_wait(lidar, is_longest ? max_ms : (uint16_t)pause_ms);
 }
 
-/* What comes after an operation that has ended. A reboot takes seconds, and a lidar that is only
- * unplugged does not hear it: first what is quick. Scanning matters more than the frequency: it
- * follows however the frequency's setting ended. */
+/* Chooses the operation that follows the one that has ended. A reboot is not tried at once, because
+ * it takes seconds and an unplugged lidar does not receive it. The start follows even if the
+ * frequency could not be set, because scanning matters more. */
 static tmini_event_t next_operation(const tmini_t *lidar, tmini_event_t ended)
 {
     if (ended == TMINI_EVENT_FREQUENCY) {
@@ -60,8 +60,8 @@ static void count(tmini_t *lidar, tmini_event_t operation)
     }
 }
 
-/* One attempt each: the ladder repeats them, not the command. Without the ladder the command
- * does. */
+/* With recovery the ladder repeats attempts, so each command is tried once. Without recovery the
+ * command itself is repeated. */
 static void make_attempt(tmini_t *lidar, tmini_event_t ended, bool is_idle)
 {
     const tmini_event_t operation = next_operation(lidar, ended);
@@ -73,7 +73,7 @@ static void make_attempt(tmini_t *lidar, tmini_event_t ended, bool is_idle)
     }
 }
 
-/* Listening, nothing is sent: until a packet comes. */
+/* With listen_only nothing is sent; the driver waits for packets. */
 void tmini_recovery_start(tmini_t *lidar, bool is_idle)
 {
     lidar->recovery.attempts = FIRST_ATTEMPT;
@@ -100,8 +100,8 @@ void tmini_recovery_begin(tmini_t *lidar)
     }
 }
 
-/* A start goes on until a packet comes; what ends well is a pause, a reboot, or a frequency that
- * has been set: then the line is quiet. */
+/* A start that succeeds does not come here: it ends with the first packet. What ends well here is a
+ * pause, a reboot or the setting of the frequency. */
 void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
     const bool is_rung = result == TMINI_OK || operation == TMINI_EVENT_FREQUENCY;

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Most commands are answered with a frequency: the question for it, and each of its steps (sections
+/* Most commands have a frequency as their reply: the query for it, and each of its steps (sections
  * 3 and 4). */
 bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header)
 {

@@ -16,29 +16,30 @@ tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size,
     }
     ring->memory = memory;
     ring->window = dma ? size / 2 : size;
-    tmini_store(&ring->size, size); /* Last: until then a byte that comes early is refused. */
+    tmini_store(&ring->size, size); /* Last: a byte that comes before this is refused. */
     return TMINI_OK;
 }
 
-/* How far head may go: up to one size ahead of the tail. Of a closed ring it is more than the
- * size. */
+/* How many bytes fit: head may be one size ahead of the tail. For a closed ring the result is
+ * larger than the size. */
 static size_t room_ahead(const tmini_ring_t *ring, size_t head)
 {
     return tmini_load(&ring->tail) + ring->size - head;
 }
 
-/* The next byte that is put looks at the limit first. */
+/* Moves head; the next byte that is put will read the tail first. */
 TMINI_INLINE void move_head(tmini_ring_t *ring, size_t head)
 {
     ring->stop = head;
     tmini_store(&ring->head, head);
 }
 
-/* These bytes found the ring full (no room), or closed. Counts them and closes it. */
+/* Counts bytes that found the ring full or closed. A full ring (no room) is closed. */
 static void refuse(tmini_ring_t *ring, size_t room, size_t count)
 {
     tmini_store(&ring->overrun, ring->overrun + count);
-    if (room == 0) { /* Last: whoever sees it closed sees all bytes and the count. */
+    if (room == 0) { /* Last: a consumer that sees the ring closed also sees all bytes and the
+                      * count. */
         move_head(ring, ring->head + TMINI_RING_CLOSED);
     }
 }
@@ -82,15 +83,15 @@ size_t tmini_ring_write(tmini_ring_t *ring, const uint8_t *bytes, size_t count)
     return taken;
 }
 
-/* What the consumer does meanwhile can only make more room, never less. */
+/* The consumer can only make more room meanwhile, never less. */
 size_t tmini_ring_room(const tmini_ring_t *ring)
 {
     const size_t room = room_ahead(ring, ring->head);
     return room <= ring->size ? room : 0;
 }
 
-/* The position says where in its lap the hardware is, not in which lap: it is taken for the next
- * such place ahead of the one published last. */
+/* The position shows where in a lap the hardware is, but not which lap. So it is taken as the next
+ * such place after the last one published. */
 void tmini_ring_publish(tmini_ring_t *ring, size_t position)
 {
     const size_t head = ring->head;
@@ -102,9 +103,9 @@ void tmini_ring_publish(tmini_ring_t *ring, size_t position)
 void tmini_ring_gap(tmini_ring_t *ring)
 {
     if (tmini_ring_is_dma(ring)) {
-        move_head(ring, ring->head + ring->size); /* A lap that was not seen. */
+        move_head(ring, ring->head + ring->size); /* The unseen lap. */
     } else if (room_ahead(ring, ring->head) <= ring->size) {
-        /* It is open: closed as by a refused byte, but there is no number to count. */
+        /* Closes an open ring, as a refused byte does, but counts no byte. */
         move_head(ring, ring->head + TMINI_RING_CLOSED);
     }
 }
@@ -114,13 +115,13 @@ bool tmini_ring_intact(const tmini_ring_t *ring)
     if (!tmini_ring_is_dma(ring)) {
         return true;
     }
-    tmini_fence(); /* What has been read was read before the producer's index is read again. */
+    tmini_fence(); /* All earlier reads come before this read of the producer's index. */
     return tmini_ring_ahead(ring) <= ring->window;
 }
 
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count)
 {
-    /* In locals, because `bytes` might overlap the ring for all the compiler knows. */
+    /* In local variables, because the compiler must assume that `bytes` overlaps the ring. */
     const uint8_t *const memory = ring->memory;
     const size_t mask = ring->size - 1;
     size_t index = ring->tail + offset;
@@ -129,7 +130,7 @@ void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, si
     }
 }
 
-/* From now on the producer may write there; so everything must have been read by now. */
+/* From now on the producer may write there, so all reads must be complete. */
 void tmini_ring_discard(tmini_ring_t *ring, size_t count)
 {
     tmini_store(&ring->tail, ring->tail + count);
