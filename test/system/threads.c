@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* threads RECORDING
+/* threads RECORDING [TURNS]
  *
  * The public functions between two threads, as between two cores: one feeds a recording, byte by
- * byte and in blocks, the other polls and reads the scans. threads.sh builds it, with the library,
- * under ThreadSanitizer. Exit status 0 unless no scan came. */
+ * byte and in blocks, every other time without waiting for room, so that the ring is closed and
+ * opened; the other polls and reads the scans. threads.sh builds it, with the library, under
+ * ThreadSanitizer. Exit status 0 unless no scan came, or no byte was refused. */
 
 #include <pthread.h>
 #include <sched.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "tmini/tmini.h"
 
-#define TURNS 5
-
 static uint8_t recording[100000];
 static size_t size;
+static size_t turns = 6;
 
 static uint8_t rx[512];
 static tmini_point_t points[800];
@@ -41,10 +42,12 @@ static void wait_for_room(size_t wanted)
 
 static void *feed(void *unused)
 {
-    for (size_t at = 0; at < TURNS * size;) {
+    for (size_t at = 0; at < turns * size;) {
         const size_t from = at % size;
         const size_t count = from + 40 < size && at % 80 == 0 ? 40 : 1;
-        wait_for_room(count);
+        if (at / size % 2 == 0) {
+            wait_for_room(count);
+        }
         if (count == 1) {
             tmini_feed_byte(&lidar, recording[from]);
         } else {
@@ -76,10 +79,11 @@ int main(int argc, char **argv)
     unsigned scans = 0;
     unsigned long sum = 0;
     pthread_t feeder;
-    FILE *const file = argc == 2 ? fopen(argv[1], "rb") : NULL;
+    FILE *const file = argc >= 2 ? fopen(argv[1], "rb") : NULL;
     if (file == NULL) {
         return 2;
     }
+    turns = argc > 2 ? strtoul(argv[2], NULL, 10) : turns;
     size = fread(recording, 1, sizeof recording, file);
     fclose(file);
     if (tmini_init(&lidar, &config) != TMINI_OK || tmini_start(&lidar) != TMINI_OK ||
@@ -93,6 +97,9 @@ int main(int argc, char **argv)
         }
     }
     pthread_join(feeder, NULL);
-    printf("%u scans, brightness %lu\n", scans, sum);
-    return scans > 0 ? 0 : 1;
+    tmini_counters_t counters;
+    tmini_counters(&lidar, &counters);
+    printf("%u scans, brightness %lu, %lu bytes refused\n", scans, sum,
+           (unsigned long)counters.bytes_overrun);
+    return scans > 0 && counters.bytes_overrun > 0 ? 0 : 1;
 }

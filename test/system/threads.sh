@@ -5,10 +5,13 @@
 # The public functions between two threads under ThreadSanitizer, with the library's own barriers
 # for several cores; and with one taken out, which must then be noticed. (By Clang: GCC 12's does
 # not see as much.) Exit status 77: Clang cannot do that here.
+#
+#   test/system/threads.sh [TURNS]     of the recording: 6 unless given
 
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
+turns=${1:-6}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -21,7 +24,7 @@ build() {
 # run NAME: fails if a race is seen.
 run() {
     TSAN_OPTIONS="halt_on_error=1 exitcode=66" \
-        "$work/$1" "$root/test/recordings/sim-6hz.bin" >"$work/$1.log" 2>&1
+        "$work/$1" "$root/test/recordings/sim-6hz.bin" "$turns" >"$work/$1.log" 2>&1
 }
 
 if ! echo 'int main(void) { return 0; }' |
