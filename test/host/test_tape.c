@@ -334,6 +334,164 @@ void test_what_came_later_is_not_there_yet(void)
     TEST_ASSERT_EQUAL_UINT64(5, tape.stream.packets);
 }
 
+void test_blocks_of_any_size_give_the_same_chunks(void)
+{
+    put_magic(2);
+    for (unsigned turn = 0; turn < 30; turn++) {
+        put_turn_at(42000);
+    }
+    for (size_t block = 1; block < 2 * size; block = 3 * block + 1) {
+        tape_begin(&tape, NULL, 0);
+        for (size_t at = 0; at < size; at += block) {
+            feed(file + at, size - at < block ? size - at : block);
+        }
+        finish();
+        TEST_ASSERT_EQUAL_UINT64(150, tape.stream.packets);
+        TEST_ASSERT_EQUAL_UINT64(150 * 42000, tape.time_us);
+        TEST_ASSERT_EQUAL_UINT(0, tape.chunks.damages);
+    }
+}
+
+/* Two packets in it, of which the second one lacks a byte. */
+void test_the_last_chunk_may_be_cut_short(void)
+{
+    put_magic(2);
+    uint8_t packets[2 * MANUAL_SIZE];
+    memcpy(packets, manual, MANUAL_SIZE);
+    memcpy(packets + MANUAL_SIZE, manual, MANUAL_SIZE);
+    put_chunk(2, 1000, packets, sizeof packets);
+    feed(file, size - 1);
+    finish();
+    TEST_ASSERT_EQUAL_UINT64(1, tape.stream.packets);
+}
+
+/* ------------------------------------------------------------------------- what a stream tells */
+
+static void put_garbage(unsigned count)
+{
+    for (unsigned i = 0; i < count; i++) {
+        put(0);
+    }
+}
+
+/* 194 bytes may have been one packet of 130, 195 two; fewer than half of one are one. */
+void test_damage_is_counted_in_packets(void)
+{
+    static const unsigned bytes[] = {1, 64, 194, 195};
+    static const unsigned packets[] = {1, 1, 1, 2};
+    for (unsigned i = 0; i < 4; i++) {
+        setUp();
+        put_packet(1);
+        put_garbage(bytes[i]);
+        put_packet(2);
+        feed(file, size);
+        finish();
+        TEST_ASSERT_EQUAL_UINT64(bytes[i], tape.stream.stray_bytes);
+        TEST_ASSERT_EQUAL_UINT64(packets[i], tape.stream.damaged);
+    }
+    TEST_ASSERT_EQUAL_UINT(500, stream_damaged_permille(&tape.stream));
+}
+
+/* 2 of 3, and of none. */
+void test_the_damaged_share_is_rounded(void)
+{
+    TEST_ASSERT_EQUAL_UINT(0, stream_damaged_permille(&tape.stream));
+    tape.stream.packets = 1;
+    tape.stream.damaged = 2;
+    TEST_ASSERT_EQUAL_UINT(667, stream_damaged_permille(&tape.stream));
+}
+
+void test_what_precedes_the_first_packet_is_no_damage(void)
+{
+    put_garbage(300);
+    put_packet(1);
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT64(0, tape.stream.stray_bytes);
+    TEST_ASSERT_EQUAL_UINT64(0, tape.stream.damaged);
+    TEST_ASSERT_EQUAL_UINT64(300, tape_skipped(&tape));
+}
+
+/* Two bytes before it are not LastCRC. */
+void test_one_byte_before_a_start_packet_is_a_guard(void)
+{
+    for (unsigned count = 1; count <= 2; count++) {
+        setUp();
+        put_turn();
+        put_garbage(count);
+        put_turn();
+        feed(file, size);
+        finish();
+        TEST_ASSERT_EQUAL_UINT64(count == 1 ? 1 : 0, tape.stream.guard_bytes);
+        TEST_ASSERT_EQUAL_UINT64(count == 1 ? 0 : 2, tape.stream.stray_bytes);
+    }
+}
+
+/* The first packet of all comes after 66 s; that is no pause. */
+void test_the_longest_pause_is_between_two_packets(void)
+{
+    put_magic(2);
+    put_turn_at(66000000);
+    put_turn_at(70000);
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT32(70, tape.stream.longest_ms);
+}
+
+void test_a_pause_of_more_than_a_minute_is_one(void)
+{
+    put_magic(2);
+    put_turn_at(0);
+    put_turn_at(66000000);
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT32(66000, tape.stream.longest_ms);
+    TEST_ASSERT_EQUAL_UINT32(66336, tape.stream.packet_ms);
+}
+
+/* 60 in the start packet's CT: 6.00 Hz. */
+void test_the_frequency_is_that_of_the_latest_start_packet(void)
+{
+    put_packet(4);
+    feed(file, size);
+    TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
+    TEST_ASSERT_EQUAL_UINT(0, tape.stream.frequency_chz);
+    size = 0;
+    put_packet(0);
+    put_packet(1);
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT(600, tape.stream.frequency_chz);
+}
+
+/* As units without LastCRC do (section 9.1): known after a whole turn. */
+void test_a_unit_may_report_nothing_in_the_stream(void)
+{
+    put_turn();
+    put_packet(0);
+    feed(file, size - 13);
+    TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
+    TEST_ASSERT_FALSE(stream_tells_nothing(&tape.stream));
+    feed(file + size - 13, 13);
+    TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
+    TEST_ASSERT_TRUE(stream_tells_nothing(&tape.stream));
+    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, stream_faults(&tape.stream));
+    tape.stream.guard_bytes = 1; /* LastCRC has come: it may yet. */
+    TEST_ASSERT_FALSE(stream_tells_nothing(&tape.stream));
+}
+
+/* The simulated lidar sends LastCRC, and is healthy. */
+void test_a_unit_may_report_its_health_in_the_stream(void)
+{
+    write_whole(2);
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT(0, stream_faults(&tape.stream));
+    TEST_ASSERT_FALSE(stream_tells_nothing(&tape.stream));
+    TEST_ASSERT_EQUAL_UINT64(tape.stream.start_packets - 1, tape.stream.guard_bytes);
+    TEST_ASSERT_EQUAL_UINT64(tape.stream.guard_bytes, tape.stream.confirmed);
+}
+
 /* -------------------------------------------------------------------------------- what is a scan */
 
 void test_a_scan_has_the_number_of_its_start_packet(void)
