@@ -44,7 +44,7 @@ typedef struct {
     uint64_t last_us;   /* the last byte, */
     uint64_t steady_us; /* and when the motor is up to speed for certain. */
     uint32_t packets, start_packets, lone_packets;
-    uint32_t guards, confirmed, refuted, guards_aa, stray_bytes, damages;
+    uint32_t guards, confirmed, refuted, guards_aa, damages;
     uint32_t samples, flagged;
     bool has_ct, begins_with_start;
     uint8_t longest;
@@ -57,7 +57,8 @@ typedef struct {
     uint32_t steady_samples; /* all samples in that time, and its end. */
     uint64_t steady_end_us;
     uint32_t before_error, after_error; /* The told frequency against the turns around it. */
-    uint32_t now_samples, before_samples, told_dhz;
+    uint32_t now_samples, before_samples, told_dhz; /* Of a turn with a gap 0. */
+    bool is_damaged;                                /* This turn has a gap. */
     uint8_t crc, latest_count, latest_is_point;
     uint32_t early_count;
     struct {

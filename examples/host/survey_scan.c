@@ -69,13 +69,14 @@ static void note_start(survey_scan_t *scan, const tmini_packet_t *packet, uint64
     scan->crc = 0;
     if (scan->start_packets > 0) {
         compare_told(scan);
-        if (now_us - scan->first_us > STEADY_US && packet->gap <= 1) {
+        if (now_us - scan->first_us > STEADY_US && scan->now_samples > 0) {
             note_steady_turn(scan, packet);
         }
         scan->before_samples = scan->now_samples;
     }
     scan->told_dhz = packet->ct / 2u;
     scan->now_samples = 0;
+    scan->is_damaged = false;
     scan->start_packets++;
 }
 
@@ -96,7 +97,7 @@ static void note_samples(survey_scan_t *scan, const tmini_packet_t *packet, uint
         scan->flagged += point.flag == TMINI_FLAG_SPECULAR || point.flag == TMINI_FLAG_AMBIENT;
     }
     scan->samples += packet->count;
-    scan->now_samples += packet->count;
+    scan->now_samples += scan->is_damaged ? 0 : packet->count;
     if (scan->steady_us == 0 && now_us - scan->first_us > STEADY_US) {
         scan->steady_us = now_us;
     } else if (scan->steady_us != 0) {
@@ -126,13 +127,16 @@ static void note_way(survey_scan_t *scan, const tmini_packet_t *packet)
     scan->until_start_q6 = scan->until_start_q6 - at_q6 + to_q6;
 }
 
+/* A turn with a gap says nothing by its samples; of the steady ones, those in the gap count. */
 static void note_gap(survey_scan_t *scan, const tmini_packet_t *packet)
 {
     const bool is_guard = tmini_packet_is_start(packet) && packet->gap == 1;
     if (scan->packets > 0 && packet->gap > 0 && !is_guard) {
-        scan->stray_bytes += packet->gap;
         scan->damages++;
+        scan->is_damaged = true;
+        scan->steady_samples += scan->steady_us != 0 ? packet->gap * 40u / 130u : 0;
     }
+    scan->now_samples = scan->is_damaged ? 0 : scan->now_samples;
 }
 
 static void take(survey_scan_t *scan, const tmini_packet_t *packet, uint64_t now_us)

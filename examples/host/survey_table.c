@@ -328,10 +328,11 @@ static bool read_ct(const survey_t *survey, char text[TEXT_SIZE])
 static bool read_last_crc(const survey_t *survey, char text[TEXT_SIZE])
 {
     const survey_scan_t *const scan = slow(survey);
-    return put_word(text, scan->start_packets < 2                                  ? NULL
-                          : scan->guards == 0                                      ? "absent"
-                          : scan->confirmed > 0 && scan->refuted < scan->confirmed ? "right"
-                                                                                   : "wrong");
+    return put_word(text, scan->start_packets < 2                ? NULL
+                          : scan->guards == 0                    ? "absent"
+                          : scan->refuted < scan->confirmed      ? "right"
+                          : scan->refuted + scan->confirmed == 0 ? NULL
+                                                                 : "wrong");
 }
 
 /* In some hundred turns it may not occur. */
@@ -351,16 +352,19 @@ static bool read_user_version(const survey_t *survey, char text[TEXT_SIZE])
     return (ct->known & TMINI_KNOWN_USER_VERSION) != 0;
 }
 
+/* Only what is tested once at power-up (section 7): other faults may have come since. */
 static bool read_health_index(const survey_t *survey, char text[TEXT_SIZE])
 {
     const tmini_ct_info_t *const ct = &slow(survey)->ct;
     const uint8_t *const info = info_of(survey);
     const uint8_t *const health = survey_content(&survey->health, 0x06, TMINI_HEALTH_SIZE);
     const unsigned needed = TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE;
+    const unsigned lasting = TMINI_FAULT_WIRELESS_POWER | TMINI_FAULT_PD | TMINI_FAULT_LD;
     if (info == NULL || health == NULL || (ct->known & needed) != needed) {
         return false;
     }
-    return put_word(text, ct->faults == health[0] && ct->hardware == info[3] ? "3" : "other");
+    const bool is_same = ((ct->faults ^ health[0]) & lasting) == 0;
+    return put_word(text, is_same && ct->hardware == info[3] ? "3" : "other");
 }
 
 static bool read_ct_serial(const survey_t *survey, char text[TEXT_SIZE])

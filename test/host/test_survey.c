@@ -13,17 +13,39 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#define REPORT "survey.txt"
+/* Files, for the time of a test. */
+static char report_file[] = "/tmp/tmini-report.XXXXXX";
+static char like_file[] = "/tmp/tmini-like.XXXXXX";
 
+static unsigned lost_every; /* One in so many bytes is lost on the line; 0: none. */
+static unsigned sent;
 static sim_t device;
 static uint64_t time_us;
 static survey_t survey;
 static char report[8192];
 
-void setUp(void) {}
+static void make_file(char *name)
+{
+    memcpy(name + strlen(name) - 6, "XXXXXX", 6);
+    const int fd = mkstemp(name);
+    TEST_ASSERT_TRUE(fd >= 0);
+    TEST_ASSERT_EQUAL_INT(0, close(fd));
+}
 
-void tearDown(void) {}
+void setUp(void)
+{
+    lost_every = 0;
+    make_file(report_file);
+    make_file(like_file);
+}
+
+void tearDown(void)
+{
+    (void)remove(report_file);
+    (void)remove(like_file);
+}
 
 static uint64_t now_us(void *context)
 {
@@ -37,6 +59,17 @@ static void send_bytes(void *context, const uint8_t *bytes, size_t count)
     sim_receive(&device, bytes, count, time_us);
 }
 
+static size_t lose_some(uint8_t *bytes, size_t count)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (lost_every == 0 || ++sent % lost_every != 0) {
+            bytes[kept++] = bytes[i];
+        }
+    }
+    return kept;
+}
+
 /* To the microsecond at which something comes. */
 static size_t receive(void *context, uint8_t *bytes, size_t max, uint64_t until_us)
 {
@@ -46,7 +79,7 @@ static size_t receive(void *context, uint8_t *bytes, size_t max, uint64_t until_
         const uint64_t next_us = sim_next_us(&device);
         const uint64_t soon_us = next_us < until_us ? next_us : until_us;
         time_us = soon_us > time_us ? soon_us : time_us;
-        count = sim_transmit(&device, time_us, bytes, max);
+        count = lose_some(bytes, sim_transmit(&device, time_us, bytes, max));
         time_us += count == 0 && soon_us == next_us ? 1 : 0;
     }
     return count;
@@ -73,14 +106,15 @@ static options_t documented(void)
     return options;
 }
 
-/* Surveys such a lidar; its report is then in REPORT, and in `report`. */
+/* Surveys such a lidar; its report is then in report_file, and in `report`. */
 static void survey_of(const options_t *options)
 {
     time_us = 0;
     sim_init(&device, &options->device);
     sim_set_health(&device, options->health);
+    sim_cover_window(&device, options->covered);
     TEST_ASSERT_TRUE(survey_run(&survey, &wire, SURVEY_SECONDS));
-    FILE *const file = fopen(REPORT, "w+");
+    FILE *const file = fopen(report_file, "w+");
     TEST_ASSERT_NOT_NULL(file);
     survey_print_report(&survey, file, false);
     rewind(file);
@@ -125,7 +159,7 @@ void test_the_serial_number_is_left_out_unless_it_is_wanted(void)
         "\nreply_90 = A5 5A 14 00 00 00 04 97 02 01 01 ** ** ** ** ** ** ** ** ** ** ** ** ** ** "
         "** **\n");
     TEST_ASSERT_NULL(strstr(report, "12345"));
-    FILE *const file = fopen(REPORT, "w+");
+    FILE *const file = fopen(report_file, "w+");
     survey_print_report(&survey, file, true);
     rewind(file);
     report[fread(report, 1, sizeof report - 1, file)] = '\0';
@@ -168,11 +202,11 @@ static const struct {
 static options_t like(const char *text)
 {
     options_t options = documented();
-    FILE *const file = fopen("like.txt", "w");
+    FILE *const file = fopen(like_file, "w");
     TEST_ASSERT_NOT_NULL(file);
     (void)fprintf(file, "# as written by hand\n%s\nno_such_key = 1\nboot_ms = unknown\n", text);
     TEST_ASSERT_EQUAL_INT(0, fclose(file));
-    TEST_ASSERT_TRUE_MESSAGE(like_read(&options, "like.txt"), text);
+    TEST_ASSERT_TRUE_MESSAGE(like_read(&options, like_file), text);
     return options;
 }
 
@@ -192,6 +226,44 @@ void test_a_start_packet_place_passed_unmarked_is_seen(void)
     const options_t options = like("first_packets = unmarked\nfirst_angle_deg = 330");
     survey_of(&options);
     expect("\nfirst_packets = unmarked\nfirst_angle_deg = 330\n");
+}
+
+/* The window is covered: the data fault is live (section 7), so only the stream reports it. */
+void test_a_live_fault_is_no_other_index_of_the_health(void)
+{
+    options_t options = documented();
+    options.covered = true;
+    survey_of(&options);
+    expect("\nhealth = 0\n");
+    expect("\nhealth_index = 3\n");
+}
+
+/* On the line, not by the unit: three turns of four lack a packet. */
+void test_a_damaged_line_is_no_other_unit(void)
+{
+    const options_t options = documented();
+    lost_every = 3001;
+    survey_of(&options);
+    expect("\n# differs     9.12  places with stray bytes ");
+    expect("\nmotor_percent = 100\n");
+    expect("\nspin_up_ms = 1000\n");
+    expect("\nsamples_per_second = 4000\n");
+    expect("\npoints_slow = 670\n");
+    expect("\npoints_medium = 400\n");
+    expect("\npoints_fast = 330\n");
+    expect("\nlast_crc = right\n");
+}
+
+/* Here each turn lacks two. */
+void test_what_a_damaged_line_hides_is_unknown(void)
+{
+    const options_t options = documented();
+    lost_every = 997;
+    survey_of(&options);
+    expect("\nmotor_percent = unknown\n");
+    expect("\npoints_slow = unknown\n");
+    expect("\nlast_crc = unknown\n");
+    expect("\nsamples_per_second = 4000\n");
 }
 
 void test_without_lone_packets_nothing_is_said_about_them(void)
@@ -228,7 +300,7 @@ void test_a_lidar_like_the_one_surveyed_gives_the_same_report(void)
         remove_chance(first);
         options = documented();
         options.device.seed = 7;
-        TEST_ASSERT_TRUE(like_read(&options, REPORT));
+        TEST_ASSERT_TRUE(like_read(&options, report_file));
         survey_of(&options);
         remove_chance(report);
         TEST_ASSERT_EQUAL_STRING(first, report);
@@ -238,10 +310,10 @@ void test_a_lidar_like_the_one_surveyed_gives_the_same_report(void)
 void test_a_file_that_is_no_report_is_refused(void)
 {
     options_t options = documented();
-    FILE *const file = fopen("like.txt", "w");
+    FILE *const file = fopen(like_file, "w");
     TEST_ASSERT_NOT_NULL(file);
     (void)fputs("boot_ms = soon\n", file);
     TEST_ASSERT_EQUAL_INT(0, fclose(file));
-    TEST_ASSERT_FALSE(like_read(&options, "like.txt"));
+    TEST_ASSERT_FALSE(like_read(&options, like_file));
     TEST_ASSERT_FALSE(like_read(&options, "no/such/report"));
 }
