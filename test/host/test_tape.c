@@ -334,6 +334,20 @@ void test_what_came_later_is_not_there_yet(void)
     TEST_ASSERT_EQUAL_UINT64(5, tape.stream.packets);
 }
 
+/* 32,768 bytes do; of what has been fed before it is played nothing is lost. */
+void test_no_more_is_taken_than_there_is_room_for(void)
+{
+    while (size < 100 * 533) {
+        put_turn();
+    }
+    TEST_ASSERT_EQUAL_size_t(1000, tape_feed(&tape, file, 1000));
+    TEST_ASSERT_EQUAL_size_t(31768, tape_feed(&tape, file + 1000, size - 1000));
+    TEST_ASSERT_EQUAL_size_t(0, tape_feed(&tape, file + 32768, size - 32768));
+    feed(file + 32768, size - 32768);
+    finish();
+    TEST_ASSERT_EQUAL_UINT64(500, tape.stream.packets);
+}
+
 void test_blocks_of_any_size_give_the_same_chunks(void)
 {
     put_magic(2);
@@ -384,21 +398,23 @@ void test_damage_is_counted_in_packets(void)
         put_packet(1);
         put_garbage(bytes[i]);
         put_packet(2);
+        put_garbage(7);
+        put_packet(3);
         feed(file, size);
         finish();
-        TEST_ASSERT_EQUAL_UINT64(bytes[i], tape.stream.stray_bytes);
-        TEST_ASSERT_EQUAL_UINT64(packets[i], tape.stream.damaged);
+        TEST_ASSERT_EQUAL_UINT64(bytes[i] + 7, tape.stream.stray_bytes);
+        TEST_ASSERT_EQUAL_UINT64(packets[i] + 1, tape.stream.damaged);
     }
     TEST_ASSERT_EQUAL_UINT(500, stream_damaged_permille(&tape.stream));
 }
 
-/* 2 of 3, and of none. */
+/* One of 16, and of none. */
 void test_the_damaged_share_is_rounded(void)
 {
     TEST_ASSERT_EQUAL_UINT(0, stream_damaged_permille(&tape.stream));
-    tape.stream.packets = 1;
-    tape.stream.damaged = 2;
-    TEST_ASSERT_EQUAL_UINT(667, stream_damaged_permille(&tape.stream));
+    tape.stream.packets = 15;
+    tape.stream.damaged = 1;
+    TEST_ASSERT_EQUAL_UINT(63, stream_damaged_permille(&tape.stream));
 }
 
 void test_what_precedes_the_first_packet_is_no_damage(void)
@@ -436,6 +452,7 @@ void test_the_longest_pause_is_between_two_packets(void)
     feed(file, size);
     finish();
     TEST_ASSERT_EQUAL_UINT32(70, tape.stream.longest_ms);
+    TEST_ASSERT_EQUAL_UINT64(1, tape.stream.complete);
 }
 
 void test_a_pause_of_more_than_a_minute_is_one(void)
@@ -515,8 +532,11 @@ void test_a_scan_stays_until_the_next(void)
 {
     put_turn();
     put_turn();
+    put_turn();
     feed(file, size);
-    while (tape_next(&tape) != TAPE_SCAN) {
+    for (unsigned i = 0; i < 2; i++) {
+        while (tape_next(&tape) != TAPE_SCAN) {
+        }
     }
     const tmini_scan_t scan = tape.stream.scan;
     tmini_point_t points[161];
@@ -557,6 +577,19 @@ void test_a_start_packet_and_then_a_pause_is_no_scan(void)
     TEST_ASSERT_EQUAL_UINT64(2, tape.stream.complete);
     TEST_ASSERT_EQUAL_UINT64(3, tape.stream.number);
     TEST_ASSERT_EQUAL_UINT32(1001, tape.stream.longest_ms);
+}
+
+void test_a_start_packet_is_not_joined_with_what_comes_after_a_pause(void)
+{
+    uint8_t packet[ENCODE_PACKET_MAX];
+    put_magic(2);
+    put_chunk(2, 0, packet, packet_of(0, packet));
+    put_chunk(2, 1001000, packet, packet_of(1, packet));
+    feed(file, size);
+    finish();
+    TEST_ASSERT_EQUAL_UINT32(1001, tape.stream.longest_ms);
+    TEST_ASSERT_TRUE(stream_end(&tape.stream));
+    TEST_ASSERT_EQUAL_UINT16(1, tape.stream.scan.packets);
 }
 
 /* Quarter by quarter, it fits: but turns may be missing. */
@@ -626,6 +659,17 @@ static bool come(unsigned quarter, bool is_doubted, uint32_t now_ms)
     return stream_take(&tape.stream, &packet, now_ms);
 }
 
+void test_a_stream_begins_empty(void)
+{
+    memset(&tape.stream, 0xFF, sizeof tape.stream);
+    stream_init(&tape.stream, NULL);
+    TEST_ASSERT_FALSE(come(1, false, 5000));
+    TEST_ASSERT_EQUAL_UINT64(1, tape.stream.packets);
+    TEST_ASSERT_EQUAL_UINT64(40, tape.stream.points_before);
+    TEST_ASSERT_EQUAL_UINT32(0, tape.stream.longest_ms);
+    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, stream_faults(&tape.stream));
+}
+
 /* After a pause all packets of a batch may be doubted: the first begins another scan, which the
  * others belong to. */
 void test_a_doubted_batch_is_one_scan(void)
@@ -639,6 +683,7 @@ void test_a_doubted_batch_is_one_scan(void)
     TEST_ASSERT_EQUAL_UINT16(3, tape.stream.scan.packets);
     TEST_ASSERT_FALSE(tape.stream.scan.complete);
     TEST_ASSERT_EQUAL_UINT64(2, tape.stream.scans);
+    TEST_ASSERT_EQUAL_UINT64(0, tape.stream.complete);
     TEST_ASSERT_EQUAL_UINT64(0, tape.stream.damaged);
 }
 
