@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini-sim: the simulated lidar in real time for programs, or recorded in virtual time. */
+/* tmini-sim: the simulated lidar in real time for programs, in virtual time for emulators, or
+ * recorded. */
 
 #define _XOPEN_SOURCE 600
 
@@ -136,6 +137,65 @@ static int run_in_real_time(const options_t *options)
     return report_close(&report, now_us, host.lost) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
+/* ---- In the caller's time ---- */
+
+static size_t parse_hex(const char *text, uint8_t *bytes, size_t max)
+{
+    size_t count = 0;
+    unsigned value = 0;
+
+    while (count < max && sscanf(text, "%2x", &value) == 1) {
+        bytes[count++] = (uint8_t)value;
+        text += 2;
+    }
+    return count;
+}
+
+static void answer(uint64_t now_us)
+{
+    uint8_t bytes[4096];
+    size_t count;
+
+    do {
+        count = sim_link_read(&wire, now_us, bytes, sizeof bytes);
+        for (size_t i = 0; i < count; i++) {
+            printf("%02X", bytes[i]);
+        }
+    } while (count == sizeof bytes);
+    printf("\n");
+    fflush(stdout);
+}
+
+/* Until the input ends. */
+static uint64_t serve_lines(void)
+{
+    char line[1024];
+    uint64_t now_us = 0;
+
+    while (stop_requested == 0 && fgets(line, sizeof line, stdin) != NULL) {
+        uint8_t bytes[sizeof line / 2];
+        char *rest = line;
+        size_t count;
+
+        now_us = strtoull(line, &rest, 10);
+        rest += *rest == ' ' ? 1 : 0;
+        count = parse_hex(rest, bytes, sizeof bytes);
+        if (count > 0) {
+            sim_link_write(&wire, bytes, count, now_us);
+        }
+        answer(now_us);
+    }
+    return now_us;
+}
+
+static int run_by_lines(const options_t *options)
+{
+    if (!report_open(&report, options->log_path, options->truth_path, &device, &wire)) {
+        return EXIT_FAILURE;
+    }
+    return report_close(&report, serve_lines(), 0) ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
 /* ---- In virtual time ---- */
 
 /* The stream from the start command on, its reply included. */
@@ -210,5 +270,8 @@ int main(int argc, char **argv)
     }
     catch_signals();
     set_up(&options);
+    if (options.lines) {
+        return run_by_lines(&options);
+    }
     return options.write_path != NULL ? run_in_virtual_time(&options) : run_in_real_time(&options);
 }

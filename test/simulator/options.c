@@ -83,6 +83,13 @@ static bool set_tcp(options_t *options, const char *value)
     return true;
 }
 
+static bool set_lines(options_t *options, const char *value)
+{
+    (void)value;
+    options->lines = true;
+    return true;
+}
+
 static bool set_write(options_t *options, const char *value)
 {
     options->write_path = value;
@@ -233,6 +240,10 @@ static bool set_like(options_t *options, const char *value)
 static const option_t known[] = {
     {0, "pty", NULL, "serve a pseudo-terminal; its path is the first line printed", set_pty},
     {0, "tcp", "PORT", "serve 127.0.0.1:PORT (0: any free port; the first line says)", set_tcp},
+    {0, "lines", NULL,
+     "in the time of whoever asks: reads lines of MICROSECONDS and the\n"
+     "                          bytes then received, in hexadecimal; answers each with those sent",
+     set_lines},
     {0, "write", "FILE", "record --seconds of scanning in virtual time, as fast as can be",
      set_write},
     {0, "frequency", "HZ", "set scan frequency at power-up, 5 to 12 (6)", set_frequency},
@@ -273,7 +284,7 @@ void options_print_version(void)
 
 void options_print_help(void)
 {
-    puts("usage: tmini-sim --pty | --tcp PORT | --write FILE --seconds N [options]\n"
+    puts("usage: tmini-sim --pty | --tcp PORT | --lines | --write FILE --seconds N [options]\n"
          "A simulated YDLIDAR T-mini Plus.\n");
     for (size_t i = 0; i < KNOWN_OPTIONS; i++) {
         const option_t *option = &known[i];
@@ -303,22 +314,23 @@ static int on_standard_output(const char *path)
 
 static bool is_consistent(const options_t *options)
 {
-    const int modes =
-        (options->pty ? 1 : 0) + (options->tcp ? 1 : 0) + (options->write_path == NULL ? 0 : 1);
+    const int modes = (options->pty ? 1 : 0) + (options->tcp ? 1 : 0) + (options->lines ? 1 : 0) +
+                      (options->write_path == NULL ? 0 : 1);
 
     if (options->help || options->version) {
         return true;
     }
     if (modes != 1) {
-        return complain("", "give one of --pty, --tcp PORT and --write FILE");
+        return complain("", "give one of --pty, --tcp PORT, --lines and --write FILE");
     }
     if (options->write_path != NULL && options->seconds <= 0.0) {
         return complain("--write", " needs --seconds N");
     }
-    if (on_standard_output(options->write_path) + on_standard_output(options->log_path) +
-            on_standard_output(options->truth_path) >
+    if ((options->lines ? 1 : 0) + on_standard_output(options->write_path) +
+            on_standard_output(options->log_path) + on_standard_output(options->truth_path) >
         1) {
-        return complain("", "only one of --write, --log and --truth can be -");
+        return complain("",
+                        "only one of --lines, --write, --log and --truth can have standard output");
     }
     return true;
 }

@@ -13,7 +13,8 @@ typedef struct {
     bool version;
     bool pty;
     bool tcp;
-    uint16_t tcp_port;      /* 0: any free one */
+    uint16_t tcp_port; /* 0: any free one */
+    bool lines;
     const char *write_path; /* NULL: not asked for, as all paths below; "-": standard output */
     const char *log_path;
     const char *truth_path;

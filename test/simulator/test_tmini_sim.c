@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The program tmini-sim from outside: usage, pseudo-terminal, socket, recordings. TMINI_SIM is
- * its path. POSIX only. */
+/* The program tmini-sim from outside: usage, pseudo-terminal, socket, lines, recordings. TMINI_SIM
+ * is its path. POSIX only. */
 
 #define _XOPEN_SOURCE 600
 
@@ -26,6 +26,7 @@
 #define NO_PROCESS (-1)
 
 static pid_t child = NO_PROCESS;
+static int child_input = STDIN_FILENO; /* What becomes it. */
 static int child_output = -1;
 static uint8_t received[OUTPUT_MAX];
 
@@ -54,6 +55,7 @@ static void launch(const char *const arguments[])
     child = fork();
     TEST_ASSERT_TRUE(child >= 0);
     if (child == 0) {
+        dup2(child_input, STDIN_FILENO);
         dup2(ends[1], STDOUT_FILENO);
         close(ends[0]);
         close(ends[1]);
@@ -63,6 +65,10 @@ static void launch(const char *const arguments[])
         _exit(127);
     }
     close(ends[1]);
+    if (child_input != STDIN_FILENO) {
+        close(child_input);
+        child_input = STDIN_FILENO;
+    }
     child_output = ends[0];
 }
 
@@ -222,6 +228,8 @@ void test_wrong_usage_is_exit_status_2(void)
         {"--pty", "--motor", "0", NULL},
         {"--pty", "--spin-up", "61", NULL},
         {"--write", "-", "--seconds", "1", "--log", NULL},
+        {"--lines", "--pty", NULL},
+        {"--lines", "--log", "-", NULL},
     };
 
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
@@ -360,6 +368,29 @@ void test_it_ends_after_its_seconds_and_speed_shortens_them(void)
     send_to(fd, start_scan);
     TEST_ASSERT_TRUE(read_for(fd, OUTPUT_MAX, 5000) > 100000u);
     close(fd);
+    TEST_ASSERT_EQUAL_INT(0, wait_for_exit());
+}
+
+/* ---- In the caller's time ---- */
+
+/* The reply takes 1 ms (the device's latency is less) and 27 bytes of 43.4 us. */
+void test_in_the_callers_time_it_answers_line_by_line(void)
+{
+    static const char *const arguments[] = {"--lines", NULL};
+    static const char questions[] = "0 A590\n1000000\n1000000\n2000000 a50D\n2010000\n";
+    static const char answers[] = "\n"
+                                  "A55A1400000004970201010200020600030107000000010203040"
+                                  "5\n\n\nA55A040000000458020000\n";
+    int ends[2];
+
+    TEST_ASSERT_EQUAL_INT(0, pipe(ends));
+    TEST_ASSERT_EQUAL_INT(sizeof questions - 1,
+                          (int)write(ends[1], questions, sizeof questions - 1));
+    close(ends[1]);
+    child_input = ends[0];
+    launch(arguments);
+    TEST_ASSERT_EQUAL_size_t(sizeof answers - 1, read_for(child_output, sizeof answers, 5000));
+    TEST_ASSERT_EQUAL_MEMORY(answers, received, sizeof answers - 1);
     TEST_ASSERT_EQUAL_INT(0, wait_for_exit());
 }
 
