@@ -3,19 +3,21 @@
 
 """Runs the firmware on a simulated ESP32-C3 whose UART is wired to the simulated lidar.
 
-    run.py FIRMWARE.elf LIDAR_PIPE
+    run.py FIRMWARE.elf TMINI_SIM
 
 Both keep virtual time: byte for byte the same on every run and machine. What the lidar measured,
 what the firmware says it received, and what it sent are compared; any difference is a failure.
 """
 
 import pathlib
-import subprocess
 import sys
 import tempfile
 import time
 
 import labwired
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from lidar import Lidar  # pylint: disable=wrong-import-position
 
 PROCESSOR_HZ = 20_000_000  # What the chip comes out of reset with; TICKS_PER_MS in board.c.
 SLICE_US = 250  # Six byte times.
@@ -52,27 +54,14 @@ def system_description():
             "external_devices: []\nboard_io: []\n")
 
 
-class Lidar:
-    """The simulated lidar, a process of its own."""
-
-    def __init__(self, program, frequency_chz):
-        self.process = subprocess.Popen([program, str(frequency_chz)], text=True,
-                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-
-    def exchange(self, now_us, sent):
-        self.process.stdin.write(f"{now_us} {sent.hex()}\n")
-        self.process.stdin.flush()
-        return bytes.fromhex(self.process.stdout.readline())
-
-    def truth(self):
-        """Revolution -> its points, in order."""
-        revolutions = {}
-        self.process.stdin.close()
-        for line in self.process.stdout:
-            number, *point = map(int, line.split())
-            revolutions.setdefault(number, []).append(tuple(point))
-        self.process.wait()
-        return revolutions
+def revolutions_of(packets):
+    """Revolution -> its points, in order."""
+    revolutions = {}
+    for packet in packets.values():
+        revolutions.setdefault(packet[0]["revolution"], []).extend(
+            tuple(sample[name] for name in ("angle_q6", "distance_mm", "intensity", "flag"))
+            for sample in packet)
+    return revolutions
 
 
 def run(sim, lidar):
@@ -134,15 +123,15 @@ def compare(facts, scans, truth, sent):
 def main():
     elf, lidar_program = sys.argv[1:]
     began = time.monotonic()
-    lidar = Lidar(lidar_program, 1100)
     with tempfile.TemporaryDirectory() as folder:
+        lidar = Lidar(lidar_program, f"{folder}/truth.csv", "--frequency", "11")
         system = pathlib.Path(folder) / "system.yaml"
         system.write_text(system_description())
         with labwired.Sim(elf, system=str(system), uart="uart0") as sim:
             sent, end_us = run(sim, lidar)
             log = read_log(sim)
             cycles = sim.cycles
-    truth = lidar.truth()
+        truth = revolutions_of(lidar.end())
     facts, scans = split_log(log)
     wrong = compare(facts, scans, truth, sent)
     print("".join(line + "\n" for line in log.splitlines() if not line.startswith("point")), end="")

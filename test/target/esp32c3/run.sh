@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Builds the firmware and runs it:  run.sh LABWIRED_FOLDER LIDAR_PIPE WORK_FOLDER
+# Builds the firmware and runs it:  run.sh LABWIRED_FOLDER TMINI_SIM WORK_FOLDER
 # Exit status: 0 all as it should be, 1 not, 77 compiler or simulator is not installed.
 
 set -eu
