@@ -8,8 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hardware/dma.h"
+#include "hardware/sync.h"
 #include "irq_lines.h"
-#include "pico_sdk.h"
+#include "pico/stdlib.h"
 #include "random.h"
 
 #define STEP_US 20u

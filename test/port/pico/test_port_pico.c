@@ -7,8 +7,10 @@
 
 #include "unity.h"
 
+#include "hardware/gpio.h"
+#include "hardware/irq.h"
+#include "hardware/uart.h"
 #include "pico_model.h"
-#include "pico_sdk.h"
 #include "scanning.h"
 #include "tmini/tmini_blocking.h"
 #include "tmini_pico.h"

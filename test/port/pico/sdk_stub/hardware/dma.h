@@ -3,4 +3,40 @@
 
 /* Stands in for the Pico SDK's header of this name. */
 
-#include "pico_sdk.h"
+#ifndef HARDWARE_DMA_H
+#define HARDWARE_DMA_H
+
+#include "hardware/address_mapped.h"
+#include "pico.h"
+
+#define DMA_SIZE_8 0
+
+typedef struct {
+    uint chain_to;
+    uint dreq;
+    uint ring_bits;
+    uint data_size;
+    bool ring_on_write;
+    bool read_increment;
+    bool write_increment;
+} dma_channel_config;
+
+typedef struct {
+    volatile uint32_t transfer_count;
+} dma_channel_hw_t;
+
+int dma_claim_unused_channel(bool required);
+void dma_channel_unclaim(uint channel);
+dma_channel_config dma_channel_get_default_config(uint channel);
+void channel_config_set_transfer_data_size(dma_channel_config *config, int size);
+void channel_config_set_read_increment(dma_channel_config *config, bool increment);
+void channel_config_set_write_increment(dma_channel_config *config, bool increment);
+void channel_config_set_ring(dma_channel_config *config, bool write, uint size_bits);
+void channel_config_set_dreq(dma_channel_config *config, uint dreq);
+void channel_config_set_chain_to(dma_channel_config *config, uint chain_to);
+void dma_channel_configure(uint channel, const dma_channel_config *config, volatile void *write,
+                           const volatile void *read, uint32_t transfer_count, bool trigger);
+dma_channel_hw_t *dma_channel_hw_addr(uint channel);
+void dma_channel_cleanup(uint channel);
+
+#endif

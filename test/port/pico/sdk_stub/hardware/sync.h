@@ -3,4 +3,12 @@
 
 /* Stands in for the Pico SDK's header of this name. */
 
-#include "pico_sdk.h"
+#ifndef HARDWARE_SYNC_H
+#define HARDWARE_SYNC_H
+
+#include "hardware/address_mapped.h"
+#include "pico.h"
+
+void __dmb(void);
+
+#endif

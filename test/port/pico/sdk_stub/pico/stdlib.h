@@ -3,4 +3,13 @@
 
 /* Stands in for the Pico SDK's header of this name. */
 
-#include "pico_sdk.h"
+#ifndef PICO_STDLIB_H
+#define PICO_STDLIB_H
+
+#include "hardware/gpio.h"
+#include "hardware/uart.h"
+#include "pico.h"
+#include "pico/stdio.h"
+#include "pico/time.h"
+
+#endif

@@ -3,4 +3,13 @@
 
 /* Stands in for the Pico SDK's header of this name. */
 
-#include "pico_sdk.h"
+#ifndef PICO_TIME_H
+#define PICO_TIME_H
+
+#include "pico.h"
+
+absolute_time_t get_absolute_time(void);
+uint32_t to_ms_since_boot(absolute_time_t time);
+void sleep_ms(uint32_t ms);
+
+#endif

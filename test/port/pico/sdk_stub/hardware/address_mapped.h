@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Stands in for the Pico SDK's header of this name. */
+
+#ifndef HARDWARE_ADDRESS_MAPPED_H
+#define HARDWARE_ADDRESS_MAPPED_H
+
+#include "pico.h"
+
+void hw_write_masked(volatile uint32_t *address, uint32_t values, uint32_t mask);
+
+#endif

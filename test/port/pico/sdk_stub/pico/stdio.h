@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Stands in for the Pico SDK's header of this name. */
+
+#ifndef PICO_STDIO_H
+#define PICO_STDIO_H
+
+#include "pico.h"
+
+bool stdio_init_all(void);
+
+#endif
