@@ -103,83 +103,65 @@ void test_blocks_are_refused_for_a_buffer_announced_as_dmas_target(void)
 
 /* ------------------------------------------------------------------------------------------ DMA */
 
-/* By DMA and by blocks alike. */
-static void check_both(void (*check)(hal_rig_way_t way))
-{
-    check(BY_DMA);
-    check(BY_BLOCKS);
-}
-
-static void check_receives(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    hal_rig_line_packets(200);
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(200 * PACKET, bytes_accounted_for());
-    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
-    TEST_ASSERT_LESS_THAN_UINT32(50, irq.lines[MODEL_USART_IRQ].served);
-}
-
 void test_dma_brings_every_byte(void)
 {
-    check_both(check_receives);
-}
-
-static void check_shares_callbacks(hal_rig_way_t way)
-{
-    UART_HandleTypeDef other = {.RxState = HAL_UART_STATE_READY, .ErrorCode = HAL_UART_ERROR_FE};
-    hal_rig_open_and_start(way);
-    hal_rig_line_packets(1);
-    model_pass(300);
-    tmini_stm32_hal_rx_event(&hal_rig.port, &other);
-    tmini_stm32_hal_rx_half_complete(&hal_rig.port, &other);
-    tmini_stm32_hal_rx_complete(&hal_rig.port, &other);
-    tmini_stm32_hal_error(&hal_rig.port, &other);
-    TEST_ASSERT_EQUAL_UINT32(0, tmini_ring_head(&hal_rig.lidar.ring));
-    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().framing_errors);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        hal_rig_line_packets(200);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
+        TEST_ASSERT_EQUAL_UINT32(200 * PACKET, bytes_accounted_for());
+        TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
+        TEST_ASSERT_LESS_THAN_UINT32(50, irq.lines[MODEL_USART_IRQ].served);
+    }
 }
 
 void test_callbacks_of_another_uart_change_nothing(void)
 {
-    check_both(check_shares_callbacks);
-}
-
-static void check_line_of_pauses(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    for (unsigned i = 0; i < 300;
-         i++) { /* Ends at every position of a buffer, the full one as well. */
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        UART_HandleTypeDef other = {.RxState = HAL_UART_STATE_READY,
+                                    .ErrorCode = HAL_UART_ERROR_FE};
+        hal_rig_open_and_start(way);
         hal_rig_line_packets(1);
-        model_pass(1000);
-        (void)hal_rig_poll();
+        model_pass(300);
+        tmini_stm32_hal_rx_event(&hal_rig.port, &other);
+        tmini_stm32_hal_rx_half_complete(&hal_rig.port, &other);
+        tmini_stm32_hal_rx_complete(&hal_rig.port, &other);
+        tmini_stm32_hal_error(&hal_rig.port, &other);
+        TEST_ASSERT_EQUAL_UINT32(0, tmini_ring_head(&hal_rig.lidar.ring));
+        TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().framing_errors);
     }
-    TEST_ASSERT_EQUAL_UINT32(300, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
 }
 
 /* HALs of different years report different events and sizes there. */
 void test_idle_events_anywhere_lose_and_repeat_nothing(void)
 {
-    check_both(check_line_of_pauses);
-}
-
-static void check_priorities(hal_rig_way_t way)
-{
-    for (unsigned usart = 4; usart <= 6; usart++) {
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
-        irq.lines[MODEL_USART_IRQ].priority = usart;
-        model.access_ns = 2000; /* A slow controller: interrupts meet. */
-        hal_rig_line_packets(200);
-        hal_rig_run();
-        TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
+        for (unsigned i = 0; i < 300;
+             i++) { /* Ends at every position of a buffer, the full one as well. */
+            hal_rig_line_packets(1);
+            model_pass(1000);
+            (void)hal_rig_poll();
+        }
+        TEST_ASSERT_EQUAL_UINT32(300, hal_rig_packets());
         TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
     }
 }
 
 void test_priorities_of_the_two_interrupts_may_be_any(void)
 {
-    check_both(check_priorities);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        for (unsigned usart = 4; usart <= 6; usart++) {
+            hal_rig_open_and_start(way);
+            irq.lines[MODEL_USART_IRQ].priority = usart;
+            model.access_ns = 2000; /* A slow controller: interrupts meet. */
+            hal_rig_line_packets(200);
+            hal_rig_run();
+            TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
+            TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
+        }
+    }
 }
 
 static void idle_event(void)
@@ -193,185 +175,158 @@ static void idle_event(void)
 }
 
 /* At each access of a register or an index. */
-static void check_events_inside(hal_rig_way_t way)
-{
-    random_t random;
-    hal_rig_open_and_start(way);
-    random_seed(&random, 1);
-    hal_rig_line_packets(600);
-    for (uint32_t place = 0; place < 60; place = irq_next_place(&random, place)) {
-        model_pass(1000);
-        irq_happen_after(place, idle_event);
-        (void)hal_rig_poll();
-    }
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(600, hal_rig_packets());
-}
-
 void test_an_event_between_reading_the_position_and_using_it_harms_nothing(void)
 {
-    check_both(check_events_inside);
-}
-
-static void check_polls_alone(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    irq.lines[MODEL_USART_IRQ].disabled = true;
-    irq.lines[MODEL_DMA_IRQ].disabled = true;
-    hal_rig_line_packets(200);
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        random_t random;
+        hal_rig_open_and_start(way);
+        random_seed(&random, 1);
+        hal_rig_line_packets(600);
+        for (uint32_t place = 0; place < 60; place = irq_next_place(&random, place)) {
+            model_pass(1000);
+            irq_happen_after(place, idle_event);
+            (void)hal_rig_poll();
+        }
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(600, hal_rig_packets());
+    }
 }
 
 void test_polls_alone_bring_what_dma_has_written(void)
 {
-    check_both(check_polls_alone);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        irq.lines[MODEL_USART_IRQ].disabled = true;
+        irq.lines[MODEL_DMA_IRQ].disabled = true;
+        hal_rig_line_packets(200);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
+        TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
+    }
 }
 
 /* --------------------------------------------------------------------------- errors of the line */
 
-static void check_pending_overrun(hal_rig_way_t way)
-{
-    hal_rig_open(way);
-    hal_rig_line_packets(100);
-    model_pass(2000);
-    TEST_ASSERT_NOT_EQUAL(0, model.flags & MODEL_ORE);
-    TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
-    hal_rig_run();
-    TEST_ASSERT_GREATER_THAN_UINT32(94, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
-}
-
 void test_an_overrun_pending_at_the_start_hinders_nothing(void)
 {
-    check_both(check_pending_overrun);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open(way);
+        hal_rig_line_packets(100);
+        model_pass(2000);
+        TEST_ASSERT_NOT_EQUAL(0, model.flags & MODEL_ORE);
+        TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+        hal_rig_run();
+        TEST_ASSERT_GREATER_THAN_UINT32(94, hal_rig_packets());
+        TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
+    }
 }
 
 /* A damaged byte that comes at any moment of the HAL's start. */
-static void check_error_inside_start(hal_rig_way_t way)
-{
-    static const uint8_t broken = 0x00;
-    for (unsigned at = 0; at < 60; at++) {
-        hal_rig_open(way);
-        model_pass(10000);
-        line_send_with(MODEL_FE);
-        line_send(&broken, 1);
-        model.now_ns += MODEL_BYTE_NS - at * model.access_ns;
-        TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
-        hal_rig_line_packets(100);
-        hal_rig_run();
-        TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
-        TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
-        TEST_ASSERT_LESS_THAN_UINT32(50, irq.lines[MODEL_USART_IRQ].served);
-    }
-}
-
 void test_an_error_inside_the_hals_start_ends_nothing(void)
 {
-    check_both(check_error_inside_start);
-}
-
-static void check_framing_errors(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    for (unsigned i = 0; i < 20; i++) {
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         static const uint8_t broken = 0x00;
-        hal_rig_line_packets(10);
-        line_send_with(i % 2 == 0 ? MODEL_FE : MODEL_NE);
-        line_send(&broken, 1);
+        for (unsigned at = 0; at < 60; at++) {
+            hal_rig_open(way);
+            model_pass(10000);
+            line_send_with(MODEL_FE);
+            line_send(&broken, 1);
+            model.now_ns += MODEL_BYTE_NS - at * model.access_ns;
+            TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+            hal_rig_line_packets(100);
+            hal_rig_run();
+            TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
+            TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
+            TEST_ASSERT_LESS_THAN_UINT32(50, irq.lines[MODEL_USART_IRQ].served);
+        }
     }
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(20, hal_rig_poll().bytes_skipped);
-    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
-    TEST_ASSERT_GREATER_THAN_UINT32(4, hal_rig_errors().framing_errors);
-    TEST_ASSERT_GREATER_THAN_UINT32(4, hal_rig_errors().noise_errors);
-    TEST_ASSERT_LESS_OR_EQUAL_UINT32(10, hal_rig_errors().framing_errors);
 }
 
 void test_an_error_of_the_line_costs_its_byte_and_nothing_else(void)
 {
-    check_both(check_framing_errors);
-}
-
-static void check_overrun_while_running(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    hal_rig_line_packets(10);
-    model_pass(2000);
-    model.flags |= MODEL_ORE;
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(10, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().overruns);
-    TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        for (unsigned i = 0; i < 20; i++) {
+            static const uint8_t broken = 0x00;
+            hal_rig_line_packets(10);
+            line_send_with(i % 2 == 0 ? MODEL_FE : MODEL_NE);
+            line_send(&broken, 1);
+        }
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
+        TEST_ASSERT_EQUAL_UINT32(20, hal_rig_poll().bytes_skipped);
+        TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
+        TEST_ASSERT_GREATER_THAN_UINT32(4, hal_rig_errors().framing_errors);
+        TEST_ASSERT_GREATER_THAN_UINT32(4, hal_rig_errors().noise_errors);
+        TEST_ASSERT_LESS_OR_EQUAL_UINT32(10, hal_rig_errors().framing_errors);
+    }
 }
 
 void test_an_overrun_while_dma_runs_is_counted_and_stops_nothing(void)
 {
-    check_both(check_overrun_while_running);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        hal_rig_line_packets(10);
+        model_pass(2000);
+        model.flags |= MODEL_ORE;
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(10, hal_rig_packets());
+        TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().overruns);
+        TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
+    }
 }
 
 /* It holds the next byte back, on many boards; the DMA has taken the one before. */
-static void check_overrun_that_holds(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    model.ore_holds_rxne = true;
-    hal_rig_line_packets(10);
-    hal_rig_run();
-    model.flags |= MODEL_ORE;
-    model_pass(1000);
-    (void)hal_rig_poll();
-    hal_rig_line_packets(10);
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(20, hal_rig_packets());
-}
-
 void test_an_overrun_that_holds_bytes_back_is_cleared_by_the_poll(void)
 {
-    check_both(check_overrun_that_holds);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        model.ore_holds_rxne = true;
+        hal_rig_line_packets(10);
+        hal_rig_run();
+        model.flags |= MODEL_ORE;
+        model_pass(1000);
+        (void)hal_rig_poll();
+        hal_rig_line_packets(10);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(20, hal_rig_packets());
+    }
 }
 
 /* With DDRE any error holds the DMA's requests back until it is cleared. */
-static void check_error_that_holds(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    model_usart.CR3 |= MODEL_CR3_DDRE;
-    line_send_with(MODEL_FE);
-    hal_rig_line_packets(20);
-    hal_rig_run();
-    TEST_ASSERT_UINT32_WITHIN(3, 17, hal_rig_packets()); /* Polls every ms: 23 bytes. */
-    const uint32_t before = hal_rig_packets();
-    hal_rig_line_packets(10);
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(before + 10, hal_rig_packets());
-}
-
 void test_an_error_that_holds_dma_back_is_cleared_by_the_poll(void)
 {
 #ifdef STM32_MODEL_SR
     TEST_IGNORE_MESSAGE("not with SR and DR");
 #endif
-    check_both(check_error_that_holds);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        model_usart.CR3 |= MODEL_CR3_DDRE;
+        line_send_with(MODEL_FE);
+        hal_rig_line_packets(20);
+        hal_rig_run();
+        TEST_ASSERT_UINT32_WITHIN(3, 17, hal_rig_packets()); /* Polls every ms: 23 bytes. */
+        const uint32_t before = hal_rig_packets();
+        hal_rig_line_packets(10);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(before + 10, hal_rig_packets());
+    }
 }
 
 /* The lidar loses its supply; the next command is sent while the error still shows. */
-static void check_sending_after_error(hal_rig_way_t way)
-{
-    static const uint8_t broken = 0x00;
-    static const uint8_t command[] = {0xA5, 0x60};
-    hal_rig_open_and_start(way);
-    line_send_with(MODEL_FE);
-    line_send(&broken, 1);
-    model_pass(5000);
-    TEST_ASSERT_EQUAL_INT(2, tmini_stm32_hal_port.write(&hal_rig.port, command, 2));
-    model_pass(1000);
-    TEST_ASSERT_EQUAL(HAL_UART_STATE_READY, hal_rig.uart.gState);
-}
-
 void test_a_command_after_an_error_that_still_shows_is_no_lock_up(void)
 {
-    check_both(check_sending_after_error);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        static const uint8_t broken = 0x00;
+        static const uint8_t command[] = {0xA5, 0x60};
+        hal_rig_open_and_start(way);
+        line_send_with(MODEL_FE);
+        line_send(&broken, 1);
+        model_pass(5000);
+        TEST_ASSERT_EQUAL_INT(2, tmini_stm32_hal_port.write(&hal_rig.port, command, 2));
+        model_pass(1000);
+        TEST_ASSERT_EQUAL(HAL_UART_STATE_READY, hal_rig.uart.gState);
+    }
 }
 
 /* ------------------------------------------------------------------- reception that has stopped */
@@ -387,89 +342,77 @@ static void check_comes_back(void)
 
 /* HAL_UART_DeInit() and HAL_UART_Init(), the DMA running on; HAL_UART_DMAPause();
  * HAL_DMA_Abort(). */
-static void check_stopped_by_others(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    model_usart.CR1 = MODEL_CR1_UE | MODEL_CR1_RE | MODEL_CR1_TE;
-    model_usart.CR3 = 0;
-    hal_rig.uart.RxState = HAL_UART_STATE_READY;
-    check_comes_back();
-    hal_rig_open_and_start(way);
-    model_usart.CR3 = 0;
-    check_comes_back();
-    hal_rig_open_and_start(way);
-    TEST_ASSERT_EQUAL(HAL_OK, HAL_DMA_Abort(&hal_rig.dma));
-    check_comes_back();
-#ifdef DMA_LINKEDLIST_CIRCULAR
-    hal_rig_open_and_start(way); /* HAL_UART_DMAPause() of a newer HAL. */
-    model.dma.enabled = false;
-    hal_rig.dma.State = HAL_DMA_STATE_SUSPEND;
-    check_comes_back();
-#endif
-}
-
 void test_a_reception_that_others_have_stopped_is_started_again(void)
 {
-    check_both(check_stopped_by_others);
-}
-
-static void check_restart(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    hal_rig_line_packets(10);
-    hal_rig_run();
-    model.dma.enabled = false; /* And nothing shows it. */
-    tmini_stm32_hal_port.restart(&hal_rig.port);
-    (void)hal_rig_poll();
-    hal_rig_line_packets(100);
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(110, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        model_usart.CR1 = MODEL_CR1_UE | MODEL_CR1_RE | MODEL_CR1_TE;
+        model_usart.CR3 = 0;
+        hal_rig.uart.RxState = HAL_UART_STATE_READY;
+        check_comes_back();
+        hal_rig_open_and_start(way);
+        model_usart.CR3 = 0;
+        check_comes_back();
+        hal_rig_open_and_start(way);
+        TEST_ASSERT_EQUAL(HAL_OK, HAL_DMA_Abort(&hal_rig.dma));
+        check_comes_back();
+#ifdef DMA_LINKEDLIST_CIRCULAR
+        hal_rig_open_and_start(way); /* HAL_UART_DMAPause() of a newer HAL. */
+        model.dma.enabled = false;
+        hal_rig.dma.State = HAL_DMA_STATE_SUSPEND;
+        check_comes_back();
+#endif
+    }
 }
 
 void test_a_lost_lidars_reception_is_begun_anew(void)
 {
-    check_both(check_restart);
-}
-
-static void check_standstill(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    hal_rig_line_packets(30);
-    hal_rig_run();
-    hal_rig.uart.RxState = HAL_UART_STATE_READY; /* Whoever did that: the DMA still runs. */
-    model_pass(20000);
-    (void)hal_rig_poll();
-    TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
-    hal_rig_line_packets(100);
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(130, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        hal_rig_line_packets(10);
+        hal_rig_run();
+        model.dma.enabled = false; /* And nothing shows it. */
+        tmini_stm32_hal_port.restart(&hal_rig.port);
+        (void)hal_rig_poll();
+        hal_rig_line_packets(100);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(110, hal_rig_packets());
+        TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
+    }
 }
 
 void test_a_reception_that_stands_still_is_started_again_by_the_next_poll(void)
 {
-    check_both(check_standstill);
-}
-
-static void check_dma_error(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    hal_rig_line_packets(30);
-    hal_rig_run();
-    model.dma.flags |= MODEL_DMA_TE;
-    model_pass(5000);
-    TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().other_errors);
-    TEST_ASSERT_FALSE(hal_rig.started_in_error);
-    (void)hal_rig_poll();
-    hal_rig_line_packets(100);
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(130, hal_rig_packets());
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        hal_rig_line_packets(30);
+        hal_rig_run();
+        hal_rig.uart.RxState = HAL_UART_STATE_READY; /* Whoever did that: the DMA still runs. */
+        model_pass(20000);
+        (void)hal_rig_poll();
+        TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
+        hal_rig_line_packets(100);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(130, hal_rig_packets());
+        TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
+    }
 }
 
 void test_a_dma_that_fails_is_started_again_by_the_poll_and_not_in_the_interrupt(void)
 {
-    check_both(check_dma_error);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        hal_rig_line_packets(30);
+        hal_rig_run();
+        model.dma.flags |= MODEL_DMA_TE;
+        model_pass(5000);
+        TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().other_errors);
+        TEST_ASSERT_FALSE(hal_rig.started_in_error);
+        (void)hal_rig_poll();
+        hal_rig_line_packets(100);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(130, hal_rig_packets());
+    }
 }
 
 /* A poll that follows a command asks for the time once only: so one poll begins the reception anew
@@ -489,16 +432,13 @@ static void check_dma_error_behind(hal_rig_way_t way, unsigned packets)
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
 }
 
-static void check_dma_error_anywhere(hal_rig_way_t way)
-{
-    for (unsigned packets = 10; packets < 110; packets += 20) {
-        check_dma_error_behind(way, packets);
-    }
-}
-
 void test_what_came_before_a_dma_failed_is_not_delivered_again(void)
 {
-    check_both(check_dma_error_anywhere);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        for (unsigned packets = 10; packets < 110; packets += 20) {
+            check_dma_error_behind(way, packets);
+        }
+    }
 }
 
 /* An error in the middle of a packet; half of it has come before. */
@@ -518,23 +458,20 @@ void test_what_came_before_a_restart_is_no_packet_again(void)
     TEST_ASSERT_EQUAL_UINT32(188, hal_rig_packets());
 }
 
-static void check_hopeless(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    hal_rig.dma.State = HAL_DMA_STATE_ABORT; /* The channel never comes back. */
-    hal_rig.uart.RxState = HAL_UART_STATE_READY;
-    model_usart.CR3 = 0;
-    for (unsigned i = 0; i < 300; i++) {
-        model_pass(100);
-        (void)hal_rig_poll();
-    }
-    TEST_ASSERT_LESS_THAN_UINT32(12, hal_rig_errors().restarts); /* 30 ms. */
-    TEST_ASSERT_GREATER_THAN_UINT32(5, hal_rig_errors().restarts);
-}
-
 void test_restarts_that_fail_are_tried_again_some_milliseconds_later(void)
 {
-    check_both(check_hopeless);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        hal_rig.dma.State = HAL_DMA_STATE_ABORT; /* The channel never comes back. */
+        hal_rig.uart.RxState = HAL_UART_STATE_READY;
+        model_usart.CR3 = 0;
+        for (unsigned i = 0; i < 300; i++) {
+            model_pass(100);
+            (void)hal_rig_poll();
+        }
+        TEST_ASSERT_LESS_THAN_UINT32(12, hal_rig_errors().restarts); /* 30 ms. */
+        TEST_ASSERT_GREATER_THAN_UINT32(5, hal_rig_errors().restarts);
+    }
 }
 
 /* ----------------------------------------------------------------------------------------- laps */
@@ -617,89 +554,77 @@ void test_an_event_taken_for_another_is_no_lap(void)
 
 /* ----------------------------------------------------------------------------------------- stop */
 
-static void check_stop(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    hal_rig_line_packets(5);
-    model_pass(3000); /* No event has come yet. */
-    tmini_stm32_hal_stop(&hal_rig.port);
-    TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
-    TEST_ASSERT_FALSE(model.dma.enabled);
-    hal_rig_line_packets(100);
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
-    TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
-    hal_rig_line_packets(100);
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(105, hal_rig_packets());
-}
-
 void test_after_stop_dma_is_off_and_what_had_come_is_there(void)
 {
-    check_both(check_stop);
-}
-
-static void check_others_reception(hal_rig_way_t way)
-{
-    static uint8_t others[64];
-    hal_rig_open_and_start(way);
-    hal_rig_line_packets(5);
-    hal_rig_run();
-    tmini_stm32_hal_stop(&hal_rig.port);
-    TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_Receive_DMA(&hal_rig.uart, others, sizeof others));
-    hal_rig_line_packets(10);
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(5 * PACKET, bytes_accounted_for());
-    TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_AbortReceive(&hal_rig.uart));
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        hal_rig_line_packets(5);
+        model_pass(3000); /* No event has come yet. */
+        tmini_stm32_hal_stop(&hal_rig.port);
+        TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
+        TEST_ASSERT_FALSE(model.dma.enabled);
+        hal_rig_line_packets(100);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
+        TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+        hal_rig_line_packets(100);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(105, hal_rig_packets());
+    }
 }
 
 void test_after_stop_what_others_receive_by_the_same_dma_is_theirs(void)
 {
-    check_both(check_others_reception);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        static uint8_t others[64];
+        hal_rig_open_and_start(way);
+        hal_rig_line_packets(5);
+        hal_rig_run();
+        tmini_stm32_hal_stop(&hal_rig.port);
+        TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_Receive_DMA(&hal_rig.uart, others, sizeof others));
+        hal_rig_line_packets(10);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
+        TEST_ASSERT_EQUAL_UINT32(5 * PACKET, bytes_accounted_for());
+        TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_AbortReceive(&hal_rig.uart));
+    }
 }
 
 /* The HAL has ended the reception; where its DMA stands then means nothing. */
-static void check_late_event(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    hal_rig_line_packets(5);
-    hal_rig_run();
-    const size_t head = tmini_ring_head(&hal_rig.lidar.ring);
-    hal_rig.uart.RxState = HAL_UART_STATE_READY;
-    hal_rig_line_packets(1);
-    model_pass(10000);
-    tmini_stm32_hal_rx_half_complete(&hal_rig.port, &hal_rig.uart);
-    TEST_ASSERT_EQUAL_UINT32(head, tmini_ring_head(&hal_rig.lidar.ring));
-}
-
 void test_an_event_that_comes_after_the_reception_has_ended_hands_nothing_over(void)
 {
-    check_both(check_late_event);
-}
-
-static void check_new_lidar(hal_rig_way_t way)
-{
-    hal_rig_open_and_start(way);
-    hal_rig_line_packets(33);
-    hal_rig_run();
-    tmini_stm32_hal_stop(&hal_rig.port);
-    const tmini_config_t config = {
-        .port = &tmini_stm32_hal_port,
-        .port_context = &hal_rig.port,
-        .rx_buffer = hal_rig_rx,
-        .rx_size = sizeof hal_rig_rx,
-        .rx_dma = way == BY_DMA,
-    };
-    TEST_ASSERT_EQUAL(TMINI_OK, tmini_init(&hal_rig.lidar, &config));
-    TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
-    hal_rig_line_packets(100);
-    hal_rig_run();
-    TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
-    TEST_ASSERT_EQUAL_UINT32(100 * PACKET, bytes_accounted_for());
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        hal_rig_line_packets(5);
+        hal_rig_run();
+        const size_t head = tmini_ring_head(&hal_rig.lidar.ring);
+        hal_rig.uart.RxState = HAL_UART_STATE_READY;
+        hal_rig_line_packets(1);
+        model_pass(10000);
+        tmini_stm32_hal_rx_half_complete(&hal_rig.port, &hal_rig.uart);
+        TEST_ASSERT_EQUAL_UINT32(head, tmini_ring_head(&hal_rig.lidar.ring));
+    }
 }
 
 void test_a_lidar_set_up_anew_begins_at_the_buffers_start(void)
 {
-    check_both(check_new_lidar);
+    for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
+        hal_rig_open_and_start(way);
+        hal_rig_line_packets(33);
+        hal_rig_run();
+        tmini_stm32_hal_stop(&hal_rig.port);
+        const tmini_config_t config = {
+            .port = &tmini_stm32_hal_port,
+            .port_context = &hal_rig.port,
+            .rx_buffer = hal_rig_rx,
+            .rx_size = sizeof hal_rig_rx,
+            .rx_dma = way == BY_DMA,
+        };
+        TEST_ASSERT_EQUAL(TMINI_OK, tmini_init(&hal_rig.lidar, &config));
+        TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+        hal_rig_line_packets(100);
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
+        TEST_ASSERT_EQUAL_UINT32(100 * PACKET, bytes_accounted_for());
+    }
 }
