@@ -92,8 +92,9 @@ TMINI_NOINLINE static void look(tmini_t *lidar)
 /* ------------------------------------------------------------------------------ wanted to scan */
 
 /* Begins with the first step of the ladder. */
-static void begin_start(tmini_t *lidar, bool is_idle)
+TMINI_NOINLINE static void begin_start(tmini_t *lidar)
 {
+    const bool is_idle = lidar->state == TMINI_STATE_IDLE;
     lidar->start_follows = false;
     lidar->state = TMINI_STATE_STARTING;
     tmini_recovery_start(lidar, is_idle);
@@ -171,7 +172,7 @@ static void end_command(tmini_t *lidar, tmini_event_t operation, int result, boo
         fail(lidar, result);
     }
     if (lidar->start_follows) {
-        begin_start(lidar, is_idle);
+        begin_start(lidar);
     }
 }
 
@@ -219,10 +220,7 @@ static void begin_command(tmini_t *lidar, tmini_event_t operation)
     const bool is_idle = lidar->state == TMINI_STATE_IDLE;
     lidar->state =
         operation == TMINI_EVENT_STOPPED ? TMINI_STATE_STOPPING : (uint8_t)TMINI_STATE_BUSY;
-    tmini_command_begin(lidar, operation, lidar->link.timing->max_attempts);
-    if (is_idle) {
-        (void)tmini_command_proceed(lidar);
-    }
+    tmini_command_begin(lidar, operation, is_idle);
     send_first(lidar);
 }
 
@@ -523,7 +521,7 @@ tmini_status_t tmini_start(tmini_t *lidar)
         lidar->start_follows = true;
     } else if (!is_to_scan(lidar)) {
         take_over(lidar);
-        begin_start(lidar, lidar->state == TMINI_STATE_IDLE);
+        begin_start(lidar);
         send_first(lidar);
     }
     return TMINI_OK;

@@ -88,12 +88,19 @@ static void request(tmini_t *lidar, tmini_command_code_t code)
 
 /* --------------------------------------------------------------------------- how commands end */
 
+/* With recovery the ladder repeats attempts to start, so each command of it is tried once. */
+static uint8_t attempts_max(const tmini_t *lidar)
+{
+    const bool is_repeated = lidar->state >= TMINI_STATE_STARTING && !lidar->is_recovery_off;
+    return is_repeated ? 1 : lidar->link.timing->max_attempts;
+}
+
 /* A phase has taken too long: makes another attempt, unless this was the last. */
 static int time_out(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     command->timeouts++;
-    if (command->attempts < command->attempts_max) {
+    if (command->attempts < attempts_max(lidar)) {
         command->attempts++;
         quiesce(lidar);
         return TMINI_UNDER_WAY;
@@ -172,7 +179,7 @@ static bool is_quiet(const tmini_t *lidar)
  * cannot be its answer, so all are skipped, including an incomplete packet. After a stop the
  * operation's own command is next. To change the frequency, the driver asks for it, sends the
  * steps, and asks again. */
-int tmini_command_proceed(tmini_t *lidar)
+static int proceed(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     uint8_t next = codes[command->operation];
@@ -216,7 +223,7 @@ int tmini_command_poll(tmini_t *lidar)
         return send_rest(lidar);
     }
     if (command->phase == TMINI_PHASE_QUIESCING && is_quiet(lidar)) {
-        return tmini_command_proceed(lidar);
+        return proceed(lidar);
     }
     if (command->timeout_ms == 0 ||
         !tmini_has_elapsed(lidar, command->since_ms, command->timeout_ms)) {
@@ -231,21 +238,21 @@ uint16_t tmini_command_idle_ms(const tmini_t *lidar)
     if (command->phase == TMINI_PHASE_QUIESCING) {
         return 0;
     }
-    return command->timeout_ms == 0
-               ? UINT16_MAX
-               : (uint16_t)(command->timeout_ms - (lidar->line.now_ms - command->since_ms));
+    return (uint16_t)(command->timeout_ms - (lidar->line.now_ms - command->since_ms));
 }
 
 /* ------------------------------------------------------------------------ for the layers above */
 
-void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, uint8_t attempts)
+void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, bool is_idle)
 {
     tmini_command_t *const command = &lidar->command;
     command->operation = (uint8_t)operation;
-    command->attempts_max = attempts;
     command->attempts = 1;
     command->steps = 0;
     quiesce(lidar);
+    if (is_idle) {
+        (void)proceed(lidar);
+    }
 }
 
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content)

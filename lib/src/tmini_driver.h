@@ -74,13 +74,10 @@ typedef enum {
 #define TMINI_UNDER_WAY 1
 
 /* Begins an operation, named by the event of its success; it replaces the current one. A stop comes
- * first, sent by the next tmini_command_poll(). After a time-out there is another attempt, up to
- * `attempts` in all. TMINI_EVENT_FREQUENCY also sets the wanted frequency, if there is one. */
-void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, uint8_t attempts);
-
-/* The line is quiet: the next command of the operation may be sent. Callers may use it right after
- * tmini_command_begin() if the lidar is known to be idle: then it is not stopped first. */
-int tmini_command_proceed(tmini_t *lidar);
+ * first, sent by the next tmini_command_poll(), unless `is_idle`: the lidar is idle, and the line
+ * quiet. After a time-out there is another attempt, unless the ladder repeats attempts.
+ * TMINI_EVENT_FREQUENCY also sets the wanted frequency, if there is one. */
+void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, bool is_idle);
 
 /* Does what is due now: bytes to send, a line that has become quiet, a time-out. */
 int tmini_command_poll(tmini_t *lidar);

@@ -30,11 +30,10 @@ static void back_off(tmini_t *lidar)
     tmini_recovery_restart_reception(lidar);
     tmini_recovery_t *const recovery = &lidar->recovery;
     const uint16_t max_ms = lidar->link.timing->back_off_max_ms;
-    const uint32_t pause_ms = (uint32_t)TMINI_BACK_OFF_MS << recovery->doublings;
-    const bool is_longest = pause_ms >= max_ms;
+    const uint32_t doubled_ms = 2u * (uint32_t)recovery->pause_ms;
     recovery->attempts = (uint8_t)(recovery->attempts < REBOOT_AFTER ? recovery->attempts + 1 : 1);
-    recovery->doublings = (uint8_t)(recovery->doublings + !is_longest);
-    tmini_command_wait(lidar, is_longest ? max_ms : (uint16_t)pause_ms);
+    recovery->pause_ms = (uint16_t)(doubled_ms < max_ms ? doubled_ms : max_ms);
+    tmini_command_wait(lidar, recovery->pause_ms);
 }
 
 /* Chooses the operation that follows the one that has ended. A reboot is not tried at once, because
@@ -60,24 +59,18 @@ static void count(tmini_t *lidar, tmini_event_t operation)
     }
 }
 
-/* With recovery the ladder repeats attempts, so each command is tried once. Without recovery the
- * command itself is repeated. */
 static void make_attempt(tmini_t *lidar, tmini_event_t ended, bool is_idle)
 {
     const tmini_event_t operation = next_operation(lidar, ended);
     count(lidar, operation);
-    tmini_command_begin(lidar, operation,
-                        lidar->is_recovery_off ? lidar->link.timing->max_attempts : 1);
-    if (is_idle) {
-        (void)tmini_command_proceed(lidar);
-    }
+    tmini_command_begin(lidar, operation, is_idle);
 }
 
 /* With listen_only nothing is sent; the driver waits for packets. */
 void tmini_recovery_start(tmini_t *lidar, bool is_idle)
 {
     lidar->recovery.attempts = FIRST_ATTEMPT;
-    lidar->recovery.doublings = 0;
+    lidar->recovery.pause_ms = TMINI_BACK_OFF_MS / 2; /* It doubles before it is used. */
     if (lidar->is_listen_only) {
         tmini_command_wait(lidar, TMINI_DATA_TIMEOUT_MS);
     } else {

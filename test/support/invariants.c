@@ -285,10 +285,9 @@ static bool monitor_is_sound(const tmini_monitor_t *monitor)
            0;
 }
 
-/* 500 ms doubled 8 times is longer than the longest pause. */
 static bool recovery_is_sound(const tmini_recovery_t *recovery)
 {
-    return recovery->attempts <= 4 && recovery->doublings <= 8;
+    return recovery->attempts <= 4;
 }
 
 /* Listening, nothing is sent, and nothing is wanted but to scan. */

@@ -414,14 +414,13 @@ void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters);
 
 /* tmini_command.c */
 typedef struct {
-    uint8_t operation; /* The current or the last one, named by the event of its success; 0:
+    uint8_t operation;   /* The current or the last one, named by the event of its success; 0:
                         * none. */
-    uint8_t phase;     /* A tmini_phase_t. */
-    uint8_t code;      /* The command being sent. */
-    uint8_t unsent;    /* How many of its two bytes the port has not taken yet. */
-    bool sync_sent;    /* The first byte of a command has been sent, the second has not. */
-    uint8_t attempts;  /* The number of the current attempt, from 1. */
-    uint8_t attempts_max;
+    uint8_t phase;       /* A tmini_phase_t. */
+    uint8_t code;        /* The command being sent. */
+    uint8_t unsent;      /* How many of its two bytes the port has not taken yet. */
+    bool sync_sent;      /* The first byte of a command has been sent, the second has not. */
+    uint8_t attempts;    /* The number of the current attempt, from 1. */
     uint8_t steps;       /* Frequency steps sent. */
     uint16_t timeout_ms; /* How long the phase may last; 0: without limit. */
     uint16_t frequency_chz;
@@ -433,7 +432,7 @@ typedef struct {
 typedef struct {
     uint8_t attempts;  /* Failed attempts since the last complete revolution or reboot; 0: none has
                         * been made. */
-    uint8_t doublings; /* How often the pause after a failed attempt has doubled. */
+    uint16_t pause_ms; /* The one after the latest failed attempt. */
     uint16_t losses;
     uint16_t recoveries;
     uint16_t restarts;
