@@ -103,7 +103,7 @@ static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32
     builder->open = false;
     builder->ended = true;
     if (is_long) {
-        count_one(&scan->gaps);
+        scan->gaps = 1; /* There was none. */
         builder->late_scans++;
     } else if (packet->gap == TMINI_GAP_UNKNOWN && ahead <= JUMP_Q6 &&
                !is_gap(packet, packet->frame->gap)) {

@@ -9,9 +9,9 @@
 
 /* A frequency that differs by more than 1/20 for this many seconds and turns will not correct
  * itself. */
-#define OFF_PART 20u
-#define OFF_SECONDS 3u
-#define OFF_TURNS 3u
+#define OFF_PART 20
+#define OFF_SECONDS 3
+#define OFF_TURNS 3
 
 /* No turn has more samples than three seconds, at 4000 per second (section 1). */
 #define TURN_SAMPLES_MAX 12000u
@@ -34,7 +34,7 @@ static void observe(tmini_monitor_t *monitor, uint8_t faults)
  * completely. */
 static void judge_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *decoder)
 {
-    uint16_t faults = (uint16_t)tmini_ct_faults(&decoder->ct);
+    unsigned faults = tmini_ct_faults(&decoder->ct);
     bool is_known = decoder->verdict == TMINI_CT_CONFIRMED;
     if (faults == TMINI_FAULTS_UNKNOWN) {
         faults = monitor->ranges > 0 ? 0 : TMINI_FAULT_DATA;
@@ -49,8 +49,8 @@ static void judge_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *de
  * frequency that they report, is the time that this has lasted. True when it becomes a fault. */
 static bool has_become_off(tmini_monitor_t *monitor, uint8_t ct, uint16_t wanted_chz)
 {
-    const uint16_t chz = (uint16_t)((ct >> 1) * 10u); /* Section 7. */
-    const uint16_t off_chz = (uint16_t)(chz > wanted_chz ? chz - wanted_chz : wanted_chz - chz);
+    const int32_t chz = (ct >> 1) * 10; /* Section 7. */
+    const int32_t off_chz = chz > wanted_chz ? chz - wanted_chz : wanted_chz - chz;
     if (wanted_chz == 0 || chz == 0 || off_chz * OFF_PART <= wanted_chz) {
         tmini_monitor_forget_frequency(monitor);
         return false;
@@ -59,7 +59,7 @@ static bool has_become_off(tmini_monitor_t *monitor, uint8_t ct, uint16_t wanted
         return false;
     }
     monitor->off_turns++;
-    if (monitor->off_turns < OFF_TURNS || monitor->off_turns * 100u < OFF_SECONDS * chz) {
+    if (monitor->off_turns < OFF_TURNS || monitor->off_turns * 100 < OFF_SECONDS * chz) {
         return false;
     }
     monitor->faults |= TMINI_FAULT_FREQUENCY;
