@@ -480,16 +480,16 @@ struct tmini {
                          * `idle_ms`. */
     bool is_recovery_off;
     bool is_listen_only;
+    tmini_command_t command;
     tmini_recovery_t recovery;
     uint16_t wanted_chz; /* 0: any. */
     uint16_t idle_ms;    /* From the last look at the line on; at least 1. */
-    tmini_command_t command;
-    tmini_monitor_t monitor;
-    uint32_t scans;
-    tmini_link_t link;
     tmini_line_t line;
-    size_t held_to; /* The receiving context's: up to where bytes wait in the port; 0: unknown. */
+    tmini_link_t link;
     tmini_ring_t ring;
+    uint32_t scans;
+    size_t held_to; /* The receiving context's: up to where bytes wait in the port; 0: unknown. */
+    tmini_monitor_t monitor;
     tmini_decoder_t decoder;
     tmini_scan_t scan; /* The one delivered last. */
     tmini_info_t info;
