@@ -362,11 +362,12 @@ static int run(const options_t *options)
 
 const command_t command_check = {
     .name = "check",
-    .usage = "[-p PORT] [--seconds N] [--listen] [--front DEG] [--upside-down] [--mask FROM:TO]",
+    .usage = "[-p PORT] [--seconds N] [--listen] [--front DEG] [--upside-down]\n"
+             "            [--mask FROM:TO]",
     .summary = "ten seconds, one verdict: port, wires, supply, lidar",
-    .details =
-        "A line a question: ok; look (it works, but could be better); BAD. Each that is not ok\n"
-        "says what to do about it. Watches for 10 seconds, or N. Exit status 1 if anything is BAD.",
+    .details = "A line a question: ok; look (it works, but could be better); BAD. Each that is\n"
+               "not ok says what to do about it. Watches for 10 seconds, or N. Exit status 1 if\n"
+               "anything is BAD.",
     .accepts = "psLFUKq",
     .run = run,
 };

@@ -88,16 +88,23 @@ static void print_unit(const stream_t *stream)
     (void)printf("health      %s\n", health_text(stream, text));
 }
 
+static const char *plural(count_t count)
+{
+    return count == 1 ? "" : "s";
+}
+
 static void print_summary(const gist_t *gist, const tape_t *tape)
 {
     const stream_t *const stream = &tape->stream;
     print_scans(gist, stream);
     print_nearest(gist);
     print_unit(stream);
-    (void)printf("errors      %llu wrong checksums, %llu stray bytes between packets",
-                 tape_checksum_errors(tape), stream->stray_bytes);
+    (void)printf("errors      %llu wrong checksum%s, %llu stray byte%s between packets",
+                 tape_checksum_errors(tape), plural(tape_checksum_errors(tape)),
+                 stream->stray_bytes, plural(stream->stray_bytes));
     if (stream->damaged > 0) {
-        (void)printf(": about %llu packets damaged (%s)", stream->damaged, damaged_text(stream));
+        (void)printf(": about %llu packet%s damaged (%s)", stream->damaged, plural(stream->damaged),
+                     damaged_text(stream));
     }
     (void)printf("\nstream      %llu bytes in %.3f s%s: %llu packets,\n"
                  "            %llu guard bytes, %llu bytes before the first packet, "
@@ -190,10 +197,9 @@ const command_t command_decode = {
     .name = "decode",
     .usage = "FILE|- [--csv|--json] [--stats FILE|-] [--max-samples N]",
     .summary = "what a recording holds: a summary, or every sample",
-    .details =
-        "Without --csv or --json: scans, points, frequency, nearest obstacle, errors. With\n"
-        "them, the same columns and members as `tmini scan`, without end in the memory of a\n"
-        "few scans.",
+    .details = "Without --csv or --json: scans, points, frequency, nearest obstacle, errors.\n"
+               "With them, the same columns and members as `tmini scan`, without end in the\n"
+               "memory of a few scans.",
     .accepts = "CJSMq",
     .has_operand = true,
     .run = run,

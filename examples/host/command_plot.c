@@ -187,13 +187,13 @@ static int run(const options_t *options)
 
 const command_t command_plot = {
     .name = "plot",
-    .usage = "[FILE|-|-p PORT] -o OUT.svg|OUT.png|OUT.pdf|- [--scan N|--all] [--front DEG]\n"
-             "           [--upside-down] [--mask FROM:TO]",
+    .usage = "[FILE|-|-p PORT] -o OUT.svg|OUT.png|OUT.pdf|- [--scan N|--all]\n"
+             "           [--front DEG] [--upside-down] [--mask FROM:TO]",
     .summary = "a picture of a scan",
-    .details =
-        "Draws the last complete scan, seen from above with the lidar's front up: range\n"
-        "rings in metres, points coloured by intensity, interference marked. From a lidar, waits\n"
-        "some scans until it is up to speed. -o - writes SVG to standard output.",
+    .details = "Draws the last complete scan, seen from above with the lidar's front up: range\n"
+               "rings in metres, points coloured by intensity, interference marked. From a\n"
+               "lidar, waits some scans until it is up to speed. -o - writes SVG to standard\n"
+               "output.",
     .accepts = "poNAMFUKq",
     .has_operand = true,
     .run = run,

@@ -133,9 +133,8 @@ const command_t command_frequency = {
     .name = "frequency",
     .usage = "[HZ] [-p PORT] [--json]",
     .summary = "reads the scan frequency, or sets it",
-    .details =
-        "HZ: 6 to 12, in steps of 0.1. The lidar forgets it when it loses power. Prints what\n"
-        "is set, which `tmini scan` shows the motor to come close to.",
+    .details = "HZ: 6 to 12, in steps of 0.1. The lidar forgets it when it loses power. Prints\n"
+               "what is set, which `tmini scan` shows the motor to come close to.",
     .accepts = "pJq",
     .has_operand = true,
     .run = run_frequency,

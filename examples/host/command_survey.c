@@ -172,13 +172,11 @@ const command_t command_survey = {
     .name = "survey",
     .usage = "[-p PORT] [REPORT|-] [--seconds N] [--with-serial]",
     .summary = "two minutes: what this unit does of what is known of its kind",
-    .details =
-        "A line per statement of docs/protocol.md: as expected, differs or unknown. The REPORT "
-        "has\n"
-        "it as `key = value` too, for an issue, and for `tmini-sim --like REPORT`. The lidar is\n"
-        "rebooted; its frequency is left as it was. The serial number is left out. --with-serial\n"
-        "puts it in, and all that was received beside it, into REPORT.tmini. --seconds: to scan\n"
-        "at 6 Hz (40).",
+    .details = "A line per statement of docs/protocol.md: as expected, differs or unknown. The\n"
+               "REPORT has it as `key = value` too, for an issue, and for `tmini-sim --like\n"
+               "REPORT`. The lidar is rebooted; its frequency is left as it was. The serial\n"
+               "number is left out. --with-serial puts it in, and all that was received beside\n"
+               "it, into REPORT.tmini. --seconds: to scan at 6 Hz (40).",
     .accepts = "psIq",
     .has_operand = true,
     .use = use_survey,

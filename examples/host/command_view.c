@@ -265,14 +265,15 @@ static int run(const options_t *options)
 
 const command_t command_view = {
     .name = "view",
-    .usage = "[-p PORT|FILE|-] [--wait] [--listen] [--front DEG] [--upside-down] [--mask FROM:TO]",
+    .usage = "[-p PORT|FILE|-] [--wait] [--listen] [--front DEG] [--upside-down]\n"
+             "           [--mask FROM:TO]",
     .summary = "a picture in the terminal, of a lidar live or of a recording",
-    .details =
-        "Keys: + and - zoom, a chooses the range automatically, q or Esc ends, Ctrl-Z suspends.\n"
-        "In a recording: space pauses, . and , go a scan further or back, the arrows (or < and >)\n"
-        "five seconds. The marked point is the nearest obstacle; the numbers around the triangle\n"
-        "are the nearest ones of each sector, in metres. A locale without UTF-8 gets characters\n"
-        "instead of dots, NO_COLOR=1 no colours, and TERM=dumb one picture below the other.",
+    .details = "Keys: + and - zoom, a chooses the range automatically, q or Esc ends, Ctrl-Z\n"
+               "suspends. In a recording: space pauses, . and , go a scan further or back, the\n"
+               "arrows (or < and >) five seconds. The marked point is the nearest obstacle; the\n"
+               "numbers around the triangle are the nearest ones of each sector, in metres. A\n"
+               "locale without UTF-8 gets characters instead of dots, NO_COLOR=1 no colours,\n"
+               "and TERM=dumb one picture below the other.",
     .accepts = "pMWLFUKq",
     .has_operand = true,
     .run = run,

@@ -366,6 +366,13 @@ int device_why(device_t *device)
         device->path, reason);
 }
 
+static bool is_port_number(const char *text)
+{
+    char *end = NULL;
+    const long number = strtol(text, &end, 10);
+    return *end == '\0' && number >= 1 && number <= 65535;
+}
+
 /* Why a port cannot be opened, and what to do. */
 static const char *advice_for(tmini_posix_status_t status, const char *path)
 {
@@ -386,8 +393,10 @@ static const char *advice_for(tmini_posix_status_t status, const char *path)
     };
     const char *const colon = strrchr(path, ':');
     if (status == TMINI_POSIX_ADDRESS && colon - path > 4 && colon[1] != '\0') {
-        return "there is no host of that name, or the port is no number. Is it spelled right, and "
-               "is this\ncomputer on the same network?";
+        return is_port_number(colon + 1)
+                   ? "there is no host of that name. Is it spelled right, and is this computer\non "
+                     "the same network?"
+                   : "what follows the host is the port, a number from 1 to 65535.";
     }
     if (is_socket(path) && errno == ECONNREFUSED) {
         return "Connection refused: the host is there, but nothing serves that port.";

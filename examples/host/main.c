@@ -55,12 +55,12 @@ static const option_t table[] = {
     {'T', "timed", NULL, "with time stamps, as for a FILE.tmini", PLACE(timed), 0, 0, NULL},
     {'W', "wait", NULL, "wait for an adapter that is not there, or goes, and go on", PLACE(wait), 0,
      0, NULL},
-    {'L', "listen", NULL, "send nothing: another program or controller has started the lidar",
-     PLACE(listen), 0, 0, NULL},
-    {'F', "front", "DEG", "the lidar's angle, clockwise, that looks to the robot's front",
-     PLACE(mount), 0, 0, mount_read_front},
+    {'L', "listen", NULL, "send nothing: something else has started the lidar", PLACE(listen), 0, 0,
+     NULL},
+    {'F', "front", "DEG", "the lidar's angle that is the robot's front, clockwise", PLACE(mount), 0,
+     0, mount_read_front},
     {'U', "upside-down", NULL, "the lidar hangs", PLACE(mount.upside_down), 0, 0, NULL},
-    {'K', "mask", "FROM:TO", "leave out these degrees, clockwise from the front; repeatable",
+    {'K', "mask", "FROM:TO", "hide these degrees, clockwise from the front; repeatable",
      PLACE(masked), 0, 0, mount_read_mask},
     {'I', "with-serial", NULL, "the serial number too, and a recording", PLACE(with_serial), 0, 0,
      NULL},
@@ -247,7 +247,7 @@ static void explain(const command_t *command)
             char name[40];
             (void)snprintf(name, sizeof name, "--%s %s", option->name,
                            option->value != NULL ? option->value : "");
-            (void)printf("  %c%c%c %-20s %s\n", is_short(option) ? '-' : ' ',
+            (void)printf("  %c%c%c %-15s %s\n", is_short(option) ? '-' : ' ',
                          is_short(option) ? option->letter : ' ', is_short(option) ? ',' : ' ',
                          name, option->help);
         }

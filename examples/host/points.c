@@ -129,14 +129,15 @@ const char *damaged_text(const stream_t *stream)
 }
 
 const char rows_help[] =
-    "--csv   " ROWS_HEADER "\n"
-    "        a row for each sample of each valid packet. scan counts start packets so far,\n"
-    "        packet counts packets from 0; time_ms: when the packet came, since the beginning;\n"
-    "        frequency_hz: as the lidar told last, empty before.\n"
-    "--json  an object a line for each scan: scan, time_ms (when it began), frequency_hz,\n"
-    "        complete, packets, gaps (places where bytes are missing), dropped (points),\n"
-    "        checksum_errors, faults (the health bits, 0: healthy) and points:\n"
-    "        [angle in degrees, distance in mm, intensity, flag]. null: not known.\n"
+    "--csv:  a row for each sample of each valid packet. scan counts start packets so\n"
+    "        far, packet counts packets from 0; time_ms: when the packet came, since\n"
+    "        the beginning; frequency_hz: as the lidar reported last, empty before.\n"
+    "  " ROWS_HEADER "\n"
+    "--json: a line for each scan, an object: scan, time_ms (when it began),\n"
+    "        frequency_hz, complete, packets, gaps (places where bytes are missing),\n"
+    "        dropped (points), checksum_errors, faults (the health bits, 0: healthy)\n"
+    "        and points: [angle in degrees, distance in mm, intensity, flag].\n"
+    "        null: not known.\n"
     "Distance 0: no valid range. Flag 2: specular interference, 3: ambient light.\n"
     "Angles count clockwise, seen from above.";
 

@@ -191,10 +191,10 @@ const command_t command_ports = {
     .name = "ports",
     .usage = "",
     .summary = "the serial adapters of this computer",
-    .details =
-        "A line for each: its most stable name, the device behind it, the USB numbers of its\n"
-        "maker, and its chip if it is one of those that lidars come with. A command without -p\n"
-        "takes the port of the environment's TMINI_PORT, or else the only such adapter.",
+    .details = "A line for each: its most stable name, the device behind it, the USB numbers of\n"
+               "its maker, and its chip if it is one of those that lidars come with. A command\n"
+               "without -p takes the port of the environment's TMINI_PORT, or else the only such\n"
+               "adapter.",
     .accepts = "q",
     .run = run,
 };

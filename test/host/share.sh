@@ -33,6 +33,9 @@ done
 
 commands=$("$tmini" help | sed -n 's/^  tmini \([a-z]*\) .*/\1/p')
 [ "$(echo "$commands" | wc -l)" -ge 11 ] || complain "the tool does not list its commands"
+for command in $commands; do
+    "$tmini" help "$command" | grep -q '.\{81\}' && complain "the help of $command is too wide"
+done
 options=$(for command in $commands; do
     "$tmini" help "$command" |
         sed -n 's/^  .., *\(--[a-z-]*\) .*/\1/p; s/^      \(--[a-z-]*\) .*/\1/p'

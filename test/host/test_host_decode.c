@@ -268,9 +268,9 @@ static void summarise_damage(unsigned count, size_t gap)
 void test_the_bytes_of_a_gap_tell_how_many_packets_are_damaged(void)
 {
     summarise_damage(3, 1);
-    expect_summary(", 1 stray bytes between packets: about 1 packets damaged (25.0 %)\n");
+    expect_summary(", 1 stray byte between packets: about 1 packet damaged (25.0 %)\n");
     summarise_damage(3, 194);
-    expect_summary(", 194 stray bytes between packets: about 1 packets damaged (25.0 %)\n");
+    expect_summary(", 194 stray bytes between packets: about 1 packet damaged (25.0 %)\n");
     summarise_damage(3, 195);
     expect_summary(", 195 stray bytes between packets: about 2 packets damaged (40.0 %)\n");
     summarise_damage(3, 324);
@@ -282,13 +282,13 @@ void test_the_bytes_of_a_gap_tell_how_many_packets_are_damaged(void)
 void test_a_small_share_of_damage_is_rounded_but_never_to_nothing(void)
 {
     summarise_damage(665, 1); /* 1 of 666 is 0.1502 %, */
-    expect_summary(": about 1 packets damaged (0.2 %)\n");
+    expect_summary(": about 1 packet damaged (0.2 %)\n");
     summarise_damage(666, 1); /* 1 of 667 is 0.1499 %, */
-    expect_summary(": about 1 packets damaged (0.1 %)\n");
+    expect_summary(": about 1 packet damaged (0.1 %)\n");
     summarise_damage(1999, 1); /* and 1 of 2000 is 0.05 %. */
-    expect_summary(": about 1 packets damaged (0.1 %)\n");
+    expect_summary(": about 1 packet damaged (0.1 %)\n");
     summarise_damage(2000, 1);
-    expect_summary(": about 1 packets damaged (under 0.1 %)\n");
+    expect_summary(": about 1 packet damaged (under 0.1 %)\n");
     summarise_damage(2000, 0);
     expect_summary(", 0 stray bytes between packets\n");
 }

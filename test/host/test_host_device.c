@@ -409,6 +409,9 @@ void test_an_invalid_address_is_reported(void)
     expect_failure(1, "tcp:HOST:PORT", WORDS("info", "-p", "tcp:localhost"));
     expect_failure(1, "tcp:HOST:PORT", WORDS("info", "-p", "tcp:"));
     expect_failure(1, "no host of that name", WORDS("info", "-p", "tcp:no.such.host.invalid:1"));
+    expect_failure(1, "a number from 1 to 65535", WORDS("info", "-p", "tcp:127.0.0.1:lidar"));
+    expect_failure(1, "a number from 1 to 65535", WORDS("info", "-p", "tcp:127.0.0.1:65536"));
+    expect_failure(1, "a number from 1 to 65535", WORDS("info", "-p", "tcp:127.0.0.1:0"));
 }
 
 void test_a_recording_tells_its_size(void)

@@ -185,7 +185,7 @@ void test_no_byte_of_version_2_is_lost_silently(void)
     }
 }
 
-/* -------------------------------------------------------------------------------- what is played */
+/* ------------------------------------------------------------------------------- what is played */
 
 /* The manual's own packet (section 5): 19 samples, no start packet. */
 static const uint8_t manual[] =
@@ -509,7 +509,7 @@ void test_a_unit_may_report_its_health_in_the_stream(void)
     TEST_ASSERT_EQUAL_UINT64(tape.stream.guard_bytes, tape.stream.confirmed);
 }
 
-/* -------------------------------------------------------------------------------- what is a scan */
+/* ------------------------------------------------------------------------------- what is a scan */
 
 void test_a_scan_has_the_number_of_its_start_packet(void)
 {
