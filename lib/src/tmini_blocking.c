@@ -24,8 +24,9 @@ static bool is_time_left(const tmini_t *lidar, uint32_t begun_ms, uint32_t timeo
     return passed_ms < timeout_ms || (int32_t)passed_ms < 0;
 }
 
-/* What `event` says of the wait for `wanted`. A command that has failed ends it if nothing follows;
- * that for a frequency also when the lidar scans without it. A lost lidar reports no failure. */
+/* What `event` means for a caller that waits for `wanted`. A failed command ends the waiting if no
+ * other attempt follows. Waiting for a frequency also ends when the lidar scans without it. A lost
+ * lidar reports no failure. */
 static int result_of(const tmini_t *lidar, tmini_event_t event, tmini_event_t wanted)
 {
     const tmini_state_t state = tmini_state(lidar);
@@ -39,8 +40,9 @@ static int result_of(const tmini_t *lidar, tmini_event_t event, tmini_event_t wa
     return event == TMINI_EVENT_RECOVERED && is_without ? TMINI_ERROR_STATE : TMINI_UNDER_WAY;
 }
 
-/* Polls until `wanted` comes, or will not come any more, or time is up; then a query is given up,
- * but not one of earlier that the start follows. What could not be begun has ended already. */
+/* Polls until `wanted` comes, cannot come any more, or time is up. Then the query is given up,
+ * unless it is an earlier one that a start waits for. If the command could not be begun, returns
+ * its error. */
 static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event_t wanted,
                                uint32_t timeout_ms)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Build systems that know frameworks beside Arduino compile this file for all of them. */
+/* Some build systems compile this file for other frameworks, too. */
 #if defined(ARDUINO)
 
 #include "TMiniLidar.h"
@@ -12,8 +12,7 @@
 static const unsigned long BAUD_RATE = 230400;
 
 #if defined(ESP32) || defined(ESP8266) || TMINI_LIDAR_ON_RP2040
-/* The core's own receive buffer: 44 ms of a busy line, instead of 11 with 256 bytes, or 1 with
- * 32. */
+/* Size of the core's receive buffer: 44 ms of a busy line. 256 bytes are 11 ms, 32 bytes 1 ms. */
 static const int SERIAL_RX_SIZE = 1024;
 #elif defined(SERIAL_RX_BUFFER_SIZE)
 static const int SERIAL_RX_SIZE = SERIAL_RX_BUFFER_SIZE; /* As the core has it. */
@@ -21,8 +20,9 @@ static const int SERIAL_RX_SIZE = SERIAL_RX_BUFFER_SIZE; /* As the core has it. 
 static const int SERIAL_RX_SIZE = 0x7FFF; /* Not known. */
 #endif
 
-/* Where the core's receive buffer can be chosen, that is before the port is opened. On the ESP32 an
- * open port refuses: closing it here would lose the pins that the sketch may have chosen. */
+/* Enlarges the core's receive buffer where the core allows it, before the port is opened. On the
+ * ESP32 an open port refuses. It is not closed here, because it would lose pins that the sketch may
+ * have chosen. */
 static void enlarge(TMiniSerial &serial)
 {
 #if defined(ESP32) || defined(ESP8266)
@@ -35,8 +35,8 @@ static void enlarge(TMiniSerial &serial)
 #endif
 }
 
-/* Where the UART's FIFO interrupts at a level that can be chosen, that is after the port is opened.
- * Of 128 bytes the core leaves 8 for delays, 0.35 ms; this half of them. */
+/* Sets the level at which the UART's FIFO interrupts, where the core allows it, after the port is
+ * opened. The core leaves 8 of 128 bytes (0.35 ms) for delays; this leaves half of them. */
 static void quicken(TMiniSerial &serial)
 {
 #if defined(ESP_ARDUINO_VERSION_MAJOR) && ESP_ARDUINO_VERSION_MAJOR >= 3
@@ -49,7 +49,7 @@ static void quicken(TMiniSerial &serial)
 static bool isOpen(TMiniSerial &serial)
 {
 #if defined(ESP32)
-    return static_cast<bool>(serial); /* Not without memory, for one. */
+    return static_cast<bool>(serial); /* It may lack memory, for example. */
 #else
     (void)serial;
     return true;
@@ -85,7 +85,7 @@ TMiniLidarBase::TMiniLidarBase(uint8_t *rx, size_t rxSize, tmini_point_t *points
     config_.max_points = maxPoints;
 }
 
-/* Two bytes always fit in the core's transmit buffer: nothing else is ever sent. */
+/* Two bytes always fit in the core's transmit buffer, because nothing else is sent. */
 int TMiniLidarBase::writeBytes(void *context, const uint8_t *bytes, size_t count)
 {
     Stream *const stream = static_cast<TMiniLidarBase *>(context)->stream_;
@@ -104,7 +104,7 @@ static void open(TMiniSerial &serial)
 }
 
 #if defined(ESP32)
-/* An open port would keep its buffer; and where its pins are not given, early cores take others. */
+/* An open port would keep its small buffer. Early cores use other pins if none are given. */
 static void open(TMiniSerial &serial, int8_t rxPin, int8_t txPin)
 {
     if (isOpen(serial)) {
@@ -116,7 +116,7 @@ static void open(TMiniSerial &serial, int8_t rxPin, int8_t txPin)
 }
 #endif
 
-/* Whatever has stopped or changed the port. */
+/* Opens the port again, whatever has stopped or changed it. */
 void TMiniLidarBase::restart(void *context)
 {
     TMiniLidarBase *const port = static_cast<TMiniLidarBase *>(context);
@@ -131,7 +131,8 @@ void TMiniLidarBase::restart(void *context)
 #endif
 }
 
-/* As tmini_mount_step(), which would take longer on an 8-bit board than its buffer lasts. */
+/* Does the work of tmini_mount_step(), which takes longer on an 8-bit board than its buffer
+ * lasts. */
 void TMiniLidarBase::mountScan(const void *context, tmini_scan_t *scan)
 {
     TMiniLidarBase *const port = static_cast<TMiniLidarBase *>(const_cast<void *>(context));
@@ -150,8 +151,8 @@ bool TMiniLidarBase::succeeds(tmini_status_t status)
     return status == TMINI_OK;
 }
 
-/* In 0.01 Hz. What is out of range becomes a frequency that is refused; so does what is no
- * number. */
+/* Converts to 0.01 Hz. A value out of range, or not a number, becomes a frequency that is
+ * refused. */
 static uint16_t toHundredths(float hertz)
 {
     if (!(hertz >= 6.0f && hertz <= 12.0f)) {
@@ -219,8 +220,8 @@ static size_t smaller(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* An AVR's readBytes() looks at the clock for each byte, which takes three times as long as the
- * byte's own reading; elsewhere it takes a block at once. */
+/* On an AVR readBytes() reads the clock for each byte, which takes three times as long as read().
+ * On other boards it copies a whole block. */
 static size_t readSome(Stream &stream, uint8_t *bytes, size_t count)
 {
 #if defined(ARDUINO_ARCH_AVR)
@@ -234,8 +235,8 @@ static size_t readSome(Stream &stream, uint8_t *bytes, size_t count)
 #endif
 }
 
-/* Only what is there is asked for, so that readBytes() has nothing to wait for. False if the stream
- * promises bytes and gives none. */
+/* Asks only for bytes that are there, so that readBytes() does not wait. False if the stream
+ * announces bytes and gives none. */
 bool TMiniLidarBase::take(size_t count)
 {
     uint8_t chunk[64];
@@ -250,8 +251,8 @@ bool TMiniLidarBase::take(size_t count)
     return true;
 }
 
-/* A core's buffer that is full drops what comes: the gap is noted once all is taken that it held
- * then. True if some was left for lack of room. */
+/* A full core buffer drops further bytes, so a gap is reported after the bytes that it held. True
+ * if bytes were left because the lidar has no room. */
 bool TMiniLidarBase::receiveSome()
 {
     const int held = stream_->available();
@@ -282,7 +283,7 @@ void TMiniLidarBase::receive()
     }
 }
 
-/* What comes meanwhile is left for the next time, so that this ends. */
+/* Bytes that come meanwhile are left for the next call, so that this one ends. */
 tmini_event_t TMiniLidarBase::loop()
 {
     bool more = stream_ != NULL;

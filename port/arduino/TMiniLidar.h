@@ -20,15 +20,15 @@
  *         }
  *     }
  *
- * Nothing waits, and nothing is allocated. TMiniLidar gathers whole revolutions (6 KB of RAM);
- * TMiniLidarStreaming hands over each packet of up to 40 points as it comes (0.8 KB). What the
- * library can do besides is reached by config(), before begin(), and driver().
+ * No call waits, and no memory is allocated. TMiniLidar collects whole revolutions (6 KB of RAM);
+ * TMiniLidarStreaming hands over each packet of up to 40 points as it comes (0.8 KB). config(),
+ * before begin(), and driver() give access to the rest of the library.
  *
- * Time. The lidar sends a byte each 43 us; what the sketch does not take in time is lost in the
- * core's receive buffer: 64 bytes last 2.8 ms (most boards), 1024 last 44 ms (ESP32, ESP8266,
- * RP2040, RP2350). loop() takes them, and so does going through points(); in longer work of your
- * own, call receive(). On an 8-bit board a float costs 10 us, and print() waits while its own 64
- * bytes are full. */
+ * Time. The lidar sends a byte every 43 us. Bytes that the sketch does not take in time are lost
+ * when the core's receive buffer is full: after 2.8 ms with 64 bytes (most boards), after 44 ms
+ * with 1024 (ESP32, ESP8266, RP2040, RP2350). loop() takes them, and so does a loop over points().
+ * During longer work of your own call receive(). On an 8-bit board a float costs 10 us, and print()
+ * waits while its own 64 bytes are full. */
 
 #ifndef TMINI_LIDAR_H
 #define TMINI_LIDAR_H
@@ -142,16 +142,17 @@ class TMiniLidarBase
     /** Opens the serial port at the lidar's 230400 baud; on an ESP32, ESP8266, RP2040 and RP2350
      * with a large receive buffer. (On an ESP32, a port that the sketch has opened already keeps
      * its pins, and its buffer.) `hertz`: scans per second, 6 to 12, also after a power failure; 0:
-     * whatever the lidar has. False, and then error() says why: the configuration is wrong, such as
-     * the buffers' sizes or the frequency; on an ESP32 also when the port could not be opened. */
+     * whatever the lidar has. Returns false, and error() gives the reason, if the configuration is
+     * wrong (for example a buffer's size or the frequency); on an ESP32 also if the port could not
+     * be opened. */
     bool begin(TMiniSerial &serial, float hertz = 0);
 #if defined(ESP32) || TMINI_LIDAR_ON_RP2040
     /** The same on these pins; a port that is open already is closed and opened again. */
     bool begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin, float hertz = 0);
 #endif
 #if TMINI_LIDAR_ON_RP2040
-    /** Name the port itself (Serial1): a HardwareSerial & to it cannot enlarge its buffer. Other
-     * kinds of port with a buffer of their own, such as SerialPIO: open it, then
+    /** Pass the port itself (Serial1): through a HardwareSerial & its buffer cannot be enlarged.
+     * For other kinds of port that have their own buffer, such as SerialPIO: open it, then call
      * begin(static_cast<Stream &>(port)). */
     bool begin(HardwareSerial &serial, float hertz = 0) = delete;
 #endif
@@ -161,8 +162,8 @@ class TMiniLidarBase
     /** @name Before begin() */
     /** @{ */
 
-    /** How the lidar is mounted, and what it is not to see: points come as the robot sees them.
-     * `mount` must outlive the lidar. Not with a `step` of yours. */
+    /** How the lidar is mounted, and what is masked: points are then in the robot's directions.
+     * `mount` must outlive the lidar. It cannot be combined with a `step` of your own. */
     void setMount(const tmini_mount_t &mount)
     {
         mount_ = &mount;
@@ -171,36 +172,36 @@ class TMiniLidarBase
     /** One that does not outlive the call. */
     void setMount(const tmini_mount_t &&mount) = delete;
 
-    /** Everything else that tmini_init() takes, such as `config().filter = TMINI_FILTER_BOTH` or
-     * `config().listen_only = true`. Port, buffers and frequency are begin()'s. */
+    /** All other settings of tmini_init(), such as `config().filter = TMINI_FILTER_BOTH` or
+     * `config().listen_only = true`. begin() sets port, buffers and frequency. */
     tmini_config_t &config()
     {
         return config_;
     }
     /** @} */
 
-    /** Takes what has been received, and does what is due. Returns what has happened, or
-     * TMINI_EVENT_NONE (0) when nothing has: call it until then. Never waits. */
+    /** Takes received bytes and does what is due. Returns the next event, or TMINI_EVENT_NONE (0)
+     * if there is none: call it until then. Never waits. */
     tmini_event_t loop();
 
-    /** Takes what has been received, and nothing else: for the middle of work that takes longer
-     * than the core's buffer lasts. The lidar's own buffer lasts 22 ms per 512 bytes. */
+    /** Takes received bytes and does nothing else: for use during work that takes longer than the
+     * core's buffer lasts. The lidar's own buffer lasts 22 ms per 512 bytes. */
     void receive();
 
-    /** How many points the last loop() has brought: those of a whole revolution, or when streaming
-     * those of a packet. */
+    /** How many points the last loop() has brought: those of a whole revolution or, with
+     * TMiniLidarStreaming, of a packet. */
     size_t available() const;
-    /** The points of the last loop(), there until the next one; with a spare buffer, those of the
-     * last scan, there until the next scan. */
+    /** The points of the last loop(), valid until the next loop(). With a spare buffer, the points
+     * of the last scan, valid until the next scan. */
     TMiniPoints points();
-    /** The scan that points() are of, valid as long: complete, frequency, times, gaps. */
+    /** The scan that points() belongs to, valid equally long: complete, frequency, times, gaps. */
     const tmini_scan_t &scan() const;
-    /** When streaming: the packet that points() are of, until the next loop(). */
+    /** With TMiniLidarStreaming: the packet that points() belongs to, until the next loop(). */
     const tmini_packet_t &packet() const;
 
     /** @name Commands
-     * False: not possible now, error() says why. How they end comes from loop(), as the event in
-     * brackets or as TMINI_EVENT_COMMAND_FAILED; error() then says why. */
+     * They return false if the command is not possible now; error() gives the reason. Later loop()
+     * returns the event in brackets, or TMINI_EVENT_COMMAND_FAILED, whose reason is in error(). */
     /** @{ */
     bool start();                   /**< Scans until stop(), whatever happens [STARTED]. */
     bool stop();                    /**< Stops scanning [STOPPED]. */
@@ -220,14 +221,14 @@ class TMiniLidarBase
     const tmini_health_t &health() const;
     /** A combination of tmini_fault_t; see TMINI_EVENT_FAULTS_CHANGED. */
     uint8_t faults() const;
-    /** Why the last call returned false, or else the last failed command failed; TMINI_OK: neither
-     * has happened. */
+    /** Why the last call returned false or, if none did, why the last command failed; TMINI_OK:
+     * neither has happened. */
     tmini_status_t status() const;
     /** The same as text. */
     const char *error() const;
     /** How often the core's receive buffer was found full, so that bytes may have been lost: the
-     * sketch was too slow. Known where its size is: begin() has set it, or the core names it (AVR,
-     * STM32). */
+     * sketch was too slow. Counted only where the buffer's size is known: begin() has set it, or
+     * the core names it (AVR, STM32). */
     uint16_t overruns() const;
 
     /** The library's own handle, for what has no method here: counters, CT information. */

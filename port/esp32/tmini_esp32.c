@@ -17,22 +17,21 @@ static const char *const TAG = "tmini";
 
 #define FIFO_SIZE 128
 
-/* With fewer, one event that waits would pass for a full queue, and so for a loss. */
+/* In a shorter queue a single waiting event would look like a full queue, and so like a loss. */
 #define QUEUE_LENGTH_MIN 4
 
 /* The tightest limits in the family, those of the ESP32 itself. */
 #define FIFO_THRESHOLD_MAX 126
 #define TIMEOUT_SYMBOLS_MAX 100
 
-/* How long the receiving task waits for an event before it looks by itself, and so how long
- * stopping may take. Bytes whose event found the queue full are fetched then, if not by the next
- * one. Not 0 where ticks are longer, or the task would never wait, and nothing of lower priority
- * ever run. */
+/* How long the receiving task waits for an event before it looks for bytes itself; stopping may
+ * take as long. It then fetches bytes whose event was lost in a full queue. At least one tick:
+ * otherwise the task would never wait, and no task of lower priority would run. */
 #define LOOK_MS 20
 #define LOOK_TICKS (pdMS_TO_TICKS(LOOK_MS) > 0 ? pdMS_TO_TICKS(LOOK_MS) : 1)
 
-/* The low-power UARTs of some chips have numbers too, after the others: FIFOs of 16 bytes, slow
- * clocks. */
+/* Low-power UARTs, which some chips have after the others, do not count: their FIFOs have 16 bytes
+ * and their clocks are slow. */
 #ifdef SOC_UART_HP_NUM
 #define UARTS SOC_UART_HP_NUM
 #else
@@ -45,9 +44,8 @@ static const char *const TAG = "tmini";
 #define CORES 2
 #endif
 
-/* The crystal's frequency is the same whatever the power management does to the CPU's and the
- * buses'. The two oldest chips cannot give it to a UART: there the APB has to keep its full
- * speed. */
+/* Power management changes the clocks of CPU and buses, but not the crystal's. On the two oldest
+ * chips a UART cannot use the crystal: there the APB has to keep its full speed. */
 #if defined(CONFIG_IDF_TARGET_ESP32) || defined(CONFIG_IDF_TARGET_ESP32S2)
 #define UART_CLOCK UART_SCLK_APB
 #define PM_LOCK ESP_PM_APB_FREQ_MAX
@@ -56,7 +54,7 @@ static const char *const TAG = "tmini";
 #define PM_LOCK ESP_PM_NO_LIGHT_SLEEP
 #endif
 
-/* The interrupt handler is where menuconfig has put it; saying otherwise earns a warning. */
+/* Must agree with where menuconfig puts the interrupt handler, or ESP-IDF warns. */
 #ifdef CONFIG_UART_ISR_IN_IRAM
 #define INTERRUPT_FLAGS ESP_INTR_FLAG_IRAM
 #else
@@ -75,7 +73,7 @@ static bool load(const bool *flag)
     return __atomic_load_n(flag, __ATOMIC_ACQUIRE);
 }
 
-/* One writer, so this need not be one indivisible step; only reading must not see half of it. */
+/* There is one writer, so the addition need not be atomic; only the store must be. */
 static void add(uint32_t *counter, uint32_t amount)
 {
     __atomic_store_n(counter, *counter + amount, __ATOMIC_RELAXED);
@@ -88,16 +86,16 @@ static uint32_t total(const uint32_t *counter)
 
 /* ------------------------------------------------------------------------------------- the line */
 
-/* A pin that was an output before would go on driving the line: newer versions of ESP-IDF route a
- * receive pin without switching its output off. */
+/* If the pin was an output before, it would still drive the line: newer versions of ESP-IDF do not
+ * switch the output off. */
 static void release(int pin)
 {
     (void)gpio_reset_pin((gpio_num_t)pin);
 }
 
-/* An unplugged lidar must not leave the line floating: noise would be bytes, and frame errors
- * interrupts. Older versions of ESP-IDF did this by themselves. Pins without a pull-up (34 to 39 of
- * the ESP32) say so in the log, and work. */
+/* Without a pull-up the line of an unplugged lidar would float, and noise would become bytes and
+ * errors. Older versions of ESP-IDF did this by themselves. For pins without a pull-up (34 to 39 of
+ * the ESP32) ESP-IDF logs an error; they work. */
 static void pull_up(int pin)
 {
     (void)gpio_pullup_en((gpio_num_t)pin);
@@ -129,7 +127,7 @@ static esp_err_t set_up_uart(const tmini_esp32_wiring_t *wiring)
         error = uart_set_rx_timeout(uart, (uint8_t)wiring->timeout_symbols);
     }
     if (error == ESP_OK) {
-        /* The one event of this port that the driver does not post unless asked to. */
+        /* The driver posts all events that this port uses, except this one, by default. */
         error = uart_enable_intr_mask(uart, UART_FRM_ERR_INT_ENA_M);
     }
     return error;
@@ -142,16 +140,17 @@ static size_t smaller(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* A place in the stream of bytes is counted as counters.bytes counts what has been handed on. How
- * far ahead of that it is; 0 when it has been passed. */
+/* How far a place in the stream is ahead of counters.bytes, in bytes; 0 if it has been passed.
+ * Places count as counters.bytes does. */
 static size_t distance_to(const tmini_esp32_t *port, uint32_t place)
 {
     const uint32_t distance = place - port->counters.bytes;
     return distance <= INT32_MAX ? distance : 0;
 }
 
-/* Takes no more than the lidar's ring has room for: what the ring would have to refuse is safe in
- * the driver's buffer, until the poll has made room. And nothing from after a gap yet. */
+/* How many bytes to take from the driver now: no more than the lidar's ring has room for, because
+ * the others are safe in the driver's buffer until a poll has made room; and none from after the
+ * next gap. */
 static size_t wanted_now(const tmini_esp32_t *port)
 {
     const size_t wanted = smaller(tmini_feed_room(port->lidar), sizeof port->chunk);
@@ -168,8 +167,8 @@ static size_t take(tmini_esp32_t *port, size_t wanted)
     return count > 0 ? tmini_feed(port->lidar, port->chunk, (size_t)count) : 0;
 }
 
-/* The driver stores bytes before it announces them: once it holds none, all that were announced
- * have been handed on, and no gap is ahead any more but here. */
+/* The driver holds no bytes. It stores bytes before it announces them, so all announced bytes have
+ * been handed on, and a gap that was ahead is here. */
 static void catch_up(tmini_esp32_t *port)
 {
     if (distance_to(port, port->announced) > 0) {
@@ -186,7 +185,7 @@ static void pass_gap(tmini_esp32_t *port)
     }
 }
 
-/* What waits there for room, before a gap if there is one ahead. */
+/* How many bytes wait in the driver, up to the next gap. */
 static size_t left_in_driver(const tmini_esp32_t *port)
 {
     size_t left = 0;
@@ -194,13 +193,11 @@ static size_t left_in_driver(const tmini_esp32_t *port)
     return port->gap_ahead ? smaller(left, distance_to(port, port->gap)) : left;
 }
 
-/* Reads until nothing is left, or up to a gap, whatever size an event has named: then neither a
- * lost event nor one that comes late matters. Reading is also what sets a driver with a full buffer
- * going again.
+/* Reads until nothing is left, or up to a gap. It does not use the sizes in events, so lost or late
+ * events do no harm. A driver whose buffer was full receives again after this.
  *
- * There is no flushing here, after overflows either. What the driver holds was received whole; what
- * overflowed is gone already. Flushing would only add intact packets to the loss: the parser finds
- * its way past the gap by itself. */
+ * It never flushes the driver's buffer, not even after an overflow: the bytes in it are intact, and
+ * the parser copes with the gap. */
 static size_t drain(tmini_esp32_t *port)
 {
     size_t drained = 0;
@@ -220,8 +217,9 @@ static size_t drain(tmini_esp32_t *port)
     return drained;
 }
 
-/* What overflowed came after all that had been announced by then: on an overflow, the driver saves
- * the FIFO's bytes and announces them, if its buffer has room, and then reports the overflow. */
+/* Notes an overflow. The lost bytes came after all bytes announced so far: on an overflow the
+ * driver saves the FIFO's bytes and announces them, if its buffer has room, before it reports the
+ * overflow. */
 static void note_gap(tmini_esp32_t *port)
 {
     if (!port->gap_ahead) {
@@ -232,9 +230,9 @@ static void note_gap(tmini_esp32_t *port)
     }
 }
 
-/* Each gap costs the lidar's ring a poll. So however many there are after the first one, or of
- * however many the events were lost, there is one more: after all that the driver can hold, or
- * turns out to hold. */
+/* Joins all further overflows into one second gap, because each gap costs the lidar's ring a poll.
+ * Overflows whose events were lost are included. This gap lies after all bytes that the driver can
+ * hold now. */
 static void note_later_gaps(tmini_esp32_t *port)
 {
     if (port->lost_more && !port->gap_ahead) {
@@ -262,12 +260,12 @@ static void count_event(tmini_esp32_counters_t *counters, uart_event_type_t type
     case UART_PARITY_ERR:
         add(&counters->parity_errors, 1);
         break;
-    default: /* Data, and what this port does not switch on. */
+    default: /* Data, and events that this port does not enable. */
         break;
     }
 }
 
-/* Bytes that did not fit into the driver's buffer are announced, too: they follow when there is
+/* Bytes that did not fit into the driver's buffer are announced too; they follow when there is
  * room. */
 static void take_event(tmini_esp32_t *port, const uart_event_t *event)
 {
@@ -279,8 +277,8 @@ static void take_event(tmini_esp32_t *port, const uart_event_t *event)
     }
 }
 
-/* Nobody else takes events: so a queue that was full has stayed so until now, when there is room
- * for the one that has been taken, if no more. Any event may have been lost. */
+/* One event has just been taken. If there is room for only one, the queue was full before, and any
+ * event may have been lost. */
 static void look_for_lost_events(tmini_esp32_t *port)
 {
     if (uxQueueSpacesAvailable(port->events) <= 1) {
@@ -289,8 +287,9 @@ static void look_for_lost_events(tmini_esp32_t *port)
     }
 }
 
-/* The lidar is lost: perhaps because something else has changed the UART, its interrupts or its
- * pins. What the driver still holds is older than the loss. */
+/* The lidar is lost, perhaps because something has changed the UART, its interrupts or its pins:
+ * sets them up again. Bytes that the driver still holds are older than the loss, and are
+ * dropped. */
 static void begin_anew(tmini_esp32_t *port)
 {
     const uart_port_t uart = (uart_port_t)port->wiring.uart;
@@ -303,7 +302,7 @@ static void begin_anew(tmini_esp32_t *port)
     tmini_feed_gap(port->lidar);
 }
 
-/* All events before any bytes: an overflow is among bytes that came before it and after it. */
+/* Takes all events before any bytes, so that the place of an overflow among the bytes is known. */
 static size_t receive(tmini_esp32_t *port, TickType_t ticks)
 {
     uart_event_t event;
@@ -321,7 +320,7 @@ static size_t receive(tmini_esp32_t *port, TickType_t ticks)
     return drain(port);
 }
 
-/* With a task, or with nothing to receive, it is time alone that ends the wait. */
+/* With a receiving task, or when stopped, it only sleeps. */
 size_t tmini_esp32_wait(tmini_esp32_t *port, TickType_t ticks)
 {
     if (port != NULL && port->is_started && !port->wiring.with_task) {
@@ -331,9 +330,9 @@ size_t tmini_esp32_wait(tmini_esp32_t *port, TickType_t ticks)
     return 0;
 }
 
-/* With a full ring it is the poll that makes it go on, and no event reports that: look each tick.
+/* While the ring is full it looks in each tick, because no event reports that a poll has made room.
  *
- * Touches nothing of the port after its last store: the port may be gone by then. */
+ * After its last store it does not touch the port, which may no longer exist. */
 static void receive_task(void *argument)
 {
     tmini_esp32_t *const port = argument;
@@ -368,8 +367,8 @@ static const char *mistake_in_task(const tmini_esp32_wiring_t *wiring)
     return NULL;
 }
 
-/* FreeRTOS and the UART driver stop the program at some of these mistakes, and say nothing about
- * the lidar: so each is found here, and named. NULL when there is none. */
+/* Names the first mistake in the wiring; NULL: there is none. FreeRTOS or the UART driver would
+ * stop the program at some of them without naming the lidar. */
 static const char *mistake_in(const tmini_esp32_wiring_t *wiring)
 {
     if (!is_within(wiring->uart, 0, UARTS - 1)) {
@@ -424,13 +423,14 @@ static esp_err_t start_task(tmini_esp32_t *port)
     return created == pdPASS ? ESP_OK : ESP_ERR_NO_MEM;
 }
 
-/* Before the UART is set up: the baud rate's divider is worked out from the clock as it is then. */
+/* Called before the UART is set up, because the baud rate's divider is computed from the clock at
+ * that time. */
 static esp_err_t hold_clock(tmini_esp32_t *port)
 {
     esp_pm_lock_handle_t lock = NULL;
     esp_err_t error = esp_pm_lock_create(PM_LOCK, 0, "tmini", &lock);
     if (error == ESP_ERR_NOT_SUPPORTED) {
-        return ESP_OK; /* Without power management nothing changes a clock. */
+        return ESP_OK; /* Without power management the clocks never change. */
     }
     if (error != ESP_OK) {
         return error;
@@ -453,7 +453,7 @@ static void release_clock(tmini_esp32_t *port)
     }
 }
 
-/* The driver, and the task over it; on failure nothing is left of either. */
+/* Installs the driver and starts the task; after a failure removes what it had done. */
 static esp_err_t begin_reception(tmini_esp32_t *port)
 {
     const tmini_esp32_wiring_t *const wiring = &port->wiring;
@@ -462,7 +462,7 @@ static esp_err_t begin_reception(tmini_esp32_t *port)
     esp_err_t error = uart_driver_install(uart, wiring->buffer_size, 0, wiring->queue_length,
                                           &port->events, INTERRUPT_FLAGS);
     if (error != ESP_OK) {
-        return error; /* Not ours to remove: it may be someone else's. */
+        return error; /* Not removed: it may belong to another part of the program. */
     }
     error = set_up_uart(wiring);
     if (error == ESP_OK) {
@@ -506,8 +506,8 @@ esp_err_t tmini_esp32_stop(tmini_esp32_t *port)
     if (port == NULL || !port->is_started) {
         return ESP_ERR_INVALID_STATE;
     }
-    /* The task must not be in the driver when that goes, nor hold one of its locks: it ends itself,
-     * between two events. */
+    /* When the driver is removed the task must not be inside it or hold one of its locks, so the
+     * task ends itself between two events. */
     store(&port->stopping, true);
     while (load(&port->receiving)) {
         vTaskDelay(1);
@@ -553,7 +553,7 @@ static void port_wait(void *context)
     (void)tmini_esp32_wait(context, 1);
 }
 
-/* Feeding, and so a gap, is the receiving context's: it looks within 20 ms. */
+/* Only the receiving context may feed or report a gap; it notices this flag within 20 ms. */
 static void port_restart(void *context)
 {
     tmini_esp32_t *const port = context;

@@ -26,9 +26,8 @@
  *         }
  *     }
  *
- * With a task (the default), that task feeds and the one that polls is another, on the same core or
- * not: the lidar's ring is made for that. Without (`with_task` false), one task does both:
- * tmini_esp32_wait() then receives, too. */
+ * By default (`with_task` true) a receiving task feeds and another task polls, on the same core or
+ * not. With `with_task` false one task does both: tmini_esp32_wait() then also receives. */
 
 #ifndef TMINI_ESP32_H
 #define TMINI_ESP32_H
@@ -53,22 +52,26 @@ extern "C" {
 /** The task may run on any core. */
 #define TMINI_ESP32_ANY_CORE (-1)
 
-/** How the lidar is connected, and how it is received. */
+/** How the lidar is connected, and how its bytes are received. */
 typedef struct {
     int uart;             /**< 1 for UART1, and so on; not a low-power one. UART0 is the console. */
     int tx_pin;           /**< The GPIO wired to the lidar's RX. */
     int rx_pin;           /**< The GPIO wired to the lidar's TX. Its pull-up is switched on. */
-    int buffer_size;      /**< Of the UART driver's ring buffer: more than the FIFO's 128 bytes. */
-    int queue_length;     /**< Of the UART driver's event queue: 4 or more. */
+    int buffer_size;      /**< Size of the UART driver's ring buffer, in bytes: more than the FIFO's
+                           * 128. */
+    int queue_length;     /**< Length of the UART driver's event queue: 4 or more. */
     int fifo_threshold;   /**< Bytes in the FIFO that raise the interrupt: 1 to 126. */
-    int timeout_symbols;  /**< Or byte times of silence after the last byte: 1 to 100. */
-    bool with_task;       /**< Start a receiving task; else tmini_esp32_wait() receives. */
-    int task_stack_bytes; /**< The rest is for that task alone. */
-    int task_priority;    /**< Above the task that polls, below FreeRTOS's configMAX_PRIORITIES. */
+    int timeout_symbols;  /**< Silence after the last byte that also raises it, in byte times: 1 to
+                           * 100. */
+    bool with_task;       /**< Start a receiving task; if false, tmini_esp32_wait() receives. */
+    int task_stack_bytes; /**< Stack of that task. This and the next two members matter only with a
+                           * task. */
+    int task_priority;    /**< Its priority: above the polling task, below FreeRTOS's
+                           * configMAX_PRIORITIES. */
     int task_core;        /**< A core that FreeRTOS runs on (0, 1), or TMINI_ESP32_ANY_CORE. */
 } tmini_esp32_wiring_t;
 
-/** Wiring and sizes as chosen in menuconfig, "T-mini lidar". Kconfig says what each is good for. */
+/** Wiring and sizes as chosen in menuconfig, "T-mini lidar". Kconfig explains each. */
 #define TMINI_ESP32_WIRING_DEFAULT                                                          \
     {                                                                                       \
         .uart = CONFIG_TMINI_ESP32_UART, .tx_pin = CONFIG_TMINI_ESP32_TX_PIN,               \
@@ -81,18 +84,21 @@ typedef struct {
         .task_core = CONFIG_TMINI_ESP32_TASK_CORE,                                          \
     }
 
-/** Received bytes on their way to the lidar. Running totals, modulo 2^32. After that
- * tmini_counters() counts. */
+/** Counters of received bytes and errors on their way to the lidar, modulo 2^32. tmini_counters()
+ * counts what the lidar does with them. */
 typedef struct {
     uint32_t bytes; /**< Handed to the lidar. */
-    /** The interrupt came too late: what came after the FIFO's 128 bytes was lost; with the
-     * driver's buffer full, those too. */
+    /** Overflows of the FIFO: the interrupt came too late, and the bytes after the FIFO's 128 were
+     * lost. If the driver's buffer was full, those 128 were lost too. */
     uint32_t overruns;
-    uint32_t buffers_full; /**< Poll or task came too late; bytes waited, and may then overflow. */
-    uint32_t queues_full;  /**< Events were lost; of an overflow perhaps, so a gap was assumed. */
+    uint32_t buffers_full; /**< How often the driver's buffer was full, because the task or the
+                            * polls came too late. Nothing is lost yet. */
+    uint32_t queues_full;  /**< How often events were lost. One may have been an overflow, so a gap
+                            * is assumed. */
     uint32_t breaks;       /**< The line was low for longer than a byte: unplugged? */
     uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
-    uint32_t parity_errors;  /**< Cannot happen without a parity bit; counted all the same. */
+    uint32_t parity_errors;  /**< Cannot happen without a parity bit; counted if the chip reports
+                              * it. */
 } tmini_esp32_counters_t;
 
 /** One UART with a lidar. Treat the members as private. */
@@ -104,10 +110,13 @@ typedef struct {
     esp_pm_lock_handle_t pm_lock; /* NULL: power management is not compiled in. */
     bool is_ready;                /* tmini_esp32_init() has found nothing wrong. */
     bool is_started;
-    uint32_t announced;              /* By the driver's events: counts on as counters.bytes will. */
-    uint32_t gap;                    /* Bytes were lost there, as counters.bytes will count, */
-    bool gap_ahead;                  /* and this has not been reported to the lidar. */
-    bool lost_more;                  /* Bytes were lost after that, too, or at an unknown place. */
+    uint32_t announced;              /* The value that counters.bytes will have after all bytes
+                                      * announced by events. */
+    uint32_t gap;                    /* The place of a gap: the value that counters.bytes will have
+                                      * there. */
+    bool gap_ahead;                  /* That gap has not yet been reported to the lidar. */
+    bool lost_more;                  /* More bytes were lost, after that gap or at an unknown
+                                      * place. */
     bool stopping;                   /* Written by tmini_esp32_stop(), read by the task. */
     bool receiving;                  /* Written by the task: cleared when it ends. */
     bool restarting;                 /* Set by the poll, cleared by the receiving context. */
@@ -126,24 +135,25 @@ esp_err_t tmini_esp32_init(tmini_esp32_t *port, const tmini_esp32_wiring_t *wiri
 
 /** Installs the UART driver, sets it up for the lidar and starts the receiving task. The UART's
  * interrupt is served by the core that makes this call. `lidar` has been through tmini_init(); both
- * it and `port` stay the caller's and must last until tmini_esp32_stop(). The counters start anew.
+ * it and `port` stay the caller's and must last until tmini_esp32_stop(). The counters begin at 0.
  *
- * Until then a lock of the power management is held, if that is compiled in (CONFIG_PM_ENABLE): no
- * light sleep, in which a UART receives nothing; and on the ESP32 and the ESP32-S2, whose UARTs
- * take their clock from the APB, no slower APB.
+ * If power management is compiled in (CONFIG_PM_ENABLE), the port holds a lock until
+ * tmini_esp32_stop(). It prevents light sleep, in which a UART receives nothing; and on the ESP32
+ * and ESP32-S2, whose UARTs take their clock from the APB, a slower APB.
  *
- * Context: a task. Waits only for memory. Returns ESP_OK, or with nothing left of it
+ * Context: a task. Waits only for memory. Returns ESP_OK, or an error, after which nothing remains
+ * installed:
  *   ESP_ERR_INVALID_ARG    null pointer
  *   ESP_ERR_INVALID_STATE  started already, or tmini_esp32_init() has not succeeded
  *   ESP_ERR_NO_MEM         no memory for the task or the lock
- *   another                as the UART driver gave it; ESP_FAIL if the UART is taken */
+ *   others from the UART driver; ESP_FAIL if the UART is in use */
 esp_err_t tmini_esp32_start(tmini_esp32_t *port, tmini_t *lidar);
 
-/** Ends the receiving task and removes the UART driver; also while bytes come in. Stop the lidar
- * before, or it goes on scanning. `port` may be started again.
+/** Ends the receiving task and removes the UART driver; allowed while bytes come in. Stop the lidar
+ * first, or it keeps scanning. `port` may be started again.
  *
  * Context: the task that polls. Waits for the receiving task to end: 20 ms and two ticks at most.
- * Returns ESP_OK, ESP_ERR_INVALID_STATE when not started, or what the UART driver gave. */
+ * Returns ESP_OK, ESP_ERR_INVALID_STATE if not started, or the UART driver's error. */
 esp_err_t tmini_esp32_stop(tmini_esp32_t *port);
 
 /** For a polling task that has nothing left to do. With a receiving task, or when stopped: sleeps

@@ -12,9 +12,9 @@
 
 #define STREAM_SIZE_MIN 128u
 
-/* The receiving task wakes after this many bytes, or this time: a packet's end must not wait for
- * the next packet. It sleeps on its notification and not on the stream, whose senders alone wake
- * those who do: a stream that is closed would wake no task. */
+/* The receiving task wakes after this many bytes or this time, so that a packet's end need not wait
+ * for the next packet. It waits for its notification, not for the stream: only a sender wakes a
+ * task that waits for a stream, and nothing is sent to a closed one. */
 #define RECEIVER_WAKE_BYTES 32u
 #define PATIENCE_MS 10u
 
@@ -29,8 +29,8 @@ static TickType_t ticks_of(uint32_t ms)
 
 /* ----------------------------------------------------------------- the UART's interrupt context */
 
-/* The polling task has no name before it has slept for the first time, and the receiving one not
- * quite from its first moment. */
+/* The task may be unknown: the polling task until it sleeps for the first time, the receiving task
+ * until it has begun to run. */
 static void notify_from_isr(tmini_freertos_t *port, TaskHandle_t task, BaseType_t *woken)
 {
     if (task != NULL) {
@@ -39,8 +39,8 @@ static void notify_from_isr(tmini_freertos_t *port, TaskHandle_t task, BaseType_
     }
 }
 
-/* A stream that has had to refuse a byte stays closed until the receiving task has emptied it: so
- * the bytes are missing at one place that is known, after the last one stored. */
+/* A stream that has refused a byte stays closed until the receiving task has emptied it. So the
+ * missing bytes are at one known place: after the last one stored. */
 static void send_to_stream(tmini_freertos_t *port, const uint8_t *bytes, size_t count,
                            BaseType_t *woken)
 {
@@ -102,8 +102,8 @@ static void announce(const tmini_freertos_t *port)
     }
 }
 
-/* While it is closed the interrupt sends nothing: what is empty stays so. The polling task must
- * empty the lidar's ring before that takes more. */
+/* While the stream is closed the interrupt stores nothing, so an empty stream stays empty. The
+ * polling task must empty the lidar's ring before it takes more. */
 static void open_when_empty(tmini_freertos_t *port)
 {
     if (port->is_closed && xStreamBufferIsEmpty(port->stream) == pdTRUE) {
@@ -123,7 +123,7 @@ static void report_held(const tmini_freertos_t *port)
     tmini_feed_held(port->lidar, xStreamBufferBytesAvailable(port->stream));
 }
 
-/* Takes no more than the lidar has room for: the rest is better kept in the stream than refused. */
+/* Takes no more than the lidar has room for; the rest waits in the stream. */
 static void hand_on(tmini_freertos_t *port)
 {
     uint8_t chunk[CHUNK];
@@ -152,7 +152,8 @@ static void receive_task(void *argument)
         if (port->is_receiving) {
             hand_on(port);
         } else {
-            await_notification(0); /* Of bytes from before; the next notification is the start's. */
+            await_notification(0); /* A notification for earlier bytes; the next one is from the
+                                    * start. */
             port->is_parked = true;
             await_notification(portMAX_DELAY);
         }
@@ -249,8 +250,8 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
     return port->wiring.write != NULL ? port->wiring.write(port->wiring.uart, bytes, count) : -1;
 }
 
-/* Milliseconds that run on modulo 2^32, which ticks of another rate or of 16 bits do not: each call
- * adds what has passed since the last one. */
+/* Milliseconds modulo 2^32. Ticks of another rate, or of 16 bits, do not wrap there, so each call
+ * adds the time since the last one. */
 static uint32_t port_now_ms(void *context)
 {
     tmini_freertos_t *const port = context;

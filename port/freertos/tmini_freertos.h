@@ -29,9 +29,9 @@
  *     }
  *
  * Two ways. Without a stream (`stream` NULL) the interrupt stores into the lidar's own buffer and
- * notifies the polling task: the shortest way, and the usual one. With a stream it fills a FreeRTOS
- * stream buffer, and a receiving task hands on what the lidar has room for: then the polling task
- * may be kept waiting for as long as the stream lasts, and `rx_buffer` may be small.
+ * notifies the polling task: the shortest way, and the usual one. With a stream the interrupt fills
+ * a FreeRTOS stream buffer, and a receiving task passes on the bytes that the lidar has room for.
+ * Then the polling task may be late by as long as the stream lasts, and `rx_buffer` may be small.
  *
  * Contexts. The two functions whose names end in _from_isr belong to the UART's interrupt, all
  * others to the task that polls. Any number of lidars, each with a tmini_freertos_t of its own. */
@@ -83,7 +83,7 @@ typedef struct {
 /** Received bytes on their way to the lidar. Running totals, modulo 2^32. */
 typedef struct {
     uint32_t bytes;      /**< From the interrupt. */
-    uint32_t bytes_lost; /**< Of them, those that the stream had no room for. */
+    uint32_t bytes_lost; /**< How many of them the stream had no room for. */
     uint32_t overruns;   /**< tmini_freertos_gap_from_isr() was called. */
 } tmini_freertos_counters_t;
 
@@ -97,10 +97,10 @@ typedef struct {
     StreamBufferHandle_t stream;
     volatile bool is_receiving; /* Written by start and stop. */
     volatile bool is_parked;    /* The receiving task has seen that it has to rest. */
-    volatile bool is_closed;    /* The stream takes no more before it has been emptied. */
+    volatile bool is_closed;    /* The stream takes no bytes until it has been emptied. */
     uint32_t unannounced;       /* Bytes since the polling task was last woken. */
-    uint32_t time_ms;           /* As of `tick`, */
-    uint32_t time_rest;         /* and this many thousandths of a tick's worth more. */
+    uint32_t time_ms;           /* The time at `tick`, in ms. */
+    uint32_t time_rest;         /* The fraction of a millisecond on top of it. */
     TickType_t tick;
     tmini_freertos_counters_t counters;
     StaticStreamBuffer_t stream_memory;
@@ -127,9 +127,9 @@ tmini_status_t tmini_freertos_init(tmini_freertos_t *port, const tmini_freertos_
  *   TMINI_ERROR_STATE     started already */
 tmini_status_t tmini_freertos_start(tmini_freertos_t *port, tmini_t *lidar);
 
-/** From now on received bytes are dropped. With a stream it waits until the receiving task rests:
- * at most 10 ms and two ticks. Stop the lidar before, or it goes on scanning. The UART's interrupt
- * must not be under way on another core. */
+/** From now on received bytes are dropped. With a stream it waits until the receiving task has
+ * stopped: at most 10 ms and two ticks. Stop the lidar first, or it keeps scanning. The UART's
+ * interrupt must not be running on another core. */
 void tmini_freertos_stop(tmini_freertos_t *port);
 
 /** Sleeps until bytes have come, at most `ticks` (at least one): for a polling task that has
@@ -143,7 +143,8 @@ void tmini_freertos_wait(tmini_freertos_t *port, TickType_t ticks);
 void tmini_freertos_receive_from_isr(tmini_freertos_t *port, const uint8_t *bytes, size_t count,
                                      BaseType_t *woken);
 
-/** Says that bytes were lost before those received next: the UART has reported an overrun. */
+/** Reports that bytes were lost before those received next: the UART has signalled an overrun. For
+ * the UART's interrupt. */
 void tmini_freertos_gap_from_isr(tmini_freertos_t *port);
 
 /** Copies the counters. */

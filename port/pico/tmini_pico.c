@@ -122,9 +122,9 @@ static uint32_t left_to_transfer(uint8_t channel)
     return dma_channel_hw_addr(channel)->transfer_count;
 }
 
-/* Bytes that DMA has written since the start, modulo 2 TURN: whole laps of the ring included. The
- * channel whose turn it is counts down to 0, and the other one stands at 0. Both do only for the
- * moment between two turns; should that last, because DMA has been stopped, there is no telling. */
+/* Bytes that DMA has written since the start, modulo 2 TURN. The active channel counts down to 0;
+ * the other one is at 0. Both are at 0 only for the moment between two turns. If that lasts, DMA
+ * has been stopped, and the number is unknown. */
 static bool read_written(const tmini_pico_t *port, uint32_t *written)
 {
     for (unsigned attempt = 0; attempt < 4; attempt++) {
@@ -153,14 +153,14 @@ static bool read_unread(const tmini_pico_t *port, uint32_t *unread)
     return true;
 }
 
-/* Whether DMA has not come round yet to the oldest of `unread` bytes. */
+/* True if DMA has not yet overwritten the oldest of `unread` bytes. */
 static bool is_intact(const tmini_pico_t *port, uint32_t unread)
 {
     return unread + IN_FLIGHT <= port->ring_size;
 }
 
-/* Passes over all unread bytes but the newest `kept`. This is reported to the lidar, which takes
- * nothing more before it has dealt with what it had from before the gap: the next polls go on. */
+/* Skips all unread bytes except the newest `kept`, and reports the gap to the lidar. The lidar
+ * takes nothing more until it has processed its bytes from before the gap; later calls continue. */
 static void pass_over(tmini_pico_t *port, uint32_t unread, uint32_t kept)
 {
     port->taken += unread - kept;
@@ -173,8 +173,8 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* Copies the oldest unread bytes, up to CHUNK; returns how many. None are certain until DMA's
- * position has been read once more after the copy: we may have been held up meanwhile, for any
+/* Copies the oldest unread bytes, up to CHUNK; returns how many. They are valid only if DMA's
+ * position, read again after the copy, shows so: this function may have been interrupted for any
  * length of time. */
 static size_t copy_oldest(const tmini_pico_t *port, uint32_t unread, uint8_t *chunk)
 {
@@ -187,8 +187,8 @@ static size_t copy_oldest(const tmini_pico_t *port, uint32_t unread, uint8_t *ch
     return read_unread(port, &unread) && is_intact(port, unread) ? count : 0;
 }
 
-/* Hands on what has come, as far as the lidar has room for it; the rest stays in the ring. Where
- * DMA has come round, the newer half of what the ring holds is kept. */
+/* Passes on the bytes that the lidar has room for; the rest stays in the ring. If DMA has
+ * overwritten unread bytes, the newer half of the ring is kept. */
 static size_t empty_ring(tmini_pico_t *port)
 {
     uint8_t chunk[CHUNK];
@@ -213,8 +213,8 @@ static size_t empty_ring(tmini_pico_t *port)
     return received;
 }
 
-/* DMA does not see the errors that come with a byte, but the UART remembers that there were some.
- * An overrun is somewhere among the unread bytes, at an unknown place: none of them is used. */
+/* DMA does not store the error bits of a byte, but the UART remembers that there were errors. An
+ * overrun is at an unknown place among the unread bytes, so none of them is used. */
 static void look_at_errors(tmini_pico_t *port)
 {
     uart_hw_t *const hw = uart_get_hw(port->uart);

@@ -23,9 +23,9 @@
  *         }
  *     }
  *
- * With a ring, two DMA channels take turns at writing into it, for ever and without any interrupt;
- * tmini_pico_wait() takes out what has come since the last time. Without (`ring` NULL) an
- * interrupt empties the UART's FIFO. README.md says which suits whom, and why the ring is safe.
+ * With a ring, two DMA channels take turns writing into it without end and without any interrupt;
+ * tmini_pico_wait() takes out the new bytes. Without a ring (`ring` NULL) an interrupt empties the
+ * UART's FIFO. README.md explains which to choose, and why the ring is safe.
  *
  * Contexts. All functions belong to the context that polls. The interrupt, if there is one, is
  * served by the core that calls tmini_pico_start(); tmini_poll() may run on the other. */
@@ -65,7 +65,7 @@ typedef struct {
 /** Received bytes on their way to the lidar. Running totals, modulo 2^32. */
 typedef struct {
     uint32_t bytes;          /**< Handed to the lidar. */
-    uint32_t bytes_lost;     /**< DMA had come round to them before they were taken. */
+    uint32_t bytes_lost;     /**< DMA had overwritten them before they were taken. */
     uint32_t overruns;       /**< The UART's FIFO was full: the interrupt came too late. */
     uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
     uint32_t breaks;         /**< The line was low for longer than a byte: no supply, no wire? */
@@ -78,7 +78,8 @@ typedef struct {
     uart_inst_t *uart;
     uint8_t *ring;
     uint32_t ring_size;
-    uint32_t taken; /* Bytes taken out of the ring, as the two channels count; or seen so far. */
+    uint32_t taken; /* Bytes taken out of the ring, in the channels' count; by interrupt, bytes seen
+                     * so far. */
     uint8_t channels[2];
     tmini_pico_counters_t counters;
     /** @endcond */
@@ -105,8 +106,8 @@ tmini_status_t tmini_pico_init(tmini_pico_t *port, const tmini_pico_wiring_t *wi
 tmini_status_t tmini_pico_start(tmini_pico_t *port, tmini_t *lidar);
 
 /** Waits until bytes have come, at most `timeout_ms` (0: not at all), and returns how many. With a
- * ring it hands them to the lidar, as far as that has room: call it at least as often as the ring
- * lasts. By interrupt they are there already. Returns 0 at once if nothing has been started. */
+ * ring it passes them to the lidar, as far as the lidar has room: call it before the ring is full.
+ * By interrupt the lidar has them already. Returns 0 at once if nothing has been started. */
 size_t tmini_pico_wait(tmini_pico_t *port, uint32_t timeout_ms);
 
 /** Ends reception and gives back what tmini_pico_start() took. Stop the lidar before, or it goes on

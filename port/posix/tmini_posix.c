@@ -365,7 +365,7 @@ static void take(tmini_posix_t *port, const uint8_t *bytes, size_t count)
     }
 }
 
-/* What the ring would have to refuse is safe with the system, until polling has made room. */
+/* Bytes that the ring has no room for are safe in the system until polling has made room. */
 static size_t room(const tmini_posix_t *port)
 {
     const size_t space = port->lidar != NULL ? tmini_feed_room(port->lidar) : BLOCK_SIZE;
@@ -402,7 +402,7 @@ static void receive(tmini_posix_t *port, int timeout_ms)
     if (ready < 0) {
         port->state = status_of_transfer(errno);
     }
-    /* What has waited is handed over at once, so that the lidar can tell when it came. */
+    /* Hands over all waiting bytes at once, so that the lidar can compute when they came. */
     while (ready > 0 && wanted > 0 && take_block(port, wanted)) {
         wanted = port->lidar != NULL ? room(port) : 0;
     }

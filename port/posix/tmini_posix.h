@@ -21,10 +21,9 @@
  *
  * After tmini_posix_reconnect() the loop survives a cable that is pulled and plugged in again.
  *
- * A computer has other things to do, and may bring bytes late: let the configuration's timing
- * be a copy of tmini_timing_default with a frame_timeout_ms of 250, as examples/obstacle_stop
- * does (timing = tmini_timing_default; timing.frame_timeout_ms = 250); and with a max_pause_ms
- * of 250 if scans have gaps that nothing else explains.
+ * A computer may deliver bytes late. So use a copy of tmini_timing_default with a frame_timeout_ms
+ * of 250, as examples/obstacle_stop does (timing = tmini_timing_default; timing.frame_timeout_ms =
+ * 250). If scans then have gaps without a visible reason, set max_pause_ms to 250, too.
  *
  * There is no interrupt here: the one context that polls also receives. The port's `wait`
  * receives as well, so that the functions of tmini_blocking.h work. Any number of lidars, each
@@ -53,7 +52,7 @@ typedef enum {
                                         * own terminal. */
     TMINI_POSIX_BAUD_RATE = -5,      /**< It cannot do 230400 baud. */
     TMINI_POSIX_UNPLUGGED = -6,      /**< It was there, and has gone. */
-    TMINI_POSIX_FAILED = -7,         /**< Something else; errno tells. */
+    TMINI_POSIX_FAILED = -7,         /**< Another error; errno has it. */
     TMINI_POSIX_ADDRESS = -8,        /**< It is no tcp:HOST:PORT, or there is no such host. */
 } tmini_posix_status_t;
 
@@ -106,10 +105,10 @@ tmini_posix_status_t tmini_posix_start(tmini_posix_t *port, tmini_t *lidar);
  * its UART. It becomes the port's own: tmini_posix_stop() closes it. Returns TMINI_POSIX_OK. */
 tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *port, int fd, tmini_t *lidar);
 
-/** From now on a device that has gone is opened again as soon as it is back, and until then
- * tmini_posix_wait() goes on to return TMINI_POSIX_OK; the driver reports TMINI_EVENT_LOST, and
- * TMINI_EVENT_RECOVERED once the lidar scans again. So too a device that was not there yet when it
- * was started, and a lidar that has fallen silent. A name in /dev/serial/by-id or by-path is the
+/** From now on a device that has disappeared is opened again as soon as it is back. Until then
+ * tmini_posix_wait() returns TMINI_POSIX_OK; the driver reports TMINI_EVENT_LOST, and
+ * TMINI_EVENT_RECOVERED when the lidar scans again. The same holds for a device that did not exist
+ * at tmini_posix_start(), and for a silent lidar. A name in /dev/serial/by-id or by-path is the
  * same adapter whenever it is plugged in, /dev/ttyUSB0 the first one. While a socket is connected
  * again, tmini_poll() and tmini_posix_wait() may take seconds. Not for tmini_posix_start_on(). */
 void tmini_posix_reconnect(tmini_posix_t *port, bool reconnects);

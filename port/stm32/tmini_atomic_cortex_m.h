@@ -7,8 +7,8 @@
  *     -DTMINI_ATOMIC_HEADER="\"tmini_atomic_cortex_m.h\""
  *
  * A size_t is read and written by one instruction, and a core sees its own accesses in order, so
- * the compiler alone must be kept from moving them. Only the fence is for another: DMA, which a
- * Cortex-M7 may read ahead of. */
+ * only the compiler has to be stopped from moving them. The fence is a real instruction because of
+ * DMA: a Cortex-M7 may read memory earlier than the program orders it. */
 
 #ifndef TMINI_ATOMIC_CORTEX_M_H
 #define TMINI_ATOMIC_CORTEX_M_H

@@ -2,21 +2,20 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * How far circular DMA has come: what the port over the HAL and the ports on the registers share.
- * Private to them; it stands in a header so that each of them is a single source.
+ * The position of circular DMA: code that the port over the HAL and the ports on the registers
+ * share. Private to them. It is a header so that each port remains a single source file.
  *
- * Three contexts ask the DMA channel for its position and hand over what has come: the DMA's
- * interrupt (half and whole buffer), the UART's (idle line) and the poll. A position read by one
- * must not be used after a newer one of another; so whoever comes in while another is at it leaves
- * only a note, and the other goes round again. On one core this needs neither a lock nor interrupts
- * held back.
+ * Three contexts read the DMA channel's position and hand over the bytes: the DMA's interrupt (half
+ * and whole buffer), the UART's interrupt (idle line) and the poll. An older position must not be
+ * used after a newer one. So a context that interrupts another during this work only sets a flag,
+ * and the interrupted one repeats its work. On one core this needs no lock, and interrupts stay
+ * enabled.
  *
- * A lap that nobody has seen. Whoever goes from one position to the next passes by the buffer's
- * middle, its end, or neither; and the DMA's interrupt tells of each passing once. A passing that
- * is told and was not on the way means that the way was longer by a lap. A way past both is one
- * that the interrupts have slept through, and it may have been longer by a lap as well. In both
- * cases more than half a buffer is new, and what has not been read of the rest is not trusted any
- * more. */
+ * Finding an unseen lap. Between two positions the DMA passes the buffer's middle, its end, both or
+ * neither, and its interrupt reports each passing once. If a passing is reported that does not lie
+ * between the two positions, DMA has written one more lap. If both lie between them, the interrupts
+ * were late, and DMA may have written one more lap, too. In both cases more than half of the buffer
+ * is new, and unread bytes of the rest are no longer trusted. */
 
 #ifndef TMINI_STM32_CIRCLE_H
 #define TMINI_STM32_CIRCLE_H
@@ -34,15 +33,15 @@
 
 typedef struct {
     uint16_t size;
-    uint16_t position;        /**< Handed over up to here. */
-    volatile uint8_t middles; /**< Passings told; written by the DMA's interrupt alone. */
+    uint16_t position;        /**< The bytes before this position have been handed over. */
+    volatile uint8_t middles; /**< Passings reported; written only by the DMA's interrupt. */
     volatile uint8_t ends;
     uint8_t known_middles; /**< As of the last advance. */
     uint8_t known_ends;
-    int8_t untold_middles; /**< Passings seen and not told yet: 0 or 1. */
+    int8_t untold_middles; /**< Passings seen and not yet reported: 0 or 1. */
     int8_t untold_ends;
-    volatile bool busy;  /**< Someone is handing over, */
-    volatile bool again; /**< and someone else has come by meanwhile. */
+    volatile bool busy;  /**< A context is handing over. */
+    volatile bool again; /**< Another context wanted to hand over meanwhile. */
 } tmini_stm32_circle_t;
 
 static inline void tmini_stm32_circle_begin(tmini_stm32_circle_t *circle, size_t size)
@@ -50,14 +49,14 @@ static inline void tmini_stm32_circle_begin(tmini_stm32_circle_t *circle, size_t
     *circle = (tmini_stm32_circle_t){.size = (uint16_t)size};
 }
 
-/** For the interrupt of the DMA channel: which flags it has served. */
+/** For the DMA channel's interrupt: notes the flags that it has served. */
 static inline void tmini_stm32_circle_tell(tmini_stm32_circle_t *circle, bool middle, bool end)
 {
     circle->middles = (uint8_t)(circle->middles + middle);
     circle->ends = (uint8_t)(circle->ends + end);
 }
 
-/** Whether the caller is the one who hands over now. */
+/** True if the caller is to hand over now; otherwise another context does. */
 static inline bool tmini_stm32_circle_enter(tmini_stm32_circle_t *circle)
 {
     if (circle->busy) {
@@ -69,14 +68,14 @@ static inline bool tmini_stm32_circle_enter(tmini_stm32_circle_t *circle)
     return true;
 }
 
-/** Whether the caller has to hand over once more. */
+/** True if the caller has to hand over once more. */
 static inline bool tmini_stm32_circle_leave(tmini_stm32_circle_t *circle)
 {
     circle->busy = false;
     return circle->again && tmini_stm32_circle_enter(circle);
 }
 
-/** Whether more passings have been told than were on the way. */
+/** True if more passings have been reported than the positions show. */
 static inline bool tmini_stm32_circle_settle(int8_t *untold, bool passed, uint8_t told)
 {
     const int balance = *untold + passed - told;
@@ -84,9 +83,9 @@ static inline bool tmini_stm32_circle_settle(int8_t *untold, bool passed, uint8_
     return balance < 0;
 }
 
-/** Goes on to the position that the hardware shows, the size itself meaning 0. `middles` and `ends`
- * are the passings told before it was read. Returns true if a lap may have been missed on the
- * way. */
+/** Moves to the position that the hardware shows; the buffer's size means 0. `middles` and `ends`
+ * are the passings reported before the position was read. Returns true if a lap may have been
+ * missed. */
 static inline bool tmini_stm32_circle_advance(tmini_stm32_circle_t *circle, uint16_t position,
                                               uint8_t middles, uint8_t ends)
 {
@@ -107,7 +106,7 @@ static inline bool tmini_stm32_circle_advance(tmini_stm32_circle_t *circle, uint
 
 /* ------------------------------------------------------------------- the lidar's receive buffer */
 
-/** A lidar that is not set up has no room, and nothing has come; one that is full has had bytes. */
+/** A buffer without room that has had no bytes belongs to a lidar that is not set up. */
 static inline bool tmini_stm32_circle_is_set_up(const tmini_t *lidar)
 {
     return lidar != NULL && (tmini_feed_room(lidar) > 0 || tmini_feed_position(lidar) > 0);
@@ -121,9 +120,9 @@ static inline size_t tmini_stm32_circle_size(const tmini_t *lidar)
     return size;
 }
 
-/** DMA that is started begins at the buffer's start, wherever it was before. The old bytes from
- * there to the end are overwritten, so that they cannot be taken for new packets, and passed.
- * Before reception begins, in the polling context. */
+/** A started DMA begins at the buffer's start. So this clears the bytes from the old position to
+ * the end, so that they cannot be taken for new packets, and skips them. Call it before reception
+ * begins, in the polling context. */
 static inline void tmini_stm32_circle_rewind(tmini_t *lidar)
 {
     size_t size;
@@ -133,7 +132,7 @@ static inline void tmini_stm32_circle_rewind(tmini_t *lidar)
         memset(&memory[position], 0, size - position);
         tmini_feed_dma(lidar, size);
     } else if (tmini_feed_position(lidar) > 0) {
-        tmini_feed_gap(lidar); /* Nothing else would show that bytes are missing. */
+        tmini_feed_gap(lidar); /* Otherwise nothing shows that bytes are missing. */
     }
 }
 

@@ -5,14 +5,14 @@
 
 enum reception { RECEPTION_NONE, RECEPTION_DMA, RECEPTION_BLOCKS, RECEPTION_BYTES };
 
-/* Between two attempts to start a reception that will not start or stay. */
+/* Pause between two attempts to start a reception that fails. */
 #define RESTART_PAUSE_MS 3u
 
 #define BLOCK_SIZE_MIN 64u
 
 /* ------------------------------------------------------------------- what differs by family */
 
-/* Data cache (Cortex-M7): what DMA writes does not reach it. */
+/* Data cache (Cortex-M7): it does not see what DMA writes. */
 #if defined(__DCACHE_PRESENT) && (__DCACHE_PRESENT == 1U)
 
 #define CACHE_LINE 32u
@@ -22,8 +22,8 @@ static bool is_aligned(const void *buffer, size_t size)
     return (uintptr_t)buffer % CACHE_LINE == 0 && size % CACHE_LINE == 0;
 }
 
-/* Whole lines from the one in which `from` lies. The CPU writes to none of them while DMA runs, so
- * there is nothing in the cache to lose. */
+/* Invalidates whole cache lines, from the one that contains `from`. The CPU writes to none of them
+ * while DMA runs, so nothing is lost. */
 static void read_anew(uint8_t *buffer, size_t from, size_t to)
 {
     const size_t first = from / CACHE_LINE * CACHE_LINE;
@@ -32,7 +32,7 @@ static void read_anew(uint8_t *buffer, size_t from, size_t to)
     }
 }
 
-/* Nothing may be written from the cache on its own, later, over what DMA has brought. */
+/* The cache must not write old data over new bytes from DMA later. */
 static void write_through(uint8_t *buffer, size_t size)
 {
     SCB_CleanInvalidateDCache_by_Addr((void *)buffer, (int32_t)size);
@@ -62,8 +62,8 @@ static void write_through(const uint8_t *buffer, size_t size)
 
 #endif
 
-/* A bit of a register that the HAL's interrupts change as well. HALs from before 2021 have no such
- * thing; there the instructions between reading and writing are a risk that the HAL takes, too. */
+/* Changes a bit of a register that the HAL's interrupts change as well. HALs before 2021 cannot do
+ * this atomically and take the small risk themselves. */
 #ifdef ATOMIC_CLEAR_BIT
 #define CLEAR_SHARED_BIT(reg, bit) ATOMIC_CLEAR_BIT(reg, bit)
 #else
@@ -82,7 +82,7 @@ static bool is_circular(const DMA_HandleTypeDef *dma)
 #endif
 }
 
-/* Bytes that wait in the DMA's FIFO are counted as received before they are in memory. */
+/* The DMA counts bytes in its FIFO as received before they are in memory. */
 static bool has_fifo(const DMA_HandleTypeDef *dma)
 {
 #ifdef DMA_FIFOMODE_DISABLE
@@ -93,7 +93,7 @@ static bool has_fifo(const DMA_HandleTypeDef *dma)
 #endif
 }
 
-/* Linked lists have width and increment in their node. */
+/* With linked lists, width and increment are in the node. */
 static bool is_by_byte(const DMA_HandleTypeDef *dma)
 {
 #ifdef DMA_LINKEDLIST_CIRCULAR
@@ -134,14 +134,15 @@ static void resume(DMA_HandleTypeDef *dma)
 #endif
 }
 
-/* The UART asks for it, and the channel has not been stopped by somebody else. */
+/* True if the UART requests DMA and nothing else has stopped the channel. */
 static bool is_dma_running(const UART_HandleTypeDef *uart)
 {
     return (uart->Instance->CR3 & USART_CR3_DMAR) != 0 &&
            uart->hdmarx->State != HAL_DMA_STATE_READY && !is_suspended(uart->hdmarx);
 }
 
-/* The HAL stops the channel only if the UART still asks for it: not after HAL_UART_Init(). */
+/* The HAL stops the channel only if the UART still requests DMA, which it does not after
+ * HAL_UART_Init(). */
 static void stop_dma(const UART_HandleTypeDef *uart)
 {
     if (uart->hdmarx != NULL && is_suspended(uart->hdmarx)) {
@@ -152,8 +153,8 @@ static void stop_dma(const UART_HandleTypeDef *uart)
     }
 }
 
-/* With the idle line, where the HAL also says which event it reports. Without, half
- * and whole buffer and the polls do as well. */
+/* Uses the idle line if the HAL also names the event that it reports. Otherwise half and whole
+ * buffer and the polls are enough. */
 static HAL_StatusTypeDef receive_by_dma(tmini_stm32_hal_t *port)
 {
 #ifdef HAL_UART_RXEVENT_HT
@@ -163,9 +164,9 @@ static HAL_StatusTypeDef receive_by_dma(tmini_stm32_hal_t *port)
 #endif
 }
 
-/* A channel of linked lists that has stopped by an error goes on with the rest of its block when it
- * is started again, in the middle of the buffer: the HAL forgets that rest only where it stops the
- * channel itself. With nothing left the channel reads its list, and begins at the start. */
+/* If a linked-list channel has stopped because of an error and is started again, it continues in
+ * the middle of the buffer, with the rest of its block: the HAL clears that rest only when it stops
+ * the channel itself. Cleared, the channel reads its list and begins at the buffer's start. */
 static void forget_rest_of_block(const tmini_stm32_hal_t *port)
 {
 #ifdef DMA_LINKEDLIST_CIRCULAR
@@ -177,23 +178,23 @@ static void forget_rest_of_block(const tmini_stm32_hal_t *port)
 #endif
 }
 
-/* Errors of the line would stop the DMA for good: the HAL takes any of them as the end. Without
- * their interrupt each costs its byte. HALs up to 2022 enable the parity's as well, whatever the
- * parity: then their handler serves an error that shows, and nothing else, for ever. */
+/* Disables the interrupts of line errors, because the HAL ends a DMA reception at any error.
+ * Without them each error costs only its byte. HALs up to 2022 also enable the parity interrupt;
+ * with it on, their handler would serve a pending error endlessly and nothing else. */
 static void ignore_line_errors(tmini_stm32_hal_t *port)
 {
     CLEAR_SHARED_BIT(port->uart->Instance->CR3, USART_CR3_EIE);
     CLEAR_SHARED_BIT(port->uart->Instance->CR1, USART_CR1_PEIE);
 }
 
-/* The index that DMA writes next; the size itself when it has just come full circle. */
+/* The index that DMA writes next; the size itself when it has just wrapped. */
 static uint16_t dma_position(const tmini_stm32_hal_t *port)
 {
     return (uint16_t)(port->size - __HAL_DMA_GET_COUNTER(port->uart->hdmarx));
 }
 
-/* Taken back at once: if the DMA's interrupt has come into the idle line's, between the HAL's
- * writing the type there and calling, both would read the DMA's. */
+/* Reset at once: if the DMA's interrupt comes while the idle line's is between storing the type and
+ * calling back, both callbacks would read the DMA's type. */
 static void tell_event(tmini_stm32_hal_t *port)
 {
 #ifdef HAL_UART_RXEVENT_HT
@@ -275,8 +276,8 @@ static uint32_t line_errors(const UART_HandleTypeDef *uart)
     return errors;
 }
 
-/* With DMA, where no interrupt tells of them. Flags in SR clear themselves when DMA reads the next
- * byte, because they have been looked at here; those in ISR are cleared. */
+/* Counts line errors with DMA, where no interrupt reports them. Flags in SR are cleared when DMA
+ * reads the next byte, because SR has been read here; flags in ISR are cleared here. */
 static void look_at_line_errors(tmini_stm32_hal_t *port)
 {
     const uint32_t errors = line_errors(port->uart);
@@ -289,7 +290,7 @@ static void look_at_line_errors(tmini_stm32_hal_t *port)
     }
 #else
     if ((errors & HAL_UART_ERROR_ORE) != 0 && !__HAL_UART_GET_FLAG(port->uart, UART_FLAG_RXNE)) {
-        __HAL_UART_CLEAR_OREFLAG(port->uart); /* It may hold back the bytes that would clear it. */
+        __HAL_UART_CLEAR_OREFLAG(port->uart); /* It may stop the bytes that would clear it. */
         port->line_flags = 0;
     }
 #endif
@@ -303,7 +304,7 @@ static void copy_out(tmini_stm32_hal_t *port, uint16_t from, uint16_t to)
     tmini_feed(port->lidar, &port->buffer[from], (size_t)(to - from));
 }
 
-/* Copies the block's part that is new. */
+/* Copies the new part of the block. */
 static void copy_new(tmini_stm32_hal_t *port, uint16_t from, uint16_t to)
 {
     if (to < from) {
@@ -329,7 +330,7 @@ static void hand_over(tmini_stm32_hal_t *port)
 {
     tmini_stm32_circle_t *const circle = &port->circle;
     const uint8_t middles =
-        circle->middles; /* Before the position: it may only be ahead of them. */
+        circle->middles; /* Read before the position, which may only be newer. */
     const uint8_t ends = circle->ends;
     const uint16_t from = circle->position;
     if (tmini_stm32_circle_advance(circle, dma_position(port), middles, ends)) {
@@ -351,8 +352,8 @@ static bool is_receiving(const tmini_stm32_hal_t *port)
            (port->reception == RECEPTION_BYTES || is_dma_running(port->uart));
 }
 
-/* In any context. The position is the hardware's, never the event's: an idle event may overtake the
- * half-transfer event of bytes that came before. */
+/* Any context. Uses the hardware's position, never the event's, because an idle event may overtake
+ * the half-transfer event of earlier bytes. */
 static void hand_over_new(tmini_stm32_hal_t *port)
 {
     if (!is_receiving(port) || !tmini_stm32_circle_enter(&port->circle)) {
@@ -365,7 +366,7 @@ static void hand_over_new(tmini_stm32_hal_t *port)
 
 /* ----------------------------------------------------------------------- starting, in the poll */
 
-/* An error that was pending before would end the reception inside the very call that begins it. */
+/* A pending error would end the reception during the call that begins it. */
 static void forget_reception(tmini_stm32_hal_t *port)
 {
     port->is_started = false;
@@ -387,10 +388,9 @@ static void prepare_circle(tmini_stm32_hal_t *port)
     port->line_flags = 0;
 }
 
-/* The HAL enables the interrupt of errors before that of bytes, or the DMA. A byte that comes
- * damaged between the two would end the reception before it has begun; or, where only reading the
- * byte clears the error (SR and DR), interrupt for ever. So no interrupt, for some ten
- * microseconds. */
+/* Interrupts are disabled for some ten microseconds. The HAL enables the error interrupt first,
+ * then that of bytes or the DMA. A damaged byte between the two would end the reception before it
+ * has begun, or, where only reading the byte clears the error (SR and DR), interrupt endlessly. */
 static HAL_StatusTypeDef begin_uninterrupted(tmini_stm32_hal_t *port)
 {
     const uint32_t primask = __get_PRIMASK();
@@ -426,7 +426,7 @@ static void begin_anew(tmini_stm32_hal_t *port)
     (void)begin_reception(port);
 }
 
-/* Every tmini_poll() comes by. */
+/* Every tmini_poll() calls this. */
 static void look_after_reception(tmini_stm32_hal_t *port, uint32_t time_ms)
 {
     if (port->reception == RECEPTION_NONE) {
@@ -469,7 +469,8 @@ void tmini_stm32_hal_rx_half_complete(tmini_stm32_hal_t *port, const UART_Handle
     }
 }
 
-/* With bytes an overrun says that some were lost after the last one, and not how many. */
+/* When receiving by bytes, an overrun means that an unknown number of bytes was lost after the last
+ * one. */
 static void note_errors(tmini_stm32_hal_t *port, uint32_t code)
 {
     count_errors(&port->counters, code);
@@ -478,12 +479,13 @@ static void note_errors(tmini_stm32_hal_t *port, uint32_t code)
     }
 }
 
-/* Errors first: asking for the next byte clears the HAL's note of them. */
+/* Errors first: requesting the next byte clears the HAL's record of them. */
 static void take_byte(tmini_stm32_hal_t *port)
 {
     tmini_feed_byte(port->lidar, port->byte);
     note_errors(port, port->uart->ErrorCode);
-    (void)HAL_UART_Receive_IT(port->uart, &port->byte, 1); /* If it fails, the poll starts anew. */
+    (void)HAL_UART_Receive_IT(port->uart, &port->byte, 1); /* If it fails, a poll starts it
+                                                            * again. */
 }
 
 void tmini_stm32_hal_rx_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
@@ -496,7 +498,7 @@ void tmini_stm32_hal_rx_complete(tmini_stm32_hal_t *port, const UART_HandleTypeD
     }
 }
 
-/* Starting again is the poll's: this may be running inside the very call that starts, and the DMA
+/* The poll starts it again, not this function: it may run during the call that starts, and the DMA
  * may still be stopping. */
 void tmini_stm32_hal_error(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
 {
@@ -514,7 +516,7 @@ static int send_bytes(void *context, const uint8_t *bytes, size_t count)
         return -1;
     }
     if (port->uart->gState != HAL_UART_STATE_READY) {
-        return 0; /* Still sending, from port->sending. */
+        return 0; /* The HAL still sends from port->sending. */
     }
     memcpy(port->sending, bytes, count);
     switch (HAL_UART_Transmit_IT(port->uart, port->sending, (uint16_t)count)) {
@@ -534,7 +536,7 @@ static uint32_t time_now_ms(void *context)
     return time_ms;
 }
 
-/* The lidar is lost: perhaps reception only seems to be under way. */
+/* The lidar is lost: perhaps reception has stopped unnoticed. */
 static void restart(void *context)
 {
     tmini_stm32_hal_t *const port = context;

@@ -2,8 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * A tmini port for STM32 with ST's HAL, of any family and any year; not the HAL2 of the STM32C5,
- * whose types and callbacks are others. README.md beside this file has the CubeMX settings.
+ * A tmini port for STM32 with ST's HAL, of any family and any year. It does not support the HAL2 of
+ * the STM32C5, which has other types and callbacks. README.md beside this file has the CubeMX
+ * settings.
  *
  *     tmini_stm32_hal_init(&port, &huart1);    after the HAL's own initialisation
  *     tmini_init(&lidar, &config);             .port = &tmini_stm32_hal_port, .port_context = &port
@@ -25,12 +26,11 @@
  *   HAL_UART_RxCpltCallback(huart)           tmini_stm32_hal_rx_complete(&port, huart)  bytes
  *   HAL_UART_ErrorCallback(huart)            tmini_stm32_hal_error(&port, huart)        all
  *
- * Each does nothing if the UART is another one, so several UARTs may share a callback. The event's
- * size is not asked for: HALs of different years mean different things by it, and the DMA knows
- * better.
+ * Each does nothing for another UART, so several UARTs may share a callback. The event's size is
+ * not used, because its meaning differs between HALs; the port reads the DMA's position instead.
  *
- * Everything that can fail is mended by the poll, never in an interrupt: a reception that has
- * stopped is started again by the next tmini_poll(), and once more whenever the lidar is lost. */
+ * A reception that has stopped is started again by the next tmini_poll(), never in an interrupt,
+ * and once more whenever the lidar is lost. */
 
 #ifndef TMINI_STM32_HAL_H
 #define TMINI_STM32_HAL_H
@@ -52,17 +52,19 @@
 extern "C" {
 #endif
 
-/** Running totals, for diagnostics. With DMA an error is seen when it is looked for, at the poll's
- * and the events' pace: several between two looks count as one, and with SR and DR some are cleared
- * by the HAL before. They tell that there are errors, not how many. */
+/** Running totals, for diagnostics. With DMA, errors are noticed only at polls and events: several
+ * between two of these count as one, and with SR and DR the HAL clears some before. So the counters
+ * show that there are errors, but not exactly how many. */
 typedef struct {
     uint32_t overruns;       /**< Bytes came faster than interrupt or DMA took them. */
     uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
     uint32_t noise_errors;   /**< A bit's samples differed. */
-    uint32_t parity_errors;  /**< Cannot happen without a parity bit; counted all the same. */
-    uint32_t other_errors;   /**< Of the DMA, mostly. */
-    uint32_t restarts;       /**< Of a reception that had stopped. */
-    uint32_t laps; /**< Times that DMA may have lapped its interrupts: they came far too late. */
+    uint32_t parity_errors;  /**< Cannot happen without a parity bit; counted if the HAL reports
+                              * it. */
+    uint32_t other_errors;   /**< Other errors, mostly of the DMA. */
+    uint32_t restarts;       /**< How often a stopped reception was started again. */
+    uint32_t laps; /**< How often DMA may have written an unseen lap, because its interrupts were
+                    * too late. */
 } tmini_stm32_hal_counters_t;
 
 /** One lidar's UART. Treat the members as private. */
@@ -70,13 +72,13 @@ typedef struct {
     /** @cond private */
     UART_HandleTypeDef *uart;
     tmini_t *lidar;
-    uint8_t *buffer; /* What the HAL receives into. */
+    uint8_t *buffer; /* The buffer that the HAL fills. */
     uint16_t size;
     uint8_t reception;
-    volatile bool is_started; /* The HAL has begun, and the DMA channel counts. */
+    volatile bool is_started; /* The HAL receives, and the DMA channel's position is valid. */
     uint8_t byte;
-    uint8_t line_flags; /* Errors of the line that have been counted and still show. */
-    uint8_t sending[2]; /* The HAL reads it while it sends. */
+    uint8_t line_flags; /* Line errors that have been counted and whose flags are still set. */
+    uint8_t sending[2]; /* The bytes being sent: the HAL reads them here. */
     uint32_t started_ms;
     tmini_stm32_circle_t circle;
     volatile tmini_stm32_hal_counters_t counters;
@@ -88,7 +90,8 @@ typedef struct {
  * structure and put its delay there. */
 extern const tmini_port_t tmini_stm32_hal_port;
 
-/** Names the UART, which must outlive the port. Sends and receives nothing yet.
+/** Sets the UART, which must outlive the port. Sends and receives nothing yet. From the polling
+ * context.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
 tmini_status_t tmini_stm32_hal_init(tmini_stm32_hal_t *port, UART_HandleTypeDef *uart);
 
@@ -103,30 +106,31 @@ tmini_status_t tmini_stm32_hal_init(tmini_stm32_hal_t *port, UART_HandleTypeDef 
 tmini_status_t tmini_stm32_hal_start(tmini_stm32_hal_t *port, tmini_t *lidar);
 
 /** Receives by circular DMA into `block`, a buffer of its own, and copies everything from there
- * into the one given to tmini_init() (without rx_dma). `block_size` is even, 64 to 32768; 256
- * bytes bear 5 ms in which no interrupt is served. Alignment, DMA channel and results as above;
- * also TMINI_ERROR_ARGUMENT for a null pointer, another size, or with rx_dma. */
+ * into the one given to tmini_init() (without rx_dma). `block_size` is even, 64 to 32768; 256 bytes
+ * last for 5 ms without an interrupt. Alignment, DMA channel and results as above; also
+ * TMINI_ERROR_ARGUMENT for a null pointer, another size, or with rx_dma. */
 tmini_status_t tmini_stm32_hal_start_blocks(tmini_stm32_hal_t *port, tmini_t *lidar, uint8_t *block,
                                             size_t block_size);
 
-/** Ends reception: when it returns, neither the HAL nor its DMA writes to a buffer of the lidar.
- * What had come is handed over. Waits some microseconds for the DMA; if the hardware does not let
- * go, 5 ms. From the polling context. */
+/** Ends reception: when it returns, neither the HAL nor its DMA writes to the lidar's buffers.
+ * Bytes received before are handed over. Waits some microseconds for the DMA, 5 ms at most if it
+ * does not stop. From the polling context. */
 void tmini_stm32_hal_stop(tmini_stm32_hal_t *port);
 
-/** What has gone wrong on the line so far. From the polling context. */
+/** Returns the counters of errors so far. From the polling context. */
 void tmini_stm32_hal_counters(const tmini_stm32_hal_t *port, tmini_stm32_hal_counters_t *counters);
 
-/** For HAL_UARTEx_RxEventCallback(), with DMA and blocks: hands over what has come. In interrupt
- * context, as the three below; none waits, and none does anything for another UART. */
+/** For HAL_UARTEx_RxEventCallback(), with DMA and blocks: hands over the received bytes. Call it,
+ * and the three below, in interrupt context. None waits, and none does anything for another
+ * UART. */
 void tmini_stm32_hal_rx_event(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 
 /** For HAL_UART_RxHalfCpltCallback(), with DMA and blocks and a HAL that does not define
- * HAL_UART_RXEVENT_HT, and so does not say which event it reports. */
+ * HAL_UART_RXEVENT_HT and so does not name the event that it reports. */
 void tmini_stm32_hal_rx_half_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 
-/** For HAL_UART_RxCpltCallback(): with bytes takes the one that has come; with DMA and blocks
- * needed under a HAL without HAL_UART_RXEVENT_HT. */
+/** For HAL_UART_RxCpltCallback(): by bytes, takes the byte that has come; with DMA and blocks it is
+ * needed for a HAL without HAL_UART_RXEVENT_HT. */
 void tmini_stm32_hal_rx_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 
 /** For HAL_UART_ErrorCallback(): counts the error, so that reception goes on. */

@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * A tmini port for STM32 without the HAL, on the USART's registers; beside LL as well. Compile the
- * one source that fits the family:
+ * A tmini port for STM32 without the HAL, on the USART's registers; it also works together with LL.
+ * Compile the one source that fits the family:
  *
  *   tmini_stm32_usart_dr.c    registers SR and DR: F1, F2, F4, L1
  *   tmini_stm32_usart_rdr.c   registers ISR and RDR: all others (C0, F0, F3, F7, G0, G4, H5, H7,
@@ -37,10 +37,11 @@
 extern "C" {
 #endif
 
-/** What the port is to know of the hardware. */
+/** The hardware that the port uses. */
 typedef struct {
-    volatile void *usart; /**< The USART's base address: USART1 of ST's headers will do. */
-    uint32_t clock_hz; /**< That feeds it, at least 3.7 MHz; 0: baud rate and format are set up. */
+    volatile void *usart; /**< The USART's base address: for example USART1 of ST's headers. */
+    uint32_t clock_hz; /**< The USART's clock, at least 3.7 MHz; 0: baud rate and format are set up
+                        * already. */
     const volatile uint32_t *time_ms;   /**< Milliseconds, counted by an interrupt of yours. */
     const volatile uint32_t *remaining; /**< For rx_dma: the DMA channel's register of items left
                                            (NDTR, CNDTR, CBR1). */
@@ -53,7 +54,8 @@ typedef struct {
     uint32_t overruns;       /**< Bytes came faster than interrupt or DMA took them. */
     uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
     uint32_t noise_errors;   /**< A bit's samples differed. */
-    uint32_t laps;           /**< Times that DMA may have lapped the interrupts: far too late. */
+    uint32_t laps;           /**< How often DMA may have written an unseen lap, because interrupts
+                              * were too late. */
 } tmini_stm32_usart_counters_t;
 
 /** One lidar's USART. Treat the members as private. */
@@ -61,19 +63,20 @@ typedef struct {
     /** @cond private */
     tmini_stm32_usart_wiring_t wiring;
     tmini_t *lidar;              /* NULL: not receiving. */
-    tmini_stm32_circle_t circle; /* Of size 0: an interrupt a byte. */
-    uint32_t line_flags;         /* Errors that have been counted and still show. */
+    tmini_stm32_circle_t circle; /* Of size 0: one interrupt per byte. */
+    uint32_t line_flags;         /* Errors that have been counted and whose flags are still set. */
     volatile tmini_stm32_usart_counters_t counters;
     /** @endcond */
 } tmini_stm32_usart_t;
 
 /** The `port` of tmini_config_t; its `port_context` is the address of a tmini_stm32_usart_t. Never
- * waits: takes what the transmitter has room for. When the lidar is lost, sets the USART up
- * anew. */
+ * waits: takes as many bytes as the transmitter has room for. When the lidar is lost, it sets the
+ * USART up again. */
 extern const tmini_port_t tmini_stm32_usart_port;
 
-/** Notes the wiring, which may go. Touches no register. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT:
- * null pointer (but `remaining`), or a clock that makes no baud rate within 2 % of 230400. */
+/** Copies the wiring. Touches no register. From the polling context. Returns TMINI_OK, or
+ * TMINI_ERROR_ARGUMENT: a null pointer (`remaining` may be null), or a clock that makes no baud
+ * rate within 2 % of 230400. */
 tmini_status_t tmini_stm32_usart_init(tmini_stm32_usart_t *port,
                                       const tmini_stm32_usart_wiring_t *wiring);
 
@@ -88,21 +91,21 @@ tmini_status_t tmini_stm32_usart_init(tmini_stm32_usart_t *port,
  *   TMINI_ERROR_ARGUMENT  with rx_dma: `remaining` is null or not at the size */
 tmini_status_t tmini_stm32_usart_start(tmini_stm32_usart_t *port, tmini_t *lidar);
 
-/** Ends reception: no more interrupts, no more requests to the DMA channel, which is yours to
- * disable. What had come is handed over. Sending goes on to work. From the polling context. */
+/** Ends reception: no more interrupts, no more requests to the DMA channel. Disable the channel
+ * yourself. Bytes received before are handed over. Sending still works. From the polling
+ * context. */
 void tmini_stm32_usart_stop(tmini_stm32_usart_t *port);
 
-/** What has gone wrong on the line so far. From the polling context. */
+/** Returns the counters of errors so far. From the polling context. */
 void tmini_stm32_usart_counters(const tmini_stm32_usart_t *port,
                                 tmini_stm32_usart_counters_t *counters);
 
-/** To be called from the USART's interrupt. No loop over bytes, no wait. A byte that came with a
- * framing or noise error is counted and stored all the same: the packet's checksum decides what it
- * is worth. */
+/** To be called from the USART's interrupt. No loop over bytes, no wait. A byte with a framing or
+ * noise error is counted and stored: the packet's checksum decides whether it is used. */
 void tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port);
 
-/** To be called from the DMA channel's interrupt, with the flags that it found and has cleared,
- * both in one call: two at once mean that it came late. */
+/** Call it from the DMA channel's interrupt with the flags that it found and has cleared. If both
+ * were set, pass both in one call: they show that the interrupt was late. */
 void tmini_stm32_usart_dma_interrupt(tmini_stm32_usart_t *port, bool half, bool complete);
 
 #ifdef __cplusplus

@@ -2,9 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * What the two kinds of USART have in common: all of the port but the place of the registers and
- * how flags are cleared. Each of the two sources names these, then includes this file; nobody else
- * does.
+ * The part of the port that both kinds of USART share: everything except the places of the
+ * registers and how flags are cleared. Each of the two sources defines these and then includes this
+ * file; no other file does.
  *
  *   STATUS CR1 CR2 CR3 BRR DATA_IN DATA_OUT   indices of registers
  *   CR1_UE                                    the bit that switches the USART on
@@ -13,11 +13,11 @@
 #ifndef TMINI_STM32_USART_COMMON_H
 #define TMINI_STM32_USART_COMMON_H
 
-/** At most so much of the baud rate, in parts of 1000, may be lost by dividing the clock: the
- * receiver bears 3.3 % in all, and the lidar's own clock wants its share. */
+/** The largest error of the baud rate from dividing the clock, in 1/1000. The receiver tolerates
+ * 3.3 % in all, and the lidar's own clock needs part of it. */
 #define BAUD_ERROR_MAX 20u
 
-/** In SR as in ISR. */
+/** The same bits in SR and ISR. */
 #define STATUS_FE (1u << 1)
 #define STATUS_NE (1u << 2)
 #define STATUS_ORE (1u << 3)
@@ -73,7 +73,8 @@ static void count_errors(tmini_stm32_usart_t *port, uint32_t errors)
     counters->noise_errors = counters->noise_errors + ((errors & STATUS_NE) != 0);
 }
 
-/** An overrun says that bytes were lost after the one that is there, and not how many. */
+/** An overrun means that an unknown number of bytes was lost after the byte in the data
+ * register. */
 static void take_byte(tmini_stm32_usart_t *port)
 {
     volatile uint32_t *const registers = registers_of(port);
@@ -95,9 +96,9 @@ static void change(volatile uint32_t *at, uint32_t clear, uint32_t set)
     write_register(at, (read_register(at) & ~clear) | set);
 }
 
-/** A flag that still shows the error of a byte counted before is not counted again. An idle line
- * that cannot be cleared, because a byte waits that is the DMA's, would interrupt for ever if the
- * channel has stopped: no more of that until the next poll. */
+/** An error flag that is still set from a byte counted before is not counted again. The idle flag
+ * cannot be cleared while a byte waits for the DMA. If the channel has stopped, the idle line would
+ * interrupt endlessly, so its interrupt is disabled until the next poll. */
 static void look_at_line(tmini_stm32_usart_t *port)
 {
     volatile uint32_t *const registers = registers_of(port);
@@ -115,7 +116,7 @@ static void hand_over(tmini_stm32_usart_t *port)
 {
     tmini_stm32_circle_t *const circle = &port->circle;
     const uint8_t middles =
-        circle->middles; /* Before the position: it may only be ahead of them. */
+        circle->middles; /* Read before the position, which may only be newer. */
     const uint8_t ends = circle->ends;
     const uint16_t position =
         (uint16_t)(circle->size - (read_register(port->wiring.remaining) & DMA_COUNT));
@@ -136,8 +137,8 @@ static void hand_over_new(tmini_stm32_usart_t *port)
     } while (tmini_stm32_circle_leave(&port->circle));
 }
 
-/** Cleared first, whoever is handing over: the idle line would interrupt for ever, and the poll
- * never come to its end. */
+/** Clears the idle flag first, even if another context is handing over: otherwise the idle line
+ * would interrupt endlessly and the poll would never end. */
 void tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port)
 {
     if (is_by_dma(port)) {
@@ -169,14 +170,15 @@ static int send_bytes(void *context, const uint8_t *bytes, size_t count)
     return taken;
 }
 
-/** Every tmini_poll() comes by: what DMA has brought since the last interrupt goes with it. */
+/** Every tmini_poll() calls this, so it also hands over what DMA has written since the last
+ * interrupt. */
 static uint32_t time_now_ms(void *context)
 {
     tmini_stm32_usart_t *const port = context;
     volatile uint32_t *const registers = registers_of(port);
     if (is_by_dma(port)) {
         hand_over_new(port);
-        look_at_line(port); /* An overrun may hold back the bytes, and with them the interrupts. */
+        look_at_line(port); /* An overrun may stop further bytes, and so their interrupts. */
         if ((read_register(&registers[CR1]) & CR1_IDLEIE) == 0) {
             change(&registers[CR1], 0, CR1_IDLEIE);
         }
@@ -186,8 +188,7 @@ static uint32_t time_now_ms(void *context)
 
 /* --------------------------------------------------------------------------- the USART's set-up */
 
-/* With 16-fold oversampling BRR is the divider in sixteenths, that is the clock by the baud
- * rate. */
+/* With 16-fold oversampling BRR is the divider in sixteenths: clock divided by baud rate. */
 static uint32_t divider(uint32_t clock_hz)
 {
     return (clock_hz + TMINI_STM32_BAUD_RATE / 2) / TMINI_STM32_BAUD_RATE;
@@ -201,7 +202,7 @@ static bool is_good_clock(uint32_t clock_hz)
            (divider(clock_hz) >= 16 && error_hz <= made_hz / 1000 * BAUD_ERROR_MAX);
 }
 
-/* The other registers may be written only while the USART is off. */
+/* The other registers can be written only while the USART is off. */
 static void switch_on(const tmini_stm32_usart_t *port)
 {
     volatile uint32_t *const registers = registers_of(port);
@@ -219,7 +220,7 @@ static void switch_on(const tmini_stm32_usart_t *port)
            CR1_UE | CR1_TE | CR1_RE | (is_by_dma(port) ? CR1_IDLEIE : CR1_RXNEIE));
 }
 
-/* The lidar is lost: perhaps somebody has changed the USART. */
+/* The lidar is lost: perhaps something has changed the USART. */
 static void restart(void *context)
 {
     const tmini_stm32_usart_t *const port = context;
@@ -249,7 +250,7 @@ static bool are_set_up(const tmini_stm32_usart_t *port, const tmini_t *lidar)
     return port != NULL && port->wiring.usart != NULL && tmini_stm32_circle_is_set_up(lidar);
 }
 
-/* The DMA channel stands at the buffer's start and is as long as the buffer. */
+/* True if the DMA channel is at the buffer's start and covers the whole buffer. */
 static bool is_good_channel(const tmini_stm32_usart_t *port, size_t size)
 {
     const volatile uint32_t *const remaining = port->wiring.remaining;

@@ -12,9 +12,9 @@ enum { STATUS = 0, DATA_IN = 1, DATA_OUT = 1, BRR = 2, CR1 = 3, CR2 = 4, CR3 = 5
 
 #include "tmini_stm32_usart_common.h"
 
-/* SR has been read; reading DR behind it clears the errors and the idle line: also an overrun that
- * shows up without a byte, which would otherwise interrupt for ever. Whoever takes a byte that is
- * there clears as well, the DMA too. */
+/* SR has been read; reading DR after it clears the errors and the idle flag. This includes an
+ * overrun without a byte, which would otherwise interrupt endlessly. If there is a byte, reading it
+ * clears the flags, also when the DMA reads it. */
 static inline void clear_flags(volatile uint32_t *registers, uint32_t status)
 {
     if ((status & (STATUS_ERRORS | STATUS_IDLE)) != 0 && (status & STATUS_RXNE) == 0) {

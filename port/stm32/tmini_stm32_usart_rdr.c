@@ -12,7 +12,7 @@ enum { CR1 = 0, CR2 = 1, CR3 = 2, BRR = 3, STATUS = 7, ICR = 8, DATA_IN = 9, DAT
 
 #include "tmini_stm32_usart_common.h"
 
-/* The same bits in ICR; an overrun left alone would interrupt for ever. */
+/* The same bits in ICR. An overrun that is not cleared would interrupt endlessly. */
 static inline void clear_flags(volatile uint32_t *registers, uint32_t status)
 {
     write_register(&registers[ICR], status & (STATUS_ERRORS | STATUS_IDLE));

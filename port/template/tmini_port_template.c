@@ -30,9 +30,9 @@ static int send_bytes(void *context, const uint8_t *bytes, size_t count)
     return taken;
 }
 
-/* FILL IN 2 (or leave as it is): milliseconds, if your system counts them already. Where 32 bits
- * take more than one access, an interrupt may come in between: two equal readings show that none
- * has. */
+/* FILL IN 2 (or leave as it is): your system's milliseconds, if it counts them already. If reading
+ * 32 bits takes more than one access, an interrupt may change them in between: two equal readings
+ * show that none has. */
 static uint32_t time_now_ms(void *context)
 {
     const tmini_port_template_t *const port = context;
@@ -43,8 +43,8 @@ static uint32_t time_now_ms(void *context)
     return time_ms;
 }
 
-/* FILL IN 3: switches the UART's receive interrupt on and off. Whatever was pending before, an
- * overrun above all, is cleared first: this controller may have been reset while the lidar went on
+/* FILL IN 3: switches the UART's receive interrupt on and off. First clears everything that is
+ * pending, above all an overrun: this controller may have been reset while the lidar was
  * sending. */
 static void enable_receive_interrupt(void *uart, bool enable)
 {
@@ -52,7 +52,7 @@ static void enable_receive_interrupt(void *uart, bool enable)
     (void)enable;
 }
 
-/* The lidar is lost: whatever has stopped the receiver, it begins anew. */
+/* The lidar is lost: starts the receiver again, whatever has stopped it. */
 static void restart(void *context)
 {
     const tmini_port_template_t *const port = context;
@@ -64,7 +64,7 @@ static void restart(void *context)
 
 /* FILL IN 4 (optional): `wait`, a function that lets other work run for about a millisecond: an
  * RTOS delay, or a sleep until the next interrupt. Only the functions of tmini_blocking.h call it,
- * while they wait; NULL makes them spin. */
+ * while they wait; with NULL they poll without a pause. */
 const tmini_port_t tmini_port_template = {
     .write = send_bytes, .now_ms = time_now_ms, .wait = NULL, .restart = restart};
 
@@ -104,7 +104,7 @@ void tmini_port_template_tick(tmini_port_template_t *port)
     port->time_ms = port->time_ms + 1;
 }
 
-/* A byte that came with an error is stored as well: the parser's checks decide what it is worth. */
+/* A byte with an error is stored, too: the parser's checks decide whether it is used. */
 void tmini_port_template_receive(tmini_port_template_t *port, uint8_t byte, bool is_error)
 {
     if (is_error) {

@@ -31,11 +31,11 @@ typedef struct {
     uint32_t line_errors; /**< Framing, noise and overrun errors. */
 } tmini_port_template_counters_t;
 
-/** What the port knows of one lidar's connection; one of these a lidar, allocated by you. Its
- * address is the `port_context` of tmini_config_t. */
+/** The connection of one lidar. You allocate one for each lidar; its address is the `port_context`
+ * of tmini_config_t. */
 typedef struct {
     tmini_t *lidar; /**< Where received bytes go; NULL: nowhere. */
-    void *uart; /**< Whatever your board calls the UART: a handle, a number, a register address. */
+    void *uart;     /**< The UART as your board names it: a handle, a number, a register address. */
     volatile uint32_t time_ms;     /**< Milliseconds counted by tmini_port_template_tick(). */
     volatile uint32_t line_errors; /**< As in tmini_port_template_counters_t. */
 } tmini_port_template_t;
@@ -43,12 +43,13 @@ typedef struct {
 /** The `port` of tmini_config_t. */
 extern const tmini_port_t tmini_port_template;
 
-/** Names the UART, which is set up (230400 baud, 8 data bits, no parity, 1 stop bit), its receive
- * interrupt not yet enabled. Call once. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
+/** Sets the UART. It must be set up (230400 baud, 8 data bits, no parity, 1 stop bit), with its
+ * receive interrupt still disabled. Call it once. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null
+ * pointer. */
 tmini_status_t tmini_port_template_init(tmini_port_template_t *port, void *uart);
 
-/** From now on received bytes go to `lidar`, which has been through tmini_init(). Not from an
- * interrupt. Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
+/** Begins to pass received bytes to `lidar`, which tmini_init() has set up. Not from an interrupt.
+ * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
 tmini_status_t tmini_port_template_start(tmini_port_template_t *port, tmini_t *lidar);
 
 /** Until now. Not from an interrupt; may be started again. */

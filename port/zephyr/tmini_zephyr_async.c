@@ -40,8 +40,8 @@ static void take(tmini_zephyr_t *port, const struct uart_event_rx *received)
     k_spin_unlock(&port->lock, key);
 }
 
-/* The driver ends reception after any error. It does not begin anew from here, since a line that is
- * held low would be an error each time: the polling thread is woken and does. */
+/* The driver ends reception after any error. This callback does not start it again, because a line
+ * that is held low would cause an error each time; it wakes the polling thread, which does. */
 static void on_event(const struct device *uart, struct uart_event *event, void *user_data)
 {
     tmini_zephyr_t *const port = user_data;
@@ -83,7 +83,7 @@ void tmini_zephyr_end_reception(tmini_zephyr_t *port)
     }
 }
 
-/* While reception is off there is no callback: the gap is this thread's. */
+/* While reception is off there is no callback, so this thread may report the gap. */
 void tmini_zephyr_keep_receiving(tmini_zephyr_t *port)
 {
     if (port->lidar != NULL && !port->is_enabled) {

@@ -21,7 +21,7 @@ typedef struct {
 typedef struct {
     tmini_zephyr_t port;
     tmini_t lidar;
-    struct k_mutex lock; /* Whoever calls the library or changes the callback. */
+    struct k_mutex lock; /* Held while the library is called or the callback is changed. */
     struct k_thread thread;
     tmini_zephyr_callback_t callback;
     void *user_data;

@@ -51,10 +51,11 @@ int tmini_zephyr_device_stop(const struct device *device); /**< Ends scanning. *
 /** The lidar, for the functions of tmini.h: in the callback, or between lock and unlock. */
 tmini_t *tmini_zephyr_device_lidar(const struct device *device);
 
-/** From now on the device's thread waits: for any thread, not for long. Returns the lidar. */
+/** Makes the device's thread wait until tmini_zephyr_device_unlock(), so that this thread may use
+ * the lidar, for a short time. Returns the lidar. Any thread; waits for the device's thread. */
 tmini_t *tmini_zephyr_device_lock(const struct device *device);
 
-/** Until now. */
+/** Lets the device's thread continue. */
 void tmini_zephyr_device_unlock(const struct device *device);
 
 /** Copies the port's counters; any thread. */

@@ -9,8 +9,8 @@
 
 #define CHUNK 32
 
-/* The result of a function that has none in some versions of Zephyr: there 0. Whatever compiles
- * these knows GCC's built-ins. */
+/* The result of a function that returns nothing in some versions of Zephyr; 0 in those. All
+ * compilers of Zephyr have GCC's built-ins. */
 #ifdef __GNUC__
 #define RESULT_OR_0(call) \
     __builtin_choose_expr(__builtin_types_compatible_p(__typeof__(call), void), ((call), 0), (call))
@@ -18,9 +18,9 @@
 #define RESULT_OR_0(call) (call)
 #endif
 
-/* Negative: the driver reports none. A loss goes to the lidar at once: with some drivers clearing
- * an error takes the byte away as well, and there is nothing left to read. Once bytes were lost,
- * the rest of this interrupt's is not used. */
+/* Negative: the driver does not report errors. A loss is reported to the lidar at once, because
+ * with some drivers clearing the error also removes the byte. After a loss the other bytes of this
+ * interrupt are not used. */
 static bool report_losses(tmini_zephyr_t *port, bool lost_before)
 {
     const int errors = uart_err_check(port->uart);
@@ -31,8 +31,8 @@ static bool report_losses(tmini_zephyr_t *port, bool lost_before)
     return lost;
 }
 
-/* Whether bytes were lost is asked before reading, because reading clears the error with some
- * drivers, and again after it, because they may have been lost among those just read. */
+/* Checks for lost bytes before reading, because with some drivers reading clears the error, and
+ * again after it, because bytes may have been lost among those just read. */
 static void empty_fifo(tmini_zephyr_t *port)
 {
     uint8_t chunk[CHUNK];

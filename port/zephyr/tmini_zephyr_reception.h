@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Private to the Zephyr port: what its two ways of receiving (interrupt-driven, async) do for it,
- * and it for them. */
+/* Private to the Zephyr port: the interface between the port and its two ways of receiving
+ * (interrupt-driven, async). */
 
 #ifndef TMINI_ZEPHYR_RECEPTION_H
 #define TMINI_ZEPHYR_RECEPTION_H
