@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the obstacle stops of examples/ write to their consoles: a line per event that a person
- * wants to know of, and one per second. Without stdio. A program of yours can do without. */
+/* Console output of the obstacle stops in examples/: one line for each important event, and one per
+ * second. It needs no stdio. Your own program does not need this file. */
 
 #ifndef LIDAR_LOG_H
 #define LIDAR_LOG_H
@@ -15,7 +15,7 @@
 typedef struct {
     const tmini_t *lidar;
     void (*print)(const char *text); /* Pieces of lines, "\n" among them. */
-    uint32_t gaps;                   /* Of all scans. */
+    uint32_t gaps;                   /* The sum over all scans. */
     uint32_t reported_ms;            /* When the last second's line was due. */
 } lidar_log_t;
 

@@ -29,8 +29,8 @@
 #define INCLUDE_vTaskSuspend 1
 #define INCLUDE_xTaskGetCurrentTaskHandle 1
 
-/* Three bits of priority, at the top of the byte. The kernel itself has the lowest; interrupts that
- * call it must not be more urgent than the middle. */
+/* Priorities have three bits, at the top of the byte. The kernel has the lowest priority;
+ * interrupts that call it may have at most the middle one. */
 #define configPRIO_BITS 3
 #define configKERNEL_INTERRUPT_PRIORITY 0xE0
 #define configMAX_SYSCALL_INTERRUPT_PRIORITY 0x60

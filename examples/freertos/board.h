@@ -18,8 +18,8 @@ int board_lidar_write(void *uart, const uint8_t *bytes, size_t count);
 /* Its receive interrupt, which calls UART1_Handler(). */
 void board_enable_lidar_interrupt(void);
 
-/* In that interrupt: takes up to `max` bytes out of the FIFO; *overrun tells whether some were lost
- * before or among them. */
+/* In that interrupt: takes up to `max` bytes out of the FIFO; *overrun becomes true if bytes were
+ * lost before or among them. */
 size_t board_lidar_read(uint8_t *bytes, size_t max, int *overrun);
 
 /* The console; waits while the transmitter is busy. */

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop under FreeRTOS: one task polls the lidar, asks it who it is, scans, and writes a
- * line a second to the console that says whether a robot may move. Everything is allocated
- * statically. */
+/* Obstacle stop under FreeRTOS: one task polls the lidar, asks for its information, scans, and
+ * writes a line per second to the console: may a robot move? Everything is allocated statically. */
 
 #include "FreeRTOS.h"
 #include "task.h"
@@ -55,7 +54,7 @@ static uint32_t now_ms(void)
     return xTaskGetTickCount() * (1000u / configTICK_RATE_HZ);
 }
 
-/* Without a scanning lidar, or with a faulty one, nothing can be known of what is in front. */
+/* Without a scanning lidar, or with a faulty one, the way ahead is unknown. */
 static bool must_stop(void)
 {
     if (tmini_state(&lidar) != TMINI_STATE_SCANNING || tmini_faults(&lidar) != 0) {
@@ -98,7 +97,8 @@ static bool start_lidar(void)
     }
     board_enable_lidar_interrupt();
     (void)tmini_request_info(&lidar);
-    return tmini_start(&lidar) == TMINI_OK; /* After the answer; stands. */
+    return tmini_start(&lidar) == TMINI_OK; /* After the answer. The wish holds until
+                                             * tmini_stop(). */
 }
 
 static void run_lidar(void *argument)
@@ -120,13 +120,13 @@ static void run_lidar(void *argument)
     }
 }
 
-/* The kernel's, while no task has anything to do. */
+/* The kernel calls this while no task has work. */
 void vApplicationIdleHook(void)
 {
     board_sleep();
 }
 
-/* The kernel's, when a task has used more stack than it has. */
+/* The kernel calls this when a task's stack has overflowed. */
 void vApplicationStackOverflowHook(TaskHandle_t task, char *name)
 {
     (void)task;

@@ -5,14 +5,14 @@
 
 #include <string.h>
 
-/* A head of version 1 is plausible if less than that has passed: 67 s. */
+/* A head of version 1 is plausible only if its time is below this: 67 s. */
 #define PLAUSIBLE_US 0x04000000u
 
-/* While a lidar sends, a chunk comes sooner than that after the one before: 1 s. */
+/* While a lidar sends, chunks follow each other within this time: 1 s. */
 #define SOON_US 0x00100000u
 
-/* So many plausible heads of version 1, one after the other, after a good chunk; and so many that
- * come soon after each other, after damage or a long pause. */
+/* How many plausible heads of version 1 in a row are needed after a good chunk; and how many, with
+ * short times, after damage or a long pause. */
 #define CHAIN 1u
 #define LONG_CHAIN 8u
 
@@ -126,8 +126,8 @@ static chunk_state_t follow_pause(const uint8_t *bytes, size_t count, bool is_en
     return follow_chain(bytes + next, count - next, is_end, LONG_CHAIN, SOON_US);
 }
 
-/* One that follows a good chunk is believed if plausible heads follow it, or a long pause and then
- * a long chain. */
+/* After a good chunk a head is accepted if plausible heads follow it, or a long pause and then a
+ * long chain. */
 static chunk_state_t read_old(const uint8_t *bytes, size_t count, bool is_end, bool is_lost,
                               chunk_t *chunk)
 {

@@ -31,18 +31,19 @@ extern const uint8_t chunk_magic[CHUNK_MAGIC_SIZE];
 /* Reads one chunk after the other; begins as {.version = ...}. */
 typedef struct {
     unsigned version;
-    uint64_t time_us; /* When the bytes came that are next, */
-    uint32_t left;    /* and how many they are; who takes them counts down. */
+    uint64_t time_us; /* When the next bytes came. */
+    uint32_t left;    /* How many are left of them; the reader of the bytes counts down. */
     unsigned damages; /* Places where no chunk was. */
     bool is_lost;     /* Looking for the next chunk. */
 } chunks_t;
 
-/* The version of a file that begins so; 0: it has no chunks. */
+/* The version of a file with this beginning; 0: it has no chunks. */
 unsigned chunk_version(const uint8_t *bytes, size_t count);
 
-/* `bytes` follow a chunk: sets `left` and *head, the size of what precedes the lidar's bytes. Where
- * no chunk begins is damage: a byte there is taken as the lidar's, whose packets have checksums of
- * their own. Returns false if it takes more bytes to tell; with `is_end` there are no more. */
+/* `bytes` follow a chunk: sets `left` and *head, the size of what precedes the lidar's bytes. If no
+ * chunk begins here, the recording is damaged: the byte is passed on as the lidar's, because
+ * packets have their own checksums. Returns false if more bytes are needed for a decision;
+ * `is_end`: there are no more. */
 bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_end, size_t *head);
 
 /* Fills in the head of a chunk of version 2. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini check: is this lidar, with its wires and its supply, fit for use? A line a question, and
- * one verdict. */
+/* tmini check: are the lidar, its wires and its supply in order? Prints a line per question and one
+ * verdict. */
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -17,9 +17,9 @@
 
 #define WATCH_SECONDS 10u
 
-/* Tolerances: damaged packets in a thousand; a motor's deviation in percent (real units at 6 Hz are
- * told of at 5.8 to 6.5); the motor's time to its speed; the longest pause between two packets,
- * which are 10 ms apart; points with a distance, in percent. */
+/* Limits, in this order: damaged packets per thousand; the motor's deviation in percent (real units
+ * set to 6 Hz have been seen at 5.8 to 6.5); the motor's time to reach its speed; the longest pause
+ * between two packets (normal: 10 ms); points with a distance, in percent. */
 #define DAMAGED_PERMILLE 10u
 #define SPEED_REMARK_PERCENT 10u
 #define SPEED_PERCENT 25u
@@ -32,19 +32,19 @@ typedef enum { GOOD, REMARK, BAD, GRADES } grade_t;
 typedef struct {
     device_t *device; /* NULL: there is no port. */
     unsigned seconds;
-    unsigned set_chz; /* The scan frequency; 0: not told. */
+    unsigned set_chz; /* The scan frequency; 0: not reported. */
     uint32_t start_ms;
-    uint32_t full_speed_ms; /* 0: not reached. */
+    uint32_t full_speed_ms; /* When the motor reached its speed; 0: not yet. */
     unsigned speed_chz;     /* Of the latest scan. */
-    unsigned idle_faults;   /* Told before scanning, */
-    unsigned faults;        /* and since. */
+    unsigned idle_faults;   /* Faults reported before scanning. */
+    unsigned faults;        /* Faults reported since. */
     count_t points;
     count_t valid;
     tmini_point_t nearest;   /* Of the latest scan; a distance of 0: none. */
-    char names[GRADES][160]; /* Of the questions with this answer. */
+    char names[GRADES][160]; /* How many questions had this answer. */
 } check_t;
 
-/* Answers a question: what was seen, and what to do about it if that is not good. */
+/* Prints the answer to a question: what was seen and, if it is bad, what to do. */
 static void answer(check_t *check, grade_t grade, const char *name, const char *advice,
                    const char *format, ...)
 {
@@ -71,7 +71,7 @@ static grade_t grade(bool is_bad, bool is_remarkable)
     return is_bad ? BAD : is_remarkable ? REMARK : GOOD;
 }
 
-/* Why nothing of what was wanted came. */
+/* Why nothing usable came. */
 static void answer_trouble(check_t *check, const char *missing)
 {
     static const char *const names[] = {"wiring", "baud", "command", "answers"};
@@ -139,7 +139,7 @@ static void ask_frequency(check_t *check)
     }
 }
 
-/* What the robot hides by itself is no missing range. */
+/* Points that the robot itself hides are not counted as missing. */
 static bool is_seen(const check_t *check, const tmini_point_t *point)
 {
     const tmini_mount_t *const mount = check->device->stream.mount;
@@ -243,7 +243,7 @@ static void judge_speed(check_t *check)
         answer(check, BAD, "frequency", "does it turn? Is something in its way?",
                "no revolution was completed");
     } else if ((faults & TMINI_FAULT_ENCODER) != 0) {
-        return; /* Its speed means nothing, as has been said. */
+        return; /* The speed of a blocked rotor means nothing; that fault has been reported. */
     } else if (set_chz == 0) {
         answer(check, GOOD, "frequency", NULL, "%.1f Hz measured", speed_chz / 100.0);
     } else {
@@ -253,7 +253,7 @@ static void judge_speed(check_t *check)
     }
 }
 
-/* What was told before scanning has been said. */
+/* Faults from before scanning have been printed already. */
 static void judge_scans(check_t *check)
 {
     char text[FAULTS_TEXT_SIZE];

@@ -10,7 +10,7 @@
 #include "points.h"
 #include "recording.h"
 
-/* What the summary says of scans that are gone by then. */
+/* What the summary needs from scans that no longer exist when it is printed. */
 typedef struct {
     count_t valid;        /* Points with a distance. */
     count_t bytes_before; /* The first packet, and up to the latest one: skipped ones. */
@@ -41,7 +41,7 @@ static void note_packet(gist_t *gist, const tape_t *tape)
     }
 }
 
-/* The scan that the recording's end cuts off is nobody's fault. */
+/* The scan that the recording's end cuts off is not an error. */
 static void print_scans(const gist_t *gist, const stream_t *stream)
 {
     (void)printf("scans       %s%s\npoints      %llu, %llu of them with a distance",
@@ -121,7 +121,7 @@ static void print_counters(FILE *file, const char *format, const tape_t *tape)
                   tape_checksum_errors(tape), tape->bytes, tape_skipped(tape));
 }
 
-/* Into the file, if one is wanted; or else beside what another program reads, for people. */
+/* To the file, if one is named; otherwise to standard error, for people. */
 static int report_counters(const tape_t *tape, const options_t *options)
 {
     if (options->stats != NULL) {
@@ -144,7 +144,7 @@ static int report_counters(const tape_t *tape, const options_t *options)
     return STATUS_OK;
 }
 
-/* A disk that is full is not written to for ever; main() says why. */
+/* Stops if writing fails, for example on a full disk; main() prints the reason. */
 static int print_packets(recording_t *recording, const options_t *options)
 {
     stream_t *const stream = &recording->tape.stream;

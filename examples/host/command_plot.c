@@ -15,10 +15,10 @@
 /* From a lidar: by this scan the motor has come up to speed. */
 #define DEVICE_SCANS 4u
 
-/* On a damaged line none may be complete: after this many more it is enough. */
+/* On a damaged line no scan may be complete: it gives up after this many more. */
 #define PATIENCE_SCANS 40u
 
-/* More than the eye tells apart in one picture. */
+/* More points than can be distinguished in one picture. */
 #define POINTS_MAX 65536u
 
 /* What is to be drawn: the last complete scan, the wanted one, or points of all. */
@@ -35,7 +35,7 @@ typedef struct {
 
 static drawing_t drawing = {.every = 1};
 
-/* When there is no room for more, every other one has been enough. */
+/* When there is no room, keeps every second point and from now on half as many. */
 static void add_thinned(const tmini_point_t *point)
 {
     if (drawing.seen++ % drawing.every != 0) {

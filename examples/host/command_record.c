@@ -18,11 +18,11 @@
 /* How often progress is shown. */
 #define PROGRESS_MS 200u
 
-/* More than comes through the line in the time that a start may take. */
+/* More bytes than can come while the lidar starts. */
 #define HELD_MAX 400000u
 
-/* Until the lidar has started, what it sends is held: a file that exists is not to be lost to a
- * lidar that does not answer. */
+/* Holds received bytes until the lidar has started, so that a lidar that does not answer does not
+ * overwrite an existing file. */
 typedef struct {
     const char *path;
     FILE *file; /* NULL until then. */
@@ -72,7 +72,7 @@ static void write_block(void *context, const uint8_t *bytes, size_t count)
     recorder->stamp_us = now;
 }
 
-/* What is there of the recording, and how good it is. */
+/* The length and the quality of the recording so far. */
 static const char *recorder_text(const recorder_t *recorder)
 {
     const tape_t *const tape = &recorder->tape;
@@ -83,7 +83,7 @@ static const char *recorder_text(const recorder_t *recorder)
     return text;
 }
 
-/* Until the time is over or Ctrl-C is pressed, neither of which is a failure. */
+/* Runs until the time is over or Ctrl-C is pressed; both are success. */
 static int roll(device_t *device, const options_t *options, recorder_t *recorder)
 {
     (void)fwrite(recorder->held, 1, recorder->held_count, recorder->file);
@@ -96,7 +96,8 @@ static int roll(device_t *device, const options_t *options, recorder_t *recorder
         if (device_ms(device) - shown_ms >= PROGRESS_MS) {
             shown_ms = device_ms(device);
             message_progress(false, "%s", recorder_text(recorder));
-            (void)fflush(recorder->file); /* For who reads along, and against a power failure. */
+            (void)fflush(recorder->file); /* For programs that read along, and in case of a power
+                                           * failure. */
         }
     }
     return device_is_there(device) ? STATUS_OK : device_why(device);

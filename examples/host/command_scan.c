@@ -26,7 +26,7 @@ static void print_scan(const stream_t *stream, const options_t *options)
                      survey.nearest != NULL ? "  nearest " : "",
                      survey.nearest != NULL ? place_text(survey.nearest) : "");
     }
-    (void)fflush(stdout); /* So that who reads along does so at once. */
+    (void)fflush(stdout); /* So that a program that reads along gets it at once. */
 }
 
 static bool is_enough(const stream_t *stream)
@@ -34,8 +34,8 @@ static bool is_enough(const stream_t *stream)
     return wanted_scans > 0 && stream->scans >= wanted_scans;
 }
 
-/* What precedes the first start packet is no scan, and what ends the last one belongs to the
- * next. */
+/* Packets before the first start packet belong to no scan; the start packet that ends the last scan
+ * belongs to the next one. */
 static void print_packet(const stream_t *stream)
 {
     if (stream->start_packets > 0 && !is_enough(stream)) {

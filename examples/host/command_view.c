@@ -19,7 +19,7 @@
 #define SLICE_MS 10
 #define SEEK_MS 5000u
 
-/* A terminal without a cursor gets a picture below the other, and not too many. */
+/* On a terminal without cursor control pictures are printed below each other, at a low rate. */
 #define PLAIN_MS 1000u
 
 typedef struct {
@@ -124,7 +124,7 @@ static int watch(device_t *device, const options_t *options)
     if (status != STATUS_OK) {
         return status;
     }
-    device->is_secretive = true; /* The picture tells. */
+    device->is_secretive = true; /* The picture shows it. */
     status = open_viewer(&viewer, device->path, &device->stream);
     viewer.view.keys = "q quit   + - zoom   a auto";
     while (status == STATUS_OK && !viewer.is_over && device_is_there(device)) {
@@ -244,7 +244,7 @@ static int view_recording(const options_t *options)
     if (status != STATUS_OK) {
         return status;
     }
-    /* What is no recording is told before the screen is taken over. */
+    /* A file that is no recording is reported before the screen is used. */
     if (recording_next(&player.recording)) {
         status = play(options, &player);
     }

@@ -27,16 +27,16 @@
 /* More than a packet that breaks off, and than the answer to a restart. */
 #define NOISE_BYTES 400u
 
-/* No longer at once, so that Ctrl-C is noticed and time is kept. */
+/* The longest single wait, so that Ctrl-C and time-outs are noticed. */
 #define SLICE_MS 10
 
-/* A stop may be lost while the line is quiet for another reason, a USB hub's for example. This many
- * times a lidar that goes on within this time is stopped again. */
+/* A stop command may be lost while the line is quiet for another reason, for example in a USB hub.
+ * A lidar that sends again within this time is stopped again, this many times at most. */
 #define STAYS_MS 200u
 #define STOPS 3
 
-/* The driver's own, but for someone who waits at a keyboard, and for a computer that has other
- * things to do: bytes may reach this program late and in one go. */
+/* The driver's default times, changed for a user who waits at a keyboard, and for a computer, where
+ * bytes may come late and in large blocks. */
 static tmini_timing_t patience;
 
 static volatile sig_atomic_t started_fd = -1;
@@ -146,7 +146,8 @@ static tmini_event_t follow(device_t *device, tmini_event_t event)
 tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
 {
     const uint32_t begun_ms = device_ms(device);
-    (void)tmini_posix_wait(&device->port, 0); /* What has come while the output was blocked. */
+    (void)tmini_posix_wait(&device->port, 0); /* Takes the bytes that came while the output was
+                                               * blocked. */
     do {
         const tmini_event_t event = tmini_poll(&device->lidar);
         if (event != TMINI_EVENT_NONE && event != TMINI_EVENT_MORE) {
@@ -160,7 +161,8 @@ tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
     return TMINI_EVENT_NONE;
 }
 
-/* A stop first ends what is under way, a start that stands for example: no failure of the stop. */
+/* A stop first ends the current command, for example a start; the event of that end is not a
+ * failure of the stop. */
 static bool is_aborted(const device_t *device, tmini_event_t wanted)
 {
     return wanted == TMINI_EVENT_STOPPED &&
@@ -198,7 +200,7 @@ static bool may_still_start(const device_t *device)
     return device_is_usable(device) && (device->waits || device_ms(device) < START_MS);
 }
 
-/* The driver's start stands: each failed attempt is only told. */
+/* The driver keeps trying to start: a failed attempt is only reported. */
 int device_start(device_t *device)
 {
     tmini_event_t event = TMINI_EVENT_NONE;

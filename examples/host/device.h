@@ -18,22 +18,22 @@ typedef struct device {
     stream_t stream;
     const char *path;
     uint32_t begun_ms; /* When it was opened, and then when it was told to start. */
-    uint32_t silences; /* How often the lidar was lost: nothing came any more, */
-    uint32_t noises;   /* or only bytes that were no packets; */
-    uint32_t strays;   /* and how often it scanned although it had been stopped. */
+    uint32_t silences; /* How often the lidar was lost because nothing came. */
+    uint32_t noises;   /* How often it was lost because no valid packets came. */
+    uint32_t strays;   /* How often it scanned although it had been stopped. */
     uint64_t good_at;  /* Bytes received by the latest packet. */
-    bool is_secretive; /* May be set: what happens is for the caller to tell. */
-    bool waits;        /* --wait: an adapter that has gone is no end. */
-    bool is_away;      /* It has gone, and is waited for. */
+    bool is_secretive; /* May be set: the caller reports what happens. */
+    bool waits;        /* --wait: continue when the adapter has disappeared. */
+    bool is_away;      /* The adapter has disappeared and is waited for. */
     bool listens;      /* --listen: nothing is sent. */
     bool was_started;
     bool ignores_interrupt; /* While stopping. */
     uint8_t rx[4096];
 } device_t;
 
-/* Opens the port of the options and sets a lidar up there, lets `use` do what it likes with it, and
- * leaves it stopped. From now on Ctrl-C is only noted. Returns what `use` does; or, if there is no
- * such port, the status to leave with, and says why. */
+/* Opens the port of the options and sets a lidar up there, calls `use`, and stops the lidar. From
+ * now on Ctrl-C is only noted. Returns the result of `use`; if the port cannot be opened, prints
+ * the reason and returns the exit status. */
 int device_use(const options_t *options, int (*use)(device_t *device, const options_t *options));
 
 /* Milliseconds since the lidar was told to start; before, since it was opened. */

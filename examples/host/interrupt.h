@@ -10,8 +10,9 @@
 
 #include <stdbool.h>
 
-/* From now on a reader that has gone (`| head`) ends the program at once and without a word, as it
- * does other programs, but for the last words; and a file that may not grow is as a full disk. */
+/* From now on a closed pipe (`| head`) ends the program at once and silently, as usual, but the
+ * functions of interrupt_last_words() still run. A file that may not grow is treated as a full
+ * disk. */
 void interrupt_watch_pipes(void);
 
 /* From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT are only noted, unless they are ignored. With
@@ -19,8 +20,8 @@ void interrupt_watch_pipes(void);
  * otherwise the signal cuts it short. */
 void interrupt_watch(bool writes_whole);
 
-/* What to do when a second one comes, or a pipe is closed: called from the signal's handler. Up to
- * two functions; one that is there already is not added again. */
+/* Registers a function that is called from the signal's handler when a second signal comes or a
+ * pipe is closed. Up to two functions; one that is there already is not added again. */
 void interrupt_last_words(void (*speak)(void));
 
 /* True once one of them has come. */

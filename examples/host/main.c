@@ -102,7 +102,7 @@ static bool read_number(const option_t *option, const char *text, unsigned *numb
     return true;
 }
 
-/* Returns false, and says why, if the value is not what the option takes. */
+/* Returns false and prints the reason if the option does not accept the value. */
 static bool apply(options_t *options, const option_t *option, const char *value)
 {
     void *const member = (char *)options + option->place;
@@ -138,7 +138,7 @@ static void list_options(char *short_ones, struct option *long_ones)
     }
 }
 
-/* A word that is no option, of which the first ones count. */
+/* Takes a word that is no option; only the first ones are used. */
 static bool take_word(options_t *options, const char *word)
 {
     if (options->word_count < OPTIONS_WORDS) {
@@ -164,7 +164,7 @@ static const char *advice(const char *nearest, const char *before)
     return text;
 }
 
-/* Says what getopt_long() could not take. */
+/* Prints what getopt_long() did not accept. */
 static bool refuse(const options_t *options, int answer, const char *word)
 {
     const char *const command = options->word_count > 0 ? options->words[0] : "COMMAND";
@@ -190,7 +190,8 @@ static bool take(options_t *options, int answer, const char *word)
                                           : apply(options, find(answer), optarg);
 }
 
-/* Reads all words, in any order. STATUS_OK, or STATUS_USAGE when it has been said why not. */
+/* Reads all words, in any order. Returns STATUS_OK, or prints the error and returns
+ * STATUS_USAGE. */
 static int parse(options_t *options, int argc, char **argv)
 {
     char short_ones[2 * OPTIONS + 3];
@@ -215,8 +216,8 @@ static bool is_accepted(const command_t *command, char letter)
     return letter == 'h' || letter == 'V' || strchr(command->accepts, letter) != NULL;
 }
 
-/* Whether the command takes what was given: STATUS_OK, or STATUS_USAGE when it has been said what
- * it does not take. */
+/* Checks that the command accepts the options given. Returns STATUS_OK, or prints the error and
+ * returns STATUS_USAGE. */
 static int check(const options_t *options, const command_t *command)
 {
     const char *const excess = options->words[command->has_operand ? 2 : 1];
@@ -264,8 +265,8 @@ static const command_t *const commands[] = {
 
 #define COMMANDS (sizeof commands / sizeof commands[0])
 
-/* If 0, 1 or 2 came closed, the port would get that number, and results be sent to the lidar. What
- * takes the place fails when it is used. */
+/* If descriptor 0, 1 or 2 is closed, the port would get its number, and results would be sent to
+ * the lidar. So a descriptor that fails when it is used takes the place. */
 static void hold_standard_descriptors(void)
 {
     static const int useless[3] = {O_WRONLY, O_RDONLY, O_RDONLY};

@@ -21,16 +21,16 @@ enum {
 #define MESSAGE_FORMAT
 #endif
 
-/* Prints a line: a remark, unless silenced; or after "tmini: " why the program leaves with this
- * status. Returns the status, so that a command can end with it. */
+/* Prints a line: a remark, unless silenced; or, after "tmini: ", the reason for this exit status.
+ * Returns the status, so that a command can end with it. */
 int message_print(int status, const char *format, ...) MESSAGE_FORMAT;
 
 #define message_note(...) (void)message_print(STATUS_OK, __VA_ARGS__)
 #define message_fail(...) message_print(STATUS_FAILED, __VA_ARGS__)
 #define message_usage(...) message_print(STATUS_USAGE, __VA_ARGS__)
 
-/* Shows how far the work is, over what this showed before: on a terminal, and unless silenced.
- * What is the last stays there. */
+/* Shows progress on a terminal, unless silenced; it overwrites the progress shown before, and the
+ * last one remains. */
 void message_progress(bool is_last, const char *format, ...) MESSAGE_FORMAT;
 
 /* After message_silence(true) there are no remarks and no progress. */

@@ -155,7 +155,7 @@ static void draw_bearings(cairo_t *cr)
     }
 }
 
-/* What the lidar has looked through: faint beams that add up to light. */
+/* The free space between lidar and points: faint beams that add up. */
 static void draw_beams(cairo_t *cr, const figure_t *figure)
 {
     cairo_set_line_width(cr, 1.6);

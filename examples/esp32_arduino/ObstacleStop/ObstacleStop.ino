@@ -33,11 +33,12 @@ static unsigned complete;
 static bool isFree;          /* As of the last scans. */
 static unsigned long seenMs; /* When a complete scan came. */
 
-/* A scan with gaps may have missed what is in front: it can stop, but does not let go on. */
+/* A scan with gaps may have missed an obstacle: it can stop the robot, but not release it. */
 static void lookAhead()
 {
     tmini_sectors_clear(&sectors);
-    for (TMiniPoint point : lidar.points()) { /* Keeps up; tmini_sectors_add_scan() is one go. */
+    for (TMiniPoint point : lidar.points()) { /* Receives meanwhile; tmini_sectors_add_scan() would
+                                               * not. */
         tmini_sectors_add(&sectors, &point);
     }
     scans++;

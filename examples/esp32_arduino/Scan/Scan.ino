@@ -41,11 +41,11 @@ static const unsigned long BLIND_MS = 500; /* Without a complete scan for this l
 static TMiniLidar lidar;
 static unsigned scans;
 static unsigned complete; /* Of them. */
-static uint16_t nearest;     /* In front, in the last scan that could tell; 0: nothing. */
+static uint16_t nearest;     /* The nearest thing in front, in the last usable scan; 0: none. */
 static unsigned long seenMs; /* When a complete scan came. */
 static bool seen;
 
-/* Integers: at ten microseconds per float, those of a scan would take an AVR ten milliseconds. */
+/* Integers, because an AVR needs ten microseconds per float: ten milliseconds per scan. */
 static bool isInFront(const TMiniPoint &point)
 {
     return point.angle_q6 <= FRONT_Q6 || point.angle_q6 >= TMINI_FULL_CIRCLE_Q6 - FRONT_Q6;
@@ -56,8 +56,8 @@ static bool isNear(uint16_t distance)
     return distance != 0 && distance < STOP_MM;
 }
 
-/* A scan with gaps may have missed what is in front, and one without any range has seen nothing:
- * they can stop, but do not let go on. */
+/* A scan with gaps may have missed an obstacle, and one without any range has seen nothing: they
+ * can stop the robot, but not release it. */
 static void lookAhead()
 {
     uint16_t ahead = 0;

@@ -10,7 +10,7 @@
 static TMiniLidarStreaming lidar;
 static unsigned scans;
 static unsigned complete; /* Of them. */
-static uint16_t nearest;  /* Of the revolution under way; 0: nothing yet. */
+static uint16_t nearest;  /* Of the current revolution; 0: nothing yet. */
 static bool whole;        /* Nothing of it has been lost so far. */
 
 static void print()
@@ -23,7 +23,7 @@ static void print()
     Serial.println(" mm");
 }
 
-/* What came before the first start packet was no revolution. */
+/* Packets before the first start packet are not a revolution. */
 static void endRevolution()
 {
     static bool begun;

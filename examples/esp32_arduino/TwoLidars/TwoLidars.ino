@@ -10,7 +10,7 @@ struct Unit {
     TMiniLidarStreaming lidar;
     unsigned scans;
     unsigned complete;
-    uint16_t nearest; /* Of the revolution under way; 0: nothing yet. */
+    uint16_t nearest; /* Of the current revolution; 0: nothing yet. */
     uint16_t last;    /* Of the revolution before. */
     bool begun;
     bool whole;
@@ -60,7 +60,7 @@ static void work(Unit &unit, Unit &other)
     }
 }
 
-/* A line in one go would take half as long as the lidars' buffers last. */
+/* Printing a whole line at once would take half the time that the buffers last. */
 static void print(unsigned number, const char *text)
 {
     Serial.print(number);

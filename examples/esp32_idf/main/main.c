@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop on an ESP32: asks the lidar who and how it is, scans, raises a pin while the robot
- * must not move, and writes a line a second to the console. */
+/* Obstacle stop on an ESP32: asks for the lidar's information and health, scans, raises a pin while
+ * the robot must not move, and writes a line per second to the console. */
 
 #include <inttypes.h>
 
@@ -32,7 +32,7 @@ static uint32_t now_ms(void)
 
 /* -------------------------------------------------------------------------------- obstacle stop */
 
-/* Without a scanning lidar, or with a faulty one, nothing can be known of what is in front. */
+/* Without a scanning lidar, or with a faulty one, the way ahead is unknown. */
 static bool must_stop(void)
 {
     if (tmini_state(&lidar) != TMINI_STATE_SCANNING || tmini_faults(&lidar) != 0) {
@@ -48,8 +48,8 @@ static void set_stop_pin(bool stop)
     }
 }
 
-/* Reset, because some pins are JTAG's at first; the level before the direction, because an output
- * that is low for a moment says go. */
+/* Resets the pin, because some pins belong to JTAG at first. Sets the level before the direction,
+ * because even a short low level would mean "go". */
 static void open_stop_pin(void)
 {
     if (CONFIG_EXAMPLE_STOP_GPIO >= 0) {
@@ -75,7 +75,7 @@ static void tell_info(const tmini_info_t *info)
              info->firmware_major, info->firmware_minor, info->hardware, serial);
 }
 
-/* Information, then health; answered or not, scanning. */
+/* Asks for information, then health; then scans, whether or not they were answered. */
 static void handle(tmini_event_t event)
 {
     char faults[TMINI_FAULTS_TEXT_SIZE];
