@@ -198,8 +198,7 @@ void rig_feed_turn(uint8_t health, uint16_t distance_mm)
 
 void rig_go_idle(void)
 {
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
     is_in(TMINI_STATE_IDLE);
@@ -208,8 +207,7 @@ void rig_go_idle(void)
 void rig_go_starting(void)
 {
     rig_go_idle();
-    sends(START);
-    begins(tmini_start(&rig.lidar));
+    begins_with(START, tmini_start(&rig.lidar));
 }
 
 void rig_go_spinning_up(void)
@@ -233,9 +231,7 @@ void rig_go_recovering(void)
     rig_go_scanning();
     passes(1000);
     polls_to(TMINI_EVENT_LOST);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(STOP);
 }
 
 void rig_go_asking_again(void)
@@ -243,9 +239,7 @@ void rig_go_asking_again(void)
     rig_go_recovering();
     passes(50);
     polls_to(TMINI_EVENT_NONE); /* The line is found quiet. */
-    sends(START);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(START);
 }
 
 void rig_go_backing_off(void)

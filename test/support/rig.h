@@ -72,10 +72,24 @@ void rig_verify(void);
 
 #define begins(call) TEST_ASSERT_EQUAL_INT(TMINI_OK, call)
 
+/* The same, and its first two bytes are sent at once. */
+#define begins_with(code, call) \
+    do {                        \
+        sends(code);            \
+        begins(call);           \
+    } while (false)
+
 #define polls_to(event) \
     UNITY_TEST_ASSERT_EQUAL_INT(event, tmini_poll(&rig.lidar), __LINE__, "event")
 
 #define is_in(state) UNITY_TEST_ASSERT_EQUAL_INT(state, tmini_state(&rig.lidar), __LINE__, "state")
+
+/* The next poll sends this, and reports nothing. */
+#define polls_and_sends(code)       \
+    do {                            \
+        sends(code);                \
+        polls_to(TMINI_EVENT_NONE); \
+    } while (false)
 
 /* `ms` milliseconds pass. Polls at the beginning, in the middle and one millisecond before the end:
  * nothing may happen or be sent. The next poll is at the end. */

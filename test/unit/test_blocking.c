@@ -118,12 +118,10 @@ void test_a_frequency_that_is_there_already_is_not_waited_for_while_scanning(voi
     comes(5, feed_frequency);
     sends(GET_FREQUENCY);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
-    sends(GET_FREQUENCY);
-    begins(tmini_start(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
     rig_feed_frequency(640);
     polls_to(TMINI_EVENT_FREQUENCY);
-    sends(START);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(START);
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
@@ -135,19 +133,15 @@ void test_a_frequency_that_could_not_be_set_is_not_waited_for_while_scanning(voi
 {
     rig.config.frequency_chz = 640;
     rig_init();
-    sends(STOP);
-    begins(tmini_start(&rig.lidar));
+    begins_with(STOP, tmini_start(&rig.lidar));
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_FREQUENCY);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(GET_FREQUENCY);
     rig_feed_frequency(99); /* No lidar turns so slowly. */
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(START);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(START);
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
@@ -209,8 +203,7 @@ void test_the_same_frequency_is_not_waited_for_once_it_has_been_set(void)
     rig_init();
     rig_go_idle();
     port_wait_StubWithCallback(wait);
-    sends(GET_FREQUENCY);
-    begins(tmini_start(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
     rig_feed_frequency(640);
     polls_to(TMINI_EVENT_FREQUENCY);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
@@ -224,8 +217,7 @@ void test_the_same_frequency_is_waited_for_while_a_start_asks_for_it(void)
     rig_init();
     rig_go_idle();
     port_wait_StubWithCallback(wait);
-    sends(GET_FREQUENCY);
-    begins(tmini_start(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
     comes(5, feed_frequency);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
     TEST_ASSERT_EQUAL_UINT(5, script.waits);
@@ -233,12 +225,10 @@ void test_the_same_frequency_is_waited_for_while_a_start_asks_for_it(void)
 
 void test_a_frequency_is_not_waited_for_while_another_command_is_under_way(void)
 {
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_BUSY, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
     is_in(TMINI_STATE_BUSY);
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_BUSY, tmini_blocking_set_frequency(&rig.lidar, 700, 100));
     is_in(TMINI_STATE_STOPPING);
     TEST_ASSERT_EQUAL_UINT(0, script.waits);
@@ -264,8 +254,7 @@ void test_a_frequency_is_waited_for_past_attempts_to_start_that_fail(void)
     rig_init();
     rig_go_idle();
     port_wait_StubWithCallback(wait);
-    sends(GET_FREQUENCY);
-    begins(tmini_start(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
     comes(4655, feed_frequency);
     sends(STOP); /* After 2 s. */
     sends(START);
@@ -360,8 +349,7 @@ void test_stop_waits_for_a_quiet_line(void)
 
 void test_stop_waits_past_the_end_of_the_command_that_it_aborts(void)
 {
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     sends(STOP);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_stop(&rig.lidar, 100));
     is_in(TMINI_STATE_IDLE);
@@ -369,8 +357,7 @@ void test_stop_waits_past_the_end_of_the_command_that_it_aborts(void)
 
 void test_events_that_do_not_belong_to_the_command_are_swallowed(void)
 {
-    sends(START);
-    begins(tmini_start(&rig.lidar));
+    begins_with(START, tmini_start(&rig.lidar));
     for (unsigned i = 0; i < 2; i++) {
         rig_feed_plain_turn(0);
         (void)rig_drain();
@@ -473,8 +460,7 @@ void test_a_command_that_uses_up_its_attempts_says_why(void)
 
 void test_a_stop_that_fails_after_aborting_says_why(void)
 {
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     sends_both_taking(STOP, -1);
     sends_both_taking(STOP, -1);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_blocking_stop(&rig.lidar, 100));
@@ -548,8 +534,7 @@ void test_a_wait_may_be_longer_than_a_minute(void)
 
 void test_a_query_of_earlier_is_not_given_up_with_the_start_that_follows_it(void)
 {
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 100));
     is_in(TMINI_STATE_BUSY);
 }

@@ -42,36 +42,28 @@ static uint16_t timeouts(void)
 
 void test_from_an_unknown_state_a_command_first_stops_the_lidar_and_waits_for_a_quiet_line(void)
 {
-    sends(STOP);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(STOP, tmini_request_info(&rig.lidar));
     is_in(TMINI_STATE_BUSY);
     was_sent();
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_INFO);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(GET_INFO);
 }
 
 void test_in_the_idle_state_a_command_is_sent_at_once(void)
 {
     rig_go_idle();
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
-    was_sent();
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
 }
 
 void test_each_byte_that_is_heard_puts_the_command_off_by_the_quiet_time(void)
 {
-    sends(STOP);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(STOP, tmini_request_info(&rig.lidar));
     passes(30);
     rig_feed_byte(0x00);
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_INFO);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(GET_INFO);
 }
 
 /* A stop is sent after this many bytes, and nobody looks for 60 ms. */
@@ -80,8 +72,7 @@ static void stop_unwatched_behind(size_t bytes)
     for (size_t i = 0; i < bytes; i++) {
         rig_feed_byte(0x00);
     }
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     rig.now_ms += 60;
 }
 
@@ -116,8 +107,7 @@ void test_with_room_for_a_byte_more_the_line_is_known_to_be_quiet(void)
 
 void test_bytes_that_were_lost_put_the_command_off_by_the_quiet_time(void)
 {
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     passes(30);
     polls_to(TMINI_EVENT_NONE);
     tmini_feed_gap(&rig.lidar);
@@ -135,16 +125,13 @@ void test_bytes_that_were_lost_while_idle_are_heard_as_well(void)
     tmini_feed_gap(&rig.lidar);
     polls_to(TMINI_EVENT_NONE);
     is_in(TMINI_STATE_UNKNOWN);
-    sends(STOP);
-    begins(tmini_request_info(&rig.lidar));
-    was_sent();
+    begins_with(STOP, tmini_request_info(&rig.lidar));
 }
 
 void test_packets_of_the_tail_after_a_stop_are_no_scan(void)
 {
     rig_go_scanning();
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     for (unsigned ms = 0; ms < 300; ms += 10) {
         rig_feed_start_packet(1000);
         passes(10);
@@ -157,8 +144,7 @@ void test_packets_of_the_tail_after_a_stop_are_no_scan(void)
 void test_a_stop_that_gets_lost_is_sent_again(void)
 {
     rig_go_scanning();
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     for (unsigned ms = 0; ms < 600; ms += 20) {
         rig_feed_point_packet(1000);
         passes(20);
@@ -176,8 +162,7 @@ void test_a_stop_that_gets_lost_is_sent_again(void)
 void test_a_lidar_that_will_not_be_stopped_fails_the_command_after_three_attempts(void)
 {
     rig_go_scanning();
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     for (unsigned attempt = 1; attempt <= 3; attempt++) {
         for (unsigned ms = 0; ms < 600; ms += 20) {
             rig_feed_point_packet(1000);
@@ -198,23 +183,20 @@ void test_a_byte_that_comes_while_idle_makes_the_state_unknown_and_the_next_comm
     rig_feed_byte(0x00);
     polls_to(TMINI_EVENT_NONE);
     is_in(TMINI_STATE_UNKNOWN);
-    sends(STOP);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(STOP, tmini_request_health(&rig.lidar));
 }
 
 void test_a_byte_that_no_poll_has_seen_yet_counts_as_heard(void)
 {
     rig_go_idle();
     rig_feed_byte(0x00);
-    sends(STOP);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(STOP, tmini_request_health(&rig.lidar));
 }
 
 void test_bytes_after_a_reply_make_the_state_unknown(void)
 {
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_health(0, 0);
     rig_feed_byte(0x55);
     polls_to(TMINI_EVENT_HEALTH);
@@ -232,8 +214,7 @@ void test_info_is_what_the_reply_says(void)
                                     4,    0,    0,    0,    9,    0,    1,    9,    4};
 
     rig_go_idle();
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     is_in(TMINI_STATE_BUSY);
     rig_feed(reply, sizeof reply);
     polls_to(TMINI_EVENT_INFO);
@@ -249,8 +230,7 @@ void test_info_is_what_the_reply_says(void)
 void test_health_is_what_the_reply_says(void)
 {
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_health(TMINI_FAULT_ENCODER | TMINI_FAULT_LD, 0x1234);
     polls_to(TMINI_EVENT_HEALTH);
     is_in(TMINI_STATE_IDLE);
@@ -261,8 +241,7 @@ void test_health_is_what_the_reply_says(void)
 void test_the_frequency_is_what_the_reply_says(void)
 {
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_request_frequency(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(720);
     polls_to(TMINI_EVENT_FREQUENCY);
     is_in(TMINI_STATE_IDLE);
@@ -272,8 +251,7 @@ void test_the_frequency_is_what_the_reply_says(void)
 void test_after_a_reboot_the_state_is_unknown_until_the_next_command(void)
 {
     rig_go_idle();
-    sends(REBOOT);
-    begins(tmini_reboot(&rig.lidar));
+    begins_with(REBOOT, tmini_reboot(&rig.lidar));
     is_in(TMINI_STATE_BUSY);
     passes(5000);
     polls_to(TMINI_EVENT_REBOOTED);
@@ -283,8 +261,7 @@ void test_after_a_reboot_the_state_is_unknown_until_the_next_command(void)
 void test_packets_while_the_lidar_reboots_are_no_scan(void)
 {
     rig_go_idle();
-    sends(REBOOT);
-    begins(tmini_reboot(&rig.lidar));
+    begins_with(REBOOT, tmini_reboot(&rig.lidar));
     rig_feed_start_packet(1000);
     passes(5000);
     polls_to(TMINI_EVENT_REBOOTED);
@@ -293,8 +270,7 @@ void test_packets_while_the_lidar_reboots_are_no_scan(void)
 void test_scanning_begins_with_the_first_packet_after_the_start_reply(void)
 {
     rig_go_idle();
-    sends(START);
-    begins(tmini_start(&rig.lidar));
+    begins_with(START, tmini_start(&rig.lidar));
     is_in(TMINI_STATE_STARTING);
     passes(5);
     rig_feed_scan_reply();
@@ -329,8 +305,7 @@ void test_the_start_reply_may_come_after_the_first_packet(void)
 void test_stopping_ends_when_the_line_is_quiet(void)
 {
     rig_go_scanning();
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     is_in(TMINI_STATE_STOPPING);
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
@@ -340,8 +315,7 @@ void test_stopping_ends_when_the_line_is_quiet(void)
 void test_a_second_stop_while_stopping_sends_nothing(void)
 {
     rig_go_scanning();
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     passes(20);
     begins(tmini_stop(&rig.lidar));
     passes(30);
@@ -351,10 +325,8 @@ void test_a_second_stop_while_stopping_sends_nothing(void)
 void test_stop_aborts_a_query(void)
 {
     rig_go_idle();
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_COMMAND_FAILED);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ABORTED, tmini_command_error(&rig.lidar));
     is_in(TMINI_STATE_STOPPING);
@@ -365,29 +337,24 @@ void test_stop_aborts_a_query(void)
 
 void test_a_command_swallows_the_end_of_the_one_before_that_nobody_polled_for(void)
 {
-    sends(STOP);
-    begins(tmini_request_info(&rig.lidar));
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar)); /* Aborts it, */
+    begins_with(STOP, tmini_request_info(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar)); /* Aborts it, */
     tmini_cancel(&rig.lidar);
-    sends(STOP);
-    begins(tmini_request_info(&rig.lidar)); /* which would look like the end of this one. */
+    begins_with(STOP,
+                tmini_request_info(&rig.lidar)); /* which would look like the end of this one. */
     passes(50);
 }
 
 void test_a_command_that_is_cancelled_takes_the_start_after_it_along(void)
 {
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     begins(tmini_start(&rig.lidar));
     tmini_cancel(&rig.lidar);
-    sends(STOP);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(STOP, tmini_request_info(&rig.lidar));
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_INFO);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(GET_INFO);
     rig_feed_info();
     polls_to(TMINI_EVENT_INFO);
     is_in(TMINI_STATE_IDLE);
@@ -398,8 +365,7 @@ void test_a_command_that_is_cancelled_takes_the_start_after_it_along(void)
 void test_a_frequency_is_not_taken_for_device_information_though_the_type_is_the_same(void)
 {
     rig_go_idle();
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     rig_feed_frequency(600);
     passes(10);
     rig_feed_info();
@@ -409,8 +375,7 @@ void test_a_frequency_is_not_taken_for_device_information_though_the_type_is_the
 void test_device_information_is_not_taken_for_a_frequency_though_the_type_is_the_same(void)
 {
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_request_frequency(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_info();
     passes(10);
     rig_feed_frequency(600);
@@ -428,16 +393,13 @@ void test_a_reply_that_nobody_asked_for_is_skipped(void)
 void test_a_reply_that_comes_late_answers_the_repeated_question(void)
 {
     rig_go_idle();
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     passes(2000);
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_INFO);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(GET_INFO);
     rig_feed_info();
     polls_to(TMINI_EVENT_INFO);
     is_in(TMINI_STATE_UNKNOWN); /* Its own reply may still come. */
@@ -446,17 +408,14 @@ void test_a_reply_that_comes_late_answers_the_repeated_question(void)
 void test_a_reply_that_comes_while_the_line_is_being_hushed_is_not_taken(void)
 {
     rig_go_idle();
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     passes(2000);
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     rig_feed_info();
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_INFO);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(GET_INFO);
     rig_feed_info();
     polls_to(TMINI_EVENT_INFO);
 }
@@ -465,20 +424,16 @@ static void asks_in_vain(uint8_t code)
 {
     passes(2000);
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(code);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(code);
 }
 
 void test_a_question_without_an_answer_is_asked_three_times(void)
 {
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     asks_in_vain(GET_HEALTH);
     asks_in_vain(GET_HEALTH);
     passes(2000);
@@ -489,8 +444,7 @@ void test_a_question_without_an_answer_is_asked_three_times(void)
 void test_a_reply_that_comes_after_the_last_attempt_is_nobodys(void)
 {
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     asks_in_vain(GET_HEALTH);
     asks_in_vain(GET_HEALTH);
     passes(2000);
@@ -503,18 +457,15 @@ void test_a_reply_that_comes_after_the_last_attempt_is_nobodys(void)
 void test_each_command_has_all_its_attempts(void)
 {
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     asks_in_vain(GET_HEALTH);
     rig_feed_health(0, 0);
     polls_to(TMINI_EVENT_HEALTH);
 
-    sends(STOP);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(STOP, tmini_request_health(&rig.lidar));
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_HEALTH);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(GET_HEALTH);
     asks_in_vain(GET_HEALTH);
     asks_in_vain(GET_HEALTH);
     rig_feed_health(0, 0);
@@ -530,12 +481,10 @@ void test_a_start_that_is_acknowledged_but_brings_no_packet_is_reported_and_trie
     is_in(TMINI_STATE_STARTING);
     passes(500);
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(START);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(START);
     was_sent();
     TEST_ASSERT_EQUAL_UINT(1, timeouts());
 }
@@ -548,8 +497,7 @@ void test_a_single_attempt_is_one_attempt(void)
     rig.config.timing = &timing;
     rig_init();
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     passes(2000);
     fails_with(TMINI_ERROR_TIMEOUT);
 }
@@ -562,8 +510,7 @@ void test_two_attempts_are_two(void)
     rig.config.timing = &timing;
     rig_init();
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     asks_in_vain(GET_HEALTH);
     passes(2000);
     fails_with(TMINI_ERROR_TIMEOUT);
@@ -577,8 +524,7 @@ void test_no_attempts_count_as_one(void)
     rig.config.timing = &timing;
     rig_init();
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     passes(2000);
     fails_with(TMINI_ERROR_TIMEOUT);
 }
@@ -588,8 +534,7 @@ void test_no_attempts_count_as_one(void)
 static void begins_to_set(uint16_t target_chz, uint16_t now_chz)
 {
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_set_frequency(&rig.lidar, target_chz));
+    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, target_chz));
     is_in(TMINI_STATE_BUSY);
     rig_feed_frequency(now_chz);
     polls_to(TMINI_EVENT_NONE);
@@ -599,8 +544,7 @@ static void begins_to_set(uint16_t target_chz, uint16_t now_chz)
 static void steps(uint8_t code, uint16_t answer_chz)
 {
     passes(50);
-    sends(code);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(code);
     polls_to(TMINI_EVENT_NONE);
     was_sent();
     rig_feed_frequency(answer_chz);
@@ -698,8 +642,7 @@ void test_a_coarse_step_may_lead_to_the_lowest_frequency(void)
 void test_a_frequency_that_is_set_already_is_read_back_all_the_same_and_not_stepped(void)
 {
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_set_frequency(&rig.lidar, 600));
+    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 600));
     rig_feed_frequency(600);
     arrives_at(600);
 }
@@ -716,13 +659,11 @@ void test_off_the_grid_the_nearest_frequency_will_do(void)
 void test_half_a_fine_step_off_is_near_enough_on_either_side(void)
 {
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_set_frequency(&rig.lidar, 650));
+    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 650));
     rig_feed_frequency(645);
     arrives_at(645);
 
-    sends(GET_FREQUENCY);
-    begins(tmini_set_frequency(&rig.lidar, 650));
+    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 650));
     rig_feed_frequency(655);
     arrives_at(655);
 }
@@ -749,10 +690,8 @@ void test_a_step_is_sent_only_when_the_line_is_quiet_after_the_reply(void)
     passes(40);
     rig_feed_byte(0x00);
     passes(50);
-    sends(FASTER_ONE);
+    polls_and_sends(FASTER_ONE);
     polls_to(TMINI_EVENT_NONE);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
 }
 
 void test_a_line_that_does_not_settle_between_steps_is_hushed(void)
@@ -763,13 +702,10 @@ void test_a_line_that_does_not_settle_between_steps_is_hushed(void)
         passes(40);
     }
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_FREQUENCY);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(GET_FREQUENCY);
 }
 
 void test_a_lost_reply_to_a_step_is_mended_by_reading_the_frequency(void)
@@ -777,8 +713,7 @@ void test_a_lost_reply_to_a_step_is_mended_by_reading_the_frequency(void)
     begins_to_set(700, 600);
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(FASTER_ONE);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(FASTER_ONE);
     asks_in_vain(GET_FREQUENCY);
     rig_feed_frequency(700); /* The step had been made. */
     polls_to(TMINI_EVENT_FREQUENCY);
@@ -790,8 +725,7 @@ void test_a_second_copy_of_the_last_steps_reply_is_not_taken_for_the_next_steps(
     begins_to_set(800, 600);
     steps(FASTER_ONE, 700);
     passes(50);
-    sends(FASTER_ONE);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(FASTER_ONE);
     polls_to(TMINI_EVENT_NONE);
     rig_feed_frequency(700); /* Late. */
     passes(10);
@@ -808,12 +742,10 @@ void test_a_lidar_that_refuses_to_step_fails_with_the_reply_after_three_attempts
         passes(2000);
         if (attempt < 3) {
             polls_to(TMINI_EVENT_NONE);
-            sends(STOP);
-            polls_to(TMINI_EVENT_NONE);
+            polls_and_sends(STOP);
             passes(50);
             polls_to(TMINI_EVENT_NONE);
-            sends(GET_FREQUENCY);
-            polls_to(TMINI_EVENT_NONE);
+            polls_and_sends(GET_FREQUENCY);
             rig_feed_frequency(600);
             polls_to(TMINI_EVENT_NONE);
         }
@@ -897,8 +829,7 @@ void test_a_packet_that_was_cut_off_between_two_steps_does_not_hide_the_next_rep
 void test_the_largest_plausible_frequency_is_reported(void)
 {
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_request_frequency(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(2000);
     polls_to(TMINI_EVENT_FREQUENCY);
     TEST_ASSERT_EQUAL_UINT16(2000, tmini_frequency_chz(&rig.lidar));
@@ -908,8 +839,7 @@ void test_the_largest_plausible_frequency_is_reported(void)
 void test_the_smallest_plausible_frequency_is_reported(void)
 {
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_request_frequency(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(100);
     polls_to(TMINI_EVENT_FREQUENCY);
     TEST_ASSERT_EQUAL_UINT16(100, tmini_frequency_chz(&rig.lidar));
@@ -918,18 +848,15 @@ void test_the_smallest_plausible_frequency_is_reported(void)
 void test_an_absurd_frequency_fails_the_command(void)
 {
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_request_frequency(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(2001);
     fails_with(TMINI_ERROR_REPLY);
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_request_frequency(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(65535);
     fails_with(TMINI_ERROR_REPLY);
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_request_frequency(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(65536 + 600);
     fails_with(TMINI_ERROR_REPLY);
 }
@@ -948,12 +875,10 @@ void test_frequencies_out_of_range_or_between_steps_are_refused_and_nothing_is_s
 void test_both_ends_of_the_frequency_range_are_accepted(void)
 {
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_set_frequency(&rig.lidar, 600));
+    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 600));
     rig_feed_frequency(600);
     arrives_at(600);
-    sends(GET_FREQUENCY);
-    begins(tmini_set_frequency(&rig.lidar, 1200));
+    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 1200));
     rig_feed_frequency(1200);
     arrives_at(1200);
 }
@@ -963,25 +888,20 @@ void test_both_ends_of_the_frequency_range_are_accepted(void)
 void test_that_one_command_was_repeated_does_not_make_the_line_unsure_after_the_next(void)
 {
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     passes(2000);
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_HEALTH);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(GET_HEALTH);
     rig_feed_health(0, 0);
     polls_to(TMINI_EVENT_HEALTH);
     is_in(TMINI_STATE_UNKNOWN);
-    sends(STOP);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(STOP, tmini_request_health(&rig.lidar));
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_HEALTH);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(GET_HEALTH);
     rig_feed_health(0, 0);
     polls_to(TMINI_EVENT_HEALTH);
     is_in(TMINI_STATE_IDLE);
@@ -1012,7 +932,6 @@ void test_it_is_offered_again_even_if_nothing_has_happened_since(void)
     begins(tmini_stop(&rig.lidar));
     sends_rest_taking(STOP, 1);
     polls_to(TMINI_EVENT_NONE);
-    was_sent();
 }
 
 void test_the_wait_for_a_quiet_line_begins_when_the_command_has_left(void)
@@ -1020,8 +939,7 @@ void test_the_wait_for_a_quiet_line_begins_when_the_command_has_left(void)
     sends_both_taking(STOP, 0);
     begins(tmini_stop(&rig.lidar));
     rig.now_ms += 60;
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
 }
@@ -1031,8 +949,7 @@ void test_a_port_that_takes_a_command_at_the_last_moment_has_taken_it(void)
     sends_both_taking(STOP, 0);
     begins(tmini_stop(&rig.lidar));
     rig.now_ms += 150; /* Nobody polled. */
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
 }
@@ -1062,12 +979,10 @@ void test_a_port_that_fails_once_fails_no_command(void)
     sends_both_taking(STOP, -1);
     begins(tmini_request_info(&rig.lidar));
     rig.now_ms += 1;
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_INFO);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(GET_INFO);
     rig_feed_info();
     polls_to(TMINI_EVENT_INFO);
 }
@@ -1133,8 +1048,7 @@ void test_the_first_byte_of_a_command_given_up_serves_for_the_next_one(void)
     polls_to(TMINI_EVENT_COMMAND_FAILED);
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
 }
 
 void test_the_first_byte_serves_for_the_next_command_also_when_the_second_failed(void)
@@ -1151,8 +1065,7 @@ void test_the_first_byte_serves_for_the_next_command_also_when_the_second_failed
 void test_a_stop_that_fails_is_reported_apart_from_the_command_it_aborts(void)
 {
     rig_go_idle();
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     sends_both_taking(STOP, -1);
     begins(tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_COMMAND_FAILED);
@@ -1191,11 +1104,8 @@ void test_the_time_for_a_reply_begins_when_the_command_has_left(void)
     sends_both_taking(GET_INFO, 0);
     begins(tmini_request_info(&rig.lidar));
     rig.now_ms += 90;
-    sends(GET_INFO);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(GET_INFO);
     passes(2000);
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(STOP);
 }

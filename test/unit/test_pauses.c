@@ -203,8 +203,7 @@ void test_before_a_lidar_scans_the_pause_was_before_the_bytes_if_the_line_was_wa
         open_with(30, false);
         rig_go_idle();
         rig.now_ms = 65546;
-        sends(START);
-        begins(tmini_start(&rig.lidar));
+        begins_with(START, tmini_start(&rig.lidar));
         rig.now_ms += unseen_ms;
         rig_feed_scan_reply();
         feed_packets(2, 4);

@@ -74,8 +74,7 @@ void test_a_lost_lidar_is_stopped_and_when_the_line_is_quiet_started(void)
     rig_go_recovering(); /* The stop has been sent. */
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(START);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(START);
     was_sent();
     TEST_ASSERT_EQUAL_UINT16(1, counters().restarts);
 }
@@ -99,9 +98,7 @@ static void pauses_and_stops(uint32_t pause_ms)
 {
     passes(pause_ms);
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(STOP);
 }
 
 /* The line is quiet; this is sent. */
@@ -109,9 +106,7 @@ static void finds_quiet_and_sends(uint8_t code)
 {
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(code);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(code);
 }
 
 static void gets_no_reply(void)
@@ -133,8 +128,7 @@ static void tries_with_a_reboot_in_vain(uint32_t pause_ms)
     finds_quiet_and_sends(REBOOT);
     passes(5000);
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     was_sent();
     finds_quiet_and_sends(START);
     gets_no_reply();
@@ -175,12 +169,10 @@ void test_a_loss_after_a_new_start_begins_at_the_ladders_foot(void)
 {
     rig_go_backing_off();
     tries_in_vain(500);
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
-    sends(START);
-    begins(tmini_start(&rig.lidar));
+    begins_with(START, tmini_start(&rig.lidar));
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
     (void)rig_drain();
@@ -188,7 +180,6 @@ void test_a_loss_after_a_new_start_begins_at_the_ladders_foot(void)
     polls_to(TMINI_EVENT_LOST);
     sends(STOP); /* Without a pause. */
     polls_to(TMINI_EVENT_NONE);
-    was_sent();
 }
 
 void test_a_loss_after_a_whole_turn_begins_at_the_ladders_foot(void)
@@ -202,8 +193,7 @@ void test_a_loss_after_a_whole_turn_begins_at_the_ladders_foot(void)
     (void)rig_drain();
     passes(1000);
     polls_to(TMINI_EVENT_LOST);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     gets_no_reply();
     tries_in_vain(500);
@@ -215,8 +205,7 @@ void test_an_attempt_that_brings_no_whole_turn_has_not_succeeded(void)
     rig_go_scanning();
     passes(1000);
     polls_to(TMINI_EVENT_LOST);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     for (uint32_t pause_ms = 500; pause_ms < 2000; pause_ms *= 2) {
         rig_feed_point_packet(1000);
@@ -258,8 +247,7 @@ void test_a_turn_that_is_not_whole_but_ends_a_fault_does_not_count_as_whole(void
     }
     passes(1000);
     polls_to(TMINI_EVENT_LOST);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     gets_no_reply();
     tries_in_vain(500);
@@ -316,9 +304,7 @@ void test_a_pause_of_a_millisecond_can_be_configured(void)
     rig_go_backing_off();
     rig.now_ms += 1;
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(STOP);
 }
 
 void test_a_start_that_is_acknowledged_but_brings_no_packet_is_a_failed_attempt(void)
@@ -419,9 +405,7 @@ void test_packets_between_the_stop_and_a_quiet_line_are_not_yet_a_recovery(void)
     is_in(TMINI_STATE_RECOVERING);
     TEST_ASSERT_EQUAL_UINT16(0, counters().recoveries);
     polls_to(TMINI_EVENT_NONE);
-    sends(START);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(START);
 }
 
 void test_packets_before_the_reboot_of_the_ladder_are_not_yet_a_recovery(void)
@@ -441,8 +425,7 @@ void test_after_a_recovery_no_scan_continues_one_from_before_the_loss(void)
     (void)rig_drain();
     passes(1000);
     polls_to(TMINI_EVENT_LOST);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     rig_feed_point_packet(1000);
     rig_feed_start_packet(1000);
@@ -457,8 +440,7 @@ void test_a_turn_cut_by_a_loss_is_no_data_fault(void)
     (void)rig_plain_turn_events(0); /* One turn without a range, and most of another. */
     passes(1000);
     polls_to(TMINI_EVENT_LOST);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     rig_feed_point_packet(0);
     rig_feed_start_packet(0);
@@ -477,8 +459,7 @@ void test_a_range_from_before_a_loss_does_not_clear_a_data_fault(void)
     polls_to(TMINI_EVENT_NONE);
     passes(1000);
     polls_to(TMINI_EVENT_LOST);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
+    polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     rig_feed_point_packet(0);
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_RECOVERED), rig_plain_turn_events(1000));
@@ -495,8 +476,7 @@ void test_a_turn_from_before_a_stop_is_not_trusted_after_the_next_start(void)
     rig_feed_turn(TMINI_FAULT_LD, 1000);
     (void)rig_drain();
     rig_go_idle();
-    sends(START);
-    begins(tmini_start(&rig.lidar));
+    begins_with(START, tmini_start(&rig.lidar));
     rig_feed_scan_reply();
     rig_feed_turn(TMINI_FAULT_LD,
                   1000); /* The stray byte before it is the right LastCRC by chance. */
@@ -519,8 +499,7 @@ void test_faults_outlive_a_loss(void)
 void test_stop_ends_the_recovery(void)
 {
     rig_go_backing_off();
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
     passes(60000);
@@ -559,12 +538,10 @@ void test_without_recovery_a_lidar_that_comes_back_by_itself_has_recovered(void)
 void test_without_recovery_stop_and_start_are_the_users(void)
 {
     go_lost_without_recovery();
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
-    sends(START);
-    begins(tmini_start(&rig.lidar));
+    begins_with(START, tmini_start(&rig.lidar));
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
 }
@@ -572,8 +549,7 @@ void test_without_recovery_stop_and_start_are_the_users(void)
 void test_without_recovery_a_start_after_a_loss_starts(void)
 {
     go_lost_without_recovery();
-    sends(STOP);
-    begins(tmini_start(&rig.lidar));
+    begins_with(STOP, tmini_start(&rig.lidar));
     is_in(TMINI_STATE_STARTING);
     begins(tmini_start(&rig.lidar)); /* Under way: once. */
     finds_quiet_and_sends(START);
@@ -586,14 +562,12 @@ void test_without_recovery_a_start_after_a_loss_may_fail_and_be_made_again(void)
 {
     rig.timing.max_attempts = 1;
     go_lost_without_recovery();
-    sends(STOP);
-    begins(tmini_start(&rig.lidar));
+    begins_with(STOP, tmini_start(&rig.lidar));
     finds_quiet_and_sends(START);
     passes(2000);
     polls_to(TMINI_EVENT_COMMAND_FAILED);
     is_in(TMINI_STATE_UNKNOWN);
-    sends(STOP);
-    begins(tmini_start(&rig.lidar));
+    begins_with(STOP, tmini_start(&rig.lidar));
     is_in(TMINI_STATE_STARTING);
 }
 

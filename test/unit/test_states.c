@@ -59,15 +59,13 @@ static void do_nothing(void) {}
 static void go_busy(void)
 {
     rig_go_idle();
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
 }
 
 static void go_stopping(void)
 {
     rig_go_idle();
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
 }
 
 /* Each cell, in the order of the commands, on a lidar of its own. */

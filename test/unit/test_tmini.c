@@ -257,8 +257,7 @@ void test_single_bytes_blocks_and_dma_bring_the_same_packet(void)
 void test_every_byte_is_accounted_for(void)
 {
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_byte(0x11);         /* 1 skipped */
     rig_feed_health(0, 0);       /* 10 in a reply */
     rig_feed_byte(0x22);         /* 1 skipped */
@@ -328,8 +327,7 @@ void test_an_idle_lidar_that_streams_is_reported_and_stopped_again(void)
 void test_a_lidar_that_streams_after_a_query_is_stopped_too(void)
 {
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_health(0, 0);
     polls_to(TMINI_EVENT_HEALTH);
     rig_feed_point_packet(1000);
@@ -379,8 +377,7 @@ static void bytes_are_not_given_up_that_come_at(unsigned reading)
     static const uint8_t rest[] = {0x00, 0x06, 0x00, 0x00, 0x00};
 
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     passes(100);
     polls_with_bytes_at(reading);
     rig_feed(rest, sizeof rest);
@@ -406,8 +403,7 @@ static void feed_health_reply(void)
 void test_a_reply_that_comes_while_the_clock_is_read_leaves_the_lidar_idle(void)
 {
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     polls_to(TMINI_EVENT_NONE);
     readings_left = 2;
     feed_meanwhile = feed_health_reply;
@@ -448,8 +444,7 @@ void test_bytes_that_complete_nothing_are_looked_at_every_10_ms(void)
 
 static void line_is_not_quiet_with_bytes_at(unsigned reading)
 {
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     passes(49);
     polls_with_bytes_at(reading);
     is_in(TMINI_STATE_STOPPING);
@@ -505,9 +500,7 @@ void test_a_command_that_the_port_refuses_is_offered_again_a_millisecond_later(v
     sends_both_taking(GET_HEALTH, -1);
     begins(tmini_request_health(&rig.lidar));
     rig.now_ms += 1;
-    sends(GET_HEALTH);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(GET_HEALTH);
 }
 
 void test_without_a_frame_timeout_a_reply_that_comes_in_two_is_taken_all_the_same(void)
@@ -517,8 +510,7 @@ void test_without_a_frame_timeout_a_reply_that_comes_in_two_is_taken_all_the_sam
 
     rig.timing.frame_timeout_ms = 0;
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed(begin, sizeof begin);
     polls_to(TMINI_EVENT_NONE);
     rig.now_ms += 1;
@@ -532,8 +524,7 @@ void test_without_a_frame_timeout_a_silent_poll_gives_up_a_reply(void)
 
     rig.timing.frame_timeout_ms = 0;
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed(begin, sizeof begin);
     polls_to(TMINI_EVENT_NONE);
     TEST_ASSERT_EQUAL_UINT32(sizeof begin, counters().bytes_pending);
@@ -604,8 +595,7 @@ void test_silence_gives_up_what_hides_a_reply_too(void)
     static const uint8_t header[] = {0xAA, 0x55, 0x00, 0x28, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00};
 
     rig_go_idle();
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     rig_feed(header, sizeof header);
     rig_feed_info();
     passes(100);
@@ -784,8 +774,7 @@ void test_a_stop_does_not_take_back_a_scan_that_waits_after_a_fault(void)
     }
     rig_feed_plain_turn(0);
     polls_to(TMINI_EVENT_FAULTS_CHANGED);
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_UINT16(17, tmini_scan(&rig.lidar)->count);
     passes(50);
@@ -798,8 +787,7 @@ void test_a_new_start_does_not_continue_the_scan_before_the_stop(void)
     feed_turn(700);
     polls_to(TMINI_EVENT_NONE);
     rig_go_idle();
-    sends(START);
-    begins(tmini_start(&rig.lidar));
+    begins_with(START, tmini_start(&rig.lidar));
     rig_feed_scan_reply();
     feed_turn(800);
     polls_to(TMINI_EVENT_STARTED);
@@ -912,14 +900,12 @@ void test_streaming_reports_faults_and_losses_as_well(void)
 void test_the_answer_to_another_question_leaves_the_health_as_it_was_told(void)
 {
     rig_go_idle();
-    sends(GET_HEALTH);
-    begins(tmini_request_health(&rig.lidar));
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_health(2, 0x1234);
     polls_to(TMINI_EVENT_HEALTH);
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(GET_FREQUENCY);
-    begins(tmini_request_frequency(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(600);
     polls_to(TMINI_EVENT_FREQUENCY);
     TEST_ASSERT_EQUAL_HEX8(0x02, tmini_health(&rig.lidar)->faults);
@@ -980,8 +966,7 @@ void test_a_timing_of_ones_own_is_used(void)
     timing.quiet_line_ms = 7;
     rig.config.timing = &timing;
     rig_init();
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     passes(7);
     polls_to(TMINI_EVENT_STOPPED);
 }
@@ -989,8 +974,7 @@ void test_a_timing_of_ones_own_is_used(void)
 void test_a_quiet_line_may_have_to_be_silent_for_longer_than_256_ms(void)
 {
     rig.timing.quiet_line_ms = 300;
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     for (unsigned i = 0; i < 6; i++) {
         polls_to(TMINI_EVENT_NONE);
         rig.now_ms += 50;
@@ -1009,8 +993,7 @@ static void begin_near_the_end(uint32_t ms)
 void test_waiting_for_a_quiet_line_survives_the_clocks_wrap_around(void)
 {
     begin_near_the_end(50);
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     rig_feed_byte(0x00);
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
@@ -1019,29 +1002,23 @@ void test_waiting_for_a_quiet_line_survives_the_clocks_wrap_around(void)
 void test_waiting_for_a_stop_survives_the_clocks_wrap_around(void)
 {
     begin_near_the_end(600);
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     for (unsigned ms = 0; ms < 600; ms += 20) {
         rig_feed_byte(0x00);
         passes(20);
     }
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(STOP);
 }
 
 void test_waiting_for_a_reply_survives_the_clocks_wrap_around(void)
 {
     rig_go_idle();
     begin_near_the_end(2000);
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     passes(2000);
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(STOP);
 }
 
 void test_waiting_for_the_transmitter_survives_the_clocks_wrap_around(void)
@@ -1070,22 +1047,18 @@ void test_waiting_between_steps_survives_the_clocks_wrap_around(void)
 {
     rig_go_idle();
     begin_near_the_end(50);
-    sends(GET_FREQUENCY);
-    begins(tmini_set_frequency(&rig.lidar, 700));
+    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 700));
     rig_feed_frequency(600);
     passes(50);
     polls_to(TMINI_EVENT_NONE);
-    sends(FASTER_ONE);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(FASTER_ONE);
 }
 
 void test_waiting_for_a_reboot_survives_the_clocks_wrap_around(void)
 {
     rig_go_idle();
     begin_near_the_end(5000);
-    sends(REBOOT);
-    begins(tmini_reboot(&rig.lidar));
+    begins_with(REBOOT, tmini_reboot(&rig.lidar));
     passes(5000);
     polls_to(TMINI_EVENT_REBOOTED);
 }
@@ -1108,9 +1081,7 @@ void test_the_pause_between_attempts_survives_the_clocks_wrap_around(void)
     rig_go_backing_off();
     passes(500);
     polls_to(TMINI_EVENT_NONE);
-    sends(STOP);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(STOP);
 }
 
 void test_silence_survives_the_clocks_wrap_around(void)
@@ -1240,8 +1211,7 @@ void test_a_command_drops_the_end_of_the_one_before_and_nothing_else(void)
 {
     rig_go_idle();
     rig.lidar.pending = 0x3FFE;
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     TEST_ASSERT_EQUAL_HEX16(0x3F00, rig.lidar.pending);
 }
 

@@ -37,9 +37,7 @@ static void want(uint16_t frequency_chz)
 
 static void goes_on_with(uint8_t code)
 {
-    sends(code);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
+    polls_and_sends(code);
 }
 
 static void becomes_quiet(void)
@@ -51,8 +49,7 @@ static void becomes_quiet(void)
 /* The stop has been sent; the question is, after the quiet time. */
 static void asks_for_the_frequency(void)
 {
-    sends(STOP);
-    begins(tmini_start(&rig.lidar));
+    begins_with(STOP, tmini_start(&rig.lidar));
     becomes_quiet();
     goes_on_with(GET_FREQUENCY);
 }
@@ -159,21 +156,18 @@ void test_after_a_loss_the_frequency_is_not_known_and_asked_for_again(void)
 void test_a_reboot_leaves_the_frequency_unknown(void)
 {
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_request_frequency(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(800);
     polls_to(TMINI_EVENT_FREQUENCY);
     TEST_ASSERT_EQUAL_UINT16(800, tmini_frequency_chz(&rig.lidar));
-    sends(REBOOT);
-    begins(tmini_reboot(&rig.lidar));
+    begins_with(REBOOT, tmini_reboot(&rig.lidar));
     TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
 }
 
 void test_a_wish_during_a_query_is_kept_for_the_start_that_follows(void)
 {
     rig_go_idle();
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     begins(tmini_set_frequency(&rig.lidar, 900));
     begins(tmini_start(&rig.lidar));
     is_in(TMINI_STATE_BUSY);
@@ -186,8 +180,7 @@ void test_a_wish_during_a_query_is_kept_for_the_start_that_follows(void)
 void test_a_start_follows_a_stop_that_is_under_way(void)
 {
     rig_go_idle();
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     begins(tmini_start(&rig.lidar));
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
@@ -198,11 +191,9 @@ void test_a_start_follows_a_stop_that_is_under_way(void)
 void test_a_stop_takes_back_the_start_that_was_to_follow(void)
 {
     rig_go_idle();
-    sends(GET_INFO);
-    begins(tmini_request_info(&rig.lidar));
+    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     begins(tmini_start(&rig.lidar));
-    sends(STOP);
-    begins(tmini_stop(&rig.lidar));
+    begins_with(STOP, tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_COMMAND_FAILED);
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
@@ -226,8 +217,7 @@ void test_the_same_wish_again_disturbs_no_scan(void)
 void test_a_new_wish_while_recovering_still_ends_with_recovered(void)
 {
     rig_go_recovering();
-    sends(STOP);
-    begins(tmini_set_frequency(&rig.lidar, 900));
+    begins_with(STOP, tmini_set_frequency(&rig.lidar, 900));
     is_in(TMINI_STATE_RECOVERING);
     becomes_quiet();
     goes_on_with(GET_FREQUENCY);
@@ -255,8 +245,7 @@ void test_a_new_wish_after_a_pause_of_polls_awaits_a_quiet_line(void)
 {
     rig_go_scanning();
     rig.now_ms += 60;
-    sends(STOP);
-    begins(tmini_set_frequency(&rig.lidar, 700));
+    begins_with(STOP, tmini_set_frequency(&rig.lidar, 700));
     becomes_quiet();
     goes_on_with(GET_FREQUENCY);
 }
@@ -352,8 +341,7 @@ void test_what_was_off_before_a_stop_does_not_count_after_it(void)
     scans_wishing(1000);
     turns(17, 60);
     rig_go_idle();
-    sends(GET_FREQUENCY);
-    begins(tmini_start(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
     rig_feed_frequency(1000);
     polls_to(TMINI_EVENT_FREQUENCY);
     goes_on_with(START);
@@ -403,8 +391,7 @@ void test_another_wish_of_an_idle_lidar_clears_the_fault_as_well(void)
     turns(300, 60);
     (void)rig_drain();
     rig.lidar.state = TMINI_STATE_IDLE;
-    sends(GET_FREQUENCY);
-    begins(tmini_set_frequency(&rig.lidar, 800));
+    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 800));
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
     polls_to(TMINI_EVENT_FAULTS_CHANGED);
 }
@@ -499,8 +486,7 @@ void test_without_recovery_a_start_fails_once_after_all_its_attempts(void)
     polls_to(TMINI_EVENT_COMMAND_FAILED);
     is_in(TMINI_STATE_UNKNOWN);
     passes(60000);
-    sends(STOP);
-    begins(tmini_start(&rig.lidar));
+    begins_with(STOP, tmini_start(&rig.lidar));
     is_in(TMINI_STATE_STARTING);
 }
 
