@@ -8,7 +8,7 @@
  *
  *     void setup() {
  *         lidar.begin(Serial1, 10);        // 10 Hz. ESP32, own pins: begin(Serial1, 26, 27, 10)
- *         lidar.start();                   // stands until stop()
+ *         lidar.start();                   // holds until stop()
  *     }
  *     void loop() {
  *         while (lidar.loop()) {           // as long as something happens

@@ -18,7 +18,7 @@
  *     {
  *         if (!device_is_ready(lidar)) { halt(); }
  *         tmini_zephyr_device_callback_set(lidar, on_event, NULL);
- *         tmini_zephyr_device_start(lidar);       stands until tmini_zephyr_device_stop()
+ *         tmini_zephyr_device_start(lidar);       holds until tmini_zephyr_device_stop()
  *         …
  *
  * The callback runs in the device's thread. There every function of tmini.h may be called with

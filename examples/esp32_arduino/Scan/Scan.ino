@@ -136,7 +136,7 @@ void setup()
     lidar.begin(Serial1);
 #endif
     lidar.requestInfo();
-    lidar.start(); /* After the answer; stands until stop(). */
+    lidar.start(); /* After the answer; holds until stop(). */
 }
 
 void loop()

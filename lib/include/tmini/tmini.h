@@ -15,7 +15,7 @@
  *     };
  *
  *     if (tmini_init(&lidar, &config) != TMINI_OK) { halt(); }
- *     tmini_start(&lidar);                   stands until tmini_stop()
+ *     tmini_start(&lidar);                   holds until tmini_stop()
  *     for (;;) {
  *         switch (tmini_poll(&lidar)) {
  *         case TMINI_EVENT_SCAN: avoid_obstacles(tmini_scan(&lidar)); break;
