@@ -174,7 +174,10 @@ static uint16_t known_after(size_t count, uint8_t last_crc)
 void test_a_field_is_known_when_the_packet_that_completes_it_has_come(void)
 {
     TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION, known_after(2, 0x42));
+    TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION, known_after(3, 0x25));
+    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&ct_state));
     TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS, known_after(4, 0x5E));
+    TEST_ASSERT_EQUAL_UINT(TMINI_FAULT_ENCODER | TMINI_FAULT_LD, tmini_ct_faults(&ct_state));
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER | TMINI_FAULT_LD, info.faults);
     TEST_ASSERT_EQUAL_UINT8(0, info.hardware);
     TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE |
@@ -500,4 +503,7 @@ void test_a_revolution_with_a_gap_is_not_refuted_by_last_crc(void)
     (void)add(0x79, 0, 0);
     (void)add(0x40, 3, 0);
     TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0x00));
+    (void)add(0x40, 0, 0);
+    (void)add(0x34, 3, 0);
+    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0x42)); /* Of 79 and 40 alone. */
 }

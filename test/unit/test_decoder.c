@@ -66,10 +66,15 @@ void test_the_packet_that_ends_a_scan_begins_the_next_at_its_own_time(void)
     rest_of_turn(70000);
     TEST_ASSERT_TRUE(come(0, 70100, 0));
     TEST_ASSERT_TRUE(scan->complete);
+    decoder.builder.scan.upside_down = true; /* As tmini_mount_step() leaves it. */
     rest_of_turn(70100);
     TEST_ASSERT_EQUAL_UINT32(70100, scan->start_ms);
     TEST_ASSERT_TRUE(come(0, 70200, 0));
     TEST_ASSERT_TRUE(scan->complete);
+    TEST_ASSERT_FALSE(scan->upside_down);
+    tmini_decoder_restart(&decoder); /* Then it begins none. */
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, tmini_decoder_next(&decoder, 0));
+    TEST_ASSERT_FALSE(decoder.builder.open);
 }
 
 /* One and a half turns are 150 ms. */

@@ -232,6 +232,23 @@ void test_more_than_256_points_are_mounted_and_more_than_256_arcs_masked(void)
     is_point(256, 91 * DEGREE, 1000);
 }
 
+/* Too much for a small machine. */
+void test_65537_arcs_are_masked(void)
+{
+#if defined(__linux__)
+    static tmini_arc_t arcs[65537];
+    const tmini_mount_t mount = {.min_mm = 300, .masked = arcs, .masked_count = 65537};
+    arcs[65536] = (tmini_arc_t){90, 90};
+    add(90 * DEGREE, 1000);
+    add(91 * DEGREE, 300);
+    add(92 * DEGREE, 299);
+    apply(&mount);
+    is_point(0, 90 * DEGREE, 0);
+    is_point(1, 91 * DEGREE, 300);
+    is_point(2, 92 * DEGREE, 0);
+#endif
+}
+
 void test_no_points_and_no_mount_change_nothing(void)
 {
     static const tmini_mount_t mount = {.front_deg = 1};

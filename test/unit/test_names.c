@@ -43,6 +43,9 @@ void test_any_other_value_has_a_name_too(void)
 {
     TEST_ASSERT_EQUAL_STRING("unknown status", tmini_status_name((tmini_status_t)1));
     TEST_ASSERT_EQUAL_STRING("unknown status", tmini_status_name((tmini_status_t)-9));
+    if (sizeof(tmini_status_t) > 2) {
+        TEST_ASSERT_EQUAL_STRING("unknown status", tmini_status_name((tmini_status_t)-65536));
+    }
 }
 
 /* Fewer than two are equal, and none is the name of what is no event or state. */
@@ -103,6 +106,9 @@ static void faults_read(uint8_t faults, const char *expected)
 {
     char text[TMINI_FAULTS_TEXT_SIZE];
     TEST_ASSERT_EQUAL_PTR(text, tmini_faults_text(faults, text, sizeof text));
+    TEST_ASSERT_EQUAL_STRING(expected, text);
+    text[0] = '\0';
+    (void)tmini_faults_text(faults, text, SIZE_MAX / 2 + 1); /* A size whose low bits are 0. */
     TEST_ASSERT_EQUAL_STRING(expected, text);
 }
 

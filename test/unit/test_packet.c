@@ -462,6 +462,16 @@ void test_intensity_and_flag_alone_are_no_range(void)
     TEST_ASSERT_FALSE(has_range_with(0, 0, 0));
 }
 
+void test_no_sample_of_the_longest_packet_is_taken_for_another(void)
+{
+    const encode_packet_t packet = {0, 255, 0, 300, NULL};
+    encode_packet_header(bytes, &packet);
+    memset(&bytes[10], 0, 765);
+    encode_seal(bytes);
+    open_packet(bytes, 775);
+    TEST_ASSERT_FALSE(tmini_packet_has_range(&receiver.packet));
+}
+
 void test_what_follows_the_packet_is_no_range_of_it(void)
 {
     const encode_packet_t packet = {0, 1, 0, 0, NULL};

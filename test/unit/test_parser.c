@@ -1086,6 +1086,29 @@ void test_an_abandoned_reply_is_searched_too(void)
     expect_packet(1, 9);
 }
 
+/* A header that announces 100 samples, 310 bytes. */
+static void feed_256_bytes_of_310(void)
+{
+    receiver_open(&receiver, memory, 512, 100);
+    memset(bytes, 0, 256);
+    memcpy(bytes, manual_packet, 10);
+    bytes[3] = 100;
+    feed(bytes, 256);
+    expect_nothing();
+    expect_pending(256);
+}
+
+void test_256_bytes_can_be_abandoned_or_lose_their_rest(void)
+{
+    feed_256_bytes_of_310();
+    receiver_abandon(&receiver);
+    expect_skipped(256);
+    feed_256_bytes_of_310();
+    tmini_ring_gap(&receiver.ring);
+    expect_nothing();
+    expect_skipped(256);
+}
+
 void test_a_lone_first_byte_can_be_abandoned(void)
 {
     feed_byte(0xAA);
@@ -1354,7 +1377,7 @@ void test_after_a_lap_reported_by_mistake_nothing_is_found_twice(void)
     memset(bytes, 0, 300);
     memcpy(bytes, start_packet, 13);
     memcpy(&bytes[187], start_packet, 13);
-    feed(bytes, 200);
+    feed(bytes, 201);
     lap_was_perhaps_missed();
     expect_packet(1, 1024 + 13);
     TEST_ASSERT_EQUAL_UINT16(65535, receiver.packet.gap);
@@ -1429,6 +1452,9 @@ void test_all_that_has_come_is_skipped_without_a_look(void)
     feed(manual_packet, 67);
     expect_packet(19, 14);
     TEST_ASSERT_EQUAL_UINT16(14, receiver.packet.gap);
+    feed_byte(0xAA);
+    tmini_parser_skip_all(&receiver.parser);
+    expect_pending(0);
 }
 
 void test_a_frame_delivered_is_not_skipped(void)
@@ -1438,4 +1464,69 @@ void test_a_frame_delivered_is_not_skipped(void)
     tmini_parser_skip_all(&receiver.parser);
     expect_skipped(0);
     expect_nothing();
+}
+
+/* -------------------------------------------------------------------------------- large rings */
+
+#if SIZE_MAX > 65535 /* Else an index cannot count as far. */
+
+static tmini_ring_t large;
+static tmini_parser_t parser;
+
+/* A ring of 128 KiB with this many bytes unread; those from `place` on are `memory`, of which only
+ * the first are looked at. */
+static void open_large(bool dma, size_t place, size_t unread)
+{
+    uint8_t *const first = (uint8_t *)((uintptr_t)memory - place);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&large, first, 131072, dma));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_parser_init(&parser, &large, 0));
+    large.head = unread;
+}
+
+static void goes_on(size_t effort, tmini_frame_type_t expected, size_t pending)
+{
+    TEST_ASSERT_EQUAL_INT(expected, tmini_parser_next_after(&parser, effort));
+    TEST_ASSERT_EQUAL_UINT(pending, tmini_parser_pending(&parser));
+}
+
+static uint32_t overrun(void)
+{
+    tmini_parser_counters_t counters;
+    tmini_parser_counters(&parser, &counters);
+    return counters.bytes_overrun;
+}
+
+#endif
+
+void test_65536_unread_bytes_are_not_taken_for_none(void)
+{
+#if SIZE_MAX > 65535
+    memcpy(memory, start_packet, 13);
+    open_large(false, 0, 65536);
+    goes_on(0, TMINI_FRAME_PACKET, 65523);
+    memset(memory, 0, 13);
+    open_large(false, 0, 65536); /* 1000 bytes may be looked at. */
+    goes_on(TMINI_PARSER_EFFORT - 1000, TMINI_FRAME_MORE, 64536);
+    open_large(false, 65535, 65536);
+    tmini_parser_skip_all(&parser);
+    TEST_ASSERT_EQUAL_UINT(0, tmini_parser_pending(&parser));
+    memory[0] = 0xAA;
+    open_large(false, 0, 1);
+    goes_on(0, TMINI_FRAME_NONE, 1);
+    large.head = 65537;
+    TEST_ASSERT_FALSE(tmini_parser_abandon(&parser));
+#endif
+}
+
+void test_what_dma_has_overwritten_of_128_kib_is_counted(void)
+{
+#if SIZE_MAX > 65535
+    memcpy(&memory[10], start_packet, 13);
+    open_large(true, 0, 65546);
+    goes_on(0, TMINI_FRAME_PACKET, 65523);
+    TEST_ASSERT_EQUAL_UINT32(10, overrun());
+    open_large(true, 0, 131072 + 23);
+    goes_on(0, TMINI_FRAME_PACKET, 0);
+    TEST_ASSERT_EQUAL_UINT32(131072, overrun());
+#endif
 }

@@ -119,6 +119,8 @@ static void expect_refusal(void)
 void test_a_ring_that_was_not_initialised_refuses_every_byte(void)
 {
     ring = (tmini_ring_t){0};
+    tmini_ring_publish(&ring, 3);
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
     expect_refusal();
 }
 
@@ -294,6 +296,8 @@ void test_the_part_of_a_block_that_does_not_fit_is_refused_and_counted(void)
     tmini_ring_write(&ring, letters, 4);
     expect_unread("cdefghijklmnopqr");
     TEST_ASSERT_EQUAL_UINT(7, tmini_ring_overrun(&ring));
+    tmini_ring_write(&ring, letters, SIZE_MAX / 2); /* Closed: none of them is read. */
+    TEST_ASSERT_EQUAL_UINT(SIZE_MAX / 2 + 7, tmini_ring_overrun(&ring));
 }
 
 void test_a_block_larger_than_the_ring_is_cut(void)
@@ -606,4 +610,56 @@ void test_of_unread_bytes_in_two_pieces_the_first_piece_comes_first(void)
     count = 5;
     TEST_ASSERT_EQUAL_PTR(&memory[0], tmini_ring_piece(&ring, 11, &count));
     TEST_ASSERT_EQUAL_UINT(5, count);
+}
+
+/* -------------------------------------------------------------------------------- large rings */
+
+/* A ring of this size, of which only the 16 bytes from this place on have memory. */
+static void use_large(size_t size, size_t place)
+{
+    uint8_t *const first = (uint8_t *)((uintptr_t)memory - place);
+    memset(memory, GUARD, SIZE);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, first, size, false));
+    age(place);
+}
+
+static void bytes_are_right_at(size_t size, size_t place)
+{
+    uint8_t copy[5] = {0};
+    size_t count = size;
+    use_large(size, place);
+    TEST_ASSERT_EQUAL_UINT(3, tmini_ring_write(&ring, letters, 3));
+    put_letters(3, 2);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY("abcde", memory, 5);
+    expect_unread("abcde");
+    tmini_ring_copy(&ring, 0, copy, 5);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY("abcde", copy, 5);
+    TEST_ASSERT_EQUAL_PTR(memory, tmini_ring_piece(&ring, 0, &count));
+    TEST_ASSERT_EQUAL_UINT(size - place, count);
+    use_large(size, place);
+    ring.tail = place + 1 - size; /* Room for one. */
+    put_letters(0, 2);
+    TEST_ASSERT_EQUAL_UINT(1, tmini_ring_overrun(&ring));
+}
+
+void test_places_beyond_8_and_16_bits_are_not_cut(void)
+{
+    bytes_are_right_at(512, 256);
+#if SIZE_MAX > 65535
+    bytes_are_right_at(131072, 65536);
+#endif
+}
+
+/* Too much for a small machine. */
+void test_a_block_of_more_than_65536_bytes_is_stored_whole(void)
+{
+#if defined(__linux__)
+    static uint8_t large[131072];
+    static uint8_t block[65540];
+    block[65539] = 'z';
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, large, sizeof large, false));
+    TEST_ASSERT_EQUAL_UINT(65540, tmini_ring_write(&ring, block, 65540));
+    TEST_ASSERT_EQUAL_UINT(65540, tmini_ring_unread(&ring));
+    TEST_ASSERT_EQUAL_INT('z', large[65539]);
+#endif
 }

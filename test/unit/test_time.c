@@ -146,11 +146,13 @@ void test_a_late_point_less_than_4_degrees_beyond_the_circle_is_a_turn_later(voi
     is_at(3, 101106);
 }
 
-/* The first point but one is away from the first. */
+/* The first point but one is away from the first: exactly 4 degrees are enough. */
 void test_the_third_of_three_points_may_be_a_turn_later(void)
 {
     has_angles(10, 90 * DEGREE, 16, 0);
     is_at(2, 100026);
+    has_angles(0, 356 * DEGREE, 1 * DEGREE, 0);
+    is_at(2, 100277);
 }
 
 /* A turn of 128.5 ms, taken as 16 times 8031 us; the last point is 5 / 23040 beyond it. */
@@ -164,6 +166,10 @@ void test_late_points_beyond_256_are_a_turn_later(void)
     points[512].angle_q6 = 0;
     points[513].angle_q6 = 5;
     is_at(512, 128496);
+    is_at(513, 128523);
+    for (uint16_t i = 1; i < 256; i++) {
+        points[i].angle_q6 = 0; /* However many are early. */
+    }
     is_at(513, 128523);
 }
 
