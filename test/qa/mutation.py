@@ -17,7 +17,7 @@ killed the most in the time they take. One that computes much longer than it sho
 noticed. A mutant that lives, but whose optimised machine code is that of the original, is none.
 
 A mutant that no test notices is a finding, unless test/qa/mutants.txt has it with the reason why nobody can;
-and so is an entry there of a mutant that there no longer is.
+and so is an entry there of a mutant that there no longer is, or, without --sample, that a test does notice.
 """
 
 import argparse
@@ -94,6 +94,24 @@ def function_at(lines, line):
     return "-"
 
 
+def change_of(old, begin, end, replacement):
+    """What is put in the place of what, with the operands around it, so that an entry names one place."""
+    if replacement == ";":
+        return f"{' '.join(old[begin:end].split('(')[0].split('=')[0].split())} removed"
+    words = [match.span() for match in re.finditer(r"\S+", old)]
+    last = next(i for i, span in enumerate(words) if span[1] >= end)
+    first = max(i for i, span in enumerate(words) if span[0] <= begin)
+    is_word = lambda i: re.search(r"\w", old[slice(*words[i])])
+    if not re.match(r"u?int|size_t|unsigned", old[begin:]): # Before a type stands nothing that matters.
+        while first > 0 and not is_word(first := first - 1):
+            pass
+    while last + 1 < len(words) and not is_word(last := last + 1):
+        pass
+    left = re.sub(r"^.*\((?=[^()]*$)", "", old[words[first][0]:begin])
+    right = re.sub(r"[;,){\s]*(?:/\*.*)?$", "", old[end:words[last][1]])
+    return f"{left}{old[begin:end]}{right} -> {left}{replacement}{right}"
+
+
 class Mutant:
     def __init__(self, path, line, begin, end, replacement, lines):
         self.path, self.line = path, line
@@ -102,9 +120,8 @@ class Mutant:
         new = old[:begin] + replacement + old[end:]
         self.after = new.strip()
         self.text = "\n".join(lines[:line] + [new] + lines[line + 1:])
-        change = (f"{old[begin:end].strip()} -> {replacement.strip()}" if replacement != ";" else
-                  f"{' '.join(old[begin:end].split('(')[0].split('=')[0].split())} removed")
-        self.key = f"{path} | {function_at(lines, line)} | {change}"
+        self.function = function_at(lines, line)
+        self.key = f"{path} | {self.function} | {change_of(old, begin, end, replacement)}"
         self.id = hashlib.sha256(f"{path}\n{self.text}".encode()).hexdigest()[:16]
 
     def __str__(self):
@@ -246,6 +263,7 @@ class Bench:
     def __init__(self, build, work):
         self.build, self.work = Build(build), work
         self.tests, self.originals = {}, {}
+        self.compiler, self.original_library = None, None # For headers.
 
     def tests_of(self, path):
         if path not in self.tests:
@@ -327,67 +345,105 @@ class Bench:
         status = self.run(test, shared)
         return status == 0 or status > 0 and self.run(test, shared) == 0
 
-    # A public header is part of the library and of the tests: both are compiled anew with it.
-
-    def headers(self):
-        """The public headers, as links, of which one is about to be changed."""
-        folder = os.path.join(self.work, PUBLIC)
-        if not os.path.isdir(folder):
-            shutil.copytree(os.path.join(ROOT, PUBLIC), folder)
-        return folder
+    # A public header is part of the library and of the tests: what is compiled differently with it is made anew.
 
     def with_headers(self, entry):
-        compiler, *flags = arguments_of(entry)
+        """The command line that takes the public headers from the folder of copies, of which one is changed."""
+        folder = os.path.join(self.work, PUBLIC)
         original = os.path.realpath(os.path.join(ROOT, PUBLIC))
-        return [compiler] + [f"-I{self.headers()}" if word[:2] == "-I" and os.path.realpath(word[2:]) == original else
-                             word for word in flags]
+        return [f"-I{folder}" if word[:2] == "-I" and os.path.realpath(word[2:]) == original else word
+                for word in arguments_of(entry)]
 
-    def compile_all(self, entries, target, *options):
-        """Programs and libraries are linked at once. False if that fails."""
+    def object_with(self, arguments, entry, option, folder):
+        """None if that is not C."""
+        target = os.path.join(self.work, folder, option, hashlib.sha256(object_of(entry).encode()).hexdigest() + ".o")
         os.makedirs(os.path.dirname(target), exist_ok=True)
-        sources = [os.path.realpath(entry["file"]) for entry in entries]
-        return subprocess.run([*self.with_headers(entries[0]), *sources, *options, "-o", target], check=False,
-                              cwd=entries[0]["directory"], stderr=subprocess.DEVNULL).returncode == 0
+        done = subprocess.run([*arguments, option, "-fPIC", "-c", os.path.realpath(entry["file"]), "-o", target],
+                              cwd=entry["directory"], stderr=subprocess.DEVNULL, check=False)
+        return target if done.returncode == 0 else None
 
-    def compile_library(self, *options):
-        library = os.path.join(self.build.folder, "lib", "")
-        entries = [entry for obj, entry in self.build.entry_of.items() if obj.startswith(library)]
-        target = os.path.join(self.work, "anew", "mutant.so")
-        return target if self.compile_all(entries, target, *options, "-fPIC", "-shared") else None
+    def headers_of(self, entry):
+        """The names of the public headers that a source includes, by whatever way."""
+        rule = subprocess.run([*arguments_of(entry), "-MM", os.path.realpath(entry["file"])], check=True,
+                              cwd=entry["directory"], capture_output=True, text=True).stdout
+        return {os.path.basename(word) for word in rule.split() if PUBLIC in word}
 
-    def compile_test(self, test, library, *options):
-        """With what the test support has of the library's headers, too; None if it is not C any more."""
-        test.program = os.path.join(self.work, "anew", test.name)
-        own = [self.build.entry_of[obj] for obj in objects_of(test.folder)]
-        support = [entry for entry in self.build.entries if entry["file"].endswith("/test/support/receiver.c")]
-        return test.program if self.compile_all(own + support, test.program, *options, library, "-Wl,--start-group",
-                                                *self.build.archives, "-Wl,--end-group", "-lm") else None
+    def made_anew(self, header, entry, option="-O0"):
+        """The object with the changed header, None if that is not C; and whether it is another one."""
+        key = (object_of(entry), option)
+        if key not in self.originals:
+            original = self.object_with(arguments_of(entry), entry, option, "original")
+            self.originals[key] = original, pathlib.Path(original).read_bytes(), self.headers_of(entry)
+        original, code, headers = self.originals[key]
+        if os.path.basename(header) not in headers:
+            return original, False
+        target = self.object_with(self.with_headers(entry), entry, option, "anew")
+        return target, target is None or pathlib.Path(target).read_bytes() != code
 
-    def code_with(self, tests):
-        """The machine code of everything, optimised."""
-        library = self.compile_library("-O2")
-        programs = [library] + sorted(self.compile_test(test, library, "-O2") for test in tests)
-        return [pathlib.Path(program).read_bytes() for program in programs]
+    def link_anew(self, test, objects, library):
+        test.program = os.path.join(os.path.dirname(library), test.name)
+        subprocess.run([test.compiler, "-o", test.program, *objects, library, "-Wl,--start-group",
+                        *self.build.archives, "-Wl,--end-group", "-lm"], check=True)
+
+    def library_anew(self, header):
+        """None if it is not C any more; and what of it is compiled differently."""
+        folder = os.path.join(self.build.folder, "lib", "")
+        library = os.path.join(self.work, "anew", "mutant.so")
+        objects, different = [], []
+        for entry in (entry for obj, entry in self.build.entry_of.items() if obj.startswith(folder)):
+            target, is_other = self.made_anew(header, entry)
+            if target is None:
+                return None, []
+            objects.append(target)
+            different += [entry] if is_other else []
+        os.makedirs(os.path.dirname(library), exist_ok=True)
+        subprocess.run([self.compiler, "-shared", *objects, "-o", library], check=True)
+        return library, different
+
+    def try_header(self, header, tests, library, is_other_library):
+        """The fate, and what of the tests is compiled differently."""
+        different = []
+        for test in tests:
+            own = [self.build.entry_of[obj] for obj in objects_of(test.folder)]
+            own += [entry for entry in self.build.entries if entry["file"].endswith("/test/support/receiver.c")]
+            made = [self.made_anew(header, entry) for entry in own]
+            if any(target is None for target, _ in made):
+                return "not C", []
+            different += [entry for entry, (_, is_other) in zip(own, made) if is_other]
+            if is_other_library or any(is_other for _, is_other in made):
+                self.link_anew(test, [target for target, _ in made], library)
+                if not self.passes(test, library):
+                    test.kills += 1
+                    return "killed by " + test.name, []
+        return "survived", different
+
+    def begin_headers(self, tests):
+        """Makes the library as it is, and sees that the tests pass."""
+        self.compiler = tests[0].compiler
+        shutil.copytree(os.path.join(ROOT, PUBLIC), os.path.join(self.work, PUBLIC))
+        self.original_library = shutil.copy(self.library_anew("")[0], os.path.join(self.work, "original.so"))
+        if self.try_header("", tests, self.original_library, True)[0] != "survived":
+            raise Unable("a test fails without any mutant")
 
     def fate_of_header(self, mutant):
+        """What is inline in a header is looked at first where tests call it themselves."""
         tests = sorted(self.tests_of("lib/src/tmini_ring.c"), key=lambda test: test.promise(mutant.path))
-        if "headers" not in self.originals:
-            self.originals["headers"] = self.code_with(tests)
-            for test in tests:
-                if not self.passes(test, os.path.join(self.work, "anew", "mutant.so")):
-                    raise Unable(f"{test.name} fails without any mutant")
+        if not self.original_library:
+            self.begin_headers(tests)
         changed = os.path.join(self.work, mutant.path)
-        with open(changed, "w", encoding="utf-8") as file:
-            file.write(mutant.text)
+        pathlib.Path(changed).write_text(mutant.text, encoding="utf-8")
         try:
-            library = self.compile_library("-O0")
+            if mutant.function != "-":
+                near = [test for test in tests if not test.promise(mutant.path)[0]]
+                fate, _ = self.try_header(mutant.path, near, self.original_library, False)
+                if fate != "survived":
+                    return fate
+            library, different = self.library_anew(mutant.path)
             if library is None:
                 return "not C"
-            for test in tests:
-                if self.compile_test(test, library, "-O0") is None or not self.passes(test, library):
-                    test.kills += 1
-                    return "killed by " + test.name
-            return "the same code" if self.code_with(tests) == self.originals["headers"] else "survived"
+            fate, different_tests = self.try_header(mutant.path, tests, library, different != [])
+            is_other = any(self.made_anew(mutant.path, entry, "-O2")[1] for entry in different + different_tests)
+            return fate if is_other or fate != "survived" else "the same code"
         finally:
             shutil.copy(os.path.join(ROOT, mutant.path), changed)
 
@@ -477,12 +533,15 @@ def files_among(names):
 
 
 def try_mutants(mutants, wanted, pool, results, known):
-    """Counts fates until this many mutants that can be noticed have been tried; returns also the survivors."""
-    counts = collections.Counter()
+    """Counts fates until this many mutants that can be noticed have been tried; returns how many survived, and the
+    entries of mutants that did."""
+    counts, needed = collections.Counter(), set()
     tried = lambda: counts["killed"] + counts["survived"] + counts["equivalent"]
     remaining = iter(mutants)
     while batch := list(itertools.islice(remaining, wanted - tried())):
         for mutant, fate in results.of(batch, pool):
+            if mutant.key in known and fate in ("survived", "the same code"):
+                needed.add(mutant.key)
             if fate == "survived" and mutant.key in known:
                 fate = "equivalent"
             if fate == "survived":
@@ -491,7 +550,7 @@ def try_mutants(mutants, wanted, pool, results, known):
     print(f"{tried()} mutants: {counts['killed']} killed, {counts['equivalent']} known to be equivalent, "
           f"{counts['survived']} survived; besides {counts['the same code']} of the same machine code and "
           f"{counts['not C']} that do not compile")
-    return counts["survived"]
+    return counts["survived"], needed
 
 
 def main():
@@ -517,11 +576,16 @@ def main():
         return
     known = known_survivors()
     stale = outdated(known)
-    print(*(f"in {KNOWN}, but no mutant any more: {key}" for key in stale), sep="\n", end="\n" if stale else "")
+    for key in stale:
+        print(f"in {KNOWN}, but no mutant any more: {key}")
     with tempfile.TemporaryDirectory() as work, \
             multiprocessing.Pool(arguments.jobs, begin_worker, (arguments.build, work)) as pool:
-        survivors = try_mutants(mutants, arguments.sample or len(mutants), pool, Results(arguments.results), known)
-    sys.exit(1 if survivors or stale else 0)
+        survivors, needed = try_mutants(mutants, arguments.sample or len(mutants), pool, Results(arguments.results),
+                                        known)
+    noticed = [] if arguments.sample else sorted({mutant.key for mutant in mutants} & known.keys() - needed)
+    for key in noticed:
+        print(f"in {KNOWN}, but a test notices it: {key}")
+    sys.exit(1 if survivors or stale or noticed else 0)
 
 
 if __name__ == "__main__":
