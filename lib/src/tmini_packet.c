@@ -8,10 +8,11 @@
 /* Sample i lies at first + round(i * diff / (count - 1)). `step` is diff / (count - 1) with 17
  * fraction bits, rounded up, and HALF rounds to nearest, halves up. That is exact: after at most
  * 254 steps the rounding up amounts to less than 254 / 2^17 < 1 / (2 * 254), and an exact value
- * that is not yet at the next rounding boundary is at least 1 / (2 * (count - 1)) below it. It
- * cannot overflow: i * diff / (count - 1) <= diff < 23040 < 2^15. */
+ * that is not yet at the next rounding boundary is at least 1 / (2 * (count - 1)) below it. Angles
+ * are counted modulo 2^15, more than a full circle: so they fit in a word with their fraction. */
 #define STEP_BITS 17
 #define HALF ((uint32_t)1 << (STEP_BITS - 1))
+#define ANGLES ((uint32_t)1 << (32 - STEP_BITS))
 
 /* FSA or LSA: bit 0 is the check bit. The field allows up to 511 degrees; 360 is 0. */
 static uint16_t angle_of(const uint8_t *field)
@@ -53,22 +54,27 @@ static inline void set_point(tmini_point_t *point, uint32_t angle_q6, const uint
 TMINI_NOINLINE static void decode(const tmini_packet_t *packet, size_t index, const uint8_t *sample,
                                   size_t count, tmini_point_t *point)
 {
-    const uint32_t first_angle = packet->first_angle_q6;
     const uint32_t step = packet->step;
-    uint32_t turned = HALF + (uint32_t)index * step;
+    uint32_t angle =
+        ((uint32_t)packet->first_angle_q6 << STEP_BITS) + HALF + (uint32_t)index * step;
     TMINI_UNROLL
     do {
-        set_point(point++, first_angle + (turned >> STEP_BITS), sample);
+        set_point(point++, angle >> STEP_BITS, sample);
         sample += TMINI_SAMPLE_SIZE;
-        turned += step;
+        angle += step;
     } while (--count > 0);
 }
 
-static void wrap(tmini_point_t *points, size_t count)
+/* Takes the full circle off angles beyond it, of a packet that begins at `first_q6`. Those beyond
+ * ANGLES were counted from 0 again, and are smaller than that. */
+static void wrap(uint16_t first_q6, tmini_point_t *points, size_t count)
 {
     for (; count > 0; count--, points++) {
-        if (points->angle_q6 >= TMINI_FULL_CIRCLE_Q6) {
-            points->angle_q6 = (uint16_t)(points->angle_q6 - TMINI_FULL_CIRCLE_Q6);
+        const uint16_t angle_q6 = points->angle_q6;
+        if (angle_q6 < first_q6) {
+            points->angle_q6 = (uint16_t)(angle_q6 + (ANGLES - TMINI_FULL_CIRCLE_Q6));
+        } else if (angle_q6 >= TMINI_FULL_CIRCLE_Q6) {
+            points->angle_q6 = (uint16_t)(angle_q6 - TMINI_FULL_CIRCLE_Q6);
         }
     }
 }
@@ -97,7 +103,7 @@ bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_
     uint8_t joined[TMINI_SAMPLE_SIZE];
     size_t count = 1;
     decode(packet, index, tmini_frame_samples(packet->frame, index, &count, joined), 1, point);
-    wrap(point, 1);
+    wrap(packet->first_angle_q6, point, 1);
     return tmini_frame_intact(packet->frame);
 }
 
@@ -122,7 +128,7 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
         done += count;
     }
     if (packet->last_angle_q6 < packet->first_angle_q6) {
-        wrap(points, wanted);
+        wrap(packet->first_angle_q6, points, wanted);
     }
     if (filter != TMINI_FILTER_NONE) {
         apply_filter(filter, points, wanted);

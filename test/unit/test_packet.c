@@ -356,6 +356,15 @@ void test_an_end_before_the_beginning_is_almost_a_whole_turn(void)
     TEST_ASSERT_EQUAL_UINT16(99, angle(2));
 }
 
+void test_a_packet_that_turns_far_beyond_360_degrees_begins_at_0_again(void)
+{
+    open_angles(4, 23000, 20000); /* 6680 apart. */
+    TEST_ASSERT_EQUAL_UINT16(23000, angle(0));
+    TEST_ASSERT_EQUAL_UINT16(6640, angle(1));  /* 29680. */
+    TEST_ASSERT_EQUAL_UINT16(13320, angle(2)); /* 36360. */
+    TEST_ASSERT_EQUAL_UINT16(20000, angle(3)); /* 43040. */
+}
+
 void test_angles_are_rounded_to_nearest_and_halves_up(void)
 {
     open_angles(5, 0, 2);
