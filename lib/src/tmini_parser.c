@@ -35,7 +35,8 @@ static unsigned xor_samples(const uint8_t *sample, size_t count)
     return sum;
 }
 
-/* The same by blocks. XORing whole words gives the same result as XORing their bytes one by one. */
+/* The same by blocks. XORing whole words gives the same result as XORing their bytes one by one. S3
+ * is the third byte of the first word, the second of the second, the first and last of the third. */
 static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
 {
     uint32_t first = 0;
@@ -48,10 +49,10 @@ static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
         third ^= tmini_word(sample + 8);
         sample += BLOCK_SIZE;
     } while (--blocks > 0);
-    const uint32_t words[] = {first, second, third};
-    const uint8_t *const s = (const uint8_t *)words;
-    const unsigned low = s[0] ^ s[1] ^ s[3] ^ s[4] ^ s[6] ^ s[7] ^ s[9] ^ s[10];
-    return low ^ (unsigned)(s[2] ^ s[5] ^ s[8] ^ s[11]) << 8;
+    first ^= second << 8 | second >> 24;
+    const uint32_t low = first ^ first >> 8 ^ first >> 24 ^ third >> 8 ^ third >> 16;
+    const uint32_t high = first >> 16 ^ third ^ third >> 24;
+    return (unsigned)((low & 0xFFu) | (high & 0xFFu) << 8);
 }
 
 /* The same for contiguous samples, most of them by blocks. If the address is `ahead` bytes above a
@@ -73,12 +74,16 @@ TMINI_NOINLINE static unsigned xor_piece(const uint8_t *sample, size_t count)
     return count > 0 ? sum ^ xor_samples(sample, count) : sum;
 }
 
+/* The header is read by words, too. */
+typedef char
+    header_is_aligned[offsetof(tmini_frame_t, header) % TMINI_WORD_ALIGNMENT == 0 ? 1 : -1];
+
 /* XORs all 16-bit words of the candidate, the checksum included: the result is 0 if it is right. */
 static bool checksum_matches(const tmini_frame_t *frame)
 {
-    const uint8_t *const header = frame->header;
-    unsigned sum = PACKET_FIRST ^ header[0] ^ header[2] ^ header[4] ^ header[6];
-    sum ^= (unsigned)(PACKET_SECOND ^ header[1] ^ header[3] ^ header[5] ^ header[7]) << 8;
+    const uint32_t words = tmini_word(frame->header) ^ tmini_word(&frame->header[4]);
+    unsigned sum =
+        (unsigned)((words ^ words >> 16) & 0xFFFFu) ^ (PACKET_FIRST | PACKET_SECOND << 8);
     size_t left = frame->header[LSN];
     while (left > 0) {
         const size_t done = frame->header[LSN] - left;
@@ -243,11 +248,11 @@ static void skip(tmini_parser_t *parser, size_t unread)
 
 /* The number of unread bytes, after dropping those that DMA may have overwritten. After a lap that
  * was reported but perhaps never happened (tmini_ring_gap()), bytes that may have been read before
- * are dropped too: what is kept of the last lap is new in either case. */
-static size_t intact_bytes(tmini_parser_t *parser)
+ * are dropped too: what is kept of the last lap is new in either case. The head is `ahead` of the
+ * tail. */
+static size_t intact_bytes(tmini_parser_t *parser, size_t ahead)
 {
     tmini_ring_t *const ring = parser->frame.ring;
-    const size_t ahead = tmini_ring_ahead(ring);
     if (ahead <= ring->window) {
         return ahead;
     }
@@ -264,23 +269,20 @@ static size_t intact_bytes(tmini_parser_t *parser)
     return kept;
 }
 
-/* Called when the candidate needs more bytes. In a closed ring these have been lost, so the
- * candidate is given up; an empty ring is opened again. Returns false if the ring is not closed. */
-static bool pass_lost_bytes(tmini_parser_t *parser)
+/* Called when the candidate needs more bytes than the `unread` ones, and they have been lost. In a
+ * closed ring the candidate is given up; an empty ring is opened again. */
+static void pass_lost_bytes(tmini_parser_t *parser, size_t unread)
 {
     tmini_ring_t *const ring = parser->frame.ring;
-    const size_t ahead = tmini_ring_ahead(ring);
-    if (tmini_ring_is_dma(ring) || ahead <= ring->window) {
-        return false;
+    if (tmini_ring_is_dma(ring)) {
+        return; /* The candidate has been dropped. */
     }
-    const size_t unread = ahead - TMINI_RING_CLOSED; /* Final: a closed ring stores nothing. */
     if (unread == 0) {
         parser->frame.gap = TMINI_GAP_UNKNOWN;
         tmini_ring_open(ring);
-    } else if (unread < parser->need) {
+    } else {
         skip(parser, unread);
     }
-    return true;
 }
 
 /* ---------------------------------------------------------------------------- public functions */
@@ -334,11 +336,13 @@ tmini_frame_type_t tmini_parser_next_after(tmini_parser_t *parser, size_t effort
     parser->effort = (uint16_t)effort;
     release_frame(parser);
     do {
-        const size_t unread = intact_bytes(parser);
+        const size_t ahead = tmini_ring_ahead(parser->frame.ring);
+        if (ahead < parser->need) {
+            return TMINI_FRAME_NONE;
+        }
+        const size_t unread = intact_bytes(parser, ahead);
         if (unread < parser->need) {
-            if (!pass_lost_bytes(parser)) {
-                return TMINI_FRAME_NONE;
-            }
+            pass_lost_bytes(parser, unread);
             continue;
         }
         const enum verdict verdict = classify(parser, unread);

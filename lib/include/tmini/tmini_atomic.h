@@ -176,17 +176,17 @@ TMINI_INLINE void tmini_fence(void)
 #define TMINI_WORD_ALIGNMENT 4u
 #endif
 
-/** Four bytes, in the machine's byte order, in one load. The address is a multiple of
- * TMINI_WORD_ALIGNMENT. */
+/** Four bytes, the first one lowest. The address is a multiple of TMINI_WORD_ALIGNMENT. One load on
+ * machines that order bytes so. */
 TMINI_INLINE uint32_t tmini_word(const uint8_t *bytes)
 {
+#if defined(__GNUC__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
     uint32_t word;
-#if defined(__GNUC__)
     memcpy(&word, __builtin_assume_aligned(bytes, TMINI_WORD_ALIGNMENT), sizeof word);
-#else
-    memcpy(&word, bytes, sizeof word);
-#endif
     return word;
+#else
+    return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+#endif
 }
 
 /** Copies two bytes, the second one reduced to the bits in `mask`. One load and one store where

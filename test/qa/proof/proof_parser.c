@@ -169,7 +169,7 @@ void prove_parser_intact_bytes(void)
 {
     begin();
     ASSUME(parser.frame.size == 0);
-    const size_t unread = intact_bytes(&parser);
+    const size_t unread = intact_bytes(&parser, tmini_ring_ahead(&ring));
     CLAIM(is_accounted_for());
     CLAIM(skip_keeps_its_word(&before, &parser));
     CLAIM(unread <= ring.window);
@@ -180,10 +180,11 @@ void prove_parser_intact_bytes(void)
 void prove_parser_pass_lost_bytes(void)
 {
     begin();
-    ASSUME(parser.frame.size == 0 && tmini_ring_unread(&ring) <= ring.window);
     const bool was_closed = tmini_ring_is_closed(&ring);
     const size_t stored = ring.head;
-    (void)pass_lost_bytes(&parser);
+    ASSUME(parser.frame.size == 0 && (was_closed || tmini_ring_is_dma(&ring)));
+    ASSUME(tmini_ring_unread(&ring) < parser.need && tmini_ring_unread(&ring) <= ring.window);
+    pass_lost_bytes(&parser, tmini_ring_unread(&ring));
     CLAIM(is_accounted_for());
     CLAIM(skip_keeps_its_word(&before, &parser));
     CLAIM(!was_closed || tmini_ring_is_closed(&ring) ||

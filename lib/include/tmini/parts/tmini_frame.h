@@ -38,14 +38,14 @@ extern "C" {
 
 /** A packet or reply that the parser has found. Members may be read. */
 typedef struct tmini_frame {
-    tmini_ring_t *ring;       /**< Holds the frame; its first byte is the oldest in the ring. */
+    tmini_ring_t *ring; /**< Holds the frame; its first byte is the oldest in the ring. */
+    uint8_t header[TMINI_PACKET_HEADER_SIZE - TMINI_START_SIGN_SIZE]; /**< After the start sign. A
+                                                                       * reply's is shorter. */
     uint16_t size;            /**< Size of the frame in bytes. */
     uint16_t gap;             /**< Bytes skipped since the previous frame; TMINI_GAP_UNKNOWN: bytes
                                * were lost. */
     uint16_t checksum_errors; /**< The parser's checksum errors so far, modulo 2^16. */
     uint8_t last_skipped;     /**< The last of the skipped bytes. */
-    uint8_t header[TMINI_PACKET_HEADER_SIZE - TMINI_START_SIGN_SIZE]; /**< After the start sign. A
-                                                                       * reply's is shorter. */
 } tmini_frame_t;
 
 /** True if the frame's bytes are certainly still as they were found. Only DMA can make it false:
