@@ -10,6 +10,7 @@
 #define HEADER_SIZE 10u
 #define SAMPLE_SIZE 3u
 #define FULL_TURN_Q6 23040u
+#define HALF 0x8000u /* Of a sixty-fourth. */
 
 static unsigned half_at(const uint8_t *bytes)
 {
@@ -23,27 +24,24 @@ static uint32_t step_of(unsigned first, unsigned last, size_t count)
     return count > 1 ? (swept << 16) / (uint32_t)(count - 1) : 0;
 }
 
-/* The samples' part of the checksum; stores their points. */
+/* The samples' part of the checksum; stores their points. A sample is read with the byte after it. */
 TMINI_NOINLINE static unsigned store(const uint8_t *sample, size_t count, uint32_t angle,
                                      uint32_t step, limit_point_t *point)
 {
-    unsigned pairs = 0;
-    unsigned thirds = 0;
+    uint32_t sum = 0;
     const limit_point_t *const end = point + count;
     for (; point != end; point++) {
-        uint16_t pair;
-        memcpy(&pair, sample, sizeof pair);
-        const unsigned third = sample[2];
-        pairs ^= pair;
-        thirds ^= third;
+        uint32_t word;
+        memcpy(&word, sample, sizeof word);
+        sum ^= word;
+        const uint16_t pair = word & 0x3FF; /* Intensity and flag. */
         point->angle_q6 = (uint16_t)(angle >> 16);
-        point->distance_mm = (uint16_t)(third << 6 | pair >> 10);
-        pair &= 0x3FF; /* Intensity and flag. */
+        point->distance_mm = word >> 10 & 0x3FFF;
         memcpy(&point->intensity, &pair, sizeof pair);
         angle += step;
         sample += SAMPLE_SIZE;
     }
-    return (pairs & 0xFFu) ^ pairs >> 8 ^ thirds << 8;
+    return (unsigned)((sum ^ sum >> 8) & 0xFF) | (unsigned)(sum >> 16 & 0xFF) << 8;
 }
 
 static void wrap(limit_point_t *point, size_t count)
@@ -70,7 +68,7 @@ size_t limit_decode(const uint8_t *bytes, size_t count, limit_point_t *points)
         }
         const unsigned first = half_at(&packet[4]) >> 1;
         const unsigned last = half_at(&packet[6]) >> 1;
-        const unsigned sum = store(&packet[HEADER_SIZE], samples, (uint32_t)first << 16,
+        const unsigned sum = store(&packet[HEADER_SIZE], samples, ((uint32_t)first << 16) + HALF,
                                    step_of(first, last, samples), points);
         if (last < first) {
             wrap(points, samples);
