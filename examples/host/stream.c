@@ -26,11 +26,15 @@ void stream_init(stream_t *stream, const tmini_mount_t *mount)
                              TMINI_FILTER_NONE);
 }
 
-/* The next scan is built in the points of the one before. */
+/* The next scan is built in the points of the one before. One may have begun slightly before time
+ * did. */
 static void keep_scan(stream_t *stream)
 {
     tmini_builder_t *const builder = &stream->decoder.builder;
     stream->scan = builder->scan;
+    if (stream->scan.start_ms > stream->scan.end_ms) {
+        stream->scan.start_ms = 0;
+    }
     tmini_builder_use(builder, stream->spare);
     stream->spare = stream->scan.points;
     tmini_mount_step(stream->mount, &stream->scan);

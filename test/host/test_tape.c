@@ -628,6 +628,20 @@ void test_a_scan_does_not_go_on_after_unreadable_bytes(void)
     TEST_ASSERT_EQUAL_UINT64(0, tape.stream.damaged); /* How many is unknown. */
 }
 
+/* Its first sample was measured before the recording's time began: 40 are sent in 15 ms. */
+void test_no_scan_begins_before_the_recording(void)
+{
+    put_packet(0);
+    put_garbage(600);
+    put_packet(1);
+    put_packet(2);
+    feed(file, size);
+    finish();
+    TEST_ASSERT_TRUE(stream_end(&tape.stream));
+    TEST_ASSERT_EQUAL_UINT16(2, tape.stream.scan.packets);
+    TEST_ASSERT_EQUAL_UINT32(0, tape.stream.scan.start_ms);
+}
+
 void test_a_mount_turns_scans_once(void)
 {
     const tmini_mount_t mount = {.front_deg = 90};
