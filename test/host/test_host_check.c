@@ -196,31 +196,36 @@ void test_a_unit_that_tells_nothing_within_the_stream_is_good_too(void)
     expect_unsaid("BAD");
 }
 
-void test_lost_bytes_are_a_line(void)
-{
-    expect_bad("drop", "line");
-    expect_said(" packets damaged, ");
-    expect_said("GND beside them");
-}
+/* Bad, for which reason, and two things that are said. */
+static const struct {
+    const char *name;
+    const char *reason;
+    const char *said[2];
+} troubles[] = {
+    {"drop", "line", {" packets damaged, ", "GND beside them"}},
+    {"flip", "line", {" packets damaged, ", "GND beside them"}},
+    {"insert", "line", {" packets damaged, ", "GND beside them"}},
+    {"burst", "line", {" packets damaged, ", "GND beside them"}},
+    {"cut", "line", {" packets damaged, ", "GND beside them"}},
+    {"blocked", "health", {"faulty: encoder", "let the rotor turn freely"}},
+    {"covered", "faults", {"uncover or clean the window", ""}},
+    {"covered_no_ct", "faults", {"uncover or clean the window", ""}},
+    /* What the lidar reports of itself is believed. */
+    {"sensor", "health", {"faulty: sensor\n", "ask its maker"}},
+    {"encoder", "health", {"faulty: encoder (is the rotor blocked?)\n", ""}},
+    {"power", "health", {"faulty: wireless power\n", ""}},
+    {"pd", "health", {"faulty: PD\n", ""}},
+    {"ld", "health", {"faulty: LD\n", ""}},
+    {"data", "health", {"faulty: data (is the window covered?)\n", ""}},
+};
 
-void test_flipped_bits_are_a_line(void)
+void test_each_trouble_is_named_with_what_helps(void)
 {
-    expect_bad("flip", "line");
-}
-
-void test_inserted_bytes_are_a_line(void)
-{
-    expect_bad("insert", "line");
-}
-
-void test_bursts_are_a_line(void)
-{
-    expect_bad("burst", "line");
-}
-
-void test_packets_that_are_cut_off_are_a_line(void)
-{
-    expect_bad("cut", "line");
+    for (size_t i = 0; i < sizeof troubles / sizeof troubles[0]; i++) {
+        expect_bad(troubles[i].name, troubles[i].reason);
+        expect_said(troubles[i].said[0]);
+        expect_said(troubles[i].said[1]);
+    }
 }
 
 void test_bytes_that_come_late_are_no_damage(void)
@@ -248,58 +253,6 @@ void test_a_lidar_that_restarts_has_a_weak_supply(void)
 void test_a_motor_that_comes_up_slowly_has_a_weak_supply(void)
 {
     end_case("weak", 0, "\nlook  supply     the motor took ");
-}
-
-void test_a_blocked_rotor(void)
-{
-    expect_bad("blocked", "health");
-    expect_said("faulty: encoder");
-    expect_said("let the rotor turn freely");
-}
-
-void test_a_covered_window_however_it_is_told(void)
-{
-    expect_bad("covered", "faults");
-    expect_said("uncover or clean the window");
-    expect_bad("covered_no_ct", "faults");
-}
-
-/* What the lidar tells of itself is believed. */
-static void expect_broken(const char *name, const char *told)
-{
-    expect_bad(name, "health");
-    expect_said(told);
-}
-
-void test_a_broken_sensor_is_named(void)
-{
-    expect_broken("sensor", "faulty: sensor\n");
-    expect_said("ask its maker");
-}
-
-void test_a_broken_encoder_is_named(void)
-{
-    expect_broken("encoder", "faulty: encoder (is the rotor blocked?)\n");
-}
-
-void test_a_broken_supply_of_the_rotor_is_named(void)
-{
-    expect_broken("power", "faulty: wireless power\n");
-}
-
-void test_a_broken_photodiode_is_named(void)
-{
-    expect_broken("pd", "faulty: PD\n");
-}
-
-void test_a_broken_laser_is_named(void)
-{
-    expect_broken("ld", "faulty: LD\n");
-}
-
-void test_data_that_the_lidar_does_not_trust_are_named(void)
-{
-    expect_broken("data", "faulty: data (is the window covered?)\n");
 }
 
 void test_a_unit_as_in_the_field_is_good(void)
