@@ -129,6 +129,12 @@ static void expect_end(int expected)
     expect_terminal_as_before();
 }
 
+static void quit(void)
+{
+    press('q');
+    expect_end(0);
+}
+
 static void resize(unsigned columns, unsigned rows)
 {
     const struct winsize size = {.ws_col = (unsigned short)columns, .ws_row = (unsigned short)rows};
@@ -154,12 +160,17 @@ static const char *cross_recording(void)
     return path;
 }
 
+static void see_the_cross(void)
+{
+    begin(80, 24, WORDS("view", cross_recording()));
+    wait_for("end of the recording");
+}
+
 /* ------------------------------------------------------------------------------------ picture */
 
 void test_points_are_where_they_should_be(void)
 {
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     /* The picture is 53 characters wide: the panel takes 27. Two lines are for words, which leaves
      * 88 rows of dots; so 4 m are 43 dots, around the dot between 52 and 53, and between 47 and 48.
      * */
@@ -172,8 +183,7 @@ void test_points_are_where_they_should_be(void)
 
 void test_the_panel_reports_what_is_seen(void)
 {
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     const char *const text = vt_text(&vt);
     TEST_ASSERT_NOT_NULL(strstr(text, " cross.bin "));
     TEST_ASSERT_NOT_NULL(strstr(text, "  incomplete scan 1  6.0 Hz\n"));
@@ -198,15 +208,12 @@ void test_a_room_looks_as_it_did_when_a_person_looked_at_it(void)
 
 void test_colours_are_left_out_when_asked(void)
 {
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     TEST_ASSERT_TRUE(vt.coloured > 10);
-    press('q');
-    expect_end(0);
+    quit();
     tearDown();
     (void)setenv("NO_COLOR", "1", 1);
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     TEST_ASSERT_EQUAL_UINT(0, vt.coloured);
 }
 
@@ -230,18 +237,15 @@ void test_keys_zoom(void)
 
 void test_q_ends(void)
 {
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     TEST_ASSERT_TRUE(vt.is_other_screen);
     TEST_ASSERT_TRUE(vt.is_cursor_hidden);
-    press('q');
-    expect_end(0);
+    quit();
 }
 
 void test_the_picture_follows_the_terminals_size(void)
 {
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     resize(60, 18);
     watch(300);
     TEST_ASSERT_EQUAL_HEX32('q', vt.cells[17][1]);
@@ -250,8 +254,7 @@ void test_the_picture_follows_the_terminals_size(void)
     watch(300);
     TEST_ASSERT_EQUAL_HEX32('q', vt.cells[39][1]);
     TEST_ASSERT_EQUAL_HEX32(0x25B2, vt.cells[19][46]);
-    press('q');
-    expect_end(0);
+    quit();
 }
 
 void test_a_tiny_terminal_does_no_harm(void)
@@ -261,14 +264,12 @@ void test_a_tiny_terminal_does_no_harm(void)
     watch(500);
     resize(1, 1);
     watch(300);
-    press('q');
-    expect_end(0);
+    quit();
 }
 
 void test_escape_ends_and_an_arrow_does_not(void)
 {
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     press_all("\033[A"); /* Up means nothing. */
     press('+');
     wait_for("range     3 m\n");
@@ -334,8 +335,7 @@ void test_a_timed_recording_is_played_at_its_own_pace(void)
     const long passed_ms =
         (now.tv_sec - since.tv_sec) * 1000 + (now.tv_nsec - since.tv_nsec) / 1000000;
     TEST_ASSERT_TRUE(passed_ms > 1000); /* The terminal was looked at a little late. */
-    press('q');
-    expect_end(0);
+    quit();
 }
 
 static unsigned scan_shown(void)
@@ -366,8 +366,7 @@ void test_after_a_pause_a_recording_goes_on_where_it_was(void)
     }
     TEST_ASSERT_TRUE(scan_shown() > before_pause);
     TEST_ASSERT_TRUE(scan_shown() < before_pause + 8);
-    press('q');
-    expect_end(0);
+    quit();
 }
 
 void test_keys_come_from_the_terminal_also_when_the_recording_comes_through_a_pipe(void)
@@ -381,8 +380,7 @@ void test_keys_come_from_the_terminal_also_when_the_recording_comes_through_a_pi
     TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "scan 8 "));
     press('+');
     wait_for("range     4 m\n");
-    press('q');
-    expect_end(0);
+    quit();
 }
 
 void test_ctrl_z_gives_the_terminal_back_and_fg_takes_it_again(void)
@@ -400,8 +398,7 @@ void test_ctrl_z_gives_the_terminal_back_and_fg_takes_it_again(void)
     }
     TEST_ASSERT_EQUAL_UINT(taken_before + 1, vt.taken);
     wait_for("end of the recording");
-    press('q');
-    expect_end(0);
+    quit();
 }
 
 /* ---------------------------------------------------------------------------- other terminals */
@@ -416,16 +413,14 @@ static void expect_ascii(void)
 void test_a_locale_without_utf_8_gets_characters(void)
 {
     (void)setenv("LC_ALL", "C", 1);
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     expect_ascii();
     TEST_ASSERT_EQUAL_HEX32('A', vt.cells[11][26]); /* the lidar */
     TEST_ASSERT_EQUAL_HEX32('X', vt.cells[9][26]);  /* front, nearest */
     TEST_ASSERT_EQUAL_HEX32('*', vt.cells[12][37]); /* right */
     TEST_ASSERT_EQUAL_HEX32('*', vt.cells[20][26]); /* back */
     TEST_ASSERT_EQUAL_HEX32('*', vt.cells[12][5]);  /* left */
-    press('q');
-    expect_end(0);
+    quit();
 }
 
 /* The variables in their order: one that is empty does not count. */
@@ -434,11 +429,9 @@ void test_the_locale_is_the_one_that_the_variables_say(void)
     (void)setenv("LC_ALL", "", 1);
     (void)setenv("LC_CTYPE", "", 1);
     (void)setenv("LANG", "xy_ZZ.utf8", 1); /* Not installed here. */
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     TEST_ASSERT_EQUAL_HEX32(0x25B2, vt.cells[11][26]);
-    press('q');
-    expect_end(0);
+    quit();
     (void)unsetenv("LC_CTYPE");
     (void)unsetenv("LANG");
 }
@@ -447,8 +440,7 @@ void test_a_dumb_terminal_gets_one_picture_below_the_other(void)
 {
     program_skip_idle_time();
     (void)setenv("TERM", "dumb", 1);
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     TEST_ASSERT_EQUAL_UINT(0, vt.coloured);
     TEST_ASSERT_EQUAL_UINT(0, vt.escapes);
     TEST_ASSERT_FALSE(vt.is_other_screen);
@@ -465,8 +457,7 @@ void test_a_dumb_terminal_gets_one_picture_below_the_other(void)
 void test_an_empty_no_color_means_nothing(void)
 {
     (void)setenv("NO_COLOR", "", 1);
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     TEST_ASSERT_TRUE(vt.coloured > 10);
 }
 
@@ -481,8 +472,7 @@ void test_a_small_terminal_has_the_picture_the_state_and_the_way_out(void)
     resize(18, 5);
     wait_for("\n q quit  end of th\n");
     TEST_ASSERT_EQUAL_STRING_LEN("   scan 8  6.0 Hz\n", vt_text(&vt), 18);
-    press('q');
-    expect_end(0);
+    quit();
 }
 
 /* ------------------------------------------------------------------------ what is not perfect */
@@ -541,8 +531,7 @@ void test_colours_are_steady(void)
 
 void test_ctrl_c_gives_the_terminal_back(void)
 {
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     press(3);
     expect_end(0);
 }
@@ -551,8 +540,7 @@ void test_signals_give_the_terminal_back(void)
 {
     static const int signals[] = {SIGTERM, SIGHUP, SIGQUIT};
     for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
-        begin(80, 24, WORDS("view", cross_recording()));
-        wait_for("end of the recording");
+        see_the_cross();
         kill(tool, signals[i]);
         expect_end(0);
         tearDown();
@@ -561,8 +549,7 @@ void test_signals_give_the_terminal_back(void)
 
 void test_a_signal_gives_a_terminal_back_whose_output_is_stopped(void)
 {
-    begin(80, 24, WORDS("view", cross_recording()));
-    wait_for("end of the recording");
+    see_the_cross();
     press('\x13');  /* Ctrl-S */
     resize(60, 18); /* Something to draw: the tool now waits for the terminal. */
     watch(300);
@@ -611,8 +598,7 @@ void test_a_lidar_is_shown_live_and_stopped_in_the_end(void)
     wait_for("scanning");
     wait_for("scan 5 ");
     wait_for("behind right"); /* In the next scan, if one has a gap there. */
-    press('q');
-    expect_end(0);
+    quit();
     (void)program_wait_for("log", "stopping -> idle");
 }
 
@@ -625,8 +611,7 @@ void test_a_lidar_that_falls_silent_is_called_so_until_it_is_back(void)
     program_thaw_lidar();
     wait_for("scanning\n");
     TEST_ASSERT_NULL(strstr(vt_text(&vt), "SILENT"));
-    press('q');
-    expect_end(0);
+    quit();
 }
 
 void test_a_blocked_rotor_is_shown(void)
@@ -635,8 +620,7 @@ void test_a_blocked_rotor_is_shown(void)
     wait_for("health    FAULTY");
     wait_for("faulty: encoder (is the rotor blocked?)\n"); /* In a line of its own: */
     wait_for("\n q quit   + - zoom   a auto ");
-    press('q');
-    expect_end(0);
+    quit();
 }
 
 void test_a_pulled_cable_ends_the_view_with_a_message(void)

@@ -59,6 +59,12 @@ static void scan(void)
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(&world.lidar));
 }
 
+static void begin_scanning(void)
+{
+    begin();
+    scan();
+}
+
 static uint32_t count(tmini_event_t event)
 {
     return world.counts.events[event];
@@ -83,8 +89,7 @@ void test_a_cold_start_brings_the_first_scan_within_two_seconds_and_then_six_a_s
 void test_a_cold_start_of_a_unit_without_ct_information_is_the_same(void)
 {
     config.sim.ct_information = false;
-    begin();
-    scan();
+    begin_scanning();
     TEST_ASSERT_TRUE(count(TMINI_EVENT_SCAN) > 12);
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_FAULTS_CHANGED));
     check_world(&world);
@@ -95,8 +100,7 @@ void test_no_packet_of_the_spin_up_is_lost_and_it_is_not_taken_for_a_loss(void)
     config.sim.spin_up_ms = 5000;
     config.sim.spin_up_percent = 5;
     config.streaming = true;
-    begin();
-    scan();
+    begin_scanning();
     (void)world_run_ms(&world, 5000);
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_LOST));
     TEST_ASSERT_EQUAL_UINT32(world.link.counts.packets, count(TMINI_EVENT_PACKET));
@@ -113,8 +117,7 @@ void test_first_packets_as_real_units_send_them_make_true_scans(void)
         config.sim.first_angle_q6 = stands_at_q6[i % 3];
         config.sim.ct_information = i < 3;
         config.sim.information.firmware_minor = 3;
-        begin();
-        scan();
+        begin_scanning();
         TEST_ASSERT_TRUE(count(TMINI_EVENT_SCAN) > 12);
         TEST_ASSERT_TRUE(world.scan.complete);
         check_world(&world);
@@ -123,8 +126,7 @@ void test_first_packets_as_real_units_send_them_make_true_scans(void)
 
 void test_a_restarted_program_finds_the_lidar_streaming_and_starts_it_again(void)
 {
-    begin();
-    scan();
+    begin_scanning();
     world_restart_library(&world);
     scan();
     check_world(&world);
@@ -132,8 +134,7 @@ void test_a_restarted_program_finds_the_lidar_streaming_and_starts_it_again(void
 
 void test_a_restarted_program_that_never_commands_gets_nothing_from_a_streaming_lidar(void)
 {
-    begin();
-    scan();
+    begin_scanning();
     world_restart_library(&world);
     TEST_ASSERT_EQUAL_HEX(0, world_run_ms(&world, 5000));
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_UNKNOWN, tmini_state(&world.lidar));
@@ -143,8 +144,7 @@ void test_a_restarted_program_that_never_commands_gets_nothing_from_a_streaming_
 
 static void streams_on_while_the_program_restarts(void)
 {
-    begin();
-    scan();
+    begin_scanning();
     world_restart_library(&world);
 }
 
@@ -370,8 +370,7 @@ void test_a_lost_reply_to_the_start_does_not_keep_scans_away(void)
 void test_a_tail_of_300_ms_after_a_stop_is_waited_for(void)
 {
     config.sim.stop_tail_ms = 300;
-    begin();
-    scan();
+    begin_scanning();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
     TEST_ASSERT_EQUAL_HEX(0, world_run_ms(&world, 300));
     ends_with(TMINI_EVENT_STOPPED, 100);
@@ -381,8 +380,7 @@ void test_a_tail_of_300_ms_after_a_stop_is_waited_for(void)
 void test_commands_arrive_through_a_transmitter_that_is_often_busy(void)
 {
     config.short_writes = true;
-    begin();
-    scan();
+    begin_scanning();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
     ends_with(TMINI_EVENT_STOPPED, 1000);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 1180));
@@ -404,8 +402,7 @@ void test_a_lidar_without_power_fails_every_attempt(void)
 /* A minute of it, then calm: scans must be back, and nothing wrong have happened. */
 static void survives(sim_link_kind_t kind, uint32_t mean_gap)
 {
-    begin();
-    scan();
+    begin_scanning();
     sim_link_set_mean_gap(&world.link, kind, mean_gap, world.now_us);
     (void)world_run_ms(&world, 60000);
     TEST_ASSERT_TRUE(world.link.counts.faults[kind] > 0);
@@ -488,8 +485,7 @@ void test_wrong_baud_rates_for_a_while_are_recovered_from(void)
 
 void test_a_lidar_unplugged_for_a_minute_is_recovered_in_time(void)
 {
-    begin();
-    scan();
+    begin_scanning();
     sim_link_force(&world.link, SIM_LINK_UNPLUG, 60000, world.now_us);
     (void)world_run_ms(&world, 60000);
     TEST_ASSERT_EQUAL_UINT32(1, count(TMINI_EVENT_LOST));
@@ -502,8 +498,7 @@ void test_a_lidar_unplugged_for_a_minute_is_recovered_in_time(void)
 void test_a_lidar_unplugged_is_recovered_in_time_whenever_it_comes_back(void)
 {
     for (uint32_t away_ms = 500; away_ms < 40000; away_ms += 1250) {
-        begin();
-        scan();
+        begin_scanning();
         sim_link_force(&world.link, SIM_LINK_UNPLUG, away_ms, world.now_us);
         (void)world_run_ms(&world, away_ms);
         (void)world_run_ms(&world, WORLD_RECOVERY_MS + config.sim.boot_ms);
@@ -515,8 +510,7 @@ void test_a_lidar_unplugged_is_recovered_in_time_whenever_it_comes_back(void)
 void test_without_recovery_the_program_starts_the_lidar_again(void)
 {
     config.recovery = TMINI_RECOVERY_OFF;
-    begin();
-    scan();
+    begin_scanning();
     const uint32_t commands = world.sim.counts.commands;
     sim_link_force(&world.link, SIM_LINK_UNPLUG, 2000, world.now_us);
     ends_with(TMINI_EVENT_LOST, 2000);
@@ -531,8 +525,7 @@ void test_without_recovery_the_program_starts_the_lidar_again(void)
 void test_a_lidar_that_shuts_itself_off_is_lost_and_recovered_when_it_is_well_again(void)
 {
     config.sim.fatal_health = SIM_HEALTH_SENSOR;
-    begin();
-    scan();
+    begin_scanning();
     sim_set_health(&world.sim, SIM_HEALTH_SENSOR);
     world_run_until(&world, BIT(TMINI_EVENT_LOST), 2000);
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_RECOVERING, tmini_state(&world.lidar));
@@ -566,8 +559,7 @@ static void begin_with(bool ct_information, bool blocked_sends_starts)
 {
     config.sim.ct_information = ct_information;
     config.sim.blocked_sends_starts = blocked_sends_starts;
-    begin();
-    scan();
+    begin_scanning();
 }
 
 void test_a_blocked_rotor_is_reported_and_not_repaired(void)
@@ -629,8 +621,7 @@ void test_a_small_dma_ring_is_enough_for_a_prompt_main_loop(void)
     config.rx_size = 1024;
     config.busy_one_in = 10;
     config.busy_ms = 8;
-    begin();
-    scan();
+    begin_scanning();
     (void)world_run_ms(&world, 60000);
     check_world(&world);
 }
@@ -640,8 +631,7 @@ void test_a_ring_of_1024_bytes_is_enough_for_a_main_loop_that_is_busy_for_60_ms(
     config.rx_size = 1024;
     config.busy_one_in = 10;
     config.busy_ms = 60;
-    begin();
-    scan();
+    begin_scanning();
     (void)world_run_ms(&world, 60000);
     check_world(&world);
 }
@@ -656,8 +646,7 @@ void test_a_main_loop_that_is_busy_for_too_long_costs_packets_but_accounts_for_t
         config.busy_one_in = 10;
         config.busy_ms = 400;
         config.overruns_expected = true;
-        begin();
-        scan();
+        begin_scanning();
         (void)world_run_ms(&world, 60000);
         tmini_counters(&world.lidar, &counters);
         TEST_ASSERT_TRUE(counters.bytes_overrun > 0);

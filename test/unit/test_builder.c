@@ -105,6 +105,13 @@ static void rest_of_turn(uint32_t from_q6)
     }
 }
 
+/* From 0 degrees on. */
+static void whole_turn(void)
+{
+    (void)start(0);
+    rest_of_turn(0);
+}
+
 /* A start packet comes and closes a scan of that quality. */
 static void expect_scan(uint32_t at_q6, uint16_t gaps, bool complete)
 {
@@ -177,8 +184,7 @@ void test_a_scan_goes_from_a_start_packet_to_the_next(void)
 /* What is known of the time at which held-back bytes came may go backwards a little. */
 void test_a_scan_does_not_end_before_it_began(void)
 {
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     now_ms = 4999;
     expect_scan(0, 0, true);
     TEST_ASSERT_EQUAL_UINT32(5000, scan->start_ms);
@@ -205,8 +211,7 @@ void test_points_are_in_order_of_arrival(void)
 
 void test_a_scan_stays_as_it_is_until_the_packet_that_closed_it_is_added(void)
 {
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     expect_scan(17, 0, true);
     TEST_ASSERT_EQUAL_UINT16(0, points[0].angle_q6);
     now_ms = 5167;
@@ -272,8 +277,7 @@ void test_filtered_points_keep_their_place(void)
 void test_points_that_do_not_fit_are_counted_and_not_written(void)
 {
     begin_with(8, TMINI_FILTER_NONE);
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     TEST_ASSERT_EQUAL_HEX16(0xEEEE, points[8].angle_q6);
     expect_scan(0, 0, false);
     TEST_ASSERT_EQUAL_UINT16(8, scan->count);
@@ -284,8 +288,7 @@ void test_points_that_do_not_fit_are_counted_and_not_written(void)
 void test_a_buffer_that_just_fits_makes_a_complete_scan(void)
 {
     begin_with(21, TMINI_FILTER_NONE);
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     expect_scan(0, 0, true);
     begin_with(20, TMINI_FILTER_NONE);
     add();
@@ -298,8 +301,7 @@ void test_a_buffer_that_just_fits_makes_a_complete_scan(void)
 void test_the_next_scan_has_the_whole_buffer_again(void)
 {
     begin_with(8, TMINI_FILTER_NONE);
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     expect_scan(0, 0, false);
     add();
     quarter(0);
@@ -311,8 +313,7 @@ void test_the_next_scan_has_the_whole_buffer_again(void)
 
 void test_one_byte_before_a_start_packet_is_last_crc_and_no_gap(void)
 {
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     strays = 1;
     expect_scan(0, 0, true);
     add();
@@ -322,16 +323,14 @@ void test_one_byte_before_a_start_packet_is_last_crc_and_no_gap(void)
 
 void test_two_bytes_before_a_start_packet_are_a_gap(void)
 {
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     strays = 2;
     expect_scan(0, 1, false);
 }
 
 void test_257_bytes_before_a_start_packet_are_a_gap(void)
 {
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     strays = 257;
     expect_scan(0, 1, false);
 }
@@ -339,8 +338,7 @@ void test_257_bytes_before_a_start_packet_are_a_gap(void)
 void test_a_gap_before_a_scan_is_not_its_own(void)
 {
     strays = 9;
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     expect_scan(0, 0, true);
 }
 
@@ -461,8 +459,7 @@ void test_the_last_angle_of_a_lone_sample_does_not_count(void)
 void test_checksum_errors_are_counted_while_the_scan_is_received(void)
 {
     receiver.parser.counters.checksum_errors = 65530;
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     receiver.parser.counters.checksum_errors += 3;
     TEST_ASSERT_TRUE(arrive(0x79, 1, 0, 0));
     TEST_ASSERT_EQUAL_UINT16(3, scan->checksum_errors);
@@ -666,13 +663,11 @@ void test_a_scan_without_its_start_packet_counts_its_first_packet_as_swept(void)
  * after a start packet that was lost lies half a degree beyond it. */
 void test_a_revolution_may_take_a_quarter_of_a_degree_more_than_a_circle_and_no_more(void)
 {
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     TEST_ASSERT_FALSE(point(1, 16));
     TEST_ASSERT_TRUE(arrive(0x00, 5, 17, 17));
     begin_with(ROOM, TMINI_FILTER_NONE);
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     TEST_ASSERT_TRUE(arrive(0x00, 5, 1, 17));
 }
 
@@ -700,8 +695,7 @@ void test_a_start_packet_a_little_before_a_full_turn_closes_the_scan(void)
 static void pass_turn_in(uint32_t ms, uint8_t ct)
 {
     begin_with(ROOM, TMINI_FILTER_NONE);
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     now_ms += ms;
     TEST_ASSERT_TRUE(arrive(ct, 1, 0, 0));
     TEST_ASSERT_EQUAL_UINT16(scan->complete ? 0 : 1, scan->gaps);
@@ -817,8 +811,7 @@ void test_a_packet_that_dma_has_overwritten_is_a_gap_and_no_point(void)
 void test_a_start_packet_that_dma_has_overwritten_begins_a_scan_with_a_gap(void)
 {
     receiver_open_dma(&receiver, memory, 512, 0);
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     expect_scan(0, 0, true);
     overrun();
     add();
@@ -839,8 +832,7 @@ void test_a_part_of_a_circle_is_not_complete(void)
 
 void test_a_circle_is_complete_to_within_four_degrees(void)
 {
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     expect_scan(4 * DEGREE, 0, true);
     add();
     rest_of_turn(4 * DEGREE);
@@ -851,8 +843,7 @@ void test_a_circle_is_complete_to_within_four_degrees(void)
     quarter(180 * DEGREE);
     TEST_ASSERT_FALSE(point(271 * DEGREE, 353 * DEGREE));
     expect_scan(355 * DEGREE, 0, false); /* Five degrees less. */
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     TEST_ASSERT_FALSE(point(360 * DEGREE, 360 * DEGREE + 16));
     expect_scan(364 * DEGREE + 1, 0, false); /* A little more than four degrees more. */
 }
@@ -876,8 +867,7 @@ void test_a_stream_that_steps_backwards_ends_a_scan(void)
 
 void test_a_scan_that_is_refuted_is_not_complete(void)
 {
-    (void)start(0);
-    rest_of_turn(0);
+    whole_turn();
     tmini_builder_refute(&builder);
     expect_scan(0, 1, false);
 }

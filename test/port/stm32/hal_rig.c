@@ -175,3 +175,9 @@ void hal_rig_run(void)
     model_pass(1000);
     (void)hal_rig_poll();
 }
+
+void hal_rig_receive(unsigned packets)
+{
+    hal_rig_line_packets(packets);
+    hal_rig_run();
+}

@@ -53,6 +53,9 @@ void hal_rig_line_packets(unsigned count);
 /* Lets the line run empty, and an idle line's time pass; then polls. */
 void hal_rig_run(void);
 
+/* This many packets come, until all have. */
+void hal_rig_receive(unsigned packets);
+
 /* Polls until there is nothing left to do. */
 tmini_counters_t hal_rig_poll(void);
 

@@ -33,8 +33,7 @@ void tearDown(void) {}
 void test_bytes_reach_the_lidar(void)
 {
     hal_rig_open_and_start(BY_BYTES);
-    hal_rig_line_packets(200);
-    hal_rig_run();
+    hal_rig_receive(200);
     TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
     TEST_ASSERT_EQUAL_UINT32(200 * PACKET, irq.lines[MODEL_USART_IRQ].served);
 }
@@ -45,8 +44,7 @@ void test_bytes_errors_of_the_line_are_counted_and_cost_no_byte(void)
     line_send_with(MODEL_FE);
     hal_rig_line_packets(1);
     line_send_with(MODEL_NE);
-    hal_rig_line_packets(1);
-    hal_rig_run();
+    hal_rig_receive(1);
     TEST_ASSERT_EQUAL_UINT32(2, hal_rig_packets());
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().framing_errors);
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().noise_errors);
@@ -59,8 +57,7 @@ void test_bytes_an_interrupt_that_comes_too_late_is_an_overrun_that_is_counted_a
     hal_rig_line_packets(3);
     model.held_until_ns = model.now_ns + 16 * MODEL_BYTE_NS; /* Into the second packet. */
     hal_rig_run();
-    hal_rig_line_packets(1);
-    hal_rig_run();
+    hal_rig_receive(1);
     TEST_ASSERT_EQUAL_UINT32(2, hal_rig_packets());
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().overruns);
 }
@@ -82,15 +79,13 @@ void test_bytes_no_packet_continues_across_an_overrun(void)
 void test_bytes_an_overrun_without_a_byte_stops_nothing_for_longer_than_a_poll(void)
 {
     hal_rig_open_and_start(BY_BYTES);
-    hal_rig_line_packets(1);
-    hal_rig_run();
+    hal_rig_receive(1);
     model.flags |= MODEL_ORE;
     model_pass(1000);
     (void)hal_rig_poll();
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().overruns);
     TEST_ASSERT_LESS_THAN_UINT32(20, irq.lines[MODEL_USART_IRQ].served);
-    hal_rig_line_packets(2);
-    hal_rig_run();
+    hal_rig_receive(2);
     TEST_ASSERT_EQUAL_UINT32(3, hal_rig_packets());
 }
 
@@ -113,29 +108,24 @@ void test_bytes_a_handle_locked_by_someone_else_is_waited_for(void)
     }
     hal_rig_open_and_start(BY_BYTES);
     hal_rig.uart.Lock = true;
-    hal_rig_line_packets(1);
-    hal_rig_run();
+    hal_rig_receive(1);
     TEST_ASSERT_EQUAL_UINT32(0, hal_rig_packets());
     hal_rig.uart.Lock = false;
     model_pass(5000);
     (void)hal_rig_poll();
-    hal_rig_line_packets(2);
-    hal_rig_run();
+    hal_rig_receive(2);
     TEST_ASSERT_EQUAL_UINT32(2, hal_rig_packets());
 }
 
 void test_bytes_come_no_more_after_stop_and_again_after_start(void)
 {
     hal_rig_open_and_start(BY_BYTES);
-    hal_rig_line_packets(1);
-    hal_rig_run();
+    hal_rig_receive(1);
     tmini_stm32_hal_stop(&hal_rig.port);
-    hal_rig_line_packets(2);
-    hal_rig_run();
+    hal_rig_receive(2);
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_packets());
     TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
-    hal_rig_line_packets(2);
-    hal_rig_run();
+    hal_rig_receive(2);
     TEST_ASSERT_EQUAL_UINT32(3, hal_rig_packets());
 }
 

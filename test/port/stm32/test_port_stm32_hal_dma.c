@@ -107,8 +107,7 @@ void test_dma_brings_every_byte(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
-        hal_rig_line_packets(200);
-        hal_rig_run();
+        hal_rig_receive(200);
         TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
         TEST_ASSERT_EQUAL_UINT32(200 * PACKET, bytes_accounted_for());
         TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
@@ -156,8 +155,7 @@ void test_priorities_of_the_two_interrupts_may_be_any(void)
             hal_rig_open_and_start(way);
             irq.lines[MODEL_USART_IRQ].priority = usart;
             model.access_ns = 2000; /* A slow controller: interrupts meet. */
-            hal_rig_line_packets(200);
-            hal_rig_run();
+            hal_rig_receive(200);
             TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
             TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
         }
@@ -198,8 +196,7 @@ void test_polls_alone_bring_what_dma_has_written(void)
         hal_rig_open_and_start(way);
         irq.lines[MODEL_USART_IRQ].disabled = true;
         irq.lines[MODEL_DMA_IRQ].disabled = true;
-        hal_rig_line_packets(200);
-        hal_rig_run();
+        hal_rig_receive(200);
         TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
         TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
     }
@@ -233,8 +230,7 @@ void test_an_error_inside_the_hals_start_ends_nothing(void)
             line_send(&broken, 1);
             model.now_ns += MODEL_BYTE_NS - at * model.access_ns;
             TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
-            hal_rig_line_packets(100);
-            hal_rig_run();
+            hal_rig_receive(100);
             TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
             TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
             TEST_ASSERT_LESS_THAN_UINT32(50, irq.lines[MODEL_USART_IRQ].served);
@@ -282,13 +278,11 @@ void test_an_overrun_that_holds_bytes_back_is_cleared_by_the_poll(void)
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
         model.ore_holds_rxne = true;
-        hal_rig_line_packets(10);
-        hal_rig_run();
+        hal_rig_receive(10);
         model.flags |= MODEL_ORE;
         model_pass(1000);
         (void)hal_rig_poll();
-        hal_rig_line_packets(10);
-        hal_rig_run();
+        hal_rig_receive(10);
         TEST_ASSERT_EQUAL_UINT32(20, hal_rig_packets());
     }
 }
@@ -303,12 +297,10 @@ void test_an_error_that_holds_dma_back_is_cleared_by_the_poll(void)
         hal_rig_open_and_start(way);
         model_usart.CR3 |= MODEL_CR3_DDRE;
         line_send_with(MODEL_FE);
-        hal_rig_line_packets(20);
-        hal_rig_run();
+        hal_rig_receive(20);
         TEST_ASSERT_UINT32_WITHIN(3, 17, hal_rig_packets()); /* Polls every ms: 23 bytes. */
         const uint32_t before = hal_rig_packets();
-        hal_rig_line_packets(10);
-        hal_rig_run();
+        hal_rig_receive(10);
         TEST_ASSERT_EQUAL_UINT32(before + 10, hal_rig_packets());
     }
 }
@@ -335,8 +327,7 @@ static void check_comes_back(void)
 {
     model_pass(20000);
     (void)hal_rig_poll();
-    hal_rig_line_packets(100);
-    hal_rig_run();
+    hal_rig_receive(100);
     TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
 }
 
@@ -369,13 +360,11 @@ void test_a_lost_lidars_reception_is_begun_anew(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
-        hal_rig_line_packets(10);
-        hal_rig_run();
+        hal_rig_receive(10);
         model.dma.enabled = false; /* And nothing shows it. */
         tmini_stm32_hal_port.restart(&hal_rig.port);
         (void)hal_rig_poll();
-        hal_rig_line_packets(100);
-        hal_rig_run();
+        hal_rig_receive(100);
         TEST_ASSERT_EQUAL_UINT32(110, hal_rig_packets());
         TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
     }
@@ -385,14 +374,12 @@ void test_a_reception_that_stands_still_is_started_again_by_the_next_poll(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
-        hal_rig_line_packets(30);
-        hal_rig_run();
+        hal_rig_receive(30);
         hal_rig.uart.RxState = HAL_UART_STATE_READY; /* Whoever did that: the DMA still runs. */
         model_pass(20000);
         (void)hal_rig_poll();
         TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
-        hal_rig_line_packets(100);
-        hal_rig_run();
+        hal_rig_receive(100);
         TEST_ASSERT_EQUAL_UINT32(130, hal_rig_packets());
         TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
     }
@@ -402,15 +389,13 @@ void test_a_dma_that_fails_is_started_again_by_the_poll_and_not_in_the_interrupt
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
-        hal_rig_line_packets(30);
-        hal_rig_run();
+        hal_rig_receive(30);
         model.dma.flags |= MODEL_DMA_TE;
         model_pass(5000);
         TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().other_errors);
         TEST_ASSERT_FALSE(hal_rig.started_in_error);
         (void)hal_rig_poll();
-        hal_rig_line_packets(100);
-        hal_rig_run();
+        hal_rig_receive(100);
         TEST_ASSERT_EQUAL_UINT32(130, hal_rig_packets());
     }
 }
@@ -420,14 +405,12 @@ void test_a_dma_that_fails_is_started_again_by_the_poll_and_not_in_the_interrupt
 static void check_dma_error_behind(hal_rig_way_t way, unsigned packets)
 {
     hal_rig_open_and_start(way);
-    hal_rig_line_packets(packets);
-    hal_rig_run();
+    hal_rig_receive(packets);
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_request_info(&hal_rig.lidar));
     model.dma.flags |= MODEL_DMA_TE;
     model_pass(5000);
     (void)hal_rig_poll();
-    hal_rig_line_packets(100);
-    hal_rig_run();
+    hal_rig_receive(100);
     TEST_ASSERT_EQUAL_UINT32(packets + 100, hal_rig_packets());
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
 }
@@ -447,14 +430,12 @@ void test_what_came_before_a_restart_is_no_packet_again(void)
     hal_rig_open_and_start(BY_DMA);
     hal_rig_line_packets(78); /* 1014 bytes: the buffer is full of packets. */
     hal_rig_run();
-    hal_rig_line_packets(10);
-    hal_rig_run();
+    hal_rig_receive(10);
     TEST_ASSERT_EQUAL_UINT32(88, hal_rig_packets());
     hal_rig.uart.RxState = HAL_UART_STATE_READY;
     model_pass(20000);
     TEST_ASSERT_EQUAL_UINT32(88, hal_rig_packets());
-    hal_rig_line_packets(100);
-    hal_rig_run();
+    hal_rig_receive(100);
     TEST_ASSERT_EQUAL_UINT32(188, hal_rig_packets());
 }
 
@@ -563,12 +544,10 @@ void test_after_stop_dma_is_off_and_what_had_come_is_there(void)
         tmini_stm32_hal_stop(&hal_rig.port);
         TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
         TEST_ASSERT_FALSE(model.dma.enabled);
-        hal_rig_line_packets(100);
-        hal_rig_run();
+        hal_rig_receive(100);
         TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
         TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
-        hal_rig_line_packets(100);
-        hal_rig_run();
+        hal_rig_receive(100);
         TEST_ASSERT_EQUAL_UINT32(105, hal_rig_packets());
     }
 }
@@ -578,12 +557,10 @@ void test_after_stop_what_others_receive_by_the_same_dma_is_theirs(void)
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         static uint8_t others[64];
         hal_rig_open_and_start(way);
-        hal_rig_line_packets(5);
-        hal_rig_run();
+        hal_rig_receive(5);
         tmini_stm32_hal_stop(&hal_rig.port);
         TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_Receive_DMA(&hal_rig.uart, others, sizeof others));
-        hal_rig_line_packets(10);
-        hal_rig_run();
+        hal_rig_receive(10);
         TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
         TEST_ASSERT_EQUAL_UINT32(5 * PACKET, bytes_accounted_for());
         TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_AbortReceive(&hal_rig.uart));
@@ -595,8 +572,7 @@ void test_an_event_that_comes_after_the_reception_has_ended_hands_nothing_over(v
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
-        hal_rig_line_packets(5);
-        hal_rig_run();
+        hal_rig_receive(5);
         const size_t head = tmini_ring_head(&hal_rig.lidar.ring);
         hal_rig.uart.RxState = HAL_UART_STATE_READY;
         hal_rig_line_packets(1);
@@ -610,8 +586,7 @@ void test_a_lidar_set_up_anew_begins_at_the_buffers_start(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
-        hal_rig_line_packets(33);
-        hal_rig_run();
+        hal_rig_receive(33);
         tmini_stm32_hal_stop(&hal_rig.port);
         const tmini_config_t config = {
             .port = &tmini_stm32_hal_port,
@@ -622,8 +597,7 @@ void test_a_lidar_set_up_anew_begins_at_the_buffers_start(void)
         };
         TEST_ASSERT_EQUAL(TMINI_OK, tmini_init(&hal_rig.lidar, &config));
         TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
-        hal_rig_line_packets(100);
-        hal_rig_run();
+        hal_rig_receive(100);
         TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
         TEST_ASSERT_EQUAL_UINT32(100 * PACKET, bytes_accounted_for());
     }
