@@ -115,8 +115,25 @@ static void lose(tmini_t *lidar)
     lidar->state = TMINI_STATE_RECOVERING;
     raise_event(lidar, TMINI_EVENT_LOST);
     tmini_command_forget_frequency(lidar);
+    tmini_monitor_forget_frequency(&lidar->monitor);
     tmini_ct_init(&lidar->decoder.ct);
     tmini_recovery_begin(lidar);
+}
+
+/* A lidar that does not answer turns at an unknown frequency; one that refuses a step has
+ * answered. */
+static void end_frequency(tmini_t *lidar, int result, bool is_start)
+{
+    if (result == TMINI_OK) {
+        raise_event(lidar, TMINI_EVENT_FREQUENCY);
+        return;
+    }
+    if (result != TMINI_ERROR_REPLY) {
+        tmini_command_forget_frequency(lidar);
+    }
+    if (is_start) {
+        lidar->command_error = (int8_t)result;
+    }
 }
 
 /* A step of the ladder has ended, and no packet has come yet. A failed attempt to start is reported
@@ -125,10 +142,8 @@ static void lose(tmini_t *lidar)
 static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
     const bool is_start = lidar->state == TMINI_STATE_STARTING;
-    if (operation == TMINI_EVENT_FREQUENCY && result == TMINI_OK) {
-        raise_event(lidar, TMINI_EVENT_FREQUENCY);
-    } else if (operation == TMINI_EVENT_FREQUENCY && is_start) {
-        lidar->command_error = (int8_t)result;
+    if (operation == TMINI_EVENT_FREQUENCY) {
+        end_frequency(lidar, result, is_start);
     } else if (result != TMINI_OK && is_start) {
         fail(lidar, result);
         if (lidar->is_recovery_off) {
@@ -285,9 +300,18 @@ static void note_scanning(tmini_t *lidar)
         if (phase != TMINI_PHASE_QUIESCING && lidar->command.operation != TMINI_EVENT_FREQUENCY) {
             begin_scanning(lidar);
         }
-    } else if (phase == TMINI_PHASE_IDLE) {
+    } else if (phase == TMINI_PHASE_IDLE &&
+               tmini_has_elapsed(lidar, lidar->command.since_ms, TMINI_BACK_OFF_MS)) {
         stop_again(lidar);
     }
+}
+
+/* The wanted frequency is set once more. If the lidar does not answer then, this is done again, less
+ * and less often. */
+static bool is_worth_a_restart(const tmini_t *lidar)
+{
+    return !lidar->is_recovery_off &&
+           (lidar->monitor.off_times == 1 || tmini_frequency_chz(lidar) == 0);
 }
 
 static void monitor_packet(tmini_t *lidar)
@@ -298,7 +322,8 @@ static void monitor_packet(tmini_t *lidar)
         tmini_recovery_forget(lidar); /* If it was lost, it has recovered now. */
     } else if (turn == TMINI_TURN_ENDLESS) {
         lose(lidar);
-    } else if (turn == TMINI_TURN_OFF && !lidar->is_recovery_off) {
+    } else if (turn == TMINI_TURN_OFF && is_worth_a_restart(lidar)) {
+        tmini_command_forget_frequency(lidar); /* What it has reported is not so. */
         restart(lidar);
     }
 }

@@ -284,7 +284,7 @@ bool tmini_command_end(tmini_t *lidar, int result)
     const uint8_t operation = command->operation;
     const bool is_idle =
         result == TMINI_OK && command->phase != TMINI_PHASE_WAITING && command->attempts == 1;
-    const bool was_stopped = operation >= TMINI_EVENT_STOPPED && operation <= TMINI_EVENT_FREQUENCY;
+    const bool was_stopped = operation >= TMINI_EVENT_STOPPED;
     (void)tmini_parser_await(&lidar->decoder.parser, NULL);
     command->unsent = 0;
     enter(lidar, was_stopped ? TMINI_PHASE_IDLE : TMINI_PHASE_NONE, 0);

@@ -29,7 +29,7 @@ tmini_frame_type_t tmini_decoder_next(tmini_decoder_t *decoder, size_t effort)
 }
 
 /* Inlined twice, so that a firmware, which needs it once, pays no call. */
-TMINI_INLINE bool take(tmini_decoder_t *decoder, uint32_t now_ms)
+TMINI_INLINE bool take_opened(tmini_decoder_t *decoder, uint32_t now_ms)
 {
     decoder->verdict = (uint8_t)tmini_ct_add(&decoder->ct, &decoder->packet);
     if (decoder->builder.capacity == 0) {
@@ -49,14 +49,14 @@ bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now
         decoder->packet.gap = TMINI_GAP_UNKNOWN;
     }
     tmini_builder_backdate(&decoder->builder, late_ms);
-    return take(decoder, now_ms);
+    return take_opened(decoder, now_ms);
 }
 
 bool tmini_decoder_take_packet(tmini_decoder_t *decoder, const tmini_packet_t *packet,
                                uint32_t now_ms)
 {
     decoder->packet = *packet;
-    return take(decoder, now_ms);
+    return take_opened(decoder, now_ms);
 }
 
 void tmini_decoder_restart(tmini_decoder_t *decoder)

@@ -140,7 +140,7 @@ void tmini_monitor_begin(tmini_monitor_t *monitor);
 typedef enum {
     TMINI_TURN_GOES_ON,
     TMINI_TURN_WHOLE,   /* A complete revolution has ended with it. */
-    TMINI_TURN_OFF,     /* Revolutions are not at the wanted frequency: returned once. */
+    TMINI_TURN_OFF,     /* Revolutions are not at the wanted frequency for too long. */
     TMINI_TURN_ENDLESS, /* Packets with ranges come, but no start packets: the lidar is lost. */
 } tmini_turn_t;
 

@@ -13,6 +13,9 @@
 #define OFF_SECONDS 3
 #define OFF_TURNS 3
 
+/* Each time it is off again, that has to last twice as long, up to this many times. */
+#define OFF_DOUBLINGS_MAX 4
+
 /* No turn has more samples than three seconds, at 4000 per second (section 1). */
 #define TURN_SAMPLES_MAX 12000u
 
@@ -46,22 +49,24 @@ static void judge_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *de
 }
 
 /* Counts consecutive revolutions at another frequency than wanted. Their number, divided by the
- * frequency that they report, is the time that this has lasted. True when it becomes a fault. */
+ * frequency that they report, is the time that this has lasted. True when it has lasted too long:
+ * three seconds, then twice as long each time, as far as turns are counted. */
 static bool has_become_off(tmini_monitor_t *monitor, uint8_t ct, uint16_t wanted_chz)
 {
     const int32_t chz = (ct >> 1) * 10; /* Section 7. */
     const int32_t off_chz = chz > wanted_chz ? chz - wanted_chz : wanted_chz - chz;
+    const uint8_t times = monitor->off_times;
     if (wanted_chz == 0 || chz == 0 || off_chz * OFF_PART <= wanted_chz) {
         tmini_monitor_forget_frequency(monitor);
         return false;
     }
-    if ((monitor->faults & TMINI_FAULT_FREQUENCY) != 0) {
-        return false;
-    }
     monitor->off_turns++;
-    if (monitor->off_turns < OFF_TURNS || monitor->off_turns * 100 < OFF_SECONDS * chz) {
+    if (monitor->off_turns < OFF_TURNS ||
+        (monitor->off_turns < UINT8_MAX && monitor->off_turns * 100 < OFF_SECONDS * chz << times)) {
         return false;
     }
+    monitor->off_turns = 0;
+    monitor->off_times = (uint8_t)(times + (times < OFF_DOUBLINGS_MAX));
     monitor->faults |= TMINI_FAULT_FREQUENCY;
     return true;
 }
@@ -69,6 +74,7 @@ static bool has_become_off(tmini_monitor_t *monitor, uint8_t ct, uint16_t wanted
 void tmini_monitor_forget_frequency(tmini_monitor_t *monitor)
 {
     monitor->off_turns = 0;
+    monitor->off_times = 0;
     monitor->faults = monitor->faults & TMINI_FAULT_MASK;
 }
 

@@ -111,6 +111,9 @@ void test_all_eight_sectors_are_shown(void)
     wait_for("\ngo ");
     TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGINT));
     TEST_ASSERT_EQUAL_STRING_LEN("mm    front    45", program_output, 17);
+    /* A line per scan, also where the console is a UART of 115200 baud: 87 us per byte, and 83 ms
+     * per scan at 12 Hz, of which half. */
+    TEST_ASSERT_LESS_OR_EQUAL(83000 / 87 / 2, strcspn(strstr(program_output, "\ngo ") + 1, "\n"));
     unsigned mm[8] = {0};
     TEST_ASSERT_EQUAL_INT(8, sscanf(strstr(program_output, "\ngo ") + 4, "%u%u%u%u%u%u%u%u", &mm[0],
                                     &mm[1], &mm[2], &mm[3], &mm[4], &mm[5], &mm[6], &mm[7]));

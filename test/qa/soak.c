@@ -3,11 +3,10 @@
 
 /* soak HOURS [SEED]
  *
- * Runs the library against the simulated lidar for so many hours of virtual time, half an hour for
- * each of many differently configured pairs, while everything goes wrong that can: on the line, in
- * the lidar, in the program that uses the library. Prints what happened; exit status 0 if the
- * library did nothing wrong (world.h says what is checked), 1 if it did, 2 on wrong usage. The same
- * seed does the same. */
+ * Runs the library against the simulated lidar for HOURS of virtual time, half an hour for each of
+ * many configurations, with all kinds of faults: on the line, in the lidar, in the program that
+ * uses the library. Prints what happened; exit status 0 if the library did nothing wrong (world.h
+ * says what is checked), 1 if it did, 2 on wrong usage. The same seed does the same. */
 
 #include "world.h"
 

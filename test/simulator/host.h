@@ -34,7 +34,7 @@ struct host {
 bool host_open_pty(host_t *host);
 bool host_open_tcp(host_t *host, uint16_t port); /* loopback only; 0: any free port */
 
-/* Returns when the client has sent something, or after the time at the latest. */
+/* Waits until the client has sent something, or until the time is over. */
 void host_wait(host_t *host, int timeout_ms);
 
 /* What the client has sent, without waiting. */

@@ -3,9 +3,9 @@
 
 /*
  * The wire between the simulated lidar and the host, with seeded faults from device to host (the
- * other direction only fails while unplugged). It knows what it did: for every packet it says
- * whether all its bytes reached the host unharmed and side by side, and for every fault when it
- * began and ended. Pure, like the simulator; virtual time.
+ * other direction fails only while unplugged). It reports for every packet whether all its bytes
+ * reached the host unharmed and without a gap, and for every fault when it began and ended. Pure,
+ * like the simulator; virtual time.
  *
  *     sim_link_init(&link, &sim, &config);
  *     sim_link_write(&link, bytes, count, now_us);         host to device
@@ -97,7 +97,7 @@ typedef struct {
     uint8_t backlog[SIM_LINK_BACKLOG];
 } sim_link_t;
 
-/* No faults; sensible durations: bursts of 2..64 bytes, stalls of 5..100 ms, unplugged for
+/* No faults; default durations: bursts of 2..64 bytes, stalls of 5..100 ms, unplugged for
  * 0.5..5 s, garbled for 50..2000 ms. */
 sim_link_config_t sim_link_default_config(void);
 
@@ -116,7 +116,7 @@ size_t sim_link_read(sim_link_t *link, uint64_t now_us, uint8_t *out, size_t max
 /* When there may be something to read, or a fault begins or ends; SIM_NEVER: never. */
 uint64_t sim_link_next_us(sim_link_t *link);
 
-/* Faults of the kind come at another rate from now on; 0: none any more. */
+/* Changes the rate of this kind of fault; 0: no more of them. */
 void sim_link_set_mean_gap(sim_link_t *link, sim_link_kind_t kind, uint32_t mean_gap,
                            uint64_t now_us);
 
@@ -127,7 +127,7 @@ void sim_link_calm(sim_link_t *link, uint64_t now_us);
  * bytes or milliseconds. */
 void sim_link_force(sim_link_t *link, sim_link_kind_t kind, uint32_t amount, uint64_t now_us);
 
-/* Whether a fault that lasts is under way, and when the last fault of any kind ended. */
+/* Whether a fault with a duration is active, and when the last fault of any kind ended. */
 bool sim_link_is_faulty(const sim_link_t *link);
 uint64_t sim_link_last_fault_us(const sim_link_t *link);
 

@@ -20,8 +20,8 @@
 
 #define EXIT_WRONG_USAGE 2
 
-/* While bytes come every 43 us: how long to let them gather, as an adapter does (many tests run
- * many simulated lidars on one computer); and the longest sleep otherwise. */
+/* How long bytes are collected before they are written, as an adapter does (so that many simulated
+ * lidars can run on one computer); and the longest sleep when nothing is sent. */
 #define TICK_MS 8
 #define LONGEST_SLEEP_MS 500
 

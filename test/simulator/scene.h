@@ -24,8 +24,8 @@ typedef struct {
 /* The room, without obstacles. */
 void sim_scene_build(sim_scene_t *scene);
 
-/* Puts an obstacle in front of whatever is there: `width_q6` wide, centred on `angle_q6` (0..23039,
- * 1/64 degree), at `distance_mm`. What is nearer already stays. */
+/* Places an obstacle: `width_q6` wide, centred on `angle_q6` (0..23039, 1/64 degree), at
+ * `distance_mm`. Nearer things still hide it. */
 void sim_scene_place(sim_scene_t *scene, uint16_t angle_q6, uint16_t width_q6,
                      uint16_t distance_mm);
 

@@ -113,8 +113,8 @@ static void prepare_turn_information(sim_t *sim)
     turn->serial = decimal(information->serial + 8, 8);
 }
 
-/* Where the rotor stands when it is started is chance, unless the configuration says where: the
- * first revolution is a partial one. */
+/* The rotor's place at the start is random unless configured, so the first revolution is a partial
+ * one. */
 static uint32_t first_phase(sim_t *sim)
 {
     const uint32_t chance = random_below(&sim->random, FULL_TURN_Q16);
@@ -181,8 +181,8 @@ static uint16_t add_noise(uint16_t distance_mm, uint32_t dice, uint32_t noise_mm
     return (uint16_t)(distance_mm + added - noise_mm);
 }
 
-/* One number is drawn a sample, and its parts used: 16 bits each for the noise, for a range that
- * is missing, and for the flag. */
+/* One random number per sample: 16 bits each decide the noise, whether the range is missing, and
+ * the flag. */
 static encode_sample_t measure(sim_t *sim, uint32_t angle_q16)
 {
     const uint64_t dice = random_u64(&sim->random);

@@ -114,8 +114,8 @@ typedef struct {
     uint32_t lost_replies;            /* sim_lose_next_reply(), or too many waiting */
 } sim_counts_t;
 
-/* What an observer is told; any member may be NULL. Called from sim_receive(), sim_transmit() and
- * the like, in order of time. */
+/* Functions that an observer provides; any may be NULL. They are called from the functions below
+ * that advance time, in order of time. */
 typedef struct {
     void *context;
     void (*on_packet)(void *context, const sim_packet_t *packet); /* its last byte has left */
@@ -194,8 +194,8 @@ void sim_receive(sim_t *sim, const uint8_t *bytes, size_t count, uint64_t now_us
  * stays for the next call. Returns their number. */
 size_t sim_transmit(sim_t *sim, uint64_t now_us, uint8_t *out, size_t max);
 
-/* The same a run at a time, with its time and truth and without copying; false: nothing more by
- * now. What the run points to is valid until the next call of a function of the simulator. */
+/* The same without copying: returns one run of bytes, with its time and truth; false: nothing more
+ * by now. The run's pointers are valid until the next call of a function of the simulator. */
 bool sim_next_run(sim_t *sim, uint64_t now_us, sim_run_t *run);
 
 /* When something will happen next if nothing is received: a byte or a change of mode.

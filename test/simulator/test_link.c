@@ -105,8 +105,8 @@ static bool is_in_stream(const sim_link_packet_t *packet)
     return packet->intact && packet->offset + packet->sent.length <= size;
 }
 
-/* Every packet said to be intact is there, and an independent decoder finds hardly any others:
- * two flips in one column of the checksum, say. */
+/* Every packet reported as intact has arrived, and an independent decoder finds hardly any others
+ * (for example, after two flips in one column of the checksum). */
 static void expect_the_truth_about_every_packet(void)
 {
     const reference_options_t options = {80, NULL};

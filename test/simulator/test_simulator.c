@@ -556,8 +556,8 @@ static reference_point_t nearest_to(uint16_t angle_q6)
     return reference_point(packets[0].bytes, 0);
 }
 
-/* The lidar stands 2.2 m from the left wall, 2.8 m from the right one, 1.7 m from the one behind
- * and 2.3 m from the one ahead. 90 degrees are to the right: clockwise seen from above. */
+/* The lidar is 2.2 m from the left wall, 2.8 m from the right one, 1.7 m from the back one and 2.3
+ * m from the front one. 90 degrees are to the right: clockwise seen from above. */
 void test_the_room_is_seen_clockwise_from_straight_ahead(void)
 {
     scan_seconds(1);

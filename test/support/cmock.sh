@@ -3,8 +3,8 @@
 # shellcheck shell=sh
 # shellcheck disable=SC2154 # $root is the sourcing script's
 
-# need_cmock: the package `cmock` (CMock with Unity), to be installed by install_missing of
-# packages.sh, which is to be sourced before.
+# need_cmock: registers the package `cmock` (CMock with Unity) for install_missing. Source
+# packages.sh first.
 #
 # Debian 12 does not have it, but the package of the next release is architecture-independent and
 # runs there.

@@ -24,7 +24,8 @@ static bool is_dma(const tmini_ring_t *ring)
     return tmini_ring_is_dma(ring);
 }
 
-/* The producer may go on to its stop unasked: there is room up to there, and no end of memory. */
+/* Up to its stop the producer writes without checking: there is room, and the memory does not end
+ * before. */
 static bool stop_is_sound(const tmini_ring_t *ring)
 {
     const size_t known = ring->stop - ring->head;
@@ -115,7 +116,7 @@ bool packet_is_sound(const tmini_packet_t *packet, const tmini_frame_t *frame)
            (packet->count > 1 || packet->step == 0);
 }
 
-/* The fields have the indices 1, 3, 4, 5 and 9 to 13: of this many packets, so many have one. */
+/* How many fields this many packets contain: the fields have the indices 1, 3, 4, 5 and 9 to 13. */
 static unsigned fields_among(unsigned packets)
 {
     static const uint8_t fields[TMINI_CT_INDICES] = {0, 0, 1, 1, 2, 3, 4, 4, 4, 4, 5, 6, 7, 8};
@@ -165,7 +166,7 @@ static bool is_step(uint8_t code)
     return code >= TMINI_COMMAND_FASTER_TENTH && code <= TMINI_COMMAND_SLOWER_ONE;
 }
 
-/* What an operation is named by, the event of its end; none: the time is kept. */
+/* The events that name operations; none: only time passes. */
 static bool is_operation(uint8_t event)
 {
     return event <= TMINI_EVENT_REBOOTED;
@@ -233,8 +234,8 @@ static bool is_query(uint8_t operation)
     return operation >= TMINI_EVENT_INFO && operation <= TMINI_EVENT_REBOOTED;
 }
 
-/* Listening, and in the pauses of the ladder, time is waited for; otherwise one of its rungs is
- * under way. */
+/* When only listening, and in pauses of the ladder, the driver waits for time; otherwise one of the
+ * ladder's operations is active. */
 static bool ladder_fits(const tmini_t *lidar)
 {
     const uint8_t operation = lidar->command.operation;
@@ -298,8 +299,8 @@ static bool wish_is_sound(const tmini_t *lidar)
            (!lidar->is_listen_only || (chz == 0 && lidar->command.operation == 0));
 }
 
-/* Without points nothing is gathered. A packet that waits is there. Settled: nothing is to be
- * reported. */
+/* Without points no scan is built. If a packet waits to be added, it exists. If the driver has
+ * settled, no event is pending. */
 static bool results_are_sound(const tmini_t *lidar)
 {
     const tmini_decoder_t *const decoder = &lidar->decoder;

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What is true of each module's state between any two calls of its functions, whatever was received
- * and whoever made those calls. test/qa/proof shows that every function keeps it; fuzzers and soak
- * ask
+/* What is true of each module's state between any two calls of its functions, whatever was
+ * received. test/qa/proof shows that every function keeps it; fuzzers and soak ask
  * after each call. To be asked in the consumer's context. */
 
 #ifndef INVARIANTS_H

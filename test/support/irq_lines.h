@@ -3,8 +3,9 @@
 
 /*
  * Interrupt lines as hard as the machine's, for the models under port tests. A line is up as long
- * as a flag of the device and that flag's enable both stand; so a handler that leaves its flag is
- * entered again the moment it returns. One line interrupts another only with a higher priority.
+ * as a flag of the device and that flag's enable bit are both set. So a handler that does not clear
+ * its flag is entered again as soon as it returns. One line interrupts another only with a higher
+ * priority.
  *
  * Models call irq_access() at each access of a register, tests at each access of an index that both
  * sides use (interrupting_atomic.h): there, and nowhere else, the lines interrupt.
@@ -20,7 +21,7 @@
 
 #define IRQ_LINES 4u
 
-/* Entries in a row, with nothing below the line having run, that are no accident. */
+/* This many entries in a row, without lower-priority code in between, count as an error. */
 #define IRQ_LOCK_UP 1000u
 
 typedef struct {
@@ -52,7 +53,7 @@ void irq_reset(void (*on_lock_up)(unsigned line));
 /* Runs the handler of each line that is up and may interrupt what runs, until there is none. */
 void irq_serve(void);
 
-/* An access: what is to happen at it happens, then the lines are served. */
+/* An access: triggers the events planned for it, then serves the lines. */
 void irq_access(void);
 
 /* At the access after `accesses` others `event` happens once: raises a flag, lets time pass. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Ring and parser as a program would use them, for tests: whatever is fed and read, the receiver
- * asserts each time that every byte is accounted for. */
+/* Ring and parser as a program would use them, for tests. After each feed and read the receiver
+ * asserts that every byte is accounted for. */
 
 #ifndef RECEIVER_H
 #define RECEIVER_H
@@ -49,7 +49,7 @@ size_t receiver_frame_offset(const receiver_t *receiver);
 
 void receiver_abandon(receiver_t *receiver);
 
-/* No more bytes come: the next frame in what is left, after abandoning what must be. */
+/* Returns the next frame when no more bytes will come: incomplete candidates are abandoned. */
 tmini_frame_type_t receiver_next_at_end(receiver_t *receiver);
 
 void receiver_await(receiver_t *receiver, uint8_t mode, uint8_t type, uint8_t length);

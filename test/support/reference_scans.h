@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Which scans a sequence of packets makes, as directly as docs/design.md ("No complete scan mixes
- * revolutions") can be written down: by looking at all of them, later ones included. The library
- * sees one packet at a time; it is compared with this. */
+/* Which scans a sequence of packets makes, written as directly as possible from docs/design.md ("No
+ * complete scan mixes revolutions"). This code sees all packets at once, also later ones; the
+ * library, which sees one at a time, is compared with it. */
 
 #ifndef REFERENCE_SCANS_H
 #define REFERENCE_SCANS_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Seeded randomness and damage: what every randomised test stands on. */
+/* Seeded randomness and damage: the basis of every randomised test. */
 
 #include "corrupt.h"
 #include "random.h"

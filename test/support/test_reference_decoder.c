@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The reference decoder on what is worked out by hand: its counts, and the manual's points. All else
- * of it is compared with the parser in test_differential.c, and with the packets in test_angles.c. */
+/* The reference decoder against values worked out by hand: its counts, and the manual's points.
+ * Everything else is compared with the parser in test_differential.c, and with packets in
+ * test_angles.c. */
 
 #include "reference_decoder.h"
 

@@ -263,7 +263,6 @@ void test_every_byte_is_accounted_for(void)
     rig_feed_byte(0x22);         /* 1 skipped */
     rig_feed_point_packet(1000); /* 22 in a packet */
     rig_feed_byte(0xAA);         /* 1 pending */
-    sends(STOP);                 /* Nobody asked for the packet. */
     (void)rig_drain();
     const tmini_counters_t seen = counters();
     TEST_ASSERT_EQUAL_UINT32(35, rig.fed);
@@ -309,6 +308,7 @@ void test_packets_of_an_unknown_lidar_are_parsed_and_counted_but_are_no_event(vo
 void test_an_idle_lidar_that_streams_is_reported_and_stopped_again(void)
 {
     rig_go_idle();
+    passes(500);
     rig_feed_start_packet(1000);
     sends(STOP);
     polls_to(TMINI_EVENT_UNWANTED_SCANNING);
@@ -319,9 +319,42 @@ void test_an_idle_lidar_that_streams_is_reported_and_stopped_again(void)
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
     is_in(TMINI_STATE_IDLE);
+    passes(499);
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_NONE);
+    passes(1);
     rig_feed_point_packet(1000);
     sends(STOP);
     polls_to(TMINI_EVENT_UNWANTED_SCANNING);
+}
+
+/* Some units may begin to scan when they start up. */
+void test_a_lidar_that_streams_after_a_reboot_is_stopped(void)
+{
+    rig_go_idle();
+    sends(REBOOT);
+    begins(tmini_reboot(&rig.lidar));
+    passes(5000);
+    polls_to(TMINI_EVENT_REBOOTED);
+    passes(500);
+    rig_feed_point_packet(1000);
+    sends(STOP);
+    polls_to(TMINI_EVENT_UNWANTED_SCANNING);
+}
+
+void test_a_port_that_cannot_send_the_stop_is_asked_twice_a_second(void)
+{
+    unsigned events = 0;
+    rig_go_idle();
+    port_write_IgnoreAndReturn(-1);
+    for (unsigned i = 0; i < 1000; i++) {
+        passes(10);
+        rig_feed_point_packet(1000);
+        while (tmini_poll(&rig.lidar) != TMINI_EVENT_NONE) {
+            events++;
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT(2 * 20, events); /* UNWANTED_SCANNING and COMMAND_FAILED. */
 }
 
 void test_a_lidar_that_streams_after_a_query_is_stopped_too(void)
@@ -330,6 +363,7 @@ void test_a_lidar_that_streams_after_a_query_is_stopped_too(void)
     begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_health(0, 0);
     polls_to(TMINI_EVENT_HEALTH);
+    passes(500);
     rig_feed_point_packet(1000);
     sends(STOP);
     polls_to(TMINI_EVENT_UNWANTED_SCANNING);

@@ -294,6 +294,61 @@ void test_three_seconds_of_another_frequency_are_a_fault_and_one_more_try(void)
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
 
+/* The stop has been sent. The lidar is deaf to all but the start. */
+static void fails_to_set_the_frequency(void)
+{
+    becomes_quiet();
+    goes_on_with(GET_FREQUENCY);
+    passes(2000);
+    polls_to(TMINI_EVENT_NONE);
+    goes_on_with(STOP);
+    becomes_quiet();
+    goes_on_with(START);
+    starts_scanning();
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
+}
+
+/* At 6.0 Hz, 18, 36, 72 and 144 revolutions are 3, 6, 12 and 24 seconds; 255 are counted at most. */
+void test_a_frequency_that_could_not_be_set_is_tried_again_less_and_less_often(void)
+{
+    static const unsigned counts[] = {18, 36, 72, 144, 255, 255};
+    scans_wishing(1000);
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+        turns(counts[i] - 1, 60);
+        is_in(TMINI_STATE_SCANNING);
+        sends(STOP);
+        turns(1, 60);
+        was_sent();
+        is_in(TMINI_STATE_STARTING);
+        TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+        fails_to_set_the_frequency();
+    }
+    turns(1, 100);
+    turns(17, 60);
+    is_in(TMINI_STATE_SCANNING);
+    sends(STOP);
+    turns(1, 60);
+    was_sent();
+}
+
+void test_a_frequency_that_is_off_after_a_loss_is_a_new_fault(void)
+{
+    scans_wishing(1000);
+    sends(STOP);
+    turns(18, 60);
+    was_sent();
+    becomes_quiet();
+    goes_on_with(GET_FREQUENCY);
+    rig_feed_frequency(1000);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    goes_on_with(START);
+    starts_scanning();
+    passes(1000);
+    polls_to(TMINI_EVENT_LOST);
+    polls_to(TMINI_EVENT_FAULTS_CHANGED);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+}
+
 void test_five_percent_are_no_other_frequency(void)
 {
     scans_wishing(1000);

@@ -86,12 +86,13 @@ typedef struct {
      * them. Raise the value where a layer below delays bytes: 250 for a computer. 0: pauses are not
      * looked for. Whatever the value, a scan that took more than one and a half turns has a gap. */
     uint16_t max_pause_ms;
-    /** After a stop, the line counts as quiet when it has been silent for this long. 0: at once. */
+    /** After a stop, the line counts as quiet when it has been silent for this long, less than
+     * 600. 0: at once. */
     uint16_t quiet_line_ms;
     /** How long to wait for a reply (section 9.11). 0: without limit. */
     uint16_t reply_timeout_ms;
     /** The pause after a failed attempt to start begins with 500 ms and doubles up to this value.
-     * 0: after a failed attempt there is no other. */
+     * 0: after a failed attempt there is no other until tmini_stop() and tmini_start(). */
     uint16_t back_off_max_ms;
     /** How often a query, a stop or a reboot is tried. 0: once. */
     uint8_t max_attempts;
@@ -128,8 +129,8 @@ typedef struct {
                                   * until the next TMINI_EVENT_SCAN; with NULL, until the next
                                   * poll. */
     size_t max_points;           /**< Points in each buffer: 1 to 65535; 0 if points is NULL. */
-    uint8_t max_samples;         /**< Packets with more samples are not valid; 0: the default,
-                                  * 80. */
+    uint8_t max_samples;         /**< Packets with more samples are not valid; the lidar sends
+                                  * up to 40. 0: the default, 80. */
     uint8_t filter;              /**< For scans: a combination of tmini_filter_t; 0: keep all. */
     uint16_t frequency_chz; /**< The wanted scan frequency, as for tmini_set_frequency(); 0: leave
                              * it as the lidar has it. */
@@ -174,7 +175,8 @@ typedef enum {
 /** What the lidar does, as far as the driver knows (docs/design.md has a diagram). The last three
  * states mean that you want it to scan. */
 typedef enum {
-    TMINI_STATE_UNKNOWN,    /**< The lidar may be scanning: after init, reboot or a failure. */
+    TMINI_STATE_UNKNOWN,    /**< The lidar may be scanning: after init, a reboot or a failure, or
+                             * when bytes have come from an idle lidar. */
     TMINI_STATE_IDLE,       /**< Not scanning, and the line is quiet. */
     TMINI_STATE_BUSY,       /**< Carrying out a query, a frequency change or a reboot. */
     TMINI_STATE_STOPPING,   /**< Waiting for the line to fall quiet after a stop. */
@@ -301,7 +303,7 @@ tmini_status_t tmini_start(tmini_t *lidar);
 
 /** The lidar is to stop, in any state [TMINI_EVENT_STOPPED]. An unfinished command or start ends
  * with TMINI_EVENT_COMMAND_FAILED and TMINI_ERROR_ABORTED. If the lidar scans later although it was
- * stopped, it is stopped again: TMINI_EVENT_UNWANTED_SCANNING (section 9.10). If it cannot be
+ * stopped, it is stopped again, at most twice per second: TMINI_EVENT_UNWANTED_SCANNING (section 9.10). If it cannot be
  * stopped, TMINI_EVENT_COMMAND_FAILED comes once per round of attempts.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, or a lidar that was not set up. */
 tmini_status_t tmini_stop(tmini_t *lidar);
@@ -314,8 +316,9 @@ tmini_status_t tmini_stop(tmini_t *lidar);
  * recovered]. During a query the wish waits for the next start or the next query of the frequency.
  * Scanning matters more than the frequency: if it cannot be set, the lidar scans at the old one,
  * and TMINI_EVENT_COMMAND_FAILED follows TMINI_EVENT_STARTED. A lidar that turns at another
- * frequency for three seconds gets TMINI_FAULT_FREQUENCY, and the driver sets the frequency once
- * more. Returns TMINI_OK; TMINI_ERROR_ARGUMENT: null pointer, a lidar that was not set up, or a
+ * frequency for three seconds gets TMINI_FAULT_FREQUENCY, and the driver stops it, sets the frequency
+ * once more and starts it; if the lidar does not answer then, also later, less and less often.
+ * Returns TMINI_OK; TMINI_ERROR_ARGUMENT: null pointer, a lidar that was not set up, or a
  * frequency out of range; TMINI_ERROR_LISTEN_ONLY: the configuration says that nothing is sent.
  * After an error the wish is unchanged. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
@@ -445,7 +448,8 @@ typedef struct {
     uint8_t observed;  /* Those of the last revolution; reported when the next one has the same. */
     bool is_complete;  /* Nothing has been lost since the last start packet. */
     uint8_t ranges;    /* Packets with a valid range since then; at most 255. */
-    uint8_t off_turns; /* Turns in a row at another frequency than wanted. */
+    uint8_t off_turns; /* Turns in a row at another frequency than wanted, */
+    uint8_t off_times; /* and how often that has lasted too long. */
     uint16_t samples;  /* Since the last start packet. */
 } tmini_monitor_t;
 

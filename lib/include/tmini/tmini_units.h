@@ -10,7 +10,8 @@
  * corrected for the bytes that came after them. They are later than the measurement: by up to 6 ms
  * if you poll every 1 ms (a start packet waits until the packet before it has been sent), and by up
  * to 11 ms if you poll every 10 or 38 ms; where packets are lost, by up to 12 and 22 ms. Time that
- * bytes spend in a UART's FIFO, a task's queue or a USB adapter comes on top: some milliseconds.
+ * bytes spend in a UART's FIFO, a task's queue or a USB adapter, or written by DMA and not yet
+ * published, comes on top: some milliseconds.
  * Within a scan, or a part of one, the times of points are accurate to 1.5 ms at 6 Hz and 1 ms at
  * 12 Hz, however rare the polls, because they follow the rotor's even turning and not the clock. */
 

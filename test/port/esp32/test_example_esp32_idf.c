@@ -7,6 +7,7 @@
 
 #include "unity.h"
 
+#include "console.h"
 #include "freertos/FreeRTOS.h"
 #include "freertos/task.h"
 #include "virtual_idf.h"
@@ -76,4 +77,5 @@ void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
     vTaskDelay(2500);
     assert_logged("I lidar: back again\n");
     TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
+    assert_console_leaves_time(1024);
 }

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "console.h"
 #include "driver/gpio.h"
 #include "driver/uart.h"
 #include "esp_log.h"
@@ -557,6 +558,9 @@ esp_err_t gpio_set_level(gpio_num_t pin, uint32_t level)
     return ESP_OK;
 }
 
+/* Colours, and the time in brackets. */
+#define LOG_EXTRA 24u
+
 void esp_log_line(char level, const char *tag, const char *format, ...)
 {
     va_list arguments;
@@ -568,6 +572,7 @@ void esp_log_line(char level, const char *tag, const char *format, ...)
     at += vsnprintf(at, (size_t)(end - at), format, arguments);
     va_end(arguments);
     at += snprintf(at, (size_t)(end - at), "\n");
+    console_note(world.now_us, (size_t)(at - world.log) - world.log_length + LOG_EXTRA);
     world.log_length = (size_t)(at - world.log);
     if (world.log_length > sizeof world.log - 1024u) {
         abort(); /* More than any test logs. */

@@ -10,6 +10,7 @@
 
 #include "FreeRTOS.h"
 #include "board.h"
+#include "console.h"
 #include "irq_lines.h"
 #include "stream_buffer.h"
 #include "task.h"
@@ -511,5 +512,6 @@ void board_print(const char *text)
     if (world.console_length + length < sizeof world.console) {
         memcpy(&world.console[world.console_length], text, length + 1);
         world.console_length += length;
+        console_note(world.now_us, length);
     }
 }

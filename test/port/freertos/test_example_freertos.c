@@ -7,6 +7,7 @@
 
 #include "unity.h"
 
+#include "console.h"
 #include "FreeRTOS.h"
 #include "task.h"
 #include "freertos_model.h"
@@ -73,4 +74,5 @@ void test_it_tells_who_the_lidar_is_and_whether_a_robot_may_move(void)
     assert_said("back again\n");
     assert_last_said(", go;");
     TEST_ASSERT_EQUAL_UINT(TASKS_EXPECTED, freertos_model_tasks());
+    assert_console_leaves_time(1024);
 }

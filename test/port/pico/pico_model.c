@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "console.h"
 #include "hardware/dma.h"
 #include "hardware/sync.h"
 #include "irq_lines.h"
@@ -675,6 +676,7 @@ int pico_model_printf(const char *format, ...)
     va_end(arguments);
     if (length > 0 && (size_t)length < room) {
         chip.console_length += (size_t)length;
+        console_note(pico_model_now_us(), (size_t)length);
     }
     return length;
 }

@@ -8,8 +8,11 @@
 #include "lidar.h"
 #include "usart.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "console.h"
 #include "encoder.h"
 #include "line.h"
 #include "unity.h"
@@ -34,6 +37,19 @@ static unsigned index_in_turn;
 static uint8_t health_ct; /* The CT byte with the health bits (section 7); 0: no CT information. */
 static uint8_t crc;
 static bool next_is_harmed;
+
+int console_printf(const char *format, ...);
+
+int console_printf(const char *format, ...)
+{
+    char text[200];
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    console_note(model.now_ns / 1000u, (size_t)length);
+    return length;
+}
 
 static void usart_interrupt(void)
 {
@@ -93,6 +109,7 @@ void setUp(void)
     irq.lines[MODEL_DMA_IRQ].handler = dma_interrupt;
     model.sent = note_sent;
     line_open();
+    console_begin();
     dma = (DMA_HandleTypeDef){.Init = {.Mode = DMA_CIRCULAR, .MemInc = DMA_MINC_ENABLE}};
     huart1 = (UART_HandleTypeDef){
         .Instance = &model_usart,
@@ -204,6 +221,15 @@ void test_the_robot_may_move_when_all_is_far(void)
     scan_with(0, 2000);
     TEST_ASSERT_TRUE(may_move);
     TEST_ASSERT_EQUAL_UINT16(2000, lidar_ahead_mm());
+}
+
+void test_what_it_prints_leaves_the_lidar_time(void)
+{
+    start_scanning();
+    for (unsigned turn = 0; turn < 50; turn++) {
+        arrive_revolution(0, 2000);
+    }
+    assert_console_leaves_time(1024);
 }
 
 void test_something_near_in_front_stops_the_robot(void)

@@ -8,6 +8,7 @@
 
 #include "unity.h"
 
+#include "console.h"
 #include "zephyr_model.h"
 
 int example_main(void);
@@ -107,6 +108,7 @@ void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
         (void)example_main();
     }
     TEST_ASSERT_EQUAL_UINT(sizeof story / sizeof story[0], chapter);
+    assert_console_leaves_time(1024);
 }
 
 void test_it_says_so_when_the_lidar_cannot_be_started(void)

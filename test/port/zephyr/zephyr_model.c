@@ -3,6 +3,7 @@
 
 #include "zephyr_model.h"
 
+#include "console.h"
 #include "irq_lines.h"
 #include "zephyr_board.h"
 
@@ -372,6 +373,7 @@ int printk(const char *format, ...)
     va_end(arguments);
     if (length > 0 && (size_t)length < room) {
         board.console_length += (size_t)length;
+        console_note(board.now_us, (size_t)length);
     }
     return length;
 }

@@ -21,8 +21,8 @@ typedef struct {
 
 /* From an undamaged stream of scan packets to points, in one pass that checks and stores: no ring,
  * no resynchronising, no scans, no CT information; for machines that read words at any address, the
- * first byte lowest. The byte after the last one is read, too. Returns how many of the bytes it has
- * used: up to the first packet that is not all there. */
+ * first byte lowest. The byte after the last one is read, too. Returns how many bytes it has used:
+ * all up to the first incomplete packet. */
 size_t limit_decode(const uint8_t *bytes, size_t count, limit_point_t *points);
 
 #endif

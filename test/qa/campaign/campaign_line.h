@@ -4,10 +4,9 @@
 /* What the lidar sends during one trial of the campaign: some revolutions as bytes, each with the
  * time at which its last bit is on the wire, and parts of them that never arrive.
  *
- * Every sample tells by its distance, intensity and flag which revolution it is of and which sample
- * of that. So whoever has a point knows whether it was sent, where it belongs and what its angle
- * is. Made with test/support/encoder.c, from the protocol's document; shares no code with the
- * library. */
+ * Every sample's distance, intensity and flag encode its revolution and its index within it. So
+ * each point shows whether it was sent, where it belongs and what its angle is. Made with
+ * test/support/encoder.c, from the protocol's document; shares no code with the library. */
 
 #ifndef CAMPAIGN_LINE_H
 #define CAMPAIGN_LINE_H

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Without LastCRC and without a trace on the line, a hole of less than 4 degrees between two
- * packets cannot be told from jitter by whom it has only angles to go by. */
+/* Without LastCRC and without missing bytes on the line, only the angles could show a hole between
+ * two packets, and below 4 degrees they cannot be distinguished from jitter. */
 #define INVISIBLE_Q6 256u
 
 /* What the points of one scan come to. */
@@ -275,9 +275,9 @@ void oracle_judge_account(oracle_t *oracle, const host_t *host)
                            counters.bytes_pending);
 }
 
-/* Whose looks are rare, below which bytes may be held, does not know how long the line was silent
- * before the first bytes, nor after the last; and at its end the line is silent while bytes that
- * wait for room still come. */
+/* If polls are rare and a layer below may hold bytes, the silence before the first bytes and after
+ * the last is unknown. At the trial's end the line is silent while bytes that waited for room still
+ * come. */
 #define UNCERTAIN_US 250000u
 #define WATCHED_US 30000u
 #define BYTE_US 76u

@@ -6,9 +6,9 @@
  * that takes none, one or both bytes, or fails. Nothing may crash, hang or lose count, and nothing
  * but whole two-byte commands may leave.
  *
- * Or the bytes are those of a lidar that tells the truth (turning_lidar.h), over a line that loses
- * and damages some at any time, and may come in the middle of a poll: then no scan may be of two
- * revolutions, or say that it is complete if it is not. */
+ * Or the bytes come from a turning lidar (turning_lidar.h) over a line that loses and damages some,
+ * also in the middle of a poll: then no scan may mix two revolutions, or be reported as complete if
+ * it is not. */
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A lidar that turns and tells the truth: each sample says by its distance which revolution it is
- * of, by its angle and intensity which sample of that. So whoever is given a scan can tell whether
- * it is one revolution, whatever the line has lost on the way. Shares no code with the library. */
+/* A turning lidar whose samples can be checked: the distance encodes the revolution, angle and
+ * intensity the sample's index. So a scan shows whether it is one revolution, whatever the line has
+ * lost. Shares no code with the library. */
 
 #ifndef TURNING_LIDAR_H
 #define TURNING_LIDAR_H
@@ -35,8 +35,8 @@ bool turning_received(const uint8_t *bytes, size_t count);
 /* Looks at a scan that the library has delivered. */
 void turning_judge(const tmini_scan_t *scan);
 
-/* What is wrong with one of them, or NULL. Where two ends of what came look like one packet, with
- * its checksum, nobody can tell it from a true one: then nothing is. */
+/* What is wrong with a scan, or NULL. Remains of two packets that together look like a valid packet
+ * cannot be distinguished from one, so they are not an error. */
 const char *turning_verdict(void);
 
 #endif

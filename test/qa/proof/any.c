@@ -91,8 +91,8 @@ bool have_bytes_come(void)
     return has_come;
 }
 
-/* The producer, between two accesses of the consumer: of a ring that the CPU feeds, it may store
- * what there is room for, and, full or not, close it. */
+/* What the producer may do between two accesses of the consumer: in a CPU-fed ring, store bytes as
+ * far as there is room, and close it, full or not. */
 static void come(tmini_ring_t *ring)
 {
     const size_t count = nondet_byte();

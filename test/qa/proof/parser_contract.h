@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the parser's functions promise to those who call them. proof_parser.c claims it of the
- * parser; parser_stub.c, which stands in for it in the driver's proofs, assumes it and nothing
- * else. */
+/* What the parser's functions promise to their callers. proof_parser.c proves it for the parser;
+ * parser_stub.c, which replaces the parser in the driver's proofs, assumes it and nothing else. */
 
 #ifndef PARSER_CONTRACT_H
 #define PARSER_CONTRACT_H

@@ -64,8 +64,8 @@ static void step(const void *data, tmini_scan_t *scan)
     CLAIM(lidar.link.spare_points == NULL || scan->points != lidar.decoder.builder.scan.points);
 }
 
-/* Listening, nothing is on its way; a start follows only what ends with an event; and what is not
- * wanted does not fail. */
+/* When only listening, no command is being sent. A start follows only an operation that ends with
+ * an event. An operation that nobody wanted does not fail. */
 static bool wish_fits(void)
 {
     const uint8_t phase = lidar.command.phase;

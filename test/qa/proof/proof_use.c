@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What may be used besides: ranges, sectors, mounting, times. Nothing is written outside, nothing
+/* The optional modules: ranges, sectors, mounting, times. Nothing is written outside, nothing
  * overflows, for all angles and all numbers of bins or sectors. */
 
 #include "proof.h"

@@ -49,6 +49,10 @@ MOST_POINTS = 800
 # 100 ms. The driver stops the lidar itself, too, before it starts it anew.
 MOST_CUT_OFF = 2
 
+# Of the console: 115200 baud, and a buffer.
+CONSOLE_BYTES_PER_MS = 11
+CONSOLE_HOLDS = 2048
+
 # Of this computer's time, for one millisecond of the firmware's.
 PATIENCE_S = 120
 
@@ -362,6 +366,17 @@ def check_packets(findings, packets, counters):
     return 0
 
 
+def check_console(findings, lines):
+    """The firmware's console holds what its UART has not sent yet."""
+    waiting = most = before = 0
+    for at, text in lines:
+        waiting = max(0, waiting - CONSOLE_BYTES_PER_MS * (at - before)) + len(text) + len("\r\n")
+        most = max(most, waiting)
+        before = at
+    print(f"bytes waiting for the console's UART: up to {most}")
+    findings.check(most <= CONSOLE_HOLDS, "the firmware prints more than its console holds")
+
+
 def check_sum(findings, counters):
     parts = ("in_packets", "in_replies", "skipped", "overrun", "pending")
     total = sum(int(counters[part]) for part in parts)
@@ -401,6 +416,7 @@ def check(args, lines, log, packets):
     check_answers(findings, texts)
     accepted = check_packets(findings, packets, counters)
     check_sum(findings, counters)
+    check_console(findings, lines)
     check_scans(findings, args, texts, log, packets, counters, accepted)
     if args.fault:
         check_recoveries(findings, lines, counters, log, packets)

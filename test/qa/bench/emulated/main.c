@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* The program that the emulator calls, function by function: one lidar on a board whose clock and
- * UART are variables. Only the library's instructions are counted, none of this file but those of
- * the function that the library lends to the interrupt. */
+ * UART are variables. Only the library's instructions are counted, including its inline function in
+ * this file's interrupt, but nothing else of this file. */
 
 #include "limit.h"
 #include "tmini/tmini.h"
@@ -88,8 +88,8 @@ tmini_status_t bench_set_frequency(uint16_t frequency_chz)
     return tmini_set_frequency(&bench_lidar, frequency_chz);
 }
 
-/* The receive function is inline in the user's interrupt. What any interrupt pays that has a lidar,
- * its address and the return, is not counted. */
+/* The receive function is inline in the user's interrupt. Loading the lidar's address and the
+ * return are not counted, because every such interrupt needs them. */
 const tmini_t *interrupt_nothing(void)
 {
     return &bench_lidar;

@@ -7,7 +7,7 @@
  *   host decode FILE BYTES         the same by blocks, with ring, parser, packet and scan alone
  *   host limit FILE BYTES          the least that it can cost (limit.h); BYTES has no meaning
  *
- * Prints how many scan packets were found. Counted is all that counted_run() does: the library, the
+ * Prints how many scan packets were found. Everything in counted_run() is counted: the library, the
  * C library's copies, the clock, and the loop that a program has around them. */
 
 #include "limit.h"

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "console.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "unity.h"
+
+#define US_PER_BYTE 87u       /* 10 bits. */
+#define LIDAR_US_PER_BYTE 43u /* 23,000 bytes per second. */
+
+/* The loop waits for this long when it has nothing to do, or does not wait at all. */
+#define SAME_TURN_US 1000u
+
+static struct {
+    uint64_t first_us;
+    uint64_t last_us;
+    uint64_t bytes;
+    uint32_t turn; /* Bytes of the loop's present turn, */
+    uint32_t most; /* and of the one with most. */
+} console;
+
+void console_begin(void)
+{
+    memset(&console, 0, sizeof console);
+}
+
+void console_note(uint64_t now_us, size_t bytes)
+{
+    if (console.bytes == 0) {
+        console.first_us = now_us;
+    }
+    if (now_us - console.last_us >= SAME_TURN_US) {
+        console.turn = 0;
+    }
+    console.last_us = now_us;
+    console.bytes += bytes;
+    console.turn += (uint32_t)bytes;
+    console.most = console.turn > console.most ? console.turn : console.most;
+}
+
+void assert_console_leaves_time(uint32_t held)
+{
+    char said[100];
+    const uint64_t time_us = console.last_us - console.first_us;
+    (void)snprintf(said, sizeof said, "%u bytes at once, %u in %u ms", (unsigned)console.most,
+                   (unsigned)console.bytes, (unsigned)(time_us / 1000u));
+    TEST_MESSAGE(said);
+    TEST_ASSERT_GREATER_THAN_MESSAGE(0, console.most, said);
+    TEST_ASSERT_LESS_OR_EQUAL_MESSAGE(held * LIDAR_US_PER_BYTE, console.most * US_PER_BYTE, said);
+    TEST_ASSERT_LESS_OR_EQUAL_MESSAGE(time_us / 2, console.bytes * US_PER_BYTE, said);
+}
