@@ -15,7 +15,7 @@
 #include "points.h"
 #include "tmini/tmini_names.h"
 
-/* Longer than any command takes that the driver tries three times. */
+/* Longer than three attempts at any command take. */
 #define COMMAND_MS 15000u
 
 /* A lidar that has just been plugged in boots for some seconds. */

@@ -47,7 +47,7 @@ const char *place_text(const tmini_point_t *point);
 /* "healthy", or "faulty: " and the modules with what to look at, in `text`. */
 const char *faults_text(unsigned faults, char text[FAULTS_TEXT_SIZE]);
 
-/* The same of what the stream tells; or why it tells nothing. */
+/* The same for the health in the stream; or why it is unknown. */
 const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE]);
 
 /* "8 complete, 1 with packets missing" */

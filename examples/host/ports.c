@@ -27,7 +27,7 @@ typedef struct {
 
 static adapter_t adapters[PORTS_MAX + 1];
 
-/* What lidars' adapters are made of; 60-tmini.rules knows the same. */
+/* The chips of lidars' USB adapters, the same as in 60-tmini.rules. */
 static const struct {
     const char *maker, *chip;
 } chips[] = {

@@ -29,7 +29,7 @@ static void show_progress(recording_t *recording)
     }
 }
 
-/* What is there, rather than all that fits: it may come through a pipe, and live. */
+/* Reads the bytes that are there, not a full buffer: they may come live through a pipe. */
 static void read_block(recording_t *recording)
 {
     ssize_t count = 0;

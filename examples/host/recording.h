@@ -32,8 +32,8 @@ typedef struct {
 int recording_open(recording_t *recording, const options_t *options);
 void recording_close(recording_t *recording);
 
-/* Finds the next valid packet: see `tape`. Returns false when nothing is left (`is_at_end`), or
- * there yet. */
+/* Finds the next valid packet: see `tape`. Returns false at the end (`is_at_end`), or if no more
+ * bytes are there yet. */
 bool recording_next(recording_t *recording);
 
 /* Back to its beginning. Returns false if that cannot be: it comes through a pipe. */

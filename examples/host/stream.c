@@ -8,9 +8,9 @@
 /* A full packet (section 9.6), by which damaged bytes are counted as packets. */
 #define PACKET_SIZE 130u
 
-/* After this long without a packet any number of turns may be missing, whatever the angles say: no
- * computer holds that many bytes back. (Live, the driver knows better, and says so by the packet's
- * gap.) */
+/* After this long without a packet any number of turns may be missing, whatever the angles say,
+ * because no computer holds that many bytes back. (With a live lidar the driver decides, and
+ * reports it by the packet's gap.) */
 #define PAUSE_MS 1000u
 
 /* After a pause the driver may doubt a whole batch of packets: the first one begins a scan of its

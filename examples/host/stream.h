@@ -25,7 +25,7 @@ typedef struct {
     count_t start_packets;
     count_t points;
     count_t points_before;      /* The first start packet. */
-    count_t damaged;            /* Packets that must have been where damaged bytes were. */
+    count_t damaged;            /* Estimated number of packets lost in damaged bytes. */
     count_t stray_bytes;        /* Between packets, LastCRC not counted, */
     count_t guard_bytes;        /* of which (section 7) there were this many. */
     count_t confirmed;          /* Revolutions that LastCRC confirmed. */
@@ -46,11 +46,11 @@ void stream_init(stream_t *stream, const tmini_mount_t *mount);
 /* Takes the next packet, which came at that time. Returns true if it ends a scan: see `scan`. */
 bool stream_take(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms);
 
-/* Nothing more comes: what is there of a scan becomes `scan`, incomplete. Returns false if there is
- * nothing. */
+/* No more packets will come: an unfinished scan becomes `scan`, incomplete. Returns false if there
+ * is none. */
 bool stream_end(stream_t *stream);
 
-/* The stream was interrupted: forgets the scan under way. */
+/* The stream was interrupted: forgets the unfinished scan. */
 void stream_break(stream_t *stream);
 
 /* A combination of tmini_fault_t, or TMINI_FAULTS_UNKNOWN. */

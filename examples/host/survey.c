@@ -109,7 +109,7 @@ static uint32_t step(survey_t *survey, tmini_command_code_t code)
     return content != NULL ? tmini_reply_frequency_chz(content) : 0;
 }
 
-/* As far as it goes, by one step and then by the other. */
+/* Changes the frequency as far as possible by one step, then by the other. */
 static uint32_t push(survey_t *survey, tmini_command_code_t coarse, tmini_command_code_t fine)
 {
     const tmini_command_code_t codes[2] = {coarse, fine};
@@ -199,7 +199,7 @@ static void try_reboot(survey_t *survey)
 
 /* ------------------------------------------------------------------------------------- scanning */
 
-/* What comes until that time, or until the line has been quiet for a while if that is sooner. */
+/* Receives until that time, or until the line has been quiet for a while. */
 static void listen(survey_t *survey, survey_scan_t *scan, uint64_t end_us, uint64_t quiet_us)
 {
     uint8_t bytes[256];

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Every question that the protocol leaves open, put to a unit: survey.c asks, survey_scan.c looks
- * at what it sends while it scans, survey_table.c compares with what is expected (docs/protocol.md,
- * section 9 above all) and writes the report, which the simulated lidar takes as its settings
+/* Tests a unit on every question that the protocol leaves open. survey.c sends commands,
+ * survey_scan.c examines the scan data, survey_table.c compares with docs/protocol.md (above all
+ * section 9) and writes the report, which the simulated lidar accepts as its settings
  * (test/simulator/like.c). */
 
 #ifndef SURVEY_H

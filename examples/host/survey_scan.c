@@ -80,7 +80,7 @@ static void note_start(survey_scan_t *scan, const tmini_packet_t *packet, uint64
     scan->start_packets++;
 }
 
-/* A packet of one sample that is not simply what is left of a turn (section 9.6). */
+/* A packet of one sample that is not the rest of a turn (section 9.6). */
 static void note_lone(survey_scan_t *scan, const tmini_packet_t *packet)
 {
     if (!tmini_packet_is_start(packet) && scan->latest_is_point != 0 && scan->latest_count == 1) {
@@ -127,7 +127,8 @@ static void note_way(survey_scan_t *scan, const tmini_packet_t *packet)
     scan->until_start_q6 = scan->until_start_q6 - at_q6 + to_q6;
 }
 
-/* A turn with a gap says nothing by its samples; of the steady ones, those in the gap count. */
+/* The samples of a turn with a gap say nothing about the frequency. In a steady turn the samples
+ * that are missing in the gap are counted, too. */
 static void note_gap(survey_scan_t *scan, const tmini_packet_t *packet)
 {
     const bool is_guard = tmini_packet_is_start(packet) && packet->gap == 1;

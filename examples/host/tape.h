@@ -22,7 +22,8 @@ typedef enum {
 /* Members down to `stream` may be read. */
 typedef struct {
     uint64_t time_us;  /* When the latest packet came; untimed: by 4000 samples per second. */
-    uint64_t until_us; /* May be set: what came later in a timed one is not there yet. */
+    uint64_t until_us; /* May be set: in a timed recording, bytes after this time are not read
+                        * yet. */
     count_t bytes;     /* Of the lidar's. */
     bool is_begun;     /* It is known whether there are chunks: chunks.version. */
     chunks_t chunks;

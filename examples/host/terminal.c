@@ -120,7 +120,7 @@ static void write_all(const char *text, size_t size)
             return; /* The terminal has gone; a signal says so too. */
         }
         if (written < 0 && interrupt_has_come()) {
-            return; /* What the terminal does not take is not to keep the program. */
+            return; /* A terminal that accepts no output must not block the program. */
         }
         if (written < 0) {
             struct pollfd entry = {.fd = STDOUT_FILENO, .events = POLLOUT};
@@ -144,7 +144,7 @@ bool terminal_take(void)
         is_at_exit = atexit(terminal_restore) == 0;
     }
     interrupt_last_words(restore_at_once);
-    (void)signal(SIGTSTP, SIG_IGN); /* Stopped, the program could not give the terminal back. */
+    (void)signal(SIGTSTP, SIG_IGN); /* A stopped program could not restore the terminal. */
     write_all(OTHER_SCREEN, has_cursor() ? strlen(OTHER_SCREEN) : 0);
     return true;
 }

@@ -50,17 +50,17 @@ enum {
     KEY_RIGHT,
 };
 
-/* Takes the terminal over: another screen, no echo, no cursor. The keys are the terminal's even
- * when standard input is not. Returns false if standard output is no terminal. It is given back by
- * terminal_restore(), or else when the program exits. */
+/* Takes over the terminal: alternate screen, no echo, no cursor. Keys come from the terminal even
+ * if standard input does not. Returns false if standard output is no terminal. terminal_restore(),
+ * or the program's exit, restores it. */
 bool terminal_take(void);
 void terminal_restore(void);
 
-/* Gives it back and stops this program and those that it is in a pipe with; on going on, takes it
- * over again. */
+/* Restores the terminal and stops this program and the others in its pipe; when it is continued,
+ * takes over the terminal again. */
 void terminal_suspend(void);
 
-/* The key that was pressed, or KEY_NONE. Does not wait, but to tell Esc from the arrows. */
+/* The key that was pressed, or KEY_NONE. It waits only to distinguish Esc from the arrow keys. */
 int terminal_key(void);
 
 /* A screen with what the terminal can do; no size yet. */

@@ -46,7 +46,7 @@ static size_t zoom_of(unsigned range_mm)
     return i;
 }
 
-/* By themselves range and colours only widen: a picture that breathes is hard to look at. */
+/* Automatic changes only widen range and colours, so that the picture does not flicker. */
 static void choose_scale(view_t *view)
 {
     const survey_t *const survey = &view->survey;

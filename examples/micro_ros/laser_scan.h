@@ -36,8 +36,8 @@ void laser_scan_init(sensor_msgs__msg__LaserScan *message, laser_scan_memory_t *
                      char *frame_id);
 
 /* Fills in a scan that ended at `end_ns` (nanoseconds of ROS's clock). A ray without a valid range
- * is NAN: the lidar does not tell nothing there from not seen. False, and nothing is changed, when
- * the scan is null. */
+ * is NAN, because the lidar does not distinguish free space from an unseen obstacle. Returns false
+ * and changes nothing if the scan is null. */
 bool laser_scan_fill(sensor_msgs__msg__LaserScan *message, laser_scan_memory_t *memory,
                      const tmini_scan_t *scan, int64_t end_ns);
 

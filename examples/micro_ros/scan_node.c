@@ -6,7 +6,7 @@
 #include <rmw_microros/rmw_microros.h>
 #include <string.h>
 
-/* How often the agent is looked for: to find it, and to notice that it has gone. */
+/* How often the node checks for the agent: whether it is there, or has disappeared. */
 static const uint32_t LOOK_EVERY_MS = 1000;
 
 /* Two clocks drift apart by some 40 us per second. */
@@ -30,7 +30,7 @@ static bool open_support(scan_node_t *node)
     if (rclc_support_init(&node->support, 0, NULL, &node->allocator) != RCL_RET_OK) {
         return false;
     }
-    /* It is closed when the agent has gone: nobody will agree to that. */
+    /* Closed without an agent: do not wait for its answer. */
     (void)rmw_uros_set_context_entity_destroy_session_timeout(
         rcl_context_get_rmw_context(&node->support.context), 0);
     return true;

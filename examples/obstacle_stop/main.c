@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop: what a robot builder starts from. Shows the nearest obstacle in each of eight
- * sectors, and STOP when something is nearer than 30 cm in front, or when the lidar cannot say.
+/* Obstacle stop: a starting point for robots. Shows the nearest obstacle in each of eight sectors,
+ * and STOP when something is nearer than 30 cm in front, or when the way ahead is unknown.
  *
  *     obstacle_stop /dev/ttyUSB0          or the port that `tmini-sim --pty` prints */
 
@@ -75,7 +75,7 @@ static void drive(void)
             is_news = true;
         }
     }
-    /* Each time round, not only when it begins: a faulty lidar may go on sending scans. */
+    /* In each round, not only when the fault begins: a faulty lidar may keep sending scans. */
     if (tmini_faults(&lidar) != 0 || tmini_state(&lidar) != TMINI_STATE_SCANNING) {
         obstacle_blind(&obstacle);
     }
@@ -89,7 +89,7 @@ static void drive(void)
 static tmini_posix_status_t set_up(const char *path)
 {
     timing = tmini_timing_default;
-    timing.frame_timeout_ms = 250; /* A computer has other things to do: bytes may come late, */
+    timing.frame_timeout_ms = 250; /* On a computer bytes may come late, */
     timing.max_pause_ms = 250;     /* and in bursts. */
     const tmini_config_t config = {
         .port = &tmini_posix_port,

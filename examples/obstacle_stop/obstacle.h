@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop: from scans to "may the robot move?". Pure, integers only; the same on a PC and in
- * firmware.
+/* Obstacle stop: from scans to "may the robot move?". Pure functions with integers only, the same on
+ * a PC and in firmware.
  *
- * It may while something has been seen lately in front and nothing of it was near. A scan with gaps
- * may have missed what was there: it can stop the robot, but does not let it go on. A scan without
- * any distance means that the lidar sees nothing, not that nothing is there. */
+ * The robot may move if a recent complete scan has seen something in front and nothing near. A scan
+ * with gaps may have missed an obstacle: it can stop the robot, but not release it. A scan without
+ * any distance means that the lidar sees nothing, not that the way is free. */
 
 #ifndef OBSTACLE_H
 #define OBSTACLE_H

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop on a Raspberry Pi Pico: asks the lidar who it is, scans, raises a pin while the
- * robot must not move, and writes a line a second to the console. */
+/* Obstacle stop on a Raspberry Pi Pico: asks for the lidar's information, scans, raises a pin while
+ * the robot must not move, and writes a line per second to the console. */
 
 #include <stdio.h>
 
@@ -47,7 +47,7 @@ static uint32_t now_ms(void)
     return to_ms_since_boot(get_absolute_time());
 }
 
-/* Without a scanning lidar, or with a faulty one, nothing can be known of what is in front. */
+/* Without a scanning lidar, or with a faulty one, the way ahead is unknown. */
 static bool must_stop(void)
 {
     if (tmini_state(&lidar) != TMINI_STATE_SCANNING || tmini_faults(&lidar) != 0) {

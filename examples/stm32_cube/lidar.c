@@ -87,7 +87,7 @@ static void report(void)
 
 /* -------------------------------------------------------------------------------- obstacle stop */
 
-/* Without a scanning lidar, or with a faulty one, nothing can be known of what is in front. */
+/* Without a scanning lidar, or with a faulty one, the way ahead is unknown. */
 static void drive(void)
 {
     if (tmini_state(&lidar) != TMINI_STATE_SCANNING || tmini_faults(&lidar) != 0) {
@@ -115,7 +115,8 @@ void lidar_start(UART_HandleTypeDef *uart)
     (void)tmini_start(&lidar); /* Stands: the library tries until the lidar scans. */
 }
 
-/* All that has come: what is left in the buffer might be overwritten before the next call. */
+/* Takes all events now, because bytes left in the buffer might be overwritten before the next
+ * call. */
 void lidar_work(void)
 {
     tmini_event_t event;

@@ -29,8 +29,8 @@ extern volatile uint32_t board_time_ms;
 /* Sets everything up; the drive is off, the lidar's interrupt not yet enabled. */
 void board_start(void);
 
-/* Waits until the register's masked bits are these, but not for ever: without them the firmware
- * goes on, as well as it can. */
+/* Waits a limited time until the register's masked bits have this value; the firmware continues
+ * even without it. */
 void board_wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t bits);
 
 void board_enable_lidar_interrupt(void);

@@ -18,7 +18,7 @@ static tmini_stm32_usart_t *usart_port;
 
 void DMA2_Stream2_IRQHandler(void);
 
-/* Both flags in one call: two at once mean that this comes late. */
+/* Both flags in one call: if both are set, this interrupt is late. */
 void DMA2_Stream2_IRQHandler(void)
 {
     const uint32_t flags = DMA2_LISR & (DMA_STREAM2_HT | DMA_STREAM2_TC);

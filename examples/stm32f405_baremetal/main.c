@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop on an STM32F405, without an operating system and without vendor code: asks the
- * lidar who it is and how it is, scans at 10 Hz, and lets the robot move while nothing is near in
+/* Obstacle stop on an STM32F405, without an operating system and without vendor code: asks for the
+ * lidar's information and health, scans at 10 Hz, and lets the robot move while nothing is near in
  * front. Reports each second on the console what it sees. */
 
 #include "board.h"
@@ -48,7 +48,7 @@ static void see(const tmini_scan_t *scan)
     }
 }
 
-/* Answered or not, the questions lead to scanning, which then stands until it is stopped. */
+/* Whether or not the queries were answered, the wish to scan follows; it holds until a stop. */
 static void end_questions(void)
 {
     if (is_asking) {

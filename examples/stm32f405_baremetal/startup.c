@@ -54,8 +54,7 @@ void reset_handler(void)
     (void)main();
 }
 
-/* Whatever else happens (a fault, an interrupt that has no handler, which faults), the robot must
- * not move on. */
+/* After a fault, or an interrupt without a handler, the robot must not move. */
 static void stop_handler(void)
 {
     board_enable_drive(false);

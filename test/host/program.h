@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Programs run by tests: the host tool, the simulated lidar, and what stands in for a lidar that is
- * none. TMINI and TMINI_SIM are the programs' paths, WORK_DIR a folder for files: the one that the
- * test runs in (build/test/host/NAME.work), so that no path in what is shown depends on the
- * machine. POSIX only. */
+/* Programs that tests run: the host tool, the simulated lidar, and pseudo-terminals that behave
+ * unlike a lidar. TMINI and TMINI_SIM are the programs' paths, WORK_DIR a folder for files: the one
+ * that the test runs in (build/test/host/NAME.work), so that no path in what is shown depends on
+ * the machine. POSIX only. */
 
 #ifndef PROGRAM_H
 #define PROGRAM_H
@@ -112,11 +112,11 @@ void program_freeze_lidar(void);
 /* As if it had come back. */
 void program_thaw_lidar(void);
 
-/* Opens a pseudo-terminal and repeats these bytes on it for ever, at about the lidar's speed; says
- * nothing if `size` is 0. Returns the port, which stays valid. */
+/* Opens a pseudo-terminal and repeats these bytes on it without end, at about the lidar's speed;
+ * sends nothing if `size` is 0. Returns the port, which stays valid. */
 const char *program_start_talker(const uint8_t *bytes, size_t size);
 
-/* The same, but says these bytes once whenever the command A5 `code` comes, and nothing else. */
+/* The same, but sends these bytes once after each command A5 `code`, and nothing else. */
 const char *program_start_answerer(uint8_t code, const uint8_t *bytes, size_t size);
 
 /* Ends all that runs. For tearDown(). */

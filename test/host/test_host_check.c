@@ -59,8 +59,8 @@ static case_t cases[] = {
 /* How many have begun, in their order. */
 static size_t begun;
 
-/* On a busy computer the simulated lidar or the tool may stand still for a second: what the tool
- * says of that is true, but not what the case is about. Such a case is tried again; so often in
+/* On a busy computer the simulated lidar or the tool may stop for a second. The tool reports that
+ * rightly, but it is not what the case tests. Such a case is tried again, this many times in
  * all. */
 static unsigned retries = 20;
 

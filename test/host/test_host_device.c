@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The host tool and a lidar: each command against the simulated one on a pseudo-terminal, and what
- * is said when there is none, or something else, or when it goes away. */
+/* The host tool and a lidar: each command against the simulated one on a pseudo-terminal, and the
+ * messages if there is no lidar, something else, or a lidar that disappears. */
 
 #define _XOPEN_SOURCE 700
 

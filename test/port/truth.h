@@ -11,8 +11,8 @@
 #include "simulator.h"
 #include "tmini/tmini.h"
 
-/* The manual's packet (section 5), to be cut in two with a loss in between: one that only the port
- * knows of. */
+/* The manual's packet (section 5). Tests cut it in two with a loss in between that only the port
+ * can notice. */
 #define TRUTH_PACKET_SIZE 67u
 #define TRUTH_PACKET_CUT 30u
 extern const uint8_t truth_packet[TRUTH_PACKET_SIZE];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The library drives the simulated lidar, in virtual time. world.h says what is checked all the
- * while; the tests say what must come of it. */
+/* The library drives the simulated lidar, in virtual time. world.h lists what is checked all the
+ * time; the tests check the results. */
 
 #include "world.h"
 

@@ -58,7 +58,7 @@ static void receive(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next(&receiver));
 }
 
-/* The same, and it is added, unless it closes the scan under way. Returns whether it does. */
+/* The same, and adds it unless it ends the current scan. Returns whether it does. */
 static bool arrive(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_q6)
 {
     receive(ct, count, first_q6, last_q6);
@@ -659,8 +659,8 @@ void test_a_scan_without_its_start_packet_counts_its_first_packet_as_swept(void)
     TEST_ASSERT_TRUE(point(1 * DEGREE, 90 * DEGREE));
 }
 
-/* The last sample lies a hair before the next start packet, whose angle varies; a lone sample
- * after a start packet that was lost lies half a degree beyond it. */
+/* The last sample lies slightly before the next start packet, whose angle varies. A lone sample
+ * after a lost start packet lies half a degree beyond it. */
 void test_a_revolution_may_take_a_quarter_of_a_degree_more_than_a_circle_and_no_more(void)
 {
     whole_turn();

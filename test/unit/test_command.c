@@ -66,7 +66,7 @@ void test_each_byte_that_is_heard_puts_the_command_off_by_the_quiet_time(void)
     polls_and_sends(GET_INFO);
 }
 
-/* A stop is sent after this many bytes, and nobody looks for 60 ms. */
+/* A stop is sent after this many bytes, and there is no poll for 60 ms. */
 static void stop_unwatched_behind(size_t bytes)
 {
     for (size_t i = 0; i < bytes; i++) {

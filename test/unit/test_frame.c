@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Frames, as far as they are more than what the parser's tests show: samples in a ring that ends
- * within one, and a reply's content that DMA overwrites. */
+/* Frames, where the parser's tests do not cover them: a sample that straddles the ring's end, and a
+ * reply's content that DMA overwrites. */
 
 #include <string.h>
 

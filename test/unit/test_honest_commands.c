@@ -84,7 +84,7 @@ void test_a_stop_that_is_lost_in_spin_up_is_sent_again_when_the_lidar_streams(vo
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_IDLE, tmini_state(&turns.lidar));
 }
 
-/* It is told once, however long the stream goes on. */
+/* It is reported once, however long the stream continues. */
 void test_a_lidar_that_will_not_stop_is_stopped_again_and_again(void)
 {
     go_spinning_up();

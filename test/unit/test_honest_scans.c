@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Scans that never lie: whatever happens to the line, to the receiver or to the program, no scan
- * has points of two revolutions, and none is complete of which something is missing. */
+/* Scans never lie: whatever happens to the line, the receiver or the program, no scan has points of
+ * two revolutions, and no scan with missing points is complete. */
 
 #include "turns.h"
 
@@ -131,8 +131,8 @@ void test_a_silence_within_a_packet_ends_the_scan(void)
     TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
 }
 
-/* Of each packet for a whole turn only the beginning comes: there is no silence, nor are there many
- * bytes. Then the next turn goes on where the angle fits. */
+/* For a whole turn only the beginning of each packet comes: neither silence nor many skipped bytes.
+ * Then the next turn continues where the angle fits. */
 void test_packets_cut_to_a_few_bytes_for_a_turn_end_the_scan(void)
 {
     uint8_t bytes[TURNS_PACKET_MAX + 1];
@@ -219,8 +219,9 @@ static size_t next_packet(uint8_t *bytes)
     return size;
 }
 
-/* Unheard by anyone, DMA writes so many laps, and a little more. As a port does it that finds both
- * halves' interrupts pending, a loss is told before the position is published. */
+/* DMA writes this many laps and a little more without an interrupt being served. Then the loss is
+ * reported before the position is published, as by a port that finds both halves' interrupts
+ * pending. */
 static void lose_laps(unsigned laps)
 {
     uint8_t bytes[TURNS_PACKET_MAX + 1];
@@ -396,8 +397,9 @@ void test_a_pause_between_polls_costs_no_scan(void)
 
 /* ---- A stream without start packets ---- */
 
-/* Nothing would come of it for ever: it is a fault after 12,000 samples, and after as many more,
- * with ranges, the lidar is lost and started anew. A turn without its start packet has 657. */
+/* Without start packets no scan would ever come. After 12,000 samples it is a fault; after another
+ * 12,000, with ranges, the lidar is lost and started again. A turn without its start packet has
+ * 657. */
 void test_a_lidar_that_sends_no_start_packets_is_lost(void)
 {
     unsigned turns_passed = 0;

@@ -48,7 +48,7 @@ void test_any_other_value_has_a_name_too(void)
     }
 }
 
-/* Fewer than two are equal, and none is the name of what is no event or state. */
+/* All are different, and none is the text for an unknown event or state. */
 static void names_differ(const char *const *names, size_t count, const char *otherwise)
 {
     for (size_t i = 0; i < count; i++) {

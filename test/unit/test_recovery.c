@@ -573,8 +573,8 @@ void test_without_recovery_a_start_after_a_loss_may_fail_and_be_made_again(void)
 
 /* ---- A clock that is set back ---- */
 
-/* What is under way begins anew: it ends neither at once nor years later. Up to 10 ms may have
- * passed since the line was looked at. */
+/* The current waiting time begins again: it ends neither at once nor years later. Up to 10 ms may
+ * have passed since the line was looked at. */
 void test_a_clock_that_is_set_back_delays_a_time_out_by_its_own_length(void)
 {
     static const uint32_t back_ms[] = {1010, 3600000, 0x7FFFFFFF};

@@ -240,7 +240,7 @@ void test_a_new_wish_for_a_lost_lidar_that_is_not_recovered_waits(void)
     is_in(TMINI_STATE_RECOVERING);
 }
 
-/* The line's silence before the stop says nothing of the lidar's answer to it. */
+/* Silence before the stop must not be taken for silence after it. */
 void test_a_new_wish_after_a_pause_of_polls_awaits_a_quiet_line(void)
 {
     rig_go_scanning();

@@ -45,8 +45,8 @@ static uint32_t port_now_ms(void *context)
     return live.now_ms;
 }
 
-/* A browser hands bytes over late and in portions of its own, so a pause means nothing. And the
- * lidar may just have been plugged in: it takes some seconds until it hears. */
+/* A browser delivers bytes late and in blocks of its own, so a pause means nothing. A lidar that
+ * has just been plugged in needs some seconds before it receives commands. */
 static const tmini_timing_t *patience(void)
 {
     live.timing = tmini_timing_default;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop on a Zephyr board: asks the lidar who it is, scans, and writes a line a second to
- * the console that says whether a robot may move. */
+/* Obstacle stop on a Zephyr board: asks for the lidar's information, scans, and writes a line per
+ * second to the console: may a robot move? */
 
 #include <stdbool.h>
 
@@ -37,7 +37,7 @@ static void on_event(const struct device *lidar, tmini_event_t event, void *user
     }
 }
 
-/* Without a scanning lidar, or with a faulty one, nothing can be known of what is in front. */
+/* Without a scanning lidar, or with a faulty one, the way ahead is unknown. */
 static bool must_stop(const tmini_t *lidar)
 {
     if (tmini_state(lidar) != TMINI_STATE_SCANNING || tmini_faults(lidar) != 0) {

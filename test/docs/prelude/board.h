@@ -9,8 +9,8 @@
 
 #include "tmini/tmini.h"
 
-/* A USART of an STM32: SR and DR have F1, F2, F4 and L1, the others have ISR, RDR and ICR. That
- * they are not mixed is for ../handlers.py to see. */
+/* A USART of an STM32: SR and DR have F1, F2, F4 and L1, the others have ISR, RDR and ICR.
+ * ../handlers.py checks that they are not mixed. */
 typedef struct {
     volatile uint32_t SR;
     volatile uint32_t DR;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* An ESP-IDF that writes down each call, and fails where it is told to. */
+/* An ESP-IDF that records each call, and fails where the test wants it. */
 
 #ifndef RECORDED_IDF_H
 #define RECORDED_IDF_H

@@ -44,7 +44,7 @@ void setUp(void)
     scanning_begin(&program, 1024);
 }
 
-/* Whatever a test did: nothing is left behind, and nobody used what was not there. */
+/* After each test: nothing is left installed, and nothing was used that did not exist. */
 void tearDown(void)
 {
     (void)tmini_esp32_stop(&port);
@@ -180,8 +180,8 @@ void test_with_a_full_buffer_an_overflow_is_after_the_bytes_that_were_kept(void)
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
 }
 
-/* Polled every 30 ms, for some nine events: each time some are lost, and nobody knows which. A gap
- * that may have been costs the packet that is arriving. */
+/* Polled every 30 ms, which brings some nine events: each time some are lost, and it is unknown
+ * which. So a gap is assumed, which costs the packet that is arriving. */
 void test_when_events_are_lost_no_scan_passes_for_complete(void)
 {
     const unsigned rounds = 30;

@@ -41,7 +41,7 @@ void freertos_model_overrun(void);
 /* Something else switches the UART's interrupt off. */
 void freertos_model_disable_interrupt(void);
 
-/* Time passes for the clock alone: no byte comes, nobody runs. */
+/* Only the clock advances: no byte comes and no task runs. */
 void freertos_model_skip(uint64_t us);
 
 /* Bytes that have come on the line, and those that the UART's FIFO had no room for. */

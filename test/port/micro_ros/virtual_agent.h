@@ -19,7 +19,7 @@ typedef struct {
     bool closes_badly;
     bool keeps_its_clock; /* Synchronising fails. */
     int64_t epoch_ns;
-    void (*wait)(int ms); /* Called for each time that a call waits. */
+    void (*wait)(int ms); /* Called whenever a call of micro-ROS waits. */
 
     /* What it reads. */
     bool support_open;

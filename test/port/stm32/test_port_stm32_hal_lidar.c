@@ -125,7 +125,7 @@ void test_on_a_clean_line_every_scan_is_complete(void)
     }
 }
 
-/* The stream of a lidar that nobody has stopped, an overrun pending. */
+/* The stream of a lidar that was not stopped, with an overrun pending. */
 void test_a_controller_reset_while_the_lidar_spins_scans_again(void)
 {
     FOR_EACH_WAY(i)
@@ -195,7 +195,7 @@ void test_polls_22_ms_apart_lose_nothing(void)
     }
 }
 
-/* A flash page that is erased, and the like: a scan in which something is missing says so. */
+/* Long blockages, such as a flash page being erased: a scan with missing points reports it. */
 void test_interrupts_held_back_for_long_make_no_scan_complete_that_is_not(void)
 {
     FOR_EACH_WAY(i)

@@ -23,7 +23,7 @@ typedef enum {
     WRONG_KINDS
 } wrong_t;
 
-/* Why scans that are not complete may have points of two revolutions: nothing shows it. */
+/* Reasons why an incomplete scan may have points of two revolutions without any sign of it. */
 typedef enum {
     MIXED_UNTIMED, /* max_pause_ms is 0: pauses are not judged. */
     MIXED_UNSEEN,  /* Between the two there was a look or a hand-over that came late. */
@@ -60,7 +60,7 @@ typedef struct {
 
 void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, const line_t *line);
 
-/* From now on says each thing that is wrong. */
+/* From now on prints each error. */
 void oracle_speak(oracle_t *oracle);
 
 void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t *scan);
