@@ -590,6 +590,17 @@ void test_a_clock_that_is_set_back_delays_a_time_out_by_its_own_length(void)
     }
 }
 
+/* One millisecond before it was sent. */
+void test_a_clock_that_is_set_back_by_the_time_passed_fails_no_command(void)
+{
+    rig_go_starting();
+    passes(1500);
+    polls_to(TMINI_EVENT_NONE);
+    rig.now_ms -= 1501;
+    passes(2000);
+    polls_to(TMINI_EVENT_COMMAND_FAILED);
+}
+
 void test_a_clock_that_is_set_back_ends_no_pause_of_the_ladder(void)
 {
     rig_go_backing_off();
