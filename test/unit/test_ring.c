@@ -636,6 +636,9 @@ static void bytes_are_right_at(size_t size, size_t place)
     TEST_ASSERT_EQUAL_HEX8_ARRAY("abcde", copy, 5);
     TEST_ASSERT_EQUAL_PTR(memory, tmini_ring_piece(&ring, 0, &count));
     TEST_ASSERT_EQUAL_UINT(size - place, count);
+    ring.tail = 0;
+    TEST_ASSERT_EQUAL_INT('a', tmini_ring_peek(&ring, place));
+    TEST_ASSERT_EQUAL_PTR(memory, tmini_ring_piece(&ring, place, &count));
     use_large(size, place);
     ring.tail = place + 1 - size; /* Room for one. */
     put_letters(0, 2);
