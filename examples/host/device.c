@@ -24,7 +24,7 @@
 /* Without a scan for this long something is wrong: the driver has tried to restart the lidar. */
 #define SCAN_MS 4000u
 
-/* More than a packet that breaks off, and than the answer to a restart. */
+/* More bytes than a packet that breaks off, or the reply to a restart. */
 #define NOISE_BYTES 400u
 
 /* The longest single wait, so that Ctrl-C and time-outs are noticed. */

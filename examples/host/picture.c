@@ -207,7 +207,7 @@ static void draw_points(cairo_t *cr, const figure_t *figure)
         ink(cr, amber, 2.2);
         ring(cr, place_of(survey->nearest, survey), 12);
     } else {
-        ink(cr, ground, 60); /* Hides the rings behind the words. */
+        ink(cr, ground, 60); /* Hides the rings under the text. */
         line(cr, (spot_t){MIDDLE_X - 370, MIDDLE_Y + 140},
              (spot_t){MIDDLE_X + 370, MIDDLE_Y + 140});
         (void)text(cr, (spot_t){MIDDLE_X, MIDDLE_Y + 150}, 0.5, 30, amber,

@@ -149,7 +149,7 @@ typedef enum {
 tmini_turn_t tmini_monitor_packet(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
                                   uint16_t wanted_chz);
 
-/* The wanted frequency is another now. */
+/* The wanted frequency has changed: forgets the fault and the count. */
 void tmini_monitor_forget_frequency(tmini_monitor_t *monitor);
 
 #endif

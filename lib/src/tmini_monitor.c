@@ -13,7 +13,8 @@
 #define OFF_SECONDS 3
 #define OFF_TURNS 3
 
-/* Each time it is off again, that has to last twice as long, up to this many times. */
+/* Each time the frequency is wrong again, it has to last twice as long; it doubles this many times
+ * at most. */
 #define OFF_DOUBLINGS_MAX 4
 
 /* No turn has more samples than three seconds, at 4000 per second (section 1). */

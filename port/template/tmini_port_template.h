@@ -52,7 +52,7 @@ tmini_status_t tmini_port_template_init(tmini_port_template_t *port, void *uart)
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
 tmini_status_t tmini_port_template_start(tmini_port_template_t *port, tmini_t *lidar);
 
-/** Until now. Not from an interrupt; may be started again. */
+/** Stops passing bytes to the lidar. Not from an interrupt; may be started again. */
 void tmini_port_template_stop(tmini_port_template_t *port);
 
 /** Copies the counters. */

@@ -15,7 +15,8 @@ int tmini_zephyr_begin_reception(tmini_zephyr_t *port);
 /* No callback feeds the lidar any more once this has returned. */
 void tmini_zephyr_end_reception(tmini_zephyr_t *port);
 
-/* Begins again what the driver has ended after an error; in the polling thread, often. */
+/* Starts reception again if the driver has ended it after an error. Called often, in the polling
+ * thread. */
 void tmini_zephyr_keep_receiving(tmini_zephyr_t *port);
 
 /* From the callback: bytes for the lidar. */

@@ -242,7 +242,7 @@ static void set_gap(soak_t *soak, sim_link_kind_t kind, uint32_t low, uint32_t h
     sim_link_set_mean_gap(&soak->world.link, kind, draw_gap(soak, low, high), soak->world.now_us);
 }
 
-/* From one damaged byte in 150 to one in 100,000, and the like. */
+/* From one damaged byte in 150 to one in 100,000, and other faults at similar rates. */
 static void bring_bad_weather(soak_t *soak)
 {
     static const struct {

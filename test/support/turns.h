@@ -41,7 +41,7 @@ extern turns_t turns;
 /* A driver with a ring of this size, not yet started. */
 void turns_open(size_t rx_size, bool dma);
 
-/* The same, scanning: a turn has begun, of which nothing but its last packet has come. */
+/* The same, scanning: of the current turn only the last packet has come. */
 void turns_open_scanning(size_t rx_size, bool dma);
 
 /* Bytes come. */

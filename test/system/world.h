@@ -53,7 +53,7 @@ typedef enum {
     VIOLATION_COMMAND,       /* Other than stop, while the lidar was scanning. */
     VIOLATION_FALSE_FAULT,   /* Reported though not there, or as gone though there. */
     VIOLATION_MISSED_FAULT,  /* There, but not reported in time; or gone, but still reported. */
-    VIOLATION_ANSWER,        /* A command on an undisturbed line: none, or not the truth. */
+    VIOLATION_ANSWER,        /* A command on an undisturbed line had no answer, or a wrong one. */
     VIOLATION_SLOW_RECOVERY, /* Later than WORLD_RECOVERY_MS after the last trouble. */
     VIOLATION_STATE,         /* One that cannot be: test/support/invariants.h. */
     VIOLATION_KINDS

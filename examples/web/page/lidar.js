@@ -26,7 +26,7 @@ class Clock {
     }
 }
 
-// `listener` is told: onEvent(name, detail), onScan(), onChange(), onBytes(bytes),
+// It calls of `listener`: onEvent(name, detail), onScan(), onChange(), onBytes(bytes),
 // onProblem(problem or null).
 export class Lidar {
     info = null;   // As the lidar answered, once it has.

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The driver, on a port that JavaScript plays. */
+/* The driver, with JavaScript as its port. */
 
 #include "web.h"
 

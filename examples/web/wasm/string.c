@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/* Compiled without the compiler's own idea of these functions: it would make a call of memcpy out
- * of the loop in memcpy. */
+/* Compiled without the compiler's built-in functions: it would turn the loop in memcpy into a call
+ * of memcpy. */
 
 void *memcpy(void *to, const void *from, size_t count)
 {

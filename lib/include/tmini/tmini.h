@@ -303,8 +303,8 @@ tmini_status_t tmini_start(tmini_t *lidar);
 
 /** The lidar is to stop, in any state [TMINI_EVENT_STOPPED]. An unfinished command or start ends
  * with TMINI_EVENT_COMMAND_FAILED and TMINI_ERROR_ABORTED. If the lidar scans later although it was
- * stopped, it is stopped again, at most twice per second: TMINI_EVENT_UNWANTED_SCANNING (section 9.10). If it cannot be
- * stopped, TMINI_EVENT_COMMAND_FAILED comes once per round of attempts.
+ * stopped, it is stopped again, at most twice per second: TMINI_EVENT_UNWANTED_SCANNING (section
+ * 9.10). If it cannot be stopped, TMINI_EVENT_COMMAND_FAILED comes once per round of attempts.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, or a lidar that was not set up. */
 tmini_status_t tmini_stop(tmini_t *lidar);
 
@@ -316,9 +316,10 @@ tmini_status_t tmini_stop(tmini_t *lidar);
  * recovered]. During a query the wish waits for the next start or the next query of the frequency.
  * Scanning matters more than the frequency: if it cannot be set, the lidar scans at the old one,
  * and TMINI_EVENT_COMMAND_FAILED follows TMINI_EVENT_STARTED. A lidar that turns at another
- * frequency for three seconds gets TMINI_FAULT_FREQUENCY, and the driver stops it, sets the frequency
- * once more and starts it; if the lidar does not answer then, also later, less and less often.
- * Returns TMINI_OK; TMINI_ERROR_ARGUMENT: null pointer, a lidar that was not set up, or a
+ * frequency for three seconds gets TMINI_FAULT_FREQUENCY, and the driver stops it, sets the
+ * frequency again and starts it. As long as the lidar does not answer, this is repeated at growing
+ * intervals. Returns TMINI_OK; TMINI_ERROR_ARGUMENT: null pointer, a lidar that was not set up, or
+ * a
  * frequency out of range; TMINI_ERROR_LISTEN_ONLY: the configuration says that nothing is sent.
  * After an error the wish is unchanged. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
@@ -333,7 +334,7 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
  *     TMINI_OK                 begun
  *     TMINI_ERROR_ARGUMENT     null pointer, or a lidar that was not set up
  *     TMINI_ERROR_STATE        the lidar is scanning or being recovered: only stop may be sent
- *     TMINI_ERROR_BUSY         another command is under way
+ *     TMINI_ERROR_BUSY another command has not finished
  *     TMINI_ERROR_LISTEN_ONLY  nothing is sent
  *
  * and change nothing unless they return TMINI_OK. If the event of the previous command has not been
@@ -435,7 +436,7 @@ typedef struct {
 typedef struct {
     uint8_t attempts;  /* Failed attempts since the last complete revolution or reboot; 0: none has
                         * been made. */
-    uint16_t pause_ms; /* The one after the latest failed attempt. */
+    uint16_t pause_ms; /* The pause after the latest failed attempt. */
     uint16_t losses;
     uint16_t recoveries;
     uint16_t restarts;
@@ -448,8 +449,8 @@ typedef struct {
     uint8_t observed;  /* Those of the last revolution; reported when the next one has the same. */
     bool is_complete;  /* Nothing has been lost since the last start packet. */
     uint8_t ranges;    /* Packets with a valid range since then; at most 255. */
-    uint8_t off_turns; /* Turns in a row at another frequency than wanted, */
-    uint8_t off_times; /* and how often that has lasted too long. */
+    uint8_t off_turns; /* Turns in a row at another frequency than wanted. */
+    uint8_t off_times; /* How often that has lasted too long. */
     uint16_t samples;  /* Since the last start packet. */
 } tmini_monitor_t;
 
@@ -479,7 +480,7 @@ struct tmini {
     uint8_t state; /* A tmini_state_t. */
     int8_t command_error;
     uint16_t pending;   /* A bit for each event not yet returned. */
-    bool start_follows; /* The command under way is followed by a start. */
+    bool start_follows; /* After the current command a start follows. */
     bool is_settled;    /* Nothing is to be done until a frame may be complete, or for
                          * `idle_ms`. */
     bool is_recovery_off;
@@ -492,7 +493,8 @@ struct tmini {
     tmini_link_t link;
     tmini_ring_t ring;
     uint32_t scans;
-    size_t held_to; /* The receiving context's: up to where bytes wait in the port; 0: unknown. */
+    size_t held_to; /* Written by the receiving context: up to where bytes wait in the port; 0:
+                     * unknown. */
     tmini_monitor_t monitor;
     tmini_decoder_t decoder;
     tmini_scan_t scan; /* The one delivered last. */

@@ -176,8 +176,8 @@ TMINI_INLINE void tmini_fence(void)
 #define TMINI_WORD_ALIGNMENT 4u
 #endif
 
-/** Four bytes, the first one lowest. The address is a multiple of TMINI_WORD_ALIGNMENT. One load on
- * machines that order bytes so. */
+/** Four bytes as a number, the first one lowest. The address is a multiple of TMINI_WORD_ALIGNMENT.
+ * One load on little-endian machines. */
 TMINI_INLINE uint32_t tmini_word(const uint8_t *bytes)
 {
 #if defined(__GNUC__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__

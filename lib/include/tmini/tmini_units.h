@@ -9,9 +9,9 @@
  * Accuracy. start_ms and end_ms are the arrival times of a scan's start packet and of the next one,
  * corrected for the bytes that came after them. They are later than the measurement: by up to 6 ms
  * if you poll every 1 ms (a start packet waits until the packet before it has been sent), and by up
- * to 11 ms if you poll every 10 or 38 ms; where packets are lost, by up to 12 and 22 ms. Time that
- * bytes spend in a UART's FIFO, a task's queue or a USB adapter, or written by DMA and not yet
- * published, comes on top: some milliseconds.
+ * to 11 ms if you poll every 10 or 38 ms; where packets are lost, by up to 12 and 22 ms. On top
+ * comes the time that bytes wait in a UART's FIFO, a task's queue or a USB adapter, or in memory
+ * before DMA's position is published: some milliseconds.
  * Within a scan, or a part of one, the times of points are accurate to 1.5 ms at 6 Hz and 1 ms at
  * 12 Hz, however rare the polls, because they follow the rotor's even turning and not the clock. */
 
@@ -117,8 +117,8 @@ static inline float tmini_range_max(void)
     return (float)TMINI_RANGE_MAX_MM / 1000.0f;
 }
 
-/** Writes `count` ranges in metres to `ranges_m`; where nothing was measured, `missing`: in ROS
- * INFINITY or NAN. */
+/** Writes `count` ranges in metres to `ranges_m`; where nothing was measured it writes `missing`,
+ * which is INFINITY or NAN in ROS. */
 static inline void tmini_ranges_metres(const uint16_t *ranges_mm, size_t count, float missing,
                                        float *ranges_m)
 {

@@ -520,7 +520,8 @@ static void stall_bytes(uint32_t bytes)
     }
 }
 
-/* A poll that comes whole laps late finds DMA where it stood before: the count tells it apart. */
+/* A poll that is late by whole laps finds DMA at the same place as before: only the count
+ * differs. */
 static void assert_stall_is_noticed(uint32_t bytes)
 {
     start();

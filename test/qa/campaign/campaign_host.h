@@ -69,7 +69,7 @@ typedef struct {
     size_t position;  /* Where it writes next, */
     size_t published; /* and how far has been published. */
 
-    uint32_t told;      /* Bytes that the library has been told of. */
+    uint32_t told;      /* Bytes that the library knows of. */
     uint32_t gaps_told; /* Losses that the receiver has noticed, */
     bool was_lost;      /* and that the library has: the lidar, for a while. */
     uint32_t accesses;

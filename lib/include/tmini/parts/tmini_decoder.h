@@ -58,9 +58,9 @@ tmini_frame_type_t tmini_decoder_next(tmini_decoder_t *decoder, size_t effort);
 bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now_ms,
                         uint16_t late_ms);
 
-/** Takes a packet that something else has found, a driver for example; its gap reports doubt. The
- * decoder needs no ring, and begins as zeros. If the function returns true, add `packet` to the
- * builder once more, while `packet` is valid. */
+/** Takes a packet that was found elsewhere, for example by a driver; its gap shows whether packets
+ * may be missing before it. Such a decoder needs no ring and is all zero at first. If the function
+ * returns true, add `packet` to the builder again while it is valid. */
 bool tmini_decoder_take_packet(tmini_decoder_t *decoder, const tmini_packet_t *packet,
                                uint32_t now_ms);
 

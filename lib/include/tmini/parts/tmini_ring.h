@@ -184,8 +184,8 @@ bool tmini_ring_intact(const tmini_ring_t *ring);
  * tmini_ring_unread(). A loop per byte: meant for a few bytes. */
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count);
 
-/** The unread bytes from `offset` on that lie in one piece, so that loops over them need not wrap:
- * at most *count, which becomes how many there are, at least one. */
+/** Returns the unread bytes from `offset` on that are contiguous in memory, so that loops over them
+ * need not wrap. `*count` is how many are wanted, and becomes how many there are (at least one). */
 static inline const uint8_t *tmini_ring_piece(const tmini_ring_t *ring, size_t offset,
                                               size_t *count)
 {
