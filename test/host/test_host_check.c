@@ -189,7 +189,7 @@ void test_a_good_lidar_is_good(void)
     expect_unsaid("BAD");
 }
 
-void test_a_unit_that_tells_nothing_within_the_stream_is_good_too(void)
+void test_a_unit_that_reports_nothing_within_the_stream_is_good_too(void)
 {
     end_case("no_ct", 0, "\nverdict: ");
     expect_said("\nok    faults     not told: this unit sends no information within the stream\n");

@@ -208,7 +208,7 @@ void test_json_is_an_object_a_line_for_each_scan(void)
     TEST_ASSERT_EQUAL_STRING("", program_errors);
 }
 
-void test_json_tells_the_health_bits_when_the_unit_does(void)
+void test_json_reports_the_health_bits_when_the_unit_does(void)
 {
     TEST_ASSERT_EQUAL_INT(0, program_tmini((const char *const[]){"decode", RECORDINGS "sim-6hz.bin",
                                                                  "--json", NULL}));
@@ -364,7 +364,7 @@ void test_a_closed_pipe_ends_the_program_at_once_and_silently(void)
     TEST_ASSERT_EQUAL_STRING("", program_read_file(0, program_path("errors"), NULL));
 }
 
-void test_it_ends_at_a_closed_pipe_even_if_it_was_told_to_ignore_that(void)
+void test_it_ends_at_a_closed_pipe_even_if_sigpipe_is_ignored(void)
 {
     TEST_ASSERT_EQUAL_INT(0, system("trap '' PIPE && { \"$TOOL\" decode '" RECORDINGS
                                     "sim-6hz.bin' --csv 2>errors; echo $? >status; }"
@@ -417,7 +417,7 @@ static size_t make_timed(uint8_t *file)
     return length;
 }
 
-void test_a_timed_recording_tells_when_its_packets_came(void)
+void test_a_timed_recording_reports_when_its_packets_came(void)
 {
     uint8_t file[200];
     const size_t length = make_timed(file);

@@ -393,7 +393,7 @@ void test_a_lidar_can_be_reached_through_a_socket(void)
     TEST_ASSERT_EQUAL_UINT(2, count_of(program_output, "\n"));
 }
 
-void test_a_socket_that_is_closed_is_told(void)
+void test_a_socket_that_is_closed_is_reported(void)
 {
     port = program_start_lidar(WORDS("--tcp", "0"));
     const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
@@ -414,7 +414,7 @@ void test_an_invalid_address_is_reported(void)
     expect_failure(1, "a number from 1 to 65535", WORDS("info", "-p", "tcp:127.0.0.1:0"));
 }
 
-void test_a_recording_tells_its_size(void)
+void test_a_recording_reports_its_size(void)
 {
     begin();
     const char *const recording = program_path("one.bin");
@@ -585,7 +585,7 @@ void test_check_reports_a_lidar_that_scans_although_it_was_stopped(void)
     TEST_ASSERT_NULL(strstr(program_errors, "although")); /* Said once. */
 }
 
-void test_a_cable_pulled_while_scanning_is_told(void)
+void test_a_cable_pulled_while_scanning_is_reported(void)
 {
     begin();
     const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
@@ -596,7 +596,7 @@ void test_a_cable_pulled_while_scanning_is_told(void)
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "Plug it in"));
 }
 
-void test_a_lidar_that_falls_silent_while_scanning_is_told(void)
+void test_a_lidar_that_falls_silent_while_scanning_is_reported(void)
 {
     begin();
     const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
@@ -607,7 +607,7 @@ void test_a_lidar_that_falls_silent_while_scanning_is_told(void)
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "has fallen silent and does not come back"));
 }
 
-void test_a_lidar_that_comes_back_is_told(void)
+void test_a_lidar_that_comes_back_is_reported(void)
 {
     begin();
     const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
@@ -754,7 +754,7 @@ void test_listening_sends_nothing(void)
     close(line);
 }
 
-void test_listening_to_a_silent_lidar_is_told(void)
+void test_listening_to_a_silent_lidar_is_reported(void)
 {
     begin();
     expect_failure(1, "has another program or controller started the lidar?",
@@ -778,7 +778,7 @@ void test_survey_writes_a_report_and_leaves_the_lidar_stopped_as_it_was(void)
                   WORDS("frequency", "-p", program_start_lidar(WORDS("--like", "unit"))));
 }
 
-void test_a_survey_of_nothing_is_told(void)
+void test_a_survey_of_nothing_is_reported(void)
 {
     expect_failure(1, "not one byte came", WORDS("survey", "-p", program_start_talker(NULL, 0)));
 }
@@ -917,7 +917,7 @@ void test_a_lidar_that_sends_but_does_not_hear(void)
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "the adapter's TX"));
 }
 
-void test_a_lidar_that_answers_one_command_is_not_told_to_check_its_wires(void)
+void test_for_a_lidar_that_answers_one_command_no_wires_are_blamed(void)
 {
     TEST_ASSERT_EQUAL_INT(0, end_job(HALF_INFO));
     TEST_ASSERT_EQUAL_STRING("", program_errors);

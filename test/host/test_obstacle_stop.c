@@ -155,7 +155,7 @@ void test_a_lidar_that_does_not_answer_is_reported_and_started_again(void)
     TEST_ASSERT_EQUAL_UINT(1, count_of(program_output, "STOP "));
 }
 
-void test_wrong_usage_and_a_wrong_port_are_told(void)
+void test_wrong_usage_and_a_wrong_port_are_reported(void)
 {
     TEST_ASSERT_EQUAL_INT(2, program_finish(program_start(OBSTACLE_STOP, WORDS(NULL)), 0));
     TEST_ASSERT_EQUAL_STRING("usage: obstacle_stop PORT, or obstacle_stop -p PORT\n",

@@ -18,7 +18,7 @@ typedef struct {
     const char *write_path; /* NULL: not asked for, as all paths below; "-": standard output */
     const char *log_path;
     const char *truth_path;
-    double seconds; /* of virtual time; 0: for ever */
+    double seconds; /* of virtual time; 0: without end */
     double speed;   /* virtual seconds a real second */
     bool blocked;   /* the rotor */
     bool covered;   /* the window */

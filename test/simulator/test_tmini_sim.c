@@ -438,7 +438,7 @@ static void expect_in_log(const char *text)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr((const char *)received, text), text);
 }
 
-void test_the_log_tells_of_commands_modes_faults_and_totals(void)
+void test_the_log_has_commands_modes_faults_and_totals(void)
 {
     static const char *const arguments[] = {"--tcp",   "0",        "--log", "tmini-sim-test.log",
                                             "--fault", "flip=0.01"};

@@ -120,7 +120,7 @@ void test_before_the_first_packet_nothing_is_known(void)
     expect_nothing_known();
 }
 
-void test_a_revolution_at_6_hz_tells_everything(void)
+void test_a_revolution_at_6_hz_reports_everything(void)
 {
     add_six_hertz();
     expect_nothing_known();

@@ -108,7 +108,7 @@ void test_a_turn_that_is_not_trusted_neither_reports_nor_clears(void)
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_turn_events(0));
 }
 
-void test_a_unit_that_tells_its_health_is_believed_even_without_any_range(void)
+void test_a_unit_that_reports_its_health_is_believed_even_without_any_range(void)
 {
     rig_go_scanning();
     (void)rig_turn_events(0);

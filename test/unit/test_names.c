@@ -13,7 +13,7 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-void test_each_status_has_a_phrase_that_tells_it_from_the_others(void)
+void test_each_status_has_a_phrase_of_its_own(void)
 {
     TEST_ASSERT_EQUAL_STRING("ok", tmini_status_name(TMINI_OK));
     TEST_ASSERT_EQUAL_STRING("invalid argument", tmini_status_name(TMINI_ERROR_ARGUMENT));

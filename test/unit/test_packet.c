@@ -96,7 +96,7 @@ void test_only_bit_0_of_ct_makes_a_start_packet(void)
     TEST_ASSERT_EQUAL_HEX8(0xFE, receiver.packet.ct);
 }
 
-void test_a_packet_tells_the_gap_before_it_and_its_last_byte(void)
+void test_a_packet_reports_the_gap_before_it_and_its_last_byte(void)
 {
     static const uint8_t garbage[3] = {0x11, 0x22, 0x33};
     receiver_feed(&receiver, garbage, 3);
@@ -425,8 +425,8 @@ void test_a_step_less_exact_would_not_do(void)
     TEST_ASSERT_EQUAL_UINT16(1, angle(127)); /* 0.5. */
 }
 
-/* Half an interval more than a whole number of them, and one more: where rounding is nearest to
- * going wrong. All pairs of count and difference are in test/system/test_angles.c. */
+/* Differences at which rounding is most likely to go wrong: a whole number of intervals and a half,
+ * and one more. All pairs of count and difference are in test/system/test_angles.c. */
 void test_interpolated_angles_are_exact(void)
 {
     for (unsigned count = 2; count <= 255; count += 23) {

@@ -153,7 +153,7 @@ void test_bytes_come_out_in_the_order_in_which_they_went_in(void)
     expect_unread("");
 }
 
-void test_the_head_tells_how_many_were_stored_whether_read_or_not(void)
+void test_the_head_reports_how_many_were_stored_whether_read_or_not(void)
 {
     TEST_ASSERT_EQUAL_UINT(0, tmini_ring_head(&ring));
     put_letters(0, 3);

@@ -931,7 +931,7 @@ void test_streaming_reports_faults_and_losses_as_well(void)
 
 /* ---- Results ---- */
 
-void test_the_answer_to_another_question_leaves_the_health_as_it_was_told(void)
+void test_the_answer_to_another_question_leaves_the_health_as_reported(void)
 {
     rig_go_idle();
     begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// A lidar at work: the library's driver between a source of bytes and the page. Commands are the
-// driver's; only that some follow each other is decided here.
+// A lidar at work: the library's driver between a source of bytes and the page. The driver carries out the commands;
+// this file only decides which follow each other.
 
 import { diagnose, problems } from './problems.js';
 

@@ -209,7 +209,7 @@ class Lidar:
     def _run(self) -> None:
         try:
             self._work()
-        except Exception as error:  # Whoever waits for a scan would wait for ever.
+        except Exception as error:  # A thread that waits for a scan would wait without end.
             with self._changed:
                 self._failure = error
                 self._changed.notify_all()

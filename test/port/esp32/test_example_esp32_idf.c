@@ -33,7 +33,7 @@ static void assert_logged(const char *text)
     }
 }
 
-/* One program, one story: it runs for ever. */
+/* One test for the whole program, because it never ends. */
 void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
 {
     virtual_idf_begin(NULL);

@@ -214,7 +214,8 @@ static const struct {
     int most;
     const char *name;
 } ranges[] = {
-    {&wiring.uart, 0, UARTS - 1, "uart"}, /* On one of the chips the next is a low-power one. */
+    {&wiring.uart, 0, UARTS - 1, "uart"}, /* On one of the chips the next number is a low-power
+                                           * UART. */
     {&wiring.tx_pin, 0, NO_LIMIT, "menuconfig"},
     {&wiring.rx_pin, 0, NO_LIMIT, "menuconfig"},
     {&wiring.buffer_size, 129, NO_LIMIT, "buffer_size"},

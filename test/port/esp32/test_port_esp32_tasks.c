@@ -149,7 +149,7 @@ void test_an_overflow_is_reported_in_its_place_however_late_the_events_are_taken
     TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_feed_room(&lidar)); /* No second gap. */
 }
 
-/* Each gap costs a poll: however many there are, they are told of as two. */
+/* Each gap costs a poll: however many there are, they are reported as two. */
 void test_of_several_overflows_the_first_is_reported_in_its_place_and_one_after_the_others(void)
 {
     start_by_hand();

@@ -47,8 +47,8 @@ static void let_pass(unsigned ms)
     vTaskDelay(pdMS_TO_TICKS(ms));
 }
 
-/* One program, one story: it runs for ever. */
-void test_it_tells_who_the_lidar_is_and_whether_a_robot_may_move(void)
+/* One test for the whole program, because it never ends. */
+void test_it_names_the_lidar_and_reports_whether_a_robot_may_move(void)
 {
     (void)example_main();
     let_pass(4000);

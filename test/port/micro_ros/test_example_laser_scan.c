@@ -126,8 +126,8 @@ void test_the_turns_duration_comes_from_the_measured_frequency(void)
     TEST_ASSERT_FLOAT_WITHIN(NEAR, 0.16666667f, message.scan_time);
 }
 
-/* The lidar turns clockwise: what is left of ahead, ray 90, was measured when three quarters of the
- * turn were over, a quarter before its end. */
+/* The lidar turns clockwise, so ray 90, to the left, was measured after three quarters of the turn:
+ * a quarter before its end. */
 void test_rays_are_as_old_as_the_lidars_turn_makes_them(void)
 {
     fill();

@@ -101,7 +101,7 @@ static void tell_story(void)
     }
 }
 
-/* One program, one story: it runs for ever. */
+/* One test for the whole program, because it never ends. */
 void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
 {
     pico_model_on_sleep(tell_story);

@@ -179,7 +179,7 @@ void test_a_ring_that_the_hardware_cannot_wrap_is_refused(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
 }
 
-void test_a_clock_that_does_not_make_the_baud_rate_is_told(void)
+void test_a_clock_that_does_not_make_the_baud_rate_is_reported(void)
 {
     pico_model_set_baud_error(21);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_pico_init(&port, &wiring));

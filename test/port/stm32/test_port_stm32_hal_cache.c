@@ -34,7 +34,7 @@ void test_up_to_the_buffers_end_everything_is_read_anew(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(model.ram, hal_rig_rx, HAL_RIG_RX_SIZE);
 }
 
-/* Else what the CPU has written there would go to memory later, on its own. */
+/* Otherwise the cache would later write the CPU's old data to memory. */
 void test_a_buffer_is_written_to_memory_before_dma_begins(void)
 {
     hal_rig_open(BY_DMA);

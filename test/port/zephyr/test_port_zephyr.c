@@ -286,7 +286,7 @@ void test_errors_of_the_line_are_counted_by_kind(void)
 }
 
 /* Negative results are no error flags. */
-void test_a_driver_that_tells_no_errors_has_none(void)
+void test_a_driver_that_reports_no_errors_has_none(void)
 {
     zephyr_model_set_error_check(-ENOSYS);
     zephyr_rig_start();
