@@ -40,6 +40,14 @@ static size_t child_count;
 static size_t background;
 static bool is_background;
 
+/* Whatever folder it is started from, it leaves its files in one of its own. */
+__attribute__((constructor)) static void go_home(void)
+{
+    if (chdir(HOME_DIR) != 0) {
+        abort();
+    }
+}
+
 const char *program_path(const char *name)
 {
     static char paths[4][100];

@@ -3,7 +3,7 @@
 
 /* Programs that tests run: the host tool, the simulated lidar, and pseudo-terminals that behave
  * unlike a lidar. TMINI and TMINI_SIM are the programs' paths, WORK_DIR a folder for files: the one
- * that the test runs in (build/test/host/NAME.work), so that no path in what is shown depends on
+ * that the test goes to (build/test/host/NAME.work), so that no path in what is shown depends on
  * the machine. POSIX only. */
 
 #ifndef PROGRAM_H
