@@ -394,7 +394,7 @@ static void alarm_every_20_ms(bool on)
     TEST_ASSERT_EQUAL_INT(0, setitimer(ITIMER_REAL, &interval, NULL));
 }
 
-/* A listener whose queue is full lets the next one wait: here without end, so a time-out ends it. */
+/* A listener whose queue is full lets the next one wait: here without end, until the time-out. */
 void test_connecting_ends_after_5_s_and_not_by_a_signal(void)
 {
     struct sockaddr_in address = {.sin_family = AF_INET};
