@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop: from scans to "may the robot move?". Pure functions with integers only, the same on
- * a PC and in firmware.
+/* Obstacle stop: from scans to "may the robot move?". Pure functions with integers only, the same
+ * on a PC and in firmware.
  *
  * The robot may move if a recent complete scan has seen something in front and nothing near. A scan
  * with gaps may have missed an obstacle: it can stop the robot, but not release it. A scan without

@@ -306,8 +306,8 @@ static void note_scanning(tmini_t *lidar)
     }
 }
 
-/* The wanted frequency is set once more. If the lidar does not answer then, this is done again, less
- * and less often. */
+/* Sets the wanted frequency again. As long as the lidar does not answer, this is repeated at
+ * growing intervals. */
 static bool is_worth_a_restart(const tmini_t *lidar)
 {
     return !lidar->is_recovery_off &&

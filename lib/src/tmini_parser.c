@@ -36,7 +36,8 @@ static unsigned xor_samples(const uint8_t *sample, size_t count)
 }
 
 /* The same by blocks. XORing whole words gives the same result as XORing their bytes one by one. S3
- * is the third byte of the first word, the second of the second, the first and last of the third. */
+ * is the third byte of the first word, the second byte of the second, the first and last of the
+ * third. */
 static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
 {
     uint32_t first = 0;
