@@ -306,8 +306,8 @@ static void note_scanning(tmini_t *lidar)
     }
 }
 
-/* Sets the wanted frequency again. As long as the lidar does not answer, this is repeated at
- * growing intervals. */
+/* A wrong frequency is set again once, and, as long as the lidar does not answer, at growing
+ * intervals; never with TMINI_RECOVERY_OFF. */
 static bool is_worth_a_restart(const tmini_t *lidar)
 {
     return !lidar->is_recovery_off &&
@@ -323,7 +323,7 @@ static void monitor_packet(tmini_t *lidar)
     } else if (turn == TMINI_TURN_ENDLESS) {
         lose(lidar);
     } else if (turn == TMINI_TURN_OFF && is_worth_a_restart(lidar)) {
-        tmini_command_forget_frequency(lidar); /* What it has reported is not so. */
+        tmini_command_forget_frequency(lidar); /* The value reported is wrong. */
         restart(lidar);
     }
 }
