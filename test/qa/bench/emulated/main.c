@@ -12,7 +12,7 @@
 
 tmini_t bench_lidar;
 uint8_t bench_rx[RX_SIZE];
-uint8_t bench_block[RX_SIZE + 1]; /* The limit reads one byte more. */
+uint8_t bench_block[RX_SIZE + 4]; /* The limit reads one byte more. */
 uint32_t bench_now_ms;
 uint8_t bench_sent;
 
