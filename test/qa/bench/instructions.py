@@ -14,6 +14,7 @@ RX_SIZE = 1024
 TICK_MS = 10        # How often is polled: about once per packet.
 BYTES_A_TICK = 131  # At the lidar's mean data rate (section 1).
 BYTES_A_MS = 13
+STOP_AGAIN_MS = 500  # How long after a stop the next one may follow.
 BYTES_A_POLL = (1, 4, 13, 64, 131, 512)
 FALSE_HEADERS = bytes([0xAA, 0x55, 0, 80, 1, 1, 1, 1, 1, 1]) * 102
 SCAN_REPLY = bytes.fromhex("A5 5A 05 00 00 40 81")
@@ -243,7 +244,7 @@ def conversation(target, program, clean, faulty):
     session.lidar.answers = True
     session.command(STOP)
     session.until("STOPPED")
-    if "UNWANTED_SCANNING" not in session.tick(clean[:BYTES_A_TICK]):
+    if "UNWANTED_SCANNING" not in session.tick(clean[:BYTES_A_TICK], STOP_AGAIN_MS):
         raise BenchError("an idle lidar that streams is not noticed")
     session.until("STOPPED")
     session.spin_up()
