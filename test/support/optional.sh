@@ -45,6 +45,7 @@ wish_for_machines() {
     wish avr-gcc gcc-avr
     wish /usr/lib/avr/include/avr/io.h avr-libc
     wish simavr simavr
+    wish /usr/include/simavr/sim_avr.h libsimavr-dev
     wish /usr/share/arduino/hardware/arduino/avr arduino-core-avr
     wish arduino-builder arduino-builder
     wish arduino-ctags arduino-ctags
