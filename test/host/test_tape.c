@@ -185,7 +185,7 @@ void test_no_byte_of_version_2_is_lost_silently(void)
     }
 }
 
-/* ------------------------------------------------------------------------------- what is played */
+/* ----------------------------------------------------------------------------- what is played */
 
 /* The manual's own packet (section 5): 19 samples, no start packet. */
 static const uint8_t manual[] =
@@ -379,7 +379,7 @@ void test_the_last_chunk_may_be_cut_short(void)
     TEST_ASSERT_EQUAL_UINT64(1, tape.stream.packets);
 }
 
-/* ------------------------------------------------------------------------- what a stream tells */
+/* ----------------------------------------------------------------------- what a stream tells */
 
 static void put_garbage(unsigned count)
 {
@@ -509,7 +509,7 @@ void test_a_unit_may_report_its_health_in_the_stream(void)
     TEST_ASSERT_EQUAL_UINT64(tape.stream.guard_bytes, tape.stream.confirmed);
 }
 
-/* ------------------------------------------------------------------------------- what is a scan */
+/* ----------------------------------------------------------------------------- what is a scan */
 
 void test_a_scan_has_the_number_of_its_start_packet(void)
 {
@@ -654,7 +654,7 @@ void test_a_mount_turns_scans_once(void)
     TEST_ASSERT_EQUAL_UINT16(17280, tape.stream.scan.points[0].angle_q6); /* 0 - 90 degrees. */
 }
 
-/* ------------------------------------------------------------------- what a driver hands on: live */
+/* ---------------------------------------------------------------- what a driver hands on: live */
 
 /* A packet of the library's own parser; the driver reports its doubt by the gap. */
 static bool come(unsigned quarter, bool is_doubted, uint32_t now_ms)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The simulated lidar against docs/protocol.md, through its bytes alone. What a healthy one sends is
- * compared byte for byte with test/recordings, which test_replay.c reads. */
+/* The simulated lidar against docs/protocol.md, through its bytes alone. What a healthy one sends
+ * is compared byte for byte with test/recordings, which test_replay.c reads. */
 
 #include "reference_decoder.h"
 #include "simulator.h"

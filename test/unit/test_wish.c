@@ -308,7 +308,7 @@ static void fails_to_set_the_frequency(void)
     polls_to(TMINI_EVENT_COMMAND_FAILED);
 }
 
-/* At 6.0 Hz, 18, 36, 72 and 144 revolutions are 3, 6, 12 and 24 seconds; 255 are counted at most. */
+/* At 6.0 Hz, 18, 36, 72 and 144 revolutions are 3, 6, 12 and 24 seconds. At most 255 count. */
 void test_a_frequency_that_could_not_be_set_is_tried_again_less_and_less_often(void)
 {
     static const unsigned counts[] = {18, 36, 72, 144, 255, 255};

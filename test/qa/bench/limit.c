@@ -24,7 +24,7 @@ static uint32_t step_of(unsigned first, unsigned last, size_t count)
     return count > 1 ? (swept << 16) / (uint32_t)(count - 1) : 0;
 }
 
-/* The samples' part of the checksum; stores their points. A sample is read with the byte after it. */
+/* Returns the samples' part of the checksum and stores their points. */
 TMINI_NOINLINE static unsigned store(const uint8_t *sample, size_t count, uint32_t angle,
                                      uint32_t step, limit_point_t *point)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands in for the Pico SDK's header of this name, as the others here do for theirs, on the model of
- * the chip (../pico_model.h). Each includes what the original includes (SDK 2.2.0), so that what
+/* Stands in for the Pico SDK's header of this name, as the others here do for theirs, on the model
+ * of the chip (../pico_model.h). Each includes what the original includes (SDK 2.2.0), so that what
  * compiles here compiles there. Written for the tests from the SDK's public documentation and the
  * data sheets. */
 
