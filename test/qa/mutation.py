@@ -523,13 +523,14 @@ def outdated(known):
 
 
 def files_among(names):
-    """The files that are named, and those with functions in the folders that are."""
+    """The files that are named, and those with functions in the folders that are: no headers that nothing there
+    includes."""
     for name in names:
         if os.path.isfile(name):
             yield os.path.relpath(os.path.abspath(name), ROOT)
         for place, folders, _ in os.walk(name):
             folders.sort()
-            yield from filter(has_functions, files_of(os.path.abspath(place)))
+            yield from (file for file in files_of(os.path.abspath(place)) if has_functions(file) and sources_with(file))
 
 
 def try_mutants(mutants, wanted, pool, results, known):

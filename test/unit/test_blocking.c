@@ -417,6 +417,20 @@ void test_a_start_waited_for_in_vain_while_the_lidar_is_being_recovered_still_st
     is_in(TMINI_STATE_RECOVERING); /* The wish stands. */
 }
 
+void test_a_start_of_a_lost_lidar_waits_for_a_scan_and_not_for_the_recovery(void)
+{
+    rig_go_recovering();
+    port_wait_StubWithCallback(wait);
+    comes(60, feed_turn);
+    script.every_ms = 10;
+    sends(START);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 1500));
+    tmini_counters_t seen;
+    tmini_counters(&rig.lidar, &seen);
+    TEST_ASSERT_EQUAL_UINT16(1, seen.recoveries);
+    TEST_ASSERT_EQUAL_UINT32(1, seen.scans);
+}
+
 void test_a_result_is_not_touched_by_a_failure(void)
 {
     tmini_info_t info = {.model = 1};

@@ -453,6 +453,7 @@ static void while_scanning_only_stop_is_possible(void)
     lidar.start();
     TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
     TEST_ASSERT_FALSE(lidar.requestInfo());
+    (void)lidar.loop();
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, lidar.status());
     TEST_ASSERT_FALSE(lidar.reboot());
     TEST_ASSERT_TRUE(lidar.stop());

@@ -15,6 +15,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -136,6 +137,10 @@ void test_a_lidar_can_be_reached_through_a_socket(void)
     tmini_posix_init(&port, program_start_lidar((const char *const[]){"--tcp", "0", NULL}));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
+    int sends_at_once = 0;
+    socklen_t size = sizeof sends_at_once;
+    TEST_ASSERT_EQUAL_INT(0, getsockopt(port.fd, IPPROTO_TCP, TCP_NODELAY, &sends_at_once, &size));
+    TEST_ASSERT_NOT_EQUAL_INT(0, sends_at_once);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 8000));
     TEST_ASSERT_EQUAL_UINT8(151, info.model);
     program_stop_lidar();
