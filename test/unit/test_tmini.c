@@ -296,6 +296,39 @@ void test_bytes_of_a_second_overflow_are_counted_with_the_first_ones(void)
     TEST_ASSERT_EQUAL_UINT32(12, counters().bytes_overrun);
 }
 
+/* As after weeks: each member has a value of its own that needs all its bits but one. */
+void test_counters_count_to_the_end_of_their_ranges(void)
+{
+    tmini_parser_counters_t *const parser = &rig.lidar.decoder.parser.counters;
+    parser->packets = 4294967290u;
+    parser->checksum_errors = 4294967291u;
+    parser->bytes_in_packets = 4294967292u;
+    parser->bytes_in_replies = 4294967293u;
+    parser->bytes_skipped = 4294967294u;
+    parser->bytes_overrun = 4294967280u;
+    rig.lidar.scans = 4294967281u;
+    rig.lidar.decoder.builder.late_scans = 4294967282u;
+    rig.lidar.command.timeouts = 65531u;
+    rig.lidar.recovery.losses = 65532u;
+    rig.lidar.recovery.recoveries = 65533u;
+    rig.lidar.recovery.restarts = 65534u;
+    rig.lidar.recovery.reboots = 65530u;
+    const tmini_counters_t seen = counters();
+    TEST_ASSERT_EQUAL_UINT32(4294967290u, seen.packets);
+    TEST_ASSERT_EQUAL_UINT32(4294967291u, seen.checksum_errors);
+    TEST_ASSERT_EQUAL_UINT32(4294967292u, seen.bytes_in_packets);
+    TEST_ASSERT_EQUAL_UINT32(4294967293u, seen.bytes_in_replies);
+    TEST_ASSERT_EQUAL_UINT32(4294967294u, seen.bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(4294967280u, seen.bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(4294967281u, seen.scans);
+    TEST_ASSERT_EQUAL_UINT32(4294967282u, seen.late_scans);
+    TEST_ASSERT_EQUAL_UINT16(65531u, seen.timeouts);
+    TEST_ASSERT_EQUAL_UINT16(65532u, seen.losses);
+    TEST_ASSERT_EQUAL_UINT16(65533u, seen.recoveries);
+    TEST_ASSERT_EQUAL_UINT16(65534u, seen.restarts);
+    TEST_ASSERT_EQUAL_UINT16(65530u, seen.reboots);
+}
+
 void test_packets_of_an_unknown_lidar_are_parsed_and_counted_but_are_no_event(void)
 {
     rig_feed_start_packet(1000);
