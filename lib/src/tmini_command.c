@@ -288,5 +288,8 @@ bool tmini_command_end(tmini_t *lidar, int result)
     (void)tmini_parser_await(&lidar->decoder.parser, NULL);
     command->unsent = 0;
     enter(lidar, was_stopped ? TMINI_PHASE_IDLE : TMINI_PHASE_NONE, 0);
+    if (result == TMINI_OK) {
+        command->since_ms -= TMINI_BACK_OFF_MS; /* After a failure, a pause comes first. */
+    }
     return is_idle;
 }

@@ -25,7 +25,7 @@
 typedef struct {
     tmini_sector_t sectors[OBSTACLE_SECTORS]; /* Clockwise, the first one ahead. */
     uint32_t seen_ms;                         /* When the last complete scan came. */
-    bool clear;                               /* The last scans showed nothing near in front. */
+    bool clear;                               /* Nothing near in front, as of the last scans. */
     bool seeing;                              /* A complete scan has come. */
 } obstacle_t;
 

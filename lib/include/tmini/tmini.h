@@ -303,8 +303,8 @@ tmini_status_t tmini_start(tmini_t *lidar);
 
 /** The lidar is to stop, in any state [TMINI_EVENT_STOPPED]. An unfinished command or start ends
  * with TMINI_EVENT_COMMAND_FAILED and TMINI_ERROR_ABORTED. If the lidar scans later although it was
- * stopped, it is stopped again, at most twice per second: TMINI_EVENT_UNWANTED_SCANNING (section
- * 9.10). If it cannot be stopped, TMINI_EVENT_COMMAND_FAILED comes once per round of attempts.
+ * stopped, it is stopped again: TMINI_EVENT_UNWANTED_SCANNING (section 9.10). If it cannot be
+ * stopped, TMINI_EVENT_COMMAND_FAILED comes once per round of attempts, at most twice per second.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, or a lidar that was not set up. */
 tmini_status_t tmini_stop(tmini_t *lidar);
 
