@@ -283,7 +283,8 @@ static bool command_is_sound(const tmini_command_t *command)
 static bool monitor_is_sound(const tmini_monitor_t *monitor)
 {
     return ((monitor->faults | monitor->observed) & ~(TMINI_FAULT_MASK | TMINI_FAULT_FREQUENCY)) ==
-           0;
+               0 &&
+           monitor->off_times <= 4;
 }
 
 static bool recovery_is_sound(const tmini_recovery_t *recovery)

@@ -16,7 +16,7 @@ static struct {
     uint32_t at_ms; /* When something comes, */
     void (*feed)(void);
     uint32_t every_ms; /* and how often again; 0: once. */
-    unsigned waits;
+    uint32_t waits;
 } script;
 
 static void wait(void *context, int calls)
@@ -80,7 +80,7 @@ void test_info_is_read(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&rig.lidar, &info, 100));
     TEST_ASSERT_EQUAL_UINT8(151, info.model);
     TEST_ASSERT_EQUAL_UINT8(4, info.serial[15]);
-    TEST_ASSERT_EQUAL_UINT(5, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(5, script.waits);
     is_in(TMINI_STATE_IDLE);
 }
 
@@ -146,7 +146,7 @@ void test_a_frequency_that_could_not_be_set_is_not_waited_for_while_scanning(voi
     polls_to(TMINI_EVENT_STARTED);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
     is_in(TMINI_STATE_SCANNING);
-    TEST_ASSERT_EQUAL_UINT(0, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(0, script.waits);
 }
 
 /* A frequency that no lidar has, 55 ms from now, when it is asked for; then a packet, in answer to
@@ -179,7 +179,7 @@ void test_a_frequency_that_a_scanning_lidar_refuses_is_waited_for_until_it_scans
     refuses_the_frequency();
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_REPLY,
                           tmini_blocking_set_frequency(&rig.lidar, 640, TMINI_BLOCKING_TIMEOUT_MS));
-    TEST_ASSERT_EQUAL_UINT(115, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(115, script.waits);
     is_in(TMINI_STATE_SCANNING);
     TEST_ASSERT_EQUAL_HEX(0, rig_drain());
 }
@@ -192,7 +192,7 @@ void test_a_frequency_that_a_lost_lidar_refuses_is_waited_for_until_it_scans_aga
     refuses_the_frequency();
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE,
                           tmini_blocking_set_frequency(&rig.lidar, 640, TMINI_BLOCKING_TIMEOUT_MS));
-    TEST_ASSERT_EQUAL_UINT(115, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(115, script.waits);
     is_in(TMINI_STATE_SCANNING);
 }
 
@@ -207,7 +207,7 @@ void test_the_same_frequency_is_not_waited_for_once_it_has_been_set(void)
     rig_feed_frequency(640);
     polls_to(TMINI_EVENT_FREQUENCY);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
-    TEST_ASSERT_EQUAL_UINT(0, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(0, script.waits);
     is_in(TMINI_STATE_STARTING);
 }
 
@@ -220,7 +220,7 @@ void test_the_same_frequency_is_waited_for_while_a_start_asks_for_it(void)
     begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
     comes(5, feed_frequency);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
-    TEST_ASSERT_EQUAL_UINT(5, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(5, script.waits);
 }
 
 void test_a_frequency_is_not_waited_for_while_another_command_is_under_way(void)
@@ -231,7 +231,7 @@ void test_a_frequency_is_not_waited_for_while_another_command_is_under_way(void)
     begins_with(STOP, tmini_stop(&rig.lidar));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_BUSY, tmini_blocking_set_frequency(&rig.lidar, 700, 100));
     is_in(TMINI_STATE_STOPPING);
-    TEST_ASSERT_EQUAL_UINT(0, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(0, script.waits);
 }
 
 void test_a_frequency_is_not_waited_for_when_nothing_recovers_the_lidar(void)
@@ -243,7 +243,7 @@ void test_a_frequency_is_not_waited_for_when_nothing_recovers_the_lidar(void)
     polls_to(TMINI_EVENT_LOST);
     port_wait_StubWithCallback(wait);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
-    TEST_ASSERT_EQUAL_UINT(0, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(0, script.waits);
     is_in(TMINI_STATE_RECOVERING);
 }
 
@@ -261,7 +261,7 @@ void test_a_frequency_is_waited_for_past_attempts_to_start_that_fail(void)
     sends(STOP); /* After 2 s more, and a pause. */
     sends(GET_FREQUENCY);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 8000));
-    TEST_ASSERT_EQUAL_UINT(4655, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(4655, script.waits);
 }
 
 void test_a_start_waits_for_a_scan_though_the_frequency_was_refused(void)
@@ -276,7 +276,7 @@ void test_a_start_waits_for_a_scan_though_the_frequency_was_refused(void)
     comes(2055, feed_turn);
     script.every_ms = 160;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 8000));
-    TEST_ASSERT_EQUAL_UINT(2215, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(2215, script.waits);
 }
 
 void test_an_idle_lidar_is_asked_in_any_case(void)
@@ -287,7 +287,7 @@ void test_an_idle_lidar_is_asked_in_any_case(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
     sends(GET_FREQUENCY);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
-    TEST_ASSERT_EQUAL_UINT(10, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(10, script.waits);
 }
 
 void test_a_frequency_that_an_idle_lidar_does_not_take_says_why(void)
@@ -295,7 +295,7 @@ void test_a_frequency_that_an_idle_lidar_does_not_take_says_why(void)
     comes(5, feed_refusal);
     sends(GET_FREQUENCY);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_REPLY, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
-    TEST_ASSERT_EQUAL_UINT(5, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(5, script.waits);
 }
 
 void test_start_waits_for_the_first_scan(void)
@@ -320,7 +320,7 @@ void test_nothing_is_waited_for_while_there_are_events(void)
     comes(10, feed_two_turns);
     sends(START);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 1000));
-    TEST_ASSERT_EQUAL_UINT(10, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(10, script.waits);
 }
 
 void test_start_waits_for_the_first_packet_when_streaming(void)
@@ -493,7 +493,7 @@ void test_a_command_that_cannot_be_begun_does_not_wait(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE,
                           tmini_blocking_read_frequency(&rig.lidar, &frequency_chz, 100));
     is_in(TMINI_STATE_SCANNING);
-    TEST_ASSERT_EQUAL_UINT(0, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(0, script.waits);
 }
 
 void test_null_pointers_are_refused(void)
@@ -543,7 +543,7 @@ void test_a_wait_may_be_longer_than_a_minute(void)
     rig.timing.reply_timeout_ms = 0;
     sends(GET_INFO);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_read_info(&rig.lidar, &info, 70000));
-    TEST_ASSERT_EQUAL_UINT(70000, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(70000, script.waits);
 }
 
 void test_a_query_of_earlier_is_not_given_up_with_the_start_that_follows_it(void)
@@ -584,5 +584,5 @@ void test_a_port_without_wait_is_polled_without_a_pause(void)
     port_now_ms_StubWithCallback(running_clock);
     sends(STOP);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_stop(&rig.lidar, 1000));
-    TEST_ASSERT_EQUAL_UINT(0, script.waits);
+    TEST_ASSERT_EQUAL_UINT32(0, script.waits);
 }

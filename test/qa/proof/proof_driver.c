@@ -308,16 +308,18 @@ void prove_driver_reboot(void)
     REACHED();
 }
 
-/* At once, or after what is under way; nothing if it is to scan already. */
+/* At once, or after what is under way; nothing if it is to scan already, or being recovered. */
 void prove_driver_start(void)
 {
     any_lidar();
     const uint8_t before = lidar.state;
     const uint8_t phase = lidar.command.phase;
+    const bool begins =
+        before <= TMINI_STATE_IDLE || (before == TMINI_STATE_RECOVERING && lidar.is_recovery_off);
     CLAIM(tmini_start(&lidar) == TMINI_OK);
     CLAIM(is_sound());
-    CLAIM(lidar.state == (before <= TMINI_STATE_IDLE ? (uint8_t)TMINI_STATE_STARTING : before));
-    CLAIM(before <= TMINI_STATE_IDLE || lidar.command.phase == phase);
+    CLAIM(lidar.state == (begins ? (uint8_t)TMINI_STATE_STARTING : before));
+    CLAIM(begins || lidar.command.phase == phase);
     CLAIM((before != TMINI_STATE_BUSY && before != TMINI_STATE_STOPPING) || lidar.start_follows);
     REACHED();
 }
