@@ -388,9 +388,12 @@ class Simulated(Viewer):
         self.page.wait_text("#sector0", "0.6")
         return self.visitor()
 
+    def visitor_now(self):
+        return self.look("Math.max(r, g, b) - Math.min(r, g, b) > 80")
+
     def visitor(self):
         self.wait_scans(2)
-        return self.look("Math.max(r, g, b) - Math.min(r, g, b) > 80")
+        return self.visitor_now()
 
     def test_points_are_drawn_where_they_are(self):
         count, right, ahead = self.show_visitor_alone()
@@ -412,7 +415,7 @@ class Simulated(Viewer):
         self.show_visitor_alone()
         self.switch("visitor")
         self.page.wait_text("#sector0", "1.3")
-        self.assertGreater(self.visitor()[0], 50)
+        self.assertGreater(self.visitor_now()[0], 50) # On a slow computer 20 revolutions are soon over.
         self.persist(1)
         self.assertEqual(0, self.visitor()[0])
 
