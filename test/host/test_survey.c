@@ -19,7 +19,7 @@
 static char report_file[] = "/tmp/tmini-report.XXXXXX";
 static char like_file[] = "/tmp/tmini-like.XXXXXX";
 
-static unsigned lost_every; /* One in so many bytes is lost on the line; 0: none. */
+static unsigned lost_every; /* One in this many bytes is lost on the line; 0: none. */
 static unsigned sent;
 static sim_t device;
 static uint64_t time_us;
