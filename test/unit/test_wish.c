@@ -101,10 +101,9 @@ void test_packets_while_the_frequency_is_asked_for_are_no_start(void)
     is_in(TMINI_STATE_STARTING);
 }
 
-void test_without_an_answer_the_start_follows_all_the_same_and_says_so_when_it_scans(void)
+/* The question has been sent. The lidar is deaf to all but the start. */
+static void starts_without_the_frequency(void)
 {
-    want(1000);
-    asks_for_the_frequency();
     passes(2000);
     polls_to(TMINI_EVENT_NONE);
     goes_on_with(STOP);
@@ -112,6 +111,13 @@ void test_without_an_answer_the_start_follows_all_the_same_and_says_so_when_it_s
     goes_on_with(START);
     starts_scanning();
     polls_to(TMINI_EVENT_COMMAND_FAILED);
+}
+
+void test_without_an_answer_the_start_follows_all_the_same_and_says_so_when_it_scans(void)
+{
+    want(1000);
+    asks_for_the_frequency();
+    starts_without_the_frequency();
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_command_error(&rig.lidar));
     is_in(TMINI_STATE_SCANNING);
 }
@@ -294,20 +300,6 @@ void test_three_seconds_of_another_frequency_are_a_fault_and_one_more_try(void)
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
 
-/* The stop has been sent. The lidar is deaf to all but the start. */
-static void fails_to_set_the_frequency(void)
-{
-    becomes_quiet();
-    goes_on_with(GET_FREQUENCY);
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
-    goes_on_with(STOP);
-    becomes_quiet();
-    goes_on_with(START);
-    starts_scanning();
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
-}
-
 /* At 6.0 Hz, 18, 36, 72 and 144 revolutions are 3, 6, 12 and 24 seconds. At most 255 count. */
 void test_a_frequency_that_could_not_be_set_is_tried_again_less_and_less_often(void)
 {
@@ -321,7 +313,9 @@ void test_a_frequency_that_could_not_be_set_is_tried_again_less_and_less_often(v
         was_sent();
         is_in(TMINI_STATE_STARTING);
         TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
-        fails_to_set_the_frequency();
+        becomes_quiet();
+        goes_on_with(GET_FREQUENCY);
+        starts_without_the_frequency();
     }
     turns(1, 100);
     turns(17, 60);
@@ -329,6 +323,26 @@ void test_a_frequency_that_could_not_be_set_is_tried_again_less_and_less_often(v
     sends(STOP);
     turns(1, 60);
     was_sent();
+}
+
+/* A lidar that reports its own frequency again and again has answered. */
+void test_a_frequency_that_the_lidar_refuses_is_tried_once_more_only(void)
+{
+    scans_wishing(1000);
+    sends(STOP);
+    turns(18, 60);
+    was_sent();
+    becomes_quiet();
+    goes_on_with(GET_FREQUENCY);
+    rig_feed_frequency(600);
+    becomes_quiet();
+    goes_on_with(FASTER_ONE);
+    rig_feed_frequency(600);
+    polls_to(TMINI_EVENT_NONE);
+    starts_without_the_frequency();
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_REPLY, tmini_command_error(&rig.lidar));
+    turns(100, 60);
+    is_in(TMINI_STATE_SCANNING);
 }
 
 void test_a_frequency_that_is_off_after_a_loss_is_a_new_fault(void)
