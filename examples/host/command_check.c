@@ -16,6 +16,8 @@
 #include "points.h"
 
 #define WATCH_SECONDS 10u
+#define COLUMNS 80
+#define INDENT 17 /* Of what follows the grade and the question's name. */
 
 /* Limits, in this order: damaged packets per thousand; the motor's deviation in percent (real units
  * set to 6 Hz have been seen at 5.8 to 6.5); the motor's time to reach its speed; the longest pause
@@ -44,22 +46,38 @@ typedef struct {
     char names[GRADES][160]; /* How many questions had this answer. */
 } check_t;
 
-/* Prints the answer to a question: what was seen and, if it is bad, what to do. */
+/* Prints a text after INDENT columns, in lines of at most COLUMNS. */
+static void print_indented(const char *text)
+{
+    size_t column = INDENT;
+    for (const char *word = text; *word != '\0'; word += *word != '\0' ? 1 : 0) {
+        const size_t length = strcspn(word, " \n");
+        const bool is_new_line = word > text && (word[-1] == '\n' || column + 1 + length > COLUMNS);
+        const int gap = is_new_line ? INDENT : word > text ? 1 : 0;
+        (void)printf("%s%*s%.*s", is_new_line ? "\n" : "", gap, "", (int)length, word);
+        column = (is_new_line ? 0 : column) + (size_t)gap + length;
+        word += length;
+    }
+    (void)putchar('\n');
+}
+
+/* Prints the answer to a question: what was seen and, if it is not good, what to do. */
 static void answer(check_t *check, grade_t grade, const char *name, const char *advice,
                    const char *format, ...)
 {
     static const char *const words[GRADES] = {"ok", "look", "BAD"};
     char *const names = check->names[grade];
     const size_t length = strlen(names);
+    char text[1024];
     va_list arguments;
     va_start(arguments, format);
-    (void)printf("%-5s %-10s ", words[grade], name);
-    (void)vprintf(format, arguments);
-    (void)putchar('\n');
+    (void)vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    for (const char *line = advice; line != NULL && grade != GOOD; line = strchr(line, '\n')) {
-        line += line[0] == '\n' ? 1 : 0;
-        (void)printf("                 %.*s\n", (int)strcspn(line, "\n"), line);
+    (void)printf("%-5s %-10s ", words[grade], name);
+    print_indented(text);
+    if (advice != NULL && grade != GOOD) {
+        (void)printf("%*s", INDENT, "");
+        print_indented(advice);
     }
     (void)fflush(stdout); /* The next one may take some seconds. */
     (void)snprintf(names + length, sizeof check->names[grade] - length, "%s%s",
@@ -226,7 +244,7 @@ static void judge_line(check_t *check)
     }
     if (stream->longest_ms > PAUSE_MS && device->silences + device->noises == 0) {
         answer(check, REMARK, "pace",
-               "nothing is lost by it; for fresher data: the adapter's latency timer, no USB hub,\n"
+               "nothing is lost by it; for fresher data: the adapter's latency timer, no USB hub, "
                "a less busy computer",
                "packets came up to %u ms late", (unsigned)stream->longest_ms);
     }
@@ -267,9 +285,8 @@ static void judge_scans(check_t *check)
     }
     if (check->faults == 0 && check->points > 0) {
         answer(check, grade(check->valid == 0, percent < FEW_PERCENT), "ranges",
-               "uncover or clean the window; or there is nothing within 12 m",
-               "%u %% of the points have a distance%s%s", percent,
-               check->nearest.distance_mm > 0 ? "; nearest " : "",
+               "uncover or clean the window; or there is nothing within 12 m", "%u %% valid%s%s",
+               percent, check->nearest.distance_mm > 0 ? "; nearest " : "",
                check->nearest.distance_mm > 0 ? place_text(&check->nearest) : "");
     }
 }
@@ -355,7 +372,7 @@ static int run(const options_t *options)
 {
     const int status = device_use(options, run_check);
     if (check.device == NULL) {
-        (void)puts("verdict: cannot tell: there is no port to look at");
+        (void)puts("verdict: none, because there is no port to look at");
     }
     return status;
 }
@@ -365,9 +382,9 @@ const command_t command_check = {
     .usage = "[-p PORT] [--seconds N] [--listen] [--front DEG] [--upside-down]\n"
              "            [--mask FROM:TO]",
     .summary = "ten seconds, one verdict: port, wires, supply, lidar",
-    .details = "A line a question: ok; look (it works, but could be better); BAD. Each that is\n"
-               "not ok says what to do about it. Watches for 10 seconds, or N. Exit status 1 if\n"
-               "anything is BAD.",
+    .details = "A line per question: ok; look (it works, but could be better); BAD. After each\n"
+               "that is not ok, what to do about it. Watches for 10 seconds, or N. Exit status\n"
+               "1 if anything is BAD.",
     .accepts = "psLFUKq",
     .run = run,
 };

@@ -35,7 +35,7 @@ typedef struct {
 
 static drawing_t drawing = {.every = 1};
 
-/* When there is no room, keeps every second point and from now on half as many. */
+/* When there is no room, keeps every second point, and from now on half of those that come. */
 static void add_thinned(const tmini_point_t *point)
 {
     if (drawing.seen++ % drawing.every != 0) {

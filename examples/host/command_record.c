@@ -152,7 +152,7 @@ static int run(const options_t *options)
 const command_t command_record = {
     .name = "record",
     .usage = "[-p PORT] FILE|- [--seconds N] [--timed] [--wait] [--listen]",
-    .summary = "what the lidar sends into a file, until Ctrl-C or for N seconds",
+    .summary = "all that the lidar sends, until Ctrl-C or for N seconds",
     .details = "FILE then holds all that the lidar sent from the start command on, for `tmini\n"
                "decode`, `plot` and `view`. A FILE.tmini, or any with --timed, also holds when\n"
                "it came; others hold the raw bytes alone.",

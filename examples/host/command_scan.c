@@ -71,7 +71,7 @@ static int scan(device_t *device, const options_t *options)
                  scans_with_range, damaged_text(stream));
     if (status == STATUS_OK && stream->scans > 0 && scans_with_range == 0) {
         return message_fail("no scan had a distance: is the window covered, or the rotor blocked? "
-                            "`tmini health` tells more");
+                            "`tmini health` shows more");
     }
     return status;
 }

@@ -89,8 +89,8 @@ static void say(void *context, const char *text)
 static const survey_wire_t wire = {
     .now_us = now_us, .send = send_bytes, .receive = receive, .is_over = is_over, .say = say};
 
-/* The driver has no part in it: the port's bytes go to the tap alone, and then to the driver again,
- * which stops the lidar in the end. */
+/* During the survey the port's bytes go to the tap only; after it to the driver again, which stops
+ * the lidar. */
 static bool ask_everything(device_t *device, uint32_t seconds)
 {
     tmini_posix_tap(&device->port, take, NULL);

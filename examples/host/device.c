@@ -41,7 +41,7 @@ static tmini_timing_t patience;
 
 static volatile sig_atomic_t started_fd = -1;
 
-/* The stop command (section 3), from a signal's handler: nobody waits for a quiet line. */
+/* The stop command (section 3), from a signal's handler, without waiting for a quiet line. */
 static void stop_at_once(void)
 {
     static const uint8_t stop[2] = {TMINI_COMMAND_SYNC, TMINI_COMMAND_STOP};
@@ -204,15 +204,15 @@ static bool may_still_start(const device_t *device)
 int device_start(device_t *device)
 {
     tmini_event_t event = TMINI_EVENT_NONE;
-    bool is_told = false;
+    bool is_reported = false;
     device_begin(device);
     (void)tmini_start(&device->lidar);
     while (event != TMINI_EVENT_STARTED && may_still_start(device)) {
         event = device_wait(device, SLICE_MS);
-        if (event == TMINI_EVENT_COMMAND_FAILED && !is_told && !device->is_away) {
+        if (event == TMINI_EVENT_COMMAND_FAILED && !is_reported && !device->is_away) {
             message_note("the lidar does not start: %s; trying again",
                          tmini_status_name(tmini_command_error(&device->lidar)));
-            is_told = true;
+            is_reported = true;
         }
     }
     return event == TMINI_EVENT_STARTED ? STATUS_OK : device_why(device);
@@ -271,15 +271,15 @@ const char *trouble_text(trouble_t trouble)
                             "- this is the port that the lidar is on,\n"
                             "- the lidar has 5 V and GND,\n"
                             "- its TX goes to the adapter's RX, and its RX to the adapter's TX.",
-        [TROUBLE_NOISE] = "bytes came, but nothing that a T-mini Plus says. Check that\n"
+        [TROUBLE_NOISE] = "bytes came, but nothing that a T-mini Plus sends. Check that\n"
                           "- it is this lidar, and not another device,\n"
                           "- the adapter really runs at 230400 baud (wrong baud rate: try another "
                           "adapter),\n"
                           "- lidar and adapter share GND, and the wires are short.",
-        [TROUBLE_DEAF] =
-            "the lidar sends, but does not do what it is told. Check the wire from the "
-            "adapter's TX\nto the lidar's RX, and that its level is 3.3 V. Without that wire: "
-            "--listen.",
+        [TROUBLE_DEAF] = "the lidar sends, but does not obey. Check that\n"
+                         "- the adapter's TX goes to the lidar's RX,\n"
+                         "- the level there is 3.3 V.\n"
+                         "Without that wire: --listen.",
         [TROUBLE_OTHER] = "",
     };
     return texts[trouble];

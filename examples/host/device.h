@@ -17,7 +17,7 @@ typedef struct device {
     tmini_posix_t port;
     stream_t stream;
     const char *path;
-    uint32_t begun_ms; /* When it was opened, and then when it was told to start. */
+    uint32_t begun_ms; /* When it was opened, and then when the start command was given. */
     uint32_t silences; /* How often the lidar was lost because nothing came. */
     uint32_t noises;   /* How often it was lost because no valid packets came. */
     uint32_t strays;   /* How often it scanned although it had been stopped. */
@@ -36,7 +36,7 @@ typedef struct device {
  * the reason and returns the exit status. */
 int device_use(const options_t *options, int (*use)(device_t *device, const options_t *options));
 
-/* Milliseconds since the lidar was told to start; before, since it was opened. */
+/* Milliseconds since the start command; before it, since the port was opened. */
 uint32_t device_ms(const device_t *device);
 
 /* The next event; TMINI_EVENT_SCAN instead of TMINI_EVENT_PACKET if it has completed a scan: see
@@ -57,7 +57,7 @@ bool device_await(device_t *device, tmini_status_t begun, tmini_event_t wanted);
 /* The same, but returns STATUS_OK, or STATUS_FAILED and says what is wrong and what to try. */
 int device_finish(device_t *device, tmini_status_t begun, tmini_event_t wanted);
 
-/* The lidar is about to be told to start: the time begins, and it will be stopped in the end. */
+/* A start command comes next: the time begins, and it will be stopped in the end. */
 void device_begin(device_t *device);
 
 /* Begins to scan, and waits for the first packet, through failures that may pass: a lidar that is

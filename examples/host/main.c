@@ -44,7 +44,7 @@ static const option_t table[] = {
     {'o', "output", "FILE", "where to draw: FILE.svg, FILE.png or FILE.pdf", PLACE(output), 0, 0,
      NULL},
     {'C', "csv", NULL, "comma-separated values", PLACE(csv), 0, 0, NULL},
-    {'J', "json", NULL, "JSON, one object a line", PLACE(json), 0, 0, NULL},
+    {'J', "json", NULL, "JSON, one object per line", PLACE(json), 0, 0, NULL},
     {'S', "stats", "FILE", "write the counters to FILE, as a JSON object", PLACE(stats), 0, 0,
      NULL},
     {'M', "max-samples", "N", "accept packets of up to N samples (1 to 255; default 80)",
@@ -283,8 +283,8 @@ static int print_usage(FILE *file, int status)
     for (size_t i = 0; i < COMMANDS; i++) {
         (void)fprintf(file, "  tmini %-10s %s\n", commands[i]->name, commands[i]->summary);
     }
-    (void)fputs("\ntmini COMMAND --help tells more. Exit status: 0 success, 1 failure, 2 wrong "
-                "usage.\n",
+    (void)fputs("\n`tmini COMMAND --help` has more. Exit status: 0 success, 1 failure,\n"
+                "2 wrong usage.\n",
                 file);
     return status;
 }

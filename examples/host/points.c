@@ -97,7 +97,7 @@ const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE])
         return faults_text(faults, text);
     }
     return stream_tells_nothing(stream)
-               ? "not told: this unit sends no information within the stream"
+               ? "not reported: this unit sends no information within the stream"
                : "unknown: no revolution arrived whole";
 }
 
@@ -151,7 +151,7 @@ static const char *hertz(unsigned frequency_chz, const char *unknown)
 
 void rows_print_packet(const stream_t *stream)
 {
-    const char *const told = hertz(stream->frequency_chz, "");
+    const char *const reported = hertz(stream->frequency_chz, "");
     tmini_point_t point;
     for (size_t i = 0; tmini_packet_point(&stream->decoder.packet, i, &point); i++) {
         if (stream->mount != NULL) {
@@ -159,7 +159,7 @@ void rows_print_packet(const stream_t *stream)
         }
         (void)printf("%llu,%llu,%zu," DEGREES ",%d,%d,%d,%u,%s\n", stream->start_packets,
                      stream->packets - 1, i, point.angle_q6 / 64.0, point.distance_mm,
-                     point.intensity, point.flag, stream->packet_ms, told);
+                     point.intensity, point.flag, stream->packet_ms, reported);
     }
 }
 

@@ -184,17 +184,17 @@ static int run(const options_t *options)
     print(stdout, count);
     return count > 0 ? STATUS_OK
                      : message_fail("no USB serial adapter is plugged in, or its driver is missing "
-                                    "(on Linux, `dmesg` tells)");
+                                    "(on Linux, see `dmesg`)");
 }
 
 const command_t command_ports = {
     .name = "ports",
     .usage = "",
     .summary = "the serial adapters of this computer",
-    .details = "A line for each: its most stable name, the device behind it, the USB numbers of\n"
-               "its maker, and its chip if it is one of those that lidars come with. A command\n"
-               "without -p takes the port of the environment's TMINI_PORT, or else the only such\n"
-               "adapter.",
+    .details = "A line for each: its most stable name, the device that this leads to, the USB\n"
+               "numbers of its maker, and its chip if it is one of those that lidars come with.\n"
+               "A command without -p takes the port of the environment's TMINI_PORT, or else\n"
+               "the only such adapter.",
     .accepts = "q",
     .run = run,
 };

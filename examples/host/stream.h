@@ -10,7 +10,7 @@
 #include "tmini/parts/tmini_decoder.h"
 #include "tmini/tmini_mount.h"
 
-/* More points than any revolution has: 4000 a second at well below 1 Hz. */
+/* More points than any revolution has: 4000 per second at well below 1 Hz. */
 #define STREAM_POINTS_MAX 8192
 
 /* 64 bits at least: a recording may be long. */

@@ -52,13 +52,13 @@ typedef struct {
     uint16_t first_q6;
     uint16_t start_q6;    /* The steady start packets' angle: the first one's, */
     int32_t start_sum_q6; /* the others' difference from it, */
-    uint32_t turns;       /* how many, their samples and what they told of the frequency, */
-    uint32_t turn_samples, turn_told_dhz;
+    uint32_t turns;       /* how many, their samples and the frequency they reported, */
+    uint32_t turn_samples, turn_reported_dhz;
     uint32_t steady_samples; /* all samples in that time, and its end. */
     uint64_t steady_end_us;
-    uint32_t before_error, after_error; /* The told frequency against the turns around it. */
-    uint32_t now_samples, before_samples, told_dhz; /* Of a turn with a gap 0. */
-    bool is_damaged;                                /* This turn has a gap. */
+    uint32_t before_error, after_error; /* The reported frequency against the turns around it. */
+    uint32_t now_samples, before_samples, reported_dhz; /* Of a turn with a gap 0. */
+    bool is_damaged;                                    /* This turn has a gap. */
     uint8_t crc, latest_count, latest_is_point;
     uint32_t early_count;
     struct {
@@ -83,7 +83,7 @@ typedef enum {
 typedef struct {
     const survey_wire_t *wire;
     survey_reply_t info, health, frequency, stop;
-    uint32_t frequency_chz; /* At the beginning; 0: not told, as all of these. */
+    uint32_t frequency_chz; /* At the beginning; 0: not reported, here and below. */
     uint32_t min_chz, max_chz;
     survey_steps_t steps;
     uint32_t boot_ms;

@@ -38,11 +38,11 @@ static void note_speed(survey_scan_t *scan, const tmini_packet_t *packet, uint64
 }
 
 /* The frequency in a start packet: is it of the turn before or after it? (Section 9.8.) */
-static void compare_told(survey_scan_t *scan)
+static void compare_reported(survey_scan_t *scan)
 {
     if (scan->before_samples > 0 && scan->now_samples > 0) {
-        scan->before_error += difference(scan->told_dhz, HZ_OF_SAMPLES / scan->before_samples);
-        scan->after_error += difference(scan->told_dhz, HZ_OF_SAMPLES / scan->now_samples);
+        scan->before_error += difference(scan->reported_dhz, HZ_OF_SAMPLES / scan->before_samples);
+        scan->after_error += difference(scan->reported_dhz, HZ_OF_SAMPLES / scan->now_samples);
     }
 }
 
@@ -55,7 +55,7 @@ static void note_steady_turn(survey_scan_t *scan, const tmini_packet_t *packet)
     scan->start_sum_q6 += off_q6 < TMINI_FULL_CIRCLE_Q6 / 2 ? off_q6 : (int32_t)off_q6 - 23040;
     scan->turns++;
     scan->turn_samples += scan->now_samples;
-    scan->turn_told_dhz += packet->ct / 2u;
+    scan->turn_reported_dhz += packet->ct / 2u;
 }
 
 /* LastCRC is the one byte before a start packet (section 7). */
@@ -68,13 +68,13 @@ static void note_start(survey_scan_t *scan, const tmini_packet_t *packet, uint64
     scan->guards_aa += verdict == TMINI_CT_CONFIRMED && scan->crc == 0xAA ? 1 : 0;
     scan->crc = 0;
     if (scan->start_packets > 0) {
-        compare_told(scan);
+        compare_reported(scan);
         if (now_us - scan->first_us > STEADY_US && scan->now_samples > 0) {
             note_steady_turn(scan, packet);
         }
         scan->before_samples = scan->now_samples;
     }
-    scan->told_dhz = packet->ct / 2u;
+    scan->reported_dhz = packet->ct / 2u;
     scan->now_samples = 0;
     scan->is_damaged = false;
     scan->start_packets++;

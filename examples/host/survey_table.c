@@ -193,7 +193,7 @@ static bool read_beginning(const survey_t *survey, char text[TEXT_SIZE])
                                                                         : "anywhere");
 }
 
-/* Where it stands by chance, this says nothing. */
+/* Known only if the rotor does not stand there by chance. */
 static bool read_first_angle(const survey_t *survey, char text[TEXT_SIZE])
 {
     const survey_scan_t *const scan = slow(survey);
@@ -202,7 +202,7 @@ static bool read_first_angle(const survey_t *survey, char text[TEXT_SIZE])
            put(text, true, (int)rounded(scan->first_q6 / 64.0, 1) % 360, 0);
 }
 
-/* Of the first speed that is seen, and of the last. */
+/* An early speed as a share of the last one. */
 static double share_of_speed(const survey_scan_t *scan, uint32_t i)
 {
     const uint32_t last_chz = survey_scan_measured_chz(scan);
@@ -217,7 +217,7 @@ static bool read_spin_up_percent(const survey_t *survey, char text[TEXT_SIZE])
     return put(text, is_known, percent < 100 ? percent : 100, 0);
 }
 
-/* As if it went on evenly, from standstill. */
+/* From standstill, as if the speed rose evenly. */
 static bool read_spin_up(const survey_t *survey, char text[TEXT_SIZE])
 {
     const survey_scan_t *const scan = slow(survey);
@@ -371,15 +371,15 @@ static bool read_ct_serial(const survey_t *survey, char text[TEXT_SIZE])
 {
     const tmini_ct_info_t *const ct = &slow(survey)->ct;
     const uint8_t *const info = info_of(survey);
-    char told[40];
+    char sent[40];
     char digits[TMINI_SERIAL_DIGITS + 1] = "";
-    (void)snprintf(told, sizeof told, "%04d%02d%02d%08u", ct->year, ct->month, ct->day,
+    (void)snprintf(sent, sizeof sent, "%04d%02d%02d%08u", ct->year, ct->month, ct->day,
                    (unsigned)ct->number);
     for (size_t i = 0; info != NULL && i < TMINI_SERIAL_DIGITS; i++) {
         digits[i] = (char)('0' + info[4 + i] % 16);
     }
     return put_word(text, info == NULL || (ct->known & TMINI_KNOWN_SERIAL) == 0 ? NULL
-                          : strcmp(told, digits) == 0                           ? "as-in-reply"
+                          : strcmp(sent, digits) == 0                           ? "as-in-reply"
                                                                                 : "other");
 }
 

@@ -87,8 +87,8 @@ static bool write_own_screen(void)
     return write(STDOUT_FILENO, OWN_SCREEN, size) == (ssize_t)size;
 }
 
-/* Gives the terminal back without waiting for it: output may have been stopped (Ctrl-S), or nobody
- * may be there who reads it. May be called from a signal's handler. */
+/* Gives the terminal back without waiting for it: output may have been stopped (Ctrl-S), or
+ * nothing may read it any more. May be called from a signal's handler. */
 static void restore_at_once(void)
 {
     if (is_taken == 0) {

@@ -250,7 +250,7 @@ static bool is_faulty(const view_t *view)
 static const char *health_name(const view_t *view)
 {
     if (view->faults == TMINI_FAULTS_UNKNOWN) {
-        return stream_tells_nothing(view->stream) ? "not told" : "unknown";
+        return stream_tells_nothing(view->stream) ? "not reported" : "unknown";
     }
     return view->faults == 0 ? "healthy" : "FAULTY";
 }

@@ -43,7 +43,7 @@ typedef struct {
 
 typedef struct {
     int64_t skipped_ns;
-    uint64_t events; /* Counts whatever ends somebody's waiting. */
+    uint64_t events; /* Counts what may end a program's waiting. */
     program_t programs[PROGRAMS_MAX];
 } clock_file_t;
 

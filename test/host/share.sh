@@ -33,6 +33,7 @@ done
 
 commands=$("$tmini" help | sed -n 's/^  tmini \([a-z]*\) .*/\1/p')
 [ "$(echo "$commands" | wc -l)" -ge 11 ] || complain "the tool does not list its commands"
+"$tmini" help | grep -q '.\{81\}' && complain "the list of commands is too wide"
 for command in $commands; do
     "$tmini" help "$command" | grep -q '.\{81\}' && complain "the help of $command is too wide"
 done

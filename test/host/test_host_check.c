@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* `tmini check`: the right verdict on each fault of the simulated lidar, and on what is no lidar.
- * Some are examined at the same time, each by a tool of its own; the tests look at what it said. A
- * busy computer may be told of as well ("pace", "computer"): that is no fault of the lidar's. */
+ * Some are examined at the same time, each by a tool of its own; the tests look at what it printed.
+ * It may also report a busy computer ("pace", "computer"): that is no fault of the lidar's. */
 
 #define _XOPEN_SOURCE 700
 
@@ -125,6 +125,15 @@ static bool computer_was_busy(void)
            strstr(program_output, "\nlook  computer ") != NULL;
 }
 
+static void expect_narrow_lines(void)
+{
+    for (const char *line = program_output; *line != '\0'; line += strspn(line, "\n")) {
+        const size_t length = strcspn(line, "\n");
+        TEST_ASSERT_TRUE_MESSAGE(length <= 80, line);
+        line += length;
+    }
+}
+
 /* Waits for the end of a case, and begins another in its place. Returns the exit status. */
 static int finish_case(case_t *one)
 {
@@ -153,6 +162,7 @@ static void end_case(const char *name, int status, const char *text)
     }
     TEST_ASSERT_EQUAL_INT_MESSAGE(status, ended, program_output);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_output, text), program_output);
+    expect_narrow_lines();
 }
 
 static void expect_said(const char *text)
@@ -183,7 +193,7 @@ void test_a_good_lidar_is_good(void)
     expect_said("\nok    line       0.0 % of ");
     expect_said("\nok    frequency  6.0 Hz measured, 6.0 Hz set\n");
     expect_said("\nok    faults     healthy\n");
-    expect_said(" % of the points have a distance; nearest ");
+    expect_said(" % valid; nearest ");
     expect_said("\nverdict: ");
     end_case("socket", 0, "ok    port       tcp:127.0.0.1:");
     expect_unsaid("BAD");
@@ -192,7 +202,8 @@ void test_a_good_lidar_is_good(void)
 void test_a_unit_that_reports_nothing_within_the_stream_is_good_too(void)
 {
     end_case("no_ct", 0, "\nverdict: ");
-    expect_said("\nok    faults     not told: this unit sends no information within the stream\n");
+    expect_said(
+        "\nok    faults     not reported: this unit sends no information within the stream\n");
     expect_unsaid("BAD");
 }
 
@@ -269,17 +280,19 @@ void test_a_motor_that_does_not_come_up_to_its_speed(void)
     expect_said("brake the rotor");
 }
 
+static void expect_no_lidar(const char *name, pid_t tool, const char *verdict, const char *advice)
+{
+    TEST_ASSERT_EQUAL_INT(1, program_finish_as(name, tool));
+    expect_said(verdict);
+    expect_said(advice);
+    expect_narrow_lines();
+}
+
 void test_what_is_no_lidar(void)
 {
-    TEST_ASSERT_EQUAL_INT(1, program_finish_as("silent", silent));
-    expect_said("\nverdict: not good: wiring\n");
-    expect_said("not one byte came");
-    TEST_ASSERT_EQUAL_INT(1, program_finish_as("noisy", noisy));
-    expect_said("\nverdict: not good: baud\n");
-    expect_said("230400 baud");
-    TEST_ASSERT_EQUAL_INT(1, program_finish_as("deaf", deaf));
-    expect_said("\nverdict: not good: command\n");
-    expect_said("the adapter's TX");
+    expect_no_lidar("silent", silent, "\nverdict: not good: wiring\n", "not one byte came");
+    expect_no_lidar("noisy", noisy, "\nverdict: not good: baud\n", "230400 baud");
+    expect_no_lidar("deaf", deaf, "\nverdict: not good: command\n", "the adapter's TX");
 }
 
 void test_a_lidar_that_answers_but_does_not_scan(void)
@@ -305,7 +318,7 @@ void test_an_interrupted_examination_has_no_verdict(void)
 void test_without_a_port_there_is_nothing_to_look_at(void)
 {
     TEST_ASSERT_EQUAL_INT(1, program_tmini(WORDS("check", "-p", "/dev/nowhere")));
-    expect_said("verdict: cannot tell: there is no port to look at\n");
+    expect_said("verdict: none, because there is no port to look at\n");
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "no such device"));
     TEST_ASSERT_EQUAL_INT(2, program_tmini(WORDS("check")));
 }

@@ -82,7 +82,7 @@ static void expect_item(void *context, const reference_item_t *item)
                point.flag, samples / 4, frequency);
     }
     packets++;
-    samples += item->lsn; /* 4000 a second. */
+    samples += item->lsn; /* 4000 per second. */
 }
 
 /* Decodes `bytes` with both decoders and compares rows and counters. */
@@ -240,11 +240,11 @@ void test_without_a_format_a_person_gets_a_summary(void)
 
 void test_what_a_damaged_recording_does_not_tell_is_unknown(void)
 {
-    summarise(RECORDINGS "sim-6hz-damaged.bin"); /* The unit tells, but no turn is whole. */
+    summarise(RECORDINGS "sim-6hz-damaged.bin"); /* The unit reports it, but no turn is whole. */
     expect_summary("health      unknown: no revolution arrived whole\n");
     expect_summary(" packets damaged (");
     summarise(RECORDINGS "sim-10hz-plain.bin");
-    expect_summary("health      not told: this unit sends no information within the stream\n");
+    expect_summary("health      not reported: this unit sends no information within the stream\n");
 }
 
 /* This many packets of one sample, with this many other bytes somewhere among them. */
@@ -265,7 +265,7 @@ static void summarise_damage(unsigned count, size_t gap)
 
 /* A packet is 130 bytes: it counts from the half on, and where there is a gap at least one is
  * damaged. */
-void test_the_bytes_of_a_gap_tell_how_many_packets_are_damaged(void)
+void test_the_bytes_of_a_gap_show_how_many_packets_are_damaged(void)
 {
     summarise_damage(3, 1);
     expect_summary(", 1 stray byte between packets: about 1 packet damaged (25.0 %)\n");

@@ -340,7 +340,7 @@ void test_a_long_recording_holds_every_packet(void)
                   "\"bytes\":%u,\"bytes_skipped\":%u}",
                   &packets, &starts, &points, &errors, &bytes, &skipped));
     TEST_ASSERT_EQUAL_UINT(0, errors);
-    TEST_ASSERT_TRUE(points > 20000); /* 4000 a second, but on a busy computer less. */
+    TEST_ASSERT_TRUE(points > 20000); /* 4000 per second, but on a busy computer less. */
     /* The reply to the start command, and one LastCRC before each start packet but the first. */
     TEST_ASSERT_EQUAL_UINT(7 + starts - 1, skipped);
 }
@@ -357,7 +357,7 @@ void test_a_recording_can_go_through_a_pipe(void)
     TEST_ASSERT_NOT_NULL(strstr(text, "7 bytes before the first packet, 0 after the last"));
 }
 
-/* What the lidar was told, after a reader has gone. */
+/* The commands sent to the lidar after a reader has gone. */
 void test_a_closed_pipe_ends_a_scan_silently_and_stops_the_lidar(void)
 {
     const char *const log = program_path("log");
@@ -564,23 +564,23 @@ static int run_against_a_stubborn_lidar(const char *command, const char *option)
 /* On a busy computer the moment may be missed. */
 void test_a_lidar_that_scans_although_it_was_stopped_is_reported_and_stopped_again(void)
 {
-    bool is_told = false;
-    for (int i = 0; i < 5 && !is_told; i++) {
+    bool is_reported = false;
+    for (int i = 0; i < 5 && !is_reported; i++) {
         TEST_ASSERT_EQUAL_INT(0, run_against_a_stubborn_lidar("scan", "-n1"));
-        is_told =
+        is_reported =
             strstr(program_errors, "scans although it was stopped; stopping it again") != NULL;
     }
-    TEST_ASSERT_TRUE(is_told);
+    TEST_ASSERT_TRUE(is_reported);
 }
 
 void test_check_reports_a_lidar_that_scans_although_it_was_stopped(void)
 {
-    bool is_told = false;
-    for (int i = 0; i < 5 && !is_told; i++) {
+    bool is_reported = false;
+    for (int i = 0; i < 5 && !is_reported; i++) {
         TEST_ASSERT_EQUAL_INT(0, run_against_a_stubborn_lidar("check", "-s1"));
-        is_told = strstr(program_output, "\nlook  stop       the lidar went on after") != NULL;
+        is_reported = strstr(program_output, "\nlook  stop       the lidar went on after") != NULL;
     }
-    TEST_ASSERT_TRUE(is_told);
+    TEST_ASSERT_TRUE(is_reported);
     TEST_ASSERT_NOT_NULL(strstr(program_output, "stop\n"));
     TEST_ASSERT_NULL(strstr(program_errors, "although")); /* Said once. */
 }
@@ -906,13 +906,13 @@ void test_a_port_without_a_lidar(void)
 void test_a_lidar_at_the_wrong_baud_rate(void)
 {
     expect_failed_job(NOISY_INFO, "wrong baud rate");
-    TEST_ASSERT_NOT_NULL(strstr(program_errors, "but nothing that a T-mini Plus says"));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "but nothing that a T-mini Plus sends"));
     expect_failed_job(NOISY_SCAN, "wrong baud rate");
 }
 
 void test_a_lidar_that_sends_but_does_not_hear(void)
 {
-    expect_failed_job(DEAF_INFO, "does not do what it is told");
+    expect_failed_job(DEAF_INFO, "does not obey");
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "--listen"));
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "the adapter's TX"));
 }

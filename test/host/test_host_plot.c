@@ -257,7 +257,7 @@ void test_interference_and_the_nearest_point_are_marked(void)
     const char *const svg = read_svg();
     TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X + 250, MIDDLE_Y, 7.4)); /* Flag 2: a ring. */
     TEST_ASSERT_EQUAL_UINT(1, count_of(svg, "M 594 1059 L 606 1071"));    /* Flag 3: a cross, */
-    TEST_ASSERT_EQUAL_UINT(1, count_of(svg, "M 594 1071 L 606 1059"));    /* 3 m behind. */
+    TEST_ASSERT_EQUAL_UINT(1, count_of(svg, "M 594 1071 L 606 1059"));    /* 3 m to the back. */
     TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X, MIDDLE_Y - 125, 12));  /* The nearest one. */
 }
 
@@ -419,7 +419,7 @@ static void expect_failure(int status, const char *reason, const char *const wor
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, reason), program_errors);
 }
 
-void test_what_cannot_be_drawn_is_said(void)
+void test_what_cannot_be_drawn_is_reported(void)
 {
     static const char *const room = RECORDINGS "sim-6hz.bin";
     expect_failure(2, "must end in .svg, .png or .pdf", WORDS("plot", room, "-o", "picture.jpg"));

@@ -277,7 +277,7 @@ void test_escape_ends_and_an_arrow_does_not(void)
     expect_end(0);
 }
 
-/* Raw bytes of two seconds: 4000 samples a second, 8 scans and a bit. */
+/* Raw bytes of two seconds: 4000 samples per second, 8 scans and a bit. */
 #define ROOM RECORDINGS "sim-6hz.bin"
 #define LONG_ROOM "room.bin"
 
@@ -334,7 +334,7 @@ void test_a_timed_recording_is_played_at_its_own_pace(void)
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
     const long passed_ms =
         (now.tv_sec - since.tv_sec) * 1000 + (now.tv_nsec - since.tv_nsec) / 1000000;
-    TEST_ASSERT_TRUE(passed_ms > 1000); /* The terminal was looked at a little late. */
+    TEST_ASSERT_TRUE(passed_ms > 1000); /* `since` is a little late. */
     quit();
 }
 

@@ -45,23 +45,23 @@ static unsigned count_of(const char *text, const char *part)
     return count;
 }
 
-/* The program against a lidar with this fault: once it has told of it, the robot stands for five
- * more scans. */
+/* The program against a lidar with this fault: once it has reported the fault, the robot stands for
+ * five more scans. */
 static void expect_to_stand(const char *message, const char *const options[])
 {
-    size_t told = 0;
+    size_t before = 0;
     const pid_t program = program_start(OBSTACLE_STOP, WORDS(program_start_lidar(options)));
     wait_for_message(message);
-    (void)program_read_file(0, WORK_DIR "/output", &told);
+    (void)program_read_file(0, WORK_DIR "/output", &before);
     for (int i = 0; i < 2000; i++) {
-        if (count_of(program_read_file(0, WORK_DIR "/output", NULL) + told, "STOP ") >= 5) {
+        if (count_of(program_read_file(0, WORK_DIR "/output", NULL) + before, "STOP ") >= 5) {
             break;
         }
         (void)poll(NULL, 0, 10);
     }
     TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGTERM));
-    TEST_ASSERT_TRUE(count_of(program_output + told, "STOP ") >= 5);
-    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output + told, "go "));
+    TEST_ASSERT_TRUE(count_of(program_output + before, "STOP ") >= 5);
+    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output + before, "go "));
 }
 
 void test_a_robot_in_a_free_room_may_go(void)
@@ -128,7 +128,7 @@ void test_a_robot_whose_lidar_is_covered_stays_where_it_is(void)
     TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go ")); /* Nor before. */
 }
 
-void test_a_robot_whose_lidar_is_covered_and_says_nothing_about_it_stays_where_it_is(void)
+void test_a_robot_whose_lidar_is_covered_and_does_not_report_it_stays_where_it_is(void)
 {
     expect_to_stand("faults: data", WORDS("--covered", "--no-ct"));
     TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go "));

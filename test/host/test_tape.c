@@ -15,7 +15,7 @@
 
 #define FILE_MAX 200000u
 #define SECONDS 10u
-#define FIRST_CHUNK 150u /* It ends before. */
+#define FIRST_CHUNK 150u /* The first chunk ends before this place. */
 
 static uint8_t file[FILE_MAX + 1];
 static size_t size;
