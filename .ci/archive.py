@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Archives that depend on their contents alone: sorted, each file of the same date, of no user, and
-readable and writable alike on every machine. Links to what an archive lacks lead to the project's
-address."""
+"""Archives that depend on their contents alone: sorted, all files with one date, no owner, and the
+same permissions. Links to what an archive lacks lead to the project's address."""
 
 import gzip
 import io
@@ -13,7 +12,7 @@ import tarfile
 import time
 import zipfile
 
-# What concerns the repository only, in documents that archives have as well.
+# Parts of documents that do not apply in an archive.
 REPOSITORY = re.compile(r"<!--repository-->.*?<!--/repository-->\n*", re.DOTALL)
 FENCE = re.compile(r"^ *(```|~~~)")
 LINK = re.compile(r'(\]\(|(?:src|href)=")([^()\s"#]+)(?=[)"\s#])')
@@ -29,7 +28,7 @@ def relinked(text, link):
 
 
 class Files:
-    """What goes into an archive; of each file the name that it has in the project as well."""
+    """The files of an archive: contents by name, and the name in the archive by that in the project."""
 
     def __init__(self):
         self.contents, self.executable, self.places = {}, set(), {}
@@ -42,7 +41,7 @@ class Files:
             self.executable.add(name)
 
     def link_outside(self, home, tag):
-        """Documents for those who have this archive and nothing else."""
+        """Points links to what this archive lacks to the project's address."""
         for place, name in self.places.items():
             if name.endswith((".md", "PKG-INFO")):
                 text = REPOSITORY.sub("", self.contents[name].decode())

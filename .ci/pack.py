@@ -15,7 +15,7 @@
     tmini-X.Y.Z.tar.gz              the Python package (--sdist: as the package `build` makes it)
     SHA256SUMS, notes.md
 
-Refused, unless --allow-placeholder: an address that is a placeholder, a version in work, changes
+Refused, unless --allow-placeholder: an address that is a placeholder, a version in development, changes
 that are not committed, a page that is not the committed one, a tag that is not the version's.
 """
 
@@ -41,7 +41,7 @@ NOT_OURS = ("build", ".git", ".pio", "managed_components", "__pycache__", "sdkco
 
 
 def git(*arguments):
-    """What Git says, whosever the clone is; None in an archive unpacked."""
+    """Git's answer, also if the clone belongs to another user; None in an unpacked archive."""
     if not (ROOT / ".git").exists():
         return None
     return subprocess.run(["git", "-c", "safe.directory=*", "-C", ROOT, *arguments],
@@ -49,7 +49,7 @@ def git(*arguments):
 
 
 def project_files():
-    """All names; without Git, in an archive unpacked, whatever building has not left there."""
+    """The names of all files; in an unpacked archive, which has no Git, all but what builds leave there."""
     listed = git("ls-files", "-z")
     if listed:
         return [name for name in listed.split("\0") if name and (ROOT / name).exists()]
@@ -59,7 +59,7 @@ def project_files():
 
 
 def date():
-    """That of the commit, which an archive's files have as well."""
+    """The time of the commit; the files of the source archive have it too."""
     given = os.environ.get("SOURCE_DATE_EPOCH") or git("log", "-1", "--format=%ct")
     return int(given or (ROOT / "CHANGELOG.md").stat().st_mtime)
 
@@ -67,7 +67,7 @@ def date():
 # ---- What is in each ----
 
 def take(names, rename):
-    """Files of the project, each as RENAME calls it; what that calls None is left out."""
+    """Files of the project under the names that RENAME gives them; those without one are left out."""
     files = Files()
     for name in names:
         if rename(name):
@@ -77,7 +77,7 @@ def take(names, rename):
 
 
 def matches(name, patterns):
-    """Whether NAME is a file, or in a folder, that a pattern means; a star stays in its folder."""
+    """Whether a pattern names this file or a folder above it; a star matches within one folder."""
     return any(re.match(re.escape(pattern).replace(r"\*", "[^/]*") + "(/|$)", name) for pattern in patterns)
 
 
@@ -119,7 +119,7 @@ def of_single(names):
 
 
 def of_sdist(archive):
-    """The same files anew; its description is its README."""
+    """Its files, to be packed again with our dates; its README is also its description."""
     files, top = Files(), f"tmini-{pep440(version())}/"
     with tarfile.open(archive) as sdist:
         for member in sdist:
@@ -131,7 +131,7 @@ def of_sdist(archive):
 
 
 def archives(names, sdist):
-    """(ending, files); only that of the whole project needs no other links."""
+    """(ending, files) of each archive."""
     include, exclude = exported_by_platformio()
     component = included_by_esp_idf()
     top = f"tmini-{version()}/"
@@ -153,7 +153,7 @@ def refusals(arguments):
         yield f"{address()} is a placeholder: put the project's address into CMakeLists.txt, then " \
             ".ci/version.py --write"
     if version().endswith("-dev"):
-        yield f"{version()} is in work: .ci/version.py --write VERSION"
+        yield f"{version()} is a version in development: .ci/version.py --write VERSION"
     if git("status", "--porcelain"):
         yield "there are changes that are not committed"
     if arguments.tag and arguments.tag != "v" + version():
@@ -163,7 +163,7 @@ def refusals(arguments):
 
 
 def empty(folder):
-    """Of an earlier release; what is not ours is not ours to delete."""
+    """Deletes an earlier release, and refuses to if the folder holds other files."""
     folder.mkdir(parents=True, exist_ok=True)
     others = [path.name for path in folder.iterdir()
               if not path.name.startswith("tmini-") and path.name not in ("SHA256SUMS", "notes.md")]

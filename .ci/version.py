@@ -25,7 +25,7 @@ ADDRESS_IN_CMAKE = r'^    HOMEPAGE_URL "(.*)"'
 
 
 def pep440(version):
-    """1.0.0-rc.1 is 1.0.0rc1 there, 1.1.0-dev is 1.1.0.dev0."""
+    """As Python writes it: 1.0.0-rc.1 is 1.0.0rc1, 1.1.0-dev is 1.1.0.dev0."""
     return version.replace("-rc.", "rc").replace("-dev", ".dev0")
 
 
@@ -42,7 +42,7 @@ def whole(version, address):
     return version
 
 
-# (file, pattern whose only group it is, what has to stand there)
+# (file, pattern whose only group is the repeated text, what that text has to be)
 PLACES = [
     ("CMakeLists.txt", NUMBER_IN_CMAKE, lambda version, address: version.partition("-")[0]),
     ("CMakeLists.txt", SUFFIX_IN_CMAKE, lambda version, address: version.lstrip("0123456789.")),
@@ -92,12 +92,12 @@ def address():
 
 
 def is_placeholder(url):
-    """The top-level domain "example" belongs to nobody."""
+    """The top-level domain "example" is reserved for placeholders."""
     return url.split("/")[2].endswith(".example")
 
 
 def found(name, pattern):
-    """What stands there; a release has its date in the list of changes as well."""
+    """The text that is there; without the date that follows a release in the list of changes."""
     text = find(name, pattern)[1]
     return re.sub(r"(?<!-dev) \(\d{4}-\d\d-\d\d\)$", "", text) if name == "CHANGELOG.md" else text
 
@@ -110,7 +110,7 @@ def disagreements():
 
 
 def write_changes(new):
-    """A new section for a version in work; that of a release gets its number and date."""
+    """Begins a section for a version in development, or gives the section of a release its number and date."""
     text = read("CHANGELOG.md")
     heading = find("CHANGELOG.md", r"^## (.*)$")
     title = new if new.endswith("-dev") else f"{new} ({datetime.date.today()})"

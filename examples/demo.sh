@@ -3,7 +3,7 @@
 # Copyright (c) 2026 The tmini authors
 
 # Shows the library at work, on any computer and without a lidar: builds the host tool and a
-# simulated lidar, lets the one drive the other through a pseudo-terminal as if it were a serial
+# simulated lidar, connects them through a pseudo-terminal as if it were a serial
 # port, and draws what was seen. Needs a C compiler, CMake and cairo, and installs them where they
 # are missing.
 

@@ -42,7 +42,7 @@ size_t look(tmini_ring_t *ring) { return tmini_ring_unread(ring); }
 END
 }
 
-# barriers INCLUDE_FOLDER: "PUT LOOK", the number of each.
+# barriers INCLUDE_FOLDER: prints how many barriers put() and look() have, such as "1 1".
 barriers() {
     assembly "$1" | awk -v barrier="$barrier" '
         /^(put|look):/ { name = substr($1, 1, length($1) - 1) }

@@ -7,7 +7,7 @@
 #include "tmini/tmini.h"
 #include "tmini_stm32_hal.h"
 
-/* Define it to see something: a line of text a second, by printf(). README.md says where it
+/* Define it to see something: a line of text per second, by printf(). README.md says where it
  * goes. */
 #ifdef LIDAR_PRINTF
 #include <stdio.h>

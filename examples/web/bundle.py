@@ -4,7 +4,7 @@
 
 """Makes one file of the page: bundle.py PAGE_DIR LIBRARY.wasm VERSION OUT.html
 
-A browser loads no modules from file:, so the modules become one, each behind those that it imports;
+A browser loads no modules from file:, so the modules become one, each after those that it imports;
 a name that two of them declare is then an error of the language. The library goes in as base64.
 """
 
@@ -19,7 +19,7 @@ LICENCE = re.compile(r"^// (?:SPDX|Copyright).*\n", re.MULTILINE)
 
 
 def modules_in_order(folder, name, seen):
-    """The module's text behind those of the modules that it imports."""
+    """The module's text after those of the modules that it imports."""
     if name in seen:
         return []
     seen.add(name)

@@ -290,7 +290,7 @@ static void look_at_line_errors(tmini_stm32_hal_t *port)
     }
 #else
     if ((errors & HAL_UART_ERROR_ORE) != 0 && !__HAL_UART_GET_FLAG(port->uart, UART_FLAG_RXNE)) {
-        __HAL_UART_CLEAR_OREFLAG(port->uart); /* It may stop the bytes that would clear it. */
+        __HAL_UART_CLEAR_OREFLAG(port->uart); /* While set, it may stop the bytes. */
         port->line_flags = 0;
     }
 #endif

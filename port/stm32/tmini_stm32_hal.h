@@ -16,7 +16,7 @@
  *
  *   DMA     With rx_dma in the configuration: circular DMA into the lidar's receive buffer itself.
  *           No work at all for a byte.
- *   bytes   Without rx_dma: an interrupt a byte, about 13,000 times a second while scanning.
+ *   bytes   Without rx_dma: an interrupt per byte, about 13,000 times per second while scanning.
  *   blocks  Without rx_dma, and tmini_stm32_hal_start_blocks(): circular DMA into a small buffer,
  *           and a copy. For a receive buffer that lies where DMA does not reach.
  *

@@ -13,7 +13,7 @@
  *         .usart = USART1, .clock_hz = 84000000, .time_ms = &time_ms};
  *     tmini_stm32_usart_init(&port, &wiring);
  *     tmini_init(&lidar, &config);          .port = &tmini_stm32_usart_port, .port_context = &port
- *     tmini_stm32_usart_start(&port, &lidar);    an interrupt a byte; with rx_dma, by DMA
+ *     tmini_stm32_usart_start(&port, &lidar);    an interrupt per byte; with rx_dma, by DMA
  *     NVIC_EnableIRQ(USART1_IRQn);
  *     …
  *     tmini_stm32_usart_stop(&port);
@@ -81,7 +81,7 @@ tmini_status_t tmini_stm32_usart_init(tmini_stm32_usart_t *port,
                                       const tmini_stm32_usart_wiring_t *wiring);
 
 /** Sets the USART to 230400 8N1, where `clock_hz` is given, and receives for `lidar`, which has
- * been through tmini_init(): by an interrupt a byte; or, with rx_dma, by circular DMA into the
+ * been through tmini_init(): by an interrupt per byte; or, with rx_dma, by circular DMA into the
  * buffer given there, of 512 to 32768 bytes. For that the DMA channel is set up and enabled: from
  * the USART's data register, byte-wide, circular, FIFO off, at the buffer's start, over its whole
  * size; and the processor has no data cache, or the buffer lies where it does not cache. After

@@ -90,7 +90,7 @@ function(tmini_add_check name label)
     tmini_label_needs(${label} ${tier} ${arg_NEEDS})
 endfunction()
 
-# tmini_add_skipped_test(NAME LABEL REASON [ALL]): a test that only tells why it does nothing.
+# tmini_add_skipped_test(NAME LABEL REASON [ALL]): a test that only reports why it does nothing.
 function(tmini_add_skipped_test name label reason)
     message(STATUS "Not tested: ${name}: ${reason}")
     tmini_add_check(${name} ${label} ${ARGN}

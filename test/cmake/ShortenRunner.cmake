@@ -4,7 +4,7 @@
 # cmake -D RUNNER=runner.c -P ShortenRunner.cmake
 #
 # Empties the tests' names in a runner. Where strings are copied to RAM (AVR), names that are
-# sentences would need most of it; the line number in the report still tells which test it is.
+# sentences would need most of it; the line number in the report still shows which test it is.
 
 file(READ "${RUNNER}" text)
 string(REGEX REPLACE

@@ -7,7 +7,7 @@
 
 Compares what each of them says of description, licence, author and keywords (version and address:
 .ci/version.py), and looks for every source of the library in each list of sources. Exit status: 0 they agree, 1 not;
-every disagreement is told.
+every disagreement is printed.
 """
 
 import glob
@@ -142,7 +142,7 @@ def build_files():
 
 
 def check_sources():
-    """Whoever names one of them names all, or takes whatever is there."""
+    """A build file that names one source of the library names all."""
     listed = re.findall(r"src/(\w+\.c)", read("lib/CMakeLists.txt"))
     if sorted(listed) != SOURCES:
         complain("lib/CMakeLists.txt does not list what lib/src holds: %s"
@@ -154,7 +154,7 @@ def check_sources():
                      % (name, ", ".join(sorted(set(SOURCES) - named))))
 
 
-# Those that take whatever is there.
+# Build files that take all sources there are.
 TAKERS = ["port/esp32/component.cmake", "port/pico/CMakeLists.txt",
           "port/zephyr/CMakeLists.txt"]
 

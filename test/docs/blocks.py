@@ -6,7 +6,7 @@ tool that documents show is one that the tool knows.
 
     blocks.py BUILD COMPILER [C++-COMPILER]
 
-BUILD is a built build folder. Exit status: 0 all is in order, 1 not; every mistake is told, and so
+BUILD is a built build folder. Exit status: 0 all is in order, 1 not; every mistake is printed, and so
 is what could not be checked, and why.
 """
 
@@ -37,7 +37,7 @@ AS_CXX = ["-std=gnu++11", "-Wno-missing-field-initializers", "-x", "c++"]
 
 
 def stand_ins(*folders):
-    """The tests' stand-ins for platforms; what they do oddly is not the documents' concern."""
+    """The tests' stand-ins for platforms; their warnings are not the documents' fault."""
     return [word for folder in folders for word in ("-isystem", folder)]
 
 
@@ -199,7 +199,7 @@ def installed(place):
 
 
 def generator(place):
-    """That of this build: another one may want a program that is not there."""
+    """The generator of this build: CMake's default may not be installed."""
     cache = (place.build / "CMakeCache.txt").read_text(encoding="utf-8")
     return re.search(r"^CMAKE_GENERATOR:INTERNAL=(.*)$", cache, re.MULTILINE)[1]
 

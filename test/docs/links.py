@@ -6,7 +6,7 @@ every path that documents and headers name.
 
     links.py
 
-Exit status: 0 all do, 1 not; every mistake is told. Addresses on the web are not asked for.
+Exit status: 0 all do, 1 not; every mistake is printed. Addresses on the web are not tried.
 """
 
 import re

@@ -6,7 +6,7 @@ the project's own words (words.txt) besides; and well-known slips in all sources
 
     spelling.py
 
-Exit status: 0 all is in order, 1 not: every word is told with its places; 77 no tool is installed.
+Exit status: 0 all is in order, 1 not: every word is printed with its places; 77 no tool is installed.
 """
 
 import os

@@ -10,7 +10,7 @@ from documents import documents, name
 
 USE = re.compile(r"(?<![\w/.-])(?:build(?:-demo)?/bin/)?(tmini-sim|tmini) +([^`|;&#\n]*)")
 
-# What prose says of the programs, and not to them: `tmini COMMAND --help`.
+# Documents write it for any command: `tmini COMMAND --help`.
 PLACEHOLDERS = ("COMMAND",)
 
 

@@ -76,16 +76,16 @@ void truth_assert_revolution(const tmini_scan_t *scan, uint32_t revolution)
         TEST_ASSERT_TRUE_MESSAGE(is_equal(&truth.points[first + i], &scan->points[i]),
                                  "a point is not as it was sent");
     }
-    const uint32_t behind = first + scan->count;
-    TEST_ASSERT_TRUE_MESSAGE(behind >= truth.count || truth.revolutions[behind] != revolution,
+    const uint32_t after = first + scan->count;
+    TEST_ASSERT_TRUE_MESSAGE(after >= truth.count || truth.revolutions[after] != revolution,
                              "points are missing");
 }
 
 static bool is_revolution_at(const tmini_scan_t *scan, uint32_t first)
 {
-    const uint32_t behind = first + scan->count;
-    if (behind > truth.count || truth.revolutions[behind - 1] != truth.revolutions[first] ||
-        (behind < truth.count && truth.revolutions[behind] == truth.revolutions[first])) {
+    const uint32_t after = first + scan->count;
+    if (after > truth.count || truth.revolutions[after - 1] != truth.revolutions[first] ||
+        (after < truth.count && truth.revolutions[after] == truth.revolutions[first])) {
         return false;
     }
     unsigned i = 0;

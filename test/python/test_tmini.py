@@ -76,7 +76,7 @@ def test_a_start_packet_before_a_pause_is_no_scan(tmp_path):
 
 
 @pytest.mark.parametrize("version", [1, 2])
-def test_a_byte_dropped_from_a_file_costs_at_most_a_hundredth_and_is_said(version, tmp_path):
+def test_a_byte_dropped_from_a_file_costs_at_most_a_hundredth_and_is_reported(version, tmp_path):
     path = tmp_path / "damaged.tmini"
     file = chunked((RECORDINGS / "sim-6hz.bin").read_bytes(), version)
     path.write_bytes(file)
@@ -89,7 +89,7 @@ def test_a_byte_dropped_from_a_file_costs_at_most_a_hundredth_and_is_said(versio
         assert sum(scan.packets for scan in scans) >= all_packets - 1  # Of 190.
 
 
-def test_what_is_no_recording_of_a_lidar_is_said(tmp_path):
+def test_what_is_no_recording_of_a_lidar_is_reported(tmp_path):
     path = tmp_path / "letter.bin"
     for content, words in ((b"", "is empty"), (b"Dear lidar, ", "no lidar packet in 12 bytes"),
                            (b"\x89tmini\x03\n12345678", "is of version 3: too new")):

@@ -3,7 +3,7 @@
 
 /*
  * The host's end of tmini-sim: a pseudo-terminal or a TCP socket that serves one client after
- * another. A device keeps on sending whether or not somebody listens: without a client bytes are
+ * another. A device keeps on sending whether or not anything listens: without a client bytes are
  * discarded; a slow client gets some seconds' worth of buffer, then loses bytes, counted.
  */
 

@@ -121,7 +121,7 @@ static void report_end(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
     }
 }
 
-/* ---- What becomes of a packet ---- */
+/* ---- Processing a packet ---- */
 
 static void close_packet(sim_link_t *link, bool complete)
 {

@@ -104,7 +104,7 @@ sim_link_config_t sim_link_default_config(void);
 /* `sim` stays the caller's. `config` is copied; NULL: the default one. */
 void sim_link_init(sim_link_t *link, sim_t *sim, const sim_link_config_t *config);
 
-/* `observer` is copied; NULL: nobody. */
+/* `observer` is copied; NULL: none. */
 void sim_link_observe(sim_link_t *link, const sim_link_observer_t *observer);
 
 /* From the host to the device, arriving now. Lost while unplugged. */

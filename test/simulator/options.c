@@ -213,7 +213,7 @@ static sim_link_kind_t kind_before(const char *value, const char *equals)
     return sim_link_kind_named(name);
 }
 
-/* A probability a byte, or events a second; either way the link wants the mean gap. */
+/* A probability per byte, or events per second; the link takes the mean gap of either. */
 static bool set_fault(options_t *options, const char *value)
 {
     const char *equals = strchr(value, '=');
@@ -241,7 +241,7 @@ static const option_t known[] = {
     {0, "pty", NULL, "serve a pseudo-terminal; its path is the first line printed", set_pty},
     {0, "tcp", "PORT", "serve 127.0.0.1:PORT (0: any free port; the first line says)", set_tcp},
     {0, "lines", NULL,
-     "in the time of whoever asks: reads lines of MICROSECONDS and the\n"
+     "in the time of the program that asks: reads lines of MICROSECONDS and the\n"
      "                          bytes then received, in hexadecimal; answers each with those sent",
      set_lines},
     {0, "write", "FILE", "record --seconds of scanning in virtual time, as fast as can be",
@@ -263,8 +263,8 @@ static const option_t known[] = {
     {0, "motor", "PERCENT", "of the set frequency that the motor comes up to (100)", set_motor},
     {0, "spin-up", "SECONDS", "that it takes for that (1)", set_spin_up},
     {0, "fault", "KIND=RATE",
-     "drop, flip, insert: probability a byte;\n"
-     "                          burst, stall, cut, unplug, garble: events a second",
+     "drop, flip, insert: probability per byte;\n"
+     "                          burst, stall, cut, unplug, garble: events per second",
      set_fault},
     {0, "seed", "N", "of all that is random (1)", set_seed},
     {'s', "seconds", "N", "of virtual time, then exit (never)", set_seconds},

@@ -12,7 +12,7 @@
 
 #include <stdint.h>
 
-/* One entry a 1/16 degree: samples are at least 0.5 degrees apart, and the table stays small
+/* One entry per 1/16 degree: samples are at least 0.5 degrees apart, and the table stays small
  * enough for a microcontroller and for a processor's first cache. */
 #define SIM_SCENE_STEP_Q6 4u
 #define SIM_SCENE_ENTRIES 5760u

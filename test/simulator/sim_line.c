@@ -3,7 +3,7 @@
 
 #include "sim_line.h"
 
-/* Section 1: 230400 baud, ten bits a byte: 10^7 / 230400 = 3125 / 72 microseconds. */
+/* Section 1: 230400 baud, ten bits per byte: 10^7 / 230400 = 3125 / 72 microseconds. */
 #define BYTE_US_TIMES_72 3125u
 
 static uint64_t duration_us(size_t bytes)

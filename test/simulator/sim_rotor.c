@@ -4,7 +4,7 @@
 #include "sim_rotor.h"
 
 #define FULL_TURN_Q16 (UINT32_C(23040) << 16)
-#define SAMPLE_US 250u  /* section 1: 4000 samples a second */
+#define SAMPLE_US 250u  /* section 1: 4000 samples per second */
 #define FULL_PACKET 40u /* section 9.6, or fewer by configuration */
 #define SPEED_PER_CHZ 1000u
 #define HAIR_Q6 7u /* section 9.6: 0.266 - 0.156 degrees */

@@ -184,7 +184,7 @@ sim_config_t sim_default_config(void);
 /* An idle device at time 0. `config` is copied. */
 void sim_init(sim_t *sim, const sim_config_t *config);
 
-/* `observer` is copied; NULL: nobody. */
+/* `observer` is copied; NULL: none. */
 void sim_observe(sim_t *sim, const sim_observer_t *observer);
 
 /* The host's bytes, arriving now. */

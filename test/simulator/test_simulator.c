@@ -816,7 +816,7 @@ void test_the_observer_hears_of_commands_and_modes(void)
 }
 
 /* 500 ms are 50 packets; the line's queue holds 16. */
-void test_frames_that_nobody_takes_in_time_are_lost_and_counted(void)
+void test_frames_that_are_not_taken_in_time_are_lost_and_counted(void)
 {
     scan_seconds(1);
     now += 500000;

@@ -297,7 +297,7 @@ void test_a_client_may_leave_settings_that_the_next_one_does_not_feel(void)
     TEST_ASSERT_EQUAL_INT(0, terminate());
 }
 
-void test_the_stream_goes_on_while_nobody_listens_and_nothing_stale_is_kept(void)
+void test_the_stream_goes_on_without_a_client_and_nothing_stale_is_kept(void)
 {
     char path[64];
     int fd;
@@ -428,7 +428,7 @@ void test_the_truth_has_a_row_a_sample(void)
     for (size_t i = 0; i < size; i++) {
         rows += received[i] == '\n' ? 1u : 0u;
     }
-    /* 2 s less 3 ms of latency and 200 ms before the first sample, at 4000 a second. */
+    /* 2 s less 3 ms of latency and 200 ms before the first sample, at 4000 per second. */
     TEST_ASSERT_UINT_WITHIN(80, 7188, rows);
     remove("tmini-sim-test.csv");
 }

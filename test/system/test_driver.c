@@ -244,7 +244,7 @@ void test_a_lidar_whose_bytes_have_filled_the_ring_is_stopped_before_it_is_start
     check_world(&world);
 }
 
-void test_a_lidar_whose_bytes_have_filled_the_ring_is_said_to_be_stopped_when_it_is(void)
+void test_a_lidar_whose_bytes_have_filled_the_ring_is_reported_stopped_when_it_is(void)
 {
     streams_on_while_the_program_is_busy();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));

@@ -191,7 +191,7 @@ void test_ten_hertz_of_a_plain_unit_make_scans_and_no_ct_information(void)
     TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&turn));
 }
 
-void test_twelve_hertz_make_scans_and_tell_the_beginning_of_the_ct_information(void)
+void test_twelve_hertz_make_scans_and_show_the_beginning_of_the_ct_information(void)
 {
     static const uint16_t counts[12] = {553, 457, 398, 358, 335, 334, 332, 334, 334, 332, 333, 332};
     static const uint8_t packets[12] = {15, 13, 11, 10, 10, 10, 11, 10, 10, 10, 10, 10};

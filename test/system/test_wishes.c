@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The natural programs: what somebody writes who has read only the names, run against the simulated
+/* The natural programs: what a user writes who has read only the names, run against the simulated
  * lidar in virtual time. None of them tries anything again. */
 
 #include "world.h"

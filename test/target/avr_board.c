@@ -42,7 +42,7 @@ void avr_board_start(void)
     for (uint8_t i = 0; i < GUARD_SIZE; i++) {
         guard[i] = GUARD_BYTE;
     }
-    UBRR0 = 0; /* As fast as it goes: nobody listens to the wire. */
+    UBRR0 = 0; /* As fast as it goes: nothing is at the other end of the wire. */
     UCSR0B = _BV(TXEN0);
 }
 

@@ -329,7 +329,7 @@ void test_start_waits_for_the_first_packet_when_streaming(void)
     rig.config.max_points = 0;
     rig_init();
     port_wait_StubWithCallback(wait);
-    comes(60, rig_feed_scan_reply); /* Behind the stop and the quiet time. */
+    comes(60, rig_feed_scan_reply); /* After the stop and the quiet time. */
     sends(STOP);
     sends(START);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 100));

@@ -89,12 +89,12 @@ static void is_quiet_only_after_room_was_made(size_t bytes)
     polls_to(TMINI_EVENT_STOPPED);
 }
 
-void test_while_the_ring_is_full_nobody_knows_that_the_line_is_quiet(void)
+void test_a_line_is_not_known_to_be_quiet_while_the_ring_is_full(void)
 {
     is_quiet_only_after_room_was_made(RIG_RX_SIZE);
 }
 
-void test_while_the_ring_is_closed_nobody_knows_that_the_line_is_quiet(void)
+void test_a_line_is_not_known_to_be_quiet_while_the_ring_is_closed(void)
 {
     is_quiet_only_after_room_was_made(RIG_RX_SIZE + 1);
 }
@@ -330,12 +330,12 @@ void test_stop_aborts_a_query(void)
     polls_to(TMINI_EVENT_COMMAND_FAILED);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ABORTED, tmini_command_error(&rig.lidar));
     is_in(TMINI_STATE_STOPPING);
-    rig_feed_info(); /* Nobody waits for it any more. */
+    rig_feed_info(); /* It is no longer awaited. */
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);
 }
 
-void test_a_command_swallows_the_end_of_the_one_before_that_nobody_polled_for(void)
+void test_a_command_swallows_the_end_of_the_one_before_that_was_not_polled_for(void)
 {
     begins_with(STOP, tmini_request_info(&rig.lidar));
     begins_with(STOP, tmini_stop(&rig.lidar)); /* Aborts it, */
@@ -383,7 +383,7 @@ void test_device_information_is_not_taken_for_a_frequency_though_the_type_is_the
     TEST_ASSERT_EQUAL_UINT16(600, tmini_frequency_chz(&rig.lidar));
 }
 
-void test_a_reply_that_nobody_asked_for_is_skipped(void)
+void test_a_reply_that_was_not_asked_for_is_skipped(void)
 {
     rig_go_idle();
     rig_feed_info();
@@ -948,7 +948,7 @@ void test_a_port_that_takes_a_command_at_the_last_moment_has_taken_it(void)
 {
     sends_both_taking(STOP, 0);
     begins(tmini_stop(&rig.lidar));
-    rig.now_ms += 150; /* Nobody polled. */
+    rig.now_ms += 150; /* There was no poll. */
     polls_and_sends(STOP);
     passes(50);
     polls_to(TMINI_EVENT_STOPPED);

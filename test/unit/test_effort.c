@@ -141,7 +141,7 @@ static void check_that_short_packets_are_bounded(void)
     TEST_ASSERT_EQUAL_UINT32(200, poll_counters().packets - before);
 }
 
-void test_packets_that_nobody_asked_for_are_bounded(void)
+void test_packets_that_were_not_asked_for_are_bounded(void)
 {
     open_driver();
     check_that_short_packets_are_bounded();

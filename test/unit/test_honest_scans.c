@@ -161,7 +161,7 @@ void test_a_silence_between_two_turns_costs_no_scan_but_the_two(void)
 
 /* ---- The ring overflows while the program is busy ---- */
 
-/* Three turns come while nobody polls; where they end, the angles go on. */
+/* Three turns come without a poll; where they end, the angles go on. */
 static void be_busy_for_turns(size_t rx_size)
 {
     turns_open_scanning(rx_size, false);

@@ -137,7 +137,7 @@ void test_a_port_may_hold_65535_bytes(void)
 }
 
 /* A place that is not known is not one that is soon to come. */
-void test_a_port_that_never_says_what_it_holds_holds_nothing(void)
+void test_a_port_that_never_reports_what_it_holds_holds_nothing(void)
 {
     lidar.line.received = lidar.ring.head = TMINI_RING_CLOSED - 100;
     (void)look_after(1, 13);
@@ -196,7 +196,7 @@ void test_first_bytes_in_a_fifo_come_straight_from_the_wire(void)
     TEST_ASSERT_TRUE(first_ones_are_doubted(1, 3361)); /* 256 ms. */
 }
 
-void test_first_bytes_that_nobody_watched_may_have_paused(void)
+void test_first_bytes_that_were_not_watched_may_have_paused(void)
 {
     TEST_ASSERT_FALSE(first_ones_are_doubted(30, 13));
     TEST_ASSERT_TRUE(first_ones_are_doubted(31, 13));

@@ -98,7 +98,7 @@ void test_a_turn_that_is_not_trusted_neither_reports_nor_clears(void)
 {
     rig_go_scanning();
     (void)rig_turn_events(0);
-    (void)rig_turn_events(0); /* From here on the unit is known to tell its health. */
+    (void)rig_turn_events(0); /* From here on the unit is known to report its health. */
     (void)rig_turn_events(TMINI_FAULT_SENSOR);
     rig.crc ^= 1u; /* LastCRC is wrong. */
     TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));

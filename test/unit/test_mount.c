@@ -163,7 +163,7 @@ void test_arcs_are_the_robots_directions(void)
     is_point(1, 120 * DEGREE, 1001);
 }
 
-/* As somebody writes it who counts from the front to the left. */
+/* As a user writes it who counts from the front to the left. */
 void test_arcs_and_front_may_be_negative(void)
 {
     static const tmini_arc_t arcs[] = {{-10, 10}, {-190, -170}};

@@ -123,7 +123,7 @@ void test_the_ring_must_hold_the_largest_packet(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(1024, false, 255));
 }
 
-/* Else a reply that is awaited could never come to its end: device information has 27 bytes. */
+/* Else a reply that is awaited could never be complete: device information has 27 bytes. */
 void test_the_ring_must_hold_the_longest_reply(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(16, false, 1));

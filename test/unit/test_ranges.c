@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Ranges at equal angles, counter-clockwise from behind. */
+/* Ranges at equal angles, counter-clockwise from the back. */
 
 #include "tmini/tmini_ranges.h"
 #include "unity.h"
@@ -56,7 +56,7 @@ void test_a_bin_reaches_half_its_width_to_either_side(void)
     TEST_ASSERT_EQUAL_size_t(179, tmini_ranges_bin(33, 360));
     TEST_ASSERT_EQUAL_size_t(180, tmini_ranges_bin(23040 - 31, 360));
     TEST_ASSERT_EQUAL_size_t(181, tmini_ranges_bin(23040 - 32, 360));
-    /* And around straight behind, where the numbers start again. */
+    /* And around straight back, where the numbers start again. */
     TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(11520 - 31, 360));
     TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(11520 + 32, 360));
     TEST_ASSERT_EQUAL_size_t(359, tmini_ranges_bin(11520 + 33, 360));

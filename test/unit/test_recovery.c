@@ -57,7 +57,7 @@ void test_bytes_without_valid_packets_are_a_loss_too(void)
     polls_to(TMINI_EVENT_LOST);
 }
 
-void test_packets_that_came_while_nobody_polled_are_no_loss(void)
+void test_packets_that_came_between_two_polls_are_no_loss(void)
 {
     rig_go_scanning();
     rig_feed_point_packet(1000);

@@ -466,7 +466,7 @@ static void dma_writes(size_t first, size_t count, size_t at)
     tmini_ring_publish(&ring, (at + count) % SIZE);
 }
 
-void test_a_lap_that_nobody_saw_leaves_the_newest_half_intact_at_most(void)
+void test_a_lap_that_was_not_seen_leaves_the_newest_half_intact_at_most(void)
 {
     use_dma();
     dma_writes(0, 4, 0);

@@ -91,7 +91,7 @@ void test_an_incomplete_scans_period_is_what_the_lidar_measured(void)
     TEST_ASSERT_EQUAL_UINT32(160, tmini_scan_period_ms(&scan));
 }
 
-void test_a_period_that_nobody_knows_is_0(void)
+void test_an_unknown_period_is_0(void)
 {
     scan.complete = false;
     scan.frequency_chz = 0;

@@ -265,7 +265,7 @@ void test_every_byte_is_accounted_for(void)
     rig_feed_byte(0x22);         /* 1 skipped */
     rig_feed_point_packet(1000); /* 22 in a packet */
     rig_feed_byte(0xAA);         /* 1 pending */
-    sends(STOP);                 /* Nobody asked for the packet. */
+    sends(STOP);                 /* The packet was not asked for. */
     (void)rig_drain();
     const tmini_counters_t seen = counters();
     TEST_ASSERT_EQUAL_UINT32(35, rig.fed);

@@ -104,8 +104,8 @@ def report(before, after, memory, heap):
     seen = {key: after[2][key] - before[2][key] for key in ("frames", "paints", "paintMs")}
     page = {key: after[3][key] - before[3][key] for key in ("TaskDuration", "ScriptDuration")}
     print(f"{seconds:.1f} s at 12 Hz: {after[1] - before[1]} revolutions, {seen['paints']} pictures painted")
-    print(f"frames: {seen['frames'] / seconds:.1f} a second, the longest {after[2]['longest']:.0f} ms")
-    print(f"painting: {seen['paintMs'] / max(seen['paints'], 1):.2f} ms a picture")
+    print(f"frames: {seen['frames'] / seconds:.1f} per second, the longest {after[2]['longest']:.0f} ms")
+    print(f"painting: {seen['paintMs'] / max(seen['paints'], 1):.2f} ms per picture")
     print(f"page's main thread: {100 * page['TaskDuration'] / seconds:.1f} % of one core, "
           f"of that JavaScript and library {100 * page['ScriptDuration'] / seconds:.1f} %")
     print(f"whole browser, drawing without a graphics card: {after[4] - before[4]:.1f} s of processor time, "

@@ -3,7 +3,7 @@
 
 // Stands in for navigator.serial, as Web Serial specifies it, with the simulated lidar behind the
 // adapter. It runs before the page and takes the library from it, as an instance of its own. What
-// happens at the adapter is told to `bench`:
+// happens at the adapter is set in `bench`:
 //
 //     bench.plug()  bench.unplug()         the cable
 //     bench.choice = 'none'                the user closes the list of ports
@@ -53,7 +53,7 @@ class Device {
         this.#exports.simulation_write(bytes.length, this.#now);
     }
 
-    // What has come since it was asked last; bytes that nobody takes are lost.
+    // What has come since the last call; bytes that are not taken are lost.
     send() {
         this.#turn++;
         if (bench.line === 'held' || (bench.line === 'late' && this.#turn % 2 === 0)) {

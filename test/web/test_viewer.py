@@ -101,7 +101,7 @@ class Viewer(unittest.TestCase):
         self.wait_scans(1)
 
     def wait_scans(self, count):
-        """So many more complete revolutions."""
+        """Waits for this many more complete revolutions."""
         before = self.number("#scans")
         self.page.wait(f"{count} revolutions", lambda: self.number("#scans") >= before + count)
 
@@ -222,7 +222,7 @@ class Recordings(Viewer):
         self.assertEqual("Pause", self.page.text("#play"))
         self.page.wait_text("#log", "end of the recording")
         stats = decode(RECORDINGS / "sim-12hz.bin")[1]
-        seconds = f"{stats['points'] / 4000:.1f}"  # The lidar takes 4000 samples a second.
+        seconds = f"{stats['points'] / 4000:.1f}"  # The lidar takes 4000 samples per second.
         self.assertEqual(f"{seconds} of {seconds} s", self.page.text("#time"))
         self.page.wait_text("#packets", str(stats["packets"]))
         self.page.click("#play")
@@ -895,7 +895,7 @@ class Axe(Viewer):
 
 
 class OneFile(Viewer):
-    """Nothing beside the file is needed, and nobody is asked for anything."""
+    """The file needs no other file, and asks no server for anything."""
 
     def requests(self):
         """What has been asked for, but by pages of the browser's own: its new tab may still be loading."""

@@ -32,17 +32,17 @@ export class Library {
         this.constants = strict(this.#table(exports.constants(), Int32Array));
     }
 
-    // Calls a function of the library's by name.
+    // Calls a library function by name.
     call(name, ...values) {
         return this.#exports[name](...values);
     }
 
-    // The numbers that a function of the library's puts into the table, as an object.
+    // The numbers that a library function puts into the table, as an object.
     numbers(name) {
         return this.#table(this.#exports[name]());
     }
 
-    // A constant text that a function of the library's returns; null for none.
+    // A constant text that a library function returns; null for none.
     text(name, ...values) {
         const address = this.#exports[name](...values);
         return address === 0 ? null : this.#string(address);
@@ -62,7 +62,7 @@ export class Library {
         return new Uint8Array(this.#memory, this.#exports.transfer(), count).slice();
     }
 
-    // Bytes that a function of the library's returns the address of: a copy.
+    // A copy of the bytes at the address that a library function returns.
     bytes(count, name, ...values) {
         return new Uint8Array(this.#memory, this.#exports[name](...values), count).slice();
     }
@@ -72,7 +72,7 @@ export class Library {
         return this.#string(this.#exports.transfer());
     }
 
-    // Points that a function of the library's returns the address of: a copy.
+    // A copy of the points at the address that a library function returns.
     points(name, count) {
         const address = this.#exports[name]();
         return new Points(this.#memory.slice(address, address + Points.SIZE * count));
@@ -125,7 +125,7 @@ export class Library {
     }
 }
 
-// tmini_point_t, as wasm/shown.c makes sure that it is: six bytes a point.
+// tmini_point_t, as wasm/shown.c makes sure that it is: six bytes per point.
 export class Points {
     static SIZE = 6;
 

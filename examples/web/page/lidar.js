@@ -8,7 +8,7 @@ import { diagnose, problems } from './problems.js';
 
 const POLL_MS = 20;
 
-// A lidar that has answered before may leave these unanswered, and be let scan all the same.
+// If a lidar that has answered before does not answer these, it is started all the same.
 const DISPENSABLE = new Set(['health', 'frequency']);
 
 // Time as the driver sees it. While the browser does not run the page at all (a dialog, a computer
@@ -52,7 +52,7 @@ export class Lidar {
         return this.#source;
     }
 
-    // Opens the source; asks the lidar who and how it is, and lets it scan.
+    // Opens the source; asks the lidar for its information and health, and starts it.
     async open() {
         const source = this.#source;
         source.onBytes = (bytes) => this.#receive(bytes);

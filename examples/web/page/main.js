@@ -19,7 +19,7 @@ import { element, enable, hertz, isEnabled, log, setText, show, showCounters, sh
 
 const COUNTERS_MS = 250;
 const SECTORS = 8;
-const STALE_MS = 1000; // A scan older than that is not what is there now.
+const STALE_MS = 1000; // An older scan no longer shows what is there.
 
 // "170:190, 350:10" as pairs of degrees; none if it is written in another way.
 function arcsOf(input) {
@@ -251,7 +251,7 @@ class Viewer {
         enable(['set-frequency', 'ask-info', 'ask-health', 'reboot'], !lidar.isBusy && !lidar.gone);
     }
 
-    // Who works with the keyboard must not have to begin anew when a button goes away.
+    // With the keyboard one must not have to begin anew when a button disappears.
     #keepFocus() {
         if (!document.activeElement.checkVisibility()) {
             element(this.#lidar ? 'start-stop' : this.#player ? 'play' : 'connect').focus();

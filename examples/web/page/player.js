@@ -13,7 +13,7 @@ export class Player {
     #timer = 0;
     #isPlaying = false;
 
-    // Plays at once. `listener` is told: onScan(), and onJump() when another moment is shown.
+    // Plays at once. It calls of `listener`: onScan(), and onJump() when another moment is shown.
     constructor(recording, listener) {
         this.#recording = recording;
         this.#listener = listener;

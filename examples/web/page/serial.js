@@ -50,7 +50,7 @@ export class SerialSource {
         navigator.serial.addEventListener('connect', (event) => this.#returned(event.target), options);
     }
 
-    // The reading side tells if the port is gone. If it is not, it has a new stream to write to.
+    // The reading side reports it if the port is gone. If it is not, it has a new stream to write to.
     write(bytes) {
         const writer = this.#writer;
         writer?.write(bytes).catch(() => {
@@ -73,7 +73,7 @@ export class SerialSource {
         this.#reading = this.#read();
     }
 
-    // A port can only be closed once nobody holds its streams.
+    // A port can only be closed once its streams are released.
     async #shut() {
         await this.#reader?.cancel().catch(() => {});
         await this.#reading;
@@ -123,7 +123,7 @@ export class SerialSource {
         }
     }
 
-    // The stream tells as well, but only if something is being read.
+    // The stream reports it as well, but only if something is being read.
     #left(port) {
         if (port === this.#port) {
             this.#fail();

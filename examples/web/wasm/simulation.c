@@ -7,7 +7,8 @@
 
 #include "link.h"
 
-/* Events a fault of the kind every so many bytes, or milliseconds: often enough to be seen. */
+/* A fault of the kind comes after this many bytes, or milliseconds, on average: often enough to
+ * be seen. */
 static const uint32_t mean_gaps[SIM_LINK_KINDS] = {
     [SIM_LINK_DROP] = 2000, [SIM_LINK_FLIP] = 2000, [SIM_LINK_INSERT] = 2000,
     [SIM_LINK_BURST] = 500, [SIM_LINK_STALL] = 500, [SIM_LINK_CUT] = 200,
@@ -78,7 +79,7 @@ EXPORTED void simulation_fault(uint32_t kind, uint32_t on, uint32_t now_ms)
     }
 }
 
-/* The name of a kind of fault on the wire; null behind the last. */
+/* The name of a kind of fault on the wire; null after the last. */
 EXPORTED const char *simulation_fault_name(uint32_t kind)
 {
     return kind < SIM_LINK_KINDS ? sim_link_kind_name((sim_link_kind_t)kind) : NULL;

@@ -102,8 +102,8 @@ class Lidar:
         self.close()
 
     def __iter__(self) -> Iterator[Scan]:
-        """Each scan as it comes, without end; while the lidar is lost there are none. Who must
-        notice that calls read()."""
+        """Each scan as it comes, without end; while the lidar is lost there are none. To
+        notice that, call read()."""
         while (scan := self.read()) is not None:
             yield scan
 
@@ -209,7 +209,7 @@ class Lidar:
     def _run(self) -> None:
         try:
             self._work()
-        except Exception as error:  # A thread that waits for a scan would wait without end.
+        except Exception as error:  # Else a thread that waits for a scan would wait without end.
             with self._changed:
                 self._failure = error
                 self._changed.notify_all()

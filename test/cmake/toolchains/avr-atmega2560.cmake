@@ -22,6 +22,6 @@ set(CMAKE_CROSSCOMPILING_EMULATOR ${TMINI_SIMAVR} -m atmega2560 -f 16000000)
 set(TMINI_TEST_MACHINE int16)
 set(TMINI_TEST_SHORT_NAMES ON)
 set(TMINI_TEST_BOARD_SOURCES ${CMAKE_CURRENT_LIST_DIR}/../../target/avr_board.c)
-# There is no exit status: what Unity prints last tells.
+# There is no exit status: what Unity prints last decides.
 set(TMINI_TEST_PASS_PATTERN " Tests 0 Failures ")
 set(TMINI_TEST_FAIL_PATTERN "STACK OVERFLOW")

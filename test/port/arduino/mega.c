@@ -6,14 +6,14 @@
  *
  *     mega FIRMWARE.elf SCANS PORT…       PORT: 1 to 3, a lidar is on Serial1 to Serial3
  *
- * Runs until each lidar has sent SCANS whole revolutions, and until the sketch then says
+ * Runs until each lidar has sent SCANS whole revolutions, and until the sketch then prints
  *
  *     N scans, N complete
  *
- * for as many as all lidars have sent; or until it has said a number for each, and no byte was
- * lost. If the sketch says nothing but what the lidar sends, a bridge, all of it must come through,
- * and in order; the computer's start command goes the other way. Exit status: 0 as expected, 1 not,
- * 2 usage, 77 there is no such firmware.
+ * where N is the number of revolutions that all lidars have sent; or until it has printed a number
+ * for each, and no byte was lost. If the sketch prints only what the lidar sends (a bridge), all of
+ * it must come through, and in order; the computer's start command goes the other way. Exit status:
+ * 0 as expected, 1 not, 2 usage, 77 there is no such firmware.
  *
  * The emulator's own UART is kinder than the chip: its receive queue has 64 bytes. The lidars'
  * ports are therefore modelled here: two bytes and the shift register; a third byte that is

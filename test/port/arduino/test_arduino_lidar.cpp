@@ -395,7 +395,7 @@ static void a_frequency_in_begin_is_set_before_the_start(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, lidar.status());
 }
 
-/* As a library does that closes the port. An ESP32 needs to be told the pins again. */
+/* As a library does that closes the port. An ESP32 needs the pins again. */
 static void a_port_that_something_has_closed_is_opened_again(void)
 {
     static TMiniLidar lidar;

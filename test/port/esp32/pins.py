@@ -26,7 +26,7 @@ def pins(text):
     return result
 
 
-# Chip: how many pins it has, and which of them are spoken for.
+# Chip: how many pins it has, and which of them have another use.
 CHIPS = {
     "ESP32": (40, "0, 2, 5, 12, 15, 6-11, 16, 17, 1, 3, 20, 24, 28-31, 34-39"),
     "ESP32S2": (47, "0, 45, 46, 26-32, 22-25, 19, 20, 43, 44, 39-42"),

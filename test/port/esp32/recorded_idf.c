@@ -150,7 +150,7 @@ esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size)
     return ESP_OK;
 }
 
-/* Gives out what it holds, as ESP-IDF does when told not to wait. */
+/* Gives out what it holds, as ESP-IDF does when asked not to wait. */
 int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t ticks)
 {
     TEST_ASSERT_EQUAL(UART_NUM_1, uart);

@@ -117,7 +117,7 @@ static const struct {
     {"nothing", ESP_OK, TASK, ESP_OK},
     {"create", ESP_ERR_NO_MEM, "create ", ESP_ERR_NO_MEM},
     {"acquire", ESP_FAIL, LOCK "forget ", ESP_FAIL},
-    {"install", ESP_FAIL, INSTALL UNLOCK, ESP_FAIL}, /* Somebody else's: left alone. */
+    {"install", ESP_FAIL, INSTALL UNLOCK, ESP_FAIL}, /* Not this port's: left alone. */
     {"line", ESP_FAIL, LINE REMOVE, ESP_FAIL},
     {"pins", ESP_FAIL, PINS REMOVE, ESP_FAIL},
     {"pull-up", ESP_ERR_INVALID_ARG, TASK, ESP_OK}, /* Pins 34 to 39 of an ESP32 have none. */

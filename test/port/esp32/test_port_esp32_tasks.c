@@ -129,7 +129,7 @@ static void start_by_hand(void)
     receive_and_poll_all();
 }
 
-/* Once more bytes are refused, a gap has been told: after this many. */
+/* Once more bytes are refused, a gap has been reported: after this many. */
 static void assert_gap_behind(size_t count)
 {
     TEST_ASSERT_EQUAL_UINT(count, tmini_esp32_wait(&port, 0));
@@ -217,7 +217,7 @@ void test_an_overflow_whose_event_was_lost_is_reported_too(void)
     TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_esp32_wait(&port, 0));
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
     tmini_esp32_counters(&port, &uart);
-    TEST_ASSERT_EQUAL_UINT32(0, uart.overruns); /* Nobody has heard of it. */
+    TEST_ASSERT_EQUAL_UINT32(0, uart.overruns); /* It was not reported. */
     TEST_ASSERT_EQUAL_UINT32(1, uart.queues_full);
 
     poll_until(TMINI_EVENT_SCAN);

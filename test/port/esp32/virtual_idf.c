@@ -140,9 +140,9 @@ static void empty_fifo(void)
 }
 
 /* ESP-IDF's interrupt handler empties the FIFO into its buffer while that has room; once it has
- * not, it keeps the FIFO's bytes apart, reports this once, and stays disabled until somebody reads.
- * Only then does it look for an overflow, and resets the FIFO: what it has just taken is safe, and
- * lost is what came after that; or, if it could take nothing, the FIFO's bytes too. */
+ * not, it keeps the FIFO's bytes apart, reports this once, and stays disabled until its bytes are
+ * read. Only then does it look for an overflow, and resets the FIFO: what it has just taken is
+ * safe, and what came after that is lost; or, if it could take nothing, the FIFO's bytes too. */
 static void serve_interrupt(void)
 {
     if (!world.installed || !world.has_interrupts || world.now_us < world.held_until_us) {

@@ -15,7 +15,7 @@
 
 #include "simulator.h"
 
-/* A world without tasks but the caller's, in which the lidar is told to `observer`. */
+/* A world without tasks but the caller's, in which `observer` watches the lidar. */
 void virtual_idf_begin(const sim_observer_t *observer);
 
 /* The UART's interrupt is held off for this long, as by an operation on the flash. */

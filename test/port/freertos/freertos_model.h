@@ -18,7 +18,7 @@
 
 #include "simulator.h"
 
-/* A fresh world, with a lidar at rest that is told to `observer`; the caller becomes a task. */
+/* A fresh world, with a lidar at rest that `observer` watches; the caller becomes a task. */
 void freertos_model_begin(const sim_observer_t *observer, unsigned priority);
 
 /* The lidar; see simulator.h. */

@@ -193,7 +193,7 @@ void test_an_overrun_of_the_uart_before_the_stream_is_a_gap(void)
     TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
 }
 
-/* What the interrupt brings that tells of it: the receiving task is woken at once, and does not
+/* What the interrupt brings with it: the receiving task is woken at once, and does not
  * first run out of patience. */
 void test_an_overrun_costs_no_more_than_the_fifo_after_it(void)
 {

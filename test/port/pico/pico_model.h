@@ -25,7 +25,7 @@
 
 #define PICO_PINS 48
 
-/* A chip after reset, with a lidar at rest that is told to `observer`. */
+/* A chip after reset, with a lidar at rest that `observer` watches. */
 void pico_model_begin(const sim_observer_t *observer);
 
 /* The lidar; see simulator.h. */
@@ -42,7 +42,7 @@ void pico_model_pass_held_up(uint32_t us);
 /* When DMA's position has been read `reads` times more, time passes before the reader goes on. */
 void pico_model_pass_after_read(unsigned reads, uint32_t us);
 
-/* Time passes at random behind readings of DMA's position: mostly some bytes' worth, at times
+/* Time passes at random after readings of DMA's position: mostly some bytes' worth, at times
  * laps. */
 void pico_model_be_erratic(uint64_t seed);
 
@@ -65,12 +65,12 @@ void pico_model_receive(uint32_t flags, const uint8_t *bytes, size_t count);
 /* Bytes that have come on the line so far, also those that were lost. */
 uint32_t pico_model_line_bytes(void);
 
-/* From now on a channel fewer, an interrupt handler of somebody else, another UART clock. */
+/* From now on a channel fewer, an interrupt handler of another program part, another UART clock. */
 void pico_model_take_channels(unsigned count);
 void pico_model_take_interrupt(unsigned number);
 void pico_model_set_baud_error(int permille);
 
-/* A transmitter that is busy until told otherwise. */
+/* A transmitter that is busy until it is called again. */
 void pico_model_fill_transmitter(unsigned places_left);
 
 unsigned pico_model_claimed_channels(void);
@@ -89,7 +89,7 @@ int pico_model_function(unsigned pin);
 bool pico_model_is_pulled_up(unsigned pin);
 int pico_model_level(unsigned pin);
 
-/* Called whenever the program sleeps; may leave by longjmp(). NULL: nobody. */
+/* Called whenever the program sleeps; may leave by longjmp(). NULL: nothing. */
 void pico_model_on_sleep(void (*callback)(void));
 
 /* The console: what printf() does in a program built for the model, and what it has said. */

@@ -447,8 +447,8 @@ void test_wherever_bytes_come_by_dma_every_point_arrives(void)
     assert_true_scans_wherever_bytes_come();
 }
 
-/* 13.1 bytes a millisecond: of rx_buffer's 1024 bytes a packet that has come in part takes 129, the
- * rest is 68 ms. */
+/* 13.1 bytes per millisecond: of rx_buffer's 1024 bytes a packet that has come in part takes 129,
+ * the rest is 68 ms. */
 void test_the_ring_lasts_from_one_poll_to_the_next_65_ms_later(void)
 {
     start();
@@ -668,7 +668,7 @@ void test_a_lidar_that_loses_its_supply_comes_back_by_dma(void)
     (void)scans_until_complete();
 }
 
-void test_interrupts_that_somebody_has_switched_off_are_asked_for_again(void)
+void test_interrupts_that_were_switched_off_are_asked_for_again(void)
 {
     receive_by_interrupt();
     start();

@@ -150,7 +150,7 @@ void test_a_lidar_can_be_reached_through_a_socket(void)
 }
 
 /* A port of one digit. */
-void test_an_address_where_nobody_listens_is_one_all_the_same(void)
+void test_an_address_where_nothing_listens_is_valid_all_the_same(void)
 {
     tmini_posix_init(&port, "tcp:127.0.0.1:1");
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_start(&port, NULL));
@@ -181,7 +181,7 @@ static tmini_posix_status_t start_at_host_of_zeros(int digits)
     return tmini_posix_start(&port, NULL);
 }
 
-/* Any number of zeros is an address, at which nobody listens. */
+/* Any number of zeros is an address at which nothing listens. */
 void test_the_longest_host_name_has_255_characters(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, start_at_host_of_zeros(255));
@@ -298,7 +298,7 @@ void test_a_device_that_is_not_there_yet_is_waited_for(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, port.state);
 }
 
-/* Looked for five times a second, and not more often: the first look comes after a pause. */
+/* Looked for five times per second, and not more often: the first look comes after a pause. */
 void test_a_device_is_looked_for_after_a_pause_and_at_once_when_that_is_over(void)
 {
     const char *const device = program_start_lidar((const char *const[]){NULL});

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A line on which bytes come one behind the other, at its full speed. */
+/* A line on which bytes come one after the other, at its full speed. */
 
 #ifndef LINE_H
 #define LINE_H
@@ -13,7 +13,7 @@
 /* Empties the line and joins it to the model's USART. */
 void line_open(void);
 
-/* Bytes that come from now on, or behind those that are still to come. */
+/* Bytes that come from now on, or after those that are still to come. */
 void line_send(const uint8_t *bytes, size_t count);
 
 /* The next byte sent comes with these errors (MODEL_FE, MODEL_NE). */

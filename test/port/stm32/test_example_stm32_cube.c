@@ -151,7 +151,7 @@ static void start_scanning(void)
     work_for(2);
 }
 
-/* Behind a start packet's revolution comes LastCRC, if there is CT information. */
+/* After a start packet's revolution comes LastCRC, if there is CT information. */
 static uint8_t next_ct(bool starts)
 {
     if (starts && health_ct != 0) {
@@ -164,7 +164,7 @@ static uint8_t next_ct(bool starts)
 }
 
 /* Samples a degree apart, all at 2 m but for those with `near_mm` from 10 degrees before `near` to
- * 10 behind it. */
+ * 10 after it. */
 static void arrive_packet(bool starts, unsigned first, unsigned count, unsigned near,
                           uint16_t near_mm)
 {

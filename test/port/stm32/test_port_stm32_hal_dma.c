@@ -375,7 +375,7 @@ void test_a_reception_that_stands_still_is_started_again_by_the_next_poll(void)
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
         hal_rig_receive(30);
-        hal_rig.uart.RxState = HAL_UART_STATE_READY; /* Whoever did that: the DMA still runs. */
+        hal_rig.uart.RxState = HAL_UART_STATE_READY; /* Whatever did that: the DMA still runs. */
         model_pass(20000);
         (void)hal_rig_poll();
         TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);

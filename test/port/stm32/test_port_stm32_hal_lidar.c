@@ -147,7 +147,7 @@ void test_a_controller_reset_while_the_lidar_spins_scans_again(void)
     }
 }
 
-/* 2.6 framing errors a second, as on a line that is not good. */
+/* 2.6 framing errors per second, as on a line that is not good. */
 void test_a_framing_error_costs_its_packet_and_nothing_else(void)
 {
     FOR_EACH_WAY(i)

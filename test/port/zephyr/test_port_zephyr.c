@@ -56,7 +56,7 @@ void test_a_fifo_that_takes_several_readings_is_emptied(void)
     TEST_ASSERT_EQUAL_UINT32(before + 64, zephyr_rig_counters().bytes);
 }
 
-/* An interrupt a byte must not be a switch of threads a byte. */
+/* An interrupt per byte must not be a switch of threads per byte. */
 void test_the_polling_thread_is_woken_once_in_64_bytes(void)
 {
     zephyr_model_set_fifo(1);
@@ -134,7 +134,7 @@ void test_it_stops_and_starts_while_the_lidar_streams(void)
         TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
         TEST_ASSERT_EQUAL_UINT32(
             0, zephyr_rig_counters().overruns);              /* Those of the time in between. */
-        TEST_ASSERT_TRUE(zephyr_rig_counters().bytes <= 16); /* They begin anew, with the FIFO. */
+        TEST_ASSERT_TRUE(zephyr_rig_counters().bytes <= 16); /* Counted anew; the FIFO was full. */
         poll_until(TMINI_EVENT_SCAN);
         truth_assert_nothing_invented(tmini_scan(&lidar));
     }
@@ -254,14 +254,14 @@ void test_an_interrupt_that_is_late_for_the_stop_stores_nothing(void)
     TEST_ASSERT_EQUAL_UINT32(bytes, zephyr_rig_counters().bytes);
 }
 
-void test_a_uart_that_somebody_has_left_on_is_switched_off_first(void)
+void test_a_uart_that_was_left_on_is_switched_off_first(void)
 {
     zephyr_model_leave_receiving();
     zephyr_rig_start();
     assert_true_scans(1, 1);
 }
 
-void test_reception_that_somebody_has_switched_off_begins_anew(void)
+void test_reception_that_was_switched_off_begins_anew(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 1);

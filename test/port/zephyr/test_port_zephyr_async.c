@@ -106,7 +106,7 @@ void test_it_stops_and_starts_while_the_lidar_streams(void)
     }
 }
 
-void test_reception_that_somebody_has_ended_begins_anew(void)
+void test_reception_that_was_ended_begins_anew(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 1);

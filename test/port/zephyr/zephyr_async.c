@@ -70,7 +70,7 @@ static void report(void)
 static void release(uint8_t *buffer)
 {
     if (buffer != NULL) {
-        memset(buffer, 0xFF, async.size); /* Whoever reads it now is late. */
+        memset(buffer, 0xFF, async.size); /* It is too late to read it now. */
         post((struct uart_event){.type = UART_RX_BUF_RELEASED, .data.rx_buf.buf = buffer});
     }
 }

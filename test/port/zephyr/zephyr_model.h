@@ -6,7 +6,8 @@
  * all threads sleep or the test makes it.
  *
  * The UART is one of two kinds that Zephyr's drivers have: with a FIFO of 1 to 64 bytes; with
- * errors told by uart_err_check(), or not. As with some drivers, reading data clears the errors. */
+ * errors reported by uart_err_check(), or not. As with some drivers, reading data clears the
+ * errors. */
 
 #ifndef ZEPHYR_MODEL_H
 #define ZEPHYR_MODEL_H
@@ -17,7 +18,7 @@
 
 #include "simulator.h"
 
-/* A fresh board with a lidar at rest that is told to `observer`; a FIFO of 16, errors told. */
+/* A fresh board with a lidar at rest, which `observer` watches; a FIFO of 16, errors reported. */
 void zephyr_model_begin(const sim_observer_t *observer);
 
 void zephyr_model_set_fifo(unsigned size);
@@ -56,7 +57,7 @@ void zephyr_model_pass_held_up(uint32_t us);
  * end. */
 void zephyr_model_receive(const uint8_t *bytes, size_t count);
 
-/* Somebody else has left reception on; and an interrupt that was under way while it was switched
+/* Reception was left on before; and an interrupt that was under way while it was switched
  * off. */
 void zephyr_model_leave_receiving(void);
 void zephyr_model_interrupt_late(void);
@@ -79,7 +80,7 @@ bool zephyr_model_is_receiving(void); /* By whichever API. */
 /* How often the polling thread has been woken by the semaphore, and not by its time-out. */
 unsigned zephyr_model_wakes(void);
 
-/* Called whenever the thread sleeps; may leave by longjmp(). NULL: nobody. */
+/* Called whenever the thread sleeps; may leave by longjmp(). NULL: nothing. */
 void zephyr_model_on_sleep(void (*callback)(void));
 
 /* What the program has printed. */

@@ -80,7 +80,7 @@ class Session:
         self._fed(self.machine.cost("bench_feed", len(data))[1])
 
     def _feed_dma(self, data):
-        """What the hardware does, then the one call that tells of it."""
+        """What the hardware does, then the one call that reports it."""
         first = data[:self.rx_size - self.position]
         self.machine.write("bench_rx", first, self.position)
         self.machine.write("bench_rx", data[len(first):])
@@ -98,7 +98,7 @@ class Session:
         return name
 
     def receive(self, data, milliseconds):
-        """Time passes, `data` arrives; nobody polls."""
+        """Time passes, `data` arrives; there is no poll."""
         self.now_ms += milliseconds
         self.machine.write_word("bench_now_ms", self.now_ms)
         if data:
@@ -153,7 +153,7 @@ class Session:
         return [int.from_bytes(data[i:i + 4], "little") for i in range(0, 24, 4)]
 
     def idle_poll(self, milliseconds):
-        """What a poll costs that finds nothing, so long after the one before it."""
+        """What a poll costs that finds nothing, this long after the one before."""
         before = self.poll_total
         self.now_ms += milliseconds
         self.machine.write_word("bench_now_ms", self.now_ms)

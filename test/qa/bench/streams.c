@@ -3,7 +3,7 @@
 
 /* Writes a stream of scan packets to standard output, from the independent encoder:
  *
- *   streams clean REVOLUTIONS POINTS   as a lidar sends them, with CT information; 667 points a
+ *   streams clean REVOLUTIONS POINTS   as a lidar sends them, with CT information; 667 points per
  *                                      revolution are 6 Hz
  *   streams faulty REVOLUTIONS POINTS  the same from a lidar that reports a fault of its encoder
  *   streams corrupted REVOLUTIONS POINTS  as clean, one fault in about 500 bytes */

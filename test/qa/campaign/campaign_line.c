@@ -192,7 +192,7 @@ static uint32_t encode(line_t *line, rotor_t *rotor, uint32_t count, uint8_t *ou
     return (uint32_t)encode_packet(out, &packet);
 }
 
-/* Section 9.8: the frequency that the start packet tells is that of the revolution before. */
+/* Section 9.8: the frequency that the start packet reports is that of the revolution before. */
 static void begin_revolution(line_t *line, rotor_t *rotor)
 {
     const uint32_t samples = line->counts[rotor->revolution];

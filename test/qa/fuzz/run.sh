@@ -11,7 +11,7 @@
 #
 # What it finds lies in build-fuzz/; give that file to build-fuzz/fuzz_… to see it again. The inputs
 # that it collected stay in build-fuzz/corpus_… and are where the next run goes on; the first one
-# begins with those that are kept, an input a line, in base64.
+# begins with those that are kept, an input per line, in base64.
 
 set -eu
 
@@ -27,7 +27,7 @@ if ! echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' |
     exit 0
 fi
 
-# sources TARGET: what it consists of, a file a line.
+# sources TARGET: what it consists of, a file per line.
 sources() {
     printf '%s\n' "$root/test/qa/fuzz/$1.c" "$support/invariants.c" "$support/encoder.c" \
         "$support/reference_decoder.c" "$root"/lib/src/*.c

@@ -6,8 +6,8 @@
     archives.py FOLDER WORK
 
 each, unpacked in WORK, holds the licence, has no dead link, names in its commands no file of the
-project that it lacks, and agrees with SHA256SUMS. Exit status: 0 so it is, 1 not; each mistake is
-told.
+project that it lacks, and agrees with SHA256SUMS. Exit status: 0 all of this holds, 1
+not; each mistake is printed.
 """
 
 import hashlib

@@ -80,7 +80,7 @@ class Rules(unittest.TestCase):
 
     def test_neither_a_version_in_work_nor_under_another_ones_tag_is_released(self):
         self.run_script("version.py", "--write", "2.4.0-dev")
-        self.assertRegex(self.release().stderr, "2.4.0-dev is in work")
+        self.assertRegex(self.release().stderr, "2.4.0-dev is a version in development")
         self.assertRegex(self.release("--tag", "v2.3.4").stderr, "v2.3.4 is not v2.4.0-dev")
 
     def test_notes_and_tag_message_are_the_topmost_section_of_the_changes(self):

@@ -98,7 +98,7 @@ uint32_t board_stack_used(void)
     return (uint32_t)((const uint8_t *)stack_top - (const uint8_t *)deepest);
 }
 
-/* The core wants a table of 32 jumps, one a line. */
+/* The core wants a table of 32 jumps, one per line. */
 __attribute__((naked, aligned(256), section(".vectors"))) static void vectors(void)
 {
     __asm__ volatile(".option push\n"
@@ -127,7 +127,7 @@ __attribute__((interrupt, aligned(4))) void board_interrupt(void)
         statistics.most_bytes = count;
     }
 #ifdef EMULATED
-    /* (2) Here the line stays pending until told otherwise. */
+    /* (2) Here the line stays pending until it is cleared. */
     __asm__ volatile("csrc mip, %0" ::"r"(1u << 11));
 #endif
 }

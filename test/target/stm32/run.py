@@ -277,7 +277,7 @@ class Scans:
     def __init__(self, packets):
         self.intact = [packet for packet in packets if packet.intact]
         self.place = 0  # In them: where the next scan begins.
-        self.may_skip = 1  # Up to one of the next so many start packets; 0: no packet.
+        self.may_skip = 1  # Up to one of this many next start packets; 0: no packet.
         self.skipped_revolutions = 0
         self.strange = 0
         self.complete = 0

@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* What menuconfig would write, with the defaults of Kconfig: for an ESP32-C6 (one core, a low-power
- * UART, 100 ticks a second), or with MODEL_ESP32 for an ESP32 (two cores, UARTs on the APB's clock)
- * with slow ticks. */
+ * UART, 100 ticks per second), or with MODEL_ESP32 for an ESP32 (two cores, UARTs on the APB's
+ * clock) with slow ticks. */
 
 #ifndef SDKCONFIG_H
 #define SDKCONFIG_H

@@ -101,7 +101,7 @@ static void receive(const model_byte_t *byte)
     serve_dma();
 }
 
-/* What has come by now, and the silence after it. */
+/* Receives the bytes that have come by now, and notices a silence after them. */
 static void catch_up(void)
 {
     model_byte_t byte;
