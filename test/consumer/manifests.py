@@ -179,6 +179,10 @@ def check_platformio_lists():
         for file in example["files"]:
             if not os.path.exists(path(os.path.join(example["base"], file))):
                 complain("library.json: no such example: %s" % file)
+    folder = "examples/esp32_arduino"
+    for sketch in re.findall(r'SKETCH="(.*?)"', read(folder + "/platformio.ini")):
+        if not os.path.exists(path(os.path.join(folder, "platformio", sketch))):
+            complain("platformio.ini: no such sketch: %s" % sketch)
 
 
 def check_arduino_lists():

@@ -3,13 +3,12 @@
 
 """PlatformIO itself, off the network, with small platforms of our own (platforms/).
 
-    run.py native|scan|streaming ROOT WORK
+    run.py native|scan ROOT WORK
     run.py archive ROOT WORK ARCHIVE
 
-Run by the Python that has the packages platformio and scons. Builds the consumer's program, or a
-sketch of examples/esp32_arduino; `archive` packs the archive that we have packed with
-PlatformIO's packer again, which must leave nothing out, and builds the program with it. Exit
-status: 0 it builds, 1 not, 77 a compiler is not installed.
+Run by the Python that has the packages platformio and scons. Builds and runs the consumer's
+program, or the sketch Scan; `archive` packs our archive again with PlatformIO's packer, which must
+leave nothing out, and builds the program with it. Exit status: 0 it works, 1 not.
 """
 
 import json
@@ -83,10 +82,7 @@ def build(project, name, env):
     subprocess.run([sys.executable, "-m", "platformio", "run", "-d", project, "-e", name],
                    env=env, check=True)
     folder = os.path.join(env["PLATFORMIO_WORKSPACE_DIR"], "build", name)
-    programs = [name for name in os.listdir(folder) if name in ("program", "firmware.elf",
-                                                                "program.elf")]
-    assert len(programs) == 1, os.listdir(folder)
-    return os.path.join(folder, programs[0])
+    return os.path.join(folder, "program")
 
 
 def check_native(package, env):
@@ -94,10 +90,6 @@ def check_native(package, env):
     program = build(os.path.join(HERE, "project"), "consumer", env)
     output = subprocess.run([program], check=True, capture_output=True, text=True).stdout
     assert output == "ok\n", output
-
-
-def check_sketch(root, name, env):
-    return build(os.path.join(root, "examples", "esp32_arduino"), name, env)
 
 
 def pack(root, work):
@@ -127,33 +119,17 @@ def unpack(archive, folder):
     return folder
 
 
-def check_streaming(root, env):
-    for needed in ("avr-g++", "avr-gcc-ar"):
-        if not shutil.which(needed):
-            return needed
-    if not os.path.exists("/usr/share/arduino/hardware/arduino/avr/cores/arduino"):
-        return "arduino-core-avr"
-    firmware = check_sketch(root, "streaming", env)
-    subprocess.run(["avr-size", firmware], check=True)
-    return None
-
-
 def main():
     part, root, work = sys.argv[1], os.path.abspath(sys.argv[2]), os.path.abspath(sys.argv[3])
     shutil.rmtree(work, ignore_errors=True)
     env = environment(root, work)
-    missing = None
     if part == "native":
         check_native(root, env)
     elif part == "archive":
         check_archive(sys.argv[4], work, env)
     elif part == "scan":
-        subprocess.run([check_sketch(root, "scan", env)], check=True)
-    elif part == "streaming":
-        missing = check_streaming(root, env)
-    if missing:
-        print("skipped:", missing, "is not installed")
-        sys.exit(77)
+        program = build(os.path.join(root, "examples", "esp32_arduino"), "scan", env)
+        subprocess.run([program], check=True)
 
 
 main()

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The ESP-IDF component as its manifest has it packed, and the example: in the repository, and
-# copied out alone as the component registry gives it to a user. Built by a model of ESP-IDF's
-# build; and if the variable IDF_PATH of the environment names an ESP-IDF, configured by that too,
-# for its target `linux`.
+# The ESP-IDF component as its manifest has it packed, or from a release's ARCHIVE, and the example:
+# in the repository, and copied out alone as the component registry gives it to a user. Built by a
+# model of ESP-IDF's build; and if the variable IDF_PATH of the environment names an ESP-IDF,
+# configured by that too, for its target `linux`.
 #
-#   cmake -D ROOT=DIR -D WORK=DIR -P component.cmake
+#   cmake -D ROOT=DIR -D WORK=DIR [-D ARCHIVE=FILE] -P component.cmake
 
 cmake_minimum_required(VERSION 3.16)
 
@@ -34,6 +34,12 @@ function(refuse name source reason)
         message(FATAL_ERROR "${name}: not refused with \"${reason}\":\n${errors}")
     endif()
     message("${name}: refused")
+endfunction()
+
+function(unpack)
+    file(MAKE_DIRECTORY ${WORK}/packed)
+    file(RELATIVE_PATH archive ${WORK}/packed ${ARCHIVE}) # CMake 3.31 unpacks no path with accents.
+    run("unpacking" ${CMAKE_COMMAND} -E chdir ${WORK}/packed ${CMAKE_COMMAND} -E tar xf ${archive})
 endfunction()
 
 # What the manifest's list names, copied to WORK/packed/tmini.
@@ -87,7 +93,11 @@ endfunction()
 
 set(real_idf "$ENV{IDF_PATH}")
 file(REMOVE_RECURSE ${WORK})
-pack()
+if(ARCHIVE)
+    unpack()
+else()
+    pack()
+endif()
 check_pack()
 
 # The repository's folder may have any name here; ESP-IDF minds it.
