@@ -8,14 +8,12 @@
 
 #include <stdint.h>
 
+#include "known_packets.h"
 #include "simulator.h"
 #include "tmini/tmini.h"
 
-/* The manual's packet (section 5). Tests cut it in two with a loss in between that only the port
- * can notice. */
-#define TRUTH_PACKET_SIZE 67u
-#define TRUTH_PACKET_CUT 30u
-extern const uint8_t truth_packet[TRUTH_PACKET_SIZE];
+/* Tests cut the manual's packet here, with a loss in between that only the port can notice. */
+#define PACKET_CUT 30u
 
 /* Forgets everything; returns what the simulated lidar is to be observed with. */
 sim_observer_t truth_begin(void);

@@ -102,6 +102,13 @@ unsigned rig_drain(void)
     return events;
 }
 
+tmini_counters_t rig_counters(void)
+{
+    tmini_counters_t counters;
+    tmini_counters(&rig.lidar, &counters);
+    return counters;
+}
+
 /* ---- Bytes from the lidar ---- */
 
 void rig_feed(const uint8_t *bytes, size_t count)
@@ -199,8 +206,7 @@ void rig_feed_turn(uint8_t health, uint16_t distance_mm)
 void rig_go_idle(void)
 {
     begins_with(STOP, tmini_stop(&rig.lidar));
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
     is_in(TMINI_STATE_IDLE);
 }
 
@@ -229,24 +235,21 @@ void rig_go_scanning(void)
 void rig_go_recovering(void)
 {
     rig_go_scanning();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     polls_and_sends(STOP);
 }
 
 void rig_go_asking_again(void)
 {
     rig_go_recovering();
-    passes(50);
-    polls_to(TMINI_EVENT_NONE); /* The line is found quiet. */
+    passes_to(50, TMINI_EVENT_NONE); /* The line is found quiet. */
     polls_and_sends(START);
 }
 
 void rig_go_backing_off(void)
 {
     rig_go_asking_again();
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE); /* Given up. */
+    passes_to(2000, TMINI_EVENT_NONE); /* Given up. */
 }
 
 /* ---- Turns and what they bring ---- */

@@ -96,10 +96,26 @@ void rig_verify(void);
 #define passes(ms) rig_pass(__LINE__, ms)
 void rig_pass(unsigned line, uint32_t ms);
 
+/* `ms` milliseconds pass, and bring this event. */
+#define passes_to(ms, event) \
+    do {                     \
+        passes(ms);          \
+        polls_to(event);     \
+    } while (false)
+
+/* The line has been quiet for long enough, and this is sent. */
+#define finds_quiet_and_sends(code)      \
+    do {                                 \
+        passes_to(50, TMINI_EVENT_NONE); \
+        polls_and_sends(code);           \
+    } while (false)
+
 /* Polls until there is nothing left to do; returns a bit for each event that came. */
 unsigned rig_drain(void);
 
 #define BIT(event) (1u << (event))
+
+tmini_counters_t rig_counters(void);
 
 /* ---- Bytes from the lidar ---- */
 

@@ -134,14 +134,10 @@ void test_a_frequency_that_could_not_be_set_is_not_waited_for_while_scanning(voi
     rig.config.frequency_chz = 640;
     rig_init();
     begins_with(STOP, tmini_start(&rig.lidar));
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(GET_FREQUENCY);
+    finds_quiet_and_sends(GET_FREQUENCY);
     rig_feed_frequency(99); /* No lidar turns so slowly. */
     polls_and_sends(STOP);
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(START);
+    finds_quiet_and_sends(START);
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
@@ -239,8 +235,7 @@ void test_a_frequency_is_not_waited_for_when_nothing_recovers_the_lidar(void)
     rig.config.recovery = TMINI_RECOVERY_OFF;
     rig_init();
     rig_go_scanning();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     port_wait_StubWithCallback(wait);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
     TEST_ASSERT_EQUAL_UINT32(0, script.waits);

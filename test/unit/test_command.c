@@ -30,14 +30,6 @@ static void fails_with(tmini_status_t status)
     is_in(TMINI_STATE_UNKNOWN);
 }
 
-static uint16_t timeouts(void)
-{
-    tmini_counters_t counters;
-
-    tmini_counters(&rig.lidar, &counters);
-    return counters.timeouts;
-}
-
 /* ---- Before a command: the line is made quiet ---- */
 
 void test_from_an_unknown_state_a_command_first_stops_the_lidar_and_waits_for_a_quiet_line(void)
@@ -45,9 +37,7 @@ void test_from_an_unknown_state_a_command_first_stops_the_lidar_and_waits_for_a_
     begins_with(STOP, tmini_request_info(&rig.lidar));
     is_in(TMINI_STATE_BUSY);
     was_sent();
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(GET_INFO);
+    finds_quiet_and_sends(GET_INFO);
 }
 
 void test_in_the_idle_state_a_command_is_sent_at_once(void)
@@ -61,9 +51,7 @@ void test_each_byte_that_is_heard_puts_the_command_off_by_the_quiet_time(void)
     begins_with(STOP, tmini_request_info(&rig.lidar));
     passes(30);
     rig_feed_byte(0x00);
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(GET_INFO);
+    finds_quiet_and_sends(GET_INFO);
 }
 
 /* A stop is sent after this many bytes, and there is no poll for 60 ms. */
@@ -83,10 +71,8 @@ static void is_quiet_only_after_room_was_made(size_t bytes)
     stop_unwatched_behind(bytes);
     polls_to(TMINI_EVENT_NONE);
     is_in(TMINI_STATE_STOPPING);
-    passes(49);
-    polls_to(TMINI_EVENT_NONE);
-    passes(1);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(49, TMINI_EVENT_NONE);
+    passes_to(1, TMINI_EVENT_STOPPED);
 }
 
 void test_a_line_is_not_known_to_be_quiet_while_the_ring_is_full(void)
@@ -108,14 +94,11 @@ void test_with_room_for_a_byte_more_the_line_is_known_to_be_quiet(void)
 void test_bytes_that_were_lost_put_the_command_off_by_the_quiet_time(void)
 {
     begins_with(STOP, tmini_stop(&rig.lidar));
-    passes(30);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(30, TMINI_EVENT_NONE);
     tmini_feed_gap(&rig.lidar);
     polls_to(TMINI_EVENT_NONE);
-    passes(49);
-    polls_to(TMINI_EVENT_NONE);
-    passes(1);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(49, TMINI_EVENT_NONE);
+    passes_to(1, TMINI_EVENT_STOPPED);
 }
 
 /* They may have been a packet's. */
@@ -153,9 +136,8 @@ void test_a_stop_that_gets_lost_is_sent_again(void)
     sends(STOP);                /* so once more. */
     polls_to(TMINI_EVENT_NONE);
     was_sent();
-    TEST_ASSERT_EQUAL_UINT(1, timeouts());
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    TEST_ASSERT_EQUAL_UINT(1, rig_counters().timeouts);
+    passes_to(50, TMINI_EVENT_STOPPED);
     is_in(TMINI_STATE_IDLE); /* However many it took. */
 }
 
@@ -174,7 +156,7 @@ void test_a_lidar_that_will_not_be_stopped_fails_the_command_after_three_attempt
         }
     }
     fails_with(TMINI_ERROR_TIMEOUT);
-    TEST_ASSERT_EQUAL_UINT(3, timeouts());
+    TEST_ASSERT_EQUAL_UINT(3, rig_counters().timeouts);
 }
 
 void test_a_byte_that_comes_while_idle_makes_the_state_unknown_and_the_next_command_stop_first(void)
@@ -253,8 +235,7 @@ void test_after_a_reboot_the_state_is_unknown_until_the_next_command(void)
     rig_go_idle();
     begins_with(REBOOT, tmini_reboot(&rig.lidar));
     is_in(TMINI_STATE_BUSY);
-    passes(5000);
-    polls_to(TMINI_EVENT_REBOOTED);
+    passes_to(5000, TMINI_EVENT_REBOOTED);
     is_in(TMINI_STATE_UNKNOWN);
 }
 
@@ -263,8 +244,7 @@ void test_packets_while_the_lidar_reboots_are_no_scan(void)
     rig_go_idle();
     begins_with(REBOOT, tmini_reboot(&rig.lidar));
     rig_feed_start_packet(1000);
-    passes(5000);
-    polls_to(TMINI_EVENT_REBOOTED);
+    passes_to(5000, TMINI_EVENT_REBOOTED);
 }
 
 void test_scanning_begins_with_the_first_packet_after_the_start_reply(void)
@@ -307,8 +287,7 @@ void test_stopping_ends_when_the_line_is_quiet(void)
     rig_go_scanning();
     begins_with(STOP, tmini_stop(&rig.lidar));
     is_in(TMINI_STATE_STOPPING);
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
     is_in(TMINI_STATE_IDLE);
 }
 
@@ -318,8 +297,7 @@ void test_a_second_stop_while_stopping_sends_nothing(void)
     begins_with(STOP, tmini_stop(&rig.lidar));
     passes(20);
     begins(tmini_stop(&rig.lidar));
-    passes(30);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(30, TMINI_EVENT_STOPPED);
 }
 
 void test_stop_aborts_a_query(void)
@@ -331,8 +309,7 @@ void test_stop_aborts_a_query(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ABORTED, tmini_command_error(&rig.lidar));
     is_in(TMINI_STATE_STOPPING);
     rig_feed_info(); /* It is no longer awaited. */
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
 }
 
 void test_a_command_swallows_the_end_of_the_one_before_that_was_not_polled_for(void)
@@ -352,9 +329,7 @@ void test_a_command_that_is_cancelled_takes_the_start_after_it_along(void)
     begins(tmini_start(&rig.lidar));
     tmini_cancel(&rig.lidar);
     begins_with(STOP, tmini_request_info(&rig.lidar));
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(GET_INFO);
+    finds_quiet_and_sends(GET_INFO);
     rig_feed_info();
     polls_to(TMINI_EVENT_INFO);
     is_in(TMINI_STATE_IDLE);
@@ -394,12 +369,9 @@ void test_a_reply_that_comes_late_answers_the_repeated_question(void)
 {
     rig_go_idle();
     begins_with(GET_INFO, tmini_request_info(&rig.lidar));
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(GET_INFO);
+    finds_quiet_and_sends(GET_INFO);
     rig_feed_info();
     polls_to(TMINI_EVENT_INFO);
     is_in(TMINI_STATE_UNKNOWN); /* Its own reply may still come. */
@@ -409,25 +381,19 @@ void test_a_reply_that_comes_while_the_line_is_being_hushed_is_not_taken(void)
 {
     rig_go_idle();
     begins_with(GET_INFO, tmini_request_info(&rig.lidar));
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
     rig_feed_info();
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(GET_INFO);
+    finds_quiet_and_sends(GET_INFO);
     rig_feed_info();
     polls_to(TMINI_EVENT_INFO);
 }
 
 static void asks_in_vain(uint8_t code)
 {
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(code);
+    finds_quiet_and_sends(code);
 }
 
 void test_a_question_without_an_answer_is_asked_three_times(void)
@@ -438,7 +404,7 @@ void test_a_question_without_an_answer_is_asked_three_times(void)
     asks_in_vain(GET_HEALTH);
     passes(2000);
     fails_with(TMINI_ERROR_TIMEOUT);
-    TEST_ASSERT_EQUAL_UINT(3, timeouts());
+    TEST_ASSERT_EQUAL_UINT(3, rig_counters().timeouts);
 }
 
 void test_a_reply_that_comes_after_the_last_attempt_is_nobodys(void)
@@ -463,9 +429,7 @@ void test_each_command_has_all_its_attempts(void)
     polls_to(TMINI_EVENT_HEALTH);
 
     begins_with(STOP, tmini_request_health(&rig.lidar));
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(GET_HEALTH);
+    finds_quiet_and_sends(GET_HEALTH);
     asks_in_vain(GET_HEALTH);
     asks_in_vain(GET_HEALTH);
     rig_feed_health(0, 0);
@@ -475,26 +439,19 @@ void test_each_command_has_all_its_attempts(void)
 void test_a_start_that_is_acknowledged_but_brings_no_packet_is_reported_and_tried_again(void)
 {
     rig_go_spinning_up();
-    passes(3000);
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    passes_to(3000, TMINI_EVENT_COMMAND_FAILED);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_command_error(&rig.lidar));
     is_in(TMINI_STATE_STARTING);
-    passes(500);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(500, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(START);
+    finds_quiet_and_sends(START);
     was_sent();
-    TEST_ASSERT_EQUAL_UINT(1, timeouts());
+    TEST_ASSERT_EQUAL_UINT(1, rig_counters().timeouts);
 }
 
 void test_a_single_attempt_is_one_attempt(void)
 {
-    tmini_timing_t timing = tmini_timing_default;
-
-    timing.max_attempts = 1;
-    rig.config.timing = &timing;
+    rig.timing.max_attempts = 1;
     rig_init();
     rig_go_idle();
     begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
@@ -504,10 +461,7 @@ void test_a_single_attempt_is_one_attempt(void)
 
 void test_two_attempts_are_two(void)
 {
-    tmini_timing_t timing = tmini_timing_default;
-
-    timing.max_attempts = 2;
-    rig.config.timing = &timing;
+    rig.timing.max_attempts = 2;
     rig_init();
     rig_go_idle();
     begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
@@ -518,10 +472,7 @@ void test_two_attempts_are_two(void)
 
 void test_no_attempts_count_as_one(void)
 {
-    tmini_timing_t timing = tmini_timing_default;
-
-    timing.max_attempts = 0;
-    rig.config.timing = &timing;
+    rig.timing.max_attempts = 0;
     rig_init();
     rig_go_idle();
     begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
@@ -703,17 +654,13 @@ void test_a_line_that_does_not_settle_between_steps_is_hushed(void)
     }
     polls_to(TMINI_EVENT_NONE);
     polls_and_sends(STOP);
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(GET_FREQUENCY);
+    finds_quiet_and_sends(GET_FREQUENCY);
 }
 
 void test_a_lost_reply_to_a_step_is_mended_by_reading_the_frequency(void)
 {
     begins_to_set(700, 600);
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(FASTER_ONE);
+    finds_quiet_and_sends(FASTER_ONE);
     asks_in_vain(GET_FREQUENCY);
     rig_feed_frequency(700); /* The step had been made. */
     polls_to(TMINI_EVENT_FREQUENCY);
@@ -743,9 +690,7 @@ void test_a_lidar_that_refuses_to_step_fails_with_the_reply_after_three_attempts
         if (attempt < 3) {
             polls_to(TMINI_EVENT_NONE);
             polls_and_sends(STOP);
-            passes(50);
-            polls_to(TMINI_EVENT_NONE);
-            polls_and_sends(GET_FREQUENCY);
+            finds_quiet_and_sends(GET_FREQUENCY);
             rig_feed_frequency(600);
             polls_to(TMINI_EVENT_NONE);
         }
@@ -755,10 +700,7 @@ void test_a_lidar_that_refuses_to_step_fails_with_the_reply_after_three_attempts
 
 void test_a_step_that_was_not_refused_after_all_does_not_blame_the_reply_for_a_noisy_line(void)
 {
-    tmini_timing_t timing = tmini_timing_default;
-
-    timing.max_attempts = 1;
-    rig.config.timing = &timing;
+    rig.timing.max_attempts = 1;
     rig_init();
     begins_to_set(800, 600);
     steps(FASTER_ONE, 600); /* As if refused, */
@@ -785,8 +727,7 @@ void test_a_port_that_fails_after_a_refused_step_fails_the_command_with_write(vo
 {
     begins_to_set(700, 600);
     steps(FASTER_ONE, 600);
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
     sends_both_taking(STOP, -1);
     fails_with(TMINI_ERROR_WRITE);
 }
@@ -889,19 +830,14 @@ void test_that_one_command_was_repeated_does_not_make_the_line_unsure_after_the_
 {
     rig_go_idle();
     begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(GET_HEALTH);
+    finds_quiet_and_sends(GET_HEALTH);
     rig_feed_health(0, 0);
     polls_to(TMINI_EVENT_HEALTH);
     is_in(TMINI_STATE_UNKNOWN);
     begins_with(STOP, tmini_request_health(&rig.lidar));
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(GET_HEALTH);
+    finds_quiet_and_sends(GET_HEALTH);
     rig_feed_health(0, 0);
     polls_to(TMINI_EVENT_HEALTH);
     is_in(TMINI_STATE_IDLE);
@@ -940,8 +876,7 @@ void test_the_wait_for_a_quiet_line_begins_when_the_command_has_left(void)
     begins(tmini_stop(&rig.lidar));
     rig.now_ms += 60;
     polls_and_sends(STOP);
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
 }
 
 void test_a_port_that_takes_a_command_at_the_last_moment_has_taken_it(void)
@@ -950,16 +885,14 @@ void test_a_port_that_takes_a_command_at_the_last_moment_has_taken_it(void)
     begins(tmini_stop(&rig.lidar));
     rig.now_ms += 150; /* There was no poll. */
     polls_and_sends(STOP);
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
 }
 
 void test_a_port_that_claims_more_than_it_was_given_has_taken_all(void)
 {
     sends_both_taking(STOP, 3);
     begins(tmini_stop(&rig.lidar));
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
 }
 
 void test_a_port_that_fails_is_asked_once_more_when_time_has_passed_and_then_fails_the_command(void)
@@ -971,7 +904,7 @@ void test_a_port_that_fails_is_asked_once_more_when_time_has_passed_and_then_fai
     rig.now_ms += 1;
     sends_both_taking(STOP, -1);
     fails_with(TMINI_ERROR_WRITE);
-    TEST_ASSERT_EQUAL_UINT(0, timeouts());
+    TEST_ASSERT_EQUAL_UINT(0, rig_counters().timeouts);
 }
 
 void test_a_port_that_fails_once_fails_no_command(void)
@@ -980,9 +913,7 @@ void test_a_port_that_fails_once_fails_no_command(void)
     begins(tmini_request_info(&rig.lidar));
     rig.now_ms += 1;
     polls_and_sends(STOP);
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(GET_INFO);
+    finds_quiet_and_sends(GET_INFO);
     rig_feed_info();
     polls_to(TMINI_EVENT_INFO);
 }
@@ -1046,8 +977,7 @@ void test_the_first_byte_of_a_command_given_up_serves_for_the_next_one(void)
     sends_rest_taking(STOP, 1);
     begins(tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_COMMAND_FAILED);
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
     begins_with(GET_INFO, tmini_request_info(&rig.lidar));
 }
 
@@ -1105,7 +1035,6 @@ void test_the_time_for_a_reply_begins_when_the_command_has_left(void)
     begins(tmini_request_info(&rig.lidar));
     rig.now_ms += 90;
     polls_and_sends(GET_INFO);
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
 }

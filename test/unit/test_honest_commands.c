@@ -3,6 +3,7 @@
 
 /* Commands whose bytes get lost, and answers that are older than the question. */
 
+#include "known_packets.h"
 #include "turns.h"
 
 #include "tmini/parts/tmini_parser.h"
@@ -213,8 +214,6 @@ void test_a_reply_longer_than_the_ring_is_not_waited_for(void)
 {
     static const uint8_t header[7] = {0xA5, 0x5A, 100, 0x00, 0x00, 0x00, 0x04};
     static const tmini_reply_header_t awaited = {.type = 4, .mode = 0, .length = 100};
-    static const uint8_t packet[13] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
-                                       0x00, 0x9E, 0x56, 0x15, 0x54, 0x02}; /* Section 9.14. */
     uint8_t memory[64];
     tmini_ring_t ring;
     tmini_parser_t parser;
@@ -225,7 +224,7 @@ void test_a_reply_longer_than_the_ring_is_not_waited_for(void)
     (void)tmini_parser_await(&parser, &awaited);
     tmini_ring_write(&ring, header, sizeof header);
     for (unsigned i = 0; i < 10; i++) {
-        tmini_ring_write(&ring, packet, sizeof packet);
+        tmini_ring_write(&ring, start_packet, sizeof start_packet);
         while (tmini_parser_next(&parser) == TMINI_FRAME_PACKET) {
             packets++;
         }

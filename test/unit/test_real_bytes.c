@@ -10,6 +10,7 @@
  * No capture of a unit that sends LastCRC was to be had. */
 
 #include "tmini/tmini_names.h"
+#include "known_packets.h"
 #include "turns.h"
 
 #include "unity.h"
@@ -127,11 +128,8 @@ void test_a_start_packet_of_a_t_mini_pro(void)
 
 void test_a_start_packet_of_a_t_mini_plus(void)
 {
-    static const uint8_t bytes[] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
-                                    0x00, 0x9E, 0x56, 0x15, 0x54, 0x02};
-
     feed_start_reply();
-    turns_feed(bytes, sizeof bytes);
+    turns_feed(start_packet, sizeof start_packet);
     const tmini_packet_t *const packet = polled_packet();
 
     TEST_ASSERT_TRUE(tmini_packet_is_start(packet));

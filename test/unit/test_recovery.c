@@ -19,23 +19,14 @@ void tearDown(void)
     TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
 }
 
-static tmini_counters_t counters(void)
-{
-    tmini_counters_t copy;
-
-    tmini_counters(&rig.lidar, &copy);
-    return copy;
-}
-
 /* ---- Loss ---- */
 
 void test_a_second_without_a_packet_is_a_loss(void)
 {
     rig_go_scanning();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     is_in(TMINI_STATE_RECOVERING);
-    TEST_ASSERT_EQUAL_UINT16(1, counters().losses);
+    TEST_ASSERT_EQUAL_UINT16(1, rig_counters().losses);
 }
 
 void test_each_packet_puts_the_loss_off(void)
@@ -72,11 +63,9 @@ void test_packets_that_came_between_two_polls_are_no_loss(void)
 void test_a_lost_lidar_is_stopped_and_when_the_line_is_quiet_started(void)
 {
     rig_go_recovering(); /* The stop has been sent. */
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(START);
+    finds_quiet_and_sends(START);
     was_sent();
-    TEST_ASSERT_EQUAL_UINT16(1, counters().restarts);
+    TEST_ASSERT_EQUAL_UINT16(1, rig_counters().restarts);
 }
 
 void test_the_first_packet_recovers(void)
@@ -90,29 +79,19 @@ void test_the_first_packet_recovers(void)
     is_in(TMINI_STATE_SCANNING);
     (void)rig_drain();
     passes(999);
-    TEST_ASSERT_EQUAL_UINT16(1, counters().recoveries);
+    TEST_ASSERT_EQUAL_UINT16(1, rig_counters().recoveries);
 }
 
 /* From the moment at which an attempt has failed: its pause, then the next attempt's stop. */
 static void pauses_and_stops(uint32_t pause_ms)
 {
-    passes(pause_ms);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(pause_ms, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
-}
-
-/* The line is quiet; this is sent. */
-static void finds_quiet_and_sends(uint8_t code)
-{
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(code);
 }
 
 static void gets_no_reply(void)
 {
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
 }
 
 static void tries_in_vain(uint32_t pause_ms)
@@ -126,8 +105,7 @@ static void tries_with_a_reboot_in_vain(uint32_t pause_ms)
 {
     pauses_and_stops(pause_ms);
     finds_quiet_and_sends(REBOOT);
-    passes(5000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(5000, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
     was_sent();
     finds_quiet_and_sends(START);
@@ -145,11 +123,11 @@ void test_the_ladder_starts_three_times_then_reboots_with_pauses_that_double_up_
     tries_with_a_reboot_in_vain(4000);
     tries_in_vain(4000);
     is_in(TMINI_STATE_RECOVERING);
-    TEST_ASSERT_EQUAL_UINT16(1, counters().losses);
-    TEST_ASSERT_EQUAL_UINT16(8, counters().restarts);
-    TEST_ASSERT_EQUAL_UINT16(2, counters().reboots);
-    TEST_ASSERT_EQUAL_UINT16(8, counters().timeouts);
-    TEST_ASSERT_EQUAL_UINT16(0, counters().recoveries);
+    TEST_ASSERT_EQUAL_UINT16(1, rig_counters().losses);
+    TEST_ASSERT_EQUAL_UINT16(8, rig_counters().restarts);
+    TEST_ASSERT_EQUAL_UINT16(2, rig_counters().reboots);
+    TEST_ASSERT_EQUAL_UINT16(8, rig_counters().timeouts);
+    TEST_ASSERT_EQUAL_UINT16(0, rig_counters().recoveries);
 }
 
 void test_the_ladder_has_no_end(void)
@@ -170,14 +148,12 @@ void test_a_loss_after_a_new_start_begins_at_the_ladders_foot(void)
     rig_go_backing_off();
     tries_in_vain(500);
     begins_with(STOP, tmini_stop(&rig.lidar));
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
     begins_with(START, tmini_start(&rig.lidar));
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
     (void)rig_drain();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     sends(STOP); /* Without a pause. */
     polls_to(TMINI_EVENT_NONE);
 }
@@ -191,8 +167,7 @@ void test_a_loss_after_a_whole_turn_begins_at_the_ladders_foot(void)
     polls_to(TMINI_EVENT_RECOVERED);
     rig_feed_start_packet(1000);
     (void)rig_drain();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     gets_no_reply();
@@ -203,24 +178,21 @@ void test_a_loss_after_a_whole_turn_begins_at_the_ladders_foot(void)
 void test_an_attempt_that_brings_no_whole_turn_has_not_succeeded(void)
 {
     rig_go_scanning();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     for (uint32_t pause_ms = 500; pause_ms < 2000; pause_ms *= 2) {
         rig_feed_point_packet(1000);
         polls_to(TMINI_EVENT_RECOVERED);
         (void)rig_drain();
-        passes(1000);
-        polls_to(TMINI_EVENT_LOST);
+        passes_to(1000, TMINI_EVENT_LOST);
         pauses_and_stops(pause_ms);
         finds_quiet_and_sends(START);
     }
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_RECOVERED);
     (void)rig_drain();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     tries_with_a_reboot_in_vain(2000);
 }
 
@@ -233,8 +205,7 @@ void test_a_loss_before_a_whole_turn_goes_on_up_the_ladder(void)
     polls_to(TMINI_EVENT_RECOVERED);
     rig_feed_point_packet(1000);
     (void)rig_drain();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     tries_with_a_reboot_in_vain(2000);
 }
 
@@ -245,8 +216,7 @@ void test_a_turn_that_is_not_whole_but_ends_a_fault_does_not_count_as_whole(void
     for (unsigned i = 0; i < 3; i++) {
         (void)rig_plain_turn_events(0);
     }
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     gets_no_reply();
@@ -259,17 +229,13 @@ void test_a_turn_that_is_not_whole_but_ends_a_fault_does_not_count_as_whole(void
     rig_feed_point_packet(1000);
     rig_feed_start_packet(1000);
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED) | BIT(TMINI_EVENT_SCAN), rig_drain());
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     tries_with_a_reboot_in_vain(2000);
 }
 
 void test_the_first_pause_is_no_longer_than_the_longest(void)
 {
-    tmini_timing_t timing = tmini_timing_default;
-
-    timing.back_off_max_ms = 300;
-    rig.config.timing = &timing;
+    rig.timing.back_off_max_ms = 300;
     rig_init();
     rig_go_backing_off();
     pauses_and_stops(300);
@@ -277,10 +243,7 @@ void test_the_first_pause_is_no_longer_than_the_longest(void)
 
 void test_a_pause_doubles_up_to_the_longest_that_can_be_configured(void)
 {
-    tmini_timing_t timing = tmini_timing_default;
-
-    timing.back_off_max_ms = 65535;
-    rig.config.timing = &timing;
+    rig.timing.back_off_max_ms = 65535;
     rig_init();
     rig_go_backing_off();
     for (unsigned failed = 1; failed < 8; failed++) {
@@ -296,10 +259,7 @@ void test_a_pause_doubles_up_to_the_longest_that_can_be_configured(void)
 
 void test_a_pause_of_a_millisecond_can_be_configured(void)
 {
-    tmini_timing_t timing = tmini_timing_default;
-
-    timing.back_off_max_ms = 1;
-    rig.config.timing = &timing;
+    rig.timing.back_off_max_ms = 1;
     rig_init();
     rig_go_backing_off();
     rig.now_ms += 1;
@@ -311,8 +271,7 @@ void test_a_start_that_is_acknowledged_but_brings_no_packet_is_a_failed_attempt(
 {
     rig_go_asking_again();
     rig_feed_scan_reply();
-    passes(3000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(3000, TMINI_EVENT_NONE);
     pauses_and_stops(500);
 }
 
@@ -330,8 +289,7 @@ void test_a_line_that_does_not_fall_quiet_is_a_failed_attempt(void)
 void test_a_port_that_fails_is_a_failed_attempt(void)
 {
     rig_go_scanning();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     sends_both_taking(STOP, -1);
     polls_to(TMINI_EVENT_NONE);
     pauses_and_stops(500);
@@ -340,8 +298,7 @@ void test_a_port_that_fails_is_a_failed_attempt(void)
 void test_a_port_that_takes_nothing_is_a_failed_attempt_and_nothing_is_sent_in_the_pause(void)
 {
     rig_go_scanning();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     sends_both_taking(STOP, 0);
     polls_to(TMINI_EVENT_NONE);
     rig.now_ms += 100;
@@ -358,7 +315,7 @@ void test_a_lidar_that_comes_back_by_itself_in_the_pause_has_recovered(void)
     (void)rig_drain();
     passes(999);
     is_in(TMINI_STATE_SCANNING);
-    TEST_ASSERT_EQUAL_UINT16(1, counters().recoveries);
+    TEST_ASSERT_EQUAL_UINT16(1, rig_counters().recoveries);
 }
 
 void test_a_lidar_that_comes_back_by_itself_while_it_is_being_rebooted_has_recovered(void)
@@ -382,8 +339,7 @@ void test_a_lidar_that_comes_back_by_itself_after_a_reboot_that_failed_has_recov
     rig_go_backing_off();
     tries_in_vain(500);
     tries_in_vain(1000);
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
     sends_both_taking(STOP, -1); /* The stop before the reboot. */
     polls_to(TMINI_EVENT_NONE);
     rig_feed_point_packet(1000);
@@ -403,7 +359,7 @@ void test_packets_between_the_stop_and_a_quiet_line_are_not_yet_a_recovery(void)
     rig_feed_point_packet(1000);
     passes(50);
     is_in(TMINI_STATE_RECOVERING);
-    TEST_ASSERT_EQUAL_UINT16(0, counters().recoveries);
+    TEST_ASSERT_EQUAL_UINT16(0, rig_counters().recoveries);
     polls_to(TMINI_EVENT_NONE);
     polls_and_sends(START);
 }
@@ -423,14 +379,13 @@ void test_after_a_recovery_no_scan_continues_one_from_before_the_loss(void)
     rig_go_scanning();
     rig_feed_start_packet(1000);
     (void)rig_drain();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     rig_feed_point_packet(1000);
     rig_feed_start_packet(1000);
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_RECOVERED), rig_drain());
-    TEST_ASSERT_EQUAL_UINT32(0, counters().scans);
+    TEST_ASSERT_EQUAL_UINT32(0, rig_counters().scans);
 }
 
 void test_a_turn_cut_by_a_loss_is_no_data_fault(void)
@@ -438,8 +393,7 @@ void test_a_turn_cut_by_a_loss_is_no_data_fault(void)
     rig_go_scanning();
     (void)rig_plain_turn_events(0);
     (void)rig_plain_turn_events(0); /* One turn without a range, and most of another. */
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     rig_feed_point_packet(0);
@@ -457,8 +411,7 @@ void test_a_range_from_before_a_loss_does_not_clear_a_data_fault(void)
     }
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_NONE);
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     polls_and_sends(STOP);
     finds_quiet_and_sends(START);
     rig_feed_point_packet(0);
@@ -491,8 +444,7 @@ void test_faults_outlive_a_loss(void)
     for (unsigned i = 0; i < 3; i++) {
         (void)rig_turn_events(TMINI_FAULT_PD);
     }
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_PD, tmini_faults(&rig.lidar));
 }
 
@@ -500,8 +452,7 @@ void test_stop_ends_the_recovery(void)
 {
     rig_go_backing_off();
     begins_with(STOP, tmini_stop(&rig.lidar));
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
     passes(60000);
     is_in(TMINI_STATE_IDLE);
 }
@@ -513,8 +464,7 @@ static void go_lost_without_recovery(void)
     rig.config.recovery = TMINI_RECOVERY_OFF;
     rig_init();
     rig_go_scanning();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
 }
 
 void test_without_recovery_a_loss_is_reported_and_nothing_sent(void)
@@ -522,8 +472,8 @@ void test_without_recovery_a_loss_is_reported_and_nothing_sent(void)
     go_lost_without_recovery();
     is_in(TMINI_STATE_RECOVERING);
     passes(1000000);
-    TEST_ASSERT_EQUAL_UINT16(1, counters().losses);
-    TEST_ASSERT_EQUAL_UINT16(0, counters().restarts);
+    TEST_ASSERT_EQUAL_UINT16(1, rig_counters().losses);
+    TEST_ASSERT_EQUAL_UINT16(0, rig_counters().restarts);
 }
 
 void test_without_recovery_a_lidar_that_comes_back_by_itself_has_recovered(void)
@@ -539,8 +489,7 @@ void test_without_recovery_stop_and_start_are_the_users(void)
 {
     go_lost_without_recovery();
     begins_with(STOP, tmini_stop(&rig.lidar));
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
     begins_with(START, tmini_start(&rig.lidar));
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
@@ -564,8 +513,7 @@ void test_without_recovery_a_start_after_a_loss_may_fail_and_be_made_again(void)
     go_lost_without_recovery();
     begins_with(STOP, tmini_start(&rig.lidar));
     finds_quiet_and_sends(START);
-    passes(2000);
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    passes_to(2000, TMINI_EVENT_COMMAND_FAILED);
     is_in(TMINI_STATE_UNKNOWN);
     begins_with(STOP, tmini_start(&rig.lidar));
     is_in(TMINI_STATE_STARTING);
@@ -582,11 +530,9 @@ void test_a_clock_that_is_set_back_delays_a_time_out_by_its_own_length(void)
     for (unsigned i = 0; i < 3; i++) {
         rig_open();
         rig_go_scanning();
-        passes(600);
-        polls_to(TMINI_EVENT_NONE);
+        passes_to(600, TMINI_EVENT_NONE);
         rig.now_ms -= back_ms[i];
-        passes(1000);
-        polls_to(TMINI_EVENT_LOST);
+        passes_to(1000, TMINI_EVENT_LOST);
     }
 }
 
@@ -594,11 +540,9 @@ void test_a_clock_that_is_set_back_delays_a_time_out_by_its_own_length(void)
 void test_a_clock_that_is_set_back_by_the_time_passed_fails_no_command(void)
 {
     rig_go_starting();
-    passes(1500);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(1500, TMINI_EVENT_NONE);
     rig.now_ms -= 1501;
-    passes(2000);
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    passes_to(2000, TMINI_EVENT_COMMAND_FAILED);
 }
 
 void test_a_clock_that_is_set_back_ends_no_pause_of_the_ladder(void)
@@ -620,8 +564,7 @@ void test_what_the_unit_reported_of_itself_is_not_known_after_a_loss(void)
     }
     tmini_ct_info(&rig.lidar, &turn);
     TEST_ASSERT_EQUAL_UINT8(1, turn.user_major);
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     tmini_ct_info(&rig.lidar, &turn);
     TEST_ASSERT_EQUAL_HEX16(0, turn.known);
     TEST_ASSERT_EQUAL_UINT8(0, turn.user_major);

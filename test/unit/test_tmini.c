@@ -4,6 +4,7 @@
 /* The driver's frame: setting it up, feeding it, its events and results, its clock, its misuse. */
 
 #include "invariants.h"
+#include "known_packets.h"
 #include "rig.h"
 
 #include "mock_port_functions.h"
@@ -19,14 +20,6 @@ void setUp(void)
 void tearDown(void)
 {
     TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
-}
-
-static tmini_counters_t counters(void)
-{
-    tmini_counters_t copy;
-
-    tmini_counters(&rig.lidar, &copy);
-    return copy;
 }
 
 /* ---- Setting up ---- */
@@ -224,10 +217,6 @@ void test_without_dma_no_port_gets_the_receive_buffer(void)
 
 void test_single_bytes_blocks_and_dma_bring_the_same_packet(void)
 {
-    /* 5.8 Hz, 0.484 degrees, intensity 21, 149 mm, from a real unit (section 9.14). */
-    static const uint8_t packet[] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
-                                     0x00, 0x9E, 0x56, 0x15, 0x54, 0x02};
-
     for (unsigned way = 0; way < 3; way++) {
         rig.config.points = NULL;
         rig.config.max_points = 0;
@@ -236,14 +225,14 @@ void test_single_bytes_blocks_and_dma_bring_the_same_packet(void)
         rig_init();
         rig_go_starting();
         if (way == 0) {
-            for (size_t i = 0; i < sizeof packet; i++) {
-                tmini_feed_byte(&rig.lidar, packet[i]);
+            for (size_t i = 0; i < sizeof start_packet; i++) {
+                tmini_feed_byte(&rig.lidar, start_packet[i]);
             }
         } else if (way == 1) {
-            tmini_feed(&rig.lidar, packet, sizeof packet);
+            tmini_feed(&rig.lidar, start_packet, sizeof start_packet);
         } else {
-            memcpy(rig.rx, packet, sizeof packet);
-            tmini_feed_dma(&rig.lidar, sizeof packet);
+            memcpy(rig.rx, start_packet, sizeof start_packet);
+            tmini_feed_dma(&rig.lidar, sizeof start_packet);
         }
         polls_to(TMINI_EVENT_STARTED);
         polls_to(TMINI_EVENT_PACKET);
@@ -267,7 +256,7 @@ void test_every_byte_is_accounted_for(void)
     rig_feed_byte(0xAA);         /* 1 pending */
     sends(STOP);                 /* The packet was not asked for. */
     (void)rig_drain();
-    const tmini_counters_t seen = counters();
+    const tmini_counters_t seen = rig_counters();
     TEST_ASSERT_EQUAL_UINT32(35, rig.fed);
     TEST_ASSERT_EQUAL_UINT32(22, seen.bytes_in_packets);
     TEST_ASSERT_EQUAL_UINT32(10, seen.bytes_in_replies);
@@ -283,8 +272,8 @@ void test_bytes_that_find_the_buffer_full_are_counted(void)
     rig_feed(zeros, sizeof zeros);
     rig_feed(zeros, 7);
     polls_to(TMINI_EVENT_NONE);
-    TEST_ASSERT_EQUAL_UINT32(7, counters().bytes_overrun);
-    TEST_ASSERT_EQUAL_UINT32(RIG_RX_SIZE, counters().bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(7, rig_counters().bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(RIG_RX_SIZE, rig_counters().bytes_skipped);
 }
 
 void test_bytes_of_a_second_overflow_are_counted_with_the_first_ones(void)
@@ -296,7 +285,7 @@ void test_bytes_of_a_second_overflow_are_counted_with_the_first_ones(void)
     (void)rig_drain();
     rig_feed(zeros, sizeof zeros);
     rig_feed(zeros, 5);
-    TEST_ASSERT_EQUAL_UINT32(12, counters().bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(12, rig_counters().bytes_overrun);
 }
 
 /* Nothing is read before a poll: the memory need not be there. */
@@ -307,7 +296,7 @@ void test_pending_bytes_may_be_more_than_16_bits_count(void)
         rig.config.rx_dma = true;
         rig_init();
         tmini_feed_dma(&rig.lidar, (size_t)0x10000u + 300);
-        TEST_ASSERT_EQUAL_UINT32(65836u, counters().bytes_pending);
+        TEST_ASSERT_EQUAL_UINT32(65836u, rig_counters().bytes_pending);
         rig_open();
     }
 }
@@ -329,7 +318,7 @@ void test_counters_count_to_the_end_of_their_ranges(void)
     rig.lidar.recovery.recoveries = 65533u;
     rig.lidar.recovery.restarts = 65534u;
     rig.lidar.recovery.reboots = 65530u;
-    const tmini_counters_t seen = counters();
+    const tmini_counters_t seen = rig_counters();
     TEST_ASSERT_EQUAL_UINT32(4294967290u, seen.packets);
     TEST_ASSERT_EQUAL_UINT32(4294967291u, seen.checksum_errors);
     TEST_ASSERT_EQUAL_UINT32(4294967292u, seen.bytes_in_packets);
@@ -349,7 +338,7 @@ void test_packets_of_an_unknown_lidar_are_parsed_and_counted_but_are_no_event(vo
 {
     rig_feed_start_packet(1000);
     polls_to(TMINI_EVENT_NONE);
-    TEST_ASSERT_EQUAL_UINT32(1, counters().packets);
+    TEST_ASSERT_EQUAL_UINT32(1, rig_counters().packets);
     is_in(TMINI_STATE_UNKNOWN);
 }
 
@@ -364,8 +353,7 @@ void test_an_idle_lidar_that_streams_is_reported_and_stopped_again(void)
     is_in(TMINI_STATE_STOPPING);
     rig_feed_point_packet(1000); /* The tail is no news. */
     polls_to(TMINI_EVENT_NONE);
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
     is_in(TMINI_STATE_IDLE);
     rig_feed_point_packet(1000);
     sends(STOP);
@@ -378,8 +366,7 @@ void test_a_lidar_that_streams_after_a_reboot_is_stopped(void)
     rig_go_idle();
     sends(REBOOT);
     begins(tmini_reboot(&rig.lidar));
-    passes(5000);
-    polls_to(TMINI_EVENT_REBOOTED);
+    passes_to(5000, TMINI_EVENT_REBOOTED);
     rig_feed_point_packet(1000);
     sends(STOP);
     polls_to(TMINI_EVENT_UNWANTED_SCANNING);
@@ -525,8 +512,7 @@ static void line_is_not_quiet_with_bytes_at(unsigned reading)
     polls_with_bytes_at(reading);
     is_in(TMINI_STATE_STOPPING);
     rig.now_ms += reading - 1; /* The second time they are noted by the next poll. */
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
 }
 
 void test_a_line_on_which_bytes_come_while_a_poll_looks_for_news_is_not_quiet(void)
@@ -549,10 +535,10 @@ void test_the_time_between_two_polls_is_silence_for_50_ms_at_most(void)
         rig.now_ms += 60;
         polls_to(TMINI_EVENT_NONE);
     }
-    TEST_ASSERT_EQUAL_UINT32(1, counters().bytes_pending);
+    TEST_ASSERT_EQUAL_UINT32(1, rig_counters().bytes_pending);
     rig.now_ms += 1;
     polls_to(TMINI_EVENT_NONE);
-    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
+    TEST_ASSERT_EQUAL_UINT32(0, rig_counters().bytes_pending);
 }
 
 void test_a_frame_timeout_may_be_longer_than_256_ms(void)
@@ -561,11 +547,11 @@ void test_a_frame_timeout_may_be_longer_than_256_ms(void)
     rig_feed_byte(0xAA);
     polls_to(TMINI_EVENT_NONE);
     for (unsigned i = 0; i < 6; i++) {
-        TEST_ASSERT_EQUAL_UINT32(1, counters().bytes_pending);
+        TEST_ASSERT_EQUAL_UINT32(1, rig_counters().bytes_pending);
         rig.now_ms += 50;
         polls_to(TMINI_EVENT_NONE);
     }
-    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
+    TEST_ASSERT_EQUAL_UINT32(0, rig_counters().bytes_pending);
 }
 
 void test_a_command_that_the_port_refuses_is_offered_again_a_millisecond_later(void)
@@ -603,10 +589,10 @@ void test_without_a_frame_timeout_a_silent_poll_gives_up_a_reply(void)
     begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed(begin, sizeof begin);
     polls_to(TMINI_EVENT_NONE);
-    TEST_ASSERT_EQUAL_UINT32(sizeof begin, counters().bytes_pending);
+    TEST_ASSERT_EQUAL_UINT32(sizeof begin, rig_counters().bytes_pending);
     rig.now_ms += 1;
     polls_to(TMINI_EVENT_NONE);
-    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
+    TEST_ASSERT_EQUAL_UINT32(0, rig_counters().bytes_pending);
 }
 
 /* A header that promises more than comes: it hides the packet after it. */
@@ -624,9 +610,8 @@ void test_silence_gives_a_candidate_up_so_that_the_packet_it_hides_is_delivered(
     rig_feed_start_packet(1000);
     (void)rig_drain();
     feed_false_header_and_packet();
-    passes(100);
-    polls_to(TMINI_EVENT_SCAN);
-    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
+    passes_to(100, TMINI_EVENT_SCAN);
+    TEST_ASSERT_EQUAL_UINT32(0, rig_counters().bytes_pending);
 }
 
 void test_silence_gives_up_one_candidate_after_the_other(void)
@@ -638,17 +623,16 @@ void test_silence_gives_up_one_candidate_after_the_other(void)
     feed_false_header_and_packet();
     passes(100);
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_SCAN), rig_drain());
-    TEST_ASSERT_EQUAL_UINT32(2, counters().scans);
-    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
+    TEST_ASSERT_EQUAL_UINT32(2, rig_counters().scans);
+    TEST_ASSERT_EQUAL_UINT32(0, rig_counters().bytes_pending);
 }
 
 void test_silence_gives_up_a_single_byte_too(void)
 {
     rig_feed_byte(0xAA);
-    passes(100);
-    polls_to(TMINI_EVENT_NONE);
-    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
-    TEST_ASSERT_EQUAL_UINT32(1, counters().bytes_skipped);
+    passes_to(100, TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_UINT32(0, rig_counters().bytes_pending);
+    TEST_ASSERT_EQUAL_UINT32(1, rig_counters().bytes_skipped);
 }
 
 void test_a_byte_that_comes_in_time_keeps_the_candidate(void)
@@ -659,10 +643,10 @@ void test_a_byte_that_comes_in_time_keeps_the_candidate(void)
     const size_t size = encode_packet(bytes, &packet);
 
     for (size_t i = 0; i < size; i++) {
-        const uint32_t before = counters().packets;
+        const uint32_t before = rig_counters().packets;
         rig_feed_byte(bytes[i]);
         passes(99);
-        TEST_ASSERT_EQUAL_UINT32(before + (i == size - 1 ? 1 : 0), counters().packets);
+        TEST_ASSERT_EQUAL_UINT32(before + (i == size - 1 ? 1 : 0), rig_counters().packets);
     }
 }
 
@@ -674,8 +658,7 @@ void test_silence_gives_up_what_hides_a_reply_too(void)
     begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     rig_feed(header, sizeof header);
     rig_feed_info();
-    passes(100);
-    polls_to(TMINI_EVENT_INFO);
+    passes_to(100, TMINI_EVENT_INFO);
 }
 
 /* ---- Scans ---- */
@@ -709,7 +692,7 @@ void test_a_scan_is_delivered_with_the_start_packet_that_follows_it(void)
     TEST_ASSERT_EQUAL_UINT16(700, scan->points[0].distance_mm);
     TEST_ASSERT_EQUAL_UINT16(1000, scan->points[1].distance_mm);
     TEST_ASSERT_EQUAL_UINT16(1001, scan->points[8].distance_mm);
-    TEST_ASSERT_EQUAL_UINT32(1, counters().scans);
+    TEST_ASSERT_EQUAL_UINT32(1, rig_counters().scans);
 }
 
 static void feed_start_packet(void)
@@ -853,8 +836,7 @@ void test_a_stop_does_not_take_back_a_scan_that_waits_after_a_fault(void)
     begins_with(STOP, tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_UINT16(17, tmini_scan(&rig.lidar)->count);
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
 }
 
 void test_a_new_start_does_not_continue_the_scan_before_the_stop(void)
@@ -940,7 +922,7 @@ void test_streaming_brings_an_event_for_each_packet_and_none_for_scans(void)
         polls_to(TMINI_EVENT_PACKET);
     }
     polls_to(TMINI_EVENT_NONE);
-    TEST_ASSERT_EQUAL_UINT32(0, counters().scans);
+    TEST_ASSERT_EQUAL_UINT32(0, rig_counters().scans);
 }
 
 void test_a_streamed_packet_is_valid_until_the_next_poll_though_its_event_came_second(void)
@@ -967,8 +949,7 @@ void test_streaming_reports_faults_and_losses_as_well(void)
         (void)rig_drain();
     }
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
 }
 
 /* ---- Results ---- */
@@ -979,8 +960,7 @@ void test_the_answer_to_another_question_leaves_the_health_as_reported(void)
     begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_health(2, 0x1234);
     polls_to(TMINI_EVENT_HEALTH);
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(50, TMINI_EVENT_NONE);
     begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(600);
     polls_to(TMINI_EVENT_FREQUENCY);
@@ -1030,21 +1010,17 @@ void test_a_second_setting_up_forgets_everything(void)
     rig_go_recovering();
     rig_init();
     is_in(TMINI_STATE_UNKNOWN);
-    TEST_ASSERT_EQUAL_UINT16(0, counters().losses);
-    TEST_ASSERT_EQUAL_UINT32(0, counters().packets);
+    TEST_ASSERT_EQUAL_UINT16(0, rig_counters().losses);
+    TEST_ASSERT_EQUAL_UINT32(0, rig_counters().packets);
     passes(60000);
 }
 
 void test_a_timing_of_ones_own_is_used(void)
 {
-    tmini_timing_t timing = tmini_timing_default;
-
-    timing.quiet_line_ms = 7;
-    rig.config.timing = &timing;
+    rig.timing.quiet_line_ms = 7;
     rig_init();
     begins_with(STOP, tmini_stop(&rig.lidar));
-    passes(7);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(7, TMINI_EVENT_STOPPED);
 }
 
 void test_a_quiet_line_may_have_to_be_silent_for_longer_than_256_ms(void)
@@ -1071,8 +1047,7 @@ void test_waiting_for_a_quiet_line_survives_the_clocks_wrap_around(void)
     begin_near_the_end(50);
     begins_with(STOP, tmini_stop(&rig.lidar));
     rig_feed_byte(0x00);
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
 }
 
 void test_waiting_for_a_stop_survives_the_clocks_wrap_around(void)
@@ -1092,8 +1067,7 @@ void test_waiting_for_a_reply_survives_the_clocks_wrap_around(void)
     rig_go_idle();
     begin_near_the_end(2000);
     begins_with(GET_INFO, tmini_request_info(&rig.lidar));
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
 }
 
@@ -1115,8 +1089,7 @@ void test_waiting_for_the_first_packet_survives_the_clocks_wrap_around(void)
     rig_go_starting();
     begin_near_the_end(3000);
     rig_feed_scan_reply();
-    passes(3000);
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    passes_to(3000, TMINI_EVENT_COMMAND_FAILED);
 }
 
 void test_waiting_between_steps_survives_the_clocks_wrap_around(void)
@@ -1125,9 +1098,7 @@ void test_waiting_between_steps_survives_the_clocks_wrap_around(void)
     begin_near_the_end(50);
     begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 700));
     rig_feed_frequency(600);
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(FASTER_ONE);
+    finds_quiet_and_sends(FASTER_ONE);
 }
 
 void test_waiting_for_a_reboot_survives_the_clocks_wrap_around(void)
@@ -1135,8 +1106,7 @@ void test_waiting_for_a_reboot_survives_the_clocks_wrap_around(void)
     rig_go_idle();
     begin_near_the_end(5000);
     begins_with(REBOOT, tmini_reboot(&rig.lidar));
-    passes(5000);
-    polls_to(TMINI_EVENT_REBOOTED);
+    passes_to(5000, TMINI_EVENT_REBOOTED);
 }
 
 void test_waiting_for_data_survives_the_clocks_wrap_around(void)
@@ -1144,8 +1114,7 @@ void test_waiting_for_data_survives_the_clocks_wrap_around(void)
     rig_go_scanning();
     begin_near_the_end(1000);
     rig_feed_point_packet(1000);
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
 }
 
 void test_the_pause_between_attempts_survives_the_clocks_wrap_around(void)
@@ -1155,8 +1124,7 @@ void test_the_pause_between_attempts_survives_the_clocks_wrap_around(void)
     rig.now_ms = 0 - took_ms - 250;
     rig_init();
     rig_go_backing_off();
-    passes(500);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(500, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
 }
 
@@ -1167,8 +1135,7 @@ void test_silence_survives_the_clocks_wrap_around(void)
     rig_feed_start_packet(1000);
     (void)rig_drain();
     feed_false_header_and_packet();
-    passes(100);
-    polls_to(TMINI_EVENT_SCAN);
+    passes_to(100, TMINI_EVENT_SCAN);
 }
 
 /* ---- Several lidars ---- */
@@ -1262,7 +1229,7 @@ void test_a_longer_pause_ends_the_scan(void)
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
     TEST_ASSERT_FALSE(tmini_scan(&rig.lidar)->complete);
-    TEST_ASSERT_EQUAL_UINT32(1, counters().late_scans);
+    TEST_ASSERT_EQUAL_UINT32(1, rig_counters().late_scans);
     feed_turn(800); /* What comes at once continues: the next scan but one is as usual. */
     feed_turn(900);
     polls_to(TMINI_EVENT_SCAN);
@@ -1277,8 +1244,8 @@ void test_what_is_fed_before_a_lidar_is_set_up_is_counted_as_refused(void)
     rig.lidar = (tmini_t){0};
     tmini_feed_byte(&rig.lidar, 0xAA);
     tmini_feed_byte(&rig.lidar, 0x55);
-    TEST_ASSERT_EQUAL_UINT32(2, counters().bytes_overrun);
-    TEST_ASSERT_EQUAL_UINT32(0, counters().bytes_pending);
+    TEST_ASSERT_EQUAL_UINT32(2, rig_counters().bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(0, rig_counters().bytes_pending);
 }
 
 /* Seven events end a command, STARTED (bit 1) to COMMAND_FAILED (bit 7); six, to SCAN (bit 13), say

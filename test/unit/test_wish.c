@@ -42,8 +42,7 @@ static void goes_on_with(uint8_t code)
 
 static void becomes_quiet(void)
 {
-    passes(50);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(50, TMINI_EVENT_NONE);
 }
 
 /* The stop has been sent; the question is, after the quiet time. */
@@ -104,8 +103,7 @@ void test_packets_while_the_frequency_is_asked_for_are_no_start(void)
 /* The question has been sent. The lidar is deaf to all but the start. */
 static void starts_without_the_frequency(void)
 {
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
     goes_on_with(STOP);
     becomes_quiet();
     goes_on_with(START);
@@ -126,16 +124,13 @@ void test_a_round_without_any_answer_is_reported_once(void)
 {
     want(1000);
     asks_for_the_frequency();
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
     goes_on_with(STOP);
     becomes_quiet();
     goes_on_with(START);
-    passes(2000);
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    passes_to(2000, TMINI_EVENT_COMMAND_FAILED);
     is_in(TMINI_STATE_STARTING);
-    passes(500);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(500, TMINI_EVENT_NONE);
     goes_on_with(STOP);
 }
 
@@ -147,8 +142,7 @@ void test_after_a_loss_the_frequency_is_not_known_and_asked_for_again(void)
     polls_to(TMINI_EVENT_FREQUENCY);
     goes_on_with(START);
     starts_scanning();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
     goes_on_with(STOP);
     becomes_quiet();
@@ -188,8 +182,7 @@ void test_a_start_follows_a_stop_that_is_under_way(void)
     rig_go_idle();
     begins_with(STOP, tmini_stop(&rig.lidar));
     begins(tmini_start(&rig.lidar));
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
     is_in(TMINI_STATE_STARTING);
     goes_on_with(START);
 }
@@ -201,8 +194,7 @@ void test_a_stop_takes_back_the_start_that_was_to_follow(void)
     begins(tmini_start(&rig.lidar));
     begins_with(STOP, tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_COMMAND_FAILED);
-    passes(50);
-    polls_to(TMINI_EVENT_STOPPED);
+    passes_to(50, TMINI_EVENT_STOPPED);
     is_in(TMINI_STATE_IDLE);
 }
 
@@ -239,8 +231,7 @@ void test_a_new_wish_for_a_lost_lidar_that_is_not_recovered_waits(void)
     rig.config.recovery = TMINI_RECOVERY_OFF;
     rig_init();
     rig_go_scanning();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     begins(tmini_set_frequency(&rig.lidar, 900));
     passes(60000);
     is_in(TMINI_STATE_RECOVERING);
@@ -357,8 +348,7 @@ void test_a_frequency_that_is_off_after_a_loss_is_a_new_fault(void)
     polls_to(TMINI_EVENT_FREQUENCY);
     goes_on_with(START);
     starts_scanning();
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_LOST);
     polls_to(TMINI_EVENT_FAULTS_CHANGED);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
@@ -551,8 +541,7 @@ void test_without_recovery_a_start_fails_once_after_all_its_attempts(void)
     rig.timing.max_attempts = 1;
     rig_init();
     rig_go_starting();
-    passes(2000);
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    passes_to(2000, TMINI_EVENT_COMMAND_FAILED);
     is_in(TMINI_STATE_UNKNOWN);
     passes(60000);
     begins_with(STOP, tmini_start(&rig.lidar));
@@ -568,8 +557,7 @@ void test_the_port_restarts_its_reception_at_a_loss_and_after_each_attempt_that_
     TEST_ASSERT_EQUAL_UINT(1, restarts);
     becomes_quiet();
     goes_on_with(START);
-    passes(2000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(2000, TMINI_EVENT_NONE);
     TEST_ASSERT_EQUAL_UINT(2, restarts);
 }
 
@@ -580,8 +568,7 @@ void test_without_recovery_a_start_that_failed_restarts_the_reception_as_well(vo
     rig.timing.max_attempts = 1;
     rig_init();
     rig_go_starting();
-    passes(2000);
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
+    passes_to(2000, TMINI_EVENT_COMMAND_FAILED);
     TEST_ASSERT_EQUAL_UINT(1, restarts);
 }
 
@@ -600,8 +587,7 @@ void test_a_listener_scans_from_the_first_packet(void)
 {
     listen();
     is_in(TMINI_STATE_STARTING);
-    passes(1000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(1000, TMINI_EVENT_NONE);
     TEST_ASSERT_EQUAL_UINT(1, restarts); /* Every so often, while nothing comes. */
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
@@ -613,10 +599,8 @@ void test_a_listener_that_hears_nothing_for_a_second_has_lost_its_lidar(void)
     listen();
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
-    passes(1000);
-    polls_to(TMINI_EVENT_LOST);
-    passes(1000);
-    polls_to(TMINI_EVENT_NONE);
+    passes_to(1000, TMINI_EVENT_LOST);
+    passes_to(1000, TMINI_EVENT_NONE);
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_RECOVERED);
 }

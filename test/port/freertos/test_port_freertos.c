@@ -215,7 +215,7 @@ void test_an_overrun_before_the_stream_wakes_the_polling_task(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     tmini_freertos_wait(&port, 1); /* From here on it is known who is to be woken. */
-    freertos_model_receive(true, truth_packet, 1);
+    freertos_model_receive(true, manual_packet, 1);
     const uint64_t begun_us = freertos_model_now_us();
     tmini_freertos_wait(&port, pdMS_TO_TICKS(1000));
     TEST_ASSERT_TRUE(freertos_model_now_us() - begun_us < 100000);
@@ -250,11 +250,10 @@ static void receive_packet(bool overrun)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
-    freertos_model_receive(false, truth_packet, TRUTH_PACKET_CUT);
+    freertos_model_receive(false, manual_packet, PACKET_CUT);
     vTaskDelay(pdMS_TO_TICKS(20));
     TEST_ASSERT_EQUAL_UINT32(0, packets());
-    freertos_model_receive(overrun, &truth_packet[TRUTH_PACKET_CUT],
-                           TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT);
+    freertos_model_receive(overrun, &manual_packet[PACKET_CUT], sizeof manual_packet - PACKET_CUT);
     vTaskDelay(pdMS_TO_TICKS(20));
 }
 
@@ -281,7 +280,7 @@ static void fill_small_stream(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     freertos_model_receive(false, nothing, sizeof nothing);
-    freertos_model_receive(false, truth_packet, TRUTH_PACKET_CUT);
+    freertos_model_receive(false, manual_packet, PACKET_CUT);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
     freertos_model_receive(false, nothing, 10);
     TEST_ASSERT_EQUAL_UINT32(10, counted().bytes_lost);
@@ -292,8 +291,7 @@ void test_no_packet_is_put_together_across_a_full_stream(void)
     fill_small_stream();
     vTaskDelay(pdMS_TO_TICKS(20)); /* The receiving task empties it. */
     TEST_ASSERT_EQUAL_UINT32(0, packets());
-    freertos_model_receive(false, &truth_packet[TRUTH_PACKET_CUT],
-                           TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT);
+    freertos_model_receive(false, &manual_packet[PACKET_CUT], sizeof manual_packet - PACKET_CUT);
     vTaskDelay(pdMS_TO_TICKS(20));
     TEST_ASSERT_EQUAL_UINT32(0, packets());
     TEST_ASSERT_EQUAL_UINT32(10, counted().bytes_lost); /* It has opened again. */
@@ -304,9 +302,8 @@ void test_a_stream_that_was_full_takes_nothing_before_it_is_empty(void)
     uint8_t taken[60];
     fill_small_stream();
     TEST_ASSERT_EQUAL_UINT(60, xStreamBufferReceive(port.stream, taken, sizeof taken, 0));
-    freertos_model_receive(false, &truth_packet[TRUTH_PACKET_CUT],
-                           TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT);
-    TEST_ASSERT_EQUAL_UINT32(10 + TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT, counted().bytes_lost);
+    freertos_model_receive(false, &manual_packet[PACKET_CUT], sizeof manual_packet - PACKET_CUT);
+    TEST_ASSERT_EQUAL_UINT32(10 + sizeof manual_packet - PACKET_CUT, counted().bytes_lost);
 }
 
 void test_a_stream_that_was_full_when_stopped_is_open_at_the_next_start(void)
@@ -314,9 +311,9 @@ void test_a_stream_that_was_full_when_stopped_is_open_at_the_next_start(void)
     fill_small_stream();
     tmini_freertos_stop(&port);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
-    freertos_model_receive(false, truth_packet, TRUTH_PACKET_SIZE);
+    freertos_model_receive(false, manual_packet, sizeof manual_packet);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
-    TEST_ASSERT_EQUAL_UINT32(TRUTH_PACKET_SIZE, counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(sizeof manual_packet, counted().bytes);
 }
 
 /* ------------------------------------------------------------------------------ start and stop */

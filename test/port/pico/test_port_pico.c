@@ -388,14 +388,13 @@ static void receive_packet_with(uint32_t flags)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-    pico_model_receive(0, truth_packet, TRUTH_PACKET_CUT);
+    pico_model_receive(0, manual_packet, PACKET_CUT);
     pico_model_pass(200);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
-    pico_model_receive(flags, &truth_packet[TRUTH_PACKET_CUT], 1);
-    pico_model_receive(0, &truth_packet[TRUTH_PACKET_CUT + 1], 16);
+    pico_model_receive(flags, &manual_packet[PACKET_CUT], 1);
+    pico_model_receive(0, &manual_packet[PACKET_CUT + 1], 16);
     pico_model_pass(200);
-    pico_model_receive(0, &truth_packet[TRUTH_PACKET_CUT + 17],
-                       TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT - 17);
+    pico_model_receive(0, &manual_packet[PACKET_CUT + 17], sizeof manual_packet - PACKET_CUT - 17);
     pico_model_pass(200);
 }
 
@@ -418,13 +417,13 @@ void test_no_packet_is_put_together_across_an_overrun(void)
 void test_no_packet_is_put_together_across_lost_laps(void)
 {
     static const uint8_t nothing[2 * LAP] = {0};
-    const size_t rest = TRUTH_PACKET_SIZE - TRUTH_PACKET_CUT;
+    const size_t rest = sizeof manual_packet - PACKET_CUT;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-    pico_model_receive(0, truth_packet, TRUTH_PACKET_CUT);
+    pico_model_receive(0, manual_packet, PACKET_CUT);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
     pico_model_receive(0, nothing, 2 * LAP);
-    pico_model_receive(0, &truth_packet[TRUTH_PACKET_CUT], rest);
+    pico_model_receive(0, &manual_packet[PACKET_CUT], rest);
     pico_model_receive(0, nothing, LAP / 2 - rest);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
     TEST_ASSERT_EQUAL_UINT32(2 * LAP, counted().bytes_lost);

@@ -209,12 +209,12 @@ static void receive_packet_with_loss(bool lost)
 {
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
-    zephyr_model_receive(truth_packet, TRUTH_PACKET_SIZE - 16);
+    zephyr_model_receive(manual_packet, sizeof manual_packet - 16);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
     if (lost) {
         zephyr_model_lose_while_reading();
     }
-    zephyr_model_receive(&truth_packet[TRUTH_PACKET_SIZE - 16], 16);
+    zephyr_model_receive(&manual_packet[sizeof manual_packet - 16], 16);
 }
 
 void test_no_packet_is_put_together_across_a_loss(void)
@@ -234,10 +234,10 @@ void test_an_overrun_without_a_byte_to_read_is_a_gap(void)
     zephyr_model_set_clearing_reads_data();
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
-    zephyr_model_receive(truth_packet, 10);
+    zephyr_model_receive(manual_packet, 10);
     TEST_ASSERT_EQUAL_size_t(1024 - 10, tmini_feed_room(&lidar));
     zephyr_model_damage(UART_ERROR_OVERRUN);
-    zephyr_model_receive(&truth_packet[10], 1);
+    zephyr_model_receive(&manual_packet[10], 1);
     TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().overruns);
     TEST_ASSERT_EQUAL_UINT32(10, zephyr_rig_counters().bytes);
     TEST_ASSERT_EQUAL_size_t(0, tmini_feed_room(&lidar));
@@ -249,7 +249,7 @@ void test_an_interrupt_that_is_late_for_the_stop_stores_nothing(void)
     assert_true_scans(1, 1);
     tmini_zephyr_stop(&port);
     const uint32_t bytes = zephyr_rig_counters().bytes;
-    zephyr_model_receive(truth_packet, 10);
+    zephyr_model_receive(manual_packet, 10);
     zephyr_model_interrupt_late();
     TEST_ASSERT_EQUAL_UINT32(bytes, zephyr_rig_counters().bytes);
 }
