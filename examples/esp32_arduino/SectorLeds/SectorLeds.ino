@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Eight LEDs in a ring, each on while something is nearer than a metre in its direction, or while
- * nothing is known of it. Packet by packet, in 1 KB of RAM; lidar on Serial1. Any board with eight
- * free pins, from an Arduino Mega 2560 on. */
+ * nothing is known of it. Packet by packet, in 1.5 KB of RAM; lidar on Serial1. Any board with
+ * eight free pins, from an Arduino Mega 2560 on. */
 
 #include <TMiniLidar.h>
 #include <tmini/tmini_sectors.h>
