@@ -5,6 +5,7 @@
  * format's description, with one byte lost, changed or added anywhere. */
 
 #include "encoder.h"
+#include "known_packets.h"
 #include "simulator.h"
 #include "tape.h"
 
@@ -187,13 +188,6 @@ void test_no_byte_of_version_2_is_lost_silently(void)
 
 /* ----------------------------------------------------------------------------- what is played */
 
-/* The manual's own packet (section 5): 19 samples, no start packet. */
-static const uint8_t manual[] =
-    "\xAA\x55\x20\x13\x95\xA9\x63\x00\x5A\xE8\x01\x08\xB9\x01\xAC\xB8\x01\xF8\xB6\x01\x88\xB5\x01"
-    "\x58\xAE\x01\xC0\xAB\x01\x04\xAA\x01\x78\xA9\x01\x34\xA9\x01\xC4\xAD\x01\x34\xAF\x01\x78\xAE"
-    "\x01\x2C\xAD\x01\x02\x00\x00\x62\xAD\x01\x60\xAD\x01\xF0\xAB\x01\x88\xAD\x01\xFE\xAD";
-#define MANUAL_SIZE 67u
-
 static void put_bytes(const uint8_t *bytes, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -241,7 +235,7 @@ static void put_turn_at(uint32_t delta_us)
 void test_at_the_end_the_rest_is_looked_at_again(void)
 {
     put_bytes((const uint8_t *)"\xAA\x55\x20\x28\x95\xA9\x63\x01\x00\x00", 10);
-    put_bytes(manual, MANUAL_SIZE);
+    put_bytes(manual_packet, sizeof manual_packet);
     feed(file, size);
     TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
     TEST_ASSERT_EQUAL_UINT64(0, tape.stream.packets);
@@ -256,8 +250,8 @@ void test_at_the_end_the_rest_is_looked_at_again(void)
 
 void test_bytes_in_no_packet_and_wrong_checksums_are_counted(void)
 {
-    put_bytes(manual, MANUAL_SIZE);
-    put_bytes(manual, MANUAL_SIZE);
+    put_bytes(manual_packet, sizeof manual_packet);
+    put_bytes(manual_packet, sizeof manual_packet);
     file[30] ^= 1;
     put(0xAA);
     feed(file, size);
@@ -271,7 +265,7 @@ void test_bytes_in_no_packet_and_wrong_checksums_are_counted(void)
 
 void test_fewer_bytes_than_a_file_begins_with_are_looked_at_in_the_end(void)
 {
-    feed(manual, 5);
+    feed(manual_packet, 5);
     TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
     TEST_ASSERT_FALSE(tape.is_begun);
     finish();

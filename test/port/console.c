@@ -20,6 +20,8 @@ static struct {
     uint64_t bytes;
     uint32_t turn; /* Bytes of the loop's present turn, */
     uint32_t most; /* and of the one with most. */
+    char text[8192];
+    size_t length;
 } console;
 
 void console_begin(void)
@@ -39,6 +41,38 @@ void console_note(uint64_t now_us, size_t bytes)
     console.bytes += bytes;
     console.turn += (uint32_t)bytes;
     console.most = console.turn > console.most ? console.turn : console.most;
+}
+
+void console_write(uint64_t now_us, const char *text)
+{
+    const size_t length = strlen(text);
+    TEST_ASSERT_TRUE_MESSAGE(console.length + length < sizeof console.text,
+                             "too much for the model");
+    memcpy(&console.text[console.length], text, length + 1);
+    console.length += length;
+    console_note(now_us, length);
+}
+
+int console_print(uint64_t now_us, const char *format, va_list arguments)
+{
+    char text[300];
+    const int length = vsnprintf(text, sizeof text, format, arguments);
+    console_write(now_us, text);
+    return length;
+}
+
+void assert_said(const char *text)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(console.text, text), console.text);
+}
+
+void assert_last_said(const char *text)
+{
+    const char *line = strrchr(console.text, ',');
+    while (line > console.text && line[-1] != '\n') {
+        line--;
+    }
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(line, text), console.text);
 }
 
 void assert_console_leaves_time(uint32_t held)

@@ -53,8 +53,6 @@ static struct {
     uint32_t line_bytes;
     uint32_t overrun_bytes;
     unsigned wakes;
-    char console[8192];
-    size_t console_length;
 } world;
 
 void freertos_model_assert(const char *condition)
@@ -247,6 +245,7 @@ void freertos_model_begin(const sim_observer_t *observer, unsigned priority)
         pthread_mutex_lock(&lock); /* The test's thread has the processor from here on. */
     }
     end_tasks();
+    console_begin();
     memset(&world, 0, sizeof world);
     irq_reset(fail);
     irq.lines[0] = (irq_line_t){.is_up = line_is_up, .handler = serve_line};
@@ -466,11 +465,6 @@ unsigned freertos_model_tasks(void)
     return tasks;
 }
 
-const char *freertos_model_console(void)
-{
-    return world.console;
-}
-
 /* -------------------------------------------------------------------------- the example's board */
 
 void board_start(void) {}
@@ -508,10 +502,5 @@ size_t board_lidar_read(uint8_t *bytes, size_t max, int *overrun)
 
 void board_print(const char *text)
 {
-    const size_t length = strlen(text);
-    if (world.console_length + length < sizeof world.console) {
-        memcpy(&world.console[world.console_length], text, length + 1);
-        world.console_length += length;
-        console_note(world.now_us, length);
-    }
+    console_write(world.now_us, text);
 }

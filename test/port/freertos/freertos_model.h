@@ -54,7 +54,4 @@ unsigned freertos_model_wakes(void);
 /* Tasks besides the test's. */
 unsigned freertos_model_tasks(void);
 
-/* What the program has printed. */
-const char *freertos_model_console(void);
-
 #endif

@@ -74,8 +74,6 @@ static struct {
     bool values[PICO_PINS]; /* Of the output registers. */
     bool pulled_up[PICO_PINS];
     void (*on_sleep)(void);
-    char console[8192];
-    size_t console_length;
 } chip;
 
 static bool line_is_up(void);
@@ -84,6 +82,7 @@ static void fail(unsigned line);
 
 void pico_model_begin(const sim_observer_t *observer)
 {
+    console_begin();
     memset(&chip, 0, sizeof chip);
     const sim_config_t config = sim_default_config();
     sim_init(&chip.lidar, &config);
@@ -669,19 +668,8 @@ bool stdio_init_all(void)
 int pico_model_printf(const char *format, ...)
 {
     va_list arguments;
-    char *const end = &chip.console[chip.console_length];
-    const size_t room = sizeof chip.console - chip.console_length;
     va_start(arguments, format);
-    const int length = vsnprintf(end, room, format, arguments);
+    const int length = console_print(pico_model_now_us(), format, arguments);
     va_end(arguments);
-    if (length > 0 && (size_t)length < room) {
-        chip.console_length += (size_t)length;
-        console_note(pico_model_now_us(), (size_t)length);
-    }
     return length;
-}
-
-const char *pico_model_console(void)
-{
-    return chip.console;
 }

@@ -92,8 +92,7 @@ int pico_model_level(unsigned pin);
 /* Called whenever the program sleeps; may leave by longjmp(). NULL: nothing. */
 void pico_model_on_sleep(void (*callback)(void));
 
-/* The console: what printf() does in a program built for the model, and what it has said. */
+/* What printf() does in a program built for the model: see console.h. */
 int pico_model_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
-const char *pico_model_console(void);
 
 #endif

@@ -4,117 +4,58 @@
 /* The program examples/pico, as it is, against the simulated lidar in its room. */
 
 #include <setjmp.h>
-#include <string.h>
 
 #include "unity.h"
 
 #include "console.h"
 #include "pico_model.h"
+#include "story.h"
 
 #define STOP_PIN 15
+#define START_US 200000u /* Nothing has been seen before. */
 
 int example_main(void);
 
 static jmp_buf end_of_story;
-static unsigned chapter;
 
-void setUp(void)
+static void assert_pin(bool stops)
 {
-    pico_model_begin(NULL);
-    chapter = 0;
-}
-
-void tearDown(void) {}
-
-static void assert_said(const char *text)
-{
-    if (strstr(pico_model_console(), text) == NULL) {
-        TEST_FAIL_MESSAGE(pico_model_console());
-    }
-}
-
-static void assert_pin(int level)
-{
-    TEST_ASSERT_EQUAL_INT(level, pico_model_level(STOP_PIN));
-}
-
-static void nothing_seen_yet(void)
-{
-    assert_pin(1);
-}
-
-static void it_scans_and_an_obstacle_comes(void)
-{
-    assert_said("model 151, firmware 1.2, hardware 1, serial 2026031700012345\n");
-    assert_said(", go; bytes ");
-    assert_said("lost: 0 checksums, 0 bytes, 0 gaps\n");
-    assert_pin(0);
-    sim_place_obstacle(pico_model_lidar(), 0, 640, 250);
-}
-
-static void it_stops_and_the_obstacle_goes(void)
-{
-    assert_said(", STOP;");
-    assert_pin(1);
-    sim_clear_obstacles(pico_model_lidar());
-}
-
-static void it_goes_and_power_fails(void)
-{
-    assert_pin(0);
-    sim_power(pico_model_lidar(), false, pico_model_now_us());
-}
-
-static void it_is_blind_and_power_returns(void)
-{
-    assert_pin(1);
-    assert_said("lost; trying to get it back\n");
-    sim_power(pico_model_lidar(), true, pico_model_now_us());
-}
-
-static void it_has_come_back(void)
-{
-    assert_said("back again\n");
-    assert_pin(0);
-}
-
-static const struct {
-    uint32_t time_ms;
-    void (*happens)(void);
-} story[] = {
-    {200, nothing_seen_yet},
-    {4000, it_scans_and_an_obstacle_comes},
-    {5500, it_stops_and_the_obstacle_goes},
-    {6500, it_goes_and_power_fails},
-    {8500, it_is_blind_and_power_returns},
-    {30000, it_has_come_back},
-};
-
-static void tell_story(void)
-{
-    if (pico_model_now_us() / 1000u < story[chapter].time_ms) {
-        return;
-    }
-    story[chapter].happens();
-    if (++chapter == sizeof story / sizeof story[0]) {
-        longjmp(end_of_story, 1);
-    }
-}
-
-/* One test for the whole program, because it never ends. */
-void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
-{
-    pico_model_on_sleep(tell_story);
-    if (setjmp(end_of_story) == 0) {
-        (void)example_main();
-    }
-    TEST_ASSERT_EQUAL_UINT(sizeof story / sizeof story[0], chapter);
-    assert_console_leaves_time(1024);
+    TEST_ASSERT_EQUAL_INT(stops, pico_model_level(STOP_PIN));
 }
 
 static void leave(void)
 {
     longjmp(end_of_story, 1);
+}
+
+static void go_on(void)
+{
+    if (pico_model_now_us() < START_US) {
+        assert_pin(true);
+    }
+    if (!story_goes_on()) {
+        leave();
+    }
+}
+
+void setUp(void)
+{
+    pico_model_begin(NULL);
+}
+
+void tearDown(void) {}
+
+/* One test for the whole program, because it never ends. */
+void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
+{
+    const story_board_t board = {pico_model_lidar(), pico_model_now_us, assert_pin};
+    story_begin(&board);
+    pico_model_on_sleep(go_on);
+    if (setjmp(end_of_story) == 0) {
+        (void)example_main();
+    }
+    TEST_ASSERT_FALSE(story_goes_on());
+    assert_console_leaves_time(1024);
 }
 
 void test_it_says_so_when_the_lidar_cannot_be_started(void)
@@ -125,5 +66,5 @@ void test_it_says_so_when_the_lidar_cannot_be_started(void)
         (void)example_main();
     }
     assert_said("the lidar cannot be started: ");
-    assert_pin(1);
+    assert_pin(true);
 }

@@ -42,12 +42,10 @@ int console_printf(const char *format, ...);
 
 int console_printf(const char *format, ...)
 {
-    char text[200];
     va_list arguments;
     va_start(arguments, format);
-    const int length = vsnprintf(text, sizeof text, format, arguments);
+    const int length = console_print(model.now_ns / 1000u, format, arguments);
     va_end(arguments);
-    console_note(model.now_ns / 1000u, (size_t)length);
     return length;
 }
 

@@ -45,8 +45,6 @@ static struct {
     uint32_t line_bytes;
     uart_irq_callback_user_data_t callback;
     void *user_data;
-    char console[8192];
-    size_t console_length;
 } board;
 
 /* ------------------------------------------------------------------------- the UART's interrupt */
@@ -83,6 +81,7 @@ void interrupt(void)
 
 void zephyr_model_begin(const sim_observer_t *observer)
 {
+    console_begin();
     memset(&board, 0, sizeof board);
     const sim_config_t config = sim_default_config();
     sim_init(&board.lidar, &config);
@@ -366,19 +365,8 @@ int uart_fifo_read(const struct device *device, uint8_t *bytes, int size)
 int printk(const char *format, ...)
 {
     va_list arguments;
-    char *const end = &board.console[board.console_length];
-    const size_t room = sizeof board.console - board.console_length;
     va_start(arguments, format);
-    const int length = vsnprintf(end, room, format, arguments);
+    const int length = console_print(board.now_us, format, arguments);
     va_end(arguments);
-    if (length > 0 && (size_t)length < room) {
-        board.console_length += (size_t)length;
-        console_note(board.now_us, (size_t)length);
-    }
     return length;
-}
-
-const char *zephyr_model_console(void)
-{
-    return board.console;
 }

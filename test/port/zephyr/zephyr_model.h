@@ -83,7 +83,4 @@ unsigned zephyr_model_wakes(void);
 /* Called whenever the thread sleeps; may leave by longjmp(). NULL: nothing. */
 void zephyr_model_on_sleep(void (*callback)(void));
 
-/* What the program has printed. */
-const char *zephyr_model_console(void);
-
 #endif
