@@ -129,6 +129,12 @@ static void finish(void)
     TEST_ASSERT_EQUAL_INT(TAPE_END, play());
 }
 
+static void play_whole(void)
+{
+    feed(file, size);
+    finish();
+}
+
 typedef enum { DROPPED, CHANGED, ADDED, KINDS } damage_t;
 
 static void read_damaged(size_t at, damage_t damage)
@@ -146,8 +152,7 @@ static void expect_one_percent_at_most(unsigned version)
 {
     char at_fault[60];
     write_whole(version);
-    feed(file, size);
-    finish();
+    play_whole();
     const count_t packets = tape.stream.packets;
     const uint64_t time_us = tape.time_us;
     TEST_ASSERT_TRUE(packets > 900);
@@ -279,8 +284,7 @@ void test_a_raw_recording_has_the_time_of_its_samples(void)
     put_packet(0);
     put_packet(1);
     put_packet(2);
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT64(41 * 250, tape.time_us);
     TEST_ASSERT_EQUAL_UINT32(10, tape.stream.packet_ms);
 }
@@ -289,8 +293,7 @@ void test_packets_of_more_samples_than_wanted_are_none(void)
 {
     tape_begin(&tape, NULL, 39);
     put_turn();
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT64(1, tape.stream.packets);
 }
 
@@ -364,9 +367,9 @@ void test_blocks_of_any_size_give_the_same_chunks(void)
 void test_the_last_chunk_may_be_cut_short(void)
 {
     put_magic(2);
-    uint8_t packets[2 * MANUAL_SIZE];
-    memcpy(packets, manual, MANUAL_SIZE);
-    memcpy(packets + MANUAL_SIZE, manual, MANUAL_SIZE);
+    uint8_t packets[2 * sizeof manual_packet];
+    memcpy(packets, manual_packet, sizeof manual_packet);
+    memcpy(packets + sizeof manual_packet, manual_packet, sizeof manual_packet);
     put_chunk(2, 1000, packets, sizeof packets);
     feed(file, size - 1);
     finish();
@@ -394,8 +397,7 @@ void test_damage_is_counted_in_packets(void)
         put_packet(2);
         put_garbage(7);
         put_packet(3);
-        feed(file, size);
-        finish();
+        play_whole();
         TEST_ASSERT_EQUAL_UINT64(bytes[i] + 7, tape.stream.stray_bytes);
         TEST_ASSERT_EQUAL_UINT64(packets[i] + 1, tape.stream.damaged);
     }
@@ -415,8 +417,7 @@ void test_what_precedes_the_first_packet_is_no_damage(void)
 {
     put_garbage(300);
     put_packet(1);
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT64(0, tape.stream.stray_bytes);
     TEST_ASSERT_EQUAL_UINT64(0, tape.stream.damaged);
     TEST_ASSERT_EQUAL_UINT64(300, tape_skipped(&tape));
@@ -430,8 +431,7 @@ void test_one_byte_before_a_start_packet_is_a_guard(void)
         put_turn();
         put_garbage(count);
         put_turn();
-        feed(file, size);
-        finish();
+        play_whole();
         TEST_ASSERT_EQUAL_UINT64(count == 1 ? 1 : 0, tape.stream.guard_bytes);
         TEST_ASSERT_EQUAL_UINT64(count == 1 ? 0 : 2, tape.stream.stray_bytes);
     }
@@ -443,8 +443,7 @@ void test_the_longest_pause_is_between_two_packets(void)
     put_magic(2);
     put_turn_at(66000000);
     put_turn_at(70000);
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT32(70, tape.stream.longest_ms);
     TEST_ASSERT_EQUAL_UINT64(1, tape.stream.complete);
 }
@@ -454,8 +453,7 @@ void test_a_pause_of_more_than_a_minute_is_one(void)
     put_magic(2);
     put_turn_at(0);
     put_turn_at(66000000);
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT32(66000, tape.stream.longest_ms);
     TEST_ASSERT_EQUAL_UINT32(66336, tape.stream.packet_ms);
 }
@@ -470,8 +468,7 @@ void test_the_frequency_is_that_of_the_latest_start_packet(void)
     size = 0;
     put_packet(0);
     put_packet(1);
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT(600, tape.stream.frequency_chz);
 }
 
@@ -495,8 +492,7 @@ void test_a_unit_may_report_nothing_in_the_stream(void)
 void test_a_unit_may_report_its_health_in_the_stream(void)
 {
     write_whole(2);
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT(0, stream_faults(&tape.stream));
     TEST_ASSERT_FALSE(stream_tells_nothing(&tape.stream));
     TEST_ASSERT_EQUAL_UINT64(tape.stream.start_packets - 1, tape.stream.guard_bytes);
@@ -546,8 +542,7 @@ void test_the_end_leaves_the_rest_of_a_scan_once(void)
     put_turn();
     put_packet(0);
     put_packet(1);
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT(1, scans);
     TEST_ASSERT_TRUE(stream_end(&tape.stream));
     TEST_ASSERT_EQUAL_UINT64(2, tape.stream.number);
@@ -565,8 +560,7 @@ void test_a_start_packet_and_then_a_pause_is_no_scan(void)
     put_chunk(2, 42000, packet, packet_of(0, packet));
     put_turn_at(1001000); /* Longer than a second. */
     put_turn_at(42000);
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT(2, scans);
     TEST_ASSERT_EQUAL_UINT64(2, tape.stream.complete);
     TEST_ASSERT_EQUAL_UINT64(3, tape.stream.number);
@@ -579,8 +573,7 @@ void test_a_start_packet_is_not_joined_with_what_comes_after_a_pause(void)
     put_magic(2);
     put_chunk(2, 0, packet, packet_of(0, packet));
     put_chunk(2, 1001000, packet, packet_of(1, packet));
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT32(1001, tape.stream.longest_ms);
     TEST_ASSERT_TRUE(stream_end(&tape.stream));
     TEST_ASSERT_EQUAL_UINT16(1, tape.stream.scan.packets);
@@ -596,8 +589,7 @@ void test_a_scan_does_not_go_on_after_a_pause(void)
         put_chunk(2, 0, packet, packet_of(0, packet));
         put_chunk(2, 42000, packet, packet_of(1, packet));
         put_chunk(2, pause_us, packet, packet_of(2, packet));
-        feed(file, size);
-        finish();
+        play_whole();
         TEST_ASSERT_EQUAL_UINT(pause_us > 1000000 ? 1 : 0, scans);
     }
 }
@@ -613,8 +605,7 @@ void test_a_scan_does_not_go_on_after_unreadable_bytes(void)
         }
         put_packet(quarter);
     }
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT64(4, tape.stream.packets);
     TEST_ASSERT_EQUAL_UINT(1, scans);
     TEST_ASSERT_TRUE(stream_end(&tape.stream));
@@ -629,8 +620,7 @@ void test_no_scan_begins_before_the_recording(void)
     put_garbage(600);
     put_packet(1);
     put_packet(2);
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_TRUE(stream_end(&tape.stream));
     TEST_ASSERT_EQUAL_UINT16(2, tape.stream.scan.packets);
     TEST_ASSERT_EQUAL_UINT32(0, tape.stream.scan.start_ms);
@@ -642,8 +632,7 @@ void test_a_mount_turns_scans_once(void)
     tape_begin(&tape, &mount, 0);
     put_turn();
     put_packet(0);
-    feed(file, size);
-    finish();
+    play_whole();
     TEST_ASSERT_EQUAL_UINT(1, scans);
     TEST_ASSERT_EQUAL_UINT16(17280, tape.stream.scan.points[0].angle_q6); /* 0 - 90 degrees. */
 }
