@@ -488,3 +488,32 @@ void program_clean_up(void)
         end(children[--child_count]);
     }
 }
+
+unsigned program_count(const char *text, const char *part)
+{
+    unsigned count = 0;
+    for (const char *at = strstr(text, part); at != NULL; at = strstr(at + 1, part)) {
+        count++;
+    }
+    return count;
+}
+
+void program_expect_failure(int status, const char *reason, const char *const words[])
+{
+    TEST_ASSERT_EQUAL_INT(status, program_tmini(words));
+    TEST_ASSERT_NOT_NULL(strstr(program_errors, "tmini: "));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, reason), program_errors);
+}
+
+const char *program_write_turn(const char *name, const encode_sample_t samples[4])
+{
+    const encode_packet_t start = {60 << 1 | 1, 1, 0, 0, samples};
+    const encode_packet_t packet = {0, 3, 90 * 64, 270 * 64, samples + 1};
+    uint8_t bytes[100];
+    size_t size = encode_packet(bytes, &start);
+    size += encode_packet(bytes + size, &packet);
+    size += encode_packet(bytes + size, &start);
+    const char *const path = program_path(name);
+    program_write_file(path, bytes, size);
+    return path;
+}

@@ -9,6 +9,8 @@
 #ifndef PROGRAM_H
 #define PROGRAM_H
 
+#include "encoder.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -118,6 +120,16 @@ const char *program_start_talker(const uint8_t *bytes, size_t size);
 
 /* The same, but sends these bytes once after each command A5 `code`, and nothing else. */
 const char *program_start_answerer(uint8_t code, const uint8_t *bytes, size_t size);
+
+/* How often the text has this part. */
+unsigned program_count(const char *text, const char *part);
+
+/* Runs a command of the tool that must fail, with this status and a message that gives this reason. */
+void program_expect_failure(int status, const char *reason, const char *const words[]);
+
+/* A recording of this name: a turn at 6 Hz whose samples are at 0, 90, 180 and 270 degrees. Returns
+ * its path. */
+const char *program_write_turn(const char *name, const encode_sample_t samples[4]);
 
 /* Ends all that runs. For tearDown(). */
 void program_clean_up(void);

@@ -313,45 +313,39 @@ static void make_big_recording(size_t wanted)
     fclose(file);
 }
 
-/* Runs a command that must fail, and say why. */
-static void expect_failure(int status, const char *reason, const char *const words[])
-{
-    TEST_ASSERT_EQUAL_INT(status, program_tmini(words));
-    TEST_ASSERT_NOT_NULL(strstr(program_errors, "tmini: "));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, reason), program_errors);
-}
-
 void test_a_missing_file_is_named(void)
 {
-    expect_failure(1, "nowhere.bin: No such file",
-                   (const char *const[]){"decode", "nowhere.bin", NULL});
-    expect_failure(1, "nowhere.bin: No such file",
-                   (const char *const[]){"plot", "nowhere.bin", "-o", "x.svg", NULL});
+    program_expect_failure(1, "nowhere.bin: No such file",
+                           (const char *const[]){"decode", "nowhere.bin", NULL});
+    program_expect_failure(1, "nowhere.bin: No such file",
+                           (const char *const[]){"plot", "nowhere.bin", "-o", "x.svg", NULL});
 }
 
 void test_an_empty_file_and_one_that_is_no_recording_have_different_messages(void)
 {
     program_write_file(program_path("empty"), "", 0);
-    expect_failure(1, "is empty", (const char *const[]){"decode", program_path("empty"), NULL});
-    expect_failure(1, "no lidar packet in",
-                   (const char *const[]){"decode", RECORDINGS "README.md", "--csv", NULL});
+    program_expect_failure(1, "is empty",
+                           (const char *const[]){"decode", program_path("empty"), NULL});
+    program_expect_failure(1, "no lidar packet in",
+                           (const char *const[]){"decode", RECORDINGS "README.md", "--csv", NULL});
     TEST_ASSERT_EQUAL_STRING(
         "scan,packet,point,angle_deg,distance_mm,intensity,flag,time_ms,frequency_hz\n",
         program_output);
-    expect_failure(1, "no lidar packet in",
-                   (const char *const[]){"plot", RECORDINGS "README.md", "-o", "x.svg", NULL});
+    program_expect_failure(
+        1, "no lidar packet in",
+        (const char *const[]){"plot", RECORDINGS "README.md", "-o", "x.svg", NULL});
 }
 
 void test_a_folder_cannot_be_decoded(void)
 {
-    expect_failure(1, "Is a directory", (const char *const[]){"decode", RECORDINGS, NULL});
+    program_expect_failure(1, "Is a directory", (const char *const[]){"decode", RECORDINGS, NULL});
 }
 
 void test_statistics_that_cannot_be_written_are_a_failure(void)
 {
-    expect_failure(1, "cannot write /nowhere/stats",
-                   (const char *const[]){"decode", RECORDINGS "sim-6hz.bin", "--csv", "--stats",
-                                         "/nowhere/stats", NULL});
+    program_expect_failure(1, "cannot write /nowhere/stats",
+                           (const char *const[]){"decode", RECORDINGS "sim-6hz.bin", "--csv",
+                                                 "--stats", "/nowhere/stats", NULL});
 }
 
 /* As head does: with what a shell says of a program that a closed pipe has ended. */
@@ -446,22 +440,26 @@ void test_a_timed_recording_may_be_cut_anywhere(void)
 
 void test_wrong_usage_ends_with_2_and_says_why(void)
 {
-    expect_failure(2, "decode what?", (const char *const[]){"decode", NULL});
-    expect_failure(2, "speed", (const char *const[]){"decode", "--speed", NULL});
-    expect_failure(2, "See tmini decode --help", (const char *const[]){"decode", "--speed", NULL});
-    expect_failure(2, "See tmini COMMAND --help", (const char *const[]){"--speed", NULL});
-    expect_failure(2, "x", (const char *const[]){"decode", "-qx", NULL});
-    expect_failure(2, "stats", (const char *const[]){"decode", "--stats", NULL});
-    expect_failure(2, "csv", (const char *const[]){"decode", "--csv=1", NULL});
-    expect_failure(2, "s", (const char *const[]){"decode", "--s", NULL}); /* Which? */
-    expect_failure(2, "no option --port", (const char *const[]){"decode", "--port", "x", NULL});
-    expect_failure(2, "unexpected \"b\"", (const char *const[]){"decode", "a", "b", NULL});
-    expect_failure(2, "unexpected \"b\"", (const char *const[]){"decode", "a", "b", "c", NULL});
-    expect_failure(2, "not both", (const char *const[]){"decode", "a", "--csv", "--json", NULL});
-    expect_failure(2, "\"0\" is not a number from 1 to 255",
-                   (const char *const[]){"decode", "a", "--max-samples", "0", NULL});
-    expect_failure(2, "\"256\" is not a number",
-                   (const char *const[]){"decode", "a", "--max-samples=256", NULL});
+    program_expect_failure(2, "decode what?", (const char *const[]){"decode", NULL});
+    program_expect_failure(2, "speed", (const char *const[]){"decode", "--speed", NULL});
+    program_expect_failure(2, "See tmini decode --help",
+                           (const char *const[]){"decode", "--speed", NULL});
+    program_expect_failure(2, "See tmini COMMAND --help", (const char *const[]){"--speed", NULL});
+    program_expect_failure(2, "x", (const char *const[]){"decode", "-qx", NULL});
+    program_expect_failure(2, "stats", (const char *const[]){"decode", "--stats", NULL});
+    program_expect_failure(2, "csv", (const char *const[]){"decode", "--csv=1", NULL});
+    program_expect_failure(2, "s", (const char *const[]){"decode", "--s", NULL}); /* Which? */
+    program_expect_failure(2, "no option --port",
+                           (const char *const[]){"decode", "--port", "x", NULL});
+    program_expect_failure(2, "unexpected \"b\"", (const char *const[]){"decode", "a", "b", NULL});
+    program_expect_failure(2, "unexpected \"b\"",
+                           (const char *const[]){"decode", "a", "b", "c", NULL});
+    program_expect_failure(2, "not both",
+                           (const char *const[]){"decode", "a", "--csv", "--json", NULL});
+    program_expect_failure(2, "\"0\" is not a number from 1 to 255",
+                           (const char *const[]){"decode", "a", "--max-samples", "0", NULL});
+    program_expect_failure(2, "\"256\" is not a number",
+                           (const char *const[]){"decode", "a", "--max-samples=256", NULL});
 }
 
 void test_options_may_be_short_joined_abbreviated_and_anywhere(void)
@@ -484,7 +482,7 @@ void test_options_may_be_short_joined_abbreviated_and_anywhere(void)
         TEST_ASSERT_EQUAL_STRING_LEN("{\"packets\":190,", program_read_file(1, stats, NULL), 15);
     }
     (void)unsetenv("POSIXLY_CORRECT");
-    expect_failure(1, "cannot open -q", (const char *const[]){"decode", "--", "-q", NULL});
+    program_expect_failure(1, "cannot open -q", (const char *const[]){"decode", "--", "-q", NULL});
 }
 
 void test_version_and_help_are_everywhere(void)
@@ -499,7 +497,7 @@ void test_version_and_help_are_everywhere(void)
     TEST_ASSERT_EQUAL_STRING_LEN("tmini scan ", program_output, 11);
     TEST_ASSERT_EQUAL_INT(0, program_tmini((const char *const[]){"help", NULL}));
     TEST_ASSERT_NOT_NULL(strstr(program_output, "tmini ports "));
-    expect_failure(2, "no command \"walk\"", (const char *const[]){"help", "walk", NULL});
+    program_expect_failure(2, "no command \"walk\"", (const char *const[]){"help", "walk", NULL});
 }
 
 void test_closed_output_is_a_failure_and_not_another_file(void)
@@ -511,8 +509,9 @@ void test_closed_output_is_a_failure_and_not_another_file(void)
 
 void test_a_mistyped_word_is_answered_with_the_one_that_was_meant(void)
 {
-    expect_failure(2, "did you mean tmini scan?", (const char *const[]){"scna", NULL});
-    expect_failure(2, "did you mean --count?", (const char *const[]){"scan", "--cuont", NULL});
+    program_expect_failure(2, "did you mean tmini scan?", (const char *const[]){"scna", NULL});
+    program_expect_failure(2, "did you mean --count?",
+                           (const char *const[]){"scan", "--cuont", NULL});
     TEST_ASSERT_EQUAL_INT(0, program_tmini((const char *const[]){"version", NULL}));
 }
 

@@ -132,26 +132,15 @@ static void expect_output(const char *expected, const char *const words[])
 
 static void expect_failure(int status, const char *reason, const char *const words[])
 {
-    TEST_ASSERT_EQUAL_INT(status, program_tmini(words));
-    TEST_ASSERT_NOT_NULL(strstr(program_errors, "tmini: "));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, reason), program_errors);
+    program_expect_failure(status, reason, words);
     TEST_ASSERT_EQUAL_STRING("", program_output);
-}
-
-static unsigned count_of(const char *text, const char *part)
-{
-    unsigned count = 0;
-    for (const char *at = strstr(text, part); at != NULL; at = strstr(at + 1, part)) {
-        count++;
-    }
-    return count;
 }
 
 /* Waits until the tool has printed this many lines. */
 static void wait_for_lines(unsigned lines)
 {
     for (int i = 0; i < 1000; i++) {
-        if (count_of(program_read_file(0, WORK_DIR "/output", NULL), "\n") >= lines) {
+        if (program_count(program_read_file(0, WORK_DIR "/output", NULL), "\n") >= lines) {
             return;
         }
         (void)poll(NULL, 0, 10);
@@ -262,7 +251,7 @@ void test_scan_prints_a_line_for_each_scan(void)
 {
     begin();
     expect_success(WORDS("scan", "-p", port, "-n", "4"));
-    TEST_ASSERT_EQUAL_UINT(4, count_of(program_output, "\n"));
+    TEST_ASSERT_EQUAL_UINT(4, program_count(program_output, "\n"));
     /* The nearest thing in the simulated room is the corner of a box, 1.0 m away. */
     const char *const last = strstr(program_output, "scan 4 ");
     TEST_ASSERT_NOT_NULL(last);
@@ -291,7 +280,7 @@ void test_scan_as_json_has_the_members_of_decode(void)
     TEST_ASSERT_NOT_NULL(
         strstr(program_output, ",\"dropped\":0,\"checksum_errors\":0,\"faults\":"));
     TEST_ASSERT_NOT_NULL(strstr(program_output, "]]}\n{\"scan\":2,"));
-    TEST_ASSERT_EQUAL_UINT(2, count_of(program_output, "\n"));
+    TEST_ASSERT_EQUAL_UINT(2, program_count(program_output, "\n"));
 }
 
 void test_scan_as_csv_has_the_columns_of_decode(void)
@@ -301,9 +290,9 @@ void test_scan_as_csv_has_the_columns_of_decode(void)
     TEST_ASSERT_EQUAL_STRING_LEN(
         "scan,packet,point,angle_deg,distance_mm,intensity,flag,time_ms,frequency_hz\n1,",
         program_output, 78);
-    TEST_ASSERT_TRUE(count_of(program_output, "\n2,") >
+    TEST_ASSERT_TRUE(program_count(program_output, "\n2,") >
                      100); /* Some 700, or fewer on a busy computer. */
-    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "\n3,"));
+    TEST_ASSERT_EQUAL_UINT(0, program_count(program_output, "\n3,"));
 }
 
 /* The same bytes, live and recorded: the same rows, but for the time. */
@@ -380,8 +369,8 @@ void test_with_closed_output_nothing_goes_to_the_lidar(void)
                              program_read_file(0, program_path("errors"), NULL));
     TEST_ASSERT_EQUAL_INT(256, system("\"$TOOL\" health >&- 2>&-"));
     /* Each once: a stop, because nothing is known of the lidar, and the question. */
-    TEST_ASSERT_EQUAL_UINT(4, count_of(program_read_file(0, log, NULL), "command A5"));
-    TEST_ASSERT_EQUAL_UINT(0, count_of(program_read_file(0, log, NULL), "unknown"));
+    TEST_ASSERT_EQUAL_UINT(4, program_count(program_read_file(0, log, NULL), "command A5"));
+    TEST_ASSERT_EQUAL_UINT(0, program_count(program_read_file(0, log, NULL), "unknown"));
 }
 
 void test_a_lidar_can_be_reached_through_a_socket(void)
@@ -390,7 +379,7 @@ void test_a_lidar_can_be_reached_through_a_socket(void)
     TEST_ASSERT_EQUAL_STRING_LEN("tcp:127.0.0.1:", port, 14);
     expect_output("healthy\n", WORDS("health", "-p", port));
     expect_success(WORDS("scan", "-qn2", "-p", port));
-    TEST_ASSERT_EQUAL_UINT(2, count_of(program_output, "\n"));
+    TEST_ASSERT_EQUAL_UINT(2, program_count(program_output, "\n"));
 }
 
 void test_a_socket_that_is_closed_is_reported(void)
@@ -426,8 +415,8 @@ void test_a_recording_reports_its_size(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, line), program_errors);
     TEST_ASSERT_NOT_NULL(strstr(program_errors, " complete; 0 wrong checksums\n"));
     TEST_ASSERT_TRUE(size > 5000);
-    TEST_ASSERT_EQUAL_UINT(1, count_of(program_errors, "\n")); /* Progress is for terminals. */
-    TEST_ASSERT_EQUAL_UINT(0, count_of(program_errors, "\r"));
+    TEST_ASSERT_EQUAL_UINT(1, program_count(program_errors, "\n")); /* Progress is for terminals. */
+    TEST_ASSERT_EQUAL_UINT(0, program_count(program_errors, "\r"));
 }
 
 void test_a_recording_ends_with_ctrl_c_and_is_whole(void)
@@ -482,8 +471,8 @@ void test_a_reader_that_pauses_costs_a_few_scans(void)
     TEST_ASSERT_EQUAL_STRING("0\n", program_read_file(0, program_path("code"), NULL));
     TEST_ASSERT_NULL(strstr(program_read_file(0, program_path("errors"), NULL), "silent"));
     const char *const rest = program_read_file(0, program_path("rest"), NULL);
-    TEST_ASSERT_TRUE(count_of(rest, "\"complete\":true") >= 30);
-    TEST_ASSERT_EQUAL_UINT(0, count_of(rest, "\"packets\":1,"));
+    TEST_ASSERT_TRUE(program_count(rest, "\"complete\":true") >= 30);
+    TEST_ASSERT_EQUAL_UINT(0, program_count(rest, "\"packets\":1,"));
 }
 
 /* What else is in the pipe leaves it little room: a line of a scan is written in several pieces,
@@ -616,7 +605,7 @@ void test_a_lidar_that_comes_back_is_reported(void)
     (void)program_wait_for("errors", "the lidar has fallen silent; starting it again\n");
     program_thaw_lidar();
     (void)program_wait_for("errors", "the lidar is back\n");
-    const unsigned lines = count_of(program_read_file(0, WORK_DIR "/output", NULL), "\n");
+    const unsigned lines = program_count(program_read_file(0, WORK_DIR "/output", NULL), "\n");
     wait_for_lines(lines + 2);
     TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGINT));
 }
@@ -651,7 +640,7 @@ void test_with_wait_a_cable_pulled_and_plugged_in_again_is_no_end(void)
     program_plug_in(NULL);
     (void)program_wait_for("errors", "adapter is not there; waiting for it\n");
     (void)program_wait_for("errors", "fallen silent");
-    const unsigned lines = count_of(program_read_file(0, WORK_DIR "/output", NULL), "\n");
+    const unsigned lines = program_count(program_read_file(0, WORK_DIR "/output", NULL), "\n");
     program_plug_in(program_start_lidar_again(WORDS("--log", "log")));
     wait_for_lines(lines + 2);
     TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGINT));
@@ -687,7 +676,7 @@ void test_with_wait_a_port_that_is_not_there_yet_is_waited_for(void)
     (void)program_wait_for("errors", "adapter is not there; waiting for it\n");
     program_plug_in(program_start_lidar_again(NO_OPTIONS));
     TEST_ASSERT_EQUAL_INT(0, program_finish(tool, 0));
-    TEST_ASSERT_EQUAL_UINT(1, count_of(program_output, "\n"));
+    TEST_ASSERT_EQUAL_UINT(1, program_count(program_output, "\n"));
 }
 
 /* The command line names the device, which the next adapter would have too. */
@@ -750,7 +739,7 @@ void test_listening_sends_nothing(void)
     expect_success(WORDS("check", "-p", port, "--listen", "-s", "1"));
     TEST_ASSERT_NULL_MESSAGE(strstr(program_output, "BAD"), program_output);
     expect_success(WORDS("record", "-p", port, "--listen", "heard.bin", "-s", "1"));
-    TEST_ASSERT_EQUAL_UINT(1, count_of(program_read_file(0, log, NULL), "command "));
+    TEST_ASSERT_EQUAL_UINT(1, program_count(program_read_file(0, log, NULL), "command "));
     close(line);
 }
 
@@ -822,7 +811,7 @@ void test_ports_lists_adapters_by_their_stable_names(void)
     TEST_ASSERT_NOT_NULL(lidars);
     TEST_ASSERT_NOT_NULL(strstr(lidars, ", 10c4:ea60)  CP210x\n"));
     TEST_ASSERT_NOT_NULL(strstr(program_output, ", dead:beef)  \n"));
-    TEST_ASSERT_EQUAL_UINT(2, count_of(program_output, "\n"));
+    TEST_ASSERT_EQUAL_UINT(2, program_count(program_output, "\n"));
 }
 
 void test_the_only_adapter_that_may_be_a_lidars_is_taken(void)

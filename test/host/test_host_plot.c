@@ -213,18 +213,9 @@ void test_all_scans_fit_in_one_picture(void)
 /* A recording of one scan, made for this: a point each 90 degrees; the start packet first. */
 static const char *cross_recording(uint8_t flag_right, uint8_t flag_back)
 {
-    static const uint16_t quarter = 5760;
-    const encode_sample_t front = {1000, 10, 0};
-    const encode_sample_t rest[3] = {{2000, 20, flag_right}, {3000, 30, flag_back}, {4000, 40, 0}};
-    const encode_packet_t start = {121, 1, 0, 0, &front}; /* 6.0 Hz */
-    const encode_packet_t packet = {0, 3, quarter, (uint16_t)(3 * quarter), rest};
-    uint8_t bytes[100];
-    size_t size = encode_packet(bytes, &start);
-    size += encode_packet(bytes + size, &packet);
-    size += encode_packet(bytes + size, &start);
-    const char *const path = program_path("cross.bin");
-    program_write_file(path, bytes, size);
-    return path;
+    const encode_sample_t samples[4] = {
+        {1000, 10, 0}, {2000, 20, flag_right}, {3000, 30, flag_back}, {4000, 40, 0}};
+    return program_write_turn("cross.bin", samples);
 }
 
 void test_front_is_up_and_angles_go_clockwise(void)
@@ -242,54 +233,31 @@ void test_front_is_up_and_angles_go_clockwise(void)
     expect_near(0.02, MIDDLE_X - 500, drawn[3].x);
 }
 
-static unsigned count_of(const char *text, const char *part)
-{
-    unsigned count = 0;
-    for (const char *at = strstr(text, part); at != NULL; at = strstr(at + 1, part)) {
-        count++;
-    }
-    return count;
-}
-
 void test_interference_and_the_nearest_point_are_marked(void)
 {
     plot(cross_recording(2, 3), "--scan", "1");
     const char *const svg = read_svg();
-    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X + 250, MIDDLE_Y, 7.4)); /* Flag 2: a ring. */
-    TEST_ASSERT_EQUAL_UINT(1, count_of(svg, "M 594 1059 L 606 1071"));    /* Flag 3: a cross, */
-    TEST_ASSERT_EQUAL_UINT(1, count_of(svg, "M 594 1071 L 606 1059"));    /* 3 m to the back. */
-    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X, MIDDLE_Y - 125, 12));  /* The nearest one. */
+    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X + 250, MIDDLE_Y, 7.4));   /* Flag 2: a ring. */
+    TEST_ASSERT_EQUAL_UINT(1, program_count(svg, "M 594 1059 L 606 1071")); /* Flag 3: a cross, */
+    TEST_ASSERT_EQUAL_UINT(1, program_count(svg, "M 594 1071 L 606 1059")); /* 3 m to the back. */
+    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X, MIDDLE_Y - 125, 12));    /* The nearest one. */
 }
 
 void test_a_unit_that_flags_every_sample_is_not_covered_with_marks(void)
 {
-    const encode_sample_t samples[3] = {{2000, 20, 2}, {3000, 30, 3}, {4000, 40, 3}};
-    const encode_packet_t start = {121, 1, 0, 0, &samples[0]};
-    const encode_packet_t packet = {0, 3, 5760, 17280, samples};
-    uint8_t bytes[100];
-    size_t size = encode_packet(bytes, &start);
-    size += encode_packet(bytes + size, &packet);
-    size += encode_packet(bytes + size, &start);
-    program_write_file(program_path("flagged.bin"), bytes, size);
-    plot(program_path("flagged.bin"), "--scan", "1");
+    const encode_sample_t samples[4] = {{2000, 20, 2}, {2000, 20, 2}, {3000, 30, 3}, {4000, 40, 3}};
+    plot(program_write_turn("flagged.bin", samples), "--scan", "1");
     place_t drawn[4];
     TEST_ASSERT_EQUAL_size_t(4, discs(read_svg(), POINT_WIDTH, drawn, 4));
     TEST_ASSERT_EQUAL_UINT(0, rings(read_svg(), MIDDLE_X + 250, MIDDLE_Y, 7.4));
-    TEST_ASSERT_EQUAL_UINT(0, count_of(read_svg(), "M 594 1059"));
+    TEST_ASSERT_EQUAL_UINT(0, program_count(read_svg(), "M 594 1059"));
     expect_said("4 of 4 points flagged");
 }
 
 void test_a_covered_lidar_is_no_empty_disc(void)
 {
-    const encode_sample_t none[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    const encode_packet_t start = {121, 1, 0, 0, none};
-    const encode_packet_t packet = {0, 3, 5760, 17280, none};
-    uint8_t bytes[100];
-    size_t size = encode_packet(bytes, &start);
-    size += encode_packet(bytes + size, &packet);
-    size += encode_packet(bytes + size, &start);
-    program_write_file(program_path("covered.bin"), bytes, size);
-    plot(program_path("covered.bin"), "--scan", "1");
+    static const encode_sample_t none[4];
+    plot(program_write_turn("covered.bin", none), "--scan", "1");
     expect_said("; rings to 6 m\n"); /* Of whatever there might have been. */
     expect_said("no point has a distance: is the window covered?");
     /* And in the picture, below the lidar: there are words. */
@@ -412,23 +380,20 @@ void test_a_dash_is_standard_output_as_svg(void)
     TEST_ASSERT_EQUAL_STRING("", program_errors);
 }
 
-static void expect_failure(int status, const char *reason, const char *const words[])
-{
-    TEST_ASSERT_EQUAL_INT(status, program_tmini(words));
-    TEST_ASSERT_NOT_NULL(strstr(program_errors, "tmini: "));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(program_errors, reason), program_errors);
-}
-
 void test_what_cannot_be_drawn_is_reported(void)
 {
     static const char *const room = RECORDINGS "sim-6hz.bin";
-    expect_failure(2, "must end in .svg, .png or .pdf", WORDS("plot", room, "-o", "picture.jpg"));
-    expect_failure(2, "plot what, and where to?", WORDS("plot", room));
-    expect_failure(2, "not both", WORDS("plot", room, "-o", "x.svg", "--all", "--scan", "1"));
-    expect_failure(1, "has no scan 10, only 1 to 9",
-                   WORDS("plot", room, "-o", "x.svg", "--scan", "10"));
-    expect_failure(1, "cannot write /nowhere/x.svg", WORDS("plot", room, "-o", "/nowhere/x.svg"));
-    expect_failure(1, "cannot write /nowhere/x.png", WORDS("plot", room, "-o", "/nowhere/x.png"));
-    expect_failure(1, "no start packet",
-                   WORDS("plot", RECORDINGS "manual-packet.bin", "-o", "x.svg"));
+    program_expect_failure(2, "must end in .svg, .png or .pdf",
+                           WORDS("plot", room, "-o", "picture.jpg"));
+    program_expect_failure(2, "plot what, and where to?", WORDS("plot", room));
+    program_expect_failure(2, "not both",
+                           WORDS("plot", room, "-o", "x.svg", "--all", "--scan", "1"));
+    program_expect_failure(1, "has no scan 10, only 1 to 9",
+                           WORDS("plot", room, "-o", "x.svg", "--scan", "10"));
+    program_expect_failure(1, "cannot write /nowhere/x.svg",
+                           WORDS("plot", room, "-o", "/nowhere/x.svg"));
+    program_expect_failure(1, "cannot write /nowhere/x.png",
+                           WORDS("plot", room, "-o", "/nowhere/x.png"));
+    program_expect_failure(1, "no start packet",
+                           WORDS("plot", RECORDINGS "manual-packet.bin", "-o", "x.svg"));
 }

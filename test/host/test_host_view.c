@@ -147,17 +147,8 @@ static void resize(unsigned columns, unsigned rows)
  * left. */
 static const char *cross_recording(void)
 {
-    const encode_sample_t front = {1000, 10, 0};
-    const encode_sample_t rest[3] = {{2000, 20, 0}, {3000, 30, 0}, {4000, 40, 0}};
-    const encode_packet_t start = {121, 1, 0, 0, &front}; /* 6.0 Hz */
-    const encode_packet_t packet = {0, 3, 5760, 17280, rest};
-    uint8_t bytes[100];
-    size_t size = encode_packet(bytes, &start);
-    size += encode_packet(bytes + size, &packet);
-    size += encode_packet(bytes + size, &start);
-    const char *const path = program_path("cross.bin");
-    program_write_file(path, bytes, size);
-    return path;
+    const encode_sample_t samples[4] = {{1000, 10, 0}, {2000, 20, 0}, {3000, 30, 0}, {4000, 40, 0}};
+    return program_write_turn("cross.bin", samples);
 }
 
 static void see_the_cross(void)

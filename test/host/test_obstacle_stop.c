@@ -36,15 +36,6 @@ static void wait_for_message(const char *text)
     (void)program_wait_for("errors", text);
 }
 
-static unsigned count_of(const char *text, const char *part)
-{
-    unsigned count = 0;
-    for (const char *at = strstr(text, part); at != NULL; at = strstr(at + 1, part)) {
-        count++;
-    }
-    return count;
-}
-
 /* The program against a lidar with this fault: once it has reported the fault, the robot stands for
  * five more scans. */
 static void expect_to_stand(const char *message, const char *const options[])
@@ -54,14 +45,14 @@ static void expect_to_stand(const char *message, const char *const options[])
     wait_for_message(message);
     (void)program_read_file(0, WORK_DIR "/output", &before);
     for (int i = 0; i < 2000; i++) {
-        if (count_of(program_read_file(0, WORK_DIR "/output", NULL) + before, "STOP ") >= 5) {
+        if (program_count(program_read_file(0, WORK_DIR "/output", NULL) + before, "STOP ") >= 5) {
             break;
         }
         (void)poll(NULL, 0, 10);
     }
     TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGTERM));
-    TEST_ASSERT_TRUE(count_of(program_output + before, "STOP ") >= 5);
-    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output + before, "go "));
+    TEST_ASSERT_TRUE(program_count(program_output + before, "STOP ") >= 5);
+    TEST_ASSERT_EQUAL_UINT(0, program_count(program_output + before, "go "));
 }
 
 void test_a_robot_in_a_free_room_may_go(void)
@@ -125,19 +116,19 @@ void test_all_eight_sectors_are_shown(void)
 void test_a_robot_whose_lidar_is_covered_stays_where_it_is(void)
 {
     expect_to_stand("faults: data", WORDS("--covered"));
-    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go ")); /* Nor before. */
+    TEST_ASSERT_EQUAL_UINT(0, program_count(program_output, "go ")); /* Nor before. */
 }
 
 void test_a_robot_whose_lidar_is_covered_and_does_not_report_it_stays_where_it_is(void)
 {
     expect_to_stand("faults: data", WORDS("--covered", "--no-ct"));
-    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go "));
+    TEST_ASSERT_EQUAL_UINT(0, program_count(program_output, "go "));
 }
 
 void test_a_robot_whose_lidar_does_not_turn_stays_where_it_is(void)
 {
     expect_to_stand("faults: encoder", WORDS("--blocked"));
-    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go "));
+    TEST_ASSERT_EQUAL_UINT(0, program_count(program_output, "go "));
 }
 
 void test_a_fault_that_stays_stops_the_robot_although_ranges_come(void)
@@ -151,8 +142,8 @@ void test_a_lidar_that_does_not_answer_is_reported_and_started_again(void)
     const pid_t program = program_start(OBSTACLE_STOP, WORDS(port));
     wait_for_message("the lidar does not start: timeout; trying again\n");
     TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGINT));
-    TEST_ASSERT_EQUAL_UINT(0, count_of(program_output, "go "));
-    TEST_ASSERT_EQUAL_UINT(1, count_of(program_output, "STOP "));
+    TEST_ASSERT_EQUAL_UINT(0, program_count(program_output, "go "));
+    TEST_ASSERT_EQUAL_UINT(1, program_count(program_output, "STOP "));
 }
 
 void test_wrong_usage_and_a_wrong_port_are_reported(void)

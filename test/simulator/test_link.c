@@ -90,6 +90,14 @@ static void scan_with(sim_link_kind_t kind, uint32_t mean_gap, uint32_t seconds)
     run_ms(seconds * 1000u);
 }
 
+static void scan_into_a_packet(void)
+{
+    scan_with(SIM_LINK_UNPLUG, 0, 3);
+    do {
+        run_ms(1);
+    } while (!wire.packet_open);
+}
+
 static size_t intact_packets(void)
 {
     size_t intact = 0;
@@ -314,11 +322,7 @@ void test_unplugging_silences_the_line_and_resets_the_device(void)
 
 void test_a_packet_cut_by_unplugging_is_reported_as_hit(void)
 {
-    scan_with(SIM_LINK_UNPLUG, 0, 3);
-    run_ms(1);
-    while (!wire.packet_open) {
-        run_ms(1);
-    }
+    scan_into_a_packet();
     sim_link_force(&wire, SIM_LINK_UNPLUG, 1000, now);
     TEST_ASSERT_FALSE(fates[fate_count - 1u].packet.intact);
     expect_the_truth_about_every_packet();
@@ -326,11 +330,7 @@ void test_a_packet_cut_by_unplugging_is_reported_as_hit(void)
 
 void test_a_packet_cut_by_a_reboot_is_reported_as_hit(void)
 {
-    scan_with(SIM_LINK_UNPLUG, 0, 3);
-    run_ms(1);
-    while (!wire.packet_open) {
-        run_ms(1);
-    }
+    scan_into_a_packet();
     send(0x40);
     run_ms(3000);
     send(0x60);
@@ -341,11 +341,7 @@ void test_a_packet_cut_by_a_reboot_is_reported_as_hit(void)
 
 void test_a_packet_cut_without_the_wires_knowledge_is_reported_as_hit(void)
 {
-    scan_with(SIM_LINK_UNPLUG, 0, 3);
-    run_ms(1);
-    while (!wire.packet_open) {
-        run_ms(1);
-    }
+    scan_into_a_packet();
     sim_power(&sim, false, now + 300);
     run_ms(100);
     TEST_ASSERT_FALSE(fates[fate_count - 1u].packet.intact);

@@ -267,3 +267,10 @@ unsigned rig_plain_turn_events(uint16_t distance_mm)
     rig_feed_plain_turn(distance_mm);
     return rig_drain() & ~BIT(TMINI_EVENT_SCAN);
 }
+
+void rig_plain_turns(unsigned count, uint16_t distance_mm)
+{
+    while (count-- > 0) {
+        (void)rig_plain_turn_events(distance_mm);
+    }
+}

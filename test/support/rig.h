@@ -143,6 +143,7 @@ void rig_feed_turn(uint8_t health, uint16_t distance_mm);
  * scans. With CT information a turn is judged when the next one begins. */
 unsigned rig_turn_events(uint8_t health);
 unsigned rig_plain_turn_events(uint16_t distance_mm);
+void rig_plain_turns(unsigned count, uint16_t distance_mm);
 
 /* ---- Ways into each state ---- */
 

@@ -6,8 +6,8 @@
  * The public functions between two threads, as between two cores: one feeds a recording, byte by
  * byte and in blocks; the other polls and reads the scans. Every other time the feeder does not
  * wait for room, and the other thread rests at the beginning, so that the ring is closed and
- * opened. threads.sh builds it, with the library, under ThreadSanitizer. Exit status 0 unless no scan came,
- * or no byte was refused. */
+ * opened. threads.sh builds it, with the library, under ThreadSanitizer. Exit status 0 unless no
+ * scan came, or no byte was refused. */
 
 #include <pthread.h>
 #include <sched.h>

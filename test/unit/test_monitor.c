@@ -71,9 +71,7 @@ void test_a_data_fault_that_ends_in_turns_of_which_a_packet_is_missing_is_report
     unsigned events = 0;
 
     rig_go_scanning();
-    for (unsigned i = 0; i < 3; i++) {
-        (void)rig_plain_turn_events(0);
-    }
+    rig_plain_turns(3, 0);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
     for (unsigned i = 0; i < 3; i++) {
         rig.crc ^= 1u; /* LastCRC is wrong. */
@@ -136,9 +134,7 @@ void test_two_turns_without_any_range_are_a_data_fault(void)
 void test_a_data_fault_is_cleared_by_two_turns_with_a_range(void)
 {
     rig_go_scanning();
-    for (unsigned i = 0; i < 3; i++) {
-        (void)rig_plain_turn_events(0);
-    }
+    rig_plain_turns(3, 0);
     TEST_ASSERT_EQUAL_HEX(0, rig_plain_turn_events(1000));
     TEST_ASSERT_EQUAL_HEX(0, rig_plain_turn_events(1000));
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_plain_turn_events(1000));
@@ -204,9 +200,7 @@ void test_one_byte_before_a_start_packet_may_be_last_crc_and_the_turn_is_whole(v
 void test_a_range_clears_a_data_fault_though_packets_were_lost(void)
 {
     rig_go_scanning();
-    for (unsigned i = 0; i < 3; i++) {
-        (void)rig_plain_turn_events(0);
-    }
+    rig_plain_turns(3, 0);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
     for (unsigned i = 0; i < 3; i++) {
         rig_feed_byte(0x00);
@@ -333,9 +327,7 @@ void test_a_blocked_rotor_with_start_packets_is_what_ct_information_says(void)
 void test_a_blocked_rotor_with_start_packets_and_no_ct_information_is_a_data_fault(void)
 {
     rig_go_scanning();
-    for (unsigned i = 0; i < 30; i++) {
-        (void)rig_plain_turn_events(0);
-    }
+    rig_plain_turns(30, 0);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
 }
 

@@ -34,9 +34,7 @@ void test_nothing_is_known_of_a_unit_that_reports_itself(void)
 
 void test_turns_without_any_range_are_a_data_fault(void)
 {
-    for (unsigned i = 0; i < 3; i++) {
-        (void)rig_plain_turn_events(0);
-    }
+    rig_plain_turns(3, 0);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
 }
 

@@ -213,9 +213,7 @@ void test_a_loss_before_a_whole_turn_goes_on_up_the_ladder(void)
 void test_a_turn_that_is_not_whole_but_ends_a_fault_does_not_count_as_whole(void)
 {
     rig_go_scanning();
-    for (unsigned i = 0; i < 3; i++) {
-        (void)rig_plain_turn_events(0);
-    }
+    rig_plain_turns(3, 0);
     passes_to(1000, TMINI_EVENT_LOST);
     polls_and_sends(STOP);
     finds_quiet_and_sends(START);
@@ -406,9 +404,7 @@ void test_a_turn_cut_by_a_loss_is_no_data_fault(void)
 void test_a_range_from_before_a_loss_does_not_clear_a_data_fault(void)
 {
     rig_go_scanning();
-    for (unsigned i = 0; i < 3; i++) {
-        (void)rig_plain_turn_events(0);
-    }
+    rig_plain_turns(3, 0);
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_NONE);
     passes_to(1000, TMINI_EVENT_LOST);

@@ -973,9 +973,7 @@ void test_the_answer_to_another_question_leaves_the_health_as_reported(void)
 void test_ranges_in_two_incomplete_turns_clear_a_data_fault(void)
 {
     rig_go_scanning();
-    for (unsigned i = 0; i < 3; i++) {
-        (void)rig_plain_turn_events(0);
-    }
+    rig_plain_turns(3, 0);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
     for (unsigned i = 0; i < 2; i++) {
         rig_feed_byte(0);
