@@ -58,6 +58,7 @@ void test_nothing_is_left_of_what_was_in_its_memory(void)
     TEST_ASSERT_FALSE(decoder.builder.open);
     TEST_ASSERT_EQUAL_UINT32(0, decoder.parser.counters.packets);
     TEST_ASSERT_EQUAL_UINT8(0, decoder.ct.known);
+    TEST_ASSERT_EQUAL_UINT16(0, decoder.packet.first_angle_q6);
 }
 
 void test_the_packet_that_ends_a_scan_begins_the_next_at_its_own_time(void)

@@ -117,6 +117,16 @@ void test_more_bytes_than_the_ring_holds_are_doubted(void)
     TEST_ASSERT_TRUE(lidar.line.doubt);
 }
 
+void test_packets_among_doubtful_bytes_are_doubtful_beyond_65536_bytes_too(void)
+{
+    (void)look_after(5000, 65536);
+    lidar.ring.tail = 65536;
+    (void)look_after(60, 100);
+    TEST_ASSERT_TRUE(tmini_line_is_doubtful(&lidar, now_ms));
+    lidar.ring.tail += 50;
+    TEST_ASSERT_TRUE(tmini_line_is_doubtful(&lidar, now_ms));
+}
+
 void test_65536_bytes_are_some(void)
 {
     TEST_ASSERT_TRUE(look_after(5000, 65536));

@@ -120,6 +120,7 @@ void test_points_without_a_range_leave_a_sector_blind_and_not_free(void)
     holds(0, 0, 2, 0);
     TEST_ASSERT_TRUE(tmini_sector_is_blind(&array[0]));
     TEST_ASSERT_FALSE(tmini_sector_is_free(&array[0], 300));
+    TEST_ASSERT_FALSE(tmini_sector_is_free(&array[0], 0));
     TEST_ASSERT_TRUE(array[0].nearest_mm < 300); /* As people write it: then stop. */
 }
 
@@ -132,6 +133,20 @@ void test_a_sector_is_free_up_to_its_nearest_range(void)
     TEST_ASSERT_FALSE(tmini_sector_is_blind(&array[0]));
     TEST_ASSERT_TRUE(tmini_sector_is_free(&array[0], 300));
     TEST_ASSERT_FALSE(tmini_sector_is_free(&array[0], 301));
+}
+
+void test_one_range_is_enough_for_a_sector_to_be_free(void)
+{
+    see(0, 300, 0);
+    TEST_ASSERT_TRUE(tmini_sector_is_free(&array[0], 300));
+}
+
+void test_a_sector_counts_more_than_255_ranges(void)
+{
+    for (unsigned i = 0; i < 300; i++) {
+        see(0, 500, 0);
+    }
+    holds(0, 500, 300, 300);
 }
 
 void test_flagged_points_count_unless_filtered(void)

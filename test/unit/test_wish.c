@@ -364,6 +364,15 @@ void test_five_percent_are_no_other_frequency(void)
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
 }
 
+/* 0.4 Hz are 5.3 % of 7.6 Hz. At 8.0 Hz, 24 turns take 3 s. */
+void test_little_more_than_five_percent_are_another_frequency(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    scans_wishing(760);
+    turns(24, 80);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+}
+
 /* By 2.6 Hz: 260 in 8 bits would be 4. At 7.4 Hz, 23 turns take 3.1 s. */
 void test_a_frequency_far_off_is_a_fault(void)
 {
