@@ -207,17 +207,49 @@ void test_a_system_without_a_free_descriptor_says_so(void)
     TEST_ASSERT_EQUAL_INT(EMFILE, error);
 }
 
+/* The program at the other end of a pair of sockets has sent these bytes. Returns that end. */
+static int start_on_pair(tmini_t *for_lidar, const uint8_t *bytes, size_t count)
+{
+    int ends[2];
+    TEST_ASSERT_EQUAL_INT(0, socketpair(AF_UNIX, SOCK_STREAM, 0, ends));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start_on(&port, ends[0], for_lidar));
+    TEST_ASSERT_EQUAL_INT(count, write(ends[1], bytes, count));
+    return ends[1];
+}
+
 void test_what_has_waited_is_handed_over_at_once(void)
 {
     static const uint8_t bytes[700];
-    int ends[2];
     begin();
-    TEST_ASSERT_EQUAL_INT(0, socketpair(AF_UNIX, SOCK_STREAM, 0, ends));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start_on(&port, ends[0], &lidar));
-    TEST_ASSERT_EQUAL_INT(sizeof bytes, write(ends[1], bytes, sizeof bytes));
+    const int other = start_on_pair(&lidar, bytes, sizeof bytes);
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 1000));
     TEST_ASSERT_EQUAL_UINT64(sizeof bytes, port.received);
-    close(ends[1]);
+    close(other);
+}
+
+void test_without_a_lidar_bytes_are_received_by_blocks(void)
+{
+    static const uint8_t bytes[300];
+    static const uint64_t totals[] = {128, 256, 300};
+    const int other = start_on_pair(NULL, bytes, sizeof bytes);
+    for (unsigned i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 1000));
+        TEST_ASSERT_EQUAL_UINT64(totals[i], port.received);
+    }
+    close(other);
+}
+
+void test_without_room_it_does_not_wait(void)
+{
+    static const uint8_t bytes[sizeof rx];
+    begin();
+    const int other = start_on_pair(&lidar, bytes, sizeof bytes);
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 1000));
+    TEST_ASSERT_EQUAL_UINT64(sizeof bytes, port.received);
+    const uint32_t begun_ms = tmini_posix_port.now_ms(&port);
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 5000));
+    TEST_ASSERT_TRUE(tmini_posix_port.now_ms(&port) - begun_ms < 2500u);
+    close(other);
 }
 
 void test_silence_is_no_error(void)
@@ -459,11 +491,8 @@ void test_without_polling_bytes_stay_with_the_system(void)
 {
     static const uint8_t bytes[2000];
     tmini_counters_t counters;
-    int ends[2];
     begin();
-    TEST_ASSERT_EQUAL_INT(0, socketpair(AF_UNIX, SOCK_STREAM, 0, ends));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start_on(&port, ends[0], &lidar));
-    TEST_ASSERT_EQUAL_INT(sizeof bytes, write(ends[1], bytes, sizeof bytes));
+    const int other = start_on_pair(&lidar, bytes, sizeof bytes);
     for (unsigned i = 0; i < 20; i++) {
         TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 1000));
     }
@@ -476,7 +505,7 @@ void test_without_polling_bytes_stay_with_the_system(void)
     TEST_ASSERT_EQUAL_UINT64(sizeof bytes, port.received);
     tmini_counters(&lidar, &counters);
     TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
-    close(ends[1]);
+    close(other);
 }
 
 /* Of eight scans, two of them followed by a pause. */
@@ -517,14 +546,21 @@ void test_each_reason_for_not_opening_has_its_own_status(void)
 
 void test_a_line_for_typing_becomes_one_for_bytes(void)
 {
-    /* A new pseudo-terminal is one for typing: it echoes, edits lines, and changes characters. */
+    /* A new pseudo-terminal is one for typing: it echoes, edits lines, and changes characters.
+     * Another program has left it reading nothing, after a tenth of a second, as an end. */
+    struct termios settings;
     const int master = posix_openpt(O_RDWR | O_NOCTTY);
     TEST_ASSERT_TRUE(master >= 0);
     TEST_ASSERT_EQUAL_INT(0, grantpt(master));
     TEST_ASSERT_EQUAL_INT(0, unlockpt(master));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&port, ptsname(master)));
-    struct termios settings;
     TEST_ASSERT_EQUAL_INT(0, tcgetattr(master, &settings));
+    settings.c_cc[VMIN] = 0;
+    settings.c_cc[VTIME] = 1;
+    TEST_ASSERT_EQUAL_INT(0, tcsetattr(master, TCSANOW, &settings));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&port, ptsname(master)));
+    TEST_ASSERT_EQUAL_INT(0, tcgetattr(master, &settings));
+    TEST_ASSERT_EQUAL_UINT8(1, settings.c_cc[VMIN]);
+    TEST_ASSERT_EQUAL_UINT8(0, settings.c_cc[VTIME]);
     TEST_ASSERT_EQUAL_HEX(0, settings.c_lflag & (tcflag_t)(ICANON | ECHO | ISIG | IEXTEN));
     TEST_ASSERT_EQUAL_HEX(0, settings.c_iflag & (tcflag_t)(ICRNL | INLCR | IGNCR | IXON | IXOFF |
                                                            ISTRIP | PARMRK | INPCK));
