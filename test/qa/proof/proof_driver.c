@@ -257,6 +257,8 @@ void prove_driver_poll(void)
     CLAIM(event <= TMINI_EVENT_MORE);
     CLAIM(before == 0 || (before >> event & 1u) != 0);
     CLAIM(before != 0 || event == TMINI_EVENT_NONE || event == TMINI_EVENT_MORE);
+    CLAIM(event == TMINI_EVENT_NONE ? lidar.is_settled || lidar.command.unsent > 0
+                                    : !lidar.is_settled);
     REACHED();
 }
 
