@@ -40,6 +40,9 @@ import sys
 import tempfile
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+sys.path.insert(0, os.path.join(ROOT, ".ci"))
+import single  # noqa: E402  The library as one source.
+
 PUBLIC = os.path.join("lib", "include", "")
 KNOWN = os.path.join(ROOT, "test", "qa", "mutants.txt")
 
@@ -253,6 +256,18 @@ class Test:
         return (module not in self.name, -(self.kills + 1) / self.seconds, self.name)
 
 
+def cpu_seconds():
+    """What has been computed by all that was called."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def is_in_body(mutant):
+    """Between the braces of a function."""
+    above = (line[0] for line in reversed(mutant.text.split("\n")[:mutant.line]) if line[:1] in ("{", "}"))
+    return next(above, "") == "{"
+
+
 class Unable(Exception):
     """Nothing can be said about mutants."""
 
@@ -263,7 +278,7 @@ class Bench:
     def __init__(self, build, work):
         self.build, self.work = Build(build), work
         self.tests, self.originals = {}, {}
-        self.compiler, self.original_library = None, None # For headers.
+        self.compiler, self.library, self.original_library = None, None, None # For headers.
 
     def tests_of(self, path):
         if path not in self.tests:
@@ -323,11 +338,10 @@ class Bench:
         test.program = os.path.join(self.work, os.path.dirname(original), test.name)
         subprocess.run([test.compiler, "-o", test.program, *test.objects(), "-Wl,--no-as-needed", original,
                         "-Wl,--start-group", *self.build.archives, "-Wl,--end-group", "-lm", "-lpthread"], check=True)
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        before = cpu_seconds()
         if not self.passes(test, original):
             raise Unable(f"{test.name} fails without any mutant")
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        test.seconds = max(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, 0.001)
+        test.seconds = max(cpu_seconds() - before, 0.001)
 
     def run(self, test, shared):
         """The exit status; what computes much longer than it should, or waits, is ended by a signal."""
@@ -380,70 +394,102 @@ class Bench:
         target = self.object_with(self.with_headers(entry), entry, option, "anew")
         return target, target is None or pathlib.Path(target).read_bytes() != code
 
-    def link_anew(self, test, objects, library):
-        test.program = os.path.join(os.path.dirname(library), test.name)
-        subprocess.run([test.compiler, "-o", test.program, *objects, library, "-Wl,--start-group",
-                        *self.build.archives, "-Wl,--end-group", "-lm"], check=True)
+    def link_anew(self, test, objects, program):
+        """With the library as a shared object, wherever that lies."""
+        test.program = os.path.join(self.work, program, test.name)
+        os.makedirs(os.path.dirname(test.program), exist_ok=True)
+        subprocess.run([test.compiler, "-o", test.program, *objects, "-Wl,--no-as-needed", self.original_library,
+                        "-Wl,--start-group", *self.build.archives, "-Wl,--end-group", "-lm"], check=True)
 
-    def library_anew(self, header):
-        """None if it is not C any more; and what of it is compiled differently."""
-        folder = os.path.join(self.build.folder, "lib", "")
-        library = os.path.join(self.work, "anew", "mutant.so")
-        objects, different = [], []
-        for entry in (entry for obj, entry in self.build.entry_of.items() if obj.startswith(folder)):
-            target, is_other = self.made_anew(header, entry)
-            if target is None:
-                return None, []
-            objects.append(target)
-            different += [entry] if is_other else []
+    def library_anew(self, header, folder):
+        """The library, None if it is not C any more; and whether it is another one."""
+        library = os.path.join(self.work, folder, "mutant.so")
+        target, is_other = self.made_anew(header, self.library)
         os.makedirs(os.path.dirname(library), exist_ok=True)
-        subprocess.run([self.compiler, "-shared", *objects, "-o", library], check=True)
-        return library, different
+        if target is not None:
+            subprocess.run([self.compiler, "-shared", "-Wl,-soname,mutant.so", target, "-o", library], check=True)
+        return library if target is not None else None, is_other
 
-    def try_header(self, header, tests, library, is_other_library):
-        """The fate, and what of the tests is compiled differently."""
-        different = []
-        for test in tests:
-            own = [self.build.entry_of[obj] for obj in objects_of(test.folder)]
-            own += [entry for entry in self.build.entries if entry["file"].endswith("/test/support/receiver.c")]
-            made = [self.made_anew(header, entry) for entry in own]
-            if any(target is None for target, _ in made):
-                return "not C", []
-            different += [entry for entry, (_, is_other) in zip(own, made) if is_other]
-            if is_other_library or any(is_other for _, is_other in made):
-                self.link_anew(test, [target for target, _ in made], library)
-                if not self.passes(test, library):
-                    test.kills += 1
-                    return "killed by " + test.name, []
-        return "survived", different
+    def objects_anew(self, header, test):
+        """What a test is made of, besides the library: how each is compiled, the object, whether it is another one."""
+        own = [self.build.entry_of[obj] for obj in objects_of(test.folder)]
+        own += [entry for entry in self.build.entries if entry["file"].endswith("/test/support/receiver.c")]
+        return [(entry, *self.made_anew(header, entry)) for entry in own]
 
     def begin_headers(self, tests):
-        """Makes the library as it is, and sees that the tests pass."""
-        self.compiler = tests[0].compiler
+        """Makes the library, of one source, and the tests as they are; sees that these pass, and what they take."""
+        text = single.single({os.path.basename(path): read(path) for path in files_of("lib/src")}, "")
+        source = pathlib.Path(self.work, "tmini_all.c")
+        source.write_text(text, encoding="utf-8")
         shutil.copytree(os.path.join(ROOT, PUBLIC), os.path.join(self.work, PUBLIC))
-        self.original_library = shutil.copy(self.library_anew("")[0], os.path.join(self.work, "original.so"))
-        if self.try_header("", tests, self.original_library, True)[0] != "survived":
-            raise Unable("a test fails without any mutant")
+        entry = self.build.entries_of("lib/src/tmini_ring.c")[0]
+        self.library = {**entry, "file": str(source), "command": entry["command"].replace(entry["file"], str(source))}
+        self.compiler = tests[0].compiler
+        self.original_library = os.path.join(self.work, "mutant.so")
+        self.library_anew("", "")
+        for test in tests:
+            self.link_anew(test, [target for _, target, _ in self.objects_anew("", test)], "as_they_are")
+            before = cpu_seconds()
+            if not self.passes(test, self.original_library):
+                raise Unable(f"{test.name} fails without any mutant")
+            test.seconds = cpu_seconds() - before + 0.1 * len(objects_of(test.folder))
+
+    def notice(self, tests, library):
+        """The first of the tests as they are that notices another library."""
+        for test in tests:
+            test.program = os.path.join(self.work, "as_they_are", test.name)
+            if not self.passes(test, library):
+                return test
+        return None
+
+    def notice_anew(self, header, tests, library, is_new_to_all):
+        """The first of the tests, made anew, that notices; and what of the tests is compiled differently."""
+        different = []
+        for test in tests:
+            made = self.objects_anew(header, test)
+            if any(target is None for _, target, _ in made):
+                return "not C", []
+            others = [entry for entry, _, is_other in made if is_other]
+            if others or is_new_to_all:
+                self.link_anew(test, [target for _, target, _ in made], "anew")
+                if not self.passes(test, library):
+                    return test, []
+            different += others
+        return None, different
+
+    def preprocessed(self, header):
+        """What is left of a header, in all the ways in which it is included."""
+        ways = {tuple(word for word in arguments_of(entry) if word.startswith("-D")) for entry in self.build.entries
+                if "/test/unit/" in entry["directory"] + entry["file"]}
+        return [subprocess.run([self.compiler, "-E", "-P", "-dD", "-I" + os.path.join(ROOT, "test", "support"), *way,
+                                header], check=True, capture_output=True).stdout for way in sorted(ways)]
 
     def fate_of_header(self, mutant):
-        """What is inline in a header is looked at first where tests call it themselves."""
+        """What is in the body of a function concerns the library first, and its tests as they are."""
         tests = sorted(self.tests_of("lib/src/tmini_ring.c"), key=lambda test: test.promise(mutant.path))
         if not self.original_library:
             self.begin_headers(tests)
         changed = os.path.join(self.work, mutant.path)
         pathlib.Path(changed).write_text(mutant.text, encoding="utf-8")
         try:
-            if mutant.function != "-":
-                near = [test for test in tests if not test.promise(mutant.path)[0]]
-                fate, _ = self.try_header(mutant.path, near, self.original_library, False)
-                if fate != "survived":
-                    return fate
-            library, different = self.library_anew(mutant.path)
+            if self.preprocessed(changed) == self.preprocessed(os.path.join(ROOT, mutant.path)):
+                return "the same code"
+            library, is_other = self.library_anew(mutant.path, "anew")
             if library is None:
                 return "not C"
-            fate, different_tests = self.try_header(mutant.path, tests, library, different != [])
-            is_other = any(self.made_anew(mutant.path, entry, "-O2")[1] for entry in different + different_tests)
-            return fate if is_other or fate != "survived" else "the same code"
+            different = []
+            is_inline = is_other and is_in_body(mutant)
+            test = self.notice(tests, library) if is_inline else None
+            if test is None:
+                test, different = self.notice_anew(mutant.path, tests, library, is_other and not is_inline)
+            if test == "not C":
+                return test
+            if test is not None:
+                test.kills += 1
+                return "killed by " + test.name
+            different += [self.library] if is_other else []
+            is_other = any(self.made_anew(mutant.path, entry, "-O2")[1] for entry in different)
+            return "survived" if is_other else "the same code"
         finally:
             shutil.copy(os.path.join(ROOT, mutant.path), changed)
 
@@ -523,14 +569,15 @@ def outdated(known):
 
 
 def files_among(names):
-    """The files that are named, and those with functions in the folders that are: no headers that nothing there
-    includes."""
+    """The files that are named; of the folders that are, public headers, and those with functions: no headers that
+    nothing there includes."""
     for name in names:
         if os.path.isfile(name):
             yield os.path.relpath(os.path.abspath(name), ROOT)
         for place, folders, _ in os.walk(name):
             folders.sort()
-            yield from (file for file in files_of(os.path.abspath(place)) if has_functions(file) and sources_with(file))
+            yield from (file for file in files_of(os.path.abspath(place))
+                        if file.startswith(PUBLIC) or has_functions(file) and sources_with(file))
 
 
 def try_mutants(mutants, wanted, pool, results, known):
