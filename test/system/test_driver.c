@@ -18,19 +18,22 @@ void setUp(void)
     config = world_default_config();
 }
 
-void tearDown(void) {}
-
-static void begin(void)
-{
-    world_init(&world, &config);
-}
-
 static void check_world(const world_t *checked)
 {
     for (unsigned i = 0; i < VIOLATION_KINDS; i++) {
         TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, checked->counts.violations[i],
                                          world_violation_name((violation_t)i));
     }
+}
+
+void tearDown(void)
+{
+    check_world(&world);
+}
+
+static void begin(void)
+{
+    world_init(&world, &config);
 }
 
 /* Waits for the end of a command that has begun. */
@@ -83,7 +86,6 @@ void test_a_cold_start_brings_the_first_scan_within_two_seconds_and_then_six_a_s
     TEST_ASSERT_UINT32_WITHIN(1, 60, count(TMINI_EVENT_SCAN) - before);
     TEST_ASSERT_TRUE(world.scan.complete);
     TEST_ASSERT_UINT16_WITHIN(10, 600, world.scan.frequency_chz);
-    check_world(&world);
 }
 
 void test_a_cold_start_of_a_unit_without_ct_information_is_the_same(void)
@@ -92,7 +94,6 @@ void test_a_cold_start_of_a_unit_without_ct_information_is_the_same(void)
     begin_scanning();
     TEST_ASSERT_TRUE(count(TMINI_EVENT_SCAN) > 12);
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_FAULTS_CHANGED));
-    check_world(&world);
 }
 
 void test_no_packet_of_the_spin_up_is_lost_and_it_is_not_taken_for_a_loss(void)
@@ -104,7 +105,6 @@ void test_no_packet_of_the_spin_up_is_lost_and_it_is_not_taken_for_a_loss(void)
     (void)world_run_ms(&world, 5000);
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_LOST));
     TEST_ASSERT_EQUAL_UINT32(world.link.counts.packets, count(TMINI_EVENT_PACKET));
-    check_world(&world);
 }
 
 /* As two real units begin: past the start packet's place without one, or with one anywhere. */
@@ -129,7 +129,6 @@ void test_a_restarted_program_finds_the_lidar_streaming_and_starts_it_again(void
     begin_scanning();
     world_restart_library(&world);
     scan();
-    check_world(&world);
 }
 
 void test_a_restarted_program_that_never_commands_gets_nothing_from_a_streaming_lidar(void)
@@ -158,7 +157,6 @@ void test_info_is_asked_of_a_lidar_that_is_still_streaming(void)
     TEST_ASSERT_EQUAL_UINT8(151, tmini_info(&world.lidar)->model);
     TEST_ASSERT_EQUAL_UINT8_ARRAY(serial, tmini_info(&world.lidar)->serial, 16);
     TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
-    check_world(&world);
 }
 
 void test_health_is_asked_of_a_lidar_that_is_still_streaming(void)
@@ -168,7 +166,6 @@ void test_health_is_asked_of_a_lidar_that_is_still_streaming(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_health(&world.lidar));
     ends_with(TMINI_EVENT_HEALTH, 1000);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_LD, tmini_health(&world.lidar)->faults);
-    check_world(&world);
 }
 
 void test_the_frequency_is_asked_of_a_lidar_that_is_still_streaming(void)
@@ -177,7 +174,6 @@ void test_the_frequency_is_asked_of_a_lidar_that_is_still_streaming(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_frequency(&world.lidar));
     ends_with(TMINI_EVENT_FREQUENCY, 1000);
     TEST_ASSERT_EQUAL_UINT16(600, tmini_frequency_chz(&world.lidar));
-    check_world(&world);
 }
 
 void test_the_frequency_of_a_lidar_that_is_still_streaming_is_set(void)
@@ -188,7 +184,6 @@ void test_the_frequency_of_a_lidar_that_is_still_streaming_is_set(void)
     TEST_ASSERT_EQUAL_UINT16(940, sim_frequency_chz(&world.sim));
     scan();
     TEST_ASSERT_UINT16_WITHIN(20, 940, world.scan.frequency_chz);
-    check_world(&world);
 }
 
 void test_a_lidar_that_is_still_streaming_is_rebooted(void)
@@ -198,7 +193,6 @@ void test_a_lidar_that_is_still_streaming_is_rebooted(void)
     ends_with(TMINI_EVENT_REBOOTED, 6000);
     TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
     scan();
-    check_world(&world);
 }
 
 void test_a_lidar_that_is_still_streaming_is_stopped(void)
@@ -207,7 +201,6 @@ void test_a_lidar_that_is_still_streaming_is_stopped(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
     ends_with(TMINI_EVENT_STOPPED, 1000);
     TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
-    check_world(&world);
 }
 
 /* The program looks at the lidar each 60 ms. */
@@ -241,7 +234,6 @@ void test_a_lidar_whose_bytes_have_filled_the_ring_is_stopped_before_it_is_start
     TEST_ASSERT_EQUAL_HEX(0, run_at_leisure(300));
     TEST_ASSERT_TRUE((run_at_leisure(3000) & BIT(TMINI_EVENT_STARTED)) != 0);
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_LOST));
-    check_world(&world);
 }
 
 void test_a_lidar_whose_bytes_have_filled_the_ring_is_reported_stopped_when_it_is(void)
@@ -251,7 +243,6 @@ void test_a_lidar_whose_bytes_have_filled_the_ring_is_reported_stopped_when_it_i
     TEST_ASSERT_EQUAL_HEX(0, run_at_leisure(300));
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_STOPPED), run_at_leisure(600));
     TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
-    check_world(&world);
 }
 
 /* ---- Commands in adverse conditions ---- */
@@ -266,7 +257,6 @@ void test_every_frequency_can_be_set_from_where_the_last_one_left_it(void)
         ends_with(TMINI_EVENT_FREQUENCY, 3000);
         TEST_ASSERT_EQUAL_UINT16(target_chz, sim_frequency_chz(&world.sim));
     }
-    check_world(&world);
 }
 
 void test_a_frequency_that_the_unit_refuses_fails_with_the_reply(void)
@@ -275,7 +265,6 @@ void test_a_frequency_that_the_unit_refuses_fails_with_the_reply(void)
     begin();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 1000));
     fails_with(TMINI_ERROR_REPLY, 20000);
-    check_world(&world);
 }
 
 void test_a_lost_reply_is_asked_for_again(void)
@@ -284,7 +273,6 @@ void test_a_lost_reply_is_asked_for_again(void)
     sim_lose_next_reply(&world.sim);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(&world.lidar));
     ends_with(TMINI_EVENT_INFO, 3000);
-    check_world(&world);
 }
 
 void test_a_lost_reply_to_any_frequency_step_does_no_harm(void)
@@ -334,7 +322,6 @@ void test_a_late_reply_to_one_question_is_not_taken_for_the_answer_to_another(vo
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(&world.lidar));
     (void)world_run_until(&world, BIT(TMINI_EVENT_INFO), 3000);
     TEST_ASSERT_EQUAL_UINT8(151, tmini_info(&world.lidar)->model);
-    check_world(&world);
 }
 
 /* Another program has asked A5 98 just before, which real units answer. */
@@ -364,7 +351,6 @@ void test_a_lost_reply_to_the_start_does_not_keep_scans_away(void)
     begin();
     sim_lose_next_reply(&world.sim);
     scan();
-    check_world(&world);
 }
 
 void test_a_tail_of_300_ms_after_a_stop_is_waited_for(void)
@@ -374,7 +360,6 @@ void test_a_tail_of_300_ms_after_a_stop_is_waited_for(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
     TEST_ASSERT_EQUAL_HEX(0, world_run_ms(&world, 300));
     ends_with(TMINI_EVENT_STOPPED, 100);
-    check_world(&world);
 }
 
 void test_commands_arrive_through_a_transmitter_that_is_often_busy(void)
@@ -386,7 +371,6 @@ void test_commands_arrive_through_a_transmitter_that_is_often_busy(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 1180));
     ends_with(TMINI_EVENT_FREQUENCY, 5000);
     TEST_ASSERT_EQUAL_UINT16(1180, sim_frequency_chz(&world.sim));
-    check_world(&world);
 }
 
 void test_a_lidar_without_power_fails_every_attempt(void)
@@ -410,7 +394,6 @@ static void survives(sim_link_kind_t kind, uint32_t mean_gap)
     (void)world_run_ms(&world, WORLD_RECOVERY_MS + 5000);
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(&world.lidar));
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_FAULTS_CHANGED));
-    check_world(&world);
 }
 
 static void survives_in_every_mode(sim_link_kind_t kind, uint32_t mean_gap)
@@ -492,7 +475,6 @@ void test_a_lidar_unplugged_for_a_minute_is_recovered_in_time(void)
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_RECOVERING, tmini_state(&world.lidar));
     ends_with(TMINI_EVENT_RECOVERED, WORLD_RECOVERY_MS + config.sim.boot_ms);
     ends_with(TMINI_EVENT_SCAN, 1000);
-    check_world(&world);
 }
 
 void test_a_lidar_unplugged_is_recovered_in_time_whenever_it_comes_back(void)
@@ -519,7 +501,6 @@ void test_without_recovery_the_program_starts_the_lidar_again(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
     ends_with(TMINI_EVENT_STOPPED, 1000);
     scan();
-    check_world(&world);
 }
 
 void test_a_lidar_that_shuts_itself_off_is_lost_and_recovered_when_it_is_well_again(void)
@@ -552,7 +533,6 @@ static void reports(uint8_t expected)
     /* It was reported, not "repaired". */
     TEST_ASSERT_EQUAL_UINT32(losses, count(TMINI_EVENT_LOST));
     TEST_ASSERT_EQUAL_UINT32(commands, world.sim.counts.commands);
-    check_world(&world);
 }
 
 static void begin_with(bool ct_information, bool blocked_sends_starts)
@@ -623,7 +603,6 @@ void test_a_small_dma_ring_is_enough_for_a_prompt_main_loop(void)
     config.busy_ms = 8;
     begin_scanning();
     (void)world_run_ms(&world, 60000);
-    check_world(&world);
 }
 
 void test_a_ring_of_1024_bytes_is_enough_for_a_main_loop_that_is_busy_for_60_ms(void)
@@ -633,7 +612,6 @@ void test_a_ring_of_1024_bytes_is_enough_for_a_main_loop_that_is_busy_for_60_ms(
     config.busy_ms = 60;
     begin_scanning();
     (void)world_run_ms(&world, 60000);
-    check_world(&world);
 }
 
 void test_a_main_loop_that_is_busy_for_too_long_costs_packets_but_accounts_for_them(void)

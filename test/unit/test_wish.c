@@ -35,22 +35,11 @@ static void want(uint16_t frequency_chz)
     rig_init();
 }
 
-static void goes_on_with(uint8_t code)
-{
-    polls_and_sends(code);
-}
-
-static void becomes_quiet(void)
-{
-    passes_to(50, TMINI_EVENT_NONE);
-}
-
 /* The stop has been sent; the question is, after the quiet time. */
 static void asks_for_the_frequency(void)
 {
     begins_with(STOP, tmini_start(&rig.lidar));
-    becomes_quiet();
-    goes_on_with(GET_FREQUENCY);
+    finds_quiet_and_sends(GET_FREQUENCY);
 }
 
 static void starts_scanning(void)
@@ -59,6 +48,22 @@ static void starts_scanning(void)
     polls_to(TMINI_EVENT_NONE);
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
+}
+
+/* The question has been sent. */
+static void starts_turning_at(uint16_t frequency_chz)
+{
+    rig_feed_frequency(frequency_chz);
+    polls_to(TMINI_EVENT_FREQUENCY);
+    polls_and_sends(START);
+    starts_scanning();
+}
+
+static void scans_wishing(uint16_t frequency_chz)
+{
+    want(frequency_chz);
+    asks_for_the_frequency();
+    starts_turning_at(frequency_chz);
 }
 
 /* ---- The frequency, before every start ---- */
@@ -70,7 +75,7 @@ void test_a_start_asks_for_the_wanted_frequency_first(void)
     rig_feed_frequency(1000);
     polls_to(TMINI_EVENT_FREQUENCY);
     is_in(TMINI_STATE_STARTING);
-    goes_on_with(START); /* The line is quiet: no stop. */
+    polls_and_sends(START); /* The line is quiet: no stop. */
     starts_scanning();
     polls_to(TMINI_EVENT_NONE);
     TEST_ASSERT_EQUAL_UINT16(1000, tmini_frequency_chz(&rig.lidar));
@@ -81,14 +86,12 @@ void test_a_start_sets_another_frequency_first(void)
     want(700);
     asks_for_the_frequency();
     rig_feed_frequency(600);
-    becomes_quiet();
-    goes_on_with(FASTER_ONE);
+    finds_quiet_and_sends(FASTER_ONE);
     rig_feed_frequency(700);
-    becomes_quiet();
-    goes_on_with(GET_FREQUENCY);
+    finds_quiet_and_sends(GET_FREQUENCY);
     rig_feed_frequency(700);
     polls_to(TMINI_EVENT_FREQUENCY);
-    goes_on_with(START);
+    polls_and_sends(START);
 }
 
 void test_packets_while_the_frequency_is_asked_for_are_no_start(void)
@@ -104,9 +107,8 @@ void test_packets_while_the_frequency_is_asked_for_are_no_start(void)
 static void starts_without_the_frequency(void)
 {
     passes_to(2000, TMINI_EVENT_NONE);
-    goes_on_with(STOP);
-    becomes_quiet();
-    goes_on_with(START);
+    polls_and_sends(STOP);
+    finds_quiet_and_sends(START);
     starts_scanning();
     polls_to(TMINI_EVENT_COMMAND_FAILED);
 }
@@ -125,31 +127,24 @@ void test_a_round_without_any_answer_is_reported_once(void)
     want(1000);
     asks_for_the_frequency();
     passes_to(2000, TMINI_EVENT_NONE);
-    goes_on_with(STOP);
-    becomes_quiet();
-    goes_on_with(START);
+    polls_and_sends(STOP);
+    finds_quiet_and_sends(START);
     passes_to(2000, TMINI_EVENT_COMMAND_FAILED);
     is_in(TMINI_STATE_STARTING);
     passes_to(500, TMINI_EVENT_NONE);
-    goes_on_with(STOP);
+    polls_and_sends(STOP);
 }
 
 void test_after_a_loss_the_frequency_is_not_known_and_asked_for_again(void)
 {
-    want(1000);
-    asks_for_the_frequency();
-    rig_feed_frequency(1000);
-    polls_to(TMINI_EVENT_FREQUENCY);
-    goes_on_with(START);
-    starts_scanning();
+    scans_wishing(1000);
     passes_to(1000, TMINI_EVENT_LOST);
     TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
-    goes_on_with(STOP);
-    becomes_quiet();
-    goes_on_with(GET_FREQUENCY);
+    polls_and_sends(STOP);
+    finds_quiet_and_sends(GET_FREQUENCY);
     passes(2000); /* In vain, and nothing new to report. */
     polls_to(TMINI_EVENT_NONE);
-    goes_on_with(STOP);
+    polls_and_sends(STOP);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_command_error(&rig.lidar));
 }
 
@@ -174,7 +169,7 @@ void test_a_wish_during_a_query_is_kept_for_the_start_that_follows(void)
     rig_feed_info();
     polls_to(TMINI_EVENT_INFO);
     is_in(TMINI_STATE_STARTING);
-    goes_on_with(GET_FREQUENCY);
+    polls_and_sends(GET_FREQUENCY);
 }
 
 void test_a_start_follows_a_stop_that_is_under_way(void)
@@ -184,7 +179,7 @@ void test_a_start_follows_a_stop_that_is_under_way(void)
     begins(tmini_start(&rig.lidar));
     passes_to(50, TMINI_EVENT_STOPPED);
     is_in(TMINI_STATE_STARTING);
-    goes_on_with(START);
+    polls_and_sends(START);
 }
 
 void test_a_stop_takes_back_the_start_that_was_to_follow(void)
@@ -200,12 +195,7 @@ void test_a_stop_takes_back_the_start_that_was_to_follow(void)
 
 void test_the_same_wish_again_disturbs_no_scan(void)
 {
-    want(1000);
-    asks_for_the_frequency();
-    rig_feed_frequency(1000);
-    polls_to(TMINI_EVENT_FREQUENCY);
-    goes_on_with(START);
-    starts_scanning();
+    scans_wishing(1000);
     begins(tmini_set_frequency(&rig.lidar, 1000));
     begins(tmini_start(&rig.lidar));
     is_in(TMINI_STATE_SCANNING);
@@ -217,11 +207,10 @@ void test_a_new_wish_while_recovering_still_ends_with_recovered(void)
     rig_go_recovering();
     begins_with(STOP, tmini_set_frequency(&rig.lidar, 900));
     is_in(TMINI_STATE_RECOVERING);
-    becomes_quiet();
-    goes_on_with(GET_FREQUENCY);
+    finds_quiet_and_sends(GET_FREQUENCY);
     rig_feed_frequency(900);
     polls_to(TMINI_EVENT_FREQUENCY);
-    goes_on_with(START);
+    polls_and_sends(START);
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_RECOVERED);
 }
@@ -243,8 +232,7 @@ void test_a_new_wish_after_a_pause_of_polls_awaits_a_quiet_line(void)
     rig_go_scanning();
     rig.now_ms += 60;
     begins_with(STOP, tmini_set_frequency(&rig.lidar, 700));
-    becomes_quiet();
-    goes_on_with(GET_FREQUENCY);
+    finds_quiet_and_sends(GET_FREQUENCY);
 }
 
 /* ---- Measured against wished ---- */
@@ -258,14 +246,14 @@ static void turns(unsigned count, uint8_t dhz)
     }
 }
 
-static void scans_wishing(uint16_t frequency_chz)
+/* The last of this many revolutions at 6.0 Hz makes the driver stop the lidar. */
+static void is_stopped_after(unsigned count)
 {
-    want(frequency_chz);
-    asks_for_the_frequency();
-    rig_feed_frequency(frequency_chz);
-    polls_to(TMINI_EVENT_FREQUENCY);
-    goes_on_with(START);
-    starts_scanning();
+    turns(count - 1, 60);
+    is_in(TMINI_STATE_SCANNING);
+    sends(STOP);
+    turns(1, 60);
+    was_sent();
 }
 
 /* At 6.0 Hz, 18 revolutions are 3 seconds. */
@@ -274,17 +262,11 @@ void test_three_seconds_of_another_frequency_are_a_fault_and_one_more_try(void)
     scans_wishing(1000);
     turns(17, 60);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-    sends(STOP);
-    turns(1, 60);
-    was_sent();
+    is_stopped_after(1);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
     is_in(TMINI_STATE_STARTING);
-    becomes_quiet();
-    goes_on_with(GET_FREQUENCY);
-    rig_feed_frequency(1000);
-    polls_to(TMINI_EVENT_FREQUENCY);
-    goes_on_with(START);
-    starts_scanning();
+    finds_quiet_and_sends(GET_FREQUENCY);
+    starts_turning_at(1000);
     turns(40, 60); /* No other try. */
     is_in(TMINI_STATE_SCANNING);
     turns(1, 100);
@@ -297,37 +279,24 @@ void test_a_frequency_that_could_not_be_set_is_tried_again_less_and_less_often(v
     static const unsigned counts[] = {18, 36, 72, 144, 255, 255};
     scans_wishing(1000);
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
-        turns(counts[i] - 1, 60);
-        is_in(TMINI_STATE_SCANNING);
-        sends(STOP);
-        turns(1, 60);
-        was_sent();
+        is_stopped_after(counts[i]);
         is_in(TMINI_STATE_STARTING);
         TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
-        becomes_quiet();
-        goes_on_with(GET_FREQUENCY);
+        finds_quiet_and_sends(GET_FREQUENCY);
         starts_without_the_frequency();
     }
     turns(1, 100);
-    turns(17, 60);
-    is_in(TMINI_STATE_SCANNING);
-    sends(STOP);
-    turns(1, 60);
-    was_sent();
+    is_stopped_after(18);
 }
 
 /* A lidar that reports its own frequency again and again has answered. */
 void test_a_frequency_that_the_lidar_refuses_is_tried_once_more_only(void)
 {
     scans_wishing(1000);
-    sends(STOP);
-    turns(18, 60);
-    was_sent();
-    becomes_quiet();
-    goes_on_with(GET_FREQUENCY);
+    is_stopped_after(18);
+    finds_quiet_and_sends(GET_FREQUENCY);
     rig_feed_frequency(600);
-    becomes_quiet();
-    goes_on_with(FASTER_ONE);
+    finds_quiet_and_sends(FASTER_ONE);
     rig_feed_frequency(600);
     polls_to(TMINI_EVENT_NONE);
     starts_without_the_frequency();
@@ -339,15 +308,9 @@ void test_a_frequency_that_the_lidar_refuses_is_tried_once_more_only(void)
 void test_a_frequency_that_is_off_after_a_loss_is_a_new_fault(void)
 {
     scans_wishing(1000);
-    sends(STOP);
-    turns(18, 60);
-    was_sent();
-    becomes_quiet();
-    goes_on_with(GET_FREQUENCY);
-    rig_feed_frequency(1000);
-    polls_to(TMINI_EVENT_FREQUENCY);
-    goes_on_with(START);
-    starts_scanning();
+    is_stopped_after(18);
+    finds_quiet_and_sends(GET_FREQUENCY);
+    starts_turning_at(1000);
     passes_to(1000, TMINI_EVENT_LOST);
     polls_to(TMINI_EVENT_FAULTS_CHANGED);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
@@ -410,10 +373,7 @@ void test_what_was_off_before_a_stop_does_not_count_after_it(void)
     turns(17, 60);
     rig_go_idle();
     begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
-    rig_feed_frequency(1000);
-    polls_to(TMINI_EVENT_FREQUENCY);
-    goes_on_with(START);
-    starts_scanning();
+    starts_turning_at(1000);
     turns(17, 60);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
     turns(1, 60);
@@ -564,8 +524,7 @@ void test_the_port_restarts_its_reception_at_a_loss_and_after_each_attempt_that_
     rig.port.restart = count_restart;
     rig_go_recovering();
     TEST_ASSERT_EQUAL_UINT(1, restarts);
-    becomes_quiet();
-    goes_on_with(START);
+    finds_quiet_and_sends(START);
     passes_to(2000, TMINI_EVENT_NONE);
     TEST_ASSERT_EQUAL_UINT(2, restarts);
 }
