@@ -148,6 +148,14 @@ void rig_plain_turns(unsigned count, uint16_t distance_mm);
 /* ---- Ways into each state ---- */
 
 void rig_go_idle(void);
+
+/* An idle lidar is asked: these two bytes are sent at once. */
+#define is_idle_and_asked(code, call) \
+    do {                              \
+        rig_go_idle();                \
+        begins_with(code, call);      \
+    } while (false)
+
 void rig_go_starting(void);     /* The start has been sent, its reply is awaited. */
 void rig_go_spinning_up(void);  /* The start has been acknowledged. */
 void rig_go_scanning(void);     /* One point packet with a range has come. */

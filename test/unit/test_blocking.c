@@ -66,6 +66,15 @@ static void feed_frequency(void)
     rig_feed_frequency(640);
 }
 
+/* An idle lidar, and a frequency for the next start. */
+static void wishes_640_chz(void)
+{
+    rig.config.frequency_chz = 640;
+    rig_init();
+    rig_go_idle();
+    port_wait_StubWithCallback(wait);
+}
+
 static void feed_turn(void)
 {
     rig_feed_plain_turn(1000);
@@ -195,10 +204,7 @@ void test_a_frequency_that_a_lost_lidar_refuses_is_waited_for_until_it_scans_aga
 /* Also while a start tries again and again. */
 void test_the_same_frequency_is_not_waited_for_once_it_has_been_set(void)
 {
-    rig.config.frequency_chz = 640;
-    rig_init();
-    rig_go_idle();
-    port_wait_StubWithCallback(wait);
+    wishes_640_chz();
     begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
     rig_feed_frequency(640);
     polls_to(TMINI_EVENT_FREQUENCY);
@@ -209,10 +215,7 @@ void test_the_same_frequency_is_not_waited_for_once_it_has_been_set(void)
 
 void test_the_same_frequency_is_waited_for_while_a_start_asks_for_it(void)
 {
-    rig.config.frequency_chz = 640;
-    rig_init();
-    rig_go_idle();
-    port_wait_StubWithCallback(wait);
+    wishes_640_chz();
     begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
     comes(5, feed_frequency);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
@@ -245,10 +248,7 @@ void test_a_frequency_is_not_waited_for_when_nothing_recovers_the_lidar(void)
 /* Each attempt that fails is reported, and the next asks again. */
 void test_a_frequency_is_waited_for_past_attempts_to_start_that_fail(void)
 {
-    rig.config.frequency_chz = 640;
-    rig_init();
-    rig_go_idle();
-    port_wait_StubWithCallback(wait);
+    wishes_640_chz();
     begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
     comes(4655, feed_frequency);
     sends(STOP); /* After 2 s. */
@@ -261,10 +261,7 @@ void test_a_frequency_is_waited_for_past_attempts_to_start_that_fail(void)
 
 void test_a_start_waits_for_a_scan_though_the_frequency_was_refused(void)
 {
-    rig.config.frequency_chz = 640;
-    rig_init();
-    rig_go_idle();
-    port_wait_StubWithCallback(wait);
+    wishes_640_chz();
     sends(GET_FREQUENCY);
     sends(STOP);
     sends(START);

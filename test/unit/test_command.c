@@ -42,8 +42,7 @@ void test_from_an_unknown_state_a_command_first_stops_the_lidar_and_waits_for_a_
 
 void test_in_the_idle_state_a_command_is_sent_at_once(void)
 {
-    rig_go_idle();
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
 }
 
 void test_each_byte_that_is_heard_puts_the_command_off_by_the_quiet_time(void)
@@ -177,8 +176,7 @@ void test_a_byte_that_no_poll_has_seen_yet_counts_as_heard(void)
 
 void test_bytes_after_a_reply_make_the_state_unknown(void)
 {
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_health(0, 0);
     rig_feed_byte(0x55);
     polls_to(TMINI_EVENT_HEALTH);
@@ -195,8 +193,7 @@ void test_info_is_what_the_reply_says(void)
                                     0x01, 0x01, 2,    0,    2,    5,    0,    4,    2,
                                     4,    0,    0,    0,    9,    0,    1,    9,    4};
 
-    rig_go_idle();
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     is_in(TMINI_STATE_BUSY);
     rig_feed(reply, sizeof reply);
     polls_to(TMINI_EVENT_INFO);
@@ -211,8 +208,7 @@ void test_info_is_what_the_reply_says(void)
 
 void test_health_is_what_the_reply_says(void)
 {
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_health(TMINI_FAULT_ENCODER | TMINI_FAULT_LD, 0x1234);
     polls_to(TMINI_EVENT_HEALTH);
     is_in(TMINI_STATE_IDLE);
@@ -222,8 +218,7 @@ void test_health_is_what_the_reply_says(void)
 
 void test_the_frequency_is_what_the_reply_says(void)
 {
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
+    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(720);
     polls_to(TMINI_EVENT_FREQUENCY);
     is_in(TMINI_STATE_IDLE);
@@ -232,8 +227,7 @@ void test_the_frequency_is_what_the_reply_says(void)
 
 void test_after_a_reboot_the_state_is_unknown_until_the_next_command(void)
 {
-    rig_go_idle();
-    begins_with(REBOOT, tmini_reboot(&rig.lidar));
+    is_idle_and_asked(REBOOT, tmini_reboot(&rig.lidar));
     is_in(TMINI_STATE_BUSY);
     passes_to(5000, TMINI_EVENT_REBOOTED);
     is_in(TMINI_STATE_UNKNOWN);
@@ -241,8 +235,7 @@ void test_after_a_reboot_the_state_is_unknown_until_the_next_command(void)
 
 void test_packets_while_the_lidar_reboots_are_no_scan(void)
 {
-    rig_go_idle();
-    begins_with(REBOOT, tmini_reboot(&rig.lidar));
+    is_idle_and_asked(REBOOT, tmini_reboot(&rig.lidar));
     rig_feed_start_packet(1000);
     passes_to(5000, TMINI_EVENT_REBOOTED);
 }
@@ -302,8 +295,7 @@ void test_a_second_stop_while_stopping_sends_nothing(void)
 
 void test_stop_aborts_a_query(void)
 {
-    rig_go_idle();
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     begins_with(STOP, tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_COMMAND_FAILED);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ABORTED, tmini_command_error(&rig.lidar));
@@ -324,8 +316,7 @@ void test_a_command_swallows_the_end_of_the_one_before_that_was_not_polled_for(v
 
 void test_a_command_that_is_cancelled_takes_the_start_after_it_along(void)
 {
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     begins(tmini_start(&rig.lidar));
     tmini_cancel(&rig.lidar);
     begins_with(STOP, tmini_request_info(&rig.lidar));
@@ -339,8 +330,7 @@ void test_a_command_that_is_cancelled_takes_the_start_after_it_along(void)
 
 void test_a_frequency_is_not_taken_for_device_information_though_the_type_is_the_same(void)
 {
-    rig_go_idle();
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     rig_feed_frequency(600);
     passes(10);
     rig_feed_info();
@@ -349,8 +339,7 @@ void test_a_frequency_is_not_taken_for_device_information_though_the_type_is_the
 
 void test_device_information_is_not_taken_for_a_frequency_though_the_type_is_the_same(void)
 {
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
+    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_info();
     passes(10);
     rig_feed_frequency(600);
@@ -367,8 +356,7 @@ void test_a_reply_that_was_not_asked_for_is_skipped(void)
 
 void test_a_reply_that_comes_late_answers_the_repeated_question(void)
 {
-    rig_go_idle();
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     passes_to(2000, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
     finds_quiet_and_sends(GET_INFO);
@@ -379,8 +367,7 @@ void test_a_reply_that_comes_late_answers_the_repeated_question(void)
 
 void test_a_reply_that_comes_while_the_line_is_being_hushed_is_not_taken(void)
 {
-    rig_go_idle();
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     passes_to(2000, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
     rig_feed_info();
@@ -398,8 +385,7 @@ static void asks_in_vain(uint8_t code)
 
 void test_a_question_without_an_answer_is_asked_three_times(void)
 {
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     asks_in_vain(GET_HEALTH);
     asks_in_vain(GET_HEALTH);
     passes(2000);
@@ -409,8 +395,7 @@ void test_a_question_without_an_answer_is_asked_three_times(void)
 
 void test_a_reply_that_comes_after_the_last_attempt_is_nobodys(void)
 {
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     asks_in_vain(GET_HEALTH);
     asks_in_vain(GET_HEALTH);
     passes(2000);
@@ -422,8 +407,7 @@ void test_a_reply_that_comes_after_the_last_attempt_is_nobodys(void)
 
 void test_each_command_has_all_its_attempts(void)
 {
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     asks_in_vain(GET_HEALTH);
     rig_feed_health(0, 0);
     polls_to(TMINI_EVENT_HEALTH);
@@ -453,8 +437,7 @@ void test_a_single_attempt_is_one_attempt(void)
 {
     rig.timing.max_attempts = 1;
     rig_init();
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     passes(2000);
     fails_with(TMINI_ERROR_TIMEOUT);
 }
@@ -463,8 +446,7 @@ void test_two_attempts_are_two(void)
 {
     rig.timing.max_attempts = 2;
     rig_init();
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     asks_in_vain(GET_HEALTH);
     passes(2000);
     fails_with(TMINI_ERROR_TIMEOUT);
@@ -474,8 +456,7 @@ void test_no_attempts_count_as_one(void)
 {
     rig.timing.max_attempts = 0;
     rig_init();
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     passes(2000);
     fails_with(TMINI_ERROR_TIMEOUT);
 }
@@ -484,8 +465,7 @@ void test_no_attempts_count_as_one(void)
 
 static void begins_to_set(uint16_t target_chz, uint16_t now_chz)
 {
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, target_chz));
+    is_idle_and_asked(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, target_chz));
     is_in(TMINI_STATE_BUSY);
     rig_feed_frequency(now_chz);
     polls_to(TMINI_EVENT_NONE);
@@ -592,8 +572,7 @@ void test_a_coarse_step_may_lead_to_the_lowest_frequency(void)
 
 void test_a_frequency_that_is_set_already_is_read_back_all_the_same_and_not_stepped(void)
 {
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 600));
+    is_idle_and_asked(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 600));
     rig_feed_frequency(600);
     arrives_at(600);
 }
@@ -609,8 +588,7 @@ void test_off_the_grid_the_nearest_frequency_will_do(void)
 
 void test_half_a_fine_step_off_is_near_enough_on_either_side(void)
 {
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 650));
+    is_idle_and_asked(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 650));
     rig_feed_frequency(645);
     arrives_at(645);
 
@@ -769,8 +747,7 @@ void test_a_packet_that_was_cut_off_between_two_steps_does_not_hide_the_next_rep
 /* 20 Hz; the lidar is made for 12. */
 void test_the_largest_plausible_frequency_is_reported(void)
 {
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
+    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(2000);
     polls_to(TMINI_EVENT_FREQUENCY);
     TEST_ASSERT_EQUAL_UINT16(2000, tmini_frequency_chz(&rig.lidar));
@@ -779,8 +756,7 @@ void test_the_largest_plausible_frequency_is_reported(void)
 /* 1 Hz. */
 void test_the_smallest_plausible_frequency_is_reported(void)
 {
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
+    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(100);
     polls_to(TMINI_EVENT_FREQUENCY);
     TEST_ASSERT_EQUAL_UINT16(100, tmini_frequency_chz(&rig.lidar));
@@ -788,16 +764,13 @@ void test_the_smallest_plausible_frequency_is_reported(void)
 
 void test_an_absurd_frequency_fails_the_command(void)
 {
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
+    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(2001);
     fails_with(TMINI_ERROR_REPLY);
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
+    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(65535);
     fails_with(TMINI_ERROR_REPLY);
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
+    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(65536 + 600);
     fails_with(TMINI_ERROR_REPLY);
 }
@@ -815,8 +788,7 @@ void test_frequencies_out_of_range_or_between_steps_are_refused_and_nothing_is_s
 
 void test_both_ends_of_the_frequency_range_are_accepted(void)
 {
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 600));
+    is_idle_and_asked(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 600));
     rig_feed_frequency(600);
     arrives_at(600);
     begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 1200));
@@ -828,8 +800,7 @@ void test_both_ends_of_the_frequency_range_are_accepted(void)
 
 void test_that_one_command_was_repeated_does_not_make_the_line_unsure_after_the_next(void)
 {
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     passes_to(2000, TMINI_EVENT_NONE);
     polls_and_sends(STOP);
     finds_quiet_and_sends(GET_HEALTH);
@@ -994,8 +965,7 @@ void test_the_first_byte_serves_for_the_next_command_also_when_the_second_failed
 
 void test_a_stop_that_fails_is_reported_apart_from_the_command_it_aborts(void)
 {
-    rig_go_idle();
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     sends_both_taking(STOP, -1);
     begins(tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_COMMAND_FAILED);

@@ -58,8 +58,7 @@ static void do_nothing(void) {}
 
 static void go_busy(void)
 {
-    rig_go_idle();
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
 }
 
 static void go_stopping(void)

@@ -247,8 +247,7 @@ void test_single_bytes_blocks_and_dma_bring_the_same_packet(void)
 
 void test_every_byte_is_accounted_for(void)
 {
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_byte(0x11);         /* 1 skipped */
     rig_feed_health(0, 0);       /* 10 in a reply */
     rig_feed_byte(0x22);         /* 1 skipped */
@@ -389,8 +388,7 @@ void test_a_port_that_cannot_send_the_stop_is_asked_twice_a_second(void)
 
 void test_a_lidar_that_streams_after_a_query_is_stopped_too(void)
 {
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_health(0, 0);
     polls_to(TMINI_EVENT_HEALTH);
     rig_feed_point_packet(1000);
@@ -439,8 +437,7 @@ static void bytes_are_not_given_up_that_come_at(unsigned reading)
 {
     static const uint8_t rest[] = {0x00, 0x06, 0x00, 0x00, 0x00};
 
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     passes(100);
     polls_with_bytes_at(reading);
     rig_feed(rest, sizeof rest);
@@ -465,8 +462,7 @@ static void feed_health_reply(void)
 /* It is known by then: the next poll does not take it for something new. */
 void test_a_reply_that_comes_while_the_clock_is_read_leaves_the_lidar_idle(void)
 {
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     polls_to(TMINI_EVENT_NONE);
     readings_left = 2;
     feed_meanwhile = feed_health_reply;
@@ -571,8 +567,7 @@ void test_without_a_frame_timeout_a_reply_that_comes_in_two_is_taken_all_the_sam
     static const uint8_t rest[] = {0x00, 0x06, 0x00, 0x00, 0x00};
 
     rig.timing.frame_timeout_ms = 0;
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed(begin, sizeof begin);
     polls_to(TMINI_EVENT_NONE);
     rig.now_ms += 1;
@@ -585,8 +580,7 @@ void test_without_a_frame_timeout_a_silent_poll_gives_up_a_reply(void)
     static const uint8_t begin[] = {0xA5, 0x5A, 0x03, 0x00, 0x00};
 
     rig.timing.frame_timeout_ms = 0;
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed(begin, sizeof begin);
     polls_to(TMINI_EVENT_NONE);
     TEST_ASSERT_EQUAL_UINT32(sizeof begin, rig_counters().bytes_pending);
@@ -654,8 +648,7 @@ void test_silence_gives_up_what_hides_a_reply_too(void)
 {
     static const uint8_t header[] = {0xAA, 0x55, 0x00, 0x28, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00};
 
-    rig_go_idle();
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     rig_feed(header, sizeof header);
     rig_feed_info();
     passes_to(100, TMINI_EVENT_INFO);
@@ -956,8 +949,7 @@ void test_streaming_reports_faults_and_losses_as_well(void)
 
 void test_the_answer_to_another_question_leaves_the_health_as_reported(void)
 {
-    rig_go_idle();
-    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_health(2, 0x1234);
     polls_to(TMINI_EVENT_HEALTH);
     passes_to(50, TMINI_EVENT_NONE);

@@ -150,8 +150,7 @@ void test_after_a_loss_the_frequency_is_not_known_and_asked_for_again(void)
 
 void test_a_reboot_leaves_the_frequency_unknown(void)
 {
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
+    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(800);
     polls_to(TMINI_EVENT_FREQUENCY);
     TEST_ASSERT_EQUAL_UINT16(800, tmini_frequency_chz(&rig.lidar));
@@ -161,8 +160,7 @@ void test_a_reboot_leaves_the_frequency_unknown(void)
 
 void test_a_wish_during_a_query_is_kept_for_the_start_that_follows(void)
 {
-    rig_go_idle();
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     begins(tmini_set_frequency(&rig.lidar, 900));
     begins(tmini_start(&rig.lidar));
     is_in(TMINI_STATE_BUSY);
@@ -184,8 +182,7 @@ void test_a_start_follows_a_stop_that_is_under_way(void)
 
 void test_a_stop_takes_back_the_start_that_was_to_follow(void)
 {
-    rig_go_idle();
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
+    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     begins(tmini_start(&rig.lidar));
     begins_with(STOP, tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_COMMAND_FAILED);
@@ -371,8 +368,7 @@ void test_what_was_off_before_a_stop_does_not_count_after_it(void)
     rig.config.recovery = TMINI_RECOVERY_OFF;
     scans_wishing(1000);
     turns(17, 60);
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
+    is_idle_and_asked(GET_FREQUENCY, tmini_start(&rig.lidar));
     starts_turning_at(1000);
     turns(17, 60);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));

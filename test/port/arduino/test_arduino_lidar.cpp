@@ -39,6 +39,13 @@ static bool happens(TMiniLidarBase &lidar, tmini_event_t wanted, unsigned limit_
     return false;
 }
 
+static void scan(TMiniLidarBase &lidar)
+{
+    lidar.begin(Serial1);
+    lidar.start();
+    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+}
+
 static void assert_same_points(const std::vector<reference_point_t> &expected,
                                TMiniLidarBase &lidar)
 {
@@ -175,9 +182,7 @@ static void going_through_the_points_takes_what_comes_meanwhile(void)
 {
     static TMiniLidar lidar;
     size_t points = 0;
-    lidar.begin(Serial1);
-    lidar.start();
-    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    scan(lidar);
     for (TMiniPoint point : lidar.points()) {
         points += point.isValid() ? 1 : 0;
         if (points % 20 == 0) {
@@ -265,9 +270,7 @@ static void every_point_of_every_packet_is_there_when_streaming(void)
 static void with_a_spare_buffer_a_scan_stays_until_the_next(void)
 {
     static TMiniLidarWith<1024, 2000, true> lidar;
-    lidar.begin(Serial1);
-    lidar.start();
-    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    scan(lidar);
     TEST_ASSERT_FALSE(happens(lidar, TMINI_EVENT_SCAN, 100));
     TEST_ASSERT_EQUAL_UINT(0, lidar.available());
     assert_same_points(unit->revolutions[1], lidar);
@@ -329,9 +332,7 @@ static void a_mount_and_a_step_of_ones_own_exclude_each_other(void)
 static void points_are_gone_with_the_next_loop(void)
 {
     static TMiniLidar lidar;
-    lidar.begin(Serial1);
-    lidar.start();
-    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    scan(lidar);
     TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, lidar.loop());
     TEST_ASSERT_EQUAL_UINT(0, lidar.available());
     TEST_ASSERT_EQUAL_UINT(0, lidar.points().size());
@@ -340,9 +341,7 @@ static void points_are_gone_with_the_next_loop(void)
 static void points_are_gone_when_it_begins_again(void)
 {
     static TMiniLidar lidar;
-    lidar.begin(Serial1);
-    lidar.start();
-    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    scan(lidar);
     lidar.begin(Serial1);
     TEST_ASSERT_EQUAL_UINT(0, lidar.available());
 }
@@ -366,9 +365,7 @@ static void a_loop_takes_all_that_is_there(void)
 static void it_never_asks_for_more_than_is_there(void)
 {
     static TMiniLidar lidar;
-    lidar.begin(Serial1);
-    lidar.start();
-    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    scan(lidar);
     TEST_ASSERT_FALSE(Serial1.waited);
 }
 
@@ -449,9 +446,7 @@ static void a_frequency_out_of_range_is_refused(void)
 static void while_scanning_only_stop_is_possible(void)
 {
     static TMiniLidar lidar;
-    lidar.begin(Serial1);
-    lidar.start();
-    TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000));
+    scan(lidar);
     TEST_ASSERT_FALSE(lidar.requestInfo());
     (void)lidar.loop();
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, lidar.status());
