@@ -8,6 +8,7 @@
 #include "like.h"
 
 #include <getopt.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,47 +19,15 @@ typedef struct {
     const char *value; /* what the value is called in the help; NULL: it takes none */
     const char *help;
     bool (*set)(options_t *options, const char *value); /* false: not a good value */
+    size_t place; /* if `set` is NULL: of a bool that becomes true, or of the value as text */
 } option_t;
 
-static bool set_help(options_t *options, const char *value)
-{
-    (void)value;
-    options->help = true;
-    return true;
-}
-
-static bool set_version(options_t *options, const char *value)
-{
-    (void)value;
-    options->version = true;
-    return true;
-}
-
-static bool set_pty(options_t *options, const char *value)
-{
-    (void)value;
-    options->pty = true;
-    return true;
-}
+#define PLACE(member) offsetof(options_t, member)
 
 static bool set_no_ct(options_t *options, const char *value)
 {
     (void)value;
     options->device.ct_information = false;
-    return true;
-}
-
-static bool set_blocked(options_t *options, const char *value)
-{
-    (void)value;
-    options->blocked = true;
-    return true;
-}
-
-static bool set_covered(options_t *options, const char *value)
-{
-    (void)value;
-    options->covered = true;
     return true;
 }
 
@@ -80,31 +49,6 @@ static bool set_tcp(options_t *options, const char *value)
         return false;
     }
     options->tcp_port = (uint16_t)port;
-    return true;
-}
-
-static bool set_lines(options_t *options, const char *value)
-{
-    (void)value;
-    options->lines = true;
-    return true;
-}
-
-static bool set_write(options_t *options, const char *value)
-{
-    options->write_path = value;
-    return true;
-}
-
-static bool set_log(options_t *options, const char *value)
-{
-    options->log_path = value;
-    return true;
-}
-
-static bool set_truth(options_t *options, const char *value)
-{
-    options->truth_path = value;
     return true;
 }
 
@@ -232,47 +176,48 @@ static bool set_fault(options_t *options, const char *value)
     return true;
 }
 
-static bool set_like(options_t *options, const char *value)
-{
-    return like_read(options, value);
-}
-
 static const option_t known[] = {
-    {0, "pty", NULL, "serve a pseudo-terminal; its path is the first line printed", set_pty},
-    {0, "tcp", "PORT", "serve 127.0.0.1:PORT (0: any free port; the first line says)", set_tcp},
+    {0, "pty", NULL, "serve a pseudo-terminal; its path is the first line printed", NULL,
+     PLACE(pty)},
+    {0, "tcp", "PORT", "serve 127.0.0.1:PORT (0: any free port, printed in the first line)",
+     set_tcp, 0},
     {0, "lines", NULL,
-     "in the time of the program that asks: reads lines of MICROSECONDS and the\n"
-     "                          bytes then received, in hexadecimal; answers each with those sent",
-     set_lines},
-    {0, "write", "FILE", "record --seconds of scanning in virtual time, as fast as can be",
-     set_write},
-    {0, "frequency", "HZ", "set scan frequency at power-up, 5 to 12 (6)", set_frequency},
-    {0, "firmware", "X.Y", "version of the firmware (1.2; 1.3 is in the field)", set_firmware},
+     "time comes by standard input: lines of MICROSECONDS and the bytes\n"
+     "                          received then, in hexadecimal; each is answered by the bytes sent",
+     NULL, PLACE(lines)},
+    {0, "write", "FILE", "record --seconds of scanning in virtual time, as fast as possible", NULL,
+     PLACE(write_path)},
+    {0, "frequency", "HZ", "set scan frequency at power-up, 5 to 12 (6)", set_frequency, 0},
+    {0, "firmware", "X.Y", "version of the firmware (1.2; 1.3 is in the field)", set_firmware, 0},
     {0, "begin", "HOW",
      "first packets after a start: anywhere, unmarked (they pass the start\n"
      "                          packet's place without one), start (the first is one) (anywhere)",
-     set_beginning},
-    {0, "like", "REPORT", "as the unit that `tmini survey` has written this report of", set_like},
-    {0, "no-ct", NULL, "send neither CT information nor LastCRC", set_no_ct},
-    {0, "blocked", NULL, "the rotor does not turn", set_blocked},
-    {0, "covered", NULL, "the window is covered: no ranges", set_covered},
+     set_beginning, 0},
+    {0, "like", "REPORT", "as the unit that `tmini survey` has written this report of", like_read,
+     0},
+    {0, "no-ct", NULL, "send neither CT information nor LastCRC", set_no_ct, 0},
+    {0, "blocked", NULL, "the rotor does not turn", NULL, PLACE(blocked)},
+    {0, "covered", NULL, "the window is covered: no ranges", NULL, PLACE(covered)},
     {0, "health", "BITS",
      "faults reported, 0 to 0x3F: 1 sensor, 2 encoder,\n"
      "                          4 wireless power, 8 PD, 16 LD, 32 data (0)",
-     set_health},
-    {0, "motor", "PERCENT", "of the set frequency that the motor comes up to (100)", set_motor},
-    {0, "spin-up", "SECONDS", "that it takes for that (1)", set_spin_up},
+     set_health, 0},
+    {0, "motor", "PERCENT", "share of the set frequency that the motor reaches (100)", set_motor,
+     0},
+    {0, "spin-up", "SECONDS", "time from standstill to that speed (1)", set_spin_up, 0},
     {0, "fault", "KIND=RATE",
      "drop, flip, insert: probability per byte;\n"
      "                          burst, stall, cut, unplug, garble: events per second",
-     set_fault},
-    {0, "seed", "N", "of all that is random (1)", set_seed},
-    {'s', "seconds", "N", "of virtual time, then exit (never)", set_seconds},
-    {0, "speed", "X", "virtual seconds a real second (1)", set_speed},
-    {0, "log", "FILE", "commands, modes, faults and totals; - is standard output", set_log},
-    {0, "truth", "FILE", "every sample sent, as CSV; - is standard output", set_truth},
-    {'h', "help", NULL, "this", set_help},
-    {'V', "version", NULL, "the version", set_version},
+     set_fault, 0},
+    {0, "seed", "N", "seed of all that is random (1)", set_seed, 0},
+    {'s', "seconds", "N", "virtual time, then exit (never)", set_seconds, 0},
+    {0, "speed", "X", "virtual seconds per real second (1)", set_speed, 0},
+    {0, "log", "FILE", "commands, modes, faults and totals; - is standard output", NULL,
+     PLACE(log_path)},
+    {0, "truth", "FILE", "every sample sent, as CSV; - is standard output", NULL,
+     PLACE(truth_path)},
+    {'h', "help", NULL, "this text", NULL, PLACE(help)},
+    {'V', "version", NULL, "the version", NULL, PLACE(version)},
 };
 
 #define KNOWN_OPTIONS (sizeof known / sizeof known[0])
@@ -337,7 +282,7 @@ static bool is_consistent(const options_t *options)
 
 /* For getopt_long(): the short options, after ":", which asks for silence about errors; and the
  * long ones, each returning its place in the table, beyond all characters. */
-#define PLACE 256
+#define BEYOND 256
 
 static void list_options(char *short_ones, struct option *long_ones)
 {
@@ -347,7 +292,7 @@ static void list_options(char *short_ones, struct option *long_ones)
 
         long_ones[i].name = known[i].name;
         long_ones[i].has_arg = has_value;
-        long_ones[i].val = PLACE + (int)i;
+        long_ones[i].val = BEYOND + (int)i;
         if (known[i].letter != 0) {
             *short_ones++ = known[i].letter;
             *short_ones++ = ':';
@@ -361,11 +306,26 @@ static const option_t *option_of(int answer)
 {
     size_t i = 0;
 
-    while (answer < PLACE && i < KNOWN_OPTIONS && known[i].letter != answer) {
+    while (answer < BEYOND && i < KNOWN_OPTIONS && known[i].letter != answer) {
         i++;
     }
-    i = answer < PLACE ? i : (size_t)(answer - PLACE);
+    i = answer < BEYOND ? i : (size_t)(answer - BEYOND);
     return i < KNOWN_OPTIONS ? &known[i] : NULL;
+}
+
+static bool set(options_t *options, const option_t *option, const char *value)
+{
+    char *const place = (char *)options + option->place;
+
+    if (option->set != NULL) {
+        return option->set(options, value);
+    }
+    if (option->value == NULL) {
+        *(bool *)place = true;
+    } else {
+        memcpy(place, &value, sizeof value);
+    }
+    return true;
 }
 
 static bool take(options_t *options, int answer, const char *word)
@@ -376,7 +336,7 @@ static bool take(options_t *options, int answer, const char *word)
         return complain(word,
                         answer == ':' ? " needs a value" : " is not an option, or needs no value");
     }
-    return option->set(options, optarg) || complain_of(option, " has a value out of range or form");
+    return set(options, option, optarg) || complain_of(option, " has a value out of range or form");
 }
 
 bool options_parse(options_t *options, int argc, char **argv)
@@ -396,6 +356,5 @@ bool options_parse(options_t *options, int argc, char **argv)
             return false;
         }
     }
-    return optind == argc ? is_consistent(options)
-                          : complain(argv[optind], ": there is nothing to say without an option");
+    return optind == argc ? is_consistent(options) : complain(argv[optind], " is not an option");
 }

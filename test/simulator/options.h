@@ -19,7 +19,7 @@ typedef struct {
     const char *log_path;
     const char *truth_path;
     double seconds; /* of virtual time; 0: without end */
-    double speed;   /* virtual seconds a real second */
+    double speed;   /* virtual seconds per real second */
     bool blocked;   /* the rotor */
     bool covered;   /* the window */
     uint8_t health; /* faults that the device reports: SIM_HEALTH_... */
