@@ -3,7 +3,8 @@
 
 # cmake -D WAY=… -D TMINI_SOURCE=… -D BUILD=… -D COMPILER=… -D GENERATOR=… -P run.cmake
 #
-# Configures, checks, builds and runs the consumer project.
+# Configures, checks, builds and runs the consumer project. For FetchContent, TMINI_SOURCE may be a
+# release's archive.
 
 include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 
@@ -24,9 +25,13 @@ file(REMOVE_RECURSE ${BUILD})
 if(WAY STREQUAL "find_package")
     install_project(${BUILD}/installed-from ${BUILD}/prefix OFF)
 endif()
+set(fetched ${TMINI_SOURCE})
+if(NOT IS_DIRECTORY ${TMINI_SOURCE})
+    set(fetched "")
+endif()
 run_or_fail(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${BUILD} -G ${GENERATOR}
     -DCMAKE_C_COMPILER=${COMPILER} -DWAY=${WAY} -DTMINI_SOURCE=${TMINI_SOURCE}
-    -DFETCHCONTENT_SOURCE_DIR_TMINI=${TMINI_SOURCE} -DCMAKE_PREFIX_PATH=${BUILD}/prefix)
+    -DFETCHCONTENT_SOURCE_DIR_TMINI=${fetched} -DCMAKE_PREFIX_PATH=${BUILD}/prefix)
 check_command_line()
 run_or_fail(${CMAKE_COMMAND} --build ${BUILD})
 

@@ -137,7 +137,7 @@ static void write_totals(report_t *report, uint64_t now_us, uint64_t lost_by_hos
     const sim_link_counts_t *link = &report->link->counts;
 
     print_time(report, now_us);
-    fprintf(report->log, "totals: %" PRIu32 " packets, %" PRIu32 " intact behind the line, ",
+    fprintf(report->log, "totals: %" PRIu32 " packets, %" PRIu32 " intact after the line, ",
             device->packets, link->intact_packets);
     fprintf(report->log, "%" PRIu32 " start packets, %" PRIu64 " samples, %" PRIu32 " replies, ",
             device->start_packets, device->samples, device->replies);
