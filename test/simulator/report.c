@@ -11,30 +11,19 @@
 
 static const char *command_name(uint8_t code)
 {
-    switch (code) {
-    case SIM_COMMAND_FREQUENCY_UP_TENTH:
-        return "frequency +0.1 Hz";
-    case SIM_COMMAND_FREQUENCY_DOWN_TENTH:
-        return "frequency -0.1 Hz";
-    case SIM_COMMAND_FREQUENCY_UP:
-        return "frequency +1 Hz";
-    case SIM_COMMAND_FREQUENCY_DOWN:
-        return "frequency -1 Hz";
-    case SIM_COMMAND_GET_FREQUENCY:
-        return "get frequency";
-    case SIM_COMMAND_REBOOT:
-        return "reboot";
-    case SIM_COMMAND_START:
-        return "start";
-    case SIM_COMMAND_STOP:
-        return "stop";
-    case SIM_COMMAND_INFORMATION:
-        return "device information";
-    case SIM_COMMAND_HEALTH:
-        return "health";
-    default:
-        return "unknown";
-    }
+    static const char *const names[256] = {
+        [SIM_COMMAND_FREQUENCY_UP_TENTH] = "frequency +0.1 Hz",
+        [SIM_COMMAND_FREQUENCY_DOWN_TENTH] = "frequency -0.1 Hz",
+        [SIM_COMMAND_FREQUENCY_UP] = "frequency +1 Hz",
+        [SIM_COMMAND_FREQUENCY_DOWN] = "frequency -1 Hz",
+        [SIM_COMMAND_GET_FREQUENCY] = "get frequency",
+        [SIM_COMMAND_REBOOT] = "reboot",
+        [SIM_COMMAND_START] = "start",
+        [SIM_COMMAND_STOP] = "stop",
+        [SIM_COMMAND_INFORMATION] = "device information",
+        [SIM_COMMAND_HEALTH] = "health",
+    };
+    return names[code] != NULL ? names[code] : "unknown";
 }
 
 static void print_time(const report_t *report, uint64_t at_us)

@@ -92,6 +92,14 @@ static void expect_nothing_known(void)
     TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&ct_state));
 }
 
+static void expect_serial(uint16_t year, uint8_t month, uint8_t day, uint32_t number)
+{
+    TEST_ASSERT_EQUAL_UINT16(year, info.year);
+    TEST_ASSERT_EQUAL_UINT8(month, info.month);
+    TEST_ASSERT_EQUAL_UINT8(day, info.day);
+    TEST_ASSERT_EQUAL_UINT32(number, info.number);
+}
+
 static void expect_versions_and_faults(uint8_t faults)
 {
     TEST_ASSERT_EQUAL_UINT8(1, info.user_major);
@@ -128,13 +136,10 @@ void test_a_revolution_at_6_hz_reports_everything(void)
     tmini_ct_read(&ct_state, &info);
     TEST_ASSERT_EQUAL_HEX16(0x2E3A, info.known); /* Bits 1, 3, 4, 5, 9, 10, 11 and 13. */
     expect_versions_and_faults(TMINI_FAULT_ENCODER | TMINI_FAULT_LD);
-    TEST_ASSERT_EQUAL_UINT16(2025, info.year);
-    TEST_ASSERT_EQUAL_UINT8(4, info.month);
-    TEST_ASSERT_EQUAL_UINT8(24, info.day);
-    TEST_ASSERT_EQUAL_UINT32(1193046, info.number);
+    expect_serial(2025, 4, 24, 1193046);
 }
 
-void test_a_revolution_at_10_hz_does_not_tell_day_and_number(void)
+void test_a_revolution_at_10_hz_does_not_show_day_and_number(void)
 {
     add_revolution(TEN_HERTZ_CT, &six_hertz[1], 10);
     TEST_ASSERT_TRUE(end_with(TEN_HERTZ_CRC));
@@ -143,13 +148,10 @@ void test_a_revolution_at_10_hz_does_not_tell_day_and_number(void)
                                 TMINI_KNOWN_FIRMWARE | TMINI_KNOWN_YEAR | TMINI_KNOWN_MONTH,
                             info.known);
     expect_versions_and_faults(TMINI_FAULT_ENCODER | TMINI_FAULT_LD);
-    TEST_ASSERT_EQUAL_UINT16(2025, info.year);
-    TEST_ASSERT_EQUAL_UINT8(4, info.month);
-    TEST_ASSERT_EQUAL_UINT8(0, info.day);
-    TEST_ASSERT_EQUAL_UINT32(0, info.number);
+    expect_serial(2025, 4, 0, 0);
 }
 
-void test_a_revolution_at_12_hz_does_not_tell_the_month_either(void)
+void test_a_revolution_at_12_hz_does_not_show_the_month_either(void)
 {
     add_revolution(TWELVE_HERTZ_CT, &six_hertz[1], 9);
     TEST_ASSERT_TRUE(end_with(TWELVE_HERTZ_CRC));
@@ -200,10 +202,7 @@ void test_the_largest_values_fit_their_fields(void)
     TEST_ASSERT_EQUAL_UINT8(7, info.hardware);
     TEST_ASSERT_EQUAL_UINT8(15, info.firmware_major);
     TEST_ASSERT_EQUAL_UINT8(127, info.firmware_minor);
-    TEST_ASSERT_EQUAL_UINT16(2051, info.year);
-    TEST_ASSERT_EQUAL_UINT8(15, info.month);
-    TEST_ASSERT_EQUAL_UINT8(31, info.day);
-    TEST_ASSERT_EQUAL_UINT32(2097151, info.number);
+    expect_serial(2051, 15, 31, 2097151);
 }
 
 /* The number's 21 bits are 01 101 10 0110101 0101011: 891563. */
@@ -222,10 +221,7 @@ void test_each_bit_of_the_serial_number_has_its_place(void)
     add_revolution(0x79, cts, 16);
     TEST_ASSERT_TRUE(end_with(crc));
     tmini_ct_read(&ct_state, &info);
-    TEST_ASSERT_EQUAL_UINT16(2026, info.year);
-    TEST_ASSERT_EQUAL_UINT8(12, info.month);
-    TEST_ASSERT_EQUAL_UINT8(31, info.day);
-    TEST_ASSERT_EQUAL_UINT32(891563, info.number);
+    expect_serial(2026, 12, 31, 891563);
 }
 
 void test_a_healthy_lidar_is_known_to_have_no_faults(void)
