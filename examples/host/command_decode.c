@@ -198,8 +198,8 @@ const command_t command_decode = {
     .usage = "FILE|- [--csv|--json] [--stats FILE|-] [--max-samples N]",
     .summary = "what a recording holds: a summary, or every sample",
     .details = "Without --csv or --json: scans, points, frequency, nearest obstacle, errors.\n"
-               "With them, the same columns and members as `tmini scan`, without end in the\n"
-               "memory of a few scans.",
+               "With them, the same columns and members as `tmini scan`. A recording may be of\n"
+               "any length.",
     .accepts = "CJSMq",
     .has_operand = true,
     .run = run,

@@ -123,7 +123,7 @@ const command_t command_info = {
 const command_t command_health = {
     .name = "health",
     .usage = "[-p PORT] [--json]",
-    .summary = "whether the lidar is well",
+    .summary = "whether the lidar is healthy",
     .details = "Exit status 1 also when the lidar is faulty.",
     .accepts = "pJq",
     .use = query_health,
@@ -134,7 +134,7 @@ const command_t command_frequency = {
     .usage = "[HZ] [-p PORT] [--json]",
     .summary = "reads the scan frequency, or sets it",
     .details = "HZ: 6 to 12, in steps of 0.1. The lidar forgets it when it loses power. Prints\n"
-               "what is set, which `tmini scan` shows the motor to come close to.",
+               "the frequency that is set; `tmini scan` shows the one that is measured.",
     .accepts = "pJq",
     .has_operand = true,
     .run = run_frequency,

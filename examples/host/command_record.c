@@ -154,8 +154,8 @@ const command_t command_record = {
     .usage = "[-p PORT] FILE|- [--seconds N] [--timed] [--wait] [--listen]",
     .summary = "all that the lidar sends, until Ctrl-C or for N seconds",
     .details = "FILE then holds all that the lidar sent from the start command on, for `tmini\n"
-               "decode`, `plot` and `view`. A FILE.tmini, or any with --timed, also holds when\n"
-               "it came; others hold the raw bytes alone.",
+               "decode`, `plot` and `view`. A FILE.tmini, or any FILE with --timed, also\n"
+               "holds the times; others hold only the raw bytes.",
     .accepts = "psTWLq",
     .has_operand = true,
     .run = run,

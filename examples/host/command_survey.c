@@ -171,12 +171,12 @@ static int use_survey(device_t *device, const options_t *options)
 const command_t command_survey = {
     .name = "survey",
     .usage = "[-p PORT] [REPORT|-] [--seconds N] [--with-serial]",
-    .summary = "two minutes: what this unit does of what is known of its kind",
+    .summary = "two minutes: compares this unit with what is known of its kind",
     .details = "A line per statement of docs/protocol.md: as expected, differs or unknown. The\n"
-               "REPORT has it as `key = value` too, for an issue, and for `tmini-sim --like\n"
-               "REPORT`. The lidar is rebooted; its frequency is left as it was. The serial\n"
-               "number is left out. --with-serial puts it in, and all that was received beside\n"
-               "it, into REPORT.tmini. --seconds: to scan at 6 Hz (40).",
+               "REPORT also has each answer as `key = value`, for an issue and for `tmini-sim\n"
+               "--like REPORT`. The lidar is rebooted; its frequency is left as it was. The\n"
+               "serial number is left out. --with-serial includes it, and writes all that was\n"
+               "received to REPORT.tmini. --seconds: how long to scan at 6 Hz (40).",
     .accepts = "psIq",
     .has_operand = true,
     .use = use_survey,

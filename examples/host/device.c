@@ -285,7 +285,7 @@ const char *trouble_text(trouble_t trouble)
     return texts[trouble];
 }
 
-/* A lidar that answers this is well wired. */
+/* The wires of a lidar that answers this are good. */
 static bool answers_info(device_t *device)
 {
     patience.max_attempts = 1;
