@@ -43,16 +43,6 @@ static size_t arrived_to(const tmini_t *lidar)
     return are_held ? held_to : received;
 }
 
-/* The line time of the bytes that have arrived since the last call. */
-static uint32_t take_arrived_ms(tmini_t *lidar)
-{
-    tmini_line_t *const line = &lidar->line;
-    const size_t arrived = arrived_to(lidar);
-    const size_t count = tmini_ring_distance(line->arrived, arrived);
-    line->arrived = arrived;
-    return count <= TMINI_RING_CLOSED / 2 ? transit_ms(count) : 0;
-}
-
 /* True for a silence that may hide a turn: longer than half a turn at the reported frequency, or at
  * 12 Hz while the lidar is not up to speed. What a shorter one hides is visible in the angles, even
  * if the true silence is half a turn longer. */
@@ -75,11 +65,10 @@ static bool are_fresh(uint32_t due_ms, uint32_t passed_ms)
 }
 
 /* Notes that the bytes that have come may be late. A larger delay of earlier bytes is kept until
- * these have been parsed. */
-static void note_delay(tmini_t *lidar, int32_t late_ms)
+ * these `are_parsed`. */
+static void note_delay(tmini_line_t *line, int32_t late_ms, bool are_parsed)
 {
-    tmini_line_t *const line = &lidar->line;
-    if (lidar->is_settled) {
+    if (are_parsed) {
         line->late_ms = 0;
     }
     if (late_ms > line->late_ms && late_ms <= LATE_MAX_MS) {
@@ -87,30 +76,43 @@ static void note_delay(tmini_t *lidar, int32_t late_ms)
     }
 }
 
+/* Bytes may be missing somewhere before this place. */
+static void doubt_to(tmini_line_t *line, size_t place)
+{
+    line->doubt = true;
+    line->doubtful_to = place;
+}
+
 /* Bytes have come, `passed_ms` after the last look. A scanning lidar never pauses for long, so if
  * the bytes are too few for the time since others came, bytes may be missing. The place is unknown:
- * a layer below that was held up may deliver late what came before the silence. So these bytes may
- * be older by the missing time. That time counts again for the next bytes, because the silence may
- * continue. Only if the line was watched and the lidar does not scan yet, the silence was before
- * these bytes. More bytes than the ring holds mean a gap of DMA: then their number is unknown. */
+ * a layer below that was held up may deliver late what came before the silence. So these bytes, and
+ * those that the port still holds, may be older by the missing time. That time counts again for the
+ * next bytes, because the silence may continue. Only if the line was watched and the lidar does not
+ * scan yet, the silence was before these bytes. Bytes that the port held before show no time. More
+ * bytes than the ring holds mean a gap of DMA: then their number is unknown. */
 static void note_bytes(tmini_t *lidar, size_t count, uint32_t passed_ms)
 {
     tmini_line_t *const line = &lidar->line;
-    const uint32_t due_ms = take_arrived_ms(lidar);
+    const size_t arrived = arrived_to(lidar);
+    const size_t fresh = tmini_ring_distance(line->arrived, arrived);
+    if (fresh == 0) {
+        return;
+    }
+    const bool were_held = line->arrived != line->received - count;
+    const uint32_t due_ms = fresh <= TMINI_RING_CLOSED / 2 ? transit_ms(fresh) : 0;
     const uint32_t pause_ms = line->now_ms - line->heard_ms;
     const int32_t missing_ms =
         (int32_t)((pause_ms < SILENCE_MAX_MS ? pause_ms : SILENCE_MAX_MS) - due_ms);
     const bool is_gap = count > lidar->ring.size;
     const bool is_doubtful = is_gap || may_hide_turn(lidar, missing_ms + line->late_ms);
+    line->arrived = arrived;
+    line->heard_ms = line->now_ms;
     if (is_doubtful) {
         const bool is_first = lidar->state != TMINI_STATE_SCANNING;
         const bool is_before = is_first && !is_gap && are_fresh(due_ms, passed_ms);
-        line->doubt = true;
-        line->doubtful_to = is_before ? line->received - count : line->received;
+        doubt_to(line, is_before ? line->received - count : arrived);
     }
-    note_delay(lidar, is_doubtful ? 0 : missing_ms);
-    line->silent_ms = 0;
-    line->heard_ms = line->now_ms;
+    note_delay(line, is_doubtful ? 0 : missing_ms, lidar->is_settled && !were_held);
 }
 
 static void note_silence(tmini_line_t *line, uint32_t passed_ms)
@@ -126,19 +128,18 @@ bool tmini_line_look(tmini_t *lidar)
     const size_t head = tmini_ring_head(&lidar->ring);
     const size_t count = tmini_ring_distance(line->received, head);
     const uint32_t clock_ms = lidar->link.port->now_ms(lidar->link.port_context);
-    const bool is_back = line->now_ms != 0 && line->now_ms - clock_ms <= STEP_BACK_MAX_MS;
-    const uint32_t now_ms = is_back ? line->now_ms : clock_ms;
-    const uint32_t passed_ms = now_ms - line->now_ms;
-    line->now_ms = now_ms;
+    const uint32_t back_ms = line->now_ms - clock_ms;
+    const bool is_back = line->now_ms != 0 && back_ms <= STEP_BACK_MAX_MS;
+    const uint32_t passed_ms = is_back ? 0 : clock_ms - line->now_ms;
+    line->now_ms += passed_ms;
     line->received = head;
     if (count > 0) {
         note_bytes(lidar, count, passed_ms);
-    } else if (tmini_ring_is_full(&lidar->ring)) {
-        line->silent_ms = 0; /* No room: whether bytes have come is unknown. */
-    } else {
+    } else if (!tmini_ring_is_full(&lidar->ring)) { /* If it is, bytes may have come. */
         note_silence(line, passed_ms);
         return false;
     }
+    line->silent_ms = 0;
     return true;
 }
 

@@ -306,3 +306,26 @@ void test_a_pause_of_the_program_that_the_port_bridges_costs_no_scan(void)
         }
     }
 }
+
+/* The ring takes the first of what came during the pause. The silence may lie among the rest, which
+ * comes into the ring when the pause has been judged. */
+void test_a_silence_among_bytes_that_the_port_holds_mixes_no_turns(void)
+{
+    static const uint16_t limits_ms[] = {30, 250, 0};
+
+    for (unsigned i = 0; i < 3; i++) {
+        program_t bridged = {.ring = 1024,
+                             .poll_us = 1000,
+                             .limit_ms = limits_ms[i],
+                             .pause_us = 300000,
+                             .reports = true};
+
+        for (bridged.missing = 0; bridged.missing < PACKETS; bridged.missing++) {
+            for (uint32_t us = 0; us < 2 * TURN_US; us += 4000) {
+                bridged.pause_at_us = TURN_US + us;
+                play(&bridged);
+            }
+        }
+        TEST_ASSERT_EQUAL_UINT(0, lies);
+    }
+}

@@ -162,6 +162,32 @@ void test_bytes_that_had_arrived_before_explain_nothing(void)
     TEST_ASSERT_TRUE(is_doubted_after(51));
 }
 
+/* The silence may lie among those that the port still holds. */
+void test_a_doubt_reaches_to_the_last_byte_that_the_port_holds(void)
+{
+    lidar.held_to = 13 + 131;
+    (void)look_after(60, 13);
+    TEST_ASSERT_FALSE(lidar.line.doubt);
+    lidar.held_to = 13 + 131 + 20;
+    (void)look_after(52, 13);
+    TEST_ASSERT_TRUE(lidar.line.doubt);
+    TEST_ASSERT_EQUAL_size_t(13 + 131 + 20, lidar.line.doubtful_to);
+}
+
+/* 100 bytes arrive, then no others: the last 87 are fed meanwhile. */
+void test_bytes_that_had_arrived_before_do_not_end_a_silence(void)
+{
+    lidar.held_to = 100;
+    (void)look_after(8, 13);
+    TEST_ASSERT_TRUE(look_after(30, 43));
+    TEST_ASSERT_TRUE(look_after(20, 44));
+    TEST_ASSERT_EQUAL_UINT32(5008, lidar.line.heard_ms);
+    TEST_ASSERT_FALSE(lidar.line.doubt);
+    (void)look_after(1, 1);
+    TEST_ASSERT_EQUAL_UINT32(5059, lidar.line.heard_ms);
+    TEST_ASSERT_TRUE(lidar.line.doubt);
+}
+
 /* ---- How late bytes may be ---- */
 
 void test_bytes_are_late_by_a_second_at_most(void)
@@ -180,6 +206,17 @@ void test_a_delay_is_kept_until_all_bytes_that_it_concerns_are_read(void)
     (void)look_after(3, 1);
     TEST_ASSERT_EQUAL_UINT16(20, lidar.line.late_ms);
     lidar.is_settled = true;
+    (void)look_after(3, 1);
+    TEST_ASSERT_EQUAL_UINT16(3, lidar.line.late_ms);
+}
+
+void test_a_delay_is_kept_until_all_that_the_port_held_is_read(void)
+{
+    lidar.held_to = 100;
+    (void)look_after(20 + 7, 1); /* 100 bytes explain 7 ms. */
+    TEST_ASSERT_EQUAL_UINT16(20, lidar.line.late_ms);
+    (void)look_after(3, 100);
+    TEST_ASSERT_EQUAL_UINT16(20, lidar.line.late_ms);
     (void)look_after(3, 1);
     TEST_ASSERT_EQUAL_UINT16(3, lidar.line.late_ms);
 }
