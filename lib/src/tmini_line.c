@@ -28,6 +28,9 @@
 /* If the clock steps back by up to this much, no time passes until it has caught up. */
 #define STEP_BACK_MAX_MS 1000u
 
+/* Meanwhile the line may be silent unseen, but only a larger step can hide a turn. */
+#define STEP_BACK_FREE_MS 10u
+
 /* How long a scanning lidar takes to send this many bytes: 13.1 per millisecond (section 1). */
 static uint32_t transit_ms(size_t bytes)
 {
@@ -133,6 +136,9 @@ bool tmini_line_look(tmini_t *lidar)
     const uint32_t passed_ms = is_back ? 0 : clock_ms - line->now_ms;
     line->now_ms += passed_ms;
     line->received = head;
+    if (is_back && back_ms > STEP_BACK_FREE_MS) {
+        doubt_to(line, head);
+    }
     if (count > 0) {
         note_bytes(lidar, count, passed_ms);
     } else if (!tmini_ring_is_full(&lidar->ring)) { /* If it is, bytes may have come. */

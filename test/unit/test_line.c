@@ -279,6 +279,18 @@ void test_a_clock_may_step_back_by_a_second(void)
     TEST_ASSERT_EQUAL_UINT32(3999, lidar.line.now_ms);
 }
 
+void test_a_clock_that_steps_back_by_more_than_10_ms_may_hide_a_silence(void)
+{
+    (void)look_after((uint32_t)-10, 13);
+    TEST_ASSERT_FALSE(lidar.line.doubt);
+    (void)look_after((uint32_t)-1, 0);
+    TEST_ASSERT_TRUE(lidar.line.doubt);
+    TEST_ASSERT_EQUAL_size_t(13, lidar.line.doubtful_to);
+    open_at(1000);
+    (void)look_after((uint32_t)-1001, 0); /* That is no step back. */
+    TEST_ASSERT_FALSE(lidar.line.doubt);
+}
+
 /* ---- When a packet came ---- */
 
 /* 70,000 bytes after it, which take 5332 ms. */

@@ -126,6 +126,18 @@ void test_a_clock_that_steps_back_shows_no_time(void)
     }
 }
 
+/* What comes meanwhile may have paused for as long, and so may the line before the next packet. */
+void test_a_clock_that_steps_back_by_more_than_10_ms_makes_packets_doubtful(void)
+{
+    rig.now_ms -= 11;
+    polls_to(TMINI_EVENT_NONE);
+    feed_packets(2, 4);
+    doubtful_are_the_first(2, 2);
+    rig.now_ms += 12;
+    two_packets_come_of_which_doubtful_are(1);
+    two_packets_come_of_which_doubtful_are(0);
+}
+
 /* 410 bytes explain 31 ms. */
 void test_many_bytes_explain_a_long_pause(void)
 {
