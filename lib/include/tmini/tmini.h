@@ -200,7 +200,8 @@ typedef struct {
     uint32_t scans;         /**< Scans delivered as TMINI_EVENT_SCAN. */
     uint32_t late_scans; /**< Of these, the ones that ended early or are incomplete only because of
                           * time, although no byte was lost. If it grows, a layer below may hold
-                          * bytes back for longer than max_pause_ms. */
+                          * bytes back for longer than max_pause_ms. It grows after each
+                          * tmini_feed_gap() with DMA, too. */
     uint16_t timeouts;   /**< Attempts at commands that waited in vain for a reply, a quiet line or
                           * the first packet. */
     uint16_t losses;     /**< TMINI_EVENT_LOST. */

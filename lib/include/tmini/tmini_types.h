@@ -96,11 +96,13 @@ typedef struct {
     uint32_t start_ms; /**< The port's clock when its first sample came. */
     uint32_t end_ms;   /**< The port's clock when the packet came that ended it. */
     bool complete;     /**< A full circle from start packet to start packet, in the time of one
-                        * turn, without a gap or dropped points. Three losses cannot be seen: up to
-                        * 4 degrees at the end, if the unit sends no LastCRC; a whole turn, if polls
-                        * are so rare that the clocks of lidar and host differ by half a turn in
-                        * twice the time between polls (0.7 s at 12 Hz, if one is 3 % faster); and a
-                        * turn that somebody hides by delaying bytes on purpose. */
+                        * turn, without a gap or dropped points. Four losses cannot be seen: up to
+                        * 4 degrees at the end, if no LastCRC came; a whole turn, if polls are so
+                        * rare that the clocks of lidar and host differ by a third of a turn in
+                        * twice the time between polls (0.46 s at 12 Hz, if one is 3 % faster); a
+                        * turn during which the clock is set back between two polls; and a turn that
+                        * somebody hides by delaying bytes on purpose. Nor can damage that leaves
+                        * the checksum right, as one in 15 pairs of flipped bits does. */
     bool upside_down;  /**< The angles decrease with time: tmini_mount_step() has turned the scan
                         * over. */
 } tmini_scan_t;
@@ -118,7 +120,8 @@ typedef struct {
     uint8_t count;           /**< Samples: 1 to 255. */
     uint16_t gap;            /**< Bytes skipped before it, or TMINI_GAP_UNKNOWN: any number of
                              * packets may be missing, because bytes were lost, the line paused, or
-                             * the packet is late. */
+                             * the packet is late. Without scans, damaged packets of which only few
+                             * bytes came count as these bytes, even a whole turn of them. */
     uint32_t step;           /**< The angle between two samples, in 1/64 degree / 2^17, rounded
                              * up. */
     const struct tmini_frame *frame; /**< Where its bytes lie. */

@@ -7,7 +7,7 @@
  * this one, and it needs neither a C library nor an FPU. All functions: any context; no waiting.
  *
  * Accuracy. start_ms and end_ms are the arrival times of a scan's start packet and of the next one,
- * corrected for the bytes that came after them. They are later than the measurement: by up to 6 ms
+ * corrected for the bytes that came after them. They are later than the measurement: by up to 8 ms
  * if you poll every 1 ms (a start packet waits until the packet before it has been sent), and by up
  * to 11 ms if you poll every 10 or 38 ms; where packets are lost, by up to 12 and 22 ms. On top
  * comes the time that bytes wait in a UART's FIFO, a task's queue or a USB adapter, or in memory
