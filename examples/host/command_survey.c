@@ -171,7 +171,7 @@ static int use_survey(device_t *device, const options_t *options)
 const command_t command_survey = {
     .name = "survey",
     .usage = "[-p PORT] [REPORT|-] [--seconds N] [--with-serial]",
-    .summary = "two minutes: compares this unit with what is known of its kind",
+    .summary = "two minutes: this unit against what is known of its kind",
     .details = "A line per statement of docs/protocol.md: as expected, differs or unknown. The\n"
                "REPORT also has each answer as `key = value`, for an issue and for `tmini-sim\n"
                "--like REPORT`. The lidar is rebooted; its frequency is left as it was. The\n"
