@@ -354,6 +354,7 @@ void test_an_idle_lidar_that_streams_is_reported_and_stopped_again(void)
     polls_to(TMINI_EVENT_NONE);
     passes_to(50, TMINI_EVENT_STOPPED);
     is_in(TMINI_STATE_IDLE);
+    passes(20);
     rig_feed_point_packet(1000);
     sends(STOP);
     polls_to(TMINI_EVENT_UNWANTED_SCANNING);

@@ -148,6 +148,14 @@ void test_after_a_loss_the_frequency_is_not_known_and_asked_for_again(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_command_error(&rig.lidar));
 }
 
+void test_a_frequency_that_cannot_be_read_again_is_unknown(void)
+{
+    scans_wishing(1000);
+    is_idle_and_asked(GET_FREQUENCY, tmini_start(&rig.lidar));
+    starts_without_the_frequency();
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
+}
+
 void test_a_reboot_leaves_the_frequency_unknown(void)
 {
     is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
@@ -244,12 +252,12 @@ static void turns(unsigned count, uint8_t dhz)
 }
 
 /* The last of this many revolutions at 6.0 Hz makes the driver stop the lidar. */
-static void is_stopped_after(unsigned count)
+static void is_stopped_after(unsigned count, uint8_t dhz)
 {
-    turns(count - 1, 60);
+    turns(count - 1, dhz);
     is_in(TMINI_STATE_SCANNING);
     sends(STOP);
-    turns(1, 60);
+    turns(1, dhz);
     was_sent();
 }
 
@@ -259,8 +267,9 @@ void test_three_seconds_of_another_frequency_are_a_fault_and_one_more_try(void)
     scans_wishing(1000);
     turns(17, 60);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-    is_stopped_after(1);
+    is_stopped_after(1, 60);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
     is_in(TMINI_STATE_STARTING);
     finds_quiet_and_sends(GET_FREQUENCY);
     starts_turning_at(1000);
@@ -270,27 +279,34 @@ void test_three_seconds_of_another_frequency_are_a_fault_and_one_more_try(void)
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
 
-/* At 6.0 Hz, 18, 36, 72 and 144 revolutions are 3, 6, 12 and 24 seconds. At most 255 count. */
+/* At 6.0 Hz, 18, 36, 72 and 144 revolutions are 3, 6, 12 and 24 seconds. At most 255 count, and
+ * 48 seconds: at 3.0 Hz 144 revolutions. */
 void test_a_frequency_that_could_not_be_set_is_tried_again_less_and_less_often(void)
 {
-    static const unsigned counts[] = {18, 36, 72, 144, 255, 255};
+    static const struct {
+        uint8_t dhz;
+        unsigned counts[6];
+    } cases[] = {{60, {18, 36, 72, 144, 255, 255}}, {30, {9, 18, 36, 72, 144, 144}}};
+
     scans_wishing(1000);
-    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
-        is_stopped_after(counts[i]);
-        is_in(TMINI_STATE_STARTING);
-        TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
-        finds_quiet_and_sends(GET_FREQUENCY);
-        starts_without_the_frequency();
+    for (unsigned i = 0; i < 2; i++) {
+        for (unsigned n = 0; n < 6; n++) {
+            is_stopped_after(cases[i].counts[n], cases[i].dhz);
+            is_in(TMINI_STATE_STARTING);
+            TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+            finds_quiet_and_sends(GET_FREQUENCY);
+            starts_without_the_frequency();
+        }
+        turns(1, 100);
     }
-    turns(1, 100);
-    is_stopped_after(18);
+    is_stopped_after(18, 60);
 }
 
 /* A lidar that reports its own frequency again and again has answered. */
 void test_a_frequency_that_the_lidar_refuses_is_tried_once_more_only(void)
 {
     scans_wishing(1000);
-    is_stopped_after(18);
+    is_stopped_after(18, 60);
     finds_quiet_and_sends(GET_FREQUENCY);
     rig_feed_frequency(600);
     finds_quiet_and_sends(FASTER_ONE);
@@ -305,7 +321,7 @@ void test_a_frequency_that_the_lidar_refuses_is_tried_once_more_only(void)
 void test_a_frequency_that_is_off_after_a_loss_is_a_new_fault(void)
 {
     scans_wishing(1000);
-    is_stopped_after(18);
+    is_stopped_after(18, 60);
     finds_quiet_and_sends(GET_FREQUENCY);
     starts_turning_at(1000);
     passes_to(1000, TMINI_EVENT_LOST);
