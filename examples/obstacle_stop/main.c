@@ -114,7 +114,7 @@ static tmini_posix_status_t set_up(const char *path)
 static tmini_posix_status_t run(void)
 {
     tmini_posix_status_t status = TMINI_POSIX_OK;
-    (void)tmini_start(&lidar); /* Stands until it is stopped. */
+    (void)tmini_start(&lidar); /* Holds until it is stopped. */
     while (ended == 0 && status == TMINI_POSIX_OK) {
         drive();
         status = tmini_posix_wait(&port, 10);

@@ -93,7 +93,7 @@ static tmini_status_t start_lidar(void)
     }
     if (status == TMINI_OK) {
         (void)tmini_request_info(&lidar);
-        (void)tmini_start(&lidar); /* After the answer; stands. */
+        (void)tmini_start(&lidar); /* After the answer; holds. */
     }
     return status;
 }

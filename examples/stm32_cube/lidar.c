@@ -112,7 +112,7 @@ void lidar_start(UART_HandleTypeDef *uart)
         tmini_stm32_hal_start(&port, &lidar) == TMINI_ERROR_ARGUMENT) {
         Error_Handler(); /* Baud rate, or no circular DMA: see README.md. */
     }
-    (void)tmini_start(&lidar); /* Stands: the library tries until the lidar scans. */
+    (void)tmini_start(&lidar); /* Holds: the library tries until the lidar scans. */
 }
 
 /* Takes all events now, because bytes left in the buffer might be overwritten before the next

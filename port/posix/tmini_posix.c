@@ -109,8 +109,8 @@ void tmini_posix_init(tmini_posix_t *port, const char *path)
     *port = (tmini_posix_t){.path = path, .fd = -1, .state = TMINI_POSIX_NO_DEVICE};
 }
 
-/* Children do not inherit it: one of system() would keep the device claimed. Neither waiting nor,
- * where only the socket itself can be asked, a signal when the other end has gone. */
+/* Child processes do not inherit it: one of system() would keep the device claimed. It never waits;
+ * and on systems where that is a socket's option, no signal comes when the other end has gone. */
 static void make_own(int fd)
 {
     (void)fcntl(fd, F_SETFD, FD_CLOEXEC);

@@ -28,8 +28,8 @@ void console_note(uint64_t now_us, size_t bytes);
 void assert_said(const char *text);
 void assert_last_said(const char *text);
 
-/* What is printed at once takes no longer than `held` bytes, which are received meanwhile, last at
- * 23,000 bytes per second; and all that has been printed, half of the time. */
+/* Printing took half of the time at most; and at once no longer than receiving `held` bytes takes,
+ * at 23,000 bytes per second. */
 void assert_console_leaves_time(uint32_t held);
 
 #endif

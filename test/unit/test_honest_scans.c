@@ -238,7 +238,7 @@ static void lose_laps(unsigned laps)
     tmini_feed_dma(&turns.lidar, turns.dma_position);
 }
 
-/* That happens after the first packets of a turn; three turns follow. */
+/* Laps are lost after the first packets of a turn; three turns follow. */
 static void go_on_after(unsigned laps, unsigned first_packets)
 {
     uint8_t bytes[TURNS_PACKET_MAX + 1];

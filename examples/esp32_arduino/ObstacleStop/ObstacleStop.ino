@@ -88,7 +88,7 @@ void setup()
         Serial.println(lidar.error());
         return;
     }
-    lidar.start(); /* Stands until stop(), also after a power failure. */
+    lidar.start(); /* Holds until stop(), also after a power failure. */
 }
 
 void loop()

@@ -61,7 +61,7 @@ static void start_lidar(void)
     tmini_t *const lidar = tmini_zephyr_device_lock(device);
     console.lidar = lidar;
     (void)tmini_request_info(lidar);
-    (void)tmini_start(lidar); /* After the answer; stands. */
+    (void)tmini_start(lidar); /* After the answer; holds. */
     tmini_zephyr_device_unlock(device);
 }
 

@@ -65,7 +65,8 @@ void pico_model_receive(uint32_t flags, const uint8_t *bytes, size_t count);
 /* Bytes that have come on the line so far, also those that were lost. */
 uint32_t pico_model_line_bytes(void);
 
-/* From now on a channel fewer, an interrupt handler of another program part, another UART clock. */
+/* From now on DMA channels or an interrupt belong to another part of the program; the baud rate is
+ * wrong. */
 void pico_model_take_channels(unsigned count);
 void pico_model_take_interrupt(unsigned number);
 void pico_model_set_baud_error(int permille);

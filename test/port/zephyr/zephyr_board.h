@@ -12,7 +12,7 @@
 void zephyr_kernel_begin(void);
 void zephyr_async_begin(void);
 
-/* Of the UART's interrupt while the async API is in use. */
+/* The UART's interrupt while the async API is in use. */
 bool zephyr_async_is_enabled(void);
 bool zephyr_async_is_up(void);
 void zephyr_async_serve(void);
