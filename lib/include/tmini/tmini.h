@@ -87,7 +87,7 @@ typedef struct {
      * looked for. Whatever the value, a scan that took more than one and a half turns has a gap. */
     uint16_t max_pause_ms;
     /** After a stop, the line counts as quiet when it has been silent for this long, less than
-     * 600. 0: at once. */
+     * 600. What a layer below holds for longer seems to come after the next start. 0: at once. */
     uint16_t quiet_line_ms;
     /** How long to wait for a reply (section 9.11). 0: without limit. */
     uint16_t reply_timeout_ms;

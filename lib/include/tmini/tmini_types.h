@@ -101,8 +101,9 @@ typedef struct {
                         * rare that the clocks of lidar and host differ by a third of a turn in
                         * twice the time between polls (0.46 s at 12 Hz, if one is 3 % faster); a
                         * turn during which the clock is set back between two polls; and a turn that
-                        * somebody hides by delaying bytes on purpose. Nor can damage that leaves
-                        * the checksum right, as one in 15 pairs of flipped bits does. */
+                        * is hidden by delays, on purpose or by a layer that holds bytes unreported
+                        * (tmini_feed_held()). Nor can damage that leaves the checksum right, as one
+                        * in 15 pairs of flipped bits does. */
     bool upside_down;  /**< The angles decrease with time: tmini_mount_step() has turned the scan
                         * over. */
 } tmini_scan_t;
