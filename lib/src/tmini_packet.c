@@ -25,9 +25,13 @@ static uint16_t angle_of(const uint8_t *field)
 #define FLAG_MASK 3u
 #define FLAG_BITS 2
 
-/* Intensity and flag are neighbours, as in a sample: set_point() stores both at once. */
-typedef char flag_follows_intensity
-    [offsetof(tmini_point_t, flag) == offsetof(tmini_point_t, intensity) + 1 ? 1 : -1];
+/* Angle and distance are neighbours, and so are intensity and flag: each pair is stored at once. */
+typedef char members_are_neighbours[offsetof(tmini_point_t, angle_q6) == 0 &&
+                                            offsetof(tmini_point_t, distance_mm) == 2 &&
+                                            offsetof(tmini_point_t, flag) ==
+                                                offsetof(tmini_point_t, intensity) + 1
+                                        ? 1
+                                        : -1];
 
 /* Fills a point from a sample. Intensity and flag are neighbours in both, so they are copied in one
  * access where any address is allowed. The sample is read first, because the compiler must assume
@@ -37,8 +41,7 @@ static inline void set_point(tmini_point_t *point, uint32_t angle_q6, const uint
     const unsigned distance_and_flag = sample[1] | (unsigned)sample[2] << 8;
 #if TMINI_WORD_ALIGNMENT == 1
     tmini_copy_pair((uint8_t *)point + offsetof(tmini_point_t, intensity), sample, FLAG_MASK);
-    point->angle_q6 = (uint16_t)angle_q6;
-    point->distance_mm = (uint16_t)(distance_and_flag >> FLAG_BITS);
+    tmini_store_two((uint8_t *)point, angle_q6, (uint32_t)distance_and_flag << (16 - FLAG_BITS));
 #else
     const uint8_t intensity = sample[0];
     *point = (tmini_point_t){.angle_q6 = (uint16_t)angle_q6,
@@ -59,8 +62,9 @@ TMINI_NOINLINE static void decode(const tmini_packet_t *packet, size_t index, co
         ((uint32_t)packet->first_angle_q6 << STEP_BITS) + HALF + (uint32_t)index * step;
     TMINI_UNROLL
     do {
-        set_point(point++, angle >> STEP_BITS, sample);
+        set_point(point, angle >> STEP_BITS, sample);
         sample += TMINI_SAMPLE_SIZE;
+        point++;
         angle += step;
     } while (--count > 0);
 }

@@ -14,7 +14,7 @@ import sys
 from documents import ROOT
 
 # For the library's own use: several bytes in one access.
-NOT_PUBLIC = {"tmini_word", "tmini_copy_pair"}
+NOT_PUBLIC = {"tmini_word", "tmini_copy_pair", "tmini_store_two"}
 
 
 def declared():
