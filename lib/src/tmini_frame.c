@@ -3,6 +3,12 @@
 
 #include "tmini/parts/tmini_frame.h"
 
+/* A multiplication, because small processors have no division; exact below 2048. */
+static size_t third_of(size_t bytes)
+{
+    return (size_t)((uint32_t)bytes * 683u >> 11);
+}
+
 const uint8_t *tmini_frame_samples(const tmini_frame_t *frame, size_t index, size_t *count,
                                    uint8_t joined[TMINI_SAMPLE_SIZE])
 {
@@ -13,7 +19,7 @@ const uint8_t *tmini_frame_samples(const tmini_frame_t *frame, size_t index, siz
         return piece;
     }
     if (bytes >= TMINI_SAMPLE_SIZE) {
-        *count = bytes / TMINI_SAMPLE_SIZE;
+        *count = third_of(bytes);
         return piece;
     }
     for (size_t i = 0; i < TMINI_SAMPLE_SIZE; i++) {

@@ -176,15 +176,16 @@ static enum verdict classify_header(tmini_parser_t *parser, size_t unread)
     if (begins_no_frame(parser, first)) {
         return NOT_A_FRAME;
     }
-    parser->need = 2;
     if (unread < 2) {
+        parser->need = 2;
         return INCOMPLETE;
     }
     if (tmini_ring_peek(ring, 1) != (is_packet ? PACKET_SECOND : REPLY_SECOND)) {
         return NOT_A_FRAME;
     }
-    parser->need = is_packet ? TMINI_PACKET_HEADER_SIZE : TMINI_REPLY_HEADER_SIZE;
-    if (unread < parser->need) {
+    const uint16_t size = is_packet ? TMINI_PACKET_HEADER_SIZE : TMINI_REPLY_HEADER_SIZE;
+    if (unread < size) {
+        parser->need = size;
         return INCOMPLETE;
     }
     return is_packet ? classify_packet_header(parser) : classify_reply_header(parser);
