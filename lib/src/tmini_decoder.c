@@ -12,22 +12,6 @@ tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring, 
     return tmini_parser_init(&decoder->parser, ring, max_samples);
 }
 
-/* The packet that ended a scan begins the next one. It is added only now, so that the finished scan
- * could be read before. */
-static void add_waiting_packet(tmini_decoder_t *decoder)
-{
-    tmini_builder_t *const builder = &decoder->builder;
-    if (builder->ended) {
-        (void)tmini_builder_add(builder, &decoder->packet, builder->scan.end_ms);
-    }
-}
-
-tmini_frame_type_t tmini_decoder_next(tmini_decoder_t *decoder, size_t effort)
-{
-    add_waiting_packet(decoder);
-    return tmini_parser_next_after(&decoder->parser, effort);
-}
-
 /* Inlined twice, so that a firmware, which needs it once, pays no call. */
 TMINI_INLINE bool take_opened(tmini_decoder_t *decoder, uint32_t now_ms)
 {

@@ -50,7 +50,14 @@ tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring,
 
 /** Finds the next frame, as tmini_parser_next_after() does. The scan delivered last is no longer
  * valid. */
-tmini_frame_type_t tmini_decoder_next(tmini_decoder_t *decoder, size_t effort);
+static inline tmini_frame_type_t tmini_decoder_next(tmini_decoder_t *decoder, size_t effort)
+{
+    tmini_builder_t *const builder = &decoder->builder;
+    if (builder->ended) { /* The packet that ended the scan begins the next one. */
+        (void)tmini_builder_add(builder, &decoder->packet, builder->scan.end_ms);
+    }
+    return tmini_parser_next_after(&decoder->parser, effort);
+}
 
 /** Takes the packet that tmini_decoder_next() has found. It came at `now_ms`, or up to `late_ms`
  * earlier. `is_doubtful`: packets may be missing before it. Returns true if it ends a scan, which
