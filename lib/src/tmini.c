@@ -300,8 +300,7 @@ static void note_scanning(tmini_t *lidar)
         if (phase != TMINI_PHASE_QUIESCING && lidar->command.operation != TMINI_EVENT_FREQUENCY) {
             begin_scanning(lidar);
         }
-    } else if (phase == TMINI_PHASE_IDLE &&
-               tmini_has_elapsed(lidar, lidar->command.since_ms, TMINI_BACK_OFF_MS)) {
+    } else if (phase == TMINI_PHASE_IDLE) {
         stop_again(lidar);
     }
 }

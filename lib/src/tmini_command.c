@@ -213,6 +213,21 @@ static int send_rest(tmini_t *lidar)
     return TMINI_UNDER_WAY;
 }
 
+/* The time of the phase is over. */
+static int end_phase(tmini_t *lidar)
+{
+    tmini_command_t *const command = &lidar->command;
+    if (command->phase == TMINI_PHASE_WAITING) {
+        return TMINI_OK;
+    }
+    if (command->phase == TMINI_PHASE_NONE) {
+        command->phase = TMINI_PHASE_IDLE;
+        command->timeout_ms = 0;
+        return TMINI_UNDER_WAY;
+    }
+    return time_out(lidar);
+}
+
 int tmini_command_poll(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
@@ -229,7 +244,7 @@ int tmini_command_poll(tmini_t *lidar)
         !tmini_has_elapsed(lidar, command->since_ms, command->timeout_ms)) {
         return TMINI_UNDER_WAY;
     }
-    return command->phase == TMINI_PHASE_WAITING ? TMINI_OK : time_out(lidar);
+    return end_phase(lidar);
 }
 
 uint16_t tmini_command_idle_ms(const tmini_t *lidar)
@@ -287,9 +302,10 @@ bool tmini_command_end(tmini_t *lidar, int result)
     const bool was_stopped = operation >= TMINI_EVENT_STOPPED;
     (void)tmini_parser_await(&lidar->decoder.parser, NULL);
     command->unsent = 0;
-    enter(lidar, was_stopped ? TMINI_PHASE_IDLE : TMINI_PHASE_NONE, 0);
     if (result == TMINI_OK) {
-        command->since_ms -= TMINI_BACK_OFF_MS; /* After a failure, a pause comes first. */
+        enter(lidar, TMINI_PHASE_IDLE, 0);
+    } else { /* Packets do not count yet; after a stop they will. */
+        enter(lidar, TMINI_PHASE_NONE, was_stopped ? TMINI_BACK_OFF_MS : 0);
     }
     return is_idle;
 }

@@ -60,8 +60,10 @@ bool tmini_line_is_doubtful(tmini_t *lidar, uint32_t came_ms);
 
 /* What happens on the wire. */
 typedef enum {
-    TMINI_PHASE_NONE,           /* No command is in progress; the lidar may be scanning. */
-    TMINI_PHASE_IDLE,           /* The same, but it was stopped or should be idle. */
+    TMINI_PHASE_NONE,           /* No command is in progress; the lidar may be scanning. For a
+                                 * while after a failure; before the first command, or after a
+                                 * start that failed, without end. */
+    TMINI_PHASE_IDLE,           /* The same, but it should be idle: if it scans, it is stopped. */
     TMINI_PHASE_QUIESCING,      /* After a stop, or between frequency steps, until the line is
                                  * quiet. */
     TMINI_PHASE_AWAITING_REPLY, /* From sending a command until its reply. */

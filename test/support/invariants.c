@@ -270,13 +270,21 @@ static bool state_fits(const tmini_t *lidar)
     }
 }
 
+/* For a while packets do not mean that a lidar scans that should be idle. */
+static bool pauses_after_failure(const tmini_command_t *command)
+{
+    return command->phase == TMINI_PHASE_NONE && command->operation >= TMINI_EVENT_STOPPED &&
+           command->timeout_ms == TMINI_BACK_OFF_MS;
+}
+
 static bool command_is_sound(const tmini_command_t *command)
 {
     return is_operation(command->operation) && command->unsent <= (command->sync_sent ? 1 : 2) &&
            (command->sync_sent || command->unsent != 1) &&
            (command->unsent == 0 ||
             (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
-           (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE) &&
+           (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE ||
+            pauses_after_failure(command)) &&
            command->steps <= STEPS_MAX && command->frequency_chz <= PLAUSIBLE_CHZ_MAX;
 }
 
