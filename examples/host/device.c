@@ -204,7 +204,7 @@ static bool may_still_start(const device_t *device)
 int device_start(device_t *device)
 {
     tmini_event_t event = TMINI_EVENT_NONE;
-    bool is_reported = false;
+    bool is_reported = device->listens; /* Then it is not for this program to start it. */
     device_begin(device);
     (void)tmini_start(&device->lidar);
     while (event != TMINI_EVENT_STARTED && may_still_start(device)) {

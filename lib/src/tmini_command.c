@@ -213,12 +213,12 @@ static int send_rest(tmini_t *lidar)
     return TMINI_UNDER_WAY;
 }
 
-/* The time of the phase is over. */
+/* The time of the phase is over. Who only listens has waited in vain. */
 static int end_phase(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     if (command->phase == TMINI_PHASE_WAITING) {
-        return TMINI_OK;
+        return lidar->is_listen_only ? TMINI_ERROR_TIMEOUT : TMINI_OK;
     }
     if (command->phase == TMINI_PHASE_NONE) {
         command->phase = TMINI_PHASE_IDLE;

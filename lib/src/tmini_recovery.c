@@ -97,10 +97,9 @@ void tmini_recovery_begin(tmini_t *lidar)
  * pause, a reboot or the setting of the frequency. */
 void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
-    const bool is_rung = result == TMINI_OK || operation == TMINI_EVENT_FREQUENCY;
-    if (is_rung && !lidar->is_listen_only) {
-        make_attempt(lidar, operation, is_idle);
-    } else {
+    if (result != TMINI_OK && operation != TMINI_EVENT_FREQUENCY) {
         back_off(lidar);
+    } else {
+        make_attempt(lidar, operation, is_idle);
     }
 }

@@ -567,11 +567,34 @@ void test_a_listener_scans_from_the_first_packet(void)
 {
     listen();
     is_in(TMINI_STATE_STARTING);
-    passes_to(1000, TMINI_EVENT_NONE);
-    TEST_ASSERT_EQUAL_UINT(1, restarts); /* Every so often, while nothing comes. */
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
     is_in(TMINI_STATE_SCANNING);
+}
+
+/* After a second, and then in the ladder's pauses. */
+void test_a_listener_that_hears_nothing_says_so_at_growing_intervals(void)
+{
+    static const uint32_t pauses[] = {1000, 500, 1000, 2000, 4000, 4000};
+    listen();
+    for (unsigned i = 0; i < sizeof pauses / sizeof pauses[0]; i++) {
+        passes_to(pauses[i] - 1, TMINI_EVENT_NONE);
+        passes_to(1, TMINI_EVENT_COMMAND_FAILED);
+        TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_command_error(&rig.lidar));
+        is_in(TMINI_STATE_STARTING);
+        TEST_ASSERT_EQUAL_UINT(i + 1, restarts);
+    }
+    rig_feed_point_packet(1000);
+    polls_to(TMINI_EVENT_STARTED);
+}
+
+void test_without_recovery_a_listener_that_hears_nothing_gives_up_once(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    listen();
+    passes_to(1000, TMINI_EVENT_COMMAND_FAILED);
+    is_in(TMINI_STATE_UNKNOWN);
+    passes_to(60000, TMINI_EVENT_NONE);
 }
 
 void test_a_listener_that_hears_nothing_for_a_second_has_lost_its_lidar(void)
