@@ -574,7 +574,8 @@ tmini_status_t tmini_stop(tmini_t *lidar)
     return TMINI_OK;
 }
 
-/* A lidar that scans, or is to scan, is interrupted only if the wish has changed. */
+/* A wish that is stated again asks an idle lidar again. It changes nothing else: neither is a scan
+ * interrupted, nor is a wrong frequency forgotten. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
 {
     if (!is_set_up(lidar) || !is_frequency(frequency_chz)) {
@@ -583,7 +584,9 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
     if (lidar->is_listen_only) {
         return TMINI_ERROR_LISTEN_ONLY;
     }
-    const bool is_changed = lidar->wanted_chz != frequency_chz;
+    if (lidar->wanted_chz == frequency_chz && lidar->state > TMINI_STATE_IDLE) {
+        return TMINI_OK;
+    }
     lidar->wanted_chz = frequency_chz;
     if ((lidar->monitor.faults & TMINI_FAULT_FREQUENCY) != 0) {
         raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
@@ -593,7 +596,7 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
     if (lidar->state <= TMINI_STATE_IDLE) {
         return request_command(lidar, TMINI_EVENT_FREQUENCY);
     }
-    if (is_changed && is_to_scan(lidar)) {
+    if (is_to_scan(lidar)) {
         look(lidar);
         restart(lidar);
         send_first(lidar);

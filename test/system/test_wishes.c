@@ -205,6 +205,22 @@ void test_a_lidar_that_loses_its_frequency_unnoticed_gets_it_again(void)
     scans_at(1000);
 }
 
+/* A program that states its wishes in each round of its loop. */
+void test_wishes_that_are_stated_each_second_are_kept_as_well(void)
+{
+    begin();
+    for (unsigned second = 0; second < 20; second++) {
+        if (second == 5) {
+            world.sim.frequency_chz = 600;
+        }
+        set_frequency(1000);
+        start();
+        (void)world_run_ms(&world, 1000);
+    }
+    TEST_ASSERT_EQUAL_UINT32(2, count(TMINI_EVENT_FAULTS_CHANGED)); /* There, and gone. */
+    scans_at(1000);
+}
+
 void test_a_frequency_that_is_five_percent_off_is_no_fault(void)
 {
     config.frequency_chz = 1000;

@@ -411,17 +411,42 @@ void test_without_recovery_another_frequency_is_only_a_fault(void)
     is_in(TMINI_STATE_SCANNING);
 }
 
-void test_a_wish_that_is_stated_again_clears_the_fault_and_says_so(void)
+/* A program may state its wish in each round of its loop. */
+void test_a_wish_that_is_stated_again_and_again_hides_no_other_frequency(void)
+{
+    scans_wishing(1000);
+    for (unsigned i = 0; i < 17; i++) {
+        turns(1, 60);
+        begins(tmini_set_frequency(&rig.lidar, 1000));
+    }
+    sends(STOP);
+    turns(1, 60);
+    was_sent();
+    is_in(TMINI_STATE_STARTING);
+    begins(tmini_set_frequency(&rig.lidar, 1000));
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+}
+
+void test_a_wish_that_is_stated_again_does_not_clear_the_fault(void)
 {
     rig.config.recovery = TMINI_RECOVERY_OFF;
     scans_wishing(1000);
     turns(300, 60);
     (void)rig_drain();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&rig.lidar, 1000));
+    begins(tmini_set_frequency(&rig.lidar, 1000));
+    polls_to(TMINI_EVENT_NONE);
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+}
+
+void test_another_wish_clears_the_fault_and_says_so(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    scans_wishing(1000);
+    turns(300, 60);
+    (void)rig_drain();
+    begins_with(STOP, tmini_set_frequency(&rig.lidar, 800));
     polls_to(TMINI_EVENT_FAULTS_CHANGED);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&rig.lidar, 1000));
-    polls_to(TMINI_EVENT_NONE);
 }
 
 void test_another_wish_of_an_idle_lidar_clears_the_fault_as_well(void)

@@ -319,10 +319,11 @@ tmini_status_t tmini_stop(tmini_t *lidar);
  * and TMINI_EVENT_COMMAND_FAILED follows TMINI_EVENT_STARTED. A lidar that turns at another
  * frequency for three seconds gets TMINI_FAULT_FREQUENCY, and the driver stops it, sets the
  * frequency again and starts it. As long as the lidar does not answer, this is repeated at growing
- * intervals. Returns TMINI_OK; TMINI_ERROR_ARGUMENT: null pointer, a lidar that was not set up, or
- * a
- * frequency out of range; TMINI_ERROR_LISTEN_ONLY: the configuration says that nothing is sent.
- * After an error the wish is unchanged. */
+ * intervals. To state the same wish again changes nothing, unless the lidar is idle or its state
+ * unknown.
+ * Returns TMINI_OK; TMINI_ERROR_ARGUMENT: null pointer, a lidar that was not set up, or a frequency
+ * out of range; TMINI_ERROR_LISTEN_ONLY: the configuration says that nothing is sent. After an
+ * error the wish is unchanged. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
 
 /** @} */
