@@ -588,6 +588,7 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
         return TMINI_OK;
     }
     lidar->wanted_chz = frequency_chz;
+    tmini_command_renew_steps(lidar);
     if ((lidar->monitor.faults & TMINI_FAULT_FREQUENCY) != 0) {
         raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
         lidar->is_settled = false;

@@ -99,6 +99,12 @@ void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms);
  * attempt the reply to an earlier one may still come. */
 bool tmini_command_end(tmini_t *lidar, int result);
 
+/* The wanted frequency has changed: as many steps are permitted as at the beginning. */
+static inline void tmini_command_renew_steps(tmini_t *lidar)
+{
+    lidar->command.steps = 0;
+}
+
 /* The frequency that is set is no longer known. */
 void tmini_command_forget_frequency(tmini_t *lidar);
 

@@ -240,6 +240,31 @@ void test_a_new_wish_after_a_pause_of_polls_awaits_a_quiet_line(void)
     finds_quiet_and_sends(GET_FREQUENCY);
 }
 
+/* Six steps of 1 Hz. After the last of them another frequency is wanted. */
+static void steps(uint8_t code, uint16_t from_chz, int by_chz, uint16_t then_chz)
+{
+    for (int i = 1; i <= 6; i++) {
+        finds_quiet_and_sends(code);
+        rig_feed_frequency((uint16_t)(from_chz + i * by_chz));
+    }
+    begins(tmini_set_frequency(&rig.lidar, then_chz));
+}
+
+/* Somebody moves a slider: 24 steps, more than any one change needs. */
+void test_each_new_wish_has_as_many_steps_as_it_needs(void)
+{
+    rig_go_idle();
+    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 1200));
+    rig_feed_frequency(600);
+    steps(FASTER_ONE, 600, 100, 600);
+    steps(SLOWER_ONE, 1200, -100, 1200);
+    steps(FASTER_ONE, 600, 100, 600);
+    steps(SLOWER_ONE, 1200, -100, 600);
+    finds_quiet_and_sends(GET_FREQUENCY);
+    rig_feed_frequency(600);
+    polls_to(TMINI_EVENT_FREQUENCY);
+}
+
 /* ---- Measured against wished ---- */
 
 static void turns(unsigned count, uint8_t dhz)
