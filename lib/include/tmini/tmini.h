@@ -111,7 +111,7 @@ typedef enum {
 
 /** A step that changes a finished scan in place before it is delivered: tmini_mount_step(), or a
  * function of yours. Called from tmini_poll() with the configuration's `step_data`. Points keep
- * their order and number. */
+ * their order and number. It states no wish and makes no query: do that when the event has come. */
 typedef void (*tmini_step_t)(const void *data, tmini_scan_t *scan);
 
 /** What tmini_init() needs to know. Members that you leave out are 0. Required are port, rx_buffer
@@ -336,7 +336,7 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
  *     TMINI_OK                 begun
  *     TMINI_ERROR_ARGUMENT     null pointer, or a lidar that was not set up
  *     TMINI_ERROR_STATE        the lidar is scanning or being recovered: only stop may be sent
- *     TMINI_ERROR_BUSY another command has not finished
+ *     TMINI_ERROR_BUSY         another command has not finished
  *     TMINI_ERROR_LISTEN_ONLY  nothing is sent
  *
  * and change nothing unless they return TMINI_OK. If the event of the previous command has not been
@@ -401,8 +401,8 @@ static inline tmini_status_t tmini_command_error(const tmini_t *lidar);
 static inline uint8_t tmini_faults(const tmini_t *lidar);
 
 /** Copies the CT information to `info`: versions, health and serial number as the unit sends them
- * while scanning. `info->known` shows which are known (section 7). After a loss
- * none is: the unit may have been exchanged. */
+ * while scanning. `info->known` shows which are known (section 7). After a loss none is: the unit
+ * may have been exchanged. */
 static inline void tmini_ct_info(const tmini_t *lidar, tmini_ct_info_t *info);
 
 /** Copies the counters to `counters`. They count from tmini_init() on. */

@@ -58,8 +58,7 @@ tmini_status_t tmini_blocking_set_frequency(tmini_t *lidar, uint16_t frequency_c
 /** Wishes to scan and waits for the first scan (without a scan buffer, for the first packet), at
  * most `timeout_ms`. Attempts that fail meanwhile do not end the waiting, except with
  * TMINI_RECOVERY_OFF. The scan is valid as described at tmini_scan(). Returns what is listed above;
- * after TMINI_ERROR_TIMEOUT the wish to scan
- * remains. */
+ * after TMINI_ERROR_TIMEOUT the wish to scan remains. */
 tmini_status_t tmini_blocking_start(tmini_t *lidar, uint32_t timeout_ms);
 
 /** Stops the lidar and waits until the line is quiet, `timeout_ms` at most (section 9.10). In any

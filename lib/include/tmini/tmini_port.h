@@ -29,8 +29,8 @@ typedef struct {
     int (*write)(void *context, const uint8_t *bytes, size_t count);
 
     /** Milliseconds since any moment, modulo 2^32; steps of up to 10 ms are fine enough. Must not
-     * wait. If the clock steps back by up to a second, no time counts until it has caught up;
-     * if by more, time-outs begin anew. Scans while it is more than 10 ms back are
+     * wait. If the clock steps back by up to a second (to within 10 ms), no time counts until it
+     * has caught up; if by more, time-outs begin anew. Scans while it is more than 10 ms back are
      * incomplete. Required. */
     uint32_t (*now_ms)(void *context);
 

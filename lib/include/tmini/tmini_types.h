@@ -90,9 +90,9 @@ typedef struct {
     uint16_t gaps;            /**< Places where packets may be missing: bytes were lost, damaged or
                                * late. */
     uint16_t checksum_errors; /**< Checksum errors during the scan, modulo 2^16. */
-    uint16_t
-        frequency_chz; /**< The measured frequency in 0.01 Hz, from the start packet that ends the
-                        * scan; if that was lost, from the last one received. 0: unknown. */
+    /** The measured frequency in 0.01 Hz, from the start packet that ends the scan; if that was
+     * lost, from the last one received. 0: unknown. */
+    uint16_t frequency_chz;
     uint32_t start_ms; /**< The port's clock when its first sample came. */
     uint32_t end_ms;   /**< The port's clock when the packet came that ended it. */
     bool complete;     /**< A full circle from start packet to start packet, in the time of one
