@@ -151,7 +151,7 @@ PROOFS = [
            "(tmini_line_look(lidar))"),
     driver("take_event", "lib/src/tmini.c", "uint8_t event = TMINI_EVENT_NONE;",
            "uint8_t event = TMINI_EVENT_STARTED;"),
-    driver("next", "lib/src/tmini_decoder.c", "if (builder->ended) {", "if (false) {"),
+    driver("next", "lib/include/tmini/parts/tmini_decoder.h", "if (builder->ended) {", "if (false) {"),
     driver("poll", "lib/src/tmini.c", "if (lidar->pending != 0) {\n        return take_event",
            "if (is_done) {\n        return take_event",
            stubs=["look", "receive", "keep_time"]),
