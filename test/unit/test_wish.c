@@ -474,6 +474,17 @@ void test_another_wish_clears_the_fault_and_says_so(void)
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
 
+void test_another_wish_of_a_lidar_that_is_stopping_clears_the_fault_at_once(void)
+{
+    rig.config.recovery = TMINI_RECOVERY_OFF;
+    scans_wishing(1000);
+    turns(300, 60);
+    begins_with(STOP, tmini_stop(&rig.lidar));
+    polls_to(TMINI_EVENT_NONE);
+    begins(tmini_set_frequency(&rig.lidar, 800));
+    polls_to(TMINI_EVENT_FAULTS_CHANGED);
+}
+
 void test_another_wish_of_an_idle_lidar_clears_the_fault_as_well(void)
 {
     rig.config.recovery = TMINI_RECOVERY_OFF;
