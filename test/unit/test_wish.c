@@ -265,6 +265,21 @@ void test_each_new_wish_has_as_many_steps_as_it_needs(void)
     polls_to(TMINI_EVENT_FREQUENCY);
 }
 
+/* A lidar that goes up and down is given up after 20 steps, however often the wish is stated. */
+void test_a_wish_that_is_stated_again_has_no_more_steps(void)
+{
+    rig_go_idle();
+    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 1000));
+    rig_feed_frequency(600);
+    for (int i = 0; i < 20; i++) {
+        finds_quiet_and_sends(FASTER_ONE);
+        begins(tmini_set_frequency(&rig.lidar, 1000));
+        rig_feed_frequency(i % 2 == 0 ? 700 : 600);
+    }
+    passes_to(50, TMINI_EVENT_COMMAND_FAILED);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_REPLY, tmini_command_error(&rig.lidar));
+}
+
 /* ---- Measured against wished ---- */
 
 static void turns(unsigned count, uint8_t dhz)
