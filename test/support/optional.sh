@@ -83,6 +83,7 @@ wish_for_everything() {
 
 # What is no package of the system.
 prepare_everything() {
+    prepare_python_packages "$root/build/labwired" "$root/test/target/esp32c3/requirements.txt"
     prepare_python_packages "$root/build/platformio" \
         "$root/test/consumer/platformio/requirements.txt"
     prepare_python_packages "$root/build/esp-idf-packer" "$root/test/qa/release/requirements.txt"
