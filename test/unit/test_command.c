@@ -721,6 +721,19 @@ void test_a_lidar_that_never_gets_there_fails_with_the_reply_after_twenty_steps(
     fails_with(TMINI_ERROR_REPLY);
 }
 
+void test_another_wish_meanwhile_has_twenty_steps_of_its_own(void)
+{
+    begins_to_set(600, 2000);
+    steps(SLOWER_ONE, 1999);
+    begins(tmini_set_frequency(&rig.lidar, 700));
+    for (unsigned step = 1; step <= 20; step++) {
+        steps(SLOWER_ONE, (uint16_t)(1999 - step));
+    }
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    fails_with(TMINI_ERROR_REPLY);
+}
+
 void test_a_read_back_that_differs_is_stepped_further(void)
 {
     begins_to_set(700, 600);
