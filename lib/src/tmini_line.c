@@ -86,17 +86,17 @@ static void doubt_to(tmini_line_t *line, size_t place)
     line->doubtful_to = place;
 }
 
-/* Bytes have come, `passed_ms` after the last look. A scanning lidar never pauses for long, so if
- * the bytes are too few for the time since others came, bytes may be missing. The place is unknown:
- * a layer below that was held up may deliver late what came before the silence. So these bytes, and
- * those that the port still holds, may be older by the missing time. That time counts again for the
- * next bytes, because the silence may continue. Only if the line was watched and the lidar does not
- * scan yet, the silence was before these bytes. Bytes that the port held before show no time. More
- * bytes than the ring holds mean a gap of DMA: then their number is unknown. */
-static void note_bytes(tmini_t *lidar, size_t count, uint32_t passed_ms)
+/* Bytes have come, `passed_ms` after the last look; with those that the port holds, up to
+ * `arrived`. A scanning lidar never pauses for long, so if the bytes are too few for the time since
+ * others came, bytes may be missing. The place is unknown: a layer below that was held up may
+ * deliver late what came before the silence. So all these bytes may be older by the missing time.
+ * That time counts again for the next bytes, because the silence may continue. Only if the line was
+ * watched and the lidar does not scan yet, the silence was before these bytes. Bytes that the port
+ * held before show no time. More bytes than the ring holds mean a gap of DMA: then their number is
+ * unknown. */
+static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t passed_ms)
 {
     tmini_line_t *const line = &lidar->line;
-    const size_t arrived = arrived_to(lidar);
     const size_t fresh = tmini_ring_distance(line->arrived, arrived);
     if (fresh == 0) {
         return;
@@ -136,11 +136,12 @@ bool tmini_line_look(tmini_t *lidar)
     const uint32_t passed_ms = is_back ? 0 : clock_ms - line->now_ms;
     line->now_ms += passed_ms;
     line->received = head;
+    const size_t arrived = arrived_to(lidar);
     if (is_back && back_ms > STEP_BACK_FREE_MS) {
-        doubt_to(line, head);
+        doubt_to(line, arrived);
     }
     if (count > 0) {
-        note_bytes(lidar, count, passed_ms);
+        note_bytes(lidar, count, arrived, passed_ms);
     } else if (!tmini_ring_is_full(&lidar->ring)) { /* If it is, bytes may have come. */
         note_silence(line, passed_ms);
         return false;

@@ -286,6 +286,9 @@ void test_a_clock_that_steps_back_by_more_than_10_ms_may_hide_a_silence(void)
     (void)look_after((uint32_t)-1, 0);
     TEST_ASSERT_TRUE(lidar.line.doubt);
     TEST_ASSERT_EQUAL_size_t(13, lidar.line.doubtful_to);
+    lidar.held_to = 13 + 20 + 44;
+    (void)look_after(0, 20);
+    TEST_ASSERT_EQUAL_size_t(13 + 20 + 44, lidar.line.doubtful_to);
     open_at(1000);
     (void)look_after((uint32_t)-1001, 0); /* That is no step back. */
     TEST_ASSERT_FALSE(lidar.line.doubt);
