@@ -261,8 +261,11 @@ void interrupt(void)
 static uint32_t read_clock(void *context)
 {
     const host_t *const host = context;
+    const host_config_t *const config = &host->config;
+    const bool is_back = host->started && now_us(host) - host->begun_us >= config->back_at_us;
 
-    return (uint32_t)(now_us(host) * (uint64_t)(1000000 + host->config.clock_ppm) / 1000000000u);
+    return (uint32_t)(now_us(host) * (uint64_t)(1000000 + config->clock_ppm) / 1000000000u) -
+           (is_back ? config->back_ms : 0);
 }
 
 static int take_command(void *context, const uint8_t *bytes, size_t count)

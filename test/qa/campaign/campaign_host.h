@@ -41,6 +41,8 @@ typedef struct {
     uint32_t false_gap_one_in; /* One interrupt of DMA in N reports a loss that was none. */
     uint32_t hold_one_in;      /* One block in N comes 20 to 95 ms late; 0: none. */
     int32_t clock_ppm;         /* The clock is too fast by so much. */
+    uint32_t back_ms;          /* It is set back by so much once, */
+    uint32_t back_at_us;       /* at this time of the line. */
     uint16_t max_pause_ms;     /* As configured. */
     bool tells_twice;          /* Each loss, before the next poll. */
 } host_config_t;

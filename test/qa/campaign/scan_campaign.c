@@ -89,6 +89,14 @@ static void draw_bridged(host_config_t *config, random_t *random)
     config->is_bridged = true;
 }
 
+/* At some time of the line's first second and a half. */
+static void draw_set_back(host_config_t *config, random_t *random)
+{
+    config->poll_us = random_between(random, 200, 10000);
+    config->back_ms = random_between(random, 1, 1000);
+    config->back_at_us = random_between(random, 100000, 1500000);
+}
+
 static void draw_overflow(host_config_t *config, random_t *random)
 {
     const uint32_t smallest = config->feed == FEED_DMA ? 9 : 8;
@@ -184,6 +192,10 @@ static const campaign_mode_t modes[] = {
     {"rare", "the same; polled each 100 to 1100 ms, ring of 8192 to 65536", true, false,
      draw_rare_polls},
     {"limits", "the same; max_pause_ms of 0, 70 or 250", true, false, draw_limits},
+    {"waiting", "the same, while a layer below holds bytes and reports them", true, false,
+     draw_bridged},
+    {"set back", "the same, and once the clock steps back by up to a second", true, false,
+     draw_set_back},
     {"overflow", "the program is busy for 1 to 600 ms, ring of 256 to 8192", false, false,
      draw_overflow},
     {"stall", "DMA goes on for 0 to 9 laps while the CPU stands still", false, false, draw_stalls},
@@ -233,9 +245,10 @@ static void say_what_is_tried(void)
            config->block_size, config->block_us);
     printf(
         "busy for up to %u us: one scan in %u; pre-empted for up to %u us: one poll in %u; stalled "
-        "one in %u, held up one in %u; clock %+d ppm, max_pause_ms %u\n",
+        "one in %u, held up one in %u; clock %+d ppm, back by %u ms at %u ms, max_pause_ms %u\n",
         config->handler_us, config->handle_one_in, config->preempt_us, config->preempt_one_in,
-        config->stall_one_in, config->hold_one_in, (int)config->clock_ppm, config->max_pause_ms);
+        config->stall_one_in, config->hold_one_in, (int)config->clock_ppm, config->back_ms,
+        config->back_at_us / 1000, config->max_pause_ms);
 }
 
 static void run_trial(const campaign_mode_t *mode, uint64_t seed, uint64_t trial, bool speaks,
@@ -267,7 +280,7 @@ static void run_trial(const campaign_mode_t *mode, uint64_t seed, uint64_t trial
     }
     host.config.access_ns = 0;
     host.config.preempt_one_in = 0;
-    for (uint32_t ms = 0; ms < SILENCE_MS; ms += 10) {
+    for (uint32_t ms = 0; ms < SILENCE_MS + host_config.back_ms; ms += 10) {
         host_fetch(&host);
         poll_until_nothing(&oracle);
         host_wait_us(&host, 10000);
