@@ -25,7 +25,7 @@
  * before begin(), and driver() give access to the rest of the library.
  *
  * Time. The lidar sends a byte every 43 us. Bytes that the sketch does not take in time are lost
- * when the core's receive buffer is full: after 2.8 ms with 64 bytes (most boards), after 44 ms
+ * when the core's receive buffer is full: after 2.7 ms with 64 bytes (most boards), after 44 ms
  * with 1024 (ESP32, ESP8266, RP2040, RP2350). loop() takes them, and so does a loop over points().
  * During longer work of your own call receive(). On an 8-bit board a float costs 10 us, and print()
  * waits while its own 64 bytes are full. */
