@@ -124,7 +124,8 @@ const char *program_start_answerer(uint8_t code, const uint8_t *bytes, size_t si
 /* How often the text has this part. */
 unsigned program_count(const char *text, const char *part);
 
-/* Runs a command of the tool that must fail, with this status and a message that gives this reason. */
+/* Runs a command of the tool that must fail with this status, and a message that gives this
+ * reason. */
 void program_expect_failure(int status, const char *reason, const char *const words[]);
 
 /* A recording of this name: a turn at 6 Hz whose samples are at 0, 90, 180 and 270 degrees. Returns
