@@ -165,8 +165,9 @@ TMINI_INLINE void tmini_fence(void)
 #endif
 
 /** @def TMINI_WORD_ALIGNMENT
- * Words are loaded from addresses that are a multiple of this: 4, or 1 where any address works.
- * Define it as 4u for the whole build to overrule 1. */
+ * Words are loaded from addresses that are a multiple of this: 4, or 1 where any address works;
+ * then words are stored at any address, too. Define it as 4u for the whole build to overrule 1:
+ * a Cortex-M7 faults if a buffer lies in Device memory, as external SDRAM may. */
 #if defined(TMINI_WORD_ALIGNMENT)
 /* As defined. */
 #elif defined(__ARM_FEATURE_UNALIGNED) || defined(__x86_64__) || defined(__i386__) || \
