@@ -213,7 +213,8 @@ static int send_rest(tmini_t *lidar)
     return TMINI_UNDER_WAY;
 }
 
-/* The time of the phase is over. Who only listens has waited in vain. */
+/* The time of the phase is over. Who only listens has waited in vain. After a failure no command
+ * ends: from now on packets mean unwanted scanning. */
 static int end_phase(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;

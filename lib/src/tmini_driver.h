@@ -60,9 +60,8 @@ bool tmini_line_is_doubtful(tmini_t *lidar, uint32_t came_ms);
 
 /* What happens on the wire. */
 typedef enum {
-    TMINI_PHASE_NONE,           /* No command is in progress; the lidar may be scanning. For a
-                                 * while after a failure; before the first command, or after a
-                                 * start that failed, without end. */
+    TMINI_PHASE_NONE,           /* No command is in progress; the lidar may be scanning. It ends by
+                                 * itself only after a stop or a query that failed. */
     TMINI_PHASE_IDLE,           /* The same, but it should be idle: if it scans, it is stopped. */
     TMINI_PHASE_QUIESCING,      /* After a stop, or between frequency steps, until the line is
                                  * quiet. */

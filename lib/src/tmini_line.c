@@ -25,10 +25,9 @@
  * received, because the port has fed bytes and not reported again. */
 #define HELD_MAX (TMINI_RING_CLOSED / 2 < 65535u ? TMINI_RING_CLOSED / 2 : 65535u)
 
-/* If the clock steps back by up to this much, no time passes until it has caught up. */
+/* If the clock steps back by up to the first, no time passes until it has caught up. Meanwhile the
+ * line may be silent unseen, but only a step larger than the second can hide a turn. */
 #define STEP_BACK_MAX_MS 1000u
-
-/* Meanwhile the line may be silent unseen, but only a larger step can hide a turn. */
 #define STEP_BACK_FREE_MS 10u
 
 /* How long a scanning lidar takes to send this many bytes: 13.1 per millisecond (section 1). */
@@ -90,19 +89,22 @@ static void doubt_to(tmini_line_t *line, size_t place)
  * `arrived`. A scanning lidar never pauses for long, so if the bytes are too few for the time since
  * others came, bytes may be missing. The place is unknown: a layer below that was held up may
  * deliver late what came before the silence. So all these bytes may be older by the missing time.
- * That time counts again for the next bytes, because the silence may continue. Only if the line was
- * watched and the lidar does not scan yet, the silence was before these bytes. Bytes that the port
- * held before show no time. More bytes than the ring holds mean a gap of DMA: then their number is
- * unknown. */
+ * That time counts again for the next bytes, because the silence may continue; after a doubt only
+ * if the port may hold what seemed to be missing. Only if the line was watched and the lidar does
+ * not scan yet, the silence was before these bytes. Bytes that the port held before show no time.
+ * More bytes than the ring holds mean a gap of DMA: then their number is unknown. */
 static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t passed_ms)
 {
     tmini_line_t *const line = &lidar->line;
-    const size_t fresh = tmini_ring_distance(line->arrived, arrived);
+    if (arrived - line->arrived >= TMINI_RING_CLOSED) {
+        line->arrived = line->received - count; /* What the port held has been lost. */
+    }
+    const size_t fresh = arrived - line->arrived;
     if (fresh == 0) {
         return;
     }
     const bool were_held = line->arrived != line->received - count;
-    const uint32_t due_ms = fresh <= TMINI_RING_CLOSED / 2 ? transit_ms(fresh) : 0;
+    const uint32_t due_ms = transit_ms(fresh);
     const uint32_t pause_ms = line->now_ms - line->heard_ms;
     const int32_t missing_ms =
         (int32_t)((pause_ms < SILENCE_MAX_MS ? pause_ms : SILENCE_MAX_MS) - due_ms);
@@ -113,9 +115,10 @@ static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t pa
     if (is_doubtful) {
         const bool is_first = lidar->state != TMINI_STATE_SCANNING;
         const bool is_before = is_first && !is_gap && are_fresh(due_ms, passed_ms);
-        doubt_to(line, is_before ? line->received - count : arrived);
+        doubt_to(line, is_before ? arrived - fresh : arrived);
     }
-    note_delay(line, is_doubtful ? 0 : missing_ms, lidar->is_settled && !were_held);
+    note_delay(line, is_doubtful && lidar->held_to == 0 ? 0 : missing_ms,
+               lidar->is_settled && !were_held);
 }
 
 static void note_silence(tmini_line_t *line, uint32_t passed_ms)

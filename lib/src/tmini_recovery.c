@@ -72,7 +72,7 @@ void tmini_recovery_start(tmini_t *lidar, bool is_idle)
     lidar->recovery.attempts = FIRST_ATTEMPT;
     lidar->recovery.pause_ms = TMINI_BACK_OFF_MS / 2; /* It doubles before it is used. */
     if (lidar->is_listen_only) {
-        tmini_command_wait(lidar, TMINI_DATA_TIMEOUT_MS);
+        tmini_command_wait(lidar, TMINI_SPIN_UP_TIMEOUT_MS);
     } else {
         make_attempt(lidar, NO_OPERATION, is_idle);
     }
@@ -94,7 +94,7 @@ void tmini_recovery_begin(tmini_t *lidar)
 }
 
 /* A start that succeeds does not come here: it ends with the first packet. What ends well here is a
- * pause, a reboot or the setting of the frequency. */
+ * pause, a reboot or the setting of the frequency; for a listener nothing does. */
 void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
     if (result != TMINI_OK && operation != TMINI_EVENT_FREQUENCY) {

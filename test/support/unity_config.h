@@ -23,7 +23,7 @@
 
 /* 8 KB of RAM hold everything, texts included. */
 #define CMOCK_MEM_STATIC
-#define CMOCK_MEM_SIZE 512
+#define CMOCK_MEM_SIZE 1024
 #define CMOCK_MEM_ALIGN 0
 #define CMOCK_MEM_INDEX_TYPE uint16_t
 #define CMOCK_MEM_PTR_AS_INT uint16_t

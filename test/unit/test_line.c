@@ -221,6 +221,21 @@ void test_a_delay_is_kept_until_all_that_the_port_held_is_read(void)
     TEST_ASSERT_EQUAL_UINT16(3, lidar.line.late_ms);
 }
 
+/* At the first look 59 ms are missing, and at the second 31: less than half a turn. If the port
+ * holds bytes, what seemed to be missing first may come now, and 90 are missing. */
+void test_what_seemed_to_be_missing_may_come_from_a_port_that_holds_bytes(void)
+{
+    for (unsigned held = 0; held <= 1; held++) {
+        open_at(1000);
+        lidar.held_to = held > 0 ? 13 : 0;
+        (void)look_after(60, 13);
+        TEST_ASSERT_TRUE(lidar.line.doubt);
+        lidar.line.doubt = false;
+        (void)look_after(40, 131);
+        TEST_ASSERT_EQUAL(held > 0, lidar.line.doubt);
+    }
+}
+
 /* ---- Before a lidar scans ---- */
 
 /* Are they doubted, or only what was before them? */
@@ -249,6 +264,34 @@ void test_first_bytes_that_were_not_watched_may_have_paused(void)
     TEST_ASSERT_TRUE(first_ones_are_doubted(31, 13));
     TEST_ASSERT_TRUE(first_ones_are_doubted(256, 13));
     TEST_ASSERT_TRUE(first_ones_are_doubted(65536, 13));
+}
+
+/* The port holds 100 bytes, which came before the silence. The packet after them is doubted. */
+void test_a_silence_before_the_first_bytes_is_after_those_that_the_port_held(void)
+{
+    open_at(1000);
+    lidar.state = TMINI_STATE_STARTING;
+    lidar.held_to = 1 + 100;
+    (void)look_after(5, 1);
+    (void)look_after(83, 0);
+    lidar.held_to = 0;
+    (void)look_after(1, 110);
+    TEST_ASSERT_TRUE(lidar.line.doubt);
+    TEST_ASSERT_EQUAL_size_t(1 + 100, lidar.line.doubtful_to);
+}
+
+/* The port's queue of 100 bytes was flushed, which closed the ring. As many bytes come later, which
+ * take 7 ms. */
+void test_what_a_port_held_before_a_gap_explains_nothing_after_it(void)
+{
+    lidar.held_to = 1 + 100;
+    (void)look_after(5, 1);
+    lidar.ring.head += TMINI_RING_CLOSED;
+    lidar.held_to = 0;
+    (void)look_after(0, 0);
+    (void)look_after(54, 100);
+    TEST_ASSERT_EQUAL_UINT16(47, lidar.line.late_ms);
+    TEST_ASSERT_EQUAL_UINT32(now_ms, lidar.line.heard_ms);
 }
 
 /* ---- Silence ---- */

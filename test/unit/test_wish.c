@@ -648,10 +648,10 @@ void test_a_listener_scans_from_the_first_packet(void)
     is_in(TMINI_STATE_SCANNING);
 }
 
-/* After a second, and then in the ladder's pauses. */
+/* After three seconds, and then in the ladder's pauses. */
 void test_a_listener_that_hears_nothing_says_so_at_growing_intervals(void)
 {
-    static const uint32_t pauses[] = {1000, 500, 1000, 2000, 4000, 4000};
+    static const uint32_t pauses[] = {3000, 500, 1000, 2000, 4000, 4000};
     listen();
     for (unsigned i = 0; i < sizeof pauses / sizeof pauses[0]; i++) {
         passes_to(pauses[i] - 1, TMINI_EVENT_NONE);
@@ -668,7 +668,8 @@ void test_without_recovery_a_listener_that_hears_nothing_gives_up_once(void)
 {
     rig.config.recovery = TMINI_RECOVERY_OFF;
     listen();
-    passes_to(1000, TMINI_EVENT_COMMAND_FAILED);
+    passes_to(2999, TMINI_EVENT_NONE);
+    passes_to(1, TMINI_EVENT_COMMAND_FAILED);
     is_in(TMINI_STATE_UNKNOWN);
     passes_to(60000, TMINI_EVENT_NONE);
 }

@@ -135,7 +135,8 @@ typedef struct {
     uint16_t frequency_chz; /**< The wanted scan frequency, as for tmini_set_frequency(); 0: leave
                              * it as the lidar has it. */
     bool listen_only;       /**< Nothing is ever sent: for a lidar that something else controls, or
-                             * whose RX wire is not connected. frequency_chz must be 0. */
+                             * whose RX wire is not connected. frequency_chz must be 0. An attempt
+                             * to start fails when no packet comes for three seconds. */
     tmini_recovery_mode_t recovery; /**< 0: on. */
     tmini_step_t step;              /**< Called for each scan; NULL: none. Needs points. */
     const void *step_data;          /**< Passed to the step; must outlive the lidar. Needs a
@@ -201,9 +202,9 @@ typedef struct {
     uint32_t late_scans; /**< Of these, the ones that ended early or are incomplete only because of
                           * time, although no byte was lost. If it grows, a layer below may hold
                           * bytes back for longer than max_pause_ms. It grows after each
-                          * tmini_feed_gap() with DMA, too. */
+                          * tmini_feed_gap() with DMA, too, and while the clock is back. */
     uint16_t timeouts;   /**< Attempts at commands that waited in vain for a reply, a quiet line or
-                          * the first packet. */
+                          * the first packet; a listener's are not counted. */
     uint16_t losses;     /**< TMINI_EVENT_LOST. */
     uint16_t recoveries; /**< TMINI_EVENT_RECOVERED. */
     uint16_t restarts;   /**< Attempts to recover by a start. */
@@ -461,9 +462,9 @@ typedef struct {
     bool doubt;         /* Bytes may be missing somewhere before `doubtful_to`. */
     uint16_t late_ms;   /* By how much the latest bytes may be late, if not in doubt. */
     uint16_t silent_ms; /* Observed silence; at most 65535. */
-    uint32_t now_ms;    /* When the line was last looked at. */
-    uint32_t heard_ms;  /* When bytes came last. */
-    size_t received;    /* At `heard_ms`: the place in the stream of the newest byte received. */
+    uint32_t now_ms;    /* When the line was last looked at. It does not go back. */
+    uint32_t heard_ms;  /* When bytes arrived last. */
+    size_t received;    /* The place in the stream of the newest byte received. */
     size_t arrived;     /* The same, including bytes that the port reported as held. */
     size_t doubtful_to;
 } tmini_line_t;

@@ -203,8 +203,8 @@ TMINI_INLINE void tmini_copy_pair(uint8_t *to, const uint8_t *from, uint8_t mask
     memcpy(to, &pair, sizeof pair);
 }
 
-/** Stores two numbers of 16 bits side by side: `first`, and the upper half of `second`. One store
- * on ARM, which shifts as it combines. */
+/** Stores two numbers of 16 bits side by side: `first`, below 65536, and the upper half of
+ * `second`. One store on ARM, which shifts as it combines. */
 TMINI_INLINE void tmini_store_two(uint8_t *to, uint32_t first, uint32_t second)
 {
 #if defined(__ARM_FEATURE_UNALIGNED) && !defined(__ARM_BIG_ENDIAN)
