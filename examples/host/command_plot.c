@@ -173,7 +173,8 @@ static int plot_device(device_t *device, const options_t *options)
 static int run(const options_t *options)
 {
     if ((options->operand != NULL && options->port != NULL) || options->output == NULL) {
-        return message_usage("plot what, and where to? Usage: tmini plot %s", command_plot.usage);
+        return message_usage("plot what, and into which picture (-o)? Usage: tmini plot %s",
+                             command_plot.usage);
     }
     if (!picture_is_known(options->output)) {
         return message_usage("%s: the picture's name must end in .svg, .png or .pdf",

@@ -109,7 +109,7 @@ TMINI_NOINLINE static void restart(tmini_t *lidar)
     tmini_recovery_start(lidar, false);
 }
 
-/* It may be another unit when it comes back. */
+/* It may be another unit when it comes back: what is known of this one is forgotten. */
 static void lose(tmini_t *lidar)
 {
     lidar->state = TMINI_STATE_RECOVERING;

@@ -123,7 +123,7 @@ static uint32_t left_to_transfer(uint8_t channel)
 }
 
 /* Bytes that DMA has written since the start, modulo 2 TURN. The active channel counts down to 0;
- * the other one is at 0. Both are at 0 only for the moment between two turns. If that lasts, DMA
+ * the other one is at 0. Between two turns both are at 0 for a moment. If they stay there, DMA
  * has been stopped, and the number is unknown. */
 static bool read_written(const tmini_pico_t *port, uint32_t *written)
 {

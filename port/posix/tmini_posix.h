@@ -17,6 +17,7 @@
  *     while (tmini_posix_wait(&port, 10) == TMINI_POSIX_OK) {
  *         while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) { … }
  *     }
+ *     stop_robot();    // the device has gone
  *     tmini_posix_stop(&port);
  *
  * After tmini_posix_reconnect() the loop survives a cable that is pulled and plugged in again.

@@ -385,7 +385,7 @@ void test_what_cannot_be_drawn_is_reported(void)
     static const char *const room = RECORDINGS "sim-6hz.bin";
     program_expect_failure(2, "must end in .svg, .png or .pdf",
                            WORDS("plot", room, "-o", "picture.jpg"));
-    program_expect_failure(2, "plot what, and where to?", WORDS("plot", room));
+    program_expect_failure(2, "plot what, and into which picture", WORDS("plot", room));
     program_expect_failure(2, "not both",
                            WORDS("plot", room, "-o", "x.svg", "--all", "--scan", "1"));
     program_expect_failure(1, "has no scan 10, only 1 to 9",

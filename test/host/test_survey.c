@@ -316,4 +316,6 @@ void test_a_file_that_is_no_report_is_refused(void)
     TEST_ASSERT_EQUAL_INT(0, fclose(file));
     TEST_ASSERT_FALSE(like_read(&options, like_file));
     TEST_ASSERT_FALSE(like_read(&options, "no/such/report"));
+    TEST_ASSERT_FALSE(like_read(&options, "/dev/null"));
+    TEST_ASSERT_FALSE(like_read(&options, "/"));
 }

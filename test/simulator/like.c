@@ -155,6 +155,7 @@ bool like_read(options_t *options, const char *path)
     FILE *file = fopen(path, "r");
     char line[200];
     bool is_good = file != NULL;
+    bool is_report = false;
 
     while (is_good && fgets(line, sizeof line, file) != NULL) {
         char key[40];
@@ -162,10 +163,11 @@ bool like_read(options_t *options, const char *path)
 
         if (line[0] != '#' && sscanf(line, "%39s = %119[^\n]", key, value) == 2) {
             is_good = set(options, key, value);
+            is_report = true;
         }
     }
     if (file != NULL) {
         fclose(file);
     }
-    return is_good;
+    return is_good && is_report;
 }

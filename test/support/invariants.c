@@ -87,7 +87,7 @@ bool parser_is_sound(const tmini_parser_t *parser)
         return false;
     }
     const size_t window = frame->ring->window;
-    /* The newest bytes of a frame delivered are still there. */
+    /* The newest bytes of a frame that was delivered are still there. */
     const bool frame_is_sound =
         frame->size == 0 ||
         (frame->size <= window && frame->size <= tmini_ring_unread(frame->ring) &&

@@ -43,8 +43,8 @@ static tmini_parser_counters_t parser_counters(void)
     return counters;
 }
 
-/* One call looks at 1536 bytes and at most one packet more; of the candidate that used up the last
- * of them it skips the first byte only. */
+/* One call looks at 1536 bytes and at most one packet more. It skips only the first byte of the
+ * candidate with which it has looked at enough. */
 void test_a_call_looks_at_no_more_bytes_than_it_may(void)
 {
     open_parser();

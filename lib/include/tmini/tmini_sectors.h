@@ -17,6 +17,10 @@
  *
  *     tmini_sectors_add_scan(&sectors, tmini_scan(&lidar));
  *     if (!tmini_sector_is_free(&sectors.sectors[0], 300)) { stop(); }
+ *     else if (tmini_scan(&lidar)->complete) { go(); }
+ *
+ * Any scan may stop the robot, but only a complete one may let it go on: in a damaged one the
+ * obstacle may be missing.
  *
  * Without a scan buffer, packet by packet (TMINI_EVENT_PACKET):
  *

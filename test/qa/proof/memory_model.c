@@ -335,7 +335,7 @@ static bool put(state_t *state, unsigned choice)
     return choice == 0;
 }
 
-/* ---- The parser: takes a byte, or, if there is none and the ring closed, opens it ---- */
+/* ---- The parser: takes a byte, or, if there is none and the ring is closed, opens it ---- */
 
 enum {
     TAKE_BEGINS,

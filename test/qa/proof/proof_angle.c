@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* The angle of each sample is the exact rational value of section 5, rounded to nearest, halves up:
- * for every FSA and LSA; a number of samples at a time, SAMPLES, and of those an index at a time,
- * INDEX: with both known, nothing but known numbers is multiplied or divided by. */
+ * for every FSA and LSA. One number of samples, SAMPLES, and one index, INDEX, are tried at a time:
+ * so all factors and divisors are constants. */
 
 #include "proof.h"
 
