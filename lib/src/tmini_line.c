@@ -117,7 +117,7 @@ static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t pa
         const bool is_before = is_first && !is_gap && are_fresh(due_ms, passed_ms);
         doubt_to(line, is_before ? arrived - fresh : arrived);
     }
-    note_delay(line, is_doubtful && lidar->held_to == 0 ? 0 : missing_ms,
+    note_delay(line, is_doubtful && tmini_load(&lidar->held_to) == 0 ? 0 : missing_ms,
                lidar->is_settled && !were_held);
 }
 
