@@ -9,8 +9,8 @@
 
 #include "options.h"
 
-/* Reads the file. False if it cannot be read or a value is invalid. Other keys, the value "unknown"
- * and lines that begin with # change nothing. */
+/* Reads the file. False if it cannot be read, contains no such line, or a value is invalid. Other
+ * keys, the value "unknown" and lines that begin with # change nothing. */
 bool like_read(options_t *options, const char *path);
 
 #endif
