@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Finds Unity and CMock, and makes the libraries `tmini_unity` and `tmini_cmock` from their sources,
-# so that they fit whatever machine the tests are built for. In this order:
+# Finds Unity and CMock and builds the libraries `tmini_unity` and `tmini_cmock` from their sources,
+# because the tests are built for several machines. Places searched, in this order:
 #   1. -DCMOCK_ROOT=DIR, or the environment variable CMOCK_ROOT: a copy of CMock with its submodule
 #      vendor/unity;
 #   2. the package `cmock` of Debian (trixie and later) and Ubuntu (24.04 and later);
-#   3. a download, pinned by commit: a git commit is the hash of all that it contains.
+#   3. a download, pinned by commit: a git commit is the hash of its whole content.
 # Sets TMINI_CMOCK_DIR, TMINI_UNITY_DIR, TMINI_RUBY.
 
 set(CMOCK_ROOT "$ENV{CMOCK_ROOT}" CACHE PATH "Folder of CMock, with Unity in vendor/unity")
@@ -17,7 +17,7 @@ function(tmini_run_git out)
     set(${out} ${status} PARENT_SCOPE)
 endfunction()
 
-# Sets OUT to the folder of a downloaded copy, or to nothing.
+# Sets OUT to the folder of a downloaded copy; it stays empty if the download fails.
 function(tmini_download_cmock out)
     # Release v2.6.0; its submodule is Unity v2.6.1.
     set(commit 49435d9f3313abb3422252d3d2dc12a7542332ca)
@@ -52,7 +52,7 @@ if(NOT TMINI_RUBY)
 endif()
 
 if(CMOCK_ROOT)
-    # A folder that was asked for is used or refused, never silently replaced by another.
+    # If the folder that the user named is unusable, no other is searched: the error is reported.
     get_filename_component(TMINI_CMOCK_DIR ${CMOCK_ROOT} ABSOLUTE BASE_DIR ${CMAKE_BINARY_DIR})
 elseif(EXISTS /usr/share/cmock/lib/cmock.rb)
     set(TMINI_CMOCK_DIR /usr/share/cmock)
@@ -71,7 +71,7 @@ foreach(file ${TMINI_CMOCK_DIR}/lib/cmock.rb ${TMINI_UNITY_DIR}/auto/generate_te
     endif()
 endforeach()
 
-# Code of others: no warnings from it, and none from its headers in our tests.
+# Third-party code: no warnings in its sources, nor in our tests for its headers.
 add_library(tmini_unity STATIC EXCLUDE_FROM_ALL ${TMINI_UNITY_DIR}/src/unity.c)
 target_include_directories(tmini_unity SYSTEM PUBLIC ${TMINI_UNITY_DIR}/src)
 target_include_directories(tmini_unity PUBLIC ${CMAKE_CURRENT_LIST_DIR}/../support)

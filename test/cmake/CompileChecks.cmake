@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# One test for each way of compiling the library that ../compile.sh knows, and which file calls
-# which; and the barriers that reach the machine code.
+# Adds one test for each target of ../compile.sh. ../barriers.sh looks for the memory barriers in
+# the machine code, and ../layers.sh checks which source file may call which.
 
 if(NOT TMINI_SH)
     return()

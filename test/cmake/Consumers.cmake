@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Uses the library from another CMake project, in each way that a user can, and checks that nothing
-# of ours has reached that project's own targets.
+# Uses the library from another CMake project, in each way that a user can, and checks that none of
+# our compile options reaches that project's own targets.
 
 foreach(way add_subdirectory FetchContent find_package)
     tmini_add_check(consumer.${way} consumer COMMAND ${CMAKE_COMMAND}
@@ -12,7 +12,7 @@ foreach(way add_subdirectory FetchContent find_package)
         -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/run.cmake)
 endforeach()
 
-# Everything installed and uninstalled.
+# Installs and uninstalls everything.
 if(TARGET tmini_tool)
     find_program(TMINI_PKG_CONFIG pkg-config)
     mark_as_advanced(TMINI_PKG_CONFIG)
@@ -23,7 +23,7 @@ if(TARGET tmini_tool)
         -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/install.cmake)
 endif()
 
-# What the ecosystems' manifests repeat, compared.
+# Compares the facts that the manifests of several ecosystems repeat.
 tmini_missing_programs(missing python3)
 if(missing)
     tmini_add_skipped_test(manifests consumer "${missing} is not installed")

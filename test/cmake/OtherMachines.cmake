@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Runs the library's unit tests on other, emulated machines; a port's tests also run on a machine
-# whose toolchain file names the port in TMINI_TEST_PORTS. A machine is one test, which makes a
-# build of this same project in a folder of its own, and runs that build's tests. A machine whose
-# compiler or emulator is missing is a skipped test.
+# Runs the library's unit tests on other, emulated machines. A port's tests also run on a machine
+# whose toolchain file names the port in TMINI_TEST_PORTS. Each machine is one test, which builds
+# this project for that machine in a separate folder and runs the tests of that build. The test is
+# skipped if the machine's compiler or emulator is missing.
 #
-# The same by hand:
+# To do the same by hand:
 #   cmake -B build-avr -DTMINI_BUILD_TESTS=ON \
 #       -DCMAKE_TOOLCHAIN_FILE=test/cmake/toolchains/avr-atmega2560.cmake
 #   cmake --build build-avr && ctest --test-dir build-avr
 
-# tmini_add_machine(MACHINE [ALL] TOOLCHAIN file BUILD_TYPE type PROGRAMS program …); PROGRAMS may
-# be alternatives separated by "|". The tests that take long begin first.
+# tmini_add_machine(MACHINE [ALL] TOOLCHAIN file BUILD_TYPE type PROGRAMS program …). A program may
+# be a list of alternatives separated by "|". A high COST makes ctest start these long tests first.
 function(tmini_add_machine machine)
     cmake_parse_arguments(arg "ALL" "TOOLCHAIN;BUILD_TYPE" "PROGRAMS" ${ARGN})
     set(tier "")

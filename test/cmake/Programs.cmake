@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# What tests need of this machine, how a test says that it is not there, and how a test is declared
-# that is no program of ours.
+# Finds the programs that tests need, and declares tests: those that run a command, and those that
+# are skipped because a program is missing.
 
 find_program(TMINI_SH sh)
 mark_as_advanced(TMINI_SH)
 
-# Some containers have no pseudo-terminals: whether one can be opened shows by opening one.
+# Some containers have no pseudo-terminals: try to open one.
 if(UNIX AND NOT CMAKE_CROSSCOMPILING)
     include(CheckCSourceRuns)
     check_c_source_runs([[
@@ -42,8 +42,8 @@ function(tmini_missing_programs out)
     set(${out} "${missing}" PARENT_SCOPE)
 endfunction()
 
-# The targets `tests-LABEL` build what the tests of a label need, `tests` what the short run needs,
-# `tests-all` everything.
+# A target `tests-LABEL` builds what the tests of that label need; `tests` builds what the short run
+# needs, and `tests-all` everything.
 add_custom_target(tests)
 add_custom_target(tests-all)
 add_dependencies(tests-all tests)
@@ -67,8 +67,8 @@ endfunction()
 #     [PROPERTIES name value …]
 # )
 #
-# A ctest whose command says by exit status 77, or by a line that begins with SKIPPED, that
-# something is not installed.
+# Adds a ctest. Its command reports with exit status 77, or with a line that begins with SKIPPED,
+# that something is not installed.
 function(tmini_add_check name label)
     cmake_parse_arguments(arg "ALL" "TIMEOUT" "COMMAND;NEEDS;PROPERTIES" ${ARGN})
     if(arg_UNPARSED_ARGUMENTS OR NOT arg_COMMAND)
@@ -90,7 +90,7 @@ function(tmini_add_check name label)
     tmini_label_needs(${label} ${tier} ${arg_NEEDS})
 endfunction()
 
-# tmini_add_skipped_test(NAME LABEL REASON [ALL]): a test that only reports why it does nothing.
+# tmini_add_skipped_test(NAME LABEL REASON [ALL]): adds a test that only reports why it is skipped.
 function(tmini_add_skipped_test name label reason)
     message(STATUS "Not tested: ${name}: ${reason}")
     tmini_add_check(${name} ${label} ${ARGN}

@@ -3,8 +3,8 @@
 
 # cmake -D RUNNER=runner.c -P ShortenRunner.cmake
 #
-# Empties the tests' names in a runner. Where strings are copied to RAM (AVR), names that are
-# sentences would need most of it; the line number in the report still shows which test it is.
+# Removes the tests' names from a runner. AVR copies strings to RAM, and names that are sentences
+# would fill most of it. The line number in the report still identifies the test.
 
 file(READ "${RUNNER}" text)
 string(REGEX REPLACE

@@ -6,20 +6,19 @@
 #     [MOCKS header.h …]               functions declared there are mocked; in the test file,
 #                                      #include "mock_header.h"
 #     [LIBRARIES target …]             linked besides the library, Unity and CMock
-#     [LABEL label]                    of the ctest; that of the folder, TMINI_TEST_LABEL, unless
-#                                      given
-#     [NOT_ON machine …]               other machines it does not run on: `int16` for tests whose
-#                                      arrays do not fit in 8 KB of RAM, `bigendian`, …, or
-#                                      `others`: none but this computer
+#     [LABEL label]                    of the ctest; by default TMINI_TEST_LABEL, the folder's
+#     [NOT_ON machine …]               emulated machines it does not run on: for example `int16` if
+#                                      its arrays do not fit in 8 KB of RAM; `others` means all
+#                                      emulated machines
 # )
 #
-# One executable and one ctest. The main function (the "runner") and the mocks are generated at
-# build time. OtherMachines.cmake says what is also built for other machines.
+# Adds one executable and one ctest. The main function (the "runner") and the mocks are generated at
+# build time. OtherMachines.cmake explains which tests are also built for other machines.
 
 set(TMINI_CMOCK_CONFIG ${CMAKE_CURRENT_LIST_DIR}/cmock.yml)
 set(TMINI_SHORTEN_RUNNER ${CMAKE_CURRENT_LIST_DIR}/ShortenRunner.cmake)
 
-# -W0: warnings about Ruby code are for its authors.
+# -W0 turns off Ruby's warnings about the generator's own code.
 
 # Sets OUT to the runner made for the test file SOURCE in the folder DIR.
 function(tmini_generate_runner out source dir)
@@ -31,7 +30,7 @@ function(tmini_generate_runner out source dir)
     endif()
     get_filename_component(test_dir ${source} DIRECTORY)
     get_filename_component(test_file ${source} NAME)
-    # Run beside the test file, so that its report says "test_x.c", not where it was checked out.
+    # Run in the folder of the test file: then reports name "test_x.c" without a path.
     add_custom_command(OUTPUT ${runner}
         COMMAND ${TMINI_RUBY} -W0 ${generator} ${TMINI_CMOCK_CONFIG} ${test_file} ${runner}
         ${shorten}
@@ -50,7 +49,8 @@ function(tmini_generate_mocks out dir)
         get_filename_component(header ${header} ABSOLUTE)
         get_filename_component(name ${header} NAME_WE)
         set(mock ${dir}/mock_${name}.c)
-        # CMock writes to its working directory: a path in an option would lose unusual characters.
+        # CMock writes to its working directory. A path given as an option would be misread if it
+        # contained unusual characters.
         add_custom_command(OUTPUT ${mock} ${dir}/mock_${name}.h
             COMMAND ${TMINI_RUBY} -W0 ${TMINI_CMOCK_DIR}/lib/cmock.rb
                 -o${TMINI_CMOCK_CONFIG} ${header}
@@ -64,7 +64,7 @@ function(tmini_generate_mocks out dir)
     set(${out} ${mocks} PARENT_SCOPE)
 endfunction()
 
-# What the executable TARGET is compiled and linked with, besides its sources.
+# Sets the include folders, options and libraries of the executable TARGET.
 function(tmini_configure_unit_test target generated_dir)
     target_include_directories(${target} PRIVATE ${generated_dir})
     foreach(header ${ARGN})
@@ -76,7 +76,7 @@ function(tmini_configure_unit_test target generated_dir)
     target_compile_options(${target} PRIVATE -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
 endfunction()
 
-# Adds the ctest; what a machine without exit statuses prints decides there.
+# Adds the ctest. On a machine without exit statuses, the printed text decides whether it passed.
 function(tmini_register_unit_test name label)
     tmini_add_check(${name} ${label} COMMAND ${name} NEEDS ${name})
     if(TMINI_TEST_PASS_PATTERN)

@@ -3,9 +3,9 @@
 
 # cmake -D TMINI_SOURCE=… -D BUILD=… -D COMPILER=… -D GENERATOR=… -D PKG_CONFIG=… -P install.cmake
 #
-# Installs everything into a scratch folder, tries it there, with pkg-config if there is one, and
-# uninstalls it: then nothing is left. The library is built in one unit, as some packagers do; a
-# shared one is refused.
+# Installs everything into a scratch folder, uses it there (also with pkg-config if installed), and
+# uninstalls it: nothing may be left. The library is built as one translation unit, as some
+# packagers do. Building it as a shared library must be refused.
 
 include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 
@@ -33,7 +33,7 @@ function(expect_all_files)
     endforeach()
 endfunction()
 
-# A program made by hand, as in a makefile; the shell takes pkg-config's quotes away.
+# Compiles a program as a makefile would. The shell removes the quotes in pkg-config's output.
 function(build_with_pkg_config from)
     set(ENV{PKG_CONFIG_PATH} ${from}/lib/pkgconfig)
     run_or_fail(sh -c
@@ -72,7 +72,7 @@ expect_all_files()
 run_or_fail(${prefix}/bin/tmini --help)
 if(PKG_CONFIG)
     build_with_pkg_config(${prefix})
-    # An installed copy may be moved.
+    # An installed copy still works after it has been moved.
     file(RENAME ${prefix} ${BUILD}/moved)
     build_with_pkg_config(${BUILD}/moved)
     file(RENAME ${BUILD}/moved ${prefix})

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Uses the library, in code that its own strict warnings would refuse: they must not apply here. */
+/* Uses the library. The library's strict warnings would refuse this code: they must not apply. */
 
 #include <stdio.h>
 

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""What several ecosystems' manifests repeat must not drift apart.
+"""Checks that the manifests of several ecosystems agree.
 
     manifests.py [ROOT]
 
-Compares what each of them says of description, licence, author and keywords (version and address:
-.ci/version.py), and looks for every source of the library in each list of sources. Exit status: 0 they agree, 1 not;
-every disagreement is printed.
+Compares their description, licence, author and keywords (.ci/version.py compares version and address), and
+checks that each list of sources contains every source of the library. Exit status: 0 they agree, 1 differences,
+which are printed.
 """
 
 import glob
@@ -35,7 +35,7 @@ def read(name):
 
 
 def find(name, pattern):
-    """The only group of the pattern's first match, or None."""
+    """Returns the group of the pattern's first match, or None."""
     match = re.search(pattern, read(name), re.MULTILINE)
     return match and match.group(1).strip().strip('"')
 
@@ -97,7 +97,7 @@ def of_readme():
     return {"licence": find("README.md", r"^(\w+) licence\.")}
 
 
-# What each must say.
+# The facts that each manifest must state.
 SAID = {
     "CMakeLists.txt": (of_cmake, "description"),
     "library.json": (of_platformio, "name description licence author keywords"),
@@ -132,7 +132,7 @@ SOURCES = sorted(os.path.basename(name) for name in glob.glob(path("lib/src/*.c"
 
 
 def build_files():
-    """Build descriptions that may list the library's sources."""
+    """Returns the build files, which may list the library's sources."""
     for folder, folders, files in os.walk(ROOT):
         folders[:] = [name for name in folders
                       if name not in ("test", ".git") and not name.startswith("build")]
@@ -142,7 +142,7 @@ def build_files():
 
 
 def check_sources():
-    """A build file that names one source of the library names all."""
+    """Checks that a build file that names one of the library's sources names all of them."""
     listed = re.findall(r"src/(\w+\.c)", read("lib/CMakeLists.txt"))
     if sorted(listed) != SOURCES:
         complain("lib/CMakeLists.txt does not list what lib/src holds: %s"
@@ -154,7 +154,7 @@ def check_sources():
                      % (name, ", ".join(sorted(set(SOURCES) - named))))
 
 
-# Build files that take all sources there are.
+# Build files that compile all sources in lib/src, by a pattern.
 TAKERS = ["port/esp32/component.cmake", "port/pico/CMakeLists.txt",
           "port/zephyr/CMakeLists.txt"]
 

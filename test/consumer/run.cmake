@@ -3,12 +3,12 @@
 
 # cmake -D WAY=… -D TMINI_SOURCE=… -D BUILD=… -D COMPILER=… -D GENERATOR=… -P run.cmake
 #
-# Configures, checks, builds and runs the consumer project. For FetchContent, TMINI_SOURCE may be a
-# release's archive.
+# Configures, checks, builds and runs the consumer project. For FetchContent, TMINI_SOURCE may be
+# the archive of a release.
 
 include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 
-# The command line that compiled main.c has our include folder, and no option of ours.
+# Fails if the command line that compiles main.c contains compiler options of ours.
 function(check_command_line)
     file(READ ${BUILD}/compile_commands.json commands)
     string(REGEX MATCH "\"command\": \"[^\n]*main\\.c[^\n]*" command "${commands}")
@@ -35,7 +35,7 @@ run_or_fail(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${BUILD} -G ${GENER
 check_command_line()
 run_or_fail(${CMAKE_COMMAND} --build ${BUILD})
 
-# In the place where the consumer expects it, not in an output folder of ours.
+# The program is where the consumer expects it, not in an output folder of ours.
 run_or_fail(${BUILD}/consumer)
 if(EXISTS ${BUILD}/with_port)
     run_or_fail(${BUILD}/with_port)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# What the consumers' scripts have in common. They get TMINI_SOURCE, COMPILER and GENERATOR.
+# The common part of the consumers' scripts, which define TMINI_SOURCE, COMPILER and GENERATOR.
 
-# An environment's own flags would look like ours.
+# Flags from the environment could be mistaken for ours.
 unset(ENV{CFLAGS})
 
 function(run_or_fail)
@@ -14,8 +14,8 @@ function(run_or_fail)
     endif()
 endfunction()
 
-# install_project(BUILD PREFIX TOOL OPTION…): builds the library in BUILD, and the programs if TOOL,
-# and installs them below PREFIX.
+# install_project(BUILD PREFIX TOOL OPTION…): builds the library in BUILD, also the programs if TOOL
+# is ON, and installs them in PREFIX.
 function(install_project build prefix tool)
     run_or_fail(${CMAKE_COMMAND} -S ${TMINI_SOURCE} -B ${build} -G ${GENERATOR}
         -DCMAKE_C_COMPILER=${COMPILER} -DCMAKE_INSTALL_LIBDIR=lib

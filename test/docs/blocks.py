@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Every block of code in every document is compiled, configured, parsed or run; and every use of the
-tool that documents show is one that the tool knows.
+"""Compiles, configures, parses or runs every block of code in every document, and checks that the tool knows
+every command and option that documents show.
 
     blocks.py BUILD COMPILER [C++-COMPILER]
 
-BUILD is a built build folder. Exit status: 0 all is in order, 1 not; every mistake is printed, and so
-is what could not be checked, and why.
+BUILD is the folder of a complete build. Exit status: 0 no mistake, 1 mistakes. Prints every mistake, and every
+block that could not be checked with the reason.
 """
 
 import configparser
@@ -22,7 +22,7 @@ from pathlib import Path
 import tools
 from documents import ROOT, documents, indented_blocks, name, parse
 
-# Not checked, whatever is in them.
+# Languages of blocks that are never checked.
 UNCHECKED = {
     "text": "what a program prints, a drawing or a formula: nothing to compile",
 }
@@ -31,13 +31,13 @@ WARNINGS = ["-Wall", "-Wextra", "-Werror", "-Wno-unused", "-Wno-unused-parameter
 C = ["-std=c99", "-Ilib/include"]
 CXX = ["-std=c++11", "-Ilib/include"]
 
-# Documents whose programs in C must be right in C++ as well.
+# Documents whose C programs must also compile as C++.
 BOTH = ("README.md",)
 AS_CXX = ["-std=gnu++11", "-Wno-missing-field-initializers", "-x", "c++"]
 
 
 def stand_ins(*folders):
-    """The tests' stand-ins for platforms; their warnings are not the documents' fault."""
+    """Include options for the tests' stand-ins for platforms, without warnings from these headers."""
     return [word for folder in folders for word in ("-isystem", folder)]
 
 
@@ -58,7 +58,7 @@ PICO = [*C, "-std=gnu99", "-Iport/pico", *stand_ins("test/port/pico/sdk_stub"), 
 MICRO_ROS = [*C, "-Iexamples/micro_ros", *stand_ins("test/port/micro_ros/micro_ros_stub")]
 BOARD = [*C, *prelude("board")]
 
-# How programs are compiled, by document, and by section where that matters; else as BOARD.
+# Compiler options for each document, or for one of its sections; BOARD for all others.
 CONTEXTS = {
     "README.md#On Arduino": ARDUINO,
     "examples/micro_ros/README.md": [*MICRO_ROS, *prelude("micro_ros")],
@@ -78,10 +78,10 @@ CONTEXTS = {
     "test/simulator/README.md": [*C, "-Itest/simulator", "-Itest/support", *prelude("a_test")],
 }
 
-# Zephyr's own settings; the others must be in a Kconfig of this project.
+# Zephyr's own settings. All others must be in a Kconfig file of this project.
 ZEPHYR_SETTINGS = ("CONFIG_SERIAL",)
 
-# Macros that define something, and so are no statements.
+# Macros that expand to definitions: they are not statements.
 DEFINING = ("TMINI_PICO_RING",)
 
 
@@ -140,12 +140,12 @@ def is_statement(item):
         return True
     if re.match(r"[\w\s*]+\([^;{]*\)\s*\{", code):
         return False
-    # A declaration without a value, or a function's.
+    # A declaration of a function, or of a variable without an initial value, is no statement.
     return not re.match(r"[A-Za-z_]\w*[\s*]+\w+(\[[^]]*\]|\([^()]*\))?;$", code)
 
 
 def program(block):
-    """The block as something to compile: its statements become the body of a function."""
+    """Returns the block as a program that can be compiled: its statements become the body of a function."""
     outside, inside = [], []
     for number, item in items(block.text):
         line = f'#line {block.number + number - 1} "{name(block.path)}"'
@@ -180,7 +180,7 @@ file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/main.c "int main(void) { return 0; }")
 foreach(executable my_project my_program firmware)
     add_executable(${executable} ${CMAKE_CURRENT_BINARY_DIR}/main.c)
 endforeach()
-# The Pico SDK's.
+# Libraries of the Pico SDK.
 foreach(library hardware_dma hardware_gpio hardware_irq hardware_sync hardware_uart pico_time)
     add_library(${library} INTERFACE)
 endforeach()
@@ -191,7 +191,7 @@ USE = "target_link_libraries("
 
 
 def installed(place):
-    """Where this build has been installed, for find_package()."""
+    """Installs this build once, for find_package(), and returns the folder."""
     prefix = place.folder / "installed"
     if not prefix.exists():
         run("cmake", "--install", place.build, "--prefix", prefix)
@@ -199,13 +199,13 @@ def installed(place):
 
 
 def generator(place):
-    """The generator of this build: CMake's default may not be installed."""
+    """Returns this build's generator: CMake's default one may not be installed."""
     cache = (place.build / "CMakeCache.txt").read_text(encoding="utf-8")
     return re.search(r"^CMAKE_GENERATOR:INTERNAL=(.*)$", cache, re.MULTILINE)[1]
 
 
 def check_cmake(block, place):
-    """Configures a project of which the block is the end."""
+    """Configures a project that ends with the block."""
     project = place.folder / f"cmake-{block.number}"
     shutil.rmtree(project, ignore_errors=True)
     (project / "third_party").mkdir(parents=True)
@@ -230,7 +230,7 @@ def check_cmake(block, place):
 
 def check_sh(block, _place):
     run("sh", "-n", input=block.text)
-    # Files are the reader's; what is assigned or exported is used by programs that follow.
+    # SC2034: variables may be used by the commands that follow. SC2164: the reader's folders exist.
     run(need("shellcheck"), "-s", "sh", "-e", "SC2034,SC2164", "-", input=block.text)
     for option in re.findall(r"-D([A-Z_]+)=", block.text):
         if option.startswith(("CMAKE_", "PICO_")):
@@ -255,7 +255,7 @@ def check_json(block, _place):
 
 
 def check_yaml(block, _place):
-    # Python's standard library reads no YAML; Ruby's does.
+    # Python's standard library has no YAML parser, but Ruby's has one.
     run(need("ruby"), "-ryaml", "-e", "YAML.load($stdin.read)", input=block.text)
 
 
@@ -297,7 +297,7 @@ CHECKS = {"c": check_c, "cpp": check_cxx, "cmake": check_cmake, "sh": check_sh, 
 
 
 class Place:
-    """Where to build, and with what."""
+    """The folders and compilers for a build."""
 
     def __init__(self, build, compiler, cxx_compiler):
         self.build = Path(build).resolve()
@@ -308,7 +308,7 @@ class Place:
 
 
 def check(block, place):
-    """Returns what is wrong with a block, and why it has not been looked at, if so."""
+    """Returns (mistake, reason): the block's mistake, or the reason why it is not checked; else None."""
     if block.language in UNCHECKED:
         return None, UNCHECKED[block.language]
     if block.language not in CHECKS:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The documents of the project, for the checks in this folder: where they are, what is in them."""
+"""Finds and parses the project's documents, for the checks in this folder."""
 
 import re
 from pathlib import Path
@@ -17,7 +17,7 @@ def is_ours(folder):
 
 
 def documents(language=""):
-    """All documents in English, or in another language, but those in build folders, as paths."""
+    """Returns the paths of all documents in one language (English by default), except in build folders."""
     return [path for path in sorted(ROOT.rglob("*.md"))
             if path.name.partition(".")[2] == language + "md" and
             all(is_ours(folder) for folder in path.relative_to(ROOT).parts[:-1])]
@@ -28,8 +28,8 @@ def name(path):
 
 
 class Block:
-    """A block of code: its language, "" if it names none, the section that it stands in, the number
-    of its first line, and its text."""
+    """A block of code: its language (or ""), its section in the document, the number of its first line,
+    and its text."""
 
     def __init__(self, path, section, number, language, lines):
         self.path, self.section, self.number, self.language = path, section, number, language
@@ -64,7 +64,7 @@ def parse(path):
 
 
 def indented_blocks(prose):
-    """The numbers of lines that begin a block of code by being indented."""
+    """Returns the numbers of lines that begin an indented block of code."""
     found, before, in_list = [], "", False
     for number, line in prose:
         if re.match(r" {0,3}([-*+]|\d+\.) ", line):
@@ -79,14 +79,14 @@ def indented_blocks(prose):
 
 
 def anchor(heading):
-    """What a heading is linked to by."""
+    """Returns the anchor that links to a heading use."""
     text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading)
     text = re.sub(r"[`*]", "", text).strip().lower()
     return re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", text))
 
 
 def anchors(path):
-    """All that can be linked to within a document."""
+    """Returns all anchors of a document."""
     found = []
     for _, line in parse(path)[1]:
         heading = HEADING.match(line)

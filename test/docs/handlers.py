@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The interrupt handlers that documents show for STM32's USARTs survive an overrun: they run over a
-USART with SR and DR, where reading SR and then DR clears it, or over one with ISR, RDR and ICR,
-where writing to ICR does; and nothing else does.
+"""Checks that the interrupt handlers for STM32 USARTs in documents survive an overrun. They run on a model of
+a USART with SR and DR (only reading SR and then DR clears the overrun), or of one with ISR, RDR and ICR (only
+writing to ICR clears it).
 
     handlers.py BUILD C++-COMPILER
 
-Exit status: 0 all do, 1 not.
+Exit status: 0 all survive, 1 not.
 """
 
 import re
@@ -26,7 +26,7 @@ PROGRAM = """
 
 enum : uint32_t { ORE = 1u << 3, RXNE = 1u << 5 };
 
-/* As the reference manuals have it. */
+/* Flags behave as in the reference manuals. */
 struct Usart {
     uint32_t status = 0;
     uint8_t data = 0;
@@ -95,7 +95,7 @@ static void tmini_feed_byte(int *, uint8_t byte)
 
 HANDLER
 
-/* Interrupts as long as the USART asks for it; false: for ever. */
+/* Calls the handler while the USART requests an interrupt; false if this does not end. */
 static bool serve()
 {
     for (int i = 0; i < 10; i++) {
@@ -141,7 +141,7 @@ def handlers():
 
 
 def survives(handler, folder, compiler):
-    """None, or what is wrong."""
+    """Returns None, or the mistake."""
     program = folder / "handler"
     kind = "-DHAS_SR=" + str(int("->DR" in handler))
     built = subprocess.run([compiler, "-std=c++11", kind, "-x", "c++", "-", "-o", program],

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""docs/interface.md names every public function, and no other: those of the headers outside parts/.
+"""Checks that docs/interface.md names exactly the public functions: those of the headers outside parts/.
 
     interface.py
 
-Exit status: 0 it does, 1 not; every difference is reported.
+Exit status: 0 no difference, 1 differences, which are printed.
 """
 
 import re
@@ -13,12 +13,12 @@ import sys
 
 from documents import ROOT
 
-# For the library's own use: several bytes in one access.
+# Only for use inside the library: these access several bytes at once.
 NOT_PUBLIC = {"tmini_word", "tmini_copy_pair", "tmini_store_two"}
 
 
 def declared():
-    """Functions are declared from the first column on; comments and types are not."""
+    """Returns the declared functions: their declarations begin in the first column."""
     for header in ROOT.glob("lib/include/tmini/*.h"):
         text = re.sub(r"/\*.*?\*/|^typedef[^;]*;", "", header.read_text(encoding="utf-8"), flags=re.S | re.M)
         text = re.sub(r"^#.*(\\\n.*)*", "", text, flags=re.M)

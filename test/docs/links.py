@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Every link of a document leads somewhere: to a file of the project, and to a heading of it. So does
-every path that documents and headers name.
+"""Checks that every link in a document leads to a file of the project, and to a heading in that file, and that
+every path named in documents and headers exists.
 
     links.py
 
-Exit status: 0 all do, 1 not; every mistake is printed. Addresses on the web are not tried.
+Exit status: 0 no mistake, 1 mistakes, which are printed. Web addresses are not checked.
 """
 
 import re
@@ -19,10 +19,10 @@ REFERENCE = re.compile(r"^\[[^]]+\]:\s*(\S+)")
 TAG = re.compile(r"<[^>]* (?:src|href)=\"([^\"]*)\"")
 PATH = re.compile(r"(?<![\w/.-])((?:docs|examples|lib|port|test)/[\w./-]*\w)")
 
-# Recordings of real units, which each user has to bring.
+# Recordings of real units, which each user has to make.
 NOT_OURS = ("test/recordings/real",)
 
-# Stands for a name, as PLATFORM and X do.
+# A placeholder for a name, such as PLATFORM or X.
 PLACEHOLDER = re.compile(r"(?<![A-Za-z])[A-Z]+(?=/|\.|$)")
 
 
@@ -52,7 +52,7 @@ def links(path):
 
 
 def named_paths(path):
-    """Paths from the project's folder, in prose, code and comments."""
+    """Finds paths relative to the project's folder, in prose, code and comments."""
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         for named in PATH.findall(re.sub(r"\]\([^)]*\)", "]", line)):
             yield number, named

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Spelling: British English, of the documents and of the public headers' comments, by hunspell with
-the project's own words (words.txt) besides; and well-known slips in all sources, by codespell.
+"""Checks the spelling: of the documents and of the public headers' comments by hunspell (British English and the
+words in words.txt), and of all sources by codespell, which finds common misspellings.
 
     spelling.py
 
-Exit status: 0 all is in order, 1 not: every word is printed with its places; 77 no tool is installed.
+Exit status: 0 no mistake, 1 mistakes (every word is printed with its places), 77 no tool is installed.
 """
 
 import os
@@ -21,18 +21,18 @@ from documents import ROOT, documents, name, parse
 
 WORDS = Path(__file__).with_name("words.txt")
 SOURCES = ("lib", "port", "examples", "test", "docs", "README.md", "CONTRIBUTING.md", "CHANGELOG.md")
-# Names of registers and the like, and a word of another language.
+# Names, for example of registers, and words of other languages.
 NOT_SLIPS = "hsi,ordner,ore,paeth,pre-empted,te,ue"
 
 
 def plain(line):
-    """A line of a document without what is no English: code, addresses, tags."""
+    """Returns a line of a document without code, addresses and tags."""
     line = re.sub(r"`[^`]*`|<[^>]*>|\]\([^)]*\)|https?:\S+", " ", line)
     return re.sub(r"\S*[/\\_=@]\S*|\b0x\w+|[A-Za-z]*\d\w*|['’]s\b|Wi-Fi|(?<!\w)-\w+", " ", line)
 
 
 def comments(path):
-    """The lines of a header's comments, without code and names."""
+    """Returns the lines of a header's comments, without code and names."""
     text = path.read_text(encoding="utf-8")
     for comment in re.finditer(r"/\*.*?\*/", text, re.DOTALL):
         first = text.count("\n", 0, comment.start()) + 1
@@ -48,7 +48,7 @@ def text_of(path):
 
 
 def misspelt(lines):
-    """The words that hunspell does not know."""
+    """Returns the words that hunspell does not know."""
     with tempfile.NamedTemporaryFile("w", suffix=".txt", encoding="utf-8") as words:
         words.write("".join(line for line in WORDS.read_text(encoding="utf-8").splitlines(True)
                             if line.strip() and not line.startswith("#")))

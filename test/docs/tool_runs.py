@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The README's commands on the tool, run one after the other as they stand there, with the simulated
-lidar in the place of a real one: each must succeed.
+"""Runs the tool's commands in README.md unchanged and in order, with the simulated lidar instead of a real one.
+Each must succeed.
 
     tool_runs.py BUILD
 
-Exit status: 0 all have, 1 not.
+Exit status: 0 all commands have succeeded, 1 not.
 """
 
 import os
@@ -22,7 +22,7 @@ NOT_RUN = {"view": "wants a terminal; test_host_view has one"}
 
 
 def commands():
-    """Those of README.md, without their remarks."""
+    """Returns the commands in README.md, without their comments."""
     for block in parse(ROOT / "README.md")[0]:
         for line in block.text.splitlines():
             if block.language == "sh" and re.match(r"build/bin/tmini ", line):

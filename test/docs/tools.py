@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Uses of tmini and tmini-sim in documents: each command and option must be one that --help lists."""
+"""Checks the uses of tmini and tmini-sim in documents: --help must list every command and option."""
 
 import re
 import subprocess
@@ -10,7 +10,7 @@ from documents import documents, name
 
 USE = re.compile(r"(?<![\w/.-])(?:build(?:-demo)?/bin/)?(tmini-sim|tmini) +([^`|;&#\n]*)")
 
-# Documents write it for any command: `tmini COMMAND --help`.
+# In documents, this word stands for any command: `tmini COMMAND --help`.
 PLACEHOLDERS = ("COMMAND",)
 
 
@@ -29,7 +29,7 @@ def options(text):
 
 
 def spans(path):
-    """Everything in a document that is meant to be typed: spans of code and lines of blocks."""
+    """Returns everything in a document that the user may type: spans of code and lines of blocks."""
     fenced = False
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         if line.lstrip().startswith("```"):
@@ -43,7 +43,7 @@ def spans(path):
 
 
 def unknown_options(text, words):
-    """Those of `words` that the help does not list. Short ones may be joined: -n3, -qn1."""
+    """Returns the options in `words` that the help does not list. Short options may be joined: -n3, -qn1."""
     known = options(text)
     return [word for word in (word.split("=")[0].strip("[]") for word in words)
             if re.match(r"--?[a-zA-Z]", word) and word not in known
@@ -62,7 +62,7 @@ def check_use(helps, program, words):
 
 
 def check(build):
-    """Returns complaints about uses that the programs in `build` do not know."""
+    """Returns complaints about commands and options that the programs in `build` do not know."""
     helps = {"tmini": help_of(build, "tmini"), "tmini-sim": help_of(build, "tmini-sim")}
     helps |= {command: help_of(build, "tmini", command) for command in commands(helps["tmini"])}
     complaints, uses = [], 0

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""README.zh-CN.md says what README.md says: section by section the same code, the same figures, links
-and names of code.
+"""Checks that each section of README.zh-CN.md has the same blocks of code, figures, links and names as in
+README.md.
 
-    translation.py             names what differs
+    translation.py             prints the differences
     translation.py --write     copies README.md's blocks of code first
 
-Exit status: 0 nothing does, 1 something.
+Exit status: 0 no difference, 1 differences.
 """
 
 import re
@@ -21,7 +21,7 @@ THE_OTHER = ("README.md", "README.zh-CN.md")
 
 
 def sections(path):
-    """Its text without blocks of code, cut at the headings."""
+    """Returns the document's text without blocks of code, split at the headings."""
     texts = [""]
     for _, line in parse(path)[1]:
         if HEADING.match(line):
@@ -31,7 +31,7 @@ def sections(path):
 
 
 def facts(text):
-    """What does not change with the language, in any order."""
+    """Returns what must be equal in all languages, sorted."""
     links = [link for link in re.findall(r"\]\(([^)]*)\)", text) if link not in THE_OTHER]
     code = re.findall(r"`([^`]*)`", text)
     plain = re.sub(r"\]\([^)]*\)|`[^`]*`|<!--.*?-->", " ", text)
@@ -42,7 +42,7 @@ def facts(text):
 
 
 def write():
-    """Blocks of code by their order."""
+    """Replaces the Chinese document's blocks of code by the English ones, in order."""
     blocks = iter(re.findall(r"^```.*?^```$", ENGLISH.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL))
     text = re.sub(r"^```.*?^```$", lambda match: next(blocks), CHINESE.read_text(encoding="utf-8"),
                   flags=re.MULTILINE | re.DOTALL)

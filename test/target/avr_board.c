@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* ATmega2560: output through UART 0, end by sleeping without interrupts (the simulator then
- * stops). */
+/* ATmega2560: prints through UART 0. Sleeping with interrupts disabled ends the simulation. */
 
 #include "avr_board.h"
 
@@ -12,7 +11,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Just after the static data (there is no heap): the first place that a stack too deep reaches. */
+/* The first address after the static data. A stack that grows too deep reaches this place first:
+ * there is no heap. */
 extern uint8_t __heap_start;
 
 #define GUARD_SIZE 16u
@@ -42,7 +42,7 @@ void avr_board_start(void)
     for (uint8_t i = 0; i < GUARD_SIZE; i++) {
         guard[i] = GUARD_BYTE;
     }
-    UBRR0 = 0; /* As fast as it goes: nothing is at the other end of the wire. */
+    UBRR0 = 0; /* The highest baud rate: only the simulator receives. */
     UCSR0B = _BV(TXEN0);
 }
 

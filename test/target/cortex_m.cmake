@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# What the toolchain files of emulated Cortex-M machines have in common. They set CORTEX_M, the
-# processor's name for the compiler, CORTEX_M_MACHINE, the emulator's options for a board with it,
-# and CORTEX_M_RAM, the address of 16 MB of RAM there.
+# The common part of the toolchain files for emulated Cortex-M machines. Each file sets CORTEX_M
+# (the compiler's name of the processor), CORTEX_M_MACHINE (the emulator's options for a board with
+# that processor) and CORTEX_M_RAM (the address of 16 MB of RAM on that board).
 
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR arm)
@@ -13,7 +13,7 @@ set(CMAKE_C_FLAGS_INIT "-mcpu=${CORTEX_M} -mthumb -ffunction-sections -fdata-sec
 set(CMAKE_EXE_LINKER_FLAGS_INIT "--specs=nano.specs --specs=nosys.specs -nostartfiles \
 -Wl,--gc-sections -Wl,--defsym=RAM_START=${CORTEX_M_RAM} \
 -T\"${CMAKE_CURRENT_LIST_DIR}/cortex_m.ld\"")
-# CMake's trial program needs no linking, hence no start-up code.
+# CMake's trial program is compiled but not linked: there is no start-up code yet.
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 
 find_program(TMINI_QEMU_ARM qemu-system-arm)

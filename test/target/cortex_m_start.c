@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Start-up of unit tests on an emulated Cortex-M: vector table, main(), end by semihosting. The
- * emulator has loaded initialised data into RAM, and RAM is zero at first. */
+/* Start-up of unit tests on an emulated Cortex-M: vector table, main(), end by semihosting. Nothing
+ * is copied or cleared: the emulator loads initialised data into RAM, and the rest is zero. */
 
 #include "semihosting.h"
 
 #include <stdint.h>
 
-/* Operations and reasons of ARM's semihosting specification. */
+/* Operations, and reasons for an exit, of ARM's semihosting specification. */
 #define SYS_WRITEC 0x03
 #define SYS_EXIT 0x18
 #define APPLICATION_EXIT 0x20026u
 #define RUN_TIME_ERROR 0x20023u
 
-extern uint32_t stack_top; /* Of the linker script. */
+extern uint32_t stack_top; /* Defined in the linker script. */
 
 int main(void);
 
@@ -44,7 +44,7 @@ void cortex_m_reset(void)
     semihosting_exit(main());
 }
 
-/* Any exception: an unaligned access, a wild pointer, a stack that left its place. */
+/* Any exception, for example an unaligned access, a wild pointer or a stack overflow. */
 static void fault(void)
 {
     static const char text[] = "PROCESSOR FAULT\n";
@@ -54,7 +54,7 @@ static void fault(void)
     semihosting_exit(1);
 }
 
-/* Initial stack pointer, reset, and the other exceptions of the processor itself. */
+/* Initial stack pointer, reset, and the processor's other exceptions. */
 __attribute__((section(".vectors"), used)) static const void *const vectors[16] = {
     &stack_top, cortex_m_reset, fault, fault, fault, fault, fault, fault,
     fault,      fault,          fault, fault, fault, fault, fault, fault,

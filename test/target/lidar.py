@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The simulated lidar in an emulator's time, and its own account of what it sent."""
+"""Runs the simulated lidar in an emulator's time, and reads its own record of what it sent."""
 
 import csv
 import subprocess
 
 
 class Lidar:
-    """tmini-sim with these options, a process of its own."""
+    """A process that runs tmini-sim with the given options."""
 
     def __init__(self, program, truth, *options):
         self.truth = truth
@@ -16,13 +16,13 @@ class Lidar:
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE)
 
     def exchange(self, now_us, received):
-        """Gives it what it has received by now, and returns what has left it."""
+        """Passes the received bytes to the lidar, and returns the bytes that it has sent by now."""
         self.process.stdin.write(f"{now_us} {received.hex()}\n")
         self.process.stdin.flush()
         return bytes.fromhex(self.process.stdout.readline())
 
     def end(self):
-        """Returns the truth: each packet by its number, a list of its samples as named numbers."""
+        """Returns the packets that were sent, by number: each is a list of samples, dicts of numbers."""
         self.process.communicate()
         packets = {}
         with open(self.truth, encoding="ascii") as file:

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Semihosting: how a program on an emulated controller prints on this computer, and ends with a
- * status. Each machine's start-up file has its own way of asking for it. */
+/* Semihosting: a program on an emulated controller prints on this computer and ends with a status.
+ * The start-up file of each machine implements these functions. */
 
 #ifndef SEMIHOSTING_H
 #define SEMIHOSTING_H

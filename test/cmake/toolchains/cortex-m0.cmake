@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Cortex-M0, emulated: a processor that faults on unaligned access and has neither a division nor
-# exclusive access. The board gets more memory than it really has, for the tests.
+# Emulated Cortex-M0: it faults on unaligned access, and has neither a divide instruction nor
+# exclusive access. The emulated board has more memory than the real one: the tests need it.
 
 set(CORTEX_M cortex-m0)
 set(CORTEX_M_MACHINE -M microbit
@@ -12,5 +12,5 @@ include(${CMAKE_CURRENT_LIST_DIR}/../../target/cortex_m.cmake)
 
 set(TMINI_TEST_MACHINE cortex-m0)
 
-# An STM32F0, L0 or G0 has such a one.
+# STM32F0, L0 and G0 have such a processor.
 set(TMINI_TEST_PORTS stm32)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Cortex-M4, emulated: the processor of STM32F4, G4 and L4.
+# Emulated Cortex-M4: the processor of STM32F4, G4 and L4.
 
 set(CORTEX_M cortex-m4)
 set(CORTEX_M_MACHINE -M mps2-an386)

@@ -9,11 +9,12 @@ set(CMAKE_SYSTEM_PROCESSOR riscv32)
 set(CMAKE_C_COMPILER riscv64-unknown-elf-gcc)
 set(CMAKE_C_FLAGS_INIT "--specs=picolibc.specs -march=rv32imc -mabi=ilp32 \
 -ffunction-sections -fdata-sections -DTMINI_TEST_RV32IMC")
-# `virt` has its RAM at 0x80000000 and starts there; half of what is used plays the flash.
+# The RAM of `virt` begins at 0x80000000, where execution starts. The first 16 MB serve as flash,
+# the next 16 MB as RAM.
 set(CMAKE_EXE_LINKER_FLAGS_INIT "--oslib=semihost --crt0=semihost -Wl,--gc-sections \
 -Wl,--defsym=__flash=0x80000000 -Wl,--defsym=__flash_size=0x1000000 \
 -Wl,--defsym=__ram=0x81000000 -Wl,--defsym=__ram_size=0x1000000")
-# CMake's trial program needs no linking, hence no start-up code.
+# CMake's trial program is compiled but not linked.
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 
 find_program(TMINI_QEMU_RISCV32 qemu-system-riscv32)

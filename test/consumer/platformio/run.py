@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""PlatformIO itself, off the network, with small platforms of our own (platforms/).
+"""Runs PlatformIO without a network, with small platforms of our own (platforms/).
 
     run.py native|scan ROOT WORK
     run.py archive ROOT WORK ARCHIVE
 
-Run by the Python that has the packages platformio and scons. Builds and runs the consumer's
-program, or the sketch Scan; `archive` packs our archive again with PlatformIO's packer, which must
-leave nothing out, and builds the program with it. Exit status: 0 it works, 1 not.
+Needs a Python with the packages platformio and scons. `native` builds and runs the consumer's program, and
+`scan` the sketch Scan. `archive` repacks our archive with PlatformIO's packer, which must not leave anything
+out, and builds the consumer's program with it. Exit status: 0 success, 1 failure.
 """
 
 import json
@@ -37,14 +37,14 @@ def write(path, text):
 
 
 def describe(folder, kind, name, version):
-    """What PlatformIO leaves in a package that it has installed."""
+    """Writes the file that PlatformIO stores in each package that it has installed."""
     spec = {"owner": "platformio", "id": None, "name": name, "requirements": None, "uri": None}
     about = {"type": kind, "name": name, "version": version, "spec": spec}
     write(os.path.join(folder, ".piopm"), json.dumps(about))
 
 
 def install_scons(core):
-    """The Python package, as the tool that PlatformIO would download."""
+    """Installs the Python package scons in place of the tool that PlatformIO would download."""
     version = get_core_dependencies()["tool-scons"].strip("~^=")
     folder = os.path.join(core, "packages", "tool-scons")
     os.makedirs(folder)
@@ -78,7 +78,7 @@ def environment(root, work):
 
 
 def build(project, name, env):
-    """Returns the program that `pio run` has made."""
+    """Builds the project with `pio run` and returns the path of the program."""
     subprocess.run([sys.executable, "-m", "platformio", "run", "-d", project, "-e", name],
                    env=env, check=True)
     folder = os.path.join(env["PLATFORMIO_WORKSPACE_DIR"], "build", name)
@@ -93,7 +93,7 @@ def check_native(package, env):
 
 
 def pack(root, work):
-    """As `pio pkg pack`, but for the list of licences, which that fetches to look ours up."""
+    """Does the same as `pio pkg pack`, but without its download of the list of licences."""
     from platformio.package.manifest.schema import ManifestSchema
     from platformio.package.pack import PackagePacker
     ManifestSchema.load_spdx_licenses = staticmethod(

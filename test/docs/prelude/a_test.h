@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What test/simulator/README.md takes for granted: a test that has something to send. */
+/* What the code in test/simulator/README.md needs: a test that has data to send. */
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What programs in the documents take for granted of a board and of the reader's own program.
- * Registers are named as by the makers of the chips. */
+/* What programs in the documents need from a board and from the reader's own program. Registers
+ * have the chip makers' names. */
 
 #ifndef BOARD_H
 #define BOARD_H
 
 #include "tmini/tmini.h"
 
-/* A USART of an STM32: SR and DR have F1, F2, F4 and L1, the others have ISR, RDR and ICR.
- * ../handlers.py checks that they are not mixed. */
+/* A USART of an STM32: F1, F2, F4 and L1 have SR and DR; the other series have ISR, RDR and ICR.
+ * ../handlers.py checks that no handler mixes them. */
 typedef struct {
     volatile uint32_t SR;
     volatile uint32_t DR;
@@ -32,7 +32,7 @@ extern board_usart_t board_usart1;
 extern const tmini_port_t board_port;
 extern int board_uart;
 
-/* The reader's own. */
+/* Functions of the reader's program. */
 void avoid_obstacles(const tmini_scan_t *scan);
 void signal_faults(uint8_t faults);
 void stop_robot(void);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What examples/stm32_cube/README.md takes for granted: a CubeMX project with a console. */
+/* What the code in examples/stm32_cube/README.md needs: a CubeMX project with a console. */
 
 #include "board.h"
 #include "main.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What examples/micro_ros/README.md takes for granted: a lidar that has been set up. */
+/* What the code in examples/micro_ros/README.md needs: a lidar that has been set up. */
 
 #include "board.h"
 #include "scan_node.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What port/stm32/README.md takes for granted: a CubeMX project, CMSIS, LL drivers and an RTOS.
- * ST's functions and constants are declared as ST documents them, without their values. */
+/* What the code in port/stm32/README.md needs: a CubeMX project, CMSIS, LL drivers and an RTOS.
+ * ST's functions and constants are declared as documented, but the constants have no values. */
 
 #ifndef STM32_PRELUDE_H
 #define STM32_PRELUDE_H
@@ -82,7 +82,7 @@ void LL_DMA_ClearFlag_TC2(DMA_TypeDef *dma);
 #endif
 
 #ifdef H7
-void __HAL_RCC_D2SRAM1_CLK_ENABLE(void); /* A macro of the HAL. */
+void __HAL_RCC_D2SRAM1_CLK_ENABLE(void); /* A macro in ST's HAL. */
 #endif
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What port/README.md takes for granted. */
+/* What the code in port/README.md needs. */
 
 #include "board.h"
 #include "tmini_port_template.h"

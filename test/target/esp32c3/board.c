@@ -3,8 +3,8 @@
 
 /* Registers as in Espressif's "ESP32-C3 Technical Reference Manual".
  *
- * Compiled with -DEMULATED for the simulator that the test runs on, which differs from the chip in
- * three ways; each is marked where it matters. */
+ * Compile with -DEMULATED for the simulator that the test uses. It differs from the chip in three
+ * ways: see (1), (2) and (3) below. */
 
 #include "board.h"
 
@@ -43,8 +43,8 @@
 #define TIMER_UPDATE REGISTER(TIMER + 0x0Cu)
 #define TIMER_BUSY (1u << 31)
 
-/* The chip's timer counts the 40 MHz crystal divided by 40. The simulator's (1) counts processor
- * cycles whatever the divider, at the 20 MHz that the chip, too, comes out of reset with. */
+/* The chip's timer counts the 40 MHz crystal divided by 40. (1) The simulator's timer ignores the
+ * divider and counts processor cycles, at 20 MHz as on the chip after reset. */
 #ifdef EMULATED
 #define TICKS_PER_MS 20000u
 #else
@@ -98,7 +98,7 @@ uint32_t board_stack_used(void)
     return (uint32_t)((const uint8_t *)stack_top - (const uint8_t *)deepest);
 }
 
-/* The core wants a table of 32 jumps, one per line. */
+/* The core needs a table of 32 jumps, one per interrupt line. */
 __attribute__((naked, aligned(256), section(".vectors"))) static void vectors(void)
 {
     __asm__ volatile(".option push\n"
@@ -127,7 +127,7 @@ __attribute__((interrupt, aligned(4))) void board_interrupt(void)
         statistics.most_bytes = count;
     }
 #ifdef EMULATED
-    /* (2) Here the line stays pending until it is cleared. */
+    /* (2) In the simulator, the interrupt stays pending until it is cleared here. */
     __asm__ volatile("csrc mip, %0" ::"r"(1u << 11));
 #endif
 }
@@ -142,8 +142,8 @@ static void open_interrupt(void)
     MATRIX_THRESHOLD = 0;
     MATRIX_ENABLE |= 1u << UART_LINE;
 #ifdef EMULATED
-    /* (3) The simulator keeps what is written to the interrupt matrix but does not act on it: the
-     * UART's line is RISC-V's own machine external interrupt. */
+    /* (3) The simulator ignores the interrupt matrix: the UART raises RISC-V's machine external
+     * interrupt. */
     __asm__ volatile("csrs mie, %0" ::"r"(1u << 11));
 #endif
     __asm__ volatile("csrsi mstatus, 8");
@@ -156,8 +156,8 @@ void board_sleep(void)
 
 /* ---------------------------------------------------------------------------------- UART, clock */
 
-/* 230400 8N1 from the 40 MHz crystal: 173 10/16, 0.008 % slow. An interrupt at 64 bytes, or 40 bit
- * times after the last one. */
+/* 230400 8N1: the 40 MHz crystal divided by 173 10/16, 0.008 % slow. The UART interrupts after 64
+ * bytes, or 40 bit times after the last byte. */
 static void open_uart(void)
 {
     UART_CLK_CONF = (UART_CLK_CONF & ~(0xFFFFFu)) | 3u << 20 | 1u << 22;
@@ -168,7 +168,7 @@ static void open_uart(void)
     UART_INT_ENABLE = RXFIFO_FULL | RXFIFO_OVF | RXFIFO_TOUT;
 }
 
-/* Enabled, counting up, divided by 40, clocked by the crystal. */
+/* The timer is enabled, counts up, divides by 40 and is clocked by the crystal. */
 static void open_clock(void)
 {
     TIMER_CONFIG = 1u << 31 | 1u << 30 | 40u << 13 | 1u << 9;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* An ESP32-C3 without any operating system: UART0 for the lidar, received by interrupt, and a
- * clock. */
+/* An ESP32-C3 without an operating system: a clock, and UART0 for the lidar, with reception by
+ * interrupt. */
 
 #ifndef BOARD_H
 #define BOARD_H
@@ -11,21 +11,21 @@
 
 typedef struct {
     uint32_t interrupts;
-    uint32_t most_bytes; /* In one interrupt. */
+    uint32_t most_bytes; /* Received in one interrupt. */
     uint32_t overflows;  /* Of the UART's receive FIFO. */
 } board_statistics_t;
 
 extern const tmini_port_t board_port;
 
-/* Sets up clock, UART and interrupt; from then on received bytes go to `lidar`. */
+/* Sets up clock, UART and interrupt. After that, received bytes go to `lidar`. */
 void board_open(tmini_t *lidar);
 
-/* Until the next interrupt. */
+/* Sleeps until the next interrupt. */
 void board_sleep(void);
 
 board_statistics_t board_statistics(void);
 
-/* The most bytes of stack that have been in use so far. */
+/* The largest number of stack bytes in use so far. */
 uint32_t board_stack_used(void);
 
 #endif

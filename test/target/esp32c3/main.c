@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The firmware: asks the lidar everything, takes four scans at 12 Hz and stops it. What it sees
- * goes as text into memory, `log_text`, where the test reads it; the UART is the lidar's. */
+/* The firmware requests information and health, receives four scans at 12 Hz and stops the lidar.
+ * It writes its results as text to `log_text`, which the test reads from memory: the UART is in use
+ * for the lidar. */
 
 #include "tmini/tmini_names.h"
 #include "board.h"
@@ -145,7 +146,7 @@ static void take_scan(void)
     if (scans == SCANS) {
         log_turn();
         next_step();
-        scans++; /* Scans that are still under way are left out. */
+        scans++; /* Scans that arrive after the last wanted one are ignored. */
     }
 }
 

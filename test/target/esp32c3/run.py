@@ -5,8 +5,9 @@
 
     run.py FIRMWARE.elf TMINI_SIM
 
-Both keep virtual time: byte for byte the same on every run and machine. What the lidar measured,
-what the firmware says it received, and what it sent are compared; any difference is a failure.
+Both use virtual time, so that every run gives the same bytes on every machine. Compares what the
+lidar measured with what the firmware reports, and checks the bytes that the firmware sent; any
+difference is a failure.
 """
 
 import pathlib
@@ -19,12 +20,12 @@ import labwired
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from lidar import Lidar  # pylint: disable=wrong-import-position
 
-PROCESSOR_HZ = 20_000_000  # What the chip comes out of reset with; TICKS_PER_MS in board.c.
-SLICE_US = 250  # Six byte times.
+PROCESSOR_HZ = 20_000_000  # The chip's frequency after reset; TICKS_PER_MS in board.c relies on it.
+SLICE_US = 250  # About six byte times.
 END_US = 4_000_000
 
-# The manual's command codes. From an unknown state the first thing is a stop. Before the start the
-# frequency is asked for, 11 Hz, raised by 1 Hz and asked for again.
+# The manual's command codes. The lidar's state is unknown: the first command is a stop. Before the
+# start, the driver reads the frequency (11 Hz), raises it by 1 Hz and reads it again.
 EXPECTED_COMMANDS = [0x65, 0x90, 0x92, 0x0D, 0x0B, 0x0D, 0x60, 0x65]
 EXPECTED_FACTS = {
     "model": ["151"],
@@ -55,7 +56,7 @@ def system_description():
 
 
 def revolutions_of(packets):
-    """Revolution -> its points, in order."""
+    """Returns the points of each revolution, in order."""
     revolutions = {}
     for packet in packets.values():
         revolutions.setdefault(packet[0]["revolution"], []).extend(
@@ -65,7 +66,7 @@ def revolutions_of(packets):
 
 
 def run(sim, lidar):
-    """Until the firmware has finished; returns what it sent and when it was done, or fails."""
+    """Runs the firmware to its end; returns the bytes that it sent and the time, or fails."""
     sent = bytearray()
     finished = sim.symbol("finished")
     for now_us in range(SLICE_US, END_US, SLICE_US):
@@ -86,7 +87,7 @@ def read_log(sim):
 
 
 def split_log(text):
-    """Facts by name, each with all its values, and the scans."""
+    """Returns the log's facts (a list of values for each name) and its scans."""
     facts = {}
     scans = []
     for line in text.splitlines():
@@ -101,7 +102,7 @@ def split_log(text):
 
 
 def compare(facts, scans, truth, sent):
-    """A list of all differences."""
+    """Returns a list of all differences."""
     wrong = []
     for name, expected in EXPECTED_FACTS.items():
         if facts.get(name) != expected:

@@ -3,7 +3,7 @@
 # Copyright (c) 2026 The tmini authors
 
 # Builds the firmware and runs it:  run.sh LABWIRED_FOLDER TMINI_SIM WORK_FOLDER
-# Exit status: 0 all as it should be, 1 not, 77 compiler or simulator is not installed.
+# Exit status: 0 no difference found, 1 differences, 77 compiler or simulator is not installed.
 
 set -eu
 
@@ -23,8 +23,8 @@ if ! "$python" -c 'import labwired' 2>/dev/null; then
     exit 77
 fi
 
-# GCC 12 wants the CSR instructions named (zicsr), but finds no C library for that name; in the
-# older edition of the instruction set they belong to it.
+# GCC 12 needs the extension zicsr for the CSR instructions, but finds no C library built with that
+# name. In edition 2.2 of the instruction set (-misa-spec) they are part of the base set.
 "$compiler" --specs=picolibc.specs -march=rv32imc -misa-spec=2.2 -mabi=ilp32 \
     -std=c99 -Os -ffunction-sections -fdata-sections -Wall -Wextra -Wconversion -Werror -DEMULATED \
     -I "$root/lib/include" "$here/board.c" "$here/main.c" "$root"/lib/src/*.c \

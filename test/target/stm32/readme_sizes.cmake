@@ -3,7 +3,7 @@
 
 # cmake -D EXAMPLE=folder -D MAP=firmware.map -P readme_sizes.cmake
 #
-# Fails if the sizes in the example's README are more than a tenth away from those of the firmware.
+# Fails if a size in the example's README differs from the firmware's by more than 10 %.
 
 include(${EXAMPLE}/sizes.cmake)
 file(READ ${EXAMPLE}/README.md readme)

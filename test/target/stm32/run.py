@@ -2,18 +2,18 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Runs the STM32F405 firmware in QEMU against the simulated lidar and checks what it says.
+"""Runs the STM32F405 firmware in QEMU against the simulated lidar and checks the firmware's output.
 
-QEMU's first UART is the lidar's line, the second one the firmware's console, and the third one asks for the
-next millisecond (paced/clock.c): lidar, firmware and this script share one time, however busy the computer
-is. The script lets the firmware scan, stops it, and then compares the console with the simulated lidar's own
-account of what it sent:
+QEMU's first UART is the lidar's line, the second is the firmware's console, and the third requests the next
+millisecond (paced/clock.c): lidar, firmware and this script share one clock, however busy the computer is. The
+script lets the firmware scan, stops it, and then compares the console's text with the simulated lidar's own
+record of what it sent:
 
   - device information, health and frequency are those of the simulated device;
-  - every packet that reached the controller intact was parsed, and no other;
-  - every one after a first start packet is in exactly one scan, which holds its points as they were sent;
-  - scans end where a revolution ends or where something is missing, and are complete if nothing is;
-  - every byte that the interrupt has counted is accounted for.
+  - the firmware parsed exactly the packets that reached the controller intact;
+  - every packet after the first start packet is in exactly one scan, and that scan holds its points unchanged;
+  - a scan ends where a revolution ends or where a packet is missing; it is complete if none is missing;
+  - every byte that the interrupt counted is accounted for.
 
 Exit status: 0 as expected, 1 not.
 """
@@ -32,33 +32,33 @@ import zlib
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 from lidar import Lidar  # pylint: disable=wrong-import-position
 
-# The simulated device's own data (test/simulator), as the firmware words them.
+# The simulated device's data (test/simulator), in the firmware's wording.
 INFO = "info model 151 firmware 1.2 hardware 1 serial 2026031700012345"
 HEALTH = "health faults 0 code 0"
 FREQUENCY = "frequency hz 10.00"
 
-# Bytes of the reply to each command (section 4), by the command's code in tmini-sim's log.
+# Size in bytes of the reply to each command (section 4), by the command's code in tmini-sim's log.
 REPLY_BYTES = {"90": 27, "92": 10, "60": 7, "09": 11, "0A": 11, "0B": 11, "0C": 11, "0D": 11}
 PACKET_HEADER_BYTES = 10
 SAMPLE_BYTES = 3
 
-# Room for points in the firmware: a revolution while the rotor spins up may have more.
+# Most points that the firmware stores per scan. A revolution may have more while the rotor spins up.
 MOST_POINTS = 800
 
-# What a stop cuts off: the scan that it falls into, and one more revolution, for its tail lasts some
-# 100 ms. The driver stops the lidar itself, too, before it starts it anew.
+# Revolutions lost at a stop: the scan in progress, and one more, because the lidar continues to send for
+# about 100 ms. The driver also stops the lidar before each new start.
 MOST_CUT_OFF = 2
 
-# Of the console: 115200 baud, and a buffer.
+# The console has 115200 baud and a buffer of this size.
 CONSOLE_BYTES_PER_MS = 11
 CONSOLE_HOLDS = 2048
 
-# Of this computer's time, for one millisecond of the firmware's.
+# The most time that this computer may need for one millisecond of the firmware.
 PATIENCE_S = 120
 
 
 def values(line):
-    """The named numbers of a line: "word a 1 b 2" gives {"a": "1", "b": "2"}."""
+    """Returns the named numbers of a line: "word a 1 b 2" gives {"a": "1", "b": "2"}."""
     words = line.split()
     return dict(zip(words[1::2], words[2::2]))
 
@@ -72,7 +72,7 @@ def complete_scans(texts):
 
 
 def is_scanning(texts):
-    """Whether the last thing that happened was a scan, and not a loss."""
+    """True if the last event was a scan, not a loss."""
     events = [text for text in texts if text.startswith("scan ") or text in ("lost", "recovered")]
     return bool(events) and events[-1].startswith("scan ")
 
@@ -81,16 +81,16 @@ def is_scanning(texts):
 
 
 class Board:
-    """The emulated controller with its lidar, and the time of both."""
+    """The emulated controller with its lidar, and the clock of both."""
 
     def __init__(self, args, lidar):
         self.lidar = lidar
         self.now_ms = 0
-        self.lines = []  # Of the console: when, and what.
+        self.lines = []  # The console's lines, each as (time in ms, text).
         self.rest = b""
-        with tempfile.TemporaryDirectory() as folder:  # Its name is short enough for a socket's.
+        with tempfile.TemporaryDirectory() as folder:  # Its path is short enough for a socket.
             listeners = [self._listen(os.path.join(folder, name)) for name in ("lidar", "clock")]
-            # Counting instructions makes the firmware's own measurement of time one of instructions.
+            # With -icount, emulated time follows the number of executed instructions.
             self.process = subprocess.Popen(
                 [args.qemu, "-M", "netduinoplus2", "-icount", "shift=3", "-display", "none",
                  "-monitor", "none", "-serial", f"unix:{folder}/lidar", "-serial", "stdio",
@@ -125,7 +125,7 @@ class Board:
             data = data[self.line.send(data):]
 
     def step(self):
-        """The next millisecond."""
+        """Advances by one millisecond."""
         if not self.clock.recv(1):
             raise TimeoutError("the emulator has ended")
         self.now_ms += 1
@@ -135,7 +135,7 @@ class Board:
         self.clock.sendall(bytes([len(sent)]))
 
     def wait(self, what, condition, seconds):
-        """Until condition(texts) is true; says so when it does not become so."""
+        """Runs until condition(texts) is true; fails if that takes more than `seconds`."""
         end_ms = self.now_ms + 1000 * seconds
         known = -1
         while known == len(self.lines) or not condition(self.texts()):
@@ -161,19 +161,19 @@ def starts(word):
 
 
 def operate(board, args):
-    """What a user would do at the console."""
+    """Does what a user would do at the console."""
     board.wait("its greeting", starts("tmini on STM32F405"), 5)
     board.press("d")
     board.wait("started", starts("started"), 20)
-    # With a byte lost here and there, no scan may ever be complete.
+    # If bytes are lost often, perhaps no scan is ever complete.
     counted = scan_lines if args.lossy else complete_scans
     board.wait(f"{args.scans} scans", lambda texts: len(counted(texts)) >= args.scans, 60)
     while board.now_ms < 1000 * args.seconds:
         board.step()
-    if args.fault:  # Which ones come depends on every byte: until the lidar has been unplugged.
+    if args.fault:  # Wait until the lidar has been unplugged once: the time of that fault is random.
         board.wait("lost and recovered", starts("recovered"), 600)
     board.wait("that it scans again", is_scanning, 60)
-    for _ in range(3):  # The lidar may be unplugged just then.
+    for _ in range(3):  # The lidar may be unplugged during the stop: try again.
         failures = board.texts().count("failed: timeout")
         board.press("s")
         board.wait("stopped, or failed", lambda texts, known=failures: starts("counters")(texts) or
@@ -181,7 +181,7 @@ def operate(board, args):
 
 
 def run(args):
-    """Returns the console's lines, the simulated lidar's log and its truth."""
+    """Returns the console's lines, the simulated lidar's log and the packets that it sent."""
     os.makedirs(args.work, exist_ok=True)
     log = os.path.join(args.work, "sim.log")
     options = ["--log", log, "--seed", str(args.seed)]
@@ -218,15 +218,15 @@ class Packet:
         return PACKET_HEADER_BYTES + SAMPLE_BYTES * len(self.points)
 
     def follows(self, packet):
-        """Whether nothing was sent in between."""
+        """True if no packet was sent between that packet and this one."""
         return self.number == packet.number + 1 and (self.starts or
                                                      self.revolution == packet.revolution)
 
 
 def read_packets(truth):
     packets = [Packet(number, samples) for number, samples in sorted(truth.items())]
-    # A start packet begins a revolution; unless it was cut off when the lidar was unplugged: then its
-    # number is missing, and what follows is no start packet.
+    # The first packet of a revolution is its start packet, unless the start packet was lost because the
+    # lidar was unplugged: then its number is missing, and the next packet is not a start packet.
     for before, packet in zip(packets, packets[1:]):
         packet.starts = (packet.number == before.number + 1 and
                          packet.revolution != before.revolution and len(packet.points) == 1)
@@ -234,7 +234,8 @@ def read_packets(truth):
 
 
 def end_of_scan(intact, first, points, digest):
-    """The index after the last packet of the scan of these points that begins with intact[first], or None."""
+    """Returns the index after the last packet of the scan that begins with intact[first], or None if no such
+    scan has this number and digest of points."""
     count = 0
     crc = 0
     for i in range(first, len(intact)):
@@ -272,12 +273,12 @@ def check_answers(findings, texts):
 
 
 class Scans:
-    """Goes through the intact packets as the console goes through its scans."""
+    """Finds the intact packets of each scan on the console."""
 
     def __init__(self, packets):
         self.intact = [packet for packet in packets if packet.intact]
-        self.place = 0  # In them: where the next scan begins.
-        self.may_skip = 1  # Up to one of this many next start packets; 0: no packet.
+        self.place = 0  # Index of the packet after the last scan.
+        self.may_skip = 1  # 0: the next scan begins at `place`; N: at one of the next N start packets.
         self.skipped_revolutions = 0
         self.strange = 0
         self.complete = 0
@@ -285,12 +286,12 @@ class Scans:
         self.problems = []
 
     def begin_again(self):
-        """The lidar has come back. A scan that was open until then is none."""
+        """The lidar was started or has recovered: the scan in progress was discarded."""
         if self.place > 0:
             self.may_skip = 1 + MOST_CUT_OFF
 
     def _places(self):
-        """Where the next scan may begin. What comes before the first start packet is in none."""
+        """Returns the indices at which the next scan may begin."""
         if not self.may_skip:
             return [self.place]
         rest = range(self.place, len(self.intact))
@@ -327,7 +328,7 @@ class Scans:
             self.problems.append(f"this scan ended although nothing was missing: {line}")
 
     def left(self):
-        """Revolutions that began after the last scan, or with its last packet."""
+        """Returns the number of revolutions that began after the last scan."""
         return sum(packet.starts for packet in self.intact[self.place:])
 
 
@@ -345,7 +346,7 @@ def check_scans(findings, args, texts, log, packets, counters, accepted):
         findings.check(False, problem)
     findings.check(args.lossy or scans.complete >= args.scans,
                    f"only {scans.complete} scans are complete")
-    # A byte inserted between two intact packets looks like the rest of a lost one.
+    # A byte inserted between two intact packets looks like the remainder of a lost packet.
     inserted = len(re.findall("fault insert begins", log))
     findings.check(scans.doubted <= inserted, f"{scans.doubted} complete scans are said to have gaps")
     findings.check(scans.left() <= MOST_CUT_OFF, f"the last {scans.left()} revolutions became no scans")
@@ -353,8 +354,8 @@ def check_scans(findings, args, texts, log, packets, counters, accepted):
 
 
 def check_packets(findings, packets, counters):
-    """Returns how many harmed packets were accepted. The packet's checksum is a mere XOR: about one harmed
-    packet in 10,000 passes it, with other content or, by the harm's chance, with the same."""
+    """Returns how many harmed packets were accepted. The packet's checksum is only an XOR: about one harmed
+    packet in 10,000 passes it."""
     intact = [packet for packet in packets if packet.intact]
     harmed = len(packets) - len(intact)
     print(f"packets sent: {len(packets)}, harmed on the line: {harmed}")
@@ -369,7 +370,7 @@ def check_packets(findings, packets, counters):
 
 
 def check_console(findings, lines):
-    """The firmware's console holds what its UART has not sent yet."""
+    """Checks that the console's buffer never overflows; it holds the text that the UART has not sent yet."""
     waiting = most = before = 0
     for at, text in lines:
         waiting = max(0, waiting - CONSOLE_BYTES_PER_MS * (at - before)) + len(text) + len("\r\n")
@@ -387,7 +388,7 @@ def check_sum(findings, counters):
 
 
 def check_clean_line(findings, packets, counters, log):
-    """Without faults nothing is left over but the LastCRC before each start packet but the first."""
+    """Without faults, the only bytes skipped are the LastCRC before each start packet except the first."""
     codes = re.findall(r"command A5 ([0-9A-F]{2})", log)
     replies = sum(REPLY_BYTES.get(code, 0) for code in codes)
     starts_sent = sum(packet.starts for packet in packets)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Linked into the firmware by the linker's --wrap: its clock and the simulated lidar's are one,
- * however slow the computer is. Each millisecond the firmware sends a byte through USART3. run.py
- * lets the lidar go on for a millisecond, sends what left it to USART1, and then how many bytes
- * those are to USART3. Until all of them have been received, time stands still. */
+/* Linked into the firmware with the linker's --wrap, so that the firmware and the simulated lidar
+ * share one clock, however slow the computer is. Each millisecond the firmware sends a byte through
+ * USART3. run.py then runs the lidar for one millisecond, sends the lidar's bytes to USART1, and
+ * their number to USART3. The firmware's time stands still until all these bytes are received. */
 
 #include "stm32f405.h"
 #include "tmini_stm32_usart.h"
@@ -14,7 +14,7 @@
 #define USART3_CR1 REGISTER(0x4000480Cu)
 
 static uint32_t received;
-static uint32_t sent; /* By the lidar. */
+static uint32_t sent; /* Bytes sent by the lidar. */
 static bool is_asking;
 
 void __real_SysTick_Handler(void);
@@ -37,8 +37,8 @@ void __wrap_SysTick_Handler(void)
 }
 
 #ifdef LOSSY
-/* A deliberate fault, which the test must find: of the bytes that the interrupt receives and
- * counts, one now and then is taken out of the library's ring again. */
+/* A deliberate fault, which the test must find: one in 5000 bytes that the interrupt has received
+ * and counted is removed from the library's ring. */
 static void harm(tmini_stm32_usart_t *port)
 {
     if (received % 5000u == 0) {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The tests' stand-in for Arduino, as the core for ESP32 would be seen by a sketch.
+# Compiles the sketch with the tests' stand-in for the Arduino core for ESP32.
 
 import os
 

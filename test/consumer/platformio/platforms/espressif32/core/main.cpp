@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A sketch's surroundings: what Arduino's core does around setup() and loop(), for a while. */
+/* Does what Arduino's core does: calls setup(), and then loop(), but only for a while. */
 
 #include <Arduino.h>
 
@@ -19,5 +19,5 @@ int main()
         arduino_millis++;
         loop();
     }
-    return Serial1.sent.empty() ? 1 : 0; /* The sketch has asked its lidar for something. */
+    return Serial1.sent.empty() ? 1 : 0; /* The sketch must have sent a command to its lidar. */
 }
