@@ -60,10 +60,14 @@ static bool may_hide_turn(const tmini_t *lidar, int32_t silent_ms)
     return (uint32_t)silent_ms * frequency_chz > 100000u / 2;
 }
 
-/* All these bytes have come from the wire since the last look. */
-static bool are_fresh(uint32_t due_ms, uint32_t passed_ms)
+/* Bytes that take `due_ms` have come, `passed_ms` after the last look. True if a silence was before
+ * them: the lidar does not scan yet, and all of them have come from the wire since that look. Else
+ * the place is unknown, because a layer below that was held up may deliver late what came before
+ * the silence. */
+static bool is_silence_before(const tmini_t *lidar, uint32_t due_ms, uint32_t passed_ms)
 {
-    return passed_ms <= WATCHED_MS && due_ms <= passed_ms + FIFO_MS;
+    return lidar->state != TMINI_STATE_SCANNING && passed_ms <= WATCHED_MS &&
+           due_ms <= passed_ms + FIFO_MS;
 }
 
 /* Notes that the bytes that have come may be late. A larger delay of earlier bytes is kept until
@@ -85,14 +89,19 @@ static void doubt_to(tmini_line_t *line, size_t place)
     line->doubtful_to = place;
 }
 
-/* Bytes have come, `passed_ms` after the last look; with those that the port holds, up to
- * `arrived`. A scanning lidar never pauses for long, so if the bytes are too few for the time since
- * others came, bytes may be missing. The place is unknown: a layer below that was held up may
- * deliver late what came before the silence. So all these bytes may be older by the missing time.
- * That time counts again for the next bytes, because the silence may continue; after a doubt only
- * if the port may hold what seemed to be missing. Only if the line was watched and the lidar does
- * not scan yet, the silence was before these bytes. Bytes that the port held before show no time.
- * More bytes than the ring holds mean a gap of DMA: then their number is unknown. */
+/* The time since other bytes came, less `due_ms`, which the new ones take on the line. */
+static int32_t missing_ms(const tmini_line_t *line, uint32_t due_ms)
+{
+    const uint32_t pause_ms = line->now_ms - line->heard_ms;
+    return (int32_t)((pause_ms < SILENCE_MAX_MS ? pause_ms : SILENCE_MAX_MS) - due_ms);
+}
+
+/* `count` bytes have come, `passed_ms` after the last look; with those that the port holds, up to
+ * `arrived`. Bytes that the port held before show no time. A scanning lidar never pauses for long:
+ * if the bytes are too few for the time since others came, bytes may be missing, or these may be
+ * late. The missing time counts again for the next bytes, because the silence may continue; after a
+ * doubt only if the port may hold what seemed to be missing. More bytes than the ring holds mean a
+ * gap of DMA: then their number is unknown. */
 static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t passed_ms)
 {
     tmini_line_t *const line = &lidar->line;
@@ -104,21 +113,19 @@ static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t pa
         return;
     }
     const bool were_held = line->arrived != line->received - count;
-    const uint32_t due_ms = transit_ms(fresh);
-    const uint32_t pause_ms = line->now_ms - line->heard_ms;
-    const int32_t missing_ms =
-        (int32_t)((pause_ms < SILENCE_MAX_MS ? pause_ms : SILENCE_MAX_MS) - due_ms);
     const bool is_gap = count > lidar->ring.size;
-    const bool is_doubtful = is_gap || may_hide_turn(lidar, missing_ms + line->late_ms);
+    const uint32_t due_ms = transit_ms(fresh);
+    int32_t late_ms = missing_ms(line, due_ms);
     line->arrived = arrived;
     line->heard_ms = line->now_ms;
-    if (is_doubtful) {
-        const bool is_first = lidar->state != TMINI_STATE_SCANNING;
-        const bool is_before = is_first && !is_gap && are_fresh(due_ms, passed_ms);
+    if (is_gap || may_hide_turn(lidar, late_ms + line->late_ms)) {
+        const bool is_before = !is_gap && is_silence_before(lidar, due_ms, passed_ms);
         doubt_to(line, is_before ? arrived - fresh : arrived);
+        if (tmini_load(&lidar->held_to) == 0) {
+            late_ms = 0;
+        }
     }
-    note_delay(line, is_doubtful && tmini_load(&lidar->held_to) == 0 ? 0 : missing_ms,
-               lidar->is_settled && !were_held);
+    note_delay(line, late_ms, lidar->is_settled && !were_held);
 }
 
 static void note_silence(tmini_line_t *line, uint32_t passed_ms)
