@@ -2,7 +2,7 @@
 # Copyright (c) 2026 The tmini authors
 
 # Install rules, so that find_package(tmini) and pkg-config find an installed copy; and the target
-# `uninstall`, which removes it. What else is installed, such as the tool, says so where it is
+# `uninstall`, which removes it. Other files, such as the tool, have install rules where they are
 # built.
 
 include(GNUInstallDirs)
@@ -14,7 +14,7 @@ install(TARGETS tmini EXPORT tmini ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/tmini DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# Without dependencies the exported targets are all the package's configuration.
+# The package has no dependencies, so the exported targets are its whole configuration.
 install(EXPORT tmini NAMESPACE tmini:: FILE tmini-config.cmake DESTINATION ${package_dir})
 
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/tmini-config-version.cmake

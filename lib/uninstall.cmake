@@ -3,8 +3,8 @@
 
 # cmake -D BUILD=build folder -P uninstall.cmake
 #
-# Removes what was last installed from that folder, and what folders of ours it leaves empty.
-# DESTDIR is heeded, as it was when installing.
+# Removes what was last installed from that build folder, and our own folders if they are empty
+# then. DESTDIR has the same effect as when installing.
 
 set(manifest ${BUILD}/install_manifest.txt)
 if(NOT EXISTS ${manifest})
@@ -20,7 +20,7 @@ foreach(file ${files})
     else()
         message("-- Not there: ${file}")
     endif()
-    # Ours are tmini, and parts in it.
+    # Our folders are tmini and tmini/parts.
     get_filename_component(folder "${file}" DIRECTORY)
     file(GLOB rest "${folder}/*")
     while(folder MATCHES "/tmini(/parts)?$" AND NOT rest)

@@ -10,16 +10,16 @@
 #include <string.h>
 
 const tmini_timing_t tmini_timing_default = {
-    .frame_timeout_ms = 100, /* A busy line pauses for 5 ms; a task or bridge may hold bytes
-                              * back. */
-    .max_pause_ms = 30,      /* A busy line brings a packet every 10 ms. */
+    .frame_timeout_ms = 100, /* A scanning lidar pauses for 5 ms; tasks or bridges delay
+                              * bytes. */
+    .max_pause_ms = 30,      /* A scanning lidar sends a packet every 10 ms. */
     .quiet_line_ms = 50,
     .reply_timeout_ms = 2000,
     .back_off_max_ms = 4000,
     .max_attempts = 3,
 };
 
-/* The events with which commands end. */
+/* The events that end a command. */
 #define END_EVENTS                                                                         \
     (1u << TMINI_EVENT_STARTED | 1u << TMINI_EVENT_STOPPED | 1u << TMINI_EVENT_INFO |      \
      1u << TMINI_EVENT_HEALTH | 1u << TMINI_EVENT_FREQUENCY | 1u << TMINI_EVENT_REBOOTED | \
@@ -28,12 +28,12 @@ const tmini_timing_t tmini_timing_default = {
 /* Each event has a bit in tmini_t.pending. */
 typedef char events_fit_their_mask[TMINI_EVENT_MORE <= 16 ? 1 : -1];
 
-/* The work for a frame, besides looking at its bytes: as much as looking at them once more, and at
- * 44 further bytes. A packet's samples become points, and its time and its place in the scan are
- * computed. */
+/* Handling a frame of n bytes costs as much as parsing n + 44 bytes: samples become points, and the
+ * packet's time and place in the scan are computed. */
 #define FRAME_EFFORT 44u
 
-/* The line is looked at this often, also when there is nothing to do: about once per packet. */
+/* The longest time between two looks at the line, also when there is nothing to do: about one
+ * packet. */
 #define IDLE_MAX_MS 10u
 
 static bool is_set_up(const tmini_t *lidar)
@@ -41,13 +41,13 @@ static bool is_set_up(const tmini_t *lidar)
     return lidar != NULL && lidar->link.port != NULL;
 }
 
-/* A command of the user is in progress that will end with an event; this includes a start. */
+/* A command of the user, or a start, is in progress: an event will end it. */
 static bool is_busy(const tmini_t *lidar)
 {
     return lidar->state > TMINI_STATE_IDLE && lidar->state < TMINI_STATE_SCANNING;
 }
 
-/* The driver works towards scanning, or the lidar scans. */
+/* The lidar scans, or the driver tries to make it scan. */
 static bool is_to_scan(const tmini_t *lidar)
 {
     return lidar->state >= TMINI_STATE_STARTING &&
@@ -61,8 +61,8 @@ TMINI_NOINLINE static void raise_event(tmini_t *lidar, tmini_event_t event)
     lidar->pending |= (uint16_t)(1u << event);
 }
 
-/* Takes the first pending event in the order of tmini_event_t, if there is one. Scan and packet
- * come last, because they are valid only until parsing continues. */
+/* Removes and returns the first pending event in the order of tmini_event_t, or
+ * TMINI_EVENT_NONE. */
 TMINI_NOINLINE static tmini_event_t take_event(tmini_t *lidar)
 {
     const uint16_t pending = lidar->pending;
@@ -81,7 +81,7 @@ static void fail(tmini_t *lidar, int status)
     raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
 }
 
-/* After received bytes the line is no longer known to be quiet. */
+/* Looks at the line. Once bytes have come, the lidar is no longer known to be idle. */
 TMINI_NOINLINE static void look(tmini_t *lidar)
 {
     if (tmini_line_look(lidar) && lidar->state == TMINI_STATE_IDLE) {
@@ -91,7 +91,7 @@ TMINI_NOINLINE static void look(tmini_t *lidar)
 
 /* ------------------------------------------------------------------------------ wanted to scan */
 
-/* Begins with the first step of the ladder. */
+/* Begins the ladder (tmini_recovery.c) at its first step. */
 TMINI_NOINLINE static void begin_start(tmini_t *lidar)
 {
     const bool is_idle = lidar->state == TMINI_STATE_IDLE;
@@ -100,7 +100,8 @@ TMINI_NOINLINE static void begin_start(tmini_t *lidar)
     tmini_recovery_start(lidar, is_idle);
 }
 
-/* The same for a lidar that scans or is to scan: it is stopped, and the wanted frequency is set. */
+/* Begins the ladder for a lidar that scans or is to scan: stops it and sets the wanted
+ * frequency. */
 TMINI_NOINLINE static void restart(tmini_t *lidar)
 {
     if (lidar->state != TMINI_STATE_RECOVERING) {
@@ -109,7 +110,7 @@ TMINI_NOINLINE static void restart(tmini_t *lidar)
     tmini_recovery_start(lidar, false);
 }
 
-/* It may be another unit when it comes back: what is known of this one is forgotten. */
+/* The lidar is lost. Another unit may come back, so what is known about this one is forgotten. */
 static void lose(tmini_t *lidar)
 {
     lidar->state = TMINI_STATE_RECOVERING;
@@ -120,8 +121,8 @@ static void lose(tmini_t *lidar)
     tmini_recovery_begin(lidar);
 }
 
-/* A lidar that does not answer turns at an unknown frequency; one that refuses a step has
- * answered. */
+/* If the lidar does not answer, its frequency is unknown. TMINI_ERROR_REPLY is an answer: it has
+ * refused a step. */
 static void end_frequency(tmini_t *lidar, int result, bool is_start)
 {
     if (result == TMINI_OK) {
@@ -136,9 +137,9 @@ static void end_frequency(tmini_t *lidar, int result, bool is_start)
     }
 }
 
-/* A step of the ladder has ended, and no packet has come yet. A failed attempt to start is reported
- * each time; while recovering it is not, because the loss has been reported. A frequency that could
- * not be set is reported when scanning begins. */
+/* A step of the ladder has ended, and no packet has come yet. Each failed attempt to start is
+ * reported. During recovery none is, because the loss has been reported. A frequency that could not
+ * be set is reported when scanning begins. */
 static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
     const bool is_start = lidar->state == TMINI_STATE_STARTING;
@@ -155,7 +156,7 @@ static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_i
     tmini_recovery_go_on(lidar, operation, result, is_idle);
 }
 
-/* The first packet has come. The start command is no longer sent, and its reply no longer awaited
+/* The first packet has come. So the start command is not sent again, and its reply is not awaited
  * (section 2). */
 static void begin_scanning(tmini_t *lidar)
 {
@@ -192,8 +193,8 @@ static void end_command(tmini_t *lidar, tmini_event_t operation, int result, boo
 }
 
 /* Acts on the result of the current operation. While scanning, the operation is to wait for the
- * next packet: its end is a loss. If bytes have come after the last reply, the line is not known to
- * be quiet. */
+ * next packet; if it ends, the lidar is lost. The line is quiet only if no bytes have come after
+ * the last reply. */
 static void take_result(tmini_t *lidar, int result)
 {
     const tmini_event_t operation = (tmini_event_t)lidar->command.operation;
@@ -212,17 +213,17 @@ static void take_result(tmini_t *lidar, int result)
     }
 }
 
-/* The first part of every command from the user. The end of an earlier command that has not been
- * polled yet is dropped: it must not be taken for the end of this one. */
+/* The first part of every command from the user. If the event that ended an earlier command has not
+ * been polled yet, it is dropped: the program would think that it ends this command. */
 TMINI_NOINLINE static void take_over(tmini_t *lidar)
 {
     look(lidar);
     lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
 }
 
-/* Offers the first bytes to the port at once. If it refuses, it is asked again when time has
- * passed, and until then a poll has nothing to do. So a loop that polls until TMINI_EVENT_NONE
- * ends, even if it repeats a command whenever that has failed. */
+/* Offers the first bytes to the port at once. If the port reports a failure, it is asked again when
+ * time has passed; until then a poll has nothing to do. So a loop that polls until TMINI_EVENT_NONE
+ * ends, even if it repeats each failed command. */
 static void send_first(tmini_t *lidar)
 {
     lidar->idle_ms = 1;
@@ -239,7 +240,7 @@ static void begin_command(tmini_t *lidar, tmini_event_t operation)
     send_first(lidar);
 }
 
-/* Begins a query, if it may be begun now. */
+/* Begins a query or a reboot, if the state permits it. */
 static tmini_status_t request_command(tmini_t *lidar, tmini_event_t operation)
 {
     if (!is_set_up(lidar)) {
@@ -259,13 +260,13 @@ static tmini_status_t request_command(tmini_t *lidar, tmini_event_t operation)
     return TMINI_OK;
 }
 
-/* Not inlined: while packets are processed, its buffer must not take stack. */
+/* Not inlined, so that its buffer takes no stack while packets are processed. */
 TMINI_NOINLINE static void take_reply(tmini_t *lidar)
 {
     uint8_t content[TMINI_INFO_SIZE];
     tmini_parser_t *const parser = &lidar->decoder.parser;
     const tmini_reply_header_t *const header = &parser->awaited;
-    look(lidar); /* What came during this poll has not been noted yet. */
+    look(lidar); /* Notes the bytes that came during this poll. */
     if (!tmini_frame_content(tmini_parser_frame(parser), content, header->length)) {
         (void)tmini_parser_await(parser, header); /* DMA has overwritten the reply: it is still
                                                    * awaited. */
@@ -291,8 +292,9 @@ static void stop_again(tmini_t *lidar)
 }
 
 /* Decides whether a packet means that the lidar scans now. It does not in the tail after a stop
- * (section 9.10), nor while the frequency is being set. It does in all other phases, because the
- * reply to the start may have been lost. */
+ * (section 9.10), nor while the frequency is being set. In all other phases of a start it does,
+ * because the reply to the start may have been lost. A lidar that should be idle is stopped
+ * again. */
 static void note_scanning(tmini_t *lidar)
 {
     const uint8_t phase = lidar->command.phase;
@@ -305,8 +307,8 @@ static void note_scanning(tmini_t *lidar)
     }
 }
 
-/* A wrong frequency is set again once, and, as long as the lidar does not answer, at growing
- * intervals; never with TMINI_RECOVERY_OFF. */
+/* A wrong frequency is set again once. As long as the lidar does not answer, this is repeated at
+ * growing intervals. With TMINI_RECOVERY_OFF it is never set again. */
 static bool is_worth_a_restart(const tmini_t *lidar)
 {
     return !lidar->is_recovery_off &&
@@ -318,17 +320,17 @@ static void monitor_packet(tmini_t *lidar)
     const tmini_turn_t turn =
         tmini_monitor_packet(&lidar->monitor, &lidar->decoder, lidar->wanted_chz);
     if (turn == TMINI_TURN_WHOLE) {
-        tmini_recovery_forget(lidar); /* If it was lost, it has recovered now. */
+        tmini_recovery_forget(lidar); /* A lost lidar has recovered now. */
     } else if (turn == TMINI_TURN_ENDLESS) {
         lose(lidar);
     } else if (turn == TMINI_TURN_OFF && is_worth_a_restart(lidar)) {
-        tmini_command_forget_frequency(lidar); /* The value reported is wrong. */
+        tmini_command_forget_frequency(lidar); /* The reported value is wrong. */
         restart(lidar);
     }
 }
 
-/* Copies the scan, so that the builder can continue. If there is a spare buffer, the builder
- * continues in that one. */
+/* Copies the scan's structure, so that the builder can begin the next scan; it uses the spare
+ * buffer if there is one. */
 static void deliver_scan(tmini_t *lidar)
 {
     lidar->scan = lidar->decoder.builder.scan;
@@ -343,8 +345,8 @@ static void deliver_scan(tmini_t *lidar)
     raise_event(lidar, TMINI_EVENT_SCAN);
 }
 
-/* When the packet came: earlier than the bytes after it. Bytes that came during this poll are noted
- * first, because there may have been a pause before them. */
+/* Returns when the packet came, which is before the bytes that follow it. Bytes that came during
+ * this poll are noted first, because the line may have paused before them. */
 static uint32_t arrival_ms(tmini_t *lidar)
 {
     if (tmini_ring_head(&lidar->ring) != lidar->line.received) {
@@ -359,7 +361,7 @@ static void take_packet(tmini_t *lidar)
     note_scanning(lidar);
     const bool is_doubtful = tmini_line_is_doubtful(lidar, came_ms);
     if (lidar->state != TMINI_STATE_SCANNING) {
-        return; /* The tail after a stop, or packets of a lidar that is not to scan. */
+        return; /* A packet of the tail after a stop, or of a lidar that is not to scan. */
     }
     expect_packet(lidar);
     if (tmini_decoder_take(&lidar->decoder, is_doubtful, came_ms, lidar->line.late_ms)) {
@@ -413,8 +415,8 @@ static void keep_time(tmini_t *lidar)
     take_result(lidar, tmini_command_poll(lidar));
 }
 
-/* There is nothing to do until a frame may be complete, or until the next time-out, which is
- * computed here, once, instead of at each poll. */
+/* There is nothing to do until a frame may be complete, or until the next time-out. This time-out
+ * is computed once, here, not at each poll. */
 static void settle(tmini_t *lidar)
 {
     const uint16_t frame_ms = lidar->link.timing->frame_timeout_ms;
@@ -427,8 +429,8 @@ static void settle(tmini_t *lidar)
     lidar->is_settled = lidar->command.unsent == 0;
 }
 
-/* A settled lidar has been idle for long enough, or a frame may be complete; asked in this order,
- * because a port may hand over bytes when it is asked for the time. Most polls of a fast loop end
+/* True if a settled lidar has been idle for long enough, or a frame may be complete. The clock is
+ * read first, because a port may feed bytes when its clock is read. Most polls of a fast loop end
  * here. */
 static bool has_news(const tmini_t *lidar)
 {
@@ -504,7 +506,7 @@ static bool init_modules(tmini_t *lidar, const tmini_config_t *config)
     return tmini_ring_init(&lidar->ring, config->rx_buffer, config->rx_size, config->rx_dma) ==
                TMINI_OK &&
            tmini_decoder_init(&lidar->decoder, &lidar->ring, config->max_samples) == TMINI_OK &&
-           ((config->points == NULL && config->max_points == 0) || /* By packets. */
+           ((config->points == NULL && config->max_points == 0) || /* No scans. */
             tmini_builder_init(&lidar->decoder.builder, config->points, config->max_points,
                                config->filter) == TMINI_OK);
 }
@@ -566,7 +568,7 @@ tmini_status_t tmini_stop(tmini_t *lidar)
         fail(lidar, TMINI_ERROR_ABORTED);
     }
     if (lidar->is_listen_only) {
-        tmini_cancel(lidar); /* Nothing was sent to begin with. */
+        tmini_cancel(lidar); /* Nothing was sent, so nothing is stopped. */
         raise_event(lidar, TMINI_EVENT_STOPPED);
     } else {
         begin_command(lidar, TMINI_EVENT_STOPPED);
@@ -574,8 +576,8 @@ tmini_status_t tmini_stop(tmini_t *lidar)
     return TMINI_OK;
 }
 
-/* A wish that is stated again asks an idle lidar again. It changes nothing else: neither is a scan
- * interrupted, nor is a wrong frequency forgotten. */
+/* An unchanged wish makes the driver ask again only while the lidar is idle or its state unknown.
+ * Otherwise it changes nothing: it must not interrupt a scan or clear the frequency fault. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
 {
     if (!is_set_up(lidar) || !is_frequency(frequency_chz)) {
@@ -644,7 +646,7 @@ typedef char
                                         ? 1
                                         : -1];
 
-/* Reads the ring directly, because before tmini_init() the parser has none. */
+/* Reads the ring directly, because before tmini_init() the parser has no ring. */
 void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
 {
     const tmini_ring_t *const ring = &lidar->ring;

@@ -8,14 +8,14 @@
 
 #include "tmini/tmini_types.h"
 
-/* The part, of `count` (1 to 65535), that contains an angle. The angle is at most a full circle and
+/* Which of `count` parts (1 to 65535) contains an angle. The angle is at most a full circle and
  * counts from the middle of part 0. No overflow: 2 * 23040 * 65535 + 23040 is below 2^32. */
 static inline size_t tmini_bin(uint32_t angle_q6, size_t count)
 {
     const uint32_t circle = TMINI_FULL_CIRCLE_Q6;
     const uint32_t parts = (2 * angle_q6 * (uint32_t)count + circle) / 1024u; /* Two circles are 45
                                                                                * * 1024. */
-#if defined(__AVR__) /* A 16-bit division takes a quarter of a 32-bit one's time. */
+#if defined(__AVR__) /* A 16-bit division is four times as fast as a 32-bit one. */
     const uint32_t bin = parts <= UINT16_MAX ? (uint16_t)parts / 45u : parts / 45u;
 #else
     const uint32_t bin = parts / 45u;

@@ -17,7 +17,7 @@ static uint32_t now_ms(const tmini_t *lidar)
     return lidar->link.port->now_ms(lidar->link.port_context);
 }
 
-/* A clock that has stepped back to before `begun_ms` shows no time. */
+/* If the clock has stepped back to before `begun_ms`, no time has passed. */
 static bool is_time_left(const tmini_t *lidar, uint32_t begun_ms, uint32_t timeout_ms)
 {
     const uint32_t passed_ms = now_ms(lidar) - begun_ms;
@@ -25,8 +25,8 @@ static bool is_time_left(const tmini_t *lidar, uint32_t begun_ms, uint32_t timeo
 }
 
 /* What `event` means for a caller that waits for `wanted`. A failed command ends the waiting if no
- * other attempt follows. Waiting for a frequency also ends when the lidar scans without it. A lost
- * lidar reports no failure. */
+ * other attempt follows. Waiting for a frequency also ends when the lidar scans without it. Failed
+ * attempts to recover a lost lidar are not reported. */
 static int result_of(const tmini_t *lidar, tmini_event_t event, tmini_event_t wanted)
 {
     const tmini_state_t state = tmini_state(lidar);
@@ -40,9 +40,9 @@ static int result_of(const tmini_t *lidar, tmini_event_t event, tmini_event_t wa
     return event == TMINI_EVENT_RECOVERED && is_without ? TMINI_ERROR_STATE : TMINI_UNDER_WAY;
 }
 
-/* Polls until `wanted` comes, cannot come any more, or time is up. Then the query is given up,
- * unless it is an earlier one that a start waits for. If the command could not be begun, returns
- * its error. */
+/* Polls until `wanted` comes or cannot come any more, or time is up. When time is up, the query is
+ * given up, unless it is an earlier one after which a start follows. If the command could not be
+ * begun, returns its error. */
 static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event_t wanted,
                                uint32_t timeout_ms)
 {
@@ -107,8 +107,8 @@ tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency
     return status;
 }
 
-/* What is known of a wish for a frequency that was stated in the state `before`. An idle lidar is
- * asked in any case. */
+/* What is known at once about a wish for a frequency that was stated in the state `before`. An idle
+ * lidar is always asked. */
 static int result_of_wish(const tmini_t *lidar, tmini_state_t before)
 {
     if (before <= TMINI_STATE_IDLE) {

@@ -15,11 +15,11 @@
 /* More bytes than this may have been half a turn: at 12 Hz a turn has about 1100 (section 9.7). */
 #define GAP_MAX 500
 
-/* A sample is measured in 250 us (section 1), and is on the wire for 130. */
+/* A sample takes 250 us to measure (section 1) and 130 us on the wire. */
 #define SAMPLE_SENT_US 380u
 
-/* The angle swept from one direction to another, clockwise, or slightly back: a small jitter
- * backwards (section 9.6) is not nearly a whole turn forwards. */
+/* The angle swept clockwise from one direction to another. A small jitter backwards (section 9.6)
+ * is a small negative angle, not almost a whole turn. */
 static int32_t swept(uint16_t from, uint16_t to)
 {
     const int32_t forwards = (int32_t)to - from + (to < from ? CIRCLE_Q6 : 0);
@@ -32,10 +32,10 @@ static uint16_t end_of(const tmini_packet_t *packet)
     return packet->count > 1 ? packet->last_angle_q6 : packet->first_angle_q6;
 }
 
-/* True if the packet may continue the revolution. It begins `ahead` of the last one's end and ends
- * at `angle`, counted from the start packet. It does not continue if half a turn or more may be
- * missing before it, by bytes or by angle, or if it leaves the circle at either end, which shows a
- * lost start packet. */
+/* True if the packet may continue the revolution. It begins `ahead` of the last packet's end and
+ * ends at `angle`, counted from the start packet. It does not continue the revolution if half a
+ * turn or more may be missing before it, by bytes or by angle, or if it leaves the circle at either
+ * end, which shows a lost start packet. */
 static bool continues(const tmini_packet_t *packet, int32_t ahead, int32_t angle)
 {
     return packet->gap <= GAP_MAX && ahead <= CIRCLE_Q6 / 2 && angle <= SWEPT_MAX_Q6 &&
@@ -47,7 +47,7 @@ static uint16_t frequency_chz(const tmini_packet_t *start)
     return (uint16_t)((start->ct >> 1) * 10);
 }
 
-/* Counts one more; the highest number stays. */
+/* Counts one more, up to the highest number. */
 static void count_one(uint16_t *total)
 {
     if (*total < UINT16_MAX) {
@@ -55,7 +55,7 @@ static void count_one(uint16_t *total)
     }
 }
 
-/* Bytes may be missing before the packet; one byte before a start packet is LastCRC. */
+/* True if bytes may be missing before the packet. One byte before a start packet is LastCRC. */
 static bool is_gap(const tmini_packet_t *packet, uint16_t bytes)
 {
     return bytes > (tmini_packet_is_start(packet) ? 1 : 0);
@@ -70,8 +70,8 @@ static bool took_too_long(const tmini_builder_t *builder)
     return scan->frequency_chz > 0 && took_ms > 150000u / scan->frequency_chz;
 }
 
-/* Notes what the next packet shows about the scan. It begins `ahead` of the scan's end and came at
- * `now_ms`. A start packet carries the frequency of the revolution before it (section 9.8);
+/* Notes what the next packet shows about the scan. The packet begins `ahead` of the scan's end and
+ * came at `now_ms`. A start packet carries the frequency of the revolution before it (section 9.8);
  * otherwise the frequency reported last remains. */
 static void note_end(tmini_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
                      uint32_t now_ms)
@@ -88,9 +88,9 @@ static void note_end(tmini_builder_t *builder, const tmini_packet_t *packet, int
     }
 }
 
-/* The scan ends before `packet`. One that took too long has a gap somewhere. It is complete when a
- * start packet comes back to where it began, and nothing is missing. A gap that only the caller
- * reports, without missing bytes or angle, is one of time. */
+/* The scan ends before `packet`. A scan that took too long has a gap somewhere. A scan is complete
+ * when a start packet comes a full circle after its beginning, and nothing is missing. A gap that
+ * only the caller reports, without missing bytes or angles, is one of time. */
 static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
                    uint32_t now_ms)
 {
@@ -103,7 +103,7 @@ static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32
     builder->open = false;
     builder->ended = true;
     if (is_long) {
-        scan->gaps = 1; /* There was none. */
+        scan->gaps = 1; /* It was 0. */
         builder->late_scans++;
     } else if (packet->gap == TMINI_GAP_UNKNOWN && ahead <= JUMP_Q6 &&
                !is_gap(packet, packet->frame->gap)) {
@@ -111,8 +111,8 @@ static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32
     }
 }
 
-/* Begins a scan and returns how far its revolution has turned by then. If it does not begin with a
- * start packet, it has a gap there, and its time is that of the packet's first sample. */
+/* Begins a scan and returns the angle that its revolution has already turned. A scan that does not
+ * begin with a start packet has a gap there. Its time is that of the packet's first sample. */
 static int32_t begin_scan(tmini_builder_t *builder, const tmini_packet_t *first, uint32_t now_ms)
 {
     tmini_scan_t *const scan = &builder->scan;
@@ -128,8 +128,7 @@ static int32_t begin_scan(tmini_builder_t *builder, const tmini_packet_t *first,
     }
     scan->gaps = is_start ? 0 : 1;
     scan->start_ms = now_ms - (first->count - 1u) * SAMPLE_SENT_US / 1000u;
-    scan->checksum_errors = first->frame->checksum_errors; /* The scan's own are counted from
-                                                            * here. */
+    scan->checksum_errors = first->frame->checksum_errors; /* note_end() subtracts this. */
     builder->late_ms = builder->next_late_ms;
     builder->open = true;
     builder->ended = false;

@@ -10,11 +10,11 @@
 #define STEPS_MAX 20
 #define COARSE_STEP_CHZ 100
 
-/* No unit turns slower or faster, so such a reply is garbage. Section 1 gives 6 to 12 Hz. */
+/* A reply outside these limits is garbage: section 1 gives 6 to 12 Hz. */
 #define PLAUSIBLE_CHZ_MIN 100
 #define PLAUSIBLE_CHZ_MAX 2000
 
-/* The commands of operations. */
+/* The command of each operation. */
 static const uint8_t codes[] = {
     [TMINI_EVENT_STARTED] = TMINI_COMMAND_START,
     [TMINI_EVENT_STOPPED] = TMINI_COMMAND_STOP,
@@ -88,7 +88,7 @@ static void request(tmini_t *lidar, tmini_command_code_t code)
 
 /* --------------------------------------------------------------------------- how commands end */
 
-/* With recovery the ladder repeats attempts to start, so each command of it is tried once. */
+/* With recovery the ladder repeats attempts to start, so each of its commands is tried once. */
 static uint8_t attempts_max(const tmini_t *lidar)
 {
     const bool is_repeated = lidar->state >= TMINI_STATE_STARTING && !lidar->is_recovery_off;
@@ -166,7 +166,7 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
 
 /* -------------------------------------------------------------------------------- keeping time */
 
-/* Not quiet if an interrupt has brought bytes after the line was last looked at. */
+/* The last condition: an interrupt may have stored bytes since the last look at the line. */
 static bool is_quiet(const tmini_t *lidar)
 {
     const uint16_t quiet_ms = lidar->link.timing->quiet_line_ms;
@@ -175,8 +175,8 @@ static bool is_quiet(const tmini_t *lidar)
            tmini_ring_head(&lidar->ring) == lidar->line.received;
 }
 
-/* The line is quiet: the next command may be sent (section 2). Bytes that came before a question
- * cannot be its answer, so all are skipped, including an incomplete packet. After a stop the
+/* The line is quiet: the next command may be sent (section 2). Bytes that came before a command
+ * cannot be its reply, so all are skipped, including an incomplete packet. After a stop the
  * operation's own command is next. To change the frequency, the driver asks for it, sends the
  * steps, and asks again. */
 static int proceed(tmini_t *lidar)
@@ -185,7 +185,7 @@ static int proceed(tmini_t *lidar)
     uint8_t next = codes[command->operation];
     tmini_parser_skip_all(&lidar->decoder.parser);
     if (next == TMINI_COMMAND_STOP) {
-        command->attempts = 1; /* The line is quiet now, whatever the number of attempts. */
+        command->attempts = 1; /* A quiet line means idle, after any attempt. */
         return TMINI_OK;
     }
     if (command->code != TMINI_COMMAND_STOP && !tmini_command_has_frequency(lidar)) {
@@ -213,8 +213,8 @@ static int send_rest(tmini_t *lidar)
     return TMINI_UNDER_WAY;
 }
 
-/* The time of the phase is over. Who only listens has waited in vain. After a failure no command
- * ends: from now on packets mean unwanted scanning. */
+/* The time of the phase is over. With listen_only this means that no packet has come. In
+ * TMINI_PHASE_NONE no command ends, but from now on packets mean unwanted scanning. */
 static int end_phase(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
@@ -305,7 +305,7 @@ bool tmini_command_end(tmini_t *lidar, int result)
     command->unsent = 0;
     if (result == TMINI_OK) {
         enter(lidar, TMINI_PHASE_IDLE, 0);
-    } else { /* Packets do not count yet; after a stop they will. */
+    } else { /* Packets are ignored; after a stop only for this time. */
         enter(lidar, TMINI_PHASE_NONE, was_stopped ? TMINI_BACK_OFF_MS : 0);
     }
     return is_idle;

@@ -108,7 +108,7 @@ unsigned tmini_ct_faults(const tmini_ct_t *ct)
 
 void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
 {
-    const uint8_t *const trusted = ct->trusted; /* 0 where it is not known. */
+    const uint8_t *const trusted = ct->trusted; /* 0 where a field is not known. */
     const unsigned user_version = trusted[USER_VERSION];
     const unsigned hardware = trusted[HARDWARE];
     info->known = ((1u << ct->known) - 1) & KNOWN_MASK;

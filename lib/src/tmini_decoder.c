@@ -12,7 +12,7 @@ tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring, 
     return tmini_parser_init(&decoder->parser, ring, max_samples);
 }
 
-/* Inlined twice, so that a firmware, which needs it once, pays no call. */
+/* Inlined in both callers: a firmware links only one of them, and saves the call. */
 TMINI_INLINE bool take_opened(tmini_decoder_t *decoder, uint32_t now_ms)
 {
     decoder->verdict = (uint8_t)tmini_ct_add(&decoder->ct, &decoder->packet);

@@ -22,7 +22,7 @@
 
 /* Waiting times in milliseconds that no user needs to change. */
 #define TMINI_STOP_TIMEOUT_MS 600     /* Twice the longest tail seen after a stop (section 9.10). */
-#define TMINI_WRITE_TIMEOUT_MS 100    /* For the port to take two bytes, which last 87 us. */
+#define TMINI_WRITE_TIMEOUT_MS 100    /* For the port to take two bytes (87 us on the wire). */
 #define TMINI_SPIN_UP_TIMEOUT_MS 3000 /* From the start reply to the first packet. */
 #define TMINI_DATA_TIMEOUT_MS 1000    /* A lidar without a valid packet for this long is lost. */
 #define TMINI_REBOOT_TIME_MS 5000     /* "Some seconds" (section 9.11). */
@@ -48,8 +48,8 @@ void tmini_cancel(tmini_t *lidar);
  * have: the line is not quiet. */
 bool tmini_line_look(tmini_t *lidar);
 
-/* When the packet found last came: when the newest bytes came, less the line time of those after
- * the packet. Call tmini_line_look() first. */
+/* When the packet found last came: the arrival of the newest bytes, less the time on the wire of
+ * the bytes after the packet. Call tmini_line_look() first. */
 uint32_t tmini_line_arrival_ms(const tmini_t *lidar);
 
 /* True if packets may be missing before the packet found last, which came at `came_ms`: the line
@@ -60,27 +60,28 @@ bool tmini_line_is_doubtful(tmini_t *lidar, uint32_t came_ms);
 
 /* What happens on the wire. */
 typedef enum {
-    TMINI_PHASE_NONE,           /* No command is in progress; the lidar may be scanning. It ends by
-                                 * itself only after a stop or a query that failed. */
-    TMINI_PHASE_IDLE,           /* The same, but it should be idle: if it scans, it is stopped. */
+    TMINI_PHASE_NONE,           /* No command is in progress; the lidar may be scanning. After a
+                                 * failed stop or query, TMINI_PHASE_IDLE follows. */
+    TMINI_PHASE_IDLE,           /* No command, and the lidar should be idle: if it scans, it is
+                                 * stopped. */
     TMINI_PHASE_QUIESCING,      /* After a stop, or between frequency steps, until the line is
                                  * quiet. */
     TMINI_PHASE_AWAITING_REPLY, /* From sending a command until its reply. */
-    TMINI_PHASE_AWAITING_STEP,  /* The same, after a reply that shows no change of frequency. */
+    TMINI_PHASE_AWAITING_STEP,  /* After a reply to a step that shows no change. */
     TMINI_PHASE_SPINNING_UP,    /* From the reply to the start until the first packet. */
     TMINI_PHASE_WAITING,        /* For a fixed time: after a reboot, or in a pause. */
 } tmini_phase_t;
 
-/* Result of a command: TMINI_OK, an error, or this. */
+/* The result of a command is TMINI_OK, an error, or this: it has not ended. */
 #define TMINI_UNDER_WAY 1
 
-/* Begins an operation, named by the event of its success; it replaces the current one. A stop comes
- * first, sent by the next tmini_command_poll(), unless `is_idle`: the lidar is idle, and the line
- * quiet. After a time-out there is another attempt, unless the ladder repeats attempts.
- * TMINI_EVENT_FREQUENCY also sets the wanted frequency, if there is one. */
+/* Begins an operation, named by the event of its success; it replaces the current one. The next
+ * tmini_command_poll() first sends a stop, unless the lidar `is_idle` and the line quiet. After a
+ * time-out there is another attempt, unless the ladder repeats attempts. TMINI_EVENT_FREQUENCY also
+ * sets the wanted frequency, if there is one. */
 void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, bool is_idle);
 
-/* Does what is due now: bytes to send, a line that has become quiet, a time-out. */
+/* Does what is due now: sends bytes, continues when the line is quiet, handles time-outs. */
 int tmini_command_poll(tmini_t *lidar);
 
 /* For how long tmini_command_poll() has nothing to do unless bytes come; 0: call it each time. */
@@ -89,16 +90,16 @@ uint16_t tmini_command_idle_ms(const tmini_t *lidar);
 /* The awaited reply has come, with this content. */
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content);
 
-/* An operation that sends nothing and succeeds after `wait_ms`; 0: never. If each packet begins it
- * again, it is a watchdog: its end means that no packet has come. */
+/* Begins an operation that sends nothing and succeeds after `wait_ms`; 0: never. If each packet
+ * begins it again, it is a watchdog: its end means that no packet has come. */
 void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms);
 
-/* The current operation has ended with `result`, or is given up with an error. True if the lidar is
- * idle and the line quiet: after a stop, and after an answer to the first attempt. After a later
- * attempt the reply to an earlier one may still come. */
+/* Ends the current operation with `result`, or gives it up with an error. True if the lidar is idle
+ * and the line quiet: after a stop, and after an answer to the first attempt. After a later attempt
+ * the reply to an earlier one may still come. */
 bool tmini_command_end(tmini_t *lidar, int result);
 
-/* The wanted frequency has changed: as many steps are permitted as at the beginning. */
+/* The wanted frequency has changed: steps are counted from 0 again. */
 static inline void tmini_command_renew_steps(tmini_t *lidar)
 {
     lidar->command.steps = 0;
@@ -116,10 +117,11 @@ bool tmini_command_has_frequency(const tmini_t *lidar);
  * quiet. */
 void tmini_recovery_start(tmini_t *lidar, bool is_idle);
 
-/* The same for a lidar that has been lost; a recent loss continues the ladder. */
+/* The same for a lidar that has been lost. If it has made no complete revolution since the last
+ * loss, the ladder continues. */
 void tmini_recovery_begin(tmini_t *lidar);
 
-/* Asks the port to start its reception again, if it can. For a failed attempt. */
+/* Asks the port, if it can, to start its reception again: after a loss or a failed attempt. */
 void tmini_recovery_restart_reception(const tmini_t *lidar);
 
 /* `operation` has ended with `result`: begins the next one. `is_idle`: as above. */
@@ -146,17 +148,17 @@ void tmini_monitor_begin(tmini_monitor_t *monitor);
 /* What a packet shows about the rotor. */
 typedef enum {
     TMINI_TURN_GOES_ON,
-    TMINI_TURN_WHOLE,   /* A complete revolution has ended with it. */
-    TMINI_TURN_OFF,     /* Revolutions are not at the wanted frequency for too long. */
+    TMINI_TURN_WHOLE,   /* The packet ends a complete revolution. */
+    TMINI_TURN_OFF,     /* Revolutions have had a wrong frequency for too long. */
     TMINI_TURN_ENDLESS, /* Packets with ranges come, but no start packets: the lidar is lost. */
 } tmini_turn_t;
 
-/* Takes the latest packet and judges the revolution that it ends, if it does. `wanted_chz` 0:
+/* Takes the latest packet. If it ends a revolution, judges that revolution. `wanted_chz` 0:
  * any. */
 tmini_turn_t tmini_monitor_packet(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
                                   uint16_t wanted_chz);
 
-/* The wanted frequency has changed: forgets the fault and the count. */
+/* The wanted frequency has changed: forgets the fault and the count of turns at a wrong one. */
 void tmini_monitor_forget_frequency(tmini_monitor_t *monitor);
 
 #endif

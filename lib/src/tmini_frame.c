@@ -3,7 +3,7 @@
 
 #include "tmini/parts/tmini_frame.h"
 
-/* A multiplication, because small processors have no division; exact below 2048. */
+/* Multiplies, because small processors have no division; exact below 2048. */
 static size_t third_of(size_t bytes)
 {
     return (size_t)((uint32_t)bytes * 683u >> 11);

@@ -2,41 +2,42 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* The timing of the line: when bytes came, how long it has been silent, and where bytes may be
- * missing because it paused. About packets it uses only when the scan's last one came and how long
- * a turn takes. */
+ * missing because it paused. Of packets it uses only two times: when the scan's last packet came,
+ * and how long a turn takes. */
 
 #include "tmini_driver.h"
 
-/* Silence that was not observed counts at most this long: bytes may wait in a layer below. */
+/* Of the time between two polls, at most this much counts as silence: bytes may be waiting in a
+ * layer below. */
 #define UNSEEN_SILENCE_MAX_MS 50
 
-/* If polls are farther apart than the first, or bytes are later than the second (a UART's FIFO), it
- * is unknown when the bytes came. */
+/* When bytes came is known only if polls are at most WATCHED_MS apart and the bytes are at most
+ * FIFO_MS late (a UART's FIFO). */
 #define WATCHED_MS 30u
 #define FIFO_MS 9u
 
 /* A layer below holds bytes for this long at most. */
 #define LATE_MAX_MS 1000
 
-/* Longer silence counts as this. */
+/* Longer silence counts as this long. */
 #define SILENCE_MAX_MS UINT16_MAX
 
-/* A port holds at most this many bytes. If `held_to` seems farther ahead, it lies before the bytes
- * received, because the port has fed bytes and not reported again. */
+/* A port holds at most this many bytes. If `held_to` seems to be farther ahead, it is in fact
+ * before the bytes received: the port has fed bytes since its report. */
 #define HELD_MAX (TMINI_RING_CLOSED / 2 < 65535u ? TMINI_RING_CLOSED / 2 : 65535u)
 
-/* If the clock steps back by up to the first, no time passes until it has caught up. Meanwhile the
- * line may be silent unseen, but only a step larger than the second can hide a turn. */
+/* If the clock steps back by at most STEP_BACK_MAX_MS, no time passes until it has caught up.
+ * Silence is not seen meanwhile, but only a step of more than STEP_BACK_FREE_MS can hide a turn. */
 #define STEP_BACK_MAX_MS 1000u
 #define STEP_BACK_FREE_MS 10u
 
-/* How long a scanning lidar takes to send this many bytes: 13.1 per millisecond (section 1). */
+/* How long a scanning lidar takes to send these bytes: 13.1 per millisecond (section 1). */
 static uint32_t transit_ms(size_t bytes)
 {
     return (uint32_t)bytes * 39u >> 9;
 }
 
-/* Up to where bytes have arrived: in the ring, or in the port that feeds it. */
+/* The place up to which bytes have arrived, in the ring or in the port that feeds it. */
 static size_t arrived_to(const tmini_t *lidar)
 {
     const size_t received = lidar->line.received;
@@ -45,9 +46,9 @@ static size_t arrived_to(const tmini_t *lidar)
     return are_held ? held_to : received;
 }
 
-/* True for a silence that may hide a turn: longer than half a turn at the reported frequency, or at
- * 12 Hz while the lidar is not up to speed. What a shorter one hides is visible in the angles, even
- * if the true silence is half a turn longer. */
+/* True if a silence may hide a turn: it is longer than max_pause_ms and than half a turn, at the
+ * reported frequency or, while the motor is not up to speed, at 12 Hz. What a shorter silence hides
+ * is visible in the angles, even if the true silence is half a turn longer. */
 static bool may_hide_turn(const tmini_t *lidar, int32_t silent_ms)
 {
     const int32_t max_pause_ms = lidar->link.timing->max_pause_ms;
@@ -60,9 +61,9 @@ static bool may_hide_turn(const tmini_t *lidar, int32_t silent_ms)
     return (uint32_t)silent_ms * frequency_chz > 100000u / 2;
 }
 
-/* Bytes that take `due_ms` have come, `passed_ms` after the last look. True if a silence was before
- * them: the lidar does not scan yet, and all of them have come from the wire since that look. Else
- * the place is unknown, because a layer below that was held up may deliver late what came before
+/* Bytes that need `due_ms` on the wire have come, `passed_ms` after the last look. True if a silence
+ * was before them: the lidar does not scan yet, and all of them can have come since that look. In
+ * other cases its place is unknown, because a delayed layer below may deliver late what came before
  * the silence. */
 static bool is_silence_before(const tmini_t *lidar, uint32_t due_ms, uint32_t passed_ms)
 {
@@ -70,8 +71,8 @@ static bool is_silence_before(const tmini_t *lidar, uint32_t due_ms, uint32_t pa
            due_ms <= passed_ms + FIFO_MS;
 }
 
-/* Notes that the bytes that have come may be late. A larger delay of earlier bytes is kept until
- * these `are_parsed`. */
+/* Notes by how much the newest bytes may be late. A larger delay of earlier bytes is kept until
+ * those `are_parsed`. */
 static void note_delay(tmini_line_t *line, int32_t late_ms, bool are_parsed)
 {
     if (are_parsed) {
@@ -82,26 +83,27 @@ static void note_delay(tmini_line_t *line, int32_t late_ms, bool are_parsed)
     }
 }
 
-/* Bytes may be missing somewhere before this place. */
+/* Notes that bytes may be missing somewhere before `place`. */
 static void doubt_to(tmini_line_t *line, size_t place)
 {
     line->doubt = true;
     line->doubtful_to = place;
 }
 
-/* The time since other bytes came, less `due_ms`, which the new ones take on the line. */
+/* The time since earlier bytes came, less `due_ms`, which the new ones need on the wire. */
 static int32_t missing_ms(const tmini_line_t *line, uint32_t due_ms)
 {
     const uint32_t pause_ms = line->now_ms - line->heard_ms;
     return (int32_t)((pause_ms < SILENCE_MAX_MS ? pause_ms : SILENCE_MAX_MS) - due_ms);
 }
 
-/* `count` bytes have come, `passed_ms` after the last look; with those that the port holds, up to
- * `arrived`. Bytes that the port held before show no time. A scanning lidar never pauses for long:
- * if the bytes are too few for the time since others came, bytes may be missing, or these may be
- * late. The missing time counts again for the next bytes, because the silence may continue; after a
- * doubt only if the port may hold what seemed to be missing. More bytes than the ring holds mean a
- * gap of DMA: then their number is unknown. */
+/* Notes `count` new bytes, `passed_ms` after the last look. With those that the port still holds,
+ * bytes have arrived up to `arrived`; those that it held before were noted then.
+ * A scanning lidar never pauses for long. If the pause was longer than these bytes need on the wire,
+ * bytes may be missing, or these may be late by the difference. The difference counts again for the
+ * next bytes, because the silence may continue; after a doubt, only if the port may hold what seemed
+ * to be missing.
+ * More bytes than the ring holds mean a gap of DMA: their true number is unknown. */
 static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t passed_ms)
 {
     tmini_line_t *const line = &lidar->line;
@@ -152,7 +154,7 @@ bool tmini_line_look(tmini_t *lidar)
     }
     if (count > 0) {
         note_bytes(lidar, count, arrived, passed_ms);
-    } else if (!tmini_ring_is_full(&lidar->ring)) { /* If it is, bytes may have come. */
+    } else if (!tmini_ring_is_full(&lidar->ring)) { /* A full ring may have refused bytes. */
         note_silence(line, passed_ms);
         return false;
     }
@@ -179,7 +181,8 @@ static bool is_in_doubt(tmini_t *lidar)
 }
 
 /* True if too much time has passed since the scan's last packet. Damaged packets of which only a
- * few bytes came cause neither a long silence nor many skipped bytes: only the time shows them. */
+ * few bytes came cause neither a long silence nor many skipped bytes: only the time shows that they
+ * are missing. */
 static bool is_late(const tmini_t *lidar, uint32_t came_ms)
 {
     const tmini_builder_t *const builder = &lidar->decoder.builder;

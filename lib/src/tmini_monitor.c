@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Finds faults while the lidar scans. Faults of a revolution count when the next one has them too.
- * A blocked rotor shows by its number of samples without a start packet, and a wrong frequency by
- * the start packets. */
+ * A blocked rotor sends many samples without a start packet. A wrong frequency is in the start
+ * packets. */
 
 #include "tmini_driver.h"
 
@@ -13,11 +13,11 @@
 #define OFF_SECONDS 3
 #define OFF_TURNS 3
 
-/* Each time the frequency is wrong again, it has to last twice as long; it doubles this many times
- * at most. */
+/* Each time the frequency is wrong again, this must last twice as long, up to this many
+ * doublings. */
 #define OFF_DOUBLINGS_MAX 4
 
-/* No turn has more samples than three seconds, at 4000 per second (section 1). */
+/* No turn has more samples: three seconds, at 4000 per second (section 1). */
 #define TURN_SAMPLES_MAX 12000u
 
 /* If this many of 300 packets without a start packet have a range, the rotor turns. Fewer may be
@@ -50,8 +50,8 @@ static void judge_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *de
 }
 
 /* Counts consecutive revolutions at another frequency than wanted. Their number, divided by the
- * frequency that they report, is the time that this has lasted. True when it has lasted too long:
- * three seconds, then twice as long each time, as far as turns are counted. */
+ * frequency that they report, is the time that this has lasted. True when this is too long: three
+ * seconds, then twice as long each time, or 255 turns. */
 static bool has_become_off(tmini_monitor_t *monitor, uint8_t ct, uint16_t wanted_chz)
 {
     const int32_t chz = (ct >> 1) * 10; /* Section 7. */
@@ -95,8 +95,8 @@ void tmini_monitor_begin(tmini_monitor_t *monitor)
 }
 
 /* The latest packet continues a revolution. If the revolution has more samples than any turn, the
- * rotor is blocked (section 8). If many of its packets have a range although that fault is already
- * known, the rotor turns and only start packets are lost. */
+ * rotor is blocked (section 8). If that fault is already known and many packets have a range, the
+ * rotor turns and only start packets are lost. */
 static tmini_turn_t go_on(tmini_monitor_t *monitor, const tmini_packet_t *packet)
 {
     monitor->samples = (uint16_t)(monitor->samples + packet->count);

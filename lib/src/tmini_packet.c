@@ -6,22 +6,24 @@
 #include "tmini_packet_header.h"
 
 /* Sample i lies at first + round(i * diff / (count - 1)). `step` is diff / (count - 1) with 17
- * fraction bits, rounded up, and HALF rounds to nearest, halves up. That is exact: after at most
- * 254 steps the rounding up amounts to less than 254 / 2^17 < 1 / (2 * 254), and an exact value
- * that is not yet at the next rounding boundary is at least 1 / (2 * (count - 1)) below it. Angles
- * are counted modulo 2^15, more than a full circle: so they fit in a word with their fraction. */
+ * fraction bits, rounded up, and HALF rounds to nearest, halves up. The result is exact: after at
+ * most 254 steps the rounding up amounts to less than 254 / 2^17 < 1 / (2 * 254), and an exact
+ * value that is not yet at the next rounding boundary is at least 1 / (2 * (count - 1)) below it.
+ * Angles are counted modulo 2^15, more than a full circle, so that they fit in a word with their
+ * fraction. */
 #define STEP_BITS 17
 #define HALF ((uint32_t)1 << (STEP_BITS - 1))
 #define ANGLES ((uint32_t)1 << (32 - STEP_BITS))
 
-/* FSA or LSA: bit 0 is the check bit. The field allows up to 511 degrees; 360 is 0. */
+/* FSA or LSA: bit 0 is the check bit. The field can hold up to 511 degrees; from 360 on, a full
+ * circle is subtracted. */
 static uint16_t angle_of(const uint8_t *field)
 {
     const unsigned angle = (field[0] | (unsigned)field[1] << 8) >> 1;
     return (uint16_t)(angle < TMINI_FULL_CIRCLE_Q6 ? angle : angle - TMINI_FULL_CIRCLE_Q6);
 }
 
-/* In a sample's second byte the flag is below the distance (section 5). */
+/* In a sample's second byte, the lowest bits are the flag and the others distance (section 5). */
 #define FLAG_MASK 3u
 #define FLAG_BITS 2
 
@@ -69,8 +71,8 @@ TMINI_NOINLINE static void decode(const tmini_packet_t *packet, size_t index, co
     } while (--count > 0);
 }
 
-/* Takes the full circle off angles beyond it, of a packet that begins at `first_q6`. Those beyond
- * ANGLES were counted from 0 again, and are smaller than that. */
+/* Brings the angles of a packet that begins at `first_q6` below a full circle. Angles below
+ * `first_q6` have wrapped at ANGLES, which is more than a full circle. */
 static void wrap(uint16_t first_q6, tmini_point_t *points, size_t count)
 {
     for (; count > 0; count--, points++) {

@@ -16,15 +16,15 @@ enum { PACKET_FIRST = 0xAA, PACKET_SECOND = 0x55, REPLY_FIRST = 0xA5, REPLY_SECO
  * tmini_packet_header.h. */
 enum { REPLY_LENGTH = 0, REPLY_MODE_AND_LENGTH = 3, REPLY_TYPE = 4 };
 
-/* The checksum runs over words of four bytes, and a sample has three: four samples are three
- * words. */
+/* The checksum is computed by words of four bytes. A sample has three bytes, so four samples are
+ * three words. */
 #define BLOCK_SAMPLES 4u
 #define BLOCK_SIZE (BLOCK_SAMPLES * TMINI_SAMPLE_SIZE)
 
 /* -------------------------------------------------------------------------------- the checksum */
 
-/* The contribution of `count` samples (at least one): S1 and S2 count in the low byte, S3 in the
- * high byte (section 5). */
+/* The part of the checksum that comes from `count` samples (at least one): S1 and S2 go into the
+ * low byte, S3 into the high byte (section 5). */
 static unsigned xor_samples(const uint8_t *sample, size_t count)
 {
     unsigned sum = 0;
@@ -35,9 +35,9 @@ static unsigned xor_samples(const uint8_t *sample, size_t count)
     return sum;
 }
 
-/* The same by blocks. XORing whole words gives the same result as XORing their bytes one by one. S3
- * is the third byte of the first word, the second byte of the second, the first and last of the
- * third. */
+/* The same for `blocks` of four samples. XORing whole words gives the same result as XORing their
+ * bytes one by one. S3 is the third byte of the first word, the second byte of the second, the
+ * first and last of the third. */
 static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
 {
     uint32_t first = 0;
@@ -79,7 +79,8 @@ TMINI_NOINLINE static unsigned xor_piece(const uint8_t *sample, size_t count)
 typedef char
     header_is_aligned[offsetof(tmini_frame_t, header) % TMINI_WORD_ALIGNMENT == 0 ? 1 : -1];
 
-/* XORs all 16-bit words of the candidate, the checksum included: the result is 0 if it is right. */
+/* XORs all 16-bit words of the candidate, including the checksum: the result is 0 if that is
+ * right. */
 static bool checksum_matches(const tmini_frame_t *frame)
 {
     const uint32_t words = tmini_word(frame->header) ^ tmini_word(&frame->header[4]);
@@ -122,7 +123,7 @@ static bool reply_header_is_awaited(const tmini_parser_t *parser)
             (header[REPLY_LENGTH + 1] | header[REPLY_LENGTH + 2] | mode_and_length) == 0);
 }
 
-/* Neither a packet nor the awaited reply begins with this byte. */
+/* True if neither a packet nor the awaited reply can begin with this byte. */
 static bool begins_no_frame(const tmini_parser_t *parser, uint8_t byte)
 {
     return byte != PACKET_FIRST && !(parser->awaiting && byte == REPLY_FIRST);
@@ -134,8 +135,7 @@ static void read_header(tmini_frame_t *frame)
     size_t count = sizeof frame->header;
     const uint8_t *const piece = tmini_ring_piece(frame->ring, TMINI_START_SIGN_SIZE, &count);
     if (count == sizeof frame->header) {
-        memcpy(frame->header, piece, sizeof frame->header); /* A constant size: a few
-                                                             * instructions. */
+        memcpy(frame->header, piece, sizeof frame->header); /* Fast: the size is constant. */
     } else {
         tmini_ring_copy(frame->ring, TMINI_START_SIGN_SIZE, frame->header, sizeof frame->header);
     }
@@ -154,7 +154,7 @@ static enum verdict classify_packet_header(tmini_parser_t *parser)
     return COMPLETE;
 }
 
-/* The same for the awaited reply. */
+/* Reads the header of the reply that may begin here. */
 static enum verdict classify_reply_header(tmini_parser_t *parser)
 {
     tmini_frame_t *const frame = &parser->frame;
@@ -211,7 +211,7 @@ static enum verdict classify(tmini_parser_t *parser, size_t unread)
     return COMPLETE;
 }
 
-/* The candidate is to be looked at from its first byte. */
+/* The next candidate is examined from its first byte. */
 static void begin_candidate(tmini_parser_t *parser)
 {
     parser->need = 1;
@@ -230,8 +230,8 @@ TMINI_NOINLINE static void discard_skipped(tmini_parser_t *parser, size_t count)
     begin_candidate(parser);
 }
 
-/* Skips the candidate's first byte, and those after it that can begin no frame, as far as they lie
- * in one piece and there is effort left. */
+/* Skips the candidate's first byte, and the bytes after it that cannot begin a frame, as far as
+ * they are contiguous in memory and effort is left. */
 static void skip(tmini_parser_t *parser, size_t unread)
 {
     tmini_frame_t *const frame = &parser->frame;
@@ -248,10 +248,9 @@ static void skip(tmini_parser_t *parser, size_t unread)
     parser->effort = (uint16_t)(parser->effort + skipped + TMINI_CANDIDATE_EFFORT);
 }
 
-/* The number of unread bytes, after dropping those that DMA may have overwritten. After a lap that
- * was reported but perhaps never happened (tmini_ring_gap()), bytes that may have been read before
- * are dropped too: what is kept of the last lap is new in either case. The head is `ahead` of the
- * tail. */
+/* The number of unread bytes, after dropping those that DMA may have overwritten. `ahead` is the
+ * distance from tail to head. If a lap was reported that perhaps never happened (tmini_ring_gap()),
+ * bytes that may have been read before are dropped too: those that are kept are certainly new. */
 static size_t intact_bytes(tmini_parser_t *parser, size_t ahead)
 {
     tmini_ring_t *const ring = parser->frame.ring;
@@ -259,7 +258,7 @@ static size_t intact_bytes(tmini_parser_t *parser, size_t ahead)
         return ahead;
     }
     if (!tmini_ring_is_dma(ring)) {
-        return ahead - TMINI_RING_CLOSED; /* It is closed. */
+        return ahead - TMINI_RING_CLOSED; /* A closed ring. */
     }
     const size_t fresh = ahead < ring->size ? ahead : ahead & (ring->size - 1);
     const size_t kept = fresh < ring->window ? fresh : ring->window;
@@ -271,13 +270,13 @@ static size_t intact_bytes(tmini_parser_t *parser, size_t ahead)
     return kept;
 }
 
-/* Called when the candidate needs more bytes than the `unread` ones, and they have been lost. In a
- * closed ring the candidate is given up; an empty ring is opened again. */
+/* Called when the candidate needs more than the `unread` bytes, and the bytes after them have been
+ * lost. In a closed ring the candidate is given up; if the ring is empty, it is opened again. */
 static void pass_lost_bytes(tmini_parser_t *parser, size_t unread)
 {
     tmini_ring_t *const ring = parser->frame.ring;
     if (tmini_ring_is_dma(ring)) {
-        return; /* The candidate has been dropped. */
+        return; /* intact_bytes() has dropped the candidate. */
     }
     if (unread == 0) {
         parser->frame.gap = TMINI_GAP_UNKNOWN;
@@ -289,7 +288,7 @@ static void pass_lost_bytes(tmini_parser_t *parser, size_t unread)
 
 /* ---------------------------------------------------------------------------- public functions */
 
-/* Gives the frame delivered last back to the producer. */
+/* Gives the memory of the frame delivered last back to the producer. */
 static void release_frame(tmini_parser_t *parser)
 {
     tmini_frame_t *const frame = &parser->frame;
@@ -300,7 +299,7 @@ static void release_frame(tmini_parser_t *parser)
     }
 }
 
-/* The complete candidate becomes a frame of `need` bytes. */
+/* Delivers the complete candidate, of `need` bytes, as a frame. */
 static tmini_frame_type_t deliver(tmini_parser_t *parser)
 {
     tmini_frame_t *const frame = &parser->frame;

@@ -7,13 +7,13 @@
 
 #include "tmini_driver.h"
 
-/* Every third attempt that fails is followed by one that reboots the lidar first. */
+/* After every third failed attempt, the next one reboots the lidar first. */
 #define REBOOT_AFTER 3
 
 /* Value of `attempts` while the first attempt has not failed yet. */
 #define FIRST_ATTEMPT (REBOOT_AFTER + 1)
 
-/* Stands for "no operation has ended", or for a pause that has ended. */
+/* No operation has ended, or it was a pause. */
 #define NO_OPERATION TMINI_EVENT_NONE
 
 TMINI_NOINLINE void tmini_recovery_restart_reception(const tmini_t *lidar)
@@ -93,8 +93,8 @@ void tmini_recovery_begin(tmini_t *lidar)
     }
 }
 
-/* A start that succeeds does not come here: it ends with the first packet. What ends well here is a
- * pause, a reboot or the setting of the frequency; for a listener nothing does. */
+/* A successful start does not come here: it ends with the first packet. TMINI_OK is the result of a
+ * pause, a reboot or a frequency change; with listen_only nothing has this result. */
 void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
     if (result != TMINI_OK && operation != TMINI_EVENT_FREQUENCY) {

@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-/* Most commands have a frequency as their reply: the query for it, and each of its steps (sections
- * 3 and 4). */
+/* Most commands have the frequency as their reply: its query, and each of its steps (sections 3 and
+ * 4). */
 bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header)
 {
     if (command == TMINI_COMMAND_STOP || command == TMINI_COMMAND_REBOOT) {

@@ -27,14 +27,14 @@ static size_t room_ahead(const tmini_ring_t *ring, size_t head)
     return tmini_load(&ring->tail) + ring->size - head;
 }
 
-/* Moves head; the next byte that is put will read the tail first. */
+/* Moves the head and makes the next tmini_ring_put() read the tail. */
 TMINI_INLINE void move_head(tmini_ring_t *ring, size_t head)
 {
     ring->stop = head;
     tmini_store(&ring->head, head);
 }
 
-/* Counts bytes that found the ring full or closed. A full ring (no room) is closed. */
+/* Counts refused bytes. If the ring is full (no room), closes it. */
 static void refuse(tmini_ring_t *ring, size_t room, size_t count)
 {
     tmini_store(&ring->overrun, ring->overrun + count);
@@ -121,7 +121,7 @@ void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, si
     }
 }
 
-/* From now on the producer may write there, so all reads must be complete. */
+/* From now on the producer may overwrite these bytes; tmini_store() completes all reads before. */
 void tmini_ring_discard(tmini_ring_t *ring, size_t count)
 {
     tmini_store(&ring->tail, ring->tail + count);

@@ -54,7 +54,7 @@ void tmini_sectors_add_scan(tmini_sectors_t *sectors, const tmini_scan_t *scan)
     }
 }
 
-/* A start packet ended the revolution, and its own point begins this one. */
+/* The start packet that ended the last revolution holds the first point of this one. */
 static void begin_sweep(tmini_sectors_t *sectors)
 {
     const tmini_point_t first = sectors->first;

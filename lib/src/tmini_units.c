@@ -7,12 +7,12 @@
 #define JITTER_Q6 256u /* 4 degrees. */
 #define SAMPLE_US 250u
 
-/* No revolution takes longer, so nothing below overflows: 23295 * 2900000 / 16 < 2^32. */
+/* Longer periods are not used, so nothing below overflows: 23295 * (2900000 / 16) < 2^32. */
 #define PERIOD_MAX_US 2900000u
 
 /* A complete scan has all samples of its revolution, 4000 per second (section 1). That is more
- * exact than the reported frequency, which has steps of 0.1 Hz. The stamps are not used, because
- * they are as late as the bytes. */
+ * exact than the reported frequency, which has steps of 0.1 Hz. start_ms and end_ms are not used,
+ * because they are as late as the bytes were. */
 static uint32_t period_us(const tmini_scan_t *scan)
 {
     const uint32_t reported_us = scan->frequency_chz > 0 ? 100000000u / scan->frequency_chz : 0;
@@ -42,9 +42,9 @@ static bool is_near_first(const tmini_scan_t *scan, size_t index)
     return turned < JITTER_Q6 || turned > TURN_Q6 - JITTER_Q6;
 }
 
-/* The same, up to slightly more than a circle. Because of the encoder's jitter, early points may
- * lie slightly before the first one, and late points slightly beyond the full circle. A point is
- * late if some earlier point is not near the first one. */
+/* The angle turned since the first point, up to slightly more than a circle. Because of the
+ * encoder's jitter, early points may lie slightly before the first one, and late points slightly
+ * beyond the full circle. A point is late if some earlier point is not near the first one. */
 static uint32_t swept_q6(const tmini_scan_t *scan, size_t index)
 {
     const uint32_t turned = turned_q6(scan, index);
