@@ -107,7 +107,7 @@ static void print_summary(const gist_t *gist, const tape_t *tape)
                      damaged_text(stream));
     }
     (void)printf("\nstream      %llu bytes in %.3f s%s: %llu packets,\n"
-                 "            %llu guard bytes, %llu bytes before the first packet, "
+                 "            %llu LastCRC bytes, %llu bytes before the first packet, "
                  "%llu after the last\n",
                  tape->bytes, (double)tape->time_us / 1e6,
                  tape->chunks.version > 0 ? "" : " (at 4000 samples per second)", stream->packets,

@@ -479,7 +479,7 @@ void test_reading_a_long_recording_shows_its_progress(void)
         " >two; mv two " LONG_ROOM "; done; \"$TOOL\" decode " LONG_ROOM " | tail -n 1",
         &master, &line, &before);
     wait_for("100 % of " LONG_ROOM);
-    wait_for("guard bytes");
+    wait_for("LastCRC bytes");
     (void)remove(LONG_ROOM);
 }
 

@@ -202,16 +202,16 @@ static const option_t known[] = {
      "faults reported, 0 to 0x3F: 1 sensor, 2 encoder,\n"
      "                          4 wireless power, 8 PD, 16 LD, 32 data (0)",
      set_health, 0},
-    {0, "motor", "PERCENT", "share of the set frequency that the motor reaches (100)", set_motor,
-     0},
-    {0, "spin-up", "SECONDS", "time from standstill to that speed (1)", set_spin_up, 0},
+    {0, "motor", "PERCENT", "share of the set frequency that the motor reaches, 1 to 150 (100)",
+     set_motor, 0},
+    {0, "spin-up", "SECONDS", "time from standstill to that speed, 0 to 60 (1)", set_spin_up, 0},
     {0, "fault", "KIND=RATE",
      "drop, flip, insert: probability per byte;\n"
      "                          burst, stall, cut, unplug, garble: events per second",
      set_fault, 0},
     {0, "seed", "N", "seed of all that is random (1)", set_seed, 0},
     {'s', "seconds", "N", "virtual time, then exit (never)", set_seconds, 0},
-    {0, "speed", "X", "virtual seconds per real second (1)", set_speed, 0},
+    {0, "speed", "X", "virtual seconds per real second, 0.001 to 1000 (1)", set_speed, 0},
     {0, "log", "FILE", "commands, modes, faults and totals; - is standard output", NULL,
      PLACE(log_path)},
     {0, "truth", "FILE", "every sample sent, as CSV; - is standard output", NULL,
@@ -227,16 +227,20 @@ void options_print_version(void)
     puts("tmini-sim " TMINI_SIM_VERSION);
 }
 
+static void print_option(FILE *file, const option_t *option)
+{
+    const char letter[4] = {'-', option->letter, ',', '\0'};
+
+    fprintf(file, "%3s --%-9s %-10s%s\n", option->letter == 0 ? "" : letter, option->name,
+            option->value == NULL ? "" : option->value, option->help);
+}
+
 void options_print_help(void)
 {
     puts("usage: tmini-sim --pty | --tcp PORT | --lines | --write FILE --seconds N [options]\n"
          "A simulated YDLIDAR T-mini Plus.\n");
     for (size_t i = 0; i < KNOWN_OPTIONS; i++) {
-        const option_t *option = &known[i];
-        const char letter[4] = {'-', option->letter, ',', '\0'};
-
-        printf("%3s --%-9s %-10s%s\n", option->letter == 0 ? "" : letter, option->name,
-               option->value == NULL ? "" : option->value, option->help);
+        print_option(stdout, &known[i]);
     }
 }
 
@@ -246,9 +250,10 @@ static bool complain(const char *about, const char *what)
     return false;
 }
 
-static bool complain_of(const option_t *option, const char *what)
+static bool complain_of(const option_t *option, const char *value)
 {
-    fprintf(stderr, "tmini-sim: --%s%s; try tmini-sim --help\n", option->name, what);
+    fprintf(stderr, "tmini-sim: --%s does not take %s:\n", option->name, value);
+    print_option(stderr, option);
     return false;
 }
 
@@ -336,7 +341,7 @@ static bool take(options_t *options, int answer, const char *word)
         return complain(word,
                         answer == ':' ? " needs a value" : " is not an option, or needs no value");
     }
-    return set(options, option, optarg) || complain_of(option, " has a value out of range or form");
+    return set(options, option, optarg) || complain_of(option, optarg);
 }
 
 bool options_parse(options_t *options, int argc, char **argv)
