@@ -61,10 +61,10 @@ static bool may_hide_turn(const tmini_t *lidar, int32_t silent_ms)
     return (uint32_t)silent_ms * frequency_chz > 100000u / 2;
 }
 
-/* Bytes that need `due_ms` on the wire have come, `passed_ms` after the last look. True if a silence
- * was before them: the lidar does not scan yet, and all of them can have come since that look. In
- * other cases its place is unknown, because a delayed layer below may deliver late what came before
- * the silence. */
+/* Bytes that need `due_ms` on the wire have come, `passed_ms` after the last look. True if a
+ * silence was before them: the lidar does not scan yet, and all of them can have come since that
+ * look. In other cases its place is unknown, because a delayed layer below may deliver late what
+ * came before the silence. */
 static bool is_silence_before(const tmini_t *lidar, uint32_t due_ms, uint32_t passed_ms)
 {
     return lidar->state != TMINI_STATE_SCANNING && passed_ms <= WATCHED_MS &&
@@ -99,10 +99,10 @@ static int32_t missing_ms(const tmini_line_t *line, uint32_t due_ms)
 
 /* Notes `count` new bytes, `passed_ms` after the last look. With those that the port still holds,
  * bytes have arrived up to `arrived`; those that it held before were noted then.
- * A scanning lidar never pauses for long. If the pause was longer than these bytes need on the wire,
- * bytes may be missing, or these may be late by the difference. The difference counts again for the
- * next bytes, because the silence may continue; after a doubt, only if the port may hold what seemed
- * to be missing.
+ * A scanning lidar never pauses for long. If the pause was longer than these bytes need on the
+ * wire, bytes may be missing, or these may be late by the difference. The difference counts again
+ * for the next bytes, because the silence may continue; after a doubt, only if the port may hold
+ * what seemed to be missing.
  * More bytes than the ring holds mean a gap of DMA: their true number is unknown. */
 static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t passed_ms)
 {

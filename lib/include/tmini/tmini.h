@@ -57,11 +57,11 @@
 extern "C" {
 #endif
 
-/** The library's version, as in 1.2.3: the 1. Versioning is semantic (CHANGELOG.md). */
+/** The first number of the library's version. Versioning is semantic (CHANGELOG.md). */
 #define TMINI_VERSION_MAJOR 1
-/** As in 1.2.3: the 2. */
+/** The second number. */
 #define TMINI_VERSION_MINOR 0
-/** As in 1.2.3: the 3. */
+/** The third number. */
 #define TMINI_VERSION_PATCH 0
 /** The whole version as text, including a suffix such as "-rc.1". */
 #define TMINI_VERSION_TEXT "1.0.0-rc.1"
@@ -86,13 +86,13 @@ typedef struct {
      * them. Raise the value where a layer below delays bytes: 250 for a computer. 0: pauses are not
      * looked for. Whatever the value, a scan that took more than one and a half turns has a gap. */
     uint16_t max_pause_ms;
-    /** After a stop, the line counts as quiet when it has been silent for this long, less than
-     * 600. What a layer below holds for longer seems to come after the next start. 0: at once. */
+    /** After a stop, the line counts as quiet when it has been silent for this long (below 600).
+     * Bytes that a layer below holds for longer seem to come after the next start. 0: at once. */
     uint16_t quiet_line_ms;
     /** How long to wait for a reply (section 9.11). 0: without limit. */
     uint16_t reply_timeout_ms;
     /** The pause after a failed attempt to start begins with 500 ms and doubles up to this value.
-     * 0: after a failed attempt there is no other until tmini_stop() and tmini_start(). */
+     * 0: after a failed attempt there is no other until you call tmini_stop() and tmini_start(). */
     uint16_t back_off_max_ms;
     /** How often a query, a stop or a reboot is tried. 0: once. */
     uint8_t max_attempts;
@@ -110,8 +110,9 @@ typedef enum {
 } tmini_recovery_mode_t;
 
 /** A step that changes a finished scan in place before it is delivered: tmini_mount_step(), or a
- * function of yours. Called from tmini_poll() with the configuration's `step_data`. Points keep
- * their order and number. It states no wish and makes no query: do that when the event has come. */
+ * function of yours. Called from tmini_poll() with the configuration's `step_data`. It must keep
+ * the order and number of the points, and must not call the wishes and queries below: do that when
+ * the event has come. */
 typedef void (*tmini_step_t)(const void *data, tmini_scan_t *scan);
 
 /** What tmini_init() needs to know. Members that you leave out are 0. Required are port, rx_buffer
@@ -160,7 +161,7 @@ typedef enum {
                                  * failed and the next one follows. If it is TMINI_STATE_SCANNING,
                                  * the wanted frequency could not be set. */
     TMINI_EVENT_UNWANTED_SCANNING, /**< A lidar that was stopped is scanning. The driver stops it
-                                    * again, which ends as tmini_stop() does. */
+                                    * again, with the same events as tmini_stop(). */
     TMINI_EVENT_LOST, /**< Valid packets, or start packets, have stopped coming. The driver recovers
                        * the lidar unless configured not to. */
     TMINI_EVENT_RECOVERED,      /**< Valid packets again. */
@@ -200,11 +201,11 @@ typedef struct {
     uint32_t bytes_pending; /**< Bytes received and not yet judged. */
     uint32_t scans;         /**< Scans delivered as TMINI_EVENT_SCAN. */
     uint32_t late_scans; /**< Of these, the ones that ended early or are incomplete only because of
-                          * time, although no byte was lost. If it grows, a layer below may hold
-                          * bytes back for longer than max_pause_ms. It grows after each
-                          * tmini_feed_gap() with DMA, too, and while the clock is back. */
+                          * time, although no byte was lost. If it grows, a layer below may delay
+                          * bytes for longer than max_pause_ms. It also grows after each
+                          * tmini_feed_gap() with DMA, and while the clock is back. */
     uint16_t timeouts;   /**< Attempts at commands that waited in vain for a reply, a quiet line or
-                          * the first packet; a listener's are not counted. */
+                          * the first packet; with listen_only none is counted. */
     uint16_t losses;     /**< TMINI_EVENT_LOST. */
     uint16_t recoveries; /**< TMINI_EVENT_RECOVERED. */
     uint16_t restarts;   /**< Attempts to recover by a start. */
@@ -245,9 +246,9 @@ static inline size_t tmini_feed_room(const tmini_t *lidar);
 
 /** Reports that `held` more bytes have arrived, that they wait in the port or below it, and that
  * none was lost. A receiver with a queue calls this each time after it has fed bytes, with 0 when
- * none are left. A pause of the program that the queue bridges then costs no scan. Without this
- * call the pause may cost scans, or hide that the line was silent. No loop, no wait. Not with
- * DMA. */
+ * none are left. Then a pause of the program during which the queue collects bytes costs no scan.
+ * Without this call the pause may cost scans, or hide that the line was silent. No loop, no wait.
+ * Not with DMA. */
 static inline void tmini_feed_held(tmini_t *lidar, size_t held);
 
 /** Publishes how far circular DMA has written rx_buffer: `position` is the index it writes next
@@ -262,8 +263,8 @@ static inline void tmini_feed_dma(tmini_t *lidar, size_t position);
  * overflowed, or DMA may have written a whole lap unseen (then call this before tmini_feed_dma()).
  * No scan continues across the gap. No loop, no wait.
  * Without DMA nothing more is stored until polling has emptied the buffer; tmini_feed_room() is 0
- * until then. With DMA one lap of the oldest bytes (rx_size) is dropped and counted as overrun, and
- * so are bytes beyond half a lap that are left after it. So no byte is delivered twice, even if DMA
+ * until then. With DMA one lap of the oldest bytes (rx_size) is dropped and counted as overrun; if
+ * more than half a lap is left then, so is the excess. So no byte is delivered twice, even if DMA
  * had not written a whole lap. */
 static inline void tmini_feed_gap(tmini_t *lidar);
 
@@ -342,9 +343,9 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
  *
  * and change nothing unless they return TMINI_OK. If the event of the previous command has not been
  * polled yet, it is dropped. From the polling context. None waits, and each sends at most two
- * bytes; tmini_poll() does the rest of a command. If the port takes no byte, it is asked again at
- * the first poll at which the clock has advanced. So a program may repeat a failed command even in
- * a loop that polls until TMINI_EVENT_NONE. */
+ * bytes; tmini_poll() does the rest of a command. If the port reports a failure, it is asked again
+ * at the first poll at which the clock has advanced. So a program may repeat a failed command even
+ * in a loop that polls until TMINI_EVENT_NONE. */
 /** @{ */
 
 /** Asks for the device information [INFO]: tmini_info() (section 4). */
@@ -370,7 +371,7 @@ tmini_status_t tmini_reboot(tmini_t *lidar);
 /** What the lidar does; TMINI_STATE_UNKNOWN for a null pointer. */
 static inline tmini_state_t tmini_state(const tmini_t *lidar);
 
-/** The scan that TMINI_EVENT_SCAN announced (section 6). That event's description says how long it
+/** The scan that TMINI_EVENT_SCAN announced (section 6). The event's description states how long it
  * is valid. */
 static inline const tmini_scan_t *tmini_scan(const tmini_t *lidar);
 
@@ -449,7 +450,7 @@ typedef struct {
 /* tmini_monitor.c */
 typedef struct {
     uint8_t faults;    /* As reported. */
-    uint8_t observed;  /* Those of the last revolution; reported when the next one has the same. */
+    uint8_t observed;  /* Faults of the last revolution; reported when the next one has the same. */
     bool is_complete;  /* Nothing has been lost since the last start packet. */
     uint8_t ranges;    /* Packets with a valid range since then; at most 255. */
     uint8_t off_turns; /* Turns in a row at another frequency than wanted. */

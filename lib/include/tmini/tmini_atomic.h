@@ -7,15 +7,15 @@
  *
  * tmini_load() reads a size_t that the other side writes, and no later access moves before it;
  * tmini_store() writes one, and no earlier access moves after it (acquire and release, in C11's
- * words). Both are a single access, so that the other side sees the old value or the new one.
+ * words). Both act as a single access: the other side sees the old value or the new one.
  * tmini_fence() keeps earlier reads before later ones.
  *
- * GCC and Clang translate them to instructions that are also right on several cores (ESP32). One
- * core always sees its own accesses in order, also from its interrupts. There it is enough to stop
- * the compiler from reordering, which costs nothing: TMINI_SINGLE_CORE is then 1. It is 1 on
- * Cortex-M unless the chip is known to have two cores; define it as 0 or 1 for the whole build to
- * overrule that. Where the processor itself may reorder reads (Cortex-M7), circular DMA acts like
- * another core: tmini_fence() remains an instruction there.
+ * GCC and Clang translate them to instructions that are also right on several cores (ESP32). A core
+ * always sees its own accesses in order, also from its interrupts. With only one core it is enough
+ * to stop the compiler from reordering, which costs nothing: TMINI_SINGLE_CORE is then 1. It is 1
+ * on Cortex-M unless the chip is known to have two cores; to overrule that, define it as 0 or 1 for
+ * the whole build. Where the processor itself may reorder reads (Cortex-M7), circular DMA acts like
+ * another core: there tmini_fence() remains an instruction.
  *
  * For another compiler or an unusual machine, name a header that defines the three functions:
  * -DTMINI_ATOMIC_HEADER='"my_atomic.h"'. */
@@ -165,9 +165,9 @@ TMINI_INLINE void tmini_fence(void)
 #endif
 
 /** @def TMINI_WORD_ALIGNMENT
- * Words are loaded from addresses that are a multiple of this: 4, or 1 where any address works;
- * then words are stored at any address, too. Define it as 4u for the whole build to overrule 1:
- * a Cortex-M7 faults if a buffer lies in Device memory, as external SDRAM may. */
+ * Words are loaded only from addresses that are a multiple of this: 4, or 1 where any address
+ * works. If it is 1, words are also stored at any address. To overrule 1, define it as 4u for the
+ * whole build: a Cortex-M7 faults if a buffer is in Device memory, as external SDRAM may be. */
 #if defined(TMINI_WORD_ALIGNMENT)
 /* As defined. */
 #elif defined(__ARM_FEATURE_UNALIGNED) || defined(__x86_64__) || defined(__i386__) || \

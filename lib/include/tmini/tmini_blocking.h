@@ -14,7 +14,7 @@
  * Context: the one that polls. All return
  *
  *     TMINI_OK                                           done
- *     TMINI_ERROR_ARGUMENT, _STATE, _BUSY, _LISTEN_ONLY  not begun, for the reasons in tmini.h
+ *     TMINI_ERROR_ARGUMENT, _STATE, _BUSY, _LISTEN_ONLY  not begun; tmini.h gives the reasons
  *     TMINI_ERROR_TIMEOUT, _WRITE, _REPLY                the command's error, or too late
  *
  * and write their result only if they return TMINI_OK. */
@@ -47,16 +47,16 @@ tmini_status_t tmini_blocking_read_health(tmini_t *lidar, tmini_health_t *health
 tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency_chz,
                                              uint32_t timeout_ms);
 
-/** Wishes a scan frequency, in 0.01 Hz, as tmini_set_frequency() does, and waits until it has been
- * set or has failed, at most `timeout_ms`. Allow 2 s more than for a query: up to 15 steps may be
- * needed. Returns what is listed above. Two results mean that the wish is kept and nothing was
- * waited for: TMINI_ERROR_BUSY during another command; TMINI_ERROR_STATE if the lidar scans without
- * the wished frequency, or is lost with TMINI_RECOVERY_OFF. */
+/** States the wish for a scan frequency, in 0.01 Hz, as tmini_set_frequency() does, and waits until
+ * it has been set or has failed, at most `timeout_ms`. Allow 2 s more than for a query: up to 15
+ * steps may be needed. Returns what is listed above. Two results come at once, and the wish is
+ * kept: TMINI_ERROR_BUSY during another command; TMINI_ERROR_STATE if the lidar scans without the
+ * wished frequency, or is lost with TMINI_RECOVERY_OFF. */
 tmini_status_t tmini_blocking_set_frequency(tmini_t *lidar, uint16_t frequency_chz,
                                             uint32_t timeout_ms);
 
-/** Wishes to scan and waits for the first scan (without a scan buffer, for the first packet), at
- * most `timeout_ms`. Attempts that fail meanwhile do not end the waiting, except with
+/** States the wish to scan and waits for the first scan (without a scan buffer, for the first
+ * packet), at most `timeout_ms`. Attempts that fail meanwhile do not end the waiting, except with
  * TMINI_RECOVERY_OFF. The scan is valid as described at tmini_scan(). Returns what is listed above;
  * after TMINI_ERROR_TIMEOUT the wish to scan remains. */
 tmini_status_t tmini_blocking_start(tmini_t *lidar, uint32_t timeout_ms);

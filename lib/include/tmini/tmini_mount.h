@@ -14,8 +14,8 @@
  *         ..., .step = tmini_mount_step, .step_data = &mount,
  *     };
  *
- * Without a scan buffer, point by point: tmini_mount_point() for each point that is read. All
- * functions: any context; no waiting. */
+ * Without a scan buffer, call tmini_mount_point() for each point. All functions: any context; no
+ * waiting. */
 
 #ifndef TMINI_MOUNT_H
 #define TMINI_MOUNT_H
@@ -41,8 +41,8 @@ typedef struct {
 /** How the lidar is mounted, and what is removed. All 0: nothing changes. */
 typedef struct {
     int16_t front_deg;         /**< The angle that the lidar reports for the robot's front, also if
-                                * it hangs. */
-    bool upside_down;          /**< The lidar hangs: its angles run the other way round. */
+                                * it is upside down. */
+    bool upside_down;          /**< The lidar is upside down: its angles run the other way round. */
     uint16_t min_mm;           /**< Smaller distances become 0. */
     uint16_t max_mm;           /**< Larger distances become 0; 0: no limit. */
     const tmini_arc_t *masked; /**< Directions in which the lidar sees the robot itself. */

@@ -20,8 +20,7 @@ extern "C" {
 /** A buffer of this size holds the text of any combination of faults. */
 #define TMINI_FAULTS_TEXT_SIZE 64u
 
-/** A status as text, for example "timeout". Never NULL, whatever the value: then "unknown
- * status". */
+/** A status as text, for example "timeout". "unknown status" for any other value. Never NULL. */
 const char *tmini_status_name(tmini_status_t status);
 
 /** An event as text, for example "faults changed"; "unknown event" for any other value. Never

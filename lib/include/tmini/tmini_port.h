@@ -21,17 +21,17 @@ extern "C" {
 /** The functions of a board. Each gets the configuration's `port_context`. The structure must
  * outlive the lidar; it may be constant, and several lidars may share it. */
 typedef struct {
-    /** Hands up to `count` (at most 2) bytes to the UART and returns how many it took, 0 to count,
-     * or a negative number when sending has failed. It may take fewer, even none, while the
+    /** Hands up to `count` (at most 2) bytes to the UART. Returns how many it took, 0 to count, or
+     * a negative number when sending has failed. It may take fewer, even none, while the
      * transmitter is busy: the driver offers the rest again at a later tmini_poll(). It must not
-     * wait longer than the bytes take on the wire (87 µs for two). The bytes are valid during the
-     * call only: copy what is sent later. Required, unless the configuration says listen_only. */
+     * wait longer than the bytes take on the wire (87 µs for two). The bytes are valid only during
+     * the call: copy what is sent later. Required, unless listen_only is configured. */
     int (*write)(void *context, const uint8_t *bytes, size_t count);
 
     /** Milliseconds since any moment, modulo 2^32; steps of up to 10 ms are fine enough. Must not
-     * wait. If the clock steps back by up to a second (to within 10 ms), no time counts until it
-     * has caught up; if by more, time-outs begin anew. Scans while it is more than 10 ms back are
-     * incomplete. Required. */
+     * wait. If the clock steps back by up to a second (give or take 10 ms), no time counts until it
+     * has caught up. If it steps back by more, time-outs begin again. Scans are incomplete while it
+     * is more than 10 ms back. Required. */
     uint32_t (*now_ms)(void *context);
 
     /** Lets other work run for about a millisecond (an RTOS delay, a sleep until the next

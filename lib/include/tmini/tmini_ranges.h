@@ -38,7 +38,7 @@ extern "C" {
 tmini_status_t tmini_ranges_of_scan(const tmini_scan_t *scan, uint16_t *ranges_mm,
                                     uint8_t *intensities, size_t count);
 
-/** The bin, of `count` (1 to 65535), that contains an angle of the lidar (in 1/64 degree, below
+/** Which of `count` bins (1 to 65535) contains an angle of the lidar (in 1/64 degree, below
  * TMINI_FULL_CIRCLE_Q6). Any context; no waiting; one division. */
 size_t tmini_ranges_bin(uint16_t angle_q6, size_t count);
 

@@ -66,7 +66,8 @@ typedef struct {
     uint8_t filter;          /**< A combination of tmini_filter_t. */
     bool has_begun;          /**< A start packet has come: points belong to a revolution. */
     bool has_ended;          /**< That revolution has ended: the next packet belongs to another. */
-    tmini_point_t first;     /**< The point of the start packet, which belongs to that other one. */
+    tmini_point_t first;     /**< The point of the start packet: it belongs to the next
+                              * revolution. */
 } tmini_sectors_t;
 
 /** Sets up `count` sectors, 1 to 65535, all blind. `array` has room for them, stays the caller's

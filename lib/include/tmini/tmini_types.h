@@ -30,7 +30,7 @@ typedef enum {
                                 * long. */
     TMINI_ERROR_REPLY = -6,    /**< The lidar answered, but did not do what the command asked. */
     TMINI_ERROR_ABORTED = -7,  /**< A stop ended the command before it had finished. */
-    TMINI_ERROR_LISTEN_ONLY = -8, /**< The configuration says that nothing is sent. */
+    TMINI_ERROR_LISTEN_ONLY = -8, /**< Nothing may be sent, because of listen_only. */
 } tmini_status_t;
 
 /* --------------------------------------------------------------------------------------- points */
@@ -45,7 +45,8 @@ static inline uint16_t tmini_clockwise(uint16_t from_q6, uint16_t to_q6)
     return (uint16_t)(to_q6 + (to_q6 < from_q6 ? TMINI_FULL_CIRCLE_Q6 : 0) - from_q6);
 }
 
-/** The lidar's remark on a sample (section 5). Not trustworthy on every unit (section 9.9). */
+/** What the lidar reports about a sample (section 5). Not trustworthy on every unit (section
+ * 9.9). */
 typedef enum {
     TMINI_FLAG_SPECULAR = 2, /**< Interference by specular reflection. */
     TMINI_FLAG_AMBIENT = 3,  /**< Interference by ambient light. */
@@ -101,9 +102,9 @@ typedef struct {
                         * rare that the clocks of lidar and host differ by a third of a turn in
                         * twice the time between polls (0.46 s at 12 Hz, if one is 3 % faster); a
                         * turn during which the clock is set back between two polls; and a turn that
-                        * is hidden by delays, on purpose or by a layer that holds bytes unreported
-                        * (tmini_feed_held()). Nor can damage that leaves the checksum right, as one
-                        * in 15 pairs of flipped bits does. */
+                        * is hidden by delays, made on purpose or by a layer that holds bytes
+                        * unreported (tmini_feed_held()). Damage that leaves the checksum right
+                        * cannot be seen either: one in 15 pairs of flipped bits does. */
     bool upside_down;  /**< The angles decrease with time: tmini_mount_step() has turned the scan
                         * over. */
 } tmini_scan_t;
@@ -121,8 +122,8 @@ typedef struct {
     uint8_t count;           /**< Samples: 1 to 255. */
     uint16_t gap;            /**< Bytes skipped before it, or TMINI_GAP_UNKNOWN: any number of
                              * packets may be missing, because bytes were lost, the line paused, or
-                             * the packet is late. Without scans, damaged packets of which only few
-                             * bytes came count as these bytes, even a whole turn of them. */
+                             * the packet is late. Without scans, a damaged packet counts only as
+                             * the bytes of it that came, even if a whole turn is damaged. */
     uint32_t step;           /**< The angle between two samples, in 1/64 degree / 2^17, rounded
                              * up. */
     const struct tmini_frame *frame; /**< Where its bytes lie. */
@@ -160,8 +161,8 @@ bool tmini_packet_has_range(const tmini_packet_t *packet);
 /** The lidar's report about itself, in the order in which it is sent (section 4). */
 typedef struct {
     uint8_t model;                       /**< TMINI_MODEL_T_MINI_PLUS, … */
-    uint8_t firmware_minor;              /**< As in 1.2: the 2. */
-    uint8_t firmware_major;              /**< As in 1.2: the 1. */
+    uint8_t firmware_minor;              /**< In 1.2 this is 2. */
+    uint8_t firmware_major;              /**< In 1.2 this is 1. */
     uint8_t hardware;                    /**< Hardware version. */
     uint8_t serial[TMINI_SERIAL_DIGITS]; /**< Digits as numbers 0 to 9, not characters. */
 } tmini_info_t;
@@ -175,8 +176,8 @@ typedef enum {
                                           * two. */
     TMINI_FAULT_PD = 1 << 3,             /**< Laser feedback voltage. */
     TMINI_FAULT_LD = 1 << 4,             /**< Laser drive current. */
-    TMINI_FAULT_DATA = 1 << 5,           /**< No valid range in a revolution. Is the lidar
-                                          * covered? */
+    TMINI_FAULT_DATA = 1 << 5,           /**< No valid range in a revolution: perhaps the lidar is
+                                          * covered. */
     TMINI_FAULT_FREQUENCY = 1 << 6,      /**< Found by the driver: not the wanted frequency. */
 } tmini_fault_t;
 

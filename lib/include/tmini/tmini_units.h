@@ -9,9 +9,9 @@
  * Accuracy. start_ms and end_ms are the arrival times of a scan's start packet and of the next one,
  * corrected for the bytes that came after them. They are later than the measurement: by up to 8 ms
  * if you poll every 1 ms (a start packet waits until the packet before it has been sent), and by up
- * to 11 ms if you poll every 10 or 38 ms (where packets are lost, 12 and 22 ms). On top
- * comes the time that bytes wait in a UART's FIFO, a task's queue or a USB adapter, or in memory
- * before DMA's position is published: some milliseconds.
+ * to 11 ms if you poll every 10 or 38 ms (where packets are lost, 12 and 22 ms). Add the time that
+ * bytes wait in a UART's FIFO, a task's queue or a USB adapter, or in memory before DMA's position
+ * is published: some milliseconds.
  * Within a scan, or a part of one, the times of points are accurate to 1.5 ms at 6 Hz and 1 ms at
  * 12 Hz, however rare the polls, because they follow the rotor's even turning and not the clock. */
 
@@ -40,7 +40,7 @@ uint32_t tmini_scan_period_ms(const tmini_scan_t *scan);
  * twenty steps in a real scan. */
 uint32_t tmini_point_time_us(const tmini_scan_t *scan, size_t index);
 
-/** The circle's constant, as a float. */
+/** Pi, as a float. */
 #define TMINI_PI 3.14159265358979f
 
 /** An angle of the lidar, clockwise from its front, in degrees: 0 to 359.98. Exact. */
@@ -56,7 +56,7 @@ static inline float tmini_radians(uint16_t angle_q6)
 }
 
 /** An angle of the lidar in the ROS convention: counter-clockwise from straight ahead, in radians,
- * -pi to pi. Then x = range * cos(angle) points ahead and y = range * sin(angle) to the left. */
+ * -pi to pi. Then x = range * cos(angle) points ahead, and y = range * sin(angle) to the left. */
 static inline float tmini_ros_radians(uint16_t angle_q6)
 {
     const uint16_t half = (uint16_t)(TMINI_FULL_CIRCLE_Q6 / 2u);

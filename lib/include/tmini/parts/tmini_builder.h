@@ -11,14 +11,14 @@
  *   - A lost start packet. The angle swept since the last one shows the loss: the scan ends after a
  *     full circle. (The start angle is not 0 on every unit, section 9.8.)
  *   - A gap that may hold half a turn or more, because any number of turns may then be missing. The
- *     number of bytes shows it, or the angle, or the caller: the packet's gap is TMINI_GAP_UNKNOWN
- *     after a pause of the line or an overflow.
+ *   number of skipped bytes shows it, or the angle; or the caller reports it: after a pause of the
+ *   line or an overflow, the packet's gap is TMINI_GAP_UNKNOWN.
  *
  * The next scan then has no start packet and is never complete. It ends at the next start packet
  * or, if that is lost too, at the angle of the last one that came.
  *
  * A scan that took more than one and a half turns, at the frequency that the lidar reports, has a
- * gap: where angles join without a gap, at least one whole turn is missing.
+ * gap: if its angles join, at least one whole turn is missing.
  *
  * All functions: one context, the one that parses; no waiting. */
 
@@ -43,7 +43,8 @@ typedef struct {
                                  * again. */
     uint16_t capacity;          /**< Size of the buffer in points. */
     uint16_t previous_angle_q6; /**< Where the last packet ended. */
-    uint16_t origin_q6;         /**< Where the last start packet was; UINT16_MAX: none has come. */
+    uint16_t origin_q6;         /**< The angle of the last start packet; UINT16_MAX: none has
+                                 * come. */
     uint16_t late_ms;           /**< By how much the scan's start_ms may be late. */
     uint16_t next_late_ms;      /**< By how much the next packet's time may be late. */
     int16_t swept_q6;           /**< Angle swept since the origin; jitter may make it negative, by 4

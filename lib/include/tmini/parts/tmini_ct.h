@@ -5,11 +5,11 @@
  * CT information: bits 1 to 7 of the CT bytes of one revolution's packets. What they mean depends
  * on the packet's index within the revolution (section 7).
  *
- * Packets do not carry that index, so a lost one would shift the meaning of every later CT. The
- * lidar therefore sends a CRC-8 over a revolution's CT bytes, LastCRC, just before the next start
- * packet. A revolution's information is used only if LastCRC is present and equal and nothing was
- * lost; otherwise all of it is dropped. Units that send neither LastCRC nor CT information (section
- * 9.1) never become "healthy, version 0.0": their information stays unknown.
+ * Packets do not carry that index, so a lost packet would shift the meaning of every later CT byte.
+ * The lidar therefore sends a CRC-8 over a revolution's CT bytes, LastCRC, just before the next
+ * start packet. A revolution's information is used only if LastCRC is present and equal and nothing
+ * was lost; otherwise all of it is dropped. Units that send neither LastCRC nor CT information
+ * (section 9.1) never become "healthy, version 0.0": their information stays unknown.
  *
  * All functions: one context, the one that parses; no waiting.
  *
@@ -43,13 +43,13 @@ typedef struct {
     uint8_t packets; /**< Packets of the current revolution, at most 14; 0 if its beginning or a
                       * later packet is missing. */
     uint8_t fields;  /**< How many fields of the current revolution have come. */
-    uint8_t crc;     /**< The CRC of its CT bytes so far. */
+    uint8_t crc;     /**< The CRC of that revolution's CT bytes so far. */
     uint8_t cts;     /**< The OR of its point packets' CT bytes; 0: they carry no information. */
     uint8_t current[TMINI_CT_FIELDS]; /**< CT bytes of the current revolution. */
     uint8_t trusted[TMINI_CT_FIELDS]; /**< The newest trusted CT byte of each field. */
 } tmini_ct_t;
 
-/** What a start packet shows of the revolution that it ends. */
+/** What a start packet shows about the revolution that it ends. */
 typedef enum {
     TMINI_CT_UNKNOWN,   /**< Nothing: there is no LastCRC, or no CT information. */
     TMINI_CT_CONFIRMED, /**< LastCRC is right: no packet was lost. */
@@ -64,9 +64,9 @@ void tmini_ct_init(tmini_ct_t *ct);
 /** Forgets the current revolution, because it was interrupted. Trusted information is kept. */
 void tmini_ct_discard(tmini_ct_t *ct);
 
-/** Takes the next packet. Returns what it shows of the revolution that it ends, or TMINI_CT_UNKNOWN
- * if it ends none. After TMINI_CT_CONFIRMED, tmini_ct_read() includes that revolution. A few
- * instructions. */
+/** Takes the next packet. Returns what it shows about the revolution that it ends, or
+ * TMINI_CT_UNKNOWN if it ends none. After TMINI_CT_CONFIRMED, tmini_ct_read() includes that
+ * revolution. A few instructions. */
 tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet);
 
 /** The faults that the last trusted revolution reported, a combination of tmini_fault_t, or
@@ -77,7 +77,7 @@ unsigned tmini_ct_faults(const tmini_ct_t *ct);
  * newer one is trusted. */
 void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info);
 
-#else /* Left out: units without it are common (section 9.1), and one fault remains known. */
+#else /* Left out. Many units send none (section 9.1); the driver still finds its own faults. */
 
 static inline void tmini_ct_init(tmini_ct_t *ct)
 {

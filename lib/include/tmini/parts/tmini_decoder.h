@@ -37,8 +37,8 @@ typedef struct {
     tmini_builder_t builder; /**< Holds the `scan`; if it was not set up, no scans are built. */
     tmini_parser_t parser;   /**< Finds packets and replies. */
     tmini_ct_t ct;           /**< The unit's reports about itself in the stream. */
-    uint8_t verdict;         /**< What the latest packet shows of the revolution that it ends: a
-                                * tmini_ct_verdict_t. */
+    uint8_t verdict;         /**< What the latest packet shows about the revolution that it ends: a
+                              * tmini_ct_verdict_t. */
 } tmini_decoder_t;
 
 /** Sets up a decoder of the bytes in `ring`, which must outlive it. `max_samples`: packets with
@@ -66,8 +66,8 @@ bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now
                         uint16_t late_ms);
 
 /** Takes a packet that was found elsewhere, for example by a driver; its gap shows whether packets
- * may be missing before it. Such a decoder needs no ring and is all zero at first. If the function
- * returns true, add `packet` to the builder again while it is valid. */
+ * may be missing before it. Such a decoder needs no ring and must be all zero at first. If the
+ * function returns true, add `packet` to the builder again while it is valid. */
 bool tmini_decoder_take_packet(tmini_decoder_t *decoder, const tmini_packet_t *packet,
                                uint32_t now_ms);
 

@@ -9,8 +9,8 @@
  * the byte after its first. Hence damage to one packet never costs an intact neighbour, and the
  * result does not depend on the sizes of the blocks in which the bytes came:
  *
- *   If a valid packet begins here, it is delivered; else if the awaited reply begins here, that is;
- *   else one byte is skipped.
+ *   If a valid packet begins here, it is delivered; else if the awaited reply begins here, it is
+ *   delivered; else one byte is skipped.
  *
  * A valid packet begins with AA 55, has 1 to max_samples samples (exactly 1 in a start packet), the
  * check bits of both angles set, and a matching checksum. Replies carry no checksum, so one is
@@ -85,9 +85,10 @@ typedef struct {
 
 /** A parser over one ring. Treat the members as private. */
 typedef struct {
-    tmini_frame_t frame; /**< The frame delivered last; size 0 while the next one is searched. */
+    tmini_frame_t frame; /**< The frame delivered last; size 0 while the parser looks for the next
+                          * one. */
     uint16_t need;       /**< Bytes needed before the candidate can be judged further. */
-    uint16_t effort;     /**< Work done by the end of the last call that searched a frame
+    uint16_t effort;     /**< Work done by the end of the last call that looked for a frame
                           * (TMINI_PARSER_EFFORT). */
     uint8_t max_samples; /**< Packets with more are not valid. */
     uint8_t kind;        /**< What the candidate's header announces: a tmini_frame_type_t. */

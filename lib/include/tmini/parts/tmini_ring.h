@@ -8,16 +8,16 @@
  * that parses), without locks. The producer calls the producer's functions, the consumer all
  * others. Call init before either runs.
  *
- *   CPU-fed ring   The producer hands over bytes. Once one has found the ring full, the ring is
- *                  closed: it refuses all that follows, and counts it, until the consumer has taken
- *                  everything stored before and opens it again. So bytes are never missing anywhere
- *                  but after the last one stored, however many were refused, and however often.
+ *   CPU-fed ring   The producer hands over bytes. Once a byte has found the ring full, the ring is
+ *                  closed: it refuses and counts all bytes until the consumer has taken
+ *                  everything stored and opens it again. So bytes can be missing only after the
+ *                  last one stored.
  *   DMA ring       Circular DMA writes straight into the ring's memory; the producer only
  *                  publishes how far. The hardware does not see the consumer and may overwrite
- *                  unread bytes: the consumer detects it, because no more than half the ring may
- *                  lie unread. The other half is what the hardware may be writing meanwhile. So
- *                  it must never be half a ring ahead of the position published last; and what is
- *                  published at once, with a packet that waits for its rest, must fit in half. */
+ *                  unread bytes. The consumer detects this, because at most half the ring may be
+ *                  unread: the hardware may be writing to the other half. So the hardware must
+ *                  never be half a ring ahead of the position published last. And half a ring must
+ *                  hold an incomplete packet and the bytes published next. */
 
 #ifndef TMINI_RING_H
 #define TMINI_RING_H
@@ -34,7 +34,8 @@ extern "C" {
 #endif
 
 /** The producer closes a ring by moving its index this far ahead, a quarter of an index's range.
- * The consumer opens it by moving its own index as far. So each index has one writer. */
+ * The consumer opens it by moving its own index by the same distance. So each index has one
+ * writer. */
 #define TMINI_RING_CLOSED (SIZE_MAX / 4 + 1)
 
 /** The largest ring, in bytes: an eighth of an index's range; 8192 if size_t has 16 bits. */
@@ -109,7 +110,7 @@ void tmini_ring_publish(tmini_ring_t *ring, size_t position);
 /** Producer: an unknown number of bytes was lost after the last one stored: a receiver's queue
  * overflowed, or circular DMA may have written a whole lap unseen (then call this before
  * publishing). A CPU-fed ring is closed, as after an overrun. In a DMA ring one lap of the oldest
- * bytes counts as overwritten, and so do bytes beyond the window that are left after it. So no byte
+ * bytes counts as overwritten; if more than the window is left then, so does the excess. So no byte
  * is read twice, even if DMA had not written a whole lap. Interrupt-safe; no loop, no wait. */
 void tmini_ring_gap(tmini_ring_t *ring);
 
@@ -192,7 +193,8 @@ static inline bool tmini_ring_intact(const tmini_ring_t *ring)
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count);
 
 /** Returns the unread bytes from `offset` on that are contiguous in memory, so that loops over them
- * need not wrap. `*count` is how many are wanted, and becomes how many there are (at least one). */
+ * need not wrap. `*count` is how many are wanted (at least one), and becomes how many there are (at
+ * least one). */
 static inline const uint8_t *tmini_ring_piece(const tmini_ring_t *ring, size_t offset,
                                               size_t *count)
 {
