@@ -20,10 +20,10 @@ remove_cmock_download() {
     [ -z "$cmock_dir" ] || rm -rf "$cmock_dir"
 }
 
-# Puts the file of the next release in the place of the package's name.
+# Replaces the package's name by the file that was downloaded from the next release.
 take_cmock_from_trixie() {
     cmock_dir=$(mktemp -d)
-    chmod 755 "$cmock_dir" # apt reads it as a user of its own.
+    chmod 755 "$cmock_dir" # apt reads it as its own user.
     if download_from_trixie "$cmock_dir" cmock; then
         file=$(ls "$cmock_dir"/cmock_*.deb)
         required_packages=$(echo "$required_packages" | sed "s|\\<cmock\\>|$file|")
@@ -44,5 +44,5 @@ need_cmock() {
     if [ -z "${CMOCK_ROOT:-}" ] && can_install; then
         need "$cmock_script" cmock
         finders="$finders find_cmock"
-    fi # What cannot be installed here, CMake downloads.
+    fi # Otherwise CMake downloads CMock.
 }

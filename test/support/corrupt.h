@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /*
- * Seeded damage to a byte array, as lines do it: lost, flipped and extra bytes, overwritten
- * stretches, cuts; and garbage made to look like the protocol.
+ * Seeded damage to a byte array, as on a bad serial line: lost, flipped and extra bytes,
+ * overwritten stretches, cuts; also garbage that looks like the protocol.
  */
 
 #ifndef CORRUPT_H
@@ -24,15 +24,15 @@ typedef enum {
     CORRUPT_KINDS
 } corrupt_kind_t;
 
-/* A byte that is AA, 55, A5, 5A or a small number more often than not: whatever it is fed to
- * meets many false headers. */
+/* A random byte, in more than half of the cases AA, 55, A5, 5A or another byte of headers, so that
+ * a parser meets many false headers. */
 uint8_t corrupt_lookalike(random_t *random);
 
 /* Fills a whole array with look-alike garbage. */
 void corrupt_fill(random_t *random, uint8_t *bytes, size_t size);
 
 /* Applies one fault of the kind at a random place. `bytes` holds `size` bytes and has room for
- * `capacity`; what an insertion pushes beyond that is lost. Returns the new size. */
+ * `capacity`; bytes that an insertion pushes beyond that are lost. Returns the new size. */
 size_t corrupt_once(random_t *random, corrupt_kind_t kind, uint8_t *bytes, size_t size,
                     size_t capacity);
 

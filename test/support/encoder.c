@@ -40,8 +40,8 @@ void encode_packet_header(uint8_t *out, const encode_packet_t *packet)
     encode_u16(out + 8, 0);
 }
 
-/* Section 5's XOR of words, taken apart into its two bytes: of the words 0x00.S1 and S3.S2 of a
- * sample, S1 and S2 fall into the low byte and S3 into the high one. */
+/* The XOR of words of section 5, computed for low and high bytes separately. A sample is the words
+ * 0x00.S1 and S3.S2: S1 and S2 are low bytes, S3 is a high byte. */
 uint16_t encode_checksum(const uint8_t *packet)
 {
     const uint8_t *sample = packet + ENCODE_PACKET_HEADER;
@@ -133,7 +133,7 @@ uint8_t encode_crc8(uint8_t crc, uint8_t byte)
     return crc;
 }
 
-/* Undisclosed by the manual: any value with bit 0 clear will do. */
+/* The manual does not disclose them: any value with bit 0 clear will do. */
 static uint8_t production_data(uint8_t production, uint32_t index)
 {
     return (uint8_t)((index * 0x5Au + production * 2u) & 0xFEu);

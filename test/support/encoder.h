@@ -24,7 +24,7 @@
 /* Reply modes and type codes of section 4. */
 #define ENCODE_MODE_SINGLE 0u
 #define ENCODE_MODE_CONTINUOUS 1u
-#define ENCODE_TYPE_INFORMATION 0x04u /* of frequency replies too */
+#define ENCODE_TYPE_INFORMATION 0x04u /* also of frequency replies */
 #define ENCODE_TYPE_HEALTH 0x06u
 #define ENCODE_TYPE_SCAN 0x81u
 
@@ -63,7 +63,7 @@ typedef struct {
     uint8_t month;          /* 1..12 */
     uint8_t day;            /* 1..31 */
     uint32_t serial;        /* 0..2097151 */
-    uint8_t production;     /* undisclosed: makes up the value of all other indices */
+    uint8_t production; /* for all other indices, which are undisclosed: values are made from it */
 } encode_turn_t;
 
 /* Little-endian words (section 1). */
@@ -82,14 +82,14 @@ void encode_packet_header(uint8_t *out, const encode_packet_t *packet);
 /* The checksum that the packet's bytes should have; reads LSN from the packet itself. */
 uint16_t encode_checksum(const uint8_t *packet);
 
-/* Makes the packet's checksum right, whatever else was done to its bytes. */
+/* Sets the packet's checksum to the one that its bytes should have. */
 void encode_seal(uint8_t *packet);
 
 /* A complete valid packet; returns its length. `out` has room for 10 + 3 * lsn bytes. */
 size_t encode_packet(uint8_t *out, const encode_packet_t *packet);
 
-/* Any reply: header and content (`content` may be NULL when there is none). `length` is what
- * the header says, and how much content is copied in mode 0. Returns the number of bytes. */
+/* Any reply: header and content (`content` may be NULL when there is none). `length` is the length
+ * field of the header and, in mode 0, the size of the content. Returns the number of bytes. */
 size_t encode_reply(uint8_t *out, uint8_t mode, uint8_t type, const uint8_t *content,
                     uint32_t length);
 

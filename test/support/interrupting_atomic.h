@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A TMINI_ATOMIC_HEADER for tests: before and after each access of an index that both sides use,
- * the test may be the interrupt, the DMA or the other core that comes just then. */
+/* A TMINI_ATOMIC_HEADER for tests: calls interrupt() before and after each access of an index that
+ * both sides use. There a test plays the interrupt, the DMA or the other core. */
 
 #ifndef INTERRUPTING_ATOMIC_H
 #define INTERRUPTING_ATOMIC_H
 
 #include <stddef.h>
 
-/* The test's. */
+/* Defined by the test. */
 void interrupt(void);
 
 static inline size_t tmini_load(const size_t *value)

@@ -5,16 +5,14 @@
 
 #include "tmini_driver.h"
 
-/* As in tmini_command.c, whose own they are. */
+/* As in tmini_command.c, which does not export them. */
 #define STEPS_MAX 20
 #define PLAUSIBLE_CHZ_MAX 2000
-
-/* The last value of `doubt`, as in tmini.c. */
 
 /* As in tmini_builder.c: 4 degrees back. */
 #define SWEPT_MIN_Q6 (-256)
 
-/* All that may be pending: from STARTED to SCAN. */
+/* All events that may be pending: from STARTED to SCAN. */
 #define EVENTS ((1u << (TMINI_EVENT_SCAN + 1)) - (1u << TMINI_EVENT_STARTED))
 
 /* ---- Ring, parser ---- */
@@ -24,8 +22,8 @@ static bool is_dma(const tmini_ring_t *ring)
     return tmini_ring_is_dma(ring);
 }
 
-/* Up to its stop the producer writes without checking: there is room, and the memory does not end
- * before. */
+/* The producer writes up to its stop without checking: so there must be room, and the memory must
+ * not end earlier. */
 static bool stop_is_sound(const tmini_ring_t *ring)
 {
     const size_t known = ring->stop - ring->head;
@@ -42,11 +40,11 @@ bool ring_is_sound(const tmini_ring_t *ring)
         (size & (size - 1)) != 0) {
         return false;
     }
-    if (is_dma(ring)) { /* Which may run away. */
+    if (is_dma(ring)) { /* The hardware may overrun the reader. */
         return ring->window == size / 2 && ring->stop == ring->head;
     }
     return ring->window == size && stop_is_sound(ring) && tmini_ring_unread(ring) <= size &&
-           tmini_ring_ahead(ring) / TMINI_RING_CLOSED <= 1; /* It is closed once, or open. */
+           tmini_ring_ahead(ring) / TMINI_RING_CLOSED <= 1; /* Open, or closed once. */
 }
 
 static uint8_t samples_in(const tmini_frame_t *frame)
@@ -63,7 +61,7 @@ static bool has_packet_header(const tmini_parser_t *parser)
            (header[2] & 1u) != 0 && (header[4] & 1u) != 0;
 }
 
-/* What `need` says of the candidate. */
+/* `need` fits what is known of the candidate. */
 static bool candidate_is_sound(const tmini_parser_t *parser)
 {
     const unsigned need = parser->need;
@@ -87,7 +85,7 @@ bool parser_is_sound(const tmini_parser_t *parser)
         return false;
     }
     const size_t window = frame->ring->window;
-    /* The newest bytes of a frame that was delivered are still there. */
+    /* The ring still holds the frame that was delivered. */
     const bool frame_is_sound =
         frame->size == 0 ||
         (frame->size <= window && frame->size <= tmini_ring_unread(frame->ring) &&
@@ -116,7 +114,7 @@ bool packet_is_sound(const tmini_packet_t *packet, const tmini_frame_t *frame)
            (packet->count > 1 || packet->step == 0);
 }
 
-/* How many fields this many packets contain: the fields have the indices 1, 3, 4, 5 and 9 to 13. */
+/* The number of fields in the first `packets` packets: the indices 1, 3, 4, 5 and 9 to 13. */
 static unsigned fields_among(unsigned packets)
 {
     static const uint8_t fields[TMINI_CT_INDICES] = {0, 0, 1, 1, 2, 3, 4, 4, 4, 4, 5, 6, 7, 8};
@@ -166,7 +164,7 @@ static bool is_step(uint8_t code)
     return code >= TMINI_COMMAND_FASTER_TENTH && code <= TMINI_COMMAND_SLOWER_ONE;
 }
 
-/* The events that name operations; none: only time passes. */
+/* The events that name operations; TMINI_EVENT_NONE: there is none. */
 static bool is_operation(uint8_t event)
 {
     return event <= TMINI_EVENT_REBOOTED;
@@ -190,13 +188,12 @@ static uint8_t code_of(uint8_t operation)
     }
 }
 
-/* A frequency is set by steps. */
 static bool steps_frequency(const tmini_command_t *command)
 {
     return command->operation == TMINI_EVENT_FREQUENCY;
 }
 
-/* The reply that is awaited is that to the command sent. */
+/* The awaited reply is the one to the command sent. */
 static bool awaits_its_reply(const tmini_t *lidar)
 {
     const tmini_reply_header_t *const awaited = &lidar->decoder.parser.awaited;
@@ -207,8 +204,8 @@ static bool awaits_its_reply(const tmini_t *lidar)
            awaited->length == reply.length;
 }
 
-/* Which phases an operation has. Also when scanning, and between attempts, the time is kept by
- * TMINI_PHASE_WAITING. */
+/* The operation has this phase. TMINI_PHASE_WAITING also keeps the time while scanning and between
+ * attempts. */
 static bool phase_fits(const tmini_t *lidar)
 {
     const tmini_command_t *const command = &lidar->command;
@@ -270,7 +267,7 @@ static bool state_fits(const tmini_t *lidar)
     }
 }
 
-/* For a while packets do not mean that a lidar scans that should be idle. */
+/* For a while after a failure, packets do not yet mean that an idle lidar scans. */
 static bool pauses_after_failure(const tmini_command_t *command)
 {
     return command->phase == TMINI_PHASE_NONE && command->operation >= TMINI_EVENT_STOPPED &&
@@ -300,7 +297,7 @@ static bool recovery_is_sound(const tmini_recovery_t *recovery)
     return recovery->attempts <= 4;
 }
 
-/* Listening, nothing is sent, and nothing is wanted but to scan. */
+/* When only listening, no operation runs and no frequency is wanted. */
 static bool wish_is_sound(const tmini_t *lidar)
 {
     const uint16_t chz = lidar->wanted_chz;
@@ -308,7 +305,7 @@ static bool wish_is_sound(const tmini_t *lidar)
            (!lidar->is_listen_only || (chz == 0 && lidar->command.operation == 0));
 }
 
-/* Without points no scan is built. If a packet waits to be added, it exists. If the driver has
+/* Without points no scan is built. A packet that waits to be added is sound. If the driver has
  * settled, no event is pending. */
 static bool results_are_sound(const tmini_t *lidar)
 {

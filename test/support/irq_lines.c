@@ -21,7 +21,7 @@ static bool may_run(const irq_line_t *line)
     return line->handler != NULL && !line->disabled && line->priority < irq.level && line->is_up();
 }
 
-/* Of equal priority the first. */
+/* Among equal priorities, the first. */
 static irq_line_t *most_urgent(void)
 {
     irq_line_t *chosen = NULL;

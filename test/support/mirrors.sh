@@ -4,9 +4,9 @@
 
 # Where this machine's own packages come from. To be sourced.
 
-# mirror_of debian|ubuntu: prints the address that the machine's package sources name for it. A
-# mirror of the one often has the other beside it, which is where it is looked for on a machine of
-# the other kind.
+# mirror_of debian|ubuntu: prints the address for it in the machine's package sources. A mirror of
+# Debian often has Ubuntu in the neighbouring folder, and vice versa: if the sources name only the
+# other system, that folder is printed.
 mirror_of() {
     cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null | sed -n '
         s/^URIs: *\([^ ]*\/\)\(debian\|ubuntu\)\/* *$/\1'"$1"'/p

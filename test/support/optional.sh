@@ -3,7 +3,7 @@
 # shellcheck shell=sh
 # shellcheck disable=SC2154 # $root is the sourcing script's
 
-# What the long run of the tests can use besides: compilers, emulators, a browser, a model checker.
+# Optional tools for the long run of the tests: compilers, emulators, a browser, a model checker.
 # To be sourced after environment.sh.
 
 # shellcheck source=test/support/python.sh
@@ -15,7 +15,7 @@ wish_for_fuzzer() {
     [ -z "$version" ] || wish "/usr/share/doc/libclang-rt-$version-dev" "libclang-rt-$version-dev"
 }
 
-# The model checker is not in all systems' packages; that for Debian 12 is fetched below.
+# Not every system has a package of the model checker; the one for Debian 12 is fetched below.
 wish_for_checker() {
     ! apt-cache show --no-all-versions cbmc >/dev/null 2>&1 || wish cbmc cbmc
 }
@@ -25,7 +25,7 @@ fetch_checker() {
         echo "CBMC could not be fetched (why: above): its proofs are skipped."
 }
 
-# The viewer is compiled by Clang, linked by lld, and tried out in a browser.
+# The viewer is compiled by Clang, linked by lld, and tested in a browser.
 wish_for_browser() {
     wish wasm-ld lld
     is_present google-chrome || wish chromium chromium
@@ -81,7 +81,7 @@ wish_for_everything() {
     wish_for_documents
 }
 
-# What is no package of the system.
+# Tools that are not packages of the system.
 prepare_everything() {
     prepare_python_packages "$root/build/labwired" "$root/test/target/esp32c3/requirements.txt"
     prepare_python_packages "$root/build/platformio" \

@@ -13,15 +13,15 @@
 #   install_missing
 #
 # install_missing says what it will install, and why; then it calls apt-get once for all, and fails
-# if something needed is still missing. It does not touch the configured package sources; the only
-# question is sudo's, for a password.
+# if something needed is still missing. It does not touch the configured package sources. Only sudo
+# may ask a question: for a password.
 
 required_packages=
 optional_packages=
 required_checks=
 reason=
 announcement=
-finders= # What else to do about packages when apt's list of them is up to date.
+finders= # Functions to call once apt's package lists are up to date.
 index_is_fresh=false
 
 apt_options="-o DPkg::Lock::Timeout=300 -o APT::Install-Recommends=false"
@@ -38,8 +38,8 @@ have_apt() {
     is_present apt-get
 }
 
-# is_settled COMMAND|FILE: nothing is to be done about it. Where a file lies is only known on
-# systems that have Debian's packages; elsewhere the compiler will report it.
+# is_settled COMMAND|FILE: nothing has to be installed for it. Paths of files are those of Debian's
+# packages; on other systems the compiler will report what is missing.
 is_settled() {
     is_present "$1" && return
     case $1 in
@@ -53,7 +53,7 @@ because() {
     reason=$1
 }
 
-# announce PACKAGE…: a line for each reason.
+# announce PACKAGE…: adds the packages to the line of the current reason.
 announce() {
     case $announcement in
         *"
@@ -109,7 +109,7 @@ quietly() {
     return 1
 }
 
-# Brings apt's list of packages up to date, once; an old list may still do.
+# Brings apt's package lists up to date, once; if that fails, the old ones may still do.
 refresh_index() {
     $index_is_fresh && return
     index_is_fresh=true
@@ -137,7 +137,7 @@ drop_unavailable() {
     optional_packages=$available
 }
 
-# The needed packages must not suffer from trouble with optional ones.
+# An optional package that fails must not prevent the installation of the required ones.
 install_separately() {
     # shellcheck disable=SC2086
     [ -z "$required_packages" ] || quietly apt_get install -y $required_packages || return 1
@@ -161,7 +161,7 @@ install_with_apt() {
     quietly apt_get install -y $required_packages $optional_packages || install_separately
 }
 
-# True when all that is needed is there; reports what is not.
+# Succeeds if everything needed is present; otherwise reports what is missing.
 check_required() {
     missing=
     for item in $required_checks; do
@@ -183,7 +183,6 @@ install_missing() {
     check_required
 }
 
-# What any build of this project takes.
 need_build_tools() {
     because "to build the library and the tool"
     is_present cc || need gcc gcc
@@ -192,7 +191,6 @@ need_build_tools() {
     is_present ninja || need make make
 }
 
-# What the host tool draws with.
 need_drawing() {
     because "to draw with the tool's command plot"
     need pkg-config pkg-config

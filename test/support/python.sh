@@ -2,16 +2,16 @@
 # Copyright (c) 2026 The tmini authors
 # shellcheck shell=sh
 
-# Test tools that are Python packages, each with a requirements.txt that names all of them,
-# with versions and hashes, in a virtual environment of its own. To be sourced after packages.sh.
+# Installs test tools that are Python packages. Each tool has its own virtual environment, and a
+# requirements.txt with the versions and hashes of all packages. To be sourced after packages.sh.
 
-# What it takes to install them: Python with its module venv.
+# They are installed by Python and its module venv.
 wish_for_python() {
     wish python3 python3
     python3 -c 'import ensurepip, venv' 2>/dev/null || wish python3-venv python3-venv
 }
 
-# install_requirements FOLDER REQUIREMENTS: makes the environment unless it is there as required.
+# install_requirements FOLDER REQUIREMENTS: makes the environment unless FOLDER already has it.
 install_requirements() {
     ! cmp -s "$2" "$1/requirements.txt" || return 0
     rm -rf "$1"
@@ -21,7 +21,7 @@ install_requirements() {
         cp "$2" "$1/requirements.txt"
 }
 
-# prepare_python_packages FOLDER REQUIREMENTS: where that fails, tests do without.
+# prepare_python_packages FOLDER REQUIREMENTS: the same; if it fails, tests run without the tool.
 prepare_python_packages() {
     ! cmp -s "$2" "$1/requirements.txt" || return 0
     echo "Installing Python packages in $1"

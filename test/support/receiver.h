@@ -15,11 +15,11 @@
 typedef struct {
     tmini_ring_t ring;
     tmini_parser_t parser;
-    tmini_packet_t packet; /* Open when receiver_next() has returned a packet. */
+    tmini_packet_t packet; /* Valid when receiver_next() has returned a packet. */
     uint8_t *memory;
     size_t size;
     size_t position;   /* Where the DMA writes next. */
-    uint32_t received; /* Bytes that have come, including refused ones. */
+    uint32_t received; /* Bytes fed, including refused ones. */
     bool dma;
 } receiver_t;
 
@@ -27,24 +27,22 @@ typedef struct {
 void receiver_open(receiver_t *receiver, uint8_t *memory, size_t size, uint8_t max_samples);
 void receiver_open_dma(receiver_t *receiver, uint8_t *memory, size_t size, uint8_t max_samples);
 
-/* Lets the ring's indices stand where they would be after `count` bytes. Before the first byte. */
+/* Sets the ring's indices as after `count` bytes. Call it before the first byte. */
 void receiver_age(receiver_t *receiver, size_t count);
 
 /* How many bytes may be fed without loss. */
 size_t receiver_room(const receiver_t *receiver);
 
-/* Bytes come in: through tmini_ring_write(), or as a DMA that publishes its position every quarter
- * of the ring. */
+/* Feeds bytes through tmini_ring_write(), or as a DMA that publishes its position every quarter of
+ * the ring. */
 void receiver_feed(receiver_t *receiver, const uint8_t *bytes, size_t count);
 
 /* tmini_parser_next() and, for a packet, tmini_packet_open(). */
 tmini_frame_type_t receiver_next(receiver_t *receiver);
 
-/* The parser's counters. */
 tmini_parser_counters_t receiver_counters(const receiver_t *receiver);
 
-/* Where the frame delivered last begins, counted from the first byte; not if there were
- * overruns. */
+/* Offset of the last delivered frame from the first byte fed. Not valid after an overrun. */
 size_t receiver_frame_offset(const receiver_t *receiver);
 
 void receiver_abandon(receiver_t *receiver);
@@ -58,7 +56,7 @@ void receiver_await(receiver_t *receiver, uint8_t mode, uint8_t type, uint8_t le
 typedef struct {
     size_t chunk;                     /* Bytes at a time; 0: random, by `random`. */
     random_t *random;                 /* May be NULL if chunk is not 0. */
-    const reference_reply_t *awaited; /* From the beginning; or NULL. */
+    const reference_reply_t *awaited; /* Awaited from the beginning; NULL: none. */
 } receiver_course_t;
 
 /* Feeds the bytes without loss, and asserts that frames, points and counters are those of the

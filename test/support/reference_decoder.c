@@ -173,7 +173,7 @@ reference_counts_t reference_decode(const uint8_t *bytes, size_t size,
     return d.counts;
 }
 
-/* first + index * (clockwise difference) / (LSN - 1), as floor(2x + 1 over 2): halves go up. */
+/* x = first + index * (clockwise difference) / (LSN - 1), rounded as floor((2x + 1) / 2). */
 static uint16_t angle_of(const uint8_t *packet, unsigned index)
 {
     const uint64_t full = 23040;

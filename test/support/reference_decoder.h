@@ -41,7 +41,7 @@ typedef struct {
     uint64_t start_packets;
     uint64_t points;
     uint64_t replies;
-    uint64_t checksum_errors; /* positions with a complete candidate, right but for its checksum */
+    uint64_t checksum_errors; /* complete candidates in which only the checksum is wrong */
     uint64_t bytes;
     uint64_t bytes_in_packets;
     uint64_t bytes_in_replies;
@@ -58,8 +58,8 @@ typedef struct {
 /* Called for every packet and reply, in order. */
 typedef void (*reference_callback_t)(void *context, const reference_item_t *item);
 
-/* Decodes the whole array. What is incomplete at its end is skipped byte by byte and
- * re-examined. `callback` may be NULL. */
+/* Decodes the whole array. An incomplete candidate at its end is skipped byte by byte, and the
+ * bytes after it are examined. `callback` may be NULL. */
 reference_counts_t reference_decode(const uint8_t *bytes, size_t size,
                                     const reference_options_t *options,
                                     reference_callback_t callback, void *context);

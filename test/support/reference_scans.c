@@ -22,7 +22,7 @@ static int last_angle(const reference_item_t *packet)
     return packet->lsn == 1 ? angle(packet->fsa) : angle(packet->lsa);
 }
 
-/* Clockwise from one to the other; from -4 degrees on, because the encoder jitters. */
+/* The clockwise angle between both, from -4 degrees on, because the encoder jitters. */
 static int turn(int from, int to)
 {
     const int clockwise = (to - from + FULL) % FULL;
@@ -30,7 +30,7 @@ static int turn(int from, int to)
     return clockwise > FULL - DEGREES(4) ? clockwise - FULL : clockwise;
 }
 
-/* Skipped between an item and the one before it. */
+/* Bytes skipped between an item and the one before it. */
 static size_t bytes_before(const reference_item_t *items, size_t at)
 {
     return at == 0 ? items[at].offset
@@ -64,8 +64,8 @@ static bool last_start(const reference_item_t *items, size_t at, size_t *start)
     }
 }
 
-/* Follows the scan from its first packet; false if nothing ends it. Its revolution began with
- * `start`. */
+/* Follows the scan from its first packet; false if nothing ends it. `start` is the start packet of
+ * its revolution. */
 static bool follow(const reference_item_t *items, size_t count, size_t start,
                    reference_scan_t *scan)
 {
@@ -89,7 +89,7 @@ static bool follow(const reference_item_t *items, size_t count, size_t start,
         const size_t skipped = bytes_before(items, next);
 
         if (packet->starts_revolution) {
-            /* Before it, one byte may be LastCRC. */
+            /* One byte before a start packet may be LastCRC. */
             scan->gaps += skipped > 1 || ahead > DEGREES(4) ? 1 : 0;
             scan->is_whole =
                 scan->gaps == 0 && began >= FULL - DEGREES(4) && began <= FULL + DEGREES(4);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Which scans a sequence of packets makes, written as directly as possible from docs/design.md ("No
- * complete scan mixes revolutions"). This code sees all packets at once, also later ones; the
+/* Finds the scans in a sequence of packets, written as directly as possible from docs/design.md
+ * ("No complete scan mixes revolutions"). This code sees all packets at once, also later ones. The
  * library, which sees one at a time, is compared with it. */
 
 #ifndef REFERENCE_SCANS_H
@@ -11,17 +11,17 @@
 #include "reference_decoder.h"
 
 typedef struct {
-    size_t first;  /* Its first packet among the items, */
-    size_t end;    /* and the packet that ended it. */
-    size_t points; /* Of all its packets; */
+    size_t first;  /* Index of its first packet among the items. */
+    size_t end;    /* Index of the packet that ended it. */
+    size_t points; /* Of all its packets. */
     size_t packets;
-    size_t gaps;       /* between them, or before the one that ended it, or a lost start packet. */
+    size_t gaps;       /* Before any of its packets or the one that ended it; lost start packets. */
     bool is_whole;     /* The circle is full, without a gap. */
-    uint8_t decihertz; /* From the start packet after it; if that was lost, from the last one. */
+    uint8_t decihertz; /* From the next start packet; if that was lost, from its own. */
 } reference_scan_t;
 
 /* Finds the first scan that begins at items[from] or after it. Returns false if there is none, or
- * nothing ends it. The items are those of one decoding, in order, and nothing was lost before. */
+ * nothing ends it. The items are all those of one decoding, in order, without overruns. */
 bool reference_scan(const reference_item_t *items, size_t count, size_t from,
                     reference_scan_t *scan);
 

@@ -9,7 +9,7 @@
 
 rig_t rig;
 
-/* Expected bytes stay where CMock looks for them when the call comes. */
+/* CMock reads the expected bytes when the call comes, so they must still exist then. */
 #define EXPECTATIONS 16
 static uint8_t expected[EXPECTATIONS][2];
 static unsigned expectations;
@@ -42,7 +42,7 @@ void rig_open(void)
     rig.config.points = rig.points;
     rig.config.max_points = RIG_POINTS;
     rig.timing = tmini_timing_default;
-    rig.timing.max_pause_ms = 0; /* Its revolutions are short, and its clock jumps. */
+    rig.timing.max_pause_ms = 0; /* The rig's turns are short, and its clock jumps. */
     rig.config.timing = &rig.timing;
     rig_init();
 }
@@ -249,10 +249,10 @@ void rig_go_asking_again(void)
 void rig_go_backing_off(void)
 {
     rig_go_asking_again();
-    passes_to(2000, TMINI_EVENT_NONE); /* Given up. */
+    passes_to(2000, TMINI_EVENT_NONE); /* The attempt has failed. */
 }
 
-/* ---- Turns and what they bring ---- */
+/* ---- Turns and their events ---- */
 
 unsigned rig_turn_events(uint8_t health)
 {

@@ -4,9 +4,10 @@
 /* A lidar's driver on a mocked port, with a scripted clock and bytes from the independent encoder:
  * what the driver's unit tests share. A test reads as a story:
  *
- *     begins(tmini_request_info(&rig.lidar));   after sends(GET_INFO): the bytes expected at once
- *     passes(1999);                             time in which nothing happens
- *     rig_feed_info();                          bytes come
+ *     sends(GET_INFO);                          the port expects these bytes
+ *     begins(tmini_request_info(&rig.lidar));   the call succeeds
+ *     passes(1999);                             time passes, nothing happens
+ *     rig_feed_info();                          the reply arrives
  *     polls_to(TMINI_EVENT_INFO);
  */
 
@@ -38,13 +39,13 @@ enum {
 typedef struct {
     tmini_t lidar;
     tmini_config_t config;
-    tmini_timing_t timing; /* The default, but that pauses of the line are not judged. */
+    tmini_timing_t timing; /* The default, except that pauses of the line are not judged. */
     tmini_port_t port;
-    uint32_t now_ms; /* What the port's clock says. */
+    uint32_t now_ms; /* Time of the port's clock. */
     uint8_t rx[RIG_RX_SIZE];
     tmini_point_t points[RIG_POINTS];
-    uint8_t crc;  /* Of the revolution fed last. */
-    bool in_turn; /* There was one, with CT information. */
+    uint8_t crc;  /* Of the turn fed last. */
+    bool in_turn; /* A turn with CT information has begun. */
     uint32_t fed; /* Bytes, since the lidar was set up. */
 } rig_t;
 
@@ -58,13 +59,13 @@ void rig_init(void);
 
 /* ---- The port ---- */
 
-/* The port's next write gets these bytes, and takes `taken` of them. */
+/* The port's next write is expected with these bytes, and accepts `taken` of them. */
 #define sends(code) rig_expect_write(__LINE__, 0xA5, code, 2, 2)
 #define sends_both_taking(code, taken) rig_expect_write(__LINE__, 0xA5, code, 2, taken)
 #define sends_rest_taking(code, taken) rig_expect_write(__LINE__, code, 0, 1, taken)
 void rig_expect_write(unsigned line, uint8_t first, uint8_t second, size_t count, int taken);
 
-/* What was expected so far has been sent. */
+/* All bytes expected so far have been sent. */
 #define was_sent() rig_verify()
 void rig_verify(void);
 
@@ -72,7 +73,7 @@ void rig_verify(void);
 
 #define begins(call) TEST_ASSERT_EQUAL_INT(TMINI_OK, call)
 
-/* The same, and its first two bytes are sent at once. */
+/* The same, and the call sends this command. */
 #define begins_with(code, call) \
     do {                        \
         sends(code);            \
@@ -84,7 +85,7 @@ void rig_verify(void);
 
 #define is_in(state) UNITY_TEST_ASSERT_EQUAL_INT(state, tmini_state(&rig.lidar), __LINE__, "state")
 
-/* The next poll sends this, and reports nothing. */
+/* The next poll sends this command and returns no event. */
 #define polls_and_sends(code)       \
     do {                            \
         sends(code);                \
@@ -103,14 +104,14 @@ void rig_pass(unsigned line, uint32_t ms);
         polls_to(event);     \
     } while (false)
 
-/* The line has been quiet for long enough, and this is sent. */
+/* The line has been quiet for long enough, and this command is sent. */
 #define finds_quiet_and_sends(code)      \
     do {                                 \
         passes_to(50, TMINI_EVENT_NONE); \
         polls_and_sends(code);           \
     } while (false)
 
-/* Polls until there is nothing left to do; returns a bit for each event that came. */
+/* Polls until there is nothing left to do; returns a bit for each event. */
 unsigned rig_drain(void);
 
 #define BIT(event) (1u << (event))
@@ -132,15 +133,15 @@ void rig_feed_packet(uint8_t ct, uint8_t lsn, uint16_t distance_mm);
 void rig_feed_start_packet(uint16_t distance_mm); /* 6.0 Hz. */
 void rig_feed_point_packet(uint16_t distance_mm); /* 4 samples. */
 
-/* A start packet and four point packets, as units send them that have no CT information. */
+/* A start packet and four point packets, as from a unit without CT information. */
 void rig_feed_plain_turn(uint16_t distance_mm);
 
-/* The same from a unit with CT information, which reports this health; with the LastCRC of the turn
- * before. That turn is then over: it is the one that is judged. */
+/* The same from a unit with CT information that reports this health. The LastCRC of the turn before
+ * comes first: that turn is now complete, and is judged. */
 void rig_feed_turn(uint8_t health, uint16_t distance_mm);
 
-/* A turn of either kind comes, 160 ms later. Returns the events that its packets brought, but
- * scans. With CT information a turn is judged when the next one begins. */
+/* Feeds a turn of either kind, 160 ms later. Returns a bit for each event, except for scans. With
+ * CT information a turn is judged when the next one begins. */
 unsigned rig_turn_events(uint8_t health);
 unsigned rig_plain_turn_events(uint16_t distance_mm);
 void rig_plain_turns(unsigned count, uint16_t distance_mm);
@@ -149,7 +150,7 @@ void rig_plain_turns(unsigned count, uint16_t distance_mm);
 
 void rig_go_idle(void);
 
-/* An idle lidar is asked: these two bytes are sent at once. */
+/* The lidar is idle, and the call sends this command. */
 #define is_idle_and_asked(code, call) \
     do {                              \
         rig_go_idle();                \

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A byte stream put together by a test: packets of the independent encoder, replies, garbage. */
+/* A byte stream that a test composes: packets of the independent encoder, replies, garbage. */
 
 #ifndef STREAM_H
 #define STREAM_H
@@ -14,7 +14,7 @@
 typedef struct {
     uint8_t *bytes; /* The caller's. */
     size_t size;
-    size_t capacity; /* What does not fit is left out whole. */
+    size_t capacity; /* An addition that does not fit is left out whole. */
 } stream_t;
 
 /* The sample that stream_add_packet() puts at `index`: 1000 + 7 * index mm, intensity 200 - index,

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The encoder against bytes that the manual and real units are known to send (docs/protocol.md). */
+/* The encoder against known bytes from the manual and from real units (docs/protocol.md). */
 
 #include "encoder.h"
 #include "known_packets.h"
 
 #include "unity.h"
 
-/* Its distances and flags, worked out by hand from S2 and S3. */
+/* The manual's packet: distances and flags worked out by hand from S2 and S3. */
 static const encode_sample_t manual_samples[19] = {
     {11842, 1, 0}, {11819, 1, 0}, {11710, 1, 0}, {11618, 1, 0}, {11158, 1, 0},
     {10992, 1, 0}, {10881, 1, 0}, {10846, 1, 0}, {10829, 1, 0}, {11121, 1, 0},

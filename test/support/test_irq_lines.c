@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The model of interrupt lines that models of boards stand on. */
+/* The model of interrupt lines that the models of boards use. */
 
 #include "irq_lines.h"
 

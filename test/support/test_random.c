@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Seeded randomness and damage: the basis of every randomised test. */
+/* The seeded random numbers and the damage that randomised tests use. */
 
 #include "corrupt.h"
 #include "random.h"
@@ -58,7 +58,7 @@ void test_below_0_and_below_1_are_0(void)
     TEST_ASSERT_EQUAL_UINT32(0, random_below(&dice, 1));
 }
 
-/* Of an exponential distribution 36.8 % lie beyond the mean, 13.5 % beyond twice the mean. */
+/* In an exponential distribution 36.8 % lie beyond the mean, 13.5 % beyond twice the mean. */
 void test_gaps_are_exponentially_distributed(void)
 {
     uint64_t sum = 0;

@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* The reference decoder against values worked out by hand: its counts, and the manual's points.
- * Everything else is compared with the parser in test_differential.c, and with packets in
- * test_angles.c. */
+ * test_differential.c compares everything else with the parser, test_angles.c the angles with
+ * packets. */
 
 #include "known_packets.h"
 #include "reference_decoder.h"

@@ -2,9 +2,9 @@
 # Copyright (c) 2026 The tmini authors
 # shellcheck shell=sh
 
-# Packages of Debian 13 (trixie) for Debian 12, which lacks them. They are fetched from where the
-# machine gets its own packages, through a configuration of apt that exists for this one download:
-# the machine's own stays as it is. To be sourced.
+# Packages of Debian 13 (trixie) for Debian 12, which lacks them. They are fetched from the server
+# of the machine's own packages, with a temporary configuration of apt: the machine's own stays as
+# it is. To be sourced.
 
 # Prints "ID CODENAME" of the system, such as "debian bookworm".
 system_name() {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Unity's and CMock's settings, the same on every machine that runs the unit tests but for where
- * the output goes. Also checks that a machine chosen for a property has that property. */
+/* Unity's and CMock's settings: the same on every machine, except for where the output goes. Also
+ * checks that a machine chosen for a property has that property. */
 
 #ifndef UNITY_CONFIG_H
 #define UNITY_CONFIG_H
@@ -10,7 +10,7 @@
 #include <limits.h>
 #include <stdint.h>
 
-/* 64-bit assertions also where no type of the machine's own is that wide. */
+/* 64-bit assertions also on machines with narrower registers. */
 #define UNITY_SUPPORT_64
 
 #ifdef __AVR__
@@ -21,7 +21,7 @@
 #define UNITY_OUTPUT_CHAR(c) avr_board_put((char)(c))
 #define UNITY_OUTPUT_COMPLETE() avr_board_stop()
 
-/* 8 KB of RAM hold everything, texts included. */
+/* 8 KB of RAM hold everything, including texts, so CMock's memory is small. */
 #define CMOCK_MEM_STATIC
 #define CMOCK_MEM_SIZE 1024
 #define CMOCK_MEM_ALIGN 0
