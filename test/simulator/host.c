@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A pty without client cannot be waited for: how often to look. */
+/* Nothing signals that a client opens the pty, so it is polled at this interval. */
 #define LOOK_MS 10
 
 void host_reset(host_t *host)
@@ -45,7 +45,7 @@ void host_wait(host_t *host, int timeout_ms)
     }
 }
 
-/* Also without a client: one that opened, wrote and closed at once has left something. */
+/* Reads also without a client: one that wrote and closed at once has left bytes. */
 size_t host_read(host_t *host, uint8_t *bytes, size_t max)
 {
     ssize_t count;
@@ -74,7 +74,7 @@ static void send_pending(host_t *host)
         host->pending_count -= (size_t)count;
         memmove(host->pending, host->pending + count, host->pending_count);
     } else if (count < 0 && !is_passing(errno)) {
-        host->pending_count = 0; /* it has gone: update() will notice */
+        host->pending_count = 0; /* the client has gone: update() will notice */
     }
 }
 

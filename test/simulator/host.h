@@ -3,8 +3,8 @@
 
 /*
  * The host's end of tmini-sim: a pseudo-terminal or a TCP socket that serves one client after
- * another. A device keeps on sending whether or not anything listens: without a client bytes are
- * discarded; a slow client gets some seconds' worth of buffer, then loses bytes, counted.
+ * another. The device sends even if nothing listens: without a client, bytes are discarded. A slow
+ * client has some seconds of buffer; then it loses bytes, which are counted.
  */
 
 #ifndef HOST_H
@@ -19,7 +19,7 @@
 typedef struct host host_t;
 
 struct host {
-    bool (*update)(host_t *host); /* notices clients that come and go; returns: there is one */
+    bool (*update)(host_t *host); /* notices clients that come and go; true: there is one */
     int listener;                 /* TCP only; -1: none */
     int fd;                       /* the pty's master, or the TCP client; -1: none */
     char address[64];             /* path of the slave, or 127.0.0.1:PORT */
@@ -30,22 +30,22 @@ struct host {
     uint8_t pending[HOST_PENDING];
 };
 
-/* Ready for clients at `address`. False after a message on standard error. */
+/* Makes the host ready for clients at `address`. On failure prints a message and returns false. */
 bool host_open_pty(host_t *host);
 bool host_open_tcp(host_t *host, uint16_t port); /* loopback only; 0: any free port */
 
-/* Waits until the client has sent something, or until the time is over. */
+/* Waits until a client has sent something, or until the timeout. */
 void host_wait(host_t *host, int timeout_ms);
 
-/* What the client has sent, without waiting. */
+/* Reads what the client has sent, without waiting. */
 size_t host_read(host_t *host, uint8_t *bytes, size_t max);
 
-/* Sends now or as soon as the client takes it, without waiting. */
+/* Sends without waiting: now, or later when the client can take it. */
 void host_write(host_t *host, const uint8_t *bytes, size_t count);
 
 void host_close(host_t *host);
 
-/* For the implementations: the common start, and the end of a client. */
+/* For the two implementations: common initialisation, and the end of a client. */
 void host_reset(host_t *host);
 void host_forget_client(host_t *host);
 

@@ -2,9 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /*
- * A pseudo-terminal as the host's end. The slave is raw from the start (no echo, no line
- * discipline), and again whenever a client has left, for the next one. We do not keep it open: its
- * master then says "hung up" exactly while there is no client.
+ * A pseudo-terminal as the host's end. The slave is made raw (no echo, no line discipline) at the
+ * start and whenever a client has left. It is not kept open here, so that poll() reports "hung up"
+ * on the master exactly while there is no client.
  */
 
 #define _XOPEN_SOURCE 600
@@ -38,7 +38,8 @@ static bool make_raw(int fd)
     return tcsetattr(fd, TCSANOW, &settings) == 0;
 }
 
-/* Raw, and without what an earlier client left unread. What a new one has already sent stays. */
+/* Makes it raw and discards what an earlier client left unread. What a new client has already sent
+ * stays. */
 static bool prepare_slave(const char *path)
 {
     const int slave = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK);

@@ -3,8 +3,8 @@
 
 /*
  * A TCP socket on the loopback interface as the host's end. The next client waits in the
- * listener's queue until the present one has gone. One that has only ended its own sending still
- * gets the stream, until it goes or another comes.
+ * listener's queue until the present one has gone. A client that has only shut down its sending
+ * still gets the stream, until it goes or another comes.
  */
 
 #define _XOPEN_SOURCE 600

@@ -9,7 +9,7 @@
 
 #define PLACE(member) offsetof(options_t, member)
 
-/* A number times `scale` becomes the member, of this many bytes. */
+/* Key of a number that, multiplied by `scale`, goes into the member of `size` bytes at `place`. */
 typedef struct {
     const char *key;
     size_t place;
@@ -43,7 +43,7 @@ static const number_t numbers[] = {
     NUMBER("flagged_permille", device.flagged_permille, 1, 1000),
 };
 
-/* One of two words sets a switch; any other clears it. */
+/* The word sets the switch; any other value clears it. */
 static const struct {
     const char *key;
     const char *word;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A lidar like the one that `tmini survey` has seen: its report's lines of `key = value` as the
- * simulated lidar's settings. */
+/* Makes the simulated lidar like a real one: reads its settings from the lines `key = value` of a
+ * report of `tmini survey`. */
 
 #ifndef LIKE_H
 #define LIKE_H

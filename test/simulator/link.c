@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Room for a whole frame, every byte of it with another one inserted. */
+/* Room for a whole frame with a byte inserted before each of its bytes. */
 #define ROOM_FOR_A_FRAME (2u * SIM_FRAME_MAX)
 
 static const char *const kind_names[SIM_LINK_KINDS] = {"drop",  "flip", "insert", "burst",
@@ -68,7 +68,7 @@ static void find_nearest_byte(sim_link_t *link)
     }
 }
 
-/* The kind's next fault after this byte or moment. */
+/* Plans the next fault of this kind. */
 static void schedule(sim_link_t *link, sim_link_kind_t kind, uint64_t from_us)
 {
     const bool never = link->config.mean_gap[kind] == 0u;
@@ -140,7 +140,7 @@ static void close_packet(sim_link_t *link, bool complete)
     }
 }
 
-/* The device may be switched off before the packet ends: its bytes are kept for the report. */
+/* Copies the packet's bytes: they are needed even if the device is switched off meanwhile. */
 static void open_packet(sim_link_t *link, const sim_packet_t *sent)
 {
     link->packet_open = true;
@@ -163,7 +163,7 @@ static void deliver(sim_link_t *link, const uint8_t *bytes, size_t count)
     link->produced += count;
 }
 
-/* Never the same byte: "hit" then always means changed. */
+/* Never the same byte, so that a byte that is hit always changes. */
 static uint8_t spoiled(sim_link_t *link, uint8_t byte)
 {
     return (uint8_t)(byte ^ random_between(&link->random, 1, 255));
@@ -181,7 +181,7 @@ static bool meets(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
     return true;
 }
 
-/* Unlike the byte that follows, so that the packet around it is really broken. */
+/* Differs from the following byte, so that the packet is really broken. */
 static void insert_before(sim_link_t *link, uint8_t following)
 {
     const uint8_t byte = spoiled(link, following);
@@ -196,7 +196,7 @@ static void count_burst_down(sim_link_t *link, uint64_t at_us)
     }
 }
 
-/* LastCRC, in front of a start packet, is not part of it. */
+/* LastCRC comes before a start packet in the same frame, but is not part of the packet. */
 static void pass_byte(sim_link_t *link, const sim_run_t *run, size_t i)
 {
     const size_t place = run->offset + i;
@@ -277,7 +277,7 @@ static uint64_t draw_amount(sim_link_t *link, sim_link_kind_t kind)
     return random_between(&link->random, link->config.shortest[kind], link->config.longest[kind]);
 }
 
-/* How much may have been delivered by now: after a stall, as much as the line can carry. */
+/* How many bytes may have been delivered by now: after a stall, as many as the line can carry. */
 static uint64_t delivery_limit(const sim_link_t *link, uint64_t now_us)
 {
     uint64_t limit = link->held_from;
@@ -295,7 +295,7 @@ static void begin_stall(sim_link_t *link, uint64_t end_us, uint64_t at_us)
 {
     const uint64_t limit = delivery_limit(link, at_us);
 
-    /* `at_us` may lie in the past: what has been delivered since is not taken back. */
+    /* `at_us` may lie in the past: bytes delivered since then cannot be held back. */
     link->held_from = limit > link->delivered ? limit : link->delivered;
     link->release_us = end_us;
     link->throttled = true;
@@ -376,7 +376,8 @@ static bool is_under_way(const sim_link_t *link, sim_link_kind_t kind)
     }
 }
 
-/* A silent line has no bytes to spoil, and one without power nothing at all. */
+/* On a silent line a burst or a cut has no bytes to damage; without power no fault has an
+ * effect. */
 static bool has_an_effect(const sim_link_t *link, sim_link_kind_t kind)
 {
     const sim_mode_t mode = sim_mode(link->sim);
@@ -420,8 +421,8 @@ static void happen(sim_link_t *link, uint64_t at_us)
     }
 }
 
-/* One step towards now: a run of bytes, or the beginning or end of a fault. False: there is
- * nothing more by now, or no room for it until the host reads. */
+/* One step towards now: a run of bytes, or the beginning or end of a fault. False: nothing more
+ * happens until now, or there is no room until the host reads. */
 static bool pass_next(sim_link_t *link, uint64_t now_us)
 {
     const uint64_t event_us = next_event_us(link);
@@ -464,7 +465,7 @@ static size_t hand_over(sim_link_t *link, uint64_t now_us, uint8_t *out, size_t 
     return count;
 }
 
-/* A long time may have passed since the last call: in portions that the backlog can hold. */
+/* A long time may have passed since the last call, so it works in portions that fit the backlog. */
 size_t sim_link_read(sim_link_t *link, uint64_t now_us, uint8_t *out, size_t max)
 {
     size_t count = 0;

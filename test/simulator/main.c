@@ -20,8 +20,8 @@
 
 #define EXIT_WRONG_USAGE 2
 
-/* How long bytes are collected before they are written, as an adapter does (so that many simulated
- * lidars can run on one computer); and the longest sleep when nothing is sent. */
+/* Bytes are collected this long before they are written, as a USB adapter does, so that many
+ * simulated lidars can run on one computer. And the longest sleep when nothing is sent. */
 #define TICK_MS 8
 #define LONGEST_SLEEP_MS 500
 
@@ -46,7 +46,7 @@ static void catch_signals(void)
     action.sa_handler = request_stop;
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
-    action.sa_handler = SIG_IGN; /* a client that goes is not our end */
+    action.sa_handler = SIG_IGN; /* a client that disconnects must not end this program */
     sigaction(SIGPIPE, &action, NULL);
 }
 
@@ -65,7 +65,7 @@ static uint64_t end_us(const options_t *options)
 
 /* ---- In real time ---- */
 
-/* Everything both ways up to now. */
+/* Passes on the bytes of both directions up to now. */
 static void exchange(uint64_t now_us)
 {
     uint8_t bytes[4096];
@@ -166,7 +166,7 @@ static void answer(uint64_t now_us)
     fflush(stdout);
 }
 
-/* Until the input ends. */
+/* Runs until the input ends; returns the last time. */
 static uint64_t serve_lines(void)
 {
     char line[1024];
@@ -198,7 +198,7 @@ static int run_by_lines(const options_t *options)
 
 /* ---- In virtual time ---- */
 
-/* The stream from the start command on, its reply included. */
+/* Records the stream from the start command on, including its reply. */
 static bool record(FILE *file, uint64_t until_us)
 {
     static const uint8_t start[2] = {0xA5, SIM_COMMAND_START};

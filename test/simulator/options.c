@@ -14,12 +14,12 @@
 #include <string.h>
 
 typedef struct {
-    char letter; /* also a short option; 0: only a long one */
+    char letter; /* its short form; 0: none */
     const char *name;
-    const char *value; /* what the value is called in the help; NULL: it takes none */
+    const char *value; /* name of its value in the help; NULL: it takes none */
     const char *help;
-    bool (*set)(options_t *options, const char *value); /* false: not a good value */
-    size_t place; /* if `set` is NULL: of a bool that becomes true, or of the value as text */
+    bool (*set)(options_t *options, const char *value); /* false: invalid value */
+    size_t place; /* if `set` is NULL: offset of the bool or string that is set */
 } option_t;
 
 #define PLACE(member) offsetof(options_t, member)
@@ -31,7 +31,7 @@ static bool set_no_ct(options_t *options, const char *value)
     return true;
 }
 
-/* The whole text, a number in low..high. */
+/* The whole text must be a number in low..high. */
 static bool parse_number(const char *text, double low, double high, double *number)
 {
     char *end;
@@ -65,7 +65,7 @@ static bool set_frequency(options_t *options, const char *value)
     return true;
 }
 
-/* One digit each, as on the units' labels. */
+/* Major and minor have one digit each, as on the units' labels. */
 static bool set_firmware(options_t *options, const char *value)
 {
     encode_information_t *const information = &options->device.information;
@@ -96,7 +96,7 @@ static bool set_beginning(options_t *options, const char *value)
     return device->beginning != SIM_BEGINS_ANYWHERE || strcmp(value, "anywhere") == 0;
 }
 
-/* The six bits of section 4, also as 0x... */
+/* The six bits of section 4, decimal or hexadecimal (0x...). */
 static bool set_health(options_t *options, const char *value)
 {
     char *end;
@@ -157,7 +157,7 @@ static sim_link_kind_t kind_before(const char *value, const char *equals)
     return sim_link_kind_named(name);
 }
 
-/* A probability per byte, or events per second; the link takes the mean gap of either. */
+/* The value is a probability per byte, or events per second; the link needs its inverse. */
 static bool set_fault(options_t *options, const char *value)
 {
     const char *equals = strchr(value, '=');
@@ -285,8 +285,8 @@ static bool is_consistent(const options_t *options)
     return true;
 }
 
-/* For getopt_long(): the short options, after ":", which asks for silence about errors; and the
- * long ones, each returning its place in the table, beyond all characters. */
+/* Lists the options for getopt_long(). The short ones begin with ":", which suppresses its error
+ * messages. A long one returns BEYOND (above all characters) plus its index in the table. */
 #define BEYOND 256
 
 static void list_options(char *short_ones, struct option *long_ones)

@@ -15,7 +15,7 @@ typedef struct {
     bool tcp;
     uint16_t tcp_port; /* 0: any free one */
     bool lines;
-    const char *write_path; /* NULL: not asked for, as all paths below; "-": standard output */
+    const char *write_path; /* of all paths: NULL: none; "-": standard output */
     const char *log_path;
     const char *truth_path;
     double seconds; /* of virtual time; 0: without end */
@@ -27,7 +27,7 @@ typedef struct {
     sim_link_config_t link;
 } options_t;
 
-/* False after having said on standard error what is wrong and what to do. */
+/* If the arguments are wrong, prints what to do on standard error and returns false. */
 bool options_parse(options_t *options, int argc, char **argv);
 
 void options_print_help(void);

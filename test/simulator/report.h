@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What tmini-sim writes down: the log, and the truth about every sample sent. */
+/* The files that tmini-sim writes: a log, and the true value of every sample sent. */
 
 #ifndef REPORT_H
 #define REPORT_H
@@ -17,12 +17,12 @@ typedef struct {
     const sim_link_t *link;
 } report_t;
 
-/* Opens what is asked for (NULL: nothing, "-": standard output) and observes device and link.
- * False after a message on standard error. */
+/* Opens the files (NULL: none, "-": standard output) and observes device and link. On failure
+ * prints a message and returns false. */
 bool report_open(report_t *report, const char *log_path, const char *truth_path, sim_t *sim,
                  sim_link_t *link);
 
-/* Writes the totals. False, after a message, if not all could be written. */
+/* Writes the totals. If writing has failed, prints a message and returns false. */
 bool report_close(report_t *report, uint64_t now_us, uint64_t lost_by_host);
 
 #endif

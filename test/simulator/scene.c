@@ -64,7 +64,7 @@ static int64_t sine(uint32_t angle_q6)
     return quarter < 2u ? value : -value;
 }
 
-/* How far along the ray (x, y) the wall is hit. */
+/* The distance at which the ray in direction (x, y) hits the wall, or NOTHING. */
 static int64_t distance_to_wall(const wall_t *wall, int64_t x, int64_t y)
 {
     const int64_t towards = wall->across ? y : x;

@@ -2,9 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /*
- * What the simulated lidar sees: an ideal room of 5 m x 4 m with boxes, a pillar, a doorway into a
- * corridor and a window that gives no range; as a table of distances by angle. Integer arithmetic
- * only, so that every machine sees the same room to the millimetre.
+ * The room around the simulated lidar: 5 m x 4 m, with boxes, a pillar, a doorway into a corridor
+ * and a window that gives no range, as a table of distances by angle. Integer arithmetic only, so
+ * that every machine computes the same distances.
  */
 
 #ifndef SCENE_H
@@ -25,7 +25,7 @@ typedef struct {
 void sim_scene_build(sim_scene_t *scene);
 
 /* Places an obstacle: `width_q6` wide, centred on `angle_q6` (0..23039, 1/64 degree), at
- * `distance_mm`. Nearer things still hide it. */
+ * `distance_mm`. Nearer objects hide it. */
 void sim_scene_place(sim_scene_t *scene, uint16_t angle_q6, uint16_t width_q6,
                      uint16_t distance_mm);
 

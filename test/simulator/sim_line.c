@@ -116,8 +116,8 @@ bool sim_line_take(sim_line_t *line, uint64_t now_us, size_t max, sim_run_t *run
     return true;
 }
 
-/* A frame of which no byte has been sent is removed. A frame that has been sent in part ends there;
- * its packet's description keeps the intended length. */
+/* A frame that has been sent in part ends here, but its packet's description keeps the intended
+ * length. Frames of which no byte has been sent are removed. */
 void sim_line_cut(sim_line_t *line, uint64_t now_us)
 {
     sim_frame_t *frame = sim_line_front(line);

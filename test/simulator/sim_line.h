@@ -20,25 +20,25 @@
 
 /* One packet as it was sent: the truth that tests compare with. */
 typedef struct {
-    const uint8_t *bytes; /* LastCRC not included; valid during the call or until the next one */
+    const uint8_t *bytes; /* without LastCRC; valid during the callback or until the next call */
     uint16_t length;
     uint32_t number;     /* of the packet since sim_init(), from 0 */
     uint32_t revolution; /* start packets so far, this one included */
     bool starts_revolution;
-    bool is_of_partial; /* its revolution began elsewhere than at the start packets' place */
-    uint64_t position;  /* of its first byte in all that the device has sent */
+    bool is_of_partial; /* its revolution did not begin at the start packet's usual angle */
+    uint64_t position;  /* of its first byte in all bytes sent */
 } sim_packet_t;
 
 /* Bytes of one frame, back to back on the wire. */
 typedef struct {
     const uint8_t *bytes;
     size_t length;
-    size_t offset; /* of the first of them in its frame */
+    size_t offset; /* of the first byte in its frame */
     size_t frame_length;
     size_t packet_at;           /* where the packet begins in the frame: 1 after a LastCRC */
     const sim_packet_t *packet; /* NULL in a reply */
     uint64_t start_us;          /* when the frame's first bit went on the line */
-    bool completes;             /* nothing more comes of this frame, and nothing was cut off */
+    bool completes;             /* the frame ends with this run and was not cut off */
 } sim_run_t;
 
 typedef struct {
@@ -56,25 +56,26 @@ typedef struct {
     sim_frame_t frames[SIM_LINE_FRAMES];
     uint32_t first;
     uint32_t count;
-    uint64_t free_us; /* when the line has sent all that is queued */
+    uint64_t free_us; /* when all queued bytes have been sent */
     uint64_t sent;    /* bytes taken so far */
     uint32_t lost;    /* frames that found the queue full */
 } sim_line_t;
 
-/* A clean frame to fill in, at the queue's end; NULL, counted, when the queue is full. */
+/* Returns an empty frame at the queue's end to fill in. If the queue is full, counts a lost frame
+ * and returns NULL. */
 sim_frame_t *sim_line_open(sim_line_t *line);
 
 /* Queues the frame just filled in. */
 void sim_line_send(sim_line_t *line, uint64_t now_us);
 
-/* The front frame, or NULL. Drops frames that have been taken completely. */
+/* The first frame of the queue, or NULL. Removes frames that have been taken completely. */
 sim_frame_t *sim_line_front(sim_line_t *line);
 
-/* Takes the front frame's bytes that have left by `now_us`, at most `max`; false if there are
+/* Takes at most `max` of the first frame's bytes that have left by `now_us`; false if there are
  * none. */
 bool sim_line_take(sim_line_t *line, uint64_t now_us, size_t max, sim_run_t *run);
 
-/* Power fails: only what has left by now has left. */
+/* Power fails: bytes that have not left by now are lost. */
 void sim_line_cut(sim_line_t *line, uint64_t now_us);
 
 /* When byte `offset` of a frame that began at `start_us` has left completely. */

@@ -7,7 +7,7 @@
 #define SAMPLE_US 250u  /* section 1: 4000 samples per second */
 #define FULL_PACKET 40u /* section 9.6, or fewer by configuration */
 #define SPEED_PER_CHZ 1000u
-#define HAIR_Q6 7u /* section 9.6: 0.266 - 0.156 degrees */
+#define LONE_STEP_BACK_Q6 7u /* FSA - LSA in section 9.6: 0.266 - 0.156 degrees */
 
 static uint32_t set_speed(const sim_t *sim)
 {
@@ -19,7 +19,8 @@ static bool frozen(const sim_t *sim)
     return sim->rotor_blocked && !sim->config.blocked_sends_starts;
 }
 
-/* speed / 4000 Hz of a full turn: speed * FULL_TURN_Q16 / (4000 * 10^5), reduced. */
+/* The angle per sample, at 4000 Hz: speed * FULL_TURN_Q16 / (4000 * 10^5), as a reduced
+ * fraction. */
 static uint32_t step_of(uint32_t speed)
 {
     return (uint32_t)((uint64_t)speed * 294912u / 78125u);
@@ -33,7 +34,7 @@ static uint32_t approach(uint32_t from, uint32_t to, uint32_t most)
     return from - to > most ? from - most : to;
 }
 
-/* The speed follows the set frequency as fast as the spin-up goes. */
+/* The speed approaches the set frequency no faster than during spin-up. */
 static void turn_rotor(sim_t *sim, uint32_t samples)
 {
     sim_rotor_t *rotor = &sim->rotor;
@@ -46,7 +47,7 @@ static void turn_rotor(sim_t *sim, uint32_t samples)
     rotor->step = frozen(sim) ? 0u : step_of(rotor->speed);
 }
 
-/* This revolution's wobble: some permille either way. */
+/* This revolution's deviation in speed, in either direction. */
 static int32_t draw_wobble(sim_t *sim)
 {
     const uint32_t most = set_speed(sim) / 1000u * sim->config.wobble_permille;
@@ -69,7 +70,7 @@ static bool happens(sim_t *sim, uint16_t permille)
     return permille != 0u && random_below(&sim->random, 1000) < permille;
 }
 
-/* Section 9.6: full packets, a short last one, now and then one with a single sample. */
+/* Section 9.6: full packets, a short last one, and sometimes one with a single sample. */
 static uint32_t draw_packet_samples(sim_t *sim)
 {
     const uint32_t left = samples_to_full_turn(sim);
@@ -96,7 +97,7 @@ static uint32_t decimal(const uint8_t *digits, unsigned count)
     return value;
 }
 
-/* Section 7: the serial number is the date and a number; section 9.5: it may not be a date. */
+/* The serial number begins with a date (section 7); on some units it does not (section 9.5). */
 static void prepare_turn_information(sim_t *sim)
 {
     const encode_information_t *information = &sim->config.information;
@@ -113,8 +114,8 @@ static void prepare_turn_information(sim_t *sim)
     turn->serial = decimal(information->serial + 8, 8);
 }
 
-/* The rotor's place at the start is random unless configured, so the first revolution is a partial
- * one. */
+/* The rotor's angle at the start is random unless configured, so the first revolution is
+ * partial. */
 static uint32_t first_phase(sim_t *sim)
 {
     const uint32_t chance = random_below(&sim->random, FULL_TURN_Q16);
@@ -222,7 +223,7 @@ static void measure_all(sim_t *sim, encode_sample_t *samples)
     }
 }
 
-/* 0..2 * jitter: the same amount is subtracted from all angles of the device. */
+/* In 0..2 * jitter; set_angles() subtracts the jitter again. */
 static uint32_t draw_jitter(sim_t *sim)
 {
     const uint32_t most = frozen(sim) ? 0u : sim->config.angle_jitter_q6;
@@ -230,7 +231,8 @@ static uint32_t draw_jitter(sim_t *sim)
     return random_between(&sim->random, 0, 2u * most);
 }
 
-/* Both angles with jitter, last not before first: the clockwise difference would be a full turn. */
+/* Both angles have jitter, but LSA must not be less than FSA: that would mean almost a full
+ * turn. */
 static void set_angles(sim_t *sim, encode_packet_t *packet)
 {
     const sim_rotor_t *rotor = &sim->rotor;
@@ -241,7 +243,7 @@ static void set_angles(sim_t *sim, encode_packet_t *packet)
     uint32_t last = zero + ((rotor->phase + swept) >> 16) + draw_jitter(sim);
 
     if (rotor->planned == 1u) {
-        last = rotor->at_start ? first : first - HAIR_Q6;
+        last = rotor->at_start ? first : first - LONE_STEP_BACK_Q6;
     } else if (last < first) {
         last = first;
     }
@@ -249,7 +251,7 @@ static void set_angles(sim_t *sim, encode_packet_t *packet)
     packet->last_q6 = (uint16_t)(last % ENCODE_FULL_TURN_Q6);
 }
 
-/* The previous revolution's frequency (section 9.8), or the present speed if there was none. */
+/* The previous revolution's frequency (section 9.8); if there was none, the present speed. */
 static uint16_t measured_frequency_dhz(const sim_rotor_t *rotor)
 {
     uint32_t dhz = rotor->speed / (10u * SPEED_PER_CHZ);
@@ -260,8 +262,8 @@ static uint16_t measured_frequency_dhz(const sim_rotor_t *rotor)
     return (uint16_t)(dhz < 127u ? dhz : 127u);
 }
 
-/* Section 8: data fault when a whole revolution had no range; a blocked rotor, whose laser is
- * dark, shows the encoder fault instead. */
+/* Section 8: a whole revolution without a range is a data fault. When the rotor is blocked, the
+ * laser is dark and the device reports the encoder fault instead. */
 static void begin_revolution(sim_t *sim)
 {
     sim_rotor_t *rotor = &sim->rotor;
@@ -279,7 +281,7 @@ static void begin_revolution(sim_t *sim)
     sim->revolution++;
 }
 
-/* Point packets before the first start packet have no index, and carry nothing. */
+/* Point packets before the first start packet have no index and no CT information. */
 static uint8_t next_ct(sim_t *sim)
 {
     sim_rotor_t *rotor = &sim->rotor;
@@ -291,7 +293,7 @@ static uint8_t next_ct(sim_t *sim)
     return encode_ct(&rotor->turn, rotor->index);
 }
 
-/* LastCRC closes the revolution before; ahead of the first one there is nothing to close. */
+/* LastCRC follows a complete revolution, so the first start packet has none before it. */
 static uint8_t add_last_crc(const sim_t *sim, sim_frame_t *frame)
 {
     if (!sim->rotor.at_start || !sim->rotor.in_turn || !sim->config.ct_information) {

@@ -11,15 +11,15 @@
 
 #include "simulator.h"
 
-/* Begins to turn from near standstill; the first samples are taken from `at_us` on. */
+/* Starts the spin-up; samples are taken from `at_us` on. */
 void sim_rotor_start(sim_t *sim, uint64_t at_us);
 
-/* Turns on at the present speed after it had been blocked. */
+/* Spins up again after having been blocked. */
 void sim_rotor_release(sim_t *sim);
 
 void sim_rotor_stop(sim_t *sim);
 
-/* Whether samples are being taken now: not before the first packet's. */
+/* Whether samples are being taken: true from the first packet's on. */
 bool sim_rotor_measures(const sim_t *sim);
 
 /* Sends the packet that is due now and plans the next one. */

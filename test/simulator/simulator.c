@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Modes, commands, replies and time; what turns and measures is in sim_rotor.c, what paces the
- * bytes in sim_line.c. */
+/* Modes, commands, replies and time. sim_rotor.c turns and measures, sim_line.c times the bytes. */
 
 #include "simulator.h"
 
@@ -81,7 +80,7 @@ void sim_observe(sim_t *sim, const sim_observer_t *observer)
 
 /* ---- Replies ---- */
 
-/* When the reply to a command that came now is due: replies never overtake each other. */
+/* When the reply to a command that arrives now is due: never before an earlier reply. */
 static uint64_t reply_due_us(sim_t *sim)
 {
     uint64_t due = sim->now_us + ms(sim->config.reply_latency_ms) + ms(sim->extra_latency_ms);
@@ -95,7 +94,7 @@ static uint64_t reply_due_us(sim_t *sim)
     return due;
 }
 
-/* Returns when the reply is due, whether it will be sent or is lost. */
+/* Returns when the reply is due, even if it is lost. */
 static uint64_t answer(sim_t *sim, const uint8_t *bytes, size_t length)
 {
     const uint64_t due = reply_due_us(sim);
@@ -118,7 +117,7 @@ static uint64_t next_reply_us(const sim_t *sim)
     return sim->reply_count == 0u ? SIM_NEVER : sim->replies[sim->first_reply].due_us;
 }
 
-/* While scanning it lands between two packets, as on the real device (section 2). */
+/* While scanning, the reply comes between two packets, as on the real device (section 2). */
 static void send_reply(sim_t *sim)
 {
     const sim_reply_t *reply = &sim->replies[sim->first_reply];
@@ -140,7 +139,7 @@ static bool is_fatal(const sim_t *sim)
     return (sim_health(sim) & sim->config.fatal_health) != 0u;
 }
 
-/* In the tail of a stop the stream simply goes on; while scanning nothing changes. */
+/* Also valid while scanning, and in the tail after a stop, where the stream then goes on. */
 static void start(sim_t *sim)
 {
     uint8_t reply[ENCODE_REPLY_MAX];
@@ -189,7 +188,7 @@ static void answer_information(sim_t *sim)
     answer(sim, reply, length);
 }
 
-/* The error code's values are undisclosed (section 4): the faulty bits again will do. */
+/* The values of the error code are undisclosed (section 4): it repeats the status. */
 static void answer_health(sim_t *sim)
 {
     const uint8_t status = sim_health(sim);
@@ -199,7 +198,7 @@ static void answer_health(sim_t *sim)
     answer(sim, reply, length);
 }
 
-/* Undocumented: type 0x10, four zero bytes, whatever they mean. */
+/* Undocumented: type 0x10, four zero bytes of unknown meaning. */
 static void answer_undocumented_98(sim_t *sim)
 {
     static const uint8_t content[4] = {0, 0, 0, 0};
@@ -223,7 +222,6 @@ static void step_frequency(sim_t *sim, int step_chz)
     answer(sim, reply, length);
 }
 
-/* All that is not burnt in is lost: the set frequency too. */
 static void reset(sim_t *sim, sim_mode_t mode, uint64_t due_us)
 {
     sim_line_cut(&sim->line, sim->now_us);
@@ -283,7 +281,7 @@ static bool obey(sim_t *sim, uint8_t code)
     }
 }
 
-/* The manual's rule (section 2): while scanning, stop and nothing else. */
+/* The manual's rule (section 2): while scanning, only stop is allowed. */
 static void count_command(sim_t *sim, uint8_t code, sim_mode_t mode)
 {
     sim->counts.commands++;
@@ -337,7 +335,7 @@ static uint64_t next_event_us(const sim_t *sim)
     return earlier(sim->mode_due_us, earlier(next_reply_us(sim), sim->rotor.due_us));
 }
 
-/* Does what is due next, if that is not after `until_us`. */
+/* Processes the next event, unless it is after `until_us`. */
 static bool step(sim_t *sim, uint64_t until_us)
 {
     const uint64_t event_us = next_event_us(sim);
@@ -393,7 +391,7 @@ static void note_sent(sim_t *sim, const sim_run_t *run)
     }
 }
 
-/* Frames are made one at a time, when the line is free for them: any jump of time is fine. */
+/* Makes one frame at a time, when the line is free for it, so any jump of time is handled. */
 static bool take_run(sim_t *sim, uint64_t now_us, size_t max, sim_run_t *run)
 {
     while (sim_line_front(&sim->line) == NULL && step(sim, now_us)) {
@@ -446,7 +444,7 @@ void sim_power(sim_t *sim, bool on, uint64_t now_us)
 
 /* ---- What happens to the device ---- */
 
-/* Section 2: the device shuts its ranging unit off by itself. */
+/* Section 2: the device itself switches its ranging unit off. */
 static void shut_off_if_fatal(sim_t *sim)
 {
     if (is_fatal(sim) && (sim->mode == SIM_SCANNING || sim->mode == SIM_STOPPING)) {
@@ -495,7 +493,7 @@ void sim_lose_next_reply(sim_t *sim)
     sim->lose_reply = true;
 }
 
-/* ---- Questions ---- */
+/* ---- Queries ---- */
 
 sim_mode_t sim_mode(const sim_t *sim)
 {

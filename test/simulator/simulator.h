@@ -7,11 +7,12 @@
  * shared with lib/. Use:
  *
  *     sim_init(&sim, &config);                        idle at time 0
- *     sim_receive(&sim, bytes, count, now_us);        the host has sent something
+ *     sim_receive(&sim, bytes, count, now_us);        bytes from the host
  *     count = sim_transmit(&sim, now_us, out, max);   what has left the device by now
  *
- * Time never runs backwards. A user that takes nothing for more than about 100 ms of streaming
- * while it sends commands loses whole frames (`lost_frames`); otherwise frames are made on demand.
+ * Time never runs backwards. Frames are made when the user takes them, and when it sends commands.
+ * If it takes nothing for more than about 100 ms of streaming and sends commands, whole frames are
+ * lost (sim_lost_frames()).
  */
 
 #ifndef SIMULATOR_H
@@ -57,46 +58,45 @@ typedef enum {
     SIM_IDLE,     /* section 2 */
     SIM_SCANNING, /* section 2; from the start command on */
     SIM_STOPPING, /* the stream's tail after a stop command (section 9.10) */
-    SIM_FAULT     /* section 2's stop mode: no stream until the fault is gone and start comes */
+    SIM_FAULT     /* section 2's stop mode: no stream until the fault is gone and start is sent */
 } sim_mode_t;
 
 /* How the first packets after a start look; real units do all three (section 9.8). */
 typedef enum {
-    SIM_BEGINS_ANYWHERE,     /* the rotor stands anywhere; the first start packet is at its place */
-    SIM_BEGINS_UNMARKED,     /* just before the start packet's place, which it passes without one */
-    SIM_BEGINS_WITH_A_START, /* anywhere, and the very first packet is a start packet */
+    SIM_BEGINS_ANYWHERE,     /* at any angle; the first start packet is at the usual angle */
+    SIM_BEGINS_UNMARKED,     /* the usual angle is passed once without one */
+    SIM_BEGINS_WITH_A_START, /* at any angle, and the very first packet is a start packet */
 } sim_beginning_t;
 
 typedef struct {
     uint64_t seed;
     bool ct_information;        /* false: no LastCRC, CT 0 in point packets (section 9.1) */
     uint16_t frequency_chz;     /* set frequency after power-up, 0.01 Hz */
-    uint16_t min_frequency_chz; /* a step beyond a limit changes nothing, and says so */
+    uint16_t min_frequency_chz; /* a step beyond a limit changes nothing; the reply shows it */
     uint16_t max_frequency_chz;
     uint16_t reply_latency_ms;
     uint16_t stop_tail_ms;    /* how long the stream goes on after a stop command */
     uint16_t first_packet_ms; /* from the start command's reply to the first packet's samples */
     uint16_t spin_up_ms;      /* the rotor's time from standstill to the set frequency */
-    uint8_t spin_up_percent;  /* of the set frequency, when the first samples are taken */
+    uint8_t spin_up_percent;  /* speed when the first samples are taken, of the set frequency */
     sim_beginning_t beginning;
-    uint16_t first_angle_q6;   /* where the rotor stands then; 0: by chance */
-    uint16_t boot_ms;          /* after power-up and soft reboot */
-    uint16_t start_angle_q6;   /* where the start packet is; not 0 on every unit (9.8) */
-    uint8_t motor_percent;     /* of the set frequency, which it comes up to: 100 */
-    uint8_t wobble_permille;   /* of the speed, drawn anew every revolution */
-    uint8_t angle_jitter_q6;   /* of FSA and LSA, up to this much either way */
-    uint8_t noise_mm;          /* of distances, up to this much either way */
-    uint16_t invalid_permille; /* samples without range besides the scene's own */
-    uint16_t flagged_permille; /* samples flagged 2 or 3, half and half (section 9.9) */
-    uint16_t
-        lone_packet_permille;   /* point packets cut down to LSN 1, LSA a hair before FSA (9.6) */
-    uint8_t samples_per_packet; /* 1..40 (9.6) */
-    bool keeps_frequency;       /* the set frequency survives reboot and loss of power */
-    bool refuses_steps;         /* frequency commands change nothing */
-    bool firmware_major_first;  /* in the information reply: as the manual says (9.4) */
-    bool ascii_serial;          /* there too: characters instead of numbers (9.5) */
-    bool blocked_sends_starts;  /* rotor blocked: do start packets go on coming? */
-    uint8_t fatal_health;       /* health bits that put the device into SIM_FAULT */
+    uint16_t first_angle_q6;       /* of the first sample; 0: random */
+    uint16_t boot_ms;              /* after power-up and soft reboot */
+    uint16_t start_angle_q6;       /* of the start packet; not 0 on every unit (9.8) */
+    uint8_t motor_percent;         /* final speed, of the set frequency; normally 100 */
+    uint8_t wobble_permille;       /* deviation of the speed, drawn for every revolution */
+    uint8_t angle_jitter_q6;       /* of FSA and LSA, plus or minus */
+    uint8_t noise_mm;              /* of distances, plus or minus */
+    uint16_t invalid_permille;     /* samples without range, in addition to the scene's */
+    uint16_t flagged_permille;     /* samples flagged 2 or 3, equally often (section 9.9) */
+    uint16_t lone_packet_permille; /* point packets with LSN 1 and LSA slightly below FSA (9.6) */
+    uint8_t samples_per_packet;    /* 1..40 (9.6) */
+    bool keeps_frequency;          /* the set frequency survives reboot and loss of power */
+    bool refuses_steps;            /* frequency commands change nothing */
+    bool firmware_major_first;     /* in the information reply, as in the manual (9.4) */
+    bool ascii_serial;         /* in the information reply: characters instead of numbers (9.5) */
+    bool blocked_sends_starts; /* start packets continue while the rotor is blocked */
+    uint8_t fatal_health;      /* health bits that put the device into SIM_FAULT */
     encode_information_t information;
     uint8_t user_major; /* protocol version in the CT information */
     uint8_t user_minor;
@@ -110,7 +110,7 @@ typedef struct {
     uint32_t commands;
     uint32_t unknown_commands;        /* A5 followed by a code that does not exist: ignored */
     uint32_t commands_while_scanning; /* other than stop: the manual forbids them (section 2) */
-    uint32_t commands_in_tail;        /* other than stop, while the stream's tail still came */
+    uint32_t commands_in_tail;        /* other than stop, during the stream's tail */
     uint32_t lost_replies;            /* sim_lose_next_reply(), or too many waiting */
 } sim_counts_t;
 
@@ -139,20 +139,20 @@ typedef struct {
     uint32_t speed;
     int32_t wobble;   /* this revolution's deviation from the set frequency */
     uint64_t due_us;  /* when the packet being measured is complete; SIM_NEVER: not measuring */
-    uint8_t planned;  /* its samples */
-    bool at_start;    /* it is a start packet */
-    bool is_partial;  /* this revolution began elsewhere than at the start packets' place */
-    bool unmarked;    /* the start packet's place will be passed without one */
+    uint8_t planned;  /* samples of that packet */
+    bool at_start;    /* that packet is a start packet */
+    bool is_partial;  /* this revolution did not begin at the start packet's usual angle */
+    bool unmarked;    /* that angle will be passed without a start packet */
     bool in_turn;     /* a start packet has come since the start of scanning */
-    uint32_t index;   /* of it in its revolution */
+    uint32_t index;   /* of that packet in its revolution */
     uint8_t crc;      /* of the CT bytes of this revolution so far */
     uint32_t samples; /* of this revolution so far */
-    uint32_t valid;   /* of them with a range */
-    bool data_fault;  /* the whole previous revolution had none */
+    uint32_t valid;   /* samples of this revolution with a range */
+    bool data_fault;  /* the previous revolution had no range at all */
     encode_turn_t turn;
 } sim_rotor_t;
 
-/* Everything about one lidar. Caller-owned; read `counts`, leave the rest to the functions. */
+/* Everything about one lidar. Caller-owned. Users may read `counts`; the rest is private. */
 typedef struct {
     sim_config_t config;
     sim_observer_t observer;
@@ -187,33 +187,32 @@ void sim_init(sim_t *sim, const sim_config_t *config);
 /* `observer` is copied; NULL: none. */
 void sim_observe(sim_t *sim, const sim_observer_t *observer);
 
-/* The host's bytes, arriving now. */
+/* Bytes from the host arrive now. */
 void sim_receive(sim_t *sim, const uint8_t *bytes, size_t count, uint64_t now_us);
 
-/* The bytes that have left by now and have not been taken yet, at most `max`; what does not fit
- * stays for the next call. Returns their number. */
+/* Takes at most `max` of the bytes that have left by now; the rest stays for the next call. Returns
+ * the number taken. */
 size_t sim_transmit(sim_t *sim, uint64_t now_us, uint8_t *out, size_t max);
 
 /* The same without copying: returns one run of bytes, with its time and truth; false: nothing more
  * by now. The run's pointers are valid until the next call of a function of the simulator. */
 bool sim_next_run(sim_t *sim, uint64_t now_us, sim_run_t *run);
 
-/* When something will happen next if nothing is received: a byte or a change of mode.
- * SIM_NEVER: nothing will. */
+/* The time of the next byte or change of mode, if nothing is received; or SIM_NEVER. */
 uint64_t sim_next_us(sim_t *sim);
 
 /* Power is removed (bytes stop at once) or returns (the device boots, then is idle). */
 void sim_power(sim_t *sim, bool on, uint64_t now_us);
 
-/* Things that happen to the device, from the next packet on. */
-void sim_set_health(sim_t *sim, uint8_t bits); /* besides what is found out live */
+/* Faults and obstacles, effective from the next packet on. */
+void sim_set_health(sim_t *sim, uint8_t bits); /* in addition to faults that the model detects */
 void sim_block_rotor(sim_t *sim, bool blocked);
 void sim_cover_window(sim_t *sim, bool covered);
 void sim_place_obstacle(sim_t *sim, uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm);
 void sim_clear_obstacles(sim_t *sim);
 
-/* One-shot trouble with the reply to the next command that has one. Replies keep their order; the
- * stream begins when the start command's reply was due, late or lost. */
+/* Delays or loses the reply to the next command that has one. Replies keep their order. The stream
+ * begins as if the start command's reply was sent when due, even if that is late or lost. */
 void sim_delay_next_reply(sim_t *sim, uint32_t extra_ms);
 void sim_lose_next_reply(sim_t *sim);
 

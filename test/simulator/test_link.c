@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The faulty wire: that it does what it says, and says what it did. */
+/* The faulty wire: it makes the faults asked for, and reports them correctly. */
 
 #include "link.h"
 #include "reference_decoder.h"
@@ -113,8 +113,8 @@ static bool is_in_stream(const sim_link_packet_t *packet)
     return packet->intact && packet->offset + packet->sent.length <= size;
 }
 
-/* Every packet reported as intact has arrived, and an independent decoder finds hardly any others
- * (for example, after two flips in one column of the checksum). */
+/* Every packet reported as intact has arrived. An independent decoder finds hardly any others (for
+ * example, after two flips in one column of the checksum). */
 static void expect_the_truth_about_every_packet(void)
 {
     const reference_options_t options = {80, NULL};
@@ -269,7 +269,7 @@ void test_a_stall_while_the_backlog_drains_holds_the_rest_back(void)
     expect_the_truth_about_every_packet();
 }
 
-/* The first byte of each frame is flipped: LastCRC in front of a start packet, else the header. */
+/* Flips the first byte of a frame: LastCRC before a start packet, otherwise the header. */
 void test_a_spoiled_last_crc_does_not_hit_the_start_packet(void)
 {
     unsigned starts = 0;

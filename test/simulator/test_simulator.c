@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The simulated lidar against docs/protocol.md, through its bytes alone. What a healthy one sends
- * is compared byte for byte with test/recordings, which test_replay.c reads. */
+/* The simulated lidar against docs/protocol.md, through its bytes alone. test_replay.c compares the
+ * bytes of a healthy one with test/recordings. */
 
 #include "reference_decoder.h"
 #include "simulator.h"
@@ -71,7 +71,7 @@ static void decode(void)
     TEST_ASSERT_EQUAL_UINT32(0, sim_lost_frames(&sim));
 }
 
-/* Scans for some seconds after the spin-up is over. */
+/* Scans for some seconds, after the spin-up. */
 static void scan_seconds(uint32_t seconds)
 {
     send(0x60);
@@ -257,7 +257,7 @@ void test_one_reply_can_be_delayed_and_the_next_one_waits_for_it(void)
     expect_frequency_reply(0x58, 0x02);
 }
 
-/* Ten bytes of health at 3003 ms, then the start command's seven, then the stream. */
+/* The health reply (10 bytes) at 3003 ms, then the start command's reply (7), then the stream. */
 void test_a_stream_waits_for_its_own_late_reply(void)
 {
     sim_delay_next_reply(&sim, 3000);
@@ -357,7 +357,7 @@ void test_a_small_buffer_loses_nothing(void)
     TEST_ASSERT_EQUAL_MEMORY(stream, other, size);
 }
 
-/* From 329.7 degrees on, and through the start packet's place without one. */
+/* The stream begins at 329.7 degrees and passes 0 degrees without a start packet. */
 void test_the_first_packets_may_pass_the_start_packets_place_without_one(void)
 {
     config.beginning = SIM_BEGINS_UNMARKED;
@@ -746,7 +746,7 @@ static struct {
     size_t code_count;
 } seen;
 
-/* Its bytes are already in the stream or on the way there: compared by position later. */
+/* The packets' bytes may not yet be in the stream: they are compared by position later. */
 static sim_packet_t truths[PACKETS_MAX];
 
 static void see_packet(void *context, const sim_packet_t *packet)

@@ -26,7 +26,7 @@
 #define NO_PROCESS (-1)
 
 static pid_t child = NO_PROCESS;
-static int child_input = STDIN_FILENO; /* What becomes it. */
+static int child_input = STDIN_FILENO; /* The program's standard input. */
 static int child_output = -1;
 static uint8_t received[OUTPUT_MAX];
 
@@ -41,7 +41,7 @@ static const uint8_t six_hertz[11] = {0xA5, 0x5A, 0x04, 0, 0, 0, 0x04, 0x58, 0x0
 
 /* ---- Helpers ---- */
 
-/* Runs the program with up to six arguments; its standard output comes to us. */
+/* Runs the program with up to six arguments and captures its standard output. */
 static void launch(const char *const arguments[])
 {
     char *argv[8] = {0};
@@ -355,7 +355,8 @@ void test_a_client_that_has_said_all_still_gets_its_answer(void)
     TEST_ASSERT_EQUAL_INT(0, terminate());
 }
 
-/* 50 virtual seconds in one real one, at 13 kB a virtual second, less connecting and spin-up. */
+/* 50 virtual seconds pass in one real second, at 13 kB per virtual second; connecting and spin-up
+ * cost some of them. */
 void test_it_ends_after_its_seconds_and_speed_shortens_them(void)
 {
     static const char *const arguments[] = {"--tcp", "0", "--speed", "50", "--seconds", "50"};
@@ -373,7 +374,7 @@ void test_it_ends_after_its_seconds_and_speed_shortens_them(void)
 
 /* ---- In the caller's time ---- */
 
-/* The reply takes 1 ms (the device's latency is less) and 27 bytes of 43.4 us. */
+/* A reply takes 3 ms of latency and 43.4 us per byte: less than the 1 s and the 10 ms given. */
 void test_in_the_callers_time_it_answers_line_by_line(void)
 {
     static const char *const arguments[] = {"--lines", NULL};
