@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The driver against the simulated lidar, over a line on which everything goes wrong.
+# The driver against the simulated lidar, over a line with all kinds of faults.
 add_library(tmini_world STATIC EXCLUDE_FROM_ALL world.c truth.c ../support/invariants.c)
 target_include_directories(tmini_world PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
 target_include_directories(tmini_world PRIVATE ../support ${PROJECT_SOURCE_DIR}/lib/src)

@@ -3,8 +3,8 @@
 
 /* How long tests with random input run: for some seconds, unless the environment asks for more.
  *
- *   TMINI_TEST_EFFORT=20   twenty times as many cases (angles: all there are)
- *   TMINI_TEST_SEED=12345  other cases; a failure says which seed shows it again */
+ *   TMINI_TEST_EFFORT=20   twenty times as many cases (of the angles, all)
+ *   TMINI_TEST_SEED=12345  other cases; a failure prints the seed that reproduces it */
 
 #ifndef EFFORT_H
 #define EFFORT_H

@@ -55,7 +55,7 @@ static void expect_exact_angles(unsigned count, uint16_t first, unsigned differe
 {
     for (unsigned i = 0; i < count; i++) {
         const uint16_t expected = exact(first, difference, i, count - 1);
-        if (points[i].angle_q6 != expected) { /* An assertion for each takes too long. */
+        if (points[i].angle_q6 != expected) { /* An assertion per angle would take too long. */
             printf("%u samples, difference %u, sample %u\n", count, difference, i);
             TEST_ASSERT_EQUAL_UINT16(expected, points[i].angle_q6);
         }

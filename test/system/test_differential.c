@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* The parser against the reference decoder, on seeded random streams: packets, replies and LastCRC
- * of the independent encoder, with look-alike samples, damaged in all ways that lines do it, in
+ * of the independent encoder, with samples that look like headers, with damage as on real lines, in
  * random chunks, through rings of all kinds. Frames, points and counters must be the same. */
 
 #include "corrupt.h"
@@ -52,7 +52,7 @@ static encode_sample_t any_sample(bool lookalike)
     };
 }
 
-/* Bytes that begin like the packet they lie in. */
+/* Puts a valid packet among the samples of a packet. */
 static void put_packet_inside(uint8_t *packet, size_t lsn)
 {
     uint8_t inner[13];
@@ -147,8 +147,8 @@ static const reference_reply_t *any_awaited(void)
     return choice < 4 ? &shapes[choice] : NULL;
 }
 
-/* The smallest ring that serves for packets and replies, or a larger one; its indices anywhere,
- * often about to wrap. */
+/* The smallest ring that can hold packets and replies, or a larger one. Its indices often wrap
+ * around soon. */
 static void open_any_ring(unsigned max_samples, bool dma)
 {
     size_t ring_size = dma ? 64 : 32;
@@ -222,8 +222,8 @@ static frame_t frames[STREAM_MAX / 7];
 static size_t frame_count;
 static size_t matched;
 
-/* Where bytes were refused, among those accepted: nothing spans such a place. The last is the
- * end. */
+/* Where bytes were refused, as offsets among the accepted bytes: no frame spans such a place. The
+ * last entry is the end. */
 static size_t gaps[STREAM_MAX + 1];
 static size_t gap_count;
 
@@ -237,7 +237,7 @@ static void note_frame(tmini_frame_type_t frame)
     frames[frame_count++] = (frame_t){end - length, length, frame == TMINI_FRAME_PACKET};
 }
 
-/* Feeds without regard to room, reads now and then. Returns how many bytes were accepted. */
+/* Feeds whether or not there is room, and reads sometimes. Returns how many bytes were accepted. */
 static size_t feed_carelessly(void)
 {
     size_t kept = 0;
@@ -265,7 +265,7 @@ static size_t feed_carelessly(void)
     return kept;
 }
 
-/* `context`: where the piece between two gaps begins. */
+/* `context`: the offset at which the decoded part between two gaps begins. */
 static void expect_noted(void *context, const reference_item_t *item)
 {
     const size_t from = *(const size_t *)context;
@@ -328,7 +328,7 @@ void test_a_ring_that_overflows_loses_the_refused_bytes_and_nothing_else(void)
 
 /* ---------------------------------------------------------------------------- DMA that overruns */
 
-/* What was received at the packet's place is that packet, and its points are those. */
+/* The received bytes at the packet's offset are a valid packet with the same points. */
 static void expect_as_received(void)
 {
     const size_t offset = receiver_frame_offset(&receiver);
@@ -350,7 +350,7 @@ static void expect_as_received(void)
                            reference_decode(&bytes[offset], length, &options, NULL, NULL).packets);
 }
 
-/* More comes while the packet is read: sometimes too much. */
+/* Feeds more while the packet is read: sometimes so much that the ring overruns. */
 static size_t feed_some(size_t fed)
 {
     const size_t left = size - fed;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The library drives the simulated lidar, in virtual time. world.h lists what is checked all the
- * time; the tests check the results. */
+/* The library drives the simulated lidar, in virtual time. world.h lists what is always checked;
+ * the tests check the results. */
 
 #include "world.h"
 
@@ -36,7 +36,7 @@ static void begin(void)
     world_init(&world, &config);
 }
 
-/* Waits for the end of a command that has begun. */
+/* Waits until the command that has begun ends with this event. */
 static void ends_with(tmini_event_t event, uint32_t limit_ms)
 {
     const unsigned events =
@@ -53,7 +53,7 @@ static void fails_with(tmini_status_t status, uint32_t limit_ms)
     TEST_ASSERT_EQUAL_INT(status, tmini_command_error(&world.lidar));
 }
 
-/* Scanning, at full speed. */
+/* Starts and waits for full speed. */
 static void scan(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&world.lidar));
@@ -107,7 +107,8 @@ void test_no_packet_of_the_spin_up_is_lost_and_it_is_not_taken_for_a_loss(void)
     TEST_ASSERT_EQUAL_UINT32(world.link.counts.packets, count(TMINI_EVENT_PACKET));
 }
 
-/* As two real units begin: past the start packet's place without one, or with one anywhere. */
+/* As on two real units: the first packets pass the start packet's usual angle without one, or begin
+ * with a start packet at any angle. */
 void test_first_packets_as_real_units_send_them_make_true_scans(void)
 {
     static const uint16_t stands_at_q6[] = {0, 21101, 5485};
@@ -203,7 +204,7 @@ void test_a_lidar_that_is_still_streaming_is_stopped(void)
     TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
 }
 
-/* The program looks at the lidar each 60 ms. */
+/* The program polls every 60 ms. */
 static unsigned run_at_leisure(uint32_t ms)
 {
     unsigned events = 0;
@@ -215,8 +216,8 @@ static unsigned run_at_leisure(uint32_t ms)
     return events & ~BIT(TMINI_EVENT_MORE);
 }
 
-/* Much else is to be done before, so that the ring is full. What there is no room for is not to be
- * taken for a quiet line. */
+/* The program does not poll for 800 ms, so that the ring is full. When bytes are refused, the line
+ * must not count as quiet. */
 static void streams_on_while_the_program_is_busy(void)
 {
     config.rx_size = 4096;
@@ -324,7 +325,7 @@ void test_a_late_reply_to_one_question_is_not_taken_for_the_answer_to_another(vo
     TEST_ASSERT_EQUAL_UINT8(151, tmini_info(&world.lidar)->model);
 }
 
-/* Another program has asked A5 98 just before, which real units answer. */
+/* Another program has just sent A5 98, which real units answer. */
 void test_a_late_reply_to_a_command_of_another_program_disturbs_no_answer(void)
 {
     static const uint8_t command[2] = {0xA5, SIM_COMMAND_UNDOCUMENTED_98};
@@ -383,7 +384,7 @@ void test_a_lidar_without_power_fails_every_attempt(void)
 
 /* ---- Faults of the line, at several rates ---- */
 
-/* A minute of it, then calm: scans must be back, and nothing wrong have happened. */
+/* A minute of such faults, then none: scans must resume, and no violation may have happened. */
 static void survives(sim_link_kind_t kind, uint32_t mean_gap)
 {
     begin_scanning();

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The table of intact points in docs/results.md: on damaged lines, of all points in packets that
- * the reference decoder finds in what reached the ring, from the first start packet on, how many
- * are in exactly one scan. Prints a row for each line. */
+/* The table of intact points in docs/results.md, for damaged lines. Intact are the points of all
+ * packets that the reference decoder finds in the bytes that reached the ring, from the first start
+ * packet on. Each test prints a row: how many of them are in exactly one scan. */
 
 #include "random.h"
 #include "reference_decoder.h"
@@ -19,18 +19,18 @@
 #define LIDAR_US 76u /* From byte to byte: 13.1 kB/s (section 1). */
 #define FAST_US 50u  /* 20 kB/s. */
 
-static uint8_t line[STREAM_MAX]; /* What is sent, */
+static uint8_t line[STREAM_MAX]; /* The bytes sent. */
 static size_t line_size;
-static uint8_t stored[STREAM_MAX]; /* and what of it the ring has stored since the last refusal. */
+static uint8_t stored[STREAM_MAX]; /* Those that the ring has stored since the last refusal. */
 static size_t stored_size;
 
-static reference_point_t expected[POINTS_MAX]; /* In this order. */
+static reference_point_t expected[POINTS_MAX]; /* All intact points, in order. */
 static size_t expected_count;
-static bool has_started; /* A start packet is among them. */
+static bool has_started; /* A start packet has come. */
 
 static tmini_point_t delivered[2 * POINTS_MAX];
 static size_t delivered_count;
-static unsigned complete; /* Of the scans. */
+static unsigned complete; /* Complete scans. */
 
 static random_t random;
 
@@ -69,7 +69,7 @@ static void expect_points(void *context, const reference_item_t *item)
     }
 }
 
-/* Bytes are missing after those stored so far, or all have come. */
+/* Call it when the ring refuses bytes, and at the end. */
 static void expect_stored(void)
 {
     static const reference_reply_t reply = {.mode = 1, .type = 0x81};
@@ -79,7 +79,7 @@ static void expect_stored(void)
     stored_size = 0;
 }
 
-/* ---- What comes ---- */
+/* ---- What is delivered ---- */
 
 static void keep_points(const tmini_scan_t *scan)
 {
@@ -109,7 +109,7 @@ static void store(uint8_t byte)
     }
 }
 
-/* How many of 10,000 bytes are lost, and of how many a bit is flipped. */
+/* Per 10,000 bytes: how many are lost, and how many get a flipped bit. */
 typedef struct {
     uint32_t drops;
     uint32_t flips;
@@ -120,7 +120,7 @@ static bool happens(uint32_t in_10000)
     return in_10000 > 0 && random_below(&random, 10000) < in_10000;
 }
 
-/* The line is sent; at its end, the scan under way counts like those delivered. */
+/* Sends the line. At its end, the points of the unfinished scan count as delivered. */
 static void receive(uint32_t byte_us, uint32_t poll_us, damage_t damage)
 {
     const uint32_t since_ms = turns.now_ms;
@@ -142,7 +142,7 @@ static void receive(uint32_t byte_us, uint32_t poll_us, damage_t damage)
     keep_points(&turns.lidar.decoder.builder.scan);
 }
 
-/* ---- How many of those expected have come ---- */
+/* ---- How many of the expected points were delivered ---- */
 
 static bool is_same(const reference_point_t *sent, const tmini_point_t *point)
 {
@@ -150,7 +150,7 @@ static bool is_same(const reference_point_t *sent, const tmini_point_t *point)
            sent->intensity == point->intensity && sent->flag == point->flag;
 }
 
-/* No other points have come, and none twice. */
+/* Fails if another point was delivered, or one twice. */
 static size_t found_in_order(void)
 {
     size_t searched = 0;
@@ -177,7 +177,7 @@ static void all_intact_points_came(const char *what)
 
 /* ---- The table ---- */
 
-/* 22 turns of 658 points: of one, the point of the start packet is not intact. */
+/* 22 turns of 658 points. In one turn, the point of the start packet is not intact. */
 void test_a_flipped_bit_in_a_start_packet_costs_one_point(void)
 {
     send_turns(22);
@@ -188,7 +188,8 @@ void test_a_flipped_bit_in_a_start_packet_costs_one_point(void)
     receive(LIDAR_US, 2000, (damage_t){0, 0});
     TEST_ASSERT_EQUAL_UINT(22 * TURNS_POINTS - 1, expected_count);
     all_intact_points_came("one bit in one start packet");
-    TEST_ASSERT_EQUAL_UINT(19, complete); /* Not the two around it; the last has not ended. */
+    TEST_ASSERT_EQUAL_UINT(
+        19, complete); /* All but the two next to it and the last one, which has not ended. */
 }
 
 static void damaged_lines_lose_no_intact_point(damage_t damage, const char *what)
@@ -218,7 +219,7 @@ void test_three_flipped_bytes_in_1000(void)
     damaged_lines_lose_no_intact_point((damage_t){0, 30}, "flips 3e-3");
 }
 
-/* 1200 bytes from poll to poll. */
+/* 1200 bytes come between two polls. */
 void test_a_ring_that_overflows_between_polls(void)
 {
     send_turns(TURNS_MAX);
@@ -227,7 +228,7 @@ void test_a_ring_that_overflows_between_polls(void)
     TEST_ASSERT_TRUE(expected_count > POINTS_MAX / 2);
 }
 
-/* The lidar begins with a start packet: its first turn is whole. */
+/* The lidar begins with a start packet, so its first turn is complete. */
 void test_the_first_turn_after_a_start_is_there_at_any_poll_interval(void)
 {
     for (uint32_t poll_ms = 1; poll_ms <= 5; poll_ms++) {

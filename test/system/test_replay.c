@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Recordings, from bytes to scans: those of the repository (test/recordings/README.md) and, where
- * there is one, a real unit's. The expected counts were taken from what the simulated lidar said it
- * sent and, for the real unit, from its description; none from the library. */
+/* Recordings, from bytes to scans: those of the repository (test/recordings/README.md) and, if
+ * there is one, that of a real unit. The expected counts come from the simulated lidar's own report
+ * and, for the real unit, from the recording's description; none from the library. */
 
 #include "corrupt.h"
 #include "effort.h"
@@ -18,7 +18,7 @@
 
 #define RECORDING_MAX 40000u
 #define SCANS_MAX 20u
-#define PATH_SIZE 4096u /* Wherever the project lies. */
+#define PATH_SIZE 4096u /* Room for any path of the project. */
 
 static uint8_t bytes[RECORDING_MAX];
 static uint8_t damaged[RECORDING_MAX];
@@ -82,7 +82,7 @@ static void handle_packet(uint32_t now_ms)
     }
 }
 
-/* Everything, in chunks of `chunk` bytes, and what is left at the end. */
+/* Replays everything in chunks of `chunk` bytes, including the bytes left at the end. */
 static void replay_in_chunks(size_t chunk)
 {
     replay = (replay_t){0};
@@ -140,7 +140,7 @@ void test_the_manuals_packet_is_replayed(void)
     TEST_ASSERT_EQUAL_UINT(0, replay.scans);
 }
 
-/* Skipped are the start reply, eight LastCRC and the last packet, which is cut. */
+/* Skipped bytes: the start reply, eight LastCRC and the last packet, which is cut. */
 static void expect_six_hertz(void)
 {
     static const uint16_t counts[8] = {873, 699, 665, 669, 667, 666, 667, 669};
@@ -205,8 +205,8 @@ void test_twelve_hertz_make_scans_and_show_the_beginning_of_the_ct_information(v
     TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&turn));
 }
 
-/* 299 packets were sent; each of the 266 that came through whole is delivered. No revolution came
- * through whole: these are the places at which something is missing. */
+/* 299 packets were sent; each of the 266 that arrived intact is delivered. No revolution arrived
+ * intact: each scan has these gaps. */
 void test_on_a_bad_line_every_intact_packet_is_replayed(void)
 {
     static const uint16_t gaps[14] = {3, 1, 2, 2, 1, 3, 1, 1, 3, 2, 3, 1, 3, 1};
@@ -234,7 +234,7 @@ static bool read_truth(FILE *file, truth_t *truth)
                   &truth->flag, &truth->intact) == 8;
 }
 
-/* The next sample of a packet that came through whole. */
+/* The next sample of a packet that arrived intact. */
 static bool read_intact(FILE *file, truth_t *truth)
 {
     do {
@@ -319,7 +319,7 @@ void test_a_real_units_recording_gives_four_complete_scans(void)
     TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&turn));
 }
 
-/* Each copy in random chunks, through the ring of the smallest size. */
+/* Each copy goes in random chunks through the smallest ring. */
 static void compare_damaged_copies(uint32_t copies)
 {
     random_t random;
@@ -355,7 +355,7 @@ static void expect_like_reference(size_t left)
     (void)receiver_compare(&receiver, &course, damaged, left);
 }
 
-/* Each byte of 600, on both sides of a start packet, changed, lost, and doubled. */
+/* Each of the 600 bytes around a start packet is changed, lost, and doubled. */
 static void compare_each_fault(void)
 {
     static const uint8_t values[] = {0x00, 0x01, 0x28, 0x55, 0xAA, 0xFF};

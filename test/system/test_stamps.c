@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* How good times are: of scans, by start_ms, and of their points, by tmini_point_time_us(), for
- * programs that poll every 1, 10 and 38 ms. The figures in tmini_units.h and docs/results.md are
- * from here; a row is printed for each. */
+/* The accuracy of start_ms of scans and of tmini_point_time_us() of their points, for programs that
+ * poll every 1, 10 and 38 ms. The figures in tmini_units.h and docs/results.md come from the rows
+ * that these tests print. */
 
 #include "encoder.h"
 #include "random.h"
@@ -20,9 +20,9 @@
 #define BYTE_US 43.4
 
 static uint8_t line[STREAM_MAX];
-static double at_us[STREAM_MAX]; /* When its last bit was on the wire. */
+static double at_us[STREAM_MAX]; /* When the last bit of each byte was on the wire. */
 static size_t line_size;
-static uint32_t first_sample[TURNS]; /* Of each turn, of all. */
+static uint32_t first_sample[TURNS]; /* Of each turn, counted from the beginning. */
 
 static tmini_t lidar;
 static uint8_t rx[1024];
@@ -30,7 +30,7 @@ static tmini_point_t points[800];
 static double now_us;
 static random_t random;
 
-/* Errors, in milliseconds: later than the truth is positive. */
+/* Errors in milliseconds, positive if later than the truth. */
 typedef struct {
     double least;
     double most;
@@ -50,8 +50,8 @@ void tearDown(void) {}
 
 /* ---- The lidar ---- */
 
-/* A sample's distance is its index in its turn, its intensity the turn. A packet is sent when its
- * last sample has been measured. */
+/* The distance of a sample is its index in its turn; its intensity is the number of the turn. A
+ * packet is sent when its last sample has been measured. */
 static void send_packet(unsigned turn, unsigned first, unsigned count, unsigned of, uint8_t ct)
 {
     encode_sample_t samples[40];
@@ -76,8 +76,8 @@ static bool is_lost(unsigned one_in)
     return one_in > 0 && random_below(&random, one_in) == 0;
 }
 
-/* Turns differ by up to 0.6 % (section 9.8); the start packet reports the one before, in 0.1 Hz.
- * Where packets are lost, so is every tenth turn. */
+/* Turns differ by up to 0.6 % (section 9.8); the start packet reports the frequency of the turn
+ * before, in 0.1 Hz. If packets are lost, every tenth turn is lost too. */
 static void send_turns(uint32_t frequency_dhz, unsigned lost_one_in)
 {
     uint32_t sample = 0;
@@ -177,7 +177,7 @@ static void start(void)
     poll();
 }
 
-/* Polls are not evenly spaced with the clock's milliseconds, nor with the packets. */
+/* The polls are aligned neither with the clock's milliseconds nor with the packets. */
 static void play(uint32_t frequency_dhz, double poll_us, unsigned lost_one_in)
 {
     size_t fed = 0;
@@ -215,7 +215,7 @@ static void play_all(unsigned lost_one_in)
 void test_points_of_whole_scans_have_the_right_times(void)
 {
     play_all(0);
-    TEST_ASSERT_TRUE(starts.least >= -1 && starts.most <= 12); /* Of the rarest polls. */
+    TEST_ASSERT_TRUE(starts.least >= -1 && starts.most <= 12); /* With polls every 38 ms. */
     TEST_ASSERT_EQUAL_UINT(0, parts);
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The natural programs: what a user writes who has read only the names, run against the simulated
- * lidar in virtual time. None of them tries anything again. */
+/* Programs as a user writes them who knows only the functions' names, run against the simulated
+ * lidar in virtual time. None of them repeats a call that failed. */
 
 #include "world.h"
 
@@ -46,7 +46,7 @@ static void set_frequency(uint16_t frequency_chz)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, frequency_chz));
 }
 
-/* Complete scans at that frequency come, and nothing else happens. */
+/* Complete scans come at that frequency, and nothing else happens. */
 static void scans_at(uint16_t frequency_chz)
 {
     const uint32_t before = count(TMINI_EVENT_SCAN);
@@ -135,7 +135,7 @@ void test_a_start_follows_a_query_however_it_ends(void)
 void test_a_supply_that_fails_for_300_ms_leaves_10_hz_and_complete_scans(void)
 {
     config.frequency_chz = 1000;
-    config.max_points = 450; /* Of 400 at 10 Hz; at 6 Hz, 667. */
+    config.max_points = 450; /* A turn has 400 at 10 Hz, 667 at 6 Hz. */
     begin();
     start();
     (void)world_run_ms(&world, 5000);
@@ -155,13 +155,13 @@ void test_a_lidar_that_is_powered_a_minute_later_scans(void)
     (void)world_run_ms(&world, 60000);
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_STARTING, tmini_state(&world.lidar));
     TEST_ASSERT_TRUE(count(TMINI_EVENT_COMMAND_FAILED) >= 6);
-    TEST_ASSERT_TRUE(count(TMINI_EVENT_COMMAND_FAILED) <= 20); /* Once a round. */
+    TEST_ASSERT_TRUE(count(TMINI_EVENT_COMMAND_FAILED) <= 20); /* One per attempt. */
     sim_power(&world.sim, true, world.now_us);
     (void)world_run_ms(&world, 20000);
     scans_at(1000);
 }
 
-/* One that boots may miss the question for its frequency and obey the start. */
+/* A lidar that is booting may miss the query for its frequency but obey the start. */
 void test_a_lidar_that_is_powered_at_any_moment_of_the_start_turns_as_wanted(void)
 {
     for (unsigned late_ms = 0; late_ms < 6000; late_ms += 173) {
@@ -188,7 +188,7 @@ void test_a_frequency_that_cannot_be_set_is_reported_and_the_lidar_scans(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_REPLY, tmini_command_error(&world.lidar));
     (void)world_run_ms(&world, 60000);
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&world.lidar));
-    TEST_ASSERT_EQUAL_UINT32(2, count(TMINI_EVENT_STARTED)); /* One more try. */
+    TEST_ASSERT_EQUAL_UINT32(2, count(TMINI_EVENT_STARTED)); /* One more attempt. */
     scans_at(800);
 }
 
@@ -296,7 +296,7 @@ void test_a_listener_takes_what_comes_and_sends_nothing(void)
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_STARTING, tmini_state(&world.lidar));
     /* After 3, 3.5, 4.5 and 6.5 seconds. */
     TEST_ASSERT_EQUAL_UINT32(4, count(TMINI_EVENT_COMMAND_FAILED));
-    sim_link_write(&world.link, start_command, 2, world.now_us); /* Somebody else. */
+    sim_link_write(&world.link, start_command, 2, world.now_us); /* From another program. */
     (void)world_run_ms(&world, 5000);
     scans_at(600);
     fail_supply_for(3000);
@@ -334,7 +334,7 @@ void test_information_and_health_stay_while_the_lidar_scans(void)
 /* ---- Stories ---- */
 
 #ifndef STORIES
-#define STORIES 60 /* By hand, 3000. */
+#define STORIES 60 /* 3000 in manual runs. */
 #endif
 
 typedef struct {
@@ -378,8 +378,8 @@ static void act(wish_t *wish, random_t *random)
     }
 }
 
-/* After the trouble every wish is fulfilled, a frequency within the 5 % that are no fault; but one
- * that could not be set once more, because the lidar was deaf just then, is and remains a fault. */
+/* After the trouble every wish is fulfilled, and the frequency is within the 5 % that are no fault.
+ * Exception: if the lidar was deaf when the frequency was set again, this remains a fault. */
 static void is_fulfilled(const wish_t *wish, unsigned seed)
 {
     char text[40];

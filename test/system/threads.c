@@ -3,11 +3,11 @@
 
 /* threads RECORDING [TURNS]
  *
- * The public functions between two threads, as between two cores: one feeds a recording, byte by
- * byte and in blocks; the other polls and reads the scans. Every other time the feeder does not
- * wait for room, and the other thread rests at the beginning, so that the ring is closed and
- * opened. threads.sh builds it, with the library, under ThreadSanitizer. Exit status 0 unless no
- * scan came, or no byte was refused. */
+ * Uses the public functions from two threads, as from two cores: one feeds a recording, byte by
+ * byte and in blocks; the other polls and reads the scans. In every second pass through the
+ * recording the feeder does not wait for room, and the other thread pauses at the beginning, so
+ * that the ring is closed and opened. threads.sh builds it, with the library, under
+ * ThreadSanitizer. Exit status 0 if scans came and bytes were refused. */
 
 #include <pthread.h>
 #include <sched.h>
@@ -16,7 +16,7 @@
 
 #include "tmini/tmini.h"
 
-/* More than the ring and one poll can take. */
+/* More bytes than the ring and one poll can take. */
 #define BYTES_AT_REST 4096
 
 static uint8_t recording[100000];
@@ -27,7 +27,7 @@ static uint8_t rx[512];
 static tmini_point_t points[800];
 static tmini_t lidar;
 
-/* Atomic, but they order nothing: only the library's own barriers do. */
+/* Atomic but relaxed, so that only the library's own barriers order memory accesses. */
 static int is_fed;
 static int is_at_rest;
 
@@ -43,7 +43,7 @@ static int is_set(const int *flag)
 
 static uint32_t now_ms(void *context)
 {
-    static uint32_t calls; /* Of the polling thread alone. */
+    static uint32_t calls; /* Only the polling thread uses it. */
     (void)context;
     return calls++ / 64;
 }

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The public functions between two threads under ThreadSanitizer, with the library's own barriers
-# for several cores; and with one taken out, which must then be noticed. (By Clang: GCC 12's does
-# not see as much.) Exit status 77: Clang cannot do that here.
+# Runs threads.c under ThreadSanitizer with the library's own barriers for several cores; then with
+# one barrier removed, which must be detected. Needs Clang: the sanitizer of GCC 12 detects less.
+# Exit status 77: Clang's is not available.
 #
 #   test/system/threads.sh [TURNS]     of the recording: 6 unless given
 

@@ -79,7 +79,7 @@ static void copy(const truth_t *truth, uint64_t from, uint8_t *bytes, size_t cou
     }
 }
 
-/* ---- Packets that are not where they should be ---- */
+/* ---- Missing packets ---- */
 
 static bool is_excused(truth_t *truth, const truth_packet_t *packet)
 {
@@ -94,7 +94,7 @@ static bool is_excused(truth_t *truth, const truth_packet_t *packet)
     return false;
 }
 
-/* Pops all that begin before `offset`; they should have been delivered. */
+/* Removes all packets that begin before `offset`; they should have been delivered. */
 static truth_verdict_t pop_missing(truth_t *truth, uint64_t offset)
 {
     truth_verdict_t verdict = TRUTH_RIGHT;
@@ -191,8 +191,8 @@ truth_verdict_t truth_compare_packet(truth_t *truth, uint64_t end, const tmini_p
 
 /* ---- A scan ---- */
 
-/* How many points of the packet on the line at `offset` are those of the scan from `index` on: all
- * of them, or 0. */
+/* If the points of the packet at `offset` on the line are those of the scan from `index` on,
+ * returns their number, otherwise 0. */
 static unsigned points_of(const truth_t *truth, uint64_t offset, const tmini_scan_t *scan,
                           unsigned index)
 {
@@ -213,9 +213,9 @@ static unsigned points_of(const truth_t *truth, uint64_t offset, const tmini_sca
 /* How far the comparison has come. */
 typedef struct {
     const tmini_scan_t *scan;
-    uint64_t at; /* On the line. */
+    uint64_t at; /* Place on the line. */
     uint64_t to;
-    unsigned index; /* Of the scan's next point; 0: its start packet has not been found yet. */
+    unsigned index; /* Of the scan's next point; 0: its first packet has not been found yet. */
     unsigned packets;
     uint32_t revolution; /* Of the scan's first packet that arrived as it was sent. */
     bool has_revolution;
@@ -238,13 +238,13 @@ static void take(truth_t *truth, comparison_t *comparison, uint64_t offset)
     truth->delivered_end = comparison->at;
 }
 
-/* What precedes the first start packet is in no scan, all else is. */
+/* Only packets before the first start packet are in no scan. */
 static bool may_be_next(const truth_t *truth, const comparison_t *comparison, bool is_start)
 {
     return comparison->index > 0 || truth->has_start || is_start;
 }
 
-/* The scan may contain damaged packets whose checksum happens to match. */
+/* The scan may contain a damaged packet whose checksum happens to match. */
 static bool take_by_chance(truth_t *truth, comparison_t *comparison, uint64_t to)
 {
     uint8_t bytes[ENCODE_PACKET_MAX];
@@ -261,10 +261,10 @@ static bool take_by_chance(truth_t *truth, comparison_t *comparison, uint64_t to
     return false;
 }
 
-/* All of a scan's points are of one revolution. But where the lidar began with a start packet
- * anywhere (section 9.8), and no other has come since, nothing shows where revolutions begin: a
- * scan is then one turn from that packet's angle on, and may be of two revolutions. Nothing is
- * overlaid. */
+/* All points of a scan are from one revolution, with one exception. If the lidar began with a start
+ * packet at any angle (section 9.8), nothing shows where revolutions begin until the next start
+ * packet. Until then a scan is one turn from the first packet's angle on, and may have points of
+ * two revolutions, but no angle twice. */
 static void note_revolution(truth_t *truth, comparison_t *comparison, const truth_packet_t *sent)
 {
     if (sent->starts_revolution) {
@@ -278,8 +278,7 @@ static void note_revolution(truth_t *truth, comparison_t *comparison, const trut
     comparison->mixed |= later > (truth->origin_is_partial ? 1u : 0u);
 }
 
-/* The next packet that was sent must be next in the scan. Returns false if it is not, for no
- * reason. */
+/* The next intact packet must be next in the scan. Returns false if it is not and has no excuse. */
 static bool take_sent(truth_t *truth, comparison_t *comparison)
 {
     const truth_packet_t *const sent = entry(truth, 0);
@@ -303,7 +302,7 @@ static bool any_sent(truth_t *truth, const comparison_t *comparison)
     return truth->count > 0 && entry(truth, 0)->offset < comparison->to;
 }
 
-/* A complete scan misses no packet of all that were sent and could be missed. */
+/* A complete scan has all packets that were sent, except small damaged ones. */
 static bool is_consecutive(truth_t *truth, uint32_t number, const comparison_t *comparison)
 {
     return !comparison->scan->complete || comparison->by_chance ||

@@ -10,7 +10,7 @@
 
 #define STEP_US 1000u
 #define TIMER_US 10000u
-#define LINE_BYTES_PER_STEP 24u /* 230400 baud (section 1): never faster than the line. */
+#define LINE_BYTES_PER_STEP 24u            /* 1 ms at 230400 baud (section 1). */
 #define CLOCK_AT_THE_BEGINNING 0xFFFF0000u /* It wraps around after a minute. */
 
 static const char *const violation_names[VIOLATION_KINDS] = {
@@ -113,8 +113,8 @@ void world_restart_library(world_t *world)
     }
     world->fed_before += world->fed;
     world->fed = 0;
-    world->told = 0;
-    world->told_at_poll = 0;
+    world->published = 0;
+    world->published_at_poll = 0;
     world->dma_position = 0;
     world->faults = 0;
     world->in_trouble = false;
@@ -145,15 +145,15 @@ static size_t half_of(const world_t *world, size_t position)
     return position / (world->config.rx_size / 2);
 }
 
-static void publish(world_t *world, uint64_t told)
+static void publish(world_t *world, uint64_t published)
 {
     tmini_feed_dma(&world->lidar, world->dma_position);
-    world->told = told;
+    world->published = published;
 }
 
-/* Interrupts: half transfer, transfer complete, idle line; and a timer, without which a large
- * buffer would be published so rarely that the library took it for silence. `world->fed` counts
- * these bytes already. */
+/* Publishes in the interrupts for half transfer, transfer complete and idle line, and in a timer:
+ * otherwise a large buffer would be published so rarely that the library would detect silence.
+ * `world->fed` already counts these bytes. */
 static void feed_dma(world_t *world, const uint8_t *bytes, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -181,13 +181,14 @@ static void receive(world_t *world)
         feed_dma(world, bytes, count);
     } else {
         tmini_feed(&world->lidar, bytes, count);
-        world->told = world->fed;
+        world->published = world->fed;
     }
 }
 
 /* ---- Checks ---- */
 
-/* Bytes that the library has parsed, in packets, replies or skipped; as a place on the line. */
+/* The place on the line up to which the library has parsed, as packets, replies or skipped
+ * bytes. */
 static uint64_t parsed(const world_t *world, const tmini_counters_t *counters)
 {
     return world->fed_before + counters->bytes_in_packets + counters->bytes_in_replies +
@@ -272,7 +273,7 @@ static void check_bytes(world_t *world, const tmini_counters_t *counters)
     const uint64_t in = parsed(world, counters) - world->fed_before + counters->bytes_overrun +
                         counters->bytes_pending;
 
-    if (in != world->told) {
+    if (in != world->published) {
         world_violate(world, VIOLATION_BYTES, "the sum differs");
     }
     if (counters->bytes_overrun > 0 && !world->config.overruns_expected) {
@@ -314,7 +315,7 @@ static void note_faults(world_t *world)
 {
     uint8_t faults = sim_health(&world->sim);
 
-    /* What a unit without CT information can report (section 8), and what a blocked rotor hides. */
+    /* The library may then report a data fault (section 8), even if the lidar's health does not. */
     if (world->sim.window_covered || world->sim.rotor_blocked) {
         faults |= SIM_HEALTH_DATA;
     }
@@ -329,7 +330,7 @@ static void note_faults(world_t *world)
     }
 }
 
-/* While the power is off, what follows is trouble as well: the lidar boots. */
+/* Trouble after a power failure also includes the time in which the lidar boots. */
 static void note_trouble(world_t *world)
 {
     if (sim_mode(&world->sim) == SIM_OFF) {
@@ -352,15 +353,15 @@ static void note_silence(world_t *world)
 {
     const uint64_t silence_us = (tmini_timing_default.frame_timeout_ms - 1u) * 1000u;
 
-    if (world->told != world->told_at_poll) {
-        world->told_at_poll = world->told;
+    if (world->published != world->published_at_poll) {
+        world->published_at_poll = world->published;
         world->silent_since_us = world->now_us;
     } else if (world->now_us - world->silent_since_us >= silence_us) {
-        truth_fell_silent(&world->truth, world->fed_before + world->told);
+        truth_fell_silent(&world->truth, world->fed_before + world->published);
     }
 }
 
-/* Between two busy times there is at least one poll. */
+/* Between two busy periods there is at least one poll. */
 static bool is_busy(world_t *world)
 {
     if (world->now_us > world->busy_until_us && world->config.busy_one_in > 0 &&
@@ -371,7 +372,7 @@ static bool is_busy(world_t *world)
     return world->now_us < world->busy_until_us;
 }
 
-/* Packets that have been passed over: an offence if the library was scanning. */
+/* A missed packet is a violation if the library was scanning. */
 static void close_cycle(world_t *world, bool was_scanning)
 {
     const bool scanning = tmini_state(&world->lidar) == TMINI_STATE_SCANNING;
@@ -408,7 +409,7 @@ static unsigned poll_all(world_t *world)
     tmini_event_t event;
 
     note_silence(world);
-    check_state(world); /* After commands and what has been fed. */
+    check_state(world); /* After commands and fed bytes. */
     while ((event = tmini_poll(&world->lidar)) != TMINI_EVENT_NONE) {
         check_state(world);
         events |= BIT(event);
