@@ -142,6 +142,7 @@ static void append_points(tmini_builder_t *builder, const tmini_packet_t *packet
                                              (size_t)builder->capacity - scan->count);
     if (!tmini_frame_intact(packet->frame)) {
         count_one(&scan->gaps);
+        builder->open = scan->packets > 0; /* No scan is empty. */
         return;
     }
     scan->count = (uint16_t)(scan->count + count);

@@ -85,7 +85,7 @@ typedef struct {
 /** One revolution, or the received part of it, and its quality. */
 typedef struct {
     tmini_point_t *points;    /**< The caller's own buffer, in order of arrival. */
-    uint16_t count;           /**< Points in the buffer. */
+    uint16_t count;           /**< Points in the buffer, at least one. */
     uint16_t dropped;         /**< Points that did not fit in it. */
     uint16_t packets;         /**< Packets received of this revolution. */
     uint16_t gaps;            /**< Places where packets may be missing: bytes were lost, damaged or
