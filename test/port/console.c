@@ -8,18 +8,18 @@
 
 #include "unity.h"
 
-#define US_PER_BYTE 87u       /* 10 bits. */
+#define US_PER_BYTE 87u       /* 10 bits at 115200 baud. */
 #define LIDAR_US_PER_BYTE 43u /* 23,000 bytes per second. */
 
-/* The loop waits for this long when it has nothing to do, or does not wait at all. */
+/* Between two turns of its loop an example waits at least this long, within a turn never. */
 #define SAME_TURN_US 1000u
 
 static struct {
     uint64_t first_us;
     uint64_t last_us;
     uint64_t bytes;
-    uint32_t turn; /* Bytes of the loop's present turn, */
-    uint32_t most; /* and of the one with most. */
+    uint32_t turn; /* Bytes printed in the current turn of the loop. */
+    uint32_t most; /* Most bytes printed in one turn. */
     char text[8192];
     size_t length;
 } console;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What an example prints, on a model whose console takes no time; and how long that would take on a
- * real one: a UART of 115200 baud, whose functions wait until the last byte has left. Meanwhile the
- * example's loop does not poll. */
+/* Collects an example's output on a model, where printing takes no time, and calculates the time
+ * that printing takes on a real console: a UART with 115200 baud, whose functions wait until the
+ * last byte has been sent. Meanwhile the example's loop does not poll. */
 
 #ifndef CONSOLE_H
 #define CONSOLE_H
@@ -12,24 +12,24 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Another program begins. */
+/* Forgets the output of the program before. */
 void console_begin(void);
 
-/* A model's console prints. */
+/* A model calls these when the example prints. */
 void console_write(uint64_t now_us, const char *text);
 int console_print(uint64_t now_us, const char *format, va_list arguments)
     __attribute__((format(printf, 2, 0)));
 
-/* The same, where the model keeps the text. */
+/* For a model that stores the text itself. */
 void console_note(uint64_t now_us, size_t bytes);
 
-/* All that has been printed has this text somewhere; and its last line with a comma, which an
- * example writes each second. */
+/* The first function searches for the text in the whole output. The second searches in the last
+ * line with a comma: examples print such a line each second. */
 void assert_said(const char *text);
 void assert_last_said(const char *text);
 
-/* Printing took half of the time at most; and at once no longer than receiving `held` bytes takes,
- * at 23,000 bytes per second. */
+/* Fails if printing would take more than half of the time, or if printing in one turn of the loop
+ * would take longer than receiving `held` bytes at 23,000 bytes per second. */
 void assert_console_leaves_time(uint32_t held);
 
 #endif

@@ -4,9 +4,9 @@
 
 """Runs an example's firmware on QEMU's lm3s6965evb against the simulated lidar.
 
-The console is the board's first UART, the lidar its second. The firmware has to say who the lidar is and
-then, once a second, how many scans it has had and what was lost. Passes when it has had enough scans and
-nothing was lost; on a busy computer, whose emulator does not keep up with the lidar, up to three tries.
+The board's first UART is the console; the lidar is on the second. The firmware must print the lidar's model
+and then, once per second, the number of scans and what was lost. The test passes if there are enough scans and
+nothing was lost. It is tried up to three times: on a busy computer the emulator may be too slow for the lidar.
 
 Exit status: 0 as expected, 1 not.
 """
@@ -39,7 +39,7 @@ def run(args):
 
 
 def watch(qemu, scans):
-    """The last line of the console, once there are this many scans; None if that takes too long."""
+    """Waits for a console line with this many scans. Returns its numbers of losses; None if it comes too late."""
     end = time.monotonic() + MOST_SECONDS
     has_info = False
     for line in qemu.stdout:

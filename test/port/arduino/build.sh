@@ -2,16 +2,16 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Packs the Arduino library, unless it is given as ARCHIVE, and builds one of its sketches with
-# Arduino's own builder and AVR core:
+# Packs the Arduino library, unless ARCHIVE is given, and builds one of its sketches with Arduino's
+# own builder and AVR core:
 #
 #   build.sh CMAKE SKETCH BOARD RAM [ARCHIVE]
 #
 # for example: build.sh cmake Streaming mega:cpu=atmega2560 8192
-# SKETCH may be a folder with a sketch of its name. In the environment, FIRMWARE names the file that
-# the program goes to, if it is wanted, and FLAGS more of the compiler's options.
-# Exit status: 0 it links, without a warning about our code, and leaves a quarter of the board's RAM
-# for the stack; 1 not; 77 builder, compiler or core is not installed.
+# SKETCH may be a folder that contains a sketch of the same name. Environment variables: FIRMWARE
+# (optional) names the file to which the program is copied; FLAGS are more compiler options.
+# Exit status: 0 if it links, without a warning about our code, and leaves a quarter of the board's
+# RAM for the stack; 1 if not; 77 if builder, compiler or core is not installed.
 
 set -eu
 
@@ -42,15 +42,15 @@ if [ -z "$archive" ]; then
     python3 -B "$root/.ci/pack.py" --allow-placeholder "$work/release"
     archive=$(echo "$work"/release/*-arduino.zip)
 fi
-# CMake 3.31 unpacks nothing from a path with accents where the locale is C.
+# In the locale C, CMake 3.31 cannot unpack an archive whose path has accents.
 cp "$archive" "$work/library.zip"
 (cd "$work/libraries" && "$cmake" -E tar xf ../library.zip)
 
-# Where Debian has the tool that looks for a sketch's functions; Arduino brings it along otherwise.
+# Debian's path of the tool that finds a sketch's functions; Arduino otherwise bundles this tool.
 ctags='"{cmd.path}" -u --language-force=c++ -f - --c++-kinds=svpf --fields=KSTtzns'
 ctags="$ctags --line-directives \"{source_file}\""
 
-# GCC before 6 does not name DECIMAL_DIG in C++, but the core expects it.
+# GCC before version 6 does not define DECIMAL_DIG in C++, but the core needs it.
 arduino-builder -compile -core-api-version 10819 -warnings all -fqbn "arduino:avr:$board" \
     -hardware "$hardware" -tools "$work/tools" -libraries "$work/libraries" \
     -prefs "tools.ctags.cmd.path=$(command -v arduino-ctags)" -prefs "tools.ctags.pattern=$ctags" \

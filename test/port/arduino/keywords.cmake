@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# keywords.txt colours each public method of the classes, and each event, and nothing that is gone.
+# Checks that keywords.txt lists each public method and each event, and no other name.
 #   cmake -D ROOT=FOLDER -P keywords.cmake
 
 cmake_minimum_required(VERSION 3.16)

@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* An Arduino Mega 2560 that runs a sketch as it is, at its own speed: each instruction takes its
- * cycles, and each byte of the simulated lidar comes when it comes.
+/* An emulated Arduino Mega 2560 that runs an unchanged sketch at the real speed: each instruction
+ * takes its cycles, and each byte of the simulated lidar arrives at its time.
  *
  *     mega FIRMWARE.elf SCANS PORT…       PORT: 1 to 3, a lidar is on Serial1 to Serial3
  *
- * Runs until each lidar has sent SCANS whole revolutions, and until the sketch then prints
+ * Runs until each lidar has sent SCANS whole revolutions and the sketch has then printed
  *
  *     N scans, N complete
  *
- * where N is the number of revolutions that all lidars have sent; or until it has printed a number
- * for each, and no byte was lost. If the sketch prints only what the lidar sends (a bridge), all of
- * it must come through, and in order; the computer's start command goes the other way. Exit status:
- * 0 as expected, 1 not, 2 usage, 77 there is no such firmware.
+ * where N is the number of revolutions that all lidars have sent. A sketch may print one number per
+ * revolution instead; then no byte may be lost. A sketch may also be a bridge, which prints the
+ * lidar's bytes: all must arrive in order, and the computer sends it a start command. Exit status:
+ * 0 as expected, 1 not, 2 wrong usage, 77 the firmware does not exist.
  *
- * The emulator's own UART is kinder than the chip: its receive queue has 64 bytes. The lidars'
- * ports are therefore modelled here: two bytes and the shift register; a third byte that is
- * complete while two wait is lost. */
+ * The emulator's own UART has a receive queue of 64 bytes, the chip's UART only two bytes and the
+ * shift register. The lidars' ports are therefore modelled here: a byte that is complete while two
+ * others wait is lost. */
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,24 +34,25 @@
 #define CYCLES_PER_US (CLOCK_HZ / 1000000u)
 #define PORTS 3u
 #define QUEUE 2u
-/* In the core's HardwareSerial, after the table of its virtual functions, and what Print and Stream
- * have: six pointers to registers, a flag, then the receive buffer's head and tail. */
+/* Offsets in the core's HardwareSerial object: after the pointer to its virtual functions and the
+ * members of Print and Stream come six pointers to registers, a flag, and then the receive buffer's
+ * head and tail. */
 #define HEAD_AT 25u
 #define TAIL_AT 26u
 #define CORE_BUFFER 64u
-#define COMMAND_US 500000u /* When a bridge's computer starts the lidar. */
-#define GRACE_US 1500000u  /* For the sketch's next line. */
+#define COMMAND_US 500000u /* The time at which a bridge's computer starts the lidar. */
+#define GRACE_US 1500000u  /* Time for the sketch to print its next line. */
 #define LIMIT_US 60000000u
 
 typedef struct {
     avr_t *avr;
     avr_uart_t *uart;
-    uint16_t object; /* The core's, in data memory. */
+    uint16_t object; /* Address of the core's HardwareSerial object in data memory. */
     sim_t lidar;
     uint8_t queue[QUEUE];
     unsigned queued;
-    unsigned lost;    /* The chip's queue was full, or the core's buffer when it came to it. */
-    unsigned waiting; /* Bytes in the core's buffer, at most. */
+    unsigned lost;    /* Bytes that found the chip's queue or the core's buffer full. */
+    unsigned waiting; /* Most bytes that were in the core's buffer. */
     unsigned turns;   /* Whole revolutions sent. */
 } port_t;
 
@@ -60,9 +61,9 @@ static unsigned port_count;
 static unsigned wanted;
 static char line[200];
 static bool said_so;
-static uint8_t sent[4096]; /* By the first lidar, a ring, */
+static uint8_t sent[4096]; /* Ring of the bytes that the first lidar has sent. */
 static size_t sent_count;
-static size_t forwarded; /* and of that on the console, in order. */
+static size_t forwarded; /* How many of them a bridge has printed, in order. */
 static bool is_bridge;
 
 static uint64_t now_us(const avr_t *avr)
@@ -78,7 +79,7 @@ static unsigned core_waiting(const port_t *port)
 
 /* ---------------------------------------------------------------------------- the lidars' ports */
 
-/* As the data sheet has it: the interrupt is due as long as there is a byte. */
+/* As in the data sheet: the interrupt stays pending while there is a byte in the queue. */
 static uint8_t read_data(avr_t *avr, avr_io_addr_t address, void *context)
 {
     port_t *const port = context;
@@ -109,7 +110,7 @@ static void receive(port_t *port, uint8_t byte)
     avr_raise_interrupt(port->avr, &port->uart->rxc);
 }
 
-/* The sketch's commands reach the lidar. */
+/* Passes a byte of the sketch's commands to the lidar. */
 static void send(struct avr_irq_t *irq, uint32_t value, void *context)
 {
     port_t *const port = context;
@@ -148,7 +149,8 @@ static avr_uart_t *find_uart(avr_t *avr, char name)
     return NULL;
 }
 
-/* The address in data memory of a port of the core; 0: the sketch does not use it. */
+/* The data memory address of the core's object for a port; 0 if the sketch does not use the
+ * port. */
 static uint16_t find_object(const elf_firmware_t *firmware, char digit)
 {
     const char name[] = {'S', 'e', 'r', 'i', 'a', 'l', digit, '\0'};
@@ -160,7 +162,8 @@ static uint16_t find_object(const elf_firmware_t *firmware, char digit)
     return 0;
 }
 
-/* At once at its speed: slower revolutions have more points than a Mega has room for. */
+/* The lidar turns at full speed at once: slower revolutions have more points than a Mega can
+ * store. */
 static void start_lidar(port_t *port)
 {
     sim_config_t config = sim_default_config();
@@ -207,7 +210,7 @@ static void judge(void)
     unsigned scans = 0;
     unsigned complete = 0;
     char end = '\0';
-    if (sscanf(line, "%u%c", &scans, &end) == 1) { /* A number alone: of a scan. */
+    if (sscanf(line, "%u%c", &scans, &end) == 1) { /* A sketch that prints one number per scan. */
         scans = ++numbers;
         complete = ports[0].lost == 0 ? numbers : 0;
     } else if (sscanf(line, "%u scans, %u complete", &scans, &complete) != 2) {
@@ -217,7 +220,7 @@ static void judge(void)
         scans >= wanted * port_count && scans == complete && scans + port_count >= turns_sent();
 }
 
-/* What the lidar sends says A5 or AA first, neither of which is in a line. */
+/* The lidar's first byte is A5 or AA: no printed text contains these bytes. */
 static bool forward(uint8_t byte)
 {
     is_bridge = is_bridge || (forwarded == 0 && byte >= 0x80);
@@ -294,7 +297,7 @@ static void run(avr_t *avr)
 static avr_t *make_board(elf_firmware_t *firmware, const char *path)
 {
     avr_t *const avr = avr_make_mcu_by_name("atmega2560");
-    uint32_t flags = 0; /* Its output is neither shown nor waited for by simavr. */
+    uint32_t flags = 0; /* For UART 0: simavr neither prints its output nor sleeps when polled. */
     if (avr == NULL || elf_read_firmware(path, firmware) != 0) {
         return NULL;
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The class that sketches use, against the simulated lidar. */
+/* Tests the class that sketches use, with the simulated lidar. */
 
 #include <TMiniLidar.h>
 
@@ -62,7 +62,7 @@ static void assert_same_points(const std::vector<reference_point_t> &expected,
 }
 
 #if defined(ESP32) || defined(ARDUINO_ARCH_RP2040)
-static void beginning_enlarges_the_buffer_before_it_opens_the_port(void)
+static void begin_enlarges_the_buffer_before_it_opens_the_port(void)
 {
     TMiniLidar lidar;
     TEST_ASSERT_TRUE(lidar.begin(Serial1, 16, 17));
@@ -77,7 +77,7 @@ static void beginning_enlarges_the_buffer_before_it_opens_the_port(void)
 #endif
 }
 
-static void a_hardware_port_on_its_usual_pins_is_opened_just_so(void)
+static void a_hardware_port_on_its_default_pins_is_enlarged_too(void)
 {
     TMiniLidar lidar;
     TEST_ASSERT_TRUE(lidar.begin(Serial1));
@@ -103,7 +103,8 @@ static void a_port_that_the_sketch_has_opened_is_enlarged_on_the_pins_it_is_give
 #endif
 
 #if defined(ESP32)
-/* Closed, it would forget them; open, it cannot be enlarged. */
+/* Its buffer stays small: an open port cannot be enlarged, and closing it would release the
+ * pins. */
 static void a_port_that_the_sketch_has_opened_on_its_pins_stays_on_them(void)
 {
     TMiniLidar lidar;
@@ -126,7 +127,7 @@ static void a_port_that_cannot_be_opened_is_reported(void)
     TEST_ASSERT_TRUE(lidar.begin(Serial1, 16, 17));
 }
 #elif defined(ARDUINO_ARCH_RP2040)
-static void a_port_that_the_sketch_has_opened_is_enlarged_all_the_same(void)
+static void a_port_that_the_sketch_has_opened_is_enlarged_too(void)
 {
     TMiniLidar lidar;
     Serial1.begin(9600);
@@ -135,7 +136,7 @@ static void a_port_that_the_sketch_has_opened_is_enlarged_all_the_same(void)
 }
 #endif
 
-/* Runs for `ms`, with a sketch that comes round every `pause` ms. */
+/* Runs for `ms`, with a sketch that calls loop() every `pause` ms. */
 static void run_with_pauses(TMiniLidarBase &lidar, unsigned ms, unsigned pause)
 {
     for (unsigned i = 1; i <= ms; i++) {
@@ -146,8 +147,9 @@ static void run_with_pauses(TMiniLidarBase &lidar, unsigned ms, unsigned pause)
 }
 
 #if !defined(SERIAL_RX_BUFFER_SIZE)
-/* 50 ms are 660 bytes: more than the lidar's own buffer here, less than the core's. */
-static void what_the_lidars_buffer_has_no_room_for_stays_in_the_cores(void)
+/* 660 bytes arrive in 50 ms: more than fit in the lidar's own buffer, fewer than fit in the
+ * core's. */
+static void bytes_that_do_not_fit_in_the_lidars_buffer_stay_in_the_cores(void)
 {
     static TMiniLidarWith<256, 0> lidar;
     tmini_counters_t counters;
@@ -160,8 +162,8 @@ static void what_the_lidars_buffer_has_no_room_for_stays_in_the_cores(void)
     TEST_ASSERT_TRUE(counters.packets > 200);
 }
 #else
-/* 20 ms are 260 bytes, of which 63 find room. */
-static void what_the_cores_buffer_has_dropped_is_known_and_no_scan_is_complete(void)
+/* 260 bytes arrive in 20 ms, but the core's buffer has room for 63. */
+static void an_overflow_of_the_cores_buffer_is_counted_and_no_scan_is_complete(void)
 {
     static TMiniLidar lidar;
     lidar.begin(Serial1);
@@ -171,14 +173,15 @@ static void what_the_cores_buffer_has_dropped_is_known_and_no_scan_is_complete(v
     TEST_ASSERT_EQUAL_UINT(0, lidar.overruns());
     run_with_pauses(lidar, 20, 20);
     TEST_ASSERT_EQUAL_UINT(1, lidar.overruns());
-    for (unsigned i = 0; i < 2; i++) { /* What came before the gap, and what came after it. */
+    for (unsigned i = 0; i < 2; i++) { /* The parts before and after the gap. */
         TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000) && !lidar.scan().complete);
     }
     TEST_ASSERT_TRUE(happens(lidar, TMINI_EVENT_SCAN, 2000) && lidar.scan().complete);
 }
 
-/* A millisecond for every 20 points: without it the 63 bytes would last for three. */
-static void going_through_the_points_takes_what_comes_meanwhile(void)
+/* Every 20 points take a millisecond. If the iteration did not receive, the core's buffer of 63
+ * bytes would overflow. */
+static void iterating_over_the_points_also_receives(void)
 {
     static TMiniLidar lidar;
     size_t points = 0;
@@ -202,7 +205,7 @@ static void any_other_stream_is_left_as_the_sketch_has_opened_it(void)
     TEST_ASSERT_EQUAL_UINT(0, Serial1.baud_rate);
 }
 
-/* As an adapter that has been unplugged. */
+/* Behaves as an adapter that has been unplugged. */
 class StuckStream : public Stream
 {
   public:
@@ -220,7 +223,7 @@ class StuckStream : public Stream
     }
 };
 
-static void a_stream_that_promises_bytes_and_gives_none_holds_nobody_up(void)
+static void a_stream_that_promises_bytes_but_gives_none_does_not_block(void)
 {
     TMiniLidar lidar;
     StuckStream stream;
@@ -244,7 +247,7 @@ static void buffers_of_a_wrong_size_are_refused(void)
 
 static void every_point_of_every_scan_is_there(void)
 {
-    static TMiniLidarWith<1024, 2000> lidar; /* Slow revolutions, while spinning up, have more. */
+    static TMiniLidarWith<1024, 2000> lidar; /* Revolutions during spin-up have more points. */
     lidar.begin(Serial1);
     TEST_ASSERT_TRUE(lidar.start());
     for (uint32_t revolution = 1; revolution <= 5; revolution++) {
@@ -276,7 +279,7 @@ static void with_a_spare_buffer_a_scan_stays_until_the_next(void)
     assert_same_points(unit->revolutions[1], lidar);
 }
 
-/* Upside down the angles run the other way; 80 to 100 degrees of the robot are masked. */
+/* Upside down, the angles run the other way; the robot's angles 80 to 100 degrees are masked. */
 static void assert_mounted(std::vector<reference_point_t> points, TMiniLidarBase &lidar)
 {
     for (reference_point_t &point : points) {
@@ -286,7 +289,7 @@ static void assert_mounted(std::vector<reference_point_t> points, TMiniLidarBase
     assert_same_points(points, lidar);
 }
 
-static void points_come_as_the_robot_sees_them(void)
+static void points_have_the_angles_and_the_mask_of_the_robot(void)
 {
     static const tmini_arc_t masts[] = {{80, 100}};
     tmini_mount_t mount = tmini_mount_t();
@@ -304,7 +307,7 @@ static void points_come_as_the_robot_sees_them(void)
     unit->packets.clear();
     streaming.setMount(mount);
     TEST_ASSERT_TRUE(streaming.begin(Serial1));
-    streaming.start(); /* Stops it first. */
+    streaming.start(); /* The lidar still scans: start() first stops it. */
     TEST_ASSERT_TRUE(happens(streaming, TMINI_EVENT_PACKET, 2000));
     assert_mounted(unit->packets.back(), streaming);
 }
@@ -315,8 +318,8 @@ static void leave(const void *data, tmini_scan_t *scan)
     (void)scan;
 }
 
-/* There is room for one step. */
-static void a_mount_and_a_step_of_ones_own_exclude_each_other(void)
+/* The driver calls only one step. */
+static void a_mount_and_the_users_own_step_exclude_each_other(void)
 {
     static const tmini_mount_t mount = tmini_mount_t();
     static TMiniLidarWith<1024, 2000> lidar;
@@ -353,8 +356,8 @@ static void assert_taken_in_one_loop(TMiniLidarBase &lidar, size_t count)
     TEST_ASSERT_EQUAL_UINT(0, Serial1.received.size());
 }
 
-/* A single byte, and one more than the lidar's buffer holds. */
-static void a_loop_takes_all_that_is_there(void)
+/* With a single byte, and with one byte more than the lidar's buffer holds. */
+static void one_loop_takes_all_waiting_bytes(void)
 {
     static TMiniLidarWith<256, 0> lidar;
     lidar.begin(Serial1);
@@ -362,7 +365,7 @@ static void a_loop_takes_all_that_is_there(void)
     assert_taken_in_one_loop(lidar, 257);
 }
 
-static void it_never_asks_for_more_than_is_there(void)
+static void it_never_reads_more_than_is_available(void)
 {
     static TMiniLidar lidar;
     scan(lidar);
@@ -392,7 +395,7 @@ static void a_frequency_in_begin_is_set_before_the_start(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, lidar.status());
 }
 
-/* As a library does that closes the port. An ESP32 needs the pins again. */
+/* Another library may close the port. On an ESP32, the pins must then be set again. */
 static void a_port_that_something_has_closed_is_opened_again(void)
 {
     static TMiniLidar lidar;
@@ -410,7 +413,7 @@ static void a_port_that_something_has_closed_is_opened_again(void)
     TEST_ASSERT_EQUAL_INT(pin, Serial1.rx_pin);
 }
 
-/* Returns what the lidar then says, in hundredths; 0 when it was refused. */
+/* Returns the frequency that the lidar then reports, in 0.01 Hz; 0 if the request was refused. */
 static unsigned frequency_set_to(float hertz)
 {
     TMiniLidar lidar;
@@ -428,7 +431,7 @@ static void the_slowest_and_the_fastest_frequency_are_possible(void)
     TEST_ASSERT_EQUAL_UINT(600, frequency_set_to(6.0f));
 }
 
-/* 5.99 and 12.01 would be rounded to what is possible. */
+/* Rounding must not make 5.99 and 12.01 valid. */
 static void a_frequency_out_of_range_is_refused(void)
 {
     TMiniLidar lidar;
@@ -466,7 +469,7 @@ static void without_a_lidar_a_command_fails_and_says_why(void)
     TEST_ASSERT_EQUAL_STRING("timeout", lidar.error());
 }
 
-static void degrees_are_a_sixty_fourth_of_the_units_and_zero_is_no_distance(void)
+static void a_degree_is_64_units_and_distance_zero_is_invalid(void)
 {
     TMiniPoint point;
     point.angle_q6 = 5776; /* 90.25 * 64 */
@@ -481,35 +484,35 @@ int main(void)
 {
     UnityBegin("test_arduino_lidar.cpp");
 #if defined(ESP32) || defined(ARDUINO_ARCH_RP2040)
-    RUN_TEST(beginning_enlarges_the_buffer_before_it_opens_the_port);
-    RUN_TEST(a_hardware_port_on_its_usual_pins_is_opened_just_so);
+    RUN_TEST(begin_enlarges_the_buffer_before_it_opens_the_port);
+    RUN_TEST(a_hardware_port_on_its_default_pins_is_enlarged_too);
     RUN_TEST(a_port_that_the_sketch_has_opened_is_enlarged_on_the_pins_it_is_given);
 #endif
 #if defined(ESP32)
     RUN_TEST(a_port_that_the_sketch_has_opened_on_its_pins_stays_on_them);
     RUN_TEST(a_port_that_cannot_be_opened_is_reported);
 #elif defined(ARDUINO_ARCH_RP2040)
-    RUN_TEST(a_port_that_the_sketch_has_opened_is_enlarged_all_the_same);
+    RUN_TEST(a_port_that_the_sketch_has_opened_is_enlarged_too);
 #endif
 #if !defined(SERIAL_RX_BUFFER_SIZE)
-    RUN_TEST(what_the_lidars_buffer_has_no_room_for_stays_in_the_cores);
+    RUN_TEST(bytes_that_do_not_fit_in_the_lidars_buffer_stay_in_the_cores);
 #else
-    RUN_TEST(what_the_cores_buffer_has_dropped_is_known_and_no_scan_is_complete);
-    RUN_TEST(going_through_the_points_takes_what_comes_meanwhile);
+    RUN_TEST(an_overflow_of_the_cores_buffer_is_counted_and_no_scan_is_complete);
+    RUN_TEST(iterating_over_the_points_also_receives);
 #endif
     RUN_TEST(any_other_stream_is_left_as_the_sketch_has_opened_it);
-    RUN_TEST(a_stream_that_promises_bytes_and_gives_none_holds_nobody_up);
+    RUN_TEST(a_stream_that_promises_bytes_but_gives_none_does_not_block);
     RUN_TEST(before_begin_nothing_happens);
     RUN_TEST(buffers_of_a_wrong_size_are_refused);
     RUN_TEST(every_point_of_every_scan_is_there);
     RUN_TEST(every_point_of_every_packet_is_there_when_streaming);
     RUN_TEST(with_a_spare_buffer_a_scan_stays_until_the_next);
-    RUN_TEST(a_mount_and_a_step_of_ones_own_exclude_each_other);
-    RUN_TEST(points_come_as_the_robot_sees_them);
+    RUN_TEST(a_mount_and_the_users_own_step_exclude_each_other);
+    RUN_TEST(points_have_the_angles_and_the_mask_of_the_robot);
     RUN_TEST(points_are_gone_with_the_next_loop);
     RUN_TEST(points_are_gone_when_it_begins_again);
-    RUN_TEST(a_loop_takes_all_that_is_there);
-    RUN_TEST(it_never_asks_for_more_than_is_there);
+    RUN_TEST(one_loop_takes_all_waiting_bytes);
+    RUN_TEST(it_never_reads_more_than_is_available);
     RUN_TEST(information_and_health_are_read);
     RUN_TEST(a_frequency_in_begin_is_set_before_the_start);
     RUN_TEST(a_port_that_something_has_closed_is_opened_again);
@@ -517,6 +520,6 @@ int main(void)
     RUN_TEST(a_frequency_out_of_range_is_refused);
     RUN_TEST(while_scanning_only_stop_is_possible);
     RUN_TEST(without_a_lidar_a_command_fails_and_says_why);
-    RUN_TEST(degrees_are_a_sixty_fourth_of_the_units_and_zero_is_no_distance);
+    RUN_TEST(a_degree_is_64_units_and_distance_zero_is_invalid);
     return UnityEnd();
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The sketch ObstacleStop, as it is, against the simulated lidar: upside down, a mast at the back.
- * A sketch begins once: the tests are one story, in the order of main(). */
+/* Runs the unchanged sketch ObstacleStop with the simulated lidar, mounted upside down, with a mast
+ * at the back. A sketch starts only once: each test continues where the one before it ended. */
 
 #include <Arduino.h>
 
@@ -26,7 +26,7 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-static void it_stops_until_the_way_is_seen_and_free(void)
+static void it_stops_until_it_has_seen_that_the_way_is_free(void)
 {
     setup();
     TEST_ASSERT_EQUAL_INT(HIGH, arduino_pins[STOP_PIN]);
@@ -35,7 +35,7 @@ static void it_stops_until_the_way_is_seen_and_free(void)
     TEST_ASSERT_UINT_WITHIN(20, 1000, lidar.scan().frequency_chz);
 }
 
-static void something_near_in_front_is_a_stop(void)
+static void something_near_in_front_stops_the_robot(void)
 {
     unit->placeObstacle(250);
     run_for(300);
@@ -45,8 +45,8 @@ static void something_near_in_front_is_a_stop(void)
     TEST_ASSERT_EQUAL_INT(LOW, arduino_pins[STOP_PIN]);
 }
 
-/* The lidar's 90 degrees are the left of a robot from which it hangs. */
-static void what_is_beside_it_is_on_the_side_where_it_is(void)
+/* The lidar hangs upside down: its 90 degrees are at the robot's left. */
+static void an_obstacle_at_the_side_is_in_the_sector_of_that_side(void)
 {
     unit->placeObstacle(250, 90 * 64);
     run_for(300);
@@ -55,7 +55,7 @@ static void what_is_beside_it_is_on_the_side_where_it_is(void)
     unit->clearObstacles();
 }
 
-static void the_mast_is_nothing(void)
+static void the_mast_is_ignored(void)
 {
     unit->placeObstacle(150, 180 * 64);
     run_for(300);
@@ -63,7 +63,7 @@ static void the_mast_is_nothing(void)
     unit->clearObstacles();
 }
 
-static void a_lidar_that_has_gone_is_a_stop(void)
+static void an_unplugged_lidar_stops_the_robot(void)
 {
     unit->unplug();
     run_for(500);
@@ -75,10 +75,10 @@ int main(void)
     VirtualLidar lidar_on_the_robot;
     unit = &lidar_on_the_robot;
     UnityBegin("test_arduino_obstacle_stop.cpp");
-    RUN_TEST(it_stops_until_the_way_is_seen_and_free);
-    RUN_TEST(something_near_in_front_is_a_stop);
-    RUN_TEST(what_is_beside_it_is_on_the_side_where_it_is);
-    RUN_TEST(the_mast_is_nothing);
-    RUN_TEST(a_lidar_that_has_gone_is_a_stop);
+    RUN_TEST(it_stops_until_it_has_seen_that_the_way_is_free);
+    RUN_TEST(something_near_in_front_stops_the_robot);
+    RUN_TEST(an_obstacle_at_the_side_is_in_the_sector_of_that_side);
+    RUN_TEST(the_mast_is_ignored);
+    RUN_TEST(an_unplugged_lidar_stops_the_robot);
     return UnityEnd();
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The sketch Scan, as it is, against the simulated lidar. A sketch begins once: the tests are one
- * story, in the order of main(). */
+/* Runs the unchanged sketch Scan with the simulated lidar. A sketch starts only once: each test
+ * continues where the one before it ended. */
 
 #include <Arduino.h>
 
@@ -42,7 +42,8 @@ static std::string next_line()
     return printed();
 }
 
-/* What is in front, from the lidar's own truth: valid, within 30 degrees of 0. */
+/* The nearest distance in front in the points that the lidar really sent: only valid points, within
+ * 30 degrees of 0. */
 static unsigned nearest_in_front(const std::vector<reference_point_t> &points)
 {
     unsigned result = 0;
@@ -59,12 +60,12 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-static void the_sketch_tells_the_model_and_every_second_what_is_in_front(void)
+static void the_sketch_prints_the_model_and_every_second_the_nearest_distance(void)
 {
     setup();
     run_for(3500);
     TEST_ASSERT_TRUE(has_printed("lidar model 151\r\n"));
-    TEST_ASSERT_TRUE(scans >= 12 && complete >= scans - 1); /* The first was too slow. */
+    TEST_ASSERT_TRUE(scans >= 12 && complete >= scans - 1); /* The first turn was too slow. */
     const std::string line = next_line();
     const unsigned truth = nearest_in_front(unit->revolutions[scans]);
     const std::string expected = std::to_string(scans) + " scans, " + std::to_string(complete) +
@@ -72,7 +73,7 @@ static void the_sketch_tells_the_model_and_every_second_what_is_in_front(void)
     TEST_ASSERT_EQUAL_STRING(expected.c_str(), line.c_str());
 }
 
-static void something_near_in_front_is_a_stop(void)
+static void something_near_in_front_stops_the_robot(void)
 {
     unit->placeObstacle(350);
     run_for(1500);
@@ -82,7 +83,7 @@ static void something_near_in_front_is_a_stop(void)
     TEST_ASSERT_FALSE(next_line().find("STOP") != std::string::npos);
 }
 
-static void a_faulty_lidar_is_a_stop_whatever_it_measures(void)
+static void a_faulty_lidar_stops_the_robot_whatever_it_measures(void)
 {
     unit->setHealth(SIM_HEALTH_PD);
     run_for(1500);
@@ -93,7 +94,7 @@ static void a_faulty_lidar_is_a_stop_whatever_it_measures(void)
     TEST_ASSERT_FALSE(next_line().find("STOP") != std::string::npos);
 }
 
-static void a_lidar_that_has_gone_is_a_stop(void)
+static void an_unplugged_lidar_stops_the_robot(void)
 {
     unit->unplug();
     run_for(600);
@@ -105,9 +106,9 @@ int main(void)
     VirtualLidar lidar_on_the_table;
     unit = &lidar_on_the_table;
     UnityBegin("test_arduino_scan.cpp");
-    RUN_TEST(the_sketch_tells_the_model_and_every_second_what_is_in_front);
-    RUN_TEST(something_near_in_front_is_a_stop);
-    RUN_TEST(a_faulty_lidar_is_a_stop_whatever_it_measures);
-    RUN_TEST(a_lidar_that_has_gone_is_a_stop);
+    RUN_TEST(the_sketch_prints_the_model_and_every_second_the_nearest_distance);
+    RUN_TEST(something_near_in_front_stops_the_robot);
+    RUN_TEST(a_faulty_lidar_stops_the_robot_whatever_it_measures);
+    RUN_TEST(an_unplugged_lidar_stops_the_robot);
     return UnityEnd();
 }

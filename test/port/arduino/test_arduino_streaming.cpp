@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The sketch Streaming, as it is, against the simulated lidar. */
+/* Runs the unchanged sketch Streaming with the simulated lidar. */
 
 #include <Arduino.h>
 
@@ -15,7 +15,7 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-/* The nearest distances that the sketch has printed, a line each. */
+/* The nearest distances that the sketch has printed, one per line. */
 static std::vector<unsigned> printed_numbers()
 {
     std::vector<unsigned> numbers;
@@ -53,7 +53,7 @@ static void the_sketch_prints_the_nearest_distance_of_each_revolution(void)
     const std::vector<unsigned> numbers = printed_numbers();
     TEST_ASSERT_TRUE(numbers.size() >= 8);
     TEST_ASSERT_EQUAL_UINT(scans, complete);
-    /* Revolution 0 is what came before the first start packet. */
+    /* Revolution 0 has the points before the first start packet. */
     for (size_t i = 0; i < numbers.size(); i++) {
         TEST_ASSERT_EQUAL_UINT(nearest_of(unit.revolutions[static_cast<uint32_t>(i + 1)]),
                                numbers[i]);

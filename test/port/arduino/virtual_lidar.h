@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The simulated lidar on the stand-in's Serial1, in virtual time, and the truth about what it
- * sent. */
+/* The simulated lidar on the stand-in's Serial1, in virtual time, with a record of the points that
+ * it sent. */
 
 #ifndef VIRTUAL_LIDAR_H
 #define VIRTUAL_LIDAR_H
@@ -21,14 +21,14 @@ class VirtualLidar
 {
   public:
     VirtualLidar();
-    /* Lets a millisecond pass: what the sketch has sent arrives, what the lidar sends comes in. */
+    /* Lets a millisecond pass: bytes are transferred in both directions. */
     void pass();
-    /* Unplugged: nothing comes any more. */
+    /* From then on no byte arrives. */
     void unplug();
-    /* 10 degrees wide, in front or at another of the lidar's angles. */
+    /* Places an obstacle 10 degrees wide, in front or at another angle of the lidar. */
     void placeObstacle(uint16_t distance_mm, uint16_t angle_q6 = 0);
     void clearObstacles();
-    /* Reports these faults (section 4), and goes on measuring. */
+    /* The lidar then reports these faults (section 4), but continues to measure. */
     void setHealth(uint8_t bits);
 
     /* Points by revolution and by packet. */

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Compiles the port as ESP-IDF would, but over the stand-in for its interface: for the chips with
-# Xtensa cores (as far as Debian's compiler for the ESP8266 is one for them) and for those with
-# RISC-V:
+# Compiles the port as ESP-IDF would, but with the stand-in for ESP-IDF's headers: for chips with
+# Xtensa cores (with Debian's compiler for the ESP8266, the nearest one available) and for chips
+# with RISC-V cores:
 #
 #   compile.sh xtensa|riscv
 #
@@ -16,7 +16,7 @@ root=$(cd "$(dirname "$0")/../../.." && pwd)
 
 case ${1:-} in
     xtensa)
-        # Where Debian puts this C library's headers; the compiler does not look there by itself.
+        # Debian's folders of the C library's headers: the compiler does not search them by default.
         compiler="xtensa-lx106-elf-gcc -mlongcalls -isystem /usr/lib/xtensa-lx106-elf/include
             -isystem /usr/lib/picolibc/xtensa-lx106-elf/include -DMODEL_ESP32"
         ;;

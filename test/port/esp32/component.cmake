@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The ESP-IDF component as its manifest has it packed, or from a release's ARCHIVE, and the example:
-# in the repository, and copied out alone as the component registry gives it to a user. Built by a
-# model of ESP-IDF's build; and if the variable IDF_PATH of the environment names an ESP-IDF,
-# configured by that too, for its target `linux`.
+# Packs the ESP-IDF component as its manifest says, or unpacks a release's ARCHIVE, and builds the
+# example with a model of ESP-IDF's build: in the repository, and as a copy with the component, as a
+# user gets it from the component registry. If the environment variable IDF_PATH names an ESP-IDF,
+# the copy is also configured by ESP-IDF itself, for its target `linux`.
 #
 #   cmake -D ROOT=DIR -D WORK=DIR [-D ARCHIVE=FILE] -P component.cmake
 
@@ -25,7 +25,7 @@ function(build name source)
     message("${name}: configured and built by the model")
 endfunction()
 
-# Configuring `source` must fail, and say `reason`.
+# Configuring `source` must fail, and its message must contain `reason`.
 function(refuse name source reason)
     set(ENV{IDF_PATH} ${CMAKE_CURRENT_LIST_DIR}/idf_model)
     execute_process(COMMAND ${CMAKE_COMMAND} -S ${source} -B ${WORK}/build-${name}
@@ -38,11 +38,12 @@ endfunction()
 
 function(unpack)
     file(MAKE_DIRECTORY ${WORK}/packed)
-    file(RELATIVE_PATH archive ${WORK}/packed ${ARCHIVE}) # CMake 3.31 unpacks no path with accents.
+    # In the locale C, CMake 3.31 cannot unpack an archive whose path has accents.
+    file(RELATIVE_PATH archive ${WORK}/packed ${ARCHIVE})
     run("unpacking" ${CMAKE_COMMAND} -E chdir ${WORK}/packed ${CMAKE_COMMAND} -E tar xf ${archive})
 endfunction()
 
-# What the manifest's list names, copied to WORK/packed/tmini.
+# Copies the files in the manifest's list to WORK/packed/tmini.
 function(pack)
     file(STRINGS ${ROOT}/idf_component.yml lines)
     string(REGEX REPLACE "^.*;  include:;" "" lines "${lines}")
@@ -60,7 +61,7 @@ function(pack)
     endforeach()
 endfunction()
 
-# The registry takes each folder of `examples` for an example.
+# The registry treats each folder in `examples` as an example.
 function(check_pack)
     file(GLOB examples RELATIVE ${WORK}/packed/tmini/examples ${WORK}/packed/tmini/examples/*)
     if(NOT examples STREQUAL "esp32_idf")
@@ -100,13 +101,13 @@ else()
 endif()
 check_pack()
 
-# The repository's folder may have any name here; ESP-IDF minds it.
+# ESP-IDF names the component after its folder: do not depend on the name of the repository's.
 file(MAKE_DIRECTORY ${WORK}/named)
 file(CREATE_LINK ${ROOT} ${WORK}/named/tmini SYMBOLIC)
 file(CREATE_LINK ${ROOT} ${WORK}/named/main SYMBOLIC)
 build(in_the_repository ${WORK}/named/tmini/examples/esp32_idf)
 refuse(in_a_folder_called_main ${WORK}/named/main/examples/esp32_idf "please rename")
-file(REMOVE_RECURSE ${WORK}/named) # Who searches the build would go round in a circle.
+file(REMOVE_RECURSE ${WORK}/named) # Searching the build folder would follow the links in a circle.
 
 file(COPY ${WORK}/packed/tmini/examples/esp32_idf DESTINATION ${WORK})
 file(COPY ${WORK}/packed/tmini DESTINATION ${WORK}/esp32_idf/components)

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The pins that menuconfig begins with are free, on each chip: not the flash's, the console's or
-USB's, none that decides how the chip starts, and none that some package does not lead out. The
-sketch Scan has the same.
+"""Checks that menuconfig's default pins are free on each chip: not used for flash, console, USB or strapping, and
+present in every package. The sketch Scan must use the same pins.
 
     pins.py ROOT
 
-The table is from the pages on GPIOs of ESP-IDF's documentation. Exit status: 0 all is well, 1 not.
+The table is from the GPIO pages of ESP-IDF's documentation. Exit status: 0 all pins are free, 1 not.
 """
 
 import os
@@ -18,7 +17,7 @@ ROOT = sys.argv[1]
 
 
 def pins(text):
-    """"1, 3-5": 1, 3, 4 and 5."""
+    """Returns the set of pins in a list: "1, 3-5" gives 1, 3, 4 and 5."""
     result = set()
     for part in text.split(","):
         first, _, last = part.strip().partition("-")
@@ -26,7 +25,7 @@ def pins(text):
     return result
 
 
-# Chip: how many pins it has, and which of them have another use.
+# For each chip the number of its pins, and the pins that are not free.
 CHIPS = {
     "ESP32": (40, "0, 2, 5, 12, 15, 6-11, 16, 17, 1, 3, 20, 24, 28-31, 34-39"),
     "ESP32S2": (47, "0, 45, 46, 26-32, 22-25, 19, 20, 43, 44, 39-42"),
@@ -47,7 +46,7 @@ def read(name):
 
 
 def defaults(option):
-    """What Kconfig gives each chip."""
+    """Returns the option's default in Kconfig for each chip."""
     entry = read("Kconfig").split("config " + option + "\n")[1].split("config ")[0]
     result = {}
     for pin, condition in re.findall(r"default (\d+) if (.*)", entry):
@@ -57,7 +56,7 @@ def defaults(option):
 
 
 def of_scan():
-    """The pairs (RX, TX) of the sketch by chip; None for the chips that it does not name."""
+    """Returns the sketch's pins (RX, TX) by chip; the key None is for chips that it does not name."""
     parts = re.findall(r"#(?:if|elif|else)(.*)\nstatic const int8_t RX_PIN = (\d+);.*\n"
                        r"static const int8_t TX_PIN = (\d+);",
                        read("examples/esp32_arduino/Scan/Scan.ino"))

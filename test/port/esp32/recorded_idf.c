@@ -150,7 +150,7 @@ esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size)
     return ESP_OK;
 }
 
-/* Gives out what it holds, as ESP-IDF does when asked not to wait. */
+/* Returns the bytes that the driver holds, as ESP-IDF does when called with a wait of 0 ticks. */
 int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t ticks)
 {
     TEST_ASSERT_EQUAL(UART_NUM_1, uart);
@@ -166,7 +166,7 @@ int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t 
     return (int)count;
 }
 
-/* As many as `idf.failure` says, if it fails. */
+/* A failing call sends `idf.failure` bytes. */
 int uart_tx_chars(uart_port_t uart, const char *buffer, uint32_t length)
 {
     const esp_err_t error =

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* An ESP-IDF that records each call, and fails where the test wants it. */
+/* A stand-in for ESP-IDF that records each call, and fails in the call that a test chooses. */
 
 #ifndef RECORDED_IDF_H
 #define RECORDED_IDF_H
@@ -14,7 +14,7 @@
 #include "freertos/task.h"
 #include "tmini_esp32.h"
 
-/* Two chips that differ in what a port must know of: sdkconfig.h. */
+/* sdkconfig.h chooses one of two chips, which differ in these ways. */
 #ifdef CONFIG_IDF_TARGET_ESP32
 #define CORES 2
 #define STEADY_CLOCK UART_SCLK_APB
@@ -26,20 +26,20 @@
 #endif
 
 typedef struct {
-    char calls[1024];    /* What has been called, in order. */
-    const char *failing; /* The call that fails: how it begins; NULL: none; */
-    esp_err_t failure;   /* and with what. */
-    char logged[128];    /* The last line. */
+    char calls[1024];    /* All calls so far, in order. */
+    const char *failing; /* Calls whose record begins with this text fail; NULL: none. */
+    esp_err_t failure;   /* The result of a call that fails. */
+    char logged[128];    /* The last log line. */
     int64_t now_us;
-    uint8_t held[4096]; /* What the UART driver holds. */
+    uint8_t held[4096]; /* Bytes in the UART driver. */
     size_t held_count;
     uart_event_t events[8];
     size_t event_count;
     size_t queue_length;
     TaskFunction_t task;
     void *task_argument;
-    void (*on_wait)(void);  /* At each wait for an event; NULL: nothing happens. */
-    void (*on_delay)(void); /* While a task sleeps. */
+    void (*on_wait)(void);  /* Called at each wait for an event; may be NULL. */
+    void (*on_delay)(void); /* Called while a task sleeps; may be NULL. */
 } recorded_idf_t;
 
 extern recorded_idf_t idf;

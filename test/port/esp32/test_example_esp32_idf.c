@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The program examples/esp32_idf, as it is, against the simulated lidar in its room. */
+/* Runs the unchanged program examples/esp32_idf with the simulated lidar in its simulated room. */
 
 #include <string.h>
 
@@ -40,8 +40,8 @@ void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
     xTaskCreatePinnedToCore(run_program, "main", 3584, NULL, 1, NULL, 0);
 
     vTaskDelay(20);
-    TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN));       /* Nothing seen yet, */
-    TEST_ASSERT_FALSE(virtual_idf_pin_has_been_low(STOP_PIN)); /* not even for a moment. */
+    TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN)); /* Nothing has been seen yet: stop. */
+    TEST_ASSERT_FALSE(virtual_idf_pin_has_been_low(STOP_PIN));
 
     vTaskDelay(300);
     assert_logged("I lidar: model 151, firmware 1.2, hardware 1, serial 2026031700012345\n");
@@ -59,7 +59,7 @@ void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
     vTaskDelay(100);
     TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
 
-    virtual_idf_set_health(SIM_HEALTH_PD); /* Ranges go on coming, all of them far. */
+    virtual_idf_set_health(SIM_HEALTH_PD); /* The lidar still reports ranges, all of them far. */
     vTaskDelay(100);
     TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN));
     assert_logged("W lidar: faults: PD\n");

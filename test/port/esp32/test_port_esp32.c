@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The ESP32 port over an ESP-IDF that writes down each call: what the port asks of it and in which
- * order, what it makes of each event, and what it leaves when something fails or ends. Each table
- * is a list of claims. */
+/* Tests the ESP32 port on a stand-in that records each call of ESP-IDF: the port's calls and their
+ * order, its reaction to each event, and its clean-up after a failure or a stop. Each table is a
+ * list of test cases. */
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,12 +21,12 @@
 #define UARTS 3
 #define TX "27"
 #define RX "26"
-#define LOOK "1 " /* 20 ms of ticks of 25 ms: the least that is a wait at all. */
+#define LOOK "1 " /* 20 ms in ticks of 25 ms: at least one tick, else it would not wait. */
 #else
 #define UARTS 2
 #define TX "19"
 #define RX "18"
-#define LOOK "2 " /* 20 ms of ticks of 10 ms. */
+#define LOOK "2 " /* 20 ms in ticks of 10 ms. */
 #endif
 
 #define RING 512u
@@ -36,7 +36,7 @@ static tmini_t lidar;
 static tmini_esp32_t port;
 static tmini_esp32_wiring_t wiring;
 
-static const char *const *waits; /* What happens at each wait of the receiving task. */
+static const char *const *waits; /* The story to play at each wait of the receiving task. */
 
 /* -------------------------------------------------------------------------------------- helpers */
 
@@ -71,7 +71,7 @@ static esp_err_t start(void)
     return tmini_esp32_start(&port, &lidar);
 }
 
-/* The task that is to end runs while the other one waits for that. */
+/* Runs the receiving task while tmini_esp32_stop() sleeps and waits for that task to end. */
 static void run_task(void)
 {
     if (port.stopping && port.receiving) {
@@ -100,10 +100,10 @@ static tmini_esp32_counters_t counted(void)
 #define INSTALL LOCK "install(1,2048,0,64,0) "
 #define LINE INSTALL "line(1,230400) "
 #define PINS LINE "reset(" RX ") pins(1," TX "," RX ") "
-#define PULL_UP PINS "pull-up(" RX ") " /* Once it is routed. */
+#define PULL_UP PINS "pull-up(" RX ") " /* Only after the pin has been routed. */
 #define THRESHOLD PULL_UP "threshold(1,64) "
 #define TIMEOUT THRESHOLD "timeout(1,4) "
-#define UART TIMEOUT "interrupts(1,8) " /* Bit 3: frame errors. */
+#define UART TIMEOUT "interrupts(1,8) " /* Bit 3: framing errors. */
 #define TASK UART "task(tmini,3072,12,-1) "
 #define UNLOCK "release forget "
 #define REMOVE "remove(1) " UNLOCK
@@ -117,10 +117,10 @@ static const struct {
     {"nothing", ESP_OK, TASK, ESP_OK},
     {"create", ESP_ERR_NO_MEM, "create ", ESP_ERR_NO_MEM},
     {"acquire", ESP_FAIL, LOCK "forget ", ESP_FAIL},
-    {"install", ESP_FAIL, INSTALL UNLOCK, ESP_FAIL}, /* Not this port's: left alone. */
+    {"install", ESP_FAIL, INSTALL UNLOCK, ESP_FAIL}, /* A driver of others is not removed. */
     {"line", ESP_FAIL, LINE REMOVE, ESP_FAIL},
     {"pins", ESP_FAIL, PINS REMOVE, ESP_FAIL},
-    {"pull-up", ESP_ERR_INVALID_ARG, TASK, ESP_OK}, /* Pins 34 to 39 of an ESP32 have none. */
+    {"pull-up", ESP_ERR_INVALID_ARG, TASK, ESP_OK}, /* An ESP32's pins 34 to 39 have none. */
     {"reset", ESP_FAIL, TASK, ESP_OK},
     {"threshold", ESP_ERR_INVALID_ARG, THRESHOLD REMOVE, ESP_ERR_INVALID_ARG},
     {"timeout", ESP_ERR_INVALID_ARG, TIMEOUT REMOVE, ESP_ERR_INVALID_ARG},
@@ -144,8 +144,8 @@ void test_starting_sets_everything_up_in_order_or_leaves_nothing(void)
 
 void test_the_first_error_is_reported_when_removing_fails_too(void)
 {
-    idf.failing = "";                    /* Each call. */
-    idf.failure = ESP_ERR_NOT_SUPPORTED; /* Without power management no lock is needed. */
+    idf.failing = ""; /* Every call fails; without power management, "create" fails like this. */
+    idf.failure = ESP_ERR_NOT_SUPPORTED;
     TEST_ASSERT_EQUAL_INT(ESP_ERR_NOT_SUPPORTED, start());
     assert_calls("create install(1,2048,0,64,0) ");
 }
@@ -167,7 +167,7 @@ void test_the_task_can_be_pinned_to_a_core_or_left_out(void)
         strstr(idf.calls, CORES == 2 ? "task(tmini,3072,12,1)" : "task(tmini,3072,12,0)"));
     set_up();
     wiring.with_task = false;
-    wiring.task_stack_bytes = 0; /* Does not matter then. */
+    wiring.task_stack_bytes = 0; /* Not checked if there is no task. */
     TEST_ASSERT_EQUAL_INT(ESP_OK, start());
     assert_calls(UART);
 }
@@ -207,15 +207,15 @@ void test_what_was_never_set_up_and_null_pointers_are_refused(void)
 
 #define NO_LIMIT 99999
 
-/* The least and the most of each member, and what the log calls a value outside. */
+/* The lowest and the highest valid value of each member, and the name in the log if it is
+ * invalid. */
 static const struct {
     int *member;
     int least;
     int most;
     const char *name;
 } ranges[] = {
-    {&wiring.uart, 0, UARTS - 1, "uart"}, /* On one of the chips the next number is a low-power
-                                           * UART. */
+    {&wiring.uart, 0, UARTS - 1, "uart"}, /* One of the chips also has a low-power UART. */
     {&wiring.tx_pin, 0, NO_LIMIT, "menuconfig"},
     {&wiring.rx_pin, 0, NO_LIMIT, "menuconfig"},
     {&wiring.buffer_size, 129, NO_LIMIT, "buffer_size"},
@@ -254,7 +254,7 @@ void test_values_out_of_range_are_refused_by_name_before_anything_is_touched(voi
         if (ranges[i].most != NO_LIMIT) {
             assert_refused(ranges[i].member, ranges[i].most + 1, ranges[i].name);
         }
-        if (i >= 7) { /* Without a task what it would be like does not matter. */
+        if (i >= 7) { /* Without a task, its settings are not checked. */
             idf.logged[0] = 0;
             wiring.with_task = false;
             assert_taken(ranges[i].member, ranges[i].least - 1);
@@ -299,15 +299,15 @@ static void start_again(void)
 
 static void act(char what, size_t number, bool gap)
 {
-    static const char letters[] = "DKBOFPxy"; /* In the order of uart_event_type_t. */
+    static const char letters[] = "DKBOFPxy"; /* One letter per value of uart_event_type_t. */
     switch (what) {
-    case 'H': /* The driver holds this many bytes, */
+    case 'H': /* The driver now holds this many bytes. */
         hold(number);
         break;
-    case '>': /* which are received; with ! a gap is after them. */
+    case '>': /* The port must receive this many bytes; with !, a gap follows them. */
         receive(number, gap);
         break;
-    case 'h': /* This many were said to wait. */
+    case 'h': /* The port must have reported that it still holds this many bytes. */
         TEST_ASSERT_EQUAL_UINT(number, lidar.held_to - tmini_ring_head(&lidar.ring));
         break;
     case 'p':
@@ -322,10 +322,10 @@ static void act(char what, size_t number, bool gap)
     case 'R':
         tmini_esp32_port.restart(&port);
         break;
-    case 'X': /* As tmini_esp32_stop() does on the other core. */
+    case 'X': /* tmini_esp32_stop() does this on the other core. */
         port.stopping = true;
         break;
-    default: /* Events with their size. */
+    default: /* An event with its size. */
         post((uart_event_type_t)(strchr(letters, what) - letters), number);
         break;
     }
@@ -348,53 +348,54 @@ static void play_next(void)
     play(*waits++);
 }
 
-/* Counters: overruns, buffers full, queues full, breaks, framing and parity errors. */
+/* A story is a list of actions: act(). The counters are overruns, buffers full, queues full,
+ * breaks, framing errors and parity errors. */
 static const struct {
     const char *story;
     const char *counters;
 } stories[] = {
     {"H1 D1 >1", "0 0 0 0 0 0"},
-    {"H300 D64 >300", "0 0 0 0 0 0"}, /* More than the event named. */
-    {"H5 >5", "0 0 0 0 0 0"},         /* Their event was lost. */
+    {"H300 D64 >300", "0 0 0 0 0 0"}, /* More bytes than the event announced. */
+    {"H5 >5", "0 0 0 0 0 0"},         /* The event was lost. */
     {"x y D0 >0", "0 0 0 0 0 0"},
-    /* Trouble is counted, and nothing is thrown away. */
+    /* Errors are counted, but no byte is discarded. */
     {"H10 D10 O >10!", "1 0 0 0 0 0"},
     {"H10 D10 B >10", "0 1 0 0 0 0"},
     {"H10 D10 K >10", "0 0 0 1 0 0"},
     {"H10 D10 F >10", "0 0 0 0 1 0"},
     {"H10 D10 P >10", "0 0 0 0 0 1"},
-    /* A gap is after what was announced before it, and what the driver has put aside. */
+    /* A gap is after all bytes announced before it, and after those that the driver has stashed. */
     {"H178 D128 O D50 >128! >50", "1 0 0 0 0 0"},
     {"H260 D120 B128 O D12 >248! >12", "1 1 0 0 0 0"},
     {"O >0! >0", "1 0 0 0 0 0"},
     /* Bytes that were read before they were announced are not expected again. */
     {"H100 >100 p H30 D100 O D30 >0! >30", "1 0 0 0 0 0"},
-    /* Only events of bytes announce bytes: ESP-IDF may leave a size in others. */
+    /* Only data events announce bytes: ESP-IDF may leave a size in other events. */
     {"H50 D20 F20 O20 D30 >20! >30", "1 0 0 0 1 0"},
-    /* A gap that the ring has no room to reach is not forgotten. */
+    /* The ring is full before the gap is reached: the gap is reported later. */
     {"H600 D560 O D40 >512 h48 p >48! >40 h0", "1 0 0 0 0 0"},
-    /* Each gap costs a poll: at one place they are one, and all after the first are one. */
+    /* Each gap costs a poll: gaps at the same place become one, and so do all after the first. */
     {"H50 D20 O O D30 >20! >30", "2 0 0 0 0 0"},
     {"H100 D20 O D30 O D40 O D10 >20! >80! >0", "3 0 0 0 0 0"},
-    /* What was announced and is not there is forgotten. */
+    /* Bytes that were announced but are not in the driver are forgotten. */
     {"H5 D20 O >5! H30 D10 O D20 >10! >20", "2 0 0 0 0 0"},
     {"H9 D10 >9 p H30 D10 O D20 >10!", "1 0 0 0 0 0"},
-    /* A full queue may have lost an overflow: a gap after all that the driver can hold. */
+    /* A full queue may have lost an overflow: a gap is assumed after all bytes in the driver. */
     {"Q4 H200 D10 D10 D10 D10 >200! >0", "0 0 1 0 0 0"},
     {"Q5 H30 D10 D10 D10 >30", "0 0 0 0 0 0"},
     {"Q4 H200 D10 D10 D10 D10 >200! H50 D20 O D30 Q64 >20! >30", "1 0 1 0 0 0"},
     {"Q4 H200 D20 O D30 D30 >20! >180! >0", "1 0 1 0 0 0"},
     {"Q4 H2316 D10 D10 D10 D10 >512 p >512 p >512 p >512 p >168! >100", "0 0 1 0 0 0"},
-    /* What the ring has no room for stays in the driver until the poll has made room. */
+    /* Bytes that do not fit in the ring stay in the driver until a poll has made room. */
     {"H600 D >512 h88 D >0 h88 p D >88 h0", "0 0 0 0 0 0"},
-    /* Stopped with gaps ahead it begins again without them, and counts anew. */
+    /* After stop and start, gaps that were not yet reported are gone, and counters are 0. */
     {"H600 D600 O >512 S H100 D30 >100 p H100 D70 D40 O >40!", "1 0 0 0 0 0"},
     {"K H600 D560 O D40 O >512 S H100 D30 >100 p H100 D70 D40 O >40!", "1 0 0 0 0 0"},
-    /* So it does after a restart, whatever the driver idf.held. */
+    /* Gaps not yet reported are also gone after a restart, whatever the driver holds. */
     {"H600 D560 O D40 O >512 H100 R p >0! H100 D70 D40 O >100! >0", "3 0 0 0 0 0"},
 };
 
-void test_every_byte_is_handed_on_and_every_gap_is_where_it_was(void)
+void test_every_byte_is_handed_on_and_every_gap_is_reported_in_its_place(void)
 {
     for (size_t i = 0; i < COUNT(stories); i++) {
         char counters[64];
@@ -427,7 +428,7 @@ void test_bytes_are_handed_on_in_order_and_counted(void)
     TEST_ASSERT_EQUAL_UINT32(260, counted().bytes);
 }
 
-/* A packet of two samples; its number is the first one's distance. */
+/* A packet of two samples; the distance of the first sample is the packet's number. */
 static size_t make_packet(uint8_t *out, uint16_t number)
 {
     const encode_sample_t samples[2] = {{.distance_mm = number}, {.distance_mm = 9}};
@@ -435,8 +436,8 @@ static size_t make_packet(uint8_t *out, uint16_t number)
     return encode_packet(out, &packet);
 }
 
-/* Of 16 bytes each. Bytes 20 to 39 are lost: most of the second packet, half of the third. */
-void test_after_an_overflow_the_packets_beside_the_hole_are_all_there(void)
+/* Each packet has 16 bytes. Bytes 20 to 39 are lost: most of packet 2 and half of packet 3. */
+void test_an_overflow_costs_no_packet_before_or_after_it(void)
 {
     uint8_t stream[4 * ENCODE_PACKET_MAX];
     tmini_counters_t counters;
@@ -452,7 +453,7 @@ void test_after_an_overflow_the_packets_beside_the_hole_are_all_there(void)
     hold(24);
     memcpy(idf.held, &stream[40], 24);
     play("D24 >24");
-    idf.now_us = 1000 * 1000; /* Long silence: nothing more will come. */
+    idf.now_us = 1000 * 1000; /* A long silence: the parser gives up on partial packets. */
     tmini_poll(&lidar);
     tmini_counters(&lidar, &counters);
     TEST_ASSERT_EQUAL_UINT32(2, counters.packets);
@@ -467,7 +468,7 @@ void test_a_driver_that_fails_to_read_ends_the_call(void)
     play("H5 D5 >0");
 }
 
-void test_a_restart_sets_the_line_up_anew_and_switches_reception_on(void)
+void test_a_restart_sets_the_line_up_again_and_switches_reception_on(void)
 {
     start_well(false);
     play("H50 R >0!");
@@ -477,25 +478,25 @@ void test_a_restart_sets_the_line_up_anew_and_switches_reception_on(void)
     play(">0");
     assert_calls("7 ");
     TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
-    play("R"); /* Of a stopped port: nothing. */
+    play("R"); /* A restart of a stopped port does nothing. */
     start_well(false);
     play(">0");
     assert_calls("7 ");
 }
 
-/* What happens at each wait of the receiving task, and for how many ticks it waits. */
+/* The stories at each wait of the receiving task, and the ticks that it waits each time. */
 static const struct {
     const char *events[4];
     const char *calls;
     size_t unread;
 } tasks[] = {
     {{"H3 D3", "H3 K", "H3 D3 X"}, LOOK LOOK LOOK "end ", 9},
-    {{"H511 D", "", "X"}, LOOK LOOK LOOK "end ", 511}, /* Room for one byte. */
-    {{"H512 D", "", "X"}, LOOK "1 1 end ", 512},       /* None: the poll makes some. */
+    {{"H511 D", "", "X"}, LOOK LOOK LOOK "end ", 511}, /* The ring has room for one byte. */
+    {{"H512 D", "", "X"}, LOOK "1 1 end ", 512},       /* The ring is full. */
     {{"H600 D", "p", "X"}, LOOK "1 " LOOK "end ", 88},
 };
 
-void test_the_task_receives_until_it_is_stopped_and_looks_each_tick_at_a_full_ring(void)
+void test_the_task_receives_until_it_is_stopped_and_checks_a_full_ring_each_tick(void)
 {
     for (size_t i = 0; i < COUNT(tasks); i++) {
         set_up();
@@ -509,7 +510,7 @@ void test_the_task_receives_until_it_is_stopped_and_looks_each_tick_at_a_full_ri
     }
 }
 
-void test_started_again_the_task_receives_again(void)
+void test_a_task_that_is_started_again_receives_again(void)
 {
     static const char *const events_again[] = {"H3 D3 X"};
     start_well(true);
@@ -543,7 +544,7 @@ void test_the_clock_counts_milliseconds_modulo_2_to_32(void)
     TEST_ASSERT_EQUAL_UINT32(5, tmini_esp32_port.now_ms(&port));
 }
 
-void test_waiting_receives_or_with_a_task_or_stopped_sleeps_for_a_tick_or_more(void)
+void test_waiting_receives_but_with_a_task_or_stopped_it_sleeps(void)
 {
     tmini_esp32_port.wait(&port);
     assert_calls("delay(1) ");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The ESP32 port with a receiving task beside the polling one, against the simulated lidar. */
+/* Tests the ESP32 port with the simulated lidar, with and without a receiving task. */
 
 #include <string.h>
 
@@ -44,7 +44,7 @@ void setUp(void)
     scanning_begin(&program, 1024);
 }
 
-/* After each test: nothing is left installed, and nothing was used that did not exist. */
+/* After each test nothing may be left installed, and no call may have named a missing driver. */
 void tearDown(void)
 {
     (void)tmini_esp32_stop(&port);
@@ -66,7 +66,7 @@ static void start_port_and_lidar(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
 }
 
-void test_every_point_arrives_through_a_task_of_its_own(void)
+void test_every_point_arrives_through_a_receiving_task(void)
 {
     start_port_and_lidar();
     assert_true_scans(1, 10);
@@ -79,7 +79,7 @@ void test_every_point_arrives_through_the_callers_own_loop(void)
     assert_true_scans(1, 10);
 }
 
-/* 20 ms of bytes, 262, are twice the FIFO. */
+/* In 20 ms 262 bytes arrive: twice the size of the FIFO. */
 void test_an_overflow_costs_the_packets_that_it_hit_and_no_other(void)
 {
     tmini_esp32_counters_t uart;
@@ -98,8 +98,8 @@ void test_an_overflow_costs_the_packets_that_it_hit_and_no_other(void)
     tmini_esp32_counters(&port, &uart);
     tmini_counters(&lidar, &counters);
     TEST_ASSERT_EQUAL_UINT32(1, uart.overruns);
-    /* Two whole packets' time, and the two that it only touched; the last may still be on its
-     * way. */
+    /* Lost are at most two whole packets and two partly hit ones. One more may still be
+     * arriving. */
     TEST_ASSERT_TRUE(truth_packets() - counters.packets <= 4 + 1);
 }
 
@@ -109,7 +109,7 @@ static void poll_all(void)
     }
 }
 
-/* Receiving first: what has come during the pause is no silence. */
+/* Receives before it polls: bytes that arrived during the pause must not look like silence. */
 static void receive_and_poll_all(void)
 {
     size_t received = 0;
@@ -119,8 +119,8 @@ static void receive_and_poll_all(void)
     } while (received > 0);
 }
 
-/* Without a receiving task, so that a test decides when events are taken; the lidar scans, and all
- * that has come so far is handed on. */
+/* Starts without a receiving task, so that the test decides when events are read. At return the
+ * lidar scans and all bytes received so far have been handed on. */
 static void start_by_hand(void)
 {
     wiring.with_task = false;
@@ -129,27 +129,27 @@ static void start_by_hand(void)
     receive_and_poll_all();
 }
 
-/* Once more bytes are refused, a gap has been reported: after this many. */
-static void assert_gap_behind(size_t count)
+/* A gap was reported after this many bytes: the library takes no more before a poll. */
+static void assert_gap_after(size_t count)
 {
     TEST_ASSERT_EQUAL_UINT(count, tmini_esp32_wait(&port, 0));
     TEST_ASSERT_EQUAL_UINT(count, tmini_ring_unread(&lidar.ring));
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
 }
 
-/* The FIFO's bytes, the overflow, and ten milliseconds of bytes after it. */
+/* First come the FIFO's bytes, then the overflow, and then the bytes of about ten milliseconds. */
 void test_an_overflow_is_reported_in_its_place_however_late_the_events_are_taken(void)
 {
     start_by_hand();
     virtual_idf_hold_interrupts(20000);
     vTaskDelay(3);
-    assert_gap_behind(128);
+    assert_gap_after(128);
     poll_all();
     TEST_ASSERT_TRUE(tmini_esp32_wait(&port, 0) > 60);
     TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_feed_room(&lidar)); /* No second gap. */
 }
 
-/* Each gap costs a poll: however many there are, they are reported as two. */
+/* Each gap costs a poll: any number of gaps is reported as at most two. */
 void test_of_several_overflows_the_first_is_reported_in_its_place_and_one_after_the_others(void)
 {
     start_by_hand();
@@ -158,7 +158,7 @@ void test_of_several_overflows_the_first_is_reported_in_its_place_and_one_after_
         vTaskDelay(2);
     }
     vTaskDelay(1);
-    assert_gap_behind(128);
+    assert_gap_after(128);
     poll_all();
     const size_t rest = tmini_esp32_wait(&port, 0);
     TEST_ASSERT_TRUE(rest > 256);
@@ -168,8 +168,8 @@ void test_of_several_overflows_the_first_is_reported_in_its_place_and_one_after_
     TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_feed_room(&lidar));
 }
 
-/* The buffer holds 256 bytes at most, and what did not fit was put aside, not lost. */
-void test_with_a_full_buffer_an_overflow_is_after_the_bytes_that_were_kept(void)
+/* The driver's buffer holds at most 256 bytes. Bytes that did not fit were stashed, not lost. */
+void test_with_a_full_buffer_the_gap_is_after_the_bytes_that_were_kept(void)
 {
     wiring.buffer_size = 256;
     start_by_hand();
@@ -180,9 +180,9 @@ void test_with_a_full_buffer_an_overflow_is_after_the_bytes_that_were_kept(void)
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
 }
 
-/* Polled every 30 ms, which brings some nine events: each time some are lost, and it is unknown
- * which. So a gap is assumed, which costs the packet that is arriving. */
-void test_when_events_are_lost_no_scan_passes_for_complete(void)
+/* Between two polls, 30 ms apart, about nine events are posted, but the queue holds four. The port
+ * cannot know which were lost. It assumes a gap, which costs the packet that is arriving. */
+void test_when_events_are_lost_no_scan_is_complete(void)
 {
     const unsigned rounds = 30;
     unsigned scans = 0;
@@ -217,7 +217,7 @@ void test_an_overflow_whose_event_was_lost_is_reported_too(void)
     TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_esp32_wait(&port, 0));
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
     tmini_esp32_counters(&port, &uart);
-    TEST_ASSERT_EQUAL_UINT32(0, uart.overruns); /* It was not reported. */
+    TEST_ASSERT_EQUAL_UINT32(0, uart.overruns); /* The event of the overflow was lost. */
     TEST_ASSERT_EQUAL_UINT32(1, uart.queues_full);
 
     poll_until(TMINI_EVENT_SCAN);
@@ -237,7 +237,7 @@ static void assert_nothing_was_lost(void)
     TEST_ASSERT_TRUE(truth_packets() - counters.packets <= 12); /* Still in the buffers. */
 }
 
-void test_pauses_that_the_drivers_buffer_bridges_cost_no_scan(void)
+void test_pauses_that_the_drivers_buffer_can_hold_cost_no_scan(void)
 {
     for (unsigned i = 0; i < 2; i++) {
         wiring.with_task = i == 0;
@@ -251,7 +251,8 @@ void test_pauses_that_the_drivers_buffer_bridges_cost_no_scan(void)
     }
 }
 
-/* 1570 bytes, more than the lidar's ring holds. In between, the loop comes round every 10 ms. */
+/* 1570 bytes arrive in a pause: more than the lidar's ring holds. Between two pauses, the loop runs
+ * every 10 ms. */
 void test_a_pause_of_120_ms_between_polls_loses_nothing(void)
 {
     start_port_and_lidar();
@@ -262,7 +263,8 @@ void test_a_pause_of_120_ms_between_polls_loses_nothing(void)
     assert_nothing_was_lost();
 }
 
-/* The same each time round: what the driver's buffer holds is fetched as soon as there is room. */
+/* As above, but in every turn of the loop: the port reads the driver's buffer again and again while
+ * the ring has room. */
 void test_a_loop_that_always_pauses_for_120_ms_and_receives_by_itself_loses_nothing(void)
 {
     wiring.with_task = false;
@@ -278,7 +280,8 @@ void test_a_port_is_stopped_while_bytes_come_and_started_again(void)
 {
     for (unsigned i = 0; i < 20; i++) {
         start_port();
-        (void)tmini_start(&lidar); /* The first time; after that it scans already. */
+        (void)tmini_start(
+            &lidar); /* Needed only the first time: the lidar then goes on scanning. */
         vTaskDelay(20 + i);
         TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
         TEST_ASSERT_EQUAL_UINT(0, virtual_idf_tasks());
@@ -286,7 +289,7 @@ void test_a_port_is_stopped_while_bytes_come_and_started_again(void)
     }
 }
 
-void test_reception_begins_anew_whatever_has_stopped_it(void)
+void test_reception_starts_again_whatever_has_stopped_it(void)
 {
     for (unsigned i = 0; i < 2; i++) {
         wiring.with_task = i == 0;
@@ -295,7 +298,7 @@ void test_reception_begins_anew_whatever_has_stopped_it(void)
         virtual_idf_break_reception();
         assert_recovery();
         TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
-        tmini_esp32_port.restart(&port); /* Of a stopped port: nothing. */
+        tmini_esp32_port.restart(&port); /* A restart of a stopped port does nothing. */
         TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&lidar));
     }
 }

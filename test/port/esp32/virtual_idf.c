@@ -29,12 +29,12 @@
 typedef struct {
     bool used;
     bool released;
-    bool for_event; /* Or for time alone. */
+    bool for_event; /* False: it only waits for the time. */
     uint64_t until_us;
 } waiter_t;
 
 typedef struct {
-    bool is_gpio; /* And not JTAG's, say. */
+    bool is_gpio; /* False: it belongs to another function, such as JTAG. */
     bool is_output;
     int level;
     bool has_been_low;
@@ -62,14 +62,14 @@ static struct {
     uint8_t buffer[BUFFER_MAX];
     size_t buffer_size;
     size_t buffer_count;
-    uint8_t stash
-        [FIFO_SIZE]; /* What did not fit into the buffer; while there is any, no more is read. */
+    /* FIFO bytes that did not fit into the buffer. Until they are read, the FIFO is not emptied. */
+    uint8_t stash[FIFO_SIZE];
     size_t stash_count;
     uart_event_t queue[QUEUE_MAX];
     size_t queue_size;
     size_t queue_count;
 
-    unsigned locks_held; /* Of the power management. */
+    unsigned locks_held; /* Power management locks. */
     virtual_pin_t pins[PINS];
     char log[16384];
     size_t log_length;
@@ -87,7 +87,7 @@ static void unlock(void)
 
 /* ------------------------------------------------------------------------- the UART's interrupt */
 
-/* An event that finds the queue full is lost, as in ESP-IDF. */
+/* If the queue is full, the event is lost, as in ESP-IDF. */
 static void post(uart_event_type_t type, size_t size)
 {
     if (world.queue_count < world.queue_size) {
@@ -99,7 +99,7 @@ static void fill_fifo(void)
 {
     uint8_t bytes[256];
     const size_t count = sim_transmit(&world.lidar, world.now_us, bytes, sizeof bytes);
-    world.line_pauses = count == 0; /* A step is longer than the UART's receive timeout. */
+    world.line_pauses = count == 0; /* A time step is longer than the UART's receive timeout. */
     for (size_t i = 0; i < count; i++) {
         if (!world.is_routed) {
             continue;
@@ -139,10 +139,10 @@ static void empty_fifo(void)
     world.fifo_count = 0;
 }
 
-/* ESP-IDF's interrupt handler empties the FIFO into its buffer while that has room; once it has
- * not, it keeps the FIFO's bytes apart, reports this once, and stays disabled until its bytes are
- * read. Only then does it look for an overflow, and resets the FIFO: what it has just taken is
- * safe, and what came after that is lost; or, if it could take nothing, the FIFO's bytes too. */
+/* ESP-IDF's interrupt handler moves the FIFO's bytes to its buffer. If they do not fit, it stashes
+ * them, reports this once, and leaves the FIFO alone until the stash is read. After that it checks
+ * for an overflow and resets the FIFO: bytes moved or stashed before are safe, the others are
+ * lost. */
 static void serve_interrupt(void)
 {
     if (!world.installed || !world.has_interrupts || world.now_us < world.held_until_us) {
@@ -243,7 +243,7 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t function, const char *name, ui
 
 void vTaskDelete(TaskHandle_t task)
 {
-    (void)task; /* Always the calling one. */
+    (void)task; /* Always the calling task. */
     lock();
     world.tasks--;
     let_time_pass();
@@ -294,7 +294,7 @@ UBaseType_t uxQueueSpacesAvailable(const QueueHandle_t queue)
 
 /* ---------------------------------------------------------------------------------- UART driver */
 
-/* True, with the lock held, if there is a driver to call. */
+/* Returns true, with the lock held, if the driver is installed. */
 static bool enter_driver(void)
 {
     lock();
@@ -331,7 +331,7 @@ esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffe
         world.queue_count = 0;
         world.stash_count = 0;
         world.fifo_count = 0;
-        world.fifo_threshold = 120; /* ESP-IDF's own choice. */
+        world.fifo_threshold = 120; /* ESP-IDF's default. */
         world.fifo_overflowed = false;
     }
     *queue = (QueueHandle_t)(void *)&world.queue;
@@ -454,7 +454,7 @@ static bool put_stash_back(void)
     return true;
 }
 
-/* As soon as there is room, what was put aside follows; also within one call. */
+/* As soon as the buffer has room, the stashed bytes follow, also within one call. */
 int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t ticks)
 {
     uint8_t *const bytes = buffer;
@@ -524,8 +524,8 @@ esp_err_t esp_pm_lock_delete(esp_pm_lock_handle_t held)
     return ESP_OK;
 }
 
-/* A pin drives the line as soon as it is an output, with the level that its register has by then;
- * one that belongs to another function (JTAG) is no GPIO before it has been reset. */
+/* A pin drives the line as soon as it is an output, with the current level of its register. A pin
+ * of another function (JTAG) becomes a GPIO only after it has been reset. */
 static void drive(virtual_pin_t *pin)
 {
     pin->has_been_low = pin->has_been_low || (pin->is_gpio && pin->is_output && pin->level == 0);
@@ -558,7 +558,7 @@ esp_err_t gpio_set_level(gpio_num_t pin, uint32_t level)
     return ESP_OK;
 }
 
-/* Colours, and the time in brackets. */
+/* Bytes that ESP-IDF adds to a log line: colours, and the time in brackets. */
 #define LOG_EXTRA 24u
 
 void esp_log_line(char level, const char *tag, const char *format, ...)
@@ -575,7 +575,7 @@ void esp_log_line(char level, const char *tag, const char *format, ...)
     console_note(world.now_us, (size_t)(at - world.log) - world.log_length + LOG_EXTRA);
     world.log_length = (size_t)(at - world.log);
     if (world.log_length > sizeof world.log - 1024u) {
-        abort(); /* More than any test logs. */
+        abort(); /* No test logs this much. */
     }
     unlock();
 }
@@ -677,7 +677,7 @@ unsigned virtual_idf_stray_calls(void)
 
 const char *virtual_idf_log(void)
 {
-    return world.log; /* Grows only while the caller waits. */
+    return world.log; /* No lock: it changes only while the caller waits. */
 }
 
 int virtual_idf_pin(int pin)

@@ -29,19 +29,19 @@ struct freertos_task {
     UBaseType_t priority;
     bool used;
     bool suspended;
-    bool waiting; /* For a notification, or for time alone, */
-    bool for_notice;
-    uint64_t until_us; /* or for this time. */
+    bool waiting;    /* Until `until_us`, */
+    bool for_notice; /* or until a notification, if this is true. */
+    uint64_t until_us;
     uint32_t notices;
 };
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
 static struct {
-    struct freertos_task tasks[TASKS]; /* The first is the test's. */
+    struct freertos_task tasks[TASKS]; /* The first one is the test itself. */
     struct freertos_task *current;
     bool ending;
-    bool pending; /* The UART's interrupt, raised by the test. */
+    bool pending; /* The test has raised the UART's interrupt. */
     uint64_t now_us;
     uint64_t skipped_us;
     sim_t lidar;
@@ -85,7 +85,7 @@ static void receive_bytes(void)
     }
 }
 
-/* At half a FIFO, or after 32 bit times of silence. */
+/* The UART interrupts when its FIFO is half full, or after 32 bit times without a byte. */
 static bool wants_interrupt(void)
 {
     const bool timed_out = world.count > 0 && world.now_us - world.last_us >= 139;
@@ -139,7 +139,7 @@ static struct freertos_task *most_urgent(void)
     return chosen;
 }
 
-/* Gives the processor to the most urgent task, and waits until it is the caller's again. */
+/* Gives the processor to the most urgent task, and waits until the caller gets it back. */
 static void reschedule(struct freertos_task *self)
 {
     struct freertos_task *next = most_urgent();
@@ -168,7 +168,7 @@ static void yield_to_more_urgent(void)
     }
 }
 
-/* At each access of the library's indices an interrupt may come, and another task's turn. */
+/* At each access to the library's indices, an interrupt or another task may run. */
 void interrupt(void)
 {
     if (world.current != NULL) {
@@ -205,7 +205,7 @@ static void *run_task(void *argument)
         pthread_cond_wait(&self->turn, &lock);
     }
     if (!world.ending) {
-        self->function(self->argument); /* Holding the lock: the processor is its own. */
+        self->function(self->argument); /* It holds the lock: no other task runs. */
         freertos_model_assert("a task must not return");
     }
     pthread_mutex_unlock(&lock);
@@ -242,7 +242,7 @@ void freertos_model_begin(const sim_observer_t *observer, unsigned priority)
 {
     const sim_config_t config = sim_default_config();
     if (world.current == NULL) {
-        pthread_mutex_lock(&lock); /* The test's thread has the processor from here on. */
+        pthread_mutex_lock(&lock); /* From here on the test's thread has the processor. */
     }
     end_tasks();
     console_begin();
@@ -292,7 +292,7 @@ void vTaskSuspend(TaskHandle_t task)
     reschedule(world.current);
 }
 
-/* The tasks exist; they run whenever the test's task lets them. */
+/* The tasks exist already: they run whenever the test's task lets them. */
 void vTaskStartScheduler(void) {}
 
 BaseType_t xTaskNotifyGiveIndexed(TaskHandle_t task, UBaseType_t index)
@@ -337,7 +337,7 @@ StreamBufferHandle_t xStreamBufferCreateStatic(size_t size, size_t trigger, uint
     return memory;
 }
 
-/* One place stays free, as in the kernel. A waiting task is woken at the trigger level only. */
+/* As in the kernel, one place stays free, and a waiting task is woken only at the trigger level. */
 size_t xStreamBufferSendFromISR(StreamBufferHandle_t stream, const void *bytes, size_t count,
                                 BaseType_t *woken)
 {

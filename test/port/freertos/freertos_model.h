@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A FreeRTOS kernel as far as the port talks to it, and the example's board
- * (examples/freertos/board.h) with the simulated lidar on it. One processor: of the tasks that are
- * ready the one with the highest priority runs, alone. Time passes when none is ready, or when the
- * one that runs works; then bytes come and the UART's interrupt is served, and a task of higher
- * priority that it wakes runs at once.
+/* A model of the FreeRTOS functions that the port uses, and of the example's board
+ * (examples/freertos/board.h) with the simulated lidar. There is one processor: only the ready task
+ * with the highest priority runs. Time passes when no task is ready, or when the running task calls
+ * freertos_model_work(). Then bytes arrive and the UART's interrupt is served. If it wakes a task
+ * of higher priority, this task runs at once.
  *
- * The test itself is a task, of the priority given at the beginning. */
+ * The test itself is a task, with the priority given to freertos_model_begin(). */
 
 #ifndef FREERTOS_MODEL_H
 #define FREERTOS_MODEL_H
@@ -18,7 +18,7 @@
 
 #include "simulator.h"
 
-/* A fresh world, with a lidar at rest that `observer` watches; the caller becomes a task. */
+/* Resets the model, with a lidar at rest that `observer` watches. The caller becomes a task. */
 void freertos_model_begin(const sim_observer_t *observer, unsigned priority);
 
 /* The lidar; see simulator.h. */
@@ -29,29 +29,29 @@ uint64_t freertos_model_now_us(void);
 /* The running task is busy for this long. */
 void freertos_model_work(uint32_t us);
 
-/* The same, with interrupts disabled. */
+/* As above, but with interrupts disabled. */
 void freertos_model_work_undisturbed(uint32_t us);
 
-/* Bytes as if the lidar had sent them now, after an overrun or not; no task runs meanwhile. */
+/* Puts bytes in the UART's FIFO, with or without an overrun before them. No task runs meanwhile. */
 void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count);
 
 /* The UART reports an overrun with the next interrupt. */
 void freertos_model_overrun(void);
 
-/* Something else switches the UART's interrupt off. */
+/* Switches the UART's interrupt off, as other code could do. */
 void freertos_model_disable_interrupt(void);
 
-/* Only the clock advances: no byte comes and no task runs. */
+/* Advances only the clock: no byte arrives and no task runs. */
 void freertos_model_skip(uint64_t us);
 
-/* Bytes that have come on the line, and those that the UART's FIFO had no room for. */
+/* Bytes that arrived on the line, and those of them that found the UART's FIFO full. */
 uint32_t freertos_model_line_bytes(void);
 uint32_t freertos_model_overrun_bytes(void);
 
 /* How often the test's task has been woken by a notification. */
 unsigned freertos_model_wakes(void);
 
-/* Tasks besides the test's. */
+/* The number of tasks, not counting the test's. */
 unsigned freertos_model_tasks(void);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The program examples/freertos, as it is, against the simulated lidar in its room. */
+/* Runs the unchanged program examples/freertos with the simulated lidar in its simulated room. */
 
 #include "unity.h"
 

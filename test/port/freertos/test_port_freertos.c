@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The FreeRTOS port on a model of the kernel, against the simulated lidar. The test is the polling
- * task. */
+/* Tests the FreeRTOS port on a model of the kernel with the simulated lidar. The test itself is the
+ * polling task. */
 
 #include <string.h>
 
@@ -22,7 +22,7 @@ static uint8_t stream[8192];
 static tmini_freertos_t port;
 static tmini_freertos_wiring_t wiring;
 
-/* As the example has it. */
+/* The same handler as in the example. */
 void UART1_Handler(void)
 {
     uint8_t bytes[16];
@@ -89,7 +89,7 @@ static tmini_freertos_counters_t counted(void)
 
 /* ------------------------------------------------------------------------- from the interrupt */
 
-void test_every_point_arrives_from_the_interrupt(void)
+void test_every_point_arrives_by_the_interrupt(void)
 {
     start();
     assert_true_scans(1, 10);
@@ -97,7 +97,7 @@ void test_every_point_arrives_from_the_interrupt(void)
     TEST_ASSERT_EQUAL_UINT32(freertos_model_line_bytes(), counted().bytes);
 }
 
-void test_the_polling_task_is_woken_once_in_64_bytes(void)
+void test_the_polling_task_is_woken_once_per_64_bytes(void)
 {
     start();
     assert_true_scans(1, 10);
@@ -143,8 +143,8 @@ void test_every_point_arrives_through_the_receiving_task(void)
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
 }
 
-/* 60 ms are 786 bytes: more than rx_buffer has room for, and the stream keeps the rest. */
-void test_the_stream_keeps_what_the_lidar_has_no_room_for(void)
+/* In 60 ms 786 bytes arrive: more than rx_buffer holds. The stream keeps the rest. */
+void test_the_stream_keeps_bytes_for_which_the_lidar_has_no_room(void)
 {
     tmini_counters_t counters;
     receive_by_stream();
@@ -160,7 +160,7 @@ void test_the_stream_keeps_what_the_lidar_has_no_room_for(void)
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
 }
 
-void test_pauses_that_the_stream_bridges_cost_no_scan(void)
+void test_pauses_that_the_stream_can_hold_cost_no_scan(void)
 {
     receive_by_stream();
     wiring.stream_size = sizeof stream;
@@ -168,7 +168,7 @@ void test_pauses_that_the_stream_bridges_cost_no_scan(void)
     assert_pauses_cost_no_scan(sizeof stream);
 }
 
-/* 300 ms are 3930 bytes; stream and rx_buffer together keep 2047. */
+/* In 300 ms 3930 bytes arrive; stream and rx_buffer together hold 2047. */
 void test_a_stream_that_overflows_is_one_gap(void)
 {
     tmini_counters_t counters;
@@ -193,9 +193,9 @@ void test_an_overrun_of_the_uart_before_the_stream_is_a_gap(void)
     TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
 }
 
-/* What the interrupt brings with it: the receiving task is woken at once, and does not
- * first run out of patience. */
-void test_an_overrun_costs_no_more_than_the_fifo_after_it(void)
+/* Lost are only the bytes that the interrupt reads together with the overrun: the receiving task is
+ * woken at once, not only when its wait times out. */
+void test_an_overrun_costs_no_more_than_the_bytes_in_the_fifo(void)
 {
     receive_by_stream();
     start();
@@ -208,24 +208,24 @@ void test_an_overrun_costs_no_more_than_the_fifo_after_it(void)
     TEST_ASSERT_LESS_OR_EQUAL_UINT32(20 * 16, counted().bytes_lost);
 }
 
-/* Before it has emptied rx_buffer the lidar takes nothing more. */
+/* After the gap, the lidar takes no byte before the polling task has emptied rx_buffer. */
 void test_an_overrun_before_the_stream_wakes_the_polling_task(void)
 {
     receive_by_stream();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
-    tmini_freertos_wait(&port, 1); /* From here on it is known who is to be woken. */
+    tmini_freertos_wait(&port, 1); /* The first call sets the task that is to be woken. */
     freertos_model_receive(true, manual_packet, 1);
     const uint64_t begun_us = freertos_model_now_us();
     tmini_freertos_wait(&port, pdMS_TO_TICKS(1000));
     TEST_ASSERT_TRUE(freertos_model_now_us() - begun_us < 100000);
 }
 
-/* A line that pauses in the middle of a packet must not keep what came before from the lidar. */
-void test_fewer_bytes_than_the_stream_wakes_at_are_handed_on_in_time(void)
+/* If the line pauses in the middle of a packet, the first part must still be handed on. */
+void test_bytes_below_the_streams_trigger_level_are_handed_on_in_time(void)
 {
     tmini_info_t info;
-    receive_by_stream(); /* The reply has 27 bytes, the stream wakes at 32. */
+    receive_by_stream(); /* The reply has 27 bytes, but the stream's trigger level is 32. */
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     board_enable_lidar_interrupt();
@@ -233,7 +233,8 @@ void test_fewer_bytes_than_the_stream_wakes_at_are_handed_on_in_time(void)
     TEST_ASSERT_EQUAL_UINT(151, info.model);
 }
 
-/* ----------------------------------------------------------------------- losses without a trace */
+/* --------------------------------------------------------------- losses not visible in the
+ * bytes */
 
 static uint32_t packets(void)
 {
@@ -245,7 +246,7 @@ static uint32_t packets(void)
     return counters.packets;
 }
 
-/* The packet's two parts fit together, whatever was lost between them. */
+/* Receives a packet in two parts. The bytes alone do not show whether any were lost in between. */
 static void receive_packet(bool overrun)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
@@ -276,7 +277,7 @@ static void fill_small_stream(void)
 {
     static const uint8_t nothing[97] = {0};
     receive_by_stream();
-    wiring.stream_size = 128; /* Takes 127. */
+    wiring.stream_size = 128; /* It holds 127 bytes. */
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     freertos_model_receive(false, nothing, sizeof nothing);
@@ -289,15 +290,16 @@ static void fill_small_stream(void)
 void test_no_packet_is_put_together_across_a_full_stream(void)
 {
     fill_small_stream();
-    vTaskDelay(pdMS_TO_TICKS(20)); /* The receiving task empties it. */
+    vTaskDelay(pdMS_TO_TICKS(20)); /* The receiving task empties the stream. */
     TEST_ASSERT_EQUAL_UINT32(0, packets());
     freertos_model_receive(false, &manual_packet[PACKET_CUT], sizeof manual_packet - PACKET_CUT);
     vTaskDelay(pdMS_TO_TICKS(20));
     TEST_ASSERT_EQUAL_UINT32(0, packets());
-    TEST_ASSERT_EQUAL_UINT32(10, counted().bytes_lost); /* It has opened again. */
+    TEST_ASSERT_EQUAL_UINT32(10,
+                             counted().bytes_lost); /* The emptied stream took the second part. */
 }
 
-void test_a_stream_that_was_full_takes_nothing_before_it_is_empty(void)
+void test_a_stream_that_was_full_takes_no_byte_until_it_is_empty(void)
 {
     uint8_t taken[60];
     fill_small_stream();
@@ -375,13 +377,14 @@ void test_it_stops_and_starts_while_the_lidar_streams(void)
     assert_stops_and_starts(0);
 }
 
-void test_the_receiving_task_rests_while_stopped_and_is_the_same_again(void)
+void test_the_receiving_task_sleeps_while_stopped_and_is_used_again(void)
 {
     receive_by_stream();
     assert_stops_and_starts(1);
 }
 
-/* It waits for bytes that do not come: until it has noticed, it may still be at work. */
+/* The receiving task waits for bytes that never come. It notices the stop only when this wait
+ * ends. */
 void test_stopping_waits_for_the_receiving_task_every_time(void)
 {
     receive_by_stream();
@@ -396,13 +399,13 @@ void test_stopping_waits_for_the_receiving_task_every_time(void)
     }
 }
 
-void test_what_the_stream_held_when_stopped_is_not_handed_on_later(void)
+void test_bytes_in_the_stream_at_a_stop_are_not_handed_on_later(void)
 {
     receive_by_stream();
     init_lidar(256);
     start();
     assert_true_scans(1, 1);
-    freertos_model_work(50000); /* rx_buffer is full, the stream half. */
+    freertos_model_work(50000); /* rx_buffer is full, and the stream half full. */
     tmini_freertos_stop(&port);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     TEST_ASSERT_EQUAL_INT(pdTRUE, xStreamBufferIsEmpty(port.stream));
@@ -410,24 +413,23 @@ void test_what_the_stream_held_when_stopped_is_not_handed_on_later(void)
 
 /* ----------------------------------------------------------------------------------- the clock */
 
-/* The tick's rate and width are those that this file is compiled with: 1000 Hz and 32 bits, 1024 Hz
- * and 16 bits, 50 Hz. */
+/* This file is compiled for three ticks: 1000 Hz with 32 bits, 1024 Hz with 16 bits, and 50 Hz. The
+ * 16-bit tick wraps every 64 s; a step here is 4.3 s. */
 void test_the_clock_runs_in_milliseconds_across_every_wrap_of_the_tick(void)
 {
     const uint32_t begun_ms = tmini_freertos_port.now_ms(&port);
     uint64_t passed_us = 0;
     for (unsigned i = 0; i < 3000; i++) {
-        freertos_model_skip(4294967 +
-                            i); /* A thousand times, and 32 bits of milliseconds have wrapped. */
+        freertos_model_skip(4294967 + i);
         passed_us += 4294967 + i;
         const uint32_t shown_ms = tmini_freertos_port.now_ms(&port) - begun_ms;
         const uint32_t error_ms = shown_ms - (uint32_t)(passed_us / 1000u);
-        TEST_ASSERT_TRUE(error_ms + TICK_US / 1000u + 1u <=
-                         TICK_US / 1000u + 2u); /* A tick late. */
+        /* At most one tick late. */
+        TEST_ASSERT_TRUE(error_ms + TICK_US / 1000u + 1u <= TICK_US / 1000u + 2u);
     }
 }
 
-void test_waiting_for_no_time_is_waiting_for_a_tick(void)
+void test_waiting_for_0_ticks_waits_for_one_tick(void)
 {
     const uint64_t begun_us = freertos_model_now_us();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
@@ -435,22 +437,22 @@ void test_waiting_for_no_time_is_waiting_for_a_tick(void)
     TEST_ASSERT_TRUE(freertos_model_now_us() > begun_us);
 }
 
-static void begin_anew(void *uart)
+static void restart_uart(void *uart)
 {
     (void)uart;
     board_enable_lidar_interrupt();
 }
 
-void test_the_programs_uart_begins_anew_when_the_lidar_is_lost(void)
+void test_the_programs_uart_is_restarted_when_the_lidar_is_lost(void)
 {
-    wiring.restart = begin_anew;
+    wiring.restart = restart_uart;
     start();
     assert_true_scans(1, 1);
     freertos_model_disable_interrupt();
     assert_recovery();
     freertos_model_disable_interrupt();
     tmini_freertos_stop(&port);
-    tmini_freertos_port.restart(&port); /* Of a stopped port: nothing. */
+    tmini_freertos_port.restart(&port); /* A restart of a stopped port does nothing. */
     wiring.restart = NULL;
     start();
     tmini_freertos_port.restart(&port);

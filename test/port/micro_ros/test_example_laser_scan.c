@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A LaserScan from a scan: every expected number from ROS's definition of the message, with the
- * lidar's angles clockwise from ahead. */
+/* Tests the conversion of a scan to a LaserScan. Expected numbers follow from ROS's definition of
+ * the message; the lidar counts its angles clockwise from ahead. */
 
 #include <math.h>
 #include <string.h>
@@ -40,7 +40,7 @@ static void fill(void)
     TEST_ASSERT_TRUE(laser_scan_fill(&message, &memory, &scan, 0));
 }
 
-void test_the_rays_go_counter_clockwise_once_around_from_ahead(void)
+void test_the_rays_go_once_around_counter_clockwise_from_ahead(void)
 {
     TEST_ASSERT_EQUAL_UINT(360, LASER_SCAN_RAYS);
     TEST_ASSERT_EQUAL_FLOAT(0.0f, message.angle_min);
@@ -74,7 +74,7 @@ void test_the_range_limits_are_those_of_the_data_sheet(void)
 void test_points_ahead_left_back_and_right_are_in_their_bins(void)
 {
     add(0, 1000, 1);
-    add(90 * DEGREE, 2000, 2); /* Right: the lidar counts clockwise. */
+    add(90 * DEGREE, 2000, 2); /* To the right: the lidar counts clockwise. */
     add(180 * DEGREE, 3000, 3);
     add(270 * DEGREE, 4000, 4);
     fill();
@@ -110,7 +110,7 @@ void test_a_ray_without_a_valid_range_is_not_a_number(void)
     }
 }
 
-void test_nothing_stays_of_the_scan_before(void)
+void test_nothing_remains_of_the_previous_scan(void)
 {
     add(0, 1000, 1);
     fill();
@@ -126,9 +126,9 @@ void test_the_turns_duration_comes_from_the_measured_frequency(void)
     TEST_ASSERT_FLOAT_WITHIN(NEAR, 0.16666667f, message.scan_time);
 }
 
-/* The lidar turns clockwise, so ray 90, to the left, was measured after three quarters of the turn:
- * a quarter before its end. */
-void test_rays_are_as_old_as_the_lidars_turn_makes_them(void)
+/* The lidar turns clockwise. Ray 90, to the left, was measured a quarter turn before the turn's
+ * end. */
+void test_the_time_increment_is_negative_as_the_lidar_turns_clockwise(void)
 {
     fill();
     TEST_ASSERT_FLOAT_WITHIN(NEAR, -0.00046296f, message.time_increment);
@@ -143,14 +143,14 @@ void test_without_a_frequency_the_times_are_unknown(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0f, message.time_increment);
 }
 
-void test_the_stamp_is_the_time_of_the_first_ray_the_scans_end(void)
+void test_the_stamp_is_the_scans_end(void)
 {
     TEST_ASSERT_TRUE(laser_scan_fill(&message, &memory, &scan, INT64_C(1790000000123456789)));
     TEST_ASSERT_EQUAL_INT32(1790000000, message.header.stamp.sec);
     TEST_ASSERT_EQUAL_UINT32(123456789, message.header.stamp.nanosec);
 }
 
-void test_no_scan_is_refused(void)
+void test_a_null_scan_is_refused(void)
 {
     TEST_ASSERT_FALSE(laser_scan_fill(&message, &memory, NULL, 5));
     TEST_ASSERT_EQUAL_UINT32(0, message.header.stamp.nanosec);

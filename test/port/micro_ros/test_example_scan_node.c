@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The node of examples/micro_ros between the simulated lidar and an agent that comes and goes, in
- * virtual time. */
+/* Tests the node of examples/micro_ros in virtual time, with the simulated lidar and a virtual
+ * agent that a test can connect and disconnect. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,20 +13,20 @@
 
 #include "unity.h"
 
-#define EPOCH_NS INT64_C(1790000000000000000) /* ROS's clock when ours says 0. */
+#define EPOCH_NS INT64_C(1790000000000000000) /* ROS's clock when our clock is 0. */
 #define NS_PER_US 1000
 
 static sim_t sim;
 static uint64_t now_us;
 static bool plugged;
-static uint64_t turn_began_us; /* The last start packet's end. */
+static uint64_t turn_began_us; /* The end of the last start packet. */
 static uint8_t rx[2048];
 static tmini_point_t points[800];
 static tmini_t lidar;
 static scan_node_t node;
 static char frame[] = "laser";
 
-/* ---- Nothing is allocated: the linker leads calls here ---- */
+/* ---- The linker redirects calls of malloc() to this counter ---- */
 
 static unsigned allocations;
 void *__real_malloc(size_t size);
@@ -38,7 +38,7 @@ void *__wrap_malloc(size_t size)
     return __real_malloc(size);
 }
 
-/* ---- The world ---- */
+/* ---- Lidar and clock ---- */
 
 static void note_packet(void *context, const sim_packet_t *packet)
 {
@@ -63,7 +63,7 @@ static int send_to_lidar(void *context, const uint8_t *bytes, size_t count)
     return (int)count;
 }
 
-/* A millisecond in which nothing but the interrupt runs. */
+/* Lets a millisecond pass in which only the interrupt runs. */
 static void tick(void)
 {
     uint8_t bytes[64];
@@ -126,7 +126,7 @@ void tearDown(void) {}
 void test_each_scan_is_published(void)
 {
     virtual_agent.present = true;
-    run_for(10000); /* At 6 Hz; the motor needs its time. */
+    run_for(10000); /* 6 Hz, minus the time in which the motor spins up. */
     TEST_ASSERT_GREATER_THAN_UINT(50, virtual_agent.published);
     TEST_ASSERT_EQUAL_UINT32(virtual_agent.published, node.counters.published);
     TEST_ASSERT_EQUAL_UINT32(0, node.counters.unpublished);
@@ -144,7 +144,7 @@ void test_a_message_shows_the_room(void)
     TEST_ASSERT_FLOAT_WITHIN(0.02f, 0.1667f, virtual_agent.message.scan_time);
 }
 
-/* The next one's start packet ends a scan. How much later does the last message say? */
+/* How much later the last message's stamp is than the scan's end: the next start packet. */
 static int64_t stamp_is_late_ns(void)
 {
     const int64_t stamp_ns = virtual_agent.message.header.stamp.sec * INT64_C(1000000000) +
@@ -152,7 +152,7 @@ static int64_t stamp_is_late_ns(void)
     return stamp_ns - (EPOCH_NS + (int64_t)turn_began_us * NS_PER_US);
 }
 
-void test_a_message_bears_the_scans_end_in_the_agents_clock(void)
+void test_a_messages_stamp_is_the_scans_end_in_the_agents_clock(void)
 {
     virtual_agent.present = true;
     run_for(5000);
@@ -182,9 +182,9 @@ void test_the_clock_is_synchronised_again_each_minute(void)
     TEST_ASSERT_EQUAL_UINT(4, virtual_agent.synchronisations);
 }
 
-/* The bytes that came after it tell a part of a scan's age: the line brings 23 a millisecond at
- * most, the lidar 13. */
-void test_a_scan_that_is_found_late_keeps_its_time(void)
+/* The driver estimates a scan's age from the number of bytes received after it, as if the line had
+ * brought 23 bytes per millisecond. The lidar sends only 13, so the stamp is somewhat late. */
+void test_a_scan_that_is_polled_late_keeps_its_time(void)
 {
     int64_t latest_ns = 0;
     virtual_agent.present = true;
@@ -220,7 +220,7 @@ void test_an_agent_that_comes_later_is_found(void)
     TEST_ASSERT_GREATER_THAN_UINT(0, virtual_agent.published);
 }
 
-void test_an_agent_that_goes_and_comes_back_is_connected_to_again(void)
+void test_the_node_connects_again_to_an_agent_that_comes_back(void)
 {
     virtual_agent.present = true;
     run_for(3000);
@@ -246,7 +246,7 @@ void test_waiting_for_the_agent_costs_no_byte_of_the_lidar(void)
     TEST_ASSERT_EQUAL_UINT32(0, overruns());
 }
 
-void test_what_was_opened_in_vain_is_closed_and_tried_again(void)
+void test_after_a_failure_all_is_closed_and_opened_again(void)
 {
     virtual_agent.present = true;
     virtual_agent.refuses_publisher = true;
@@ -266,7 +266,7 @@ void test_what_was_opened_in_vain_is_closed_and_tried_again(void)
     TEST_ASSERT_EQUAL_UINT32(1, node.counters.connections);
 }
 
-void test_a_scan_that_is_not_taken_is_counted(void)
+void test_a_scan_that_cannot_be_published_is_counted(void)
 {
     virtual_agent.present = true;
     run_for(3000);
@@ -276,7 +276,7 @@ void test_a_scan_that_is_not_taken_is_counted(void)
     TEST_ASSERT_EQUAL_UINT32(1, node.counters.connections);
 }
 
-void test_what_does_not_close_is_counted(void)
+void test_failures_to_close_are_counted(void)
 {
     virtual_agent.present = true;
     run_for(1500);

@@ -30,7 +30,7 @@ static void spend(int ms)
     virtual_agent.wait(ms);
 }
 
-/* An answer comes after 2 ms, or never. */
+/* A present agent answers after 2 ms. */
 static bool answers_within(int timeout_ms)
 {
     spend(virtual_agent.present ? 2 : timeout_ms);
@@ -153,7 +153,7 @@ rcl_ret_t rclc_publisher_init_default(rcl_publisher_t *publisher, const rcl_node
     return RCL_RET_OK;
 }
 
-/* A reliable publisher waits for the agent's word. */
+/* A reliable publisher waits for the agent's acknowledgement. */
 rcl_ret_t rcl_publish(const rcl_publisher_t *publisher, const void *message,
                       rmw_publisher_allocation_t *allocation)
 {
@@ -167,7 +167,7 @@ rcl_ret_t rcl_publish(const rcl_publisher_t *publisher, const void *message,
     return RCL_RET_OK;
 }
 
-/* What has been opened last is closed first. */
+/* Objects must be closed in the reverse order of opening. */
 static rcl_ret_t close_one(bool *is_open, bool inner_is_open)
 {
     TEST_ASSERT_TRUE(*is_open);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* micro-ROS and its agent, as the example sees them: one support, node and publisher at a time, in
- * that order; an agent that comes and goes; calls that wait. Wrong use fails the test. */
+/* A model of micro-ROS and its agent, as the example sees them: one support, node and publisher at
+ * a time, opened in this order; an agent that may be absent; calls that wait. Wrong use fails the
+ * test. */
 
 #ifndef VIRTUAL_AGENT_H
 #define VIRTUAL_AGENT_H
@@ -10,18 +11,18 @@
 #include <rclc/rclc.h>
 
 typedef struct {
-    /* What a test sets. */
+    /* Set by a test. */
     bool present;
     bool refuses_support;
     bool refuses_node;
     bool refuses_publisher;
     bool takes_nothing; /* rcl_publish() fails. */
     bool closes_badly;
-    bool keeps_its_clock; /* Synchronising fails. */
+    bool keeps_its_clock; /* Synchronising the clock fails. */
     int64_t epoch_ns;
-    void (*wait)(int ms); /* Called whenever a call of micro-ROS waits. */
+    void (*wait)(int ms); /* Called whenever a micro-ROS function waits. */
 
-    /* What it reads. */
+    /* Read by a test. */
     bool support_open;
     bool node_open;
     bool publisher_open;
@@ -30,12 +31,12 @@ typedef struct {
     int longest_wait_ms;
     unsigned published;
     char topic[16];
-    sensor_msgs__msg__LaserScan message; /* The last one; its memory is the publisher's. */
+    sensor_msgs__msg__LaserScan message; /* The last message; its arrays belong to the publisher. */
 } virtual_agent_t;
 
 extern virtual_agent_t virtual_agent;
 
-/* No agent, nothing open. */
+/* Resets the model: no agent is present, and nothing is open. */
 void virtual_agent_reset(void (*wait)(int ms));
 
 #endif

@@ -21,7 +21,7 @@
 #define IRQS 64u
 #define TIMEOUT_US 139u /* 32 bits at 230400 baud. */
 #define DREQ_UART1_RX 23u
-#define COUNT_MAX 0x0FFFFFFFu /* RP2350 has 28 bits; more would mean another mode. */
+#define COUNT_MAX 0x0FFFFFFFu /* RP2350's count has 28 bits; the higher bits are a mode. */
 
 struct uart_inst {
     unsigned index;
@@ -30,7 +30,7 @@ struct uart_inst {
 typedef struct {
     uint16_t entries[FIFO_SIZE];
     unsigned count;
-    bool overrun; /* The next entry gets the flag. */
+    bool overrun; /* The next entry gets the overrun flag. */
     uint64_t last_us;
     bool receive_irq;
     unsigned places_to_send;
@@ -65,13 +65,13 @@ static struct {
     int baud_error_permille;
     unsigned reads;
     unsigned changes_of_channel;
-    unsigned pass_behind;
+    unsigned pass_after;
     uint32_t pass_us;
     bool erratic;
     random_t random;
     int functions[PICO_PINS];
     int levels[PICO_PINS];
-    bool values[PICO_PINS]; /* Of the output registers. */
+    bool values[PICO_PINS]; /* Bits of the output registers. */
     bool pulled_up[PICO_PINS];
     void (*on_sleep)(void);
 } chip;
@@ -215,8 +215,7 @@ void channel_config_set_chain_to(dma_channel_config *config, uint chain_to)
     config->chain_to = chain_to;
 }
 
-/* What this model can do is what a ring fed by a UART needs; anything else is a mistake of the
- * port. */
+/* The model supports only what a ring fed by a UART needs. Anything else is a bug of the port. */
 void dma_channel_configure(uint channel, const dma_channel_config *config, volatile void *write,
                            const volatile void *read, uint32_t transfer_count, bool begin)
 {
@@ -240,18 +239,18 @@ static void pass_erratically(void)
     if (random_below(&chip.random, 100) != 0) {
         pico_model_pass(random_below(&chip.random, 4) * 100u);
     } else {
-        pico_model_pass(random_below(&chip.random, 250000)); /* Up to five laps of 1024 bytes. */
+        pico_model_pass(random_below(&chip.random, 250000)); /* Up to 5 laps of 1024 bytes. */
     }
 }
 
-/* The value is that of now; what passes after it shows in the ring's memory, and at the next
- * reading. */
+/* The count is read first, and then time may pass: the ring's memory changes at once, but the count
+ * only at the next reading. */
 dma_channel_hw_t *dma_channel_hw_addr(uint channel)
 {
     channel_t *const it = &chip.channels[channel];
     it->shown.transfer_count = it->count;
     chip.reads++;
-    if (chip.pass_behind > 0 && --chip.pass_behind == 0) {
+    if (chip.pass_after > 0 && --chip.pass_after == 0) {
         pico_model_pass(chip.pass_us);
     } else if (chip.erratic) {
         pass_erratically();
@@ -268,7 +267,7 @@ void dma_channel_cleanup(uint channel)
 
 void pico_model_pass_after_read(unsigned reads, uint32_t us)
 {
-    chip.pass_behind = reads;
+    chip.pass_after = reads;
     chip.pass_us = us;
 }
 
@@ -369,7 +368,8 @@ uint32_t pico_model_line_bytes(void)
     return chip.line_bytes;
 }
 
-/* 1/8, 1/4, 1/2, 3/4, 7/8 of the FIFO. */
+/* Number of bytes in the FIFO at which the UART interrupts: 1/8, 1/4, 1/2, 3/4 or 7/8 of its
+ * size. */
 static unsigned interrupt_level(void)
 {
     static const unsigned levels[8] = {4, 8, 16, 24, 28, 28, 28, 28};
@@ -396,16 +396,16 @@ static void serve_line(void)
 static void fail(unsigned line)
 {
     (void)line;
-    abort(); /* A handler leaves its flag: the processor is locked up. */
+    abort(); /* The handler did not clear the flag: the processor is locked up. */
 }
 
-/* At each access of the library's indices, too. */
+/* An interrupt may also come at each access to the library's indices. */
 void interrupt(void)
 {
     irq_access();
 }
 
-/* Writing ones clears; the port does so by a store that this model sees only afterwards. */
+/* Bits written as 1 to ICR are cleared. The model sees this store only at the next access. */
 static void clear_status(void)
 {
     chip.uart.hw.ris &= ~chip.uart.hw.icr;
@@ -415,7 +415,7 @@ static void clear_status(void)
 uint uart_init(uart_inst_t *uart, uint baud_rate)
 {
     if (uart != uart1) {
-        return baud_rate; /* There is no lidar. */
+        return baud_rate; /* No lidar is on this UART. */
     }
     chip.uart.count = 0;
     chip.uart.hw = (uart_hw_t){.ifls = 2u << UART_UARTIFLS_RXIFLSEL_LSB};
@@ -462,7 +462,7 @@ void uart_putc_raw(uart_inst_t *uart, char byte)
 {
     const uint8_t sent = (uint8_t)byte;
     if (!uart_is_writable(uart)) {
-        abort(); /* It would wait. */
+        abort(); /* The real function would wait. */
     }
     sim_receive(&chip.lidar, &sent, 1, chip.now_us);
     if (chip.uart.places_to_send < FIFO_SIZE) {
@@ -477,7 +477,7 @@ void uart_set_irqs_enabled(uart_inst_t *uart, bool rx_has_data, bool tx_needs_da
         chip.uart.receive_irq = rx_has_data;
     }
     if (rx_has_data) {
-        chip.uart.hw.ifls = 0; /* The SDK chooses the lowest level. */
+        chip.uart.hw.ifls = 0; /* The SDK sets the lowest level. */
     }
     irq_access();
 }
@@ -621,7 +621,7 @@ void gpio_init(uint gpio)
     chip.values[gpio] = false;
 }
 
-/* An output has the level that was put before, too. */
+/* A new output has the level that was set even before it was an output. */
 void gpio_set_dir(uint gpio, bool out)
 {
     chip.levels[gpio] = out ? chip.values[gpio] : -1;

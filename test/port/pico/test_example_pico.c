@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The program examples/pico, as it is, against the simulated lidar in its room. */
+/* Runs the unchanged program examples/pico with the simulated lidar in its simulated room. */
 
 #include <setjmp.h>
 
@@ -12,7 +12,7 @@
 #include "story.h"
 
 #define STOP_PIN 15
-#define START_US 200000u /* Nothing has been seen before. */
+#define START_US 200000u /* Before this time nothing has been seen. */
 
 int example_main(void);
 

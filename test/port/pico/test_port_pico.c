@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The Pico port on a model of the chip, against the simulated lidar. */
+/* Tests the Pico port on a model of the chip with the simulated lidar. */
 
 #include <string.h>
 
@@ -25,7 +25,7 @@ static tmini_pico_wiring_t wiring;
 
 static uint32_t pause_ms;
 
-/* Receives before each poll. */
+/* Waits `pause_ms`, then receives. */
 static void wait(void)
 {
     pico_model_pass(pause_ms * 1000u);
@@ -53,7 +53,7 @@ void setUp(void)
     pause_ms = 1;
 }
 
-/* Whatever a test did: nothing stays taken. */
+/* After each test, all DMA channels must be free again. */
 void tearDown(void)
 {
     tmini_pico_stop(&port);
@@ -139,23 +139,23 @@ void test_only_pins_that_the_uart_has_are_accepted(void)
         TEST_ASSERT_TRUE(is_accepted(uart0, tx_of_uart0[i], tx_of_uart0[i] + 1));
         TEST_ASSERT_FALSE(is_accepted(uart0, tx_of_uart1[i], 1));
     }
-    TEST_ASSERT_FALSE(is_accepted(uart1, 5, 4)); /* Crossed. */
-    TEST_ASSERT_TRUE(is_accepted(uart1, 4, 9));  /* Need not be neighbours. */
+    TEST_ASSERT_FALSE(is_accepted(uart1, 5, 4)); /* TX and RX are swapped. */
+    TEST_ASSERT_TRUE(is_accepted(uart1, 4, 9));  /* The pins need not be neighbours. */
 }
 
-/* Where RP2040 has CTS and RTS, RP2350 can have TX and RX as well; and it has more pins. */
-void test_the_other_pins_of_a_uart_are_those_of_the_chip(void)
+/* On pins where RP2040 has only CTS and RTS, RP2350 also has TX and RX. It also has more pins. */
+void test_the_other_pins_of_a_uart_depend_on_the_chip(void)
 {
 #if PICO_RP2350
     TEST_ASSERT_TRUE(is_accepted(uart1, 6, 7));
     TEST_ASSERT_EQUAL_INT(GPIO_FUNC_UART_AUX, pico_model_function(6));
     TEST_ASSERT_EQUAL_INT(GPIO_FUNC_UART_AUX, pico_model_function(7));
     TEST_ASSERT_TRUE(is_accepted(uart1, 36, 37));
-    TEST_ASSERT_FALSE(is_accepted(uart1, 52, 53)); /* There are 48. */
+    TEST_ASSERT_FALSE(is_accepted(uart1, 52, 53)); /* This chip has 48 pins. */
 #else
     TEST_ASSERT_FALSE(is_accepted(uart1, 6, 5));
     TEST_ASSERT_FALSE(is_accepted(uart1, 4, 7));
-    TEST_ASSERT_FALSE(is_accepted(uart1, 36, 37)); /* There are 30. */
+    TEST_ASSERT_FALSE(is_accepted(uart1, 36, 37)); /* This chip has 30 pins. */
 #endif
 }
 
@@ -166,7 +166,7 @@ void test_a_ring_that_the_hardware_cannot_wrap_is_refused(void)
     assert_refused();
     wiring.ring_size = 128;
     assert_refused();
-    wiring.ring = ring + 256; /* Not at a multiple of 512. */
+    wiring.ring = ring + 256; /* Not aligned to 512 bytes. */
     wiring.ring_size = 512;
     assert_refused();
     wiring.ring = large;
@@ -200,19 +200,19 @@ void test_start_takes_what_it_needs_or_nothing(void)
         TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_pico_start(&port, &lidar));
         TEST_ASSERT_EQUAL_UINT(taken, pico_model_claimed_channels());
     }
-    pico_model_begin(NULL); /* Now they are free: nothing is left of the failures. */
+    pico_model_begin(NULL); /* All channels are free: after the failures, a start succeeds. */
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
     tmini_pico_stop(&port);
     receive_by_interrupt();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
     pico_model_take_interrupt(UART1_IRQ);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_pico_start(&port, &lidar));
-    tmini_pico_stop(&port); /* Takes nobody else's handler away. */
+    tmini_pico_stop(&port); /* This must not remove the handler of others. */
     TEST_ASSERT_TRUE(pico_model_has_handler());
     pico_model_begin(NULL);
 }
 
-void test_channels_and_interrupts_of_others_stay_theirs(void)
+void test_channels_and_interrupts_of_others_are_left_alone(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
     pico_model_take_channels(1);
@@ -226,7 +226,7 @@ void test_channels_and_interrupts_of_others_stay_theirs(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
     TEST_ASSERT_TRUE(pico_model_is_interrupt_enabled(UART1_IRQ));
     tmini_pico_stop(&port);
-    TEST_ASSERT_FALSE(pico_model_is_interrupt_enabled(UART1_IRQ)); /* Who is next may rely on it. */
+    TEST_ASSERT_FALSE(pico_model_is_interrupt_enabled(UART1_IRQ));
 }
 
 void test_starting_twice_is_refused_and_changes_nothing(void)
@@ -242,7 +242,7 @@ static void assert_stops_and_starts(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
     for (unsigned i = 0; i < 20; i++) {
         TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-        TEST_ASSERT_EQUAL_UINT32(0, counted().bytes); /* They begin anew. */
+        TEST_ASSERT_EQUAL_UINT32(0, counted().bytes); /* A start resets the counters. */
         (void)tmini_start(&lidar);
         for (unsigned ms = 0; ms < 20 + i; ms++) {
             while (receive_and_poll() != TMINI_EVENT_NONE) {
@@ -273,11 +273,11 @@ void test_reception_by_interrupt_stops_and_starts_while_the_lidar_streams(void)
     assert_stops_and_starts();
 }
 
-void test_what_came_before_the_start_is_dropped(void)
+void test_bytes_before_the_start_are_dropped(void)
 {
     uint8_t old[40] = {0};
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    pico_model_receive(0, old, sizeof old); /* The FIFO has overrun, too. */
+    pico_model_receive(0, old, sizeof old); /* This also overruns the FIFO. */
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
     (void)receive_and_poll();
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes);
@@ -322,8 +322,7 @@ void test_every_point_arrives_by_interrupt(void)
     start();
     pause_ms = 5;
     assert_true_scans(1, 10);
-    /* At half a FIFO, and at each packet's end: far fewer than the FIFO's lowest level would ask
-     * for. */
+    /* The port sets the level to half a FIFO; with the lowest level there would be more. */
     TEST_ASSERT_TRUE(pico_model_interrupts() < pico_model_line_bytes() / 10);
 }
 
@@ -334,7 +333,7 @@ void test_wherever_an_interrupt_comes_every_point_arrives(void)
     assert_true_scans_wherever_bytes_come();
 }
 
-/* 262 bytes in 20 ms; the FIFO keeps 32. */
+/* In 20 ms 262 bytes arrive; the FIFO holds 32. */
 void test_an_interrupt_that_comes_too_late_costs_the_packets_that_it_hit(void)
 {
     tmini_counters_t counters;
@@ -345,7 +344,7 @@ void test_an_interrupt_that_comes_too_late_costs_the_packets_that_it_hit(void)
     poll_until(TMINI_EVENT_SCAN);
     TEST_ASSERT_FALSE(tmini_scan(&lidar)->complete);
     TEST_ASSERT_EQUAL_UINT16(1, tmini_scan(&lidar)->gaps);
-    poll_until(TMINI_EVENT_SCAN); /* What came after the gap. */
+    poll_until(TMINI_EVENT_SCAN); /* The part after the gap. */
     TEST_ASSERT_FALSE(tmini_scan(&lidar)->complete);
     assert_true_scans(4, 6);
     TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
@@ -361,7 +360,7 @@ void test_errors_of_the_line_are_counted_and_the_byte_is_stored(void)
     assert_true_scans(1, 1);
     tmini_pico_counters_t before = counted();
     pico_model_receive(UART_UARTDR_FE_BITS, &byte, 1);
-    pico_model_receive(UART_UARTDR_FE_BITS | UART_UARTDR_BE_BITS, &byte, 1); /* As a break does. */
+    pico_model_receive(UART_UARTDR_FE_BITS | UART_UARTDR_BE_BITS, &byte, 1); /* A break. */
     pico_model_pass(200);
     TEST_ASSERT_EQUAL_UINT32(1, counted().framing_errors);
     TEST_ASSERT_EQUAL_UINT32(1, counted().breaks);
@@ -370,7 +369,8 @@ void test_errors_of_the_line_are_counted_and_the_byte_is_stored(void)
     TEST_ASSERT_EQUAL_UINT32(pico_model_line_bytes(), counted().bytes);
 }
 
-/* ----------------------------------------------------------------------- losses without a trace */
+/* --------------------------------------------------------------- losses not visible in the
+ * bytes */
 
 static uint32_t packets(void)
 {
@@ -382,8 +382,8 @@ static uint32_t packets(void)
     return counters.packets;
 }
 
-/* The packet's two parts fit together, whatever was lost between them: who sees only bytes, sees a
- * packet. */
+/* Receives a packet in parts. Its bytes alone do not show that some were lost in between: only the
+ * flags do. */
 static void receive_packet_with(uint32_t flags)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
@@ -413,7 +413,7 @@ void test_no_packet_is_put_together_across_an_overrun(void)
     }
 }
 
-/* What lies in the ring begins with the packet's second part, after laps of something else. */
+/* Two laps of other bytes come between the packet's two parts, and the ring no longer has them. */
 void test_no_packet_is_put_together_across_lost_laps(void)
 {
     static const uint8_t nothing[2 * LAP] = {0};
@@ -446,8 +446,8 @@ void test_wherever_bytes_come_by_dma_every_point_arrives(void)
     assert_true_scans_wherever_bytes_come();
 }
 
-/* 13.1 bytes per millisecond: of rx_buffer's 1024 bytes a packet that has come in part takes 129,
- * the rest is 68 ms. */
+/* Of rx_buffer's 1024 bytes, a partly received packet takes up to 129. At 13.1 bytes per
+ * millisecond, the rest is full after 68 ms. */
 void test_the_ring_lasts_from_one_poll_to_the_next_65_ms_later(void)
 {
     start();
@@ -456,7 +456,7 @@ void test_the_ring_lasts_from_one_poll_to_the_next_65_ms_later(void)
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
 }
 
-void test_pauses_that_the_ring_bridges_cost_no_scan(void)
+void test_pauses_that_the_ring_can_hold_cost_no_scan(void)
 {
     wiring.ring = large_ring;
     wiring.ring_size = sizeof large_ring;
@@ -464,7 +464,7 @@ void test_pauses_that_the_ring_bridges_cost_no_scan(void)
     assert_pauses_cost_no_scan(sizeof large_ring);
 }
 
-/* It takes no more than the lidar has room for; the rest waits in the ring. */
+/* The port takes only bytes for which the lidar has room; the others stay in the ring. */
 void test_a_lidar_with_little_room_takes_the_ring_in_portions(void)
 {
     tmini_counters_t counters;
@@ -483,7 +483,7 @@ void test_a_lidar_with_little_room_takes_the_ring_in_portions(void)
     TEST_ASSERT_EQUAL_UINT32(pico_model_line_bytes(), counted().bytes);
 }
 
-void test_errors_are_counted_though_dma_does_not_see_them(void)
+void test_errors_are_counted_although_dma_does_not_see_them(void)
 {
     static const uint8_t byte = 0x55;
     start();
@@ -508,7 +508,7 @@ void test_an_overrun_of_the_uart_on_a_busy_bus_is_noticed(void)
     TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
 }
 
-/* Nothing is unread; then this many bytes come before the next poll. */
+/* Reads all bytes; then lets this many arrive before the next poll. */
 static void stall_bytes(uint32_t bytes)
 {
     const uint32_t line_bytes = pico_model_line_bytes();
@@ -519,8 +519,8 @@ static void stall_bytes(uint32_t bytes)
     }
 }
 
-/* A poll that is late by whole laps finds DMA at the same place as before: only the count
- * differs. */
+/* After whole laps, a late poll finds DMA at the same place as before: only the count shows the
+ * loss. */
 static void assert_stall_is_noticed(uint32_t bytes)
 {
     start();
@@ -544,7 +544,7 @@ void test_stalls_of_whole_laps_are_noticed_to_the_byte(void)
     }
 }
 
-void test_a_stall_that_the_ring_just_holds_costs_nothing(void)
+void test_a_stall_that_the_ring_can_just_hold_loses_nothing(void)
 {
     start();
     assert_true_scans(1, 2);
@@ -554,9 +554,9 @@ void test_a_stall_that_the_ring_just_holds_costs_nothing(void)
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
 }
 
-/* The poll is held up at each of its readings of DMA's position in turn, with bytes waiting in the
- * ring. */
-void test_a_poll_that_is_held_up_anywhere_in_its_midst_delivers_nothing_wrong(void)
+/* Delays a poll after one of its readings of DMA's position, with bytes in the ring: once for each
+ * of these readings. */
+void test_a_poll_that_is_delayed_at_any_reading_delivers_nothing_wrong(void)
 {
     static const uint32_t stalls[] = {LAP / 2, LAP - 300, LAP, LAP + 300, 2 * LAP, 5 * LAP};
     for (unsigned i = 0; i < sizeof stalls / sizeof stalls[0]; i++) {
@@ -564,7 +564,7 @@ void test_a_poll_that_is_held_up_anywhere_in_its_midst_delivers_nothing_wrong(vo
             start();
             assert_true_scans(1, 2);
             stall_bytes(300);
-            pico_model_pass_after_read(reads, stalls[i] * 76u); /* 76 µs a byte while scanning. */
+            pico_model_pass_after_read(reads, stalls[i] * 76u); /* 76 µs per byte of a scan. */
             (void)scans_until_complete();
             tmini_pico_stop(&port);
             setUp();
@@ -572,7 +572,7 @@ void test_a_poll_that_is_held_up_anywhere_in_its_midst_delivers_nothing_wrong(vo
     }
 }
 
-void test_whenever_and_however_long_polls_are_held_up_no_point_is_wrong(void)
+void test_with_polls_delayed_at_random_no_point_is_wrong(void)
 {
     for (uint64_t seed = 1; seed <= 8; seed++) {
         unsigned scans = 0;
@@ -587,7 +587,7 @@ void test_whenever_and_however_long_polls_are_held_up_no_point_is_wrong(void)
         }
         const tmini_pico_counters_t counters = counted();
         const uint32_t missing = pico_model_line_bytes() - counters.bytes - counters.bytes_lost;
-        TEST_ASSERT_TRUE(missing < 25000); /* Only what came last: none is unaccounted for. */
+        TEST_ASSERT_TRUE(missing < 25000); /* Only bytes since the last poll are not counted. */
         TEST_ASSERT_TRUE(counters.bytes_lost > 0);
         TEST_ASSERT_TRUE(scans >= 20);
         tmini_pico_stop(&port);
@@ -595,7 +595,8 @@ void test_whenever_and_however_long_polls_are_held_up_no_point_is_wrong(void)
     }
 }
 
-/* Nearly three hours of scanning later, and again. */
+/* Advances DMA to `bytes_left` before one channel takes over from the other. Without this, that
+ * would take nearly three hours of scanning. */
 static void approach_end_of_turn(uint32_t bytes_left)
 {
     const tmini_pico_counters_t before = counted();
@@ -603,7 +604,7 @@ static void approach_end_of_turn(uint32_t bytes_left)
     pico_model_move_on(0x08000000u - gone % 0x08000000u - bytes_left);
 }
 
-/* The change comes while scans are complete again: three laps are 240 ms, eight are 620. */
+/* The channels change eight laps (620 ms) later, when scans are complete again. */
 void test_one_channel_takes_over_from_the_other_without_losing_a_byte(void)
 {
     start();
@@ -645,10 +646,10 @@ static void assert_true_scan_after_recovery(void)
 {
     assert_recovery();
     tmini_pico_stop(&port);
-    tmini_pico_port.restart(&port); /* Of a stopped port: nothing. */
+    tmini_pico_port.restart(&port); /* A restart of a stopped port does nothing. */
 }
 
-void test_a_dma_that_has_died_begins_anew(void)
+void test_a_dma_that_has_stopped_is_started_again(void)
 {
     start();
     assert_true_scans(1, 1);
@@ -667,7 +668,7 @@ void test_a_lidar_that_loses_its_supply_comes_back_by_dma(void)
     (void)scans_until_complete();
 }
 
-void test_interrupts_that_were_switched_off_are_asked_for_again(void)
+void test_interrupts_that_were_switched_off_are_enabled_again(void)
 {
     receive_by_interrupt();
     start();
@@ -676,7 +677,7 @@ void test_interrupts_that_were_switched_off_are_asked_for_again(void)
     assert_true_scan_after_recovery();
 }
 
-void test_waiting_ends_with_the_first_bytes_or_in_time(void)
+void test_waiting_ends_with_the_first_bytes_or_at_its_timeout(void)
 {
     for (unsigned i = 0; i < 2; i++) {
         start();

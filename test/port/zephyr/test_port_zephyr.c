@@ -57,7 +57,7 @@ void test_a_fifo_that_takes_several_readings_is_emptied(void)
 }
 
 /* An interrupt per byte must not be a switch of threads per byte. */
-void test_the_polling_thread_is_woken_once_in_64_bytes(void)
+void test_the_polling_thread_is_woken_once_per_64_bytes(void)
 {
     zephyr_model_set_fifo(1);
     zephyr_rig_start();

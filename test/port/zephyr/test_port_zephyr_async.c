@@ -38,7 +38,7 @@ void test_wherever_an_interrupt_comes_every_point_arrives(void)
     assert_true_scans_wherever_bytes_come();
 }
 
-void test_pauses_that_the_receive_buffer_lasts_cost_no_scan(void)
+void test_pauses_that_the_receive_buffer_can_hold_cost_no_scan(void)
 {
     zephyr_rig_start();
     assert_pauses_cost_no_scan(1024 / 2); /* As always, at the line's full rate. */

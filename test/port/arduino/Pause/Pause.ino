@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A sketch that does something else for PAUSE_US each time round. */
+/* A sketch that pauses for PAUSE_US in each loop(). */
 
 #include <TMiniLidar.h>
 

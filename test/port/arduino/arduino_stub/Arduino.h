@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The little of Arduino's API that the port and its sketches use, written for the tests from the
- * public reference: a clock that a test sets and serial ports that a test fills and reads. With
- * ESP32 or ARDUINO_ARCH_RP2040 defined, what that core adds. */
+/* The part of Arduino's API that the port and its sketches use, written for the tests from the
+ * public reference. A test sets the clock, and fills and reads the serial ports. The macros ESP32
+ * and ARDUINO_ARCH_RP2040 add the functions of these cores. */
 
 #ifndef ARDUINO_H
 #define ARDUINO_H
@@ -13,7 +13,7 @@
 #include <deque>
 #include <string>
 
-/* Names that the real thing takes away. */
+/* The real core also defines these names as macros. */
 #define degrees(radians) ((radians)*57.29577951308232)
 #define radians(degrees) ((degrees)*0.017453292519943295)
 
@@ -80,7 +80,7 @@ class Stream : public Print
         while (count < length && available() > 0 && (byte = read()) >= 0) {
             buffer[count++] = static_cast<uint8_t>(byte);
         }
-        waited = waited || count < length; /* The real one waits up to a second. */
+        waited = waited || count < length; /* The real function would wait up to a second. */
         return count;
     }
     bool waited = false;
@@ -119,9 +119,9 @@ class HardwareSerial : public Stream
         is_open = !refuses;
         baud_rate = baud;
         size_at_begin = rx_size;
-        fifo_full = 120; /* As the ESP32's core does at this baud rate. */
+        fifo_full = 120; /* The ESP32 core's default at this baud rate. */
     }
-    /* A byte comes in: into the buffer, or nowhere. */
+    /* A byte arrives from the line. It is lost if the buffer is full or the port is closed. */
     void take(uint8_t byte)
     {
         if (received.size() < rx_size && is_open) {
@@ -138,7 +138,7 @@ class HardwareSerial : public Stream
         rx_pin = rx;
         tx_pin = tx;
     }
-    /* The pins are then the board's own again. */
+    /* Closing also releases the pins. */
     void end()
     {
         vain_ends += is_open ? 0 : 1;
@@ -168,7 +168,7 @@ class HardwareSerial : public Stream
     unsigned long baud_rate = 0;
     uint32_t line = 0;
 #if defined(SERIAL_RX_BUFFER_SIZE)
-    size_t rx_size = SERIAL_RX_BUFFER_SIZE - 1; /* As where head and tail must differ. */
+    size_t rx_size = SERIAL_RX_BUFFER_SIZE - 1; /* In a full ring, head and tail must differ. */
 #else
     size_t rx_size = 256;
 #endif
@@ -178,13 +178,13 @@ class HardwareSerial : public Stream
     int fifo_full = 0;
     bool is_open = false;
     unsigned vain_ends = 0;
-    bool refuses = false; /* To be opened, as without memory. */
+    bool refuses = false; /* True: begin() fails, as when memory is short. */
 };
 
 #if defined(ARDUINO_ARCH_RP2040)
 typedef uint8_t pin_size_t;
 
-/* While the port is open, its pins and its queue of 32 bytes are what they are. */
+/* While the port is open, its pins and its queue (32 bytes by default) cannot be changed. */
 class SerialUART : public HardwareSerial
 {
   public:

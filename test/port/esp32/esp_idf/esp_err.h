@@ -15,7 +15,7 @@ typedef int esp_err_t;
 #define ESP_ERR_INVALID_STATE 0x103
 #define ESP_ERR_NOT_SUPPORTED 0x106
 
-/* The real one prints where, and restarts the chip. */
+/* The real macro prints the source line and restarts the chip. */
 void esp_stop(esp_err_t error);
 #define ESP_ERROR_CHECK(call)         \
     do {                              \

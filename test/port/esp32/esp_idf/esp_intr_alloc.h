@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* ESP-IDF: flags of interrupts. */
+/* ESP-IDF: interrupt flags. */
 
 #ifndef ESP_INTR_ALLOC_H
 #define ESP_INTR_ALLOC_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* ESP-IDF: locks of the power management. */
+/* ESP-IDF: power management locks. */
 
 #ifndef ESP_PM_H
 #define ESP_PM_H

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What menuconfig would write, with the defaults of Kconfig: for an ESP32-C6 (one core, a low-power
- * UART, 100 ticks per second), or with MODEL_ESP32 for an ESP32 (two cores, UARTs on the APB's
- * clock) with slow ticks. */
+/* The file that menuconfig would write with the defaults of Kconfig: for an ESP32-C6 (one core, a
+ * low-power UART, 100 ticks per second), or with MODEL_ESP32 for an ESP32 (two cores, UARTs clocked
+ * by the APB, slower ticks). */
 
 #ifndef SDKCONFIG_H
 #define SDKCONFIG_H
@@ -30,7 +30,7 @@
 #define CONFIG_TMINI_ESP32_TASK_PRIORITY 12
 #define CONFIG_TMINI_ESP32_TASK_CORE -1
 
-/* Of examples/esp32_idf. */
+/* Option of examples/esp32_idf. */
 #define CONFIG_EXAMPLE_STOP_GPIO 10
 
 #endif

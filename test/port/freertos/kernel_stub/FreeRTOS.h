@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the port and its example use of the FreeRTOS kernel, with the kernel's names, on a model of
- * it (../freertos_model.h). Written for the tests from the kernel's public API documentation. As
- * with the original, this header comes before the others. */
+/* The part of FreeRTOS that the port and its example use, implemented by ../freertos_model.h.
+ * Written for the tests from the kernel's public API documentation. As in FreeRTOS, this header
+ * must be included before the others. */
 
 #ifndef INC_FREERTOS_H
 #define INC_FREERTOS_H
@@ -15,7 +15,7 @@
 #define configTASK_NOTIFICATION_ARRAY_ENTRIES 1
 #define configMAX_PRIORITIES 4
 
-/* Other ticks are other tests. */
+/* Some tests define other values. */
 #ifndef configTICK_RATE_HZ
 #define configTICK_RATE_HZ 1000u
 #endif

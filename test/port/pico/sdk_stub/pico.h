@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands in for the Pico SDK's header of this name, as the others here do for theirs, on the model
- * of the chip (../pico_model.h). Each includes what the original includes (SDK 2.2.0), so that what
- * compiles here compiles there. Written for the tests from the SDK's public documentation and the
- * data sheets. */
+/* Stands in for the Pico SDK's header of this name, as do the other headers here, on the model of
+ * the chip (../pico_model.h). Each includes the same headers as the original (SDK 2.2.0), so that
+ * code that compiles here also compiles with the SDK. Written for the tests from the SDK's public
+ * documentation and the data sheets. */
 
 #ifndef PICO_H
 #define PICO_H

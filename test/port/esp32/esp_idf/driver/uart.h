@@ -16,7 +16,7 @@
 
 #define UART_PIN_NO_CHANGE (-1)
 
-/* The low-power UART has the number after the last of the others. */
+/* The low-power UART has the number after those of the other UARTs. */
 #ifdef MODEL_ESP32
 #define SOC_UART_HP_NUM (3)
 typedef enum { UART_NUM_0, UART_NUM_1, UART_NUM_2, UART_NUM_MAX } uart_port_t;

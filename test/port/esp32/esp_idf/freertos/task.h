@@ -6,7 +6,7 @@
 #ifndef TASK_H
 #define TASK_H
 
-/* As the original. */
+/* As in FreeRTOS. */
 #ifndef INC_FREERTOS_H
 #error "include FreeRTOS.h must appear in source files before include task.h"
 #endif

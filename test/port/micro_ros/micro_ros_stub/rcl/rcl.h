@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The little of ROS's C client library that the example uses, written for the tests from the public
- * reference; implemented by virtual_agent.c. Results must be looked at, as with the real one. */
+/* The part of ROS's C client library that the example uses, written for the tests from the public
+ * reference, and implemented by virtual_agent.c. As in the real library, callers must check
+ * results. */
 
 #ifndef RCL_RCL_H
 #define RCL_RCL_H

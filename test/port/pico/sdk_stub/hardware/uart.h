@@ -14,7 +14,8 @@ extern uart_inst_t *const pico_uarts[2];
 #define uart0 (pico_uarts[0])
 #define uart1 (pico_uarts[1])
 
-/* Reading the data register takes an entry out of the FIFO: naming the member does so here. */
+/* Reading the data register removes an entry from the FIFO. Here, each use of the member `dr` does
+ * this. */
 typedef struct {
     volatile uint32_t taken[1];
     volatile uint32_t ris;
@@ -46,7 +47,7 @@ void uart_set_irqs_enabled(uart_inst_t *uart, bool rx_has_data, bool tx_needs_da
 uint uart_get_dreq(uart_inst_t *uart, bool is_tx);
 #define UART_IRQ_NUM(uart) (20u + uart_get_index(uart))
 
-/* The functions' names are gpio.h's. */
+/* gpio.h defines the names of these functions. */
 #if PICO_RP2350
 #define UART_FUNCSEL_NUM(uart, gpio) (((gpio)&2u) != 0 ? GPIO_FUNC_UART_AUX : GPIO_FUNC_UART)
 #else

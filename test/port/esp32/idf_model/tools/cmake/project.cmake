@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# A model of ESP-IDF's build, as much as a project and its components call: components are the
-# project's `main` and what is in its `components`, and the folders named in EXTRA_COMPONENT_DIRS.
-# It compiles them over the stand-in for ESP-IDF's interface, each with what it asks for, and `main`
-# with all of them.
+# A model of ESP-IDF's build, limited to the functions that this project calls. Components are the
+# project's `main`, the folders in its `components`, and the folders named in EXTRA_COMPONENT_DIRS.
+# Each component is compiled with the stand-in headers of the ESP-IDF components that it requires;
+# `main` gets all of them.
 
 set(IDF_VERSION_MAJOR 5)
 set(IDF_VERSION_MINOR 5)
 set(idf_model_interface ${CMAKE_CURRENT_LIST_DIR}/../../../esp_idf)
 
-# Components of ESP-IDF, and the headers that they give; the others come with every component.
+# The headers of some ESP-IDF components. All other headers are available to every component.
 set(idf_model_esp_driver_uart driver/uart.h)
 set(idf_model_esp_driver_gpio driver/gpio.h)
 set(idf_model_esp_pm esp_pm.h)
@@ -23,7 +23,8 @@ function(idf_build_get_property variable property)
     set(${variable} esp32c6 PARENT_SCOPE)
 endfunction()
 
-# Copies the headers of ESP-IDF's component into a folder that only those who ask for it can see.
+# Copies the headers of an ESP-IDF component into a folder of its own: only components that require
+# it get this include folder.
 function(idf_model_ask component)
     foreach(header ${idf_model_${component}})
         configure_file(${idf_model_interface}/${header}
@@ -70,7 +71,7 @@ function(idf_model_add_components)
     endforeach()
 endfunction()
 
-# ESP-IDF, too, puts a macro of its own before CMake's project().
+# ESP-IDF also replaces CMake's project() with a macro of its own.
 macro(project name)
     _project(${name} LANGUAGES C)
     file(GLOB_RECURSE idf_model_headers RELATIVE ${idf_model_interface} ${idf_model_interface}/*.h)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* LaserScan as ROS's generator makes it for C: the same names, types and order. */
+/* LaserScan as ROS's generator declares it for C: with the same names, types and order. */
 
 #ifndef SENSOR_MSGS_MSG_LASER_SCAN_H
 #define SENSOR_MSGS_MSG_LASER_SCAN_H
@@ -16,8 +16,8 @@ typedef struct {
 
 typedef struct {
     char *data;
-    size_t size;     /* Without the null. */
-    size_t capacity; /* With it. */
+    size_t size;     /* Without the terminating null. */
+    size_t capacity; /* With the terminating null. */
 } rosidl_runtime_c__String;
 
 typedef struct {
