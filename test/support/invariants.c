@@ -130,7 +130,8 @@ bool ct_is_sound(const tmini_ct_t *ct)
 bool builder_is_sound(const tmini_builder_t *builder)
 {
     const tmini_scan_t *const scan = &builder->scan;
-    return builder->capacity > 0 && !(builder->ended && builder->open) && scan->points != NULL &&
+    return builder->capacity > 0 && !(builder->ended && builder->open) &&
+           (!builder->open || scan->packets > 0) && scan->points != NULL &&
            scan->count <= builder->capacity &&
            (builder->filter & ~(unsigned)TMINI_FILTER_BOTH) == 0 &&
            builder->previous_angle_q6 < TMINI_FULL_CIRCLE_Q6 && builder->swept_q6 >= SWEPT_MIN_Q6 &&

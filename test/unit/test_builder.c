@@ -818,6 +818,18 @@ static void lose_the_next_start(void)
     add();
 }
 
+void test_a_packet_after_the_first_that_dma_has_overwritten_leaves_the_scan_open(void)
+{
+    receiver_open_dma(&receiver, memory, 512, 0);
+    (void)start(0);
+    receive(0x00, 5, DEGREE, 90 * DEGREE);
+    overrun();
+    add();
+    TEST_ASSERT_TRUE(arrive(0x00, 5, 91 * DEGREE, 180 * DEGREE)); /* Of an unknown turn. */
+    TEST_ASSERT_EQUAL_UINT16(1, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
+}
+
 void test_after_a_start_packet_that_dma_has_overwritten_a_scan_has_a_gap(void)
 {
     lose_the_next_start();
