@@ -12,7 +12,7 @@
 static const unsigned long BAUD_RATE = 230400;
 
 #if defined(ESP32) || defined(ESP8266) || TMINI_LIDAR_ON_RP2040
-/* Size of the core's receive buffer: 44 ms of a busy line. 256 bytes are 11 ms, 32 bytes 1 ms. */
+/* Size of the core's receive buffer: it lasts 44 ms. 256 bytes last 11 ms, 32 bytes 1 ms. */
 static const int SERIAL_RX_SIZE = 1024;
 #elif defined(SERIAL_RX_BUFFER_SIZE)
 static const int SERIAL_RX_SIZE = SERIAL_RX_BUFFER_SIZE; /* As the core has it. */
@@ -21,14 +21,15 @@ static const int SERIAL_RX_SIZE = 0x7FFF; /* Not known. */
 #endif
 
 /* Enlarges the core's receive buffer where the core allows it, before the port is opened. On the
- * ESP32 an open port refuses. It is not closed here, because it would lose pins that the sketch may
- * have chosen. */
+ * ESP32 an open port refuses this. It is not closed here, because it would lose pins that the
+ * sketch may have chosen. */
 static void enlarge(TMiniSerial &serial)
 {
 #if defined(ESP32) || defined(ESP8266)
     serial.setRxBufferSize(SERIAL_RX_SIZE);
 #elif TMINI_LIDAR_ON_RP2040
-    serial.end(); /* If the sketch has opened it: refused then. */
+    /* An open port would refuse a new size. */
+    serial.end();
     serial.setFIFOSize(SERIAL_RX_SIZE);
 #else
     (void)serial;
@@ -36,7 +37,7 @@ static void enlarge(TMiniSerial &serial)
 }
 
 /* Sets the level at which the UART's FIFO interrupts, where the core allows it, after the port is
- * opened. The core leaves 8 of 128 bytes (0.35 ms) for delays; this leaves half of them. */
+ * opened. The core leaves 8 of 128 bytes (0.35 ms) for delays; this leaves 64. */
 static void quicken(TMiniSerial &serial)
 {
 #if defined(ESP_ARDUINO_VERSION_MAJOR) && ESP_ARDUINO_VERSION_MAJOR >= 3
@@ -49,7 +50,7 @@ static void quicken(TMiniSerial &serial)
 static bool isOpen(TMiniSerial &serial)
 {
 #if defined(ESP32)
-    return static_cast<bool>(serial); /* It may lack memory, for example. */
+    return static_cast<bool>(serial); /* Opening may fail, for example for lack of memory. */
 #else
     (void)serial;
     return true;
@@ -104,7 +105,8 @@ static void open(TMiniSerial &serial)
 }
 
 #if defined(ESP32)
-/* An open port would keep its small buffer. Early cores use other pins if none are given. */
+/* Closes an open port, because it would keep its small buffer. Early cores use other pins if none
+ * are given. */
 static void open(TMiniSerial &serial, int8_t rxPin, int8_t txPin)
 {
     if (isOpen(serial)) {
@@ -131,8 +133,8 @@ void TMiniLidarBase::restart(void *context)
 #endif
 }
 
-/* Does the work of tmini_mount_step(), which takes longer on an 8-bit board than its buffer
- * lasts. */
+/* Does the work of tmini_mount_step() and receives meanwhile: on an 8-bit board this work takes
+ * longer than the core's buffer lasts. */
 void TMiniLidarBase::mountScan(const void *context, tmini_scan_t *scan)
 {
     TMiniLidarBase *const port = static_cast<TMiniLidarBase *>(const_cast<void *>(context));
@@ -170,7 +172,7 @@ bool TMiniLidarBase::listen(Stream &serial, TMiniSerial *port, float hertz)
     beforeLoss_ = 0;
     config_.frequency_chz = hertz == 0.0f ? 0 : toHundredths(hertz);
     if (mount_ != NULL && config_.step != NULL && config_.step != mountScan) {
-        return succeeds(TMINI_ERROR_ARGUMENT); /* There is room for one. */
+        return succeeds(TMINI_ERROR_ARGUMENT); /* Only one step is possible. */
     }
     if (mount_ != NULL && config_.points != NULL) {
         config_.step = mountScan;
@@ -208,7 +210,7 @@ bool TMiniLidarBase::begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin, floa
 #elif TMINI_LIDAR_ON_RP2040
 bool TMiniLidarBase::begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin, float hertz)
 {
-    serial.end(); /* Open, it would keep its pins. */
+    serial.end(); /* An open port would keep its pins. */
     const bool fit = serial.setRX(static_cast<pin_size_t>(rxPin)) &&
                      serial.setTX(static_cast<pin_size_t>(txPin));
     return succeeds(fit ? TMINI_OK : TMINI_ERROR_ARGUMENT) && begin(serial, hertz);
@@ -294,7 +296,7 @@ tmini_event_t TMiniLidarBase::loop()
         more = more && tmini_feed_room(&lidar_) > 0;
     }
     if (event_ == TMINI_EVENT_COMMAND_FAILED) {
-        status_ = TMINI_OK; /* What comes now is the newer reason. */
+        status_ = TMINI_OK; /* error() now gives this command's reason. */
     }
     return event_;
 }
@@ -311,7 +313,7 @@ size_t TMiniLidarBase::available() const
     }
 }
 
-/* A scan's, not a packet's. */
+/* True if points() belongs to a scan, not to a packet. */
 bool TMiniLidarBase::hasPoints() const
 {
     return event_ == TMINI_EVENT_SCAN || config_.spare_points != NULL;

@@ -27,8 +27,8 @@
  * Time. The lidar sends a byte every 43 us. Bytes that the sketch does not take in time are lost
  * when the core's receive buffer is full: after 2.7 ms with 64 bytes (most boards), after 44 ms
  * with 1024 (ESP32, ESP8266, RP2040, RP2350). loop() takes them, and so does a loop over points().
- * During longer work of your own call receive(). On an 8-bit board a float costs 10 us, and print()
- * waits while its own 64 bytes are full. */
+ * During longer work of your own call receive(). On an 8-bit board a float operation takes 10 us,
+ * and print() waits while its own buffer (64 bytes) is full. */
 
 #ifndef TMINI_LIDAR_H
 #define TMINI_LIDAR_H
@@ -38,8 +38,8 @@
 #include "tmini/tmini.h"
 #include "tmini/tmini_mount.h"
 
-/* The class of the board's serial ports that begin() opens. That of Raspberry Pi's controllers (the
- * core of Earle Philhower) has a buffer of 32 bytes, 1.4 ms, and only its own class can enlarge
+/* The class of the board's serial ports that begin() opens. On Raspberry Pi's controllers (the core
+ * of Earle Philhower) a port has a buffer of 32 bytes, 1.4 ms, and only SerialUART can enlarge
  * it. */
 #if defined(ARDUINO_ARCH_RP2040) && !defined(ARDUINO_ARCH_MBED)
 /** Whether Serial1 is a SerialUART, whose buffer can be enlarged. */
@@ -74,8 +74,8 @@ struct TMiniPoint : public tmini_point_t {
 
 class TMiniLidarBase;
 
-/** The points of a scan or of a packet, for a range-based for, which also takes what the lidar
- * sends meanwhile. */
+/** The points of a scan or of a packet, for a range-based for loop. The loop also receives what the
+ * lidar sends meanwhile. */
 class TMiniPoints
 {
   public:
@@ -109,19 +109,19 @@ class TMiniPoints
     {
     }
     /** @endcond */
-    /** How many there are. */
+    /** How many points there are. */
     size_t size() const
     {
         return count_;
     }
     /** Point `index`, from 0, below size(). */
     TMiniPoint operator[](size_t index) const;
-    /** The first one, for a range-based for. */
+    /** The first point, for a range-based for loop. */
     Iterator begin() const
     {
         return Iterator(*this, 0);
     }
-    /** After the last one. */
+    /** After the last point. */
     Iterator end() const
     {
         return Iterator(*this, count_);
@@ -131,11 +131,11 @@ class TMiniPoints
     inline void keepUp(size_t index) const;
 
     TMiniLidarBase &lidar_;
-    const tmini_point_t *scan_; /* NULL: those of the packet. */
+    const tmini_point_t *scan_; /* NULL: the points of the packet. */
     size_t count_;
 };
 
-/** Everything but the buffers. Use TMiniLidar or TMiniLidarStreaming, below. */
+/** Everything except the buffers. Use TMiniLidar or TMiniLidarStreaming, below. */
 class TMiniLidarBase
 {
   public:
@@ -151,8 +151,8 @@ class TMiniLidarBase
     bool begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin, float hertz = 0);
 #endif
 #if TMINI_LIDAR_ON_RP2040
-    /** Pass the port itself (Serial1): through a HardwareSerial & its buffer cannot be enlarged.
-     * For other kinds of port that have their own buffer, such as SerialPIO: open it, then call
+    /** Pass the port itself (Serial1): through a HardwareSerial & its buffer cannot be enlarged. If
+     * the port is of another class, with its own buffer, such as SerialPIO: open it, then call
      * begin(static_cast<Stream &>(port)). */
     bool begin(HardwareSerial &serial, float hertz = 0) = delete;
 #endif
@@ -169,7 +169,7 @@ class TMiniLidarBase
         mount_ = &mount;
         mountPoint_ = tmini_mount_point; /* Here, so that it is linked only where it is used. */
     }
-    /** One that does not outlive the call. */
+    /** A temporary object is refused: it would not outlive the call. */
     void setMount(const tmini_mount_t &&mount) = delete;
 
     /** All other settings of tmini_init(), such as `config().filter = TMINI_FILTER_BOTH` or
@@ -194,7 +194,8 @@ class TMiniLidarBase
     /** The points of the last loop(), valid until the next loop(). With a spare buffer, the points
      * of the last scan, valid until the next scan. */
     TMiniPoints points();
-    /** The scan that points() belongs to, valid equally long: complete, frequency, times, gaps. */
+    /** The scan that points() belongs to, valid as long as these: complete, frequency, times,
+     * gaps. */
     const tmini_scan_t &scan() const;
     /** With TMiniLidarStreaming: the packet that points() belongs to, until the next loop(). */
     const tmini_packet_t &packet() const;
@@ -215,27 +216,27 @@ class TMiniLidarBase
     bool isScanning() const;
     /** What the lidar does. */
     tmini_state_t state() const;
-    /** Model, versions, serial number; after TMINI_EVENT_INFO, for good. */
+    /** Model, versions, serial number; valid from TMINI_EVENT_INFO on. */
     const tmini_info_t &info() const;
-    /** Faults by request; after TMINI_EVENT_HEALTH, until the next one. */
+    /** The answer to requestHealth(); valid from one TMINI_EVENT_HEALTH to the next. */
     const tmini_health_t &health() const;
     /** A combination of tmini_fault_t; see TMINI_EVENT_FAULTS_CHANGED. */
     uint8_t faults() const;
-    /** Why the last call returned false or, if none did, why the last command failed; TMINI_OK:
-     * neither has happened. */
+    /** Why the last call returned false; if it returned true, why the last command failed.
+     * TMINI_OK: neither has happened. */
     tmini_status_t status() const;
     /** The same as text. */
     const char *error() const;
     /** How often the core's receive buffer was found full, so that bytes may have been lost: the
      * sketch was too slow. Counted only where the buffer's size is known: begin() has set it, or
-     * the core names it (AVR, STM32). */
+     * the core defines it (AVR, STM32). */
     uint16_t overruns() const;
 
-    /** The library's own handle, for what has no method here: counters, CT information. */
+    /** The library's tmini_t, for what has no method here: counters, CT information. */
     tmini_t *driver();
 
   protected:
-    /** For the classes below, which bring the buffers. */
+    /** For the classes below, which add the buffers. */
     TMiniLidarBase(uint8_t *rx, size_t rxSize, tmini_point_t *points, tmini_point_t *spare,
                    size_t maxPoints);
 
@@ -258,15 +259,15 @@ class TMiniLidarBase
     tmini_t lidar_;
     tmini_config_t config_;
     Stream *stream_;
-    TMiniSerial *serial_; /* The same, if begin() has opened it. */
+    TMiniSerial *serial_; /* The same port, if begin() has opened it. */
     const tmini_mount_t *mount_;
     void (*mountPoint_)(const tmini_mount_t *mount, tmini_point_t *point);
     tmini_event_t event_;
     tmini_status_t status_;
     uint16_t overruns_;
-    int8_t rxPin_; /* On an ESP32, if begin() was given them; else -1. */
+    int8_t rxPin_; /* On an ESP32, the pins given to begin(); else -1. */
     int8_t txPin_;
-    size_t beforeLoss_; /* Bytes that wait in the core's buffer, and after them some are missing. */
+    size_t beforeLoss_; /* Bytes in the core's buffer before a loss; 0: no loss. */
 };
 
 inline void TMiniPoints::keepUp(size_t index) const
@@ -276,8 +277,9 @@ inline void TMiniPoints::keepUp(size_t index) const
     }
 }
 
-/** A lidar with its buffers: RxSize received bytes (a power of two, from 256), MaxPoints points;
- * with Spare twice, so that a scan stays until the next one. */
+/** A lidar with its buffers, for RxSize received bytes (a power of two, at least 256) and MaxPoints
+ * points. With Spare there are two buffers for points, and a scan stays valid until the next
+ * one. */
 template <size_t RxSize, size_t MaxPoints, bool Spare = false>
 class TMiniLidarWith : public TMiniLidarBase
 {
@@ -306,7 +308,7 @@ template <size_t RxSize> class TMiniLidarWith<RxSize, 0, false> : public TMiniLi
 typedef TMiniLidarWith<512, 700> TMiniLidar;
 #else
 typedef TMiniLidarWith<1024, TMINI_SCAN_POINTS_TYPICAL> TMiniLidar;
-/** The same with a spare buffer, in 11 KB: a scan stays until the next one. */
+/** The same with a spare buffer, in 11 KB: a scan stays valid until the next one. */
 typedef TMiniLidarWith<1024, TMINI_SCAN_POINTS_TYPICAL, true> TMiniLidarSpare;
 #endif
 /** Each packet of up to 40 points, in 0.8 KB of RAM. */

@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /** @file
- * The library by its name, which is what Arduino looks for. */
+ * A header with the library's name, because Arduino looks for one. */
 
 #ifndef TMINI_ARDUINO_H
 #define TMINI_ARDUINO_H

@@ -17,7 +17,7 @@ if(NOT tmini_target STREQUAL "linux")
     list(APPEND tmini_include_dirs ${CMAKE_CURRENT_LIST_DIR})
     list(APPEND tmini_requires esp_pm)
     list(APPEND tmini_private_requires esp_timer)
-    # Drivers got components of their own in 5.3.
+    # Since ESP-IDF 5.3, each driver has its own component.
     if("${IDF_VERSION_MAJOR}.${IDF_VERSION_MINOR}" VERSION_LESS "5.3")
         list(APPEND tmini_requires driver)
     else()

@@ -20,18 +20,18 @@ static const char *const TAG = "tmini";
 /* In a shorter queue a single waiting event would look like a full queue, and so like a loss. */
 #define QUEUE_LENGTH_MIN 4
 
-/* The tightest limits in the family, those of the ESP32 itself. */
+/* The tightest limits in the chip family, those of the ESP32 itself. */
 #define FIFO_THRESHOLD_MAX 126
 #define TIMEOUT_SYMBOLS_MAX 100
 
-/* How long the receiving task waits for an event before it looks for bytes itself; stopping may
- * take as long. It then fetches bytes whose event was lost in a full queue. At least one tick:
+/* How long the receiving task waits for an event before it looks for bytes itself, because their
+ * event may have been lost in a full queue. Stopping may take this long, too. At least one tick:
  * otherwise the task would never wait, and no task of lower priority would run. */
 #define LOOK_MS 20
 #define LOOK_TICKS (pdMS_TO_TICKS(LOOK_MS) > 0 ? pdMS_TO_TICKS(LOOK_MS) : 1)
 
-/* Low-power UARTs, which some chips have after the others, do not count: their FIFOs have 16 bytes
- * and their clocks are slow. */
+/* Low-power UARTs, which have the highest numbers on some chips, do not count: their FIFOs have 16
+ * bytes and their clocks are slow. */
 #ifdef SOC_UART_HP_NUM
 #define UARTS SOC_UART_HP_NUM
 #else
@@ -86,7 +86,7 @@ static uint32_t total(const uint32_t *counter)
 
 /* ------------------------------------------------------------------------------------- the line */
 
-/* If the pin was an output before, it would still drive the line: newer versions of ESP-IDF do not
+/* A pin that was an output before would still drive the line: newer versions of ESP-IDF do not
  * switch the output off. */
 static void release(int pin)
 {
@@ -95,7 +95,7 @@ static void release(int pin)
 
 /* Without a pull-up the line of an unplugged lidar would float, and noise would become bytes and
  * errors. Older versions of ESP-IDF did this by themselves. For pins without a pull-up (34 to 39 of
- * the ESP32) ESP-IDF logs an error; they work. */
+ * the ESP32) ESP-IDF logs an error, but they work. */
 static void pull_up(int pin)
 {
     (void)gpio_pullup_en((gpio_num_t)pin);
@@ -127,7 +127,7 @@ static esp_err_t set_up_uart(const tmini_esp32_wiring_t *wiring)
         error = uart_set_rx_timeout(uart, (uint8_t)wiring->timeout_symbols);
     }
     if (error == ESP_OK) {
-        /* The driver posts all events that this port uses, except this one, by default. */
+        /* The only event used here that the driver does not post by default. */
         error = uart_enable_intr_mask(uart, UART_FRM_ERR_INT_ENA_M);
     }
     return error;
@@ -141,7 +141,7 @@ static size_t smaller(size_t a, size_t b)
 }
 
 /* How far a place in the stream is ahead of counters.bytes, in bytes; 0 if it has been passed.
- * Places count as counters.bytes does. */
+ * A place is a value of counters.bytes. */
 static size_t distance_to(const tmini_esp32_t *port, uint32_t place)
 {
     const uint32_t distance = place - port->counters.bytes;
@@ -167,8 +167,8 @@ static size_t take(tmini_esp32_t *port, size_t wanted)
     return count > 0 ? tmini_feed(port->lidar, port->chunk, (size_t)count) : 0;
 }
 
-/* The driver holds no bytes. It stores bytes before it announces them, so all announced bytes have
- * been handed on, and a gap that was ahead is here. */
+/* Called when the driver holds no bytes. It stores bytes before it announces them, so all announced
+ * bytes have been handed to the lidar, and a gap that was ahead is here. */
 static void catch_up(tmini_esp32_t *port)
 {
     if (distance_to(port, port->announced) > 0) {
@@ -230,9 +230,9 @@ static void note_gap(tmini_esp32_t *port)
     }
 }
 
-/* Joins all further overflows into one second gap, because each gap costs the lidar's ring a poll.
- * Overflows whose events were lost are included. This gap lies after all bytes that the driver can
- * hold now. */
+/* Joins all further overflows into one second gap, because for each gap a poll must empty the
+ * lidar's ring. Overflows whose events were lost are included. This gap lies after all bytes that
+ * the driver can hold now. */
 static void note_later_gaps(tmini_esp32_t *port)
 {
     if (port->lost_more && !port->gap_ahead) {
@@ -330,9 +330,10 @@ size_t tmini_esp32_wait(tmini_esp32_t *port, TickType_t ticks)
     return 0;
 }
 
-/* While the ring is full it looks in each tick, because no event reports that a poll has made room.
+/* While the lidar's ring is full, the task looks once per tick, because no event reports that a
+ * poll has made room.
  *
- * After its last store it does not touch the port, which may no longer exist. */
+ * After its last store the task does not touch the port, which may no longer exist. */
 static void receive_task(void *argument)
 {
     tmini_esp32_t *const port = argument;
@@ -372,7 +373,7 @@ static const char *mistake_in_task(const tmini_esp32_wiring_t *wiring)
 static const char *mistake_in(const tmini_esp32_wiring_t *wiring)
 {
     if (!is_within(wiring->uart, 0, UARTS - 1)) {
-        return "uart: this chip has no such one, or it is a low-power one";
+        return "uart: this chip has no UART of this number, or it is a low-power one";
     }
     if (wiring->tx_pin < 0 || wiring->rx_pin < 0) {
         return "tx_pin, rx_pin: not chosen (menuconfig, T-mini lidar)";
@@ -453,7 +454,7 @@ static void release_clock(tmini_esp32_t *port)
     }
 }
 
-/* Installs the driver and starts the task; after a failure removes what it had done. */
+/* Installs the driver and starts the task. After a failure nothing of this remains. */
 static esp_err_t begin_reception(tmini_esp32_t *port)
 {
     const tmini_esp32_wiring_t *const wiring = &port->wiring;
@@ -462,7 +463,7 @@ static esp_err_t begin_reception(tmini_esp32_t *port)
     esp_err_t error = uart_driver_install(uart, wiring->buffer_size, 0, wiring->queue_length,
                                           &port->events, INTERRUPT_FLAGS);
     if (error != ESP_OK) {
-        return error; /* Not removed: it may belong to another part of the program. */
+        return error; /* Not deleted: the driver may belong to another part of the program. */
     }
     error = set_up_uart(wiring);
     if (error == ESP_OK) {

@@ -4,9 +4,9 @@
 /** @file
  * The lidar on a UART of an ESP32 (any chip of the family, ESP-IDF 5.0 and newer).
  *
- * Over ESP-IDF's own UART driver: its interrupt takes the bytes out of the UART's 128-byte FIFO
- * into its ring buffer and posts events to a queue; a receiving task, or the caller's own loop,
- * hands them on to the lidar. Everything else happens in tmini_poll(), as on every platform.
+ * Uses ESP-IDF's UART driver. The driver's interrupt moves bytes from the UART's 128-byte FIFO to a
+ * ring buffer and posts events to a queue. A receiving task, or the caller's own loop, hands the
+ * bytes on to the lidar. Everything else happens in tmini_poll(), as on every platform.
  *
  *     static tmini_t lidar;
  *     static tmini_esp32_t port;
@@ -27,7 +27,7 @@
  *     }
  *
  * By default (`with_task` true) a receiving task feeds and another task polls, on the same core or
- * not. With `with_task` false one task does both: tmini_esp32_wait() then also receives. */
+ * another. With `with_task` false one task does both: tmini_esp32_wait() then also receives. */
 
 #ifndef TMINI_ESP32_H
 #define TMINI_ESP32_H
@@ -61,17 +61,17 @@ typedef struct {
                            * 128. */
     int queue_length;     /**< Length of the UART driver's event queue: 4 or more. */
     int fifo_threshold;   /**< Bytes in the FIFO that raise the interrupt: 1 to 126. */
-    int timeout_symbols;  /**< Silence after the last byte that also raises it, in byte times: 1 to
-                           * 100. */
+    int timeout_symbols;  /**< Silence after the last byte that also raises the interrupt, in byte
+                           * times: 1 to 100. */
     bool with_task;       /**< Start a receiving task; if false, tmini_esp32_wait() receives. */
-    int task_stack_bytes; /**< Stack of that task. This and the next two members matter only with a
-                           * task. */
+    int task_stack_bytes; /**< Stack of that task. This and the next two members are used only if
+                           * with_task is true. */
     int task_priority;    /**< Its priority: above the polling task, below FreeRTOS's
                            * configMAX_PRIORITIES. */
     int task_core;        /**< A core that FreeRTOS runs on (0, 1), or TMINI_ESP32_ANY_CORE. */
 } tmini_esp32_wiring_t;
 
-/** Wiring and sizes as chosen in menuconfig, "T-mini lidar". Kconfig explains each. */
+/** Wiring and sizes as chosen in menuconfig, "T-mini lidar". Kconfig explains each value. */
 #define TMINI_ESP32_WIRING_DEFAULT                                                          \
     {                                                                                       \
         .uart = CONFIG_TMINI_ESP32_UART, .tx_pin = CONFIG_TMINI_ESP32_TX_PIN,               \
@@ -134,12 +134,13 @@ extern const tmini_port_t tmini_esp32_port;
 esp_err_t tmini_esp32_init(tmini_esp32_t *port, const tmini_esp32_wiring_t *wiring);
 
 /** Installs the UART driver, sets it up for the lidar and starts the receiving task. The UART's
- * interrupt is served by the core that makes this call. `lidar` has been through tmini_init(); both
- * it and `port` stay the caller's and must last until tmini_esp32_stop(). The counters begin at 0.
+ * interrupt is served by the core that makes this call. `lidar` must have been set up by
+ * tmini_init(); both it and `port` stay the caller's and must last until tmini_esp32_stop(). The
+ * counters begin at 0.
  *
  * If power management is compiled in (CONFIG_PM_ENABLE), the port holds a lock until
- * tmini_esp32_stop(). It prevents light sleep, in which a UART receives nothing; and on the ESP32
- * and ESP32-S2, whose UARTs take their clock from the APB, a slower APB.
+ * tmini_esp32_stop(). The lock prevents light sleep, in which a UART receives nothing. On the ESP32
+ * and ESP32-S2, whose UARTs take their clock from the APB, it also prevents a slower APB.
  *
  * Context: a task. Waits only for memory. Returns ESP_OK, or an error, after which nothing remains
  * installed:
@@ -158,9 +159,8 @@ esp_err_t tmini_esp32_stop(tmini_esp32_t *port);
 
 /** For a polling task that has nothing left to do. With a receiving task, or when stopped: sleeps
  * for `ticks`, at least one, and returns 0. Without a receiving task: waits up to `ticks` for
- * bytes,
- * hands to the lidar what fits into its ring (the rest waits in the UART driver's buffer for the
- * next call), and returns how many.
+ * bytes, hands to the lidar what fits into its ring (the rest waits in the UART driver's buffer
+ * for the next call), and returns how many.
  *
  * Context: the task that polls. */
 size_t tmini_esp32_wait(tmini_esp32_t *port, TickType_t ticks);

@@ -20,7 +20,7 @@
 
 #define CHUNK 64u
 
-/* Never no time at all, whatever the tick's rate. */
+/* At least one tick, at any tick rate. */
 static TickType_t ticks_of(uint32_t ms)
 {
     const TickType_t ticks = (TickType_t)(ms * configTICK_RATE_HZ / 1000u);
@@ -30,7 +30,7 @@ static TickType_t ticks_of(uint32_t ms)
 /* ----------------------------------------------------------------- the UART's interrupt context */
 
 /* The task may be unknown: the polling task until it sleeps for the first time, the receiving task
- * until it has begun to run. */
+ * until it has been created. */
 static void notify_from_isr(tmini_freertos_t *port, TaskHandle_t task, BaseType_t *woken)
 {
     if (task != NULL) {
@@ -103,7 +103,7 @@ static void announce(const tmini_freertos_t *port)
 }
 
 /* While the stream is closed the interrupt stores nothing, so an empty stream stays empty. The
- * polling task must empty the lidar's ring before it takes more. */
+ * polling task must empty the lidar's ring before the ring takes more. */
 static void open_when_empty(tmini_freertos_t *port)
 {
     if (port->is_closed && xStreamBufferIsEmpty(port->stream) == pdTRUE) {
@@ -130,7 +130,7 @@ static void hand_on(tmini_freertos_t *port)
     const size_t room = tmini_feed_room(port->lidar);
     if (room == 0) {
         report_held(port);
-        vTaskDelay(1); /* The polling task's turn. */
+        vTaskDelay(1); /* Lets the polling task run. */
         return;
     }
     const size_t count = xStreamBufferReceive(port->stream, chunk, room < CHUNK ? room : CHUNK, 0);
@@ -152,7 +152,7 @@ static void receive_task(void *argument)
         if (port->is_receiving) {
             hand_on(port);
         } else {
-            await_notification(0); /* A notification for earlier bytes; the next one is from the
+            await_notification(0); /* Drops a notification for earlier bytes: the next one means a
                                     * start. */
             port->is_parked = true;
             await_notification(portMAX_DELAY);
@@ -186,7 +186,7 @@ tmini_status_t tmini_freertos_init(tmini_freertos_t *port, const tmini_freertos_
     return TMINI_OK;
 }
 
-/* The task is made at the first start; later ones only wake it. */
+/* The task is created at the first start; later starts only wake it. */
 static void start_receiver(tmini_freertos_t *port)
 {
     if (port->receiver == NULL) {
@@ -211,7 +211,7 @@ tmini_status_t tmini_freertos_start(tmini_freertos_t *port, tmini_t *lidar)
     port->is_parked = false;
     port->is_closed = false;
     if (port->stream != NULL) {
-        (void)xStreamBufferReset(port->stream); /* What was left when it was stopped. */
+        (void)xStreamBufferReset(port->stream); /* Bytes left from before the stop. */
     }
     port->is_receiving = true;
     if (port->stream != NULL) {
@@ -250,8 +250,8 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
     return port->wiring.write != NULL ? port->wiring.write(port->wiring.uart, bytes, count) : -1;
 }
 
-/* Milliseconds modulo 2^32. Ticks of another rate, or of 16 bits, do not wrap there, so each call
- * adds the time since the last one. */
+/* Milliseconds modulo 2^32. Ticks of another rate, or of 16 bits, do not wrap at 2^32 ms, so each
+ * call adds the time since the last one. */
 static uint32_t port_now_ms(void *context)
 {
     tmini_freertos_t *const port = context;

@@ -3,7 +3,7 @@
 
 /** @file
  * The lidar under FreeRTOS, on any chip: bytes go from your UART interrupt to the lidar, and the
- * task that polls sleeps until there are some. Nothing is allocated; no interrupt is disabled.
+ * task that polls sleeps until bytes have come. Nothing is allocated; no interrupt is disabled.
  *
  *     static tmini_freertos_t port;
  *     static tmini_t lidar;
@@ -28,10 +28,11 @@
  *         portYIELD_FROM_ISR(woken);
  *     }
  *
- * Two ways. Without a stream (`stream` NULL) the interrupt stores into the lidar's own buffer and
- * notifies the polling task: the shortest way, and the usual one. With a stream the interrupt fills
- * a FreeRTOS stream buffer, and a receiving task passes on the bytes that the lidar has room for.
- * Then the polling task may be late by as long as the stream lasts, and `rx_buffer` may be small.
+ * There are two ways. Without a stream (`stream` NULL) the interrupt stores into the lidar's own
+ * buffer and notifies the polling task: the shortest way, and the usual one. With a stream the
+ * interrupt fills a FreeRTOS stream buffer, and a receiving task passes on the bytes that the lidar
+ * has room for. Then the polling task may be late by the time that the stream can bridge, and
+ * `rx_buffer` may be small.
  *
  * Contexts. The two functions whose names end in _from_isr belong to the UART's interrupt, all
  * others to the task that polls. Any number of lidars, each with a tmini_freertos_t of its own. */
@@ -65,7 +66,7 @@ extern "C" {
 #endif
 
 #ifndef TMINI_FREERTOS_NOTIFICATION
-/** Which of the polling task's notifications; configTASK_NOTIFICATION_ARRAY_ENTRIES are there. */
+/** The index of the notification that wakes a task; below configTASK_NOTIFICATION_ARRAY_ENTRIES. */
 #define TMINI_FREERTOS_NOTIFICATION 0
 #endif
 
@@ -73,7 +74,7 @@ extern "C" {
 typedef struct {
     /** Sends, as `write` of tmini_port_t does: required. */
     int (*write)(void *uart, const uint8_t *bytes, size_t count);
-    void *uart;                  /**< Passed to it. */
+    void *uart;                  /**< Passed to `write` and `restart`. */
     void (*restart)(void *uart); /**< As `restart` of tmini_port_t; NULL: none. */
     uint8_t *stream;      /**< The stream buffer's memory; NULL: no stream and no receiving task. */
     size_t stream_size;   /**< 128 or more; 1024 bytes last 44 ms. */
@@ -96,11 +97,11 @@ typedef struct {
     TaskHandle_t receiver;
     StreamBufferHandle_t stream;
     volatile bool is_receiving; /* Written by start and stop. */
-    volatile bool is_parked;    /* The receiving task has seen that it has to rest. */
+    volatile bool is_parked;    /* The receiving task has noticed the stop. */
     volatile bool is_closed;    /* The stream takes no bytes until it has been emptied. */
     uint32_t unannounced;       /* Bytes since the polling task was last woken. */
     uint32_t time_ms;           /* The time at `tick`, in ms. */
-    uint32_t time_rest;         /* The fraction of a millisecond on top of it. */
+    uint32_t time_rest;         /* The fraction of a millisecond to add. */
     TickType_t tick;
     tmini_freertos_counters_t counters;
     StaticStreamBuffer_t stream_memory;
@@ -110,18 +111,19 @@ typedef struct {
 } tmini_freertos_t;
 
 /** The `port` of tmini_config_t; its `port_context` is the tmini_freertos_t. Its clock is the
- * kernel's tick, of any rate and width; polled at least once in each round of the tick count. */
+ * kernel's tick, of any rate and width. Poll at least once before the tick count wraps around. */
 extern const tmini_port_t tmini_freertos_port;
 
-/** Names the UART and makes the stream, if there is one; nothing is received yet. May be called
- * before the scheduler runs, and once only: the receiving task, once started, stays. Returns
+/** Copies the wiring and creates the stream, if there is one; nothing is received yet. May be
+ * called before the scheduler runs. Call it only once: the receiving task, once started, stays.
+ * Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer, no `write`, a stream below 128 bytes, a priority that the
  *                         kernel does not have */
 tmini_status_t tmini_freertos_init(tmini_freertos_t *port, const tmini_freertos_wiring_t *wiring);
 
-/** From now on received bytes go to `lidar`, which has been through tmini_init(); the counters
- * begin anew. Returns
+/** From now on received bytes go to `lidar`, which must have been set up by tmini_init(); the
+ * counters begin at 0. Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer, or no tmini_freertos_init() before
  *   TMINI_ERROR_STATE     started already */
@@ -133,13 +135,13 @@ tmini_status_t tmini_freertos_start(tmini_freertos_t *port, tmini_t *lidar);
 void tmini_freertos_stop(tmini_freertos_t *port);
 
 /** Sleeps until bytes have come, at most `ticks` (at least one): for a polling task that has
- * nothing left to do. The driver also keeps time, so let it be some 10 ms. The caller is the task
- * that will be woken. */
+ * nothing left to do. About 10 ms is right, because the driver must also check its time-outs. The
+ * caller is the task that will be woken. */
 void tmini_freertos_wait(tmini_freertos_t *port, TickType_t ticks);
 
 /** Takes received bytes; for the UART's interrupt. *woken becomes pdTRUE if a task of higher
- * priority has been woken, as with FreeRTOS's own functions of this kind. No loop but a copy, no
- * wait. */
+ * priority has been woken, as with FreeRTOS's own functions of this kind. One copy, no other loop,
+ * no wait. */
 void tmini_freertos_receive_from_isr(tmini_freertos_t *port, const uint8_t *bytes, size_t count,
                                      BaseType_t *woken);
 

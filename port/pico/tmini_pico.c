@@ -25,12 +25,12 @@
 #define OVERRUN_ERROR UART_UARTDR_OE_BITS
 #define DR_ERRORS (FRAMING_ERROR | BREAK_ERROR | OVERRUN_ERROR)
 
-/* Raw interrupt status has the same three in the same order, one bit further down. */
+/* The raw interrupt status has the same three bits in the same order, one bit lower. */
 #define RIS_TO_DR (UART_UARTDR_OE_LSB - UART_UARTRIS_OERIS_LSB)
 #define RIS_ERRORS (UART_UARTRIS_OERIS_BITS | UART_UARTRIS_BERIS_BITS | UART_UARTRIS_FERIS_BITS)
 
-/* What one DMA channel transfers before the other takes over: a multiple of every ring's size, so
- * that the other begins where the ring began, and below the 2^28 that RP2350 can count. */
+/* Bytes that one DMA channel transfers before the other takes over: a multiple of every ring's
+ * size, so that each turn begins at the ring's beginning; below 2^28, the RP2350's limit. */
 #define TURN 0x08000000u
 #define COUNT_MASK (2 * TURN - 1)
 
@@ -55,7 +55,7 @@ static void count_errors(tmini_pico_t *port, uint32_t errors)
 /* One for each UART: an interrupt handler has no argument. */
 static tmini_pico_t *receivers[2];
 
-/* A byte that comes with an error is stored as well: the parser's checks decide what it is worth.
+/* A byte that comes with an error is stored as well: the parser's checks decide whether it is used.
  * The UART marks the first byte after an overrun: the gap is reported before that byte. */
 static void empty_fifo(tmini_pico_t *port)
 {
@@ -142,7 +142,7 @@ static bool read_written(const tmini_pico_t *port, uint32_t *written)
     return false;
 }
 
-/* False if it is not known. */
+/* Reads how many bytes DMA has written that were not taken yet. False if this is unknown. */
 static bool read_unread(const tmini_pico_t *port, uint32_t *unread)
 {
     uint32_t written;
@@ -160,7 +160,8 @@ static bool is_intact(const tmini_pico_t *port, uint32_t unread)
 }
 
 /* Skips all unread bytes except the newest `kept`, and reports the gap to the lidar. The lidar
- * takes nothing more until it has processed its bytes from before the gap; later calls continue. */
+ * takes nothing more until it has processed its bytes from before the gap; later calls pass on the
+ * rest. */
 static void pass_over(tmini_pico_t *port, uint32_t unread, uint32_t kept)
 {
     port->taken += unread - kept;
@@ -173,9 +174,9 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* Copies the oldest unread bytes, up to CHUNK; returns how many. They are valid only if DMA's
- * position, read again after the copy, shows so: this function may have been interrupted for any
- * length of time. */
+/* Copies the oldest unread bytes, up to CHUNK; returns how many. Then reads DMA's position again,
+ * because this function may have been interrupted for any length of time; returns 0 if the bytes
+ * may have been overwritten. */
 static size_t copy_oldest(const tmini_pico_t *port, uint32_t unread, uint8_t *chunk)
 {
     const size_t at = port->taken & (port->ring_size - 1);
@@ -244,7 +245,7 @@ static bool claim_channels(tmini_pico_t *port)
     return true;
 }
 
-/* When its turn ends, the other channel begins. */
+/* When a channel's turn ends, the other channel begins. */
 static void configure_channel(const tmini_pico_t *port, unsigned index, bool begins)
 {
     const uint channel = port->channels[index];
@@ -289,7 +290,7 @@ static void stop_dma(const tmini_pico_t *port)
     dma_channel_unclaim(port->channels[1]);
 }
 
-/* After an error on the bus a channel stands still for good. */
+/* After a bus error a channel does not continue by itself. */
 static void restart_dma(tmini_pico_t *port)
 {
     end_dma(port);
@@ -339,7 +340,7 @@ tmini_status_t tmini_pico_init(tmini_pico_t *port, const tmini_pico_wiring_t *wi
     }
     gpio_set_function(wiring->tx_pin, UART_FUNCSEL_NUM(wiring->uart, wiring->tx_pin));
     gpio_set_function(wiring->rx_pin, UART_FUNCSEL_NUM(wiring->uart, wiring->rx_pin));
-    gpio_pull_up(wiring->rx_pin); /* The line is idle, not noisy, while no lidar is plugged in. */
+    gpio_pull_up(wiring->rx_pin); /* Without a lidar the line is idle, not noisy. */
     port->ring = wiring->ring;
     port->ring_size = (uint32_t)wiring->ring_size;
     port->uart = wiring->uart;
@@ -374,7 +375,7 @@ tmini_status_t tmini_pico_start(tmini_pico_t *port, tmini_t *lidar)
     return status;
 }
 
-/* What an interrupt has stored is with the lidar already. */
+/* Only counts bytes: the interrupt has already handed them to the lidar. */
 static size_t stored_by_interrupt(tmini_pico_t *port)
 {
     const uint32_t bytes = port->counters.bytes;

@@ -52,10 +52,10 @@ extern "C" {
 /** Defines a ring where the hardware needs it: at a multiple of its size. */
 #define TMINI_PICO_RING(name, size) static uint8_t name[size] __attribute__((aligned(size)))
 
-/** Which pins can be which UART's TX and RX is in the chip's data sheet; the Pico's own leaflet
- * shows it. */
+/** How the lidar is connected. The chip's data sheet and the Pico's pinout show which pins can be
+ * TX and RX of each UART. */
 typedef struct {
-    uart_inst_t *uart; /**< uart0 carries the console unless that is moved, or on USB. */
+    uart_inst_t *uart; /**< uart0 carries the console, unless the program moves it. */
     uint tx_pin;       /**< The GPIO wired to the lidar's RX. */
     uint rx_pin;       /**< The GPIO wired to the lidar's TX. */
     uint8_t *ring;     /**< TMINI_PICO_RING(), for DMA; NULL: an interrupt. */
@@ -65,8 +65,9 @@ typedef struct {
 /** Received bytes on their way to the lidar. Running totals, modulo 2^32. */
 typedef struct {
     uint32_t bytes;          /**< Handed to the lidar. */
-    uint32_t bytes_lost;     /**< DMA had overwritten them before they were taken. */
-    uint32_t overruns;       /**< The UART's FIFO was full: the interrupt came too late. */
+    uint32_t bytes_lost;     /**< Overwritten by DMA before they were taken, or not yet taken when
+                              * the FIFO overran. */
+    uint32_t overruns;       /**< The UART's FIFO was full: the interrupt or DMA came too late. */
     uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
     uint32_t breaks;         /**< The line was low for longer than a byte: no supply, no wire? */
 } tmini_pico_counters_t;
@@ -78,8 +79,8 @@ typedef struct {
     uart_inst_t *uart;
     uint8_t *ring;
     uint32_t ring_size;
-    uint32_t taken; /* Bytes taken out of the ring, in the channels' count; by interrupt, bytes seen
-                     * so far. */
+    uint32_t taken; /* Bytes taken out of the ring, as the channels count them; with an interrupt,
+                     * bytes that tmini_pico_wait() has reported. */
     uint8_t channels[2];
     tmini_pico_counters_t counters;
     /** @endcond */
@@ -90,19 +91,20 @@ typedef struct {
 extern const tmini_port_t tmini_pico_port;
 
 /** Sets up UART and pins: 230400 baud, 8N1, pull-up on RX. Nothing is received yet. The ring stays
- * the caller's. Not between tmini_pico_start() and tmini_pico_stop(). Returns
+ * the caller's. Do not call it between tmini_pico_start() and tmini_pico_stop(). Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer; pins that this UART does not have; a ring that is too small
  *                         or too large, no power of two, or not at a multiple of its size
  *   TMINI_ERROR_STATE     the UART's clock does not make 230400 baud within 2 % */
 tmini_status_t tmini_pico_init(tmini_pico_t *port, const tmini_pico_wiring_t *wiring);
 
-/** Received bytes go to `lidar`, which has been through tmini_init(). What came before is dropped,
- * and the counters begin anew. Takes two DMA channels, or the UART's interrupt handler. Returns
+/** From now on received bytes go to `lidar`, which must have been set up by tmini_init(). What came
+ * before is dropped, and the counters begin at 0. Takes two DMA channels, or the UART's interrupt
+ * handler. Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer, or no tmini_pico_init() before
- *   TMINI_ERROR_STATE     started already; no two DMA channels are free; the UART's interrupt has a
- *                         handler of something else */
+ *   TMINI_ERROR_STATE     started already; fewer than two DMA channels are free; the UART's
+ *                         interrupt has another handler */
 tmini_status_t tmini_pico_start(tmini_pico_t *port, tmini_t *lidar);
 
 /** Waits until bytes have come, at most `timeout_ms` (0: not at all), and returns how many. With a
@@ -111,7 +113,7 @@ tmini_status_t tmini_pico_start(tmini_pico_t *port, tmini_t *lidar);
 size_t tmini_pico_wait(tmini_pico_t *port, uint32_t timeout_ms);
 
 /** Ends reception and gives back what tmini_pico_start() took. Stop the lidar before, or it goes on
- * scanning. On the core that started. */
+ * scanning. Call it on the core that called tmini_pico_start(). */
 void tmini_pico_stop(tmini_pico_t *port);
 
 /** Copies the counters. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* POSIX, and from beyond it the baud rate, exclusive use and flock(). */
+/* POSIX, and extensions to it: the baud rate, exclusive use and flock(). */
 #define _POSIX_C_SOURCE 200809L
 #define _DEFAULT_SOURCE
 #define _DARWIN_C_SOURCE
@@ -37,7 +37,7 @@
 #define SOCKET_PREFIX "tcp:"
 #define CONNECT_MS 5000u
 
-/* How often a device that has gone is looked for. */
+/* The pause between two attempts to open a device that has disappeared. */
 #define RETRY_MS 200u
 
 /* ----------------------------------------------------------------------------------- starting */
@@ -62,10 +62,11 @@ static tmini_posix_status_t status_of_open(int error)
     }
 }
 
-/* TIOCEXCL keeps other users out, flock() also those with all rights, if they ask. */
+/* TIOCEXCL keeps other programs out, except those of root; flock() also those, if they call it
+ * too. */
 static tmini_posix_status_t claim(int fd)
 {
-    if (isatty(fd) == 0 || tcgetpgrp(fd) >= 0) { /* It has foreground processes: ours. */
+    if (isatty(fd) == 0 || tcgetpgrp(fd) >= 0) { /* Or our own terminal. */
         return TMINI_POSIX_NOT_A_TERMINAL;
     }
     if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
@@ -75,8 +76,8 @@ static tmini_posix_status_t claim(int fd)
     return TMINI_POSIX_OK;
 }
 
-/* Bytes as they are, both ways; no modem lines, no flow control. With VMIN 1, reading nothing from
- * a device without O_NONBLOCK's EAGAIN means that it has hung up. */
+/* Bytes pass unchanged in both directions; no modem lines, no flow control. With VMIN 1, read()
+ * fails with EAGAIN if there are no bytes; if it returns 0, the device has hung up. */
 static void make_raw(struct termios *settings)
 {
     settings->c_iflag = IGNBRK;
@@ -87,7 +88,7 @@ static void make_raw(struct termios *settings)
     settings->c_cc[VTIME] = 0;
 }
 
-/* Some drivers take any rate without complaint: what they say afterwards counts. */
+/* Some drivers accept a rate that they cannot set, so the settings are read back. */
 static tmini_posix_status_t set_up(int fd)
 {
     struct termios settings;
@@ -109,8 +110,9 @@ void tmini_posix_init(tmini_posix_t *port, const char *path)
     *port = (tmini_posix_t){.path = path, .fd = -1, .state = TMINI_POSIX_NO_DEVICE};
 }
 
-/* Child processes do not inherit it: one of system() would keep the device claimed. It never waits;
- * and on systems where that is a socket's option, no signal comes when the other end has gone. */
+/* Child processes do not inherit the descriptor: a child of system() would keep the device claimed.
+ * Reading and writing never wait. On systems where this is a socket's option, no signal is raised
+ * when the other end has gone. */
 static void make_own(int fd)
 {
     (void)fcntl(fd, F_SETFD, FD_CLOEXEC);
@@ -131,7 +133,7 @@ static tmini_posix_status_t open_device(tmini_posix_t *port)
     }
     const tmini_posix_status_t status = claim(port->fd);
     if (status != TMINI_POSIX_OK) {
-        (void)close(port->fd); /* Not by tmini_posix_stop(): another program's claim stays. */
+        (void)close(port->fd); /* Not close_port(): it would end another program's claim. */
         port->fd = -1;
         return status;
     }
@@ -146,7 +148,7 @@ static uint32_t now_ms(void *context)
     return (uint32_t)((uint64_t)now.tv_sec * 1000u + (uint64_t)now.tv_nsec / 1000000u);
 }
 
-/* Returns 0, or why a connection under way has failed. */
+/* Waits until a connection is established. Returns 0 or an error number. */
 static int await_connection(int fd)
 {
     const uint32_t begun_ms = now_ms(NULL);
@@ -164,7 +166,8 @@ static int await_connection(int fd)
     return getsockopt(fd, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
 }
 
-/* Returns the socket, or -1 with errno set. A connection that a signal has interrupted goes on. */
+/* Returns the socket, or -1 with errno set. After a signal connect() continues in the
+ * background. */
 static int connect_to(const struct addrinfo *place)
 {
     const int on = 1;
@@ -186,7 +189,7 @@ static int connect_to(const struct addrinfo *place)
     return fd;
 }
 
-/* The system would take 99999 for 34463. */
+/* Checked here, because the system would turn 99999 into 34463. */
 static bool is_port_number(const char *text)
 {
     const size_t digits = strspn(text, "0123456789");
@@ -194,8 +197,8 @@ static bool is_port_number(const char *text)
     return digits >= 1 && digits <= 5 && text[digits] == '\0' && number >= 1 && number <= 65535;
 }
 
-/* Where "HOST:PORT" is; NULL: nowhere. The last colon counts, because HOST may be an IPv6 address,
- * in brackets or not. */
+/* The addresses of "HOST:PORT"; NULL: none. PORT is after the last colon, because HOST may be an
+ * IPv6 address, in brackets or not. */
 static struct addrinfo *places_of(const char *address)
 {
     const struct addrinfo hints = {.ai_socktype = SOCK_STREAM};
@@ -216,7 +219,7 @@ static struct addrinfo *places_of(const char *address)
     return getaddrinfo(name, colon + 1, &hints, &places) == 0 ? places : NULL;
 }
 
-/* "tcp:HOST:PORT". */
+/* Connects to "tcp:HOST:PORT". */
 static tmini_posix_status_t open_socket(tmini_posix_t *port)
 {
     struct addrinfo *const places = places_of(port->path + sizeof SOCKET_PREFIX - 1);
@@ -271,7 +274,7 @@ static void open_port(tmini_posix_t *port)
 
 tmini_posix_status_t tmini_posix_start(tmini_posix_t *port, tmini_t *lidar)
 {
-    tmini_posix_stop(port); /* Started twice: from the beginning, and nothing is left open. */
+    tmini_posix_stop(port); /* If it was started before, nothing is left open. */
     port->lidar = lidar;
     port->received = 0;
     port->reconnections = 0;
@@ -298,7 +301,7 @@ static bool is_away(const tmini_posix_t *port)
     return port->reconnects && port->is_started && port->state != TMINI_POSIX_OK;
 }
 
-/* What was under way when the device went is lost. */
+/* Bytes that were on their way when the device disappeared are lost. */
 static void open_again(tmini_posix_t *port)
 {
     close_port(port, TMINI_POSIX_UNPLUGGED);
@@ -311,7 +314,7 @@ static void open_again(tmini_posix_t *port)
     }
 }
 
-/* A pause no longer than `timeout_ms`, and one look if it is time. */
+/* Pauses for at most `timeout_ms`. If it is time, tries once to open the device. */
 static void wait_for_device(tmini_posix_t *port, int timeout_ms)
 {
     const uint32_t passed_ms = now_ms(NULL) - port->tried_ms;
@@ -331,7 +334,7 @@ void tmini_posix_tap(tmini_posix_t *port, tmini_posix_tap_t tap, void *context)
     port->tap_context = context;
 }
 
-/* What a failure of read() or write() means. Nothing there yet, or a signal, is none. */
+/* What a failure of read() or write() means. No bytes yet, or a signal, is no failure. */
 static tmini_posix_status_t status_of_transfer(int error)
 {
     switch (error) {
@@ -372,7 +375,7 @@ static size_t room(const tmini_posix_t *port)
     return space < BLOCK_SIZE ? space : BLOCK_SIZE;
 }
 
-/* True if as many have come as were wanted: there may be more. */
+/* True if all `wanted` bytes have come: there may be more. */
 static bool take_block(tmini_posix_t *port, size_t wanted)
 {
     uint8_t block[BLOCK_SIZE];
@@ -385,7 +388,7 @@ static bool take_block(tmini_posix_t *port, size_t wanted)
     return count == (ssize_t)wanted;
 }
 
-/* What the system keeps until there is room. */
+/* Reports the bytes that the system keeps until there is room. */
 static void report_held(const tmini_posix_t *port)
 {
     int held = 0;
@@ -436,7 +439,7 @@ void tmini_posix_counters(const tmini_posix_t *port, tmini_posix_counters_t *cou
 
 /* ----------------------------------------------------------------------------------- the port */
 
-/* A socket whose other end has gone answers write() with a signal. */
+/* write() raises a signal if a socket's other end has gone. */
 static ssize_t write_quietly(int fd, const uint8_t *bytes, size_t count)
 {
 #ifdef MSG_NOSIGNAL
@@ -467,7 +470,7 @@ static void wait_a_moment(void *context)
     (void)tmini_posix_wait(context, 1);
 }
 
-/* A driver that hangs is set up anew, a connection that has died unnoticed is made again. */
+/* The device's driver may hang, or the connection may have ended unnoticed: opens it again. */
 static void restart(void *context)
 {
     tmini_posix_t *const port = context;

@@ -45,23 +45,25 @@ extern "C" {
 
 /** The state of the device. */
 typedef enum {
-    TMINI_POSIX_OK = 0,              /**< It is open, or was never opened. */
-    TMINI_POSIX_NO_DEVICE = -1,      /**< There is no device of that name. */
-    TMINI_POSIX_PERMISSION = -2,     /**< It may not be opened by this user. */
+    TMINI_POSIX_OK = 0,              /**< It is open. */
+    TMINI_POSIX_NO_DEVICE = -1,      /**< There is no device of that name, or it has not been
+                                      * started. */
+    TMINI_POSIX_PERMISSION = -2,     /**< This user has no permission to open it. */
     TMINI_POSIX_BUSY = -3,           /**< Another program uses it. */
     TMINI_POSIX_NOT_A_TERMINAL = -4, /**< It is a file, another kind of device, or this program's
                                         * own terminal. */
     TMINI_POSIX_BAUD_RATE = -5,      /**< It cannot do 230400 baud. */
-    TMINI_POSIX_UNPLUGGED = -6,      /**< It was there, and has gone. */
+    TMINI_POSIX_UNPLUGGED = -6,      /**< It was open, and has disappeared. */
     TMINI_POSIX_FAILED = -7,         /**< Another error; errno has it. */
-    TMINI_POSIX_ADDRESS = -8,        /**< It is no tcp:HOST:PORT, or there is no such host. */
+    TMINI_POSIX_ADDRESS = -8,        /**< The address is not tcp:HOST:PORT, or there is no such
+                                      * host. */
 } tmini_posix_status_t;
 
-/** Errors of the line; a byte of each has been lost, or is wrong. */
+/** Errors of the line; each means a lost or wrong byte. */
 typedef struct {
     uint32_t overruns;       /**< The adapter or the system was too slow. */
     uint32_t framing_errors; /**< No stop bit: another baud rate, or interference. */
-    uint32_t parity_errors;  /**< Not with 8N1. */
+    uint32_t parity_errors;  /**< Cannot happen with 8N1. */
 } tmini_posix_counters_t;
 
 /** Called with all bytes that are received, before the lidar gets them; for recordings. */
@@ -70,7 +72,7 @@ typedef void (*tmini_posix_tap_t)(void *context, const uint8_t *bytes, size_t co
 /** One serial device. The documented members may be read, the rest is private. */
 typedef struct {
     uint64_t received;          /**< Bytes since it was started. */
-    uint32_t reconnections;     /**< How often it was opened again since. */
+    uint32_t reconnections;     /**< How often it has been opened again since. */
     tmini_posix_status_t state; /**< TMINI_POSIX_OK while it is open, or else why not. */
     /** @cond private */
     const char *path;
@@ -87,42 +89,42 @@ typedef struct {
 /** The `port` of tmini_config_t; its `port_context` is the tmini_posix_t. */
 extern const tmini_port_t tmini_posix_port;
 
-/** Names the device, or the socket to a controller that forwards its UART: "tcp:HOST:PORT". Touches
- * nothing yet. `path` stays the caller's, and must last as long as `port` is used. Not between
- * tmini_posix_start() and tmini_posix_stop(). */
+/** Sets the path of the device, or of the socket to a controller that forwards its UART:
+ * "tcp:HOST:PORT". Opens nothing yet. `path` stays the caller's, and must last as long as `port` is
+ * used. Do not call it between tmini_posix_start() and tmini_posix_stop(). */
 void tmini_posix_init(tmini_posix_t *port, const char *path);
 
-/** From now on, what is received goes to `tap` too; none when NULL. */
+/** From now on received bytes also go to `tap`; NULL: to the lidar alone. */
 void tmini_posix_tap(tmini_posix_t *port, tmini_posix_tap_t tap, void *context);
 
 /** Opens the device at 230400 baud, 8N1, without flow control, for this program alone, and drops
  * what it received before; or connects the socket, for some seconds at most. From then on received
- * bytes go to `lidar`, which has been through tmini_init(); NULL: to the tap alone. May wait as
- * long as the system's open does. A device that was stopped, or could not be opened, may be started
- * again. */
+ * bytes go to `lidar`, which must have been set up by tmini_init(); NULL: to the tap alone. May
+ * wait as long as the system's open does. A device that was stopped, or could not be opened, may be
+ * started again. */
 tmini_posix_status_t tmini_posix_start(tmini_posix_t *port, tmini_t *lidar);
 
-/** The same over a descriptor that is open already, such as a socket to a controller that forwards
+/** The same with a descriptor that is open already, such as a socket to a controller that forwards
  * its UART. It becomes the port's own: tmini_posix_stop() closes it. Returns TMINI_POSIX_OK. */
 tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *port, int fd, tmini_t *lidar);
 
 /** From now on a device that has disappeared is opened again as soon as it is back. Until then
  * tmini_posix_wait() returns TMINI_POSIX_OK; the driver reports TMINI_EVENT_LOST, and
  * TMINI_EVENT_RECOVERED when the lidar scans again. The same holds for a device that did not exist
- * at tmini_posix_start(), and for a silent lidar. A name in /dev/serial/by-id or by-path is the
- * same adapter whenever it is plugged in, /dev/ttyUSB0 the first one. While a socket is connected
- * again, tmini_poll() and tmini_posix_wait() may take seconds. Not for tmini_posix_start_on(). */
+ * at tmini_posix_start(), and for a silent lidar. A name in /dev/serial/by-id always means the same
+ * adapter; /dev/ttyUSB0 means the first one. While a socket is connected again, tmini_poll() and
+ * tmini_posix_wait() may take seconds. Has no effect after tmini_posix_start_on(). */
 void tmini_posix_reconnect(tmini_posix_t *port, bool reconnects);
 
-/** Waits up to `timeout_ms` for bytes and feeds them to the lidar, all that have come and no more
- * than its ring has room for: call tmini_poll() until it returns TMINI_EVENT_NONE in between.
- * Without room it returns at once; the bytes stay with the system. A signal ends the waiting early.
- * Returns TMINI_POSIX_OK, also when nothing came; TMINI_POSIX_UNPLUGGED or TMINI_POSIX_FAILED, then
- * also ever after. */
+/** Waits up to `timeout_ms` for bytes and feeds all that have come to the lidar, but no more than
+ * its ring has room for: call tmini_poll() until it returns TMINI_EVENT_NONE in between. Without
+ * room it returns at once; the bytes stay with the system. A signal ends the waiting early. Returns
+ * TMINI_POSIX_OK, also when nothing came; TMINI_POSIX_UNPLUGGED or TMINI_POSIX_FAILED, which all
+ * later calls return, too. */
 tmini_posix_status_t tmini_posix_wait(tmini_posix_t *port, int timeout_ms);
 
-/** What the system has counted of the line since the adapter was plugged in. All 0 where it does
- * not count: sockets, pseudo-terminals, systems other than Linux. */
+/** Copies the errors that the system has counted since the adapter was plugged in. All 0 where it
+ * does not count: sockets, pseudo-terminals, systems other than Linux. */
 void tmini_posix_counters(const tmini_posix_t *port, tmini_posix_counters_t *counters);
 
 /** Closes the device, if it is open. Stop the lidar before, or it goes on scanning. */

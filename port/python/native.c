@@ -13,7 +13,7 @@ static void point_times_us(const tmini_scan_t *scan, uint32_t *times_us)
     }
 }
 
-/* The last one is what the end leaves of a scan. */
+/* At the end of the recording, the last scan may be only a part. */
 static int tape_next_scan(tape_t *tape)
 {
     tape_next_t next = TAPE_PACKET;

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Describes to cffi the module tmini._native: the library's sources, compiled here, and those of
-its functions that the package calls (native.cdef). The C compiler checks each declaration."""
+"""Describes the module tmini._native to cffi: it is compiled from the library's sources, and
+native.cdef declares the functions that the package calls. The C compiler checks each
+declaration."""
 
 import pathlib
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The package is built from the sources of lib/, and those of the tool that read recordings. A source
-distribution carries them; in the checkout they lie two folders up, and are here while setuptools
-works, which takes no others. (So a checkout installs once at a time.)"""
+"""Builds the package from the sources of lib/, and those of the tool that read recordings. A source
+distribution contains them. In the checkout they are two folders up, and are copied here while
+setuptools works, because it accepts only files below this folder. (So two installations must not
+use one checkout at the same time.)"""
 
 import pathlib
 import shutil

@@ -8,7 +8,7 @@
  *
  * A size_t is read and written by one instruction, and a core sees its own accesses in order, so
  * only the compiler has to be stopped from moving them. The fence is a real instruction because of
- * DMA: a Cortex-M7 may read memory earlier than the program orders it. */
+ * DMA: a Cortex-M7 may read memory in another order than the program. */
 
 #ifndef TMINI_ATOMIC_CORTEX_M_H
 #define TMINI_ATOMIC_CORTEX_M_H

@@ -15,7 +15,7 @@
  * neither, and its interrupt reports each passing once. If a passing is reported that does not lie
  * between the two positions, DMA has written one more lap. If both lie between them, the interrupts
  * were late, and DMA may have written one more lap, too. In both cases more than half of the buffer
- * is new, and unread bytes of the rest are no longer trusted. */
+ * is new, and unread bytes in the other part are no longer trusted. */
 
 #ifndef TMINI_STM32_CIRCLE_H
 #define TMINI_STM32_CIRCLE_H
@@ -34,12 +34,12 @@
 typedef struct {
     uint16_t size;
     uint16_t position;        /**< The bytes before this position have been handed over. */
-    volatile uint8_t middles; /**< Passings reported; written only by the DMA's interrupt. */
+    volatile uint8_t middles; /**< Reported passings; written only by the DMA's interrupt. */
     volatile uint8_t ends;
     uint8_t known_middles; /**< As of the last advance. */
     uint8_t known_ends;
-    int8_t untold_middles; /**< Passings seen and not yet reported: 0 or 1. */
-    int8_t untold_ends;
+    int8_t unreported_middles; /**< Passings seen and not yet reported: 0 or 1. */
+    int8_t unreported_ends;
     volatile bool busy;  /**< A context is handing over. */
     volatile bool again; /**< Another context wanted to hand over meanwhile. */
 } tmini_stm32_circle_t;
@@ -49,8 +49,8 @@ static inline void tmini_stm32_circle_begin(tmini_stm32_circle_t *circle, size_t
     *circle = (tmini_stm32_circle_t){.size = (uint16_t)size};
 }
 
-/** For the DMA channel's interrupt: notes the flags that it has served. */
-static inline void tmini_stm32_circle_tell(tmini_stm32_circle_t *circle, bool middle, bool end)
+/** For the DMA channel's interrupt: counts the passings that it reports. */
+static inline void tmini_stm32_circle_report(tmini_stm32_circle_t *circle, bool middle, bool end)
 {
     circle->middles = (uint8_t)(circle->middles + middle);
     circle->ends = (uint8_t)(circle->ends + end);
@@ -76,10 +76,10 @@ static inline bool tmini_stm32_circle_leave(tmini_stm32_circle_t *circle)
 }
 
 /** True if more passings have been reported than the positions show. */
-static inline bool tmini_stm32_circle_settle(int8_t *untold, bool passed, uint8_t told)
+static inline bool tmini_stm32_circle_settle(int8_t *unreported, bool passed, uint8_t reported)
 {
-    const int balance = *untold + passed - told;
-    *untold = (int8_t)(balance > 0);
+    const int balance = *unreported + passed - reported;
+    *unreported = (int8_t)(balance > 0);
     return balance < 0;
 }
 
@@ -95,9 +95,9 @@ static inline bool tmini_stm32_circle_advance(tmini_stm32_circle_t *circle, uint
     const bool end = to < from;
     const bool middle = end ? from < half || to >= half : from < half && to >= half;
     const bool longer_by_middle = tmini_stm32_circle_settle(
-        &circle->untold_middles, middle, (uint8_t)(middles - circle->known_middles));
-    const bool longer_by_end =
-        tmini_stm32_circle_settle(&circle->untold_ends, end, (uint8_t)(ends - circle->known_ends));
+        &circle->unreported_middles, middle, (uint8_t)(middles - circle->known_middles));
+    const bool longer_by_end = tmini_stm32_circle_settle(&circle->unreported_ends, end,
+                                                         (uint8_t)(ends - circle->known_ends));
     circle->position = to;
     circle->known_middles = middles;
     circle->known_ends = ends;
@@ -106,13 +106,13 @@ static inline bool tmini_stm32_circle_advance(tmini_stm32_circle_t *circle, uint
 
 /* ------------------------------------------------------------------- the lidar's receive buffer */
 
-/** A buffer without room that has had no bytes belongs to a lidar that is not set up. */
+/** A lidar that is not set up has no room although no byte has come. */
 static inline bool tmini_stm32_circle_is_set_up(const tmini_t *lidar)
 {
     return lidar != NULL && (tmini_feed_room(lidar) > 0 || tmini_feed_position(lidar) > 0);
 }
 
-/** 0 unless it was announced as the target of DMA (rx_dma). */
+/** The buffer's size; 0 unless it is the target of DMA (rx_dma). */
 static inline size_t tmini_stm32_circle_size(const tmini_t *lidar)
 {
     size_t size;
@@ -120,9 +120,9 @@ static inline size_t tmini_stm32_circle_size(const tmini_t *lidar)
     return size;
 }
 
-/** A started DMA begins at the buffer's start. So this clears the bytes from the old position to
- * the end, so that they cannot be taken for new packets, and skips them. Call it before reception
- * begins, in the polling context. */
+/** When DMA is started, it begins at the buffer's start. So this skips the bytes from the old
+ * position to the end. It clears them first, because they could look like new packets. Call it
+ * before reception begins, in the polling context. */
 static inline void tmini_stm32_circle_rewind(tmini_t *lidar)
 {
     size_t size;

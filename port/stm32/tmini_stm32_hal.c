@@ -72,7 +72,7 @@ static void write_through(const uint8_t *buffer, size_t size)
 
 #ifdef HAL_DMA_MODULE_ENABLED
 
-/* The newer DMA controllers (H5, U5, …) run in circles by linked lists. */
+/* The newer DMA controllers (H5, U5, …) are circular by linked lists. */
 static bool is_circular(const DMA_HandleTypeDef *dma)
 {
 #ifdef DMA_LINKEDLIST_CIRCULAR
@@ -166,7 +166,8 @@ static HAL_StatusTypeDef receive_by_dma(tmini_stm32_hal_t *port)
 
 /* If a linked-list channel has stopped because of an error and is started again, it continues in
  * the middle of the buffer, with the rest of its block: the HAL clears that rest only when it stops
- * the channel itself. Cleared, the channel reads its list and begins at the buffer's start. */
+ * the channel itself. Once the rest is cleared, the channel reads its list and begins at the
+ * buffer's start. */
 static void forget_rest_of_block(const tmini_stm32_hal_t *port)
 {
 #ifdef DMA_LINKEDLIST_CIRCULAR
@@ -193,15 +194,15 @@ static uint16_t dma_position(const tmini_stm32_hal_t *port)
     return (uint16_t)(port->size - __HAL_DMA_GET_COUNTER(port->uart->hdmarx));
 }
 
-/* Reset at once: if the DMA's interrupt comes while the idle line's is between storing the type and
- * calling back, both callbacks would read the DMA's type. */
-static void tell_event(tmini_stm32_hal_t *port)
+/* The type is reset at once: if the DMA's interrupt comes after the idle line's interrupt has
+ * stored its type, but before it calls back, both callbacks would read the DMA's type. */
+static void report_event(tmini_stm32_hal_t *port)
 {
 #ifdef HAL_UART_RXEVENT_HT
     const uint32_t type = port->uart->RxEventType;
     port->uart->RxEventType = HAL_UART_RXEVENT_IDLE;
-    tmini_stm32_circle_tell(&port->circle, type == HAL_UART_RXEVENT_HT,
-                            type == HAL_UART_RXEVENT_TC);
+    tmini_stm32_circle_report(&port->circle, type == HAL_UART_RXEVENT_HT,
+                              type == HAL_UART_RXEVENT_TC);
 #else
     (void)port;
 #endif
@@ -247,7 +248,7 @@ static uint16_t dma_position(const tmini_stm32_hal_t *port)
     return port->circle.position;
 }
 
-static void tell_event(const tmini_stm32_hal_t *port)
+static void report_event(const tmini_stm32_hal_t *port)
 {
     (void)port;
 }
@@ -290,7 +291,7 @@ static void look_at_line_errors(tmini_stm32_hal_t *port)
     }
 #else
     if ((errors & HAL_UART_ERROR_ORE) != 0 && !__HAL_UART_GET_FLAG(port->uart, UART_FLAG_RXNE)) {
-        __HAL_UART_CLEAR_OREFLAG(port->uart); /* While set, it may stop the bytes. */
+        __HAL_UART_CLEAR_OREFLAG(port->uart); /* An overrun may stop further bytes. */
         port->line_flags = 0;
     }
 #endif
@@ -366,7 +367,8 @@ static void hand_over_new(tmini_stm32_hal_t *port)
 
 /* ----------------------------------------------------------------------- starting, in the poll */
 
-/* A pending error would end the reception during the call that begins it. */
+/* Also clears an overrun: pending, it would end the next reception during the call that begins
+ * it. */
 static void forget_reception(tmini_stm32_hal_t *port)
 {
     port->is_started = false;
@@ -388,7 +390,7 @@ static void prepare_circle(tmini_stm32_hal_t *port)
     port->line_flags = 0;
 }
 
-/* Interrupts are disabled for some ten microseconds. The HAL enables the error interrupt first,
+/* Interrupts are disabled for about ten microseconds. The HAL enables the error interrupt first,
  * then that of bytes or the DMA. A damaged byte between the two would end the reception before it
  * has begun, or, where only reading the byte clears the error (SR and DR), interrupt endlessly. */
 static HAL_StatusTypeDef begin_uninterrupted(tmini_stm32_hal_t *port)
@@ -456,7 +458,7 @@ static bool is_in_circle(const tmini_stm32_hal_t *port, const UART_HandleTypeDef
 void tmini_stm32_hal_rx_event(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
 {
     if (is_in_circle(port, uart)) {
-        tell_event(port);
+        report_event(port);
         hand_over_new(port);
     }
 }
@@ -464,7 +466,7 @@ void tmini_stm32_hal_rx_event(tmini_stm32_hal_t *port, const UART_HandleTypeDef 
 void tmini_stm32_hal_rx_half_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
 {
     if (is_in_circle(port, uart)) {
-        tmini_stm32_circle_tell(&port->circle, true, false);
+        tmini_stm32_circle_report(&port->circle, true, false);
         hand_over_new(port);
     }
 }
@@ -479,7 +481,7 @@ static void note_errors(tmini_stm32_hal_t *port, uint32_t code)
     }
 }
 
-/* Errors first: requesting the next byte clears the HAL's record of them. */
+/* Errors are noted first, because requesting the next byte clears the HAL's record of them. */
 static void take_byte(tmini_stm32_hal_t *port)
 {
     tmini_feed_byte(port->lidar, port->byte);
@@ -491,15 +493,15 @@ static void take_byte(tmini_stm32_hal_t *port)
 void tmini_stm32_hal_rx_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
 {
     if (is_in_circle(port, uart)) {
-        tmini_stm32_circle_tell(&port->circle, false, true);
+        tmini_stm32_circle_report(&port->circle, false, true);
         hand_over_new(port);
     } else if (is_ours(port, uart)) {
         take_byte(port);
     }
 }
 
-/* The poll starts it again, not this function: it may run during the call that starts, and the DMA
- * may still be stopping. */
+/* The poll starts reception again, not this function: it may run during the call that starts
+ * reception, and the DMA may still be stopping. */
 void tmini_stm32_hal_error(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart)
 {
     if (is_ours(port, uart)) {
@@ -581,7 +583,7 @@ static bool is_good_circle(const UART_HandleTypeDef *uart, const uint8_t *buffer
     return has_good_dma(uart) && size <= TMINI_STM32_CIRCLE_MAX && is_aligned(buffer, size);
 }
 
-/* Everything is in place before the first interrupt can come. */
+/* All members are set before the first interrupt can come. */
 static tmini_status_t start_reception(tmini_stm32_hal_t *port, tmini_t *lidar,
                                       enum reception reception, uint8_t *buffer, size_t size)
 {

@@ -20,7 +20,7 @@
  *   blocks  Without rx_dma, and tmini_stm32_hal_start_blocks(): circular DMA into a small buffer,
  *           and a copy. For a receive buffer that lies where DMA does not reach.
  *
- * The HAL's callbacks stay yours; call from them the function named like each:
+ * The HAL's callbacks stay yours; call the port's function from each:
  *
  *   HAL_UARTEx_RxEventCallback(huart, size)  tmini_stm32_hal_rx_event(&port, huart)     DMA, blocks
  *   HAL_UART_RxCpltCallback(huart)           tmini_stm32_hal_rx_complete(&port, huart)  bytes
@@ -53,8 +53,8 @@ extern "C" {
 #endif
 
 /** Running totals, for diagnostics. With DMA, errors are noticed only at polls and events: several
- * between two of these count as one, and with SR and DR the HAL clears some before. So the counters
- * show that there are errors, but not exactly how many. */
+ * between two of these count as one, and with SR and DR the HAL clears some before they are
+ * counted. So the counters show that there are errors, but not exactly how many. */
 typedef struct {
     uint32_t overruns;       /**< Bytes came faster than interrupt or DMA took them. */
     uint32_t framing_errors; /**< A stop bit was missing: wrong baud rate, noise? */
@@ -95,10 +95,10 @@ extern const tmini_port_t tmini_stm32_hal_port;
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
 tmini_status_t tmini_stm32_hal_init(tmini_stm32_hal_t *port, UART_HandleTypeDef *uart);
 
-/** Receives for `lidar`, which has been through tmini_init(), into the buffer given there: with
- * rx_dma by DMA, without it byte by byte. For DMA the buffer has a size of 512 to 32768, lies where
- * the DMA reaches it and, on a processor with data cache, is aligned to 32 bytes; the DMA channel
- * is circular, byte-wide, with its FIFO off. From the polling context.
+/** Receives for `lidar`, which must have been set up by tmini_init(), into the buffer given there:
+ * with rx_dma by DMA, without it byte by byte. For DMA the buffer has a size of 512 to 32768, lies
+ * where the DMA reaches it and, on a processor with data cache, is aligned to 32 bytes; the DMA
+ * channel is circular, byte-wide, with its FIFO off. From the polling context.
  * Returns TMINI_OK;
  *   TMINI_ERROR_STATE     lidar or port not set up; or the HAL refuses to start: polls try again
  *   TMINI_ERROR_ARGUMENT  the UART is not set to 230400 8N1; or DMA: none, not circular, not by
@@ -133,7 +133,8 @@ void tmini_stm32_hal_rx_half_complete(tmini_stm32_hal_t *port, const UART_Handle
  * needed for a HAL without HAL_UART_RXEVENT_HT. */
 void tmini_stm32_hal_rx_complete(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 
-/** For HAL_UART_ErrorCallback(): counts the error, so that reception goes on. */
+/** For HAL_UART_ErrorCallback(): counts the error. If it has ended reception, the next poll starts
+ * it again. */
 void tmini_stm32_hal_error(tmini_stm32_hal_t *port, const UART_HandleTypeDef *uart);
 
 #ifdef __cplusplus

@@ -8,7 +8,7 @@
  *
  *   STATUS CR1 CR2 CR3 BRR DATA_IN DATA_OUT   indices of registers
  *   CR1_UE                                    the bit that switches the USART on
- *   clear_flags(registers, status)            of those in `status`: errors and idle line */
+ *   clear_flags(registers, status)            clears the errors and the idle flag in `status` */
 
 #ifndef TMINI_STM32_USART_COMMON_H
 #define TMINI_STM32_USART_COMMON_H
@@ -36,7 +36,7 @@
 
 #define DMA_COUNT 0xFFFFu
 
-/* A test lets a model stand for the registers. */
+/* A test replaces the registers by a model. */
 #ifdef TMINI_STM32_ACCESS_HEADER
 #include TMINI_STM32_ACCESS_HEADER
 #else
@@ -152,7 +152,7 @@ void tmini_stm32_usart_interrupt(tmini_stm32_usart_t *port)
 void tmini_stm32_usart_dma_interrupt(tmini_stm32_usart_t *port, bool half, bool complete)
 {
     if (is_by_dma(port)) {
-        tmini_stm32_circle_tell(&port->circle, half, complete);
+        tmini_stm32_circle_report(&port->circle, half, complete);
         hand_over_new(port);
     }
 }

@@ -11,7 +11,7 @@
  *     tmini_start(&lidar); …                    commands, polling
  *     tmini_port_template_stop(&port);
  *
- * It compiles as it is. Unfilled, it has no UART: every command ends with
+ * It compiles as it is. Until you fill it in, it has no UART: every command ends with
  * TMINI_EVENT_COMMAND_FAILED and TMINI_ERROR_WRITE, so that a port left unfinished is noticed. */
 
 #ifndef TMINI_PORT_TEMPLATE_H

@@ -3,8 +3,8 @@
 
 /** @file
  * The lidar on a UART of any board that Zephyr knows, over the interrupt-driven or the async UART
- * API, for a thread of your own that polls. With a node in the devicetree tmini_zephyr_device.h
- * brings one.
+ * API, for a thread of your own that polls. For a node in the devicetree, tmini_zephyr_device.h
+ * provides this thread.
  *
  *     #define UART DEVICE_DT_GET(DT_BUS(DT_NODELABEL(lidar)))
  *
@@ -24,7 +24,7 @@
  *     }
  *
  * The UART's callback stores bytes and nothing more; all functions here belong to the one thread
- * that polls. The errors returned are Zephyr's, negative. */
+ * that polls. They return Zephyr's errors, as negative numbers. */
 
 #ifndef TMINI_ZEPHYR_H
 #define TMINI_ZEPHYR_H
@@ -63,11 +63,11 @@ typedef struct {
     const struct device *uart;
     tmini_t *lidar; /* NULL: not receiving. */
     struct k_sem received;
-    struct k_spinlock lock; /* Between the callback and stopping, on several cores. */
+    struct k_spinlock lock; /* Separates stopping from the callback on another core. */
     uint32_t unannounced;   /* Bytes since the polling thread was last woken. */
 #ifdef CONFIG_TMINI_UART_ASYNC
     uint8_t buffers[2][CONFIG_TMINI_UART_BUFFER];
-    uint8_t buffer;           /* The one given last. */
+    uint8_t buffer;           /* The buffer given to the UART driver last. */
     volatile bool is_enabled; /* The UART driver receives; its callback clears it. */
 #endif
     tmini_zephyr_counters_t counters;
@@ -77,18 +77,18 @@ typedef struct {
 /** The `port` of tmini_config_t; its `port_context` is the tmini_zephyr_t. */
 extern const tmini_port_t tmini_zephyr_port;
 
-/** Names the UART and sets it to 230400 baud, 8N1. A driver that cannot change the baud rate while
- * it runs keeps the devicetree's `current-speed`. Not between start and stop. Returns 0,
+/** Sets the UART to 230400 baud, 8N1. A driver that cannot change the baud rate while it runs keeps
+ * the devicetree's `current-speed`. Do not call it between start and stop. Returns 0,
  *   -EINVAL  null pointer
  *   -ENODEV  the UART is not ready
- *   or what the UART driver gave */
+ *   or the UART driver's error */
 int tmini_zephyr_init(tmini_zephyr_t *port, const struct device *uart);
 
-/** Received bytes go to `lidar`, which has been through tmini_init(); the counters begin anew.
- * Takes the UART's callback. Returns 0,
+/** From now on received bytes go to `lidar`, which must have been set up by tmini_init(); the
+ * counters begin at 0. Takes the UART's callback. Returns 0,
  *   -EINVAL    null pointer, or no tmini_zephyr_init() before
  *   -EALREADY  started already
- *   -ENOSYS    the UART's driver has no interrupt-driven API (before Zephyr 3.3 nothing says so)
+ *   -ENOSYS    the UART's driver has no interrupt-driven API (reported since Zephyr 3.3)
  *   -ENOTSUP   CONFIG_UART_INTERRUPT_DRIVEN is off
  * After an error nothing is received. */
 int tmini_zephyr_start(tmini_zephyr_t *port, tmini_t *lidar);
@@ -97,7 +97,8 @@ int tmini_zephyr_start(tmini_zephyr_t *port, tmini_t *lidar);
 void tmini_zephyr_stop(tmini_zephyr_t *port);
 
 /** Sleeps until bytes have come (CONFIG_TMINI_WAKE_BYTES), at most `timeout`: for a polling thread
- * that has nothing left to do. The driver also keeps time, so let `timeout` be some 10 ms. */
+ * that has nothing left to do. About 10 ms is right, because the driver must also check its
+ * time-outs. */
 void tmini_zephyr_wait(tmini_zephyr_t *port, k_timeout_t timeout);
 
 /** Copies the counters. */

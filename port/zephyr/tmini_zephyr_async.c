@@ -10,13 +10,13 @@
 /* Silence after which bytes are handed over: 46 byte times. */
 #define TIMEOUT_US 2000
 
-/* How long the driver may take to end: the timeout, and some. */
+/* How long the driver may take to end reception: longer than the time-out. */
 #define END_MS 20
 
 static int begin(tmini_zephyr_t *port)
 {
     port->buffer = 0;
-    port->is_enabled = true; /* Before: events may come at once. */
+    port->is_enabled = true; /* Set first: events may come at once. */
     const int error =
         uart_rx_enable(port->uart, port->buffers[0], sizeof port->buffers[0], TIMEOUT_US);
     if (error != 0) {
@@ -41,7 +41,8 @@ static void take(tmini_zephyr_t *port, const struct uart_event_rx *received)
 }
 
 /* The driver ends reception after any error. This callback does not start it again, because a line
- * that is held low would cause an error each time; it wakes the polling thread, which does. */
+ * that is held low would cause an error each time; it wakes the polling thread, which starts it
+ * again. */
 static void on_event(const struct device *uart, struct uart_event *event, void *user_data)
 {
     tmini_zephyr_t *const port = user_data;
@@ -65,7 +66,7 @@ static void on_event(const struct device *uart, struct uart_event *event, void *
     }
 }
 
-/* A driver without the async API says so here. */
+/* A driver without the async API returns an error here. */
 int tmini_zephyr_begin_reception(tmini_zephyr_t *port)
 {
     const int error = uart_callback_set(port->uart, on_event, port);

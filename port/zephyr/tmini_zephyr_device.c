@@ -7,7 +7,7 @@
 
 #include <errno.h>
 
-/* The driver also keeps time: it is polled this often without bytes, too. */
+/* The longest pause between polls without bytes: the driver must also check its time-outs. */
 #define POLL_MS 10
 
 typedef struct {
@@ -69,7 +69,7 @@ static int init_lidar(const struct device *device)
     return tmini_init(&data->lidar, &lidar_config) == TMINI_OK ? 0 : -EINVAL;
 }
 
-/* A device whose UART cannot be used is not ready: device_is_ready() says so. */
+/* If the UART cannot be used, the device is not ready (device_is_ready()). */
 static int init(const struct device *device)
 {
     const device_config_t *const config = device->config;

@@ -3,7 +3,7 @@
 
 /** @file
  * The lidar as a device of Zephyr, one for each enabled node "ydlidar,t-mini-plus" of the
- * devicetree. It brings its buffers and a thread that polls; your program gets events:
+ * devicetree. It has its own buffers and a thread that polls; your program gets events:
  *
  *     static const struct device *const lidar = DEVICE_DT_GET(DT_NODELABEL(lidar));
  *
@@ -23,8 +23,8 @@
  *
  * The callback runs in the device's thread. There every function of tmini.h may be called with
  * tmini_zephyr_device_lidar(); in other threads only between tmini_zephyr_device_lock() and
- * _unlock(). A scan stays valid until the next one: a message queue of pointers to scans hands them
- * to a thread that uses each within a revolution. */
+ * _unlock(). A scan stays valid until the next one. So a message queue may pass pointers to scans
+ * to another thread, which must use each within a revolution. */
 
 #ifndef TMINI_ZEPHYR_DEVICE_H
 #define TMINI_ZEPHYR_DEVICE_H
@@ -35,7 +35,7 @@
 extern "C" {
 #endif
 
-/** Called in the device's thread with each event but TMINI_EVENT_NONE. */
+/** Called in the device's thread with each event except TMINI_EVENT_NONE. */
 typedef void (*tmini_zephyr_callback_t)(const struct device *device, tmini_event_t event,
                                         void *user_data);
 
@@ -43,8 +43,8 @@ typedef void (*tmini_zephyr_callback_t)(const struct device *device, tmini_event
 void tmini_zephyr_device_callback_set(const struct device *device, tmini_zephyr_callback_t callback,
                                       void *user_data);
 
-/** tmini_start() and tmini_stop(), from any thread. They return 0, or -EIO where the library
- * refused. */
+/** tmini_start() and tmini_stop(), from any thread. They return 0, or -EIO if the library
+ * refuses. */
 int tmini_zephyr_device_start(const struct device *device);
 int tmini_zephyr_device_stop(const struct device *device); /**< Ends scanning. */
 

@@ -9,7 +9,7 @@
 
 #define CHUNK 32
 
-/* The result of a function that returns nothing in some versions of Zephyr; 0 in those. All
+/* The result of `call`; 0 in versions of Zephyr in which the function returns nothing. All
  * compilers of Zephyr have GCC's built-ins. */
 #ifdef __GNUC__
 #define RESULT_OR_0(call) \
@@ -18,9 +18,9 @@
 #define RESULT_OR_0(call) (call)
 #endif
 
-/* Negative: the driver does not report errors. A loss is reported to the lidar at once, because
- * with some drivers clearing the error also removes the byte. After a loss the other bytes of this
- * interrupt are not used. */
+/* uart_err_check() is negative if the driver does not report errors. A loss is reported to the
+ * lidar at once, because with some drivers clearing the error also removes the byte. After a loss
+ * the other bytes of this interrupt are not used. */
 static bool report_losses(tmini_zephyr_t *port, bool lost_before)
 {
     const int errors = uart_err_check(port->uart);
@@ -51,27 +51,27 @@ static void on_interrupt(const struct device *uart, void *user_data)
 {
     tmini_zephyr_t *const port = user_data;
     const k_spinlock_key_t key = k_spin_lock(&port->lock);
-    (void)uart_irq_update(uart); /* Its result has never meant anything; since 4.5 it has none. */
+    (void)uart_irq_update(uart); /* It has no result since 4.5, and had no meaningful one before. */
     if (port->lidar != NULL) {
         empty_fifo(port);
     }
     k_spin_unlock(&port->lock, key);
 }
 
-/* Zephyr has said since 3.3 whether the driver has interrupts. */
+/* Since Zephyr 3.3 the result shows whether the driver has interrupts. */
 int tmini_zephyr_begin_reception(tmini_zephyr_t *port)
 {
     uart_irq_rx_disable(port->uart);
     uart_irq_tx_disable(port->uart);
     const int error = RESULT_OR_0(uart_irq_callback_user_data_set(port->uart, on_interrupt, port));
     if (error == 0) {
-        (void)uart_err_check(port->uart); /* Of bytes from before. */
+        (void)uart_err_check(port->uart); /* Clears errors of earlier bytes. */
         uart_irq_rx_enable(port->uart);
     }
     return error;
 }
 
-/* After the lock no callback is under way any more, on another core either. */
+/* Once this has held the lock, no callback feeds the lidar any more, on any core. */
 void tmini_zephyr_end_reception(tmini_zephyr_t *port)
 {
     uart_irq_rx_disable(port->uart);
@@ -80,7 +80,7 @@ void tmini_zephyr_end_reception(tmini_zephyr_t *port)
     k_spin_unlock(&port->lock, key);
 }
 
-/* An error ends nothing here. */
+/* An error does not end reception by interrupts. */
 void tmini_zephyr_keep_receiving(tmini_zephyr_t *port)
 {
     (void)port;

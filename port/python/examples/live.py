@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The room in a window, live, the front up: live.py PORT (needs matplotlib)."""
+"""Shows the room live in a window, with the front up: live.py PORT (needs matplotlib)."""
 
 import sys
 

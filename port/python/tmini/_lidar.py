@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""A lidar at work. The library's driver runs in a thread of its own, so that a program that is busy
-with something else loses no bytes; everything the driver knows is kept under one lock."""
+"""A connected lidar. The library's driver runs in its own thread, so that no bytes are lost while
+the program is busy. One lock protects the driver's data."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ _REOPEN_S = 0.25
 _CLOSE_S = 1.0
 _RING = 32768
 _BLOCK = 16384
-_POINTS = 2400  # At 2 Hz, from where the motor comes up to speed.
+_POINTS = 2400  # For a turn at 2 Hz, while the motor comes up to speed.
 
 
 class LidarError(Exception):
-    """The lidar does not scan; the text says what to look at."""
+    """The lidar does not scan; the text says what to check."""
 
 
 @dataclass(frozen=True)
 class Info:
-    """What the lidar answered when it was asked who it is."""
+    """The device information that the lidar has sent."""
 
     model: int  # 151: T-mini Plus.
     firmware: str
@@ -58,7 +58,7 @@ def python_restart(context: Any) -> None:
 
 class Lidar:
     """A lidar on a serial port ("/dev/ttyUSB0", "COM3") or on a socket ("tcp:HOST:PORT"). It scans
-    from the beginning to close(); when it is lost, or the cable was out, it is brought back.
+    until close(). If it is lost or unplugged, it is started again.
 
     A program that is slower than the lidar gets the newest scan, and Scan.number shows how many it
     has missed; `backlog` is the number of scans that wait for it."""
@@ -68,9 +68,9 @@ class Lidar:
                  listen_only: bool = False, backlog: int = 1,
                  timeout: float | None = 10.0) -> None:
         """`frequency_hz`: 6 to 12, in steps of 0.1; None: left as it is. `front`, `upside_down` and
-        `mask`: see Mount. `listen_only`: sends nothing, ever. Waits up to `timeout`
-        seconds for the first scan, and raises LidarError if there is none, OSError if there is no
-        such port; None: waits for nothing, and also for the port to appear."""
+        `mask`: see Mount. `listen_only`: never sends anything. Waits up to `timeout` seconds for
+        the first scan, and raises LidarError if there is none, OSError if there is no such port;
+        None: returns at once, even if the port does not exist yet."""
         self.port = port
         self.info: Info | None = None  # None: the lidar has not answered.
         self._scans: deque[Scan] = deque(maxlen=backlog)
@@ -80,7 +80,7 @@ class Lidar:
         self._received = 0
         self._number = 0
         self._line: Line | None = None
-        self._is_stale = False  # The line brings nothing, and is to be opened anew.
+        self._is_stale = False  # The line is silent, and is to be opened again.
         self._mount = Mount(front, upside_down, mask)
         self._listen_only = listen_only
         self._set_up(frequency_hz)
@@ -117,8 +117,8 @@ class Lidar:
                     raise LidarError(f"the driver's thread failed: {self._failure!r}")
                 if self._closing or left <= 0:
                     return None
-                self._changed.wait(min(left, 1.0))  # Windows: Ctrl-C interrupts no endless wait.
-            return self._scans.popleft()
+                self._changed.wait(min(left, 1.0))  # On Windows, Ctrl-C cannot interrupt an endless
+                                                    # wait. return self._scans.popleft()
 
     @property
     def faults(self) -> Fault:
@@ -198,7 +198,8 @@ class Lidar:
             self.info = _info(lib.tmini_info(self._lidar))
 
     def _faults(self) -> int:
-        """None found is none only if the unit reports them."""
+        """The driver's faults; TMINI_FAULTS_UNKNOWN if there is none but the unit does not report
+        its health."""
         info = ffi.new("tmini_ct_info_t *")
         lib.tmini_ct_info(self._lidar, info)
         faults = lib.tmini_faults(self._lidar)
@@ -220,7 +221,7 @@ class Lidar:
     def _work(self) -> None:
         with self._changed:
             lib.tmini_request_info(self._lidar)
-            lib.tmini_start(self._lidar)  # Follows the query.
+            lib.tmini_start(self._lidar)  # Begins after the query.
         while not self._closing:
             self._turn()
             time.sleep(_PERIOD_S if self._line is not None else _REOPEN_S)
@@ -233,7 +234,7 @@ class Lidar:
             time.sleep(_PERIOD_S)
 
     def _turn(self) -> None:
-        """What has come goes to the driver; a line that is gone is opened again."""
+        """Feeds received bytes to the driver, and opens the line again if it has gone."""
         data = b""
         try:
             if self._is_stale:
@@ -269,8 +270,8 @@ class Lidar:
             return (f"not one byte came from {self.port} in {timeout:g} s. Is it the right port, "
                     "has the lidar 5 V, and is its TX wired to the adapter's RX?")
         if counters["packets"] == 0 and self.info is None:
-            return (f"{self._received} bytes came from {self.port}, and none that a T-mini sends: "
-                    "another device, or another baud rate than 230400?")
+            return (f"{self._received} bytes came from {self.port}, but no packet of a T-mini: "
+            "another device, or another baud rate than 230400?")
         return f"the lidar on {self.port} answers, but does not scan: {self.faults!r}"
 
 

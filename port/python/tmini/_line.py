@@ -2,7 +2,7 @@
 # Copyright (c) 2026 The tmini authors
 
 """Where the lidar's bytes come from: a serial port, or a socket to a controller that forwards its
-UART. Nothing here waits; what is gone raises OSError."""
+UART. Reading and writing never wait; they raise OSError if the line has gone."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _CONNECT_S = 5.0
 
 class Line(Protocol):
     def read(self) -> bytes:
-        """What has come."""
+        """Returns the bytes that have come."""
 
     def write(self, data: bytes) -> int:
         """Returns how many bytes were taken."""
@@ -68,5 +68,5 @@ class _Socket:
 
 
 def open_line(port: str) -> Line:
-    """A serial port by its name, or "tcp:HOST:PORT"."""
+    """Opens a serial port by its name, or "tcp:HOST:PORT"."""
     return _Socket(port[4:]) if port.startswith("tcp:") else _Port(port)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""How the lidar sits on the robot."""
+"""How the lidar is mounted on the robot."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from ._native import ffi
 
 
 class Mount:
-    """`front`: the lidar's angle, clockwise in whole degrees, that looks to the robot's front.
-    `upside_down`: it hangs. `mask`: arcs (from, to), clockwise in whole degrees as the robot counts
-    them, in which it sees itself: their ranges become NaN."""
+    """`front`: the lidar's angle that points to the robot's front, clockwise in whole degrees.
+    `upside_down`: the lidar is upside down. `mask`: arcs (from, to) in which the lidar sees the
+    robot itself, clockwise in whole degrees from the robot's front: their ranges become NaN."""
 
     def __init__(self, front: int, upside_down: bool, mask: Sequence[tuple[int, int]]) -> None:
         self._arcs = ffi.new("tmini_arc_t[]", [(int(begin), int(end)) for begin, end in mask])

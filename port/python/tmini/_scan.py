@@ -26,15 +26,15 @@ class Fault(enum.IntFlag):
     PD = 8  # Laser feedback voltage.
     LD = 16  # Laser drive current.
     DATA = 32  # No range in a whole revolution: window covered?
-    FREQUENCY = 64  # Does not turn as fast as it should.
+    FREQUENCY = 64  # Another frequency than the wanted one.
 
 
 class Scan:
     """One revolution. The arrays have an element per point, in the order of measurement; they are
-    made when they are first asked for, and are the caller's to change."""
+    created when first used, and may be changed."""
 
-    number: int  # Revolutions since the beginning, this one included; a step of 2: one was missed.
-    complete: bool  # A full circle, with nothing missing.
+    number: int  # Revolutions since the beginning, including this one; a step of 2: one was missed.
+                 # complete: bool # A full circle, with nothing missing.
     frequency_hz: float | None  # Measured by the lidar. None: unknown.
     faults: Fault | None  # None: unknown; Fault(0): healthy.
     packets: int
