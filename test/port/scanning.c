@@ -9,10 +9,10 @@
 
 #define ENOUGH_POINTS 2000u
 #define PATIENCE_US 10000000u
-#define BYTES_PER_MS 13u /* Of a scanning lidar (section 1). */
+#define BYTES_PER_MS 13u /* Sent by a scanning lidar (section 1). */
 #define PLACES 150u
-#define CATCH_UP 6u   /* Scans of a second. */
-#define PARTS_MAX 24u /* Of scans, after the worst. */
+#define CATCH_UP 6u   /* Scans in one second. */
+#define PARTS_MAX 24u /* Most incomplete scans after the worst disturbance. */
 
 tmini_t lidar;
 
@@ -85,7 +85,7 @@ void assert_recovery(void)
 
 static void pass_some_time(void)
 {
-    program.work(300); /* Less than a FIFO of 16 bytes lasts. */
+    program.work(300); /* Too short to fill a FIFO of 16 bytes. */
 }
 
 void assert_true_scans_wherever_bytes_come(void)
@@ -100,7 +100,7 @@ void assert_true_scans_wherever_bytes_come(void)
     }
 }
 
-/* After a pause it is polled until it has caught up. */
+/* After each pause, CATCH_UP + 1 scans give the program time to read all bytes that had waited. */
 void assert_pauses_cost_no_scan(uint32_t bytes)
 {
     const uint32_t longest_us = bytes * 900u / BYTES_PER_MS;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A program that scans over a port under test: one lidar with its buffers, and its loop. What it
- * gets is compared with what the simulated lidar has sent (truth.h). */
+/* A program that scans with the port under test: one lidar with its buffers, and a loop. Its scans
+ * are compared with the points that the simulated lidar has sent (truth.h). */
 
 #ifndef SCANNING_H
 #define SCANNING_H
@@ -16,35 +16,37 @@ typedef struct {
     const tmini_port_t *port;
     void *context;
     uint64_t (*now_us)(void);
-    void (*wait)(void);        /* When there is nothing left to poll for. */
-    void (*work)(uint32_t us); /* The program does something else. */
+    void (*wait)(void);        /* Called when a poll returns no event. */
+    void (*work)(uint32_t us); /* Keeps the program busy for this time. */
 } scanning_t;
 
 extern tmini_t lidar;
 
-/* The program, before it has started anything; `rx_size` of its receive buffer at most 1024. */
+/* Resets the program and sets up `lidar`, with a receive buffer of `rx_size` bytes, at most
+ * 1024. */
 void scanning_begin(const scanning_t *program, size_t rx_size);
 
-/* Polls until `wanted` happens; fails when it does not within ten seconds. */
+/* Polls until `wanted` happens; fails after ten seconds. */
 void poll_until(tmini_event_t wanted);
 
 /* The next scans are these revolutions, with every point. */
 void assert_true_scans(uint32_t first, uint32_t last);
 
-/* Scans, from which something is missing but in which nothing is wrong, until one is complete;
- * returns how many. */
+/* Polls until a scan is complete; returns the number of scans with this one. The scans before it
+ * may lack points, but must have no wrong ones. */
 unsigned scans_until_complete(void);
 
-/* The next scan is not complete, then they are again. */
+/* The next scan is not complete, but a later one is. */
 void assert_gap(void);
 
-/* The lidar is lost and comes back. */
+/* The lidar is lost and then recovers. */
 void assert_recovery(void);
 
-/* At whatever access of the library's indices, or of the model, some bytes come. */
+/* Bytes arrive at any access to the library's indices or to the model; every point must arrive. */
 void assert_true_scans_wherever_bytes_come(void);
 
-/* A layer below the program holds `bytes`: pauses of up to 0.9 of what these last cost no scan. */
+/* A layer below the program can hold `bytes`. Pauses cost no scan if at most 0.9 of these bytes
+ * arrive meanwhile. */
 void assert_pauses_cost_no_scan(uint32_t bytes);
 
 #endif

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What happens to an obstacle stop of examples/ with the simulated lidar in its room: an obstacle
- * comes and goes, power fails and returns. The program names the lidar on its console, and stops
- * the robot only while it must. */
+/* A story for the obstacle stops in examples/, with the simulated lidar in its simulated room: an
+ * obstacle comes and goes, and the lidar's power fails and returns. Checks that the program prints
+ * the lidar's model, and stops the robot only while it must. */
 
 #ifndef STORY_H
 #define STORY_H
@@ -16,12 +16,12 @@
 typedef struct {
     sim_t *lidar;
     uint64_t (*now_us)(void);
-    void (*assert_stops)(bool stops); /* Whether the program stops the robot now. */
+    void (*assert_stops)(bool stops); /* Checks whether the program now stops the robot. */
 } story_board_t;
 
 void story_begin(const story_board_t *board);
 
-/* To be called again and again: what is due happens. False once all has happened. */
+/* Call this repeatedly: it does and checks what is due. Returns false at the end of the story. */
 bool story_goes_on(void);
 
 #endif

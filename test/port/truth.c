@@ -14,7 +14,7 @@ static struct {
     uint32_t revolutions[POINTS_MAX];
     uint32_t count;
     uint32_t packets;
-    uint32_t seen; /* Points up to here have been found in scans, or passed over. */
+    uint32_t seen; /* Number of points already found in scans, or skipped. */
 } truth;
 
 static void note_packet(void *context, const sim_packet_t *packet)
@@ -48,7 +48,7 @@ static bool is_equal(const reference_point_t *sent, const tmini_point_t *point)
            sent->intensity == point->intensity && sent->flag == point->flag;
 }
 
-/* The index of the revolution's first point, or the number of points. */
+/* The index of the revolution's first point; the number of points if there is none. */
 static uint32_t first_of(uint32_t revolution)
 {
     uint32_t i = 0;

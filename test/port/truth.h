@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the simulated lidar has sent, to compare scans with: for tests of ports. */
+/* A record of the points that the simulated lidar has sent: port tests compare scans with it. */
 
 #ifndef TRUTH_H
 #define TRUTH_H
@@ -12,21 +12,21 @@
 #include "simulator.h"
 #include "tmini/tmini.h"
 
-/* Tests cut the manual's packet here, with a loss in between that only the port can notice. */
+/* Tests split the manual's packet after this many bytes. Only the port can notice a loss there. */
 #define PACKET_CUT 30u
 
-/* Forgets everything; returns what the simulated lidar is to be observed with. */
+/* Clears the record; returns the observer to give to the simulated lidar. */
 sim_observer_t truth_begin(void);
 
 uint32_t truth_packets(void);
 
-/* The scan is this revolution, complete: every point, and no other. */
+/* The scan is complete and has exactly the points of this revolution. */
 void truth_assert_revolution(const tmini_scan_t *scan, uint32_t revolution);
 
-/* The scan is complete, and is some one revolution as in truth_assert_revolution(). */
+/* The scan is complete and has exactly the points of some later revolution. */
 void truth_assert_some_revolution(const tmini_scan_t *scan);
 
-/* Every point was sent, in this order, later than those of the scan before. Some may be missing. */
+/* All points were sent, in this order and later than the previous scan's. Some may be missing. */
 void truth_assert_nothing_invented(const tmini_scan_t *scan);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The POSIX port itself: what opening and receiving return, and the blocking helpers over it. */
+/* Tests the POSIX port itself: results of opening and receiving, and the blocking helpers. */
 
 #define _XOPEN_SOURCE 700
 #define _DEFAULT_SOURCE /* B230400 */
@@ -76,7 +76,7 @@ static void tap(void *context, const uint8_t *bytes, size_t count)
     tapped += count;
 }
 
-/* Waits for a scan without a gap; a computer that is busy with other things may make some. */
+/* Waits for a scan without a gap: on a busy computer, some scans may have gaps. */
 static void await_complete_scan(void)
 {
     const uint32_t begun_ms = tmini_posix_port.now_ms(&port);
@@ -92,7 +92,7 @@ static void await_complete_scan(void)
     }
 }
 
-void test_the_blocking_helpers_work_over_it(void)
+void test_the_blocking_helpers_work(void)
 {
     tmini_info_t info;
     uint16_t frequency_chz = 0;
@@ -146,11 +146,11 @@ void test_a_lidar_can_be_reached_through_a_socket(void)
     program_stop_lidar();
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_wait(&port, 1000));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_blocking_read_info(&lidar, &info, 8000));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_start(&port, &lidar)); /* Refused. */
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_start(&port, &lidar));
 }
 
-/* A port of one digit. */
-void test_an_address_where_nothing_listens_is_valid_all_the_same(void)
+/* The TCP port has only one digit. */
+void test_an_address_where_nothing_listens_is_still_valid(void)
 {
     tmini_posix_init(&port, "tcp:127.0.0.1:1");
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_start(&port, NULL));
@@ -181,20 +181,20 @@ static tmini_posix_status_t start_at_host_of_zeros(int digits)
     return tmini_posix_start(&port, NULL);
 }
 
-/* Any number of zeros is an address at which nothing listens. */
+/* A host name of any number of zeros is a valid address at which nothing listens. */
 void test_the_longest_host_name_has_255_characters(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, start_at_host_of_zeros(255));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_ADDRESS, start_at_host_of_zeros(256));
 }
 
-void test_an_address_may_be_one_of_ipv6_in_brackets(void)
+void test_an_ipv6_address_may_be_in_brackets(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, start(&port, "tcp:[::1]:1"));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, start(&port, "tcp:::1:1"));
 }
 
-void test_a_system_without_a_free_descriptor_says_so(void)
+void test_a_lack_of_file_descriptors_is_reported(void)
 {
     struct rlimit limit;
     TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &limit));
@@ -207,7 +207,8 @@ void test_a_system_without_a_free_descriptor_says_so(void)
     TEST_ASSERT_EQUAL_INT(EMFILE, error);
 }
 
-/* The program at the other end of a pair of sockets has sent these bytes. Returns that end. */
+/* Starts the port on one end of a pair of sockets, with these bytes sent to it. Returns the other
+ * end. */
 static int start_on_pair(tmini_t *for_lidar, const uint8_t *bytes, size_t count)
 {
     int ends[2];
@@ -217,7 +218,7 @@ static int start_on_pair(tmini_t *for_lidar, const uint8_t *bytes, size_t count)
     return ends[1];
 }
 
-void test_what_has_waited_is_handed_over_at_once(void)
+void test_bytes_that_have_waited_are_handed_over_at_once(void)
 {
     static const uint8_t bytes[700];
     begin();
@@ -227,7 +228,7 @@ void test_what_has_waited_is_handed_over_at_once(void)
     close(other);
 }
 
-void test_without_a_lidar_bytes_are_received_by_blocks(void)
+void test_without_a_lidar_bytes_are_received_in_blocks(void)
 {
     static const uint8_t bytes[300];
     static const uint64_t totals[] = {128, 256, 300};
@@ -259,7 +260,7 @@ void test_silence_is_no_error(void)
     TEST_ASSERT_EQUAL_UINT64(0, port.received);
 }
 
-void test_a_device_that_has_gone_stays_gone(void)
+void test_an_unplugged_device_stays_unplugged(void)
 {
     tmini_info_t info;
     begin();
@@ -269,20 +270,20 @@ void test_a_device_that_has_gone_stays_gone(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_blocking_read_info(&lidar, &info, 8000));
 }
 
-void test_a_system_that_cannot_wait_for_bytes_is_no_silence(void)
+void test_a_failure_to_wait_for_bytes_is_an_error(void)
 {
     struct rlimit limit;
     begin();
     TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &limit));
     const struct rlimit none = {.rlim_cur = 0, .rlim_max = limit.rlim_max};
-    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &none)); /* poll() fails then. */
+    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &none)); /* This makes poll() fail. */
     const tmini_posix_status_t status = tmini_posix_wait(&port, 100);
     TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &limit));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, status);
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_wait(&port, 0));
 }
 
-/* Until the event comes; for 20 s at most. */
+/* Polls until the event comes, at most 20 s. */
 static void poll_until(tmini_event_t wanted)
 {
     const uint32_t begun_ms = tmini_posix_port.now_ms(&port);
@@ -330,8 +331,9 @@ void test_a_device_that_is_not_there_yet_is_waited_for(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, port.state);
 }
 
-/* Looked for five times per second, and not more often: the first look comes after a pause. */
-void test_a_device_is_looked_for_after_a_pause_and_at_once_when_that_is_over(void)
+/* The port tries to open a missing device only five times per second: the first time after a
+ * pause. */
+void test_a_missing_device_is_tried_again_only_after_a_pause(void)
 {
     const char *const device = program_start_lidar((const char *const[]){NULL});
     program_plug_in(NULL);
@@ -346,7 +348,7 @@ void test_a_device_is_looked_for_after_a_pause_and_at_once_when_that_is_over(voi
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, port.state);
 }
 
-void test_writing_to_a_device_that_has_gone_fails(void)
+void test_writing_to_an_unplugged_device_fails(void)
 {
     tmini_info_t info;
     begin();
@@ -365,8 +367,8 @@ void test_a_device_is_used_by_one_program_at_a_time(void)
     tmini_posix_stop(&other);
 }
 
-/* Root may open a device that is claimed, and is refused all the same. */
-void test_who_is_refused_takes_nobodys_claim_away(void)
+/* The system allows root to open a claimed device, but the port refuses it to root, too. */
+void test_a_refused_start_leaves_the_claim_of_another_program(void)
 {
 #if defined(TIOCGEXCL)
     tmini_posix_t other;
@@ -377,11 +379,11 @@ void test_who_is_refused_takes_nobodys_claim_away(void)
     TEST_ASSERT_EQUAL_INT(0, ioctl(port.fd, TIOCGEXCL, &is_claimed));
     TEST_ASSERT_EQUAL_INT(1, is_claimed);
 #else
-    TEST_IGNORE_MESSAGE("this system does not tell");
+    TEST_IGNORE_MESSAGE("this system does not report claims");
 #endif
 }
 
-/* Else Ctrl-C would be a byte like any other, and nothing typed be shown any more. */
+/* Otherwise Ctrl-C would no longer interrupt the program, and typed text would not be shown. */
 void test_the_programs_own_terminal_is_refused(void)
 {
     const int master = posix_openpt(O_RDWR | O_NOCTTY);
@@ -403,7 +405,7 @@ void test_the_programs_own_terminal_is_refused(void)
     close(master);
 }
 
-/* Else a child of system() keeps the device claimed after the stop. */
+/* Otherwise a child of system() would keep the device claimed after the port has stopped. */
 void test_children_inherit_neither_device_nor_socket(void)
 {
     int ends[2];
@@ -425,13 +427,13 @@ static void note_alarm(int number)
 
 static void alarm_every_20_ms(bool on)
 {
-    const struct sigaction action = {.sa_handler = note_alarm}; /* No SA_RESTART. */
+    const struct sigaction action = {.sa_handler = note_alarm}; /* Calls are not restarted. */
     const struct itimerval interval = {{0, on ? 20000 : 0}, {0, on ? 20000 : 0}};
     TEST_ASSERT_EQUAL_INT(0, sigaction(SIGALRM, &action, NULL));
     TEST_ASSERT_EQUAL_INT(0, setitimer(ITIMER_REAL, &interval, NULL));
 }
 
-/* A listener whose queue is full lets the next one wait: here without end, until the time-out. */
+/* The listener's queue is full and never emptied, so that connecting waits until its timeout. */
 void test_connecting_ends_after_5_s_and_not_by_a_signal(void)
 {
     struct sockaddr_in address = {.sin_family = AF_INET};
@@ -451,7 +453,7 @@ void test_connecting_ends_after_5_s_and_not_by_a_signal(void)
     const int error = errno;
     alarm_every_20_ms(false);
     if (status == TMINI_POSIX_OK) {
-        TEST_IGNORE_MESSAGE("this system takes more than its queue holds");
+        TEST_IGNORE_MESSAGE("this system accepts more connections than its queue holds");
     }
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, status);
     TEST_ASSERT_EQUAL_INT(ETIMEDOUT, error);
@@ -472,12 +474,12 @@ void test_a_device_is_started_again_after_it_was_stopped(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 8000));
 }
 
-void test_started_twice_it_is_open_once(void)
+void test_a_device_started_twice_is_open_once(void)
 {
     begin();
     const int first = port.fd;
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
-    TEST_ASSERT_EQUAL_INT(first, port.fd); /* The lowest number that is free. */
+    TEST_ASSERT_EQUAL_INT(first, port.fd); /* The first one was closed: its number is free. */
 }
 
 void test_before_it_is_started_nothing_is_received_or_sent(void)
@@ -508,7 +510,7 @@ void test_without_polling_bytes_stay_with_the_system(void)
     close(other);
 }
 
-/* Of eight scans, two of them followed by a pause. */
+/* Receives eight scans, with a pause after two of them. Returns how many are incomplete. */
 static unsigned count_gaps(void)
 {
     unsigned gaps = 0;
@@ -520,8 +522,8 @@ static unsigned count_gaps(void)
     return gaps;
 }
 
-/* The buffer holds a third of 250 ms, the system the rest. A busy computer may pause longer by
- * itself: one time in four is enough. */
+/* The receive buffer holds a third of the bytes that arrive in 250 ms, the system the others. A
+ * busy computer may itself pause for longer: one success in four tries is enough. */
 void test_a_pause_of_the_program_costs_no_scan(void)
 {
     unsigned gaps = 1;
@@ -544,10 +546,10 @@ void test_each_reason_for_not_opening_has_its_own_status(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NOT_A_TERMINAL, start(&port, "/tmp"));
 }
 
-void test_a_line_for_typing_becomes_one_for_bytes(void)
+void test_a_terminal_for_typing_becomes_a_line_for_bytes(void)
 {
-    /* A new pseudo-terminal is one for typing: it echoes, edits lines, and changes characters.
-     * Another program has left it reading nothing, after a tenth of a second, as an end. */
+    /* A new pseudo-terminal is set for typing: it echoes, edits lines, and changes characters.
+     * Another program has set it so that read() returns 0 after 0.1 s without a byte. */
     struct termios settings;
     const int master = posix_openpt(O_RDWR | O_NOCTTY);
     TEST_ASSERT_TRUE(master >= 0);

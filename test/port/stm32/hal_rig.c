@@ -23,7 +23,7 @@ void hal_rig_line_packets(unsigned count)
     }
 }
 
-/* ------------------------------------------------------------------- what a project has besides */
+/* ---------------------------------------------------------- handlers and callbacks of a project */
 
 static void usart_interrupt(void)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A lidar's driver on the HAL port on the model: what the HAL port's tests share. */
+/* A lidar with the HAL port on the model, shared by the HAL port's tests. */
 
 #ifndef HAL_RIG_H
 #define HAL_RIG_H
@@ -27,36 +27,36 @@ typedef struct {
     tmini_t lidar;
     tmini_stm32_hal_t port;
     tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
-    uint32_t errors_seen;  /* Calls of the HAL's error callback, */
-    bool started_in_error; /* and whether reception had been begun anew when one returned. */
+    uint32_t errors_seen;  /* Calls of the HAL's error callback. */
+    bool started_in_error; /* True if reception was started again in one of these calls. */
 } hal_rig_t;
 
 extern hal_rig_t hal_rig;
 extern uint8_t hal_rig_rx[HAL_RIG_RX_SIZE];
 extern uint8_t hal_rig_block[HAL_RIG_BLOCK_SIZE];
 
-/* Hardware after a reset, the HAL initialised as CubeMX does it, and a lidar set up to receive in
+/* Resets the hardware, initialises the HAL as CubeMX does, and sets up a lidar that receives in
  * this way. */
 void hal_rig_open(hal_rig_way_t way);
 
 /* Starts reception in the way of hal_rig_open(). */
 tmini_status_t hal_rig_start(void);
 
-/* Both, some time after the reset. Fails the test if the port does not start. */
+/* Does both, with a pause in between. Fails the test if the port does not start. */
 void hal_rig_open_and_start(hal_rig_way_t way);
 
 tmini_stm32_hal_counters_t hal_rig_errors(void);
 
-/* Puts packets on the line, as a real unit has sent it (section 9.14). */
+/* Puts copies of a real unit's packet on the line (section 9.14). */
 void hal_rig_line_packets(unsigned count);
 
-/* Lets the line run empty, and an idle line's time pass; then polls. */
+/* Runs until all bytes of the line have arrived and the line has become idle, and polls. */
 void hal_rig_run(void);
 
-/* This many packets come, until all have. */
+/* Puts this many packets on the line and runs until all have arrived. */
 void hal_rig_receive(unsigned packets);
 
-/* Polls until there is nothing left to do. */
+/* Polls until there are no more events. */
 tmini_counters_t hal_rig_poll(void);
 
 uint32_t hal_rig_packets(void);

@@ -13,7 +13,7 @@ static struct {
     model_byte_t bytes[LINE_BYTES];
     size_t first;
     size_t count;
-    uint64_t free_ns; /* When the last byte has come. */
+    uint64_t free_ns; /* Time at which the last byte has arrived. */
     uint32_t errors;
 } line;
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The example for CubeMX projects on the model: from bytes on the line to the pin that lets the
- * robot move. The example's state outlives a test, as a robot's does; each test is far from the one
- * before in time. */
+/* Tests the CubeMX example on the model: from bytes on the line to the pin that lets the robot
+ * move. The example's state is not reset between tests; each test begins long after the one
+ * before. */
 
 #include "lidar.h"
 #include "usart.h"
@@ -20,13 +20,13 @@
 #define DEGREE_Q6 64u
 #define PACKET_SAMPLES 40u
 #define HEALTH_INDEX 3u
-#define PD_CT 0x10 /* The health bit PD, 0x08, above bit 0. */
+#define PD_CT 0x10 /* The health bit PD, 0x08, shifted by one. */
 
 GPIO_TypeDef stm32_model_gpiob;
 UART_HandleTypeDef huart1;
 
 static DMA_HandleTypeDef dma;
-static uint8_t sent[2]; /* The last two bytes. */
+static uint8_t sent[2]; /* The last two bytes sent. */
 static bool may_move;
 static uint32_t led_changes;
 static uint32_t errors_handled;
@@ -136,7 +136,7 @@ static void work_for(uint32_t ms)
     }
 }
 
-/* From reset to the start command: stop, a quiet line, start. */
+/* Runs from reset to the start command: a stop command, a quiet line, a start command. */
 static void start_scanning(void)
 {
     lidar_start(&huart1);
@@ -149,7 +149,7 @@ static void start_scanning(void)
     work_for(2);
 }
 
-/* After a start packet's revolution comes LastCRC, if there is CT information. */
+/* With CT information, a byte LastCRC ends each revolution. */
 static uint8_t next_ct(bool starts)
 {
     if (starts && health_ct != 0) {
@@ -161,8 +161,8 @@ static uint8_t next_ct(bool starts)
     return ct;
 }
 
-/* Samples a degree apart, all at 2 m but for those with `near_mm` from 10 degrees before `near` to
- * 10 after it. */
+/* Samples are one degree apart. Those within 10 degrees of `near` are at `near_mm`, all others at
+ * 2 m. */
 static void arrive_packet(bool starts, unsigned first, unsigned count, unsigned near,
                           uint16_t near_mm)
 {
@@ -221,7 +221,7 @@ void test_the_robot_may_move_when_all_is_far(void)
     TEST_ASSERT_EQUAL_UINT16(2000, lidar_ahead_mm());
 }
 
-void test_what_it_prints_leaves_the_lidar_time(void)
+void test_printing_leaves_time_for_the_lidar(void)
 {
     start_scanning();
     for (unsigned turn = 0; turn < 50; turn++) {
@@ -249,11 +249,11 @@ void test_no_range_is_not_near(void)
     TEST_ASSERT_TRUE(may_move);
 }
 
-void test_a_scan_that_has_lost_what_is_in_front_does_not_let_the_robot_go(void)
+void test_a_scan_that_lacks_the_front_does_not_let_the_robot_go(void)
 {
     scan_with(20, 250);
     TEST_ASSERT_FALSE(may_move);
-    next_is_harmed = true; /* 1 to 40 degrees. */
+    next_is_harmed = true; /* The packet with 1 to 40 degrees is lost. */
     arrive_rest(20, 250);
     arrive_packet(true, 0, 1, 20, 250);
     TEST_ASSERT_EQUAL_UINT16(2000, lidar_ahead_mm());
@@ -285,7 +285,7 @@ void test_the_robot_needs_more_room_to_go_on_than_to_stop(void)
     TEST_ASSERT_FALSE(may_move);
 }
 
-void test_a_robot_that_sees_nothing_any_more_stops(void)
+void test_a_robot_without_scans_stops(void)
 {
     scan_with(0, 2000);
     work_for(450);
@@ -294,7 +294,7 @@ void test_a_robot_that_sees_nothing_any_more_stops(void)
     TEST_ASSERT_FALSE(may_move);
 }
 
-void test_reception_goes_on_after_line_errors_and_after_a_standstill(void)
+void test_reception_continues_after_line_errors_and_after_a_stop(void)
 {
     static const uint8_t broken = 0;
     start_scanning();
@@ -308,8 +308,8 @@ void test_reception_goes_on_after_line_errors_and_after_a_standstill(void)
     TEST_ASSERT_TRUE(may_move);
 }
 
-/* 3 packets and more wait at each call. */
-void test_a_main_loop_that_comes_by_every_30_ms_loses_nothing(void)
+/* At each call, at least 3 packets wait. */
+void test_a_main_loop_of_30_ms_loses_nothing(void)
 {
     start_scanning();
     arrive_revolution(0, 2000);
@@ -331,7 +331,7 @@ void test_the_led_changes_with_every_complete_scan(void)
     TEST_ASSERT_EQUAL_UINT32(2, led_changes);
 }
 
-void test_a_uart_that_is_not_set_as_the_readme_says_is_an_error_of_the_project(void)
+void test_a_uart_not_set_up_as_in_the_readme_calls_the_error_handler(void)
 {
     dma.Init.Mode = DMA_NORMAL;
     lidar_start(&huart1);
@@ -345,7 +345,7 @@ void test_a_uart_that_is_not_set_as_the_readme_says_is_an_error_of_the_project(v
 void test_a_lidar_that_does_not_answer_is_asked_again(void)
 {
     start_scanning();
-    work_for(20000); /* Three attempts, and failed. */
+    work_for(20000); /* Three attempts have failed. */
     memset(sent, 0, sizeof sent);
     work_for(3000);
     TEST_ASSERT_EQUAL_HEX8(0xA5, sent[0]);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The primitives for IAR and ARMCC 5, with what these compilers bring played by GCC: the ring,
- * compiled with them, works. That the real compilers understand them, this cannot show. */
+/* Tests the ring with the atomic primitives for IAR and ARMCC 5, but compiled by GCC with stand-ins
+ * for these compilers' functions. This cannot show that the real compilers accept them. */
 
 #include "tmini/parts/tmini_ring.h"
 
@@ -38,7 +38,7 @@ void test_bytes_come_out_of_the_ring_in_the_order_they_went_in(void)
         tmini_ring_put(&ring, (uint8_t)i);
         TEST_ASSERT_EQUAL_UINT32(i + 1, tmini_ring_head(&ring));
         TEST_ASSERT_EQUAL_HEX8(i, memory[i % sizeof memory]);
-        tmini_store(&ring.tail, i + 1); /* The consumer has taken it. */
+        tmini_store(&ring.tail, i + 1); /* The consumer has taken the byte. */
     }
     TEST_ASSERT_EQUAL_UINT32(0, tmini_ring_overrun(&ring));
 }

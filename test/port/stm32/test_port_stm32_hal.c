@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The HAL port on the model of USART, DMA and HAL, a situation at a time. Compiled for several
- * families and years of the HAL; see stm32_model/stm32_model.h. */
+/* Tests the HAL port on the model of USART, DMA and HAL, one situation at a time. Compiled for
+ * several families and years of the HAL: see stm32_model/stm32_model.h. */
 
 #include "hal_rig.h"
 
@@ -38,7 +38,7 @@ void test_bytes_reach_the_lidar(void)
     TEST_ASSERT_EQUAL_UINT32(200 * PACKET, irq.lines[MODEL_USART_IRQ].served);
 }
 
-void test_bytes_errors_of_the_line_are_counted_and_cost_no_byte(void)
+void test_bytes_line_errors_are_counted_and_cost_no_byte(void)
 {
     hal_rig_open_and_start(BY_BYTES);
     line_send_with(MODEL_FE);
@@ -51,19 +51,19 @@ void test_bytes_errors_of_the_line_are_counted_and_cost_no_byte(void)
     TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
 }
 
-void test_bytes_an_interrupt_that_comes_too_late_is_an_overrun_that_is_counted_and_survived(void)
+void test_bytes_a_late_interrupt_is_an_overrun_that_is_counted_and_survived(void)
 {
     hal_rig_open_and_start(BY_BYTES);
     hal_rig_line_packets(3);
-    model.held_until_ns = model.now_ns + 16 * MODEL_BYTE_NS; /* Into the second packet. */
+    model.held_until_ns = model.now_ns + 16 * MODEL_BYTE_NS; /* Until the second packet. */
     hal_rig_run();
     hal_rig_receive(1);
     TEST_ASSERT_EQUAL_UINT32(2, hal_rig_packets());
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().overruns);
 }
 
-/* Of two packets the bytes 7 to 19 are lost, as many as a packet has: 13 are left, which look like
- * one. */
+/* Bytes 7 to 19 of two packets are lost: exactly a packet's size. The other 13 bytes look like one
+ * packet. */
 void test_bytes_no_packet_continues_across_an_overrun(void)
 {
     hal_rig_open_and_start(BY_BYTES);
@@ -75,8 +75,8 @@ void test_bytes_no_packet_continues_across_an_overrun(void)
     TEST_ASSERT_EQUAL_UINT32(0, hal_rig_packets());
 }
 
-/* The flag alone: the byte that came before it has been taken already. */
-void test_bytes_an_overrun_without_a_byte_stops_nothing_for_longer_than_a_poll(void)
+/* Only the overrun flag is set: the byte before it has already been read. */
+void test_bytes_an_overrun_without_a_byte_stops_reception_only_until_the_next_poll(void)
 {
     hal_rig_open_and_start(BY_BYTES);
     hal_rig_receive(1);
@@ -89,7 +89,7 @@ void test_bytes_an_overrun_without_a_byte_stops_nothing_for_longer_than_a_poll(v
     TEST_ASSERT_EQUAL_UINT32(3, hal_rig_packets());
 }
 
-void test_bytes_a_controller_reset_while_the_lidar_spins_receives(void)
+void test_bytes_reception_starts_after_a_controller_reset_while_the_lidar_spins(void)
 {
     hal_rig_open(BY_BYTES);
     hal_rig_line_packets(8);
@@ -101,7 +101,7 @@ void test_bytes_a_controller_reset_while_the_lidar_spins_receives(void)
     TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().restarts);
 }
 
-void test_bytes_a_handle_locked_by_someone_else_is_waited_for(void)
+void test_bytes_the_port_waits_for_a_handle_that_others_have_locked(void)
 {
     if (STM32_MODEL_YEAR > 2021) {
         TEST_IGNORE_MESSAGE("newer HALs lock nothing");
@@ -117,7 +117,7 @@ void test_bytes_a_handle_locked_by_someone_else_is_waited_for(void)
     TEST_ASSERT_EQUAL_UINT32(2, hal_rig_packets());
 }
 
-void test_bytes_come_no_more_after_stop_and_again_after_start(void)
+void test_bytes_do_not_arrive_after_stop_and_arrive_again_after_start(void)
 {
     hal_rig_open_and_start(BY_BYTES);
     hal_rig_receive(1);
@@ -129,7 +129,7 @@ void test_bytes_come_no_more_after_stop_and_again_after_start(void)
     TEST_ASSERT_EQUAL_UINT32(3, hal_rig_packets());
 }
 
-/* Alignment is for the DMA; so the block as well as the ring may lie anywhere. */
+/* Only DMA needs aligned buffers. */
 void test_bytes_need_no_aligned_buffer(void)
 {
     static uint8_t odd[257];
@@ -170,7 +170,7 @@ void test_a_port_or_a_lidar_that_is_not_set_up_is_refused(void)
     tmini_stm32_hal_stop(&no_port);
 }
 
-/* 115200 is what CubeMX proposes. */
+/* CubeMX proposes 115200 baud. */
 void test_another_baud_rate_or_format_is_refused(void)
 {
     hal_rig_open(BY_BYTES);
@@ -185,7 +185,7 @@ void test_another_baud_rate_or_format_is_refused(void)
 }
 
 /* Without the HAL's DMA module, and without a channel. */
-void test_dma_is_refused_where_there_is_none(void)
+void test_dma_is_refused_if_there_is_none(void)
 {
     static const hal_rig_way_t ways[] = {BY_DMA, BY_BLOCKS};
     for (unsigned i = 0; i < 2; i++) {
@@ -212,7 +212,7 @@ void test_a_command_is_sent_by_interrupt_from_a_copy(void)
     TEST_ASSERT_EQUAL_HEX8(0x60, last_sent[1]);
 }
 
-void test_a_busy_transmitter_takes_nothing_and_keeps_what_it_sends(void)
+void test_a_busy_transmitter_takes_nothing_and_finishes_its_command(void)
 {
     static const uint8_t first[] = {0xA5, 0x60};
     static const uint8_t second[] = {0xA5, 0x65};
@@ -227,7 +227,7 @@ void test_a_busy_transmitter_takes_nothing_and_keeps_what_it_sends(void)
     TEST_ASSERT_EQUAL_HEX8(0x60, last_sent[1]);
 }
 
-void test_more_than_a_command_or_without_a_uart_is_a_write_error(void)
+void test_writing_too_much_or_without_a_uart_is_an_error(void)
 {
     static const uint8_t bytes[3];
     static tmini_stm32_hal_t no_port;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The HAL port where the processor has a data cache; that what DMA brings is read from memory, all
- * tests of test_port_stm32_hal_dma.c show on the model with a cache. */
+/* Tests the HAL port on a processor with a data cache. test_port_stm32_hal_dma.c also runs on the
+ * model with a cache, which shows that bytes written by DMA are read from memory. */
 
 #include "hal_rig.h"
 
@@ -24,8 +24,8 @@ void test_a_buffer_that_is_not_aligned_to_cache_lines_is_refused(void)
                                                 &hal_rig.port, &hal_rig.lidar, hal_rig_block, 80));
 }
 
-/* By the interrupts themselves, whether anybody polls or not: 79 packets are 1027 bytes. */
-void test_up_to_the_buffers_end_everything_is_read_anew(void)
+/* The interrupts do this, even without a poll. 79 packets have 1027 bytes: more than the buffer. */
+void test_the_cache_is_invalidated_up_to_the_buffers_end(void)
 {
     hal_rig_open(BY_DMA);
     TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
@@ -34,8 +34,8 @@ void test_up_to_the_buffers_end_everything_is_read_anew(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(model.ram, hal_rig_rx, HAL_RIG_RX_SIZE);
 }
 
-/* Otherwise the cache would later write the CPU's old data to memory. */
-void test_a_buffer_is_written_to_memory_before_dma_begins(void)
+/* Otherwise the cache could later write old data over the bytes from DMA. */
+void test_the_cache_is_written_to_memory_before_dma_begins(void)
 {
     hal_rig_open(BY_DMA);
     memset(hal_rig_rx, 0x5A, sizeof hal_rig_rx);

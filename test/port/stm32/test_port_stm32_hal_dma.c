@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The HAL port's DMA, into the lidar's buffer and by blocks, on the model: events, errors, laps.
- * Compiled for several families and years of the HAL. */
+/* Tests the HAL port with DMA on the model, both into the lidar's buffer and by blocks: events,
+ * errors, laps. Compiled for several families and years of the HAL. */
 
 #include "hal_rig.h"
 
@@ -103,7 +103,7 @@ void test_blocks_are_refused_for_a_buffer_announced_as_dmas_target(void)
 
 /* ------------------------------------------------------------------------------------------ DMA */
 
-void test_dma_brings_every_byte(void)
+void test_dma_delivers_every_byte(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
@@ -132,13 +132,13 @@ void test_callbacks_of_another_uart_change_nothing(void)
     }
 }
 
-/* HALs of different years report different events and sizes there. */
-void test_idle_events_anywhere_lose_and_repeat_nothing(void)
+/* Idle events come at every position of a buffer, also at its end, where HALs of different years
+ * report different events and sizes. */
+void test_idle_events_at_any_position_lose_and_repeat_nothing(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
-        for (unsigned i = 0; i < 300;
-             i++) { /* Ends at every position of a buffer, the full one as well. */
+        for (unsigned i = 0; i < 300; i++) {
             hal_rig_line_packets(1);
             model_pass(1000);
             (void)hal_rig_poll();
@@ -154,7 +154,7 @@ void test_priorities_of_the_two_interrupts_may_be_any(void)
         for (unsigned usart = 4; usart <= 6; usart++) {
             hal_rig_open_and_start(way);
             irq.lines[MODEL_USART_IRQ].priority = usart;
-            model.access_ns = 2000; /* A slow controller: interrupts meet. */
+            model.access_ns = 2000; /* On a slow controller, interrupts coincide. */
             hal_rig_receive(200);
             TEST_ASSERT_EQUAL_UINT32(200, hal_rig_packets());
             TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
@@ -172,8 +172,8 @@ static void idle_event(void)
     }
 }
 
-/* At each access of a register or an index. */
-void test_an_event_between_reading_the_position_and_using_it_harms_nothing(void)
+/* The event comes once at each access to a register or an index. */
+void test_an_event_between_reading_and_using_the_position_does_no_harm(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         random_t random;
@@ -190,7 +190,7 @@ void test_an_event_between_reading_the_position_and_using_it_harms_nothing(void)
     }
 }
 
-void test_polls_alone_bring_what_dma_has_written(void)
+void test_polls_alone_deliver_every_byte_from_dma(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
@@ -204,7 +204,7 @@ void test_polls_alone_bring_what_dma_has_written(void)
 
 /* --------------------------------------------------------------------------- errors of the line */
 
-void test_an_overrun_pending_at_the_start_hinders_nothing(void)
+void test_an_overrun_pending_at_the_start_does_no_harm(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open(way);
@@ -218,8 +218,8 @@ void test_an_overrun_pending_at_the_start_hinders_nothing(void)
     }
 }
 
-/* A damaged byte that comes at any moment of the HAL's start. */
-void test_an_error_inside_the_hals_start_ends_nothing(void)
+/* A damaged byte arrives at some moment of the HAL's start: at each one in turn. */
+void test_an_error_inside_the_hals_start_does_not_end_reception(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         static const uint8_t broken = 0x00;
@@ -238,7 +238,7 @@ void test_an_error_inside_the_hals_start_ends_nothing(void)
     }
 }
 
-void test_an_error_of_the_line_costs_its_byte_and_nothing_else(void)
+void test_a_line_error_costs_only_its_byte(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
@@ -258,7 +258,7 @@ void test_an_error_of_the_line_costs_its_byte_and_nothing_else(void)
     }
 }
 
-void test_an_overrun_while_dma_runs_is_counted_and_stops_nothing(void)
+void test_an_overrun_while_dma_runs_is_counted_and_does_not_stop_it(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
@@ -272,7 +272,8 @@ void test_an_overrun_while_dma_runs_is_counted_and_stops_nothing(void)
     }
 }
 
-/* It holds the next byte back, on many boards; the DMA has taken the one before. */
+/* On many boards the overrun flag holds the next byte back. DMA has already read the byte
+ * before. */
 void test_an_overrun_that_holds_bytes_back_is_cleared_by_the_poll(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
@@ -287,7 +288,7 @@ void test_an_overrun_that_holds_bytes_back_is_cleared_by_the_poll(void)
     }
 }
 
-/* With DDRE any error holds the DMA's requests back until it is cleared. */
+/* With DDRE, any error holds DMA requests back until it is cleared. */
 void test_an_error_that_holds_dma_back_is_cleared_by_the_poll(void)
 {
 #ifdef STM32_MODEL_SR
@@ -298,15 +299,16 @@ void test_an_error_that_holds_dma_back_is_cleared_by_the_poll(void)
         model_usart.CR3 |= MODEL_CR3_DDRE;
         line_send_with(MODEL_FE);
         hal_rig_receive(20);
-        TEST_ASSERT_UINT32_WITHIN(3, 17, hal_rig_packets()); /* Polls every ms: 23 bytes. */
+        /* The poll comes up to 1 ms (23 bytes) later. */
+        TEST_ASSERT_UINT32_WITHIN(3, 17, hal_rig_packets());
         const uint32_t before = hal_rig_packets();
         hal_rig_receive(10);
         TEST_ASSERT_EQUAL_UINT32(before + 10, hal_rig_packets());
     }
 }
 
-/* The lidar loses its supply; the next command is sent while the error still shows. */
-void test_a_command_after_an_error_that_still_shows_is_no_lock_up(void)
+/* The lidar has lost its supply: the next command is sent while the error flag is still set. */
+void test_a_command_while_an_error_flag_is_set_is_no_lock_up(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         static const uint8_t broken = 0x00;
@@ -331,8 +333,8 @@ static void check_comes_back(void)
     TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
 }
 
-/* HAL_UART_DeInit() and HAL_UART_Init(), the DMA running on; HAL_UART_DMAPause();
- * HAL_DMA_Abort(). */
+/* Does what HAL_UART_DeInit() and HAL_UART_Init() (DMA keeps running), HAL_UART_DMAPause() and
+ * HAL_DMA_Abort() do. */
 void test_a_reception_that_others_have_stopped_is_started_again(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
@@ -348,7 +350,7 @@ void test_a_reception_that_others_have_stopped_is_started_again(void)
         TEST_ASSERT_EQUAL(HAL_OK, HAL_DMA_Abort(&hal_rig.dma));
         check_comes_back();
 #ifdef DMA_LINKEDLIST_CIRCULAR
-        hal_rig_open_and_start(way); /* HAL_UART_DMAPause() of a newer HAL. */
+        hal_rig_open_and_start(way); /* HAL_UART_DMAPause() in a newer HAL. */
         model.dma.enabled = false;
         hal_rig.dma.State = HAL_DMA_STATE_SUSPEND;
         check_comes_back();
@@ -356,12 +358,12 @@ void test_a_reception_that_others_have_stopped_is_started_again(void)
     }
 }
 
-void test_a_lost_lidars_reception_is_begun_anew(void)
+void test_reception_is_started_again_when_the_lidar_is_lost(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
         hal_rig_receive(10);
-        model.dma.enabled = false; /* And nothing shows it. */
+        model.dma.enabled = false; /* No flag shows this. */
         tmini_stm32_hal_port.restart(&hal_rig.port);
         (void)hal_rig_poll();
         hal_rig_receive(100);
@@ -370,12 +372,12 @@ void test_a_lost_lidars_reception_is_begun_anew(void)
     }
 }
 
-void test_a_reception_that_stands_still_is_started_again_by_the_next_poll(void)
+void test_a_reception_that_has_stopped_is_started_again_by_the_next_poll(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
         hal_rig_receive(30);
-        hal_rig.uart.RxState = HAL_UART_STATE_READY; /* Whatever did that: the DMA still runs. */
+        hal_rig.uart.RxState = HAL_UART_STATE_READY; /* The DMA still runs. */
         model_pass(20000);
         (void)hal_rig_poll();
         TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
@@ -400,9 +402,9 @@ void test_a_dma_that_fails_is_started_again_by_the_poll_and_not_in_the_interrupt
     }
 }
 
-/* A poll that follows a command asks for the time once only: so one poll begins the reception anew
- * and reads all that there is, and another hands over for the first time. */
-static void check_dma_error_behind(hal_rig_way_t way, unsigned packets)
+/* The port checks reception each time that the library asks it for the time. The first poll after a
+ * command asks only once: it restarts reception, and a later poll hands over the first bytes. */
+static void check_dma_error_after(hal_rig_way_t way, unsigned packets)
 {
     hal_rig_open_and_start(way);
     hal_rig_receive(packets);
@@ -415,17 +417,17 @@ static void check_dma_error_behind(hal_rig_way_t way, unsigned packets)
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().restarts);
 }
 
-void test_what_came_before_a_dma_failed_is_not_delivered_again(void)
+void test_bytes_before_a_dma_failure_are_not_delivered_again(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         for (unsigned packets = 10; packets < 110; packets += 20) {
-            check_dma_error_behind(way, packets);
+            check_dma_error_after(way, packets);
         }
     }
 }
 
-/* An error in the middle of a packet; half of it has come before. */
-void test_what_came_before_a_restart_is_no_packet_again(void)
+/* After the restart, old packets still fill the buffer: they must not be read again. */
+void test_packets_before_a_restart_are_not_delivered_again(void)
 {
     hal_rig_open_and_start(BY_DMA);
     hal_rig_line_packets(78); /* 1014 bytes: the buffer is full of packets. */
@@ -439,25 +441,25 @@ void test_what_came_before_a_restart_is_no_packet_again(void)
     TEST_ASSERT_EQUAL_UINT32(188, hal_rig_packets());
 }
 
-void test_restarts_that_fail_are_tried_again_some_milliseconds_later(void)
+void test_failed_restarts_are_tried_again_some_milliseconds_later(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
-        hal_rig.dma.State = HAL_DMA_STATE_ABORT; /* The channel never comes back. */
+        hal_rig.dma.State = HAL_DMA_STATE_ABORT; /* The channel stays blocked. */
         hal_rig.uart.RxState = HAL_UART_STATE_READY;
         model_usart.CR3 = 0;
         for (unsigned i = 0; i < 300; i++) {
             model_pass(100);
             (void)hal_rig_poll();
         }
-        TEST_ASSERT_LESS_THAN_UINT32(12, hal_rig_errors().restarts); /* 30 ms. */
+        TEST_ASSERT_LESS_THAN_UINT32(12, hal_rig_errors().restarts); /* In 30 ms. */
         TEST_ASSERT_GREATER_THAN_UINT32(5, hal_rig_errors().restarts);
     }
 }
 
 /* ----------------------------------------------------------------------------------------- laps */
 
-/* Returns the packets that came out of 200, with the interrupts held back in between. */
+/* Sends 200 packets, holds interrupts back for `us` meanwhile, and returns the packets received. */
 static uint32_t packets_with_interrupts_held(hal_rig_way_t way, uint32_t us)
 {
     hal_rig_open_and_start(way);
@@ -472,8 +474,8 @@ static uint32_t packets_with_interrupts_held(hal_rig_way_t way, uint32_t us)
     return hal_rig_packets();
 }
 
-/* All lengths from half a lap on. */
-void test_a_lap_that_no_interrupt_has_seen_is_noticed(void)
+/* Interrupts are held back for one lap to two laps. */
+void test_a_lap_without_any_interrupt_is_noticed(void)
 {
     for (uint32_t us = LAP_US; us < 2 * LAP_US; us += 1500) {
         const uint32_t packets = packets_with_interrupts_held(BY_DMA, us);
@@ -483,25 +485,26 @@ void test_a_lap_that_no_interrupt_has_seen_is_noticed(void)
     }
 }
 
-/* Just over a lap: only a few bytes seem to be new. */
-void test_what_a_lap_has_overwritten_counts_as_lost(void)
+/* Just over a lap has passed: only a few bytes seem to be new. */
+void test_bytes_that_a_lap_has_overwritten_count_as_lost(void)
 {
     (void)packets_with_interrupts_held(BY_DMA, LAP_US + 1000);
     TEST_ASSERT_GREATER_THAN_UINT32(500, hal_rig_poll().bytes_overrun);
 }
 
-/* As when the DMA's interrupt has come into the idle line's: both find the DMA's kind noted. */
-void test_an_event_is_reported_once_only(void)
+/* If the DMA's interrupt comes inside the idle line's, both callbacks see the type of the DMA's
+ * event. */
+void test_an_event_that_is_reported_twice_is_no_lap(void)
 {
     hal_rig_open_and_start(BY_DMA);
     hal_rig_line_packets(60);
-    model_pass(520 * 44); /* The middle has been passed. */
+    model_pass(520 * 44); /* DMA has passed the middle. */
     tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart);
     tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart);
     TEST_ASSERT_EQUAL_UINT32(0, hal_rig_errors().laps);
 }
 
-void test_a_lap_of_a_block_that_no_interrupt_has_seen_is_noticed(void)
+void test_a_lap_of_a_block_without_any_interrupt_is_noticed(void)
 {
     for (uint32_t us = LAP_US / 4; us < LAP_US; us += 700) {
         (void)packets_with_interrupts_held(BY_BLOCKS, us);
@@ -517,9 +520,9 @@ void test_interrupts_late_by_less_than_half_a_lap_lose_nothing(void)
     }
 }
 
-/* The DMA's interrupt inside the idle line's, between the HAL's noting the kind of event and its
- * call. */
-void test_an_event_taken_for_another_is_no_lap(void)
+/* The DMA's interrupt comes inside the idle line's, after the HAL has stored the event's type and
+ * before it calls the callback. */
+void test_an_event_of_the_wrong_type_is_no_lap(void)
 {
     hal_rig_open_and_start(BY_DMA);
     irq.lines[MODEL_DMA_IRQ].priority = 4;
@@ -535,7 +538,7 @@ void test_an_event_taken_for_another_is_no_lap(void)
 
 /* ----------------------------------------------------------------------------------------- stop */
 
-void test_after_stop_dma_is_off_and_what_had_come_is_there(void)
+void test_after_stop_dma_is_off_and_received_bytes_are_kept(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
@@ -552,7 +555,7 @@ void test_after_stop_dma_is_off_and_what_had_come_is_there(void)
     }
 }
 
-void test_after_stop_what_others_receive_by_the_same_dma_is_theirs(void)
+void test_after_stop_bytes_received_by_others_with_the_same_dma_are_left_alone(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         static uint8_t others[64];
@@ -567,8 +570,8 @@ void test_after_stop_what_others_receive_by_the_same_dma_is_theirs(void)
     }
 }
 
-/* The HAL has ended the reception; where its DMA stands then means nothing. */
-void test_an_event_that_comes_after_the_reception_has_ended_hands_nothing_over(void)
+/* After the HAL has ended the reception, DMA's position is not valid. */
+void test_an_event_after_the_end_of_reception_hands_nothing_over(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
@@ -582,7 +585,7 @@ void test_an_event_that_comes_after_the_reception_has_ended_hands_nothing_over(v
     }
 }
 
-void test_a_lidar_set_up_anew_begins_at_the_buffers_start(void)
+void test_a_lidar_that_is_set_up_again_begins_at_the_buffers_start(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);

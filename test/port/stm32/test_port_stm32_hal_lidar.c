@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The HAL port on the model, with the simulated lidar on the line: seconds of scanning, in each way
- * of receiving, on a clean line, on a bad one, and after a reset of the controller alone. */
+/* Tests the HAL port on the model with the simulated lidar: some seconds of scanning in each way of
+ * receiving, on a clean line, on a bad line, and after a reset of only the controller. */
 
 #include "hal_rig.h"
 
@@ -17,7 +17,7 @@ static sim_t sim;
 static bool has_byte;
 static model_byte_t next_byte;
 static uint32_t bytes_sent;
-static uint32_t error_every; /* Bytes; 0: never. */
+static uint32_t error_every; /* Bytes between two errors; 0: no errors. */
 static uint32_t scans;
 static uint32_t complete_scans;
 
@@ -92,7 +92,7 @@ static void scan_from_the_beginning(hal_rig_way_t way)
     model_pass(10000);
     TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_start(&hal_rig.lidar));
-    run_for(2000, 5); /* Started, and up to speed. */
+    run_for(2000, 5); /* The lidar starts and reaches its speed. */
     TEST_ASSERT_EQUAL(TMINI_STATE_SCANNING, tmini_state(&hal_rig.lidar));
     scans = 0;
     complete_scans = 0;
@@ -106,7 +106,7 @@ static const hal_rig_way_t ways[] = {BY_DMA, BY_BLOCKS, BY_BYTES};
 
 #define FOR_EACH_WAY(i) for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++)
 
-/* 6 Hz. A revolution may be under way at either end. */
+/* The lidar turns at 6 Hz. The first and the last revolution may be cut off. */
 static void check_all_scans_complete(uint32_t seconds)
 {
     TEST_ASSERT_UINT32_WITHIN(2, 6 * seconds, scans);
@@ -125,7 +125,7 @@ void test_on_a_clean_line_every_scan_is_complete(void)
     }
 }
 
-/* The stream of a lidar that was not stopped, with an overrun pending. */
+/* The lidar was not stopped: it is still sending, and an overrun is pending. */
 void test_a_controller_reset_while_the_lidar_spins_scans_again(void)
 {
     FOR_EACH_WAY(i)
@@ -147,8 +147,8 @@ void test_a_controller_reset_while_the_lidar_spins_scans_again(void)
     }
 }
 
-/* 2.6 framing errors per second, as on a line that is not good. */
-void test_a_framing_error_costs_its_packet_and_nothing_else(void)
+/* 2.6 framing errors per second, as on a bad line. */
+void test_a_framing_error_costs_only_its_packet(void)
 {
     FOR_EACH_WAY(i)
     {
@@ -171,7 +171,7 @@ void test_a_framing_error_costs_its_packet_and_nothing_else(void)
     }
 }
 
-void test_a_reception_broken_off_every_second_costs_a_scan_each(void)
+void test_each_interruption_of_reception_costs_one_scan(void)
 {
     FOR_EACH_WAY(i)
     {
@@ -195,8 +195,8 @@ void test_polls_22_ms_apart_lose_nothing(void)
     }
 }
 
-/* Long blockages, such as a flash page being erased: a scan with missing points reports it. */
-void test_interrupts_held_back_for_long_make_no_scan_complete_that_is_not(void)
+/* Interrupts are held back for long, as while a flash page is erased. */
+void test_interrupts_held_back_for_long_leave_no_incomplete_scan_marked_complete(void)
 {
     FOR_EACH_WAY(i)
     {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The STM32 port on the registers, in both layouts, on the model: its interrupt lines stay up until
- * a handler clears them, and may come at any access. */
+/* Tests the STM32 port that uses the registers, with both register layouts, on the model.
+ * Interrupts stay pending until a handler clears them, and may come at any access. */
 
 #include "tmini_stm32_usart.h"
 
@@ -15,7 +15,7 @@
 #define RX_SIZE 1024u
 #define LINE_PACKETS 300u
 
-/* As a real unit has sent it (section 9.14). */
+/* A packet of a real unit (section 9.14). */
 static const uint8_t packet[] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
                                  0x00, 0x9E, 0x56, 0x15, 0x54, 0x02};
 #define PACKET sizeof packet
@@ -125,7 +125,7 @@ static uint32_t run(void)
     return poll().packets;
 }
 
-/* Of `count` more, how many arrive. */
+/* Sends `count` packets; returns how many arrive. */
 static uint32_t run_packets(unsigned count)
 {
     const uint32_t before = poll().packets;
@@ -147,7 +147,7 @@ void test_the_divider_is_rounded_to_nearest(void)
     }
 }
 
-/* 4 MHz, an oscillator that several families start with, makes 235294 baud, 2.1 % too much. */
+/* Several families start with a 4 MHz oscillator, which gives 235294 baud: 2.1 % too fast. */
 void test_a_clock_that_does_not_make_the_baud_rate_is_refused(void)
 {
     static const uint32_t clocks_hz[] = {1000000, 2097000, 3000000, 3600000, 4000000};
@@ -166,12 +166,12 @@ void test_a_started_usart_sends_receives_and_interrupts(void)
     TEST_ASSERT_EQUAL_HEX32(MODEL_CR3_DMAR, model_usart.CR3);
 }
 
-/* LL_USART_Init() has been there, or it is an LPUART, whose divider is another. */
-void test_without_a_clock_baud_rate_and_format_stay_as_they_are(void)
+/* LL_USART_Init() has already set them, or this is an LPUART, which has another kind of divider. */
+void test_without_a_clock_baud_rate_and_format_are_not_changed(void)
 {
     TEST_ASSERT_EQUAL(TMINI_OK, open_with_clock(false, 0));
     model_usart.CR1 = 0x10000000u;
-    model_usart.CR3 = 0x00001001u; /* Overruns off; errors' interrupt on. */
+    model_usart.CR3 = 0x00001001u; /* OVRDIS (no overruns) and EIE (error interrupt). */
     model_usart.BRR = 0x12345u;
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_stm32_usart_start(&port, &lidar));
     TEST_ASSERT_EQUAL_HEX32(0x12345u, model_usart.BRR);
@@ -179,7 +179,7 @@ void test_without_a_clock_baud_rate_and_format_stay_as_they_are(void)
     TEST_ASSERT_EQUAL_HEX32(0x00001000u, model_usart.CR3);
 }
 
-void test_what_is_missing_is_refused(void)
+void test_missing_arguments_are_refused(void)
 {
     static tmini_stm32_usart_t no_port;
     static tmini_t no_lidar;
@@ -206,7 +206,7 @@ void test_a_dma_channel_that_is_not_at_the_buffers_start_is_refused(void)
     TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, tmini_stm32_usart_start(&port, &lidar));
 }
 
-void test_after_stop_nothing_more_comes_and_what_had_come_is_there(void)
+void test_after_stop_no_byte_arrives_and_received_bytes_are_kept(void)
 {
     for (int rx_dma = 0; rx_dma < 2; rx_dma++) {
         start(rx_dma != 0);
@@ -215,26 +215,26 @@ void test_after_stop_nothing_more_comes_and_what_had_come_is_there(void)
         tmini_stm32_usart_stop(&port);
         send_packets(3);
         TEST_ASSERT_EQUAL_UINT32(3, run());
-        tmini_stm32_usart_dma_interrupt(&port, true, true); /* It was pending. */
+        tmini_stm32_usart_dma_interrupt(&port, true, true); /* A pending interrupt. */
         tmini_stm32_usart_interrupt(&port);
         TEST_ASSERT_EQUAL_UINT32(3, poll().packets);
         TEST_ASSERT_EQUAL_HEX32(0, model_usart.CR3);
-        TEST_ASSERT_EQUAL_HEX32(MODEL_CR1_UE | 0x0C, model_usart.CR1); /* Sending goes on. */
+        TEST_ASSERT_EQUAL_HEX32(MODEL_CR1_UE | 0x0C, model_usart.CR1); /* TX stays on. */
     }
 }
 
-void test_started_again_dma_begins_at_the_buffers_start(void)
+void test_after_another_start_dma_begins_at_the_buffers_start(void)
 {
     start(true);
-    TEST_ASSERT_EQUAL_UINT32(100, run_packets(100)); /* There are packets in all of the buffer. */
+    TEST_ASSERT_EQUAL_UINT32(100, run_packets(100)); /* The buffer is now full of old packets. */
     tmini_stm32_usart_stop(&port);
     set_up_channel();
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_stm32_usart_start(&port, &lidar));
-    TEST_ASSERT_EQUAL_UINT32(100, poll().packets); /* None of them comes again. */
+    TEST_ASSERT_EQUAL_UINT32(100, poll().packets); /* None of these is read again. */
     TEST_ASSERT_EQUAL_UINT32(5, run_packets(5));
 }
 
-void test_a_lost_lidars_usart_is_set_up_anew(void)
+void test_the_usart_is_set_up_again_when_the_lidar_is_lost(void)
 {
     for (int rx_dma = 0; rx_dma < 2; rx_dma++) {
         start(rx_dma != 0);
@@ -270,7 +270,7 @@ void test_a_byte_with_a_line_error_is_counted_and_stored(void)
     TEST_ASSERT_EQUAL_UINT32(0, errors().overruns);
 }
 
-/* An overrun without a byte, where a packet was cut: its second half is another's. */
+/* The overrun flag is set in the middle of a packet: the second half may be another packet's. */
 void test_no_packet_continues_across_an_overrun(void)
 {
     start(false);
@@ -284,7 +284,7 @@ void test_no_packet_continues_across_an_overrun(void)
     TEST_ASSERT_EQUAL_UINT32(5, run_packets(5));
 }
 
-void test_interrupts_that_come_too_late_are_an_overrun_that_is_counted_and_survived(void)
+void test_late_interrupts_are_an_overrun_that_is_counted_and_survived(void)
 {
     start(false);
     model.held_until_ns = 400000;
@@ -295,7 +295,7 @@ void test_interrupts_that_come_too_late_are_an_overrun_that_is_counted_and_survi
 
 /* ------------------------------------------------------------------------------------------ DMA */
 
-void test_dma_brings_every_byte(void)
+void test_dma_delivers_every_byte(void)
 {
     start(true);
     TEST_ASSERT_EQUAL_UINT32(LINE_PACKETS, run_packets(LINE_PACKETS));
@@ -306,13 +306,13 @@ void test_half_a_buffer_and_an_idle_line_are_handed_over_without_a_poll(void)
 {
     start(true);
     send_packets(40);
-    model_pass(22400); /* 516 bytes. */
+    model_pass(22400); /* 516 bytes arrive. */
     TEST_ASSERT_EQUAL_UINT32(RX_SIZE / 2, tmini_ring_head(&lidar.ring));
     model_pass(1000);
     TEST_ASSERT_EQUAL_UINT32(520, tmini_ring_head(&lidar.ring));
 }
 
-/* The poll is handing over then, or not: the flag must be cleared in any case. */
+/* The flag must be cleared whether or not the poll is just handing bytes over. */
 static void line_falls_idle(void)
 {
     model.flags |= MODEL_IDLE;
@@ -333,20 +333,20 @@ void test_an_idle_line_at_any_access_of_a_poll_is_no_lock_up(void)
     TEST_ASSERT_EQUAL_UINT32(0, model.flags & MODEL_IDLE);
 }
 
-void test_a_lap_that_no_interrupt_has_seen_is_noticed(void)
+void test_a_lap_without_any_interrupt_is_noticed(void)
 {
     start(true);
     TEST_ASSERT_EQUAL_UINT32(10, run_packets(10));
     model.held_until_ns = model.now_ns + 60000000u;
-    send_packets(90); /* 1170 bytes: past the middle, the end and the place where it was. */
+    send_packets(90); /* 1170 bytes: DMA passes its old position again. */
     model_pass(60000);
-    TEST_ASSERT_UINT32_WITHIN(1, 10 + 11, run()); /* Of 1170 bytes those beyond the lap. */
+    TEST_ASSERT_UINT32_WITHIN(1, 10 + 11, run()); /* Only the bytes after the lap are left. */
     TEST_ASSERT_EQUAL_UINT32(1, errors().laps);
 }
 
-/* Reading DR clears errors and idle line where there is SR (reference manual RM0090), but takes a
- * byte away from the DMA if one is there. */
-void test_a_byte_that_waits_for_dma_is_left_to_it(void)
+/* On a USART with SR, reading DR clears errors and the idle flag (reference manual RM0090), but
+ * also removes a byte that waits for DMA. */
+void test_a_byte_that_waits_for_dma_is_not_removed(void)
 {
     start(true);
     irq.lines[MODEL_USART_IRQ].handler = NULL;
@@ -360,7 +360,7 @@ void test_a_byte_that_waits_for_dma_is_left_to_it(void)
     TEST_ASSERT_EQUAL_UINT32(1, errors().overruns);
 }
 
-/* Where there is SR, the idle line cannot be cleared while a byte waits. */
+/* On a USART with SR, the idle flag cannot be cleared while a byte waits. */
 void test_a_dma_channel_that_has_stopped_is_no_lock_up(void)
 {
     start(true);
@@ -376,8 +376,8 @@ void test_a_dma_channel_that_has_stopped_is_no_lock_up(void)
     TEST_ASSERT_NOT_EQUAL(0, model_usart.CR1 & MODEL_CR1_IDLEIE);
 }
 
-/* The DMA has taken the byte: nothing but the poll will look at the flag. */
-void test_an_overrun_that_holds_the_bytes_back_is_cleared_by_the_poll(void)
+/* The DMA has already taken the byte: only the poll checks the flag. */
+void test_an_overrun_that_holds_bytes_back_is_cleared_by_the_next_poll(void)
 {
     start(true);
     model.ore_holds_rxne = true;
@@ -389,7 +389,7 @@ void test_an_overrun_that_holds_the_bytes_back_is_cleared_by_the_poll(void)
     TEST_ASSERT_EQUAL_UINT32(1, errors().overruns);
 }
 
-/* ------------------------------------------------------------------ what newer USARTs have more */
+/* -------------------------------------------------------------------- functions of newer USARTs */
 
 static void start_with_settings(bool rx_dma)
 {
@@ -399,18 +399,18 @@ static void start_with_settings(bool rx_dma)
     start_with_clock(rx_dma, 0);
 }
 
-/* With DDRE an error holds the DMA's requests back until it is cleared. */
-void test_an_error_that_holds_dma_back_costs_what_comes_until_the_next_poll(void)
+/* With DDRE, an error holds DMA requests back until it is cleared. */
+void test_an_error_that_holds_dma_back_costs_only_bytes_until_the_next_poll(void)
 {
     start_with_settings(true);
     model_usart.CR3 |= MODEL_CR3_DDRE;
     line_send_with(MODEL_FE);
-    TEST_ASSERT_UINT32_WITHIN(1, 9, run_packets(10)); /* Polls every 200 us: 4 bytes. */
+    TEST_ASSERT_UINT32_WITHIN(1, 9, run_packets(10)); /* Polled every 200 us (4 bytes). */
     TEST_ASSERT_EQUAL_UINT32(1, errors().framing_errors);
     TEST_ASSERT_EQUAL_UINT32(10, run_packets(10));
 }
 
-void test_with_the_fifo_on_eight_bytes_wait_for_an_interrupt_that_is_late(void)
+void test_with_the_fifo_on_eight_bytes_wait_for_a_late_interrupt(void)
 {
     start_with_settings(false);
     model_usart.CR1 |= MODEL_CR1_FIFOEN;
@@ -424,7 +424,7 @@ void test_with_the_fifo_on_eight_bytes_wait_for_an_interrupt_that_is_late(void)
     TEST_ASSERT_EQUAL_UINT32(0, errors().overruns);
 }
 
-/* LL has left the interrupt of the FIFO's threshold on, which the port does not ask for. */
+/* LL has left the FIFO threshold's interrupt on, which the port does not need. */
 void test_the_fifos_threshold_is_no_lock_up(void)
 {
     start_with_settings(false);
@@ -444,7 +444,7 @@ static void note_sent(uint8_t byte, uint64_t now_us)
     sent = byte;
 }
 
-void test_a_transmitter_takes_a_command_when_it_is_empty_and_is_not_waited_for(void)
+void test_an_empty_transmitter_takes_a_command_and_a_full_one_takes_nothing(void)
 {
     static const uint8_t command[] = {0xA5, 0x60};
     start(false);
@@ -455,7 +455,7 @@ void test_a_transmitter_takes_a_command_when_it_is_empty_and_is_not_waited_for(v
     TEST_ASSERT_EQUAL_INT(0, tmini_stm32_usart_port.write(&port, command, 2));
 }
 
-void test_the_clock_is_the_count_it_was_given(void)
+void test_the_clock_is_the_given_counter(void)
 {
     start(false);
     time_ms = 0xFFFFFFFFu;

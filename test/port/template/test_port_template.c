@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The port template: compiles as it is, counts time, stores bytes, and does not pretend to send. */
+/* Tests the unchanged port template: it counts time and stores bytes, and sending fails. */
 
 #include "encoder.h"
 #include "irq_lines.h"
@@ -36,7 +36,7 @@ static void fail(unsigned line)
     TEST_FAIL_MESSAGE("locked up");
 }
 
-/* At each third access of the library's indices a byte comes. */
+/* A byte arrives at every third access to the library's indices. */
 void interrupt(void)
 {
     arrived += arrived < stream_size && ++accesses % 3 == 0;
@@ -144,7 +144,7 @@ void test_a_restart_of_a_stopped_port_starts_nothing(void)
     TEST_ASSERT_NULL(port.lidar);
 }
 
-void test_after_stop_bytes_go_nowhere_and_after_start_to_the_lidar_again(void)
+void test_after_stop_bytes_are_dropped_and_after_start_they_reach_the_lidar(void)
 {
     tmini_counters_t counters;
     tmini_port_template_stop(&port);

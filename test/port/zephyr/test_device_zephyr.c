@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The lidar as a device of Zephyr, made from the devicetree's node. The test's thread is a
- * program's. */
+/* Tests the lidar as a Zephyr device, made from its devicetree node. The test's thread takes the
+ * place of a program's thread. */
 
 #include <string.h>
 
@@ -96,7 +96,7 @@ void test_other_commands_are_given_between_lock_and_unlock(void)
     TEST_ASSERT_EQUAL_UINT(1, infos);
 }
 
-void test_without_a_callback_it_scans_all_the_same(void)
+void test_without_a_callback_the_device_scans_too(void)
 {
     tmini_zephyr_device_callback_set(device, NULL, NULL);
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_device_start(device));
@@ -105,7 +105,7 @@ void test_without_a_callback_it_scans_all_the_same(void)
     TEST_ASSERT_EQUAL_UINT(0, scans);
 }
 
-void test_what_the_library_refuses_is_an_error(void)
+void test_a_request_that_the_library_refuses_is_an_error(void)
 {
     tmini_t *const lidar = tmini_zephyr_device_lidar(device);
     memset(lidar, 0, sizeof *lidar);

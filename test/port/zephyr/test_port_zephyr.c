@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The Zephyr port on a model of a board, against the simulated lidar. */
+/* Tests the Zephyr port on a model of a board with the simulated lidar. */
 
 #include <errno.h>
 
@@ -46,7 +46,7 @@ void test_wherever_an_interrupt_comes_every_point_arrives(void)
     assert_true_scans_wherever_bytes_come();
 }
 
-void test_a_fifo_that_takes_several_readings_is_emptied(void)
+void test_a_fifo_is_emptied_even_if_that_takes_several_readings(void)
 {
     static const uint8_t bytes[64];
     zephyr_model_set_fifo(64);
@@ -56,7 +56,7 @@ void test_a_fifo_that_takes_several_readings_is_emptied(void)
     TEST_ASSERT_EQUAL_UINT32(before + 64, zephyr_rig_counters().bytes);
 }
 
-/* An interrupt per byte must not be a switch of threads per byte. */
+/* One interrupt per byte must not cause one thread switch per byte. */
 void test_the_polling_thread_is_woken_once_per_64_bytes(void)
 {
     zephyr_model_set_fifo(1);
@@ -132,9 +132,9 @@ void test_it_stops_and_starts_while_the_lidar_streams(void)
         zephyr_model_pass(5000 + 100 * i);
         TEST_ASSERT_EQUAL_UINT32(bytes, zephyr_rig_counters().bytes);
         TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
-        TEST_ASSERT_EQUAL_UINT32(
-            0, zephyr_rig_counters().overruns);              /* Those of the time in between. */
-        TEST_ASSERT_TRUE(zephyr_rig_counters().bytes <= 16); /* Counted anew; the FIFO was full. */
+        /* Overruns while stopped are not counted; bytes may be those of a full FIFO. */
+        TEST_ASSERT_EQUAL_UINT32(0, zephyr_rig_counters().overruns);
+        TEST_ASSERT_TRUE(zephyr_rig_counters().bytes <= 16);
         poll_until(TMINI_EVENT_SCAN);
         truth_assert_nothing_invented(tmini_scan(&lidar));
     }
@@ -151,7 +151,7 @@ void test_blocking_commands_work(void)
     TEST_ASSERT_EQUAL_UINT(151, info.model);
 }
 
-/* Both parts of the revolution with the gap are scans, incomplete ones; the next is whole. */
+/* The gap divides a revolution into two incomplete scans. The next scan is complete. */
 static void assert_gap_in_revolution(uint32_t revolution)
 {
     for (unsigned part = 0; part < 2; part++) {
@@ -163,7 +163,7 @@ static void assert_gap_in_revolution(uint32_t revolution)
     truth_assert_revolution(tmini_scan(&lidar), revolution + 1);
 }
 
-/* 20 ms are 262 bytes, two whole packets among them: cut out so, their neighbours fit together. */
+/* In 20 ms, 262 bytes with two whole packets arrive and overrun the FIFO. */
 static void assert_overrun_is_a_gap(void)
 {
     zephyr_rig_start();
@@ -204,7 +204,7 @@ static uint32_t packets(void)
     return counters.packets;
 }
 
-/* The packet's two parts fit together, whatever was lost between them. */
+/* Receives a packet in two parts. The bytes alone do not show whether any were lost in between. */
 static void receive_packet_with_loss(bool lost)
 {
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
@@ -227,7 +227,7 @@ void test_no_packet_is_put_together_across_a_loss(void)
     TEST_ASSERT_EQUAL_UINT32(0, packets());
 }
 
-/* Such USARTs hold one byte, and reading it is how their driver clears the error. */
+/* On some USARTs, which hold only one byte, the driver clears the error by reading this byte. */
 void test_an_overrun_without_a_byte_to_read_is_a_gap(void)
 {
     zephyr_model_set_fifo(1);
@@ -261,7 +261,7 @@ void test_a_uart_that_was_left_on_is_switched_off_first(void)
     assert_true_scans(1, 1);
 }
 
-void test_reception_that_was_switched_off_begins_anew(void)
+void test_reception_that_was_switched_off_starts_again(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 1);
@@ -269,10 +269,10 @@ void test_reception_that_was_switched_off_begins_anew(void)
     uart_irq_callback_user_data_set(&zephyr_model_uart, NULL, NULL);
     assert_recovery();
     tmini_zephyr_stop(&port);
-    tmini_zephyr_port.restart(&port); /* Of a stopped port: nothing. */
+    tmini_zephyr_port.restart(&port); /* A restart of a stopped port does nothing. */
 }
 
-void test_errors_of_the_line_are_counted_by_kind(void)
+void test_line_errors_are_counted_by_kind(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 1);
@@ -285,7 +285,7 @@ void test_errors_of_the_line_are_counted_by_kind(void)
     TEST_ASSERT_EQUAL_UINT32(0, zephyr_rig_counters().overruns);
 }
 
-/* Negative results are no error flags. */
+/* A negative result of uart_err_check() is not a set of error flags. */
 void test_a_driver_that_reports_no_errors_has_none(void)
 {
     zephyr_model_set_error_check(-ENOSYS);

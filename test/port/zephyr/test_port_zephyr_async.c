@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The Zephyr port over the async UART API. */
+/* Tests the Zephyr port with the async UART API. */
 
 #include <errno.h>
 
@@ -28,7 +28,7 @@ void test_every_point_arrives_through_two_buffers_in_turn(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 10);
-    zephyr_model_pass(3000); /* The driver's time-out. */
+    zephyr_model_pass(3000); /* Longer than the driver's timeout. */
     TEST_ASSERT_UINT_WITHIN(64, zephyr_model_line_bytes(), zephyr_rig_counters().bytes);
 }
 
@@ -41,10 +41,11 @@ void test_wherever_an_interrupt_comes_every_point_arrives(void)
 void test_pauses_that_the_receive_buffer_can_hold_cost_no_scan(void)
 {
     zephyr_rig_start();
-    assert_pauses_cost_no_scan(1024 / 2); /* As always, at the line's full rate. */
+    /* Half of the buffer: the library expects bytes at the line's full rate, twice the lidar's. */
+    assert_pauses_cost_no_scan(1024 / 2);
 }
 
-void test_an_overrun_ends_reception_which_begins_anew_and_is_a_gap(void)
+void test_an_overrun_is_a_gap_after_which_reception_starts_again(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 1);
@@ -53,7 +54,7 @@ void test_an_overrun_ends_reception_which_begins_anew_and_is_a_gap(void)
     TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().overruns);
 }
 
-void test_errors_of_the_line_are_counted_by_kind_and_end_nothing_for_good(void)
+void test_line_errors_are_counted_by_kind_and_reception_starts_again(void)
 {
     static const int errors[] = {UART_ERROR_FRAMING, UART_ERROR_NOISE, UART_BREAK};
     zephyr_rig_start();
@@ -68,8 +69,8 @@ void test_errors_of_the_line_are_counted_by_kind_and_end_nothing_for_good(void)
     TEST_ASSERT_EQUAL_UINT32(0, zephyr_rig_counters().overruns);
 }
 
-/* A line held low is an error at each byte: an interrupt per 10 ms, no more. */
-void test_a_line_that_is_held_low_is_no_storm_of_interrupts(void)
+/* On a line held low, each byte is an error, but there is at most one interrupt per 10 ms. */
+void test_a_line_held_low_causes_no_interrupt_storm(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 1);
@@ -106,14 +107,14 @@ void test_it_stops_and_starts_while_the_lidar_streams(void)
     }
 }
 
-void test_reception_that_was_ended_begins_anew(void)
+void test_reception_that_was_ended_starts_again(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 1);
     TEST_ASSERT_EQUAL_INT(0, uart_rx_disable(&zephyr_model_uart));
     assert_gap();
-    tmini_zephyr_port.restart(&port); /* As after a loss. */
+    tmini_zephyr_port.restart(&port); /* The driver does this after a loss. */
     (void)scans_until_complete();
     tmini_zephyr_stop(&port);
-    tmini_zephyr_port.restart(&port); /* Of a stopped port: nothing. */
+    tmini_zephyr_port.restart(&port); /* A restart of a stopped port does nothing. */
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Zephyr's async UART API on the model: fills a buffer, asks for the next, reports what has come
- * when a buffer is full or the line pauses, and ends with any error. */
+/* Zephyr's async UART API on the model: it fills a buffer, requests the next one, reports received
+ * bytes when a buffer is full or the line pauses, and stops at any error. */
 
 #include <errno.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ static struct {
     int enable_result;
     bool enabled;
     bool ending;
-    uint64_t end_us; /* Not at once: the UART is busy. */
+    uint64_t end_us; /* Disabling takes until this time: the UART is busy. */
     uint8_t *buffer;
     size_t size;
     size_t reported;
@@ -70,7 +70,7 @@ static void report(void)
 static void release(uint8_t *buffer)
 {
     if (buffer != NULL) {
-        memset(buffer, 0xFF, async.size); /* It is too late to read it now. */
+        memset(buffer, 0xFF, async.size); /* The port must no longer read it. */
         post((struct uart_event){.type = UART_RX_BUF_RELEASED, .data.rx_buf.buf = buffer});
     }
 }
@@ -171,7 +171,7 @@ int uart_rx_buf_rsp(const struct device *device, uint8_t *buffer, size_t size)
 {
     (void)device;
     if (buffer == async.buffer) {
-        abort(); /* It is being filled. */
+        abort(); /* This buffer is still being filled. */
     }
     if (!async.enabled || async.next != NULL) {
         return async.enabled ? -EBUSY : -EACCES;
@@ -181,7 +181,7 @@ int uart_rx_buf_rsp(const struct device *device, uint8_t *buffer, size_t size)
     return 0;
 }
 
-/* Ends in the interrupt. */
+/* Reception ends later, in the interrupt. */
 int uart_rx_disable(const struct device *device)
 {
     (void)device;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Private to the model: what the UART's two APIs and the kernel share. */
+/* Private to the model: shared by the UART's two APIs and the kernel. */
 
 #ifndef ZEPHYR_BOARD_H
 #define ZEPHYR_BOARD_H
@@ -17,7 +17,7 @@ bool zephyr_async_is_enabled(void);
 bool zephyr_async_is_up(void);
 void zephyr_async_serve(void);
 
-/* The FIFO: whether there is a byte, the oldest one, and when the last one came. */
+/* The FIFO: whether it has a byte, its oldest byte, and the time of its last byte. */
 bool zephyr_board_has_byte(void);
 uint8_t zephyr_board_take_byte(void);
 uint64_t zephyr_board_last_byte_us(void);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Zephyr's kernel on the model: the test's thread and one more, which take turns when they wait. */
+/* Zephyr's kernel on the model: the test's thread and one more. One runs while the other waits. */
 
 #include <errno.h>
 #include <stdlib.h>
@@ -70,7 +70,7 @@ static void switch_to(int number)
     }
 }
 
-/* The other thread runs, or time passes, until the calling one may go on. */
+/* Runs the other thread, or lets time pass, until the calling thread may continue. */
 static void block(uint64_t us, const struct k_sem *awaited)
 {
     thread_t *const me = &kernel.threads[kernel.current];
@@ -94,10 +94,10 @@ static void enter(void)
 {
     const thread_t *const me = &kernel.threads[1];
     me->entry(me->arguments[0], me->arguments[1], me->arguments[2]);
-    abort(); /* The port's thread does not end. */
+    abort(); /* The port's thread must not end. */
 }
 
-/* Runs when the test's thread waits for the first time. */
+/* The new thread runs when the test's thread waits for the first time. */
 k_tid_t k_thread_create(struct k_thread *thread, k_thread_stack_t *stack, size_t stack_size,
                         k_thread_entry_t entry, void *p1, void *p2, void *p3, int priority,
                         uint32_t options, k_timeout_t delay)
@@ -153,7 +153,7 @@ int k_sem_init(struct k_sem *sem, unsigned initial, unsigned limit)
 void k_sem_give(struct k_sem *sem)
 {
     if (sem->limit == 0) {
-        abort(); /* It has not been made. */
+        abort(); /* The semaphore was not initialised. */
     }
     if (sem->count < sem->limit) {
         sem->count++;
@@ -191,7 +191,7 @@ int k_mutex_lock(struct k_mutex *mutex, k_timeout_t timeout)
 int k_mutex_unlock(struct k_mutex *mutex)
 {
     if (mutex->count == 0 || mutex->owner != kernel.current) {
-        abort(); /* -EPERM, -EINVAL: a mistake of the port. */
+        abort(); /* -EPERM, -EINVAL: a bug of the port. */
     }
     mutex->count--;
     return 0;
@@ -202,7 +202,7 @@ k_spinlock_key_t k_spin_lock(struct k_spinlock *lock)
 {
     const k_spinlock_key_t key = {.key = irq.masked};
     if (lock->held) {
-        abort(); /* It would never end. */
+        abort(); /* A deadlock. */
     }
     lock->held = true;
     irq.masked = true;

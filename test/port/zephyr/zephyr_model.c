@@ -38,7 +38,7 @@ static struct {
     int interrupts;
     bool ready;
     bool receiving;
-    bool late; /* An interrupt that was under way when it was switched off. */
+    bool late; /* An interrupt that was already pending when it was switched off. */
     bool lidar_ready;
     uint64_t last_us;
     uint32_t baud_rate;
@@ -68,10 +68,10 @@ static void serve(void)
 static void fail(unsigned line)
 {
     (void)line;
-    abort(); /* A handler leaves its flag: the processor is locked up. */
+    abort(); /* The handler did not clear the flag: the processor is locked up. */
 }
 
-/* At each access of the library's indices, too. */
+/* An interrupt may also come at each access to the library's indices. */
 void interrupt(void)
 {
     irq_access();
@@ -335,7 +335,7 @@ static void check_context(void)
 {
     irq_access();
     if (!irq_is_in_handler()) {
-        abort(); /* Zephyr allows these in the callback only. */
+        abort(); /* Zephyr allows these calls only in the callback. */
     }
 }
 
@@ -352,7 +352,7 @@ int uart_fifo_read(const struct device *device, uint8_t *bytes, int size)
     check_context();
     const unsigned taken = board.count < (unsigned)size ? board.count : (unsigned)size;
     take(bytes, taken);
-    board.errors = 0; /* Some drivers do so. */
+    board.errors = 0; /* In some drivers, reading clears the errors. */
     if (board.lose_while_reading) {
         board.lose_while_reading = false;
         board.errors = UART_ERROR_OVERRUN;

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A board under Zephyr as far as the port sees it: the test's thread and one that the port makes,
- * one UART with its interrupt line (irq_lines.h), and the simulated lidar. Time goes on only while
- * all threads sleep or the test makes it.
+/* A model of a Zephyr board as the port sees it: the test's thread and one that the port creates,
+ * one UART with its interrupt line (irq_lines.h), and the simulated lidar. Time passes only while
+ * all threads sleep, or when the test lets it pass.
  *
- * The UART is one of two kinds that Zephyr's drivers have: with a FIFO of 1 to 64 bytes; with
- * errors reported by uart_err_check(), or not. As with some drivers, reading data clears the
- * errors. */
+ * The UART has a FIFO of 1 to 64 bytes. Its driver may or may not report errors by
+ * uart_err_check(). As in some drivers, reading data clears the errors. */
 
 #ifndef ZEPHYR_MODEL_H
 #define ZEPHYR_MODEL_H
@@ -18,25 +17,26 @@
 
 #include "simulator.h"
 
-/* A fresh board with a lidar at rest, which `observer` watches; a FIFO of 16, errors reported. */
+/* Resets the board: the lidar is at rest and watched by `observer`; the FIFO has 16 bytes, and the
+ * driver reports errors. */
 void zephyr_model_begin(const sim_observer_t *observer);
 
 void zephyr_model_set_fifo(unsigned size);
 
-/* -ENOSYS for a driver without uart_err_check() or uart_configure(); 0: it has them. */
+/* -ENOSYS: the driver has no uart_err_check() or uart_configure(); 0: it has this function. */
 void zephyr_model_set_error_check(int result);
 void zephyr_model_set_configure(int result);
 
-/* -ENOSYS for a driver without the interrupt-driven API, -ENOTSUP if it is off; 0: it has it. */
+/* 0: the driver has the interrupt-driven API; -ENOSYS: it has not; -ENOTSUP: the API is off. */
 void zephyr_model_set_interrupts(int result);
 
-/* The same of the async API; and of its uart_rx_enable(). */
+/* As above for the async API; and the result of its uart_rx_enable(). */
 void zephyr_model_set_async(int result);
 void zephyr_model_set_async_enable(int result);
 
 void zephyr_model_set_ready(bool ready);
 
-/* The lidar's device is initialised: DEVICE_DT_INST_DEFINE() makes the function. */
+/* Initialises the lidar's device; DEVICE_DT_INST_DEFINE() defines this function. */
 int zephyr_model_init_lidar(void);
 void zephyr_model_set_lidar_ready(bool ready);
 static inline void zephyr_model_boot(void)
@@ -49,38 +49,38 @@ sim_t *zephyr_model_lidar(void);
 
 uint64_t zephyr_model_now_us(void);
 
-/* Time passes: bytes come and interrupts are served; or, held up, not served until it is over. */
+/* Time passes: bytes arrive. Interrupts are served meanwhile, or (held up) only afterwards. */
 void zephyr_model_pass(uint32_t us);
 void zephyr_model_pass_held_up(uint32_t us);
 
-/* Bytes as if the lidar had sent them now; the interrupt comes when the FIFO is full, and at the
- * end. */
+/* Bytes arrive as if the lidar had sent them now. The interrupt comes when the FIFO is full, and at
+ * the end. */
 void zephyr_model_receive(const uint8_t *bytes, size_t count);
 
-/* Reception was left on before; and an interrupt that was under way while it was switched
- * off. */
+/* Reception was left on before the start; an interrupt comes although it was switched off. */
 void zephyr_model_leave_receiving(void);
 void zephyr_model_interrupt_late(void);
 
-/* The error that comes with the next byte. */
+/* The next byte arrives with these errors. */
 void zephyr_model_damage(int errors);
 
-/* Clearing errors reads the data register, as on USARTs with SR and DR: what it held is gone. */
+/* Clearing errors reads the data register, as on USARTs with SR and DR: its byte is lost. */
 void zephyr_model_set_clearing_reads_data(void);
 
-/* The next reading of the FIFO finds it full, and one byte is lost while it is being read. */
+/* During the next reading of the FIFO, a byte is lost because the FIFO is full. */
 void zephyr_model_lose_while_reading(void);
 
-/* Bytes that have come on the line so far. */
+/* Bytes that have arrived on the line so far. */
 uint32_t zephyr_model_line_bytes(void);
 
 uint32_t zephyr_model_baud_rate(void);
-bool zephyr_model_is_receiving(void); /* By whichever API. */
+bool zephyr_model_is_receiving(void); /* With either API. */
 
-/* How often the polling thread has been woken by the semaphore, and not by its time-out. */
+/* How often the semaphore, not the timeout, has woken the polling thread. */
 unsigned zephyr_model_wakes(void);
 
-/* Called whenever the thread sleeps; may leave by longjmp(). NULL: nothing. */
+/* Sets a function that is called whenever the test's thread sleeps; it may leave by longjmp(), or
+ * be NULL. */
 void zephyr_model_on_sleep(void (*callback)(void));
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The Zephyr port and a lidar on the model, for the tests of both of Zephyr's APIs. */
+/* The Zephyr port and a lidar on the model, for the tests of both UART APIs. */
 
 #ifndef ZEPHYR_RIG_H
 #define ZEPHYR_RIG_H
@@ -13,10 +13,10 @@ extern tmini_zephyr_t port;
 void zephyr_rig_begin(void);
 void zephyr_rig_end(void);
 
-/* What tmini_zephyr_start() returns. */
+/* Starts the port; returns the result of tmini_zephyr_start(). */
 int zephyr_rig_start_port(void);
 
-/* The lidar is to scan as well. */
+/* Starts the port and the lidar. */
 void zephyr_rig_start(void);
 
 tmini_zephyr_counters_t zephyr_rig_counters(void);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands for what ARMCC 5 knows without any header. */
+/* Stands in for the built-in functions of ARMCC 5. */
 
 #ifndef ARMCC5_H
 #define ARMCC5_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands for IAR's header of that name. */
+/* Stands in for IAR's header of this name. */
 
 #ifndef INTRINSICS_H
 #define INTRINSICS_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands for the dma.h that CubeMX generates. */
+/* Stands in for the dma.h that CubeMX generates. */
 
 #ifndef DMA_H
 #define DMA_H

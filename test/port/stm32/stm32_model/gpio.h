@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands for the gpio.h that CubeMX generates. */
+/* Stands in for the gpio.h that CubeMX generates. */
 
 #ifndef GPIO_H
 #define GPIO_H

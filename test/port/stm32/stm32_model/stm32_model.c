@@ -45,7 +45,7 @@ static bool has_fifo(void)
 #endif
 }
 
-/* RXNE says that a byte waits, with the FIFO too. */
+/* RXNE means that a byte waits, also with the FIFO on. */
 static void note_waiting(void)
 {
     const bool half = has_fifo() && model.waiting >= MODEL_FIFO / 2;
@@ -56,7 +56,7 @@ static void note_waiting(void)
 static uint8_t take_data(void)
 {
     const uint8_t byte = model.data[0];
-    if (model.waiting > 1) { /* The last one stays readable. */
+    if (model.waiting > 1) { /* The last byte can be read again. */
         memmove(model.data, &model.data[1], MODEL_FIFO - 1);
     }
     model.waiting = (uint8_t)(model.waiting - (model.waiting > 0));
@@ -101,7 +101,7 @@ static void receive(const model_byte_t *byte)
     serve_dma();
 }
 
-/* Receives the bytes that have come by now, and notices a silence after them. */
+/* Receives the bytes that have arrived by now, and notices an idle line after them. */
 static void catch_up(void)
 {
     model_byte_t byte;
@@ -160,8 +160,7 @@ void model_reset(void)
     irq.lines[MODEL_DMA_IRQ] = (irq_line_t){.is_up = is_dma_up, .priority = 5};
 }
 
-/* The tick's interrupt is held back like all others, and what it has missed it does not catch up
- * with. */
+/* The tick's interrupt is held back like all others. Ticks missed meanwhile are lost. */
 static void pass(uint64_t ns)
 {
     model.now_ns += ns;
@@ -246,7 +245,7 @@ uint32_t model_dma_left(void)
 {
     model_step();
     const uint32_t left = model.dma.channel.CBR1;
-    model_step(); /* What is read is old already when it is used. */
+    model_step(); /* DMA may advance before the caller uses the value. */
     return left;
 }
 
@@ -266,7 +265,7 @@ uint32_t model_read(const volatile uint32_t *at)
         return model_read_data();
     }
     if (at == &model.dma.channel.CBR1) {
-        return model_dma_left() | 0xFFFF0000u; /* The upper half is something else's. */
+        return model_dma_left() | 0xFFFF0000u; /* The upper half has other fields. */
     }
     model_step();
     return *at;

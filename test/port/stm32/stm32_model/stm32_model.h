@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The hardware: one USART at 230400 baud with one DMA channel, on two interrupt lines. Registers
- * are read and written by these functions alone, since reading has effects. Time passes with every
- * access, in nanoseconds; what is due happens then, interrupts included.
+/* A model of the hardware: one USART at 230400 baud with one DMA channel, on two interrupt lines.
+ * Registers are accessed only by these functions, because reading one has side effects. Each access
+ * takes some nanoseconds; whatever is due then happens, including interrupts.
  *
  * Variants, by macros:
  *   STM32_MODEL_SR            registers SR and DR (F1, F2, F4, L1), where reading clears flags;
  *                             else ISR, ICR, RDR
- *   STM32_MODEL_STREAMS       a DMA with FIFO whose abort takes an interrupt more (F2, F4, F7, H7)
- *   STM32_MODEL_LINKED_LISTS  a DMA that runs in circles by linked lists (H5, U5), and after an
- *                             error goes on with the rest of its block
- *   STM32_MODEL_DCACHE        what DMA writes is seen once its cache lines have been invalidated
- *   STM32_MODEL_YEAR          of the HAL in stm32_model_hal.h. 2019: no reception up to an idle
- *                             line, a lock; 2021: with it, but without the event's type; 2024: an
- *                             idle event at the full buffer; 2025: real positions at half and full
- *   STM32_MODEL_NO_DMA        the HAL's DMA module switched off */
+ *   STM32_MODEL_STREAMS       a DMA with FIFO, whose abort ends with an interrupt (F2, F4, F7, H7)
+ *   STM32_MODEL_LINKED_LISTS  a DMA that is circular by linked lists (H5, U5), and after an error
+ *                             continues with the rest of its block
+ *   STM32_MODEL_DCACHE        the CPU sees what DMA has written only after it has invalidated the
+ *                             cache lines
+ *   STM32_MODEL_YEAR          of the HAL in stm32_model_hal.h. 2019: locks its handles, and has no
+ *                             reception until the line is idle; 2021: has it, but without the type
+ *                             of the event; 2024: no locks, and an idle event at a full buffer;
+ *                             2025: half and full events with DMA's real position
+ *   STM32_MODEL_NO_DMA        the HAL's DMA module is switched off */
 
 #ifndef STM32_MODEL_H
 #define STM32_MODEL_H
@@ -28,7 +30,7 @@
 
 #define MODEL_BYTE_NS 43403u
 
-/* Of SR and ISR alike. */
+/* Flags with the same bits in SR and ISR. */
 #define MODEL_FE (1u << 1)
 #define MODEL_NE (1u << 2)
 #define MODEL_ORE (1u << 3)
@@ -36,7 +38,7 @@
 #define MODEL_RXNE (1u << 5)
 #define MODEL_TC (1u << 6)
 #define MODEL_TXE (1u << 7)
-#define MODEL_RXFT (1u << 26) /* As many bytes wait in the FIFO as CR3 names. */
+#define MODEL_RXFT (1u << 26) /* The FIFO has reached the threshold in CR3. */
 
 #ifdef STM32_MODEL_SR
 #define MODEL_CR1_UE (1u << 13)
@@ -73,7 +75,7 @@ typedef struct {
 } USART_TypeDef;
 #endif
 
-/* What is left of this round, by its name where the channel runs linked lists. */
+/* What is left of this round; the name is that of DMAs with linked lists. */
 typedef struct {
     volatile uint32_t CBR1;
 } DMA_Channel_TypeDef;
@@ -88,36 +90,36 @@ typedef struct {
     uint32_t interrupts;
 } model_dma_t;
 
-/* Their lines' numbers. */
+/* Numbers of the interrupt lines. */
 enum { MODEL_USART_IRQ, MODEL_DMA_IRQ };
 
 /* One byte on the line. */
 typedef struct {
-    uint64_t at_ns; /* When its stop bit has come. */
+    uint64_t at_ns; /* Time at which its stop bit has arrived. */
     uint8_t byte;
     uint32_t errors; /* MODEL_FE, MODEL_NE. */
 } model_byte_t;
 
 typedef struct {
-    /* What tests set. */
-    bool (*next)(model_byte_t *byte); /* Peeks the line's next byte; false: none known. */
-    void (*take)(void);               /* The byte has come. */
+    /* Set by tests. */
+    bool (*next)(model_byte_t *byte); /* Gets the line's next byte; false: there is none. */
+    void (*take)(void);               /* Removes this byte: it has arrived. */
     void (*sent)(uint8_t byte, uint64_t now_us);
-    uint32_t access_ns;     /* That an access takes. */
-    uint64_t held_until_ns; /* No interrupt before. */
-    bool ore_holds_rxne;    /* No byte is received while an overrun shows, as on many boards. */
+    uint32_t access_ns;     /* Time that an access takes. */
+    uint64_t held_until_ns; /* No interrupt is served before this time. */
+    bool ore_holds_rxne;    /* No byte is received while ORE is set, as on many boards. */
 
-    /* With a data cache: the buffer as the CPU sees it, and what is really in its memory. */
+    /* With a data cache: the buffer as the CPU sees it, and the real content of its memory. */
     uint8_t *cached;
     size_t cached_size;
     uint8_t ram[1024];
 
-    /* The hardware's own. */
+    /* State of the hardware. */
     uint64_t now_ns;
-    uint64_t tick_ns; /* Time in which the tick's interrupt has run. */
+    uint64_t tick_ns; /* Time that the tick's interrupt has counted. */
     uint32_t flags;
-    uint32_t seen;            /* Read in SR: reading DR clears them. */
-    uint8_t data[MODEL_FIFO]; /* One without the FIFO. */
+    uint32_t seen;            /* Flags read in SR: reading DR clears them. */
+    uint8_t data[MODEL_FIFO]; /* Only the first is used without the FIFO. */
     uint8_t waiting;
     bool was_busy;
     uint64_t idle_ns;
@@ -128,14 +130,13 @@ typedef struct {
 extern model_t model;
 extern USART_TypeDef model_usart;
 
-/* An idle USART that is switched on, lines of equal priority without handlers. A lock-up fails the
- * test. */
+/* Resets the model: the USART is on and idle; interrupt lines have equal priority and no handlers.
+ * A lock-up fails the test. */
 void model_reset(void);
 
-/* `us` pass. Nothing runs but interrupts. */
+/* Lets `us` pass: only interrupts run. */
 void model_pass(uint64_t us);
 
-/* Accesses. */
 uint32_t model_status(void);   /* Reads SR or ISR. */
 uint8_t model_read_data(void); /* Reads DR or RDR. */
 void model_write_data(uint8_t byte);
@@ -145,11 +146,11 @@ void model_unset(volatile uint32_t *reg, uint32_t bits);
 uint32_t model_dma_left(void);
 uint32_t model_tick_ms(void);
 
-/* Accesses by address, of any of these registers. */
+/* Access one of these registers by its address. */
 uint32_t model_read(const volatile uint32_t *at);
 void model_write(volatile uint32_t *at, uint32_t value);
 
-/* An access to something else: time passes. */
+/* Accesses something else: time passes. */
 void model_step(void);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The registers of the port without the HAL are the model's. */
+/* Gives the model's registers to the port that does without the HAL. */
 
 #ifndef STM32_MODEL_ACCESS_H
 #define STM32_MODEL_ACCESS_H

@@ -12,7 +12,7 @@
 #define EVENT_IDLE 2u
 #define ERRORS (MODEL_FE | MODEL_NE | MODEL_ORE)
 
-/* The HALs of both kinds of USART clear errors in their own way. */
+/* The two kinds of USART clear the idle flag in different ways. */
 static void clear_idle(void)
 {
 #ifdef STM32_MODEL_SR
@@ -23,7 +23,7 @@ static void clear_idle(void)
 #endif
 }
 
-/* HALs before 2022 lock the handle while a function runs, and refuse others meanwhile. */
+/* In HALs before 2022, a function locks the handle while it runs, and other calls are refused. */
 static bool lock(UART_HandleTypeDef *uart)
 {
     if (STM32_MODEL_YEAR > 2021) {
@@ -70,7 +70,7 @@ static void report(UART_HandleTypeDef *uart, uint32_t type, uint16_t size)
     }
 }
 
-/* Since 2025 the size says where DMA really is. */
+/* Since 2025 the reported size is DMA's real position. */
 static uint16_t reported_size(const UART_HandleTypeDef *uart, uint16_t nominal)
 {
     if (STM32_MODEL_YEAR < 2025) {
@@ -92,7 +92,7 @@ static void idle_with_dma(UART_HandleTypeDef *uart)
 
 /* ------------------------------------------------------------------------------------------ DMA */
 
-/* One UART, hence one handle, whose channel serves it. */
+/* The only handle that uses the only DMA channel. */
 static UART_HandleTypeDef *dma_user;
 
 static void dma_error_reported(DMA_HandleTypeDef *dma)
@@ -102,8 +102,8 @@ static void dma_error_reported(DMA_HandleTypeDef *dma)
     HAL_UART_ErrorCallback(dma_user);
 }
 
-/* Linked lists: the start names the list, and the channel reads it as soon as nothing is left of
- * the block that it has. */
+/* With linked lists, the channel first finishes its current block, and only then reads the list
+ * that the start has given to it. */
 static uint32_t first_round(uint16_t size)
 {
 #ifdef STM32_MODEL_LINKED_LISTS
@@ -133,7 +133,7 @@ static bool dma_start(UART_HandleTypeDef *uart, uint8_t *memory, uint16_t size)
     return true;
 }
 
-/* As an error does: what is left of the block stays. */
+/* Stops DMA as an error does: the count of bytes left in the block stays. */
 static void dma_stop(DMA_HandleTypeDef *dma)
 {
     model.dma.enabled = false;
@@ -168,7 +168,7 @@ HAL_StatusTypeDef HAL_DMAEx_Resume(DMA_HandleTypeDef *hdma)
     return HAL_OK;
 }
 
-/* Streams say by an interrupt that they have stopped; the others stop at once. */
+/* Streams and linked lists report by an interrupt that they have stopped; others stop at once. */
 static bool dma_stop_later(DMA_HandleTypeDef *dma)
 {
     if (dma->State != HAL_DMA_STATE_BUSY) {
@@ -269,7 +269,7 @@ static HAL_StatusTypeDef start_interrupt(UART_HandleTypeDef *uart, uint8_t *memo
     return HAL_OK;
 }
 
-/* Back to waiting for the idle line, unless an error has ended it meanwhile. */
+/* Enables the idle line's interrupt, unless an error has already ended the reception. */
 static HAL_StatusTypeDef await_idle(UART_HandleTypeDef *uart, HAL_StatusTypeDef status)
 {
     if (uart->ReceptionType != TO_IDLE) {
@@ -307,8 +307,7 @@ HAL_StatusTypeDef HAL_UARTEx_ReceiveToIdle_IT(UART_HandleTypeDef *huart, uint8_t
 
 #ifndef STM32_MODEL_NO_DMA
 
-/* An error that is pending interrupts where its interrupt is enabled: before the DMA's request
- * is. */
+/* EIE is set before DMAR: a pending error interrupts in between, while DMAR is still off. */
 static HAL_StatusTypeDef start_dma(UART_HandleTypeDef *uart, uint8_t *memory, uint16_t size)
 {
     prepare(uart, memory, size);
@@ -324,7 +323,7 @@ static HAL_StatusTypeDef start_dma(UART_HandleTypeDef *uart, uint8_t *memory, ui
     (void)model_read_data();
 #endif
     unlock(uart);
-    if (STM32_MODEL_YEAR <= 2021) { /* Whatever the parity. */
+    if (STM32_MODEL_YEAR <= 2021) { /* Even without parity. */
         model_set(&model_usart.CR1, MODEL_CR1_PEIE);
     }
     model_set(&model_usart.CR3, MODEL_CR3_EIE);
@@ -419,7 +418,7 @@ static void note_errors(UART_HandleTypeDef *uart, uint32_t flags, uint32_t cr1, 
 #endif
 }
 
-/* The end of a reception that an error has broken off. */
+/* Ends a reception after an error. */
 static void break_off(UART_HandleTypeDef *uart)
 {
     end_reception(uart);
@@ -527,7 +526,7 @@ uint32_t HAL_GetTick(void)
 
 #define LINE 32u
 
-/* The lines from the one in which `addr` lies, as far as they belong to the buffer. */
+/* Copies the cache lines that contain these bytes, up to the buffer's end. */
 static void between_cache_and_memory(uint8_t *addr, int32_t count, bool to_memory)
 {
     const size_t first = (size_t)(addr - model.cached) / LINE * LINE;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The part of the STM32 HAL's interface that the port and its example touch: names, types and
- * values as ST documents them. README.md beside this file lists the variants. */
+/* The part of the STM32 HAL's interface that the port and its example use: names, types and values
+ * as ST documents them. stm32_model.h lists the variants. */
 
 #ifndef STM32_MODEL_HAL_H
 #define STM32_MODEL_HAL_H
@@ -86,7 +86,7 @@ typedef struct DMA_HandleTypeDef {
         uint32_t PeriphDataAlignment;
         uint32_t MemDataAlignment;
     } Init;
-    uint32_t Mode; /* Of linked lists. */
+    uint32_t Mode; /* Used with linked lists. */
 #ifdef STM32_MODEL_LINKED_LISTS
     DMA_QListTypeDef *LinkedListQueue;
 #endif
@@ -149,7 +149,7 @@ typedef struct {
 #define __HAL_UART_CLEAR_OREFLAG(handle) __HAL_UART_CLEAR_FLAG(handle, UART_CLEAR_OREF)
 #endif
 
-/* What is read in full, is written in full, with no interrupt between. */
+/* Reads, changes and writes the register without an interrupt in between. */
 #if STM32_MODEL_YEAR >= 2021
 #define ATOMIC_CLEAR_BIT(reg, bit) model_unset(&(reg), bit)
 #define HAL_UART_RECEPTION_STANDARD 0x00000000u
@@ -214,7 +214,7 @@ static inline void __disable_irq(void)
     irq.masked = true;
 }
 
-/* Only there, as the macro says, on a Cortex-M7. */
+/* Declared only for a Cortex-M7, which has a data cache. */
 #ifdef STM32_MODEL_DCACHE
 #define __DCACHE_PRESENT 1U
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands for the usart.h that CubeMX generates. */
+/* Stands in for the usart.h that CubeMX generates. */
 
 #ifndef USART_H
 #define USART_H

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What Kconfig makes. Zephyr's build includes it before everything else; here the other headers
- * do. */
+/* Stands in for the header that Kconfig generates. Zephyr's build includes it before all other
+ * headers; here the other headers include it. */
 
 #ifndef AUTOCONF_H
 #define AUTOCONF_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Zephyr: devices. The model initialises the lidar's when the test boots. */
+/* Zephyr: devices. zephyr_model_boot() initialises the lidar's device. */
 
 #ifndef ZEPHYR_DEVICE_H
 #define ZEPHYR_DEVICE_H
@@ -33,7 +33,7 @@ extern const struct device zephyr_model_lidar_device;
         memset((data_pointer), 0, sizeof *(data_pointer));                                      \
         return init_function(&zephyr_model_lidar_device);                                       \
     }                                                                                           \
-    struct device /* Takes the semicolon. */
+    struct device /* The macro's user writes the semicolon. */
 
 bool device_is_ready(const struct device *device);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A thread is the line: each millisecond it brings the bytes that the simulated lidar has sent. */
+/* A thread acts as the line: each millisecond it passes on the simulated lidar's bytes. */
 
 #include <string.h>
 
@@ -36,7 +36,7 @@ static void note_packet(void *context, const sim_packet_t *packet)
     ARG_UNUSED(context);
     const unsigned samples = packet->bytes[3]; /* LSN */
     const uint32_t revolution = packet->revolution % REVOLUTIONS;
-    if ((packet->bytes[2] & 1u) != 0) { /* A start packet: what is there is from long ago. */
+    if ((packet->bytes[2] & 1u) != 0) { /* A start packet: drop an old revolution's points. */
         truth_count[revolution] = 0;
     }
     for (unsigned i = 0; i < samples && truth_count[revolution] < CONFIG_TMINI_POINTS; i++) {
@@ -152,7 +152,7 @@ ZTEST(tmini_device, test_it_comes_back_after_a_power_failure)
     zassert_within(true_scans, 20, 1);
 }
 
-/* The line brings at once more than the UART's FIFO holds. */
+/* More bytes arrive at once than the UART's FIFO holds. */
 ZTEST(tmini_device, test_lost_bytes_cost_scans_and_are_counted)
 {
     static uint8_t burst[512];

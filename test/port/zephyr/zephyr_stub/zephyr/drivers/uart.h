@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Zephyr: the interrupt-driven and the async UART API. */
+/* Zephyr: the interrupt-driven and the async UART APIs. */
 
 #ifndef ZEPHYR_DRIVERS_UART_H
 #define ZEPHYR_DRIVERS_UART_H
@@ -23,8 +23,8 @@ struct uart_config {
     uint8_t flow_ctrl;
 };
 
-/* Zephyr has reported since 3.3 whether the callback was taken, and since May 2026 (pull request
- * 105231) no longer returns anything from uart_irq_update(). */
+/* Since Zephyr 3.3, setting the callback returns a result; since May 2026 (pull request 105231),
+ * uart_irq_update() returns nothing. */
 #ifdef ZEPHYR_BEFORE_3_3
 #define UART_CALLBACK_RESULT void
 #define UART_UPDATE_RESULT int
