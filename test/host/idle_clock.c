@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A clock that skips the time in which nothing happens, for programs that wait for one another: the
- * tool and the simulated lidar, to which program.c preloads this.
+/* A clock that skips the time in which nothing happens, for programs that wait for each other: the
+ * tool and the simulated lidar. program.c preloads it.
  *
- * The programs share a file, named by TMINI_IDLE_CLOCK, which holds how much time has been skipped
- * and for what each program waits. When all of them wait in poll(), and each has looked once more
- * since the last thing that happened and found nothing, the clock jumps to the time for which the
- * first one waits. A program that computes, is stopped, or waits elsewhere keeps the clock at real
- * time: so a busy computer disturbs no more than it would without this. */
+ * The programs share a file, named by TMINI_IDLE_CLOCK. It contains how much time has been skipped
+ * and until when each program waits. When all of them wait in poll(), and each has polled again
+ * after the last event and found nothing, the clock jumps to the earliest of these times. A program
+ * that computes or waits elsewhere keeps the clock at real time, so a busy computer disturbs a test
+ * no more than without this clock. A stopped program does not count. */
 
 #define _GNU_SOURCE
 
@@ -27,23 +27,23 @@
 #include <time.h>
 #include <unistd.h>
 
-/* How long nothing must have come: a pseudo-terminal's bytes take some microseconds, more on a busy
- * computer. */
+/* How long poll() must find nothing: bytes take some microseconds through a pseudo-terminal, longer
+ * on a busy computer. */
 #define QUIET_NS 1000000
 #define NEVER INT64_MAX
 #define PROGRAMS_MAX 16
-#define HIGH_FD 100 /* Out of the way of programs whose standard output is closed. */
+#define HIGH_FD 100 /* Never a standard descriptor, even if one of those is closed. */
 
 typedef struct {
-    pid_t pid; /* 0: free. */
+    pid_t pid; /* 0: free entry. */
     bool is_waiting;
-    uint64_t seen; /* The event after which it looked last. */
+    uint64_t seen; /* Value of `events` when it last polled. */
     int64_t until_ns;
 } program_t;
 
 typedef struct {
     int64_t skipped_ns;
-    uint64_t events; /* Counts what may end a program's waiting. */
+    uint64_t events; /* Counts everything that may end a program's waiting. */
     program_t programs[PROGRAMS_MAX];
 } clock_file_t;
 
@@ -81,7 +81,7 @@ int clock_gettime(clockid_t clock, struct timespec *now)
     return 0;
 }
 
-/* This program's place; NULL if there is none left. */
+/* This program's entry; NULL if none is free. */
 static program_t *own_place(void)
 {
     program_t *place = NULL;
@@ -97,7 +97,7 @@ static program_t *own_place(void)
     return place;
 }
 
-/* By a signal, as a test does with a lidar whose supply fails. */
+/* Whether a signal has stopped the program: a test does this to a lidar whose supply fails. */
 static bool is_stopped(pid_t pid)
 {
     char path[40];
@@ -112,7 +112,7 @@ static bool is_stopped(pid_t pid)
     return strstr(text, ") T ") != NULL;
 }
 
-/* The time for which the first one waits; NEVER unless all wait, and have looked in vain. */
+/* The earliest time until which a program waits; NEVER unless all wait and have found nothing. */
 static int64_t first_wait(void)
 {
     int64_t first_ns = NEVER;
@@ -173,7 +173,7 @@ static void join(void)
     shared = memory != MAP_FAILED && lock_fd >= 0 ? memory : NULL;
     close(fd);
     if (shared != NULL) {
-        go_on(); /* No time is skipped before it waits for the first time. */
+        go_on(); /* No time is skipped until this program waits. */
     }
 }
 
@@ -204,7 +204,7 @@ int poll(struct pollfd *fds, nfds_t count, int timeout_ms)
     return ready;
 }
 
-/* What poll() is called with _FORTIFY_SOURCE. */
+/* _FORTIFY_SOURCE replaces poll() by this. */
 int __poll_chk(struct pollfd *fds, nfds_t count, int timeout_ms, size_t size);
 
 int __poll_chk(struct pollfd *fds, nfds_t count, int timeout_ms, size_t size)

@@ -25,22 +25,22 @@
 #define NOBODY (-1)
 #define CHILDREN_MAX 200
 #define PORTS_MAX 100
-#define NOBODYS_ID 65534 /* By custom the user without rights. */
+#define NOBODYS_ID 65534 /* Usually the user without rights. */
 
 const char *program_output;
 const char *program_errors;
 
 static char files[4][FILE_MAX];
 static bool gives_up_rights;
-static pid_t lidar = NOBODY; /* The one started last. */
+static pid_t lidar = NOBODY; /* The last one started. */
 
-/* All that run; those before `background` are left alone until the end. */
+/* All running children; those before `background` run until the end. */
 static pid_t children[CHILDREN_MAX];
 static size_t child_count;
 static size_t background;
 static bool is_background;
 
-/* Whatever folder it is started from, it leaves its files in one of its own. */
+/* The test leaves its files in its own folder, wherever it is started. */
 __attribute__((constructor)) static void go_home(void)
 {
     if (chdir(HOME_DIR) != 0) {
@@ -105,7 +105,7 @@ void program_give_up_rights(bool gives_up)
     gives_up_rights = gives_up;
 }
 
-/* In the child: becomes the program. */
+/* In the child: runs the program. */
 static void become(const char *path, const char *const words[])
 {
     char *arguments[PROGRAM_WORDS_MAX + 2] = {(char *)(uintptr_t)path};
@@ -132,7 +132,7 @@ static pid_t fork_child(void)
     const pid_t pid = fork();
     TEST_ASSERT_TRUE(pid >= 0);
     if (pid == 0) {
-        /* What this computer has plugged in must not matter. */
+        /* Adapters plugged into this computer must not matter. */
         (void)setenv("TMINI_ROOT", WORK_DIR "/no_adapters", 0);
         return 0;
     }
@@ -141,7 +141,7 @@ static pid_t fork_child(void)
     return pid;
 }
 
-/* Where a program's output goes: WORK_DIR/NAMEoutput. */
+/* Path of a program's output or errors: WORK_DIR/NAMEoutput. */
 typedef char file_name_t[120];
 
 static const char *file_of(const char *name, const char *kind, file_name_t file)
@@ -156,7 +156,7 @@ static pid_t start(const char *path, const char *name, const char *input, const 
     file_name_t errors;
     (void)file_of(name, "output", output);
     (void)file_of(name, "errors", errors);
-    program_write_file(output, "", 0); /* Nothing of the program before. */
+    program_write_file(output, "", 0); /* Remove the previous program's output. */
     program_write_file(errors, "", 0);
     const pid_t pid = fork_child();
     if (pid == 0) {
@@ -236,7 +236,7 @@ static file_name_t clock_link;
 
 void program_skip_idle_time(void)
 {
-/* Sanitizers want to be loaded first. */
+/* Sanitizers must be the first library loaded. */
 #if defined(IDLE_CLOCK) && !defined(__SANITIZE_ADDRESS__)
     static const char nothing[4096];
     static unsigned count;
@@ -244,7 +244,7 @@ void program_skip_idle_time(void)
     (void)snprintf(name, sizeof name, "%s/clock.%u", WORK_DIR, count++);
     program_write_file(name, nothing, sizeof nothing);
     (void)setenv("TMINI_IDLE_CLOCK", name, 1);
-    /* By a name without blanks: in LD_PRELOAD those part one library from the next. */
+    /* A path without spaces: in LD_PRELOAD spaces separate libraries. */
     if (clock_link[0] == '\0') {
         (void)snprintf(clock_link, sizeof clock_link, "/tmp/tmini-clock.%ld", (long)getpid());
         (void)unlink(clock_link);
@@ -269,7 +269,7 @@ static char *new_port(void)
     return ports[count++];
 }
 
-/* The first line of what the simulator prints: "/dev/pts/3" or "127.0.0.1:4711". */
+/* The first line that the simulator prints: "/dev/pts/3" or "127.0.0.1:4711". */
 static void read_port(int fd, char *port, size_t size)
 {
     struct pollfd output = {.fd = fd, .events = POLLIN};
@@ -346,7 +346,7 @@ void program_thaw_lidar(void)
     TEST_ASSERT_EQUAL_INT(0, kill(lidar, SIGCONT));
 }
 
-/* Waits on the clock that it shares with the tool. */
+/* Waits on the clock that this process shares with the tool. */
 static void wait_10_ms(void)
 {
     static int (*wait)(struct pollfd * fds, nfds_t count, int timeout_ms) = poll;
@@ -360,7 +360,7 @@ static void wait_10_ms(void)
     (void)wait(NULL, 0, 10);
 }
 
-/* What the host sends is read and forgotten; but for the command that is answered, if any. */
+/* Discards what the host sends, but answers the command A5 `code` (0: none). */
 static void talk(int fd, const uint8_t *bytes, size_t size, uint8_t code)
 {
     uint8_t heard = 0;
@@ -402,7 +402,7 @@ static const char *start_talker(const uint8_t *bytes, size_t size, uint8_t code)
     struct termios settings;
     begin_clock();
     open_terminal(&master, &line);
-    /* Raw, so that there is no echo. */
+    /* Raw mode, so that there is no echo. */
     TEST_ASSERT_EQUAL_INT(0, tcgetattr(line, &settings));
     settings.c_lflag = 0;
     settings.c_oflag = 0;
@@ -413,7 +413,7 @@ static const char *start_talker(const uint8_t *bytes, size_t size, uint8_t code)
     }
     (void)snprintf(port, 100, "%s", ptsname(master));
     close(master);
-    close(line); /* The talker's stays open: else it would find the line hung up. */
+    close(line); /* The child's copy stays open: otherwise the child would get a hang-up. */
     return port;
 }
 
@@ -482,7 +482,7 @@ void program_clean_up(void)
 {
     static bool is_at_exit;
     is_at_exit = is_at_exit || atexit(end_all) == 0;
-    (void)unsetenv("LD_PRELOAD"); /* The clock of what has ended. */
+    (void)unsetenv("LD_PRELOAD"); /* The clock of the ended programs. */
     (void)unsetenv("TMINI_IDLE_CLOCK");
     while (child_count > background) {
         end(children[--child_count]);

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Installs the host tool into a folder, and compares what comes with it with the tool itself: every
-# command and option is in the man page and offered by bash's completion, and the udev rule knows
-# the same adapters.
+# Installs the host tool into a folder, and compares the files installed with it with the tool
+# itself: every command and option is in the man page and in bash's completion, and the udev rule
+# has the same adapters.
 #
 #   test/host/share.sh BUILD_DIR WORK_DIR
 
@@ -43,7 +43,7 @@ options=$(for command in $commands; do
 done | sort -u)
 [ "$(echo "$options" | wc -l)" -ge 14 ] || complain "the tool does not list its options"
 
-# The man page names them all, and is what its formatter takes.
+# The man page names all of them, and its formatter accepts it.
 sed 's/\\-/-/g' "$page" >"$work/page"
 for command in $commands; do
     grep -q "^\.BI\{0,1\} $command\$\|^\.BI $command " "$work/page" ||
@@ -57,7 +57,7 @@ if command -v groff >/dev/null; then
     [ -z "$warnings" ] || complain "groff warns: $warnings"
 fi
 
-# offers WORD…: what bash would offer for the last word.
+# offers WORD…: prints the completions of the last word.
 offers() {
     PATH=$work/bin:$PATH bash -c '
         source "$1"; shift
@@ -84,7 +84,7 @@ if command -v bash >/dev/null; then
     [ "$(offers decode room)" = "room one.bin" ] || complain "bash does not complete files"
 fi
 
-# The rule and the tool know the same adapters.
+# The udev rule and the tool have the same adapters.
 sed -n 's/.*idVendor}=="\(....\)".*idProduct}=="\(....\)".*/\1:\2/p' "$rule" | sort >"$work/ruled"
 grep -o '"[0-9a-f]\{4\}:[0-9a-f]\{4\}"' "$root/examples/host/ports.c" | tr -d '"' |
     sort >"$work/known"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* `tmini check`: the right verdict on each fault of the simulated lidar, and on what is no lidar.
- * Some are examined at the same time, each by a tool of its own; the tests look at what it printed.
- * It may also report a busy computer ("pace", "computer"): that is no fault of the lidar's. */
+/* `tmini check` gives the right verdict on each fault of the simulated lidar, and on devices that
+ * are no lidar. Several tools run at the same time; the tests examine what each printed. The tool
+ * may also report a busy computer ("pace", "computer"), which is not a fault of the lidar. */
 
 #define _XOPEN_SOURCE 700
 
@@ -53,18 +53,17 @@ static case_t cases[] = {
 
 #define CASES (sizeof cases / sizeof cases[0])
 
-/* At a time: more would keep the computer too busy to be a lidar. */
+/* Cases that run at the same time: with more, the computer is too slow for the simulated lidars. */
 #define AT_ONCE 8u
 
-/* How many have begun, in their order. */
+/* How many cases have begun, in the order of the table. */
 static size_t begun;
 
-/* On a busy computer the simulated lidar or the tool may stop for a second. The tool reports that
- * rightly, but it is not what the case tests. Such a case is tried again, this many times in
- * all. */
+/* On a busy computer the simulated lidar or the tool may stop for a second. The tool reports this
+ * correctly, but the case tests something else. So it is repeated; this many times in total. */
 static unsigned retries = 20;
 
-/* What is no simulated lidar. */
+/* Tools on ports that have no simulated lidar. */
 static pid_t silent, noisy, deaf, half;
 
 static void begin_case(case_t *one)
@@ -134,7 +133,7 @@ static void expect_narrow_lines(void)
     }
 }
 
-/* Waits for the end of a case, and begins another in its place. Returns the exit status. */
+/* Waits for the end of a case, and begins another one. Returns the exit status. */
 static int finish_case(case_t *one)
 {
     program_begin_background();
@@ -149,7 +148,7 @@ static int finish_case(case_t *one)
     return ended;
 }
 
-/* Ends the case, which has this exit status and says this. */
+/* Waits for the end of the case, which must have this exit status and print this text. */
 static void end_case(const char *name, int status, const char *text)
 {
     case_t *const one = find_case(name);
@@ -175,7 +174,7 @@ static void expect_unsaid(const char *text)
     TEST_ASSERT_NULL_MESSAGE(strstr(program_output, text), program_output);
 }
 
-/* Bad for exactly these reasons. */
+/* The verdict is bad, for exactly these reasons. */
 static void expect_bad(const char *name, const char *reasons)
 {
     char verdict[80];
@@ -207,7 +206,7 @@ void test_a_unit_that_reports_nothing_within_the_stream_is_good_too(void)
     expect_unsaid("BAD");
 }
 
-/* Bad, for which reason, and two things that are said. */
+/* Cases with a bad verdict: its reason, and two texts that are printed. */
 static const struct {
     const char *name;
     const char *reason;
@@ -221,7 +220,7 @@ static const struct {
     {"blocked", "health", {"faulty: encoder", "let the rotor turn freely"}},
     {"covered", "faults", {"uncover or clean the window", ""}},
     {"covered_no_ct", "faults", {"uncover or clean the window", ""}},
-    /* What the lidar reports of itself is believed. */
+    /* The tool believes the lidar's own health report. */
     {"sensor", "health", {"faulty: sensor\n", "ask its maker"}},
     {"encoder", "health", {"faulty: encoder (is the rotor blocked?)\n", ""}},
     {"power", "health", {"faulty: wireless power\n", ""}},
@@ -248,10 +247,10 @@ void test_bytes_that_come_late_are_no_damage(void)
 
 void test_a_wrong_baud_rate_for_a_while_is_a_line(void)
 {
-    /* Perhaps no revolution comes through. */
+    /* Perhaps no revolution arrives complete. */
     end_case("garble", 1, "\nverdict: not good: line");
     expect_said("bytes came that are no lidar's: a wrong baud rate for a while");
-    expect_unsaid("pace"); /* Nor is it slow, or the motor. */
+    expect_unsaid("pace"); /* Neither the computer nor the motor is called slow. */
     expect_unsaid("the motor took");
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* `tmini decode` from outside: what it prints is what the reference decoder finds, for whole and
- * for damaged recordings; and what it says when there is nothing to decode. */
+/* `tmini decode` prints what the reference decoder finds, for intact and for damaged recordings.
+ * Also tested: its messages when there is nothing to decode. */
 
 #define _XOPEN_SOURCE 700
 
@@ -25,7 +25,7 @@
 static uint8_t bytes[BYTES_MAX];
 static size_t size;
 
-/* The rows that should be printed. */
+/* The expected rows. */
 static char expected[TEXT_MAX];
 static size_t expected_length;
 static unsigned packets;
@@ -33,7 +33,7 @@ static unsigned scans;
 static unsigned samples;
 static char frequency[16];
 
-/* What shells start: the path may hold anything. */
+/* For shell commands: the path may contain any characters. */
 void setUp(void)
 {
     (void)setenv("TOOL", TMINI, 1);
@@ -82,7 +82,7 @@ static void expect_item(void *context, const reference_item_t *item)
                point.flag, samples / 4, frequency);
     }
     packets++;
-    samples += item->lsn; /* 4000 per second. */
+    samples += item->lsn; /* 4000 per second, so they give the time. */
 }
 
 /* Decodes `bytes` with both decoders and compares rows and counters. */
@@ -142,8 +142,8 @@ void test_a_recording_cut_anywhere_is_re_examined_to_its_last_byte(void)
     }
 }
 
-/* The last header claims 80 samples, of which but a few come: what it swallowed is looked at
- * again. */
+/* The false header claims 80 samples, but the recording ends earlier: the bytes after the header
+ * are parsed again. */
 void test_a_packet_after_a_false_header_at_the_end_is_found(void)
 {
     static const uint8_t header[10] = {0xAA, 0x55, 0, 80, 1, 0, 1, 0, 0, 0};
@@ -180,7 +180,7 @@ void test_a_recording_can_come_from_standard_input(void)
                              program_errors);
 }
 
-/* The start packet of section 9.14, and then one with three points and the next start. */
+/* A start packet, a packet with three points, and the next start packet. */
 static void make_one_scan(uint8_t ct)
 {
     const encode_sample_t samples[3] = {{1000, 10, 0}, {0, 0, 0}, {3000, 30, 2}};
@@ -240,14 +240,15 @@ void test_without_a_format_a_person_gets_a_summary(void)
 
 void test_what_a_damaged_recording_does_not_tell_is_unknown(void)
 {
-    summarise(RECORDINGS "sim-6hz-damaged.bin"); /* The unit reports it, but no turn is whole. */
+    summarise(RECORDINGS
+              "sim-6hz-damaged.bin"); /* The unit reports its health, but no turn is complete. */
     expect_summary("health      unknown: no revolution arrived whole\n");
     expect_summary(" packets damaged (");
     summarise(RECORDINGS "sim-10hz-plain.bin");
     expect_summary("health      not reported: this unit sends no information within the stream\n");
 }
 
-/* This many packets of one sample, with this many other bytes somewhere among them. */
+/* A recording of `count` packets of one sample, with `gap` other bytes somewhere between them. */
 static void summarise_damage(unsigned count, size_t gap)
 {
     const encode_sample_t sample = {1000, 10, 0};
@@ -263,8 +264,7 @@ static void summarise_damage(unsigned count, size_t gap)
     summarise(program_path("gap.bin"));
 }
 
-/* A packet is 130 bytes: it counts from the half on, and where there is a gap at least one is
- * damaged. */
+/* A gap counts as one damaged packet per 130 bytes, rounded, but at least as one. */
 void test_the_bytes_of_a_gap_show_how_many_packets_are_damaged(void)
 {
     summarise_damage(3, 1);
@@ -281,11 +281,11 @@ void test_the_bytes_of_a_gap_show_how_many_packets_are_damaged(void)
 
 void test_a_small_share_of_damage_is_rounded_but_never_to_nothing(void)
 {
-    summarise_damage(665, 1); /* 1 of 666 is 0.1502 %, */
+    summarise_damage(665, 1); /* 1 of 666 is 0.1502 %. */
     expect_summary(": about 1 packet damaged (0.2 %)\n");
-    summarise_damage(666, 1); /* 1 of 667 is 0.1499 %, */
+    summarise_damage(666, 1); /* 1 of 667 is 0.1499 %. */
     expect_summary(": about 1 packet damaged (0.1 %)\n");
-    summarise_damage(1999, 1); /* and 1 of 2000 is 0.05 %. */
+    summarise_damage(1999, 1); /* 1 of 2000 is 0.05 %. */
     expect_summary(": about 1 packet damaged (0.1 %)\n");
     summarise_damage(2000, 1);
     expect_summary(": about 1 packet damaged (under 0.1 %)\n");
@@ -301,7 +301,7 @@ void test_a_frequency_that_was_not_reported_is_unknown(void)
     TEST_ASSERT_NULL(strstr(program_output, "0.0 Hz"));
 }
 
-/* The simulated lidar's bytes, again and again. */
+/* Repeats a recording of the simulated lidar. */
 static void make_big_recording(size_t wanted)
 {
     load("sim-6hz.bin");
@@ -348,7 +348,7 @@ void test_statistics_that_cannot_be_written_are_a_failure(void)
                                                  "--stats", "/nowhere/stats", NULL});
 }
 
-/* As head does: with what a shell says of a program that a closed pipe has ended. */
+/* `head` closes the pipe early. 141 is the shell's status of a program ended by SIGPIPE. */
 void test_a_closed_pipe_ends_the_program_at_once_and_silently(void)
 {
     make_big_recording(100000000);
@@ -366,7 +366,7 @@ void test_it_ends_at_a_closed_pipe_even_if_sigpipe_is_ignored(void)
     TEST_ASSERT_EQUAL_STRING("141\n", program_read_file(0, program_path("status"), NULL));
 }
 
-/* Far more than would fit into the memory that it may have. */
+/* The recording is larger than the memory limit. */
 void test_a_long_recording_is_decoded_in_constant_memory(void)
 {
     make_big_recording(100000000);
@@ -397,7 +397,7 @@ static size_t put_chunk(uint8_t *file, uint32_t delta_us, const uint8_t *content
     return 6 + count;
 }
 
-/* Three packets, at 0.5, 70.5 and 70.7 seconds, the second one in two pieces. */
+/* Three packets, at 0.5, 70.5 and 70.7 seconds, the second one in two chunks. */
 static size_t make_timed(uint8_t *file)
 {
     static const uint8_t magic[8] = {0x89, 't', 'm', 'i', 'n', 'i', 1, '\n'};
@@ -448,7 +448,7 @@ void test_wrong_usage_ends_with_2_and_says_why(void)
     program_expect_failure(2, "x", (const char *const[]){"decode", "-qx", NULL});
     program_expect_failure(2, "stats", (const char *const[]){"decode", "--stats", NULL});
     program_expect_failure(2, "csv", (const char *const[]){"decode", "--csv=1", NULL});
-    program_expect_failure(2, "s", (const char *const[]){"decode", "--s", NULL}); /* Which? */
+    program_expect_failure(2, "s", (const char *const[]){"decode", "--s", NULL}); /* Ambiguous. */
     program_expect_failure(2, "no option --port",
                            (const char *const[]){"decode", "--port", "x", NULL});
     program_expect_failure(2, "unexpected \"b\"", (const char *const[]){"decode", "a", "b", NULL});

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The host tool and a lidar: each command against the simulated one on a pseudo-terminal, and the
- * messages if there is no lidar, something else, or a lidar that disappears. */
+/* The host tool with a lidar: each command with the simulated one on a pseudo-terminal, and the
+ * messages if there is no lidar, another device, or a lidar that disappears. */
 
 #define _XOPEN_SOURCE 700
 
@@ -26,7 +26,7 @@ static const char *port;
 
 /* --------------------------------------------------------------------------------- background */
 
-/* What waits for many seconds, all at the same time: the tests below look at how it ended. */
+/* Runs that wait for many seconds, all at the same time. The tests below check how each ended. */
 enum {
     SILENT_INFO,
     SILENT_SCAN,
@@ -53,16 +53,16 @@ static void start_job(unsigned job, const char *const words[])
     jobs[job] = program_start_as(job_names[job], words);
 }
 
-/* Returns the exit status. */
+/* Waits for the end of the job and returns its exit status. */
 static int end_job(unsigned job)
 {
     return program_finish_as(job_names[job], jobs[job]);
 }
 
-/* A receiver at another rate makes some other bytes of what is sent, and no packet. */
+/* A receiver with the wrong baud rate receives other bytes than were sent, and no packet. */
 static const uint8_t noise[] = {0x33, 0x4C, 0xF8, 0x00, 0x80, 0x66, 0x99, 0xE6, 0x1E};
 
-/* The answer to A5 90: model 151, firmware 1.2, hardware 1, and a serial number. */
+/* The reply to A5 90: model 151, firmware 1.2, hardware 1, and a serial number. */
 static const uint8_t information[27] = {0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, 0x97, 2, 1, 1, 2, 0, 2,
                                         6,    0,    3,    1, 7, 0, 0,    0,    1, 2, 3, 4, 5};
 
@@ -148,7 +148,7 @@ static void wait_for_lines(unsigned lines)
     TEST_FAIL_MESSAGE("the tool prints nothing");
 }
 
-/* Waits until the file is that long. */
+/* Waits until the file has this size. */
 static void wait_for_bytes(const char *path, size_t wanted)
 {
     size_t size = 0;
@@ -207,12 +207,12 @@ void test_health_of_a_lidar_that_does_not_turn(void)
                WORDS("health", "-p", port));
 }
 
-/* `tmini scan && drive` must not drive. */
+/* `tmini scan && drive` must not drive then. */
 void test_a_covered_window_is_reported_while_scanning_and_is_a_failure(void)
 {
     port = program_start_lidar(WORDS("--covered"));
     TEST_ASSERT_EQUAL_INT(1, program_tmini(WORDS("scan", "-p", port, "-n", "5")));
-    /* Two revolutions in a row tell it: a computer that is busy may have lost one of them. */
+    /* The fault needs two revolutions in a row: a busy computer may have lost one of them. */
     if (strstr(program_errors, "scans: 5 complete; ") != NULL) {
         TEST_ASSERT_NOT_NULL(strstr(program_errors, "faulty: data (is the window covered?)"));
     }
@@ -252,11 +252,11 @@ void test_scan_prints_a_line_for_each_scan(void)
     begin();
     expect_success(WORDS("scan", "-p", port, "-n", "4"));
     TEST_ASSERT_EQUAL_UINT(4, program_count(program_output, "\n"));
-    /* The nearest thing in the simulated room is the corner of a box, 1.0 m away. */
+    /* The nearest point of the simulated room is the corner of a box, 1.0 m away. */
     const char *const last = strstr(program_output, "scan 4 ");
     TEST_ASSERT_NOT_NULL(last);
     TEST_ASSERT_NOT_NULL(strstr(last, " deg, "));
-    TEST_ASSERT_NOT_NULL(strstr(program_output, " Hz ")); /* Unknown where a start was lost. */
+    TEST_ASSERT_NOT_NULL(strstr(program_output, " Hz ")); /* Unknown if a start packet was lost. */
 }
 
 void test_scan_ends_with_a_summary(void)
@@ -295,7 +295,7 @@ void test_scan_as_csv_has_the_columns_of_decode(void)
     TEST_ASSERT_EQUAL_UINT(0, program_count(program_output, "\n3,"));
 }
 
-/* The same bytes, live and recorded: the same rows, but for the time. */
+/* Live and recorded scans give the same rows, except for the time. */
 void test_a_scan_live_and_recorded_is_the_same(void)
 {
     begin();
@@ -310,7 +310,7 @@ void test_a_scan_live_and_recorded_is_the_same(void)
     TEST_ASSERT_TRUE(number[7] > 100 && number[7] < 60000); /* Since the start command. */
 }
 
-/* Where the lidar's bytes went: from the simulator's own count, which its log ends with. */
+/* The simulator's log ends with its own counts. */
 void test_a_long_recording_holds_every_packet(void)
 {
     TEST_ASSERT_EQUAL_INT(0, end_job(LONG_RECORD));
@@ -334,7 +334,7 @@ void test_a_long_recording_holds_every_packet(void)
     TEST_ASSERT_EQUAL_UINT(7 + starts - 1, skipped);
 }
 
-/* A dash is standard output, and standard input: no file in between. */
+/* A dash means standard output or standard input, so no file is needed. */
 void test_a_recording_can_go_through_a_pipe(void)
 {
     begin();
@@ -346,7 +346,7 @@ void test_a_recording_can_go_through_a_pipe(void)
     TEST_ASSERT_NOT_NULL(strstr(text, "7 bytes before the first packet, 0 after the last"));
 }
 
-/* The commands sent to the lidar after a reader has gone. */
+/* The tool still sends commands to the lidar after the reader has gone. */
 void test_a_closed_pipe_ends_a_scan_silently_and_stops_the_lidar(void)
 {
     const char *const log = program_path("log");
@@ -359,7 +359,7 @@ void test_a_closed_pipe_ends_a_scan_silently_and_stops_the_lidar(void)
     TEST_ASSERT_NOT_NULL(strstr(strstr(text, "A5 60 start"), "A5 65 stop"));
 }
 
-/* Else the port would be descriptor 1, and the results be sent to the lidar. */
+/* Otherwise the port would be descriptor 1, and the results would be sent to the lidar. */
 void test_with_closed_output_nothing_goes_to_the_lidar(void)
 {
     const char *const log = program_path("log");
@@ -368,7 +368,7 @@ void test_with_closed_output_nothing_goes_to_the_lidar(void)
     TEST_ASSERT_EQUAL_STRING("tmini: cannot write to standard output\n",
                              program_read_file(0, program_path("errors"), NULL));
     TEST_ASSERT_EQUAL_INT(256, system("\"$TOOL\" health >&- 2>&-"));
-    /* Each once: a stop, because nothing is known of the lidar, and the question. */
+    /* A stop, because the lidar's state is unknown, and the query. */
     TEST_ASSERT_EQUAL_UINT(4, program_count(program_read_file(0, log, NULL), "command A5"));
     TEST_ASSERT_EQUAL_UINT(0, program_count(program_read_file(0, log, NULL), "unknown"));
 }
@@ -461,8 +461,8 @@ void test_ctrl_c_stops_the_lidar_before_leaving(void)
     TEST_ASSERT_NOT_NULL(strstr(start, "A5 65 stop"));
 }
 
-/* The system keeps what the lidar sends meanwhile: it is not lost, and the pause leaves no scans of
- * single packets. */
+/* The operating system buffers the lidar's bytes during the pause: they are not lost, and the pause
+ * does not lead to scans of single packets. */
 void test_a_reader_that_pauses_costs_a_few_scans(void)
 {
     (void)setenv("TMINI_PORT", program_start_lidar(NO_OPTIONS), 1);
@@ -475,8 +475,8 @@ void test_a_reader_that_pauses_costs_a_few_scans(void)
     TEST_ASSERT_EQUAL_UINT(0, program_count(rest, "\"packets\":1,"));
 }
 
-/* What else is in the pipe leaves it little room: a line of a scan is written in several pieces,
- * each of which waits for ever. */
+/* The pipe is almost full, so a line of a scan is written in several pieces, and each write would
+ * block forever. */
 void test_a_signal_ends_a_scan_whose_reader_stands_still_and_stops_the_lidar(void)
 {
     const char *const log = program_path("log");
@@ -493,7 +493,7 @@ void test_a_signal_ends_a_scan_whose_reader_stands_still_and_stops_the_lidar(voi
     TEST_ASSERT_EQUAL_INT(0, system("kill \"$(cat reader)\""));
 }
 
-/* As `nohup` does. 1.5 s are 19,000 bytes. */
+/* As with `nohup`. 1.5 s are 19,000 bytes. */
 void test_a_signal_that_is_ignored_stays_ignored(void)
 {
     size_t size = 0;
@@ -529,8 +529,8 @@ void test_a_lidar_that_is_still_streaming_is_stopped_first(void)
     close(line);
 }
 
-/* Runs the tool, and starts the lidar again as soon as the tool has stopped it: as if the stop had
- * been lost. */
+/* Runs the tool, and starts the lidar again as soon as the tool has stopped it, as if the stop
+ * command had been lost. */
 static int run_against_a_stubborn_lidar(const char *command, const char *option)
 {
     const char *const log = program_path("log");
@@ -542,7 +542,7 @@ static int run_against_a_stubborn_lidar(const char *command, const char *option)
     const int status = program_finish(tool, 0);
     const char *const text = program_read_file(0, log, NULL);
     const char *const stopped = strstr(text, "stopping -> idle");
-    /* In the end it is stopped, again. */
+    /* If another stop was sent, it stopped the lidar. */
     if (strstr(stopped, "A5 65 stop") != NULL) {
         TEST_ASSERT_NOT_NULL(strstr(strstr(stopped, "A5 65 stop"), "scanning -> stopping"));
     }
@@ -550,7 +550,7 @@ static int run_against_a_stubborn_lidar(const char *command, const char *option)
     return status;
 }
 
-/* On a busy computer the moment may be missed. */
+/* On a busy computer the lidar may be started too late: so it is tried up to 5 times. */
 void test_a_lidar_that_scans_although_it_was_stopped_is_reported_and_stopped_again(void)
 {
     bool is_reported = false;
@@ -571,7 +571,7 @@ void test_check_reports_a_lidar_that_scans_although_it_was_stopped(void)
     }
     TEST_ASSERT_TRUE(is_reported);
     TEST_ASSERT_NOT_NULL(strstr(program_output, "stop\n"));
-    TEST_ASSERT_NULL(strstr(program_errors, "although")); /* Said once. */
+    TEST_ASSERT_NULL(strstr(program_errors, "although")); /* Reported only once. */
 }
 
 void test_a_cable_pulled_while_scanning_is_reported(void)
@@ -610,7 +610,7 @@ void test_a_lidar_that_comes_back_is_reported(void)
     TEST_ASSERT_EQUAL_INT(0, program_finish(tool, SIGINT));
 }
 
-/* A computer's folders, made up: an adapter is what the links lead to. */
+/* Imitates the folders in which the system shows a plugged-in adapter. */
 static void plug_in(const char *name, const char *line, const char *vendor, const char *product)
 {
     char script[600];
@@ -679,7 +679,7 @@ void test_with_wait_a_port_that_is_not_there_yet_is_waited_for(void)
     TEST_ASSERT_EQUAL_UINT(1, program_count(program_output, "\n"));
 }
 
-/* The command line names the device, which the next adapter would have too. */
+/* The command line has the device's name, which another adapter would get too. */
 void test_with_wait_the_adapter_keeps_its_identity(void)
 {
     unplug_all();
@@ -696,8 +696,8 @@ void test_with_wait_the_adapter_keeps_its_identity(void)
 
 /* ---------------------------------------------------------------------- mounting and listening */
 
-/* The nearest thing in the simulated room is 1 m away at 143 degrees: 53 clockwise from a front at
- * 90, and so 53 anti-clockwise for a lidar that hangs. */
+/* The nearest point of the simulated room is 1 m away at 143 degrees: 53 clockwise from a front at
+ * 90, or 53 anti-clockwise if the lidar is upside down. */
 void test_a_lidar_that_is_mounted_turned_is_shown_as_the_robot_sees(void)
 {
     begin();
@@ -750,7 +750,7 @@ void test_listening_to_a_silent_lidar_is_reported(void)
                    WORDS("scan", "-p", port, "--listen"));
 }
 
-/* Its questions are tested in virtual time: test_survey. */
+/* test_survey tests what it asks the lidar, in virtual time. */
 void test_survey_writes_a_report_and_leaves_the_lidar_stopped_as_it_was(void)
 {
     const char *const log = program_path("log");
@@ -786,7 +786,7 @@ void test_a_recording_survives_a_pulled_cable(void)
     TEST_ASSERT_NOT_NULL(strstr(program_output, " complete"));
 }
 
-/* -------------------------------------------------------------------------- what can be wrong */
+/* ---------------------------------------------------------------------------- what can go wrong */
 
 void test_a_command_without_a_port_asks_for_one(void)
 {
@@ -856,7 +856,7 @@ void test_a_port_that_another_program_uses(void)
     begin();
     const pid_t tool = program_start_tmini(WORDS("scan", "-p", port));
     wait_for_lines(1);
-    /* Both have the same files for their output; the second one says something last. */
+    /* Both tools write to the same output files; the second one prints last. */
     TEST_ASSERT_EQUAL_INT(1, program_finish(program_start_tmini(WORDS("info", "-p", port)), 0));
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "another program is using it"));
     (void)program_finish(tool, SIGINT);
@@ -877,7 +877,7 @@ void test_a_port_that_one_may_not_open(void)
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "dialout"));
 }
 
-/* The job has failed, with this reason among others. */
+/* The job must fail with a message that contains this reason. */
 static void expect_failed_job(unsigned job, const char *reason)
 {
     TEST_ASSERT_EQUAL_INT(1, end_job(job));

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* `tmini plot`, measured: is every point of the scan in the picture where it should be? The points
- * are those of the reference decoder; the scale is what the tool says, and the rings are measured.
- * */
+/* Measures the pictures of `tmini plot`: every point must be in the right place. The points come
+ * from the reference decoder, the scale from the tool's message and from the measured rings. */
 
 #include "encoder.h"
 #include "program.h"
@@ -21,7 +20,7 @@
 
 #define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* Pixels, as the picture is laid out. */
+/* The layout of the picture, in pixels. */
 #define MIDDLE_X 600.0
 #define MIDDLE_Y 690.0
 #define OUTERMOST 500.0
@@ -32,7 +31,7 @@ typedef struct {
     double x, y;
 } place_t;
 
-/* The points with a distance of one scan, or of all, by the reference decoder. */
+/* The points with a distance, of one scan or of all, from the reference decoder. */
 static reference_point_t points[POINTS_MAX];
 static size_t point_count;
 static unsigned scans_seen;
@@ -84,8 +83,8 @@ static void decode(const char *path, unsigned scan)
 
 /* ------------------------------------------------------------------------------ what is drawn */
 
-/* A disc is a line from a place to itself, with round ends: those of that width, in pixels. Returns
- * how many there are. */
+/* Finds the discs of this width in pixels, and returns their number. The picture has them as lines
+ * of length 0 with round ends. */
 static size_t discs(const char *svg, double width, place_t *found, size_t room)
 {
     size_t count = 0;
@@ -107,7 +106,7 @@ static size_t discs(const char *svg, double width, place_t *found, size_t room)
     return count;
 }
 
-/* Rings of that radius: how many begin there, at their rightmost place. */
+/* The number of rings of this radius around (x, y); their paths begin at the rightmost point. */
 static unsigned rings(const char *svg, double x, double y, double radius)
 {
     unsigned count = 0;
@@ -122,7 +121,7 @@ static unsigned rings(const char *svg, double x, double y, double radius)
     return count;
 }
 
-/* Beams and ground are dark; a point is not. */
+/* Points are bright; beams and background are dark. */
 static bool is_bright(cairo_surface_t *png, double x, double y)
 {
     uint32_t pixel = 0;
@@ -134,7 +133,7 @@ static bool is_bright(cairo_surface_t *png, double x, double y)
     return (pixel >> 16 & 255) > 140 || (pixel >> 8 & 255) > 140 || (pixel & 255) > 140;
 }
 
-/* Clockwise from straight up. */
+/* Angles go clockwise from straight up. */
 static place_t place_of(const reference_point_t *point)
 {
     const double angle = point->angle_q6 / 64.0 * acos(-1) / 180;
@@ -147,7 +146,7 @@ static const char *read_svg(void)
     return program_read_file(0, program_path("picture.svg"), NULL);
 }
 
-/* `metres`: what the outermost ring stands for, as the tool says. */
+/* `metres`: the radius of the outermost ring, as the tool prints it. */
 static void expect_points(double metres)
 {
     static place_t drawn[POINTS_MAX];
@@ -210,7 +209,7 @@ void test_all_scans_fit_in_one_picture(void)
     expect_said(": Scans 1 to ");
 }
 
-/* A recording of one scan, made for this: a point each 90 degrees; the start packet first. */
+/* A recording of one scan with a point every 90 degrees, beginning with the start packet. */
 static const char *cross_recording(uint8_t flag_right, uint8_t flag_back)
 {
     const encode_sample_t samples[4] = {
@@ -224,7 +223,7 @@ void test_front_is_up_and_angles_go_clockwise(void)
     plot(cross_recording(0, 0), "--scan", "1");
     expect_said("; rings to 4 m\n");
     TEST_ASSERT_EQUAL_size_t(4, discs(read_svg(), POINT_WIDTH, drawn, 4));
-    /* 4 m is the outermost ring: 500 pixels. Front, right, back, left. */
+    /* The outermost ring is 4 m, 500 pixels. The points: front, right, back, left. */
     expect_near(0.02, MIDDLE_Y - 125, drawn[0].y);
     expect_near(0.02, MIDDLE_X, drawn[0].x);
     expect_near(0.02, MIDDLE_X + 250, drawn[1].x);
@@ -237,8 +236,9 @@ void test_interference_and_the_nearest_point_are_marked(void)
 {
     plot(cross_recording(2, 3), "--scan", "1");
     const char *const svg = read_svg();
-    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X + 250, MIDDLE_Y, 7.4));   /* Flag 2: a ring. */
-    TEST_ASSERT_EQUAL_UINT(1, program_count(svg, "M 594 1059 L 606 1071")); /* Flag 3: a cross, */
+    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X + 250, MIDDLE_Y, 7.4)); /* Flag 2: a ring. */
+    TEST_ASSERT_EQUAL_UINT(
+        1, program_count(svg, "M 594 1059 L 606 1071")); /* Flag 3: a cross with two lines, */
     TEST_ASSERT_EQUAL_UINT(1, program_count(svg, "M 594 1071 L 606 1059")); /* 3 m to the back. */
     TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X, MIDDLE_Y - 125, 12));    /* The nearest one. */
 }
@@ -258,9 +258,9 @@ void test_a_covered_lidar_is_no_empty_disc(void)
 {
     static const encode_sample_t none[4];
     plot(program_write_turn("covered.bin", none), "--scan", "1");
-    expect_said("; rings to 6 m\n"); /* Of whatever there might have been. */
+    expect_said("; rings to 6 m\n"); /* The default scale. */
     expect_said("no point has a distance: is the window covered?");
-    /* And in the picture, below the lidar: there are words. */
+    /* The picture also says so, below the lidar. */
     const char *const picture = program_path("covered.png");
     TEST_ASSERT_EQUAL_INT(
         0, program_tmini(WORDS("plot", program_path("covered.bin"), "--scan", "1", "-o", picture)));
@@ -287,7 +287,7 @@ void test_the_png_shows_the_same_points_at_the_same_places(void)
         const place_t place = place_of(&points[i]);
         TEST_ASSERT_TRUE(is_bright(png, place.x, place.y));
     }
-    /* Beside the axis to the right, within the room and behind its wall, there is nothing. */
+    /* Next to the axis to the right there is no point, neither inside nor outside the room. */
     TEST_ASSERT_FALSE(is_bright(png, MIDDLE_X + 0.5 * pixels_per_m, MIDDLE_Y + 7));
     TEST_ASSERT_FALSE(is_bright(png, MIDDLE_X + 4 * pixels_per_m, MIDDLE_Y + 7));
     TEST_ASSERT_FALSE(is_bright(png, 5, 5));
@@ -319,8 +319,7 @@ void test_pdf_is_the_third_kind(void)
     TEST_ASSERT_TRUE(size > 10000);
 }
 
-/* However long, and in whatever bytes: 0xFF is never UTF-8, and cairo stops drawing at such text.
- * */
+/* The name may be long, and may be invalid UTF-8 (0xFF), at which cairo would stop drawing. */
 void test_any_name_of_a_file_can_stand_below_the_title(void)
 {
     static const char *const names[] = {
@@ -338,12 +337,12 @@ void test_any_name_of_a_file_can_stand_below_the_title(void)
         plot(path, NULL, NULL);
         TEST_ASSERT_EQUAL_size_t(653, discs(read_svg(), POINT_WIDTH, drawn, POINTS_ONE_SCAN));
         (void)remove(path);
-        /* The last words of the picture are there, too. */
+        /* The last text of the picture is there, too. */
         TEST_ASSERT_NOT_NULL(strstr(read_svg(), "y=\"1332\""));
     }
 }
 
-/* 100 MB hold 30 million points, which would be 180 MB, and far more as SVG. */
+/* 100 MB contain 30 million points: 180 MB in memory, and far more as SVG. */
 void test_all_scans_of_a_long_recording_fit_in_bounded_memory(void)
 {
     size_t size = 0;

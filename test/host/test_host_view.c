@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* `tmini view` in a terminal: what the screen shows, what keys and sizes do, and that the terminal
- * is given back as it was, whatever ends the program. */
+ * is restored, however the program ends. */
 
 #define _XOPEN_SOURCE 700
 #define _DEFAULT_SOURCE
@@ -26,7 +26,7 @@
 
 #define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* How long to wait for what the screen is to show. */
+/* How long to wait for an expected screen. */
 #define PATIENCE_S 60
 
 static vt_t vt;
@@ -35,7 +35,7 @@ static int line = -1;
 static pid_t tool;
 static struct termios before;
 
-/* A live picture that is drawn ever faster would never stand still to be looked at. */
+/* Without idle time, a live picture would change too fast to be examined. */
 void setUp(void)
 {
     program_use_real_time();
@@ -61,7 +61,7 @@ static void begin(unsigned columns, unsigned rows, const char *const words[])
     tool = program_start_on_terminal(columns, rows, words, &master, &line, &before);
 }
 
-/* Shows what the tool draws within that time. */
+/* Feeds the tool's output to the screen until there is none for this time. */
 static void watch(int milliseconds)
 {
     struct pollfd output = {.fd = master, .events = POLLIN};
@@ -80,7 +80,7 @@ static void wait_for(const char *text)
     const time_t begun = time(NULL);
     while (time(NULL) - begun < PATIENCE_S) {
         if (strstr(vt_text(&vt), text) != NULL) {
-            watch(50); /* Until the whole screen has been drawn. */
+            watch(50); /* Wait until the whole screen has been drawn. */
             return;
         }
         struct pollfd output = {.fd = master, .events = POLLIN};
@@ -117,7 +117,7 @@ static void expect_terminal_as_before(void)
     TEST_ASSERT_EQUAL_MEMORY(before.c_cc, after.c_cc, sizeof before.c_cc);
 }
 
-/* The program has ended with this status, and the terminal is as it was. */
+/* The program must end with this status and restore the terminal. */
 static void expect_end(int expected)
 {
     int status = 0;
@@ -162,9 +162,9 @@ static void see_the_cross(void)
 void test_points_are_where_they_should_be(void)
 {
     see_the_cross();
-    /* The picture is 53 characters wide: the panel takes 27. Two lines are for words, which leaves
-     * 88 rows of dots; so 4 m are 43 dots, around the dot between 52 and 53, and between 47 and 48.
-     * */
+    /* The panel takes 27 of 80 columns, so the picture has 53. Two of 24 lines are text, which
+     * leaves 22, or 88 rows of dots. So 4 m are 43 dots. The centre is between the dots 52 and 53
+     * of a row, and between the rows 47 and 48. */
     TEST_ASSERT_EQUAL_HEX32(0x25B2, vt.cells[11][26]); /* the lidar */
     TEST_ASSERT_EQUAL_HEX32(0x25C6, vt.cells[9][26]);  /* front, nearest: dot 53, 37 */
     TEST_ASSERT_EQUAL_HEX32(0x2801, vt.cells[12][37]); /* right: dot 74, 48, its cell's first */
@@ -261,14 +261,14 @@ void test_a_tiny_terminal_does_no_harm(void)
 void test_escape_ends_and_an_arrow_does_not(void)
 {
     see_the_cross();
-    press_all("\033[A"); /* Up means nothing. */
+    press_all("\033[A"); /* The key "up" has no function. */
     press('+');
     wait_for("range     3 m\n");
     press(27);
     expect_end(0);
 }
 
-/* Raw bytes of two seconds: 4000 samples per second, 8 scans and a bit. */
+/* A raw recording of two seconds: somewhat more than 8 scans. */
 #define ROOM RECORDINGS "sim-6hz.bin"
 #define LONG_ROOM "room.bin"
 
@@ -283,9 +283,9 @@ void test_a_recording_can_be_paused_stepped_through_and_played_again(void)
     wait_for("scan 6 ");
     press('.');
     wait_for("scan 7 ");
-    watch(400); /* It does not go on by itself: */
+    watch(400); /* It stays paused. */
     TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "scan 7 "));
-    press(' '); /* but now it does. */
+    press(' '); /* It continues. */
     wait_for("end of the recording");
     TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "scan 8 "));
     press_all("\033[D"); /* Five seconds back is the beginning. */
@@ -295,7 +295,7 @@ void test_a_recording_can_be_paused_stepped_through_and_played_again(void)
     wait_for("end of the recording");
 }
 
-/* The cross, of which the scan's end comes two seconds after its beginning. */
+/* The cross as a timed recording: the scan ends two seconds after its beginning. */
 static void write_slow_cross(const char *path)
 {
     size_t size = 0;
@@ -325,7 +325,7 @@ void test_a_timed_recording_is_played_at_its_own_pace(void)
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
     const long passed_ms =
         (now.tv_sec - since.tv_sec) * 1000 + (now.tv_nsec - since.tv_nsec) / 1000000;
-    TEST_ASSERT_TRUE(passed_ms > 1000); /* `since` is a little late. */
+    TEST_ASSERT_TRUE(passed_ms > 1000); /* Less than 2 s, because `since` is read a little late. */
     quit();
 }
 
@@ -338,7 +338,7 @@ static unsigned scan_shown(void)
     return number;
 }
 
-/* The time of the pause is no time of the recording's: 2 s are 12 scans. */
+/* The recording's time stands still during the pause: 2 s would be 12 scans. */
 void test_after_a_pause_a_recording_goes_on_where_it_was(void)
 {
     TEST_ASSERT_EQUAL_INT(0, system("cat " ROOM " " ROOM " " ROOM " " ROOM " >" LONG_ROOM));
@@ -385,7 +385,7 @@ void test_ctrl_z_gives_the_terminal_back_and_fg_takes_it_again(void)
     const unsigned taken_before = vt.taken;
     press(26);
     for (int i = 0; i < 500 && vt.taken == taken_before; i++) {
-        watch(10); /* The shell goes on, and fetches it back. */
+        watch(10); /* The shell continues the tool in the foreground. */
     }
     TEST_ASSERT_EQUAL_UINT(taken_before + 1, vt.taken);
     wait_for("end of the recording");
@@ -414,7 +414,7 @@ void test_a_locale_without_utf_8_gets_characters(void)
     quit();
 }
 
-/* The variables in their order: one that is empty does not count. */
+/* The first of the variables that is not empty counts. */
 void test_the_locale_is_the_one_that_the_variables_say(void)
 {
     (void)setenv("LC_ALL", "", 1);
@@ -466,9 +466,9 @@ void test_a_small_terminal_has_the_picture_the_state_and_the_way_out(void)
     quit();
 }
 
-/* ------------------------------------------------------------------------ what is not perfect */
+/* ------------------------------------------------------------------------- imperfect conditions */
 
-/* Of `decode` and `plot`, but a terminal is needed to see it. */
+/* `decode` and `plot` show it, but only on a terminal. */
 void test_reading_a_long_recording_shows_its_progress(void)
 {
     (void)setenv("TOOL", TMINI, 1);
@@ -493,7 +493,7 @@ void test_a_damaged_recording_says_so(void)
     TEST_ASSERT_NOT_NULL(strstr(vt_text(&vt), "health    unknown\n"));
 }
 
-/* A point that stays keeps its colour when a brighter one comes and goes. */
+/* The colour scale keeps its range when the brightest point has gone. */
 void test_colours_are_steady(void)
 {
     const encode_sample_t dim = {1000, 10, 0};
@@ -512,13 +512,14 @@ void test_colours_are_steady(void)
     program_write_file(program_path("steady.bin"), bytes, size);
     begin(80, 24, WORDS("view", program_path("steady.bin")));
     wait_for("end of the recording");
-    const unsigned colour = vt.colours[12][48]; /* 2 m to the right, in scan 2: 20 of 10 to 250, */
+    const unsigned colour =
+        vt.colours[12][48]; /* 2 m to the right: in scan 2 intensity 20, on a scale of 10 to 250. */
     press(',');
     wait_for("scan 1 ");
-    TEST_ASSERT_TRUE(vt.colours[12][48] != colour); /* and in scan 1 the brightest. */
+    TEST_ASSERT_TRUE(vt.colours[12][48] != colour); /* In scan 1 it is the brightest. */
 }
 
-/* ------------------------------------------------------------------------ how else it can end */
+/* --------------------------------------------------------------------------- other ways to end */
 
 void test_ctrl_c_gives_the_terminal_back(void)
 {
@@ -542,7 +543,7 @@ void test_a_signal_gives_a_terminal_back_whose_output_is_stopped(void)
 {
     see_the_cross();
     press('\x13');  /* Ctrl-S */
-    resize(60, 18); /* Something to draw: the tool now waits for the terminal. */
+    resize(60, 18); /* The tool must draw again, and blocks in the write. */
     watch(300);
     kill(tool, SIGTERM);
     expect_end(0);
@@ -553,7 +554,7 @@ void test_a_second_signal_gives_the_terminal_back_and_stops_the_lidar(void)
     const char *const log = program_path("log");
     begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--log", log))));
     wait_for("scan 2 ");
-    kill(tool, SIGSTOP); /* So that both come before it can heed the first. */
+    kill(tool, SIGSTOP); /* So that both signals are pending before it can handle the first. */
     kill(tool, SIGTERM);
     kill(tool, SIGHUP);
     kill(tool, SIGCONT);
@@ -588,7 +589,7 @@ void test_a_lidar_is_shown_live_and_stopped_in_the_end(void)
     begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--log", log))));
     wait_for("scanning");
     wait_for("scan 5 ");
-    wait_for("behind right"); /* In the next scan, if one has a gap there. */
+    wait_for("behind right"); /* Or in the next scan, if this one has a gap there. */
     quit();
     (void)program_wait_for("log", "stopping -> idle");
 }
@@ -609,7 +610,7 @@ void test_a_blocked_rotor_is_shown(void)
 {
     begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--blocked"))));
     wait_for("health    FAULTY");
-    wait_for("faulty: encoder (is the rotor blocked?)\n"); /* In a line of its own: */
+    wait_for("faulty: encoder (is the rotor blocked?)\n"); /* In a separate line. */
     wait_for("\n q quit   + - zoom   a auto ");
     quit();
 }

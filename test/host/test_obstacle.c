@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop, as the examples do it: when may the robot move? */
+/* The obstacle stop of the examples: when may the robot move? */
 
 #include "obstacle.h"
 
@@ -47,7 +47,7 @@ void test_it_may_not_when_something_is_near_in_front(void)
     TEST_ASSERT_FALSE(may_move_after(299, 338));
 }
 
-/* And something far in front. */
+/* The scan also has a distant point in front. */
 static bool may_move_with(uint16_t distance_mm, unsigned degrees)
 {
     scan.count = 2;

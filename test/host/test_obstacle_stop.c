@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* examples/obstacle_stop on a PC, with the simulated lidar. OBSTACLE_STOP is the program's path. In
- * the simulated room the nearest thing in the front sector is a pillar, 1.37 m away. */
+ * the simulated room the nearest object in the front sector is a pillar, 1.37 m away. */
 
 #define _XOPEN_SOURCE 700
 
@@ -25,7 +25,7 @@ void tearDown(void)
     program_clean_up();
 }
 
-/* Until the program has said it. */
+/* Waits until the program has printed this. */
 static void wait_for(const char *text)
 {
     (void)program_wait_for("output", text);
@@ -36,8 +36,8 @@ static void wait_for_message(const char *text)
     (void)program_wait_for("errors", text);
 }
 
-/* The program against a lidar with this fault: once it has reported the fault, the robot stands for
- * five more scans. */
+/* Runs the program with a faulty lidar: after the message, the robot must stand for five more
+ * scans. */
 static void expect_to_stand(const char *message, const char *const options[])
 {
     size_t before = 0;
@@ -65,7 +65,7 @@ void test_a_robot_in_a_free_room_may_go(void)
     (void)program_wait_for("log", "stopping -> idle");
 }
 
-/* Until the newest line begins so. */
+/* Waits until the newest line begins with this. */
 static void wait_for_last(const char *beginning)
 {
     for (int i = 0; i < 3000; i++) {
@@ -102,8 +102,8 @@ void test_all_eight_sectors_are_shown(void)
     wait_for("\ngo ");
     TEST_ASSERT_EQUAL_INT(0, program_finish(program, SIGINT));
     TEST_ASSERT_EQUAL_STRING_LEN("mm    front    45", program_output, 17);
-    /* A line per scan, also where the console is a UART of 115200 baud: 87 us per byte, and 83 ms
-     * per scan at 12 Hz, of which half. */
+    /* At 12 Hz a scan takes 83 ms. On a UART of 115200 baud (87 us per byte) printing its line must
+     * take at most half of that. */
     TEST_ASSERT_LESS_OR_EQUAL(83000 / 87 / 2, strcspn(strstr(program_output, "\ngo ") + 1, "\n"));
     unsigned mm[8] = {0};
     TEST_ASSERT_EQUAL_INT(8, sscanf(strstr(program_output, "\ngo ") + 4, "%u%u%u%u%u%u%u%u", &mm[0],
@@ -116,7 +116,8 @@ void test_all_eight_sectors_are_shown(void)
 void test_a_robot_whose_lidar_is_covered_stays_where_it_is(void)
 {
     expect_to_stand("faults: data", WORDS("--covered"));
-    TEST_ASSERT_EQUAL_UINT(0, program_count(program_output, "go ")); /* Nor before. */
+    TEST_ASSERT_EQUAL_UINT(
+        0, program_count(program_output, "go ")); /* Not before the message either. */
 }
 
 void test_a_robot_whose_lidar_is_covered_and_does_not_report_it_stays_where_it_is(void)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The survey against the simulated lidar, in virtual time: a documented unit is as expected, each
- * deviation is seen, and a lidar like the one surveyed gives the same report. */
+/* The survey of the simulated lidar, in virtual time: a documented unit is as expected, each
+ * deviation is reported, and a lidar simulated from a report gives the same report. */
 
 #define _POSIX_C_SOURCE 200809L
 
@@ -15,7 +15,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Files, for the time of a test. */
+/* Temporary files. */
 static char report_file[] = "/tmp/tmini-report.XXXXXX";
 static char like_file[] = "/tmp/tmini-like.XXXXXX";
 
@@ -70,7 +70,7 @@ static size_t lose_some(uint8_t *bytes, size_t count)
     return kept;
 }
 
-/* To the microsecond at which something comes. */
+/* Returns at the microsecond at which bytes come, or at `until_us`. */
 static size_t receive(void *context, uint8_t *bytes, size_t max, uint64_t until_us)
 {
     size_t count = 0;
@@ -106,7 +106,7 @@ static options_t documented(void)
     return options;
 }
 
-/* Surveys such a lidar; its report is then in report_file, and in `report`. */
+/* Surveys a lidar with these options; the report is then in report_file and in `report`. */
 static void survey_of(const options_t *options)
 {
     time_us = 0;
@@ -150,7 +150,7 @@ void test_a_documented_unit_is_as_expected(void)
     expect("\nreply_60 = A5 5A 05 00 00 40 81\n");
 }
 
-/* Of the number 2026031700012345. */
+/* The number is 2026031700012345. */
 void test_the_serial_number_is_left_out_unless_it_is_wanted(void)
 {
     const options_t options = documented();
@@ -168,7 +168,7 @@ void test_the_serial_number_is_left_out_unless_it_is_wanted(void)
     expect(" 01 02 03 04 05\n");
 }
 
-/* The line that a deviation must lead to, and what the simulated lidar has to be like. */
+/* For each deviation: the line expected in the report, and the simulated lidar's settings. */
 static const struct {
     const char *line;
     const char *like;
@@ -228,7 +228,7 @@ void test_a_start_packet_place_passed_unmarked_is_seen(void)
     expect("\nfirst_packets = unmarked\nfirst_angle_deg = 330\n");
 }
 
-/* The window is covered: the data fault is live (section 7), so only the stream reports it. */
+/* A covered window is a live data fault (section 7): only the stream reports it. */
 void test_a_live_fault_is_no_other_index_of_the_health(void)
 {
     options_t options = documented();
@@ -238,7 +238,8 @@ void test_a_live_fault_is_no_other_index_of_the_health(void)
     expect("\nhealth_index = 3\n");
 }
 
-/* On the line, not by the unit: three turns of four lack a packet. */
+/* The bytes are lost on the line, so the unit's properties are still found. Three turns of four
+ * lack a packet. */
 void test_a_damaged_line_is_no_other_unit(void)
 {
     const options_t options = documented();
@@ -254,7 +255,7 @@ void test_a_damaged_line_is_no_other_unit(void)
     expect("\nlast_crc = right\n");
 }
 
-/* Here each turn lacks two. */
+/* Here each turn lacks two packets. */
 void test_what_a_damaged_line_hides_is_unknown(void)
 {
     const options_t options = documented();
@@ -273,7 +274,7 @@ void test_without_lone_packets_nothing_is_reported_of_them(void)
     expect("\nlone_packets = unknown\n");
 }
 
-/* Whether one of its check bytes is AA is chance. */
+/* Removes lines that depend on chance: whether one of the LastCRC bytes is AA. */
 static void remove_chance(char *text)
 {
     static const char *const marks[] = {"LastCRC of AA", "last_crc_aa"};
@@ -289,7 +290,8 @@ static void remove_chance(char *text)
     }
 }
 
-/* With each deviation: what a lidar like the one surveyed is seen as is what that one was. */
+/* For each deviation: surveys a lidar, then one simulated from that report, and compares both
+ * reports. */
 void test_a_lidar_like_the_one_surveyed_gives_the_same_report(void)
 {
     static char first[sizeof report];

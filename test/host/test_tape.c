@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Recordings, played from memory: raw ones put together here, and timed ones written from the
- * format's description, with one byte lost, changed or added anywhere. */
+/* Recordings played from memory: raw ones, and timed ones written here from the format's
+ * description, with one byte lost, changed or added anywhere. */
 
 #include "encoder.h"
 #include "known_packets.h"
@@ -16,7 +16,7 @@
 
 #define FILE_MAX 200000u
 #define SECONDS 10u
-#define FIRST_CHUNK 150u /* The first chunk ends before this place. */
+#define FIRST_CHUNK 150u /* The first chunk ends before this offset. */
 
 static uint8_t file[FILE_MAX + 1];
 static size_t size;
@@ -81,7 +81,7 @@ static void put_magic(unsigned version)
     file[6] = (uint8_t)version;
 }
 
-/* What a lidar sends in ten seconds, read each 5 ms, after a second in which nothing comes. */
+/* Ten seconds of a lidar's stream, read every 5 ms, after a second of silence. */
 static void write_whole(unsigned version)
 {
     static const uint8_t start[2] = {0xA5, 0x60};
@@ -101,7 +101,7 @@ static void write_whole(unsigned version)
     }
 }
 
-/* Up to where more bytes are needed, or nothing is left. */
+/* Plays until more bytes are needed or the end is reached. */
 static tape_next_t play(void)
 {
     tape_next_t next = TAPE_PACKET;
@@ -164,7 +164,7 @@ static void expect_one_percent_at_most(unsigned version)
             read_damaged(at, damage);
             TEST_ASSERT_TRUE_MESSAGE(tape.stream.packets * 100 >= packets * 99, at_fault);
             TEST_ASSERT_TRUE_MESSAGE(tape.stream.packets <= packets, at_fault);
-            if (version == 2) { /* In version 1 a changed pause is one. */
+            if (version == 2) { /* Version 1 cannot detect a changed pause. */
                 TEST_ASSERT_UINT64_WITHIN_MESSAGE(20000, time_us, tape.time_us, at_fault);
             }
         }
@@ -181,7 +181,7 @@ void test_a_damaged_byte_costs_a_recording_of_version_2_a_hundredth_at_most(void
     expect_one_percent_at_most(2);
 }
 
-/* But of the last chunk, which may be cut short. */
+/* Except in the last chunk, which may be cut short. */
 void test_no_byte_of_version_2_is_lost_silently(void)
 {
     write_whole(2);
@@ -200,7 +200,7 @@ static void put_bytes(const uint8_t *bytes, size_t count)
     }
 }
 
-/* A start packet at 6 Hz, or a quarter of a turn: 40 samples. */
+/* Quarter 0 is the start packet (6 Hz), the others are a quarter of a turn: 40 samples. */
 static size_t packet_of(unsigned quarter, uint8_t packet[ENCODE_PACKET_MAX])
 {
     static const encode_sample_t samples[40];
@@ -227,7 +227,7 @@ static void put_turn(void)
     }
 }
 
-/* The same in chunks, 42 ms apart; the first comes at another time. */
+/* The same in chunks, 42 ms apart; the first one comes after `delta_us`. */
 static void put_turn_at(uint32_t delta_us)
 {
     uint8_t packet[ENCODE_PACKET_MAX];
@@ -236,7 +236,7 @@ static void put_turn_at(uint32_t delta_us)
     }
 }
 
-/* A candidate that the end cuts off hides a packet. */
+/* A candidate that is incomplete at the end contains a packet. */
 void test_at_the_end_the_rest_is_looked_at_again(void)
 {
     put_bytes((const uint8_t *)"\xAA\x55\x20\x28\x95\xA9\x63\x01\x00\x00", 10);
@@ -261,7 +261,7 @@ void test_bytes_in_no_packet_and_wrong_checksums_are_counted(void)
     put(0xAA);
     feed(file, size);
     TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
-    TEST_ASSERT_EQUAL_UINT64(67, tape_skipped(&tape)); /* The last byte still waits. */
+    TEST_ASSERT_EQUAL_UINT64(67, tape_skipped(&tape)); /* The last byte is still pending. */
     finish();
     TEST_ASSERT_EQUAL_UINT64(68, tape_skipped(&tape));
     TEST_ASSERT_EQUAL_UINT64(1, tape_checksum_errors(&tape));
@@ -278,7 +278,7 @@ void test_fewer_bytes_than_a_file_begins_with_are_looked_at_in_the_end(void)
     TEST_ASSERT_EQUAL_UINT64(5, tape.bytes);
 }
 
-/* The start packet's sample and 40 others come each 250 us. */
+/* A sample takes 250 us: one of the start packet, 40 of each other packet. */
 void test_a_raw_recording_has_the_time_of_its_samples(void)
 {
     put_packet(0);
@@ -331,7 +331,7 @@ void test_what_came_later_is_not_there_yet(void)
     TEST_ASSERT_EQUAL_UINT64(5, tape.stream.packets);
 }
 
-/* 32,768 bytes do; of what has been fed before it is played nothing is lost. */
+/* There is room for 32,768 bytes. No byte that was accepted is lost. */
 void test_no_more_is_taken_than_there_is_room_for(void)
 {
     while (size < 100 * 533) {
@@ -363,7 +363,7 @@ void test_blocks_of_any_size_give_the_same_chunks(void)
     }
 }
 
-/* Two packets in it, of which the second one lacks a byte. */
+/* The last chunk has two packets; the second one lacks a byte. */
 void test_the_last_chunk_may_be_cut_short(void)
 {
     put_magic(2);
@@ -376,7 +376,7 @@ void test_the_last_chunk_may_be_cut_short(void)
     TEST_ASSERT_EQUAL_UINT64(1, tape.stream.packets);
 }
 
-/* ----------------------------------------------------------------------- what a stream tells */
+/* ---------------------------------------------------------------------- what a stream reports */
 
 static void put_garbage(unsigned count)
 {
@@ -385,7 +385,7 @@ static void put_garbage(unsigned count)
     }
 }
 
-/* 194 bytes may have been one packet of 130, 195 two; fewer than half of one are one. */
+/* In units of 130 bytes, rounded: 194 bytes are one packet, 195 are two; at least one. */
 void test_damage_is_counted_in_packets(void)
 {
     static const unsigned bytes[] = {1, 64, 194, 195};
@@ -404,7 +404,7 @@ void test_damage_is_counted_in_packets(void)
     TEST_ASSERT_EQUAL_UINT(500, stream_damaged_permille(&tape.stream));
 }
 
-/* One of 16, and of none. */
+/* 0 of 0 and 1 of 16 packets are damaged. */
 void test_the_damaged_share_is_rounded(void)
 {
     TEST_ASSERT_EQUAL_UINT(0, stream_damaged_permille(&tape.stream));
@@ -423,7 +423,7 @@ void test_what_precedes_the_first_packet_is_no_damage(void)
     TEST_ASSERT_EQUAL_UINT64(300, tape_skipped(&tape));
 }
 
-/* Two bytes before it are not LastCRC. */
+/* Two bytes before a start packet are damage. */
 void test_one_byte_before_a_start_packet_is_a_guard(void)
 {
     for (unsigned count = 1; count <= 2; count++) {
@@ -437,7 +437,7 @@ void test_one_byte_before_a_start_packet_is_a_guard(void)
     }
 }
 
-/* The first packet of all comes after 66 s; that is no pause. */
+/* The 66 s before the first packet are no pause. */
 void test_the_longest_pause_is_between_two_packets(void)
 {
     put_magic(2);
@@ -458,7 +458,7 @@ void test_a_pause_of_more_than_a_minute_is_one(void)
     TEST_ASSERT_EQUAL_UINT32(66336, tape.stream.packet_ms);
 }
 
-/* 60 in the start packet's CT: 6.00 Hz. */
+/* The start packet's CT has 60, which is 6.00 Hz. */
 void test_the_frequency_is_that_of_the_latest_start_packet(void)
 {
     put_packet(4);
@@ -472,7 +472,7 @@ void test_the_frequency_is_that_of_the_latest_start_packet(void)
     TEST_ASSERT_EQUAL_UINT(600, tape.stream.frequency_chz);
 }
 
-/* As units without LastCRC do (section 9.1): known after a whole turn. */
+/* Units without LastCRC (section 9.1) report nothing; this is known after a whole turn. */
 void test_a_unit_may_report_nothing_in_the_stream(void)
 {
     put_turn();
@@ -484,7 +484,7 @@ void test_a_unit_may_report_nothing_in_the_stream(void)
     TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
     TEST_ASSERT_TRUE(stream_tells_nothing(&tape.stream));
     TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, stream_faults(&tape.stream));
-    tape.stream.guard_bytes = 1; /* LastCRC has come: it may yet. */
+    tape.stream.guard_bytes = 1; /* LastCRC has come, so a report may follow. */
     TEST_ASSERT_FALSE(stream_tells_nothing(&tape.stream));
 }
 
@@ -536,7 +536,7 @@ void test_a_scan_stays_until_the_next(void)
     TEST_ASSERT_EQUAL_MEMORY(points, scan.points, sizeof points);
 }
 
-/* 161 points, then 41 that the end cuts off. */
+/* A scan of 161 points, then 41 points of one that the end cuts off. */
 void test_the_end_leaves_the_rest_of_a_scan_once(void)
 {
     put_turn();
@@ -579,7 +579,7 @@ void test_a_start_packet_is_not_joined_with_what_comes_after_a_pause(void)
     TEST_ASSERT_EQUAL_UINT16(1, tape.stream.scan.packets);
 }
 
-/* Quarter by quarter, it fits: but turns may be missing. */
+/* The angles fit together, but whole turns may be missing in the pause. */
 void test_a_scan_does_not_go_on_after_a_pause(void)
 {
     uint8_t packet[ENCODE_PACKET_MAX];
@@ -594,7 +594,7 @@ void test_a_scan_does_not_go_on_after_a_pause(void)
     }
 }
 
-/* 70,000 bytes that are none of the lidar's, and once more: no reason to join what is between. */
+/* 70,000 unreadable bytes come twice: the packets before and after them must not be joined. */
 void test_a_scan_does_not_go_on_after_unreadable_bytes(void)
 {
     put_packet(0);
@@ -610,10 +610,11 @@ void test_a_scan_does_not_go_on_after_unreadable_bytes(void)
     TEST_ASSERT_EQUAL_UINT(1, scans);
     TEST_ASSERT_TRUE(stream_end(&tape.stream));
     TEST_ASSERT_EQUAL_UINT16(1, tape.stream.scan.packets);
-    TEST_ASSERT_EQUAL_UINT64(0, tape.stream.damaged); /* How many is unknown. */
+    TEST_ASSERT_EQUAL_UINT64(0, tape.stream.damaged); /* The number is unknown. */
 }
 
-/* Its first sample was measured before the recording's time began: 40 are sent in 15 ms. */
+/* Computed backwards from the packets, the first sample would be before the recording's
+ * beginning. */
 void test_no_scan_begins_before_the_recording(void)
 {
     put_packet(0);
@@ -634,12 +635,13 @@ void test_a_mount_turns_scans_once(void)
     put_packet(0);
     play_whole();
     TEST_ASSERT_EQUAL_UINT(1, scans);
-    TEST_ASSERT_EQUAL_UINT16(17280, tape.stream.scan.points[0].angle_q6); /* 0 - 90 degrees. */
+    TEST_ASSERT_EQUAL_UINT16(17280,
+                             tape.stream.scan.points[0].angle_q6); /* 0 - 90 degrees is 270. */
 }
 
-/* ---------------------------------------------------------------- what a driver hands on: live */
+/* ---------------------------------------------------------------- packets from a driver: live */
 
-/* A packet of the library's own parser; the driver reports its doubt by the gap. */
+/* Passes on a packet from the library's parser. The driver marks a doubtful packet by its gap. */
 static bool come(unsigned quarter, bool is_doubted, uint32_t now_ms)
 {
     static tmini_parser_t parser;
@@ -667,8 +669,8 @@ void test_a_stream_begins_empty(void)
     TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, stream_faults(&tape.stream));
 }
 
-/* After a pause all packets of a batch may be doubted: the first begins another scan, which the
- * others belong to. */
+/* After a pause all packets of a batch may be doubtful: the first one begins a new scan, and the
+ * others belong to it. */
 void test_a_doubted_batch_is_one_scan(void)
 {
     TEST_ASSERT_FALSE(come(0, false, 0));

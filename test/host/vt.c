@@ -24,7 +24,7 @@ void vt_init(vt_t *vt, unsigned columns, unsigned rows)
     clear(vt);
 }
 
-/* Words may go on in the next line; a picture must not. */
+/* Text may continue in the next line; a picture must not. */
 static void wrap(vt_t *vt)
 {
     if (vt->column >= vt->columns) {
@@ -34,7 +34,7 @@ static void wrap(vt_t *vt)
     }
 }
 
-/* A picture that fills the other screen must not. */
+/* Only text scrolls, not a picture on the other screen. */
 static void scroll(vt_t *vt)
 {
     if (vt->row >= vt->rows && !vt->is_other_screen) {
@@ -60,7 +60,7 @@ static void put(vt_t *vt, uint32_t character)
     }
 }
 
-/* A whole sequence, from the bracket to its last letter. */
+/* Executes a sequence, from the bracket to the last letter. */
 static void obey(vt_t *vt)
 {
     const char *const sequence = vt->sequence;
@@ -71,7 +71,7 @@ static void obey(vt_t *vt)
     if (strcmp(sequence, "[?1049h") == 0 || strcmp(sequence, "[?1049l") == 0) {
         vt->is_other_screen = sequence[6] == 'h';
         vt->taken += vt->is_other_screen ? 1 : 0;
-        vt->row = vt->column = 0; /* Where the user typed the command: let it be here. */
+        vt->row = vt->column = 0; /* The user typed the command here. */
         clear(vt);
     } else if (strcmp(sequence, "[?25h") == 0 || strcmp(sequence, "[?25l") == 0) {
         vt->is_cursor_hidden = sequence[4] == 'l';

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A terminal's screen, as far as the tool uses one: characters at places, in colours. */
+/* The screen of a terminal, as far as the tool uses it: coloured characters in rows and columns. */
 
 #ifndef VT_H
 #define VT_H
@@ -16,20 +16,20 @@
 typedef struct {
     uint32_t cells[VT_ROWS_MAX][VT_COLUMNS_MAX];
     uint8_t colours[VT_ROWS_MAX][VT_COLUMNS_MAX];
-    uint8_t colour; /* Of what comes next. */
+    uint8_t colour; /* Of the next character. */
     unsigned columns, rows;
     unsigned column, row; /* The cursor. */
-    bool is_other_screen; /* Not the one on which the user typed the command. */
+    bool is_other_screen; /* The alternate screen: the user typed the command on the other. */
     bool is_cursor_hidden;
-    unsigned taken;         /* How often the other screen has been taken. */
-    unsigned escapes;       /* Sequences so far, */
-    unsigned coloured;      /* and changes of colour among them. */
-    unsigned misunderstood; /* Sequences that it does not know; characters beyond the edge. */
-    char sequence[32];      /* Of the escape sequence under way. */
+    unsigned taken;         /* How often the other screen has been used. */
+    unsigned escapes;       /* Escape sequences so far. */
+    unsigned coloured;      /* Changes of colour so far. */
+    unsigned misunderstood; /* Unknown escape sequences, and characters beyond the edge. */
+    char sequence[32];      /* The current escape sequence. */
     unsigned sequence_length;
     bool is_in_sequence;
-    uint32_t character; /* Of the UTF-8 sequence under way, */
-    unsigned missing;   /* and how many bytes of it are still to come. */
+    uint32_t character; /* Of the current UTF-8 sequence. */
+    unsigned missing;   /* Bytes of that sequence still to come. */
 } vt_t;
 
 void vt_init(vt_t *vt, unsigned columns, unsigned rows);

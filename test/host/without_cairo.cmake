@@ -3,7 +3,7 @@
 
 # cmake -D TMINI_SOURCE=… -D BUILD=… -D COMPILER=… -D GENERATOR=… -P without_cairo.cmake
 #
-# Builds the host tool without cairo: `plot` says what is missing, the rest works.
+# Builds the host tool without cairo: `plot` reports what is missing, the rest works.
 
 function(run_or_fail)
     execute_process(COMMAND ${ARGN} RESULT_VARIABLE status
