@@ -12,15 +12,15 @@ tmini_add_unit_test(test_ct SOURCES test_ct.c)
 tmini_add_unit_test(test_builder SOURCES test_builder.c LIBRARIES tmini_test_receiver)
 tmini_add_unit_test(test_decoder SOURCES test_decoder.c LIBRARIES tmini_test_receiver)
 
-# What may be used besides.
+# Optional modules.
 tmini_add_unit_test(test_sectors SOURCES test_sectors.c LIBRARIES tmini_test_receiver)
 tmini_add_unit_test(test_ranges SOURCES test_ranges.c)
 tmini_add_unit_test(test_mount SOURCES test_mount.c)
 tmini_add_unit_test(test_time SOURCES test_time.c)
 tmini_add_unit_test(test_units SOURCES test_units.c)
 
-# Ring and parser built once more, with an atomic header that lets the test come between any two
-# accesses of an index.
+# Ring and parser are compiled again here, with an atomic header that calls the test at each access
+# of an index.
 tmini_add_unit_test(test_interrupts
     SOURCES test_interrupts.c ${PROJECT_SOURCE_DIR}/lib/src/tmini_ring.c
         ${PROJECT_SOURCE_DIR}/lib/src/tmini_parser.c

@@ -13,7 +13,7 @@ foreach(test test_tmini test_wish test_command test_recovery test_monitor test_s
     endif()
 endforeach()
 
-# Those with large rings.
+# Tests with large rings.
 foreach(test test_effort test_pauses test_line)
     tmini_add_unit_test(${test}
         SOURCES ${test}.c ../support/rig.c ../support/invariants.c
@@ -25,7 +25,7 @@ foreach(test test_effort test_pauses test_line)
     endif()
 endforeach()
 
-# The driver before a lidar that turns, on a port that notes what is written.
+# The driver with a lidar that turns (turns.h), on a port that records the commands.
 foreach(test test_honest_scans test_honest_commands test_real_bytes)
     tmini_add_unit_test(${test} SOURCES ${test}.c ../support/turns.c
         LIBRARIES tmini_test_support NOT_ON int16)
@@ -34,8 +34,8 @@ endforeach()
 tmini_add_unit_test(test_honest_pauses SOURCES test_honest_pauses.c
     LIBRARIES tmini_test_support NOT_ON others)
 
-# The same, with the library built once more with an atomic header that lets the test come between
-# any two accesses of an index.
+# The same, with the library compiled again with an atomic header that calls the test at each access
+# of an index.
 file(GLOB library_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/src/*.c)
 tmini_add_unit_test(test_honest_moments
     SOURCES test_honest_moments.c ../support/turns.c ${library_sources}
@@ -46,7 +46,7 @@ if(TARGET test_honest_moments)
     target_include_directories(test_honest_moments PRIVATE ../support)
 endif()
 
-# The library built once more without CT information.
+# The library is compiled again without CT information.
 tmini_add_unit_test(test_no_ct
     SOURCES test_no_ct.c ../support/rig.c ../support/invariants.c ${library_sources}
     MOCKS ../support/port_functions.h

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The commands that wait. The port's `wait` lets a millisecond pass, in which bytes come as a
- * script says: what comes when, counted from the test's beginning. */
+/* The commands that wait. Each call of the port's `wait` lets a millisecond pass. A script feeds
+ * bytes at the chosen times. */
 
 #include "invariants.h"
 #include "rig.h"
@@ -13,9 +13,9 @@
 
 static struct {
     uint32_t begun_ms;
-    uint32_t at_ms; /* When something comes, */
+    uint32_t at_ms; /* Time of the next call of `feed`, from begun_ms on. */
     void (*feed)(void);
-    uint32_t every_ms; /* and how often again; 0: once. */
+    uint32_t every_ms; /* Interval of further calls; 0: none. */
     uint32_t waits;
 } script;
 
@@ -66,7 +66,7 @@ static void feed_frequency(void)
     rig_feed_frequency(640);
 }
 
-/* An idle lidar, and a frequency for the next start. */
+/* The lidar is idle, and a frequency is wanted for the next start. */
 static void wishes_640_chz(void)
 {
     rig.config.frequency_chz = 640;
@@ -137,7 +137,7 @@ void test_a_frequency_that_is_there_already_is_not_waited_for_while_scanning(voi
     is_in(TMINI_STATE_SCANNING);
 }
 
-/* The wish stands: it is not tried again by this one while the lidar scans. */
+/* The frequency is already wanted, so this call does not try again while the lidar scans. */
 void test_a_frequency_that_could_not_be_set_is_not_waited_for_while_scanning(void)
 {
     rig.config.frequency_chz = 640;
@@ -154,8 +154,6 @@ void test_a_frequency_that_could_not_be_set_is_not_waited_for_while_scanning(voi
     TEST_ASSERT_EQUAL_UINT32(0, script.waits);
 }
 
-/* A frequency that no lidar has, 55 ms from now, when it is asked for; then a packet, in answer to
- * the start, 60 ms later. */
 static void feed_packet(void)
 {
     rig_feed_point_packet(1000);
@@ -167,6 +165,8 @@ static void feed_refusal(void)
     script.feed = feed_packet;
 }
 
+/* In 55 ms, when the frequency is queried, the reply is an impossible one. 60 ms later, after the
+ * start, a packet comes. */
 static void refuses_the_frequency(void)
 {
     comes(55, feed_refusal);
@@ -189,7 +189,7 @@ void test_a_frequency_that_a_scanning_lidar_refuses_is_waited_for_until_it_scans
     TEST_ASSERT_EQUAL_HEX(0, rig_drain());
 }
 
-/* After a loss no failure is reported. */
+/* After a loss, COMMAND_FAILED is not reported. */
 void test_a_frequency_that_a_lost_lidar_refuses_is_waited_for_until_it_scans_again(void)
 {
     rig_go_recovering();
@@ -201,7 +201,7 @@ void test_a_frequency_that_a_lost_lidar_refuses_is_waited_for_until_it_scans_aga
     is_in(TMINI_STATE_SCANNING);
 }
 
-/* Also while a start tries again and again. */
+/* The lidar is still starting. */
 void test_the_same_frequency_is_not_waited_for_once_it_has_been_set(void)
 {
     wishes_640_chz();
@@ -245,7 +245,7 @@ void test_a_frequency_is_not_waited_for_when_nothing_recovers_the_lidar(void)
     is_in(TMINI_STATE_RECOVERING);
 }
 
-/* Each attempt that fails is reported, and the next asks again. */
+/* Each failed attempt is reported, and the next one queries the frequency again. */
 void test_a_frequency_is_waited_for_past_attempts_to_start_that_fail(void)
 {
     wishes_640_chz();
@@ -325,7 +325,7 @@ void test_start_waits_for_the_first_packet_when_streaming(void)
     sends(STOP);
     sends(START);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 100));
-    comes(60, feed_turn); /* The wish stands: it is waited for again. */
+    comes(60, feed_turn); /* The lidar is still wanted to scan: this call waits again. */
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 100));
     TEST_ASSERT_EQUAL_UINT8(1, tmini_packet(&rig.lidar)->count);
 }
@@ -406,7 +406,7 @@ void test_a_start_waited_for_in_vain_while_the_lidar_is_being_recovered_still_st
     sends(STOP); /* Lost after a second. */
     sends(START);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 1500));
-    is_in(TMINI_STATE_RECOVERING); /* The wish stands. */
+    is_in(TMINI_STATE_RECOVERING); /* The lidar is still wanted to scan. */
 }
 
 void test_a_start_of_a_lost_lidar_waits_for_a_scan_and_not_for_the_recovery(void)
@@ -517,7 +517,7 @@ static uint32_t running_clock(void *context, int calls)
     return rig.now_ms++;
 }
 
-static int looks_left; /* Until the clock steps back */
+static int looks_left; /* Clock readings until it steps back. */
 static uint32_t back_ms;
 
 static uint32_t jumping_clock(void *context, int calls)

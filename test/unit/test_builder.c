@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Scans: which packets make one revolution, and how good it is (sections 6 and 9). The revolutions
- * here have few packets of few samples: inside a packet, samples may be any angle apart. */
+/* Scans: which packets form one revolution, and its quality (sections 6 and 9). The revolutions
+ * here have few packets of few samples: within a packet, samples may be any angle apart. */
 
 #include "receiver.h"
 #include "stream.h"
@@ -23,7 +23,7 @@ static tmini_point_t points[ROOM + 1];
 static tmini_builder_t builder;
 static const tmini_scan_t *const scan = &builder.scan;
 static uint32_t now_ms;
-static unsigned strays; /* Bytes put before the next packet. */
+static unsigned strays; /* Stray bytes before the next packet. */
 
 static void begin_with(size_t capacity, unsigned filter)
 {
@@ -45,7 +45,7 @@ void tearDown(void)
     TEST_ASSERT_EQUAL_HEX16(0xEEEE, points[ROOM].angle_q6);
 }
 
-/* A packet arrives, and is open. */
+/* A packet arrives and is opened. */
 static void receive(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_q6)
 {
     stream.size = 0;
@@ -58,14 +58,14 @@ static void receive(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next(&receiver));
 }
 
-/* The same, and adds it unless it ends the current scan. Returns whether it does. */
+/* The same, and adds it. Returns whether it closes the current scan; it is then not yet added. */
 static bool arrive(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_q6)
 {
     receive(ct, count, first_q6, last_q6);
     return tmini_builder_add(&builder, &receiver.packet, now_ms);
 }
 
-/* The packet that has closed a scan does not close another. */
+/* Adds a packet that does not close a scan, or again one that has closed a scan. */
 static void add(void)
 {
     TEST_ASSERT_FALSE(tmini_builder_add(&builder, &receiver.packet, now_ms));
@@ -91,13 +91,13 @@ static bool point(uint32_t first_q6, uint32_t last_q6)
     return closes;
 }
 
-/* A quarter turn by a point packet, one degree from the packets beside it. */
+/* A point packet of a quarter turn, one degree from its neighbours. */
 static void quarter(uint32_t from_q6)
 {
     TEST_ASSERT_FALSE(point(from_q6 + DEGREE, from_q6 + 90 * DEGREE));
 }
 
-/* All but its start packet. */
+/* A whole turn without its start packet. */
 static void rest_of_turn(uint32_t from_q6)
 {
     for (uint32_t turned = 0; turned < 360 * DEGREE; turned += 90 * DEGREE) {
@@ -105,14 +105,14 @@ static void rest_of_turn(uint32_t from_q6)
     }
 }
 
-/* From 0 degrees on. */
+/* A turn that begins at 0 degrees. */
 static void whole_turn(void)
 {
     (void)start(0);
     rest_of_turn(0);
 }
 
-/* A start packet comes and closes a scan of that quality. */
+/* A start packet comes and closes a scan with these properties. */
 static void expect_scan(uint32_t at_q6, uint16_t gaps, bool complete)
 {
     TEST_ASSERT_TRUE(arrive(0x7B, 1, at_q6, at_q6));
@@ -178,10 +178,10 @@ void test_a_scan_goes_from_a_start_packet_to_the_next(void)
     TEST_ASSERT_EQUAL_UINT16(0, scan->checksum_errors);
     TEST_ASSERT_EQUAL_UINT32(5000, scan->start_ms);
     TEST_ASSERT_EQUAL_UINT32(5167, scan->end_ms);
-    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz); /* Of the start packet after it. */
+    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz); /* Reported by the next start packet. */
 }
 
-/* What is known of the time at which held-back bytes came may go backwards a little. */
+/* The estimated arrival time of held-back bytes may go backwards slightly. */
 void test_a_scan_does_not_end_before_it_began(void)
 {
     whole_turn();
@@ -255,7 +255,7 @@ void test_a_discarded_scan_is_not_continued(void)
     (void)start(0);
     quarter(0);
     tmini_builder_discard(&builder);
-    quarter(90 * DEGREE); /* Where a turn begins has been forgotten, too. */
+    quarter(90 * DEGREE); /* The angle at which turns begin is also forgotten. */
     TEST_ASSERT_FALSE(start(0));
     TEST_ASSERT_EQUAL_UINT16(1, scan->count);
 }
@@ -363,7 +363,7 @@ static void garbage(unsigned count)
     }
 }
 
-/* A turn at 12 Hz has some 1100 bytes: half of it or more may be missing. */
+/* A turn at 12 Hz has about 1100 bytes, so half a turn or more may be missing. */
 void test_more_than_500_skipped_bytes_end_a_scan(void)
 {
     (void)start(0);
@@ -400,7 +400,7 @@ void test_a_jump_of_more_than_half_a_turn_ends_the_scan(void)
     TEST_ASSERT_TRUE(point(641 + 180 * DEGREE, 700 + 180 * DEGREE));
 }
 
-/* It came back to 4 degrees before the first point; to one 64th more. */
+/* The next start packet is 4 degrees before the first point, then 1/64 degree more. */
 void test_a_turn_that_lacks_4_degrees_is_complete_and_no_more(void)
 {
     static const uint16_t ends[] = {0, 23039};
@@ -433,7 +433,7 @@ void test_a_step_back_by_less_than_4_degrees_is_jitter(void)
     TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
     (void)point(266 * DEGREE + 1, 300 * DEGREE);
     TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
-    (void)point(296 * DEGREE, 302 * DEGREE); /* Exactly 4: 356 forwards. */
+    (void)point(296 * DEGREE, 302 * DEGREE); /* Exactly 4 degrees back count as 356 forwards. */
     TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
 }
 
@@ -464,7 +464,7 @@ void test_checksum_errors_are_counted_while_the_scan_is_received(void)
     TEST_ASSERT_TRUE(arrive(0x79, 1, 0, 0));
     TEST_ASSERT_EQUAL_UINT16(3, scan->checksum_errors);
     add();
-    receiver.parser.counters.checksum_errors += 263; /* Past 65535. */
+    receiver.parser.counters.checksum_errors += 263; /* The lower 16 bits overflow. */
     TEST_ASSERT_TRUE(arrive(0x79, 1, 0, 0));
     TEST_ASSERT_EQUAL_UINT16(263, scan->checksum_errors);
     add();
@@ -505,8 +505,8 @@ void test_counts_stop_at_65535(void)
 
 /* --------------------------------------------------------------------------- lost start packets */
 
-/* Two revolutions from `from_q6` on, but the second one's start packet is missing: what is left of
- * it is a scan of its own. */
+/* Two revolutions from `from_q6` on, but the start packet of the second is missing: the rest of it
+ * is a separate scan. */
 static void expect_two_scans_without_start(uint32_t from_q6)
 {
     begin_with(ROOM, TMINI_FILTER_NONE);
@@ -560,7 +560,8 @@ void test_packets_lost_around_a_start_do_not_merge_revolutions(void)
     }
 }
 
-/* Nor does a second one in a row: where a turn ends counts from the last start packet. */
+/* If several start packets in a row are missing, turns end at the angle of the last one
+ * received. */
 void test_a_scan_without_its_start_packet_ends_where_the_next_start_packet_is_missing(void)
 {
     const uint32_t from_q6 = 116 * DEGREE;
@@ -578,7 +579,7 @@ void test_a_scan_without_its_start_packet_ends_where_the_next_start_packet_is_mi
     TEST_ASSERT_EQUAL_UINT16(20, scan->count);
 }
 
-/* The tail of a turn, up to where it ends, is not of the next one. */
+/* The last part of a turn does not belong to the next one. */
 void test_a_last_packet_alone_is_a_scan_of_its_own(void)
 {
     (void)start(0);
@@ -591,8 +592,8 @@ void test_a_last_packet_alone_is_a_scan_of_its_own(void)
     TEST_ASSERT_EQUAL_UINT16(10, scan->count);
 }
 
-/* 14 degrees before where the revolution began and 14 beyond: it fits in no revolution. Nothing
- * continues it. */
+/* From 14 degrees before the beginning of a revolution to 14 after it: the packet fits in no
+ * revolution, and no packet continues it. */
 void test_a_packet_across_the_end_of_a_turn_is_a_scan_of_its_own(void)
 {
     (void)start(0);
@@ -604,7 +605,7 @@ void test_a_packet_across_the_end_of_a_turn_is_a_scan_of_its_own(void)
     }
 }
 
-/* Its angles may claim nearly two turns. */
+/* Its angles span nearly a turn. */
 void test_the_widest_packet_at_the_end_of_a_turn_is_a_scan_of_its_own(void)
 {
     (void)start(0);
@@ -624,7 +625,7 @@ void test_each_packet_after_a_gap_of_unknown_size_is_a_scan_of_its_own(void)
     }
 }
 
-/* At 6.1 Hz, as the start packet before it reports, until the one after it does. */
+/* The last start packet reported 6.1 Hz. */
 void test_a_scan_whose_end_is_missing_has_the_frequency_reported_last(void)
 {
     (void)arrive(0x7B, 1, 0, 0);
@@ -637,8 +638,8 @@ void test_a_scan_whose_end_is_missing_has_the_frequency_reported_last(void)
     TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz);
 }
 
-/* The 40 samples of a packet that comes at 5000 ms take 39 * 250 us, and as bytes 39 * 3 more than
- * those of a start packet: 39 * 130 us. */
+/* The packet comes at 5000 ms. Measuring its 40 samples took 39 * 250 us. It has 39 * 3 bytes more
+ * than a start packet, which took 39 * 130 us. */
 void test_a_scan_without_its_start_packet_begins_when_its_first_point_was_measured(void)
 {
     (void)start(0);
@@ -648,7 +649,7 @@ void test_a_scan_without_its_start_packet_begins_when_its_first_point_was_measur
     TEST_ASSERT_EQUAL_UINT32(5000 - 14, scan->start_ms);
 }
 
-/* It ends where the start packet that is lost would be. */
+/* The scan ends at the angle at which the lost start packet would have been. */
 void test_a_scan_without_its_start_packet_counts_its_first_packet_as_swept(void)
 {
     (void)start(0);
@@ -659,8 +660,8 @@ void test_a_scan_without_its_start_packet_counts_its_first_packet_as_swept(void)
     TEST_ASSERT_TRUE(point(1 * DEGREE, 90 * DEGREE));
 }
 
-/* The last sample lies slightly before the next start packet, whose angle varies. A lone sample
- * after a lost start packet lies half a degree beyond it. */
+/* The last sample is slightly before the next start packet, whose angle jitters. A lone sample
+ * after a lost start packet is half a degree after that packet's angle. */
 void test_a_revolution_may_take_a_quarter_of_a_degree_more_than_a_circle_and_no_more(void)
 {
     whole_turn();
@@ -675,7 +676,7 @@ void test_jitter_backwards_does_not_count_as_a_turn(void)
 {
     (void)start(0);
     for (unsigned i = 0; i < 6; i++) {
-        TEST_ASSERT_FALSE(point(10 * DEGREE, 12 * DEGREE)); /* Two degrees on, two back. */
+        TEST_ASSERT_FALSE(point(10 * DEGREE, 12 * DEGREE)); /* Two degrees forwards, two back. */
     }
     TEST_ASSERT_FALSE(point(13 * DEGREE, 350 * DEGREE));
     TEST_ASSERT_FALSE(point(351 * DEGREE, 360 * DEGREE + 10));
@@ -691,7 +692,7 @@ void test_a_start_packet_a_little_before_a_full_turn_closes_the_scan(void)
 
 /* ----------------------------------------------------------------------------------------- time */
 
-/* A turn, in this many ms, that ends with the report of a frequency. */
+/* A turn that takes this time; its end reports a frequency in `ct`. */
 static void pass_turn_in(uint32_t ms, uint8_t ct)
 {
     begin_with(ROOM, TMINI_FILTER_NONE);
@@ -711,7 +712,7 @@ static void a_turn_takes_at_most(uint32_t ms, uint8_t ct)
     TEST_ASSERT_EQUAL_UINT32(1, builder.late_scans);
 }
 
-/* Two revolutions that join without a seam are whole turns apart. */
+/* If a turn is missing without a visible gap, the scan takes two turns instead of one. */
 void test_a_scan_that_took_more_than_one_and_a_half_turns_is_not_complete(void)
 {
     a_turn_takes_at_most(250, 0x79); /* 6.0 Hz. */
@@ -726,16 +727,16 @@ void test_a_turn_of_an_unknown_frequency_may_take_any_time(void)
     TEST_ASSERT_TRUE(scan->complete);
 }
 
-/* The longest time that a clock can show times the frequency does not fit in 32 bits. */
+/* Time times frequency overflows 32 bits. */
 void test_a_turn_of_49_days_is_too_long(void)
 {
     pass_turn_in(0x7FFFFFFFu, 0x79);
     TEST_ASSERT_FALSE(scan->complete);
-    pass_turn_in(3381803, 0xFF); /* Times 1270: 142,514 modulo 2^32. */
+    pass_turn_in(3381803, 0xFF); /* Times 1270 it is 142,514 modulo 2^32. */
     TEST_ASSERT_FALSE(scan->complete);
 }
 
-/* The pause is the only thing that speaks against it: no byte is missing, and no angle. */
+/* The packet ends the scan because of the pause; no byte is missing. */
 static void arrive_after_a_pause(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_q6)
 {
     receive(ct, count, first_q6, last_q6);
@@ -802,7 +803,7 @@ void test_a_packet_that_dma_has_overwritten_is_a_gap_and_no_point(void)
     TEST_ASSERT_EQUAL_UINT16(2, scan->packets);
     TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
     TEST_ASSERT_EQUAL_UINT16(0, scan->dropped);
-    TEST_ASSERT_TRUE(arrive(0x00, 5, 181 * DEGREE, 270 * DEGREE)); /* Of an unknown turn. */
+    TEST_ASSERT_TRUE(arrive(0x00, 5, 181 * DEGREE, 270 * DEGREE)); /* Its turn is unknown. */
     TEST_ASSERT_EQUAL_UINT16(6, scan->count);
     TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
     TEST_ASSERT_FALSE(scan->complete);
@@ -825,7 +826,7 @@ void test_a_packet_after_the_first_that_dma_has_overwritten_leaves_the_scan_open
     receive(0x00, 5, DEGREE, 90 * DEGREE);
     overrun();
     add();
-    TEST_ASSERT_TRUE(arrive(0x00, 5, 91 * DEGREE, 180 * DEGREE)); /* Of an unknown turn. */
+    TEST_ASSERT_TRUE(arrive(0x00, 5, 91 * DEGREE, 180 * DEGREE)); /* Its turn is unknown. */
     TEST_ASSERT_EQUAL_UINT16(1, scan->count);
     TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
 }
@@ -847,8 +848,7 @@ void test_a_scan_of_no_packet_is_not_delivered(void)
     TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
 }
 
-/* ------------------------------------------------------------------------ what does not
- * continue */
+/* ------------------------------------------------------------------ scans that do not continue */
 
 void test_a_part_of_a_circle_is_not_complete(void)
 {
@@ -878,7 +878,7 @@ void test_a_circle_is_complete_to_within_four_degrees(void)
 void test_half_a_turn_missing_by_its_angle_ends_a_scan(void)
 {
     (void)start(0);
-    quarter(0); /* Its last sample lies at 90 degrees. */
+    quarter(0); /* Its last sample is at 90 degrees. */
     TEST_ASSERT_FALSE(arrive(0x00, 5, 270 * DEGREE, 280 * DEGREE));
     TEST_ASSERT_TRUE(arrive(0x00, 5, 270 * DEGREE + 1, 280 * DEGREE));
 }
@@ -899,8 +899,8 @@ void test_a_scan_that_is_refuted_is_not_complete(void)
     expect_scan(0, 1, false);
 }
 
-/* A part that begins in mid-turn: its first packet turns as far as the others. From 299 degrees to
- * 340, and on to 2. */
+/* A partial scan begins at 299 degrees. Its first packet ends at 340; the second would go past the
+ * turn's end, to 2 degrees, so it ends the scan. */
 void test_a_part_ends_where_its_turn_would(void)
 {
     TEST_ASSERT_FALSE(start(0));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What is said to the lidar, and when: every command, its replies, late and lost ones, its waits
- * and its failures. Which command may be begun in which state is in test_states.c. */
+/* When commands are sent: every command, its replies (also late and lost ones), its waits and its
+ * failures. test_states.c tests which command may begin in which state. */
 
 #include "invariants.h"
 #include "rig.h"
@@ -53,8 +53,8 @@ void test_each_byte_that_is_heard_puts_the_command_off_by_the_quiet_time(void)
     finds_quiet_and_sends(GET_INFO);
 }
 
-/* A stop is sent after this many bytes, and there is no poll for 60 ms. */
-static void stop_unwatched_behind(size_t bytes)
+/* This many bytes come, a stop is sent, and there is no poll for 60 ms. */
+static void stop_unwatched_after(size_t bytes)
 {
     for (size_t i = 0; i < bytes; i++) {
         rig_feed_byte(0x00);
@@ -63,11 +63,11 @@ static void stop_unwatched_behind(size_t bytes)
     rig.now_ms += 60;
 }
 
-/* The ring has no room for what comes: it waits in a layer below, or is refused. Of these two,
- * only a refused byte leaves a trace in the ring. */
+/* The ring is full: further bytes wait in a layer below, or are refused. Only a refused byte is
+ * visible in the ring. */
 static void is_quiet_only_after_room_was_made(size_t bytes)
 {
-    stop_unwatched_behind(bytes);
+    stop_unwatched_after(bytes);
     polls_to(TMINI_EVENT_NONE);
     is_in(TMINI_STATE_STOPPING);
     passes_to(49, TMINI_EVENT_NONE);
@@ -86,7 +86,7 @@ void test_a_line_is_not_known_to_be_quiet_while_the_ring_is_closed(void)
 
 void test_with_room_for_a_byte_more_the_line_is_known_to_be_quiet(void)
 {
-    stop_unwatched_behind(RIG_RX_SIZE - 1);
+    stop_unwatched_after(RIG_RX_SIZE - 1);
     polls_to(TMINI_EVENT_STOPPED);
 }
 
@@ -100,7 +100,7 @@ void test_bytes_that_were_lost_put_the_command_off_by_the_quiet_time(void)
     passes_to(1, TMINI_EVENT_STOPPED);
 }
 
-/* They may have been a packet's. */
+/* The lost bytes may have been a packet. */
 void test_bytes_that_were_lost_while_idle_are_heard_as_well(void)
 {
     rig_go_idle();
@@ -131,13 +131,13 @@ void test_a_stop_that_gets_lost_is_sent_again(void)
         rig_feed_point_packet(1000);
         passes(20);
     }
-    polls_to(TMINI_EVENT_NONE); /* Not quiet in time, */
-    sends(STOP);                /* so once more. */
+    polls_to(TMINI_EVENT_NONE); /* The line was not quiet in time. */
+    sends(STOP);                /* So the stop is repeated. */
     polls_to(TMINI_EVENT_NONE);
     was_sent();
     TEST_ASSERT_EQUAL_UINT(1, rig_counters().timeouts);
     passes_to(50, TMINI_EVENT_STOPPED);
-    is_in(TMINI_STATE_IDLE); /* However many it took. */
+    is_in(TMINI_STATE_IDLE); /* The number of attempts does not matter. */
 }
 
 void test_a_lidar_that_will_not_be_stopped_fails_the_command_after_three_attempts(void)
@@ -307,11 +307,10 @@ void test_stop_aborts_a_query(void)
 void test_a_command_swallows_the_end_of_the_one_before_that_was_not_polled_for(void)
 {
     begins_with(STOP, tmini_request_info(&rig.lidar));
-    begins_with(STOP, tmini_stop(&rig.lidar)); /* Aborts it, */
+    begins_with(STOP, tmini_stop(&rig.lidar)); /* Aborts the request. */
     tmini_cancel(&rig.lidar);
-    begins_with(STOP,
-                tmini_request_info(&rig.lidar)); /* which would look like the end of this one. */
-    passes(50);
+    begins_with(STOP, tmini_request_info(&rig.lidar));
+    passes(50); /* No COMMAND_FAILED: it would seem to be that of the second request. */
 }
 
 void test_a_command_that_is_cancelled_takes_the_start_after_it_along(void)
@@ -326,7 +325,7 @@ void test_a_command_that_is_cancelled_takes_the_start_after_it_along(void)
     is_in(TMINI_STATE_IDLE);
 }
 
-/* ---- Replies: the awaited one only ---- */
+/* ---- Only the awaited reply is taken ---- */
 
 void test_a_frequency_is_not_taken_for_device_information_though_the_type_is_the_same(void)
 {
@@ -362,7 +361,7 @@ void test_a_reply_that_comes_late_answers_the_repeated_question(void)
     finds_quiet_and_sends(GET_INFO);
     rig_feed_info();
     polls_to(TMINI_EVENT_INFO);
-    is_in(TMINI_STATE_UNKNOWN); /* Its own reply may still come. */
+    is_in(TMINI_STATE_UNKNOWN); /* The command's reply may still come. */
 }
 
 void test_a_reply_that_comes_while_the_line_is_being_hushed_is_not_taken(void)
@@ -471,7 +470,7 @@ static void begins_to_set(uint16_t target_chz, uint16_t now_chz)
     polls_to(TMINI_EVENT_NONE);
 }
 
-/* Until the line is quiet, then the next command, which is answered with this frequency. */
+/* When the line is quiet, the next command is sent; the reply is this frequency. */
 static void steps(uint8_t code, uint16_t answer_chz)
 {
     passes(50);
@@ -640,7 +639,7 @@ void test_a_lost_reply_to_a_step_is_mended_by_reading_the_frequency(void)
     begins_to_set(700, 600);
     finds_quiet_and_sends(FASTER_ONE);
     asks_in_vain(GET_FREQUENCY);
-    rig_feed_frequency(700); /* The step had been made. */
+    rig_feed_frequency(700); /* The step was made, although its reply was lost. */
     polls_to(TMINI_EVENT_FREQUENCY);
     TEST_ASSERT_EQUAL_UINT16(700, tmini_frequency_chz(&rig.lidar));
 }
@@ -652,9 +651,9 @@ void test_a_second_copy_of_the_last_steps_reply_is_not_taken_for_the_next_steps(
     passes(50);
     polls_and_sends(FASTER_ONE);
     polls_to(TMINI_EVENT_NONE);
-    rig_feed_frequency(700); /* Late. */
+    rig_feed_frequency(700); /* The copy. */
     passes(10);
-    rig_feed_frequency(800); /* Its own. */
+    rig_feed_frequency(800); /* The reply to the step. */
     steps(GET_FREQUENCY, 800);
     arrives_at(800);
 }
@@ -681,9 +680,9 @@ void test_a_step_that_was_not_refused_after_all_does_not_blame_the_reply_for_a_n
     rig.timing.max_attempts = 1;
     rig_init();
     begins_to_set(800, 600);
-    steps(FASTER_ONE, 600); /* As if refused, */
+    steps(FASTER_ONE, 600); /* As if the step was refused. */
     passes(10);
-    rig_feed_frequency(700); /* but that was only late. */
+    rig_feed_frequency(700); /* But it was only late. */
     for (unsigned ms = 0; ms < 600; ms += 40) {
         passes(40);
         rig_feed_byte(0x00);
@@ -745,7 +744,7 @@ void test_a_read_back_that_differs_is_stepped_further(void)
     arrives_at(700);
 }
 
-/* A header that promises a packet of 250 bytes. */
+/* The header of a packet of 250 bytes. */
 void test_a_packet_that_was_cut_off_between_two_steps_does_not_hide_the_next_reply(void)
 {
     static const uint8_t header[] = {0xAA, 0x55, 0x00, 0x50, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00};
@@ -757,7 +756,7 @@ void test_a_packet_that_was_cut_off_between_two_steps_does_not_hide_the_next_rep
     arrives_at(700);
 }
 
-/* 20 Hz; the lidar is made for 12. */
+/* 20 Hz; the specified maximum is 12 Hz. */
 void test_the_largest_plausible_frequency_is_reported(void)
 {
     is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
@@ -841,7 +840,7 @@ void test_what_the_port_does_not_take_is_offered_again_at_each_poll(void)
     polls_to(TMINI_EVENT_NONE);
     sends_rest_taking(STOP, 1);
     polls_to(TMINI_EVENT_NONE);
-    passes(50); /* From when the last byte has left. */
+    passes(50); /* Counted from when the last byte was sent. */
     polls_to(TMINI_EVENT_STOPPED);
 }
 
@@ -867,7 +866,7 @@ void test_a_port_that_takes_a_command_at_the_last_moment_has_taken_it(void)
 {
     sends_both_taking(STOP, 0);
     begins(tmini_stop(&rig.lidar));
-    rig.now_ms += 150; /* There was no poll. */
+    rig.now_ms += 150; /* Without a poll. */
     polls_and_sends(STOP);
     passes_to(50, TMINI_EVENT_STOPPED);
 }
@@ -902,7 +901,7 @@ void test_a_port_that_fails_once_fails_no_command(void)
     polls_to(TMINI_EVENT_INFO);
 }
 
-/* As in a main loop that polls until there is nothing left, and asks again at once. */
+/* As in a main loop that polls until nothing is left and repeats a failed request at once. */
 void test_a_loop_that_repeats_every_failed_command_ends(void)
 {
     sends_both_taking(STOP, -1);
@@ -912,8 +911,8 @@ void test_a_loop_that_repeats_every_failed_command_ends(void)
         tmini_event_t event;
 
         rig.now_ms += 1;
-        sends_both_taking(STOP, -1); /* Once more, */
-        sends_both_taking(STOP, -1); /* and anew. */
+        sends_both_taking(STOP, -1); /* The old request fails. */
+        sends_both_taking(STOP, -1); /* The new one begins. */
         while ((event = tmini_poll(&rig.lidar)) != TMINI_EVENT_NONE) {
             TEST_ASSERT_EQUAL_INT(TMINI_EVENT_COMMAND_FAILED, event);
             begins(tmini_request_info(&rig.lidar));
@@ -993,7 +992,7 @@ void test_a_start_that_has_not_left_is_not_sent_into_a_stream_that_is_back(void)
     rig_go_idle();
     sends_both_taking(START, 0);
     begins(tmini_start(&rig.lidar));
-    rig_feed_point_packet(1000); /* The lidar scans already: it had missed the stop. */
+    rig_feed_point_packet(1000); /* The lidar already scans: it has missed the stop. */
     polls_to(TMINI_EVENT_STARTED);
     (void)rig_drain();
     passes(999);

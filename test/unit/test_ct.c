@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* CT information: what a revolution's CT bytes say, and when that is trusted (section 7). */
+/* CT information: the content of a revolution's CT bytes, and when it is trusted (section 7). */
 
 #include "tmini/parts/tmini_reply.h"
 #include "tmini/parts/tmini_ct.h"
@@ -17,7 +17,7 @@ static tmini_ct_info_t info;
  * hardware 1, firmware 2.7, 2025-04-24, number 1193046 = 10 010 00 1101000 1010110 in binary. */
 static const uint8_t six_hertz[17] = {0x79, 0x40, 0x34, 0x24, 0x24, 0x0E, 0x12, 0x56, 0x9A,
                                       0x2C, 0x44, 0xC0, 0xD0, 0xAC, 0x10, 0x20, 0x30};
-/* Their CRC-8/MAXIM, by a separate program, as all in this file. */
+/* Their CRC-8/MAXIM. All CRCs in this file were computed by a separate program. */
 #define SIX_HERTZ_CRC 0xD8
 
 /* The same unit at 10 Hz (11 packets) and at 12 Hz (10). */
@@ -35,7 +35,7 @@ void setUp(void)
 
 void tearDown(void) {}
 
-/* A packet with this many skipped bytes before it, `skipped` being the last. */
+/* Adds a packet with `gap` skipped bytes before it; `skipped` is the last of them. */
 static tmini_ct_verdict_t verdict_on(uint8_t ct, uint16_t gap, uint8_t skipped)
 {
     const tmini_frame_t frame = {.gap = gap, .last_skipped = skipped};
@@ -48,7 +48,7 @@ static bool add(uint8_t ct, uint16_t gap, uint8_t skipped)
     return verdict_on(ct, gap, skipped) == TMINI_CT_CONFIRMED;
 }
 
-/* Point packets in a row, with nothing between them; the skipped byte is an old one. */
+/* Point packets without bytes between them; the last skipped byte is an earlier one. */
 static void add_points(const uint8_t *cts, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -68,7 +68,7 @@ static void add_six_hertz(void)
     add_revolution(0x79, &six_hertz[1], 16);
 }
 
-/* The next start packet, with that LastCRC before it. */
+/* The next start packet, with this LastCRC before it. */
 static bool end_with(uint8_t last_crc)
 {
     return add(0x79, 1, last_crc);
@@ -163,7 +163,7 @@ void test_a_revolution_at_12_hz_does_not_show_the_month_either(void)
     TEST_ASSERT_EQUAL_UINT8(0, info.month);
 }
 
-/* A revolution of `count` packets: what it makes known. */
+/* The fields that are known after a revolution of `count` packets. */
 static uint16_t known_after(size_t count, uint8_t last_crc)
 {
     tmini_ct_init(&ct_state);
@@ -260,7 +260,8 @@ void test_every_wrong_last_crc_drops_the_revolution(void)
 void test_without_last_crc_nothing_is_trusted(void)
 {
     add_six_hertz();
-    TEST_ASSERT_FALSE(add(0x79, 0, SIX_HERTZ_CRC)); /* An old stray byte, by chance equal. */
+    TEST_ASSERT_FALSE(
+        add(0x79, 0, SIX_HERTZ_CRC)); /* An earlier stray byte has the same value by chance. */
     expect_nothing_known();
 }
 
@@ -273,13 +274,13 @@ void test_more_than_one_stray_byte_is_no_last_crc(void)
     expect_nothing_known();
 }
 
-/* Section 9.1: no CT information in point packets, no LastCRC, but noise now and then. */
+/* Section 9.1: no CT information in point packets, no LastCRC, but sometimes a byte of noise. */
 void test_a_unit_without_ct_information_never_becomes_healthy(void)
 {
     static const uint8_t zeros[16] = {0};
     for (unsigned noise = 0; noise <= 255; noise++) {
         add_points(zeros, 16);
-        TEST_ASSERT_FALSE(add(0x79, 1, (uint8_t)noise)); /* 0x32 would be its CRC. */
+        TEST_ASSERT_FALSE(add(0x79, 1, (uint8_t)noise)); /* 0x32 would be the CRC. */
     }
     expect_nothing_known();
 }
@@ -290,7 +291,7 @@ void test_ct_information_that_stops_coming_confirms_nothing_sent_before(void)
     add_six_hertz();
     TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
     add_points(zeros, 16);
-    TEST_ASSERT_FALSE(end_with(0x32)); /* Their CRC, by chance. */
+    TEST_ASSERT_FALSE(end_with(0x32)); /* By chance the right CRC. */
     TEST_ASSERT_EQUAL_UINT(0x12, tmini_ct_faults(&ct_state));
 }
 
@@ -323,7 +324,7 @@ void test_bytes_lost_or_skipped_inside_a_revolution_spoil_it(void)
 void test_a_lost_packet_drops_the_revolution(void)
 {
     add_revolution(0x79, &six_hertz[1], 6);
-    add_points(&six_hertz[8], 9); /* The eighth is missing without a trace. */
+    add_points(&six_hertz[8], 9); /* The eighth is lost with all its bytes. */
     TEST_ASSERT_FALSE(end_with(SIX_HERTZ_CRC));
     expect_nothing_known();
 }
@@ -429,7 +430,7 @@ void test_a_discarded_revolution_is_not_continued_but_what_is_known_is_kept(void
     TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
 }
 
-/* EB is the CRC of those eight alone. */
+/* EB is the CRC of the eight packets added here. */
 void test_what_comes_between_a_discarded_revolution_and_a_start_packet_is_no_revolution(void)
 {
     add_six_hertz();
@@ -450,7 +451,7 @@ void test_a_discarded_revolution_does_not_spoil_the_next_one(void)
 
 /* --------------------------------------------------------------------------- long revolutions */
 
-/* Seventeen packets and `more` with CT 10. */
+/* The revolution has 17 packets, then `more` with CT 10. */
 static bool long_revolution_is_trusted(unsigned more, uint8_t last_crc)
 {
     add_six_hertz();
@@ -489,7 +490,7 @@ void test_without_last_crc_or_ct_information_nothing_is_said(void)
     static const uint8_t zeros[16] = {0};
     add_six_hertz();
     TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 0, SIX_HERTZ_CRC));
-    add_points(zeros, 16); /* A unit that sends none: the byte before its start packet is noise. */
+    add_points(zeros, 16); /* A unit without LastCRC: the byte before its start packet is noise. */
     TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0x00));
     TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x00, 0, 0x00));
 }
@@ -501,5 +502,6 @@ void test_a_revolution_with_a_gap_is_not_refuted_by_last_crc(void)
     TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0x00));
     (void)add(0x40, 0, 0);
     (void)add(0x34, 3, 0);
-    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0x42)); /* Of 79 and 40 alone. */
+    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN,
+                          verdict_on(0x79, 1, 0x42)); /* The CRC of 79 and 40 alone. */
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Bytes to packets and scans: what the decoder adds to parser, CT information and builder. */
+/* From bytes to packets and scans: the part that the decoder adds to parser, CT and builder. */
 
 #include "stream.h"
 
@@ -22,7 +22,7 @@ static const tmini_scan_t *const scan = &decoder.builder.scan;
 void setUp(void)
 {
     ct_of_first_third = 0;
-    memset(&decoder, 0xFF, sizeof decoder); /* Whatever it was. */
+    memset(&decoder, 0xFF, sizeof decoder); /* As memory that was used before. */
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, sizeof memory, false));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_decoder_init(&decoder, &ring, 0));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_builder_init(&decoder.builder, points, 40, 0));
@@ -30,7 +30,8 @@ void setUp(void)
 
 void tearDown(void) {}
 
-/* A start packet at 10 Hz, or a third of a turn; it came then, or so much earlier. */
+/* Third 0 is a start packet at 10 Hz, the others are a third of a turn. The packet came at `at_ms`,
+ * or up to `late_ms` earlier. */
 static bool come(unsigned third, uint32_t at_ms, uint16_t late_ms)
 {
     const uint16_t first_q6 = (uint16_t)(third == 0 ? 0 : (third - 1) * 7680 + 64);
@@ -44,7 +45,7 @@ static bool come(unsigned third, uint32_t at_ms, uint16_t late_ms)
     return tmini_decoder_take(&decoder, false, at_ms, late_ms);
 }
 
-/* All of a turn but its start packet, in 80 ms. */
+/* A turn without its start packet, in 75 ms. */
 static void rest_of_turn(uint32_t from_ms)
 {
     for (unsigned third = 1; third <= 3; third++) {
@@ -67,18 +68,18 @@ void test_the_packet_that_ends_a_scan_begins_the_next_at_its_own_time(void)
     rest_of_turn(70000);
     TEST_ASSERT_TRUE(come(0, 70100, 0));
     TEST_ASSERT_TRUE(scan->complete);
-    decoder.builder.scan.upside_down = true; /* As tmini_mount_step() leaves it. */
+    decoder.builder.scan.upside_down = true; /* As tmini_mount_step() does. */
     rest_of_turn(70100);
     TEST_ASSERT_EQUAL_UINT32(70100, scan->start_ms);
     TEST_ASSERT_TRUE(come(0, 70200, 0));
     TEST_ASSERT_TRUE(scan->complete);
     TEST_ASSERT_FALSE(scan->upside_down);
-    tmini_decoder_restart(&decoder); /* Then it begins none. */
+    tmini_decoder_restart(&decoder); /* After a restart, the packet does not begin the next scan. */
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, tmini_decoder_next(&decoder, 0));
     TEST_ASSERT_FALSE(decoder.builder.open);
 }
 
-/* One and a half turns are 150 ms. */
+/* The limit of one and a half turns is 150 ms. */
 void test_a_scan_that_may_have_begun_earlier_may_have_taken_too_long(void)
 {
     for (uint16_t late_ms = 50; late_ms <= 51; late_ms++) {
@@ -97,7 +98,7 @@ void test_a_scan_that_may_have_begun_earlier_may_have_taken_too_long(void)
     }
 }
 
-/* Each packet but the first of a scan: that is no delay of the scan. */
+/* Delays of the other packets do not count. */
 void test_a_scan_is_as_late_as_its_first_packet(void)
 {
     TEST_ASSERT_FALSE(come(0, 70000, 0));
@@ -108,7 +109,7 @@ void test_a_scan_is_as_late_as_its_first_packet(void)
     TEST_ASSERT_TRUE(scan->complete);
 }
 
-/* 300 ms: 44 in 8 bits. */
+/* 300 is 44 in 8 bits. */
 void test_a_scan_may_be_late_by_more_than_a_quarter_of_a_second(void)
 {
     TEST_ASSERT_FALSE(come(0, 70000, 300));
@@ -117,7 +118,7 @@ void test_a_scan_may_be_late_by_more_than_a_quarter_of_a_second(void)
     TEST_ASSERT_FALSE(scan->complete);
 }
 
-/* Nothing of its turn came but the start packet, and the next one's two turns later. */
+/* Only start packets came, 1 ms more than one and a half turns apart. */
 void test_a_scan_that_took_too_long_has_a_gap_though_no_byte_was_lost(void)
 {
     TEST_ASSERT_FALSE(come(0, 70000, 0));
@@ -126,7 +127,7 @@ void test_a_scan_that_took_too_long_has_a_gap_though_no_byte_was_lost(void)
     TEST_ASSERT_EQUAL_UINT32(1, decoder.builder.late_scans);
 }
 
-/* 65,636 ms: 100 in 16 bits. */
+/* 65,636 is 100 in 16 bits. */
 void test_a_scan_of_more_than_a_minute_is_not_complete(void)
 {
     TEST_ASSERT_FALSE(come(0, 70000, 0));
@@ -135,7 +136,7 @@ void test_a_scan_of_more_than_a_minute_is_not_complete(void)
     TEST_ASSERT_FALSE(scan->complete);
 }
 
-/* ------------------------------------------------------- packets that something else has found */
+/* ------------------------------------------------------------ packets from another decoder */
 
 static tmini_decoder_t other;
 static tmini_point_t others[40];
@@ -146,7 +147,7 @@ static void begin_other(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_builder_init(&other.builder, others, 40, 0));
 }
 
-/* Comes to the decoder, which hands it on. */
+/* The packet comes to `decoder`, and is passed on to `other`. */
 static bool hand_on(unsigned third, uint32_t at_ms)
 {
     (void)come(third, at_ms, 0);
@@ -171,7 +172,7 @@ void test_packets_handed_on_make_the_same_scans(void)
     hand_on_rest_of_turn(70000);
     TEST_ASSERT_EQUAL_UINT16(16, other.builder.scan.count);
     TEST_ASSERT_TRUE(hand_on(0, 70100));
-    TEST_ASSERT_EQUAL_UINT16(1, other.builder.scan.count); /* It has begun the next. */
+    TEST_ASSERT_EQUAL_UINT16(1, other.builder.scan.count); /* The packet has begun the next scan. */
     hand_on_rest_of_turn(70100);
     TEST_ASSERT_TRUE(hand_on(0, 70200));
     TEST_ASSERT_EQUAL_UINT8(0, other.packet.gap);
@@ -190,7 +191,8 @@ void test_a_packet_handed_on_in_doubt_ends_the_scan(void)
     TEST_ASSERT_EQUAL_UINT16(6, other.builder.scan.count);
 }
 
-/* CT bytes 201, 2, 0 and 0 have the CRC 0xE5 (bit by bit, section 7); it comes, or another. */
+/* The CT bytes 201, 2, 0 and 0 have the CRC 0xE5 (section 7, computed bit by bit). The LastCRC is
+ * right, then wrong. */
 void test_last_crc_judges_packets_handed_on(void)
 {
     static const uint8_t last_crcs[2] = {0xE5, 0xE4};

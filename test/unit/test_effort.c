@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What one call of the parser or the driver may cost, whatever has arrived: large rings full of
- * the worst that can be sent. */
+/* The work of one call of the parser or the driver is bounded, whatever has arrived. The rings here
+ * are large and full of the bytes that cost most. */
 
 #include "rig.h"
 #include "tmini_driver.h"
@@ -10,8 +10,8 @@
 #include "tmini/parts/tmini_parser.h"
 #include "unity.h"
 
-/* The header of a packet of 80 samples, 250 bytes. Repeated, it makes candidates that are complete,
- * plausible and wrong; each costs its 250 bytes and yields ten. */
+/* The header of a packet of 80 samples, 250 bytes. Repeated, it makes candidates that are complete
+ * and plausible, but wrong: the parser examines 250 bytes to skip ten. */
 static const uint8_t header[10] = {0xAA, 0x55, 0x00, 80, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00};
 #define HEADERS 400u
 #define CANDIDATES 376u /* (400 * 10 - 250) / 10 + 1 of them are complete. */
@@ -43,8 +43,8 @@ static tmini_parser_counters_t parser_counters(void)
     return counters;
 }
 
-/* One call looks at 1536 bytes and at most one packet more. It skips only the first byte of the
- * candidate with which it has looked at enough. */
+/* One call examines 1536 bytes and at most one packet more. Of the candidate that exceeds the
+ * limit, it skips only the first byte. */
 void test_a_call_looks_at_no_more_bytes_than_it_may(void)
 {
     open_parser();
@@ -76,7 +76,7 @@ void test_garbage_without_a_candidate_is_passed_in_bounded_steps_too(void)
     TEST_ASSERT_EQUAL_UINT32(8192, parser_counters().bytes_skipped);
 }
 
-/* Each costs two bytes skipped and what it takes to look at it, 14: 1536 / 16. */
+/* Each candidate costs 14 and two skipped bytes: 1536 / 16. */
 void test_candidates_without_a_packet_are_bounded_too(void)
 {
     open_parser();
@@ -91,8 +91,8 @@ void test_candidates_without_a_packet_are_bounded_too(void)
     TEST_ASSERT_EQUAL_UINT32(0, parser_counters().checksum_errors);
 }
 
-/* What is skipped after candidates counts with them: 99 of one byte, 15 each, and for the last
- * one and what follows it are left 51. */
+/* 99 candidates cost 14 and one skipped byte each. For the last one and the garbage after it, 51 of
+ * 1536 are left. */
 void test_garbage_after_candidates_is_bounded_with_them(void)
 {
     open_parser();
@@ -127,7 +127,7 @@ static void open_driver(void)
     rig_init();
 }
 
-/* A packet of one sample costs its 13 bytes twice, and 44: 1536 / 70, rounded up. */
+/* A packet of one sample costs 44 and twice its 13 bytes: 1536 / 70, rounded up. */
 static void check_that_short_packets_are_bounded(void)
 {
     const uint32_t before = poll_counters().packets;
@@ -156,7 +156,7 @@ void test_packets_of_a_scan_are_bounded(void)
     check_that_short_packets_are_bounded();
 }
 
-/* A packet of 32 samples costs its 106 bytes twice, and 44: six of them cost 1536. */
+/* A packet of 32 samples costs 44 and twice its 106 bytes: six of them cost 1536. */
 void test_a_poll_ends_when_its_effort_is_used_up_to_the_last(void)
 {
     open_driver();
@@ -169,7 +169,7 @@ void test_a_poll_ends_when_its_effort_is_used_up_to_the_last(void)
     TEST_ASSERT_EQUAL_UINT32(7, poll_counters().packets);
 }
 
-/* Ten packets of 4 samples cost 88 each; for the garbage after them 656 are left. */
+/* Ten packets of 4 samples cost 88 each, which leaves 656 for the garbage after them. */
 void test_packets_and_the_garbage_after_them_share_a_polls_effort(void)
 {
     open_driver();

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Frames, where the parser's tests do not cover them: a sample that straddles the ring's end, and a
- * reply's content that DMA overwrites. */
+/* The parts of frames that the parser's tests do not cover: a sample that wraps around the end of
+ * the ring, and a reply whose content DMA overwrites. */
 
 #include <string.h>
 
@@ -16,7 +16,7 @@ static tmini_ring_t ring;
 static tmini_frame_t frame;
 static uint8_t memory[SIZE];
 
-/* What the ring holds, from its oldest byte on: the letters, from "a". */
+/* The content of the ring, from its oldest byte on. */
 static const uint8_t letters[] = "abcdefghijklmnopqrstuvwxyzABCDEF";
 
 static void hold_letters_from(size_t place, bool dma)
@@ -35,8 +35,8 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-/* The samples from sample `index` on; `place` is where they lie, NULL if put together. The first
- * one follows a packet's header of ten bytes: it is "klm". */
+/* The samples from sample `index` on; `place` is their address, NULL if the sample was copied
+ * together. Sample 0 follows the packet's header of ten bytes: it is "klm". */
 static void expect_samples(size_t index, size_t wanted, size_t count, const uint8_t *place)
 {
     uint8_t joined[4] = {0, 0, 0, GUARD};
@@ -59,7 +59,7 @@ void test_samples_that_lie_in_one_piece_are_read_where_they_are(void)
 void test_of_samples_in_two_pieces_the_whole_ones_of_the_first_piece_come_first(void)
 {
     hold_letters_from(11, false);
-    expect_samples(0, 7, 3, &memory[21]); /* Eleven bytes to the end. */
+    expect_samples(0, 7, 3, &memory[21]); /* Eleven bytes before the end. */
     expect_samples(2, 2, 1, &memory[27]);
 }
 
@@ -70,7 +70,7 @@ void test_a_sample_that_straddles_the_memorys_end_is_put_together(void)
     expect_samples(3, 1, 1, NULL);
     expect_samples(4, 2, 2, &memory[1]);
     hold_letters_from(12, false);
-    expect_samples(3, 2, 1, NULL); /* One and two. */
+    expect_samples(3, 2, 1, NULL); /* One byte at the end, two at the beginning. */
 }
 
 void test_a_replys_content_is_what_follows_its_header_of_seven_bytes(void)

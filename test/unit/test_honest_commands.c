@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Commands whose bytes get lost, and answers that are older than the question. */
+/* Commands that get lost, and replies to earlier commands. */
 
 #include "known_packets.h"
 #include "turns.h"
@@ -22,7 +22,7 @@ void setUp(void)
 
 void tearDown(void) {}
 
-/* Polls each millisecond; returns a bit for each event. */
+/* Polls every millisecond; returns a bit for each event. */
 static unsigned pass_ms(uint32_t ms)
 {
     unsigned events = 0;
@@ -51,9 +51,9 @@ static void feed_frequency(uint32_t frequency_chz)
     turns_feed(reply, encode_frequency_reply(reply, frequency_chz));
 }
 
-/* ---- A stop that the lidar never gets ---- */
+/* ---- A stop that the lidar does not receive ---- */
 
-/* The start has been acknowledged; the motor comes up. */
+/* The start has been acknowledged; the motor spins up. */
 static void go_spinning_up(void)
 {
     uint8_t reply[ENCODE_REPLY_MAX];
@@ -72,20 +72,19 @@ void test_a_stop_that_is_lost_in_spin_up_is_sent_again_when_the_lidar_streams(vo
     go_spinning_up();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&turns.lidar));
     const unsigned stops = writes_of(STOP);
-    events = pass_ms(200); /* The motor comes up still; the line is quiet. */
+    events = pass_ms(200); /* The motor still spins up; the line is quiet. */
     TEST_ASSERT_TRUE((events & BIT(TMINI_EVENT_STOPPED)) != 0);
     events = 0;
     for (uint16_t turn = 1; turn < 10 && writes_of(STOP) == stops; turn++) {
         events |= turns_pass(0, TURNS_PACKETS - 1, turn);
     }
-    TEST_ASSERT_TRUE_MESSAGE(writes_of(STOP) > stops, "stopped again");
-    TEST_ASSERT_TRUE_MESSAGE((events & BIT(TMINI_EVENT_UNWANTED_SCANNING)) != 0, "told");
+    TEST_ASSERT_TRUE_MESSAGE(writes_of(STOP) > stops, "no second stop");
+    TEST_ASSERT_TRUE_MESSAGE((events & BIT(TMINI_EVENT_UNWANTED_SCANNING)) != 0, "not reported");
     events = pass_ms(200);
-    TEST_ASSERT_TRUE_MESSAGE((events & BIT(TMINI_EVENT_STOPPED)) != 0, "and stopped");
+    TEST_ASSERT_TRUE_MESSAGE((events & BIT(TMINI_EVENT_STOPPED)) != 0, "not stopped");
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_IDLE, tmini_state(&turns.lidar));
 }
 
-/* It is reported once, however long the stream continues. */
 void test_a_lidar_that_will_not_stop_is_stopped_again_and_again(void)
 {
     go_spinning_up();
@@ -98,7 +97,7 @@ void test_a_lidar_that_will_not_stop_is_stopped_again_and_again(void)
     TEST_ASSERT_EQUAL_UINT(1, writes_of(START));
 }
 
-/* ---- Answers older than the question ---- */
+/* ---- Replies to earlier commands ---- */
 
 static void go_idle(void)
 {
@@ -106,8 +105,8 @@ static void go_idle(void)
     TEST_ASSERT_TRUE((pass_ms(200) & BIT(TMINI_EVENT_STOPPED)) != 0);
 }
 
-/* Scanning, then stopped; the last thing that comes is a packet cut off by the stop and, after it,
- * the reply to a question asked long ago. */
+/* Scanning, then stopped: the stop cuts off the last packet. After it the reply to an earlier query
+ * may come. */
 static void stop_in_mid_packet(bool stale_reply)
 {
     uint8_t bytes[TURNS_PACKET_MAX + 1];
@@ -129,7 +128,7 @@ void test_a_stale_reply_after_a_packet_cut_off_by_the_stop_is_no_answer(void)
 
     stop_in_mid_packet(true);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_frequency(&turns.lidar));
-    events = pass_ms(120); /* The lidar takes its time. */
+    events = pass_ms(120); /* The lidar replies late. */
     if ((events & BIT(TMINI_EVENT_FREQUENCY)) == 0) {
         feed_frequency(600);
         events |= pass_ms(2000);
@@ -151,8 +150,7 @@ void test_a_stop_that_cuts_a_packet_does_not_delay_the_next_answer(void)
     TEST_ASSERT_EQUAL_UINT16(600, tmini_frequency_chz(&turns.lidar));
 }
 
-/* No lidar turns at 655.35 Hz, nor at 1310.72 Hz, nor at 0; the vendor says 6 to 12 Hz (section
- * 1). */
+/* The vendor specifies 6 to 12 Hz (section 1); 65535 is 655.35 Hz. */
 void test_a_frequency_that_cannot_be_is_not_taken_as_one(void)
 {
     static const uint32_t impossible[] = {0, 99, 65535, 131072, 0xFFFFFFFF};
@@ -174,8 +172,7 @@ void test_a_frequency_that_cannot_be_is_not_taken_as_one(void)
     }
 }
 
-/* `A5 98` is sent by other programs of the family; real units answer it, perhaps late (section
- * 9). */
+/* Programs for similar lidars send `A5 98`; real units answer it, perhaps late (section 9). */
 void test_a_late_reply_to_a_command_that_this_driver_never_sends_disturbs_no_answer(void)
 {
     static const uint8_t late[11] = {0xA5, 0x5A, 0x04, 0x00, 0x00, 0x00, 0x10};
@@ -209,7 +206,7 @@ void test_a_late_reply_among_packets_costs_none_of_them(void)
 
 /* ---- The parser alone ---- */
 
-/* No ring of 64 bytes can hold this reply: awaiting it must not stop the packets. */
+/* A ring of 64 bytes cannot hold this reply. Waiting for it must not stop the packets. */
 void test_a_reply_longer_than_the_ring_is_not_waited_for(void)
 {
     static const uint8_t header[7] = {0xA5, 0x5A, 100, 0x00, 0x00, 0x00, 0x04};

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What comes while tmini_poll() is at work: between any two accesses of an index that the receiver
- * and the driver share. The library here is built with interrupting_atomic.h. */
+/* Bytes that come while tmini_poll() runs, between any two accesses of an index that the receiver
+ * and the driver share. The library here is compiled with interrupting_atomic.h. */
 
 #include "interrupting_atomic.h"
 #include "turns.h"
@@ -14,8 +14,8 @@
 #define BIT(event) (1u << (event))
 
 static void (*handler)(void); /* Called at each access; NULL: interrupts are off. */
-static unsigned accesses;     /* So far. */
-static unsigned chosen;       /* The access at which once() comes. */
+static unsigned accesses;     /* Since the poll began. */
+static unsigned chosen;       /* The access at which the handler acts. */
 
 void interrupt(void)
 {
@@ -23,7 +23,7 @@ void interrupt(void)
 
     accesses++;
     if (call != NULL) {
-        handler = NULL; /* An interrupt is not interrupted. */
+        handler = NULL; /* Interrupts do not nest. */
         call();
         handler = call;
     }
@@ -49,9 +49,9 @@ static tmini_event_t poll_with(void (*come)(void))
     return event;
 }
 
-/* ---- Bytes refused while the parser is at work are missing where they are missing ---- */
+/* ---- Bytes refused while the parser runs ---- */
 
-/* Turn 101 comes at once, and most of it finds no room. */
+/* Turn 101 comes at once; the ring has no room for most of it. */
 static void a_turn_comes(void)
 {
     if (accesses == chosen) {
@@ -60,7 +60,8 @@ static void a_turn_comes(void)
     }
 }
 
-/* The ring is full of turn 100 when the poll begins, and its packets are given back meanwhile. */
+/* When the poll begins, the ring is full of packets of turn 100; the poll releases them one by
+ * one. */
 static bool overflow_at(unsigned access)
 {
     turns_open_scanning(512, false);
@@ -90,7 +91,7 @@ void test_an_overflow_at_any_moment_of_a_poll_mixes_no_turns(void)
     TEST_ASSERT_TRUE(access > 10);
 }
 
-/* A byte here and there finds no room; the others come. */
+/* A few bytes find no room; the others arrive. */
 static size_t sent;
 
 static void packets_come_one_by_one(void)
@@ -118,7 +119,7 @@ void test_overflow_after_overflow_during_polls_mixes_no_turns(void)
         turns_open_scanning(256, false);
         sent = 0;
         turns_feed_packets(TURNS_PACKETS - 1, TURNS_PACKETS - 1,
-                           100); /* Some work for the first. */
+                           100); /* Work for the first poll. */
         for (unsigned i = 0; i < 200; i++) {
             if (poll_with(packets_come_one_by_one) == TMINI_EVENT_SCAN) {
                 expect_one_turn(tmini_scan(&turns.lidar));
@@ -128,7 +129,7 @@ void test_overflow_after_overflow_during_polls_mixes_no_turns(void)
     }
 }
 
-/* ---- The reply is intact; before it has been copied, DMA has overwritten it ---- */
+/* ---- DMA overwrites an intact reply before it is copied ---- */
 
 static bool has_come;
 
@@ -172,7 +173,7 @@ static bool info_with_a_lap_at(unsigned access)
     return has_come;
 }
 
-/* Another that comes in time is. */
+/* The reply is taken if it comes again and is not overwritten. */
 void test_a_reply_that_dma_overwrites_before_it_is_copied_is_no_answer(void)
 {
     unsigned access = 1;
@@ -183,7 +184,7 @@ void test_a_reply_that_dma_overwrites_before_it_is_copied_is_no_answer(void)
     TEST_ASSERT_TRUE(access > 3);
 }
 
-/* ---- A poll's work is bounded by what lay in the ring when it began ---- */
+/* ---- The bytes in the ring when a poll begins bound its work ---- */
 
 static uint32_t fed;
 

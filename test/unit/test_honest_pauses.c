@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Programs whose scans were complete and of two revolutions, played in virtual time: a lidar at 12
- * Hz, of which one turn does not arrive, from one packet's end to the next one's beginning; the
- * turns before and after it join without a seam. */
+/* A lidar at 12 Hz of which one turn is missing, from the end of a packet on; the packets before
+ * and after it fit together. The programs here, played in virtual time, once got complete scans of
+ * two revolutions. */
 
 #include "encoder.h"
 
@@ -12,25 +12,25 @@
 
 #include <string.h>
 
-#define PACKETS 10u /* Of a turn: a start packet, eight of 40 samples and one of 12. */
-#define POINTS 333u /* Likewise. */
+#define PACKETS 10u /* Per turn: a start packet, eight of 40 samples and one of 12. */
+#define POINTS 333u /* Per turn. */
 #define TURN_US (POINTS * 250u)
 #define TURNS 8u
 #define STREAM_MAX (TURNS * 1200u)
 
-/* How a program is made, and where the turn is missing. */
+/* The properties of a program, and where the turn is missing. */
 typedef struct {
     size_t ring;
     uint32_t poll_us;
-    uint32_t phase_us;  /* The first poll. */
+    uint32_t phase_us;  /* Time of the first poll. */
     int32_t clock_ppm;  /* The clock is too fast by this much. */
     uint16_t limit_ms;  /* max_pause_ms. */
-    unsigned missing;   /* From the end of this packet on. */
-    uint32_t hold_us;   /* What comes is held up for this long, */
-    uint32_t before_us; /* from this long before the turn is missing on. */
-    uint32_t pause_us;  /* The program is away for this long, */
+    unsigned missing;   /* A turn is missing after this packet. */
+    uint32_t hold_us;   /* Bytes are held up for this time. */
+    uint32_t before_us; /* The hold-up begins this time before the missing turn. */
+    uint32_t pause_us;  /* The program does not poll for this time. */
     uint32_t pause_at_us;
-    bool reports; /* A layer below keeps what finds no room, and reports it. */
+    bool reports; /* A layer below keeps bytes that find no room, and reports them. */
 } program_t;
 
 static uint8_t line[STREAM_MAX];
@@ -47,8 +47,8 @@ static uint64_t now_us;
 
 static unsigned scans;
 static unsigned complete;
-static unsigned mixed; /* Of two turns. */
-static unsigned lies;  /* And complete. */
+static unsigned mixed; /* Scans with points of two turns. */
+static unsigned lies;  /* Mixed scans that are called complete. */
 
 void setUp(void)
 {
@@ -78,7 +78,7 @@ static void send_packet(uint32_t sent_us, unsigned index, uint16_t turn)
     }
 }
 
-/* Turns 1 to TURNS; of the third and the fourth, packets are missing. */
+/* Turns 1 to TURNS; packets of the third and the fourth are missing. */
 static void send_turns(unsigned missing)
 {
     uint32_t measured_us = 0;
@@ -172,7 +172,7 @@ static bool is_away(uint32_t us)
     return us >= program->pause_at_us && us < program->pause_at_us + program->pause_us;
 }
 
-/* What has arrived is fed as far as there is room, from the byte `fed` on. */
+/* Feeds the bytes that have arrived, from the byte `fed` on, as far as there is room. */
 static size_t feed_arrived(size_t fed, uint32_t us)
 {
     size_t arrived = fed;
@@ -190,7 +190,7 @@ static size_t feed_arrived(size_t fed, uint32_t us)
     return fed;
 }
 
-/* The line's bytes come, half a millisecond's worth at a time; its end is polled for, too. */
+/* Feeds the line's bytes in steps of half a millisecond, with polls until after its end. */
 static void play(const program_t *to_play)
 {
     size_t fed = 0;
@@ -215,7 +215,7 @@ static void play(const program_t *to_play)
     TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
 }
 
-/* ---- Row 1: the receiving task is held up before the silence ---- */
+/* ---- The receiving task is held up before the silence ---- */
 
 void test_a_receiver_that_is_held_up_before_a_silence_mixes_no_turns(void)
 {
@@ -231,7 +231,7 @@ void test_a_receiver_that_is_held_up_before_a_silence_mixes_no_turns(void)
     TEST_ASSERT_EQUAL_UINT(0, mixed);
 }
 
-/* ---- Row 2: a silence of a turn between two looks ---- */
+/* ---- A silence of a turn between two polls ---- */
 
 static void play_at_all_moments(program_t rare)
 {
@@ -267,7 +267,7 @@ void test_polls_of_1100_ms_mix_no_turns(void)
     play_at_all_moments((program_t){.ring = 65536, .poll_us = 1100000, .limit_ms = 30});
 }
 
-/* ---- Row 3: a limit that lets a turn's silence pass ---- */
+/* ---- A limit that does not detect a silence of a turn ---- */
 
 void test_a_raised_or_switched_off_limit_makes_no_scan_of_two_turns_complete(void)
 {
@@ -279,12 +279,12 @@ void test_a_raised_or_switched_off_limit_makes_no_scan_of_two_turns_complete(voi
                 (program_t){.ring = 2048, .poll_us = poll_us, .limit_ms = limits_ms[i]});
         }
     }
-    TEST_ASSERT_TRUE(mixed > 0); /* The silence is one that is not judged. */
+    TEST_ASSERT_TRUE(mixed > 0); /* The silence was not detected. */
 }
 
-/* ---- What a port holds when the ring is full ---- */
+/* ---- Bytes that a port holds while the ring is full ---- */
 
-/* 127 ms are nine tenths of what a driver's buffer of 2048 bytes lasts; 300 are possible with 8192
+/* A port's buffer of 2048 bytes lasts somewhat longer than 127 ms; 300 ms are possible with 8192
  * bytes. */
 void test_a_pause_of_the_program_that_the_port_bridges_costs_no_scan(void)
 {
@@ -307,8 +307,8 @@ void test_a_pause_of_the_program_that_the_port_bridges_costs_no_scan(void)
     }
 }
 
-/* The ring takes the first of what came during the pause. The silence may lie among the rest, which
- * comes into the ring when the pause has been judged. */
+/* The ring takes the first bytes that came during the pause. The silence may be among the rest,
+ * which comes into the ring after the pause has been judged. */
 void test_a_silence_among_bytes_that_the_port_holds_mixes_no_turns(void)
 {
     static const uint16_t limits_ms[] = {30, 250, 0};

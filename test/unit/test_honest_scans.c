@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Scans never lie: whatever happens to the line, the receiver or the program, no scan has points of
- * two revolutions, and no scan with missing points is complete. */
+/* Whatever happens to the line, the receiver or the program: no scan has points of two revolutions,
+ * and no scan with missing points is called complete. */
 
 #include "turns.h"
 
@@ -23,7 +23,7 @@ void tearDown(void)
     TEST_ASSERT_EQUAL_UINT_MESSAGE(0, turns_scans.mixed, "scans of two revolutions");
 }
 
-/* The first `count` packets of a turn have come. */
+/* The first `count` packets of a turn come. */
 static void pass_part(unsigned count, uint16_t distance_mm)
 {
     (void)turns_pass(0, count - 1, distance_mm);
@@ -34,7 +34,7 @@ static void pass_whole_turn(uint16_t distance_mm)
     (void)turns_pass(0, TURNS_PACKETS - 1, distance_mm);
 }
 
-/* Nothing comes, and the program polls each millisecond. */
+/* No bytes come, and the program polls every millisecond. */
 static void be_silent(uint32_t ms)
 {
     for (; ms > 0; ms--) {
@@ -60,9 +60,9 @@ void test_on_a_healthy_line_every_turn_is_a_complete_scan(void)
     TEST_ASSERT_EQUAL_UINT16(TURNS_POINTS, turns_scans.last.count);
 }
 
-/* ---- The line is silent in mid-scan, then goes on where the angle fits ---- */
+/* ---- The line is silent in mid-scan, then continues at the right angle of another turn ---- */
 
-/* The rest of another turn follows, `turns_later` turns later. */
+/* After the silence comes the rest of the turn that is `turns_later` turns later. */
 static void continue_after(unsigned turns_later)
 {
     pass_part(7, 100);
@@ -78,7 +78,7 @@ void test_a_silence_of_whole_turns_ends_the_scan(void)
         turns_open_scanning(1024, false);
         continue_after(later);
         TEST_ASSERT_EQUAL_UINT(0, turns_scans.mixed);
-        TEST_ASSERT_EQUAL_UINT(4, turns_scans.count); /* Three parts, and the whole one. */
+        TEST_ASSERT_EQUAL_UINT(4, turns_scans.count); /* Three partial scans and a whole one. */
         TEST_ASSERT_EQUAL_UINT(1, turns_scans.complete);
     }
 }
@@ -94,7 +94,7 @@ void test_a_scan_that_a_silence_has_ended_is_not_complete_and_has_a_gap(void)
     TEST_ASSERT_EQUAL_UINT16(1 + 6 * 40, turns_scans.last.count);
 }
 
-/* 3.5 degrees early: the angles do not jump. */
+/* The silence is shorter than a turn, but the angles do not jump. */
 void test_a_silence_of_nearly_a_whole_turn_ends_the_scan(void)
 {
     pass_part(7, 100);
@@ -105,7 +105,7 @@ void test_a_silence_of_nearly_a_whole_turn_ends_the_scan(void)
     TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
 }
 
-/* From the fourth packet of a turn to the twelfth of the next: the angle says 0.5 turns, time
+/* From packet 3 of a turn to packet 12 of the next: the angles differ by 0.5 turns, the times by
  * 1.5. */
 void test_a_silence_of_one_turn_and_a_half_ends_the_scan(void)
 {
@@ -116,7 +116,7 @@ void test_a_silence_of_one_turn_and_a_half_ends_the_scan(void)
     TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
 }
 
-/* The plug wobbles within a packet: its beginning and its end are of two turns. */
+/* The plug has a bad contact during a packet: its two halves are of different turns. */
 void test_a_silence_within_a_packet_ends_the_scan(void)
 {
     uint8_t bytes[TURNS_PACKET_MAX + 1];
@@ -131,8 +131,8 @@ void test_a_silence_within_a_packet_ends_the_scan(void)
     TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
 }
 
-/* For a whole turn only the beginning of each packet comes: neither silence nor many skipped bytes.
- * Then the next turn continues where the angle fits. */
+/* For a whole turn only the beginning of each packet comes, without a silence or many skipped
+ * bytes. Then the next turn continues at the right angle. */
 void test_packets_cut_to_a_few_bytes_for_a_turn_end_the_scan(void)
 {
     uint8_t bytes[TURNS_PACKET_MAX + 1];
@@ -161,7 +161,7 @@ void test_a_silence_between_two_turns_costs_no_scan_but_the_two(void)
 
 /* ---- The ring overflows while the program is busy ---- */
 
-/* Three turns come without a poll; where they end, the angles go on. */
+/* Three turns come without a poll; then the stream continues without a jump of the angle. */
 static void be_busy_for_turns(size_t rx_size)
 {
     turns_open_scanning(rx_size, false);
@@ -186,8 +186,8 @@ void test_an_overflow_of_any_ring_mixes_no_turns(void)
     }
 }
 
-/* The first overflow's place is not forgotten for the second's, less than a ring after it: of turn
- * 101 the start and a packet have come, and turn 102 would go on where they end. */
+/* The second overflow must not hide the first one: the angles of turn 102 continue those of the two
+ * packets of turn 101 before it. */
 void test_two_overflows_less_than_a_ring_apart_are_both_remembered(void)
 {
     turns_open_scanning(512, false);
@@ -206,8 +206,8 @@ void test_two_overflows_less_than_a_ring_apart_are_both_remembered(void)
 
 /* ---- DMA goes on while the CPU stands still ---- */
 
-static unsigned next_index; /* Where the lidar is, */
-static uint16_t next_turn;  /* and in which turn. */
+static unsigned next_index; /* Index of the lidar's next packet in its turn. */
+static uint16_t next_turn;  /* That turn. */
 
 static size_t next_packet(uint8_t *bytes)
 {
@@ -219,8 +219,8 @@ static size_t next_packet(uint8_t *bytes)
     return size;
 }
 
-/* DMA writes this many laps and a little more without an interrupt being served. Then the loss is
- * reported before the position is published, as by a port that finds both halves' interrupts
+/* DMA writes this many laps and a little more without a served interrupt. Then the loss is reported
+ * before the position is published, as by a port that finds the interrupts of both halves
  * pending. */
 static void lose_laps(unsigned laps)
 {
@@ -238,7 +238,7 @@ static void lose_laps(unsigned laps)
     tmini_feed_dma(&turns.lidar, turns.dma_position);
 }
 
-/* Laps are lost after the first packets of a turn; three turns follow. */
+/* After the first packets of a turn, laps are lost; then three turns follow. */
 static void go_on_after(unsigned laps, unsigned first_packets)
 {
     uint8_t bytes[TURNS_PACKET_MAX + 1];
@@ -266,7 +266,7 @@ void test_laps_that_dma_went_round_meanwhile_mix_no_turns(void)
     }
 }
 
-/* ---- Complete means everything of a full turn ---- */
+/* ---- A complete scan has all points of a full turn ---- */
 
 /* Samples 2 degrees apart, so that few packets make an arc. */
 static void pass_arc(uint8_t ct, uint8_t count, uint32_t first_q6)
@@ -295,8 +295,8 @@ void test_an_arc_between_two_start_packets_is_not_complete(void)
     TEST_ASSERT_FALSE(turns_scans.last.complete);
 }
 
-/* The start packet is lost, and what comes next is a point packet of one sample (section 9.6): it
- * lies less than two degrees beyond the old turn's end. */
+/* The start packet is lost, and the next packet has a single sample (section 9.6), less than two
+ * degrees after the old turn's end. */
 void test_a_lone_packet_after_a_lost_start_packet_is_not_of_the_old_turn(void)
 {
     pass_whole_turn(100);
@@ -304,13 +304,13 @@ void test_a_lone_packet_after_a_lost_start_packet_is_not_of_the_old_turn(void)
     TEST_ASSERT_EQUAL_UINT(1, turns_scans.count);
     TEST_ASSERT_EQUAL_UINT16(TURNS_POINTS, turns_scans.last.count);
     TEST_ASSERT_FALSE(turns_scans.last.complete);
-    (void)turns_pass(1, TURNS_PACKETS - 1, 500); /* Like the lone one. */
+    (void)turns_pass(1, TURNS_PACKETS - 1, 500); /* The distance of the lone sample. */
     (void)turns_pass(0, 0, 501);
     TEST_ASSERT_EQUAL_UINT(2, turns_scans.count);
     TEST_ASSERT_FALSE(turns_scans.last.complete);
 }
 
-/* A real unit's very first packet is a start packet, at 85.7 degrees; the next one is at 0. */
+/* As on a real unit: the first packet is a start packet at 85.7 degrees; the next start is at 0. */
 void test_a_first_turn_that_begins_late_is_not_complete(void)
 {
     pass_arc(0x31, 1, 5485);
@@ -324,8 +324,8 @@ void test_a_first_turn_that_begins_late_is_not_complete(void)
     TEST_ASSERT_FALSE(turns_scans.last.complete);
 }
 
-/* The last packet's six samples are 3.3 degrees, which might be jitter; but LastCRC knows of the
- * packet (section 7). */
+/* Without the last packet's six samples, 3.3 degrees are missing, which might be jitter. But
+ * LastCRC shows that a packet is missing (section 7). */
 static void pass_turn_without_its_last_packet(uint16_t distance_mm)
 {
     uint8_t bytes[TURNS_PACKET_MAX + 1];
@@ -357,8 +357,8 @@ void test_a_small_packet_whose_loss_the_guard_proves_is_missing(void)
 
 /* ---- A pause between polls costs nothing ---- */
 
-/* A layer below holds the packet's second half while the program does something else for this long;
- * when it comes back, it polls before that layer has handed over what it holds. */
+/* A layer below holds the second half of a packet while the program is busy for this time. The
+ * program then polls before that layer has passed on the bytes. */
 static void pause_within_a_packet(uint32_t pause_ms)
 {
     uint8_t bytes[TURNS_PACKET_MAX + 1];
@@ -373,7 +373,7 @@ static void pause_within_a_packet(uint32_t pause_ms)
     turns_feed(&bytes[60], size - 60);
     turns_feed_packets(8, TURNS_PACKETS - 1, 100);
     turns_feed_packets(0, 0, 101);
-    turns.now_ms -= TURN_MS - 70; /* They came while it paused. */
+    turns.now_ms -= TURN_MS - 70; /* The bytes came during the pause. */
     (void)turns_poll();
 }
 
@@ -388,7 +388,7 @@ void test_a_pause_between_polls_costs_no_packet(void)
     }
 }
 
-/* The program was away for as long as the rest of the turn takes: a complete scan. */
+/* The pause is as long as the rest of the turn takes, so the scan is complete. */
 void test_a_pause_between_polls_costs_no_scan(void)
 {
     pause_within_a_packet(115);
@@ -397,9 +397,9 @@ void test_a_pause_between_polls_costs_no_scan(void)
 
 /* ---- A stream without start packets ---- */
 
-/* Without start packets no scan would ever come. After 12,000 samples it is a fault; after another
- * 12,000, with ranges, the lidar is lost and started again. A turn without its start packet has
- * 657. */
+/* Without start packets no scan would ever be delivered. After 12,000 samples a fault is reported;
+ * after another 12,000, with ranges, the lidar is lost and started again. A turn without its start
+ * packet has 657. */
 void test_a_lidar_that_sends_no_start_packets_is_lost(void)
 {
     unsigned turns_passed = 0;
@@ -419,7 +419,7 @@ void test_a_lidar_that_sends_no_start_packets_is_lost(void)
 
 /* ---- A stream that steps backwards ---- */
 
-/* 360 degrees back, in small steps, do not buy the scan another turn forwards. */
+/* After 360 degrees back in small steps, a scan must still end after one turn forwards. */
 void test_a_stream_that_steps_backwards_does_not_widen_a_scan(void)
 {
     uint32_t at_q6 = 100 * 23040;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Ring and parser when the other side comes at the worst moment: before or after any access of an
- * index that both use. The ring and the parser here are built with interrupting_atomic.h. */
+/* Ring and parser are interrupted by the other side before or after any access of an index that
+ * both use. Both are compiled here with interrupting_atomic.h. */
 
 #include "interrupting_atomic.h"
 #include "receiver.h"
@@ -18,15 +18,15 @@ static stream_t stream;
 static receiver_t receiver;
 
 static void (*handler)(void); /* Called at each access; NULL: interrupts are off. */
-static unsigned accesses;     /* So far. */
-static unsigned chosen;       /* The access at which once() comes. */
+static unsigned accesses;     /* Since the call began. */
+static unsigned chosen;       /* The access at which the handler acts. */
 
 void interrupt(void)
 {
     void (*const call)(void) = handler;
     accesses++;
     if (call != NULL) {
-        handler = NULL; /* An interrupt is not interrupted. */
+        handler = NULL; /* Interrupts do not nest. */
         call();
         handler = call;
     }
@@ -45,7 +45,7 @@ void tearDown(void)
     handler = NULL;
 }
 
-/* The parser, interrupted by `come`. */
+/* Calls the parser; `come` interrupts it. */
 static tmini_frame_type_t next_with(void (*come)(void))
 {
     accesses = 0;
@@ -59,7 +59,7 @@ static tmini_frame_type_t next_with(void (*come)(void))
 
 static size_t fed;
 
-/* A byte comes with every access. */
+/* A byte comes at every access. */
 static void byte_comes(void)
 {
     if (fed < stream.size) {
@@ -90,7 +90,7 @@ void test_bytes_that_come_while_the_parser_works_are_all_parsed(void)
     TEST_ASSERT_EQUAL_UINT32(0, receiver_counters(&receiver).bytes_overrun);
 }
 
-/* At the chosen access the packet's last byte comes, and then more than the ring holds. */
+/* At the chosen access the packet's last byte comes, then more bytes than the ring can hold. */
 static void last_byte_and_an_overflow_come(void)
 {
     if (accesses == chosen) {
@@ -101,7 +101,7 @@ static void last_byte_and_an_overflow_come(void)
     }
 }
 
-/* Or bytes are known to be missing after it. */
+/* The same, but the bytes after it are reported as lost. */
 static void last_byte_and_a_gap_come(void)
 {
     if (accesses == chosen) {
@@ -124,7 +124,7 @@ static void packet_is_found_whenever(void (*come)(void))
         }
         TEST_ASSERT_EQUAL_INT(has_come ? TMINI_FRAME_PACKET : TMINI_FRAME_NONE, frame);
     }
-    TEST_ASSERT_TRUE(chosen > 3); /* That many moments there are at least. */
+    TEST_ASSERT_TRUE(chosen > 3); /* At least three accesses were tried. */
 }
 
 void test_a_packet_is_found_whenever_its_last_byte_and_an_overflow_come(void)
@@ -137,7 +137,7 @@ void test_a_packet_is_found_whenever_its_last_byte_and_a_gap_come(void)
     packet_is_found_whenever(last_byte_and_a_gap_come);
 }
 
-/* What is not refused must come out as it went in, though the reader makes room meanwhile. */
+/* Bytes that are not refused must be read unchanged, though the reader makes room meanwhile. */
 static uint8_t expected_byte;
 static size_t read_bytes;
 
@@ -158,7 +158,7 @@ static void reader_comes_at_the_chosen_access(void)
     }
 }
 
-/* Writes `count` of the bytes 0, 1, 2, … from `next` on; returns how many were taken. */
+/* Writes `count` bytes with the values next, next + 1, …; returns how many were accepted. */
 static size_t write_numbers(uint8_t next, size_t count)
 {
     const size_t refused = receiver.ring.overrun;
@@ -192,14 +192,14 @@ void test_a_reader_on_another_core_loses_and_repeats_nothing(void)
     }
 }
 
-/* It is slow on some machines, and what the receive interrupt would do most of the time. */
+/* Reading it is slow on some machines, and must not be most of the receive interrupt's work. */
 void test_the_readers_index_is_looked_at_once_a_lap(void)
 {
     receiver_open(&receiver, memory, 32, 1);
     accesses = 0;
     for (size_t i = 0; i < 320; i++) {
         tmini_ring_put(&receiver.ring, 0);
-        tmini_ring_discard(&receiver.ring, 1); /* Stores its own index. */
+        tmini_ring_discard(&receiver.ring, 1); /* Stores the reader's index. */
     }
     TEST_ASSERT_EQUAL_UINT(2 * (320 + 320 + 10), accesses); /* Before and after each access. */
     TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&receiver.ring));
@@ -207,7 +207,7 @@ void test_the_readers_index_is_looked_at_once_a_lap(void)
 
 /* ------------------------------------------------------------------------------------------ DMA */
 
-/* Once, at the chosen access, DMA writes the lap: as many bytes as make the oldest uncertain. */
+/* At the chosen access, DMA writes `lap_size` bytes at once. */
 static uint8_t lap[256];
 static size_t lap_size;
 static bool has_come;
@@ -227,7 +227,7 @@ static uint32_t bytes_accounted_for(void)
            counters.bytes_overrun + (uint32_t)tmini_parser_pending(&receiver.parser);
 }
 
-/* What is delivered as intact was sent. */
+/* Packets delivered as intact must be among those sent. */
 static void expect_true_packets(tmini_frame_type_t frame, uint8_t count, uint8_t lap_count)
 {
     for (; frame != TMINI_FRAME_NONE; frame = next_with(NULL)) {
@@ -240,7 +240,7 @@ static void expect_true_packets(tmini_frame_type_t frame, uint8_t count, uint8_t
     TEST_ASSERT_EQUAL_UINT32(receiver.received, bytes_accounted_for());
 }
 
-/* DMA puts a packet of 30 samples exactly where one of 30 other samples lies. */
+/* Prepares a lap in which DMA writes a packet of 20 samples exactly over one of 30. */
 static void overtake(size_t size)
 {
     stream.size = 0;
@@ -248,7 +248,7 @@ static void overtake(size_t size)
     receiver_open_dma(&receiver, memory, 256, 39);
     receiver_feed(&receiver, bytes, stream.size);
     memset(lap, 0x22, sizeof lap);
-    stream_t over = {&lap[156], 0, 100}; /* 156 bytes later, the ring is once round. */
+    stream_t over = {&lap[156], 0, 100}; /* After 156 bytes the ring wraps around. */
     (void)stream_add_packet(&over, 0x00, 20, 100, 200);
     lap_size = size;
     has_come = false;
@@ -264,11 +264,11 @@ void test_dma_that_overtakes_the_parser_at_any_moment_makes_no_wrong_packet(void
             overtake(laps[i]);
             expect_true_packets(next_with(lap_comes), 30, 20);
         } while (has_come);
-        TEST_ASSERT_TRUE(chosen > 5); /* That many moments there are at least. */
+        TEST_ASSERT_TRUE(chosen > 5); /* At least five accesses were tried. */
     }
 }
 
-/* After the unread bytes have been counted and found intact, before the packet is delivered. */
+/* DMA overwrites it after the parser found it intact and before it is delivered. */
 void test_a_packet_that_dma_overwrites_while_it_is_checked_is_not_delivered(void)
 {
     unsigned discarded = 0;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The time of the line by itself: numbers of bytes and milliseconds at their limits, and multiples
- * of 256 and 65536 that a type too narrow takes for none. No byte is stored: only the ring's head
- * moves. What the packets come to: test_pauses.c. */
+/* The module tmini_line alone: numbers of bytes and milliseconds at their limits, and multiples of
+ * 256 and 65536, which a too narrow type would store as 0. No byte is stored: only the ring's head
+ * moves. test_pauses.c tests the effect on packets. */
 
 #include "tmini_driver.h"
 
@@ -21,7 +21,7 @@ static uint32_t read_clock(void *context)
 
 static const tmini_port_t port = {.now_ms = read_clock};
 
-/* A lidar that scans at this frequency was looked at. */
+/* A lidar scans at this frequency; its line was examined just now. */
 static void open_at(uint16_t frequency_chz)
 {
     lidar = (tmini_t){.state = TMINI_STATE_SCANNING, .is_settled = true};
@@ -49,7 +49,7 @@ static bool look_after(uint32_t passed_ms, size_t count)
     return tmini_line_look(&lidar);
 }
 
-/* A single byte comes after a silence: is it doubted? */
+/* Whether a single byte that comes after this silence is doubted. */
 static bool is_doubted_after(uint32_t silent_ms)
 {
     lidar.line.doubt = false;
@@ -83,7 +83,7 @@ void test_a_silence_of_any_length_is_doubted(void)
     TEST_ASSERT_TRUE(is_doubted_after(0x80000000));
 }
 
-/* ---- What bytes explain ---- */
+/* ---- Time that bytes explain ---- */
 
 /* 131 bytes take 9.979 ms, 132 take 10.055. */
 void test_bytes_take_13_128_per_millisecond_rounded_down(void)
@@ -100,14 +100,14 @@ void test_bytes_take_13_128_per_millisecond_rounded_down(void)
     }
 }
 
-/* 860,374 bytes take 65,536 ms: they explain all of it. */
+/* 860,374 bytes take 65,536 ms, which explains the whole time. */
 void test_a_minute_of_bytes_explains_a_minute(void)
 {
     (void)look_after(65537, 860374);
     TEST_ASSERT_FALSE(lidar.line.doubt);
 }
 
-/* The ring holds 65,536: of one more an unknown number is missing. */
+/* The ring holds 65,536 bytes. With one more, it is unknown how many are missing. */
 void test_more_bytes_than_the_ring_holds_are_doubted(void)
 {
     lidar.ring.size = 65536;
@@ -146,7 +146,7 @@ void test_a_port_may_hold_65535_bytes(void)
     TEST_ASSERT_EQUAL_size_t(13, lidar.line.arrived);
 }
 
-/* A place that is not known is not one that is soon to come. */
+/* An unset `held_to` (0) must not count as a place just ahead, when the index is about to wrap. */
 void test_a_port_that_never_reports_what_it_holds_holds_nothing(void)
 {
     lidar.line.received = lidar.ring.head = TMINI_RING_CLOSED - 100;
@@ -156,13 +156,13 @@ void test_a_port_that_never_reports_what_it_holds_holds_nothing(void)
 
 void test_bytes_that_had_arrived_before_explain_nothing(void)
 {
-    lidar.line.arrived = 100; /* The port has forgotten them. */
+    lidar.line.arrived = 100; /* The port held 100 bytes, but no longer reports them. */
     TEST_ASSERT_FALSE(is_doubted_after(50));
     lidar.line.arrived = lidar.line.received + 100;
     TEST_ASSERT_TRUE(is_doubted_after(51));
 }
 
-/* The silence may lie among those that the port still holds. */
+/* The silence may be between bytes that the port still holds. */
 void test_a_doubt_reaches_to_the_last_byte_that_the_port_holds(void)
 {
     lidar.held_to = 13 + 131;
@@ -174,7 +174,7 @@ void test_a_doubt_reaches_to_the_last_byte_that_the_port_holds(void)
     TEST_ASSERT_EQUAL_size_t(13 + 131 + 20, lidar.line.doubtful_to);
 }
 
-/* 100 bytes arrive, then no others: the last 87 are fed meanwhile. */
+/* 100 bytes arrive, then no more; the last 87 of them are fed later. */
 void test_bytes_that_had_arrived_before_do_not_end_a_silence(void)
 {
     lidar.held_to = 100;
@@ -221,8 +221,8 @@ void test_a_delay_is_kept_until_all_that_the_port_held_is_read(void)
     TEST_ASSERT_EQUAL_UINT16(3, lidar.line.late_ms);
 }
 
-/* At the first look 59 ms are missing, and at the second 31: less than half a turn. If the port
- * holds bytes, what seemed to be missing first may come now, and 90 are missing. */
+/* At the first look 59 ms are unexplained; at the second 31, less than half a turn. If the port
+ * holds bytes, those of the first time may come only now, so 90 ms are unexplained. */
 void test_what_seemed_to_be_missing_may_come_from_a_port_that_holds_bytes(void)
 {
     for (unsigned held = 0; held <= 1; held++) {
@@ -238,7 +238,7 @@ void test_what_seemed_to_be_missing_may_come_from_a_port_that_holds_bytes(void)
 
 /* ---- Before a lidar scans ---- */
 
-/* Are they doubted, or only what was before them? */
+/* Whether the first bytes are doubted, or only the bytes before them. */
 static bool first_ones_are_doubted(uint32_t passed_ms, size_t count)
 {
     open_at(0);
@@ -266,7 +266,7 @@ void test_first_bytes_that_were_not_watched_may_have_paused(void)
     TEST_ASSERT_TRUE(first_ones_are_doubted(65536, 13));
 }
 
-/* The port holds 100 bytes, which came before the silence. The packet after them is doubted. */
+/* The port holds 100 bytes, which came before the silence. Only bytes after them are doubted. */
 void test_a_silence_before_the_first_bytes_is_after_those_that_the_port_held(void)
 {
     open_at(1000);
@@ -280,8 +280,8 @@ void test_a_silence_before_the_first_bytes_is_after_those_that_the_port_held(voi
     TEST_ASSERT_EQUAL_size_t(1 + 100, lidar.line.doubtful_to);
 }
 
-/* The port's queue of 100 bytes was flushed, which closed the ring. As many bytes come later, which
- * take 7 ms. */
+/* The port discarded the 100 bytes that it held, which closed the ring. Later 100 other bytes come,
+ * which take 7 ms. */
 void test_what_a_port_held_before_a_gap_explains_nothing_after_it(void)
 {
     lidar.held_to = 1 + 100;
@@ -333,13 +333,13 @@ void test_a_clock_that_steps_back_by_more_than_10_ms_may_hide_a_silence(void)
     (void)look_after(0, 20);
     TEST_ASSERT_EQUAL_size_t(13 + 20 + 44, lidar.line.doubtful_to);
     open_at(1000);
-    (void)look_after((uint32_t)-1001, 0); /* That is no step back. */
+    (void)look_after((uint32_t)-1001, 0); /* More than a second does not count as a step back. */
     TEST_ASSERT_FALSE(lidar.line.doubt);
 }
 
 /* ---- When a packet came ---- */
 
-/* 70,000 bytes after it, which take 5332 ms. */
+/* The 70,000 bytes after it take 5332 ms. */
 void test_a_packet_came_before_the_bytes_after_it(void)
 {
     (void)look_after(9000, 70000);

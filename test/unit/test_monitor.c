@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* While the lidar scans: packets in, faults out. */
+/* Faults that are derived from packets while the lidar scans. */
 
 #include "invariants.h"
 #include "rig.h"
@@ -29,7 +29,7 @@ void test_a_fault_seen_in_two_trusted_turns_is_reported(void)
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_turn_events(TMINI_FAULT_SENSOR));
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_SENSOR, tmini_faults(&rig.lidar));
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR)); /* Once only. */
+    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR)); /* Reported only once. */
 }
 
 void test_a_fault_seen_in_one_turn_only_is_not_reported(void)
@@ -167,9 +167,9 @@ void test_turns_of_which_packets_were_lost_are_no_data_fault(void)
 {
     rig_go_scanning();
     for (unsigned i = 0; i < 4; i++) {
-        rig_feed_start_packet(0); /* It has no range, */
+        rig_feed_start_packet(0); /* It has no range. */
         for (unsigned k = 0; k < 20; k++) {
-            rig_feed_byte(0x00); /* and the packets that have one were spoiled. */
+            rig_feed_byte(0x00); /* The packets with ranges were damaged. */
         }
         TEST_ASSERT_EQUAL_HEX(0, rig_drain() & BIT(TMINI_EVENT_FAULTS_CHANGED));
     }
@@ -216,8 +216,8 @@ void test_what_precedes_the_first_start_packet_is_no_turn(void)
     rig_go_idle();
     begins_with(START, tmini_start(&rig.lidar));
     rig_feed_scan_reply();
-    rig_feed_point_packet(0); /* A partial turn, */
-    rig_feed_start_packet(0); /* a turn without a range, */
+    rig_feed_point_packet(0); /* A partial turn. */
+    rig_feed_start_packet(0); /* A turn without a range. */
     (void)rig_drain();
     rig_feed_start_packet(1000);
     TEST_ASSERT_EQUAL_HEX(0, rig_drain() & BIT(TMINI_EVENT_FAULTS_CHANGED));
@@ -225,7 +225,7 @@ void test_what_precedes_the_first_start_packet_is_no_turn(void)
 
 /* ---- A blocked rotor ---- */
 
-/* Packets without start and without range, 4000 samples per second, none of them an event. */
+/* Point packets without a range, 4000 samples per second; no event comes. */
 static void stands_still_for(uint32_t ms)
 {
     for (uint32_t end_ms = rig.now_ms + ms; rig.now_ms != end_ms;) {
@@ -250,7 +250,7 @@ void test_packets_without_a_start_for_3_s_are_an_encoder_fault(void)
     (void)rig_drain();
     is_noticed_after_3_s();
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
-    stands_still_for(10000); /* Reported once, and not taken for a loss. */
+    stands_still_for(10000); /* Reported once; the lidar is not called lost. */
     is_in(TMINI_STATE_SCANNING);
 }
 
@@ -278,7 +278,7 @@ void test_start_packets_without_a_range_every_now_and_then_are_no_encoder_fault(
     rig_go_scanning();
     for (unsigned i = 0; i < 3; i++) {
         rig_feed_byte(0x00);
-        rig_feed_byte(0x00); /* A packet was lost: nothing can be said of this turn's ranges. */
+        rig_feed_byte(0x00); /* A packet was lost, so it is unknown whether the turn had ranges. */
         rig_feed_start_packet(0);
         (void)rig_drain();
         stands_still_for(2900);
@@ -299,7 +299,7 @@ void test_a_rotor_that_turns_again_clears_the_fault_after_two_turns(void)
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
 
-/* Of the turn that was blocked, the beginning is not known: one without a range follows. */
+/* The blocked turn is not complete, so only the next turn without a range counts as the first. */
 void test_a_turn_without_a_range_after_a_blocked_one_is_the_first(void)
 {
     rig_go_scanning();

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Points as a robot sees them whose lidar is mounted turned, upside down, or looks at the robot
- * itself. */
+/* Points in the robot's directions, for a lidar that is mounted turned or upside down, or that sees
+ * the robot itself. */
 
 #include "tmini/tmini_mount.h"
 #include "unity.h"
@@ -52,7 +52,7 @@ void test_a_mount_of_zeros_changes_nothing(void)
     TEST_ASSERT_EQUAL_UINT8(1, points[1].flag);
 }
 
-/* The lidar's 90 degrees look ahead: what it sees at 100 is 10 degrees to the right of the
+/* The lidar's 90 degrees are the front, so a point at 100 is 10 degrees to the right of the
  * front. */
 void test_a_lidar_mounted_turned_is_turned_back(void)
 {
@@ -68,7 +68,7 @@ void test_a_lidar_mounted_turned_is_turned_back(void)
     is_point(3, 270 * DEGREE, 1003);
 }
 
-/* From above, the angles of a lidar that hangs run counter-clockwise. */
+/* Seen from above, the angles of a hanging lidar run counter-clockwise. */
 void test_a_lidar_upside_down_is_mirrored(void)
 {
     static const tmini_mount_t mount = {.upside_down = true};
@@ -150,7 +150,7 @@ void test_an_arc_may_go_through_the_front(void)
     is_point(4, 10 * DEGREE + 1, 1004);
 }
 
-/* The lidar hangs, and sees a mast at its 120 degrees; for the robot that is at 60. */
+/* The lidar hangs and sees a mast at 120 degrees, which is 60 degrees for the robot. */
 void test_arcs_are_the_robots_directions(void)
 {
     static const tmini_arc_t arcs[] = {{59, 61}};
@@ -163,7 +163,7 @@ void test_arcs_are_the_robots_directions(void)
     is_point(1, 120 * DEGREE, 1001);
 }
 
-/* As a user writes it who counts from the front to the left. */
+/* As written by a user who counts negative angles to the left. */
 void test_arcs_and_front_may_be_negative(void)
 {
     static const tmini_arc_t arcs[] = {{-10, 10}, {-190, -170}};
@@ -232,7 +232,7 @@ void test_more_than_256_points_are_mounted_and_more_than_256_arcs_masked(void)
     is_point(256, 91 * DEGREE, 1000);
 }
 
-/* Too much for a small machine. */
+/* Too large for a small machine. */
 void test_65537_arcs_are_masked(void)
 {
 #if defined(__linux__)

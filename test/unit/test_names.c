@@ -48,7 +48,7 @@ void test_any_other_value_has_a_name_too(void)
     }
 }
 
-/* All are different, and none is the text for an unknown event or state. */
+/* All names differ from each other and from the name for an unknown value. */
 static void names_differ(const char *const *names, size_t count, const char *otherwise)
 {
     for (size_t i = 0; i < count; i++) {
@@ -108,7 +108,7 @@ static void faults_read(uint8_t faults, const char *expected)
     TEST_ASSERT_EQUAL_PTR(text, tmini_faults_text(faults, text, sizeof text));
     TEST_ASSERT_EQUAL_STRING(expected, text);
     text[0] = '\0';
-    (void)tmini_faults_text(faults, text, SIZE_MAX / 2 + 1); /* A size whose low bits are 0. */
+    (void)tmini_faults_text(faults, text, SIZE_MAX / 2 + 1); /* 0 in a narrower type. */
     TEST_ASSERT_EQUAL_STRING(expected, text);
 }
 

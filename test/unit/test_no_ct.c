@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Without CT information (TMINI_NO_CT): units that send it are like those that do not. */
+/* With TMINI_NO_CT, units with CT information are treated like units without it. */
 
 #include "invariants.h"
 #include "rig.h"
@@ -56,5 +56,6 @@ void test_every_function_of_ct_information_is_there(void)
     TEST_ASSERT_EQUAL_HEX(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&ct));
     tmini_ct_read(&ct, &info);
     TEST_ASSERT_EQUAL_HEX16(0, info.known);
-    TEST_ASSERT_EQUAL_HEX8(0xA1, tmini_ct_crc8(0x07, '9')); /* Its check value's last step. */
+    TEST_ASSERT_EQUAL_HEX8(0xA1,
+                           tmini_ct_crc8(0x07, '9')); /* The last step of the CRC's check value. */
 }

@@ -26,7 +26,7 @@ void setUp(void)
 
 void tearDown(void) {}
 
-/* The packet before it goes, to make room. */
+/* Releases the previous packet, feeds this one and opens it. */
 static void open_packet(const uint8_t *packet, size_t size)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, receiver_next(&receiver));
@@ -99,7 +99,7 @@ void test_a_packet_reports_the_gap_before_it_and_its_last_byte(void)
 
 void test_header_angles_of_360_degrees_and_more_are_reduced(void)
 {
-    open_angles(2, 23040, 32767); /* 360 degrees, and the most that the field can say. */
+    open_angles(2, 23040, 32767); /* 360 degrees, and the largest value of the field. */
     TEST_ASSERT_EQUAL_UINT16(0, receiver.packet.first_angle_q6);
     TEST_ASSERT_EQUAL_UINT16(9727, receiver.packet.last_angle_q6);
     open_angles(2, 23039, 23041);
@@ -185,7 +185,7 @@ void test_points_can_be_read_one_at_a_time(void)
 void test_a_point_that_is_read_alone_leaves_memory_after_it(void)
 {
     open_packet(manual_packet, sizeof manual_packet);
-    points[1].angle_q6 = 23040; /* As one that is to be reduced. */
+    points[1].angle_q6 = 23040; /* A value that would be reduced. */
     TEST_ASSERT_TRUE(tmini_packet_point(&receiver.packet, 0, points));
     TEST_ASSERT_EQUAL_UINT16(23040, points[1].angle_q6);
     TEST_ASSERT_EQUAL_HEX16(0xEEEE, points[1].distance_mm);
@@ -402,9 +402,9 @@ static void expect_exact_angles(unsigned count, unsigned difference, unsigned st
     TEST_ASSERT_EQUAL_UINT16(last, angle(count - 1));
 }
 
-/* Worked out apart from the library: a step with 16 fraction bits, or one rounded down, fails
+/* Values from a separate computation. A step with 16 fraction bits, or one rounded down, fails
  * here. */
-void test_a_step_less_exact_would_not_do(void)
+void test_a_less_exact_step_would_be_wrong(void)
 {
     open_angles(254, 0, 85);
     TEST_ASSERT_EQUAL_UINT16(63, angle(189)); /* 63.498. */
@@ -415,8 +415,8 @@ void test_a_step_less_exact_would_not_do(void)
     TEST_ASSERT_EQUAL_UINT16(1, angle(127)); /* 0.5. */
 }
 
-/* Differences at which rounding is most likely to go wrong: a whole number of intervals and a half,
- * and one more. All pairs of count and difference are in test/system/test_angles.c. */
+/* Differences at which rounding errors are most likely: a whole number of intervals plus a half,
+ * and one more. test/system/test_angles.c has all pairs of count and difference. */
 void test_interpolated_angles_are_exact(void)
 {
     for (unsigned count = 2; count <= 255; count += 23) {
@@ -490,7 +490,7 @@ void test_a_point_of_a_packet_that_dma_has_overwritten_may_not_be_used(void)
     receiver_open_dma(&receiver, memory, 512, 0);
     open_packet(manual_packet, 67);
     memset(bytes, 0, 190);
-    receiver_feed(&receiver, bytes, 189); /* 256 unread: all still certain. */
+    receiver_feed(&receiver, bytes, 189); /* 256 bytes unread: all are still certain. */
     TEST_ASSERT_TRUE(tmini_packet_point(&receiver.packet, 0, &point));
     receiver_feed(&receiver, bytes, 1);
     TEST_ASSERT_FALSE(tmini_packet_point(&receiver.packet, 0, &point));

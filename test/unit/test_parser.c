@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The parser: which packets and replies it finds in a stream, however the bytes come and whatever
- * has happened to them. receiver.c asserts at every step that no byte is unaccounted for. */
+/* The packets and replies that the parser finds in a stream, whatever the chunks and the damage.
+ * receiver.c asserts at every step that each byte is accounted for. */
 
 #include "known_packets.h"
 #include "receiver.h"
@@ -17,7 +17,7 @@ static uint8_t bytes[900];
 static stream_t stream;
 static receiver_t receiver;
 
-/* Section 4, and the replies of real units. */
+/* Replies from section 4 and from real units. */
 static const uint8_t start_reply[7] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
 static const uint8_t health_reply[10] = {0xA5, 0x5A, 0x03, 0, 0, 0, 0x06, 0x20, 0x11, 0x22};
 static const uint8_t frequency_reply[11] = {0xA5, 0x5A, 0x04, 0, 0, 0, 0x04, 0x58, 0x02, 0, 0};
@@ -48,7 +48,7 @@ static void expect_frame(tmini_frame_type_t expected)
     TEST_ASSERT_EQUAL_INT(expected, receiver_next(&receiver));
 }
 
-/* A packet of `count` samples, and where it began. */
+/* The next frame is a packet of `count` samples that began at `offset`. */
 static void expect_packet(uint8_t count, size_t offset)
 {
     expect_frame(TMINI_FRAME_PACKET);
@@ -104,7 +104,8 @@ void test_a_ring_that_failed_to_initialise_is_an_argument_error(void)
 
 void test_the_ring_must_hold_the_largest_packet(void)
 {
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(128, false, 0)); /* 80: 250 bytes. */
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT,
+                          init_with(128, false, 0)); /* The default, 80 samples: 250 bytes. */
     TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(256, false, 0));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(256, false, 82)); /* 256 bytes. */
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(256, false, 83));
@@ -112,7 +113,7 @@ void test_the_ring_must_hold_the_largest_packet(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(1024, false, 255));
 }
 
-/* Else a reply that is awaited could never be complete: device information has 27 bytes. */
+/* Otherwise an awaited reply could never be complete: device information has 27 bytes. */
 void test_the_ring_must_hold_the_longest_reply(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(16, false, 1));
@@ -139,8 +140,8 @@ static void next_is_a_packet_after_a_gap_of(uint16_t gap)
     TEST_ASSERT_EQUAL_UINT16(gap, packet.gap);
 }
 
-/* Ten packets of 25 bytes and 6 other bytes fill the ring; the eleventh packet is refused whole. A
- * twelfth finds room when some have been read, but would stand where the eleventh is missing. */
+/* Ten packets of 25 bytes and 6 other bytes fill the ring, so the eleventh packet is refused. The
+ * twelfth is also refused although there is room, because the eleventh is missing before it. */
 void test_refused_bytes_leave_a_gap_where_they_are_missing(void)
 {
     static const uint8_t others[6] = {0};
@@ -197,7 +198,8 @@ void test_a_packet_is_delivered_with_its_last_byte_and_not_before(void)
     expect_pending(0);
 }
 
-/* Its first byte, its start sign, its header, all of it. */
+/* There is work after the first byte, the packet header AA 55, the whole header and the last
+ * byte. */
 void test_a_candidate_is_no_work_until_it_can_be_looked_at_further(void)
 {
     size_t moments[4] = {0};
@@ -329,7 +331,7 @@ void test_the_gap_before_a_packet_is_reported_with_its_last_byte(void)
     TEST_ASSERT_EQUAL_HEX8(0xAA, receiver.packet.frame->last_skipped);
 }
 
-/* In pieces that fit beside a frame delivered before. */
+/* Feeds garbage in pieces that fit into the ring together with an earlier frame. */
 static void skip_garbage(uint32_t count)
 {
     const uint32_t skipped = receiver_counters(&receiver).bytes_skipped;
@@ -368,9 +370,9 @@ void test_a_reply_ends_a_gap_too(void)
     TEST_ASSERT_EQUAL_UINT16(0, receiver.packet.gap);
 }
 
-/* ------------------------------------------------------------------------- what is no packet */
+/* -------------------------------------------------------------------------- invalid packets */
 
-/* Whether the packet in `bytes` is one when it is followed by another. */
+/* The packet in `bytes` is rejected, but the next packet is found. */
 static void expect_rejected(uint32_t checksum_errors)
 {
     receiver_open(&receiver, memory, 256, 0);
@@ -449,7 +451,7 @@ void test_packets_may_have_up_to_the_configured_number_of_samples(void)
     TEST_ASSERT_TRUE(accepts(254, 254));
     TEST_ASSERT_FALSE(accepts(254, 255));
     TEST_ASSERT_TRUE(accepts(255, 255));
-    TEST_ASSERT_TRUE(accepts(0, 80)); /* Not configured: 80. */
+    TEST_ASSERT_TRUE(accepts(0, 80)); /* The default is 80. */
     TEST_ASSERT_FALSE(accepts(0, 81));
 }
 
@@ -466,8 +468,8 @@ void test_a_packet_that_fills_the_ring_is_found(void)
 
 /* ----------------------------------------------------------------------------------- corruption */
 
-/* A stream with all that a revolution has, short: start packets, LastCRC, a point packet of one
- * sample with FSA > LSA. Places and sizes are those of its packets. */
+/* A short stream with everything that occurs in a revolution: start packets, LastCRC, a point
+ * packet of one sample with FSA > LSA. These are the offsets and sizes of its packets. */
 #define PACKETS 6
 static const uint8_t places[PACKETS] = {0, 13, 32, 49, 62, 75};
 static const uint8_t sizes[PACKETS] = {13, 19, 16, 13, 13, 16};
@@ -485,8 +487,8 @@ static void make_turn(void)
     TEST_ASSERT_EQUAL_UINT(91, stream.size);
 }
 
-/* A bit for each packet of the turn that is found at its place, moved by `moved` if it lies at
- * `from` or beyond. */
+/* Returns a bit for each packet of the turn that is found at its place, which is moved by `moved`
+ * if it is `from` or later. */
 static unsigned found_packets(size_t from, int moved)
 {
     unsigned found = 0;
@@ -501,7 +503,7 @@ static unsigned found_packets(size_t from, int moved)
     return found;
 }
 
-/* All packets but the one that has the byte at `place`; 0x3F are all. */
+/* A bit for each packet (0x3F: all), without the packet that contains the byte at `place`. */
 static unsigned all_but_hit(size_t place)
 {
     unsigned found = 0x3F;
@@ -513,7 +515,7 @@ static unsigned all_but_hit(size_t place)
     return found;
 }
 
-/* Frames, points and counters are those of the reference decoder, fed in chunks of that size. */
+/* Frames, points and counters are those of the reference decoder, with chunks of this size. */
 static void expect_like_reference(size_t chunk)
 {
     const receiver_course_t course = {.chunk = chunk};
@@ -533,7 +535,7 @@ void test_a_changed_byte_costs_no_packet_but_its_own(void)
                 TEST_ASSERT_EQUAL_HEX(all_but_hit(place), found_packets(0, 0));
             }
         }
-        expect_like_reference(1 + place % 40); /* With the last value; all: test/system. */
+        expect_like_reference(1 + place % 40); /* Only with the last value; test/system has all. */
         bytes[place] = original;
     }
 }
@@ -564,7 +566,7 @@ void test_an_extra_byte_costs_no_packet_but_the_one_it_comes_into(void)
                     expected &= ~(1u << k);
                 }
             }
-            /* The same byte once more is no change to it: the packet stands one byte later. */
+            /* A byte that equals its neighbour changes no packet: the packet is one byte later. */
             const unsigned found = found_packets(place, 1);
             TEST_ASSERT_EQUAL_HEX(expected, found & expected);
         }
@@ -603,7 +605,7 @@ void test_a_packet_cut_anywhere_costs_no_other_packet(void)
     }
 }
 
-/* Every LSN that a packet of 19 samples can be damaged to. */
+/* The LSN of a packet of 19 samples is damaged to every other value. */
 void test_a_corrupted_length_does_not_cost_the_next_packet(void)
 {
     for (unsigned lsn = 0; lsn < 512; lsn++) {
@@ -616,7 +618,7 @@ void test_a_corrupted_length_does_not_cost_the_next_packet(void)
         stream_add(&stream, start_packet, 13);
         stream_add(&stream, manual_packet, 67);
         receiver_open(&receiver, memory, 1024,
-                      lsn < 256 ? 0 : 255); /* 80 samples at most, or all. */
+                      lsn < 256 ? 0 : 255); /* At most 80 samples, or 255. */
         feed(bytes, stream.size);
         TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
         TEST_ASSERT_EQUAL_UINT(67, receiver_frame_offset(&receiver));
@@ -626,7 +628,7 @@ void test_a_corrupted_length_does_not_cost_the_next_packet(void)
     }
 }
 
-/* A packet whose samples hold the header of a packet of 40 samples, and then a whole packet. */
+/* A packet whose samples contain the header of a packet of 40 samples, then a whole packet. */
 static void make_packet_with_packet_inside(void)
 {
     static const uint8_t false_header[12] = {0xAA, 0x55, 0x00, 0x28, 0x01, 0x00,
@@ -657,7 +659,7 @@ void test_inside_a_damaged_packet_a_false_header_hides_nothing(void)
     bytes[8] ^= 1;
     feed(bytes, 37);
     expect_nothing();
-    expect_pending(27); /* The false header wants 130 bytes. */
+    expect_pending(27); /* The false header needs 130 bytes. */
     feed(manual_packet, 67);
     feed(manual_packet, 67);
     expect_packet(1, 22);
@@ -901,7 +903,7 @@ void test_when_the_waiting_ends_a_part_of_the_reply_is_looked_at_again(void)
 {
     receiver_await(&receiver, 0, 0x04, 20);
     feed(info_reply, 12);
-    feed(start_packet, 13); /* The reply broke off. */
+    feed(start_packet, 13); /* The reply was cut off. */
     expect_nothing();
     expect_pending(25);
     tmini_parser_await(&receiver.parser, NULL);
@@ -976,10 +978,10 @@ void test_an_abandoned_candidate_costs_the_bytes_before_the_next_one(void)
     feed(manual_packet, 66);
     expect_nothing();
     receiver_abandon(&receiver);
-    expect_skipped(30); /* There is an AA, which may begin another. */
+    expect_skipped(30); /* The next AA may begin another candidate. */
     expect_pending(36);
     expect_nothing();
-    expect_skipped(66); /* It does not. */
+    expect_skipped(66); /* It does not begin one. */
     expect_pending(0);
 }
 
@@ -1003,7 +1005,7 @@ void test_an_abandoned_reply_is_searched_too(void)
     expect_packet(1, 9);
 }
 
-/* A header that announces 100 samples, 310 bytes. */
+/* The header is that of a packet of 100 samples, 310 bytes. */
 static void feed_256_bytes_of_310(void)
 {
     receiver_open(&receiver, memory, 512, 100);
@@ -1078,8 +1080,7 @@ void test_refused_bytes_are_counted_as_overrun(void)
     TEST_ASSERT_EQUAL_UINT32(48, receiver_counters(&receiver).bytes_overrun);
 }
 
-/* Two overflows with one reading between them, the second before what came between has been
- * read. */
+/* The ring overflows, one packet is read, and it overflows again before the rest has been read. */
 void test_each_of_several_overflows_leaves_its_gap_where_it_was(void)
 {
     memset(bytes, 0, 300);
@@ -1089,14 +1090,14 @@ void test_each_of_several_overflows_leaves_its_gap_where_it_was(void)
         feed(bytes, 231); /* One is refused. */
         expect_frame(TMINI_FRAME_PACKET);
         TEST_ASSERT_EQUAL_UINT16(i == 0 ? 0 : 65535, receiver.packet.gap);
-        feed(start_packet, 13); /* Refused: there is room, but something is missing before it. */
+        feed(start_packet, 13); /* Refused: there is room, but bytes are missing before it. */
         expect_packet_after_gap(0);
         expect_nothing();
         TEST_ASSERT_EQUAL_UINT32(14 * (i + 1), receiver_counters(&receiver).bytes_overrun);
     }
 }
 
-/* What stands before the gap and what stands after it would make a packet. */
+/* The bytes before the gap and those after it would form a packet. */
 void test_no_packet_spans_a_gap(void)
 {
     feed(manual_packet, 40);
@@ -1221,7 +1222,7 @@ void test_an_overrun_of_dma_is_a_gap_of_65535(void)
     feed(start_packet, 13);
     expect_packet(1, 0);
     memset(bytes, 0, 300);
-    memcpy(&bytes[44], start_packet, 13); /* Right after what is lost. */
+    memcpy(&bytes[44], start_packet, 13); /* Right after the lost bytes. */
     feed(bytes, 300);
     expect_packet(1, 57);
     TEST_ASSERT_EQUAL_UINT16(65535, receiver.packet.gap);
@@ -1237,7 +1238,7 @@ void test_a_candidate_that_dma_overran_is_forgotten(void)
     feed(manual_packet, 60);
     expect_nothing();
     memset(bytes, 0, 230);
-    memcpy(&bytes[0], start_packet, 13); /* At 60: would be inside the candidate. */
+    memcpy(&bytes[0], start_packet, 13); /* At 60, inside the candidate. */
     feed(bytes, 230);                    /* 34 are lost. */
     expect_packet(1, 60);
     TEST_ASSERT_EQUAL_UINT32(34, receiver_counters(&receiver).bytes_overrun);
@@ -1257,7 +1258,7 @@ void test_many_laps_of_dma_are_counted_and_survived(void)
     expect_skipped(243);
 }
 
-/* A lap is assumed, as if this many bytes had come. */
+/* The ring counts a lap, as if 512 bytes had come. */
 static void lap_was_perhaps_missed(void)
 {
     tmini_ring_gap(&receiver.ring);
@@ -1354,13 +1355,13 @@ void test_a_frame_delivered_is_not_skipped(void)
 
 /* -------------------------------------------------------------------------------- large rings */
 
-#if SIZE_MAX > 65535 /* Else an index cannot count as far. */
+#if SIZE_MAX > 65535 /* Otherwise an index cannot count that far. */
 
 static tmini_ring_t large;
 static tmini_parser_t parser;
 
-/* A ring of 128 KiB with this many bytes unread; those from `place` on are `memory`, of which only
- * the first are looked at. */
+/* A ring of 128 KiB with this many unread bytes. Only the bytes from `place` on have memory
+ * (`memory`), so the test may read only the first of them. */
 static void open_large(bool dma, size_t place, size_t unread)
 {
     uint8_t *const first = (uint8_t *)((uintptr_t)memory - place);
@@ -1391,7 +1392,7 @@ void test_65536_unread_bytes_are_not_taken_for_none(void)
     open_large(false, 0, 65536);
     goes_on(0, TMINI_FRAME_PACKET, 65523);
     memset(memory, 0, 13);
-    open_large(false, 0, 65536); /* 1000 bytes may be looked at. */
+    open_large(false, 0, 65536); /* The effort left is 1000 bytes. */
     goes_on(TMINI_PARSER_EFFORT - 1000, TMINI_FRAME_MORE, 64536);
     open_large(false, 65535, 65536);
     tmini_parser_skip_all(&parser);

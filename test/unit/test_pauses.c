@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Pauses of the line while the lidar scans, and the packets that become doubtful by them: those
- * before which others may be missing. A pause is too long by more than half a turn, 41 ms at 12 Hz,
- * or by more than max_pause_ms if that is longer: so much longer than the bytes that end it
- * explain, 13.1 per millisecond. */
+/* Pauses of the line while the lidar scans make packets doubtful: others may be missing before
+ * them. The bytes that end a pause explain part of it, 1 ms per 13.1 bytes. It is too long if the
+ * rest is more than half a turn (41 ms at 12 Hz) and more than max_pause_ms. */
 
 #include "invariants.h"
 #include "rig.h"
@@ -17,7 +16,7 @@ static uint8_t memory[2048];
 
 #define RING_SIZE 1024u
 
-/* Streaming, and the pauses before that are forgotten. */
+/* A streaming driver with the ring of this test. */
 static void open_with(uint16_t max_pause_ms, bool dma)
 {
     rig_open();
@@ -56,8 +55,8 @@ void tearDown(void)
     TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
 }
 
-/* Nothing comes, and someone looks each 30 ms, as rarely as will do; at last 1 ms before the end.
- * The next poll is at the end. */
+/* No bytes come. Polls every 30 ms, the longest interval that counts as watching the line, and 1 ms
+ * before the end. The next poll is at the end. */
 static void nothing_comes_for(uint32_t ms)
 {
     for (ms--; ms > 0; ms -= ms < 30 ? ms : 30) {
@@ -109,11 +108,11 @@ void test_a_longer_one_makes_the_packets_around_it_doubtful_and_no_others(void)
     nothing_comes_for(45);
     feed_packets(2, 4);
     doubtful_are_the_first(2, 2);
-    two_packets_come_of_which_doubtful_are(1); /* The pause may have been after those. */
+    two_packets_come_of_which_doubtful_are(1); /* The pause may have been before this packet. */
     two_packets_come_of_which_doubtful_are(0);
 }
 
-/* Until it has caught up, and up to a second. */
+/* No time passes until the clock has caught up, if it steps back by at most a second. */
 void test_a_clock_that_steps_back_shows_no_time(void)
 {
     for (unsigned i = 0; i < 3; i++) {
@@ -126,7 +125,7 @@ void test_a_clock_that_steps_back_shows_no_time(void)
     }
 }
 
-/* What comes meanwhile may have paused for as long, and so may the line before the next packet. */
+/* The step may hide a pause before the bytes that come meanwhile, or before the next packet. */
 void test_a_clock_that_steps_back_by_more_than_10_ms_makes_packets_doubtful(void)
 {
     rig.now_ms -= 11;
@@ -153,7 +152,7 @@ void test_many_bytes_do_not_explain_every_pause(void)
     doubtful_are_the_first(5, 5);
 }
 
-/* 170 bytes are 12.95 ms; whole ones count. */
+/* 170 bytes take 12.95 ms, of which 12 count. */
 void test_what_bytes_explain_is_rounded_down(void)
 {
     nothing_comes_for(54);
@@ -161,7 +160,7 @@ void test_what_bytes_explain_is_rounded_down(void)
     doubtful_are_the_first(2, 2);
 }
 
-/* With this max_pause_ms, of two pauses, 1 ms apart, the first is none. */
+/* With this max_pause_ms, `pause_ms` is not too long, but 1 ms more is. */
 static void longest_pause_is(uint16_t max_pause_ms, uint32_t pause_ms)
 {
     for (unsigned longer = 0; longer < 2; longer++) {
@@ -190,7 +189,7 @@ void test_without_a_limit_no_pause_is_one(void)
     doubtful_are_the_first(0, 2);
 }
 
-/* Of the second one only the first byte, but that is enough. */
+/* Only the first byte of the second packet is among them, which is enough. */
 void test_a_packet_is_doubtful_if_it_begins_among_the_bytes_after_a_pause(void)
 {
     static const encode_sample_t samples[4] = {{1000, 50, 0}};
@@ -208,7 +207,7 @@ void test_a_packet_is_doubtful_if_it_begins_among_the_bytes_after_a_pause(void)
     doubtful_are_the_first(2, 3);
 }
 
-/* 65,546 ms: 10 in 16 bits. */
+/* 65,546 is 10 in 16 bits. */
 void test_before_a_lidar_scans_the_pause_was_before_the_bytes_if_the_line_was_watched(void)
 {
     for (uint32_t unseen_ms = 30; unseen_ms <= 31; unseen_ms++) {
@@ -235,7 +234,7 @@ void test_after_a_pause_between_polls_the_first_packet_after_it_is_doubtful_too(
     two_packets_come_of_which_doubtful_are(0);
 }
 
-/* 44 bytes explain 3 ms, and each is judged for itself and with the one before. */
+/* 44 bytes explain 3 ms. A pause is judged alone, and together with the one before it. */
 void test_what_bytes_do_not_explain_counts_once_more(void)
 {
     for (unsigned more_ms = 3; more_ms <= 4; more_ms++) {
@@ -249,7 +248,7 @@ void test_what_bytes_do_not_explain_counts_once_more(void)
     }
 }
 
-/* ---- Bytes that the port holds, and says so ---- */
+/* ---- Bytes that the port reports to hold ---- */
 
 /* 544 bytes explain 41 ms. */
 void test_bytes_that_the_port_holds_explain_a_pause_as_well(void)
@@ -262,8 +261,8 @@ void test_bytes_that_the_port_holds_explain_a_pause_as_well(void)
     }
 }
 
-/* 500 bytes had come when 410 of them were fed. When the others are fed, they show no time, and
- * explain nothing again: 44 bytes after them, 3 ms. */
+/* 500 bytes were held when 410 of them were fed. The others, fed later, explain no time again: only
+ * the 44 bytes after them do, 3 ms. */
 void test_they_do_so_once(void)
 {
     for (unsigned longer = 0; longer < 2; longer++) {
@@ -280,7 +279,7 @@ void test_they_do_so_once(void)
     }
 }
 
-/* More than 65,535 are none: the place is an old one. */
+/* More than 65,535 bytes ahead, the place counts as passed. */
 void test_a_place_that_has_been_passed_explains_nothing(void)
 {
     tmini_feed_held(&rig.lidar, 65535 + 44);
@@ -293,7 +292,7 @@ void test_a_place_that_has_been_passed_explains_nothing(void)
     doubtful_are_the_first(2, 2);
 }
 
-/* 41 ms and 4 for 54 bytes, counted from the 12 that were late. */
+/* 45 ms are allowed from the 12 late bytes on: 41, and 4 for the 54 bytes. */
 void test_a_pause_that_has_been_judged_does_not_count_for_the_next_one(void)
 {
     static const encode_sample_t samples[4] = {{1000, 50, 0}};
@@ -320,8 +319,8 @@ void test_a_full_ring_is_no_reason_to_doubt(void)
     doubtful_are_the_first(0, 10);
 }
 
-/* Laps that were not seen, and reported before the next poll: in the ring are the three packets
- * from before them once more, and two after them. */
+/* DMA makes laps that are reported before the next poll. The ring then contains the three packets
+ * delivered before, and two new ones. */
 static void go_round_unseen(unsigned laps)
 {
     static const encode_sample_t samples[4] = {{1000, 50, 0}};
@@ -344,7 +343,7 @@ static void go_round_unseen(unsigned laps)
     position += encode_packet(&memory[position], &packet);
     position += encode_packet(&memory[position], &packet);
     tmini_feed_dma(&rig.lidar, position);
-    doubtful_are_the_first(2, 2); /* Not again those that have been delivered. */
+    doubtful_are_the_first(2, 2); /* Delivered packets are not delivered again. */
     tmini_counters(&rig.lidar, &counters);
     TEST_ASSERT_EQUAL_UINT32(laps * 1024, counters.bytes_overrun);
     position += encode_packet(&memory[position], &packet);

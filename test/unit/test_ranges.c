@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Ranges at equal angles, counter-clockwise from the back. */
+/* Ranges at equal angular steps, counter-clockwise from the back. */
 
 #include "tmini/tmini_ranges.h"
 #include "unity.h"
@@ -51,12 +51,13 @@ void test_the_bins_go_counter_clockwise_from_the_back(void)
 
 void test_a_bin_reaches_half_its_width_to_either_side(void)
 {
-    /* One degree wide, around straight ahead: from half a degree right to less than half left. */
+    /* The bin straight ahead is one degree wide: from half a degree to the right to less than half
+     * a degree to the left. */
     TEST_ASSERT_EQUAL_size_t(180, tmini_ranges_bin(32, 360));
     TEST_ASSERT_EQUAL_size_t(179, tmini_ranges_bin(33, 360));
     TEST_ASSERT_EQUAL_size_t(180, tmini_ranges_bin(23040 - 31, 360));
     TEST_ASSERT_EQUAL_size_t(181, tmini_ranges_bin(23040 - 32, 360));
-    /* And around straight back, where the numbers start again. */
+    /* The same for the bin straight back, where the numbers begin. */
     TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(11520 - 31, 360));
     TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(11520 + 32, 360));
     TEST_ASSERT_EQUAL_size_t(359, tmini_ranges_bin(11520 + 33, 360));
@@ -136,7 +137,7 @@ void test_intensities_may_be_left_out(void)
     TEST_ASSERT_EQUAL_HEX8(0xEE, intensities[4]);
 }
 
-/* 128 KB are too much for a small machine. */
+/* Needs 128 KB: too large for a small machine. */
 void test_65535_ranges_are_given(void)
 {
 #if defined(__linux__)
@@ -159,8 +160,7 @@ void test_a_scan_gives_all_its_points_and_none_after_them(void)
     TEST_ASSERT_EQUAL_UINT16_ARRAY(expected_mm, ranges_mm, BINS);
 }
 
-/* 720 points, each half a degree, in 360 bins around the whole degrees; not on a machine that has
- * no room for them. */
+/* 720 points half a degree apart, in 360 bins of a degree: too large for a small machine. */
 void test_more_points_and_bins_than_256_are_all_there(void)
 {
 #if SIZE_MAX > 65535
@@ -171,7 +171,8 @@ void test_more_points_and_bins_than_256_are_all_there(void)
         many[i] = (tmini_point_t){(uint16_t)(i * 32u), (uint16_t)(i + 1u), 0, 0};
     }
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ranges_of_scan(&scan, many_mm, NULL, 360));
-    for (uint16_t degree = 0; degree < 360; degree++) { /* That and half a degree more. */
+    for (uint16_t degree = 0; degree < 360;
+         degree++) { /* The points at this degree and half a degree after it. */
         TEST_ASSERT_EQUAL_UINT16(2 * degree + 1, many_mm[(180 + 360 - degree) % 360]);
     }
 #endif

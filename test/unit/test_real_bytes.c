@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Bytes that real units have sent, and what they say. Values only, from public projects:
+/* Bytes that real units have sent, and their meaning. Only values were taken, from public projects:
  *
  *   T-mini Pro   tier4/ydlidar_driver, the packets of its tests (model 150, firmware 1.0: 9.9 Hz,
  *                CT information in point packets, every sample flagged)
  *   T-mini Plus  Ar-Ray-code/tmini_plus_emulator, its example data (section 9.14)
  *
- * No capture of a unit that sends LastCRC was to be had. */
+ * No capture of a unit that sends LastCRC was available. */
 
 #include "tmini/tmini_names.h"
 #include "known_packets.h"
@@ -38,7 +38,7 @@ static void feed_start_reply(void)
     turns_feed(reply, sizeof reply);
 }
 
-/* The packet that comes next. */
+/* Polls for the next packet. */
 static const tmini_packet_t *polled_packet(void)
 {
     tmini_event_t event = tmini_poll(&turns.lidar);
@@ -87,7 +87,7 @@ void test_a_point_packet_of_a_t_mini_pro(void)
     expect_point(packet, 38, 7417, 169, 0x66, 2); /* 115.89 degrees */
 }
 
-/* Another CT: index 2 to 13 of its revolution (section 7). */
+/* The CT byte is that of an index from 2 to 13 in the revolution (section 7). */
 void test_a_full_packet_of_a_t_mini_pro(void)
 {
     static const uint8_t bytes[] = {
@@ -110,7 +110,7 @@ void test_a_full_packet_of_a_t_mini_pro(void)
     expect_point(packet, 39, 12098, 1374, 0xCB, 2); /* 189.03 degrees */
 }
 
-/* 9.9 Hz, at 42 degrees; the flag says interference, as of every sample of that unit (section
+/* 9.9 Hz, at 42 degrees; the flag means interference, as in every sample of that unit (section
  * 9.9). */
 void test_a_start_packet_of_a_t_mini_pro(void)
 {
@@ -173,7 +173,7 @@ void test_device_information_of_a_t_mini_plus(void)
     TEST_ASSERT_EQUAL_STRING("2025042400090194", serial);
 }
 
-/* Not a logged reply, but put together from what the vendor's program showed of a unit (issue 65 of
+/* Not a logged reply, but composed from the output of the vendor's program (issue 65 of
  * YDLIDAR/YDLidar-SDK): firmware 1.3, hardware 1, serial 2024041300090090. */
 void test_device_information_of_a_t_mini_plus_with_firmware_1_3(void)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A lidar that is lost while it scans, and the ladder that brings it back. */
+/* A lidar that is lost while it scans, and the ladder of attempts that recovers it. */
 
 #include "invariants.h"
 #include "rig.h"
@@ -82,7 +82,7 @@ void test_the_first_packet_recovers(void)
     TEST_ASSERT_EQUAL_UINT16(1, rig_counters().recoveries);
 }
 
-/* From the moment at which an attempt has failed: its pause, then the next attempt's stop. */
+/* An attempt has just failed: its pause, then the stop of the next attempt. */
 static void pauses_and_stops(uint32_t pause_ms)
 {
     passes_to(pause_ms, TMINI_EVENT_NONE);
@@ -174,7 +174,7 @@ void test_a_loss_after_a_whole_turn_begins_at_the_ladders_foot(void)
     tries_in_vain(500);
 }
 
-/* A weak supply: it starts, and dies of the motor's current, again and again. */
+/* A weak supply: the lidar starts and fails again under the motor's current, several times. */
 void test_an_attempt_that_brings_no_whole_turn_has_not_succeeded(void)
 {
     rig_go_scanning();
@@ -196,7 +196,7 @@ void test_an_attempt_that_brings_no_whole_turn_has_not_succeeded(void)
     tries_with_a_reboot_in_vain(2000);
 }
 
-/* The same, when the first attempts have failed. */
+/* The same after the first attempts have failed. */
 void test_a_loss_before_a_whole_turn_goes_on_up_the_ladder(void)
 {
     rig_go_backing_off();
@@ -209,7 +209,7 @@ void test_a_loss_before_a_whole_turn_goes_on_up_the_ladder(void)
     tries_with_a_reboot_in_vain(2000);
 }
 
-/* The turn lacks two bytes, but shows that there are ranges again. */
+/* The turn has two stray bytes, but shows that there are ranges again. */
 void test_a_turn_that_is_not_whole_but_ends_a_fault_does_not_count_as_whole(void)
 {
     rig_go_scanning();
@@ -390,7 +390,7 @@ void test_a_turn_cut_by_a_loss_is_no_data_fault(void)
 {
     rig_go_scanning();
     (void)rig_plain_turn_events(0);
-    (void)rig_plain_turn_events(0); /* One turn without a range, and most of another. */
+    (void)rig_plain_turn_events(0); /* One turn without a range, and most of a second one. */
     passes_to(1000, TMINI_EVENT_LOST);
     polls_and_sends(STOP);
     finds_quiet_and_sends(START);
@@ -412,9 +412,8 @@ void test_a_range_from_before_a_loss_does_not_clear_a_data_fault(void)
     finds_quiet_and_sends(START);
     rig_feed_point_packet(0);
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_RECOVERED), rig_plain_turn_events(1000));
-    TEST_ASSERT_EQUAL_HEX(0, rig_plain_turn_events(1000)); /* One turn with a range, */
-    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED),
-                          rig_plain_turn_events(1000)); /* and another. */
+    TEST_ASSERT_EQUAL_HEX(0, rig_plain_turn_events(1000)); /* The first turn with a range. */
+    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_plain_turn_events(1000));
 }
 
 void test_a_turn_from_before_a_stop_is_not_trusted_after_the_next_start(void)
@@ -496,7 +495,7 @@ void test_without_recovery_a_start_after_a_loss_starts(void)
     go_lost_without_recovery();
     begins_with(STOP, tmini_start(&rig.lidar));
     is_in(TMINI_STATE_STARTING);
-    begins(tmini_start(&rig.lidar)); /* Under way: once. */
+    begins(tmini_start(&rig.lidar)); /* Already starting: nothing more is sent. */
     finds_quiet_and_sends(START);
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
@@ -517,8 +516,8 @@ void test_without_recovery_a_start_after_a_loss_may_fail_and_be_made_again(void)
 
 /* ---- A clock that is set back ---- */
 
-/* The current waiting time begins again: it ends neither at once nor years later. Up to 10 ms may
- * have passed since the line was looked at. */
+/* The current timeout begins again: it ends neither at once nor much later. Up to 10 ms may have
+ * passed since the line was examined. */
 void test_a_clock_that_is_set_back_delays_a_time_out_by_its_own_length(void)
 {
     static const uint32_t back_ms[] = {1010, 3600000, 0x7FFFFFFF};
@@ -532,7 +531,7 @@ void test_a_clock_that_is_set_back_delays_a_time_out_by_its_own_length(void)
     }
 }
 
-/* One millisecond before it was sent. */
+/* The clock is set to one millisecond before the command was sent. */
 void test_a_clock_that_is_set_back_by_the_time_passed_fails_no_command(void)
 {
     rig_go_starting();

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Replies: which shape each command's has, and what its content says (sections 3, 4 and 9). */
+/* Replies: their format for each command, and the meaning of their content (sections 3, 4 and
+ * 9). */
 
 #include "tmini/tmini_names.h"
 #include "tmini/parts/tmini_reply.h"
@@ -74,7 +75,7 @@ void test_all_frequency_commands_have_a_single_reply_of_type_4_with_4_bytes(void
     expect_shape(TMINI_COMMAND_GET_FREQUENCY, 0, 0x04, 4);
 }
 
-/* A real T-mini Plus: 97 02 01 01 is model 151, firmware 1.2, hardware 1 (section 9.4). */
+/* From a real T-mini Plus: 97 02 01 01 is model 151, firmware 1.2, hardware 1 (section 9.4). */
 static const uint8_t real_info[20] = {0x97, 2, 1, 1, 2, 0, 2, 5, 0, 4,
                                       2,    4, 0, 0, 0, 9, 0, 1, 9, 4};
 

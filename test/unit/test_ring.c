@@ -12,7 +12,7 @@
 #define SIZE 16u
 #define GUARD 0xEEu
 
-/* Guards on each side: the ring must never write there. */
+/* The ring's memory has guards on each side: the ring must never write there. */
 static uint8_t area[3 * SIZE];
 static uint8_t *const memory = &area[SIZE];
 static tmini_ring_t ring;
@@ -35,7 +35,7 @@ static void use_dma(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE, true));
 }
 
-/* The indices as they are after `count` bytes have come and gone. */
+/* Sets the indices as after `count` bytes were written and read. */
 static void age(size_t count)
 {
     ring.head = count;
@@ -76,7 +76,7 @@ void test_a_null_pointer_is_an_argument_error(void)
 void test_a_size_that_is_no_power_of_two_is_an_argument_error(void)
 {
     expect_refused_arguments(memory, 0);
-    expect_refused_arguments(memory, 1); /* Its indices could not tell full from empty. */
+    expect_refused_arguments(memory, 1); /* The indices could not distinguish full from empty. */
     expect_refused_arguments(memory, 3);
     expect_refused_arguments(memory, 12);
     expect_refused_arguments(memory, 15);
@@ -104,7 +104,7 @@ void test_every_power_of_two_is_a_size(void)
     }
 }
 
-/* Whatever is tried, and in which order. */
+/* No call in any order stores a byte. */
 static void expect_refusal(void)
 {
     tmini_ring_put(&ring, 'a');
@@ -183,7 +183,7 @@ void test_a_discarded_byte_makes_room_for_exactly_one(void)
     TEST_ASSERT_EQUAL_UINT(1, tmini_ring_overrun(&ring));
 }
 
-/* Across the memory's end, the wrap of size_t, and whatever room was known before. */
+/* Also across the end of the memory and the wraparound of size_t. */
 void test_bytes_and_blocks_in_turn_lose_nothing_at_any_place(void)
 {
     uint8_t put = 0;
@@ -265,7 +265,7 @@ void test_a_block_that_ends_at_the_memorys_end_fits(void)
     tmini_ring_discard(&ring, 12);
     tmini_ring_write(&ring, letters, 4);
     expect_unread("abcd");
-    TEST_ASSERT_EQUAL_INT('a', memory[0]); /* The first of the twelve. */
+    TEST_ASSERT_EQUAL_INT('a', memory[0]); /* The first of the twelve bytes. */
 }
 
 void test_a_block_that_just_fits_does_not_close_the_ring(void)
@@ -307,7 +307,7 @@ void test_a_block_larger_than_the_ring_is_cut(void)
     TEST_ASSERT_EQUAL_UINT(10, tmini_ring_overrun(&ring));
 }
 
-/* ---------------------------------------------------------------------------------- wrap-around */
+/* ----------------------------------------------------------------------------------- wraparound */
 
 void test_indices_wrap_around_with_size_t(void)
 {
@@ -327,7 +327,7 @@ void test_indices_wrap_around_with_size_t(void)
 
 /* -------------------------------------------------------------------------------- a closed ring */
 
-/* Each time the indices move by a quarter of their range; after four they are round. */
+/* Each time the indices move by a quarter of their range, so after four times they have wrapped. */
 void test_a_ring_may_be_closed_and_opened_any_number_of_times(void)
 {
     const size_t begin = SIZE_MAX - 2;
@@ -365,7 +365,7 @@ void test_a_closed_ring_that_is_closed_again_stays_so(void)
 void test_a_refused_byte_closes_the_ring_however_much_room_there_is_then(void)
 {
     put_letters(0, SIZE);
-    TEST_ASSERT_FALSE(tmini_ring_is_closed(&ring)); /* Full, and nothing is missing. */
+    TEST_ASSERT_FALSE(tmini_ring_is_closed(&ring)); /* Full, but no byte is missing. */
     put_letters(SIZE, 1);
     TEST_ASSERT_TRUE(tmini_ring_is_closed(&ring));
     tmini_ring_discard(&ring, 10);
@@ -377,7 +377,7 @@ void test_a_refused_byte_closes_the_ring_however_much_room_there_is_then(void)
 
 void test_a_ring_is_full_from_the_last_byte_that_fits_until_room_is_made(void)
 {
-    age(SIZE_MAX - 3); /* The indices wrap on the way. */
+    age(SIZE_MAX - 3); /* The indices wrap around meanwhile. */
     put_letters(0, SIZE - 1);
     TEST_ASSERT_FALSE(tmini_ring_is_full(&ring));
     put_letters(SIZE - 1, 1);
@@ -457,7 +457,7 @@ void test_the_count_of_refused_bytes_wraps_around_with_size_t(void)
 
 /* ----------------------------------------------------------------------------------------- DMA */
 
-/* What DMA does: memory changes, then its position is published. */
+/* Acts as DMA: the memory changes, then the position is published. */
 static void dma_writes(size_t first, size_t count, size_t at)
 {
     for (size_t i = 0; i < count; i++) {
@@ -562,7 +562,7 @@ void test_dma_positions_are_right_across_the_wrap_of_size_t(void)
     expect_unread("fghijk");
 }
 
-/* A mistake, but no harm: tearDown() looks at the guards. */
+/* This is a wrong use, but must do no harm: tearDown() checks the guards. */
 void test_bytes_put_into_a_dma_ring_stay_inside_its_memory(void)
 {
     use_dma();
@@ -614,7 +614,7 @@ void test_of_unread_bytes_in_two_pieces_the_first_piece_comes_first(void)
 
 /* -------------------------------------------------------------------------------- large rings */
 
-/* A ring of this size, of which only the 16 bytes from this place on have memory. */
+/* A ring of this size. Only the 16 bytes from `place` on have memory. */
 static void use_large(size_t size, size_t place)
 {
     uint8_t *const first = (uint8_t *)((uintptr_t)memory - place);
@@ -653,7 +653,7 @@ void test_places_beyond_8_and_16_bits_are_not_cut(void)
 #endif
 }
 
-/* Too much for a small machine. */
+/* Too large for a small machine. */
 void test_a_block_of_more_than_65536_bytes_is_stored_whole(void)
 {
 #if defined(__linux__)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Sectors: which one an angle is in, and what counts as the nearest obstacle there. */
+/* Sectors: the sector of an angle, and the nearest obstacle in a sector. */
 
 #include "encoder.h"
 #include "receiver.h"
@@ -71,7 +71,7 @@ void test_eight_sectors_go_clockwise_from_the_front(void)
 
 void test_the_front_sector_reaches_as_far_left_as_right(void)
 {
-    /* 22.5 degrees are 1440. The boundaries belong to the sector clockwise of them. */
+    /* 22.5 degrees are 1440. A boundary belongs to the sector clockwise of it. */
     TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 1439));
     TEST_ASSERT_EQUAL_size_t(1, tmini_sectors_at(&sectors, 1440));
     TEST_ASSERT_EQUAL_size_t(7, tmini_sectors_at(&sectors, 21599));
@@ -121,7 +121,7 @@ void test_points_without_a_range_leave_a_sector_blind_and_not_free(void)
     TEST_ASSERT_TRUE(tmini_sector_is_blind(&array[0]));
     TEST_ASSERT_FALSE(tmini_sector_is_free(&array[0], 300));
     TEST_ASSERT_FALSE(tmini_sector_is_free(&array[0], 0));
-    TEST_ASSERT_TRUE(array[0].nearest_mm < 300); /* As people write it: then stop. */
+    TEST_ASSERT_TRUE(array[0].nearest_mm < 300); /* The condition in which a user would stop. */
 }
 
 void test_a_sector_is_free_up_to_its_nearest_range(void)
@@ -194,7 +194,7 @@ void test_a_scan_takes_the_place_of_what_was_there(void)
     holds(6, 700, 1, 1);
 }
 
-/* 0, 45 and 90 degrees. */
+/* Samples at 0, 45 and 90 degrees. */
 static size_t make_packet(void)
 {
     static const encode_sample_t samples[3] = {{300, 10, 0}, {0, 10, 0}, {200, 10, 0}};
@@ -279,8 +279,7 @@ void test_a_start_packet_that_dma_has_overwritten_leaves_nothing_of_the_one_befo
     holds(0, 0, 1, 0);
 }
 
-/* 720 points, each half a degree, in 360 sectors around the whole degrees; not on a machine
- * that has no room for them. */
+/* 720 points half a degree apart, in 360 sectors of a degree: too large for a small machine. */
 void test_more_points_and_sectors_than_256_are_all_there(void)
 {
 #if SIZE_MAX > 65535
@@ -294,7 +293,8 @@ void test_more_points_and_sectors_than_256_are_all_there(void)
     tmini_sectors_add_scan(&sectors, &scan);
     TEST_ASSERT_EQUAL_UINT16(1, many[0].nearest_mm);
     for (uint16_t degree = 1; degree < 360; degree++) {
-        TEST_ASSERT_EQUAL_UINT16(2 * degree, many[degree].nearest_mm); /* Half a degree before. */
+        TEST_ASSERT_EQUAL_UINT16(2 * degree,
+                                 many[degree].nearest_mm); /* The point half a degree before it. */
         TEST_ASSERT_EQUAL_UINT16(64 * degree - 32, many[degree].angle_q6);
         TEST_ASSERT_EQUAL_UINT16(2, many[degree].ranges);
     }
@@ -314,7 +314,7 @@ void test_arguments_out_of_range_are_refused(void)
 #endif
 }
 
-/* Half a megabyte is too much for a small machine. */
+/* Needs half a megabyte: too large for a small machine. */
 void test_65535_sectors_are_taken(void)
 {
 #if defined(__linux__)

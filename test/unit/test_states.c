@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The table of docs/design.md, "States and commands": what each command does in each state. */
+/* The table "States and commands" of docs/design.md: the effect of each command in each state. */
 
 #include "invariants.h"
 #include "rig.h"
@@ -11,8 +11,8 @@
 
 #define NOTHING 0
 
-/* What a command answers, sends at once, and leaves; `aborts`: the next poll reports that the
- * command before it has failed. */
+/* The status that a command returns, the command that it sends at once, and the state after it.
+ * `aborts`: the next poll reports that the previous command has failed. */
 typedef struct {
     tmini_status_t status;
     uint8_t sent;
@@ -67,7 +67,7 @@ static void go_stopping(void)
     begins_with(STOP, tmini_stop(&rig.lidar));
 }
 
-/* Each cell, in the order of the commands, on a lidar of its own. */
+/* Checks each command in turn, each with a lidar that was set up again. */
 static void check(void (*go)(void), tmini_state_t state, const cell_t cells[7])
 {
     for (unsigned i = 0; i < 7; i++) {

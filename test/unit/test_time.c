@@ -16,7 +16,7 @@ void setUp(void)
     scan = (tmini_scan_t){.points = points,
                           .count = 4,
                           .start_ms = 0xFFFFFFF0u,
-                          .end_ms = 84, /* 100 ms later, across the clock's wrap-around. */
+                          .end_ms = 84, /* 100 ms later, across the wraparound of the clock. */
                           .frequency_chz = 1000,
                           .complete = true};
 }
@@ -36,7 +36,7 @@ static void is_at(size_t index, uint32_t time_us)
     TEST_ASSERT_EQUAL_UINT32(time_us, tmini_point_time_us(&scan, index));
 }
 
-/* 640 samples at 4000 a second. */
+/* 640 samples at 4000 per second. */
 void test_a_complete_scans_period_is_that_of_its_samples(void)
 {
     scan.count = 640;
@@ -46,7 +46,7 @@ void test_a_complete_scans_period_is_that_of_its_samples(void)
     TEST_ASSERT_EQUAL_UINT32(160, tmini_scan_period_ms(&scan));
 }
 
-/* A sixteenth from 100 ms, 400 samples, are 425 and 375. */
+/* The frequency gives 100 ms, 400 samples. 375 and 425 differ by a sixteenth. */
 void test_a_number_of_samples_that_no_revolution_has_is_not_believed(void)
 {
     static const uint16_t counts[] = {375, 376, 424, 425};
@@ -57,7 +57,7 @@ void test_a_number_of_samples_that_no_revolution_has_is_not_believed(void)
     }
 }
 
-/* 513 samples are 128,250 us, and 7.31 Hz 136,798: one microsecond less than a sixteenth apart. */
+/* 513 samples take 128,250 us, a period at 7.31 Hz 136,798 us: 1 us less than a sixteenth apart. */
 void test_a_number_of_samples_just_less_than_a_sixteenth_apart_is_believed(void)
 {
     scan.count = 513;
@@ -65,14 +65,14 @@ void test_a_number_of_samples_just_less_than_a_sixteenth_apart_is_believed(void)
     TEST_ASSERT_EQUAL_UINT32(128, tmini_scan_period_ms(&scan));
 }
 
-/* Start packets that were held back come at any time. */
+/* Start packets may have been held back, so their times are not used. */
 void test_the_clock_is_not_asked_for_a_period(void)
 {
     scan.end_ms = scan.start_ms + 120;
     TEST_ASSERT_EQUAL_UINT32(100, tmini_scan_period_ms(&scan));
 }
 
-/* 163.93 and 81.499 ms; and 642 samples are 160.5. */
+/* 6.10 Hz are 163.93 ms, 12.27 Hz are 81.499 ms, 642 samples are 160.5 ms. */
 void test_a_period_is_rounded_to_the_nearest(void)
 {
     scan.frequency_chz = 610;
@@ -129,7 +129,7 @@ void test_a_late_point_just_beyond_the_circle_is_a_turn_later(void)
     is_at(3, 100026);
 }
 
-/* The encoder jitters by less than 4 degrees: 22784 of 23040 of 100 ms are 98,888 us. */
+/* The encoder jitters by less than 4 degrees. 22784 / 23040 of 100 ms are 98,888 us. */
 void test_an_early_point_less_than_4_degrees_before_the_first_is_not_a_turn_later(void)
 {
     has_angles(0, 356 * DEGREE, 357 * DEGREE, 358 * DEGREE);
@@ -138,7 +138,7 @@ void test_an_early_point_less_than_4_degrees_before_the_first_is_not_a_turn_late
     is_at(1, 0);
 }
 
-/* 256 / 23040 of 100 ms are 1111 us; 255 + 23040 of 23040 are 101,106 us. */
+/* 256 / 23040 of 100 ms are 1111 us; (255 + 23040) / 23040 are 101,106 us. */
 void test_a_late_point_less_than_4_degrees_beyond_the_circle_is_a_turn_later(void)
 {
     has_angles(0, 1 * DEGREE, 4 * DEGREE, 4 * DEGREE - 1);
@@ -146,7 +146,7 @@ void test_a_late_point_less_than_4_degrees_beyond_the_circle_is_a_turn_later(voi
     is_at(3, 101106);
 }
 
-/* The first point but one is away from the first: exactly 4 degrees are enough. */
+/* The second point has turned away from the first: exactly 4 degrees back are enough. */
 void test_the_third_of_three_points_may_be_a_turn_later(void)
 {
     has_angles(10, 90 * DEGREE, 16, 0);
@@ -155,7 +155,8 @@ void test_the_third_of_three_points_may_be_a_turn_later(void)
     is_at(2, 100277);
 }
 
-/* A turn of 128.5 ms, taken as 16 times 8031 us; the last point is 5 / 23040 beyond it. */
+/* A turn of 128.5 ms, computed as 16 times 8031 us; the last point is 5 / 23040 of a turn after
+ * it. */
 void test_late_points_beyond_256_are_a_turn_later(void)
 {
     scan.count = 514;
@@ -168,12 +169,12 @@ void test_late_points_beyond_256_are_a_turn_later(void)
     is_at(512, 128496);
     is_at(513, 128523);
     for (uint16_t i = 1; i < 256; i++) {
-        points[i].angle_q6 = 0; /* However many are early. */
+        points[i].angle_q6 = 0; /* Many early points change nothing. */
     }
     is_at(513, 128523);
 }
 
-/* Of a scan that ended early all points lie in the first part of the turn. */
+/* All points of a partial scan are in its first turn. */
 void test_the_late_points_of_a_part_of_a_turn_are_no_turn_later(void)
 {
     has_angles(0, 20 * DEGREE, 40 * DEGREE, 80 * DEGREE);
@@ -209,7 +210,7 @@ void test_the_angles_of_a_lidar_upside_down_run_against_time(void)
     is_at(3, 100026);
 }
 
-/* A lidar of exactly `chz`, 4000 samples in a second, which reports 0.05 Hz less. */
+/* The lidar turns at exactly `chz`, takes 4000 samples per second, and reports 0.05 Hz less. */
 static void is_at_most_off(uint16_t chz, uint16_t count, bool complete, uint32_t off_us)
 {
     scan = (tmini_scan_t){.points = points, .count = count, .complete = complete};
@@ -239,7 +240,8 @@ void test_with_an_unknown_period_a_sample_takes_250_us(void)
     is_at(3, 750);
 }
 
-/* 23039 / 23040 of 2,857,142 us, to 16 of them; 0.34 Hz are less than any revolution has. */
+/* 23039 / 23040 of 2,857,142 us, rounded to 16 us. 0.34 Hz is impossible, so it counts as
+ * unknown. */
 void test_the_longest_period_does_not_overflow(void)
 {
     has_angles(0, 90 * DEGREE, 180 * DEGREE, 23039);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The driver's frame: setting it up, feeding it, its events and results, its clock, its misuse. */
+/* The driver as a whole: set-up, feeding, events and results, the clock, and wrong use. */
 
 #include "invariants.h"
 #include "known_packets.h"
@@ -33,7 +33,7 @@ void test_a_lidar_just_set_up_is_in_the_unknown_state_and_nothing_has_been_sent(
     TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
 }
 
-/* And then it refuses commands, and reports that once. */
+/* The set-up is refused; later commands are refused too, which is reported once. */
 static void is_refused(const tmini_config_t *config)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_init(&rig.lidar, config));
@@ -140,7 +140,7 @@ void test_an_undefined_filter_is_refused(void)
     is_refused(&rig.config);
 }
 
-/* ---- Misuse ---- */
+/* ---- Wrong use ---- */
 
 static void refuses_all_commands(tmini_t *lidar)
 {
@@ -199,7 +199,7 @@ void test_a_port_that_starts_dma_anew_finds_buffer_and_position(void)
     TEST_ASSERT_EQUAL_size_t(0, tmini_feed_position(&rig.lidar));
     tmini_feed_dma(&rig.lidar, 100);
     TEST_ASSERT_EQUAL_size_t(100, tmini_feed_position(&rig.lidar));
-    tmini_feed_dma(&rig.lidar, 30); /* In the next lap. */
+    tmini_feed_dma(&rig.lidar, 30); /* A position in the next lap. */
     TEST_ASSERT_EQUAL_size_t(rig.config.rx_size + 30, tmini_feed_position(&rig.lidar));
     tmini_feed_gap(&rig.lidar);
     TEST_ASSERT_EQUAL_size_t(2 * rig.config.rx_size + 30, tmini_feed_position(&rig.lidar));
@@ -253,7 +253,7 @@ void test_every_byte_is_accounted_for(void)
     rig_feed_byte(0x22);         /* 1 skipped */
     rig_feed_point_packet(1000); /* 22 in a packet */
     rig_feed_byte(0xAA);         /* 1 pending */
-    sends(STOP);                 /* The packet was not asked for. */
+    sends(STOP);                 /* The lidar should be idle. */
     (void)rig_drain();
     const tmini_counters_t seen = rig_counters();
     TEST_ASSERT_EQUAL_UINT32(35, rig.fed);
@@ -287,7 +287,7 @@ void test_bytes_of_a_second_overflow_are_counted_with_the_first_ones(void)
     TEST_ASSERT_EQUAL_UINT32(12, rig_counters().bytes_overrun);
 }
 
-/* Nothing is read before a poll: the memory need not be there. */
+/* Bytes are not read before a poll, so the memory need not exist. */
 void test_pending_bytes_may_be_more_than_16_bits_count(void)
 {
     if (SIZE_MAX > 65535u) {
@@ -300,7 +300,7 @@ void test_pending_bytes_may_be_more_than_16_bits_count(void)
     }
 }
 
-/* As after weeks: each member has a value of its own that needs all its bits but one. */
+/* As after weeks: each counter has a different value near the end of its range. */
 void test_counters_count_to_the_end_of_their_ranges(void)
 {
     tmini_parser_counters_t *const parser = &rig.lidar.decoder.parser.counters;
@@ -341,7 +341,7 @@ void test_packets_of_an_unknown_lidar_are_parsed_and_counted_but_are_no_event(vo
     is_in(TMINI_STATE_UNKNOWN);
 }
 
-/* Its stop was lost on the wire while the motor came up: the line was quiet all the same. */
+/* Its stop was lost on the wire during spin-up, when the line was quiet anyway. */
 void test_an_idle_lidar_that_streams_is_reported_and_stopped_again(void)
 {
     rig_go_idle();
@@ -350,7 +350,7 @@ void test_an_idle_lidar_that_streams_is_reported_and_stopped_again(void)
     polls_to(TMINI_EVENT_UNWANTED_SCANNING);
     was_sent();
     is_in(TMINI_STATE_STOPPING);
-    rig_feed_point_packet(1000); /* The tail is no news. */
+    rig_feed_point_packet(1000); /* The tail is not reported. */
     polls_to(TMINI_EVENT_NONE);
     passes_to(50, TMINI_EVENT_STOPPED);
     is_in(TMINI_STATE_IDLE);
@@ -360,7 +360,7 @@ void test_an_idle_lidar_that_streams_is_reported_and_stopped_again(void)
     polls_to(TMINI_EVENT_UNWANTED_SCANNING);
 }
 
-/* Some units may begin to scan when they start up. */
+/* Some units may scan after power-up. */
 void test_a_lidar_that_streams_after_a_reboot_is_stopped(void)
 {
     rig_go_idle();
@@ -399,9 +399,8 @@ void test_a_lidar_that_streams_after_a_query_is_stopped_too(void)
 
 /* ---- Silence ---- */
 
-/* A clock that takes so long to read that bytes come meanwhile: with the first reading of a poll,
- * which looks whether there is news, or with the second. A poll looks 10 ms after the last look, or
- * earlier. */
+/* Reading this clock takes so long that bytes come meanwhile. The first reading of a poll checks
+ * whether there is work, at the latest every 10 ms; the second is for examining the line. */
 static unsigned readings_left;
 static void (*feed_meanwhile)(void);
 
@@ -433,7 +432,7 @@ static void polls_with_bytes_at(unsigned reading)
     TEST_ASSERT_EQUAL_UINT(reading < 2 ? (unsigned)-1 : 0, readings_left);
 }
 
-/* As long as the line is silent in the clock's eyes: 100 ms. */
+/* According to the clock, the line has been silent for the frame timeout of 100 ms. */
 static void bytes_are_not_given_up_that_come_at(unsigned reading)
 {
     static const uint8_t rest[] = {0x00, 0x06, 0x00, 0x00, 0x00};
@@ -460,7 +459,7 @@ static void feed_health_reply(void)
     rig_feed_health(0, 0);
 }
 
-/* It is known by then: the next poll does not take it for something new. */
+/* The next poll must not treat the reply's bytes as new. */
 void test_a_reply_that_comes_while_the_clock_is_read_leaves_the_lidar_idle(void)
 {
     is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
@@ -476,7 +475,7 @@ void test_a_reply_that_comes_while_the_clock_is_read_leaves_the_lidar_idle(void)
     is_in(TMINI_STATE_IDLE);
 }
 
-/* One reading to see whether there is news, one more to look at the line. */
+/* A poll reads the clock once to check for work, and again to examine the line. */
 static void reads_the_clock(unsigned times, uint32_t later_ms)
 {
     readings_left = 0;
@@ -508,7 +507,7 @@ static void line_is_not_quiet_with_bytes_at(unsigned reading)
     passes(49);
     polls_with_bytes_at(reading);
     is_in(TMINI_STATE_STOPPING);
-    rig.now_ms += reading - 1; /* The second time they are noted by the next poll. */
+    rig.now_ms += reading - 1; /* Bytes at the second reading are noticed by the next poll. */
     passes_to(50, TMINI_EVENT_STOPPED);
 }
 
@@ -522,7 +521,7 @@ void test_a_line_on_which_bytes_come_while_the_clock_is_read_is_not_quiet(void)
     line_is_not_quiet_with_bytes_at(2);
 }
 
-/* Two pauses of 60 ms between polls are 100 ms of silence; the byte is given up after 101. */
+/* Two pauses of 60 ms between polls count as 100 ms of silence; the byte is abandoned after 101. */
 void test_the_time_between_two_polls_is_silence_for_50_ms_at_most(void)
 {
     rig.timing.frame_timeout_ms = 101;
@@ -554,7 +553,7 @@ void test_a_frame_timeout_may_be_longer_than_256_ms(void)
 void test_a_command_that_the_port_refuses_is_offered_again_a_millisecond_later(void)
 {
     rig_go_idle();
-    polls_to(TMINI_EVENT_NONE); /* Nothing to do for a while. */
+    polls_to(TMINI_EVENT_NONE); /* The driver settles. */
     rig.now_ms += 1;
     sends_both_taking(GET_HEALTH, -1);
     begins(tmini_request_health(&rig.lidar));
@@ -590,7 +589,7 @@ void test_without_a_frame_timeout_a_silent_poll_gives_up_a_reply(void)
     TEST_ASSERT_EQUAL_UINT32(0, rig_counters().bytes_pending);
 }
 
-/* A header that promises more than comes: it hides the packet after it. */
+/* The header claims more bytes than come, so it hides the packet after it. */
 static void feed_false_header_and_packet(void)
 {
     static const uint8_t header[] = {0xAA, 0x55, 0x00, 0x50, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00};
@@ -657,8 +656,7 @@ void test_silence_gives_up_what_hides_a_reply_too(void)
 
 /* ---- Scans ---- */
 
-/* A turn of three point packets, each a little further on; all samples 1000 mm but for the
- * start. */
+/* A turn of a start packet and two point packets, of this distance, 1000 and 1001 mm. */
 static void feed_turn(uint16_t start_distance_mm)
 {
     rig_feed_start_packet(start_distance_mm);
@@ -680,7 +678,7 @@ void test_a_scan_is_delivered_with_the_start_packet_that_follows_it(void)
     TEST_ASSERT_EQUAL_UINT16(9, scan->count);
     TEST_ASSERT_EQUAL_UINT16(3, scan->packets);
     TEST_ASSERT_EQUAL_UINT16(600, scan->frequency_chz);
-    TEST_ASSERT_EQUAL_UINT32(69997, scan->start_ms); /* 44 bytes have come since: 3 ms. */
+    TEST_ASSERT_EQUAL_UINT32(69997, scan->start_ms); /* 44 bytes have come after it: 3 ms. */
     TEST_ASSERT_EQUAL_UINT32(70163, scan->end_ms);
     TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
     TEST_ASSERT_EQUAL_UINT16(700, scan->points[0].distance_mm);
@@ -694,7 +692,7 @@ static void feed_start_packet(void)
     rig_feed_start_packet(800);
 }
 
-/* It came before the clock's reading, and nothing came after it. */
+/* The packet is the last thing that came before the reading. */
 void test_a_packet_that_comes_while_the_clock_is_read_has_the_time_of_that_reading(void)
 {
     rig_go_scanning();
@@ -715,7 +713,7 @@ static uint32_t clock_that_goes_on(void *context)
     return rig.now_ms;
 }
 
-/* Of its second reading, with which it looks at the line. */
+/* The packet has the time of the second reading, when the line is examined. */
 void test_a_packet_has_the_time_of_the_poll_however_long_that_takes(void)
 {
     rig_go_scanning();
@@ -737,7 +735,7 @@ void test_a_scan_is_valid_until_the_next_poll_whatever_is_fed(void)
     feed_turn(900);
     TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
     TEST_ASSERT_EQUAL_UINT16(700, tmini_scan(&rig.lidar)->points[0].distance_mm);
-    polls_to(TMINI_EVENT_SCAN); /* The next one, which begins with the packet that ended it. */
+    polls_to(TMINI_EVENT_SCAN); /* The next scan begins with the packet that ended this one. */
     TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
     TEST_ASSERT_EQUAL_UINT16(800, tmini_scan(&rig.lidar)->points[0].distance_mm);
 }
@@ -850,8 +848,8 @@ void test_a_new_start_does_not_continue_the_scan_before_the_stop(void)
     TEST_ASSERT_EQUAL_UINT16(0, tmini_scan(&rig.lidar)->gaps);
 }
 
-/* A byte of garbage each millisecond. Half a turn at 6 Hz is 83 ms, and the packet's 22 bytes take
- * 1 ms. */
+/* A byte of garbage per millisecond, then a packet. Half a turn at 6 Hz is 83 ms, and the packet's
+ * 22 bytes take 1 ms. */
 static void packet_after_garbage(uint32_t ms, uint16_t gap)
 {
     for (uint32_t i = 0; i < ms; i++) {
@@ -961,8 +959,7 @@ void test_the_answer_to_another_question_leaves_the_health_as_reported(void)
     TEST_ASSERT_EQUAL_HEX16(0x1234, tmini_health(&rig.lidar)->error_code);
 }
 
-/* The first turn is not complete, of the second not all has come: they have a range all the
- * same. */
+/* Both turns are incomplete, but have a range. */
 void test_ranges_in_two_incomplete_turns_clear_a_data_fault(void)
 {
     rig_go_scanning();
@@ -1025,9 +1022,9 @@ void test_a_quiet_line_may_have_to_be_silent_for_longer_than_256_ms(void)
     polls_to(TMINI_EVENT_STOPPED);
 }
 
-/* ---- The clock's wrap-around, in every wait ---- */
+/* ---- The wraparound of the clock, in every wait ---- */
 
-/* `ms` pass, across the moment at which the clock starts again at 0. */
+/* Sets the clock so that the next `ms` milliseconds cross its wraparound. */
 static void begin_near_the_end(uint32_t ms)
 {
     rig.now_ms = UINT32_MAX - ms / 2;
@@ -1169,7 +1166,7 @@ void test_three_lidars_at_once_know_nothing_of_each_other(void)
     TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, tmini_poll(&lidars[2]));
 
     tmini_feed(&lidars[1], reply, encode_scan_reply(reply));
-    tmini_feed(&lidars[2], reply, encode_health_reply(reply, 0, 0)); /* Not what it waits for. */
+    tmini_feed(&lidars[2], reply, encode_health_reply(reply, 0, 0)); /* Not the awaited reply. */
     for (unsigned i = 0; i < 3; i++) {
         TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, tmini_poll(&lidars[i]));
     }
@@ -1201,7 +1198,7 @@ static void comes_after(uint32_t pause_ms)
 void test_a_scan_goes_on_after_a_pause_that_cannot_hold_half_a_turn(void)
 {
     judge_pauses();
-    comes_after(83 + 12); /* The first packet came 12 ms before the last one's end. */
+    comes_after(83 + 12); /* The first packet came 12 ms before the end of the last. */
     polls_to(TMINI_EVENT_NONE);
 }
 
@@ -1221,7 +1218,7 @@ void test_a_longer_pause_ends_the_scan(void)
     TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
     TEST_ASSERT_FALSE(tmini_scan(&rig.lidar)->complete);
     TEST_ASSERT_EQUAL_UINT32(1, rig_counters().late_scans);
-    feed_turn(800); /* What comes at once continues: the next scan but one is as usual. */
+    feed_turn(800); /* Packets without a pause continue the scan. */
     feed_turn(900);
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_UINT16(32, tmini_scan(&rig.lidar)->count);
@@ -1239,8 +1236,8 @@ void test_what_is_fed_before_a_lidar_is_set_up_is_counted_as_refused(void)
     TEST_ASSERT_EQUAL_UINT32(0, rig_counters().bytes_pending);
 }
 
-/* Seven events end a command, STARTED (bit 1) to COMMAND_FAILED (bit 7); six, to SCAN (bit 13), say
- * other things. */
+/* Seven events end a command: STARTED (bit 1) to COMMAND_FAILED (bit 7). Six others follow, to SCAN
+ * (bit 13). */
 void test_a_command_drops_the_end_of_the_one_before_and_nothing_else(void)
 {
     rig_go_idle();
@@ -1269,7 +1266,7 @@ void test_a_pause_counts_from_poll_to_poll_however_often_it_is_polled(void)
     polls_to(TMINI_EVENT_SCAN);
 }
 
-/* Five bytes of each packet get through, every 10 ms, for a turn. */
+/* Only five bytes of each packet arrive, every 10 ms, for more than half a turn. */
 void test_packets_cut_to_a_few_bytes_for_too_long_end_the_scan(void)
 {
     static const uint8_t rest[5] = {0x11, 0x22, 0x33, 0x44, 0x55};

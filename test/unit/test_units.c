@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The library's integers as floats: all that is exact must be exact. */
+/* The library's integers converted to floats: values that a float can hold must be exact. */
 
 #include "tmini/tmini_units.h"
 #include "unity.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the user wants stands: a start, a stop, a frequency; listening; and what is made of a
- * finished scan before it is delivered. */
+/* Wishes that stand until changed: a start, a stop, a frequency. Also listening only, and the steps
+ * applied to a finished scan. */
 
 #include "invariants.h"
 #include "rig.h"
@@ -35,7 +35,7 @@ static void want(uint16_t frequency_chz)
     rig_init();
 }
 
-/* The stop has been sent; the question is, after the quiet time. */
+/* A start sends a stop and, after the quiet time, the query for the frequency. */
 static void asks_for_the_frequency(void)
 {
     begins_with(STOP, tmini_start(&rig.lidar));
@@ -50,7 +50,7 @@ static void starts_scanning(void)
     polls_to(TMINI_EVENT_STARTED);
 }
 
-/* The question has been sent. */
+/* The query for the frequency has been sent. */
 static void starts_turning_at(uint16_t frequency_chz)
 {
     rig_feed_frequency(frequency_chz);
@@ -103,7 +103,7 @@ void test_packets_while_the_frequency_is_asked_for_are_no_start(void)
     is_in(TMINI_STATE_STARTING);
 }
 
-/* The question has been sent. The lidar is deaf to all but the start. */
+/* The query for the frequency has been sent. The lidar ignores all commands but the start. */
 static void starts_without_the_frequency(void)
 {
     passes_to(2000, TMINI_EVENT_NONE);
@@ -142,7 +142,7 @@ void test_after_a_loss_the_frequency_is_not_known_and_asked_for_again(void)
     TEST_ASSERT_EQUAL_UINT16(0, tmini_frequency_chz(&rig.lidar));
     polls_and_sends(STOP);
     finds_quiet_and_sends(GET_FREQUENCY);
-    passes(2000); /* In vain, and nothing new to report. */
+    passes(2000); /* No reply; nothing new is reported. */
     polls_to(TMINI_EVENT_NONE);
     polls_and_sends(STOP);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_command_error(&rig.lidar));
@@ -231,7 +231,7 @@ void test_a_new_wish_for_a_lost_lidar_that_is_not_recovered_waits(void)
     is_in(TMINI_STATE_RECOVERING);
 }
 
-/* Silence before the stop must not be taken for silence after it. */
+/* Silence before the stop does not count as silence after it. */
 void test_a_new_wish_after_a_pause_of_polls_awaits_a_quiet_line(void)
 {
     rig_go_scanning();
@@ -240,7 +240,7 @@ void test_a_new_wish_after_a_pause_of_polls_awaits_a_quiet_line(void)
     finds_quiet_and_sends(GET_FREQUENCY);
 }
 
-/* Six steps of 1 Hz. After the last of them another frequency is wanted. */
+/* Six steps of 1 Hz; after the last one another frequency is wanted. */
 static void steps(uint8_t code, uint16_t from_chz, int by_chz, uint16_t then_chz)
 {
     for (int i = 1; i <= 6; i++) {
@@ -250,7 +250,7 @@ static void steps(uint8_t code, uint16_t from_chz, int by_chz, uint16_t then_chz
     begins(tmini_set_frequency(&rig.lidar, then_chz));
 }
 
-/* Somebody moves a slider: 24 steps, more than any one change needs. */
+/* The user moves a slider: 24 steps, more than a single change needs. */
 void test_each_new_wish_has_as_many_steps_as_it_needs(void)
 {
     rig_go_idle();
@@ -265,7 +265,7 @@ void test_each_new_wish_has_as_many_steps_as_it_needs(void)
     polls_to(TMINI_EVENT_FREQUENCY);
 }
 
-/* A lidar that goes up and down is given up after 20 steps, however often the wish is stated. */
+/* The lidar steps up and down. The driver gives up after 20 steps, even if the wish is repeated. */
 void test_a_wish_that_is_stated_again_has_no_more_steps(void)
 {
     rig_go_idle();
@@ -280,7 +280,7 @@ void test_a_wish_that_is_stated_again_has_no_more_steps(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_REPLY, tmini_command_error(&rig.lidar));
 }
 
-/* ---- Measured against wished ---- */
+/* ---- Measured and wanted frequency ---- */
 
 static void turns(unsigned count, uint8_t dhz)
 {
@@ -291,7 +291,7 @@ static void turns(unsigned count, uint8_t dhz)
     }
 }
 
-/* The last of this many revolutions at 6.0 Hz makes the driver stop the lidar. */
+/* The last of this many revolutions at this frequency makes the driver stop the lidar. */
 static void is_stopped_after(unsigned count, uint8_t dhz)
 {
     turns(count - 1, dhz);
@@ -313,14 +313,14 @@ void test_three_seconds_of_another_frequency_are_a_fault_and_one_more_try(void)
     is_in(TMINI_STATE_STARTING);
     finds_quiet_and_sends(GET_FREQUENCY);
     starts_turning_at(1000);
-    turns(40, 60); /* No other try. */
+    turns(40, 60); /* No further attempt. */
     is_in(TMINI_STATE_SCANNING);
     turns(1, 100);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
 
-/* At 6.0 Hz, 18, 36, 72 and 144 revolutions are 3, 6, 12 and 24 seconds. At most 255 count, and
- * 48 seconds: at 3.0 Hz 144 revolutions. */
+/* 18, 36, 72 and 144 revolutions at 6.0 Hz take 3, 6, 12 and 24 seconds. The limits are 255
+ * revolutions and 48 seconds, which are 144 revolutions at 3.0 Hz. */
 void test_a_frequency_that_could_not_be_set_is_tried_again_less_and_less_often(void)
 {
     static const struct {
@@ -342,7 +342,7 @@ void test_a_frequency_that_could_not_be_set_is_tried_again_less_and_less_often(v
     is_stopped_after(18, 60);
 }
 
-/* A lidar that reports its own frequency again and again has answered. */
+/* The lidar replies each time with its old frequency. */
 void test_a_frequency_that_the_lidar_refuses_is_tried_once_more_only(void)
 {
     scans_wishing(1000);
@@ -380,7 +380,7 @@ void test_five_percent_are_no_other_frequency(void)
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
 }
 
-/* 0.4 Hz are 5.3 % of 7.6 Hz. At 8.0 Hz, 24 turns take 3 s. */
+/* 0.4 Hz is 5.3 % of 7.6 Hz. At 8.0 Hz, 24 turns take 3 s. */
 void test_little_more_than_five_percent_are_another_frequency(void)
 {
     rig.config.recovery = TMINI_RECOVERY_OFF;
@@ -389,7 +389,7 @@ void test_little_more_than_five_percent_are_another_frequency(void)
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
 }
 
-/* By 2.6 Hz: 260 in 8 bits would be 4. At 7.4 Hz, 23 turns take 3.1 s. */
+/* Off by 2.6 Hz; 260 would be 4 in 8 bits. At 7.4 Hz, 23 turns take 3.1 s. */
 void test_a_frequency_far_off_is_a_fault(void)
 {
     rig.config.recovery = TMINI_RECOVERY_OFF;
@@ -451,7 +451,7 @@ void test_without_recovery_another_frequency_is_only_a_fault(void)
     is_in(TMINI_STATE_SCANNING);
 }
 
-/* A program may state its wish in each round of its loop. */
+/* A program may repeat its wish in each pass of its loop. */
 void test_a_wish_that_is_stated_again_and_again_hides_no_other_frequency(void)
 {
     scans_wishing(1000);
@@ -556,7 +556,7 @@ void test_three_seconds_of_ranges_without_a_start_packet_are_a_fault_and_three_m
     is_in(TMINI_STATE_RECOVERING);
 }
 
-/* Three seconds: 300 packets. */
+/* 300 packets are three seconds; `count` of them have a range. */
 static void packets_with_a_range(unsigned count)
 {
     for (unsigned i = 0; i < 300; i++) {
@@ -578,7 +578,7 @@ void test_of_300_packets_without_a_start_99_with_a_range_are_chance_and_100_a_lo
     is_in(TMINI_STATE_RECOVERING);
 }
 
-/* Neither start packets nor ranges: a rotor that stands. */
+/* Without start packets and ranges, the rotor is blocked. */
 void test_samples_without_a_range_and_without_a_start_packet_are_no_loss(void)
 {
     rig_go_scanning();
@@ -648,7 +648,7 @@ void test_a_listener_scans_from_the_first_packet(void)
     is_in(TMINI_STATE_SCANNING);
 }
 
-/* After three seconds, and then in the ladder's pauses. */
+/* After three seconds, then at the intervals of the ladder's pauses. */
 void test_a_listener_that_hears_nothing_says_so_at_growing_intervals(void)
 {
     static const uint32_t pauses[] = {3000, 500, 1000, 2000, 4000, 4000};
@@ -690,7 +690,7 @@ void test_a_listener_stops_at_once_and_hears_no_more(void)
     listen();
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
-    polls_to(TMINI_EVENT_NONE); /* Nothing to do for a while. */
+    polls_to(TMINI_EVENT_NONE); /* The driver settles. */
     begins(tmini_stop(&rig.lidar));
     polls_to(TMINI_EVENT_STOPPED);
     rig_feed_point_packet(1000);
@@ -772,7 +772,7 @@ void test_steps_and_spare_points_need_points_and_data_needs_a_step(void)
     is_refused();
 }
 
-/* ---- What is made of a finished scan ---- */
+/* ---- Steps applied to a finished scan, and spare points ---- */
 
 static void scan_turns(unsigned count)
 {
@@ -806,14 +806,14 @@ void test_with_spare_points_a_scan_stays_until_the_next(void)
     polls_to(TMINI_EVENT_SCAN);
     const tmini_scan_t *const scan = tmini_scan(&rig.lidar);
     TEST_ASSERT_EQUAL_PTR(rig.points, scan->points);
-    polls_to(TMINI_EVENT_NONE); /* The next one is being gathered, */
+    polls_to(TMINI_EVENT_NONE); /* The next scan is stored elsewhere. */
     TEST_ASSERT_EQUAL_UINT16(17, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(1000, scan->points[1].distance_mm); /* elsewhere. */
+    TEST_ASSERT_EQUAL_UINT16(1000, scan->points[1].distance_mm);
     scan_turns(1);
     polls_to(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_PTR(spare, tmini_scan(&rig.lidar)->points);
     polls_to(TMINI_EVENT_NONE);
-    TEST_ASSERT_EQUAL_UINT16(1100, spare[1].distance_mm); /* The third is gathered in the first. */
+    TEST_ASSERT_EQUAL_UINT16(1100, spare[1].distance_mm); /* The third is stored over the first. */
     TEST_ASSERT_EQUAL_UINT16(1000, rig.points[1].distance_mm);
 }
 
