@@ -205,7 +205,7 @@ void test_a_lidar_that_loses_its_frequency_unnoticed_gets_it_again(void)
     scans_at(1000);
 }
 
-/* A program that states its wishes in each round of its loop. */
+/* The program repeats its wishes in each pass of its loop. */
 void test_wishes_that_are_stated_each_second_are_kept_as_well(void)
 {
     begin();
