@@ -5,8 +5,8 @@
 
     bench.py FOLDER [--update]
 
-Figures and programs go to FOLDER; --update rewrites the documents' tables. Exit status: 0; 1 if a
-budget is exceeded or something failed. Usually called by run.sh, which finds the tools.
+Writes figures and programs to FOLDER; --update rewrites the documents' tables. Exit status: 0 within the
+budgets, 1 if one is exceeded or something failed. Usually called by run.sh, which finds the tools.
 """
 
 import concurrent.futures
@@ -27,16 +27,16 @@ from targets import HERE, LEVELS, ROOT, TARGETS, BenchError, run, target_named
 FOOTPRINT = ROOT / "docs" / "footprint.md"
 README = ROOT / "README.md"
 README_TABLES = ["footprint"]
-PRINTED_TABLES = ["modules", "budgets"]  # In no document.
+PRINTED_TABLES = ["modules", "budgets"]  # These tables are in no document.
 FOOTPRINT_TABLES = [name for name in tables.BLOCKS if name not in README_TABLES + PRINTED_TABLES]
 
-# The limits are for the compilers that the committed tables were made with; with others the library
-# may cost this many percent more.
+# The limits are for the compilers with which the committed tables were made. With other compilers, the
+# library may cost this many percent more.
 OTHER_TOOLS_PERCENT = 10
 
 
 class Budget:
-    """A limit of budgets.txt and what was measured."""
+    """A limit in budgets.txt, and the measured value."""
 
     def __init__(self, name, limit, title, measured):
         self.name, self.limit, self.title, self.measured = name, limit, title, measured
@@ -52,7 +52,7 @@ class Budget:
 
 
 def measure_target(name, level, folder, made):
-    """All figures of one processor at one level."""
+    """Measures all figures of one processor at one optimisation level."""
     target = target_named(name)
     place = folder / (name + level)
     objects = target.compile_library(level, place)
@@ -66,7 +66,7 @@ def measure_target(name, level, folder, made):
 
 
 def library_version(target, header, macro):
-    """The C library's version, from its own header."""
+    """Returns the C library's version, from its own header."""
     probe = ["-dM", "-E", "-include", header, "-x", "c", "/dev/null"]
     found = re.search(rf"#define {macro} \"(.*)\"",
                       run(target.tool("gcc"), *target.machine, *probe))
@@ -74,7 +74,7 @@ def library_version(target, header, macro):
 
 
 def tool_versions():
-    """Figures are comparable only under the same compilers and C libraries."""
+    """Returns the tools' versions: figures are comparable only with the same compilers and C libraries."""
     arm, riscv = target_named("cortex-m4"), target_named("rv32imc")
     return [("Cortex-M", arm.version()),
             ("newlib", library_version(arm, "newlib.h", "_NEWLIB_VERSION")),
@@ -84,7 +84,7 @@ def tool_versions():
 
 
 def measure_all(folder):
-    """Everything there is to measure."""
+    """Measures everything."""
     made = streams.make(folder)
     recording = folder / "clean.bin"
     recording.write_bytes(made["clean"])
@@ -93,7 +93,7 @@ def measure_all(folder):
         jobs = {(target.name, level): pool.submit(measure_target, target.name, level, folder, made)
                 for target in TARGETS for level in LEVELS}
         figures["host"] = host.measure(host.build(folder), recording, folder,
-                                       made["clean packets"], instructions.BYTES_A_POLL)
+                                       made["clean packets"], instructions.BYTES_PER_POLL)
         figures["python"] = python_package.measure(folder, made["clean"])
         for key, job in jobs.items():
             figures["targets"][key] = job.result()
@@ -104,7 +104,7 @@ def measure_all(folder):
 
 
 def measured_for_budgets(figures):
-    """What each budget limits."""
+    """Returns the measured value for each budget."""
     m0 = figures["targets"]["cortex-m0", "-Os"]
     m4 = [figures["targets"]["cortex-m4", level] for level in LEVELS]
     each = {count: f["bytes"] for count, f in m4[0]["counts"]["per poll"].items()}
@@ -147,16 +147,16 @@ def read_budgets(figures):
             name, limit, title = line.split(None, 2)
             budgets.append(Budget(name, float(limit), title, measured.pop(name)))
     if measured:
-        raise BenchError(f"budgets.txt says nothing of {sorted(measured)}")
+        raise BenchError(f"budgets.txt has no limit for {sorted(measured)}")
     return budgets
 
 
 def check_budgets(figures):
-    """Says which budgets are exceeded; returns whether none is."""
+    """Prints the budgets that are exceeded; returns True if none is."""
     more = 0 if same_tools(figures) else OTHER_TOOLS_PERCENT
     exceeded = [budget for budget in figures["budgets"] if budget.is_exceeded(more)]
     if platform.machine() != "x86_64":
-        print("This computer is no x86-64: its own budget says nothing here.")
+        print("This computer is not an x86-64: the budgets for x86-64 are not checked.")
         exceeded = [budget for budget in exceeded if not budget.name.endswith("x86")]
     for budget in exceeded:
         print(f"OVER BUDGET: {budget.title}: {budget.shown()}, the limit is {budget.limit:g}" +
@@ -165,13 +165,13 @@ def check_budgets(figures):
 
 
 def same_tools(figures):
-    """True if the committed tables were made with the tools that are here."""
+    """True if the committed tables were made with the same tools as these."""
     committed = tables.block_in(FOOTPRINT.read_text(), "versions")
     return committed == tables.versions(figures)
 
 
 def update_documents(figures):
-    """Rewrites the tables in the documents, each where it has its place."""
+    """Rewrites the tables in the documents."""
     for document, names in ((FOOTPRINT, FOOTPRINT_TABLES), (README, README_TABLES)):
         absent = [name for name in names if tables.block_in(document.read_text(), name) is None]
         if absent:
@@ -181,7 +181,7 @@ def update_documents(figures):
 
 
 def show(figures):
-    """All tables, and what is not compared."""
+    """Prints all tables, and some figures that are in no table."""
     for name, render in tables.BLOCKS.items():
         print(f"\n{name}\n\n{render(figures)}")
     print()

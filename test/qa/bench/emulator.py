@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Runs one function at a time of a program on an emulated processor and counts instructions.
+"""Runs single functions of a program on an emulated processor and counts instructions.
 
-The emulator reports every block of instructions that it enters; how many instructions a block has
-is read from the program's own bytes. That is exact, and checked against single steps.
+The emulator reports every block of instructions that it enters. The number of instructions in a block is
+counted in the program's bytes. This is exact, and is checked against single steps.
 """
 
 import bisect
@@ -19,7 +19,7 @@ RAM = 0x20000000, 0x40000
 STACK_TOP = 0x30010000
 STACK_SIZE = 0x10000
 STACK_FILL = 0xA7
-RETURN = 0x00100000  # Where calls return to: not part of the program.
+RETURN = 0x00100000  # The return address of calls, outside of the program.
 
 CORTEX = {"cortex-m0": arm.UC_CPU_ARM_CORTEX_M0, "cortex-m3": arm.UC_CPU_ARM_CORTEX_M3,
           "cortex-m4": arm.UC_CPU_ARM_CORTEX_M4}
@@ -74,7 +74,7 @@ class Machine:
         self.uc.hook_add(UC_HOOK_BLOCK, self._block)
 
     def save(self):
-        """All that the program has in memory."""
+        """Returns the content of the program's RAM."""
         return self.read(*RAM)
 
     def restore(self, saved):
@@ -98,7 +98,7 @@ class Machine:
             self.uc.mem_write(address, data + bytes(size - len(data)))
 
     def function_at(self, address):
-        """The name of the function that an instruction belongs to."""
+        """Returns the name of the function that contains this instruction."""
         index = bisect.bisect_right(self._starts, address) - 1
         return self.functions[index][1] if index >= 0 else ""
 
@@ -125,7 +125,7 @@ class Machine:
         self.count += count
 
     def call(self, name, *arguments):
-        """Calls a function; returns its result. `count` grows by the library's instructions."""
+        """Calls a function; returns its result. Adds the library's instructions to `count`."""
         uc, registers = self.uc, self.registers
         for register, value in zip(registers.arguments, arguments):
             uc.reg_write(register, value)
@@ -135,7 +135,7 @@ class Machine:
         return uc.reg_read(registers.result)
 
     def cost(self, name, *arguments):
-        """Calls a function; returns its result and how many of the library's instructions ran."""
+        """Calls a function; returns its result and the number of the library's instructions that ran."""
         before = self.count
         result = self.call(name, *arguments)
         return result, self.count - before
@@ -153,19 +153,19 @@ class Machine:
         self.uc.mem_write(STACK_TOP - STACK_SIZE, bytes([STACK_FILL]) * STACK_SIZE)
 
     def stack_used(self):
-        """Bytes of stack that have been written since it was painted."""
+        """Returns how many bytes of stack have been written since it was painted."""
         stack = self.read(STACK_TOP - STACK_SIZE, STACK_SIZE)
         return len(stack.lstrip(bytes([STACK_FILL])))
 
     def single_steps(self, name, *arguments):
-        """As cost(), counted the slow way, one instruction at a time."""
+        """As cost(), but counts one instruction at a time, which is slow."""
         steps = 0
 
         def step(_uc, address, _size, _data):
             nonlocal steps
             steps += self._is_counted(address)
 
-        self.uc.ctl_flush_tb()  # Code is instrumented when it is translated.
+        self.uc.ctl_flush_tb()  # A hook is only added to code that is translated after it.
         hook = self.uc.hook_add(UC_HOOK_CODE, step)
         result = self.call(name, *arguments)
         self.uc.hook_del(hook)

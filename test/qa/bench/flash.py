@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Flash and RAM: small programs that use a part of the library each, linked and taken apart."""
+"""Measures flash and RAM of small linked programs, each of which uses a part of the library."""
 
 import pathlib
 
 from targets import HERE, LIB_SOURCES, BenchError, contributions, run
 
-# In the order of the tables: file name, title.
+# The order of the tables. Each entry has a file name and a title.
 CONFIGURATIONS = (
     ("parser", "parser + decoding"),
     ("streaming", "streaming, no scan buffer"),
@@ -18,18 +18,18 @@ CONFIGURATIONS = (
 
 
 def module_of(file):
-    """The library's module that an object file of the link is, or None."""
+    """Returns the name of the library's module for an object file, or None."""
     stem = pathlib.Path(file).stem
     return stem if stem in {source.stem for source in LIB_SOURCES} else None
 
 
 def is_support(file):
-    """True for what the C library and the compiler's own library contribute: memcpy and such."""
+    """True for a file in the C library or the compiler's own library, for example memcpy."""
     return file.endswith(")")
 
 
 def weigh(map_file):
-    """Bytes of flash by module, of flash from the compiler's libraries, and of writable data."""
+    """Returns the bytes of flash per module, of flash from other libraries, and of writable data."""
     modules = {}
     support = 0
     writable = 0
@@ -48,7 +48,7 @@ def weigh(map_file):
 
 
 def weigh_without_ct(target, level, folder):
-    """The full driver, all of it built with TMINI_NO_CT."""
+    """Weighs the full driver, built with TMINI_NO_CT."""
     sources = [*LIB_SOURCES, HERE / "flash" / "driver.c"]
     objects = [target.compile(source, level, folder / "no_ct", "-DTMINI_NO_CT") for source in sources]
     _, map_file = target.link(objects, folder / "no_ct.elf")
@@ -56,7 +56,7 @@ def weigh_without_ct(target, level, folder):
 
 
 def measure(target, level, objects, folder):
-    """All configurations for one target and level."""
+    """Weighs all configurations for one target and optimisation level."""
     weights = {"no_ct": weigh_without_ct(target, level, folder)}
     for name in ("parser", "streaming", "driver", "everything"):
         main = target.compile(HERE / "flash" / f"{name}.c", level, folder / "flash")
@@ -66,7 +66,7 @@ def measure(target, level, objects, folder):
 
 
 def sizes_of_types(target, folder):
-    """Bytes of each type that a user allocates: {"tmini_t": …}."""
+    """Returns the size of each type that a user allocates: {"tmini_t": …}."""
     item = target.compile(HERE / "ram.c", "-Os", folder)
     sizes = {}
     for line in run(target.tool("nm"), "-S", item).splitlines():

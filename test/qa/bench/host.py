@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Instructions per byte on this computer, counted by callgrind: the library's, those of the C
-library's copies and of the port, and the loop that a program has around them."""
+"""Counts instructions per byte on this computer with callgrind: those of the library, of the C library's copy
+functions, of the port, and of the program's loop around them."""
 
 import re
 
 from targets import HERE, LIB_SOURCES, ROOT, BenchError, run
 
-PACKET = 131  # Bytes at a time: about a packet, 10 ms.
+PACKET = 131  # Bytes per block: about a packet, or 10 ms.
 
 
 def build(folder):
-    """The host's program with the library at -O2."""
+    """Builds this computer's program with the library at -O2."""
     program = folder / "host"
     run("cc", "-std=c99", "-O2", "-g", f"-ffile-prefix-map={ROOT}=.", "-I", ROOT / "lib" / "include",
         "-I", HERE, HERE / "host" / "main.c", HERE / "limit.c", *LIB_SOURCES, "-o", program)
@@ -20,7 +20,7 @@ def build(folder):
 
 
 def count(program, way, recording, block, folder):
-    """Instructions per byte of one way through the library; checks that it finds all packets."""
+    """Returns the instructions per byte in one way of decoding, and the number of packets found."""
     out = folder / f"callgrind.{way}"
     packets = run("valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "-q",
                   "--collect-atstart=no", "--toggle-collect=counted_run*", program, way, recording,
@@ -32,7 +32,7 @@ def count(program, way, recording, block, folder):
 
 
 def measure(program, recording, folder, packets, blocks):
-    """Instructions per byte by way of feeding, and by bytes between polls."""
+    """Returns the instructions per byte for each way of feeding and for each number of bytes per poll."""
     def cost(way, block=PACKET, expected=packets):
         each, found = count(program, way, recording, block, folder)
         if found != expected:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Instructions, counted while streams and conversations go through the library on one processor."""
+"""Counts instructions on one processor while the library decodes streams and exchanges commands and replies."""
 
 import re
 
@@ -12,10 +12,10 @@ from targets import HERE, ROOT, BenchError
 
 RX_SIZE = 1024
 TICK_MS = 10        # How often is polled: about once per packet.
-BYTES_A_TICK = 131  # At the lidar's mean data rate (section 1).
-BYTES_A_MS = 13
-STOP_AGAIN_MS = 500  # How long after a stop the next one may follow.
-BYTES_A_POLL = (1, 4, 13, 64, 131, 512)
+BYTES_PER_TICK = 131  # At the lidar's mean data rate (section 1).
+BYTES_PER_MS = 13
+STOP_AGAIN_MS = 500  # The library waits this long between two stops.
+BYTES_PER_POLL = (1, 4, 13, 64, 131, 512)
 FALSE_HEADERS = bytes([0xAA, 0x55, 0, 80, 1, 1, 1, 1, 1, 1]) * 102
 SCAN_REPLY = bytes.fromhex("A5 5A 05 00 00 40 81")
 START, STOP, INFO, HEALTH, GET_FREQUENCY, REBOOT = 0x60, 0x65, 0x90, 0x92, 0x0D, 0x40
@@ -23,14 +23,14 @@ STEPS_CHZ = {0x09: 10, 0x0A: -10, 0x0B: 100, 0x0C: -100}
 
 
 def event_names():
-    """The events of tmini.h, by their value."""
+    """Returns the names of the events in tmini.h, in the order of their values."""
     header = (ROOT / "lib/include/tmini/tmini.h").read_text()
     body = re.search(r"typedef enum \{([^}]*)\} tmini_event_t;", header)[1]
     return re.findall(r"^\s+TMINI_EVENT_(\w+)", body, re.MULTILINE)
 
 
 class FakeLidar:
-    """Answers commands as section 4 says."""
+    """Answers commands as in section 4."""
 
     def __init__(self):
         self.frequency_chz = 600
@@ -51,7 +51,7 @@ class FakeLidar:
 
 
 class Session:
-    """One lidar from tmini_init() on, and what its calls cost."""
+    """One lidar after tmini_init(), and the cost of its calls."""
 
     def __init__(self, target, program, feed="bytes", streaming=False, rx_size=RX_SIZE):
         self.machine = Machine(target.name, program)
@@ -80,7 +80,7 @@ class Session:
         self._fed(self.machine.cost("bench_feed", len(data))[1])
 
     def _feed_dma(self, data):
-        """What the hardware does, then the one call that reports it."""
+        """Writes the bytes as DMA does, then makes the one call that reports them."""
         first = data[:self.rx_size - self.position]
         self.machine.write("bench_rx", first, self.position)
         self.machine.write("bench_rx", data[len(first):])
@@ -98,14 +98,14 @@ class Session:
         return name
 
     def receive(self, data, milliseconds):
-        """Time passes, `data` arrives; there is no poll."""
+        """Lets time pass and `data` arrive, without a poll."""
         self.now_ms += milliseconds
         self.machine.write_word("bench_now_ms", self.now_ms)
         if data:
             self.feed(data)
 
     def tick(self, data=b"", milliseconds=TICK_MS):
-        """Time passes, `data` arrives; polls until nothing is left and returns the events."""
+        """Lets time pass and `data` arrive; polls until there is no event, and returns the events."""
         self.receive(data, milliseconds)
         events = []
         while not events or events[-1] != "NONE":
@@ -113,13 +113,13 @@ class Session:
         return events
 
     def answer(self):
-        """What the lidar says to the command just sent."""
+        """Returns the lidar's reply to the last command."""
         command = self.machine.read(self.machine.addresses["bench_sent"], 1)[0]
         self.machine.write("bench_sent", b"\0")
         return self.lidar.reply_to(command)
 
     def until(self, wanted, limit_ms=20000):
-        """Carries on the conversation until the event comes."""
+        """Exchanges commands and replies until the event comes."""
         end_ms = self.now_ms + limit_ms
         while wanted not in self.tick(self.answer()):
             if self.now_ms > end_ms:
@@ -130,30 +130,30 @@ class Session:
             raise BenchError(f"the command {code:#x} is refused")
 
     def reach_scanning(self):
-        """Carries on the conversation up to the lidar's reply to the start."""
+        """Exchanges commands and replies until the lidar has replied to the start."""
         reply = b""
         while reply != SCAN_REPLY:
             reply = self.answer()
             self.tick(reply)
 
     def spin_up(self):
-        """Starts, up to the lidar's reply."""
+        """Starts scanning, until the lidar's reply to the start."""
         self.command(START)
         self.reach_scanning()
 
-    def run(self, stream, bytes_a_tick=BYTES_A_TICK):
+    def run(self, stream, bytes_per_tick=BYTES_PER_TICK):
         """Feeds a whole stream."""
-        for at in range(0, len(stream), bytes_a_tick):
-            self.tick(stream[at:at + bytes_a_tick])
+        for at in range(0, len(stream), bytes_per_tick):
+            self.tick(stream[at:at + bytes_per_tick])
 
     def counters(self):
-        """packets, checksum errors, bytes in packets, in replies, skipped, overrun."""
+        """Returns packets, checksum errors, bytes in packets, in replies, skipped, overrun."""
         address = self.machine.call("bench_counters")
         data = self.machine.read(address, 24)
         return [int.from_bytes(data[i:i + 4], "little") for i in range(0, 24, 4)]
 
     def idle_poll(self, milliseconds):
-        """What a poll costs that finds nothing, this long after the one before."""
+        """Returns the cost of a poll without an event, this long after the poll before."""
         before = self.poll_total
         self.now_ms += milliseconds
         self.machine.write_word("bench_now_ms", self.now_ms)
@@ -163,7 +163,7 @@ class Session:
 
 
 def through(target, program, stream, feed, streaming=False, packets=None):
-    """A stream's cost per byte: (feeding, polling), and the session."""
+    """Returns a stream's cost per byte as (feeding, polling), and the session."""
     session = Session(target, program, feed, streaming)
     session.spin_up()
     session.feed_total = session.poll_total = session.feed_worst = 0
@@ -174,14 +174,14 @@ def through(target, program, stream, feed, streaming=False, packets=None):
 
 
 def full_ring(target, program):
-    """The costliest tmini_feed_byte(), also when the buffer is full and bytes are refused."""
+    """Returns the highest cost of tmini_feed_byte(), also when the buffer is full and bytes are refused."""
     session = Session(target, program)
     session.feed(bytes(2 * RX_SIZE))
     return session.feed_worst
 
 
 def per_poll(target, program, stream, feed, count):
-    """A stream's cost per byte, when it is polled after every `count` bytes as they come."""
+    """Returns a stream's cost per byte with a poll after every `count` bytes."""
     session = Session(target, program, feed)
     session.spin_up()
     session.run(stream)
@@ -189,14 +189,14 @@ def per_poll(target, program, stream, feed, count):
     begin_ms = session.now_ms
     for at in range(0, len(stream), count):
         part = stream[at:at + count]
-        now_ms = begin_ms + (at + len(part)) // BYTES_A_MS
+        now_ms = begin_ms + (at + len(part)) // BYTES_PER_MS
         session.tick(part, now_ms - session.now_ms)
     return (session.feed_total + session.poll_total) / len(stream)
 
 
 def longest_poll(target, program, clean):
-    """The costliest single poll that a search finds, and what the ring was full of: the lidar scans,
-    and a scan is under way."""
+    """Searches for the most expensive single poll; returns its cost and the content of the ring. The lidar is
+    scanning, and a scan is in progress."""
     session = Session(target, program, "blocks", rx_size=worst.SIZE)
     session.spin_up()
     session.run(clean)
@@ -214,7 +214,7 @@ def longest_poll(target, program, clean):
 
 
 def limit(target, program, stream):
-    """The least that decoding can cost, per byte."""
+    """Returns the lowest possible cost of decoding, per byte."""
     machine = Machine(target.name, program)
     at = cost = 0
     while len(stream) - at >= 13:
@@ -227,7 +227,7 @@ def limit(target, program, stream):
 
 
 def conversation(target, program, clean, faulty):
-    """Every event there is; returns the deepest stack."""
+    """Makes every event occur; returns the deepest stack."""
     session = Session(target, program)
     if "MORE" not in session.tick(FALSE_HEADERS):
         raise BenchError("a full ring of false headers is not too much for one poll")
@@ -244,7 +244,7 @@ def conversation(target, program, clean, faulty):
     session.lidar.answers = True
     session.command(STOP)
     session.until("STOPPED")
-    if "UNWANTED_SCANNING" not in session.tick(clean[:BYTES_A_TICK], STOP_AGAIN_MS):
+    if "UNWANTED_SCANNING" not in session.tick(clean[:BYTES_PER_TICK], STOP_AGAIN_MS):
         raise BenchError("an idle lidar that streams is not noticed")
     session.until("STOPPED")
     session.spin_up()
@@ -260,12 +260,12 @@ def conversation(target, program, clean, faulty):
 
 
 def overrun(target, program, stream, rx_size, dma, pause_ms):
-    """Bytes lost when the line never pauses and one poll every `pause_ms` finds them."""
+    """Returns the number of bytes lost if the line never pauses and there is one poll every `pause_ms`."""
     session = Session(target, program, "dma" if dma else "blocks", rx_size=rx_size)
     session.spin_up()
     begin, at = session.now_ms, 0
     while at < len(stream):
-        end = int((session.now_ms + 1 - begin) * load.LINE_BYTES_A_MS)
+        end = int((session.now_ms + 1 - begin) * load.LINE_BYTES_PER_MS)
         session.receive(stream[at:end], 1)
         at = end
         if session.now_ms % pause_ms == 0:
@@ -274,8 +274,8 @@ def overrun(target, program, stream, rx_size, dma, pause_ms):
 
 
 def check_pauses(target, program, stream):
-    """The longest pauses between polls that the tables promise must lose nothing; much longer ones
-    must lose something, or this would be no check."""
+    """Checks that the longest pauses between polls in the tables lose no byte, and that much longer ones do:
+    otherwise this check could not fail."""
     for rx_size in load.RINGS:
         for dma in (False, True):
             pause_ms = int(load.longest_pause_ms(rx_size, dma))
@@ -288,8 +288,8 @@ def check_pauses(target, program, stream):
 
 
 def check_counting(target, program, clean):
-    """Counting blocks must agree with counting single instructions. A Cortex-M3 or M4 skips some
-    within a block (IT); they take their cycle, and only the blocks' count includes them."""
+    """Counting by blocks must agree with counting single instructions. A Cortex-M3 or M4 skips some instructions
+    in a block (IT). These take a cycle, too, but only counting by blocks includes them."""
     fast = Session(target, program)
     slow = Session(target, program)
     for session in (fast, slow):
@@ -303,7 +303,7 @@ def check_counting(target, program, clean):
 
 
 def measure(target, level, objects, folder, streams):
-    """Everything that is counted on one processor."""
+    """Counts everything on one processor."""
     sources = (HERE / "emulated" / "main.c", HERE / "limit.c")
     extra = [target.compile(source, level, folder / "emulated", "-I", HERE) for source in sources]
     program, _ = target.link([*objects, *extra], folder / "emulated.elf")
@@ -322,7 +322,7 @@ def measure(target, level, objects, folder, streams):
     figures = {"costs": costs, "feed worst": feed_worst, "idle poll": idle, "caller": caller,
                "limit": limit(target, program, clean),
                "per poll": {count: {feed: per_poll(target, program, streams["turn"], feed, count)
-                                    for feed in ("bytes", "blocks")} for count in BYTES_A_POLL},
+                                    for feed in ("bytes", "blocks")} for count in BYTES_PER_POLL},
                "stack seen": conversation(target, program, streams["turn"], streams["faulty"])}
     if (target.name, level) == ("cortex-m4", "-Os"):
         check_pauses(target, program, clean)

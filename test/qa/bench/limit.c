@@ -10,21 +10,21 @@
 #define HEADER_SIZE 10u
 #define SAMPLE_SIZE 3u
 #define FULL_TURN_Q6 23040u
-#define HALF 0x8000u /* Of a sixty-fourth. */
+#define HALF 0x8000u /* Half of 1/64 degree. */
 
 static unsigned half_at(const uint8_t *bytes)
 {
     return bytes[0] | (unsigned)bytes[1] << 8;
 }
 
-/* Angles are stored in sixty-fourths of a degree; 16 more bits carry the step's fraction. */
+/* Returns the angle between two samples, in units of 2^-16 of 1/64 degree. */
 static uint32_t step_of(unsigned first, unsigned last, size_t count)
 {
     const uint32_t swept = last >= first ? last - first : last + FULL_TURN_Q6 - first;
     return count > 1 ? (swept << 16) / (uint32_t)(count - 1) : 0;
 }
 
-/* Returns the samples' part of the checksum and stores their points. */
+/* Stores the samples' points and returns their part of the checksum. */
 TMINI_NOINLINE static unsigned store(const uint8_t *sample, size_t count, uint32_t angle,
                                      uint32_t step, limit_point_t *point)
 {
@@ -59,7 +59,7 @@ size_t limit_decode(const uint8_t *bytes, size_t count, limit_point_t *points)
     while (count - at >= HEADER_SIZE) {
         const uint8_t *const packet = &bytes[at];
         if (half_at(packet) != 0x55AA) {
-            at++; /* LastCRC, which follows a revolution. */
+            at++; /* LastCRC, at the end of a revolution. */
             continue;
         }
         const size_t samples = packet[3];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The least that decoding can cost: what the library is compared with. */
+/* The simplest possible decoder: the library's cost is compared with its cost. */
 
 #ifndef LIMIT_H
 #define LIMIT_H
@@ -16,12 +16,12 @@ typedef struct {
     uint8_t flag;
 } limit_point_t;
 
-/* Room for the points of 4096 bytes at least, whatever they are. */
+/* Enough for the points of any 4096 bytes. */
 #define LIMIT_POINTS 1400
 
-/* From an undamaged stream of scan packets to points, in one pass that checks and stores: no ring,
- * no resynchronising, no scans, no CT information; for machines that read words at any address, the
- * first byte lowest. The byte after the last one is read, too. Returns how many bytes it has used:
+/* Decodes an undamaged stream of scan packets to points in one pass, with checksums, but without
+ * ring, resynchronisation, scans or CT information. Only for little-endian machines that can read
+ * words at any address. Also reads the byte after the last one. Returns the number of bytes used:
  * all up to the first incomplete packet. */
 size_t limit_decode(const uint8_t *bytes, size_t count, limit_point_t *points);
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Processor time that the Python package takes: for an hour's recording, and while a lidar scans.
+"""Measures the Python package's processor time: for an hour's recording, and while a lidar scans.
 
-Run by itself, in a process of its own: python_package.py RECORDING
+It starts itself in a separate process: python_package.py RECORDING
 """
 
 import os
@@ -11,7 +11,7 @@ import socket
 import sys
 import time
 
-BYTES_A_SECOND = 13_100  # Section 1 of the protocol.
+BYTES_PER_SECOND = 13_100  # Section 1 of the protocol.
 SCANNING_S = 5
 
 
@@ -20,7 +20,7 @@ def measure(folder, clean):
     from targets import ROOT, run  # pylint: disable=import-outside-toplevel
     python = folder / "python" / "bin" / "python"
     recording = folder / "hour.bin"
-    recording.write_bytes(clean * (3600 * BYTES_A_SECOND // len(clean) + 1))
+    recording.write_bytes(clean * (3600 * BYTES_PER_SECOND // len(clean) + 1))
     run(python, "-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps",
         "--no-build-isolation", ROOT / "port" / "python")
     hour, percent = run(python, __file__, recording).split()
@@ -29,7 +29,7 @@ def measure(folder, clean):
 
 
 def seconds_to_read(path):
-    """With all arrays of each scan."""
+    """Returns the processor time for reading a recording, with all arrays of each scan."""
     begun = time.process_time()
     for scan in tmini.read(path):
         assert len(scan.angles_rad) == len(scan.ranges_m) == len(scan.times_s)
@@ -37,15 +37,15 @@ def seconds_to_read(path):
 
 
 def send(server, content):
-    """As a lidar does that scans. In a process of its own: its time does not count."""
+    """Sends bytes as a scanning lidar does. Runs in a separate process, so that its time is not counted."""
     connection, _ = server.accept()
     begun = time.monotonic()
     try:
         for at in range(0, len(content), 131):
             connection.sendall(content[at:at + 131])
-            time.sleep(max(0, begun + at / BYTES_A_SECOND - time.monotonic()))
+            time.sleep(max(0, begun + at / BYTES_PER_SECOND - time.monotonic()))
     except OSError:
-        pass  # Enough has been received.
+        pass  # The receiver has enough and has closed the connection.
 
 
 def percent_of_scanning(content):
@@ -63,4 +63,4 @@ def percent_of_scanning(content):
 if __name__ == "__main__":
     import tmini
     with open(sys.argv[1], "rb") as file:
-        print(seconds_to_read(sys.argv[1]), percent_of_scanning(file.read(20 * BYTES_A_SECOND)))
+        print(seconds_to_read(sys.argv[1]), percent_of_scanning(file.read(20 * BYTES_PER_SECOND)))

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* An object as large as what a user declares per lidar; compiled, and its size read. */
+/* Has the size of the object that a user declares per lidar; read from the compiled file. */
 
 #include "tmini/tmini.h"
 

@@ -7,9 +7,9 @@
 #
 #   test/qa/bench/run.sh [--update] [--no-install]
 #
-# --update rewrites the tables in docs/footprint.md and README.md, for a release or when asked.
-# Under other compilers than theirs the budgets are a tenth higher. Installs what it needs, unless
-# told not to. Exit status: 0 in order, 1 not in order, 2 wrong usage, 77 a tool is missing.
+# --update rewrites the tables in docs/footprint.md and README.md. With other compilers than those
+# of these tables, the budgets are a tenth higher. Installs missing tools, unless --no-install is
+# given. Exit status: 0 within the budgets, 1 not, 2 wrong usage, 77 a tool is missing.
 
 set -eu
 
@@ -50,7 +50,7 @@ wish_for_bench_tools() {
     install_missing
 }
 
-# has_library COMPILER OPTION…: it can compile with its C library's headers.
+# has_library COMPILER OPTION…: succeeds if the compiler finds its C library's headers.
 has_library() {
     command -v "$1" >/dev/null && echo '#include <string.h>' | "$@" -E - >/dev/null 2>&1
 }
@@ -64,7 +64,7 @@ has_library arm-none-eabi-gcc --specs=nano.specs ||
 has_library riscv64-unknown-elf-gcc --specs=picolibc.specs ||
     skip "riscv64-unknown-elf-gcc or picolibc is not installed"
 
-# The emulator, and the Python package, in environments of their own.
+# The emulator and the Python package are installed in separate virtual environments.
 mkdir -p "$work"
 install_requirements "$work/venv" "$root/test/qa/bench/requirements.txt" \
     >"$work/install.log" 2>&1 ||

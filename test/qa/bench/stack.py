@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Worst-case stack: frames summed along the deepest path of calls.
+"""Calculates the worst-case stack: the sum of the frames along the deepest path of calls.
 
-Frames come from the compiler (-fcallgraph-info=su,da), calls from the object code, which also has
-those that the compiler adds itself (memcpy, division); frames of such support functions come from
-the disassembly. A tail call, a branch as the caller's last act, finds the caller's frame given back.
-The port's functions are the user's and not included.
+The compiler reports the frames (-fcallgraph-info=su,da). The calls are read from the object code, which also has
+the calls that the compiler itself adds (memcpy, division); the frames of these support functions are read from
+the disassembly. Before a tail call, which is a branch at the caller's end, the caller has freed its frame. The
+port's functions belong to the user and are not included.
 """
 
 import functools
@@ -20,7 +20,7 @@ FUNCTION = re.compile(r"^[0-9a-f]+ <([^.>][^>]*)>:$")  # Not a local label.
 RELOCATED = re.compile(r"(R_ARM_THM_CALL|R_ARM_THM_JUMP24|R_RISCV_CALL(?:_PLT)?)\s+(\S+)")
 DIRECT_CALL = re.compile(r"\t(?:bl|blx|b|b\.n|b\.w|jal|j)\s+(?:ra,)?[0-9a-f]+ <(\w+)>")
 
-# What the interrupt calls; everything else is called where the user polls.
+# Called from the interrupt; everything else is called from the thread that polls.
 INTERRUPT = ("tmini_ring_put_at_stop", "tmini_ring_write", "tmini_ring_room", "tmini_ring_publish",
              "tmini_ring_gap")
 
@@ -30,8 +30,8 @@ class Graph:
 
     def __init__(self):
         self.frames = {}
-        self.calls = {}       # {caller: {callees}}, the caller's frame staying
-        self.tail_calls = {}  # the same, the caller's frame given back
+        self.calls = {}       # {caller: {callees}}
+        self.tail_calls = {}  # The same for tail calls: the caller's frame is freed before.
 
     def add_call(self, caller, callee, is_tail):
         calls = self.tail_calls if is_tail else self.calls
@@ -41,7 +41,7 @@ class Graph:
         return self.calls.get(caller, set()) | self.tail_calls.get(caller, set())
 
     def deepest(self, name):
-        """Bytes of stack below a call of the function, and the path to them."""
+        """Returns the bytes of stack that a call of the function needs, and the deepest path."""
         @functools.cache
         def depth_of(function):
             frame = self.frames[function]
@@ -61,7 +61,7 @@ class Graph:
 
 
 def is_port_call(place):
-    """True if the source at file:line:column calls a function of the user's: the port's, or a step."""
+    """True if the source at file:line:column calls a function of the user: the port's, or a step."""
     name, line, _ = place.rsplit(":", 2)
     path = ROOT / name.removeprefix("./")
     code = path.read_text().splitlines()[int(line) - 1]
@@ -69,7 +69,7 @@ def is_port_call(place):
 
 
 def add_frames(graph, text):
-    """Frames of one object. Returns the graph's names of its functions by their symbols."""
+    """Adds the frames of one object file. Returns its functions' names in the graph by their symbols."""
     names = {}
     for name, size, kind in NODE.findall(text):
         if kind != "static":
@@ -80,12 +80,12 @@ def add_frames(graph, text):
 
 
 def is_tail(relocation, instruction):
-    """A branch rather than a call."""
+    """True for a branch instead of a call."""
     return relocation == "R_ARM_THM_JUMP24" or "auipc\tt1" in instruction
 
 
 def add_calls(graph, names, disassembly):
-    """Calls in one object's code. Returns the symbols of other objects that it calls."""
+    """Adds the calls in one object file. Returns the symbols of other objects that it calls."""
     foreign = set()
     caller = instruction = None
     for line in disassembly.splitlines():
@@ -104,8 +104,8 @@ def add_calls(graph, names, disassembly):
 
 
 def check_calls(graph, text):
-    """The compiler's own account of calls must hold none that the object code has not shown; and
-    no call through a pointer but the port's, whose depth would be unknown."""
+    """Checks that the object code shows every call in the compiler's own list, and that only the port and the step
+    are called through a pointer: the depth of other such calls would be unknown."""
     for caller, callee, place in EDGE.findall(text):
         if callee == "__indirect_call":
             if not is_port_call(place):
@@ -115,7 +115,7 @@ def check_calls(graph, text):
 
 
 def stack_taken(line):
-    """Bytes of stack that an instruction takes."""
+    """Returns the bytes of stack that an instruction takes."""
     saved = re.search(r"\t(?:push|stmdb\s+sp!,|stmfd\s+sp!,)\s*\{(.*)\}", line)
     if saved:
         count = 0
@@ -129,7 +129,7 @@ def stack_taken(line):
 
 
 def add_support(graph, names, disassembly):
-    """The C library's functions: what they take in all, and what they call in turn."""
+    """Adds the C library's functions: their frames and their own calls."""
     bodies = {}
     for line in disassembly.splitlines():
         start = FUNCTION.match(line)
@@ -142,7 +142,7 @@ def add_support(graph, names, disassembly):
         name = queue.pop()
         if name in graph.frames:
             continue
-        body = bodies.get(name, [])  # A function that this program has not is not called in it.
+        body = bodies.get(name, [])  # A function that was not linked is never called.
         graph.frames[name] = sum(stack_taken(line) for line in body)
         for callee in set(DIRECT_CALL.findall("\n".join(body))) - {name}:
             graph.add_call(name, callee, False)
@@ -150,7 +150,7 @@ def add_support(graph, names, disassembly):
 
 
 def measure(target, objects, program):
-    """The deepest stack of the interrupt and of polling, with the path that leads there."""
+    """Returns the deepest stack of the interrupt and of polling, each with its path of calls."""
     graph = Graph()
     foreign = set()
     accounts = [item.with_suffix(".ci").read_text() for item in objects]

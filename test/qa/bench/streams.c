@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Writes a stream of scan packets to standard output, from the independent encoder:
+/* Writes a stream of scan packets to standard output, made by the independent encoder:
  *
- *   streams clean REVOLUTIONS POINTS   as a lidar sends them, with CT information; 667 points per
- *                                      revolution are 6 Hz
+ *   streams clean REVOLUTIONS POINTS   as a lidar sends them, with CT information; at 6 Hz a
+ *                                      revolution has 667 points
  *   streams faulty REVOLUTIONS POINTS  the same from a lidar that reports a fault of its encoder
- *   streams corrupted REVOLUTIONS POINTS  as clean, one fault in about 500 bytes */
+ *   streams corrupted REVOLUTIONS POINTS  as clean, but with one fault per about 500 bytes */
 
 #include "corrupt.h"
 #include "encoder.h"
@@ -19,12 +19,12 @@
 
 #define CAPACITY (1u << 20)
 #define FULL_PACKET 40u
-#define BYTES_A_FAULT 500u
+#define BYTES_PER_FAULT 500u
 #define HEALTH_ENCODER 2u /* section 4 */
 
 static uint8_t stream[CAPACITY];
 static size_t size;
-static uint32_t points_a_revolution;
+static uint32_t points_per_revolution;
 
 static encode_turn_t turn = {.frequency_dhz = 60,
                              .user_major = 1,
@@ -44,11 +44,11 @@ static encode_sample_t room(random_t *random)
                              .flag = 0};
 }
 
-/* One packet of the revolution, from its point `first` on. Returns how many points it has. */
+/* Adds a packet that begins with the revolution's point `first`. Returns its number of points. */
 static uint32_t add_packet(random_t *random, uint32_t index, uint32_t first)
 {
     encode_sample_t samples[FULL_PACKET];
-    const uint32_t left = points_a_revolution - first;
+    const uint32_t left = points_per_revolution - first;
     const uint32_t most = index == 0 ? 1 : FULL_PACKET;
     const uint32_t count = left < most ? left : most;
     for (uint32_t i = 0; i < count; i++) {
@@ -57,8 +57,8 @@ static uint32_t add_packet(random_t *random, uint32_t index, uint32_t first)
     const encode_packet_t packet = {
         .ct = encode_ct(&turn, index),
         .lsn = (uint8_t)count,
-        .first_q6 = (uint16_t)(first * ENCODE_FULL_TURN_Q6 / points_a_revolution),
-        .last_q6 = (uint16_t)((first + count - 1) * ENCODE_FULL_TURN_Q6 / points_a_revolution),
+        .first_q6 = (uint16_t)(first * ENCODE_FULL_TURN_Q6 / points_per_revolution),
+        .last_q6 = (uint16_t)((first + count - 1) * ENCODE_FULL_TURN_Q6 / points_per_revolution),
         .samples = samples,
     };
     size += encode_packet(&stream[size], &packet);
@@ -69,7 +69,7 @@ static void add_revolution(random_t *random)
 {
     uint8_t crc = 0;
     uint32_t index = 0;
-    for (uint32_t first = 0; first < points_a_revolution; index++) {
+    for (uint32_t first = 0; first < points_per_revolution; index++) {
         crc = encode_crc8(crc, encode_ct(&turn, index));
         first += add_packet(random, index, first);
     }
@@ -89,12 +89,12 @@ static void corrupt(void)
 {
     random_t random;
     random_seed(&random, 2);
-    size = corrupt_some(&random, (unsigned)(size / BYTES_A_FAULT), stream, size, CAPACITY);
+    size = corrupt_some(&random, (unsigned)(size / BYTES_PER_FAULT), stream, size, CAPACITY);
 }
 
 static bool make(const char *kind, uint32_t amount, uint32_t parameter)
 {
-    points_a_revolution = parameter;
+    points_per_revolution = parameter;
     if (strcmp(kind, "clean") == 0) {
         make_scans(amount);
     } else if (strcmp(kind, "faulty") == 0) {

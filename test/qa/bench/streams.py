@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The streams that go through the library, made by the independent encoder."""
+"""Makes the streams for the measurements, with the independent encoder."""
 
 import subprocess
 
@@ -9,13 +9,13 @@ from targets import HERE, ROOT, run
 
 SUPPORT = ROOT / "test" / "support"
 REVOLUTIONS = 20
-PACKETS_A_REVOLUTION = 18  # 667 points: a start packet of one, 16 of 40, one of 26.
+PACKETS_PER_REVOLUTION = 18  # 667 points: one start packet with 1 point, 16 packets with 40, one with 26.
 
-POINTS = 667  # A revolution at 6 Hz: 4000 samples per second (section 1).
+POINTS = 667  # Points per revolution at 6 Hz, with 4000 samples per second (section 1).
 
 
 def make(folder):
-    """All streams by name, and how many packets the clean one has."""
+    """Returns all streams by name, and the number of packets in the clean one."""
     maker = folder / "streams"
     run("cc", "-std=c99", "-O1", "-Wall", "-Wextra", "-Werror", "-I", SUPPORT,
         HERE / "streams.c", SUPPORT / "encoder.c", SUPPORT / "corrupt.c", SUPPORT / "random.c",
@@ -30,5 +30,5 @@ def make(folder):
         "turn": made("clean", 2, POINTS),
         "faulty": made("faulty", 4, POINTS),
     }
-    streams["clean packets"] = REVOLUTIONS * PACKETS_A_REVOLUTION
+    streams["clean packets"] = REVOLUTIONS * PACKETS_PER_REVOLUTION
     return streams

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Figures as Markdown tables, and the documents that hold them between markers."""
+"""Formats figures as Markdown tables, and puts them between the markers in documents."""
 
 import re
 
@@ -11,25 +11,25 @@ from targets import LEVELS, TARGETS, target_named
 
 
 def table(head, rows):
-    """A Markdown table; columns but the first are figures, to the right."""
+    """Returns a Markdown table; all columns but the first are right-aligned."""
     lines = [head, ["---"] + ["---:"] * (len(head) - 1), *rows]
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
 
 
 def one(value):
-    """With one decimal."""
+    """Returns the value with one decimal."""
     return f"{value:.1f}"
 
 
 def machines(figures):
-    """(title, figures) of each processor and level."""
+    """Returns (title, figures) for each processor and optimisation level."""
     for target in TARGETS:
         for level in LEVELS:
             yield f"{target.title} `{level}`", figures["targets"][target.name, level]
 
 
 def small(figures):
-    """Those at -Os, the level that firmware mostly has."""
+    """The same only for -Os, the usual level of firmware."""
     return [(title, f) for title, f in machines(figures) if title.endswith("`-Os`")]
 
 
@@ -81,7 +81,7 @@ def per_poll(figures):
 
 
 def compared(figures):
-    """All that a program executes: on x86-64 its loop, on Cortex-M4 its interrupt's function."""
+    """Instructions of the library and the program: on x86-64 with its loop, on Cortex-M4 with its interrupt."""
     host = figures["host"]
     m4 = [figures["targets"]["cortex-m4", level]["counts"] for level in LEVELS]
     rows = [["the limit", one(host["limit"]), *(one(f["limit"]) for f in m4)],
@@ -119,7 +119,7 @@ def budgets(figures):
 
 
 def summary(figures):
-    """The README's table."""
+    """Returns the README's table."""
     m4 = figures["targets"]["cortex-m4", "-Os"]
     m0 = figures["targets"]["cortex-m0", "-Os"]
     rows = [
@@ -144,18 +144,18 @@ BLOCKS = {"versions": versions, "budgets": budgets, "memory": memory, "modules":
 
 
 def between(name):
-    """The pattern of a generated block."""
+    """Returns the pattern of a generated block."""
     return re.compile(rf"(<!-- {name}:begin[^>]*-->\n)(.*?)(<!-- {name}:end -->)", re.DOTALL)
 
 
 def block_in(text, name):
-    """What a document holds between a block's markers, or None."""
+    """Returns the text between a block's markers, or None."""
     found = between(name).search(text)
     return found[2].strip("\n") if found else None
 
 
 def renew(document, names, figures):
-    """The document's text with its blocks as measured now."""
+    """Returns the document's text with the new figures in its blocks."""
     text = document.read_text()
     for name in names:
         new = BLOCKS[name](figures)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The processors measured, and how the library is compiled and linked for them."""
+"""The measured processors, and the commands that compile and link the library for them."""
 
 import pathlib
 import re
@@ -14,7 +14,7 @@ LEVELS = ("-Os", "-O2")
 
 
 class BenchError(Exception):
-    """Something that the caller must mend, with a message that says what."""
+    """An error that the user must correct; its message explains it."""
 
 
 def run(*command):
@@ -40,26 +40,26 @@ class Target:
         return self.prefix + name
 
     def version(self):
-        """The compiler's whole version line: figures are comparable under the same one only."""
+        """Returns the compiler's version line: figures are comparable only with the same compiler."""
         return run(self.tool("gcc"), "--version").splitlines()[0].strip()
 
     def compile(self, source, level, folder, *extra):
         """Compiles one source to `folder`; returns the object file."""
         folder.mkdir(parents=True, exist_ok=True)
         target = folder / (source.stem + ".o")
-        # Names without the checkout's place, so that its length cannot matter.
+        # File names without the path of the checkout, so that its length does not change the figures.
         run(self.tool("gcc"), *self.machine, "-std=c99", level, "-Wall", "-Wextra", "-Werror",
             "-ffunction-sections", "-fdata-sections", f"-ffile-prefix-map={ROOT}=.",
             "-I", ROOT / "lib" / "include", *extra, "-c", source, "-o", target)
         return target
 
     def compile_library(self, level, folder):
-        """All of lib/src; call graphs with stack sizes (*.ci) beside the objects."""
+        """Compiles all of lib/src, with call graphs and stack sizes in *.ci files beside the objects."""
         return [self.compile(source, level, folder, "-fcallgraph-info=su,da")
                 for source in LIB_SOURCES]
 
     def link(self, objects, program):
-        """Links without start-up code, dropping what is not used; returns program and map."""
+        """Links without start-up code and without unused functions; returns program and map."""
         map_file = program.with_suffix(".map")
         run(self.tool("gcc"), *self.machine, *self.link_options, "-nostartfiles",
             "-Wl,--gc-sections", "-Xlinker", f"-Map={map_file}", "-T", HERE / "program.ld",
@@ -91,9 +91,9 @@ SECTION = re.compile(
 
 
 def contributions(map_file):
-    """What each object file brings to a linked program: (section, bytes, file) triples."""
+    """Returns the parts of a linked program, each as (section, bytes, object file)."""
     text = map_file.read_text()
     text = text[text.index("Linker script and memory map"):]
-    text = re.sub(r"\n( \.\S+)\n\s+", r"\n\1 ", text)  # Long names stand on a line of their own.
+    text = re.sub(r"\n( \.\S+)\n\s+", r"\n\1 ", text)  # Join the line of a long name with the next one.
     return [(section, int(size, 16), file) for section, size, file in SECTION.findall(text)
             if int(size, 16) > 0]

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Searches for what makes one poll as long as possible: mixes ingredients, and keeps what is worse.
+"""Searches for the bytes that make one poll as long as possible: mixes ingredients, and keeps the worst mix.
 
-Each ingredient costs much for what the driver counts it as; what one costs beyond that adds up, and
-a poll may begin its largest packet when there is hardly any effort left.
+A poll has a limit for its estimated effort. Each ingredient costs more than the driver's estimate, and these
+differences add up. Also, a poll may begin its largest packet just before it reaches the limit.
 """
 
 import random
 
-SIZE = 4096  # The largest ring that the tables speak of.
+SIZE = 4096  # The largest ring in the tables.
 TRIALS = 1200
-STARTS = 12  # Each start is improved in its share of the trials.
+STARTS = 12  # Number of first mixes; each is improved with an equal share of the trials.
 MS = (1, 10, 100)
 
 
@@ -30,7 +30,8 @@ def packet(samples, first_q6, last_q6, *, is_start=False, sample=bytes(3)):
 
 
 def points(parameter):
-    """A packet of 1 to 80 samples, from a little after LSA on: all of them wrap; or with ranges."""
+    """A packet of 1 to 80 samples with LSA just below FSA, so that its angles wrap. From parameter 80 on, the
+    samples have ranges."""
     samples = 1 + parameter % 80
     first = 6400
     last = first if samples == 1 else first - 1
@@ -38,7 +39,7 @@ def points(parameter):
 
 
 def header(parameter):
-    """A false header that claims 1 to 80 samples, cut off after 2 to 12 bytes."""
+    """A false header for 1 to 80 samples, cut off after 2 to 12 bytes."""
     return bytes([0xAA, 0x55, 0, 1 + parameter % 80, 1, 1, 1, 1, 1, 1, 1, 1])[:2 + parameter % 11]
 
 
@@ -56,12 +57,12 @@ def any_part(source):
 
 
 def any_mix(source):
-    """How far round the ring it begins, how long after what came before, and what it is."""
+    """Returns a random mix: its position in the ring, the pause before it in ms, and its parts."""
     return (source.randrange(SIZE), source.choice(MS), [any_part(source) for _ in range(3)])
 
 
 def changed(mix, source):
-    """A neighbour of a mix."""
+    """Returns a mix that differs a little."""
     begin, pause_ms, parts = mix
     parts = list(parts)
     at = source.randrange(len(parts))
@@ -81,7 +82,7 @@ def changed(mix, source):
 
 
 def stream_of(mix):
-    """A start packet first, so that there is room for points."""
+    """Returns a mix as bytes. It begins with a start packet, so that the scan has room for points."""
     stream = packet(1, 0, 0, is_start=True)
     for name, parameter, count in mix[2]:
         stream += INGREDIENTS[name](parameter) * count
@@ -89,7 +90,7 @@ def stream_of(mix):
 
 
 def search(cost):
-    """The highest cost(mix) found, and the mix."""
+    """Returns the highest cost(mix) found, and the mix."""
     source = random.Random(1)
     first = (0, 10, [("marks", 0, 120), ("points", 79, 1), ("zeros", 1, 1)])
     worst = (0, None)

@@ -9,10 +9,10 @@
 #include <string.h>
 
 #define NEVER UINT64_MAX
-#define IDLE_LINE_US 90u /* Two bytes' time. */
-#define BYTE_US 76u      /* Of a lidar that scans (section 1). */
+#define IDLE_LINE_US 90u /* Two byte times. */
+#define BYTE_US 76u      /* Mean time per byte of a scanning lidar (section 1). */
 
-static host_t *polling; /* While tmini_poll() is at work, and no interrupt is. */
+static host_t *polling; /* Set while tmini_poll() runs, but not while an interrupt does. */
 
 static uint64_t now_us(const host_t *host)
 {
@@ -29,24 +29,24 @@ static bool happens(host_t *host, uint32_t one_in)
     return one_in > 0 && random_below(host->random, one_in) == 0;
 }
 
-static void tell_gap(host_t *host)
+static void report_gap(host_t *host)
 {
-    host->gaps_told++;
-    for (uint32_t times = host->config.tells_twice ? 2 : 1; times > 0; times--) {
+    host->gaps_reported++;
+    for (uint32_t times = host->config.reports_twice ? 2 : 1; times > 0; times--) {
         tmini_feed_gap(&host->lidar);
     }
 }
 
-/* A block is handed over; of it, the library may refuse the end. */
+/* Hands a block over. The library may refuse the end of it. */
 static void feed(host_t *host, uint32_t from, uint32_t count)
 {
     const size_t stored = tmini_feed(&host->lidar, &host->line->bytes[from], count);
 
     line_lose(host->line, from + (uint32_t)stored, from + count);
-    host->told += count;
+    host->reported += count;
 }
 
-/* ---- An interrupt for each byte ---- */
+/* ---- One interrupt per byte ---- */
 
 static void receive_byte(host_t *host)
 {
@@ -57,7 +57,7 @@ static void receive_byte(host_t *host)
         line_lose(host->line, host->next, host->next + 1);
     }
     host->next++;
-    host->told++;
+    host->reported++;
 }
 
 static uint64_t receive_bytes(host_t *host)
@@ -70,20 +70,19 @@ static uint64_t receive_bytes(host_t *host)
     return arrival_us(host, host->next);
 }
 
-/* ---- A layer below that holds bytes, and is closed from its overflow until it is emptied ---- */
+/* ---- A layer below that holds bytes; after an overflow it is closed until it is empty ---- */
 
 static uint32_t room(const host_t *host)
 {
     return host->config.asks_room ? (uint32_t)tmini_feed_room(&host->lidar) : UINT32_MAX;
 }
 
-/* The layer below is closed from its overflow until it is emptied. */
 static void lose_what_overflowed(host_t *host)
 {
     line_lose(host->line, host->fed, host->next);
     host->fed = host->next;
     host->closed_at = 0;
-    tell_gap(host);
+    report_gap(host);
 }
 
 static uint32_t held_bytes(const host_t *host)
@@ -91,7 +90,7 @@ static uint32_t held_bytes(const host_t *host)
     return (host->closed_at > 0 ? host->closed_at : host->next) - host->fed;
 }
 
-/* What finds no room is kept below, and may be reported. */
+/* Bytes without room stay in the layer below, and may be reported. */
 static void hand_over(host_t *host)
 {
     const uint32_t fits = room(host);
@@ -134,21 +133,21 @@ static uint64_t receive_blocks(host_t *host)
 
 /* ---- Circular DMA ---- */
 
-/* As a port does it: with both halves' flags pending, a lap may have been lost. */
+/* As in a port: if the flags of both halves are pending, a lap may have been lost. */
 static void serve_dma(host_t *host)
 {
     if (!host->half && !host->full && !host->idle) {
         return;
     }
     if ((host->half && host->full) || happens(host, host->config.false_gap_one_in)) {
-        tell_gap(host);
+        report_gap(host);
     }
     host->half = false;
     host->full = false;
     host->idle = false;
     host->published = host->position;
     tmini_feed_dma(&host->lidar, host->position);
-    host->told = (uint32_t)tmini_feed_position(&host->lidar); /* A gap counts as a lap. */
+    host->reported = (uint32_t)tmini_feed_position(&host->lidar); /* A gap counts as a lap. */
 }
 
 static void write_byte(host_t *host)
@@ -201,7 +200,7 @@ void host_wait_us(host_t *host, uint64_t us)
     receive(host);
 }
 
-/* The CPU stands still, and DMA does not: for any number of bytes, often nearly whole laps. */
+/* The CPU stops while DMA receives any number of bytes, often nearly whole laps. */
 static void stall(host_t *host)
 {
     const uint32_t lap = (uint32_t)host->config.rx_size;
@@ -247,7 +246,7 @@ void interrupt(void)
     if (host->now_ns < host->due_ns && host->accesses != host->preempted_at) {
         return;
     }
-    polling = NULL; /* An interrupt is not interrupted. */
+    polling = NULL; /* An interrupt cannot be interrupted. */
     if (host->accesses == host->preempted_at) {
         preempt(host);
     } else {
@@ -319,7 +318,7 @@ tmini_event_t host_poll(host_t *host)
 {
     tmini_event_t event;
 
-    host->told_before_poll = host->told;
+    host->reported_before_poll = host->reported;
     host->accesses = 0;
     host->preempted_at = 0;
     if (happens(host, host->config.preempt_one_in)) {
@@ -341,7 +340,7 @@ void host_fetch(host_t *host)
 
 bool host_was_undisturbed(const host_t *host)
 {
-    return host->told == host->told_before_poll;
+    return host->reported == host->reported_before_poll;
 }
 
 void host_rest(host_t *host)

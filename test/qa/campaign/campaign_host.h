@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The controller of one trial of the campaign, in virtual time: a receiver of the line's bytes, the
- * library, and a program that polls it and now and then is busy.
+/* The controller in one trial of the campaign, in virtual time: a receiver of the line's bytes, the
+ * library, and a program that polls it and is sometimes busy.
  *
- * Receivers: an interrupt for each byte; a task or FIFO below that hands over blocks; circular DMA
- * whose half-transfer, transfer-complete and idle-line interrupts publish its position. Time also
- * passes at each access of an index that both sides share (interrupting_atomic.h), so bytes arrive
- * and interrupts come during tmini_poll(); and a poll may be pre-empted for longer. */
+ * There are three receivers: an interrupt per byte; a task or FIFO below that hands over blocks;
+ * and circular DMA whose half-transfer, transfer-complete and idle-line interrupts publish its
+ * position. Time also passes at each access to an index that both sides share
+ * (interrupting_atomic.h): bytes arrive and interrupts come during tmini_poll(). A poll may also
+ * be pre-empted for longer. */
 
 #ifndef CAMPAIGN_HOST_H
 #define CAMPAIGN_HOST_H
@@ -25,26 +26,26 @@ typedef struct {
     feed_t feed;
     size_t rx_size;
     size_t max_points;
-    uint32_t poll_us;    /* From one poll that found nothing to the next. */
-    uint32_t access_ns;  /* A shared index is accessed as often. */
-    uint32_t block_us;   /* A block is handed over as often; 0: by the program, before it polls. */
-    bool asks_room;      /* Blocks: what does not fit is kept below, */
-    bool reports_held;   /* and reported. */
-    bool is_bridged;     /* The program is never busy for longer than the layer has room. */
-    uint32_t block_size; /* Bytes that the layer below holds: more are lost. */
-    uint32_t handler_us; /* The longest time that the program works on a scan; at least 1 ms. */
-    uint32_t handle_one_in;    /* One scan in N is worked on; 0: none. */
-    uint32_t preempt_us;       /* The longest time that a poll is pre-empted. */
-    uint32_t preempt_one_in;   /* One poll in N is; 0: none. */
-    uint32_t stall_laps;       /* DMA goes on for up to N laps while the CPU stands still, */
-    uint32_t stall_one_in;     /* in one poll, or pause between polls, of N; 0: never. */
-    uint32_t false_gap_one_in; /* One interrupt of DMA in N reports a loss that was none. */
+    uint32_t poll_us;        /* Pause between a poll without an event and the next poll. */
+    uint32_t access_ns;      /* Time that passes at each access to a shared index. */
+    uint32_t block_us;       /* Time between two blocks; 0: the program fetches them, then polls. */
+    bool asks_room;          /* Blocks: bytes that do not fit stay in the layer below. */
+    bool reports_held;       /* Bytes in the layer below are reported. */
+    bool is_bridged;         /* The program is never busy so long that the layer overflows. */
+    uint32_t block_size;     /* The most bytes that the layer below holds. */
+    uint32_t handler_us;     /* The longest time that the program works on a scan; from 1 ms. */
+    uint32_t handle_one_in;  /* It works on one scan in N; 0: on none. */
+    uint32_t preempt_us;     /* The longest time for which a poll is pre-empted. */
+    uint32_t preempt_one_in; /* One poll in N is pre-empted; 0: none. */
+    uint32_t stall_laps;     /* While the CPU stops, DMA receives up to this many laps. */
+    uint32_t stall_one_in;   /* The CPU stops in one poll or pause in N; 0: never. */
+    uint32_t false_gap_one_in; /* One DMA interrupt in N reports a loss although there was none. */
     uint32_t hold_one_in;      /* One block in N comes 20 to 95 ms late; 0: none. */
-    int32_t clock_ppm;         /* The clock is too fast by so much. */
-    uint32_t back_ms;          /* It is set back by so much once, */
+    int32_t clock_ppm;         /* Error of the clock; positive: it is fast. */
+    uint32_t back_ms;          /* Once, the clock is set back by this much, */
     uint32_t back_at_us;       /* at this time of the line. */
-    uint16_t max_pause_ms;     /* As configured. */
-    bool tells_twice;          /* Each loss, before the next poll. */
+    uint16_t max_pause_ms;     /* As in the library's configuration. */
+    bool reports_twice;        /* The receiver reports each loss twice. */
 } host_config_t;
 
 typedef struct {
@@ -57,26 +58,26 @@ typedef struct {
     uint8_t rx[HOST_RX_MAX];
 
     uint64_t now_ns;
-    uint64_t begun_us; /* When the start command was sent, by which the line's times count. */
-    uint64_t due_ns;   /* When something will happen to the receiver. */
+    uint64_t begun_us; /* Time of the start command, at which the line's time begins. */
+    uint64_t due_ns;   /* Time of the receiver's next action. */
     bool started;
     uint32_t next;      /* The line's next byte. */
-    uint32_t fed;       /* Blocks: the next byte to be handed over, */
-    uint32_t closed_at; /* and the first one that the layer has lost; 0: none. */
+    uint32_t fed;       /* Blocks: the next byte to be handed over. */
+    uint32_t closed_at; /* Blocks: the first byte that the layer has lost; 0: none. */
     uint64_t block_due_us;
-    bool half; /* DMA: interrupts that are pending. */
+    bool half; /* DMA: pending interrupts. */
     bool full;
     bool idle;
     bool stalled;
-    size_t position;  /* Where it writes next, */
-    size_t published; /* and how far has been published. */
+    size_t position;  /* DMA: its position, */
+    size_t published; /* and the last one published. */
 
-    uint32_t told;      /* Bytes that the library knows of. */
-    uint32_t gaps_told; /* Losses that the receiver has noticed, */
-    bool was_lost;      /* and that the library has: the lidar, for a while. */
+    uint32_t reported;      /* Bytes reported to the library. */
+    uint32_t gaps_reported; /* Losses that the receiver has reported. */
+    bool was_lost;          /* The library has reported the lidar as lost. */
     uint32_t accesses;
-    uint32_t preempted_at; /* The access at which the next pre-emption comes; 0: none. */
-    uint32_t told_before_poll;
+    uint32_t preempted_at; /* The access at which this poll is pre-empted; 0: none. */
+    uint32_t reported_before_poll;
 } host_t;
 
 /* Sets the library up, and starts a lidar that sends what is on the line. */
@@ -85,18 +86,17 @@ void host_begin(host_t *host, const host_config_t *config, line_t *line, random_
 /* One tmini_poll(), while time passes. */
 tmini_event_t host_poll(host_t *host);
 
-/* The program asks the layer below for what it holds, where nothing else does. */
+/* The program fetches the bytes in the layer below, if block_us is 0. */
 void host_fetch(host_t *host);
 
-/* Nothing has arrived during the last poll. */
+/* True if no byte arrived during the last poll. */
 bool host_was_undisturbed(const host_t *host);
 
-/* The program does something else. */
-void host_rest(host_t *host);        /* From a poll that found nothing to the next. */
-void host_handle_scan(host_t *host); /* Works on a scan, or not. */
+void host_rest(host_t *host);        /* The program rests after a poll without an event. */
+void host_handle_scan(host_t *host); /* The program works on some scans. */
 void host_wait_us(host_t *host, uint64_t us);
 
-/* All that is on the line has come, and nothing is held anywhere. */
+/* True if all bytes of the line have arrived, and none is held anywhere. */
 bool host_has_received_all(const host_t *host);
 
 #endif

@@ -14,12 +14,12 @@
 #define FULL_PACKET 40u /* Section 9.6. */
 #define LONE_ONE_IN 300u
 #define JITTER_Q6 3u
-#define HAIR_Q6 7u /* Section 9.6: 0.266 - 0.156 degrees. */
+#define LONE_STEP_BACK_Q6 7u /* Section 9.6: 0.266 - 0.156 degrees. */
 #define FIRST_SAMPLE_US 15000u
 #define SPIN_UP_CHZ 240u
 #define SPIN_UP_US 1000000u
 
-/* ---- Marks: 11 bits of sample, 13 of revolution, scrambled, so that data look like data ---- */
+/* ---- Marks: 11 bits of the sample's index, 13 of its revolution, scrambled to look random ---- */
 
 #define MARK_BITS 24u
 #define MARK_MASK ((1u << MARK_BITS) - 1u)
@@ -80,25 +80,26 @@ bool line_identify(const line_t *line, uint16_t distance_mm, uint8_t intensity, 
 
 typedef struct {
     random_t *random;
-    uint64_t phase; /* Of the next sample, since the angle of the first start packet - 360. */
+    uint64_t
+        phase; /* The next sample's angle, counted from a turn before the first start packet. */
     uint64_t step;
-    uint64_t time_us; /* When the next sample begins. */
-    uint64_t free_us; /* When the wire is free. */
+    uint64_t time_us; /* Time at which the next sample begins. */
+    uint64_t free_us; /* Time at which the line is free. */
     uint32_t revolution;
-    uint32_t index; /* Of the next packet in its revolution. */
+    uint32_t index; /* The next packet's index in its revolution. */
     bool at_start;
     uint8_t crc;
     encode_turn_t turn;
 } rotor_t;
 
-static uint64_t step_at(uint32_t frequency_chz, int32_t permille_of_permille)
+static uint64_t step_at(uint32_t frequency_chz, int32_t per_100000)
 {
     const uint64_t step = FULL_CIRCLE_Q22 * frequency_chz / (UINT64_C(100) * SAMPLES_PER_SECOND);
 
-    return (uint64_t)((int64_t)step + (int64_t)step / 10000 * permille_of_permille / 10);
+    return (uint64_t)((int64_t)step + (int64_t)step / 10000 * per_100000 / 10);
 }
 
-/* A new speed for the revolution: half a percent of wobble; or still on the way up. */
+/* Chooses the revolution's speed, with a deviation of up to 0.5 %; lower while spinning up. */
 static void choose_speed(const line_t *line, rotor_t *rotor)
 {
     uint32_t frequency_chz = line->config.frequency_chz;
@@ -132,20 +133,21 @@ static uint32_t with_jitter(const line_t *line, rotor_t *rotor, uint64_t phase)
     return plain + line->config.start_angle_q6 + FULL_CIRCLE_Q6 - JITTER_Q6 + jitter;
 }
 
-/* Both not yet modulo the full circle, and the last not before the first. */
+/* Sets the first and the last angle, which may exceed the full circle. The LSA of a lone sample is
+ * a little less than its FSA (section 9.6). */
 static void set_angles(const line_t *line, rotor_t *rotor, uint32_t count, uint32_t angles[2])
 {
     angles[0] = with_jitter(line, rotor, rotor->phase);
     angles[1] =
         with_jitter(line, rotor, rotor->phase) + (uint32_t)(((count - 1) * rotor->step) >> 16);
     if (count == 1) {
-        angles[1] = rotor->at_start ? angles[0] : angles[0] - HAIR_Q6;
+        angles[1] = rotor->at_start ? angles[0] : angles[0] - LONE_STEP_BACK_Q6;
     } else if (angles[1] < angles[0]) {
         angles[1] = angles[0];
     }
 }
 
-/* Section 5: evenly spaced from the first to the last, here to the nearest 1/64 degree. */
+/* Section 5: angles are evenly spaced from the first to the last; rounded to 1/64 degree. */
 static void note_angles(line_t *line, uint32_t revolution, uint32_t count, const uint32_t angles[2])
 {
     uint16_t *const noted = &line->angles_q6[revolution][line->counts[revolution]];
@@ -192,7 +194,7 @@ static uint32_t encode(line_t *line, rotor_t *rotor, uint32_t count, uint8_t *ou
     return (uint32_t)encode_packet(out, &packet);
 }
 
-/* Section 9.8: the frequency that the start packet reports is that of the revolution before. */
+/* Section 9.8: a start packet reports the frequency of the previous revolution. */
 static void begin_revolution(line_t *line, rotor_t *rotor)
 {
     const uint32_t samples = line->counts[rotor->revolution];
@@ -273,9 +275,9 @@ void line_make(line_t *line, const line_config_t *config, random_t *random)
     memset(line->lost, 0, line->size);
 }
 
-/* ---- What does not arrive ---- */
+/* ---- Bytes that do not arrive ---- */
 
-/* A start packet closes the revolution before it. */
+/* A start packet also ends the revolution before it. */
 static void touch(line_t *line, uint32_t byte)
 {
     const line_packet_t *const packet = &line->packets[line->owner[byte]];
@@ -302,7 +304,7 @@ static uint32_t byte_at_time(const line_t *line, uint32_t from, uint64_t us)
     return from;
 }
 
-/* The packet that begins nearest to where `turned_q6` is. */
+/* The packet that begins nearest to the angle `turned_q6`. */
 static uint32_t packet_nearest(const line_t *line, uint64_t turned_q6)
 {
     uint32_t nearest = 0;
@@ -314,7 +316,7 @@ static uint32_t packet_nearest(const line_t *line, uint64_t turned_q6)
     return nearest;
 }
 
-/* Between two packets, for nearly a whole number of turns. */
+/* A hole between two packets, of nearly a whole number of turns. */
 static void cut_whole_turns(line_t *line, random_t *random, uint32_t cut[2])
 {
     const uint32_t first = random_between(random, 1, line->packet_count - 2);
@@ -326,7 +328,7 @@ static void cut_whole_turns(line_t *line, random_t *random, uint32_t cut[2])
             .from;
 }
 
-/* The same by time, a few milliseconds more or less. */
+/* As above, but measured by time, with a few milliseconds more or less. */
 static void cut_turns_of_time(line_t *line, random_t *random, uint32_t cut[2])
 {
     const line_packet_t *const last =
@@ -350,7 +352,7 @@ static void cut_start_packet(line_t *line, random_t *random, uint32_t cut[2])
     cut[1] = random_below(random, 2) == 0 ? line->packets[packet].to : cut[0] + 1;
 }
 
-/* From any byte on, for any time of up to five turns; now and then for some bytes only. */
+/* A hole that begins at any byte, of up to five turns, or sometimes only of some bytes. */
 static void cut_anywhere(line_t *line, random_t *random, uint32_t cut[2])
 {
     const uint64_t turn_us = 100000000u / line->config.frequency_chz;
@@ -382,7 +384,7 @@ static void remove_lost(line_t *line)
     line->size = left;
 }
 
-/* Up to a packet's size of bytes that arrive, from `from` on. */
+/* Copies up to `most` bytes that arrive, beginning at `from`; returns their number. */
 static uint32_t gather(const line_t *line, uint32_t from, uint8_t *bytes, uint32_t most)
 {
     uint32_t count = 0;
@@ -405,7 +407,7 @@ static bool is_valid_packet(const uint8_t *bytes, uint32_t count, uint32_t *size
     return *size <= count && encode_checksum(bytes) == (bytes[8] | bytes[9] << 8);
 }
 
-/* Whether a packet that was not sent begins before the hole at `cut` and ends after it. */
+/* True if bytes before and after the hole at `cut` together look like a packet. */
 static bool forges_a_packet(const line_t *line, uint32_t cut)
 {
     uint8_t bytes[ENCODE_PACKET_HEADER + ENCODE_SAMPLE_SIZE * LINE_MAX_SAMPLES];
@@ -434,7 +436,7 @@ static void lose(line_t *line, uint32_t from, uint32_t to)
     memset(&line->lost[from], 1, to - from);
 }
 
-/* Of each packet in the hole, some bytes come all the same: it is no silence. */
+/* Lets some bytes of each packet in the hole arrive, so that there is no silence. */
 static void let_dribble(line_t *line, random_t *random, uint32_t from, uint32_t to)
 {
     const uint32_t most = random_between(random, 1, 30);
@@ -449,13 +451,13 @@ static void let_dribble(line_t *line, random_t *random, uint32_t from, uint32_t 
     }
 }
 
-/* Where two ends that meet look like a packet, the hole is made a byte wider. */
+/* If the bytes on both sides of a hole together look like a packet, makes the hole a byte wider. */
 static void forge_nothing(line_t *line)
 {
     for (uint32_t i = 1; i < line->size; i++) {
         while (forges_a_packet(line, i)) {
             lose(line, i - 1, i);
-            i = i > 300 ? i - 300 : 1; /* The holes before it may meet other bytes now. */
+            i = i > 300 ? i - 300 : 1; /* This may affect the holes before it: check them again. */
         }
     }
 }
@@ -469,7 +471,7 @@ static void draw_cut(line_t *line, random_t *random, uint32_t cut[2])
     cuts[random_below(random, sizeof cuts / sizeof cuts[0])](line, random, cut);
 }
 
-/* As far away from the cut that was just made as a few packets are long. */
+/* Moves the cut to within a few packets of the cut before. */
 static void move_near(const line_t *line, random_t *random, uint32_t before, uint32_t cut[2])
 {
     const uint32_t away = before + random_between(random, 0, 500);

@@ -6,21 +6,21 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Without LastCRC and without missing bytes on the line, only the angles could show a hole between
- * two packets, and below 4 degrees they cannot be distinguished from jitter. */
+/* Without LastCRC, if whole packets are missing, only the angles can show the hole between two
+ * packets. Below 4 degrees, a hole cannot be distinguished from jitter. */
 #define INVISIBLE_Q6 256u
 
-/* What the points of one scan come to. */
+/* The result of reading the points of one scan. */
 typedef struct {
     line_mark_t first;
-    line_mark_t last;   /* The point before. */
-    line_mark_t before; /* The last one that belongs, */
-    line_mark_t odd;    /* the first that does not, */
-    uint32_t odd_at;    /* and its index. */
-    uint32_t next;      /* The sample expected. */
-    uint32_t missing;   /* Samples skipped so far, */
-    uint32_t widest_q6; /* and the widest hole that they left. */
-    uint16_t angle_q6;  /* Of the point before. */
+    line_mark_t last;   /* The previous point. */
+    line_mark_t before; /* The last point before `odd`. */
+    line_mark_t odd;    /* The first point of another revolution or out of order. */
+    uint32_t odd_at;    /* Index of `odd` in the scan. */
+    uint32_t next;      /* The expected sample. */
+    uint32_t missing;   /* Samples missing so far. */
+    uint32_t widest_q6; /* The widest hole that these left. */
+    uint16_t angle_q6;  /* Angle of the previous point. */
     bool merged;
     bool false_point;
     bool disorder;
@@ -115,7 +115,7 @@ static reading_t read_points(const line_t *line, const tmini_scan_t *scan)
         }
         if (i == 0) {
             reading.first = mark;
-            reading.missing = mark.sample; /* Scans begin with the start packet. */
+            reading.missing = mark.sample; /* A scan begins with the start packet: sample 0. */
             reading.widest_q6 = mark.sample > 0 ? UINT32_MAX : 0;
             reading.angle_q6 = point->angle_q6;
             reading.next = mark.sample;
@@ -125,7 +125,7 @@ static reading_t read_points(const line_t *line, const tmini_scan_t *scan)
     return reading;
 }
 
-/* Samples missing at the end, up to the next start packet, or in between. */
+/* Counts the samples missing between the last point and the next start packet. */
 static void read_end(reading_t *reading, const line_t *line, const tmini_scan_t *scan)
 {
     const uint32_t count = line->counts[reading->first.revolution];
@@ -169,7 +169,7 @@ static void say(const reading_t *reading, const line_t *line, const tmini_scan_t
     }
 }
 
-/* A point that is in no other scan. */
+/* Counts in how many scans each point is: it must be only one. */
 static void mark_points(oracle_t *oracle, const tmini_scan_t *scan)
 {
     bool again = false;
@@ -185,8 +185,8 @@ static void mark_points(oracle_t *oracle, const tmini_scan_t *scan)
     note(oracle, WRONG_TWICE, again);
 }
 
-/* A look, or a hand-over, may have come later than the longest pause allowed. */
-static bool looks_late(const host_config_t *config)
+/* True if a poll or a hand-over may come later than the longest pause allowed. */
+static bool may_be_late(const host_config_t *config)
 {
     const uint32_t pause_us = config->max_pause_ms * 1000u;
 
@@ -195,7 +195,7 @@ static bool looks_late(const host_config_t *config)
            (config->handle_one_in > 0 && config->handler_us > pause_us);
 }
 
-/* The longest silence among the bytes sent from one packet's end to the other's. */
+/* The longest silence between two bytes that arrived in this time. */
 static uint32_t longest_silence_us(const line_t *line, uint32_t from_us, uint32_t to_us)
 {
     uint32_t longest = 0;
@@ -210,7 +210,8 @@ static uint32_t longest_silence_us(const line_t *line, uint32_t from_us, uint32_
     return longest;
 }
 
-/* The program knows a pause by the times of its looks. */
+/* Returns why the points of two revolutions may be in one incomplete scan: the library measures a
+ * silence by the times of polls and hand-overs, and so less exactly than the line's times. */
 static mixed_t explain(const line_t *line, const host_config_t *config, const reading_t *reading)
 {
     const uint32_t pause_us = config->max_pause_ms * 1040u + config->poll_us + config->preempt_us +
@@ -221,7 +222,7 @@ static mixed_t explain(const line_t *line, const host_config_t *config, const re
     if (config->max_pause_ms == 0) {
         return MIXED_UNTIMED;
     }
-    if (looks_late(config)) {
+    if (may_be_late(config)) {
         return MIXED_UNSEEN;
     }
     return longest_silence_us(line, from_us, to_us) < pause_us ? MIXED_DRIBBLE : MIXED_STRANGE;
@@ -270,14 +271,15 @@ void oracle_judge_account(oracle_t *oracle, const host_t *host)
 
     tmini_counters(&host->lidar, &counters);
     note(oracle, WRONG_ACCOUNT,
-         host->told != counters.bytes_in_packets + counters.bytes_in_replies +
-                           counters.bytes_skipped + counters.bytes_overrun +
-                           counters.bytes_pending);
+         host->reported != counters.bytes_in_packets + counters.bytes_in_replies +
+                               counters.bytes_skipped + counters.bytes_overrun +
+                               counters.bytes_pending);
 }
 
-/* If polls are rare and a layer below may hold bytes, the silence before the first bytes and after
- * the last is unknown. At the trial's end the line is silent while bytes that waited for room still
- * come. */
+/* Revolutions near the beginning and the end of a trial may be incomplete scans: if polls are rare
+ * and a layer below holds bytes, the library cannot know how long the line was silent before the
+ * first bytes and after the last ones. At the end, bytes that waited for room come after the line
+ * has become silent. */
 #define UNCERTAIN_US 250000u
 #define WATCHED_US 30000u
 #define BYTE_US 76u
@@ -306,7 +308,7 @@ static void judge_cost(oracle_t *oracle, const host_t *host)
     }
 }
 
-/* Of a packet, how many points are in exactly one scan. */
+/* How many points of the packet are in exactly one scan. */
 static uint32_t in_one_scan(const oracle_t *oracle, const line_packet_t *packet)
 {
     uint32_t count = 0;
@@ -317,7 +319,8 @@ static uint32_t in_one_scan(const oracle_t *oracle, const line_packet_t *packet)
     return count;
 }
 
-/* From the first start packet on; a scan that is not finished is one. */
+/* Each point of an intact packet after the first start packet must be in exactly one scan. The
+ * current, unfinished scan counts as one. */
 static void judge_points(oracle_t *oracle, const host_t *host)
 {
     const line_t *const line = oracle->line;
@@ -351,13 +354,14 @@ void oracle_end(oracle_t *oracle, const host_t *host)
     tmini_counters_t counters;
 
     tmini_counters(&host->lidar, &counters);
-    oracle->verdicts->bytes += host->told;
+    oracle->verdicts->bytes += host->reported;
     oracle->verdicts->overrun += counters.bytes_overrun;
-    oracle->verdicts->gaps_told += host->gaps_told;
+    oracle->verdicts->gaps_reported += host->gaps_reported;
     oracle_judge_account(oracle, host);
     note(oracle, WRONG_REMAINDER, counters.bytes_pending > 0);
-    /* What DMA has overwritten cannot be known from outside. */
-    if (host->config.feed != FEED_DMA || (counters.bytes_overrun == 0 && host->gaps_told == 0)) {
+    /* It is not known here which bytes DMA has overwritten. */
+    if (host->config.feed != FEED_DMA ||
+        (counters.bytes_overrun == 0 && host->gaps_reported == 0)) {
         judge_cost(oracle, host);
         if (!host->was_lost && host->config.max_points == HOST_POINTS) {
             judge_points(oracle, host);
@@ -369,15 +373,15 @@ const char *oracle_name(wrong_t wrong)
 {
     static const char *const names[WRONG_KINDS] = {
         [WRONG_MERGED_COMPLETE] = "complete scans of two revolutions",
-        [WRONG_MERGED] = "others of two, unexplained",
+        [WRONG_MERGED] = "incomplete scans of two revolutions, unexplained",
         [WRONG_POINT] = "scans with points never sent",
         [WRONG_ORDER] = "scans out of order",
         [WRONG_COMPLETE] = "complete, but something is missing",
-        [WRONG_SILENCE] = "something missing, without a word",
+        [WRONG_SILENCE] = "something missing, but not reported",
         [WRONG_TWICE] = "scans with points of an earlier one",
         [WRONG_LOSS] = "intact packets in no scan",
-        [WRONG_ACCOUNT] = "accounts that do not balance",
-        [WRONG_REMAINDER] = "bytes left for ever",
+        [WRONG_ACCOUNT] = "counters that do not add up",
+        [WRONG_REMAINDER] = "bytes still pending at the end",
         [WRONG_COST] = "whole revolutions not complete"};
 
     return names[wrong];
@@ -387,7 +391,7 @@ const char *oracle_mixed_name(mixed_t mixed)
 {
     static const char *const names[MIXED_KINDS] = {[MIXED_UNTIMED] = "pauses are not judged",
                                                    [MIXED_UNSEEN] =
-                                                       "a look or a hand-over came late",
+                                                       "a poll or a hand-over came late",
                                                    [MIXED_DRIBBLE] = "silences too short to count",
                                                    [MIXED_STRANGE] = "unexplained"};
 

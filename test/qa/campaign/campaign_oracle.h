@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Judges what the library delivers by what the line's samples themselves say. */
+/* Checks the library's scans against the samples on the line: each sample encodes its place. */
 
 #ifndef CAMPAIGN_ORACLE_H
 #define CAMPAIGN_ORACLE_H
@@ -9,25 +9,25 @@
 #include "campaign_host.h"
 
 typedef enum {
-    WRONG_MERGED_COMPLETE, /* A scan has points of two revolutions, and says that it is complete; */
-    WRONG_MERGED,          /* or does not, and nothing explains it. */
-    WRONG_POINT,           /* A point that was not sent, or with another angle. */
-    WRONG_ORDER,           /* A point that does not follow the one before it. */
-    WRONG_COMPLETE,        /* Complete, though something of the revolution is missing. */
-    WRONG_SILENCE,         /* Something is missing, and neither gaps nor dropped says so. */
-    WRONG_TWICE,           /* A point that was in a scan before. */
-    WRONG_ACCOUNT,         /* A byte too many or too few in the counters. */
-    WRONG_REMAINDER,       /* Bytes still wait when none has come for long. */
-    WRONG_LOSS,            /* A packet that has come whole is in no scan. */
-    WRONG_COST,            /* A revolution that has come whole, not delivered as complete. */
+    WRONG_MERGED_COMPLETE, /* A complete scan has points of two revolutions. */
+    WRONG_MERGED,          /* An incomplete one has, and nothing explains it. */
+    WRONG_POINT,           /* A point was never sent, or sent with another angle. */
+    WRONG_ORDER,           /* A point is not later than the point before it. */
+    WRONG_COMPLETE,        /* A scan is reported complete, but points are missing. */
+    WRONG_SILENCE,         /* Points are missing, but gaps and dropped are 0. */
+    WRONG_TWICE,           /* A point was already in an earlier scan. */
+    WRONG_ACCOUNT,         /* The counters have a byte too many or too few. */
+    WRONG_REMAINDER,       /* Bytes are still pending after a long silence. */
+    WRONG_LOSS,            /* An intact packet is in no scan. */
+    WRONG_COST,            /* A revolution without losses is not delivered as complete. */
     WRONG_KINDS
 } wrong_t;
 
-/* Reasons why an incomplete scan may have points of two revolutions without any sign of it. */
+/* Reasons why an incomplete scan may have points of two revolutions. */
 typedef enum {
     MIXED_UNTIMED, /* max_pause_ms is 0: pauses are not judged. */
-    MIXED_UNSEEN,  /* Between the two there was a look or a hand-over that came late. */
-    MIXED_DRIBBLE, /* Silences shorter than max_pause_ms, between remains of damaged packets. */
+    MIXED_UNSEEN,  /* Between the two, a poll or a hand-over may have come late. */
+    MIXED_DRIBBLE, /* Remains of damaged packets: each silence was shorter than max_pause_ms. */
     MIXED_STRANGE, /* None of these. */
     MIXED_KINDS
 } mixed_t;
@@ -39,36 +39,36 @@ typedef struct {
     uint64_t points;
     uint64_t bytes;
     uint64_t overrun;
-    uint64_t gaps_told;
-    uint64_t untouched; /* Revolutions that have come whole, in trials where that is known. */
-    uint64_t invisible; /* Complete, but for a few samples that nothing can miss. */
-    uint64_t intact;    /* Points of packets that have come whole, where that is known, */
-    uint64_t in_one;    /* and those of them that are in exactly one scan. */
+    uint64_t gaps_reported;
+    uint64_t untouched; /* Revolutions certainly without losses. */
+    uint64_t invisible; /* Scans reported complete whose missing samples cannot be noticed. */
+    uint64_t intact;    /* Points of packets certainly without losses. */
+    uint64_t in_one;    /* Those of them that are in exactly one scan. */
     uint64_t mixed[MIXED_KINDS];
     uint64_t wrongs[WRONG_KINDS];
-    uint64_t first_trial[WRONG_KINDS]; /* In which each went wrong first. */
+    uint64_t first_trial[WRONG_KINDS]; /* The first trial with this error. */
 } verdicts_t;
 
 typedef struct {
     verdicts_t *verdicts;
     uint64_t trial;
     const line_t *line;
-    bool speaks;                                  /* Says what it finds wrong. */
-    bool delivered[LINE_REVOLUTIONS];             /* As complete. */
-    uint8_t seen[LINE_REVOLUTIONS][LINE_SAMPLES]; /* In how many scans it is. */
+    bool speaks;                                  /* Prints each scan and each error. */
+    bool delivered[LINE_REVOLUTIONS];             /* Revolutions delivered as complete. */
+    uint8_t seen[LINE_REVOLUTIONS][LINE_SAMPLES]; /* Number of scans that have this sample. */
 } oracle_t;
 
 void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, const line_t *line);
 
-/* From now on prints each error. */
+/* Prints each scan and each error from now on. */
 void oracle_speak(oracle_t *oracle);
 
 void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t *scan);
 
-/* Call it when a poll has found nothing, and nothing has come meanwhile. */
+/* Call it after a poll without an event, if no byte has arrived meanwhile. */
 void oracle_judge_account(oracle_t *oracle, const host_t *host);
 
-/* The line has been silent for long, and all that can be delivered has been. */
+/* Call it after a long silence, when the library has delivered everything. */
 void oracle_end(oracle_t *oracle, const host_t *host);
 
 const char *oracle_name(wrong_t wrong);

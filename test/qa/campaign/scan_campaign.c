@@ -3,11 +3,11 @@
 
 /* campaign SCANS [SEED [MODE [TRIAL]]]
  *
- * Do scans ever lie? Runs the library in virtual time over a line that falls silent in mid-scan,
- * under programs that are busy for too long, with receivers that lose bytes, until SCANS scans
- * have been delivered in each mode (or in the one given), and judges every one of them:
- * campaign_oracle.h says how. Exit status 0 if none lied, 1 if any did, 2 on wrong usage. The same
- * seed does the same; TRIAL runs that one alone. */
+ * Checks that no scan reports anything wrong. Runs the library in virtual time with a line that
+ * falls silent in the middle of a scan, with programs that are busy for too long, and with
+ * receivers that lose bytes. Ends when SCANS scans have been delivered in each mode (or in the
+ * given one), and checks each of them: see campaign_oracle.h. Exit status: 0 no scan was wrong,
+ * 1 some were, 2 wrong usage. The same seed gives the same run; TRIAL runs only that trial. */
 
 #include "campaign_oracle.h"
 
@@ -15,20 +15,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SILENCE_MS 300u /* Longer than any candidate may wait for its rest. */
+#define SILENCE_MS 300u /* Longer than the parser waits for the rest of a packet. */
 
 typedef struct {
     const char *name;
     const char *what;
     bool interrupts_line;
-    bool costs_nothing; /* Whatever has come whole must be delivered as complete. */
+    bool costs_nothing; /* Each revolution without losses must be delivered as complete. */
     void (*draw)(host_config_t *host, random_t *random);
 } campaign_mode_t;
 
 static line_t line;
 static host_t host;
 
-/* ---- What each mode draws, besides what all have ---- */
+/* ---- Random settings: those of all modes, then those of each mode ---- */
 
 static uint32_t one_of(random_t *random, const uint32_t *values, size_t count)
 {
@@ -66,7 +66,7 @@ static host_config_t draw_host(random_t *random)
                            .preempt_one_in = 20,
                            .clock_ppm = (int32_t)random_between(random, 0, 60000) - 30000,
                            .max_pause_ms = 30,
-                           .tells_twice = random_below(random, 2) == 0};
+                           .reports_twice = random_below(random, 2) == 0};
 }
 
 static void draw_nothing(host_config_t *config, random_t *random)
@@ -75,7 +75,8 @@ static void draw_nothing(host_config_t *config, random_t *random)
     (void)random;
 }
 
-/* The program is busy for nine tenths of what the layer below can hold, which it reports. */
+/* The program is busy for up to nine tenths of the time for which the layer below can hold bytes;
+ * this layer reports them. */
 static void draw_bridged(host_config_t *config, random_t *random)
 {
     config->feed = FEED_BLOCKS;
@@ -89,7 +90,7 @@ static void draw_bridged(host_config_t *config, random_t *random)
     config->is_bridged = true;
 }
 
-/* At some time of the line's first second and a half. */
+/* The clock is set back at some time in the line's first 1.5 s. */
 static void draw_set_back(host_config_t *config, random_t *random)
 {
     config->poll_us = random_between(random, 200, 10000);
@@ -120,7 +121,7 @@ static void draw_stalls(host_config_t *config, random_t *random)
     config->preempt_one_in = random_between(random, 20, 400);
 }
 
-/* The task that hands over is held up again and again. */
+/* The task that hands over bytes is delayed again and again. */
 static void draw_hold_ups(host_config_t *config, random_t *random)
 {
     config->feed = FEED_BLOCKS;
@@ -151,7 +152,7 @@ static void draw_limits(host_config_t *config, random_t *random)
     }
 }
 
-/* A layer below holds all bytes, and the program asks for them only now and then. */
+/* A layer below holds all bytes, and the program fetches them only from time to time. */
 static void draw_held(host_config_t *config, random_t *random)
 {
     config->feed = FEED_BLOCKS;
@@ -261,7 +262,7 @@ static void run_trial(const campaign_mode_t *mode, uint64_t seed, uint64_t trial
     const line_config_t line_config = draw_line(&random);
     host_config_t host_config = draw_host(&random);
     mode->draw(&host_config, &random);
-    host_config.reports_held |= host_config.asks_room; /* As tmini_feed() demands. */
+    host_config.reports_held |= host_config.asks_room; /* tmini_feed() requires this. */
     line_make(&line, &line_config, &random);
     if (mode->interrupts_line) {
         line_interrupt(&line, &random);
@@ -273,7 +274,7 @@ static void run_trial(const campaign_mode_t *mode, uint64_t seed, uint64_t trial
         oracle_speak(&oracle);
     }
     while (!host_has_received_all(&host)) {
-        poll_until_nothing(&oracle); /* Where the program fetches, it polls too early first. */
+        poll_until_nothing(&oracle); /* Also before the program fetches bytes: a useless poll. */
         host_fetch(&host);
         poll_until_nothing(&oracle);
         host_rest(&host);
@@ -310,7 +311,7 @@ static void report(const campaign_mode_t *mode, const verdicts_t *verdicts)
            (unsigned long long)verdicts->trials, (unsigned long long)verdicts->scans,
            (unsigned long long)verdicts->complete, (unsigned long long)verdicts->points,
            (unsigned long long)verdicts->bytes, (unsigned long long)verdicts->overrun,
-           (unsigned long long)verdicts->gaps_told);
+           (unsigned long long)verdicts->gaps_reported);
     printf("  %llu revolutions came whole for certain; %llu holes of less than 4 degrees left no "
            "trace\n",
            (unsigned long long)verdicts->untouched, (unsigned long long)verdicts->invisible);
@@ -335,7 +336,7 @@ static void report(const campaign_mode_t *mode, const verdicts_t *verdicts)
     (void)fflush(stdout);
 }
 
-/* Returns true if no scan lied. */
+/* Returns true if no scan was wrong. */
 static bool run_mode(const campaign_mode_t *mode, uint64_t scans, uint64_t seed, const char *only)
 {
     verdicts_t verdicts = {0};

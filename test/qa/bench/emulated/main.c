@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The program that the emulator calls, function by function: one lidar on a board whose clock and
- * UART are variables. Only the library's instructions are counted, including its inline function in
- * this file's interrupt, but nothing else of this file. */
+/* The program whose functions the emulator calls: one lidar on a board whose clock and UART are
+ * variables. Only the library's instructions are counted. Of this file, that is only the library's
+ * inline function in the interrupt. */
 
 #include "limit.h"
 #include "tmini/tmini.h"
@@ -12,7 +12,7 @@
 
 tmini_t bench_lidar;
 uint8_t bench_rx[RX_SIZE];
-uint8_t bench_block[RX_SIZE + 4]; /* The limit reads one byte more. */
+uint8_t bench_block[RX_SIZE + 4]; /* limit_decode() also reads the byte after the last one. */
 uint32_t bench_now_ms;
 uint8_t bench_sent;
 
@@ -88,8 +88,8 @@ tmini_status_t bench_set_frequency(uint16_t frequency_chz)
     return tmini_set_frequency(&bench_lidar, frequency_chz);
 }
 
-/* The receive function is inline in the user's interrupt. Loading the lidar's address and the
- * return are not counted, because every such interrupt needs them. */
+/* This function's cost is subtracted from that of interrupt_feed_byte(): every receive interrupt
+ * must load the lidar's address and return. */
 const tmini_t *interrupt_nothing(void)
 {
     return &bench_lidar;
@@ -115,7 +115,7 @@ tmini_event_t bench_poll(void)
     return tmini_poll(&bench_lidar);
 }
 
-/* What a streaming user does with TMINI_EVENT_PACKET. */
+/* Does what a streaming user does after TMINI_EVENT_PACKET. */
 void bench_decode(void)
 {
     (void)tmini_packet_points(tmini_packet(&bench_lidar), TMINI_FILTER_NONE, packet_points,
@@ -133,5 +133,5 @@ size_t bench_limit(size_t count)
     return limit_decode(bench_block, count, limit_points);
 }
 
-/* The program's entry: nothing is run from here. */
+/* The linker needs an entry point, but the emulator never runs it. */
 void bench_main(void) {}

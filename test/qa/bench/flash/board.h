@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A board that does nothing: these programs are linked and weighed, not run. */
+/* A board that does nothing: these programs are linked and measured, but never run. */
 
 #ifndef BOARD_H
 #define BOARD_H

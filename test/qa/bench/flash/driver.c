@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The full driver: every command and every result. */
+/* A program with the full driver: every command and every result. */
 
 #include "full_driver.h"
 

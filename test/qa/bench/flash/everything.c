@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The full driver, the blocking helpers and sectors. */
+/* A program with the full driver, the blocking helpers and sectors. */
 
 #include "full_driver.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A program that uses every command and every result of tmini.h. */
+/* Uses every command and every result of tmini.h. */
 
 #ifndef FULL_DRIVER_H
 #define FULL_DRIVER_H

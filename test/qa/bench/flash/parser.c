@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Parser and decoding only: bytes in, points out. */
+/* A program with only parser and decoding, from bytes to points. */
 
 #include "tmini/parts/tmini_packet.h"
 #include "tmini/parts/tmini_parser.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Streaming without a scan buffer: an event and the points of each packet. */
+/* A program that streams without a scan buffer: an event for each packet, and its points. */
 
 #include "board.h"
 

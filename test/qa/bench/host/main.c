@@ -3,12 +3,12 @@
 
 /* Feeds a recording to the library on this computer, for an instruction counter to watch:
  *
- *   host bytes|blocks FILE BYTES   BYTES at a time, then tmini_poll() until there is nothing
- *   host decode FILE BYTES         the same by blocks, with ring, parser, packet and scan alone
- *   host limit FILE BYTES          the least that it can cost (limit.h); BYTES has no meaning
+ *   host bytes|blocks FILE BYTES   feeds BYTES at a time, then polls until there is no event
+ *   host decode FILE BYTES         feeds blocks to only ring, parser, packet and scan
+ *   host limit FILE BYTES          the lowest possible cost (limit.h); BYTES is ignored
  *
- * Prints how many scan packets were found. Everything in counted_run() is counted: the library, the
- * C library's copies, the clock, and the loop that a program has around them. */
+ * Prints the number of scan packets found. Everything in counted_run() is counted: the library, the
+ * C library's copy functions, the clock, and the program's loop around them. */
 
 #include "limit.h"
 #include "tmini/tmini.h"
@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BYTES_A_MS 13u /* The lidar's data rate. */
+#define BYTES_PER_MS 13u /* The lidar's data rate. */
 #define CAPACITY (1u << 20)
 
 static uint8_t recording[CAPACITY];
@@ -79,12 +79,12 @@ static void drive_all(size_t size, size_t block, bool by_bytes)
         } else {
             tmini_feed(&lidar, &recording[at], count);
         }
-        now_ms = begin_ms + (uint32_t)((at + count) / BYTES_A_MS);
+        now_ms = begin_ms + (uint32_t)((at + count) / BYTES_PER_MS);
         poll_all();
     }
 }
 
-/* What decoders without a driver do: from bytes to scans. */
+/* Decodes bytes to scans without the driver. */
 static void decode_all(size_t size, size_t block)
 {
     static tmini_ring_t ring;
@@ -104,7 +104,7 @@ static void decode_all(size_t size, size_t block)
     }
 }
 
-/* All that is counted. */
+/* Only instructions in this function are counted. */
 TMINI_NOINLINE static void counted_run(const char *way, size_t size, size_t block)
 {
     if (way[0] == 'l') {
