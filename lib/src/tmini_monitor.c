@@ -13,7 +13,7 @@
 #define OFF_SECONDS 3
 #define OFF_TURNS 3
 
-/* Each time the frequency is wrong again, this must last twice as long, up to this many
+/* Before it is set again, it must be wrong for twice as long each time, up to this many
  * doublings. */
 #define OFF_DOUBLINGS_MAX 4
 
@@ -49,34 +49,45 @@ static void judge_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *de
     }
 }
 
-/* Counts consecutive revolutions at another frequency than wanted. Their number, divided by the
- * frequency that they report, is the time that this has lasted. True when this is too long: three
- * seconds, then twice as long each time, or 255 turns. */
-static bool has_become_off(tmini_monitor_t *monitor, uint8_t ct, uint16_t wanted_chz)
+/* A revolution at the wanted frequency ends the fault. How often it has been wrong is kept: a motor
+ * that comes up to speed and beyond passes through the wanted frequency each time. */
+static void end_frequency_fault(tmini_monitor_t *monitor)
 {
-    const int32_t chz = (ct >> 1) * 10; /* Section 7. */
-    const int32_t off_chz = chz > wanted_chz ? chz - wanted_chz : wanted_chz - chz;
-    const uint8_t times = monitor->off_times;
-    if (wanted_chz == 0 || chz == 0 || off_chz * OFF_PART <= wanted_chz) {
-        tmini_monitor_forget_frequency(monitor);
-        return false;
-    }
-    monitor->off_turns++;
-    if (monitor->off_turns < OFF_TURNS ||
-        (monitor->off_turns < UINT8_MAX && monitor->off_turns * 100 < OFF_SECONDS * chz << times)) {
-        return false;
-    }
     monitor->off_turns = 0;
-    monitor->off_times = (uint8_t)(times + (times < OFF_DOUBLINGS_MAX));
-    monitor->faults |= TMINI_FAULT_FREQUENCY;
-    return true;
+    monitor->faults = monitor->faults & TMINI_FAULT_MASK;
 }
 
 void tmini_monitor_forget_frequency(tmini_monitor_t *monitor)
 {
-    monitor->off_turns = 0;
+    end_frequency_fault(monitor);
     monitor->off_times = 0;
-    monitor->faults = monitor->faults & TMINI_FAULT_MASK;
+}
+
+/* Counts consecutive revolutions at another frequency than wanted. Their number, divided by the
+ * frequency that they report, is the time that this has lasted. After three seconds it is a fault.
+ * True when the frequency is to be set again: after these three seconds, then after twice as long
+ * each time, or 255 turns. */
+static bool has_become_off(tmini_monitor_t *monitor, uint8_t ct, uint16_t wanted_chz)
+{
+    const int32_t chz = (ct >> 1) * 10; /* Section 7. */
+    const int32_t off_chz = chz > wanted_chz ? chz - wanted_chz : wanted_chz - chz;
+    const int32_t enough = OFF_SECONDS * chz;
+    if (wanted_chz == 0 || chz == 0 || off_chz * OFF_PART <= wanted_chz) {
+        end_frequency_fault(monitor);
+        return false;
+    }
+    monitor->off_turns++;
+    const int32_t lasted = monitor->off_turns * 100;
+    if (monitor->off_turns < OFF_TURNS || lasted < enough) {
+        return false;
+    }
+    monitor->faults |= TMINI_FAULT_FREQUENCY;
+    if (monitor->off_turns < UINT8_MAX && lasted < enough << monitor->off_times) {
+        return false;
+    }
+    monitor->off_turns = 0;
+    monitor->off_times = (uint8_t)(monitor->off_times + (monitor->off_times < OFF_DOUBLINGS_MAX));
+    return true;
 }
 
 /* `is_complete`: a start packet shows that it begins here. */

@@ -319,27 +319,51 @@ void test_three_seconds_of_another_frequency_are_a_fault_and_one_more_try(void)
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
 }
 
-/* 18, 36, 72 and 144 revolutions at 6.0 Hz take 3, 6, 12 and 24 seconds. The limits are 255
- * revolutions and 48 seconds, which are 144 revolutions at 3.0 Hz. */
+static void is_tried_again_after(const unsigned counts[6], uint8_t dhz)
+{
+    scans_wishing(1000);
+    for (unsigned n = 0; n < 6; n++) {
+        is_stopped_after(counts[n], dhz);
+        is_in(TMINI_STATE_STARTING);
+        TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+        finds_quiet_and_sends(GET_FREQUENCY);
+        starts_without_the_frequency();
+    }
+}
+
+/* 18, 36, 72 and 144 revolutions at 6.0 Hz take 3, 6, 12 and 24 seconds. The limit is 255
+ * revolutions. */
 void test_a_frequency_that_could_not_be_set_is_tried_again_less_and_less_often(void)
 {
-    static const struct {
-        uint8_t dhz;
-        unsigned counts[6];
-    } cases[] = {{60, {18, 36, 72, 144, 255, 255}}, {30, {9, 18, 36, 72, 144, 144}}};
+    static const unsigned counts[] = {18, 36, 72, 144, 255, 255};
 
+    is_tried_again_after(counts, 60);
+}
+
+/* 144 revolutions at 3.0 Hz take 48 seconds. */
+void test_it_is_tried_again_after_48_seconds_at_most(void)
+{
+    static const unsigned counts[] = {9, 18, 36, 72, 144, 144};
+
+    is_tried_again_after(counts, 30);
+}
+
+/* The rotor comes up to speed and beyond: 9, 10, 11 Hz. */
+void test_a_rotor_that_passes_through_the_wanted_frequency_is_not_stopped_again(void)
+{
     scans_wishing(1000);
-    for (unsigned i = 0; i < 2; i++) {
-        for (unsigned n = 0; n < 6; n++) {
-            is_stopped_after(cases[i].counts[n], cases[i].dhz);
-            is_in(TMINI_STATE_STARTING);
-            TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
-            finds_quiet_and_sends(GET_FREQUENCY);
-            starts_without_the_frequency();
-        }
-        turns(1, 100);
-    }
-    is_stopped_after(18, 60);
+    is_stopped_after(33, 110);
+    finds_quiet_and_sends(GET_FREQUENCY);
+    starts_turning_at(1000);
+    turns(3, 90);
+    turns(1, 100);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+    turns(32, 110);
+    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+    turns(1, 110); /* A fault again after three seconds. */
+    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
+    turns(500, 110);
+    is_in(TMINI_STATE_SCANNING);
 }
 
 /* The lidar replies each time with its old frequency. */
@@ -367,6 +391,19 @@ void test_a_frequency_that_is_off_after_a_loss_is_a_new_fault(void)
     passes_to(1000, TMINI_EVENT_LOST);
     polls_to(TMINI_EVENT_FAULTS_CHANGED);
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
+}
+
+void test_a_new_wish_is_tried_again_after_three_seconds(void)
+{
+    scans_wishing(1000);
+    is_stopped_after(18, 60);
+    finds_quiet_and_sends(GET_FREQUENCY);
+    starts_turning_at(1000);
+    turns(1, 100);
+    begins_with(STOP, tmini_set_frequency(&rig.lidar, 900));
+    finds_quiet_and_sends(GET_FREQUENCY);
+    starts_turning_at(900);
+    is_stopped_after(18, 60);
 }
 
 void test_five_percent_are_no_other_frequency(void)
