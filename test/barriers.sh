@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The barriers that reach the machine code, where a byte is put into the ring and where it is looked
-# for: those that an ESP32-C3 and an RP2040 with two cores need, and none for a single Cortex-M4.
+# Counts the memory barriers in the machine code that puts a byte into the ring and looks for one:
+# an ESP32-C3 and an RP2040 with two cores need them, a single Cortex-M4 needs none.
 #
 #   test/barriers.sh esp32-c3|rp2040|cortex-m4
 #
-# Then a barrier is taken out of the header, which must show. Exit status 77: no such compiler.
+# Removing a barrier from the header must change the result. Exit status 77: no such compiler.
 
 set -eu
 
@@ -33,7 +33,7 @@ if ! echo '#include <string.h>' | $compiler -E - >/dev/null 2>&1; then
     exit 77
 fi
 
-# assembly INCLUDE_FOLDER: both sides, a function each.
+# assembly INCLUDE_FOLDER: prints the machine code of both sides of the ring, a function each.
 assembly() {
     $compiler -std=c99 -Os -I"$1" -S -o - -x c - <<'END'
 #include "tmini/parts/tmini_ring.h"

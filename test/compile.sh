@@ -16,7 +16,7 @@ warnings="-pedantic -Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Wunde
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# A compiler without the C library's headers (a package of its own for some targets) is of no use.
+# Skips a compiler whose C library is missing: for some targets it is a separate package.
 need_compiler() {
     if ! command -v "$1" >/dev/null; then
         echo "skipped: $1 is not installed"
@@ -77,7 +77,7 @@ case ${1:-} in
         check_c riscv64-unknown-elf-gcc --specs=picolibc.specs -march=rv32imc -mabi=ilp32 -Os
         ;;
     xtensa)
-        # Where Debian puts this C library's headers; the compiler does not look there by itself.
+        # Debian's folders of this C library's headers, where the compiler does not look by itself.
         check_c xtensa-lx106-elf-gcc -mlongcalls -isystem /usr/lib/xtensa-lx106-elf/include \
             -isystem /usr/lib/picolibc/xtensa-lx106-elf/include -Os
         ;;

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Measures how much of lib/ the unit tests reach, in build-coverage/, and fails unless that is every
-# line and every branch. build-coverage/report/index.html shows the sources with what was reached.
+# Measures the coverage of lib/ by the unit tests, in build-coverage/, and fails unless they reach
+# every line and every branch. build-coverage/report/index.html shows the sources with the coverage.
 
 set -eu
 
@@ -11,7 +11,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=test/support/environment.sh
 . "$root/test/support/environment.sh"
 
-# The library as it is, and as tests of its races build it; campaigns have copies of their own.
+# Counts the library, and the copies that tests of interrupts compile; not those of campaigns.
 report() {
     mkdir -p build-coverage/report
     gcovr --root "$root" --filter lib/ --exclude-throw-branches \
@@ -27,7 +27,7 @@ install_tools
 
 cd "$root"
 build_preset coverage
-# Counts of earlier runs would hide what is no longer reached.
+# Counts of earlier runs would hide lines that are no longer reached.
 find build-coverage -name '*.gcda' -exec rm -f {} +
 quietly ctest --preset coverage --parallel "$(job_count)"
 report

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Checks that the library's files call only those below them, and that each group of members of
-# tmini_t is written by the file that owns it, and none is touched by a port or an example:
+# Checks that the library's files call only files below them, that each group of members of tmini_t
+# is written only by the file that owns it, and that ports and examples use no member:
 #
 #   test/layers.sh LIBRARY.a
 #
-# What may call what is the table below: a call that is not in it is an error, so that no circle can
-# come about. Calls are read from the objects' symbols.
+# The table below lists the allowed calls: FILE, then the files that it may call. Any other call is
+# an error, so there are no circular calls. Calls are read from the objects' symbols.
 
 set -eu
 
@@ -62,8 +62,8 @@ calls=$({
         for (file in known) if (!(file in files)) print "no such file in the library: " file ".c"
     }')
 
-# written_outside MEMBER OWNER: assignments to lidar->MEMBER in other files; an OWNER of - stands
-# for a module that is handed the member and knows nothing of tmini_t.
+# written_outside MEMBER OWNER: prints assignments to lidar->MEMBER in files other than OWNER. OWNER
+# is - if the owner gets only a pointer to the member and does not use tmini_t.
 written_outside() {
     for file in "$root"/lib/src/*.c; do
         [ "$(basename "$file")" = "$2" ] ||
@@ -86,7 +86,7 @@ written=$(
 
 members=$(sed -n '/^struct tmini {/,/^};/s/^ .*[ *]\([a-z_]*\);.*/\1/p' \
     "$root/lib/include/tmini/tmini.h" | paste -s -d '|' -)
-# A name followed by ( is a function of a class.
+# A name followed by ( is a method of a class, not a member of tmini_t.
 access="(lidar|driver)_?(\[[a-z0-9]+\])?(\.|->)($members)([^a-z_(]|\$)"
 touched=$(cd "$root" && grep -rnE --include='*.[ch]' --include='*.cpp' --include='*.ino' \
     --include='*.py' "$access" port examples |

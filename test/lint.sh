@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Reads the sources without running them: formatting, static analysis, and strict compilation for
-# most targets of test/compile.sh. Does all checks, then fails if any has found something.
+# Checks the sources without running them: formatting, static analysis, and strict compilation for
+# most targets of test/compile.sh. Runs all checks, then fails if any has found something.
 #
-#   test/lint.sh [--fix]       --fix puts the formatting right in place first
+#   test/lint.sh [--fix]       --fix first corrects the formatting of the files
 
 set -eu
 
@@ -37,7 +37,7 @@ check() {
     fi
 }
 
-# The files of this project, not those of its build folders; also without git.
+# The files of this project, without those in build folders; also works without git.
 find_files() {
     find . -name 'build*' -prune -o -name '.git' -prune -o -type f \( "$@" \) -print
 }
@@ -47,7 +47,7 @@ format() {
     find_files -name '*.c' -o -name '*.h' -o -name '*.cpp' | xargs clang-format "$@"
 }
 
-# Every line of text that people write, but for documents: in those a paragraph may be a line.
+# Checks the length of all lines except in documents, where a paragraph may be one line.
 check_lengths() {
     found=0
     find_files \( -name '*.c' -o -name '*.h' -o -name '*.cpp' -o -name '*.ino' -o -name '*.sh' \
@@ -59,20 +59,20 @@ check_lengths() {
     return "$found"
 }
 
-# tidy FILE… -- FLAG…: findings are on standard output, the count of what was suppressed on the
-# other.
+# tidy FILE… -- FLAG…: prints findings on standard output. The number of suppressed ones, on
+# standard error, goes into a log.
 tidy() {
     clang-tidy --quiet --header-filter="^$root/(lib|port|examples)/" "$@" 2>>build-lint/tidy.log
 }
 
-# Firmware is compiled as the tests compile it, over the stand-ins for its platforms. Registers are
-# integers made pointers there.
+# Firmware is compiled as in its tests, with the stand-ins for its platforms. There, addresses of
+# registers are integers converted to pointers.
 tidy_firmware() {
     tidy --checks=-performance-no-int-to-ptr "$@" -std=c99 -I lib/include -I examples/common \
         -I examples/obstacle_stop
 }
 
-# With cmake's list of commands, in as many processes as there are processors.
+# Uses cmake's list of commands, and one process per processor.
 tidy_programs() {
     quietly cmake -S . -B build-lint -DTMINI_BUILD_TESTS=OFF || return 1
     # shellcheck disable=SC2016 # expanded in the inner shell
@@ -97,7 +97,7 @@ check_tidy() {
     tidy_firmware port/freertos/*.c examples/freertos/*.c -- -I port/freertos -I examples/freertos \
         -isystem test/port/freertos/kernel_stub || clean=1
     tidy_firmware examples/stm32f405_baremetal/*.c -- -I port/stm32 || clean=1
-    # Unused parameters have no name in C++; and a positive number may be rounded by adding a half.
+    # In C++ unused parameters have no name. A positive number may be rounded by adding a half.
     tidy --checks=-readability-named-parameter,-bugprone-incorrect-roundings \
         port/arduino/*.cpp -- -std=c++11 -I lib/include -isystem test/port/arduino/arduino_stub \
         -DARDUINO=10819 -DESP32 -DESP_ARDUINO_VERSION_MAJOR=3 || clean=1
@@ -105,13 +105,16 @@ check_tidy() {
     return "$clean"
 }
 
-# Suppressed: cppcheck tries a configuration without any compiler's primitives, which is an #error
-# by design; it takes the smaller of two values for equal to one of them; it sees no users of
-# structures' members and of private functions; a linker script's names are no objects to it; it
-# wants buffers filled before something is in them; where a variable is declared is a matter of
-# taste; a format made of macros has arguments, which compilers count better; and its newer versions
-# tell how thorough they are. It takes a structure that is written through a pointer for one that
-# is read.
+# Suppressed, because cppcheck
+# - tries a configuration without any compiler's primitives, an intended #error;
+# - believes that the smaller of two values always equals the same one;
+# - does not find the users of structures' members and of private functions;
+# - does not know the symbols that a linker script defines;
+# - demands that constructors fill buffers;
+# - criticises where a variable is declared, a matter of taste;
+# - miscounts the arguments of formats made of macros, which compilers check better;
+# - believes that a structure written through a pointer is read;
+# - reports, in newer versions, how thorough it was.
 check_cppcheck() {
     cppcheck --quiet --std=c99 --enable=warning,style,performance,portability --inline-suppr \
         --suppress=preprocessorErrorDirective --suppress=knownConditionTrueFalse \
@@ -124,7 +127,7 @@ check_cppcheck() {
         -I lib/include -I examples/common -I examples/obstacle_stop lib/src port examples
 }
 
-# Rules that are broken, each with a reason, are in a list: no other is.
+# Only the rules listed in test/misra.txt, each with a reason, may be broken.
 check_misra() {
     broken=$(cppcheck --addon=misra --quiet --std=c99 --enable=style \
         --template='{id} {file}:{line}' --suppress=missingIncludeSystem \
@@ -144,8 +147,8 @@ analyse() {
         -S -o /dev/null "$@"
 }
 
-# Firmware over the stand-ins, as above. In examples/host it takes the only branch that closes a
-# file for none, and what finds an entry that exists for something that may return none.
+# Firmware is compiled with the stand-ins, as above. In examples/host the analyser overlooks the
+# only branch that closes a file, and believes that finding an existing entry may fail.
 check_analyzer() {
     clean=0
     for source in lib/src/*.c port/posix/*.c port/template/*.c examples/common/*.c \
@@ -183,7 +186,7 @@ check_scripts() {
     find_files -name '*.sh' -o -path './.ci/run' -o -path './.ci/release' | xargs shellcheck -x
 }
 
-# An absent compiler is said by compile.sh, and is no finding.
+# compile.sh reports a missing compiler, which is not a finding.
 check_compile() {
     status=0
     test/compile.sh "$1" || status=$?

@@ -4,13 +4,13 @@
 
 # Installs what the tests need, builds in build/ and runs tests:
 #
-#   test/run.sh                 the short run, minutes
-#   test/run.sh --all           the long run: installs whatever it can use, browsers and compilers
-#                               for other machines as well
-#   test/run.sh [--all] LABEL … all tests of these labels; builds only what they need
-#   test/run.sh … -- OPTION …   with ctest's options, for example -R ring
+#   test/run.sh                 the short run: minutes
+#   test/run.sh --all           the long run: also installs a browser, and compilers and emulators
+#                               for other machines
+#   test/run.sh [--all] LABEL … all tests with these labels; builds only what they need
+#   test/run.sh … -- OPTION …   passes options to ctest, for example -R ring
 #
-# test/CMakeLists.txt names the labels. What is not installed is skipped, and said.
+# test/CMakeLists.txt lists the labels. Tests whose tools are missing are skipped and reported.
 
 set -eu
 
@@ -45,7 +45,7 @@ fi
 install_tools
 [ "$all" = no ] || prepare_everything
 
-# targets: what to build.
+# targets: prints the build targets.
 targets() {
     if [ -n "$labels" ]; then
         # shellcheck disable=SC2086 # labels are several words
@@ -57,7 +57,7 @@ targets() {
     fi
 }
 
-# What goes well before the tests is not worth reading.
+# Output is shown only if a step fails.
 echo "Building in $root/build"
 quietly cmake -S "$root" -B "$root/build" -DTMINI_BUILD_TESTS=ON \
     -DTMINI_BUILD_EXAMPLES=ON -DTMINI_WERROR=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The Python package as a user gets it: the source distribution, installed in an environment of its
-# own in FOLDER, tried against the tool and the simulated lidar.
+# Tests the Python package as a user gets it: installs the source distribution in a separate
+# environment in FOLDER, and tests it with the tool and the simulated lidar.
 #
 #   run.sh FOLDER TMINI TMINI_SIM [ARGUMENT OF PYTEST…]
 #
-# Exit status: pytest's, or 77 when Python's packages are not to be had here.
+# Exit status: pytest's, or 77 if Python's packages are not available.
 
 set -eu
 

@@ -7,7 +7,7 @@
 #
 #   sdist.sh FOLDER
 #
-# Exit status: 0 made, 1 not, 77 when Python's packages are not to be had here.
+# Exit status: 0 made, 1 not, 77 if Python's packages are not available.
 
 set -eu
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The Python package, against `tmini decode` and the simulated lidar."""
+"""The Python package, compared with `tmini decode` and used with the simulated lidar."""
 
 import binascii
 import json
@@ -25,7 +25,7 @@ TOOL, SIM = os.environ["TMINI_TOOL"], os.environ["TMINI_SIM"]
 
 
 def decode(path, *options):
-    """What the tool makes of it."""
+    """The scans that the tool decodes, as JSON objects."""
     result = subprocess.run([TOOL, "decode", "-q", "--json", *options, path],
                             capture_output=True, check=False)
     return [json.loads(line) for line in result.stdout.splitlines()]
@@ -44,7 +44,7 @@ def as_json(scan):
 
 
 def chunked(content, version=2):
-    """As `tmini record` writes it: 100 bytes each 8 ms, and a pause of two seconds."""
+    """A recording as `tmini record` writes it: 100 bytes every 8 ms, and one pause of two seconds."""
     chunks = [content[i:i + 100] for i in range(0, len(content), 100)]
     file = b"\x89tmini" + bytes([version]) + b"\n"
     for i, chunk in enumerate(chunks):
@@ -65,7 +65,7 @@ def test_a_recording_holds_the_scans_that_the_tool_decodes(path, tmp_path):
 
 def test_a_start_packet_before_a_pause_is_no_scan(tmp_path):
     content = (RECORDINGS / "sim-6hz.bin").read_bytes()
-    end = content.index(bytes.fromhex("aa5579"), 9000) + 13  # A start packet's, at 6.0 Hz.
+    end = content.index(bytes.fromhex("aa5579"), 9000) + 13  # The end of a start packet at 6.0 Hz.
     path = tmp_path / "paused.tmini"
     path.write_bytes(b"\x89tmini\x01\n" + b"".join(
         struct.pack("<IH", passed, len(chunk)) + chunk for passed, chunk in
@@ -135,11 +135,11 @@ def test_a_recording_that_is_not_there_is_an_error():
         next(tmini.read("nothing.tmini"))
 
 
-# -------------------------------------------------------------------------------------- live ones
+# ------------------------------------------------------------------------------------ live lidars
 
 
 class Simulator:
-    """tmini-sim on a pseudo-terminal whose name stays, as that of a USB adapter does."""
+    """tmini-sim on a pseudo-terminal whose name stays the same, as that of a USB adapter."""
 
     def __init__(self, folder):
         self.port = str(folder / "lidar")
@@ -178,7 +178,7 @@ def test_a_lidar_scans_at_the_frequency_wanted_and_is_stopped_in_the_end(simulat
     assert scans[-1].frequency_hz == pytest.approx(10, abs=0.2)
     assert len(scans[-1]) == pytest.approx(400, abs=5)
     assert abs(scans[-1].times_s[-1] - time.monotonic()) < 3
-    # The room: 2.2 m to the left wall, 1.7 m to the one behind.
+    # The lidar is 2.2 m from the left wall and 1.7 m from the wall behind it.
     for degrees, metres in ((270, 2.2), (180, 1.7)):
         near = np.abs(scans[-1].angles_deg - degrees) < 2
         assert np.nanmedian(scans[-1].ranges_m[near]) == pytest.approx(metres, abs=0.02)

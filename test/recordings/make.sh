@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Makes the simulated lidar's recordings, and with each what was sent, sample by sample:
+# Makes the simulated lidar's recordings, each with a list of all samples sent:
 #
 #   test/recordings/make.sh TMINI_SIM DIR      for example: make.sh build/bin/tmini-sim /tmp/new
 #
-# With a third argument, a folder, fails unless the recordings there are the same.
+# With a third argument, a folder, fails unless its recordings are the same.
 
 set -eu
 
