@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// Stands in for navigator.serial, as Web Serial specifies it, with the simulated lidar behind the
-// adapter. It runs before the page and takes the library from it, as an instance of its own. What
-// happens at the adapter is set in `bench`:
+// Stands in for navigator.serial, as Web Serial specifies it, with the simulated lidar at the
+// adapter. It runs before the page and makes its own instance of the library that the page contains.
+// Tests control the adapter by `bench`:
 //
 //     bench.plug()  bench.unplug()         the cable
 //     bench.choice = 'none'                the user closes the list of ports
-//     bench.opening = 'NetworkError'       open() fails so
-//     bench.line = 'dead' | 'garbled' | 'deaf' | 'held' (until it is good again) | 'good' |
-//                 'late' (each second time there is nothing)
-//     bench.lineError('ParityError')       the stream ends so, the port goes on
-//     bench.writeError()                   the next thing written fails so, the port goes on
-//     bench.answers = (code) => …          whether the lidar gets to hear that command
+//     bench.opening = 'NetworkError'       open() fails with this error
+//     bench.line = 'good' | 'dead' | 'garbled' | 'deaf' |
+//                 'held' (bytes come when it is good again) |
+//                 'late' (bytes come only every second time)
+//     bench.lineError('ParityError')       the stream ends with this error, the port stays open
+//     bench.writeError()                   the next write fails, the port stays open
+//     bench.answers = (code) => …          whether the lidar receives this command
 
 const bench = { choice: 'port', opening: null, line: 'good', opened: [], written: [], answers: () => true };
 
-const PORTION = 64; // As USB carries them.
+const PORTION = 64; // Bytes per USB packet.
 
 class Device {
     #exports = null;
@@ -53,7 +54,7 @@ class Device {
         this.#exports.simulation_write(bytes.length, this.#now);
     }
 
-    // What has come since the last call; bytes that are not taken are lost.
+    // The bytes that have come since the last call; bytes that the caller does not take are lost.
     send() {
         this.#turn++;
         if (bench.line === 'held' || (bench.line === 'late' && this.#turn % 2 === 0)) {
@@ -67,7 +68,7 @@ class Device {
         return bench.line === 'garbled' ? bytes.map((byte) => (byte * 7 + 90) & 0x7F) : bytes;
     }
 
-    // As a lidar that was left scanning.
+    // Behaves as a lidar that was left scanning.
     startByItself() {
         this.receive(Uint8Array.of(0xA5, 0x60));
     }
@@ -164,7 +165,7 @@ class StandInPort extends EventTarget {
         return { dataCarrierDetect: false, clearToSend: false, ringIndicator: false, dataSetReady: false };
     }
 
-    // Streams that someone holds make it fail, as cancel() and abort() then do.
+    // Fails if a stream is locked, because cancel() and abort() then fail.
     async close() {
         if (this.#state !== 'opened') {
             throw new DOMException('The port is already closed.', 'InvalidStateError');
@@ -187,7 +188,7 @@ class StandInPort extends EventTarget {
         await this.close().catch(() => {});
     }
 
-    // What has come goes into the stream; more than its buffer holds is lost.
+    // Puts the bytes that have come into the stream; if its buffer is too small, the stream fails.
     #arrive() {
         const bytes = this.#device.send();
         if (bytes.length === 0 || this.#readable === null) {
@@ -202,7 +203,7 @@ class StandInPort extends EventTarget {
         }
     }
 
-    // The stream ends, the port goes on.
+    // The stream ends with an error, the port stays open.
     failStream(name) {
         this.#control.error(new DOMException(`The line failed: ${name}.`, name));
         this.#readable = null;
@@ -228,16 +229,16 @@ class StandInPort extends EventTarget {
                 this.#writable = null;
             }
         }
-        this.#tell('disconnect');
+        this.#dispatch('disconnect');
     }
 
     find() {
         this.#connected = true;
-        this.#tell('connect');
+        this.#dispatch('connect');
     }
 
-    // At the port, and bubbling to navigator.serial.
-    #tell(type) {
+    // Dispatches an event at the port, and at navigator.serial as if it had bubbled.
+    #dispatch(type) {
         this.dispatchEvent(new Event(type));
         const event = new Event(type);
         Object.defineProperty(event, 'target', { value: this });

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The viewer in a real browser, opened from its file, used as a person uses it.
+"""The viewer, opened from its file in a real browser and used as a person uses it.
 
     test_viewer.py PAGE TMINI [unittest's options …]
 
-PAGE is tmini.html, TMINI the tool that it is compared with. Exit status 77: there is no browser here.
+PAGE is tmini.html, TMINI the tool that it is compared with. Exit status 77: no browser is available.
 """
 
 import functools
@@ -30,8 +30,8 @@ RECORDINGS = HERE.parent / "recordings"
 STAND_IN = (HERE / "serial_stand_in.js").read_text(encoding="utf-8")
 SIZE_MAX = 150_000
 
-# The page's time runs faster than the clock on the wall, so that the tests are over sooner; it is not
-# painted more often for that. Where the page is too slow, its time waits, and the lidar's with it.
+# Makes the page's time run faster than real time, so that the tests take less time. The page is not
+# painted more often. If the page is too slow, its time and the simulated lidar's time wait.
 FASTER = """{
     const [now, timeout, interval] = [performance.now.bind(performance), setTimeout, setInterval];
     let [ms, last] = [0, now()];
@@ -54,7 +54,7 @@ BROWSER = None
 
 
 def real_recording():
-    """A real unit's recording, where there is one."""
+    """The recording of a real unit, or None."""
     path = pathlib.Path(os.environ.get("TMINI_RECORDINGS_DIR") or RECORDINGS / "real") / "t-mini-plus-room.bin"
     return path if path.exists() else None
 
@@ -66,13 +66,13 @@ def luminance(colour):
 
 
 def contrast(one, other):
-    """As the Web Content Accessibility Guidelines define it: 1 to 21."""
+    """The contrast ratio of the Web Content Accessibility Guidelines: 1 to 21."""
     bright, dark = sorted((luminance(one), luminance(other)), reverse=True)
     return (bright + 0.05) / (dark + 0.05)
 
 
 class Viewer(unittest.TestCase):
-    """Each test opens the page anew, in the same browser."""
+    """Each test opens the page again, in the same browser."""
 
     width, height, before, speed = 1000, 600, "", 10
 
@@ -110,7 +110,7 @@ class Viewer(unittest.TestCase):
         return 0 if text == "–" else int(text)
 
     def saved(self, button):
-        """Clicks, and returns what has been saved, once it is whole."""
+        """Clicks; returns name and content of the file that was saved, once it is complete."""
         def finished():
             return [file for file in self.page.downloads.glob("tmini-*") if file.suffix != ".crdownload"]
         self.page.click(button)
@@ -120,7 +120,7 @@ class Viewer(unittest.TestCase):
         return path.name, content
 
     def place_at(self, x, y):
-        """What the page says of the place there, in pixels: (metres to the right of the lidar, ahead of it)."""
+        """What the page shows for this pixel: (metres to the right of the lidar, metres ahead of it)."""
         self.page.run("""const at = document.querySelector('#picture').getBoundingClientRect();
             document.querySelector('#picture').dispatchEvent(new PointerEvent('pointermove', {
                 clientX: at.left + 1 + arguments[0], clientY: at.top + 1 + arguments[1] }))""", x, y)
@@ -129,8 +129,8 @@ class Viewer(unittest.TestCase):
         return float(distance) * math.sin(angle), float(distance) * math.cos(angle)
 
     def look(self, condition):
-        """Where in the picture pixels (r, g, b) fulfil the condition: [how many, their middle in metres to the
-        right of the lidar, and ahead of it]. Without the legend, once what is to be painted has been painted."""
+        """Finds pixels (r, g, b) of the picture that fulfil the condition. Returns their number and their middle
+        in metres: to the right of the lidar, and ahead of it. Waits for painting; leaves out the legend."""
         count, x, y = self.page.run("""const fulfils = new Function('r', 'g', 'b', 'return ' + arguments[0]);
             return new Promise(requestAnimationFrame).then(() => {
                 const canvas = document.querySelector('#picture');
@@ -155,7 +155,7 @@ class Viewer(unittest.TestCase):
 
 
 def decode(path):
-    """What the tool says of a recording: (its rows, its counters)."""
+    """The tool's rows and counters of a recording."""
     with open(os.devnull, "w", encoding="utf-8") as nowhere:
         stats = DRIVER.folder / "stats.json"
         rows = subprocess.run([TMINI, "decode", path, "--csv", "--stats", stats], check=True,
@@ -226,7 +226,7 @@ class Recordings(Viewer):
         self.assertEqual(f"{seconds} of {seconds} s", self.page.text("#time"))
         self.page.wait_text("#packets", str(stats["packets"]))
         self.page.click("#play")
-        self.page.wait("it to play again", lambda: 0 < self.number("#packets") < 100)
+        self.page.wait("the recording to play again", lambda: 0 < self.number("#packets") < 100)
         self.page.click("#disconnect")
         self.page.wait_text("#state", "not connected")
 
@@ -252,7 +252,7 @@ class Recordings(Viewer):
         self.assertEqual(decode(RECORDINGS / "manual-packet.bin")[0], self.saved("#save-csv")[1].decode())
 
     def test_that_is_damaged_loses_a_packet_and_says_so(self):
-        """One byte dropped from the head of a chunk, of a file in chunks of 100 bytes (version 1)."""
+        """A byte is missing in the head of a chunk; the file has chunks of 100 bytes (version 1)."""
         content = (RECORDINGS / "sim-6hz.bin").read_bytes()
         chunks = [content[i:i + 100] for i in range(0, len(content), 100)]
         file = b"\x89tmini\x01\n" + b"".join(struct.pack("<IH", 8000, len(chunk)) + chunk for chunk in chunks)
@@ -274,7 +274,7 @@ class Recordings(Viewer):
 
 
 class Simulated(Viewer):
-    """The simulated lidar, and everything that can happen to it."""
+    """The simulated lidar, and its faults."""
 
     def setUp(self):
         super().setUp()
@@ -293,7 +293,7 @@ class Simulated(Viewer):
         self.assertEqual("complete", self.page.text("#quality"))
         self.page.wait_text("#ct-version", "firmware 1.2, hardware 1, protocol 1.0")
         self.assertEqual("2026031700012345", self.page.text("#ct-serial"))
-        # The room: 5 m x 4 m, 2.2 m from the left wall and 1.7 m from the one behind.
+        # The room is 5 m x 4 m; the lidar is 2.2 m from the left wall and 1.7 m from the wall behind it.
         self.assertRegex(self.page.text("#sector6"), r"^2\.(19|20)\d m$")
         self.assertRegex(self.page.text("#sector4"), r"^1\.(69|70)\d m$")
         self.assertEqual([0] * 4, [self.number(key) for key in ("#checksums", "#skipped", "#overrun", "#losses")])
@@ -381,7 +381,7 @@ class Simulated(Viewer):
         self.assertTrue(self.page.is_shown("#welcome"))
 
     def show_visitor_alone(self):
-        """Nearer than a metre there is nothing else. Returns where he is drawn."""
+        """Shows only the nearest metre, in which there is only the visitor. Returns where he is drawn."""
         self.page.run("""const range = document.querySelector('#range');
             range.append(new Option('0.9 m', 900, true, true)); range.dispatchEvent(new Event('change'))""")
         self.switch("visitor")
@@ -415,7 +415,7 @@ class Simulated(Viewer):
         self.show_visitor_alone()
         self.switch("visitor")
         self.page.wait_text("#sector0", "1.3")
-        self.assertGreater(self.visitor_now()[0], 50) # On a slow computer 20 revolutions are soon over.
+        self.assertGreater(self.visitor_now()[0], 50) # Few remain on a slow computer.
         self.persist(1)
         self.assertEqual(0, self.visitor()[0])
 
@@ -440,7 +440,7 @@ class Simulated(Viewer):
         self.page.wait("coloured points", lambda: self.coloured() > 500)
 
     def test_place_under_the_pointer_is_shown_and_the_picture_enlarged(self):
-        """Up is ahead, right is right; enlarged about the middle, the same pixels are less metres."""
+        """Up is ahead, right is right. In an enlarged picture the same pixels are fewer metres."""
         below, above = self.place_at(275, 300), self.place_at(275, 100)
         self.assertAlmostEqual(0, above[0] - below[0], delta=0.02)
         self.assertGreater(above[1], below[1] + 1)
@@ -491,7 +491,7 @@ class Simulated(Viewer):
         self.page.type("#mount-front", degrees)
 
     def test_visitor_and_mounting(self):
-        """He stands at the lidar's 0 degrees, about 25 degrees wide."""
+        """The visitor stands at the lidar's 0 degrees and is about 25 degrees wide."""
         self.switch("visitor")
         self.page.wait_text("#nearest", "ahead")
         self.page.wait_text("#sector0", "0.6")
@@ -506,7 +506,7 @@ class Simulated(Viewer):
         self.page.wait_text("#nearest", ", right")
 
     def saved_recording(self, button):
-        """Clicks; returns where the recording lies that has been saved."""
+        """Clicks; returns the path of the recording that was saved."""
         name, content = self.saved(button)
         self.assertRegex(name, r"^tmini-recording-[\d-]+\.tmini$")
         path = self.page.folder / "saved.tmini"
@@ -523,7 +523,7 @@ class Simulated(Viewer):
         times = [int(row.split(",")[7]) for row in rows.splitlines()[1:]]
         measured_ms, recorded_ms = stats["points"] / 4, times[-1] - times[0]
         self.assertGreater(recorded_ms, measured_ms - 120)
-        self.assertLess(recorded_ms, 2 * measured_ms)  # A page that is slow lets the simulated lidar wait.
+        self.assertLess(recorded_ms, 2 * measured_ms)  # If the page is slow, the simulated lidar waits.
         self.page.click("#disconnect")
         self.page.wait_text("#state", "not connected")
         self.open_recording(path)
@@ -546,7 +546,7 @@ class Simulated(Viewer):
         self.wait_scans(2)
 
 class WithStandIn(Viewer):
-    """Web Serial, played by a stand-in."""
+    """With the stand-in for Web Serial."""
 
     before = STAND_IN
 
@@ -557,7 +557,7 @@ class WithStandIn(Viewer):
         return self.page.run(script)
 
     def note_qualities(self):
-        """What is said of the scans from now on."""
+        """Records what the page says of the scans' quality from now on."""
         self.page.run("""const place = document.querySelector('#quality');
             window.qualities = [];
             window.observer?.disconnect();
@@ -566,7 +566,7 @@ class WithStandIn(Viewer):
 
 
 class Serial(WithStandIn):
-    """A port: opened, unplugged, in use."""
+    """A serial port: opened, unplugged, in use."""
 
     def test_stand_in_has_the_members_of_the_real_thing(self):
         members = self.page.run("""return Object.fromEntries(Object.entries(bench.members).map(([name, mine]) =>
@@ -704,7 +704,7 @@ class Serial(WithStandIn):
 
 
 class SerialInTime(WithStandIn):
-    """What depends on when bytes come, not faster than time: a scan that took too long is not complete."""
+    """Tests in real time: a scan that takes too long is not complete."""
 
     speed = 1
 
@@ -712,8 +712,8 @@ class SerialInTime(WithStandIn):
         self.connect()
         self.page.wait_text("#state", "scanning")
         self.wait_scans(2)
-        self.page.run("""bench.line = 'held';  // What comes meanwhile arrives a little after the page is back.
-            const end = performance.now() + 1080;  // More than the lidar may be silent.
+        self.page.run("""bench.line = 'held';  // Bytes that come meanwhile arrive a little after the page is back.
+            const end = performance.now() + 1080;  // Longer than the lidar may be silent.
             while (performance.now() < end) { /* Busy. */ }
             setTimeout(() => { bench.line = 'good'; }, 120)""")
         self.wait_scans(3)
@@ -731,7 +731,7 @@ class SerialInTime(WithStandIn):
 
 
 class WithoutSerial(Viewer):
-    """A browser that has no Web Serial."""
+    """A browser without Web Serial."""
 
     before = "delete Navigator.prototype.serial"
 
@@ -744,7 +744,7 @@ class WithoutSerial(Viewer):
 
 
 class RealSerial(Viewer):
-    """Chromium's own Web Serial, which has no port here: the page reaches it from a file."""
+    """Chromium's own Web Serial, without a port: a page opened from a file can use it."""
 
     def test_is_there(self):
         self.assertTrue(self.page.run("return isSecureContext && navigator.serial instanceof Serial"))
@@ -752,7 +752,7 @@ class RealSerial(Viewer):
 
 
 class Appearance(Viewer):
-    """Dark, wide."""
+    """The dark theme on a wide screen."""
 
     light = False
     grounds = ((15, 26, 46), (10, 15, 31))
@@ -796,14 +796,14 @@ class Appearance(Viewer):
 
 
 class AppearanceLight(Appearance):
-    """Light, wide."""
+    """The light theme on a wide screen."""
 
     light = True
     grounds = ((255, 255, 255), (243, 244, 246))
 
 
 class AppearancePhone(Appearance):
-    """As wide as a phone."""
+    """On a screen as wide as a phone."""
 
     width, height = 360, 740
 
@@ -814,7 +814,7 @@ class AppearancePhone(Appearance):
 
 
 class Accessibility(Viewer):
-    """With a keyboard, and with a screen reader."""
+    """Use with a keyboard and with a screen reader."""
 
     controls = ("button", "checkbox", "slider", "spinbutton", "combobox", "textbox")
 
@@ -860,7 +860,7 @@ class Accessibility(Viewer):
 
 
 class Axe(Viewer):
-    """axe-core, which test/run.sh brings, finds nothing: none of its rules is broken, best practices included."""
+    """The page breaks no rule of axe-core, including best practices. test/run.sh installs axe-core."""
 
     def check(self, program):
         self.page.run("document.head.append(Object.assign(document.createElement('script'), {text: arguments[0]}))",
@@ -871,7 +871,7 @@ class Axe(Viewer):
         self.assertGreater(passed, 20)
 
     def check_each_state(self, program):
-        """Welcome, a fault, a lidar that is lost."""
+        """Checks the welcome page, a fault, and a lost lidar."""
         self.check(program)
         self.simulate()
         self.page.press("#sim-blocked")
@@ -895,10 +895,10 @@ class Axe(Viewer):
 
 
 class OneFile(Viewer):
-    """The file needs no other file, and asks no server for anything."""
+    """The page needs no other file and requests nothing from a server."""
 
     def requests(self):
-        """What has been asked for, but by pages of the browser's own: its new tab may still be loading."""
+        """The requested URLs, without those of the browser's own pages: its new tab may still be loading."""
         messages = [json.loads(entry["message"])["message"] for entry in self.page.log("performance")]
         sent = [message["params"] for message in messages if message["method"] == "Network.requestWillBeSent"]
         return [request["request"]["url"] for request in sent
@@ -933,7 +933,7 @@ class OneFile(Viewer):
 def main():
     global PAGE, TMINI, DRIVER, BROWSER
     PAGE, TMINI = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit("terminated"))  # The browser must not stay.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("terminated"))  # So that the browser is ended, too.
     try:
         DRIVER = webdriver.Driver()
     except webdriver.Missing as why:

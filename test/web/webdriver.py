@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""A real browser, driven over the WebDriver protocol with nothing but Python's standard library."""
+"""A real browser, controlled by the WebDriver protocol with only Python's standard library."""
 
 import base64
 import json
@@ -26,15 +26,15 @@ BROWSER_OPTIONS = [
 
 
 class Missing(Exception):
-    """There is no browser here, or it does not start."""
+    """No browser is installed, or it does not start."""
 
 
 class ScriptError(Exception):
-    """What the browser answered when it could not do what was asked."""
+    """The browser's error reply to a command."""
 
 
 def find_program(variable, *names):
-    """The program that the environment names, or the first that is installed."""
+    """The program that the environment variable names, or the first installed one."""
     path = os.environ.get(variable) or next(filter(None, map(shutil.which, names)), None)
     if path is None:
         raise Missing(f"no {names[0]} (Debian: apt-get install chromium chromium-driver)")
@@ -42,7 +42,7 @@ def find_program(variable, *names):
 
 
 class Driver:
-    """The chromedriver process, on a port that it chooses itself."""
+    """A chromedriver process, on a port of its choice."""
 
     def __init__(self):
         self.browser = find_program("TMINI_CHROMIUM", "chromium", "chromium-browser", "google-chrome")
@@ -61,14 +61,14 @@ class Driver:
         raise Missing("chromedriver does not start")
 
     def close(self):
-        """Ends it, and the browsers that it has started."""
+        """Ends the process and the browsers that it has started."""
         os.killpg(self.process.pid, signal.SIGTERM)
         self.process.wait(timeout=10)
         self.process.stdout.close()
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def ask(self, method, path, body=None):
-        """One command of the protocol; returns its value."""
+        """Sends a command of the protocol; returns the reply's value."""
         data = None if body is None else json.dumps(body).encode()
         request = urllib.request.Request(self.url + path, data, {"Content-Type": "application/json"},
                                          method=method)
@@ -81,7 +81,7 @@ class Driver:
 
 
 class Page:
-    """A browser of its own with one page in it."""
+    """A separate browser with one page."""
 
     def __init__(self, driver, width=1280, height=800):
         self.driver = driver
@@ -95,7 +95,7 @@ class Page:
         self.resize(width, height)
 
     def prepare(self, script):
-        """JavaScript that runs in each page from now on, before the page's own; instead of the one before."""
+        """Sets JavaScript that runs before each page's own from now on; replaces the one set before."""
         if self.script is not None:
             self.devtools("Page.removeScriptToEvaluateOnNewDocument", identifier=self.script)
         self.script = self.devtools("Page.addScriptToEvaluateOnNewDocument", source=script)["identifier"]
@@ -119,11 +119,11 @@ class Page:
         return self.driver.ask(method, self.path + path, body)
 
     def devtools(self, command, **parameters):
-        """What WebDriver has no word for, Chromium's own protocol has."""
+        """A command of Chromium's own protocol, for what WebDriver cannot do."""
         return self.ask("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})
 
     def resize(self, width, height, ratio=1):
-        """The page's own size: narrower than a window can be."""
+        """Sets the page's size, which may be narrower than a window."""
         self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height,
                       deviceScaleFactor=ratio, mobile=False)
 
@@ -131,7 +131,7 @@ class Page:
         self.ask("POST", "/url", {"url": url})
 
     def run(self, script, *arguments):
-        """Runs a function's body in the page; a promise is waited for."""
+        """Runs a function's body in the page; waits for a promise."""
         return self.ask("POST", "/execute/sync", {"script": script, "args": list(arguments)})
 
     def element(self, selector):
@@ -141,7 +141,7 @@ class Page:
         self.ask("POST", f"/element/{self.element(selector)}/click", {})
 
     def press(self, selector):
-        """A click that is not the mouse's: quick, and wherever the element is."""
+        """A click by script, not by the mouse: quick, and wherever the element is."""
         self.run("document.querySelector(arguments[0]).click()", selector)
 
     def type(self, selector, text):
@@ -151,14 +151,14 @@ class Page:
         self.ask("POST", f"/element/{self.element(selector)}/clear", {})
 
     def text(self, selector):
-        """What stands there, on the screen or not."""
+        """The element's text, visible or not."""
         return self.run("return document.querySelector(arguments[0]).textContent", selector)
 
     def is_shown(self, selector):
         return self.run("return document.querySelector(arguments[0]).checkVisibility()", selector)
 
     def screenshot(self, whole=False):
-        """The page as PNG; `whole`: also what one would have to scroll to."""
+        """The page as PNG; `whole`: including the parts outside the window."""
         if whole:
             return base64.b64decode(self.devtools("Page.captureScreenshot", captureBeyondViewport=True)["data"])
         return base64.b64decode(self.ask("GET", "/screenshot"))
@@ -168,7 +168,7 @@ class Page:
         return self.ask("POST", "/se/log", {"type": kind})
 
     def wait(self, what, condition, seconds=10):
-        """Until the condition, a function without arguments, is true; returns what it returned."""
+        """Waits until the function `condition` returns a true value, and returns that."""
         end = time.monotonic() + seconds
         while True:
             value = condition()
@@ -179,7 +179,7 @@ class Page:
             time.sleep(0.02)
 
     def wait_text(self, selector, part, seconds=10):
-        """Until the text there contains `part`."""
+        """Waits until the element's text contains `part`."""
         try:
             return self.wait(f"“{part}” in {selector}", lambda: part in self.text(selector), seconds)
         except AssertionError as error:
