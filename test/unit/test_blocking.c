@@ -246,7 +246,7 @@ void test_a_frequency_is_not_waited_for_when_nothing_recovers_the_lidar(void)
 }
 
 /* Each failed attempt is reported, and the next one queries the frequency again. */
-void test_a_frequency_is_waited_for_past_attempts_to_start_that_fail(void)
+void test_failed_attempts_to_start_do_not_end_the_wait_for_a_frequency(void)
 {
     wishes_640_chz();
     begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
@@ -307,7 +307,7 @@ static void feed_two_turns(void)
     feed_turn();
 }
 
-void test_nothing_is_waited_for_while_there_are_events(void)
+void test_it_does_not_wait_while_there_are_events(void)
 {
     comes(10, feed_two_turns);
     sends(START);
@@ -339,7 +339,7 @@ void test_stop_waits_for_a_quiet_line(void)
     is_in(TMINI_STATE_IDLE);
 }
 
-void test_stop_waits_past_the_end_of_the_command_that_it_aborts(void)
+void test_stop_still_waits_after_the_end_of_the_command_that_it_aborts(void)
 {
     begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     sends(STOP);
@@ -362,7 +362,7 @@ void test_events_that_do_not_belong_to_the_command_are_swallowed(void)
 
 /* ---- Failures ---- */
 
-void test_time_that_is_up_gives_the_command_up_and_the_next_one_stops_first(void)
+void test_a_timeout_gives_the_command_up_and_the_next_one_stops_the_lidar_first(void)
 {
     tmini_info_t info;
 
@@ -399,7 +399,7 @@ void test_a_command_given_up_half_sent_is_not_sent_any_further(void)
     TEST_ASSERT_EQUAL_HEX(0, rig_drain());
 }
 
-void test_a_start_waited_for_in_vain_while_the_lidar_is_being_recovered_still_stands(void)
+void test_a_start_that_times_out_while_the_lidar_is_recovered_still_stands(void)
 {
     comes(10, feed_turn);
     sends(START);
@@ -538,7 +538,7 @@ void test_a_wait_may_be_longer_than_a_minute(void)
     TEST_ASSERT_EQUAL_UINT32(70000, script.waits);
 }
 
-void test_a_query_of_earlier_is_not_given_up_with_the_start_that_follows_it(void)
+void test_a_start_that_times_out_does_not_end_an_earlier_query(void)
 {
     begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 100));
@@ -561,7 +561,7 @@ void test_a_clock_that_steps_back_ends_no_waiting(void)
     }
 }
 
-void test_without_time_it_is_polled_once(void)
+void test_with_a_timeout_of_0_it_polls_once(void)
 {
     tmini_info_t info;
 

@@ -746,7 +746,7 @@ static void arrive_after_a_pause(uint8_t ct, uint8_t count, uint32_t first_q6, u
     add();
 }
 
-void test_scans_that_time_alone_has_ended_are_counted(void)
+void test_scans_that_only_time_has_ended_are_counted_as_late(void)
 {
     (void)start(0);
     quarter(0);
@@ -759,7 +759,7 @@ void test_scans_that_time_alone_has_ended_are_counted(void)
     TEST_ASSERT_EQUAL_UINT32(2, builder.late_scans);
 }
 
-void test_scans_that_bytes_or_angles_would_have_ended_as_well_are_not(void)
+void test_scans_that_bytes_or_angles_also_end_are_not_counted_as_late(void)
 {
     (void)start(0);
     garbage(501);
@@ -901,7 +901,7 @@ void test_a_scan_that_is_refuted_is_not_complete(void)
 
 /* A partial scan begins at 299 degrees. Its first packet ends at 340; the second would go past the
  * turn's end, to 2 degrees, so it ends the scan. */
-void test_a_part_ends_where_its_turn_would(void)
+void test_a_partial_scan_ends_where_its_turn_ends(void)
 {
     TEST_ASSERT_FALSE(start(0));
     TEST_ASSERT_TRUE(point(299 * DEGREE, 340 * DEGREE));

@@ -304,7 +304,7 @@ void test_stop_aborts_a_query(void)
     passes_to(50, TMINI_EVENT_STOPPED);
 }
 
-void test_a_command_swallows_the_end_of_the_one_before_that_was_not_polled_for(void)
+void test_a_command_drops_the_end_of_the_one_before_that_was_not_polled_for(void)
 {
     begins_with(STOP, tmini_request_info(&rig.lidar));
     begins_with(STOP, tmini_stop(&rig.lidar)); /* Aborts the request. */
@@ -313,7 +313,7 @@ void test_a_command_swallows_the_end_of_the_one_before_that_was_not_polled_for(v
     passes(50); /* No COMMAND_FAILED: it would seem to be that of the second request. */
 }
 
-void test_a_command_that_is_cancelled_takes_the_start_after_it_along(void)
+void test_cancelling_a_command_also_cancels_the_start_after_it(void)
 {
     is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     begins(tmini_start(&rig.lidar));
@@ -327,7 +327,7 @@ void test_a_command_that_is_cancelled_takes_the_start_after_it_along(void)
 
 /* ---- Only the awaited reply is taken ---- */
 
-void test_a_frequency_is_not_taken_for_device_information_though_the_type_is_the_same(void)
+void test_a_frequency_is_not_taken_as_device_information_of_the_same_type(void)
 {
     is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     rig_feed_frequency(600);
@@ -336,7 +336,7 @@ void test_a_frequency_is_not_taken_for_device_information_though_the_type_is_the
     polls_to(TMINI_EVENT_INFO);
 }
 
-void test_device_information_is_not_taken_for_a_frequency_though_the_type_is_the_same(void)
+void test_device_information_is_not_taken_as_a_frequency_of_the_same_type(void)
 {
     is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_info();
@@ -353,7 +353,7 @@ void test_a_reply_that_was_not_asked_for_is_skipped(void)
     passes(10);
 }
 
-void test_a_reply_that_comes_late_answers_the_repeated_question(void)
+void test_a_late_reply_answers_the_repeated_query(void)
 {
     is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     passes_to(2000, TMINI_EVENT_NONE);
@@ -364,7 +364,7 @@ void test_a_reply_that_comes_late_answers_the_repeated_question(void)
     is_in(TMINI_STATE_UNKNOWN); /* The command's reply may still come. */
 }
 
-void test_a_reply_that_comes_while_the_line_is_being_hushed_is_not_taken(void)
+void test_a_reply_that_comes_while_the_line_is_made_quiet_is_not_taken(void)
 {
     is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
     passes_to(2000, TMINI_EVENT_NONE);
@@ -382,7 +382,7 @@ static void asks_in_vain(uint8_t code)
     finds_quiet_and_sends(code);
 }
 
-void test_a_question_without_an_answer_is_asked_three_times(void)
+void test_a_query_without_a_reply_is_sent_three_times(void)
 {
     is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     asks_in_vain(GET_HEALTH);
@@ -392,7 +392,7 @@ void test_a_question_without_an_answer_is_asked_three_times(void)
     TEST_ASSERT_EQUAL_UINT(3, rig_counters().timeouts);
 }
 
-void test_a_reply_that_comes_after_the_last_attempt_is_nobodys(void)
+void test_a_reply_that_comes_after_the_last_attempt_is_ignored(void)
 {
     is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     asks_in_vain(GET_HEALTH);
@@ -576,7 +576,7 @@ void test_a_frequency_that_is_set_already_is_read_back_all_the_same_and_not_step
     arrives_at(600);
 }
 
-void test_off_the_grid_the_nearest_frequency_will_do(void)
+void test_between_two_steps_the_nearest_frequency_is_enough(void)
 {
     begins_to_set(650, 633);
     steps(FASTER_TENTH, 643);
@@ -622,7 +622,7 @@ void test_a_step_is_sent_only_when_the_line_is_quiet_after_the_reply(void)
     polls_to(TMINI_EVENT_NONE);
 }
 
-void test_a_line_that_does_not_settle_between_steps_is_hushed(void)
+void test_a_line_that_does_not_fall_quiet_between_steps_is_made_quiet(void)
 {
     begins_to_set(700, 600);
     for (unsigned ms = 0; ms < 600; ms += 40) {
@@ -634,7 +634,7 @@ void test_a_line_that_does_not_settle_between_steps_is_hushed(void)
     finds_quiet_and_sends(GET_FREQUENCY);
 }
 
-void test_a_lost_reply_to_a_step_is_mended_by_reading_the_frequency(void)
+void test_after_a_lost_reply_to_a_step_the_frequency_is_read(void)
 {
     begins_to_set(700, 600);
     finds_quiet_and_sends(FASTER_ONE);
@@ -644,7 +644,7 @@ void test_a_lost_reply_to_a_step_is_mended_by_reading_the_frequency(void)
     TEST_ASSERT_EQUAL_UINT16(700, tmini_frequency_chz(&rig.lidar));
 }
 
-void test_a_second_copy_of_the_last_steps_reply_is_not_taken_for_the_next_steps(void)
+void test_a_repeated_reply_to_a_step_is_not_taken_as_the_reply_to_the_next(void)
 {
     begins_to_set(800, 600);
     steps(FASTER_ONE, 700);
@@ -675,7 +675,7 @@ void test_a_lidar_that_refuses_to_step_fails_with_the_reply_after_three_attempts
     fails_with(TMINI_ERROR_REPLY);
 }
 
-void test_a_step_that_was_not_refused_after_all_does_not_blame_the_reply_for_a_noisy_line(void)
+void test_after_a_late_reply_to_a_step_a_noisy_line_fails_with_a_timeout(void)
 {
     rig.timing.max_attempts = 1;
     rig_init();
@@ -709,7 +709,7 @@ void test_a_port_that_fails_after_a_refused_step_fails_the_command_with_write(vo
     fails_with(TMINI_ERROR_WRITE);
 }
 
-void test_a_lidar_that_never_gets_there_fails_with_the_reply_after_twenty_steps(void)
+void test_a_frequency_that_is_never_reached_fails_with_the_reply_after_twenty_steps(void)
 {
     begins_to_set(600, 2000);
     for (unsigned step = 1; step <= 20; step++) {
@@ -810,7 +810,7 @@ void test_both_ends_of_the_frequency_range_are_accepted(void)
 
 /* ---- One command after the other ---- */
 
-void test_that_one_command_was_repeated_does_not_make_the_line_unsure_after_the_next(void)
+void test_a_repeated_command_does_not_make_the_state_unknown_after_the_next_one(void)
 {
     is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     passes_to(2000, TMINI_EVENT_NONE);
@@ -844,7 +844,7 @@ void test_what_the_port_does_not_take_is_offered_again_at_each_poll(void)
     polls_to(TMINI_EVENT_STOPPED);
 }
 
-void test_it_is_offered_again_even_if_nothing_has_happened_since(void)
+void test_the_rest_of_a_command_is_offered_again_even_if_nothing_has_happened(void)
 {
     polls_to(TMINI_EVENT_NONE);
     sends_both_taking(STOP, 1);

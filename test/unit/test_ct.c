@@ -431,7 +431,7 @@ void test_a_discarded_revolution_is_not_continued_but_what_is_known_is_kept(void
 }
 
 /* EB is the CRC of the eight packets added here. */
-void test_what_comes_between_a_discarded_revolution_and_a_start_packet_is_no_revolution(void)
+void test_packets_between_a_discarded_revolution_and_a_start_packet_are_no_revolution(void)
 {
     add_six_hertz();
     tmini_ct_discard(&ct_state);
@@ -485,7 +485,7 @@ void test_a_wrong_last_crc_says_that_a_packet_was_lost(void)
     TEST_ASSERT_EQUAL_INT(TMINI_CT_REFUTED, verdict_on(0x79, 1, SIX_HERTZ_CRC));
 }
 
-void test_without_last_crc_or_ct_information_nothing_is_said(void)
+void test_without_last_crc_or_ct_information_the_verdict_is_unknown(void)
 {
     static const uint8_t zeros[16] = {0};
     add_six_hertz();

@@ -53,7 +53,7 @@ static void rest_of_turn(uint32_t from_ms)
     }
 }
 
-void test_nothing_is_left_of_what_was_in_its_memory(void)
+void test_initialisation_clears_the_memory(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, tmini_decoder_next(&decoder, 0));
     TEST_ASSERT_FALSE(decoder.builder.open);
@@ -165,7 +165,7 @@ static void hand_on_rest_of_turn(uint32_t from_ms)
     }
 }
 
-void test_packets_handed_on_make_the_same_scans(void)
+void test_packets_passed_on_make_the_same_scans(void)
 {
     begin_other();
     TEST_ASSERT_FALSE(hand_on(0, 70000));
@@ -179,7 +179,7 @@ void test_packets_handed_on_make_the_same_scans(void)
     TEST_ASSERT_EQUAL_UINT8(201, other.packet.ct);
 }
 
-void test_a_packet_handed_on_in_doubt_ends_the_scan(void)
+void test_a_doubtful_packet_passed_on_ends_the_scan(void)
 {
     begin_other();
     TEST_ASSERT_FALSE(hand_on(0, 70000));
@@ -193,7 +193,7 @@ void test_a_packet_handed_on_in_doubt_ends_the_scan(void)
 
 /* The CT bytes 201, 2, 0 and 0 have the CRC 0xE5 (section 7, computed bit by bit). The LastCRC is
  * right, then wrong. */
-void test_last_crc_judges_packets_handed_on(void)
+void test_last_crc_judges_packets_passed_on(void)
 {
     static const uint8_t last_crcs[2] = {0xE5, 0xE4};
     for (unsigned i = 0; i < 2; i++) {
@@ -210,7 +210,7 @@ void test_last_crc_judges_packets_handed_on(void)
     }
 }
 
-void test_without_a_builder_packets_handed_on_are_judged_all_the_same(void)
+void test_without_a_builder_packets_passed_on_are_judged_too(void)
 {
     other = (tmini_decoder_t){0};
     TEST_ASSERT_FALSE(hand_on(0, 70000));

@@ -81,7 +81,7 @@ void test_a_replys_content_is_what_follows_its_header_of_seven_bytes(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY("hijk\x5A", content, 5);
 }
 
-void test_content_that_dma_may_have_overwritten_is_not_vouched_for(void)
+void test_content_that_dma_may_have_overwritten_is_not_intact(void)
 {
     uint8_t content[4];
     hold_letters_from(0, true);

@@ -151,7 +151,7 @@ void test_a_stop_that_cuts_a_packet_does_not_delay_the_next_answer(void)
 }
 
 /* The vendor specifies 6 to 12 Hz (section 1); 65535 is 655.35 Hz. */
-void test_a_frequency_that_cannot_be_is_not_taken_as_one(void)
+void test_an_impossible_frequency_is_not_accepted(void)
 {
     static const uint32_t impossible[] = {0, 99, 65535, 131072, 0xFFFFFFFF};
 

@@ -103,7 +103,7 @@ void test_41_ms_more_than_the_bytes_explain_are_no_pause(void)
     }
 }
 
-void test_a_longer_one_makes_the_packets_around_it_doubtful_and_no_others(void)
+void test_a_longer_pause_makes_only_the_packets_around_it_doubtful(void)
 {
     nothing_comes_for(45);
     feed_packets(2, 4);
@@ -235,7 +235,7 @@ void test_after_a_pause_between_polls_the_first_packet_after_it_is_doubtful_too(
 }
 
 /* 44 bytes explain 3 ms. A pause is judged alone, and together with the one before it. */
-void test_what_bytes_do_not_explain_counts_once_more(void)
+void test_unexplained_time_counts_again_with_the_next_pause(void)
 {
     for (unsigned more_ms = 3; more_ms <= 4; more_ms++) {
         nothing_comes_for(44);
@@ -263,7 +263,7 @@ void test_bytes_that_the_port_holds_explain_a_pause_as_well(void)
 
 /* 500 bytes were held when 410 of them were fed. The others, fed later, explain no time again: only
  * the 44 bytes after them do, 3 ms. */
-void test_they_do_so_once(void)
+void test_held_bytes_explain_a_pause_only_once(void)
 {
     for (unsigned longer = 0; longer < 2; longer++) {
         tmini_feed_held(&rig.lidar, 500);

@@ -480,7 +480,7 @@ void test_without_recovery_a_lidar_that_comes_back_by_itself_has_recovered(void)
     is_in(TMINI_STATE_SCANNING);
 }
 
-void test_without_recovery_stop_and_start_are_the_users(void)
+void test_without_recovery_the_user_stops_and_starts(void)
 {
     go_lost_without_recovery();
     begins_with(STOP, tmini_stop(&rig.lidar));

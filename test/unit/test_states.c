@@ -119,7 +119,7 @@ void test_in_the_stopping_state_queries_are_refused_and_wishes_kept(void)
     check(go_stopping, TMINI_STATE_STOPPING, cells);
 }
 
-void test_in_the_starting_state_queries_are_refused_and_a_new_frequency_starts_anew(void)
+void test_in_the_starting_state_queries_are_refused_and_a_new_frequency_starts_again(void)
 {
     static const cell_t cells[7] = {OK(NOTHING, STARTING),   ABORTS(STOP, STOPPING),
                                     REFUSED(BUSY, STARTING), REFUSED(BUSY, STARTING),
@@ -128,7 +128,7 @@ void test_in_the_starting_state_queries_are_refused_and_a_new_frequency_starts_a
     check(rig_go_starting, TMINI_STATE_STARTING, cells);
 }
 
-void test_in_the_scanning_state_queries_are_refused_and_a_new_frequency_starts_anew(void)
+void test_in_the_scanning_state_queries_are_refused_and_a_new_frequency_starts_again(void)
 {
     static const cell_t cells[7] = {OK(NOTHING, SCANNING),    OK(STOP, STOPPING),
                                     REFUSED(STATE, SCANNING), REFUSED(STATE, SCANNING),
@@ -137,7 +137,7 @@ void test_in_the_scanning_state_queries_are_refused_and_a_new_frequency_starts_a
     check(rig_go_scanning, TMINI_STATE_SCANNING, cells);
 }
 
-void test_in_the_recovering_state_queries_are_refused_and_a_new_frequency_tries_anew(void)
+void test_in_the_recovering_state_queries_are_refused_and_a_new_frequency_tries_again(void)
 {
     static const cell_t cells[7] = {OK(NOTHING, RECOVERING),    OK(STOP, STOPPING),
                                     REFUSED(STATE, RECOVERING), REFUSED(STATE, RECOVERING),

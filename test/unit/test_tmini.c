@@ -188,7 +188,7 @@ void test_a_lidar_never_set_up_takes_bytes_without_harm_and_has_empty_results(vo
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&untouched));
 }
 
-void test_a_port_that_starts_dma_anew_finds_buffer_and_position(void)
+void test_a_port_that_restarts_dma_finds_buffer_and_position(void)
 {
     size_t size = 0;
     rig.config.rx_dma = true;
@@ -561,7 +561,7 @@ void test_a_command_that_the_port_refuses_is_offered_again_a_millisecond_later(v
     polls_and_sends(GET_HEALTH);
 }
 
-void test_without_a_frame_timeout_a_reply_that_comes_in_two_is_taken_all_the_same(void)
+void test_without_a_frame_timeout_a_reply_in_two_parts_is_taken(void)
 {
     static const uint8_t begin[] = {0xA5, 0x5A, 0x03, 0x00, 0x00};
     static const uint8_t rest[] = {0x00, 0x06, 0x00, 0x00, 0x00};
@@ -946,7 +946,7 @@ void test_streaming_reports_faults_and_losses_as_well(void)
 
 /* ---- Results ---- */
 
-void test_the_answer_to_another_question_leaves_the_health_as_reported(void)
+void test_the_reply_to_another_query_does_not_change_the_health(void)
 {
     is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
     rig_feed_health(2, 0x1234);
@@ -993,7 +993,7 @@ void test_ct_information_is_known_once_a_turn_was_trusted(void)
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_LD, turn.faults);
 }
 
-void test_a_second_setting_up_forgets_everything(void)
+void test_setting_up_again_clears_everything(void)
 {
     rig_go_recovering();
     rig_init();
@@ -1003,7 +1003,7 @@ void test_a_second_setting_up_forgets_everything(void)
     passes(60000);
 }
 
-void test_a_timing_of_ones_own_is_used(void)
+void test_a_configured_timing_is_used(void)
 {
     rig.timing.quiet_line_ms = 7;
     rig_init();
@@ -1135,7 +1135,7 @@ static uint32_t now_of_any(void *context, int calls)
     return rig.now_ms;
 }
 
-void test_three_lidars_at_once_know_nothing_of_each_other(void)
+void test_three_lidars_at_once_do_not_affect_each_other(void)
 {
     static tmini_t lidars[3];
     static uint8_t rx[3][RIG_RX_SIZE];

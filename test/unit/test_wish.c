@@ -113,7 +113,7 @@ static void starts_without_the_frequency(void)
     polls_to(TMINI_EVENT_COMMAND_FAILED);
 }
 
-void test_without_an_answer_the_start_follows_all_the_same_and_says_so_when_it_scans(void)
+void test_without_a_reply_the_start_follows_and_the_failure_is_reported_when_it_scans(void)
 {
     want(1000);
     asks_for_the_frequency();
@@ -122,7 +122,7 @@ void test_without_an_answer_the_start_follows_all_the_same_and_says_so_when_it_s
     is_in(TMINI_STATE_SCANNING);
 }
 
-void test_a_round_without_any_answer_is_reported_once(void)
+void test_an_attempt_without_any_reply_is_reported_once(void)
 {
     want(1000);
     asks_for_the_frequency();
@@ -515,7 +515,7 @@ void test_a_wish_that_is_stated_again_does_not_clear_the_fault(void)
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
 }
 
-void test_another_wish_clears_the_fault_and_says_so(void)
+void test_another_wish_clears_the_fault_which_is_reported(void)
 {
     rig.config.recovery = TMINI_RECOVERY_OFF;
     scans_wishing(1000);
@@ -686,7 +686,7 @@ void test_a_listener_scans_from_the_first_packet(void)
 }
 
 /* After three seconds, then at the intervals of the ladder's pauses. */
-void test_a_listener_that_hears_nothing_says_so_at_growing_intervals(void)
+void test_a_listener_that_hears_nothing_reports_it_at_growing_intervals(void)
 {
     static const uint32_t pauses[] = {3000, 500, 1000, 2000, 4000, 4000};
     listen();
@@ -752,7 +752,7 @@ static void is_refused(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_init(&rig.lidar, &rig.config));
 }
 
-void test_a_decoder_needs_a_place(void)
+void test_a_null_decoder_is_an_argument_error(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_decoder_init(NULL, &rig.lidar.ring, 0));
 }
@@ -777,7 +777,7 @@ void test_a_wanted_frequency_is_6_to_12_hz_in_tenths(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_set_frequency(NULL, 600));
 }
 
-void test_who_only_listens_sets_no_frequency(void)
+void test_a_listener_sets_no_frequency(void)
 {
     rig.config.listen_only = true;
     rig.config.frequency_chz = 600;
