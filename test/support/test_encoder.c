@@ -107,7 +107,7 @@ void test_a_packet_may_have_255_samples(void)
     TEST_ASSERT_EQUAL_HEX8(0xAA, out[9]); /* 55 ^ LSN FF */
 }
 
-void test_the_scan_reply_is_the_manuals(void)
+void test_the_scan_reply_is_that_of_the_manual(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
     uint8_t out[ENCODE_REPLY_MAX];
