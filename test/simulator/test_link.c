@@ -363,7 +363,7 @@ void test_unplugging_ends_a_burst_and_a_cut_under_way(void)
     TEST_ASSERT_EQUAL_UINT(1, heard.ended[SIM_LINK_CUT]);
 }
 
-void test_unplugging_by_chance_comes_back_by_itself(void)
+void test_a_random_loss_of_power_ends_by_itself(void)
 {
     config.mean_gap[SIM_LINK_UNPLUG] = 5000;
     connect();
@@ -387,7 +387,7 @@ void test_faults_of_bytes_can_be_forced_one_at_a_time(void)
     expect_the_truth_about_every_packet();
 }
 
-void test_all_kinds_together_still_tell_the_truth(void)
+void test_all_kinds_of_faults_together_are_reported_correctly(void)
 {
     for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
         config.mean_gap[kind] = 2000;

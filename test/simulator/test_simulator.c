@@ -519,7 +519,7 @@ void test_a_blocked_rotor_may_stop_the_start_packets(void)
     TEST_ASSERT_TRUE(counts.start_packets > 5);
 }
 
-void test_a_fatal_fault_ends_the_stream_until_it_is_gone_and_start_comes(void)
+void test_a_fatal_fault_ends_the_stream_until_it_is_gone_and_start_is_sent(void)
 {
     config.fatal_health = SIM_HEALTH_LD;
     power_up();
@@ -781,7 +781,7 @@ static void observe(void)
     sim_observe(&sim, &observer);
 }
 
-void test_the_observer_hears_of_every_packet_and_its_place(void)
+void test_the_observer_gets_every_packet_and_its_place(void)
 {
     observe();
     send(0x60);
@@ -797,7 +797,7 @@ void test_the_observer_hears_of_every_packet_and_its_place(void)
     }
 }
 
-void test_the_observer_hears_of_commands_and_modes(void)
+void test_the_observer_gets_commands_and_modes(void)
 {
     static const uint8_t codes[] = {0x60, 0x77, 0x65};
 

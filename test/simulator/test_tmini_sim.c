@@ -276,7 +276,7 @@ void test_clients_of_the_pty_are_served_one_after_another_without_echo(void)
     TEST_ASSERT_EQUAL_INT(0, terminate());
 }
 
-void test_a_client_may_leave_settings_that_the_next_one_does_not_feel(void)
+void test_settings_of_a_client_do_not_affect_the_next_one(void)
 {
     struct termios settings;
     char path[64];
@@ -339,7 +339,7 @@ void test_clients_of_the_socket_are_served_one_after_another(void)
     TEST_ASSERT_EQUAL_INT(0, terminate());
 }
 
-void test_a_client_that_has_said_all_still_gets_its_answer(void)
+void test_a_client_that_has_ended_its_sending_still_gets_its_reply(void)
 {
     static const char *const arguments[] = {"--tcp", "0", NULL};
     char address[64];
@@ -357,7 +357,7 @@ void test_a_client_that_has_said_all_still_gets_its_answer(void)
 
 /* 50 virtual seconds pass in one real second, at 13 kB per virtual second; connecting and spin-up
  * cost some of them. */
-void test_it_ends_after_its_seconds_and_speed_shortens_them(void)
+void test_it_ends_after_the_virtual_seconds_given(void)
 {
     static const char *const arguments[] = {"--tcp", "0", "--speed", "50", "--seconds", "50"};
     char address[64];
@@ -375,7 +375,7 @@ void test_it_ends_after_its_seconds_and_speed_shortens_them(void)
 /* ---- In the caller's time ---- */
 
 /* A reply takes 3 ms of latency and 43.4 us per byte: less than the 1 s and the 10 ms given. */
-void test_in_the_callers_time_it_answers_line_by_line(void)
+void test_lines_are_answered_in_the_callers_time(void)
 {
     static const char *const arguments[] = {"--lines", NULL};
     static const char questions[] = "0 A590\n1000000\n1000000\n2000000 a50D\n2010000\n";
@@ -414,7 +414,7 @@ void test_the_same_options_give_the_same_recording(void)
     remove("tmini-sim-test.bin");
 }
 
-void test_the_truth_has_a_row_a_sample(void)
+void test_the_truth_has_a_row_per_sample(void)
 {
     static const char *const arguments[] = {"--write", "/dev/null", "--seconds",
                                             "2",       "--truth",   "tmini-sim-test.csv"};
