@@ -196,7 +196,7 @@ void test_the_parser_finds_what_the_reference_decoder_finds(void)
     }
 }
 
-void test_the_parser_finds_what_the_reference_decoder_finds_in_mere_garbage(void)
+void test_the_parser_finds_what_the_reference_decoder_finds_in_garbage(void)
 {
     for (uint32_t i = 0; i < STREAMS / 4 * effort(); i++) {
         seed = effort_seed() + i;

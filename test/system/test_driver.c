@@ -96,7 +96,7 @@ void test_a_cold_start_of_a_unit_without_ct_information_is_the_same(void)
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_FAULTS_CHANGED));
 }
 
-void test_no_packet_of_the_spin_up_is_lost_and_it_is_not_taken_for_a_loss(void)
+void test_no_packet_of_the_spin_up_is_lost_and_no_loss_is_reported(void)
 {
     config.sim.spin_up_ms = 5000;
     config.sim.spin_up_percent = 5;
@@ -237,7 +237,7 @@ void test_a_lidar_whose_bytes_have_filled_the_ring_is_stopped_before_it_is_start
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_LOST));
 }
 
-void test_a_lidar_whose_bytes_have_filled_the_ring_is_reported_stopped_when_it_is(void)
+void test_a_lidar_whose_bytes_have_filled_the_ring_is_reported_stopped_only_when_it_is(void)
 {
     streams_on_while_the_program_is_busy();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
@@ -311,7 +311,7 @@ void test_a_late_reply_to_any_frequency_step_does_no_harm(void)
     }
 }
 
-void test_a_late_reply_to_one_question_is_not_taken_for_the_answer_to_another(void)
+void test_a_late_reply_to_one_query_is_not_taken_as_the_reply_to_another(void)
 {
     begin();
     sim_delay_next_reply(&world.sim, 2500);
@@ -637,7 +637,7 @@ void test_a_main_loop_that_is_busy_for_too_long_costs_packets_but_accounts_for_t
 
 /* ---- Several ---- */
 
-void test_three_lidars_at_once_each_do_as_if_alone(void)
+void test_three_lidars_at_once_do_not_affect_each_other(void)
 {
     static world_t worlds[3];
 

@@ -152,7 +152,7 @@ static void expect_six_hertz(void)
     TEST_ASSERT_EQUAL_UINT(8, replay.trusted);
 }
 
-void test_six_hertz_are_replayed_whatever_the_chunks(void)
+void test_a_recording_at_6_hz_is_replayed_whatever_the_chunks(void)
 {
     static const size_t chunks[] = {1, 2, 13, 64, 130, 131, 512, 894};
     load_own("sim-6hz.bin");
@@ -162,7 +162,7 @@ void test_six_hertz_are_replayed_whatever_the_chunks(void)
     }
 }
 
-void test_six_hertz_tell_all_ct_information(void)
+void test_a_recording_at_6_hz_has_all_ct_information(void)
 {
     tmini_ct_info_t info;
     load_own("sim-6hz.bin");
@@ -178,7 +178,7 @@ void test_six_hertz_tell_all_ct_information(void)
     TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&turn));
 }
 
-void test_ten_hertz_of_a_plain_unit_make_scans_and_no_ct_information(void)
+void test_a_recording_at_10_hz_of_a_plain_unit_has_scans_but_no_ct_information(void)
 {
     static const uint16_t counts[10] = {725, 561, 475, 419, 402, 401, 400, 399, 402, 401};
     static const uint8_t packets[10] = {20, 15, 13, 12, 12, 11, 11, 11, 12, 11};
@@ -191,7 +191,7 @@ void test_ten_hertz_of_a_plain_unit_make_scans_and_no_ct_information(void)
     TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&turn));
 }
 
-void test_twelve_hertz_make_scans_and_show_the_beginning_of_the_ct_information(void)
+void test_a_recording_at_12_hz_has_scans_and_the_beginning_of_the_ct_information(void)
 {
     static const uint16_t counts[12] = {553, 457, 398, 358, 335, 334, 332, 334, 334, 332, 333, 332};
     static const uint8_t packets[12] = {15, 13, 11, 10, 10, 10, 11, 10, 10, 10, 10, 10};

@@ -219,7 +219,7 @@ void test_points_of_whole_scans_have_the_right_times(void)
     TEST_ASSERT_EQUAL_UINT(0, parts);
 }
 
-void test_points_of_parts_of_scans_have_the_right_times_from_the_first_on(void)
+void test_points_of_partial_scans_have_the_right_times_relative_to_the_first(void)
 {
     play_all(10);
     TEST_ASSERT_TRUE(starts.least >= -1 && starts.most <= 24);
