@@ -229,7 +229,7 @@ static const struct {
     {"data", "health", {"faulty: data (is the window covered?)\n", ""}},
 };
 
-void test_each_trouble_is_named_with_what_helps(void)
+void test_each_fault_is_named_with_a_remedy(void)
 {
     for (size_t i = 0; i < sizeof troubles / sizeof troubles[0]; i++) {
         expect_bad(troubles[i].name, troubles[i].reason);
@@ -245,7 +245,7 @@ void test_bytes_that_come_late_are_no_damage(void)
     expect_said("verdict: usable, but look at: ");
 }
 
-void test_a_wrong_baud_rate_for_a_while_is_a_line(void)
+void test_a_wrong_baud_rate_for_a_while_is_a_fault_of_the_line(void)
 {
     /* Perhaps no revolution arrives complete. */
     end_case("garble", 1, "\nverdict: not good: line");
@@ -287,7 +287,7 @@ static void expect_no_lidar(const char *name, pid_t tool, const char *verdict, c
     expect_narrow_lines();
 }
 
-void test_what_is_no_lidar(void)
+void test_devices_that_are_no_lidar(void)
 {
     expect_no_lidar("silent", silent, "\nverdict: not good: wiring\n", "not one byte came");
     expect_no_lidar("noisy", noisy, "\nverdict: not good: baud\n", "230400 baud");
@@ -314,7 +314,7 @@ void test_an_interrupted_examination_has_no_verdict(void)
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "no verdict"));
 }
 
-void test_without_a_port_there_is_nothing_to_look_at(void)
+void test_without_a_port_there_is_nothing_to_examine(void)
 {
     TEST_ASSERT_EQUAL_INT(1, program_tmini(WORDS("check", "-p", "/dev/nowhere")));
     expect_said("verdict: none, because there is no port to look at\n");

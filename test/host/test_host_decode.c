@@ -192,7 +192,7 @@ static void make_one_scan(uint8_t ct)
     program_write_file(program_path("one.bin"), bytes, size);
 }
 
-void test_json_is_an_object_a_line_for_each_scan(void)
+void test_json_is_an_object_per_line_for_each_scan(void)
 {
     make_one_scan(121);
     TEST_ASSERT_EQUAL_INT(0, program_tmini((const char *const[]){"decode", program_path("one.bin"),

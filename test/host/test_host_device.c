@@ -906,7 +906,7 @@ void test_a_lidar_that_sends_but_does_not_hear(void)
     TEST_ASSERT_NOT_NULL(strstr(program_errors, "the adapter's TX"));
 }
 
-void test_for_a_lidar_that_answers_one_command_no_wires_are_blamed(void)
+void test_a_lidar_that_answers_one_command_is_not_a_fault_of_the_wires(void)
 {
     TEST_ASSERT_EQUAL_INT(0, end_job(HALF_INFO));
     TEST_ASSERT_EQUAL_STRING("", program_errors);

@@ -30,17 +30,17 @@ static bool may_move_after(uint16_t distance_mm, unsigned degrees)
     return obstacle_may_move(&obstacle, 1000);
 }
 
-void test_it_may_not_before_the_first_scan(void)
+void test_it_may_not_move_before_the_first_scan(void)
 {
     TEST_ASSERT_FALSE(obstacle_may_move(&obstacle, 0));
 }
 
-void test_it_may_when_all_is_far(void)
+void test_it_may_move_when_everything_is_far(void)
 {
     TEST_ASSERT_TRUE(may_move_after(2000, 0));
 }
 
-void test_it_may_not_when_something_is_near_in_front(void)
+void test_it_may_not_move_when_something_is_near_in_front(void)
 {
     TEST_ASSERT_FALSE(may_move_after(299, 0));
     TEST_ASSERT_FALSE(may_move_after(299, 22));
@@ -55,7 +55,7 @@ static bool may_move_with(uint16_t distance_mm, unsigned degrees)
     return may_move_after(distance_mm, degrees);
 }
 
-void test_what_is_near_elsewhere_does_not_stop_it(void)
+void test_a_near_object_elsewhere_does_not_stop_it(void)
 {
     TEST_ASSERT_TRUE(may_move_with(100, 23));
     TEST_ASSERT_TRUE(may_move_with(100, 180));
@@ -67,14 +67,14 @@ void test_a_point_without_range_is_not_near(void)
     TEST_ASSERT_TRUE(may_move_with(0, 0));
 }
 
-void test_without_any_range_in_front_it_may_not(void)
+void test_without_any_range_in_front_it_may_not_move(void)
 {
     TEST_ASSERT_TRUE(may_move_with(2000, 0));
     scan.count = 1;
     TEST_ASSERT_FALSE(may_move_after(2000, 180));
 }
 
-void test_a_scan_without_any_range_is_blindness_not_room(void)
+void test_a_scan_without_any_range_is_blind_and_not_free(void)
 {
     TEST_ASSERT_TRUE(may_move_after(2000, 0));
     TEST_ASSERT_FALSE(may_move_after(0, 0));
@@ -106,7 +106,7 @@ void test_an_incomplete_scan_can_stop_it_but_not_let_it_go(void)
     TEST_ASSERT_FALSE(may_move_after(2000, 0));
 }
 
-void test_blind_it_may_not(void)
+void test_a_blind_robot_may_not_move(void)
 {
     TEST_ASSERT_TRUE(may_move_after(2000, 0));
     obstacle_blind(&obstacle);

@@ -221,7 +221,7 @@ void test_each_deviation_is_seen(void)
     }
 }
 
-void test_a_start_packet_place_passed_unmarked_is_seen(void)
+void test_a_turn_that_begins_without_a_start_packet_is_reported(void)
 {
     const options_t options = like("first_packets = unmarked\nfirst_angle_deg = 330");
     survey_of(&options);
@@ -229,7 +229,7 @@ void test_a_start_packet_place_passed_unmarked_is_seen(void)
 }
 
 /* A covered window is a live data fault (section 7): only the stream reports it. */
-void test_a_live_fault_is_no_other_index_of_the_health(void)
+void test_a_live_fault_does_not_change_the_index_of_the_health(void)
 {
     options_t options = documented();
     options.covered = true;
@@ -240,7 +240,7 @@ void test_a_live_fault_is_no_other_index_of_the_health(void)
 
 /* The bytes are lost on the line, so the unit's properties are still found. Three turns of four
  * lack a packet. */
-void test_a_damaged_line_is_no_other_unit(void)
+void test_a_damaged_line_does_not_look_like_another_unit(void)
 {
     const options_t options = documented();
     lost_every = 3001;

@@ -237,7 +237,7 @@ static void put_turn_at(uint32_t delta_us)
 }
 
 /* A candidate that is incomplete at the end contains a packet. */
-void test_at_the_end_the_rest_is_looked_at_again(void)
+void test_at_the_end_the_rest_is_parsed_again(void)
 {
     put_bytes((const uint8_t *)"\xAA\x55\x20\x28\x95\xA9\x63\x01\x00\x00", 10);
     put_bytes(manual_packet, sizeof manual_packet);
@@ -268,7 +268,7 @@ void test_bytes_in_no_packet_and_wrong_checksums_are_counted(void)
     TEST_ASSERT_EQUAL_UINT64(1, tape.stream.packets);
 }
 
-void test_fewer_bytes_than_a_file_begins_with_are_looked_at_in_the_end(void)
+void test_a_file_shorter_than_its_header_is_played_at_its_end(void)
 {
     feed(manual_packet, 5);
     TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
@@ -448,7 +448,7 @@ void test_the_longest_pause_is_between_two_packets(void)
     TEST_ASSERT_EQUAL_UINT64(1, tape.stream.complete);
 }
 
-void test_a_pause_of_more_than_a_minute_is_one(void)
+void test_a_pause_may_be_longer_than_a_minute(void)
 {
     put_magic(2);
     put_turn_at(0);
@@ -671,7 +671,7 @@ void test_a_stream_begins_empty(void)
 
 /* After a pause all packets of a batch may be doubtful: the first one begins a new scan, and the
  * others belong to it. */
-void test_a_doubted_batch_is_one_scan(void)
+void test_a_doubtful_batch_is_one_scan(void)
 {
     TEST_ASSERT_FALSE(come(0, false, 0));
     TEST_ASSERT_FALSE(come(1, false, 42));
@@ -686,7 +686,7 @@ void test_a_doubted_batch_is_one_scan(void)
     TEST_ASSERT_EQUAL_UINT64(0, tape.stream.damaged);
 }
 
-void test_a_pause_ends_a_scan_also_in_doubt(void)
+void test_a_pause_also_ends_a_doubtful_scan(void)
 {
     TEST_ASSERT_FALSE(come(0, false, 0));
     TEST_ASSERT_FALSE(come(1, false, 42));
