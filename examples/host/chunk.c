@@ -29,7 +29,7 @@ typedef struct {
 
 typedef enum {
     CHUNK_NONE,  /* No chunk begins here, or it is damaged. */
-    CHUNK_SHORT, /* There may be one: that depends on what follows. */
+    CHUNK_SHORT, /* Unknown: more bytes are needed. */
     CHUNK_WHOLE,
 } chunk_state_t;
 
@@ -95,7 +95,8 @@ static chunk_state_t read_new(const uint8_t *bytes, size_t count, chunk_t *chunk
                                                                                    : CHUNK_NONE;
 }
 
-/* Whether `length` heads of version 1 follow each other from here on, none later than that. */
+/* Whether `length` heads of version 1 follow each other from here on, each less than `max_us` after
+ * the one before. */
 static chunk_state_t follow_chain(const uint8_t *bytes, size_t count, bool is_end, unsigned length,
                                   uint32_t max_us)
 {
@@ -113,7 +114,8 @@ static chunk_state_t follow_chain(const uint8_t *bytes, size_t count, bool is_en
     return CHUNK_WHOLE;
 }
 
-/* The chunk after the first one here, whenever it comes, and then a long chain. */
+/* Whether the chunk that begins here, which may come after any pause, is followed by a long
+ * chain. */
 static chunk_state_t follow_pause(const uint8_t *bytes, size_t count, bool is_end)
 {
     const size_t next = OLD_HEAD_SIZE + number_at(bytes + 4, 2);
@@ -126,8 +128,8 @@ static chunk_state_t follow_pause(const uint8_t *bytes, size_t count, bool is_en
     return follow_chain(bytes + next, count - next, is_end, LONG_CHAIN, SOON_US);
 }
 
-/* After a good chunk a head is accepted if plausible heads follow it, or a long pause and then a
- * long chain. */
+/* After a good chunk a head is accepted if plausible heads follow it, or if a long pause and then a
+ * long chain follow it. After damage a long chain is needed. */
 static chunk_state_t read_old(const uint8_t *bytes, size_t count, bool is_end, bool is_lost,
                               chunk_t *chunk)
 {
@@ -152,7 +154,6 @@ static chunk_state_t read_old(const uint8_t *bytes, size_t count, bool is_end, b
     return state != CHUNK_NONE ? state : follow_pause(bytes + next, count - next, is_end);
 }
 
-/* After damage the proof must be stronger. */
 static chunk_state_t read_chunk(const chunks_t *chunks, const uint8_t *bytes, size_t count,
                                 bool is_end, chunk_t *chunk)
 {
@@ -161,7 +162,7 @@ static chunk_state_t read_chunk(const chunks_t *chunks, const uint8_t *bytes, si
                                 : read_new(bytes, count, chunk);
 }
 
-/* The file's last chunk may be cut short. */
+/* The file's last chunk may be incomplete. */
 bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_end, size_t *head)
 {
     chunk_t chunk;
@@ -176,7 +177,8 @@ bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_
     chunks->damages += !is_good && !was_lost ? 1 : 0;
     chunks->time_us += is_good ? chunk.delta_us : 0;
     chunks->left = is_good ? chunk.size : is_believed ? 0 : 1;
-    *head = is_good || is_believed ? chunk.head_size : 0; /* Or only its bytes are damaged. */
+    *head = is_good || is_believed ? chunk.head_size : 0; /* The head may be right, and its bytes
+                                                           * damaged. */
     return true;
 }
 

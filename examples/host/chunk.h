@@ -11,8 +11,8 @@
  *     2       CRC-16 (polynomial 0x1021, initial value 0xFFFF) of these six and of the bytes
  *     ...     the bytes
  *
- * Version 1 has neither the first two nor the CRC. Whatever the version, chunks are found again
- * after damage: by the CRC, or by a chain of plausible heads. */
+ * Version 1 has neither A7 C3 nor the CRC. In both versions chunks are found again after damage: by
+ * the CRC, or by a chain of plausible heads. */
 
 #ifndef CHUNK_H
 #define CHUNK_H
@@ -32,18 +32,18 @@ extern const uint8_t chunk_magic[CHUNK_MAGIC_SIZE];
 typedef struct {
     unsigned version;
     uint64_t time_us; /* When the next bytes came. */
-    uint32_t left;    /* How many are left of them; the reader of the bytes counts down. */
-    unsigned damages; /* Places where no chunk was. */
+    uint32_t left;    /* How many of them are left; the reader of the bytes counts down. */
+    unsigned damages; /* Damaged places: no chunk began where one had to begin. */
     bool is_lost;     /* Looking for the next chunk. */
 } chunks_t;
 
 /* The version of a file with this beginning; 0: it has no chunks. */
 unsigned chunk_version(const uint8_t *bytes, size_t count);
 
-/* `bytes` follow a chunk: sets `left` and *head, the size of what precedes the lidar's bytes. If no
- * chunk begins here, the recording is damaged: the byte is passed on as the lidar's, because
- * packets have their own checksums. Returns false if more bytes are needed for a decision;
- * `is_end`: there are no more. */
+/* Examines the `bytes` after a chunk: sets `left` and *head, the size of the head before the
+ * lidar's bytes. If no chunk begins here, the recording is damaged: the next byte is passed on as
+ * one of the lidar's, because packets have their own checksums. Returns false if more bytes are
+ * needed to decide; `is_end`: there are no more. */
 bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_end, size_t *head);
 
 /* Fills in the head of a chunk of version 2. */

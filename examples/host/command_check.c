@@ -17,7 +17,7 @@
 
 #define WATCH_SECONDS 10u
 #define COLUMNS 80
-#define INDENT 17 /* Of what follows the grade and the question's name. */
+#define INDENT 17 /* The column after the grade and the question's name. */
 
 /* Limits, in this order: damaged packets per thousand; the motor's deviation in percent (real units
  * set to 6 Hz have been seen at 5.8 to 6.5); the motor's time to reach its speed; the longest pause
@@ -43,7 +43,7 @@ typedef struct {
     count_t points;
     count_t valid;
     tmini_point_t nearest;   /* Of the latest scan; a distance of 0: none. */
-    char names[GRADES][160]; /* How many questions had this answer. */
+    char names[GRADES][160]; /* The questions with each grade. */
 } check_t;
 
 /* Prints a text after INDENT columns, in lines of at most COLUMNS. */
@@ -61,7 +61,7 @@ static void print_indented(const char *text)
     (void)putchar('\n');
 }
 
-/* Prints the answer to a question: what was seen and, if it is not good, what to do. */
+/* Prints the answer to a question: what was seen and, unless the grade is good, what to do. */
 static void answer(check_t *check, grade_t grade, const char *name, const char *advice,
                    const char *format, ...)
 {
@@ -79,7 +79,7 @@ static void answer(check_t *check, grade_t grade, const char *name, const char *
         (void)printf("%*s", INDENT, "");
         print_indented(advice);
     }
-    (void)fflush(stdout); /* The next one may take some seconds. */
+    (void)fflush(stdout); /* The next answer may take some seconds. */
     (void)snprintf(names + length, sizeof check->names[grade] - length, "%s%s",
                    length > 0 ? ", " : "", name);
 }
@@ -89,7 +89,7 @@ static grade_t grade(bool is_bad, bool is_remarkable)
     return is_bad ? BAD : is_remarkable ? REMARK : GOOD;
 }
 
-/* Why nothing usable came. */
+/* Prints why nothing usable came. */
 static void answer_trouble(check_t *check, const char *missing)
 {
     static const char *const names[] = {"wiring", "baud", "command", "answers"};
@@ -128,7 +128,7 @@ static const char *advice_for(unsigned faults)
     return (faults & TMINI_FAULT_ENCODER) != 0
                ? "let the rotor turn freely: a hair, a cable, the housing? Then start again"
            : (faults & TMINI_FAULT_DATA) != 0
-               ? "uncover or clean the window; nothing within 12 m is no fault"
+               ? "uncover or clean the window; an open space of 12 m is no fault"
                : "cut the supply for a moment; if it stays, the unit is broken: ask its maker";
 }
 
@@ -157,7 +157,8 @@ static void ask_frequency(check_t *check)
     }
 }
 
-/* Points that the robot itself hides are not counted as missing. */
+/* False for directions in which the lidar sees the robot itself: such points are not counted as
+ * missing. */
 static bool is_seen(const check_t *check, const tmini_point_t *point)
 {
     const tmini_mount_t *const mount = check->device->stream.mount;
@@ -234,7 +235,7 @@ static void judge_line(check_t *check)
         grade(is_noisy || stream_damaged_permille(stream) >= DAMAGED_PERMILLE, stream->damaged > 0),
         "line",
         is_noisy
-            ? "bytes came that are no lidar's: a wrong baud rate for a while, GND, interference"
+            ? "bytes came that no lidar sends: a wrong baud rate for a while, GND, interference"
             : "shorter wires, GND beside them, away from motors; another adapter; 3.3 V levels",
         "%s of %llu packets damaged, %u wrong checksums", damaged_text(stream), stream->packets,
         (unsigned)counters.checksum_errors);
@@ -244,7 +245,7 @@ static void judge_line(check_t *check)
     }
     if (stream->longest_ms > PAUSE_MS && device->silences + device->noises == 0) {
         answer(check, REMARK, "pace",
-               "nothing is lost by it; for fresher data: the adapter's latency timer, no USB hub, "
+               "nothing is lost; for fresher data: the adapter's latency timer, no USB hub, "
                "a less busy computer",
                "packets came up to %u ms late", (unsigned)stream->longest_ms);
     }
@@ -261,7 +262,7 @@ static void judge_speed(check_t *check)
         answer(check, BAD, "frequency", "does it turn? Is something in its way?",
                "no revolution was completed");
     } else if ((faults & TMINI_FAULT_ENCODER) != 0) {
-        return; /* The speed of a blocked rotor means nothing; that fault has been reported. */
+        return; /* The rotor is blocked, which has been reported. */
     } else if (set_chz == 0) {
         answer(check, GOOD, "frequency", NULL, "%.1f Hz measured", speed_chz / 100.0);
     } else {
@@ -271,7 +272,7 @@ static void judge_speed(check_t *check)
     }
 }
 
-/* Faults from before scanning have been printed already. */
+/* Faults found before scanning have been printed already. */
 static void judge_scans(check_t *check)
 {
     char text[FAULTS_TEXT_SIZE];
@@ -363,7 +364,7 @@ static int run_check(device_t *device, const options_t *options)
 {
     check.device = device;
     check.seconds = options->seconds > 0 ? options->seconds : WATCH_SECONDS;
-    device->is_secretive = true; /* What happens is judged. */
+    device->is_secretive = true; /* This command itself reports what happens. */
     examine(&check);
     return conclude(&check);
 }

@@ -13,8 +13,8 @@
 /* What the summary needs from scans that no longer exist when it is printed. */
 typedef struct {
     count_t valid;        /* Points with a distance. */
-    count_t bytes_before; /* The first packet, and up to the latest one: skipped ones. */
-    count_t bytes_until;
+    count_t bytes_before; /* Skipped bytes before the first packet. */
+    count_t bytes_until;  /* Skipped bytes before the latest packet. */
     unsigned lowest_chz, highest_chz;
     count_t nearest_scan; /* Of the last complete scan. */
     tmini_point_t nearest;
@@ -41,7 +41,7 @@ static void note_packet(gist_t *gist, const tape_t *tape)
     }
 }
 
-/* The scan that the recording's end cuts off is not an error. */
+/* An unfinished scan at the end of the recording is no error. */
 static void print_scans(const gist_t *gist, const stream_t *stream)
 {
     (void)printf("scans       %s%s\npoints      %llu, %llu of them with a distance",
@@ -121,7 +121,7 @@ static void print_counters(FILE *file, const char *format, const tape_t *tape)
                   tape_checksum_errors(tape), tape->bytes, tape_skipped(tape));
 }
 
-/* To the file, if one is named; otherwise to standard error, for people. */
+/* To the file, if the options name one; otherwise to standard error, as text for people. */
 static int report_counters(const tape_t *tape, const options_t *options)
 {
     if (options->stats != NULL) {

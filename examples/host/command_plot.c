@@ -12,10 +12,10 @@
 #include "points.h"
 #include "recording.h"
 
-/* From a lidar: by this scan the motor has come up to speed. */
+/* With a lidar: when this scan comes, the motor has reached its speed. */
 #define DEVICE_SCANS 4u
 
-/* On a damaged line no scan may be complete: it gives up after this many more. */
+/* On a noisy line perhaps no scan is complete: the command gives up after this many more. */
 #define PATIENCE_SCANS 40u
 
 /* More points than can be distinguished in one picture. */
@@ -24,18 +24,19 @@
 /* What is to be drawn: the last complete scan, the wanted one, or points of all. */
 typedef struct {
     tmini_scan_t scan;
-    count_t number; /* Of it; 0: there is none yet. */
-    count_t first;  /* Of all scans that have come. */
+    count_t number; /* The scan's number; 0: there is none yet. */
+    count_t first;  /* The numbers of the first and the last scan. */
     count_t last;
-    count_t every; /* Of all scans' points, one in N is kept, */
-    count_t seen;  /* after the first N. */
+    count_t every; /* Of all scans' points, one in N is kept. */
+    count_t seen;  /* All points so far. */
     size_t count;
     tmini_point_t points[POINTS_MAX];
 } drawing_t;
 
 static drawing_t drawing = {.every = 1};
 
-/* When there is no room, keeps every second point, and from now on half of those that come. */
+/* When there is no room left, keeps every second point, and from then on takes half as many new
+ * ones. */
 static void add_thinned(const tmini_point_t *point)
 {
     if (drawing.seen++ % drawing.every != 0) {
@@ -94,7 +95,7 @@ static void name_one(figure_t *figure, const char *source)
                    figure->survey.count, figure->survey.valid, source);
 }
 
-/* Writes the picture, and says in words what is in it. */
+/* Writes the picture, and prints what it contains. */
 static int write_picture(const options_t *options, const char *source)
 {
     figure_t figure = {.points = drawing.points,

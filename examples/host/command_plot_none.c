@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini plot where there is no cairo: instead of command_plot.c and picture.c. */
+/* tmini plot without cairo: compiled instead of command_plot.c and picture.c. */
 
 #include "output.h"
 #include "options.h"

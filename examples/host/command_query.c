@@ -61,7 +61,7 @@ static int query_health(device_t *device, const options_t *options)
     return health->faults == 0 ? STATUS_OK : STATUS_FAILED;
 }
 
-/* "7.5" as 750; 0 if it is no permitted frequency. */
+/* Reads "7.5" as 750; returns 0 if the frequency is not permitted. */
 static uint16_t read_frequency(const char *text)
 {
     char *end = NULL;
@@ -94,7 +94,7 @@ static int query_reboot(device_t *device, const options_t *options)
     message_note("rebooting; this takes some seconds …");
     int status = device_finish(device, tmini_reboot(&device->lidar), TMINI_EVENT_REBOOTED);
     if (status == STATUS_OK) {
-        /* A reboot is not answered: ask something that is. */
+        /* A reboot has no reply, so a query shows that it worked. */
         status = device_finish(device, tmini_request_health(&device->lidar), TMINI_EVENT_HEALTH);
     }
     if (status == STATUS_OK) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini record: what the lidar sends into a file, raw or with time stamps. */
+/* tmini record: writes what the lidar sends to a file, raw or with time stamps. */
 
 #define _POSIX_C_SOURCE 200809L
 
@@ -25,11 +25,11 @@
  * overwrite an existing file. */
 typedef struct {
     const char *path;
-    FILE *file; /* NULL until then. */
+    FILE *file; /* NULL until the lidar has started. */
     bool is_timed;
     uint64_t begun_us;
-    uint64_t stamp_us; /* Of the chunk before. */
-    tape_t tape;       /* The same bytes, as they will be read. */
+    uint64_t stamp_us; /* The time of the chunk before. */
+    tape_t tape;       /* Decodes the same bytes as a reader will. */
     size_t held_count;
     uint8_t held[HELD_MAX];
 } recorder_t;
@@ -58,8 +58,8 @@ static void put(recorder_t *recorder, const uint8_t *bytes, size_t count)
     }
 }
 
-/* The port's tap: its blocks are smaller than a chunk may be. A pause of more than the 71 minutes
- * that fit in 32 bits is shortened to them. */
+/* The port's tap. Its blocks always fit in a chunk. A pause of more than 71 minutes is shortened to
+ * 71 minutes, which fit in 32 bits. */
 static void write_block(void *context, const uint8_t *bytes, size_t count)
 {
     recorder_t *const recorder = context;
@@ -72,7 +72,7 @@ static void write_block(void *context, const uint8_t *bytes, size_t count)
     recorder->stamp_us = now;
 }
 
-/* The length and the quality of the recording so far. */
+/* The recording's length and quality so far, as text. */
 static const char *recorder_text(const recorder_t *recorder)
 {
     const tape_t *const tape = &recorder->tape;
@@ -96,15 +96,15 @@ static int roll(device_t *device, const options_t *options, recorder_t *recorder
         if (device_ms(device) - shown_ms >= PROGRESS_MS) {
             shown_ms = device_ms(device);
             message_progress(false, "%s", recorder_text(recorder));
-            (void)fflush(recorder->file); /* For programs that read along, and in case of a power
-                                           * failure. */
+            (void)fflush(recorder->file); /* For programs that read the file meanwhile, and in case
+                                           * of a power failure. */
         }
     }
     return device_is_there(device) ? STATUS_OK : device_why(device);
 }
 
-/* From before the start command, on a quiet line, to the last byte after the stop command: so the
- * recording begins and ends with whole packets. */
+/* Records from before the start command, on a quiet line, to the last byte after the stop command,
+ * so that the recording begins and ends with whole packets. */
 static int record(device_t *device, const options_t *options)
 {
     static recorder_t recorder;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini scan: scans as they come, as a line each, as CSV or as JSON. */
+/* tmini scan: prints scans as they come: a line for each, or CSV, or JSON. */
 
 #include <stdio.h>
 
@@ -26,7 +26,7 @@ static void print_scan(const stream_t *stream, const options_t *options)
                      survey.nearest != NULL ? "  nearest " : "",
                      survey.nearest != NULL ? place_text(survey.nearest) : "");
     }
-    (void)fflush(stdout); /* So that a program that reads along gets it at once. */
+    (void)fflush(stdout); /* So that a program that reads the pipe gets it at once. */
 }
 
 static bool is_enough(const stream_t *stream)
@@ -43,7 +43,7 @@ static void print_packet(const stream_t *stream)
     }
 }
 
-/* Until there are enough scans, or Ctrl-C is pressed, or something goes wrong. */
+/* Runs until there are enough scans, Ctrl-C is pressed, or something fails. */
 static int print_scans(device_t *device, const options_t *options)
 {
     wanted_scans = options->count;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini survey: a unit against what is known of its kind, and a report of it. */
+/* tmini survey: compares a unit with what is known about the T-mini Plus, and writes a report. */
 
 #define _POSIX_C_SOURCE 200809L
 
@@ -17,7 +17,7 @@
 
 #define SLICE_US 10000u
 
-/* What the port has received and the survey has not taken; the port's blocks are smaller. */
+/* Bytes that the port has received and the survey has not taken. The port's blocks always fit. */
 typedef struct {
     device_t *device;
     FILE *recording; /* NULL: none. */
@@ -89,8 +89,8 @@ static void say(void *context, const char *text)
 static const survey_wire_t wire = {
     .now_us = now_us, .send = send_bytes, .receive = receive, .is_over = is_over, .say = say};
 
-/* During the survey the port's bytes go to the tap only; after it to the driver again, which stops
- * the lidar. */
+/* During the survey the port's bytes go only to the tap; after it they go to the driver again,
+ * which stops the lidar. */
 static bool ask_everything(device_t *device, uint32_t seconds)
 {
     tmini_posix_tap(&device->port, take, NULL);
@@ -116,7 +116,8 @@ static int write_report(const options_t *options)
     return output_close(file, options->operand, STATUS_OK);
 }
 
-/* Beside the report. It holds the serial number. */
+/* Opens a recording beside the report, if the serial number is wanted, because a recording contains
+ * it. */
 static int open_recording(const options_t *options, char *name, size_t size)
 {
     if (!options->with_serial || options->operand == NULL || strcmp(options->operand, "-") == 0) {
@@ -131,7 +132,7 @@ static int open_recording(const options_t *options, char *name, size_t size)
     return STATUS_OK;
 }
 
-/* The driver asks once more, and says why there is no answer. */
+/* Asks once more by the driver, and prints why there is no answer. */
 static int explain(device_t *device)
 {
     if (interrupt_has_come()) {
@@ -171,7 +172,7 @@ static int use_survey(device_t *device, const options_t *options)
 const command_t command_survey = {
     .name = "survey",
     .usage = "[-p PORT] [REPORT|-] [--seconds N] [--with-serial]",
-    .summary = "two minutes: this unit against what is known of its kind",
+    .summary = "compares this unit with docs/protocol.md in two minutes",
     .details = "A line per statement of docs/protocol.md: as expected, differs or unknown. The\n"
                "REPORT also has each answer as `key = value`, for an issue and for `tmini-sim\n"
                "--like REPORT`. The lidar is rebooted; its frequency is left as it was. The\n"

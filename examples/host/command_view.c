@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini view: a picture in the terminal, of a lidar live or of a recording at its own speed. */
+/* tmini view: a picture in the terminal, of a live lidar or of a recording at its own speed. */
 
 #define _POSIX_C_SOURCE 200809L
 
@@ -25,16 +25,16 @@
 typedef struct {
     view_t view;
     screen_t screen;
-    bool is_over; /* The user has had enough, a signal has come, or memory is short. */
+    bool is_over; /* The user has quit, a signal has come, or there is no memory. */
     bool has_news;
     uint32_t shown_ms;
 } viewer_t;
 
-/* A recording's playing. */
+/* Plays a recording. */
 typedef struct {
     recording_t recording;
-    uint32_t position_ms; /* Of the recording, */
-    uint32_t since_ms;    /* at this time of the clock. */
+    uint32_t position_ms; /* A time in the recording, */
+    uint32_t since_ms;    /* reached at this time of the clock. */
     bool is_paused;
 } player_t;
 
@@ -66,7 +66,7 @@ static void show(viewer_t *viewer)
     viewer->shown_ms = now_ms();
 }
 
-/* What every view does at a key. */
+/* Handles the keys that have the same effect in every view. */
 static void heed(viewer_t *viewer, int key)
 {
     switch (key) {
@@ -91,14 +91,14 @@ static void heed(viewer_t *viewer, int key)
     }
 }
 
-/* To be called every few milliseconds: follows size and keys, and draws again if need be. Returns
- * the key. */
+/* Call it every few milliseconds: handles a changed size and keys, and draws again if necessary.
+ * Returns the key. */
 static int attend(viewer_t *viewer)
 {
     const int key = terminal_key();
     heed(viewer, key);
     viewer->has_news |= screen_fit(&viewer->screen) || key != KEY_NONE;
-    viewer->is_over |= viewer->screen.rows == 0; /* Memory is short. */
+    viewer->is_over |= viewer->screen.rows == 0; /* There is no memory. */
     show(viewer);
     viewer->is_over |= interrupt_has_come();
     return key;
@@ -147,7 +147,7 @@ static void set_position(player_t *player, uint32_t position_ms)
     player->since_ms = now_ms();
 }
 
-/* Takes packets up to that time, or to the next scan if `by_scan`. Returns whether a scan came. */
+/* Takes packets up to `until_ms`, or to the next scan if `by_scan`. Returns whether a scan came. */
 static bool play_to(player_t *player, uint32_t until_ms, bool by_scan)
 {
     tape_t *const tape = &player->recording.tape;
@@ -160,7 +160,7 @@ static bool play_to(player_t *player, uint32_t until_ms, bool by_scan)
     return has_scan;
 }
 
-/* A scan further, or back by playing again from the beginning. */
+/* Goes one scan forward, or one back: then plays again from the beginning. */
 static void step(player_t *player, bool is_back)
 {
     const tape_t *const tape = &player->recording.tape;
@@ -244,7 +244,7 @@ static int view_recording(const options_t *options)
     if (status != STATUS_OK) {
         return status;
     }
-    /* A file that is no recording is reported before the screen is used. */
+    /* Before the screen is used, a file that is no recording is reported. */
     if (recording_next(&player.recording)) {
         status = play(options, &player);
     }

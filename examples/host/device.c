@@ -15,16 +15,17 @@
 #include "points.h"
 #include "tmini/tmini_names.h"
 
-/* Longer than three attempts at any command take. */
+/* Longer than three attempts of any command. */
 #define COMMAND_MS 15000u
 
 /* A lidar that has just been plugged in boots for some seconds. */
 #define START_MS 8000u
 
-/* Without a scan for this long something is wrong: the driver has tried to restart the lidar. */
+/* If no scan comes for this long, something is wrong: the driver has already tried to restart the
+ * lidar. */
 #define SCAN_MS 4000u
 
-/* More bytes than a packet that breaks off, or the reply to a restart. */
+/* More bytes than an incomplete packet, or the reply to a restart. */
 #define NOISE_BYTES 400u
 
 /* The longest single wait, so that Ctrl-C and time-outs are noticed. */
@@ -68,7 +69,7 @@ static void set_up(device_t *device, const tmini_mount_t *mount)
     tmini_posix_init(&device->port, device->path);
     tmini_posix_reconnect(&device->port, device->waits);
     if (tmini_init(&device->lidar, &config) != TMINI_OK) {
-        abort(); /* Nothing in it depends on the user. */
+        abort(); /* Nothing in this configuration depends on the user. */
     }
     stream_init(&device->stream, mount);
 }
@@ -88,7 +89,7 @@ bool device_is_usable(const device_t *device)
     return device_is_there(device) && (device->ignores_interrupt || !interrupt_has_come());
 }
 
-/* For a second Ctrl-C: which descriptor it is changes when the adapter comes back. */
+/* For a second Ctrl-C: the descriptor changes when the adapter comes back. */
 static void note_line(const device_t *device)
 {
     started_fd = device->was_started && !device->listens ? device->port.fd : -1;
@@ -108,7 +109,7 @@ static void watch_adapter(device_t *device)
     }
 }
 
-static void tell(const device_t *device, tmini_event_t event)
+static void print_event(const device_t *device, tmini_event_t event)
 {
     char text[FAULTS_TEXT_SIZE];
     if (device->is_secretive) {
@@ -139,7 +140,7 @@ static tmini_event_t follow(device_t *device, tmini_event_t event)
         *(is_noise ? &device->noises : &device->silences) += 1;
     }
     device->strays += event == TMINI_EVENT_UNWANTED_SCANNING ? 1 : 0;
-    tell(device, event);
+    print_event(device, event);
     return event;
 }
 
@@ -161,7 +162,7 @@ tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
     return TMINI_EVENT_NONE;
 }
 
-/* A stop first ends the current command, for example a start; the event of that end is not a
+/* A stop first ends the current command, for example a start. The event that reports this is not a
  * failure of the stop. */
 static bool is_aborted(const device_t *device, tmini_event_t wanted)
 {
@@ -204,7 +205,7 @@ static bool may_still_start(const device_t *device)
 int device_start(device_t *device)
 {
     tmini_event_t event = TMINI_EVENT_NONE;
-    bool is_reported = device->listens; /* Then it is not for this program to start it. */
+    bool is_reported = device->listens; /* With --listen this program starts nothing. */
     device_begin(device);
     (void)tmini_start(&device->lidar);
     while (event != TMINI_EVENT_STARTED && may_still_start(device)) {
@@ -240,7 +241,8 @@ bool device_next_scan(device_t *device, void (*print)(const stream_t *stream))
     while (device_is_usable(device) && (device->waits || waited_ms < SCAN_MS)) {
         const uint32_t begun_ms = device_ms(device);
         const tmini_event_t event = device_wait(device, SLICE_MS);
-        waited_ms += device_ms(device) - begun_ms; /* Not while the reader of a pipe pauses. */
+        waited_ms += device_ms(device) - begun_ms; /* Without the time while a pipe's reader
+                                                    * pauses. */
         if (print != NULL && (event == TMINI_EVENT_PACKET || event == TMINI_EVENT_SCAN)) {
             print(&device->stream);
         }
@@ -285,12 +287,12 @@ const char *trouble_text(trouble_t trouble)
     return texts[trouble];
 }
 
-/* The wires of a lidar that answers this are good. */
+/* If the lidar answers this query, its wires are good. */
 static bool answers_info(device_t *device)
 {
     patience.max_attempts = 1;
     const bool is_stopped = device_stop(device);
-    device->was_started = false; /* It has been tried. */
+    device->was_started = false; /* Not to be stopped again. */
     return is_stopped && device_await(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO);
 }
 
@@ -316,7 +318,7 @@ static int explain_port(const device_t *device)
     return message_fail("%s: %s", device->path, strerror(errno));
 }
 
-/* The lidar has been heard, and has obeyed: but something is not as it should be. */
+/* The lidar sends and obeys, but scanning does not work. */
 static int explain_scanning(const device_t *device)
 {
     char text[FAULTS_TEXT_SIZE];
@@ -375,7 +377,7 @@ static bool is_port_number(const char *text)
     return *end == '\0' && number >= 1 && number <= 65535;
 }
 
-/* Why a port cannot be opened, and what to do. */
+/* Why a port cannot be opened, and what the user can do. */
 static const char *advice_for(tmini_posix_status_t status, const char *path)
 {
     static const char *const texts[] = {

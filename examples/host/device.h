@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A lidar on a port, as the tool's commands use it: opened, driven, and left stopped, with a
- * message for everything that can go wrong. The driver delivers packets; `stream` makes scans of
- * them, as it does of a recording's. */
+/* A lidar on a port, as the tool's commands use it: opens the port, runs the driver, stops the
+ * lidar in the end, and prints a message for everything that can go wrong. The driver delivers
+ * packets; `stream` builds scans from them, as it does from a recording's packets. */
 
 #ifndef DEVICE_H
 #define DEVICE_H
@@ -17,22 +17,22 @@ typedef struct device {
     tmini_posix_t port;
     stream_t stream;
     const char *path;
-    uint32_t begun_ms; /* When it was opened, and then when the start command was given. */
+    uint32_t begun_ms; /* When the port was opened; later, when the start command was given. */
     uint32_t silences; /* How often the lidar was lost because nothing came. */
     uint32_t noises;   /* How often it was lost because no valid packets came. */
     uint32_t strays;   /* How often it scanned although it had been stopped. */
-    uint64_t good_at;  /* Bytes received by the latest packet. */
+    uint64_t good_at;  /* Bytes received when the latest packet came. */
     bool is_secretive; /* May be set: the caller reports what happens. */
     bool waits;        /* --wait: continue when the adapter has disappeared. */
-    bool is_away;      /* The adapter has disappeared and is waited for. */
+    bool is_away;      /* The adapter has disappeared, and the program waits for it. */
     bool listens;      /* --listen: nothing is sent. */
     bool was_started;
     bool ignores_interrupt; /* While stopping. */
     uint8_t rx[4096];
 } device_t;
 
-/* Opens the port of the options and sets a lidar up there, calls `use`, and stops the lidar. From
- * now on Ctrl-C is only noted. Returns the result of `use`; if the port cannot be opened, prints
+/* Opens the port that the options name, sets up a lidar, calls `use`, and stops the lidar. From
+ * then on Ctrl-C is only noted. Returns the result of `use`; if the port cannot be opened, prints
  * the reason and returns the exit status. */
 int device_use(const options_t *options, int (*use)(device_t *device, const options_t *options));
 
@@ -40,52 +40,54 @@ int device_use(const options_t *options, int (*use)(device_t *device, const opti
 uint32_t device_ms(const device_t *device);
 
 /* The next event; TMINI_EVENT_SCAN instead of TMINI_EVENT_PACKET if it has completed a scan: see
- * `stream`. TMINI_EVENT_NONE when none came within `timeout_ms`, when the port has failed, or when
- * Ctrl-C was pressed: ask device_is_usable(). */
+ * `stream`. TMINI_EVENT_NONE if none came within `timeout_ms`, the port has failed, or Ctrl-C was
+ * pressed: then check device_is_usable(). */
 tmini_event_t device_wait(device_t *device, uint32_t timeout_ms);
 
-/* False once the port has failed, and is not waited for, or Ctrl-C was pressed. */
+/* False once Ctrl-C was pressed, or the port has failed and --wait was not given. */
 bool device_is_usable(const device_t *device);
 
-/* The same without Ctrl-C. */
+/* The same, but Ctrl-C does not count. */
 bool device_is_there(const device_t *device);
 
 /* Waits for the end of a command: `begun` is what the command's function returned, `wanted` the
- * event that ends it. Returns whether it ended well. */
+ * event of its success. Returns whether it succeeded. */
 bool device_await(device_t *device, tmini_status_t begun, tmini_event_t wanted);
 
-/* The same, but returns STATUS_OK, or STATUS_FAILED and says what is wrong and what to try. */
+/* The same, but returns STATUS_OK; or prints what is wrong and what to try, and returns
+ * STATUS_FAILED. */
 int device_finish(device_t *device, tmini_status_t begun, tmini_event_t wanted);
 
-/* A start command comes next: the time begins, and it will be stopped in the end. */
+/* Call it before a start command: the time begins, and the lidar will be stopped in the end. */
 void device_begin(device_t *device);
 
-/* Begins to scan, and waits for the first packet, through failures that may pass: a lidar that is
- * booting, an adapter that is waited for. Returns as device_finish(). */
+/* Begins to scan, and waits for the first packet. Failures that may pass do not end the waiting:
+ * the lidar may be booting, or the adapter plugged in later (--wait). Returns as device_finish()
+ * does. */
 int device_start(device_t *device);
 
-/* Stops scanning, and waits until the line is quiet and stays so. Returns whether it does. */
+/* Stops scanning, and waits until the line is quiet and stays quiet. Returns whether it does. */
 bool device_stop(device_t *device);
 
 /* Waits for the next scan; `print`, if not NULL, is called for each packet. Returns false if none
- * comes, and then device_why() says why. */
+ * comes; device_why() then prints the reason. */
 bool device_next_scan(device_t *device, void (*print)(const stream_t *stream));
 
-/* Says why the lidar does not do what it should, and what to try. Returns STATUS_FAILED; after
- * Ctrl-C says nothing. */
+/* Prints why the lidar does not work as it should, and what to try. Returns STATUS_FAILED. After
+ * Ctrl-C it prints nothing. */
 int device_why(device_t *device);
 
 typedef enum {
     TROUBLE_SILENCE, /* Not one byte comes. */
-    TROUBLE_NOISE,   /* Bytes come, but no lidar's. */
+    TROUBLE_NOISE,   /* Bytes come, but not from a lidar. */
     TROUBLE_DEAF,    /* It sends, but does not obey. */
-    TROUBLE_OTHER,   /* It has answered something. */
+    TROUBLE_OTHER,   /* It has answered a command. */
 } trouble_t;
 
-/* Which of these it is, by what has come so far. */
+/* Which of these it is, judged by the bytes received so far. */
 trouble_t trouble_find(const device_t *device);
 
-/* In words, and what to check; "" for TROUBLE_OTHER. */
+/* The trouble in words, and what to check; "" for TROUBLE_OTHER. */
 const char *trouble_text(trouble_t trouble);
 
 #endif

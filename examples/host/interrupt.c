@@ -9,14 +9,14 @@
 #include <stddef.h>
 #include <unistd.h>
 
-/* Stopping a lidar that does not hear takes up to 2 s. */
+/* Stopping a lidar that receives nothing takes up to 2 s. */
 #define GRACE_S 5
 
 static volatile sig_atomic_t has_come; /* The first signal's number. */
 
 static void (*volatile last_words[2])(void);
 
-/* Returning lets the signal, which is blocked meanwhile, do what it does by itself. */
+/* The signal is blocked until this handler returns; then it has its default effect. */
 static void leave(int signal_number)
 {
     for (size_t i = 0; i < 2 && last_words[i] != NULL; i++) {
@@ -26,7 +26,7 @@ static void leave(int signal_number)
     (void)raise(signal_number);
 }
 
-/* The program may be held up, by a reader that does not read: then it does not end by itself. */
+/* The program may be blocked by a pipe's reader that does not read, so an alarm ends it. */
 static void note(int signal_number)
 {
     if (has_come == 0) {
@@ -43,7 +43,7 @@ void interrupt_last_words(void (*speak)(void))
     last_words[at] = speak;
 }
 
-/* One after another, so that the last words are whole. */
+/* All signals are blocked during a handler, so that the last words are complete. */
 static void handle(int signal_number, void (*handler)(int), int flags)
 {
     struct sigaction action = {.sa_handler = handler, .sa_flags = flags};
@@ -54,10 +54,10 @@ static void handle(int signal_number, void (*handler)(int), int flags)
 void interrupt_watch_pipes(void)
 {
     handle(SIGPIPE, leave, 0);
-    (void)signal(SIGXFSZ, SIG_IGN); /* Writing then fails, as on a full disk. */
+    (void)signal(SIGXFSZ, SIG_IGN); /* Writing beyond a limit then fails, as on a full disk. */
 }
 
-/* A signal that is ignored stays so: `nohup`, jobs in the background of a script. */
+/* A signal that is ignored remains ignored: `nohup`, background jobs of a script. */
 void interrupt_watch(bool writes_whole)
 {
     static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGALRM};

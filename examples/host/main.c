@@ -25,13 +25,15 @@
 /* ------------------------------------------------------------------------------------- options */
 
 typedef struct {
-    char letter;       /* As in command_t.accepts; all but a few capital ones are short options. */
+    char letter;       /* As in command_t.accepts; all except a few capital letters are short
+                        * options. */
     const char *name;  /* Without the two dashes. */
-    const char *value; /* What it takes, for the help; NULL: nothing. */
+    const char *value; /* Its value's name in the help; NULL: none. */
     const char *help;
-    size_t place;      /* Of the member in options_t: */
-    unsigned min, max; /* a number from here to there; a text, if both are 0; or a bool. */
-    bool (*read)(options_t *options, const char *value); /* NULL; or reads it, and complains. */
+    size_t place;      /* The offset of the member in options_t. */
+    unsigned min, max; /* The range of a number; both 0: a text. */
+    bool (*read)(options_t *options, const char *value); /* Reads the value and prints errors; NULL:
+                                                          * none. */
 } option_t;
 
 #define PLACE(member) offsetof(options_t, member)
@@ -77,7 +79,7 @@ static bool is_short(const option_t *option)
     return islower((unsigned char)option->letter) != 0 || option->letter == 'V';
 }
 
-/* The option with that letter, which is one of them. */
+/* The option with that letter, which must exist. */
 static const option_t *find(int letter)
 {
     size_t i = 0;
@@ -122,8 +124,8 @@ static bool apply(options_t *options, const option_t *option, const char *value)
     return true;
 }
 
-/* For getopt_long(): the short options, after a "-" that asks for all words in their order and a
- * ":" that asks it to say nothing; and the long ones. */
+/* Writes the options for getopt_long(): the short ones and the long ones. A first "-" makes it
+ * return all words in their order, and ":" makes it print nothing. */
 static void list_options(char *short_ones, struct option *long_ones)
 {
     *short_ones++ = '-';
@@ -265,8 +267,8 @@ static const command_t *const commands[] = {
 
 #define COMMANDS (sizeof commands / sizeof commands[0])
 
-/* If descriptor 0, 1 or 2 is closed, the port would get its number, and results would be sent to
- * the lidar. So a descriptor that fails when it is used takes the place. */
+/* If descriptor 0, 1 or 2 were closed, the port would get its number, and output would be sent to
+ * the lidar. So descriptors that fail when they are used take these numbers. */
 static void hold_standard_descriptors(void)
 {
     static const int useless[3] = {O_WRONLY, O_RDONLY, O_RDONLY};
@@ -348,7 +350,7 @@ static int run(const options_t *options)
     return run_command(command, options, wants_help);
 }
 
-/* Output that could not be written, for example to a full disk, must not pass for success. */
+/* Output that could not be written, for example to a full disk, must not count as success. */
 static int close_output(int status)
 {
     if (fflush(stdout) != 0 || ferror(stdout) != 0) {

@@ -7,7 +7,7 @@
 
 #include "output.h"
 
-/* A whole number of degrees that ends at `end`. */
+/* Reads a whole number of degrees that is followed by `end`. */
 static const char *read_degrees(const char *text, char end, int16_t *degrees)
 {
     char *after = NULL;

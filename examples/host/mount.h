@@ -8,14 +8,14 @@
 
 #include "options.h"
 
-/* The options' mounting, or NULL if they say nothing about it. Valid as long as they are. */
+/* The mounting in the options, or NULL if they have none. Valid as long as the options. */
 const tmini_mount_t *mount_of(const options_t *options);
 
-/* Read a value; false if it is none. */
+/* Read an option's value; false if it is invalid. */
 bool mount_read_front(options_t *options, const char *text);
 bool mount_read_mask(options_t *options, const char *text);
 
-/* Whether the robot sees itself in that direction. */
+/* Whether the lidar sees the robot itself in that direction. */
 bool mount_hides(const tmini_mount_t *mount, uint16_t angle_q6);
 
 #endif

@@ -19,7 +19,7 @@
 typedef struct {
     const char *command;
     const char *operand; /* The word after the command: a file, a frequency or a command. */
-    const char *words[OPTIONS_WORDS]; /* These two, and a first one too many. */
+    const char *words[OPTIONS_WORDS]; /* These two, and the first excess word. */
     size_t word_count;
     const char *port;
     const char *output;
@@ -36,35 +36,37 @@ typedef struct {
     bool listen;
     bool with_serial;
     tmini_mount_t mount;
-    tmini_arc_t masked[OPTIONS_MASKS]; /* The mount's. */
+    tmini_arc_t masked[OPTIONS_MASKS]; /* The arcs of the mount. */
     bool quiet;
     bool help;
     bool version;
-    char given[32]; /* The options' letters. */
+    char given[32]; /* The letters of the options given. */
 } options_t;
 
 struct device;
 
 typedef struct {
     const char *name;
-    const char *usage;   /* What follows the name. */
+    const char *usage;   /* The words after the name. */
     const char *summary; /* One line. */
     const char *details; /* More lines, for --help; NULL: none. */
-    const char *accepts; /* The letters of its options, see options.c; all have help and version. */
+    const char *accepts; /* The letters of its options (main.c); all commands have help and
+                          * version. */
     bool has_operand;
-    int (*run)(const options_t *options); /* Or else, with the lidar on the port: */
+    int (*run)(const options_t *options); /* Either this, or a use of the lidar on the port: */
     int (*use)(struct device *device, const options_t *options);
 } command_t;
 
-/* The port of the options, or else of the environment's TMINI_PORT, or else the only adapter that
- * there is. NULL, and said why, if that does not tell. Valid until the next call. */
+/* The port that the options name, otherwise TMINI_PORT of the environment, otherwise the only
+ * adapter. If there is no such port, prints the reason and returns NULL. Valid until the next
+ * call. */
 const char *ports_choose(const options_t *options);
 
-/* The name that the adapter on this port will have again when it is plugged in again, or `path`
- * itself. Valid until the next call of either. */
+/* A name that the adapter on this port keeps when it is plugged in again, or `path` itself. Valid
+ * until the next call of either function. */
 const char *ports_stable_name(const char *path);
 
-/* Each in a file of its own, or beside its relatives. */
+/* Each command, or group of similar commands, has its own file. */
 extern const command_t command_ports, command_check, command_info, command_health,
     command_frequency, command_reboot, command_scan, command_record, command_decode, command_plot,
     command_survey, command_view;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the tool says on standard error, with which status it leaves, and the files it writes. */
+/* Messages on standard error, the exit status, and output files. */
 
 #ifndef OUTPUT_H
 #define OUTPUT_H
@@ -21,26 +21,27 @@ enum {
 #define MESSAGE_FORMAT
 #endif
 
-/* Prints a line: a remark, unless silenced; or, after "tmini: ", the reason for this exit status.
- * Returns the status, so that a command can end with it. */
+/* Prints a line. For STATUS_OK it is a remark, which message_silence() suppresses; for any other
+ * status it is "tmini: " and the reason. Returns the status, so that a command can end with it. */
 int message_print(int status, const char *format, ...) MESSAGE_FORMAT;
 
 #define message_note(...) (void)message_print(STATUS_OK, __VA_ARGS__)
 #define message_fail(...) message_print(STATUS_FAILED, __VA_ARGS__)
 #define message_usage(...) message_print(STATUS_USAGE, __VA_ARGS__)
 
-/* Shows progress on a terminal, unless silenced; it overwrites the progress shown before, and the
- * last one remains. */
+/* Shows progress on a terminal, unless silenced. Each text overwrites the one before; the last one
+ * remains. */
 void message_progress(bool is_last, const char *format, ...) MESSAGE_FORMAT;
 
 /* After message_silence(true) there are no remarks and no progress. */
 void message_silence(bool silent);
 
-/* Opens a file to write; "-" is standard output. Returns NULL, and says why, if that cannot be. */
+/* Opens a file to write; "-" is standard output. If it cannot be opened, prints the reason and
+ * returns NULL. */
 FILE *output_open(const char *path);
 
-/* Closes it. Returns `status`; or STATUS_FAILED, and says so, if not all could be written. (Of
- * standard output main() says it.) */
+/* Closes the file. Returns `status`; if not all could be written, prints this and returns
+ * STATUS_FAILED. (For standard output main() does this.) */
 int output_close(FILE *file, const char *path, int status);
 
 #endif

@@ -22,10 +22,10 @@
 #define RADIUS 500.0
 #define LEGEND_Y 1290.0
 #define RINGS_MAX 6u
-#define EMPTY_MM 6000u /* Of a picture in which there is nothing. */
+#define EMPTY_MM 6000u /* The range of a picture without points. */
 #define TURN (2 * 3.14159265358979323846)
 
-/* Light of the beams in a picture of one scan, which has about this many points. */
+/* How bright the beams are in a picture of one scan, which has about this many points. */
 #define BEAM_ALPHA 0.05
 #define BEAM_POINTS 700.0
 
@@ -43,20 +43,20 @@ typedef struct {
     double x, y;
 } spot_t;
 
-/* The place that many pixels from the lidar, at an angle clockwise from the front. */
+/* The place at `distance` pixels from the lidar, `degrees` clockwise from its front. */
 static spot_t at_bearing(double degrees, double distance)
 {
     const double radians = degrees * TURN / 360;
     return (spot_t){MIDDLE_X + distance * sin(radians), MIDDLE_Y - distance * cos(radians)};
 }
 
-/* The smallest step of a round number of millimetres that needs few enough rings. */
+/* The smallest round step with which RINGS_MAX rings are enough. */
 static unsigned ring_step_mm(const survey_t *survey)
 {
     static const unsigned steps_mm[] = {50, 100, 200, 250, 500, 1000, 2000, 2500, 5000};
     size_t i = 0;
     while (steps_mm[i] * RINGS_MAX < (survey->valid > 0 ? survey->farthest_mm : EMPTY_MM)) {
-        i++; /* Ends: 30 m are more than the 16383 mm of the protocol. */
+        i++; /* It ends, because no distance is above 16383 mm. */
     }
     return steps_mm[i];
 }
@@ -91,7 +91,7 @@ static void line(cairo_t *cr, spot_t from, spot_t to)
     cairo_stroke(cr);
 }
 
-/* A line from a place to itself has round ends and nothing between. */
+/* A line of no length has round ends: a disc. */
 static void disc(cairo_t *cr, spot_t at, double radius, colour_t colour)
 {
     ink(cr, colour, 2 * radius);
@@ -229,7 +229,7 @@ static void draw_lidar(cairo_t *cr)
     line(cr, tip, (spot_t){tip.x + 6, tip.y + 8});
 }
 
-/* cairo draws nothing more after text that is not UTF-8, and names of files may be anything. */
+/* After text that is not UTF-8 cairo draws nothing more, and file names may contain any bytes. */
 static void copy_utf8(char *copy, size_t size, const char *words)
 {
     const iconv_t checker = iconv_open("UTF-8", "UTF-8");
@@ -248,7 +248,7 @@ static void copy_utf8(char *copy, size_t size, const char *words)
     (void)iconv_close(checker);
 }
 
-/* As large as fits across the picture. */
+/* Makes the text smaller if it is too wide for the picture. */
 static void heading(cairo_t *cr, double y, double size, colour_t colour, const char *words)
 {
     char copy[600];
@@ -276,7 +276,7 @@ static void draw_intensities(cairo_t *cr, const survey_t *survey)
     (void)text(cr, (spot_t){x + 3 * 64, LEGEND_Y}, 0, 17, muted, words);
 }
 
-/* The mark of the points with this flag, and how many they are. */
+/* The mark of the points with this flag, and their number. */
 static void draw_flag(cairo_t *cr, double x, unsigned flag, const char *name, size_t count)
 {
     char words[40];

@@ -13,7 +13,7 @@
 
 typedef struct {
     char title[80];
-    char subtitle[600]; /* UTF-8, or nearly so: it may hold a file's name. */
+    char subtitle[600]; /* Meant to be UTF-8; but it may contain a file's name. */
     const tmini_point_t *points;
     survey_t survey; /* Of these points. */
 } figure_t;
@@ -21,15 +21,15 @@ typedef struct {
 /* True if the name ends in .svg, .png or .pdf, or is "-". */
 bool picture_is_known(const char *path);
 
-/* How far the outermost ring is, in a picture of points with this survey. */
+/* The distance of the outermost ring in a picture of points with this survey. */
 unsigned picture_range_mm(const survey_t *survey);
 
 /* Whether flagged points are marked: some units flag every sample (section 9.9), and marks on all
  * of them would hide the room. */
 bool picture_marks_flags(const survey_t *survey);
 
-/* Draws the figure and writes the file; SVG to standard output for "-". Returns the status to leave
- * with, and says what went wrong. */
+/* Draws the figure and writes the file; SVG to standard output for "-". Prints errors, and returns
+ * the exit status. */
 int picture_write(const char *path, const figure_t *figure);
 
 #endif

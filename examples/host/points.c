@@ -8,12 +8,12 @@
 
 #include "tmini/tmini_names.h"
 
-/* Exactly: 1/64 degree has six decimals. */
+/* Exact: multiples of 1/64 degree have at most six decimals. */
 #define DEGREES "%.6f"
 
 #define EIGHTH_Q6 (TMINI_FULL_CIRCLE_Q6 / 8)
 
-/* A point with a distance. */
+/* Adds a point that has a distance. */
 static void look_at(survey_t *survey, const tmini_point_t *point)
 {
     survey->valid++;
@@ -96,7 +96,7 @@ const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE])
     if (faults != TMINI_FAULTS_UNKNOWN) {
         return faults_text(faults, text);
     }
-    return stream_tells_nothing(stream)
+    return stream_reports_nothing(stream)
                ? "not reported: this unit sends no information within the stream"
                : "unknown: no revolution arrived whole";
 }
@@ -141,7 +141,7 @@ const char rows_help[] =
     "Distance 0: no valid range. Flag 2: specular interference, 3: ambient light.\n"
     "Angles count clockwise, seen from above.";
 
-/* In hertz, or what stands for an unknown one. */
+/* The frequency in hertz, or `unknown` if it is 0. */
 static const char *hertz(unsigned frequency_chz, const char *unknown)
 {
     static char text[24];

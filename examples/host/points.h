@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What points show, in numbers, colours and words, and as rows for other programs: the same whether
- * they are live or recorded. Texts without a buffer of the caller's are valid until the same
- * function's next call. */
+/* What points show, in numbers, colours and words, and as rows for other programs: the same for
+ * live and recorded points. A text that is not in the caller's buffer is valid until the next call
+ * of the same function. */
 
 #ifndef POINTS_H
 #define POINTS_H
 
 #include "stream.h"
 
-/* What points show as a whole. All but `count` is of the points with a distance. */
+/* What points show as a whole. All members except `count` are about points with a distance. */
 typedef struct {
     size_t count;
-    size_t valid; /* How many have a distance, and which of them are flagged (section 5). */
+    size_t valid; /* How many have a distance, and how many of those have which flag (section 5). */
     size_t specular;
     size_t ambient;
     unsigned farthest_mm;
-    uint8_t darkest; /* Intensities; 255 and 0 if there is no point. */
+    uint8_t darkest; /* The lowest and highest intensity; 255 and 0 without points. */
     uint8_t brightest;
     const tmini_point_t *nearest; /* NULL: there is none. */
 } survey_t;
@@ -32,7 +32,7 @@ typedef struct {
 /* The colour of an intensity, from blue for the darkest to yellow for the brightest of a survey. */
 colour_t points_colour(const survey_t *survey, uint8_t intensity);
 
-/* Its angle, with one decimal: 360.0 is not among them. */
+/* The point's angle, rounded down to one decimal, so that it is never 360.0. */
 double points_degrees(const tmini_point_t *point);
 
 /* "ahead", "behind left", … */
@@ -44,10 +44,10 @@ const char *place_text(const tmini_point_t *point);
 /* Space for any text of faults_text() and health_text(). */
 #define FAULTS_TEXT_SIZE 120
 
-/* "healthy", or "faulty: " and the modules with what to look at, in `text`. */
+/* "healthy", or "faulty: " and the modules and what to check, in `text`. */
 const char *faults_text(unsigned faults, char text[FAULTS_TEXT_SIZE]);
 
-/* The same for the health in the stream; or why it is unknown. */
+/* The same for the health that the stream reports; or why it is unknown. */
 const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE]);
 
 /* "8 complete, 1 with packets missing" */

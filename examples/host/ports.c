@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* tmini ports: the USB serial adapters of this computer. For tests, the environment's TMINI_ROOT is
- * the folder in which dev/ and sys/ are looked for. */
+/* tmini ports: the USB serial adapters of this computer. For tests, the environment variable
+ * TMINI_ROOT names the folder that contains dev/ and sys/. */
 
 #define _XOPEN_SOURCE 700
 
@@ -19,10 +19,10 @@
 #define PATH_SIZE 600
 
 typedef struct {
-    char name[PATH_SIZE];   /* The most stable one. */
-    char device[PATH_SIZE]; /* What that leads to. */
+    char name[PATH_SIZE];   /* The most stable name. */
+    char device[PATH_SIZE]; /* The device that it links to. */
     char maker[20];         /* "vendor:product", or ":" if not known. */
-    const char *chip;       /* NULL: not one of those that lidars come with. */
+    const char *chip;       /* NULL: not a chip that lidars come with. */
 } adapter_t;
 
 static adapter_t adapters[PORTS_MAX + 1];
@@ -36,7 +36,7 @@ static const struct {
     {"0483:5740", "STM32"},
 };
 
-/* By stability of the name. */
+/* The most stable names come first. */
 static const char *const places[] = {
     "/dev/tmini*",  "/dev/serial/by-id/*", "/dev/serial/by-path/*", "/dev/ttyUSB*",
     "/dev/ttyACM*", "/dev/cu.usb*",        "/dev/cu.SLAB*",         "/dev/cu.wchusbserial*",
@@ -120,14 +120,15 @@ static size_t find_adapters(void)
 static void print(FILE *file, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        const bool is_known = adapters[i].maker[1] != '\0'; /* Else it is ":". */
+        const bool is_known = adapters[i].maker[1] != '\0'; /* Otherwise it is ":". */
         (void)fprintf(file, "%s  (%s, %s)  %s\n", adapters[i].name, adapters[i].device,
                       is_known ? adapters[i].maker : "maker unknown",
                       adapters[i].chip != NULL ? adapters[i].chip : "");
     }
 }
 
-/* The only one that may be a lidar's, or else the only one at all; NULL: there is no such. */
+/* The only adapter with a chip that lidars come with; otherwise the only adapter; NULL: there is
+ * neither. */
 static const adapter_t *only_one(size_t count)
 {
     const adapter_t *likely = NULL;

@@ -18,7 +18,7 @@
 /* Shorter recordings are read at once. */
 #define LONG_SIZE 20000000u
 
-/* To someone who waits for a long one. */
+/* For a user who waits for a long recording. */
 static void show_progress(recording_t *recording)
 {
     const unsigned percent =
@@ -29,7 +29,8 @@ static void show_progress(recording_t *recording)
     }
 }
 
-/* Reads the bytes that are there, not a full buffer: they may come live through a pipe. */
+/* Reads the bytes that are there, without waiting for a full buffer: they may come live through a
+ * pipe. */
 static void read_block(recording_t *recording)
 {
     ssize_t count = 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A recording in a file, or that comes through a pipe: raw bytes as the lidar sent them, or the
- * same in chunks with time stamps. Read packet by packet. */
+/* A recording in a file or from a pipe: raw bytes as the lidar sent them, or the same in chunks
+ * with time stamps. Read packet by packet. */
 
 #ifndef RECORDING_H
 #define RECORDING_H
@@ -20,27 +20,28 @@ typedef struct {
     const options_t *options;
     int fd;
     int error;        /* errno of a failed read, or 0. */
-    count_t size;     /* Of the file; 0: not known. */
-    count_t consumed; /* Of them. */
+    count_t size;     /* The file's size; 0: unknown. */
+    count_t consumed; /* Bytes read so far. */
     unsigned shown_percent;
     size_t at, count; /* In `block`: what has been read and not yet fed. */
     uint8_t block[16384];
 } recording_t;
 
-/* Opens the recording that is the options' operand; "-" is standard input. Returns STATUS_OK, or
- * the status to leave with, and says why. */
+/* Opens the recording that is the options' operand; "-" is standard input. Returns STATUS_OK; or
+ * prints the reason and returns the exit status. */
 int recording_open(recording_t *recording, const options_t *options);
 void recording_close(recording_t *recording);
 
-/* Finds the next valid packet: see `tape`. Returns false at the end (`is_at_end`), or if no more
- * bytes are there yet. */
+/* Finds the next valid packet: see `tape`. Returns false at the end (`is_at_end`), or if more bytes
+ * must come first. */
 bool recording_next(recording_t *recording);
 
-/* Back to its beginning. Returns false if that cannot be: it comes through a pipe. */
+/* Goes back to the beginning. Returns false if that is impossible, because it comes through a
+ * pipe. */
 bool recording_rewind(recording_t *recording);
 
-/* At the end: says what is wrong if the file could not be read, was empty, damaged, or holds
- * nothing of a lidar. Returns the status to leave with. */
+/* Call it at the end: prints an error if the file could not be read, is empty or damaged, or
+ * contains no lidar packets. Returns the exit status. */
 int recording_verdict(const recording_t *recording);
 
 /* The path without its folders. */

@@ -5,16 +5,17 @@
 
 #include <string.h>
 
-/* A full packet (section 9.6), by which damaged bytes are counted as packets. */
+/* The size of a full packet (section 9.6), to convert damaged bytes to packets. */
 #define PACKET_SIZE 130u
 
-/* After this long without a packet any number of turns may be missing, whatever the angles say,
- * because no computer holds that many bytes back. (With a live lidar the driver decides, and
+/* After this long without a packet any number of turns may be missing, whatever the angles are,
+ * because no computer delays bytes for so long. (With a live lidar the driver decides this, and
  * reports it by the packet's gap.) */
 #define PAUSE_MS 1000u
 
-/* After a pause the driver may doubt a whole batch of packets: the first one begins a scan of its
- * own, the others only make theirs incomplete. Some bytes, but not the one of LastCRC. */
+/* After a pause the driver may doubt several packets in a row. The first one begins a new scan; the
+ * others get this gap, which only makes their scan incomplete. It must not be 1, the gap of
+ * LastCRC. */
 #define MORE_DOUBT 2u
 
 void stream_init(stream_t *stream, const tmini_mount_t *mount)
@@ -26,8 +27,7 @@ void stream_init(stream_t *stream, const tmini_mount_t *mount)
                              TMINI_FILTER_NONE);
 }
 
-/* The next scan is built in the points of the one before. One may have begun slightly before time
- * did. */
+/* The next scan is built in the spare buffer. A scan may have begun slightly before the time 0. */
 static void keep_scan(stream_t *stream)
 {
     tmini_builder_t *const builder = &stream->decoder.builder;
@@ -44,8 +44,8 @@ static void keep_scan(stream_t *stream)
     stream->complete += stream->scan.complete ? 1 : 0;
 }
 
-/* One byte before a start packet is LastCRC. A pause is no damage, nor is what precedes the first
- * packet: the reply to the start command. */
+/* One byte before a start packet is LastCRC. A pause is no damage, and neither are the bytes before
+ * the first packet: they are the reply to the start command. */
 static void count_gap(stream_t *stream, const tmini_packet_t *packet)
 {
     if (tmini_packet_is_start(packet) && packet->gap == 1) {
@@ -72,7 +72,7 @@ static void count(stream_t *stream, const tmini_packet_t *packet, uint32_t now_m
     stream->points_before += stream->start_packets == 0 ? packet->count : 0;
 }
 
-/* The packet, with the gap that scans are to see. */
+/* The packet, with the gap that the scan builder needs. */
 static tmini_packet_t judge_gap(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms)
 {
     const bool is_in_doubt = packet->gap != packet->frame->gap;
@@ -129,7 +129,7 @@ unsigned stream_damaged_permille(const stream_t *stream)
     return all == 0 ? 0 : (unsigned)((stream->damaged * 1000 + all / 2) / all);
 }
 
-bool stream_tells_nothing(const stream_t *stream)
+bool stream_reports_nothing(const stream_t *stream)
 {
     return stream->confirmed == 0 && stream->complete > 0 && stream->guard_bytes == 0;
 }

@@ -12,12 +12,12 @@
 #define QUIET_US (300 * MS)
 #define TAIL_US (3 * S)
 #define BOOT_STEP_MS 100u
-#define BOOT_FIRST_MS 500u /* Whatever runs first is left alone. */
+#define BOOT_FIRST_MS 500u /* The program that boots first is not disturbed. */
 #define BOOT_MS 15000u
 #define FAST_S 15u
 
 #define STEPS_MAX 40u
-#define BEYOND_CHZ 2500u /* No step asks for more. */
+#define BEYOND_CHZ 2500u /* Above this no step is tried. */
 
 static bool is_over(const survey_t *survey)
 {
@@ -40,13 +40,13 @@ static void send(const survey_t *survey, tmini_command_code_t code)
     survey->wire->send(survey->wire->context, command, sizeof command);
 }
 
-/* Bytes until that time; 0: no more. */
+/* Receives bytes until that time; 0: no more came. */
 static size_t receive(const survey_t *survey, uint8_t *bytes, size_t max, uint64_t until_us)
 {
     return is_over(survey) ? 0 : survey->wire->receive(survey->wire->context, bytes, max, until_us);
 }
 
-/* Until nothing has come for a while. Returns how many bytes came. */
+/* Receives until the line has been quiet for a while. Returns how many bytes came. */
 static uint32_t drain(const survey_t *survey)
 {
     uint8_t bytes[256];
@@ -101,7 +101,7 @@ const uint8_t *survey_content(const survey_reply_t *reply, uint8_t type, size_t 
 
 /* ------------------------------------------------------------------------------------ frequency */
 
-/* The frequency that a command was answered with; 0: none. */
+/* Sends a command; returns the frequency in its reply; 0: none. */
 static uint32_t step(survey_t *survey, tmini_command_code_t code)
 {
     const survey_reply_t reply = ask(survey, code, REPLY_US);
@@ -109,7 +109,7 @@ static uint32_t step(survey_t *survey, tmini_command_code_t code)
     return content != NULL ? tmini_reply_frequency_chz(content) : 0;
 }
 
-/* Changes the frequency as far as possible by one step, then by the other. */
+/* Changes the frequency as far as possible by coarse steps, then by fine ones. */
 static uint32_t push(survey_t *survey, tmini_command_code_t coarse, tmini_command_code_t fine)
 {
     const tmini_command_code_t codes[2] = {coarse, fine};
@@ -158,12 +158,13 @@ static void try_steps(survey_t *survey)
 
 /* --------------------------------------------------------------------------------------- reboot */
 
-/* Asks again and again until it answers. */
+/* Reboots the unit, then repeats a query until it is answered. */
 static void reboot(survey_t *survey)
 {
     const uint64_t begun_us = now_us(survey);
     const uint32_t usual_ms = (uint32_t)(survey->info.after_us / MS);
-    const uint32_t late_ms = usual_ms - usual_ms % BOOT_STEP_MS; /* It answers an earlier one. */
+    const uint32_t late_ms = usual_ms - usual_ms % BOOT_STEP_MS; /* The answer is to an earlier
+                                                                  * query. */
     send(survey, TMINI_COMMAND_REBOOT);
     for (uint32_t ms = BOOT_FIRST_MS; ms < BOOT_MS && survey->boot_ms == 0; ms += BOOT_STEP_MS) {
         uint8_t bytes[256];
@@ -199,7 +200,7 @@ static void try_reboot(survey_t *survey)
 
 /* ------------------------------------------------------------------------------------- scanning */
 
-/* Receives until that time, or until the line has been quiet for a while. */
+/* Receives until `end_us`, or until the line has been quiet for `quiet_us`. */
 static void listen(survey_t *survey, survey_scan_t *scan, uint64_t end_us, uint64_t quiet_us)
 {
     uint8_t bytes[256];

@@ -8,7 +8,7 @@
 #define BYTES_US(n) ((n)*434u / 10u)
 #define HZ_OF_SAMPLES 40000u /* Samples per second, times ten: 0.1 Hz from a turn's samples. */
 
-/* Fewer samples say little about the speed. */
+/* From fewer samples the speed cannot be computed well. */
 #define SPEED_SAMPLES 10u
 
 void survey_scan_begin(survey_scan_t *scan, uint16_t set_chz, uint64_t now_us)
@@ -23,7 +23,7 @@ static uint32_t difference(uint32_t a, uint32_t b)
     return a > b ? a - b : b - a;
 }
 
-/* What the packet's angles say about the rotor's speed. */
+/* Notes the rotor's speed, computed from the packet's angles. */
 static void note_speed(survey_scan_t *scan, const tmini_packet_t *packet, uint64_t now_us)
 {
     const uint32_t swept_q6 = tmini_clockwise(packet->first_angle_q6, packet->last_angle_q6);
@@ -37,7 +37,7 @@ static void note_speed(survey_scan_t *scan, const tmini_packet_t *packet, uint64
     scan->early_count++;
 }
 
-/* The frequency in a start packet: is it of the turn before or after it? (Section 9.8.) */
+/* Is the frequency in a start packet that of the turn before it or after it? (Section 9.8.) */
 static void compare_reported(survey_scan_t *scan)
 {
     if (scan->before_samples > 0 && scan->now_samples > 0) {
@@ -114,8 +114,8 @@ static void note_first(survey_scan_t *scan, const tmini_packet_t *packet, uint64
     scan->begins_with_start = tmini_packet_is_start(packet);
 }
 
-/* How far it turns before the first start packet: more than a turn means that it has passed the
- * place without one (section 9.8). */
+/* Adds up the angle turned before the first start packet. More than a turn means that the rotor has
+ * passed the start angle without sending one (section 9.8). */
 static void note_way(survey_scan_t *scan, const tmini_packet_t *packet)
 {
     static const uint32_t full_q6 = TMINI_FULL_CIRCLE_Q6;
@@ -127,8 +127,8 @@ static void note_way(survey_scan_t *scan, const tmini_packet_t *packet)
     scan->until_start_q6 = scan->until_start_q6 - at_q6 + to_q6;
 }
 
-/* The samples of a turn with a gap say nothing about the frequency. In a steady turn the samples
- * that are missing in the gap are counted, too. */
+/* The frequency cannot be computed from a turn with a gap. At full speed the samples that are
+ * missing in the gap are counted, too. */
 static void note_gap(survey_scan_t *scan, const tmini_packet_t *packet)
 {
     const bool is_guard = tmini_packet_is_start(packet) && packet->gap == 1;

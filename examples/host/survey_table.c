@@ -13,7 +13,7 @@
 typedef struct {
     const char *key;
     const char *section;   /* Of docs/protocol.md. */
-    const char *statement; /* What the answer is to. */
+    const char *statement; /* What is tested. */
     const char *expected;  /* Words and ranges LOW..HIGH, with | between them; NULL: anything. */
     /* False: unknown. */
     bool (*read)(const survey_t *survey, char text[TEXT_SIZE]);
@@ -36,7 +36,7 @@ static bool put_word(char text[TEXT_SIZE], const char *known)
     return known != NULL;
 }
 
-/* In steps, so that two surveys of one unit agree. */
+/* Rounds to steps, so that two surveys of the same unit agree. */
 static double rounded(double value, double step)
 {
     return (double)(long)(value / step + 0.5) * step;
@@ -55,7 +55,8 @@ static bool read_model(const survey_t *survey, char text[TEXT_SIZE])
     return put(text, info != NULL, info != NULL ? info[0] : 0, 0);
 }
 
-/* Which of the two numbers comes first shows only if they differ, by the CT information. */
+/* Compares with the CT information which of the two numbers is sent first; known only if they
+ * differ. */
 static bool is_major_first(const survey_t *survey)
 {
     const tmini_ct_info_t *const ct = &slow(survey)->ct;
@@ -193,7 +194,7 @@ static bool read_beginning(const survey_t *survey, char text[TEXT_SIZE])
                                                                         : "anywhere");
 }
 
-/* Known only if the rotor does not stand there by chance. */
+/* Unknown if the rotor may have stood there by chance. */
 static bool read_first_angle(const survey_t *survey, char text[TEXT_SIZE])
 {
     const survey_scan_t *const scan = slow(survey);
@@ -217,7 +218,7 @@ static bool read_spin_up_percent(const survey_t *survey, char text[TEXT_SIZE])
     return put(text, is_known, percent < 100 ? percent : 100, 0);
 }
 
-/* From standstill, as if the speed rose evenly. */
+/* The time from standstill to full speed, as if the speed rose evenly. */
 static bool read_spin_up(const survey_t *survey, char text[TEXT_SIZE])
 {
     const survey_scan_t *const scan = slow(survey);
@@ -335,7 +336,7 @@ static bool read_last_crc(const survey_t *survey, char text[TEXT_SIZE])
                                                                  : "wrong");
 }
 
-/* In some hundred turns it may not occur. */
+/* Unknown if no LastCRC of AA occurred: a few hundred turns may have none. */
 static bool read_aa(const survey_t *survey, char text[TEXT_SIZE])
 {
     uint32_t seen = 0;
@@ -352,7 +353,8 @@ static bool read_user_version(const survey_t *survey, char text[TEXT_SIZE])
     return (ct->known & TMINI_KNOWN_USER_VERSION) != 0;
 }
 
-/* Only what is tested once at power-up (section 7): other faults may have come since. */
+/* Compares only faults that are tested once, at power-up (section 7): others may have come
+ * since. */
 static bool read_health_index(const survey_t *survey, char text[TEXT_SIZE])
 {
     const tmini_ct_info_t *const ct = &slow(survey)->ct;
@@ -439,7 +441,7 @@ static const question_t questions[] = {
 
 #define QUESTIONS (sizeof questions / sizeof questions[0])
 
-/* One of the words or ranges before the end. */
+/* Whether `seen` matches the word or range `expected`, of that length. */
 static bool is_one(const char *seen, const char *expected, size_t length)
 {
     const char *const range = strstr(expected, "..");
@@ -490,7 +492,7 @@ void survey_print_table(const survey_t *survey, FILE *file, const char *before)
     }
 }
 
-/* Bytes from `hidden` on are the serial number. */
+/* Bytes from `hidden` on are the serial number, and not printed. */
 static void print_reply(const survey_reply_t *reply, const char *key, size_t hidden, FILE *file)
 {
     const size_t count = reply->count < sizeof reply->bytes ? reply->count : sizeof reply->bytes;

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* With the largest packet waiting for its last byte (775), this much still fits in the ring. */
+/* This much fits in the ring even when the largest packet (775) waits for its last byte. */
 #define BLOCK_SIZE 2048u
 
 #define US_A_SAMPLE 250u /* Section 1. */
@@ -42,7 +42,7 @@ size_t tape_feed(tape_t *tape, const uint8_t *bytes, size_t count)
     return taken;
 }
 
-/* Bytes of a chunk are next; false if there are not enough to tell. */
+/* Goes on to the bytes of the next chunk; false if more bytes are needed. */
 static bool find_chunk(tape_t *tape)
 {
     size_t head = 0;
@@ -57,13 +57,13 @@ static bool find_chunk(tape_t *tape)
     return true;
 }
 
-/* A chunk is next whose time has not come yet. */
+/* The next chunk is later than `until_us`. */
 static bool is_early(const tape_t *tape)
 {
     return tape->chunks.left > 0 && tape->chunks.time_us > tape->until_us;
 }
 
-/* More bytes of the lidar's into the ring; false if there are none. */
+/* Moves more of the lidar's bytes into the ring; false if there are none. */
 static bool refill(tape_t *tape)
 {
     const bool is_timed = tape->chunks.version > 0;

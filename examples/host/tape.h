@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A recording played: its bytes, as they are in the file, to packets and scans, by the library's
- * decoder, in constant memory, however long. Everything that reads recordings does so by this: the
- * tool, the viewer, the Python package. No reply is awaited, so replies count as skipped bytes. */
+/* Plays a recording: decodes the bytes of a file of any length to packets and scans, in constant
+ * memory. The tool, the viewer and the Python package all read recordings by this. No reply is
+ * awaited, so replies count as skipped bytes. */
 
 #ifndef TAPE_H
 #define TAPE_H
@@ -13,19 +13,20 @@
 
 typedef enum {
     TAPE_NEEDS_BYTES,
-    TAPE_LATER,  /* What comes next came after `until_us`. */
+    TAPE_LATER,  /* The next bytes came after `until_us`. */
     TAPE_PACKET, /* stream.decoder.packet */
     TAPE_SCAN,   /* The same, and it ends a scan: stream.scan. */
-    TAPE_END,    /* stream_end() gives what it cuts off of a scan. */
+    TAPE_END,    /* stream_end() delivers the unfinished scan. */
 } tape_next_t;
 
 /* Members down to `stream` may be read. */
 typedef struct {
-    uint64_t time_us;  /* When the latest packet came; untimed: by 4000 samples per second. */
+    uint64_t time_us;  /* When the latest packet came; without time stamps, computed from 4000
+                        * samples per second. */
     uint64_t until_us; /* May be set: in a timed recording, bytes after this time are not read
                         * yet. */
-    count_t bytes;     /* Of the lidar's. */
-    bool is_begun;     /* It is known whether there are chunks: chunks.version. */
+    count_t bytes;     /* The lidar's bytes so far. */
+    bool is_begun;     /* It is known whether the file has chunks: chunks.version. */
     chunks_t chunks;
     stream_t stream;
 
@@ -36,14 +37,15 @@ typedef struct {
     uint8_t buffer[32768];
 } tape_t;
 
-/* From the beginning. `mount` as in stream_init(); packets of more than `max_samples` samples are
- * not valid, 0: as the library has it. */
+/* Begins a recording. `mount` as in stream_init(); packets of more than `max_samples` samples are
+ * not valid, 0: the library's default. */
 void tape_begin(tape_t *tape, const tmini_mount_t *mount, uint8_t max_samples);
 
-/* The file's next bytes, when they are needed; 0: there are no more. Returns how many it took. */
+/* Takes the file's next bytes, when they are needed; a `count` of 0: there are no more. Returns how
+ * many it took. */
 size_t tape_feed(tape_t *tape, const uint8_t *bytes, size_t count);
 
-/* At the end, what waits for more bytes is re-examined byte by byte. */
+/* Returns what comes next. At the end, an incomplete candidate is re-examined byte by byte. */
 tape_next_t tape_next(tape_t *tape);
 
 /* Bytes that belonged to no packet, of those decoded so far; and wrong checksums. */

@@ -25,12 +25,11 @@
 
 #define BRAILLE 0x2800u
 
-/* A cell takes a change of colour and a character of three bytes at most; a row's end a little
- * more. */
+/* The most bytes that a cell takes (a change of colour and a character), and the end of a row. */
 #define CELL_SIZE 16u
 #define ROW_SIZE 32u
 
-/* How long the rest of an arrow's sequence may take. */
+/* How long the rest of an arrow key's sequence may take. */
 #define SEQUENCE_MS 50
 
 static volatile sig_atomic_t is_taken;
@@ -50,7 +49,8 @@ static bool has_cursor(void)
     return variable("TERM")[0] != '\0' && strcmp(variable("TERM"), "dumb") != 0;
 }
 
-/* By the variables, not by setlocale(): over ssh they name locales that are not installed here. */
+/* Reads the variables instead of calling setlocale(): over ssh they may name locales that are not
+ * installed here. */
 static bool has_unicode(void)
 {
     static const char *const names[] = {"LC_ALL", "LC_CTYPE", "LANG"};
@@ -62,8 +62,8 @@ static bool has_unicode(void)
     return strstr(locale, "UTF") != NULL || strstr(locale, "utf") != NULL;
 }
 
-/* Keys at once and unseen. Ctrl-C remains a signal; Ctrl-Z becomes a key, because the terminal has
- * to be given back first. */
+/* Keys come at once and are not echoed. Ctrl-C remains a signal. Ctrl-Z becomes a key, because the
+ * terminal has to be restored first. */
 static void take_keys(void)
 {
     if (keyboard < 0) {
@@ -87,8 +87,8 @@ static bool write_own_screen(void)
     return write(STDOUT_FILENO, OWN_SCREEN, size) == (ssize_t)size;
 }
 
-/* Gives the terminal back without waiting for it: output may have been stopped (Ctrl-S), or
- * nothing may read it any more. May be called from a signal's handler. */
+/* Restores the terminal without waiting for it: output may have been stopped (Ctrl-S), or its
+ * reader may have gone. May be called from a signal's handler. */
 static void restore_at_once(void)
 {
     if (is_taken == 0) {
@@ -96,7 +96,7 @@ static void restore_at_once(void)
     }
     is_taken = 0;
     struct termios unstopped = before;
-    unstopped.c_iflag &= ~(tcflag_t)IXON; /* Lets stopped output go on. */
+    unstopped.c_iflag &= ~(tcflag_t)IXON; /* Lets stopped output continue. */
     if (keyboard >= 0) {
         (void)tcsetattr(keyboard, TCSANOW, &unstopped);
     }
@@ -106,7 +106,7 @@ static void restore_at_once(void)
         (void)tcflush(STDOUT_FILENO, TCOFLUSH);
         (void)write_own_screen();
     }
-    (void)fcntl(STDOUT_FILENO, F_SETFL, flags); /* Others write to it too. */
+    (void)fcntl(STDOUT_FILENO, F_SETFL, flags); /* Other programs write to it, too. */
     if (keyboard >= 0) {
         (void)tcsetattr(keyboard, TCSANOW, &before);
     }
@@ -117,7 +117,7 @@ static void write_all(const char *text, size_t size)
     while (size > 0) {
         const ssize_t written = write(STDOUT_FILENO, text, size);
         if (written < 0 && errno != EINTR && errno != EAGAIN) {
-            return; /* The terminal has gone; a signal says so too. */
+            return; /* The terminal has gone; a signal comes as well. */
         }
         if (written < 0 && interrupt_has_come()) {
             return; /* A terminal that accepts no output must not block the program. */
@@ -187,7 +187,7 @@ int terminal_key(void)
 
 void terminal_suspend(void)
 {
-    terminal_restore(); /* SIGTSTP does again what it does by itself. */
+    terminal_restore(); /* SIGTSTP has its default effect again. */
     (void)kill(0, SIGTSTP);
     (void)terminal_take();
 }
@@ -220,7 +220,7 @@ void screen_clear(screen_t *screen)
 bool screen_fit(screen_t *screen)
 {
     struct winsize size;
-    const unsigned spare = screen->has_cursor ? 0 : 1; /* It would go to the row below the last. */
+    const unsigned spare = screen->has_cursor ? 0 : 1; /* The cursor would be below the last row. */
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row <= spare) {
         size = (struct winsize){.ws_col = 80, .ws_row = 24};
     }
@@ -268,7 +268,7 @@ void screen_text(screen_t *screen, int column, int row, const char *text, uint8_
     }
 }
 
-/* Which bit of a braille character is which dot (the lowest row of dots came later). */
+/* The bit of each dot in a braille character. The lowest row has the highest bits. */
 static uint16_t braille_bit(int x, int y)
 {
     static const uint8_t bits[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The terminal, filled with characters: taken over, drawn on, asked for keys, given back. Each
- * character has a colour, and some are made of dots: Unicode's braille characters have two columns
- * and four rows of them, which makes a terminal of 80 x 24 a picture of 160 x 96. */
+/* Takes over the terminal, draws on it, reads keys, and restores it. Each character has a colour.
+ * Some are made of dots: Unicode's braille characters have two columns and four rows of them, so a
+ * terminal of 80 x 24 can show a picture of 160 x 96 dots. */
 
 #ifndef TERMINAL_H
 #define TERMINAL_H
@@ -12,7 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Colours of the 256 that terminals have. */
+/* Colours from the terminal's palette of 256. */
 enum {
     COLOUR_PLAIN = 252,
     COLOUR_DIM = 242,
@@ -34,9 +34,9 @@ typedef struct {
 typedef struct {
     unsigned columns;
     unsigned rows;
-    bool has_cursor;  /* By TERM; otherwise the rows are printed one below the other. */
-    bool has_colours; /* By NO_COLOR. */
-    bool has_unicode; /* By the locale; otherwise a cell of dots is one character of ASCII. */
+    bool has_cursor;  /* According to TERM; otherwise the rows are printed one below the other. */
+    bool has_colours; /* According to NO_COLOR. */
+    bool has_unicode; /* According to the locale; otherwise a cell of dots is an ASCII character. */
     cell_t *cells;
     char *output;
 } screen_t;
@@ -63,17 +63,17 @@ void terminal_suspend(void);
 /* The key that was pressed, or KEY_NONE. It waits only to distinguish Esc from the arrow keys. */
 int terminal_key(void);
 
-/* A screen with what the terminal can do; no size yet. */
+/* A screen without a size yet; finds out what the terminal can do. */
 screen_t screen_begin(void);
 
-/* Follows the terminal's size: true if it has changed, and the screen is empty. Without memory it
- * becomes one without rows. */
+/* Adapts to the terminal's size: true if it has changed; then the screen is empty. If there is no
+ * memory, the screen has no rows. */
 bool screen_fit(screen_t *screen);
 void screen_free(screen_t *screen);
 void screen_clear(screen_t *screen);
 
 /* Puts a character, or ASCII text; `plain` takes the character's place where there is no Unicode.
- * What is outside of the screen is left out. */
+ * Characters outside the screen are left out. */
 void screen_put(screen_t *screen, int column, int row, uint16_t character, char plain,
                 uint8_t colour);
 void screen_text(screen_t *screen, int column, int row, const char *text, uint8_t colour);
@@ -81,7 +81,7 @@ void screen_text(screen_t *screen, int column, int row, const char *text, uint8_
 /* Puts a dot; (0, 0) is the upper left one. */
 void screen_dot(screen_t *screen, int x, int y, layer_t layer, uint8_t colour);
 
-/* Shows it on the terminal. */
+/* Shows the screen on the terminal. */
 void screen_show(screen_t *screen);
 
 #endif

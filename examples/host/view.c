@@ -13,7 +13,7 @@
 
 #define PANEL_COLUMNS 27
 #define PICTURE_COLUMNS_MIN 24
-#define PANEL_ROWS 20             /* Otherwise only what is more important is said. */
+#define PANEL_ROWS 20             /* With fewer rows, only the more important values are shown. */
 #define LIDAR_CHARACTER 0x25B2u   /* a triangle that points up */
 #define NEAREST_CHARACTER 0x25C6u /* a diamond */
 #define DEGREE_SIGN 0xB0u
@@ -26,10 +26,10 @@ static const struct {
     {500, 250},   {1000, 500},  {2000, 500},   {3000, 1000},  {4000, 1000},
     {6000, 2000}, {8000, 2000}, {12000, 4000}, {17000, 5000},
 };
-#define EMPTY_MM 3000u /* Of a picture in which there is nothing yet. */
+#define EMPTY_MM 3000u /* The range of a picture without points. */
 #define ZOOMS (sizeof zooms / sizeof zooms[0])
 
-/* Where the picture is: in dots, which are as far apart across as down. */
+/* Where the picture is, in dots, which have the same distance in both directions. */
 typedef struct {
     double x; /* The lidar. */
     double y;
@@ -114,7 +114,7 @@ static void grid_dot(screen_t *screen, const frame_t *frame, double degrees, dou
     screen_dot(screen, (int)lround(spot.x), (int)lround(spot.y), LAYER_GRID, COLOUR_GRID);
 }
 
-/* Rings with a dot at every third place, and the axes to the four sides. */
+/* Draws the rings, with a dot at every third place, and the axes to the four sides. */
 static void draw_grid(screen_t *screen, const frame_t *frame)
 {
     const unsigned step_mm = zooms[zoom_of(frame->range_mm)].step_mm;
@@ -132,7 +132,7 @@ static void draw_grid(screen_t *screen, const frame_t *frame)
     }
 }
 
-/* Metres, beside the axis to the back, where each ring crosses it. */
+/* Writes the distance in metres where each ring crosses the axis to the back. */
 static void label_rings(screen_t *screen, const frame_t *frame)
 {
     const unsigned step_mm = zooms[zoom_of(frame->range_mm)].step_mm;
@@ -144,7 +144,7 @@ static void label_rings(screen_t *screen, const frame_t *frame)
     }
 }
 
-/* The colour of the terminal's 6 x 6 x 6 cube that is nearest to an intensity's. */
+/* The nearest colour in the terminal's 6 x 6 x 6 cube of colours. */
 static uint8_t terminal_colour(colour_t colour)
 {
     return (uint8_t)(16 + 36 * lround(colour.red * 5) + 6 * lround(colour.green * 5) +
@@ -183,7 +183,7 @@ static void draw_picture(screen_t *screen, const view_t *view)
     screen_put(screen, (int)(frame.x / 2), (int)(frame.y / 4), LIDAR_CHARACTER, 'A', COLOUR_PLAIN);
 }
 
-/* The last row is for keys, the one above for faults. */
+/* Leaves out rows that do not fit: the last row is for keys, the one above for faults. */
 static void say(screen_t *screen, int *row, const char *name, uint8_t colour, const char *format,
                 ...)
 {
@@ -220,7 +220,7 @@ static void say_nearest(screen_t *screen, int *row, const tmini_point_t *nearest
               direction_name(nearest->angle_q6), COLOUR_AMBER);
 }
 
-/* The nearest obstacle of each of eight sectors, where the sector is. */
+/* Shows the nearest obstacle of each of eight sectors, at the sector's place around the lidar. */
 static void say_sectors(screen_t *screen, int *row, const tmini_scan_t *scan)
 {
     static const struct {
@@ -250,7 +250,7 @@ static bool is_faulty(const view_t *view)
 static const char *health_name(const view_t *view)
 {
     if (view->faults == TMINI_FAULTS_UNKNOWN) {
-        return stream_tells_nothing(view->stream) ? "not reported" : "unknown";
+        return stream_reports_nothing(view->stream) ? "not reported" : "unknown";
     }
     return view->faults == 0 ? "healthy" : "FAULTY";
 }

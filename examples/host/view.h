@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What `tmini view` shows: the scan as a picture, and beside it what a person wants to know. */
+/* What `tmini view` shows: the scan as a picture, and values beside it. */
 
 #ifndef VIEW_H
 #define VIEW_H
@@ -14,19 +14,19 @@
 typedef struct {
     const char *source; /* The port's or the file's name. */
     const char *state;  /* "scanning", "end of the recording", … */
-    const char *keys;   /* What they do. */
+    const char *keys;   /* What the keys do. */
     const stream_t *stream;
     unsigned faults;   /* A combination of tmini_fault_t, or TMINI_FAULTS_UNKNOWN. */
-    unsigned zoom_mm;  /* The range chosen by hand; 0: as far as there is something. */
-    unsigned range_mm; /* The range shown; 0: to be chosen anew. The rest is view_draw()'s own: */
+    unsigned zoom_mm;  /* The range chosen by the user; 0: as far as the points. */
+    unsigned range_mm; /* The range shown; 0: to be chosen. The rest is private to view_draw(): */
     survey_t survey;   /* of the scan, and */
-    survey_t colours;  /* what its colours are fitted to, so that an intensity keeps its colour. */
+    survey_t colours;  /* the range of its colours, so that an intensity keeps its colour. */
 } view_t;
 
 /* Draws the view on the screen, whatever its size. */
 void view_draw(view_t *view, screen_t *screen);
 
-/* The next smaller or larger range than the one shown. */
+/* Selects the next smaller or larger range. */
 void view_zoom(view_t *view, bool in);
 
 #endif

@@ -20,8 +20,8 @@ static char letter(const char *word, size_t i)
     return (char)tolower((unsigned char)word[i]);
 }
 
-/* How many letters must be changed (optimal string alignment). `cost[i][j]` is that of the first i
- * letters of the one and the first j of the other. */
+/* How many letters must be changed (optimal string alignment). `cost[i][j]` is the number for the
+ * first i letters of `a` and the first j of `b`. */
 static unsigned difference(const char *a, const char *b)
 {
     const size_t a_length = strlen(a);
@@ -51,7 +51,7 @@ const char *words_nearest(const char *typed, const char *const *words, size_t co
 {
     const size_t length = strlen(typed);
     const char *nearest = NULL;
-    size_t fewest = length / 3 + 1; /* Fewer than that. */
+    size_t fewest = length / 3 + 1; /* Only fewer are accepted. */
     for (size_t i = 0; i < count; i++) {
         const bool begins = length > 0 && strncmp(words[i], typed, length) == 0;
         const size_t letters = begins ? 0 : difference(typed, words[i]);

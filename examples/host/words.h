@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The word that a user meant who mistyped it. */
+/* Finds the word that a user meant when it was mistyped. */
 
 #ifndef WORDS_H
 #define WORDS_H

@@ -249,7 +249,7 @@ void test_a_wrong_baud_rate_for_a_while_is_a_fault_of_the_line(void)
 {
     /* Perhaps no revolution arrives complete. */
     end_case("garble", 1, "\nverdict: not good: line");
-    expect_said("bytes came that are no lidar's: a wrong baud rate for a while");
+    expect_said("bytes came that no lidar sends: a wrong baud rate for a while");
     expect_unsaid("pace"); /* Neither the computer nor the motor is called slow. */
     expect_unsaid("the motor took");
 }

@@ -479,13 +479,13 @@ void test_a_unit_may_report_nothing_in_the_stream(void)
     put_packet(0);
     feed(file, size - 13);
     TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
-    TEST_ASSERT_FALSE(stream_tells_nothing(&tape.stream));
+    TEST_ASSERT_FALSE(stream_reports_nothing(&tape.stream));
     feed(file + size - 13, 13);
     TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
-    TEST_ASSERT_TRUE(stream_tells_nothing(&tape.stream));
+    TEST_ASSERT_TRUE(stream_reports_nothing(&tape.stream));
     TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, stream_faults(&tape.stream));
     tape.stream.guard_bytes = 1; /* LastCRC has come, so a report may follow. */
-    TEST_ASSERT_FALSE(stream_tells_nothing(&tape.stream));
+    TEST_ASSERT_FALSE(stream_reports_nothing(&tape.stream));
 }
 
 /* The simulated lidar sends LastCRC, and is healthy. */
@@ -494,7 +494,7 @@ void test_a_unit_may_report_its_health_in_the_stream(void)
     write_whole(2);
     play_whole();
     TEST_ASSERT_EQUAL_UINT(0, stream_faults(&tape.stream));
-    TEST_ASSERT_FALSE(stream_tells_nothing(&tape.stream));
+    TEST_ASSERT_FALSE(stream_reports_nothing(&tape.stream));
     TEST_ASSERT_EQUAL_UINT64(tape.stream.start_packets - 1, tape.stream.guard_bytes);
     TEST_ASSERT_EQUAL_UINT64(tape.stream.guard_bytes, tape.stream.confirmed);
 }
