@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Shows the library at work, on any computer and without a lidar: builds the host tool and a
-# simulated lidar, connects them through a pseudo-terminal as if it were a serial
-# port, and draws what was seen. Needs a C compiler, CMake and cairo, and installs them where they
-# are missing.
+# Shows the library at work on any computer, without a lidar: builds the host tool and a simulated
+# lidar, connects them by a pseudo-terminal as by a serial port, and draws the room. Needs a C
+# compiler, CMake and cairo, and installs them if they are missing.
 
 set -eu
 
@@ -25,7 +24,7 @@ if [ -t 1 ] && [ -z "${NO_COLOR:-}" ]; then
     bold=$(printf '\033[1m') dim=$(printf '\033[2m') plain=$(printf '\033[0m')
 fi
 
-# say TEXT: what comes next.
+# say TEXT: prints what comes next.
 say() {
     printf '\n%s\n' "$bold$*$plain"
 }
@@ -50,7 +49,7 @@ start_lidar() {
     return 1
 }
 
-# What a lidar on a port shows.
+# Runs the commands that need a lidar on a port.
 show_live() {
     echo "A simulated T-mini Plus in a simulated room is on $port."
 

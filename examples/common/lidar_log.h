@@ -14,18 +14,18 @@
 
 typedef struct {
     const tmini_t *lidar;
-    void (*print)(const char *text); /* Pieces of lines, "\n" among them. */
+    void (*print)(const char *text); /* Prints a piece of a line; "\n" ends the line. */
     uint32_t gaps;                   /* The sum over all scans. */
-    uint32_t reported_ms;            /* When the last second's line was due. */
+    uint32_t reported_ms;            /* When the last line was due. */
 } lidar_log_t;
 
 /* For each event of tmini_poll(). */
 void lidar_log_event(lidar_log_t *log, tmini_event_t event);
 
-/* True once per second: write the line then. */
+/* True once per second: then call lidar_log_status(). */
 bool lidar_log_is_due(lidar_log_t *log, uint32_t now_ms);
 
-/* `bytes` and `lost`: what the port has received, and what did not reach the library. */
+/* Prints the line. `bytes`: received by the port; `lost`: bytes that did not reach the library. */
 void lidar_log_status(const lidar_log_t *log, uint16_t ahead_mm, bool stop, uint32_t bytes,
                       uint32_t lost);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The kernel's settings for this demo: everything static, no heap, no timers. */
+/* The kernel's settings for this demo: static allocation only, no heap, no timers. */
 
 #ifndef FREERTOS_CONFIG_H
 #define FREERTOS_CONFIG_H
@@ -43,7 +43,7 @@ void board_assert(const char *file, int line);
         }                                     \
     } while (0)
 
-/* The kernel's handlers, by the names that the vector table has. */
+/* The kernel's handlers get the names in the vector table. */
 #define vPortSVCHandler SVC_Handler
 #define xPortPendSVHandler PendSV_Handler
 #define xPortSysTickHandler SysTick_Handler

@@ -44,7 +44,7 @@
 #define UART_IFLS(uart) REGISTER((uart) + 0x34u)
 #define UART_IFLS_HALF 0x12u
 #define UART_IM(uart) REGISTER((uart) + 0x38u)
-#define UART_IM_RECEIVE ((1u << 4) | (1u << 6)) /* At half a FIFO, and after a pause. */
+#define UART_IM_RECEIVE ((1u << 4) | (1u << 6)) /* When the FIFO is half full, and after a pause. */
 
 #define UART1_IRQ 6u
 #define NVIC_ENABLE REGISTER(0xE000E100u)
@@ -65,7 +65,7 @@ static void start_clock(void)
 static void start_pins(uint32_t port, uint32_t pins)
 {
     GPIO_AFSEL(port) |= pins;
-    GPIO_PUR(port) |= pins; /* The line is idle while no lidar is plugged in. */
+    GPIO_PUR(port) |= pins; /* Without a lidar the line is idle. */
     GPIO_DEN(port) |= pins;
 }
 
@@ -85,7 +85,7 @@ void board_start(void)
     start_clock();
     RCGC1 |= 3u;                    /* UART0, UART1. */
     RCGC2 |= (1u << 0) | (1u << 3); /* GPIO A, D. */
-    (void)RCGC2;                    /* They need some cycles. */
+    (void)RCGC2;                    /* The units need some cycles to start. */
     start_pins(GPIOA, 3u);          /* A0, A1: UART0. */
     start_pins(GPIOD, 3u << 2);     /* D2, D3: UART1. */
     start_uart(UART0, 115200);

@@ -2,7 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Obstacle stop under FreeRTOS: one task polls the lidar, asks for its information, scans, and
- * writes a line per second to the console: may a robot move? Everything is allocated statically. */
+ * writes a line per second to the console: whether a robot may move. Everything is allocated
+ * statically. */
 
 #include "FreeRTOS.h"
 #include "task.h"
@@ -97,7 +98,7 @@ static bool start_lidar(void)
     }
     board_enable_lidar_interrupt();
     (void)tmini_request_info(&lidar);
-    return tmini_start(&lidar) == TMINI_OK; /* After the answer. The wish holds until
+    return tmini_start(&lidar) == TMINI_OK; /* Begins after the answer, and holds until
                                              * tmini_stop(). */
 }
 

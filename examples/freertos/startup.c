@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* From reset to main(): vector table, initialised and zeroed data. */
+/* The vector table, and the start-up code: initialises data and calls main(). */
 
 #include <stdint.h>
 
 #include "board.h"
 
-/* Of the linker script. */
+/* Defined by the linker script. */
 extern uint32_t stack_top[];
 extern uint32_t data_load[];
 extern uint32_t data_start[];
@@ -18,7 +18,7 @@ extern uint32_t bss_end[];
 int main(void);
 void reset_handler(void);
 
-/* The kernel's; FreeRTOSConfig.h gives them these names. */
+/* The kernel's handlers; FreeRTOSConfig.h gives them these names. */
 void SVC_Handler(void);
 void PendSV_Handler(void);
 void SysTick_Handler(void);
@@ -43,7 +43,7 @@ static void stop_handler(void)
 
 typedef void (*handler_t)(void);
 
-/* Places after the initial stack pointer. */
+/* Indices in the vector table, after the initial stack pointer. */
 enum { RESET, NMI, HARD_FAULT, SVC = 10, PENDSV = 13, SYSTICK = 14, EXCEPTIONS };
 enum { UART1_IRQ = 6, IRQS = 44 };
 

@@ -18,12 +18,12 @@ static void set_stamp(builtin_interfaces__msg__Time *stamp, int64_t ns)
 
 static void set_times(sensor_msgs__msg__LaserScan *message, uint16_t frequency_chz)
 {
-    /* The lidar has not reported its frequency yet; in ROS 0 means unknown. */
+    /* If the lidar has not reported its frequency yet: 0, which means unknown in ROS. */
     message->scan_time = frequency_chz != 0 ? 1.0f / tmini_hertz(frequency_chz) : 0.0f;
     message->time_increment = -message->scan_time / (float)LASER_SCAN_RAYS;
 }
 
-/* The library's bin 0 is at the back, the message's ray 0 ahead. */
+/* The library's bin 0 is at the back, but the message's ray 0 is ahead. */
 static void set_rays(laser_scan_memory_t *memory)
 {
     for (size_t ray = 0; ray < LASER_SCAN_RAYS; ray++) {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A scan as ROS's LaserScan message, in the caller's own memory: nothing is allocated.
+/* Converts a scan to ROS's LaserScan message, in the caller's memory: nothing is allocated.
  *
  * Ray 0 points ahead, the next one to its left, counter-clockwise and in equal steps, as ROS
- * counts. The lidar turns the other way, so the message's first ray is the one measured last: its
- * time is the header's, and time_increment is negative. That is exact for a lidar whose revolution
- * begins ahead, as the T-mini Plus's does. */
+ * counts. The lidar turns the other way, so the message's first ray is measured last: the header
+ * has its time, and time_increment is negative. This is exact if the revolution begins ahead, as
+ * with the T-mini Plus. */
 
 #ifndef LASER_SCAN_H
 #define LASER_SCAN_H
@@ -17,12 +17,12 @@
 
 #include "tmini/tmini_ranges.h"
 
-/* Rays in a message, an even number: 360 hardly leave one empty at 6 Hz, see tmini_ranges.h. */
+/* Rays in a message, an even number: with 360 hardly one is empty at 6 Hz, see tmini_ranges.h. */
 #ifndef LASER_SCAN_RAYS
 #define LASER_SCAN_RAYS 360u
 #endif
 
-/* What a message points to, and what it is made from. */
+/* Memory that a message points to, and memory to compute it. */
 typedef struct {
     float ranges[LASER_SCAN_RAYS];
     float intensities[LASER_SCAN_RAYS];
@@ -30,7 +30,7 @@ typedef struct {
     uint8_t bin_intensities[LASER_SCAN_RAYS];
 } laser_scan_memory_t;
 
-/* Ties `message` to `memory` and fills in what is the same in every scan. All three must outlive
+/* Makes `message` use `memory`, and fills in what is the same in every scan. All three must outlive
  * the message's use; `frame_id` is the name of the lidar's frame, such as "laser". */
 void laser_scan_init(sensor_msgs__msg__LaserScan *message, laser_scan_memory_t *memory,
                      char *frame_id);

@@ -6,10 +6,10 @@
 #include <rmw_microros/rmw_microros.h>
 #include <string.h>
 
-/* How often the node checks for the agent: whether it is there, or has disappeared. */
+/* How often the node checks whether the agent is there. */
 static const uint32_t LOOK_EVERY_MS = 1000;
 
-/* Two clocks drift apart by some 40 us per second. */
+/* Two clocks drift apart by about 40 us per second. */
 static const uint32_t SYNCHRONISE_EVERY_MS = 60000;
 
 static const int64_t NS_PER_MS = 1000000;
@@ -30,7 +30,7 @@ static bool open_support(scan_node_t *node)
     if (rclc_support_init(&node->support, 0, NULL, &node->allocator) != RCL_RET_OK) {
         return false;
     }
-    /* Closed without an agent: do not wait for its answer. */
+    /* If the agent has gone, closing must not wait for its answer. */
     (void)rmw_uros_set_context_entity_destroy_session_timeout(
         rcl_context_get_rmw_context(&node->support.context), 0);
     return true;
@@ -56,7 +56,7 @@ static bool open_publisher(scan_node_t *node)
     return true;
 }
 
-/* What micro-ROS could not close stays in its pools, and those are small. */
+/* Entities that micro-ROS could not close stay in its pools, which are small. */
 static void count_unclosed(scan_node_t *node, rcl_ret_t result)
 {
     if (result != RCL_RET_OK) {
@@ -64,7 +64,7 @@ static void count_unclosed(scan_node_t *node, rcl_ret_t result)
     }
 }
 
-/* All three, or none of them. */
+/* Opens all three entities, or none. */
 static bool open_all(scan_node_t *node)
 {
     if (!open_support(node)) {
@@ -87,7 +87,7 @@ static void close_all(scan_node_t *node)
     count_unclosed(node, rclc_support_fini(&node->support));
 }
 
-/* Before it has succeeded once, the time would be 1970's. */
+/* Until this has succeeded once, the time would be in 1970. */
 static void synchronise_if_due(scan_node_t *node)
 {
     if (node->synchronised && now_ms(node) - node->synchronised_ms < SYNCHRONISE_EVERY_MS) {

@@ -75,13 +75,14 @@ static void drive(void)
             is_news = true;
         }
     }
-    /* In each round, not only when the fault begins: a faulty lidar may keep sending scans. */
+    /* Checked in each round, not only when the fault begins: a faulty lidar may still send
+     * scans. */
     if (tmini_faults(&lidar) != 0 || tmini_state(&lidar) != TMINI_STATE_SCANNING) {
         obstacle_blind(&obstacle);
     }
     const bool may_move = obstacle_may_move(&obstacle, now_ms);
     if (is_news || may_move != could_move) {
-        show(may_move); /* A robot sets its motors here, each time round. */
+        show(may_move); /* A robot sets its motors here, in each round. */
     }
     could_move = may_move;
 }
@@ -89,7 +90,7 @@ static void drive(void)
 static tmini_posix_status_t set_up(const char *path)
 {
     timing = tmini_timing_default;
-    timing.frame_timeout_ms = 250; /* On a computer bytes may come late, */
+    timing.frame_timeout_ms = 250; /* On a computer bytes may come late */
     timing.max_pause_ms = 250;     /* and in bursts. */
     const tmini_config_t config = {
         .port = &tmini_posix_port,
@@ -106,11 +107,11 @@ static tmini_posix_status_t set_up(const char *path)
         return TMINI_POSIX_FAILED;
     }
     const tmini_posix_status_t status = tmini_posix_start(&port, &lidar);
-    tmini_posix_reconnect(&port, true); /* A cable that is pulled later is no end. */
+    tmini_posix_reconnect(&port, true); /* Continue when the cable is pulled and plugged in. */
     return status;
 }
 
-/* Until the user or the port ends it. */
+/* Runs until the user or the port ends it. */
 static tmini_posix_status_t run(void)
 {
     tmini_posix_status_t status = TMINI_POSIX_OK;
@@ -131,7 +132,7 @@ static int usage(FILE *file, int status)
     return status;
 }
 
-/* Returns the port, or NULL and the status to leave with. The same grammar as the host tool's. */
+/* Returns the port, or NULL and the exit status. The syntax is that of the host tool. */
 static const char *read_options(int argc, char **argv, int *status)
 {
     static const struct option options[] = {{"port", required_argument, NULL, 'p'},

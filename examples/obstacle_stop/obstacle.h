@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop: from scans to "may the robot move?". Pure functions with integers only, the same
- * on a PC and in firmware.
+/* Obstacle stop: decides from scans whether the robot may move. Pure functions with integers only,
+ * the same on a PC and in firmware.
  *
  * The robot may move if a recent complete scan has seen something in front and nothing near. A scan
  * with gaps may have missed an obstacle: it can stop the robot, but not release it. A scan without
@@ -19,7 +19,7 @@
 #define OBSTACLE_SECTORS 8u
 
 #define OBSTACLE_STOP_MM 300u
-#define OBSTACLE_GO_MM 350u /* Farther than the stop, so that the robot does not stutter. */
+#define OBSTACLE_GO_MM 350u /* Larger, so that the robot does not stop and go. */
 #define OBSTACLE_BLIND_MS 500u
 
 typedef struct {
@@ -32,7 +32,7 @@ typedef struct {
 /* Takes a scan. */
 void obstacle_see(obstacle_t *obstacle, const tmini_scan_t *scan, uint32_t now_ms);
 
-/* Nothing can be seen for now: a fault, or no lidar. */
+/* The lidar sees nothing for now: it is faulty or lost. */
 void obstacle_blind(obstacle_t *obstacle);
 
 bool obstacle_may_move(const obstacle_t *obstacle, uint32_t now_ms);

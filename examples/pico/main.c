@@ -93,7 +93,7 @@ static tmini_status_t start_lidar(void)
     }
     if (status == TMINI_OK) {
         (void)tmini_request_info(&lidar);
-        (void)tmini_start(&lidar); /* After the answer; holds. */
+        (void)tmini_start(&lidar); /* Begins after the answer, and holds. */
     }
     return status;
 }
@@ -102,7 +102,7 @@ int main(void)
 {
     stdio_init_all();
     gpio_init(STOP_PIN);
-    gpio_put(STOP_PIN, true); /* Before it is an output: low means go. */
+    gpio_put(STOP_PIN, true); /* Set before the pin is an output, because low means go. */
     gpio_set_dir(STOP_PIN, GPIO_OUT);
     const tmini_status_t status = start_lidar();
     for (;;) {

@@ -7,8 +7,8 @@
 #include "tmini/tmini.h"
 #include "tmini_stm32_hal.h"
 
-/* Define it to see something: a line of text per second, by printf(). README.md says where it
- * goes. */
+/* Define LIDAR_PRINTF to print a line of text per second, by printf(). README.md explains where
+ * printf() writes to. */
 #ifdef LIDAR_PRINTF
 #include <stdio.h>
 
@@ -17,7 +17,7 @@
 
 #define REPORT_MS 1000u
 
-/* Aligned for the data cache of a Cortex-M7; elsewhere that does no harm. It must lie in a RAM that
+/* Aligned for the data cache of a Cortex-M7; other chips do not need this. It must be in RAM that
  * the DMA reaches: see README.md for H7, and for F4's CCM. */
 static uint8_t rx[1024] __ALIGNED(32);
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
@@ -34,7 +34,7 @@ void HAL_UARTEx_RxEventCallback(UART_HandleTypeDef *huart, uint16_t Size)
     tmini_stm32_hal_rx_event(&port, huart);
 }
 
-/* An older HAL does not say which event it reports. */
+/* An older HAL does not name the event that it reports. */
 #ifndef HAL_UART_RXEVENT_HT
 void HAL_UART_RxHalfCpltCallback(UART_HandleTypeDef *huart)
 {
@@ -110,12 +110,12 @@ void lidar_start(UART_HandleTypeDef *uart)
     };
     if (tmini_stm32_hal_init(&port, uart) != TMINI_OK || tmini_init(&lidar, &config) != TMINI_OK ||
         tmini_stm32_hal_start(&port, &lidar) == TMINI_ERROR_ARGUMENT) {
-        Error_Handler(); /* Baud rate, or no circular DMA: see README.md. */
+        Error_Handler(); /* Wrong baud rate, or no circular DMA: see README.md. */
     }
-    (void)tmini_start(&lidar); /* Holds: the library tries until the lidar scans. */
+    (void)tmini_start(&lidar); /* The library tries until the lidar scans. */
 }
 
-/* Takes all events now, because bytes left in the buffer might be overwritten before the next
+/* Takes all events now, because bytes left in the buffer could be overwritten before the next
  * call. */
 void lidar_work(void)
 {

@@ -11,10 +11,10 @@
 
 #include "main.h"
 
-/* Once, after all MX_…_Init(). `uart`: the lidar's, &huart1 for example. */
+/* Call it once, after all MX_…_Init(). `uart`: the lidar's UART, for example &huart1. */
 void lidar_start(UART_HandleTypeDef *uart);
 
-/* Again and again in the main loop; returns at once. At the latest every 20 ms. */
+/* Call it in the main loop, at least every 20 ms; it returns at once. */
 void lidar_work(void);
 
 /* The distance of the nearest thing in front, in a sector 45 degrees wide, in the last scan; 0:

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What goes into the user sections of the main.c that CubeMX generates (with a pair of files for
- * each peripheral): three lines. The rest of it stands for the generated code. */
+/* Shows the three lines for the user sections of the main.c that CubeMX generates (with a pair of
+ * files for each peripheral). All other lines are generated code. */
 
 #include "main.h"
 #include "dma.h"

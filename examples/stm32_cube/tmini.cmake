@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# tmini, its port and the obstacle stop for a CMake project made by CubeMX. At the end of the
+# tmini, its port and the obstacle stop for a CMake project made by CubeMX. Add at the end of the
 # project's CMakeLists.txt:
 #
 #   include(/path/to/tmini/examples/stm32_cube/tmini.cmake)

@@ -7,5 +7,5 @@ set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR arm)
 set(CMAKE_C_COMPILER arm-none-eabi-gcc)
 set(CMAKE_C_FLAGS_INIT "-mcpu=cortex-m4 -mthumb -ffunction-sections -fdata-sections")
-# CMake's trial program needs no linking, hence no start-up code.
+# CMake's trial program is not linked, because there is no start-up code.
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)

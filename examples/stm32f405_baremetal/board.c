@@ -9,8 +9,8 @@
 #define CYCLES_PER_MS (BOARD_CLOCK_HZ / 1000u)
 #define INTERNAL_OSCILLATOR_HZ 16000000u
 
-/* Some milliseconds at 16 MHz. A crystal takes two of them to start, the PLL 0.3; no bit comes
- * where the clock control is not there, as in an emulator. */
+/* Some milliseconds at 16 MHz. A crystal takes 2 ms to start, the PLL 0.3 ms. An emulator may have
+ * no clock control: then no bit ever changes. */
 #define PATIENCE 20000u
 
 volatile uint32_t board_time_ms;
@@ -28,7 +28,7 @@ void board_wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t bits)
     }
 }
 
-/* 168 MHz by the PLL: source / M * 336 / 2, with 1 MHz after M. (The bits for 2 are 0.) */
+/* 168 MHz by the PLL: source / M * 336 / 2, where source / M is 1 MHz. (The bits for 2 are 0.) */
 static void start_clock(void)
 {
     const uint32_t source_hz = BOARD_CRYSTAL_HZ != 0 ? BOARD_CRYSTAL_HZ : INTERNAL_OSCILLATOR_HZ;
@@ -105,6 +105,6 @@ uint32_t board_cycle(void)
 
 uint32_t board_cycles_since(uint32_t start)
 {
-    const uint32_t now = SYSTICK_VAL; /* It counts down. */
+    const uint32_t now = SYSTICK_VAL; /* The counter counts down. */
     return start >= now ? start - now : start + CYCLES_PER_MS - now;
 }

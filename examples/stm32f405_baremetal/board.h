@@ -13,8 +13,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* An STM32F405 with its own 16 MHz oscillator needs no crystal, but that oscillator is exact to 1 %
- * only near room temperature. With a crystal: its frequency, a multiple of 1 MHz. */
+/* 0: the internal 16 MHz oscillator, which is exact to 1 % only near room temperature. With a
+ * crystal: its frequency, a multiple of 1 MHz. */
 #ifndef BOARD_CRYSTAL_HZ
 #define BOARD_CRYSTAL_HZ 0u
 #endif
@@ -40,7 +40,7 @@ void board_enable_drive(bool enable);
 /* Sleeps until the next interrupt, at most a millisecond. */
 void board_sleep(void);
 
-/* Processor cycles, modulo those of a millisecond: for measuring what is shorter. */
+/* Processor cycles, modulo one millisecond, to measure shorter times. */
 uint32_t board_cycles_since(uint32_t start);
 uint32_t board_cycle(void);
 

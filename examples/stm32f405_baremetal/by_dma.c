@@ -27,8 +27,8 @@ void DMA2_Stream2_IRQHandler(void)
                                     (flags & DMA_STREAM2_TC) != 0);
 }
 
-/* Circular, byte by byte, the memory's address counting up; the FIFO is off after a reset. A stream
- * that is still on is switched off first, and takes a moment. */
+/* Circular, byte by byte, with a rising memory address; the FIFO is off after a reset. The stream
+ * is switched off first, which takes a moment. */
 static void start_stream(uint8_t *rx, uint16_t rx_size)
 {
     RCC_AHB1ENR |= RCC_AHB1ENR_DMA2;

@@ -27,7 +27,7 @@ void console_text(const char *text)
     }
 }
 
-/* At least `digits` of them. */
+/* Writes at least `digits` digits. */
 static void put_number(uint32_t value, unsigned digits, uint32_t base)
 {
     char text[10];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The console: text out through a buffer that is emptied whenever there is time, keys in. Never
- * waits; text that finds the buffer full is lost. */
+/* The console: writes text through a buffer that is emptied whenever there is time, and reads keys.
+ * Never waits; if the buffer is full, text is lost. */
 
 #ifndef CONSOLE_H
 #define CONSOLE_H

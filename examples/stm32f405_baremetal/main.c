@@ -3,7 +3,7 @@
 
 /* Obstacle stop on an STM32F405, without an operating system and without vendor code: asks for the
  * lidar's information and health, scans at 10 Hz, and lets the robot move while nothing is near in
- * front. Reports each second on the console what it sees. */
+ * front. Each second it reports on the console what it sees. */
 
 #include "board.h"
 #include "console.h"
@@ -48,7 +48,7 @@ static void see(const tmini_scan_t *scan)
     }
 }
 
-/* Whether or not the queries were answered, the wish to scan follows; it holds until a stop. */
+/* After the queries, answered or not, starts scanning; this holds until a stop. */
 static void end_questions(void)
 {
     if (is_asking) {

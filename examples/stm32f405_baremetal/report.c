@@ -63,7 +63,7 @@ void report_word(const char *word)
     console_line_end();
 }
 
-/* CRC-32 as of IEEE 802.3, four bits at a time. */
+/* The CRC-32 of IEEE 802.3, computed four bits at a time. */
 static uint32_t add_byte(uint32_t crc, unsigned byte)
 {
     static const uint32_t table[16] = {
@@ -128,7 +128,7 @@ void report_status(const tmini_counters_t *counters, const obstacle_t *obstacle,
     console_line_end();
 }
 
-/* Bytes go on coming in: takes the library's counters at a moment when none came in between. */
+/* Bytes continue to come in. So this repeats until none has come while the counters were read. */
 static void take_counters(const tmini_t *lidar, const tmini_stm32_usart_t *port,
                           tmini_counters_t *counters, tmini_stm32_usart_counters_t *received)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the firmware says on its console: lines of a word and named values. */
+/* What the firmware prints on its console: lines that consist of a word and named values. */
 
 #ifndef REPORT_H
 #define REPORT_H
@@ -25,9 +25,9 @@ void report_word(const char *word);
  * 2, 1 and 1 bytes, low byte first), to be compared with what the lidar has sent. */
 void report_digest(const tmini_scan_t *scan);
 
-/* Once a second. */
+/* Values for the report of each second. */
 typedef struct {
-    uint32_t points;       /* Of all scans so far. */
+    uint32_t points;       /* In all scans so far. */
     uint32_t worst_cycles; /* In the lidar's interrupt, since the last report. */
     bool may_move;
 } report_status_t;
@@ -35,8 +35,8 @@ typedef struct {
 void report_status(const tmini_counters_t *counters, const obstacle_t *obstacle,
                    const report_status_t *status);
 
-/* All counters. The first value is what the interrupt has counted; the library's must add up to
- * it. */
+/* Prints all counters. The first value is the interrupt's count of bytes; the library's counters of
+ * bytes must add up to it. */
 void report_counters(const tmini_t *lidar, const tmini_stm32_usart_t *port);
 
 #endif

@@ -3,12 +3,12 @@
 
 # cmake -D MAP=firmware.map -P sizes.cmake
 #
-# Prints, from the linker's map, what the firmware takes of flash and RAM, and what of it is the
+# Prints, from the linker's map, how much flash and RAM the firmware needs, and how much of that the
 # library.
 
 file(STRINGS ${MAP} lines)
 
-# Section names of more than 15 characters stand on a line of their own.
+# Section names of more than 15 characters are on a separate line.
 set(section "")
 set(output "")
 foreach(name flash ram library_flash library_ram stack)

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* From reset to main(): vector table, initialised and zeroed data, and a painted stack, on which
- * the paint that is left shows how much was ever used. */
+/* The vector table, and the start-up code: initialises data, fills the stack with a pattern, and
+ * calls main(). What is left of the pattern shows how much stack was ever used. */
 
 #include "board.h"
 #include "stm32f405.h"
 
 #define PAINT 0xC5C5C5C5u
 
-/* Of the linker script. */
+/* Defined by the linker script. */
 extern uint32_t stack_bottom[];
 extern uint32_t paint_end[];
 extern uint32_t stack_top[];
@@ -23,7 +23,7 @@ int main(void);
 void reset_handler(void);
 void SysTick_Handler(void);
 void USART1_IRQHandler(void);
-void DMA2_Stream2_IRQHandler(void) __attribute__((weak)); /* Only there with DMA. */
+void DMA2_Stream2_IRQHandler(void) __attribute__((weak)); /* Exists only with DMA. */
 
 static void paint_stack(void)
 {
@@ -64,7 +64,7 @@ static void stop_handler(void)
 
 typedef void (*handler_t)(void);
 
-/* Places after the initial stack pointer. */
+/* Indices in the vector table, after the initial stack pointer. */
 enum { RESET, NMI, HARD_FAULT, MEMORY_FAULT, BUS_FAULT, USAGE_FAULT, SYSTICK = 14, EXCEPTIONS };
 
 #define IRQS 82u

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The few registers of the STM32F405 that this firmware touches; names and places as in reference
+/* The few registers of the STM32F405 that this firmware uses; names and addresses as in reference
  * manual RM0090 and in ARM's manual of the Cortex-M4. */
 
 #ifndef STM32F405_H
@@ -82,7 +82,7 @@
 #define USART_CR1_TE (1u << 3)
 #define USART_CR1_UE (1u << 13)
 
-/* The processor's own. */
+/* Registers of the processor core. */
 #define SYSTICK_CTRL REGISTER(0xE000E010u)
 #define SYSTICK_CTRL_ON (7u << 0) /* Enabled, with interrupt, from the processor's clock. */
 #define SYSTICK_LOAD REGISTER(0xE000E014u)

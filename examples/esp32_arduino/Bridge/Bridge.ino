@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The board as the lidar's USB adapter: every byte goes through, both ways. Then, on the computer,
- * `tmini check -p PORT` or `tmini view -p PORT` shows what the lidar, its supply and its wiring do.
- * Lidar on Serial1; any board with a second serial port, from an Arduino Mega 2560 on. */
+/* The board as the lidar's USB adapter: it forwards every byte, in both directions. Then run `tmini
+ * check -p PORT` or `tmini view -p PORT` on the computer to check the lidar, its supply and its
+ * wiring. Lidar on Serial1; any board with a second serial port, from an Arduino Mega 2560 on. */
 
 static const unsigned long BAUD_RATE = 230400;
 

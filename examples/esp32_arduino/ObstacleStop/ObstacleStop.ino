@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A robot that must not run into things: the lidar hangs upside down, a mast is in its way at the
- * back, it turns at 10 Hz. STOP_PIN is high unless the way ahead is seen and free. Lidar on
- * Serial1; any board with 8 KB of RAM, from an Arduino Mega 2560 on. */
+/* A robot that must not hit anything. Its lidar is mounted upside down, turns at 10 Hz, and sees a
+ * mast at the back. STOP_PIN is high unless the way ahead is seen and free. Lidar on Serial1; any
+ * board with 8 KB of RAM, from an Arduino Mega 2560 on. */
 
 #include <TMiniLidar.h>
 #include <tmini/tmini_sectors.h>
 
 static const uint8_t STOP_PIN = LED_BUILTIN;
 static const uint16_t STOP_MM = 300;
-static const uint16_t GO_MM = 350;         /* Farther, so that the robot does not stutter. */
+static const uint16_t GO_MM = 350;         /* Larger, so that the robot does not stop and go. */
 static const unsigned long BLIND_MS = 400; /* Without a complete scan for this long, stop. */
 
 /* Angles are the robot's: 0 is its front, clockwise. */
@@ -42,7 +42,7 @@ static void lookAhead()
         tmini_sectors_add(&sectors, &point);
     }
     scans++;
-    if (!tmini_sector_is_free(&sector[0], STOP_MM)) { /* Or blind. */
+    if (!tmini_sector_is_free(&sector[0], STOP_MM)) { /* True also if the sector is blind. */
         isFree = false;
     } else if (lidar.scan().complete && tmini_sector_is_free(&sector[0], GO_MM)) {
         isFree = true;
@@ -53,7 +53,7 @@ static void lookAhead()
     }
 }
 
-/* A lidar that is lost or faulty sees nothing, whatever came before. */
+/* A lidar that is lost or faulty sees nothing, whatever the last scans showed. */
 static bool mustStop()
 {
     if (!lidar.isScanning() || lidar.faults() != 0 || millis() - seenMs >= BLIND_MS) {
@@ -79,7 +79,7 @@ static void report()
 
 void setup()
 {
-    digitalWrite(STOP_PIN, HIGH); /* Before it is an output: low means go. */
+    digitalWrite(STOP_PIN, HIGH); /* Set before the pin is an output, because low means go. */
     pinMode(STOP_PIN, OUTPUT);
     Serial.begin(115200);
     lidar.setMount(MOUNT);

@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Whole revolutions from a T-mini Plus on Serial1. Once a second a line with the nearest thing in
- * front, and STOP when it is nearer than STOP_MM, or when the lidar sees nothing. Any board with 8
- * KB of RAM and a second serial port, from an Arduino Mega 2560 on; wiring: README.md, one folder
- * up. */
+/* Whole revolutions from a T-mini Plus on Serial1. Once a second, prints the nearest thing in
+ * front, and STOP if it is nearer than STOP_MM or the lidar sees nothing. Any board with 8 KB of
+ * RAM and a second serial port, from an Arduino Mega 2560 on; wiring: README.md, one folder up. */
 
 #include <TMiniLidar.h>
 
-/* An ESP32's serial ports reach any pin; other boards have theirs. */
+/* An ESP32's serial ports can use any pins; those of other boards have fixed pins. */
 #if defined(ESP32)
 #if CONFIG_IDF_TARGET_ESP32
 static const int8_t RX_PIN = 26; /* To the lidar's TX. */
 static const int8_t TX_PIN = 27; /* To the lidar's RX. */
 #elif CONFIG_IDF_TARGET_ESP32S2 || CONFIG_IDF_TARGET_ESP32S3
-static const int8_t RX_PIN = 18; /* 26 and 27 are the flash's here. */
+static const int8_t RX_PIN = 18; /* Here the flash uses 26 and 27. */
 static const int8_t TX_PIN = 17;
 #elif CONFIG_IDF_TARGET_ESP32C6
 static const int8_t RX_PIN = 18;
@@ -40,7 +39,7 @@ static const unsigned long BLIND_MS = 500; /* Without a complete scan for this l
 
 static TMiniLidar lidar;
 static unsigned scans;
-static unsigned complete; /* Of them. */
+static unsigned complete; /* How many of the scans were complete. */
 static uint16_t nearest;     /* The nearest thing in front, in the last usable scan; 0: none. */
 static unsigned long seenMs; /* When a complete scan came. */
 static bool seen;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Eight LEDs in a ring, each on while something is nearer than a metre in its direction, or while
- * nothing is known of it. Packet by packet, in 1.5 KB of RAM; lidar on Serial1. Any board with
+/* Eight LEDs in a ring, each on while something in its direction is nearer than a metre, or while
+ * its direction is unknown. Packet by packet, in 1.5 KB of RAM; lidar on Serial1. Any board with
  * eight free pins, from an Arduino Mega 2560 on. */
 
 #include <TMiniLidar.h>
@@ -42,13 +42,13 @@ static void showNothing()
 
 static void lookAtPacket()
 {
-    if (lidar.packet().gap > 1) { /* Between revolutions the lidar sends a byte of its own. */
+    if (lidar.packet().gap > 1) { /* One byte may be LastCRC, which ends a revolution. */
         whole = false;
     }
     if (tmini_packet_is_start(&lidar.packet())) {
         endRevolution();
     }
-    for (TMiniPoint point : lidar.points()) { /* Keeps up; tmini_sectors_add_packet() is one go. */
+    for (TMiniPoint point : lidar.points()) { /* This loop also receives. */
         tmini_sectors_add(&sectors, &point);
     }
 }

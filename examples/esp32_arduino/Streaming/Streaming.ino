@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Boards with little RAM, from an Arduino Mega 2560 on: packet by packet, nothing is kept but the
- * nearest distance of the revolution, which is printed at its end. Lidar on Serial1; what 16 MHz
- * boards can and cannot do with it is in README.md, one folder up. */
+/* Boards with little RAM, from an Arduino Mega 2560 on: takes packet by packet, and keeps only the
+ * nearest distance of the revolution, which it prints at the end. Lidar on Serial1. README.md, one
+ * folder up, explains what is possible with 16 MHz. */
 
 #include <TMiniLidar.h>
 
 static TMiniLidarStreaming lidar;
 static unsigned scans;
-static unsigned complete; /* Of them. */
+static unsigned complete; /* How many of the scans were complete. */
 static uint16_t nearest;  /* Of the current revolution; 0: nothing yet. */
-static bool whole;        /* Nothing of it has been lost so far. */
+static bool whole;        /* Nothing of the current revolution has been lost. */
 
 static void print()
 {
@@ -39,7 +39,7 @@ static void endRevolution()
 
 static void lookAtPacket()
 {
-    if (lidar.packet().gap > 1) { /* Between revolutions the lidar sends a byte of its own. */
+    if (lidar.packet().gap > 1) { /* One byte may be LastCRC, which ends a revolution. */
         whole = false;
     }
     if (tmini_packet_is_start(&lidar.packet())) {

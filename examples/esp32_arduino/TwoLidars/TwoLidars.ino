@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Two lidars, on Serial1 and Serial2: each packet as it comes, and once a second the nearest thing
- * that either has seen. Boards with three serial ports, from an Arduino Mega 2560 on. */
+/* Two lidars, on Serial1 and Serial2: takes each packet as it comes, and once a second prints the
+ * nearest thing that each has seen. Boards with three serial ports, from an Arduino Mega 2560
+ * on. */
 
 #include <TMiniLidar.h>
 
@@ -45,12 +46,12 @@ static void lookAtPacket(Unit &unit, Unit &other)
             unit.nearest = point.distanceMm();
         }
         if (++done % 8 == 0) {
-            other.lidar.receive(); /* Its buffer lasts no longer. */
+            other.lidar.receive(); /* Otherwise its buffer would overflow. */
         }
     }
 }
 
-/* One event at a time, so that neither waits for the other. */
+/* Handles one event at a time, so that neither lidar waits for the other. */
 static void work(Unit &unit, Unit &other)
 {
     const tmini_event_t event = unit.lidar.loop();

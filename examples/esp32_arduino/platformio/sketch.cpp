@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* PlatformIO looks for sketches in one folder only; the Arduino IDE wants each in its own. */
+/* PlatformIO compiles one folder, but the Arduino IDE needs a folder for each sketch: so this
+ * includes the sketch. */
 
 #include <Arduino.h>
 

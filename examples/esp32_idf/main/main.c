@@ -75,7 +75,7 @@ static void tell_info(const tmini_info_t *info)
              info->firmware_major, info->firmware_minor, info->hardware, serial);
 }
 
-/* Asks for information, then health; then scans, whether or not they were answered. */
+/* Asks for information, then for health; then starts scanning, also without an answer. */
 static void handle(tmini_event_t event)
 {
     char faults[TMINI_FAULTS_TEXT_SIZE];

@@ -5,7 +5,7 @@
 
 #define AHEAD 0
 
-/* Nothing at all in any direction: a covered window or a blocked rotor. */
+/* True if nothing is seen in any direction: the window is covered or the rotor blocked. */
 static bool is_dark(const obstacle_t *obstacle)
 {
     for (unsigned i = 0; i < OBSTACLE_SECTORS; i++) {

@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Obstacle stop on a Zephyr board: asks for the lidar's information, scans, and writes a line per
- * second to the console: may a robot move? */
+ * second to the console: whether a robot may move. */
 
 #include <stdbool.h>
 
@@ -27,7 +27,7 @@ static void print(const char *text)
 
 static lidar_log_t console = {.print = print};
 
-/* In the device's thread. */
+/* Runs in the device's thread. */
 static void on_event(const struct device *lidar, tmini_event_t event, void *user_data)
 {
     (void)user_data;
@@ -61,7 +61,7 @@ static void start_lidar(void)
     tmini_t *const lidar = tmini_zephyr_device_lock(device);
     console.lidar = lidar;
     (void)tmini_request_info(lidar);
-    (void)tmini_start(lidar); /* After the answer; holds. */
+    (void)tmini_start(lidar); /* Begins after the answer, and holds. */
     tmini_zephyr_device_unlock(device);
 }
 
