@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Which test functions notice a mutant, and which alone do: before a test is taken away, look here.
+"""Finds the test functions that notice a mutant, and those that are the only one to notice it. Use it before
+you remove a test.
 
     killers.py --build DIR --sample N [--seed S] [--jobs N] FILE [SOURCE …]
 
-Appends to FILE a line for each mutant of mutation.py: what is changed, a tab, and the test functions that fail,
-"program:function", or "program:*" for one that crashes or does not end. At the end it names those that
-alone noticed one, with how many, and those programs that never alone did. FILE may be there already, from
-a run that was broken off.
+Appends a line to FILE for each mutant of mutation.py: the change, a tab, and the test functions that fail, as
+"program:function", or as "program:*" for a program that crashes or does not end. At the end it prints, for each
+function, how many mutants only this function noticed, and the programs without such a function. If FILE exists,
+the run continues it.
 """
 
 import argparse
@@ -26,7 +27,7 @@ import mutation
 
 
 class Matrix(mutation.Bench):
-    """Runs all tests of a mutant instead of stopping at the first that fails."""
+    """Runs all tests of a mutant, also after one has failed."""
 
     def failures(self, test, shared):
         try:
@@ -41,7 +42,7 @@ class Matrix(mutation.Bench):
         return [f"{test.name}:{name}" for name in failed or (["*"] if done.returncode != 0 else [])]
 
     def killers(self, mutant):
-        """None if it does not compile."""
+        """Returns the test functions that fail, or None if the mutant does not compile."""
         found, shared = [], {}
         with self.changed(mutant):
             for test in self.tests_of(mutant.path):

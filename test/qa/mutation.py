@@ -2,22 +2,22 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Changes the library or a port in one small place at a time, and asks whether a unit test notices.
+"""Changes the library or a port in one small place at a time, and checks that a unit test notices the change.
 
     mutation.py --build DIR [--sample N [--seed S]] [--results FILE] [--jobs N] [--list] [FILE …]
 
-DIR is a build folder with the tests in it, configured with CMAKE_EXPORT_COMPILE_COMMANDS=ON (as
-test/run.sh does). FILE: sources below lib/src or port, public headers, or folders of such; lib/src unless given.
-What is the library's is tried by all of test/unit, what is a port's by that port's tests. With --results a run can
-be broken off and goes on where it was.
+DIR is a build folder with the tests, configured with CMAKE_EXPORT_COMPILE_COMMANDS=ON (as test/run.sh does).
+FILE is a source in lib/src or port, a public header, or a folder of these; lib/src by default. Changes to the
+library are tried with all of test/unit, changes to a port with that port's tests. With --results, a run that was
+stopped can be continued.
 
-A test is linked once, against a shared object of the one source, which each mutant replaces: so a mutant
-costs one quick compilation. The tests that are named like the source come first, then those that have
-killed the most in the time they take. One that computes much longer than it should is stopped, and has
-noticed. A mutant that lives, but whose optimised machine code is that of the original, is none.
+A test is linked only once, with the changed source as a shared object, so that each mutant costs only one quick
+compilation. The tests named like the source run first, then those that have killed the most mutants per time. A
+test that runs much longer than with the original is stopped; this counts as noticed. A mutant that survives is
+not counted if its optimised machine code is the same as the original's.
 
-A mutant that no test notices is a finding, unless test/qa/mutants.txt has it with the reason why nobody can;
-and so is an entry there of a mutant that there no longer is, or, without --sample, that a test does notice.
+A mutant that no test notices is an error, unless test/qa/mutants.txt lists it with the reason why no test can.
+An entry there is an error if its mutant no longer exists or, without --sample, if a test notices it.
 """
 
 import argparse
@@ -46,7 +46,7 @@ import single  # noqa: E402  The library as one source.
 PUBLIC = os.path.join("lib", "include", "")
 KNOWN = os.path.join(ROOT, "test", "qa", "mutants.txt")
 
-# What is put in the place of what: C's operators and constants, as people confuse them.
+# Patterns and their replacements: operators and constants that programmers often confuse.
 REPLACEMENTS = [
     (r"(?<![<>=!-])<(?![<=])", ["<=", ">="]), (r"<=(?!=)", ["<", ">"]),
     (r"(?<![->])>(?![>=])", [">=", "<="]), (r"(?<!>)>=", [">", "<"]),
@@ -58,7 +58,7 @@ REPLACEMENTS = [
     (r"(?<= )/(?= )", ["*"]), (r"(?<= )%(?= )", ["*"]),
     (r"\+\+", ["--"]), (r"--(?!-)", ["++"]),
     (r"\+=", ["-=", "="]), (r"-=", ["+="]), (r"\|=", ["&=", "="]), (r"\^=", ["="]), (r"&=", ["|="]),
-    # Types too narrow for what they count: loops, times.
+    # Types that may be too narrow for a counter or a time.
     (r"\b(?:size_t|uint32_t|unsigned)(?= \w+(?: = |;|,|\)))", ["uint16_t", "uint8_t"]),
     (r"\buint16_t(?= \w+(?: = |;|,|\)))", ["uint8_t"]),
     (r"\btrue\b", ["false"]), (r"\bfalse\b", ["true"]),
@@ -72,7 +72,7 @@ REPLACEMENTS = [
 
 
 def code_only(text):
-    """Comments, strings and preprocessor lines as blanks, everything at its place."""
+    """Replaces comments, strings and preprocessor lines by blanks, so that all other code keeps its place."""
     blank = lambda match: re.sub(r"[^\n]", " ", match.group(0))
     text = re.sub(r"/\*.*?\*/|//[^\n]*", blank, text, flags=re.DOTALL)
     text = re.sub(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', blank, text)
@@ -85,7 +85,7 @@ def read(path):
 
 
 def function_at(lines, line):
-    """The function that a line is part of; what stands outside of all is called so."""
+    """Returns the name of the function that contains a line; "-" outside of functions."""
     if lines[line].startswith("}"):
         return "-"
     for above in reversed(lines[:line + 1]):
@@ -98,14 +98,14 @@ def function_at(lines, line):
 
 
 def change_of(old, begin, end, replacement):
-    """What is put in the place of what, with the operands around it, so that an entry names one place."""
+    """Describes the change with the operands around it, so that an entry in mutants.txt names one place."""
     if replacement == ";":
         return f"{' '.join(old[begin:end].split('(')[0].split('=')[0].split())} removed"
     words = [match.span() for match in re.finditer(r"\S+", old)]
     last = next(i for i, span in enumerate(words) if span[1] >= end)
     first = max(i for i, span in enumerate(words) if span[0] <= begin)
     is_word = lambda i: re.search(r"\w", old[slice(*words[i])])
-    if not re.match(r"u?int|size_t|unsigned", old[begin:]): # Before a type stands nothing that matters.
+    if not re.match(r"u?int|size_t|unsigned", old[begin:]): # A type needs no word before it.
         while first > 0 and not is_word(first := first - 1):
             pass
     while last + 1 < len(words) and not is_word(last := last + 1):
@@ -136,7 +136,7 @@ def mutants_of(path):
     lines = text.split("\n")
     found = {}
     for number, line in enumerate(code_only(text).split("\n")):
-        line = line.rstrip()  # A comment may stand after a statement.
+        line = line.rstrip()  # The blanks of a comment after a statement.
         for pattern, replacements in REPLACEMENTS:
             for match in re.finditer(pattern, line):
                 for replacement in replacements:
@@ -147,7 +147,7 @@ def mutants_of(path):
 
 
 def arguments_of(entry):
-    """The compiler's command line, without source and object, and what is about dependencies and caches."""
+    """Returns the compiler's command line, without source, object, and options for dependencies and caches."""
     words = shlex.split(entry["command"])
     while os.path.basename(words[0]) in ("ccache", "sccache"):
         words.pop(0)
@@ -170,7 +170,7 @@ def object_of(entry):
 
 
 def objects_of(folder):
-    """What a program is linked of, besides archives, by its folder among CMake's files."""
+    """Returns the object files of a program. `folder` is the program's folder in CMakeFiles."""
     link = os.path.join(folder, "link.txt")
     if not os.path.exists(link):
         return []
@@ -190,16 +190,16 @@ def has_functions(path):
 
 
 def sources_with(path):
-    """The sources in a file's folder that it is part of: itself, or those that include it."""
+    """Returns the file itself if it is a source, and the sources in its folder that include it."""
     found = {path}
-    for _ in files_of(os.path.dirname(path)): # As many rounds as a chain of inclusions may be long.
+    for _ in files_of(os.path.dirname(path)): # One round for each file in a chain of inclusions.
         names = [f'#include "{os.path.basename(file)}"' for file in found]
         found |= {file for file in files_of(os.path.dirname(path)) if any(name in read(file) for name in names)}
     return sorted(file for file in found if not file.endswith(".h"))
 
 
 class Build:
-    """What the build folder has: how sources are compiled, and what test programs consist of."""
+    """The content of the build folder: command lines of the compiler, and object files of test programs."""
 
     def __init__(self, folder):
         self.folder = os.path.abspath(folder)
@@ -207,12 +207,12 @@ class Build:
             self.entries = json.load(file)
         self.entry_of = {os.path.realpath(object_of(entry)): entry for entry in self.entries}
         self.archives, self.folders = [], []
-        for place, folders, files in os.walk(self.folder): # Not through links: they may lead round in a circle.
+        for place, folders, files in os.walk(self.folder): # Does not follow links, which may form a circle.
             if "CMakeCache.txt" in files and place != self.folder:
-                folders.clear() # A build of its own.
+                folders.clear() # This is another build.
                 continue
             self.archives += [os.path.join(place, file) for file in sorted(files) if file.endswith(".a") and
-                              os.path.isdir(os.path.join(place, "CMakeFiles", file[3:-2] + ".dir"))] # Made here.
+                              os.path.isdir(os.path.join(place, "CMakeFiles", file[3:-2] + ".dir"))] # By this build.
             self.folders += [os.path.join(place, name) for name in sorted(folders) if re.match(r"test_.*\.dir$", name)]
 
     def entries_of(self, source):
@@ -220,7 +220,7 @@ class Build:
         return [entry for entry in self.entries if os.path.realpath(entry["file"]) == path]
 
     def tests_of(self, source):
-        """The tests of a source, each with how it is compiled for it."""
+        """Returns the tests of a source, each with the command line that compiles the source for it."""
         place = "unit" if source.startswith("lib/") else os.path.dirname(source).replace("/", "[/_]")
         entries = self.entries_of(source)
         own = {os.path.realpath(object_of(entry)): entry for entry in entries}
@@ -240,14 +240,14 @@ class Test:
         self.compiler, *self.flags = arguments_of(entry)
         self.variant = hashlib.sha256(f"{entry['file']} {self.flags}".encode()).hexdigest()[:16]
         self.program = None # Linked when first needed.
-        self.seconds = 6.0 # What it computes with the original, once that has been seen.
+        self.seconds = 6.0 # Processor time with the original; an estimate until the test has run.
         self.kills = 0
 
     def objects(self):
         return [obj for obj in objects_of(self.folder) if obj != os.path.realpath(object_of(self.entry))]
 
     def work_folder(self):
-        """Where ctest runs it, if it needs a place of its own."""
+        """Returns the folder in which ctest runs the test, if it needs a folder of its own."""
         place = re.sub(r"CMakeFiles/(\w+)\.dir$", r"\1.work", self.folder)
         return place if os.path.isdir(place) else None
 
@@ -257,28 +257,28 @@ class Test:
 
 
 def cpu_seconds():
-    """What has been computed by all that was called."""
+    """Returns the processor time of all child processes."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
 def is_in_body(mutant):
-    """Between the braces of a function."""
+    """True if the mutant is between the braces of a function."""
     above = (line[0] for line in reversed(mutant.text.split("\n")[:mutant.line]) if line[:1] in ("{", "}"))
     return next(above, "") == "{"
 
 
 class Unable(Exception):
-    """Nothing can be said about mutants."""
+    """An error that makes it impossible to test mutants."""
 
 
 class Bench:
-    """Compiles mutants, and runs tests with them. One process has one, with a folder of its own."""
+    """Compiles mutants, and runs tests with them. Each process has one, with a separate work folder."""
 
     def __init__(self, build, work):
         self.build, self.work = Build(build), work
         self.tests, self.originals = {}, {}
-        self.compiler, self.library, self.original_library = None, None, None # For headers.
+        self.compiler, self.library, self.original_library = None, None, None # Used for mutants of headers.
 
     def tests_of(self, path):
         if path not in self.tests:
@@ -289,7 +289,7 @@ class Bench:
 
     @contextlib.contextmanager
     def changed(self, mutant):
-        """The mutant among links to the other files of its folder: those include one another."""
+        """Writes the mutant to a folder with links to the other files of its folder, which may include it."""
         folder = os.path.join(self.work, os.path.dirname(mutant.path))
         if not os.path.isdir(folder):
             os.makedirs(folder)
@@ -312,7 +312,7 @@ class Bench:
                               cwd=test.entry["directory"], stderr=subprocess.DEVNULL, check=False).returncode == 0
 
     def compile_shared(self, test, source, folder):
-        """Not optimised: that is the quickest. The tests know it as mutant.so, wherever it lies."""
+        """Compiles without optimisation, which is fastest. The tests load it by its name mutant.so, from any folder."""
         target = os.path.join(self.work, folder, test.variant, "mutant.so")
         is_compiled = self.compile(test, source, target, "-O0", "-fPIC", "-shared", "-Wl,-soname,mutant.so")
         return target if is_compiled else None
@@ -324,7 +324,7 @@ class Bench:
             return file.read()
 
     def is_same_code(self, tests):
-        """In all the ways in which the tests have the source compiled."""
+        """True if the optimised code is unchanged for all command lines that compile the source for the tests."""
         for variant, test in {test.variant: test for test in tests}.items():
             if variant not in self.originals:
                 self.originals[variant] = self.optimised(test, test.entry["file"])
@@ -333,7 +333,7 @@ class Bench:
         return True
 
     def link(self, test):
-        """Also makes sure that the test passes with the original, and sees how long that takes."""
+        """Links a test, checks that it passes with the original, and measures its time."""
         original = self.compile_shared(test, test.entry["file"], "original")
         test.program = os.path.join(self.work, os.path.dirname(original), test.name)
         subprocess.run([test.compiler, "-o", test.program, *test.objects(), "-Wl,--no-as-needed", original,
@@ -344,7 +344,7 @@ class Bench:
         test.seconds = max(cpu_seconds() - before, 0.001)
 
     def run(self, test, shared):
-        """The exit status; what computes much longer than it should, or waits, is ended by a signal."""
+        """Returns the exit status. A signal ends a test that computes or waits much longer than usual."""
         try:
             return subprocess.run([test.program], cwd=test.work_folder() or self.work, stdin=subprocess.DEVNULL,
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
@@ -355,21 +355,21 @@ class Bench:
             return -signal.SIGKILL
 
     def passes(self, test, shared):
-        """What fails must do so twice: some tests look at the real time."""
+        """True if the test passes. A test that fails is run again: some tests depend on the real time."""
         status = self.run(test, shared)
         return status == 0 or status > 0 and self.run(test, shared) == 0
 
-    # A public header is part of the library and of the tests: what is compiled differently with it is made anew.
+    # A public header is part of the library and of the tests: all code that it changes is recompiled.
 
     def with_headers(self, entry):
-        """The command line that takes the public headers from the folder of copies, of which one is changed."""
+        """Returns the command line with the public headers from the folder of copies, one of which is changed."""
         folder = os.path.join(self.work, PUBLIC)
         original = os.path.realpath(os.path.join(ROOT, PUBLIC))
         return [f"-I{folder}" if word[:2] == "-I" and os.path.realpath(word[2:]) == original else word
                 for word in arguments_of(entry)]
 
     def object_with(self, arguments, entry, option, folder):
-        """None if that is not C."""
+        """Compiles an object file; returns None if it does not compile."""
         target = os.path.join(self.work, folder, option, hashlib.sha256(object_of(entry).encode()).hexdigest() + ".o")
         os.makedirs(os.path.dirname(target), exist_ok=True)
         done = subprocess.run([*arguments, option, "-fPIC", "-c", os.path.realpath(entry["file"]), "-o", target],
@@ -377,13 +377,13 @@ class Bench:
         return target if done.returncode == 0 else None
 
     def headers_of(self, entry):
-        """The names of the public headers that a source includes, by whatever way."""
+        """Returns the names of the public headers that a source includes, directly or indirectly."""
         rule = subprocess.run([*arguments_of(entry), "-MM", os.path.realpath(entry["file"])], check=True,
                               cwd=entry["directory"], capture_output=True, text=True).stdout
         return {os.path.basename(word) for word in rule.split() if PUBLIC in word}
 
-    def made_anew(self, header, entry, option="-O0"):
-        """The object with the changed header, None if that is not C; and whether it is another one."""
+    def recompiled(self, header, entry, option="-O0"):
+        """Returns the object with the changed header (None if it does not compile), and whether it has changed."""
         key = (object_of(entry), option)
         if key not in self.originals:
             original = self.object_with(arguments_of(entry), entry, option, "original")
@@ -391,33 +391,33 @@ class Bench:
         original, code, headers = self.originals[key]
         if os.path.basename(header) not in headers:
             return original, False
-        target = self.object_with(self.with_headers(entry), entry, option, "anew")
+        target = self.object_with(self.with_headers(entry), entry, option, "recompiled")
         return target, target is None or pathlib.Path(target).read_bytes() != code
 
-    def link_anew(self, test, objects, program):
-        """With the library as a shared object, wherever that lies."""
+    def relink(self, test, objects, program):
+        """Links a test with the library as a shared object, which may be in any folder."""
         test.program = os.path.join(self.work, program, test.name)
         os.makedirs(os.path.dirname(test.program), exist_ok=True)
         subprocess.run([test.compiler, "-o", test.program, *objects, "-Wl,--no-as-needed", self.original_library,
                         "-Wl,--start-group", *self.build.archives, "-Wl,--end-group", "-lm"], check=True)
 
-    def library_anew(self, header, folder):
-        """The library, None if it is not C any more; and whether it is another one."""
+    def recompiled_library(self, header, folder):
+        """Returns the library (None if it does not compile), and whether it has changed."""
         library = os.path.join(self.work, folder, "mutant.so")
-        target, is_other = self.made_anew(header, self.library)
+        target, is_other = self.recompiled(header, self.library)
         os.makedirs(os.path.dirname(library), exist_ok=True)
         if target is not None:
             subprocess.run([self.compiler, "-shared", "-Wl,-soname,mutant.so", target, "-o", library], check=True)
         return library if target is not None else None, is_other
 
-    def objects_anew(self, header, test):
-        """What a test is made of, besides the library: how each is compiled, the object, whether it is another one."""
+    def recompiled_objects(self, header, test):
+        """Returns the parts of a test without the library: command line, object, and whether it has changed."""
         own = [self.build.entry_of[obj] for obj in objects_of(test.folder)]
         own += [entry for entry in self.build.entries if entry["file"].endswith("/test/support/receiver.c")]
-        return [(entry, *self.made_anew(header, entry)) for entry in own]
+        return [(entry, *self.recompiled(header, entry)) for entry in own]
 
     def begin_headers(self, tests):
-        """Makes the library, of one source, and the tests as they are; sees that these pass, and what they take."""
+        """Builds the library, as one source, and the original tests; checks that they pass, and measures their time."""
         text = single.single({os.path.basename(path): read(path) for path in files_of("lib/src")}, "")
         source = pathlib.Path(self.work, "tmini_all.c")
         source.write_text(text, encoding="utf-8")
@@ -426,46 +426,46 @@ class Bench:
         self.library = {**entry, "file": str(source), "command": entry["command"].replace(entry["file"], str(source))}
         self.compiler = tests[0].compiler
         self.original_library = os.path.join(self.work, "mutant.so")
-        self.library_anew("", "")
+        self.recompiled_library("", "")
         for test in tests:
-            self.link_anew(test, [target for _, target, _ in self.objects_anew("", test)], "as_they_are")
+            self.relink(test, [target for _, target, _ in self.recompiled_objects("", test)], "original_tests")
             before = cpu_seconds()
             if not self.passes(test, self.original_library):
                 raise Unable(f"{test.name} fails without any mutant")
             test.seconds = cpu_seconds() - before + 0.1 * len(objects_of(test.folder))
 
     def notice(self, tests, library):
-        """The first of the tests as they are that notices another library."""
+        """Returns the first of the original tests that notices a changed library."""
         for test in tests:
-            test.program = os.path.join(self.work, "as_they_are", test.name)
+            test.program = os.path.join(self.work, "original_tests", test.name)
             if not self.passes(test, library):
                 return test
         return None
 
-    def notice_anew(self, header, tests, library, is_new_to_all):
-        """The first of the tests, made anew, that notices; and what of the tests is compiled differently."""
+    def notice_recompiled(self, header, tests, library, is_new_to_all):
+        """Returns the first of the recompiled tests that notices the mutant, and the parts of tests that it changes."""
         different = []
         for test in tests:
-            made = self.objects_anew(header, test)
+            made = self.recompiled_objects(header, test)
             if any(target is None for _, target, _ in made):
                 return "not C", []
             others = [entry for entry, _, is_other in made if is_other]
             if others or is_new_to_all:
-                self.link_anew(test, [target for _, target, _ in made], "anew")
+                self.relink(test, [target for _, target, _ in made], "recompiled")
                 if not self.passes(test, library):
                     return test, []
             different += others
         return None, different
 
     def preprocessed(self, header):
-        """What is left of a header, in all the ways in which it is included."""
+        """Returns the header after preprocessing, for each set of macros with which it is included."""
         ways = {tuple(word for word in arguments_of(entry) if word.startswith("-D")) for entry in self.build.entries
                 if "/test/unit/" in entry["directory"] + entry["file"]}
         return [subprocess.run([self.compiler, "-E", "-P", "-dD", "-I" + os.path.join(ROOT, "test", "support"), *way,
                                 header], check=True, capture_output=True).stdout for way in sorted(ways)]
 
     def fate_of_header(self, mutant):
-        """What is in the body of a function concerns the library first, and its tests as they are."""
+        """Tries a mutant of a header. If it is in a function's body, the original tests run first."""
         tests = sorted(self.tests_of("lib/src/tmini_ring.c"), key=lambda test: test.promise(mutant.path))
         if not self.original_library:
             self.begin_headers(tests)
@@ -474,31 +474,31 @@ class Bench:
         try:
             if self.preprocessed(changed) == self.preprocessed(os.path.join(ROOT, mutant.path)):
                 return "the same code"
-            library, is_other = self.library_anew(mutant.path, "anew")
+            library, is_other = self.recompiled_library(mutant.path, "recompiled")
             if library is None:
                 return "not C"
             different = []
             is_inline = is_other and is_in_body(mutant)
             test = self.notice(tests, library) if is_inline else None
             if test is None:
-                test, different = self.notice_anew(mutant.path, tests, library, is_other and not is_inline)
+                test, different = self.notice_recompiled(mutant.path, tests, library, is_other and not is_inline)
             if test == "not C":
                 return test
             if test is not None:
                 test.kills += 1
                 return "killed by " + test.name
             different += [self.library] if is_other else []
-            is_other = any(self.made_anew(mutant.path, entry, "-O2")[1] for entry in different)
+            is_other = any(self.recompiled(mutant.path, entry, "-O2")[1] for entry in different)
             return "survived" if is_other else "the same code"
         finally:
             shutil.copy(os.path.join(ROOT, mutant.path), changed)
 
     def fate(self, mutant):
-        """'killed by …', 'survived', 'the same code' or 'not C'."""
+        """Returns 'killed by …', 'survived', 'the same code' or 'not C'."""
         if mutant.path.startswith(PUBLIC):
             return self.fate_of_header(mutant)
         tests = sorted(self.tests_of(mutant.path), key=lambda test: test.promise(mutant.path))
-        is_other = False # Not looked at yet; worth it before the first test that takes long.
+        is_other = False # Checked only before the first test that takes long.
         with self.changed(mutant):
             shared = {}
             for test in tests:
@@ -529,7 +529,7 @@ def fate_of(mutant):
 
 
 class Results:
-    """The fates of mutants, kept in a file if one is named."""
+    """The fates of mutants, which are stored in a file if one is given."""
 
     def __init__(self, path):
         self.path, self.fates = path, {}
@@ -543,7 +543,7 @@ class Results:
                 file.write(f"{mutant.id}\t{fate}\t{mutant}\n")
 
     def of(self, mutants, pool):
-        """Mutants with their fates, in order; those not known yet are tried."""
+        """Returns the mutants with their fates, in order; tries those whose fate is not stored."""
         fresh = pool.imap(fate_of, [mutant for mutant in mutants if mutant.id not in self.fates])
         for mutant in mutants:
             fate = self.fates.get(mutant.id) or next(fresh)
@@ -562,15 +562,15 @@ def known_survivors():
 
 
 def outdated(known):
-    """What is known of mutants that there no longer are, since their lines have changed."""
+    """Returns the entries whose mutants no longer exist, because their lines have changed."""
     paths = {key.split(" | ")[0] for key in known}
     there = {mutant.key for path in paths if os.path.exists(os.path.join(ROOT, path)) for mutant in mutants_of(path)}
     return [key for key in known if key not in there]
 
 
 def files_among(names):
-    """The files that are named; of the folders that are, public headers, and those with functions: no headers that
-    nothing there includes."""
+    """Returns the named files; and of named folders the public headers and the files with functions, except headers
+    that no source there includes."""
     for name in names:
         if os.path.isfile(name):
             yield os.path.relpath(os.path.abspath(name), ROOT)
@@ -581,8 +581,8 @@ def files_among(names):
 
 
 def try_mutants(mutants, wanted, pool, results, known):
-    """Counts fates until this many mutants that can be noticed have been tried; returns how many survived, and the
-    entries of mutants that did."""
+    """Tries mutants until there are `wanted` that tests could notice. Returns how many of these survived, and the
+    entries of mutants.txt that were needed."""
     counts, needed = collections.Counter(), set()
     tried = lambda: counts["killed"] + counts["survived"] + counts["equivalent"]
     remaining = iter(mutants)
@@ -596,7 +596,7 @@ def try_mutants(mutants, wanted, pool, results, known):
                 print(f"survived: {mutant}", flush=True)
             counts[fate.partition(" by ")[0]] += 1
     print(f"{tried()} mutants: {counts['killed']} killed, {counts['equivalent']} known to be equivalent, "
-          f"{counts['survived']} survived; besides {counts['the same code']} of the same machine code and "
+          f"{counts['survived']} survived; also {counts['the same code']} with the same machine code and "
           f"{counts['not C']} that do not compile")
     return counts["survived"], needed
 
@@ -614,7 +614,7 @@ def main():
     mutants = [mutant for path in files_among(arguments.files) for mutant in mutants_of(path)]
     if not mutants:
         parser.error(f"nothing to change in {' '.join(arguments.files)}")
-    if arguments.sample:  # By hash, so that a change of one line does not draw all others anew.
+    if arguments.sample:  # Ordered by hash: the change of one line does not change the rest of the sample.
         mutants.sort(key=lambda mutant: hashlib.sha256(f"{arguments.seed} {mutant.key}".encode()).digest())
     if arguments.list:
         print(*mutants, f"{len(mutants)} mutants", sep="\n")
@@ -625,7 +625,7 @@ def main():
     known = known_survivors()
     stale = outdated(known)
     for key in stale:
-        print(f"in {KNOWN}, but no mutant any more: {key}")
+        print(f"in {KNOWN}, but no longer a mutant: {key}")
     with tempfile.TemporaryDirectory() as work, \
             multiprocessing.Pool(arguments.jobs, begin_worker, (arguments.build, work)) as pool:
         survivors, needed = try_mutants(mutants, arguments.sample or len(mutants), pool, Results(arguments.results),

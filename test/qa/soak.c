@@ -3,10 +3,10 @@
 
 /* soak HOURS [SEED]
  *
- * Runs the library against the simulated lidar for HOURS of virtual time, half an hour for each of
+ * Runs the library with the simulated lidar for HOURS of virtual time, half an hour for each of
  * many configurations, with all kinds of faults: on the line, in the lidar, in the program that
- * uses the library. Prints what happened; exit status 0 if the library did nothing wrong (world.h
- * says what is checked), 1 if it did, 2 on wrong usage. The same seed does the same. */
+ * uses the library. Prints what happened. Exit status: 0 if the library did nothing wrong
+ * (world.h lists the checks), 1 if it did, 2 wrong usage. The same seed gives the same run. */
 
 #include "world.h"
 
@@ -20,7 +20,7 @@
 typedef struct {
     world_t world;
     random_t random;
-    uint32_t frequency_chz; /* As set by a command that succeeded; 0: as after power-up. */
+    uint32_t frequency_chz; /* Set by a successful command; 0: as after power-up. */
     uint32_t restarts;
     uint32_t commands;
     uint32_t failures;
@@ -60,7 +60,7 @@ static bool one_in(soak_t *soak, uint32_t number)
     return random_below(&soak->random, number) == 0;
 }
 
-/* ---- A life: another lidar, another line, another program ---- */
+/* ---- Configuration: each life has another lidar, another line and another program ---- */
 
 static world_config_t draw_config(soak_t *soak, uint64_t seed)
 {
@@ -86,7 +86,7 @@ static world_config_t draw_config(soak_t *soak, uint64_t seed)
     return config;
 }
 
-/* ---- The program that uses the library: it wants scans ---- */
+/* ---- The program that uses the library: it always wants scans ---- */
 
 static void keep_scanning(soak_t *soak)
 {
@@ -107,7 +107,7 @@ static void run_ms(soak_t *soak, uint32_t ms)
     }
 }
 
-/* Carries out a command that has begun. Returns true if it ended as it should. */
+/* Waits for the end of a command that has begun. Returns true if it ended with the event `end`. */
 static bool carry_out(soak_t *soak, tmini_status_t begun, tmini_event_t end, uint32_t limit_ms)
 {
     world_t *const world = &soak->world;
@@ -115,7 +115,7 @@ static bool carry_out(soak_t *soak, tmini_status_t begun, tmini_event_t end, uin
 
     soak->commands++;
     if (begun == TMINI_ERROR_BUSY && tmini_state(&world->lidar) == TMINI_STATE_STOPPING) {
-        return false; /* The stop was lost on the line: the lidar is being stopped again. */
+        return false; /* The stop was lost on the line: the library is stopping the lidar again. */
     }
     if (begun != TMINI_OK) {
         world_violate(world, VIOLATION_ANSWER, "not begun");
@@ -123,7 +123,7 @@ static bool carry_out(soak_t *soak, tmini_status_t begun, tmini_event_t end, uin
     }
     unsigned events = world_run_until(world, BIT(end) | BIT(TMINI_EVENT_COMMAND_FAILED), limit_ms);
     if ((events & BIT(end)) == 0 && tmini_command_error(&world->lidar) == TMINI_ERROR_ABORTED) {
-        /* That was the end of a start that had just been tried. */
+        /* This was only the end of an earlier start: wait again. */
         events |= world_run_until(world, BIT(end) | BIT(TMINI_EVENT_COMMAND_FAILED), limit_ms);
     }
     if ((events & BIT(end)) != 0) {
@@ -203,8 +203,8 @@ static void reboot(soak_t *soak)
 static void (*const requests[])(soak_t *soak) = {ask_for_info, ask_for_health, ask_for_frequency,
                                                  set_frequency, reboot};
 
-/* Stops, asks for one thing or another, and lets scanning go on. */
-static void have_a_word(soak_t *soak)
+/* Stops the lidar and makes some requests. After that, keep_scanning() starts it again. */
+static void make_requests(soak_t *soak)
 {
     world_t *const world = &soak->world;
 
@@ -214,7 +214,7 @@ static void have_a_word(soak_t *soak)
     for (uint32_t left = between(soak, 0, 4); left > 0; left--) {
         requests[between(soak, 0, 4)](soak);
         if (tmini_state(&world->lidar) == TMINI_STATE_BUSY) {
-            return; /* It was not done in time: let it be. */
+            return; /* The request has not ended in time: make no others. */
         }
     }
 }
@@ -242,7 +242,7 @@ static void set_gap(soak_t *soak, sim_link_kind_t kind, uint32_t low, uint32_t h
     sim_link_set_mean_gap(&soak->world.link, kind, draw_gap(soak, low, high), soak->world.now_us);
 }
 
-/* From one damaged byte in 150 to one in 100,000, and other faults at similar rates. */
+/* Sets rates from one damaged byte in 150 to one in 100,000, and of other faults. */
 static void bring_bad_weather(soak_t *soak)
 {
     static const struct {
@@ -272,7 +272,7 @@ static void live_through_bad_weather(soak_t *soak)
         if (one_in(soak, 4)) {
             restart_library(soak);
         } else if (one_in(soak, 4)) {
-            have_a_word(soak);
+            make_requests(soak);
         }
     }
     sim_link_calm(&soak->world.link, soak->world.now_us);
@@ -295,7 +295,7 @@ static void set_fault(soak_t *soak, lidar_fault_t fault, bool on)
     }
 }
 
-/* What the library is to make of it (tmini_faults() in tmini.h). */
+/* The faults that the library must report (tmini_faults() in tmini.h). */
 static uint8_t expected_faults(const soak_t *soak, lidar_fault_t fault)
 {
     const sim_config_t *const sim = &soak->world.config.sim;
@@ -313,7 +313,7 @@ static uint8_t expected_faults(const soak_t *soak, lidar_fault_t fault)
 
 static void expect_faults(soak_t *soak, uint8_t expected, uint64_t since_us)
 {
-    /* A wanted frequency that is not there is judged by test_wishes. */
+    /* Without TMINI_FAULT_FREQUENCY, which test_wishes tests. */
     const uint8_t faults = tmini_faults(&soak->world.lidar) & TMINI_FAULT_MASK;
     char what[60];
 
@@ -345,7 +345,7 @@ static void live(soak_t *soak, uint32_t ms)
 
     while (world->now_us < (uint64_t)ms * 1000u) {
         live_through_bad_weather(soak);
-        /* Whatever it was, scans have resumed by then. */
+        /* After any faults, scans must have resumed by then. */
         run_ms(soak, WORLD_RECOVERY_MS + 5000u);
         if (tmini_state(&world->lidar) != TMINI_STATE_SCANNING) {
             world_violate(world, VIOLATION_SLOW_RECOVERY, "not scanning on an undisturbed line");
@@ -354,7 +354,7 @@ static void live(soak_t *soak, uint32_t ms)
             live_through_a_fault(soak);
         }
         if (one_in(soak, 3)) {
-            have_a_word(soak);
+            make_requests(soak);
             run_ms(soak, WORLD_RECOVERY_MS);
         }
     }

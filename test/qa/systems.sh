@@ -2,17 +2,17 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Runs the README's two commands, examples/demo.sh and test/run.sh, on bare systems: each is made by
-# debootstrap, from where this machine's own packages come, and gets the release's source archive in
-# a folder whose name has spaces and accents. The user there has no root rights, but sudo. Prints a
-# table.
+# Runs the README's two commands, examples/demo.sh and test/run.sh, on bare systems. Each system is
+# made by debootstrap, from the mirror of this machine's own packages. It gets the release's source
+# archive, in a folder whose name has spaces and accents. The user there is not root, but may use
+# sudo. Prints a table.
 #
-#   test/qa/systems.sh [NAME …]    debian-12 debian-13 ubuntu-24.04 debian-12-i386; all unless given
+#   test/qa/systems.sh [NAME …]    debian-12 debian-13 ubuntu-24.04 debian-12-i386; default: all
 #
-# Needs root and debootstrap, 12 GB of disk for the system under test, and a quarter of an hour for
-# each. Everything lies in build-systems/: NAME.demo.log and NAME.tests.log say what happened; a
-# system is deleted after its run unless TMINI_KEEP=yes; packages are kept in cache/ for the next
-# time. TMINI_DEBIAN_MIRROR and TMINI_UBUNTU_MIRROR name other mirrors.
+# Needs root, debootstrap, 12 GB of disk space, and a quarter of an hour per system. All files are
+# in build-systems/. The logs are NAME.demo.log and NAME.tests.log. A system is deleted after its
+# run, unless TMINI_KEEP=yes; its packages are kept in cache/ for the next run. TMINI_DEBIAN_MIRROR
+# and TMINI_UBUNTU_MIRROR choose other mirrors.
 # Exit status: 0 all green, 1 not, 2 wrong usage, 77 it cannot be done here.
 
 set -eu
@@ -31,7 +31,7 @@ usage() {
     exit 2
 }
 
-# describe NAME: sets what debootstrap and apt have to know.
+# describe NAME: sets the variables for debootstrap and apt.
 describe() {
     architecture=amd64 components=main script="" personality=linux64
     mirror=${TMINI_DEBIAN_MIRROR:-$(mirror_of debian)}
@@ -40,7 +40,7 @@ describe() {
         debian-13) suite=trixie ;;
         debian-12-i386) suite=bookworm architecture=i386 personality=linux32 ;;
         ubuntu-24.04)
-            # All of Ubuntu's releases since 2007 are made by the same script.
+            # debootstrap uses this script for all Ubuntu releases since 2007.
             suite=noble components="main universe" script=gutsy
             mirror=${TMINI_UBUNTU_MIRROR:-$(mirror_of ubuntu)}
             ;;
@@ -48,15 +48,14 @@ describe() {
     esac
 }
 
-# Without the distribution's keys here the first packages cannot be verified; the system is thrown
-# away.
+# Without the distribution's keys on this machine, the first packages cannot be verified. This is
+# acceptable, because the system is deleted afterwards.
 verification() {
     keys=/usr/share/keyrings/ubuntu-archive-keyring.gpg
     [ "$suite" != noble ] || [ -e "$keys" ] || echo --no-check-gpg
 }
 
-# make_system NAME: a minimal system with sudo and nothing else, that uses this machine's network
-# settings.
+# make_system NAME: makes a minimal system with sudo and this machine's network settings.
 make_system() {
     mkdir -p "$work/cache/$1"
     # shellcheck disable=SC2046 # one option or none
@@ -75,7 +74,7 @@ make_system() {
     echo 'user ALL=(ALL) NOPASSWD: ALL' >"$system/etc/sudoers.d/user"
 }
 
-# The release's source archive, and nothing else.
+# Unpacks the release's source archive in the system.
 unpack_project() {
     python3 -B "$root/.ci/pack.py" --allow-placeholder "$work/release" >/dev/null
     mkdir -p "$system$folder"
@@ -83,8 +82,8 @@ unpack_project() {
     chroot "$system" chown -R user: /home/user
 }
 
-# as_user NAME COMMAND…: in the project's folder; the environment is a login's, but for what the
-# network needs. The mounts vanish with the last process.
+# as_user NAME COMMAND…: runs the command in the project's folder, with the environment of a login
+# and the network's settings. The mounts disappear with the last process.
 as_user() {
     name=$1
     shift
@@ -102,12 +101,12 @@ as_user() {
     ' sh "$system" "$work/cache/$name/archives" "$personality" "$folder" "$@" </dev/null
 }
 
-# count STATUS LOG: ctest's lines of that ending.
+# count STATUS LOG: prints the number of ctest's lines with this status.
 count() {
     grep -c "^ *[0-9]*/[0-9]* Test *#.*$1" "$2" || true
 }
 
-# reasons NAME: why tests were skipped, and which have failed.
+# reasons NAME: prints the tests that failed, and why others were skipped.
 reasons() {
     failed=$(sed -n 's/.* - \(.*\) (\(Failed\|Timeout\|Not Run\|SEGFAULT\)).*$/\1/p' \
         "$work/$1.tests.log" | head -n 8 | tr '\n' ' ')
@@ -117,7 +116,7 @@ reasons() {
     printf '%s' "${skipped%;}"
 }
 
-# run_system NAME: one row of the table.
+# run_system NAME: runs both commands and adds a row to the table.
 run_system() {
     describe "$1"
     system=$work/$1
@@ -135,7 +134,7 @@ run_system() {
     shown=$(date +%s)
     as_user "$1" test/run.sh >"$work/$1.tests.log" 2>&1 || tests=$?
     end=$(date +%s)
-    # Only there skipped tests say why.
+    # Only this log has the reasons why tests were skipped.
     : >"$work/$1.last.log"
     cp "$system$folder/build/Testing/Temporary/LastTest.log" "$work/$1.last.log" || true
     [ "$(grep -c '^Total Test time' "$work/$1.tests.log")" -eq 1 ] || tests=1

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Fuzz target: the whole driver as a hostile world would use it. The input is a list of actions:
- * bytes received, by interrupt, block or DMA, time passing, polls, commands at any moment, a port
- * that takes none, one or both bytes, or fails. Nothing may crash, hang or lose count, and nothing
- * but whole two-byte commands may leave.
+/* Fuzz target: the whole driver in a hostile environment. The input is a list of actions: bytes
+ * received by interrupt or DMA, time passing, polls, commands at any moment, and a port that takes
+ * none, one or both bytes, or fails. The driver must not crash, hang or miscount bytes, and must
+ * send only whole two-byte commands.
  *
- * Or the bytes come from a turning lidar (turning_lidar.h) over a line that loses and damages some,
- * also in the middle of a poll: then no scan may mix two revolutions, or be reported as complete if
- * it is not. */
+ * Alternatively the bytes come from a turning lidar (turning_lidar.h) on a line that loses and
+ * damages some, also in the middle of a poll. Then no scan may mix two revolutions, and no scan
+ * with missing points may be reported as complete. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -24,7 +24,7 @@
 #define POINTS 700u
 #define FEW_POINTS 100u
 
-/* Bits of the first byte; two more are the filter's. */
+/* Bits of the input's first byte; two more bits are the filter. */
 enum {
     DMA = 1,
     STREAMING = 2,
@@ -39,15 +39,15 @@ static struct {
     size_t left;
     uint32_t now_ms;
     int write_behaviour;
-    size_t position; /* Of the DMA in the ring's memory. */
+    size_t position; /* DMA's position in the ring's memory. */
     uint32_t fed;
     bool half_sent;
     bool dma;
-    bool is_true;                     /* The bytes are the turning lidar's, */
-    uint8_t reply[TURNING_REPLY_MAX]; /* which answers next with this, */
+    bool is_true;                     /* The bytes come from the turning lidar. */
+    uint8_t reply[TURNING_REPLY_MAX]; /* Its next reply. */
     size_t reply_size;
-    unsigned surprises;  /* and sends as many packets while the clock is read, */
-    bool surprise_first; /* before it or after. */
+    unsigned surprises;  /* At this many readings of the clock, a packet arrives, */
+    bool surprise_first; /* before the clock is read, or after. */
     tmini_t lidar;
     uint8_t rx[RX_SIZE];
     tmini_point_t points[POINTS];
@@ -109,7 +109,7 @@ static void receive_byte(uint8_t byte)
 static void arrive(const uint8_t *bytes, size_t count)
 {
     if (!turning_received(bytes, count)) {
-        world.left = 0; /* Enough for one input. */
+        world.left = 0; /* End this input. */
         return;
     }
     for (size_t i = 0; i < count; i++) {
@@ -117,7 +117,7 @@ static void arrive(const uint8_t *bytes, size_t count)
     }
 }
 
-/* The next packet; of its bytes those from `from` up to `to` are lost. */
+/* The lidar sends its next packet, of which the bytes from `from` up to `to` are lost. */
 static void pass_packet(size_t from, size_t to, uint8_t flipped)
 {
     uint8_t packet[TURNING_PACKET_MAX];
@@ -185,7 +185,7 @@ static void receive(uint8_t count)
     }
 }
 
-/* What a lidar would say, so that the fuzzer need not find a checksum first. */
+/* Receives a valid packet: the fuzzer would hardly find a valid checksum by chance. */
 static void receive_packet(uint8_t ct, uint8_t samples)
 {
     uint8_t packet[10 + 3 * 40] = {0xAA, 0x55, ct, (uint8_t)((ct & 1) != 0 ? 1 : 1 + samples % 40)};
@@ -209,7 +209,7 @@ static void receive_packet(uint8_t ct, uint8_t samples)
     }
 }
 
-/* The same for replies: of each shape that there is, with any content. */
+/* Receives a reply with a valid header and any content. */
 static void receive_reply(uint8_t shape)
 {
     static const uint8_t headers[][7] = {{0xA5, 0x5A, 5, 0, 0, 0x40, 0x81},
@@ -223,7 +223,7 @@ static void receive_reply(uint8_t shape)
     receive(shape % 4u == 0 ? 0 : header[2]);
 }
 
-/* What may be asked for at any time. */
+/* Calls the functions that are allowed at any time. */
 static void look_around(void)
 {
     tmini_ct_info_t info;
@@ -288,7 +288,7 @@ static void act(void)
     }
 }
 
-/* Packets pass; they come, or all is lost; and are polled for, or not. */
+/* The lidar sends this many packets: all arrive, or all are lost; with polls in between, or not. */
 static void turn(unsigned packets, bool come, bool polled)
 {
     for (unsigned i = 0; i < packets; i++) {
@@ -299,7 +299,7 @@ static void turn(unsigned packets, bool come, bool polled)
     }
 }
 
-/* Of a packet, or of many, something is lost, or wrong. */
+/* Bytes of one or of many packets are lost or damaged. */
 static void damage(uint8_t how)
 {
     const uint8_t from = take();
@@ -345,7 +345,7 @@ static void act_truly(void)
     }
 }
 
-/* It has been started, scans, and goes on with this input. */
+/* Brings the turning lidar and the driver to scanning, before the input's actions. */
 static void start_truly(bool ct_information)
 {
     turning_begin(ct_information);
@@ -369,7 +369,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     world.dma = (setup & DMA) != 0;
     world.is_true = (setup & TRUE_LIDAR) != 0;
     const bool streaming = (setup & STREAMING) != 0 && !world.is_true;
-    world.now_ms = 0u - (uint32_t)setup * 100u; /* The clock wraps on the way. */
+    world.now_ms = 0u - (uint32_t)setup * 100u; /* So that the clock wraps around. */
     const tmini_config_t config = {
         .port = &port,
         .port_context = &world,

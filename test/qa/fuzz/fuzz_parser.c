@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Fuzz target: any bytes, in any chunks, through parser, packets and scans. They must come to the
- * same frames, points and scans as the reference decoder finds, and every byte must be accounted
- * for. Random bytes are hardly ever a packet: the mutator below knows how to make them. */
+/* Fuzz target: parser, packets and scans decode any bytes, in any chunks. They must find the same
+ * frames, points and scans as the reference decoder, and account for every byte. Random bytes are
+ * hardly ever a packet: the mutator below makes packets. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -18,13 +18,13 @@
 #include "tmini/parts/tmini_builder.h"
 
 #define FRAMES_MAX 4096
-#define SCAN_POINTS 200 /* Fewer than a scan has: overflow is part of the game. */
-#define SETUP_SIZE 4u   /* The first bytes of the input. */
+#define SCAN_POINTS 200 /* Fewer than a scan may have, to test the overflow as well. */
+#define SETUP_SIZE 4u   /* The first bytes of the input choose the set-up. */
 
 static reference_item_t expected[FRAMES_MAX];
 static size_t expected_count;
 static size_t seen;
-static size_t scanned; /* Of those, before the scan that is to come next. */
+static size_t scanned; /* Number of frames before the next scan. */
 
 static void demand(int condition)
 {
@@ -54,7 +54,7 @@ static void compare_packet(const tmini_packet_t *packet)
     }
 }
 
-/* Point by point, as far as they fit. */
+/* Compares the points that fit in the scan. */
 static void compare_points(const tmini_scan_t *scan, const reference_scan_t *wanted)
 {
     size_t at = 0;
@@ -71,7 +71,7 @@ static void compare_points(const tmini_scan_t *scan, const reference_scan_t *wan
     demand(at == scan->count);
 }
 
-/* The packet that was seen last has ended it. */
+/* The last packet has ended this scan. */
 static void compare_scan(const tmini_scan_t *scan)
 {
     reference_scan_t wanted;
@@ -179,7 +179,7 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max_size, unsi
 
 static random_t chance;
 
-/* What looks like a packet becomes one. */
+/* Makes most byte sequences that look like a packet valid packets. */
 static void seal(uint8_t *data, size_t size)
 {
     for (size_t at = SETUP_SIZE; at + ENCODE_PACKET_HEADER <= size; at++) {
@@ -196,7 +196,8 @@ static void seal(uint8_t *data, size_t size)
     }
 }
 
-/* Puts a packet of up to `lsn` samples over `width` after the rest; returns the new size. */
+/* Appends a packet with `lsn` samples from angle `from` to `from` + `width`; with `lsn` 0 a start
+ * packet. Returns the new size. */
 static size_t append(uint8_t *data, size_t size, size_t max_size, uint8_t lsn, uint16_t from,
                      uint16_t width)
 {
@@ -217,7 +218,7 @@ static size_t append(uint8_t *data, size_t size, size_t max_size, uint8_t lsn, u
     return size + encode_packet(&data[size], &packet);
 }
 
-/* A revolution, more or less: 360 degrees by a few packets, some of which are not there. */
+/* Appends about a revolution: 360 degrees in a few packets, some of which may be missing. */
 static size_t append_turn(uint8_t *data, size_t size, size_t max_size)
 {
     const uint32_t packets = 1 + random_below(&chance, 12);

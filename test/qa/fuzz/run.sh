@@ -5,13 +5,13 @@
 # Fuzzes the parser and the driver with libFuzzer under the address and undefined-behaviour
 # sanitizers:
 #
-#   test/qa/fuzz/run.sh [SECONDS]      for each target; 60 unless given
-#   test/qa/fuzz/run.sh --keep         puts what was collected, minimised, into corpus_….txt
-#   test/qa/fuzz/run.sh --coverage     what of lib/ the kept inputs reach
+#   test/qa/fuzz/run.sh [SECONDS]      runs each target for this time (60 by default)
+#   test/qa/fuzz/run.sh --keep         writes the collected inputs, minimised, to corpus_….txt
+#   test/qa/fuzz/run.sh --coverage     prints how much of lib/ the inputs in corpus_….txt reach
 #
-# What it finds lies in build-fuzz/; give that file to build-fuzz/fuzz_… to see it again. The inputs
-# that it collected stay in build-fuzz/corpus_… and are where the next run goes on; the first one
-# begins with those that are kept, an input per line, in base64.
+# An input that fails is a file in build-fuzz/: give it to build-fuzz/fuzz_… to reproduce the
+# failure. Collected inputs stay in build-fuzz/corpus_…, where the next run continues. The first run
+# begins with those in corpus_….txt, one input per line, in base64.
 
 set -eu
 
@@ -27,7 +27,7 @@ if ! echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' |
     exit 0
 fi
 
-# sources TARGET: what it consists of, a file per line.
+# sources TARGET: prints its source files, one per line.
 sources() {
     printf '%s\n' "$root/test/qa/fuzz/$1.c" "$support/invariants.c" "$support/encoder.c" \
         "$support/reference_decoder.c" "$root"/lib/src/*.c
@@ -37,7 +37,7 @@ sources() {
     esac
 }
 
-# compile PROGRAM TARGET FLAG…
+# compile PROGRAM TARGET FLAG…: compiles the target to $build/PROGRAM.
 compile() {
     program=$1
     target=$2
@@ -46,7 +46,7 @@ compile() {
         "$@" -I"$root/lib/include" -I"$root/lib/src" -I"$support" -o "$build/$program"
 }
 
-# unpack TARGET: the kept inputs, into its corpus.
+# unpack TARGET: writes the inputs in corpus_TARGET.txt to its corpus folder.
 unpack() {
     mkdir -p "$build/corpus_$1"
     count=0
@@ -66,7 +66,7 @@ fuzz() {
     [ "$status" -eq 0 ] || { echo "$1: found something, see $build/$1.log"; exit 1; }
 }
 
-# Of inputs that reach the same edges of the program, the shortest.
+# keep TARGET: of inputs that reach the same edges of the program, keeps only the shortest.
 keep() {
     rm -rf "$build/kept"
     mkdir -p "$build/kept"
@@ -79,7 +79,7 @@ keep() {
     wc -lc "$root/test/qa/fuzz/corpus_$1.txt"
 }
 
-# Compiled without sanitizers, with counters.
+# cover TARGET: runs the kept inputs in a program with coverage counters, without sanitizers.
 cover() {
     compile "cover_$1" "$1" -fsanitize=fuzzer -fprofile-instr-generate -fcoverage-mapping
     rm -rf "$build/corpus_$1"

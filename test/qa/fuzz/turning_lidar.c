@@ -8,8 +8,8 @@
 #include "encoder.h"
 #include "reference_decoder.h"
 
-/* As a unit at 6.08 Hz, section 9.6, but that no packet after the first is so small that its loss
- * without a trace would be within the jitter of 4 degrees. */
+/* As a unit at 6.08 Hz (section 9.6), but the last packet is larger: the loss of any packet but the
+ * first leaves a hole of more than 4 degrees, which cannot be jitter. */
 #define PACKETS 18u
 #define LAST_SAMPLES 17u
 #define STEP_Q6 35u
@@ -22,7 +22,7 @@ static struct {
     uint8_t crc;
     uint32_t frequency_chz;
     uint16_t revolution;
-    unsigned packet; /* Of it, to come next. */
+    unsigned packet; /* The next packet of this revolution. */
     uint8_t received[RECEIVED_MAX];
     size_t received_count;
     const char *wrong;
@@ -131,7 +131,7 @@ bool turning_received(const uint8_t *bytes, size_t count)
     return true;
 }
 
-/* ---- What was delivered ---- */
+/* ---- Checks of the delivered scans ---- */
 
 static void complain(bool is_wrong, const char *what)
 {
@@ -161,7 +161,8 @@ void turning_judge(const tmini_scan_t *scan)
     complain(lacks && scan->gaps == 0, "something is missing, and no gap says so");
 }
 
-/* `context`: whether a packet has come that was not sent so. */
+/* Sets `context`, a bool, if this packet was never sent: remains of others look like it by
+ * chance. */
 static void look_for_chance(void *context, const reference_item_t *item)
 {
     uint8_t sent[TURNING_PACKET_MAX];

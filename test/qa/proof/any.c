@@ -3,14 +3,14 @@
 
 #include "proof.h"
 
-/* Either, unless a proof is made for one at a time. */
+/* Both ways, unless a proof is run for each of them. */
 #ifndef FED_BY_DMA
 #define FED_BY_DMA any_bool()
 #endif
 
 uint8_t ring_memory[LARGE_RING_SIZE];
 
-static tmini_ring_t *fed; /* NULL: nothing comes. */
+static tmini_ring_t *fed; /* NULL: no byte arrives. */
 static bool has_come;
 
 tmini_parser_t nondet_parser(void);
@@ -20,7 +20,7 @@ bool any_bool(void)
     return (nondet_byte() & 1u) != 0;
 }
 
-/* The producer may know of some room already. */
+/* The producer may already know that there is some room. */
 static void let_stop_be_ahead(tmini_ring_t *ring)
 {
     ring->origin = (uintptr_t)&ring->memory[ring->head & (ring->size - 1)] - ring->head;
@@ -91,8 +91,8 @@ bool have_bytes_come(void)
     return has_come;
 }
 
-/* What the producer may do between two accesses of the consumer: in a CPU-fed ring, store bytes as
- * far as there is room, and close it, full or not. */
+/* Does what the producer may do between two accesses of the consumer. In a ring fed by the CPU, it
+ * may store bytes if there is room, and close the ring, whether full or not. */
 static void come(tmini_ring_t *ring)
 {
     const size_t count = nondet_byte();

@@ -1,28 +1,30 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* memory_model
+/* memory_model [--long]
  *
- * Explores the ring's protocol exhaustively as two cores may see it: every interleaving, and every
- * value that C11's release and acquire let a load return. First as it is, then with one barrier at
- * a time weakened to relaxed. Exit status 0 if it holds as it is, and each weakened barrier does
- * what the table at the end says: break it, or (those that order nothing by themselves) not.
+ * Explores the ring's protocol exhaustively, as two cores may see it: every interleaving, and
+ * every value that a load may return with C11's release and acquire. It does so first with all
+ * barriers, and then with one barrier at a time weakened to relaxed. Exit status 0 if the
+ * protocol holds with all barriers, and if each weakened barrier has the effect given in the
+ * table at the end: the protocol breaks, or still holds (for a barrier that is not needed
+ * alone).
  *
- * The model. Each index has a list of the values stored to it, by its one writer. A thread has a
- * view: how far it has seen each list. A load returns any value from there on, and an acquire load
- * takes over the view that its release store had; that a later relaxed store of the same thread
- * would do as well in C11, but no longer in C++20, is not relied upon. The ring's bytes are plain
- * memory when the CPU feeds it: two accesses that are not ordered are a race. DMA writes them
- * behind the CPU's back: a load of one returns any that the view permits, and the hardware's writes
- * are in the order of time, that is behind what was published before.
+ * The model: each index has only one writer, and a list of the values stored to it. A thread's
+ * view is the place that it has reached in each list. A load returns any value from there on. An
+ * acquire load also takes over the view that the release store had. The model does not let a
+ * later relaxed store by the same thread release, too: C11 does, but no longer C++20. If the CPU
+ * feeds the ring, its bytes are plain memory: two accesses that are not ordered are a race. DMA
+ * writes the bytes without the CPU: a load of a byte returns any value that the view permits,
+ * and the hardware writes in the order of time, after whatever was published before.
  *
- * Indices have 8 bits, of which a quarter, 64, closes the ring: they wrap.
+ * Indices have 8 bits, so that they wrap; adding 64, a quarter of their range, closes the ring.
  *
- * What is asked: no race; the bytes come in order; where some are missing the ring was found
- * closed, and nowhere else; whoever finds it closed finds what was refused before counted; with
- * DMA, what was read and found intact afterwards is the right byte.
+ * The model checks: there is no race; bytes come in order; if and only if bytes are missing, the
+ * ring was found closed there; when it is found closed, the bytes refused before are counted; with
+ * DMA, a byte that was read and then found intact is the right byte.
  *
- * States that have been seen are remembered by 64 bits of hash. */
+ * States already explored are stored as hashes of 64 bits. */
 
 #include <inttypes.h>
 #include <stdbool.h>
@@ -34,32 +36,32 @@
 enum { HEAD, TAIL, OVERRUN, CELL, CELLS = 4, LOCATIONS = CELL + CELLS };
 enum { PRODUCER, CONSUMER, THREADS };
 
-/* Where a thread's program stands when it has come to its end. */
+/* The step of a thread that has ended. */
 #define ENDED 255
 
 #define STORES_MAX 12
 
-/* By this much the producer moves its index to close the ring. */
+/* The producer adds this to its index to close the ring. */
 #define CLOSED 64u
 
 typedef struct {
     uint8_t value;
-    uint8_t refused; /* Before it, if it closes the ring. */
+    uint8_t refused; /* If this store closes the ring: number of bytes refused before it. */
     uint8_t seen[LOCATIONS];
     uint8_t clock[THREADS];
 } store_t;
 
 typedef struct {
-    uint8_t at; /* Where its program stands. */
+    uint8_t at; /* Its next step. */
     uint8_t seen[LOCATIONS];
     uint8_t clock[THREADS];
-    uint8_t unfenced[LOCATIONS]; /* What a fence would let it see. */
-    uint8_t index;               /* Its own: head, or tail. */
-    uint8_t stop;                /* The producer's: where it looks at the tail again. */
-    uint8_t value;               /* Loaded last, */
-    uint8_t refused; /* and what its store tells of that: or, of the producer, all of them. */
-    uint8_t turns;   /* Bytes put, or looks taken. */
-    uint8_t last;    /* The byte taken last. */
+    uint8_t unfenced[LOCATIONS]; /* The view that it would have after a fence. */
+    uint8_t index;               /* Its own index: head or tail. */
+    uint8_t stop;                /* Producer: the index at which it loads the tail again. */
+    uint8_t value;               /* The last value loaded. */
+    uint8_t refused;             /* Consumer: that of the loaded store; producer: the total. */
+    uint8_t turns;               /* Number of bytes put, or of turns of the parser. */
+    uint8_t last;                /* The last byte taken. */
     bool found_closed;
 } thread_t;
 
@@ -68,14 +70,14 @@ typedef struct {
     uint8_t counts[LOCATIONS];
     store_t stores[LOCATIONS][STORES_MAX];
     uint8_t bytes[CELLS];
-    uint8_t written[CELLS]; /* By the producer's clock. */
-    uint8_t read[CELLS];    /* By the consumer's. */
+    uint8_t written[CELLS]; /* Time of the last write, by the producer's clock. */
+    uint8_t read[CELLS];    /* Time of the last read, by the consumer's clock. */
 } state_t;
 
-/* Each access that is ordered. */
+/* The accesses that have an order. */
 typedef enum {
     NOTHING,
-    CELLS_OWN, /* Of DMA's bytes: never weakened. */
+    CELLS_OWN, /* Accesses to DMA's bytes: never weakened. */
     PUT_LOADS_TAIL,
     PUT_STORES_HEAD,
     REFUSE_STORES_OVERRUN,
@@ -104,7 +106,7 @@ static uint64_t states;
 static uint64_t *seen_hashes;
 static size_t seen_capacity;
 
-/* ---- States that have been seen ---- */
+/* ---- States already explored ---- */
 
 static uint64_t hash_of(const state_t *state)
 {
@@ -165,7 +167,7 @@ static void see(uint8_t *seen, const uint8_t *other, size_t count)
     }
 }
 
-/* The load's `choice`th possibility, if there are this many. */
+/* Loads the possible value with the number `choice`; returns false if there are fewer. */
 static bool load(state_t *state, thread_t *thread, unsigned location, access_t access,
                  unsigned choice)
 {
@@ -185,7 +187,7 @@ static bool load(state_t *state, thread_t *thread, unsigned location, access_t a
     return true;
 }
 
-/* By the location's one writer, which has seen all that is there. */
+/* Stores a value. Only the location's writer calls this: it has seen all earlier values. */
 static void store(state_t *state, thread_t *thread, unsigned location, access_t access,
                   unsigned value)
 {
@@ -225,12 +227,12 @@ static uint8_t read_byte(state_t *state, unsigned at)
     return state->bytes[at];
 }
 
-/* ---- tmini_ring_put() and tmini_ring_gap(), an access a step ---- */
+/* ---- tmini_ring_put() and tmini_ring_gap(), one access per step ---- */
 
 enum { PUT_BEGINS, PUT_BYTE, PUT_HEAD, PUT_REFUSES, PUT_REFUSES_FULL, PUT_CLOSES, GAP_CLOSE };
 
-/* Of the choices at the beginning of a put, those from here on are a gap instead: the byte was lost
- * before it came to the ring. */
+/* At the beginning of a put, choices from this number on mean a gap: the byte was lost before it
+ * reached the ring. */
 #define GAP STORES_MAX
 
 static void next_put(thread_t *thread)
@@ -240,7 +242,7 @@ static void next_put(thread_t *thread)
     thread->value = 0;
 }
 
-/* At its stop the producer looks how far it may go: not beyond the memory's end, either. */
+/* At its stop, the producer determines how far it may go: at most to the end of the memory. */
 static bool look_ahead(state_t *state, thread_t *thread, unsigned choice)
 {
     const uint8_t refused = thread->refused;
@@ -335,7 +337,7 @@ static bool put(state_t *state, unsigned choice)
     return choice == 0;
 }
 
-/* ---- The parser: takes a byte, or, if there is none and the ring is closed, opens it ---- */
+/* ---- The parser: takes a byte; if there is none and the ring is closed, opens the ring ---- */
 
 enum {
     TAKE_BEGINS,
@@ -369,13 +371,13 @@ static void judge(thread_t *thread, uint8_t byte)
     thread->found_closed = false;
 }
 
-/* What tmini_ring_ahead() says of the head loaded. */
+/* The result of tmini_ring_ahead() with the loaded head. */
 static uint8_t ahead(const thread_t *thread)
 {
     return (uint8_t)(thread->value - thread->index);
 }
 
-/* The parser's looks at the head: intact_bytes(), then pass_lost_bytes(). */
+/* The parser loads the head: in intact_bytes(), then in pass_lost_bytes(). */
 static bool look(state_t *state, thread_t *thread, unsigned choice)
 {
     if (!load(state, thread, HEAD, TAKE_LOADS_HEAD, choice)) {
@@ -456,7 +458,7 @@ static bool take(state_t *state, unsigned choice)
 
 /* ---- DMA, and tmini_ring_publish() in its interrupts ---- */
 
-/* Writes on, or publishes; it is never more than half the ring ahead of what it has published. */
+/* DMA writes a byte, or publishes its position. At most half the ring is not yet published. */
 static bool run_dma(state_t *state, unsigned choice)
 {
     thread_t *const thread = &state->threads[PRODUCER];
@@ -478,7 +480,7 @@ static bool run_dma(state_t *state, unsigned choice)
 
 enum { DMA_BEGINS, DMA_DROPS, DMA_BYTE, DMA_FENCE, DMA_AGAIN };
 
-/* What the parser does: drops what may be overwritten, reads, asks whether it was intact. */
+/* The parser drops bytes that may be overwritten, reads a byte, and checks that it was intact. */
 static bool take_from_dma(state_t *state, unsigned choice)
 {
     thread_t *const thread = &state->threads[CONSUMER];
@@ -514,7 +516,7 @@ static bool take_from_dma(state_t *state, unsigned choice)
             return false;
         }
         if (thread->value - thread->index <= (int)window && thread->last != thread->index + 1) {
-            wrong = "another byte is taken for intact";
+            wrong = "a wrong byte is found intact";
         }
         thread->index++;
         thread->last = 0;
@@ -559,7 +561,7 @@ static void begin(state_t *state)
     }
 }
 
-/* Returns what goes wrong, or NULL. */
+/* Returns the first error found, or NULL. */
 static const char *run(bounds_t within, access_t weak)
 {
     state_t state;

@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the parser's functions promise to their callers. proof_parser.c proves it for the parser;
- * parser_stub.c, which replaces the parser in the driver's proofs, assumes it and nothing else. */
+/* The contract of the parser's functions. proof_parser.c proves that the parser keeps it. stubs.c,
+ * which replaces the parser in the driver's proofs, assumes only this contract. */
 
 #ifndef PARSER_CONTRACT_H
 #define PARSER_CONTRACT_H
 
 #include "proof.h"
 
-/* What no function changes but init and await. */
+/* True if the members are equal that only init and await may change. */
 bool same_expectations(const tmini_parser_t *before, const tmini_parser_t *after);
 
-/* Of tmini_parser_next(), which has returned `type`. */
+/* The contract of tmini_parser_next(), which has returned `type`. */
 bool next_keeps_its_word(const tmini_parser_t *before, const tmini_parser_t *after,
                          tmini_frame_type_t type);
 
-/* Of tmini_parser_skip_all() and tmini_parser_abandon(). */
+/* The contract of tmini_parser_skip_all() and tmini_parser_abandon(). */
 bool skip_keeps_its_word(const tmini_parser_t *before, const tmini_parser_t *after);
 
 #endif

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The angle of each sample is the exact rational value of section 5, rounded to nearest, halves up:
- * for every FSA and LSA. One number of samples, SAMPLES, and one index, INDEX, are tried at a time:
- * so all factors and divisors are constants. */
+/* Proves for every FSA and LSA that the angle of each sample is the exact rational value of section
+ * 5, rounded to nearest (halves up). Each run has one number of samples, SAMPLES, and one index,
+ * INDEX, so that all factors and divisors are constants. */
 
 #include "proof.h"
 
-/* 0 to 23039, from 16 bits with the check bit. */
+/* The angle, 0 to 23039, of a field with 16 bits, including the check bit. */
 static uint32_t angle_of(uint16_t field)
 {
     const uint32_t angle = field >> 1;
@@ -34,7 +34,7 @@ void prove_angle(void)
     const uint32_t from = angle_of(fsa);
     const uint32_t to = angle_of(lsa) + (angle_of(lsa) < from ? 23040 : 0);
     const uint32_t intervals = SAMPLES - 1;
-    /* The greatest whole number that is not above from + index * (to - from) / intervals + 1/2. */
+    /* The result is the largest integer not above from + index * (to - from) / intervals + 1/2. */
     const uint32_t angle = point.angle_q6 + (point.angle_q6 < from ? 23040u : 0u);
     const uint32_t turned = angle - from;
     const uint32_t twice = 2 * index * (to - from) + intervals;

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The proofs' TMINI_ATOMIC_HEADER: at each access of an index that both sides use, the other side
- * may act (any.c). In what order two cores see that is memory_model.c's subject. */
+/* The proofs' TMINI_ATOMIC_HEADER: at each access to an index that both sides use, the other side
+ * may act (any.c). memory_model.c checks the order in which two cores see these accesses. */
 
 #ifndef PROOF_ATOMIC_H
 #define PROOF_ATOMIC_H
 
 #include <stddef.h>
 
-/* The checker does not know it. */
+/* The model checker does not know this builtin. */
 #define __builtin_assume_aligned(address, alignment) (address)
 
 void proof_access(void);

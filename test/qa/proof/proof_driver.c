@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The driver, from any sound state: whatever phase and operation, whatever the port answers and the
- * clock says, whatever is set up. Each step of tmini_poll() and each public function leaves a sound
- * state; only events that there are become pending; and only whole commands of two bytes leave.
- * stubs.c stands in for parser, packets, scans and CT information, by their contracts. The steps
- * are private, so the source is included. */
+/* Proofs of the driver, from any sound state: in any phase and operation, with any configuration,
+ * any result of the port and any time. Each step of tmini_poll() and each public function leaves a
+ * sound state; only existing events become pending; and only whole commands of two bytes are sent.
+ * stubs.c replaces parser, packets, scans and CT information by their contracts. The source is
+ * included, because the steps are private. */
 
 #include "tmini.c"
 
@@ -17,12 +17,12 @@ static tmini_t lidar;
 static tmini_timing_t timing;
 static tmini_point_t points[POINTS];
 static tmini_point_t spare_points[POINTS];
-static bool is_half_sent; /* A command's first byte has left, and not its second. */
+static bool is_half_sent; /* Only the first byte of a command has been sent. */
 
 tmini_t nondet_lidar(void);
 tmini_timing_t nondet_timing(void);
 
-/* Section 3. */
+/* The commands of section 3. */
 static bool is_command(uint8_t code)
 {
     return code == 0x60 || code == 0x65 || code == 0x90 || code == 0x92 || code == 0x40 ||
@@ -56,7 +56,7 @@ static void port_restart(void *context)
 
 static tmini_port_t port = {.write = port_write, .now_ms = port_now_ms};
 
-/* The user's step has the finished scan to itself. */
+/* The user's step gets the finished scan, which the driver does not change meanwhile. */
 static void step(const void *data, tmini_scan_t *scan)
 {
     CLAIM(data == lidar.link.step_data && scan == &lidar.scan);
@@ -64,8 +64,8 @@ static void step(const void *data, tmini_scan_t *scan)
     CLAIM(lidar.link.spare_points == NULL || scan->points != lidar.decoder.builder.scan.points);
 }
 
-/* When only listening, no command is being sent. A start follows only an operation that ends with
- * an event. An operation that nobody wanted does not fail. */
+/* In listen-only mode, no command is being sent. A start follows only an operation that ends with
+ * an event. Without a wanted frequency, there is no frequency fault. */
 static bool wish_fits(void)
 {
     const uint8_t phase = lidar.command.phase;
@@ -77,7 +77,7 @@ static bool wish_fits(void)
            (lidar.wanted_chz != 0 || (lidar.monitor.faults & TMINI_FAULT_FREQUENCY) == 0);
 }
 
-/* The next scan is not gathered where the one delivered lies. */
+/* The next scan and the delivered scan are in different buffers. */
 static bool buffers_are_apart(void)
 {
     return lidar.link.spare_points == NULL ||
@@ -192,12 +192,12 @@ void prove_driver_take_event(void)
     const tmini_event_t event = take_event(&lidar);
     CLAIM(is_sound());
     CLAIM(event >= TMINI_EVENT_STARTED && event <= TMINI_EVENT_SCAN);
-    CLAIM((before & ((1u << event) - 1)) == 0); /* The first. */
+    CLAIM((before & ((1u << event) - 1)) == 0); /* It is the first one. */
     CLAIM(lidar.pending == (before ^ 1u << event));
     REACHED();
 }
 
-/* The packet that waits is added, and only then is the next frame looked for. */
+/* A waiting packet is added before the next frame is searched for. */
 void prove_driver_next(void)
 {
     any_polled_lidar();
@@ -246,11 +246,11 @@ void prove_driver_keep_time(void)
     REACHED();
 }
 
-/* What tmini_poll() adds to its steps, which do nothing here. */
+/* Proves tmini_poll() itself; its steps do nothing here. */
 void prove_driver_poll(void)
 {
     any_lidar();
-    ASSUME(!lidar.decoder.builder.ended); /* receive() has added it. */
+    ASSUME(!lidar.decoder.builder.ended); /* receive() has added the waiting packet. */
     const unsigned before = lidar.pending;
     const tmini_event_t event = tmini_poll(&lidar);
     CLAIM(is_sound());
@@ -264,7 +264,7 @@ void prove_driver_poll(void)
 
 /* ---- Commands ---- */
 
-/* Begun only where a query may be; otherwise nothing is touched. */
+/* A query begins only in a state that allows it; otherwise nothing is changed. */
 static void prove_query(tmini_status_t (*query)(tmini_t *), tmini_event_t operation)
 {
     any_lidar();
@@ -310,7 +310,8 @@ void prove_driver_reboot(void)
     REACHED();
 }
 
-/* At once, or after what is under way; nothing if it is to scan already, or being recovered. */
+/* A start begins at once, or after the current operation. It does nothing if the lidar is already
+ * starting, scanning or being recovered. */
 void prove_driver_start(void)
 {
     any_lidar();

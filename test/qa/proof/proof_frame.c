@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Frames: whatever sample is asked for, it is read from where it lies, and from inside the ring. */
+/* Proofs of frames: any sample is read from its place, and from inside the ring. */
 
 #include "proof.h"
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The parser, from any sound state on a ring of 32 bytes (with DMA, 16 of them), whatever comes
- * between two accesses: each step is memory-safe, keeps the state sound and every byte accounted
- * for. The steps are private, so the source is included.
+/* Proofs of the parser, from any sound state on a ring of 32 bytes (with DMA, half of it is
+ * used), with any bytes arriving between two accesses: each step is memory-safe, keeps the state
+ * sound, and accounts for every byte. The source is included, because the steps are private.
  *
- * tmini_parser_next_after() puts these steps together in a loop. It is proved one turn of it from
- * any state that the turns before may have left: at_loop_head(). In classify() the checksum is
- * right or wrong as it likes. */
+ * tmini_parser_next_after() calls these steps in a loop. The proof checks one turn of this loop,
+ * from any state that earlier turns may have left: see at_loop_head(). In the proof of classify(),
+ * any checksum may be right or wrong. */
 
 void at_loop_head(void);
 
@@ -36,13 +36,14 @@ static void begin(void)
     let_bytes_come(&ring);
 }
 
-/* DMA may run as far ahead as it likes; and a ring that the CPU feeds may be closed, and opened. */
+/* Bytes stored since the index was `head`. DMA may be any number of bytes ahead; a ring fed by the
+ * CPU may have been closed and opened meanwhile. */
 static size_t stored_since(size_t head)
 {
     return tmini_ring_is_dma(&ring) ? ring.head - head : tmini_ring_distance(head, ring.head);
 }
 
-/* What has come is in exactly one place. */
+/* Each byte that has arrived is counted exactly once. */
 static bool is_accounted_for(void)
 {
     let_bytes_come(NULL);
@@ -77,7 +78,8 @@ void prove_parser_await(void)
     REACHED();
 }
 
-/* Nothing but looking, unless it fails; and what is complete is what the contract says. */
+/* classify() changes only kind and need, and counters and effort for a failed candidate; a complete
+ * frame is as in the contract. */
 void prove_parser_classify(void)
 {
     begin();
@@ -96,7 +98,7 @@ void prove_parser_classify(void)
     REACHED();
 }
 
-/* What samples contribute to the checksum as section 5 has it: byte by byte. */
+/* The samples' part of the checksum as defined in section 5: byte by byte. */
 static unsigned contribution(const uint8_t *bytes, size_t samples)
 {
     unsigned sum = 0;
@@ -106,7 +108,7 @@ static unsigned contribution(const uint8_t *bytes, size_t samples)
     return sum;
 }
 
-/* Two blocks and a rest. */
+/* 9 samples are two blocks and a rest. */
 void prove_parser_xor_piece(void)
 {
     uint8_t bytes[3 * 9];
@@ -119,7 +121,7 @@ void prove_parser_xor_piece(void)
     REACHED();
 }
 
-/* Wherever the samples lie in the ring, also across its end. */
+/* The samples may be anywhere in the ring, also across its end. */
 void prove_parser_checksum(void)
 {
     ring = any_early_ring(RING_SIZE);
@@ -130,7 +132,7 @@ void prove_parser_checksum(void)
         frame.header[i] = i == LSN ? nondet_byte() : 0;
         sum ^= (unsigned)frame.header[i] << (i % 2 * 8);
     }
-    frame.header[6] = nondet_byte(); /* The checksum itself. */
+    frame.header[6] = nondet_byte(); /* The two bytes of the checksum. */
     frame.header[7] = nondet_byte();
     sum ^= frame.header[6] | (unsigned)frame.header[7] << 8;
     ASSUME(frame.header[LSN] <= 3);
@@ -156,7 +158,7 @@ void prove_parser_skip(void)
     CLAIM(skip_keeps_its_word(&before, &parser));
     const size_t skipped = tmini_ring_tail(&ring) - tail;
     CLAIM(skipped >= 1 && skipped <= unread);
-    CLAIM(place < 1 || place >= skipped || begins_no_frame(&parser, byte)); /* No frame is lost. */
+    CLAIM(place < 1 || place >= skipped || begins_no_frame(&parser, byte)); /* Skips no frame. */
     CLAIM(place != skipped - 1 || parser.frame.last_skipped == byte);
     CLAIM(parser.frame.gap >= before.frame.gap);
     CLAIM(skipped == 1 || skipped + before.effort <= TMINI_PARSER_EFFORT);
@@ -164,7 +166,7 @@ void prove_parser_skip(void)
     REACHED();
 }
 
-/* With DMA, bytes that may have been overwritten are not looked at. */
+/* With DMA, bytes that may have been overwritten are skipped. */
 void prove_parser_intact_bytes(void)
 {
     begin();
@@ -235,9 +237,10 @@ void prove_parser_abandon(void)
     REACHED();
 }
 
-/* ---- The loop of tmini_parser_next_after(), which is cut at its head ---- */
+/* ---- One turn of the loop of tmini_parser_next_after() ---- */
 
-/* In place of classify() and skip(): they may be called so, and do no more than was proved. */
+/* These two replace classify() and skip(): they check how they are called, and may do anything that
+ * the proofs above allow. */
 
 enum verdict any_classify(tmini_parser_t *same, size_t unread)
 {
@@ -270,8 +273,8 @@ void any_skip(tmini_parser_t *same, size_t unread)
 static bool is_second_turn;
 static unsigned rank_before;
 
-/* How many turns without effort may follow, if nothing comes: one in which a candidate turns out
- * to be longer than what there is, and one that opens a closed ring. */
+/* How many turns without effort may follow if no byte arrives: in one, a candidate needs more bytes
+ * than there are, and another opens a closed ring. */
 static unsigned rank(void)
 {
     let_bytes_come(NULL);
@@ -279,9 +282,9 @@ static unsigned rank(void)
     return is_enough ? 2 : tmini_ring_is_closed(&ring) ? 1 : 0;
 }
 
-/* Called where each turn begins: prove.py puts it there. What holds before a turn, any sound state
- * without a frame, as release_frame() leaves it, holds before the next one. And each turn has done
- * some of the work that there may be, or leads nearer to the end, unless something has come
+/* prove.py inserts a call of this function at the beginning of each turn. It proves: if the state
+ * is sound and without a frame before a turn, it is so before the next one. And each turn costs
+ * some of the limited effort, or brings the end of the loop nearer, unless bytes have arrived
  * meanwhile. */
 void at_loop_head(void)
 {
@@ -308,7 +311,7 @@ void prove_parser_next(void)
     CLAIM(next_keeps_its_word(&before, &parser, type));
     CLAIM((type == TMINI_FRAME_MORE) == (parser.effort >= TMINI_PARSER_EFFORT) ||
           type == TMINI_FRAME_PACKET || type == TMINI_FRAME_REPLY);
-    /* The last turn: a damaged candidate, its bytes skipped; or a frame. */
+    /* The last turn may add a damaged candidate and its skipped bytes, or a frame. */
     CLAIM(parser.effort <
           TMINI_PARSER_EFFORT + TMINI_PACKET_SIZE(255) + TMINI_CANDIDATE_EFFORT + 1);
     REACHED();

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The ring, at any indices (also where they wrap): no function leaves its memory; a byte that is
- * put is the byte that is read, or is counted as refused; nothing that is unread is overwritten. */
+/* Proofs of the ring, at any indices (also where they wrap): every access is inside its memory; a
+ * byte that is put is later read unchanged, or is counted as refused; no unread byte is
+ * overwritten. */
 
 #include "proof.h"
 
@@ -21,7 +22,7 @@ void prove_ring_init(void)
         CLAIM(tmini_ring_unread(&ring) == 0 && tmini_ring_overrun(&ring) == 0);
         CLAIM(ring.window == (dma ? size / 2 : size) && !tmini_ring_is_closed(&ring));
     } else {
-        CLAIM(tmini_ring_room(&ring) == 0); /* It refuses every byte. */
+        CLAIM(tmini_ring_room(&ring) == 0); /* The ring refuses every byte. */
         tmini_ring_put(&ring, 0);
         CLAIM(tmini_ring_overrun(&ring) == 1);
     }
@@ -112,7 +113,7 @@ void prove_ring_gap(void)
     REACHED();
 }
 
-/* Bytes come meanwhile. */
+/* Bytes arrive meanwhile. */
 void prove_ring_discard(void)
 {
     tmini_ring_t ring = any_ring();
@@ -135,7 +136,7 @@ void prove_ring_open(void)
     tmini_ring_open(&ring);
     CLAIM(ring_is_sound(&ring) && !tmini_ring_is_closed(&ring));
     CLAIM(tmini_ring_unread(&ring) == 0 && tmini_ring_room(&ring) == RING_SIZE);
-    CLAIM(tmini_ring_distance(tail, tmini_ring_tail(&ring)) == 0); /* Nothing was passed over. */
+    CLAIM(tmini_ring_distance(tail, tmini_ring_tail(&ring)) == 0); /* No byte was skipped. */
     REACHED();
 }
 
@@ -154,7 +155,7 @@ void prove_ring_read(void)
     const uint8_t *const piece = tmini_ring_piece(&ring, offset, &count);
     CLAIM(count >= 1 && count <= wanted);
     if (index < count) {
-        CLAIM(piece[index] == bytes[index]); /* Also reads within bounds. */
+        CLAIM(piece[index] == bytes[index]); /* Also proves that this is inside the memory. */
     }
     REACHED();
 }

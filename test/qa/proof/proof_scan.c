@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Scans and CT information, from any sound state, with any packet of up to three samples. */
+/* Proofs of scans and CT information, from any sound state, with any packet of up to 3 samples. */
 
 #include "proof.h"
 
@@ -44,7 +44,7 @@ void prove_packet_open(void)
     REACHED();
 }
 
-/* Not beyond what there is room for, and every angle is one. */
+/* Writes no more points than there is room for, and only valid values. */
 void prove_packet_points(void)
 {
     any_packet();
@@ -74,7 +74,7 @@ void prove_scan_init(void)
     REACHED();
 }
 
-/* As the driver does it: a packet that closes a scan begins the next one, if it can. */
+/* As in the driver: a packet that ends a scan is then added to the next one. */
 void prove_scan_step(void)
 {
     any_packet();
@@ -107,7 +107,7 @@ void prove_scan_refute(void)
     REACHED();
 }
 
-/* CRC-8/MAXIM as it is defined, a bit at a time. */
+/* CRC-8/MAXIM as defined, bit by bit. */
 static uint8_t crc_of(uint8_t crc, uint8_t byte)
 {
     crc ^= byte;
@@ -132,7 +132,7 @@ static tmini_ct_t any_ct(void)
     return ct;
 }
 
-/* Nothing is trusted but what LastCRC has confirmed. */
+/* Only values that LastCRC has confirmed are trusted. */
 void prove_ct_add(void)
 {
     any_packet();

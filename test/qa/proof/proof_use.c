@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The optional modules: ranges, sectors, mounting, times. Nothing is written outside, nothing
- * overflows, for all angles and all numbers of bins or sectors. */
+/* Proofs of the optional modules: ranges, sectors, mounting, times. For all angles and all numbers
+ * of bins or sectors, nothing is written outside of the arrays, and nothing overflows. */
 
 #include "proof.h"
 #include "tmini/tmini_mount.h"
@@ -31,7 +31,7 @@ static tmini_scan_t any_scan(void)
     return scan;
 }
 
-/* The centre of the bin is not further than half a bin's width. */
+/* Every angle has a bin, for any number of bins. */
 void prove_ranges_bin(void)
 {
     const uint16_t angle_q6 = nondet_half();
@@ -109,7 +109,7 @@ void prove_mount(void)
     REACHED();
 }
 
-/* Within a revolution, and its jitter. */
+/* A point's time is at most a revolution and its jitter. */
 void prove_time(void)
 {
     const tmini_scan_t scan = any_scan();
@@ -117,9 +117,9 @@ void prove_time(void)
     ASSUME(scan.count >= 1 && index < scan.count);
     const uint32_t period_ms = tmini_scan_period_ms(&scan);
     const uint32_t time_us = tmini_point_time_us(&scan, index);
-    /* The last points may lie 4 degrees beyond the circle. The period has been rounded. */
+    /* The last points may be 4 degrees beyond the circle. The period has been rounded. */
     CLAIM(time_us <= (period_ms * 1000u + 500u) / 90 * 91 + 91);
-    /* By the frequency that is reported where it is known; 3 points are no revolution of any. */
+    /* A reported frequency gives the period. 3 points are no revolution at any frequency. */
     CLAIM(scan.frequency_chz == 0 || period_ms == (100000000u / scan.frequency_chz + 500u) / 1000u);
     CLAIM(scan.frequency_chz > 0 || scan.complete || time_us == index * 250u);
     REACHED();

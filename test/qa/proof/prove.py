@@ -6,10 +6,9 @@
 
     prove.py --work DIR [--quick] [--broken] [NAME …]
 
-Each proof is one function prove_NAME() in a file beside this one. All its claims must hold but one: the
-last, that its end is not reached, which must fail, or the proof would say nothing. With --broken the
-library is broken first, in a copy, in the one place that the table below names for each proof; then
-a claim must fail.
+Each proof is a function prove_NAME() in a file in this folder. All its claims must hold, except the last one: the
+claim that its end is not reached must fail, otherwise nothing would be proved. With --broken, a copy of the
+library is first broken in one place, which the table below names for each proof; then another claim must fail.
 """
 
 import argparse
@@ -40,7 +39,7 @@ ANY_LIDAR = "ring of 64 bytes; parser, packet, scan, ct by contract"
 
 
 class Proof:
-    """One function: what it is made of, how far its loops go, and how the library is broken."""
+    """One proof: its sources, the bounds of its loops, and the change that breaks the library."""
 
     def __init__(self, name, files, sources, unwind, bounds, broken, loops="", stubs=(), cases=((),),
                  options=(), function=None, slow=False, inserted=(), replaced=()):
@@ -177,7 +176,7 @@ PROOFS = [
 
 
 class Checker:
-    """CBMC over a copy of the sources."""
+    """Runs CBMC on a copy of the sources."""
 
     def __init__(self, work):
         self.folder = work
@@ -206,7 +205,7 @@ class Checker:
             sys.exit(f"{command[0]} ended with {done.returncode}\n{done.stdout}{done.stderr}")
 
     def check(self, proof, case):
-        """Returns the number of properties and those that failed; `case` are macros."""
+        """Returns the number of properties and the failed ones; `case` is a list of macros."""
         program = f"{self.folder}/program"
         folders = [option for folder in FOLDERS for option in ("-I", f"{self.folder}/{folder}")]
         defines = ["-D", 'TMINI_ATOMIC_HEADER="proof_atomic.h"']
@@ -223,17 +222,17 @@ class Checker:
         for calls in proof.replaced:
             self.demand("goto-instrument", "--replace-calls", calls, program, program)
         loops = ["--unwindset", proof.loops] if proof.loops else []
-        # Each copy of two bytes makes objects of its own: more than the 2^8 that CBMC takes unasked.
+        # Each copy of two bytes creates objects: more than CBMC's default limit of 2^8.
         done = self.call("cbmc", "--drop-unused-functions", "--object-bits", "12", "--unwind", str(proof.unwind),
                          *loops, *proof.options, program)
         count = re.search(r"^\*\* \d+ of (\d+) failed", done.stdout, re.MULTILINE)
         if not count:
-            sys.exit(f"{proof.name}: CBMC has not come to an end\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+            sys.exit(f"{proof.name}: CBMC has not finished\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
         return int(count.group(1)), re.findall(r"^\[.*: FAILURE$", done.stdout, re.MULTILINE)
 
 
 def seconds():
-    """The processor's, of all that was called: others may be at work on this machine."""
+    """Returns the processor time of all child processes: other programs may be running, too."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -243,9 +242,9 @@ def is_end(failure):
 
 
 def prove(checker, proof, broken):
-    """Returns the number of properties and whether all is as it should be; tells what is not."""
+    """Returns the number of properties, whether the result is as expected, and a list of complaints."""
     checker.copy_sources()
-    checker.replace(*proof.broken, only_look=not broken) # The table is to be up to date, either way.
+    checker.replace(*proof.broken, only_look=not broken) # Also checks that the table is up to date.
     if proof.inserted:
         checker.replace(*proof.inserted)
     total, complaints = 0, []

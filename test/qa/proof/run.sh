@@ -2,17 +2,17 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Proves what proof_….c claim, with the model checker CBMC: for all values at once. Prints a table.
+# Proves the claims in proof_….c for all values, with the model checker CBMC. Prints a table.
 #
 #   test/qa/proof/run.sh [--quick] [--broken] [NAME …]
 #   test/qa/proof/run.sh --fetch
 #
-# NAME: a proof, or the beginning of some proofs' names. --quick: only what takes seconds. --broken:
-# the library is broken in a copy, in a place for each proof, which must then fail.
+# NAME is a proof, or the beginning of the names of some proofs. --quick runs only proofs that take
+# seconds. With --broken, a copy of the library is broken in one place for each proof, which must
+# then fail.
 #
-# CBMC is a package from Debian 13 and Ubuntu 24.04 on. Debian 12 can run that of Debian 13, with
-# that one's C library beside it: --fetch puts both into build-proof/, and nothing else happens to
-# the machine.
+# Debian 13, Ubuntu 24.04 and later have a package of CBMC. Debian 12 can run the CBMC of Debian 13
+# with Debian 13's C library: --fetch downloads both to build-proof/, and changes nothing else.
 
 set -eu
 
@@ -24,7 +24,7 @@ skip() {
     exit 0
 }
 
-# A program that was fetched runs by its own loader. goto-cc knows by its name what it is to do.
+# wrap NAME: a fetched program needs its own loader. Its name must be kept: goto-cc depends on it.
 wrap() {
     printf '#!/bin/sh\nexec "%s" --library-path "%s" "%s" "$@"\n' \
         "$loader" "$libraries:$fetched/usr/lib" "$fetched/usr/bin/$1" >"$fetched/bin/$1"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands in for parser, packets, scans and CT information in the driver's proofs: does anything
- * that their contracts permit, which proof_parser.c and proof_scan.c claim of them. */
+/* Replaces parser, packets, scans and CT information in the driver's proofs. These functions do
+ * anything that the contracts permit; proof_parser.c and proof_scan.c prove the contracts. */
 
 #include "parser_contract.h"
 
@@ -13,7 +13,7 @@ tmini_ct_t nondet_ct(void);
 
 /* ---- Parser ---- */
 
-/* The parser has gone on, and given back what it likes. */
+/* The parser may change in any way, and may have freed any number of bytes. */
 static void change(tmini_parser_t *parser)
 {
     tmini_ring_t *const ring = parser->frame.ring;

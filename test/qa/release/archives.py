@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""What must be true of every archive, for those who have it and nothing else:
+"""Checks that every archive can be used alone:
 
     archives.py FOLDER WORK
 
-each, unpacked in WORK, holds the licence, has no dead link, names in its commands no file of the
-project that it lacks, and agrees with SHA256SUMS. Exit status: 0 all of this holds, 1
-not; each mistake is printed.
+Unpacks each archive in FOLDER to WORK. It must contain the licence and every file that its commands name, have no
+dead link, and agree with SHA256SUMS. Exit status: 0 no mistake, 1 mistakes, which are printed.
 """
 
 import hashlib
@@ -24,7 +23,7 @@ LINK = re.compile(r"\]\(([^()\s]+)\)|(?:src|href)=\"([^\"]+)\"")
 
 
 def folder_of(archive, work):
-    """Where it has been unpacked: its top folder, if it has only that."""
+    """Unpacks an archive; returns its top folder, if there is only one, or else the folder of all its files."""
     folder = work / archive.name
     shutil.unpack_archive(archive, folder)
     inside = list(folder.iterdir())
@@ -50,7 +49,7 @@ def check_links(folder, path):
 
 
 def steps(path):
-    """What a reader is to type: (number, line)."""
+    """Returns the lines that a reader is asked to type, each as (number, line)."""
     blocks, prose = parse(path)
     for block in blocks:
         if block.language in ("sh", "console", "ini", "cmake", "yaml"):

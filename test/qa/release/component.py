@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""ESP-IDF's own packer takes the component that we have packed as it is, and leaves nothing out.
+"""Checks that ESP-IDF's own packer accepts our packed component, and packs exactly the same files.
 
     component.py ARCHIVE WORK
 
-Run by the Python that has the package idf-component-manager. Exit status: 0 the same files, 1 not.
+Needs a Python with the package idf-component-manager. Exit status: 0 the same files, 1 not.
 """
 
 import os

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Included by project(tmini): in the end the library's target is made of the one file in
-# TMINI_SINGLE, with its headers; and so is the one test that compiles sources of its own.
+# Included by project(tmini). At the end of the configuration, it replaces the sources of the
+# library's target by the one file in TMINI_SINGLE, with its headers; also in the test that compiles
+# the library's sources itself.
 
 function(tmini_use_single_file)
     set_target_properties(tmini PROPERTIES SOURCES ${TMINI_SINGLE}/tmini_all.c

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Packs the last commit twice, from two clones, at two ends of the earth, for two users' habits: the
-# same bytes, and true of all archives what archives.py asks. With the Python package, if its tools
-# are in PYTHON or can be installed there.
+# Packs the last commit twice, from two clones, with different time zones and umasks. Both must give
+# the same bytes, and archives.py must accept the archives. Packs the Python package, too, if its
+# tools are in PYTHON or can be installed there.
 #
 #   reproducible.sh WORK PYTHON
 #
-# Exit status: 0 the same, 1 not, 77 there is no Git.
+# Exit status: 0 the same, 1 not, 77 this is not a Git repository.
 
 set -eu
 
@@ -19,7 +19,7 @@ if ! git -C "$root" rev-parse HEAD >/dev/null 2>&1; then
     exit 77
 fi
 
-# pack NAME ZONE UMASK
+# pack NAME ZONE UMASK: packs a new clone to $work/NAME/out.
 pack() {
     export TZ="$2"
     umask "$3"

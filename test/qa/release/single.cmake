@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The library as one file compiles as strictly as its sources do, by every compiler that is here,
-# with nothing but its archive to include; and passes the unit tests in the place of the library.
+# Checks the library as one file: with only its archive, it compiles without warnings with every
+# installed compiler; and it passes the unit tests in place of the library.
 
 include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 
-# strict(COMPILER FLAG…)
+# strict(COMPILER FLAG…): compiles with warnings as errors, if the compiler is installed.
 function(strict compiler)
     find_program(${compiler} ${compiler})
     if(${compiler})

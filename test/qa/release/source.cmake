@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The source archive builds by the README's command, brings the tool and the simulated lidar, passes
-# its own unit tests, can be installed, and packs the same release again, itself included.
+# Checks the source archive: it can be built, with the tool and the simulated lidar, passes its own
+# unit tests, can be installed, and packs the same release again, including itself.
 
 include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 

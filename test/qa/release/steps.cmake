@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# What the release tests have in common. They get VERSION, ARCHIVES, ROOT, WORK, PYTHON,
+# The common part of the release tests, which are called with VERSION, ARCHIVES, ROOT, WORK, PYTHON,
 # COMPILER, LAUNCHER and GENERATOR.
 
 include(${CMAKE_CURRENT_LIST_DIR}/../../consumer/steps.cmake)
 
-# Unpacks the archive of that ending in WORK, which is emptied before.
+# Empties WORK and unpacks the archive with this ending there.
 function(unpack ending)
     file(REMOVE_RECURSE ${WORK})
     file(MAKE_DIRECTORY ${WORK})
-    # From the outside in: CMake 3.31 unpacks nothing, and says nothing, if an archive's path has
-    # accents and the locale is C.
+    # By a relative path: in the locale C, CMake 3.31 unpacks nothing, without an error, if an
+    # archive's path has accents.
     file(RELATIVE_PATH archive ${WORK} ${ARCHIVES}/tmini-${VERSION}${ending})
     execute_process(COMMAND ${CMAKE_COMMAND} -E tar xf ${archive}
         WORKING_DIRECTORY ${WORK} RESULT_VARIABLE status)
@@ -20,7 +20,7 @@ function(unpack ending)
     endif()
 endfunction()
 
-# build(SOURCE OPTION…), in WORK/build.
+# build(SOURCE OPTION…): builds in WORK/build.
 function(build source)
     run_or_fail(${CMAKE_COMMAND} -S ${source} -B ${WORK}/build -G ${GENERATOR}
         -DCMAKE_C_COMPILER=${COMPILER} -DCMAKE_C_COMPILER_LAUNCHER=${LAUNCHER} ${ARGN})

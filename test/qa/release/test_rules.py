@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The rules of .ci/version.py and .ci/pack.py, on a copy of the project.
+"""Tests the rules of .ci/version.py and .ci/pack.py on a copy of the project.
 
     test_rules.py
 """
