@@ -354,7 +354,7 @@ void test_events_that_do_not_belong_to_the_command_are_swallowed(void)
         rig_feed_plain_turn(0);
         (void)rig_drain();
     }
-    rig_feed_plain_turn(0); /* A fault and a scan. */
+    rig_feed_plain_turn(0); /* The events are a fault and a scan. */
     sends(STOP);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_stop(&rig.lidar, 100));
     TEST_ASSERT_EQUAL_HEX(0, rig_drain());
@@ -403,7 +403,7 @@ void test_a_start_that_times_out_while_the_lidar_is_recovered_still_stands(void)
 {
     comes(10, feed_turn);
     sends(START);
-    sends(STOP); /* Lost after a second. */
+    sends(STOP); /* The lidar is lost after a second. */
     sends(START);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 1500));
     is_in(TMINI_STATE_RECOVERING); /* The lidar is still wanted to scan. */

@@ -58,14 +58,14 @@ static void receive(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next(&receiver));
 }
 
-/* The same, and adds it. Returns whether it closes the current scan; it is then not yet added. */
+/* The same, and adds the packet, unless it closes the current scan: then returns true. */
 static bool arrive(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_q6)
 {
     receive(ct, count, first_q6, last_q6);
     return tmini_builder_add(&builder, &receiver.packet, now_ms);
 }
 
-/* Adds a packet that does not close a scan, or again one that has closed a scan. */
+/* Adds the packet, which closes no scan; also one that has just closed a scan. */
 static void add(void)
 {
     TEST_ASSERT_FALSE(tmini_builder_add(&builder, &receiver.packet, now_ms));
@@ -243,7 +243,7 @@ void test_scans_follow_one_another(void)
 void test_the_frequency_has_steps_of_a_tenth_of_a_hertz(void)
 {
     (void)start(0);
-    TEST_ASSERT_TRUE(arrive(0x75, 1, 0, 0)); /* A real unit's: 5.8 Hz. */
+    TEST_ASSERT_TRUE(arrive(0x75, 1, 0, 0)); /* From a real unit: 5.8 Hz. */
     TEST_ASSERT_EQUAL_UINT16(580, scan->frequency_chz);
     add();
     TEST_ASSERT_TRUE(arrive(0xFF, 1, 0, 0));
@@ -638,8 +638,8 @@ void test_a_scan_whose_end_is_missing_has_the_frequency_reported_last(void)
     TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz);
 }
 
-/* The packet comes at 5000 ms. Measuring its 40 samples took 39 * 250 us. It has 39 * 3 bytes more
- * than a start packet, which took 39 * 130 us. */
+/* The packet comes at 5000 ms. Measuring its 40 samples took 39 * 250 us. Sending its 39 * 3 bytes
+ * more than a start packet has took 39 * 130 us. */
 void test_a_scan_without_its_start_packet_begins_when_its_first_point_was_measured(void)
 {
     (void)start(0);

@@ -310,7 +310,7 @@ void test_a_command_drops_the_end_of_the_one_before_that_was_not_polled_for(void
     begins_with(STOP, tmini_stop(&rig.lidar)); /* Aborts the request. */
     tmini_cancel(&rig.lidar);
     begins_with(STOP, tmini_request_info(&rig.lidar));
-    passes(50); /* No COMMAND_FAILED: it would seem to be that of the second request. */
+    passes(50); /* COMMAND_FAILED is dropped: it would seem to be of this request. */
 }
 
 void test_cancelling_a_command_also_cancels_the_start_after_it(void)
@@ -651,7 +651,7 @@ void test_a_repeated_reply_to_a_step_is_not_taken_as_the_reply_to_the_next(void)
     passes(50);
     polls_and_sends(FASTER_ONE);
     polls_to(TMINI_EVENT_NONE);
-    rig_feed_frequency(700); /* The copy. */
+    rig_feed_frequency(700); /* The same reply again. */
     passes(10);
     rig_feed_frequency(800); /* The reply to the step. */
     steps(GET_FREQUENCY, 800);

@@ -260,8 +260,8 @@ void test_every_wrong_last_crc_drops_the_revolution(void)
 void test_without_last_crc_nothing_is_trusted(void)
 {
     add_six_hertz();
-    TEST_ASSERT_FALSE(
-        add(0x79, 0, SIX_HERTZ_CRC)); /* An earlier stray byte has the same value by chance. */
+    /* An earlier stray byte has the same value by chance. */
+    TEST_ASSERT_FALSE(add(0x79, 0, SIX_HERTZ_CRC));
     expect_nothing_known();
 }
 
@@ -502,6 +502,6 @@ void test_a_revolution_with_a_gap_is_not_refuted_by_last_crc(void)
     TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0x00));
     (void)add(0x40, 0, 0);
     (void)add(0x34, 3, 0);
-    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN,
-                          verdict_on(0x79, 1, 0x42)); /* The CRC of 79 and 40 alone. */
+    /* 42 is the CRC of 79 and 40 alone. */
+    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0x42));
 }

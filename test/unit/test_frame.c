@@ -35,8 +35,8 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-/* The samples from sample `index` on; `place` is their address, NULL if the sample was copied
- * together. Sample 0 follows the packet's header of ten bytes: it is "klm". */
+/* The samples from sample `index` on; `place` is their address, NULL if the sample's two parts were
+ * joined in a copy. Sample 0 follows the packet's header of ten bytes: it is "klm". */
 static void expect_samples(size_t index, size_t wanted, size_t count, const uint8_t *place)
 {
     uint8_t joined[4] = {0, 0, 0, GUARD};

@@ -91,7 +91,7 @@ void test_an_overflow_at_any_moment_of_a_poll_mixes_no_turns(void)
     TEST_ASSERT_TRUE(access > 10);
 }
 
-/* A few bytes find no room; the others arrive. */
+/* Packets come during polls; a few bytes find no room. */
 static size_t sent;
 
 static void packets_come_one_by_one(void)
@@ -118,8 +118,8 @@ void test_overflow_after_overflow_during_polls_mixes_no_turns(void)
     for (chosen = 0; chosen < 3; chosen++) {
         turns_open_scanning(256, false);
         sent = 0;
-        turns_feed_packets(TURNS_PACKETS - 1, TURNS_PACKETS - 1,
-                           100); /* Work for the first poll. */
+        /* Work for the first poll. */
+        turns_feed_packets(TURNS_PACKETS - 1, TURNS_PACKETS - 1, 100);
         for (unsigned i = 0; i < 200; i++) {
             if (poll_with(packets_come_one_by_one) == TMINI_EVENT_SCAN) {
                 expect_one_turn(tmini_scan(&turns.lidar));
@@ -184,7 +184,7 @@ void test_a_reply_that_dma_overwrites_before_it_is_copied_is_no_answer(void)
     TEST_ASSERT_TRUE(access > 3);
 }
 
-/* ---- The bytes in the ring when a poll begins bound its work ---- */
+/* ---- A poll's work is bounded by the bytes in the ring when it began ---- */
 
 static uint32_t fed;
 

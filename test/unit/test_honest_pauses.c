@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* A lidar at 12 Hz of which one turn is missing, from the end of a packet on; the packets before
- * and after it fit together. The programs here, played in virtual time, once got complete scans of
- * two revolutions. */
+ * and after it fit together. With earlier versions, the programs here (played in virtual time) got
+ * complete scans of two revolutions. */
 
 #include "encoder.h"
 

@@ -207,7 +207,7 @@ void test_two_overflows_less_than_a_ring_apart_are_both_remembered(void)
 /* ---- DMA goes on while the CPU stands still ---- */
 
 static unsigned next_index; /* Index of the lidar's next packet in its turn. */
-static uint16_t next_turn;  /* That turn. */
+static uint16_t next_turn;  /* The turn of that packet. */
 
 static size_t next_packet(uint8_t *bytes)
 {

@@ -192,7 +192,7 @@ void test_a_reader_on_another_core_loses_and_repeats_nothing(void)
     }
 }
 
-/* Reading it is slow on some machines, and must not be most of the receive interrupt's work. */
+/* Reading the reader's index is slow on some machines: the receive interrupt must rarely do it. */
 void test_the_readers_index_is_looked_at_once_a_lap(void)
 {
     receiver_open(&receiver, memory, 32, 1);
@@ -268,7 +268,7 @@ void test_dma_that_overtakes_the_parser_at_any_moment_makes_no_wrong_packet(void
     }
 }
 
-/* DMA overwrites it after the parser found it intact and before it is delivered. */
+/* DMA overwrites the packet after the parser found it intact, before it is delivered. */
 void test_a_packet_that_dma_overwrites_while_it_is_checked_is_not_delivered(void)
 {
     unsigned discarded = 0;

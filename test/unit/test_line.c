@@ -221,8 +221,8 @@ void test_a_delay_is_kept_until_all_that_the_port_held_is_read(void)
     TEST_ASSERT_EQUAL_UINT16(3, lidar.line.late_ms);
 }
 
-/* At the first look 59 ms are unexplained; at the second 31, less than half a turn. If the port
- * holds bytes, those of the first time may come only now, so 90 ms are unexplained. */
+/* At the first look 59 ms are unexplained; at the second 31, which is less than half a turn. If the
+ * port held bytes at the first look, these may come only now: then 90 ms are unexplained. */
 void test_what_seemed_to_be_missing_may_come_from_a_port_that_holds_bytes(void)
 {
     for (unsigned held = 0; held <= 1; held++) {

@@ -60,7 +60,7 @@ void test_a_fault_seen_in_one_trusted_turn_and_one_that_is_not_is_not_reported(v
 {
     rig_go_scanning();
     TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0)); /* The first trusted one has ended. */
+    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0)); /* The first trusted turn has ended. */
     rig.crc ^= 1u;                                /* LastCRC is wrong. */
     TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0));
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
@@ -102,7 +102,7 @@ void test_a_turn_that_is_not_trusted_neither_reports_nor_clears(void)
     TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
     rig.crc ^= 1u;
     TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR)); /* The first trusted one. */
+    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR)); /* The first trusted turn. */
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_turn_events(0));
 }
 
@@ -292,8 +292,8 @@ void test_a_rotor_that_turns_again_clears_the_fault_after_two_turns(void)
     rig_feed_start_packet(0);
     (void)rig_drain();
     is_noticed_after_3_s();
-    (void)rig_plain_turn_events(
-        1000); /* The turn that was blocked ends: no range, but not whole. */
+    /* The blocked turn ends: it had no range, but was not complete. */
+    (void)rig_plain_turn_events(1000);
     (void)rig_plain_turn_events(1000);
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_plain_turn_events(1000));
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));

@@ -163,7 +163,7 @@ void test_arcs_are_the_robots_directions(void)
     is_point(1, 120 * DEGREE, 1001);
 }
 
-/* As written by a user who counts negative angles to the left. */
+/* For users who count angles to the left as negative. */
 void test_arcs_and_front_may_be_negative(void)
 {
     static const tmini_arc_t arcs[] = {{-10, 10}, {-190, -170}};

@@ -56,6 +56,6 @@ void test_every_function_of_ct_information_is_there(void)
     TEST_ASSERT_EQUAL_HEX(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&ct));
     tmini_ct_read(&ct, &info);
     TEST_ASSERT_EQUAL_HEX16(0, info.known);
-    TEST_ASSERT_EQUAL_HEX8(0xA1,
-                           tmini_ct_crc8(0x07, '9')); /* The last step of the CRC's check value. */
+    /* The last step of the CRC's check value. */
+    TEST_ASSERT_EQUAL_HEX8(0xA1, tmini_ct_crc8(0x07, '9'));
 }

@@ -185,7 +185,7 @@ void test_points_can_be_read_one_at_a_time(void)
 void test_a_point_that_is_read_alone_leaves_memory_after_it(void)
 {
     open_packet(manual_packet, sizeof manual_packet);
-    points[1].angle_q6 = 23040; /* A value that would be reduced. */
+    points[1].angle_q6 = 23040; /* The library would change it to 0. */
     TEST_ASSERT_TRUE(tmini_packet_point(&receiver.packet, 0, points));
     TEST_ASSERT_EQUAL_UINT16(23040, points[1].angle_q6);
     TEST_ASSERT_EQUAL_HEX16(0xEEEE, points[1].distance_mm);
@@ -415,8 +415,8 @@ void test_a_less_exact_step_would_be_wrong(void)
     TEST_ASSERT_EQUAL_UINT16(1, angle(127)); /* 0.5. */
 }
 
-/* Differences at which rounding errors are most likely: a whole number of intervals plus a half,
- * and one more. test/system/test_angles.c has all pairs of count and difference. */
+/* Differences at which rounding errors are most likely: a multiple of the number of intervals plus
+ * half of it, and one more. test/system/test_angles.c has all pairs of count and difference. */
 void test_interpolated_angles_are_exact(void)
 {
     for (unsigned count = 2; count <= 255; count += 23) {

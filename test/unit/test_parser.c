@@ -104,8 +104,8 @@ void test_a_ring_that_failed_to_initialise_is_an_argument_error(void)
 
 void test_the_ring_must_hold_the_largest_packet(void)
 {
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT,
-                          init_with(128, false, 0)); /* The default, 80 samples: 250 bytes. */
+    /* The default, 80 samples, needs 250 bytes. */
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(128, false, 0));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(256, false, 0));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, init_with(256, false, 82)); /* 256 bytes. */
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, init_with(256, false, 83));
@@ -1296,8 +1296,8 @@ void test_a_packet_that_dma_overwrites_while_it_is_read_is_not_intact(void)
     feed(bytes, 1);
     TEST_ASSERT_FALSE(tmini_frame_intact(tmini_parser_frame(&receiver.parser)));
     expect_nothing();
-    TEST_ASSERT_EQUAL_UINT32(0,
-                             receiver_counters(&receiver).bytes_overrun); /* All was delivered. */
+    TEST_ASSERT_EQUAL_UINT32(
+        0, receiver_counters(&receiver).bytes_overrun); /* Nothing undelivered was lost. */
     expect_skipped(190);
 }
 

@@ -171,8 +171,8 @@ void test_more_points_and_bins_than_256_are_all_there(void)
         many[i] = (tmini_point_t){(uint16_t)(i * 32u), (uint16_t)(i + 1u), 0, 0};
     }
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ranges_of_scan(&scan, many_mm, NULL, 360));
-    for (uint16_t degree = 0; degree < 360;
-         degree++) { /* The points at this degree and half a degree after it. */
+    /* Each bin has the points at its degree and half a degree more. */
+    for (uint16_t degree = 0; degree < 360; degree++) {
         TEST_ASSERT_EQUAL_UINT16(2 * degree + 1, many_mm[(180 + 360 - degree) % 360]);
     }
 #endif

@@ -426,8 +426,8 @@ void test_a_turn_from_before_a_stop_is_not_trusted_after_the_next_start(void)
     rig_go_idle();
     begins_with(START, tmini_start(&rig.lidar));
     rig_feed_scan_reply();
-    rig_feed_turn(TMINI_FAULT_LD,
-                  1000); /* The stray byte before it is the right LastCRC by chance. */
+    /* The stray byte before it is the right LastCRC by chance. */
+    rig_feed_turn(TMINI_FAULT_LD, 1000);
     (void)rig_drain();
     tmini_ct_info(&rig.lidar, &turn);
     TEST_ASSERT_EQUAL_HEX16(0, turn.known);

@@ -293,8 +293,8 @@ void test_more_points_and_sectors_than_256_are_all_there(void)
     tmini_sectors_add_scan(&sectors, &scan);
     TEST_ASSERT_EQUAL_UINT16(1, many[0].nearest_mm);
     for (uint16_t degree = 1; degree < 360; degree++) {
-        TEST_ASSERT_EQUAL_UINT16(2 * degree,
-                                 many[degree].nearest_mm); /* The point half a degree before it. */
+        /* The nearest point is half a degree before the middle. */
+        TEST_ASSERT_EQUAL_UINT16(2 * degree, many[degree].nearest_mm);
         TEST_ASSERT_EQUAL_UINT16(64 * degree - 32, many[degree].angle_q6);
         TEST_ASSERT_EQUAL_UINT16(2, many[degree].ranges);
     }

@@ -146,7 +146,7 @@ void test_a_late_point_less_than_4_degrees_beyond_the_circle_is_a_turn_later(voi
     is_at(3, 101106);
 }
 
-/* The second point has turned away from the first: exactly 4 degrees back are enough. */
+/* A point near the first one is a turn later if the second point is at least 4 degrees away. */
 void test_the_third_of_three_points_may_be_a_turn_later(void)
 {
     has_angles(10, 90 * DEGREE, 16, 0);

@@ -341,7 +341,7 @@ void test_packets_of_an_unknown_lidar_are_parsed_and_counted_but_are_no_event(vo
     is_in(TMINI_STATE_UNKNOWN);
 }
 
-/* Its stop was lost on the wire during spin-up, when the line was quiet anyway. */
+/* The stop was lost on the wire during spin-up, when the line was quiet anyway. */
 void test_an_idle_lidar_that_streams_is_reported_and_stopped_again(void)
 {
     rig_go_idle();
@@ -399,8 +399,8 @@ void test_a_lidar_that_streams_after_a_query_is_stopped_too(void)
 
 /* ---- Silence ---- */
 
-/* Reading this clock takes so long that bytes come meanwhile. The first reading of a poll checks
- * whether there is work, at the latest every 10 ms; the second is for examining the line. */
+/* Reading this clock takes so long that bytes come meanwhile. A poll reads it to check for work
+ * and, at the latest every 10 ms, a second time to examine the line. */
 static unsigned readings_left;
 static void (*feed_meanwhile)(void);
 
@@ -1236,8 +1236,8 @@ void test_what_is_fed_before_a_lidar_is_set_up_is_counted_as_refused(void)
     TEST_ASSERT_EQUAL_UINT32(0, rig_counters().bytes_pending);
 }
 
-/* Seven events end a command: STARTED (bit 1) to COMMAND_FAILED (bit 7). Six others follow, to SCAN
- * (bit 13). */
+/* Seven events end a command: STARTED (bit 1) to COMMAND_FAILED (bit 7). The other six, up to SCAN
+ * (bit 13), stay. */
 void test_a_command_drops_the_end_of_the_one_before_and_nothing_else(void)
 {
     rig_go_idle();
