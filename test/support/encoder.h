@@ -2,9 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /*
- * Everything the lidar can say, turned into bytes: packets, replies, turn information (CT) and
- * its CRC-8. Written from docs/protocol.md alone and sharing nothing with lib/, so that one
- * misreading of the protocol cannot hide in both. Pure functions; the caller owns all memory.
+ * Encodes everything that the lidar can send: packets, replies, turn information (CT) and its
+ * CRC-8. Written from docs/protocol.md alone, without code of lib/, so that one misreading of the
+ * protocol cannot hide in both. Pure functions; the caller owns all memory.
  */
 
 #ifndef ENCODER_H
@@ -47,10 +47,10 @@ typedef struct {
     uint8_t firmware_major;
     uint8_t firmware_minor;
     uint8_t hardware;
-    uint8_t serial[16]; /* binary digits, the most significant one first (section 9.5) */
+    uint8_t serial[16]; /* digits as numbers 0..9, the most significant first (section 9.5) */
 } encode_information_t;
 
-/* What the CT bytes of one revolution carry (section 7). */
+/* The content of the CT bytes of one revolution (section 7). */
 typedef struct {
     uint16_t frequency_dhz; /* 0.1 Hz */
     uint8_t user_major;     /* 0..3 */
@@ -63,7 +63,7 @@ typedef struct {
     uint8_t month;          /* 1..12 */
     uint8_t day;            /* 1..31 */
     uint32_t serial;        /* 0..2097151 */
-    uint8_t production; /* for all other indices, which are undisclosed: values are made from it */
+    uint8_t production;     /* makes the values of all other indices, which are undisclosed */
 } encode_turn_t;
 
 /* Little-endian words (section 1). */
@@ -73,7 +73,7 @@ void encode_u32(uint8_t *out, uint32_t value);
 /* An angle as FSA and LSA hold it: bit 0 is the check bit, always 1. */
 uint16_t encode_angle(uint16_t angle_q6);
 
-/* Three bytes. */
+/* Writes the three bytes of a sample. */
 void encode_sample(uint8_t *out, encode_sample_t sample);
 
 /* The ten bytes before the samples, with a checksum of 0. */

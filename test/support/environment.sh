@@ -3,7 +3,7 @@
 # shellcheck shell=sh
 # shellcheck disable=SC2154 # $root is the sourcing script's
 
-# What the scripts in test/ have in common. To be sourced with $root set to the project's folder.
+# Shared by the scripts in test/. To be sourced with $root set to the project's folder.
 
 # shellcheck source=test/support/packages.sh
 . "$root/test/support/packages.sh"

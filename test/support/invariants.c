@@ -22,8 +22,8 @@ static bool is_dma(const tmini_ring_t *ring)
     return tmini_ring_is_dma(ring);
 }
 
-/* The producer writes up to its stop without checking: so there must be room, and the memory must
- * not end earlier. */
+/* The producer writes up to its stop without checking. So there must be room up to it, and the
+ * memory must not end before it. */
 static bool stop_is_sound(const tmini_ring_t *ring)
 {
     const size_t known = ring->stop - ring->head;
@@ -165,7 +165,7 @@ static bool is_step(uint8_t code)
     return code >= TMINI_COMMAND_FASTER_TENTH && code <= TMINI_COMMAND_SLOWER_ONE;
 }
 
-/* The events that name operations; TMINI_EVENT_NONE: there is none. */
+/* Events name the operations; TMINI_EVENT_NONE means no operation. */
 static bool is_operation(uint8_t event)
 {
     return event <= TMINI_EVENT_REBOOTED;
@@ -205,8 +205,8 @@ static bool awaits_its_reply(const tmini_t *lidar)
            awaited->length == reply.length;
 }
 
-/* The operation has this phase. TMINI_PHASE_WAITING also keeps the time while scanning and between
- * attempts. */
+/* The operation can be in this phase. TMINI_PHASE_WAITING is also used for timeouts while scanning
+ * and between attempts. */
 static bool phase_fits(const tmini_t *lidar)
 {
     const tmini_command_t *const command = &lidar->command;
@@ -268,7 +268,7 @@ static bool state_fits(const tmini_t *lidar)
     }
 }
 
-/* For a while after a failure, packets do not yet mean that an idle lidar scans. */
+/* For a while after a failure, packets do not count as scanning of an idle lidar. */
 static bool pauses_after_failure(const tmini_command_t *command)
 {
     return command->phase == TMINI_PHASE_NONE && command->operation >= TMINI_EVENT_STOPPED &&

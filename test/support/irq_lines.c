@@ -81,7 +81,7 @@ bool irq_is_in_handler(void)
 
 static bool is_every_place_wanted(void)
 {
-#ifdef __AVR__ /* Its library has no environment. */
+#ifdef __AVR__ /* Its C library has no getenv(). */
     return false;
 #else
     return getenv("TMINI_EVERY_MOMENT") != NULL;

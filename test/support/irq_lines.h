@@ -29,17 +29,17 @@ typedef struct {
     void (*handler)(void); /* NULL: none. */
     unsigned priority;     /* A lower number interrupts a higher one. */
     bool disabled;         /* In the interrupt controller. */
-    uint32_t served;       /* Entries of the handler. */
+    uint32_t served;       /* How often the handler was entered. */
 } irq_line_t;
 
 typedef struct {
     irq_line_t lines[IRQ_LINES];
     bool masked;                       /* All lines, in the processor. */
     void (*on_lock_up)(unsigned line); /* A flag is never cleared: fail the test. */
-    uint32_t nested;                   /* Entries that interrupted another handler. */
+    uint32_t nested;                   /* How often a handler interrupted another. */
     uint32_t accesses;                 /* Calls of irq_access(). */
 
-    /* The model's own. */
+    /* Private. */
     unsigned level; /* Priority of the running code. */
     uint32_t event_at;
     void (*event)(void);

@@ -2,14 +2,14 @@
 # Copyright (c) 2026 The tmini authors
 # shellcheck shell=sh
 
-# Finds what a script needs, and installs what is missing where Debian's package tools are at hand.
+# Finds what a script needs, and installs what is missing if Debian's package tools are available.
 # To be sourced by POSIX shell scripts:
 #
 #   . "$root/test/support/packages.sh"
 #   because "to build the library"         # the reason for what follows
 #   need cmake cmake                       # a command, and the packages that bring it
 #   need /usr/include/stdio.h libc6-dev    # or a file
-#   wish clang clang                       # the same, but the script can do without
+#   wish clang clang                       # the same, but optional
 #   install_missing
 #
 # install_missing says what it will install, and why; then it calls apt-get once for all, and fails

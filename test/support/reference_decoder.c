@@ -85,7 +85,7 @@ static size_t match_reply(const decoding_t *d, size_t at)
         return 0;
     }
     if (awaited->mode == 1u) {
-        return 7; /* the length is meaningless (section 4) and the content endless */
+        return 7; /* the length is meaningless (section 4) and the content has no end */
     }
     return length == awaited->length && left - 7u >= length ? 7u + (size_t)length : 0;
 }

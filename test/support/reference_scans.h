@@ -15,9 +15,9 @@ typedef struct {
     size_t end;    /* Index of the packet that ended it. */
     size_t points; /* Of all its packets. */
     size_t packets;
-    size_t gaps;       /* Before any of its packets or the one that ended it; lost start packets. */
+    size_t gaps;       /* Before its packets or the one that ended it; also a lost start. */
     bool is_whole;     /* The circle is full, without a gap. */
-    uint8_t decihertz; /* From the next start packet; if that was lost, from its own. */
+    uint8_t decihertz; /* From the next start packet; if that was lost, from the one before. */
 } reference_scan_t;
 
 /* Finds the first scan that begins at items[from] or after it. Returns false if there is none, or

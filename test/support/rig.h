@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A lidar's driver on a mocked port, with a scripted clock and bytes from the independent encoder:
- * what the driver's unit tests share. A test reads as a story:
+/* For the driver's unit tests: a driver on a mocked port, with a scripted clock and bytes from the
+ * independent encoder. A test reads as a story:
  *
  *     sends(GET_INFO);                          the port expects these bytes
  *     begins(tmini_request_info(&rig.lidar));   the call succeeds

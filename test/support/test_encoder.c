@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The encoder against known bytes from the manual and from real units (docs/protocol.md). */
+/* Compares the encoder with known bytes of the manual and of real units (docs/protocol.md). */
 
 #include "encoder.h"
 #include "known_packets.h"

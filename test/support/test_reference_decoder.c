@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The reference decoder against values worked out by hand: its counts, and the manual's points.
- * test_differential.c compares everything else with the parser, test_angles.c the angles with
- * packets. */
+/* Compares the reference decoder's counts and points with values worked out by hand.
+ * test_differential.c compares everything else with the parser, test_angles.c all angles with the
+ * library. */
 
 #include "known_packets.h"
 #include "reference_decoder.h"

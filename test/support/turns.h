@@ -32,7 +32,7 @@ typedef struct {
     uint8_t rx[TURNS_RX_MAX];
     tmini_point_t points[800];
     size_t dma_position;
-    bool ct_information; /* In the packets, and LastCRC after each turn. */
+    bool ct_information; /* Send it in the packets, and LastCRC after each turn. */
     uint8_t crc;
 } turns_t;
 
