@@ -38,8 +38,8 @@ static bool make_raw(int fd)
     return tcsetattr(fd, TCSANOW, &settings) == 0;
 }
 
-/* Makes it raw and discards what an earlier client left unread. What a new client has already sent
- * stays. */
+/* Makes the slave raw and discards bytes that an earlier client left unread. Bytes that a new
+ * client has already sent stay. */
 static bool prepare_slave(const char *path)
 {
     const int slave = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK);

@@ -169,7 +169,7 @@ static uint8_t spoiled(sim_link_t *link, uint8_t byte)
     return (uint8_t)(byte ^ random_between(&link->random, 1, 255));
 }
 
-/* Whether this byte meets a fault of the kind; reports it, and plans the next. */
+/* Whether a fault of the kind hits this byte; then reports it, and plans the next one. */
 static bool meets(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
 {
     if (link->passed < link->next_byte[kind]) {

@@ -21,9 +21,9 @@
 #define EXIT_WRONG_USAGE 2
 
 /* Bytes are collected this long before they are written, as a USB adapter does, so that many
- * simulated lidars can run on one computer. And the longest sleep when nothing is sent. */
+ * simulated lidars can run on one computer. */
 #define TICK_MS 8
-#define LONGEST_SLEEP_MS 500
+#define LONGEST_SLEEP_MS 500 /* While nothing is sent. */
 
 static sim_t device;
 static sim_link_t wire;

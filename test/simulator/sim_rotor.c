@@ -97,7 +97,7 @@ static uint32_t decimal(const uint8_t *digits, unsigned count)
     return value;
 }
 
-/* The serial number begins with a date (section 7); on some units it does not (section 9.5). */
+/* Normally the serial number begins with a date (section 7), but not on all units (section 9.5). */
 static void prepare_turn_information(sim_t *sim)
 {
     const encode_information_t *information = &sim->config.information;
@@ -223,7 +223,7 @@ static void measure_all(sim_t *sim, encode_sample_t *samples)
     }
 }
 
-/* In 0..2 * jitter; set_angles() subtracts the jitter again. */
+/* Returns 0..2 * jitter. set_angles() subtracts one jitter, so angles vary in both directions. */
 static uint32_t draw_jitter(sim_t *sim)
 {
     const uint32_t most = frozen(sim) ? 0u : sim->config.angle_jitter_q6;

@@ -131,8 +131,8 @@ typedef struct {
     uint8_t bytes[ENCODE_REPLY_MAX];
 } sim_reply_t;
 
-/* The turning, measuring part. Phases are angles from the start packet's place, in 2^-16 of
- * 1/64 degree; speeds in 10^-5 Hz. */
+/* The turning, measuring part. Phases are angles from the start packet's angle, in 2^-16 of 1/64
+ * degree; speeds are in 10^-5 Hz. */
 typedef struct {
     uint32_t phase; /* of the next sample */
     uint32_t step;  /* from sample to sample */

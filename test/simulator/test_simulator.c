@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The simulated lidar against docs/protocol.md, through its bytes alone. test_replay.c compares the
- * bytes of a healthy one with test/recordings. */
+/* Compares the simulated lidar's bytes with docs/protocol.md. The check `recordings` compares those
+ * of a healthy one with test/recordings. */
 
 #include "reference_decoder.h"
 #include "simulator.h"
