@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The table of intact points in docs/results.md, for damaged lines. Intact are the points of all
- * packets that the reference decoder finds in the bytes that reached the ring, from the first start
- * packet on. Each test prints a row: how many of them are in exactly one scan. */
+/* Makes the table of intact points on damaged lines in docs/results.md. A point is intact if the
+ * reference decoder finds its packet in the bytes that reached the ring, after the first start
+ * packet. Each test prints a row: how many intact points are in exactly one scan. */
 
 #include "random.h"
 #include "reference_decoder.h"
@@ -188,8 +188,8 @@ void test_a_flipped_bit_in_a_start_packet_costs_one_point(void)
     receive(LIDAR_US, 2000, (damage_t){0, 0});
     TEST_ASSERT_EQUAL_UINT(22 * TURNS_POINTS - 1, expected_count);
     all_intact_points_came("one bit in one start packet");
-    TEST_ASSERT_EQUAL_UINT(
-        19, complete); /* All but the two next to it and the last one, which has not ended. */
+    /* All but the two turns next to it and the last one, which has not ended. */
+    TEST_ASSERT_EQUAL_UINT(19, complete);
 }
 
 static void damaged_lines_lose_no_intact_point(damage_t damage, const char *what)

@@ -200,7 +200,7 @@ void test_a_lidar_that_loses_its_frequency_unnoticed_gets_it_again(void)
     (void)world_run_ms(&world, 5000);
     world.sim.frequency_chz = 600;
     (void)world_run_ms(&world, 15000);
-    TEST_ASSERT_EQUAL_UINT32(2, count(TMINI_EVENT_FAULTS_CHANGED)); /* There, and gone. */
+    TEST_ASSERT_EQUAL_UINT32(2, count(TMINI_EVENT_FAULTS_CHANGED)); /* Set, then cleared. */
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_LOST));
     scans_at(1000);
 }
@@ -217,7 +217,7 @@ void test_wishes_that_are_stated_each_second_are_kept_as_well(void)
         start();
         (void)world_run_ms(&world, 1000);
     }
-    TEST_ASSERT_EQUAL_UINT32(2, count(TMINI_EVENT_FAULTS_CHANGED)); /* There, and gone. */
+    TEST_ASSERT_EQUAL_UINT32(2, count(TMINI_EVENT_FAULTS_CHANGED)); /* Set, then cleared. */
     scans_at(1000);
 }
 

@@ -26,7 +26,6 @@ typedef struct {
     uint16_t length;
     bool starts_revolution;
     bool is_of_partial; /* Of a partial turn, which continues in the next revolution. */
-    bool optional;      /* A silence interrupted it, so it may have been abandoned. */
     uint32_t revolution;
     uint32_t number; /* Of the packet among all sent, without the small damaged ones. */
 } truth_packet_t;

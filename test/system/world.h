@@ -45,16 +45,16 @@ typedef struct {
 #define WORLD_POINTS 4000u
 
 typedef enum {
-    VIOLATION_LOST_PACKET,   /* Arrived unharmed, but was not delivered. */
-    VIOLATION_FALSE_PACKET,  /* Delivered, but not a valid packet on the line. */
-    VIOLATION_WRONG_SCAN,    /* The points differ from those of its packets. */
+    VIOLATION_LOST_PACKET,   /* A packet arrived unharmed, but was not delivered. */
+    VIOLATION_FALSE_PACKET,  /* A delivered packet was not on the line. */
+    VIOLATION_WRONG_SCAN,    /* A scan's points differ from those of its packets. */
     VIOLATION_MIXED_SCAN,    /* Points of two revolutions in one scan. */
     VIOLATION_BYTES,         /* Bytes not accounted for. */
-    VIOLATION_COMMAND,       /* Other than stop, while the lidar was scanning. */
-    VIOLATION_FALSE_FAULT,   /* Reported but absent, or reported as gone but present. */
-    VIOLATION_MISSED_FAULT,  /* Present but not reported in time, or gone but still reported. */
-    VIOLATION_ANSWER,        /* A command on an undisturbed line had no answer, or a wrong one. */
-    VIOLATION_SLOW_RECOVERY, /* Later than WORLD_RECOVERY_MS after the last trouble. */
+    VIOLATION_COMMAND,       /* One other than stop, while the lidar was scanning. */
+    VIOLATION_FALSE_FAULT,   /* A fault was reported but absent, or reported as gone but present. */
+    VIOLATION_MISSED_FAULT,  /* A fault was not reported in time, or gone but still reported. */
+    VIOLATION_ANSWER,        /* A command on an undisturbed line had no reply, or a wrong one. */
+    VIOLATION_SLOW_RECOVERY, /* It took longer than WORLD_RECOVERY_MS after the last trouble. */
     VIOLATION_STATE,         /* An impossible state of the library (test/support/invariants.h). */
     VIOLATION_KINDS
 } violation_t;
