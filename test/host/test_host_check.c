@@ -60,7 +60,8 @@ static case_t cases[] = {
 static size_t begun;
 
 /* On a busy computer the simulated lidar or the tool may stop for a second. The tool reports this
- * correctly, but the case tests something else. So it is repeated; this many times in total. */
+ * correctly, but the case tests something else. Such a case is repeated; this many repeats are left
+ * for all cases. */
 static unsigned retries = 20;
 
 /* Tools on ports that have no simulated lidar. */

@@ -240,8 +240,8 @@ void test_without_a_format_a_person_gets_a_summary(void)
 
 void test_what_a_damaged_recording_does_not_tell_is_unknown(void)
 {
-    summarise(RECORDINGS
-              "sim-6hz-damaged.bin"); /* The unit reports its health, but no turn is complete. */
+    /* The unit reports its health, but no turn is complete. */
+    summarise(RECORDINGS "sim-6hz-damaged.bin");
     expect_summary("health      unknown: no revolution arrived whole\n");
     expect_summary(" packets damaged (");
     summarise(RECORDINGS "sim-10hz-plain.bin");

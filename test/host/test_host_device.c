@@ -310,7 +310,7 @@ void test_a_scan_live_and_recorded_is_the_same(void)
     TEST_ASSERT_TRUE(number[7] > 100 && number[7] < 60000); /* Since the start command. */
 }
 
-/* The simulator's log ends with its own counts. */
+/* Compares with the simulator's own counts, with which its log ends. */
 void test_a_long_recording_holds_every_packet(void)
 {
     TEST_ASSERT_EQUAL_INT(0, end_job(LONG_RECORD));
@@ -679,7 +679,7 @@ void test_with_wait_a_port_that_is_not_there_yet_is_waited_for(void)
     TEST_ASSERT_EQUAL_UINT(1, program_count(program_output, "\n"));
 }
 
-/* The command line has the device's name, which another adapter would get too. */
+/* The user gives the name of the device, which another adapter may get later. */
 void test_with_wait_the_adapter_keeps_its_identity(void)
 {
     unplug_all();
@@ -750,7 +750,7 @@ void test_listening_to_a_silent_lidar_is_reported(void)
                    WORDS("scan", "-p", port, "--listen"));
 }
 
-/* test_survey tests what it asks the lidar, in virtual time. */
+/* test_survey.c tests the survey's commands, in virtual time. */
 void test_survey_writes_a_report_and_leaves_the_lidar_stopped_as_it_was(void)
 {
     const char *const log = program_path("log");

@@ -237,10 +237,10 @@ void test_interference_and_the_nearest_point_are_marked(void)
     plot(cross_recording(2, 3), "--scan", "1");
     const char *const svg = read_svg();
     TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X + 250, MIDDLE_Y, 7.4)); /* Flag 2: a ring. */
-    TEST_ASSERT_EQUAL_UINT(
-        1, program_count(svg, "M 594 1059 L 606 1071")); /* Flag 3: a cross with two lines, */
-    TEST_ASSERT_EQUAL_UINT(1, program_count(svg, "M 594 1071 L 606 1059")); /* 3 m to the back. */
-    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X, MIDDLE_Y - 125, 12));    /* The nearest one. */
+    /* Flag 3: a cross of two lines, 3 m to the back. */
+    TEST_ASSERT_EQUAL_UINT(1, program_count(svg, "M 594 1059 L 606 1071"));
+    TEST_ASSERT_EQUAL_UINT(1, program_count(svg, "M 594 1071 L 606 1059"));
+    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X, MIDDLE_Y - 125, 12)); /* The nearest one. */
 }
 
 void test_a_unit_that_flags_every_sample_is_not_covered_with_marks(void)

@@ -414,7 +414,7 @@ void test_a_locale_without_utf_8_gets_characters(void)
     quit();
 }
 
-/* The first of the variables that is not empty counts. */
+/* The first of the three variables that is not empty counts. */
 void test_the_locale_is_the_one_that_the_variables_say(void)
 {
     (void)setenv("LC_ALL", "", 1);
@@ -512,8 +512,8 @@ void test_colours_are_steady(void)
     program_write_file(program_path("steady.bin"), bytes, size);
     begin(80, 24, WORDS("view", program_path("steady.bin")));
     wait_for("end of the recording");
-    const unsigned colour =
-        vt.colours[12][48]; /* 2 m to the right: in scan 2 intensity 20, on a scale of 10 to 250. */
+    /* 2 m to the right: in scan 2 intensity 20, on a scale of 10 to 250. */
+    const unsigned colour = vt.colours[12][48];
     press(',');
     wait_for("scan 1 ");
     TEST_ASSERT_TRUE(vt.colours[12][48] != colour); /* In scan 1 it is the brightest. */

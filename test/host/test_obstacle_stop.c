@@ -116,8 +116,7 @@ void test_all_eight_sectors_are_shown(void)
 void test_a_robot_whose_lidar_is_covered_stays_where_it_is(void)
 {
     expect_to_stand("faults: data", WORDS("--covered"));
-    TEST_ASSERT_EQUAL_UINT(
-        0, program_count(program_output, "go ")); /* Not before the message either. */
+    TEST_ASSERT_EQUAL_UINT(0, program_count(program_output, "go ")); /* Never. */
 }
 
 void test_a_robot_whose_lidar_is_covered_and_does_not_report_it_stays_where_it_is(void)
