@@ -107,7 +107,7 @@ check_tidy() {
 
 # Suppressed, because cppcheck
 # - tries a configuration without any compiler's primitives, an intended #error;
-# - believes that the smaller of two values always equals the same one;
+# - assumes that the smaller of two values is always the same one of them;
 # - does not find the users of structures' members and of private functions;
 # - does not know the symbols that a linker script defines;
 # - demands that constructors fill buffers;
