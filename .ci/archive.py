@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Archives that depend on their contents alone: sorted, all files with one date, no owner, and the
-same permissions. Links to what an archive lacks lead to the project's address."""
+"""Archives that depend only on their contents: sorted, all files with the same date and permissions, and no owner.
+Links to files that an archive does not contain lead to the project's address."""
 
 import gzip
 import io
@@ -19,7 +19,7 @@ LINK = re.compile(r'(\]\(|(?:src|href)=")([^()\s"#]+)(?=[)"\s#])')
 
 
 def relinked(text, link):
-    """The document with its links, but for those in code, replaced by link(TARGET)."""
+    """The document with its links replaced by link(TARGET), except links in code."""
     lines, in_code = [], False
     for line in text.split("\n"):
         in_code ^= bool(FENCE.match(line))
@@ -28,7 +28,8 @@ def relinked(text, link):
 
 
 class Files:
-    """The files of an archive: contents by name, and the name in the archive by that in the project."""
+    """The files of an archive: `contents` by name in the archive, and `places`: that name by the file's name in the
+    project."""
 
     def __init__(self):
         self.contents, self.executable, self.places = {}, set(), {}
@@ -41,7 +42,7 @@ class Files:
             self.executable.add(name)
 
     def link_outside(self, home, tag):
-        """Points links to what this archive lacks to the project's address."""
+        """Lets links to files that are not in this archive lead to the project's address."""
         for place, name in self.places.items():
             if name.endswith((".md", "PKG-INFO")):
                 text = REPOSITORY.sub("", self.contents[name].decode())

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""What CHANGELOG.md says of the version in CMakeLists.txt, for the release's page and its tag:
+"""Prints what CHANGELOG.md says about its topmost version, for the release's page and its tag:
 
     notes.py            as Markdown, with links to the project's address
     notes.py --tag      as the tag's message:  .ci/notes.py --tag | git tag -a -F - v1.0.0
@@ -17,7 +17,7 @@ from version import address, read, version
 
 
 def section():
-    """Lines of the topmost version."""
+    """The lines about the topmost version."""
     return re.search(r"^## [^\n]*\n\n(.*?)\n*(?=^## |\Z)", read("CHANGELOG.md"), re.MULTILINE | re.DOTALL)[1] + "\n"
 
 
@@ -27,7 +27,7 @@ def notes():
 
 
 def tag_message():
-    """Git takes lines that begin with # for comments, and the first line for the subject."""
+    """For Git, lines that begin with # are comments, and the first line is the subject."""
     return f"tmini {version()}\n\n" + re.sub(r"^#+ (.*)$", r"\1:", section(), flags=re.MULTILINE)
 
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Packs what users download, the same bytes on every machine:
+"""Packs the files that users download, with the same bytes on every machine:
 
     pack.py [--tag vX.Y.Z] [--page FILE] [--sdist FILE] [--allow-placeholder] FOLDER
 
@@ -16,7 +16,7 @@
     SHA256SUMS, notes.md
 
 Refused, unless --allow-placeholder: an address that is a placeholder, a version in development, changes
-that are not committed, a page that is not the committed one, a tag that is not the version's.
+that are not committed, a page that is not the committed one, a tag of another version.
 """
 
 import argparse
@@ -49,7 +49,7 @@ def git(*arguments):
 
 
 def project_files():
-    """The names of all files; in an unpacked archive, which has no Git, all but what builds leave there."""
+    """The names of all files; in an unpacked archive, which has no Git, all except those that builds leave there."""
     listed = git("ls-files", "-z")
     if listed:
         return [name for name in listed.split("\0") if name and (ROOT / name).exists()]
@@ -59,7 +59,7 @@ def project_files():
 
 
 def date():
-    """The time of the commit; the files of the source archive have it too."""
+    """The time of the commit, which the files of the source archive also have."""
     given = os.environ.get("SOURCE_DATE_EPOCH") or git("log", "-1", "--format=%ct")
     return int(given or (ROOT / "CHANGELOG.md").stat().st_mtime)
 
@@ -67,7 +67,7 @@ def date():
 # ---- What is in each ----
 
 def take(names, rename):
-    """Files of the project under the names that RENAME gives them; those without one are left out."""
+    """Files of the project under the names that `rename` returns; a file without such a name is left out."""
     files = Files()
     for name in names:
         if rename(name):
@@ -77,7 +77,7 @@ def take(names, rename):
 
 
 def matches(name, patterns):
-    """Whether a pattern names this file or a folder above it; a star matches within one folder."""
+    """Whether a pattern names this file or a folder that contains it; a star matches no slash."""
     return any(re.match(re.escape(pattern).replace(r"\*", "[^/]*") + "(/|$)", name) for pattern in patterns)
 
 
@@ -92,7 +92,8 @@ def exported_by_platformio():
 
 
 def arduino_name(name):
-    """The IDE wants all sources below src/, and the sketches below examples/."""
+    """The name of a file in the archive for the Arduino IDE, which needs sources below src/ and sketches below
+    examples/."""
     path = PurePosixPath(name)
     if name.startswith("lib/include/"):
         return "tmini/src/" + name[len("lib/include/"):]
@@ -119,7 +120,8 @@ def of_single(names):
 
 
 def of_sdist(archive):
-    """Its files, to be packed again with our dates; its README is also its description."""
+    """The files of Python's source distribution, to be packed again with our dates; its README is also its
+    description."""
     files, top = Files(), f"tmini-{pep440(version())}/"
     with tarfile.open(archive) as sdist:
         for member in sdist:
@@ -131,7 +133,7 @@ def of_sdist(archive):
 
 
 def archives(names, sdist):
-    """(ending, files) of each archive."""
+    """Yields (ending, files) of each archive."""
     include, exclude = exported_by_platformio()
     component = included_by_esp_idf()
     top = f"tmini-{version()}/"
@@ -163,7 +165,7 @@ def refusals(arguments):
 
 
 def empty(folder):
-    """Deletes an earlier release, and refuses to if the folder holds other files."""
+    """Deletes an earlier release; exits if the folder contains other files."""
     folder.mkdir(parents=True, exist_ok=True)
     others = [path.name for path in folder.iterdir()
               if not path.name.startswith("tmini-") and path.name not in ("SHA256SUMS", "notes.md")]

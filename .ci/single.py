@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The sources of lib/src as one file, tmini_all.c."""
+"""Joins the sources of lib/src to one file, tmini_all.c."""
 
 import re
 
@@ -19,7 +19,8 @@ HEAD = """\
 
 
 def single(sources, version):
-    """SOURCES: the contents of lib/src by name. Private headers stand where they are first needed."""
+    """Returns the file. `sources`: the contents of lib/src by name. Each private header is inserted where it is first
+    included."""
     included = set()
 
     def inline(match):

@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""The version and the address of the project stand in CMakeLists.txt; every place that repeats them
-is in the list below.
+"""CMakeLists.txt defines the version and the address of the project; every place that repeats them is in the list
+below.
 
-    version.py                    names each place that disagrees
-    version.py --write [VERSION]  puts them right: after an edit of CMakeLists.txt, or with a new
+    version.py                    prints each place that differs
+    version.py --write [VERSION]  corrects them: after an edit of CMakeLists.txt, or with a new
                                   version, such as 1.1.0-dev after 1.0.0 has been released
 
-Exit status: 0 all agree, 1 not, 2 wrong usage.
+Exit status: 0 all are equal, 1 some differ, 2 wrong usage.
 """
 
 import datetime
@@ -25,7 +25,7 @@ ADDRESS_IN_CMAKE = r'^    HOMEPAGE_URL "(.*)"'
 
 
 def pep440(version):
-    """As Python writes it: 1.0.0-rc.1 is 1.0.0rc1, 1.1.0-dev is 1.1.0.dev0."""
+    """The version in Python's form: 1.0.0-rc.1 is 1.0.0rc1, 1.1.0-dev is 1.1.0.dev0."""
     return version.replace("-rc.", "rc").replace("-dev", ".dev0")
 
 
@@ -42,7 +42,7 @@ def whole(version, address):
     return version
 
 
-# (file, pattern whose only group is the repeated text, what that text has to be)
+# (file, pattern whose only group is the repeated text, function that returns the right text)
 PLACES = [
     ("CMakeLists.txt", NUMBER_IN_CMAKE, lambda version, address: version.partition("-")[0]),
     ("CMakeLists.txt", SUFFIX_IN_CMAKE, lambda version, address: version.lstrip("0123456789.")),
@@ -97,7 +97,7 @@ def is_placeholder(url):
 
 
 def found(name, pattern):
-    """The text that is there; without the date that follows a release in the list of changes."""
+    """The text at that place; in the list of changes without the date that follows a release."""
     text = find(name, pattern)[1]
     return re.sub(r"(?<!-dev) \(\d{4}-\d\d-\d\d\)$", "", text) if name == "CHANGELOG.md" else text
 
@@ -110,7 +110,8 @@ def disagreements():
 
 
 def write_changes(new):
-    """Begins a section for a version in development, or gives the section of a release its number and date."""
+    """Begins a section for a version in development, or writes a release's number and date into the heading of its
+    section."""
     text = read("CHANGELOG.md")
     heading = find("CHANGELOG.md", r"^## (.*)$")
     title = new if new.endswith("-dev") else f"{new} ({datetime.date.today()})"
