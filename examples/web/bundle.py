@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Makes one file of the page: bundle.py PAGE_DIR LIBRARY.wasm VERSION OUT.html
+"""Joins the page's files to one: bundle.py PAGE_DIR LIBRARY.wasm VERSION OUT.html
 
-A browser loads no modules from file:, so the modules become one, each after those that it imports;
-a name that two of them declare is then an error of the language. The library goes in as base64.
+A browser loads no modules from file:, so all modules become one script, each after those that it imports. If two
+modules declare the same name, the script has a syntax error. The library is included as base64.
 """
 
 import base64
@@ -19,7 +19,7 @@ LICENCE = re.compile(r"^// (?:SPDX|Copyright).*\n", re.MULTILINE)
 
 
 def modules_in_order(folder, name, seen):
-    """The module's text after those of the modules that it imports."""
+    """The texts of the modules that this module imports, then its own."""
     if name in seen:
         return []
     seen.add(name)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// The library, compiled to WebAssembly: calls in, numbers and texts out. Nothing is computed here.
+// Calls the library, which is compiled to WebAssembly, and reads its numbers and texts. Nothing is computed here.
 
-// An object in which a name that is not there is an error.
+// An object that throws an error when a name is missing.
 function strict(numbers) {
     return new Proxy(numbers, {
         get(target, name) {
@@ -48,7 +48,7 @@ export class Library {
         return address === 0 ? null : this.#string(address);
     }
 
-    // How many bytes can be handed over at once.
+    // How many bytes can be passed at once.
     get transferSize() {
         return this.#exports.transfer_size();
     }
@@ -57,7 +57,7 @@ export class Library {
         new Uint8Array(this.#memory, this.#exports.transfer(), bytes.length).set(bytes);
     }
 
-    // The first `count` bytes that the library has handed over: a copy.
+    // A copy of the first `count` bytes that the library has passed.
     take(count) {
         return new Uint8Array(this.#memory, this.#exports.transfer(), count).slice();
     }
@@ -67,7 +67,7 @@ export class Library {
         return new Uint8Array(this.#memory, this.#exports[name](...values), count).slice();
     }
 
-    // The text that the library has handed over.
+    // The text that the library has passed.
     takeText() {
         return this.#string(this.#exports.transfer());
     }
@@ -78,12 +78,12 @@ export class Library {
         return new Points(this.#memory.slice(address, address + Points.SIZE * count));
     }
 
-    // 16-bit numbers, likewise.
+    // A copy of 16-bit numbers, in the same way.
     words(name, count) {
         return new Uint16Array(this.#memory, this.#exports[name](), count).slice();
     }
 
-    // The faults that there are, by their bits.
+    // All faults that a lidar can report: bit and name.
     faultBits() {
         const bits = [];
         for (let bit = 1; bit <= this.constants.FAULT_MASK; bit *= 2) {
@@ -114,7 +114,7 @@ export class Library {
         return this.#names.get(address);
     }
 
-    // Pairs of a name's address and a value; only constants are ever negative.
+    // Pairs of a name's address and a value; only constants can be negative.
     #table(count, Numbers = Uint32Array) {
         const pairs = new Numbers(this.#memory, this.#exports.numbers(), 2 * count);
         const numbers = {};
@@ -125,7 +125,7 @@ export class Library {
     }
 }
 
-// tmini_point_t, as wasm/shown.c makes sure that it is: six bytes per point.
+// An array of tmini_point_t, six bytes each; wasm/shown.c checks this layout.
 export class Points {
     static SIZE = 6;
 
@@ -151,7 +151,7 @@ export class Points {
         return this.bytes[6 * i + 5];
     }
 
-    // As `tmini` prints a point: 1/64 degree has six decimals, so nothing is rounded.
+    // A point as `tmini` prints it. Six decimals are exact for multiples of 1/64 degree.
     csv(i) {
         const degrees = (this.angleQ6(i) / 64).toFixed(6);
         return `${i},${degrees},${this.distanceMm(i)},${this.intensity(i)},${this.flag(i)}`;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// A lidar at work: the library's driver between a source of bytes and the page. The driver carries out the commands;
-// this file only decides which follow each other.
+// A connected lidar: the library's driver between a source of bytes and the page. The driver carries out commands; this
+// file only decides their order.
 
 import { diagnose, problems } from './problems.js';
 
 const POLL_MS = 20;
 
-// If a lidar that has answered before does not answer these, it is started all the same.
+// If a lidar that has answered before does not answer these queries, it is started anyway.
 const DISPENSABLE = new Set(['health', 'frequency']);
 
-// Time as the driver sees it. While the browser does not run the page at all (a dialog, a computer
-// asleep), bytes wait and the lidar is not to blame: such a pause counts as a short one.
+// The driver's clock. While the browser does not run the page (a dialog is open, the computer sleeps), bytes wait, and
+// the lidar must not be reported as silent: so a long pause counts as a short one.
 class Clock {
     static #LONGEST_STEP_MS = 100;
     #ms = 0;
@@ -26,10 +26,10 @@ class Clock {
     }
 }
 
-// It calls of `listener`: onEvent(name, detail), onScan(), onChange(), onBytes(bytes),
-// onProblem(problem or null).
+// Calls these functions of `listener`: onEvent(name, detail), onScan(), onChange(), onBytes(bytes), onProblem(problem
+// or null).
 export class Lidar {
-    info = null;   // As the lidar answered, once it has.
+    info = null;   // The lidar's answers; null: none yet.
     health = null;
     frequencyChz = 0;
     gone = false;
@@ -65,7 +65,7 @@ export class Lidar {
         this.#run(['info', 'health', 'frequency', 'start']);
     }
 
-    // Stops the lidar and lets go of the source. The lidar gets a second to obey.
+    // Stops the lidar and closes the source. The lidar has a second to stop.
     async close() {
         if (!this.gone && this.state !== this.#library.constants.STATE_IDLE) {
             this.#queue = [];
@@ -76,7 +76,7 @@ export class Lidar {
         await this.#source.close();
     }
 
-    // The page goes away: at least the command is sent.
+    // The page is being closed: only sends the stop command.
     abandon() {
         this.#library.call('lidar_stop');
         this.#send();
@@ -95,8 +95,8 @@ export class Lidar {
         return this.#command !== null || this.#queue.length > 0;
     }
 
-    // A command of the user's: info, health, frequency, reboot, start, stop. While the lidar scans
-    // only stop may be sent to it: for anything else it is stopped, and started again afterwards.
+    // A command of the user: info, health, frequency, reboot, start, stop. A scanning lidar accepts only stop, so for
+    // the others it is stopped first and started again afterwards.
     request(command, value) {
         const pause = this.isScanning && command !== 'stop' && command !== 'start';
         this.#run(pause ? ['stop', [command, value], 'start'] : [[command, value]]);
@@ -157,7 +157,7 @@ export class Lidar {
         }
     }
 
-    // Time must not run backwards between polls: each asks the clock itself.
+    // Reads the clock for each poll, so that time never runs backwards.
     #poll() {
         const { EVENT_NONE } = this.#library.constants;
         const now = this.#clock.now();
@@ -199,7 +199,7 @@ export class Lidar {
         this.#listener.onChange();
     }
 
-    // What an event brings; kept where it is of use later.
+    // The details of an event; answers are also stored.
     #detail(event) {
         const c = this.#library.constants;
         switch (event) {
@@ -221,7 +221,7 @@ export class Lidar {
         }
     }
 
-    // One that stop has ended is no failure: that was the user.
+    // A command that a stop has ended is no failure.
     #failed() {
         const error = this.#library.call('lidar_error');
         if (error === this.#library.constants.ERROR_ABORTED) {
@@ -241,7 +241,7 @@ export class Lidar {
         }
     }
 
-    // Whether anything comes at all makes the difference.
+    // Reports silence. If bytes still come, reports that none of them are valid packets.
     #lost() {
         if (this.gone) {
             return;
@@ -269,7 +269,7 @@ export class Lidar {
         this.#listener.onChange();
     }
 
-    // A lidar that was scanning is brought back by the driver itself.
+    // The driver itself recovers a lidar that was scanning.
     #back() {
         this.gone = false;
         this.#listener.onProblem(null);

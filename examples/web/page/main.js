@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// The page: which source there is, what the buttons do, and what is shown when.
+// The page: chooses the source of bytes, handles the buttons, and decides what is shown.
 
 import { Library } from './library.js';
 import { Lidar } from './lidar.js';
@@ -19,9 +19,9 @@ import { element, enable, hertz, isEnabled, log, setText, show, showCounters, sh
 
 const COUNTERS_MS = 250;
 const SECTORS = 8;
-const STALE_MS = 1000; // An older scan no longer shows what is there.
+const STALE_MS = 1000; // An older scan is out of date.
 
-// "170:190, 350:10" as pairs of degrees; none if it is written in another way.
+// "170:190, 350:10" as pairs of degrees; none if the text has another form.
 function arcsOf(input) {
     const parts = input.value.split(',').map((part) => part.trim()).filter((part) => part !== '');
     const arcs = parts.map((part) => part.match(/^(-?\d{1,3})\s*:\s*(-?\d{1,3})$/)?.slice(1).map(Number));
@@ -39,8 +39,8 @@ class Viewer {
     #player = null;
     #recorder;
     #scannedAt = null; // When the lidar's latest scan came,
-    #isStale = false; // and whether that is long ago.
-    #change = Promise.resolve(); // From one source to another: one at a time.
+    #isStale = false; // and whether that was too long ago.
+    #change = Promise.resolve(); // The change from one source to another; only one at a time.
 
     constructor(library) {
         this.#library = library;
@@ -116,7 +116,7 @@ class Viewer {
         this.#update();
     }
 
-    // Nothing stays of the source before.
+    // Closes the current source and clears what it has shown.
     async #close() {
         const lidar = this.#lidar;
         this.#player?.pause();
@@ -153,7 +153,7 @@ class Viewer {
         showScan(numbers, sectors);
     }
 
-    // A lidar that is lost, or stopped, must not look as if it saw something.
+    // The scan of a lost or stopped lidar must not look current.
     #showAge() {
         const age = this.#lidar && this.#scannedAt !== null ? performance.now() - this.#scannedAt : 0;
         const isStale = age > STALE_MS;
@@ -190,7 +190,7 @@ class Viewer {
         }
     }
 
-    // While scanning from the stream; before that from the answer to the health command.
+    // The faults: while scanning, from the stream; before, from the answer to the health command.
     #faults(numbers) {
         const { FAULTS_UNKNOWN } = this.#constants;
         if (this.#player) {
@@ -251,7 +251,7 @@ class Viewer {
         enable(['set-frequency', 'ask-info', 'ask-health', 'reboot'], !lidar.isBusy && !lidar.gone);
     }
 
-    // With the keyboard one must not have to begin anew when a button disappears.
+    // When the focused button disappears, moves the focus, so that keyboard users keep their place.
     #keepFocus() {
         if (!document.activeElement.checkVisibility()) {
             element(this.#lidar ? 'start-stop' : this.#player ? 'play' : 'connect').focus();
@@ -260,7 +260,7 @@ class Viewer {
 
     // ----------------------------------------------------------------------------------- controls
 
-    // A button that cannot be used now stays where it is, also for the keyboard: it does nothing.
+    // A disabled button remains in place and can have the focus, but does nothing.
     #on(id, event, action) {
         const target = element(id);
         target.addEventListener(event, (happened) => isEnabled(target) && action(happened));
@@ -336,7 +336,7 @@ class Viewer {
         });
     }
 
-    // If there is one.
+    // Ends and saves the running recording; returns false if there is none.
     #saveRecording() {
         if (!this.#recorder.isRunning) {
             return false;
@@ -346,7 +346,7 @@ class Viewer {
         return true;
     }
 
-    // The one that is played; of a lidar what it has sent in the last seconds.
+    // The recording that is played; for a lidar, the bytes of the last seconds.
     async #recordingAtHand() {
         if (this.#player) {
             return this.#player.recording;
@@ -368,7 +368,7 @@ class Viewer {
 
     #chosen(input) {
         const [file] = input.files;
-        input.value = ''; // So that the same one can be chosen again.
+        input.value = ''; // So that the same file can be chosen again.
         if (file) {
             this.#next(() => this.#openFile(file));
         }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// Words and numbers beside the picture. Each is changed only when it differs, so that a screen reader
-// and the browser have no more to do than there is news.
+// Words and numbers beside the picture. A text is written only when it has changed, to spare screen readers and the
+// browser.
 
 const DIRECTIONS = ['ahead', 'ahead right', 'right', 'behind right', 'behind', 'behind left', 'left', 'ahead left'];
 const LOG_LENGTH = 200;
@@ -65,7 +65,7 @@ export function showScan(scan, sectors) {
     DIRECTIONS.forEach((_, i) => setText(`sector${i}`, has ? metres(sectors[i]) : '–'));
 }
 
-// The counters; null without a source.
+// The counters; null: there is no source.
 export function showCounters(numbers) {
     setText('bytes', numbers?.bytes ?? '–');
     setText('packets', numbers?.packets ?? '–');
@@ -99,7 +99,7 @@ function ctSerial(numbers, constants) {
     return `${numbers.year}${two(numbers.month)}${two(numbers.day)}${String(numbers.number).padStart(8, '0')}`;
 }
 
-// CT information, from the lidar's or the recording's numbers; null without a source.
+// CT information, from the lidar's or the recording's numbers; null: there is no source.
 export function showCt(numbers, constants, faultsText) {
     setText('ct-version', numbers ? ctVersion(numbers, constants) : '–');
     setText('ct-serial', numbers ? ctSerial(numbers, constants) : '–');
@@ -107,7 +107,7 @@ export function showCt(numbers, constants, faultsText) {
     setText('ct-health', known ? faultsText(numbers.ctFaults) : numbers ? 'not sent' : '–');
 }
 
-// What the lidar answered when it was asked; nulls as long as it was not.
+// The lidar's answers to queries; null: not asked yet.
 export function showUnit(info, health, constants, faultsText) {
     const models = { [constants.MODEL_T_MINI_PLUS]: 'T-mini Plus', [constants.MODEL_T_MINI_PRO]: 'T-mini Pro' };
     setText('model', info ? `${info.model} ${models[info.model] ?? '(not a T-mini that this page knows)'}` : '–');
@@ -124,8 +124,8 @@ function paragraph(text, className) {
     return target;
 }
 
-// A problem to be read at once: what happened, what to do. null takes it away. `place` tells apart
-// problems of the connection from faults of the lidar.
+// Shows a problem: what happened, and what to do; null removes it. `place`: the element for problems of the connection,
+// or that for faults of the lidar.
 export function showProblem(place, problem) {
     const target = element(place);
     const title = problem?.title ?? '';

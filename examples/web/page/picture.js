@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// The picture of the latest scans, seen from above, the front up: rings in metres, points coloured by
-// intensity, flagged ones marked, the nearest obstacle of each sector as an arc. It can be enlarged and moved.
+// The picture of the latest scans, seen from above, with the front up: rings in metres, points coloured by
+// intensity, flagged ones marked, the nearest obstacle of each sector as an arc. The user can enlarge and move it.
 
 import { degrees, metres } from './panels.js';
 
-// Ranges to choose from, and how far apart the rings are then.
+// The possible ranges, and the distance between rings for each.
 const SCALES = [[500, 100], [1000, 200], [1500, 500], [2000, 500], [2500, 500], [3000, 1000], [4000, 1000],
                 [5000, 1000], [6000, 1000], [8000, 2000], [12000, 2000], [16500, 4000]];
 const COLOURS = 16; // Shades of intensity.
 const ZOOM_MAX = 40;
-const EMPTY_MM = 6000; // The range while there is nothing.
+const EMPTY_MM = 6000; // The range without points.
 const MARGIN = 44; // Around the outermost ring, for the angles.
 const LEGEND_ROW = 24;
-const LEGEND_ROWS = [[560, 3], [860, 2], [Infinity, 1]]; // On a canvas narrower than that.
-const BEAM_CORE = 0.2; // Of the radius: there the beams are close together.
+const LEGEND_ROWS = [[560, 3], [860, 2], [Infinity, 1]]; // The legend's rows on a canvas below this width.
+const BEAM_CORE = 0.2; // A part of the radius: there the beams are close together.
 
-// From little light to much, in equal steps between these: those of the tool's pictures, and darker ones on white.
+// Colours from low to high intensity, with equal steps between them: the colours of the tool's pictures, and darker
+// ones on white.
 const RAMPS = {
     dark: [[82, 92, 227], [33, 150, 227], [46, 204, 171], [168, 227, 92], [255, 214, 84]],
     light: [[74, 108, 214], [18, 121, 168], [14, 118, 92], [96, 104, 10], [168, 72, 0]],
@@ -38,7 +39,7 @@ function scaleFor(farthestMm) {
 
 export class Picture {
     persistence = 3;
-    rangeMm = 0; // Chosen by hand; 0: as far as there is something.
+    rangeMm = 0; // Chosen by the user; 0: as far as the points.
     #canvas;
     #context;
     #constants;
@@ -51,14 +52,14 @@ export class Picture {
     #isDue = false;
     #isStale = false;
     #zoom = 1;
-    #shift = [0, 0]; // Of the lidar from the middle, in pixels.
+    #shift = [0, 0]; // The lidar's distance from the middle, in pixels.
 
     constructor(canvas, constants) {
         const circle = constants.FULL_CIRCLE_Q6;
         this.#canvas = canvas;
         this.#context = canvas.getContext('2d', { alpha: false });
         this.#constants = constants;
-        // A quarter more than the circle: the cosine is the sine of an angle ahead.
+        // A circle and a quarter, because the cosine is the sine a quarter later.
         this.#sines = Float32Array.from({ length: circle + circle / 4 },
                                         (_, i) => Math.sin((i / circle) * 2 * Math.PI));
         this.#readTheme();
@@ -71,7 +72,7 @@ export class Picture {
         this.draw();
     }
 
-    // What is shown is no longer what is there: grey.
+    // If the picture is out of date, it is drawn in grey.
     set isStale(isStale) {
         if (this.#isStale !== isStale) {
             this.#isStale = isStale;
@@ -79,19 +80,19 @@ export class Picture {
         }
     }
 
-    // Larger or smaller by a factor; the place (x, y) of the picture stays where it is.
+    // Enlarges by a factor, also below 1; the picture's place (x, y) does not move.
     enlarge(factor, x = this.#canvas.clientWidth / 2, y = this.#canvas.clientHeight / 2) {
         const zoom = Math.min(Math.max(this.#zoom * factor, 1), ZOOM_MAX);
         const frame = this.#frame();
         const middle = [x - frame.x + this.#shift[0], y - frame.y + this.#shift[1]];
         const change = zoom / this.#zoom;
         this.#zoom = zoom;
-        this.#canvas.style.touchAction = zoom > 1 ? 'none' : ''; // Else a finger scrolls the page.
+        this.#canvas.style.touchAction = zoom > 1 ? 'none' : ''; // Otherwise a finger scrolls the page.
         this.#shift = zoom === 1 ? [0, 0] : this.#shift.map((shift, i) => middle[i] + (shift - middle[i]) * change);
         this.draw();
     }
 
-    // Moved by some pixels, if it is enlarged.
+    // Moves the picture by some pixels, if it is enlarged.
     move(dx, dy) {
         if (this.#zoom > 1) {
             this.#shift = [this.#shift[0] + dx, this.#shift[1] + dy];
@@ -99,21 +100,21 @@ export class Picture {
         }
     }
 
-    // What lies there: distance in metres, and angle in degrees clockwise from the front.
+    // What is at this pixel: distance in metres, and angle in degrees clockwise from the front.
     at(px, py) {
         const { x, y, scale } = this.#frame();
         const degrees = (Math.atan2(px - x, y - py) / Math.PI) * 180;
         return { metres: Math.hypot(px - x, y - py) / scale / 1000, degrees: (degrees + 360) % 360 };
     }
 
-    // One more scan: its points, its numbers, the nearest distance in each sector.
+    // Adds a scan: its points, its numbers, the nearest distance in each sector.
     add(points, numbers, sectors) {
         this.#scans.unshift(points);
         this.#scans.length = Math.min(this.#scans.length, this.persistence);
         this.#show(numbers, sectors);
     }
 
-    // The latest scan has changed: other ones no longer fit to it.
+    // The latest scan has changed: older ones do not match it, and are dropped.
     replace(points, numbers, sectors) {
         this.#scans = numbers.points > 0 ? [points] : [];
         this.#show(numbers, sectors);
@@ -127,7 +128,7 @@ export class Picture {
         this.draw();
     }
 
-    // Once before the screen is painted next, however often it is asked for.
+    // Draws once before the screen is painted next, however often this is called.
     draw() {
         if (this.#isDue) {
             return;
@@ -139,7 +140,7 @@ export class Picture {
         });
     }
 
-    // As a PNG.
+    // The picture as a PNG.
     blob() {
         this.#paint();
         return new Promise((resolve) => this.#canvas.toBlob(resolve, 'image/png'));
@@ -168,7 +169,7 @@ export class Picture {
         return this.rangeMm || (this.#numbers ? this.#autoMm : EMPTY_MM);
     }
 
-    // A unit that flags most of its points marks none by that.
+    // If a unit flags most of its points, flags are not marked.
     get #marksFlags() {
         return 2 * this.#numbers.flagged <= this.#numbers.valid;
     }
@@ -196,7 +197,7 @@ export class Picture {
         this.#paintLidar(frame);
     }
 
-    // As many pixels as the screen has, in the units of CSS.
+    // Gives the canvas the screen's resolution, but draws in CSS pixels.
     #fit() {
         const ratio = devicePixelRatio;
         const frame = this.#frame();
@@ -209,8 +210,8 @@ export class Picture {
         return frame;
     }
 
-    // Where the lidar is, and how large a millimetre. `size`: a point's, which grows with the picture; a mark's
-    // is `mark`.
+    // The lidar's place, and the scale in pixels per millimetre. `size`: a point's size, which grows with the picture;
+    // `mark`: a mark's size.
     #frame() {
         const { clientWidth: width, clientHeight: height } = this.#canvas;
         const legend = LEGEND_ROW * LEGEND_ROWS.find(([limit]) => width < limit)[1] + 8;
@@ -239,7 +240,7 @@ export class Picture {
         context.stroke();
     }
 
-    // What the lidar has looked through: from it to each point, as wide as the points are apart.
+    // The space that the lidar has seen as free: a beam to each point, as wide as the distance between points.
     #paintBeams(frame) {
         const points = this.#isStale ? undefined : this.#scans[0];
         if (points === undefined || points.count === 0) {
@@ -280,7 +281,7 @@ export class Picture {
         context.fillStyle = this.#theme.dim;
         context.font = `12px ${this.#theme.font}`;
         context.textAlign = 'center';
-        const labelled = step * scale >= 28 ? step : 2 * step; // With room between them.
+        const labelled = step * scale >= 28 ? step : 2 * step; // So that labels do not overlap.
         for (let mm = labelled; mm <= rangeMm; mm += labelled) {
             const [tx, ty] = this.#place({ x, y }, 15 * 64, mm * scale - 10);
             context.fillText(`${mm / 1000} m`, tx, ty + 4);
@@ -313,7 +314,7 @@ export class Picture {
         context.stroke();
     }
 
-    // Those of one shade together.
+    // Paints the points shade by shade.
     #paintPoints(frame, points) {
         const context = this.#context;
         const { darkest, brightest } = this.#numbers;
@@ -339,7 +340,7 @@ export class Picture {
         });
     }
 
-    // Of the newest scan's flagged points.
+    // Marks the flagged points of the newest scan.
     #paintMarks(frame) {
         const [points] = this.#scans;
         for (let i = 0; i < points.count && this.#marksFlags; i++) {
@@ -351,7 +352,7 @@ export class Picture {
         }
     }
 
-    // A ring for a specular reflection, a cross for ambient light: different without colour too.
+    // A ring for a specular reflection, a cross for ambient light: they differ even without colour.
     #paintFlag(x, y, size, isSpecular) {
         const context = this.#context;
         context.strokeStyle = isSpecular ? this.#theme.specular : this.#theme.ambient;
@@ -402,7 +403,7 @@ export class Picture {
         context.stroke();
     }
 
-    // An arrow that points to the front.
+    // Paints the lidar as an arrow that points to the front.
     #paintLidar({ x, y }) {
         const context = this.#context;
         context.fillStyle = this.#theme.page;
@@ -423,7 +424,7 @@ export class Picture {
         context.fill();
     }
 
-    // What the signs mean: [width of the sign, how it is drawn at (x, y), words].
+    // The meaning of the signs: [width of the sign, function that draws it at (x, y), text].
     #legend() {
         const { darkest, brightest, flagged, valid, specular, ambient, nearestMm, nearestQ6 } = this.#numbers;
         const context = this.#context;
@@ -450,7 +451,7 @@ export class Picture {
         ];
     }
 
-    // Row by row, as much as there is room for in each.
+    // Paints the legend row by row, with as many entries as each has room for.
     #paintLegend({ width, height, legend }) {
         const context = this.#context;
         if (this.#numbers.valid === 0) {

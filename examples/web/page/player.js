@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// Plays a recording, and the controls for that.
+// Plays a recording, and handles its controls.
 
 import { element, log, setText } from './panels.js';
 
@@ -13,7 +13,7 @@ export class Player {
     #timer = 0;
     #isPlaying = false;
 
-    // Plays at once. It calls of `listener`: onScan(), and onJump() when another moment is shown.
+    // Begins to play. Calls these functions of `listener`: onScan(), and onJump() when another moment is shown.
     constructor(recording, listener) {
         this.#recording = recording;
         this.#listener = listener;
@@ -25,7 +25,7 @@ export class Player {
         return this.#recording;
     }
 
-    // Plays on, at the end from the beginning; or pauses.
+    // Pauses; or plays on, after the end from the beginning.
     toggle() {
         if (this.#isPlaying) {
             this.pause();

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// The mouse, the pen or the fingers on the picture: what lies under them, moving it, enlarging it.
+// Mouse, pen or fingers on the picture: shows what is under them, moves and enlarges the picture.
 
 import { degrees, setText } from './panels.js';
 
-const WHEEL_STEP = 0.002; // Of the zoom's logarithm, per pixel of the wheel.
+const WHEEL_STEP = 0.002; // The change of the zoom's logarithm per pixel of the wheel.
 
 export class Pointer {
     #canvas;
     #picture;
-    #held = new Map(); // Pointers that are down, by their numbers: [x, y].
+    #held = new Map(); // Pressed pointers: [x, y] by identifier.
 
     constructor(canvas, picture) {
         this.#canvas = canvas;
@@ -42,7 +42,7 @@ export class Pointer {
         const other = [...this.#held].find(([id]) => id !== pointerId)?.[1];
         if (other === undefined) {
             this.#picture.move(x - before[0], y - before[1]);
-        } else { // Two fingers: by how much farther apart they are.
+        } else { // Two fingers: enlarges as their distance grows.
             const apart = Math.max(Math.hypot(before[0] - other[0], before[1] - other[1]), 1);
             this.#picture.enlarge(Math.hypot(x - other[0], y - other[1]) / apart, ...other);
         }

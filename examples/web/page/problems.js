@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// What can be wrong with the connection, and what to do: the words of the tmini tool, for someone who
-// sits before a browser.
+// What can be wrong with the connection, and what to do: the tool's messages, for users of a browser.
 
 const SUPPLY = 'If it happens when the motor starts, give the lidar a supply of its own (5 V, up to 1 A).';
 
@@ -67,7 +66,7 @@ export const problems = {
     },
 };
 
-// The lidar has been heard, but a command failed.
+// The lidar has answered before, but a command failed.
 export function commandFailed(command, why) {
     return {
         title: `The lidar has answered before, but now “${command}” failed: ${why}.`,
@@ -75,7 +74,7 @@ export function commandFailed(command, why) {
     };
 }
 
-// Why no lidar was found, from what the line has brought.
+// Why no lidar was found, judged by the bytes received.
 export function diagnose(numbers, command, why) {
     if (numbers.bytes === 0) {
         return problems.silence;
@@ -86,11 +85,11 @@ export function diagnose(numbers, command, why) {
     return numbers.bytesInReplies === 0 ? problems.deafness : commandFailed(command, why);
 }
 
-// What Web Serial's requestPort() and open() fail with, by the specification.
+// The errors of Web Serial's requestPort() and open(), according to the specification.
 export function explainOpening(error) {
     switch (error.name) {
     case 'NotFoundError':
-        return null; // No port was chosen: no problem.
+        return null; // The user has chosen no port: no problem.
     case 'SecurityError':
         return problems.forbidden;
     case 'NetworkError':
@@ -125,7 +124,7 @@ export const recordingProblems = {
     unreadable: (name, why) => ({ title: `${name} cannot be read: ${why}`, advice: [] }),
 };
 
-// What may cause a fault that the lidar reports, by the library's name of it.
+// Possible causes of a reported fault, by the fault's name in the library.
 export const faultAdvice = {
     encoder: 'Is the rotor blocked?',
     data: 'Is the window covered?',

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// A recording: all bytes at hand, played at the speed at which they came. As the tmini tool's: bytes that
-// the lidar sent, or the same in chunks with their times.
+// A recording, completely in memory, played at the speed at which it was received. The formats are those of the tmini
+// tool: the lidar's bytes, or the same in chunks with time stamps.
 
 import { recordingProblems } from './problems.js';
 
@@ -12,11 +12,11 @@ export class Recording {
     kind = 'recording';
     #library;
     #bytes;
-    #at = 0; // Of them, this many have been fed.
+    #at = 0; // How many of the bytes have been fed.
     #isShown;
     #atEnd = false;
 
-    // `isShown`: its scans are the ones that the page shows, as it is played.
+    // `isShown`: the page shows the scans while it is played.
     constructor(library, name, bytes, isShown = true) {
         this.#library = library;
         this.#bytes = bytes;
@@ -43,8 +43,8 @@ export class Recording {
         return this.#atEnd;
     }
 
-    // Plays on until `timeMs`; returns how many scans that completed. The last packet may be shorter than
-    // a millisecond, so the end is where nothing comes any more.
+    // Plays on until `timeMs`; returns how many scans were completed. The last packet may be shorter than a
+    // millisecond, so the end is reached only when no packet is left.
     playUntil(timeMs) {
         const { TAPE_SCAN, TAPE_END } = this.#library.constants;
         const untilMs = timeMs >= this.durationMs ? Infinity : timeMs;
@@ -57,7 +57,7 @@ export class Recording {
         return scans;
     }
 
-    // To another moment: from the beginning on, which is fast enough.
+    // Goes to another moment by playing from the beginning, which is fast enough.
     seek(timeMs) {
         this.rewind();
         return this.playUntil(timeMs);
@@ -85,7 +85,7 @@ export class Recording {
         }
     }
 
-    // The next packet; feeds what the library asks for.
+    // The next packet; feeds the bytes that the library needs.
     #next() {
         const { TAPE_NEEDS_BYTES } = this.#library.constants;
         for (;;) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// What is saved: what comes from the lidar, the picture, the points.
+// Saves the lidar's bytes, the picture and the points.
 
 // "2026-05-04-130501", for names of files.
 function stamp() {
@@ -11,7 +11,7 @@ function stamp() {
     return `${day}-${two(now.getHours())}${two(now.getMinutes())}${two(now.getSeconds())}`;
 }
 
-// Offers `parts` as a file in the browser's manner; returns its name.
+// Offers `parts` as a download; returns the file's name.
 export function save(kind, extension, parts, type) {
     const link = document.createElement('a');
     link.download = `tmini-${kind}-${stamp()}.${extension}`;
@@ -21,11 +21,11 @@ export function save(kind, extension, parts, type) {
     return link.download;
 }
 
-// The last seconds that are always kept, in milliseconds.
+// The time of the bytes that are always kept, in milliseconds.
 const KEPT_MS = 10000;
 
-// What comes from the lidar, with its times, as a recording for `tmini`: since it was started, and the last
-// seconds always.
+// Keeps the lidar's bytes, with times, as a recording for `tmini`: all since it was started, and always those of the
+// last seconds.
 export class Recorder {
     isRunning = false;
     bytes = 0;
@@ -42,7 +42,7 @@ export class Recorder {
         this.#chunks = [];
     }
 
-    // Nothing is kept of what came before.
+    // Drops all bytes so far.
     clear() {
         this.#chunks = [];
     }
@@ -70,7 +70,7 @@ export class Recorder {
         const library = this.#library;
         const { CHUNK_MAGIC_SIZE, CHUNK_HEAD_SIZE } = library.constants;
         const begun = this.#chunks[0]?.[0] ?? 0;
-        let timeUs = 0; // Up to the chunk before: rounding must not add up.
+        let timeUs = 0; // The time of the chunk before, as rounded: so rounding errors do not add up.
         return [library.bytes(CHUNK_MAGIC_SIZE, 'recording_magic'), ...this.#chunks.flatMap(([time, bytes]) => {
             const passedUs = Math.round((time - begun) * 1000) - timeUs;
             timeUs += passedUs;

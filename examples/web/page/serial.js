@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// A lidar on a port that the user chooses: Web Serial as the source of bytes.
+// A source of bytes: a lidar on a serial port that the user chooses (Web Serial).
 
 const BAUD_RATE = 230400;
-const BUFFER_SIZE = 16384; // More than a second of data, for a page that is busy.
+const BUFFER_SIZE = 16384; // More than a second of data, because the page may be busy.
 
-// These end a stream, but not the port: it goes on with a new stream (Web Serial, "readable").
+// These errors end a stream, but the port continues with a new stream (Web Serial, "readable").
 const PASSING = new Set(['BufferOverrunError', 'FramingError', 'ParityError', 'BreakError']);
 
 export function hasWebSerial() {
     return 'serial' in navigator;
 }
 
-// USB's numbers of vendor and product are all that a page gets to know of an adapter.
+// A page can read only an adapter's USB vendor and product numbers.
 function nameOf(port) {
     const { usbVendorId, usbProductId } = port.getInfo();
     const hex = (number) => number.toString(16).padStart(4, '0');
@@ -23,7 +23,7 @@ function nameOf(port) {
 export class SerialSource {
     kind = 'serial';
     onBytes = () => {};
-    onLostBytes = () => {}; // The computer, or the line, has lost some.
+    onLostBytes = () => {}; // The computer, or the line, has lost bytes.
     onGone = () => {};
     onBack = () => {};
     #port;
@@ -33,7 +33,7 @@ export class SerialSource {
     #closing = false;
     #listeners = new AbortController();
 
-    // Asks the user for a port. Fails with an error of Web Serial's.
+    // Asks the user for a port. Fails with an error of Web Serial.
     static async choose() {
         return new SerialSource(await navigator.serial.requestPort());
     }
@@ -50,7 +50,7 @@ export class SerialSource {
         navigator.serial.addEventListener('connect', (event) => this.#returned(event.target), options);
     }
 
-    // The reading side reports it if the port is gone. If it is not, it has a new stream to write to.
+    // If the port has gone, the reading side reports it. Otherwise the port has a new stream to write to.
     write(bytes) {
         const writer = this.#writer;
         writer?.write(bytes).catch(() => {
@@ -73,7 +73,7 @@ export class SerialSource {
         this.#reading = this.#read();
     }
 
-    // A port can only be closed once its streams are released.
+    // A port can be closed only after its streams have been released.
     async #shut() {
         await this.#reader?.cancel().catch(() => {});
         await this.#reading;
@@ -96,7 +96,7 @@ export class SerialSource {
         this.#fail();
     }
 
-    // Until the stream ends: null, or why it failed.
+    // Reads until the stream ends; returns null, or the error.
     async #readStream() {
         this.#reader = this.#port.readable.getReader();
         try {
@@ -123,14 +123,14 @@ export class SerialSource {
         }
     }
 
-    // The stream reports it as well, but only if something is being read.
+    // The stream reports this as well, but only during a read.
     #left(port) {
         if (port === this.#port) {
             this.#fail();
         }
     }
 
-    // Chrome may make a new port of the same adapter.
+    // Chrome may create a new port for the same adapter.
     async #returned(port) {
         if (this.#writer !== null || (port !== this.#port && nameOf(port) !== this.name)) {
             return;
@@ -142,7 +142,7 @@ export class SerialSource {
             await this.#start();
             this.onBack();
         } catch {
-            this.onGone(); // Not ready yet; another event, or the user, will try again.
+            this.onGone(); // Not ready yet; another event, or the user, causes the next attempt.
         }
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// A lidar in the page: the simulator of the library's tests as the source of bytes.
+// A source of bytes: the simulated lidar of the library's tests, in the page.
 
 export class SimulatedSource {
     kind = 'simulation';
@@ -25,7 +25,7 @@ export class SimulatedSource {
         this.#library.call('simulation_write', bytes.length, this.#nowMs);
     }
 
-    // Time goes on: what the lidar has sent by now arrives.
+    // Time passes: hands over what the lidar has sent until now.
     tick(nowMs) {
         this.#nowMs = nowMs;
         let count;
@@ -37,7 +37,7 @@ export class SimulatedSource {
         } while (count === this.#library.transferSize);
     }
 
-    // Names of the faults of the wire, in the order of their numbers.
+    // The names of the wire's faults, in the order of their numbers.
     get wireFaults() {
         const names = [];
         for (let name; (name = this.#library.text('simulation_fault_name', names.length)) !== null;) {
@@ -54,7 +54,7 @@ export class SimulatedSource {
         this.#library.call('simulation_health', bits);
     }
 
-    // What else can happen to it, each on or off.
+    // Switches other faults on or off.
     set(what, on) {
         const value = on ? 1 : 0;
         switch (what) {

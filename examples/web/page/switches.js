@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// What can happen to the simulated lidar, as switches: to itself, to its health, to the wire.
+// Switches for the simulated lidar's faults: of the lidar, of its health, of the wire.
 
 import { SimulatedSource } from './simulation.js';
 import { element } from './panels.js';
@@ -36,7 +36,7 @@ export function offerSwitches(library, simulated) {
     offer('unplugged', 'no power', (on) => simulated().set('unplugged', on));
     offerHealth(library, simulated);
     new SimulatedSource(library).wireFaults.forEach((name, kind) => {
-        if (name !== 'unplug') { // That is "no power".
+        if (name !== 'unplug') { // "no power" does the same.
             offer(`wire-${name}`, `wire: ${name}`, (on) => simulated().setWireFault(kind, on));
         }
     });

@@ -11,10 +11,10 @@
 #include "tmini/tmini.h"
 #include "tmini/tmini_names.h"
 
-/* Two seconds and more of data: a page in the background is called rarely. */
+/* More than two seconds of data: a page in the background runs rarely. */
 #define RX_SIZE 32768u
 
-/* Commands are two bytes, taken away after each poll. */
+/* Commands have two bytes; JavaScript takes them after each poll. */
 #define SENT_MAX 64u
 
 static struct {
@@ -26,7 +26,7 @@ static struct {
     uint32_t sent_count;
     uint32_t received;
     uint32_t now_ms;
-    tape_t tape; /* Counts guard bytes, which the driver counts as skipped. */
+    tape_t tape; /* Counts LastCRC bytes, which the driver counts as skipped. */
 } live;
 
 static int port_write(void *context, const uint8_t *bytes, size_t count)
@@ -45,7 +45,7 @@ static uint32_t port_now_ms(void *context)
     return live.now_ms;
 }
 
-/* A browser delivers bytes late and in blocks of its own, so a pause means nothing. A lidar that
+/* A browser delivers bytes late and in blocks of any size, so a pause means nothing. A lidar that
  * has just been plugged in needs some seconds before it receives commands. */
 static const tmini_timing_t *patience(void)
 {
@@ -93,7 +93,7 @@ EXPORTED void lidar_gap(void)
     tmini_feed_gap(&live.lidar);
 }
 
-/* The next event; a scan among them is then the one shown. */
+/* The next event; if it is a scan, this scan is shown. */
 EXPORTED uint32_t lidar_poll(uint32_t now_ms)
 {
     live.now_ms = now_ms;
@@ -104,7 +104,7 @@ EXPORTED uint32_t lidar_poll(uint32_t now_ms)
     return event;
 }
 
-/* What the driver has sent since it was asked last: in `transfer`. */
+/* Copies to `transfer` what the driver has sent since the last call. */
 EXPORTED uint32_t lidar_sent(void)
 {
     const uint32_t count = live.sent_count;

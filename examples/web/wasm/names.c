@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Names for the page: of the library's constants, and the texts that the library has. */
+/* For the page: the library's constants by name, and the library's texts. */
 
 #include "web.h"
 
@@ -9,7 +9,7 @@
 #include "tmini/tmini.h"
 #include "tmini/tmini_names.h"
 
-/* JavaScript compares with these by name. */
+/* JavaScript uses these constants by name. */
 EXPORTED uint32_t constants(void)
 {
     numbers_clear();

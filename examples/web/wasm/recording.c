@@ -11,11 +11,11 @@
 
 static struct {
     tape_t tape;
-    tmini_point_t points[UINT8_MAX]; /* Of the latest packet. */
+    tmini_point_t points[UINT8_MAX]; /* The points of the latest packet. */
     bool is_shown;
 } played;
 
-/* From the beginning. Whether its scans are to be the ones shown. */
+/* Goes to the beginning. `is_shown`: the recording's scans are shown. */
 EXPORTED void recording_rewind(uint32_t is_shown)
 {
     tape_begin(&played.tape, NULL, 0);
@@ -25,7 +25,7 @@ EXPORTED void recording_rewind(uint32_t is_shown)
     }
 }
 
-/* `count` bytes of the file in `transfer` are next; 0: there are no more. To be called when bytes
+/* Takes the file's next `count` bytes, from `transfer`; 0: there are no more. Call it when bytes
  * are needed. Returns how many were taken. */
 EXPORTED uint32_t recording_feed(uint32_t count)
 {
@@ -59,7 +59,7 @@ EXPORTED uint32_t recording_time_ms(void)
     return (uint32_t)(tape->chunks.version > 0 ? tape->time_us / 1000u : tape->stream.points / 4u);
 }
 
-/* What each row of the latest packet's points begins and ends with. */
+/* The values with which each row of the latest packet's points begins and ends. */
 EXPORTED uint32_t recording_packet_numbers(void)
 {
     const stream_t *const stream = &played.tape.stream;
@@ -72,7 +72,7 @@ EXPORTED uint32_t recording_packet_numbers(void)
     return numbers_count();
 }
 
-/* As CT information reports them, or unknown: TMINI_FAULTS_UNKNOWN. */
+/* The faults in CT information, or TMINI_FAULTS_UNKNOWN. */
 EXPORTED uint32_t recording_faults(void)
 {
     return stream_faults(&played.tape.stream);
@@ -100,7 +100,7 @@ EXPORTED uint32_t recording_numbers(void)
     return numbers_count();
 }
 
-/* For recordings that the page saves: what a file begins with, */
+/* For recordings that the page saves: the first bytes of a file, */
 EXPORTED const void *recording_magic(void)
 {
     return chunk_magic;

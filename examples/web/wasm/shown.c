@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The scan that is shown: as it came, and as the lidar's mounting makes it. */
+/* The scan that is shown: as received, and after the mounting is applied. */
 
 #include "web.h"
 
@@ -14,7 +14,7 @@
 #define SECTORS 8u
 #define MASKED_MAX 8u
 
-/* JavaScript reads points where they are. */
+/* JavaScript reads points directly from memory. */
 typedef char point_is_six_bytes[sizeof(tmini_point_t) == 6 ? 1 : -1];
 typedef char angle_is_first[offsetof(tmini_point_t, angle_q6) == 0 ? 1 : -1];
 typedef char distance_follows[offsetof(tmini_point_t, distance_mm) == 2 ? 1 : -1];
@@ -93,7 +93,7 @@ EXPORTED void shown_forget(void)
     shown_clear();
 }
 
-/* How the lidar sits on the robot; the scan that is shown follows at once. */
+/* Sets how the lidar is mounted on the robot, and applies it at once to the scan that is shown. */
 EXPORTED void shown_mount(int front_deg, uint32_t upside_down)
 {
     shown.mount.front_deg = (int16_t)front_deg;
@@ -101,7 +101,7 @@ EXPORTED void shown_mount(int front_deg, uint32_t upside_down)
     mount();
 }
 
-/* Where the robot sees itself: `count` arcs in `transfer`. */
+/* Sets where the lidar sees the robot itself: `count` arcs in `transfer`. */
 EXPORTED void shown_mask(uint32_t count)
 {
     shown.mount.masked = shown.masked;

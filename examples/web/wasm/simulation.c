@@ -7,8 +7,8 @@
 
 #include "link.h"
 
-/* A fault of the kind comes after this many bytes, or milliseconds, on average: often enough to
- * be seen. */
+/* The average number of bytes, or milliseconds, between two faults of each kind: small enough to be
+ * noticed. */
 static const uint32_t mean_gaps[SIM_LINK_KINDS] = {
     [SIM_LINK_DROP] = 2000, [SIM_LINK_FLIP] = 2000, [SIM_LINK_INSERT] = 2000,
     [SIM_LINK_BURST] = 500, [SIM_LINK_STALL] = 500, [SIM_LINK_CUT] = 200,
@@ -23,7 +23,7 @@ static uint64_t us(uint32_t now_ms)
     return (uint64_t)now_ms * 1000u;
 }
 
-/* An idle lidar, at time 0. */
+/* Sets up an idle lidar, at time 0. */
 EXPORTED void simulation_init(uint32_t seed, uint32_t ct_information, uint32_t frequency_chz)
 {
     sim_config_t device = sim_default_config();
@@ -32,20 +32,21 @@ EXPORTED void simulation_init(uint32_t seed, uint32_t ct_information, uint32_t f
     device.ct_information = ct_information != 0;
     device.frequency_chz = (uint16_t)frequency_chz;
     faults.seed = seed;
-    /* Garbling ends soon after it is switched off, and begins again at once until then. */
+    /* Short, so that garbling ends soon after it is switched off; until then it begins again at
+     * once. */
     faults.shortest[SIM_LINK_GARBLE] = 100;
     faults.longest[SIM_LINK_GARBLE] = 100;
     sim_init(&sim, &device);
     sim_link_init(&wire, &sim, &faults);
 }
 
-/* What has arrived by now, in `transfer`. */
+/* Copies to `transfer` the bytes that have arrived until now. */
 EXPORTED uint32_t simulation_read(uint32_t now_ms)
 {
     return (uint32_t)sim_link_read(&wire, us(now_ms), web_transfer, WEB_TRANSFER_SIZE);
 }
 
-/* `count` bytes in `transfer` are sent to the lidar. */
+/* Sends the first `count` bytes of `transfer` to the lidar. */
 EXPORTED void simulation_write(uint32_t count, uint32_t now_ms)
 {
     sim_link_write(&wire, web_transfer, count, us(now_ms));
@@ -85,7 +86,7 @@ EXPORTED const char *simulation_fault_name(uint32_t kind)
     return kind < SIM_LINK_KINDS ? sim_link_kind_name((sim_link_kind_t)kind) : NULL;
 }
 
-/* Someone stands in front of the lidar, or has gone. */
+/* Someone stands in front of the lidar, or does not. */
 EXPORTED void simulation_visitor(uint32_t present)
 {
     sim_clear_obstacles(&sim);

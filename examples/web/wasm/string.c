@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/* Compiled without the compiler's built-in functions: it would turn the loop in memcpy into a call
- * of memcpy. */
+/* Compiled with -fno-builtin: otherwise the compiler would turn the loop in memcpy into a call of
+ * memcpy. */
 
 void *memcpy(void *to, const void *from, size_t count)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Between the library and JavaScript. Functions marked EXPORTED are called from there; there are no
- * imports. Bytes go both ways through `transfer`, numbers come out of a table with their names, so
- * that JavaScript knows the layout of no structure but of a point. */
+/* The interface between the library and JavaScript, which calls the functions marked EXPORTED;
+ * there are no imports. Bytes go in both directions through `transfer`. Numbers are read from a
+ * table with their names, so that JavaScript needs only the layout of a point. */
 
 #ifndef WEB_H
 #define WEB_H
@@ -26,7 +26,7 @@ void numbers_put(const char *name, uint32_t value);
 void numbers_put_ct(const tmini_ct_info_t *info);
 uint32_t numbers_count(void);
 
-/* Makes `scan` the one that is shown; it is copied. */
+/* Shows `scan`, which is copied. */
 void shown_take(const tmini_scan_t *scan);
 
 /* Nothing is shown. */

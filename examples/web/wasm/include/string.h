@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What WebAssembly lacks: a C library. These are all that the library and the simulated lidar
- * use of it; they are in string.c. */
+/* WebAssembly has no C library. These are the only functions of it that the library and the
+ * simulated lidar use; string.c defines them. */
 
 #ifndef WEB_STRING_H
 #define WEB_STRING_H
