@@ -307,7 +307,7 @@ void test_a_scan_live_and_recorded_is_the_same(void)
     TEST_ASSERT_EQUAL_INT(9, sscanf(row, "\n%u,%u,%u,%u.%*u,%u,%u,%u,%u,%u", &number[0], &number[1],
                                     &number[2], &number[3], &number[4], &number[5], &number[6],
                                     &number[7], &number[8]));
-    TEST_ASSERT_TRUE(number[7] > 100 && number[7] < 60000); /* Since the start command. */
+    TEST_ASSERT_TRUE(number[7] > 100 && number[7] < 60000); /* In ms, since the start command. */
 }
 
 /* Compares with the simulator's own counts, with which its log ends. */

@@ -240,7 +240,7 @@ void test_interference_and_the_nearest_point_are_marked(void)
     /* Flag 3: a cross of two lines, 3 m to the back. */
     TEST_ASSERT_EQUAL_UINT(1, program_count(svg, "M 594 1059 L 606 1071"));
     TEST_ASSERT_EQUAL_UINT(1, program_count(svg, "M 594 1071 L 606 1059"));
-    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X, MIDDLE_Y - 125, 12)); /* The nearest one. */
+    TEST_ASSERT_EQUAL_UINT(1, rings(svg, MIDDLE_X, MIDDLE_Y - 125, 12)); /* The nearest point. */
 }
 
 void test_a_unit_that_flags_every_sample_is_not_covered_with_marks(void)

@@ -542,7 +542,7 @@ void test_signals_give_the_terminal_back(void)
 void test_a_signal_gives_a_terminal_back_whose_output_is_stopped(void)
 {
     see_the_cross();
-    press('\x13');  /* Ctrl-S */
+    press('\x13');  /* Ctrl-S stops the terminal's output. */
     resize(60, 18); /* The tool must draw again, and blocks in the write. */
     watch(300);
     kill(tool, SIGTERM);
@@ -610,7 +610,7 @@ void test_a_blocked_rotor_is_shown(void)
 {
     begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--blocked"))));
     wait_for("health    FAULTY");
-    wait_for("faulty: encoder (is the rotor blocked?)\n"); /* In a separate line. */
+    wait_for("faulty: encoder (is the rotor blocked?)\n"); /* It has a separate line. */
     wait_for("\n q quit   + - zoom   a auto ");
     quit();
 }

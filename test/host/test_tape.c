@@ -558,7 +558,7 @@ void test_a_start_packet_and_then_a_pause_is_no_scan(void)
     put_magic(2);
     put_turn_at(0);
     put_chunk(2, 42000, packet, packet_of(0, packet));
-    put_turn_at(1001000); /* Longer than a second. */
+    put_turn_at(1001000); /* After a pause of more than a second. */
     put_turn_at(42000);
     play_whole();
     TEST_ASSERT_EQUAL_UINT(2, scans);
@@ -610,7 +610,7 @@ void test_a_scan_does_not_go_on_after_unreadable_bytes(void)
     TEST_ASSERT_EQUAL_UINT(1, scans);
     TEST_ASSERT_TRUE(stream_end(&tape.stream));
     TEST_ASSERT_EQUAL_UINT16(1, tape.stream.scan.packets);
-    TEST_ASSERT_EQUAL_UINT64(0, tape.stream.damaged); /* The number is unknown. */
+    TEST_ASSERT_EQUAL_UINT64(0, tape.stream.damaged); /* How many packets is unknown. */
 }
 
 /* Computed backwards from the packets, the first sample would be before the recording's

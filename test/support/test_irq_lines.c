@@ -105,7 +105,7 @@ void test_the_higher_priority_comes_first_and_interrupts_the_lower(void)
     irq_access();
     TEST_ASSERT_EQUAL_STRING("hl.", order);
     low_flag = 1;
-    irq_happen_after(1, raise_high); /* Inside the lower one's handler. */
+    irq_happen_after(1, raise_high); /* While the handler of the lower priority runs. */
     irq_access();
     TEST_ASSERT_EQUAL_STRING("hl.lh.", order);
     TEST_ASSERT_EQUAL_UINT32(1, irq.nested);

@@ -240,6 +240,6 @@ void test_the_first_turn_after_a_start_is_there_at_any_poll_interval(void)
         TEST_ASSERT_EQUAL_UINT(3 * TURNS_POINTS, expected_count);
         (void)snprintf(what, sizeof what, "after a start, polls of %u ms", (unsigned)poll_ms);
         all_intact_points_came(what);
-        TEST_ASSERT_EQUAL_UINT(2, complete); /* The third has not ended. */
+        TEST_ASSERT_EQUAL_UINT(2, complete); /* The third turn has not ended. */
     }
 }

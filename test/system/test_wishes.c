@@ -294,7 +294,7 @@ void test_a_listener_takes_what_comes_and_sends_nothing(void)
     start();
     (void)world_run_ms(&world, 10000);
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_STARTING, tmini_state(&world.lidar));
-    /* After 3, 3.5, 4.5 and 6.5 seconds. */
+    /* Reported after 3, 3.5, 4.5 and 6.5 seconds. */
     TEST_ASSERT_EQUAL_UINT32(4, count(TMINI_EVENT_COMMAND_FAILED));
     sim_link_write(&world.link, start_command, 2, world.now_us); /* From another program. */
     (void)world_run_ms(&world, 5000);

@@ -409,7 +409,7 @@ static unsigned poll_all(world_t *world)
     tmini_event_t event;
 
     note_silence(world);
-    check_state(world); /* After commands and fed bytes. */
+    check_state(world); /* Commands and fed bytes may have changed it. */
     while ((event = tmini_poll(&world->lidar)) != TMINI_EVENT_NONE) {
         check_state(world);
         events |= BIT(event);

@@ -105,7 +105,7 @@ typedef struct {
     bool in_trouble;            /* A loss has been reported and not recovered. */
     uint64_t fault_on_us[8];    /* When each fault was last present. */
     uint64_t fault_off_us[8];   /* When it was last absent. */
-    uint8_t faults;             /* As reported last. */
+    uint8_t faults;             /* The faults reported last. */
     tmini_scan_t scan;          /* The last one; its points are no longer valid. */
     truth_t truth;
     world_counts_t counts;

@@ -869,10 +869,10 @@ void test_a_circle_is_complete_to_within_four_degrees(void)
     quarter(90 * DEGREE);
     quarter(180 * DEGREE);
     TEST_ASSERT_FALSE(point(271 * DEGREE, 353 * DEGREE));
-    expect_scan(355 * DEGREE, 0, false); /* Five degrees less. */
+    expect_scan(355 * DEGREE, 0, false); /* Five degrees less than a circle. */
     whole_turn();
     TEST_ASSERT_FALSE(point(360 * DEGREE, 360 * DEGREE + 16));
-    expect_scan(364 * DEGREE + 1, 0, false); /* A little more than four degrees more. */
+    expect_scan(364 * DEGREE + 1, 0, false); /* Four degrees and 1/64 more. */
 }
 
 void test_half_a_turn_missing_by_its_angle_ends_a_scan(void)

@@ -300,7 +300,7 @@ void test_stop_aborts_a_query(void)
     polls_to(TMINI_EVENT_COMMAND_FAILED);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ABORTED, tmini_command_error(&rig.lidar));
     is_in(TMINI_STATE_STOPPING);
-    rig_feed_info(); /* It is no longer awaited. */
+    rig_feed_info(); /* This reply is no longer awaited. */
     passes_to(50, TMINI_EVENT_STOPPED);
 }
 
@@ -866,7 +866,7 @@ void test_a_port_that_takes_a_command_at_the_last_moment_has_taken_it(void)
 {
     sends_both_taking(STOP, 0);
     begins(tmini_stop(&rig.lidar));
-    rig.now_ms += 150; /* Without a poll. */
+    rig.now_ms += 150; /* There was no poll. */
     polls_and_sends(STOP);
     passes_to(50, TMINI_EVENT_STOPPED);
 }

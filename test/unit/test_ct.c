@@ -412,7 +412,8 @@ void test_the_faults_are_those_of_the_last_trusted_revolution(void)
     TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
     TEST_ASSERT_EQUAL_UINT(0x12, tmini_ct_faults(&ct_state));
     add_points(&cts[1], 16);
-    TEST_ASSERT_EQUAL_UINT(0x12, tmini_ct_faults(&ct_state)); /* Not yet confirmed. */
+    TEST_ASSERT_EQUAL_UINT(0x12,
+                           tmini_ct_faults(&ct_state)); /* The new faults are not confirmed yet. */
     TEST_ASSERT_TRUE(end_with(0x95));
     TEST_ASSERT_EQUAL_UINT(0x00, tmini_ct_faults(&ct_state));
 }

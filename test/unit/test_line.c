@@ -62,7 +62,7 @@ static bool is_doubted_after(uint32_t silent_ms)
 
 void test_a_silence_of_half_a_turn_is_no_pause_and_a_millisecond_more_is_one(void)
 {
-    TEST_ASSERT_FALSE(is_doubted_after(50)); /* 10 Hz. */
+    TEST_ASSERT_FALSE(is_doubted_after(50)); /* Half a turn at 10 Hz. */
     TEST_ASSERT_TRUE(is_doubted_after(51));
 }
 
@@ -156,7 +156,7 @@ void test_a_port_that_never_reports_what_it_holds_holds_nothing(void)
 
 void test_bytes_that_had_arrived_before_explain_nothing(void)
 {
-    lidar.line.arrived = 100; /* The port held 100 bytes, but no longer reports them. */
+    lidar.line.arrived = 100; /* 100 bytes had arrived before, which the port no longer reports. */
     TEST_ASSERT_FALSE(is_doubted_after(50));
     lidar.line.arrived = lidar.line.received + 100;
     TEST_ASSERT_TRUE(is_doubted_after(51));
@@ -253,9 +253,9 @@ static bool first_ones_are_doubted(uint32_t passed_ms, size_t count)
 
 void test_first_bytes_in_a_fifo_come_straight_from_the_wire(void)
 {
-    TEST_ASSERT_FALSE(first_ones_are_doubted(1, 144)); /* 10 ms. */
+    TEST_ASSERT_FALSE(first_ones_are_doubted(1, 144)); /* They take 10 ms. */
     TEST_ASSERT_TRUE(first_ones_are_doubted(1, 145));
-    TEST_ASSERT_TRUE(first_ones_are_doubted(1, 3361)); /* 256 ms. */
+    TEST_ASSERT_TRUE(first_ones_are_doubted(1, 3361)); /* They take 256 ms. */
 }
 
 void test_first_bytes_that_were_not_watched_may_have_paused(void)

@@ -60,7 +60,7 @@ void test_a_fault_seen_in_one_trusted_turn_and_one_that_is_not_is_not_reported(v
 {
     rig_go_scanning();
     TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0)); /* The first trusted turn has ended. */
+    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0)); /* One trusted turn has ended. */
     rig.crc ^= 1u;                                /* LastCRC is wrong. */
     TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0));
     TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
@@ -102,7 +102,7 @@ void test_a_turn_that_is_not_trusted_neither_reports_nor_clears(void)
     TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
     rig.crc ^= 1u;
     TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR)); /* The first trusted turn. */
+    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR)); /* Only one is trusted so far. */
     TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_turn_events(0));
 }
 

@@ -978,10 +978,10 @@ void test_an_abandoned_candidate_costs_the_bytes_before_the_next_one(void)
     feed(manual_packet, 66);
     expect_nothing();
     receiver_abandon(&receiver);
-    expect_skipped(30); /* The next AA may begin another candidate. */
+    expect_skipped(30); /* The AA at this place may begin another candidate. */
     expect_pending(36);
     expect_nothing();
-    expect_skipped(66); /* It does not begin one. */
+    expect_skipped(66); /* That AA did not begin a packet. */
     expect_pending(0);
 }
 
@@ -1087,7 +1087,7 @@ void test_each_of_several_overflows_leaves_its_gap_where_it_was(void)
     for (unsigned i = 0; i < 3; i++) {
         feed(start_packet, 13);
         feed(start_packet, 13);
-        feed(bytes, 231); /* One is refused. */
+        feed(bytes, 231); /* One byte is refused. */
         expect_frame(TMINI_FRAME_PACKET);
         TEST_ASSERT_EQUAL_UINT16(i == 0 ? 0 : 65535, receiver.packet.gap);
         feed(start_packet, 13); /* Refused: there is room, but bytes are missing before it. */
@@ -1239,7 +1239,7 @@ void test_a_candidate_that_dma_overran_is_forgotten(void)
     expect_nothing();
     memset(bytes, 0, 230);
     memcpy(&bytes[0], start_packet, 13); /* At 60, inside the candidate. */
-    feed(bytes, 230);                    /* 34 are lost. */
+    feed(bytes, 230);                    /* 34 bytes are lost. */
     expect_packet(1, 60);
     TEST_ASSERT_EQUAL_UINT32(34, receiver_counters(&receiver).bytes_overrun);
     TEST_ASSERT_EQUAL_UINT32(0, receiver_counters(&receiver).checksum_errors);

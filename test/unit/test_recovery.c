@@ -154,7 +154,7 @@ void test_a_loss_after_a_new_start_begins_at_the_ladders_foot(void)
     polls_to(TMINI_EVENT_STARTED);
     (void)rig_drain();
     passes_to(1000, TMINI_EVENT_LOST);
-    sends(STOP); /* Without a pause. */
+    sends(STOP); /* Sent without a pause. */
     polls_to(TMINI_EVENT_NONE);
 }
 

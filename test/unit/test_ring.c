@@ -160,7 +160,7 @@ void test_the_head_reports_how_many_were_stored_whether_read_or_not(void)
     tmini_ring_discard(&ring, 2);
     put_letters(3, 2);
     TEST_ASSERT_EQUAL_UINT(5, tmini_ring_head(&ring));
-    put_letters(0, SIZE); /* Three are refused. */
+    put_letters(0, SIZE); /* Three bytes are refused. */
     TEST_ASSERT_EQUAL_UINT(18, tmini_ring_distance(0, tmini_ring_head(&ring)));
 }
 
@@ -435,7 +435,7 @@ void test_there_is_room_for_what_would_be_stored(void)
     TEST_ASSERT_EQUAL_UINT(SIZE - 6, tmini_ring_write(&ring, letters, SIZE));
     TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring));
     tmini_ring_discard(&ring, 4);
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring)); /* It is closed. */
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring)); /* The ring is closed. */
 }
 
 void test_a_block_is_stored_across_the_wrap_of_size_t(void)
@@ -640,7 +640,7 @@ static void bytes_are_right_at(size_t size, size_t place)
     TEST_ASSERT_EQUAL_INT('a', tmini_ring_peek(&ring, place));
     TEST_ASSERT_EQUAL_PTR(memory, tmini_ring_piece(&ring, place, &count));
     use_large(size, place);
-    ring.tail = place + 1 - size; /* Room for one. */
+    ring.tail = place + 1 - size; /* Room for one byte. */
     put_letters(0, 2);
     TEST_ASSERT_EQUAL_UINT(1, tmini_ring_overrun(&ring));
 }

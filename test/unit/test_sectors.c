@@ -190,7 +190,7 @@ void test_a_scan_takes_the_place_of_what_was_there(void)
     holds(0, 900, 1, 1);
     holds(1, 0, 0, 0);
     holds(2, 800, 1, 1);
-    holds(4, 0, 0, 0); /* Beyond the scan's count. */
+    holds(4, 0, 0, 0); /* This point is beyond the scan's count. */
     holds(6, 700, 1, 1);
 }
 

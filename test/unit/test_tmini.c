@@ -100,7 +100,7 @@ void test_a_receive_buffer_too_small_for_the_largest_packet_is_refused(void)
 void test_a_smaller_receive_buffer_will_do_for_smaller_packets(void)
 {
     rig.config.rx_size = 128;
-    rig.config.max_samples = 39; /* 127 bytes. */
+    rig.config.max_samples = 39; /* Packets of up to 127 bytes. */
     rig_init();
 }
 

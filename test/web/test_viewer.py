@@ -164,7 +164,7 @@ def decode(path):
 
 
 class Recordings(Viewer):
-    """A recording shows what the tool decodes of it."""
+    """The page shows of a recording what the tool decodes."""
 
     def check(self, path):
         rows, stats = decode(path)
@@ -233,13 +233,13 @@ class Recordings(Viewer):
     def test_that_ends_with_a_start_packet_is_played_to_its_end(self):
         content = (RECORDINGS / "sim-6hz.bin").read_bytes()
         path = self.page.folder / "short.bin"
-        last = content.rindex(bytes.fromhex("aa5579"))  # A start packet's sign, and its CT at 6.0 Hz.
+        last = content.rindex(bytes.fromhex("aa5579"))  # A start packet: AA 55 and its CT at 6.0 Hz.
         path.write_bytes(content[:last + 13])
         self.check(path)
 
     def test_with_a_wrong_last_crc_has_a_scan_that_is_not_complete(self):
         content = bytearray((RECORDINGS / "sim-6hz.bin").read_bytes())
-        last = content.rindex(bytes.fromhex("aa5579"))  # A start packet's sign, and its CT at 6.0 Hz.
+        last = content.rindex(bytes.fromhex("aa5579"))  # A start packet: AA 55 and its CT at 6.0 Hz.
         content[last - 1] ^= 0x10
         path = self.page.folder / "refuted.bin"
         path.write_bytes(content)
