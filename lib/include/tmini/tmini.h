@@ -94,7 +94,8 @@ typedef struct {
     /** The pause after a failed attempt to start begins with 500 ms and doubles up to this value.
      * 0: after a failed attempt there is no other until you call tmini_stop() and tmini_start(). */
     uint16_t back_off_max_ms;
-    /** How often a query, a stop or a reboot is tried. 0: once. */
+    /** How often a query, a stop or a reboot is tried; with TMINI_RECOVERY_OFF also each command of
+     * a start. 0: once. */
     uint8_t max_attempts;
 } tmini_timing_t;
 
@@ -151,7 +152,8 @@ typedef struct {
 typedef enum {
     TMINI_EVENT_NONE,           /**< Nothing is left to do. */
     TMINI_EVENT_STARTED,        /**< Scanning: the first packet has come. */
-    TMINI_EVENT_STOPPED,        /**< The lidar is idle, and the line is quiet. */
+    TMINI_EVENT_STOPPED,        /**< The lidar is idle, and the line is quiet. With listen_only:
+                                 * you have called tmini_stop(), and the lidar may still scan. */
     TMINI_EVENT_INFO,           /**< tmini_info() has been read. */
     TMINI_EVENT_HEALTH,         /**< tmini_health() has been read. */
     TMINI_EVENT_FREQUENCY,      /**< tmini_frequency_chz() has been read, or set and read back. */
@@ -201,9 +203,10 @@ typedef struct {
     uint32_t bytes_pending; /**< Bytes received and not yet judged. */
     uint32_t scans;         /**< Scans delivered as TMINI_EVENT_SCAN. */
     uint32_t late_scans; /**< Of these, the ones that ended early or are incomplete only because of
-                          * time, although no byte was lost. If it grows, a layer below may delay
-                          * bytes for longer than max_pause_ms. It also grows after each
-                          * tmini_feed_gap() with DMA, and while the clock is back. */
+                          * time, although no byte was lost there. If it grows and bytes_overrun
+                          * does not, a layer below may delay bytes for longer than max_pause_ms. It
+                          * also grows after each tmini_feed_gap() with DMA, and while the clock is
+                          * back. */
     uint16_t timeouts;   /**< Attempts at commands that waited in vain for a reply, a quiet line or
                           * the first packet; with listen_only none is counted. */
     uint16_t losses;     /**< TMINI_EVENT_LOST. */
@@ -321,8 +324,8 @@ tmini_status_t tmini_stop(tmini_t *lidar);
  * and TMINI_EVENT_COMMAND_FAILED follows TMINI_EVENT_STARTED. A lidar that turns at another
  * frequency for three seconds gets TMINI_FAULT_FREQUENCY, and the driver stops it, sets the
  * frequency again and starts it. As long as the lidar does not answer, this is repeated at growing
- * intervals. To state the same wish again changes nothing, unless the lidar is idle or its state
- * unknown.
+ * intervals. With TMINI_RECOVERY_OFF the fault is only reported. To state the same wish again
+ * changes nothing, unless the lidar is idle or its state unknown.
  * Returns TMINI_OK; TMINI_ERROR_ARGUMENT: null pointer, a lidar that was not set up, or a frequency
  * out of range; TMINI_ERROR_LISTEN_ONLY: the configuration says that nothing is sent. After an
  * error the wish is unchanged. */

@@ -89,8 +89,9 @@ void tmini_sectors_add_scan(tmini_sectors_t *sectors, const tmini_scan_t *scan);
 
 /** Adds all points of a packet, except those that DMA has overwritten. Returns true if the packet
  * is a start packet that ends a revolution; the sectors hold this revolution until the next packet
- * is added. Lost parts of it are blind. Packets before the first start packet belong to no
- * revolution. */
+ * is added. Lost parts of it are blind; but if a start packet is lost, the revolutions before and
+ * after it are held together, and a lost part of the later one may show ranges of the earlier one.
+ * Packets before the first start packet belong to no revolution. */
 bool tmini_sectors_add_packet(tmini_sectors_t *sectors, const tmini_packet_t *packet);
 
 /** The sector, 0 to count - 1, of an angle in 1/64 degree, below TMINI_FULL_CIRCLE_Q6. */
