@@ -117,8 +117,8 @@ class Lidar:
                     raise LidarError(f"the driver's thread failed: {self._failure!r}")
                 if self._closing or left <= 0:
                     return None
-                self._changed.wait(min(left, 1.0))  # On Windows, Ctrl-C cannot interrupt an endless
-                                                    # wait. return self._scans.popleft()
+                self._changed.wait(min(left, 1.0))  # On Windows, Ctrl-C interrupts no endless wait.
+            return self._scans.popleft()
 
     @property
     def faults(self) -> Fault:

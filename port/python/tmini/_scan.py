@@ -34,7 +34,7 @@ class Scan:
     created when first used, and may be changed."""
 
     number: int  # Revolutions since the beginning, including this one; a step of 2: one was missed.
-                 # complete: bool # A full circle, with nothing missing.
+    complete: bool  # A full circle, with nothing missing.
     frequency_hz: float | None  # Measured by the lidar. None: unknown.
     faults: Fault | None  # None: unknown; Fault(0): healthy.
     packets: int
