@@ -49,7 +49,7 @@ def git(*arguments):
 
 
 def project_files():
-    """The names of all files; in an unpacked archive, which has no Git, all except those that builds leave there."""
+    """The names of all files; in an unpacked archive, all except those that builds leave there."""
     listed = git("ls-files", "-z")
     if listed:
         return [name for name in listed.split("\0") if name and (ROOT / name).exists()]
@@ -120,8 +120,7 @@ def of_single(names):
 
 
 def of_sdist(archive):
-    """The files of Python's source distribution, to be packed again with our dates; its README is also its
-    description."""
+    """The files of Python's source distribution, to be packed again with our dates."""
     files, top = Files(), f"tmini-{pep440(version())}/"
     with tarfile.open(archive) as sdist:
         for member in sdist:

@@ -2,8 +2,7 @@
 # Copyright (c) 2026 The tmini authors
 
 # Install rules, so that find_package(tmini) and pkg-config find an installed copy; and the target
-# `uninstall`, which removes it. Other files, such as the tool, have install rules where they are
-# built.
+# `uninstall`, which removes it.
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)

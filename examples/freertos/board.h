@@ -26,7 +26,6 @@ size_t board_lidar_read(uint8_t *bytes, size_t max, int *overrun);
 /* Prints on the console; waits while the transmitter is busy. */
 void board_print(const char *text);
 
-/* Sleeps until the next interrupt. */
 void board_sleep(void);
 
 /* Defined by the program. */

@@ -127,7 +127,6 @@ void vApplicationIdleHook(void)
     board_sleep();
 }
 
-/* The kernel calls this when a task's stack has overflowed. */
 void vApplicationStackOverflowHook(TaskHandle_t task, char *name)
 {
     (void)task;

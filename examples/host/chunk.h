@@ -33,7 +33,7 @@ typedef struct {
     unsigned version;
     uint64_t time_us; /* When the next bytes came. */
     uint32_t left;    /* How many of them are left; the reader of the bytes counts down. */
-    unsigned damages; /* Damaged places: no chunk began where one had to begin. */
+    unsigned damages; /* Damaged places. */
     bool is_lost;     /* Looking for the next chunk. */
 } chunks_t;
 
@@ -41,9 +41,9 @@ typedef struct {
 unsigned chunk_version(const uint8_t *bytes, size_t count);
 
 /* Examines the `bytes` after a chunk: sets `left` and *head, the size of the head before the
- * lidar's bytes. If no chunk begins here, the recording is damaged: the next byte is passed on as
- * one of the lidar's, because packets have their own checksums. Returns false if more bytes are
- * needed to decide; `is_end`: there are no more. */
+ * lidar's bytes. If no chunk begins there, the next byte is passed on as one of the lidar's,
+ * because packets have their own checksums. Returns false if more bytes are needed to decide;
+ * `is_end`: there are no more. */
 bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_end, size_t *head);
 
 /* Fills in the head of a chunk of version 2. */

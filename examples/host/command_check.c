@@ -89,7 +89,6 @@ static grade_t grade(bool is_bad, bool is_remarkable)
     return is_bad ? BAD : is_remarkable ? REMARK : GOOD;
 }
 
-/* Prints why nothing usable came. */
 static void answer_trouble(check_t *check, const char *missing)
 {
     static const char *const names[] = {"wiring", "baud", "command", "answers"};

@@ -95,7 +95,6 @@ static void name_one(figure_t *figure, const char *source)
                    figure->survey.count, figure->survey.valid, source);
 }
 
-/* Writes the picture, and prints what it contains. */
 static int write_picture(const options_t *options, const char *source)
 {
     figure_t figure = {.points = drawing.points,

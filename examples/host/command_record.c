@@ -15,7 +15,6 @@
 #include "points.h"
 #include "tape.h"
 
-/* How often progress is shown. */
 #define PROGRESS_MS 200u
 
 /* More bytes than can come while the lidar starts. */
@@ -58,8 +57,8 @@ static void put(recorder_t *recorder, const uint8_t *bytes, size_t count)
     }
 }
 
-/* The port's tap. Its blocks always fit in a chunk. A pause of more than 71 minutes is shortened to
- * 71 minutes, which fit in 32 bits. */
+/* The port's tap. Its blocks always fit in a chunk. A longer pause counts as 71 minutes, which fit
+ * in 32 bits. */
 static void write_block(void *context, const uint8_t *bytes, size_t count)
 {
     recorder_t *const recorder = context;
@@ -72,7 +71,6 @@ static void write_block(void *context, const uint8_t *bytes, size_t count)
     recorder->stamp_us = now;
 }
 
-/* The recording's length and quality so far, as text. */
 static const char *recorder_text(const recorder_t *recorder)
 {
     const tape_t *const tape = &recorder->tape;
@@ -103,8 +101,8 @@ static int roll(device_t *device, const options_t *options, recorder_t *recorder
     return device_is_there(device) ? STATUS_OK : device_why(device);
 }
 
-/* Records from before the start command, on a quiet line, to the last byte after the stop command,
- * so that the recording begins and ends with whole packets. */
+/* Records from before the start command to the last byte after the stop command, so that the
+ * recording begins and ends with whole packets. */
 static int record(device_t *device, const options_t *options)
 {
     static recorder_t recorder;

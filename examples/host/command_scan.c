@@ -43,7 +43,6 @@ static void print_packet(const stream_t *stream)
     }
 }
 
-/* Runs until there are enough scans, Ctrl-C is pressed, or something fails. */
 static int print_scans(device_t *device, const options_t *options)
 {
     wanted_scans = options->count;

@@ -116,8 +116,7 @@ static int write_report(const options_t *options)
     return output_close(file, options->operand, STATUS_OK);
 }
 
-/* Opens a recording beside the report, if the serial number is wanted, because a recording contains
- * it. */
+/* Beside the report; only with the serial number, because a recording contains it. */
 static int open_recording(const options_t *options, char *name, size_t size)
 {
     if (!options->with_serial || options->operand == NULL || strcmp(options->operand, "-") == 0) {

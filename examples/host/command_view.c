@@ -30,7 +30,6 @@ typedef struct {
     uint32_t shown_ms;
 } viewer_t;
 
-/* Plays a recording. */
 typedef struct {
     recording_t recording;
     uint32_t position_ms; /* A time in the recording, */

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A lidar on a port, as the tool's commands use it: opens the port, runs the driver, stops the
- * lidar in the end, and prints a message for everything that can go wrong. The driver delivers
- * packets; `stream` builds scans from them, as it does from a recording's packets. */
+/* A lidar on a port: opens the port, runs the driver, stops the lidar in the end, and explains
+ * everything that can go wrong. The driver delivers packets; `stream` builds scans from them. */
 
 #ifndef DEVICE_H
 #define DEVICE_H
@@ -61,9 +60,8 @@ int device_finish(device_t *device, tmini_status_t begun, tmini_event_t wanted);
 /* Call it before a start command: the time begins, and the lidar will be stopped in the end. */
 void device_begin(device_t *device);
 
-/* Begins to scan, and waits for the first packet. Failures that may pass do not end the waiting:
- * the lidar may be booting, or the adapter plugged in later (--wait). Returns as device_finish()
- * does. */
+/* Begins to scan, and waits for the first packet. The lidar may still be booting, or the adapter be
+ * plugged in later (--wait). Returns as device_finish() does. */
 int device_start(device_t *device);
 
 /* Stops scanning, and waits until the line is quiet and stays quiet. Returns whether it does. */
@@ -73,8 +71,8 @@ bool device_stop(device_t *device);
  * comes; device_why() then prints the reason. */
 bool device_next_scan(device_t *device, void (*print)(const stream_t *stream));
 
-/* Prints why the lidar does not work as it should, and what to try. Returns STATUS_FAILED. After
- * Ctrl-C it prints nothing. */
+/* Prints what is wrong with the lidar, and what to try; nothing after Ctrl-C. Returns
+ * STATUS_FAILED. */
 int device_why(device_t *device);
 
 typedef enum {

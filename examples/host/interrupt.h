@@ -24,7 +24,6 @@ void interrupt_watch(bool writes_whole);
  * pipe is closed. Up to two functions; a function that is registered already is not added again. */
 void interrupt_last_words(void (*speak)(void));
 
-/* True once one of these signals has come. */
 bool interrupt_has_come(void);
 
 #endif

@@ -218,8 +218,6 @@ static bool is_accepted(const command_t *command, char letter)
     return letter == 'h' || letter == 'V' || strchr(command->accepts, letter) != NULL;
 }
 
-/* Checks that the command accepts the options given. Returns STATUS_OK, or prints the error and
- * returns STATUS_USAGE. */
 static int check(const options_t *options, const command_t *command)
 {
     const char *const excess = options->words[command->has_operand ? 2 : 1];

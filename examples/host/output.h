@@ -33,7 +33,6 @@ int message_print(int status, const char *format, ...) MESSAGE_FORMAT;
  * remains. */
 void message_progress(bool is_last, const char *format, ...) MESSAGE_FORMAT;
 
-/* After message_silence(true) there are no remarks and no progress. */
 void message_silence(bool silent);
 
 /* Opens a file to write; "-" is standard output. If it cannot be opened, prints the reason and

@@ -215,7 +215,6 @@ static void draw_points(cairo_t *cr, const figure_t *figure)
     }
 }
 
-/* The lidar, and an arrow towards its front. */
 static void draw_lidar(cairo_t *cr)
 {
     const spot_t middle = {MIDDLE_X, MIDDLE_Y};
@@ -276,7 +275,6 @@ static void draw_intensities(cairo_t *cr, const survey_t *survey)
     (void)text(cr, (spot_t){x + 3 * 64, LEGEND_Y}, 0, 17, muted, words);
 }
 
-/* The mark of the points with this flag, and their number. */
 static void draw_flag(cairo_t *cr, double x, unsigned flag, const char *name, size_t count)
 {
     char words[40];

@@ -48,8 +48,8 @@ static const char *root(void)
     return folder != NULL ? folder : "";
 }
 
-/* The first word of a file of the USB device, which is one or two folders above the one of the tty;
- * "" if there is none. */
+/* Reads the first word of a file in the USB device's folder, one or two above the tty's; "" if
+ * there is none. */
 static void read_word(const adapter_t *adapter, const char *name, char word[8])
 {
     static const char *const above[] = {"..", "../.."};

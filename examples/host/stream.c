@@ -14,8 +14,7 @@
 #define PAUSE_MS 1000u
 
 /* After a pause the driver may doubt several packets in a row. The first one begins a new scan; the
- * others get this gap, which only makes their scan incomplete. It must not be 1, the gap of
- * LastCRC. */
+ * others get this gap, which only makes their scan incomplete. 1 would be LastCRC. */
 #define MORE_DOUBT 2u
 
 void stream_init(stream_t *stream, const tmini_mount_t *mount)

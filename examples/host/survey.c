@@ -101,7 +101,6 @@ const uint8_t *survey_content(const survey_reply_t *reply, uint8_t type, size_t 
 
 /* ------------------------------------------------------------------------------------ frequency */
 
-/* Sends a command; returns the frequency in its reply; 0: none. */
 static uint32_t step(survey_t *survey, tmini_command_code_t code)
 {
     const survey_reply_t reply = ask(survey, code, REPLY_US);

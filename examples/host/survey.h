@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Tests how a unit behaves wherever the protocol leaves it open. survey.c sends commands,
- * survey_scan.c examines the scan data, survey_table.c compares with docs/protocol.md (above all
- * section 9) and writes the report, which the simulated lidar accepts as its settings
- * (test/simulator/like.c). */
+/* Tests what the protocol leaves open. survey.c sends commands, survey_scan.c examines the scan
+ * data, survey_table.c compares with docs/protocol.md (above all section 9) and writes the report,
+ * which the simulated lidar accepts as its settings (test/simulator/like.c). */
 
 #ifndef SURVEY_H
 #define SURVEY_H

@@ -12,9 +12,9 @@
 
 typedef struct {
     const char *key;
-    const char *section;   /* Of docs/protocol.md. */
-    const char *statement; /* What is tested. */
-    const char *expected;  /* Words and ranges LOW..HIGH, with | between them; NULL: anything. */
+    const char *section; /* Of docs/protocol.md. */
+    const char *statement;
+    const char *expected; /* Words and ranges LOW..HIGH, with | between them; NULL: anything. */
     /* False: unknown. */
     bool (*read)(const survey_t *survey, char text[TEXT_SIZE]);
 } question_t;
@@ -55,8 +55,7 @@ static bool read_model(const survey_t *survey, char text[TEXT_SIZE])
     return put(text, info != NULL, info != NULL ? info[0] : 0, 0);
 }
 
-/* Compares with the CT information which of the two numbers is sent first; known only if they
- * differ. */
+/* Compares the two numbers with the CT information; known only if they differ. */
 static bool is_major_first(const survey_t *survey)
 {
     const tmini_ct_info_t *const ct = &slow(survey)->ct;

@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Plays a recording: decodes the bytes of a file of any length to packets and scans, in constant
- * memory. The tool, the viewer and the Python package all read recordings by this. No reply is
- * awaited, so replies count as skipped bytes. */
+ * memory. Used by the tool, the viewer and the Python package. No reply is awaited, so replies
+ * count as skipped bytes. */
 
 #ifndef TAPE_H
 #define TAPE_H

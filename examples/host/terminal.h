@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Takes over the terminal, draws on it, reads keys, and restores it. Each character has a colour.
- * Some are made of dots: Unicode's braille characters have two columns and four rows of them, so a
- * terminal of 80 x 24 can show a picture of 160 x 96 dots. */
+/* Takes over the terminal, draws on it, reads keys, and restores it. Unicode's braille characters
+ * have two columns and four rows of dots, so a terminal of 80 x 24 can show 160 x 96 dots. */
 
 #ifndef TERMINAL_H
 #define TERMINAL_H
@@ -81,7 +80,6 @@ void screen_text(screen_t *screen, int column, int row, const char *text, uint8_
 /* Puts a dot; (0, 0) is the upper left one. */
 void screen_dot(screen_t *screen, int x, int y, layer_t layer, uint8_t colour);
 
-/* Shows the screen on the terminal. */
 void screen_show(screen_t *screen);
 
 #endif

@@ -114,7 +114,6 @@ static void grid_dot(screen_t *screen, const frame_t *frame, double degrees, dou
     screen_dot(screen, (int)lround(spot.x), (int)lround(spot.y), LAYER_GRID, COLOUR_GRID);
 }
 
-/* Draws the rings, with a dot at every third place, and the axes to the four sides. */
 static void draw_grid(screen_t *screen, const frame_t *frame)
 {
     const unsigned step_mm = zooms[zoom_of(frame->range_mm)].step_mm;

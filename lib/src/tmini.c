@@ -178,7 +178,6 @@ static void begin_scanning(tmini_t *lidar)
 
 /* ------------------------------------------------------------------------------------- commands */
 
-/* The user's command has ended. */
 static void end_command(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
     lidar->state = is_idle ? TMINI_STATE_IDLE : TMINI_STATE_UNKNOWN;
@@ -213,8 +212,8 @@ static void take_result(tmini_t *lidar, int result)
     }
 }
 
-/* The first part of every command from the user. If the event that ended an earlier command has not
- * been polled yet, it is dropped: the program would think that it ends this command. */
+/* The first part of every command from the user. Drops an event that ended an earlier command and
+ * has not been polled: the program would think that it ends this one. */
 TMINI_NOINLINE static void take_over(tmini_t *lidar)
 {
     look(lidar);
@@ -293,8 +292,7 @@ static void stop_again(tmini_t *lidar)
 
 /* Decides whether a packet means that the lidar scans now. It does not in the tail after a stop
  * (section 9.10), nor while the frequency is being set. In all other phases of a start it does,
- * because the reply to the start may have been lost. A lidar that should be idle is stopped
- * again. */
+ * because the reply to the start may have been lost. */
 static void note_scanning(tmini_t *lidar)
 {
     const uint8_t phase = lidar->command.phase;

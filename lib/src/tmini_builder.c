@@ -90,7 +90,7 @@ static void note_end(tmini_builder_t *builder, const tmini_packet_t *packet, int
 
 /* The scan ends before `packet`. A scan that took too long has a gap somewhere. A scan is complete
  * when a start packet comes a full circle after its beginning, and nothing is missing. A gap that
- * only the caller reports, without missing bytes or angles, is one of time. */
+ * only the caller reports, without missing bytes or angles, means a late scan. */
 static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
                    uint32_t now_ms)
 {
@@ -199,7 +199,7 @@ bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, u
     }
     builder->swept_q6 = (int16_t)(angle < INT16_MAX ? angle : INT16_MAX);
     builder->previous_angle_q6 = end_of(packet);
-    builder->scan.end_ms = now_ms; /* The latest so far. */
+    builder->scan.end_ms = now_ms;
     append_points(builder, packet);
     return false;
 }

@@ -14,7 +14,6 @@
 #define PLAUSIBLE_CHZ_MIN 100
 #define PLAUSIBLE_CHZ_MAX 2000
 
-/* The command of each operation. */
 static const uint8_t codes[] = {
     [TMINI_EVENT_STARTED] = TMINI_COMMAND_START,
     [TMINI_EVENT_STOPPED] = TMINI_COMMAND_STOP,

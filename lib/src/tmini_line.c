@@ -2,8 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* The timing of the line: when bytes came, how long it has been silent, and where bytes may be
- * missing because it paused. Of packets it uses only two times: when the scan's last packet came,
- * and how long a turn takes. */
+ * missing because it paused. */
 
 #include "tmini_driver.h"
 

@@ -122,7 +122,6 @@ static tmini_turn_t go_on(tmini_monitor_t *monitor, const tmini_packet_t *packet
     return turns ? TMINI_TURN_ENDLESS : TMINI_TURN_GOES_ON;
 }
 
-/* A revolution has ended, and the next begins. */
 static tmini_turn_t end_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
                                    uint16_t wanted_chz)
 {

@@ -54,8 +54,8 @@ static inline void set_point(tmini_point_t *point, uint32_t angle_q6, const uint
 }
 
 /* Decodes `count` contiguous samples (at least one), beginning with sample `index` of the packet.
- * This is the innermost loop of the library. It is a separate function so that all its variables
- * stay in registers. */
+ * The library's innermost loop: a separate function, so that all its variables stay in
+ * registers. */
 TMINI_NOINLINE static void decode(const tmini_packet_t *packet, size_t index, const uint8_t *sample,
                                   size_t count, tmini_point_t *point)
 {

@@ -141,7 +141,6 @@ static void read_header(tmini_frame_t *frame)
     }
 }
 
-/* Reads the header of the packet that may begin here. */
 static enum verdict classify_packet_header(tmini_parser_t *parser)
 {
     tmini_frame_t *const frame = &parser->frame;
@@ -154,7 +153,6 @@ static enum verdict classify_packet_header(tmini_parser_t *parser)
     return COMPLETE;
 }
 
-/* Reads the header of the reply that may begin here. */
 static enum verdict classify_reply_header(tmini_parser_t *parser)
 {
     tmini_frame_t *const frame = &parser->frame;

@@ -24,7 +24,6 @@ TMINI_NOINLINE void tmini_recovery_restart_reception(const tmini_t *lidar)
     }
 }
 
-/* An attempt has failed: begins the pause before the next one. */
 static void back_off(tmini_t *lidar)
 {
     tmini_recovery_restart_reception(lidar);

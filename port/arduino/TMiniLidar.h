@@ -194,8 +194,7 @@ class TMiniLidarBase
     /** The points of the last loop(), valid until the next loop(). With a spare buffer, the points
      * of the last scan, valid until the next scan. */
     TMiniPoints points();
-    /** The scan that points() belongs to, valid as long as these: complete, frequency, times,
-     * gaps. */
+    /** The scan that points() belongs to, valid as long as they are. */
     const tmini_scan_t &scan() const;
     /** With TMiniLidarStreaming: the packet that points() belongs to, until the next loop(). */
     const tmini_packet_t &packet() const;

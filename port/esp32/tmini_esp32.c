@@ -185,7 +185,6 @@ static void pass_gap(tmini_esp32_t *port)
     }
 }
 
-/* How many bytes wait in the driver, up to the next gap. */
 static size_t left_in_driver(const tmini_esp32_t *port)
 {
     size_t left = 0;
@@ -196,8 +195,7 @@ static size_t left_in_driver(const tmini_esp32_t *port)
 /* Reads until nothing is left, or up to a gap. It does not use the sizes in events, so lost or late
  * events do no harm. A driver whose buffer was full receives again after this.
  *
- * It never flushes the driver's buffer, not even after an overflow: the bytes in it are intact, and
- * the parser copes with the gap. */
+ * It never flushes the driver's buffer: even after an overflow the bytes in it are intact. */
 static size_t drain(tmini_esp32_t *port)
 {
     size_t drained = 0;
@@ -320,7 +318,6 @@ static size_t receive(tmini_esp32_t *port, TickType_t ticks)
     return drain(port);
 }
 
-/* With a receiving task, or when stopped, it only sleeps. */
 size_t tmini_esp32_wait(tmini_esp32_t *port, TickType_t ticks)
 {
     if (port != NULL && port->is_started && !port->wiring.with_task) {

@@ -134,9 +134,8 @@ extern const tmini_port_t tmini_esp32_port;
 esp_err_t tmini_esp32_init(tmini_esp32_t *port, const tmini_esp32_wiring_t *wiring);
 
 /** Installs the UART driver, sets it up for the lidar and starts the receiving task. The UART's
- * interrupt is served by the core that makes this call. `lidar` must have been set up by
- * tmini_init(); both it and `port` stay the caller's and must last until tmini_esp32_stop(). The
- * counters begin at 0.
+ * interrupt is served by the core that makes this call. `lidar`, set up by tmini_init(), and `port`
+ * stay the caller's and must last until tmini_esp32_stop(). The counters begin at 0.
  *
  * If power management is compiled in (CONFIG_PM_ENABLE), the port holds a lock until
  * tmini_esp32_stop(). The lock prevents light sleep, in which a UART receives nothing. On the ESP32

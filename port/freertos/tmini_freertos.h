@@ -122,8 +122,8 @@ extern const tmini_port_t tmini_freertos_port;
  *                         kernel does not have */
 tmini_status_t tmini_freertos_init(tmini_freertos_t *port, const tmini_freertos_wiring_t *wiring);
 
-/** From now on received bytes go to `lidar`, which must have been set up by tmini_init(); the
- * counters begin at 0. Returns
+/** From now on received bytes go to `lidar`, set up by tmini_init(); the counters begin at 0.
+ * Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer, or no tmini_freertos_init() before
  *   TMINI_ERROR_STATE     started already */

@@ -41,7 +41,6 @@
 
 /* ---------------------------------------------------------------------------------- line errors */
 
-/* Counts errors by the bits of the data register. */
 static void count_errors(tmini_pico_t *port, uint32_t errors)
 {
     tmini_pico_counters_t *const counters = &port->counters;
@@ -245,7 +244,6 @@ static bool claim_channels(tmini_pico_t *port)
     return true;
 }
 
-/* When a channel's turn ends, the other channel begins. */
 static void configure_channel(const tmini_pico_t *port, unsigned index, bool begins)
 {
     const uint channel = port->channels[index];

@@ -98,9 +98,8 @@ extern const tmini_port_t tmini_pico_port;
  *   TMINI_ERROR_STATE     the UART's clock does not make 230400 baud within 2 % */
 tmini_status_t tmini_pico_init(tmini_pico_t *port, const tmini_pico_wiring_t *wiring);
 
-/** From now on received bytes go to `lidar`, which must have been set up by tmini_init(). What came
- * before is dropped, and the counters begin at 0. Takes two DMA channels, or the UART's interrupt
- * handler. Returns
+/** From now on received bytes go to `lidar`, set up by tmini_init(). What came before is dropped,
+ * and the counters begin at 0. Takes two DMA channels, or the UART's interrupt handler. Returns
  *   TMINI_OK
  *   TMINI_ERROR_ARGUMENT  null pointer, or no tmini_pico_init() before
  *   TMINI_ERROR_STATE     started already; fewer than two DMA channels are free; the UART's

@@ -219,7 +219,6 @@ static struct addrinfo *places_of(const char *address)
     return getaddrinfo(name, colon + 1, &hints, &places) == 0 ? places : NULL;
 }
 
-/* Connects to "tcp:HOST:PORT". */
 static tmini_posix_status_t open_socket(tmini_posix_t *port)
 {
     struct addrinfo *const places = places_of(port->path + sizeof SOCKET_PREFIX - 1);
@@ -388,7 +387,6 @@ static bool take_block(tmini_posix_t *port, size_t wanted)
     return count == (ssize_t)wanted;
 }
 
-/* Reports the bytes that the system keeps until there is room. */
 static void report_held(const tmini_posix_t *port)
 {
     int held = 0;

@@ -3,8 +3,8 @@
 
 /** @file
  * The port for computers: a lidar on a serial device of Linux or another POSIX system, such as
- * /dev/ttyUSB0. Works on pseudo-terminals too. Written for macOS as well (/dev/cu.usbserial-110),
- * but not tried on macOS.
+ * /dev/ttyUSB0. Works on pseudo-terminals, too. Also written for macOS (/dev/cu.usbserial-110), but
+ * not tried there.
  *
  *     static tmini_posix_t port;
  *
@@ -99,9 +99,8 @@ void tmini_posix_tap(tmini_posix_t *port, tmini_posix_tap_t tap, void *context);
 
 /** Opens the device at 230400 baud, 8N1, without flow control, for this program alone, and drops
  * what it received before; or connects the socket, for some seconds at most. From then on received
- * bytes go to `lidar`, which must have been set up by tmini_init(); NULL: to the tap alone. May
- * wait as long as the system's open does. A device that was stopped, or could not be opened, may be
- * started again. */
+ * bytes go to `lidar`, set up by tmini_init(); NULL: to the tap alone. May wait as long as the
+ * system's open does. A device that was stopped, or could not be opened, may be started again. */
 tmini_posix_status_t tmini_posix_start(tmini_posix_t *port, tmini_t *lidar);
 
 /** The same with a descriptor that is open already, such as a socket to a controller that forwards

@@ -72,7 +72,7 @@ static void write_through(const uint8_t *buffer, size_t size)
 
 #ifdef HAL_DMA_MODULE_ENABLED
 
-/* The newer DMA controllers (H5, U5, …) are circular by linked lists. */
+/* The newer DMA controllers (H5, U5, …) use linked lists for circular transfers. */
 static bool is_circular(const DMA_HandleTypeDef *dma)
 {
 #ifdef DMA_LINKEDLIST_CIRCULAR
@@ -305,7 +305,6 @@ static void copy_out(tmini_stm32_hal_t *port, uint16_t from, uint16_t to)
     tmini_feed(port->lidar, &port->buffer[from], (size_t)(to - from));
 }
 
-/* Copies the new part of the block. */
 static void copy_new(tmini_stm32_hal_t *port, uint16_t from, uint16_t to)
 {
     if (to < from) {
@@ -367,8 +366,7 @@ static void hand_over_new(tmini_stm32_hal_t *port)
 
 /* ----------------------------------------------------------------------- starting, in the poll */
 
-/* Also clears an overrun: pending, it would end the next reception during the call that begins
- * it. */
+/* Also clears an overrun, which would end the next reception during the call that begins it. */
 static void forget_reception(tmini_stm32_hal_t *port)
 {
     port->is_started = false;
@@ -583,7 +581,6 @@ static bool is_good_circle(const UART_HandleTypeDef *uart, const uint8_t *buffer
     return has_good_dma(uart) && size <= TMINI_STM32_CIRCLE_MAX && is_aligned(buffer, size);
 }
 
-/* All members are set before the first interrupt can come. */
 static tmini_status_t start_reception(tmini_stm32_hal_t *port, tmini_t *lidar,
                                       enum reception reception, uint8_t *buffer, size_t size)
 {

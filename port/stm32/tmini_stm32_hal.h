@@ -95,10 +95,10 @@ extern const tmini_port_t tmini_stm32_hal_port;
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer. */
 tmini_status_t tmini_stm32_hal_init(tmini_stm32_hal_t *port, UART_HandleTypeDef *uart);
 
-/** Receives for `lidar`, which must have been set up by tmini_init(), into the buffer given there:
- * with rx_dma by DMA, without it byte by byte. For DMA the buffer has a size of 512 to 32768, lies
- * where the DMA reaches it and, on a processor with data cache, is aligned to 32 bytes; the DMA
- * channel is circular, byte-wide, with its FIFO off. From the polling context.
+/** Receives for `lidar`, set up by tmini_init(), into the buffer given there: with rx_dma by DMA,
+ * without it byte by byte. For DMA the buffer has a size of 512 to 32768, lies where the DMA
+ * reaches it and, on a processor with data cache, is aligned to 32 bytes; the DMA channel is
+ * circular, byte-wide, with its FIFO off. From the polling context.
  * Returns TMINI_OK;
  *   TMINI_ERROR_STATE     lidar or port not set up; or the HAL refuses to start: polls try again
  *   TMINI_ERROR_ARGUMENT  the UART is not set to 230400 8N1; or DMA: none, not circular, not by

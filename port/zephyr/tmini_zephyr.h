@@ -84,8 +84,8 @@ extern const tmini_port_t tmini_zephyr_port;
  *   or the UART driver's error */
 int tmini_zephyr_init(tmini_zephyr_t *port, const struct device *uart);
 
-/** From now on received bytes go to `lidar`, which must have been set up by tmini_init(); the
- * counters begin at 0. Takes the UART's callback. Returns 0,
+/** From now on received bytes go to `lidar`, set up by tmini_init(); the counters begin at 0. Takes
+ * the UART's callback. Returns 0,
  *   -EINVAL    null pointer, or no tmini_zephyr_init() before
  *   -EALREADY  started already
  *   -ENOSYS    the UART's driver has no interrupt-driven API (reported since Zephyr 3.3)

@@ -11,8 +11,8 @@ const POLL_MS = 20;
 // If a lidar that has answered before does not answer these queries, it is started anyway.
 const DISPENSABLE = new Set(['health', 'frequency']);
 
-// The driver's clock. While the browser does not run the page (a dialog is open, the computer sleeps), bytes wait, and
-// the lidar must not be reported as silent: so a long pause counts as a short one.
+// The driver's clock. While the browser does not run the page (a dialog, a sleeping computer), bytes wait and the lidar
+// is not silent: so a long pause counts as a short one.
 class Clock {
     static #LONGEST_STEP_MS = 100;
     #ms = 0;

@@ -17,8 +17,7 @@ const LEGEND_ROW = 24;
 const LEGEND_ROWS = [[560, 3], [860, 2], [Infinity, 1]]; // The legend's rows on a canvas below this width.
 const BEAM_CORE = 0.2; // A part of the radius: there the beams are close together.
 
-// Colours from low to high intensity, with equal steps between them: the colours of the tool's pictures, and darker
-// ones on white.
+// Colours from low to high intensity, in equal steps: those of the tool's pictures, and darker ones on white.
 const RAMPS = {
     dark: [[82, 92, 227], [33, 150, 227], [46, 204, 171], [168, 227, 92], [255, 214, 84]],
     light: [[74, 108, 214], [18, 121, 168], [14, 118, 92], [96, 104, 10], [168, 72, 0]],
@@ -72,7 +71,7 @@ export class Picture {
         this.draw();
     }
 
-    // If the picture is out of date, it is drawn in grey.
+    // An outdated picture is grey.
     set isStale(isStale) {
         if (this.#isStale !== isStale) {
             this.#isStale = isStale;
@@ -240,7 +239,7 @@ export class Picture {
         context.stroke();
     }
 
-    // The space that the lidar has seen as free: a beam to each point, as wide as the distance between points.
+    // The free space: a beam to each point, as wide as the distance between points.
     #paintBeams(frame) {
         const points = this.#isStale ? undefined : this.#scans[0];
         if (points === undefined || points.count === 0) {
@@ -340,7 +339,6 @@ export class Picture {
         });
     }
 
-    // Marks the flagged points of the newest scan.
     #paintMarks(frame) {
         const [points] = this.#scans;
         for (let i = 0; i < points.count && this.#marksFlags; i++) {
@@ -403,7 +401,7 @@ export class Picture {
         context.stroke();
     }
 
-    // Paints the lidar as an arrow that points to the front.
+    // An arrow that points to the front.
     #paintLidar({ x, y }) {
         const context = this.#context;
         context.fillStyle = this.#theme.page;

@@ -9,7 +9,6 @@
 #include "tmini/tmini.h"
 #include "tmini/tmini_names.h"
 
-/* JavaScript uses these constants by name. */
 EXPORTED uint32_t constants(void)
 {
     numbers_clear();

@@ -11,7 +11,7 @@
 
 static struct {
     tape_t tape;
-    tmini_point_t points[UINT8_MAX]; /* The points of the latest packet. */
+    tmini_point_t points[UINT8_MAX];
     bool is_shown;
 } played;
 

@@ -23,7 +23,6 @@ static uint64_t us(uint32_t now_ms)
     return (uint64_t)now_ms * 1000u;
 }
 
-/* Sets up an idle lidar, at time 0. */
 EXPORTED void simulation_init(uint32_t seed, uint32_t ct_information, uint32_t frequency_chz)
 {
     sim_config_t device = sim_default_config();
@@ -86,7 +85,6 @@ EXPORTED const char *simulation_fault_name(uint32_t kind)
     return kind < SIM_LINK_KINDS ? sim_link_kind_name((sim_link_kind_t)kind) : NULL;
 }
 
-/* Someone stands in front of the lidar, or does not. */
 EXPORTED void simulation_visitor(uint32_t present)
 {
     sim_clear_obstacles(&sim);

@@ -68,5 +68,4 @@ class _Socket:
 
 
 def open_line(port: str) -> Line:
-    """Opens a serial port by its name, or "tcp:HOST:PORT"."""
     return _Socket(port[4:]) if port.startswith("tcp:") else _Port(port)

@@ -107,11 +107,10 @@ size_t tmini_ring_room(const tmini_ring_t *ring);
  * the part of a packet that came before. Interrupt-safe; no loop, no wait. */
 void tmini_ring_publish(tmini_ring_t *ring, size_t position);
 
-/** Producer: an unknown number of bytes was lost after the last one stored: a receiver's queue
- * overflowed, or circular DMA may have written a whole lap unseen (then call this before
- * publishing). A CPU-fed ring is closed, as after an overrun. In a DMA ring one lap of the oldest
- * bytes counts as overwritten; if more than the window is left then, so does the excess. So no byte
- * is read twice, even if DMA had not written a whole lap. Interrupt-safe; no loop, no wait. */
+/** Producer: an unknown number of bytes was lost after the last one stored (tmini_feed_gap()
+ * explains why). A CPU-fed ring is closed, as after an overrun. In a DMA ring one lap of the oldest
+ * bytes counts as overwritten, and then all that exceeds the window. Interrupt-safe; no loop, no
+ * wait. */
 void tmini_ring_gap(tmini_ring_t *ring);
 
 /* ----------------------------------------------------------------------- the consumer's context */
