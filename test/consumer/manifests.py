@@ -35,7 +35,6 @@ def read(name):
 
 
 def find(name, pattern):
-    """Returns the group of the pattern's first match, or None."""
     match = re.search(pattern, read(name), re.MULTILINE)
     return match and match.group(1).strip().strip('"')
 
@@ -132,7 +131,6 @@ SOURCES = sorted(os.path.basename(name) for name in glob.glob(path("lib/src/*.c"
 
 
 def build_files():
-    """Returns the build files, which may list the library's sources."""
     for folder, folders, files in os.walk(ROOT):
         folders[:] = [name for name in folders
                       if name not in ("test", ".git") and not name.startswith("build")]

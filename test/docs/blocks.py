@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Compiles, configures, parses or runs every block of code in every document, and checks that the tool knows
-every command and option that documents show.
+"""Compiles, configures, parses or runs every block of code in every document, and checks that the tool knows every
+command and option there.
 
     blocks.py BUILD COMPILER [C++-COMPILER]
 
@@ -37,7 +37,7 @@ AS_CXX = ["-std=gnu++11", "-Wno-missing-field-initializers", "-x", "c++"]
 
 
 def stand_ins(*folders):
-    """Include options for the tests' stand-ins for platforms, without warnings from these headers."""
+    """Options for the tests' stand-ins for platforms, without warnings from their headers."""
     return [word for folder in folders for word in ("-isystem", folder)]
 
 
@@ -145,7 +145,7 @@ def is_statement(item):
 
 
 def program(block):
-    """Returns the block as a program that can be compiled: its statements become the body of a function."""
+    """The block as a program: its statements become the body of a function."""
     outside, inside = [], []
     for number, item in items(block.text):
         line = f'#line {block.number + number - 1} "{name(block.path)}"'

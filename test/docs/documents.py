@@ -17,7 +17,7 @@ def is_ours(folder):
 
 
 def documents(language=""):
-    """Returns the paths of all documents in one language (English by default), except in build folders."""
+    """The paths of all documents in one language (English by default), except in build folders."""
     return [path for path in sorted(ROOT.rglob("*.md"))
             if path.name.partition(".")[2] == language + "md" and
             all(is_ours(folder) for folder in path.relative_to(ROOT).parts[:-1])]
@@ -40,7 +40,7 @@ class Block:
 
 
 def parse(path):
-    """Returns a document's blocks of code, and its other lines as (number, line)."""
+    """A document's blocks of code, and its other lines as (number, line)."""
     blocks, prose = [], []
     section, opened = "", None
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
@@ -64,7 +64,7 @@ def parse(path):
 
 
 def indented_blocks(prose):
-    """Returns the numbers of lines that begin an indented block of code."""
+    """The numbers of lines that begin an indented block of code."""
     found, before, in_list = [], "", False
     for number, line in prose:
         if re.match(r" {0,3}([-*+]|\d+\.) ", line):
@@ -79,14 +79,13 @@ def indented_blocks(prose):
 
 
 def anchor(heading):
-    """Returns the anchor that links to a heading use."""
+    """The anchor that links to a heading use."""
     text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading)
     text = re.sub(r"[`*]", "", text).strip().lower()
     return re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", text))
 
 
 def anchors(path):
-    """Returns all anchors of a document."""
     found = []
     for _, line in parse(path)[1]:
         heading = HEADING.match(line)

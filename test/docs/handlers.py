@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Checks that the interrupt handlers for STM32 USARTs in documents survive an overrun. They run on a model of
-a USART with SR and DR (only reading SR and then DR clears the overrun), or of one with ISR, RDR and ICR (only
-writing to ICR clears it).
+"""Checks that the interrupt handlers for STM32 USARTs in documents survive an overrun, on a model of a USART with SR
+and DR (only reading SR and then DR clears the overrun), or with ISR, RDR and ICR (only writing to ICR does).
 
     handlers.py BUILD C++-COMPILER
 
@@ -141,7 +140,6 @@ def handlers():
 
 
 def survives(handler, folder, compiler):
-    """Returns None, or the mistake."""
     program = folder / "handler"
     kind = "-DHAS_SR=" + str(int("->DR" in handler))
     built = subprocess.run([compiler, "-std=c++11", kind, "-x", "c++", "-", "-o", program],

@@ -18,7 +18,7 @@ NOT_PUBLIC = {"tmini_word", "tmini_copy_pair", "tmini_store_two"}
 
 
 def declared():
-    """Returns the declared functions: their declarations begin in the first column."""
+    """The declared functions: their declarations begin in the first column."""
     for header in ROOT.glob("lib/include/tmini/*.h"):
         text = re.sub(r"/\*.*?\*/|^typedef[^;]*;", "", header.read_text(encoding="utf-8"), flags=re.S | re.M)
         text = re.sub(r"^#.*(\\\n.*)*", "", text, flags=re.M)

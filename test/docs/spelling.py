@@ -26,13 +26,13 @@ NOT_SLIPS = "hsi,ordner,ore,paeth,pre-empted,te,ue"
 
 
 def plain(line):
-    """Returns a line of a document without code, addresses and tags."""
+    """A line of a document without code, addresses and tags."""
     line = re.sub(r"`[^`]*`|<[^>]*>|\]\([^)]*\)|https?:\S+", " ", line)
     return re.sub(r"\S*[/\\_=@]\S*|\b0x\w+|[A-Za-z]*\d\w*|['’]s\b|Wi-Fi|(?<!\w)-\w+", " ", line)
 
 
 def comments(path):
-    """Returns the lines of a header's comments, without code and names."""
+    """The lines of a header's comments, without code and names."""
     text = path.read_text(encoding="utf-8")
     for comment in re.finditer(r"/\*.*?\*/", text, re.DOTALL):
         first = text.count("\n", 0, comment.start()) + 1
@@ -48,7 +48,6 @@ def text_of(path):
 
 
 def misspelt(lines):
-    """Returns the words that hunspell does not know."""
     with tempfile.NamedTemporaryFile("w", suffix=".txt", encoding="utf-8") as words:
         words.write("".join(line for line in WORDS.read_text(encoding="utf-8").splitlines(True)
                             if line.strip() and not line.startswith("#")))

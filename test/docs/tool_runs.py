@@ -22,7 +22,7 @@ NOT_RUN = {"view": "wants a terminal; test_host_view has one"}
 
 
 def commands():
-    """Returns the commands in README.md, without their comments."""
+    """The commands in README.md, without their comments."""
     for block in parse(ROOT / "README.md")[0]:
         for line in block.text.splitlines():
             if block.language == "sh" and re.match(r"build/bin/tmini ", line):

@@ -29,7 +29,7 @@ def options(text):
 
 
 def spans(path):
-    """Returns everything in a document that the user may type: spans of code and lines of blocks."""
+    """Everything in a document that the user may type: spans of code and lines of blocks."""
     fenced = False
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         if line.lstrip().startswith("```"):
@@ -43,7 +43,7 @@ def spans(path):
 
 
 def unknown_options(text, words):
-    """Returns the options in `words` that the help does not list. Short options may be joined: -n3, -qn1."""
+    """The options in `words` that the help does not list. Short options may be joined: -n3, -qn1."""
     known = options(text)
     return [word for word in (word.split("=")[0].strip("[]") for word in words)
             if re.match(r"--?[a-zA-Z]", word) and word not in known

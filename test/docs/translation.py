@@ -21,7 +21,7 @@ THE_OTHER = ("README.md", "README.zh-CN.md")
 
 
 def sections(path):
-    """Returns the document's text without blocks of code, split at the headings."""
+    """The document's text without blocks of code, split at the headings."""
     texts = [""]
     for _, line in parse(path)[1]:
         if HEADING.match(line):
@@ -31,7 +31,7 @@ def sections(path):
 
 
 def facts(text):
-    """Returns what must be equal in all languages, sorted."""
+    """What must be equal in all languages, sorted."""
     links = [link for link in re.findall(r"\]\(([^)]*)\)", text) if link not in THE_OTHER]
     code = re.findall(r"`([^`]*)`", text)
     plain = re.sub(r"\]\([^)]*\)|`[^`]*`|<!--.*?-->", " ", text)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Collects an example's output on a model, where printing takes no time, and calculates the time
- * that printing takes on a real console: a UART with 115200 baud, whose functions wait until the
- * last byte has been sent. Meanwhile the example's loop does not poll. */
+/* Collects an example's output on a model, and calculates the time that printing would take on a
+ * real console: a UART with 115200 baud, whose functions wait for the last byte. Meanwhile the
+ * example does not poll. */
 
 #ifndef CONSOLE_H
 #define CONSOLE_H
@@ -23,13 +23,13 @@ int console_print(uint64_t now_us, const char *format, va_list arguments)
 /* For a model that stores the text itself. */
 void console_note(uint64_t now_us, size_t bytes);
 
-/* The first function searches for the text in the whole output. The second searches in the last
- * line with a comma: examples print such a line each second. */
+/* Search for the text in the whole output, or in the last line with a comma, which examples print
+ * each second. */
 void assert_said(const char *text);
 void assert_last_said(const char *text);
 
-/* Fails if printing would take more than half of the time, or if printing in one turn of the loop
- * would take longer than receiving `held` bytes at 23,000 bytes per second. */
+/* Fails if printing takes more than half of the time, or in one turn of the loop longer than
+ * receiving `held` bytes at 23,000 bytes per second. */
 void assert_console_leaves_time(uint32_t held);
 
 #endif

@@ -100,7 +100,7 @@ void assert_true_scans_wherever_bytes_come(void)
     }
 }
 
-/* After each pause, CATCH_UP + 1 scans give the program time to read all bytes that had waited. */
+/* After each pause, the program has CATCH_UP + 1 scans to read all waiting bytes. */
 void assert_pauses_cost_no_scan(uint32_t bytes)
 {
     const uint32_t longest_us = bytes * 900u / BYTES_PER_MS;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A program that scans with the port under test: one lidar with its buffers, and a loop. Its scans
- * are compared with the points that the simulated lidar has sent (truth.h). */
+/* A program that scans with the port under test: a lidar with its buffers, and a loop. Its scans
+ * are compared with what the simulated lidar has sent (truth.h). */
 
 #ifndef SCANNING_H
 #define SCANNING_H
@@ -32,8 +32,8 @@ void poll_until(tmini_event_t wanted);
 /* The next scans are these revolutions, with every point. */
 void assert_true_scans(uint32_t first, uint32_t last);
 
-/* Polls until a scan is complete; returns the number of scans with this one. The scans before it
- * may lack points, but must have no wrong ones. */
+/* Polls until a scan is complete; returns the number of scans. Those before may lack points, but
+ * have no wrong ones. */
 unsigned scans_until_complete(void);
 
 /* The next scan is not complete, but a later one is. */
@@ -42,7 +42,7 @@ void assert_gap(void);
 /* The lidar is lost and then recovers. */
 void assert_recovery(void);
 
-/* Bytes arrive at any access to the library's indices or to the model; every point must arrive. */
+/* Bytes come at any access to the library's indices or the model; every point must arrive. */
 void assert_true_scans_wherever_bytes_come(void);
 
 /* A layer below the program can hold `bytes`. Pauses cost no scan if at most 0.9 of these bytes

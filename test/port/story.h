@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A story for the obstacle stops in examples/, with the simulated lidar in its simulated room: an
- * obstacle comes and goes, and the lidar's power fails and returns. Checks that the program prints
- * the lidar's model, and stops the robot only while it must. */
+/* A story for the obstacle stops in examples/: an obstacle comes and goes, and the lidar's power
+ * fails and returns. The program must print the lidar's model, and stop the robot only while
+ * needed. */
 
 #ifndef STORY_H
 #define STORY_H

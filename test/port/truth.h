@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A record of the points that the simulated lidar has sent: port tests compare scans with it. */
+/* A record of the points that the simulated lidar has sent, to compare scans with. */
 
 #ifndef TRUTH_H
 #define TRUTH_H
@@ -12,7 +12,7 @@
 #include "simulator.h"
 #include "tmini/tmini.h"
 
-/* Tests split the manual's packet after this many bytes. Only the port can notice a loss there. */
+/* Tests split the manual's packet here. Only the port can notice a loss in between. */
 #define PACKET_CUT 30u
 
 /* Clears the record; returns the observer to give to the simulated lidar. */

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Finds the test functions that notice a mutant, and those that are the only one to notice it. Use it before
-you remove a test.
+"""Finds the test functions that notice a mutant, and those that alone notice one. Use it before you remove a test.
 
     killers.py --build DIR --sample N [--seed S] [--jobs N] FILE [SOURCE …]
 
@@ -42,7 +41,7 @@ class Matrix(mutation.Bench):
         return [f"{test.name}:{name}" for name in failed or (["*"] if done.returncode != 0 else [])]
 
     def killers(self, mutant):
-        """Returns the test functions that fail, or None if the mutant does not compile."""
+        """The test functions that fail, or None if the mutant does not compile."""
         found, shared = [], {}
         with self.changed(mutant):
             for test in self.tests_of(mutant.path):

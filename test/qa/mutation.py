@@ -11,10 +11,10 @@ FILE is a source in lib/src or port, a public header, or a folder of these; lib/
 library are tried with all of test/unit, changes to a port with that port's tests. With --results, a run that was
 stopped can be continued.
 
-A test is linked only once, with the changed source as a shared object, so that each mutant costs only one quick
-compilation. The tests named like the source run first, then those that have killed the most mutants per time. A
-test that runs much longer than with the original is stopped; this counts as noticed. A mutant that survives is
-not counted if its optimised machine code is the same as the original's.
+A test is linked only once, with the source as a shared object: each mutant costs only one quick compilation. Tests
+named like the source run first, then those that have killed the most mutants per time. A test that runs much longer
+than with the original is stopped and counts as failed. A mutant that survives is not counted if its optimised machine
+code equals the original's.
 
 A mutant that no test notices is an error, unless test/qa/mutants.txt lists it with the reason why no test can.
 An entry there is an error if its mutant no longer exists or, without --sample, if a test notices it.
@@ -85,7 +85,7 @@ def read(path):
 
 
 def function_at(lines, line):
-    """Returns the name of the function that contains a line; "-" outside of functions."""
+    """The name of the function that contains a line; "-" outside of functions."""
     if lines[line].startswith("}"):
         return "-"
     for above in reversed(lines[:line + 1]):
@@ -147,7 +147,7 @@ def mutants_of(path):
 
 
 def arguments_of(entry):
-    """Returns the compiler's command line, without source, object, and options for dependencies and caches."""
+    """The compiler's command line, without source, object, and options for dependencies and caches."""
     words = shlex.split(entry["command"])
     while os.path.basename(words[0]) in ("ccache", "sccache"):
         words.pop(0)
@@ -170,7 +170,7 @@ def object_of(entry):
 
 
 def objects_of(folder):
-    """Returns the object files of a program. `folder` is the program's folder in CMakeFiles."""
+    """The object files of a program. `folder` is the program's folder in CMakeFiles."""
     link = os.path.join(folder, "link.txt")
     if not os.path.exists(link):
         return []
@@ -190,7 +190,7 @@ def has_functions(path):
 
 
 def sources_with(path):
-    """Returns the file itself if it is a source, and the sources in its folder that include it."""
+    """The file itself if it is a source, and the sources in its folder that include it."""
     found = {path}
     for _ in files_of(os.path.dirname(path)): # One round for each file in a chain of inclusions.
         names = [f'#include "{os.path.basename(file)}"' for file in found]
@@ -220,7 +220,7 @@ class Build:
         return [entry for entry in self.entries if os.path.realpath(entry["file"]) == path]
 
     def tests_of(self, source):
-        """Returns the tests of a source, each with the command line that compiles the source for it."""
+        """The tests of a source, each with the command line that compiles the source for it."""
         place = "unit" if source.startswith("lib/") else os.path.dirname(source).replace("/", "[/_]")
         entries = self.entries_of(source)
         own = {os.path.realpath(object_of(entry)): entry for entry in entries}
@@ -247,7 +247,7 @@ class Test:
         return [obj for obj in objects_of(self.folder) if obj != os.path.realpath(object_of(self.entry))]
 
     def work_folder(self):
-        """Returns the folder in which ctest runs the test, if it needs a folder of its own."""
+        """The folder in which ctest runs the test, if it needs a folder of its own."""
         place = re.sub(r"CMakeFiles/(\w+)\.dir$", r"\1.work", self.folder)
         return place if os.path.isdir(place) else None
 
@@ -257,13 +257,11 @@ class Test:
 
 
 def cpu_seconds():
-    """Returns the processor time of all child processes."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
 def is_in_body(mutant):
-    """True if the mutant is between the braces of a function."""
     above = (line[0] for line in reversed(mutant.text.split("\n")[:mutant.line]) if line[:1] in ("{", "}"))
     return next(above, "") == "{"
 
@@ -312,7 +310,7 @@ class Bench:
                               cwd=test.entry["directory"], stderr=subprocess.DEVNULL, check=False).returncode == 0
 
     def compile_shared(self, test, source, folder):
-        """Compiles without optimisation, which is fastest. The tests load it by its name mutant.so, from any folder."""
+        """Compiles without optimisation, which is fastest. Tests load mutant.so from any folder."""
         target = os.path.join(self.work, folder, test.variant, "mutant.so")
         is_compiled = self.compile(test, source, target, "-O0", "-fPIC", "-shared", "-Wl,-soname,mutant.so")
         return target if is_compiled else None
@@ -344,7 +342,7 @@ class Bench:
         test.seconds = max(cpu_seconds() - before, 0.001)
 
     def run(self, test, shared):
-        """Returns the exit status. A signal ends a test that computes or waits much longer than usual."""
+        """The exit status. A signal ends a test that computes or waits much longer than usual."""
         try:
             return subprocess.run([test.program], cwd=test.work_folder() or self.work, stdin=subprocess.DEVNULL,
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
@@ -362,7 +360,7 @@ class Bench:
     # A public header is part of the library and of the tests: all code that it changes is recompiled.
 
     def with_headers(self, entry):
-        """Returns the command line with the public headers from the folder of copies, one of which is changed."""
+        """The command line with the public headers from the folder of copies, one of which is changed."""
         folder = os.path.join(self.work, PUBLIC)
         original = os.path.realpath(os.path.join(ROOT, PUBLIC))
         return [f"-I{folder}" if word[:2] == "-I" and os.path.realpath(word[2:]) == original else word
@@ -377,13 +375,13 @@ class Bench:
         return target if done.returncode == 0 else None
 
     def headers_of(self, entry):
-        """Returns the names of the public headers that a source includes, directly or indirectly."""
+        """The names of the public headers that a source includes, directly or indirectly."""
         rule = subprocess.run([*arguments_of(entry), "-MM", os.path.realpath(entry["file"])], check=True,
                               cwd=entry["directory"], capture_output=True, text=True).stdout
         return {os.path.basename(word) for word in rule.split() if PUBLIC in word}
 
     def recompiled(self, header, entry, option="-O0"):
-        """Returns the object with the changed header (None if it does not compile), and whether it has changed."""
+        """The object with the changed header (None if it does not compile), and whether it has changed."""
         key = (object_of(entry), option)
         if key not in self.originals:
             original = self.object_with(arguments_of(entry), entry, option, "original")
@@ -402,7 +400,7 @@ class Bench:
                         "-Wl,--start-group", *self.build.archives, "-Wl,--end-group", "-lm"], check=True)
 
     def recompiled_library(self, header, folder):
-        """Returns the library (None if it does not compile), and whether it has changed."""
+        """The library (None if it does not compile), and whether it has changed."""
         library = os.path.join(self.work, folder, "mutant.so")
         target, is_other = self.recompiled(header, self.library)
         os.makedirs(os.path.dirname(library), exist_ok=True)
@@ -411,13 +409,13 @@ class Bench:
         return library if target is not None else None, is_other
 
     def recompiled_objects(self, header, test):
-        """Returns the parts of a test without the library: command line, object, and whether it has changed."""
+        """The parts of a test without the library: command line, object, and whether it has changed."""
         own = [self.build.entry_of[obj] for obj in objects_of(test.folder)]
         own += [entry for entry in self.build.entries if entry["file"].endswith("/test/support/receiver.c")]
         return [(entry, *self.recompiled(header, entry)) for entry in own]
 
     def begin_headers(self, tests):
-        """Builds the library, as one source, and the original tests; checks that they pass, and measures their time."""
+        """Builds the library, as one source, and the original tests, which must pass; measures their time."""
         text = single.single({os.path.basename(path): read(path) for path in files_of("lib/src")}, "")
         source = pathlib.Path(self.work, "tmini_all.c")
         source.write_text(text, encoding="utf-8")
@@ -435,7 +433,7 @@ class Bench:
             test.seconds = cpu_seconds() - before + 0.1 * len(objects_of(test.folder))
 
     def notice(self, tests, library):
-        """Returns the first of the original tests that notices a changed library."""
+        """The first of the original tests that notices a changed library."""
         for test in tests:
             test.program = os.path.join(self.work, "original_tests", test.name)
             if not self.passes(test, library):
@@ -443,7 +441,7 @@ class Bench:
         return None
 
     def notice_recompiled(self, header, tests, library, is_new_to_all):
-        """Returns the first of the recompiled tests that notices the mutant, and the parts of tests that it changes."""
+        """The first recompiled test that notices the mutant, and the parts of tests that it changes."""
         different = []
         for test in tests:
             made = self.recompiled_objects(header, test)
@@ -458,7 +456,7 @@ class Bench:
         return None, different
 
     def preprocessed(self, header):
-        """Returns the header after preprocessing, for each set of macros with which it is included."""
+        """The header after preprocessing, for each set of macros with which it is included."""
         ways = {tuple(word for word in arguments_of(entry) if word.startswith("-D")) for entry in self.build.entries
                 if "/test/unit/" in entry["directory"] + entry["file"]}
         return [subprocess.run([self.compiler, "-E", "-P", "-dD", "-I" + os.path.join(ROOT, "test", "support"), *way,
@@ -543,7 +541,7 @@ class Results:
                 file.write(f"{mutant.id}\t{fate}\t{mutant}\n")
 
     def of(self, mutants, pool):
-        """Returns the mutants with their fates, in order; tries those whose fate is not stored."""
+        """The mutants with their fates, in order; tries those whose fate is not stored."""
         fresh = pool.imap(fate_of, [mutant for mutant in mutants if mutant.id not in self.fates])
         for mutant in mutants:
             fate = self.fates.get(mutant.id) or next(fresh)
@@ -562,14 +560,14 @@ def known_survivors():
 
 
 def outdated(known):
-    """Returns the entries whose mutants no longer exist, because their lines have changed."""
+    """The entries whose mutants no longer exist, because their lines have changed."""
     paths = {key.split(" | ")[0] for key in known}
     there = {mutant.key for path in paths if os.path.exists(os.path.join(ROOT, path)) for mutant in mutants_of(path)}
     return [key for key in known if key not in there]
 
 
 def files_among(names):
-    """Returns the named files; and of named folders the public headers and the files with functions, except headers
+    """The named files; and of named folders the public headers and the files with functions, except headers
     that no source there includes."""
     for name in names:
         if os.path.isfile(name):
@@ -614,7 +612,7 @@ def main():
     mutants = [mutant for path in files_among(arguments.files) for mutant in mutants_of(path)]
     if not mutants:
         parser.error(f"nothing to change in {' '.join(arguments.files)}")
-    if arguments.sample:  # Ordered by hash: the change of one line does not change the rest of the sample.
+    if arguments.sample:  # By hash: a changed line does not change the rest of the sample.
         mutants.sort(key=lambda mutant: hashlib.sha256(f"{arguments.seed} {mutant.key}".encode()).digest())
     if arguments.list:
         print(*mutants, f"{len(mutants)} mutants", sep="\n")

@@ -398,7 +398,6 @@ static void print_number(const char *what, uint64_t number)
     printf("%-44s %12llu\n", what, (unsigned long long)number);
 }
 
-/* Returns the number of violations. */
 static uint32_t print(const totals_t *totals)
 {
     uint32_t violations = 0;

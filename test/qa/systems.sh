@@ -48,8 +48,8 @@ describe() {
     esac
 }
 
-# Without the distribution's keys on this machine, the first packages cannot be verified. This is
-# acceptable, because the system is deleted afterwards.
+# Without the distribution's keys here, the first packages cannot be verified; the system is deleted
+# afterwards.
 verification() {
     keys=/usr/share/keyrings/ubuntu-archive-keyring.gpg
     [ "$suite" != noble ] || [ -e "$keys" ] || echo --no-check-gpg
@@ -82,8 +82,8 @@ unpack_project() {
     chroot "$system" chown -R user: /home/user
 }
 
-# as_user NAME COMMAND…: runs the command in the project's folder, with the environment of a login
-# and the network's settings. The mounts disappear with the last process.
+# as_user NAME COMMAND…: runs the command in the project's folder, with a login's environment and
+# the network's settings. The mounts disappear with the last process.
 as_user() {
     name=$1
     shift

@@ -13,7 +13,7 @@ set(CMAKE_C_FLAGS_INIT "-mcpu=${CORTEX_M} -mthumb -ffunction-sections -fdata-sec
 set(CMAKE_EXE_LINKER_FLAGS_INIT "--specs=nano.specs --specs=nosys.specs -nostartfiles \
 -Wl,--gc-sections -Wl,--defsym=RAM_START=${CORTEX_M_RAM} \
 -T\"${CMAKE_CURRENT_LIST_DIR}/cortex_m.ld\"")
-# CMake's trial program is compiled but not linked: there is no start-up code yet.
+# CMake's trial program is not linked: there is no start-up code.
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 
 find_program(TMINI_QEMU_ARM qemu-system-arm)

@@ -22,7 +22,7 @@ class Lidar:
         return bytes.fromhex(self.process.stdout.readline())
 
     def end(self):
-        """Returns the packets that were sent, by number: each is a list of samples, dicts of numbers."""
+        """The packets that were sent, by number: each is a list of samples, dicts of numbers."""
         self.process.communicate()
         packets = {}
         with open(self.truth, encoding="ascii") as file:

@@ -2,12 +2,11 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Semihosting: a program on an emulated controller prints on this computer and ends with a status.
- * The start-up file of each machine implements these functions. */
+ * Each machine's start-up file implements this. */
 
 #ifndef SEMIHOSTING_H
 #define SEMIHOSTING_H
 
-/* Prints a character. */
 void semihosting_put(char character);
 
 /* Ends the emulator: with status 0 if `status` is 0, else with 1. Does not return. */

@@ -12,7 +12,7 @@ set(CMAKE_C_FLAGS_INIT
 # The linker refuses static data that would leave less than 1.5 KB for the stack.
 set(CMAKE_EXE_LINKER_FLAGS_INIT
     "-mmcu=atmega2560 -Wl,--gc-sections -Wl,--defsym=__DATA_REGION_LENGTH__=6656")
-# CMake's trial program is compiled but not linked: there is no start-up code yet.
+# CMake's trial program is not linked: there is no start-up code.
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 
 find_program(TMINI_SIMAVR simavr)

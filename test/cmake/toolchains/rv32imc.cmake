@@ -14,7 +14,7 @@ set(CMAKE_C_FLAGS_INIT "--specs=picolibc.specs -march=rv32imc -mabi=ilp32 \
 set(CMAKE_EXE_LINKER_FLAGS_INIT "--oslib=semihost --crt0=semihost -Wl,--gc-sections \
 -Wl,--defsym=__flash=0x80000000 -Wl,--defsym=__flash_size=0x1000000 \
 -Wl,--defsym=__ram=0x81000000 -Wl,--defsym=__ram_size=0x1000000")
-# CMake's trial program is compiled but not linked.
+# CMake's trial program is not linked.
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 
 find_program(TMINI_QEMU_RISCV32 qemu-system-riscv32)

@@ -6,9 +6,9 @@
     run.py native|scan ROOT WORK
     run.py archive ROOT WORK ARCHIVE
 
-Needs a Python with the packages platformio and scons. `native` builds and runs the consumer's program, and
-`scan` the sketch Scan. `archive` repacks our archive with PlatformIO's packer, which must not leave anything
-out, and builds the consumer's program with it. Exit status: 0 success, 1 failure.
+Needs a Python with the packages platformio and scons. `native` builds and runs the consumer's program, `scan` the
+sketch Scan. `archive` repacks our archive with PlatformIO's packer, which must leave nothing out, and builds the
+program with it. Exit status: 0 success, 1 failure.
 """
 
 import json
@@ -78,7 +78,6 @@ def environment(root, work):
 
 
 def build(project, name, env):
-    """Builds the project with `pio run` and returns the path of the program."""
     subprocess.run([sys.executable, "-m", "platformio", "run", "-d", project, "-e", name],
                    env=env, check=True)
     folder = os.path.join(env["PLATFORMIO_WORKSPACE_DIR"], "build", name)

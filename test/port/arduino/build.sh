@@ -46,7 +46,7 @@ fi
 cp "$archive" "$work/library.zip"
 (cd "$work/libraries" && "$cmake" -E tar xf ../library.zip)
 
-# Debian's path of the tool that finds a sketch's functions; Arduino otherwise bundles this tool.
+# Debian's path of the tool that finds a sketch's functions.
 ctags='"{cmd.path}" -u --language-force=c++ -f - --c++-kinds=svpf --fields=KSTtzns'
 ctags="$ctags --line-directives \"{source_file}\""
 

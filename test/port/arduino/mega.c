@@ -34,20 +34,19 @@
 #define CYCLES_PER_US (CLOCK_HZ / 1000000u)
 #define PORTS 3u
 #define QUEUE 2u
-/* Offsets in the core's HardwareSerial object: after the pointer to its virtual functions and the
- * members of Print and Stream come six pointers to registers, a flag, and then the receive buffer's
- * head and tail. */
+/* Offsets in the core's HardwareSerial object: after the virtual function table and the members of
+ * Print and Stream come six register pointers, a flag, and the receive buffer's head and tail. */
 #define HEAD_AT 25u
 #define TAIL_AT 26u
 #define CORE_BUFFER 64u
-#define COMMAND_US 500000u /* The time at which a bridge's computer starts the lidar. */
+#define COMMAND_US 500000u /* When a bridge's computer starts the lidar. */
 #define GRACE_US 1500000u  /* Time for the sketch to print its next line. */
 #define LIMIT_US 60000000u
 
 typedef struct {
     avr_t *avr;
     avr_uart_t *uart;
-    uint16_t object; /* Address of the core's HardwareSerial object in data memory. */
+    uint16_t object; /* The core's HardwareSerial object in data memory. */
     sim_t lidar;
     uint8_t queue[QUEUE];
     unsigned queued;
@@ -110,7 +109,6 @@ static void receive(port_t *port, uint8_t byte)
     avr_raise_interrupt(port->avr, &port->uart->rxc);
 }
 
-/* Passes a byte of the sketch's commands to the lidar. */
 static void send(struct avr_irq_t *irq, uint32_t value, void *context)
 {
     port_t *const port = context;
@@ -149,8 +147,7 @@ static avr_uart_t *find_uart(avr_t *avr, char name)
     return NULL;
 }
 
-/* The data memory address of the core's object for a port; 0 if the sketch does not use the
- * port. */
+/* The address of the core's object for a port; 0 if the sketch does not use it. */
 static uint16_t find_object(const elf_firmware_t *firmware, char digit)
 {
     const char name[] = {'S', 'e', 'r', 'i', 'a', 'l', digit, '\0'};
@@ -162,8 +159,7 @@ static uint16_t find_object(const elf_firmware_t *firmware, char digit)
     return 0;
 }
 
-/* The lidar turns at full speed at once: slower revolutions have more points than a Mega can
- * store. */
+/* The lidar begins at full speed: slower revolutions have too many points for a Mega. */
 static void start_lidar(port_t *port)
 {
     sim_config_t config = sim_default_config();

@@ -147,8 +147,7 @@ static void run_with_pauses(TMiniLidarBase &lidar, unsigned ms, unsigned pause)
 }
 
 #if !defined(SERIAL_RX_BUFFER_SIZE)
-/* 660 bytes arrive in 50 ms: more than fit in the lidar's own buffer, fewer than fit in the
- * core's. */
+/* In 50 ms 660 bytes arrive: too many for the lidar's own buffer, but not for the core's. */
 static void bytes_that_do_not_fit_in_the_lidars_buffer_stay_in_the_cores(void)
 {
     static TMiniLidarWith<256, 0> lidar;
@@ -356,7 +355,7 @@ static void assert_taken_in_one_loop(TMiniLidarBase &lidar, size_t count)
     TEST_ASSERT_EQUAL_UINT(0, Serial1.received.size());
 }
 
-/* With a single byte, and with one byte more than the lidar's buffer holds. */
+/* A single byte, and one more than the lidar's buffer holds. */
 static void one_loop_takes_all_waiting_bytes(void)
 {
     static TMiniLidarWith<256, 0> lidar;
@@ -413,7 +412,7 @@ static void a_port_that_something_has_closed_is_opened_again(void)
     TEST_ASSERT_EQUAL_INT(pin, Serial1.rx_pin);
 }
 
-/* Returns the frequency that the lidar then reports, in 0.01 Hz; 0 if the request was refused. */
+/* Returns the reported frequency in 0.01 Hz; 0 if the request was refused. */
 static unsigned frequency_set_to(float hertz)
 {
     TMiniLidar lidar;

@@ -32,7 +32,6 @@ static bool has_printed(const std::string &text)
     return printed().find(text) != std::string::npos;
 }
 
-/* Runs until the sketch prints a line, and returns it. */
 static std::string next_line()
 {
     Serial.sent.clear();
@@ -42,8 +41,7 @@ static std::string next_line()
     return printed();
 }
 
-/* The nearest distance in front in the points that the lidar really sent: only valid points, within
- * 30 degrees of 0. */
+/* The nearest valid point that the lidar sent within 30 degrees of 0. */
 static unsigned nearest_in_front(const std::vector<reference_point_t> &points)
 {
     unsigned result = 0;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The simulated lidar on the stand-in's Serial1, in virtual time, with a record of the points that
- * it sent. */
+/* The simulated lidar on the stand-in's Serial1, in virtual time, with a record of its points. */
 
 #ifndef VIRTUAL_LIDAR_H
 #define VIRTUAL_LIDAR_H
@@ -25,10 +24,10 @@ class VirtualLidar
     void pass();
     /* From then on no byte arrives. */
     void unplug();
-    /* Places an obstacle 10 degrees wide, in front or at another angle of the lidar. */
+    /* An obstacle 10 degrees wide, in front or at another angle. */
     void placeObstacle(uint16_t distance_mm, uint16_t angle_q6 = 0);
     void clearObstacles();
-    /* The lidar then reports these faults (section 4), but continues to measure. */
+    /* The lidar reports these faults (section 4), but still measures. */
     void setHealth(uint8_t bits);
 
     /* Points by revolution and by packet. */

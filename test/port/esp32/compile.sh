@@ -16,7 +16,7 @@ root=$(cd "$(dirname "$0")/../../.." && pwd)
 
 case ${1:-} in
     xtensa)
-        # Debian's folders of the C library's headers: the compiler does not search them by default.
+        # The compiler does not search Debian's folders of the C library's headers by default.
         compiler="xtensa-lx106-elf-gcc -mlongcalls -isystem /usr/lib/xtensa-lx106-elf/include
             -isystem /usr/lib/picolibc/xtensa-lx106-elf/include -DMODEL_ESP32"
         ;;

@@ -17,7 +17,7 @@ ROOT = sys.argv[1]
 
 
 def pins(text):
-    """Returns the set of pins in a list: "1, 3-5" gives 1, 3, 4 and 5."""
+    """The set of pins in a list: "1, 3-5" gives 1, 3, 4 and 5."""
     result = set()
     for part in text.split(","):
         first, _, last = part.strip().partition("-")
@@ -46,7 +46,6 @@ def read(name):
 
 
 def defaults(option):
-    """Returns the option's default in Kconfig for each chip."""
     entry = read("Kconfig").split("config " + option + "\n")[1].split("config ")[0]
     result = {}
     for pin, condition in re.findall(r"default (\d+) if (.*)", entry):
@@ -56,7 +55,7 @@ def defaults(option):
 
 
 def of_scan():
-    """Returns the sketch's pins (RX, TX) by chip; the key None is for chips that it does not name."""
+    """The sketch's pins (RX, TX) by chip; the key None is for chips that it does not name."""
     parts = re.findall(r"#(?:if|elif|else)(.*)\nstatic const int8_t RX_PIN = (\d+);.*\n"
                        r"static const int8_t TX_PIN = (\d+);",
                        read("examples/esp32_arduino/Scan/Scan.ino"))

@@ -150,7 +150,7 @@ esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size)
     return ESP_OK;
 }
 
-/* Returns the bytes that the driver holds, as ESP-IDF does when called with a wait of 0 ticks. */
+/* Returns the driver's bytes, as ESP-IDF does for a wait of 0 ticks. */
 int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t ticks)
 {
     TEST_ASSERT_EQUAL(UART_NUM_1, uart);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A stand-in for ESP-IDF that records each call, and fails in the call that a test chooses. */
+/* An ESP-IDF that records each call, and fails in the call that a test chooses. */
 
 #ifndef RECORDED_IDF_H
 #define RECORDED_IDF_H

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Tests the ESP32 port on a stand-in that records each call of ESP-IDF: the port's calls and their
- * order, its reaction to each event, and its clean-up after a failure or a stop. Each table is a
- * list of test cases. */
+/* Tests the ESP32 port's calls of ESP-IDF and their order, its reaction to each event, and its
+ * clean-up after a failure or a stop. Each table is a list of test cases. */
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,7 +70,7 @@ static esp_err_t start(void)
     return tmini_esp32_start(&port, &lidar);
 }
 
-/* Runs the receiving task while tmini_esp32_stop() sleeps and waits for that task to end. */
+/* Runs the receiving task while tmini_esp32_stop() waits for its end. */
 static void run_task(void)
 {
     if (port.stopping && port.receiving) {
@@ -207,8 +206,7 @@ void test_what_was_never_set_up_and_null_pointers_are_refused(void)
 
 #define NO_LIMIT 99999
 
-/* The lowest and the highest valid value of each member, and the name in the log if it is
- * invalid. */
+/* Each member's lowest and highest valid value, and its name in the log if it is invalid. */
 static const struct {
     int *member;
     int least;
@@ -307,7 +305,7 @@ static void act(char what, size_t number, bool gap)
     case '>': /* The port must receive this many bytes; with !, a gap follows them. */
         receive(number, gap);
         break;
-    case 'h': /* The port must have reported that it still holds this many bytes. */
+    case 'h': /* The port must have reported this many held bytes. */
         TEST_ASSERT_EQUAL_UINT(number, lidar.held_to - tmini_ring_head(&lidar.ring));
         break;
     case 'p':

@@ -44,7 +44,7 @@ void setUp(void)
     scanning_begin(&program, 1024);
 }
 
-/* After each test nothing may be left installed, and no call may have named a missing driver. */
+/* After each test nothing is left installed, and no call has named a missing driver. */
 void tearDown(void)
 {
     (void)tmini_esp32_stop(&port);
@@ -119,8 +119,8 @@ static void receive_and_poll_all(void)
     } while (received > 0);
 }
 
-/* Starts without a receiving task, so that the test decides when events are read. At return the
- * lidar scans and all bytes received so far have been handed on. */
+/* Starts without a receiving task: the test decides when events are read. At return the lidar
+ * scans, and all bytes so far have been handed on. */
 static void start_by_hand(void)
 {
     wiring.with_task = false;
@@ -180,8 +180,8 @@ void test_with_a_full_buffer_the_gap_is_after_the_bytes_that_were_kept(void)
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
 }
 
-/* Between two polls, 30 ms apart, about nine events are posted, but the queue holds four. The port
- * cannot know which were lost. It assumes a gap, which costs the packet that is arriving. */
+/* In the 30 ms between two polls come about nine events, but the queue holds four. The port cannot
+ * know which were lost: it assumes a gap, which costs the current packet. */
 void test_when_events_are_lost_no_scan_is_complete(void)
 {
     const unsigned rounds = 30;
@@ -251,8 +251,8 @@ void test_pauses_that_the_drivers_buffer_can_hold_cost_no_scan(void)
     }
 }
 
-/* 1570 bytes arrive in a pause: more than the lidar's ring holds. Between two pauses, the loop runs
- * every 10 ms. */
+/* 1570 bytes arrive in a pause: more than the lidar's ring holds. Otherwise the loop runs every 10
+ * ms. */
 void test_a_pause_of_120_ms_between_polls_loses_nothing(void)
 {
     start_port_and_lidar();
@@ -263,8 +263,8 @@ void test_a_pause_of_120_ms_between_polls_loses_nothing(void)
     assert_nothing_was_lost();
 }
 
-/* As above, but in every turn of the loop: the port reads the driver's buffer again and again while
- * the ring has room. */
+/* As above, but in every turn of the loop: the driver's buffer is read whenever the ring has
+ * room. */
 void test_a_loop_that_always_pauses_for_120_ms_and_receives_by_itself_loses_nothing(void)
 {
     wiring.with_task = false;
@@ -280,8 +280,7 @@ void test_a_port_is_stopped_while_bytes_come_and_started_again(void)
 {
     for (unsigned i = 0; i < 20; i++) {
         start_port();
-        (void)tmini_start(
-            &lidar); /* Needed only the first time: the lidar then goes on scanning. */
+        (void)tmini_start(&lidar); /* The first time. */
         vTaskDelay(20 + i);
         TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
         TEST_ASSERT_EQUAL_UINT(0, virtual_idf_tasks());

@@ -62,7 +62,8 @@ static struct {
     uint8_t buffer[BUFFER_MAX];
     size_t buffer_size;
     size_t buffer_count;
-    /* FIFO bytes that did not fit into the buffer. Until they are read, the FIFO is not emptied. */
+    /* FIFO bytes that did not fit into the buffer. Until they are read, the FIFO keeps its
+     * bytes. */
     uint8_t stash[FIFO_SIZE];
     size_t stash_count;
     uart_event_t queue[QUEUE_MAX];
@@ -435,7 +436,6 @@ void virtual_idf_break_reception(void)
     unlock();
 }
 
-/* Moves up to `length` bytes out of the buffer. */
 static size_t take_from_buffer(uint8_t *bytes, size_t length)
 {
     const size_t count = world.buffer_count < length ? world.buffer_count : length;

@@ -32,16 +32,14 @@ void virtual_idf_set_health(uint8_t bits);
 
 bool virtual_idf_driver_is_installed(void);
 
-/* The number of power management locks held. */
 unsigned virtual_idf_locks_held(void);
 
 /* The number of tasks, not counting the caller. */
 unsigned virtual_idf_tasks(void);
 
-/* The number of calls with a UART whose driver was not installed; should be 0. */
+/* The number of calls for a UART without a driver; should be 0. */
 unsigned virtual_idf_stray_calls(void);
 
-/* The text of all log lines. */
 const char *virtual_idf_log(void);
 
 /* This pin belongs to JTAG at first, and is a GPIO only after gpio_reset_pin(). */

@@ -21,7 +21,6 @@
 /* Resets the model, with a lidar at rest that `observer` watches. The caller becomes a task. */
 void freertos_model_begin(const sim_observer_t *observer, unsigned priority);
 
-/* The lidar; see simulator.h. */
 sim_t *freertos_model_lidar(void);
 
 uint64_t freertos_model_now_us(void);
@@ -32,7 +31,7 @@ void freertos_model_work(uint32_t us);
 /* As above, but with interrupts disabled. */
 void freertos_model_work_undisturbed(uint32_t us);
 
-/* Puts bytes in the UART's FIFO, with or without an overrun before them. No task runs meanwhile. */
+/* Puts bytes in the UART's FIFO, after an overrun or not. No task runs meanwhile. */
 void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count);
 
 /* The UART reports an overrun with the next interrupt. */
@@ -44,7 +43,7 @@ void freertos_model_disable_interrupt(void);
 /* Advances only the clock: no byte arrives and no task runs. */
 void freertos_model_skip(uint64_t us);
 
-/* Bytes that arrived on the line, and those of them that found the UART's FIFO full. */
+/* Bytes on the line so far, and those that found the UART's FIFO full. */
 uint32_t freertos_model_line_bytes(void);
 uint32_t freertos_model_overrun_bytes(void);
 

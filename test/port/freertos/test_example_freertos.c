@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Runs the unchanged program examples/freertos with the simulated lidar in its simulated room. */
+/* Runs the unchanged program examples/freertos with the simulated lidar in its room. */
 
 #include "unity.h"
 

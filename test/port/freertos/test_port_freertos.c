@@ -193,8 +193,8 @@ void test_an_overrun_of_the_uart_before_the_stream_is_a_gap(void)
     TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
 }
 
-/* Lost are only the bytes that the interrupt reads together with the overrun: the receiving task is
- * woken at once, not only when its wait times out. */
+/* Only the bytes read together with the overrun are lost: the receiving task is woken at once, not
+ * by its timeout. */
 void test_an_overrun_costs_no_more_than_the_bytes_in_the_fifo(void)
 {
     receive_by_stream();
@@ -233,8 +233,7 @@ void test_bytes_below_the_streams_trigger_level_are_handed_on_in_time(void)
     TEST_ASSERT_EQUAL_UINT(151, info.model);
 }
 
-/* --------------------------------------------------------------- losses not visible in the
- * bytes */
+/* --------------------------------------------------------------- losses that bytes do not show */
 
 static uint32_t packets(void)
 {
@@ -246,7 +245,7 @@ static uint32_t packets(void)
     return counters.packets;
 }
 
-/* Receives a packet in two parts. The bytes alone do not show whether any were lost in between. */
+/* Receives a packet in two parts. The bytes alone do not show a loss in between. */
 static void receive_packet(bool overrun)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
@@ -295,8 +294,7 @@ void test_no_packet_is_put_together_across_a_full_stream(void)
     freertos_model_receive(false, &manual_packet[PACKET_CUT], sizeof manual_packet - PACKET_CUT);
     vTaskDelay(pdMS_TO_TICKS(20));
     TEST_ASSERT_EQUAL_UINT32(0, packets());
-    TEST_ASSERT_EQUAL_UINT32(10,
-                             counted().bytes_lost); /* The emptied stream took the second part. */
+    TEST_ASSERT_EQUAL_UINT32(10, counted().bytes_lost); /* The stream is open again. */
 }
 
 void test_a_stream_that_was_full_takes_no_byte_until_it_is_empty(void)
@@ -383,8 +381,7 @@ void test_the_receiving_task_sleeps_while_stopped_and_is_used_again(void)
     assert_stops_and_starts(1);
 }
 
-/* The receiving task waits for bytes that never come. It notices the stop only when this wait
- * ends. */
+/* The receiving task notices the stop only when its wait for bytes times out. */
 void test_stopping_waits_for_the_receiving_task_every_time(void)
 {
     receive_by_stream();

@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Tests the conversion of a scan to a LaserScan. Expected numbers follow from ROS's definition of
- * the message; the lidar counts its angles clockwise from ahead. */
+ * the message. */
 
 #include <math.h>
 #include <string.h>

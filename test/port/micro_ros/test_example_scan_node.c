@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Tests the node of examples/micro_ros in virtual time, with the simulated lidar and a virtual
- * agent that a test can connect and disconnect. */
+ * agent. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -144,7 +144,7 @@ void test_a_message_shows_the_room(void)
     TEST_ASSERT_FLOAT_WITHIN(0.02f, 0.1667f, virtual_agent.message.scan_time);
 }
 
-/* How much later the last message's stamp is than the scan's end: the next start packet. */
+/* How much later the last stamp is than the scan's end, which is the next start packet. */
 static int64_t stamp_is_late_ns(void)
 {
     const int64_t stamp_ns = virtual_agent.message.header.stamp.sec * INT64_C(1000000000) +
@@ -182,8 +182,8 @@ void test_the_clock_is_synchronised_again_each_minute(void)
     TEST_ASSERT_EQUAL_UINT(4, virtual_agent.synchronisations);
 }
 
-/* The driver estimates a scan's age from the number of bytes received after it, as if the line had
- * brought 23 bytes per millisecond. The lidar sends only 13, so the stamp is somewhat late. */
+/* The driver estimates a scan's age from the bytes after it, at 23 per millisecond. The lidar sends
+ * only 13, so the stamp is somewhat late. */
 void test_a_scan_that_is_polled_late_keeps_its_time(void)
 {
     int64_t latest_ns = 0;

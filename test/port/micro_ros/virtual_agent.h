@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A model of micro-ROS and its agent, as the example sees them: one support, node and publisher at
- * a time, opened in this order; an agent that may be absent; calls that wait. Wrong use fails the
- * test. */
+/* A model of micro-ROS and its agent: one support, node and publisher at a time, opened in this
+ * order; an agent that may be absent; calls that wait. Wrong use fails the test. */
 
 #ifndef VIRTUAL_AGENT_H
 #define VIRTUAL_AGENT_H

@@ -243,8 +243,7 @@ static void pass_erratically(void)
     }
 }
 
-/* The count is read first, and then time may pass: the ring's memory changes at once, but the count
- * only at the next reading. */
+/* Time may pass after the count is read: only the next reading shows the change. */
 dma_channel_hw_t *dma_channel_hw_addr(uint channel)
 {
     channel_t *const it = &chip.channels[channel];
@@ -368,8 +367,7 @@ uint32_t pico_model_line_bytes(void)
     return chip.line_bytes;
 }
 
-/* Number of bytes in the FIFO at which the UART interrupts: 1/8, 1/4, 1/2, 3/4 or 7/8 of its
- * size. */
+/* The UART interrupts at 1/8, 1/4, 1/2, 3/4 or 7/8 of the FIFO's size. */
 static unsigned interrupt_level(void)
 {
     static const unsigned levels[8] = {4, 8, 16, 24, 28, 28, 28, 28};
@@ -396,10 +394,10 @@ static void serve_line(void)
 static void fail(unsigned line)
 {
     (void)line;
-    abort(); /* The handler did not clear the flag: the processor is locked up. */
+    abort(); /* The handler left its flag set: a lock-up. */
 }
 
-/* An interrupt may also come at each access to the library's indices. */
+/* Interrupts also come at accesses to the library's indices. */
 void interrupt(void)
 {
     irq_access();

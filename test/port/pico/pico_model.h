@@ -27,7 +27,6 @@
 /* Resets the chip. The lidar is at rest, and `observer` watches it. */
 void pico_model_begin(const sim_observer_t *observer);
 
-/* The lidar; see simulator.h. */
 sim_t *pico_model_lidar(void);
 
 uint64_t pico_model_now_us(void);
@@ -42,15 +41,13 @@ void pico_model_pass_held_up(uint32_t us);
  * continues. */
 void pico_model_pass_after_read(unsigned reads, uint32_t us);
 
-/* After each reading of DMA's position, a random time passes: mostly that of some bytes, sometimes
- * that of several laps. */
+/* After each reading of DMA's position, a random time passes: mostly some bytes, sometimes several
+ * laps. */
 void pico_model_be_erratic(uint64_t seed);
 
-/* How often DMA's position has been read. */
 unsigned pico_model_reads(void);
 
-/* The active channel advances by this many bytes at once, as if much time had passed, but writes
- * nothing. */
+/* The active channel advances by this many bytes at once, but writes nothing. */
 void pico_model_move_on(uint32_t bytes);
 
 /* Stops DMA, as a bus error does: both channels become idle. */
@@ -59,14 +56,13 @@ void pico_model_break_dma(void);
 /* Blocks DMA, as a busy bus does, or unblocks it. */
 void pico_model_block_dma(bool blocked);
 
-/* Bytes arrive as if the lidar had sent them now, with these error flags of the data register. */
+/* Bytes arrive now, with these error flags of the data register. */
 void pico_model_receive(uint32_t flags, const uint8_t *bytes, size_t count);
 
 /* Bytes that have arrived on the line so far, including lost ones. */
 uint32_t pico_model_line_bytes(void);
 
-/* DMA channels or an interrupt now belong to another part of the program, or baud rates set later
- * are wrong by this much. */
+/* Other code takes DMA channels or an interrupt, or baud rates are wrong by this much. */
 void pico_model_take_channels(unsigned count);
 void pico_model_take_interrupt(unsigned number);
 void pico_model_set_baud_error(int permille);
@@ -90,8 +86,7 @@ int pico_model_function(unsigned pin);
 bool pico_model_is_pulled_up(unsigned pin);
 int pico_model_level(unsigned pin);
 
-/* Sets a function that is called whenever the program sleeps; it may leave by longjmp(), or be
- * NULL. */
+/* Called whenever the program sleeps; may leave by longjmp(), or be NULL. */
 void pico_model_on_sleep(void (*callback)(void));
 
 /* Replaces printf() in a program built for the model: see console.h. */

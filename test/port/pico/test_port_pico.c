@@ -143,7 +143,7 @@ void test_only_pins_that_the_uart_has_are_accepted(void)
     TEST_ASSERT_TRUE(is_accepted(uart1, 4, 9));  /* The pins need not be neighbours. */
 }
 
-/* On pins where RP2040 has only CTS and RTS, RP2350 also has TX and RX. It also has more pins. */
+/* On pins with CTS and RTS, RP2350 also has TX and RX. It also has more pins. */
 void test_the_other_pins_of_a_uart_depend_on_the_chip(void)
 {
 #if PICO_RP2350
@@ -200,7 +200,7 @@ void test_start_takes_what_it_needs_or_nothing(void)
         TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_pico_start(&port, &lidar));
         TEST_ASSERT_EQUAL_UINT(taken, pico_model_claimed_channels());
     }
-    pico_model_begin(NULL); /* All channels are free: after the failures, a start succeeds. */
+    pico_model_begin(NULL); /* All channels are free: a start succeeds. */
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
     tmini_pico_stop(&port);
     receive_by_interrupt();
@@ -369,8 +369,7 @@ void test_errors_of_the_line_are_counted_and_the_byte_is_stored(void)
     TEST_ASSERT_EQUAL_UINT32(pico_model_line_bytes(), counted().bytes);
 }
 
-/* --------------------------------------------------------------- losses not visible in the
- * bytes */
+/* --------------------------------------------------------------- losses that bytes do not show */
 
 static uint32_t packets(void)
 {
@@ -382,8 +381,7 @@ static uint32_t packets(void)
     return counters.packets;
 }
 
-/* Receives a packet in parts. Its bytes alone do not show that some were lost in between: only the
- * flags do. */
+/* Receives a packet in parts. Only the flags show a loss in between. */
 static void receive_packet_with(uint32_t flags)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
@@ -519,8 +517,7 @@ static void stall_bytes(uint32_t bytes)
     }
 }
 
-/* After whole laps, a late poll finds DMA at the same place as before: only the count shows the
- * loss. */
+/* After whole laps, DMA is at the same place as before: only the count shows the loss. */
 static void assert_stall_is_noticed(uint32_t bytes)
 {
     start();
@@ -554,8 +551,7 @@ void test_a_stall_that_the_ring_can_just_hold_loses_nothing(void)
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
 }
 
-/* Delays a poll after one of its readings of DMA's position, with bytes in the ring: once for each
- * of these readings. */
+/* Delays a poll after each of its readings of DMA's position in turn, with bytes in the ring. */
 void test_a_poll_that_is_delayed_at_any_reading_delivers_nothing_wrong(void)
 {
     static const uint32_t stalls[] = {LAP / 2, LAP - 300, LAP, LAP + 300, 2 * LAP, 5 * LAP};
@@ -595,8 +591,8 @@ void test_with_polls_delayed_at_random_no_point_is_wrong(void)
     }
 }
 
-/* Advances DMA to `bytes_left` before one channel takes over from the other. Without this, that
- * would take nearly three hours of scanning. */
+/* Advances DMA, as in nearly three hours of scanning, to `bytes_left` before one channel takes over
+ * from the other. */
 static void approach_end_of_turn(uint32_t bytes_left)
 {
     const tmini_pico_counters_t before = counted();

@@ -331,8 +331,7 @@ void test_a_device_that_is_not_there_yet_is_waited_for(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, port.state);
 }
 
-/* The port tries to open a missing device only five times per second: the first time after a
- * pause. */
+/* The port tries a missing device only five times per second: first after a pause. */
 void test_a_missing_device_is_tried_again_only_after_a_pause(void)
 {
     const char *const device = program_start_lidar((const char *const[]){NULL});
@@ -522,8 +521,8 @@ static unsigned count_gaps(void)
     return gaps;
 }
 
-/* The receive buffer holds a third of the bytes that arrive in 250 ms, the system the others. A
- * busy computer may itself pause for longer: one success in four tries is enough. */
+/* The receive buffer holds a third of the bytes of 250 ms, the system the rest. A busy computer may
+ * itself pause for longer: one success in four tries is enough. */
 void test_a_pause_of_the_program_costs_no_scan(void)
 {
     unsigned gaps = 1;

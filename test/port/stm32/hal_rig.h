@@ -35,8 +35,7 @@ extern hal_rig_t hal_rig;
 extern uint8_t hal_rig_rx[HAL_RIG_RX_SIZE];
 extern uint8_t hal_rig_block[HAL_RIG_BLOCK_SIZE];
 
-/* Resets the hardware, initialises the HAL as CubeMX does, and sets up a lidar that receives in
- * this way. */
+/* Resets the hardware, initialises the HAL as CubeMX does, and sets up a lidar for this way. */
 void hal_rig_open(hal_rig_way_t way);
 
 /* Starts reception in the way of hal_rig_open(). */
@@ -50,13 +49,12 @@ tmini_stm32_hal_counters_t hal_rig_errors(void);
 /* Puts copies of a real unit's packet on the line (section 9.14). */
 void hal_rig_line_packets(unsigned count);
 
-/* Runs until all bytes of the line have arrived and the line has become idle, and polls. */
+/* Polls until all bytes have arrived and the line is idle. */
 void hal_rig_run(void);
 
 /* Puts this many packets on the line and runs until all have arrived. */
 void hal_rig_receive(unsigned packets);
 
-/* Polls until there are no more events. */
 tmini_counters_t hal_rig_poll(void);
 
 uint32_t hal_rig_packets(void);

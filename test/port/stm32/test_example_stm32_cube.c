@@ -2,8 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Tests the CubeMX example on the model: from bytes on the line to the pin that lets the robot
- * move. The example's state is not reset between tests; each test begins long after the one
- * before. */
+ * move. Its state is not reset: each test begins long after the one before. */
 
 #include "lidar.h"
 #include "usart.h"

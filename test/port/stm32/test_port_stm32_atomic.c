@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Tests the ring with the atomic primitives for IAR and ARMCC 5, but compiled by GCC with stand-ins
- * for these compilers' functions. This cannot show that the real compilers accept them. */
+/* Tests the ring with the atomic primitives for IAR and ARMCC 5, compiled by GCC with stand-ins.
+ * This cannot show that the real compilers accept them. */
 
 #include "tmini/parts/tmini_ring.h"
 

@@ -62,8 +62,7 @@ void test_bytes_a_late_interrupt_is_an_overrun_that_is_counted_and_survived(void
     TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().overruns);
 }
 
-/* Bytes 7 to 19 of two packets are lost: exactly a packet's size. The other 13 bytes look like one
- * packet. */
+/* Bytes 7 to 19 of two packets are lost. The other 13 bytes look like one packet. */
 void test_bytes_no_packet_continues_across_an_overrun(void)
 {
     hal_rig_open_and_start(BY_BYTES);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Tests the HAL port on a processor with a data cache. test_port_stm32_hal_dma.c also runs on the
- * model with a cache, which shows that bytes written by DMA are read from memory. */
+/* Tests the HAL port with a data cache. test_port_stm32_hal_dma.c shows on this model, too, that
+ * bytes from DMA are read from memory. */
 
 #include "hal_rig.h"
 
@@ -24,7 +24,7 @@ void test_a_buffer_that_is_not_aligned_to_cache_lines_is_refused(void)
                                                 &hal_rig.port, &hal_rig.lidar, hal_rig_block, 80));
 }
 
-/* The interrupts do this, even without a poll. 79 packets have 1027 bytes: more than the buffer. */
+/* The interrupts do this without a poll. 79 packets are 1027 bytes. */
 void test_the_cache_is_invalidated_up_to_the_buffers_end(void)
 {
     hal_rig_open(BY_DMA);

@@ -132,8 +132,7 @@ void test_callbacks_of_another_uart_change_nothing(void)
     }
 }
 
-/* Idle events come at every position of a buffer, also at its end, where HALs of different years
- * report different events and sizes. */
+/* Also at the buffer's end, where HALs of different years report different events and sizes. */
 void test_idle_events_at_any_position_lose_and_repeat_nothing(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
@@ -307,7 +306,7 @@ void test_an_error_that_holds_dma_back_is_cleared_by_the_poll(void)
     }
 }
 
-/* The lidar has lost its supply: the next command is sent while the error flag is still set. */
+/* The lidar has lost its supply: the next command finds the error flag set. */
 void test_a_command_while_an_error_flag_is_set_is_no_lock_up(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
@@ -333,8 +332,7 @@ static void check_comes_back(void)
     TEST_ASSERT_EQUAL_UINT32(100, hal_rig_packets());
 }
 
-/* Does what HAL_UART_DeInit() and HAL_UART_Init() (DMA keeps running), HAL_UART_DMAPause() and
- * HAL_DMA_Abort() do. */
+/* As by HAL_UART_DeInit() and HAL_UART_Init(), HAL_UART_DMAPause() or HAL_DMA_Abort(). */
 void test_a_reception_that_others_have_stopped_is_started_again(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
@@ -402,8 +400,8 @@ void test_a_dma_that_fails_is_started_again_by_the_poll_and_not_in_the_interrupt
     }
 }
 
-/* The port checks reception each time that the library asks it for the time. The first poll after a
- * command asks only once: it restarts reception, and a later poll hands over the first bytes. */
+/* The port checks reception when the library asks for the time. The first poll after a command asks
+ * only once: it restarts reception, and a later poll hands over bytes. */
 static void check_dma_error_after(hal_rig_way_t way, unsigned packets)
 {
     hal_rig_open_and_start(way);
@@ -459,7 +457,7 @@ void test_failed_restarts_are_tried_again_some_milliseconds_later(void)
 
 /* ----------------------------------------------------------------------------------------- laps */
 
-/* Sends 200 packets, holds interrupts back for `us` meanwhile, and returns the packets received. */
+/* Sends 200 packets, holds interrupts back for `us`, and returns the packets received. */
 static uint32_t packets_with_interrupts_held(hal_rig_way_t way, uint32_t us)
 {
     hal_rig_open_and_start(way);
@@ -492,8 +490,7 @@ void test_bytes_that_a_lap_has_overwritten_count_as_lost(void)
     TEST_ASSERT_GREATER_THAN_UINT32(500, hal_rig_poll().bytes_overrun);
 }
 
-/* If the DMA's interrupt comes inside the idle line's, both callbacks see the type of the DMA's
- * event. */
+/* If DMA's interrupt comes inside the idle line's, both callbacks see the DMA event's type. */
 void test_an_event_that_is_reported_twice_is_no_lap(void)
 {
     hal_rig_open_and_start(BY_DMA);
@@ -520,8 +517,8 @@ void test_interrupts_late_by_less_than_half_a_lap_lose_nothing(void)
     }
 }
 
-/* The DMA's interrupt comes inside the idle line's, after the HAL has stored the event's type and
- * before it calls the callback. */
+/* DMA's interrupt comes inside the idle line's, between storing the event's type and the
+ * callback. */
 void test_an_event_of_the_wrong_type_is_no_lap(void)
 {
     hal_rig_open_and_start(BY_DMA);

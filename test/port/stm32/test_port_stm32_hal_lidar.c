@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Tests the HAL port on the model with the simulated lidar: some seconds of scanning in each way of
- * receiving, on a clean line, on a bad line, and after a reset of only the controller. */
+/* Tests the HAL port with the simulated lidar: seconds of scanning in each way of receiving, on a
+ * clean and a bad line, and after a reset of only the controller. */
 
 #include "hal_rig.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Tests the STM32 port that uses the registers, with both register layouts, on the model.
- * Interrupts stay pending until a handler clears them, and may come at any access. */
+/* Tests the STM32 port without HAL, with both register layouts, on the model. Interrupts stay
+ * pending until a handler clears them, and may come at any access. */
 
 #include "tmini_stm32_usart.h"
 
@@ -166,7 +166,7 @@ void test_a_started_usart_sends_receives_and_interrupts(void)
     TEST_ASSERT_EQUAL_HEX32(MODEL_CR3_DMAR, model_usart.CR3);
 }
 
-/* LL_USART_Init() has already set them, or this is an LPUART, which has another kind of divider. */
+/* LL_USART_Init() has set them, or an LPUART needs another divider. */
 void test_without_a_clock_baud_rate_and_format_are_not_changed(void)
 {
     TEST_ASSERT_EQUAL(TMINI_OK, open_with_clock(false, 0));
@@ -270,7 +270,7 @@ void test_a_byte_with_a_line_error_is_counted_and_stored(void)
     TEST_ASSERT_EQUAL_UINT32(0, errors().overruns);
 }
 
-/* The overrun flag is set in the middle of a packet: the second half may be another packet's. */
+/* The overrun flag is set in mid-packet: the second half may be another packet's. */
 void test_no_packet_continues_across_an_overrun(void)
 {
     start(false);
@@ -312,7 +312,7 @@ void test_half_a_buffer_and_an_idle_line_are_handed_over_without_a_poll(void)
     TEST_ASSERT_EQUAL_UINT32(520, tmini_ring_head(&lidar.ring));
 }
 
-/* The flag must be cleared whether or not the poll is just handing bytes over. */
+/* The flag must be cleared, even while the poll hands bytes over. */
 static void line_falls_idle(void)
 {
     model.flags |= MODEL_IDLE;

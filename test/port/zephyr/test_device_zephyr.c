@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Tests the lidar as a Zephyr device, made from its devicetree node. The test's thread takes the
- * place of a program's thread. */
+/* Tests the lidar as a Zephyr device, made from its devicetree node. */
 
 #include <string.h>
 

@@ -204,7 +204,7 @@ static uint32_t packets(void)
     return counters.packets;
 }
 
-/* Receives a packet in two parts. The bytes alone do not show whether any were lost in between. */
+/* Receives a packet in two parts. The bytes alone do not show a loss in between. */
 static void receive_packet_with_loss(bool lost)
 {
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
@@ -227,7 +227,7 @@ void test_no_packet_is_put_together_across_a_loss(void)
     TEST_ASSERT_EQUAL_UINT32(0, packets());
 }
 
-/* On some USARTs, which hold only one byte, the driver clears the error by reading this byte. */
+/* On some USARTs, the driver clears the error by reading the only byte. */
 void test_an_overrun_without_a_byte_to_read_is_a_gap(void)
 {
     zephyr_model_set_fifo(1);

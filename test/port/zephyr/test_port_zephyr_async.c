@@ -41,7 +41,7 @@ void test_wherever_an_interrupt_comes_every_point_arrives(void)
 void test_pauses_that_the_receive_buffer_can_hold_cost_no_scan(void)
 {
     zephyr_rig_start();
-    /* Half of the buffer: the library expects bytes at the line's full rate, twice the lidar's. */
+    /* Half: the library assumes the line's full rate, twice the lidar's. */
     assert_pauses_cost_no_scan(1024 / 2);
 }
 

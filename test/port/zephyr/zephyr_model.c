@@ -68,10 +68,10 @@ static void serve(void)
 static void fail(unsigned line)
 {
     (void)line;
-    abort(); /* The handler did not clear the flag: the processor is locked up. */
+    abort(); /* The handler left its flag set: a lock-up. */
 }
 
-/* An interrupt may also come at each access to the library's indices. */
+/* Interrupts also come at accesses to the library's indices. */
 void interrupt(void)
 {
     irq_access();

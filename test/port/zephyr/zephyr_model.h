@@ -17,8 +17,7 @@
 
 #include "simulator.h"
 
-/* Resets the board: the lidar is at rest and watched by `observer`; the FIFO has 16 bytes, and the
- * driver reports errors. */
+/* Resets the board. `observer` watches the lidar; the FIFO has 16 bytes; errors are reported. */
 void zephyr_model_begin(const sim_observer_t *observer);
 
 void zephyr_model_set_fifo(unsigned size);
@@ -44,7 +43,6 @@ static inline void zephyr_model_boot(void)
     zephyr_model_set_lidar_ready(zephyr_model_init_lidar() == 0);
 }
 
-/* The lidar; see simulator.h. */
 sim_t *zephyr_model_lidar(void);
 
 uint64_t zephyr_model_now_us(void);
@@ -53,8 +51,7 @@ uint64_t zephyr_model_now_us(void);
 void zephyr_model_pass(uint32_t us);
 void zephyr_model_pass_held_up(uint32_t us);
 
-/* Bytes arrive as if the lidar had sent them now. The interrupt comes when the FIFO is full, and at
- * the end. */
+/* Bytes arrive now. The interrupt comes when the FIFO is full, and at the end. */
 void zephyr_model_receive(const uint8_t *bytes, size_t count);
 
 /* Reception was left on before the start; an interrupt comes although it was switched off. */
@@ -67,10 +64,9 @@ void zephyr_model_damage(int errors);
 /* Clearing errors reads the data register, as on USARTs with SR and DR: its byte is lost. */
 void zephyr_model_set_clearing_reads_data(void);
 
-/* During the next reading of the FIFO, a byte is lost because the FIFO is full. */
+/* During the next reading of the full FIFO, a byte is lost. */
 void zephyr_model_lose_while_reading(void);
 
-/* Bytes that have arrived on the line so far. */
 uint32_t zephyr_model_line_bytes(void);
 
 uint32_t zephyr_model_baud_rate(void);
@@ -79,8 +75,7 @@ bool zephyr_model_is_receiving(void); /* With either API. */
 /* How often the semaphore, not the timeout, has woken the polling thread. */
 unsigned zephyr_model_wakes(void);
 
-/* Sets a function that is called whenever the test's thread sleeps; it may leave by longjmp(), or
- * be NULL. */
+/* Called whenever the test's thread sleeps; may leave by longjmp(), or be NULL. */
 void zephyr_model_on_sleep(void (*callback)(void));
 
 #endif

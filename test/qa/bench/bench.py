@@ -30,8 +30,7 @@ README_TABLES = ["footprint"]
 PRINTED_TABLES = ["modules", "budgets"]  # These tables are in no document.
 FOOTPRINT_TABLES = [name for name in tables.BLOCKS if name not in README_TABLES + PRINTED_TABLES]
 
-# The limits are for the compilers with which the committed tables were made. With other compilers, the
-# library may cost this many percent more.
+# The limits are for the compilers of the committed tables. With others, the library may cost this much more.
 OTHER_TOOLS_PERCENT = 10
 
 
@@ -52,7 +51,6 @@ class Budget:
 
 
 def measure_target(name, level, folder, made):
-    """Measures all figures of one processor at one optimisation level."""
     target = target_named(name)
     place = folder / (name + level)
     objects = target.compile_library(level, place)
@@ -66,7 +64,7 @@ def measure_target(name, level, folder, made):
 
 
 def library_version(target, header, macro):
-    """Returns the C library's version, from its own header."""
+    """The C library's version, from its own header."""
     probe = ["-dM", "-E", "-include", header, "-x", "c", "/dev/null"]
     found = re.search(rf"#define {macro} \"(.*)\"",
                       run(target.tool("gcc"), *target.machine, *probe))
@@ -74,7 +72,7 @@ def library_version(target, header, macro):
 
 
 def tool_versions():
-    """Returns the tools' versions: figures are comparable only with the same compilers and C libraries."""
+    """Figures are comparable only with the same compilers and C libraries."""
     arm, riscv = target_named("cortex-m4"), target_named("rv32imc")
     return [("Cortex-M", arm.version()),
             ("newlib", library_version(arm, "newlib.h", "_NEWLIB_VERSION")),
@@ -84,7 +82,6 @@ def tool_versions():
 
 
 def measure_all(folder):
-    """Measures everything."""
     made = streams.make(folder)
     recording = folder / "clean.bin"
     recording.write_bytes(made["clean"])
@@ -104,7 +101,6 @@ def measure_all(folder):
 
 
 def measured_for_budgets(figures):
-    """Returns the measured value for each budget."""
     m0 = figures["targets"]["cortex-m0", "-Os"]
     m4 = [figures["targets"]["cortex-m4", level] for level in LEVELS]
     each = {count: f["bytes"] for count, f in m4[0]["counts"]["per poll"].items()}
@@ -165,13 +161,12 @@ def check_budgets(figures):
 
 
 def same_tools(figures):
-    """True if the committed tables were made with the same tools as these."""
+    """True if the committed tables were made with these tools."""
     committed = tables.block_in(FOOTPRINT.read_text(), "versions")
     return committed == tables.versions(figures)
 
 
 def update_documents(figures):
-    """Rewrites the tables in the documents."""
     for document, names in ((FOOTPRINT, FOOTPRINT_TABLES), (README, README_TABLES)):
         absent = [name for name in names if tables.block_in(document.read_text(), name) is None]
         if absent:

@@ -3,8 +3,8 @@
 
 """Runs single functions of a program on an emulated processor and counts instructions.
 
-The emulator reports every block of instructions that it enters. The number of instructions in a block is
-counted in the program's bytes. This is exact, and is checked against single steps.
+The emulator reports every block that it enters; the program's bytes show how many instructions a block has. This is
+exact, and is checked against single steps.
 """
 
 import bisect
@@ -74,7 +74,6 @@ class Machine:
         self.uc.hook_add(UC_HOOK_BLOCK, self._block)
 
     def save(self):
-        """Returns the content of the program's RAM."""
         return self.read(*RAM)
 
     def restore(self, saved):
@@ -98,7 +97,7 @@ class Machine:
             self.uc.mem_write(address, data + bytes(size - len(data)))
 
     def function_at(self, address):
-        """Returns the name of the function that contains this instruction."""
+        """The name of the function that contains this instruction."""
         index = bisect.bisect_right(self._starts, address) - 1
         return self.functions[index][1] if index >= 0 else ""
 
@@ -135,7 +134,7 @@ class Machine:
         return uc.reg_read(registers.result)
 
     def cost(self, name, *arguments):
-        """Calls a function; returns its result and the number of the library's instructions that ran."""
+        """Calls a function; returns its result and the number of the library's instructions."""
         before = self.count
         result = self.call(name, *arguments)
         return result, self.count - before
@@ -153,7 +152,7 @@ class Machine:
         self.uc.mem_write(STACK_TOP - STACK_SIZE, bytes([STACK_FILL]) * STACK_SIZE)
 
     def stack_used(self):
-        """Returns how many bytes of stack have been written since it was painted."""
+        """How many bytes of stack have been written since it was painted."""
         stack = self.read(STACK_TOP - STACK_SIZE, STACK_SIZE)
         return len(stack.lstrip(bytes([STACK_FILL])))
 

@@ -18,7 +18,7 @@ CONFIGURATIONS = (
 
 
 def module_of(file):
-    """Returns the name of the library's module for an object file, or None."""
+    """The name of the library's module for an object file, or None."""
     stem = pathlib.Path(file).stem
     return stem if stem in {source.stem for source in LIB_SOURCES} else None
 
@@ -29,7 +29,7 @@ def is_support(file):
 
 
 def weigh(map_file):
-    """Returns the bytes of flash per module, of flash from other libraries, and of writable data."""
+    """The bytes of flash per module, of flash from other libraries, and of writable data."""
     modules = {}
     support = 0
     writable = 0
@@ -48,7 +48,6 @@ def weigh(map_file):
 
 
 def weigh_without_ct(target, level, folder):
-    """Weighs the full driver, built with TMINI_NO_CT."""
     sources = [*LIB_SOURCES, HERE / "flash" / "driver.c"]
     objects = [target.compile(source, level, folder / "no_ct", "-DTMINI_NO_CT") for source in sources]
     _, map_file = target.link(objects, folder / "no_ct.elf")
@@ -56,7 +55,6 @@ def weigh_without_ct(target, level, folder):
 
 
 def measure(target, level, objects, folder):
-    """Weighs all configurations for one target and optimisation level."""
     weights = {"no_ct": weigh_without_ct(target, level, folder)}
     for name in ("parser", "streaming", "driver", "everything"):
         main = target.compile(HERE / "flash" / f"{name}.c", level, folder / "flash")
@@ -66,7 +64,7 @@ def measure(target, level, objects, folder):
 
 
 def sizes_of_types(target, folder):
-    """Returns the size of each type that a user allocates: {"tmini_t": …}."""
+    """The size of each type that a user allocates: {"tmini_t": …}."""
     item = target.compile(HERE / "ram.c", "-Os", folder)
     sizes = {}
     for line in run(target.tool("nm"), "-S", item).splitlines():

@@ -12,7 +12,6 @@ PACKET = 131  # Bytes per block: about a packet, or 10 ms.
 
 
 def build(folder):
-    """Builds this computer's program with the library at -O2."""
     program = folder / "host"
     run("cc", "-std=c99", "-O2", "-g", f"-ffile-prefix-map={ROOT}=.", "-I", ROOT / "lib" / "include",
         "-I", HERE, HERE / "host" / "main.c", HERE / "limit.c", *LIB_SOURCES, "-o", program)
@@ -20,7 +19,7 @@ def build(folder):
 
 
 def count(program, way, recording, block, folder):
-    """Returns the instructions per byte in one way of decoding, and the number of packets found."""
+    """The instructions per byte in one way of decoding, and the number of packets found."""
     out = folder / f"callgrind.{way}"
     packets = run("valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "-q",
                   "--collect-atstart=no", "--toggle-collect=counted_run*", program, way, recording,
@@ -32,7 +31,7 @@ def count(program, way, recording, block, folder):
 
 
 def measure(program, recording, folder, packets, blocks):
-    """Returns the instructions per byte for each way of feeding and for each number of bytes per poll."""
+    """The instructions per byte by way of feeding and by number of bytes per poll."""
     def cost(way, block=PACKET, expected=packets):
         each, found = count(program, way, recording, block, folder)
         if found != expected:

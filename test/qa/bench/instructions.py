@@ -23,7 +23,7 @@ STEPS_CHZ = {0x09: 10, 0x0A: -10, 0x0B: 100, 0x0C: -100}
 
 
 def event_names():
-    """Returns the names of the events in tmini.h, in the order of their values."""
+    """The names of the events in tmini.h, in the order of their values."""
     header = (ROOT / "lib/include/tmini/tmini.h").read_text()
     body = re.search(r"typedef enum \{([^}]*)\} tmini_event_t;", header)[1]
     return re.findall(r"^\s+TMINI_EVENT_(\w+)", body, re.MULTILINE)
@@ -88,7 +88,6 @@ class Session:
         self._fed(self.machine.cost("bench_feed_dma", self.position)[1])
 
     def poll(self):
-        """One poll; returns the event's name."""
         value, cost = self.machine.cost("bench_poll")
         name = self.names[value]
         self.worst_poll[name] = max(self.worst_poll.get(name, 0), cost)
@@ -113,7 +112,7 @@ class Session:
         return events
 
     def answer(self):
-        """Returns the lidar's reply to the last command."""
+        """The lidar's reply to the last command."""
         command = self.machine.read(self.machine.addresses["bench_sent"], 1)[0]
         self.machine.write("bench_sent", b"\0")
         return self.lidar.reply_to(command)
@@ -137,12 +136,10 @@ class Session:
             self.tick(reply)
 
     def spin_up(self):
-        """Starts scanning, until the lidar's reply to the start."""
         self.command(START)
         self.reach_scanning()
 
     def run(self, stream, bytes_per_tick=BYTES_PER_TICK):
-        """Feeds a whole stream."""
         for at in range(0, len(stream), bytes_per_tick):
             self.tick(stream[at:at + bytes_per_tick])
 
@@ -153,7 +150,7 @@ class Session:
         return [int.from_bytes(data[i:i + 4], "little") for i in range(0, 24, 4)]
 
     def idle_poll(self, milliseconds):
-        """Returns the cost of a poll without an event, this long after the poll before."""
+        """The cost of a poll without an event, this long after the poll before."""
         before = self.poll_total
         self.now_ms += milliseconds
         self.machine.write_word("bench_now_ms", self.now_ms)
@@ -163,7 +160,7 @@ class Session:
 
 
 def through(target, program, stream, feed, streaming=False, packets=None):
-    """Returns a stream's cost per byte as (feeding, polling), and the session."""
+    """A stream's cost per byte as (feeding, polling), and the session."""
     session = Session(target, program, feed, streaming)
     session.spin_up()
     session.feed_total = session.poll_total = session.feed_worst = 0
@@ -174,14 +171,14 @@ def through(target, program, stream, feed, streaming=False, packets=None):
 
 
 def full_ring(target, program):
-    """Returns the highest cost of tmini_feed_byte(), also when the buffer is full and bytes are refused."""
+    """The highest cost of tmini_feed_byte(), also when the buffer is full and bytes are refused."""
     session = Session(target, program)
     session.feed(bytes(2 * RX_SIZE))
     return session.feed_worst
 
 
 def per_poll(target, program, stream, feed, count):
-    """Returns a stream's cost per byte with a poll after every `count` bytes."""
+    """A stream's cost per byte with a poll after every `count` bytes."""
     session = Session(target, program, feed)
     session.spin_up()
     session.run(stream)
@@ -195,8 +192,8 @@ def per_poll(target, program, stream, feed, count):
 
 
 def longest_poll(target, program, clean):
-    """Searches for the most expensive single poll; returns its cost and the content of the ring. The lidar is
-    scanning, and a scan is in progress."""
+    """Searches for the most expensive poll while a scan is in progress; returns its cost and the content of the
+    ring."""
     session = Session(target, program, "blocks", rx_size=worst.SIZE)
     session.spin_up()
     session.run(clean)
@@ -214,7 +211,7 @@ def longest_poll(target, program, clean):
 
 
 def limit(target, program, stream):
-    """Returns the lowest possible cost of decoding, per byte."""
+    """The lowest possible cost of decoding, per byte."""
     machine = Machine(target.name, program)
     at = cost = 0
     while len(stream) - at >= 13:
@@ -260,7 +257,7 @@ def conversation(target, program, clean, faulty):
 
 
 def overrun(target, program, stream, rx_size, dma, pause_ms):
-    """Returns the number of bytes lost if the line never pauses and there is one poll every `pause_ms`."""
+    """The bytes lost if the line never pauses, with one poll every `pause_ms`."""
     session = Session(target, program, "dma" if dma else "blocks", rx_size=rx_size)
     session.spin_up()
     begin, at = session.now_ms, 0
@@ -274,8 +271,7 @@ def overrun(target, program, stream, rx_size, dma, pause_ms):
 
 
 def check_pauses(target, program, stream):
-    """Checks that the longest pauses between polls in the tables lose no byte, and that much longer ones do:
-    otherwise this check could not fail."""
+    """Checks that the longest pauses between polls in the tables lose no byte, and that much longer ones do."""
     for rx_size in load.RINGS:
         for dma in (False, True):
             pause_ms = int(load.longest_pause_ms(rx_size, dma))
@@ -288,8 +284,8 @@ def check_pauses(target, program, stream):
 
 
 def check_counting(target, program, clean):
-    """Counting by blocks must agree with counting single instructions. A Cortex-M3 or M4 skips some instructions
-    in a block (IT). These take a cycle, too, but only counting by blocks includes them."""
+    """Counting by blocks must agree with single steps. A Cortex-M3 or M4 skips some instructions in a block (IT):
+    they take a cycle, but only counting by blocks includes them."""
     fast = Session(target, program)
     slow = Session(target, program)
     for session in (fast, slow):
@@ -303,7 +299,6 @@ def check_counting(target, program, clean):
 
 
 def measure(target, level, objects, folder, streams):
-    """Counts everything on one processor."""
     sources = (HERE / "emulated" / "main.c", HERE / "limit.c")
     extra = [target.compile(source, level, folder / "emulated", "-I", HERE) for source in sources]
     program, _ = target.link([*objects, *extra], folder / "emulated.elf")

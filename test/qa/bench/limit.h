@@ -20,9 +20,9 @@ typedef struct {
 #define LIMIT_POINTS 1400
 
 /* Decodes an undamaged stream of scan packets to points in one pass, with checksums, but without
- * ring, resynchronisation, scans or CT information. Only for little-endian machines that can read
- * words at any address. Also reads the byte after the last one. Returns the number of bytes used:
- * all up to the first incomplete packet. */
+ * ring, resynchronisation, scans or CT information. Only for little-endian machines that read words
+ * at any address. Also reads the byte after the last one. Returns the bytes used: all up to the
+ * first incomplete packet. */
 size_t limit_decode(const uint8_t *bytes, size_t count, limit_point_t *points);
 
 #endif

@@ -3,8 +3,7 @@
 
 """Calculates from the counts a board's processor load and the longest time between two polls."""
 
-# Cautious assumptions: with loads, branches and flash wait states, an instruction takes two cycles; entry and
-# exit of an interrupt take 40.
+# Cautious assumptions: with flash wait states an instruction takes two cycles; an interrupt's entry and exit take 40.
 CYCLES_PER_INSTRUCTION = 2
 CYCLES_PER_INTERRUPT = 40
 POLLS_PER_SECOND = 1000
@@ -22,8 +21,8 @@ BYTES_PER_SECOND = (667 * 3 + 18 * 10 + 1) * 6
 
 
 def percent(figures, megahertz, feed):
-    """Returns the load in percent at 6 Hz with one poll per millisecond. There is one interrupt per byte, or with
-    DMA one per 128 bytes (half of a small buffer)."""
+    """The load in percent at 6 Hz with one poll per millisecond, and one interrupt per byte, or with DMA per 128
+    bytes (half of a small buffer)."""
     rate = BYTES_PER_SECOND
     interrupts = rate if feed == "bytes" else rate / 128
     instructions = rate * sum(figures["costs"][feed])
@@ -36,7 +35,7 @@ def percent(figures, megahertz, feed):
 
 
 def longest_pause_ms(ring, dma):
-    """Returns the longest time between two polls that is safe in any case: the buffer (with DMA, half of it) still
-    holds an incomplete packet, and the line fills the rest at its full rate."""
+    """The longest safe time between two polls: the buffer (with DMA, half of it) already holds an incomplete packet,
+    and the line fills the rest at its full rate."""
     usable = (ring // 2 if dma else ring) - (FULL_PACKET - 1)
     return max(0.0, usable / LINE_BYTES_PER_MS)

@@ -29,7 +29,7 @@ def measure(folder, clean):
 
 
 def seconds_to_read(path):
-    """Returns the processor time for reading a recording, with all arrays of each scan."""
+    """The processor time for reading a recording, with all arrays of each scan."""
     begun = time.process_time()
     for scan in tmini.read(path):
         assert len(scan.angles_rad) == len(scan.ranges_m) == len(scan.times_s)
@@ -37,7 +37,7 @@ def seconds_to_read(path):
 
 
 def send(server, content):
-    """Sends bytes as a scanning lidar does. Runs in a separate process, so that its time is not counted."""
+    """Sends bytes as a scanning lidar does, in a separate process, so that its time is not counted."""
     connection, _ = server.accept()
     begun = time.monotonic()
     try:

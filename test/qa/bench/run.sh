@@ -64,7 +64,7 @@ has_library arm-none-eabi-gcc --specs=nano.specs ||
 has_library riscv64-unknown-elf-gcc --specs=picolibc.specs ||
     skip "riscv64-unknown-elf-gcc or picolibc is not installed"
 
-# The emulator and the Python package are installed in separate virtual environments.
+# The emulator and the Python package get separate virtual environments.
 mkdir -p "$work"
 install_requirements "$work/venv" "$root/test/qa/bench/requirements.txt" \
     >"$work/install.log" 2>&1 ||

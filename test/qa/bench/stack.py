@@ -41,7 +41,7 @@ class Graph:
         return self.calls.get(caller, set()) | self.tail_calls.get(caller, set())
 
     def deepest(self, name):
-        """Returns the bytes of stack that a call of the function needs, and the deepest path."""
+        """The bytes of stack that a call of the function needs, and the deepest path."""
         @functools.cache
         def depth_of(function):
             frame = self.frames[function]
@@ -80,7 +80,6 @@ def add_frames(graph, text):
 
 
 def is_tail(relocation, instruction):
-    """True for a branch instead of a call."""
     return relocation == "R_ARM_THM_JUMP24" or "auipc\tt1" in instruction
 
 
@@ -104,8 +103,8 @@ def add_calls(graph, names, disassembly):
 
 
 def check_calls(graph, text):
-    """Checks that the object code shows every call in the compiler's own list, and that only the port and the step
-    are called through a pointer: the depth of other such calls would be unknown."""
+    """Checks that the object code shows every call in the compiler's list, and that only the port and the step are
+    called through a pointer: other depths would be unknown."""
     for caller, callee, place in EDGE.findall(text):
         if callee == "__indirect_call":
             if not is_port_call(place):
@@ -115,7 +114,6 @@ def check_calls(graph, text):
 
 
 def stack_taken(line):
-    """Returns the bytes of stack that an instruction takes."""
     saved = re.search(r"\t(?:push|stmdb\s+sp!,|stmfd\s+sp!,)\s*\{(.*)\}", line)
     if saved:
         count = 0
@@ -150,7 +148,7 @@ def add_support(graph, names, disassembly):
 
 
 def measure(target, objects, program):
-    """Returns the deepest stack of the interrupt and of polling, each with its path of calls."""
+    """The deepest stack of the interrupt and of polling, each with its path of calls."""
     graph = Graph()
     foreign = set()
     accounts = [item.with_suffix(".ci").read_text() for item in objects]

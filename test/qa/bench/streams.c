@@ -44,7 +44,7 @@ static encode_sample_t room(random_t *random)
                              .flag = 0};
 }
 
-/* Adds a packet that begins with the revolution's point `first`. Returns its number of points. */
+/* Adds the packet from the revolution's point `first` on. Returns its number of points. */
 static uint32_t add_packet(random_t *random, uint32_t index, uint32_t first)
 {
     encode_sample_t samples[FULL_PACKET];

@@ -15,7 +15,7 @@ POINTS = 667  # Points per revolution at 6 Hz, with 4000 samples per second (sec
 
 
 def make(folder):
-    """Returns all streams by name, and the number of packets in the clean one."""
+    """All streams by name, and the number of packets in the clean one."""
     maker = folder / "streams"
     run("cc", "-std=c99", "-O1", "-Wall", "-Wextra", "-Werror", "-I", SUPPORT,
         HERE / "streams.c", SUPPORT / "encoder.c", SUPPORT / "corrupt.c", SUPPORT / "random.c",

@@ -11,13 +11,13 @@ from targets import LEVELS, TARGETS, target_named
 
 
 def table(head, rows):
-    """Returns a Markdown table; all columns but the first are right-aligned."""
+    """A Markdown table; all columns but the first are right-aligned."""
     lines = [head, ["---"] + ["---:"] * (len(head) - 1), *rows]
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
 
 
 def one(value):
-    """Returns the value with one decimal."""
+    """The value with one decimal."""
     return f"{value:.1f}"
 
 
@@ -119,7 +119,6 @@ def budgets(figures):
 
 
 def summary(figures):
-    """Returns the README's table."""
     m4 = figures["targets"]["cortex-m4", "-Os"]
     m0 = figures["targets"]["cortex-m0", "-Os"]
     rows = [
@@ -144,18 +143,17 @@ BLOCKS = {"versions": versions, "budgets": budgets, "memory": memory, "modules":
 
 
 def between(name):
-    """Returns the pattern of a generated block."""
     return re.compile(rf"(<!-- {name}:begin[^>]*-->\n)(.*?)(<!-- {name}:end -->)", re.DOTALL)
 
 
 def block_in(text, name):
-    """Returns the text between a block's markers, or None."""
+    """The text between a block's markers, or None."""
     found = between(name).search(text)
     return found[2].strip("\n") if found else None
 
 
 def renew(document, names, figures):
-    """Returns the document's text with the new figures in its blocks."""
+    """The document's text with the new figures in its blocks."""
     text = document.read_text()
     for name in names:
         new = BLOCKS[name](figures)

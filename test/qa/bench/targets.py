@@ -40,14 +40,13 @@ class Target:
         return self.prefix + name
 
     def version(self):
-        """Returns the compiler's version line: figures are comparable only with the same compiler."""
+        """The compiler's version line: figures are comparable only with the same compiler."""
         return run(self.tool("gcc"), "--version").splitlines()[0].strip()
 
     def compile(self, source, level, folder, *extra):
-        """Compiles one source to `folder`; returns the object file."""
         folder.mkdir(parents=True, exist_ok=True)
         target = folder / (source.stem + ".o")
-        # File names without the path of the checkout, so that its length does not change the figures.
+        # The length of the checkout's path must not change the figures.
         run(self.tool("gcc"), *self.machine, "-std=c99", level, "-Wall", "-Wextra", "-Werror",
             "-ffunction-sections", "-fdata-sections", f"-ffile-prefix-map={ROOT}=.",
             "-I", ROOT / "lib" / "include", *extra, "-c", source, "-o", target)
@@ -91,7 +90,7 @@ SECTION = re.compile(
 
 
 def contributions(map_file):
-    """Returns the parts of a linked program, each as (section, bytes, object file)."""
+    """The parts of a linked program, each as (section, bytes, object file)."""
     text = map_file.read_text()
     text = text[text.index("Linker script and memory map"):]
     text = re.sub(r"\n( \.\S+)\n\s+", r"\n\1 ", text)  # Join the line of a long name with the next one.

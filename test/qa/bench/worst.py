@@ -3,15 +3,15 @@
 
 """Searches for the bytes that make one poll as long as possible: mixes ingredients, and keeps the worst mix.
 
-A poll has a limit for its estimated effort. Each ingredient costs more than the driver's estimate, and these
-differences add up. Also, a poll may begin its largest packet just before it reaches the limit.
+A poll ends at a limit for its estimated effort. Each ingredient costs more than the driver's estimate, and a poll may
+begin its largest packet just before the limit.
 """
 
 import random
 
 SIZE = 4096  # The largest ring in the tables.
 TRIALS = 1200
-STARTS = 12  # Number of first mixes; each is improved with an equal share of the trials.
+STARTS = 12  # First mixes; each gets an equal share of the trials.
 MS = (1, 10, 100)
 
 
@@ -57,12 +57,12 @@ def any_part(source):
 
 
 def any_mix(source):
-    """Returns a random mix: its position in the ring, the pause before it in ms, and its parts."""
+    """A random mix: its position in the ring, the pause before it in ms, and its parts."""
     return (source.randrange(SIZE), source.choice(MS), [any_part(source) for _ in range(3)])
 
 
 def changed(mix, source):
-    """Returns a mix that differs a little."""
+    """A mix that differs a little."""
     begin, pause_ms, parts = mix
     parts = list(parts)
     at = source.randrange(len(parts))
@@ -82,7 +82,7 @@ def changed(mix, source):
 
 
 def stream_of(mix):
-    """Returns a mix as bytes. It begins with a start packet, so that the scan has room for points."""
+    """A mix as bytes. It begins with a start packet, so that the scan has room for points."""
     stream = packet(1, 0, 0, is_start=True)
     for name, parameter, count in mix[2]:
         stream += INGREDIENTS[name](parameter) * count
@@ -90,7 +90,7 @@ def stream_of(mix):
 
 
 def search(cost):
-    """Returns the highest cost(mix) found, and the mix."""
+    """The highest cost(mix) found, and the mix."""
     source = random.Random(1)
     first = (0, 10, [("marks", 0, 120), ("points", 79, 1), ("zeros", 1, 1)])
     worst = (0, None)

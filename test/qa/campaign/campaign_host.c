@@ -70,7 +70,7 @@ static uint64_t receive_bytes(host_t *host)
     return arrival_us(host, host->next);
 }
 
-/* ---- A layer below that holds bytes; after an overflow it is closed until it is empty ---- */
+/* ---- A layer below, which an overflow closes until it is empty ---- */
 
 static uint32_t room(const host_t *host)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The controller in one trial of the campaign, in virtual time: a receiver of the line's bytes, the
- * library, and a program that polls it and is sometimes busy.
+/* The controller in one trial, in virtual time: a receiver of the line's bytes, the library, and
+ * a program that polls it and is sometimes busy.
  *
  * There are three receivers: an interrupt per byte; a task or FIFO below that hands over blocks;
  * and circular DMA whose half-transfer, transfer-complete and idle-line interrupts publish its
@@ -26,16 +26,16 @@ typedef struct {
     feed_t feed;
     size_t rx_size;
     size_t max_points;
-    uint32_t poll_us;        /* Pause between a poll without an event and the next poll. */
-    uint32_t access_ns;      /* Time that passes at each access to a shared index. */
+    uint32_t poll_us;        /* Pause after a poll without an event. */
+    uint32_t access_ns;      /* Time per access to a shared index. */
     uint32_t block_us;       /* Time between two blocks; 0: the program fetches them, then polls. */
     bool asks_room;          /* Blocks: bytes that do not fit stay in the layer below. */
     bool reports_held;       /* Bytes in the layer below are reported. */
     bool is_bridged;         /* The program is never busy so long that the layer overflows. */
-    uint32_t block_size;     /* The most bytes that the layer below holds. */
-    uint32_t handler_us;     /* The longest time that the program works on a scan; from 1 ms. */
+    uint32_t block_size;     /* The layer's size in bytes. */
+    uint32_t handler_us;     /* The longest work on a scan; from 1 ms. */
     uint32_t handle_one_in;  /* It works on one scan in N; 0: on none. */
-    uint32_t preempt_us;     /* The longest time for which a poll is pre-empted. */
+    uint32_t preempt_us;     /* The longest pre-emption of a poll. */
     uint32_t preempt_one_in; /* One poll in N is pre-empted; 0: none. */
     uint32_t stall_laps;     /* While the CPU stops, DMA receives up to this many laps. */
     uint32_t stall_one_in;   /* The CPU stops in one poll or pause in N; 0: never. */
@@ -58,7 +58,7 @@ typedef struct {
     uint8_t rx[HOST_RX_MAX];
 
     uint64_t now_ns;
-    uint64_t begun_us; /* Time of the start command, at which the line's time begins. */
+    uint64_t begun_us; /* Time of the start command: the line's 0. */
     uint64_t due_ns;   /* Time of the receiver's next action. */
     bool started;
     uint32_t next;      /* The line's next byte. */

@@ -407,7 +407,7 @@ static bool is_valid_packet(const uint8_t *bytes, uint32_t count, uint32_t *size
     return *size <= count && encode_checksum(bytes) == (bytes[8] | bytes[9] << 8);
 }
 
-/* True if bytes before and after the hole at `cut` together look like a packet. */
+/* True if the bytes on both sides of the hole at `cut` look like a packet. */
 static bool forges_a_packet(const line_t *line, uint32_t cut)
 {
     uint8_t bytes[ENCODE_PACKET_HEADER + ENCODE_SAMPLE_SIZE * LINE_MAX_SAMPLES];
@@ -451,7 +451,7 @@ static void let_dribble(line_t *line, random_t *random, uint32_t from, uint32_t 
     }
 }
 
-/* If the bytes on both sides of a hole together look like a packet, makes the hole a byte wider. */
+/* Makes a hole a byte wider if the bytes on both sides look like a packet. */
 static void forge_nothing(line_t *line)
 {
     for (uint32_t i = 1; i < line->size; i++) {

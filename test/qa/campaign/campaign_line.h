@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The bytes that the lidar sends in one trial of the campaign: some revolutions, with the time at
- * which each byte has arrived, and with parts that never arrive.
+/* The bytes that the lidar sends in one trial: some revolutions, with the arrival time of each
+ * byte, and with parts that never arrive.
  *
  * Every sample's distance, intensity and flag encode its revolution and its index within it. So
  * each point shows whether it was sent, where it belongs and its correct angle. Made with
@@ -53,7 +53,7 @@ typedef struct {
 
     uint8_t bytes[LINE_BYTES];
     uint32_t at_us[LINE_BYTES]; /* Time since the start command. */
-    uint16_t owner[LINE_BYTES]; /* The packet of this byte; of LastCRC, the packet after it. */
+    uint16_t owner[LINE_BYTES]; /* The byte's packet; LastCRC's is the one after it. */
     bool is_guard[LINE_BYTES];  /* True for LastCRC. */
     bool lost[LINE_BYTES];
     uint32_t size;
@@ -66,7 +66,6 @@ typedef struct {
     bool touched[LINE_REVOLUTIONS]; /* A byte of it, or of the next start packet, is lost. */
 } line_t;
 
-/* The place of a sample. */
 typedef struct {
     uint32_t revolution;
     uint32_t sample;
@@ -75,13 +74,13 @@ typedef struct {
 /* Makes the reply to the start command, and the revolutions. */
 void line_make(line_t *line, const line_config_t *config, random_t *random);
 
-/* Marks the revolutions of the bytes from `from` up to `to`: these do not reach the library. */
+/* The bytes from `from` up to `to` do not reach the library: marks their revolutions. */
 void line_lose(line_t *line, uint32_t from, uint32_t to);
 
-/* Makes a few holes of up to five turns, sometimes two close together. A hole may begin and end at
- * any byte, but often has nearly a whole number of turns, by angle or by time. Sometimes some bytes
- * of each packet in it arrive, or only a start packet is lost. The bytes on both sides of a hole
- * never look like a packet: about one pair in 65536 would, and no receiver could notice that. */
+/* Makes a few holes of up to five turns, sometimes two close together. Holes begin and end at any
+ * byte, but often have nearly a whole number of turns, by angle or by time. Sometimes some bytes of
+ * each packet in it arrive, or only a start packet is lost. The bytes on both sides never look like
+ * a packet: one pair in 65536 would, and no receiver could notice that. */
 void line_interrupt(line_t *line, random_t *random);
 
 /* Finds the sample of a point. Returns false if no such sample was sent. */

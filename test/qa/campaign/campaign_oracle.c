@@ -10,7 +10,6 @@
  * packets. Below 4 degrees, a hole cannot be distinguished from jitter. */
 #define INVISIBLE_Q6 256u
 
-/* The result of reading the points of one scan. */
 typedef struct {
     line_mark_t first;
     line_mark_t last;   /* The previous point. */
@@ -210,8 +209,8 @@ static uint32_t longest_silence_us(const line_t *line, uint32_t from_us, uint32_
     return longest;
 }
 
-/* Returns why the points of two revolutions may be in one incomplete scan: the library measures a
- * silence by the times of polls and hand-overs, and so less exactly than the line's times. */
+/* Returns why one incomplete scan may have points of two revolutions: the library measures a
+ * silence only by the times of polls and hand-overs. */
 static mixed_t explain(const line_t *line, const host_config_t *config, const reading_t *reading)
 {
     const uint32_t pause_us = config->max_pause_ms * 1040u + config->poll_us + config->preempt_us +
@@ -276,10 +275,9 @@ void oracle_judge_account(oracle_t *oracle, const host_t *host)
                                counters.bytes_pending);
 }
 
-/* Revolutions near the beginning and the end of a trial may be incomplete scans: if polls are rare
- * and a layer below holds bytes, the library cannot know how long the line was silent before the
- * first bytes and after the last ones. At the end, bytes that waited for room come after the line
- * has become silent. */
+/* A trial's first and last revolutions may be incomplete scans: with rare polls and a layer below,
+ * the library cannot know how long the line was silent before the first bytes and after the last.
+ * At the end, bytes that waited for room come after the line is silent. */
 #define UNCERTAIN_US 250000u
 #define WATCHED_US 30000u
 #define BYTE_US 76u

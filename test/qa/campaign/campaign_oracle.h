@@ -60,7 +60,6 @@ typedef struct {
 
 void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, const line_t *line);
 
-/* Prints each scan and each error from now on. */
 void oracle_speak(oracle_t *oracle);
 
 void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t *scan);

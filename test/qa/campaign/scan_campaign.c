@@ -4,10 +4,10 @@
 /* campaign SCANS [SEED [MODE [TRIAL]]]
  *
  * Checks that no scan reports anything wrong. Runs the library in virtual time with a line that
- * falls silent in the middle of a scan, with programs that are busy for too long, and with
- * receivers that lose bytes. Ends when SCANS scans have been delivered in each mode (or in the
- * given one), and checks each of them: see campaign_oracle.h. Exit status: 0 no scan was wrong,
- * 1 some were, 2 wrong usage. The same seed gives the same run; TRIAL runs only that trial. */
+ * falls silent in mid-scan, with programs that are busy for too long, and with receivers that
+ * lose bytes. Checks SCANS scans in each mode (or in the given one): see campaign_oracle.h. Exit
+ * status: 0 no scan was wrong, 1 some were, 2 wrong usage. The same seed gives the same run;
+ * TRIAL runs only that trial. */
 
 #include "campaign_oracle.h"
 
@@ -75,8 +75,8 @@ static void draw_nothing(host_config_t *config, random_t *random)
     (void)random;
 }
 
-/* The program is busy for up to nine tenths of the time for which the layer below can hold bytes;
- * this layer reports them. */
+/* The program is busy for up to nine tenths of the time that the layer below can bridge; this layer
+ * reports its bytes. */
 static void draw_bridged(host_config_t *config, random_t *random)
 {
     config->feed = FEED_BLOCKS;
@@ -336,7 +336,6 @@ static void report(const campaign_mode_t *mode, const verdicts_t *verdicts)
     (void)fflush(stdout);
 }
 
-/* Returns true if no scan was wrong. */
 static bool run_mode(const campaign_mode_t *mode, uint64_t scans, uint64_t seed, const char *only)
 {
     verdicts_t verdicts = {0};

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Fuzz target: the whole driver in a hostile environment. The input is a list of actions: bytes
- * received by interrupt or DMA, time passing, polls, commands at any moment, and a port that takes
- * none, one or both bytes, or fails. The driver must not crash, hang or miscount bytes, and must
- * send only whole two-byte commands.
+/* Fuzz target: the whole driver. The input is a list of actions: bytes received by interrupt or
+ * DMA, time passing, polls, commands at any moment, and a port that takes none, one or both
+ * bytes, or fails. The driver must not crash, hang or miscount bytes, and must send only whole
+ * two-byte commands.
  *
  * Alternatively the bytes come from a turning lidar (turning_lidar.h) on a line that loses and
  * damages some, also in the middle of a poll. Then no scan may mix two revolutions, and no scan
@@ -288,7 +288,7 @@ static void act(void)
     }
 }
 
-/* The lidar sends this many packets: all arrive, or all are lost; with polls in between, or not. */
+/* The lidar sends packets, which all arrive or are all lost, with polls in between or not. */
 static void turn(unsigned packets, bool come, bool polled)
 {
     for (unsigned i = 0; i < packets; i++) {
@@ -345,7 +345,7 @@ static void act_truly(void)
     }
 }
 
-/* Brings the turning lidar and the driver to scanning, before the input's actions. */
+/* Brings the turning lidar and the driver to scanning. */
 static void start_truly(bool ct_information)
 {
     turning_begin(ct_information);

@@ -161,8 +161,7 @@ void turning_judge(const tmini_scan_t *scan)
     complain(lacks && scan->gaps == 0, "something is missing, and no gap says so");
 }
 
-/* Sets `context`, a bool, if this packet was never sent: remains of others look like it by
- * chance. */
+/* Sets `context` if this packet was never sent: remains of others look like one by chance. */
 static void look_for_chance(void *context, const reference_item_t *item)
 {
     uint8_t sent[TURNING_PACKET_MAX];

@@ -22,8 +22,8 @@
  * neither. */
 void turning_begin(bool ct_information);
 
-/* The lidar receives a command. Returns the reply's size, or 0 if there is no reply. While it
- * scans, it ignores all commands except stop and reboot. */
+/* The lidar receives a command. Returns the reply's size, or 0 without a reply. While it scans, it
+ * obeys only stop and reboot. */
 size_t turning_command(uint8_t code, uint8_t *reply);
 
 /* Writes the next packet to `out` and returns its size, or 0 if the lidar does not scan. Adds the
@@ -33,11 +33,10 @@ size_t turning_packet(uint8_t *out, uint32_t *now_ms);
 /* Records bytes that have arrived. Returns false if the record is full. */
 bool turning_received(const uint8_t *bytes, size_t count);
 
-/* Checks a scan that the library has delivered. */
 void turning_judge(const tmini_scan_t *scan);
 
-/* Returns the first error in a scan, or NULL. It is no error if remains of two packets together
- * look like a valid packet: these cannot be distinguished. */
+/* Returns the first error in a scan, or NULL. Remains of two packets that look like a valid packet
+ * cannot be distinguished from one: no error. */
 const char *turning_verdict(void);
 
 #endif

@@ -4,11 +4,10 @@
 /* memory_model [--long]
  *
  * Explores the ring's protocol exhaustively, as two cores may see it: every interleaving, and
- * every value that a load may return with C11's release and acquire. It does so first with all
- * barriers, and then with one barrier at a time weakened to relaxed. Exit status 0 if the
- * protocol holds with all barriers, and if each weakened barrier has the effect given in the
- * table at the end: the protocol breaks, or still holds (for a barrier that is not needed
- * alone).
+ * every value that a load may return with C11's release and acquire; first with all barriers,
+ * then with one at a time weakened to relaxed. Exit status 0 if the protocol holds with all
+ * barriers, and each weakened barrier has the effect given in the table at the end: the protocol
+ * breaks, or holds (if this barrier is not needed).
  *
  * The model: each index has only one writer, and a list of the values stored to it. A thread's
  * view is the place that it has reached in each list. A load returns any value from there on. An

@@ -239,8 +239,8 @@ void prove_parser_abandon(void)
 
 /* ---- One turn of the loop of tmini_parser_next_after() ---- */
 
-/* These two replace classify() and skip(): they check how they are called, and may do anything that
- * the proofs above allow. */
+/* These replace classify() and skip(): they check how they are called, and do anything that is
+ * proved above. */
 
 enum verdict any_classify(tmini_parser_t *same, size_t unread)
 {
@@ -273,8 +273,8 @@ void any_skip(tmini_parser_t *same, size_t unread)
 static bool is_second_turn;
 static unsigned rank_before;
 
-/* How many turns without effort may follow if no byte arrives: in one, a candidate needs more bytes
- * than there are, and another opens a closed ring. */
+/* How many turns without effort may follow if no byte arrives: one in which a candidate needs more
+ * bytes, and one that opens a closed ring. */
 static unsigned rank(void)
 {
     let_bytes_come(NULL);
@@ -283,9 +283,8 @@ static unsigned rank(void)
 }
 
 /* prove.py inserts a call of this function at the beginning of each turn. It proves: if the state
- * is sound and without a frame before a turn, it is so before the next one. And each turn costs
- * some of the limited effort, or brings the end of the loop nearer, unless bytes have arrived
- * meanwhile. */
+ * is sound and without a frame before a turn, it is so before the next one. Each turn costs some
+ * effort, which is limited, or leads nearer to the end, unless bytes have arrived meanwhile. */
 void at_loop_head(void)
 {
     if (is_second_turn) {

@@ -6,9 +6,9 @@
 
     prove.py --work DIR [--quick] [--broken] [NAME …]
 
-Each proof is a function prove_NAME() in a file in this folder. All its claims must hold, except the last one: the
-claim that its end is not reached must fail, otherwise nothing would be proved. With --broken, a copy of the
-library is first broken in one place, which the table below names for each proof; then another claim must fail.
+Each proof is a function prove_NAME() in this folder. All its claims must hold, except the last one: the claim that
+its end is not reached must fail, otherwise nothing is proved. With --broken, a copy of the library is first broken in
+one place, which the table below names for each proof; then another claim must fail.
 """
 
 import argparse
@@ -205,7 +205,7 @@ class Checker:
             sys.exit(f"{command[0]} ended with {done.returncode}\n{done.stdout}{done.stderr}")
 
     def check(self, proof, case):
-        """Returns the number of properties and the failed ones; `case` is a list of macros."""
+        """The number of properties and the failed ones; `case` is a list of macros."""
         program = f"{self.folder}/program"
         folders = [option for folder in FOLDERS for option in ("-I", f"{self.folder}/{folder}")]
         defines = ["-D", 'TMINI_ATOMIC_HEADER="proof_atomic.h"']
@@ -232,7 +232,7 @@ class Checker:
 
 
 def seconds():
-    """Returns the processor time of all child processes: other programs may be running, too."""
+    """The processor time of all child processes: other programs may be running, too."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -242,7 +242,7 @@ def is_end(failure):
 
 
 def prove(checker, proof, broken):
-    """Returns the number of properties, whether the result is as expected, and a list of complaints."""
+    """Returns the number of properties, whether the result is as expected, and complaints."""
     checker.copy_sources()
     checker.replace(*proof.broken, only_look=not broken) # Also checks that the table is up to date.
     if proof.inserted:

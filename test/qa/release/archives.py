@@ -49,7 +49,7 @@ def check_links(folder, path):
 
 
 def steps(path):
-    """Returns the lines that a reader is asked to type, each as (number, line)."""
+    """The lines that a reader is asked to type, each as (number, line)."""
     blocks, prose = parse(path)
     for block in blocks:
         if block.language in ("sh", "console", "ini", "cmake", "yaml"):

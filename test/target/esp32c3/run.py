@@ -5,9 +5,8 @@
 
     run.py FIRMWARE.elf TMINI_SIM
 
-Both use virtual time, so that every run gives the same bytes on every machine. Compares what the
-lidar measured with what the firmware reports, and checks the bytes that the firmware sent; any
-difference is a failure.
+Both use virtual time: every run gives the same bytes. Compares what the lidar measured with what the firmware
+reports, and checks the bytes that the firmware sent.
 """
 
 import pathlib
@@ -56,7 +55,6 @@ def system_description():
 
 
 def revolutions_of(packets):
-    """Returns the points of each revolution, in order."""
     revolutions = {}
     for packet in packets.values():
         revolutions.setdefault(packet[0]["revolution"], []).extend(
@@ -87,7 +85,7 @@ def read_log(sim):
 
 
 def split_log(text):
-    """Returns the log's facts (a list of values for each name) and its scans."""
+    """The log's facts (a list of values for each name) and its scans."""
     facts = {}
     scans = []
     for line in text.splitlines():
@@ -102,7 +100,6 @@ def split_log(text):
 
 
 def compare(facts, scans, truth, sent):
-    """Returns a list of all differences."""
     wrong = []
     for name, expected in EXPECTED_FACTS.items():
         if facts.get(name) != expected:

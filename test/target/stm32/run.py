@@ -45,8 +45,8 @@ SAMPLE_BYTES = 3
 # Most points that the firmware stores per scan. A revolution may have more while the rotor spins up.
 MOST_POINTS = 800
 
-# Revolutions lost at a stop: the scan in progress, and one more, because the lidar continues to send for
-# about 100 ms. The driver also stops the lidar before each new start.
+# Revolutions lost at a stop (the driver also stops the lidar before each new start): the scan in progress, and one
+# more, because the lidar continues to send for about 100 ms.
 MOST_CUT_OFF = 2
 
 # The console has 115200 baud and a buffer of this size.
@@ -58,7 +58,7 @@ PATIENCE_S = 120
 
 
 def values(line):
-    """Returns the named numbers of a line: "word a 1 b 2" gives {"a": "1", "b": "2"}."""
+    """The named numbers of a line: "word a 1 b 2" gives {"a": "1", "b": "2"}."""
     words = line.split()
     return dict(zip(words[1::2], words[2::2]))
 
@@ -125,7 +125,6 @@ class Board:
             data = data[self.line.send(data):]
 
     def step(self):
-        """Advances by one millisecond."""
         if not self.clock.recv(1):
             raise TimeoutError("the emulator has ended")
         self.now_ms += 1
@@ -181,7 +180,6 @@ def operate(board, args):
 
 
 def run(args):
-    """Returns the console's lines, the simulated lidar's log and the packets that it sent."""
     os.makedirs(args.work, exist_ok=True)
     log = os.path.join(args.work, "sim.log")
     options = ["--log", log, "--seed", str(args.seed)]
@@ -225,8 +223,8 @@ class Packet:
 
 def read_packets(truth):
     packets = [Packet(number, samples) for number, samples in sorted(truth.items())]
-    # The first packet of a revolution is its start packet, unless the start packet was lost because the
-    # lidar was unplugged: then its number is missing, and the next packet is not a start packet.
+    # A revolution begins with its start packet, unless this was lost because the lidar was unplugged: then its number
+    # is missing.
     for before, packet in zip(packets, packets[1:]):
         packet.starts = (packet.number == before.number + 1 and
                          packet.revolution != before.revolution and len(packet.points) == 1)
@@ -234,7 +232,7 @@ def read_packets(truth):
 
 
 def end_of_scan(intact, first, points, digest):
-    """Returns the index after the last packet of the scan that begins with intact[first], or None if no such
+    """The index after the last packet of the scan that begins with intact[first], or None if no such
     scan has this number and digest of points."""
     count = 0
     crc = 0
@@ -291,7 +289,7 @@ class Scans:
             self.may_skip = 1 + MOST_CUT_OFF
 
     def _places(self):
-        """Returns the indices at which the next scan may begin."""
+        """The indices at which the next scan may begin."""
         if not self.may_skip:
             return [self.place]
         rest = range(self.place, len(self.intact))
@@ -328,7 +326,6 @@ class Scans:
             self.problems.append(f"this scan ended although nothing was missing: {line}")
 
     def left(self):
-        """Returns the number of revolutions that began after the last scan."""
         return sum(packet.starts for packet in self.intact[self.place:])
 
 
@@ -354,7 +351,7 @@ def check_scans(findings, args, texts, log, packets, counters, accepted):
 
 
 def check_packets(findings, packets, counters):
-    """Returns how many harmed packets were accepted. The packet's checksum is only an XOR: about one harmed
+    """How many harmed packets were accepted. The packet's checksum is only an XOR: about one harmed
     packet in 10,000 passes it."""
     intact = [packet for packet in packets if packet.intact]
     harmed = len(packets) - len(intact)

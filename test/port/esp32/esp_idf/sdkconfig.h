@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The file that menuconfig would write with the defaults of Kconfig: for an ESP32-C6 (one core, a
+/* What menuconfig would write with Kconfig's defaults: for an ESP32-C6 (one core, a
  * low-power UART, 100 ticks per second), or with MODEL_ESP32 for an ESP32 (two cores, UARTs clocked
  * by the APB, slower ticks). */
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands in for the Pico SDK's header of this name, as do the other headers here, on the model of
- * the chip (../pico_model.h). Each includes the same headers as the original (SDK 2.2.0), so that
- * code that compiles here also compiles with the SDK. Written for the tests from the SDK's public
+/* Stands in for the Pico SDK's header of this name, as do the others here, on the model of the chip
+ * (../pico_model.h). Each includes the same headers as the original (SDK 2.2.0), so that code that
+ * compiles here also compiles with the SDK. Written for the tests from the SDK's public
  * documentation and the data sheets. */
 
 #ifndef PICO_H

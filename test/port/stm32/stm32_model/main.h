@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands in for the main.h that CubeMX generates: includes the HAL, and names the pins with the
- * user labels DRIVE_ENABLE and LIDAR_LED. */
+/* Stands in for CubeMX's main.h: the HAL, and the pins with the labels DRIVE_ENABLE and
+ * LIDAR_LED. */
 
 #ifndef MAIN_H
 #define MAIN_H

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A model of the hardware: one USART at 230400 baud with one DMA channel, on two interrupt lines.
- * Registers are accessed only by these functions, because reading one has side effects. Each access
- * takes some nanoseconds; whatever is due then happens, including interrupts.
+/* A model of the hardware: one USART at 230400 baud with one DMA channel, on two interrupt
+ * lines. Registers are accessed only by these functions: reading has side effects. Each access
+ * takes some nanoseconds, in which interrupts may come.
  *
  * Variants, by macros:
  *   STM32_MODEL_SR            registers SR and DR (F1, F2, F4, L1), where reading clears flags;
@@ -75,7 +75,7 @@ typedef struct {
 } USART_TypeDef;
 #endif
 
-/* What is left of this round; the name is that of DMAs with linked lists. */
+/* What is left of this round, with the name for linked lists. */
 typedef struct {
     volatile uint32_t CBR1;
 } DMA_Channel_TypeDef;
@@ -90,10 +90,8 @@ typedef struct {
     uint32_t interrupts;
 } model_dma_t;
 
-/* Numbers of the interrupt lines. */
 enum { MODEL_USART_IRQ, MODEL_DMA_IRQ };
 
-/* One byte on the line. */
 typedef struct {
     uint64_t at_ns; /* Time at which its stop bit has arrived. */
     uint8_t byte;

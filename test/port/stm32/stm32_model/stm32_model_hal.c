@@ -102,8 +102,8 @@ static void dma_error_reported(DMA_HandleTypeDef *dma)
     HAL_UART_ErrorCallback(dma_user);
 }
 
-/* With linked lists, the channel first finishes its current block, and only then reads the list
- * that the start has given to it. */
+/* With linked lists, the channel finishes its current block before it reads the list of the
+ * start. */
 static uint32_t first_round(uint16_t size)
 {
 #ifdef STM32_MODEL_LINKED_LISTS
@@ -168,7 +168,7 @@ HAL_StatusTypeDef HAL_DMAEx_Resume(DMA_HandleTypeDef *hdma)
     return HAL_OK;
 }
 
-/* Streams and linked lists report by an interrupt that they have stopped; others stop at once. */
+/* Streams and linked lists stop with an interrupt, others at once. */
 static bool dma_stop_later(DMA_HandleTypeDef *dma)
 {
     if (dma->State != HAL_DMA_STATE_BUSY) {

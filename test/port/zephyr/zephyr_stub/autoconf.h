@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands in for the header that Kconfig generates. Zephyr's build includes it before all other
- * headers; here the other headers include it. */
+/* Stands in for Kconfig's header, which Zephyr's build includes first; here the other headers
+ * include it. */
 
 #ifndef AUTOCONF_H
 #define AUTOCONF_H

@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* The program whose functions the emulator calls: one lidar on a board whose clock and UART are
- * variables. Only the library's instructions are counted. Of this file, that is only the library's
- * inline function in the interrupt. */
+ * variables. Only the library's instructions are counted; of this file, only its inline function in
+ * the interrupt. */
 
 #include "limit.h"
 #include "tmini/tmini.h"

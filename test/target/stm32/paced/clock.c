@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Linked into the firmware with the linker's --wrap, so that the firmware and the simulated lidar
- * share one clock, however slow the computer is. Each millisecond the firmware sends a byte through
- * USART3. run.py then runs the lidar for one millisecond, sends the lidar's bytes to USART1, and
- * their number to USART3. The firmware's time stands still until all these bytes are received. */
+/* Linked into the firmware with --wrap, so that the firmware and the simulated lidar share one
+ * clock, however slow the computer is. Each millisecond the firmware sends a byte through USART3.
+ * run.py then runs the lidar for one millisecond, sends the lidar's bytes to USART1, and their
+ * number to USART3. The firmware's time stands still until all these bytes are received. */
 
 #include "stm32f405.h"
 #include "tmini_stm32_usart.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands in for the Pico SDK's header of this name. */
+/* Stand-in: see pico.h. */
 
 #ifndef HARDWARE_GPIO_H
 #define HARDWARE_GPIO_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Stands in for the Pico SDK's header of this name. */
+/* Stand-in: see pico.h. */
 
 #ifndef HARDWARE_UART_H
 #define HARDWARE_UART_H
@@ -14,8 +14,7 @@ extern uart_inst_t *const pico_uarts[2];
 #define uart0 (pico_uarts[0])
 #define uart1 (pico_uarts[1])
 
-/* Reading the data register removes an entry from the FIFO. Here, each use of the member `dr` does
- * this. */
+/* Reading the data register, the member `dr`, removes an entry from the FIFO. */
 typedef struct {
     volatile uint32_t taken[1];
     volatile uint32_t ris;

@@ -23,8 +23,8 @@ struct uart_config {
     uint8_t flow_ctrl;
 };
 
-/* Since Zephyr 3.3, setting the callback returns a result; since May 2026 (pull request 105231),
- * uart_irq_update() returns nothing. */
+/* Setting the callback returns a result since Zephyr 3.3; uart_irq_update() returns nothing since
+ * May 2026 (pull request 105231). */
 #ifdef ZEPHYR_BEFORE_3_3
 #define UART_CALLBACK_RESULT void
 #define UART_UPDATE_RESULT int
