@@ -181,7 +181,7 @@ static bool meets(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
     return true;
 }
 
-/* Differs from the following byte, so that the packet is really broken. */
+/* The inserted byte differs from the following one, so that the packet is really broken. */
 static void insert_before(sim_link_t *link, uint8_t following)
 {
     const uint8_t byte = spoiled(link, following);

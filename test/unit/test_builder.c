@@ -400,8 +400,8 @@ void test_a_jump_of_more_than_half_a_turn_ends_the_scan(void)
     TEST_ASSERT_TRUE(point(641 + 180 * DEGREE, 700 + 180 * DEGREE));
 }
 
-/* The next start packet is 4 degrees before the first point, then 1/64 degree more. */
-void test_a_turn_that_lacks_4_degrees_is_complete_and_no_more(void)
+/* The turn lacks 4 degrees the first time, and 1/64 degree more the second time. */
+void test_a_turn_that_lacks_more_than_4_degrees_is_incomplete(void)
 {
     static const uint16_t ends[] = {0, 23039};
     for (unsigned i = 0; i < 2; i++) {

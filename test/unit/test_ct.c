@@ -48,7 +48,7 @@ static bool add(uint8_t ct, uint16_t gap, uint8_t skipped)
     return verdict_on(ct, gap, skipped) == TMINI_CT_CONFIRMED;
 }
 
-/* Point packets without bytes between them; the last skipped byte is an earlier one. */
+/* Point packets without skipped bytes before them; 0xD8 was skipped earlier. */
 static void add_points(const uint8_t *cts, size_t count)
 {
     for (size_t i = 0; i < count; i++) {

@@ -487,8 +487,8 @@ static void make_turn(void)
     TEST_ASSERT_EQUAL_UINT(91, stream.size);
 }
 
-/* Returns a bit for each packet of the turn that is found at its place, which is moved by `moved`
- * if it is `from` or later. */
+/* Returns a bit for each packet of the turn that is found at its place. Places at or after `from`
+ * are expected to have moved by `moved`. */
 static unsigned found_packets(size_t from, int moved)
 {
     unsigned found = 0;
