@@ -159,9 +159,10 @@ typedef enum {
     TMINI_EVENT_FREQUENCY,      /**< tmini_frequency_chz() has been read, or set and read back. */
     TMINI_EVENT_REBOOTED,       /**< The time that a soft reboot takes has passed. */
     TMINI_EVENT_COMMAND_FAILED, /**< A command has failed; tmini_command_error() gives the reason.
-                                 * If the state is TMINI_STATE_STARTING, an attempt to start has
-                                 * failed and the next one follows. If it is TMINI_STATE_SCANNING,
-                                 * the wanted frequency could not be set. */
+                                 * If the state is TMINI_STATE_STARTING, it was an attempt to start
+                                 * or the command before the start, and an attempt follows. If it
+                                 * is TMINI_STATE_SCANNING, the wanted frequency could not be
+                                 * set. */
     TMINI_EVENT_UNWANTED_SCANNING, /**< A lidar that was stopped is scanning. The driver stops it
                                     * again, with the same events as tmini_stop(). */
     TMINI_EVENT_LOST, /**< Valid packets, or start packets, have stopped coming. The driver recovers
