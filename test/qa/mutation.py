@@ -105,7 +105,7 @@ def change_of(old, begin, end, replacement):
     last = next(i for i, span in enumerate(words) if span[1] >= end)
     first = max(i for i, span in enumerate(words) if span[0] <= begin)
     is_word = lambda i: re.search(r"\w", old[slice(*words[i])])
-    if not re.match(r"u?int|size_t|unsigned", old[begin:]): # A type needs no word before it.
+    if not re.match(r"u?int|size_t|unsigned", old[begin:]):  # A type needs no word before it.
         while first > 0 and not is_word(first := first - 1):
             pass
     while last + 1 < len(words) and not is_word(last := last + 1):
@@ -192,7 +192,7 @@ def has_functions(path):
 def sources_with(path):
     """The file itself if it is a source, and the sources in its folder that include it."""
     found = {path}
-    for _ in files_of(os.path.dirname(path)): # One round for each file in a chain of inclusions.
+    for _ in files_of(os.path.dirname(path)):  # One round for each file in a chain of inclusions.
         names = [f'#include "{os.path.basename(file)}"' for file in found]
         found |= {file for file in files_of(os.path.dirname(path)) if any(name in read(file) for name in names)}
     return sorted(file for file in found if not file.endswith(".h"))
@@ -207,12 +207,12 @@ class Build:
             self.entries = json.load(file)
         self.entry_of = {os.path.realpath(object_of(entry)): entry for entry in self.entries}
         self.archives, self.folders = [], []
-        for place, folders, files in os.walk(self.folder): # Does not follow links, which may form a circle.
+        for place, folders, files in os.walk(self.folder):  # Does not follow links, which may form a circle.
             if "CMakeCache.txt" in files and place != self.folder:
-                folders.clear() # This is another build.
+                folders.clear()  # This is another build.
                 continue
             self.archives += [os.path.join(place, file) for file in sorted(files) if file.endswith(".a") and
-                              os.path.isdir(os.path.join(place, "CMakeFiles", file[3:-2] + ".dir"))] # By this build.
+                              os.path.isdir(os.path.join(place, "CMakeFiles", file[3:-2] + ".dir"))]  # By this build.
             self.folders += [os.path.join(place, name) for name in sorted(folders) if re.match(r"test_.*\.dir$", name)]
 
     def entries_of(self, source):
@@ -239,8 +239,8 @@ class Test:
         self.name, self.folder, self.entry = name, folder, entry
         self.compiler, *self.flags = arguments_of(entry)
         self.variant = hashlib.sha256(f"{entry['file']} {self.flags}".encode()).hexdigest()[:16]
-        self.program = None # Linked when first needed.
-        self.seconds = 6.0 # Processor time with the original; an estimate until the test has run.
+        self.program = None  # Linked when first needed.
+        self.seconds = 6.0  # Processor time with the original; an estimate until the test has run.
         self.kills = 0
 
     def objects(self):
@@ -276,7 +276,7 @@ class Bench:
     def __init__(self, build, work):
         self.build, self.work = Build(build), work
         self.tests, self.originals = {}, {}
-        self.compiler, self.library, self.original_library = None, None, None # Used for mutants of headers.
+        self.compiler, self.library, self.original_library = None, None, None  # Used for mutants of headers.
 
     def tests_of(self, path):
         if path not in self.tests:
@@ -496,7 +496,7 @@ class Bench:
         if mutant.path.startswith(PUBLIC):
             return self.fate_of_header(mutant)
         tests = sorted(self.tests_of(mutant.path), key=lambda test: test.promise(mutant.path))
-        is_other = False # Checked only before the first test that takes long.
+        is_other = False  # Checked only before the first test that takes long.
         with self.changed(mutant):
             shared = {}
             for test in tests:

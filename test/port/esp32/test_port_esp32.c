@@ -482,7 +482,7 @@ void test_a_restart_sets_the_line_up_again_and_switches_reception_on(void)
     assert_calls("7 ");
 }
 
-/* The stories at each wait of the receiving task, and the ticks that it waits each time. */
+/* What happens in each wait of the receiving task (a story), and how many ticks it waits. */
 static const struct {
     const char *events[4];
     const char *calls;

@@ -251,8 +251,8 @@ void test_pauses_that_the_drivers_buffer_can_hold_cost_no_scan(void)
     }
 }
 
-/* 1570 bytes arrive in a pause: more than the lidar's ring holds. Otherwise the loop runs every 10
- * ms. */
+/* Pauses of 10 ms, but every 20th is longer: 1570 bytes arrive, more than the library's ring
+ * holds. */
 void test_a_pause_of_120_ms_between_polls_loses_nothing(void)
 {
     start_port_and_lidar();

@@ -30,7 +30,7 @@ typedef struct {
     uint32_t frequency_chz;
     uint32_t start_angle_q6; /* Angle of the start packets (section 9.8). */
     uint32_t revolutions;    /* At most LINE_REVOLUTIONS; the first one is not whole. */
-    bool ct_information;     /* And LastCRC (section 7); false: neither (section 9.1). */
+    bool ct_information;     /* Also LastCRC (section 7); false: neither (section 9.1). */
     bool spins_up;           /* The speed begins at 2.4 Hz. */
 } line_config_t;
 

@@ -26,7 +26,7 @@ typedef enum {
 /* Reasons why an incomplete scan may have points of two revolutions. */
 typedef enum {
     MIXED_UNTIMED, /* max_pause_ms is 0: pauses are not judged. */
-    MIXED_UNSEEN,  /* Between the two, a poll or a hand-over may have come late. */
+    MIXED_UNSEEN,  /* A poll or a hand-over between the two may have come late. */
     MIXED_DRIBBLE, /* Remains of damaged packets: each silence was shorter than max_pause_ms. */
     MIXED_STRANGE, /* None of these. */
     MIXED_KINDS

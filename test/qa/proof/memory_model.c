@@ -58,9 +58,9 @@ typedef struct {
     uint8_t index;               /* Its own index: head or tail. */
     uint8_t stop;                /* Producer: the index at which it loads the tail again. */
     uint8_t value;               /* The last value loaded. */
-    uint8_t refused;             /* Consumer: that of the loaded store; producer: the total. */
-    uint8_t turns;               /* Number of bytes put, or of turns of the parser. */
-    uint8_t last;                /* The last byte taken. */
+    uint8_t refused; /* Producer: refused bytes; consumer: `refused` of the last store loaded. */
+    uint8_t turns;   /* Number of bytes put, or of turns of the parser. */
+    uint8_t last;    /* The last byte taken. */
     bool found_closed;
 } thread_t;
 

@@ -244,7 +244,7 @@ def is_end(failure):
 def prove(checker, proof, broken):
     """Returns the number of properties, whether the result is as expected, and complaints."""
     checker.copy_sources()
-    checker.replace(*proof.broken, only_look=not broken) # Also checks that the table is up to date.
+    checker.replace(*proof.broken, only_look=not broken)  # Also checks that the table is up to date.
     if proof.inserted:
         checker.replace(*proof.inserted)
     total, complaints = 0, []
