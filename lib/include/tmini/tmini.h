@@ -167,7 +167,7 @@ typedef enum {
                                     * again, with the same events as tmini_stop(). */
     TMINI_EVENT_LOST, /**< Valid packets, or start packets, have stopped coming. The driver recovers
                        * the lidar unless configured not to. */
-    TMINI_EVENT_RECOVERED,      /**< Valid packets again. */
+    TMINI_EVENT_RECOVERED,      /**< Valid packets come again. */
     TMINI_EVENT_FAULTS_CHANGED, /**< tmini_faults() has changed, to 0 as well. */
     TMINI_EVENT_PACKET, /**< A packet, if there is no scan buffer: tmini_packet() is valid until the
                          * next tmini_poll(). */
@@ -185,7 +185,7 @@ typedef enum {
     TMINI_STATE_IDLE,       /**< Not scanning, and the line is quiet. */
     TMINI_STATE_BUSY,       /**< Carrying out a query, a frequency change or a reboot. */
     TMINI_STATE_STOPPING,   /**< Waiting for the line to fall quiet after a stop. */
-    TMINI_STATE_STARTING,   /**< Until the first packet, however many attempts it takes. */
+    TMINI_STATE_STARTING,   /**< Being started, until the first packet; any number of attempts. */
     TMINI_STATE_SCANNING,   /**< Packets come. */
     TMINI_STATE_RECOVERING, /**< Lost while scanning: the driver recovers it or, if configured not
                              * to, waits. */

@@ -82,7 +82,7 @@
 #include <util/atomic.h>
 
 /** Reads an index that the other side writes; no later access moves before it. Any context; two
- * accesses on this 8-bit machine, with interrupts kept out. */
+ * accesses on this 8-bit machine, with interrupts disabled. */
 TMINI_INLINE size_t tmini_load(const size_t *value)
 {
     size_t loaded;
@@ -94,7 +94,7 @@ TMINI_INLINE size_t tmini_load(const size_t *value)
 }
 
 /** Writes an index that the other side reads; no earlier access moves after it. Any context; two
- * accesses on this 8-bit machine, with interrupts kept out. */
+ * accesses on this 8-bit machine, with interrupts disabled. */
 TMINI_INLINE void tmini_store(size_t *value, size_t stored)
 {
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE)

@@ -28,10 +28,10 @@ typedef struct {
      * the call: copy what is sent later. Required, unless listen_only is configured. */
     int (*write)(void *context, const uint8_t *bytes, size_t count);
 
-    /** Milliseconds since any moment, modulo 2^32; steps of up to 10 ms are fine enough. Must not
-     * wait. If the clock steps back by up to a second (give or take 10 ms), no time counts until it
-     * has caught up. If it steps back by more, time-outs begin again. Scans are incomplete while it
-     * is more than 10 ms back. Required. */
+    /** Milliseconds since any moment, modulo 2^32; a resolution of 10 ms is enough. Must not wait.
+     * If the clock steps back by up to a second (give or take 10 ms), no time counts until it has
+     * caught up. If it steps back by more, time-outs begin again. Scans are incomplete while it is
+     * more than 10 ms back. Required. */
     uint32_t (*now_ms)(void *context);
 
     /** Lets other work run for about a millisecond (an RTOS delay, a sleep until the next

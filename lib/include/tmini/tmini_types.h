@@ -84,7 +84,7 @@ typedef struct {
 
 /** One revolution, or the received part of it, and its quality. */
 typedef struct {
-    tmini_point_t *points;    /**< The caller's own buffer, in order of arrival. */
+    tmini_point_t *points;    /**< The points in order of arrival, in the caller's buffer. */
     uint16_t count;           /**< Points in the buffer, at least one. */
     uint16_t dropped;         /**< Points that did not fit in it. */
     uint16_t packets;         /**< Packets received of this revolution. */
@@ -94,8 +94,8 @@ typedef struct {
     /** The measured frequency in 0.01 Hz, from the start packet that ends the scan; if that was
      * lost, from the last one received. 0: unknown. */
     uint16_t frequency_chz;
-    uint32_t start_ms; /**< The port's clock when its first sample came. */
-    uint32_t end_ms;   /**< The port's clock when the packet came that ended it. */
+    uint32_t start_ms; /**< The port's clock when the scan's first sample came. */
+    uint32_t end_ms;   /**< The port's clock when the packet that ended the scan came. */
     bool complete;     /**< A full circle from start packet to start packet, in the time of one
                         * turn, without a gap or dropped points. Four losses cannot be seen: up to
                         * 4 degrees at the end, if no LastCRC came; a whole turn, if polls are so

@@ -66,13 +66,13 @@ static inline float tmini_ros_radians(uint16_t angle_q6)
                             : tmini_radians((uint16_t)(TMINI_FULL_CIRCLE_Q6 - angle_q6));
 }
 
-/** A frequency of the library, in 0.01 Hz, in hertz. */
+/** Converts a frequency from 0.01 Hz to hertz. */
 static inline float tmini_hertz(uint16_t frequency_chz)
 {
     return (float)frequency_chz / 100.0f;
 }
 
-/** A distance of the library, in millimetres, in metres. 0 stays 0: no valid range. */
+/** Converts a distance from millimetres to metres. 0 stays 0: no valid range. */
 static inline float tmini_metres(uint16_t distance_mm)
 {
     return (float)distance_mm / 1000.0f;

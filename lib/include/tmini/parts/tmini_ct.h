@@ -7,7 +7,7 @@
  *
  * Packets do not carry that index, so a lost packet would shift the meaning of every later CT byte.
  * The lidar therefore sends a CRC-8 over a revolution's CT bytes, LastCRC, just before the next
- * start packet. A revolution's information is used only if LastCRC is present and equal and nothing
+ * start packet. A revolution's information is used only if LastCRC is present and right and nothing
  * was lost; otherwise all of it is dropped. Units that send neither LastCRC nor CT information
  * (section 9.1) never become "healthy, version 0.0": their information stays unknown.
  *

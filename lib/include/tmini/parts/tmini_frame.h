@@ -31,15 +31,15 @@ extern "C" {
 /** Bytes of a sample (section 5). */
 #define TMINI_SAMPLE_SIZE 3u
 
-/** The offset in a packet of sample `index`, from 0, in bytes. */
+/** The offset of sample `index` (from 0) in a packet, in bytes. */
 #define TMINI_SAMPLE_OFFSET(index) (TMINI_PACKET_HEADER_SIZE + TMINI_SAMPLE_SIZE * (index))
-/** The bytes of a packet with this many samples. */
+/** The size in bytes of a packet with this number of samples. */
 #define TMINI_PACKET_SIZE(samples) TMINI_SAMPLE_OFFSET(samples)
 
 /** A packet or reply that the parser has found. Members may be read. */
 typedef struct tmini_frame {
     tmini_ring_t *ring; /**< Holds the frame; its first byte is the oldest in the ring. */
-    uint8_t header[TMINI_PACKET_HEADER_SIZE - TMINI_START_SIGN_SIZE]; /**< After the start sign. A
+    uint8_t header[TMINI_PACKET_HEADER_SIZE - TMINI_START_SIGN_SIZE]; /**< Without the start sign; a
                                                                        * reply's is shorter. */
     uint16_t size;            /**< Size of the frame in bytes. */
     uint16_t gap;             /**< Bytes skipped since the previous frame; TMINI_GAP_UNKNOWN: bytes

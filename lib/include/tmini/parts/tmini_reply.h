@@ -40,8 +40,8 @@ typedef enum {
 #define TMINI_HEALTH_SIZE 3u
 /** Bytes of a scan frequency reply's content (section 4). */
 #define TMINI_FREQUENCY_SIZE 4u
-/** Writes the header of the reply to `command` to `header`. Returns false for the commands that
- * have no reply: stop and reboot. */
+/** Writes to `header` how the reply to `command` begins. Returns false for the commands that have
+ * no reply: stop and reboot. */
 bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header);
 
 /** Reads the device information from a reply's 20 bytes. The firmware's minor number comes first:
