@@ -42,7 +42,7 @@ class Files:
             self.executable.add(name)
 
     def link_outside(self, home, tag):
-        """Lets links to files that are not in this archive lead to the project's address."""
+        """Replaces links to files that are not in this archive by links to the project's address."""
         for place, name in self.places.items():
             if name.endswith((".md", "PKG-INFO")):
                 text = REPOSITORY.sub("", self.contents[name].decode())

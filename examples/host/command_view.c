@@ -32,8 +32,8 @@ typedef struct {
 
 typedef struct {
     recording_t recording;
-    uint32_t position_ms; /* A time in the recording, */
-    uint32_t since_ms;    /* reached at this time of the clock. */
+    uint32_t position_ms; /* The place in the recording */
+    uint32_t since_ms;    /* at this time of the clock. */
     bool is_paused;
 } player_t;
 

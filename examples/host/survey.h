@@ -40,9 +40,9 @@ typedef struct {
     survey_reply_t reply;
     uint64_t start_us;
     uint64_t first_us;  /* When the measurement of the first packet began. */
-    uint64_t stop_us;   /* When the stop command was sent, */
-    uint64_t last_us;   /* when the last byte came, */
-    uint64_t steady_us; /* and when the motor has certainly reached its speed. */
+    uint64_t stop_us;   /* When the stop command was sent. */
+    uint64_t last_us;   /* When the last byte came. */
+    uint64_t steady_us; /* When the motor has certainly reached its speed. */
     uint32_t packets, start_packets, lone_packets;
     uint32_t guards, confirmed, refuted, guards_aa, damages;
     uint32_t samples, flagged;
@@ -50,12 +50,12 @@ typedef struct {
     uint8_t longest;
     uint32_t until_start_q6; /* The angle from the first packet to the first start packet. */
     uint16_t first_q6;
-    uint16_t start_q6;    /* The angle of start packets at full speed: that of the first one, */
-    int32_t start_sum_q6; /* the sum of the others' differences from it, */
-    uint32_t turns;       /* their number, their samples and the sum of the frequencies that they
-                           * reported, */
+    uint16_t start_q6;    /* The first start packet's angle at full speed. */
+    int32_t start_sum_q6; /* The sum of the other start packets' differences from it. */
+    uint32_t turns;       /* Turns at full speed, their samples and the sum of the frequencies that
+                           * they reported. */
     uint32_t turn_samples, turn_reported_dhz;
-    uint32_t steady_samples; /* all samples at full speed, and the end of that time. */
+    uint32_t steady_samples; /* All samples at full speed, and the end of that time. */
     uint64_t steady_end_us;
     uint32_t before_error, after_error; /* How far the reported frequency is from that of the turn
                                          * before and after it. */
@@ -90,7 +90,7 @@ typedef struct {
     survey_steps_t steps;
     uint32_t boot_ms;
     uint32_t unasked_bytes; /* Bytes that the unit sends while it boots. */
-    uint32_t changed_chz;   /* The frequency before the reboot, */
+    uint32_t changed_chz;   /* The frequency set before the reboot. */
     uint32_t kept_chz;      /* and after it. */
     survey_scan_t scans[SURVEY_SCANS];
 } survey_t;

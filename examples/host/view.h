@@ -18,9 +18,10 @@ typedef struct {
     const stream_t *stream;
     unsigned faults;   /* A combination of tmini_fault_t, or TMINI_FAULTS_UNKNOWN. */
     unsigned zoom_mm;  /* The range chosen by the user; 0: as far as the points. */
-    unsigned range_mm; /* The range shown; 0: to be chosen. The rest is private to view_draw(): */
-    survey_t survey;   /* of the scan, and */
-    survey_t colours;  /* the range of its colours, so that an intensity keeps its colour. */
+    unsigned range_mm; /* The range shown; 0: to be chosen. */
+    survey_t survey;   /* Private to view_draw(): the survey of the scan. */
+    survey_t colours;  /* Private: the range of the colours, so that an intensity keeps its
+                        * colour. */
 } view_t;
 
 /* Draws the view on the screen, whatever its size. */

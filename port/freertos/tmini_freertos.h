@@ -78,7 +78,7 @@ typedef struct {
     void (*restart)(void *uart); /**< As `restart` of tmini_port_t; NULL: none. */
     uint8_t *stream;      /**< The stream buffer's memory; NULL: no stream and no receiving task. */
     size_t stream_size;   /**< 128 or more; 1024 bytes last 44 ms. */
-    UBaseType_t priority; /**< Of the receiving task: above the task that polls. */
+    UBaseType_t priority; /**< The receiving task's: above the polling task's. */
 } tmini_freertos_wiring_t;
 
 /** Received bytes on their way to the lidar. Running totals, modulo 2^32. */

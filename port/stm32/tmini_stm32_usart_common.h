@@ -17,7 +17,7 @@
  * 3.3 % in all, and the lidar's own clock needs part of it. */
 #define BAUD_ERROR_MAX 20u
 
-/** The same bits in SR and ISR. */
+/** These bits are the same in SR and ISR. */
 #define STATUS_FE (1u << 1)
 #define STATUS_NE (1u << 2)
 #define STATUS_ORE (1u << 3)

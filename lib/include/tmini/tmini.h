@@ -81,10 +81,10 @@ typedef struct {
      * new byte although the clock has advanced. */
     uint16_t frame_timeout_ms;
     /** A pause of the line ends a scan if it is longer than this and longer than half a turn (42 ms
-     * at 12 Hz): a whole turn may be missing, and the angles would not show it. Bytes that were
-     * held back before they were fed shorten the pause by the time that the line needs to send
-     * them. Raise the value where a layer below delays bytes: 250 for a computer. 0: pauses are not
-     * looked for. Whatever the value, a scan that took more than one and a half turns has a gap. */
+     * at 12 Hz): a whole turn may be missing, and the angles would not show it. If bytes were held
+     * back before they were fed, the time that they need on the line is subtracted. Raise the value
+     * where a layer below delays bytes: 250 for a computer. 0: pauses are not looked for. Whatever
+     * the value, a scan that took more than one and a half turns has a gap. */
     uint16_t max_pause_ms;
     /** After a stop, the line counts as quiet when it has been silent for this long (below 600).
      * Bytes that a layer below holds for longer seem to come after the next start. 0: at once. */

@@ -40,7 +40,8 @@ extern "C" {
 typedef struct tmini_frame {
     tmini_ring_t *ring; /**< Holds the frame; its first byte is the oldest in the ring. */
     uint8_t header[TMINI_PACKET_HEADER_SIZE - TMINI_START_SIGN_SIZE]; /**< Without the start sign; a
-                                                                       * reply's is shorter. */
+                                                                       * reply's header is
+                                                                       * shorter. */
     uint16_t size;            /**< Size of the frame in bytes. */
     uint16_t gap;             /**< Bytes skipped since the previous frame; TMINI_GAP_UNKNOWN: bytes
                                * were lost. */

@@ -56,8 +56,8 @@ extern "C" {
 typedef struct {
     size_t head;      /**< Written by the producer: the place of the next byte. */
     size_t stop;      /**< The producer's own: where it must read the tail again. */
-    uintptr_t origin; /**< The producer's own: below stop, origin + head is the address of the next
-                       * byte. */
+    uintptr_t origin; /**< The producer's own: while head is below stop, origin + head is the
+                       * address of the next byte. */
     size_t tail;      /**< Written by the consumer: the oldest byte not yet given back. Head is at
                        * most one size ahead. */
     uint8_t *memory;  /**< The caller's memory. */
@@ -170,7 +170,7 @@ static inline bool tmini_ring_is_full(const tmini_ring_t *ring)
 }
 
 /** The unread byte at `offset`, counted from the oldest; `offset` is below tmini_ring_unread(). A
- * larger one reads some other byte of the ring's memory, never one outside it. */
+ * larger offset reads some other byte of the ring's memory, never one outside it. */
 static inline uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 {
     return ring->memory[(ring->tail + offset) & (ring->size - 1)];
