@@ -104,7 +104,6 @@ static bool read_number(const option_t *option, const char *text, unsigned *numb
     return true;
 }
 
-/* Returns false and prints the reason if the option does not accept the value. */
 static bool apply(options_t *options, const option_t *option, const char *value)
 {
     void *const member = (char *)options + option->place;
@@ -166,7 +165,6 @@ static const char *advice(const char *nearest, const char *before)
     return text;
 }
 
-/* Prints what getopt_long() did not accept. */
 static bool refuse(const options_t *options, int answer, const char *word)
 {
     const char *const command = options->word_count > 0 ? options->words[0] : "COMMAND";

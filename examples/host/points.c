@@ -13,7 +13,6 @@
 
 #define EIGHTH_Q6 (TMINI_FULL_CIRCLE_Q6 / 8)
 
-/* Adds a point that has a distance. */
 static void look_at(survey_t *survey, const tmini_point_t *point)
 {
     survey->valid++;
@@ -141,7 +140,6 @@ const char rows_help[] =
     "Distance 0: no valid range. Flag 2: specular interference, 3: ambient light.\n"
     "Angles count clockwise, seen from above.";
 
-/* The frequency in hertz, or `unknown` if it is 0. */
 static const char *hertz(unsigned frequency_chz, const char *unknown)
 {
     static char text[24];

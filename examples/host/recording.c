@@ -18,7 +18,6 @@
 /* Shorter recordings are read at once. */
 #define LONG_SIZE 20000000u
 
-/* For a user who waits for a long recording. */
 static void show_progress(recording_t *recording)
 {
     const unsigned percent =

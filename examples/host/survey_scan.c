@@ -23,7 +23,6 @@ static uint32_t difference(uint32_t a, uint32_t b)
     return a > b ? a - b : b - a;
 }
 
-/* Notes the rotor's speed, computed from the packet's angles. */
 static void note_speed(survey_scan_t *scan, const tmini_packet_t *packet, uint64_t now_us)
 {
     const uint32_t swept_q6 = tmini_clockwise(packet->first_angle_q6, packet->last_angle_q6);

@@ -202,7 +202,6 @@ static bool read_first_angle(const survey_t *survey, char text[TEXT_SIZE])
            put(text, true, (int)rounded(scan->first_q6 / 64.0, 1) % 360, 0);
 }
 
-/* An early speed as a share of the last one. */
 static double share_of_speed(const survey_scan_t *scan, uint32_t i)
 {
     const uint32_t last_chz = survey_scan_measured_chz(scan);

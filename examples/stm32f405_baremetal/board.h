@@ -23,7 +23,6 @@
 #define BOARD_USART1_CLOCK_HZ 84000000u /* Bus APB2. */
 #define BOARD_USART2_CLOCK_HZ 42000000u /* Bus APB1. */
 
-/* Milliseconds since board_start(). */
 extern volatile uint32_t board_time_ms;
 
 /* Sets everything up; the drive is off, the lidar's interrupt not yet enabled. */

@@ -142,7 +142,6 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
     return wanted;
 }
 
-/* The distance occupies the bits above the flag. */
 bool tmini_packet_has_range(const tmini_packet_t *packet)
 {
     const tmini_frame_t *const frame = packet->frame;

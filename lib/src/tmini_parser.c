@@ -297,7 +297,6 @@ static void release_frame(tmini_parser_t *parser)
     }
 }
 
-/* Delivers the complete candidate, of `need` bytes, as a frame. */
 static tmini_frame_type_t deliver(tmini_parser_t *parser)
 {
     tmini_frame_t *const frame = &parser->frame;

@@ -32,7 +32,6 @@ export class Library {
         this.constants = strict(this.#table(exports.constants(), Int32Array));
     }
 
-    // Calls a library function by name.
     call(name, ...values) {
         return this.#exports[name](...values);
     }

@@ -65,7 +65,6 @@ export class Picture {
         new ResizeObserver(() => this.draw()).observe(canvas);
     }
 
-    // The colours have changed.
     retheme() {
         this.#readTheme();
         this.draw();
@@ -313,7 +312,6 @@ export class Picture {
         context.stroke();
     }
 
-    // Paints the points shade by shade.
     #paintPoints(frame, points) {
         const context = this.#context;
         const { darkest, brightest } = this.#numbers;

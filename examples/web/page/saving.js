@@ -42,7 +42,6 @@ export class Recorder {
         this.#chunks = [];
     }
 
-    // Drops all bytes so far.
     clear() {
         this.#chunks = [];
     }

@@ -29,7 +29,6 @@ uint32_t numbers_count(void);
 /* Shows `scan`, which is copied. */
 void shown_take(const tmini_scan_t *scan);
 
-/* Nothing is shown. */
 void shown_clear(void);
 
 #endif

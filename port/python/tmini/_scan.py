@@ -44,7 +44,6 @@ class Scan:
     start_s: float  # On the clock time.monotonic(); of a recording, since its beginning.
 
     def __init__(self, native: Any, number: int, faults: int, start_s: float) -> None:
-        """Copies the scan from the library's structure."""
         self.number = number
         self.complete = native.complete
         self.frequency_hz = native.frequency_chz / 100 if native.frequency_chz else None
