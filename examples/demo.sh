@@ -8,6 +8,11 @@
 
 set -eu
 
+if [ $# -gt 0 ]; then
+    sed -n '5,7s/^# \{0,1\}//p' "$0" >&2
+    exit 2
+fi
+
 root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=test/support/packages.sh
 . "$root/test/support/packages.sh"
@@ -40,7 +45,7 @@ start_lidar() {
     "$build/bin/tmini-sim" --pty >"$build/lidar.port" &
     lidar=$!
     trap 'kill "$lidar" 2>/dev/null || true' EXIT
-    trap 'exit 1' INT TERM HUP
+    trap 'exit 1' INT TERM HUP PIPE
     for _ in 1 2 3 4 5 6 7 8 9 10; do
         port=$(head -n 1 "$build/lidar.port")
         [ -z "$port" ] || return 0
