@@ -489,13 +489,16 @@ static bool has_port(const tmini_config_t *config)
     return port != NULL && port->now_ms != NULL && (port->write != NULL || config->listen_only);
 }
 
-/* Checks members that require or exclude each other. */
+/* Checks members that require or exclude each other. The line must become quiet before a stop times
+ * out. */
 static bool fits_together(const tmini_config_t *config)
 {
     return (config->frequency_chz == 0 ||
             (is_frequency(config->frequency_chz) && !config->listen_only)) &&
-           (config->points != NULL || (config->step == NULL && config->spare_points == NULL)) &&
-           (config->step != NULL || config->step_data == NULL);
+           (config->points != NULL ? config->spare_points != config->points
+                                   : config->step == NULL && config->spare_points == NULL) &&
+           (config->step != NULL || config->step_data == NULL) &&
+           (config->timing == NULL || config->timing->quiet_line_ms < TMINI_STOP_TIMEOUT_MS);
 }
 
 /* Ring and decoder check their own parts of the configuration. */

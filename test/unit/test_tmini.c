@@ -134,6 +134,23 @@ void test_more_points_than_can_be_counted_are_refused(void)
     }
 }
 
+void test_one_buffer_for_two_scans_is_refused(void)
+{
+    rig.config.spare_points = rig.config.points;
+    is_refused(&rig.config);
+}
+
+void test_a_line_that_is_quiet_only_after_a_stop_has_timed_out_is_refused(void)
+{
+    tmini_timing_t timing = tmini_timing_default;
+
+    rig.config.timing = &timing;
+    timing.quiet_line_ms = 599;
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&rig.lidar, &rig.config));
+    timing.quiet_line_ms = 600;
+    is_refused(&rig.config);
+}
+
 void test_an_undefined_filter_is_refused(void)
 {
     rig.config.filter = 1;
