@@ -57,10 +57,23 @@ targets() {
     fi
 }
 
+# check_labels: ends the script if a label does not exist.
+check_labels() {
+    known=$(ctest --test-dir "$root/build" -C All --print-labels | sed -n 's/^  //p')
+    for label in $labels; do
+        if ! echo "$known" | grep -qx -- "$label"; then
+            # shellcheck disable=SC2086 # the labels fit on a line
+            echo "no such label: $label. There are:" $known >&2
+            exit 2
+        fi
+    done
+}
+
 # Output is shown only if a step fails.
 echo "Building in $root/build"
 quietly cmake -S "$root" -B "$root/build" -DTMINI_BUILD_TESTS=ON \
     -DTMINI_BUILD_EXAMPLES=ON -DTMINI_WERROR=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
+check_labels
 # shellcheck disable=SC2046 # targets are several words
 quietly cmake --build "$root/build" --parallel "$(job_count)" --target $(targets)
 
