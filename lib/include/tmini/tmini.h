@@ -77,8 +77,9 @@ extern "C" {
 
 /** The driver's waiting times, in milliseconds. To change one, copy tmini_timing_default first. */
 typedef struct {
-    /** An incomplete packet is given up after this much silence. 0: at the first poll that finds no
-     * new byte although the clock has advanced. */
+    /** An incomplete packet is given up after this much silence. Raise it where a layer below delays
+     * bytes: 250 for a computer. 0: at the first poll that finds no new byte although the clock has
+     * advanced. */
     uint16_t frame_timeout_ms;
     /** A pause of the line ends a scan if it is longer than this and longer than half a turn (42 ms
      * at 12 Hz): a whole turn may be missing, and the angles would not show it. If bytes were held
