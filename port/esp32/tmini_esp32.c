@@ -288,7 +288,7 @@ static void look_for_lost_events(tmini_esp32_t *port)
 /* The lidar is lost, perhaps because something has changed the UART, its interrupts or its pins:
  * sets them up again. Bytes that the driver still holds are older than the loss, and are
  * dropped. */
-static void begin_anew(tmini_esp32_t *port)
+static void set_up_again(tmini_esp32_t *port)
 {
     const uart_port_t uart = (uart_port_t)port->wiring.uart;
     (void)set_up_uart(&port->wiring);
@@ -307,7 +307,7 @@ static size_t receive(tmini_esp32_t *port, TickType_t ticks)
     TickType_t wait = ticks;
     if (load(&port->restarting)) {
         store(&port->restarting, false);
-        begin_anew(port);
+        set_up_again(port);
     }
     while (xQueueReceive(port->events, &event, wait) == pdTRUE) {
         take_event(port, &event);

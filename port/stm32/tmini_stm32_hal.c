@@ -417,7 +417,7 @@ static bool begin_reception(tmini_stm32_hal_t *port)
     return begin_uninterrupted(port) == HAL_OK;
 }
 
-static void begin_anew(tmini_stm32_hal_t *port)
+static void restart_reception(tmini_stm32_hal_t *port)
 {
     port->counters.restarts = port->counters.restarts + 1;
     if (port->reception != RECEPTION_DMA) {
@@ -434,7 +434,7 @@ static void look_after_reception(tmini_stm32_hal_t *port, uint32_t time_ms)
     }
     if (!is_receiving(port)) {
         if (time_ms - port->started_ms >= RESTART_PAUSE_MS) {
-            begin_anew(port);
+            restart_reception(port);
         }
     } else if (port->reception != RECEPTION_BYTES) {
         hand_over_new(port);
@@ -541,7 +541,7 @@ static void restart(void *context)
 {
     tmini_stm32_hal_t *const port = context;
     if (port->reception != RECEPTION_NONE) {
-        begin_anew(port);
+        restart_reception(port);
     }
 }
 
