@@ -477,7 +477,7 @@ static bool run_dma(state_t *state, unsigned choice)
     return false;
 }
 
-enum { DMA_BEGINS, DMA_DROPS, DMA_BYTE, DMA_FENCE, DMA_AGAIN };
+enum { DMA_BEGINS, DMA_BYTE, DMA_FENCE, DMA_AGAIN };
 
 /* The parser drops bytes that may be overwritten, reads a byte, and checks that it was intact. */
 static bool take_from_dma(state_t *state, unsigned choice)
