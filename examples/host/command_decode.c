@@ -111,7 +111,8 @@ static void print_summary(const gist_t *gist, const tape_t *tape)
                  "%llu after the last\n",
                  tape->bytes, (double)tape->time_us / 1e6,
                  tape->chunks.version > 0 ? "" : " (at 4000 samples per second)", stream->packets,
-                 stream->guard_bytes, gist->bytes_before, tape_skipped(tape) - gist->bytes_until);
+                 stream->last_crc_bytes, gist->bytes_before,
+                 tape_skipped(tape) - gist->bytes_until);
 }
 
 static void print_counters(FILE *file, const char *format, const tape_t *tape)

@@ -48,7 +48,7 @@ static void keep_scan(stream_t *stream)
 static void count_gap(stream_t *stream, const tmini_packet_t *packet)
 {
     if (tmini_packet_is_start(packet) && packet->gap == 1) {
-        stream->guard_bytes++;
+        stream->last_crc_bytes++;
     } else if (packet->gap > 0 && packet->gap != TMINI_GAP_UNKNOWN && stream->packets > 0) {
         const unsigned packets = (packet->gap + PACKET_SIZE / 2) / PACKET_SIZE;
         stream->stray_bytes += packet->gap;
@@ -130,5 +130,5 @@ unsigned stream_damaged_permille(const stream_t *stream)
 
 bool stream_reports_nothing(const stream_t *stream)
 {
-    return stream->confirmed == 0 && stream->complete > 0 && stream->guard_bytes == 0;
+    return stream->confirmed == 0 && stream->complete > 0 && stream->last_crc_bytes == 0;
 }

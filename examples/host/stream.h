@@ -27,7 +27,7 @@ typedef struct {
     count_t points_before;      /* Points before the first start packet. */
     count_t damaged;            /* Estimated number of packets lost in damaged bytes. */
     count_t stray_bytes;        /* Bytes between packets, without LastCRC. */
-    count_t guard_bytes;        /* LastCRC bytes (section 7). */
+    count_t last_crc_bytes;     /* LastCRC bytes (section 7). */
     count_t confirmed;          /* Revolutions that LastCRC confirmed. */
     uint32_t packet_ms;         /* When the latest packet came. */
     uint32_t longest_ms;        /* The longest pause between two packets. */

@@ -44,7 +44,7 @@ typedef struct {
     uint64_t last_us;   /* When the last byte came. */
     uint64_t steady_us; /* When the motor has certainly reached its speed. */
     uint32_t packets, start_packets, lone_packets;
-    uint32_t guards, confirmed, refuted, guards_aa, damages;
+    uint32_t last_crc_bytes, confirmed, refuted, last_crcs_aa, damages;
     uint32_t samples, flagged;
     bool has_ct, begins_with_start;
     uint8_t longest;

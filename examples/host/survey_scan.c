@@ -61,10 +61,10 @@ static void note_steady_turn(survey_scan_t *scan, const tmini_packet_t *packet)
 static void note_start(survey_scan_t *scan, const tmini_packet_t *packet, uint64_t now_us)
 {
     const uint8_t verdict = scan->decoder.verdict;
-    scan->guards += packet->gap == 1 ? 1 : 0;
+    scan->last_crc_bytes += packet->gap == 1 ? 1 : 0;
     scan->confirmed += verdict == TMINI_CT_CONFIRMED ? 1 : 0;
     scan->refuted += verdict == TMINI_CT_REFUTED ? 1 : 0;
-    scan->guards_aa += verdict == TMINI_CT_CONFIRMED && scan->crc == 0xAA ? 1 : 0;
+    scan->last_crcs_aa += verdict == TMINI_CT_CONFIRMED && scan->crc == 0xAA ? 1 : 0;
     scan->crc = 0;
     if (scan->start_packets > 0) {
         compare_reported(scan);
@@ -130,8 +130,8 @@ static void note_way(survey_scan_t *scan, const tmini_packet_t *packet)
  * missing in the gap are counted, too. */
 static void note_gap(survey_scan_t *scan, const tmini_packet_t *packet)
 {
-    const bool is_guard = tmini_packet_is_start(packet) && packet->gap == 1;
-    if (scan->packets > 0 && packet->gap > 0 && !is_guard) {
+    const bool is_last_crc = tmini_packet_is_start(packet) && packet->gap == 1;
+    if (scan->packets > 0 && packet->gap > 0 && !is_last_crc) {
         scan->damages++;
         scan->is_damaged = true;
         scan->steady_samples += scan->steady_us != 0 ? packet->gap * 40u / 130u : 0;

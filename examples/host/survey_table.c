@@ -328,7 +328,7 @@ static bool read_last_crc(const survey_t *survey, char text[TEXT_SIZE])
 {
     const survey_scan_t *const scan = slow(survey);
     return put_word(text, scan->start_packets < 2                ? NULL
-                          : scan->guards == 0                    ? "absent"
+                          : scan->last_crc_bytes == 0            ? "absent"
                           : scan->refuted < scan->confirmed      ? "right"
                           : scan->refuted + scan->confirmed == 0 ? NULL
                                                                  : "wrong");
@@ -339,7 +339,7 @@ static bool read_aa(const survey_t *survey, char text[TEXT_SIZE])
 {
     uint32_t seen = 0;
     for (size_t i = 0; i < SURVEY_SCANS; i++) {
-        seen += survey->scans[i].guards_aa;
+        seen += survey->scans[i].last_crcs_aa;
     }
     return put_word(text, seen > 0 ? "seen" : NULL);
 }

@@ -424,7 +424,7 @@ void test_what_precedes_the_first_packet_is_no_damage(void)
 }
 
 /* Two bytes before a start packet are damage. */
-void test_one_byte_before_a_start_packet_is_a_guard(void)
+void test_one_byte_before_a_start_packet_is_a_last_crc(void)
 {
     for (unsigned count = 1; count <= 2; count++) {
         setUp();
@@ -432,7 +432,7 @@ void test_one_byte_before_a_start_packet_is_a_guard(void)
         put_garbage(count);
         put_turn();
         play_whole();
-        TEST_ASSERT_EQUAL_UINT64(count == 1 ? 1 : 0, tape.stream.guard_bytes);
+        TEST_ASSERT_EQUAL_UINT64(count == 1 ? 1 : 0, tape.stream.last_crc_bytes);
         TEST_ASSERT_EQUAL_UINT64(count == 1 ? 0 : 2, tape.stream.stray_bytes);
     }
 }
@@ -484,7 +484,7 @@ void test_a_unit_may_report_nothing_in_the_stream(void)
     TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());
     TEST_ASSERT_TRUE(stream_reports_nothing(&tape.stream));
     TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, stream_faults(&tape.stream));
-    tape.stream.guard_bytes = 1; /* LastCRC has come, so a report may follow. */
+    tape.stream.last_crc_bytes = 1; /* LastCRC has come, so a report may follow. */
     TEST_ASSERT_FALSE(stream_reports_nothing(&tape.stream));
 }
 
@@ -495,8 +495,8 @@ void test_a_unit_may_report_its_health_in_the_stream(void)
     play_whole();
     TEST_ASSERT_EQUAL_UINT(0, stream_faults(&tape.stream));
     TEST_ASSERT_FALSE(stream_reports_nothing(&tape.stream));
-    TEST_ASSERT_EQUAL_UINT64(tape.stream.start_packets - 1, tape.stream.guard_bytes);
-    TEST_ASSERT_EQUAL_UINT64(tape.stream.guard_bytes, tape.stream.confirmed);
+    TEST_ASSERT_EQUAL_UINT64(tape.stream.start_packets - 1, tape.stream.last_crc_bytes);
+    TEST_ASSERT_EQUAL_UINT64(tape.stream.last_crc_bytes, tape.stream.confirmed);
 }
 
 /* ----------------------------------------------------------------------------- what is a scan */

@@ -178,7 +178,7 @@ class Recordings(Viewer):
         self.page.wait_text("#packets", str(stats["packets"]))
         self.assertEqual([stats[key] for key in ("bytes", "packets", "start_packets", "checksum_errors")],
                          [self.number(key) for key in ("#bytes", "#packets", "#scans", "#checksums")])
-        self.assertEqual(stats["bytes_skipped"], self.number("#skipped") + self.number("#guards"))
+        self.assertEqual(stats["bytes_skipped"], self.number("#skipped") + self.number("#last-crc-bytes"))
 
     def test_clean(self):
         self.check(RECORDINGS / "sim-6hz.bin")
@@ -297,7 +297,7 @@ class Simulated(Viewer):
         self.assertRegex(self.page.text("#sector6"), r"^2\.(19|20)\d m$")
         self.assertRegex(self.page.text("#sector4"), r"^1\.(69|70)\d m$")
         self.assertEqual([0] * 4, [self.number(key) for key in ("#checksums", "#skipped", "#overrun", "#losses")])
-        self.assertGreater(self.number("#guards"), 6)  # One for each revolution.
+        self.assertGreater(self.number("#last-crc-bytes"), 6)  # One for each revolution.
         self.assertGreater(self.coloured(), 500)
 
     def test_rotor_blocked(self):

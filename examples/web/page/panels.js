@@ -70,7 +70,7 @@ export function showCounters(numbers) {
     setText('bytes', numbers?.bytes ?? '–');
     setText('packets', numbers?.packets ?? '–');
     setText('scans', numbers?.scans ?? '–');
-    setText('guards', numbers?.guardBytes ?? '–');
+    setText('last-crc-bytes', numbers?.lastCrcBytes ?? '–');
     setText('skipped', numbers?.bytesSkipped ?? '–');
     setCount('checksums', numbers?.checksumErrors);
     setCount('overrun', numbers?.bytesOverrun);

@@ -176,16 +176,17 @@ EXPORTED uint32_t lidar_numbers(void)
     tmini_ct_info_t ct;
     tmini_counters(&live.lidar, &counters);
     tmini_ct_info(&live.lidar, &ct);
-    uint32_t guards = (uint32_t)live.tape.stream.guard_bytes;
-    guards = guards < counters.bytes_skipped ? guards : counters.bytes_skipped;
+    uint32_t last_crc_bytes = (uint32_t)live.tape.stream.last_crc_bytes;
+    last_crc_bytes =
+        last_crc_bytes < counters.bytes_skipped ? last_crc_bytes : counters.bytes_skipped;
     numbers_clear();
     numbers_put("bytes", live.received);
     numbers_put("packets", counters.packets);
     numbers_put("checksumErrors", counters.checksum_errors);
     numbers_put("bytesInPackets", counters.bytes_in_packets);
     numbers_put("bytesInReplies", counters.bytes_in_replies);
-    numbers_put("bytesSkipped", counters.bytes_skipped - guards);
-    numbers_put("guardBytes", guards);
+    numbers_put("bytesSkipped", counters.bytes_skipped - last_crc_bytes);
+    numbers_put("lastCrcBytes", last_crc_bytes);
     numbers_put("bytesOverrun", counters.bytes_overrun);
     numbers_put("scans", counters.scans);
     numbers_put("timeouts", counters.timeouts);

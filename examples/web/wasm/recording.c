@@ -92,8 +92,8 @@ EXPORTED uint32_t recording_numbers(void)
     numbers_put("damages", tape->chunks.damages);
     numbers_put("packets", counters.packets);
     numbers_put("checksumErrors", counters.checksum_errors);
-    numbers_put("bytesSkipped", counters.bytes_skipped - (uint32_t)stream->guard_bytes);
-    numbers_put("guardBytes", (uint32_t)stream->guard_bytes);
+    numbers_put("bytesSkipped", counters.bytes_skipped - (uint32_t)stream->last_crc_bytes);
+    numbers_put("lastCrcBytes", (uint32_t)stream->last_crc_bytes);
     numbers_put("bytesOverrun", counters.bytes_overrun);
     numbers_put("scans", (uint32_t)stream->start_packets);
     numbers_put_ct(&ct);
