@@ -407,9 +407,9 @@ static HAL_StatusTypeDef begin_uninterrupted(tmini_stm32_hal_t *port)
     return status;
 }
 
+/* Call forget_reception() first. */
 static bool begin_reception(tmini_stm32_hal_t *port)
 {
-    forget_reception(port);
     port->started_ms = HAL_GetTick();
     if (port->reception != RECEPTION_BYTES) {
         prepare_circle(port);
@@ -417,9 +417,11 @@ static bool begin_reception(tmini_stm32_hal_t *port)
     return begin_uninterrupted(port) == HAL_OK;
 }
 
+/* The old reception ends first, because only one context at a time may feed the lidar. */
 static void restart_reception(tmini_stm32_hal_t *port)
 {
     port->counters.restarts = port->counters.restarts + 1;
+    forget_reception(port);
     if (port->reception != RECEPTION_DMA) {
         tmini_feed_gap(port->lidar);
     }
@@ -589,6 +591,7 @@ static tmini_status_t start_reception(tmini_stm32_hal_t *port, tmini_t *lidar,
     port->buffer = buffer;
     port->size = (uint16_t)size;
     port->reception = (uint8_t)reception;
+    forget_reception(port);
     return begin_reception(port) ? TMINI_OK : TMINI_ERROR_STATE;
 }
 

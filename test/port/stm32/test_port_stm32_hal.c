@@ -128,6 +128,33 @@ void test_bytes_do_not_arrive_after_stop_and_arrive_again_after_start(void)
     TEST_ASSERT_EQUAL_UINT32(3, hal_rig_packets());
 }
 
+/* Fills the receive buffer to its end and empties it, so that the next byte goes to its beginning.
+ * That byte comes during the restart, at each access in turn. */
+void test_bytes_that_come_during_a_restart_stay_within_the_buffer(void)
+{
+    static uint8_t memory[256 + 1];
+    static const uint8_t noise[256 + 1];
+    const tmini_config_t config = {
+        .port = &tmini_stm32_hal_port,
+        .port_context = &hal_rig.port,
+        .rx_buffer = memory,
+        .rx_size = 256,
+    };
+    for (uint32_t accesses = 1; accesses <= 40; accesses++) {
+        hal_rig_open(BY_BYTES);
+        TEST_ASSERT_EQUAL(TMINI_OK, tmini_init(&hal_rig.lidar, &config));
+        TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+        line_send(noise, 256);
+        hal_rig_run();
+        memory[256] = 0xEE;
+        line_send(noise, 1);
+        model_pass(MODEL_BYTE_NS / 1000);
+        model.access_ns = MODEL_BYTE_NS % 1000 / accesses + 1;
+        tmini_stm32_hal_port.restart(&hal_rig.port);
+        TEST_ASSERT_EQUAL_HEX8(0xEE, memory[256]);
+    }
+}
+
 /* Only DMA needs aligned buffers. */
 void test_bytes_need_no_aligned_buffer(void)
 {
