@@ -52,7 +52,7 @@ void UART1_Handler(void)
 
 static uint32_t now_ms(void)
 {
-    return xTaskGetTickCount() * (1000u / configTICK_RATE_HZ);
+    return tmini_freertos_port.now_ms(&port);
 }
 
 /* Without a scanning lidar, or with a faulty one, the way ahead is unknown. */
@@ -113,7 +113,7 @@ static void run_lidar(void *argument)
         const tmini_event_t event = tmini_poll(&lidar);
         lidar_log_event(&console, event);
         if (event == TMINI_EVENT_SCAN) {
-            obstacle_see(&obstacle, tmini_scan(&lidar), now_ms());
+            obstacle_see(&obstacle, tmini_scan(&lidar));
         } else if (event == TMINI_EVENT_NONE) {
             report_each_second();
             tmini_freertos_wait(&port, pdMS_TO_TICKS(10));

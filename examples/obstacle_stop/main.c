@@ -66,12 +66,11 @@ static void drive(void)
 {
     static bool could_move;
     bool is_news = false;
-    const uint32_t now_ms = tmini_posix_port.now_ms(&port);
     tmini_event_t event = TMINI_EVENT_NONE;
     while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) {
         tell(event);
         if (event == TMINI_EVENT_SCAN) {
-            obstacle_see(&obstacle, tmini_scan(&lidar), now_ms);
+            obstacle_see(&obstacle, tmini_scan(&lidar));
             is_news = true;
         }
     }
@@ -80,7 +79,7 @@ static void drive(void)
     if (tmini_faults(&lidar) != 0 || tmini_state(&lidar) != TMINI_STATE_SCANNING) {
         obstacle_blind(&obstacle);
     }
-    const bool may_move = obstacle_may_move(&obstacle, now_ms);
+    const bool may_move = obstacle_may_move(&obstacle, tmini_posix_port.now_ms(&port));
     if (is_news || may_move != could_move) {
         show(may_move); /* A robot sets its motors here, in each round. */
     }

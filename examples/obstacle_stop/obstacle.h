@@ -24,17 +24,18 @@
 
 typedef struct {
     tmini_sector_t sectors[OBSTACLE_SECTORS]; /* Clockwise, the first one ahead. */
-    uint32_t seen_ms;                         /* When the last complete scan came. */
+    uint32_t seen_ms;                         /* When the last complete scan ended. */
     bool clear;                               /* Nothing near in front, as of the last scans. */
     bool seeing;                              /* A complete scan has come. */
 } obstacle_t;
 
 /* Takes a scan. */
-void obstacle_see(obstacle_t *obstacle, const tmini_scan_t *scan, uint32_t now_ms);
+void obstacle_see(obstacle_t *obstacle, const tmini_scan_t *scan);
 
 /* The lidar sees nothing for now: it is faulty or lost. */
 void obstacle_blind(obstacle_t *obstacle);
 
+/* `now_ms` is the clock of the driver's port, read after the last tmini_poll(). */
 bool obstacle_may_move(const obstacle_t *obstacle, uint32_t now_ms);
 
 #endif

@@ -44,7 +44,7 @@ static lidar_log_t console = {.lidar = &lidar, .print = print};
 
 static uint32_t now_ms(void)
 {
-    return to_ms_since_boot(get_absolute_time());
+    return tmini_pico_port.now_ms(&port);
 }
 
 /* Without a scanning lidar, or with a faulty one, the way ahead is unknown. */
@@ -115,7 +115,7 @@ int main(void)
         for (tmini_event_t event; (event = tmini_poll(&lidar)) != TMINI_EVENT_NONE;) {
             lidar_log_event(&console, event);
             if (event == TMINI_EVENT_SCAN) {
-                obstacle_see(&obstacle, tmini_scan(&lidar), now_ms());
+                obstacle_see(&obstacle, tmini_scan(&lidar));
             }
         }
         gpio_put(STOP_PIN, must_stop());

@@ -122,7 +122,7 @@ void lidar_work(void)
     tmini_event_t event;
     while ((event = tmini_poll(&lidar)) != TMINI_EVENT_NONE) {
         if (event == TMINI_EVENT_SCAN) {
-            obstacle_see(&obstacle, tmini_scan(&lidar), HAL_GetTick());
+            obstacle_see(&obstacle, tmini_scan(&lidar));
             blink(tmini_scan(&lidar));
         }
     }

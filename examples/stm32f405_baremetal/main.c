@@ -41,7 +41,7 @@ void USART1_IRQHandler(void)
 
 static void see(const tmini_scan_t *scan)
 {
-    obstacle_see(&obstacle, scan, board_time_ms);
+    obstacle_see(&obstacle, scan);
     status.points += scan->count;
     if (says_digests) {
         report_digest(scan);

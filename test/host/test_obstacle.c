@@ -16,7 +16,7 @@ static obstacle_t obstacle;
 void setUp(void)
 {
     obstacle = (obstacle_t){.clear = false};
-    scan = (tmini_scan_t){.points = points, .count = 1, .complete = true};
+    scan = (tmini_scan_t){.points = points, .count = 1, .complete = true, .end_ms = 1000};
     points[0] = (tmini_point_t){.angle_q6 = 0, .distance_mm = 2000};
 }
 
@@ -26,7 +26,7 @@ static bool may_move_after(uint16_t distance_mm, unsigned degrees)
 {
     points[0].distance_mm = distance_mm;
     points[0].angle_q6 = (uint16_t)(degrees * DEGREE_Q6);
-    obstacle_see(&obstacle, &scan, 1000);
+    obstacle_see(&obstacle, &scan);
     return obstacle_may_move(&obstacle, 1000);
 }
 
@@ -95,6 +95,15 @@ void test_it_stops_when_half_a_second_brings_no_complete_scan(void)
     TEST_ASSERT_FALSE(obstacle_may_move(&obstacle, 1500));
 }
 
+void test_a_scan_that_is_seen_late_does_not_let_it_go(void)
+{
+    TEST_ASSERT_TRUE(may_move_after(2000, 0));
+    scan.end_ms = 1200;
+    obstacle_see(&obstacle, &scan);
+    TEST_ASSERT_TRUE(obstacle_may_move(&obstacle, 1699));
+    TEST_ASSERT_FALSE(obstacle_may_move(&obstacle, 1700));
+}
+
 void test_an_incomplete_scan_can_stop_it_but_not_let_it_go(void)
 {
     scan.complete = false;
@@ -119,7 +128,7 @@ void test_each_sector_knows_its_nearest_point(void)
     points[0] = (tmini_point_t){.angle_q6 = 90 * DEGREE_Q6, .distance_mm = 700};
     points[1] = (tmini_point_t){.angle_q6 = 100 * DEGREE_Q6, .distance_mm = 600};
     points[2] = (tmini_point_t){.angle_q6 = 80 * DEGREE_Q6, .distance_mm = 800};
-    obstacle_see(&obstacle, &scan, 1000);
+    obstacle_see(&obstacle, &scan);
     TEST_ASSERT_EQUAL_UINT16(600, obstacle.sectors[2].nearest_mm);
     TEST_ASSERT_EQUAL_UINT16(0, obstacle.sectors[0].nearest_mm);
 }

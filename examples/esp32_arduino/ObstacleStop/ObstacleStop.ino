@@ -31,7 +31,7 @@ static tmini_sectors_t sectors;
 static unsigned scans;
 static unsigned complete;
 static bool isFree;          /* As of the last scans. */
-static unsigned long seenMs; /* When a complete scan came. */
+static unsigned long seenMs; /* When a complete scan ended. */
 
 /* A scan with gaps may have missed an obstacle: it can stop the robot, but not release it. */
 static void lookAhead()
@@ -49,7 +49,7 @@ static void lookAhead()
     }
     if (lidar.scan().complete) {
         complete++;
-        seenMs = millis();
+        seenMs = lidar.scan().end_ms;
     }
 }
 

@@ -63,7 +63,7 @@ static void open_stop_pin(void)
 
 static void see(const tmini_scan_t *scan)
 {
-    obstacle_see(&obstacle, scan, now_ms());
+    obstacle_see(&obstacle, scan);
     scans++;
 }
 

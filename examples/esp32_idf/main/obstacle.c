@@ -16,7 +16,7 @@ static bool is_dark(const obstacle_t *obstacle)
     return true;
 }
 
-void obstacle_see(obstacle_t *obstacle, const tmini_scan_t *scan, uint32_t now_ms)
+void obstacle_see(obstacle_t *obstacle, const tmini_scan_t *scan)
 {
     const tmini_sector_t *const ahead = &obstacle->sectors[AHEAD];
     tmini_sectors_t sectors;
@@ -33,7 +33,7 @@ void obstacle_see(obstacle_t *obstacle, const tmini_scan_t *scan, uint32_t now_m
     }
     if (scan->complete) {
         obstacle->seeing = true;
-        obstacle->seen_ms = now_ms;
+        obstacle->seen_ms = scan->end_ms;
     }
 }
 

@@ -33,7 +33,7 @@ static void on_event(const struct device *lidar, tmini_event_t event, void *user
     (void)user_data;
     lidar_log_event(&console, event);
     if (event == TMINI_EVENT_SCAN) {
-        obstacle_see(&obstacle, tmini_scan(tmini_zephyr_device_lidar(lidar)), k_uptime_get_32());
+        obstacle_see(&obstacle, tmini_scan(tmini_zephyr_device_lidar(lidar)));
     }
 }
 
