@@ -266,7 +266,7 @@ void test_a_motor_that_comes_up_slowly_has_a_weak_supply(void)
     end_case("weak", 0, "\nlook  supply     the motor took ");
 }
 
-void test_a_unit_as_in_the_field_is_good(void)
+void test_a_unit_that_behaves_like_real_ones_is_good(void)
 {
     end_case("field", 0, "firmware 1.3, ");
     expect_unsaid("BAD");

@@ -485,7 +485,7 @@ void test_options_may_be_short_joined_abbreviated_and_anywhere(void)
     program_expect_failure(1, "cannot open -q", (const char *const[]){"decode", "--", "-q", NULL});
 }
 
-void test_version_and_help_are_everywhere(void)
+void test_version_and_help_work_with_and_without_a_command(void)
 {
     static const char *const ways[][3] = {
         {"--version", NULL}, {"-V", NULL}, {"scan", "-V", NULL}, {"check", "--vers", NULL}};

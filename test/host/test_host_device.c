@@ -296,7 +296,7 @@ void test_scan_as_csv_has_the_columns_of_decode(void)
 }
 
 /* Live and recorded scans give the same rows, except for the time. */
-void test_a_scan_live_and_recorded_is_the_same(void)
+void test_a_scan_is_the_same_live_and_recorded(void)
 {
     begin();
     expect_success(WORDS("record", "-p", port, "rec.tmini", "-q", "-s1"));
@@ -630,7 +630,7 @@ static void unplug_all(void)
     TEST_ASSERT_EQUAL_INT(0, system("rm -rf root"));
 }
 
-void test_with_wait_a_cable_pulled_and_plugged_in_again_is_no_end(void)
+void test_with_wait_a_scan_continues_after_a_pulled_cable(void)
 {
     begin();
     program_plug_in(port);
@@ -710,7 +710,7 @@ void test_a_lidar_that_is_mounted_turned_is_shown_as_the_robot_sees(void)
     TEST_ASSERT_NULL(strstr(program_output, "behind"));
 }
 
-void test_what_is_masked_is_no_missing_range(void)
+void test_masked_directions_are_no_missing_ranges(void)
 {
     begin();
     expect_success(WORDS("check", "-p", port, "-s1", "--mask", "150:130"));
@@ -915,7 +915,7 @@ void test_a_lidar_that_answers_one_command_is_not_a_fault_of_the_wires(void)
     expect_failed_job(HALF_SCAN, "but not this command: timeout");
 }
 
-void test_a_recording_is_not_lost_to_a_lidar_that_does_not_answer(void)
+void test_a_lidar_that_does_not_answer_does_not_overwrite_a_recording(void)
 {
     expect_failed_job(SILENT_RECORD, "not one byte came");
     TEST_ASSERT_EQUAL_STRING("gold", program_read_file(0, program_path("precious.bin"), NULL));

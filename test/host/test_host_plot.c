@@ -309,7 +309,7 @@ void test_a_point_in_the_png_is_a_dot_of_seven_pixels(void)
     cairo_surface_destroy(png);
 }
 
-void test_pdf_is_the_third_kind(void)
+void test_a_plot_can_be_a_pdf(void)
 {
     size_t size = 0;
     const char *const picture = program_path("picture.pdf");

@@ -401,7 +401,7 @@ static void expect_ascii(void)
     }
 }
 
-void test_a_locale_without_utf_8_gets_characters(void)
+void test_a_locale_without_utf_8_gets_ascii_characters(void)
 {
     (void)setenv("LC_ALL", "C", 1);
     see_the_cross();
@@ -445,7 +445,7 @@ void test_a_dumb_terminal_gets_one_picture_below_the_other(void)
     TEST_ASSERT_EQUAL_UINT(0, vt.escapes);
 }
 
-void test_an_empty_no_color_means_nothing(void)
+void test_an_empty_no_color_variable_has_no_effect(void)
 {
     (void)setenv("NO_COLOR", "", 1);
     see_the_cross();
@@ -494,7 +494,7 @@ void test_a_damaged_recording_says_so(void)
 }
 
 /* The colour scale keeps its range when the brightest point has gone. */
-void test_colours_are_steady(void)
+void test_the_colour_scale_does_not_shrink(void)
 {
     const encode_sample_t dim = {1000, 10, 0};
     const encode_sample_t far_dim = {2000, 20, 0};
@@ -583,7 +583,7 @@ void test_a_file_that_is_no_recording_is_reported_at_once(void)
 
 /* --------------------------------------------------------------------------------------- live */
 
-void test_a_lidar_is_shown_live_and_stopped_in_the_end(void)
+void test_a_lidar_is_shown_live_and_stopped_at_the_end(void)
 {
     const char *const log = program_path("log");
     begin(80, 24, WORDS("view", "-p", program_start_lidar(WORDS("--log", log))));

@@ -267,7 +267,7 @@ void test_what_a_damaged_line_hides_is_unknown(void)
     expect("\nsamples_per_second = 4000\n");
 }
 
-void test_without_lone_packets_nothing_is_reported_of_them(void)
+void test_without_lone_packets_the_report_says_unknown(void)
 {
     const options_t options = like("lone_packets = no");
     survey_of(&options);

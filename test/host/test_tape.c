@@ -289,7 +289,7 @@ void test_a_raw_recording_has_the_time_of_its_samples(void)
     TEST_ASSERT_EQUAL_UINT32(10, tape.stream.packet_ms);
 }
 
-void test_packets_of_more_samples_than_wanted_are_none(void)
+void test_packets_of_more_samples_than_allowed_are_not_taken(void)
 {
     tape_begin(&tape, NULL, 39);
     put_turn();

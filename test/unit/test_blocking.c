@@ -399,7 +399,7 @@ void test_a_command_given_up_half_sent_is_not_sent_any_further(void)
     TEST_ASSERT_EQUAL_HEX(0, rig_drain());
 }
 
-void test_a_start_that_times_out_while_the_lidar_is_recovered_still_stands(void)
+void test_a_start_that_times_out_during_a_recovery_is_kept(void)
 {
     comes(10, feed_turn);
     sends(START);

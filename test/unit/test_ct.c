@@ -151,7 +151,7 @@ void test_a_revolution_at_10_hz_does_not_show_day_and_number(void)
     expect_serial(2025, 4, 0, 0);
 }
 
-void test_a_revolution_at_12_hz_does_not_show_the_month_either(void)
+void test_a_revolution_at_12_hz_does_not_show_month_day_and_number(void)
 {
     add_revolution(TWELVE_HERTZ_CT, &six_hertz[1], 9);
     TEST_ASSERT_TRUE(end_with(TWELVE_HERTZ_CRC));
@@ -362,7 +362,7 @@ void test_what_comes_before_the_first_start_packet_is_left_out(void)
     TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
 }
 
-void test_no_last_crc_makes_packets_before_the_first_start_packet_a_revolution(void)
+void test_packets_before_the_first_start_packet_are_no_revolution_even_with_last_crc(void)
 {
     for (unsigned crc = 0; crc <= 255; crc++) {
         tmini_ct_init(&ct_state);

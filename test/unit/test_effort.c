@@ -157,7 +157,7 @@ void test_packets_of_a_scan_are_bounded(void)
 }
 
 /* A packet of 32 samples costs 44 and twice its 106 bytes: six of them cost 1536. */
-void test_a_poll_ends_when_its_effort_is_used_up_to_the_last(void)
+void test_a_poll_ends_when_its_effort_is_exactly_used_up(void)
 {
     open_driver();
     for (unsigned i = 0; i < 7; i++) {

@@ -148,7 +148,7 @@ void test_packets_cut_to_a_few_bytes_for_a_turn_end_the_scan(void)
     TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
 }
 
-void test_a_silence_between_two_turns_costs_no_scan_but_the_two(void)
+void test_a_silence_between_two_turns_costs_only_their_two_scans(void)
 {
     pass_whole_turn(100);
     be_silent(3 * TURN_MS);

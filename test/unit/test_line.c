@@ -66,7 +66,7 @@ void test_a_silence_of_half_a_turn_is_no_pause_and_a_millisecond_more_is_one(voi
     TEST_ASSERT_TRUE(is_doubted_after(51));
 }
 
-void test_below_5_7_hz_a_lidar_is_on_its_way_up_and_may_turn_at_12(void)
+void test_below_5_7_hz_a_lidar_is_spinning_up_and_may_turn_at_12_hz(void)
 {
     open_at(570);
     TEST_ASSERT_FALSE(is_doubted_after(87));
@@ -127,7 +127,7 @@ void test_packets_among_doubtful_bytes_are_doubtful_beyond_65536_bytes_too(void)
     TEST_ASSERT_TRUE(tmini_line_is_doubtful(&lidar, now_ms));
 }
 
-void test_65536_bytes_are_some(void)
+void test_65536_bytes_are_not_taken_for_none(void)
 {
     TEST_ASSERT_TRUE(look_after(5000, 65536));
     TEST_ASSERT_FALSE(look_after(1, 0));
@@ -258,7 +258,7 @@ void test_first_bytes_in_a_fifo_come_straight_from_the_wire(void)
     TEST_ASSERT_TRUE(first_ones_are_doubted(1, 3361)); /* They take 256 ms. */
 }
 
-void test_first_bytes_that_were_not_watched_may_have_paused(void)
+void test_first_bytes_that_were_not_watched_are_doubted(void)
 {
     TEST_ASSERT_FALSE(first_ones_are_doubted(30, 13));
     TEST_ASSERT_TRUE(first_ones_are_doubted(31, 13));

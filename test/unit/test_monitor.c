@@ -300,7 +300,7 @@ void test_a_rotor_that_turns_again_clears_the_fault_after_two_turns(void)
 }
 
 /* The blocked turn is not complete, so only the next turn without a range counts as the first. */
-void test_a_turn_without_a_range_after_a_blocked_one_is_the_first(void)
+void test_a_blocked_turn_does_not_count_as_a_turn_without_a_range(void)
 {
     rig_go_scanning();
     rig_feed_start_packet(0);

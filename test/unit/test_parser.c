@@ -405,7 +405,7 @@ void test_each_part_of_a_packet_counts_in_its_checksum(void)
     }
 }
 
-void test_a_packet_without_samples_is_none(void)
+void test_a_packet_without_samples_is_not_taken(void)
 {
     const encode_packet_t packet = {0x20, 0, 100, 100, NULL};
     stream.size = encode_packet(bytes, &packet);
@@ -425,7 +425,7 @@ void test_a_check_bit_of_0_makes_no_packet_even_with_a_right_checksum(void)
     expect_rejected(0);
 }
 
-void test_a_start_packet_of_two_samples_is_none(void)
+void test_a_start_packet_of_two_samples_is_not_taken(void)
 {
     (void)stream_add_packet(&stream, 0x79, 2, 100, 200);
     expect_rejected(0);
@@ -1017,7 +1017,7 @@ static void feed_256_bytes_of_310(void)
     expect_pending(256);
 }
 
-void test_256_bytes_can_be_abandoned_or_lose_their_rest(void)
+void test_a_candidate_of_256_bytes_can_be_abandoned_or_cut_off_by_a_gap(void)
 {
     feed_256_bytes_of_310();
     receiver_abandon(&receiver);
@@ -1124,7 +1124,7 @@ void test_refused_bytes_leave_a_gap_after_the_packets_that_came_before_them(void
     expect_packet_after_gap(65535);
 }
 
-void test_packets_in_a_ring_that_overflowed_are_found_and_those_after_it(void)
+void test_packets_before_and_after_an_overflow_are_found(void)
 {
     for (unsigned i = 0; i < 4; i++) {
         feed(manual_packet, 67); /* 268 bytes: the last one is cut. */
@@ -1328,7 +1328,7 @@ void test_a_reply_longer_than_the_ring_is_not_awaited(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_parser_await(&receiver.parser, &longest));
 }
 
-void test_all_that_has_come_is_skipped_without_a_look(void)
+void test_skipping_drops_all_unread_bytes(void)
 {
     feed(start_packet, 13);
     feed_byte(0x22);

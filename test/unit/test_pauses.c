@@ -172,7 +172,7 @@ static void longest_pause_is(uint16_t max_pause_ms, uint32_t pause_ms)
     }
 }
 
-void test_a_limit_counts_from_half_a_turn_on(void)
+void test_a_limit_below_half_a_turn_counts_as_half_a_turn(void)
 {
     longest_pause_is(1, 41);
     longest_pause_is(41, 41);
@@ -180,7 +180,7 @@ void test_a_limit_counts_from_half_a_turn_on(void)
     longest_pause_is(249, 249);
 }
 
-void test_without_a_limit_no_pause_is_one(void)
+void test_without_a_limit_no_pause_is_doubted(void)
 {
     open_with(0, false);
     go_streaming();
@@ -208,7 +208,7 @@ void test_a_packet_is_doubtful_if_it_begins_among_the_bytes_after_a_pause(void)
 }
 
 /* 65,546 is 10 in 16 bits. */
-void test_before_a_lidar_scans_the_pause_was_before_the_bytes_if_the_line_was_watched(void)
+void test_after_a_start_only_the_first_packet_is_doubtful_if_the_line_was_watched(void)
 {
     for (uint32_t unseen_ms = 30; unseen_ms <= 31; unseen_ms++) {
         open_with(30, false);
@@ -280,7 +280,7 @@ void test_held_bytes_explain_a_pause_only_once(void)
 }
 
 /* More than 65,535 bytes ahead, the place counts as passed. */
-void test_a_place_that_has_been_passed_explains_nothing(void)
+void test_held_bytes_more_than_65535_ahead_explain_nothing(void)
 {
     tmini_feed_held(&rig.lidar, 65535 + 44);
     nothing_comes_for(900);

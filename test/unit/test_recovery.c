@@ -143,7 +143,7 @@ void test_the_ladder_has_no_end(void)
     }
 }
 
-void test_a_loss_after_a_new_start_begins_at_the_ladders_foot(void)
+void test_a_loss_after_a_new_start_begins_the_ladder_again(void)
 {
     rig_go_backing_off();
     tries_in_vain(500);
@@ -158,7 +158,7 @@ void test_a_loss_after_a_new_start_begins_at_the_ladders_foot(void)
     polls_to(TMINI_EVENT_NONE);
 }
 
-void test_a_loss_after_a_whole_turn_begins_at_the_ladders_foot(void)
+void test_a_loss_after_a_whole_turn_begins_the_ladder_again(void)
 {
     rig_go_backing_off();
     tries_in_vain(500);
@@ -197,7 +197,7 @@ void test_an_attempt_that_brings_no_whole_turn_has_not_succeeded(void)
 }
 
 /* The same after the first attempts have failed. */
-void test_a_loss_before_a_whole_turn_goes_on_up_the_ladder(void)
+void test_a_loss_before_a_whole_turn_continues_the_ladder(void)
 {
     rig_go_backing_off();
     tries_in_vain(500);
@@ -284,7 +284,7 @@ void test_a_line_that_does_not_fall_quiet_is_a_failed_attempt(void)
     pauses_and_stops(500);
 }
 
-void test_a_port_that_fails_is_a_failed_attempt(void)
+void test_a_port_that_fails_makes_the_attempt_fail(void)
 {
     rig_go_scanning();
     passes_to(1000, TMINI_EVENT_LOST);

@@ -526,7 +526,7 @@ void test_a_position_before_the_last_one_has_wrapped_around_the_memorys_end(void
     expect_unread("mnopqrs");
 }
 
-void test_more_unread_bytes_than_the_window_tell_of_an_overrun(void)
+void test_more_unread_bytes_than_the_window_are_an_overrun(void)
 {
     use_dma();
     dma_writes(0, 8, 0);

@@ -104,7 +104,7 @@ void test_65535_sectors_do_not_overflow(void)
     sectors.count = 8;
 }
 
-void test_the_nearest_range_counts_and_where_it_is(void)
+void test_a_sector_has_its_nearest_range_and_the_angle_of_that(void)
 {
     see(0, 700, 0);
     see(10, 500, 0);

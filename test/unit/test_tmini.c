@@ -350,7 +350,7 @@ void test_counters_count_to_the_end_of_their_ranges(void)
     TEST_ASSERT_EQUAL_UINT16(65530u, seen.reboots);
 }
 
-void test_packets_of_an_unknown_lidar_are_parsed_and_counted_but_are_no_event(void)
+void test_packets_in_the_unknown_state_are_counted_but_are_no_event(void)
 {
     rig_feed_start_packet(1000);
     polls_to(TMINI_EVENT_NONE);
@@ -1298,7 +1298,7 @@ void test_packets_cut_to_a_few_bytes_for_too_long_end_the_scan(void)
     TEST_ASSERT_EQUAL_UINT16(9, tmini_scan(&rig.lidar)->count);
 }
 
-void test_pauses_need_not_be_looked_for(void)
+void test_pauses_are_ignored_if_the_limit_is_0(void)
 {
     judge_pauses();
     rig.timing.max_pause_ms = 0;

@@ -39,7 +39,7 @@ void test_ros_radians_are_counter_clockwise_from_minus_pi_to_pi(void)
     expect_near(1.5707963f, tmini_ros_radians(17280)); /* left */
 }
 
-void test_hertz_and_metres_are_hundredths_and_thousandths(void)
+void test_hundredths_become_hertz_and_millimetres_become_metres(void)
 {
     expect_near(6.0f, tmini_hertz(600));
     expect_near(11.9f, tmini_hertz(1190));

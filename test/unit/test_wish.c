@@ -341,7 +341,7 @@ void test_a_frequency_that_could_not_be_set_is_tried_again_less_and_less_often(v
 }
 
 /* 144 revolutions at 3.0 Hz take 48 seconds. */
-void test_it_is_tried_again_after_48_seconds_at_most(void)
+void test_a_frequency_is_tried_again_after_48_seconds_at_most(void)
 {
     static const unsigned counts[] = {9, 18, 36, 72, 144, 144};
 
@@ -406,7 +406,7 @@ void test_a_new_wish_is_tried_again_after_three_seconds(void)
     is_stopped_after(18, 60);
 }
 
-void test_five_percent_are_no_other_frequency(void)
+void test_a_frequency_five_percent_off_is_no_fault(void)
 {
     scans_wishing(1000);
     turns(40, 95);
@@ -418,7 +418,7 @@ void test_five_percent_are_no_other_frequency(void)
 }
 
 /* 0.4 Hz is 5.3 % of 7.6 Hz. At 8.0 Hz, 24 turns take 3 s. */
-void test_little_more_than_five_percent_are_another_frequency(void)
+void test_slightly_more_than_five_percent_off_is_a_fault(void)
 {
     rig.config.recovery = TMINI_RECOVERY_OFF;
     scans_wishing(760);
@@ -469,7 +469,7 @@ void test_what_was_off_before_a_stop_does_not_count_after_it(void)
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_FREQUENCY, tmini_faults(&rig.lidar));
 }
 
-void test_a_frequency_that_is_right_now_and_then_is_no_fault(void)
+void test_a_frequency_that_is_right_every_18th_turn_is_no_fault(void)
 {
     scans_wishing(1000);
     for (unsigned i = 0; i < 10; i++) {
@@ -602,7 +602,7 @@ static void packets_with_a_range(unsigned count)
     }
 }
 
-void test_of_300_packets_without_a_start_99_with_a_range_are_chance_and_100_a_loss(void)
+void test_without_start_packets_100_of_300_packets_with_a_range_are_a_loss_and_99_are_not(void)
 {
     rig_go_scanning();
     rig_feed_start_packet(0);

@@ -410,7 +410,7 @@ void test_an_error_that_holds_dma_back_costs_only_bytes_until_the_next_poll(void
     TEST_ASSERT_EQUAL_UINT32(10, run_packets(10));
 }
 
-void test_with_the_fifo_on_eight_bytes_wait_for_a_late_interrupt(void)
+void test_an_enabled_fifo_keeps_eight_bytes_for_a_late_interrupt(void)
 {
     start_with_settings(false);
     model_usart.CR1 |= MODEL_CR1_FIFOEN;

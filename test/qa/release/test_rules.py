@@ -78,7 +78,7 @@ class Rules(unittest.TestCase):
                 for name in files.namelist():
                     self.assertNotIn(b"lidar.example", files.read(name), name)
 
-    def test_neither_a_version_in_work_nor_under_another_ones_tag_is_released(self):
+    def test_a_version_in_development_or_with_a_wrong_tag_is_not_released(self):
         self.run_script("version.py", "--write", "2.4.0-dev")
         self.assertRegex(self.release().stderr, "2.4.0-dev is a version in development")
         self.assertRegex(self.release("--tag", "v2.3.4").stderr, "v2.3.4 is not v2.4.0-dev")
