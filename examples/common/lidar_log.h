@@ -19,7 +19,7 @@ typedef struct {
     uint32_t reported_ms;            /* When the last line was due. */
 } lidar_log_t;
 
-/* For each event of tmini_poll(). */
+/* Call it with each event that tmini_poll() returns. */
 void lidar_log_event(lidar_log_t *log, tmini_event_t event);
 
 /* True once per second: then call lidar_log_status(). */

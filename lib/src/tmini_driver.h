@@ -117,14 +117,15 @@ bool tmini_command_has_frequency(const tmini_t *lidar);
  * quiet. */
 void tmini_recovery_start(tmini_t *lidar, bool is_idle);
 
-/* The same for a lidar that has been lost. If it has made no complete revolution since the last
- * loss, the ladder continues. */
+/* Begins the ladder for a lidar that has been lost. If it has made no complete revolution since the
+ * previous loss, the ladder continues instead. */
 void tmini_recovery_begin(tmini_t *lidar);
 
 /* Asks the port, if it can, to start its reception again: after a loss or a failed attempt. */
 void tmini_recovery_restart_reception(const tmini_t *lidar);
 
-/* `operation` has ended with `result`: begins the next one. `is_idle`: as above. */
+/* `operation` has ended with `result`: begins the next one. `is_idle`: as in
+ * tmini_recovery_start(). */
 void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle);
 
 /* The lidar is back, by an attempt or by itself. */

@@ -15,13 +15,13 @@ typedef struct {
     bool tcp;
     uint16_t tcp_port; /* 0: any free one */
     bool lines;
-    const char *write_path; /* of all paths: NULL: none; "-": standard output */
+    const char *write_path; /* in each path NULL means none, "-" standard output */
     const char *log_path;
     const char *truth_path;
     double seconds; /* of virtual time; 0: without end */
     double speed;   /* virtual seconds per real second */
-    bool blocked;   /* the rotor */
-    bool covered;   /* the window */
+    bool blocked;   /* the rotor is held */
+    bool covered;   /* the window is covered */
     uint8_t health; /* faults that the device reports: SIM_HEALTH_... */
     sim_config_t device;
     sim_link_config_t link;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Programs as a user writes them who knows only the functions' names, run against the simulated
- * lidar in virtual time. None of them repeats a call that failed. */
+/* Programs of a user who knows only the functions' names, run against the simulated lidar in
+ * virtual time. None of them repeats a call that failed. */
 
 #include "world.h"
 
@@ -378,8 +378,8 @@ static void act(wish_t *wish, random_t *random)
     }
 }
 
-/* After the trouble every wish is fulfilled, and the frequency is within the 5 % that are no fault.
- * Exception: if the lidar was deaf when the frequency was set again, this remains a fault. */
+/* After the trouble every wish is fulfilled. Exception: if the lidar was deaf when the frequency
+ * was set again, it may be wrong by more than 5 %, and a fault reports that. */
 static void is_fulfilled(const wish_t *wish, unsigned seed)
 {
     char text[40];

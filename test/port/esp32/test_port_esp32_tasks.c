@@ -180,7 +180,7 @@ void test_with_a_full_buffer_the_gap_is_after_the_bytes_that_were_kept(void)
     TEST_ASSERT_EQUAL_UINT(0, tmini_feed_room(&lidar));
 }
 
-/* In the 30 ms between two polls come about nine events, but the queue holds four. The port cannot
+/* About nine events come in the 30 ms between two polls, but the queue holds four. The port cannot
  * know which were lost: it assumes a gap, which costs the current packet. */
 void test_when_events_are_lost_no_scan_is_complete(void)
 {

@@ -108,7 +108,7 @@ static unsigned contribution(const uint8_t *bytes, size_t samples)
     return sum;
 }
 
-/* 9 samples are two blocks and a rest. */
+/* 9 samples are two blocks of 4, and one more. */
 void prove_parser_xor_piece(void)
 {
     uint8_t bytes[3 * 9];
