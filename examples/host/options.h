@@ -53,7 +53,7 @@ typedef struct {
     const char *accepts; /* The letters of its options (main.c); all commands have help and
                           * version. */
     bool has_operand;
-    int (*run)(const options_t *options); /* Either this, or a use of the lidar on the port: */
+    int (*run)(const options_t *options); /* If null, `use` runs with the lidar on the port: */
     int (*use)(struct device *device, const options_t *options);
 } command_t;
 

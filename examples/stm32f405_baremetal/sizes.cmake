@@ -3,8 +3,8 @@
 
 # cmake -D MAP=firmware.map -P sizes.cmake
 #
-# Prints, from the linker's map, how much flash and RAM the firmware needs, and how much of that the
-# library.
+# Prints, from the linker's map, how much flash and RAM the firmware needs, and how much of that is
+# the library's.
 
 file(STRINGS ${MAP} lines)
 

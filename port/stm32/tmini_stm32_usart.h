@@ -80,12 +80,12 @@ extern const tmini_port_t tmini_stm32_usart_port;
 tmini_status_t tmini_stm32_usart_init(tmini_stm32_usart_t *port,
                                       const tmini_stm32_usart_wiring_t *wiring);
 
-/** Sets the USART to 230400 8N1, where `clock_hz` is given, and receives for `lidar`, set up by
+/** Sets the USART to 230400 8N1, if `clock_hz` is given, and receives for `lidar`, set up by
  * tmini_init(): by an interrupt per byte; or, with rx_dma, by circular DMA into the buffer given
- * there, of 512 to 32768 bytes. For that the DMA channel is set up and enabled: from the USART's
- * data register, byte-wide, circular, FIFO off, at the buffer's start, over its whole size; and the
- * processor has no data cache, or the buffer lies where it does not cache. After _stop() set the
- * channel up again before the next start.
+ * there, of 512 to 32768 bytes. Before that, set up and enable the DMA channel: from the USART's
+ * data register, byte-wide, circular, FIFO off, at the buffer's start, over its whole size. If the
+ * processor has a data cache, the buffer must be in memory that is not cached. After _stop() set
+ * the channel up again before the next start.
  * Returns TMINI_OK;
  *   TMINI_ERROR_STATE     port or lidar not set up
  *   TMINI_ERROR_ARGUMENT  with rx_dma: `remaining` is null or differs from the buffer's size */

@@ -50,7 +50,7 @@ typedef enum {
     VIOLATION_WRONG_SCAN,    /* A scan's points differ from those of its packets. */
     VIOLATION_MIXED_SCAN,    /* Points of two revolutions in one scan. */
     VIOLATION_BYTES,         /* Bytes not accounted for. */
-    VIOLATION_COMMAND,       /* One other than stop, while the lidar was scanning. */
+    VIOLATION_COMMAND,       /* A command other than stop was sent to a scanning lidar. */
     VIOLATION_FALSE_FAULT,   /* A fault was reported but absent, or reported as gone but present. */
     VIOLATION_MISSED_FAULT,  /* A fault was not reported in time, or gone but still reported. */
     VIOLATION_ANSWER,        /* A command on an undisturbed line had no reply, or a wrong one. */

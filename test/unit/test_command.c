@@ -912,7 +912,7 @@ void test_a_loop_that_repeats_every_failed_command_ends(void)
 
         rig.now_ms += 1;
         sends_both_taking(STOP, -1); /* The old request fails. */
-        sends_both_taking(STOP, -1); /* The new one begins. */
+        sends_both_taking(STOP, -1); /* The new request begins. */
         while ((event = tmini_poll(&rig.lidar)) != TMINI_EVENT_NONE) {
             TEST_ASSERT_EQUAL_INT(TMINI_EVENT_COMMAND_FAILED, event);
             begins(tmini_request_info(&rig.lidar));

@@ -296,8 +296,8 @@ static inline size_t tmini_feed_position(const tmini_t *lidar);
 tmini_event_t tmini_poll(tmini_t *lidar);
 
 /** @name Wishes
- * A wish holds until you change it; tmini_poll() does the work. From the polling context. None
- * waits, and each sends at most two bytes. */
+ * A wish holds until you change it; tmini_poll() does the work. From the polling context. None of
+ * these functions waits, and each sends at most two bytes. */
 /** @{ */
 
 /** The lidar is to scan until tmini_stop(). Scanning begins at once, or when the current command

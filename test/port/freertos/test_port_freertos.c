@@ -410,8 +410,8 @@ void test_bytes_in_the_stream_at_a_stop_are_not_handed_on_later(void)
 
 /* ----------------------------------------------------------------------------------- the clock */
 
-/* This file is compiled for three ticks: 1000 Hz with 32 bits, 1024 Hz with 16 bits, and 50 Hz. The
- * 16-bit tick wraps every 64 s; a step here is 4.3 s. */
+/* This file is compiled for three tick counters: 1000 Hz with 32 bits, 1024 Hz with 16 bits, and
+ * 50 Hz. The one of 16 bits wraps around every 64 s; a step here is 4.3 s. */
 void test_the_clock_runs_in_milliseconds_across_every_wrap_of_the_tick(void)
 {
     const uint32_t begun_ms = tmini_freertos_port.now_ms(&port);

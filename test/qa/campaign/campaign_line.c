@@ -471,7 +471,7 @@ static void draw_cut(line_t *line, random_t *random, uint32_t cut[2])
     cuts[random_below(random, sizeof cuts / sizeof cuts[0])](line, random, cut);
 }
 
-/* Moves the cut to within a few packets of the cut before. */
+/* Moves the cut to within a few packets of the previous cut, which ended at `before`. */
 static void move_near(const line_t *line, random_t *random, uint32_t before, uint32_t cut[2])
 {
     const uint32_t away = before + random_between(random, 0, 500);

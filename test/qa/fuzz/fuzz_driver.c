@@ -46,8 +46,8 @@ static struct {
     bool is_true;                     /* The bytes come from the turning lidar. */
     uint8_t reply[TURNING_REPLY_MAX]; /* Its next reply. */
     size_t reply_size;
-    unsigned surprises;  /* At this many readings of the clock, a packet arrives, */
-    bool surprise_first; /* before the clock is read, or after. */
+    unsigned surprises;  /* A packet arrives at each of this many readings of the clock. */
+    bool surprise_first; /* It arrives before the reading, otherwise after it. */
     tmini_t lidar;
     uint8_t rx[RX_SIZE];
     tmini_point_t points[POINTS];
