@@ -12,7 +12,7 @@ struct Unit {
     unsigned scans;
     unsigned complete;
     uint16_t nearest; /* Of the current revolution; 0: nothing yet. */
-    uint16_t last;    /* Of the revolution before. */
+    uint16_t last;    /* Of the previous revolution. */
     bool begun;
     bool whole;
 };

@@ -77,9 +77,9 @@ extern "C" {
 
 /** The driver's waiting times, in milliseconds. To change one, copy tmini_timing_default first. */
 typedef struct {
-    /** An incomplete packet is given up after this much silence. Raise it where a layer below delays
-     * bytes: 250 for a computer. 0: at the first poll that finds no new byte although the clock has
-     * advanced. */
+    /** An incomplete packet is given up after this much silence. Raise it where a layer below
+     * delays bytes: 250 for a computer. 0: at the first poll that finds no new byte although the
+     * clock has advanced. */
     uint16_t frame_timeout_ms;
     /** A pause of the line ends a scan if it is longer than this and longer than half a turn (42 ms
      * at 12 Hz): a whole turn may be missing, and the angles would not show it. If bytes were held
@@ -207,8 +207,8 @@ typedef struct {
     uint32_t late_scans; /**< Of these, the ones that ended early or are incomplete only because of
                           * time, although no byte was lost there. If it grows and bytes_overrun
                           * does not, a layer below may delay bytes for longer than max_pause_ms. It
-                          * also grows after each tmini_feed_gap() with DMA, and while the clock is
-                          * back. */
+                          * also grows after each tmini_feed_gap() with DMA, and while a clock that
+                          * was set back catches up. */
     uint16_t timeouts;   /**< Attempts at commands that waited in vain for a reply, a quiet line or
                           * the first packet; with listen_only none is counted. */
     uint16_t losses;     /**< TMINI_EVENT_LOST. */
