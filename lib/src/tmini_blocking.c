@@ -17,11 +17,16 @@ static uint32_t now_ms(const tmini_t *lidar)
     return lidar->link.port->now_ms(lidar->link.port_context);
 }
 
-/* If the clock has stepped back to before `begun_ms`, no time has passed. */
-static bool is_time_left(const tmini_t *lidar, uint32_t begun_ms, uint32_t timeout_ms)
+/* True until `timeout_ms` have passed since `begun_ms`. If the clock is set back to before that, the
+ * time begins again. */
+static bool is_time_left(const tmini_t *lidar, uint32_t *begun_ms, uint32_t timeout_ms)
 {
-    const uint32_t passed_ms = now_ms(lidar) - begun_ms;
-    return passed_ms < timeout_ms || (int32_t)passed_ms < 0;
+    const uint32_t passed_ms = now_ms(lidar) - *begun_ms;
+    if ((int32_t)passed_ms < 0) {
+        *begun_ms += passed_ms;
+        return true;
+    }
+    return passed_ms < timeout_ms;
 }
 
 /* What `event` means for a caller that waits for `wanted`. A failed command ends the waiting if no
@@ -49,7 +54,7 @@ static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event
     if (begun != TMINI_OK) {
         return begun;
     }
-    const uint32_t begun_ms = now_ms(lidar);
+    uint32_t begun_ms = now_ms(lidar);
     do {
         const tmini_event_t event = tmini_poll(lidar);
         const int result = result_of(lidar, event, wanted);
@@ -59,7 +64,7 @@ static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event
         if (event == TMINI_EVENT_NONE) {
             idle(lidar);
         }
-    } while (is_time_left(lidar, begun_ms, timeout_ms));
+    } while (is_time_left(lidar, &begun_ms, timeout_ms));
     if (tmini_state(lidar) == TMINI_STATE_BUSY && !lidar->start_follows) {
         tmini_cancel(lidar);
     }

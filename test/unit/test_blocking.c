@@ -561,6 +561,23 @@ void test_a_clock_that_steps_back_ends_no_waiting(void)
     }
 }
 
+void test_a_clock_set_back_by_an_hour_prolongs_a_waiting_by_its_own_length_at_most(void)
+{
+    tmini_info_t info;
+
+    for (int looks = 1; looks < 2000; looks += 100) {
+        setUp();
+        port_now_ms_StubWithCallback(jumping_clock);
+        looks_left = looks;
+        back_ms = 3600000;
+        rig.timing.reply_timeout_ms = 0;
+        sends(GET_INFO);
+        TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT,
+                              tmini_blocking_read_info(&rig.lidar, &info, 1000));
+        TEST_ASSERT_UINT32_WITHIN(500, 1500, script.waits);
+    }
+}
+
 void test_with_a_timeout_of_0_it_polls_once(void)
 {
     tmini_info_t info;
