@@ -91,7 +91,7 @@ typedef struct {
     uint32_t boot_ms;
     uint32_t unasked_bytes; /* Bytes that the unit sends while it boots. */
     uint32_t changed_chz;   /* The frequency set before the reboot. */
-    uint32_t kept_chz;      /* and after it. */
+    uint32_t kept_chz;      /* The frequency after the reboot. */
     survey_scan_t scans[SURVEY_SCANS];
 } survey_t;
 

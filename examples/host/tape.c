@@ -8,7 +8,7 @@
 /* This much fits in the ring even when the largest packet (775) waits for its last byte. */
 #define BLOCK_SIZE 2048u
 
-#define US_A_SAMPLE 250u /* Section 1. */
+#define SAMPLE_US 250u /* Section 1. */
 
 void tape_begin(tape_t *tape, const tmini_mount_t *mount, uint8_t max_samples)
 {
@@ -87,7 +87,7 @@ static tape_next_t take(tape_t *tape)
     stream_t *const stream = &tape->stream;
     tmini_packet_t packet;
     tmini_packet_open(&packet, tmini_parser_frame(&stream->decoder.parser));
-    tape->time_us = tape->chunks.version > 0 ? tape->chunks.time_us : stream->points * US_A_SAMPLE;
+    tape->time_us = tape->chunks.version > 0 ? tape->chunks.time_us : stream->points * SAMPLE_US;
     return stream_take(stream, &packet, (uint32_t)(tape->time_us / 1000)) ? TAPE_SCAN : TAPE_PACKET;
 }
 

@@ -89,8 +89,8 @@ static void drive(void)
 static tmini_posix_status_t set_up(const char *path)
 {
     timing = tmini_timing_default;
-    timing.frame_timeout_ms = 250; /* On a computer bytes may come late */
-    timing.max_pause_ms = 250;     /* and in bursts. */
+    timing.frame_timeout_ms = 250; /* On a computer bytes may come late. */
+    timing.max_pause_ms = 250;     /* They may also come in bursts. */
     const tmini_config_t config = {
         .port = &tmini_posix_port,
         .port_context = &port,

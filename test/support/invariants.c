@@ -205,8 +205,8 @@ static bool awaits_its_reply(const tmini_t *lidar)
            awaited->length == reply.length;
 }
 
-/* The operation can be in this phase. TMINI_PHASE_WAITING is also used for timeouts while scanning
- * and between attempts. */
+/* True if the operation can be in this phase. TMINI_PHASE_WAITING is also used for timeouts while
+ * scanning and between attempts. */
 static bool phase_fits(const tmini_t *lidar)
 {
     const tmini_command_t *const command = &lidar->command;

@@ -4,7 +4,7 @@
 
 # Runs threads.c under ThreadSanitizer with the library's own barriers for several cores; then with
 # one barrier removed, which must be detected. Needs Clang: the sanitizer of GCC 12 detects less.
-# Exit status 77: Clang's is not available.
+# Exit status 77: Clang's sanitizer is not available.
 #
 #   test/system/threads.sh [TURNS]     of the recording: 6 unless given
 

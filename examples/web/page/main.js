@@ -38,8 +38,8 @@ class Viewer {
     #lidar = null;
     #player = null;
     #recorder;
-    #scannedAt = null; // When the lidar's latest scan came,
-    #isStale = false; // and whether that was too long ago.
+    #scannedAt = null; // When the lidar's latest scan came.
+    #isStale = false; // That is too long ago.
     #change = Promise.resolve(); // The change from one source to another; only one at a time.
 
     constructor(library) {

@@ -124,8 +124,8 @@ function paragraph(text, className) {
     return target;
 }
 
-// Shows a problem: what happened, and what to do; null removes it. `place`: the element for problems of the connection,
-// or that for faults of the lidar.
+// Shows a problem: what happened, and what to do; null removes it. `place`: the element that shows problems of the
+// connection, or the element that shows faults of the lidar.
 export function showProblem(place, problem) {
     const target = element(place);
     const title = problem?.title ?? '';

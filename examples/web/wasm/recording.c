@@ -100,13 +100,13 @@ EXPORTED uint32_t recording_numbers(void)
     return numbers_count();
 }
 
-/* For recordings that the page saves: the first bytes of a file, */
+/* The first bytes of a recording that the page saves. */
 EXPORTED const void *recording_magic(void)
 {
     return chunk_magic;
 }
 
-/* and the head of a chunk of the `count` bytes in `transfer`. */
+/* The head of a chunk of that recording: the chunk holds the `count` bytes in `transfer`. */
 EXPORTED const void *recording_head(uint32_t delta_us, uint32_t count)
 {
     static uint8_t head[CHUNK_HEAD_SIZE];

@@ -29,8 +29,8 @@ struct freertos_task {
     UBaseType_t priority;
     bool used;
     bool suspended;
-    bool waiting;    /* Until `until_us`, */
-    bool for_notice; /* or until a notification, if this is true. */
+    bool waiting;    /* Waits until `until_us`. */
+    bool for_notice; /* A notification also ends the wait. */
     uint64_t until_us;
     uint32_t notices;
 };

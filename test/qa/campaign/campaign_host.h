@@ -42,8 +42,8 @@ typedef struct {
     uint32_t false_gap_one_in; /* One DMA interrupt in N reports a loss although there was none. */
     uint32_t hold_one_in;      /* One block in N comes 20 to 95 ms late; 0: none. */
     int32_t clock_ppm;         /* Error of the clock; positive: it is fast. */
-    uint32_t back_ms;          /* Once, the clock is set back by this much, */
-    uint32_t back_at_us;       /* at this time of the line. */
+    uint32_t back_ms;          /* The clock is set back once, by this much. */
+    uint32_t back_at_us;       /* When that happens, in the line's time. */
     uint16_t max_pause_ms;     /* As in the library's configuration. */
     bool reports_twice;        /* The receiver reports each loss twice. */
 } host_config_t;
@@ -69,8 +69,8 @@ typedef struct {
     bool full;
     bool idle;
     bool stalled;
-    size_t position;  /* DMA: its position, */
-    size_t published; /* and the last one published. */
+    size_t position;  /* DMA: its position. */
+    size_t published; /* DMA: the position published last. */
 
     uint32_t reported;      /* Bytes reported to the library. */
     uint32_t gaps_reported; /* Losses that the receiver has reported. */
