@@ -99,8 +99,8 @@ typedef struct {
 #define SURVEY_SECONDS_MIN 10u
 
 /* Tests everything. Scans for `seconds` at 6 Hz, and for at most 15 s each at 10 and 12 Hz. Returns
- * false if the wire has failed, or nothing was answered. The
- * unit is left idle, at the frequency that it had. */
+ * false if the wire has failed, or nothing was answered. The unit is left idle, at the frequency
+ * that it had. */
 bool survey_run(survey_t *survey, const survey_wire_t *wire, uint32_t seconds);
 
 /* The first bytes of a reply's content; NULL if it is not of this type and size. */

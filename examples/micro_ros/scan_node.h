@@ -6,8 +6,8 @@
  * continues to scan. Nothing is allocated here; micro-ROS allocates from its own pools while it
  * connects.
  *
- * Before, set up the transport to the agent (rmw_uros_set_custom_transport() or your platform's
- * equivalent), and initialise the lidar. */
+ * Before scan_node_init(), set up the transport to the agent (rmw_uros_set_custom_transport() or
+ * your platform's equivalent), and initialise the lidar. */
 
 #ifndef SCAN_NODE_H
 #define SCAN_NODE_H

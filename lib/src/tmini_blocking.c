@@ -17,8 +17,8 @@ static uint32_t now_ms(const tmini_t *lidar)
     return lidar->link.port->now_ms(lidar->link.port_context);
 }
 
-/* True until `timeout_ms` have passed since `begun_ms`. If the clock is set back to before that, the
- * time begins again. */
+/* True until `timeout_ms` have passed since `begun_ms`. If the clock is set back to before that,
+ * the time begins again. */
 static bool is_time_left(const tmini_t *lidar, uint32_t *begun_ms, uint32_t timeout_ms)
 {
     const uint32_t passed_ms = now_ms(lidar) - *begun_ms;

@@ -151,9 +151,9 @@ class TMiniLidarBase
     bool begin(TMiniSerial &serial, int8_t rxPin, int8_t txPin, float hertz = 0);
 #endif
 #if TMINI_LIDAR_ON_RP2040
-    /** Pass the port itself (Serial1): through a HardwareSerial & its buffer cannot be enlarged. If
-     * the port is of another class, with its own buffer, such as SerialPIO: open it, then call
-     * begin(static_cast<Stream &>(port)). */
+    /** Pass the port itself (Serial1): if it is passed as HardwareSerial, its buffer cannot be
+     * enlarged. If the port is of another class, with its own buffer, such as SerialPIO: open it,
+     * then call begin(static_cast<Stream &>(port)). */
     bool begin(HardwareSerial &serial, float hertz = 0) = delete;
 #endif
     /** For any other Stream: the sketch has opened it, at 230400 baud. */

@@ -268,7 +268,7 @@ void test_bytes_in_no_packet_and_wrong_checksums_are_counted(void)
     TEST_ASSERT_EQUAL_UINT64(1, tape.stream.packets);
 }
 
-void test_a_file_shorter_than_its_header_is_played_at_its_end(void)
+void test_a_file_shorter_than_a_header_is_played_once_it_has_ended(void)
 {
     feed(manual_packet, 5);
     TEST_ASSERT_EQUAL_INT(TAPE_NEEDS_BYTES, play());

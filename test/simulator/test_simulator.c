@@ -575,7 +575,7 @@ void test_a_round_pillar_stands_ahead_to_the_left(void)
     TEST_ASSERT_UINT_WITHIN(15, 1380, nearest_to(22316).distance_mm);
 }
 
-void test_an_obstacle_appears_where_it_is_placed_and_goes_again(void)
+void test_an_obstacle_appears_where_it_is_placed_and_can_be_removed(void)
 {
     sim_place_obstacle(&sim, 0, 640, 400);
     TEST_ASSERT_EQUAL_UINT16(400, sim_scene_distance(&sim.scene, 23039));

@@ -22,7 +22,7 @@ static int last_angle(const reference_item_t *packet)
     return packet->lsn == 1 ? angle(packet->fsa) : angle(packet->lsa);
 }
 
-/* The clockwise angle between both, from -4 degrees on, because the encoder jitters. */
+/* The clockwise angle between the two, at least -4 degrees, because the encoder jitters. */
 static int turn(int from, int to)
 {
     const int clockwise = (to - from + FULL) % FULL;

@@ -638,8 +638,8 @@ void test_a_scan_whose_end_is_missing_has_the_frequency_reported_last(void)
     TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz);
 }
 
-/* The packet comes at 5000 ms. Measuring its 40 samples took 39 * 250 us. Sending its 39 * 3 bytes
- * more than a start packet has took 39 * 130 us. */
+/* The packet comes at 5000 ms. Measuring its 40 samples took 39 * 250 us. It has 39 * 3 bytes more
+ * than a start packet; sending these took 39 * 130 us. */
 void test_a_scan_without_its_start_packet_begins_when_its_first_point_was_measured(void)
 {
     (void)start(0);

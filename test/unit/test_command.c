@@ -101,7 +101,7 @@ void test_bytes_that_were_lost_put_the_command_off_by_the_quiet_time(void)
 }
 
 /* The lost bytes may have been a packet. */
-void test_bytes_that_were_lost_while_idle_are_heard_as_well(void)
+void test_bytes_that_were_lost_while_idle_count_as_heard(void)
 {
     rig_go_idle();
     tmini_feed_gap(&rig.lidar);

@@ -3,7 +3,7 @@
 
 #include "proof.h"
 
-/* Both ways, unless a proof is run for each of them. */
+/* Either way, unless a proof is run for each of the two. */
 #ifndef FED_BY_DMA
 #define FED_BY_DMA any_bool()
 #endif
