@@ -6,7 +6,7 @@
 #define STEADY_US 8000000u
 #define SAMPLE_US 250u /* Section 1. */
 #define BYTES_US(n) ((n)*434u / 10u)
-#define HZ_OF_SAMPLES 40000u /* Samples per second, times ten: 0.1 Hz from a turn's samples. */
+#define HZ_OF_SAMPLES 40000u /* Divided by a turn's samples: its frequency in 0.1 Hz. */
 
 /* From fewer samples the speed cannot be computed well. */
 #define SPEED_SAMPLES 10u

@@ -11,7 +11,7 @@
 #define US_PER_BYTE 87u       /* 10 bits at 115200 baud. */
 #define LIDAR_US_PER_BYTE 43u /* 23,000 bytes per second. */
 
-/* Between two turns of its loop an example waits at least this long, within a turn never. */
+/* An example waits at least this long between two turns of its loop, and never within a turn. */
 #define SAME_TURN_US 1000u
 
 static struct {

@@ -65,7 +65,7 @@ static bool arrive(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_q
     return tmini_builder_add(&builder, &receiver.packet, now_ms);
 }
 
-/* Adds the packet, which closes no scan; also one that has just closed a scan. */
+/* Adds the packet, which must close no scan. Also adds a packet that has just closed one. */
 static void add(void)
 {
     TEST_ASSERT_FALSE(tmini_builder_add(&builder, &receiver.packet, now_ms));

@@ -10,7 +10,7 @@
 
 static const uint8_t STOP_PIN = LED_BUILTIN;
 static const uint16_t STOP_MM = 300;
-static const uint16_t GO_MM = 350;         /* Larger, so that the robot does not stop and go. */
+static const uint16_t GO_MM = 350;         /* More than STOP_MM, to avoid stop and go. */
 static const unsigned long BLIND_MS = 400; /* Without a complete scan for this long, stop. */
 
 /* Angles are the robot's: 0 is its front, clockwise. */

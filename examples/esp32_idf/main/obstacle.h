@@ -19,7 +19,7 @@
 #define OBSTACLE_SECTORS 8u
 
 #define OBSTACLE_STOP_MM 300u
-#define OBSTACLE_GO_MM 350u /* Larger, so that the robot does not stop and go. */
+#define OBSTACLE_GO_MM 350u /* More than OBSTACLE_STOP_MM, to avoid stop and go. */
 #define OBSTACLE_BLIND_MS 500u
 
 typedef struct {
