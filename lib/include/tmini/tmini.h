@@ -87,8 +87,9 @@ typedef struct {
      * where a layer below delays bytes: 250 for a computer. 0: pauses are not looked for. Whatever
      * the value, a scan that took more than one and a half turns has a gap. */
     uint16_t max_pause_ms;
-    /** After a stop, the line counts as quiet when it has been silent for this long: below 600.
-     * Bytes that a layer below holds for longer seem to come after the next start. 0: at once. */
+    /** After a stop, the line counts as quiet when it has been silent for this long: below 600. A
+     * value above 50 with polls more than 50 ms apart: at most 30000 / (time between polls). Bytes
+     * that a layer below holds for longer seem to come after the next start. 0: at once. */
     uint16_t quiet_line_ms;
     /** How long to wait for a reply (section 9.11). 0: without limit. */
     uint16_t reply_timeout_ms;
@@ -139,7 +140,8 @@ typedef struct {
                              * it as the lidar has it. */
     bool listen_only;       /**< Nothing is ever sent: for a lidar that something else controls, or
                              * whose RX wire is not connected. frequency_chz must be 0. An attempt
-                             * to start fails when no packet comes for three seconds. */
+                             * to start fails when no packet comes for three seconds; the next ones
+                             * fail after the pauses of back_off_max_ms. */
     tmini_recovery_mode_t recovery; /**< 0: on. */
     tmini_step_t step;              /**< Called for each scan; NULL: none. Needs points. */
     const void *step_data;          /**< Passed to the step; must outlive the lidar. Needs a
