@@ -96,8 +96,8 @@ static int32_t missing_ms(const tmini_line_t *line, uint32_t due_ms)
     return (int32_t)((pause_ms < SILENCE_MAX_MS ? pause_ms : SILENCE_MAX_MS) - due_ms);
 }
 
-/* Notes `count` new bytes, `passed_ms` after the last look. With those that the port still holds,
- * bytes have arrived up to `arrived`; those that it held before were noted then.
+/* Notes `count` new bytes, `passed_ms` after the last look. Together with bytes that the port still
+ * holds, bytes have arrived up to `arrived`. Bytes that the port held before have been noted.
  * A scanning lidar never pauses for long. If the pause was longer than these bytes need on the
  * wire, bytes may be missing, or these may be late by the difference. The difference counts again
  * for the next bytes, because the silence may continue; after a doubt, only if the port may hold

@@ -25,7 +25,7 @@ export class Player {
         return this.#recording;
     }
 
-    // Pauses; or plays on, after the end from the beginning.
+    // Pauses, or plays on. After the end it plays from the beginning.
     toggle() {
         if (this.#isPlaying) {
             this.pause();

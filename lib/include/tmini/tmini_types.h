@@ -122,8 +122,8 @@ typedef struct {
     uint8_t count;           /**< Samples: 1 to 255. */
     uint16_t gap;            /**< Bytes skipped before it, or TMINI_GAP_UNKNOWN: any number of
                              * packets may be missing, because bytes were lost, the line paused, or
-                             * the packet is late. Without scans, a damaged packet counts only as
-                             * the bytes of it that came, even if a whole turn is damaged. */
+                             * the packet is late. Without scans, a damaged packet adds only those
+                             * of its bytes that came, even if a whole turn is damaged. */
     uint32_t step;           /**< The angle between two samples, in 1/64 degree / 2^17, rounded
                              * up. */
     const struct tmini_frame *frame; /**< Where its bytes lie. */

@@ -11,8 +11,8 @@
  *   - A lost start packet. The angle swept since the last one shows the loss: the scan ends after a
  *     full circle. (The start angle is not 0 on every unit, section 9.8.)
  *   - A gap that may hold half a turn or more, because any number of turns may then be missing. The
- *   number of skipped bytes shows it, or the angle; or the caller reports it: after a pause of the
- *   line or an overflow, the packet's gap is TMINI_GAP_UNKNOWN.
+ *     number of skipped bytes shows it, or the angle; or the caller reports it: after a pause of
+ *     the line or an overflow, the packet's gap is TMINI_GAP_UNKNOWN.
  *
  * The next scan then has no start packet and is never complete. It ends at the next start packet
  * or, if that is lost too, at the angle of the last one that came.
