@@ -15,7 +15,7 @@ typedef struct {
     const char *section; /* Of docs/protocol.md. */
     const char *statement;
     const char *expected; /* Words and ranges LOW..HIGH, with | between them; NULL: anything. */
-    /* False: unknown. */
+    /* Returns false if the answer is unknown. */
     bool (*read)(const survey_t *survey, char text[TEXT_SIZE]);
 } question_t;
 

@@ -59,7 +59,7 @@ EXPORTED uint32_t recording_time_ms(void)
     return (uint32_t)(tape->chunks.version > 0 ? tape->time_us / 1000u : tape->stream.points / 4u);
 }
 
-/* The values with which each row of the latest packet's points begins and ends. */
+/* The values that are the same in each row of the latest packet's points. */
 EXPORTED uint32_t recording_packet_numbers(void)
 {
     const stream_t *const stream = &played.tape.stream;
