@@ -95,7 +95,7 @@ size_t tmini_ring_room(const tmini_ring_t *ring)
 void tmini_ring_publish(tmini_ring_t *ring, size_t position)
 {
     const size_t head = ring->head;
-    if (ring->size > 0) {
+    if (ring->size > ring->window) { /* A DMA ring that has been set up. */
         move_head(ring, head + ((position - head) & (ring->size - 1)));
     }
 }

@@ -466,6 +466,15 @@ static void dma_writes(size_t first, size_t count, size_t at)
     tmini_ring_publish(&ring, (at + count) % SIZE);
 }
 
+/* As from a program that has forgotten rx_dma: it notices at once, not only at its first overrun. */
+void test_a_ring_that_the_cpu_feeds_ignores_positions_of_dma(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE, false));
+    tmini_ring_publish(&ring, 6);
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
+    TEST_ASSERT_EQUAL_UINT(SIZE, tmini_ring_room(&ring));
+}
+
 void test_a_lap_that_was_not_seen_leaves_the_newest_half_intact_at_most(void)
 {
     use_dma();

@@ -263,7 +263,7 @@ static inline void tmini_feed_held(tmini_t *lidar, size_t held);
  * half-transfer, transfer-complete and idle-line interrupts; all three are needed (tmini_ring.h
  * gives the reason). Do not hold bytes back for longer than frame_timeout_ms. No loop, no wait.
  * tmini_poll() notices overwritten bytes and counts them (bytes_overrun); they never become
- * points. */
+ * points. Without rx_dma this does nothing. */
 static inline void tmini_feed_dma(tmini_t *lidar, size_t position);
 
 /** Reports that an unknown number of bytes was lost after those fed so far: a receiver's queue
