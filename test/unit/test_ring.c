@@ -466,7 +466,7 @@ static void dma_writes(size_t first, size_t count, size_t at)
     tmini_ring_publish(&ring, (at + count) % SIZE);
 }
 
-/* As from a program that has forgotten rx_dma: it notices at once, not only at its first overrun. */
+/* As from a program that has forgotten rx_dma: it notices at once, not at its first overrun. */
 void test_a_ring_that_the_cpu_feeds_ignores_positions_of_dma(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE, false));
