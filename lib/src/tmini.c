@@ -65,13 +65,12 @@ TMINI_NOINLINE static void raise_event(tmini_t *lidar, tmini_event_t event)
  * TMINI_EVENT_NONE. */
 TMINI_NOINLINE static tmini_event_t take_event(tmini_t *lidar)
 {
-    const uint16_t pending = lidar->pending;
-    uint8_t event = TMINI_EVENT_NONE;
-    const uint16_t rest = (uint16_t)(pending & (pending - 1)); /* Without the lowest bit. */
-    for (uint16_t first = (uint16_t)(pending ^ rest); first > 1; first >>= 1) {
+    uint16_t pending = lidar->pending;
+    unsigned event = TMINI_EVENT_NONE;
+    lidar->pending = (uint16_t)(pending & (pending - 1)); /* Without the lowest bit. */
+    for (; pending != 0 && (pending & 1u) == 0; pending >>= 1) {
         event++;
     }
-    lidar->pending = rest;
     return (tmini_event_t)event;
 }
 
@@ -137,23 +136,34 @@ static void end_frequency(tmini_t *lidar, int result, bool is_start)
     }
 }
 
-/* A step of the ladder has ended, and no packet has come yet. Each failed attempt to start is
- * reported. During recovery none is, because the loss has been reported. A frequency that could not
- * be set is reported when scanning begins. */
+/* Each failed attempt to start is reported. During recovery none is, because the loss has been
+ * reported. */
+static void fail_attempt(tmini_t *lidar, int result, bool is_start)
+{
+    tmini_recovery_restart_reception(lidar);
+    if (is_start) {
+        fail(lidar, result);
+        if (lidar->is_recovery_off) {
+            lidar->state = TMINI_STATE_UNKNOWN;
+            return;
+        }
+    }
+    tmini_recovery_back_off(lidar);
+}
+
+/* A step of the ladder has ended, and no packet has come yet. A successful start does not come
+ * here: it ends with the first packet. A frequency that could not be set is reported when scanning
+ * begins; the start follows even then. */
 static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
 {
     const bool is_start = lidar->state == TMINI_STATE_STARTING;
     if (operation == TMINI_EVENT_FREQUENCY) {
         end_frequency(lidar, result, is_start);
-    } else if (result != TMINI_OK && is_start) {
-        fail(lidar, result);
-        if (lidar->is_recovery_off) {
-            tmini_recovery_restart_reception(lidar);
-            lidar->state = TMINI_STATE_UNKNOWN;
-            return;
-        }
+    } else if (result != TMINI_OK) {
+        fail_attempt(lidar, result, is_start);
+        return;
     }
-    tmini_recovery_go_on(lidar, operation, result, is_idle);
+    tmini_recovery_go_on(lidar, operation, is_idle);
 }
 
 /* The first packet has come. So the start command is not sent again, and its reply is not awaited

@@ -296,16 +296,14 @@ void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms)
 bool tmini_command_end(tmini_t *lidar, int result)
 {
     tmini_command_t *const command = &lidar->command;
-    const uint8_t operation = command->operation;
-    const bool is_idle =
-        result == TMINI_OK && command->phase != TMINI_PHASE_WAITING && command->attempts == 1;
-    const bool was_stopped = operation >= TMINI_EVENT_STOPPED;
     (void)tmini_parser_await(&lidar->decoder.parser, NULL);
     command->unsent = 0;
-    if (result == TMINI_OK) {
-        enter(lidar, TMINI_PHASE_IDLE, 0);
-    } else { /* Packets are ignored; after a stop only for this time. */
+    if (result != TMINI_OK) { /* Packets are ignored; after a stop only for this time. */
+        const bool was_stopped = command->operation >= TMINI_EVENT_STOPPED;
         enter(lidar, TMINI_PHASE_NONE, was_stopped ? TMINI_BACK_OFF_MS : 0);
+        return false;
     }
-    return is_idle;
+    const bool has_waited = command->phase == TMINI_PHASE_WAITING;
+    enter(lidar, TMINI_PHASE_IDLE, 0);
+    return !has_waited && command->attempts == 1;
 }

@@ -124,9 +124,12 @@ void tmini_recovery_begin(tmini_t *lidar);
 /* Asks the port, if it can, to start its reception again: after a loss or a failed attempt. */
 void tmini_recovery_restart_reception(const tmini_t *lidar);
 
-/* `operation` has ended with `result`: begins the next one. `is_idle`: as in
- * tmini_recovery_start(). */
-void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle);
+/* An attempt has failed: waits before the next one. */
+void tmini_recovery_back_off(tmini_t *lidar);
+
+/* `ended` has succeeded, or the frequency could not be set: begins the next operation. `is_idle`:
+ * as in tmini_recovery_start(). */
+void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t ended, bool is_idle);
 
 /* The lidar is back, by an attempt or by itself. */
 static inline void tmini_recovery_end(tmini_t *lidar)

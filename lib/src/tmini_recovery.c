@@ -24,9 +24,8 @@ TMINI_NOINLINE void tmini_recovery_restart_reception(const tmini_t *lidar)
     }
 }
 
-static void back_off(tmini_t *lidar)
+void tmini_recovery_back_off(tmini_t *lidar)
 {
-    tmini_recovery_restart_reception(lidar);
     tmini_recovery_t *const recovery = &lidar->recovery;
     const uint16_t max_ms = lidar->link.timing->back_off_max_ms;
     const uint32_t doubled_ms = 2u * (uint32_t)recovery->pause_ms;
@@ -58,7 +57,7 @@ static void count(tmini_t *lidar, tmini_event_t operation)
     }
 }
 
-static void make_attempt(tmini_t *lidar, tmini_event_t ended, bool is_idle)
+void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t ended, bool is_idle)
 {
     const tmini_event_t operation = next_operation(lidar, ended);
     count(lidar, operation);
@@ -73,32 +72,19 @@ void tmini_recovery_start(tmini_t *lidar, bool is_idle)
     if (lidar->is_listen_only) {
         tmini_command_wait(lidar, TMINI_SPIN_UP_TIMEOUT_MS);
     } else {
-        make_attempt(lidar, NO_OPERATION, is_idle);
+        tmini_recovery_go_on(lidar, NO_OPERATION, is_idle);
     }
 }
 
 void tmini_recovery_begin(tmini_t *lidar)
 {
     lidar->recovery.losses++;
-    if (lidar->recovery.attempts > 0) {
-        back_off(lidar); /* Lost again before it made a complete revolution. */
-        return;
-    }
     tmini_recovery_restart_reception(lidar);
-    if (lidar->is_recovery_off) {
+    if (lidar->recovery.attempts > 0) {
+        tmini_recovery_back_off(lidar); /* Lost again before it made a complete revolution. */
+    } else if (lidar->is_recovery_off) {
         tmini_command_wait(lidar, 0);
     } else {
         tmini_recovery_start(lidar, false);
-    }
-}
-
-/* A successful start does not come here: it ends with the first packet. TMINI_OK is the result of a
- * pause, a reboot or a frequency change; with listen_only nothing has this result. */
-void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
-{
-    if (result != TMINI_OK && operation != TMINI_EVENT_FREQUENCY) {
-        back_off(lidar);
-    } else {
-        make_attempt(lidar, operation, is_idle);
     }
 }
