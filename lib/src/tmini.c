@@ -235,8 +235,8 @@ TMINI_NOINLINE static void take_over(tmini_t *lidar)
  * ends, even if it repeats each failed command. */
 static void send_first(tmini_t *lidar)
 {
-    lidar->idle_ms = 1;
-    lidar->is_settled = tmini_command_poll(lidar) != TMINI_UNDER_WAY && lidar->pending == 0;
+    const bool has_failed = tmini_command_poll(lidar) != TMINI_UNDER_WAY;
+    lidar->idle_ms = has_failed && lidar->pending == 0 ? 1 : 0;
 }
 
 /* A lidar that is known to be idle is not stopped first. */
@@ -326,7 +326,7 @@ static bool is_worth_a_restart(const tmini_t *lidar)
 static void monitor_packet(tmini_t *lidar)
 {
     const tmini_turn_t turn =
-        tmini_monitor_packet(&lidar->monitor, &lidar->decoder, lidar->wanted_chz);
+        tmini_monitor_packet(&lidar->monitor, &lidar->decoder, lidar->command.wanted_chz);
     if (turn == TMINI_TURN_WHOLE) {
         tmini_recovery_forget(lidar); /* A lost lidar has recovered now. */
     } else if (turn == TMINI_TURN_ENDLESS) {
@@ -432,9 +432,10 @@ static void settle(tmini_t *lidar)
     const uint16_t give_up_ms = left_ms > 0 ? (uint16_t)left_ms : frame_ms;
     const uint16_t command_ms = tmini_command_idle_ms(lidar);
     const uint16_t due_ms = give_up_ms < command_ms ? give_up_ms : command_ms;
-    const uint16_t idle_ms = due_ms < IDLE_MAX_MS ? due_ms : IDLE_MAX_MS;
-    lidar->idle_ms = idle_ms > 0 ? idle_ms : 1;
-    lidar->is_settled = lidar->command.unsent == 0;
+    const uint8_t idle_ms = (uint8_t)(due_ms < IDLE_MAX_MS ? due_ms : IDLE_MAX_MS);
+    if (lidar->command.unsent == 0) {
+        lidar->idle_ms = idle_ms > 0 ? idle_ms : 1;
+    }
 }
 
 /* True if a settled lidar has been idle for long enough, or a frame may be complete. The clock is
@@ -473,7 +474,7 @@ tmini_event_t tmini_poll(tmini_t *lidar)
     if (lidar == NULL) {
         return TMINI_EVENT_NONE;
     }
-    if (lidar->is_settled) {
+    if (lidar->idle_ms > 0) {
         if (!has_news(lidar)) {
             return TMINI_EVENT_NONE;
         }
@@ -481,7 +482,7 @@ tmini_event_t tmini_poll(tmini_t *lidar)
         return take_event(lidar); /* Not set up. */
     }
     look(lidar);
-    lidar->is_settled = false;
+    lidar->idle_ms = 0;
     return work(lidar);
 }
 
@@ -541,7 +542,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
         .step_data = config->step_data,
         .spare_points = config->spare_points,
     };
-    lidar->wanted_chz = config->frequency_chz;
+    tmini_command_want(lidar, config->frequency_chz);
     lidar->is_recovery_off = config->recovery == TMINI_RECOVERY_OFF;
     lidar->is_listen_only = config->listen_only;
     return TMINI_OK;
@@ -597,14 +598,13 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
     if (lidar->is_listen_only) {
         return TMINI_ERROR_LISTEN_ONLY;
     }
-    if (lidar->wanted_chz == frequency_chz && lidar->state > TMINI_STATE_IDLE) {
+    if (lidar->command.wanted_chz == frequency_chz && lidar->state > TMINI_STATE_IDLE) {
         return TMINI_OK;
     }
-    lidar->wanted_chz = frequency_chz;
-    tmini_command_renew_steps(lidar);
+    tmini_command_want(lidar, frequency_chz);
     if ((lidar->monitor.faults & TMINI_FAULT_FREQUENCY) != 0) {
         raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
-        lidar->is_settled = false;
+        lidar->idle_ms = 0;
     }
     tmini_monitor_forget_frequency(&lidar->monitor);
     if (lidar->state <= TMINI_STATE_IDLE) {
@@ -641,7 +641,7 @@ tmini_status_t tmini_reboot(tmini_t *lidar)
 void tmini_cancel(tmini_t *lidar)
 {
     (void)tmini_command_end(lidar, TMINI_ERROR_ABORTED);
-    lidar->is_settled = false;
+    lidar->idle_ms = 0;
     lidar->start_follows = false;
     lidar->state = TMINI_STATE_UNKNOWN;
 }

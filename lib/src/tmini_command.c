@@ -111,13 +111,13 @@ static int time_out(tmini_t *lidar)
 
 static int32_t chz_to_go(const tmini_t *lidar)
 {
-    return (int32_t)lidar->wanted_chz - lidar->command.frequency_chz;
+    return (int32_t)lidar->command.wanted_chz - lidar->command.frequency_chz;
 }
 
 bool tmini_command_has_frequency(const tmini_t *lidar)
 {
     const int32_t left = chz_to_go(lidar);
-    return lidar->wanted_chz == 0 ||
+    return lidar->command.wanted_chz == 0 ||
            (left >= -TMINI_FREQUENCY_TOLERANCE_CHZ && left <= TMINI_FREQUENCY_TOLERANCE_CHZ);
 }
 

@@ -99,9 +99,10 @@ void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms);
  * the reply to an earlier one may still come. */
 bool tmini_command_end(tmini_t *lidar, int result);
 
-/* The wanted frequency has changed: steps are counted from 0 again. */
-static inline void tmini_command_renew_steps(tmini_t *lidar)
+/* From now on this frequency is wanted; 0: any. Steps are counted from 0 again. */
+static inline void tmini_command_want(tmini_t *lidar, uint16_t frequency_chz)
 {
+    lidar->command.wanted_chz = frequency_chz;
     lidar->command.steps = 0;
 }
 

@@ -126,7 +126,7 @@ static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t pa
             late_ms = 0;
         }
     }
-    note_delay(line, late_ms, lidar->is_settled && !were_held);
+    note_delay(line, late_ms, lidar->idle_ms > 0 && !were_held);
 }
 
 static void note_silence(tmini_line_t *line, uint32_t passed_ms)

@@ -45,7 +45,7 @@ static tmini_event_t next_operation(const tmini_t *lidar, tmini_event_t ended)
     if (ended == NO_OPERATION && lidar->recovery.attempts == REBOOT_AFTER) {
         return TMINI_EVENT_REBOOTED;
     }
-    return lidar->wanted_chz != 0 ? TMINI_EVENT_FREQUENCY : TMINI_EVENT_STARTED;
+    return lidar->command.wanted_chz != 0 ? TMINI_EVENT_FREQUENCY : TMINI_EVENT_STARTED;
 }
 
 static void count(tmini_t *lidar, tmini_event_t operation)

@@ -301,7 +301,7 @@ static bool recovery_is_sound(const tmini_recovery_t *recovery)
 /* When only listening, no operation runs and no frequency is wanted. */
 static bool wish_is_sound(const tmini_t *lidar)
 {
-    const uint16_t chz = lidar->wanted_chz;
+    const uint16_t chz = lidar->command.wanted_chz;
     return (chz == 0 || (chz >= TMINI_FREQUENCY_MIN_CHZ && chz <= TMINI_FREQUENCY_MAX_CHZ)) &&
            (!lidar->is_listen_only || (chz == 0 && lidar->command.operation == 0));
 }
@@ -314,7 +314,7 @@ static bool results_are_sound(const tmini_t *lidar)
     const bool by_packets = decoder->builder.capacity == 0;
     return (by_packets ? !decoder->builder.open && !decoder->builder.ended
                        : builder_is_sound(&decoder->builder)) &&
-           (!lidar->is_settled || lidar->pending == 0) &&
+           (lidar->idle_ms == 0 || lidar->pending == 0) &&
            (!decoder->builder.ended || packet_is_sound(&decoder->packet, &decoder->parser.frame));
 }
 

@@ -24,7 +24,7 @@ static const tmini_port_t port = {.now_ms = read_clock};
 /* A lidar scans at this frequency; its line was examined just now. */
 static void open_at(uint16_t frequency_chz)
 {
-    lidar = (tmini_t){.state = TMINI_STATE_SCANNING, .is_settled = true};
+    lidar = (tmini_t){.state = TMINI_STATE_SCANNING, .idle_ms = 1};
     lidar.link.port = &port;
     lidar.link.timing = &timing;
     lidar.ring.size = (size_t)1 << 24;
@@ -202,10 +202,10 @@ void test_bytes_are_late_by_a_second_at_most(void)
 void test_a_delay_is_kept_until_all_bytes_that_it_concerns_are_read(void)
 {
     (void)look_after(20, 1);
-    lidar.is_settled = false;
+    lidar.idle_ms = 0;
     (void)look_after(3, 1);
     TEST_ASSERT_EQUAL_UINT16(20, lidar.line.late_ms);
-    lidar.is_settled = true;
+    lidar.idle_ms = 1;
     (void)look_after(3, 1);
     TEST_ASSERT_EQUAL_UINT16(3, lidar.line.late_ms);
 }

@@ -439,6 +439,7 @@ typedef struct {
     uint8_t steps;       /* Frequency steps sent. */
     uint16_t timeout_ms; /* How long the phase may last; 0: without limit. */
     uint16_t frequency_chz;
+    uint16_t wanted_chz; /* 0: any. */
     uint16_t timeouts;
     uint32_t since_ms; /* When the phase began. */
 } tmini_command_t;
@@ -492,20 +493,18 @@ struct tmini {
     int8_t command_error;
     uint16_t pending;   /* A bit for each event not yet returned. */
     bool start_follows; /* After the current command a start follows. */
-    bool is_settled;    /* Nothing is to be done until a frame may be complete, or for
-                         * `idle_ms`. */
+    uint8_t idle_ms;    /* For this long after the last look at the line nothing is to be done,
+                         * unless a frame may be complete. 0: the lidar is not settled. */
     bool is_recovery_off;
     bool is_listen_only;
     tmini_command_t command;
     tmini_recovery_t recovery;
-    uint16_t wanted_chz; /* 0: any. */
-    uint16_t idle_ms;    /* From the last look at the line on; at least 1. */
     tmini_line_t line;
     tmini_link_t link;
-    tmini_ring_t ring;
     uint32_t scans;
     size_t held_to; /* Written by the receiving context: up to where bytes wait in the port; 0:
                      * unknown. */
+    tmini_ring_t ring;
     tmini_monitor_t monitor;
     tmini_decoder_t decoder;
     tmini_scan_t scan; /* The one delivered last. */

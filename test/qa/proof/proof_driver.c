@@ -74,7 +74,7 @@ static bool wish_fits(void)
              (phase == TMINI_PHASE_NONE || phase == TMINI_PHASE_WAITING))) &&
            (!lidar.start_follows || lidar.state == TMINI_STATE_BUSY ||
             lidar.state == TMINI_STATE_STOPPING) &&
-           (lidar.wanted_chz != 0 || (lidar.monitor.faults & TMINI_FAULT_FREQUENCY) == 0);
+           (lidar.command.wanted_chz != 0 || (lidar.monitor.faults & TMINI_FAULT_FREQUENCY) == 0);
 }
 
 /* The next scan and the delivered scan are in different buffers. */
@@ -119,7 +119,6 @@ static void any_lidar(void)
     timing = nondet_timing();
     lidar.ring = any_early_ring(LARGE_RING_SIZE);
     lidar.start_follows = any_bool();
-    lidar.is_settled = any_bool();
     lidar.is_recovery_off = any_bool();
     lidar.is_listen_only = any_bool();
     lidar.line.late_ms = nondet_half();
@@ -157,7 +156,7 @@ void prove_driver_init(void)
     CLAIM((status == TMINI_OK) == (lidar.link.port != NULL));
     CLAIM(status != TMINI_OK || (config.points == NULL) == (config.max_points == 0));
     CLAIM(status != TMINI_OK || config.frequency_chz == 0 || !config.listen_only);
-    CLAIM(status != TMINI_OK || lidar.wanted_chz == config.frequency_chz);
+    CLAIM(status != TMINI_OK || lidar.command.wanted_chz == config.frequency_chz);
     CLAIM(tmini_init(NULL, &config) == TMINI_ERROR_ARGUMENT);
     REACHED();
 }
@@ -167,7 +166,7 @@ void prove_driver_init(void)
 static void any_polled_lidar(void)
 {
     any_lidar();
-    ASSUME(!lidar.is_settled);
+    ASSUME(lidar.idle_ms == 0);
 }
 
 static void any_receiving_lidar(void)
@@ -257,8 +256,8 @@ void prove_driver_poll(void)
     CLAIM(event <= TMINI_EVENT_MORE);
     CLAIM(before == 0 || (before >> event & 1u) != 0);
     CLAIM(before != 0 || event == TMINI_EVENT_NONE || event == TMINI_EVENT_MORE);
-    CLAIM(event == TMINI_EVENT_NONE ? lidar.is_settled || lidar.command.unsent > 0
-                                    : !lidar.is_settled);
+    CLAIM(event == TMINI_EVENT_NONE ? lidar.idle_ms > 0 || lidar.command.unsent > 0
+                                    : lidar.idle_ms == 0);
     REACHED();
 }
 
@@ -331,7 +330,7 @@ void prove_driver_set_frequency(void)
 {
     any_lidar();
     const uint16_t frequency_chz = nondet_half();
-    const uint16_t before_chz = lidar.wanted_chz;
+    const uint16_t before_chz = lidar.command.wanted_chz;
     const bool is_permitted =
         frequency_chz >= 600 && frequency_chz <= 1200 && frequency_chz % 10 == 0;
     const tmini_status_t status = tmini_set_frequency(&lidar, frequency_chz);
@@ -339,7 +338,7 @@ void prove_driver_set_frequency(void)
     CLAIM((status == TMINI_ERROR_ARGUMENT) == !is_permitted);
     CLAIM((status == TMINI_ERROR_LISTEN_ONLY) == (is_permitted && lidar.is_listen_only));
     CLAIM((status == TMINI_OK) == (is_permitted && !lidar.is_listen_only));
-    CLAIM(lidar.wanted_chz == (status == TMINI_OK ? frequency_chz : before_chz));
+    CLAIM(lidar.command.wanted_chz == (status == TMINI_OK ? frequency_chz : before_chz));
     REACHED();
 }
 
