@@ -274,11 +274,9 @@ TMINI_NOINLINE static void take_reply(tmini_t *lidar)
 {
     uint8_t content[TMINI_INFO_SIZE];
     tmini_parser_t *const parser = &lidar->decoder.parser;
-    const tmini_reply_header_t *const header = &parser->awaited;
     look(lidar); /* Notes the bytes that came during this poll. */
-    if (!tmini_frame_content(tmini_parser_frame(parser), content, header->length)) {
-        (void)tmini_parser_await(parser, header); /* DMA has overwritten the reply: it is still
-                                                   * awaited. */
+    if (!tmini_frame_content(tmini_parser_frame(parser), content, parser->awaited.length)) {
+        tmini_parser_await_again(parser); /* DMA has overwritten it. */
         return;
     }
     take_result(lidar, tmini_command_reply(lidar, content));

@@ -140,7 +140,7 @@ static uint8_t next_step(const tmini_t *lidar)
  * reply is awaited for the rest of the time. */
 static int await_another_frequency(tmini_t *lidar)
 {
-    (void)tmini_parser_await(&lidar->decoder.parser, &lidar->decoder.parser.awaited);
+    tmini_parser_await_again(&lidar->decoder.parser);
     lidar->command.phase = TMINI_PHASE_AWAITING_STEP; /* Without a new time limit. */
     return TMINI_UNDER_WAY;
 }

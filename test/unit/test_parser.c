@@ -888,6 +888,19 @@ void test_a_reply_can_be_awaited_again(void)
     expect_skipped(0);
 }
 
+void test_the_reply_delivered_last_can_be_awaited_again_without_its_header(void)
+{
+    receiver_await(&receiver, 0, 0x06, 3);
+    feed(health_reply, 10);
+    feed(health_reply, 10);
+    feed(health_reply, 10);
+    expect_frame(TMINI_FRAME_REPLY);
+    tmini_parser_await_again(&receiver.parser);
+    expect_frame(TMINI_FRAME_REPLY);
+    expect_nothing();
+    expect_skipped(10);
+}
+
 void test_a_reply_that_comes_after_the_waiting_is_skipped(void)
 {
     receiver_await(&receiver, 0, 0x06, 3);

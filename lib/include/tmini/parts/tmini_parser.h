@@ -126,6 +126,13 @@ static inline const tmini_frame_t *tmini_parser_frame(const tmini_parser_t *pars
  * is awaited. */
 tmini_status_t tmini_parser_await(tmini_parser_t *parser, const tmini_reply_header_t *header);
 
+/** Awaits the reply that was delivered last once more. Call it before the next
+ * tmini_parser_next(). */
+static inline void tmini_parser_await_again(tmini_parser_t *parser)
+{
+    parser->awaiting = true;
+}
+
 /** How many bytes wait in the ring for more to come. */
 size_t tmini_parser_pending(const tmini_parser_t *parser);
 
