@@ -120,14 +120,3 @@ void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, si
         *bytes = memory[index++ & mask];
     }
 }
-
-/* From now on the producer may overwrite these bytes; tmini_store() completes all reads before. */
-void tmini_ring_discard(tmini_ring_t *ring, size_t count)
-{
-    tmini_store(&ring->tail, ring->tail + count);
-}
-
-void tmini_ring_open(tmini_ring_t *ring)
-{
-    tmini_store(&ring->tail, ring->tail + TMINI_RING_CLOSED);
-}

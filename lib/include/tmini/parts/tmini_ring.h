@@ -206,10 +206,16 @@ static inline const uint8_t *tmini_ring_piece(const tmini_ring_t *ring, size_t o
 }
 
 /** Gives the oldest `count` bytes back to the producer; at most tmini_ring_unread(). */
-void tmini_ring_discard(tmini_ring_t *ring, size_t count);
+TMINI_INLINE void tmini_ring_discard(tmini_ring_t *ring, size_t count)
+{
+    tmini_store(&ring->tail, ring->tail + count); /* Completes all reads before. */
+}
 
 /** Opens a closed ring again, once everything in it has been discarded. */
-void tmini_ring_open(tmini_ring_t *ring);
+static inline void tmini_ring_open(tmini_ring_t *ring)
+{
+    tmini_ring_discard(ring, TMINI_RING_CLOSED);
+}
 
 /** The number of bytes refused since init, modulo the range of size_t. */
 static inline size_t tmini_ring_overrun(const tmini_ring_t *ring)
