@@ -106,22 +106,22 @@ static int32_t missing_ms(const tmini_line_t *line, uint32_t due_ms)
 static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t passed_ms)
 {
     tmini_line_t *const line = &lidar->line;
-    if (arrived - line->arrived >= TMINI_RING_CLOSED) {
-        line->arrived = line->received - count; /* What the port held has been lost. */
-    }
-    const size_t fresh = arrived - line->arrived;
+    const size_t fed_from = line->received - count;
+    const bool are_lost = arrived - line->arrived >= TMINI_RING_CLOSED; /* Those that it held. */
+    const size_t before = are_lost ? fed_from : line->arrived;
+    const size_t fresh = arrived - before;
+    line->arrived = arrived;
     if (fresh == 0) {
         return;
     }
-    const bool were_held = line->arrived != line->received - count;
+    const bool were_held = before != fed_from;
     const bool is_gap = count > lidar->ring.size;
     const uint32_t due_ms = transit_ms(fresh);
     int32_t late_ms = missing_ms(line, due_ms);
-    line->arrived = arrived;
     line->heard_ms = line->now_ms;
     if (is_gap || may_hide_turn(lidar, late_ms + line->late_ms)) {
         const bool is_before = !is_gap && is_silence_before(lidar, due_ms, passed_ms);
-        doubt_to(line, is_before ? arrived - fresh : arrived);
+        doubt_to(line, is_before ? before : arrived);
         if (tmini_load(&lidar->held_to) == 0) {
             late_ms = 0;
         }

@@ -210,6 +210,15 @@ void test_a_delay_is_kept_until_all_bytes_that_it_concerns_are_read(void)
     TEST_ASSERT_EQUAL_UINT16(3, lidar.line.late_ms);
 }
 
+void test_a_delay_ends_also_after_many_bytes(void)
+{
+    (void)look_after(6000, 70000);
+    (void)look_after(20, 1);
+    TEST_ASSERT_EQUAL_UINT16(20, lidar.line.late_ms);
+    (void)look_after(3, 1);
+    TEST_ASSERT_EQUAL_UINT16(3, lidar.line.late_ms);
+}
+
 void test_a_delay_is_kept_until_all_that_the_port_held_is_read(void)
 {
     lidar.held_to = 100;
