@@ -720,6 +720,23 @@ void test_a_frequency_that_is_never_reached_fails_with_the_reply_after_twenty_st
     fails_with(TMINI_ERROR_REPLY);
 }
 
+void test_the_next_command_steps_again(void)
+{
+    begins_to_set(600, 2000);
+    for (unsigned step = 1; step <= 20; step++) {
+        steps(SLOWER_ONE, (uint16_t)(2000 - step));
+    }
+    polls_to(TMINI_EVENT_NONE);
+    passes(50);
+    fails_with(TMINI_ERROR_REPLY);
+    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
+    rig_feed_frequency(700);
+    polls_to(TMINI_EVENT_NONE);
+    steps(SLOWER_ONE, 600);
+    steps(GET_FREQUENCY, 600);
+    arrives_at(600);
+}
+
 void test_another_wish_meanwhile_has_twenty_steps_of_its_own(void)
 {
     begins_to_set(600, 2000);
