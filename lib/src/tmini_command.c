@@ -121,11 +121,6 @@ bool tmini_command_has_frequency(const tmini_t *lidar)
            (left >= -TMINI_FREQUENCY_TOLERANCE_CHZ && left <= TMINI_FREQUENCY_TOLERANCE_CHZ);
 }
 
-void tmini_command_forget_frequency(tmini_t *lidar)
-{
-    lidar->command.frequency_chz = 0;
-}
-
 /* Overshoots by less than the finest step, so the frequency never leaves the permitted range. */
 static uint8_t next_step(const tmini_t *lidar)
 {

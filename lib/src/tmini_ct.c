@@ -60,11 +60,6 @@ static void append_byte(tmini_ct_t *ct, uint8_t byte)
     ct->packets++;
 }
 
-void tmini_ct_init(tmini_ct_t *ct)
-{
-    *ct = (tmini_ct_t){0};
-}
-
 void tmini_ct_discard(tmini_ct_t *ct)
 {
     ct->packets = 0;

@@ -107,7 +107,10 @@ static inline void tmini_command_want(tmini_t *lidar, uint16_t frequency_chz)
 }
 
 /* The frequency that is set is no longer known. */
-void tmini_command_forget_frequency(tmini_t *lidar);
+static inline void tmini_command_forget_frequency(tmini_t *lidar)
+{
+    lidar->command.frequency_chz = 0;
+}
 
 /* True if the lidar has reported the wanted frequency, or none is wanted. */
 bool tmini_command_has_frequency(const tmini_t *lidar);

@@ -42,9 +42,3 @@ void tmini_reply_health(const uint8_t content[TMINI_HEALTH_SIZE], tmini_health_t
     health->faults = content[0] & TMINI_FAULT_MASK;
     health->error_code = (uint16_t)(content[1] | (unsigned)content[2] << 8);
 }
-
-uint32_t tmini_reply_frequency_chz(const uint8_t content[TMINI_FREQUENCY_SIZE])
-{
-    return content[0] | (uint32_t)content[1] << 8 | (uint32_t)content[2] << 16 |
-           (uint32_t)content[3] << 24;
-}

@@ -59,7 +59,10 @@ typedef enum {
 #if !defined(TMINI_NO_CT)
 
 /** Forgets everything. Call it for a new `ct`, and when the unit may have been exchanged. */
-void tmini_ct_init(tmini_ct_t *ct);
+static inline void tmini_ct_init(tmini_ct_t *ct)
+{
+    memset(ct, 0, sizeof *ct);
+}
 
 /** Forgets the current revolution, because it was interrupted. Trusted information is kept. */
 void tmini_ct_discard(tmini_ct_t *ct);

@@ -52,7 +52,11 @@ void tmini_reply_info(const uint8_t content[TMINI_INFO_SIZE], tmini_info_t *info
 void tmini_reply_health(const uint8_t content[TMINI_HEALTH_SIZE], tmini_health_t *health);
 
 /** The scan frequency that is set, in 0.01 Hz, from a reply's 4 bytes. */
-uint32_t tmini_reply_frequency_chz(const uint8_t content[TMINI_FREQUENCY_SIZE]);
+static inline uint32_t tmini_reply_frequency_chz(const uint8_t content[TMINI_FREQUENCY_SIZE])
+{
+    return content[0] | (uint32_t)content[1] << 8 | (uint32_t)content[2] << 16 |
+           (uint32_t)content[3] << 24;
+}
 
 #ifdef __cplusplus
 }
