@@ -40,7 +40,8 @@ typedef struct {
     void (*wait)(void *context);
 
     /** Starts reception again, in case the receiver has stopped. Called when the lidar is lost, and
-     * after each failed attempt to start it. Must not wait. Optional: NULL. */
+     * after each failed attempt to start it. Must not wait. To report a gap here, first end the old
+     * reception: two contexts must not feed a lidar at the same time. Optional: NULL. */
     void (*restart)(void *context);
 } tmini_port_t;
 
