@@ -246,15 +246,12 @@ static void skip(tmini_parser_t *parser, size_t unread)
     parser->effort = (uint16_t)(parser->effort + skipped + TMINI_CANDIDATE_EFFORT);
 }
 
-/* The number of unread bytes, after dropping those that DMA may have overwritten. `ahead` is the
- * distance from tail to head. If a lap was reported that perhaps never happened (tmini_ring_gap()),
+/* Bytes have been lost: `ahead`, the distance from tail to head, is more than the window. Returns
+ * the number of unread bytes, after dropping those that DMA may have overwritten. If a lap was reported that perhaps never happened (tmini_ring_gap()),
  * bytes that may have been read before are dropped too: those that are kept are certainly new. */
 static size_t intact_bytes(tmini_parser_t *parser, size_t ahead)
 {
     tmini_ring_t *const ring = parser->frame.ring;
-    if (ahead <= ring->window) {
-        return ahead;
-    }
     if (!tmini_ring_is_dma(ring)) {
         return ahead - TMINI_RING_CLOSED; /* A closed ring. */
     }
@@ -338,10 +335,13 @@ tmini_frame_type_t tmini_parser_next_after(tmini_parser_t *parser, size_t effort
         if (ahead < parser->need) {
             return TMINI_FRAME_NONE;
         }
-        const size_t unread = intact_bytes(parser, ahead);
-        if (unread < parser->need) {
-            pass_lost_bytes(parser, unread);
-            continue;
+        size_t unread = ahead;
+        if (ahead > parser->frame.ring->window) {
+            unread = intact_bytes(parser, ahead);
+            if (unread < parser->need) {
+                pass_lost_bytes(parser, unread);
+                continue;
+            }
         }
         const enum verdict verdict = classify(parser, unread);
         if (verdict == NOT_A_FRAME) {
