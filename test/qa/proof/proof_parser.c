@@ -170,7 +170,7 @@ void prove_parser_skip(void)
 void prove_parser_intact_bytes(void)
 {
     begin();
-    ASSUME(parser.frame.size == 0);
+    ASSUME(parser.frame.size == 0 && tmini_ring_ahead(&ring) > ring.window);
     const size_t unread = intact_bytes(&parser, tmini_ring_ahead(&ring));
     CLAIM(is_accounted_for());
     CLAIM(skip_keeps_its_word(&before, &parser));
