@@ -14,6 +14,10 @@
 #define PLAUSIBLE_CHZ_MIN 100
 #define PLAUSIBLE_CHZ_MAX 2000
 
+/* A poll that comes this much too late to see that the lidar is lost gives it another chance. */
+#define LATE_POLL_MS 50
+#define LAST_CHANCE_MS 100
+
 static const uint8_t codes[] = {
     [TMINI_EVENT_STARTED] = TMINI_COMMAND_START,
     [TMINI_EVENT_STOPPED] = TMINI_COMMAND_STOP,
@@ -207,12 +211,25 @@ static int send_rest(tmini_t *lidar)
     return TMINI_UNDER_WAY;
 }
 
+/* True if this poll comes late to see that no packet has come: DMA may have overwritten all packets
+ * in a pause of the program, or the clock may have jumped. */
+static bool is_late_to_lose(const tmini_t *lidar)
+{
+    return lidar->state == TMINI_STATE_SCANNING &&
+           lidar->command.timeout_ms == TMINI_DATA_TIMEOUT_MS &&
+           tmini_has_elapsed(lidar, lidar->command.since_ms, TMINI_DATA_TIMEOUT_MS + LATE_POLL_MS);
+}
+
 /* The time of the phase is over. With listen_only this means that no packet has come. In
  * TMINI_PHASE_NONE no command ends, but from now on packets mean unwanted scanning. */
 static int end_phase(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     if (command->phase == TMINI_PHASE_WAITING) {
+        if (is_late_to_lose(lidar)) {
+            enter(lidar, TMINI_PHASE_WAITING, LAST_CHANCE_MS);
+            return TMINI_UNDER_WAY;
+        }
         return lidar->is_listen_only ? TMINI_ERROR_TIMEOUT : TMINI_OK;
     }
     if (command->phase == TMINI_PHASE_NONE) {

@@ -635,6 +635,21 @@ void test_a_main_loop_that_is_busy_for_too_long_costs_packets_but_accounts_for_t
     }
 }
 
+/* After the pause a small ring may hold no whole packet. */
+void test_a_program_that_pauses_for_seconds_does_not_lose_a_lidar_that_streams(void)
+{
+    config.dma = true;
+    config.rx_size = 512;
+    config.busy_one_in = 1000;
+    config.busy_ms = 3000;
+    config.overruns_expected = true;
+    begin_scanning();
+    (void)world_run_ms(&world, 600000);
+    TEST_ASSERT_TRUE(count(TMINI_EVENT_SCAN) > 0);
+    TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_LOST));
+    check_world(&world);
+}
+
 /* ---- Several ---- */
 
 void test_three_lidars_at_once_do_not_affect_each_other(void)

@@ -48,6 +48,34 @@ void test_bytes_without_valid_packets_are_a_loss_too(void)
     polls_to(TMINI_EVENT_LOST);
 }
 
+void test_a_poll_that_comes_less_than_50_ms_late_reports_the_loss(void)
+{
+    rig_go_scanning();
+    rig.now_ms += 1049;
+    polls_to(TMINI_EVENT_LOST);
+}
+
+void test_a_poll_that_comes_later_gives_the_lidar_another_100_ms(void)
+{
+    rig_go_scanning();
+    rig.now_ms += 1050;
+    polls_to(TMINI_EVENT_NONE);
+    passes(99);
+    is_in(TMINI_STATE_SCANNING);
+    passes_to(1, TMINI_EVENT_LOST);
+}
+
+void test_a_packet_in_the_100_ms_after_a_late_poll_averts_the_loss(void)
+{
+    rig_go_scanning();
+    rig.now_ms += 3000;
+    polls_to(TMINI_EVENT_NONE);
+    rig_feed_point_packet(1000);
+    passes(999);
+    is_in(TMINI_STATE_SCANNING);
+    passes_to(1, TMINI_EVENT_LOST);
+}
+
 void test_packets_that_came_between_two_polls_are_no_loss(void)
 {
     rig_go_scanning();
