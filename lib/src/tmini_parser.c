@@ -247,8 +247,9 @@ static void skip(tmini_parser_t *parser, size_t unread)
 }
 
 /* Bytes have been lost: `ahead`, the distance from tail to head, is more than the window. Returns
- * the number of unread bytes, after dropping those that DMA may have overwritten. If a lap was reported that perhaps never happened (tmini_ring_gap()),
- * bytes that may have been read before are dropped too: those that are kept are certainly new. */
+ * the number of unread bytes, after dropping those that DMA may have overwritten. If a lap was
+ * reported that perhaps never happened (tmini_ring_gap()), bytes that may have been read before are
+ * dropped too: those that are kept are certainly new. */
 static size_t intact_bytes(tmini_parser_t *parser, size_t ahead)
 {
     tmini_ring_t *const ring = parser->frame.ring;
