@@ -91,7 +91,9 @@ void prove_scan_step(void)
         CLAIM(!tmini_builder_add(&builder, &packet, now_ms));
     }
     CLAIM(builder_is_sound(&builder));
-    CLAIM(builder.open == (was_open || tmini_packet_is_start(&packet) || had_start));
+    const bool may_open = was_open || tmini_packet_is_start(&packet) || had_start;
+    const bool has_packet = tmini_frame_intact(packet.frame) || builder.scan.packets > 0;
+    CLAIM(builder.open == (may_open && has_packet));
     CLAIM(points[builder.capacity].angle_q6 == 0xEEEE);
     REACHED();
 }
