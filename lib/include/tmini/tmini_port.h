@@ -40,8 +40,9 @@ typedef struct {
     void (*wait)(void *context);
 
     /** Starts reception again, in case the receiver has stopped. Called when the lidar is lost, and
-     * after each failed attempt to start it. Must not wait. To report a gap here, first end the old
-     * reception: two contexts must not feed a lidar at the same time. Optional: NULL. */
+     * after each failed attempt to start it. tmini_poll() takes as much longer: a few milliseconds
+     * at most, if possible. To report a gap here, first end the old reception: two contexts must
+     * not feed a lidar at the same time. Optional: NULL. */
     void (*restart)(void *context);
 } tmini_port_t;
 
