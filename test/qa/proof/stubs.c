@@ -169,11 +169,6 @@ static void change_ct(tmini_ct_t *ct)
     ASSUME(ct_is_sound(ct));
 }
 
-void tmini_ct_init(tmini_ct_t *ct)
-{
-    change_ct(ct);
-}
-
 void tmini_ct_discard(tmini_ct_t *ct)
 {
     change_ct(ct);

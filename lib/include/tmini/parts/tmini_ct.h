@@ -56,13 +56,13 @@ typedef enum {
     TMINI_CT_REFUTED,   /**< LastCRC is wrong: a packet was lost, or LastCRC itself is damaged. */
 } tmini_ct_verdict_t;
 
-#if !defined(TMINI_NO_CT)
-
 /** Forgets everything. Call it for a new `ct`, and when the unit may have been exchanged. */
 static inline void tmini_ct_init(tmini_ct_t *ct)
 {
     memset(ct, 0, sizeof *ct);
 }
+
+#if !defined(TMINI_NO_CT)
 
 /** Forgets the current revolution, because it was interrupted. Trusted information is kept. */
 void tmini_ct_discard(tmini_ct_t *ct);
@@ -81,11 +81,6 @@ unsigned tmini_ct_faults(const tmini_ct_t *ct);
 void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info);
 
 #else /* Left out. Many units send none (section 9.1); the driver still finds its own faults. */
-
-static inline void tmini_ct_init(tmini_ct_t *ct)
-{
-    (void)ct;
-}
 
 static inline void tmini_ct_discard(tmini_ct_t *ct)
 {
