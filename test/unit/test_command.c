@@ -709,7 +709,8 @@ void test_a_port_that_fails_after_a_refused_step_fails_the_command_with_write(vo
     fails_with(TMINI_ERROR_WRITE);
 }
 
-void test_a_frequency_that_is_never_reached_fails_with_the_reply_after_twenty_steps(void)
+/* Each step changes the frequency by too little. */
+static void fails_after_twenty_steps(void)
 {
     begins_to_set(600, 2000);
     for (unsigned step = 1; step <= 20; step++) {
@@ -720,15 +721,14 @@ void test_a_frequency_that_is_never_reached_fails_with_the_reply_after_twenty_st
     fails_with(TMINI_ERROR_REPLY);
 }
 
+void test_a_frequency_that_is_never_reached_fails_with_the_reply_after_twenty_steps(void)
+{
+    fails_after_twenty_steps();
+}
+
 void test_the_next_command_steps_again(void)
 {
-    begins_to_set(600, 2000);
-    for (unsigned step = 1; step <= 20; step++) {
-        steps(SLOWER_ONE, (uint16_t)(2000 - step));
-    }
-    polls_to(TMINI_EVENT_NONE);
-    passes(50);
-    fails_with(TMINI_ERROR_REPLY);
+    fails_after_twenty_steps();
     is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
     rig_feed_frequency(700);
     polls_to(TMINI_EVENT_NONE);
