@@ -87,9 +87,10 @@ typedef struct {
      * where a layer below delays bytes: 250 for a computer. 0: pauses are not looked for. Whatever
      * the value, a scan that took more than one and a half turns has a gap. */
     uint16_t max_pause_ms;
-    /** After a stop, the line counts as quiet when it has been silent for this long: below 600. A
-     * value above 50 with polls more than 50 ms apart: at most 30000 / (time between polls). Bytes
-     * that a layer below holds for longer seem to come after the next start. 0: at once. */
+    /** After a stop, the line counts as quiet when it has been silent for this long: below 600. If
+     * the value is above 50 and polls are more than 50 ms apart, it may be at most
+     * 30000 / (time between polls). Bytes that a layer below holds for longer seem to come after
+     * the next start. 0: at once. */
     uint16_t quiet_line_ms;
     /** How long to wait for a reply (section 9.11). 0: without limit. */
     uint16_t reply_timeout_ms;
