@@ -43,13 +43,15 @@ check_sources() {
     done
 }
 
-# check_headers LANGUAGE COMPILER FLAG…: each one alone, and twice, which shows missing guards.
+# check_headers LANGUAGE COMPILER FLAG…: each one alone, and twice, which shows missing guards. In
+# C++ the user's namespace may have the library's name.
 check_headers() {
-    language=$1
+    language=$1 rest='extern int not_empty;'
     shift
+    [ "$language" = c ] || rest='namespace tmini { extern int not_empty; }'
     for header in "$lib"/include/tmini/*.h "$lib"/include/tmini/parts/*.h; do
         include="#include \"${header#"$lib"/include/}\""
-        printf '%s\n%s\nextern int not_empty;\n' "$include" "$include" >"$work/includer"
+        printf '%s\n%s\n%s\n' "$include" "$include" "$rest" >"$work/includer"
         compile "$language" "$work/includer" "$@"
     done
 }

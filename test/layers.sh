@@ -84,7 +84,7 @@ written=$(
     written_outside decoder -
 )
 
-members=$(sed -n '/^struct tmini {/,/^};/s/^ .*[ *]\([a-z_]*\);.*/\1/p' \
+members=$(sed -n '/^struct tmini_lidar {/,/^};/s/^ .*[ *]\([a-z_]*\);.*/\1/p' \
     "$root/lib/include/tmini/tmini.h" | paste -s -d '|' -)
 # A name followed by ( is a method of a class, not a member of tmini_t.
 access="(lidar|driver)_?(\[[a-z0-9]+\])?(\.|->)($members)([^a-z_(]|\$)"

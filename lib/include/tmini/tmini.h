@@ -221,7 +221,7 @@ typedef struct {
 } tmini_counters_t;
 
 /** One lidar: allocated by the caller, set up by tmini_init(). Its members are private. */
-typedef struct tmini tmini_t;
+typedef struct tmini_lidar tmini_t;
 
 /* ---------------------------------------------------------------------------------- life cycle */
 
@@ -489,7 +489,7 @@ typedef struct {
     tmini_point_t *spare_points; /* The buffer that holds no delivered scan; NULL: there is none. */
 } tmini_link_t;
 
-struct tmini {
+struct tmini_lidar {
     uint8_t state; /* A tmini_state_t. */
     int8_t command_error;
     uint16_t pending;   /* A bit for each event not yet returned. */
