@@ -165,29 +165,55 @@ static const char *advice(const char *nearest, const char *before)
     return text;
 }
 
-static bool refuse(const options_t *options, int answer, const char *word)
+/* One dash before the name of a long option: getopt_long() would read it as short ones. */
+static bool is_long_with_one_dash(const char *word)
 {
-    const char *const command = options->word_count > 0 ? options->words[0] : "COMMAND";
-    char name[24] = "";
-    if (answer == ':') {
-        (void)message_usage("%s needs a value; see tmini %s --help", word, command);
-    } else if (word[0] == '-' && word[1] != '-') {
-        (void)message_usage("there is no option -%c; see tmini %s --help", optopt, command);
-    } else if (optopt != 0) {
-        (void)message_usage("%s: --%s takes no value", word, find(optopt)->name);
-    } else {
-        (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(word, "="), word);
-        (void)message_usage("there is no option %s%s\nSee tmini %s --help.", name,
-                            advice(nearest_option(name + 2), "--"), command);
+    const size_t length = strcspn(word + 1, "=");
+    for (size_t i = 0; word[0] == '-' && i < OPTIONS; i++) {
+        if (strlen(table[i].name) == length && strncmp(word + 1, table[i].name, length) == 0) {
+            return true;
+        }
     }
     return false;
 }
 
+static bool refuse_unknown(const options_t *options, const char *word)
+{
+    const char *const command = options->word_count > 0 ? options->words[0] : "COMMAND";
+    const bool is_long = word[1] == '-' || is_long_with_one_dash(word);
+    char name[24] = {'-', (char)optopt};
+    const char *nearest = NULL;
+    if (is_long || isprint(optopt) == 0) {
+        (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(word, "="), word);
+        nearest = is_long ? nearest_option(name + (word[1] == '-' ? 2 : 1)) : NULL;
+    }
+    (void)message_usage("there is no option %s%s\nSee tmini %s --help.", name,
+                        advice(nearest, "--"), command);
+    return false;
+}
+
+/* `word` is the one with the option; `optopt` the letter of the option, if it is known. */
+static bool refuse(const options_t *options, int answer, const char *word)
+{
+    const bool is_long = word[1] == '-';
+    if (answer == ':') {
+        (void)message_usage("--%s needs a value; see tmini %s --help", find(optopt)->name,
+                            options->word_count > 0 ? options->words[0] : "COMMAND");
+        return false;
+    }
+    if (is_long && optopt != 0) {
+        (void)message_usage("%s: --%s takes no value", word, find(optopt)->name);
+        return false;
+    }
+    return refuse_unknown(options, word);
+}
+
 static bool take(options_t *options, int answer, const char *word)
 {
-    return answer == '?' || answer == ':' ? refuse(options, answer, word)
-           : answer == 1                  ? take_word(options, optarg)
-                                          : apply(options, find(answer), optarg);
+    return answer == 1                      ? take_word(options, optarg)
+           : is_long_with_one_dash(word)    ? refuse_unknown(options, word)
+           : answer == '?' || answer == ':' ? refuse(options, answer, word)
+                                            : apply(options, find(answer), optarg);
 }
 
 /* Reads all words, in any order. Returns STATUS_OK, or prints the error and returns
@@ -200,8 +226,10 @@ static int parse(options_t *options, int argc, char **argv)
     int answer = 0;
     *options = (options_t){.mount = {.masked = options->masked}};
     list_options(short_ones, long_ones);
+    int at = optind; /* Of the next option's word: it may hold several short options. */
     while (is_good && (answer = getopt_long(argc, argv, short_ones, long_ones, NULL)) != -1) {
-        is_good = take(options, answer, argv[optind - 1]);
+        is_good = take(options, answer, argv[at]);
+        at = optind;
     }
     for (int i = optind; is_good && i < argc; i++) {
         is_good = take_word(options, argv[i]); /* After "--". */

@@ -348,6 +348,7 @@ bool options_parse(options_t *options, int argc, char **argv)
 {
     char short_ones[2 * KNOWN_OPTIONS + 2];
     struct option long_ones[KNOWN_OPTIONS + 1];
+    int at = optind; /* of the word with the next option */
     int answer;
 
     memset(options, 0, sizeof *options);
@@ -357,9 +358,10 @@ bool options_parse(options_t *options, int argc, char **argv)
     options->link = sim_link_default_config();
     list_options(short_ones, long_ones);
     while ((answer = getopt_long(argc, argv, short_ones, long_ones, NULL)) != -1) {
-        if (!take(options, answer, argv[optind - 1])) {
+        if (!take(options, answer, argv[at])) {
             return false;
         }
+        at = optind;
     }
     return optind == argc ? is_consistent(options) : complain(argv[optind], " is not an option");
 }
