@@ -380,11 +380,11 @@ static int run(const options_t *options)
 const command_t command_check = {
     .name = "check",
     .usage = "[-p PORT] [--seconds N] [--listen] [--front DEG] [--upside-down]\n"
-             "            [--mask FROM:TO]",
+             "            [--offset MM] [--mask FROM:TO]",
     .summary = "ten seconds, one verdict: port, wires, supply, lidar",
     .details = "A line per question: ok; look (it works, but could be better); BAD. After each\n"
                "that is not ok, what to do about it. Watches for 10 seconds, or N. Exit status\n"
                "1 if anything is BAD.",
-    .accepts = "psLFUKq",
+    .accepts = "psLFUOKq",
     .run = run,
 };

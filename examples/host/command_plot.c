@@ -189,13 +189,13 @@ static int run(const options_t *options)
 const command_t command_plot = {
     .name = "plot",
     .usage = "[FILE|-|-p PORT] -o OUT.svg|OUT.png|OUT.pdf|- [--scan N|--all]\n"
-             "           [--front DEG] [--upside-down] [--mask FROM:TO]",
+             "           [--front DEG] [--upside-down] [--offset MM] [--mask FROM:TO]",
     .summary = "a picture of a scan",
     .details = "Draws the last complete scan, seen from above with the lidar's front up: range\n"
                "rings in metres, points coloured by intensity, interference marked. From a\n"
                "lidar, waits some scans until it is up to speed. -o - writes SVG to standard\n"
                "output.",
-    .accepts = "poNAMFUKq",
+    .accepts = "poNAMFUOKq",
     .has_operand = true,
     .run = run,
 };

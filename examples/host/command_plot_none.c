@@ -19,7 +19,7 @@ const command_t command_plot = {
     .name = "plot",
     .usage = "",
     .summary = "a picture of a scan: not in this build, which is without cairo",
-    .accepts = "poNAMFUKq",
+    .accepts = "poNAMFUOKq",
     .has_operand = true,
     .run = run,
 };

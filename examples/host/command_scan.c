@@ -78,13 +78,13 @@ static int scan(device_t *device, const options_t *options)
 const command_t command_scan = {
     .name = "scan",
     .usage = "[-p PORT] [-n N] [--csv|--json] [--wait] [--listen] [--front DEG]\n"
-             "           [--upside-down] [--mask FROM:TO]",
+             "           [--upside-down] [--offset MM] [--mask FROM:TO]",
     .summary = "scans as they come, until Ctrl-C or N of them",
     .details = "A line per scan: its number, the frequency, the points with a distance of all\n"
                "points, and the nearest one; \"part\": packets of it are missing. Or, with the\n"
                "same columns and members as `tmini decode`, --csv or --json. Exit status 1 also\n"
                "when no scan had a distance. While the motor comes up to speed, the first scans\n"
                "have more points.",
-    .accepts = "pnCJWLFUKq",
+    .accepts = "pnCJWLFUOKq",
     .use = scan,
 };

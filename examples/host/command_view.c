@@ -265,7 +265,7 @@ static int run(const options_t *options)
 const command_t command_view = {
     .name = "view",
     .usage = "[-p PORT|FILE|-] [--wait] [--listen] [--front DEG] [--upside-down]\n"
-             "           [--mask FROM:TO]",
+             "           [--offset MM] [--mask FROM:TO]",
     .summary = "a picture in the terminal, of a lidar live or of a recording",
     .details = "Keys: + and - zoom, a chooses the range automatically, q or Esc ends, Ctrl-Z\n"
                "suspends. In a recording: space pauses, . and , go a scan further or back, the\n"
@@ -273,7 +273,7 @@ const command_t command_view = {
                "numbers around the triangle are the nearest ones of each sector, in metres. A\n"
                "locale without UTF-8 gets characters instead of dots, NO_COLOR=1 no colours,\n"
                "and TERM=dumb one picture below the other.",
-    .accepts = "pMWLFUKq",
+    .accepts = "pMWLFUOKq",
     .has_operand = true,
     .run = run,
 };

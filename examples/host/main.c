@@ -62,6 +62,7 @@ static const option_t table[] = {
     {'F', "front", "DEG", "the lidar's angle that is the robot's front, clockwise", PLACE(mount), 0,
      0, mount_read_front},
     {'U', "upside-down", NULL, "the lidar hangs", PLACE(mount.upside_down), 0, 0, NULL},
+    {'O', "offset", "MM", "added to each distance", PLACE(mount), 0, 0, mount_read_offset},
     {'K', "mask", "FROM:TO", "hide these degrees, clockwise from the front; repeatable",
      PLACE(masked), 0, 0, mount_read_mask},
     {'I', "with-serial", NULL, "the serial number too, and a recording", PLACE(with_serial), 0, 0,

@@ -3,6 +3,7 @@
 
 #include "mount.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "output.h"
@@ -18,10 +19,25 @@ static const char *read_degrees(const char *text, char end, int16_t *degrees)
 
 bool mount_read_front(options_t *options, const char *text)
 {
-    if (read_degrees(text, '\0', &options->mount.front_deg) == NULL) {
-        (void)message_usage("--front: \"%s\" is not a whole number of degrees, -360 to 360", text);
+    char *end = NULL;
+    const double degrees = strtod(text, &end);
+    if (end == text || *end != '\0' || !(fabs(degrees) <= 360)) {
+        (void)message_usage("--front: \"%s\" is not an angle in degrees, -360 to 360", text);
         return false;
     }
+    options->mount.front_q6 = (int16_t)lround(degrees * 64);
+    return true;
+}
+
+bool mount_read_offset(options_t *options, const char *text)
+{
+    char *end = NULL;
+    const long offset_mm = strtol(text, &end, 10);
+    if (end == text || *end != '\0' || offset_mm < -1000 || offset_mm > 1000) {
+        (void)message_usage("--offset: \"%s\" is not a number of mm, -1000 to 1000", text);
+        return false;
+    }
+    options->mount.offset_mm = (int16_t)offset_mm;
     return true;
 }
 
@@ -44,7 +60,8 @@ bool mount_read_mask(options_t *options, const char *text)
 const tmini_mount_t *mount_of(const options_t *options)
 {
     const tmini_mount_t *const mount = &options->mount;
-    const bool is_given = mount->front_deg != 0 || mount->upside_down || mount->masked_count > 0;
+    const bool is_given = mount->front_q6 != 0 || mount->offset_mm != 0 || mount->upside_down ||
+                          mount->masked_count > 0;
     return is_given ? mount : NULL;
 }
 

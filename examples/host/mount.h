@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* How the lidar is mounted, as the options say: --front, --upside-down, --mask. */
+/* How the lidar is mounted, as the options say: --front, --upside-down, --offset,
+ * --mask. */
 
 #ifndef MOUNT_H
 #define MOUNT_H
@@ -13,6 +14,7 @@ const tmini_mount_t *mount_of(const options_t *options);
 
 /* Read an option's value; false if it is invalid. */
 bool mount_read_front(options_t *options, const char *text);
+bool mount_read_offset(options_t *options, const char *text);
 bool mount_read_mask(options_t *options, const char *text);
 
 /* Whether the lidar sees the robot itself in that direction. */

@@ -724,7 +724,10 @@ void test_an_invalid_mounting_is_reported(void)
 {
     expect_failure(2, "\"a:1\" is not FROM:TO", WORDS("scan", "-p", "x", "--mask", "a:1"));
     expect_failure(2, "\"1:\" is not FROM:TO", WORDS("scan", "-p", "x", "--mask", "1:"));
-    expect_failure(2, "\"361\" is not a whole", WORDS("scan", "-p", "x", "--front", "361"));
+    expect_failure(2, "\"361\" is not an angle", WORDS("scan", "-p", "x", "--front", "361"));
+    expect_failure(2, "\"nan\" is not an angle", WORDS("scan", "-p", "x", "--front", "nan"));
+    expect_failure(2, "\"9,5\" is not an angle", WORDS("scan", "-p", "x", "--front", "9,5"));
+    expect_failure(2, "\"1.5\" is not a number of mm", WORDS("scan", "-p", "x", "--offset", "1.5"));
     expect_failure(2, "decode has no option --mask", WORDS("decode", "x", "--mask", "1:2"));
 }
 

@@ -629,7 +629,7 @@ void test_no_scan_begins_before_the_recording(void)
 
 void test_a_mount_turns_scans_once(void)
 {
-    const tmini_mount_t mount = {.front_deg = 90};
+    const tmini_mount_t mount = {.front_q6 = 90 * 64};
     tape_begin(&tape, &mount, 0);
     put_turn();
     put_packet(0);

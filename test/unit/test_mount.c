@@ -56,7 +56,7 @@ void test_a_mount_of_zeros_changes_nothing(void)
  * front. */
 void test_a_lidar_mounted_turned_is_turned_back(void)
 {
-    static const tmini_mount_t mount = {.front_deg = 90};
+    static const tmini_mount_t mount = {.front_q6 = 90 * 64};
     add(90 * DEGREE, 1000);
     add(100 * DEGREE, 1001);
     add(89 * DEGREE, 1002);
@@ -83,7 +83,7 @@ void test_a_lidar_upside_down_is_mirrored(void)
 
 void test_a_lidar_upside_down_and_turned_is_mirrored_about_the_front(void)
 {
-    static const tmini_mount_t mount = {.front_deg = 30, .upside_down = true};
+    static const tmini_mount_t mount = {.front_q6 = 30 * 64, .upside_down = true};
     add(30 * DEGREE, 1000);
     add(40 * DEGREE, 1001);
     add(20 * DEGREE, 1002);
@@ -155,7 +155,7 @@ void test_arcs_are_the_robots_directions(void)
 {
     static const tmini_arc_t arcs[] = {{59, 61}};
     static const tmini_mount_t mount = {
-        .front_deg = 180, .upside_down = true, .masked = arcs, .masked_count = 1};
+        .front_q6 = 180 * 64, .upside_down = true, .masked = arcs, .masked_count = 1};
     add(120 * DEGREE, 300);
     add(60 * DEGREE, 1001);
     apply(&mount);
@@ -167,7 +167,7 @@ void test_arcs_are_the_robots_directions(void)
 void test_arcs_and_front_may_be_negative(void)
 {
     static const tmini_arc_t arcs[] = {{-10, 10}, {-190, -170}};
-    static const tmini_mount_t mount = {.front_deg = -90, .masked = arcs, .masked_count = 2};
+    static const tmini_mount_t mount = {.front_q6 = -90 * 64, .masked = arcs, .masked_count = 2};
     add(270 * DEGREE, 1000);
     add(281 * DEGREE, 1001);
     add(259 * DEGREE, 1002);
@@ -200,17 +200,67 @@ void test_an_arc_may_be_the_whole_circle_or_a_single_direction(void)
     is_point(0, 90 * DEGREE, 0);
 }
 
-void test_any_number_of_degrees_is_an_angle(void)
+void test_a_front_may_be_any_number_of_sixty_fourths_of_a_degree(void)
 {
-    static const tmini_mount_t least = {.front_deg = -32768}; /* -91 * 360 - 8 */
-    static const tmini_mount_t most = {.front_deg = 32767};   /* 91 * 360 + 7 */
-    TEST_ASSERT_EQUAL_UINT16(8 * DEGREE, tmini_mount_angle(&least, 0));
-    TEST_ASSERT_EQUAL_UINT16(353 * DEGREE, tmini_mount_angle(&most, 0));
+    tmini_mount_t mount = {.front_q6 = -32768}; /* 512 degrees to the left are 152. */
+    TEST_ASSERT_EQUAL_UINT16(152 * DEGREE, tmini_mount_angle(&mount, 0));
+    TEST_ASSERT_EQUAL_UINT16(152 * DEGREE - 1, tmini_mount_angle(&mount, 23039));
+    mount.upside_down = true;
+    TEST_ASSERT_EQUAL_UINT16(208 * DEGREE, tmini_mount_angle(&mount, 0));
+    mount = (tmini_mount_t){.front_q6 = 32767};
+    TEST_ASSERT_EQUAL_UINT16(208 * DEGREE + 1, tmini_mount_angle(&mount, 0));
+    TEST_ASSERT_EQUAL_UINT16(208 * DEGREE, tmini_mount_angle(&mount, 23039));
+    mount = (tmini_mount_t){.front_q6 = 5594}; /* 87.4 degrees. */
+    TEST_ASSERT_EQUAL_UINT16(6, tmini_mount_angle(&mount, 5600));
+    TEST_ASSERT_EQUAL_UINT16(0, tmini_mount_angle(&mount, 5594));
+}
+
+void test_any_number_of_degrees_is_an_arc(void)
+{
+    static const tmini_arc_t arcs[] = {{-32768, -32768}, {32767, 32767}}; /* -8 and 7 degrees. */
+    static const tmini_mount_t mount = {.masked = arcs, .masked_count = 2};
+    add(352 * DEGREE, 1000);
+    add(7 * DEGREE, 1001);
+    add(8 * DEGREE, 1002);
+    apply(&mount);
+    is_point(0, 352 * DEGREE, 0);
+    is_point(1, 7 * DEGREE, 0);
+    is_point(2, 8 * DEGREE, 1002);
+}
+
+void test_an_offset_is_added_to_ranges_and_not_to_what_is_unknown(void)
+{
+    tmini_mount_t mount = {.offset_mm = 69, .min_mm = 169, .max_mm = 5069};
+    add(0, 0);
+    add(1, 99);
+    add(2, 100);
+    add(3, 5000);
+    add(4, 5001);
+    apply(&mount);
+    is_point(0, 0, 0);
+    is_point(1, 1, 0);
+    is_point(2, 2, 169);
+    is_point(3, 3, 5069);
+    is_point(4, 4, 0);
+}
+
+void test_an_offset_leaves_a_range_a_range(void)
+{
+    tmini_mount_t mount = {.offset_mm = -32768};
+    add(0, 16383);
+    apply(&mount);
+    is_point(0, 0, 1);
+    mount.offset_mm = 32767;
+    apply(&mount);
+    is_point(0, 0, 16383);
+    mount.offset_mm = -16382;
+    apply(&mount);
+    is_point(0, 0, 1);
 }
 
 void test_full_circles_are_no_angle(void)
 {
-    static const tmini_mount_t mount = {.front_deg = -1};
+    static const tmini_mount_t mount = {.front_q6 = -1 * 64};
     TEST_ASSERT_EQUAL_UINT16(1 * DEGREE, tmini_mount_angle(&mount, 0));
     TEST_ASSERT_EQUAL_UINT16(0, tmini_mount_angle(&mount, 359 * DEGREE));
 }
@@ -251,7 +301,7 @@ void test_65537_arcs_are_masked(void)
 
 void test_no_points_and_no_mount_change_nothing(void)
 {
-    static const tmini_mount_t mount = {.front_deg = 1};
+    static const tmini_mount_t mount = {.front_q6 = 1 * 64};
     tmini_scan_t scan = {.points = points, .count = 1};
     points[0] = (tmini_point_t){7, 1000, 0, 0};
     apply(&mount);

@@ -16,8 +16,9 @@ static const unsigned long BLIND_MS = 400; /* Without a complete scan for this l
 /* Angles are the robot's: 0 is its front, clockwise. */
 static const tmini_arc_t MASTS[] = {{170, 190}};
 static const tmini_mount_t MOUNT = {
-    .front_deg = 0,
+    .front_q6 = 0,
     .upside_down = true,
+    .offset_mm = 0,
     .min_mm = 60, /* The robot's own edge. */
     .max_mm = 0,
     .masked = MASTS,

@@ -14,7 +14,7 @@ _tmini()
             *)
                 case ${COMP_WORDS[i - 1]} in # An option's value is no command.
                     -[pnso] | --port | --count | --seconds | --output) ;;
-                    --stats | --scan | --max-samples | --front | --mask) ;;
+                    --stats | --scan | --max-samples | --front | --offset | --mask) ;;
                     *) command=${command:-${COMP_WORDS[i]}} ;;
                 esac
                 ;;
@@ -26,7 +26,7 @@ _tmini()
                 "$("$1" ports 2>/dev/null | sed 's/  (.*//')" -- "$word")
             return
             ;;
-        -n | --count | -s | --seconds | --scan | --max-samples | --front | --mask) return ;;
+        -n | --count | -s | --seconds | --scan | --max-samples | --front | --offset | --mask) return ;;
         -o | --output | --stats)
             mapfile -t COMPREPLY < <(compgen -f -- "$word")
             return

@@ -316,7 +316,7 @@ class Viewer {
         const arcs = arcsOf(element('mount-mask'));
         this.#library.hand(new Uint8Array(Int16Array.from(arcs.flat()).buffer));
         this.#library.call('shown_mask', arcs.length);
-        this.#library.call('shown_mount', Math.round(Number(element('mount-front').value)),
+        this.#library.call('shown_mount', Math.round(Number(element('mount-front').value) * 64),
                            element('mount-upside-down').checked ? 1 : 0);
         this.#showAgain();
     }

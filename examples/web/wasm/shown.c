@@ -94,9 +94,9 @@ EXPORTED void shown_forget(void)
 }
 
 /* Sets how the lidar is mounted on the robot, and applies it at once to the scan that is shown. */
-EXPORTED void shown_mount(int front_deg, uint32_t upside_down)
+EXPORTED void shown_mount(int front_q6, uint32_t upside_down)
 {
-    shown.mount.front_deg = (int16_t)front_deg;
+    shown.mount.front_q6 = (int16_t)front_q6;
     shown.mount.upside_down = upside_down != 0;
     mount();
 }

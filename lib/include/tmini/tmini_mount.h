@@ -7,15 +7,17 @@
  * the configuration: each scan is changed once, before it is delivered. Integers only.
  *
  *     static const tmini_arc_t masts[] = {{170, 190}};
- *     static const tmini_mount_t mount = {.front_deg = 90, .upside_down = true, .min_mm = 100,
+ *     static const tmini_mount_t mount = {.front_q6 = 5594, (87.4 degrees * 64)
+ *                                         .upside_down = true, .min_mm = 100,
  *                                         .masked = masts, .masked_count = 1};
  *
  *     static const tmini_config_t config = {
  *         ..., .step = tmini_mount_step, .step_data = &mount,
  *     };
  *
- * Without a scan buffer, call tmini_mount_point() for each point. All functions: any context; no
- * waiting. */
+ * `tmini calibrate` finds the values for a robot. If there are more steps (tmini_steps.h), the
+ * mounting comes first. Without a scan buffer, call tmini_mount_point() for each point. All
+ * functions: any context; no waiting. */
 
 #ifndef TMINI_MOUNT_H
 #define TMINI_MOUNT_H
@@ -40,10 +42,11 @@ typedef struct {
 
 /** How the lidar is mounted, and what is removed. All 0: nothing changes. */
 typedef struct {
-    int16_t front_deg;         /**< The angle that the lidar reports for the robot's front, also if
-                                * it is upside down. */
+    int16_t front_q6;          /**< The angle that the lidar reports for the robot's front, in 1/64
+                                * degree, also if it is upside down: 90 * 64 for 90 degrees. */
     bool upside_down;          /**< The lidar is upside down: its angles run the other way round. */
-    uint16_t min_mm;           /**< Smaller distances become 0. */
+    int16_t offset_mm;         /**< Added to each distance but 0. The sum is 1 to 16383. */
+    uint16_t min_mm;           /**< Smaller distances, offset included, become 0. */
     uint16_t max_mm;           /**< Larger distances become 0; 0: no limit. */
     const tmini_arc_t *masked; /**< Directions in which the lidar sees the robot itself. */
     size_t masked_count;       /**< How many such directions there are. */
@@ -52,8 +55,8 @@ typedef struct {
 /** Converts an angle of the lidar to the robot's: both clockwise, in 1/64 degree, 0 to 23039. */
 uint16_t tmini_mount_angle(const tmini_mount_t *mount, uint16_t angle_q6);
 
-/** Changes one point: its angle becomes the robot's, and its distance becomes 0 (unknown) if it is
- * masked or out of range. */
+/** Changes one point: its angle becomes the robot's, the offset is added to its distance, and the
+ * distance becomes 0 (unknown) if it is masked or out of range. */
 void tmini_mount_point(const tmini_mount_t *mount, tmini_point_t *point);
 
 /** The step for the configuration's `step`, with a tmini_mount_t as its `step_data`; NULL changes

@@ -63,7 +63,7 @@ class Lidar:
     A program that is slower than the lidar gets the newest scan, and Scan.number shows how many it
     has missed; `backlog` is the number of scans that wait for it."""
 
-    def __init__(self, port: str, frequency_hz: float | None = None, *, front: int = 0,
+    def __init__(self, port: str, frequency_hz: float | None = None, *, front: float = 0,
                  upside_down: bool = False, mask: Sequence[tuple[int, int]] = (),
                  listen_only: bool = False, backlog: int = 1,
                  timeout: float | None = 10.0) -> None:

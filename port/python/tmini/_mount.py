@@ -12,12 +12,12 @@ from ._native import ffi
 
 
 class Mount:
-    """`front`: the lidar's angle that points to the robot's front, clockwise in whole degrees.
+    """`front`: the lidar's angle that points to the robot's front, clockwise in degrees.
     `upside_down`: the lidar is upside down. `mask`: arcs (from, to) in which the lidar sees the
     robot itself, clockwise in whole degrees from the robot's front: their ranges become NaN."""
 
-    def __init__(self, front: int, upside_down: bool, mask: Sequence[tuple[int, int]]) -> None:
+    def __init__(self, front: float, upside_down: bool, mask: Sequence[tuple[int, int]]) -> None:
         self._arcs = ffi.new("tmini_arc_t[]", [(int(begin), int(end)) for begin, end in mask])
         self.native: Any = ffi.new("tmini_mount_t *", {
-            "front_deg": int(front), "upside_down": upside_down, "masked": self._arcs,
+            "front_q6": round(front * 64), "upside_down": upside_down, "masked": self._arcs,
             "masked_count": len(self._arcs)})

@@ -18,7 +18,7 @@ from ._scan import Scan
 _BLOCK = 16384
 
 
-def read(path: str | os.PathLike[str], *, front: int = 0, upside_down: bool = False,
+def read(path: str | os.PathLike[str], *, front: float = 0, upside_down: bool = False,
          mask: Sequence[tuple[int, int]] = ()) -> Iterator[Scan]:
     """The scans of a recording, one after the other: of a file of `tmini record` or of the viewer
     (.tmini), or of bytes as they came (.bin). Other parameters: see Mount. Raises ValueError if the

@@ -79,7 +79,7 @@ void prove_sectors_at(void)
 
 void prove_mount_angle(void)
 {
-    const tmini_mount_t mount = {.front_deg = (int16_t)nondet_half(), .upside_down = any_bool()};
+    const tmini_mount_t mount = {.front_q6 = (int16_t)nondet_half(), .upside_down = any_bool()};
     const uint16_t angle_q6 = nondet_half();
     ASSUME(angle_q6 < TMINI_FULL_CIRCLE_Q6);
     CLAIM(tmini_mount_angle(&mount, angle_q6) < TMINI_FULL_CIRCLE_Q6);
@@ -97,8 +97,9 @@ void prove_mount(void)
 {
     tmini_scan_t scan = any_scan();
     const tmini_arc_t arc = {any_direction(), any_direction()};
-    const tmini_mount_t mount = {.front_deg = any_direction(),
+    const tmini_mount_t mount = {.front_q6 = (int16_t)nondet_half(),
                                  .upside_down = any_bool(),
+                                 .offset_mm = (int16_t)nondet_half(),
                                  .min_mm = nondet_half(),
                                  .max_mm = nondet_half(),
                                  .masked = &arc,
