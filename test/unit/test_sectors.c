@@ -149,6 +149,18 @@ void test_a_sector_counts_more_than_255_ranges(void)
     holds(0, 500, 300, 300);
 }
 
+/* A sector that counts from 65535 to 0 would be blind although it has a range. */
+void test_a_sector_with_65536_ranges_is_not_blind(void)
+{
+    see(0, 200, 0);
+    for (unsigned long i = 1; i < 65536; i++) {
+        see(0, 500, 0);
+    }
+    holds(0, 200, 65535, 65535);
+    TEST_ASSERT_FALSE(tmini_sector_is_blind(&array[0]));
+    TEST_ASSERT_TRUE(tmini_sector_is_free(&array[0], 200));
+}
+
 void test_flagged_points_count_unless_filtered(void)
 {
     see(0, 400, TMINI_FLAG_SPECULAR);

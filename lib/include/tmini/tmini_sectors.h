@@ -55,8 +55,8 @@ extern "C" {
 typedef struct {
     uint16_t nearest_mm; /**< The nearest range; 0: there is none (blind). */
     uint16_t angle_q6;   /**< The angle of that range, in 1/64 degree. */
-    uint16_t points;     /**< All points in the sector. */
-    uint16_t ranges;     /**< Those of them that have a range. */
+    uint16_t points;     /**< All points in the sector, at most 65535. */
+    uint16_t ranges;     /**< Those of them that have a range, at most 65535. */
 } tmini_sector_t;
 
 /** Sectors around the robot. Members may be read. */
