@@ -42,6 +42,15 @@ class Rules(unittest.TestCase):
     def release(self, *arguments):
         return self.run_script("pack.py", *arguments, self.root.parent / "out")
 
+    def test_no_job_that_runs_the_projects_scripts_may_write_to_the_repository(self):
+        jobs = [job for path in (ROOT / ".github/workflows").iterdir() for job in
+                re.split(r"^  (?=\w+:$)", path.read_text(encoding="utf-8").partition("\njobs:\n")[2],
+                         flags=re.MULTILINE)[1:]]
+        self.assertGreaterEqual(len(jobs), 3)
+        for job in jobs:
+            self.assertFalse("contents: write" in job and ("checkout" in job or ".ci/" in job), job)
+            self.assertEqual(job.count("actions/checkout@"), job.count("persist-credentials: false"), job)
+
     def test_a_place_with_another_version_is_named(self):
         self.write("library.json", '"version": "[^"]*"', '"version": "0.9.0"')
         checked = self.run_script("version.py")
