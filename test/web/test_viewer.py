@@ -47,6 +47,9 @@ FASTER = """{
 }
 """
 
+POLICY = sorted(["base-uri", "connect-src", "font-src", "form-action", "frame-src", "img-src", "media-src",
+                 "object-src", "script-src-elem", "style-src-elem"])
+
 PAGE = None
 TMINI = None
 DRIVER = None
@@ -74,13 +77,19 @@ def contrast(one, other):
 class Viewer(unittest.TestCase):
     """Each test opens the page again, in the same browser."""
 
-    width, height, before, speed = 1000, 600, "", 10
+    width, height, before, speed, light = 1000, 600, "", 10, False
 
     @classmethod
     def setUpClass(cls):
         cls.page = BROWSER
         cls.page.resize(cls.width, cls.height)
         cls.page.prepare(FASTER.replace("SPEED", str(cls.speed)) + cls.before)
+        cls.colours("light" if cls.light else "dark")
+
+    @classmethod
+    def colours(cls, scheme):
+        """The system's colours: light or dark."""
+        cls.page.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
 
     def setUp(self):
         self.page.log("browser")
@@ -307,7 +316,9 @@ class Simulated(Viewer):
         self.page.wait_text("#log", "encoder")
         self.assertTrue(self.page.is_shown("#fault"))
         self.wait_scans(4)
-        self.assertEqual("–", self.page.text("#nearest"))
+        self.assertEqual(["–", "none: the rotor is blocked", "–"],
+                         [self.page.text(f"#{key}") for key in ("frequency", "quality", "nearest")])
+        self.page.wait_text("#summary", "Not turning, ")
         self.assertLess(self.coloured(), 20)
         self.switch("blocked")
         self.page.wait_text("#faults", "no faults")
@@ -316,6 +327,8 @@ class Simulated(Viewer):
     def test_window_covered(self):
         self.switch("covered")
         self.page.wait_text("#fault", "Is the window covered?")
+        self.page.wait_text("#quality", "none: no point has a distance")
+        self.page.wait_text("#frequency", "Hz")
         self.assertEqual("data", self.page.text("#faults"))
         self.switch("covered")
         self.page.wait_text("#faults", "no faults")
@@ -423,11 +436,17 @@ class Simulated(Viewer):
         self.persist(20)
         self.page.wait("marks in the picture", lambda: self.look("r > 240 && g > 80 && g < 110 && b > 60")[0] > 5)
 
-    def test_picture_is_dark_until_light_colours_are_chosen(self):
+    def test_picture_is_as_light_as_the_system_or_as_chosen(self):
         white = "r === 255 && g === 255 && b === 255"
         self.assertEqual(0, self.look(white)[0])
         self.page.press("#light")
         self.page.wait("a light picture", lambda: self.look(white)[0] > 10000)
+        self.page.press("#light")
+        self.page.wait("a dark picture", lambda: self.look(white)[0] == 0)
+        self.colours("light")
+        self.page.wait("a light picture", lambda: self.look(white)[0] > 10000)
+        self.colours("dark")
+        self.page.wait("a dark picture", lambda: self.look(white)[0] == 0)
 
     def test_lidar_that_is_lost_does_not_look_live(self):
         self.switch("unplugged")
@@ -462,6 +481,42 @@ class Simulated(Viewer):
                     clientX: at.left + 1 + x, clientY: at.top + 201 }));
             }""")
         self.assertEqual(before, self.place_at(250, 200))
+
+    def reload(self):
+        self.page.run("location.reload()")
+        self.page.wait_text("#state", "not connected")
+        self.simulate()
+
+    def test_mounting_outlives_a_reload(self):
+        self.switch("visitor")
+        self.front_at("-90")
+        self.page.type("#mount-mask", "10:80")
+        self.page.press("#mount-upside-down")
+        self.reload()
+        self.assertEqual(["-90", "10:80", True], self.page.run("""return [document.querySelector('#mount-front').value,
+            document.querySelector('#mount-mask').value, document.querySelector('#mount-upside-down').checked]"""))
+        self.switch("visitor")
+        self.page.wait_text("#sector6", "0.6")
+        self.assertEqual("–", self.page.text("#sector1"))
+        self.front_at("0")
+        self.page.clear("#mount-mask")
+        self.page.press("#mount-upside-down")
+        self.assertEqual("", self.page.run("return location.hash"))
+
+    def test_mounting_that_is_wrong_is_not_applied(self):
+        self.switch("visitor")
+        self.page.wait_text("#sector0", "0.6")
+        for field, wrong, good in (("front", ("900", "-360.5", "1e2", ""), "0"),
+                                   ("mask", ("-20:361", "-20", "-20:20:30", ", ".join(["-20:20"] * 9)), "")):
+            for text in wrong:
+                self.page.run("""const field = document.querySelector(`#mount-${arguments[0]}`);
+                    field.value = arguments[1]; field.dispatchEvent(new Event('input'))""", field, text)
+                self.assertEqual("true", self.page.run(
+                    "return document.querySelector(`#mount-${arguments[0]}`).ariaInvalid", field), text)
+                self.wait_scans(1)
+                self.assertRegex(self.page.text("#sector0"), "^0.6")
+            self.page.run("""const field = document.querySelector(`#mount-${arguments[0]}`);
+                field.value = arguments[1]; field.dispatchEvent(new Event('input'))""", field, good)
 
     def test_what_is_masked_is_not_seen(self):
         self.switch("visitor")
@@ -754,13 +809,7 @@ class RealSerial(Viewer):
 class Appearance(Viewer):
     """The dark theme on a wide screen."""
 
-    light = False
     grounds = ((15, 26, 46), (10, 15, 31))
-
-    def setUp(self):
-        super().setUp()
-        if self.light:
-            self.page.press("#light")
 
     def test_no_word_is_cut_off_and_nothing_lies_beside_the_page(self):
         self.simulate()
@@ -806,6 +855,11 @@ class AppearancePhone(Appearance):
     """On a screen as wide as a phone."""
 
     width, height = 360, 740
+
+    def test_switches_of_the_simulated_lidar_are_near(self):
+        self.simulate()
+        self.assertLess(self.page.run("return document.querySelector('#sim-blocked').getBoundingClientRect().top"),
+                        1.2 * self.height)
 
     def test_buttons_are_large_enough_to_touch(self):
         self.assertEqual([], self.page.run("""return [...document.querySelectorAll('button')]
@@ -890,7 +944,7 @@ class Axe(Viewer):
         self.check_each_state(program)
         self.setUp()
         self.page.resize(390, 844)
-        self.page.press("#light")
+        self.colours("light")
         self.check_each_state(program)
 
 
@@ -910,6 +964,29 @@ class OneFile(Viewer):
     def test_asks_for_nothing(self):
         self.simulate()
         self.assertEqual({PAGE.as_uri()}, {url for url in self.requests() if not url.startswith("data:")})
+
+    def test_policy_forbids_all_that_the_page_does_not_need(self):
+        """Even a page that runs a stranger's script can load nothing, and send nothing anywhere."""
+        forbidden = self.page.run("""return new Promise((resolve) => {
+                const seen = new Set();
+                addEventListener('securitypolicyviolation', ({ effectiveDirective }) => {
+                    seen.add(effectiveDirective);
+                    if (seen.size === arguments[0].length) { resolve([...seen].sort()); }
+                });
+                setTimeout(() => resolve([...seen].sort()), 50000);
+                const away = 'http://127.0.0.1:9/x';
+                const add = (name, has) => document.body.append(Object.assign(document.createElement(name), has));
+                for (const name of ['img', 'iframe', 'audio', 'embed']) { add(name, { src: away }); }
+                add('script', { src: away });
+                add('link', { rel: 'stylesheet', href: away });
+                add('base', { href: away });
+                add('form', { action: away });
+                document.forms[document.forms.length - 1].submit();
+                fetch(away).catch(() => {});
+                new FontFace('x', `url(${away})`).load().catch(() => {});
+            })""", POLICY)
+        self.page.log("browser")  # The browser's complaints are what is wanted.
+        self.assertEqual(POLICY, forbidden)
 
     def test_works_from_a_server(self):
         seen = []

@@ -20,15 +20,26 @@ import { element, enable, hertz, isEnabled, log, setText, show, showCounters, sh
 const COUNTERS_MS = 250;
 const SECTORS = 8;
 const STALE_MS = 1000; // An older scan is out of date.
+const MASKED_MAX = 8;
+const MOUNTING = ['mount-front', 'mount-upside-down', 'mount-mask'];
 
-// "170:190, 350:10" as pairs of degrees; none if the text has another form.
-function arcsOf(input) {
-    const parts = input.value.split(',').map((part) => part.trim()).filter((part) => part !== '');
-    const arcs = parts.map((part) => part.match(/^(-?\d{1,3})\s*:\s*(-?\d{1,3})$/)?.slice(1).map(Number));
-    const isGood = !arcs.includes(undefined) && arcs.length <= 8;
-    input.setCustomValidity(isGood ? '' : 'Like this: 170:190, 350:10');
+// Reports whether a field's text is good, to the user as well.
+function judge(input, isGood, advice) {
+    input.setCustomValidity(isGood ? '' : advice);
     input.setAttribute('aria-invalid', String(!isGood));
-    return isGood ? arcs : [];
+    return isGood;
+}
+
+// Degrees from -360 to 360, as the tool takes them; NaN: something else.
+function degreesOf(text, form = /^-?\d{1,3}$/) {
+    const degrees = form.test(text) ? Number(text) : NaN;
+    return Math.abs(degrees) <= 360 ? degrees : NaN;
+}
+
+// "170:190, 350:10" as pairs of degrees.
+function arcsOf(text) {
+    return text.split(',').map((part) => part.trim()).filter((part) => part !== '')
+        .map((part) => part.split(':').map((end) => degreesOf(end.trim())));
 }
 
 class Viewer {
@@ -150,7 +161,7 @@ class Viewer {
         this.#scannedAt = performance.now();
         this.#picture.add(points, numbers, sectors);
         this.#showAge();
-        showScan(numbers, sectors);
+        showScan(numbers, sectors, this.#isBlocked());
     }
 
     // The scan of a lost or stopped lidar must not look current.
@@ -171,15 +182,19 @@ class Viewer {
     #showAgain() {
         const [points, numbers, sectors] = this.#shown();
         this.#picture.replace(points, numbers, sectors);
-        showScan(numbers, sectors);
+        showScan(numbers, sectors, this.#isBlocked());
         this.#showAge();
     }
 
     // ------------------------------------------------------------------------------------- state
 
-    #count() {
-        const numbers = this.#lidar ? this.#library.numbers('lidar_numbers')
+    #numbers() {
+        return this.#lidar ? this.#library.numbers('lidar_numbers')
             : this.#player ? this.#library.numbers('recording_numbers') : null;
+    }
+
+    #count() {
+        const numbers = this.#numbers();
         const faultsText = (bits) => this.#library.faultsText(bits);
         this.#showAge();
         showCounters(numbers);
@@ -200,6 +215,12 @@ class Viewer {
             return this.#lidar?.health?.faults ?? FAULTS_UNKNOWN;
         }
         return this.#library.call('lidar_faults');
+    }
+
+    #isBlocked() {
+        const { FAULT_ENCODER, FAULTS_UNKNOWN } = this.#constants;
+        const faults = this.#faults(this.#numbers());
+        return faults !== FAULTS_UNKNOWN && (faults & FAULT_ENCODER) !== 0;
     }
 
     #showFaults(numbers) {
@@ -299,26 +320,75 @@ class Viewer {
             this.#picture.persistence = Number(target.value);
             setText('persistence-value', target.value === '1' ? '1 revolution' : `${target.value} revolutions`);
         });
-        for (const id of ['mount-front', 'mount-upside-down', 'mount-mask']) {
+        for (const id of MOUNTING) {
             this.#on(id, 'input', () => this.#mount());
         }
-        this.#on('light', 'change', ({ target }) => {
-            document.documentElement.classList.toggle('light', target.checked);
-            this.#picture.retheme();
-        });
+        addEventListener('hashchange', () => this.#recallMounting());
+        this.#recallMounting();
+        this.#listenToColours();
         this.#on('zoom-in', 'click', () => this.#picture.enlarge(1.5));
         this.#on('zoom-out', 'click', () => this.#picture.enlarge(1 / 1.5));
         this.#on('zoom-whole', 'click', () => this.#picture.enlarge(0));
         new Pointer(element('picture'), this.#picture);
     }
 
+    // Applies the fields' mounting, unless one of them is wrong: then the last one stays.
     #mount() {
-        const arcs = arcsOf(element('mount-mask'));
+        const [front, mask] = [element('mount-front'), element('mount-mask')];
+        const arcs = arcsOf(mask.value);
+        const degrees = degreesOf(front.value, /^-?\d{1,3}(\.\d{1,6})?$/);
+        const isFront = judge(front, !Number.isNaN(degrees), 'Degrees, -360 to 360');
+        const isMask = judge(mask, arcs.length <= MASKED_MAX && arcs.every((arc) => arc.length === 2) &&
+            !arcs.flat().some(Number.isNaN), 'Like this: 170:190, 350:10');
+        if (!isFront || !isMask) {
+            return;
+        }
         this.#library.hand(new Uint8Array(Int16Array.from(arcs.flat()).buffer));
         this.#library.call('shown_mask', arcs.length);
-        this.#library.call('shown_mount', Math.round(Number(element('mount-front').value) * 64),
-                           element('mount-upside-down').checked ? 1 : 0);
+        this.#library.call('shown_mount', Math.round(degrees * 64), element('mount-upside-down').checked ? 1 : 0);
+        this.#keepMounting();
         this.#showAgain();
+    }
+
+    // The mounting is in the page's address: it is there after a reload, and in a bookmark, for each lidar another.
+    #keepMounting() {
+        const kept = new URLSearchParams();
+        for (const id of MOUNTING) {
+            const { type, checked, value, defaultValue } = element(id);
+            if (type === 'checkbox' ? checked : value !== defaultValue) {
+                kept.set(id, type === 'checkbox' ? '1' : value);
+            }
+        }
+        if (kept.toString() !== location.hash.slice(1)) {
+            history.replaceState(null, '', `#${kept}`);
+        }
+    }
+
+    #recallMounting() {
+        const kept = new URLSearchParams(location.hash.slice(1));
+        for (const id of MOUNTING) {
+            const field = element(id);
+            field.checked = kept.get(id) === '1';
+            field.value = kept.get(id) ?? field.defaultValue;
+        }
+        this.#mount();
+    }
+
+    // Light or dark as the system is, also when that changes; the user can choose the other one.
+    #listenToColours() {
+        const box = element('light');
+        const system = matchMedia('(prefers-color-scheme: light)');
+        const apply = () => {
+            document.documentElement.classList.toggle('light', box.checked);
+            this.#picture.retheme();
+        };
+        const follow = () => {
+            box.checked = system.matches;
+            apply();
+        };
+        this.#on('light', 'change', apply);
+        system.addEventListener('change', follow);
+        follow();
     }
 
     #listenToSaving() {

@@ -37,7 +37,13 @@ function setCount(id, count) {
     element(id).classList.toggle('bad', count > 0);
 }
 
-function quality(scan) {
+function quality(scan, isBlocked) {
+    if (isBlocked) {
+        return 'none: the rotor is blocked';
+    }
+    if (scan.valid === 0) {
+        return 'none: no point has a distance';
+    }
     if (scan.complete) {
         return 'complete';
     }
@@ -50,18 +56,21 @@ function inWords(scan, nearest) {
     return scan.nearestMm > 0 ? `Nearest obstacle: ${nearest}.` : 'No point has a distance.';
 }
 
-// The numbers of the scan that is shown; null before the first.
-export function showScan(scan, sectors) {
+// The numbers of the scan that is shown; null before the first. A lidar whose rotor is blocked goes on reporting the
+// frequency at which it should turn.
+export function showScan(scan, sectors, isBlocked) {
     const has = scan !== null && scan.points > 0;
-    setText('frequency', has ? hertz(scan.frequencyChz) : '–');
+    const turning = isBlocked ? 'Not turning' : hertz(scan?.frequencyChz ?? 0);
+    setText('frequency', has && !isBlocked ? turning : '–');
     setText('points', has ? `${scan.points}, ${scan.valid} with a distance` : '–');
-    setText('quality', has ? quality(scan) : '–');
+    setText('quality', has ? quality(scan, isBlocked) : '–');
+    element('quality').classList.toggle('bad', has && scan.valid === 0);
     setText('flagged', has ? scan.flagged : '–');
     const nearest = has && scan.nearestMm > 0
         ? `${metres(scan.nearestMm)} at ${degrees(scan.nearestQ6)}°, ${DIRECTIONS[scan.nearestSector]}`
         : '–';
     setText('nearest', nearest);
-    setText('summary', has ? `${hertz(scan.frequencyChz)}, ${scan.points} points. ${inWords(scan, nearest)}` : '');
+    setText('summary', has ? `${turning}, ${scan.points} points. ${inWords(scan, nearest)}` : '');
     DIRECTIONS.forEach((_, i) => setText(`sector${i}`, has ? metres(sectors[i]) : '–'));
 }
 

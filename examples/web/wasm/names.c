@@ -33,6 +33,7 @@ EXPORTED uint32_t constants(void)
     numbers_put("STATE_RECOVERING", TMINI_STATE_RECOVERING);
     numbers_put("FLAG_SPECULAR", TMINI_FLAG_SPECULAR);
     numbers_put("FLAG_AMBIENT", TMINI_FLAG_AMBIENT);
+    numbers_put("FAULT_ENCODER", TMINI_FAULT_ENCODER);
     numbers_put("FAULT_MASK", TMINI_FAULT_MASK);
     numbers_put("FAULTS_UNKNOWN", TMINI_FAULTS_UNKNOWN);
     numbers_put("KNOWN_USER_VERSION", TMINI_KNOWN_USER_VERSION);
