@@ -27,6 +27,7 @@
 
 static sim_t device;
 static sim_link_t wire;
+static bridge_t bridge;
 static host_t host;
 static report_t report;
 static volatile sig_atomic_t stop_requested;
@@ -50,6 +51,15 @@ static void catch_signals(void)
     sigaction(SIGPIPE, &action, NULL);
 }
 
+/* Like sim_link_read(), after the bridge. */
+static size_t read_bytes(uint64_t now_us, uint8_t *bytes, size_t max)
+{
+    const size_t count = sim_link_read(&wire, now_us, bytes, max);
+
+    bridge_put(&bridge, bytes, count);
+    return bridge_take(&bridge, now_us, bytes, max);
+}
+
 static double real_seconds(void)
 {
     struct timespec now;
@@ -66,16 +76,19 @@ static uint64_t end_us(const options_t *options)
 /* ---- In real time ---- */
 
 /* Passes on the bytes of both directions up to now. */
-static void exchange(uint64_t now_us)
+static void exchange(const options_t *options, uint64_t now_us)
 {
     uint8_t bytes[4096];
     size_t count = host_read(&host, bytes, sizeof bytes);
 
+    if (options->boots && host.connected) {
+        sim_power(&device, true, now_us); /* without effect if it has power */
+    }
     if (count > 0) {
         sim_link_write(&wire, bytes, count, now_us);
     }
     do {
-        count = sim_link_read(&wire, now_us, bytes, sizeof bytes);
+        count = read_bytes(now_us, bytes, sizeof bytes);
         host_write(&host, bytes, count);
     } while (count == sizeof bytes);
 }
@@ -105,7 +118,7 @@ static uint64_t serve(const options_t *options)
     while (stop_requested == 0 && now_us < until_us) {
         now_us = (uint64_t)((real_seconds() - origin) * options->speed * 1e6);
         now_us = now_us < until_us ? now_us : until_us;
-        exchange(now_us);
+        exchange(options, now_us);
         host_wait(&host, time_to_sleep_ms(now_us, until_us, options->speed));
     }
     return now_us;
@@ -157,7 +170,7 @@ static void answer(uint64_t now_us)
     size_t count;
 
     do {
-        count = sim_link_read(&wire, now_us, bytes, sizeof bytes);
+        count = read_bytes(now_us, bytes, sizeof bytes);
         for (size_t i = 0; i < count; i++) {
             printf("%02X", bytes[i]);
         }
@@ -211,7 +224,7 @@ static bool record(FILE *file, uint64_t until_us)
         size_t count;
 
         now_us = until_us - now_us < step_us ? until_us : now_us + step_us;
-        count = sim_link_read(&wire, now_us, bytes, sizeof bytes);
+        count = read_bytes(now_us, bytes, sizeof bytes);
         if (fwrite(bytes, 1, count, file) != count) {
             return false;
         }
@@ -251,6 +264,10 @@ static int run_in_virtual_time(const options_t *options)
 static void set_up(const options_t *options)
 {
     sim_init(&device, &options->device);
+    bridge_init(&bridge, &options->bridge);
+    if (options->boots) {
+        sim_power(&device, false, 0);
+    }
     sim_set_health(&device, options->health);
     sim_block_rotor(&device, options->blocked);
     sim_cover_window(&device, options->covered);

@@ -176,6 +176,62 @@ static bool set_fault(options_t *options, const char *value)
     return true;
 }
 
+static bool set_model(options_t *options, const char *value)
+{
+    double model;
+
+    if (!parse_number(value, 0, 255, &model)) {
+        return false;
+    }
+    options->device.information.model = (uint8_t)model;
+    return true;
+}
+
+static bool set_samples(options_t *options, const char *value)
+{
+    options->bridge.sample_size = (uint8_t)(value[0] - '0');
+    return strcmp(value, "2") == 0 || strcmp(value, "3") == 0 || strcmp(value, "4") == 0;
+}
+
+static bool set_bridge(options_t *options, const char *value)
+{
+    return bridge_kind_named(value, &options->bridge.kind);
+}
+
+static bool set_bursts(options_t *options, const char *value)
+{
+    double milliseconds;
+
+    if (!parse_number(value, 1, 4000, &milliseconds)) {
+        return false;
+    }
+    options->bridge.bursts_ms = (uint16_t)milliseconds;
+    return true;
+}
+
+static bool set_blind(options_t *options, const char *value)
+{
+    double every;
+
+    if (!parse_number(value, 1, 255, &every)) {
+        return false;
+    }
+    options->bridge.blind_every = (uint8_t)every;
+    return true;
+}
+
+static bool set_boot(options_t *options, const char *value)
+{
+    double seconds;
+
+    if (!parse_number(value, 0, 60, &seconds)) {
+        return false;
+    }
+    options->boots = true;
+    options->device.boot_ms = (uint16_t)(seconds * 1000.0);
+    return true;
+}
+
 static const option_t known[] = {
     {0, "pty", NULL, "serve a pseudo-terminal; its path is the first line printed", NULL,
      PLACE(pty)},
@@ -205,6 +261,17 @@ static const option_t known[] = {
     {0, "motor", "PERCENT", "share of the set frequency that the motor reaches, 1 to 150 (100)",
      set_motor, 0},
     {0, "spin-up", "SECONDS", "time from standstill to that speed, 0 to 60 (1)", set_spin_up, 0},
+    {0, "boot", "SECONDS", "gets power when the port is opened, and boots for 0 to 60 s", set_boot,
+     0},
+    {0, "model", "N", "number of the model (151)", set_model, 0},
+    {0, "samples", "BYTES", "packets of another unit: samples of 2 or 4 bytes (3)", set_samples, 0},
+    {0, "blind", "N", "each turn of N has no range, and no fault", set_blind, 0},
+    {0, "bridge", "KIND",
+     "a bridge or terminal in between: telnet (doubles FF), crnl (0D\n"
+     "                          becomes 0A), xonxoff (takes 11 and 13), seven (bits)",
+     set_bridge, 0},
+    {0, "bursts", "MS", "a bridge that delivers what came in the meantime every 1 to 4000 ms",
+     set_bursts, 0},
     {0, "fault", "KIND=RATE",
      "drop, flip, insert: probability per byte;\n"
      "                          burst, stall, cut, unplug, garble: events per second",

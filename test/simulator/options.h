@@ -6,6 +6,7 @@
 #ifndef OPTIONS_H
 #define OPTIONS_H
 
+#include "bridge.h"
 #include "link.h"
 
 typedef struct {
@@ -25,6 +26,8 @@ typedef struct {
     uint8_t health; /* faults that the device reports: SIM_HEALTH_... */
     sim_config_t device;
     sim_link_config_t link;
+    bridge_config_t bridge;
+    bool boots; /* the lidar gets power only when the port is opened first */
 } options_t;
 
 /* If the arguments are wrong, prints what to do on standard error and returns false. */

@@ -139,9 +139,11 @@ static void write_totals(report_t *report, uint64_t now_us, uint64_t lost_by_hos
 static bool close_file(FILE *file)
 {
     if (file == NULL || file == stdout) {
-        return file == NULL || fflush(stdout) == 0;
+        return file == NULL || (fflush(stdout) == 0 && ferror(stdout) == 0);
     }
-    return fclose(file) == 0;
+    const bool is_whole = ferror(file) == 0; /* a line-buffered file has nothing left to write */
+
+    return fclose(file) == 0 && is_whole;
 }
 
 bool report_close(report_t *report, uint64_t now_us, uint64_t lost_by_host)

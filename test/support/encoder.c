@@ -74,6 +74,30 @@ size_t encode_packet(uint8_t *out, const encode_packet_t *packet)
     return (size_t)(sample - out);
 }
 
+size_t encode_other_packet(uint8_t *out, const encode_packet_t *packet, uint8_t sample_size)
+{
+    const size_t size = ENCODE_PACKET_HEADER + (size_t)sample_size * packet->lsn;
+    uint16_t checksum = 0;
+
+    encode_packet_header(out, packet);
+    for (size_t i = 0; i < packet->lsn; i++) {
+        const encode_sample_t *const from = &packet->samples[i];
+        uint8_t *const sample = out + ENCODE_PACKET_HEADER + sample_size * i;
+
+        if (sample_size == 2) {
+            encode_u16(sample, (uint16_t)(((uint32_t)from->distance_mm << 2) | (from->flag & 3u)));
+        } else {
+            encode_u16(sample, from->intensity);
+            encode_u16(sample + 2, from->distance_mm);
+        }
+    }
+    for (size_t i = 0; i < size; i += 2) {
+        checksum ^= (uint16_t)(((uint32_t)out[i + 1] << 8) | out[i]);
+    }
+    encode_u16(out + 8, checksum);
+    return size;
+}
+
 size_t encode_reply(uint8_t *out, uint8_t mode, uint8_t type, const uint8_t *content,
                     uint32_t length)
 {

@@ -17,6 +17,7 @@
 #define ENCODE_PACKET_HEADER 10u
 #define ENCODE_SAMPLE_SIZE 3u
 #define ENCODE_PACKET_MAX 775u /* LSN is one byte: 10 + 3 * 255 */
+#define ENCODE_OTHER_MAX 1030u /* the same with four-byte samples */
 #define ENCODE_REPLY_HEADER 7u
 #define ENCODE_REPLY_MAX 27u       /* device information: 7 + 20 */
 #define ENCODE_FULL_TURN_Q6 23040u /* 360 degrees in 1/64 degree */
@@ -87,6 +88,11 @@ void encode_seal(uint8_t *packet);
 
 /* A complete valid packet; returns its length. `out` has room for 10 + 3 * lsn bytes. */
 size_t encode_packet(uint8_t *out, const encode_packet_t *packet);
+
+/* The same with samples of 2 or 4 bytes, as other units send them (sections 9.18, 9.19): the
+ * distance with its flag alone, or 16 bits of intensity and 16 bits of distance. The checksum is
+ * the XOR of all 16-bit words. `out` has room for 10 + sample_size * lsn bytes. */
+size_t encode_other_packet(uint8_t *out, const encode_packet_t *packet, uint8_t sample_size);
 
 /* Any reply: header and content (`content` may be NULL when there is none). `length` is the length
  * field of the header and, in mode 0, the size of the content. Returns the number of bytes. */

@@ -50,6 +50,25 @@ void test_the_manuals_checksum_is_e85a(void)
     TEST_ASSERT_EQUAL_HEX16(0xE85A, encode_checksum(manual_packet));
 }
 
+/* Worked out by hand: 300 mm (0x012C), intensity 5, flag 2, at 1 degree (0x0081). Of two bytes the
+ * sample is 0x012C << 2 | 2. Checksums: 55AA ^ 0100 ^ 0081 ^ 0081 = 54AA; ^ 04B2 = 5018; and
+ * 54AA ^ 0005 ^ 012C = 5583. */
+void test_packets_of_other_units(void)
+{
+    static const uint8_t two[12] = {0xAA, 0x55, 0x00, 0x01, 0x81, 0x00,
+                                    0x81, 0x00, 0x18, 0x50, 0xB2, 0x04};
+    static const uint8_t four[14] = {0xAA, 0x55, 0x00, 0x01, 0x81, 0x00, 0x81,
+                                     0x00, 0x83, 0x55, 0x05, 0x00, 0x2C, 0x01};
+    const encode_sample_t sample = {300, 5, 2};
+    const encode_packet_t packet = {0x00, 1, 64, 64, &sample};
+    uint8_t out[ENCODE_OTHER_MAX];
+
+    TEST_ASSERT_EQUAL_size_t(12, encode_other_packet(out, &packet, 2));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(two, out, 12);
+    TEST_ASSERT_EQUAL_size_t(14, encode_other_packet(out, &packet, 4));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(four, out, 14);
+}
+
 void test_a_real_units_start_packet_is_encoded_byte_for_byte(void)
 {
     const encode_sample_t sample = {149, 21, 0};

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/*
+ * What tmini-sim does to the device's bytes on their way to the host: packets of other units
+ * (sections 9.18, 9.19), turns without a range, and bridges and terminals that change, drop or
+ * delay bytes (section 9.20). Without settings, bytes pass unchanged.
+ */
+
+#ifndef BRIDGE_H
+#define BRIDGE_H
+
+#include "encoder.h"
+
+#include <stdbool.h>
+
+typedef enum {
+    BRIDGE_CLEAN,
+    BRIDGE_TELNET,  /* FF is doubled */
+    BRIDGE_CRNL,    /* 0D becomes 0A */
+    BRIDGE_XONXOFF, /* 11 and 13 are taken away */
+    BRIDGE_SEVEN,   /* seven bits */
+    BRIDGE_KINDS
+} bridge_kind_t;
+
+typedef struct {
+    uint8_t sample_size; /* 2 or 4: packets of such samples; otherwise 3 */
+    uint8_t blind_every; /* each turn of this many has no range, and no fault; 0: none */
+    bridge_kind_t kind;
+    uint16_t bursts_ms; /* bytes are delivered this often; 0: at once */
+} bridge_config_t;
+
+#define BRIDGE_HELD 65536u
+
+typedef struct {
+    bridge_config_t config;
+    uint32_t turns;
+    size_t open_count; /* the packet that has not yet come whole */
+    uint8_t open[ENCODE_PACKET_MAX];
+    uint64_t deliver_us; /* when `out` may be taken */
+    size_t out_count;
+    uint8_t out[BRIDGE_HELD];
+} bridge_t;
+
+void bridge_init(bridge_t *bridge, const bridge_config_t *config);
+
+/* The device has sent these bytes. What finds no room in `out` is lost. */
+void bridge_put(bridge_t *bridge, const uint8_t *bytes, size_t count);
+
+/* Takes at most `max` bytes that have reached the host by now. */
+size_t bridge_take(bridge_t *bridge, uint64_t now_us, uint8_t *bytes, size_t max);
+
+/* "telnet" and so on; false: there is no such kind. */
+bool bridge_kind_named(const char *name, bridge_kind_t *kind);
+
+#endif
