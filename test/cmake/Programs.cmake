@@ -96,3 +96,42 @@ function(tmini_add_skipped_test name label reason)
     tmini_add_check(${name} ${label} ${ARGN}
         COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: ${reason}")
 endfunction()
+
+# A Python that has the packages of the tests of the tool. `python3` may be one of the user's own
+# without them, beside the system's.
+set(TMINI_PYTEST_MISSING "")
+if(NOT TMINI_PYTEST_PYTHON)
+    foreach(candidate /usr/bin/python3 python3)
+        execute_process(COMMAND ${candidate} -c "import pytest, pexpect, pyte"
+            RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+        if(status EQUAL 0)
+            set(TMINI_PYTEST_PYTHON ${candidate} CACHE STRING "A Python with pytest, pexpect, pyte")
+            break()
+        endif()
+    endforeach()
+    if(NOT TMINI_PYTEST_PYTHON)
+        set(TMINI_PYTEST_MISSING "no Python with pytest, pexpect and pyte is installed")
+    endif()
+endif()
+
+# tmini_add_pytest(NAME LABEL FILE
+#     [ALL] [TIMEOUT seconds] [NEEDS target …]     as for tmini_add_check()
+#     [ENVIRONMENT name=value …]
+# )
+#
+# Adds a file of tests in Python. Each leaves its files in the folder NAME.work.
+function(tmini_add_pytest name label file)
+    cmake_parse_arguments(arg "ALL" "TIMEOUT" "NEEDS;ENVIRONMENT" ${ARGN})
+    set(all "")
+    if(arg_ALL)
+        set(all ALL)
+    endif()
+    if(TMINI_PYTEST_MISSING)
+        tmini_add_skipped_test(${name} ${label} ${TMINI_PYTEST_MISSING} ${all})
+        return()
+    endif()
+    tmini_add_check(${name} ${label} ${all} TIMEOUT "${arg_TIMEOUT}" NEEDS ${arg_NEEDS}
+        COMMAND ${TMINI_PYTEST_PYTHON} -B -m pytest -q -p no:cacheprovider
+            --basetemp=${CMAKE_CURRENT_BINARY_DIR}/${name}.work ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+    set_tests_properties(${name} PROPERTIES ENVIRONMENT "${arg_ENVIRONMENT}")
+endfunction()

@@ -15,6 +15,11 @@ need_test_tools() {
     because "to generate the unit tests' mocks and main functions"
     need ruby ruby
     need_cmock
+    because "to test the tool as a person uses it"
+    need python3 python3
+    for module in pytest pexpect pyte; do
+        need "/usr/lib/python3/dist-packages/$module" "python3-$module"
+    done
 }
 
 install_tools() {
