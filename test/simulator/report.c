@@ -91,7 +91,8 @@ static bool open_file(FILE **file, const char *path)
 
 static void observe(report_t *report, sim_t *sim, sim_link_t *link)
 {
-    const sim_observer_t device_observer = {report, NULL, log_command, log_mode};
+    const sim_observer_t device_observer = {
+        .context = report, .on_command = log_command, .on_mode = log_mode};
     const sim_link_observer_t link_observer = {report, write_truth, log_fault};
 
     if (report->log != NULL) {

@@ -139,6 +139,7 @@ void sim_rotor_start(sim_t *sim, uint64_t at_us)
     rotor->at_start = sim->config.beginning == SIM_BEGINS_WITH_A_START;
     rotor->unmarked = sim->config.beginning == SIM_BEGINS_UNMARKED;
     rotor->in_turn = false;
+    rotor->noted = 0;
     rotor->is_partial = false;
     rotor->index = 0;
     rotor->samples = 0;
@@ -345,13 +346,55 @@ static void turn_past_packet(sim_t *sim)
     plan_packet(sim, sim->now_us);
 }
 
-void sim_rotor_packet(sim_t *sim)
+static void send_packet(sim_t *sim, bool is_sent, bool is_doubled)
 {
     sim_frame_t *frame = sim_line_open(&sim->line);
+    sim_frame_t *again;
 
-    if (frame != NULL) {
-        fill_frame(sim, frame);
+    if (frame == NULL) {
+        return;
+    }
+    fill_frame(sim, frame);
+    if (!is_sent) {
+        return;
+    }
+    sim_line_send(&sim->line, sim->now_us);
+    if (is_doubled && (again = sim_line_open(&sim->line)) != NULL) {
+        *again = *frame;
         sim_line_send(&sim->line, sim->now_us);
     }
+}
+
+/* Returns SIM_SOUND for packets that are no events. */
+static sim_trouble_t spoil(sim_t *sim, uint32_t *for_ms)
+{
+    sim_rotor_t *rotor = &sim->rotor;
+
+    if (rotor->noted >= SIM_STARTS_NOTED || (rotor->noted > 0u && !rotor->at_start)) {
+        return SIM_SOUND;
+    }
+    return sim_event(sim, rotor->noted++ == 0u ? SIM_EVENT_BEGINNING : SIM_EVENT_START, for_ms);
+}
+
+void sim_rotor_packet(sim_t *sim)
+{
+    sim_rotor_t *rotor = &sim->rotor;
+    const bool is_beginning = rotor->noted == 0u;
+    uint32_t for_ms = 0;
+    const sim_trouble_t trouble = spoil(sim, &for_ms);
+    const bool is_hidden = sim_is_silent(sim) || (sim->no_starts && rotor->at_start);
+
+    if (rotor->due_us == SIM_NEVER) {
+        return; /* The trouble was a loss of power. */
+    }
+    if (trouble == SIM_LOST && is_beginning) {
+        sim_go_idle(sim);
+        return;
+    }
+    if (trouble == SIM_LATE) {
+        rotor->due_us += (uint64_t)for_ms * 1000u;
+        return;
+    }
+    send_packet(sim, !is_hidden && trouble != SIM_LOST, trouble == SIM_DOUBLED);
     turn_past_packet(sim);
 }

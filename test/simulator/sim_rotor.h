@@ -25,4 +25,10 @@ bool sim_rotor_measures(const sim_t *sim);
 /* Sends the packet that is due now and plans the next one. */
 void sim_rotor_packet(sim_t *sim);
 
+/* What sim_rotor.c needs of simulator.c: asks what spoils the event, and lets that begin; whether
+ * nothing is sent just now; the end of a scan. */
+sim_trouble_t sim_event(sim_t *sim, sim_event_t event, uint32_t *for_ms);
+bool sim_is_silent(const sim_t *sim);
+void sim_go_idle(sim_t *sim);
+
 #endif

@@ -65,6 +65,7 @@ void sim_init(sim_t *sim, const sim_config_t *config)
     sim->config = *config;
     sim->mode = SIM_IDLE;
     sim->mode_due_us = SIM_NEVER;
+    sim->power_us = SIM_NEVER;
     sim->frequency_chz = config->frequency_chz;
     random_seed(&sim->random, config->seed);
     sim_rotor_stop(sim);
@@ -73,9 +74,70 @@ void sim_init(sim_t *sim, const sim_config_t *config)
 
 void sim_observe(sim_t *sim, const sim_observer_t *observer)
 {
-    static const sim_observer_t nobody = {NULL, NULL, NULL, NULL};
+    static const sim_observer_t nobody = {NULL, NULL, NULL, NULL, NULL};
 
     sim->observer = observer == NULL ? nobody : *observer;
+}
+
+/* ---- Trouble ---- */
+
+static void reset(sim_t *sim, sim_mode_t mode, uint64_t due_us);
+static void reboot(sim_t *sim);
+
+static void sound_from(sim_t *sim, uint64_t at_us)
+{
+    sim->sound_us = at_us > sim->sound_us ? at_us : sim->sound_us;
+}
+
+static void befall(sim_t *sim, sim_trouble_t trouble, uint32_t for_ms)
+{
+    const uint64_t end_us = sim->now_us + ms(for_ms);
+
+    switch (trouble) {
+    case SIM_POWER_CUT:
+        reset(sim, SIM_OFF, SIM_NEVER);
+        sim->power_us = end_us;
+        sound_from(sim, end_us + ms(sim->config.boot_ms));
+        return;
+    case SIM_DEAF:
+        sim->deaf_until_us = end_us;
+        break;
+    case SIM_SILENT:
+        sim->silent_until_us = end_us;
+        break;
+    case SIM_REBOOTS:
+        reboot(sim);
+        sound_from(sim, sim->now_us + ms(sim->config.boot_ms));
+        return;
+    case SIM_NO_STARTS:
+        sim->no_starts = true;
+        break;
+    case SIM_NO_SCANS:
+        sim->no_scans = true;
+        break;
+    default:
+        break;
+    }
+    sound_from(sim, end_us);
+}
+
+sim_trouble_t sim_event(sim_t *sim, sim_event_t event, uint32_t *for_ms)
+{
+    sim_trouble_t trouble = SIM_SOUND;
+
+    *for_ms = 0;
+    if (sim->observer.on_event != NULL) {
+        trouble = sim->observer.on_event(sim->observer.context, event, sim->now_us, for_ms);
+    }
+    if (trouble != SIM_SOUND) {
+        befall(sim, trouble, *for_ms);
+    }
+    return trouble;
+}
+
+bool sim_is_silent(const sim_t *sim)
+{
+    return sim->now_us < sim->silent_until_us;
 }
 
 /* ---- Replies ---- */
@@ -100,12 +162,13 @@ static uint64_t answer(sim_t *sim, const uint8_t *bytes, size_t length)
     const uint64_t due = reply_due_us(sim);
     sim_reply_t *reply = &sim->replies[(sim->first_reply + sim->reply_count) % SIM_REPLIES];
 
-    if (sim->lose_reply || sim->reply_count == SIM_REPLIES) {
+    if (sim->lose_reply || sim->config.never_answers || sim->reply_count == SIM_REPLIES) {
         sim->lose_reply = false;
         sim->counts.lost_replies++;
         return due;
     }
     reply->due_us = due;
+    reply->is_late = false;
     reply->length = (uint8_t)length;
     memcpy(reply->bytes, bytes, length);
     sim->reply_count++;
@@ -118,17 +181,49 @@ static uint64_t next_reply_us(const sim_t *sim)
 }
 
 /* While scanning, the reply comes between two packets, as on the real device (section 2). */
-static void send_reply(sim_t *sim)
+static void put_reply(sim_t *sim, const sim_reply_t *reply)
 {
-    const sim_reply_t *reply = &sim->replies[sim->first_reply];
-    sim_frame_t *frame = sim_line_open(&sim->line);
+    sim_frame_t *frame = sim_is_silent(sim) ? NULL : sim_line_open(&sim->line);
 
-    sim->first_reply = (sim->first_reply + 1u) % SIM_REPLIES;
-    sim->reply_count--;
     if (frame != NULL) {
         frame->length = reply->length;
         memcpy(frame->bytes, reply->bytes, reply->length);
         sim_line_send(&sim->line, sim->now_us);
+    }
+}
+
+/* Later replies keep their order: they wait for a late one. */
+static void delay_replies(sim_t *sim, uint64_t due_us)
+{
+    for (uint32_t i = 0; i < sim->reply_count; i++) {
+        sim_reply_t *reply = &sim->replies[(sim->first_reply + i) % SIM_REPLIES];
+
+        reply->due_us = reply->due_us > due_us ? reply->due_us : due_us;
+    }
+}
+
+static void send_reply(sim_t *sim)
+{
+    sim_reply_t *reply = &sim->replies[sim->first_reply];
+    uint32_t late_ms = 0;
+    const sim_trouble_t trouble =
+        reply->is_late ? SIM_SOUND : sim_event(sim, SIM_EVENT_REPLY, &late_ms);
+
+    if (sim->reply_count == 0u) {
+        return; /* The trouble was a loss of power. */
+    }
+    if (trouble == SIM_LATE) {
+        reply->is_late = true;
+        delay_replies(sim, sim->now_us + ms(late_ms));
+        return;
+    }
+    sim->first_reply = (sim->first_reply + 1u) % SIM_REPLIES;
+    sim->reply_count--;
+    for (unsigned times = trouble == SIM_LOST      ? 0
+                          : trouble == SIM_DOUBLED ? 2
+                                                   : 1;
+         times > 0; times--) {
+        put_reply(sim, reply);
     }
 }
 
@@ -150,13 +245,16 @@ static void start(sim_t *sim)
         set_mode(sim, SIM_FAULT, SIM_NEVER);
         return;
     }
+    if (sim->no_scans) {
+        return;
+    }
     if (sim->mode != SIM_SCANNING && sim->mode != SIM_STOPPING) {
         sim_rotor_start(sim, due + ms(sim->config.first_packet_ms));
     }
     set_mode(sim, SIM_SCANNING, SIM_NEVER);
 }
 
-static void go_idle(sim_t *sim)
+void sim_go_idle(sim_t *sim)
 {
     sim_rotor_stop(sim);
     set_mode(sim, SIM_IDLE, SIM_NEVER);
@@ -167,7 +265,7 @@ static void stop(sim_t *sim)
     if (sim->mode == SIM_SCANNING && sim_rotor_measures(sim)) {
         set_mode(sim, SIM_STOPPING, sim->now_us + ms(sim->config.stop_tail_ms));
     } else if (sim->mode == SIM_SCANNING || sim->mode == SIM_FAULT) {
-        go_idle(sim);
+        sim_go_idle(sim);
     }
 }
 
@@ -229,6 +327,13 @@ static void reset(sim_t *sim, sim_mode_t mode, uint64_t due_us)
     sim->rotor.data_fault = false;
     sim->reply_count = 0;
     sim->half_command = false;
+    sim->late.count = 0;
+    if (sim->no_starts || sim->no_scans) {
+        sound_from(sim, sim->now_us + ms(sim->config.boot_ms));
+    }
+    sim->no_starts = false;
+    sim->no_scans = false;
+    sim->power_us = SIM_NEVER;
     if (!sim->config.keeps_frequency) {
         sim->frequency_chz = sim->config.frequency_chz;
     }
@@ -305,9 +410,54 @@ static void execute(sim_t *sim, uint8_t code)
     }
 }
 
+static void delay(sim_late_t *late, uint8_t code, uint64_t due_us)
+{
+    if (late->count < SIM_LATE_COMMANDS) {
+        late->codes[late->count] = code;
+        late->due_us[late->count] = due_us;
+        late->count++;
+    }
+}
+
+static void execute_late(sim_t *sim)
+{
+    sim_late_t *late = &sim->late;
+    const uint8_t code = late->codes[0];
+
+    late->count--;
+    for (uint32_t i = 0; i < late->count; i++) {
+        late->codes[i] = late->codes[i + 1u];
+        late->due_us[i] = late->due_us[i + 1u];
+    }
+    execute(sim, code);
+}
+
+/* A command that arrives after a late one waits for it. */
+static void receive_command(sim_t *sim, uint8_t code)
+{
+    const uint32_t before = sim->late.count;
+    uint64_t due_us = before > 0u ? sim->late.due_us[before - 1u] : sim->now_us;
+    uint32_t late_ms;
+    const sim_trouble_t trouble = sim_event(sim, SIM_EVENT_COMMAND, &late_ms);
+    const bool is_heard = trouble == SIM_SOUND || trouble == SIM_LATE || trouble == SIM_DOUBLED ||
+                          trouble == SIM_SILENT || trouble == SIM_NO_STARTS;
+
+    if (trouble == SIM_LATE) {
+        due_us += ms(late_ms);
+        sound_from(sim, due_us);
+    }
+    for (unsigned times = !is_heard ? 0 : trouble == SIM_DOUBLED ? 2 : 1; times > 0; times--) {
+        if (due_us > sim->now_us) {
+            delay(&sim->late, code, due_us);
+        } else {
+            execute(sim, code);
+        }
+    }
+}
+
 static bool listens(const sim_t *sim)
 {
-    return sim->mode != SIM_OFF && sim->mode != SIM_BOOTING;
+    return sim->now_us >= sim->deaf_until_us && sim->mode != SIM_OFF && sim->mode != SIM_BOOTING;
 }
 
 static void receive_byte(sim_t *sim, uint8_t byte)
@@ -319,7 +469,7 @@ static void receive_byte(sim_t *sim, uint8_t byte)
         sim->half_command = true;
     } else if (sim->half_command) {
         sim->half_command = false;
-        execute(sim, byte);
+        receive_command(sim, byte);
     }
 }
 
@@ -332,7 +482,17 @@ static uint64_t earlier(uint64_t a, uint64_t b)
 
 static uint64_t next_event_us(const sim_t *sim)
 {
-    return earlier(sim->mode_due_us, earlier(next_reply_us(sim), sim->rotor.due_us));
+    const uint64_t late_us = sim->late.count > 0u ? sim->late.due_us[0] : SIM_NEVER;
+    const uint64_t outer_us = earlier(sim->power_us, late_us);
+
+    return earlier(outer_us,
+                   earlier(sim->mode_due_us, earlier(next_reply_us(sim), sim->rotor.due_us)));
+}
+
+static void boot(sim_t *sim)
+{
+    sim->power_us = SIM_NEVER;
+    set_mode(sim, SIM_BOOTING, sim->now_us + ms(sim->config.boot_ms));
 }
 
 /* Processes the next event, unless it is after `until_us`. */
@@ -344,8 +504,12 @@ static bool step(sim_t *sim, uint64_t until_us)
         return false;
     }
     sim->now_us = event_us;
-    if (event_us == sim->mode_due_us) {
-        go_idle(sim);
+    if (event_us == sim->power_us) {
+        boot(sim);
+    } else if (sim->late.count > 0u && event_us == sim->late.due_us[0]) {
+        execute_late(sim);
+    } else if (event_us == sim->mode_due_us) {
+        sim_go_idle(sim);
     } else if (event_us == next_reply_us(sim)) {
         send_reply(sim);
     } else {
@@ -438,11 +602,28 @@ void sim_power(sim_t *sim, bool on, uint64_t now_us)
     if (!on) {
         reset(sim, SIM_OFF, SIM_NEVER);
     } else if (sim->mode == SIM_OFF) {
-        set_mode(sim, SIM_BOOTING, sim->now_us + ms(sim->config.boot_ms));
+        boot(sim);
     }
 }
 
 /* ---- What happens to the device ---- */
+
+void sim_befall(sim_t *sim, sim_trouble_t trouble, uint32_t for_ms, uint64_t now_us)
+{
+    advance(sim, now_us);
+    befall(sim, trouble, for_ms);
+}
+
+uint64_t sim_sound_us(const sim_t *sim)
+{
+    return sim->no_starts || sim->no_scans ? SIM_NEVER : sim->sound_us;
+}
+
+bool sim_expects_event(const sim_t *sim)
+{
+    return sim->reply_count > 0u ||
+           (sim->rotor.due_us != SIM_NEVER && sim->rotor.noted < SIM_STARTS_NOTED);
+}
 
 /* Section 2: the device itself switches its ranging unit off. */
 static void shut_off_if_fatal(sim_t *sim)

@@ -61,6 +61,32 @@ typedef enum {
     SIM_FAULT     /* section 2's stop mode: no stream until the fault is gone and start is sent */
 } sim_mode_t;
 
+/* What happens on the wire that on_event() may spoil. Of a scan the beginning (its first packet) and
+ * the next start packets are events, SIM_STARTS_NOTED in all. */
+typedef enum {
+    SIM_EVENT_COMMAND,
+    SIM_EVENT_REPLY,
+    SIM_EVENT_BEGINNING,
+    SIM_EVENT_START
+} sim_event_t;
+
+#define SIM_STARTS_NOTED 3u
+
+/* How an unkind lidar, its supply or its wires spoil an event (sections 9.16 and 9.17). Each but the
+ * first four also befalls a lidar at any other time: sim_befall(). */
+typedef enum {
+    SIM_SOUND,
+    SIM_LOST,    /* the command, reply or packet; a scan that loses its beginning does not begin */
+    SIM_LATE,    /* by some milliseconds; what follows keeps its order */
+    SIM_DOUBLED, /* obeyed or sent twice */
+    SIM_POWER_CUT, /* for some milliseconds; then it boots */
+    SIM_DEAF,      /* hears nothing for some milliseconds */
+    SIM_SILENT,    /* sends nothing for some milliseconds, but goes on as if it did */
+    SIM_REBOOTS,   /* by itself */
+    SIM_NO_STARTS, /* sends no start packets until it boots */
+    SIM_NO_SCANS   /* answers, but does not scan until it boots */
+} sim_trouble_t;
+
 /* How the first packets after a start look; real units do all three (section 9.8). */
 typedef enum {
     SIM_BEGINS_ANYWHERE,     /* at any angle; the first start packet is at the usual angle */
@@ -93,6 +119,7 @@ typedef struct {
     uint8_t samples_per_packet;    /* 1..40 (9.6) */
     bool keeps_frequency;          /* the set frequency survives reboot and loss of power */
     bool refuses_steps;            /* frequency commands change nothing */
+    bool never_answers;            /* obeys, but sends no replies */
     bool firmware_major_first;     /* in the information reply, as in the manual (9.4) */
     bool ascii_serial;         /* in the information reply: characters instead of numbers (9.5) */
     bool blocked_sends_starts; /* start packets continue while the rotor is blocked */
@@ -121,15 +148,27 @@ typedef struct {
     void (*on_packet)(void *context, const sim_packet_t *packet); /* its last byte has left */
     void (*on_command)(void *context, uint8_t code, uint64_t now_us);
     void (*on_mode)(void *context, sim_mode_t from, sim_mode_t to, uint64_t now_us);
+    /* Decides what spoils the event, and sets `ms` where that needs a time. */
+    sim_trouble_t (*on_event)(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms);
 } sim_observer_t;
 
 #define SIM_REPLIES 4u
 
 typedef struct {
     uint64_t due_us;
+    bool is_late; /* on purpose: on_event() has been asked */
     uint8_t length;
     uint8_t bytes[ENCODE_REPLY_MAX];
 } sim_reply_t;
+
+#define SIM_LATE_COMMANDS 8u
+
+/* Commands on their way to a lidar, when one of them is late. */
+typedef struct {
+    uint64_t due_us[SIM_LATE_COMMANDS];
+    uint8_t codes[SIM_LATE_COMMANDS];
+    uint32_t count;
+} sim_late_t;
 
 /* The turning, measuring part. Phases are angles from the start packet's angle, in 2^-16 of 1/64
  * degree; speeds are in 10^-5 Hz. */
@@ -146,6 +185,7 @@ typedef struct {
     bool in_turn;     /* a start packet has come since the start of scanning */
     uint32_t index;   /* of that packet in its revolution */
     uint8_t crc;      /* of the CT bytes of this revolution so far */
+    uint8_t noted;    /* events of this scan so far */
     uint32_t samples; /* of this revolution so far */
     uint32_t valid;   /* samples of this revolution with a range */
     bool data_fault;  /* the previous revolution had no range at all */
@@ -167,6 +207,13 @@ typedef struct {
     bool window_covered;
     uint32_t extra_latency_ms; /* of the next reply only */
     bool lose_reply;
+    uint64_t deaf_until_us;
+    uint64_t silent_until_us;
+    uint64_t power_us; /* when the power returns by itself; SIM_NEVER: it is on, or sim_power() */
+    uint64_t sound_us; /* when the last trouble will have ended, booting included */
+    bool no_starts;
+    bool no_scans;
+    sim_late_t late;
     sim_reply_t replies[SIM_REPLIES];
     uint32_t first_reply;
     uint32_t reply_count;
@@ -210,6 +257,16 @@ void sim_block_rotor(sim_t *sim, bool blocked);
 void sim_cover_window(sim_t *sim, bool covered);
 void sim_place_obstacle(sim_t *sim, uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm);
 void sim_clear_obstacles(sim_t *sim);
+
+/* The trouble begins now: SIM_POWER_CUT or one after it. */
+void sim_befall(sim_t *sim, sim_trouble_t trouble, uint32_t ms, uint64_t now_us);
+
+/* When the last trouble ended, or will end, by itself or by a reboot: until then nothing can be
+ * demanded. SIM_NEVER: it needs a reboot. */
+uint64_t sim_sound_us(const sim_t *sim);
+
+/* Whether an event may come without anything being sent to the lidar. */
+bool sim_expects_event(const sim_t *sim);
 
 /* Delays or loses the reply to the next command that has one. Replies keep their order. The stream
  * begins as if the start command's reply was sent when due, even if that is late or lost. */

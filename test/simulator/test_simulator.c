@@ -9,6 +9,7 @@
 
 #include "unity.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define SECOND UINT64_C(1000000)
@@ -775,7 +776,8 @@ static void see_command(void *context, uint8_t code, uint64_t at_us)
 
 static void observe(void)
 {
-    sim_observer_t observer = {NULL, see_packet, see_command, see_mode};
+    const sim_observer_t observer = {
+        .on_packet = see_packet, .on_command = see_command, .on_mode = see_mode};
 
     memset(&seen, 0, sizeof seen);
     sim_observe(&sim, &observer);
@@ -828,4 +830,194 @@ void test_modes_have_names(void)
 {
     TEST_ASSERT_EQUAL_STRING("off", sim_mode_name(SIM_OFF));
     TEST_ASSERT_EQUAL_STRING("fault", sim_mode_name(SIM_FAULT));
+}
+
+/* ---- Unkind behaviour ---- */
+
+/* What spoils the event with that number, counted per kind from 0. */
+static struct {
+    sim_event_t event;
+    unsigned number;
+    sim_trouble_t trouble;
+    uint32_t ms;
+    unsigned counts[SIM_EVENT_START + 1];
+} spoil;
+
+static sim_trouble_t spoil_event(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms)
+{
+    const unsigned number = spoil.counts[event]++;
+
+    (void)context;
+    (void)now_us;
+    *ms = spoil.ms;
+    return event == spoil.event && number == spoil.number ? spoil.trouble : SIM_SOUND;
+}
+
+static void unkind(sim_event_t event, unsigned number, sim_trouble_t trouble, uint32_t ms)
+{
+    const sim_observer_t observer = {.on_event = spoil_event};
+
+    power_up();
+    memset(&spoil, 0, sizeof spoil);
+    spoil.event = event;
+    spoil.number = number;
+    spoil.trouble = trouble;
+    spoil.ms = ms;
+    sim_observe(&sim, &observer);
+}
+
+static unsigned starts_sent(void)
+{
+    unsigned starts = 0;
+
+    decode();
+    for (size_t i = 0; i < packet_count; i++) {
+        starts += packets[i].starts_revolution ? 1 : 0;
+    }
+    return starts;
+}
+
+/* A step of the frequency is spoilt, then the frequency is asked for. A reply has 11 bytes. */
+void test_a_command_or_reply_is_spoilt_as_decided(void)
+{
+    static const struct {
+        sim_event_t event;
+        sim_trouble_t trouble;
+        uint16_t frequency_chz;
+        size_t bytes_soon, bytes_later; /* In 100 ms; until 6 s later, with the question's reply. */
+    } rows[] = {
+        {SIM_EVENT_COMMAND, SIM_SOUND, 700, 11, 22},
+        {SIM_EVENT_COMMAND, SIM_LOST, 600, 0, 11},
+        {SIM_EVENT_COMMAND, SIM_LATE, 700, 0, 22},
+        {SIM_EVENT_COMMAND, SIM_DOUBLED, 800, 22, 33},
+        {SIM_EVENT_COMMAND, SIM_DEAF, 600, 0, 11},
+        {SIM_EVENT_COMMAND, SIM_SILENT, 700, 0, 11},
+        {SIM_EVENT_COMMAND, SIM_POWER_CUT, 600, 0, 11},
+        {SIM_EVENT_COMMAND, SIM_REBOOTS, 600, 0, 11},
+        {SIM_EVENT_REPLY, SIM_LOST, 700, 0, 11},
+        {SIM_EVENT_REPLY, SIM_LATE, 700, 0, 22},
+        {SIM_EVENT_REPLY, SIM_DOUBLED, 700, 22, 33},
+        {SIM_EVENT_REPLY, SIM_DEAF, 700, 11, 22},
+        {SIM_EVENT_REPLY, SIM_SILENT, 700, 0, 11},
+        {SIM_EVENT_REPLY, SIM_POWER_CUT, 600, 0, 11},
+        {SIM_EVENT_REPLY, SIM_REBOOTS, 600, 0, 11},
+    };
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        char text[40];
+        (void)snprintf(text, sizeof text, "event %u, trouble %u", rows[i].event, rows[i].trouble);
+        unkind(rows[i].event, 0, rows[i].trouble, 1000);
+        send(0x0B);
+        run_ms(100);
+        TEST_ASSERT_EQUAL_size_t_MESSAGE(rows[i].bytes_soon, size, text);
+        run_ms(5000);
+        send(0x0D);
+        run_ms(1000);
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(rows[i].frequency_chz, sim_frequency_chz(&sim), text);
+        TEST_ASSERT_EQUAL_size_t_MESSAGE(rows[i].bytes_later, size, text);
+    }
+}
+
+void test_commands_and_replies_wait_for_a_late_one_and_keep_their_order(void)
+{
+    unkind(SIM_EVENT_COMMAND, 0, SIM_LATE, 700);
+    send(0x0B);
+    send(0x0A);
+    run_ms(699);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+    run_ms(20);
+    TEST_ASSERT_EQUAL_size_t(22, size);
+    TEST_ASSERT_EQUAL_HEX8(700 & 0xFF, stream[7]);
+    TEST_ASSERT_EQUAL_HEX8(690 & 0xFF, stream[18]);
+    unkind(SIM_EVENT_REPLY, 0, SIM_LATE, 700);
+    send(0x0B);
+    send(0x0A);
+    run_ms(700);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+    run_ms(20);
+    TEST_ASSERT_EQUAL_size_t(22, size);
+}
+
+void test_a_scan_that_loses_its_beginning_does_not_begin_and_another_start_is_obeyed(void)
+{
+    unkind(SIM_EVENT_BEGINNING, 0, SIM_LOST, 0);
+    send(0x60);
+    run_ms(2000);
+    TEST_ASSERT_EQUAL_size_t(7, size);
+    TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&sim));
+    scan_seconds(1);
+    TEST_ASSERT_TRUE(packet_count > 90);
+}
+
+void test_start_packets_are_lost_doubled_or_missing_until_it_boots(void)
+{
+    unsigned starts[3];
+
+    for (unsigned i = 0; i < 3; i++) {
+        unkind(SIM_EVENT_START, 0, i == 0 ? SIM_SOUND : i == 1 ? SIM_LOST : SIM_DOUBLED, 0);
+        send(0x60);
+        run_ms(3000);
+        starts[i] = starts_sent();
+    }
+    TEST_ASSERT_EQUAL_UINT(starts[0] - 1, starts[1]);
+    TEST_ASSERT_EQUAL_UINT(starts[0] + 1, starts[2]);
+    unkind(SIM_EVENT_START, 1, SIM_NO_STARTS, 0);
+    send(0x60);
+    run_ms(4000);
+    TEST_ASSERT_EQUAL_UINT(1, starts_sent());
+    TEST_ASSERT_TRUE(packet_count > 200);
+    TEST_ASSERT_EQUAL_UINT64(SIM_NEVER, sim_sound_us(&sim));
+    send(0x65);
+    run_ms(500);
+    scan_seconds(1);
+    TEST_ASSERT_EQUAL_UINT(0, starts_sent());
+    send(0x40);
+    TEST_ASSERT_EQUAL_UINT64(now + config.boot_ms * 1000u, sim_sound_us(&sim));
+    run_ms(config.boot_ms + 1u);
+    scan_seconds(1);
+    TEST_ASSERT_TRUE(starts_sent() > 0);
+}
+
+void test_a_lidar_that_answers_and_does_not_scan_needs_a_reboot(void)
+{
+    sim_befall(&sim, SIM_NO_SCANS, 0, now);
+    send(0x60);
+    run_ms(2000);
+    TEST_ASSERT_EQUAL_size_t(7, size);
+    send(0x40);
+    run_ms(config.boot_ms + 1u);
+    scan_seconds(1);
+    TEST_ASSERT_TRUE(packet_count > 90);
+}
+
+void test_a_stream_that_is_silent_or_late_goes_on_afterwards(void)
+{
+    static const sim_trouble_t troubles[] = {SIM_SILENT, SIM_LATE};
+
+    for (size_t i = 0; i < 2; i++) {
+        unkind(SIM_EVENT_START, 0, troubles[i], 800);
+        send(0x60);
+        do {
+            run_ms(1);
+        } while (spoil.counts[SIM_EVENT_START] == 0);
+        run_ms(30); /* What is on the line already. */
+        forget_stream();
+        run_ms(760);
+        TEST_ASSERT_EQUAL_size_t(0, size);
+        run_ms(1000);
+        decode();
+        TEST_ASSERT_TRUE(packet_count > 90);
+    }
+}
+
+void test_a_lidar_that_never_answers_obeys(void)
+{
+    config.never_answers = true;
+    power_up();
+    send(0x0B);
+    run_ms(100);
+    TEST_ASSERT_EQUAL_size_t(0, size);
+    TEST_ASSERT_EQUAL_UINT16(700, sim_frequency_chz(&sim));
+    scan_seconds(1);
+    TEST_ASSERT_TRUE(packet_count > 90);
 }

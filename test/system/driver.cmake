@@ -21,3 +21,24 @@ tmini_add_unit_test(test_intact
 tmini_add_unit_test(test_driver
     SOURCES test_driver.c
     LIBRARIES tmini_world)
+
+# The driver and an unkind lidar.
+add_library(tmini_bed STATIC EXCLUDE_FROM_ALL bed.c)
+target_include_directories(tmini_bed PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
+target_link_libraries(tmini_bed PUBLIC tmini_simulator tmini::tmini)
+target_compile_options(tmini_bed PRIVATE -O2 -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
+set_target_properties(tmini_bed PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
+
+# At every event on the wire every trouble, and every pair of them. Triples by hand: explore --depth 3.
+add_executable(explore EXCLUDE_FROM_ALL explore.c)
+target_link_libraries(explore PRIVATE tmini_bed)
+target_compile_options(explore PRIVATE -O2 -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
+set_target_properties(explore PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
+tmini_add_check(explore system NEEDS explore COMMAND explore --expected --depth 1)
+foreach(story 10hz 6.1hz no-wish)
+    tmini_add_check(explore.${story} system NEEDS explore COMMAND explore --expected ${story})
+endforeach()
+foreach(story change stop stop-set-start ask)
+    tmini_add_check(explore.${story} system ALL TIMEOUT 900 NEEDS explore
+        COMMAND explore --expected ${story})
+endforeach()

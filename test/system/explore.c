@@ -1,0 +1,543 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* No wish is ever lost. Stories of wishes are played to a lidar; at each event on the wire each
+ * trouble comes, then at each later event a second one, and so on. Within 15 s after the lidar is
+ * sound again each wish must be fulfilled.
+ *
+ *     explore [--depth N] [STORY …]     N troubles, 2 unless given; all stories
+ *     explore --expected [--depth N] [STORY …]    the same as a test: see expected_red[]
+ *     explore --replay STORY 7:cut50 12:lost      one run, with what happens in it
+ *
+ * A failure is printed as the arguments of --replay. The state before each event is kept, so that
+ * a run begins there and not with the story (bed.h). */
+
+#include "bed.h"
+
+#include "tmini/tmini_names.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define POLL_MS 10u
+#define LIMIT_US 15000000u        /* From a sound lidar on. */
+#define REBOOT_LIMIT_US 30000000u /* Until a lidar that needs a reboot gets it. */
+#define SCANS 5u                  /* In a row, before a wish counts as fulfilled. */
+#define IDLE_US 1500000u          /* Idle, before it does. */
+#define MOST_EVENTS_PER_SECOND 10u
+#define DEPTH_MAX 3u
+#define POINTS_MAX 400u
+#define MOST_FAILURES 10u /* Printed per story. */
+
+/* ---- Stories ---- */
+
+typedef enum { NOTHING, START, STOP, SET, ASK } act_t;
+
+typedef struct {
+    uint32_t at_ms;
+    act_t act;
+    uint16_t frequency_chz;
+} scene_t;
+
+typedef struct {
+    const char *name;
+    uint16_t frequency_chz; /* In the configuration. */
+    scene_t scenes[6];
+} story_t;
+
+static const story_t stories[] = {
+    {"10hz", 1000, {{0, START, 0}}},
+    {"6.1hz", 610, {{0, START, 0}}},
+    {"no-wish", 0, {{0, START, 0}}},
+    {"change", 1000, {{0, START, 0}, {3000, SET, 800}}},
+    {"stop", 1000, {{0, START, 0}, {3000, STOP, 0}}},
+    {"stop-set-start", 1000, {{0, START, 0}, {3000, STOP, 0}, {3000, SET, 800}, {3000, START, 0}}},
+    {"ask", 1000, {{0, ASK, 0}, {0, START, 0}}},
+};
+#define STORIES (sizeof stories / sizeof stories[0])
+
+/* Stories that do fail, and with how many troubles at least. With --expected it is an error if one
+ * of them does not: then it is to be removed here. */
+static const struct {
+    const char *story;
+    uint32_t troubles;
+} expected_red[] = {
+    {"10hz", 1}, {"6.1hz", 1}, {"no-wish", 1}, {"change", 1}, {"stop-set-start", 1}, {"ask", 1},
+};
+
+/* ---- Troubles ---- */
+
+typedef struct {
+    const char *name;
+    sim_trouble_t trouble;
+    uint32_t ms;
+} spoil_t;
+
+static const spoil_t spoils[] = {
+    {"lost", SIM_LOST, 0},           {"late700", SIM_LATE, 700},   {"late2300", SIM_LATE, 2300},
+    {"doubled", SIM_DOUBLED, 0},     {"cut50", SIM_POWER_CUT, 50}, {"cut2500", SIM_POWER_CUT, 2500},
+    {"deaf400", SIM_DEAF, 400},      {"deaf3000", SIM_DEAF, 3000}, {"silent1500", SIM_SILENT, 1500},
+    {"no-starts", SIM_NO_STARTS, 0}, {"reboots", SIM_REBOOTS, 0},
+};
+#define SPOILS (sizeof spoils / sizeof spoils[0])
+
+typedef struct {
+    uint32_t event; /* The number of the event on the wire, from 0. */
+    const spoil_t *spoil;
+} plan_t;
+
+/* ---- One run ---- */
+
+/* All that a run consists of: copied as a whole. */
+typedef struct {
+    bed_t bed;
+    const story_t *story;
+    uint32_t scene; /* The next one. */
+    uint64_t acted_us;
+    uint64_t idle_since_us;
+    uint64_t unkind_us; /* A lidar that needs a reboot has had no other trouble since. */
+    bool wants_scans;
+    uint16_t wants_chz;
+    uint32_t asked;
+    uint32_t answered;
+    uint32_t wire_events;
+    plan_t plan[DEPTH_MAX];
+    uint32_t troubles;
+} run_t;
+
+static run_t run;
+static bool is_told;
+
+static const char *event_text(sim_event_t event)
+{
+    static const char *const texts[] = {"command", "reply", "beginning of a scan", "start packet"};
+
+    return texts[event];
+}
+
+static sim_trouble_t on_event(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms)
+{
+    const uint32_t number = run.wire_events++;
+
+    (void)context;
+    for (uint32_t i = 0; i < run.troubles; i++) {
+        if (run.plan[i].event == number) {
+            *ms = run.plan[i].spoil->ms;
+            if (is_told) {
+                printf("%8.3f  %u: %s: %s\n", (double)now_us / 1e6, number, event_text(event),
+                       run.plan[i].spoil->name);
+            }
+            return run.plan[i].spoil->trouble;
+        }
+    }
+    if (is_told) {
+        printf("%8.3f  %u: %s\n", (double)now_us / 1e6, number, event_text(event));
+    }
+    return SIM_SOUND;
+}
+
+static void on_command(void *context, uint8_t code, uint64_t now_us)
+{
+    (void)context;
+    if (is_told) {
+        printf("%8.3f  the lidar obeys %02X\n", (double)now_us / 1e6, code);
+    }
+}
+
+/* A quiet sensor: random numbers would take most of the time. */
+static sim_config_t quiet_lidar(void)
+{
+    sim_config_t config = sim_default_config();
+
+    config.noise_mm = 0;
+    config.invalid_permille = 0;
+    config.flagged_permille = 0;
+    config.lone_packet_permille = 0;
+    config.angle_jitter_q6 = 0;
+    config.seed = 7;
+    return config;
+}
+
+static void begin(const story_t *story)
+{
+    const sim_config_t config = quiet_lidar();
+    const sim_observer_t observer = {.on_command = on_command, .on_event = on_event};
+
+    memset(&run, 0, sizeof run);
+    bed_prepare(&run.bed);
+    run.bed.poll_ms = POLL_MS;
+    run.bed.config.frequency_chz = story->frequency_chz;
+    if (!bed_init(&run.bed, &config)) {
+        printf("the library was not set up\n");
+        exit(2);
+    }
+    sim_observe(&run.bed.sim, &observer);
+    run.story = story;
+    run.wants_chz = story->frequency_chz;
+}
+
+static void act(const scene_t *scene)
+{
+    tmini_status_t status = TMINI_OK;
+
+    switch (scene->act) {
+    case START:
+        status = tmini_start(&run.bed.lidar);
+        run.wants_scans = true;
+        break;
+    case STOP:
+        status = tmini_stop(&run.bed.lidar);
+        run.wants_scans = false;
+        break;
+    case SET:
+        status = tmini_set_frequency(&run.bed.lidar, scene->frequency_chz);
+        run.wants_chz = scene->frequency_chz;
+        break;
+    default:
+        status = tmini_request_info(&run.bed.lidar);
+        run.asked++;
+        break;
+    }
+    run.acted_us = run.bed.now_us;
+    if (status != TMINI_OK) {
+        printf("a wish was refused: %s\n", tmini_status_name(status));
+        exit(2);
+    }
+}
+
+static bool has_scene(void)
+{
+    return run.scene < sizeof run.story->scenes / sizeof run.story->scenes[0] &&
+           run.story->scenes[run.scene].act != NOTHING;
+}
+
+static void tell_events(const uint32_t *before)
+{
+    for (unsigned i = 0; i < BED_EVENTS; i++) {
+        const char *const name = tmini_event_name((tmini_event_t)i);
+
+        if (run.bed.events[i] != before[i] && i != TMINI_EVENT_SCAN) {
+            printf("%8.3f  %s%s%s\n", (double)run.bed.now_us / 1e6, name,
+                   i == TMINI_EVENT_COMMAND_FAILED ? ": " : "",
+                   i == TMINI_EVENT_COMMAND_FAILED
+                       ? tmini_status_name(tmini_command_error(&run.bed.lidar))
+                       : "");
+        }
+    }
+}
+
+static void note_wishes(void)
+{
+    if (!bed_is_idle(&run.bed)) {
+        run.idle_since_us = run.bed.now_us;
+    }
+    run.answered = run.bed.events[TMINI_EVENT_INFO] + run.bed.events[TMINI_EVENT_COMMAND_FAILED];
+    if (sim_sound_us(&run.bed.sim) != SIM_NEVER) {
+        run.unkind_us = sim_sound_us(&run.bed.sim);
+    }
+}
+
+static void step(void)
+{
+    uint32_t before[BED_EVENTS];
+
+    if (is_told) {
+        memcpy(before, run.bed.events, sizeof before);
+    }
+    bed_step(&run.bed);
+    while (has_scene() && bed_ms(&run.bed) >= run.story->scenes[run.scene].at_ms) {
+        act(&run.story->scenes[run.scene++]);
+    }
+    note_wishes();
+    if (is_told) {
+        tell_events(before);
+    }
+}
+
+static bool is_fulfilled(void)
+{
+    const uint64_t sound_us = sim_sound_us(&run.bed.sim);
+
+    if (has_scene() || (sound_us > run.bed.now_us && sound_us != SIM_NEVER) ||
+        run.answered < run.asked) {
+        return false;
+    }
+    return run.wants_scans ? sound_us != SIM_NEVER && bed_scans_at(&run.bed, run.wants_chz, SCANS)
+                           : run.bed.now_us - run.idle_since_us >= IDLE_US;
+}
+
+static uint64_t later(uint64_t a, uint64_t b)
+{
+    return a > b ? a : b;
+}
+
+/* Why the wish is not fulfilled. */
+static const char *shortcoming(void)
+{
+    const bed_t *const bed = &run.bed;
+
+    if (run.answered < run.asked) {
+        return "a question was not answered";
+    }
+    if (!run.wants_scans) {
+        return "not idle";
+    }
+    if (!bed_scans_at(bed, 0, SCANS)) {
+        return "no complete scans";
+    }
+    return sim_frequency_chz(&bed->sim) != run.wants_chz ? "at another frequency"
+                                                         : "the frequency is not known";
+}
+
+/* NULL: goes on. Otherwise what is wrong. */
+static const char *complaint(void)
+{
+    const uint64_t since_us = later(run.acted_us, run.unkind_us);
+    const bool needs_reboot = sim_sound_us(&run.bed.sim) == SIM_NEVER && run.wants_scans;
+    const uint64_t limit_us = needs_reboot ? REBOOT_LIMIT_US : LIMIT_US;
+
+    if (run.bed.most_per_second > MOST_EVENTS_PER_SECOND) {
+        return "more than ten events in a second";
+    }
+    if (!has_scene() && run.bed.now_us > since_us + limit_us) {
+        return needs_reboot ? "no reboot" : shortcoming();
+    }
+    return NULL;
+}
+
+/* ---- Exploring ---- */
+
+/* The state before a step that had events, and their numbers. */
+typedef struct {
+    run_t before;
+    uint32_t first;
+    uint32_t end;
+} place_t;
+
+typedef struct {
+    place_t *places;
+    uint32_t count;
+} trail_t;
+
+static trail_t trails[DEPTH_MAX];
+static uint64_t runs;
+static uint64_t failures;
+static bool is_expected; /* --expected */
+static bool stop_at_failure;
+
+static void report(const char *what)
+{
+    failures++;
+    if (failures > MOST_FAILURES) {
+        return;
+    }
+    printf("explore --replay %s", run.story->name);
+    for (uint32_t i = 0; i < run.troubles; i++) {
+        printf(" %u:%s", run.plan[i].event, run.plan[i].spoil->name);
+    }
+    printf("    # %s\n", what);
+}
+
+static bool may_have_events(void)
+{
+    return run.bed.outbox_count > 0 || run.bed.sim.late.count > 0 ||
+           sim_expects_event(&run.bed.sim);
+}
+
+static void keep_place(trail_t *trail)
+{
+    if (trail->count < POINTS_MAX && may_have_events()) {
+        trail->places[trail->count].before = run;
+    }
+}
+
+static void close_place(trail_t *trail, uint32_t events_before)
+{
+    if (run.wire_events > events_before && trail->count < POINTS_MAX) {
+        trail->places[trail->count].first = events_before;
+        trail->places[trail->count].end = run.wire_events;
+        trail->count++;
+    }
+}
+
+/* Runs to the end, and keeps the places of events in `trail`, unless it is NULL. */
+static void play(trail_t *trail)
+{
+    const char *what = NULL;
+
+    runs++;
+    while (!is_fulfilled() && (what = complaint()) == NULL) {
+        const uint32_t events_before = run.wire_events;
+
+        if (trail != NULL) {
+            keep_place(trail);
+        }
+        step();
+        if (trail != NULL) {
+            close_place(trail, events_before);
+        }
+    }
+    if (what != NULL) {
+        report(what);
+    }
+}
+
+static void explore(uint32_t depth, uint32_t from);
+
+static bool is_expected_red(const story_t *story, uint32_t depth)
+{
+    for (size_t i = 0; is_expected && i < sizeof expected_red / sizeof expected_red[0]; i++) {
+        if (strcmp(story->name, expected_red[i].story) == 0) {
+            return depth >= expected_red[i].troubles;
+        }
+    }
+    return false;
+}
+
+/* A story that is expected to fail is told until it does. */
+static bool is_told_enough(void)
+{
+    return failures > 0 && stop_at_failure;
+}
+
+static void branch(const place_t *place, uint32_t event, uint32_t depth)
+{
+    for (size_t i = 0; i < SPOILS && !is_told_enough(); i++) {
+        run = place->before;
+        run.plan[run.troubles].event = event;
+        run.plan[run.troubles].spoil = &spoils[i];
+        run.troubles++;
+        explore(depth, event + 1);
+    }
+}
+
+/* From the present state on: with the troubles planned, then with up to `depth` more at events
+ * from number `from` on. */
+static void explore(uint32_t depth, uint32_t from)
+{
+    trail_t *const trail = depth > 0 ? &trails[depth - 1] : NULL;
+
+    if (trail == NULL) {
+        play(NULL);
+        return;
+    }
+    trail->count = 0;
+    play(trail);
+    for (uint32_t i = 0; i < trail->count; i++) {
+        const place_t *const place = &trail->places[i];
+
+        for (uint32_t event = place->first; event < place->end; event++) {
+            if (event >= from) {
+                branch(place, event, depth - 1);
+            }
+        }
+    }
+}
+
+static bool tell(const story_t *story, uint32_t depth)
+{
+    const bool is_red = is_expected_red(story, depth);
+
+    runs = 0;
+    failures = 0;
+    stop_at_failure = is_red;
+    begin(story);
+    explore(depth, 0);
+    printf("%-16s %8llu runs, %llu failed%s\n", story->name, (unsigned long long)runs,
+           (unsigned long long)failures, is_red ? " (expected)" : "");
+    if (is_red && failures == 0) {
+        printf("%s does not fail any more: remove it from expected_red[]\n", story->name);
+    }
+    return (failures > 0) == is_red;
+}
+
+/* ---- The command line ---- */
+
+static const story_t *story_named(const char *name)
+{
+    for (size_t i = 0; i < STORIES; i++) {
+        if (strcmp(name, stories[i].name) == 0) {
+            return &stories[i];
+        }
+    }
+    printf("no such story: %s\n", name);
+    exit(2);
+}
+
+static void plan_one(const char *text)
+{
+    const char *const colon = strchr(text, ':');
+
+    for (size_t i = 0; colon != NULL && i < SPOILS && run.troubles < DEPTH_MAX; i++) {
+        if (strcmp(colon + 1, spoils[i].name) == 0) {
+            run.plan[run.troubles].event = (uint32_t)strtoul(text, NULL, 10);
+            run.plan[run.troubles].spoil = &spoils[i];
+            run.troubles++;
+            return;
+        }
+    }
+    printf("not understood: %s\n", text);
+    exit(2);
+}
+
+static int replay(int count, char **texts)
+{
+    if (count == 0) {
+        printf("explore --replay STORY [EVENT:TROUBLE …]\n");
+        return 2;
+    }
+    begin(story_named(texts[0]));
+    for (int i = 1; i < count; i++) {
+        plan_one(texts[i]);
+    }
+    is_told = true;
+    play(NULL);
+    printf("%8.3f  %s; state %s, %u 0.01 Hz; lidar %s, %u 0.01 Hz\n", (double)run.bed.now_us / 1e6,
+           failures > 0 ? "failed" : "fulfilled", tmini_state_name(tmini_state(&run.bed.lidar)),
+           tmini_frequency_chz(&run.bed.lidar), sim_mode_name(sim_mode(&run.bed.sim)),
+           sim_frequency_chz(&run.bed.sim));
+    return failures > 0 ? 1 : 0;
+}
+
+static void prepare_trails(uint32_t depth)
+{
+    for (uint32_t i = 0; i < depth; i++) {
+        trails[i].places = malloc(POINTS_MAX * sizeof(place_t));
+        if (trails[i].places == NULL) {
+            printf("no memory\n");
+            exit(2);
+        }
+    }
+}
+
+int main(int argc, char **argv)
+{
+    uint32_t depth = 2;
+    int first = 1;
+    bool is_right = true;
+
+    if (argc > first && strcmp(argv[first], "--replay") == 0) {
+        return replay(argc - 2, argv + 2);
+    }
+    if (argc > first && strcmp(argv[first], "--expected") == 0) {
+        is_expected = true;
+        first++;
+    }
+    if (argc > first + 1 && strcmp(argv[first], "--depth") == 0) {
+        depth = (uint32_t)strtoul(argv[first + 1], NULL, 10);
+        first += 2;
+    }
+    if (depth > DEPTH_MAX) {
+        printf("at most %u troubles\n", DEPTH_MAX);
+        return 2;
+    }
+    prepare_trails(depth);
+    for (size_t i = 0; first >= argc && i < STORIES; i++) {
+        is_right = tell(&stories[i], depth) && is_right;
+    }
+    for (int i = first; i < argc; i++) {
+        is_right = tell(story_named(argv[i]), depth) && is_right;
+    }
+    return is_right ? 0 : 1;
+}
