@@ -173,5 +173,8 @@ bool bed_scans_at(const bed_t *bed, uint16_t frequency_chz, uint32_t scans)
 
 bool bed_is_idle(const bed_t *bed)
 {
-    return sim_mode(&bed->sim) == SIM_IDLE && tmini_state(&bed->lidar) == TMINI_STATE_IDLE;
+    const tmini_state_t state = tmini_state(&bed->lidar);
+
+    return sim_mode(&bed->sim) == SIM_IDLE &&
+           (state == TMINI_STATE_IDLE || state == TMINI_STATE_UNKNOWN);
 }

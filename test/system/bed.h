@@ -69,7 +69,7 @@ unsigned bed_event_named(const char *name);
  * also the one that is set, and that the driver knows. 0: at any frequency. */
 bool bed_scans_at(const bed_t *bed, uint16_t frequency_chz, uint32_t scans);
 
-/* Lidar and driver are idle, and the line has been quiet. */
+/* Lidar and driver are idle. The driver may be unsure, because a late byte has come. */
 bool bed_is_idle(const bed_t *bed);
 
 #endif

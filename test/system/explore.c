@@ -255,12 +255,22 @@ static void step(void)
     }
 }
 
+/* A lidar that cannot be stopped is reported (tmini_stop()); here it is idle in the end. */
+static bool is_stop_reported(void)
+{
+    return run.bed.event_us[TMINI_EVENT_STOPPED] >= run.acted_us ||
+           run.bed.event_us[TMINI_EVENT_COMMAND_FAILED] >= run.acted_us;
+}
+
 static bool is_fulfilled(void)
 {
     const uint64_t sound_us = sim_sound_us(&run.bed.sim);
 
     if (has_scene() || (sound_us > run.bed.now_us && sound_us != SIM_NEVER) ||
         run.answered < run.asked) {
+        return false;
+    }
+    if (!run.wants_scans && !is_stop_reported()) {
         return false;
     }
     return run.wants_scans ? sound_us != SIM_NEVER && bed_scans_at(&run.bed, run.wants_chz, SCANS)
@@ -315,9 +325,13 @@ typedef struct {
     uint32_t end;
 } place_t;
 
+/* The places of one run, and the next choice among them: an event and what spoils it. */
 typedef struct {
     place_t *places;
     uint32_t count;
+    uint32_t place;
+    uint32_t event;
+    size_t spoil;
 } trail_t;
 
 static trail_t trails[DEPTH_MAX];
@@ -345,16 +359,23 @@ static bool may_have_events(void)
            sim_expects_event(&run.bed.sim);
 }
 
-static void keep_place(trail_t *trail)
+static bool keep_place(trail_t *trail)
 {
-    if (trail->count < POINTS_MAX && may_have_events()) {
+    const bool is_kept = trail->count < POINTS_MAX && may_have_events();
+
+    if (is_kept) {
         trail->places[trail->count].before = run;
     }
+    return is_kept;
 }
 
-static void close_place(trail_t *trail, uint32_t events_before)
+static void close_place(trail_t *trail, bool is_kept, uint32_t events_before)
 {
-    if (run.wire_events > events_before && trail->count < POINTS_MAX) {
+    if (run.wire_events > events_before) {
+        if (!is_kept) {
+            printf("an event came unexpectedly, or there were too many\n");
+            exit(2);
+        }
         trail->places[trail->count].first = events_before;
         trail->places[trail->count].end = run.wire_events;
         trail->count++;
@@ -370,20 +391,17 @@ static void play(trail_t *trail)
     while (!is_fulfilled() && (what = complaint()) == NULL) {
         const uint32_t events_before = run.wire_events;
 
-        if (trail != NULL) {
-            keep_place(trail);
-        }
+        const bool is_kept = trail != NULL && keep_place(trail);
+
         step();
         if (trail != NULL) {
-            close_place(trail, events_before);
+            close_place(trail, is_kept, events_before);
         }
     }
     if (what != NULL) {
         report(what);
     }
 }
-
-static void explore(uint32_t depth, uint32_t from);
 
 static bool is_expected_red(const story_t *story, uint32_t depth)
 {
@@ -401,36 +419,61 @@ static bool is_told_enough(void)
     return failures > 0 && stop_at_failure;
 }
 
-static void branch(const place_t *place, uint32_t event, uint32_t depth)
+/* The same event is spoilt in each way, then the next one. False: there is none. */
+static bool choose_next(trail_t *trail)
 {
-    for (size_t i = 0; i < SPOILS && !is_told_enough(); i++) {
-        run = place->before;
-        run.plan[run.troubles].event = event;
-        run.plan[run.troubles].spoil = &spoils[i];
-        run.troubles++;
-        explore(depth, event + 1);
+    if (++trail->spoil == SPOILS) {
+        trail->spoil = 0;
+        trail->event++;
     }
+    while (trail->place < trail->count && trail->event >= trail->places[trail->place].end) {
+        trail->place++;
+    }
+    return trail->place < trail->count;
 }
 
-/* From the present state on: with the troubles planned, then with up to `depth` more at events
- * from number `from` on. */
-static void explore(uint32_t depth, uint32_t from)
+/* Goes back to before the chosen event, and plans its trouble. */
+static void go_back(const trail_t *trail)
 {
-    trail_t *const trail = depth > 0 ? &trails[depth - 1] : NULL;
+    run = trail->places[trail->place].before;
+    run.plan[run.troubles].event = trail->event;
+    run.plan[run.troubles].spoil = &spoils[trail->spoil];
+    run.troubles++;
+}
 
-    if (trail == NULL) {
-        play(NULL);
-        return;
-    }
+/* Plays on, with further choices at events from number `from` on. */
+static void play_on(trail_t *trail, uint32_t from)
+{
     trail->count = 0;
+    trail->place = 0;
+    trail->event = from - 1u;
+    trail->spoil = SPOILS - 1u;
     play(trail);
-    for (uint32_t i = 0; i < trail->count; i++) {
-        const place_t *const place = &trail->places[i];
+}
 
-        for (uint32_t event = place->first; event < place->end; event++) {
-            if (event >= from) {
-                branch(place, event, depth - 1);
-            }
+/* Every run with up to `depth` troubles: a walk through a tree, whose branches from one run are in
+ * one trail. */
+static void explore(uint32_t depth)
+{
+    uint32_t level = 0;
+
+    play_on(&trails[0], 0);
+    for (;;) {
+        trail_t *const trail = &trails[level];
+
+        if (is_told_enough() || (!choose_next(trail) && level == 0)) {
+            return;
+        }
+        if (trail->place == trail->count) {
+            level--;
+            continue;
+        }
+        go_back(trail);
+        if (level + 1u < depth) {
+            level++;
+            play_on(&trails[level], trail->event + 1u);
+        } else {
+            play(NULL);
         }
     }
 }
@@ -443,7 +486,7 @@ static bool tell(const story_t *story, uint32_t depth)
     failures = 0;
     stop_at_failure = is_red;
     begin(story);
-    explore(depth, 0);
+    explore(depth);
     printf("%-16s %8llu runs, %llu failed%s\n", story->name, (unsigned long long)runs,
            (unsigned long long)failures, is_red ? " (expected)" : "");
     if (is_red && failures == 0) {
@@ -528,8 +571,8 @@ int main(int argc, char **argv)
         depth = (uint32_t)strtoul(argv[first + 1], NULL, 10);
         first += 2;
     }
-    if (depth > DEPTH_MAX) {
-        printf("at most %u troubles\n", DEPTH_MAX);
+    if (depth == 0 || depth > DEPTH_MAX) {
+        printf("1 to %u troubles\n", DEPTH_MAX);
         return 2;
     }
     prepare_trails(depth);
