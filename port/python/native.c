@@ -4,6 +4,8 @@
 #include "tape.h"
 #include "tmini/tmini.h"
 #include "tmini/tmini_mount.h"
+#include "tmini/tmini_ranges.h"
+#include "tmini/tmini_sectors.h"
 #include "tmini/tmini_units.h"
 
 static void point_times_us(const tmini_scan_t *scan, uint32_t *times_us)

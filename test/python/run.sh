@@ -3,7 +3,8 @@
 # Copyright (c) 2026 The tmini authors
 
 # Tests the Python package as a user gets it: installs the source distribution in a separate
-# environment in FOLDER, and tests it with the tool and the simulated lidar.
+# environment in FOLDER, and tests it with the tool and the simulated lidar. Its extras are tested
+# if their packages can be installed.
 #
 #   run.sh FOLDER TMINI TMINI_SIM [ARGUMENT OF PYTEST…]
 #
@@ -24,5 +25,10 @@ sdist=$("$here/sdist.sh" "$folder") || {
 }
 "$python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps \
     --no-build-isolation "$sdist"
+if ! cmp -s "$here/extras.txt" "$folder/venv/extras.txt"; then
+    "$python" -m pip install --quiet --disable-pip-version-check --retries 1 --require-hashes \
+        --no-deps -r "$here/extras.txt" && cp "$here/extras.txt" "$folder/venv" ||
+        echo "the extras' packages are not available: their tests are skipped"
+fi
 cd "$here"
 exec "$python" -m pytest -q -p no:cacheprovider "$@"

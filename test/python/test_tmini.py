@@ -4,21 +4,23 @@
 """The Python package, compared with `tmini decode` and used with the simulated lidar."""
 
 import binascii
+import copy
 import json
 import os
-import pathlib
+import pickle
+import signal
 import socket
 import struct
 import subprocess
+import termios
+import threading
 import time
 
 import numpy as np
 import pytest
 
 import tmini
-
-RECORDINGS = pathlib.Path(__file__).resolve().parents[1] / "recordings"
-TOOL, SIM = os.environ["TMINI_TOOL"], os.environ["TMINI_SIM"]
+from conftest import RECORDINGS, SIM, TOOL
 
 
 # ------------------------------------------------------------------------------------- recordings
@@ -130,42 +132,49 @@ def test_a_scan_comes_out_as_the_robot_sees_it():
     assert np.array_equal(turned.times_s, plain.times_s)
 
 
+def test_bins_and_sectors_hold_the_nearest_of_equal_parts_clockwise_from_the_front():
+    scan = next(tmini.read(RECORDINGS / "sim-6hz.bin"))
+    for count, parts in ((4, scan.sectors(4)), (360, scan.sectors(360))):
+        part = np.floor(scan.angles_deg * count / 360 + 0.5) % count
+        for i, sector in enumerate(parts):
+            here = scan.ranges_m[part == i]
+            assert (sector.points, sector.ranges) == (len(here), np.isfinite(here).sum())
+            assert sector.is_blind == (sector.ranges == 0)
+            if not sector.is_blind:
+                assert sector.nearest_m == np.nanmin(here)
+                assert scan.ranges_m[scan.angles_deg == sector.angle_deg][0] == sector.nearest_m
+                assert sector.is_free(sector.nearest_m)
+                assert not sector.is_free(sector.nearest_m + 0.001)
+    assert scan.bins(4).tolist() == [sector.nearest_m for sector in scan.sectors(4)]
+    assert scan.bins()[[90, 270]] == pytest.approx([2.8, 2.2], abs=0.03)  # Right and left wall.
+    assert len(scan.bins()) == 360 and len(scan.sectors()) == 8
+    for wrong in (0, 65536):
+        with pytest.raises(ValueError):
+            scan.bins(wrong)
+
+
+def test_a_blind_sector_is_not_free():
+    scan = next(tmini.read(RECORDINGS / "sim-6hz.bin", mask=[(-45, 45)]))
+    ahead = scan.sectors(4)[0]
+    assert ahead.is_blind and not ahead.is_free(0.1)
+    assert np.isnan([ahead.nearest_m, ahead.angle_deg, scan.bins(4)[0]]).all()
+
+
+def test_a_scan_can_be_copied_and_sent_to_another_process():
+    scan = next(tmini.read(RECORDINGS / "sim-6hz.bin"))
+    assert len(scan.angles_deg) == len(scan)  # Also one whose arrays have been created.
+    for other in (copy.copy(scan), copy.deepcopy(scan), pickle.loads(pickle.dumps(scan))):
+        assert as_json(other) == as_json(scan)
+        assert np.array_equal(other.times_s, scan.times_s)
+        assert other.sectors(9) == scan.sectors(9)
+
+
 def test_a_recording_that_is_not_there_is_an_error():
     with pytest.raises(FileNotFoundError):
         next(tmini.read("nothing.tmini"))
 
 
 # ------------------------------------------------------------------------------------ live lidars
-
-
-class Simulator:
-    """tmini-sim on a pseudo-terminal whose name stays the same, as that of a USB adapter."""
-
-    def __init__(self, folder):
-        self.port = str(folder / "lidar")
-        self.log = folder / "log"
-        self.process = None
-
-    def start(self, *options):
-        command = [SIM, "--pty", "--log", str(self.log), *options]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        os.symlink(self.process.stdout.readline().strip(), self.port)
-        return self.port
-
-    def stop(self):
-        if self.process is not None:
-            os.unlink(self.port)
-            self.process.terminate()
-            self.process.wait()
-            self.process.stdout.close()
-            self.process = None
-
-
-@pytest.fixture
-def simulator(tmp_path):
-    simulated = Simulator(tmp_path)
-    yield simulated
-    simulated.stop()
 
 
 def test_a_lidar_scans_at_the_frequency_wanted_and_is_stopped_in_the_end(simulator):
@@ -183,8 +192,7 @@ def test_a_lidar_scans_at_the_frequency_wanted_and_is_stopped_in_the_end(simulat
         near = np.abs(scans[-1].angles_deg - degrees) < 2
         assert np.nanmedian(scans[-1].ranges_m[near]) == pytest.approx(metres, abs=0.02)
     assert lidar.read() is None
-    time.sleep(0.1)
-    assert "idle" in simulator.log.read_text().splitlines()[-1]
+    simulator.await_idle()
 
 
 def test_after_the_cable_was_out_it_goes_on(simulator):
@@ -197,6 +205,91 @@ def test_after_the_cable_was_out_it_goes_on(simulator):
         simulator.start()
         assert lidar.read(8).gaps >= 0
         assert lidar.counters["losses"] == 1
+
+
+def read_until(lidar, wish, seconds=10):
+    """The first scan that the wish is true of."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        scan = lidar.read(1)
+        if scan is not None and wish(scan):
+            return scan
+    pytest.fail("no such scan came")
+
+
+def test_a_lidar_can_be_stopped_and_started_and_set(simulator):
+    with tmini.Lidar(simulator.start(), backlog=50) as lidar:
+        lidar.set_frequency(9.96)
+        scan = read_until(lidar, lambda scan: scan.frequency_hz and abs(scan.frequency_hz - 10) < 0.2)
+        assert 0.08 < scan.period_s < 0.11 and scan.end_s - scan.start_s == pytest.approx(0.1, abs=0.03)
+        assert lidar.scan_age_s < 0.3
+        lidar.stop()
+        assert lidar.read() is None and list(lidar) == []
+        simulator.await_idle()
+        time.sleep(0.4)
+        assert not lidar.is_scanning and lidar.scan_age_s > 0.4
+        lidar.start()
+        assert lidar.read(3).start_s > scan.end_s + 0.4
+        for wrong in (5.9, 13):
+            with pytest.raises(ValueError):
+                lidar.set_frequency(wrong)
+    for wish in (lidar.start, lidar.stop, lambda: lidar.set_frequency(8)):
+        with pytest.raises(tmini.LidarError, match="is closed"):
+            wish()
+
+
+def test_a_listener_sends_nothing(simulator):
+    with tmini.Lidar(simulator.start(), listen_only=True, timeout=None) as lidar:
+        assert lidar.read(0.5) is None
+        with pytest.raises(tmini.LidarError, match="sends nothing"):
+            lidar.set_frequency(8)
+    assert "command" not in simulator.log.read_text()
+
+
+def test_an_error_of_the_terminal_while_the_cable_is_plugged_in_is_survived(simulator, monkeypatch):
+    failures = []
+
+    def fail_once(*arguments, real=termios.tcsetattr):
+        if not failures:
+            failures.append(arguments)
+            raise termios.error(5, "Input/output error")
+        return real(*arguments)
+
+    with tmini.Lidar(simulator.start()) as lidar:
+        simulator.stop()
+        while lidar.is_scanning:
+            time.sleep(0.05)
+        monkeypatch.setattr(termios, "tcsetattr", fail_once)
+        begun = time.monotonic()
+        simulator.start()
+        assert read_until(lidar, lambda scan: scan.start_s > begun) and failures
+
+
+def test_after_a_fork_the_lidar_is_the_parents(simulator):
+    """A fork while another thread holds the lock would leave it locked in the child for ever."""
+    with tmini.Lidar(simulator.start()) as lidar:
+        locked = threading.Event()
+
+        def hold():
+            with lidar._changed:
+                locked.set()
+                time.sleep(0.3)
+
+        threading.Thread(target=hold).start()
+        locked.wait()
+        child = os.fork()
+        if child == 0:
+            signal.alarm(5)  # Ends a child that hangs.
+            try:
+                lidar.read()
+            except tmini.LidarError as error:
+                lidar.close()
+                os._exit(0 if "only the process that opened" in str(error) else 1)
+            os._exit(2)
+        assert os.waitpid(child, 0)[1] == 0
+        number = lidar.read(1).number
+        assert read_until(lidar, lambda scan: scan.number > number + 2)
+        assert lidar.counters["losses"] == 0
 
 
 def test_a_slow_program_gets_the_newest_scan(simulator):
@@ -260,12 +353,17 @@ def test_a_port_that_is_not_there_is_an_error_or_waited_for(simulator):
         assert lidar.read(5) is not None
 
 
-@pytest.mark.parametrize("wrong", [5.9, 12.1, 6.05])
-def test_a_frequency_that_the_lidar_does_not_have_is_refused(wrong):
-    with pytest.raises(ValueError):
-        tmini.Lidar("tcp:127.0.0.1:1", frequency_hz=wrong)
-
-
-def test_an_address_without_a_port_is_refused():
-    with pytest.raises(ValueError):
-        tmini.Lidar("tcp:robot")
+@pytest.mark.parametrize("arguments, options, error, words", [
+    (("x", 5.96), {}, ValueError, "6 to 12, not 5.96"),
+    (("x", 12.1), {}, ValueError, "6 to 12, not 12.1"),
+    (("x", float("nan")), {}, ValueError, "6 to 12, not nan"),
+    (("x", 230400), {}, ValueError, "the baud rate is always 230400"),
+    (("x", "10"), {}, TypeError, "a number of 6 to 12, not '10'"),
+    ((None,), {}, TypeError, 'such as "/dev/ttyUSB0", not None'),
+    (("x",), {"backlog": 0}, ValueError, "1 or more"),
+    (("x", 10), {"listen_only": True}, ValueError, "cannot set frequency_hz"),
+    (("tcp:robot",), {}, ValueError, "is tcp:HOST:PORT"),
+])
+def test_wrong_arguments_are_refused_in_words(arguments, options, error, words):
+    with pytest.raises(error, match=words):
+        tmini.Lidar(*arguments, **options)

@@ -4,6 +4,7 @@
 
 """Shows the room live in a window, with the front up: live.py PORT (needs matplotlib)."""
 
+import signal
 import sys
 
 import matplotlib.pyplot as plt
@@ -13,6 +14,7 @@ import tmini
 
 
 def main(port: str) -> None:
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # Ends the `with`: the lidar stops.
     axes = plt.subplot(projection="polar", theta_offset=np.pi / 2)
     points = axes.scatter([], [], s=3, c=[], cmap="viridis", vmin=0, vmax=255)
     with tmini.Lidar(port, frequency_hz=6) as lidar:

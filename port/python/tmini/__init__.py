@@ -15,7 +15,7 @@ from importlib.metadata import version as _version
 
 from ._lidar import Info, Lidar, LidarError
 from ._recording import read
-from ._scan import Fault, Scan
+from ._scan import Fault, Scan, Sector
 
-__all__ = ["Fault", "Info", "Lidar", "LidarError", "Scan", "read"]
+__all__ = ["Fault", "Info", "Lidar", "LidarError", "Scan", "Sector", "read"]
 __version__ = _version("tmini")

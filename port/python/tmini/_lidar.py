@@ -7,10 +7,15 @@ the program is busy. One lock protects the driver's data."""
 from __future__ import annotations
 
 import atexit
+import numbers
+import operator
+import os
 import threading
 import time
+import weakref
 from collections import deque
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +30,7 @@ _CLOSE_S = 1.0
 _RING = 32768
 _BLOCK = 16384
 _POINTS = 2400  # For a turn at 2 Hz, while the motor comes up to speed.
+_FREQUENCY_MIN_HZ, _FREQUENCY_MAX_HZ = 6, 12
 
 
 class LidarError(Exception):
@@ -61,21 +67,31 @@ class Lidar:
     until close(). If it is lost or unplugged, it is started again.
 
     A program that is slower than the lidar gets the newest scan, and Scan.number shows how many it
-    has missed; `backlog` is the number of scans that wait for it."""
+    has missed; `backlog` is the number of scans that wait for it. After a fork it remains the
+    parent's."""
 
-    def __init__(self, port: str, frequency_hz: float | None = None, *, front: float = 0,
-                 upside_down: bool = False, mask: Sequence[tuple[int, int]] = (),
+    def __init__(self, port: str | os.PathLike[str], frequency_hz: float | None = None, *,
+                 front: float = 0, upside_down: bool = False, mask: Sequence[tuple[int, int]] = (),
                  listen_only: bool = False, backlog: int = 1,
                  timeout: float | None = 10.0) -> None:
-        """`frequency_hz`: 6 to 12, in steps of 0.1; None: left as it is. `front`, `upside_down` and
+        """`frequency_hz`: as in set_frequency(); None: left as it is. `front`, `upside_down` and
         `mask`: see Mount. `listen_only`: never sends anything. Waits up to `timeout` seconds for
         the first scan, and raises LidarError if there is none, OSError if there is no such port;
         None: returns at once, even if the port does not exist yet."""
-        self.port = port
+        if not isinstance(port, (str, os.PathLike)):
+            raise TypeError(f"port is a name such as \"/dev/ttyUSB0\", not {port!r}")
+        if operator.index(backlog) < 1:
+            raise ValueError("backlog is the number of scans that wait: 1 or more")
+        if listen_only and frequency_hz is not None:
+            raise ValueError("listen_only sends nothing, so it cannot set frequency_hz")
+        self.port = os.fspath(port)
         self.info: Info | None = None  # None: the lidar has not answered.
         self._scans: deque[Scan] = deque(maxlen=backlog)
         self._changed = threading.Condition()
         self._closing = False
+        self._is_stopped = False
+        self._is_inherited = False  # This process is a fork of the one that opened it.
+        self._complete_s = time.monotonic()  # When the newest complete scan ended.
         self._failure: Exception | None = None
         self._received = 0
         self._number = 0
@@ -83,14 +99,17 @@ class Lidar:
         self._is_stale = False  # The line is silent, and is to be opened again.
         self._mount = Mount(front, upside_down, mask)
         self._listen_only = listen_only
-        self._set_up(frequency_hz)
+        self._set_up(0 if frequency_hz is None else _chz(frequency_hz))
         try:
-            self._line = open_line(port)
+            self._line = open_line(self.port)
         except OSError:
             if timeout is not None:
                 raise
-        self._thread = threading.Thread(target=self._run, name=f"tmini {port}", daemon=True)
+        lib.tmini_request_info(self._lidar)
+        lib.tmini_start(self._lidar)  # Begins after the query.
+        self._thread = threading.Thread(target=self._run, name=f"tmini {self.port}", daemon=True)
         self._thread.start()
+        _lidars.add(self)
         atexit.register(self.close)
         if timeout is not None:
             self._await_first(timeout)
@@ -102,23 +121,54 @@ class Lidar:
         self.close()
 
     def __iter__(self) -> Iterator[Scan]:
-        """Each scan as it comes, without end; while the lidar is lost there are none. To
+        """Each scan as it comes, until stop() or close(); while the lidar is lost there are none. To
         notice that, call read()."""
         while (scan := self.read()) is not None:
             yield scan
 
     def read(self, timeout: float | None = None) -> Scan | None:
-        """The next scan; None if none comes within `timeout` seconds, or after close()."""
+        """The next scan; None if none comes within `timeout` seconds, or after stop() or
+        close()."""
         end = None if timeout is None else time.monotonic() + timeout
         with self._changed:
             while not self._scans:
                 left = 1.0 if end is None else end - time.monotonic()
                 if self._failure is not None:
                     raise LidarError(f"the driver's thread failed: {self._failure!r}")
-                if self._closing or left <= 0:
+                if self._is_inherited:
+                    raise LidarError(f"only the process that opened {self.port} can read it")
+                if self._closing or self._is_stopped or left <= 0:
                     return None
                 self._changed.wait(min(left, 1.0))  # On Windows, Ctrl-C interrupts no endless wait.
             return self._scans.popleft()
+
+    def start(self) -> None:
+        """Scans again after stop()."""
+        with self._wishing():
+            self._is_stopped = False
+            lib.tmini_start(self._lidar)
+
+    def stop(self) -> None:
+        """The motor and the laser are switched off until start(). Does not wait for it."""
+        with self._wishing():
+            self._is_stopped = True
+            self._scans.clear()
+            lib.tmini_stop(self._lidar)
+
+    def set_frequency(self, frequency_hz: float) -> None:
+        """6 to 12, to the nearest 0.1; also after a loss of the lidar. While the lidar sets it, no
+        scans come for a second or two."""
+        chz = _chz(frequency_hz)
+        with self._wishing():
+            if self._listen_only:
+                raise LidarError("listen_only sends nothing, so it cannot set the frequency")
+            lib.tmini_set_frequency(self._lidar, chz)
+
+    @property
+    def scan_age_s(self) -> float:
+        """How long ago the newest complete scan ended, or this lidar was opened. A robot stops when
+        it is more than 0.3."""
+        return time.monotonic() - self._complete_s
 
     @property
     def faults(self) -> Fault:
@@ -141,15 +191,25 @@ class Lidar:
 
     def close(self) -> None:
         """Stops the lidar and closes the port."""
+        if self._is_inherited:
+            return
         with self._changed:
             self._closing = True
             self._changed.notify_all()
         self._thread.join()
         atexit.unregister(self.close)
 
+    @contextmanager
+    def _wishing(self) -> Iterator[None]:
+        with self._changed:
+            if self._closing:
+                raise LidarError(f"the lidar on {self.port} is closed")
+            yield
+            self._changed.notify_all()
+
     # ------------------------------------------------------------------------- under the lock
 
-    def _set_up(self, frequency_hz: float | None) -> None:
+    def _set_up(self, frequency_chz: int) -> None:
         self._handle = ffi.new_handle(self)
         self._rx = ffi.new("uint8_t[]", _RING)
         self._points = ffi.new("tmini_point_t[]", _POINTS)
@@ -165,11 +225,11 @@ class Lidar:
         config = ffi.new("tmini_config_t *", {
             "port": self._port, "port_context": self._handle, "rx_buffer": self._rx,
             "rx_size": _RING, "points": self._points, "max_points": _POINTS,
-            "frequency_chz": round((frequency_hz or 0) * 100), "listen_only": self._listen_only,
+            "frequency_chz": frequency_chz, "listen_only": self._listen_only,
             "step": ffi.addressof(lib, "tmini_mount_step"), "step_data": self._mount.native,
             "timing": self._timing})
         if lib.tmini_init(self._lidar, config) != 0:
-            raise ValueError("frequency_hz is 6 to 12, in steps of 0.1, and None if listen_only")
+            raise LidarError("the driver refuses its configuration")
 
     def _write(self, data: bytes) -> int:
         try:
@@ -187,12 +247,13 @@ class Lidar:
                 self._take(event)
 
     def _take(self, event: int) -> None:
-        if event == lib.TMINI_EVENT_SCAN:
+        if event == lib.TMINI_EVENT_SCAN and not self._is_stopped:
             native = lib.tmini_scan(self._lidar)[0]
             age_ms = (python_now_ms(None) - native.start_ms) & 0xFFFFFFFF
             self._number += 1
-            self._scans.append(Scan(native, self._number, self._faults(),
-                                    time.monotonic() - age_ms / 1000))
+            scan = Scan(native, self._number, self._faults(), time.monotonic() - age_ms / 1000)
+            self._scans.append(scan)
+            self._complete_s = scan.end_s if scan.complete else self._complete_s
             self._changed.notify_all()
         elif event == lib.TMINI_EVENT_INFO:
             self.info = _info(lib.tmini_info(self._lidar))
@@ -219,9 +280,6 @@ class Lidar:
                 self._line.close()
 
     def _work(self) -> None:
-        with self._changed:
-            lib.tmini_request_info(self._lidar)
-            lib.tmini_start(self._lidar)  # Begins after the query.
         while not self._closing:
             self._turn()
             time.sleep(_PERIOD_S if self._line is not None else _REOPEN_S)
@@ -250,9 +308,10 @@ class Lidar:
             self._feed(data)
 
     def _drop_line(self) -> None:
-        line, self._line, self._is_stale = self._line, None, False
-        if line is not None:
-            line.close()
+        with self._changed:  # The program's wishes write, too.
+            line, self._line, self._is_stale = self._line, None, False
+            if line is not None:
+                line.close()
 
     def _await_first(self, timeout: float) -> None:
         try:
@@ -279,3 +338,29 @@ def _info(native: Any) -> Info:
     serial = "".join(str(digit) for digit in native.serial)
     return Info(native.model, f"{native.firmware_major}.{native.firmware_minor}", native.hardware,
                 serial)
+
+
+def _chz(frequency_hz: float) -> int:
+    """The frequency in 0.01 Hz, to the nearest 0.1 Hz."""
+    if not isinstance(frequency_hz, numbers.Real):
+        raise TypeError(f"frequency_hz is a number of 6 to 12, not {frequency_hz!r}")
+    if not _FREQUENCY_MIN_HZ <= frequency_hz <= _FREQUENCY_MAX_HZ:
+        raise ValueError(f"frequency_hz is 6 to 12, not {frequency_hz!r} (the baud rate is always "
+                         "230400)")
+    return round(frequency_hz * 10) * 10
+
+
+_lidars: weakref.WeakSet[Lidar] = weakref.WeakSet()
+
+
+def _after_fork() -> None:
+    """The driver's thread stayed with the parent, and may have held the lock."""
+    for lidar in _lidars:
+        lidar._changed = threading.Condition()
+        lidar._is_inherited = lidar._closing = True
+        lidar._scans.clear()
+        lidar._drop_line()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)

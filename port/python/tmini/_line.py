@@ -11,6 +11,11 @@ from typing import Protocol
 
 import serial
 
+try:
+    from termios import error as TerminalError  # No OSError, and pyserial lets it through.
+except ImportError:  # Windows.
+    TerminalError = OSError  # type: ignore[misc,assignment]
+
 _BAUD_RATE = 230400
 _CONNECT_S = 5.0
 
@@ -27,7 +32,10 @@ class Line(Protocol):
 
 class _Port:
     def __init__(self, name: str) -> None:
-        self._port = serial.Serial(name, _BAUD_RATE, timeout=0, write_timeout=0, exclusive=True)
+        try:
+            self._port = serial.Serial(name, _BAUD_RATE, timeout=0, write_timeout=0, exclusive=True)
+        except TerminalError as error:
+            raise OSError(f"{name}: {error}") from error
 
     def read(self) -> bytes:
         return self._port.read(self._port.in_waiting or 1)

@@ -6,6 +6,8 @@
 from __future__ import annotations
 
 import enum
+import math
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -15,6 +17,7 @@ from numpy.typing import NDArray
 from ._native import ffi, lib
 
 _POINT = np.dtype([("angle_q6", "=u2"), ("distance_mm", "=u2"), ("intensity", "u1"), ("flag", "u1")])
+_PARTS_MAX = 65535
 
 
 class Fault(enum.IntFlag):
@@ -27,6 +30,25 @@ class Fault(enum.IntFlag):
     LD = 16  # Laser drive current.
     DATA = 32  # No range in a whole revolution: window covered?
     FREQUENCY = 64  # Another frequency than the wanted one.
+
+
+@dataclass(frozen=True)
+class Sector:
+    """The nearest point in a part of the circle. A sector without a valid range is blind, which
+    does not mean free: nearest_m and angle_deg are NaN."""
+
+    nearest_m: float
+    angle_deg: float
+    points: int
+    ranges: int  # How many of the points have a range.
+
+    @property
+    def is_blind(self) -> bool:
+        return self.ranges == 0
+
+    def is_free(self, distance_m: float) -> bool:
+        """Not blind, and nothing nearer was seen. If the scan is not complete, do not trust it."""
+        return self.nearest_m >= distance_m
 
 
 class Scan:
@@ -42,8 +64,11 @@ class Scan:
     dropped: int  # Points that did not fit.
     checksum_errors: int
     start_s: float  # On the clock time.monotonic(); of a recording, since its beginning.
+    end_s: float
+    period_s: float | None  # How long the whole revolution took. None: unknown.
 
     def __init__(self, native: Any, number: int, faults: int, start_s: float) -> None:
+        period_ms = lib.tmini_scan_period_ms(ffi.addressof(native))
         self.number = number
         self.complete = native.complete
         self.frequency_hz = native.frequency_chz / 100 if native.frequency_chz else None
@@ -53,11 +78,16 @@ class Scan:
         self.dropped = native.dropped
         self.checksum_errors = native.checksum_errors
         self.start_s = start_s
-        self._native = ffi.new("tmini_scan_t *", native)
+        self.end_s = start_s + ((native.end_ms - native.start_ms) & 0xFFFFFFFF) / 1000
+        self.period_s = period_ms / 1000 if period_ms else None
+        self._is_upside_down = native.upside_down
         self._points = bytes(ffi.buffer(native.points, native.count * _POINT.itemsize))
+        times_us = ffi.new("uint32_t[]", native.count)
+        lib.point_times_us(ffi.addressof(native), times_us)
+        self._times_us = bytes(ffi.buffer(times_us))
 
     def __len__(self) -> int:
-        return self._native.count
+        return len(self._points) // _POINT.itemsize
 
     def __repr__(self) -> str:
         return (f"<tmini.Scan {self.number}: {len(self)} points, "
@@ -66,6 +96,12 @@ class Scan:
     @property
     def _table(self) -> NDArray[Any]:
         return np.frombuffer(self._points, _POINT)
+
+    @property
+    def _native(self) -> Any:
+        """The points as the library's functions take them, as long as this scan exists."""
+        return ffi.new("tmini_scan_t *", {
+            "points": ffi.from_buffer("tmini_point_t[]", self._points), "count": len(self)})
 
     @cached_property
     def angles_deg(self) -> NDArray[np.float64]:
@@ -82,9 +118,7 @@ class Scan:
     @cached_property
     def ranges_m(self) -> NDArray[np.float64]:
         """Distances in metres; NaN where there is no valid range: neither near nor free."""
-        ranges = self._table["distance_mm"] / 1000.0
-        ranges[ranges == 0] = np.nan
-        return ranges
+        return _metres(self._table["distance_mm"])
 
     @cached_property
     def intensities(self) -> NDArray[np.uint8]:
@@ -99,7 +133,39 @@ class Scan:
     @cached_property
     def times_s(self) -> NDArray[np.float64]:
         """When each point was measured, on the clock of start_s."""
-        times = np.empty(len(self), np.uint32)
-        self._native.points = ffi.from_buffer("tmini_point_t[]", self._points)
-        lib.point_times_us(self._native, ffi.from_buffer("uint32_t[]", times))
-        return self.start_s + times / 1e6
+        return self.start_s + np.frombuffer(self._times_us, np.uint32) / 1e6
+
+    def bins(self, count: int = 360) -> NDArray[np.float64]:
+        """The nearest distance in each of `count` equal parts of the circle, in metres; NaN where
+        there is none. Bin i is centred on i * 360 / count degrees, clockwise as in angles_deg: of
+        360, bin 0 is ahead, bin 90 to the right."""
+        return _metres(np.array([sector.nearest_mm for sector in self._sectors(count)]))
+
+    def sectors(self, count: int = 8) -> list[Sector]:
+        """The nearest point in each of `count` equal parts of the circle, as in bins()."""
+        return [Sector(sector.nearest_mm / 1000 if sector.ranges else math.nan,
+                       sector.angle_q6 / 64 if sector.ranges else math.nan,
+                       sector.points, sector.ranges) for sector in self._sectors(count)]
+
+    def _sectors(self, count: int) -> Any:
+        if not 1 <= count <= _PARTS_MAX:
+            raise ValueError(f"{count} parts of a circle: 1 to {_PARTS_MAX} are possible")
+        sectors, array = ffi.new("tmini_sectors_t *"), ffi.new("tmini_sector_t[]", count)
+        lib.tmini_sectors_init(sectors, array, count, 0)
+        lib.tmini_sectors_add_scan(sectors, self._native)
+        return array
+
+    def _rays(self, count: int) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """Ranges and intensities as a LaserScan of ROS has them: counter-clockwise, and ray 0 is
+        ahead. `count` is even."""
+        ranges, intensities = np.empty(count, np.uint16), np.empty(count, np.uint8)
+        lib.tmini_ranges_of_scan(self._native, ffi.from_buffer("uint16_t[]", ranges),
+                                 ffi.from_buffer("uint8_t[]", intensities), count)
+        half = count // 2  # The library's first ray is behind.
+        return _metres(np.roll(ranges, half)), np.roll(intensities, half)
+
+
+def _metres(distances_mm: NDArray[Any]) -> NDArray[np.float64]:
+    metres = distances_mm / 1000.0
+    metres[metres == 0] = np.nan
+    return metres

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""The simulated lidar, and commands of the package."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+import pytest
+
+RECORDINGS = pathlib.Path(__file__).resolve().parents[1] / "recordings"
+TOOL, SIM = os.environ["TMINI_TOOL"], os.environ["TMINI_SIM"]
+
+
+class Simulator:
+    """tmini-sim on a pseudo-terminal whose name stays the same, as that of a USB adapter."""
+
+    def __init__(self, folder):
+        self.port = str(folder / "lidar")
+        self.log = folder / "log"
+        self.process = None
+
+    def start(self, *options):
+        command = [SIM, "--pty", "--log", str(self.log), *options]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        os.symlink(self.process.stdout.readline().strip(), self.port)
+        return self.port
+
+    def await_idle(self):
+        """Fails unless the last thing that the lidar does is to stop."""
+        for _ in range(200):
+            if self.log.read_text().splitlines()[-1].endswith("idle"):
+                return
+            time.sleep(0.01)
+        pytest.fail("the lidar still scans")
+
+    def stop(self):
+        if self.process is not None:
+            os.unlink(self.port)
+            self.process.terminate()
+            self.process.wait()
+            self.process.stdout.close()
+            self.process = None
+
+
+@pytest.fixture
+def simulator(tmp_path):
+    simulated = Simulator(tmp_path)
+    yield simulated
+    simulated.stop()
+
+
+@pytest.fixture
+def command():
+    """Starts `python -m tmini WORDS`; ends what still runs in the end."""
+    started = []
+
+    def start(*words):
+        started.append(subprocess.Popen([sys.executable, "-m", "tmini", *map(str, words)], text=True,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE))
+        return started[-1]
+
+    yield start
+    for process in started:
+        process.kill()
+        process.communicate()

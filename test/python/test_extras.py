@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""`python -m tmini`: what it writes and sends is read by programs of others."""
+
+import json
+import math
+import signal
+import struct
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import tmini
+from conftest import RECORDINGS, SIM
+
+RECORDING = RECORDINGS / "sim-6hz.bin"
+
+
+def messages_in(path):
+    """(stamp in s, LaserScan) of each message, read by rosbags."""
+    reader = pytest.importorskip("rosbags.highlevel").AnyReader
+    with reader([path]) as bag:
+        for connection, _, data in bag.messages():
+            message = bag.deserialize(data, connection.msgtype)
+            stamp = message.header.stamp
+            assert (connection.topic, message.header.frame_id) == ("/scan", "laser")
+            yield stamp.sec + stamp.nanosec / 1e9, message
+
+
+def nearest(scan, ray):
+    """The nearest distance within half a degree of ray / 360 of a circle, counter-clockwise."""
+    away = (scan.angles_deg + ray + 180) % 360 - 180
+    here = scan.ranges_m[(away > -0.499) & (away < 0.499)]
+    return np.nanmin(here, initial=np.inf)
+
+
+def run(command, *words):
+    process = command(*words)
+    out, error = process.communicate(timeout=20)
+    return process.returncode, out, error
+
+
+def test_a_recording_becomes_messages_with_ray_0_ahead_and_measured_last(command, tmp_path):
+    pytest.importorskip("mcap_ros2")
+    path = tmp_path / "room.mcap"
+    assert run(command, "mcap", RECORDING, path) == (0, f"{path}: 9 scans; 1 incomplete\n", "")
+    scans, found = list(tmini.read(RECORDING)), list(messages_in(path))
+    assert len(found) == len(scans)
+    for scan, (stamp, message) in zip(scans, found):
+        assert stamp == pytest.approx(scan.end_s, abs=1e-6)
+        assert message.angle_min == 0
+        assert message.angle_increment == pytest.approx(math.radians(1), rel=1e-6)
+        assert message.angle_max == pytest.approx(math.radians(359), rel=1e-6)
+        assert (message.range_min, message.range_max) == pytest.approx((0.05, 12))
+        for ray in range(360):
+            if math.isfinite(nearest(scan, ray)):
+                assert message.ranges[ray] <= nearest(scan, ray) + 1e-6
+        assert np.isin(message.ranges, np.append(scan.ranges_m, np.nan).astype(np.float32)).sum() \
+            == np.isfinite(message.ranges).sum() > (300 if scan.complete else 0)
+    scan, (stamp, message) = scans[4], found[4]
+    assert message.scan_time == pytest.approx(1 / scan.frequency_hz, rel=0.02)
+    assert message.time_increment == pytest.approx(-message.scan_time / 360)
+    for index in (5, 300, 600):  # A turn of this lidar begins ahead.
+        ray = (360 - round(scan.angles_deg[index])) % 360
+        assert stamp + ray * message.time_increment == pytest.approx(scan.times_s[index], abs=0.003)
+
+
+def test_of_a_lidar_that_hangs_the_first_ray_is_measured_first(command, tmp_path):
+    pytest.importorskip("mcap_ros2")
+    path = tmp_path / "room.mcap"
+    assert run(command, "mcap", RECORDING, path, "--upside-down", "--complete")[0] == 0
+    scans = [scan for scan in tmini.read(RECORDING, upside_down=True) if scan.complete]
+    found = list(messages_in(path))
+    assert len(found) == len(scans) == 8
+    stamp, message = found[4]
+    for index in (5, 300, 600):
+        ray = (360 - round(scans[4].angles_deg[index])) % 360
+        assert stamp + ray * message.time_increment == pytest.approx(scans[4].times_s[index], abs=0.003)
+
+
+def test_a_file_is_not_overwritten_unless_asked_and_not_made_from_nothing(command, tmp_path):
+    pytest.importorskip("mcap_ros2")
+    path = tmp_path / "room.mcap"
+    path.write_bytes(b"mine")
+    status, _, error = run(command, "mcap", RECORDING, path)
+    assert (status, path.read_bytes()) == (1, b"mine") and "--force overwrites it" in error
+    assert run(command, "mcap", RECORDING, path, "--force")[0] == 0
+    assert path.stat().st_size > 5000
+    (tmp_path / "letter").write_bytes(b"Dear lidar,")
+    assert run(command, "mcap", tmp_path / "letter", tmp_path / "letter.mcap")[0] == 1
+    assert not (tmp_path / "letter.mcap").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_a_live_file_and_stops_the_lidar(command, simulator, tmp_path, number):
+    pytest.importorskip("mcap_ros2")
+    path, begun = tmp_path / "live.mcap", time.time()
+    process = command("mcap", simulator.start(), path)
+    while not path.exists():
+        assert process.poll() is None
+        time.sleep(0.05)
+    time.sleep(0.5)
+    process.send_signal(number)
+    out, error = process.communicate(timeout=10)
+    assert (process.returncode, error) == (0, "") and "incomplete" in out
+    simulator.await_idle()
+    stamps = [stamp for stamp, _ in messages_in(path)]
+    assert len(stamps) >= 2 and begun < stamps[0] < stamps[-1] < time.time()
+
+
+def test_foxglove_gets_each_scan(command, simulator):
+    """By a client that knows Foxglove's protocol and nothing of the package's libraries."""
+    pytest.importorskip("foxglove")
+    connect = pytest.importorskip("websockets.sync.client").connect
+    process = command("live", simulator.start(), "--tcp", "0")
+    with connect(process.stdout.readline().strip(), subprotocols=["foxglove.sdk.v1"]) as client:
+        channel = None
+        while channel is None:
+            said = json.loads(client.recv(10))
+            channel = next(iter(said.get("channels", [])), None)
+        assert (channel["topic"], channel["encoding"], channel["schemaName"]) == (
+            "/scan", "protobuf", "foxglove.LaserScan")
+        client.send(json.dumps({"op": "subscribe",
+                                "subscriptions": [{"id": 7, "channelId": channel["id"]}]}))
+        before = None
+        for _ in range(3):
+            data = client.recv(10)
+            while isinstance(data, str):
+                data = client.recv(10)
+            assert struct.unpack_from("<BI", data) == (1, 7)
+            fields = protobuf(data[13:])
+            ranges = np.frombuffer(fields[6], "<f8")
+            assert (fields[2], len(ranges), len(fields[7])) == (b"laser", 360, 8 * 360)
+            assert 4 not in fields  # start_angle: the default, 0.
+            assert struct.unpack("<d", fields[5])[0] == pytest.approx(math.radians(359))
+            # 2.2 m to the left wall, 1.7 m to the one behind; counter-clockwise.
+            assert ranges[[90, 180]] == pytest.approx([2.2, 1.7], abs=0.05)
+            stamp = protobuf(fields[1])
+            assert time.time() - 1 < stamp[1] + stamp[2] / 1e9 < time.time()
+            assert before != stamp
+            before = stamp
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(10) == 0
+    simulator.await_idle()
+
+
+def protobuf(data):
+    """The last value of each field: numbers of varints, bytes of all else."""
+    fields, at = {}, 0
+
+    def varint():
+        nonlocal at
+        value = shift = 0
+        while True:
+            byte = data[at]
+            at += 1
+            value |= (byte & 127) << shift
+            shift += 7
+            if byte < 128:
+                return value
+
+    while at < len(data):
+        field, kind = divmod(varint(), 8)
+        if kind == 0:
+            fields[field] = varint()
+        else:
+            size = 8 if kind == 1 else varint()
+            fields[field] = data[at:at + size]
+            at += size
+    return fields
+
+
+@pytest.mark.parametrize("words, extra", [(("live", "COM3"), "foxglove"), (("mcap", "COM3", "x"), "mcap")])
+def test_without_its_extra_a_command_names_the_line_that_installs_it(words, extra):
+    hide = "import sys; sys.modules.update(foxglove=None, mcap_ros2=None); import runpy; " \
+        f"sys.argv[1:] = {words!r}; runpy.run_module('tmini', run_name='__main__')"
+    result = subprocess.run([sys.executable, "-c", hide], capture_output=True, text=True, check=False)
+    assert result.returncode == 1
+    assert f"pip install './port/python[{extra}]'" in result.stderr
+
+
+def test_wrong_words_are_answered_in_a_sentence(command, tmp_path):
+    for words in ((), ("dance",), ("mcap",), ("mcap", RECORDING, "x", "--rays", "7"),
+                  ("mcap", RECORDING, "x", "--mask", "10")):
+        status, _, error = run(command, *words)
+        assert status == 2 and "Traceback" not in error
+    status, _, error = run(command, "live", tmp_path / "nothing")
+    assert status == 1 and error.startswith("tmini: ") and "Traceback" not in error
+
+
+def test_hours_of_recording_become_a_file_in_constant_memory(command, tmp_path):
+    pytest.importorskip("mcap_ros2")
+    resource = pytest.importorskip("resource")
+    peaks = []
+    for seconds in (20, 120):
+        path = tmp_path / f"{seconds}.bin"
+        subprocess.run([SIM, "--write", path, "--seconds", str(seconds), "--frequency", "12"], check=True)
+        assert run(command, "mcap", path, path.with_suffix(".mcap"))[0] == 0
+        peaks.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+    assert peaks[1] < peaks[0] + 8192  # In kB.
