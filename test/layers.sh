@@ -34,6 +34,10 @@ tmini_blocking  tmini tmini_command
 tmini_sectors   tmini_packet tmini_frame
 tmini_ranges
 tmini_mount
+tmini_cartesian
+tmini_fields    tmini_cartesian
+tmini_isolated
+tmini_steps
 tmini_names
 tmini_units
 '
