@@ -7,8 +7,6 @@
 
 #include "tmini_driver.h"
 
-#include <string.h>
-
 const tmini_timing_t tmini_timing_default = {
     .frame_timeout_ms = 100, /* A scanning lidar pauses for 5 ms; tasks or bridges delay
                               * bytes. */
@@ -662,7 +660,7 @@ void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
     const tmini_parser_counters_t *const parser = &lidar->decoder.parser.counters;
     const size_t pending =
         tmini_ring_unread(ring) - tmini_parser_frame(&lidar->decoder.parser)->size;
-    memcpy(counters, parser, sizeof *parser);
+    TMINI_COPY(counters, parser, sizeof *parser);
     counters->bytes_overrun += (uint32_t)tmini_ring_overrun(ring);
     counters->bytes_pending = (uint32_t)pending;
     counters->scans = lidar->scans;

@@ -3,8 +3,6 @@
 
 #include "tmini/parts/tmini_parser.h"
 
-#include <string.h>
-
 #include "tmini_packet_header.h"
 
 enum verdict { NOT_A_FRAME, INCOMPLETE, COMPLETE };
@@ -135,7 +133,7 @@ static void read_header(tmini_frame_t *frame)
     size_t count = sizeof frame->header;
     const uint8_t *const piece = tmini_ring_piece(frame->ring, TMINI_START_SIGN_SIZE, &count);
     if (count == sizeof frame->header) {
-        memcpy(frame->header, piece, sizeof frame->header); /* Fast: the size is constant. */
+        TMINI_COPY(frame->header, piece, sizeof frame->header);
     } else {
         tmini_ring_copy(frame->ring, TMINI_START_SIGN_SIZE, frame->header, sizeof frame->header);
     }

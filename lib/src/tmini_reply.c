@@ -3,8 +3,6 @@
 
 #include "tmini/parts/tmini_reply.h"
 
-#include <string.h>
-
 /* Most commands have the frequency as their reply: its query, and each of its steps (sections 3 and
  * 4). */
 bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header)
@@ -34,7 +32,7 @@ typedef char information_is_sent_as_it_is_kept[sizeof(tmini_info_t) == TMINI_INF
 
 void tmini_reply_info(const uint8_t content[TMINI_INFO_SIZE], tmini_info_t *info)
 {
-    memcpy(info, content, TMINI_INFO_SIZE);
+    TMINI_COPY(info, content, TMINI_INFO_SIZE);
 }
 
 void tmini_reply_health(const uint8_t content[TMINI_HEALTH_SIZE], tmini_health_t *health)

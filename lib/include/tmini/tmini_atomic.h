@@ -127,7 +127,36 @@ TMINI_INLINE size_t tmini_load(const size_t *value)
 TMINI_INLINE void tmini_store(size_t *value, size_t stored)
 {
     __asm__ volatile("" ::: "memory");
-    __atomic_store_n(value, stored, __ATOMIC_RELAXED);
+    *(volatile size_t *)value = stored;
+}
+
+/** Keeps earlier reads before later ones. */
+TMINI_INLINE void tmini_fence(void)
+{
+    __atomic_thread_fence(__ATOMIC_ACQUIRE);
+}
+
+#elif defined(__GNUC__) && __GCC_ATOMIC_POINTER_LOCK_FREE < 2
+
+/* A machine that loads and stores an index in one access, but has no instruction that also changes
+ * it (Cortex-M0, rv32imc). Clang would call a library for the primitives below: the same barriers,
+ * written out. */
+
+/** Reads an index that the other side writes; no later access moves before it. Any context; one
+ * access. */
+TMINI_INLINE size_t tmini_load(const size_t *value)
+{
+    const size_t loaded = *(const volatile size_t *)value;
+    __atomic_thread_fence(__ATOMIC_ACQUIRE);
+    return loaded;
+}
+
+/** Writes an index that the other side reads; no earlier access moves after it. Any context; one
+ * access. */
+TMINI_INLINE void tmini_store(size_t *value, size_t stored)
+{
+    __atomic_thread_fence(__ATOMIC_RELEASE);
+    *(volatile size_t *)value = stored;
 }
 
 /** Keeps earlier reads before later ones. */
@@ -164,13 +193,19 @@ TMINI_INLINE void tmini_fence(void)
 
 #endif
 
+/** @def TMINI_COPY
+ * Copies some bytes, a constant number: by moves, also where memcpy() is always a call
+ * (-ffreestanding, -fno-builtin). */
+#if defined(__GNUC__)
+#define TMINI_COPY(to, from, size) __builtin_memcpy(to, from, size)
+#else
+#define TMINI_COPY(to, from, size) memcpy(to, from, size)
+#endif
+
 /** @def TMINI_WORD_ALIGNMENT
  * Words are loaded only from addresses that are a multiple of this: 4, or 1 where any address
- * works. If it is 1, words are also stored at any address. To overrule 1, define it as 4u for the
- * whole build: a Cortex-M7 faults if a buffer is in Device memory, as external SDRAM may be. */
-#if defined(TMINI_WORD_ALIGNMENT)
-/* As defined. */
-#elif defined(__ARM_FEATURE_UNALIGNED) || defined(__x86_64__) || defined(__i386__) || \
+ * works. If it is 1, words are also stored at any address. */
+#if defined(__ARM_FEATURE_UNALIGNED) || defined(__x86_64__) || defined(__i386__) || \
     defined(__riscv_misaligned_fast) || defined(__AVR__)
 #define TMINI_WORD_ALIGNMENT 1u
 #else
@@ -183,7 +218,7 @@ TMINI_INLINE uint32_t tmini_word(const uint8_t *bytes)
 {
 #if defined(__GNUC__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
     uint32_t word;
-    memcpy(&word, __builtin_assume_aligned(bytes, TMINI_WORD_ALIGNMENT), sizeof word);
+    TMINI_COPY(&word, __builtin_assume_aligned(bytes, TMINI_WORD_ALIGNMENT), sizeof word);
     return word;
 #else
     return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
@@ -197,10 +232,10 @@ TMINI_INLINE void tmini_copy_pair(uint8_t *to, const uint8_t *from, uint8_t mask
     const uint8_t masks[] = {0xFF, mask};
     uint16_t pair;
     uint16_t pair_mask;
-    memcpy(&pair, from, sizeof pair);
-    memcpy(&pair_mask, masks, sizeof pair_mask);
+    TMINI_COPY(&pair, from, sizeof pair);
+    TMINI_COPY(&pair_mask, masks, sizeof pair_mask);
     pair &= pair_mask;
-    memcpy(to, &pair, sizeof pair);
+    TMINI_COPY(to, &pair, sizeof pair);
 }
 
 /** Stores two numbers of 16 bits side by side: `first`, below 65536, and the upper half of
@@ -209,12 +244,12 @@ TMINI_INLINE void tmini_store_two(uint8_t *to, uint32_t first, uint32_t second)
 {
 #if defined(__ARM_FEATURE_UNALIGNED) && !defined(__ARM_BIG_ENDIAN)
     const uint32_t both = first | (second & 0xFFFF0000u);
-    memcpy(to, &both, sizeof both);
+    TMINI_COPY(to, &both, sizeof both);
 #else
     const uint16_t low = (uint16_t)first;
     const uint16_t high = (uint16_t)(second >> 16);
-    memcpy(to, &low, sizeof low);
-    memcpy(to + sizeof low, &high, sizeof high);
+    TMINI_COPY(to, &low, sizeof low);
+    TMINI_COPY(to + sizeof low, &high, sizeof high);
 #endif
 }
 
