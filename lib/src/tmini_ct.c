@@ -3,8 +3,6 @@
 
 #include "tmini/parts/tmini_ct.h"
 
-#include <string.h>
-
 #include "tmini/parts/tmini_reply.h"
 
 #if !defined(TMINI_NO_CT)
@@ -34,7 +32,7 @@ enum {
 
 static void trust_current(tmini_ct_t *ct)
 {
-    memcpy(ct->trusted, ct->current, ct->fields);
+    TMINI_COPY(ct->trusted, ct->current, sizeof ct->trusted);
     ct->known = ct->packets > ct->known ? ct->packets : ct->known;
 }
 
@@ -66,6 +64,7 @@ void tmini_ct_discard(tmini_ct_t *ct)
     ct->fields = 0;
     ct->crc = 0;
     ct->cts = 0;
+    TMINI_COPY(ct->current, ct->trusted, sizeof ct->current);
 }
 
 tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)

@@ -403,6 +403,20 @@ void test_a_short_revolution_does_not_remove_what_a_long_one_reported(void)
     TEST_ASSERT_TRUE((info.known & TMINI_KNOWN_SERIAL) != 0);
 }
 
+void test_a_short_revolution_confirms_nothing_of_a_long_one_that_was_dropped(void)
+{
+    static const uint8_t others[16] = {0x66, 0x66, 0x66, 0x66, 0x66, 0x66, 0x66, 0x66,
+                                       0x66, 0x66, 0x66, 0x66, 0x66, 0x66, 0x66, 0x66};
+    add_six_hertz();
+    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
+    add_points(others, 16);
+    TEST_ASSERT_FALSE(add(TWELVE_HERTZ_CT, 0, 0)); /* No LastCRC. */
+    add_points(&six_hertz[1], 9);
+    TEST_ASSERT_TRUE(end_with(TWELVE_HERTZ_CRC));
+    tmini_ct_read(&ct_state, &info);
+    expect_serial(2025, 4, 24, 1193046);
+}
+
 void test_the_faults_are_those_of_the_last_trusted_revolution(void)
 {
     uint8_t cts[17];

@@ -45,7 +45,8 @@ typedef struct {
     uint8_t fields;  /**< How many fields of the current revolution have come. */
     uint8_t crc;     /**< The CRC of that revolution's CT bytes so far. */
     uint8_t cts;     /**< The OR of its point packets' CT bytes; 0: they carry no information. */
-    uint8_t current[TMINI_CT_FIELDS]; /**< CT bytes of the current revolution. */
+    uint8_t current[TMINI_CT_FIELDS]; /**< CT bytes of the current revolution; as trusted where none
+                                       * has come yet. */
     uint8_t trusted[TMINI_CT_FIELDS]; /**< The newest trusted CT byte of each field. */
 } tmini_ct_t;
 
