@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Compiles, without linking, every source and every public header of the library for one target:
+# Compiles every source and every public header of the library for one target:
 #
 #   test/compile.sh gcc|clang|c++|cortex-m0|avr|rv32imc|xtensa|powerpc
+#   test/compile.sh clang-cortex-m0|clang-cortex-m0plus|clang-rv32imc
 #
 # as freestanding C99 with strict warnings as errors; `c++` compiles the headers as C++11 and C++17.
+# clang-… also links a program that uses everything: with the C library and GCC's, nothing else.
 # Exit status: 0 clean, 1 not clean, 2 wrong usage, 77 the compiler is not installed.
 
 set -eu
@@ -63,6 +65,24 @@ check_c() {
     check_headers c "$@" -std=c99
 }
 
+# check_clang "GCC FLAG…" CLANG_FLAG…: the C library and the linker are GCC's.
+check_clang() {
+    gcc=$1
+    shift
+    # shellcheck disable=SC2086 # a command of several words
+    need_compiler $gcc
+    # shellcheck disable=SC2086
+    headers=$(echo '#include <string.h>' | $gcc -E - |
+        sed -n 's|^# 1 "\(.*\)/string\.h".*|\1|p' | head -n 1)
+    set -- clang "$@" -Os -isystem "$headers"
+    check_c "$@"
+    for source in "$lib"/src/*.c "$lib"/../test/qa/bench/flash/everything.c; do
+        "$@" -std=c99 -I "$lib/include" -c "$source" -o "$work/$(basename "$source").o"
+    done
+    # shellcheck disable=SC2086
+    $gcc -nostartfiles -T "$lib/../test/qa/bench/program.ld" "$work"/*.c.o -o "$work/program"
+}
+
 check_cxx() {
     need_compiler g++ -x c++
     check_headers c++ g++ -std=c++11
@@ -74,6 +94,15 @@ case ${1:-} in
     clang) check_c clang ;;
     c++) check_cxx ;;
     cortex-m0) check_c arm-none-eabi-gcc -mcpu=cortex-m0 -mthumb -Os ;;
+    clang-cortex-m0 | clang-cortex-m0plus)
+        cpu=${1#clang-}
+        check_clang "arm-none-eabi-gcc --specs=nano.specs -mthumb -mcpu=$cpu" \
+            --target=armv6m-none-eabi "-mcpu=$cpu"
+        ;;
+    clang-rv32imc)
+        check_clang "riscv64-unknown-elf-gcc --specs=picolibc.specs -march=rv32imc -mabi=ilp32" \
+            --target=riscv32-unknown-elf -march=rv32imc -mabi=ilp32
+        ;;
     avr) check_c avr-gcc -mmcu=atmega2560 -Os ;;
     rv32imc)
         check_c riscv64-unknown-elf-gcc --specs=picolibc.specs -march=rv32imc -mabi=ilp32 -Os
@@ -85,7 +114,7 @@ case ${1:-} in
         ;;
     powerpc) check_c powerpc-linux-gnu-gcc -O2 ;;
     *)
-        sed -n '5,10s/^# \{0,1\}//p' "$0" >&2
+        sed -n '5,12s/^# \{0,1\}//p' "$0" >&2
         exit 2
         ;;
 esac

@@ -7,7 +7,8 @@
 if(NOT TMINI_SH)
     return()
 endif()
-foreach(target gcc clang c++ cortex-m0 avr rv32imc xtensa powerpc)
+foreach(target gcc clang c++ cortex-m0 avr rv32imc xtensa powerpc
+        clang-cortex-m0 clang-cortex-m0plus clang-rv32imc)
     tmini_add_check(compile.${target} compile ALL
         COMMAND ${TMINI_SH} ${CMAKE_CURRENT_SOURCE_DIR}/compile.sh ${target})
 endforeach()

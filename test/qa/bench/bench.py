@@ -22,12 +22,12 @@ import python_package
 import stack
 import streams
 import tables
-from targets import HERE, LEVELS, ROOT, TARGETS, BenchError, run, target_named
+from targets import HERE, LEVELS, LIB_SOURCES, ROOT, TARGETS, BenchError, other_compilers, run, target_named
 
 FOOTPRINT = ROOT / "docs" / "footprint.md"
 README = ROOT / "README.md"
 README_TABLES = ["footprint"]
-PRINTED_TABLES = ["modules", "budgets"]  # These tables are in no document.
+PRINTED_TABLES = ["modules", "compilers", "budgets"]  # These tables are in no document.
 FOOTPRINT_TABLES = [name for name in tables.BLOCKS if name not in README_TABLES + PRINTED_TABLES]
 
 # The limits are for the compilers of the committed tables. With others, the library may cost this much more.
@@ -63,6 +63,15 @@ def measure_target(name, level, folder, made):
     return {"flash": weights, "stack": depth, "counts": counts}
 
 
+def measure_compiler(name, folder, made):
+    """The full driver at -Os, by a compiler or with an option that is not in the documents' tables."""
+    target = other_compilers()[name]
+    place = folder / name
+    objects = [target.compile(source, "-Os", place) for source in LIB_SOURCES]
+    return {"title": target.title, "driver": flash.weigh_program("driver", target, "-Os", objects, place),
+            "blocks": instructions.by_blocks(target, "-Os", objects, place, made)}
+
+
 def library_version(target, header, macro):
     """The C library's version, from its own header."""
     probe = ["-dM", "-E", "-include", header, "-x", "c", "/dev/null"]
@@ -78,6 +87,7 @@ def tool_versions():
             ("newlib", library_version(arm, "newlib.h", "_NEWLIB_VERSION")),
             ("rv32imc", riscv.version()),
             ("picolibc", library_version(riscv, "picolibc.h", "__PICOLIBC_VERSION__")),
+            ("Clang", run("clang", "--version").splitlines()[0].strip()),
             (platform.machine(), run("cc", "--version").splitlines()[0].strip())]
 
 
@@ -89,11 +99,13 @@ def measure_all(folder):
     with concurrent.futures.ProcessPoolExecutor(max_workers=2) as pool:
         jobs = {(target.name, level): pool.submit(measure_target, target.name, level, folder, made)
                 for target in TARGETS for level in LEVELS}
+        others = {name: pool.submit(measure_compiler, name, folder, made) for name in other_compilers()}
         figures["host"] = host.measure(host.build(folder), recording, folder,
                                        made["clean packets"], instructions.BYTES_PER_POLL)
         figures["python"] = python_package.measure(folder, made["clean"])
         for key, job in jobs.items():
             figures["targets"][key] = job.result()
+        figures["compilers"] = {name: job.result() for name, job in others.items()}
     for target in TARGETS:
         figures["ram"][target.name] = flash.sizes_of_types(target, folder / target.name)
     figures["budgets"] = read_budgets(figures)
@@ -120,6 +132,7 @@ def measured_for_budgets(figures):
         "each_byte_m4_os": each[1],
         "corrupted_m4_os": cost(m4[0], "corrupted"),
         "blocks_m0_os": cost(m0, "blocks"),
+        **{f"blocks_{name}": f["blocks"] for name, f in figures["compilers"].items()},
         "decode_x86": figures["host"]["decode"],
         "blocks_x86": figures["host"]["blocks"],
         "bytes_x86": figures["host"]["bytes"],
@@ -127,6 +140,7 @@ def measured_for_budgets(figures):
         "python_live_x86": figures["python"]["percent"],
         "flash_parser_m4": m4[0]["flash"]["parser"]["own"],
         "flash_driver_m4": m4[0]["flash"]["driver"]["own"],
+        **{f"flash_{name}": f["driver"]["own"] for name, f in figures["compilers"].items()},
         "flash_no_ct_m4": m4[0]["flash"]["no_ct"]["own"],
         "ram": max(figures["ram"][target.name]["tmini_t"] +
                    figures["targets"][target.name, level]["flash"]["everything"]["writable"]

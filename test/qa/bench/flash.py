@@ -54,12 +54,16 @@ def weigh_without_ct(target, level, folder):
     return weigh(map_file)
 
 
+def weigh_program(name, target, level, objects, folder):
+    main = target.compile(HERE / "flash" / f"{name}.c", level, folder / "flash")
+    _, map_file = target.link([*objects, main], folder / f"{name}.elf")
+    return weigh(map_file)
+
+
 def measure(target, level, objects, folder):
     weights = {"no_ct": weigh_without_ct(target, level, folder)}
     for name in ("parser", "streaming", "driver", "everything"):
-        main = target.compile(HERE / "flash" / f"{name}.c", level, folder / "flash")
-        _, map_file = target.link([*objects, main], folder / f"{name}.elf")
-        weights[name] = weigh(map_file)
+        weights[name] = weigh_program(name, target, level, objects, folder)
     return weights
 
 

@@ -298,10 +298,20 @@ def check_counting(target, program, clean):
         raise BenchError(f"{target.title}: {blocks} instructions by blocks, {steps} by steps")
 
 
-def measure(target, level, objects, folder, streams):
+def link(target, level, objects, folder):
     sources = (HERE / "emulated" / "main.c", HERE / "limit.c")
     extra = [target.compile(source, level, folder / "emulated", "-I", HERE) for source in sources]
-    program, _ = target.link([*objects, *extra], folder / "emulated.elf")
+    return target.link([*objects, *extra], folder / "emulated.elf")[0]
+
+
+def by_blocks(target, level, objects, folder, streams):
+    """The cost per byte, fed by blocks."""
+    program = link(target, level, objects, folder)
+    return sum(through(target, program, streams["clean"], "blocks", False, streams["clean packets"])[0])
+
+
+def measure(target, level, objects, folder, streams):
+    program = link(target, level, objects, folder)
     clean = streams["clean"]
     check_counting(target, program, clean)
     costs = {}

@@ -46,6 +46,7 @@ wish_for_bench_tools() {
     wish /usr/lib/arm-none-eabi/newlib libnewlib-arm-none-eabi
     wish riscv64-unknown-elf-gcc gcc-riscv64-unknown-elf
     wish /usr/lib/picolibc/riscv64-unknown-elf picolibc-riscv64-unknown-elf
+    wish clang clang
     wish valgrind valgrind
     install_missing
 }
@@ -57,6 +58,7 @@ has_library() {
 
 [ "$install" = no ] || wish_for_bench_tools
 is_present cc || skip "there is no C compiler"
+is_present clang || skip "Clang is not installed"
 is_present valgrind || skip "valgrind is not installed"
 is_present python3 || skip "Python 3 is not installed"
 has_library arm-none-eabi-gcc --specs=nano.specs ||

@@ -57,6 +57,12 @@ def modules(figures):
     return table(["bytes of flash", *(title for title, _ in chosen)], rows)
 
 
+def compilers(figures):
+    return table(["`-Os`", "full driver", "C library", "instructions per byte, by blocks"],
+                 [[f["title"], f["driver"]["own"], f["driver"]["support"], one(f["blocks"])]
+                  for f in figures["compilers"].values()])
+
+
 def instructions(figures):
     rows = []
     for title, f in small(figures):
@@ -138,6 +144,7 @@ def summary(figures):
 
 
 BLOCKS = {"versions": versions, "budgets": budgets, "memory": memory, "modules": modules,
+          "compilers": compilers,
           "instructions": instructions, "per-poll": per_poll,
           "compared": compared, "load": cpu, "pauses": pauses, "footprint": summary}
 

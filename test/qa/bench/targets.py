@@ -29,12 +29,13 @@ def run(*command):
 class Target:
     """One processor: its compiler and options."""
 
-    def __init__(self, name, title, prefix, machine, link):
+    def __init__(self, name, title, prefix, machine, link, compiler=()):
         self.name = name
         self.title = title
         self.prefix = prefix
         self.machine = machine
         self.link_options = link
+        self.compiler = compiler or (prefix + "gcc", *machine)
 
     def tool(self, name):
         return self.prefix + name
@@ -47,7 +48,7 @@ class Target:
         folder.mkdir(parents=True, exist_ok=True)
         target = folder / (source.stem + ".o")
         # The length of the checkout's path must not change the figures.
-        run(self.tool("gcc"), *self.machine, "-std=c99", level, "-Wall", "-Wextra", "-Werror",
+        run(*self.compiler, "-std=c99", level, "-Wall", "-Wextra", "-Werror",
             "-ffunction-sections", "-fdata-sections", f"-ffile-prefix-map={ROOT}=.",
             "-I", ROOT / "lib" / "include", *extra, "-c", source, "-o", target)
         return target
@@ -79,6 +80,35 @@ TARGETS = (
     cortex("cortex-m4", "Cortex-M4"),
     Target("rv32imc", "rv32imc", "riscv64-unknown-elf-", PICOLIBC, ()),
 )
+
+
+def headers(target):
+    """The folder of the target's C library, which another compiler does not find by itself."""
+    text = run(target.compiler[0], *target.machine, "-E", "-include", "string.h", "-x", "c", "/dev/null")
+    return re.search(r'^# 1 "(.*)/string\.h"', text, re.MULTILINE)[1]
+
+
+def with_clang(target, *machine):
+    """The same processor with Clang as the compiler; the other tools stay."""
+    compiler = ("clang", *machine, "-isystem", headers(target))
+    return Target(target.name, target.title + " Clang", target.prefix, target.machine,
+                  target.link_options, compiler)
+
+
+def freestanding(target):
+    return Target(target.name, target.title + " `-ffreestanding`", target.prefix, target.machine,
+                  target.link_options, (*target.compiler, "-ffreestanding"))
+
+
+def other_compilers():
+    """What else users compile with, measured briefly."""
+    m0, _, m4, riscv = TARGETS
+    return {
+        "freestanding_m4": freestanding(m4),
+        "clang_m0": with_clang(m0, "--target=armv6m-none-eabi", "-mcpu=cortex-m0"),
+        "clang_m4": with_clang(m4, "--target=thumbv7em-none-eabi", "-mcpu=cortex-m4"),
+        "clang_rv32imc": with_clang(riscv, "--target=riscv32-unknown-elf", "-march=rv32imc", "-mabi=ilp32"),
+    }
 
 
 def target_named(name):
