@@ -13,9 +13,10 @@
 
 from importlib.metadata import version as _version
 
+from ._find import find
 from ._lidar import Info, Lidar, LidarError
 from ._recording import read
 from ._scan import Fault, Scan, Sector
 
-__all__ = ["Fault", "Info", "Lidar", "LidarError", "Scan", "Sector", "read"]
+__all__ = ["Fault", "Info", "Lidar", "LidarError", "Scan", "Sector", "find", "read"]
 __version__ = _version("tmini")

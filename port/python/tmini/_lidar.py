@@ -19,6 +19,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from ._find import resolve
 from ._line import Line, open_line
 from ._mount import Mount
 from ._native import ffi, lib
@@ -63,8 +64,9 @@ def python_restart(context: Any) -> None:
 
 
 class Lidar:
-    """A lidar on a serial port ("/dev/ttyUSB0", "COM3") or on a socket ("tcp:HOST:PORT"). It scans
-    until close(). If it is lost or unplugged, it is started again.
+    """A lidar on a serial port ("/dev/ttyUSB0", "COM3"), on a socket ("tcp:HOST:PORT"), or by the
+    end of its serial number ("serial:2345"; see find()). It scans until close(). If it is lost or
+    unplugged, it is started again.
 
     A program that is slower than the lidar gets the newest scan, and Scan.number shows how many it
     has missed; `backlog` is the number of scans that wait for it. After a fork it remains the
@@ -96,12 +98,13 @@ class Lidar:
         self._received = 0
         self._number = 0
         self._line: Line | None = None
+        self._name: str | None = None  # The line's; None: to be found.
         self._is_stale = False  # The line is silent, and is to be opened again.
         self._mount = Mount(front, upside_down, mask)
         self._listen_only = listen_only
         self._set_up(0 if frequency_hz is None else _chz(frequency_hz))
         try:
-            self._line = open_line(self.port)
+            self._open_line()
         except OSError:
             if timeout is not None:
                 raise
@@ -298,14 +301,19 @@ class Lidar:
             if self._is_stale:
                 self._drop_line()
             if self._line is None:
-                self._line = open_line(self.port)
+                self._open_line()
                 with self._changed:
                     lib.tmini_feed_gap(self._lidar)
             data = self._line.read()
         except OSError:
             self._drop_line()
+            self._name = None
         with self._changed:
             self._feed(data)
+
+    def _open_line(self) -> None:
+        self._name = self._name or resolve(self.port)
+        self._line = open_line(self._name)
 
     def _drop_line(self) -> None:
         with self._changed:  # The program's wishes write, too.

@@ -75,5 +75,5 @@ class _Socket:
         self._socket.close()
 
 
-def open_line(port: str) -> Line:
-    return _Socket(port[4:]) if port.startswith("tcp:") else _Port(port)
+def open_line(name: str) -> Line:
+    return _Socket(name[4:]) if name.startswith("tcp:") else _Port(name)
