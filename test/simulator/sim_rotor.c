@@ -183,14 +183,21 @@ static uint16_t add_noise(uint16_t distance_mm, uint32_t dice, uint32_t noise_mm
     return (uint16_t)(distance_mm + added - noise_mm);
 }
 
+static uint16_t ideal_distance(const sim_t *sim, uint32_t angle_q16)
+{
+    const bool is_dark = sim->rotor_blocked || sim->window_covered;
+
+    return is_dark ? 0 : sim->scene.distance_mm[(angle_q16 >> 16) / SIM_SCENE_STEP_Q6];
+}
+
 /* One random number per sample: 16 bits each decide the noise, whether the range is missing, and
  * the flag. */
-static encode_sample_t measure(sim_t *sim, uint32_t angle_q16)
+static encode_sample_t measure_noisy(sim_t *sim, uint32_t angle_q16)
 {
     const uint64_t dice = random_u64(&sim->random);
     const uint32_t missing = ((uint32_t)(dice >> 16) & 0xFFFFu) * 1000u >> 16;
     const uint32_t flagged = ((uint32_t)(dice >> 32) & 0xFFFFu) * 1000u >> 16;
-    const uint16_t ideal = sim->scene.distance_mm[(angle_q16 >> 16) / SIM_SCENE_STEP_Q6];
+    const uint16_t ideal = ideal_distance(sim, angle_q16);
     encode_sample_t sample = {0, 0, 0};
 
     if (sim->rotor_blocked || sim->window_covered) {
@@ -203,6 +210,33 @@ static encode_sample_t measure(sim_t *sim, uint32_t angle_q16)
     }
     if (flagged < sim->config.flagged_permille) {
         sample.flag = (uint8_t)(2u + (dice >> 63));
+    }
+    return sample;
+}
+
+/* Most of the time of long runs would go into random numbers. */
+static encode_sample_t measure_quiet(sim_t *sim, uint32_t angle_q16)
+{
+    const uint16_t ideal = ideal_distance(sim, angle_q16);
+    const encode_sample_t sample = {intensity_at(ideal), 0, ideal};
+
+    sim->rotor.valid += ideal != 0u ? 1u : 0u;
+    return ideal != 0u ? sample : (encode_sample_t){0, 0, 0};
+}
+
+static bool is_noisy(const sim_config_t *config)
+{
+    return config->noise_mm != 0u || config->invalid_permille != 0u ||
+           config->flagged_permille != 0u;
+}
+
+static encode_sample_t measure(sim_t *sim, uint32_t angle_q16)
+{
+    encode_sample_t sample =
+        is_noisy(&sim->config) ? measure_noisy(sim, angle_q16) : measure_quiet(sim, angle_q16);
+
+    if (sim->config.tagged) {
+        sample.intensity = (uint8_t)sim->revolution;
     }
     return sample;
 }

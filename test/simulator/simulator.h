@@ -120,6 +120,7 @@ typedef struct {
     bool keeps_frequency;          /* the set frequency survives reboot and loss of power */
     bool refuses_steps;            /* frequency commands change nothing */
     bool never_answers;            /* obeys, but sends no replies */
+    bool tagged;                   /* intensity: the number of the revolution, modulo 256 */
     bool firmware_major_first;     /* in the information reply, as in the manual (9.4) */
     bool ascii_serial;         /* in the information reply: characters instead of numbers (9.5) */
     bool blocked_sends_starts; /* start packets continue while the rotor is blocked */

@@ -9,6 +9,11 @@
 #include <string.h>
 
 #define CLOCK_AT_THE_BEGINNING 0xFFFFE000u /* It wraps around after eight seconds. */
+#define STOP 0x65u
+#define SCANS 5u            /* In a row, before a wish counts as fulfilled. */
+#define IDLE_US 1500000u    /* Idle, before it does. */
+#define SILENCE_US 1050000u /* Announced by LOST; a second, and what a slow poll adds. */
+#define MOST_EVENTS_PER_SECOND 10u
 
 static int port_write(void *context, const uint8_t *bytes, size_t count)
 {
@@ -17,8 +22,10 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
     const size_t most = bed->write_max == 0 || bed->write_max > room ? room : bed->write_max;
     const size_t taken = count < most ? count : most;
 
-    memcpy(bed->outbox + bed->outbox_count, bytes, taken);
-    bed->outbox_count += taken;
+    for (size_t i = 0; i < taken; i++) {
+        bed->outbox[bed->outbox_count++] = bytes[i];
+        bed->stop_sent = bed->stop_sent || bytes[i] == STOP;
+    }
     return (int)taken;
 }
 
@@ -47,8 +54,22 @@ bool bed_init(bed_t *bed, const sim_config_t *sim)
     bed->config.rx_buffer = bed->rx;
     bed->config.points = bed->points;
     bed->config.timing = &bed->timing;
+    bed->wants_chz = bed->config.frequency_chz;
+    random_seed(&bed->random, sim->seed);
     sim_init(&bed->sim, sim);
     return tmini_init(&bed->lidar, &bed->config) == TMINI_OK;
+}
+
+sim_config_t bed_quiet_lidar(void)
+{
+    sim_config_t config = sim_default_config();
+
+    config.noise_mm = 0;
+    config.invalid_permille = 0;
+    config.flagged_permille = 0;
+    config.lone_packet_permille = 0;
+    config.angle_jitter_q6 = 0;
+    return config;
 }
 
 uint32_t bed_ms(const bed_t *bed)
@@ -66,21 +87,71 @@ unsigned bed_event_named(const char *name)
     return event;
 }
 
+/* ---- Wishes ---- */
+
+tmini_status_t bed_start(bed_t *bed)
+{
+    bed->wants_scans = true;
+    bed->wished_us = bed->now_us;
+    return tmini_start(&bed->lidar);
+}
+
+tmini_status_t bed_stop(bed_t *bed)
+{
+    bed->wants_scans = false;
+    bed->wished_us = bed->now_us;
+    bed->flows = false;
+    return tmini_stop(&bed->lidar);
+}
+
+tmini_status_t bed_set_frequency(bed_t *bed, uint16_t frequency_chz)
+{
+    const tmini_status_t status = tmini_set_frequency(&bed->lidar, frequency_chz);
+
+    if (status == TMINI_OK) {
+        bed->wants_chz = (uint16_t)((frequency_chz + 5u) / 10u * 10u);
+        bed->wished_us = bed->now_us;
+    }
+    return status;
+}
+
+tmini_status_t bed_request_info(bed_t *bed)
+{
+    const tmini_status_t status = tmini_request_info(&bed->lidar);
+
+    if (status == TMINI_OK) {
+        bed->asked++;
+        bed->wished_us = bed->now_us;
+    }
+    return status;
+}
+
 /* ---- What the program sees ---- */
+
+static bool is_mixed(const tmini_scan_t *scan)
+{
+    for (uint16_t i = 1; i < scan->count; i++) {
+        if (scan->points[i].intensity != scan->points[0].intensity) {
+            return true;
+        }
+    }
+    return false;
+}
 
 static void note_scan(bed_t *bed)
 {
     const tmini_scan_t *const scan = tmini_scan(&bed->lidar);
 
     bed->scan = *scan;
+    bed->flows = true;
+    bed->small += scan->packets == 1 ? 1u : 0u;
+    bed->mixed += bed->sim.config.tagged && is_mixed(scan) ? 1u : 0u;
     if (!scan->complete) {
         bed->complete_in_a_row = 0;
         return;
     }
     bed->row_chz[bed->complete_in_a_row++ % BED_ROW] = scan->frequency_chz;
-    if (bed->complete++ > 0 && bed->now_us - bed->complete_us > bed->longest_gap_us) {
-        bed->longest_gap_us = bed->now_us - bed->complete_us;
-    }
+    bed->complete++;
     bed->complete_us = bed->now_us;
 }
 
@@ -104,36 +175,115 @@ static void note(bed_t *bed, tmini_event_t event)
     bed->event_us[event] = bed->now_us;
     if (event == TMINI_EVENT_SCAN) {
         note_scan(bed);
+        bed_pause_ms(bed, bed->work_ms);
     } else if (event != TMINI_EVENT_PACKET) {
         note_rate(bed);
     }
+    if (event == TMINI_EVENT_LOST || event == bed_event_named("paused")) {
+        bed->flows = false;
+    }
+}
+
+/* The driver announces its own stops before, a silent line within a second. */
+static void note_gaps(bed_t *bed)
+{
+    if (bed->flows && bed->stop_sent) {
+        bed->unheard = "the driver stopped the lidar without an event";
+    } else if (bed->flows && bed->held == NULL &&
+               bed->now_us - bed->heard_us > SILENCE_US + bed->poll_ms * 1000u) {
+        bed->unheard = "a second of silence without an event";
+    }
+    bed->stop_sent = false;
 }
 
 /* ---- Time ---- */
 
+static void hold(bed_held_t *held, const uint8_t *bytes, size_t count)
+{
+    const size_t room = BED_HELD_MAX - held->count;
+    const size_t stored = count < room ? count : room;
+
+    memcpy(held->bytes + held->count, bytes, stored);
+    held->count += stored;
+}
+
+static void damage(bed_t *bed, uint8_t *bytes, size_t count)
+{
+    for (size_t i = 0; i < count && bed->flip_one_in > 0; i++) {
+        if (random_below(&bed->random, bed->flip_one_in) == 0) {
+            bytes[i] ^= 0x10u;
+        }
+    }
+}
+
 static void carry_bytes(bed_t *bed)
 {
-    uint8_t bytes[1024];
-    size_t count = bed->outbox_count;
+    uint8_t bytes[512];
+    size_t count;
+
+    while ((count = sim_transmit(&bed->sim, bed->now_us, bytes, sizeof bytes)) > 0) {
+        damage(bed, bytes, count);
+        bed->heard_us = bed->now_us;
+        if (bed->held != NULL) {
+            hold(bed->held, bytes, count);
+        } else {
+            (void)tmini_feed(&bed->lidar, bytes, count);
+        }
+    }
+}
+
+static void empty_outbox(bed_t *bed)
+{
+    const size_t count = bed->outbox_count;
 
     bed->outbox_count = 0;
     if (count > 0) {
         sim_receive(&bed->sim, bed->outbox, count, bed->now_us);
     }
-    bed->now_us += bed->poll_ms * 1000u;
-    count = sim_transmit(&bed->sim, bed->now_us, bytes, sizeof bytes);
-    if (count > 0) {
-        (void)tmini_feed(&bed->lidar, bytes, count);
+}
+
+/* A line of a simulator holds 160 ms. */
+void bed_pause_ms(bed_t *bed, uint32_t ms)
+{
+    const uint64_t end_us = bed->now_us + ms * 1000u;
+
+    while (bed->now_us < end_us) {
+        bed->now_us += end_us - bed->now_us < 50000u ? end_us - bed->now_us : 50000u;
+        carry_bytes(bed);
     }
+}
+
+/* As port/posix does. */
+static void read_held(bed_t *bed)
+{
+    bed_held_t *const held = bed->held;
+    const size_t room = tmini_feed_room(&bed->lidar);
+    const size_t count = held->count < room ? held->count : room;
+
+    (void)tmini_feed(&bed->lidar, held->bytes, count);
+    held->count -= count;
+    memmove(held->bytes, held->bytes + count, held->count);
+    tmini_feed_held(&bed->lidar,
+                    held->count < held->reported_max ? held->count : held->reported_max);
 }
 
 void bed_step(bed_t *bed)
 {
     tmini_event_t event;
 
+    empty_outbox(bed);
+    bed->now_us += bed->poll_ms * 1000u;
     carry_bytes(bed);
+    if (bed->held != NULL) {
+        read_held(bed);
+    }
     while ((event = tmini_poll(&bed->lidar)) != TMINI_EVENT_NONE) {
         note(bed, event);
+    }
+    note_gaps(bed);
+    if (sim_mode(&bed->sim) != SIM_IDLE || (tmini_state(&bed->lidar) != TMINI_STATE_IDLE &&
+                                            tmini_state(&bed->lidar) != TMINI_STATE_UNKNOWN)) {
+        bed->busy_since_us = bed->now_us;
     }
 }
 
@@ -171,10 +321,53 @@ bool bed_scans_at(const bed_t *bed, uint16_t frequency_chz, uint32_t scans)
                                   is_row_near(bed, frequency_chz, scans));
 }
 
-bool bed_is_idle(const bed_t *bed)
+static const char *shortcoming_of_scans(const bed_t *bed)
 {
-    const tmini_state_t state = tmini_state(&bed->lidar);
+    if (sim_sound_us(&bed->sim) == SIM_NEVER) {
+        return "no reboot";
+    }
+    if (!bed_scans_at(bed, 0, SCANS)) {
+        return "no complete scans";
+    }
+    if (bed->wants_chz != 0 && sim_frequency_chz(&bed->sim) != bed->wants_chz) {
+        return "at another frequency";
+    }
+    if (bed->wants_chz != 0 && tmini_frequency_chz(&bed->lidar) != bed->wants_chz) {
+        return "the frequency is not known";
+    }
+    return bed_scans_at(bed, bed->wants_chz, SCANS) ? NULL : "not yet at the frequency";
+}
 
-    return sim_mode(&bed->sim) == SIM_IDLE &&
-           (state == TMINI_STATE_IDLE || state == TMINI_STATE_UNKNOWN);
+/* A driver that is unsure because a late byte came, or that reported a stop as failed, may be in
+ * TMINI_STATE_UNKNOWN: the lidar is idle. */
+static const char *shortcoming_of_stop(const bed_t *bed)
+{
+    if (bed->event_us[TMINI_EVENT_STOPPED] < bed->wished_us &&
+        bed->event_us[TMINI_EVENT_COMMAND_FAILED] < bed->wished_us) {
+        return "no stop was reported";
+    }
+    return bed->now_us - bed->busy_since_us >= IDLE_US ? NULL : "not idle";
+}
+
+const char *bed_shortcoming(const bed_t *bed)
+{
+    const uint64_t sound_us = sim_sound_us(&bed->sim);
+
+    if (sound_us != SIM_NEVER && sound_us > bed->now_us) {
+        return "in trouble";
+    }
+    /* Repeated in vain, a question is reported as failed. */
+    if (bed->events[TMINI_EVENT_INFO] + bed->events[TMINI_EVENT_COMMAND_FAILED] < bed->asked) {
+        return "a question was not answered";
+    }
+    return bed->wants_scans ? shortcoming_of_scans(bed) : shortcoming_of_stop(bed);
+}
+
+const char *bed_misdeed(const bed_t *bed)
+{
+    if (bed->mixed > 0) {
+        return "a scan of two revolutions";
+    }
+    return bed->most_per_second > MOST_EVENTS_PER_SECOND ? "more than ten events in a second"
+                                                         : bed->unheard;
 }

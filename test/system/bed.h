@@ -2,11 +2,11 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* A program, the library and an unkind lidar (simulator.h: on_event, sim_befall()) in virtual time,
- * as light as can be: thousands of seconds per second. It keeps what the program sees. For checks
- * against the bytes on the line there is world.h.
+ * as light as can be: thousands of seconds per second. It keeps what the program wants and sees.
+ * For checks against the bytes on the line there is world.h.
  *
- * All of it is in one struct without pointers to elsewhere, so that a copy of it, put back in the
- * same place, goes on from there. */
+ * All of it is in one struct, so that a copy of it, put back in the same place, goes on from
+ * there. */
 
 #ifndef BED_H
 #define BED_H
@@ -18,20 +18,38 @@
 #define BED_EVENTS 32u
 #define BED_RECENT 12u
 #define BED_ROW 8u
+#define BED_HELD_MAX 65536u
+
+/* Bytes that a system below the program holds; it reports at most `reported_max` of them. */
+typedef struct {
+    size_t reported_max;
+    size_t count;
+    uint8_t bytes[BED_HELD_MAX];
+} bed_held_t;
 
 typedef struct {
-    /* To be set before bed_init(). */
-    uint32_t poll_ms;   /* Between two rounds of polls. 0: 1. */
-    uint32_t write_max; /* Bytes that the port takes per call. 0: all. */
-    tmini_config_t config;
+    /* To be set between bed_prepare() and bed_init(). */
+    uint32_t poll_ms;      /* Between two rounds of polls. */
+    uint32_t write_max;    /* Bytes that the port takes per call. 0: all. */
+    uint32_t work_ms;      /* What the program does with each scan takes this long. */
+    uint32_t flip_one_in;  /* Of the bytes from the lidar, one in so many is damaged. 0: none. */
+    bed_held_t *held;      /* The caller's. NULL: bytes come by an interrupt. */
+    tmini_config_t config; /* Without buffers and port. */
     tmini_timing_t timing;
 
     sim_t sim;
     tmini_t lidar;
     tmini_port_t port;
+    random_t random;
     uint64_t now_us;
     uint8_t outbox[16]; /* Bytes that reach the lidar with the next step. */
     size_t outbox_count;
+
+    /* What the program wants. */
+    bool wants_scans;
+    uint16_t wants_chz; /* 0: any. */
+    uint32_t asked;
+    uint64_t wished_us; /* The latest wish. */
 
     /* What the program has seen. */
     uint32_t events[BED_EVENTS];
@@ -40,24 +58,45 @@ typedef struct {
     uint32_t recent;                /* How many there have been. */
     uint32_t most_per_second;       /* The most of these in any second. */
     tmini_scan_t scan;              /* The latest; its points may have been overwritten. */
+    uint32_t small;                 /* Scans of one packet. */
+    uint32_t mixed;                 /* Scans of two revolutions, if the lidar tags them. */
     uint32_t complete;              /* Complete scans. */
+    uint64_t complete_us;           /* The latest of these. */
     uint32_t complete_in_a_row;     /* Now. */
     uint16_t row_chz[BED_ROW];      /* The frequencies of the latest of these, in a circle. */
-    uint64_t complete_us;           /* The latest complete scan. */
-    uint64_t longest_gap_us;        /* Between two of these, or since the first one. */
+    uint64_t busy_since_us;         /* The latest step at whose end the driver was not idle. */
+
+    /* Whether each gap in the scans is announced. */
+    bool flows;          /* Scans have come since the start or a gap, and no gap was announced. */
+    bool stop_sent;      /* By the driver, in this step. */
+    uint64_t heard_us;   /* When bytes came last. */
+    const char *unheard; /* The first gap that was not announced; NULL: none. */
 
     uint8_t rx[4096];
     tmini_point_t points[800];
 } bed_t;
 
-/* Defaults of the README's program, without a frequency: to be changed before bed_init(). The lidar
- * is set up by bed_init() with `sim`, idle and powered. */
+/* The README's program without a frequency, polling each millisecond. */
 void bed_prepare(bed_t *bed);
+
+/* The lidar is idle and powered. False: the library refuses the configuration. */
 bool bed_init(bed_t *bed, const sim_config_t *sim);
+
+/* A documented unit whose sensor has no noise: random numbers would take most of the time. */
+sim_config_t bed_quiet_lidar(void);
+
+/* The program's wishes. */
+tmini_status_t bed_start(bed_t *bed);
+tmini_status_t bed_stop(bed_t *bed);
+tmini_status_t bed_set_frequency(bed_t *bed, uint16_t frequency_chz);
+tmini_status_t bed_request_info(bed_t *bed);
 
 /* Time passes: bytes go both ways, then the program polls until nothing is left to do. */
 void bed_step(bed_t *bed);
 void bed_run_ms(bed_t *bed, uint32_t ms);
+
+/* The program does something else. */
+void bed_pause_ms(bed_t *bed, uint32_t ms);
 
 uint32_t bed_ms(const bed_t *bed);
 
@@ -65,11 +104,14 @@ uint32_t bed_ms(const bed_t *bed);
  * if there is none. */
 unsigned bed_event_named(const char *name);
 
-/* The latest `scans` scans, at most BED_ROW, are complete and at this frequency, within 5 %, which is
- * also the one that is set, and that the driver knows. 0: at any frequency. */
+/* The latest `scans` scans, at most BED_ROW, are complete and at this frequency, within 5 %, which
+ * is also the one that is set, and that the driver knows. 0: at any frequency. */
 bool bed_scans_at(const bed_t *bed, uint16_t frequency_chz, uint32_t scans);
 
-/* Lidar and driver are idle. The driver may be unsure, because a late byte has come. */
-bool bed_is_idle(const bed_t *bed);
+/* Why the wishes are not fulfilled yet; NULL: they are. */
+const char *bed_shortcoming(const bed_t *bed);
+
+/* What the driver must never do; NULL: it has not. */
+const char *bed_misdeed(const bed_t *bed);
 
 #endif

@@ -23,9 +23,6 @@
 #define POLL_MS 10u
 #define LIMIT_US 15000000u        /* From a sound lidar on. */
 #define REBOOT_LIMIT_US 30000000u /* Until a lidar that needs a reboot gets it. */
-#define SCANS 5u                  /* In a row, before a wish counts as fulfilled. */
-#define IDLE_US 1500000u          /* Idle, before it does. */
-#define MOST_EVENTS_PER_SECOND 10u
 #define DEPTH_MAX 3u
 #define POINTS_MAX 400u
 #define MOST_FAILURES 10u /* Printed per story. */
@@ -93,14 +90,8 @@ typedef struct {
 typedef struct {
     bed_t bed;
     const story_t *story;
-    uint32_t scene; /* The next one. */
-    uint64_t acted_us;
-    uint64_t idle_since_us;
+    uint32_t scene;     /* The next one. */
     uint64_t unkind_us; /* A lidar that needs a reboot has had no other trouble since. */
-    bool wants_scans;
-    uint16_t wants_chz;
-    uint32_t asked;
-    uint32_t answered;
     uint32_t wire_events;
     plan_t plan[DEPTH_MAX];
     uint32_t troubles;
@@ -145,23 +136,9 @@ static void on_command(void *context, uint8_t code, uint64_t now_us)
     }
 }
 
-/* A quiet sensor: random numbers would take most of the time. */
-static sim_config_t quiet_lidar(void)
-{
-    sim_config_t config = sim_default_config();
-
-    config.noise_mm = 0;
-    config.invalid_permille = 0;
-    config.flagged_permille = 0;
-    config.lone_packet_permille = 0;
-    config.angle_jitter_q6 = 0;
-    config.seed = 7;
-    return config;
-}
-
 static void begin(const story_t *story)
 {
-    const sim_config_t config = quiet_lidar();
+    const sim_config_t config = bed_quiet_lidar();
     const sim_observer_t observer = {.on_command = on_command, .on_event = on_event};
 
     memset(&run, 0, sizeof run);
@@ -174,32 +151,26 @@ static void begin(const story_t *story)
     }
     sim_observe(&run.bed.sim, &observer);
     run.story = story;
-    run.wants_chz = story->frequency_chz;
 }
 
-static void act(const scene_t *scene)
+static tmini_status_t act(const scene_t *scene)
 {
-    tmini_status_t status = TMINI_OK;
-
     switch (scene->act) {
     case START:
-        status = tmini_start(&run.bed.lidar);
-        run.wants_scans = true;
-        break;
+        return bed_start(&run.bed);
     case STOP:
-        status = tmini_stop(&run.bed.lidar);
-        run.wants_scans = false;
-        break;
+        return bed_stop(&run.bed);
     case SET:
-        status = tmini_set_frequency(&run.bed.lidar, scene->frequency_chz);
-        run.wants_chz = scene->frequency_chz;
-        break;
+        return bed_set_frequency(&run.bed, scene->frequency_chz);
     default:
-        status = tmini_request_info(&run.bed.lidar);
-        run.asked++;
-        break;
+        return bed_request_info(&run.bed);
     }
-    run.acted_us = run.bed.now_us;
+}
+
+static void act_next(void)
+{
+    const tmini_status_t status = act(&run.story->scenes[run.scene++]);
+
     if (status != TMINI_OK) {
         printf("a wish was refused: %s\n", tmini_status_name(status));
         exit(2);
@@ -227,17 +198,6 @@ static void tell_events(const uint32_t *before)
     }
 }
 
-static void note_wishes(void)
-{
-    if (!bed_is_idle(&run.bed)) {
-        run.idle_since_us = run.bed.now_us;
-    }
-    run.answered = run.bed.events[TMINI_EVENT_INFO] + run.bed.events[TMINI_EVENT_COMMAND_FAILED];
-    if (sim_sound_us(&run.bed.sim) != SIM_NEVER) {
-        run.unkind_us = sim_sound_us(&run.bed.sim);
-    }
-}
-
 static void step(void)
 {
     uint32_t before[BED_EVENTS];
@@ -247,34 +207,19 @@ static void step(void)
     }
     bed_step(&run.bed);
     while (has_scene() && bed_ms(&run.bed) >= run.story->scenes[run.scene].at_ms) {
-        act(&run.story->scenes[run.scene++]);
+        act_next();
     }
-    note_wishes();
+    if (sim_sound_us(&run.bed.sim) != SIM_NEVER) {
+        run.unkind_us = sim_sound_us(&run.bed.sim);
+    }
     if (is_told) {
         tell_events(before);
     }
 }
 
-/* A lidar that cannot be stopped is reported (tmini_stop()); here it is idle in the end. */
-static bool is_stop_reported(void)
-{
-    return run.bed.event_us[TMINI_EVENT_STOPPED] >= run.acted_us ||
-           run.bed.event_us[TMINI_EVENT_COMMAND_FAILED] >= run.acted_us;
-}
-
 static bool is_fulfilled(void)
 {
-    const uint64_t sound_us = sim_sound_us(&run.bed.sim);
-
-    if (has_scene() || (sound_us > run.bed.now_us && sound_us != SIM_NEVER) ||
-        run.answered < run.asked) {
-        return false;
-    }
-    if (!run.wants_scans && !is_stop_reported()) {
-        return false;
-    }
-    return run.wants_scans ? sound_us != SIM_NEVER && bed_scans_at(&run.bed, run.wants_chz, SCANS)
-                           : run.bed.now_us - run.idle_since_us >= IDLE_US;
+    return !has_scene() && bed_shortcoming(&run.bed) == NULL;
 }
 
 static uint64_t later(uint64_t a, uint64_t b)
@@ -282,38 +227,17 @@ static uint64_t later(uint64_t a, uint64_t b)
     return a > b ? a : b;
 }
 
-/* Why the wish is not fulfilled. */
-static const char *shortcoming(void)
-{
-    const bed_t *const bed = &run.bed;
-
-    if (run.answered < run.asked) {
-        return "a question was not answered";
-    }
-    if (!run.wants_scans) {
-        return "not idle";
-    }
-    if (!bed_scans_at(bed, 0, SCANS)) {
-        return "no complete scans";
-    }
-    return sim_frequency_chz(&bed->sim) != run.wants_chz ? "at another frequency"
-                                                         : "the frequency is not known";
-}
-
 /* NULL: goes on. Otherwise what is wrong. */
 static const char *complaint(void)
 {
-    const uint64_t since_us = later(run.acted_us, run.unkind_us);
-    const bool needs_reboot = sim_sound_us(&run.bed.sim) == SIM_NEVER && run.wants_scans;
+    const uint64_t since_us = later(run.bed.wished_us, run.unkind_us);
+    const bool needs_reboot = sim_sound_us(&run.bed.sim) == SIM_NEVER && run.bed.wants_scans;
     const uint64_t limit_us = needs_reboot ? REBOOT_LIMIT_US : LIMIT_US;
 
-    if (run.bed.most_per_second > MOST_EVENTS_PER_SECOND) {
-        return "more than ten events in a second";
+    if (bed_misdeed(&run.bed) != NULL) {
+        return bed_misdeed(&run.bed);
     }
-    if (!has_scene() && run.bed.now_us > since_us + limit_us) {
-        return needs_reboot ? "no reboot" : shortcoming();
-    }
-    return NULL;
+    return !has_scene() && run.bed.now_us > since_us + limit_us ? bed_shortcoming(&run.bed) : NULL;
 }
 
 /* ---- Exploring ---- */
