@@ -211,7 +211,7 @@ static void damage(bed_t *bed, uint8_t *bytes, size_t count)
 {
     for (size_t i = 0; i < count && bed->flip_one_in > 0; i++) {
         if (random_below(&bed->random, bed->flip_one_in) == 0) {
-            bytes[i] ^= 0x10u;
+            bytes[i] ^= (uint8_t)(1u << random_below(&bed->random, 8));
         }
     }
 }

@@ -29,11 +29,16 @@ target_link_libraries(tmini_bed PUBLIC tmini_simulator tmini::tmini)
 target_compile_options(tmini_bed PRIVATE -O2 -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
 set_target_properties(tmini_bed PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 
-# At every event on the wire every trouble, and every pair of them. Triples by hand: explore --depth 3.
-add_executable(explore EXCLUDE_FROM_ALL explore.c)
-target_link_libraries(explore PRIVATE tmini_bed)
-target_compile_options(explore PRIVATE -O2 -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
-set_target_properties(explore PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
+# explore: at every event on the wire every trouble, and every pair of them (triples by hand).
+# programs: as users write them, at every moment at which power may come or fail.
+foreach(program explore programs)
+    add_executable(${program} EXCLUDE_FROM_ALL ${program}.c)
+    target_link_libraries(${program} PRIVATE tmini_bed)
+    target_compile_options(${program} PRIVATE -O2 -Wall -Wextra
+        $<$<BOOL:${TMINI_WERROR}>:-Werror>)
+    set_target_properties(${program} PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
+endforeach()
+tmini_add_check(programs system NEEDS programs COMMAND programs)
 tmini_add_check(explore system NEEDS explore COMMAND explore --expected --depth 1)
 foreach(story 10hz 6.1hz no-wish)
     tmini_add_check(explore.${story} system NEEDS explore COMMAND explore --expected ${story})
