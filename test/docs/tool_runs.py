@@ -18,7 +18,7 @@ from pathlib import Path
 
 from documents import ROOT, parse
 
-NOT_RUN = {"view": "wants a terminal; test_host_view has one"}
+NOT_RUN = {"view": "wants a terminal; test_view.py has one"}
 
 
 def commands():

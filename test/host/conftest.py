@@ -27,6 +27,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import termios
 import time
 from pathlib import Path
 
@@ -53,7 +54,7 @@ class Clock:
     def __init__(self, library, path):
         self.library = ctypes.CDLL(library, use_errno=True)
         self.library.shared_clock_now_ns.restype = ctypes.c_int64
-        ctypes.c_int.in_dll(self.library, "shared_clock_patience_s").value = PATIENCE_S
+        self.patience = ctypes.c_int.in_dll(self.library, "shared_clock_patience_ms")
         self.path, self.preload = path, library
 
     def begin(self):
@@ -73,19 +74,28 @@ class Clock:
     def now_ms(self):
         return self.library.shared_clock_now_ns() // 1000000
 
-    def wait(self, fds, timeout_ms=-1):
-        """The descriptors with input, waiting at most this long; fails when nothing can ever happen."""
+    def wait(self, fds, timeout_ms=-1, patience_s=PATIENCE_S):
+        """The descriptors with input, waiting at most this long; fails when nothing happens in so much real time."""
+        self.patience.value = int(1000 * patience_s)
         entries = (Poll * len(fds))(*[Poll(fd, 1, 0) for fd in fds])
         if self.library.poll(entries, len(fds), int(timeout_ms)) < 0:
             number = ctypes.get_errno()
-            assert number != errno.ETIME, "nothing happens any more"
-            raise OSError(number, os.strerror(number))
+            raise OSError(number, "nothing happens any more" if number == errno.ETIME else os.strerror(number))
         return [entry.fd for entry in entries if entry.revents]
 
     def sleep(self, milliseconds):
         until = self.now_ms() + milliseconds
         while self.now_ms() < until:
             self.wait([], until - self.now_ms())
+
+    def wait_for_block(self, pid):
+        """Until the program waits elsewhere than in poll(), for which the clock stands."""
+        while True:
+            try:
+                self.wait([], 1000, patience_s=0.1)
+            except OSError:
+                if Path(f"/proc/{pid}/stat").read_text(encoding="ascii").split(") ")[1][0] == "S":
+                    return
 
 
 class Watched:
@@ -94,15 +104,15 @@ class Watched:
     def __init__(self, clock):
         self.clock = clock
 
-    def wait_until(self, condition, seconds=PATIENCE_S):
-        """Reads until condition() holds; fails after this long by the shared clock."""
-        until = self.clock.now_ms() + 1000 * seconds
+    def wait_until(self, condition):
+        """Reads until condition() holds."""
+        until_s, until_ms = time.monotonic() + PATIENCE_S, self.clock.now_ms() + 2000 * PATIENCE_S
         while not condition():
-            left = until - self.clock.now_ms()
-            assert left > 0 and self.read_some(left), f"this is all that came:\n{self.all_text()}"
+            is_late = time.monotonic() > until_s or self.clock.now_ms() > until_ms
+            assert not is_late and self.read_some(), f"this is all that came:\n{self.all_text()}"
 
-    def wait_for(self, text, seconds=PATIENCE_S):
-        self.wait_until(lambda: text in self.all_text(), seconds)
+    def wait_for(self, text):
+        self.wait_until(lambda: text in self.all_text())
 
 
 class Program(Watched):
@@ -199,27 +209,21 @@ class Lidar(Program):
 
 class Screen(pyte.Screen):
     misunderstood = 0
-    coloured = 0
 
     def debug(self, *_args, **_options):
         self.misunderstood += 1
 
-    def select_graphic_rendition(self, *attributes, **options):
-        self.coloured += 1
-        super().select_graphic_rendition(*attributes, **options)
-
 
 class Terminal(Watched):
-    """A program in a terminal: `text` is what a person sees."""
-
-    OTHER_SCREEN = 1049 << 5
+    """A program in a terminal: `text` is what a person sees, `raw` what the program has printed."""
 
     def __init__(self, clock, words, environment, columns, rows, expected=True):
         super().__init__(clock)
         self.screen = Screen(columns, rows)
         self.stream = pyte.ByteStream(self.screen)
         self.raw = b""
-        self.process = pexpect.spawn(words[0], list(words[1:]), env=environment, dimensions=(rows, columns), timeout=None)
+        self.process = pexpect.spawn(words[0], list(words[1:]), env=environment,
+                                     dimensions=(rows, columns), timeout=None)
         self.process.delaybeforesend = None
         self.is_open = True
         if expected:
@@ -232,15 +236,13 @@ class Terminal(Watched):
     def all_text(self):
         return self.text
 
-    def at(self, row, column):
-        return self.screen.display[row][column]
-
-    def colour(self, row, column):
-        return self.screen.buffer[row][column].fg
-
     @property
     def is_other_screen(self):
-        return self.OTHER_SCREEN in self.screen.mode
+        """Whether it draws on the screen that a terminal has for such programs."""
+        return self.raw.rfind(b"\033[?1049h") > self.raw.rfind(b"\033[?1049l")
+
+    def settings(self):
+        return termios.tcgetattr(self.process.child_fd)
 
     def read_some(self, timeout_ms=-1):
         for fd in self.clock.wait([self.process.child_fd], timeout_ms):
@@ -253,12 +255,9 @@ class Terminal(Watched):
             self.is_open = bool(more)
         return self.is_open
 
-    def press(self, keys):
-        self.process.send(keys)
-
-    def resize(self, columns, rows):
-        self.screen.resize(rows, columns)
-        self.process.setwinsize(rows, columns)
+    def wait_for(self, text):
+        super().wait_for(text)
+        self.wait(1)  # Until the whole screen has been drawn: only then the clock moves.
 
     def wait(self, milliseconds):
         """Shows what comes in this time."""
@@ -266,14 +265,25 @@ class Terminal(Watched):
         while self.is_open and self.clock.now_ms() < until:
             self.read_some(until - self.clock.now_ms())
 
+    def press(self, keys):
+        self.process.send(keys)
+
+    def resize(self, columns, rows):
+        self.screen.resize(rows, columns)
+        self.process.setwinsize(rows, columns)
+
     def finish(self):
+        """Waits for its end; the exit status, or the signal that ended it, below 0."""
         while self.is_open:
             self.read_some()
         self.process.wait()
-        return self.process.exitstatus
+        return -self.process.signalstatus if self.process.signalstatus else self.process.exitstatus
 
     def kill(self):
-        self.process.close(force=True)
+        if self.process.isalive():
+            self.process.kill(signal.SIGKILL)
+        self.process.ptyproc.delayafterclose = 0
+        self.process.close(force=False)
 
 
 @pytest.fixture(scope="session")

@@ -52,7 +52,7 @@ static clock_file_t *shared;
 static int lock_fd;
 
 /* The real time after which poll() gives up with ETIME; 0: never. For the test itself. */
-int shared_clock_patience_s;
+int shared_clock_patience_ms;
 
 void shared_clock_open(const char *path);
 void shared_clock_expect(pid_t pid);
@@ -66,6 +66,13 @@ static int real_clock(clockid_t clock, struct timespec *now)
         memcpy(&function, &symbol, sizeof function);
     }
     return function(clock, now);
+}
+
+static int64_t real_ms(void)
+{
+    struct timespec now;
+    (void)real_clock(CLOCK_MONOTONIC, &now);
+    return now.tv_sec * INT64_C(1000) + now.tv_nsec / 1000000;
 }
 
 static int64_t now_ns(void)
@@ -211,10 +218,8 @@ static int wait_together(struct pollfd *fds, nfds_t count, int timeout_ms)
 {
     const int64_t until_ns = timeout_ms < 0 ? NEVER : now_ns() + timeout_ms * INT64_C(1000000);
     struct timespec step = {0, LOOK_NS};
-    struct timespec begun;
-    struct timespec now;
+    const int64_t begun_ms = real_ms();
     int ready = 0;
-    (void)real_clock(CLOCK_MONOTONIC, &begun);
     do {
         const uint64_t events = __atomic_load_n(&shared->events, __ATOMIC_SEQ_CST);
         ready = ppoll(fds, count, &step, NULL);
@@ -223,9 +228,8 @@ static int wait_together(struct pollfd *fds, nfds_t count, int timeout_ms)
                            : step.tv_nsec * 2 < LOOK_MAX_NS ? step.tv_nsec * 2
                                                             : LOOK_MAX_NS;
         }
-        (void)real_clock(CLOCK_MONOTONIC, &now);
-        if (ready == 0 && shared_clock_patience_s > 0 &&
-            now.tv_sec - begun.tv_sec > shared_clock_patience_s) {
+        if (ready == 0 && shared_clock_patience_ms > 0 &&
+            real_ms() - begun_ms > shared_clock_patience_ms) {
             errno = ETIME;
             ready = -1;
         }

@@ -65,7 +65,8 @@ def test_all_eight_sectors_are_shown(lidar, robot):
 
 
 @pytest.mark.parametrize("options, fault", [
-    (["--covered"], "data"), (["--covered", "--no-ct"], "data"), (["--blocked"], "encoder"), (["--health", "0x10"], "LD"),
+    (["--covered"], "data"), (["--covered", "--no-ct"], "data"),
+    (["--blocked"], "encoder"), (["--health", "0x10"], "LD"),
 ], ids=["covered", "covered_and_not_reported", "blocked", "ranges_come"])
 def test_a_robot_whose_lidar_is_faulty_stands(lidar, robot, options, fault):
     run = robot(lidar(*options).port)

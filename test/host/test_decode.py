@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""`tmini decode` prints what a plain reading of the protocol finds in intact and in damaged recordings. Also: how the
+tool takes options, and what it says when there is nothing to decode."""
+
+import json
+import resource
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+from conftest import TMINI
+from lidar_bytes import MAGIC, damaged, decode, packet, points, timed
+
+HEADER = "scan,packet,point,angle_deg,distance_mm,intensity,flag,time_ms,frequency_hz\n"
+ROOM = "recordings/sim-6hz.bin"
+RECORDINGS = sorted(path.name for path in (Path(__file__).parents[1] / "recordings").glob("*.bin"))
+COMMANDS = ("info", "health", "frequency", "reboot", "scan", "record", "decode", "plot", "view", "ports", "check")
+
+START = packet([(1000, 10, 0)], 0, 0, ct=121)
+THREE = packet([(1000, 10, 0), (0, 0, 0), (3000, 30, 2)], 224, 22912)  # 3.5 degrees to 358.
+ONE_SCAN = START + THREE + START
+
+
+@pytest.fixture
+def fails(tmini):
+    """The tool must end with this status and a message that has this."""
+    def check(status, reason, *words, **options):
+        run = tmini(*words, **options)
+        assert run.status == status
+        assert "tmini: " in run.err and reason in run.err
+        return run
+    return check
+
+
+# ---- Rows, checked by another reading of the protocol
+
+
+def rows(packets):
+    """The table, as the tool prints it. 4000 samples per second give the time."""
+    scan = samples = 0
+    frequency = ""
+    for number, content in enumerate(packets):
+        if content[2] & 1:
+            scan += 1
+            frequency = f"{(content[2] >> 1) / 10:.2f}" if content[2] >> 1 else ""
+        for i, (angle, distance, intensity, flag) in enumerate(points(content)):
+            degrees = f"{angle * 15625 // 1000000}.{angle * 15625 % 1000000:06}"  # 1/64 degree is 0.015625 degrees.
+            yield f"{scan},{number},{i},{degrees},{distance},{intensity},{flag},{samples // 4},{frequency}\n"
+        samples += content[3]
+
+
+def expect_rows(tmini, content, max_samples=80):
+    Path("some.bin").write_bytes(content)
+    run = tmini("decode", "some.bin", "--csv", "--stats", "stats.json", "--max-samples", max_samples)
+    packets, counts = decode(content, max_samples)
+    assert run.status == (0 if packets else 1)
+    assert run.out == HEADER + "".join(rows(packets))
+    assert json.loads(Path("stats.json").read_text(encoding="ascii")) == counts
+
+
+@pytest.mark.parametrize("name", RECORDINGS)
+def test_a_recording_is_decoded_as_the_protocol_says(tmini, name):
+    expect_rows(tmini, Path("recordings", name).read_bytes())
+
+
+@pytest.mark.parametrize("seed", range(1, 41))
+def test_a_damaged_recording_is_decoded_as_the_protocol_says(tmini, seed):
+    expect_rows(tmini, damaged(Path(ROOM).read_bytes()[:12000], seed, seed), (39, 80, 255)[seed % 3])
+
+
+def test_a_recording_cut_anywhere_is_examined_to_its_last_byte(tmini):
+    content = Path(ROOM).read_bytes()
+    for cut in range(300, 440, 3):
+        expect_rows(tmini, content[:cut])
+
+
+# The false header claims 80 samples, but the recording ends earlier: the bytes after the header are parsed again.
+def test_a_packet_after_a_false_header_at_the_end_is_found(tmini):
+    expect_rows(tmini, bytes.fromhex("AA550050010001000000") + Path("recordings/manual-packet.bin").read_bytes())
+
+
+# The manual's packet: 339.15625 degrees to 0.765625 degrees.
+def test_a_recording_can_come_from_standard_input(tmini):
+    with open("recordings/manual-packet.bin", "rb") as stdin:
+        run = tmini("decode", "-", "--csv", stdin=stdin)
+    assert run.status == 0
+    assert run.out.startswith(HEADER + "0,0,0,339.156250,11842,1,0,0,\n0,0,1,340.359375,11819,1,0,0,\n")
+    assert run.out.endswith("\n0,0,18,0.765625,11135,1,2,0,\n")
+    assert run.err == "packets 1, start packets 0, points 19, checksum errors 0, bytes 67, bytes skipped 0\n"
+
+
+# ---- Scans
+
+
+def test_json_is_an_object_per_line_for_each_scan(tmini, folder):
+    (folder / "one.bin").write_bytes(ONE_SCAN)
+    run = tmini("decode", "one.bin", "--json", "--quiet")
+    assert (run.status, run.err) == (0, "")
+    assert run.out == (
+        '{"scan":1,"time_ms":0,"frequency_hz":6.00,"complete":true,"packets":2,'
+        '"gaps":0,"dropped":0,"checksum_errors":0,"faults":null,"points":['
+        '[0.000000,1000,10,0],[3.500000,1000,10,0],[180.750000,0,0,0],[358.000000,3000,30,2]]}\n'
+        '{"scan":2,"time_ms":1,"frequency_hz":6.00,"complete":false,"packets":1,'
+        '"gaps":0,"dropped":0,"checksum_errors":0,"faults":null,"points":['
+        '[0.000000,1000,10,0]]}\n')
+
+
+def test_json_reports_the_health_bits_when_the_unit_does(tmini):
+    assert '"faults":0,' in tmini("decode", ROOM, "--json").out
+
+
+def test_a_dash_is_standard_output_for_the_counters(tmini, folder):
+    (folder / "one.bin").write_bytes(ONE_SCAN)
+    assert '\n{"packets":3,"start_packets":2,' in tmini("decode", "one.bin", "--stats", "-").out
+
+
+# ---- Summary
+
+
+@pytest.mark.parametrize("name, lines", [
+    ("sim-6hz.bin", [
+        "scans       8 complete; the next one has begun\n",  # Nothing is "cut short".
+        "points      7133, 6934 of them with a distance; 1037 before the first start",
+        "frequency   3.9 Hz to 6.0 Hz\n", " deg, behind right (scan 8)\n",
+        "0 wrong checksums, 0 stray bytes between packets\n", "health      healthy\n",
+        "made on 2026-03-17, serial 2026031700012345\n"]),
+    # The unit reports its health, but no turn is complete.
+    ("sim-6hz-damaged.bin", ["health      unknown: no revolution arrived whole\n", " packets damaged ("]),
+    ("sim-10hz-plain.bin", ["health      not reported: this unit sends no information within the stream\n"]),
+])
+def test_without_a_format_a_person_gets_a_summary(tmini, name, lines):
+    run = tmini("decode", "recordings/" + name)
+    assert run.status == 0
+    for line in lines:
+        assert line in run.out
+
+
+# A gap counts as one damaged packet per 130 bytes, rounded, but at least as one. A small share is rounded, but never to
+# nothing.
+@pytest.mark.parametrize("packets, gap, words", [
+    (3, 1, ", 1 stray byte between packets: about 1 packet damaged (25.0 %)\n"),
+    (3, 194, ", 194 stray bytes between packets: about 1 packet damaged (25.0 %)\n"),
+    (3, 195, ", 195 stray bytes between packets: about 2 packets damaged (40.0 %)\n"),
+    (3, 324, ": about 2 packets damaged (40.0 %)\n"),
+    (3, 325, ": about 3 packets damaged (50.0 %)\n"),
+    (665, 1, ": about 1 packet damaged (0.2 %)\n"),        # 1 of 666 is 0.1502 %.
+    (666, 1, ": about 1 packet damaged (0.1 %)\n"),        # 1 of 667 is 0.1499 %.
+    (1999, 1, ": about 1 packet damaged (0.1 %)\n"),       # 1 of 2000 is 0.05 %.
+    (2000, 1, ": about 1 packet damaged (under 0.1 %)\n"),
+    (2000, 0, ", 0 stray bytes between packets\n"),
+])
+def test_the_bytes_of_a_gap_show_how_many_packets_are_damaged(tmini, folder, packets, gap, words):
+    one = packet([(1000, 10, 0)], 224, 224)
+    (folder / "gap.bin").write_bytes(one + bytes(gap) + (packets - 1) * one)
+    assert words in tmini("decode", "gap.bin").out
+
+
+def test_a_frequency_that_was_not_reported_is_unknown(tmini, folder):
+    start = packet([(1000, 10, 0)], 0, 0, ct=1)
+    (folder / "one.bin").write_bytes(start + THREE + start)
+    run = tmini("decode", "one.bin")
+    assert "frequency   unknown\n" in run.out and "0.0 Hz" not in run.out
+
+
+# ---- Timed recordings
+
+
+# Three packets, at 0.5, 70.5 and 70.7 seconds, the second one in two chunks.
+TIMED = timed((500000, START), (20000, THREE[:5]), (69980000, THREE[5:]), (200000, START))
+
+
+def test_a_timed_recording_reports_when_its_packets_came(tmini, folder):
+    (folder / "timed.tmini").write_bytes(TIMED)
+    run = tmini("decode", "timed.tmini", "--csv")
+    assert run.status == 0
+    for row in ("1,0,0,0.000000,1000,10,0,500,6.00\n", "1,1,2,358.000000,3000,30,2,70500,6.00\n",
+                "2,2,0,0.000000,1000,10,0,70700,6.00\n"):
+        assert "\n" + row in run.out
+    assert run.err == "packets 3, start packets 2, points 5, checksum errors 0, bytes 45, bytes skipped 0\n"
+
+
+@pytest.mark.parametrize("cut", range(len(MAGIC), len(TIMED)))
+def test_a_timed_recording_may_be_cut_anywhere(tmini, folder, cut):
+    (folder / "timed.tmini").write_bytes(TIMED[:cut])
+    assert tmini("decode", "timed.tmini").status == (0 if cut >= len(MAGIC) + 6 + len(START) else 1)
+
+
+# ---- Nothing to decode, nowhere to print
+
+
+def test_what_cannot_be_read_or_written_is_named(fails, folder):
+    (folder / "empty").touch()
+    fails(1, "nowhere.bin: No such file", "decode", "nowhere.bin")
+    fails(1, "nowhere.bin: No such file", "plot", "nowhere.bin", "-o", "x.svg")
+    fails(1, "is empty", "decode", "empty")
+    fails(1, "Is a directory", "decode", "recordings")
+    assert fails(1, "no lidar packet in", "decode", "recordings/README.md", "--csv").out == HEADER
+    fails(1, "no lidar packet in", "plot", "recordings/README.md", "-o", "x.svg")
+    fails(1, "cannot write /nowhere/stats", "decode", ROOM, "--csv", "--stats", "/nowhere/stats")
+
+
+# `head` closes the pipe early. A program that ignores SIGPIPE ends as one that it has ended, for the shell.
+@pytest.mark.parametrize("is_ignored", [False, True])
+def test_a_closed_pipe_ends_the_program_at_once_and_silently(folder, is_ignored):
+    (folder / "big.bin").write_bytes(2500 * Path(ROOM).read_bytes()[:26000])
+    tool = subprocess.Popen([TMINI, "decode", "big.bin", "--csv"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                            restore_signals=not is_ignored)
+    assert tool.stdout.readline().decode() == HEADER
+    tool.stdout.close()
+    assert tool.stderr.read() == b""
+    assert tool.wait(60) == -signal.SIGPIPE
+    (folder / "big.bin").unlink()
+
+
+def test_closed_output_is_a_failure_and_not_another_file(folder):
+    run = subprocess.run(["/bin/sh", "-c", f"'{TMINI}' decode {ROOM} >&-"], stderr=subprocess.PIPE, check=False)
+    assert (run.returncode, run.stderr) == (1, b"tmini: cannot write to standard output\n")
+
+
+# The recording is larger than the memory that the tool may have.
+@pytest.mark.skipif(b"__asan_init" in Path(TMINI).read_bytes(), reason="a sanitizer reserves more than it uses")
+def test_a_long_recording_is_decoded_in_constant_memory(folder):
+    content = Path(ROOM).read_bytes()
+    with open("big.bin", "wb") as file:
+        for _ in range(100000000 // len(content) + 1):
+            file.write(content)
+    limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (60000000, 60000000))
+    with open("big.bin", "rb") as file:
+        run = subprocess.run([TMINI, "decode", "-"], stdin=file, stdout=subprocess.PIPE, preexec_fn=limit, check=True)
+    Path("big.bin").unlink()
+    assert b" 812060 packets," in run.stdout
+
+
+# ---- Words and options
+
+
+@pytest.mark.parametrize("words, reason", [
+    (["decode"], "decode what?"),
+    (["decode", "--speed"], "speed"),
+    (["decode", "--speed"], "See tmini decode --help"),
+    (["--speed"], "See tmini COMMAND --help"),
+    (["decode", "-qx"], "x"),
+    (["decode", "--stats"], "stats"),
+    (["decode", "--csv=1"], "csv"),
+    (["decode", "--s"], "s"),  # Ambiguous.
+    (["decode", "--port", "x"], "no option --port"),
+    (["decode", "a", "b"], 'unexpected "b"'),
+    (["decode", "a", "b", "c"], 'unexpected "b"'),
+    (["decode", "a", "--csv", "--json"], "not both"),
+    (["decode", "a", "--max-samples", "0"], '"0" is not a number from 1 to 255'),
+    (["decode", "a", "--max-samples=256"], '"256" is not a number'),
+    (["scna"], "did you mean tmini scan?"),
+    (["scan", "--cuont"], "did you mean --count?"),
+    (["help", "walk"], 'no command "walk"'),
+    (["fly"], 'there is no command "fly"'),
+    (["fly"], "`tmini help` lists them all"),
+])
+def test_wrong_usage_ends_with_2_and_says_why(fails, words, reason):
+    fails(2, reason, *words)
+
+
+def test_without_a_word_the_tool_lists_its_commands(tmini):
+    run = tmini()
+    assert run.status == 2 and "tmini record" in run.err
+
+
+@pytest.mark.parametrize("words", [
+    ["decode", ROOM, "--stats", "stats", "-q"],
+    ["decode", "-q", "--sta", "stats", ROOM],
+    ["-q", "--stats", "stats", "decode", ROOM],
+    ["--quiet", "decode", "--stat", "stats", "--", ROOM],
+])
+def test_options_may_be_short_joined_abbreviated_and_anywhere(tmini, environment, monkeypatch, words):
+    monkeypatch.setenv("POSIXLY_CORRECT", "1")  # Makes getopt() stop at the first operand.
+    assert tmini(*words).status == 0
+    assert Path("stats").read_text(encoding="ascii").startswith('{"packets":190,')
+
+
+def test_two_dashes_end_the_options(fails):
+    fails(1, "cannot open -q", "decode", "--", "-q")
+
+
+@pytest.mark.parametrize("words, beginning", [
+    (["--version"], "tmini 1."), (["-V"], "tmini 1."), (["scan", "-V"], "tmini 1."), (["check", "--vers"], "tmini 1."),
+    (["version"], "tmini 1."), (["help", "scan"], "tmini scan "),
+])
+def test_version_and_help_work_with_and_without_a_command(tmini, words, beginning):
+    run = tmini(*words)
+    assert run.status == 0 and run.out.startswith(beginning)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_explains_itself(tmini, command):
+    own = tmini(command, "--help")
+    assert own.status == 0 and own.out.startswith(f"tmini {command} ") and "--help" in own.out
+    for words in (["--help"], ["help"]):
+        run = tmini(*words)
+        assert run.status == 0 and f"tmini {command} " in run.out

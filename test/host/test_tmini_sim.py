@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""The program tmini-sim from outside: usage, pseudo-terminal, socket, lines, recordings."""
+
+import os
+import signal
+import socket
+import termios
+from pathlib import Path
+
+import pytest
+from conftest import TMINI_SIM
+from lidar_bytes import INFORMATION
+
+START, STOP, ASK_INFORMATION, ASK_FREQUENCY = b"\xA5\x60", b"\xA5\x65", b"\xA5\x90", b"\xA5\x0D"
+SIX_HERTZ = bytes.fromhex("A55A0400000004 58020000")
+
+
+@pytest.fixture
+def sim(start):
+    return lambda *words, **options: start(*words, program=TMINI_SIM, **options)
+
+
+class Client:
+    """One end of the line; commands go out, and what comes within 5 s is received."""
+
+    def __init__(self, clock, port):
+        self.clock, self.socket = clock, None
+        if port.startswith("tcp:"):
+            host, number = port[4:].split(":")
+            self.socket = socket.create_connection((host, int(number)))
+            self.fd = self.socket.fileno()
+        else:
+            self.fd = os.open(port, os.O_RDWR | os.O_NOCTTY)
+
+    def send(self, command):
+        assert os.write(self.fd, command) == len(command)
+
+    def receive(self, wanted, timeout_ms=5000):
+        received = b""
+        while len(received) < wanted and self.clock.wait([self.fd], timeout_ms):
+            received += (more := os.read(self.fd, wanted - len(received)))
+            if not more:
+                break
+        return received
+
+    def ask(self, command, reply):
+        self.send(command)
+        assert self.receive(len(reply)) == reply
+
+    def close(self):
+        if self.socket:
+            self.socket.close()
+        else:
+            os.close(self.fd)
+
+
+@pytest.fixture
+def client(clock):
+    return lambda port: Client(clock, port)
+
+
+# ---- Usage
+
+
+@pytest.mark.parametrize("words", [
+    ["--help"], ["-h"], ["-V"], ["--vers"], ["--writ=/dev/null", "-s1"], ["--seco", "1", "--write", "/dev/null"]])
+def test_options_may_be_short_joined_and_abbreviated(sim, words):
+    assert sim(*words).finish().status == 0
+
+
+@pytest.mark.parametrize("words", [
+    "", "--what", "--pty --tcp 0", "--tcp", "--tcp 70000", "--pty --frequency 4.9", "--pty --frequency fast",
+    "--pty --fault drop", "--pty --fault dropp=1e-4", "--pty --fault drop=2", "--pty --speed 0", "--pty --seed -1",
+    "--pty --health 0x40", "--pty --health -1", "--pty --health ill", "--write /dev/null", "--pty=yes", "--pty word",
+    "--s 1",  # --samples, --seed, --seconds, --speed, --spin-up
+    "--pty --motor 0", "--pty --spin-up 61", "--write - --seconds 1 --log", "--lines --pty", "--lines --log -"])
+def test_wrong_usage_is_exit_status_2(sim, words):
+    run = sim(*words.split()).finish()
+    assert run.status == 2 and run.err.startswith("tmini-sim: ")
+
+
+@pytest.mark.parametrize("words", [
+    "--write / --seconds 1", "--write /dev/full --seconds 9", "--write /dev/null --seconds 1 --log /",
+    "--write /dev/null --seconds 9 --log /dev/full", "--write /dev/null --seconds 1 --truth /"])
+def test_a_file_that_cannot_be_written_is_exit_status_1(sim, words):
+    assert sim(*words.split()).finish().status == 1
+
+
+# ---- Pseudo-terminal and socket
+
+
+@pytest.mark.parametrize("options", [[], ["--tcp", "0"]], ids=["pty", "socket"])
+def test_clients_are_served_one_after_another_without_echo(lidar, client, options):
+    device = lidar(*options)
+    for _ in range(3):
+        one = client(device.port)
+        one.ask(ASK_INFORMATION, INFORMATION)
+        one.ask(ASK_FREQUENCY, SIX_HERTZ)
+        assert one.receive(1, 100) == b""
+        one.close()
+    assert device.end(signal.SIGTERM).status == 0
+
+
+def test_settings_of_a_client_do_not_affect_the_next_one(lidar, client, clock):
+    device = lidar()
+    one = client(device.port)
+    settings = termios.tcgetattr(one.fd)
+    settings[3] |= termios.ECHO | termios.ICANON
+    termios.tcsetattr(one.fd, termios.TCSANOW, settings)
+    clock.sleep(50)
+    one.close()
+    clock.sleep(200)
+    client(device.port).ask(ASK_FREQUENCY, SIX_HERTZ)
+
+
+def test_the_stream_goes_on_without_a_client_and_nothing_stale_is_kept(lidar, client, clock):
+    device = lidar()
+    one = client(device.port)
+    one.send(START)
+    assert len(one.receive(3000)) == 3000
+    one.close()
+    clock.sleep(500)
+    one = client(device.port)
+    assert len(one.receive(3000)) == 3000
+    one.send(STOP)
+    one.close()
+    clock.sleep(500)
+    assert client(device.port).receive(1, 100) == b""
+
+
+# On Linux all of 127.0.0.0/8 is this computer: who listens on every address has these, too.
+def test_the_socket_is_that_of_the_loopback_interface_only(lidar):
+    address, port = lidar("--tcp", "0").port[4:].split(":")
+    assert address == "127.0.0.1"
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection(("127.0.0.2", int(port)))
+
+
+def test_a_client_that_has_ended_its_sending_still_gets_its_reply(lidar, client):
+    one = client(lidar("--tcp", "0").port)
+    one.send(ASK_FREQUENCY)
+    one.socket.shutdown(socket.SHUT_WR)
+    assert one.receive(len(SIX_HERTZ)) == SIX_HERTZ
+
+
+# 13 kB per virtual second; spin-up costs one of them.
+def test_it_ends_after_the_virtual_seconds_given(lidar, client, clock):
+    device = lidar("--tcp", "0", "--speed", "50", "--seconds", "50")
+    begun = clock.now_ms()
+    one = client(device.port)
+    one.send(START)
+    assert 600000 < len(one.receive(1000000)) < 660000
+    assert device.finish().status == 0
+    assert 990 <= clock.now_ms() - begun <= 1020
+
+
+# ---- In the caller's time
+
+
+# A reply takes 3 ms of latency and 43.4 us per byte: less than the 1 s and the 10 ms given.
+def test_lines_are_answered_in_the_callers_time(sim, folder):
+    (folder / "questions").write_text("0 A590\n1000000\n1000000\n2000000 a50D\n2010000\n", encoding="ascii")
+    with open("questions", "rb") as stdin:
+        run = sim("--lines", stdin=stdin).finish()
+    assert (run.status, run.out) == (0, f"\n{INFORMATION.hex().upper()}\n\n\n{SIX_HERTZ.hex().upper()}\n")
+
+
+# ---- Recordings
+
+
+def test_the_same_options_give_the_same_recording(sim):
+    words = ["--write", "-", "--seconds", "20", "--fault", "drop=1e-4"]
+    one, other, seeded = (sim(*words, *seed).finish().raw_out for seed in ([], [], ["--seed", "2"]))
+    assert len(one) > 250000 and one == other != seeded
+
+
+# 2 s less 3 ms of latency and 200 ms before the first sample, at 4000 per second.
+def test_the_truth_has_a_row_per_sample(sim):
+    assert sim("--write", "/dev/null", "--seconds", "2", "--truth", "truth.csv").finish().status == 0
+    rows = Path("truth.csv").read_text(encoding="ascii").splitlines()
+    assert rows[0] == "packet,revolution,index,angle_q6,distance_mm,intensity,flag,intact"
+    assert rows[1].startswith("0,0,0,")
+    assert 7108 < len(rows) < 7268
+
+
+def test_the_log_has_commands_modes_faults_and_totals(lidar, client):
+    device = lidar("--tcp", "0", "--fault", "flip=0.01")
+    one = client(device.port)
+    one.send(START)
+    assert len(one.receive(1000)) == 1000
+    for command in (ASK_FREQUENCY, b"\xA5\x77", STOP):
+        one.send(command)
+    device.wait_for_log("stopping -> idle")
+    assert device.end(signal.SIGTERM).status == 0
+    for words in ("command A5 60 start\n", "command A5 0D get frequency (forbidden while scanning)\n",
+                  "command A5 77 unknown", "mode stopping -> idle\n", "fault flip begins\n",
+                  "3 commands, 1 forbidden while scanning, 1 unknown, "):
+        assert words in device.log
