@@ -39,8 +39,8 @@ def find(serial: str = "", ports: Iterable[str] | None = None) -> str:
     device information, and nothing else. A lidar that scans is not stopped: it is recognised if it
     reports its serial number while scanning, as some do at up to 8 Hz. Raises OSError if no lidar
     fits, or more than one; the text says what each port answered."""
-    names = sorted({port.device for port in comports() if (port.vid, port.pid) in _CHIPS}
-                   if ports is None else ports)
+    names: list[str] = sorted({port.device for port in comports() if (port.vid, port.pid) in _CHIPS}
+                              if ports is None else ports)
     with ThreadPoolExecutor(max(1, len(names))) as threads:
         answers = dict(zip(names, threads.map(_look, names)))
     said = "; ".join(f"{name}: {answer}" for name, answer in answers.items())

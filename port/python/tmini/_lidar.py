@@ -31,6 +31,7 @@ _CLOSE_S = 1.0
 _RING = 32768
 _BLOCK = 16384
 _POINTS = 2400  # For a turn at 2 Hz, while the motor comes up to speed.
+_UNKNOWN: int = lib.TMINI_FAULTS_UNKNOWN
 _FREQUENCY_MIN_HZ, _FREQUENCY_MAX_HZ = 6, 12
 
 
@@ -48,19 +49,21 @@ class Info:
     serial: str
 
 
-@ffi.def_extern()
 def python_write(context: Any, data: Any, count: int) -> int:
-    return ffi.from_handle(context)._write(bytes(ffi.buffer(data, count)))
+    lidar: Lidar = ffi.from_handle(context)
+    return lidar._write(bytes(ffi.buffer(data, count)))
 
 
-@ffi.def_extern()
 def python_now_ms(_context: Any) -> int:
     return int(time.monotonic() * 1000) & 0xFFFFFFFF
 
 
-@ffi.def_extern()
 def python_restart(context: Any) -> None:
     ffi.from_handle(context)._is_stale = True
+
+
+for _function in (python_write, python_now_ms, python_restart):
+    ffi.def_extern()(_function)
 
 
 class Lidar:
@@ -266,8 +269,8 @@ class Lidar:
         its health."""
         info = ffi.new("tmini_ct_info_t *")
         lib.tmini_ct_info(self._lidar, info)
-        faults = lib.tmini_faults(self._lidar)
-        return faults if faults or info.known & lib.TMINI_KNOWN_FAULTS else lib.TMINI_FAULTS_UNKNOWN
+        faults: int = lib.tmini_faults(self._lidar)
+        return faults if faults or info.known & lib.TMINI_KNOWN_FAULTS else _UNKNOWN
 
     # --------------------------------------------------------------------------------- thread
 
@@ -300,20 +303,22 @@ class Lidar:
         try:
             if self._is_stale:
                 self._drop_line()
-            if self._line is None:
-                self._open_line()
+            line = self._line
+            if line is None:
+                line = self._open_line()
                 with self._changed:
                     lib.tmini_feed_gap(self._lidar)
-            data = self._line.read()
+            data = line.read()
         except OSError:
             self._drop_line()
             self._name = None
         with self._changed:
             self._feed(data)
 
-    def _open_line(self) -> None:
+    def _open_line(self) -> Line:
         self._name = self._name or resolve(self.port)
         self._line = open_line(self._name)
+        return self._line
 
     def _drop_line(self) -> None:
         with self._changed:  # The program's wishes write, too.

@@ -38,7 +38,7 @@ class _Port:
             raise OSError(f"{name}: {error}") from error
 
     def read(self) -> bytes:
-        return self._port.read(self._port.in_waiting or 1)
+        return bytes(self._port.read(self._port.in_waiting or 1))
 
     def write(self, data: bytes) -> int:
         return self._port.write(data) or 0

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""A user's program with types, and the package itself, pass mypy --strict."""
+
+import pathlib
+import sys
+
+import pytest
+
+PACKAGE = pathlib.Path(__file__).resolve().parents[2] / "port" / "python"
+
+RIGHT = '''
+import numpy as np
+import tmini
+
+def nearest(scan: tmini.Scan) -> float:
+    ahead: tmini.Sector = scan.sectors(8)[0]
+    return float(np.nanmin(scan.ranges_m)) if ahead.is_free(0.5) else ahead.nearest_m
+
+with tmini.Lidar(tmini.find("2345"), frequency_hz=10, mask=[(170, 190)]) as lidar:
+    lidar.set_frequency(8.5)
+    for scan in lidar:
+        rate: float | None = scan.frequency_hz
+        bins: np.ndarray[tuple[int, ...], np.dtype[np.float64]] = scan.bins(360)
+        print(nearest(scan), rate, bins, scan.faults == tmini.Fault.DATA, lidar.scan_age_s)
+    newest = lidar.read(timeout=0.3)
+    if newest is not None:
+        print(newest.complete)
+
+for recorded in tmini.read("room.tmini", front=90):
+    print(recorded.times_s)
+'''
+
+WRONG = '''
+import tmini
+
+lidar = tmini.Lidar("COM3", frequency_hz="10")
+print(lidar.read().complete)
+lidar.set_speed(3)
+'''
+
+
+@pytest.fixture(scope="module")
+def mypy(tmp_path_factory):
+    run, folder = pytest.importorskip("mypy.api").run, tmp_path_factory.mktemp("mypy")
+
+    def check(program, *arguments):
+        path = folder / "program.py"
+        path.write_text(program)
+        out, errors, status = run(["--strict", "--cache-dir", str(folder / "cache"), "--python-executable",
+                                   sys.executable, *(arguments or [str(path)])])
+        return status, out + errors
+
+    return check
+
+
+def test_a_program_with_types_passes(mypy):
+    assert mypy(RIGHT) == (0, "Success: no issues found in 1 source file\n")
+
+
+def test_mistakes_are_found(mypy):
+    status, out = mypy(WRONG)
+    assert status == 1 and all(f"program.py:{line}: error" in out for line in (4, 5, 6)), out
+
+
+def test_the_package_itself_passes(mypy):
+    status, out = mypy("", "--config-file", str(PACKAGE / "pyproject.toml"), str(PACKAGE / "tmini"))
+    assert status == 0, out
