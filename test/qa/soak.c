@@ -313,7 +313,7 @@ static uint8_t expected_faults(const soak_t *soak, lidar_fault_t fault)
 
 static void expect_faults(soak_t *soak, uint8_t expected, uint64_t since_us)
 {
-    /* Without TMINI_FAULT_FREQUENCY, which test_wishes tests. */
+    /* Without TMINI_FAULT_FREQUENCY, which scripts.c tests. */
     const uint8_t faults = tmini_faults(&soak->world.lidar) & TMINI_FAULT_MASK;
     char what[60];
 

@@ -26,6 +26,7 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
         bed->outbox[bed->outbox_count++] = bytes[i];
         bed->stop_sent = bed->stop_sent || bytes[i] == STOP;
     }
+    bed->sent += (uint32_t)taken;
     return (int)taken;
 }
 
@@ -100,6 +101,7 @@ tmini_status_t bed_stop(bed_t *bed)
 {
     bed->wants_scans = false;
     bed->wished_us = bed->now_us;
+    bed->stop_us = bed->now_us;
     bed->flows = false;
     return tmini_stop(&bed->lidar);
 }
@@ -342,8 +344,8 @@ static const char *shortcoming_of_scans(const bed_t *bed)
  * TMINI_STATE_UNKNOWN: the lidar is idle. */
 static const char *shortcoming_of_stop(const bed_t *bed)
 {
-    if (bed->event_us[TMINI_EVENT_STOPPED] < bed->wished_us &&
-        bed->event_us[TMINI_EVENT_COMMAND_FAILED] < bed->wished_us) {
+    if (bed->event_us[TMINI_EVENT_STOPPED] < bed->stop_us &&
+        bed->event_us[TMINI_EVENT_COMMAND_FAILED] < bed->stop_us) {
         return "no stop was reported";
     }
     return bed->now_us - bed->busy_since_us >= IDLE_US ? NULL : "not idle";

@@ -44,12 +44,14 @@ typedef struct {
     uint64_t now_us;
     uint8_t outbox[16]; /* Bytes that reach the lidar with the next step. */
     size_t outbox_count;
+    uint32_t sent; /* Bytes to the lidar. */
 
     /* What the program wants. */
     bool wants_scans;
     uint16_t wants_chz; /* 0: any. */
     uint32_t asked;
     uint64_t wished_us; /* The latest wish. */
+    uint64_t stop_us;   /* The latest stop; 0: none. */
 
     /* What the program has seen. */
     uint32_t events[BED_EVENTS];

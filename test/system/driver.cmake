@@ -9,9 +9,6 @@ target_link_libraries(tmini_world PUBLIC tmini_simulator tmini::tmini)
 target_compile_options(tmini_world PRIVATE -O2 -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
 set_target_properties(tmini_world PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 
-tmini_add_unit_test(test_wishes
-    SOURCES test_wishes.c
-    LIBRARIES tmini_world)
 tmini_add_unit_test(test_stamps
     SOURCES test_stamps.c
     LIBRARIES tmini_test_support)
@@ -31,14 +28,19 @@ set_target_properties(tmini_bed PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 
 # explore: at every event on the wire every trouble, and every pair of them (triples by hand).
 # programs: as users write them, at every moment at which power may come or fail.
-foreach(program explore programs)
-    add_executable(${program} EXCLUDE_FROM_ALL ${program}.c)
+# scripts: wishes and what comes of them, as text. stories: random ones.
+foreach(program explore programs scripts stories)
+    add_executable(${program} EXCLUDE_FROM_ALL ${program}.c claims.c)
     target_link_libraries(${program} PRIVATE tmini_bed)
     target_compile_options(${program} PRIVATE -O2 -Wall -Wextra
         $<$<BOOL:${TMINI_WERROR}>:-Werror>)
     set_target_properties(${program} PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 endforeach()
-tmini_add_check(programs system NEEDS programs COMMAND programs)
+foreach(program programs scripts)
+    tmini_add_check(${program} system NEEDS ${program} COMMAND ${program})
+endforeach()
+tmini_add_check(stories system NEEDS stories COMMAND stories 3000)
+tmini_add_check(stories.all system ALL NEEDS stories COMMAND stories 20000)
 tmini_add_check(explore system NEEDS explore COMMAND explore --expected --depth 1)
 foreach(story 10hz 6.1hz no-wish)
     tmini_add_check(explore.${story} system NEEDS explore COMMAND explore --expected ${story})

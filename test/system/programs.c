@@ -2,19 +2,14 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Programs as a user writes them, with lidars as they are (sections 9.10 to 9.17, 9.20), at every
- * moment at which power may come or fail. Each row is a claim.
- *
- *     programs            all rows
- *     programs NAME …     these, with what is wrong
- *     programs --list */
+ * moment at which power may come or fail. Each row is a claim (claims.h). */
 
 #include "bed.h"
+#include "claims.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
-/* Rows that do fail. It is an error if one of them does not: then it is to be removed here. */
+/* Claims that fail today. */
 static const char *const expected_red[] = {
     "a_lidar_that_listens_later_is_started_once_and_soon",
     "without_a_frequency_a_lidar_that_listens_later_is_started_once_and_soon",
@@ -34,28 +29,6 @@ static const char *const expected_red[] = {
 static bed_t bed;
 static bed_held_t held;
 static sim_config_t lidar;
-
-/* ---- What is wrong with a row ---- */
-
-static char complaint[200];
-
-static bool is_right(void)
-{
-    return complaint[0] == '\0';
-}
-
-/* The first complaint counts. */
-static void expect(bool is_true, const char *format, ...)
-{
-    va_list arguments;
-
-    if (is_true || !is_right()) {
-        return;
-    }
-    va_start(arguments, format);
-    (void)vsnprintf(complaint, sizeof complaint, format, arguments);
-    va_end(arguments);
-}
 
 static void expect_good_behaviour(uint32_t moment)
 {
@@ -128,6 +101,13 @@ static void begin_together(uint32_t deaf_ms)
     sim_power(&bed.sim, true, 0);
 }
 
+static void command_lidar(uint8_t code)
+{
+    const uint8_t command[] = {0xA5, code};
+
+    sim_receive(&bed.sim, command, sizeof command, bed.now_us);
+}
+
 static void start(void)
 {
     expect(bed_start(&bed) == TMINI_OK, "start is refused");
@@ -173,18 +153,21 @@ static void power_up_together(uint16_t frequency_chz, uint32_t step_ms)
     }
 }
 
-static void power_up_at_10_hz(void)
+static void power_up_at_10_hz(const char *unused)
 {
+    (void)unused;
     power_up_together(1000, 20);
 }
 
-static void power_up_without_a_frequency(void)
+static void power_up_without_a_frequency(const char *unused)
 {
+    (void)unused;
     power_up_together(0, 20);
 }
 
-static void never_answers(void)
+static void never_answers(const char *unused)
 {
+    (void)unused;
     prepare(1000);
     lidar.never_answers = true;
     begin_together(300);
@@ -236,8 +219,9 @@ static void supply_fails_for(uint32_t off_ms, uint16_t boot_ms)
     expect_good_behaviour(off_ms);
 }
 
-static void supply_fails_for_any_time(void)
+static void supply_fails_for_any_time(const char *unused)
 {
+    (void)unused;
     static const uint16_t boots_ms[] = {100, 700, 2500};
 
     for (unsigned i = 0; i < 3 && is_right(); i++) {
@@ -264,8 +248,9 @@ static void odd_frequency_and_supply(uint16_t chz)
     }
 }
 
-static void odd_frequencies_and_supply(void)
+static void odd_frequencies_and_supply(const char *unused)
 {
+    (void)unused;
     for (uint16_t chz = 610; chz <= 630; chz += 10) {
         odd_frequency_and_supply(chz);
     }
@@ -273,8 +258,9 @@ static void odd_frequencies_and_supply(void)
 
 /* ---- A reboot helps ---- */
 
-static void only_a_reboot_helps(void)
+static void only_a_reboot_helps(const char *unused)
 {
+    (void)unused;
     prepare(1000);
     begin();
     sim_befall(&bed.sim, SIM_NO_SCANS, 0, 0);
@@ -284,8 +270,9 @@ static void only_a_reboot_helps(void)
     expect_good_behaviour(0);
 }
 
-static void a_reboot_helps_after_a_loss(void)
+static void a_reboot_helps_after_a_loss(const char *unused)
 {
+    (void)unused;
     prepare(1000);
     begin();
     start();
@@ -298,8 +285,9 @@ static void a_reboot_helps_after_a_loss(void)
     expect_good_behaviour(0);
 }
 
-static void start_packets_stop_coming(void)
+static void start_packets_stop_coming(const char *unused)
 {
+    (void)unused;
     prepare(1000);
     begin();
     start();
@@ -320,8 +308,9 @@ static void start_packets_stop_coming(void)
     expect_good_behaviour(0);
 }
 
-static void start_packets_never_come(void)
+static void start_packets_never_come(const char *unused)
 {
+    (void)unused;
     prepare(1000);
     begin();
     sim_befall(&bed.sim, SIM_NO_STARTS, 0, 0);
@@ -332,8 +321,9 @@ static void start_packets_never_come(void)
 }
 
 /* Every second packet of 40 samples is damaged, and one start packet in 16. */
-static void bad_line(void)
+static void bad_line(const char *unused)
 {
+    (void)unused;
     prepare(1000);
     lidar.tagged = false; /* Some damage is not seen. */
     begin();
@@ -355,8 +345,9 @@ static uint16_t from_slider(uint32_t i)
     return (uint16_t)(600u + (place < 600u ? place : 1200u - place));
 }
 
-static void slider(void)
+static void slider(const char *unused)
 {
+    (void)unused;
     prepare(1000);
     begin();
     start();
@@ -372,8 +363,9 @@ static void slider(void)
     expect_good_behaviour(0);
 }
 
-static void frequencies_are_rounded(void)
+static void frequencies_are_rounded(const char *unused)
 {
+    (void)unused;
     static const struct {
         uint16_t wish, set;
     } rows[] = {{847, 850}, {844, 840}, {604, 600}, {1196, 1200}, {600, 600}};
@@ -393,8 +385,9 @@ static void frequencies_are_rounded(void)
     expect(tmini_set_frequency(&bed.lidar, 1201) == TMINI_ERROR_ARGUMENT, "1201 is taken");
 }
 
-static void questions_wait(void)
+static void questions_wait(const char *unused)
 {
+    (void)unused;
     prepare(1000);
     begin();
     expect(tmini_request_info(&bed.lidar) == TMINI_OK, "info is refused");
@@ -411,8 +404,9 @@ static void questions_wait(void)
 
 /* ---- Ports ---- */
 
-static void one_byte_per_write(void)
+static void one_byte_per_write(const char *unused)
 {
+    (void)unused;
     static const uint32_t polls_ms[] = {1, 50, 99, 100, 150};
 
     for (size_t i = 0; i < sizeof polls_ms / sizeof polls_ms[0]; i++) {
@@ -430,8 +424,9 @@ static void one_byte_per_write(void)
 }
 
 /* A controller restarts while the lidar scans; bytes come for 300 ms after a stop. */
-static void any_quiet_line(void)
+static void any_quiet_line(const char *unused)
 {
+    (void)unused;
     for (uint16_t quiet_ms = 0; quiet_ms < 1000 && is_right(); quiet_ms += 5) {
         prepare(1000);
         lidar.stop_tail_ms = 300;
@@ -441,8 +436,7 @@ static void any_quiet_line(void)
             continue; /* Refused. */
         }
         sim_observe(&bed.sim, &observer);
-        const uint8_t command[] = {0xA5, SIM_COMMAND_START};
-        sim_receive(&bed.sim, command, sizeof command, 0);
+        command_lidar(SIM_COMMAND_START);
         bed_run_ms(&bed, 2000);
         start();
         bed_run_ms(&bed, 8000);
@@ -479,96 +473,45 @@ static void one_pause(size_t rx_size, uint16_t max_pause_ms, uint32_t pause_ms, 
     expect(bed.mixed == 0, "%u scans of two revolutions", bed.mixed);
 }
 
-static void pause_with_a_small_ring(void)
+static void pause_with_a_small_ring(const char *unused)
 {
+    (void)unused;
     one_pause(1024, 250, 700, 50);
 }
 
-static void pause_with_a_large_ring(void)
+static void pause_with_a_large_ring(const char *unused)
 {
+    (void)unused;
     one_pause(4096, 30, 1500, 20);
 }
 
 /* ---- Rows ---- */
 
-typedef struct {
-    const char *name;
-    void (*run)(void);
-} row_t;
-
-static const row_t rows[] = {
-    {"a_lidar_that_listens_later_is_started_once_and_soon", power_up_at_10_hz},
+static const claim_t claims[] = {
+    {"a_lidar_that_listens_later_is_started_once_and_soon", power_up_at_10_hz, NULL},
     {"without_a_frequency_a_lidar_that_listens_later_is_started_once_and_soon",
-     power_up_without_a_frequency},
-    {"a_lidar_that_never_answers_scans_within_9_s", never_answers},
-    {"after_any_supply_failure_scans_come_within_4_s_at_10_hz", supply_fails_for_any_time},
-    {"a_wish_near_the_lidars_own_frequency_survives_a_supply_failure", odd_frequencies_and_supply},
-    {"a_lidar_that_answers_and_does_not_scan_is_rebooted", only_a_reboot_helps},
-    {"a_lidar_that_does_not_scan_after_a_loss_is_rebooted", a_reboot_helps_after_a_loss},
-    {"a_lidar_whose_start_packets_stop_is_rebooted_and_lost_once", start_packets_stop_coming},
-    {"a_lidar_that_begins_without_start_packets_is_rebooted", start_packets_never_come},
-    {"a_lidar_that_sends_start_packets_on_a_bad_line_is_not_stopped", bad_line},
-    {"a_slider_leaves_scans_and_its_last_wish_is_reached", slider},
-    {"a_frequency_is_rounded_to_the_nearest_step", frequencies_are_rounded},
-    {"questions_are_answered_one_after_the_other", questions_wait},
-    {"a_port_that_takes_one_byte_per_write_starts", one_byte_per_write},
-    {"a_quiet_line_time_works_or_is_refused", any_quiet_line},
-    {"a_program_with_a_small_ring_catches_up_after_a_pause", pause_with_a_small_ring},
-    {"a_program_with_a_large_ring_catches_up_after_a_pause", pause_with_a_large_ring},
+     power_up_without_a_frequency, NULL},
+    {"a_lidar_that_never_answers_scans_within_9_s", never_answers, NULL},
+    {"after_any_supply_failure_scans_come_within_4_s_at_10_hz", supply_fails_for_any_time, NULL},
+    {"a_wish_near_the_lidars_own_frequency_survives_a_supply_failure", odd_frequencies_and_supply,
+     NULL},
+    {"a_lidar_that_answers_and_does_not_scan_is_rebooted", only_a_reboot_helps, NULL},
+    {"a_lidar_that_does_not_scan_after_a_loss_is_rebooted", a_reboot_helps_after_a_loss, NULL},
+    {"a_lidar_whose_start_packets_stop_is_rebooted_and_lost_once", start_packets_stop_coming, NULL},
+    {"a_lidar_that_begins_without_start_packets_is_rebooted", start_packets_never_come, NULL},
+    {"a_lidar_that_sends_start_packets_on_a_bad_line_is_not_stopped", bad_line, NULL},
+    {"a_slider_leaves_scans_and_its_last_wish_is_reached", slider, NULL},
+    {"a_frequency_is_rounded_to_the_nearest_step", frequencies_are_rounded, NULL},
+    {"questions_are_answered_one_after_the_other", questions_wait, NULL},
+    {"a_port_that_takes_one_byte_per_write_starts", one_byte_per_write, NULL},
+    {"a_quiet_line_time_works_or_is_refused", any_quiet_line, NULL},
+    {"a_program_with_a_small_ring_catches_up_after_a_pause", pause_with_a_small_ring, NULL},
+    {"a_program_with_a_large_ring_catches_up_after_a_pause", pause_with_a_large_ring, NULL},
 };
-#define ROWS (sizeof rows / sizeof rows[0])
-
-static bool is_expected_red(const char *name)
-{
-    for (size_t i = 0; i < sizeof expected_red / sizeof expected_red[0]; i++) {
-        if (strcmp(expected_red[i], name) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool passes(const row_t *row)
-{
-    const bool is_red = is_expected_red(row->name);
-
-    complaint[0] = '\0';
-    row->run();
-    printf("%s %s%s%s\n", is_right() ? "PASS" : "FAIL", row->name, is_right() ? "" : ": ",
-           complaint);
-    if (is_red && is_right()) {
-        printf("     is to be removed from expected_red[]\n");
-    }
-    return is_right() != is_red;
-}
-
-static bool is_chosen(const row_t *row, int count, char **names)
-{
-    bool is_named = count == 0;
-
-    for (int i = 0; i < count; i++) {
-        is_named = is_named || strcmp(names[i], row->name) == 0;
-    }
-    return is_named;
-}
 
 int main(int argc, char **argv)
 {
-    const bool is_list = argc > 1 && strcmp(argv[1], "--list") == 0;
-    unsigned chosen = 0;
-    bool is_all_right = true;
+    const claims_red_t red = {expected_red, sizeof expected_red / sizeof expected_red[0]};
 
-    for (size_t i = 0; i < ROWS; i++) {
-        if (is_list) {
-            printf("%s\n", rows[i].name);
-        } else if (is_chosen(&rows[i], argc - 1, argv + 1)) {
-            chosen++;
-            is_all_right = passes(&rows[i]) && is_all_right;
-        }
-    }
-    if (!is_list && chosen == 0) {
-        printf("no such row; programs --list\n");
-        return 2;
-    }
-    return is_all_right ? 0 : 1;
+    return claims_main(argc, argv, claims, sizeof claims / sizeof claims[0], red);
 }
