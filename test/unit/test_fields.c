@@ -3,6 +3,7 @@
 
 /* Fields: where they are, and when they are free, occupied and blind. */
 
+#include <float.h>
 #include <string.h>
 
 #include "tmini/tmini_fields.h"
@@ -365,6 +366,85 @@ void test_a_field_around_the_lidar_has_all_directions(void)
     set_up(triangle, 3);
     check_places(in_triangle, COUNT(in_triangle));
 }
+
+#if DBL_MANT_DIG > 24
+/* Twice the area that two rays span; positive if `other` is to the left. */
+static double span(double x, double y, double other_x, double other_y)
+{
+    return x * other_y - y * other_x;
+}
+
+/* Whether the ray in this direction meets an edge; `is_clear` becomes false where either answer
+ * is right: within 1/32 degree of a corner, and if the lidar is on an edge. */
+static bool meets(const tmini_xy_t *corners, size_t count, double x, double y, bool *is_clear)
+{
+    bool is_met = false;
+    for (size_t i = 0; i < count; i++) {
+        const double from_x = corners[i].x_mm - fields.lidar.x_mm;
+        const double from_y = corners[i].y_mm - fields.lidar.y_mm;
+        const double to_x = corners[(i + 1) % count].x_mm - fields.lidar.x_mm;
+        const double to_y = corners[(i + 1) % count].y_mm - fields.lidar.y_mm;
+        const double from = span(x, y, from_x, from_y);
+        const double to = span(x, y, to_x, to_y);
+        const double along = x * (from_x * to - to_x * from) + y * (from_y * to - to_y * from);
+        const bool is_on_edge =
+            span(from_x, from_y, to_x, to_y) == 0 && from_x * to_x + from_y * to_y <= 0;
+        *is_clear = *is_clear && !is_on_edge;
+        is_met = is_met || ((from > 0) != (to > 0) && (to > from ? along > 0 : along < 0));
+        *is_clear = *is_clear && from * from > 3.0e-7 * (from_x * from_x + from_y * from_y);
+    }
+    return is_met;
+}
+
+static void check_directions(const tmini_xy_t *corners, size_t count)
+{
+    double x = 1;
+    double y = 0;
+    for (uint16_t angle = 0; angle < TMINI_FULL_CIRCLE_Q6; angle++) {
+        const tmini_point_t point = {angle, 0, 0, 0};
+        bool is_clear = true;
+        const bool is_met = meets(corners, count, x, y, &is_clear);
+        tmini_fields_begin(&fields);
+        tmini_fields_add(&fields, &point);
+        TEST_ASSERT_TRUE(!is_clear || field[0].directions == is_met);
+        const double ahead = x * 0.9999999628152566 + y * 0.00027270769224392545;
+        y = y * 0.9999999628152566 - x * 0.00027270769224392545; /* 1/64 degree to the right. */
+        x = ahead;
+    }
+}
+
+static int16_t draw(uint32_t *state, int16_t limit)
+{
+    *state = *state * 1664525u + 1013904223u;
+    return (int16_t)((int32_t)(*state >> 16) % (2 * limit + 1) - limit);
+}
+
+/* Polygons of any kind, with corners on a grid, so that some are straight ahead, behind or aside. */
+void test_a_fields_directions_are_those_of_the_rays_that_meet_it(void)
+{
+    uint32_t state = 1;
+    for (unsigned i = 0; i < 400; i++) {
+        tmini_xy_t corners[5];
+        const size_t count = 3 + i % 3;
+        const int16_t grid = i % 2 == 0 ? 4000 : 3;
+        for (size_t j = 0; j < count; j++) {
+            corners[j].x_mm = (int16_t)(draw(&state, grid) * (grid == 3 ? 1000 : 1));
+            corners[j].y_mm = (int16_t)(draw(&state, grid) * (grid == 3 ? 1000 : 1));
+        }
+        fields.lidar = (tmini_xy_t){draw(&state, 4000), draw(&state, 4000)};
+        if (i % 4 == 3) { /* One of them straight ahead of, behind or beside the lidar. */
+            fields.lidar.x_mm = i % 8 == 3 ? corners[0].x_mm : fields.lidar.x_mm;
+            fields.lidar.y_mm = i % 8 == 7 ? corners[0].y_mm : fields.lidar.y_mm;
+        }
+        field[0] = (tmini_field_t){.corners = corners, .corner_count = (uint8_t)count};
+        if (tmini_fields_init(&fields) == TMINI_OK) {
+            check_directions(corners, count);
+        }
+    }
+}
+#else
+void test_a_fields_directions_are_those_of_the_rays_that_meet_it(void) {}
+#endif
 
 /* The lidar is 300 mm ahead of the robot's middle and 100 mm to the left. */
 void test_places_count_from_the_robot_and_the_lidar_has_its_own(void)

@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* How soon fields see a pillar, how often they lose it, and how often noise stops a robot, for each
+ * K (points) and N (scans): the table of docs/robotics.md.
+ *
+ *     fields HOURS [SEED]
+ *
+ * In an empty hall for HOURS hours, false alarms are counted: fields that do not stay free. Then a
+ * pillar appears 200 times, within 10 degrees of ahead (5 for the far one), for 5 seconds. */
+
+#include "rover.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define KS 4u
+#define NS 3u
+#define TRIALS 200u
+#define FOUND_MS 500u
+#define STAY_MS 5000u
+#define REST_MS 1500u
+
+static const uint8_t scans_to_free[NS] = {1, 3, 5};
+
+/* A box for each pillar, and in it a field for each K and N. */
+typedef struct {
+    tmini_xy_t box[2];
+    double mm;
+    double wide_mm;
+    unsigned most_deg;
+} place_t;
+
+static const place_t places[] = {
+    {{{0, -300}, {1200, 300}}, 1000, 30, 10},
+    {{{0, -500}, {3300, 500}}, 3000, 100, 5},
+};
+
+typedef struct {
+    uint32_t alarms; /* In the empty hall. */
+    uint32_t found;  /* Pillars, within FOUND_MS. */
+    uint32_t freed;  /* Although the pillar was there. */
+} result_t;
+
+static rover_t rover;
+static tmini_field_t fields[2][KS][NS];
+static tmini_field_state_t before[2][KS][NS];
+static result_t results[2][KS][NS];
+
+static void set_up(const rover_config_t *config)
+{
+    static const tmini_fields_t all = {.list = &fields[0][0][0], .count = 2 * KS * NS};
+    for (unsigned i = 0; i < 2 * KS * NS; i++) {
+        fields[i / (KS * NS)][i / NS % KS][i % NS] =
+            (tmini_field_t){.corners = places[i / (KS * NS)].box,
+                            .corner_count = 2,
+                            .points = (uint8_t)(1 + i / NS % KS),
+                            .scans = scans_to_free[i % NS],
+                            .max_age_ms = 600};
+        before[i / (KS * NS)][i / NS % KS][i % NS] = TMINI_FIELD_BLIND;
+        results[i / (KS * NS)][i / NS % KS][i % NS] = (result_t){0};
+    }
+    rover_init(&rover, config, &all);
+}
+
+typedef void (*change_t)(unsigned place, unsigned k, unsigned n, tmini_field_state_t now);
+
+/* Calls `change` for each field whose state has changed. */
+static void look(change_t change)
+{
+    for (unsigned i = 0; i < 2 * KS * NS; i++) {
+        const unsigned place = i / (KS * NS);
+        const unsigned k = i / NS % KS;
+        const unsigned n = i % NS;
+        const tmini_field_state_t now =
+            tmini_field_state(&fields[place][k][n], rover_now_ms(&rover));
+        if (change != NULL && now != before[place][k][n]) {
+            change(place, k, n, now);
+        }
+        before[place][k][n] = now;
+    }
+}
+
+static void pass(uint32_t ms, change_t change)
+{
+    for (uint32_t i = 0; i < ms; i++) {
+        if (rover_pass(&rover)) {
+            look(change);
+        }
+    }
+}
+
+static void count_alarm(unsigned place, unsigned k, unsigned n, tmini_field_state_t now)
+{
+    (void)now;
+    results[place][k][n].alarms += before[place][k][n] == TMINI_FIELD_FREE;
+}
+
+static void count_freed(unsigned place, unsigned k, unsigned n, tmini_field_state_t now)
+{
+    results[place][k][n].freed += now == TMINI_FIELD_FREE;
+}
+
+static void show_pillar(unsigned place)
+{
+    const place_t *const at = &places[place];
+    const unsigned most = at->most_deg * 100;
+    const rover_hall_t hall = {.pillar_mm = at->mm,
+                               .pillar_wide_mm = at->wide_mm,
+                               .pillar_deg =
+                                   ((double)random_below(&rover.random, 2 * most) - most) / 100.0};
+    static const rover_hall_t empty = {0};
+    rover_furnish(&rover, &hall);
+    pass(FOUND_MS, NULL);
+    for (unsigned i = 0; i < KS * NS; i++) {
+        results[place][i / NS][i % NS].found +=
+            before[place][i / NS][i % NS] == TMINI_FIELD_OCCUPIED;
+    }
+    pass(STAY_MS - FOUND_MS, count_freed);
+    rover_furnish(&rover, &empty);
+    pass(REST_MS + random_below(&rover.random, 200), NULL);
+}
+
+static void print_by_n(const char *before_it, const double values[NS])
+{
+    (void)printf("%s%.0f / %.0f / %.0f", before_it, values[0], values[1], values[2]);
+}
+
+/* The rows of one frequency, from `quiet`, without random points, and from `noisy`. */
+static void print_places(unsigned hertz, result_t quiet[2][KS][NS], result_t noisy[2][KS][NS],
+                         unsigned hours)
+{
+    static const double shown_hours = (double)TRIALS * (STAY_MS - FOUND_MS) / 3600000.0;
+    for (unsigned i = 0; i < 2 * KS; i++) {
+        const result_t *const by_n = quiet[i / KS][i % KS];
+        const result_t *const noisy_by_n = noisy[i / KS][i % KS];
+        double freed[NS];
+        double alarms[NS];
+        for (unsigned n = 0; n < NS; n++) {
+            freed[n] = by_n[n].freed / shown_hours;
+            alarms[n] = (double)noisy_by_n[n].alarms / hours;
+        }
+        (void)printf("| %g mm at %g m | %u Hz | %u | %.0f %% | %.0f %%", places[i / KS].wide_mm,
+                     places[i / KS].mm / 1000, hertz, 1 + i % KS, 100.0 * by_n[0].found / TRIALS,
+                     100.0 * noisy_by_n[0].found / TRIALS);
+        print_by_n(" | ", freed);
+        (void)printf(" | %.0f", (double)by_n[0].alarms / hours);
+        print_by_n(" | ", alarms);
+        (void)puts(" |");
+    }
+}
+
+static void measure(const rover_config_t *config, unsigned hours)
+{
+    static const rover_hall_t empty = {0};
+    set_up(config);
+    rover_furnish(&rover, &empty);
+    pass(10000, NULL);
+    pass(hours * 3600000u, count_alarm);
+    for (unsigned i = 0; i < 2 * TRIALS; i++) {
+        show_pillar(i % 2);
+    }
+}
+
+static void measure_frequency(uint16_t hertz, unsigned hours, unsigned seed)
+{
+    static result_t quiet[2][KS][NS];
+    rover_config_t config = {(uint16_t)(hertz * 100u), 0, seed};
+    measure(&config, hours);
+    memcpy(quiet, results, sizeof quiet);
+    config.random_percent = 5;
+    measure(&config, hours);
+    print_places(hertz, quiet, results, hours);
+}
+
+int main(int argc, char **argv)
+{
+    const unsigned hours = argc > 1 ? (unsigned)atoi(argv[1]) : 0;
+    const unsigned seed = argc > 2 ? (unsigned)atoi(argv[2]) : 1;
+    if (hours == 0 || hours > 1000) {
+        (void)fprintf(stderr, "usage: fields HOURS [SEED]\n");
+        return 2;
+    }
+    (void)puts("| pillar | | K | found | found, 5 % | freed though there, N 1 / 3 / 5 "
+               "| false alarms | false alarms, 5 %, N 1 / 3 / 5 |");
+    (void)puts("|---|---|---:|---:|---:|---:|---:|---:|");
+    measure_frequency(6, hours, seed);
+    measure_frequency(10, hours, seed);
+    return 0;
+}

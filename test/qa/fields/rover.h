@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* A robot with the driver, fields and the simulated lidar, in a hall of 8 m by 8 m, in virtual
+ * time. Some points may be random, as in dust or beside other lidars. */
+
+#ifndef ROVER_H
+#define ROVER_H
+
+#include "simulator.h"
+
+#include "tmini/tmini.h"
+#include "tmini/tmini_fields.h"
+#include "tmini/tmini_steps.h"
+
+typedef struct {
+    uint16_t frequency_chz;
+    unsigned random_percent; /* Points with a random distance, 50 to 12000 mm. */
+    uint64_t seed;
+} rover_config_t;
+
+/* What stands in the hall. */
+typedef struct {
+    double wall_mm;   /* A wall across, this far ahead; 0: none. */
+    double pillar_mm; /* A pillar at this distance; 0: none. */
+    double pillar_wide_mm;
+    double pillar_deg; /* Clockwise from ahead. */
+} rover_hall_t;
+
+typedef struct {
+    rover_config_t config;
+    sim_t sim;
+    tmini_t lidar;
+    tmini_port_t port;
+    random_t random;
+    uint64_t now_us;
+    tmini_one_step_t list[2];
+    tmini_steps_t steps;
+    const tmini_fields_t *fields;
+    uint32_t scans;
+    uint8_t rx[1024];
+    tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
+} rover_t;
+
+/* Sets up fields and driver, and starts the lidar. It stays the caller's. */
+void rover_init(rover_t *rover, const rover_config_t *config, const tmini_fields_t *fields);
+
+void rover_furnish(rover_t *rover, const rover_hall_t *hall);
+
+/* A millisecond passes. Returns true if a scan has come. */
+bool rover_pass(rover_t *rover);
+
+uint32_t rover_now_ms(const rover_t *rover);
+
+#endif
