@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Obstacle stop: a starting point for robots. Shows the nearest obstacle in each of eight sectors,
- * and STOP when something is nearer than 30 cm in front, or when the way ahead is unknown.
+/* This is no safety function: where people can be hurt, use a certified scanner or a bumper.
+ *
+ * Obstacle stop: a starting point for robots. Shows the nearest obstacle in each of eight sectors,
+ * and STOP when something is in the box before the robot, or when that is unknown.
  *
  *     obstacle_stop /dev/ttyUSB0          or the port that `tmini-sim --pty` prints */
 

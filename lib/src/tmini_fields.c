@@ -96,6 +96,21 @@ static void find_directions(tmini_field_t *field, tmini_xy_t lidar, int32_t stra
     field->wide_q6 = (uint16_t)(most - least < CIRCLE ? most - least : CIRCLE);
 }
 
+/* At least the distance of the farthest corner: sqrt(a * a + b * b) <= a + b / 2 for a >= b. */
+static void find_reach(tmini_field_t *field, tmini_xy_t lidar)
+{
+    field->reach_mm = 0;
+    for (size_t i = 0; i < count_corners(field); i++) {
+        const place_t corner = corner_of(field, i, lidar);
+        const int32_t ahead = corner.x < 0 ? -corner.x : corner.x;
+        const int32_t aside = corner.y < 0 ? -corner.y : corner.y;
+        const int32_t far_mm = ahead > aside ? ahead + (aside + 1) / 2 : aside + (ahead + 1) / 2;
+        if (far_mm + 1 > field->reach_mm) { /* A place may be rounded into the field. */
+            field->reach_mm = (uint16_t)(far_mm + 1);
+        }
+    }
+}
+
 static bool is_ahead(const tmini_field_t *field, uint16_t angle_q6)
 {
     return tmini_clockwise(field->from_q6, angle_q6) <= field->wide_q6;
@@ -163,6 +178,7 @@ static bool set_up(tmini_field_t *field, tmini_xy_t lidar)
         return false;
     }
     set_defaults(field);
+    find_reach(field, lidar);
     find_directions(field, lidar, HALF);
     if (field->wide_q6 == CIRCLE) { /* Or the lidar is on its edge. */
         find_directions(field, lidar, -HALF);
@@ -215,11 +231,6 @@ static bool is_in_polygon(const tmini_field_t *field, place_t place)
     return is_inside;
 }
 
-static bool is_inside(const tmini_field_t *field, place_t place)
-{
-    return is_in_box(field, place) && (field->corner_count == 2 || is_in_polygon(field, place));
-}
-
 /* A count that went back to 0 would make a field free. */
 static void count_one(uint16_t *count)
 {
@@ -235,11 +246,19 @@ void tmini_fields_begin(const tmini_fields_t *fields)
     }
 }
 
+/* A point that has a range. Most are beyond the field, so the place is looked for last. */
+static bool is_inside(const tmini_field_t *field, const tmini_point_t *point, tmini_xy_t lidar)
+{
+    if (point->distance_mm > field->reach_mm) {
+        return false;
+    }
+    const tmini_xy_t seen = tmini_cartesian_point(point);
+    const place_t place = {(int32_t)seen.x_mm + lidar.x_mm, (int32_t)seen.y_mm + lidar.y_mm};
+    return is_in_box(field, place) && (field->corner_count == 2 || is_in_polygon(field, place));
+}
+
 void tmini_fields_add(const tmini_fields_t *fields, const tmini_point_t *point)
 {
-    const tmini_xy_t seen = tmini_cartesian_point(point);
-    const place_t place = {(int32_t)seen.x_mm + fields->lidar.x_mm,
-                           (int32_t)seen.y_mm + fields->lidar.y_mm};
     const bool has_range = point->distance_mm != 0;
     for (size_t i = 0; i < fields->count; i++) {
         tmini_field_t *const field = &fields->list[i];
@@ -249,7 +268,7 @@ void tmini_fields_add(const tmini_fields_t *fields, const tmini_point_t *point)
                 count_one(&field->unseen);
             }
         }
-        if (has_range && is_inside(field, place)) {
+        if (has_range && is_inside(field, point, fields->lidar)) {
             count_one(&field->inside);
         }
     }
@@ -296,17 +315,20 @@ void tmini_fields_end(const tmini_fields_t *fields, bool complete, uint32_t end_
     }
 }
 
+void tmini_fields_add_scan(const tmini_fields_t *fields, const tmini_scan_t *scan)
+{
+    tmini_fields_begin(fields);
+    for (size_t i = 0; i < scan->count; i++) {
+        tmini_fields_add(fields, &scan->points[i]);
+    }
+    tmini_fields_end(fields, scan->complete, scan->end_ms);
+}
+
 void tmini_fields_step(const void *fields, tmini_scan_t *scan)
 {
-    const tmini_fields_t *const all = fields;
-    if (all == NULL) {
-        return;
+    if (fields != NULL) {
+        tmini_fields_add_scan(fields, scan);
     }
-    tmini_fields_begin(all);
-    for (size_t i = 0; i < scan->count; i++) {
-        tmini_fields_add(all, &scan->points[i]);
-    }
-    tmini_fields_end(all, scan->complete, scan->end_ms);
 }
 
 void tmini_fields_clear(const tmini_fields_t *fields)

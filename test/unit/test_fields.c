@@ -413,6 +413,41 @@ static void check_directions(const tmini_xy_t *corners, size_t count)
     }
 }
 
+/* Whether the place is inside: an odd number of edges is to its left. `is_clear` becomes false
+ * within 2 mm of an edge. */
+static bool encloses(const tmini_xy_t *corners, size_t count, double x, double y, bool *is_clear)
+{
+    bool is_odd = false;
+    for (size_t i = 0; i < count; i++) {
+        const double from_x = corners[i].x_mm - x;
+        const double from_y = corners[i].y_mm - y;
+        const double to_x = corners[(i + 1) % count].x_mm - x;
+        const double to_y = corners[(i + 1) % count].y_mm - y;
+        const double across = span(from_x, from_y, to_x, to_y);
+        const double length = (to_x - from_x) * (to_x - from_x) + (to_y - from_y) * (to_y - from_y);
+        is_odd =
+            is_odd != ((from_x > 0) != (to_x > 0) && (to_x > from_x ? across < 0 : across > 0));
+        *is_clear = *is_clear && across * across > 4 * length && from_x * from_x > 4;
+    }
+    return is_odd;
+}
+
+static void check_insides(const tmini_xy_t *corners, size_t count, uint32_t state)
+{
+    for (uint16_t i = 0; i < 400; i++) {
+        state = state * 1664525u + 1013904223u;
+        const tmini_point_t point = {(uint16_t)((state >> 8) % TMINI_FULL_CIRCLE_Q6),
+                                     (uint16_t)(1 + i * 40u), 0, 0};
+        const tmini_xy_t at = tmini_cartesian_point(&point); /* test_cartesian.c. */
+        bool is_clear = true;
+        const bool is_inside = encloses(corners, count, at.x_mm + fields.lidar.x_mm,
+                                        at.y_mm + fields.lidar.y_mm, &is_clear);
+        tmini_fields_begin(&fields);
+        tmini_fields_add(&fields, &point);
+        TEST_ASSERT_TRUE(!is_clear || field[0].inside == is_inside);
+    }
+}
+
 static int16_t draw(uint32_t *state, int16_t limit)
 {
     *state = *state * 1664525u + 1013904223u;
@@ -420,7 +455,7 @@ static int16_t draw(uint32_t *state, int16_t limit)
 }
 
 /* Polygons of any kind, with corners on a grid, so that some are straight ahead, behind or aside. */
-void test_a_fields_directions_are_those_of_the_rays_that_meet_it(void)
+void test_any_polygon_has_the_directions_and_the_places_that_geometry_gives_it(void)
 {
     uint32_t state = 1;
     for (unsigned i = 0; i < 400; i++) {
@@ -439,11 +474,12 @@ void test_a_fields_directions_are_those_of_the_rays_that_meet_it(void)
         field[0] = (tmini_field_t){.corners = corners, .corner_count = (uint8_t)count};
         if (tmini_fields_init(&fields) == TMINI_OK) {
             check_directions(corners, count);
+            check_insides(corners, count, state);
         }
     }
 }
 #else
-void test_a_fields_directions_are_those_of_the_rays_that_meet_it(void) {}
+void test_any_polygon_has_the_directions_and_the_places_that_geometry_gives_it(void) {}
 #endif
 
 /* The lidar is 300 mm ahead of the robot's middle and 100 mm to the left. */

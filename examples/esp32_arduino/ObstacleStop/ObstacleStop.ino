@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A robot that must not hit anything. Its lidar is mounted upside down, turns at 10 Hz, and sees a
- * mast at the back. STOP_PIN is high unless the way ahead is seen and free. Lidar on Serial1; any
- * board with 8 KB of RAM, from an Arduino Mega 2560 on. */
+/* This is no safety function: where people can be hurt, use a certified scanner or a bumper.
+ *
+ * A robot that must not hit anything. Its lidar is mounted upside down, turns at 10 Hz, and sees a
+ * mast at the back. STOP_PIN is high unless the field before it is seen and free. Lidar on Serial1;
+ * any board with 8 KB of RAM, from an Arduino Mega 2560 on. */
 
 #include <TMiniLidar.h>
-#include <tmini/tmini_sectors.h>
+#include <tmini/tmini_fields.h>
 
 static const uint8_t STOP_PIN = LED_BUILTIN;
-static const uint16_t STOP_MM = 300;
-static const uint16_t GO_MM = 350;         /* More than STOP_MM, to avoid stop and go. */
-static const unsigned long BLIND_MS = 400; /* Without a complete scan for this long, stop. */
+
+/* The box that stops it, in mm: x ahead, y to the left. */
+static const tmini_xy_t BOX[] = {{0, -150}, {300, 150}};
 
 /* Angles are the robot's: 0 is its front, clockwise. */
 static const tmini_arc_t MASTS[] = {{170, 190}};
@@ -27,40 +29,31 @@ static const tmini_mount_t MOUNT = {
 
 /* 10 Hz: 400 points per revolution. */
 static TMiniLidarWith<1024, 450> lidar;
-static tmini_sector_t sector[8]; /* 0 ahead, 2 right, 4 back, 6 left. */
-static tmini_sectors_t sectors;
+static tmini_field_t field;
+static tmini_fields_t fields;
 static unsigned scans;
 static unsigned complete;
-static bool isFree;          /* As of the last scans. */
-static unsigned long seenMs; /* When a complete scan ended. */
 
 /* A scan with gaps may have missed an obstacle: it can stop the robot, but not release it. */
 static void lookAhead()
 {
-    tmini_sectors_clear(&sectors);
-    for (TMiniPoint point : lidar.points()) { /* Receives meanwhile; tmini_sectors_add_scan() would
+    tmini_fields_begin(&fields);
+    for (TMiniPoint point : lidar.points()) { /* Receives meanwhile; tmini_fields_add_scan() would
                                                * not. */
-        tmini_sectors_add(&sectors, &point);
+        tmini_fields_add(&fields, &point);
     }
+    tmini_fields_end(&fields, lidar.scan().complete, lidar.scan().end_ms);
     scans++;
-    if (!tmini_sector_is_free(&sector[0], STOP_MM)) { /* True also if the sector is blind. */
-        isFree = false;
-    } else if (lidar.scan().complete && tmini_sector_is_free(&sector[0], GO_MM)) {
-        isFree = true;
-    }
-    if (lidar.scan().complete) {
-        complete++;
-        seenMs = lidar.scan().end_ms;
-    }
+    complete += lidar.scan().complete ? 1 : 0;
 }
 
-/* A lidar that is lost or faulty sees nothing, whatever the last scans showed. */
+/* A lidar that is faulty sees nothing, whatever the last scans showed. One that is lost ages. */
 static bool mustStop()
 {
-    if (!lidar.isScanning() || lidar.faults() != 0 || millis() - seenMs >= BLIND_MS) {
-        isFree = false;
+    if (lidar.faults() != 0) {
+        tmini_fields_clear(&fields);
     }
-    return !isFree;
+    return tmini_field_state(&field, millis()) != TMINI_FIELD_FREE;
 }
 
 static void report()
@@ -73,9 +66,9 @@ static void report()
     Serial.print(scans);
     Serial.print(" scans, ");
     Serial.print(complete);
-    Serial.print(" complete, ahead ");
-    Serial.print(sector[0].nearest_mm);
-    Serial.println(isFree ? " mm: go" : " mm: STOP");
+    Serial.print(" complete, in the box ");
+    Serial.print(field.inside);
+    Serial.println(mustStop() ? ": STOP" : ": go");
 }
 
 void setup()
@@ -83,9 +76,13 @@ void setup()
     digitalWrite(STOP_PIN, HIGH); /* Set before the pin is an output, because low means go. */
     pinMode(STOP_PIN, OUTPUT);
     Serial.begin(115200);
+    field.corners = BOX;
+    field.corner_count = 2; /* Three turns at 10 Hz without a scan: it is blind. */
+    fields.list = &field;
+    fields.count = 1;
     lidar.setMount(MOUNT);
     /* On an ESP32 begin() needs pins, as in Scan. */
-    if (!lidar.begin(Serial1, 10) || tmini_sectors_init(&sectors, sector, 8, 0) != TMINI_OK) {
+    if (!lidar.begin(Serial1, 10) || tmini_fields_init(&fields) != TMINI_OK) {
         Serial.println(lidar.error());
         return;
     }

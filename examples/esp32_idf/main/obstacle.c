@@ -3,47 +3,49 @@
 
 #include "obstacle.h"
 
-#define AHEAD 0
+static const tmini_xy_t boxes[2][2] = {
+    {{0, -OBSTACLE_ASIDE_MM}, {OBSTACLE_STOP_MM, OBSTACLE_ASIDE_MM}},
+    {{0, -OBSTACLE_ASIDE_MM}, {OBSTACLE_GO_MM, OBSTACLE_ASIDE_MM}},
+};
 
-/* True if nothing is seen in any direction: the window is covered or the rotor blocked. */
-static bool is_dark(const obstacle_t *obstacle)
+static tmini_fields_t fields_of(obstacle_t *obstacle)
 {
-    for (unsigned i = 0; i < OBSTACLE_SECTORS; i++) {
-        if (!tmini_sector_is_blind(&obstacle->sectors[i])) {
-            return false;
-        }
+    return (tmini_fields_t){.list = obstacle->fields, .count = 2};
+}
+
+/* With the first scan. */
+static void set_up(obstacle_t *obstacle)
+{
+    const tmini_fields_t fields = fields_of(obstacle);
+    for (size_t i = 0; i < 2; i++) {
+        obstacle->fields[i].corners = boxes[i];
+        obstacle->fields[i].corner_count = 2;
+        obstacle->fields[i].max_age_ms = OBSTACLE_BLIND_MS;
     }
-    return true;
+    (void)tmini_fields_init(&fields); /* If they were refused, they would stay blind. */
 }
 
 void obstacle_see(obstacle_t *obstacle, const tmini_scan_t *scan)
 {
-    const tmini_sector_t *const ahead = &obstacle->sectors[AHEAD];
+    const tmini_fields_t fields = fields_of(obstacle);
     tmini_sectors_t sectors;
+    if (obstacle->fields[0].corners == NULL) {
+        set_up(obstacle);
+    }
+    tmini_fields_add_scan(&fields, scan);
     (void)tmini_sectors_init(&sectors, obstacle->sectors, OBSTACLE_SECTORS, TMINI_FILTER_NONE);
     tmini_sectors_add_scan(&sectors, scan);
-    if (is_dark(obstacle)) {
-        obstacle_blind(obstacle);
-        return;
-    }
-    if (!tmini_sector_is_free(ahead, OBSTACLE_STOP_MM)) {
-        obstacle->clear = false;
-    } else if (scan->complete && tmini_sector_is_free(ahead, OBSTACLE_GO_MM)) {
-        obstacle->clear = true;
-    }
-    if (scan->complete) {
-        obstacle->seeing = true;
-        obstacle->seen_ms = scan->end_ms;
-    }
 }
 
 void obstacle_blind(obstacle_t *obstacle)
 {
-    obstacle->clear = false;
-    obstacle->seeing = false;
+    const tmini_fields_t fields = fields_of(obstacle);
+    tmini_fields_clear(&fields);
 }
 
-bool obstacle_may_move(const obstacle_t *obstacle, uint32_t now_ms)
+bool obstacle_may_move(obstacle_t *obstacle, uint32_t now_ms)
 {
-    return obstacle->clear && obstacle->seeing && now_ms - obstacle->seen_ms < OBSTACLE_BLIND_MS;
+    tmini_field_t *const needed = &obstacle->fields[obstacle->moves ? 0 : 1];
+    obstacle->moves = tmini_field_state(needed, now_ms) == TMINI_FIELD_FREE;
+    return obstacle->moves;
 }

@@ -45,7 +45,8 @@
  *
  * How long it takes to see something, and how often noise stops the robot, for each `points` and
  * `scans`: docs/robotics.md, "Fields". All functions: one context, the one that polls; no waiting.
- * About 80 instructions per point, and 15 per field (more for a polygon that is near). */
+ * About 25 instructions per point and field; 100 more for a point that is no farther than the
+ * field's corners. */
 
 #ifndef TMINI_FIELDS_H
 #define TMINI_FIELDS_H
@@ -93,6 +94,7 @@ typedef struct {
     uint16_t unseen;     /* and those of them without a range. */
     uint16_t from_q6;    /* Where its directions begin, clockwise. */
     uint16_t wide_q6;    /* How wide they are. */
+    uint16_t reach_mm;   /* No place in it is farther from the lidar. */
     tmini_xy_t least;    /* The box around it. */
     tmini_xy_t most;
     uint32_t seen_ms;   /* When the newest complete scan ended. */
@@ -128,8 +130,12 @@ void tmini_fields_clear(const tmini_fields_t *fields);
 tmini_field_state_t tmini_field_state(tmini_field_t *field, uint32_t now_ms);
 
 /** @name Without the step
- * For points that come one by one: begin, add each point of a revolution, end. */
+ * For whole scans, and for points that come one by one: begin, add each point of a revolution,
+ * end. */
 /** @{ */
+
+/** The fields see a scan, before or after it was delivered. */
+void tmini_fields_add_scan(const tmini_fields_t *fields, const tmini_scan_t *scan);
 
 /** Begins a scan. */
 void tmini_fields_begin(const tmini_fields_t *fields);
