@@ -33,10 +33,6 @@ typedef enum {
     CHUNK_WHOLE,
 } chunk_state_t;
 
-static const uint8_t marker[2] = {0xA7, 0xC3};
-
-const uint8_t chunk_magic[CHUNK_MAGIC_SIZE] = {0x89, 't', 'm', 'i', 'n', 'i', CHUNK_VERSION, '\n'};
-
 static uint32_t number_at(const uint8_t *bytes, unsigned size)
 {
     uint32_t number = 0;
@@ -46,53 +42,18 @@ static uint32_t number_at(const uint8_t *bytes, unsigned size)
     return number;
 }
 
-/* Four bits at a time. */
-static uint16_t crc16(uint16_t crc, const uint8_t *bytes, size_t count)
-{
-    static const uint16_t table[16] = {0x0000, 0x1021, 0x2042, 0x3063, 0x4084, 0x50A5,
-                                       0x60C6, 0x70E7, 0x8108, 0x9129, 0xA14A, 0xB16B,
-                                       0xC18C, 0xD1AD, 0xE1CE, 0xF1EF};
-    for (size_t i = 0; i < count; i++) {
-        crc = (uint16_t)(table[(crc >> 12) ^ (bytes[i] >> 4)] ^ (crc << 4));
-        crc = (uint16_t)(table[(crc >> 12) ^ (bytes[i] & 0xFu)] ^ (crc << 4));
-    }
-    return crc;
-}
-
-static uint16_t crc_of(const uint8_t *head, const uint8_t *bytes, size_t count)
-{
-    return crc16(crc16(0xFFFF, head + sizeof marker, 6), bytes, count);
-}
-
-void chunk_write_head(uint8_t head[CHUNK_HEAD_SIZE], uint32_t delta_us, const uint8_t *bytes,
-                      size_t count)
-{
-    memcpy(head, marker, sizeof marker);
-    for (unsigned i = 0; i < 4; i++) {
-        head[2 + i] = (uint8_t)(delta_us >> (8 * i));
-    }
-    head[6] = (uint8_t)count;
-    head[7] = (uint8_t)(count >> 8);
-    const uint16_t crc = crc_of(head, bytes, count);
-    head[8] = (uint8_t)crc;
-    head[9] = (uint8_t)(crc >> 8);
-}
-
 static chunk_state_t read_new(const uint8_t *bytes, size_t count, chunk_t *chunk)
 {
-    if (count < CHUNK_HEAD_SIZE) {
-        return CHUNK_SHORT;
-    }
-    const uint32_t size = number_at(bytes + 6, 2);
-    if (memcmp(bytes, marker, sizeof marker) != 0 || size == 0 || size > CHUNK_MAX) {
-        return CHUNK_NONE;
-    }
-    *chunk = (chunk_t){CHUNK_HEAD_SIZE, number_at(bytes + 2, 4), size, true};
-    if (count - CHUNK_HEAD_SIZE < size) {
-        return CHUNK_SHORT;
-    }
-    return crc_of(bytes, bytes + CHUNK_HEAD_SIZE, size) == number_at(bytes + 8, 2) ? CHUNK_WHOLE
-                                                                                   : CHUNK_NONE;
+    static const chunk_state_t states[] = {
+        [TMINI_TIMED_NOTHING] = CHUNK_NONE,
+        [TMINI_TIMED_SHORT] = CHUNK_SHORT,
+        [TMINI_TIMED_WHOLE] = CHUNK_WHOLE,
+    };
+    *chunk = (chunk_t){.head_size = CHUNK_HEAD_SIZE, .size = UINT32_MAX};
+    const chunk_state_t state =
+        states[tmini_timed_read_head(bytes, count, &chunk->delta_us, &chunk->size)];
+    chunk->is_plausible = chunk->size != UINT32_MAX;
+    return state;
 }
 
 /* Whether `length` heads of version 1 follow each other from here on, each less than `max_us` after
@@ -174,7 +135,7 @@ bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_
     const bool is_believed = chunk.is_plausible && !was_lost;
     const bool is_good = state == CHUNK_WHOLE || (state == CHUNK_SHORT && is_believed);
     chunks->is_lost = !is_good;
-    chunks->damages += !is_good && !was_lost ? 1 : 0;
+    chunks->damages += (!is_good && !was_lost) || (is_good && chunk.size == 0) ? 1 : 0;
     chunks->time_us += is_good ? chunk.delta_us : 0;
     chunks->left = is_good ? chunk.size : is_believed ? 0 : 1;
     *head = is_good || is_believed ? chunk.head_size : 0; /* The head may be right, and its bytes
@@ -184,7 +145,7 @@ bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_
 
 unsigned chunk_version(const uint8_t *bytes, size_t count)
 {
-    return count >= CHUNK_MAGIC_SIZE && memcmp(bytes, chunk_magic, VERSION_AT) == 0 &&
+    return count >= CHUNK_MAGIC_SIZE && memcmp(bytes, tmini_timed_magic, VERSION_AT) == 0 &&
                    bytes[CHUNK_MAGIC_SIZE - 1] == '\n'
                ? bytes[VERSION_AT]
                : 0;

@@ -1,18 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The chunks of a timed recording (FILE.tmini): bytes of the lidar, and when they came. A file
- * begins with 89 74 6D 69 6E 69 VV 0A ("tmini", version VV). Numbers have their least significant
- * byte first. Version 2, which is written:
- *
- *     A7 C3   begins a chunk
- *     4       microseconds since the chunk before, or since the recording's beginning
- *     2       how many bytes follow the head: 1 to 4096
- *     2       CRC-16 (polynomial 0x1021, initial value 0xFFFF) of these six and of the bytes
- *     ...     the bytes
- *
- * Version 1 has neither A7 C3 nor the CRC. In both versions chunks are found again after damage: by
- * the CRC, or by a chain of plausible heads. */
+/* The chunks of a timed recording (FILE.tmini): tmini_timed.h describes version 2, which is written.
+ * Version 1, which is read as well, has neither A7 C3 nor the CRC, and no chunk without bytes. In
+ * both versions chunks are found again after damage: by the CRC, or by a chain of plausible heads.
+ */
 
 #ifndef CHUNK_H
 #define CHUNK_H
@@ -21,12 +13,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define CHUNK_MAGIC_SIZE 8u
-#define CHUNK_VERSION 2u
-#define CHUNK_MAX 4096u
-#define CHUNK_HEAD_SIZE 10u
+#include "tmini_timed.h"
 
-extern const uint8_t chunk_magic[CHUNK_MAGIC_SIZE];
+#define CHUNK_MAGIC_SIZE TMINI_TIMED_MAGIC_SIZE
+#define CHUNK_VERSION 2u
+#define CHUNK_MAX TMINI_TIMED_MAX
+#define CHUNK_HEAD_SIZE TMINI_TIMED_HEAD_SIZE
 
 /* Reads one chunk after the other; begins as {.version = ...}. */
 typedef struct {
@@ -45,9 +37,5 @@ unsigned chunk_version(const uint8_t *bytes, size_t count);
  * because packets have their own checksums. Returns false if more bytes are needed to decide;
  * `is_end`: there are no more. */
 bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_end, size_t *head);
-
-/* Fills in the head of a chunk of version 2. */
-void chunk_write_head(uint8_t head[CHUNK_HEAD_SIZE], uint32_t delta_us, const uint8_t *bytes,
-                      size_t count);
 
 #endif

@@ -7,7 +7,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "device.h"
@@ -26,19 +25,13 @@ typedef struct {
     const char *path;
     FILE *file; /* NULL until the lidar has started. */
     bool is_timed;
+    const tmini_posix_t *port;
     uint64_t begun_us;
     uint64_t stamp_us; /* The time of the chunk before. */
     tape_t tape;       /* Decodes the same bytes as a reader will. */
     size_t held_count;
     uint8_t held[HELD_MAX];
 } recorder_t;
-
-static uint64_t now_us(void)
-{
-    struct timespec now;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
-}
 
 static void put(recorder_t *recorder, const uint8_t *bytes, size_t count)
 {
@@ -62,10 +55,10 @@ static void put(recorder_t *recorder, const uint8_t *bytes, size_t count)
 static void write_block(void *context, const uint8_t *bytes, size_t count)
 {
     recorder_t *const recorder = context;
-    const uint64_t now = now_us();
+    const uint64_t now = (uint64_t)tmini_posix_now_us(recorder->port);
     const uint64_t since = now - recorder->stamp_us;
     uint8_t head[CHUNK_HEAD_SIZE];
-    chunk_write_head(head, since < UINT32_MAX ? (uint32_t)since : UINT32_MAX, bytes, count);
+    tmini_timed_write_head(head, since < UINT32_MAX ? (uint32_t)since : UINT32_MAX, bytes, count);
     put(recorder, head, recorder->is_timed ? sizeof head : 0);
     put(recorder, bytes, count);
     recorder->stamp_us = now;
@@ -112,9 +105,10 @@ static int record(device_t *device, const options_t *options)
     }
     recorder.path = options->operand;
     recorder.is_timed = options->timed || (ending != NULL && strcmp(ending, ".tmini") == 0);
-    recorder.begun_us = recorder.stamp_us = now_us();
+    recorder.port = &device->port;
+    recorder.begun_us = recorder.stamp_us = (uint64_t)tmini_posix_now_us(recorder.port);
     tape_begin(&recorder.tape, NULL, 0);
-    put(&recorder, chunk_magic, recorder.is_timed ? sizeof chunk_magic : 0);
+    put(&recorder, tmini_timed_magic, recorder.is_timed ? sizeof tmini_timed_magic : 0);
     tmini_posix_tap(&device->port, write_block, &recorder);
     int status = device_start(device);
     if (status == STATUS_OK) {

@@ -47,7 +47,7 @@ static void take(void *context, const uint8_t *bytes, size_t count)
         line.count += count;
     }
     if (line.recording != NULL) {
-        chunk_write_head(head, (uint32_t)(now - line.stamp_us), bytes, count);
+        tmini_timed_write_head(head, (uint32_t)(now - line.stamp_us), bytes, count);
         (void)fwrite(head, 1, sizeof head, line.recording);
         (void)fwrite(bytes, 1, count, line.recording);
     }
@@ -127,7 +127,7 @@ static int open_recording(const options_t *options, char *name, size_t size)
     if (line.recording == NULL) {
         return STATUS_FAILED;
     }
-    (void)fwrite(chunk_magic, 1, sizeof chunk_magic, line.recording);
+    (void)fwrite(tmini_timed_magic, 1, sizeof tmini_timed_magic, line.recording);
     return STATUS_OK;
 }
 
@@ -146,6 +146,9 @@ static int explain(device_t *device)
 static int use_survey(device_t *device, const options_t *options)
 {
     char name[600] = "";
+    if (tmini_posix_is_timed(&device->port)) {
+        return device_finish(device, TMINI_ERROR_LISTEN_ONLY, TMINI_EVENT_INFO);
+    }
     if (options->seconds > 0 && options->seconds < SURVEY_SECONDS_MIN) {
         return message_usage("--seconds: %u at least, so that the motor is up to speed",
                              SURVEY_SECONDS_MIN);

@@ -52,7 +52,7 @@ static void stop_at_once(void)
     }
 }
 
-static void set_up(device_t *device, const tmini_mount_t *mount)
+static void set_up_lidar(device_t *device)
 {
     patience = tmini_timing_default;
     patience.frame_timeout_ms = 250;
@@ -66,12 +66,29 @@ static void set_up(device_t *device, const tmini_mount_t *mount)
         .timing = &patience,
         .listen_only = device->listens,
     };
-    tmini_posix_init(&device->port, device->path);
-    tmini_posix_reconnect(&device->port, device->waits);
     if (tmini_init(&device->lidar, &config) != TMINI_OK) {
         abort(); /* Nothing in this configuration depends on the user. */
     }
+}
+
+static void set_up(device_t *device, const tmini_mount_t *mount)
+{
+    tmini_posix_init(&device->port, device->path);
+    tmini_posix_reconnect(&device->port, device->waits);
+    set_up_lidar(device);
     stream_init(&device->stream, mount);
+}
+
+/* A timed stream only listens. With --wait it may come later. */
+static void note_times(device_t *device)
+{
+    if (!device->listens && tmini_posix_is_timed(&device->port)) {
+        device->listens = true;
+        set_up_lidar(device);
+        if (device->was_started) {
+            (void)tmini_start(&device->lidar);
+        }
+    }
 }
 
 uint32_t device_ms(const device_t *device)
@@ -130,8 +147,8 @@ static tmini_event_t follow(device_t *device, tmini_event_t event)
 {
     if (event == TMINI_EVENT_PACKET) {
         device->good_at = device->port.received;
-        const bool is_scan =
-            stream_take(&device->stream, tmini_packet(&device->lidar), device_ms(device));
+        const bool is_scan = stream_take(&device->stream, tmini_packet(&device->lidar),
+                                         tmini_posix_port.now_ms(&device->port) - device->begun_ms);
         return is_scan ? TMINI_EVENT_SCAN : TMINI_EVENT_PACKET;
     }
     if (event == TMINI_EVENT_LOST) {
@@ -147,8 +164,10 @@ static tmini_event_t follow(device_t *device, tmini_event_t event)
 tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
 {
     const uint32_t begun_ms = device_ms(device);
-    (void)tmini_posix_wait(&device->port, 0); /* Takes the bytes that came while the output was
-                                               * blocked. */
+    if (!tmini_posix_is_timed(&device->port)) {   /* Its bytes can wait. */
+        (void)tmini_posix_wait(&device->port, 0); /* Takes those that came while the output was
+                                                   * blocked. */
+    }
     do {
         const tmini_event_t event = tmini_poll(&device->lidar);
         if (event != TMINI_EVENT_NONE && event != TMINI_EVENT_MORE) {
@@ -156,6 +175,7 @@ tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
         }
         if (event == TMINI_EVENT_NONE) {
             (void)tmini_posix_wait(&device->port, SLICE_MS);
+            note_times(device);
             watch_adapter(device);
         }
     } while (device_is_usable(device) && device_ms(device) - begun_ms < timeout_ms);
@@ -186,6 +206,11 @@ bool device_await(device_t *device, tmini_status_t begun, tmini_event_t wanted)
 
 int device_finish(device_t *device, tmini_status_t begun, tmini_event_t wanted)
 {
+    if (begun == TMINI_ERROR_LISTEN_ONLY) {
+        return message_fail("%s sends what a lidar sends, with times, and takes no commands: give "
+                            "them where the lidar is.",
+                            device->path);
+    }
     return device_await(device, begun, wanted) ? STATUS_OK : device_why(device);
 }
 
@@ -429,6 +454,7 @@ int device_use(const options_t *options, int (*use)(device_t *device, const opti
         return message_fail("cannot use %s: %s", device.path, advice_for(opened, device.path));
     }
     device.begun_ms = tmini_posix_port.now_ms(&device.port);
+    note_times(&device);
     interrupt_watch(true);
     interrupt_last_words(stop_at_once);
     const int status = use(&device, options);

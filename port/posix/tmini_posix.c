@@ -37,6 +37,9 @@
 #define SOCKET_PREFIX "tcp:"
 #define CONNECT_MS 5000u
 
+/* For how long a socket's first bytes are awaited, which show whether the stream is timed. */
+#define GREETING_MS 600u
+
 /* The pause between two attempts to open a device that has disappeared. */
 #define RETRY_MS 200u
 
@@ -131,6 +134,7 @@ static tmini_posix_status_t open_device(tmini_posix_t *port)
     if (port->fd < 0) {
         return status_of_open(errno);
     }
+    port->timed.kind = TMINI_TIMED_RAW;
     const tmini_posix_status_t status = claim(port->fd);
     if (status != TMINI_POSIX_OK) {
         (void)close(port->fd); /* Not close_port(): it would end another program's claim. */
@@ -140,12 +144,22 @@ static tmini_posix_status_t open_device(tmini_posix_t *port)
     return set_up(port->fd);
 }
 
-static uint32_t now_ms(void *context)
+static int64_t now_us(void)
 {
-    (void)context;
     struct timespec now;
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (uint32_t)((uint64_t)now.tv_sec * 1000u + (uint64_t)now.tv_nsec / 1000000u);
+    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+int64_t tmini_posix_now_us(const tmini_posix_t *port)
+{
+    return tmini_timed_now_us(&port->timed, now_us());
+}
+
+/* Without a port: the system's clock. */
+static uint32_t now_ms(void *context)
+{
+    return (uint32_t)((context != NULL ? tmini_posix_now_us(context) : now_us()) / 1000);
 }
 
 /* Waits until a connection is established. Returns 0 or an error number. */
@@ -245,6 +259,7 @@ tmini_posix_status_t tmini_posix_start_on(tmini_posix_t *port, int fd, tmini_t *
     port->received = 0;
     port->fd = fd;
     port->state = TMINI_POSIX_OK;
+    tmini_timed_begin(&port->timed);
     make_own(fd);
     return port->state;
 }
@@ -262,6 +277,7 @@ static void close_port(tmini_posix_t *port, tmini_posix_status_t state)
 static void open_port(tmini_posix_t *port)
 {
     const bool is_socket = strncmp(port->path, SOCKET_PREFIX, sizeof SOCKET_PREFIX - 1) == 0;
+    tmini_timed_begin(&port->timed);
     port->state = is_socket ? open_socket(port) : open_device(port);
     if (port->state != TMINI_POSIX_OK) {
         const int error = errno;
@@ -269,6 +285,73 @@ static void open_port(tmini_posix_t *port)
         errno = error;
     }
     port->tried_ms = now_ms(NULL);
+}
+
+/* What a failure of read() or write() means. No bytes yet, or a signal, is no failure. */
+static tmini_posix_status_t status_of_transfer(int error)
+{
+    switch (error) {
+    case EAGAIN:
+#if EWOULDBLOCK != EAGAIN
+    case EWOULDBLOCK:
+#endif
+    case EINTR:
+        return TMINI_POSIX_OK;
+    case EIO:
+    case ENXIO:
+    case ENODEV:
+    case EBADF:
+    case EPIPE:
+    case ECONNRESET:
+    case ETIMEDOUT:
+        return TMINI_POSIX_UNPLUGGED;
+    default:
+        return TMINI_POSIX_FAILED;
+    }
+}
+
+/* Waits for bytes. Returns false if none came. */
+static bool await_bytes(tmini_posix_t *port, int timeout_ms)
+{
+    struct pollfd device = {.fd = port->fd, .events = POLLIN};
+    const int ready = poll(&device, 1, timeout_ms);
+    if (ready < 0) {
+        port->state = status_of_transfer(errno);
+    }
+    return ready > 0;
+}
+
+/* What kind of stream comes, judged by its first bytes; those of the lidar stay in the
+ * socket. */
+static void recognise(tmini_posix_t *port)
+{
+    uint8_t first[TMINI_TIMED_MAGIC_SIZE];
+    const ssize_t count = recv(port->fd, first, sizeof first, MSG_PEEK);
+    if (count < 0 && status_of_transfer(errno) == TMINI_POSIX_OK) {
+        return;
+    }
+    if (count <= 0 || memcmp(first, tmini_timed_magic, (size_t)count) != 0) {
+        port->timed.kind = TMINI_TIMED_RAW;
+    } else if (count == sizeof first) {
+        port->timed.kind = TMINI_TIMED_YES;
+        (void)recv(port->fd, first, sizeof first, 0);
+    } else {
+        (void)poll(NULL, 0, 1); /* More will come soon. */
+    }
+}
+
+/* Waits until it is known whether the stream is timed. */
+static void await_greeting(tmini_posix_t *port)
+{
+    const uint32_t begun_ms = now_ms(NULL);
+    uint32_t passed_ms = 0;
+    while (port->state == TMINI_POSIX_OK && port->timed.kind == TMINI_TIMED_UNKNOWN &&
+           passed_ms < GREETING_MS) {
+        if (await_bytes(port, (int)(GREETING_MS - passed_ms))) {
+            recognise(port);
+        }
+        passed_ms = now_ms(NULL) - begun_ms;
+    }
 }
 
 tmini_posix_status_t tmini_posix_start(tmini_posix_t *port, tmini_t *lidar)
@@ -279,6 +362,7 @@ tmini_posix_status_t tmini_posix_start(tmini_posix_t *port, tmini_t *lidar)
     port->reconnections = 0;
     port->is_started = true;
     open_port(port);
+    await_greeting(port);
     return port->state;
 }
 
@@ -333,29 +417,6 @@ void tmini_posix_tap(tmini_posix_t *port, tmini_posix_tap_t tap, void *context)
     port->tap_context = context;
 }
 
-/* What a failure of read() or write() means. No bytes yet, or a signal, is no failure. */
-static tmini_posix_status_t status_of_transfer(int error)
-{
-    switch (error) {
-    case EAGAIN:
-#if EWOULDBLOCK != EAGAIN
-    case EWOULDBLOCK:
-#endif
-    case EINTR:
-        return TMINI_POSIX_OK;
-    case EIO:
-    case ENXIO:
-    case ENODEV:
-    case EBADF:
-    case EPIPE:
-    case ECONNRESET:
-    case ETIMEDOUT:
-        return TMINI_POSIX_UNPLUGGED;
-    default:
-        return TMINI_POSIX_FAILED;
-    }
-}
-
 static void take(tmini_posix_t *port, const uint8_t *bytes, size_t count)
 {
     port->received += count;
@@ -390,22 +451,74 @@ static bool take_block(tmini_posix_t *port, size_t wanted)
 static void report_held(const tmini_posix_t *port)
 {
     int held = 0;
-    if (port->lidar != NULL && ioctl(port->fd, FIONREAD, &held) == 0) {
+    if (port->lidar != NULL && port->timed.kind == TMINI_TIMED_YES) {
+        tmini_feed_held(port->lidar, tmini_timed_left(&port->timed));
+    } else if (port->lidar != NULL && ioctl(port->fd, FIONREAD, &held) == 0) {
         tmini_feed_held(port->lidar, held > 0 ? (size_t)held : 0);
+    }
+}
+
+/* Puts what has come into `timed`. */
+static void receive_timed(tmini_posix_t *port)
+{
+    size_t space = 0;
+    uint8_t *const place = tmini_timed_room(&port->timed, &space);
+    const ssize_t count = read(port->fd, place, space);
+    if (count > 0) {
+        tmini_timed_put(&port->timed, (size_t)count);
+    } else {
+        port->state = count == 0 ? TMINI_POSIX_UNPLUGGED : status_of_transfer(errno);
+    }
+}
+
+/* Hands over the next chunk; the following ones as well if they came soon after it, compared with
+ * the program's pause before this call, so that a slow program keeps up. Returns false if there was
+ * none. */
+static bool take_chunks(tmini_posix_t *port)
+{
+    const int64_t us = now_us();
+    const int64_t span_us = 2 * (us - port->waited_us);
+    int64_t begun_us = 0;
+    const uint8_t *bytes = NULL;
+    size_t count = 0;
+    bool is_gap = false;
+    bool is_any = false;
+    do {
+        const size_t space = room(port);
+        count = space > 0 ? tmini_timed_take(&port->timed, us, space, &bytes, &is_gap) : 0;
+        if (count > 0) {
+            take(port, bytes, count);
+        } else if (is_gap && port->lidar != NULL) {
+            tmini_feed_gap(port->lidar);
+        }
+        begun_us = is_any ? begun_us : port->timed.clock_us;
+        is_any = is_any || count > 0 || is_gap || space == 0;
+    } while (count > 0 && port->timed.clock_us - begun_us < span_us);
+    return is_any;
+}
+
+static void receive_raw(tmini_posix_t *port)
+{
+    size_t wanted = room(port);
+    /* Hands over all waiting bytes at once, so that the lidar can compute when they came. */
+    while (wanted > 0 && take_block(port, wanted)) {
+        wanted = port->lidar != NULL ? room(port) : 0;
     }
 }
 
 static void receive(tmini_posix_t *port, int timeout_ms)
 {
-    size_t wanted = room(port);
-    struct pollfd device = {.fd = port->fd, .events = POLLIN};
-    const int ready = wanted == 0 ? 0 : poll(&device, 1, timeout_ms);
-    if (ready < 0) {
-        port->state = status_of_transfer(errno);
-    }
-    /* Hands over all waiting bytes at once, so that the lidar can compute when they came. */
-    while (ready > 0 && wanted > 0 && take_block(port, wanted)) {
-        wanted = port->lidar != NULL ? room(port) : 0;
+    const bool has_chunks = port->timed.kind == TMINI_TIMED_YES && take_chunks(port);
+    if (!has_chunks && room(port) > 0 && await_bytes(port, timeout_ms)) {
+        if (port->timed.kind == TMINI_TIMED_UNKNOWN) {
+            recognise(port);
+        }
+        if (port->timed.kind == TMINI_TIMED_RAW) {
+            receive_raw(port);
+        } else if (port->timed.kind == TMINI_TIMED_YES) {
+            receive_timed(port);
+            (void)take_chunks(port);
+        }
     }
     report_held(port);
 }
@@ -417,7 +530,13 @@ tmini_posix_status_t tmini_posix_wait(tmini_posix_t *port, int timeout_ms)
     } else if (port->state == TMINI_POSIX_OK) {
         receive(port, timeout_ms);
     }
+    port->waited_us = now_us();
     return is_away(port) ? TMINI_POSIX_OK : port->state;
+}
+
+bool tmini_posix_is_timed(const tmini_posix_t *port)
+{
+    return port->timed.kind == TMINI_TIMED_YES;
 }
 
 void tmini_posix_counters(const tmini_posix_t *port, tmini_posix_counters_t *counters)
@@ -452,7 +571,7 @@ static ssize_t write_quietly(int fd, const uint8_t *bytes, size_t count)
 static int write_bytes(void *context, const uint8_t *bytes, size_t count)
 {
     tmini_posix_t *const port = context;
-    if (port->state != TMINI_POSIX_OK) {
+    if (port->state != TMINI_POSIX_OK || tmini_posix_is_timed(port)) {
         return -1;
     }
     const ssize_t written = write_quietly(port->fd, bytes, count);

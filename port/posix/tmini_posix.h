@@ -38,6 +38,7 @@
 #include <stdint.h>
 
 #include "tmini/tmini.h"
+#include "tmini_timed.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -79,6 +80,8 @@ typedef struct {
     tmini_t *lidar;
     tmini_posix_tap_t tap;
     void *tap_context;
+    tmini_timed_t timed;
+    int64_t waited_us;
     uint32_t tried_ms;
     bool reconnects;
     bool is_started;
@@ -90,7 +93,10 @@ typedef struct {
 extern const tmini_port_t tmini_posix_port;
 
 /** Sets the path of the device, or of the socket to a controller that forwards its UART:
- * "tcp:HOST:PORT". Opens nothing yet. `path` stays the caller's, and must last as long as `port` is
+ * "tcp:HOST:PORT". It may forward raw bytes, or a timed stream: then times are those of the sender,
+ * late bytes cost no scan, nothing can be sent, and the driver has to be `listen_only`. While nothing
+ * comes, the driver's clock stands still for up to 0.6 s, as late bytes may follow, and so does
+ * tmini_scan_age_ms(). Opens nothing yet. `path` stays the caller's, and must last as long as `port` is
  * used. Do not call it between tmini_posix_start() and tmini_posix_stop(). */
 void tmini_posix_init(tmini_posix_t *port, const char *path);
 
@@ -121,6 +127,15 @@ void tmini_posix_reconnect(tmini_posix_t *port, bool reconnects);
  * TMINI_POSIX_OK, also when nothing came; TMINI_POSIX_UNPLUGGED or TMINI_POSIX_FAILED, which all
  * later calls return, too. */
 tmini_posix_status_t tmini_posix_wait(tmini_posix_t *port, int timeout_ms);
+
+/** Whether a timed stream comes. After tmini_posix_start() this is known, if the first bytes have
+ * come within 0.6 s. */
+bool tmini_posix_is_timed(const tmini_posix_t *port);
+
+/** The time of the bytes that are being handed over, in microseconds of the system's monotonic clock:
+ * now, or when the sender of a timed stream received them, without the delay. The scans' times are
+ * on this clock, in milliseconds. */
+int64_t tmini_posix_now_us(const tmini_posix_t *port);
 
 /** Copies the errors that the system has counted since the adapter was plugged in. All 0 where it
  * does not count: sockets, pseudo-terminals, systems other than Linux. */

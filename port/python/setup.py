@@ -24,6 +24,8 @@ if not IS_DISTRIBUTION:
     for module in ("chunk", "stream", "tape"):
         for suffix in (".c", ".h"):
             shutil.copy(CHECKOUT / "examples" / "host" / (module + suffix), CARRIED / "src")
+    for suffix in (".c", ".h"):
+        shutil.copy(CHECKOUT / "port" / "posix" / ("tmini_timed" + suffix), CARRIED / "src")
     shutil.copy(CHECKOUT / "LICENSE", HERE)
 try:
     setup(cffi_modules=["native.py:ffi"])

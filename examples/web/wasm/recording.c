@@ -103,13 +103,13 @@ EXPORTED uint32_t recording_numbers(void)
 /* The first bytes of a recording that the page saves. */
 EXPORTED const void *recording_magic(void)
 {
-    return chunk_magic;
+    return tmini_timed_magic;
 }
 
 /* The head of a chunk of that recording: the chunk holds the `count` bytes in `transfer`. */
 EXPORTED const void *recording_head(uint32_t delta_us, uint32_t count)
 {
     static uint8_t head[CHUNK_HEAD_SIZE];
-    chunk_write_head(head, delta_us, web_transfer, count);
+    tmini_timed_write_head(head, delta_us, web_transfer, count);
     return head;
 }

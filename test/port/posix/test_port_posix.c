@@ -253,6 +253,78 @@ void test_without_room_it_does_not_wait(void)
     close(other);
 }
 
+/* Appends a chunk, 10 ms after the one before. */
+static size_t put_chunk(uint8_t *to, const uint8_t *bytes, size_t count)
+{
+    tmini_timed_write_head(to, 10000, bytes, count);
+    memcpy(to + TMINI_TIMED_HEAD_SIZE, bytes, count);
+    return TMINI_TIMED_HEAD_SIZE + count;
+}
+
+/* Polls until nothing comes for a moment; returns the number of complete scans. */
+static unsigned count_complete(void)
+{
+    unsigned complete = 0;
+    const uint64_t before = port.received;
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 1000));
+    for (tmini_event_t event = TMINI_EVENT_MORE;
+         port.received > before || event != TMINI_EVENT_NONE;) {
+        event = tmini_poll(&lidar);
+        complete += event == TMINI_EVENT_SCAN && tmini_scan(&lidar)->complete ? 1 : 0;
+        if (event == TMINI_EVENT_NONE) {
+            const uint64_t count = port.received;
+            TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 50));
+            if (port.received == count) {
+                break;
+            }
+        }
+    }
+    return complete;
+}
+
+/* A second of a lidar at 6 Hz, of which each third comes late and at once. */
+void test_a_timed_stream_that_comes_late_has_the_times_of_its_sender(void)
+{
+    static uint8_t stream[20000];
+    uint8_t bytes[13000];
+    FILE *const file = fopen("recordings/sim-6hz.bin", "rb");
+    TEST_ASSERT_NOT_NULL(file);
+    TEST_ASSERT_EQUAL_size_t(sizeof bytes, fread(bytes, 1, sizeof bytes, file));
+    (void)fclose(file);
+    size_t size = TMINI_TIMED_MAGIC_SIZE;
+    memcpy(stream, tmini_timed_magic, size);
+    for (size_t at = 0; at < sizeof bytes; at += 130) {
+        size += put_chunk(stream + size, bytes + at, 130);
+    }
+    const tmini_config_t config = {.port = &tmini_posix_port,
+                                   .port_context = &port,
+                                   .rx_buffer = rx,
+                                   .rx_size = sizeof rx,
+                                   .points = points,
+                                   .max_points = sizeof points / sizeof points[0],
+                                   .listen_only = true};
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
+    const int other = start_on_pair(&lidar, stream, 8 + 140);
+    TEST_ASSERT_EQUAL_UINT(0, count_complete());
+    TEST_ASSERT_TRUE(tmini_posix_is_timed(&port));
+    TEST_ASSERT_EQUAL_UINT64(130, port.received);
+    const int64_t begun_us = tmini_posix_now_us(&port);
+    TEST_ASSERT_EQUAL_INT(-1, tmini_posix_port.write(&port, stream, 2));
+    unsigned complete = 0;
+    for (size_t at = 148; at < size; at += 33 * 140) {
+        (void)usleep(330000);
+        TEST_ASSERT_EQUAL_INT(33 * 140, write(other, stream + at, 33 * 140));
+        complete += count_complete();
+    }
+    TEST_ASSERT_EQUAL_UINT(4, complete); /* Of five start packets. */
+    TEST_ASSERT_EQUAL_UINT64(sizeof bytes, port.received);
+    TEST_ASSERT_INT64_WITHIN(1000, begun_us + 990000, tmini_posix_now_us(&port));
+    const uint32_t age_ms = tmini_posix_port.now_ms(&port) - tmini_scan(&lidar)->end_ms;
+    TEST_ASSERT_UINT32_WITHIN(90, 90, age_ms); /* Less than a revolution. */
+    close(other);
+}
+
 void test_silence_is_no_error(void)
 {
     begin();
