@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Changes the library or a port in one small place at a time, and checks that a unit test notices the change.
+"""Changes the sources in one small place at a time, and checks that a test notices the change.
 
     mutation.py --build DIR [--sample N [--seed S]] [--results FILE] [--jobs N] [--list] [FILE …]
 
 DIR is a build folder with the tests, configured with CMAKE_EXPORT_COMPILE_COMMANDS=ON (as test/run.sh does).
 FILE is a source in lib/src or port, a public header, or a folder of these; lib/src by default. Changes to the
-library are tried with all of test/unit, changes to a port with that port's tests. With --results, a run that was
+library are tried with all of test/unit, changes to a port with that port's tests. It may also be a source of the tool,
+of the simulated lidar, of the Python package or of the viewer: mutation_commands.py. With --results, a run that was
 stopped can be continued.
 
 A test is linked only once, with the source as a shared object: each mutant costs only one quick compilation. Tests
@@ -23,6 +24,7 @@ An entry there is an error if its mutant no longer exists or, without --sample, 
 import argparse
 import collections
 import contextlib
+import functools
 import glob
 import hashlib
 import itertools
@@ -38,10 +40,12 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 sys.path.insert(0, os.path.join(ROOT, ".ci"))
 import single  # noqa: E402  The library as one source.
+import mutation_commands as elsewhere  # noqa: E402
 
 PUBLIC = os.path.join("lib", "include", "")
 KNOWN = os.path.join(ROOT, "test", "qa", "mutants.txt")
@@ -135,13 +139,15 @@ def mutants_of(path):
     text = read(path)
     lines = text.split("\n")
     found = {}
-    for number, line in enumerate(code_only(text).split("\n")):
+    kind = os.path.splitext(path)[1]
+    code = elsewhere.blanked(path, text) if kind in elsewhere.REPLACEMENTS else code_only(text)
+    for number, line in enumerate(code.split("\n")):
         line = line.rstrip()  # The blanks of a comment after a statement.
-        for pattern, replacements in REPLACEMENTS:
+        for pattern, replacements in elsewhere.REPLACEMENTS.get(kind, REPLACEMENTS):
             for match in re.finditer(pattern, line):
                 for replacement in replacements:
                     mutant = Mutant(path, number, match.start(), match.end(),
-                                    replacement.format(match.group(0)), lines)
+                                    match.expand(replacement.format(match.group(0))), lines)
                     found[mutant.id] = mutant
     return list(found.values())
 
@@ -181,17 +187,19 @@ def objects_of(folder):
 
 
 def files_of(folder):
-    return sorted(os.path.relpath(file, ROOT) for kind in ("c", "cpp", "h")
+    return sorted(os.path.relpath(file, ROOT) for kind in ("c", "cpp", "h", "py", "js")
                   for file in glob.glob(os.path.join(glob.escape(os.path.join(ROOT, folder)), "*." + kind)))
 
 
 def has_functions(path):
-    return re.search(r"^\{", read(path), re.MULTILINE)
+    return re.search(r"^\{|^\s*(?:async )?(?:def|function) ", read(path), re.MULTILINE)
 
 
 def sources_with(path):
     """The file itself if it is a source, and the sources in its folder that include it."""
     found = {path}
+    if not path.endswith((".c", ".cpp", ".h")):
+        return [path]
     for _ in files_of(os.path.dirname(path)):  # One round for each file in a chain of inclusions.
         names = [f'#include "{os.path.basename(file)}"' for file in found]
         found |= {file for file in files_of(os.path.dirname(path)) if any(name in read(file) for name in names)}
@@ -215,16 +223,40 @@ class Build:
                               os.path.isdir(os.path.join(place, "CMakeFiles", file[3:-2] + ".dir"))]  # By this build.
             self.folders += [os.path.join(place, name) for name in sorted(folders) if re.match(r"test_.*\.dir$", name)]
 
+    def link_of(self, target):
+        """The folder in which a program is linked, and the command."""
+        (link,) = glob.glob(os.path.join(glob.escape(self.folder), "**", "CMakeFiles", target + ".dir", "link.txt"),
+                            recursive=True)
+        with open(link, encoding="utf-8") as file:
+            return os.path.dirname(os.path.dirname(os.path.dirname(link))), shlex.split(file.read())
+
+    @staticmethod
+    def compiled(entry):
+        """Its object, and the compiler with the options; nothing of what is not compiled."""
+        if "command" not in entry:
+            return None, None, []
+        compiler, *flags = arguments_of(entry)
+        return object_of(entry), compiler, flags
+
+    @functools.cache
+    def ctests(self):
+        listed = subprocess.run(["ctest", "--test-dir", self.folder, "-C", "All", "--show-only=json-v1"], check=True,
+                                capture_output=True, text=True).stdout
+        return json.loads(listed[listed.index("{"):])["tests"]
+
     def entries_of(self, source):
         path = os.path.realpath(os.path.join(ROOT, source))
         return [entry for entry in self.entries if os.path.realpath(entry["file"]) == path]
 
     def tests_of(self, source):
         """The tests of a source, each with the command line that compiles the source for it."""
-        place = "unit" if source.startswith("lib/") else os.path.dirname(source).replace("/", "[/_]")
+        place = "unit" if source.startswith("lib/") else os.path.dirname(source).removeprefix("test/")
+        place = place.removeprefix("examples/").replace("/", "[/_]")
         entries = self.entries_of(source)
         own = {os.path.realpath(object_of(entry)): entry for entry in entries}
-        library = [entry for entry in entries if not object_of(entry).startswith(os.path.join(self.folder, "test", ""))]
+        is_library = re.compile(r".*/tmini_simulator\.dir/" if source.startswith("test/") else
+                                r"(?!.*/examples/|" + re.escape(os.path.join(self.folder, "test", "")) + ")")
+        library = [entry for entry in entries if is_library.match(object_of(entry))]
         for folder in self.folders:
             linked = [own[obj] for obj in objects_of(folder) if obj in own]
             entry = (linked + library + [None])[0]
@@ -232,6 +264,7 @@ class Build:
             if re.search(f"/test/.*{place}/", folder) and entry and \
                     os.path.exists(os.path.join(self.folder, "test", "bin", name)):
                 yield Test(name, folder, entry)
+        yield from elsewhere.commands_of(self, source)
 
 
 class Test:
@@ -311,12 +344,16 @@ class Bench:
 
     def compile_shared(self, test, source, folder):
         """Compiles without optimisation, which is fastest. Tests load mutant.so from any folder."""
+        if isinstance(test, elsewhere.Command):
+            return test.maker.make(self, test, source, folder)
         target = os.path.join(self.work, folder, test.variant, "mutant.so")
         is_compiled = self.compile(test, source, target, "-O0", "-fPIC", "-shared", "-Wl,-soname,mutant.so")
         return target if is_compiled else None
 
     def optimised(self, test, source):
         target = os.path.join(self.work, "optimised.o")
+        if not test.compiler:
+            return read(source)
         self.compile(test, source, target, "-O2", "-c")
         with open(target, "rb") as file:
             return file.read()
@@ -333,6 +370,9 @@ class Bench:
     def link(self, test):
         """Links a test, checks that it passes with the original, and measures its time."""
         original = self.compile_shared(test, test.entry["file"], "original")
+        if isinstance(test, elsewhere.Command):
+            self.begin_command(test, original)
+            return
         test.program = os.path.join(self.work, os.path.dirname(original), test.name)
         subprocess.run([test.compiler, "-o", test.program, *test.objects(), "-Wl,--no-as-needed", original,
                         "-Wl,--start-group", *self.build.archives, "-Wl,--end-group", "-lm", "-lpthread"], check=True)
@@ -341,8 +381,18 @@ class Bench:
             raise Unable(f"{test.name} fails without any mutant")
         test.seconds = max(cpu_seconds() - before, 0.001)
 
+    def begin_command(self, test, original):
+        begun = time.monotonic()
+        test.program = test.name
+        status, output = test.run(original, self.work)
+        if status != 0:
+            raise Unable(f"{test.name} fails without any mutant:\n{output}")
+        test.seconds = time.monotonic() - begun
+
     def run(self, test, shared):
         """The exit status. A signal ends a test that computes or waits much longer than usual."""
+        if isinstance(test, elsewhere.Command):
+            return test.run(shared, self.work, "-x")[0]
         try:
             return subprocess.run([test.program], cwd=test.work_folder() or self.work, stdin=subprocess.DEVNULL,
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,

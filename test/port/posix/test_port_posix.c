@@ -369,7 +369,7 @@ static void poll_until(tmini_event_t wanted)
     } while (event != wanted);
 }
 
-void test_a_cable_that_is_pulled_and_plugged_in_again_is_a_loss_and_a_recovery(void)
+static void begin_with_an_adapter(void)
 {
     begin();
     program_plug_in(port.path);
@@ -377,6 +377,11 @@ void test_a_cable_that_is_pulled_and_plugged_in_again_is_a_loss_and_a_recovery(v
     tmini_posix_init(&port, program_path("adapter"));
     tmini_posix_reconnect(&port, true);
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
+}
+
+void test_a_cable_that_is_pulled_and_plugged_in_again_is_a_loss_and_a_recovery(void)
+{
+    begin_with_an_adapter();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
     poll_until(TMINI_EVENT_SCAN);
     program_stop_lidar();
@@ -388,6 +393,37 @@ void test_a_cable_that_is_pulled_and_plugged_in_again_is_a_loss_and_a_recovery(v
     poll_until(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, port.state);
     TEST_ASSERT_TRUE(port.reconnections >= 1);
+}
+
+/* Until the gap has been handled there is no room: no scan continues across it. */
+void test_a_reconnection_is_a_gap(void)
+{
+    begin_with_an_adapter();
+    program_stop_lidar();
+    program_plug_in(program_start_lidar_again((const char *const[]){NULL}));
+    for (int i = 0; i < 1000 && port.reconnections == 0; i++) {
+        TEST_ASSERT_TRUE(tmini_feed_room(&lidar) > 0);
+        (void)tmini_posix_wait(&port, 10);
+    }
+    TEST_ASSERT_EQUAL_size_t(0, tmini_feed_room(&lidar));
+    (void)tmini_poll(&lidar);
+    TEST_ASSERT_TRUE(tmini_feed_room(&lidar) > 0);
+}
+
+void test_bytes_from_before_the_start_are_thrown_away(void)
+{
+    const int master = posix_openpt(O_RDWR | O_NOCTTY);
+    TEST_ASSERT_EQUAL_INT(0, grantpt(master));
+    TEST_ASSERT_EQUAL_INT(0, unlockpt(master));
+    const int line = open(ptsname(master), O_RDWR | O_NOCTTY); /* Otherwise stopping would do it. */
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&port, ptsname(master))); /* Makes it raw. */
+    TEST_ASSERT_EQUAL_INT(3, write(master, "old", 3));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, NULL));
+    TEST_ASSERT_EQUAL_INT(4, write(master, "news", 4));
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 1000));
+    TEST_ASSERT_EQUAL_UINT64(4, port.received);
+    close(line);
+    close(master);
 }
 
 void test_a_device_that_is_not_there_yet_is_waited_for(void)
