@@ -101,7 +101,8 @@ check_tidy() {
     tidy --checks=-readability-named-parameter,-bugprone-incorrect-roundings \
         port/arduino/*.cpp -- -std=c++11 -I lib/include -isystem test/port/arduino/arduino_stub \
         -DARDUINO=10819 -DESP32 -DESP_ARDUINO_VERSION_MAJOR=3 || clean=1
-    tidy_firmware examples/micro_ros/*.c -- -isystem test/port/micro_ros/micro_ros_stub || clean=1
+    tidy_firmware port/ros2/src/*.c examples/micro_ros/*.c -- -I port/ros2/src \
+        -isystem test/port/micro_ros/micro_ros_stub || clean=1
     return "$clean"
 }
 

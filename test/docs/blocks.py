@@ -55,7 +55,7 @@ ARDUINO = [*CXX, "-Iport/arduino", *stand_ins("test/port/arduino/arduino_stub"),
 FREERTOS = [*C, *KERNEL, *prelude("board")]
 ZEPHYR = [*C, "-Iport/zephyr", *stand_ins("test/port/zephyr/zephyr_stub"), *prelude("board")]
 PICO = [*C, "-std=gnu99", "-Iport/pico", *stand_ins("test/port/pico/sdk_stub"), *prelude("board")]
-MICRO_ROS = [*C, "-Iexamples/micro_ros", *stand_ins("test/port/micro_ros/micro_ros_stub")]
+MICRO_ROS = [*C, "-Iexamples/micro_ros", "-Iport/ros2/src", *stand_ins("test/port/micro_ros/micro_ros_stub")]
 BOARD = [*C, *prelude("board")]
 
 # Compiler options for each document, or for one of its sections; BOARD for all others.
