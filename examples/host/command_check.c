@@ -16,6 +16,7 @@
 #include "points.h"
 
 #define WATCH_SECONDS 10u
+#define REST_MS 100u
 #define COLUMNS 80
 #define INDENT 17 /* The column after the grade and the question's name. */
 
@@ -31,6 +32,17 @@
 
 typedef enum { GOOD, REMARK, BAD, GRADES } grade_t;
 
+/* What was seen, and what to do unless the grade is good; `headline` explains the name. */
+typedef struct {
+    grade_t grade;
+    const char *name;
+    const char *headline;
+    const char *advice;
+    char text[CAUSE_TEXT_SIZE];
+} answer_t;
+
+#define ANSWERS_MAX 16u
+
 typedef struct {
     device_t *device; /* NULL: there is no port. */
     unsigned seconds;
@@ -42,8 +54,10 @@ typedef struct {
     unsigned faults;        /* Faults reported since. */
     count_t points;
     count_t valid;
-    tmini_point_t nearest;   /* Of the latest scan; a distance of 0: none. */
-    char names[GRADES][160]; /* The questions with each grade. */
+    unsigned turns, blind_turns; /* Blind: without one distance. */
+    tmini_point_t nearest;       /* Of the latest scan; a distance of 0: none. */
+    answer_t answers[ANSWERS_MAX];
+    size_t answer_count;
 } check_t;
 
 /* Prints a text after INDENT columns, in lines of at most COLUMNS. */
@@ -61,27 +75,27 @@ static void print_indented(const char *text)
     (void)putchar('\n');
 }
 
-/* Prints the answer to a question: what was seen and, unless the grade is good, what to do. */
+static void print_answer(const answer_t *answer)
+{
+    static const char *const words[GRADES] = {"ok", "look", "BAD"};
+    (void)printf("%-5s %-10s ", words[answer->grade], answer->name);
+    print_indented(answer->text);
+    if (answer->advice != NULL && answer->grade != GOOD) {
+        (void)printf("%*s", INDENT, "");
+        print_indented(answer->advice);
+    }
+}
+
+/* The answer to a question. */
 static void answer(check_t *check, grade_t grade, const char *name, const char *advice,
                    const char *format, ...)
 {
-    static const char *const words[GRADES] = {"ok", "look", "BAD"};
-    char *const names = check->names[grade];
-    const size_t length = strlen(names);
-    char text[1024];
+    answer_t *const answer = &check->answers[check->answer_count++];
+    *answer = (answer_t){.grade = grade, .name = name, .advice = advice};
     va_list arguments;
     va_start(arguments, format);
-    (void)vsnprintf(text, sizeof text, format, arguments);
+    (void)vsnprintf(answer->text, sizeof answer->text, format, arguments);
     va_end(arguments);
-    (void)printf("%-5s %-10s ", words[grade], name);
-    print_indented(text);
-    if (advice != NULL && grade != GOOD) {
-        (void)printf("%*s", INDENT, "");
-        print_indented(advice);
-    }
-    (void)fflush(stdout); /* The next answer may take some seconds. */
-    (void)snprintf(names + length, sizeof check->names[grade] - length, "%s%s",
-                   length > 0 ? ", " : "", name);
 }
 
 static grade_t grade(bool is_bad, bool is_remarkable)
@@ -89,36 +103,63 @@ static grade_t grade(bool is_bad, bool is_remarkable)
     return is_bad ? BAD : is_remarkable ? REMARK : GOOD;
 }
 
-static void answer_trouble(check_t *check, const char *missing)
+static void answer_cause(check_t *check, const cause_t *cause, const facts_t *facts)
 {
-    static const char *const names[] = {"wiring", "baud", "command", "answers"};
-    const device_t *const device = check->device;
+    char text[CAUSE_TEXT_SIZE];
+    answer(check, BAD, cause->name, cause->advice, "%s", cause_text(cause, facts, text));
+    check->answers[check->answer_count - 1].headline = cause->headline;
+}
+
+/* The lidar does not do what was expected. Returns false if nothing shows why. */
+static bool answer_trouble(check_t *check)
+{
+    device_t *const device = check->device;
+    facts_t facts;
     if (device->port.state != TMINI_POSIX_OK) {
         answer(check, BAD, "port", "plug it in again; give the lidar a supply of its own",
                "it has gone: unplugged, or its supply has failed");
-    } else {
-        const trouble_t trouble = trouble_find(device);
-        answer(check, BAD, names[trouble], trouble_text(trouble), "%s", missing);
+        return true;
     }
+    device_facts(device, &facts);
+    const cause_t *const cause = cause_find(&facts);
+    if (cause != NULL && cause->text != NULL) {
+        answer_cause(check, cause, &facts);
+    }
+    return cause != NULL && cause->text != NULL;
+}
+
+static void answer_info(check_t *check)
+{
+    const device_t *const device = check->device;
+    const tmini_info_t *const info = tmini_info(&device->lidar);
+    const bool is_known =
+        info->model == TMINI_MODEL_T_MINI_PLUS || info->model == TMINI_MODEL_T_MINI_PRO;
+    char serial[TMINI_SERIAL_DIGITS + 1];
+    char late[60] = "";
+    tmini_serial_text(info, serial);
+    if (device->woken_ms > 0) {
+        (void)snprintf(late, sizeof late, "; it answered after %.1f s: it was still booting",
+                       device->woken_ms / 1000.0);
+    }
+    answer(check, grade(false, !is_known), "answers",
+           info->model == 152 ? model_text(info->model)
+                              : "this program does not know the model: it may speak another "
+                                "protocol",
+           "model %d, firmware %d.%d, hardware %d, serial %s%s", info->model, info->firmware_major,
+           info->firmware_minor, info->hardware, serial, late);
 }
 
 /* Returns false if the lidar does not answer at all. */
 static bool ask_info(check_t *check)
 {
-    device_t *const device = check->device;
-    if (device_await(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO)) {
-        const tmini_info_t *const info = tmini_info(&device->lidar);
-        const bool is_known =
-            info->model == TMINI_MODEL_T_MINI_PLUS || info->model == TMINI_MODEL_T_MINI_PRO;
-        char serial[TMINI_SERIAL_DIGITS + 1];
-        tmini_serial_text(info, serial);
-        answer(check, grade(false, !is_known), "answers",
-               "this program does not know the model: it may speak another protocol",
-               "model %d, firmware %d.%d, hardware %d, serial %s", info->model,
-               info->firmware_major, info->firmware_minor, info->hardware, serial);
+    if (device_ask(check->device, tmini_request_info, TMINI_EVENT_INFO)) {
+        answer_info(check);
         return true;
     }
-    answer_trouble(check, "no device information");
+    if (!answer_trouble(check)) {
+        answer(check, BAD, "answers", "try again; or cut the lidar's supply for a moment",
+               "no device information");
+    }
     return false;
 }
 
@@ -164,6 +205,9 @@ static bool is_seen(const check_t *check, const tmini_point_t *point)
     return mount == NULL || !mount_hides(mount, point->angle_q6);
 }
 
+/* A packet alone says nothing about a turn. */
+#define TURN_POINTS 100u
+
 static void see_scan(check_t *check)
 {
     const tmini_scan_t *const scan = &check->device->stream.scan;
@@ -173,11 +217,26 @@ static void see_scan(check_t *check)
         check->points += is_seen(check, &scan->points[i]) ? 1 : 0;
     }
     check->valid += survey.valid;
+    check->turns += scan->count >= TURN_POINTS ? 1 : 0;
+    check->blind_turns += scan->count >= TURN_POINTS && survey.valid == 0 ? 1 : 0;
     check->nearest = survey.nearest != NULL ? *survey.nearest : (tmini_point_t){0};
     check->speed_chz = scan->frequency_chz > 0 ? scan->frequency_chz : check->speed_chz;
     if (check->full_speed_ms == 0 && check->speed_chz > 0 && check->speed_chz >= nearly_chz) {
         check->full_speed_ms = device_ms(check->device);
     }
+}
+
+/* Takes the packets that have come and that the driver has not yet reported. */
+static void take_rest(device_t *device)
+{
+    const uint32_t begun_ms = device_ms(device);
+    count_t before = 0;
+    tmini_event_t event = TMINI_EVENT_NONE;
+    do {
+        before = device->witness.tape.stream.packets;
+        event = device_wait(device, 1);
+    } while ((event != TMINI_EVENT_NONE || device->witness.tape.stream.packets > before) &&
+             device_ms(device) - begun_ms < REST_MS);
 }
 
 static void watch(check_t *check)
@@ -193,6 +252,7 @@ static void watch(check_t *check)
                          (unsigned)(device_ms(device) - begun_ms) / 1000, check->seconds,
                          device->stream.packets);
     }
+    take_rest(device);
     message_progress(true, "%u s watched, %llu packets",
                      (unsigned)(device_ms(device) - begun_ms) / 1000, device->stream.packets);
 }
@@ -206,8 +266,8 @@ static void judge_supply(check_t *check)
     if (device->port.state != TMINI_POSIX_OK) {
         answer(check, BAD, "supply", advice, "the port went away while the motor was on");
     } else if (device->silences > 0) {
-        answer(check, BAD, "supply", advice, "the lidar fell silent %u times in %u s",
-               (unsigned)device->silences, check->seconds);
+        answer(check, BAD, "supply", advice, "the lidar fell silent %u time%s in %u s",
+               (unsigned)device->silences, device->silences == 1 ? "" : "s", check->seconds);
     } else if (check->full_speed_ms > SPIN_UP_MS && device->noises == 0) {
         answer(check, REMARK, "supply", advice, "the motor took %.1f s to come up to speed",
                full_speed_s);
@@ -222,32 +282,64 @@ static void judge_supply(check_t *check)
     }
 }
 
+/* What is lost or wrong in the bytes themselves, whenever they came. */
 static void judge_line(check_t *check)
 {
-    const device_t *const device = check->device;
-    const stream_t *const stream = &device->stream;
+    device_t *const device = check->device;
+    const stream_t *const stream = &device->witness.tape.stream;
     const bool is_noisy = device->noises > 0;
+    const bool is_bad = is_noisy || stream_damaged_permille(stream) >= DAMAGED_PERMILLE;
+    facts_t facts;
     tmini_counters_t counters;
     tmini_counters(&device->lidar, &counters);
-    answer(
-        check,
-        grade(is_noisy || stream_damaged_permille(stream) >= DAMAGED_PERMILLE, stream->damaged > 0),
-        "line",
-        is_noisy
-            ? "bytes came that no lidar sends: a wrong baud rate for a while, GND, interference"
-            : "shorter wires, GND beside them, away from motors; another adapter; 3.3 V levels",
-        "%s of %llu packets damaged, %u wrong checksums", damaged_text(stream), stream->packets,
-        (unsigned)counters.checksum_errors);
+    device_facts(device, &facts);
+    facts.has_replied = true; /* Or it listens. */
+    const cause_t *const cause = cause_find(&facts);
+    const bool is_sign = is_bad && cause != NULL && cause->is_sign;
+    if (is_sign) {
+        answer_cause(check, cause, &facts);
+    }
+    answer(check, grade(is_bad, stream->damaged > 0), "line",
+           is_noisy ? "bytes came that no lidar sends: a wrong baud rate for a while, GND, "
+                      "interference"
+           : cause != NULL && !is_sign ? cause->advice
+                                       : NULL,
+           "%s of %llu packets damaged, %u wrong checksums", damaged_text(stream), stream->packets,
+           (unsigned)tape_checksum_errors(&device->witness.tape));
     if (counters.bytes_overrun > 0) {
         answer(check, REMARK, "computer", "end other programs", "%u bytes lost here: too busy",
                (unsigned)counters.bytes_overrun);
     }
-    if (stream->longest_ms > PAUSE_MS && device->silences + device->noises == 0) {
-        answer(check, REMARK, "pace",
-               "nothing is lost; for fresher data: the adapter's latency timer, no USB hub, "
-               "a less busy computer",
-               "packets came up to %u ms late", (unsigned)stream->longest_ms);
+}
+
+/* When the bytes came. A program that does not run receives nothing, either. */
+static void judge_pace(check_t *check)
+{
+    const device_t *const device = check->device;
+    const uint32_t longest_ms = device->witness.longest_ms;
+    const count_t witnessed = device->witness.tape.stream.packets - device->witness.packets_before;
+    const count_t late =
+        witnessed > device->stream.packets + 1 ? witnessed - device->stream.packets : 0;
+    char halves[80] = "";
+    if (longest_ms <= PAUSE_MS || device->silences + device->noises > 0) {
+        return;
     }
+    if (2 * device->absent_ms > longest_ms) {
+        answer(check, REMARK, "computer", "end other programs",
+               "too busy: this program did not run for %u ms", (unsigned)device->absent_ms);
+        return;
+    }
+    if (late > 0) {
+        (void)snprintf(halves, sizeof halves, "; the late halves of %llu packets were dropped",
+                       late);
+    }
+    answer(check, REMARK, "pace",
+           strncmp(device->path, "tcp:", 4) == 0
+               ? "nothing is lost: the network or the bridge delivers late (Wi-Fi power saving, "
+                 "many small packets)"
+               : "nothing is lost on the line; for fresher data: the adapter's latency timer, no "
+                 "USB hub, a less busy computer",
+           "bytes come in bursts, up to %u ms apart%s", (unsigned)longest_ms, halves);
 }
 
 static void judge_speed(check_t *check)
@@ -266,7 +358,10 @@ static void judge_speed(check_t *check)
         answer(check, GOOD, "frequency", NULL, "%.1f Hz measured", speed_chz / 100.0);
     } else {
         answer(check, grade(percent > SPEED_PERCENT, percent > SPEED_REMARK_PERCENT), "frequency",
-               "the supply may be weak, or something may brake the rotor",
+               speed_chz < set_chz
+                   ? "the supply may be weak, or something may brake the rotor"
+                   : "faster than it should be: its speed control has failed; no supply and no "
+                     "brake does that",
                "%.1f Hz measured, %.1f Hz set", speed_chz / 100.0, set_chz / 100.0);
     }
 }
@@ -283,13 +378,22 @@ static void judge_scans(check_t *check)
     if (check->faults == 0) {
         answer(check, GOOD, "faults", NULL, "%s", health_text(&check->device->stream, text));
     }
-    if (check->faults == 0 && check->points > 0) {
+    if (check->faults == 0 && check->blind_turns > 0 && check->valid > 0) {
+        answer(check, grade(check->blind_turns * 10 >= check->turns, true), "ranges",
+               "something covers the window at times, or the laser fails: a supply of its own; if "
+               "it stays, the unit is broken",
+               "%u of %u turns saw nothing; %u %% of all points valid", check->blind_turns,
+               check->turns, percent);
+    } else if (check->faults == 0 && check->points > 0) {
         answer(check, grade(check->valid == 0, percent < FEW_PERCENT), "ranges",
                "uncover or clean the window; or there is nothing within 12 m", "%u %% valid%s%s",
                percent, check->nearest.distance_mm > 0 ? "; nearest " : "",
                check->nearest.distance_mm > 0 ? place_text(&check->nearest) : "");
     }
 }
+
+/* If bytes come so late, those after a stop may have been on their way. */
+#define LATE_MS 200u
 
 static void judge_stop(check_t *check)
 {
@@ -300,19 +404,49 @@ static void judge_stop(check_t *check)
     }
     if (!device_stop(device)) {
         answer(check, BAD, "stop", advice, "the lidar does not stop");
-    } else if (device->strays > 0) {
+    } else if (device->strays > 0 && device->witness.longest_ms < LATE_MS) {
         answer(check, REMARK, "stop", advice, "the lidar went on after it had been stopped");
     }
 }
 
+/* The names of the answers with that grade; the first one's headline explains it. */
+static void print_names(const check_t *check, grade_t grade)
+{
+    const char *headline = NULL;
+    const char *comma = "";
+    for (size_t i = 0; i < check->answer_count; i++) {
+        const answer_t *const answer = &check->answers[i];
+        if (answer->grade == grade) {
+            (void)printf("%s%s", comma, answer->name);
+            comma = ", ";
+            headline = headline == NULL ? answer->headline : headline;
+        }
+    }
+    (void)printf(headline != NULL ? " (%s)\n" : "\n", headline);
+}
+
+/* The verdict comes first, then the worst answers. */
 static int conclude(const check_t *check)
 {
-    static const char *const verdicts[GRADES] = {"good", "usable, but look at: ", "not good: "};
-    const grade_t worst = grade(check->names[BAD][0] != '\0', check->names[REMARK][0] != '\0');
+    static const char *const verdicts[GRADES] = {"good\n", "usable, but look at: ", "not good: "};
+    grade_t worst = GOOD;
+    for (size_t i = 0; i < check->answer_count; i++) {
+        worst = check->answers[i].grade > worst ? check->answers[i].grade : worst;
+    }
     if (interrupt_has_come()) {
         return message_fail("interrupted: no verdict");
     }
-    (void)printf("verdict: %s%s\n", verdicts[worst], worst == GOOD ? "" : check->names[worst]);
+    (void)printf("verdict: %s", verdicts[worst]);
+    if (worst != GOOD) {
+        print_names(check, worst);
+    }
+    for (int grade = BAD; grade >= GOOD; grade--) {
+        for (size_t i = 0; i < check->answer_count; i++) {
+            if (check->answers[i].grade == (grade_t)grade) {
+                print_answer(&check->answers[i]);
+            }
+        }
+    }
     return worst == BAD ? STATUS_FAILED : STATUS_OK;
 }
 
@@ -340,8 +474,7 @@ static void examine(check_t *check)
     message_note(device->listens ? "listening for %u s …" : "scanning for %u s …", check->seconds);
     device_begin(device);
     if (!device_await(device, tmini_start(&device->lidar), TMINI_EVENT_STARTED)) {
-        if (device->listens) {
-            answer_trouble(check, "no packet; has another program or controller started it?");
+        if (answer_trouble(check)) {
             return;
         }
         answer(check, BAD, "start", "its supply may fail when the motor starts (5 V, up to 1 A)",
@@ -352,6 +485,7 @@ static void examine(check_t *check)
     watch(check);
     judge_supply(check);
     judge_line(check);
+    judge_pace(check);
     judge_speed(check);
     judge_scans(check);
     judge_stop(check);

@@ -12,17 +12,10 @@
 #include "output.h"
 #include "points.h"
 
-static const char *model_name(uint8_t model)
-{
-    return model == TMINI_MODEL_T_MINI_PLUS  ? "T-mini Plus"
-           : model == TMINI_MODEL_T_MINI_PRO ? "T-mini Pro"
-                                             : "unknown: it may speak another protocol";
-}
-
 static int query_info(device_t *device, const options_t *options)
 {
     char serial[TMINI_SERIAL_DIGITS + 1];
-    const int status = device_finish(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO);
+    const int status = device_finish(device, tmini_request_info, TMINI_EVENT_INFO);
     if (status != STATUS_OK) {
         return status;
     }
@@ -34,7 +27,7 @@ static int query_info(device_t *device, const options_t *options)
                      serial);
         return STATUS_OK;
     }
-    (void)printf("model       %d (%s)\n", info->model, model_name(info->model));
+    (void)printf("model       %d (%s)\n", info->model, model_text(info->model));
     (void)printf("firmware    %d.%d\n", info->firmware_major, info->firmware_minor);
     (void)printf("hardware    %d\n", info->hardware);
     (void)printf("serial      %s\n", serial);
@@ -44,8 +37,7 @@ static int query_info(device_t *device, const options_t *options)
 static int query_health(device_t *device, const options_t *options)
 {
     char text[FAULTS_TEXT_SIZE];
-    const int status =
-        device_finish(device, tmini_request_health(&device->lidar), TMINI_EVENT_HEALTH);
+    const int status = device_finish(device, tmini_request_health, TMINI_EVENT_HEALTH);
     if (status != STATUS_OK) {
         return status;
     }
@@ -74,13 +66,18 @@ static uint16_t read_frequency(const char *text)
     return (uint16_t)(lround(steps) * (long)TMINI_FREQUENCY_STEP_CHZ);
 }
 
+static uint16_t wanted_chz;
+
+static tmini_status_t set_frequency(tmini_t *lidar)
+{
+    return tmini_set_frequency(lidar, wanted_chz);
+}
+
 static int query_frequency(device_t *device, const options_t *options)
 {
-    const tmini_status_t begun =
-        options->operand != NULL
-            ? tmini_set_frequency(&device->lidar, read_frequency(options->operand))
-            : tmini_request_frequency(&device->lidar);
-    const int status = device_finish(device, begun, TMINI_EVENT_FREQUENCY);
+    wanted_chz = options->operand != NULL ? read_frequency(options->operand) : 0;
+    const int status = device_finish(
+        device, wanted_chz != 0 ? set_frequency : tmini_request_frequency, TMINI_EVENT_FREQUENCY);
     if (status == STATUS_OK) {
         (void)printf(options->json ? "{\"frequency_hz\":%.2f}\n" : "%.2f Hz\n",
                      tmini_frequency_chz(&device->lidar) / 100.0);
@@ -92,10 +89,10 @@ static int query_reboot(device_t *device, const options_t *options)
 {
     (void)options;
     message_note("rebooting; this takes some seconds …");
-    int status = device_finish(device, tmini_reboot(&device->lidar), TMINI_EVENT_REBOOTED);
+    int status = device_finish(device, tmini_reboot, TMINI_EVENT_REBOOTED);
     if (status == STATUS_OK) {
         /* A reboot has no reply, so a query shows that it worked. */
-        status = device_finish(device, tmini_request_health(&device->lidar), TMINI_EVENT_HEALTH);
+        status = device_finish(device, tmini_request_health, TMINI_EVENT_HEALTH);
     }
     if (status == STATUS_OK) {
         message_note("the lidar is back");

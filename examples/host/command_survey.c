@@ -137,7 +137,7 @@ static int explain(device_t *device)
     if (interrupt_has_come()) {
         return message_fail("interrupted: no report");
     }
-    const int status = device_finish(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO);
+    const int status = device_finish(device, tmini_request_info, TMINI_EVENT_INFO);
     return status == STATUS_OK
                ? message_fail("the lidar answers now, but did not before; try again")
                : status;
@@ -147,7 +147,7 @@ static int use_survey(device_t *device, const options_t *options)
 {
     char name[600] = "";
     if (tmini_posix_is_timed(&device->port)) {
-        return device_finish(device, TMINI_ERROR_LISTEN_ONLY, TMINI_EVENT_INFO);
+        return device_finish(device, tmini_request_info, TMINI_EVENT_INFO);
     }
     if (options->seconds > 0 && options->seconds < SURVEY_SECONDS_MIN) {
         return message_usage("--seconds: %u at least, so that the motor is up to speed",

@@ -14,12 +14,20 @@
 #include "output.h"
 #include "points.h"
 #include "tmini/tmini_names.h"
+#include "users.h"
 
 /* Longer than three attempts of any command. */
 #define COMMAND_MS 15000u
 
 /* A lidar that has just been plugged in boots for some seconds. */
 #define START_MS 8000u
+#define WAKE_MS 6000u
+
+/* A program that looks at the port less often than this was kept from running. */
+#define ABSENT_MS 50u
+
+/* After this many bytes without a packet they are looked at more closely: a second. */
+#define HOPELESS_BYTES 16384u
 
 /* If no scan comes for this long, something is wrong: the driver has already tried to restart the
  * lidar. */
@@ -52,12 +60,40 @@ static void stop_at_once(void)
     }
 }
 
-static void set_up_lidar(device_t *device)
+static bool is_socket(const char *path)
+{
+    return strncmp(path, "tcp:", 4) == 0;
+}
+
+/* A network may deliver bytes late, but none is lost there. */
+static void be_patient(bool is_network)
 {
     patience = tmini_timing_default;
-    patience.frame_timeout_ms = 250;
-    patience.reply_timeout_ms = 1000;
-    patience.quiet_line_ms = 120;
+    patience.frame_timeout_ms = is_network ? 1000 : 250;
+    patience.max_pause_ms = is_network ? 0 : patience.max_pause_ms;
+    patience.reply_timeout_ms = is_network ? 2000 : 1000;
+    patience.quiet_line_ms = is_network ? 300 : 120;
+}
+
+/* The port's tap. */
+static void take_bytes(void *context, const uint8_t *bytes, size_t count)
+{
+    device_t *const device = context;
+    witness_take(&device->witness, bytes, count, tmini_posix_port.now_ms(&device->port));
+    if (device->tap != NULL) {
+        device->tap(device->tap_context, bytes, count);
+    }
+}
+
+void device_tap(device_t *device, tmini_posix_tap_t tap, void *context)
+{
+    device->tap = tap;
+    device->tap_context = context;
+}
+
+static void set_up_lidar(device_t *device)
+{
+    be_patient(is_socket(device->path));
     const tmini_config_t config = {
         .port = &tmini_posix_port,
         .port_context = &device->port,
@@ -75,6 +111,8 @@ static void set_up(device_t *device, const tmini_mount_t *mount)
 {
     tmini_posix_init(&device->port, device->path);
     tmini_posix_reconnect(&device->port, device->waits);
+    tmini_posix_tap(&device->port, take_bytes, device);
+    witness_begin(&device->witness);
     set_up_lidar(device);
     stream_init(&device->stream, mount);
 }
@@ -154,11 +192,23 @@ static tmini_event_t follow(device_t *device, tmini_event_t event)
     if (event == TMINI_EVENT_LOST) {
         const bool is_noise = device->port.received - device->good_at > NOISE_BYTES;
         stream_break(&device->stream);
+        witness_break(&device->witness);
         *(is_noise ? &device->noises : &device->silences) += 1;
     }
     device->strays += event == TMINI_EVENT_UNWANTED_SCANNING ? 1 : 0;
     print_event(device, event);
     return event;
+}
+
+/* How long the port has been looked at. Time in which this program did not run does not count: the
+ * bytes that came in it have not been seen. */
+static void note_look(device_t *device)
+{
+    const uint32_t now_ms = tmini_posix_port.now_ms(NULL);
+    const uint32_t passed_ms = now_ms - device->looked_at_ms;
+    device->looked_at_ms = now_ms;
+    device->looked_ms += passed_ms < ABSENT_MS ? passed_ms : ABSENT_MS;
+    device->absent_ms = passed_ms > device->absent_ms ? passed_ms : device->absent_ms;
 }
 
 tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
@@ -176,6 +226,7 @@ tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
         if (event == TMINI_EVENT_NONE) {
             (void)tmini_posix_wait(&device->port, SLICE_MS);
             note_times(device);
+            note_look(device);
             watch_adapter(device);
         }
     } while (device_is_usable(device) && device_ms(device) - begun_ms < timeout_ms);
@@ -190,11 +241,47 @@ static bool is_aborted(const device_t *device, tmini_event_t wanted)
            tmini_command_error(&device->lidar) == TMINI_ERROR_ABORTED;
 }
 
+void device_facts(device_t *device, facts_t *facts)
+{
+    static char users[USERS_TEXT_SIZE];
+    tmini_counters_t counters;
+    tmini_counters(&device->lidar, &counters);
+    users[0] = '\0';
+    *facts = (facts_t){
+        .path = device->path,
+        .is_socket = is_socket(device->path),
+        .listens = device->listens,
+        .has_replied = counters.bytes_in_replies > 0,
+        .users = is_socket(device->path) ? users : users_find(device->path, users),
+    };
+    witness_look(&device->witness, facts);
+}
+
+const cause_t *device_sign(device_t *device)
+{
+    facts_t facts;
+    device_facts(device, &facts);
+    const cause_t *const cause = cause_find(&facts);
+    return cause != NULL && cause->is_sign ? cause : NULL;
+}
+
+/* Many bytes have come, none of them is in a packet, and it can be seen why: no use to wait. */
+static bool is_hopeless(device_t *device)
+{
+    const witness_t *const witness = &device->witness;
+    if (witness->tape.stream.packets > 0 || witness->bytes < HOPELESS_BYTES ||
+        witness->received - device->judged_at < HOPELESS_BYTES) {
+        return false;
+    }
+    device->judged_at = witness->received;
+    return device_sign(device) != NULL;
+}
+
 bool device_await(device_t *device, tmini_status_t begun, tmini_event_t wanted)
 {
     const uint32_t begun_ms = device_ms(device);
     while (begun == TMINI_OK && device_is_usable(device) &&
-           device_ms(device) - begun_ms < COMMAND_MS) {
+           device_ms(device) - begun_ms < COMMAND_MS && !is_hopeless(device)) {
         const tmini_event_t event = device_wait(device, SLICE_MS);
         if (event == wanted ||
             (event == TMINI_EVENT_COMMAND_FAILED && !is_aborted(device, wanted))) {
@@ -204,20 +291,44 @@ bool device_await(device_t *device, tmini_status_t begun, tmini_event_t wanted)
     return false;
 }
 
-int device_finish(device_t *device, tmini_status_t begun, tmini_event_t wanted)
+bool device_ask(device_t *device, device_begin_t begin, tmini_event_t wanted)
 {
-    if (begun == TMINI_ERROR_LISTEN_ONLY) {
+    const uint8_t attempts = patience.max_attempts;
+    const uint32_t begun_ms = device->looked_ms;
+    unsigned tries = 0;
+    bool is_done = false;
+    bool is_silent = true;
+    do {
+        if (tries++ == 1) {
+            message_note("no answer yet; a lidar that has just got power is still booting: asking "
+                         "for %u s …",
+                         WAKE_MS / 1000);
+        }
+        is_silent = device->witness.received == 0;
+        patience.max_attempts = is_silent ? 1 : attempts;
+        is_done = device_await(device, begin(&device->lidar), wanted);
+    } while (!is_done && is_silent && device_is_usable(device) &&
+             device->looked_ms - begun_ms < WAKE_MS);
+    patience.max_attempts = attempts;
+    device->woken_ms = is_done && tries > 1 ? device_ms(device) : device->woken_ms;
+    return is_done;
+}
+
+int device_finish(device_t *device, device_begin_t begin, tmini_event_t wanted)
+{
+    if (tmini_posix_is_timed(&device->port)) {
         return message_fail("%s sends what a lidar sends, with times, and takes no commands: give "
                             "them where the lidar is.",
                             device->path);
     }
-    return device_await(device, begun, wanted) ? STATUS_OK : device_why(device);
+    return device_ask(device, begin, wanted) ? STATUS_OK : device_why(device);
 }
 
 void device_begin(device_t *device)
 {
     device->was_started = true;
     device->begun_ms = tmini_posix_port.now_ms(&device->port);
+    witness_start(&device->witness);
     note_line(device);
 }
 
@@ -233,7 +344,7 @@ int device_start(device_t *device)
     bool is_reported = device->listens; /* With --listen this program starts nothing. */
     device_begin(device);
     (void)tmini_start(&device->lidar);
-    while (event != TMINI_EVENT_STARTED && may_still_start(device)) {
+    while (event != TMINI_EVENT_STARTED && may_still_start(device) && !is_hopeless(device)) {
         event = device_wait(device, SLICE_MS);
         if (event == TMINI_EVENT_COMMAND_FAILED && !is_reported && !device->is_away) {
             message_note("the lidar does not start: %s; trying again",
@@ -278,40 +389,6 @@ bool device_next_scan(device_t *device, void (*print)(const stream_t *stream))
     return false;
 }
 
-trouble_t trouble_find(const device_t *device)
-{
-    tmini_counters_t counters;
-    tmini_counters(&device->lidar, &counters);
-    if (device->port.received == 0) {
-        return TROUBLE_SILENCE;
-    }
-    if (counters.bytes_in_replies > 0) {
-        return TROUBLE_OTHER;
-    }
-    return counters.packets > 0 ? TROUBLE_DEAF : TROUBLE_NOISE;
-}
-
-const char *trouble_text(trouble_t trouble)
-{
-    static const char *const texts[] = {
-        [TROUBLE_SILENCE] = "no answer: not one byte came. Check that\n"
-                            "- this is the port that the lidar is on,\n"
-                            "- the lidar has 5 V and GND,\n"
-                            "- its TX goes to the adapter's RX, and its RX to the adapter's TX.",
-        [TROUBLE_NOISE] = "bytes came, but nothing that a T-mini Plus sends. Check that\n"
-                          "- it is this lidar, and not another device,\n"
-                          "- the adapter really runs at 230400 baud (wrong baud rate: try another "
-                          "adapter),\n"
-                          "- lidar and adapter share GND, and the wires are short.",
-        [TROUBLE_DEAF] = "the lidar sends, but does not obey. Check that\n"
-                         "- the adapter's TX goes to the lidar's RX,\n"
-                         "- the level there is 3.3 V.\n"
-                         "Without that wire: --listen.",
-        [TROUBLE_OTHER] = "",
-    };
-    return texts[trouble];
-}
-
 /* If the lidar answers this query, its wires are good. */
 static bool answers_info(device_t *device)
 {
@@ -319,11 +396,6 @@ static bool answers_info(device_t *device)
     const bool is_stopped = device_stop(device);
     device->was_started = false; /* Not to be stopped again. */
     return is_stopped && device_await(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO);
-}
-
-static bool is_socket(const char *path)
-{
-    return strncmp(path, "tcp:", 4) == 0;
 }
 
 static int explain_port(const device_t *device)
@@ -361,6 +433,30 @@ static int explain_scanning(const device_t *device)
                         device->path);
 }
 
+static int explain_cause(const device_t *device, const cause_t *cause, const facts_t *facts)
+{
+    char text[CAUSE_TEXT_SIZE];
+    return message_fail("%s: %s%s%s", device->path, cause_text(cause, facts, text),
+                        cause->advice != NULL ? ".\nWhat to do: " : "",
+                        cause->advice != NULL ? cause->advice : "");
+}
+
+/* The lidar answers some commands. */
+static int explain_command(device_t *device)
+{
+    const char *const reason = tmini_status_name(tmini_command_error(&device->lidar));
+    if (!answers_info(device)) {
+        return message_fail("the lidar on %s has answered before, but now: %s. Try again; if that "
+                            "does not help,\n`tmini reboot` or cut its supply for a moment.",
+                            device->path, reason);
+    }
+    return message_fail(
+        "the lidar on %s answers `tmini info`, so its wires are good, but not this "
+        "command: %s.\nTry again; if that does not help, `tmini reboot`. Its firmware "
+        "may not know the command.",
+        device->path, reason);
+}
+
 int device_why(device_t *device)
 {
     if (device->port.state != TMINI_POSIX_OK) {
@@ -370,29 +466,22 @@ int device_why(device_t *device)
         return STATUS_FAILED;
     }
     const tmini_state_t state = tmini_state(&device->lidar);
-    if (state == TMINI_STATE_SCANNING || state == TMINI_STATE_RECOVERING) {
+    if (device_sign(device) == NULL &&
+        (state == TMINI_STATE_SCANNING || state == TMINI_STATE_RECOVERING)) {
         return explain_scanning(device);
     }
-    const char *const reason = tmini_status_name(tmini_command_error(&device->lidar));
-    const trouble_t trouble = trouble_find(device);
+    facts_t facts;
+    device_facts(device, &facts);
+    const cause_t *const cause = cause_find(&facts);
+    if (cause != NULL && cause->text != NULL) {
+        return explain_cause(device, cause, &facts);
+    }
     if (device->listens) {
-        return message_fail("%s: nothing is sent with --listen: has another program or controller "
-                            "started the lidar?",
+        return message_fail("%s: the lidar sends packets, but completes no revolution. Does it "
+                            "turn?",
                             device->path);
     }
-    if (trouble == TROUBLE_NOISE || trouble == TROUBLE_DEAF || !answers_info(device)) {
-        return trouble == TROUBLE_OTHER
-                   ? message_fail(
-                         "the lidar on %s has answered before, but now: %s. Try again; if "
-                         "that does not help,\n`tmini reboot` or cut its supply for a moment.",
-                         device->path, reason)
-                   : message_fail("%s: %s", device->path, trouble_text(trouble));
-    }
-    return message_fail(
-        "the lidar on %s answers `tmini info`, so its wires are good, but not this "
-        "command: %s.\nTry again; if that does not help, `tmini reboot`. Its firmware "
-        "may not know the command.",
-        device->path, reason);
+    return explain_command(device);
 }
 
 static bool is_port_number(const char *text)
@@ -454,6 +543,7 @@ int device_use(const options_t *options, int (*use)(device_t *device, const opti
         return message_fail("cannot use %s: %s", device.path, advice_for(opened, device.path));
     }
     device.begun_ms = tmini_posix_port.now_ms(&device.port);
+    device.looked_at_ms = tmini_posix_port.now_ms(NULL);
     note_times(&device);
     interrupt_watch(true);
     interrupt_last_words(stop_at_once);

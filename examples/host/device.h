@@ -8,23 +8,34 @@
 #define DEVICE_H
 
 #include "options.h"
+#include "causes.h"
 #include "stream.h"
 #include "tmini_posix.h"
+#include "witness.h"
 
 typedef struct device {
     tmini_t lidar;
     tmini_posix_t port;
     stream_t stream;
+    witness_t witness;
     const char *path;
-    uint32_t begun_ms; /* When the port was opened; later, when the start command was given. */
-    uint32_t silences; /* How often the lidar was lost because nothing came. */
-    uint32_t noises;   /* How often it was lost because no valid packets came. */
-    uint32_t strays;   /* How often it scanned although it had been stopped. */
-    uint64_t good_at;  /* Bytes received when the latest packet came. */
-    bool is_secretive; /* May be set: the caller reports what happens. */
-    bool waits;        /* --wait: continue when the adapter has disappeared. */
-    bool is_away;      /* The adapter has disappeared, and the program waits for it. */
-    bool listens;      /* --listen: nothing is sent. */
+    uint32_t begun_ms;     /* When the port was opened; later, when the start command was given. */
+    uint32_t silences;     /* How often the lidar was lost because nothing came. */
+    uint32_t noises;       /* How often it was lost because no valid packets came. */
+    uint32_t strays;       /* How often it scanned although it had been stopped. */
+    uint64_t good_at;      /* Bytes received when the latest packet came. */
+    uint32_t looked_at_ms; /* When the port was looked at last; */
+    uint32_t looked_ms;    /* for how long, without the time that this program did not run; */
+    uint32_t absent_ms;    /* and the longest such time. */
+    uint32_t woken_ms;     /* How long a silent lidar took to answer; 0: it was not silent. */
+    uint64_t judged_at;    /* Bytes at which is_hopeless() looked last. */
+    tmini_posix_tap_t tap; /* device_tap() */
+    void *tap_context;
+    char serial[TMINI_SERIAL_DIGITS + 1]; /* --wait: of the lidar that was there first. */
+    bool is_secretive;                    /* May be set: the caller reports what happens. */
+    bool waits;                           /* --wait: continue when the adapter has disappeared. */
+    bool is_away; /* The adapter has disappeared, and the program waits for it. */
+    bool listens; /* --listen: nothing is sent. */
     bool was_started;
     bool ignores_interrupt; /* While stopping. */
     uint8_t rx[4096];
@@ -53,9 +64,16 @@ bool device_is_there(const device_t *device);
  * event of its success. Returns whether it succeeded. */
 bool device_await(device_t *device, tmini_status_t begun, tmini_event_t wanted);
 
+/* A function that begins a query or command. */
+typedef tmini_status_t (*device_begin_t)(tmini_t *lidar);
+
+/* Begins it, and waits for its end. A lidar that has just got power does not answer yet: as long as
+ * not one byte has come, it is asked again, for 6 s. Returns whether it succeeded. */
+bool device_ask(device_t *device, device_begin_t begin, tmini_event_t wanted);
+
 /* The same, but returns STATUS_OK; or prints what is wrong and what to try, and returns
  * STATUS_FAILED. */
-int device_finish(device_t *device, tmini_status_t begun, tmini_event_t wanted);
+int device_finish(device_t *device, device_begin_t begin, tmini_event_t wanted);
 
 /* Call it before a start command: the time begins, and the lidar will be stopped in the end. */
 void device_begin(device_t *device);
@@ -75,17 +93,13 @@ bool device_next_scan(device_t *device, void (*print)(const stream_t *stream));
  * STATUS_FAILED. */
 int device_why(device_t *device);
 
-typedef enum {
-    TROUBLE_SILENCE, /* Not one byte comes. */
-    TROUBLE_NOISE,   /* Bytes come, but not from a lidar. */
-    TROUBLE_DEAF,    /* It sends, but does not obey. */
-    TROUBLE_OTHER,   /* It has answered a command. */
-} trouble_t;
+/* All received bytes also go to `tap`; NULL: no more. */
+void device_tap(device_t *device, tmini_posix_tap_t tap, void *context);
 
-/* Which of these it is, judged by the bytes received so far. */
-trouble_t trouble_find(const device_t *device);
+/* What has been observed so far. Valid until the next call. */
+void device_facts(device_t *device, facts_t *facts);
 
-/* The trouble in words, and what to check; "" for TROUBLE_OTHER. */
-const char *trouble_text(trouble_t trouble);
+/* The cause that the bytes show by themselves, for example another unit; NULL: none. */
+const cause_t *device_sign(device_t *device);
 
 #endif

@@ -100,6 +100,15 @@ const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE])
                : "unknown: no revolution arrived whole";
 }
 
+/* Section 9.15. */
+const char *model_text(uint8_t model)
+{
+    return model == TMINI_MODEL_T_MINI_PLUS  ? "T-mini Plus"
+           : model == TMINI_MODEL_T_MINI_PRO ? "T-mini Pro"
+           : model == 152 ? "T-mini Plus SH: four-byte samples, which this version does not read"
+                          : "unknown: it may speak another protocol";
+}
+
 const char *scans_text(const stream_t *stream)
 {
     static char text[80];

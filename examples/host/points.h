@@ -50,6 +50,9 @@ const char *faults_text(unsigned faults, char text[FAULTS_TEXT_SIZE]);
 /* The same for the health that the stream reports; or why it is unknown. */
 const char *health_text(const stream_t *stream, char text[FAULTS_TEXT_SIZE]);
 
+/* "T-mini Plus", or what is known about another model. */
+const char *model_text(uint8_t model);
+
 /* "8 complete, 1 with packets missing" */
 const char *scans_text(const stream_t *stream);
 

@@ -49,7 +49,8 @@ static void count_gap(stream_t *stream, const tmini_packet_t *packet)
 {
     if (tmini_packet_is_start(packet) && packet->gap == 1) {
         stream->last_crc_bytes++;
-    } else if (packet->gap > 0 && packet->gap != TMINI_GAP_UNKNOWN && stream->packets > 0) {
+    } else if (packet->gap > 0 && packet->gap != TMINI_GAP_UNKNOWN && stream->packets > 0 &&
+               !stream->is_broken) {
         const unsigned packets = (packet->gap + PACKET_SIZE / 2) / PACKET_SIZE;
         stream->stray_bytes += packet->gap;
         stream->damaged += packets > 0 ? packets : 1;
@@ -60,6 +61,7 @@ static void count(stream_t *stream, const tmini_packet_t *packet, uint32_t now_m
 {
     const uint32_t pause_ms = stream->packets > 0 ? now_ms - stream->packet_ms : 0;
     count_gap(stream, packet);
+    stream->is_broken = false;
     stream->longest_ms = pause_ms > stream->longest_ms ? pause_ms : stream->longest_ms;
     stream->packet_ms = now_ms;
     stream->packets++;
@@ -115,6 +117,7 @@ bool stream_end(stream_t *stream)
 void stream_break(stream_t *stream)
 {
     tmini_decoder_restart(&stream->decoder);
+    stream->is_broken = true;
 }
 
 unsigned stream_faults(const stream_t *stream)

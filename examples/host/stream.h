@@ -33,6 +33,7 @@ typedef struct {
     uint32_t longest_ms;        /* The longest pause between two packets. */
     unsigned frequency_chz;     /* As reported last; 0: not yet. */
     bool has_scan;              /* The latest packet has completed `scan`. */
+    bool is_broken;             /* The next packet does not follow the latest one. */
     bool is_in_doubt;           /* According to the driver, bytes may be missing before it. */
     const tmini_mount_t *mount; /* NULL: none. */
     tmini_decoder_t decoder;    /* Its `packet` is the latest, its builder has the next scan. */
@@ -51,7 +52,8 @@ bool stream_take(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms
  * is none. */
 bool stream_end(stream_t *stream);
 
-/* The stream was interrupted: forgets the unfinished scan. */
+/* The stream was interrupted: forgets the unfinished scan, and counts nothing until the next packet
+ * as damage. */
 void stream_break(stream_t *stream);
 
 /* A combination of tmini_fault_t, or TMINI_FAULTS_UNKNOWN. */

@@ -129,8 +129,6 @@ static bool open_host(const options_t *options)
     if (options->pty ? !host_open_pty(&host) : !host_open_tcp(&host, options->tcp_port)) {
         return false;
     }
-    printf("%s\n", host.address);
-    fflush(stdout);
     return true;
 }
 
@@ -145,6 +143,8 @@ static int run_in_real_time(const options_t *options)
         host_close(&host);
         return EXIT_FAILURE;
     }
+    printf("%s\n", host.address);
+    fflush(stdout);
     now_us = serve(options);
     host_close(&host);
     return report_close(&report, now_us, host.lost) ? EXIT_SUCCESS : EXIT_FAILURE;
