@@ -5,6 +5,8 @@
 
 #include "tmini/tmini_names.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -78,6 +80,27 @@ uint32_t bed_ms(const bed_t *bed)
     return (uint32_t)(bed->now_us / 1000u);
 }
 
+void bed_tell(const bed_t *bed, const char *format, ...)
+{
+    va_list arguments;
+
+    if (!bed->is_told) {
+        return;
+    }
+    printf("%8.3f  ", (double)bed->sim.now_us / 1e6);
+    va_start(arguments, format);
+    (void)vprintf(format, arguments);
+    va_end(arguments);
+    printf("\n");
+}
+
+void bed_tell_state(const bed_t *bed)
+{
+    bed_tell(bed, "driver %s, %u * 0.01 Hz; lidar %s, %u * 0.01 Hz",
+             tmini_state_name(tmini_state(&bed->lidar)), tmini_frequency_chz(&bed->lidar),
+             sim_mode_name(sim_mode(&bed->sim)), sim_frequency_chz(&bed->sim));
+}
+
 unsigned bed_event_named(const char *name)
 {
     unsigned event = 0;
@@ -102,6 +125,7 @@ tmini_status_t bed_stop(bed_t *bed)
     bed->wants_scans = false;
     bed->wished_us = bed->now_us;
     bed->stop_us = bed->now_us;
+    bed->may_flow = false;
     bed->flows = false;
     return tmini_stop(&bed->lidar);
 }
@@ -122,7 +146,7 @@ tmini_status_t bed_request_info(bed_t *bed)
     const tmini_status_t status = tmini_request_info(&bed->lidar);
 
     if (status == TMINI_OK) {
-        bed->asked++;
+        bed->asked_us = bed->now_us + 1u;
         bed->wished_us = bed->now_us;
     }
     return status;
@@ -145,7 +169,7 @@ static void note_scan(bed_t *bed)
     const tmini_scan_t *const scan = tmini_scan(&bed->lidar);
 
     bed->scan = *scan;
-    bed->flows = true;
+    bed->flows = bed->may_flow;
     bed->small += scan->packets == 1 ? 1u : 0u;
     bed->mixed += bed->sim.config.tagged && is_mixed(scan) ? 1u : 0u;
     if (!scan->complete) {
@@ -180,9 +204,18 @@ static void note(bed_t *bed, tmini_event_t event)
         bed_pause_ms(bed, bed->work_ms);
     } else if (event != TMINI_EVENT_PACKET) {
         note_rate(bed);
+        bed_tell(bed, "%s%s%s", tmini_event_name(event),
+                 event == TMINI_EVENT_COMMAND_FAILED ? ": " : "",
+                 event == TMINI_EVENT_COMMAND_FAILED
+                     ? tmini_status_name(tmini_command_error(&bed->lidar))
+                     : "");
     }
     if (event == TMINI_EVENT_LOST || event == bed_event_named("paused")) {
+        bed->may_flow = false;
         bed->flows = false;
+        bed->complete_in_a_row = 0;
+    } else if (event == TMINI_EVENT_STARTED || event == TMINI_EVENT_RECOVERED) {
+        bed->may_flow = true;
     }
 }
 
@@ -312,29 +345,32 @@ static bool is_row_near(const bed_t *bed, uint16_t frequency_chz, uint32_t scans
     return true;
 }
 
+/* As exactly as the driver wants it: replies have no checksum. */
+static bool is_known(const bed_t *bed, uint16_t frequency_chz)
+{
+    return abs(tmini_frequency_chz(&bed->lidar) - frequency_chz) <= 5;
+}
+
 bool bed_scans_at(const bed_t *bed, uint16_t frequency_chz, uint32_t scans)
 {
-    if (bed->complete_in_a_row < scans || tmini_state(&bed->lidar) != TMINI_STATE_SCANNING ||
-        sim_mode(&bed->sim) != SIM_SCANNING) {
+    if (bed->complete_in_a_row < scans || bed->now_us - bed->complete_us > 400000u ||
+        tmini_state(&bed->lidar) != TMINI_STATE_SCANNING || sim_mode(&bed->sim) != SIM_SCANNING) {
         return false;
     }
-    return frequency_chz == 0 || (sim_frequency_chz(&bed->sim) == frequency_chz &&
-                                  tmini_frequency_chz(&bed->lidar) == frequency_chz &&
-                                  is_row_near(bed, frequency_chz, scans));
+    return frequency_chz == 0 ||
+           (sim_frequency_chz(&bed->sim) == frequency_chz && is_known(bed, frequency_chz) &&
+            is_row_near(bed, frequency_chz, scans));
 }
 
 static const char *shortcoming_of_scans(const bed_t *bed)
 {
-    if (sim_sound_us(&bed->sim) == SIM_NEVER) {
-        return "no reboot";
-    }
     if (!bed_scans_at(bed, 0, SCANS)) {
-        return "no complete scans";
+        return sim_sound_us(&bed->sim) == SIM_NEVER ? "no reboot" : "no complete scans";
     }
     if (bed->wants_chz != 0 && sim_frequency_chz(&bed->sim) != bed->wants_chz) {
         return "at another frequency";
     }
-    if (bed->wants_chz != 0 && tmini_frequency_chz(&bed->lidar) != bed->wants_chz) {
+    if (bed->wants_chz != 0 && !is_known(bed, bed->wants_chz)) {
         return "the frequency is not known";
     }
     return bed_scans_at(bed, bed->wants_chz, SCANS) ? NULL : "not yet at the frequency";
@@ -359,7 +395,8 @@ const char *bed_shortcoming(const bed_t *bed)
         return "in trouble";
     }
     /* Repeated in vain, a question is reported as failed. */
-    if (bed->events[TMINI_EVENT_INFO] + bed->events[TMINI_EVENT_COMMAND_FAILED] < bed->asked) {
+    if (bed->event_us[TMINI_EVENT_INFO] < bed->asked_us &&
+        bed->event_us[TMINI_EVENT_COMMAND_FAILED] < bed->asked_us) {
         return "a question was not answered";
     }
     return bed->wants_scans ? shortcoming_of_scans(bed) : shortcoming_of_stop(bed);

@@ -33,6 +33,7 @@ typedef struct {
     uint32_t write_max;    /* Bytes that the port takes per call. 0: all. */
     uint32_t work_ms;      /* What the program does with each scan takes this long. */
     uint32_t flip_one_in;  /* Of the bytes from the lidar, one in so many is damaged. 0: none. */
+    bool is_told;          /* What happens is printed. */
     bed_held_t *held;      /* The caller's. NULL: bytes come by an interrupt. */
     tmini_config_t config; /* Without buffers and port. */
     tmini_timing_t timing;
@@ -49,7 +50,7 @@ typedef struct {
     /* What the program wants. */
     bool wants_scans;
     uint16_t wants_chz; /* 0: any. */
-    uint32_t asked;
+    uint64_t asked_us;  /* The latest question; 0: none. */
     uint64_t wished_us; /* The latest wish. */
     uint64_t stop_us;   /* The latest stop; 0: none. */
 
@@ -69,7 +70,8 @@ typedef struct {
     uint64_t busy_since_us;         /* The latest step at whose end the driver was not idle. */
 
     /* Whether each gap in the scans is announced. */
-    bool flows;          /* Scans have come since the start or a gap, and no gap was announced. */
+    bool may_flow;       /* STARTED or RECOVERED has come, and no gap was announced since. */
+    bool flows;          /* And scans have come. */
     bool stop_sent;      /* By the driver, in this step. */
     uint64_t heard_us;   /* When bytes came last. */
     const char *unheard; /* The first gap that was not announced; NULL: none. */
@@ -101,6 +103,10 @@ void bed_run_ms(bed_t *bed, uint32_t ms);
 void bed_pause_ms(bed_t *bed, uint32_t ms);
 
 uint32_t bed_ms(const bed_t *bed);
+
+/* With `is_told` prints the time and this, or how lidar and driver are. */
+void bed_tell(const bed_t *bed, const char *format, ...);
+void bed_tell_state(const bed_t *bed);
 
 /* The number of the event with this name (tmini_event_name()); BED_EVENTS - 1, which never comes,
  * if there is none. */

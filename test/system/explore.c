@@ -90,15 +90,13 @@ typedef struct {
 typedef struct {
     bed_t bed;
     const story_t *story;
-    uint32_t scene;     /* The next one. */
-    uint64_t unkind_us; /* A lidar that needs a reboot has had no other trouble since. */
+    uint32_t scene; /* The next one. */
     uint32_t wire_events;
     plan_t plan[DEPTH_MAX];
     uint32_t troubles;
 } run_t;
 
 static run_t run;
-static bool is_told;
 
 static const char *event_text(sim_event_t event)
 {
@@ -112,28 +110,23 @@ static sim_trouble_t on_event(void *context, sim_event_t event, uint64_t now_us,
     const uint32_t number = run.wire_events++;
 
     (void)context;
+    (void)now_us;
     for (uint32_t i = 0; i < run.troubles; i++) {
         if (run.plan[i].event == number) {
             *ms = run.plan[i].spoil->ms;
-            if (is_told) {
-                printf("%8.3f  %u: %s: %s\n", (double)now_us / 1e6, number, event_text(event),
-                       run.plan[i].spoil->name);
-            }
+            bed_tell(&run.bed, "%u: %s: %s", number, event_text(event), run.plan[i].spoil->name);
             return run.plan[i].spoil->trouble;
         }
     }
-    if (is_told) {
-        printf("%8.3f  %u: %s\n", (double)now_us / 1e6, number, event_text(event));
-    }
+    bed_tell(&run.bed, "%u: %s", number, event_text(event));
     return SIM_SOUND;
 }
 
 static void on_command(void *context, uint8_t code, uint64_t now_us)
 {
     (void)context;
-    if (is_told) {
-        printf("%8.3f  the lidar obeys %02X\n", (double)now_us / 1e6, code);
-    }
+    (void)now_us;
+    bed_tell(&run.bed, "the lidar obeys %02X", code);
 }
 
 static void begin(const story_t *story)
@@ -183,37 +176,11 @@ static bool has_scene(void)
            run.story->scenes[run.scene].act != NOTHING;
 }
 
-static void tell_events(const uint32_t *before)
-{
-    for (unsigned i = 0; i < BED_EVENTS; i++) {
-        const char *const name = tmini_event_name((tmini_event_t)i);
-
-        if (run.bed.events[i] != before[i] && i != TMINI_EVENT_SCAN) {
-            printf("%8.3f  %s%s%s\n", (double)run.bed.now_us / 1e6, name,
-                   i == TMINI_EVENT_COMMAND_FAILED ? ": " : "",
-                   i == TMINI_EVENT_COMMAND_FAILED
-                       ? tmini_status_name(tmini_command_error(&run.bed.lidar))
-                       : "");
-        }
-    }
-}
-
 static void step(void)
 {
-    uint32_t before[BED_EVENTS];
-
-    if (is_told) {
-        memcpy(before, run.bed.events, sizeof before);
-    }
     bed_step(&run.bed);
     while (has_scene() && bed_ms(&run.bed) >= run.story->scenes[run.scene].at_ms) {
         act_next();
-    }
-    if (sim_sound_us(&run.bed.sim) != SIM_NEVER) {
-        run.unkind_us = sim_sound_us(&run.bed.sim);
-    }
-    if (is_told) {
-        tell_events(before);
     }
 }
 
@@ -230,7 +197,7 @@ static uint64_t later(uint64_t a, uint64_t b)
 /* NULL: goes on. Otherwise what is wrong. */
 static const char *complaint(void)
 {
-    const uint64_t since_us = later(run.bed.wished_us, run.unkind_us);
+    const uint64_t since_us = later(run.bed.wished_us, run.bed.sim.sound_us);
     const bool needs_reboot = sim_sound_us(&run.bed.sim) == SIM_NEVER && run.bed.wants_scans;
     const uint64_t limit_us = needs_reboot ? REBOOT_LIMIT_US : LIMIT_US;
 
@@ -458,12 +425,9 @@ static int replay(int count, char **texts)
     for (int i = 1; i < count; i++) {
         plan_one(texts[i]);
     }
-    is_told = true;
+    run.bed.is_told = true;
     play(NULL);
-    printf("%8.3f  %s; state %s, %u 0.01 Hz; lidar %s, %u 0.01 Hz\n", (double)run.bed.now_us / 1e6,
-           failures > 0 ? "failed" : "fulfilled", tmini_state_name(tmini_state(&run.bed.lidar)),
-           tmini_frequency_chz(&run.bed.lidar), sim_mode_name(sim_mode(&run.bed.sim)),
-           sim_frequency_chz(&run.bed.sim));
+    bed_tell_state(&run.bed);
     return failures > 0 ? 1 : 0;
 }
 

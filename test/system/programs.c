@@ -427,7 +427,7 @@ static void one_byte_per_write(const char *unused)
 static void any_quiet_line(const char *unused)
 {
     (void)unused;
-    for (uint16_t quiet_ms = 0; quiet_ms < 1000 && is_right(); quiet_ms += 5) {
+    for (uint16_t quiet_ms = 50; quiet_ms < 1000 && is_right(); quiet_ms += 5) {
         prepare(1000);
         lidar.stop_tail_ms = 300;
         bed.timing.quiet_line_ms = quiet_ms;
@@ -441,8 +441,8 @@ static void any_quiet_line(const char *unused)
         start();
         bed_run_ms(&bed, 8000);
         expect(bed_scans_at(&bed, 1000, 3), "%u ms: %s", quiet_ms, bed_shortcoming(&bed));
-        expect(quiet_ms < 50 || bed.events[TMINI_EVENT_COMMAND_FAILED] == 0,
-               "%u ms: the first attempt fails", quiet_ms);
+        expect(bed.events[TMINI_EVENT_COMMAND_FAILED] == 0, "%u ms: the first attempt fails",
+               quiet_ms);
     }
     prepare(1000);
     bed.timing.quiet_line_ms = 300;

@@ -4,7 +4,8 @@
 /* Random stories of wishes and trouble: 45 s after the last trouble each wish is fulfilled, every
  * gap in the scans was announced, and there were at most ten events a second.
  *
- *     stories [COUNT [FIRST]]    seeds from FIRST on; a failure prints its seed */
+ *     stories [COUNT [FIRST]]    seeds from FIRST on; a failure prints its seed
+ *     stories --tell SEED        one story, with what happens in it */
 
 #include "bed.h"
 
@@ -24,7 +25,6 @@
 static bed_t bed;
 static random_t dice;
 static uint32_t spoils_one_in; /* Of the events on the wire; 0: none. */
-static bool was_refused;       /* The lidar refused to set its frequency for a while. */
 
 static uint32_t below(uint32_t limit)
 {
@@ -33,40 +33,70 @@ static uint32_t below(uint32_t limit)
 
 /* ---- Trouble ---- */
 
+typedef struct {
+    const char *name;
+    sim_trouble_t trouble;
+} trouble_t;
+
+/* The first four spoil only something that happens on the wire. */
+static const trouble_t troubles[] = {
+    {"lost", SIM_LOST},         {"lost", SIM_LOST},           {"late", SIM_LATE},
+    {"doubled", SIM_DOUBLED},   {"power cut", SIM_POWER_CUT}, {"deaf", SIM_DEAF},
+    {"silent", SIM_SILENT},     {"reboots", SIM_REBOOTS},     {"no starts", SIM_NO_STARTS},
+    {"no scans", SIM_NO_SCANS},
+};
+#define TROUBLES (sizeof troubles / sizeof troubles[0])
+#define OF_THE_WIRE 4u
+
 static sim_trouble_t on_event(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms)
 {
-    static const sim_trouble_t troubles[] = {SIM_LOST,    SIM_LOST,      SIM_LATE,    SIM_LATE,
-                                             SIM_DOUBLED, SIM_POWER_CUT, SIM_DEAF,    SIM_SILENT,
-                                             SIM_REBOOTS, SIM_NO_STARTS, SIM_NO_SCANS};
+    static const char *const events[] = {"command", "reply", "beginning", "start packet"};
+    const trouble_t *const trouble = &troubles[below(TROUBLES)];
 
     (void)context;
-    (void)event;
     (void)now_us;
+    if (spoils_one_in == 0 || below(spoils_one_in) > 0) {
+        bed_tell(&bed, "%s", events[event]);
+        return SIM_SOUND;
+    }
     *ms = below(3000);
-    return spoils_one_in > 0 && below(spoils_one_in) == 0
-               ? troubles[below(sizeof troubles / sizeof troubles[0])]
-               : SIM_SOUND;
+    bed_tell(&bed, "%s: %s, %u ms", events[event], trouble->name, *ms);
+    return trouble->trouble;
+}
+
+static void on_command(void *context, uint8_t code, uint64_t now_us)
+{
+    (void)context;
+    (void)now_us;
+    bed_tell(&bed, "the lidar obeys %02X", code);
+}
+
+static void befall(void)
+{
+    const trouble_t *const trouble = &troubles[OF_THE_WIRE + below(TROUBLES - OF_THE_WIRE)];
+    const uint32_t ms = below(5000);
+
+    bed_tell(&bed, "%s, %u ms", trouble->name, ms);
+    sim_befall(&bed.sim, trouble->trouble, ms, bed.now_us);
 }
 
 static void make_trouble(void)
 {
-    static const sim_trouble_t troubles[] = {SIM_POWER_CUT, SIM_DEAF,      SIM_SILENT,
-                                             SIM_REBOOTS,   SIM_NO_STARTS, SIM_NO_SCANS};
-
     switch (below(8)) {
     case 0:
         bed.flip_one_in = 2 + below(200);
+        bed_tell(&bed, "one byte in %u is damaged", bed.flip_one_in);
         break;
     case 1:
         bed.sim.config.refuses_steps = true;
-        was_refused = true;
+        bed_tell(&bed, "refuses its frequency");
         break;
     case 2:
         bed.sim.config.never_answers = true;
+        bed_tell(&bed, "answers nothing");
         break;
     default:
-        sim_befall(&bed.sim, troubles[below(sizeof troubles / sizeof troubles[0])], below(5000),
-                   bed.now_us);
+        befall();
         break;
     }
 }
@@ -80,13 +110,14 @@ static void end_trouble(void)
 
 /* ---- Stories ---- */
 
-static void begin(uint32_t seed)
+static void begin(uint32_t seed, bool is_told)
 {
-    const sim_observer_t observer = {.on_event = on_event};
+    const sim_observer_t observer = {.on_command = on_command, .on_event = on_event};
     sim_config_t lidar = bed_quiet_lidar();
 
     random_seed(&dice, seed);
     bed_prepare(&bed);
+    bed.is_told = is_told;
     lidar.seed = seed;
     lidar.boot_ms = (uint16_t)(50 + below(4000));
     lidar.stop_tail_ms = (uint16_t)below(300);
@@ -98,7 +129,6 @@ static void begin(uint32_t seed)
     bed.poll_ms = 1 + below(20);
     bed.config.frequency_chz = (uint16_t)(below(2) == 0 ? 0 : 600 + 10 * below(61));
     spoils_one_in = below(3) == 0 ? 0 : 3 + below(40);
-    was_refused = false;
     if (!bed_init(&bed, &lidar)) {
         printf("the library was not set up\n");
         exit(2);
@@ -108,7 +138,12 @@ static void begin(uint32_t seed)
 
 static void act(void)
 {
-    switch (below(9)) {
+    static const char *const names[] = {"start", "start",  "start", "stop",   "ask",
+                                        "set",   "reboot", "calm",  "trouble"};
+    const uint32_t choice = below(9);
+
+    bed_tell(&bed, "--- %s", names[choice]);
+    switch (choice) {
     case 0:
     case 1:
     case 2:
@@ -135,10 +170,13 @@ static void act(void)
     }
 }
 
-/* A lidar that refused its frequency had that reported, and scans at its own. */
+/* That the frequency could not be set was reported with the latest start. */
 static bool is_excused(const char *shortcoming)
 {
-    return was_refused && bed.events[TMINI_EVENT_COMMAND_FAILED] > 0 && bed.wants_scans &&
+    const uint64_t failed_us = bed.event_us[TMINI_EVENT_COMMAND_FAILED];
+
+    return failed_us > 0 && failed_us >= bed.event_us[TMINI_EVENT_STARTED] &&
+           failed_us >= bed.event_us[TMINI_EVENT_RECOVERED] && bed.wants_scans &&
            bed_scans_at(&bed, 0, 5) && strstr(shortcoming, "frequency") != NULL;
 }
 
@@ -152,14 +190,15 @@ static void run_ms(uint32_t ms)
 }
 
 /* Returns what is wrong, or NULL. */
-static const char *tell(uint32_t seed)
+static const char *tell(uint32_t seed, bool is_told)
 {
-    begin(seed);
+    begin(seed, is_told);
     for (unsigned i = 0; i < ACTS; i++) {
         act();
         run_ms(below(4000));
     }
     end_trouble();
+    bed_tell(&bed, "the trouble ends");
     spoils_one_in = 0;
     const bool needs_reboot = sim_sound_us(&bed.sim) == SIM_NEVER;
     const uint64_t sound_us = needs_reboot ? 0 : sim_sound_us(&bed.sim);
@@ -169,6 +208,7 @@ static const char *tell(uint32_t seed)
         bed_step(&bed);
     }
     run_ms(3000); /* And stays so. */
+    bed_tell_state(&bed);
     const char *const shortcoming = bed_shortcoming(&bed);
     if (bed_misdeed(&bed) != NULL) {
         return bed_misdeed(&bed);
@@ -178,15 +218,16 @@ static const char *tell(uint32_t seed)
 
 int main(int argc, char **argv)
 {
-    const uint32_t count = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 20000;
+    const bool is_told = argc == 3 && strcmp(argv[1], "--tell") == 0;
+    const uint32_t count = is_told ? 1 : argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 20000;
     const uint32_t first = argc > 2 ? (uint32_t)strtoul(argv[2], NULL, 10) : 1;
     uint32_t failures = 0;
 
     for (uint32_t seed = first; seed < first + count; seed++) {
-        const char *const what = tell(seed);
+        const char *const what = tell(seed, is_told);
 
         if (what != NULL && ++failures <= MOST_FAILURES) {
-            printf("stories 1 %u    # %s\n", seed, what);
+            printf("stories --tell %u    # %s\n", seed, what);
         }
     }
     printf("%u stories, %u failed\n", count, failures);
