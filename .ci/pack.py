@@ -41,8 +41,8 @@ NOT_OURS = ("build", ".git", ".pio", "managed_components", "__pycache__", "sdkco
 
 
 def git(*arguments):
-    """Git's answer, also if the clone belongs to another user; None in an unpacked archive."""
-    if not (ROOT / ".git").exists():
+    """Git's answer, also if the clone belongs to another user; None in an unpacked archive, and without Git."""
+    if not (ROOT / ".git").exists() or shutil.which("git") is None:
         return None
     return subprocess.run(["git", "-c", "safe.directory=*", "-C", ROOT, *arguments],
                           check=True, stdout=subprocess.PIPE, text=True).stdout
