@@ -36,8 +36,26 @@ CMOCK_ROOT=DIR test/run.sh
 END
 }
 
+is_ubuntu() {
+    grep -q '^ID=ubuntu' "${OS_RELEASE:-/etc/os-release}" 2>/dev/null
+}
+
+# Ubuntu has the package, but not in the component that is always there.
+ask_for_universe() {
+    cat >&2 <<'END'
+The package cmock is in Ubuntu's component "universe", which this computer does not use. Please add it:
+sudo add-apt-repository universe && sudo apt-get update
+END
+}
+
 find_cmock() {
-    is_present "$cmock_script" || is_available cmock || take_cmock_from_trixie
+    if is_present "$cmock_script" || is_available cmock; then
+        return
+    elif is_ubuntu; then
+        ask_for_universe
+    else
+        take_cmock_from_trixie
+    fi
 }
 
 need_cmock() {
