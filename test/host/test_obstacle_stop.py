@@ -30,11 +30,12 @@ def wait_for_last(robot, beginning):
     robot.wait_until(lambda: (["", *robot.out.split("\n")[:-1]])[-1].startswith(beginning))
 
 
-def test_a_robot_in_a_free_room_may_go(lidar, robot):
+@pytest.mark.parametrize("number", (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
+def test_a_robot_in_a_free_room_may_go_until_a_signal_stops_the_lidar(lidar, robot, number):
     device = lidar()
     run = robot(device.port)
     run.wait_for("\ngo     13")
-    assert run.end(signal.SIGINT).status == 0
+    assert run.end(number).status == 0
     device.wait_for_log("stopping -> idle")
 
 
