@@ -65,7 +65,7 @@ def is_port_call(place):
     name, line, _ = place.rsplit(":", 2)
     path = ROOT / name.removeprefix("./")
     code = path.read_text().splitlines()[int(line) - 1]
-    return "port->" in code or "link.step(" in code
+    return "port->" in code or ".step(" in code
 
 
 def add_frames(graph, text):
