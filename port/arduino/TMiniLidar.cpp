@@ -14,6 +14,8 @@ static const unsigned long BAUD_RATE = 230400;
 #if defined(ESP32) || defined(ESP8266) || TMINI_LIDAR_ON_RP2040
 /* Size of the core's receive buffer: it lasts 44 ms. 256 bytes last 11 ms, 32 bytes 1 ms. */
 static const int SERIAL_RX_SIZE = 1024;
+#elif defined(TMINI_LIDAR_MORE_FOR_TEENSY)
+static const int SERIAL_RX_SIZE = 64 + TMINI_LIDAR_MORE_FOR_TEENSY;
 #elif defined(SERIAL_RX_BUFFER_SIZE)
 static const int SERIAL_RX_SIZE = SERIAL_RX_BUFFER_SIZE; /* As the core has it. */
 #else
@@ -163,8 +165,29 @@ static uint16_t toHundredths(float hertz)
     return static_cast<uint16_t>(static_cast<uint16_t>(hertz * 10.0f + 0.5f) * 10u);
 }
 
+#if defined(TMINI_LIDAR_MORE_FOR_TEENSY)
+/* The port must be closed before it loses memory that it may be writing to. */
+void TMiniLidarBase::leave()
+{
+    if (serial_ != NULL) {
+        serial_->end();
+        serial_->addMemoryForRead(NULL, 0);
+    }
+}
+
+TMiniLidarBase::~TMiniLidarBase()
+{
+    leave();
+}
+#endif
+
 bool TMiniLidarBase::listen(Stream &serial, TMiniSerial *port, float hertz)
 {
+#if defined(TMINI_LIDAR_MORE_FOR_TEENSY)
+    if (serial_ != port) {
+        leave();
+    }
+#endif
     stream_ = &serial;
     serial_ = port;
     event_ = TMINI_EVENT_NONE;
@@ -194,6 +217,9 @@ bool TMiniLidarBase::begin(Stream &serial, float hertz)
 bool TMiniLidarBase::begin(TMiniSerial &serial, float hertz)
 {
     enlarge(serial);
+#if defined(TMINI_LIDAR_MORE_FOR_TEENSY)
+    serial.addMemoryForRead(more_, sizeof more_);
+#endif
     open(serial);
     rxPin_ = -1;
     return isReady(serial) && listen(serial, &serial, hertz);

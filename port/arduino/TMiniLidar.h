@@ -26,7 +26,7 @@
  *
  * Time. The lidar sends a byte every 43 us. Bytes that the sketch does not take in time are lost
  * when the core's receive buffer is full: after 2.7 ms with 64 bytes (most boards), after 44 ms
- * with 1024 (ESP32, ESP8266, RP2040, RP2350). loop() takes them, and so does a loop over points().
+ * with 1024 (ESP32, ESP8266, RP2040, RP2350, Teensy). loop() takes them, and so does a loop over points().
  * During longer work of your own call receive(). On an 8-bit board a float operation takes 10 us,
  * and print() waits while its own buffer (64 bytes) is full. */
 
@@ -38,19 +38,29 @@
 #include "tmini/tmini.h"
 #include "tmini/tmini_mount.h"
 
-/* The class of the board's serial ports that begin() opens. On Raspberry Pi's controllers (the core
- * of Earle Philhower) a port has a buffer of 32 bytes, 1.4 ms, and only SerialUART can enlarge
- * it. */
+/** Whether Serial1 is a SerialUART (the core of Earle Philhower): it has a buffer of 32 bytes, 1.4
+ * ms, which no other class of this core can enlarge. */
 #if defined(ARDUINO_ARCH_RP2040) && !defined(ARDUINO_ARCH_MBED)
-/** Whether Serial1 is a SerialUART, whose buffer can be enlarged. */
 #define TMINI_LIDAR_ON_RP2040 1
-/** The class of the board's serial ports that begin() opens. */
-typedef SerialUART TMiniSerial;
 #else
-/** Whether Serial1 is a SerialUART, whose buffer can be enlarged. */
 #define TMINI_LIDAR_ON_RP2040 0
+#endif
+
 /** The class of the board's serial ports that begin() opens. */
+#if TMINI_LIDAR_ON_RP2040
+typedef SerialUART TMiniSerial;
+#elif defined(__IMXRT1062__) && defined(CORE_TEENSY)
+typedef HardwareSerialIMXRT TMiniSerial;
+#else
 typedef HardwareSerial TMiniSerial;
+#endif
+
+/** On a Teensy a port has 64 bytes, 2.7 ms; the lidar gives it this many more. An LC has 8 KB of
+ * RAM. */
+#if defined(__MKL26Z64__)
+#define TMINI_LIDAR_MORE_FOR_TEENSY 192
+#elif defined(CORE_TEENSY)
+#define TMINI_LIDAR_MORE_FOR_TEENSY 960
 #endif
 
 /** One measurement. */
@@ -139,8 +149,8 @@ class TMiniPoints
 class TMiniLidarBase
 {
   public:
-    /** Opens the serial port at the lidar's 230400 baud; on an ESP32, ESP8266, RP2040 and RP2350
-     * with a large receive buffer. (On an ESP32, a port that the sketch has opened already keeps
+    /** Opens the serial port at the lidar's 230400 baud; on an ESP32, ESP8266, RP2040, RP2350 and
+     * Teensy with a large receive buffer. (On an ESP32, a port that the sketch has opened already keeps
      * its pins, and its buffer.) `hertz`: scans per second, 6 to 12, also after a power failure; 0:
      * whatever the lidar has. Returns false, and error() gives the reason, if the configuration is
      * wrong (for example a buffer's size or the frequency); on an ESP32 also if the port could not
@@ -238,12 +248,19 @@ class TMiniLidarBase
     /** For the classes below, which add the buffers. */
     TMiniLidarBase(uint8_t *rx, size_t rxSize, tmini_point_t *points, tmini_point_t *spare,
                    size_t maxPoints);
+#if defined(TMINI_LIDAR_MORE_FOR_TEENSY)
+    /** Closes the port, which must not use this memory any longer. */
+    ~TMiniLidarBase();
+#endif
 
   private:
     friend class TMiniPoints;
     TMiniLidarBase(const TMiniLidarBase &);
     TMiniLidarBase &operator=(const TMiniLidarBase &);
     bool listen(Stream &serial, TMiniSerial *port, float hertz);
+#if defined(TMINI_LIDAR_MORE_FOR_TEENSY)
+    void leave();
+#endif
     bool isReady(TMiniSerial &serial);
     bool succeeds(tmini_status_t status);
     bool take(size_t count);
@@ -267,6 +284,9 @@ class TMiniLidarBase
     int8_t rxPin_; /* On an ESP32, the pins given to begin(); else -1. */
     int8_t txPin_;
     size_t beforeLoss_; /* Bytes in the core's buffer before a loss; 0: no loss. */
+#if defined(TMINI_LIDAR_MORE_FOR_TEENSY)
+    uint8_t more_[TMINI_LIDAR_MORE_FOR_TEENSY];
+#endif
 };
 
 inline void TMiniPoints::keepUp(size_t index) const

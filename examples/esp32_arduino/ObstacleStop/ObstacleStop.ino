@@ -8,9 +8,14 @@
  * any board with 8 KB of RAM, from an Arduino Mega 2560 on. */
 
 #include <TMiniLidar.h>
+#include <TMiniPins.h>
 #include <tmini/tmini_fields.h>
 
+#if defined(LED_BUILTIN)
 static const uint8_t STOP_PIN = LED_BUILTIN;
+#else
+static const uint8_t STOP_PIN = 2; /* "ESP32 Dev Module" names no LED; many have it here. */
+#endif
 
 /* The box that stops it, in mm: x ahead, y to the left. */
 static const tmini_xy_t BOX[] = {{0, -150}, {300, 150}};
@@ -81,8 +86,7 @@ void setup()
     fields.list = &field;
     fields.count = 1;
     lidar.setMount(MOUNT);
-    /* On an ESP32 begin() needs pins, as in Scan. */
-    if (!lidar.begin(Serial1, 10) || tmini_fields_init(&fields) != TMINI_OK) {
+    if (!lidar.begin(TMINI_SERIAL1, 10) || tmini_fields_init(&fields) != TMINI_OK) {
         Serial.println(lidar.error());
         return;
     }

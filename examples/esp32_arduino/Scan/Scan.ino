@@ -6,32 +6,7 @@
  * RAM and a second serial port, from an Arduino Mega 2560 on; wiring: README.md, one folder up. */
 
 #include <TMiniLidar.h>
-
-/* An ESP32's serial ports can use any pins; those of other boards have fixed pins. */
-#if defined(ESP32)
-#if CONFIG_IDF_TARGET_ESP32
-static const int8_t RX_PIN = 26; /* To the lidar's TX. */
-static const int8_t TX_PIN = 27; /* To the lidar's RX. */
-#elif CONFIG_IDF_TARGET_ESP32S2 || CONFIG_IDF_TARGET_ESP32S3
-static const int8_t RX_PIN = 18; /* Here the flash uses 26 and 27. */
-static const int8_t TX_PIN = 17;
-#elif CONFIG_IDF_TARGET_ESP32C6
-static const int8_t RX_PIN = 18;
-static const int8_t TX_PIN = 19;
-#elif CONFIG_IDF_TARGET_ESP32H2
-static const int8_t RX_PIN = 10;
-static const int8_t TX_PIN = 11;
-#elif CONFIG_IDF_TARGET_ESP32P4
-static const int8_t RX_PIN = 20;
-static const int8_t TX_PIN = 21;
-#elif CONFIG_IDF_TARGET_ESP32C5 || CONFIG_IDF_TARGET_ESP32C61
-static const int8_t RX_PIN = 23;
-static const int8_t TX_PIN = 24;
-#else /* ESP32-C2, ESP32-C3 */
-static const int8_t RX_PIN = 4;
-static const int8_t TX_PIN = 5;
-#endif
-#endif
+#include <TMiniPins.h>
 
 static const uint16_t STOP_MM = 400;
 static const uint16_t FRONT_Q6 = 30 * 64;  /* To either side of 0 degrees, in 1/64 degree. */
@@ -129,11 +104,7 @@ static void report()
 void setup()
 {
     Serial.begin(115200);
-#if defined(ESP32)
-    lidar.begin(Serial1, RX_PIN, TX_PIN);
-#else
-    lidar.begin(Serial1);
-#endif
+    lidar.begin(TMINI_SERIAL1); /* Serial1; on an ESP32 with its pins. */
     lidar.requestInfo();
     lidar.start(); /* After the answer; holds until stop(). */
 }

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Eight LEDs in a ring, each on while something in its direction is nearer than a metre, or while
- * its direction is unknown. Packet by packet, in 1.5 KB of RAM; lidar on Serial1. Any board with
- * eight free pins, from an Arduino Mega 2560 on. */
+/* LEDs in a ring, eight on most boards, each on while something in its direction is nearer than a
+ * metre, or while its direction is unknown. Packet by packet, in 1.5 KB of RAM; lidar on Serial1;
+ * from an Arduino Mega 2560 on. */
 
 #include <TMiniLidar.h>
+#include <TMiniPins.h>
 #include <tmini/tmini_sectors.h>
 
-static const uint8_t LEDS = 8;
-static const uint8_t FIRST_PIN = 22; /* Clockwise from the front. */
+static const uint8_t PINS[] = {TMINI_LED_PINS}; /* Clockwise from the front. */
+static const uint8_t LEDS = sizeof PINS;
 static const uint16_t NEAR_MM = 1000;
 
 static TMiniLidarStreaming lidar;
@@ -23,7 +24,7 @@ static bool whole;
 static void endRevolution()
 {
     for (uint8_t i = 0; i < LEDS; i++) {
-        digitalWrite(FIRST_PIN + i, tmini_sector_is_free(&sector[i], NEAR_MM) ? LOW : HIGH);
+        digitalWrite(PINS[i], tmini_sector_is_free(&sector[i], NEAR_MM) ? LOW : HIGH);
     }
     scans += begun ? 1 : 0;
     complete += begun && whole ? 1 : 0;
@@ -36,7 +37,7 @@ static void endRevolution()
 static void showNothing()
 {
     for (uint8_t i = 0; i < LEDS; i++) {
-        digitalWrite(FIRST_PIN + i, HIGH);
+        digitalWrite(PINS[i], HIGH);
     }
 }
 
@@ -69,11 +70,11 @@ static void report()
 void setup()
 {
     for (uint8_t i = 0; i < LEDS; i++) {
-        pinMode(FIRST_PIN + i, OUTPUT);
+        pinMode(PINS[i], OUTPUT);
     }
     showNothing();
     Serial.begin(115200);
-    if (tmini_sectors_init(&sectors, sector, LEDS, 0) != TMINI_OK || !lidar.begin(Serial1)) {
+    if (tmini_sectors_init(&sectors, sector, LEDS, 0) != TMINI_OK || !lidar.begin(TMINI_SERIAL1)) {
         Serial.println(lidar.error());
         return;
     }

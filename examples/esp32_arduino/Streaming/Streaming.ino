@@ -6,6 +6,7 @@
  * folder up, explains what is possible with 16 MHz. */
 
 #include <TMiniLidar.h>
+#include <TMiniPins.h>
 
 static TMiniLidarStreaming lidar;
 static unsigned scans;
@@ -55,7 +56,7 @@ static void lookAtPacket()
 void setup()
 {
     Serial.begin(115200);
-    lidar.begin(Serial1);
+    lidar.begin(TMINI_SERIAL1);
     lidar.start();
 }
 

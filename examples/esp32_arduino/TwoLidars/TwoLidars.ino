@@ -6,6 +6,7 @@
  * on. */
 
 #include <TMiniLidar.h>
+#include <TMiniPins.h>
 
 struct Unit {
     TMiniLidarStreaming lidar;
@@ -86,8 +87,8 @@ static void report()
 void setup()
 {
     Serial.begin(115200);
-    left.lidar.begin(Serial1);
-    right.lidar.begin(Serial2);
+    left.lidar.begin(TMINI_SERIAL1);
+    right.lidar.begin(TMINI_SERIAL2);
     left.lidar.start();
     right.lidar.start();
 }

@@ -136,6 +136,37 @@ static void a_port_that_the_sketch_has_opened_is_enlarged_too(void)
 }
 #endif
 
+#if defined(CORE_TEENSY)
+static void begin_gives_the_port_more_memory_as_long_as_the_lidar_lives(void)
+{
+    {
+        TMiniLidar lidar;
+        TEST_ASSERT_TRUE(lidar.begin(Serial1));
+        TEST_ASSERT_EQUAL_UINT(1023, Serial1.size_at_begin);
+        TEST_ASSERT_NOT_NULL(Serial1.more);
+    }
+    TEST_ASSERT_NULL(Serial1.more);
+    TEST_ASSERT_FALSE(Serial1.more_while_open);
+    {
+        TMiniLidar lidar;
+    }
+}
+
+static void a_port_that_another_lidar_has_taken_over_keeps_its_memory(void)
+{
+    TMiniLidarStreaming second;
+    {
+        TMiniLidarStreaming first;
+        TEST_ASSERT_TRUE(first.begin(Serial1));
+        TEST_ASSERT_TRUE(first.begin(Serial2));
+        TEST_ASSERT_NULL(Serial1.more);
+        TEST_ASSERT_TRUE(second.begin(Serial1));
+    }
+    TEST_ASSERT_NULL(Serial2.more);
+    TEST_ASSERT_NOT_NULL(Serial1.more);
+}
+#endif
+
 /* Runs for `ms`, with a sketch that calls loop() every `pause` ms. */
 static void run_with_pauses(TMiniLidarBase &lidar, unsigned ms, unsigned pause)
 {
@@ -492,6 +523,10 @@ int main(void)
     RUN_TEST(a_port_that_cannot_be_opened_is_reported);
 #elif defined(ARDUINO_ARCH_RP2040)
     RUN_TEST(a_port_that_the_sketch_has_opened_is_enlarged_too);
+#endif
+#if defined(CORE_TEENSY)
+    RUN_TEST(begin_gives_the_port_more_memory_as_long_as_the_lidar_lives);
+    RUN_TEST(a_port_that_another_lidar_has_taken_over_keeps_its_memory);
 #endif
 #if !defined(SERIAL_RX_BUFFER_SIZE)
     RUN_TEST(bytes_that_do_not_fit_in_the_lidars_buffer_stay_in_the_cores);

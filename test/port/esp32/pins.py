@@ -2,7 +2,7 @@
 # Copyright (c) 2026 The tmini authors
 
 """Checks that menuconfig's default pins are free on each chip: not used for flash, console, USB or strapping, and
-present in every package. The sketch Scan must use the same pins.
+present in every package; and that the Arduino sketches' are, too, of which the lidar's are the same.
 
     pins.py ROOT
 
@@ -54,28 +54,30 @@ def defaults(option):
     return result
 
 
-def of_scan():
-    """The sketch's pins (RX, TX) by chip; the key None is for chips that it does not name."""
-    parts = re.findall(r"#(?:if|elif|else)(.*)\nstatic const int8_t RX_PIN = (\d+);.*\n"
-                       r"static const int8_t TX_PIN = (\d+);",
-                       read("examples/esp32_arduino/Scan/Scan.ino"))
+def of_sketches():
+    """The sketches' pins by chip, each a dictionary of lists by name; the key None is for chips that are not named."""
     result = {}
-    for condition, rx, tx in parts:
-        for chip in re.findall(r"CONFIG_IDF_TARGET_(\w+)", condition) or [None]:
-            result[chip] = (int(rx), int(tx))
+    for block in re.split(r"#(?:el)?if|#else", read("port/arduino/TMiniPins.h")):
+        found = {name: [int(pin) for pin in numbers.split(",")]
+                 for name, numbers in re.findall(r"#define TMINI_(\w+)_PINS? ([\d, ]+)", block)}
+        for chip in re.findall(r"CONFIG_IDF_TARGET_(\w+)", block.splitlines()[0]) or [None]:
+            if "RX1" in found:
+                result[chip] = found
     return result
 
 
-tx_pins, rx_pins, scan = defaults("TMINI_ESP32_TX_PIN"), defaults("TMINI_ESP32_RX_PIN"), of_scan()
+tx_pins, rx_pins, sketches = defaults("TMINI_ESP32_TX_PIN"), defaults("TMINI_ESP32_RX_PIN"), of_sketches()
 complaints = []
 for chip, (count, taken) in CHIPS.items():
     rx, tx = rx_pins.get(chip), tx_pins.get(chip)
-    for pin in (rx, tx):
+    sketch = sketches.get(chip, sketches[None])
+    used = sum(sketch.values(), [])
+    for pin in (rx, tx, *used):
         if pin is None or pin >= count or pin in pins(taken):
-            complaints.append("%s: GPIO%s is no pin for a lidar" % (chip, pin))
-    if rx == tx:
-        complaints.append("%s: one pin for both" % chip)
-    if scan.get(chip, scan.get(None)) != (rx, tx):
-        complaints.append("%s: Scan has other pins" % chip)
+            complaints.append("%s: GPIO%s is not free" % (chip, pin))
+    if rx == tx or len(set(used)) != len(used):
+        complaints.append("%s: one pin for two" % chip)
+    if (sketch["RX1"], sketch["TX1"]) != ([rx], [tx]) or len(sketch["LED"]) < 4:
+        complaints.append("%s: the sketches have other pins" % chip)
 print("\n".join(complaints) or "%d chips have pins for a lidar" % len(CHIPS))
 sys.exit(1 if complaints else 0)

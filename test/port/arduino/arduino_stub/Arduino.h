@@ -2,8 +2,10 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* The part of Arduino's API that the port and its sketches use, written for the tests from the
- * public reference. A test sets the clock, and fills and reads the serial ports. The macros ESP32
- * and ARDUINO_ARCH_RP2040 add the functions of these cores. */
+ * public reference. It is the poorest of the cores: what one of them leaves out, it does not have
+ * (LED_BUILTIN, a serial port's availableForWrite()). A test sets the clock, and fills and reads the
+ * serial ports. The macros ESP32, ARDUINO_ARCH_RP2040 and CORE_TEENSY add the functions of these
+ * cores. */
 
 #ifndef ARDUINO_H
 #define ARDUINO_H
@@ -26,7 +28,6 @@ inline unsigned long millis()
 
 enum { INPUT, OUTPUT };
 enum { LOW, HIGH };
-const uint8_t LED_BUILTIN = 13;
 extern uint8_t arduino_pins[64];
 
 inline void pinMode(uint8_t, uint8_t) {}
@@ -95,10 +96,6 @@ class HardwareSerial : public Stream
     int available() override
     {
         return static_cast<int>(received.size());
-    }
-    int availableForWrite() override
-    {
-        return 64;
     }
     int read() override
     {
@@ -214,6 +211,30 @@ class SerialUART : public HardwareSerial
 };
 
 typedef SerialUART SerialPort;
+#elif defined(__IMXRT1062__)
+/* A Teensy 4: 64 bytes of its own, and what it is given. */
+class HardwareSerialIMXRT : public HardwareSerial
+{
+  public:
+    HardwareSerialIMXRT()
+    {
+        rx_size = 63;
+    }
+    void end()
+    {
+        is_open = false;
+    }
+    void addMemoryForRead(void *buffer, size_t length)
+    {
+        more = buffer;
+        more_while_open = more_while_open || (is_open && buffer == NULL);
+        rx_size = 63 + (buffer != NULL ? length : 0);
+    }
+    void *more = NULL;
+    bool more_while_open = false;
+};
+
+typedef HardwareSerialIMXRT SerialPort;
 #else
 typedef HardwareSerial SerialPort;
 #endif
