@@ -178,6 +178,9 @@ def check_platformio_lists():
             if not os.path.exists(path(os.path.join(example["base"], file))):
                 complain("library.json: no such example: %s" % file)
     folder = "examples/esp32_arduino"
+    for sketch in glob.glob(path(folder + "/*/*.ino")):
+        if os.path.basename(sketch) not in sum((example["files"] for example in manifest["examples"]), []):
+            complain("library.json: no example: %s" % os.path.basename(sketch))
     for sketch in re.findall(r'SKETCH="(.*?)"', read(folder + "/platformio.ini")):
         if not os.path.exists(path(os.path.join(folder, "platformio", sketch))):
             complain("platformio.ini: no such sketch: %s" % sketch)
