@@ -124,10 +124,11 @@ static bool is_near(tmini_xy_t place)
            place.y_mm >= -TMINI_FIELD_CORNER_MAX_MM && place.y_mm <= TMINI_FIELD_CORNER_MAX_MM;
 }
 
-/* Finds the box around the field. Returns false if a corner is too far away, or nothing is in it. */
+/* Finds the box around the field. False if a corner is too far away, or nothing is in it. */
 static bool enclose(tmini_field_t *field)
 {
-    field->least = field->most = field->corners[0];
+    field->least = field->corners[0];
+    field->most = field->corners[0];
     for (size_t i = 0; i < field->corner_count; i++) {
         const tmini_xy_t corner = field->corners[i];
         if (!is_near(corner)) {
@@ -221,18 +222,18 @@ static bool crosses(tmini_xy_t from, tmini_xy_t to, place_t place)
 /* A place in the box around the field. It is inside if an odd number of edges is ahead of it. */
 static bool is_in_polygon(const tmini_field_t *field, place_t place)
 {
-    bool is_inside = false;
+    bool is_odd = false;
     tmini_xy_t from = field->corners[field->corner_count - 1u];
     for (size_t i = 0; i < field->corner_count; i++) {
         const tmini_xy_t to = field->corners[i];
-        is_inside = is_inside != crosses(from, to, place);
+        is_odd = is_odd != crosses(from, to, place);
         from = to;
     }
-    return is_inside;
+    return is_odd;
 }
 
 /* A count that went back to 0 would make a field free. */
-static void count_one(uint16_t *count)
+static void count_up(uint16_t *count)
 {
     *count = (uint16_t)(*count + (*count < UINT16_MAX ? 1 : 0));
 }
@@ -263,13 +264,13 @@ void tmini_fields_add(const tmini_fields_t *fields, const tmini_point_t *point)
     for (size_t i = 0; i < fields->count; i++) {
         tmini_field_t *const field = &fields->list[i];
         if (is_ahead(field, point->angle_q6)) {
-            count_one(&field->directions);
+            count_up(&field->directions);
             if (!has_range) {
-                count_one(&field->unseen);
+                count_up(&field->unseen);
             }
         }
         if (has_range && is_inside(field, point, fields->lidar)) {
-            count_one(&field->inside);
+            count_up(&field->inside);
         }
     }
 }

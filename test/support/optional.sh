@@ -88,5 +88,6 @@ prepare_everything() {
         "$root/test/consumer/platformio/requirements.txt"
     prepare_python_packages "$root/build/esp-idf-packer" "$root/test/qa/release/requirements.txt"
     prepare_python_packages "$root/build/axe" "$root/test/web/requirements.txt"
+    prepare_python_packages "$root/build/pymavlink" "$root/test/mavlink/requirements.txt"
     fetch_checker
 }

@@ -454,7 +454,7 @@ static int16_t draw(uint32_t *state, int16_t limit)
     return (int16_t)((int32_t)(*state >> 16) % (2 * limit + 1) - limit);
 }
 
-/* Polygons of any kind, with corners on a grid, so that some are straight ahead, behind or aside. */
+/* Polygons of any kind. Half of them have corners on a grid: straight ahead, behind or aside. */
 void test_any_polygon_has_the_directions_and_the_places_that_geometry_gives_it(void)
 {
     uint32_t state = 1;
