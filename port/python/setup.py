@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Builds the package from the sources of lib/, and those of the tool that read recordings. A source
-distribution contains them. In the checkout they are two folders up, and are copied here while
+"""Builds the package from the sources of lib/, those of the tool that read recordings, and the viewer. A
+source distribution contains them. In the checkout they are two folders up, and are copied here while
 setuptools works, because it accepts only files below this folder. (So two installations must not
 use one checkout at the same time.)"""
 
@@ -13,6 +13,7 @@ from setuptools import setup
 
 HERE = pathlib.Path(__file__).resolve().parent
 CARRIED = HERE / "lib"
+PAGE = HERE / "tmini" / "tmini.html"
 CHECKOUT = HERE.parents[1]
 IS_DISTRIBUTION = (HERE / "PKG-INFO").exists()
 
@@ -27,6 +28,7 @@ if not IS_DISTRIBUTION:
     for suffix in (".c", ".h"):
         shutil.copy(CHECKOUT / "port" / "posix" / ("tmini_timed" + suffix), CARRIED / "src")
     shutil.copy(CHECKOUT / "LICENSE", HERE)
+    shutil.copy(CHECKOUT / "examples" / "web" / "tmini.html", PAGE)
 try:
     setup(cffi_modules=["native.py:ffi"])
 finally:
@@ -34,3 +36,4 @@ finally:
         shutil.rmtree(CARRIED)
         shutil.rmtree(HERE / "build", ignore_errors=True)
         (HERE / "LICENSE").unlink()
+        PAGE.unlink()

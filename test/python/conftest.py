@@ -29,9 +29,9 @@ class Simulator:
         os.symlink(self.process.stdout.readline().strip(), self.port)
         return self.port
 
-    def await_idle(self):
+    def await_idle(self, seconds=2):
         """Fails unless the last thing that the lidar does is to stop."""
-        for _ in range(200):
+        for _ in range(100 * seconds):
             if self.log.read_text().splitlines()[-1].endswith("idle"):
                 return
             time.sleep(0.01)

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from ._command import CommandError
 from ._lidar import LidarError
 
-_COMMANDS = ("live", "mcap")
+_COMMANDS = ("live", "mcap", "serve")
 
 
 def _parser() -> argparse.ArgumentParser:

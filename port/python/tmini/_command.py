@@ -7,6 +7,8 @@ add_arguments(parser) and run(arguments)."""
 from __future__ import annotations
 
 import argparse
+import asyncio
+import contextlib
 import importlib
 import signal
 import sys
@@ -42,9 +44,13 @@ def add_mount_arguments(parser: argparse.ArgumentParser) -> None:
                         help="where it sees the robot itself, in degrees clockwise from the front")
 
 
-def add_lidar_arguments(parser: argparse.ArgumentParser) -> None:
+def add_port_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("port", metavar="PORT", help="/dev/ttyUSB0, COM3, serial:END (the end of "
                         "the lidar's serial number) or tcp:HOST:PORT")
+
+
+def add_lidar_arguments(parser: argparse.ArgumentParser) -> None:
+    add_port_argument(parser)
     add_frequency_argument(parser)
     add_mount_arguments(parser)
 
@@ -64,13 +70,31 @@ def mount(arguments: argparse.Namespace) -> dict[str, Any]:
     return {name: getattr(arguments, name) for name in ("front", "upside_down", "mask")}
 
 
+def _signals(*names: str) -> Iterator[int]:
+    """Those that this system has. One that is ignored (`nohup`) stays ignored."""
+    numbers = (getattr(signal, name, None) for name in names)
+    return (number for number in numbers
+            if number is not None and signal.getsignal(number) != signal.SIG_IGN)
+
+
+def watch_signals() -> None:
+    """Ctrl-C, SIGTERM and SIGHUP become KeyboardInterrupt, which ends a `with` and so stops the
+    lidar."""
+    for number in _signals("SIGTERM", "SIGHUP"):
+        signal.signal(number, signal.default_int_handler)
+
+
+def on_signal(loop: asyncio.AbstractEventLoop) -> asyncio.Event:
+    """The same in a loop of asyncio: set by such a signal."""
+    over = asyncio.Event()
+    with contextlib.suppress(NotImplementedError):  # Windows has Ctrl-C alone.
+        for number in _signals("SIGINT", "SIGTERM", "SIGHUP"):
+            loop.add_signal_handler(number, over.set)
+    return over
+
+
 def open_lidar(arguments: argparse.Namespace, backlog: int = 1) -> Lidar:
-    """Ctrl-C, SIGTERM and SIGHUP become KeyboardInterrupt, which ends the `with` and so stops the
-    lidar. A signal that is ignored (`nohup`) stays ignored."""
-    for name in ("SIGTERM", "SIGHUP"):
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) != signal.SIG_IGN:
-            signal.signal(number, signal.default_int_handler)
+    watch_signals()
     return Lidar(arguments.port, arguments.frequency, backlog=backlog, **mount(arguments))
 
 

@@ -92,7 +92,7 @@ def _recognise(line: Line) -> str:
 def _listen(line: Line, seconds: float, awaited: bytes | None = None) -> bytes:
     data, end = b"", time.monotonic() + seconds
     while time.monotonic() < end:
-        data += line.read()
+        data += b"".join(part or b"" for part in line.read())
         if awaited is not None and len(data) >= _INFO_SIZE and awaited in data[:1 - _INFO_SIZE]:
             break
         time.sleep(0.01)

@@ -14,13 +14,13 @@ import threading
 import time
 import weakref
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
 from ._find import resolve
-from ._line import Line, open_line
+from ._line import Line, now_us, open_line
 from ._mount import Mount
 from ._native import ffi, lib
 from ._scan import Fault, Scan
@@ -54,8 +54,9 @@ def python_write(context: Any, data: Any, count: int) -> int:
     return lidar._write(bytes(ffi.buffer(data, count)))
 
 
-def python_now_ms(_context: Any) -> int:
-    return int(time.monotonic() * 1000) & 0xFFFFFFFF
+def python_now_ms(context: Any) -> int:
+    line = ffi.from_handle(context)._line
+    return (now_us() if line is None else line.now_us()) // 1000 & 0xFFFFFFFF
 
 
 def python_restart(context: Any) -> None:
@@ -80,9 +81,10 @@ class Lidar:
                  listen_only: bool = False, backlog: int = 1,
                  timeout: float | None = 10.0) -> None:
         """`frequency_hz`: as in set_frequency(); None: left as it is. `front`, `upside_down` and
-        `mask`: see Mount. `listen_only`: never sends anything. Waits up to `timeout` seconds for
-        the first scan, and raises LidarError if there is none, OSError if there is no such port;
-        None: returns at once, even if the port does not exist yet."""
+        `mask`: see Mount. `listen_only`: never sends anything; neither does a timed
+        stream. Waits up to `timeout` seconds for the first scan, and raises LidarError if there is
+        none, OSError if there is no such port; None: returns at once, even if the port does not
+        exist yet."""
         if not isinstance(port, (str, os.PathLike)):
             raise TypeError(f"port is a name such as \"/dev/ttyUSB0\", not {port!r}")
         if operator.index(backlog) < 1:
@@ -103,14 +105,21 @@ class Lidar:
         self._line: Line | None = None
         self._name: str | None = None  # The line's; None: to be found.
         self._is_stale = False  # The line is silent, and is to be opened again.
+        self._tap: Callable[[int, bytes | None], None] | None = None  # Gets what comes, and when.
         self._mount = Mount(front, upside_down, mask)
         self._listen_only = listen_only
-        self._set_up(0 if frequency_hz is None else _chz(frequency_hz))
+        chz = 0 if frequency_hz is None else _chz(frequency_hz)
         try:
             self._open_line()
         except OSError:
             if timeout is not None:
                 raise
+        if self._line is not None and self._line.is_timed:
+            self._listen_only = True
+            if chz > 0:
+                self._line.close()
+                raise LidarError(f"{self.port} is a timed stream, whose sender sets the frequency")
+        self._set_up(chz)
         lib.tmini_request_info(self._lidar)
         lib.tmini_start(self._lidar)  # Begins after the query.
         self._thread = threading.Thread(target=self._run, name=f"tmini {self.port}", daemon=True)
@@ -222,8 +231,9 @@ class Lidar:
         self._totals = ffi.new("tmini_counters_t *")
         self._lidar = ffi.new("tmini_t *")
         self._timing = ffi.new("tmini_timing_t *", lib.tmini_timing_default)
-        self._timing.frame_timeout_ms = 250  # Python may be busy for a while.
-        self._timing.max_pause_ms = 250
+        # Python may be busy for a while, and a network for longer.
+        self._timing.frame_timeout_ms = self._timing.max_pause_ms = \
+            1000 if self.port.startswith("tcp:") else 250
         self._timing.reply_timeout_ms = 1000
         self._port = ffi.new("tmini_port_t *", {"write": lib.python_write,
                                                 "now_ms": lib.python_now_ms,
@@ -255,7 +265,7 @@ class Lidar:
     def _take(self, event: int) -> None:
         if event == lib.TMINI_EVENT_SCAN and not self._is_stopped:
             native = lib.tmini_scan(self._lidar)[0]
-            age_ms = (python_now_ms(None) - native.start_ms) & 0xFFFFFFFF
+            age_ms = (now_us() // 1000 - native.start_ms) & 0xFFFFFFFF
             self._number += 1
             scan = Scan(native, self._number, self._faults(), time.monotonic() - age_ms / 1000)
             self._scans.append(scan)
@@ -299,21 +309,41 @@ class Lidar:
 
     def _turn(self) -> None:
         """Feeds received bytes to the driver, and opens the line again if it has gone."""
-        data = b""
         try:
             if self._is_stale:
                 self._drop_line()
             line = self._line
             if line is None:
                 line = self._open_line()
-                with self._changed:
-                    lib.tmini_feed_gap(self._lidar)
-            data = line.read()
+                self._feed_gap()
+            for data in line.read():
+                self._note_times(line)
+                if self._tap is not None:
+                    self._tap(line.now_us(), data)
+                if data is None:
+                    self._feed_gap()
+                else:
+                    with self._changed:
+                        self._feed(data)
         except OSError:
             self._drop_line()
             self._name = None
+            with self._changed:
+                self._feed(b"")
+
+    def _feed_gap(self) -> None:
         with self._changed:
-            self._feed(data)
+            lib.tmini_feed_gap(self._lidar)
+            self._feed(b"")
+
+    def _note_times(self, line: Line) -> None:
+        """A timed stream, on a line that was opened later, only listens."""
+        if line.is_timed and not self._listen_only:
+            with self._changed:
+                self._listen_only = True
+                self._set_up(0)
+                if not self._is_stopped:
+                    lib.tmini_start(self._lidar)
 
     def _open_line(self) -> Line:
         self._name = self._name or resolve(self.port)

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""Timed streams, and `python -m tmini serve`."""
+
+import asyncio
+import binascii
+import contextlib
+import http.client
+import json
+import socket
+import struct
+import subprocess
+import threading
+import time
+
+import pytest
+
+import tmini
+from conftest import SIM, TOOL
+
+MAGIC = b"\x89tmini\x02\n"
+
+
+def chunk(delta_us, content):
+    head = struct.pack("<IH", delta_us, len(content))
+    return b"\xA7\xC3" + head + struct.pack("<H", binascii.crc_hqx(head + content, 0xFFFF)) + content
+
+
+class Sender(threading.Thread):
+    """Sends 4 s of a lidar with its times to each listener; nothing passes for half of each second."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        room = subprocess.run([SIM, "--write", "-", "--seconds", "5"], check=True, capture_output=True).stdout
+        self.chunks = [chunk(10000, room[131 * i:131 * (i + 1)]) for i in range(400)]
+        self.socket = socket.create_server(("127.0.0.1", 0))
+        self.port = f"tcp:127.0.0.1:{self.socket.getsockname()[1]}"
+        self.heard = b""
+        self.start()
+
+    def run(self):
+        with contextlib.suppress(OSError):
+            while True:
+                self.send_to(self.socket.accept()[0])
+
+    def send_to(self, listener):
+        begun, late = time.monotonic(), MAGIC
+        with contextlib.suppress(OSError):
+            for i, one in enumerate(self.chunks):
+                time.sleep(max(0, begun + i / 100 - time.monotonic()))
+                late += one
+                if i % 100 >= 50 or i == 0:
+                    listener.sendall(late)
+                    late = b""
+            listener.setblocking(False)
+            self.heard += listener.recv(1000)
+        listener.close()
+
+
+@pytest.fixture
+def sender():
+    one = Sender()
+    yield one
+    one.socket.close()
+
+
+def test_a_timed_stream_with_stalls_of_half_a_second_spoils_neither_scans_nor_times(sender, tmp_path):
+    with tmini.Lidar(sender.port) as lidar:
+        scans = [lidar.read(3) for _ in range(18)]  # Of the first connection.
+        again = next(scan for scan in lidar if scan.number > 25)  # Of the second one.
+    assert all(scan.complete for scan in scans)
+    path = tmp_path / "room.tmini"
+    path.write_bytes(MAGIC + b"".join(sender.chunks))
+    truth = {scan.ranges_m.tobytes(): scan.start_s for scan in tmini.read(path)}
+    delays = [scan.start_s - truth[scan.ranges_m.tobytes()] for scan in scans[6:]]
+    assert max(delays) - min(delays) <= 0.025
+    assert again.start_s > scans[-1].start_s + 1
+    assert sender.heard == b""
+
+
+def test_a_timed_stream_takes_no_frequency(sender):
+    with pytest.raises(tmini.LidarError, match="whose sender sets the frequency"):
+        tmini.Lidar(sender.port, frequency_hz=8)
+    with tmini.Lidar(sender.port) as lidar, pytest.raises(tmini.LidarError, match="sends nothing"):
+        lidar.set_frequency(8)
+
+
+# ---- serve
+
+
+@pytest.fixture
+def server(simulator, command):
+    """(port number, process) of a server for the simulated lidar."""
+    pytest.importorskip("websockets")
+
+    def start(*words, lidar=None):
+        process = command("serve", lidar or simulator.start(), "--tcp", 0, *words)
+        return int(process.stdout.readline().rpartition(":")[2]), process
+    return start
+
+
+def get(number, path, **headers):
+    """(status, headers, body)."""
+    connection = http.client.HTTPConnection("127.0.0.1", number, timeout=10)
+    connection.request("GET", path, headers=headers)
+    answer = connection.getresponse()
+    content = answer.status, dict(answer.getheaders()), answer.read()
+    connection.close()
+    return content
+
+
+def listen(number, **options):
+    client = pytest.importorskip("websockets.sync.client")
+    return client.connect(f"ws://127.0.0.1:{number}/stream", compression=None, close_timeout=0.5, **options)
+
+
+def receive(listener, size):
+    content = b""
+    while len(content) < size:
+        content += listener.recv(10)
+    return content
+
+
+def test_a_browser_gets_the_page(server, tmp_path):
+    page = tmp_path / "page.html"
+    page.write_bytes(b"<p>the page")
+    number, _ = server("--page", page)
+    status, headers, _ = get(number, "/")
+    assert (status, headers["Location"]) == (302, "/live")
+    status, headers, body = get(number, "/live")
+    assert (status, headers["Content-Type"], body) == (200, "text/html; charset=utf-8", b"<p>the page")
+    assert (headers["X-Frame-Options"], headers["X-Content-Type-Options"]) == ("DENY", "nosniff")
+    assert get(number, "/etc/passwd")[0] == 404
+
+
+def test_the_page_comes_with_the_package(server):
+    number, _ = server()
+    assert b"<title>tmini viewer</title>" in get(number, "/live")[2]
+
+
+def test_the_lidar_scans_while_somebody_listens_and_listeners_hear_all(server, simulator, tmp_path):
+    number, process = server("--frequency", 10)
+    assert "start" not in simulator.log.read_text()
+    with listen(number) as one:
+        early = receive(one, 20000)
+        with listen(number) as other:
+            late = receive(other, 20000)
+    for name, content in (("early", early), ("late", late)):
+        assert content[:8] == MAGIC
+        path, stats = tmp_path / f"{name}.tmini", tmp_path / "stats.json"
+        path.write_bytes(content)
+        subprocess.run([TOOL, "decode", path, "--stats", stats], check=True, capture_output=True)
+        counts = json.loads(stats.read_text())
+        assert counts["start_packets"] >= 10 and counts["checksum_errors"] == 0
+    times = [row.split(",")[7] for row in subprocess.run(
+        [TOOL, "decode", path, "--csv"], check=True, capture_output=True, text=True).stdout.splitlines()[1:]]
+    assert 1000 < int(times[-1]) - int(times[0]) < 3000
+    simulator.await_idle(6)
+    process.terminate()
+    assert process.wait(10) == 0
+
+
+def test_a_lidar_that_still_scans_is_stopped_when_the_server_ends(server, simulator):
+    number, process = server()
+    with listen(number) as one:
+        receive(one, 2000)
+        process.terminate()
+        assert process.wait(10) == 0
+    simulator.await_idle()
+
+
+def test_another_page_or_name_gets_nothing(server):
+    number, _ = server("--name", "robot.example")
+    assert get(number, "/live", Host="evil.example")[0] == 403
+    assert get(number, "/live", Host="localhost:1@evil.example")[0] == 403
+    for name in ("robot.example", f"localhost:{number}", f"{socket.gethostname()}.local", "[::1]", "192.0.2.1:80"):
+        assert get(number, "/live", Host=name)[0] == 200
+    invalid = pytest.importorskip("websockets.exceptions").InvalidStatus
+    for origin in ("http://evil.example", "null", f"http://127.0.0.1:{number + 1}", "http://localhost"):
+        with pytest.raises(invalid, match="403"):
+            listen(number, origin=origin)
+    with listen(number, origin=f"http://127.0.0.1:{number}"):
+        pass
+
+
+def test_who_sends_something_is_left_and_the_lidar_hears_nothing_of_it(server, simulator):
+    closed = pytest.importorskip("websockets.exceptions").ConnectionClosed
+    number, process = server()
+    with listen(number) as one:
+        receive(one, 2000)
+        one.send(b"\xA5\x40")
+        with pytest.raises(closed, match="listeners send nothing"):
+            receive(one, 1000000)
+    with socket.create_connection(("127.0.0.1", number)) as stranger:
+        stranger.sendall(b"\xA5\x40" * 10000)
+    with listen(number) as one:
+        receive(one, 2000)
+    process.terminate()
+    assert process.communicate()[1] == ""
+    assert "A5 40" not in simulator.log.read_text()
+
+
+def test_there_are_eight_listeners_at_most(server):
+    invalid = pytest.importorskip("websockets.exceptions").InvalidStatus
+    number, _ = server()
+    with contextlib.ExitStack() as stack:
+        listeners = [stack.enter_context(listen(number)) for _ in range(8)]
+        with pytest.raises(invalid, match="503"):
+            listen(number)
+        listeners.pop().close()
+        receive(stack.enter_context(listen(number)), 2000)
+
+
+def test_the_server_is_on_the_loopback_interface_unless_asked(server):
+    number, _ = server()
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection(("127.0.0.2", number))  # Of this computer, too.
+    number, process = server("--host", "0.0.0.0", lidar="nowhere")
+    socket.create_connection(("127.0.0.2", number)).close()
+    process.terminate()
+    assert process.communicate()[1] == "everybody in the network can see the room\n"
+
+
+def test_a_slow_listener_loses_all_that_waits_and_is_told_so():
+    from tmini._serve import _Listener
+
+    async def scenario():
+        slow = _Listener()
+        slow.add(1000, b"first")
+        first = await slow.take()
+        for i in range(33):
+            slow.add(10000 + 1000 * i, bytes([i]) * 1000)
+        return first, await slow.take()
+
+    assert asyncio.run(scenario()) == (
+        chunk(0, b"first"), chunk(41000, b"") + chunk(0, bytes([32]) * 1000))
+
+
+def test_what_a_timed_stream_lost_is_lost_for_listeners_too(server):
+    other = socket.create_server(("127.0.0.1", 0))
+    number, _ = server(lidar=f"tcp:127.0.0.1:{other.getsockname()[1]}")
+    with listen(number) as one:
+        upstream = other.accept()[0]
+        upstream.sendall(MAGIC + chunk(5, b"a"))
+        content = receive(one, 8 + 11)
+        upstream.sendall(chunk(5000, b"") + chunk(20000, b"b"))
+        content += receive(one, 21)
+    assert content[8:] == chunk(0, b"a") + content[19:29] + content[29:]
+    assert content[19 + 6:19 + 8] == b"\0\0" and content[-1:] == b"b"
