@@ -13,7 +13,8 @@
  *
  * Finding an unseen lap. Between two positions the DMA passes the buffer's middle, its end, both or
  * neither, and its interrupt reports each passing once. If a passing is reported that does not lie
- * between the two positions, DMA has written one more lap. If both lie between them, the interrupts
+ * between the two positions, DMA has written one more lap. If that is the middle, the end of the
+ * same lap may follow: the HAL reports it just after. If both lie between them, the interrupts
  * were late, and DMA may have written one more lap, too. In both cases more than half of the buffer
  * is new, and unread bytes in the other part are no longer trusted. */
 
@@ -38,15 +39,16 @@ typedef struct {
     volatile uint8_t ends;
     uint8_t known_middles; /**< As of the last advance. */
     uint8_t known_ends;
-    int8_t unreported_middles; /**< Passings seen and not yet reported: 0 or 1. */
-    int8_t unreported_ends;
+    uint8_t unreported_middles; /**< Passings seen and not yet reported: 0 or 1. */
+    uint8_t unreported_ends;
     volatile bool busy;  /**< A context is handing over. */
     volatile bool again; /**< Another context wanted to hand over meanwhile. */
 } tmini_stm32_circle_t;
 
 static inline void tmini_stm32_circle_begin(tmini_stm32_circle_t *circle, size_t size)
 {
-    *circle = (tmini_stm32_circle_t){.size = (uint16_t)size};
+    memset(circle, 0, sizeof *circle);
+    circle->size = (uint16_t)size;
 }
 
 /** For the DMA channel's interrupt: counts the passings that it reports. */
@@ -75,14 +77,6 @@ static inline bool tmini_stm32_circle_leave(tmini_stm32_circle_t *circle)
     return circle->again && tmini_stm32_circle_enter(circle);
 }
 
-/** True if more passings have been reported than the positions show. */
-static inline bool tmini_stm32_circle_settle(int8_t *unreported, bool passed, uint8_t reported)
-{
-    const int balance = *unreported + passed - reported;
-    *unreported = (int8_t)(balance > 0);
-    return balance < 0;
-}
-
 /** Moves to the position that the hardware shows; the buffer's size means 0. `middles` and `ends`
  * are the passings reported before the position was read. Returns true if a lap may have been
  * missed. */
@@ -94,14 +88,15 @@ static inline bool tmini_stm32_circle_advance(tmini_stm32_circle_t *circle, uint
     const uint16_t half = circle->size / 2;
     const bool end = to < from;
     const bool middle = end ? from < half || to >= half : from < half && to >= half;
-    const bool longer_by_middle = tmini_stm32_circle_settle(
-        &circle->unreported_middles, middle, (uint8_t)(middles - circle->known_middles));
-    const bool longer_by_end = tmini_stm32_circle_settle(&circle->unreported_ends, end,
-                                                         (uint8_t)(ends - circle->known_ends));
+    const int more_middles =
+        circle->unreported_middles + middle - (uint8_t)(middles - circle->known_middles);
+    const int more_ends = circle->unreported_ends + end - (uint8_t)(ends - circle->known_ends);
     circle->position = to;
     circle->known_middles = middles;
     circle->known_ends = ends;
-    return longer_by_middle || longer_by_end || (middle && end);
+    circle->unreported_middles = more_middles > 0;
+    circle->unreported_ends = more_ends > 0 || (more_middles < 0 && more_ends == 0);
+    return more_middles < 0 || more_ends < 0 || (middle && end);
 }
 
 /* ------------------------------------------------------------------- the lidar's receive buffer */

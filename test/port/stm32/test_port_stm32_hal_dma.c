@@ -457,29 +457,56 @@ void test_failed_restarts_are_tried_again_some_milliseconds_later(void)
 
 /* ----------------------------------------------------------------------------------------- laps */
 
+static void pass(unsigned ms)
+{
+    for (unsigned i = 0; i < ms; i++) {
+        model_pass(1000);
+        (void)hal_rig_poll();
+    }
+}
+
 /* Sends 200 packets, holds interrupts back for `us`, and returns the packets received. */
 static uint32_t packets_with_interrupts_held(hal_rig_way_t way, uint32_t us)
 {
     hal_rig_open_and_start(way);
     hal_rig_line_packets(200);
-    for (unsigned i = 0; i < 30; i++) {
-        model_pass(1000);
-        (void)hal_rig_poll();
-    }
+    pass(30);
     model.held_until_ns = model.now_ns + us * 1000u;
     model_pass(us + 10);
     hal_rig_run();
     return hal_rig_packets();
 }
 
-/* Interrupts are held back for one lap to two laps. */
-void test_a_lap_without_any_interrupt_is_noticed(void)
+/* Interrupts are held back for one lap to two laps. Then half and whole buffer are reported at
+ * once. */
+void test_a_lap_without_any_interrupt_is_counted_once(void)
 {
     for (uint32_t us = LAP_US; us < 2 * LAP_US; us += 1500) {
         const uint32_t packets = packets_with_interrupts_held(BY_DMA, us);
-        TEST_ASSERT_GREATER_THAN_UINT32(0, hal_rig_errors().laps);
+        TEST_ASSERT_EQUAL_UINT32(1, hal_rig_errors().laps);
+        TEST_ASSERT_EQUAL_UINT32(200 * PACKET, bytes_accounted_for());
         TEST_ASSERT_LESS_THAN_UINT32(200, packets);
         TEST_ASSERT_GREATER_THAN_UINT32(75, packets);
+    }
+}
+
+/* A lap that the half alone has shown must not hide the next one. */
+void test_each_of_several_laps_is_counted_once(void)
+{
+    for (uint32_t us = LAP_US + 1000; us < LAP_US * 3 / 2; us += 3000) {
+        hal_rig_open_and_start(BY_DMA);
+        hal_rig_line_packets(600);
+        for (unsigned laps = 1; laps <= 3; laps++) {
+            pass(30);
+            model.held_until_ns = model.now_ns + us * 1000u;
+            model_pass(us + 10);
+            (void)hal_rig_poll();
+            pass(3);
+            TEST_ASSERT_EQUAL_UINT32(laps, hal_rig_errors().laps);
+        }
+        hal_rig_run();
+        TEST_ASSERT_EQUAL_UINT32(600 * PACKET, bytes_accounted_for());
+        TEST_ASSERT_EQUAL_UINT32(3, hal_rig_errors().laps);
     }
 }
 

@@ -342,6 +342,11 @@ void test_a_lap_without_any_interrupt_is_noticed(void)
     model_pass(60000);
     TEST_ASSERT_UINT32_WITHIN(1, 10 + 11, run()); /* Only the bytes after the lap are left. */
     TEST_ASSERT_EQUAL_UINT32(1, errors().laps);
+    model.held_until_ns = model.now_ns + 60000000u;
+    send_packets(102); /* A lap and 302 bytes, past the middle: only the end shows the lap. */
+    model_pass(60000);
+    (void)run();
+    TEST_ASSERT_EQUAL_UINT32(2, errors().laps);
 }
 
 /* On a USART with SR, reading DR clears errors and the idle flag (reference manual RM0090), but
