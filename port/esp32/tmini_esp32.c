@@ -63,25 +63,31 @@ static const char *const TAG = "tmini";
 
 /* ------------------------------------------------------------------- shared between two tasks */
 
+/* One access, and a barrier for the chips with two cores: for __atomic_store_n() Clang would call a
+ * library on those without atomic instructions (ESP32-C3). */
+
 static void store(bool *flag, bool value)
 {
-    __atomic_store_n(flag, value, __ATOMIC_RELEASE);
+    __atomic_thread_fence(__ATOMIC_RELEASE);
+    *(volatile bool *)flag = value;
 }
 
 static bool load(const bool *flag)
 {
-    return __atomic_load_n(flag, __ATOMIC_ACQUIRE);
+    const bool loaded = *(const volatile bool *)flag;
+    __atomic_thread_fence(__ATOMIC_ACQUIRE);
+    return loaded;
 }
 
 /* There is one writer, so the addition need not be atomic; only the store must be. */
 static void add(uint32_t *counter, uint32_t amount)
 {
-    __atomic_store_n(counter, *counter + amount, __ATOMIC_RELAXED);
+    *(volatile uint32_t *)counter = *counter + amount;
 }
 
 static uint32_t total(const uint32_t *counter)
 {
-    return __atomic_load_n(counter, __ATOMIC_RELAXED);
+    return *(const volatile uint32_t *)counter;
 }
 
 /* ------------------------------------------------------------------------------------- the line */

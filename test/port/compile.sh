@@ -1,0 +1,116 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+# Compiles the ports with the stand-ins for their platforms:
+#
+#   compile.sh headers                   each header alone, as C99 and as C++11, by GCC and Clang
+#   compile.sh esp32-xtensa|esp32-riscv|esp32-clang|cortex-m4-clang
+#
+# Xtensa by Debian's compiler for the ESP8266, the nearest one available.
+# Exit status: 0 clean, 1 not clean, 2 wrong usage, 77 the compiler is not installed.
+
+set -eu
+
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+warnings="-Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Werror"
+
+# stand_in PORT: prints the options with which the port finds its platform.
+stand_in() {
+    case $1 in
+        esp32) echo "-isystem $here/esp32/esp_idf" ;;
+        freertos) echo "-isystem $here/freertos/kernel_stub" ;;
+        pico) echo "-isystem $here/pico/sdk_stub -D_DEFAULT_SOURCE" ;;
+        posix) echo "-D_DEFAULT_SOURCE" ;;
+        stm32) echo "-isystem $here/stm32/stm32_model -isystem $root/test/support" ;;
+        zephyr) echo "-isystem $here/zephyr/zephyr_stub -DZEPHYR_ASYNC" ;;
+    esac
+}
+
+need() {
+    if ! command -v "$1" >/dev/null; then
+        echo "skipped: $1 is not installed"
+        exit 77
+    fi
+    if ! echo '#include <string.h>' | "$@" -E - >/dev/null 2>&1; then
+        echo "skipped: $1 finds no C library"
+        exit 77
+    fi
+}
+
+# check_header HEADER COMPILER…: tmini_stm32_usart_common.h is a part of two sources, and
+# tmini_atomic_cortex_m.h needs the intrinsics of the compilers that it is for.
+check_header() {
+    header=$1 port=$(basename "$(dirname "$1")")
+    shift
+    case $header in
+        */arduino/* | *_usart_common.h | *_atomic_cortex_m.h) return ;;
+    esac
+    # shellcheck disable=SC2046 # several options
+    printf '#include "%s"\n#include "%s"\nextern int not_empty;\n' "$header" "$header" |
+        "$@" -pedantic -Wall -Wextra -Werror -fsyntax-only -I "$root/lib/include" \
+            $(stand_in "$port") -I "$(dirname "$header")" -
+}
+
+check_headers() {
+    need cc
+    need c++ -x c++
+    for header in "$root"/port/*/*.h; do
+        check_header "$header" cc -std=c99 -x c
+        check_header "$header" c++ -std=c++11 -x c++
+        if command -v clang++ >/dev/null; then
+            check_header "$header" clang -std=c99 -x c
+            check_header "$header" clang++ -std=c++11 -x c++
+        fi
+    done
+}
+
+# check_ports "PORT…" COMPILER…
+check_ports() {
+    ports=$1
+    shift
+    need "$@"
+    for port in $ports; do
+        for source in "$root/port/$port"/*.c; do
+            # shellcheck disable=SC2046,SC2086 # several options
+            "$@" -Os $warnings -I "$root/lib/include" -I "$root/port/$port" $(stand_in "$port") \
+                -c "$source" -o /dev/null
+        done
+    done
+}
+
+# headers_of GCC FLAG…: the folder of its C library's headers, which Clang does not find.
+headers_of() {
+    echo '#include <string.h>' | "$@" -E - 2>/dev/null |
+        sed -n 's|^# 1 "\(.*\)/string\.h".*|\1|p' | head -n 1
+}
+
+picolibc="riscv64-unknown-elf-gcc --specs=picolibc.specs"
+case ${1:-} in
+    headers) check_headers ;;
+    esp32-xtensa)
+        # The compiler does not search Debian's folders of the C library's headers by default.
+        check_ports esp32 xtensa-lx106-elf-gcc -mlongcalls -std=gnu17 -DMODEL_ESP32 \
+            -isystem /usr/lib/xtensa-lx106-elf/include \
+            -isystem /usr/lib/picolibc/xtensa-lx106-elf/include
+        ;;
+    esp32-riscv)
+        # shellcheck disable=SC2086
+        check_ports esp32 $picolibc -march=rv32imac -mabi=ilp32 -std=gnu17
+        ;;
+    esp32-clang)
+        # shellcheck disable=SC2086
+        check_ports esp32 clang --target=riscv32-unknown-elf -march=rv32imc -mabi=ilp32 -std=gnu17 \
+            -isystem "$(headers_of $picolibc)"
+        ;;
+    cortex-m4-clang)
+        check_ports "freertos pico stm32 template zephyr" clang --target=thumbv7em-none-eabi \
+            -mcpu=cortex-m4 -std=c99 -isystem "$(headers_of arm-none-eabi-gcc -mcpu=cortex-m4)"
+        ;;
+    *)
+        sed -n '5,12s/^# \{0,1\}//p' "$0" >&2
+        exit 2
+        ;;
+esac
+echo "compiled clean: $1"
