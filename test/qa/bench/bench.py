@@ -146,6 +146,7 @@ def measured_for_budgets(figures):
                    figures["targets"][target.name, level]["flash"]["everything"]["writable"]
                    for target in TARGETS for level in LEVELS),
         "stack_m4": max(f["stack"]["polling"][0] for f in m4),
+        "stack_set_up_m4": max(f["stack"]["set-up"][0] for f in m4),
     }
 
 
