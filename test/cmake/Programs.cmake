@@ -97,22 +97,22 @@ function(tmini_add_skipped_test name label reason)
         COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: ${reason}")
 endfunction()
 
-# A Python that has the packages of the tests of the tool. `python3` may be one of the user's own
-# without them, beside the system's.
-set(TMINI_PYTEST_MISSING "")
-if(NOT TMINI_PYTEST_PYTHON)
-    foreach(candidate /usr/bin/python3 python3)
-        execute_process(COMMAND ${candidate} -c "import pytest, pexpect, pyte"
+# Sets the cache variable to a Python that has these modules. `python3` may be one of the user's own
+# without them, beside the system's. If there is none, VARIABLE_MISSING says so.
+function(tmini_find_python variable modules)
+    set(${variable}_MISSING "" PARENT_SCOPE)
+    foreach(candidate ${${variable}} /usr/bin/python3 python3)
+        execute_process(COMMAND ${candidate} -c "import ${modules}"
             RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
         if(status EQUAL 0)
-            set(TMINI_PYTEST_PYTHON ${candidate} CACHE STRING "A Python with pytest, pexpect, pyte")
-            break()
+            set(${variable} ${candidate} CACHE STRING "A Python with ${modules}" FORCE)
+            return()
         endif()
     endforeach()
-    if(NOT TMINI_PYTEST_PYTHON)
-        set(TMINI_PYTEST_MISSING "no Python with pytest, pexpect and pyte is installed")
-    endif()
-endif()
+    set(${variable}_MISSING "no Python with ${modules} is installed" PARENT_SCOPE)
+endfunction()
+
+tmini_find_python(TMINI_PYTEST "pytest, pexpect, pyte")
 
 # tmini_add_pytest(NAME LABEL FILE
 #     [ALL] [TIMEOUT seconds] [NEEDS target …]     as for tmini_add_check()
@@ -131,7 +131,7 @@ function(tmini_add_pytest name label file)
         return()
     endif()
     tmini_add_check(${name} ${label} ${all} TIMEOUT "${arg_TIMEOUT}" NEEDS ${arg_NEEDS}
-        COMMAND ${TMINI_PYTEST_PYTHON} -B -m pytest -q -p no:cacheprovider
+        COMMAND ${TMINI_PYTEST} -B -m pytest -q -p no:cacheprovider
             --basetemp=${CMAKE_CURRENT_BINARY_DIR}/${name}.work ${CMAKE_CURRENT_SOURCE_DIR}/${file})
     set_tests_properties(${name} PROPERTIES ENVIRONMENT "${arg_ENVIRONMENT}")
 endfunction()

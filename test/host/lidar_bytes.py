@@ -79,6 +79,8 @@ def damaged(stream, faults, seed):
     garbage = lambda count: bytes(draw.choice(b"\xAA\x55\xAA\x55\xA5\x5A\0\1\2\3\x28\x81" + draw.randbytes(12))
                                   for _ in range(count))
     for _ in range(faults):
+        if not stream:
+            break
         at, few, some = draw.randrange(len(stream)), draw.randint(2, 32), draw.randint(2, 200)
         removed, added = draw.choice([(1, b""), (some, b""), (0, garbage(1)), (0, garbage(few)), (few, garbage(few)),
                                       (1, bytes([stream[at] ^ 1 << draw.randrange(8)]))])

@@ -339,6 +339,7 @@ def test_a_lidar_that_falls_silent_is_called_so_until_it_is_back(terminal, lidar
     device.thaw()
     view.wait_for("scanning\n")
     assert "SILENT" not in view.text
+    assert b"fallen silent" not in view.raw  # A remark would spoil the picture.
     quit_(view)
 
 

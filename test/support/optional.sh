@@ -30,6 +30,7 @@ wish_for_browser() {
     wish wasm-ld lld
     is_present google-chrome || wish chromium chromium
     wish chromedriver chromium-driver
+    wish /usr/lib/python3/dist-packages/selenium python3-selenium
 }
 
 wish_for_machines() {

@@ -23,7 +23,7 @@ import sys
 import threading
 import unittest
 
-import webdriver
+import browser
 
 HERE = pathlib.Path(__file__).resolve().parent
 RECORDINGS = HERE.parent / "recordings"
@@ -52,7 +52,6 @@ POLICY = sorted(["base-uri", "connect-src", "font-src", "form-action", "frame-sr
 
 PAGE = None
 TMINI = None
-DRIVER = None
 BROWSER = None
 
 
@@ -166,7 +165,7 @@ class Viewer(unittest.TestCase):
 def decode(path):
     """The tool's rows and counters of a recording."""
     with open(os.devnull, "w", encoding="utf-8") as nowhere:
-        stats = DRIVER.folder / "stats.json"
+        stats = BROWSER.folder / "stats.json"
         rows = subprocess.run([TMINI, "decode", path, "--csv", "--stats", stats], check=True,
                               stdout=subprocess.PIPE, stderr=nowhere, text=True).stdout
     return rows, json.loads(stats.read_text())
@@ -909,8 +908,7 @@ class Accessibility(Viewer):
         self.assertNotEqual("BODY", self.page.run("return document.activeElement.tagName"))
 
     def press(self, key):
-        self.page.ask("POST", "/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": [
-            {"type": "keyDown", "value": key}, {"type": "keyUp", "value": key}]}]})
+        self.page.press_key(key)
 
 
 class Axe(Viewer):
@@ -1008,24 +1006,19 @@ class OneFile(Viewer):
 
 
 def main():
-    global PAGE, TMINI, DRIVER, BROWSER
+    global PAGE, TMINI, BROWSER
     PAGE, TMINI = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
     signal.signal(signal.SIGTERM, lambda *_: sys.exit("terminated"))  # So that the browser is ended, too.
     try:
-        DRIVER = webdriver.Driver()
-    except webdriver.Missing as why:
+        BROWSER = browser.Page()
+    except browser.Missing as why:
         print(f"SKIPPED: {why}")
         return 77
     try:
-        try:
-            BROWSER = webdriver.Page(DRIVER)
-        except webdriver.Missing as why:
-            print(f"SKIPPED: {why}")
-            return 77
         program = unittest.main(argv=[sys.argv[0], *sys.argv[3:]], exit=False, verbosity=2)
         return 0 if program.result.wasSuccessful() else 1
     finally:
-        DRIVER.close()
+        BROWSER.close_all()
 
 
 if __name__ == "__main__":
