@@ -5,7 +5,7 @@
 """Joins the page's files to one: bundle.py PAGE_DIR LIBRARY.wasm VERSION OUT.html
 
 A browser loads no modules from file:, so all modules become one script, each after those that it imports. If two
-modules declare the same name, the script has a syntax error. The library is included as base64.
+modules declare the same name, the script has a syntax error. Comments stay behind. The library is included as base64.
 """
 
 import base64
@@ -15,7 +15,8 @@ import sys
 
 IMPORT = re.compile(r"^import\s[^;]*?from '\./([\w.]+)';\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async )?(?:class|const|function)\b)", re.MULTILINE)
-LICENCE = re.compile(r"^// (?:SPDX|Copyright).*\n", re.MULTILINE)
+COMMENT = re.compile(r"^ *// .*\n", re.MULTILINE)
+STYLE_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 
 
 def modules_in_order(folder, name, seen):
@@ -25,7 +26,7 @@ def modules_in_order(folder, name, seen):
     seen.add(name)
     text = (folder / name).read_text(encoding="utf-8")
     before = [part for other in IMPORT.findall(text) for part in modules_in_order(folder, other, seen)]
-    body = EXPORT.sub("", IMPORT.sub("", LICENCE.sub("", text)))
+    body = EXPORT.sub("", IMPORT.sub("", COMMENT.sub("", text)))
     if re.search(r"^\s*(import|export)\b", body, re.MULTILINE):
         sys.exit(f"{name}: an import or export of a form that this script does not know")
     return before + [f"// {name}\n{body.strip()}\n"]
@@ -37,7 +38,7 @@ def main(folder, library, version, out):
     if "</script" in program:
         sys.exit("the program contains the end of a script element")
     parts = {
-        "@STYLE@": (folder / "style.css").read_text(encoding="utf-8").strip(),
+        "@STYLE@": STYLE_COMMENT.sub("", (folder / "style.css").read_text(encoding="utf-8")).strip(),
         "@LIBRARY@": base64.b64encode(pathlib.Path(library).read_bytes()).decode("ascii"),
         "@PROGRAM@": program.strip(),
         "@VERSION@": version,

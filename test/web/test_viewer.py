@@ -784,6 +784,80 @@ class SerialInTime(WithStandIn):
         self.assertEqual([], self.page.run("return qualities.filter((quality) => quality !== 'complete')"))
 
 
+class Served(Viewer):
+    """The page from `python -m tmini serve`, on a phone, in real time: the lidar there, live."""
+
+    width, height, speed = 390, 844, 1
+
+    @classmethod
+    def setUpClass(cls):
+        cls.python = os.environ.get("TMINI_PYTHON", sys.executable)
+        if subprocess.run([cls.python, "-c", "import tmini, websockets"], stderr=subprocess.DEVNULL,
+                          check=False).returncode != 0:
+            raise unittest.SkipTest(f"{cls.python} has no tmini[serve] (the test `python` brings it)")
+        super().setUpClass()
+
+    def setUp(self):
+        self.page.log("browser")
+        self.page.log("performance")
+        self.sim = subprocess.Popen([os.environ["TMINI_SIM"], "--pty"], stdout=subprocess.PIPE, text=True)
+        self.port = self.sim.stdout.readline().strip()
+        self.serve(0)
+        self.page.go(self.url)
+        self.page.wait_text("#state", "scanning", 15)
+
+    def tearDown(self):
+        super().tearDown()
+        self.page.go("about:blank")
+        self.sim.send_signal(signal.SIGCONT)
+        for process in (self.server, self.sim):
+            process.terminate()
+            process.communicate()
+
+    def serve(self, number):
+        self.server = subprocess.Popen(
+            [self.python, "-m", "tmini", "serve", self.port, "--page", PAGE, "--tcp", str(number)],
+            stdout=subprocess.PIPE, text=True)
+        self.url = self.server.stdout.readline().strip()
+
+    def test_room_is_seen_and_nothing_can_be_commanded(self):
+        self.page.wait_text("#quality", "complete")
+        self.wait_scans(5)
+        self.assertRegex(self.page.text("#sector6"), r"^2\.(19|20)\d m$")
+        self.assertGreater(self.coloured(), 300)
+        self.assertEqual([0] * 3, [self.number(key) for key in ("#checksums", "#overrun", "#losses")])
+        self.assertFalse(self.page.is_shown("#panel-lidar"))
+        urls = {url for url in OneFile.requests(self) if not url.startswith("data:")}
+        self.assertEqual({f"{self.url}/", f"{self.url}/live"}, urls)
+
+    def test_page_goes_on_when_the_server_is_back(self):
+        self.server.terminate()
+        self.server.communicate()
+        self.page.wait_text("#problem", "The connection to the lidar’s server is lost.")
+        self.page.wait_text("#state", "unplugged")
+        self.serve(self.url.rpartition(":")[2])
+        self.page.wait_text("#state", "scanning", 15)
+        self.wait_scans(3)
+        self.page.wait("the problem to go", lambda: not self.page.is_shown("#problem"))
+        self.page.log("browser")  # The browser complains of refused connections.
+
+    def test_lidar_without_power_is_missed(self):
+        self.wait_scans(1)
+        self.sim.send_signal(signal.SIGSTOP)
+        self.page.wait_text("#problem", "Nothing comes from the lidar yet.", 15)
+        self.assertTrue(self.page.is_shown("#age"))
+        self.sim.send_signal(signal.SIGCONT)
+        self.wait_scans(3)
+        self.page.wait("the problem to go", lambda: not self.page.is_shown("#problem"))
+
+    def test_who_has_left_can_watch_again(self):
+        self.page.click("#disconnect")
+        self.page.wait_text("#state", "not connected")
+        self.page.click("#watch")
+        self.page.wait_text("#state", "scanning", 15)
+        self.wait_scans(1)
+
+
 class WithoutSerial(Viewer):
     """A browser without Web Serial."""
 

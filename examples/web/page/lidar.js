@@ -36,7 +36,7 @@ export class Lidar {
     #library;
     #listener;
     #source;
-    #clock = new Clock();
+    #clock;
     #timer = 0;
     #queue = [];
     #command = null;
@@ -46,6 +46,7 @@ export class Lidar {
         this.#library = library;
         this.#source = source;
         this.#listener = listener;
+        this.#clock = source.now ? source : new Clock();
     }
 
     get source() {
@@ -59,10 +60,10 @@ export class Lidar {
         source.onLostBytes = (why) => this.#lostBytes(why);
         source.onGone = () => this.#left();
         source.onBack = () => this.#back();
-        this.#library.call('lidar_init', this.#clock.now());
+        this.#library.call('lidar_init', this.#clock.now(), source.listensOnly ? 1 : 0);
         await source.open();
         this.#timer = setInterval(() => this.#tick(), POLL_MS);
-        this.#run(['info', 'health', 'frequency', 'start']);
+        this.#run(source.listensOnly ? ['start'] : ['info', 'health', 'frequency', 'start']);
     }
 
     // Stops the lidar and closes the source. The lidar has a second to stop.
@@ -148,7 +149,7 @@ export class Lidar {
     // A block may be larger than the library takes at once.
     #receive(bytes) {
         const size = this.#library.transferSize;
-        this.#listener.onBytes(bytes);
+        this.#listener.onBytes(bytes, this.#source.now?.());
         for (let from = 0; from < bytes.length; from += size) {
             const part = bytes.subarray(from, from + size);
             this.#library.hand(part);
@@ -237,7 +238,8 @@ export class Lidar {
         this.#command = null;
         this.#awaitingEnd?.();
         if (!this.gone) {
-            this.#listener.onProblem(diagnose(this.#library.numbers('lidar_numbers'), command, why));
+            this.#listener.onProblem(this.#source.silent ??
+                diagnose(this.#library.numbers('lidar_numbers'), command, why));
         }
     }
 
@@ -247,7 +249,7 @@ export class Lidar {
             return;
         }
         const before = this.#library.numbers('lidar_numbers').bytes;
-        this.#listener.onProblem(problems.fellSilent);
+        this.#listener.onProblem(this.#source.silent ?? problems.fellSilent);
         setTimeout(() => {
             const { STATE_RECOVERING } = this.#library.constants;
             const now = this.#library.numbers('lidar_numbers').bytes;
@@ -264,7 +266,7 @@ export class Lidar {
 
     #left() {
         this.gone = true;
-        this.#listener.onProblem(problems.unplugged);
+        this.#listener.onProblem(this.#source.lost ?? problems.unplugged);
         this.#listener.onEvent('unplugged', this.#source.name);
         this.#listener.onChange();
     }

@@ -7,6 +7,7 @@ import { Library } from './library.js';
 import { Lidar } from './lidar.js';
 import { SerialSource, hasWebSerial } from './serial.js';
 import { SimulatedSource } from './simulation.js';
+import { NetworkSource, isServed } from './network.js';
 import { Recording } from './recording.js';
 import { Player } from './player.js';
 import { offerSwitches, resetSwitches } from './switches.js';
@@ -63,12 +64,20 @@ class Viewer {
         offerSwitches(library, () => this.#lidar.source);
         this.#update();
         setInterval(() => this.#count(), COUNTERS_MS);
+        show('watch', isServed());
+        if (isServed()) {
+            this.#watch();
+        }
     }
 
     // ---------------------------------------------------------------------------------- sources
 
     #next(action) {
         this.#change = this.#change.then(action);
+    }
+
+    #watch() {
+        this.#next(() => this.#useLidar(new NetworkSource(this.#library)));
     }
 
     async #connect() {
@@ -98,7 +107,7 @@ class Viewer {
             onEvent: (name, detail) => log(name, detail),
             onScan: () => this.#takeScan(),
             onChange: () => this.#update(),
-            onBytes: (bytes) => this.#recorder.add(bytes),
+            onBytes: (bytes, time) => this.#recorder.add(bytes, time),
             onProblem: (problem) => showProblem('problem', problem),
         });
         try {
@@ -252,7 +261,7 @@ class Viewer {
         show('welcome', !source);
         show('zoom', Boolean(source));
         show('disconnect', Boolean(source));
-        show('panel-lidar', lidar !== null);
+        show('panel-lidar', lidar !== null && !source.listensOnly);
         show('panel-recording', this.#player !== null);
         show('panel-simulation', source?.kind === 'simulation');
         setText('disconnect', this.#player ? 'Close' : 'Disconnect');
@@ -290,6 +299,7 @@ class Viewer {
     #listen() {
         this.#on('connect', 'click', () => this.#connect());
         this.#on('simulate', 'click', () => this.#next(() => this.#useLidar(new SimulatedSource(this.#library))));
+        this.#on('watch', 'click', () => this.#watch());
         this.#on('open', 'click', () => element('file').click());
         this.#on('file', 'change', ({ target }) => this.#chosen(target));
         this.#on('disconnect', 'click', () => this.#next(() => this.#close()));

@@ -60,6 +60,14 @@ export const problems = {
         advice: ['A wrong baud rate, a bad contact or a weak supply garbles what comes.',
                  'Do lidar and adapter share GND, and are the wires short?'],
     },
+    linkLost: {
+        title: 'The connection to the lidar’s server is lost.',
+        advice: ['The page goes on by itself when it is back. Is the server switched on and in reach?'],
+    },
+    silentThere: {
+        title: 'Nothing comes from the lidar yet.',
+        advice: ['It may still be starting.', 'Has the lidar 5 V, and is it connected to the server of this page?'],
+    },
     noScans: {
         title: 'The lidar sends packets, but completes no revolution.',
         advice: ['Does it turn?'],

@@ -46,8 +46,7 @@ export class Recorder {
         this.#chunks = [];
     }
 
-    add(bytes) {
-        const now = performance.now();
+    add(bytes, now = performance.now()) {
         const { CHUNK_MAX } = this.#library.constants;
         this.bytes += bytes.length;
         for (let from = 0; from < bytes.length; from += CHUNK_MAX) {

@@ -58,7 +58,7 @@ static const tmini_timing_t *patience(void)
     return &live.timing;
 }
 
-EXPORTED int lidar_init(uint32_t now_ms)
+EXPORTED int lidar_init(uint32_t now_ms, uint32_t listen_only)
 {
     static const tmini_port_t port = {port_write, port_now_ms, NULL, NULL};
     const tmini_config_t config = {
@@ -67,6 +67,7 @@ EXPORTED int lidar_init(uint32_t now_ms)
         .rx_size = sizeof live.rx,
         .points = live.points,
         .max_points = WEB_SCAN_POINTS,
+        .listen_only = listen_only != 0,
         .timing = patience(),
     };
     live.now_ms = now_ms;

@@ -51,6 +51,7 @@ EXPORTED uint32_t constants(void)
     numbers_put("TAPE_NEEDS_BYTES", TAPE_NEEDS_BYTES);
     numbers_put("TAPE_SCAN", TAPE_SCAN);
     numbers_put("TAPE_END", TAPE_END);
+    numbers_put("NETWORK_GAP", NETWORK_GAP);
     numbers_put("CHUNK_MAGIC_SIZE", CHUNK_MAGIC_SIZE);
     numbers_put("CHUNK_HEAD_SIZE", CHUNK_HEAD_SIZE);
     numbers_put("CHUNK_MAX", CHUNK_MAX);

@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "stream.h"
+#include "tmini_timed.h"
 
 #define EXPORTED __attribute__((visibility("default")))
 
@@ -19,6 +20,9 @@
 
 #define WEB_TRANSFER_SIZE 16384u
 extern uint8_t web_transfer[WEB_TRANSFER_SIZE];
+
+/* The result of network_take() where bytes were lost. */
+#define NETWORK_GAP UINT32_C(0x40000000)
 
 /* Empties the table of numbers; adds one. `name` is a constant string. */
 void numbers_clear(void);
