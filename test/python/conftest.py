@@ -11,7 +11,8 @@ import time
 
 import pytest
 
-RECORDINGS = pathlib.Path(__file__).resolve().parents[1] / "recordings"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+RECORDINGS = ROOT / "test" / "recordings"
 TOOL, SIM = os.environ["TMINI_TOOL"], os.environ["TMINI_SIM"]
 
 

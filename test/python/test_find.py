@@ -5,7 +5,6 @@
 
 import contextlib
 import os
-import pathlib
 import re
 import subprocess
 import sys
@@ -17,7 +16,7 @@ import pytest
 
 import tmini
 import tmini._find
-from conftest import Simulator
+from conftest import ROOT, Simulator
 
 SERIAL = "2026031700012345"
 
@@ -128,7 +127,7 @@ def test_a_device_that_is_no_lidar_is_named(tmp_path):
 
 
 def test_the_known_chips_are_those_of_the_tool():
-    sources = (pathlib.Path(__file__).resolve().parents[2] / "examples" / "host").glob("*.c")
+    sources = (ROOT / "examples" / "host").glob("*.c")
     text = "".join(path.read_text() for path in sources)
     chips = {tuple(int(number, 16) for number in chip)
              for chip in re.findall(r'"([0-9a-f]{4}):([0-9a-f]{4})"', text)}

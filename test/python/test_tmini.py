@@ -8,19 +8,22 @@ import copy
 import json
 import os
 import pickle
+import re
 import signal
 import socket
 import struct
 import subprocess
+import sys
 import termios
 import threading
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import tmini
-from conftest import RECORDINGS, SIM, TOOL
+from conftest import RECORDINGS, ROOT, SIM, TOOL
 
 
 # ------------------------------------------------------------------------------------- recordings
@@ -115,6 +118,11 @@ def test_angles_of_ros_count_the_other_way_round():
         assert radians == pytest.approx(turned * np.pi / 180, abs=1e-12)
 
 
+def test_faults_are_those_of_the_protocol():
+    assert [(fault.name, fault.value) for fault in tmini.Fault] == [  # Section 4, and the driver's own.
+        ("SENSOR", 1), ("ENCODER", 2), ("WIRELESS_POWER", 4), ("PD", 8), ("LD", 16), ("DATA", 32), ("FREQUENCY", 64)]
+
+
 def test_points_are_a_quarter_of_a_millisecond_apart():
     scan = list(tmini.read(RECORDINGS / "sim-6hz.bin"))[-2]
     assert np.median(np.diff(scan.times_s)) == pytest.approx(1 / 4000, rel=0.05)
@@ -148,6 +156,8 @@ def test_bins_and_sectors_hold_the_nearest_of_equal_parts_clockwise_from_the_fro
     assert scan.bins(4).tolist() == [sector.nearest_m for sector in scan.sectors(4)]
     assert scan.bins()[[90, 270]] == pytest.approx([2.8, 2.2], abs=0.03)  # Right and left wall.
     assert len(scan.bins()) == 360 and len(scan.sectors()) == 8
+    assert np.nanmin(scan.ranges_m) == scan.bins(1) == np.nanmin(scan.bins(65535))
+    assert repr(scan) == f"<tmini.Scan 1: {len(scan)} points, complete>"
     for wrong in (0, 65536):
         with pytest.raises(ValueError):
             scan.bins(wrong)
@@ -292,6 +302,60 @@ def test_after_a_fork_the_lidar_is_the_parents(simulator):
         assert lidar.counters["losses"] == 0
 
 
+def test_a_port_has_one_user_and_is_free_afterwards(simulator):
+    port = simulator.start()
+    with tmini.Lidar(port), pytest.raises(OSError):
+        tmini.Lidar(port)
+    with tmini.Lidar(port) as lidar:
+        assert lidar.read(1).number == 1
+
+
+@pytest.mark.parametrize("end", ["sys.exit()", "raise ValueError", "os.kill(os.getpid(), signal.SIGTERM); lidar.read(5)"])
+def test_however_a_program_ends_the_lidar_stops(simulator, end):
+    """A signal needs the lines of the README."""
+    readme = (ROOT / "port" / "python" / "README.md").read_text()
+    lines = next(code for code in re.findall("```python\n(.*?)```", readme, re.DOTALL) if "SIGTERM" in code)
+    program = f"{lines}\nimport os, tmini\nlidar = tmini.Lidar(sys.argv[1])\nlidar.read(1)\n{end}"
+    subprocess.run([sys.executable, "-c", program, simulator.start()], stderr=subprocess.DEVNULL, timeout=20, check=False)
+    simulator.await_idle()
+
+
+def test_bytes_that_waited_while_the_program_was_busy_cost_no_scan():
+    process = subprocess.Popen([SIM, "--tcp", "0"], stdout=subprocess.PIPE, text=True)
+    try:
+        with tmini.Lidar("tcp:" + process.stdout.readline().strip(), backlog=50) as lidar:
+            before = lidar.read(1).number
+            with lidar._changed:
+                time.sleep(2.5)  # More bytes than are fed at once.
+            read_until(lidar, lambda scan: scan.number > before + 18)
+            assert lidar.counters["late_scans"] == lidar.counters["losses"] == 0
+    finally:
+        process.terminate()
+        process.communicate()
+
+
+def test_no_scan_continues_in_another_connection(monkeypatch):
+    """The clock counts the bytes, at 13 per millisecond: no time passes between the connections."""
+    received = [0]
+    clock = SimpleNamespace(monotonic=lambda: 100 + received[0] / 13000, sleep=time.sleep)
+    monkeypatch.setattr(tmini._lidar, "time", clock)
+    content = (RECORDINGS / "sim-10hz-plain.bin").read_bytes()
+    starts = [found.start() for found in re.finditer(rb"\xaa\x55[\x01-\xff]\x01(?=.{9}\xaa\x55)", content, re.DOTALL)]
+    middle = [content.index(b"\xaa\x55\x00", begin + 500) for begin in starts[:5]]
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        lidar = tmini.Lidar(f"tcp:127.0.0.1:{server.getsockname()[1]}", listen_only=True, backlog=9, timeout=None)
+        for part in (content[starts[1]:middle[2]], content[middle[3]:starts[5] + 13]):
+            with server.accept()[0] as connection:
+                for at in range(0, len(part), 130):
+                    received[0] += len(part[at:at + 130])
+                    connection.sendall(part[at:at + 130])
+                    while lidar._received < received[0]:
+                        time.sleep(0.001)
+        scans = [lidar.read() for _ in range(4)]
+        lidar.close()
+    assert [scan.complete for scan in scans] == [True, False, False, True]
+
+
 def test_a_slow_program_gets_the_newest_scan(simulator):
     with tmini.Lidar(simulator.start()) as lidar:
         first = lidar.read(1)
@@ -340,8 +404,10 @@ def test_what_the_lidar_reports_is_in_each_scan(simulator):
 
 def test_a_silent_line_is_an_error_that_says_what_to_look_at():
     _, device = os.openpty()
-    with pytest.raises(tmini.LidarError, match="not one byte"):
-        tmini.Lidar(os.ttyname(device), timeout=0.5)
+    for _ in range(2):  # The port is closed again.
+        with pytest.raises(tmini.LidarError, match="not one byte"):
+            tmini.Lidar(os.ttyname(device), timeout=0.5)
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith("tmini ")]
 
 
 def test_a_port_that_is_not_there_is_an_error_or_waited_for(simulator):

@@ -3,12 +3,13 @@
 
 """A user's program with types, and the package itself, pass mypy --strict."""
 
-import pathlib
 import sys
 
 import pytest
 
-PACKAGE = pathlib.Path(__file__).resolve().parents[2] / "port" / "python"
+from conftest import ROOT
+
+PACKAGE = ROOT / "port" / "python"
 
 RIGHT = '''
 import numpy as np
