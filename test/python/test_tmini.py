@@ -320,40 +320,50 @@ def test_however_a_program_ends_the_lidar_stops(simulator, end):
     simulator.await_idle()
 
 
-def test_bytes_that_waited_while_the_program_was_busy_cost_no_scan():
-    process = subprocess.Popen([SIM, "--tcp", "0"], stdout=subprocess.PIPE, text=True)
-    try:
-        with tmini.Lidar("tcp:" + process.stdout.readline().strip(), backlog=50) as lidar:
-            before = lidar.read(1).number
-            with lidar._changed:
-                time.sleep(2.5)  # More bytes than are fed at once.
-            read_until(lidar, lambda scan: scan.number > before + 18)
-            assert lidar.counters["late_scans"] == lidar.counters["losses"] == 0
-    finally:
-        process.terminate()
-        process.communicate()
+def played(monkeypatch, *connections, count):
+    """The first scans of lines that deliver these (milliseconds that pass meanwhile, bytes), then are gone."""
+    clock, connections = [100.0], [iter(connection) for connection in connections]
+
+    def read(line):
+        for passed_ms, data in line:
+            clock[0] += passed_ms / 1000
+            return data
+        raise OSError
+
+    def open_line(_):
+        if not connections:
+            raise OSError
+        line = connections.pop(0)
+        return SimpleNamespace(read=lambda: [read(line)], close=lambda: None, is_timed=False, now_us=now_us)
+
+    def now_us():
+        return round(clock[0] * 1e6)
+
+    monkeypatch.setattr(tmini._lidar, "open_line", open_line)
+    monkeypatch.setattr(tmini._lidar, "now_us", now_us)
+    monkeypatch.setattr(tmini._lidar, "time", SimpleNamespace(monotonic=lambda: clock[0], sleep=time.sleep))
+    with tmini.Lidar("x", listen_only=True, backlog=99, timeout=None) as lidar, lidar._changed:
+        lidar._changed.wait_for(lambda: len(lidar._scans) >= count, 10)
+        return list(lidar._scans)
+
+
+def paced(data):
+    return [(10, data[at:at + 130]) for at in range(0, len(data), 130)]
+
+
+def test_bytes_that_waited_while_the_program_was_busy_cost_no_scan(monkeypatch):
+    content = (RECORDINGS / "sim-6hz.bin").read_bytes()
+    line = paced(content[:4000]) + [(1500, b""), (10, content[4000:])]  # Busy after it had read; more than is fed at once.
+    assert [scan.complete for scan in played(monkeypatch, line, count=8)] == [True] * 8
 
 
 def test_no_scan_continues_in_another_connection(monkeypatch):
-    """The clock counts the bytes, at 13 per millisecond: no time passes between the connections."""
-    received = [0]
-    clock = SimpleNamespace(monotonic=lambda: 100 + received[0] / 13000, sleep=time.sleep)
-    monkeypatch.setattr(tmini._lidar, "time", clock)
     content = (RECORDINGS / "sim-10hz-plain.bin").read_bytes()
     starts = [found.start() for found in re.finditer(rb"\xaa\x55[\x01-\xff]\x01(?=.{9}\xaa\x55)", content, re.DOTALL)]
     middle = [content.index(b"\xaa\x55\x00", begin + 500) for begin in starts[:5]]
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        lidar = tmini.Lidar(f"tcp:127.0.0.1:{server.getsockname()[1]}", listen_only=True, backlog=9, timeout=None)
-        for part in (content[starts[1]:middle[2]], content[middle[3]:starts[5] + 13]):
-            with server.accept()[0] as connection:
-                for at in range(0, len(part), 130):
-                    received[0] += len(part[at:at + 130])
-                    connection.sendall(part[at:at + 130])
-                    while lidar._received < received[0]:
-                        time.sleep(0.001)
-        scans = [lidar.read() for _ in range(4)]
-        lidar.close()
+    scans = played(monkeypatch, paced(content[starts[1]:middle[2]]), paced(content[middle[3]:starts[5] + 13]), count=4)
     assert [scan.complete for scan in scans] == [True, False, False, True]
+    assert sum(scan.packets for scan in scans) == 39  # Of both connections, to the first byte.
 
 
 def test_a_slow_program_gets_the_newest_scan(simulator):
