@@ -75,7 +75,7 @@ static const spoil_t spoils[] = {
     {"lost", SIM_LOST, 0},           {"late700", SIM_LATE, 700},   {"late2300", SIM_LATE, 2300},
     {"doubled", SIM_DOUBLED, 0},     {"cut50", SIM_POWER_CUT, 50}, {"cut2500", SIM_POWER_CUT, 2500},
     {"deaf400", SIM_DEAF, 400},      {"deaf3000", SIM_DEAF, 3000}, {"silent1500", SIM_SILENT, 1500},
-    {"no-starts", SIM_NO_STARTS, 0}, {"reboots", SIM_REBOOTS, 0},
+    {"no-starts", SIM_NO_STARTS, 0}, {"reboots", SIM_REBOOTS, 0},  {"no-scans", SIM_NO_SCANS, 0},
 };
 #define SPOILS (sizeof spoils / sizeof spoils[0])
 

@@ -3,21 +3,23 @@
 
 /* memory_model [--long]
  *
- * Explores the ring's protocol exhaustively, as two cores may see it: every interleaving, and
- * every value that a load may return with C11's release and acquire; first with all barriers,
- * then with one at a time weakened to relaxed. Exit status 0 if the protocol holds with all
- * barriers, and each weakened barrier has the effect given in the table at the end: the protocol
- * breaks, or holds (if this barrier is not needed).
+ * Explores the library's ring exhaustively, as two cores may see it: every interleaving, and every
+ * value that a load may return with C11's release and acquire; first with all barriers, then with
+ * one at a time weakened to relaxed. Exit status 0 if the ring holds with all barriers, and each
+ * weakened barrier has the effect given in the table at the end: the ring breaks, or holds (if
+ * this barrier is not needed).
  *
- * The model: each index has only one writer, and a list of the values stored to it. A thread's
- * view is the place that it has reached in each list. A load returns any value from there on. An
- * acquire load also takes over the view that the release store had. The model does not let a
- * later relaxed store by the same thread release, too: C11 does, but no longer C++20. If the CPU
- * feeds the ring, its bytes are plain memory: two accesses that are not ordered are a race. DMA
- * writes the bytes without the CPU: a load of a byte returns any value that the view permits,
- * and the hardware writes in the order of time, after whatever was published before.
+ * The ring is compiled with modelled_atomic.h. A step of a thread runs its operation from the
+ * beginning: accesses that it has made before return what they returned then, the next one is
+ * made, and the one after that ends the step.
  *
- * Indices have 8 bits, so that they wrap; adding 64, a quarter of their range, closes the ring.
+ * The model: each index has only one writer, and a list of the values stored to it. A thread's view
+ * is the place that it has reached in each list. A load returns any value from there on. An acquire
+ * load also takes over the view that the release store had. The model does not let a later relaxed
+ * store by the same thread release, too: C11 does, but no longer C++20. If the CPU feeds the ring,
+ * its bytes are plain memory: two accesses that are not ordered are a race. DMA writes the bytes
+ * without the CPU: a load of a byte returns any value that the view permits, and the hardware
+ * writes in the order of time, after whatever was published before.
  *
  * The model checks: there is no race; bytes come in order; if and only if bytes are missing, the
  * ring was found closed there; when it is found closed, the bytes refused before are counted; with
@@ -25,9 +27,10 @@
  *
  * States already explored are stored as hashes of 64 bits. */
 
+#include "tmini/parts/tmini_ring.h"
+
 #include <inttypes.h>
-#include <stdbool.h>
-#include <stdint.h>
+#include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,33 +38,40 @@
 enum { HEAD, TAIL, OVERRUN, CELL, CELLS = 4, LOCATIONS = CELL + CELLS };
 enum { PRODUCER, CONSUMER, THREADS };
 
-/* The step of a thread that has ended. */
-#define ENDED 255
+#define STORES_MAX 12u
+#define ACCESSES_MAX 8u /* Of one operation. */
 
-#define STORES_MAX 12
-
-/* The producer adds this to its index to close the ring. */
-#define CLOSED 64u
+/* A value of an index: it has been closed or opened so often, and counts so many bytes. */
+typedef struct {
+    uint8_t closed;
+    uint8_t bytes;
+    uint8_t refused; /* If the store of this value closes the ring: bytes refused before it. */
+} value_t;
 
 typedef struct {
-    uint8_t value;
-    uint8_t refused; /* If this store closes the ring: number of bytes refused before it. */
+    value_t value;
     uint8_t seen[LOCATIONS];
     uint8_t clock[THREADS];
 } store_t;
 
+typedef enum { PUT, GAP, TAKE, WRITE_BY_DMA, PUBLISH, TAKE_FROM_DMA } operation_t;
+
+/* What a thread has when no operation is under way. */
 typedef struct {
-    uint8_t at; /* Its next step. */
+    tmini_ring_t ring; /* Only the members that it writes count. */
+    uint8_t turns;     /* Bytes put or lost, or looks for bytes. */
+    uint8_t last;      /* The last byte taken. */
+    bool found_closed;
+} work_t;
+
+typedef struct {
+    work_t work; /* Before the operation under way. */
+    uint8_t operation;
+    uint8_t made;                 /* Accesses of that operation. */
+    value_t values[ACCESSES_MAX]; /* What these returned. */
     uint8_t seen[LOCATIONS];
     uint8_t clock[THREADS];
     uint8_t unfenced[LOCATIONS]; /* The view that it would have after a fence. */
-    uint8_t index;               /* Its own index: head or tail. */
-    uint8_t stop;                /* Producer: the index at which it loads the tail again. */
-    uint8_t value;               /* The last value loaded. */
-    uint8_t refused; /* Producer: refused bytes; consumer: `refused` of the last store loaded. */
-    uint8_t turns;   /* Number of bytes put, or of turns of the parser. */
-    uint8_t last;    /* The last byte taken. */
-    bool found_closed;
 } thread_t;
 
 typedef struct {
@@ -101,19 +111,22 @@ typedef struct {
 static bounds_t bounds;
 static access_t weakened;
 static const char *wrong;
+
+/* ---- States already explored ---- */
+
 static uint64_t states;
 static uint64_t *seen_hashes;
 static size_t seen_capacity;
-
-/* ---- States already explored ---- */
 
 static uint64_t hash_of(const state_t *state)
 {
     const uint8_t *const bytes = (const uint8_t *)state;
     uint64_t hash = 0x9E3779B97F4A7C15u;
-    for (size_t i = 0; i < sizeof *state; i++) {
-        hash = (hash ^ bytes[i]) * 0x100000001B3u;
-        hash ^= hash >> 29;
+    for (size_t i = 0; i + 8 <= sizeof *state; i += 8) {
+        uint64_t word;
+        memcpy(&word, &bytes[i], 8);
+        hash = (hash ^ word) * 0xD6E8FEB86659FD93u;
+        hash ^= hash >> 32;
     }
     return hash | 1;
 }
@@ -157,7 +170,43 @@ static bool is_new(const state_t *state)
     return insert(seen_hashes, seen_capacity, hash_of(state));
 }
 
-/* ---- Memory ---- */
+/* ---- The step under way ---- */
+
+static state_t *state;
+static thread_t *thread;
+static work_t work; /* The thread's, changed by its operation. */
+static uint8_t memory[CELLS];
+static unsigned accesses; /* Of the operation, in this step. */
+static unsigned choice;   /* Which of the possible values the new access returns. */
+static jmp_buf stopped;
+
+enum { RUNS, PAUSES, HAS_NO_CHOICE };
+
+/* Ends the step if it has made its access. True: the access is the new one. */
+static bool is_new_access(value_t *value)
+{
+    if (accesses > thread->made) {
+        longjmp(stopped, PAUSES);
+    }
+    if (accesses == ACCESSES_MAX) {
+        (void)fprintf(stderr, "too many accesses for the model\n");
+        exit(2);
+    }
+    *value = thread->values[accesses];
+    return accesses++ == thread->made;
+}
+
+static void keep(value_t value)
+{
+    thread->values[thread->made] = value;
+}
+
+static void allow_one_choice(void)
+{
+    if (choice > 0) {
+        longjmp(stopped, HAS_NO_CHOICE);
+    }
+}
 
 static void see(uint8_t *seen, const uint8_t *other, size_t count)
 {
@@ -166,39 +215,59 @@ static void see(uint8_t *seen, const uint8_t *other, size_t count)
     }
 }
 
-/* Loads the possible value with the number `choice`; returns false if there are fewer. */
-static bool load(state_t *state, thread_t *thread, unsigned location, access_t access,
-                 unsigned choice)
+/* Plain writes of the producer since the last access. All bytes put are different. */
+static void note_writes(void)
 {
+    for (unsigned at = 0; at < CELLS && !bounds.dma; at++) {
+        if (memory[at] != state->bytes[at]) {
+            if (state->read[at] > thread->clock[CONSUMER]) {
+                wrong = "a race: a byte is overwritten while it is read";
+            }
+            state->bytes[at] = memory[at];
+            state->written[at] = ++thread->clock[PRODUCER];
+        }
+    }
+}
+
+static value_t load(unsigned location, access_t access)
+{
+    value_t value;
+    if (!is_new_access(&value)) {
+        return value;
+    }
     const unsigned at = thread->seen[location] + choice;
     if (at >= state->counts[location]) {
-        return false;
+        longjmp(stopped, HAS_NO_CHOICE);
     }
     const store_t *const store = &state->stores[location][at];
+    note_writes();
     thread->seen[location] = (uint8_t)at;
-    thread->value = store->value;
-    thread->refused = store->refused;
     see(thread->unfenced, store->seen, LOCATIONS);
     if (access != weakened && location < CELL) {
         see(thread->seen, store->seen, LOCATIONS);
         see(thread->clock, store->clock, THREADS);
     }
-    return true;
+    keep(store->value);
+    return store->value;
 }
 
-/* Stores a value. Only the location's writer calls this: it has seen all earlier values. */
-static void store(state_t *state, thread_t *thread, unsigned location, access_t access,
-                  unsigned value)
+/* Only the location's writer calls this: it has seen all earlier values. */
+static void store(unsigned location, access_t access, value_t value)
 {
-    const unsigned at = state->counts[location];
+    value_t unused;
+    if (!is_new_access(&unused)) {
+        return;
+    }
+    const unsigned at = state->counts[location]++;
+    allow_one_choice();
     if (at == STORES_MAX) {
         (void)fprintf(stderr, "too many stores for the model\n");
         exit(2);
     }
     store_t *const stored = &state->stores[location][at];
-    state->counts[location]++;
+    note_writes();
     thread->seen[location] = (uint8_t)at;
-    stored->value = (uint8_t)value;
+    stored->value = value;
     stored->seen[location] = (uint8_t)at;
     if (access != weakened) {
         see(stored->seen, thread->seen, LOCATIONS);
@@ -206,320 +275,210 @@ static void store(state_t *state, thread_t *thread, unsigned location, access_t 
     }
 }
 
-static void write_byte(state_t *state, unsigned at, uint8_t value)
+static uint8_t read_byte(const tmini_ring_t *ring)
 {
-    thread_t *const thread = &state->threads[PRODUCER];
-    if (state->read[at] > thread->clock[CONSUMER]) {
-        wrong = "a race: a byte is overwritten while it is read";
+    const unsigned at = (unsigned)(ring->tail & (ring->size - 1));
+    value_t value;
+    if (bounds.dma) {
+        return load(CELL + at, CELLS_OWN).bytes;
     }
-    state->bytes[at] = value;
-    state->written[at] = ++thread->clock[PRODUCER];
-}
-
-static uint8_t read_byte(state_t *state, unsigned at)
-{
-    thread_t *const thread = &state->threads[CONSUMER];
-    if (state->written[at] > thread->clock[PRODUCER]) {
-        wrong = "a race: a byte is read while it is written";
-    }
-    state->read[at] = ++thread->clock[CONSUMER];
-    return state->bytes[at];
-}
-
-/* ---- tmini_ring_put() and tmini_ring_gap(), one access per step ---- */
-
-enum { PUT_BEGINS, PUT_BYTE, PUT_HEAD, PUT_REFUSES, PUT_REFUSES_FULL, PUT_CLOSES, GAP_CLOSE };
-
-/* At the beginning of a put, choices from this number on mean a gap: the byte was lost before it
- * reached the ring. */
-#define GAP STORES_MAX
-
-static void next_put(thread_t *thread)
-{
-    thread->turns++;
-    thread->at = thread->turns == bounds.turns[PRODUCER] ? ENDED : PUT_BEGINS;
-    thread->value = 0;
-}
-
-/* At its stop, the producer determines how far it may go: at most to the end of the memory. */
-static bool look_ahead(state_t *state, thread_t *thread, unsigned choice)
-{
-    const uint8_t refused = thread->refused;
-    if (!load(state, thread, TAIL, PUT_LOADS_TAIL, choice)) {
-        return false;
-    }
-    const uint8_t room = (uint8_t)(thread->value + bounds.size - thread->index);
-    const uint8_t to_end = (uint8_t)(bounds.size - (thread->index & (bounds.size - 1)));
-    thread->refused = refused;
-    if (room == 0 || room > bounds.size) {
-        thread->at = room == 0 ? PUT_REFUSES_FULL : PUT_REFUSES;
-    } else {
-        thread->stop = (uint8_t)(thread->index + (room < to_end ? room : to_end));
-        thread->at = PUT_BYTE;
-    }
-    return true;
-}
-
-static void put_byte(state_t *state, thread_t *thread)
-{
-    write_byte(state, thread->index & (bounds.size - 1), (uint8_t)(thread->turns + 1));
-    thread->at = PUT_HEAD;
-}
-
-static bool begin_put(state_t *state, thread_t *thread, unsigned choice)
-{
-    if (thread->index == thread->stop) {
-        return look_ahead(state, thread, choice);
-    }
-    put_byte(state, thread);
-    return choice == 0;
-}
-
-static bool begin_gap(state_t *state, thread_t *thread, unsigned choice)
-{
-    const uint8_t refused = thread->refused;
-    if (!load(state, thread, TAIL, GAP_LOADS_TAIL, choice)) {
-        return false;
-    }
-    thread->refused = refused;
-    if ((uint8_t)(thread->value + bounds.size - thread->index) <= bounds.size) {
-        thread->at = GAP_CLOSE;
-    } else {
-        next_put(thread);
-    }
-    return true;
-}
-
-static void close_ring(state_t *state, thread_t *thread, access_t access)
-{
-    thread->index = (uint8_t)(thread->index + CLOSED);
-    thread->stop = thread->index;
-    store(state, thread, HEAD, access, thread->index);
-    state->stores[HEAD][thread->seen[HEAD]].refused = thread->refused;
-    next_put(thread);
-}
-
-static bool put(state_t *state, unsigned choice)
-{
-    thread_t *const thread = &state->threads[PRODUCER];
-    switch (thread->at) {
-    case PUT_BEGINS:
-        return choice < GAP ? begin_put(state, thread, choice)
-                            : begin_gap(state, thread, choice - GAP);
-    case PUT_BYTE:
-        put_byte(state, thread);
-        break;
-    case PUT_HEAD:
-        thread->index++;
-        store(state, thread, HEAD, PUT_STORES_HEAD, thread->index);
-        next_put(thread);
-        break;
-    case PUT_REFUSES:
-    case PUT_REFUSES_FULL:
-        thread->refused++;
-        store(state, thread, OVERRUN, REFUSE_STORES_OVERRUN, thread->refused);
-        if (thread->at == PUT_REFUSES_FULL) {
-            thread->at = PUT_CLOSES;
-        } else {
-            next_put(thread);
+    if (is_new_access(&value)) {
+        allow_one_choice();
+        if (state->written[at] > thread->clock[PRODUCER]) {
+            wrong = "a race: a byte is read while it is written";
         }
-        break;
-    case PUT_CLOSES:
-        close_ring(state, thread, REFUSE_CLOSES);
-        break;
-    case GAP_CLOSE:
-        close_ring(state, thread, GAP_CLOSES);
-        break;
-    default:
-        return false;
+        state->read[at] = ++thread->clock[CONSUMER];
+        value = (value_t){0, tmini_ring_peek(ring, 0), 0};
+        keep(value);
     }
-    return choice == 0;
+    return value.bytes;
 }
 
-/* ---- The parser: takes a byte; if there is none and the ring is closed, opens the ring ---- */
+/* ---- What the library calls ---- */
 
-enum {
-    TAKE_BEGINS,
-    TAKE_UNREAD,
-    TAKE_BYTE,
-    TAKE_TAIL,
-    TAKE_CLOSED,
-    TAKE_AGAIN,
-    TAKE_COUNT,
-    TAKE_OPEN
-};
-
-static void next_take(thread_t *thread)
+static size_t plain(value_t value)
 {
-    thread->turns++;
-    thread->at = thread->turns == bounds.turns[CONSUMER] ? ENDED : TAKE_BEGINS;
-    thread->value = 0;
-    thread->refused = 0;
+    return value.closed * TMINI_RING_CLOSED + value.bytes;
 }
 
-static void judge(thread_t *thread, uint8_t byte)
+static value_t modelled(size_t index, size_t refused)
 {
-    if (byte <= thread->last) {
-        wrong = "a byte comes twice, or too late";
-    } else if (byte != thread->last + 1 && !thread->found_closed) {
-        wrong = "bytes are missing, and the ring was never found closed";
-    } else if (byte == thread->last + 1 && thread->found_closed) {
-        wrong = "the ring was found closed where no byte is missing";
-    }
-    thread->last = byte;
-    thread->found_closed = false;
+    return (value_t){(uint8_t)(index / TMINI_RING_CLOSED), (uint8_t)(index % TMINI_RING_CLOSED),
+                     (uint8_t)refused};
 }
 
-/* The result of tmini_ring_ahead() with the loaded head. */
-static uint8_t ahead(const thread_t *thread)
+static uint8_t refused_before; /* The head loaded last. */
+
+size_t tmini_load(const size_t *value)
 {
-    return (uint8_t)(thread->value - thread->index);
+    if (value == &work.ring.tail) {
+        return plain(load(TAIL, thread->operation == GAP ? GAP_LOADS_TAIL : PUT_LOADS_TAIL));
+    }
+    if (value == &work.ring.overrun) {
+        return plain(load(OVERRUN, COUNT_LOADS_OVERRUN));
+    }
+    const value_t head = load(HEAD, bounds.dma ? DMA_TAKE_LOADS_HEAD : TAKE_LOADS_HEAD);
+    refused_before = head.refused;
+    return plain(head);
 }
 
-/* The parser loads the head: in intact_bytes(), then in pass_lost_bytes(). */
-static bool look(state_t *state, thread_t *thread, unsigned choice)
+void tmini_store(size_t *value, size_t stored)
 {
-    if (!load(state, thread, HEAD, TAKE_LOADS_HEAD, choice)) {
-        return false;
+    const bool closes = stored - *value >= TMINI_RING_CLOSED; /* Or opens. */
+    const value_t model = modelled(stored, closes ? work.ring.overrun : 0);
+    if (value == &work.ring.head) {
+        store(HEAD,
+              thread->operation == PUBLISH ? PUBLISH_STORES_HEAD
+              : thread->operation == GAP   ? GAP_CLOSES
+              : closes                     ? REFUSE_CLOSES
+                                           : PUT_STORES_HEAD,
+              model);
+    } else if (value == &work.ring.tail) {
+        store(TAIL, closes ? TAKE_OPENS : TAKE_STORES_TAIL, model);
+    } else if (value == &work.ring.overrun) {
+        store(OVERRUN, REFUSE_STORES_OVERRUN, model);
     }
-    const bool is_closed = ahead(thread) > bounds.size;
-    const bool is_empty = ahead(thread) % CLOSED == 0;
-    switch (thread->at) {
-    case TAKE_BEGINS:
-        thread->at = is_closed ? TAKE_UNREAD : is_empty ? TAKE_CLOSED : TAKE_BYTE;
-        break;
-    case TAKE_UNREAD:
-        thread->at = is_empty ? TAKE_CLOSED : TAKE_BYTE;
-        break;
-    case TAKE_CLOSED:
-        thread->at = TAKE_AGAIN;
-        if (!is_closed) {
-            next_take(thread);
-        }
-        break;
-    default:
-        thread->at = TAKE_COUNT;
-        if (!is_empty) {
-            next_take(thread);
-        }
-        break;
-    }
-    return true;
+    *value = stored;
 }
 
-static void give_back(state_t *state, thread_t *thread, access_t access, unsigned count)
+void tmini_fence(void)
 {
-    thread->index = (uint8_t)(thread->index + count);
-    store(state, thread, TAIL, access, thread->index);
-    next_take(thread);
-}
-
-static bool count_refused(state_t *state, thread_t *thread, unsigned choice)
-{
-    const uint8_t refused = thread->refused;
-    if (!load(state, thread, OVERRUN, COUNT_LOADS_OVERRUN, choice)) {
-        return false;
-    }
-    if (thread->value < refused) {
-        wrong = "the ring is found closed, and what was refused is not counted";
-    }
-    thread->at = TAKE_OPEN;
-    return true;
-}
-
-static bool take(state_t *state, unsigned choice)
-{
-    thread_t *const thread = &state->threads[CONSUMER];
-    switch (thread->at) {
-    case TAKE_BEGINS:
-    case TAKE_UNREAD:
-    case TAKE_CLOSED:
-    case TAKE_AGAIN:
-        return look(state, thread, choice);
-    case TAKE_BYTE:
-        judge(thread, read_byte(state, thread->index & (bounds.size - 1)));
-        thread->at = TAKE_TAIL;
-        break;
-    case TAKE_TAIL:
-        give_back(state, thread, TAKE_STORES_TAIL, 1);
-        break;
-    case TAKE_COUNT:
-        return count_refused(state, thread, choice);
-    case TAKE_OPEN:
-        thread->found_closed = true;
-        give_back(state, thread, TAKE_OPENS, CLOSED);
-        break;
-    default:
-        return false;
-    }
-    return choice == 0;
-}
-
-/* ---- DMA, and tmini_ring_publish() in its interrupts ---- */
-
-/* DMA writes a byte, or publishes its position. At most half the ring is not yet published. */
-static bool run_dma(state_t *state, unsigned choice)
-{
-    thread_t *const thread = &state->threads[PRODUCER];
-    const unsigned written = thread->turns;
-    const unsigned published = thread->index;
-    if (choice == 0 && written < bounds.turns[PRODUCER] &&
-        written + 1 <= published + bounds.size / 2) {
-        thread->turns++;
-        store(state, thread, CELL + (written & (bounds.size - 1)), CELLS_OWN, written + 1);
-        return true;
-    }
-    if (choice == 1 && written > published) {
-        thread->index = thread->turns;
-        store(state, thread, HEAD, PUBLISH_STORES_HEAD, written);
-        return true;
-    }
-    return false;
-}
-
-enum { DMA_BEGINS, DMA_BYTE, DMA_FENCE, DMA_AGAIN };
-
-/* The parser drops bytes that may be overwritten, reads a byte, and checks that it was intact. */
-static bool take_from_dma(state_t *state, unsigned choice)
-{
-    thread_t *const thread = &state->threads[CONSUMER];
-    const unsigned window = bounds.size / 2;
-    switch (thread->at) {
-    case DMA_BEGINS:
-        if (!load(state, thread, HEAD, DMA_TAKE_LOADS_HEAD, choice)) {
-            return false;
-        }
-        if (thread->value == thread->index) {
-            next_take(thread);
-        } else if (thread->value - thread->index > (int)window) {
-            thread->index = (uint8_t)(thread->value - window);
-        } else {
-            thread->at = DMA_BYTE;
-        }
-        return true;
-    case DMA_BYTE:
-        if (!load(state, thread, CELL + (thread->index & (bounds.size - 1)), CELLS_OWN, choice)) {
-            return false;
-        }
-        thread->last = thread->value;
-        thread->at = DMA_FENCE;
-        return true;
-    case DMA_FENCE:
+    value_t unused;
+    if (is_new_access(&unused)) {
+        allow_one_choice();
         if (weakened != INTACT_FENCES) {
             see(thread->seen, thread->unfenced, LOCATIONS);
         }
-        thread->at = DMA_AGAIN;
-        return choice == 0;
-    case DMA_AGAIN:
-        if (!load(state, thread, HEAD, DMA_TAKE_LOADS_HEAD, choice)) {
-            return false;
+    }
+}
+
+/* ---- The operations ---- */
+
+static void judge(uint8_t byte)
+{
+    if (byte <= work.last) {
+        wrong = "a byte comes twice, or too late";
+    } else if (byte != work.last + 1 && !work.found_closed) {
+        wrong = "bytes are missing, and the ring was never found closed";
+    } else if (byte == work.last + 1 && work.found_closed) {
+        wrong = "the ring was found closed where no byte is missing";
+    }
+    work.last = byte;
+    work.found_closed = false;
+}
+
+/* The parser's way through a ring that the CPU feeds (tmini_parser.c): takes a byte; if there is
+ * none and the ring is closed, opens it. */
+static void take(void)
+{
+    tmini_ring_t *const ring = &work.ring;
+    const size_t ahead = tmini_ring_ahead(ring);
+    const uint8_t refused = refused_before;
+    if (ahead > ring->window && ahead == TMINI_RING_CLOSED) {
+        if (tmini_ring_overrun(ring) < refused) {
+            wrong = "the ring is found closed, and what was refused is not counted";
         }
-        if (thread->value - thread->index <= (int)window && thread->last != thread->index + 1) {
+        work.found_closed = true;
+        tmini_ring_open(ring);
+    } else if (ahead > 0) {
+        judge(read_byte(ring));
+        tmini_ring_discard(ring, 1);
+    }
+}
+
+/* The same with DMA: drops bytes that may be overwritten, reads a byte, and asks whether it was
+ * intact. */
+static void take_from_dma(void)
+{
+    tmini_ring_t *const ring = &work.ring;
+    const size_t ahead = tmini_ring_ahead(ring);
+    if (ahead > ring->window) {
+        tmini_ring_discard(ring, ahead - ring->window);
+    }
+    if (ahead > 0) {
+        const uint8_t byte = read_byte(ring);
+        if (tmini_ring_intact(ring) && byte != ring->tail + 1) {
             wrong = "a wrong byte is found intact";
         }
-        thread->index++;
-        thread->last = 0;
-        next_take(thread);
+        tmini_ring_discard(ring, 1);
+    }
+}
+
+static void operate(void)
+{
+    const unsigned cell = work.turns & (bounds.size - 1);
+    switch (thread->operation) {
+    case PUT:
+        tmini_ring_put(&work.ring, (uint8_t)(work.turns + 1));
+        break;
+    case GAP: /* The byte was lost before it reached the ring. */
+        tmini_ring_gap(&work.ring);
+        break;
+    case WRITE_BY_DMA:
+        store(CELL + cell, CELLS_OWN, (value_t){0, (uint8_t)(work.turns + 1), 0});
+        break;
+    case PUBLISH:
+        tmini_ring_publish(&work.ring, cell);
+        work.turns--;
+        break;
+    case TAKE:
+        take();
+        break;
+    default:
+        take_from_dma();
+        break;
+    }
+    work.turns++;
+}
+
+/* At most half the ring of DMA is not yet published. */
+static bool may_begin(const work_t *before, unsigned operation)
+{
+    const size_t unpublished = before->turns - before->ring.head;
+    if (operation == PUBLISH) {
+        return unpublished > 0;
+    }
+    return operation != WRITE_BY_DMA || unpublished < bounds.size / 2;
+}
+
+/* Chooses an operation if none is under way. The choice's number is one of STORES_MAX values of
+ * one of two operations. */
+static bool begin_operation(unsigned number)
+{
+    const unsigned first = thread == &state->threads[CONSUMER] ? TAKE + (bounds.dma ? 3u : 0u)
+                           : bounds.dma                        ? WRITE_BY_DMA
+                                                               : PUT;
+    const unsigned operation = first + number / STORES_MAX;
+    const bool is_alone = thread == &state->threads[CONSUMER];
+    const bool is_over =
+        thread->work.turns == bounds.turns[is_alone ? CONSUMER : PRODUCER] && operation != PUBLISH;
+    thread->operation = (uint8_t)operation;
+    return !is_over && (operation == first || !is_alone) && may_begin(&thread->work, operation);
+}
+
+/* One access of the thread. False: it has no access or value with this number. */
+static bool step(state_t *next, unsigned number_of_thread, unsigned number)
+{
+    state = next;
+    thread = &next->threads[number_of_thread];
+    choice = number % STORES_MAX;
+    if (thread->made == 0 ? !begin_operation(number) : number >= STORES_MAX) {
+        return false;
+    }
+    accesses = 0;
+    work = thread->work;
+    memcpy(memory, state->bytes, sizeof memory);
+    switch (setjmp(stopped)) {
+    case RUNS:
+        operate();
+        note_writes();
+        memset(thread->values, 0, sizeof thread->values);
+        thread->work = work;
+        thread->made = 0;
+        return true;
+    case PAUSES:
+        note_writes();
+        thread->made++;
         return true;
     default:
         return false;
@@ -528,23 +487,12 @@ static bool take_from_dma(state_t *state, unsigned choice)
 
 /* ---- Exploring ---- */
 
-static bool step(state_t *state, unsigned thread, unsigned choice)
+static void explore(const state_t *from)
 {
-    if (state->threads[thread].at == ENDED) {
-        return false;
-    }
-    if (thread == PRODUCER) {
-        return bounds.dma ? run_dma(state, choice) : put(state, choice);
-    }
-    return bounds.dma ? take_from_dma(state, choice) : take(state, choice);
-}
-
-static void explore(const state_t *state)
-{
-    for (unsigned thread = 0; thread < THREADS; thread++) {
-        for (unsigned choice = 0; choice < 2 * STORES_MAX && wrong == NULL; choice++) {
-            state_t next = *state;
-            if (step(&next, thread, choice) && wrong == NULL && is_new(&next)) {
+    for (unsigned number = 0; number < THREADS; number++) {
+        for (unsigned option = 0; option < 2 * STORES_MAX && wrong == NULL; option++) {
+            state_t next = *from;
+            if (step(&next, number, option) && wrong == NULL && is_new(&next)) {
                 states++;
                 explore(&next);
             }
@@ -552,26 +500,26 @@ static void explore(const state_t *state)
     }
 }
 
-static void begin(state_t *state)
-{
-    memset(state, 0, sizeof *state);
-    for (unsigned location = 0; location < LOCATIONS; location++) {
-        state->counts[location] = 1;
-    }
-}
-
 /* Returns the first error found, or NULL. */
 static const char *run(bounds_t within, access_t weak)
 {
-    state_t state;
+    static state_t first;
     bounds = within;
     weakened = weak;
     wrong = NULL;
     states = 0;
     seen_capacity = 1 << 16;
     seen_hashes = new_table(seen_capacity);
-    begin(&state);
-    explore(&state);
+    memset(&first, 0, sizeof first);
+    for (unsigned location = 0; location < LOCATIONS; location++) {
+        first.counts[location] = 1;
+    }
+    if (tmini_ring_init(&work.ring, memory, bounds.size, bounds.dma) != TMINI_OK) {
+        exit(2);
+    }
+    first.threads[PRODUCER].work.ring = work.ring;
+    first.threads[CONSUMER].work.ring = work.ring;
+    explore(&first);
     free(seen_hashes);
     return wrong;
 }
@@ -589,13 +537,13 @@ static const struct {
     {REFUSE_CLOSES, "refuse: head, release", false, true},
     {GAP_LOADS_TAIL, "gap: tail, acquire", false, false},
     {GAP_CLOSES, "gap: head, release", false, true},
-    {TAKE_LOADS_HEAD, "unread, closed: head, acquire", false, true},
+    {TAKE_LOADS_HEAD, "ahead: head, acquire", false, true},
     {TAKE_STORES_TAIL, "discard: tail, release", false, true},
     {TAKE_OPENS, "open: tail, release", false, true},
     {COUNT_LOADS_OVERRUN, "overrun, acquire", false, false},
     {NOTHING, "DMA, as it is", true, false},
     {PUBLISH_STORES_HEAD, "publish: head, release", true, true},
-    {DMA_TAKE_LOADS_HEAD, "DMA, unread: head, acquire", true, true},
+    {DMA_TAKE_LOADS_HEAD, "DMA, ahead: head, acquire", true, true},
     {INTACT_FENCES, "intact: fence", true, true},
 };
 
