@@ -11,6 +11,7 @@
     tmini-X.Y.Z-arduino.zip         Arduino IDE: Sketch > Include Library > Add .ZIP Library
     tmini-X.Y.Z-esp-idf.zip         a component, to be unpacked in a project's folder components
     tmini-X.Y.Z-platformio.tar.gz   a library for lib_deps
+    tmini-X.Y.Z-ros2.tar.gz         a ROS 2 package, to be unpacked in a workspace's folder src
     tmini-X.Y.Z.html                the viewer (--page: the one built from these sources)
     tmini-X.Y.Z.tar.gz              the Python package (--sdist: as the package `build` makes it)
     SHA256SUMS, notes.md
@@ -105,6 +106,13 @@ def arduino_name(name):
     return "tmini/examples/" + "/".join(path.parts[2:]) if is_sketch else None
 
 
+def ros2_name(name):
+    """The name of a file in the archive for ROS 2: the package, with the library and its port beside it."""
+    if name.startswith("port/ros2/"):
+        return "tmini_ros/" + name[len("port/ros2/"):]
+    return "tmini_ros/" + name if matches(name, ["LICENSE", "lib", "port/posix"]) else None
+
+
 def single_name(name):
     if name.startswith("lib/include/"):
         return name[len("lib/include/"):]
@@ -142,6 +150,7 @@ def archives(names, sdist):
     yield "-esp-idf.zip", take(names, lambda name: matches(name, component) and "tmini/" + name)
     yield "-platformio.tar.gz", take(
         names, lambda name: matches(name, include) and not matches(name, exclude) and name)
+    yield "-ros2.tar.gz", take(names, ros2_name)
     if sdist:
         yield "python", of_sdist(sdist)
 

@@ -101,6 +101,8 @@ check_tidy() {
     tidy --checks=-readability-named-parameter,-bugprone-incorrect-roundings \
         port/arduino/*.cpp -- -std=c++11 -I lib/include -isystem test/port/arduino/arduino_stub \
         -DARDUINO=10819 -DESP32 -DESP_ARDUINO_VERSION_MAJOR=3 || clean=1
+    tidy port/ros2/src/settings.cpp port/ros2/src/report.cpp port/ros2/src/lidar.cpp -- \
+        -std=c++17 -I lib/include -I port/posix -I port/ros2/src || clean=1
     tidy_firmware port/ros2/src/*.c examples/micro_ros/*.c -- -I port/ros2/src \
         -isystem test/port/micro_ros/micro_ros_stub || clean=1
     return "$clean"
@@ -115,6 +117,7 @@ check_tidy() {
 # - criticises where a variable is declared, a matter of taste;
 # - miscounts the arguments of formats made of macros, which compilers check better;
 # - believes that a structure written through a pointer is read;
+# - takes the library's headers for C++ where a C++ source includes them, and loops for algorithms;
 # - reports, in newer versions, how thorough it was.
 check_cppcheck() {
     cppcheck --quiet --std=c99 --enable=warning,style,performance,portability --inline-suppr \
@@ -124,6 +127,7 @@ check_cppcheck() {
         --suppress=uninitMemberVar --suppress=variableScope --suppress=badBitmaskCheck \
         --suppress=wrongPrintfScanfArgNum \
         --suppress=zerodivcond --suppress=ctuuninitvar \
+        --suppress='cstyleCast:lib/*' --suppress=useStlAlgorithm \
         --suppress=normalCheckLevelMaxBranches --error-exitcode=1 \
         -I lib/include -I examples/common -I examples/obstacle_stop lib/src port examples
 }
@@ -175,6 +179,9 @@ check_analyzer() {
     for source in port/zephyr/*.c examples/zephyr/src/*.c; do
         analyse -Iport/zephyr -DZEPHYR_ASYNC -isystem test/port/zephyr/zephyr_stub "$source" ||
             clean=1
+    done
+    for source in port/ros2/src/*.c; do
+        analyse "$source" || clean=1
     done
     for source in port/freertos/*.c examples/freertos/*.c; do
         analyse -Iport/freertos -Iexamples/freertos -isystem test/port/freertos/kernel_stub \

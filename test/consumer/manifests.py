@@ -70,6 +70,15 @@ def of_arduino():
     }
 
 
+def of_ros2():
+    name = "port/ros2/package.xml"
+    return {
+        "description": find(name, r"<description>(.*)</description>"),
+        "licence": find(name, r"<license>(.*)</license>"),
+        "author": find(name, r"<author>(.*)</author>"),
+    }
+
+
 def of_esp_idf():
     name = "idf_component.yml"
     tags = re.search(r"^tags:\n((?:  - .*\n)+)", read(name), re.MULTILINE)
@@ -102,6 +111,7 @@ SAID = {
     "library.json": (of_platformio, "name description licence author keywords"),
     "library.properties": (of_arduino, "name description author"),
     "idf_component.yml": (of_esp_idf, "description licence keywords"),
+    "package.xml": (of_ros2, "description licence author"),
     "LICENSE": (of_licence, "licence author"),
     "README.md": (of_readme, "licence"),
     "pyproject.toml": (of_python, "name licence"),
@@ -154,7 +164,7 @@ def check_sources():
 
 # Build files that compile all sources in lib/src, by a pattern.
 TAKERS = ["port/esp32/component.cmake", "port/pico/CMakeLists.txt",
-          "port/zephyr/CMakeLists.txt"]
+          "port/ros2/CMakeLists.txt", "port/zephyr/CMakeLists.txt"]
 
 
 def check_takers():

@@ -168,7 +168,7 @@ static void set_limits(const tmini_laser_t *laser, tmini_laser_fields_t *fields)
 bool tmini_laser_of_scan(tmini_laser_t *laser, const tmini_scan_t *scan, float *ranges,
                          float *intensities, tmini_laser_fields_t *fields)
 {
-    if (scan == NULL) {
+    if (scan == NULL || laser->config.rays == 0) {
         return false;
     }
     learn_where_turns_begin(laser, scan);

@@ -74,7 +74,7 @@ void tmini_laser_init(tmini_laser_t *laser, const tmini_laser_config_t *config);
 
 /** Converts a scan: `ranges` and `intensities` have room for config.rays values each. A ray has the
  * nearest of its points. Until the first complete scan a turn counts as begun ahead. Returns false,
- * and writes nothing, if the scan is null. */
+ * and writes nothing, if the scan is null or there are no rays. */
 bool tmini_laser_of_scan(tmini_laser_t *laser, const tmini_scan_t *scan, float *ranges,
                          float *intensities, tmini_laser_fields_t *fields);
 

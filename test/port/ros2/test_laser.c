@@ -21,11 +21,11 @@
 static tmini_laser_config_t config;
 static tmini_laser_t laser;
 static tmini_laser_fields_t fields;
-static tmini_point_t points[POINTS];
+static tmini_point_t points[POINTS + 4];
 static tmini_scan_t scan;
 static float ranges[RAYS];
 static float intensities[RAYS];
-static tmini_cloud_point_t cloud[POINTS];
+static tmini_cloud_point_t cloud[POINTS + 4];
 
 void setUp(void)
 {
@@ -57,7 +57,7 @@ static void add(float degrees, uint16_t distance_mm, uint8_t intensity)
 static void add_turn(float begin)
 {
     for (size_t i = 0; i < POINTS; i++) {
-        add(begin + 0.9f * (float)i, (uint16_t)(1000u + i), 0);
+        add(begin + 0.9f * (float)i, (uint16_t)(1000u + i), 7);
     }
 }
 
@@ -81,6 +81,7 @@ static const struct {
     {"mirrored", true, false, 0.48f, 0},
     {"mirrored and turned", true, true, 0.48f, -180},
     {"begins at 2.9 degrees", false, false, 2.9f, 0},
+    {"begins at 4 degrees", false, false, 4, -3},
     {"begins at 116 degrees", false, false, 116, -115},
     {"the same, turned", false, true, 116, 65},
     {"the same, mirrored", true, false, 116, 116},
@@ -165,6 +166,29 @@ void test_the_scan_time_is_that_of_the_turn_and_goes_once_around(void)
     TEST_ASSERT_EQUAL_INT32(0, fields.stamp_us);
 }
 
+/* The clock may be late at the start of a turn, but not at its end. */
+void test_the_stamp_follows_from_the_end_of_a_complete_scan(void)
+{
+    scan.start_ms = 4980;
+    add_turn(0);
+    convert();
+    TEST_ASSERT_EQUAL_INT32(0, fields.stamp_us);
+}
+
+/* The last points of a turn may lie beyond its first one, here nearer than those. */
+void test_where_a_turn_overlaps_itself_each_ray_has_its_own_end(void)
+{
+    add_turn(0);
+    for (size_t i = 0; i < 4; i++) {
+        add(0.9f * (float)i, (uint16_t)(500u + i), 0);
+    }
+    convert();
+    TEST_ASSERT_EQUAL_FLOAT(0.5f, ranges[0]);
+    for (size_t i = 1; i < 4; i++) {
+        TEST_ASSERT_EQUAL_FLOAT((float)(1000u + i) / 1000.0f, ranges[RAYS - i]);
+    }
+}
+
 void test_without_a_frequency_the_times_are_unknown(void)
 {
     add_turn(0);
@@ -213,9 +237,13 @@ void test_until_the_first_complete_scan_a_turn_counts_as_begun_ahead(void)
     TEST_ASSERT_FLOAT_WITHIN(NEAR, -115.0f * 0.0174532925f, fields.angle_min);
 }
 
-void test_without_a_scan_nothing_is_written(void)
+void test_without_a_scan_or_rays_nothing_is_written(void)
 {
     TEST_ASSERT_FALSE(tmini_laser_of_scan(&laser, NULL, ranges, intensities, &fields));
+    add_turn(0);
+    config.rays = 0;
+    tmini_laser_init(&laser, &config);
+    TEST_ASSERT_FALSE(tmini_laser_of_scan(&laser, &scan, ranges, intensities, &fields));
     TEST_ASSERT_EQUAL_FLOAT(UNTOUCHED, ranges[0]);
     TEST_ASSERT_EQUAL_FLOAT(UNTOUCHED, intensities[0]);
 }
@@ -313,6 +341,7 @@ void test_masks_count_in_the_messages_degrees_and_are_unknown_never_free(void)
             const bool is_seen =
                 degrees >= -90 && degrees <= 120 && degrees != -5 && (degrees < 10 || degrees > 20);
             TEST_ASSERT_EQUAL_MESSAGE(!is_seen, isnan(ranges[ray]) != 0, layouts[i].name);
+            TEST_ASSERT_EQUAL_FLOAT(is_seen ? 7.0f : 0.0f, intensities[ray]);
         }
     }
 }
@@ -348,4 +377,6 @@ void test_a_cloud_leaves_out_what_has_no_range_or_is_masked(void)
     TEST_ASSERT_EQUAL_size_t(2, tmini_cloud_of_scan(&config, &scan, cloud));
     TEST_ASSERT_EQUAL_FLOAT(3.0f, cloud[0].intensity);
     TEST_ASSERT_EQUAL_FLOAT(4.0f, cloud[1].intensity);
+    config.min_mm = 0;
+    TEST_ASSERT_EQUAL_size_t(3, tmini_cloud_of_scan(&config, &scan, cloud));
 }

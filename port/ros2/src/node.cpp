@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The node: what ROS hears of the lidar, and what the lidar hears of ROS. */
+
+#include <chrono>
+#include <cstring>
+#include <stdexcept>
+
+#include <diagnostic_updater/diagnostic_updater.hpp>
+#include <rclcpp_components/register_node_macro.hpp>
+#include <sensor_msgs/msg/laser_scan.hpp>
+#include <sensor_msgs/msg/point_cloud2.hpp>
+#include <std_srvs/srv/empty.hpp>
+
+#include "lidar.h"
+#include "node.h"
+#include "tmini_cloud.h"
+
+namespace tmini_ros
+{
+
+using sensor_msgs::msg::LaserScan;
+using sensor_msgs::msg::PointCloud2;
+using sensor_msgs::msg::PointField;
+using std_srvs::srv::Empty;
+
+static Value value_of(const rclcpp::ParameterValue &value)
+{
+    switch (value.get_type()) {
+    case rclcpp::PARAMETER_BOOL:
+        return value.get<bool>();
+    case rclcpp::PARAMETER_INTEGER:
+        return value.get<std::int64_t>();
+    case rclcpp::PARAMETER_DOUBLE:
+        return value.get<double>();
+    case rclcpp::PARAMETER_STRING:
+        return value.get<std::string>();
+    default:
+        return {};
+    }
+}
+
+static rclcpp::ParameterValue ros_value_of(const Value &value)
+{
+    return std::visit(
+        [](const auto &held) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>) {
+                return rclcpp::ParameterValue();
+            } else {
+                return rclcpp::ParameterValue(held);
+            }
+        },
+        value);
+}
+
+class Node : public rclcpp::Node, private Listener
+{
+  public:
+    explicit Node(const rclcpp::NodeOptions &options) : rclcpp::Node("tmini", options)
+    {
+        read_parameters();
+        tmini_laser_init(&laser_, &settings_.laser);
+        scans_ = create_publisher<LaserScan>("scan", rclcpp::SensorDataQoS());
+        if (settings_.point_cloud) {
+            clouds_ = create_publisher<PointCloud2>("point_cloud", rclcpp::SensorDataQoS());
+        }
+        lidar_ = std::make_unique<Lidar>(settings_, static_cast<Listener &>(*this));
+        start_ = create_wish("start_scan", true);
+        stop_ = create_wish("stop_scan", false);
+        updater_ = std::make_unique<diagnostic_updater::Updater>(this);
+        updater_->setHardwareID("tmini");
+        updater_->add("lidar", [this](auto &status) { diagnose(status); });
+        on_set_ = add_on_set_parameters_callback(
+            [this](const std::vector<rclcpp::Parameter> &changes) { return change(changes); });
+        warn_of_other_parameters();
+    }
+
+    ~Node() override
+    {
+        lidar_.reset(); /* First: it calls what follows. */
+    }
+
+  private:
+    /* ---------------------------------------------------------------------------- parameters */
+
+    void read_parameters()
+    {
+        for (const Parameter &parameter : parameters()) {
+            rcl_interfaces::msg::ParameterDescriptor descriptor;
+            descriptor.description = parameter.description;
+            descriptor.dynamic_typing = true; /* An integer is a number, too. */
+            descriptor.read_only = std::strcmp(parameter.name, "frequency") != 0;
+            const rclcpp::ParameterValue value =
+                declare_parameter(parameter.name, ros_value_of(parameter.initial), descriptor);
+            refuse_if(put(settings_, parameter.name, value_of(value)), parameter.name);
+        }
+        refuse_if(contradiction(settings_), "parameters:");
+    }
+
+    static void refuse_if(const std::string &reason, const char *what)
+    {
+        if (!reason.empty()) {
+            throw std::invalid_argument(std::string(what) + " " + reason);
+        }
+    }
+
+    /* All but the frequency are read-only, and refused before this is called. */
+    rcl_interfaces::msg::SetParametersResult change(const std::vector<rclcpp::Parameter> &changes)
+    {
+        rcl_interfaces::msg::SetParametersResult result;
+        Settings changed = {};
+        for (const rclcpp::Parameter &one : changes) {
+            if (one.get_name() == "frequency") {
+                result.reason = put(changed, one.get_name(), value_of(one.get_parameter_value()));
+            }
+        }
+        result.successful = result.reason.empty();
+        if (result.successful && changed.frequency_chz != 0) {
+            lidar_->want_frequency(changed.frequency_chz);
+        }
+        return result;
+    }
+
+    /* Those of ROS and of the diagnostics are declared by now. */
+    void warn_of_other_parameters()
+    {
+        const auto &given = get_node_parameters_interface()->get_parameter_overrides();
+        for (const auto &[name, value] : given) {
+            const std::string text = has_parameter(name) ? "" : remark(name, value_of(value));
+            if (!text.empty()) {
+                RCLCPP_WARN(get_logger(), "parameter %s", text.c_str());
+            }
+        }
+        const auto context = get_node_base_interface()->get_context()->get_rcl_context();
+        if (given.empty() && rcl_arguments_get_param_files_count(&context->global_arguments) > 0) {
+            RCLCPP_WARN(get_logger(),
+                        "a parameter file was given, but nothing in it is for this node: it must "
+                        "begin with %s: or /**:",
+                        get_fully_qualified_name());
+        }
+    }
+
+    rclcpp::Service<Empty>::SharedPtr create_wish(const char *name, bool are_scans_wanted)
+    {
+        return create_service<Empty>(
+            name, [this, are_scans_wanted](Empty::Request::SharedPtr, Empty::Response::SharedPtr) {
+                lidar_->want_scans(are_scans_wanted);
+            });
+    }
+
+    /* --------------------------------------------------------------------------- diagnostics */
+
+    void diagnose(diagnostic_updater::DiagnosticStatusWrapper &status)
+    {
+        const Report report = lidar_->report();
+        const auto now = std::chrono::steady_clock::now();
+        const std::chrono::duration<double> passed = now - reported_;
+        const Verdict verdict = judge(report_, report, passed.count());
+        status.summary(verdict.level, verdict.text);
+        for (const auto &[name, value] : verdict.values) {
+            status.add(name, value);
+        }
+        updater_->setHardwareID("tmini " + serial_number(report));
+        report_ = report;
+        reported_ = now;
+    }
+
+    void tell(Level level, const std::string &text) override
+    {
+        if (level == LEVEL_OK) {
+            RCLCPP_INFO(get_logger(), "%s", text.c_str());
+        } else if (level == LEVEL_WARN) {
+            RCLCPP_WARN(get_logger(), "%s", text.c_str());
+        } else {
+            RCLCPP_ERROR(get_logger(), "%s", text.c_str());
+        }
+    }
+
+    /* ------------------------------------------------------------------------------ messages */
+
+    bool has_subscribers() override
+    {
+        return scans_->get_subscription_count() > 0 ||
+               (clouds_ != nullptr && clouds_->get_subscription_count() > 0);
+    }
+
+    void take(const tmini_scan_t &scan, std::uint32_t age_ms) override
+    {
+        const rclcpp::Time end = now() - rclcpp::Duration(std::chrono::milliseconds(age_ms));
+        publish_scan(scan, end);
+        if (clouds_ != nullptr) {
+            publish_cloud(scan, end);
+        }
+    }
+
+    void publish_scan(const tmini_scan_t &scan, const rclcpp::Time &end)
+    {
+        auto message = std::make_unique<LaserScan>();
+        tmini_laser_fields_t fields;
+        message->ranges.resize(settings_.laser.rays);
+        message->intensities.resize(settings_.laser.rays);
+        (void)tmini_laser_of_scan(&laser_, &scan, message->ranges.data(),
+                                  message->intensities.data(), &fields);
+        message->header.frame_id = settings_.frame_id;
+        message->header.stamp = end + rclcpp::Duration(std::chrono::microseconds(fields.stamp_us));
+        message->angle_min = fields.angle_min;
+        message->angle_max = fields.angle_max;
+        message->angle_increment = fields.angle_increment;
+        message->time_increment = fields.time_increment;
+        message->scan_time = fields.scan_time;
+        message->range_min = fields.range_min;
+        message->range_max = fields.range_max;
+        scans_->publish(std::move(message));
+    }
+
+    void publish_cloud(const tmini_scan_t &scan, const rclcpp::Time &end)
+    {
+        const std::chrono::milliseconds taken(scan.end_ms - scan.start_ms);
+        auto message = std::make_unique<PointCloud2>();
+        message->header.frame_id = settings_.frame_id;
+        message->header.stamp = end - rclcpp::Duration(taken);
+        for (const char *const name : {"x", "y", "z", "intensity", "time"}) {
+            PointField field;
+            field.name = name;
+            field.offset = static_cast<std::uint32_t>(message->fields.size() * sizeof(float));
+            field.datatype = PointField::FLOAT32;
+            field.count = 1;
+            message->fields.push_back(field);
+        }
+        const std::size_t count = tmini_cloud_of_scan(&settings_.laser, &scan, cloud_);
+        const auto *const bytes = reinterpret_cast<const std::uint8_t *>(cloud_);
+        message->data.assign(bytes, bytes + count * sizeof cloud_[0]);
+        message->height = 1;
+        message->width = static_cast<std::uint32_t>(count);
+        message->point_step = sizeof cloud_[0];
+        message->row_step = static_cast<std::uint32_t>(message->data.size());
+        message->is_bigendian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
+        message->is_dense = true;
+        clouds_->publish(std::move(message));
+    }
+
+    Settings settings_ = initial_settings();
+    tmini_laser_t laser_;
+    tmini_cloud_point_t cloud_[TMINI_SCAN_POINTS_TYPICAL];
+    rclcpp::Publisher<LaserScan>::SharedPtr scans_;
+    rclcpp::Publisher<PointCloud2>::SharedPtr clouds_;
+    std::unique_ptr<Lidar> lidar_;
+    rclcpp::Service<Empty>::SharedPtr start_;
+    rclcpp::Service<Empty>::SharedPtr stop_;
+    OnSetParametersCallbackHandle::SharedPtr on_set_;
+    std::unique_ptr<diagnostic_updater::Updater> updater_;
+    Report report_; /* The last one that was diagnosed. */
+    std::chrono::steady_clock::time_point reported_ = std::chrono::steady_clock::now();
+};
+
+std::shared_ptr<rclcpp::Node> make_node(const rclcpp::NodeOptions &options)
+{
+    return std::make_shared<Node>(options);
+}
+
+} // namespace tmini_ros
+
+RCLCPP_COMPONENTS_REGISTER_NODE(tmini_ros::Node)

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* Tests the lidar's thread with the simulated lidar on a pseudo-terminal or a socket. */
+
+#include <condition_variable>
+#include <csignal>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "lidar.h"
+
+#include "unity.h"
+
+using namespace tmini_ros;
+
+/* Ends the program: Unity's way to end a test would leave threads behind. */
+static void require(bool is_true, const char *what)
+{
+    if (!is_true) {
+        (void)printf("FAIL: %s\n", what);
+        (void)fflush(stdout);
+        _exit(1);
+    }
+}
+
+/* The simulated lidar; its log goes to the file `log`. */
+class Simulator
+{
+  public:
+    explicit Simulator(const char *how, const char *value = nullptr)
+    {
+        int ends[2];
+        require(pipe(ends) == 0, "a pipe");
+        process_ = fork();
+        if (process_ == 0) {
+            (void)dup2(ends[1], STDOUT_FILENO);
+            execl(TMINI_SIM, TMINI_SIM, "--log", "log", how, value, nullptr);
+            _exit(127);
+        }
+        (void)close(ends[1]);
+        FILE *const output = fdopen(ends[0], "r");
+        char line[256] = "";
+        require(fgets(line, sizeof line, output) != nullptr, "the simulated lidar starts");
+        (void)fclose(output);
+        address = line;
+        address.pop_back();
+    }
+    ~Simulator()
+    {
+        end();
+    }
+    void end()
+    {
+        if (process_ > 0) {
+            (void)kill(process_, SIGTERM);
+            (void)waitpid(process_, nullptr, 0);
+        }
+        process_ = 0;
+    }
+    std::string address;
+
+  private:
+    pid_t process_;
+};
+
+class Observer : public Listener
+{
+  public:
+    void take(const tmini_scan_t &scan, std::uint32_t age_ms) override
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        scans++;
+        frequency_chz = scan.frequency_chz;
+        oldest_ms = age_ms > oldest_ms ? age_ms : oldest_ms;
+        changed_.notify_all();
+    }
+    void tell(Level, const std::string &text) override
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        told += text + "\n";
+        changed_.notify_all();
+    }
+    bool has_subscribers() override
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        looks++;
+        changed_.notify_all();
+        return is_subscribed;
+    }
+    void subscribe(bool subscribes)
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        is_subscribed = subscribes;
+    }
+    /* Waits, at most a minute. */
+    void await(const char *what, const std::function<bool()> &happened)
+    {
+        std::unique_lock<std::mutex> lock(mutex_);
+        require(changed_.wait_for(lock, std::chrono::minutes(1), happened), what);
+    }
+    void await_scans(int more)
+    {
+        const int wanted = scans + more;
+        await("scans", [&] { return scans >= wanted; });
+    }
+    bool has_told(const char *text) const
+    {
+        return told.find(text) != std::string::npos;
+    }
+
+    int scans = 0;
+    int looks = 0;
+    std::uint16_t frequency_chz = 0;
+    std::uint32_t oldest_ms = 0;
+    std::string told;
+    bool is_subscribed = false;
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+};
+
+static Settings settings;
+static Observer *observer;
+
+void setUp()
+{
+    settings = initial_settings();
+    observer = new Observer;
+}
+
+void tearDown()
+{
+    delete observer;
+}
+
+/* The last mode in the simulated lidar's log. */
+static bool is_lidar_idle()
+{
+    char line[256];
+    bool is_idle = false;
+    FILE *const log = fopen("log", "r");
+    require(log != nullptr, "a log");
+    while (fgets(line, sizeof line, log) != nullptr) {
+        const std::string text = line;
+        if (text.find(" mode ") != std::string::npos) {
+            is_idle = text.find("-> idle") != std::string::npos;
+        }
+    }
+    (void)fclose(log);
+    return is_idle;
+}
+
+static void scans_come_at_the_wished_frequency_which_may_change_and_the_end_stops_the_lidar()
+{
+    Simulator simulator("--pty");
+    settings.port = simulator.address;
+    {
+        Lidar lidar(settings, *observer);
+        observer->await_scans(3);
+        observer->await("10 Hz", [] { return observer->frequency_chz >= 980; });
+        lidar.want_frequency(700);
+        observer->await("7 Hz", [] { return observer->frequency_chz <= 720; });
+        const Report report = lidar.report();
+        require(report.state == TMINI_STATE_SCANNING, "scanning is reported");
+        require(report.wanted_chz == 700, "the wish is reported");
+        require(report.info.model == TMINI_MODEL_T_MINI_PLUS, "the model is known");
+        require(report.complete >= 3 && report.published == report.complete, "scans are counted");
+        require(report.counters.packets > 0, "packets are counted");
+    }
+    simulator.end();
+    require(is_lidar_idle(), "the lidar is idle at the end");
+}
+
+static void a_wish_stops_and_starts_the_lidar()
+{
+    Simulator simulator("--pty");
+    settings.port = simulator.address;
+    Lidar lidar(settings, *observer);
+    observer->await_scans(1);
+    lidar.want_scans(false);
+    observer->await("a stop", [] { return observer->has_told("stopped"); });
+    require(!lidar.report().is_wanted, "the wish is reported");
+    lidar.want_scans(true);
+    observer->await_scans(2);
+}
+
+static void in_standby_the_lidar_scans_only_while_somebody_subscribes()
+{
+    Simulator simulator("--pty");
+    settings.port = simulator.address;
+    settings.standby = true;
+    Lidar lidar(settings, *observer);
+    observer->await("looks", [] { return observer->looks > 100; });
+    require(observer->scans == 0 && !observer->has_told("started"), "standing still");
+    observer->subscribe(true);
+    observer->await_scans(1);
+    observer->subscribe(false);
+    observer->await("a stop", [] { return observer->has_told("stopped"); });
+}
+
+static void a_lidar_that_goes_away_is_reported_and_found_again()
+{
+    Simulator first("--tcp", "0");
+    settings.port = "tcp:" + first.address;
+    Lidar lidar(settings, *observer);
+    observer->await_scans(1);
+    first.end();
+    observer->await("an end", [] { return observer->has_told("trying again"); });
+    observer->await("a loss", [] { return observer->has_told("the lidar: lost"); });
+    const std::string number = first.address.substr(first.address.find(':') + 1);
+    Simulator second("--tcp", number.c_str());
+    observer->await_scans(2);
+    require(observer->has_told("recovered"), "a recovery is told");
+    require(lidar.report().reconnections >= 1, "the reconnection is counted");
+}
+
+static void incomplete_scans_are_counted_and_published_only_if_wished()
+{
+    for (const bool is_wished : {false, true}) {
+        Simulator simulator("--fault=flip=0.0005", "--pty");
+        Observer own;
+        settings.port = simulator.address;
+        settings.publish_incomplete = is_wished;
+        Lidar lidar(settings, own);
+        Report report;
+        own.await("five incomplete scans", [&] {
+            report = lidar.report();
+            return report.incomplete >= 5 && report.complete >= 1;
+        });
+        require(report.published == report.complete + (is_wished ? report.incomplete : 0),
+                "what is published");
+    }
+}
+
+int main()
+{
+    UNITY_BEGIN();
+    RUN_TEST(scans_come_at_the_wished_frequency_which_may_change_and_the_end_stops_the_lidar);
+    RUN_TEST(a_wish_stops_and_starts_the_lidar);
+    RUN_TEST(in_standby_the_lidar_scans_only_while_somebody_subscribes);
+    RUN_TEST(a_lidar_that_goes_away_is_reported_and_found_again);
+    RUN_TEST(incomplete_scans_are_counted_and_published_only_if_wished);
+    return UNITY_END();
+}
