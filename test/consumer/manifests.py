@@ -214,6 +214,14 @@ def check_esp_idf_lists():
             complain("idf_component.yml does not include %s" % needed)
 
 
+def check_esp_idf_example():
+    folder = "examples/esp32_idf/main"
+    name = folder + "/idf_component.yml"
+    where = os.path.exists(path(name)) and find(name, r"^dependencies:\n  tmini:\n(?:    .*\n)*    override_path: (.*)$")
+    if not where or not os.path.samefile(path(os.path.join(folder, where)), path(".")):
+        complain("%s does not lead to the component" % name)
+
+
 def check_zephyr_lists():
     name = "zephyr/module.yml"
     if find(name, r"^name: (.*)$") != of_platformio()["name"]:
@@ -234,5 +242,6 @@ check_zephyr_lists()
 check_platformio_lists()
 check_arduino_lists()
 check_esp_idf_lists()
+check_esp_idf_example()
 print("\n".join(complaints) or "the manifests agree")
 sys.exit(1 if complaints else 0)
