@@ -7,6 +7,7 @@
 #include "tmini/tmini_ranges.h"
 #include "tmini/tmini_sectors.h"
 #include "tmini/tmini_units.h"
+#include "witness.h"
 #include "tmini_timed.h"
 
 static void point_times_us(const tmini_scan_t *scan, uint32_t *times_us)

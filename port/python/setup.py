@@ -22,7 +22,7 @@ if not IS_DISTRIBUTION:
         raise SystemExit(f"no library in {CHECKOUT}/lib: install from the whole checkout "
                          "(pip install ./port/python), with pip 21.3 or later")
     shutil.copytree(CHECKOUT / "lib", CARRIED, dirs_exist_ok=True)
-    for module in ("chunk", "stream", "tape"):
+    for module in ("causes", "chunk", "stream", "tape", "traits", "witness"):
         for suffix in (".c", ".h"):
             shutil.copy(CHECKOUT / "examples" / "host" / (module + suffix), CARRIED / "src")
     for suffix in (".c", ".h"):

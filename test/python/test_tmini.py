@@ -420,6 +420,24 @@ def test_a_silent_line_is_an_error_that_says_what_to_look_at():
     assert not [thread for thread in threading.enumerate() if thread.name.startswith("tmini ")]
 
 
+@pytest.mark.parametrize("options, words", [
+    (("--samples", "4"), r"packets come at \d+ per second, all with wrong checksums; they fit four-byte samples: "
+     r"perhaps a T-mini Plus SH \(another YDLIDAR\), which this version does not read"),
+    (("--samples", "2"), r"packets come at \d+ per second, all with wrong checksums; they fit two-byte samples: "
+     "another YDLIDAR, which this version does not read"),
+    (("--bridge", "seven"), "no byte is above 7F"),
+    (("--boot", "60"), "not one byte came"),
+])
+def test_whoever_gets_no_scans_is_told_the_reason_in_the_words_of_the_tool(simulator, options, words):
+    with pytest.raises(tmini.LidarError, match=words):
+        tmini.Lidar(simulator.start(*options), timeout=3)
+
+
+def test_a_lidar_that_still_boots_is_waited_for(simulator):
+    with tmini.Lidar(simulator.start("--boot", "2.5")) as lidar:
+        assert lidar.read(1) is not None
+
+
 def test_a_port_that_is_not_there_is_an_error_or_waited_for(simulator):
     with pytest.raises(OSError):
         tmini.Lidar(simulator.port)

@@ -24,6 +24,7 @@ from ._line import Line, now_us, open_line
 from ._mount import Mount
 from ._native import ffi, lib
 from ._scan import Fault, Scan
+from ._witness import Witness
 
 _PERIOD_S = 0.01  # 130 bytes come in this time.
 _REOPEN_S = 0.25
@@ -106,6 +107,7 @@ class Lidar:
         self._name: str | None = None  # The line's; None: to be found.
         self._is_stale = False  # The line is silent, and is to be opened again.
         self._tap: Callable[[int, bytes | None], None] | None = None  # Gets what comes, and when.
+        self._witness: Witness | None = Witness()  # Until the first scan.
         self._mount = Mount(front, upside_down, mask)
         self._listen_only = listen_only
         chz = 0 if frequency_hz is None else _chz(frequency_hz)
@@ -257,6 +259,8 @@ class Lidar:
         self._received += len(data)
         for begin in range(0, max(len(data), 1), _BLOCK):
             block = data[begin:begin + _BLOCK]
+            if self._witness is not None:
+                self._witness.take(block)
             lib.tmini_feed(self._lidar, block, len(block))
             lib.tmini_feed_held(self._lidar, len(data) - begin - len(block))
             while (event := lib.tmini_poll(self._lidar)) != lib.TMINI_EVENT_NONE:
@@ -267,6 +271,7 @@ class Lidar:
             native = lib.tmini_scan(self._lidar)[0]
             age_ms = (now_us() // 1000 - native.start_ms) & 0xFFFFFFFF
             self._number += 1
+            self._witness = None
             scan = Scan(native, self._number, self._faults(), time.monotonic() - age_ms / 1000)
             self._scans.append(scan)
             self._complete_s = scan.end_s if scan.complete else self._complete_s
@@ -361,20 +366,17 @@ class Lidar:
             with self._changed:
                 if self._changed.wait_for(lambda: len(self._scans) > 0, timeout):
                     return
-            raise LidarError(self._trouble(timeout))
+            raise LidarError(self._trouble())
         except BaseException:
             self.close()
             raise
 
-    def _trouble(self, timeout: float) -> str:
-        counters = self.counters
-        if self._received == 0:
-            return (f"not one byte came from {self.port} in {timeout:g} s. Is it the right port, "
-                    "has the lidar 5 V, and is its TX wired to the adapter's RX?")
-        if counters["packets"] == 0 and self.info is None:
-            return (f"{self._received} bytes came from {self.port}, but no packet of a T-mini: "
-            "another device, or another baud rate than 230400?")
-        return f"the lidar on {self.port} answers, but does not scan: {self.faults!r}"
+    def _trouble(self) -> str:
+        with self._changed:
+            reason = "" if self._witness is None else self._witness.judge(
+                self.port, listens=self._listen_only, has_replied=self.info is not None)
+        faults = "" if not self.faults else f"; it reports {self.faults!r}"
+        return f"{self.port}: {reason or 'it answers, but does not scan: its supply may fail'}{faults}"
 
 
 def _info(native: Any) -> Info:
