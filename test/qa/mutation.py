@@ -103,7 +103,7 @@ def function_at(lines, line):
 
 def change_of(old, begin, end, replacement):
     """Describes the change with the operands around it, so that an entry in mutants.txt names one place."""
-    if replacement == ";":
+    if replacement in (";", "pass"):
         return f"{' '.join(old[begin:end].split('(')[0].split('=')[0].split())} removed"
     words = [match.span() for match in re.finditer(r"\S+", old)]
     last = next(i for i, span in enumerate(words) if span[1] >= end)
@@ -146,8 +146,8 @@ def mutants_of(path):
         for pattern, replacements in elsewhere.REPLACEMENTS.get(kind, REPLACEMENTS):
             for match in re.finditer(pattern, line):
                 for replacement in replacements:
-                    mutant = Mutant(path, number, match.start(), match.end(),
-                                    match.expand(replacement.format(match.group(0))), lines)
+                    begin = match.end() - len(match.group(0).lstrip())
+                    mutant = Mutant(path, number, begin, match.end(), replacement.format(match.group(0)), lines)
                     found[mutant.id] = mutant
     return list(found.values())
 
