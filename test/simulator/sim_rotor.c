@@ -218,7 +218,7 @@ static encode_sample_t measure_noisy(sim_t *sim, uint32_t angle_q16)
 static encode_sample_t measure_quiet(sim_t *sim, uint32_t angle_q16)
 {
     const uint16_t ideal = ideal_distance(sim, angle_q16);
-    const encode_sample_t sample = {intensity_at(ideal), 0, ideal};
+    const encode_sample_t sample = {ideal, intensity_at(ideal), 0};
 
     sim->rotor.valid += ideal != 0u ? 1u : 0u;
     return ideal != 0u ? sample : (encode_sample_t){0, 0, 0};
@@ -232,13 +232,7 @@ static bool is_noisy(const sim_config_t *config)
 
 static encode_sample_t measure(sim_t *sim, uint32_t angle_q16)
 {
-    encode_sample_t sample =
-        is_noisy(&sim->config) ? measure_noisy(sim, angle_q16) : measure_quiet(sim, angle_q16);
-
-    if (sim->config.tagged) {
-        sample.intensity = (uint8_t)sim->revolution;
-    }
-    return sample;
+    return is_noisy(&sim->config) ? measure_noisy(sim, angle_q16) : measure_quiet(sim, angle_q16);
 }
 
 static uint32_t turned_by(uint32_t angle_q16, uint32_t more_q16)
@@ -253,7 +247,8 @@ static void measure_all(sim_t *sim, encode_sample_t *samples)
     uint32_t angle = turned_by(sim->rotor.phase, (uint32_t)sim->config.start_angle_q6 << 16);
 
     for (uint32_t i = 0; i < sim->rotor.planned; i++) {
-        samples[i] = measure(sim, angle);
+        samples[i] = sim->config.marked ? sim_mark(sim, sim->revolution, sim->rotor.samples + i)
+                                        : measure(sim, angle);
         angle = turned_by(angle, sim->rotor.step);
     }
 }

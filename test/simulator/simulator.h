@@ -120,7 +120,7 @@ typedef struct {
     bool keeps_frequency;          /* the set frequency survives reboot and loss of power */
     bool refuses_steps;            /* frequency commands change nothing */
     bool never_answers;            /* obeys, but sends no replies */
-    bool tagged;                   /* intensity: the number of the revolution, modulo 256 */
+    bool marked;                   /* samples are marks instead of measurements: sim_mark() */
     bool firmware_major_first;     /* in the information reply, as in the manual (9.4) */
     bool ascii_serial;         /* in the information reply: characters instead of numbers (9.5) */
     bool blocked_sends_starts; /* start packets continue while the rotor is blocked */
@@ -273,6 +273,12 @@ bool sim_expects_event(const sim_t *sim);
  * begins as if the start command's reply was sent when due, even if that is late or lost. */
 void sim_delay_next_reply(sim_t *sim, uint32_t extra_ms);
 void sim_lose_next_reply(sim_t *sim);
+
+/* Which sample this is: 13 bits of its revolution, 11 of its number there, scrambled with the seed
+ * to look random; and which one a point of a marked lidar shows. */
+#define SIM_MARK_SAMPLE_BITS 11u
+encode_sample_t sim_mark(const sim_t *sim, uint32_t revolution, uint32_t sample);
+void sim_read_mark(const sim_t *sim, encode_sample_t point, uint32_t *revolution, uint32_t *sample);
 
 sim_mode_t sim_mode(const sim_t *sim);
 const char *sim_mode_name(sim_mode_t mode);

@@ -154,10 +154,19 @@ tmini_status_t bed_request_info(bed_t *bed)
 
 /* ---- What the program sees ---- */
 
-static bool is_mixed(const tmini_scan_t *scan)
+static uint32_t revolution_of(const bed_t *bed, const tmini_point_t *point)
+{
+    const encode_sample_t sample = {point->distance_mm, point->intensity, point->flag};
+    uint32_t revolution, number;
+
+    sim_read_mark(&bed->sim, sample, &revolution, &number);
+    return revolution;
+}
+
+static bool is_mixed(const bed_t *bed, const tmini_scan_t *scan)
 {
     for (uint16_t i = 1; i < scan->count; i++) {
-        if (scan->points[i].intensity != scan->points[0].intensity) {
+        if (revolution_of(bed, &scan->points[i]) != revolution_of(bed, &scan->points[0])) {
             return true;
         }
     }
@@ -171,7 +180,7 @@ static void note_scan(bed_t *bed)
     bed->scan = *scan;
     bed->flows = bed->may_flow;
     bed->small += scan->packets == 1 ? 1u : 0u;
-    bed->mixed += bed->sim.config.tagged && is_mixed(scan) ? 1u : 0u;
+    bed->mixed += bed->sim.config.marked && is_mixed(bed, scan) ? 1u : 0u;
     if (!scan->complete) {
         bed->complete_in_a_row = 0;
         return;

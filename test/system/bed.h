@@ -62,7 +62,7 @@ typedef struct {
     uint32_t most_per_second;       /* The most of these in any second. */
     tmini_scan_t scan;              /* The latest; its points may have been overwritten. */
     uint32_t small;                 /* Scans of one packet. */
-    uint32_t mixed;                 /* Scans of two revolutions, if the lidar tags them. */
+    uint32_t mixed;                 /* Scans of two revolutions, if the lidar marks them. */
     uint32_t complete;              /* Complete scans. */
     uint64_t complete_us;           /* The latest of these. */
     uint32_t complete_in_a_row;     /* Now. */

@@ -78,7 +78,7 @@ static void prepare(uint16_t frequency_chz)
 {
     lidar = bed_quiet_lidar();
     lidar.seed = 3;
-    lidar.tagged = true;
+    lidar.marked = true;
     bed_prepare(&bed);
     bed.config.frequency_chz = frequency_chz;
     forget_heard();
@@ -325,7 +325,7 @@ static void bad_line(const char *unused)
 {
     (void)unused;
     prepare(1000);
-    lidar.tagged = false; /* Some damage is not seen. */
+    lidar.marked = false; /* Some damage is not seen. */
     begin();
     start();
     scans_within(5000);

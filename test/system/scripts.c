@@ -268,7 +268,7 @@ static void play(const char *script)
     uint32_t number;
 
     lidar = bed_quiet_lidar();
-    lidar.tagged = true;
+    lidar.marked = true;
     bed_prepare(&bed);
     if (strstr(script, "begin, ") == NULL) {
         begin(0);

@@ -3,274 +3,116 @@
 
 #include "campaign_line.h"
 
-#include "encoder.h"
+#include "reference_decoder.h"
 
 #include <string.h>
 
 #define FULL_CIRCLE_Q6 23040u
-#define FULL_CIRCLE_Q22 ((uint64_t)FULL_CIRCLE_Q6 << 16) /* Fine phases: 2^-16 of 1/64 degree. */
-#define SAMPLES_PER_SECOND 4000u                         /* Section 1. */
-#define SAMPLE_US 250u
-#define FULL_PACKET 40u /* Section 9.6. */
-#define LONE_ONE_IN 300u
-#define JITTER_Q6 3u
-#define LONE_STEP_BACK_Q6 7u /* Section 9.6: 0.266 - 0.156 degrees. */
-#define FIRST_SAMPLE_US 15000u
 #define SPIN_UP_CHZ 240u
-#define SPIN_UP_US 1000000u
-
-/* ---- Marks: 11 bits of the sample's index, 13 of its revolution, scrambled to look random ---- */
-
-#define MARK_BITS 24u
-#define MARK_MASK ((1u << MARK_BITS) - 1u)
-#define SAMPLE_BITS 11u
-
-/* Odd numbers and their inverses modulo 2^24. */
-#define FACTOR_A 0x9E3779u
-#define FACTOR_B 0x85EBCBu
-
-static uint32_t inverse(uint32_t odd)
-{
-    uint32_t x = odd;
-
-    for (unsigned round = 0; round < 4; round++) {
-        x = x * (2u - odd * x);
-    }
-    return x & MARK_MASK;
-}
-
-static uint32_t scramble(uint32_t mark, uint32_t key)
-{
-    uint32_t x = ((mark ^ key) * FACTOR_A) & MARK_MASK;
-
-    x ^= x >> 13;
-    return (x * FACTOR_B) & MARK_MASK;
-}
-
-static uint32_t unscramble(uint32_t value, uint32_t key)
-{
-    uint32_t x = (value * inverse(FACTOR_B)) & MARK_MASK;
-
-    x ^= x >> 13;
-    return ((x * inverse(FACTOR_A)) & MARK_MASK) ^ key;
-}
-
-static encode_sample_t marked_sample(const line_t *line, uint32_t revolution, uint32_t sample)
-{
-    const uint32_t value = scramble(revolution << SAMPLE_BITS | sample, line->key);
-
-    return (encode_sample_t){.distance_mm = (uint16_t)(value & 0x3FFFu),
-                             .intensity = (uint8_t)(value >> 16),
-                             .flag = (uint8_t)(value >> 14 & 3u)};
-}
+#define FAR_US UINT64_C(60000000)
 
 bool line_identify(const line_t *line, uint16_t distance_mm, uint8_t intensity, uint8_t flag,
                    line_mark_t *mark)
 {
-    const uint32_t value = (uint32_t)intensity << 16 | (uint32_t)flag << 14 | distance_mm;
-    const uint32_t plain = unscramble(value, line->key);
+    const encode_sample_t sample = {distance_mm, intensity, flag};
 
-    mark->revolution = plain >> SAMPLE_BITS;
-    mark->sample = plain & ((1u << SAMPLE_BITS) - 1u);
+    sim_read_mark(&line->lidar, sample, &mark->revolution, &mark->sample);
     return mark->revolution < line->config.revolutions &&
            mark->sample < line->counts[mark->revolution];
 }
 
-/* ---- The rotor ---- */
+/* ---- What the simulated lidar sends ---- */
 
-typedef struct {
-    random_t *random;
-    uint64_t
-        phase; /* The next sample's angle, counted from a turn before the first start packet. */
-    uint64_t step;
-    uint64_t time_us; /* Time at which the next sample begins. */
-    uint64_t free_us; /* Time at which the line is free. */
-    uint32_t revolution;
-    uint32_t index; /* The next packet's index in its revolution. */
-    bool at_start;
-    uint8_t crc;
-    encode_turn_t turn;
-} rotor_t;
-
-static uint64_t step_at(uint32_t frequency_chz, int32_t per_100000)
+static sim_config_t lidar_config(const line_config_t *config, uint64_t seed)
 {
-    const uint64_t step = FULL_CIRCLE_Q22 * frequency_chz / (UINT64_C(100) * SAMPLES_PER_SECOND);
+    sim_config_t lidar = sim_default_config();
 
-    return (uint64_t)((int64_t)step + (int64_t)step / 10000 * per_100000 / 10);
+    lidar.seed = seed;
+    lidar.marked = true;
+    lidar.ct_information = config->ct_information;
+    lidar.frequency_chz = (uint16_t)config->frequency_chz;
+    lidar.start_angle_q6 = (uint16_t)config->start_angle_q6;
+    lidar.lone_packet_permille = 3;
+    lidar.first_packet_ms = 12;
+    lidar.spin_up_percent =
+        (uint8_t)(config->spins_up ? 100u * SPIN_UP_CHZ / config->frequency_chz : 100u);
+    return lidar;
 }
 
-/* Chooses the revolution's speed, with a deviation of up to 0.5 %; lower while spinning up. */
-static void choose_speed(const line_t *line, rotor_t *rotor)
+/* How far the rotor has turned since the previous sample noted; jitter may take it back a little. */
+static int32_t turn_on(line_t *line, uint16_t angle_q6)
 {
-    uint32_t frequency_chz = line->config.frequency_chz;
-    const int32_t wobble = (int32_t)random_between(rotor->random, 0, 1000) - 500;
+    const uint32_t turned = (angle_q6 + FULL_CIRCLE_Q6 - line->last_q6) % FULL_CIRCLE_Q6;
 
-    if (line->config.spins_up && rotor->time_us < SPIN_UP_US) {
-        frequency_chz = SPIN_UP_CHZ + (uint32_t)((uint64_t)(frequency_chz - SPIN_UP_CHZ) *
-                                                 rotor->time_us / SPIN_UP_US);
+    line->last_q6 = angle_q6;
+    return turned < FULL_CIRCLE_Q6 / 2 ? (int32_t)turned
+                                       : (int32_t)turned - (int32_t)FULL_CIRCLE_Q6;
+}
+
+/* Section 5: what a decoder written apart makes of the packet's angles. */
+static void note_angles(line_t *line, line_packet_t *packet, const uint8_t *bytes)
+{
+    uint16_t *const count = &line->counts[packet->revolution];
+
+    packet->first = *count;
+    for (uint32_t i = 0; i < packet->samples; i++) {
+        const uint16_t angle_q6 = reference_point(bytes, i).angle_q6;
+
+        line->turned_q6 = (uint64_t)((int64_t)line->turned_q6 + turn_on(line, angle_q6));
+        packet->turned_q6 = i == 0 ? line->turned_q6 : packet->turned_q6;
+        line->angles_q6[packet->revolution][(*count)++] = angle_q6;
     }
-    rotor->step = step_at(frequency_chz, wobble);
+    packet->ends_q6 = line->turned_q6;
 }
 
-static uint32_t draw_samples(const rotor_t *rotor)
+static void note_bytes(line_t *line, const sim_run_t *run)
 {
-    const uint64_t left = FULL_CIRCLE_Q22 - rotor->phase % FULL_CIRCLE_Q22;
-    const uint64_t samples = (left + rotor->step - 1) / rotor->step;
-
-    if (rotor->at_start || random_below(rotor->random, LONE_ONE_IN) == 0) {
-        return 1;
-    }
-    return (uint32_t)(samples < FULL_PACKET ? samples : FULL_PACKET);
-}
-
-/* ---- Packets ---- */
-
-static uint32_t with_jitter(const line_t *line, rotor_t *rotor, uint64_t phase)
-{
-    const uint32_t plain = (uint32_t)((phase >> 16) % FULL_CIRCLE_Q6);
-    const uint32_t jitter = random_between(rotor->random, 0, 2 * JITTER_Q6);
-
-    return plain + line->config.start_angle_q6 + FULL_CIRCLE_Q6 - JITTER_Q6 + jitter;
-}
-
-/* Sets the first and the last angle, which may exceed the full circle. The LSA of a lone sample is
- * a little less than its FSA (section 9.6). */
-static void set_angles(const line_t *line, rotor_t *rotor, uint32_t count, uint32_t angles[2])
-{
-    angles[0] = with_jitter(line, rotor, rotor->phase);
-    angles[1] =
-        with_jitter(line, rotor, rotor->phase) + (uint32_t)(((count - 1) * rotor->step) >> 16);
-    if (count == 1) {
-        angles[1] = rotor->at_start ? angles[0] : angles[0] - LONE_STEP_BACK_Q6;
-    } else if (angles[1] < angles[0]) {
-        angles[1] = angles[0];
-    }
-}
-
-/* Section 5: angles are evenly spaced from the first to the last; rounded to 1/64 degree. */
-static void note_angles(line_t *line, uint32_t revolution, uint32_t count, const uint32_t angles[2])
-{
-    uint16_t *const noted = &line->angles_q6[revolution][line->counts[revolution]];
-    const uint32_t steps = count > 1 ? count - 1 : 1;
-    const uint32_t turned = count > 1 ? angles[1] - angles[0] : 0;
-
-    for (uint32_t i = 0; i < count; i++) {
-        noted[i] =
-            (uint16_t)((angles[0] + (2 * turned * i + steps) / (2 * steps)) % FULL_CIRCLE_Q6);
-    }
-    line->counts[revolution] = (uint16_t)(line->counts[revolution] + count);
-}
-
-static void send(line_t *line, rotor_t *rotor, const uint8_t *bytes, uint32_t size)
-{
-    const uint64_t begins_us = rotor->time_us > rotor->free_us ? rotor->time_us : rotor->free_us;
-
-    for (uint32_t i = 0; i < size; i++) {
-        line->bytes[line->size] = bytes[i];
+    for (uint32_t i = 0; i < run->length; i++) {
+        line->bytes[line->size] = run->bytes[i];
         line->owner[line->size] = (uint16_t)line->packet_count;
-        line->is_guard[line->size] = size == 1;
-        line->at_us[line->size++] = (uint32_t)(begins_us + (i + 1) * 1000000u / 23040u);
+        line->is_guard[line->size] = i < run->packet_at;
+        line->at_us[line->size++] = (uint32_t)sim_byte_us(run->start_us, i);
     }
-    rotor->free_us = begins_us + size * 1000000u / 23040u;
 }
 
-static uint32_t encode(line_t *line, rotor_t *rotor, uint32_t count, uint8_t *out)
+static void note_packet(line_t *line, const sim_run_t *run)
 {
-    encode_sample_t samples[FULL_PACKET];
-    uint32_t angles[2];
-    encode_packet_t packet = {.lsn = (uint8_t)count, .samples = samples};
-
-    if (rotor->at_start || (line->config.ct_information && rotor->revolution > 0)) {
-        packet.ct = encode_ct(&rotor->turn, rotor->index);
-    }
-    rotor->crc = encode_crc8(rotor->crc, packet.ct);
-    for (uint32_t i = 0; i < count; i++) {
-        samples[i] = marked_sample(line, rotor->revolution, line->counts[rotor->revolution] + i);
-    }
-    set_angles(line, rotor, count, angles);
-    note_angles(line, rotor->revolution, count, angles);
-    packet.first_q6 = (uint16_t)(angles[0] % FULL_CIRCLE_Q6);
-    packet.last_q6 = (uint16_t)(angles[1] % FULL_CIRCLE_Q6);
-    return (uint32_t)encode_packet(out, &packet);
-}
-
-/* Section 9.8: a start packet reports the frequency of the previous revolution. */
-static void begin_revolution(line_t *line, rotor_t *rotor)
-{
-    const uint32_t samples = line->counts[rotor->revolution];
-
-    if (rotor->revolution > 0 && line->config.ct_information) {
-        send(line, rotor, &rotor->crc, 1);
-    }
-    rotor->turn.frequency_dhz =
-        (uint16_t)(rotor->revolution > 0 ? (10 * SAMPLES_PER_SECOND + samples / 2) / samples
-                                         : line->config.frequency_chz / 10);
-    rotor->revolution++;
-    rotor->index = 0;
-    rotor->crc = 0;
-    choose_speed(line, rotor);
-}
-
-static void turn_on(rotor_t *rotor, uint32_t count)
-{
-    const uint64_t before = rotor->phase / FULL_CIRCLE_Q22;
-
-    rotor->phase += count * rotor->step;
-    rotor->at_start = rotor->phase / FULL_CIRCLE_Q22 != before;
-    rotor->index++;
-}
-
-static void make_packet(line_t *line, rotor_t *rotor)
-{
-    uint8_t bytes[ENCODE_PACKET_MAX];
     line_packet_t *const packet = &line->packets[line->packet_count];
-    const uint32_t count = draw_samples(rotor);
 
-    rotor->time_us += (uint64_t)count * SAMPLE_US;
-    if (rotor->at_start) {
-        begin_revolution(line, rotor);
-    }
-    *packet = (line_packet_t){.from = line->size,
-                              .turned_q6 = rotor->phase >> 16,
-                              .ends_q6 = (rotor->phase + (count - 1) * rotor->step) >> 16,
-                              .first = line->counts[rotor->revolution],
-                              .samples = (uint16_t)count,
-                              .revolution = (uint16_t)rotor->revolution,
-                              .is_start = rotor->at_start};
-    send(line, rotor, bytes, encode(line, rotor, count, bytes));
-    packet->to = line->size;
+    *packet = (line_packet_t){.from = line->size + (uint32_t)run->packet_at,
+                              .to = line->size + (uint32_t)run->length,
+                              .samples = run->packet->bytes[3],
+                              .revolution = (uint16_t)run->packet->revolution,
+                              .is_start = run->packet->starts_revolution};
+    note_angles(line, packet, run->packet->bytes);
+    note_bytes(line, run);
     packet->sent_us = line->at_us[line->size - 1];
     line->packet_count++;
-    turn_on(rotor, count);
 }
 
 void line_make(line_t *line, const line_config_t *config, random_t *random)
 {
-    uint8_t reply[ENCODE_REPLY_MAX];
-    rotor_t rotor = {.random = random,
-                     .turn = {.user_major = 1,
-                              .hardware = 1,
-                              .firmware_major = 1,
-                              .firmware_minor = 2,
-                              .year = 2026,
-                              .month = 3,
-                              .day = 17,
-                              .serial = 12345,
-                              .production = (uint8_t)random_below(random, 128)}};
+    static const uint8_t start[] = {0xA5, SIM_COMMAND_START};
+    const sim_config_t lidar = lidar_config(config, random_u64(random));
+    sim_run_t run;
 
     memset(line->counts, 0, sizeof line->counts);
     memset(line->touched, 0, sizeof line->touched);
     line->config = *config;
-    line->key = random_below(random, 1u << MARK_BITS);
     line->size = 0;
     line->packet_count = 0;
-    rotor.phase = ((uint64_t)random_u32(random) << 16) % FULL_CIRCLE_Q22;
-    choose_speed(line, &rotor);
-    rotor.time_us = 3000;
-    send(line, &rotor, reply, (uint32_t)encode_scan_reply(reply));
-    rotor.time_us = FIRST_SAMPLE_US;
-    while (!rotor.at_start || rotor.revolution + 1 < config->revolutions) {
-        make_packet(line, &rotor);
+    line->turned_q6 = FULL_CIRCLE_Q6;
+    line->last_q6 = 0;
+    sim_init(&line->lidar, &lidar);
+    sim_receive(&line->lidar, start, sizeof start, 0);
+    /* As far in the future as needed: the whole next frame. */
+    while (sim_next_run(&line->lidar, FAR_US, &run) &&
+           (run.packet == NULL || run.packet->revolution < config->revolutions)) {
+        if (run.packet == NULL) {
+            note_bytes(line, &run);
+        } else {
+            note_packet(line, &run);
+        }
     }
     memset(line->lost, 0, line->size);
 }

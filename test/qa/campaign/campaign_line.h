@@ -4,14 +4,13 @@
 /* The bytes that the lidar sends in one trial: some revolutions, with the arrival time of each
  * byte, and with parts that never arrive.
  *
- * Every sample's distance, intensity and flag encode its revolution and its index within it. So
- * each point shows whether it was sent, where it belongs and its correct angle. Made with
- * test/support/encoder.c, from the protocol's document; shares no code with the library. */
+ * The simulated lidar marks its samples. So each point shows whether it was sent, where it belongs
+ * and its correct angle. */
 
 #ifndef CAMPAIGN_LINE_H
 #define CAMPAIGN_LINE_H
 
-#include "random.h"
+#include "simulator.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -49,7 +48,9 @@ typedef struct {
 
 typedef struct {
     line_config_t config;
-    uint32_t key; /* The key of this trial's marks. */
+    sim_t lidar;        /* Whose samples are marked. */
+    uint64_t turned_q6; /* Since the beginning, and the latest angle. */
+    uint16_t last_q6;
 
     uint8_t bytes[LINE_BYTES];
     uint32_t at_us[LINE_BYTES]; /* Time since the start command. */
