@@ -625,7 +625,8 @@ def files_among(names):
         for place, folders, _ in os.walk(name):
             folders.sort()
             yield from (file for file in files_of(os.path.abspath(place))
-                        if file.startswith(PUBLIC) or has_functions(file) and sources_with(file))
+                        if file.startswith(PUBLIC) or has_functions(file) and sources_with(file) and
+                        not os.path.basename(file).startswith("test_"))
 
 
 def try_mutants(mutants, wanted, pool, results, known):

@@ -146,7 +146,7 @@ class Command:
         words += options if "pytest" in words else []
         settings = {**os.environ, **settings, "TMINI_PATIENCE_S": "10"}
         with subprocess.Popen(words, cwd=work, env=settings, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, start_new_session=True) as process:
+                              stderr=subprocess.STDOUT, preexec_fn=os.setpgrp) as process:
             try:
                 output = process.communicate(timeout=20 + 10 * self.seconds)[0]
                 return abs(process.returncode), output.decode(errors="replace")
