@@ -112,7 +112,8 @@ def test_each_fault_is_named_with_a_remedy(lidar, check, case):
 @pytest.mark.parametrize("case", ("four bytes", "two bytes"))
 def test_a_listener_hears_another_unit_too(lidar, check, case):
     device = lidar(*CASES[case][0].split())
-    with open(device.port, "r+b", buffering=0) as line:
+    not_ours = lambda path, flags: os.open(path, flags | os.O_NOCTTY)
+    with open(device.port, "r+b", buffering=0, opener=not_ours) as line:
         line.write(b"\xA5\x60")
         device.wait_for_log("idle -> scanning")
         run = check(device.port, "--listen")
