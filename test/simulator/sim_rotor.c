@@ -206,7 +206,6 @@ static encode_sample_t measure_noisy(sim_t *sim, uint32_t angle_q16)
     if (ideal != 0u && missing >= sim->config.invalid_permille) {
         sample.distance_mm = add_noise(ideal, (uint32_t)dice, sim->config.noise_mm);
         sample.intensity = intensity_at(ideal);
-        sim->rotor.valid++;
     }
     if (flagged < sim->config.flagged_permille) {
         sample.flag = (uint8_t)(2u + (dice >> 63));
@@ -220,7 +219,6 @@ static encode_sample_t measure_quiet(sim_t *sim, uint32_t angle_q16)
     const uint16_t ideal = ideal_distance(sim, angle_q16);
     const encode_sample_t sample = {ideal, intensity_at(ideal), 0};
 
-    sim->rotor.valid += ideal != 0u ? 1u : 0u;
     return ideal != 0u ? sample : (encode_sample_t){0, 0, 0};
 }
 
@@ -249,6 +247,7 @@ static void measure_all(sim_t *sim, encode_sample_t *samples)
     for (uint32_t i = 0; i < sim->rotor.planned; i++) {
         samples[i] = sim->config.marked ? sim_mark(sim, sim->revolution, sim->rotor.samples + i)
                                         : measure(sim, angle);
+        sim->rotor.valid += samples[i].distance_mm != 0u ? 1u : 0u;
         angle = turned_by(angle, sim->rotor.step);
     }
 }

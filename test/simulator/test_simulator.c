@@ -1021,3 +1021,30 @@ void test_a_lidar_that_never_answers_obeys(void)
     scan_seconds(1);
     TEST_ASSERT_TRUE(packet_count > 90);
 }
+
+/* ---- Marks ---- */
+
+void test_a_mark_shows_its_sample_and_revolution_and_no_data_fault(void)
+{
+    config.marked = true;
+    power_up();
+    scan_seconds(2);
+    size_t at = next_start(1);
+    const size_t end = next_start(at + 1);
+    uint32_t revolution, sample;
+    uint32_t first = 0;
+    unsigned count = 0;
+
+    for (; at < end; at++) {
+        for (unsigned i = 0; i < packets[at].lsn; i++) {
+            const reference_point_t point = reference_point(packets[at].bytes, i);
+            sim_read_mark(&sim, (encode_sample_t){point.distance_mm, point.intensity, point.flag},
+                          &revolution, &sample);
+            first = count == 0 ? revolution : first;
+            TEST_ASSERT_EQUAL_UINT32(first, revolution);
+            TEST_ASSERT_EQUAL_UINT32(count++, sample);
+        }
+    }
+    TEST_ASSERT_TRUE(first > 0 && count > 600);
+    TEST_ASSERT_EQUAL_HEX8(0, sim_health(&sim));
+}
