@@ -4,9 +4,9 @@
 #include "tape.h"
 #include "tmini/tmini.h"
 #include "tmini/tmini_mount.h"
-#include "tmini/tmini_ranges.h"
 #include "tmini/tmini_sectors.h"
 #include "tmini/tmini_units.h"
+#include "tmini_laser.h"
 #include "witness.h"
 #include "tmini_timed.h"
 

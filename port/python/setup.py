@@ -15,6 +15,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 CARRIED = HERE / "lib"
 PAGE = HERE / "tmini" / "tmini.html"
 CHECKOUT = HERE.parents[1]
+SOURCES = ["examples/host/" + name for name in ("causes", "chunk", "stream", "tape", "traits", "witness")]
+SOURCES += ["port/posix/tmini_timed", "port/ros2/src/tmini_laser"]
 IS_DISTRIBUTION = (HERE / "PKG-INFO").exists()
 
 if not IS_DISTRIBUTION:
@@ -22,11 +24,9 @@ if not IS_DISTRIBUTION:
         raise SystemExit(f"no library in {CHECKOUT}/lib: install from the whole checkout "
                          "(pip install ./port/python), with pip 21.3 or later")
     shutil.copytree(CHECKOUT / "lib", CARRIED, dirs_exist_ok=True)
-    for module in ("causes", "chunk", "stream", "tape", "traits", "witness"):
+    for place in SOURCES:
         for suffix in (".c", ".h"):
-            shutil.copy(CHECKOUT / "examples" / "host" / (module + suffix), CARRIED / "src")
-    for suffix in (".c", ".h"):
-        shutil.copy(CHECKOUT / "port" / "posix" / ("tmini_timed" + suffix), CARRIED / "src")
+            shutil.copy(CHECKOUT / (place + suffix), CARRIED / "src")
     shutil.copy(CHECKOUT / "LICENSE", HERE)
     shutil.copy(CHECKOUT / "examples" / "web" / "tmini.html", PAGE)
 try:

@@ -7,10 +7,10 @@ WebSocket" connection; the topic is /scan."""
 from __future__ import annotations
 
 import argparse
-import math
 import time
 
 from ._command import add_lidar_arguments, load, open_lidar, scans_of
+from ._laser import Laser
 
 SUMMARY = "live in Foxglove"
 _RAYS = 360
@@ -29,17 +29,17 @@ def run(arguments: argparse.Namespace) -> None:
     foxglove = load("foxglove", "foxglove")
     messages = load("foxglove.messages", "foxglove")
     channel = load("foxglove.channels", "foxglove").LaserScanChannel("/scan")
+    laser = Laser(_RAYS, upside_down=arguments.upside_down)
     server = foxglove.start_server(name="tmini", host=arguments.host, port=arguments.tcp)
     try:
         print(f"ws://{arguments.host}:{server.port}", flush=True)
         with open_lidar(arguments) as lidar:
             for scan in scans_of(lidar):
-                ranges, intensities = scan._rays(_RAYS)
-                ended_s = time.time() - time.monotonic() + scan.end_s
+                rays = laser.convert(scan)
+                stamp_s = time.time() - time.monotonic() + rays.stamp_s
                 channel.log(messages.LaserScan(
-                    timestamp=messages.Timestamp.from_epoch_secs(ended_s),
-                    frame_id=arguments.frame, start_angle=0.0,
-                    end_angle=2 * math.pi * (_RAYS - 1) / _RAYS, ranges=ranges.tolist(),
-                    intensities=intensities.tolist()))
+                    timestamp=messages.Timestamp.from_epoch_secs(stamp_s),
+                    frame_id=arguments.frame, start_angle=rays.angle_min, end_angle=rays.angle_max,
+                    ranges=rays.ranges.tolist(), intensities=rays.intensities.tolist()))
     finally:
         server.stop()

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import itertools
-import math
 import os
 import time
 from collections.abc import Iterator
@@ -17,12 +16,12 @@ from typing import Any
 
 from ._command import (CommandError, add_frequency_argument, add_mount_arguments, load, mount,
                        open_lidar, scans_of)
+from ._laser import Laser, Rays
 from ._recording import read
 from ._scan import Scan
 
 SUMMARY = "into a file for ROS 2 and Foxglove"
 _BACKLOG = 100
-_RANGE_MIN_M, _RANGE_MAX_M = 0.05, 12.0
 _DEFINITION = """std_msgs/Header header
 float32 angle_min
 float32 angle_max
@@ -82,14 +81,17 @@ def _write(arguments: argparse.Namespace, writer: Any, scans: Iterator[Scan],
            epoch_s: float) -> None:
     first = list(itertools.islice(scans, 1))  # Without a scan no file is made.
     written = incomplete = 0
+    laser = Laser(arguments.rays, upside_down=arguments.upside_down)
     with open(arguments.file, "wb") as file, writer.Writer(file) as mcap:
         schema = mcap.register_msgdef("sensor_msgs/msg/LaserScan", _DEFINITION)
         try:
             for scan in itertools.chain(first, scans):
                 incomplete += not scan.complete
                 if scan.complete or not arguments.complete:
-                    message, stamp_ns = laser_scan(scan, epoch_s, arguments.rays, arguments.frame)
-                    mcap.write_message("/scan", schema, message, stamp_ns)
+                    rays = laser.convert(scan)
+                    stamp_ns = round((epoch_s + rays.stamp_s) * 1e9)
+                    mcap.write_message("/scan", schema,
+                                       message_of(rays, stamp_ns, arguments.frame), stamp_ns)
                     written += 1
         except KeyboardInterrupt:
             pass  # The usual end of a live recording.
@@ -97,18 +99,8 @@ def _write(arguments: argparse.Namespace, writer: Any, scans: Iterator[Scan],
     print(f"{arguments.file}: {written} scans; {incomplete} incomplete{left_out}")
 
 
-def laser_scan(scan: Scan, epoch_s: float, rays: int, frame: str) -> tuple[dict[str, Any], int]:
-    """The message, and its stamp in nanoseconds. Ray 0 is ahead and the rays run counter-clockwise,
-    the rotor clockwise: ray 0 is measured last, and time_increment is negative. A lidar that is
-    upside down turns with the rays."""
-    ranges, intensities = scan._rays(rays)
-    increment, period_s = 2 * math.pi / rays, scan.period_s or 0.0
-    stamp_ns = round((epoch_s + (scan.start_s if scan._is_upside_down else scan.end_s)) * 1e9)
-    return {
-        "header": {"stamp": {"sec": stamp_ns // 10**9, "nanosec": stamp_ns % 10**9},
-                   "frame_id": frame},
-        "angle_min": 0.0, "angle_max": increment * (rays - 1), "angle_increment": increment,
-        "time_increment": (1 if scan._is_upside_down else -1) * period_s / rays,
-        "scan_time": period_s, "range_min": _RANGE_MIN_M, "range_max": _RANGE_MAX_M,
-        "ranges": ranges.tolist(), "intensities": intensities.astype(float).tolist(),
-    }, stamp_ns
+def message_of(rays: Rays, stamp_ns: int, frame: str) -> dict[str, Any]:
+    fields = {name: value for name, value in vars(rays).items() if name != "stamp_s"}
+    stamp = {"sec": stamp_ns // 10**9, "nanosec": stamp_ns % 10**9}
+    return {**fields, "header": {"stamp": stamp, "frame_id": frame},
+            "ranges": rays.ranges.tolist(), "intensities": rays.intensities.tolist()}

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ._native import ffi, lib
 
-_POINT = np.dtype([("angle_q6", "=u2"), ("distance_mm", "=u2"), ("intensity", "u1"), ("flag", "u1")])
+POINT = np.dtype([("angle_q6", "=u2"), ("distance_mm", "=u2"), ("intensity", "u1"), ("flag", "u1")])
 _PARTS_MAX = 65535
 
 
@@ -80,14 +80,13 @@ class Scan:
         self.start_s = start_s
         self.end_s = start_s + ((native.end_ms - native.start_ms) & 0xFFFFFFFF) / 1000
         self.period_s = period_ms / 1000 if period_ms else None
-        self._is_upside_down = native.upside_down
-        self._points = bytes(ffi.buffer(native.points, native.count * _POINT.itemsize))
+        self._points = bytes(ffi.buffer(native.points, native.count * POINT.itemsize))
         times_us = ffi.new("uint32_t[]", native.count)
         lib.point_times_us(ffi.addressof(native), times_us)
         self._times_us = bytes(ffi.buffer(times_us))
 
     def __len__(self) -> int:
-        return len(self._points) // _POINT.itemsize
+        return len(self._points) // POINT.itemsize
 
     def __repr__(self) -> str:
         return (f"<tmini.Scan {self.number}: {len(self)} points, "
@@ -95,13 +94,7 @@ class Scan:
 
     @property
     def _table(self) -> NDArray[Any]:
-        return np.frombuffer(self._points, _POINT)
-
-    @property
-    def _native(self) -> Any:
-        """The points as the library's functions take them, as long as this scan exists."""
-        return ffi.new("tmini_scan_t *", {
-            "points": ffi.from_buffer("tmini_point_t[]", self._points), "count": len(self)})
+        return np.frombuffer(self._points, POINT)
 
     @cached_property
     def angles_deg(self) -> NDArray[np.float64]:
@@ -152,17 +145,10 @@ class Scan:
             raise ValueError(f"{count} parts of a circle: 1 to {_PARTS_MAX} are possible")
         sectors, array = ffi.new("tmini_sectors_t *"), ffi.new("tmini_sector_t[]", count)
         lib.tmini_sectors_init(sectors, array, count, 0)
-        lib.tmini_sectors_add_scan(sectors, self._native)
+        points = ffi.from_buffer("tmini_point_t[]", self._points)
+        lib.tmini_sectors_add_scan(
+            sectors, ffi.new("tmini_scan_t *", {"points": points, "count": len(self)}))
         return array
-
-    def _rays(self, count: int) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
-        """Ranges and intensities as a LaserScan of ROS has them: counter-clockwise, and ray 0 is
-        ahead. `count` is even."""
-        ranges, intensities = np.empty(count, np.uint16), np.empty(count, np.uint8)
-        lib.tmini_ranges_of_scan(self._native, ffi.from_buffer("uint16_t[]", ranges),
-                                 ffi.from_buffer("uint8_t[]", intensities), count)
-        half = count // 2  # The library's first ray is behind.
-        return _metres(np.roll(ranges, half)), np.roll(intensities, half)
 
 
 def _metres(distances_mm: NDArray[Any]) -> NDArray[np.float64]:
