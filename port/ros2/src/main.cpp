@@ -5,7 +5,12 @@
 
 #include <exception>
 
-#include "node.h"
+#include <rclcpp/rclcpp.hpp>
+
+namespace tmini_ros
+{
+std::shared_ptr<rclcpp::Node> make_node(const rclcpp::NodeOptions &options); /* node.cpp */
+}
 
 int main(int argc, char **argv)
 {

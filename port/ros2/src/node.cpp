@@ -8,13 +8,14 @@
 #include <stdexcept>
 
 #include <diagnostic_updater/diagnostic_updater.hpp>
+#include <rcl_yaml_param_parser/parser.h>
+#include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
 #include <sensor_msgs/msg/laser_scan.hpp>
 #include <sensor_msgs/msg/point_cloud2.hpp>
 #include <std_srvs/srv/empty.hpp>
 
 #include "lidar.h"
-#include "node.h"
 #include "tmini_cloud.h"
 
 namespace tmini_ros
@@ -74,6 +75,7 @@ class Node : public rclcpp::Node, private Listener
         on_set_ = add_on_set_parameters_callback(
             [this](const std::vector<rclcpp::Parameter> &changes) { return change(changes); });
         warn_of_other_parameters();
+        warn_of_files_for_others();
     }
 
     ~Node() override
@@ -132,13 +134,33 @@ class Node : public rclcpp::Node, private Listener
                 RCLCPP_WARN(get_logger(), "parameter %s", text.c_str());
             }
         }
+    }
+
+    /* Of a file that begins with another node's name ROS reads nothing, and does not tell. */
+    void warn_of_files_for_others()
+    {
         const auto context = get_node_base_interface()->get_context()->get_rcl_context();
-        if (given.empty() && rcl_arguments_get_param_files_count(&context->global_arguments) > 0) {
-            RCLCPP_WARN(get_logger(),
-                        "a parameter file was given, but nothing in it is for this node: it must "
-                        "begin with %s: or /**:",
-                        get_fully_qualified_name());
+        const rcl_arguments_t &arguments = context->global_arguments;
+        const rcl_allocator_t allocator = rcl_get_default_allocator();
+        const int count = rcl_arguments_get_param_files_count(&arguments);
+        char **files = nullptr;
+        if (count <= 0 ||
+            rcl_arguments_get_param_files(&arguments, allocator, &files) != RCL_RET_OK) {
+            return;
         }
+        for (int i = 0; i < count; i++) {
+            const char *const name = get_fully_qualified_name();
+            rcl_params_t *const params = rcl_yaml_node_struct_init(allocator);
+            if (rcl_parse_yaml_file(files[i], params) &&
+                rclcpp::parameter_map_from(params, name).empty()) {
+                RCLCPP_WARN(get_logger(),
+                            "%s has nothing for this node: let it begin with %s: or /**:", files[i],
+                            name);
+            }
+            rcl_yaml_node_struct_fini(params);
+            allocator.deallocate(files[i], allocator.state);
+        }
+        allocator.deallocate(files, allocator.state);
     }
 
     rclcpp::Service<Empty>::SharedPtr create_wish(const char *name, bool are_scans_wanted)
@@ -254,7 +276,9 @@ class Node : public rclcpp::Node, private Listener
     std::chrono::steady_clock::time_point reported_ = std::chrono::steady_clock::now();
 };
 
-std::shared_ptr<rclcpp::Node> make_node(const rclcpp::NodeOptions &options)
+/* Throws an exception that names a parameter whose value is wrong. */
+__attribute__((visibility("default"))) std::shared_ptr<rclcpp::Node> make_node(
+    const rclcpp::NodeOptions &options)
 {
     return std::make_shared<Node>(options);
 }

@@ -292,9 +292,10 @@ class Node(unittest.TestCase):
 
     def test_a_file_for_another_node_is_not_ignored_in_silence(self):
         Path("other.yaml").write_text("another:\n  ros__parameters:\n    port: /dev/none\n", encoding="utf-8")
-        program = Program("ros2", "run", "tmini_ros", "tmini_node", "--ros-args", "--params-file", "other.yaml")
-        self.addCleanup(program.end)
-        self.until(lambda: program.says("it must begin with /tmini: or /**:"), "a warning")
+        program = self.launch("tmini.launch.xml", "params_file:=other.yaml")
+        self.until(lambda: program.says("other.yaml has nothing for this node: let it begin with /tmini: or /**:"),
+                   "a warning")
+        self.scans(1)
 
 
 def main():
