@@ -27,6 +27,7 @@ _PAGE = pathlib.Path(__file__).with_name("tmini.html")
 _MAGIC = b"\x89tmini\x02\n"
 _LISTENERS_MAX = 8
 _WAITING_MAX = 32768  # Bytes for one listener: more than two seconds.
+_SYSTEM_BYTES = 16384  # What the system keeps for one, about.
 _LINGER_S = 2.0  # The lidar scans on for as long, for a page that is loaded again.
 _HEADERS = {"Cache-Control": "no-store", "X-Content-Type-Options": "nosniff",
             "X-Frame-Options": "DENY", "Connection": "close"}
@@ -188,9 +189,11 @@ async def _serve(arguments: argparse.Namespace, hub: _Hub, server: Any, answers:
     quiet.propagate = False
     hub.begin()
     async with server.serve(
-            hub.serve, arguments.host, arguments.tcp, compression=None, max_size=125, max_queue=1,
-            open_timeout=5, ping_interval=10, ping_timeout=10, close_timeout=1, logger=quiet,
+            hub.serve, arguments.host, arguments.tcp, compression=None, write_limit=8192,
+            max_size=125, max_queue=1, open_timeout=5, ping_interval=10, ping_timeout=10, close_timeout=1, logger=quiet,
             process_request=lambda _, request: answers.answer(hub, request)) as running:
+        for one in running.sockets:  # More would only be old.
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SYSTEM_BYTES)
         number = running.sockets[0].getsockname()[1]
         is_private = ipaddress.ip_address(running.sockets[0].getsockname()[0]).is_loopback
         name = arguments.host if is_private else f"{socket.gethostname()}.local"

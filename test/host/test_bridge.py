@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""The bridge on a PC, between the simulated lidar and listeners that are well, slow, dead and hostile."""
+
+import json
+import os
+import signal
+import socket
+from pathlib import Path
+
+import pytest
+
+BRIDGE = os.environ["TMINI_BRIDGE"]
+MAGIC = b"\x89tmini\x02\n"
+
+
+@pytest.fixture
+def bridge(start):
+    """bridge(port): the program; its `port` is for listeners."""
+    def begin(port, *words):
+        one = start(*words, port, "0", program=BRIDGE)
+        one.wait_for("tcp:")
+        one.port = one.out.strip()
+        return one
+    return begin
+
+
+@pytest.fixture
+def listen():
+    """A listener of which the system takes as little as it can."""
+    listeners = []
+
+    def begin(bridge, host="127.0.0.1"):
+        listener = socket.socket()
+        listeners.append(listener)
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        listener.connect((host, int(bridge.port.rpartition(":")[2])))
+        return listener
+    yield begin
+    for listener in listeners:
+        listener.close()
+
+
+def receive(clock, listener, size):
+    """So many bytes; fewer if the bridge leaves."""
+    content = b""
+    while len(content) < size:
+        clock.wait([listener.fileno()])
+        try:
+            more = listener.recv(size - len(content))
+        except ConnectionResetError:
+            more = b""
+        if not more:
+            break
+        content += more
+    return content
+
+
+def counts(tmini, content):
+    """What the tool finds in a timed stream."""
+    Path("heard.tmini").write_bytes(content)
+    run = tmini("decode", "heard.tmini", "--stats", "stats.json")
+    return json.loads(Path("stats.json").read_text(encoding="ascii")), run.out + run.err
+
+
+def test_the_tool_sees_the_room_and_the_lidar_rests_when_nobody_listens(lidar, bridge, tmini):
+    device = lidar()
+    one = bridge(device.port, "-f", "8")
+    assert "command A5 60" not in device.log
+    run = tmini("scan", "-p", one.port, "-n", "5", "--json")
+    scans = [json.loads(line) for line in run.out.splitlines()]
+    assert run.status == 0
+    assert [scan["complete"] for scan in scans] == [True] * 5
+    assert 7.8 < scans[-1]["frequency_hz"] < 8.2
+    device.wait_for_log("stopping -> idle")
+    assert one.end(signal.SIGTERM).status == 0
+
+
+def test_a_lidar_that_scans_is_stopped_when_the_bridge_ends(lidar, bridge, listen, clock):
+    device = lidar()
+    one = bridge(device.port)
+    receive(clock, listen(one), 20000)
+    assert one.end(signal.SIGHUP).status == 0
+    device.wait_for_log("stopping -> idle")
+
+
+def test_a_slow_listener_is_told_what_it_lost_and_the_others_lose_nothing(lidar, bridge, listen, clock, tmini):
+    one = bridge(lidar().port)
+    slow, well = listen(one), listen(one)
+    content = receive(clock, well, 140000)
+    receive(clock, slow, 1)
+    slow_content = MAGIC[:1] + receive(clock, slow, 100000)
+    stats, text = counts(tmini, content)
+    assert (stats["checksum_errors"], "damaged" in text) == (0, False)
+    stats, text = counts(tmini, slow_content)
+    assert "damaged" in text
+    assert stats["packets"] > 500
+    assert stats["checksum_errors"] <= 1
+
+
+def test_a_listener_that_takes_nothing_for_15_s_is_left(lidar, bridge, listen, clock):
+    device = lidar()
+    one = bridge(device.port)
+    dead = listen(one)
+    device.wait_for_log("idle -> scanning")
+    clock.sleep(22000)
+    device.wait_for_log("stopping -> idle")
+    assert len(receive(clock, dead, 10**9)) < 5 * 13100  # What the system had taken, then the end.
+
+
+def test_who_sends_something_is_left_and_the_lidar_hears_nothing_of_it(lidar, bridge, listen, clock):
+    device = lidar()
+    one = bridge(device.port)
+    well = listen(one)
+    for content in (b"\xA5\x40", b"GET / HTTP/1.1\r\n\r\n", b"\0" * 100000):
+        hostile = listen(one)
+        hostile.setblocking(False)
+        hostile.send(content)
+        hostile.setblocking(True)
+        assert len(receive(clock, hostile, 10**6)) < 10**6
+    assert len(receive(clock, well, 20000)) == 20000
+    assert one.end().status == 0
+    commands = {line.split("command ")[1][:5] for line in device.log.splitlines() if "command " in line}
+    assert commands == {"A5 60", "A5 65"}
+
+
+def test_there_are_four_listeners_at_most(lidar, bridge, listen, clock):
+    one = bridge(lidar().port)
+    four = [listen(one) for _ in range(4)]
+    assert receive(clock, listen(one), 1) == b""
+    four.pop().close()
+    clock.sleep(100)
+    assert receive(clock, listen(one), 8) == MAGIC
+
+
+def test_a_lidar_that_comes_back_goes_on_after_a_gap(lidar, bridge, listen, clock, tmini):
+    device = lidar()
+    Path("adapter").symlink_to(device.port)
+    one = bridge("adapter")
+    listener = listen(one)
+    content = receive(clock, listener, 20000)
+    device.unplug()
+    Path("adapter").unlink()
+    one.wait_for("lost")
+    Path("adapter").symlink_to(lidar().port)
+    content += receive(clock, listener, 30000)
+    stats, text = counts(tmini, content)
+    assert "damaged in 1 place" in text
+    assert stats["start_packets"] > 15
+
+
+def test_it_is_on_the_loopback_interface_unless_asked(lidar, bridge, listen):
+    with pytest.raises(ConnectionRefusedError):
+        listen(bridge(lidar().port), "127.0.0.2")
+    listen(bridge(lidar().port, "--all"), "127.0.0.2")
+
+
+@pytest.mark.parametrize("words", ["", "--what x", "x 70000", "-f 13 x", "-f 5 x", "x 1 2", "-f"])
+def test_wrong_usage_is_exit_status_2(start, words):
+    run = start(*words.split(), program=BRIDGE).finish()
+    assert run.status == 2
+    assert run.err.startswith("usage: tmini-bridge ")
