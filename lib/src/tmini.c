@@ -13,17 +13,12 @@ const tmini_timing_t tmini_timing_default = {
     .max_pause_ms = 30,      /* A scanning lidar sends a packet every 10 ms. */
     .quiet_line_ms = 50,
     .reply_timeout_ms = 2000,
-    .back_off_max_ms = 4000,
+    .back_off_max_ms = 2000,
     .max_attempts = 3,
 };
 
-/* The events that end a command. */
-#define END_EVENTS                                                                         \
-    (1u << TMINI_EVENT_STARTED | 1u << TMINI_EVENT_STOPPED | 1u << TMINI_EVENT_INFO |      \
-     1u << TMINI_EVENT_HEALTH | 1u << TMINI_EVENT_FREQUENCY | 1u << TMINI_EVENT_REBOOTED | \
-     1u << TMINI_EVENT_COMMAND_FAILED)
-
 /* Each event has a bit in tmini_t.pending. */
+#define BIT(event) (1u << (event))
 typedef char events_fit_their_mask[TMINI_EVENT_MORE <= 16 ? 1 : -1];
 
 /* Handling a frame of n bytes costs as much as parsing n + 44 bytes: samples become points, and the
@@ -34,29 +29,48 @@ typedef char events_fit_their_mask[TMINI_EVENT_MORE <= 16 ? 1 : -1];
  * packet. */
 #define IDLE_MAX_MS 10u
 
+/* No tail of a stop has longer pauses; and a line that is never quiet must be noticed in time. */
+#define QUIET_LINE_LIMIT_MS 600u
+
+/* The greatest age of a scan: half the range of the clock. */
+#define AGE_MAX_MS (UINT32_MAX / 2)
+
 static bool is_set_up(const tmini_t *lidar)
 {
     return lidar != NULL && lidar->link.port != NULL;
 }
 
-/* A command of the user, or a start, is in progress: an event will end it. */
-static bool is_busy(const tmini_t *lidar)
-{
-    return lidar->state > TMINI_STATE_IDLE && lidar->state < TMINI_STATE_SCANNING;
-}
-
 /* The lidar scans, or the driver tries to make it scan. */
 static bool is_to_scan(const tmini_t *lidar)
 {
-    return lidar->state >= TMINI_STATE_STARTING &&
-           (lidar->state != TMINI_STATE_RECOVERING || !lidar->is_recovery_off);
+    return tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED) &&
+           !(lidar->recovery.is_lost && lidar->is_recovery_off);
+}
+
+/* The state follows from the phase and the wishes. */
+tmini_state_t tmini_state(const tmini_t *lidar)
+{
+    if (lidar == NULL) {
+        return TMINI_STATE_UNKNOWN;
+    }
+    if (tmini_command_is_scanning(lidar)) {
+        return TMINI_STATE_SCANNING;
+    }
+    if (tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED)) {
+        return lidar->recovery.is_lost ? TMINI_STATE_RECOVERING : TMINI_STATE_STARTING;
+    }
+    if (tmini_command_is_busy(lidar)) {
+        return lidar->command.operation == TMINI_EVENT_STOPPED ? TMINI_STATE_STOPPING
+                                                               : TMINI_STATE_BUSY;
+    }
+    return lidar->command.phase == TMINI_PHASE_IDLE ? TMINI_STATE_IDLE : TMINI_STATE_UNKNOWN;
 }
 
 /* ------------------------------------------------------------------------------------- events */
 
 TMINI_NOINLINE static void raise_event(tmini_t *lidar, tmini_event_t event)
 {
-    lidar->pending |= (uint16_t)(1u << event);
+    lidar->pending |= (uint16_t)BIT(event);
 }
 
 /* Removes and returns the first pending event in the order of tmini_event_t, or
@@ -72,6 +86,14 @@ TMINI_NOINLINE static tmini_event_t take_event(tmini_t *lidar)
     return (tmini_event_t)event;
 }
 
+/* A new wish drops the events that ended an earlier one and have not been polled: the program would
+ * think that they end this one. */
+static void drop_events(tmini_t *lidar, unsigned events)
+{
+    const unsigned failure = tmini_command_is_busy(lidar) ? 0 : BIT(TMINI_EVENT_COMMAND_FAILED);
+    lidar->pending = (uint16_t)(lidar->pending & ~(events | failure));
+}
+
 static void fail(tmini_t *lidar, int status)
 {
     lidar->command_error = (int8_t)status;
@@ -81,36 +103,24 @@ static void fail(tmini_t *lidar, int status)
 /* Looks at the line. Once bytes have come, the lidar is no longer known to be idle. */
 TMINI_NOINLINE static void look(tmini_t *lidar)
 {
-    if (tmini_line_look(lidar) && lidar->state == TMINI_STATE_IDLE) {
-        lidar->state = TMINI_STATE_UNKNOWN;
+    if (tmini_line_look(lidar, tmini_command_is_scanning(lidar))) {
+        tmini_command_disturb(lidar);
     }
 }
 
-/* ------------------------------------------------------------------------------ wanted to scan */
+/* ------------------------------------------------------------------------------------ scanning */
 
-/* Begins the ladder (tmini_recovery.c) at its first step. */
-TMINI_NOINLINE static void begin_start(tmini_t *lidar)
+/* The driver stops a lidar that scans, to set its frequency. */
+static void restart(tmini_t *lidar)
 {
-    const bool is_idle = lidar->state == TMINI_STATE_IDLE;
-    lidar->start_follows = false;
-    lidar->state = TMINI_STATE_STARTING;
-    tmini_recovery_start(lidar, is_idle);
-}
-
-/* Begins the ladder for a lidar that scans or is to scan: stops it and sets the wanted
- * frequency. */
-TMINI_NOINLINE static void restart(tmini_t *lidar)
-{
-    if (lidar->state != TMINI_STATE_RECOVERING) {
-        lidar->state = TMINI_STATE_STARTING;
-    }
-    tmini_recovery_start(lidar, false);
+    raise_event(lidar, TMINI_EVENT_PAUSED);
+    tmini_recovery_reset(lidar);
+    tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
 }
 
 /* The lidar is lost. Another unit may come back, so what is known about this one is forgotten. */
 static void lose(tmini_t *lidar)
 {
-    lidar->state = TMINI_STATE_RECOVERING;
     raise_event(lidar, TMINI_EVENT_LOST);
     tmini_command_forget_frequency(lidar);
     tmini_monitor_forget_frequency(&lidar->monitor);
@@ -118,114 +128,121 @@ static void lose(tmini_t *lidar)
     tmini_recovery_begin(lidar);
 }
 
-/* If the lidar does not answer, its frequency is unknown. TMINI_ERROR_REPLY is an answer: it has
- * refused a step. */
-static void end_frequency(tmini_t *lidar, int result, bool is_start)
+/* The lidar is lost if this is not called again in time. */
+static void expect_packet(tmini_t *lidar)
 {
-    if (result == TMINI_OK) {
-        raise_event(lidar, TMINI_EVENT_FREQUENCY);
-        return;
-    }
-    if (result != TMINI_ERROR_REPLY) {
-        tmini_command_forget_frequency(lidar);
-    }
-    if (is_start) {
-        lidar->command_error = (int8_t)result;
-    }
+    tmini_command_wait(lidar, TMINI_PHASE_SCANNING, TMINI_DATA_TIMEOUT_MS);
 }
+
+/* The lidar scans. So the start command is not sent again, and its reply is not awaited (section
+ * 2). A frequency that could not be set is reported now, unless the wish has changed meanwhile. */
+static void begin_scanning(tmini_t *lidar)
+{
+    tmini_command_end(lidar, TMINI_ERROR_ABORTED);
+    if (lidar->recovery.is_lost) {
+        tmini_recovery_end(lidar);
+        raise_event(lidar, TMINI_EVENT_RECOVERED);
+    } else {
+        tmini_recovery_forget(lidar);
+        raise_event(lidar, TMINI_EVENT_STARTED);
+    }
+    if (!tmini_command_has_frequency(lidar) && lidar->monitor.turns_to_still == 0) {
+        fail(lidar, lidar->command_error);
+    }
+    expect_packet(lidar);
+    tmini_decoder_restart(&lidar->decoder);
+    tmini_monitor_begin(&lidar->monitor);
+}
+
+/* ----------------------------------------------------------------------- how operations end */
 
 /* Each failed attempt to start is reported. During recovery none is, because the loss has been
  * reported. */
-static void fail_attempt(tmini_t *lidar, int result, bool is_start)
+static void fail_attempt(tmini_t *lidar, int result)
 {
     tmini_recovery_restart_reception(lidar);
-    if (is_start) {
+    if (!lidar->recovery.is_lost) {
         fail(lidar, result);
         if (lidar->is_recovery_off) {
-            lidar->state = TMINI_STATE_UNKNOWN;
+            tmini_recovery_forget_wish(lidar, TMINI_EVENT_STARTED);
             return;
         }
     }
     tmini_recovery_back_off(lidar);
 }
 
+/* The event is not raised if no frequency is wanted and nobody has asked. */
+static void end_frequency(tmini_t *lidar, int result)
+{
+    tmini_monitor_forget_wish(&lidar->monitor);
+    if (result != TMINI_OK) {
+        lidar->command_error = (int8_t)result;
+    } else if (lidar->command.wanted_chz != 0 ||
+               tmini_recovery_wishes(lidar, TMINI_EVENT_FREQUENCY)) {
+        raise_event(lidar, TMINI_EVENT_FREQUENCY);
+    }
+    tmini_recovery_forget_wish(lidar, TMINI_EVENT_FREQUENCY);
+}
+
 /* A step of the ladder has ended, and no packet has come yet. A successful start does not come
  * here: it ends with the first packet. A frequency that could not be set is reported when scanning
  * begins; the start follows even then. */
-static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
+static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_silent)
 {
-    const bool is_start = lidar->state == TMINI_STATE_STARTING;
+    bool goes_on = result == TMINI_OK;
     if (operation == TMINI_EVENT_FREQUENCY) {
-        end_frequency(lidar, result, is_start);
-    } else if (result != TMINI_OK) {
-        fail_attempt(lidar, result, is_start);
-        return;
+        end_frequency(lidar, result);
+        goes_on = !is_silent || tmini_recovery_note_silence(lidar);
     }
-    tmini_recovery_go_on(lidar, operation, is_idle);
-}
-
-/* The first packet has come. So the start command is not sent again, and its reply is not awaited
- * (section 2). */
-static void begin_scanning(tmini_t *lidar)
-{
-    (void)tmini_command_end(lidar, TMINI_ERROR_ABORTED);
-    if (lidar->state == TMINI_STATE_RECOVERING) {
-        tmini_recovery_end(lidar);
-        raise_event(lidar, TMINI_EVENT_RECOVERED);
+    if (goes_on) {
+        tmini_recovery_go_on(lidar, operation);
     } else {
-        tmini_recovery_forget(lidar);
-        raise_event(lidar, TMINI_EVENT_STARTED);
-        if (!tmini_command_has_frequency(lidar)) {
-            fail(lidar, lidar->command_error);
-        }
+        fail_attempt(lidar, result);
     }
-    lidar->state = TMINI_STATE_SCANNING;
-    tmini_decoder_restart(&lidar->decoder);
-    tmini_monitor_begin(&lidar->monitor);
 }
 
-/* ------------------------------------------------------------------------------------- commands */
-
-static void end_command(tmini_t *lidar, tmini_event_t operation, int result, bool is_idle)
+/* A stop or a question has ended. */
+static void end_command(tmini_t *lidar, tmini_event_t operation, int result)
 {
-    lidar->state = is_idle ? TMINI_STATE_IDLE : TMINI_STATE_UNKNOWN;
+    tmini_recovery_forget_wish(lidar, operation);
     if (result == TMINI_OK) {
         raise_event(lidar, operation);
     } else {
         fail(lidar, result);
     }
-    if (lidar->start_follows) {
-        begin_start(lidar);
-    }
+    tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
 }
 
-/* Acts on the result of the current operation. While scanning, the operation is to wait for the
- * next packet; if it ends, the lidar is lost. The line is quiet only if no bytes have come after
- * the last reply. */
+/* True if the operation is a step of the ladder: no wish of its own, or one that the ladder fulfils
+ * on its way. */
+static bool is_of_ladder(const tmini_t *lidar, tmini_event_t operation)
+{
+    return tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED) &&
+           (operation <= TMINI_EVENT_STARTED || operation == TMINI_EVENT_FREQUENCY ||
+            !tmini_recovery_wishes(lidar, operation));
+}
+
+/* Acts on the result of the current operation. */
 static void take_result(tmini_t *lidar, int result)
 {
     const tmini_event_t operation = (tmini_event_t)lidar->command.operation;
+    const uint8_t phase = lidar->command.phase;
     if (result == TMINI_UNDER_WAY) {
         return;
     }
-    const bool is_idle =
-        tmini_command_end(lidar, result) &&
-        tmini_ring_head(&lidar->ring) == tmini_parser_position(&lidar->decoder.parser);
-    if (lidar->state == TMINI_STATE_SCANNING) {
-        lose(lidar);
-    } else if (lidar->state == TMINI_STATE_STARTING || lidar->state == TMINI_STATE_RECOVERING) {
-        climb(lidar, operation, result, is_idle);
-    } else {
-        end_command(lidar, operation, result, is_idle);
+    if (result == TMINI_SCANS) {
+        begin_scanning(lidar);
+        return;
     }
-}
-
-/* The first part of every command from the user. Drops an event that ended an earlier command and
- * has not been polled: the program would think that it ends this one. */
-TMINI_NOINLINE static void take_over(tmini_t *lidar)
-{
-    look(lidar);
-    lidar->pending = (uint16_t)(lidar->pending & ~END_EVENTS);
+    tmini_command_end(lidar, result);
+    if (phase >= TMINI_PHASE_SCANNING) {
+        lose(lidar);
+    } else if (is_of_ladder(lidar, operation)) {
+        climb(lidar, operation, result,
+              phase == TMINI_PHASE_ASKING && result == TMINI_ERROR_TIMEOUT);
+    } else {
+        end_command(lidar, operation, result);
+    }
 }
 
 /* Offers the first bytes to the port at once. If the port reports a failure, it is asked again when
@@ -237,18 +254,25 @@ static void send_first(tmini_t *lidar)
     lidar->idle_ms = has_failed && lidar->pending == 0 ? 1 : 0;
 }
 
-/* A lidar that is known to be idle is not stopped first. */
-static void begin_command(tmini_t *lidar, tmini_event_t operation)
+/* A wish of the user has been added: carries it out at once if nothing else is in progress. */
+static void act(tmini_t *lidar)
 {
-    const bool is_idle = lidar->state == TMINI_STATE_IDLE;
-    lidar->state =
-        operation == TMINI_EVENT_STOPPED ? TMINI_STATE_STOPPING : (uint8_t)TMINI_STATE_BUSY;
-    tmini_command_begin(lidar, operation, is_idle);
+    if (!tmini_command_is_busy(lidar)) {
+        tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
+        send_first(lidar);
+    }
+}
+
+/* Stops the lidar, whatever is in progress. */
+static void begin_stop(tmini_t *lidar)
+{
+    tmini_recovery_wish(lidar, TMINI_EVENT_STOPPED);
+    tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
     send_first(lidar);
 }
 
-/* Begins a query or a reboot, if the state permits it. */
-static tmini_status_t request_command(tmini_t *lidar, tmini_event_t operation)
+/* A question, or a reboot. */
+static tmini_status_t request(tmini_t *lidar, tmini_event_t event)
 {
     if (!is_set_up(lidar)) {
         return TMINI_ERROR_ARGUMENT;
@@ -256,16 +280,17 @@ static tmini_status_t request_command(tmini_t *lidar, tmini_event_t operation)
     if (lidar->is_listen_only) {
         return TMINI_ERROR_LISTEN_ONLY;
     }
-    if (lidar->state >= TMINI_STATE_SCANNING) {
+    if (tmini_state(lidar) >= TMINI_STATE_STARTING) {
         return TMINI_ERROR_STATE;
     }
-    if (is_busy(lidar)) {
-        return TMINI_ERROR_BUSY;
-    }
-    take_over(lidar);
-    begin_command(lidar, operation);
+    look(lidar);
+    drop_events(lidar, BIT(event));
+    tmini_recovery_wish(lidar, event);
+    act(lidar);
     return TMINI_OK;
 }
+
+/* ----------------------------------------------------------------------------- what comes in */
 
 /* Not inlined, so that its buffer takes no stack while packets are processed. */
 TMINI_NOINLINE static void take_reply(tmini_t *lidar)
@@ -277,37 +302,42 @@ TMINI_NOINLINE static void take_reply(tmini_t *lidar)
         tmini_parser_await_again(parser); /* DMA has overwritten it. */
         return;
     }
+    tmini_recovery_note_reply(lidar);
     take_result(lidar, tmini_command_reply(lidar, content));
 }
 
-/* ------------------------------------------------------------------------------------ scanning */
-
-/* The lidar is lost if this is not called again in time. */
-static void expect_packet(tmini_t *lidar)
+/* Of a lost lidar, a point packet is no proof that it scans as it should: it may send no start
+ * packets. Not inlined, so that the packet takes no stack. */
+TMINI_NOINLINE static tmini_sign_t sign_of_packet(const tmini_t *lidar)
 {
-    tmini_command_wait(lidar, TMINI_DATA_TIMEOUT_MS);
+    const tmini_frame_t *const frame = tmini_parser_frame(&lidar->decoder.parser);
+    tmini_packet_t packet;
+    if (!lidar->recovery.is_lost) {
+        return TMINI_SIGN_SCANS;
+    }
+    tmini_packet_open(&packet, frame);
+    if (tmini_packet_is_start(&packet)) {
+        return TMINI_SIGN_SCANS;
+    }
+    return tmini_packet_has_range(&packet) ? TMINI_SIGN_TURNS : TMINI_SIGN_STANDS;
 }
 
-/* The lidar scans although it was stopped: the stop was lost on the wire. The program expects no
- * scans, so the motor would wear out unnoticed. */
-static void stop_again(tmini_t *lidar)
+/* True if the lidar scans, as it is wanted to. A lidar that scans although it was stopped is stopped
+ * again: the program expects no scans, so the motor would wear out unnoticed. */
+static bool note_scanning(tmini_t *lidar)
 {
-    raise_event(lidar, TMINI_EVENT_UNWANTED_SCANNING);
-    begin_command(lidar, TMINI_EVENT_STOPPED);
-}
-
-/* Decides whether a packet means that the lidar scans now. It does not in the tail after a stop
- * (section 9.10), nor while the frequency is being set. In all other phases of a start it does,
- * because the reply to the start may have been lost. */
-static void note_scanning(tmini_t *lidar)
-{
-    const uint8_t phase = lidar->command.phase;
-    if (lidar->state == TMINI_STATE_RECOVERING || lidar->state == TMINI_STATE_STARTING) {
-        if (phase != TMINI_PHASE_QUIESCING && lidar->command.operation != TMINI_EVENT_FREQUENCY) {
-            begin_scanning(lidar);
-        }
-    } else if (phase == TMINI_PHASE_IDLE) {
-        stop_again(lidar);
+    switch (tmini_command_packet(lidar, sign_of_packet(lidar))) {
+    case TMINI_PACKET_NEXT:
+        return true;
+    case TMINI_PACKET_FIRST:
+        begin_scanning(lidar);
+        return true;
+    case TMINI_PACKET_UNWANTED:
+        raise_event(lidar, TMINI_EVENT_UNWANTED_SCANNING);
+        begin_stop(lidar);
+        return false;
+    default:
+        return false;
     }
 }
 
@@ -321,15 +351,28 @@ static bool is_worth_a_restart(const tmini_t *lidar)
 
 static void monitor_packet(tmini_t *lidar)
 {
-    const tmini_turn_t turn =
-        tmini_monitor_packet(&lidar->monitor, &lidar->decoder, lidar->command.wanted_chz);
-    if (turn == TMINI_TURN_WHOLE) {
+    const bool is_unknown = tmini_frequency_chz(lidar) == 0 && !tmini_recovery_is_mute(lidar);
+    switch (tmini_monitor_packet(&lidar->monitor, &lidar->decoder, lidar->command.wanted_chz,
+                                 is_unknown)) {
+    case TMINI_TURN_WHOLE:
         tmini_recovery_forget(lidar); /* A lost lidar has recovered now. */
-    } else if (turn == TMINI_TURN_ENDLESS) {
+        break;
+    case TMINI_TURN_STILL:
+        if (!tmini_command_has_frequency(lidar)) {
+            restart(lidar);
+        }
+        break;
+    case TMINI_TURN_OFF:
+        if (is_worth_a_restart(lidar)) {
+            tmini_command_forget_frequency(lidar); /* The reported value is wrong. */
+            restart(lidar);
+        }
+        break;
+    case TMINI_TURN_ENDLESS:
         lose(lidar);
-    } else if (turn == TMINI_TURN_OFF && is_worth_a_restart(lidar)) {
-        tmini_command_forget_frequency(lidar); /* The reported value is wrong. */
-        restart(lidar);
+        break;
+    default:
+        break;
     }
 }
 
@@ -345,6 +388,9 @@ static void deliver_scan(tmini_t *lidar)
     if (lidar->link.step != NULL) {
         lidar->link.step(lidar->link.step_data, &lidar->scan);
     }
+    if (lidar->scan.complete) {
+        lidar->complete_ms = lidar->scan.end_ms;
+    }
     lidar->scans++;
     raise_event(lidar, TMINI_EVENT_SCAN);
 }
@@ -359,17 +405,29 @@ static uint32_t arrival_ms(tmini_t *lidar)
     return tmini_line_arrival_ms(lidar);
 }
 
+/* A program that is behind and gets a scan for each packet in doubt would never catch up. So it gets
+ * whole scans or none: a scan of at most two packets that a doubt ends is counted, not delivered. */
+static void end_scan(tmini_t *lidar, bool is_doubtful)
+{
+    const tmini_scan_t *const scan = &lidar->decoder.builder.scan;
+    if (is_doubtful && scan->packets <= 2 && tmini_line_is_behind(lidar)) {
+        lidar->points_withheld += scan->count;
+    } else {
+        deliver_scan(lidar);
+    }
+}
+
 static void take_packet(tmini_t *lidar)
 {
     const uint32_t came_ms = arrival_ms(lidar);
-    note_scanning(lidar);
+    const bool scans = note_scanning(lidar);
     const bool is_doubtful = tmini_line_is_doubtful(lidar, came_ms);
-    if (lidar->state != TMINI_STATE_SCANNING) {
+    if (!scans) {
         return; /* A packet of the tail after a stop, or of a lidar that is not to scan. */
     }
     expect_packet(lidar);
     if (tmini_decoder_take(&lidar->decoder, is_doubtful, came_ms, lidar->line.late_ms)) {
-        deliver_scan(lidar);
+        end_scan(lidar, is_doubtful);
     } else if (lidar->decoder.builder.capacity == 0) {
         raise_event(lidar, TMINI_EVENT_PACKET);
     }
@@ -416,7 +474,20 @@ static bool receive(tmini_t *lidar)
 /* Does what is due because time has passed or the line is quiet. */
 static void keep_time(tmini_t *lidar)
 {
-    take_result(lidar, tmini_command_poll(lidar));
+    const int result = tmini_command_poll(lidar);
+    take_result(lidar, result);
+    if (result != TMINI_UNDER_WAY && lidar->pending == 0) {
+        take_result(lidar, tmini_command_poll(lidar)); /* What follows is sent at once. */
+    }
+}
+
+/* An age of 24 days is as good as any greater one: the clock's wrap-around must not make it small
+ * again. */
+static void limit_age(tmini_t *lidar)
+{
+    if (lidar->line.now_ms - lidar->complete_ms > AGE_MAX_MS) {
+        lidar->complete_ms = lidar->line.now_ms - AGE_MAX_MS;
+    }
 }
 
 /* There is nothing to do until a frame may be complete, or until the next time-out. This time-out
@@ -429,7 +500,9 @@ static void settle(tmini_t *lidar)
     const uint16_t command_ms = tmini_command_idle_ms(lidar);
     const uint16_t due_ms = give_up_ms < command_ms ? give_up_ms : command_ms;
     const uint8_t idle_ms = (uint8_t)(due_ms < IDLE_MAX_MS ? due_ms : IDLE_MAX_MS);
-    if (lidar->command.unsent == 0) {
+    limit_age(lidar);
+    tmini_line_settle(lidar);
+    if (!tmini_command_is_sending(lidar)) {
         lidar->idle_ms = idle_ms > 0 ? idle_ms : 1;
     }
 }
@@ -486,8 +559,14 @@ tmini_event_t tmini_poll(tmini_t *lidar)
 
 TMINI_NOINLINE static bool is_frequency(uint16_t frequency_chz)
 {
-    return frequency_chz >= TMINI_FREQUENCY_MIN_CHZ && frequency_chz <= TMINI_FREQUENCY_MAX_CHZ &&
-           frequency_chz % TMINI_FREQUENCY_STEP_CHZ == 0;
+    return frequency_chz >= TMINI_FREQUENCY_MIN_CHZ && frequency_chz <= TMINI_FREQUENCY_MAX_CHZ;
+}
+
+/* To the nearest step. */
+static uint16_t rounded(uint16_t frequency_chz)
+{
+    return (uint16_t)((frequency_chz + TMINI_FREQUENCY_STEP_CHZ / 2) / TMINI_FREQUENCY_STEP_CHZ *
+                      TMINI_FREQUENCY_STEP_CHZ);
 }
 
 static bool has_port(const tmini_config_t *config)
@@ -496,16 +575,17 @@ static bool has_port(const tmini_config_t *config)
     return port != NULL && port->now_ms != NULL && (port->write != NULL || config->listen_only);
 }
 
-/* Checks members that require or exclude each other. The line must become quiet before a stop times
- * out. */
+/* Checks members that require or exclude each other. */
 static bool fits_together(const tmini_config_t *config)
 {
     return (config->frequency_chz == 0 ||
             (is_frequency(config->frequency_chz) && !config->listen_only)) &&
            (config->points != NULL ? config->spare_points != config->points
-                                   : config->step == NULL && config->spare_points == NULL) &&
+                                   : config->step == NULL && config->spare_points == NULL &&
+                                         config->filter == TMINI_FILTER_NONE) &&
            (config->step != NULL || config->step_data == NULL) &&
-           (config->timing == NULL || config->timing->quiet_line_ms < TMINI_STOP_TIMEOUT_MS);
+           (unsigned)config->recovery <= TMINI_RECOVERY_OFF &&
+           (config->timing == NULL || config->timing->quiet_line_ms < QUIET_LINE_LIMIT_MS);
 }
 
 /* Ring and decoder check their own parts of the configuration. */
@@ -527,6 +607,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
     *lidar = (tmini_t){0}; /* State unknown, no phase, no CT information. */
     if (config == NULL || !has_port(config) || !fits_together(config) ||
         !init_modules(lidar, config)) {
+        *lidar = (tmini_t){0}; /* It refuses bytes. */
         fail(lidar, TMINI_ERROR_ARGUMENT);
         return TMINI_ERROR_ARGUMENT;
     }
@@ -538,7 +619,8 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
         .step_data = config->step_data,
         .spare_points = config->spare_points,
     };
-    tmini_command_want(lidar, config->frequency_chz);
+    tmini_command_want(lidar, rounded(config->frequency_chz));
+    lidar->complete_ms = config->port->now_ms(config->port_context);
     lidar->is_recovery_off = config->recovery == TMINI_RECOVERY_OFF;
     lidar->is_listen_only = config->listen_only;
     return TMINI_OK;
@@ -551,36 +633,48 @@ tmini_status_t tmini_start(tmini_t *lidar)
     if (!is_set_up(lidar)) {
         return TMINI_ERROR_ARGUMENT;
     }
-    if (lidar->state == TMINI_STATE_BUSY || lidar->state == TMINI_STATE_STOPPING) {
-        lidar->start_follows = true;
-    } else if (!is_to_scan(lidar)) {
-        take_over(lidar);
-        begin_start(lidar);
-        send_first(lidar);
+    if (!is_to_scan(lidar)) {
+        look(lidar);
+        drop_events(lidar, BIT(TMINI_EVENT_STARTED));
+        if (lidar->recovery.is_lost) { /* It only listens, because recovery is off. */
+            tmini_command_end(lidar, TMINI_ERROR_ABORTED);
+        }
+        tmini_recovery_wish(lidar, TMINI_EVENT_STARTED);
+        tmini_recovery_reset(lidar);
+        act(lidar);
     }
     return TMINI_OK;
 }
 
+/* With listen_only nothing was sent, so nothing is stopped. */
 tmini_status_t tmini_stop(tmini_t *lidar)
 {
     if (!is_set_up(lidar)) {
         return TMINI_ERROR_ARGUMENT;
     }
-    lidar->start_follows = false;
-    if (lidar->state == TMINI_STATE_STOPPING) {
-        return TMINI_OK;
-    }
-    const bool was_busy = is_busy(lidar);
-    take_over(lidar);
-    if (was_busy) {
+    const unsigned stop = BIT(TMINI_EVENT_STOPPED);
+    const bool is_stopping = (lidar->recovery.wishes & stop) != 0;
+    const bool is_aborted =
+        tmini_state(lidar) <= TMINI_STATE_STARTING && (lidar->recovery.wishes & ~stop) != 0;
+    look(lidar);
+    drop_events(lidar, stop | BIT(TMINI_EVENT_STARTED) | BIT(TMINI_EVENT_COMMAND_FAILED) |
+                           BIT(TMINI_EVENT_PAUSED) | BIT(TMINI_EVENT_RECOVERED));
+    if (is_aborted) {
         fail(lidar, TMINI_ERROR_ABORTED);
     }
-    if (lidar->is_listen_only) {
-        tmini_cancel(lidar); /* Nothing was sent, so nothing is stopped. */
-        raise_event(lidar, TMINI_EVENT_STOPPED);
-    } else {
-        begin_command(lidar, TMINI_EVENT_STOPPED);
+    if (is_stopping) {
+        tmini_recovery_wish(lidar, TMINI_EVENT_STOPPED); /* And nothing else. */
+        return TMINI_OK;
     }
+    if (!lidar->is_listen_only) {
+        begin_stop(lidar);
+        return TMINI_OK;
+    }
+    tmini_recovery_wish(lidar, TMINI_EVENT_STOPPED);
+    tmini_recovery_forget_wish(lidar, TMINI_EVENT_STOPPED);
+    tmini_command_end(lidar, TMINI_ERROR_ABORTED);
+    raise_event(lidar, TMINI_EVENT_STOPPED);
+    lidar->idle_ms = 0;
     return TMINI_OK;
 }
 
@@ -594,52 +688,94 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
     if (lidar->is_listen_only) {
         return TMINI_ERROR_LISTEN_ONLY;
     }
-    if (lidar->command.wanted_chz == frequency_chz && lidar->state > TMINI_STATE_IDLE) {
-        return TMINI_OK;
+    const uint16_t wanted_chz = rounded(frequency_chz);
+    const bool is_new = lidar->command.wanted_chz != wanted_chz;
+    if (is_new) {
+        tmini_command_want(lidar, wanted_chz);
+        if ((lidar->monitor.faults & TMINI_FAULT_FREQUENCY) != 0) {
+            raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
+            lidar->idle_ms = 0;
+        }
+        tmini_monitor_forget_frequency(&lidar->monitor);
     }
-    tmini_command_want(lidar, frequency_chz);
-    if ((lidar->monitor.faults & TMINI_FAULT_FREQUENCY) != 0) {
-        raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
-        lidar->idle_ms = 0;
+    if (tmini_state(lidar) < TMINI_STATE_STARTING) {
+        return is_new || !tmini_command_is_busy(lidar) ? request(lidar, TMINI_EVENT_FREQUENCY)
+                                                       : TMINI_OK;
     }
-    tmini_monitor_forget_frequency(&lidar->monitor);
-    if (lidar->state <= TMINI_STATE_IDLE) {
-        return request_command(lidar, TMINI_EVENT_FREQUENCY);
-    }
-    if (is_to_scan(lidar)) {
-        look(lidar);
-        restart(lidar);
-        send_first(lidar);
+    if (is_new) {
+        tmini_monitor_await_still(&lidar->monitor);
     }
     return TMINI_OK;
 }
 
 tmini_status_t tmini_request_info(tmini_t *lidar)
 {
-    return request_command(lidar, TMINI_EVENT_INFO);
+    return request(lidar, TMINI_EVENT_INFO);
 }
 
 tmini_status_t tmini_request_health(tmini_t *lidar)
 {
-    return request_command(lidar, TMINI_EVENT_HEALTH);
+    return request(lidar, TMINI_EVENT_HEALTH);
 }
 
 tmini_status_t tmini_request_frequency(tmini_t *lidar)
 {
-    return request_command(lidar, TMINI_EVENT_FREQUENCY);
+    return request(lidar, TMINI_EVENT_FREQUENCY);
 }
 
 tmini_status_t tmini_reboot(tmini_t *lidar)
 {
-    return request_command(lidar, TMINI_EVENT_REBOOTED);
+    return request(lidar, TMINI_EVENT_REBOOTED);
 }
 
-void tmini_cancel(tmini_t *lidar)
+void tmini_withdraw(tmini_t *lidar, tmini_event_t query)
 {
-    (void)tmini_command_end(lidar, TMINI_ERROR_ABORTED);
-    lidar->idle_ms = 0;
-    lidar->start_follows = false;
-    lidar->state = TMINI_STATE_UNKNOWN;
+    const bool is_current =
+        tmini_command_is_busy(lidar) && lidar->command.operation == (uint8_t)query;
+    tmini_recovery_forget_wish(lidar, query);
+    if (is_current && tmini_state(lidar) == TMINI_STATE_BUSY) {
+        tmini_command_end(lidar, TMINI_ERROR_ABORTED);
+        lidar->idle_ms = 0;
+        act(lidar);
+    }
+}
+
+/* -------------------------------------------------------------------------------------- timing */
+
+static uint32_t since_look_ms(const tmini_t *lidar)
+{
+    const uint32_t passed_ms =
+        lidar->link.port->now_ms(lidar->link.port_context) - lidar->line.now_ms;
+    return passed_ms <= AGE_MAX_MS ? passed_ms : 0; /* The clock was set back. */
+}
+
+uint32_t tmini_scan_age_ms(const tmini_t *lidar)
+{
+    if (!is_set_up(lidar)) {
+        return AGE_MAX_MS;
+    }
+    const uint32_t now_ms = lidar->line.now_ms + since_look_ms(lidar);
+    const uint32_t age_ms = now_ms - lidar->complete_ms;
+    return age_ms < AGE_MAX_MS ? age_ms : AGE_MAX_MS;
+}
+
+/* Silence is observed in steps of 50 ms at most (tmini_line.c). */
+uint32_t tmini_next_poll_ms(const tmini_t *lidar)
+{
+    if (!is_set_up(lidar) || lidar->idle_ms == 0) {
+        const bool waits_for_port =
+            is_set_up(lidar) && lidar->pending == 0 && tmini_command_is_sending(lidar);
+        return waits_for_port ? 1 : 0;
+    }
+    uint32_t due_ms = tmini_command_due_ms(lidar);
+    if (tmini_parser_pending(&lidar->decoder.parser) > 0) {
+        const uint32_t frame_ms = lidar->link.timing->frame_timeout_ms;
+        const uint32_t silent_ms = lidar->line.silent_ms;
+        const uint32_t left_ms = frame_ms > silent_ms ? frame_ms - silent_ms : 1;
+        due_ms = left_ms < due_ms ? left_ms : due_ms;
+    }
+    const uint32_t passed_ms = since_look_ms(lidar);
+    return due_ms > passed_ms ? due_ms - passed_ms : 0;
 }
 
 /* ------------------------------------------------------------------------------------- results */
@@ -665,6 +801,7 @@ void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters)
     counters->bytes_pending = (uint32_t)pending;
     counters->scans = lidar->scans;
     counters->late_scans = lidar->decoder.builder.late_scans;
+    counters->points_withheld = lidar->points_withheld;
     counters->timeouts = lidar->command.timeouts;
     counters->losses = lidar->recovery.losses;
     counters->recoveries = lidar->recovery.recoveries;

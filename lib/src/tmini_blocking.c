@@ -29,25 +29,31 @@ static bool is_time_left(const tmini_t *lidar, uint32_t *begun_ms, uint32_t time
     return passed_ms < timeout_ms;
 }
 
+/* True if the wish that `wanted` ends has failed: it no longer stands. A start ends with its first
+ * scan or packet. */
+static bool has_failed(const tmini_t *lidar, tmini_event_t wanted)
+{
+    const tmini_event_t wish = wanted <= TMINI_EVENT_REBOOTED ? wanted : TMINI_EVENT_STARTED;
+    return tmini_state(lidar) < TMINI_STATE_STARTING && !tmini_recovery_wishes(lidar, wish);
+}
+
 /* What `event` means for a caller that waits for `wanted`. A failed command ends the waiting if no
- * other attempt follows. Waiting for a frequency also ends when the lidar scans without it. Failed
- * attempts to recover a lost lidar are not reported. */
+ * other attempt follows. Waiting for a frequency also ends when the lidar scans without it. */
 static int result_of(const tmini_t *lidar, tmini_event_t event, tmini_event_t wanted)
 {
-    const tmini_state_t state = tmini_state(lidar);
-    const bool is_without = wanted == TMINI_EVENT_FREQUENCY && state == TMINI_STATE_SCANNING;
+    const bool is_without =
+        wanted == TMINI_EVENT_FREQUENCY && tmini_state(lidar) == TMINI_STATE_SCANNING;
     if (event == wanted) {
         return TMINI_OK;
     }
-    if (event == TMINI_EVENT_COMMAND_FAILED && (is_without || state == TMINI_STATE_UNKNOWN)) {
+    if (event == TMINI_EVENT_COMMAND_FAILED && (is_without || has_failed(lidar, wanted))) {
         return tmini_command_error(lidar);
     }
-    return event == TMINI_EVENT_RECOVERED && is_without ? TMINI_ERROR_STATE : TMINI_UNDER_WAY;
+    return TMINI_UNDER_WAY;
 }
 
-/* Polls until `wanted` comes or cannot come any more, or time is up. When time is up, the query is
- * given up, unless it is an earlier one after which a start follows. If the command could not be
- * begun, returns its error. */
+/* Polls until `wanted` comes or cannot come any more, or time is up. When time is up, a query is
+ * withdrawn. If the command could not be begun, returns its error. */
 static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event_t wanted,
                                uint32_t timeout_ms)
 {
@@ -65,8 +71,8 @@ static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event
             idle(lidar);
         }
     } while (is_time_left(lidar, &begun_ms, timeout_ms));
-    if (tmini_state(lidar) == TMINI_STATE_BUSY && !lidar->start_follows) {
-        tmini_cancel(lidar);
+    if (wanted >= TMINI_EVENT_INFO && wanted <= TMINI_EVENT_REBOOTED) {
+        tmini_withdraw(lidar, wanted);
     }
     return TMINI_ERROR_TIMEOUT;
 }
@@ -116,17 +122,16 @@ tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency
  * lidar is always asked. */
 static int result_of_wish(const tmini_t *lidar, tmini_state_t before)
 {
-    if (before <= TMINI_STATE_IDLE) {
+    const tmini_state_t state = tmini_state(lidar);
+    if (before < TMINI_STATE_STARTING) {
         return TMINI_UNDER_WAY;
     }
     if (tmini_command_has_frequency(lidar)) {
         return TMINI_OK;
     }
-    if (before == TMINI_STATE_BUSY || before == TMINI_STATE_STOPPING) {
-        return TMINI_ERROR_BUSY;
-    }
-    const bool is_lost = lidar->state == TMINI_STATE_RECOVERING && lidar->is_recovery_off;
-    return is_lost || lidar->state == TMINI_STATE_SCANNING ? TMINI_ERROR_STATE : TMINI_UNDER_WAY;
+    const bool is_lost = state == TMINI_STATE_RECOVERING && lidar->is_recovery_off;
+    const bool is_refused = state == TMINI_STATE_SCANNING && lidar->monitor.turns_to_still == 0;
+    return is_lost || is_refused ? TMINI_ERROR_STATE : TMINI_UNDER_WAY;
 }
 
 tmini_status_t tmini_blocking_set_frequency(tmini_t *lidar, uint16_t frequency_chz,

@@ -42,11 +42,6 @@ static bool continues(const tmini_packet_t *packet, int32_t ahead, int32_t angle
            angle >= -JUMP_Q6;
 }
 
-static uint16_t frequency_chz(const tmini_packet_t *start)
-{
-    return (uint16_t)((start->ct >> 1) * 10);
-}
-
 /* Counts one more, up to the highest number. */
 static void count_one(uint16_t *total)
 {
@@ -79,7 +74,7 @@ static void note_end(tmini_builder_t *builder, const tmini_packet_t *packet, int
     tmini_scan_t *const scan = &builder->scan;
     const bool is_start = tmini_packet_is_start(packet);
     if (is_start) {
-        scan->frequency_chz = frequency_chz(packet);
+        scan->frequency_chz = tmini_packet_frequency_chz(packet);
     }
     scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - scan->checksum_errors);
     scan->end_ms = (int32_t)(now_ms - scan->start_ms) < 0 ? scan->start_ms : now_ms;
@@ -124,7 +119,7 @@ static int32_t begin_scan(tmini_builder_t *builder, const tmini_packet_t *first,
     scan->upside_down = false;
     if (is_start) {
         builder->origin_q6 = first->first_angle_q6;
-        scan->frequency_chz = frequency_chz(first);
+        scan->frequency_chz = tmini_packet_frequency_chz(first);
     }
     scan->gaps = is_start ? 0 : 1;
     scan->start_ms = now_ms - (first->count - 1u) * SAMPLE_SENT_US / 1000u;

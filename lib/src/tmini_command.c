@@ -2,7 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* One command at a time: sends it when the line is quiet, awaits its reply, tries again, and
- * returns the result. The callers decide what the result means. */
+ * returns the result. The callers decide what the result means. What ends a phase, and what
+ * follows, stands in four switches: on_quiet(), on_time_out(), tmini_command_reply() and
+ * tmini_command_packet(); docs/phases.svg draws them. */
 
 #include "tmini_driver.h"
 
@@ -10,13 +12,21 @@
 #define STEPS_MAX 20
 #define COARSE_STEP_CHZ 100
 
+/* A lidar that boots answers nothing, and what is sent to it is lost (section 9.16). So the first
+ * question is repeated: for longer than any unit is said to need. Steps and later questions are
+ * not, because late replies to them could not be told apart. */
+#define ASK_EACH_MS 250
+#define ASKS_MAX 30
+#define ASKS_PER_STEP 8 /* What a step without an answer counts for. */
+
 /* A reply outside these limits is garbage: section 1 gives 6 to 12 Hz. */
 #define PLAUSIBLE_CHZ_MIN 100
 #define PLAUSIBLE_CHZ_MAX 2000
 
-/* A poll that comes this much too late to see that the lidar is lost gives it another chance. */
+/* A poll that finds the lidar lost after a pause of this length gives it another chance. */
 #define LATE_POLL_MS 50
 #define LAST_CHANCE_MS 100
+#define CHANCES_MAX 3
 
 static const uint8_t codes[] = {
     [TMINI_EVENT_STARTED] = TMINI_COMMAND_START,
@@ -37,12 +47,18 @@ static void enter(tmini_t *lidar, tmini_phase_t phase, uint16_t timeout_ms)
 
 /* ------------------------------------------------------------------------------------- sending */
 
-/* transmit() sends the bytes. If the first byte of an abandoned command has already been sent, it
+/* Bits of tmini_command_t.unsent beside TMINI_UNSENT_BYTES. */
+#define NOT_OFFERED 4u /* The port has not been asked yet. */
+#define SYNC_SENT 8u   /* The first byte of a command has been sent, the second has not. */
+
+/* send_rest() sends the bytes. If the first byte of an abandoned command has already been sent, it
  * is not sent again: it is the same in all commands. */
 static void send(tmini_t *lidar, tmini_command_code_t code)
 {
-    lidar->command.code = (uint8_t)code;
-    lidar->command.unsent = lidar->command.sync_sent ? 1 : 2;
+    tmini_command_t *const command = &lidar->command;
+    command->code = (uint8_t)code;
+    command->unsent = (uint8_t)((command->unsent & SYNC_SENT) != 0 ? SYNC_SENT | NOT_OFFERED | 1u
+                                                                   : NOT_OFFERED | 2u);
 }
 
 /* Hands what is left of the command to the port. Returns false if the port reports a failure. */
@@ -50,21 +66,41 @@ static bool transmit(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     const uint8_t bytes[2] = {TMINI_COMMAND_SYNC, command->code};
-    const uint8_t unsent = command->unsent;
-    const int taken = lidar->link.port->write(lidar->link.port_context, &bytes[2 - unsent], unsent);
+    const int unsent = (int)(command->unsent & TMINI_UNSENT_BYTES);
+    const int taken =
+        lidar->link.port->write(lidar->link.port_context, &bytes[2 - unsent], (size_t)unsent);
     if (taken < 0) {
         return false;
     }
     /* If a port reports more bytes than it was given, it has taken all. */
-    command->unsent = (uint8_t)(taken < unsent ? unsent - taken : 0);
-    command->sync_sent = command->unsent == 1;
+    const int left = taken < unsent ? unsent - taken : 0;
+    command->unsent = (uint8_t)(left == 1 ? SYNC_SENT | 1u : (unsigned)left);
     return true;
 }
 
-/* Waits for a quiet line; if it does not become quiet in time, the attempt has failed. */
-static void await_quiet(tmini_t *lidar)
+/* Sends the command's bytes. The time to take them begins when the port is asked first, the time of
+ * the phase when all have been taken. */
+static int send_rest(tmini_t *lidar)
 {
-    enter(lidar, TMINI_PHASE_QUIESCING, TMINI_STOP_TIMEOUT_MS);
+    tmini_command_t *const command = &lidar->command;
+    if ((command->unsent & NOT_OFFERED) != 0) {
+        command->since_ms = lidar->line.now_ms;
+    }
+    if (!transmit(lidar) || (tmini_command_is_sending(lidar) &&
+                             tmini_has_elapsed(lidar, command->since_ms, TMINI_WRITE_TIMEOUT_MS))) {
+        return TMINI_ERROR_WRITE;
+    }
+    if (!tmini_command_is_sending(lidar)) {
+        command->since_ms = lidar->line.now_ms;
+    }
+    return TMINI_UNDER_WAY;
+}
+
+/* Waits in `phase` for a quiet line; if it does not become quiet in time, the attempt has failed. */
+static void await_quiet(tmini_t *lidar, tmini_phase_t phase)
+{
+    const unsigned quiet_ms = lidar->link.timing->quiet_line_ms;
+    enter(lidar, phase, (uint16_t)(TMINI_STOP_TIMEOUT_MS + quiet_ms));
 }
 
 /* Stops the lidar first, which is always permitted (section 9.10). */
@@ -72,43 +108,41 @@ TMINI_NOINLINE static void quiesce(tmini_t *lidar)
 {
     (void)tmini_parser_await(&lidar->decoder.parser, NULL);
     send(lidar, TMINI_COMMAND_STOP);
-    await_quiet(lidar);
+    await_quiet(lidar, TMINI_PHASE_QUIESCING);
 }
 
-/* Sends a command (the line is quiet) and awaits its reply, if it has one. */
-static void request(tmini_t *lidar, tmini_command_code_t code)
+/* Sends a command (the line is quiet) and awaits its reply in `phase`. */
+static int request(tmini_t *lidar, uint8_t code, tmini_phase_t phase, uint16_t timeout_ms)
 {
     tmini_reply_header_t reply;
-    send(lidar, code);
-    if (tmini_reply_header(code, &reply)) {
+    send(lidar, (tmini_command_code_t)code);
+    if (tmini_reply_header((tmini_command_code_t)code, &reply)) {
         (void)tmini_parser_await(&lidar->decoder.parser, &reply);
-        enter(lidar, TMINI_PHASE_AWAITING_REPLY, lidar->link.timing->reply_timeout_ms);
-    } else {
-        tmini_command_forget_frequency(lidar);
-        enter(lidar, TMINI_PHASE_WAITING, TMINI_REBOOT_TIME_MS);
     }
+    enter(lidar, phase, timeout_ms);
+    return TMINI_UNDER_WAY;
+}
+
+static int ask(tmini_t *lidar)
+{
+    lidar->command.asks++;
+    return request(lidar, TMINI_COMMAND_GET_FREQUENCY, TMINI_PHASE_ASKING, ASK_EACH_MS);
 }
 
 /* --------------------------------------------------------------------------- how commands end */
 
-/* With recovery the ladder repeats attempts to start, so each of its commands is tried once. */
-static uint8_t attempts_max(const tmini_t *lidar)
-{
-    const bool is_repeated = lidar->state >= TMINI_STATE_STARTING && !lidar->is_recovery_off;
-    return is_repeated ? 1 : lidar->link.timing->max_attempts;
-}
-
-/* A phase has taken too long: makes another attempt, unless this was the last. */
-static int time_out(tmini_t *lidar)
+/* An attempt has failed with `error`: makes another, unless this was the last. */
+static int try_again(tmini_t *lidar, int error)
 {
     tmini_command_t *const command = &lidar->command;
     command->timeouts++;
-    if (command->attempts < attempts_max(lidar)) {
-        command->attempts++;
-        quiesce(lidar);
-        return TMINI_UNDER_WAY;
+    if (command->attempts_left == 0) {
+        return error;
     }
-    return command->phase == TMINI_PHASE_AWAITING_STEP ? TMINI_ERROR_REPLY : TMINI_ERROR_TIMEOUT;
+    command->attempts_left--;
+    command->is_repeated = true;
+    quiesce(lidar);
+    return TMINI_UNDER_WAY;
 }
 
 /* ----------------------------------------------------------------------------- frequency change */
@@ -135,12 +169,27 @@ static uint8_t next_step(const tmini_t *lidar)
     return left < COARSE_STEP_CHZ ? TMINI_COMMAND_FASTER_TENTH : TMINI_COMMAND_FASTER_ONE;
 }
 
+/* The line is quiet after an answer: sends the next step, or asks whether all were obeyed. */
+static int step(tmini_t *lidar)
+{
+    tmini_command_t *const command = &lidar->command;
+    uint8_t code = TMINI_COMMAND_GET_FREQUENCY;
+    if (!tmini_command_has_frequency(lidar)) {
+        if (command->steps == STEPS_MAX) {
+            return TMINI_ERROR_REPLY;
+        }
+        command->steps++;
+        code = next_step(lidar);
+    }
+    return request(lidar, code, TMINI_PHASE_AWAITING, lidar->link.timing->reply_timeout_ms);
+}
+
 /* A late reply to the previous step looks like the reply to a step that was refused. So another
  * reply is awaited for the rest of the time. */
 static int await_another_frequency(tmini_t *lidar)
 {
     tmini_parser_await_again(&lidar->decoder.parser);
-    lidar->command.phase = TMINI_PHASE_AWAITING_STEP; /* Without a new time limit. */
+    lidar->command.phase = TMINI_PHASE_UNCHANGED; /* Without a new time limit. */
     return TMINI_UNDER_WAY;
 }
 
@@ -148,6 +197,7 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
 {
     tmini_command_t *const command = &lidar->command;
     const bool is_step = command->code != TMINI_COMMAND_GET_FREQUENCY;
+    const bool may_be_late = command->phase == TMINI_PHASE_ASKING && command->is_repeated;
     if (frequency_chz < PLAUSIBLE_CHZ_MIN || frequency_chz > PLAUSIBLE_CHZ_MAX) {
         return TMINI_ERROR_REPLY;
     }
@@ -155,130 +205,189 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
         return await_another_frequency(lidar);
     }
     command->frequency_chz = (uint16_t)frequency_chz;
-    if (!is_step && tmini_command_has_frequency(lidar)) {
+    if (!command->is_repeated) {
+        command->asks = 0; /* A lidar that loses its power now gets the whole time again, once. */
+    }
+    if (command->operation == TMINI_EVENT_REBOOTED ||
+        (!is_step && !may_be_late && tmini_command_has_frequency(lidar))) {
         return TMINI_OK;
     }
-    await_quiet(lidar);
+    await_quiet(lidar, TMINI_PHASE_SETTLING);
     return TMINI_UNDER_WAY;
 }
 
 /* -------------------------------------------------------------------------------- keeping time */
 
+static bool awaits_quiet(const tmini_t *lidar)
+{
+    return lidar->command.phase == TMINI_PHASE_QUIESCING ||
+           lidar->command.phase == TMINI_PHASE_SETTLING;
+}
+
 /* The last condition: an interrupt may have stored bytes since the last look at the line. */
 static bool is_quiet(const tmini_t *lidar)
 {
     const uint16_t quiet_ms = lidar->link.timing->quiet_line_ms;
-    return lidar->line.silent_ms >= quiet_ms &&
+    return awaits_quiet(lidar) && lidar->line.silent_ms >= quiet_ms &&
            tmini_has_elapsed(lidar, lidar->command.since_ms, quiet_ms) &&
            tmini_ring_head(&lidar->ring) == lidar->line.received;
 }
 
+/* A question in vain is repeated. */
+static int ask_again(tmini_t *lidar)
+{
+    if (lidar->command.asks < ASKS_MAX) {
+        return ask(lidar);
+    }
+    lidar->command.timeouts++;
+    return TMINI_ERROR_TIMEOUT;
+}
+
 /* The line is quiet: the next command may be sent (section 2). Bytes that came before a command
- * cannot be its reply, so all are skipped, including an incomplete packet. After a stop the
- * operation's own command is next. To change the frequency, the driver asks for it, sends the
- * steps, and asks again. */
-static int proceed(tmini_t *lidar)
+ * cannot be its reply, so all are skipped, including an incomplete packet. */
+static int on_quiet(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
-    uint8_t next = codes[command->operation];
+    const bool has_answered = command->phase == TMINI_PHASE_SETTLING;
     tmini_parser_skip_all(&lidar->decoder.parser);
-    if (next == TMINI_COMMAND_STOP) {
-        command->attempts = 1; /* A quiet line means idle, after any attempt. */
+    switch (command->operation) {
+    case TMINI_EVENT_STOPPED:
+        command->is_repeated = false; /* A quiet line means idle, after any attempt. */
         return TMINI_OK;
-    }
-    if (command->code != TMINI_COMMAND_STOP && !tmini_command_has_frequency(lidar)) {
-        if (command->steps == STEPS_MAX) {
-            return TMINI_ERROR_REPLY;
+    case TMINI_EVENT_REBOOTED:
+        if (command->asks > 0) {
+            return ask_again(lidar); /* It has been sent already. */
         }
-        command->steps++;
-        next = next_step(lidar);
+        tmini_command_forget_frequency(lidar);
+        return request(lidar, TMINI_COMMAND_REBOOT, TMINI_PHASE_REBOOTING, TMINI_REBOOT_TIME_MS);
+    case TMINI_EVENT_FREQUENCY:
+        return has_answered ? step(lidar) : ask_again(lidar);
+    default:
+        return request(lidar, codes[command->operation], TMINI_PHASE_AWAITING,
+                       lidar->link.timing->reply_timeout_ms);
     }
-    request(lidar, (tmini_command_code_t)next);
+}
+
+/* Without an answer to a step, or with one that may be a late copy, it is unknown whether the lidar
+ * obeyed, refused, or lost its power: asks from the beginning. */
+static int on_no_reply(tmini_t *lidar, int error)
+{
+    tmini_command_t *const command = &lidar->command;
+    if (command->operation != TMINI_EVENT_FREQUENCY) {
+        return try_again(lidar, error);
+    }
+    command->timeouts++;
+    command->is_repeated = true;
+    command->asks = (uint8_t)(command->asks + ASKS_PER_STEP);
+    return command->asks < ASKS_MAX ? ask(lidar) : error;
+}
+
+/* No packet has come in time. If the program has paused until now, the lidar gets another chance:
+ * DMA may have overwritten all packets meanwhile, or the clock may have jumped. */
+static int on_no_packet(tmini_t *lidar)
+{
+    tmini_command_t *const command = &lidar->command;
+    if (command->asks == CHANCES_MAX || lidar->line.busy_ms < LATE_POLL_MS) {
+        return TMINI_ERROR_TIMEOUT;
+    }
+    command->asks++;
+    enter(lidar, TMINI_PHASE_LAST_CHANCE, LAST_CHANCE_MS);
     return TMINI_UNDER_WAY;
 }
 
-/* Sends the command's bytes; the phase's time begins when all have been taken. */
-static int send_rest(tmini_t *lidar)
+/* The time of the phase is over. */
+static int on_time_out(tmini_t *lidar)
 {
-    tmini_command_t *const command = &lidar->command;
-    if (!transmit(lidar) || (command->unsent > 0 &&
-                             tmini_has_elapsed(lidar, command->since_ms, TMINI_WRITE_TIMEOUT_MS))) {
-        return TMINI_ERROR_WRITE;
-    }
-    if (command->unsent == 0) {
-        command->since_ms = lidar->line.now_ms;
-    }
-    return TMINI_UNDER_WAY;
-}
-
-/* True if this poll comes late to see that no packet has come: DMA may have overwritten all packets
- * in a pause of the program, or the clock may have jumped. */
-static bool is_late_to_lose(const tmini_t *lidar)
-{
-    return lidar->state == TMINI_STATE_SCANNING &&
-           lidar->command.timeout_ms == TMINI_DATA_TIMEOUT_MS &&
-           tmini_has_elapsed(lidar, lidar->command.since_ms, TMINI_DATA_TIMEOUT_MS + LATE_POLL_MS);
-}
-
-/* The time of the phase is over. With listen_only this means that no packet has come. In
- * TMINI_PHASE_NONE no command ends, but from now on packets mean unwanted scanning. */
-static int end_phase(tmini_t *lidar)
-{
-    tmini_command_t *const command = &lidar->command;
-    if (command->phase == TMINI_PHASE_WAITING) {
-        if (is_late_to_lose(lidar)) {
-            enter(lidar, TMINI_PHASE_WAITING, LAST_CHANCE_MS);
-            return TMINI_UNDER_WAY;
-        }
-        return lidar->is_listen_only ? TMINI_ERROR_TIMEOUT : TMINI_OK;
-    }
-    if (command->phase == TMINI_PHASE_NONE) {
-        command->phase = TMINI_PHASE_IDLE;
-        command->timeout_ms = 0;
+    switch (lidar->command.phase) {
+    case TMINI_PHASE_NONE: /* From now on packets mean unwanted scanning. */
+        enter(lidar, TMINI_PHASE_WATCHING, 0);
         return TMINI_UNDER_WAY;
+    case TMINI_PHASE_ASKING:
+        return ask_again(lidar);
+    case TMINI_PHASE_AWAITING:
+        return on_no_reply(lidar, TMINI_ERROR_TIMEOUT);
+    case TMINI_PHASE_UNCHANGED:
+        return on_no_reply(lidar, TMINI_ERROR_REPLY);
+    case TMINI_PHASE_STANDING: /* A blocked rotor is a fault; no attempt to start it helps. */
+        return TMINI_SCANS;
+    case TMINI_PHASE_REBOOTING:
+        return ask(lidar);
+    case TMINI_PHASE_PAUSING:
+        return TMINI_OK;
+    case TMINI_PHASE_SCANNING:
+    case TMINI_PHASE_LAST_CHANCE:
+        return on_no_packet(lidar);
+    case TMINI_PHASE_LISTENING:
+        return TMINI_ERROR_TIMEOUT;
+    default: /* The line did not become quiet, or no start packet came. */
+        return try_again(lidar, TMINI_ERROR_TIMEOUT);
     }
-    return time_out(lidar);
+}
+
+static bool is_over(const tmini_t *lidar)
+{
+    const tmini_command_t *const command = &lidar->command;
+    return command->timeout_ms != 0 &&
+           tmini_has_elapsed(lidar, command->since_ms, command->timeout_ms);
 }
 
 int tmini_command_poll(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
+    int result = TMINI_UNDER_WAY;
     if ((int32_t)(lidar->line.now_ms - command->since_ms) < 0) {
         command->since_ms = lidar->line.now_ms; /* The clock was set back. */
     }
-    if (command->unsent > 0) {
-        return send_rest(lidar);
+    if (!tmini_command_is_sending(lidar)) {
+        if (is_quiet(lidar)) {
+            result = on_quiet(lidar);
+        } else if (is_over(lidar)) {
+            result = on_time_out(lidar);
+        }
     }
-    if (command->phase == TMINI_PHASE_QUIESCING && is_quiet(lidar)) {
-        return proceed(lidar);
-    }
-    if (command->timeout_ms == 0 ||
-        !tmini_has_elapsed(lidar, command->since_ms, command->timeout_ms)) {
-        return TMINI_UNDER_WAY;
-    }
-    return end_phase(lidar);
+    return result == TMINI_UNDER_WAY && tmini_command_is_sending(lidar) ? send_rest(lidar) : result;
+}
+
+static uint16_t time_left_ms(const tmini_t *lidar)
+{
+    const tmini_command_t *const command = &lidar->command;
+    return (uint16_t)(command->timeout_ms - (lidar->line.now_ms - command->since_ms));
 }
 
 uint16_t tmini_command_idle_ms(const tmini_t *lidar)
 {
-    const tmini_command_t *const command = &lidar->command;
-    if (command->phase == TMINI_PHASE_QUIESCING) {
+    if (awaits_quiet(lidar)) {
         return 0;
     }
-    return (uint16_t)(command->timeout_ms - (lidar->line.now_ms - command->since_ms));
+    return lidar->command.timeout_ms == 0 ? UINT16_MAX : time_left_ms(lidar);
+}
+
+uint16_t tmini_command_due_ms(const tmini_t *lidar)
+{
+    const uint16_t quiet_ms = lidar->link.timing->quiet_line_ms;
+    const uint16_t silent_ms = lidar->line.silent_ms;
+    if (!awaits_quiet(lidar) || silent_ms >= quiet_ms) {
+        return tmini_command_idle_ms(lidar);
+    }
+    const uint16_t left_ms = time_left_ms(lidar);
+    const uint16_t due_ms = (uint16_t)(quiet_ms - silent_ms);
+    return due_ms < left_ms ? due_ms : left_ms;
 }
 
 /* ------------------------------------------------------------------------ for the layers above */
 
-void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, bool is_idle)
+void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, uint8_t attempts)
 {
     tmini_command_t *const command = &lidar->command;
+    const bool is_idle = command->phase == TMINI_PHASE_IDLE;
     command->operation = (uint8_t)operation;
-    command->attempts = 1;
+    command->attempts_left = (uint8_t)(attempts > 0 ? attempts - 1 : 0);
+    command->is_repeated = false;
     command->steps = 0;
+    command->asks = 0;
     quiesce(lidar);
-    if (is_idle) {
-        (void)proceed(lidar);
+    if (is_idle && operation != TMINI_EVENT_STOPPED) {
+        (void)on_quiet(lidar);
     }
 }
 
@@ -299,23 +408,86 @@ int tmini_command_reply(tmini_t *lidar, const uint8_t *content)
     }
 }
 
-void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms)
+/* A packet while a lidar that should be idle is asked: it scans, so it has not received its stop,
+ * or a layer below has held the packet back. It is stopped (again): while it scans, nothing else
+ * may be sent (section 2). */
+static tmini_packet_meaning_t on_packet_while_idle(tmini_t *lidar)
 {
-    lidar->command.operation = 0;
-    enter(lidar, TMINI_PHASE_WAITING, wait_ms);
+    tmini_command_t *const command = &lidar->command;
+    if (command->asks < ASKS_MAX) { /* A lidar that receives no stop goes on scanning. */
+        command->asks++;
+        command->is_repeated = true;
+        quiesce(lidar);
+    }
+    return TMINI_PACKET_IGNORED;
 }
 
-bool tmini_command_end(tmini_t *lidar, int result)
+/* A lost lidar that sends ranges gets time for a start packet. */
+static tmini_packet_meaning_t on_first_packet(tmini_t *lidar, tmini_sign_t sign)
+{
+    const uint8_t phase = lidar->command.phase;
+    if (sign == TMINI_SIGN_SCANS) {
+        return TMINI_PACKET_FIRST;
+    }
+    (void)tmini_parser_await(&lidar->decoder.parser, NULL); /* The reply was lost. */
+    if (sign == TMINI_SIGN_TURNS && phase != TMINI_PHASE_TURNING) {
+        enter(lidar, TMINI_PHASE_TURNING, TMINI_SPIN_UP_TIMEOUT_MS);
+    } else if (phase < TMINI_PHASE_TURNING) {
+        enter(lidar, TMINI_PHASE_STANDING, TMINI_SPIN_UP_TIMEOUT_MS);
+    }
+    return TMINI_PACKET_IGNORED;
+}
+
+tmini_packet_meaning_t tmini_command_packet(tmini_t *lidar, tmini_sign_t sign)
+{
+    const bool is_start = lidar->command.operation == TMINI_EVENT_STARTED;
+    switch (lidar->command.phase) {
+    case TMINI_PHASE_WATCHING:
+    case TMINI_PHASE_IDLE:
+        return TMINI_PACKET_UNWANTED;
+    case TMINI_PHASE_ASKING:
+    case TMINI_PHASE_UNCHANGED:
+        return on_packet_while_idle(lidar);
+    case TMINI_PHASE_AWAITING:
+        return is_start ? on_first_packet(lidar, sign) : on_packet_while_idle(lidar);
+    case TMINI_PHASE_SPINNING_UP:
+    case TMINI_PHASE_TURNING:
+    case TMINI_PHASE_STANDING:
+        return on_first_packet(lidar, sign);
+    case TMINI_PHASE_PAUSING:
+    case TMINI_PHASE_LISTENING:
+        return sign == TMINI_SIGN_SCANS ? TMINI_PACKET_FIRST : TMINI_PACKET_IGNORED;
+    case TMINI_PHASE_SCANNING:
+    case TMINI_PHASE_LAST_CHANCE:
+        return TMINI_PACKET_NEXT;
+    default: /* Nothing is known, it has been stopped just now, or it reboots. */
+        return TMINI_PACKET_IGNORED;
+    }
+}
+
+void tmini_command_wait(tmini_t *lidar, tmini_phase_t phase, uint16_t wait_ms)
+{
+    lidar->command.operation = TMINI_EVENT_NONE;
+    lidar->command.asks = 0;
+    enter(lidar, phase, wait_ms);
+}
+
+void tmini_command_end(tmini_t *lidar, int result)
 {
     tmini_command_t *const command = &lidar->command;
     (void)tmini_parser_await(&lidar->decoder.parser, NULL);
-    command->unsent = 0;
+    command->unsent &= SYNC_SENT;
+    if (command->operation == TMINI_EVENT_FREQUENCY && result != TMINI_OK &&
+        result != TMINI_ERROR_REPLY) { /* That is an answer: it has refused a step. */
+        tmini_command_forget_frequency(lidar);
+    }
     if (result != TMINI_OK) { /* Packets are ignored; after a stop only for this time. */
         const bool was_stopped = command->operation >= TMINI_EVENT_STOPPED;
         enter(lidar, TMINI_PHASE_NONE, was_stopped ? TMINI_BACK_OFF_MS : 0);
-        return false;
+        return;
     }
-    const bool has_waited = command->phase == TMINI_PHASE_WAITING;
-    enter(lidar, TMINI_PHASE_IDLE, 0);
-    return !has_waited && command->attempts == 1;
+    const bool is_idle =
+        !command->is_repeated && command->phase != TMINI_PHASE_PAUSING &&
+        tmini_ring_head(&lidar->ring) == tmini_parser_position(&lidar->decoder.parser);
+    enter(lidar, is_idle ? TMINI_PHASE_IDLE : TMINI_PHASE_WATCHING, 0);
 }

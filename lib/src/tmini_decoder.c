@@ -12,9 +12,19 @@ tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring, 
     return tmini_parser_init(&decoder->parser, ring, max_samples);
 }
 
+/* One byte before a start packet is LastCRC (section 7). */
+static void note_turn(tmini_decoder_t *decoder)
+{
+    const bool is_start = tmini_packet_is_start(&decoder->packet);
+    const bool is_whole = decoder->is_whole && decoder->packet.gap <= (is_start ? 1 : 0);
+    decoder->was_whole = is_start && is_whole;
+    decoder->is_whole = is_start || is_whole;
+}
+
 /* Inlined in both callers: a firmware links only one of them, and saves the call. */
 TMINI_INLINE bool take_opened(tmini_decoder_t *decoder, uint32_t now_ms)
 {
+    note_turn(decoder);
     decoder->verdict = (uint8_t)tmini_ct_add(&decoder->ct, &decoder->packet);
     if (decoder->builder.capacity == 0) {
         return false;
@@ -47,4 +57,5 @@ void tmini_decoder_restart(tmini_decoder_t *decoder)
 {
     tmini_builder_discard(&decoder->builder);
     tmini_ct_discard(&decoder->ct);
+    decoder->is_whole = false;
 }

@@ -11,9 +11,9 @@
  *      └ tmini_decoder.c    bytes to packets, replies and scans
  *
  * Each writes its own group of members of tmini_t (`command`, `recovery`, `monitor`, `line`;
- * tmini.c `link` and those without a group). Ring and decoder are written by their own modules
- * only, which know nothing of tmini_t. test/layers.sh checks both. docs/design.md draws the states
- * and lists the phases. */
+ * tmini.c those without a group), and reads only its own and those of files below it, and `link`,
+ * the configuration. Ring and decoder are written by their own modules only, which know nothing of
+ * tmini_t. test/layers.sh checks all this. docs/design.md draws the states and phases. */
 
 #ifndef TMINI_DRIVER_H
 #define TMINI_DRIVER_H
@@ -21,11 +21,13 @@
 #include "tmini/tmini.h"
 
 /* Waiting times in milliseconds that no user needs to change. */
-#define TMINI_STOP_TIMEOUT_MS 600     /* Twice the longest tail seen after a stop (section 9.10). */
+#define TMINI_STOP_TIMEOUT_MS \
+    550                               /* The longest tail seen after a stop is 300 (section 9.10);
+                                       * the time of a quiet line comes on top. */
 #define TMINI_WRITE_TIMEOUT_MS 100    /* For the port to take two bytes (87 us on the wire). */
 #define TMINI_SPIN_UP_TIMEOUT_MS 3000 /* From the start reply to the first packet. */
 #define TMINI_DATA_TIMEOUT_MS 1000    /* A lidar without a valid packet for this long is lost. */
-#define TMINI_REBOOT_TIME_MS 5000     /* "Some seconds" (section 9.11). */
+#define TMINI_REBOOT_TIME_MS 1000     /* After this, the driver asks whether a reboot is over. */
 #define TMINI_BACK_OFF_MS 500         /* The first pause after an attempt that failed. */
 
 /* How far the frequency that is set may be from the wanted one: half the finest step. */
@@ -39,14 +41,28 @@ static inline bool tmini_has_elapsed(const tmini_t *lidar, uint32_t since_ms, ui
 
 /* ------------------------------------------------------------------------------------ tmini.c */
 
-/* Gives up the current query. Used by the blocking helpers. */
-void tmini_cancel(tmini_t *lidar);
+/* Withdraws the wish for this query. Used by the blocking helpers. */
+void tmini_withdraw(tmini_t *lidar, tmini_event_t query);
 
 /* ------------------------------------------------------------------------------- tmini_line.c */
 
+/* The driver has handled all that had come, unless the port holds more. */
+static inline void tmini_line_settle(tmini_t *lidar)
+{
+    if (lidar->line.arrived == lidar->line.received) {
+        lidar->line.busy_ms = 0;
+    }
+}
+
+/* True if the program is behind: what has come could not be handled for some time. */
+static inline bool tmini_line_is_behind(const tmini_t *lidar)
+{
+    return lidar->line.busy_ms > 150;
+}
+
 /* Reads the clock, and notes whether bytes have come since the last look. True if they have, or may
- * have: the line is not quiet. */
-bool tmini_line_look(tmini_t *lidar);
+ * have: the line is not quiet. `is_scanning`: the lidar sends packets. */
+bool tmini_line_look(tmini_t *lidar, bool is_scanning);
 
 /* When the packet found last came: the arrival of the newest bytes, less the time on the wire of
  * the bytes after the packet. Call tmini_line_look() first. */
@@ -58,52 +74,114 @@ bool tmini_line_is_doubtful(tmini_t *lidar, uint32_t came_ms);
 
 /* ---------------------------------------------------------------------------- tmini_command.c */
 
-/* What happens on the wire. */
+/* What happens on the wire. docs/phases.svg draws them; tmini_command.c has a function for each way
+ * in which they end. */
 typedef enum {
-    TMINI_PHASE_NONE,           /* No command is in progress; the lidar may be scanning. After a
-                                 * failed stop or query, TMINI_PHASE_IDLE follows. */
-    TMINI_PHASE_IDLE,           /* No command, and the lidar should be idle: if it scans, it is
-                                 * stopped. */
-    TMINI_PHASE_QUIESCING,      /* After a stop, or between frequency steps, until the line is
-                                 * quiet. */
-    TMINI_PHASE_AWAITING_REPLY, /* From sending a command until its reply. */
-    TMINI_PHASE_AWAITING_STEP,  /* After a reply to a step that shows no change. */
-    TMINI_PHASE_SPINNING_UP,    /* From the reply to the start until the first packet. */
-    TMINI_PHASE_WAITING,        /* For a fixed time: after a reboot, or in a pause. */
+    TMINI_PHASE_NONE,        /* No command is in progress, and the lidar may be scanning. After a
+                              * failed stop or query, TMINI_PHASE_WATCHING follows. */
+    TMINI_PHASE_WATCHING,    /* No command, and the lidar should be idle: if it scans, it is
+                              * stopped. */
+    TMINI_PHASE_IDLE,        /* The same, and the line is known to be quiet. */
+    TMINI_PHASE_QUIESCING,   /* From a stop until the line is quiet. */
+    TMINI_PHASE_SETTLING,    /* After an answer, until the line is quiet for the next command. */
+    TMINI_PHASE_ASKING,      /* Asks for the frequency again and again, until the first answer. */
+    TMINI_PHASE_AWAITING,    /* From sending a command until its reply. */
+    TMINI_PHASE_UNCHANGED,   /* After a reply to a step that shows no change: awaits another. */
+    TMINI_PHASE_SPINNING_UP, /* From the reply to the start until the first packet. */
+    TMINI_PHASE_TURNING,     /* A lost lidar sends ranges: until a start packet comes. */
+    TMINI_PHASE_STANDING,    /* A lost lidar sends packets without ranges: likewise. */
+    TMINI_PHASE_REBOOTING,   /* After a reboot. */
+    TMINI_PHASE_PAUSING,     /* Between two attempts. */
+    TMINI_PHASE_LISTENING,   /* Nothing is sent: until a packet comes. */
+    TMINI_PHASE_SCANNING,    /* From packet to packet. */
+    TMINI_PHASE_LAST_CHANCE, /* The same, when a poll came too late to know whether any came. */
 } tmini_phase_t;
 
-/* The result of a command is TMINI_OK, an error, or this: it has not ended. */
-#define TMINI_UNDER_WAY 1
+/* The result of a command is TMINI_OK, an error, or one of these. */
+#define TMINI_UNDER_WAY 1 /* It has not ended. */
+#define TMINI_SCANS 2     /* The lidar scans: packets come. */
 
-/* Begins an operation, named by the event of its success; it replaces the current one. The next
- * tmini_command_poll() first sends a stop, unless the lidar `is_idle` and the line quiet. After a
- * time-out there is another attempt, unless the ladder repeats attempts. TMINI_EVENT_FREQUENCY also
- * sets the wanted frequency, if there is one. */
-void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, bool is_idle);
+/* The bits of tmini_command_t.unsent that count bytes. */
+#define TMINI_UNSENT_BYTES 3u
+
+/* True if the port has not taken the whole command yet. */
+static inline bool tmini_command_is_sending(const tmini_t *lidar)
+{
+    return (lidar->command.unsent & TMINI_UNSENT_BYTES) != 0;
+}
+
+/* True while packets are expected. */
+static inline bool tmini_command_is_scanning(const tmini_t *lidar)
+{
+    return lidar->command.phase >= TMINI_PHASE_SCANNING;
+}
+
+/* True if a command is in progress or the lidar scans. */
+static inline bool tmini_command_is_busy(const tmini_t *lidar)
+{
+    return lidar->command.phase > TMINI_PHASE_IDLE;
+}
+
+/* Begins an operation, named by the event of its success, and replaces the current one. Unless the
+ * lidar is known to be idle, a stop is sent first. After a time-out there are other attempts, at
+ * most `attempts` in all (0: one). TMINI_EVENT_FREQUENCY asks until the lidar answers, and then
+ * sets the wanted frequency, if there is one; after a reboot it asks likewise. */
+void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, uint8_t attempts);
 
 /* Does what is due now: sends bytes, continues when the line is quiet, handles time-outs. */
 int tmini_command_poll(tmini_t *lidar);
 
-/* For how long tmini_command_poll() has nothing to do unless bytes come; 0: call it each time. */
-uint16_t tmini_command_idle_ms(const tmini_t *lidar);
-
 /* The awaited reply has come, with this content. */
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content);
 
-/* Begins an operation that sends nothing and succeeds after `wait_ms`; 0: never. If each packet
- * begins it again, it is a watchdog: its end means that no packet has come. */
-void tmini_command_wait(tmini_t *lidar, uint16_t wait_ms);
+/* What a packet means in the current phase. */
+typedef enum {
+    TMINI_PACKET_IGNORED,  /* Of the tail after a stop (section 9.10), or nothing is known. */
+    TMINI_PACKET_UNWANTED, /* The lidar should be idle: its stop was lost on the wire. */
+    TMINI_PACKET_FIRST,    /* The lidar scans from now on, also if the reply to its start was
+                            * lost. */
+    TMINI_PACKET_NEXT,     /* It goes on scanning. */
+} tmini_packet_meaning_t;
 
-/* Ends the current operation with `result`, or gives it up with an error. True if the lidar is idle
- * and the line quiet: after a stop, and after an answer to the first attempt. After a later attempt
+/* What a packet shows by itself. */
+typedef enum {
+    TMINI_SIGN_SCANS,  /* All is well. */
+    TMINI_SIGN_TURNS,  /* The lidar was lost; it sends ranges, but perhaps no start packets. */
+    TMINI_SIGN_STANDS, /* The lidar was lost; its rotor may be blocked (section 8). */
+} tmini_sign_t;
+
+/* A packet has come. */
+tmini_packet_meaning_t tmini_command_packet(tmini_t *lidar, tmini_sign_t sign);
+
+/* Bytes have come: the line is no longer known to be quiet. */
+static inline void tmini_command_disturb(tmini_t *lidar)
+{
+    if (lidar->command.phase == TMINI_PHASE_IDLE) {
+        lidar->command.phase = TMINI_PHASE_WATCHING;
+    }
+}
+
+/* For how long tmini_command_poll() has nothing to do unless bytes come; UINT16_MAX: without limit;
+ * 0: the line is watched. */
+uint16_t tmini_command_idle_ms(const tmini_t *lidar);
+
+/* The same, with the time until the line will be quiet. */
+uint16_t tmini_command_due_ms(const tmini_t *lidar);
+
+/* Begins a phase without an operation, in which nothing is sent: pausing, listening or scanning. It
+ * lasts `wait_ms`; 0: without limit. */
+void tmini_command_wait(tmini_t *lidar, tmini_phase_t phase, uint16_t wait_ms);
+
+/* Ends the current operation with `result`, or gives it up with an error. The lidar is then idle,
+ * and the line quiet, after a stop and after an answer to the first attempt. After a later attempt
  * the reply to an earlier one may still come. */
-bool tmini_command_end(tmini_t *lidar, int result);
+void tmini_command_end(tmini_t *lidar, int result);
 
-/* From now on this frequency is wanted; 0: any. Steps are counted from 0 again. */
+/* From now on this frequency is wanted; 0: any. */
 static inline void tmini_command_want(tmini_t *lidar, uint16_t frequency_chz)
 {
     lidar->command.wanted_chz = frequency_chz;
-    lidar->command.steps = 0;
+    lidar->command.steps = 0; /* Counted for each wish. */
 }
 
 /* The frequency that is set is no longer known. */
@@ -117,29 +195,48 @@ bool tmini_command_has_frequency(const tmini_t *lidar);
 
 /* --------------------------------------------------------------------------- tmini_recovery.c */
 
-/* Begins the ladder at its first step. `is_idle`: the lidar is known to be idle, and the line
- * quiet. */
-void tmini_recovery_start(tmini_t *lidar, bool is_idle);
+/* A wish is a bit, named by the event of its success: to scan, to stop, or a question. */
+static inline bool tmini_recovery_wishes(const tmini_t *lidar, tmini_event_t event)
+{
+    return (lidar->recovery.wishes >> event & 1u) != 0;
+}
+
+/* Adds a wish. To stop replaces all others. */
+void tmini_recovery_wish(tmini_t *lidar, tmini_event_t event);
+
+/* A wish has been fulfilled, has failed or is withdrawn. */
+void tmini_recovery_forget_wish(tmini_t *lidar, tmini_event_t event);
+
+/* Begins the next operation that the wishes need, after `ended`: TMINI_EVENT_FREQUENCY, or
+ * TMINI_EVENT_NONE. Without one the lidar rests. */
+void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t ended);
+
+/* The next attempt to scan is the first one of the ladder. */
+void tmini_recovery_reset(tmini_t *lidar);
 
 /* Begins the ladder for a lidar that has been lost. If it has made no complete revolution since the
  * previous loss, the ladder continues instead. */
 void tmini_recovery_begin(tmini_t *lidar);
 
+/* A reply has come. */
+void tmini_recovery_note_reply(tmini_t *lidar);
+
+/* The lidar has been asked again and again in vain. True if it is worth a start even so: it may be
+ * one that obeys and never answers. One that has answered before has no power. */
+bool tmini_recovery_note_silence(tmini_t *lidar);
+
+/* True from then on, until a reply comes. */
+bool tmini_recovery_is_mute(const tmini_t *lidar);
+
 /* Asks the port, if it can, to start its reception again: after a loss or a failed attempt. */
 void tmini_recovery_restart_reception(const tmini_t *lidar);
 
-/* An attempt has failed: waits before the next one. */
+/* An attempt has failed: waits before the next one, unless that has been asking in vain for longer
+ * than any pause. */
 void tmini_recovery_back_off(tmini_t *lidar);
 
-/* `ended` has succeeded, or the frequency could not be set: begins the next operation. `is_idle`:
- * as in tmini_recovery_start(). */
-void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t ended, bool is_idle);
-
-/* The lidar is back, by an attempt or by itself. */
-static inline void tmini_recovery_end(tmini_t *lidar)
-{
-    lidar->recovery.recoveries++;
-}
+/* The lidar scans again, by an attempt or by itself. */
+void tmini_recovery_end(tmini_t *lidar);
 
 /* The lidar has started, or a complete revolution has come: after the next loss the ladder begins
  * again. */
@@ -157,16 +254,28 @@ void tmini_monitor_begin(tmini_monitor_t *monitor);
 typedef enum {
     TMINI_TURN_GOES_ON,
     TMINI_TURN_WHOLE,   /* The packet ends a complete revolution. */
-    TMINI_TURN_OFF,     /* Revolutions have had a wrong frequency for too long. */
+    TMINI_TURN_STILL,   /* The wish has not changed for some turns. */
+    TMINI_TURN_OFF,     /* Revolutions have had a wrong or unknown frequency for too long. */
     TMINI_TURN_ENDLESS, /* Packets with ranges come, but no start packets: the lidar is lost. */
 } tmini_turn_t;
 
-/* Takes the latest packet. If it ends a revolution, judges that revolution. `wanted_chz` 0:
- * any. */
+/* Takes the latest packet. If it ends a revolution, judges that revolution. `wanted_chz` 0: any.
+ * `is_unknown`: the lidar answers, but has not reported which frequency is set. */
 tmini_turn_t tmini_monitor_packet(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
-                                  uint16_t wanted_chz);
+                                  uint16_t wanted_chz, bool is_unknown);
 
-/* The wanted frequency has changed: forgets the fault and the count of turns at a wrong one. */
+/* The wanted frequency has changed, or the lidar has been lost: forgets the fault and the count of
+ * turns at a wrong one. */
 void tmini_monitor_forget_frequency(tmini_monitor_t *monitor);
+
+/* The wish has changed while the lidar is to scan: TMINI_TURN_STILL follows when it has not changed
+ * again for some turns. */
+void tmini_monitor_await_still(tmini_monitor_t *monitor);
+
+/* The wish has been carried out, or will be. */
+static inline void tmini_monitor_forget_wish(tmini_monitor_t *monitor)
+{
+    monitor->turns_to_still = 0;
+}
 
 #endif

@@ -64,10 +64,9 @@ static bool may_hide_turn(const tmini_t *lidar, int32_t silent_ms)
  * silence was before them: the lidar does not scan yet, and all of them can have come since that
  * look. In other cases its place is unknown, because a delayed layer below may deliver late what
  * came before the silence. */
-static bool is_silence_before(const tmini_t *lidar, uint32_t due_ms, uint32_t passed_ms)
+static bool is_silence_before(uint32_t due_ms, uint32_t passed_ms, bool is_scanning)
 {
-    return lidar->state != TMINI_STATE_SCANNING && passed_ms <= WATCHED_MS &&
-           due_ms <= passed_ms + FIFO_MS;
+    return !is_scanning && passed_ms <= WATCHED_MS && due_ms <= passed_ms + FIFO_MS;
 }
 
 /* Notes by how much the newest bytes may be late. A larger delay of earlier bytes is kept until
@@ -103,7 +102,8 @@ static int32_t missing_ms(const tmini_line_t *line, uint32_t due_ms)
  * for the next bytes, because the silence may continue; after a doubt, only if the port may hold
  * what seemed to be missing.
  * More bytes than the ring holds mean a gap of DMA: their true number is unknown. */
-static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t passed_ms)
+static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t passed_ms,
+                       bool is_scanning)
 {
     tmini_line_t *const line = &lidar->line;
     const size_t fed_from = line->received - count;
@@ -120,13 +120,13 @@ static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t pa
     int32_t late_ms = missing_ms(line, due_ms);
     line->heard_ms = line->now_ms;
     if (is_gap || may_hide_turn(lidar, late_ms + line->late_ms)) {
-        const bool is_before = !is_gap && is_silence_before(lidar, due_ms, passed_ms);
+        const bool is_before = !is_gap && is_silence_before(due_ms, passed_ms, is_scanning);
         doubt_to(line, is_before ? before : arrived);
         if (tmini_load(&lidar->held_to) == 0) {
             late_ms = 0;
         }
     }
-    note_delay(line, late_ms, lidar->idle_ms > 0 && !were_held);
+    note_delay(line, late_ms, line->busy_ms == 0 && !were_held);
 }
 
 static void note_silence(tmini_line_t *line, uint32_t passed_ms)
@@ -136,7 +136,14 @@ static void note_silence(tmini_line_t *line, uint32_t passed_ms)
     line->silent_ms = (uint16_t)(silent_ms < UINT16_MAX ? silent_ms : UINT16_MAX);
 }
 
-bool tmini_line_look(tmini_t *lidar)
+/* Counts the time since the driver has handled all that had come; 0 until the next look. */
+static void note_work(tmini_line_t *line, uint32_t passed_ms)
+{
+    const uint32_t busy_ms = line->busy_ms + passed_ms + (line->busy_ms == 0 ? 1 : 0);
+    line->busy_ms = (uint16_t)(busy_ms < UINT16_MAX ? busy_ms : UINT16_MAX);
+}
+
+bool tmini_line_look(tmini_t *lidar, bool is_scanning)
 {
     tmini_line_t *const line = &lidar->line;
     const size_t head = tmini_ring_head(&lidar->ring);
@@ -152,8 +159,10 @@ bool tmini_line_look(tmini_t *lidar)
         doubt_to(line, arrived);
     }
     if (count > 0) {
-        note_bytes(lidar, count, arrived, passed_ms);
-    } else if (!tmini_ring_is_full(&lidar->ring)) { /* A full ring may have refused bytes. */
+        note_bytes(lidar, count, arrived, passed_ms, is_scanning);
+    }
+    note_work(line, passed_ms);
+    if (count == 0 && !tmini_ring_is_full(&lidar->ring)) { /* It may have refused bytes. */
         note_silence(line, passed_ms);
         return false;
     }

@@ -17,6 +17,10 @@
  * doublings. */
 #define OFF_DOUBLINGS_MAX 4
 
+/* A wish that is still for this many start packets is carried out: while somebody moves a slider,
+ * the lidar goes on scanning. */
+#define STILL_TURNS 4
+
 /* No turn has more samples: three seconds, at 4000 per second (section 1). */
 #define TURN_SAMPLES_MAX 12000u
 
@@ -38,14 +42,18 @@ static void observe(tmini_monitor_t *monitor, uint8_t faults)
  * completely. */
 static void judge_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *decoder)
 {
+    const bool was_blocked = (monitor->observed & TMINI_FAULT_ENCODER) != 0;
     unsigned faults = tmini_ct_faults(&decoder->ct);
     bool is_known = decoder->verdict == TMINI_CT_CONFIRMED;
     if (faults == TMINI_FAULTS_UNKNOWN) {
         faults = monitor->ranges > 0 ? 0 : TMINI_FAULT_DATA;
-        is_known = monitor->ranges > 0 || monitor->is_complete;
+        is_known = monitor->ranges > 0 || (decoder->was_whole && !was_blocked);
     }
     if (is_known) {
         observe(monitor, (uint8_t)faults);
+    } else if (was_blocked) {
+        monitor->observed = TMINI_FAULT_FREQUENCY; /* A rotor that stood has made no revolution, and
+                                                    * no revolution has this fault. */
     }
 }
 
@@ -63,25 +71,33 @@ void tmini_monitor_forget_frequency(tmini_monitor_t *monitor)
     monitor->off_times = 0;
 }
 
-/* Counts consecutive revolutions at another frequency than wanted. Their number, divided by the
- * frequency that they report, is the time that this has lasted. After three seconds it is a fault.
- * True when the frequency is to be set again: after these three seconds, then after twice as long
- * each time, or 255 turns. */
-static bool has_become_off(tmini_monitor_t *monitor, uint8_t ct, uint16_t wanted_chz)
+void tmini_monitor_await_still(tmini_monitor_t *monitor)
 {
-    const int32_t chz = (ct >> 1) * 10; /* Section 7. */
+    monitor->turns_to_still = STILL_TURNS;
+}
+
+/* Counts consecutive revolutions at another frequency than wanted, or while it `is_unknown` which
+ * one is set. Their number, divided by the frequency that they report, is the time that this has
+ * lasted. After three seconds a wrong frequency is a fault. True when the frequency is to be set
+ * again: after these three seconds, then after twice as long each time, or 255 turns. */
+static bool has_become_off(tmini_monitor_t *monitor, uint16_t chz, uint16_t wanted_chz,
+                           bool is_unknown)
+{
     const int32_t off_chz = chz > wanted_chz ? chz - wanted_chz : wanted_chz - chz;
-    const int32_t enough = OFF_SECONDS * chz;
-    if (wanted_chz == 0 || chz == 0 || off_chz * OFF_PART <= wanted_chz) {
+    const int32_t enough = OFF_SECONDS * (int32_t)chz;
+    const bool is_wrong = off_chz * OFF_PART > wanted_chz;
+    if (wanted_chz == 0 || chz == 0 || (!is_wrong && !is_unknown)) {
         end_frequency_fault(monitor);
         return false;
     }
     monitor->off_turns++;
-    const int32_t lasted = monitor->off_turns * 100;
+    const int32_t lasted = monitor->off_turns * (int32_t)100;
     if (monitor->off_turns < OFF_TURNS || lasted < enough) {
         return false;
     }
-    monitor->faults |= TMINI_FAULT_FREQUENCY;
+    if (is_wrong) {
+        monitor->faults |= TMINI_FAULT_FREQUENCY;
+    }
     if (monitor->off_turns < UINT8_MAX && lasted < enough << monitor->off_times) {
         return false;
     }
@@ -90,17 +106,25 @@ static bool has_become_off(tmini_monitor_t *monitor, uint8_t ct, uint16_t wanted
     return true;
 }
 
-/* `is_complete`: a start packet shows that it begins here. */
-static void begin_revolution(tmini_monitor_t *monitor, bool is_complete)
+/* True if the wish has changed, and then not for some turns. */
+static bool has_become_still(tmini_monitor_t *monitor)
 {
-    monitor->is_complete = is_complete;
+    if (monitor->turns_to_still > 0) {
+        monitor->turns_to_still--;
+        return monitor->turns_to_still == 0;
+    }
+    return false;
+}
+
+static void begin_revolution(tmini_monitor_t *monitor)
+{
     monitor->ranges = 0;
     monitor->samples = 0;
 }
 
 void tmini_monitor_begin(tmini_monitor_t *monitor)
 {
-    begin_revolution(monitor, false);
+    begin_revolution(monitor);
     monitor->off_turns = 0;
     monitor->observed = monitor->faults;
 }
@@ -118,31 +142,31 @@ static tmini_turn_t go_on(tmini_monitor_t *monitor, const tmini_packet_t *packet
         monitor->ranges >= TURNING_RANGES && (monitor->faults & TMINI_FAULT_ENCODER) != 0;
     monitor->faults |= TMINI_FAULT_ENCODER;
     monitor->observed = monitor->faults;
-    begin_revolution(monitor, false);
+    begin_revolution(monitor);
     return turns ? TMINI_TURN_ENDLESS : TMINI_TURN_GOES_ON;
 }
 
 static tmini_turn_t end_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
-                                   uint16_t wanted_chz)
+                                   uint16_t wanted_chz, bool is_unknown)
 {
-    const bool is_whole = monitor->is_complete;
+    const uint16_t chz = tmini_packet_frequency_chz(&decoder->packet);
     judge_revolution(monitor, decoder);
-    begin_revolution(monitor, true);
-    if (has_become_off(monitor, decoder->packet.ct, wanted_chz)) {
+    begin_revolution(monitor);
+    if (has_become_still(monitor)) {
+        return TMINI_TURN_STILL;
+    }
+    if (has_become_off(monitor, chz, wanted_chz, is_unknown)) {
         return TMINI_TURN_OFF;
     }
-    return is_whole ? TMINI_TURN_WHOLE : TMINI_TURN_GOES_ON;
+    return decoder->was_whole ? TMINI_TURN_WHOLE : TMINI_TURN_GOES_ON;
 }
 
 tmini_turn_t tmini_monitor_packet(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
-                                  uint16_t wanted_chz)
+                                  uint16_t wanted_chz, bool is_unknown)
 {
     const tmini_packet_t *const packet = &decoder->packet;
-    if (packet->gap > 1) { /* One byte may be LastCRC; with more, a packet may be lost. */
-        monitor->is_complete = false;
-    }
     const tmini_turn_t turn = tmini_packet_is_start(packet)
-                                  ? end_revolution(monitor, decoder, wanted_chz)
+                                  ? end_revolution(monitor, decoder, wanted_chz, is_unknown)
                                   : go_on(monitor, packet);
     if (tmini_packet_has_range(packet)) {
         monitor->ranges = (uint8_t)(monitor->ranges + (monitor->ranges < UINT8_MAX));

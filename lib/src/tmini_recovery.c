@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The ladder of attempts that makes a lidar scan, at the start and after a loss. An attempt sets
- * the wanted frequency, then starts. After a failure comes a pause, which doubles up to a limit;
- * after every third failure a soft reboot. */
+/* What to try next. The wishes are a set: to stop, questions, to scan. One function chooses the next
+ * operation from what is wanted and what is known. To scan, a ladder of attempts is made, at the
+ * start and after a loss: an attempt asks until the lidar answers, sets the wanted frequency, and
+ * starts. After a failure comes a pause, which doubles up to a limit. A lidar that answers and does
+ * not scan is rebooted after every third failure. */
 
 #include "tmini_driver.h"
 
@@ -13,8 +15,27 @@
 /* Value of `attempts` while the first attempt has not failed yet. */
 #define FIRST_ATTEMPT (REBOOT_AFTER + 1)
 
-/* No operation has ended, or it was a pause. */
-#define NO_OPERATION TMINI_EVENT_NONE
+/* Bits of tmini_recovery_t.contact. */
+#define MUTE 1u /* The lidar has been asked again and again, and has answered nothing since. */
+#define HAS_ANSWERED 2u /* Since the lidar was set up. */
+
+#define BIT(event) (1u << (event))
+
+void tmini_recovery_wish(tmini_t *lidar, tmini_event_t event)
+{
+    const unsigned others = event == TMINI_EVENT_STOPPED ? 0 : lidar->recovery.wishes;
+    lidar->recovery.wishes = (uint8_t)(others | BIT(event));
+    if (event == TMINI_EVENT_STOPPED) {
+        lidar->recovery.is_lost = false;
+    }
+}
+
+void tmini_recovery_forget_wish(tmini_t *lidar, tmini_event_t event)
+{
+    lidar->recovery.wishes = (uint8_t)(lidar->recovery.wishes & ~BIT(event));
+}
+
+/* ----------------------------------------------------------------------------------- the ladder */
 
 TMINI_NOINLINE void tmini_recovery_restart_reception(const tmini_t *lidar)
 {
@@ -24,67 +45,133 @@ TMINI_NOINLINE void tmini_recovery_restart_reception(const tmini_t *lidar)
     }
 }
 
+void tmini_recovery_reset(tmini_t *lidar)
+{
+    lidar->recovery.attempts = FIRST_ATTEMPT;
+    lidar->recovery.pause_ms = TMINI_BACK_OFF_MS / 2; /* It doubles before it is used. */
+    lidar->recovery.contact &= HAS_ANSWERED;
+    lidar->recovery.is_lost = false;
+}
+
+void tmini_recovery_note_reply(tmini_t *lidar)
+{
+    lidar->recovery.contact = HAS_ANSWERED;
+}
+
+bool tmini_recovery_note_silence(tmini_t *lidar)
+{
+    lidar->recovery.contact |= MUTE;
+    return (lidar->recovery.contact & HAS_ANSWERED) == 0;
+}
+
+bool tmini_recovery_is_mute(const tmini_t *lidar)
+{
+    return (lidar->recovery.contact & MUTE) != 0;
+}
+
 void tmini_recovery_back_off(tmini_t *lidar)
 {
     tmini_recovery_t *const recovery = &lidar->recovery;
     const uint16_t max_ms = lidar->link.timing->back_off_max_ms;
     const uint32_t doubled_ms = 2u * (uint32_t)recovery->pause_ms;
+    if (tmini_recovery_is_mute(lidar) && max_ms > 0) {
+        tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
+        return;
+    }
     recovery->attempts = (uint8_t)(recovery->attempts < REBOOT_AFTER ? recovery->attempts + 1 : 1);
     recovery->pause_ms = (uint16_t)(doubled_ms < max_ms ? doubled_ms : max_ms);
-    tmini_command_wait(lidar, recovery->pause_ms);
+    tmini_command_wait(lidar, lidar->is_listen_only ? TMINI_PHASE_LISTENING : TMINI_PHASE_PAUSING,
+                       recovery->pause_ms);
 }
 
-/* Chooses the operation that follows the one that has ended. A reboot is not tried at once, because
- * it takes seconds and an unplugged lidar does not receive it. The start follows even if the
- * frequency could not be set, because scanning matters more. */
+/* Asking comes before each start: a lidar that boots does not receive a start. The start follows
+ * even if it has not answered, or its frequency could not be set, because scanning matters more. A
+ * lidar that does not answer is not rebooted: it would not receive that either. */
+static tmini_event_t next_attempt(const tmini_t *lidar, tmini_event_t ended)
+{
+    if (ended != TMINI_EVENT_FREQUENCY) {
+        return TMINI_EVENT_FREQUENCY;
+    }
+    return lidar->recovery.attempts == REBOOT_AFTER && !tmini_recovery_is_mute(lidar)
+               ? TMINI_EVENT_REBOOTED
+               : TMINI_EVENT_STARTED;
+}
+
+/* ------------------------------------------------------------------------------- the next step */
+
+/* To stop comes first, then the questions; an attempt to scan also asks for the frequency. */
 static tmini_event_t next_operation(const tmini_t *lidar, tmini_event_t ended)
 {
-    if (ended == TMINI_EVENT_FREQUENCY) {
-        return TMINI_EVENT_STARTED;
+    const bool is_to_scan = tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED);
+    unsigned wishes = lidar->recovery.wishes;
+    if (is_to_scan) {
+        wishes &= ~(BIT(TMINI_EVENT_STARTED) | BIT(TMINI_EVENT_FREQUENCY));
     }
-    if (ended == NO_OPERATION && lidar->recovery.attempts == REBOOT_AFTER) {
-        return TMINI_EVENT_REBOOTED;
+    for (unsigned event = TMINI_EVENT_STOPPED; wishes != 0; event++) {
+        if ((wishes & BIT(event)) != 0) {
+            return (tmini_event_t)event;
+        }
     }
-    return lidar->command.wanted_chz != 0 ? TMINI_EVENT_FREQUENCY : TMINI_EVENT_STARTED;
+    return is_to_scan ? next_attempt(lidar, ended) : TMINI_EVENT_NONE;
 }
 
-static void count(tmini_t *lidar, tmini_event_t operation)
+/* True for a step of the ladder. */
+static bool is_step(const tmini_t *lidar, tmini_event_t operation)
 {
+    return operation == TMINI_EVENT_STARTED || operation == TMINI_EVENT_FREQUENCY ||
+           !tmini_recovery_wishes(lidar, operation);
+}
+
+static void note_step(tmini_t *lidar, tmini_event_t operation)
+{
+    tmini_recovery_t *const recovery = &lidar->recovery;
     if (operation == TMINI_EVENT_REBOOTED) {
-        lidar->recovery.reboots++;
-    } else if (operation == TMINI_EVENT_STARTED && lidar->state == TMINI_STATE_RECOVERING) {
-        lidar->recovery.restarts++;
+        recovery->reboots++;
+        recovery->attempts = REBOOT_AFTER - 1; /* It may have been lost: after the next failure,
+                                                * another. */
+    } else if (operation == TMINI_EVENT_STARTED && recovery->is_lost) {
+        recovery->restarts++;
     }
 }
 
-void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t ended, bool is_idle)
+void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t ended)
 {
     const tmini_event_t operation = next_operation(lidar, ended);
-    count(lidar, operation);
-    tmini_command_begin(lidar, operation, is_idle);
-}
-
-/* With listen_only nothing is sent; the driver waits for packets. */
-void tmini_recovery_start(tmini_t *lidar, bool is_idle)
-{
-    lidar->recovery.attempts = FIRST_ATTEMPT;
-    lidar->recovery.pause_ms = TMINI_BACK_OFF_MS / 2; /* It doubles before it is used. */
-    if (lidar->is_listen_only) {
-        tmini_command_wait(lidar, TMINI_SPIN_UP_TIMEOUT_MS);
-    } else {
-        tmini_recovery_go_on(lidar, NO_OPERATION, is_idle);
+    uint8_t attempts = lidar->link.timing->max_attempts;
+    if (operation == TMINI_EVENT_NONE) {
+        return;
     }
+    if (lidar->is_listen_only) { /* The only wish is to scan. */
+        tmini_command_wait(lidar, TMINI_PHASE_LISTENING, TMINI_SPIN_UP_TIMEOUT_MS);
+        return;
+    }
+    if (is_step(lidar, operation)) {
+        note_step(lidar, operation);
+        if (!lidar->is_recovery_off && operation != TMINI_EVENT_REBOOTED) {
+            attempts = 1; /* The ladder repeats it. */
+        }
+    }
+    tmini_command_begin(lidar, operation, attempts);
 }
 
 void tmini_recovery_begin(tmini_t *lidar)
 {
-    lidar->recovery.losses++;
+    tmini_recovery_t *const recovery = &lidar->recovery;
+    recovery->losses++;
     tmini_recovery_restart_reception(lidar);
-    if (lidar->recovery.attempts > 0) {
+    if (lidar->is_recovery_off) {
+        tmini_command_wait(lidar, TMINI_PHASE_LISTENING, 0);
+    } else if (recovery->attempts > 0) {
         tmini_recovery_back_off(lidar); /* Lost again before it made a complete revolution. */
-    } else if (lidar->is_recovery_off) {
-        tmini_command_wait(lidar, 0);
     } else {
-        tmini_recovery_start(lidar, false);
+        tmini_recovery_reset(lidar);
+        tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
     }
+    recovery->is_lost = true;
+}
+
+void tmini_recovery_end(tmini_t *lidar)
+{
+    lidar->recovery.recoveries++;
+    lidar->recovery.is_lost = false;
 }

@@ -7,13 +7,14 @@
 
 /* As in tmini_command.c, which does not export them. */
 #define STEPS_MAX 20
+#define ASKS_MAX (30 + 8)
 #define PLAUSIBLE_CHZ_MAX 2000
 
 /* As in tmini_builder.c: 4 degrees back. */
 #define SWEPT_MIN_Q6 (-256)
 
-/* All events that may be pending: from STARTED to SCAN. */
-#define EVENTS ((1u << (TMINI_EVENT_SCAN + 1)) - (1u << TMINI_EVENT_STARTED))
+/* All events that may be pending: from STARTED to LOST. */
+#define EVENTS ((1u << TMINI_EVENT_MORE) - (1u << TMINI_EVENT_STARTED))
 
 /* ---- Ring, parser ---- */
 
@@ -199,11 +200,6 @@ static uint8_t code_of(uint8_t operation)
     }
 }
 
-static bool steps_frequency(const tmini_command_t *command)
-{
-    return command->operation == TMINI_EVENT_FREQUENCY;
-}
-
 /* The awaited reply is the one to the command sent. */
 static bool awaits_its_reply(const tmini_t *lidar)
 {
@@ -215,92 +211,102 @@ static bool awaits_its_reply(const tmini_t *lidar)
            awaited->length == reply.length;
 }
 
-/* True if the operation can be in this phase. TMINI_PHASE_WAITING is also used for timeouts while
- * scanning and between attempts. */
+static bool is_asking(const tmini_command_t *command)
+{
+    return (command->operation == TMINI_EVENT_FREQUENCY ||
+            command->operation == TMINI_EVENT_REBOOTED) &&
+           command->code == TMINI_COMMAND_GET_FREQUENCY;
+}
+
+static bool is_stepping(const tmini_command_t *command)
+{
+    return command->operation == TMINI_EVENT_FREQUENCY && is_step(command->code);
+}
+
+static bool is_awaiting(const tmini_command_t *command)
+{
+    return command->code == code_of(command->operation) || is_stepping(command);
+}
+
+/* The table of phases: which operation, command and wish each one can have. Of 16 phases and 7
+ * operations 32 pairs exist. */
 static bool phase_fits(const tmini_t *lidar)
 {
     const tmini_command_t *const command = &lidar->command;
+    const bool is_starting = command->operation == TMINI_EVENT_STARTED;
+    const bool has_none =
+        command->operation == TMINI_EVENT_NONE && !tmini_command_is_sending(lidar);
+    const bool is_to_scan = tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED);
+    const bool is_lost = lidar->recovery.is_lost;
     switch (command->phase) {
-    case TMINI_PHASE_AWAITING_REPLY:
-        return (command->code == code_of(command->operation) ||
-                (steps_frequency(command) && is_step(command->code))) &&
-               awaits_its_reply(lidar);
-    case TMINI_PHASE_AWAITING_STEP:
-        return steps_frequency(command) && is_step(command->code) && awaits_its_reply(lidar);
+    case TMINI_PHASE_NONE:
+    case TMINI_PHASE_WATCHING:
+    case TMINI_PHASE_IDLE:
+        return lidar->recovery.wishes == 0 && !tmini_command_is_sending(lidar);
     case TMINI_PHASE_QUIESCING:
-        return (command->code == TMINI_COMMAND_STOP || steps_frequency(command)) &&
-               !lidar->decoder.parser.awaiting;
+        return command->operation != TMINI_EVENT_NONE && command->code == TMINI_COMMAND_STOP;
+    case TMINI_PHASE_SETTLING:
+        return command->operation == TMINI_EVENT_FREQUENCY &&
+               (is_asking(command) || is_stepping(command));
+    case TMINI_PHASE_ASKING:
+        return is_asking(command) && awaits_its_reply(lidar);
+    case TMINI_PHASE_AWAITING:
+        return is_awaiting(command) && awaits_its_reply(lidar);
+    case TMINI_PHASE_UNCHANGED:
+        return is_stepping(command) && awaits_its_reply(lidar);
     case TMINI_PHASE_SPINNING_UP:
-        return command->operation == TMINI_EVENT_STARTED && !lidar->decoder.parser.awaiting;
-    default:
-        return command->phase <= TMINI_PHASE_WAITING && !lidar->decoder.parser.awaiting;
-    }
-}
-
-static bool is_query(uint8_t operation)
-{
-    return operation >= TMINI_EVENT_INFO && operation <= TMINI_EVENT_REBOOTED;
-}
-
-/* When only listening, and in pauses of the ladder, the driver waits for time; otherwise one of the
- * ladder's operations is active. */
-static bool ladder_fits(const tmini_t *lidar)
-{
-    const uint8_t operation = lidar->command.operation;
-    const bool is_waiting = lidar->command.phase == TMINI_PHASE_WAITING;
-    return lidar->command.phase >= TMINI_PHASE_QUIESCING &&
-           (operation == TMINI_EVENT_REBOOTED || operation == TMINI_EVENT_FREQUENCY ||
-            is_waiting == (operation != TMINI_EVENT_STARTED));
-}
-
-static bool state_fits(const tmini_t *lidar)
-{
-    const uint8_t operation = lidar->command.operation;
-    const uint8_t phase = lidar->command.phase;
-    const bool is_waiting = phase == TMINI_PHASE_WAITING;
-    switch (lidar->state) {
-    case TMINI_STATE_UNKNOWN:
-        return phase <= TMINI_PHASE_IDLE;
-    case TMINI_STATE_IDLE:
-        return phase == TMINI_PHASE_IDLE;
-    case TMINI_STATE_BUSY:
-        return is_query(operation) && phase >= TMINI_PHASE_QUIESCING &&
-               (!is_waiting || operation == TMINI_EVENT_REBOOTED);
-    case TMINI_STATE_STOPPING:
-        return operation == TMINI_EVENT_STOPPED && phase == TMINI_PHASE_QUIESCING;
-    case TMINI_STATE_SCANNING:
-        return is_waiting && lidar->command.unsent == 0;
-    case TMINI_STATE_STARTING:
-    case TMINI_STATE_RECOVERING:
-        return ladder_fits(lidar) && !lidar->start_follows;
+        return is_starting;
+    case TMINI_PHASE_TURNING:
+    case TMINI_PHASE_STANDING:
+        return is_starting && is_lost;
+    case TMINI_PHASE_REBOOTING:
+        return command->operation == TMINI_EVENT_REBOOTED && command->code == TMINI_COMMAND_REBOOT;
+    case TMINI_PHASE_PAUSING:
+        return has_none && is_to_scan && !lidar->is_listen_only;
+    case TMINI_PHASE_LISTENING:
+        return has_none && is_to_scan &&
+               (lidar->is_listen_only || (lidar->is_recovery_off && is_lost));
+    case TMINI_PHASE_SCANNING:
+    case TMINI_PHASE_LAST_CHANCE:
+        return has_none && lidar->recovery.wishes == 1u << TMINI_EVENT_STARTED && !is_lost;
     default:
         return false;
     }
 }
 
-/* For a while after a failure, packets do not count as scanning of an idle lidar. */
-static bool pauses_after_failure(const tmini_command_t *command)
+/* A reply is awaited in three phases only. */
+static bool awaits_as_it_should(const tmini_t *lidar)
 {
-    return command->phase == TMINI_PHASE_NONE && command->operation >= TMINI_EVENT_STOPPED &&
-           command->timeout_ms == TMINI_BACK_OFF_MS;
+    const uint8_t phase = lidar->command.phase;
+    return !lidar->decoder.parser.awaiting || phase == TMINI_PHASE_ASKING ||
+           phase == TMINI_PHASE_AWAITING || phase == TMINI_PHASE_UNCHANGED;
+}
+
+/* Every wish is being carried out. */
+static bool wishes_fit(const tmini_t *lidar)
+{
+    const unsigned wishes = lidar->recovery.wishes;
+    const unsigned all = (1u << (TMINI_EVENT_REBOOTED + 1)) - (1u << TMINI_EVENT_STARTED);
+    return (wishes & ~all) == 0 && (wishes == 0) == (lidar->command.phase <= TMINI_PHASE_IDLE) &&
+           (!lidar->recovery.is_lost || wishes == 1u << TMINI_EVENT_STARTED);
 }
 
 static bool command_is_sound(const tmini_command_t *command)
 {
-    return is_operation(command->operation) && command->unsent <= (command->sync_sent ? 1 : 2) &&
-           (command->sync_sent || command->unsent != 1) &&
-           (command->unsent == 0 ||
-            (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
+    const unsigned bytes = command->unsent & TMINI_UNSENT_BYTES;
+    return is_operation(command->operation) && bytes <= 2 && command->unsent < 16 &&
+           (bytes == 0 || (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
            (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE ||
-            pauses_after_failure(command)) &&
-           command->steps <= STEPS_MAX && command->frequency_chz <= PLAUSIBLE_CHZ_MAX;
+            (command->phase == TMINI_PHASE_NONE && command->timeout_ms == TMINI_BACK_OFF_MS)) &&
+           command->steps <= STEPS_MAX && command->asks <= ASKS_MAX &&
+           command->frequency_chz <= PLAUSIBLE_CHZ_MAX;
 }
 
 static bool monitor_is_sound(const tmini_monitor_t *monitor)
 {
     return ((monitor->faults | monitor->observed) & ~(TMINI_FAULT_MASK | TMINI_FAULT_FREQUENCY)) ==
                0 &&
-           monitor->off_times <= 4;
+           monitor->off_times <= 4 && monitor->turns_to_still <= 4;
 }
 
 static bool recovery_is_sound(const tmini_recovery_t *recovery)
@@ -313,7 +319,8 @@ static bool wish_is_sound(const tmini_t *lidar)
 {
     const uint16_t chz = lidar->command.wanted_chz;
     return (chz == 0 || (chz >= TMINI_FREQUENCY_MIN_CHZ && chz <= TMINI_FREQUENCY_MAX_CHZ)) &&
-           (!lidar->is_listen_only || (chz == 0 && lidar->command.operation == 0));
+           (!lidar->is_listen_only || (chz == 0 && lidar->command.operation == 0)) &&
+           wishes_fit(lidar);
 }
 
 /* Without points no scan is built. A packet that waits to be added is sound. If the driver has
@@ -338,7 +345,7 @@ bool lidar_is_sound(const tmini_t *lidar)
            lidar->decoder.parser.frame.ring == &lidar->ring &&
            lidar->ring.window >= TMINI_REPLY_SIZE_MAX && parser_is_sound(&lidar->decoder.parser) &&
            (lidar->pending & ~EVENTS) == 0 && command_is_sound(&lidar->command) &&
-           phase_fits(lidar) && state_fits(lidar) && monitor_is_sound(&lidar->monitor) &&
+           phase_fits(lidar) && awaits_as_it_should(lidar) && monitor_is_sound(&lidar->monitor) &&
            recovery_is_sound(&lidar->recovery) && ct_is_sound(&lidar->decoder.ct) &&
            wish_is_sound(lidar) && results_are_sound(lidar);
 }

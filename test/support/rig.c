@@ -213,7 +213,8 @@ void rig_go_idle(void)
 void rig_go_starting(void)
 {
     rig_go_idle();
-    begins_with(START, tmini_start(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
+    answers_and_gets(600, START);
 }
 
 void rig_go_spinning_up(void)
@@ -242,8 +243,8 @@ void rig_go_recovering(void)
 void rig_go_asking_again(void)
 {
     rig_go_recovering();
-    passes_to(50, TMINI_EVENT_NONE); /* The line is found quiet. */
-    polls_and_sends(START);
+    finds_quiet_and_sends(GET_FREQUENCY);
+    answers_and_gets(600, START);
 }
 
 void rig_go_backing_off(void)

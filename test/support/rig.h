@@ -105,10 +105,17 @@ void rig_pass(unsigned line, uint32_t ms);
     } while (false)
 
 /* The line has been quiet for long enough, and this command is sent. */
-#define finds_quiet_and_sends(code)      \
-    do {                                 \
-        passes_to(50, TMINI_EVENT_NONE); \
-        polls_and_sends(code);           \
+#define finds_quiet_and_sends(code) \
+    do {                            \
+        passes(50);                 \
+        polls_and_sends(code);      \
+    } while (false)
+
+/* The lidar answers that this frequency is set, and this command follows. */
+#define answers_and_gets(frequency_chz, code) \
+    do {                                      \
+        rig_feed_frequency(frequency_chz);    \
+        polls_and_sends(code);                \
     } while (false)
 
 /* Polls until there is nothing left to do; returns a bit for each event. */

@@ -131,7 +131,10 @@ void turns_open_scanning(size_t rx_size, bool dma)
     (void)tmini_start(&turns.lidar);
     (void)turns_poll();
     turns.now_ms += 100;
-    (void)turns_poll(); /* The line is quiet: start is sent. */
+    (void)turns_poll(); /* The line is quiet: the lidar is asked for its frequency. */
+    turns.now_ms += 3;
+    turns_feed(reply, encode_frequency_reply(reply, 600));
+    (void)turns_poll(); /* It is started. */
     turns.now_ms += 3;
     turns_feed(reply, encode_scan_reply(reply));
     (void)turns_pass(TURNS_PACKETS - 1, TURNS_PACKETS - 1, 999);

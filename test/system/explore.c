@@ -6,7 +6,6 @@
  * sound again each wish must be fulfilled.
  *
  *     explore [--depth N] [STORY …]     N troubles, 2 unless given; all stories
- *     explore --expected [--depth N] [STORY …]    the same as a test: see expected_red[]
  *     explore --replay STORY 7:cut50 12:lost      one run, with what happens in it
  *
  * A failure is printed as the arguments of --replay. The state before each event is kept, so that
@@ -53,15 +52,6 @@ static const story_t stories[] = {
     {"ask", 1000, {{0, ASK, 0}, {0, START, 0}}},
 };
 #define STORIES (sizeof stories / sizeof stories[0])
-
-/* Stories that do fail, and with how many troubles at least. With --expected it is an error if one
- * of them does not: then it is to be removed here. */
-static const struct {
-    const char *story;
-    uint32_t troubles;
-} expected_red[] = {
-    {"10hz", 1}, {"6.1hz", 1}, {"no-wish", 1}, {"change", 1}, {"stop-set-start", 1}, {"ask", 1},
-};
 
 /* ---- Troubles ---- */
 
@@ -228,8 +218,6 @@ typedef struct {
 static trail_t trails[DEPTH_MAX];
 static uint64_t runs;
 static uint64_t failures;
-static bool is_expected; /* --expected */
-static bool stop_at_failure;
 
 static void report(const char *what)
 {
@@ -294,22 +282,6 @@ static void play(trail_t *trail)
     }
 }
 
-static bool is_expected_red(const story_t *story, uint32_t depth)
-{
-    for (size_t i = 0; is_expected && i < sizeof expected_red / sizeof expected_red[0]; i++) {
-        if (strcmp(story->name, expected_red[i].story) == 0) {
-            return depth >= expected_red[i].troubles;
-        }
-    }
-    return false;
-}
-
-/* A story that is expected to fail is told until it does. */
-static bool is_told_enough(void)
-{
-    return failures > 0 && stop_at_failure;
-}
-
 /* The same event is spoilt in each way, then the next one. False: there is none. */
 static bool choose_next(trail_t *trail)
 {
@@ -352,7 +324,7 @@ static void explore(uint32_t depth)
     for (;;) {
         trail_t *const trail = &trails[level];
 
-        if (is_told_enough() || (!choose_next(trail) && level == 0)) {
+        if (!choose_next(trail) && level == 0) {
             return;
         }
         if (trail->place == trail->count) {
@@ -371,19 +343,13 @@ static void explore(uint32_t depth)
 
 static bool tell(const story_t *story, uint32_t depth)
 {
-    const bool is_red = is_expected_red(story, depth);
-
     runs = 0;
     failures = 0;
-    stop_at_failure = is_red;
     begin(story);
     explore(depth);
-    printf("%-16s %8llu runs, %llu failed%s\n", story->name, (unsigned long long)runs,
-           (unsigned long long)failures, is_red ? " (expected)" : "");
-    if (is_red && failures == 0) {
-        printf("%s does not fail any more: remove it from expected_red[]\n", story->name);
-    }
-    return (failures > 0) == is_red;
+    printf("%-16s %8llu runs, %llu failed\n", story->name, (unsigned long long)runs,
+           (unsigned long long)failures);
+    return failures == 0;
 }
 
 /* ---- The command line ---- */
@@ -450,10 +416,6 @@ int main(int argc, char **argv)
 
     if (argc > first && strcmp(argv[first], "--replay") == 0) {
         return replay(argc - 2, argv + 2);
-    }
-    if (argc > first && strcmp(argv[first], "--expected") == 0) {
-        is_expected = true;
-        first++;
     }
     if (argc > first + 1 && strcmp(argv[first], "--depth") == 0) {
         depth = (uint32_t)strtoul(argv[first + 1], NULL, 10);

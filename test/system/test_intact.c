@@ -43,7 +43,9 @@ void setUp(void)
     (void)tmini_start(&turns.lidar);
     (void)turns_poll();
     turns.now_ms += 100;
-    (void)turns_poll(); /* The line is quiet: start is sent. */
+    (void)turns_poll(); /* The line is quiet: the lidar is asked, and started. */
+    turns_feed(line, encode_frequency_reply(line, 600));
+    (void)turns_poll();
     line_size = encode_scan_reply(line);
 }
 

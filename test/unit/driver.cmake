@@ -2,9 +2,9 @@
 # Copyright (c) 2026 The tmini authors
 
 # The driver, on a mocked port.
-foreach(test test_tmini test_wish test_command test_recovery test_monitor test_states test_blocking)
+foreach(test test_tmini test_wish test_command test_recovery test_monitor test_blocking)
     tmini_add_unit_test(${test}
-        SOURCES ${test}.c ../support/rig.c ../support/invariants.c
+        SOURCES ${test}.c ../support/rig.c ../support/tale.c ../support/invariants.c
         MOCKS ../support/port_functions.h
         LIBRARIES tmini_test_support
         )

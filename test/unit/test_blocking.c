@@ -9,6 +9,7 @@
 
 #include "mock_port_functions.h"
 #include "tmini/tmini_blocking.h"
+#include "tmini_driver.h"
 #include "unity.h"
 
 static struct {
@@ -17,6 +18,8 @@ static struct {
     void (*feed)(void);
     uint32_t every_ms; /* Interval of further calls; 0: none. */
     uint32_t waits;
+    uint16_t
+        answer_chz; /* What a repeated question is answered, after a millisecond; 0: nothing. */
 } script;
 
 static void wait(void *context, int calls)
@@ -25,6 +28,9 @@ static void wait(void *context, int calls)
     TEST_ASSERT_EQUAL_PTR(&rig.port, context);
     script.waits++;
     rig.now_ms++;
+    if (script.answer_chz > 0 && rig.lidar.command.phase == TMINI_PHASE_ASKING) {
+        rig_feed_frequency(script.answer_chz);
+    }
     if (script.feed != NULL && rig.now_ms - script.begun_ms == script.at_ms) {
         script.feed();
         script.at_ms += script.every_ms;
@@ -49,6 +55,15 @@ void setUp(void)
     port_wait_StubWithCallback(wait);
     script.feed = NULL;
     script.waits = 0;
+    script.answer_chz = 0;
+}
+
+/* The lidar is asked, answers, and gets the start. */
+static void sends_start(void)
+{
+    script.answer_chz = 600;
+    sends(GET_FREQUENCY);
+    sends(START);
 }
 
 void tearDown(void)
@@ -156,7 +171,7 @@ void test_a_frequency_that_could_not_be_set_is_not_waited_for_while_scanning(voi
 
 static void feed_packet(void)
 {
-    rig_feed_point_packet(1000);
+    rig_feed_start_packet(1000);
 }
 
 static void feed_refusal(void)
@@ -171,31 +186,17 @@ static void refuses_the_frequency(void)
 {
     comes(55, feed_refusal);
     script.every_ms = 60;
-    sends(STOP);
     sends(GET_FREQUENCY);
     sends(STOP);
     sends(START);
 }
 
-void test_a_frequency_that_a_scanning_lidar_refuses_is_waited_for_until_it_scans_again(void)
-{
-    rig_go_scanning();
-    port_wait_StubWithCallback(wait);
-    refuses_the_frequency();
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_REPLY,
-                          tmini_blocking_set_frequency(&rig.lidar, 640, TMINI_BLOCKING_TIMEOUT_MS));
-    TEST_ASSERT_EQUAL_UINT32(115, script.waits);
-    is_in(TMINI_STATE_SCANNING);
-    TEST_ASSERT_EQUAL_HEX(0, rig_drain());
-}
-
-/* After a loss, COMMAND_FAILED is not reported. */
 void test_a_frequency_that_a_lost_lidar_refuses_is_waited_for_until_it_scans_again(void)
 {
     rig_go_recovering();
     port_wait_StubWithCallback(wait);
     refuses_the_frequency();
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE,
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_REPLY,
                           tmini_blocking_set_frequency(&rig.lidar, 640, TMINI_BLOCKING_TIMEOUT_MS));
     TEST_ASSERT_EQUAL_UINT32(115, script.waits);
     is_in(TMINI_STATE_SCANNING);
@@ -222,15 +223,27 @@ void test_the_same_frequency_is_waited_for_while_a_start_asks_for_it(void)
     TEST_ASSERT_EQUAL_UINT32(5, script.waits);
 }
 
-void test_a_frequency_is_not_waited_for_while_another_command_is_under_way(void)
+void test_a_frequency_waits_for_the_end_of_another_command(void)
 {
     begins_with(GET_INFO, tmini_request_info(&rig.lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_BUSY, tmini_blocking_set_frequency(&rig.lidar, 640, 100));
-    is_in(TMINI_STATE_BUSY);
-    begins_with(STOP, tmini_stop(&rig.lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_BUSY, tmini_blocking_set_frequency(&rig.lidar, 700, 100));
-    is_in(TMINI_STATE_STOPPING);
-    TEST_ASSERT_EQUAL_UINT32(0, script.waits);
+    comes(5, rig_feed_info);
+    script.answer_chz = 600;
+    sends(GET_FREQUENCY);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 600, 100));
+    is_in(TMINI_STATE_IDLE);
+}
+
+void test_a_frequency_of_a_scanning_lidar_is_waited_for(void)
+{
+    rig_go_scanning();
+    port_wait_StubWithCallback(wait);
+    comes(10, feed_packet);
+    script.every_ms = 100;
+    sends(STOP);
+    script.answer_chz = 640;
+    sends(GET_FREQUENCY);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 1000));
+    is_in(TMINI_STATE_STARTING);
 }
 
 void test_a_frequency_is_not_waited_for_when_nothing_recovers_the_lidar(void)
@@ -245,30 +258,18 @@ void test_a_frequency_is_not_waited_for_when_nothing_recovers_the_lidar(void)
     is_in(TMINI_STATE_RECOVERING);
 }
 
-/* Each failed attempt is reported, and the next one queries the frequency again. */
-void test_failed_attempts_to_start_do_not_end_the_wait_for_a_frequency(void)
+static void feed_refusal_then_turns(void)
 {
-    wishes_640_chz();
-    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
-    comes(4655, feed_frequency);
-    sends(STOP); /* After 2 s. */
-    sends(START);
-    sends(STOP); /* After 2 s more, and a pause. */
-    sends(GET_FREQUENCY);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_set_frequency(&rig.lidar, 640, 8000));
-    TEST_ASSERT_EQUAL_UINT32(4655, script.waits);
+    rig_feed_frequency(99);
+    script.feed = feed_turn;
 }
 
 void test_a_start_waits_for_a_scan_though_the_frequency_was_refused(void)
 {
     wishes_640_chz();
-    sends(GET_FREQUENCY);
-    sends(STOP);
-    sends(START);
-    comes(2055, feed_turn);
-    script.every_ms = 160;
+    refuses_the_frequency();
+    script.feed = feed_refusal_then_turns;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 8000));
-    TEST_ASSERT_EQUAL_UINT32(2215, script.waits);
 }
 
 void test_an_idle_lidar_is_asked_in_any_case(void)
@@ -294,7 +295,7 @@ void test_start_waits_for_the_first_scan(void)
 {
     comes(10, feed_turn);
     script.every_ms = 160;
-    sends(START);
+    sends_start();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 1000));
     TEST_ASSERT_EQUAL_UINT32(1170, rig.now_ms - script.begun_ms + 1000);
     TEST_ASSERT_EQUAL_UINT16(17, tmini_scan(&rig.lidar)->count);
@@ -310,7 +311,7 @@ static void feed_two_turns(void)
 void test_it_does_not_wait_while_there_are_events(void)
 {
     comes(10, feed_two_turns);
-    sends(START);
+    sends_start();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 1000));
     TEST_ASSERT_EQUAL_UINT32(10, script.waits);
 }
@@ -323,7 +324,7 @@ void test_start_waits_for_the_first_packet_when_streaming(void)
     port_wait_StubWithCallback(wait);
     comes(60, rig_feed_scan_reply); /* After the stop and the quiet time. */
     sends(STOP);
-    sends(START);
+    sends_start();
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 100));
     comes(60, feed_turn); /* The lidar is still wanted to scan: this call waits again. */
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 100));
@@ -349,7 +350,8 @@ void test_stop_still_waits_after_the_end_of_the_command_that_it_aborts(void)
 
 void test_events_that_do_not_belong_to_the_command_are_swallowed(void)
 {
-    begins_with(START, tmini_start(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
+    answers_and_gets(600, START);
     for (unsigned i = 0; i < 2; i++) {
         rig_feed_plain_turn(0);
         (void)rig_drain();
@@ -402,9 +404,9 @@ void test_a_command_given_up_half_sent_is_not_sent_any_further(void)
 void test_a_start_that_times_out_during_a_recovery_is_kept(void)
 {
     comes(10, feed_turn);
-    sends(START);
+    sends_start();
     sends(STOP); /* The lidar is lost after a second. */
-    sends(START);
+    sends_start();
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 1500));
     is_in(TMINI_STATE_RECOVERING); /* The lidar is still wanted to scan. */
 }
@@ -415,7 +417,7 @@ void test_a_start_of_a_lost_lidar_waits_for_a_scan_and_not_for_the_recovery(void
     port_wait_StubWithCallback(wait);
     comes(60, feed_turn);
     script.every_ms = 10;
-    sends(START);
+    sends_start();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&rig.lidar, 1500));
     tmini_counters_t seen;
     tmini_counters(&rig.lidar, &seen);
@@ -542,7 +544,7 @@ void test_a_start_that_times_out_does_not_end_an_earlier_query(void)
 {
     begins_with(GET_INFO, tmini_request_info(&rig.lidar));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_start(&rig.lidar, 100));
-    is_in(TMINI_STATE_BUSY);
+    is_in(TMINI_STATE_STARTING); /* After the answer. */
 }
 
 void test_a_clock_that_steps_back_ends_no_waiting(void)

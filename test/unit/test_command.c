@@ -1,1039 +1,329 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* When commands are sent: every command, its replies (also late and lost ones), its waits and its
- * failures. test_states.c tests which command may begin in which state. */
+/* One command at a time: sending, replies, attempts, and setting the frequency, told in tales
+ * (tale.h). */
 
-#include "invariants.h"
-#include "rig.h"
-#include "tmini_driver.h"
+#include "tale.h"
 
 #include "mock_port_functions.h"
-#include "unity.h"
+#include "tmini_driver.h"
 
-#include <string.h>
-
-void setUp(void)
-{
-    rig_open();
-}
+void setUp(void) {}
 
 void tearDown(void)
 {
-    TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
+    tale_end();
 }
 
-static void fails_with(tmini_status_t status)
+/* An idle lidar: its state was unknown, so it is stopped first. */
+#define IDLE "stop >65 +50 !STOPPED @IDLE "
+
+/* ---- Sending ---- */
+
+void test_a_question_in_an_unknown_state_first_stops_and_waits_for_a_quiet_line(void)
 {
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
-    TEST_ASSERT_EQUAL_INT(status, tmini_command_error(&rig.lidar));
-    is_in(TMINI_STATE_UNKNOWN);
+    tell("info @BUSY >65 +50 >90 <info !INFO @IDLE");
 }
 
-/* ---- Before a command: the line is made quiet ---- */
-
-void test_from_an_unknown_state_a_command_first_stops_the_lidar_and_waits_for_a_quiet_line(void)
+void test_an_idle_lidar_is_asked_at_once(void)
 {
-    begins_with(STOP, tmini_request_info(&rig.lidar));
-    is_in(TMINI_STATE_BUSY);
-    was_sent();
-    finds_quiet_and_sends(GET_INFO);
+    tell(IDLE "info >90 <info !INFO @IDLE health >92 <health !HEALTH @IDLE");
 }
 
-void test_in_the_idle_state_a_command_is_sent_at_once(void)
+void test_bytes_while_the_line_is_to_be_quiet_begin_the_wait_again(void)
 {
-    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
+    tell("info >65 ~40 <junk +50 >90 <info !INFO");
 }
 
-void test_each_byte_that_is_heard_puts_the_command_off_by_the_quiet_time(void)
+void test_a_line_that_is_never_quiet_fails_an_attempt_after_600_ms(void)
 {
-    begins_with(STOP, tmini_request_info(&rig.lidar));
-    passes(30);
-    rig_feed_byte(0x00);
-    finds_quiet_and_sends(GET_INFO);
+    tell("attempts:1 info >65 ~300 <junk !NONE ~299 <junk !NONE ~1 !FAILED ?TIMEOUT @UNKNOWN");
 }
 
-/* This many bytes come, a stop is sent, and there is no poll for 60 ms. */
-static void stop_unwatched_after(size_t bytes)
+void test_the_time_for_a_quiet_line_grows_with_quiet_line_ms(void)
 {
-    for (size_t i = 0; i < bytes; i++) {
-        rig_feed_byte(0x00);
+    tell("quiet:599 attempts:1 info >65 ~549 <junk !NONE");
+    for (unsigned i = 0; i < 59; i++) {
+        go_on("~10 !NONE");
     }
-    begins_with(STOP, tmini_stop(&rig.lidar));
-    rig.now_ms += 60;
+    go_on("~9 >90 <info !INFO");
 }
 
-/* The ring is full: further bytes wait in a layer below, or are refused. Only a refused byte is
- * visible in the ring. */
-static void is_quiet_only_after_room_was_made(size_t bytes)
+void test_with_quiet_line_0_the_command_follows_at_once(void)
 {
-    stop_unwatched_after(bytes);
-    polls_to(TMINI_EVENT_NONE);
-    is_in(TMINI_STATE_STOPPING);
-    passes_to(49, TMINI_EVENT_NONE);
-    passes_to(1, TMINI_EVENT_STOPPED);
+    tell("quiet:0 info >65 >90 <info !INFO");
 }
 
-void test_a_line_is_not_known_to_be_quiet_while_the_ring_is_full(void)
+void test_a_port_that_takes_one_byte_per_call_gets_the_other_at_the_next_poll(void)
 {
-    is_quiet_only_after_room_was_made(RIG_RX_SIZE);
+    tell("takes:1 info >A5 >!65 +50 >A5 ~99 >!90 <info !INFO");
 }
 
-void test_a_line_is_not_known_to_be_quiet_while_the_ring_is_closed(void)
+void test_the_time_to_send_runs_from_the_first_offer(void)
 {
-    is_quiet_only_after_room_was_made(RIG_RX_SIZE + 1);
+    tell("takes:0 info ~99 !NONE ~1 !FAILED ?WRITE @UNKNOWN");
 }
 
-void test_with_room_for_a_byte_more_the_line_is_known_to_be_quiet(void)
+void test_a_command_made_long_before_the_next_poll_is_still_offered_for_100_ms(void)
 {
-    stop_unwatched_after(RIG_RX_SIZE - 1);
-    polls_to(TMINI_EVENT_STOPPED);
+    tell(IDLE "start >0D <600 takes:0 !NONE ~99 !NONE takes:2 >60");
 }
 
-void test_bytes_that_were_lost_put_the_command_off_by_the_quiet_time(void)
+void test_a_port_that_fails_ends_the_command(void)
 {
-    begins_with(STOP, tmini_stop(&rig.lidar));
-    passes_to(30, TMINI_EVENT_NONE);
-    tmini_feed_gap(&rig.lidar);
-    polls_to(TMINI_EVENT_NONE);
-    passes_to(49, TMINI_EVENT_NONE);
-    passes_to(1, TMINI_EVENT_STOPPED);
+    tell("takes:-1 info !NONE ~1 !FAILED ?WRITE @UNKNOWN");
 }
 
-/* The lost bytes may have been a packet. */
-void test_bytes_that_were_lost_while_idle_count_as_heard(void)
+void test_a_failed_command_may_be_repeated_in_a_loop_that_polls_until_none(void)
 {
-    rig_go_idle();
-    tmini_feed_gap(&rig.lidar);
-    polls_to(TMINI_EVENT_NONE);
-    is_in(TMINI_STATE_UNKNOWN);
-    begins_with(STOP, tmini_request_info(&rig.lidar));
+    tell("takes:-1 info !NONE ~1 !FAILED info !NONE !NONE ~1 !FAILED");
 }
 
-void test_packets_of_the_tail_after_a_stop_are_no_scan(void)
+void test_a_first_byte_that_was_taken_is_not_sent_again(void)
 {
-    rig_go_scanning();
-    begins_with(STOP, tmini_stop(&rig.lidar));
-    for (unsigned ms = 0; ms < 300; ms += 10) {
-        rig_feed_start_packet(1000);
-        passes(10);
+    tell(IDLE "takes:1 info >A5 takes:2 stop >!65 !FAILED ?ABORTED +50 !STOPPED");
+}
+
+void test_a_port_that_reports_more_bytes_than_it_got_has_taken_all(void)
+{
+    tell(IDLE "info >90 takes:9 <info !INFO info >90 <info !INFO");
+}
+
+/* ---- Replies and attempts ---- */
+
+void test_a_question_without_an_answer_is_asked_three_times(void)
+{
+    tell(IDLE "info >90 +2000 >65 +50 >90 +2000 >65 +50 >90 +2000 !FAILED ?TIMEOUT @UNKNOWN");
+}
+
+void test_an_answer_to_a_later_attempt_leaves_the_state_unknown(void)
+{
+    tell(IDLE "info >90 +2000 >65 +50 >90 <info !INFO @UNKNOWN");
+}
+
+void test_max_attempts_0_means_one(void)
+{
+    tell("attempts:0 info >65 +50 >90 +2000 !FAILED");
+}
+
+void test_reply_timeout_0_waits_without_limit(void)
+{
+    tell("reply:0 info >65 +50 >90 +60000 <info !INFO");
+}
+
+void test_what_came_before_a_question_is_no_answer_to_it(void)
+{
+    tell("info >65 <info +50 >90 +1999 <info !INFO");
+}
+
+void test_a_reply_of_another_length_is_not_taken(void)
+{
+    tell(IDLE "info >90 <600 !NONE <info !INFO @IDLE");
+}
+
+void test_a_packet_instead_of_an_answer_means_that_the_stop_was_lost(void)
+{
+    tell(IDLE "info >90 <P >65 +50 >90 <info !INFO @UNKNOWN");
+}
+
+void test_a_lidar_that_no_stop_reaches_fails_the_question_in_the_end(void)
+{
+    tell("attempts:1 " IDLE "info >90");
+    for (unsigned packets = 0; packets < 30; packets++) {
+        go_on("<P >65 +50 >90");
     }
-    passes(40); /* The last packet came 10 ms ago. */
-    polls_to(TMINI_EVENT_STOPPED);
-    is_in(TMINI_STATE_IDLE);
+    go_on("<P !NONE ~2000 !FAILED ?TIMEOUT");
 }
 
-void test_a_stop_that_gets_lost_is_sent_again(void)
+void test_bytes_after_the_answer_leave_the_state_unknown(void)
 {
-    rig_go_scanning();
-    begins_with(STOP, tmini_stop(&rig.lidar));
-    for (unsigned ms = 0; ms < 600; ms += 20) {
-        rig_feed_point_packet(1000);
-        passes(20);
-    }
-    polls_to(TMINI_EVENT_NONE); /* The line was not quiet in time. */
-    sends(STOP);                /* So the stop is repeated. */
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
-    TEST_ASSERT_EQUAL_UINT(1, rig_counters().timeouts);
-    passes_to(50, TMINI_EVENT_STOPPED);
-    is_in(TMINI_STATE_IDLE); /* The number of attempts does not matter. */
+    tell(IDLE "info >90 <info <junk !INFO @UNKNOWN");
 }
 
-void test_a_lidar_that_will_not_be_stopped_fails_the_command_after_three_attempts(void)
+/* ---- Stop ---- */
+
+void test_a_stop_ends_on_a_quiet_line(void)
 {
-    rig_go_scanning();
-    begins_with(STOP, tmini_stop(&rig.lidar));
-    for (unsigned attempt = 1; attempt <= 3; attempt++) {
-        for (unsigned ms = 0; ms < 600; ms += 20) {
-            rig_feed_point_packet(1000);
-            passes(20);
+    tell("stop @STOPPING >65 +50 !STOPPED @IDLE");
+}
+
+void test_a_stop_is_repeated_while_packets_come_and_then_fails(void)
+{
+    tell("stop >65");
+    for (unsigned attempt = 0; attempt < 3; attempt++) {
+        for (unsigned packet = 0; packet < 14; packet++) {
+            go_on("~40 <P");
         }
-        if (attempt < 3) {
-            polls_to(TMINI_EVENT_NONE);
-            sends(STOP);
-        }
-    }
-    fails_with(TMINI_ERROR_TIMEOUT);
-    TEST_ASSERT_EQUAL_UINT(3, rig_counters().timeouts);
-}
-
-void test_a_byte_that_comes_while_idle_makes_the_state_unknown_and_the_next_command_stop_first(void)
-{
-    rig_go_idle();
-    rig_feed_byte(0x00);
-    polls_to(TMINI_EVENT_NONE);
-    is_in(TMINI_STATE_UNKNOWN);
-    begins_with(STOP, tmini_request_health(&rig.lidar));
-}
-
-void test_a_byte_that_no_poll_has_seen_yet_counts_as_heard(void)
-{
-    rig_go_idle();
-    rig_feed_byte(0x00);
-    begins_with(STOP, tmini_request_health(&rig.lidar));
-}
-
-void test_bytes_after_a_reply_make_the_state_unknown(void)
-{
-    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
-    rig_feed_health(0, 0);
-    rig_feed_byte(0x55);
-    polls_to(TMINI_EVENT_HEALTH);
-    polls_to(TMINI_EVENT_NONE);
-    is_in(TMINI_STATE_UNKNOWN);
-}
-
-/* ---- Each command and its reply ---- */
-
-void test_info_is_what_the_reply_says(void)
-{
-    /* 151, firmware 1.2 with the minor number first (section 9.4), hardware 1, 16 digits. */
-    static const uint8_t reply[] = {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x97, 0x02,
-                                    0x01, 0x01, 2,    0,    2,    5,    0,    4,    2,
-                                    4,    0,    0,    0,    9,    0,    1,    9,    4};
-
-    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
-    is_in(TMINI_STATE_BUSY);
-    rig_feed(reply, sizeof reply);
-    polls_to(TMINI_EVENT_INFO);
-    is_in(TMINI_STATE_IDLE);
-    const tmini_info_t *const info = tmini_info(&rig.lidar);
-    TEST_ASSERT_EQUAL_UINT8(151, info->model);
-    TEST_ASSERT_EQUAL_UINT8(1, info->firmware_major);
-    TEST_ASSERT_EQUAL_UINT8(2, info->firmware_minor);
-    TEST_ASSERT_EQUAL_UINT8(1, info->hardware);
-    TEST_ASSERT_EQUAL_UINT8_ARRAY(&reply[11], info->serial, 16);
-}
-
-void test_health_is_what_the_reply_says(void)
-{
-    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
-    rig_feed_health(TMINI_FAULT_ENCODER | TMINI_FAULT_LD, 0x1234);
-    polls_to(TMINI_EVENT_HEALTH);
-    is_in(TMINI_STATE_IDLE);
-    TEST_ASSERT_EQUAL_HEX8(0x12, tmini_health(&rig.lidar)->faults);
-    TEST_ASSERT_EQUAL_HEX16(0x1234, tmini_health(&rig.lidar)->error_code);
-}
-
-void test_the_frequency_is_what_the_reply_says(void)
-{
-    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
-    rig_feed_frequency(720);
-    polls_to(TMINI_EVENT_FREQUENCY);
-    is_in(TMINI_STATE_IDLE);
-    TEST_ASSERT_EQUAL_UINT16(720, tmini_frequency_chz(&rig.lidar));
-}
-
-void test_after_a_reboot_the_state_is_unknown_until_the_next_command(void)
-{
-    is_idle_and_asked(REBOOT, tmini_reboot(&rig.lidar));
-    is_in(TMINI_STATE_BUSY);
-    passes_to(5000, TMINI_EVENT_REBOOTED);
-    is_in(TMINI_STATE_UNKNOWN);
-}
-
-void test_packets_while_the_lidar_reboots_are_no_scan(void)
-{
-    is_idle_and_asked(REBOOT, tmini_reboot(&rig.lidar));
-    rig_feed_start_packet(1000);
-    passes_to(5000, TMINI_EVENT_REBOOTED);
-}
-
-void test_scanning_begins_with_the_first_packet_after_the_start_reply(void)
-{
-    rig_go_idle();
-    begins_with(START, tmini_start(&rig.lidar));
-    is_in(TMINI_STATE_STARTING);
-    passes(5);
-    rig_feed_scan_reply();
-    polls_to(TMINI_EVENT_NONE);
-    is_in(TMINI_STATE_STARTING);
-    passes(400);
-    rig_feed_point_packet(1000);
-    polls_to(TMINI_EVENT_STARTED);
-    is_in(TMINI_STATE_SCANNING);
-}
-
-void test_a_packet_means_scanning_even_if_the_start_reply_was_lost(void)
-{
-    rig_go_starting();
-    passes(200);
-    rig_feed_point_packet(1000);
-    polls_to(TMINI_EVENT_STARTED);
-    is_in(TMINI_STATE_SCANNING);
-}
-
-void test_the_start_reply_may_come_after_the_first_packet(void)
-{
-    rig_go_starting();
-    rig_feed_point_packet(1000);
-    rig_feed_scan_reply();
-    rig_feed_point_packet(1000);
-    polls_to(TMINI_EVENT_STARTED);
-    passes(999);
-    is_in(TMINI_STATE_SCANNING);
-}
-
-void test_stopping_ends_when_the_line_is_quiet(void)
-{
-    rig_go_scanning();
-    begins_with(STOP, tmini_stop(&rig.lidar));
-    is_in(TMINI_STATE_STOPPING);
-    passes_to(50, TMINI_EVENT_STOPPED);
-    is_in(TMINI_STATE_IDLE);
-}
-
-void test_a_second_stop_while_stopping_sends_nothing(void)
-{
-    rig_go_scanning();
-    begins_with(STOP, tmini_stop(&rig.lidar));
-    passes(20);
-    begins(tmini_stop(&rig.lidar));
-    passes_to(30, TMINI_EVENT_STOPPED);
-}
-
-void test_stop_aborts_a_query(void)
-{
-    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
-    begins_with(STOP, tmini_stop(&rig.lidar));
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ABORTED, tmini_command_error(&rig.lidar));
-    is_in(TMINI_STATE_STOPPING);
-    rig_feed_info(); /* This reply is no longer awaited. */
-    passes_to(50, TMINI_EVENT_STOPPED);
-}
-
-void test_a_command_drops_the_end_of_the_one_before_that_was_not_polled_for(void)
-{
-    begins_with(STOP, tmini_request_info(&rig.lidar));
-    begins_with(STOP, tmini_stop(&rig.lidar)); /* Aborts the request. */
-    tmini_cancel(&rig.lidar);
-    begins_with(STOP, tmini_request_info(&rig.lidar));
-    passes(50); /* COMMAND_FAILED is dropped: it would seem to be of this request. */
-}
-
-void test_cancelling_a_command_also_cancels_the_start_after_it(void)
-{
-    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
-    begins(tmini_start(&rig.lidar));
-    tmini_cancel(&rig.lidar);
-    begins_with(STOP, tmini_request_info(&rig.lidar));
-    finds_quiet_and_sends(GET_INFO);
-    rig_feed_info();
-    polls_to(TMINI_EVENT_INFO);
-    is_in(TMINI_STATE_IDLE);
-}
-
-/* ---- Only the awaited reply is taken ---- */
-
-void test_a_frequency_is_not_taken_as_device_information_of_the_same_type(void)
-{
-    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
-    rig_feed_frequency(600);
-    passes(10);
-    rig_feed_info();
-    polls_to(TMINI_EVENT_INFO);
-}
-
-void test_device_information_is_not_taken_as_a_frequency_of_the_same_type(void)
-{
-    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
-    rig_feed_info();
-    passes(10);
-    rig_feed_frequency(600);
-    polls_to(TMINI_EVENT_FREQUENCY);
-    TEST_ASSERT_EQUAL_UINT16(600, tmini_frequency_chz(&rig.lidar));
-}
-
-void test_a_reply_that_was_not_asked_for_is_skipped(void)
-{
-    rig_go_idle();
-    rig_feed_info();
-    passes(10);
-}
-
-void test_a_late_reply_answers_the_repeated_query(void)
-{
-    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
-    passes_to(2000, TMINI_EVENT_NONE);
-    polls_and_sends(STOP);
-    finds_quiet_and_sends(GET_INFO);
-    rig_feed_info();
-    polls_to(TMINI_EVENT_INFO);
-    is_in(TMINI_STATE_UNKNOWN); /* The command's reply may still come. */
-}
-
-void test_a_reply_that_comes_while_the_line_is_made_quiet_is_not_taken(void)
-{
-    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
-    passes_to(2000, TMINI_EVENT_NONE);
-    polls_and_sends(STOP);
-    rig_feed_info();
-    finds_quiet_and_sends(GET_INFO);
-    rig_feed_info();
-    polls_to(TMINI_EVENT_INFO);
-}
-
-static void asks_in_vain(uint8_t code)
-{
-    passes_to(2000, TMINI_EVENT_NONE);
-    polls_and_sends(STOP);
-    finds_quiet_and_sends(code);
-}
-
-void test_a_query_without_a_reply_is_sent_three_times(void)
-{
-    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
-    asks_in_vain(GET_HEALTH);
-    asks_in_vain(GET_HEALTH);
-    passes(2000);
-    fails_with(TMINI_ERROR_TIMEOUT);
-    TEST_ASSERT_EQUAL_UINT(3, rig_counters().timeouts);
-}
-
-void test_a_reply_that_comes_after_the_last_attempt_is_ignored(void)
-{
-    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
-    asks_in_vain(GET_HEALTH);
-    asks_in_vain(GET_HEALTH);
-    passes(2000);
-    fails_with(TMINI_ERROR_TIMEOUT);
-    rig_feed_health(0, 0);
-    passes(10);
-    is_in(TMINI_STATE_UNKNOWN);
-}
-
-void test_each_command_has_all_its_attempts(void)
-{
-    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
-    asks_in_vain(GET_HEALTH);
-    rig_feed_health(0, 0);
-    polls_to(TMINI_EVENT_HEALTH);
-
-    begins_with(STOP, tmini_request_health(&rig.lidar));
-    finds_quiet_and_sends(GET_HEALTH);
-    asks_in_vain(GET_HEALTH);
-    asks_in_vain(GET_HEALTH);
-    rig_feed_health(0, 0);
-    polls_to(TMINI_EVENT_HEALTH);
-}
-
-void test_a_start_that_is_acknowledged_but_brings_no_packet_is_reported_and_tried_again(void)
-{
-    rig_go_spinning_up();
-    passes_to(3000, TMINI_EVENT_COMMAND_FAILED);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_command_error(&rig.lidar));
-    is_in(TMINI_STATE_STARTING);
-    passes_to(500, TMINI_EVENT_NONE);
-    polls_and_sends(STOP);
-    finds_quiet_and_sends(START);
-    was_sent();
-    TEST_ASSERT_EQUAL_UINT(1, rig_counters().timeouts);
-}
-
-void test_a_single_attempt_is_one_attempt(void)
-{
-    rig.timing.max_attempts = 1;
-    rig_init();
-    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
-    passes(2000);
-    fails_with(TMINI_ERROR_TIMEOUT);
-}
-
-void test_two_attempts_are_two(void)
-{
-    rig.timing.max_attempts = 2;
-    rig_init();
-    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
-    asks_in_vain(GET_HEALTH);
-    passes(2000);
-    fails_with(TMINI_ERROR_TIMEOUT);
-}
-
-void test_no_attempts_count_as_one(void)
-{
-    rig.timing.max_attempts = 0;
-    rig_init();
-    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
-    passes(2000);
-    fails_with(TMINI_ERROR_TIMEOUT);
-}
-
-/* ---- Setting the frequency ---- */
-
-static void begins_to_set(uint16_t target_chz, uint16_t now_chz)
-{
-    is_idle_and_asked(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, target_chz));
-    is_in(TMINI_STATE_BUSY);
-    rig_feed_frequency(now_chz);
-    polls_to(TMINI_EVENT_NONE);
-}
-
-/* When the line is quiet, the next command is sent; the reply is this frequency. */
-static void steps(uint8_t code, uint16_t answer_chz)
-{
-    passes(50);
-    polls_and_sends(code);
-    polls_to(TMINI_EVENT_NONE);
-    was_sent();
-    rig_feed_frequency(answer_chz);
-}
-
-static void arrives_at(uint16_t frequency_chz)
-{
-    polls_to(TMINI_EVENT_FREQUENCY);
-    is_in(TMINI_STATE_IDLE);
-    TEST_ASSERT_EQUAL_UINT16(frequency_chz, tmini_frequency_chz(&rig.lidar));
-}
-
-void test_a_frequency_is_reached_in_steps_and_read_back(void)
-{
-    begins_to_set(820, 600);
-    steps(FASTER_ONE, 700);
-    steps(FASTER_ONE, 800);
-    steps(FASTER_TENTH, 810);
-    steps(FASTER_TENTH, 820);
-    steps(GET_FREQUENCY, 820);
-    arrives_at(820);
-}
-
-void test_the_frequency_goes_down_as_well(void)
-{
-    begins_to_set(680, 900);
-    steps(SLOWER_ONE, 800);
-    steps(SLOWER_ONE, 700);
-    steps(SLOWER_TENTH, 690);
-    steps(SLOWER_TENTH, 680);
-    steps(GET_FREQUENCY, 680);
-    arrives_at(680);
-}
-
-void test_less_than_a_coarse_step_is_made_in_fine_ones(void)
-{
-    begins_to_set(690, 600);
-    for (uint16_t step = 1; step <= 9; step++) {
-        steps(FASTER_TENTH, (uint16_t)(600 + 10 * step));
-    }
-    steps(GET_FREQUENCY, 690);
-    arrives_at(690);
-}
-
-void test_less_than_a_coarse_step_down_is_made_in_fine_ones(void)
-{
-    begins_to_set(610, 700);
-    for (uint16_t step = 1; step <= 9; step++) {
-        steps(SLOWER_TENTH, (uint16_t)(700 - 10 * step));
-    }
-    steps(GET_FREQUENCY, 610);
-    arrives_at(610);
-}
-
-void test_each_change_has_all_its_steps(void)
-{
-    for (unsigned change = 0; change < 3; change++) {
-        begins_to_set(690, 600);
-        for (uint16_t step = 1; step <= 9; step++) {
-            steps(FASTER_TENTH, (uint16_t)(600 + 10 * step));
-        }
-        steps(GET_FREQUENCY, 690);
-        arrives_at(690);
+        go_on(attempt < 2 ? "~40 >65" : "~40 !FAILED ?TIMEOUT @UNKNOWN");
     }
 }
 
-void test_no_step_goes_above_the_highest_frequency(void)
+void test_a_lidar_that_scans_on_after_its_stop_failed_is_stopped_again_after_half_a_second(void)
 {
-    begins_to_set(1200, 1110);
-    steps(FASTER_TENTH, 1120);
+    tell("attempts:1 stop >65 ~300 <P !NONE ~299 <P !NONE ~1 !FAILED +500 !NONE "
+         "<P !UNWANTED >65 +50 !STOPPED @IDLE");
 }
 
-void test_a_coarse_step_may_lead_to_the_highest_frequency(void)
+void test_packets_right_after_a_failed_stop_mean_nothing(void)
 {
-    begins_to_set(1200, 1100);
-    steps(FASTER_ONE, 1200);
-    steps(GET_FREQUENCY, 1200);
-    arrives_at(1200);
+    tell("attempts:1 stop >65 ~300 <P !NONE ~299 <P !NONE ~1 !FAILED ~499 <P");
 }
 
-void test_no_step_goes_below_the_lowest_frequency(void)
+void test_an_idle_lidar_that_scans_is_stopped(void)
 {
-    begins_to_set(600, 690);
-    steps(SLOWER_TENTH, 680);
+    tell(IDLE "<P !UNWANTED >65 @STOPPING +50 !STOPPED");
 }
 
-void test_a_coarse_step_may_lead_to_the_lowest_frequency(void)
+void test_a_byte_from_an_idle_lidar_makes_its_state_unknown(void)
 {
-    begins_to_set(600, 700);
-    steps(SLOWER_ONE, 600);
-    steps(GET_FREQUENCY, 600);
-    arrives_at(600);
+    tell(IDLE "<junk !NONE @UNKNOWN info >65 +50 >90 <info !INFO");
 }
 
-void test_a_frequency_that_is_set_already_is_read_back_all_the_same_and_not_stepped(void)
+/* ---- Asking for the frequency ---- */
+
+void test_the_first_question_is_repeated_each_250_ms_until_its_answer(void)
 {
-    is_idle_and_asked(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 600));
-    rig_feed_frequency(600);
-    arrives_at(600);
+    tell(IDLE "frequency >0D +250 >0D +250 >0D <600 !FREQUENCY #600 @IDLE");
 }
 
-void test_between_two_steps_the_nearest_frequency_is_enough(void)
+void test_a_lidar_that_never_answers_is_asked_30_times(void)
 {
-    begins_to_set(650, 633);
-    steps(FASTER_TENTH, 643);
-    steps(FASTER_TENTH, 653);
-    steps(GET_FREQUENCY, 653);
-    arrives_at(653);
-}
-
-void test_half_a_fine_step_off_is_near_enough_on_either_side(void)
-{
-    is_idle_and_asked(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 650));
-    rig_feed_frequency(645);
-    arrives_at(645);
-
-    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 650));
-    rig_feed_frequency(655);
-    arrives_at(655);
-}
-
-void test_more_than_half_a_fine_step_off_is_not_near_enough(void)
-{
-    begins_to_set(650, 656);
-    steps(SLOWER_TENTH, 646);
-    steps(GET_FREQUENCY, 646);
-    arrives_at(646);
-}
-
-void test_less_than_half_a_fine_step_short_is_stepped(void)
-{
-    begins_to_set(650, 644);
-    steps(FASTER_TENTH, 654);
-    steps(GET_FREQUENCY, 654);
-    arrives_at(654);
-}
-
-void test_a_step_is_sent_only_when_the_line_is_quiet_after_the_reply(void)
-{
-    begins_to_set(700, 600);
-    passes(40);
-    rig_feed_byte(0x00);
-    passes(50);
-    polls_and_sends(FASTER_ONE);
-    polls_to(TMINI_EVENT_NONE);
-}
-
-void test_a_line_that_does_not_fall_quiet_between_steps_is_made_quiet(void)
-{
-    begins_to_set(700, 600);
-    for (unsigned ms = 0; ms < 600; ms += 40) {
-        rig_feed_byte(0x00);
-        passes(40);
+    tell(IDLE "frequency");
+    for (unsigned asks = 0; asks < 29; asks++) {
+        go_on(">0D +250");
     }
-    polls_to(TMINI_EVENT_NONE);
-    polls_and_sends(STOP);
-    finds_quiet_and_sends(GET_FREQUENCY);
+    go_on(">0D +250 !FAILED ?TIMEOUT @UNKNOWN #0");
 }
 
-void test_after_a_lost_reply_to_a_step_the_frequency_is_read(void)
+void test_an_implausible_frequency_is_an_error(void)
 {
-    begins_to_set(700, 600);
-    finds_quiet_and_sends(FASTER_ONE);
-    asks_in_vain(GET_FREQUENCY);
-    rig_feed_frequency(700); /* The step was made, although its reply was lost. */
-    polls_to(TMINI_EVENT_FREQUENCY);
-    TEST_ASSERT_EQUAL_UINT16(700, tmini_frequency_chz(&rig.lidar));
+    tell(IDLE "frequency >0D <99 !FAILED ?REPLY");
+    tell(IDLE "frequency >0D <2001 !FAILED ?REPLY");
+    tell(IDLE "frequency >0D <100 !FREQUENCY #100 frequency >0D <2000 !FREQUENCY #2000");
 }
 
-void test_a_repeated_reply_to_a_step_is_not_taken_as_the_reply_to_the_next(void)
+/* ---- Setting it ---- */
+
+void test_steps_of_1_hz_then_of_a_tenth_lead_to_the_wish(void)
 {
-    begins_to_set(800, 600);
-    steps(FASTER_ONE, 700);
-    passes(50);
-    polls_and_sends(FASTER_ONE);
-    polls_to(TMINI_EVENT_NONE);
-    rig_feed_frequency(700); /* The same reply again. */
-    passes(10);
-    rig_feed_frequency(800); /* The reply to the step. */
-    steps(GET_FREQUENCY, 800);
-    arrives_at(800);
+    tell(IDLE "set:820 >0D <600 +50 >0B <700 +50 >0B <800 +50 >09 <810 +50 >09 <820 +50 >0D <820 "
+              "!FREQUENCY #820 @IDLE");
 }
 
-void test_a_lidar_that_refuses_to_step_fails_with_the_reply_after_three_attempts(void)
+void test_steps_down(void)
 {
-    begins_to_set(700, 600);
-    for (unsigned attempt = 1; attempt <= 3; attempt++) {
-        steps(FASTER_ONE, 600);
-        passes(2000);
-        if (attempt < 3) {
-            polls_to(TMINI_EVENT_NONE);
-            polls_and_sends(STOP);
-            finds_quiet_and_sends(GET_FREQUENCY);
-            rig_feed_frequency(600);
-            polls_to(TMINI_EVENT_NONE);
-        }
+    tell(IDLE "set:890 >0D <1000 +50 >0C <900 +50 >0A <890 +50 >0D <890 !FREQUENCY #890");
+}
+
+void test_a_lidar_that_has_the_wish_gets_no_step(void)
+{
+    tell(IDLE "set:1000 >0D <1000 !FREQUENCY");
+    tell(IDLE "set:1000 >0D <1005 !FREQUENCY");
+    tell(IDLE "set:1000 >0D <995 !FREQUENCY");
+}
+
+void test_a_frequency_outside_the_tolerance_gets_one(void)
+{
+    tell(IDLE "set:1000 >0D <994 +50 >09 <1004 +50 >0D <1004 !FREQUENCY");
+}
+
+void test_a_wish_that_changes_meanwhile_is_followed(void)
+{
+    tell(IDLE "set:800 >0D <600 +50 >0B set:600 <700 +50 >0C <600 +50 >0D <600 !FREQUENCY");
+}
+
+void test_a_last_question_that_shows_another_frequency_leads_to_another_step(void)
+{
+    tell(IDLE "set:700 >0D <600 +50 >0B <700 +50 >0D <600 +50 >0B <700 +50 >0D <700 !FREQUENCY");
+}
+
+void test_a_lidar_that_never_gets_there_fails_after_20_steps(void)
+{
+    tell(IDLE "set:1200 >0D <600 +50");
+    for (unsigned pair = 0; pair < 10; pair++) {
+        go_on(">0B <700 +50 >0B <600 +50");
     }
-    fails_with(TMINI_ERROR_REPLY);
+    go_on("!FAILED ?REPLY");
 }
 
-void test_after_a_late_reply_to_a_step_a_noisy_line_fails_with_a_timeout(void)
+void test_a_late_copy_of_the_reply_before_is_not_taken_for_a_refusal(void)
 {
-    rig.timing.max_attempts = 1;
-    rig_init();
-    begins_to_set(800, 600);
-    steps(FASTER_ONE, 600); /* As if the step was refused. */
-    passes(10);
-    rig_feed_frequency(700); /* But it was only late. */
-    for (unsigned ms = 0; ms < 600; ms += 40) {
-        passes(40);
-        rig_feed_byte(0x00);
+    tell(IDLE "set:800 >0D <600 +50 >0B <600 +1000 <700 +50 >0B <800 +50 >0D <800 !FREQUENCY");
+}
+
+void test_a_step_without_change_is_asked_about_after_the_time_for_a_reply(void)
+{
+    tell(IDLE "set:800 >0D <600 +50 >0B <600 ~1999 !NONE ~1 >0D <700 +50 >0B <800 +50 >0D <800 "
+              "!FREQUENCY");
+}
+
+void test_a_lidar_that_refuses_steps_fails_with_an_error_of_its_reply(void)
+{
+    tell(IDLE "set:800 >0D <600 +50");
+    for (unsigned step = 0; step < 3; step++) {
+        go_on(">0B <600 ~2000 >0D <600 +50");
     }
-    fails_with(TMINI_ERROR_TIMEOUT);
+    go_on(">0B <600 ~2000 !FAILED ?REPLY");
 }
 
-void test_a_lidar_that_falls_silent_after_refusing_a_step_fails_with_a_timeout(void)
+void test_a_step_without_an_answer_makes_the_driver_ask_anew(void)
 {
-    begins_to_set(700, 600);
-    steps(FASTER_ONE, 600);
-    asks_in_vain(GET_FREQUENCY);
-    asks_in_vain(GET_FREQUENCY);
-    passes(2000);
-    fails_with(TMINI_ERROR_TIMEOUT);
+    tell(IDLE "set:800 >0D <600 +50 >0B +2000 >0D <700 +50 >0B <800 +50 >0D <800 !FREQUENCY");
 }
 
-void test_a_port_that_fails_after_a_refused_step_fails_the_command_with_write(void)
+void test_an_answer_that_may_be_late_is_confirmed(void)
 {
-    begins_to_set(700, 600);
-    steps(FASTER_ONE, 600);
-    passes_to(2000, TMINI_EVENT_NONE);
-    sends_both_taking(STOP, -1);
-    fails_with(TMINI_ERROR_WRITE);
+    tell(IDLE "set:700 >0D <600 +50 >0B +2000 >0D <700 +50 >0D <710 +50 >0A <700 +50 >0D <700 "
+              "!FREQUENCY");
 }
 
-/* Each step changes the frequency by too little. */
-static void fails_after_twenty_steps(void)
+void test_a_lidar_that_loses_its_power_between_steps_is_asked_until_it_answers(void)
 {
-    begins_to_set(600, 2000);
-    for (unsigned step = 1; step <= 20; step++) {
-        steps(SLOWER_ONE, (uint16_t)(2000 - step));
+    tell(IDLE "set:800 >0D <600 +50 >0B +2000");
+    for (unsigned asks = 0; asks < 21; asks++) {
+        go_on(">0D +250");
     }
-    polls_to(TMINI_EVENT_NONE);
-    passes(50);
-    fails_with(TMINI_ERROR_REPLY);
+    go_on(">0D +250 !FAILED ?TIMEOUT #0");
 }
 
-void test_a_frequency_that_is_never_reached_fails_with_the_reply_after_twenty_steps(void)
+void test_a_packet_while_the_frequency_is_set_means_that_the_stop_was_lost(void)
 {
-    fails_after_twenty_steps();
+    tell(IDLE "set:700 >0D <P >65 +50 >0D <600 +50 >0B <P >65 +50 >0D <600 +50 >0B <600 !NONE <P "
+              ">65 +50 >0D <700 +50 >0D <700 !FREQUENCY");
 }
 
-void test_the_next_command_steps_again(void)
+/* ---- Reboot ---- */
+
+void test_a_reboot_ends_when_the_lidar_answers_again(void)
 {
-    fails_after_twenty_steps();
-    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
-    rig_feed_frequency(700);
-    polls_to(TMINI_EVENT_NONE);
-    steps(SLOWER_ONE, 600);
-    steps(GET_FREQUENCY, 600);
-    arrives_at(600);
+    tell(IDLE "reboot >40 @BUSY +1000 >0D +250 >0D <600 !REBOOTED @IDLE #600");
 }
 
-void test_another_wish_meanwhile_has_twenty_steps_of_its_own(void)
+void test_a_lidar_that_does_not_come_back_from_its_reboot_fails_it(void)
 {
-    begins_to_set(600, 2000);
-    steps(SLOWER_ONE, 1999);
-    begins(tmini_set_frequency(&rig.lidar, 700));
-    for (unsigned step = 1; step <= 20; step++) {
-        steps(SLOWER_ONE, (uint16_t)(1999 - step));
+    tell(IDLE "reboot >40 +1000");
+    for (unsigned asks = 0; asks < 29; asks++) {
+        go_on(">0D +250");
     }
-    polls_to(TMINI_EVENT_NONE);
-    passes(50);
-    fails_with(TMINI_ERROR_REPLY);
+    go_on(">0D +250 !FAILED ?TIMEOUT");
 }
 
-void test_a_read_back_that_differs_is_stepped_further(void)
+void test_a_packet_after_a_reboot_leads_to_a_stop_and_not_to_another_reboot(void)
 {
-    begins_to_set(700, 600);
-    steps(FASTER_ONE, 700);
-    steps(GET_FREQUENCY, 690);
-    polls_to(TMINI_EVENT_NONE);
-    steps(FASTER_TENTH, 700);
-    steps(GET_FREQUENCY, 700);
-    arrives_at(700);
+    tell(IDLE "reboot >40 +1000 >0D <P >65 +50 >0D <600 !REBOOTED");
 }
 
-/* The header of a packet of 250 bytes. */
-void test_a_packet_that_was_cut_off_between_two_steps_does_not_hide_the_next_reply(void)
+void test_packets_during_a_reboot_mean_nothing(void)
 {
-    static const uint8_t header[] = {0xAA, 0x55, 0x00, 0x50, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00};
-
-    begins_to_set(700, 600);
-    steps(FASTER_ONE, 700);
-    rig_feed(header, sizeof header);
-    steps(GET_FREQUENCY, 700);
-    arrives_at(700);
+    tell(IDLE "reboot >40 <P +1000 >0D <600 !REBOOTED");
 }
 
-/* 20 Hz; the specified maximum is 12 Hz. */
-void test_the_largest_plausible_frequency_is_reported(void)
+/* ---- Time ---- */
+
+void test_a_clock_that_is_set_back_begins_the_time_of_the_phase_again(void)
 {
-    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
-    rig_feed_frequency(2000);
-    polls_to(TMINI_EVENT_FREQUENCY);
-    TEST_ASSERT_EQUAL_UINT16(2000, tmini_frequency_chz(&rig.lidar));
-}
-
-/* 1 Hz. */
-void test_the_smallest_plausible_frequency_is_reported(void)
-{
-    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
-    rig_feed_frequency(100);
-    polls_to(TMINI_EVENT_FREQUENCY);
-    TEST_ASSERT_EQUAL_UINT16(100, tmini_frequency_chz(&rig.lidar));
-}
-
-void test_an_absurd_frequency_fails_the_command(void)
-{
-    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
-    rig_feed_frequency(2001);
-    fails_with(TMINI_ERROR_REPLY);
-    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
-    rig_feed_frequency(65535);
-    fails_with(TMINI_ERROR_REPLY);
-    is_idle_and_asked(GET_FREQUENCY, tmini_request_frequency(&rig.lidar));
-    rig_feed_frequency(65536 + 600);
-    fails_with(TMINI_ERROR_REPLY);
-}
-
-void test_frequencies_out_of_range_or_between_steps_are_refused_and_nothing_is_sent(void)
-{
-    static const uint16_t refused[] = {0, 590, 599, 605, 1195, 1201, 1210, 65530, 65535};
-
-    rig_go_idle();
-    for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
-        TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_set_frequency(&rig.lidar, refused[i]));
-    }
-    is_in(TMINI_STATE_IDLE);
-}
-
-void test_both_ends_of_the_frequency_range_are_accepted(void)
-{
-    is_idle_and_asked(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 600));
-    rig_feed_frequency(600);
-    arrives_at(600);
-    begins_with(GET_FREQUENCY, tmini_set_frequency(&rig.lidar, 1200));
-    rig_feed_frequency(1200);
-    arrives_at(1200);
-}
-
-/* ---- One command after the other ---- */
-
-void test_a_repeated_command_does_not_make_the_state_unknown_after_the_next_one(void)
-{
-    is_idle_and_asked(GET_HEALTH, tmini_request_health(&rig.lidar));
-    passes_to(2000, TMINI_EVENT_NONE);
-    polls_and_sends(STOP);
-    finds_quiet_and_sends(GET_HEALTH);
-    rig_feed_health(0, 0);
-    polls_to(TMINI_EVENT_HEALTH);
-    is_in(TMINI_STATE_UNKNOWN);
-    begins_with(STOP, tmini_request_health(&rig.lidar));
-    finds_quiet_and_sends(GET_HEALTH);
-    rig_feed_health(0, 0);
-    polls_to(TMINI_EVENT_HEALTH);
-    is_in(TMINI_STATE_IDLE);
-}
-
-/* ---- A port that is slow, or fails ---- */
-
-void test_what_the_port_does_not_take_is_offered_again_at_each_poll(void)
-{
-    sends_both_taking(STOP, 0);
-    begins(tmini_stop(&rig.lidar));
-    sends_both_taking(STOP, 0);
-    polls_to(TMINI_EVENT_NONE);
-    sends_both_taking(STOP, 1);
-    polls_to(TMINI_EVENT_NONE);
-    sends_rest_taking(STOP, 0);
-    polls_to(TMINI_EVENT_NONE);
-    sends_rest_taking(STOP, 1);
-    polls_to(TMINI_EVENT_NONE);
-    passes(50); /* Counted from when the last byte was sent. */
-    polls_to(TMINI_EVENT_STOPPED);
-}
-
-void test_the_rest_of_a_command_is_offered_again_even_if_nothing_has_happened(void)
-{
-    polls_to(TMINI_EVENT_NONE);
-    sends_both_taking(STOP, 1);
-    begins(tmini_stop(&rig.lidar));
-    sends_rest_taking(STOP, 1);
-    polls_to(TMINI_EVENT_NONE);
-}
-
-void test_the_wait_for_a_quiet_line_begins_when_the_command_has_left(void)
-{
-    sends_both_taking(STOP, 0);
-    begins(tmini_stop(&rig.lidar));
-    rig.now_ms += 60;
-    polls_and_sends(STOP);
-    passes_to(50, TMINI_EVENT_STOPPED);
-}
-
-void test_a_port_that_takes_a_command_at_the_last_moment_has_taken_it(void)
-{
-    sends_both_taking(STOP, 0);
-    begins(tmini_stop(&rig.lidar));
-    rig.now_ms += 150; /* There was no poll. */
-    polls_and_sends(STOP);
-    passes_to(50, TMINI_EVENT_STOPPED);
-}
-
-void test_a_port_that_claims_more_than_it_was_given_has_taken_all(void)
-{
-    sends_both_taking(STOP, 3);
-    begins(tmini_stop(&rig.lidar));
-    passes_to(50, TMINI_EVENT_STOPPED);
-}
-
-void test_a_port_that_fails_is_asked_once_more_when_time_has_passed_and_then_fails_the_command(void)
-{
-    sends_both_taking(STOP, -1);
-    begins(tmini_stop(&rig.lidar));
-    is_in(TMINI_STATE_STOPPING);
-    polls_to(TMINI_EVENT_NONE);
-    rig.now_ms += 1;
-    sends_both_taking(STOP, -1);
-    fails_with(TMINI_ERROR_WRITE);
-    TEST_ASSERT_EQUAL_UINT(0, rig_counters().timeouts);
-}
-
-void test_a_port_that_fails_once_fails_no_command(void)
-{
-    sends_both_taking(STOP, -1);
-    begins(tmini_request_info(&rig.lidar));
-    rig.now_ms += 1;
-    polls_and_sends(STOP);
-    finds_quiet_and_sends(GET_INFO);
-    rig_feed_info();
-    polls_to(TMINI_EVENT_INFO);
-}
-
-/* As in a main loop that polls until nothing is left and repeats a failed request at once. */
-void test_a_loop_that_repeats_every_failed_command_ends(void)
-{
-    sends_both_taking(STOP, -1);
-    begins(tmini_request_info(&rig.lidar));
-    polls_to(TMINI_EVENT_NONE);
-    for (unsigned ms = 1; ms < 5; ms++) {
-        tmini_event_t event;
-
-        rig.now_ms += 1;
-        sends_both_taking(STOP, -1); /* The old request fails. */
-        sends_both_taking(STOP, -1); /* The new request begins. */
-        while ((event = tmini_poll(&rig.lidar)) != TMINI_EVENT_NONE) {
-            TEST_ASSERT_EQUAL_INT(TMINI_EVENT_COMMAND_FAILED, event);
-            begins(tmini_request_info(&rig.lidar));
-        }
-        was_sent();
-    }
-}
-
-void test_a_port_that_takes_nothing_fails_the_command_after_100_ms(void)
-{
-    sends_both_taking(STOP, 0);
-    begins(tmini_stop(&rig.lidar));
-    rig.now_ms += 99;
-    sends_both_taking(STOP, 0);
-    polls_to(TMINI_EVENT_NONE);
-    rig.now_ms += 1;
-    sends_both_taking(STOP, 0);
-    fails_with(TMINI_ERROR_WRITE);
-}
-
-void test_a_port_that_takes_half_a_command_fails_it_after_100_ms(void)
-{
-    sends_both_taking(STOP, 1);
-    begins(tmini_stop(&rig.lidar));
-    rig.now_ms += 100;
-    sends_rest_taking(STOP, 0);
-    fails_with(TMINI_ERROR_WRITE);
-}
-
-void test_a_command_given_up_is_not_sent_any_further(void)
-{
-    sends_both_taking(STOP, 0);
-    begins(tmini_stop(&rig.lidar));
-    rig.now_ms += 100;
-    sends_both_taking(STOP, 0);
-    fails_with(TMINI_ERROR_WRITE);
-    passes(1000);
-}
-
-void test_the_first_byte_of_a_command_given_up_serves_for_the_next_one(void)
-{
-    rig_go_idle();
-    sends_both_taking(GET_INFO, 1);
-    begins(tmini_request_info(&rig.lidar));
-    sends_rest_taking(STOP, 1);
-    begins(tmini_stop(&rig.lidar));
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
-    passes_to(50, TMINI_EVENT_STOPPED);
-    begins_with(GET_INFO, tmini_request_info(&rig.lidar));
-}
-
-void test_the_first_byte_serves_for_the_next_command_also_when_the_second_failed(void)
-{
-    rig_go_idle();
-    sends_both_taking(GET_INFO, 1);
-    begins(tmini_request_info(&rig.lidar));
-    sends_rest_taking(GET_INFO, -1);
-    fails_with(TMINI_ERROR_WRITE);
-    sends_rest_taking(STOP, 1);
-    begins(tmini_request_info(&rig.lidar));
-}
-
-void test_a_stop_that_fails_is_reported_apart_from_the_command_it_aborts(void)
-{
-    is_idle_and_asked(GET_INFO, tmini_request_info(&rig.lidar));
-    sends_both_taking(STOP, -1);
-    begins(tmini_stop(&rig.lidar));
-    polls_to(TMINI_EVENT_COMMAND_FAILED);
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ABORTED, tmini_command_error(&rig.lidar));
-    sends_both_taking(STOP, -1);
-    fails_with(TMINI_ERROR_WRITE);
-    passes(1000);
-}
-
-void test_a_start_that_has_not_left_is_not_sent_into_a_stream_that_is_back(void)
-{
-    rig_go_idle();
-    sends_both_taking(START, 0);
-    begins(tmini_start(&rig.lidar));
-    rig_feed_point_packet(1000); /* The lidar already scans: it has missed the stop. */
-    polls_to(TMINI_EVENT_STARTED);
-    (void)rig_drain();
-    passes(999);
-}
-
-void test_half_a_start_that_has_not_left_is_completed_by_the_next_stop(void)
-{
-    rig_go_idle();
-    sends_both_taking(START, 1);
-    begins(tmini_start(&rig.lidar));
-    rig_feed_point_packet(1000);
-    polls_to(TMINI_EVENT_STARTED);
-    (void)rig_drain();
-    sends_rest_taking(STOP, 1);
-    begins(tmini_stop(&rig.lidar));
-}
-
-void test_the_time_for_a_reply_begins_when_the_command_has_left(void)
-{
-    rig_go_idle();
-    sends_both_taking(GET_INFO, 0);
-    begins(tmini_request_info(&rig.lidar));
-    rig.now_ms += 90;
-    polls_and_sends(GET_INFO);
-    passes_to(2000, TMINI_EVENT_NONE);
-    polls_and_sends(STOP);
+    tell(IDLE "info >90 +1000");
+    rig.now_ms -= 100000;
+    go_on("+2000 >65 +50 >90 <info !INFO");
 }

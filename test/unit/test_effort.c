@@ -205,14 +205,14 @@ void test_a_poll_that_has_more_to_do_says_so_and_goes_on_with_the_next(void)
     TEST_ASSERT_EQUAL_UINT32(CANDIDATES, checksum_errors());
 }
 
-void test_a_command_given_up_does_not_end_what_a_poll_has_left_over(void)
+void test_a_question_withdrawn_does_not_end_what_a_poll_has_left_over(void)
 {
     open_driver();
     for (unsigned i = 0; i < 60; i++) {
         rig_feed_packet(0, 1, 1000);
     }
     polls_to(TMINI_EVENT_MORE);
-    tmini_cancel(&rig.lidar);
+    tmini_withdraw(&rig.lidar, TMINI_EVENT_INFO);
     (void)rig_drain();
     TEST_ASSERT_EQUAL_UINT32(60, poll_counters().packets);
 }

@@ -60,6 +60,8 @@ static void go_spinning_up(void)
 
     (void)tmini_start(&turns.lidar);
     (void)pass_ms(100);
+    turns_feed(reply, encode_frequency_reply(reply, 600));
+    (void)pass_ms(5);
     turns_feed(reply, encode_scan_reply(reply));
     (void)pass_ms(5);
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_STARTING, tmini_state(&turns.lidar));

@@ -156,6 +156,8 @@ static void start(void)
     for (unsigned ms = 0; ms < 100; ms++, now_us += 1000) {
         poll();
     }
+    (void)tmini_feed(&lidar, reply, encode_frequency_reply(reply, 600));
+    poll();
     (void)tmini_feed(&lidar, reply, encode_scan_reply(reply));
     poll();
 }

@@ -214,7 +214,8 @@ void test_a_range_clears_a_data_fault_though_packets_were_lost(void)
 void test_what_precedes_the_first_start_packet_is_no_turn(void)
 {
     rig_go_idle();
-    begins_with(START, tmini_start(&rig.lidar));
+    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
+    answers_and_gets(600, START);
     rig_feed_scan_reply();
     rig_feed_point_packet(0); /* A partial turn. */
     rig_feed_start_packet(0); /* A turn without a range. */

@@ -214,8 +214,10 @@ void test_after_a_start_only_the_first_packet_is_doubtful_if_the_line_was_watche
         open_with(30, false);
         rig_go_idle();
         rig.now_ms = 65546;
-        begins_with(START, tmini_start(&rig.lidar));
-        rig.now_ms += unseen_ms;
+        begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
+        answers_and_gets(600, START);
+        passes(1000); /* It looks a millisecond before the end. */
+        rig.now_ms += unseen_ms - 1;
         rig_feed_scan_reply();
         feed_packets(2, 4);
         polls_to(TMINI_EVENT_STARTED);
@@ -330,7 +332,11 @@ static void go_round_unseen(unsigned laps)
 
     memset(memory, 0, sizeof memory);
     open_with(100, true);
-    rig_go_starting();
+    rig_go_idle();
+    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
+    position = encode_frequency_reply(memory, 600);
+    tmini_feed_dma(&rig.lidar, position);
+    polls_and_sends(START);
     for (unsigned i = 0; i < 3; i++) {
         position += encode_packet(&memory[position], &packet);
         tmini_feed_dma(&rig.lidar, position);

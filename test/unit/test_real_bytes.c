@@ -19,6 +19,8 @@
 
 void setUp(void)
 {
+    static const uint8_t frequency[] = {0xA5, 0x5A, 4, 0, 0, 0, 4, 0x58, 2, 0, 0}; /* 6.00 Hz */
+
     turns_open(1024, false);
     turns.config.points = NULL;
     turns.config.max_points = 0;
@@ -26,6 +28,8 @@ void setUp(void)
     (void)tmini_start(&turns.lidar);
     (void)turns_poll();
     turns.now_ms += 100;
+    (void)turns_poll();
+    turns_feed(frequency, sizeof frequency);
     (void)turns_poll();
 }
 

@@ -169,15 +169,17 @@ typedef enum {
                                  * set. */
     TMINI_EVENT_UNWANTED_SCANNING, /**< A lidar that was stopped is scanning. The driver stops it
                                     * again, with the same events as tmini_stop(). */
-    TMINI_EVENT_LOST, /**< Valid packets, or start packets, have stopped coming. The driver recovers
-                       * the lidar unless configured not to. */
-    TMINI_EVENT_RECOVERED,      /**< Valid packets come again. */
-    TMINI_EVENT_FAULTS_CHANGED, /**< tmini_faults() has changed, to 0 as well. */
+    TMINI_EVENT_RECOVERED,         /**< A start packet has come: the lidar scans again. */
+    TMINI_EVENT_FAULTS_CHANGED,    /**< tmini_faults() has changed, to 0 as well. */
     TMINI_EVENT_PACKET, /**< A packet, if there is no scan buffer: tmini_packet() is valid until the
                          * next tmini_poll(). */
     TMINI_EVENT_SCAN,   /**< A scan: tmini_scan() is valid until the next tmini_poll(); with
                          * spare_points, until the next TMINI_EVENT_SCAN. */
-    TMINI_EVENT_MORE,   /**< No event yet, but bytes are left, because the work of a poll is
+    TMINI_EVENT_PAUSED, /**< The driver is about to stop a scanning lidar, to set its frequency.
+                         * TMINI_EVENT_STARTED, or _COMMAND_FAILED, follows. */
+    TMINI_EVENT_LOST, /**< Valid packets, or start packets, have stopped coming. The driver recovers
+                       * the lidar unless configured not to. */
+    TMINI_EVENT_MORE, /**< No event yet, but bytes are left, because the work of a poll is
                          * bounded. Poll again. */
 } tmini_event_t;
 
@@ -212,6 +214,8 @@ typedef struct {
                           * does not, a layer below may delay bytes for longer than max_pause_ms. It
                           * also grows after each tmini_feed_gap() with DMA, and while a clock that
                           * was set back catches up. */
+    uint32_t points_withheld; /**< Intact points in no scan, because the program was behind: see
+                               * tmini_poll(). */
     uint16_t timeouts;   /**< Attempts at commands that waited in vain for a reply, a quiet line or
                           * the first packet; with listen_only none is counted. */
     uint16_t losses;     /**< TMINI_EVENT_LOST. */
@@ -298,6 +302,12 @@ static inline size_t tmini_feed_position(const tmini_t *lidar);
  * TMINI_EVENT_NONE. */
 tmini_event_t tmini_poll(tmini_t *lidar);
 
+/** For how long tmini_poll() may be left out if no byte comes meanwhile, in milliseconds: for a task
+ * that sleeps, and is woken by its receiver. 0: poll now. 1: the port has not taken a whole command.
+ * UINT16_MAX or more: as long as you like. Never longer than the receive buffer lasts, if the lidar
+ * scans. Call it when tmini_poll() has returned TMINI_EVENT_NONE. */
+uint32_t tmini_next_poll_ms(const tmini_t *lidar);
+
 /** @name Wishes
  * A wish holds until you change it; tmini_poll() does the work. From the polling context. None of
  * these functions waits, and each sends at most two bytes. */
@@ -377,7 +387,7 @@ tmini_status_t tmini_reboot(tmini_t *lidar);
 /** @{ */
 
 /** What the lidar does; TMINI_STATE_UNKNOWN for a null pointer. */
-static inline tmini_state_t tmini_state(const tmini_t *lidar);
+tmini_state_t tmini_state(const tmini_t *lidar);
 
 /** The scan that TMINI_EVENT_SCAN announced (section 6). The event's description states how long it
  * is valid. */
@@ -385,6 +395,20 @@ static inline const tmini_scan_t *tmini_scan(const tmini_t *lidar);
 
 /** The packet that TMINI_EVENT_PACKET announced, valid until the next tmini_poll() (section 5). */
 static inline const tmini_packet_t *tmini_packet(const tmini_t *lidar);
+
+/** True if the packet's bytes are still as they came. With DMA, ask after you have read the packet:
+ * the hardware may have overwritten it meanwhile, and then nothing read from it may be used.
+ * Without DMA it is always true. */
+static inline bool tmini_packet_intact(const tmini_packet_t *packet);
+
+/** The age of the newest complete scan, counted from its end, in milliseconds; before the first,
+ * from tmini_init() on. At most 2147483647 (24 days), and that for a lidar that was not set up. It
+ * grows whatever the reason is: the lidar boots, is lost, sends damaged packets, or is being set
+ * to another frequency. So a robot that stops when the age is above three turns (300 ms at 10 Hz)
+ * never drives blind; a scan that is not complete may stop it, never release it. If the clock is
+ * set back by more than a second, the age is at its maximum until the next complete scan. Without
+ * `points` no scan comes. */
+uint32_t tmini_scan_age_ms(const tmini_t *lidar);
 
 /** The device information that TMINI_EVENT_INFO announced, valid until the next such event; all 0
  * before the first (section 4). */
@@ -430,15 +454,17 @@ void tmini_counters(const tmini_t *lidar, tmini_counters_t *counters);
 
 /* tmini_command.c */
 typedef struct {
-    uint8_t operation;   /* The current or the last one, named by the event of its success; 0:
-                        * none. */
-    uint8_t phase;       /* A tmini_phase_t. */
-    uint8_t code;        /* The command being sent. */
-    uint8_t unsent;      /* How many of its two bytes the port has not taken yet. */
-    bool sync_sent;      /* The first byte of a command has been sent, the second has not. */
-    uint8_t attempts;    /* The number of the current attempt, from 1. */
-    uint8_t steps;       /* Frequency steps sent. */
-    uint16_t timeout_ms; /* How long the phase may last; 0: without limit. */
+    uint8_t operation;     /* The current or the last one, named by the event of its success; 0:
+                            * none. */
+    uint8_t phase;         /* A tmini_phase_t. */
+    uint8_t code;          /* The command being sent. */
+    uint8_t unsent;        /* How many of its two bytes the port has not taken yet, and two bits. */
+    uint8_t attempts_left; /* After the current one. */
+    bool is_repeated;      /* Not the first attempt: a late reply to an earlier one may come. */
+    uint8_t steps;         /* Frequency steps sent. */
+    uint8_t asks;          /* Questions sent that are repeated until the first answer; while
+                            * scanning, late polls that found no packet. */
+    uint16_t timeout_ms;   /* How long the phase may last; 0: without limit. */
     uint16_t frequency_chz;
     uint16_t wanted_chz; /* 0: any. */
     uint16_t timeouts;
@@ -447,8 +473,11 @@ typedef struct {
 
 /* tmini_recovery.c */
 typedef struct {
+    uint8_t wishes;    /* A bit for each event that ends what is wanted: STARTED to REBOOTED. */
     uint8_t attempts;  /* Failed attempts since the last complete revolution or reboot; 0: none has
                         * been made. */
+    uint8_t contact;   /* Whether the lidar answers; two bits. */
+    bool is_lost;      /* LOST has been raised, and RECOVERED has not. */
     uint16_t pause_ms; /* The pause after the latest failed attempt. */
     uint16_t losses;
     uint16_t recoveries;
@@ -460,16 +489,18 @@ typedef struct {
 typedef struct {
     uint8_t faults;    /* As reported. */
     uint8_t observed;  /* Faults of the last revolution; reported when the next one has the same. */
-    bool is_complete;  /* Nothing has been lost since the last start packet. */
-    uint8_t ranges;    /* Packets with a valid range since then; at most 255. */
+    uint8_t ranges;    /* Packets with a valid range since the last start packet; at most 255. */
     uint8_t off_turns; /* Turns in a row at another frequency than wanted. */
     uint8_t off_times; /* How often that has lasted too long. */
-    uint16_t samples;  /* Since the last start packet. */
+    uint8_t turns_to_still; /* Start packets until a changed wish is carried out; 0: none has
+                             * changed. */
+    uint16_t samples;       /* Since the last start packet. */
 } tmini_monitor_t;
 
 /* tmini_line.c */
 typedef struct {
     bool doubt;         /* Bytes may be missing somewhere before `doubtful_to`. */
+    uint16_t busy_ms;   /* For how long all that came has not been handled; 0: it has been. */
     uint16_t late_ms;   /* By how much the latest bytes may be late, if not in doubt. */
     uint16_t silent_ms; /* Observed silence; at most 65535. */
     uint32_t now_ms;    /* When the line was last looked at. It does not go back. */
@@ -490,19 +521,20 @@ typedef struct {
 } tmini_link_t;
 
 struct tmini_lidar {
-    uint8_t state; /* A tmini_state_t. */
     int8_t command_error;
-    uint16_t pending;   /* A bit for each event not yet returned. */
-    bool start_follows; /* After the current command a start follows. */
-    uint8_t idle_ms;    /* For this long after the last look at the line nothing is to be done,
-                         * unless a frame may be complete. 0: the lidar is not settled. */
+    uint8_t idle_ms;  /* For this long after the last look at the line nothing is to be done, unless
+                       * a frame may be complete. 0: the lidar is not settled. */
+    uint16_t pending; /* A bit for each event not yet returned. */
     bool is_recovery_off;
     bool is_listen_only;
-    tmini_command_t command;
     tmini_recovery_t recovery;
+    tmini_command_t command;
     tmini_line_t line;
     tmini_link_t link;
     uint32_t scans;
+    uint32_t points_withheld;
+    uint32_t complete_ms; /* When the newest complete scan ended; before the first, when the lidar
+                           * was set up; at most half the clock's range ago. */
     size_t held_to; /* Written by the receiving context: up to where bytes wait in the port; 0:
                      * unknown. */
     tmini_ring_t ring;
@@ -557,11 +589,6 @@ static inline size_t tmini_feed_position(const tmini_t *lidar)
     return tmini_ring_head(&lidar->ring);
 }
 
-static inline tmini_state_t tmini_state(const tmini_t *lidar)
-{
-    return lidar != NULL ? (tmini_state_t)lidar->state : TMINI_STATE_UNKNOWN;
-}
-
 static inline const tmini_scan_t *tmini_scan(const tmini_t *lidar)
 {
     return &lidar->scan;
@@ -570,6 +597,11 @@ static inline const tmini_scan_t *tmini_scan(const tmini_t *lidar)
 static inline const tmini_packet_t *tmini_packet(const tmini_t *lidar)
 {
     return &lidar->decoder.packet;
+}
+
+static inline bool tmini_packet_intact(const tmini_packet_t *packet)
+{
+    return tmini_frame_intact(packet->frame);
 }
 
 static inline const tmini_info_t *tmini_info(const tmini_t *lidar)

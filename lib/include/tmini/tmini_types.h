@@ -23,14 +23,13 @@ extern "C" {
 typedef enum {
     TMINI_OK = 0,              /**< Success: done, or begun. */
     TMINI_ERROR_ARGUMENT = -1, /**< A null pointer, or a value outside its documented range. */
-    TMINI_ERROR_STATE = -2,    /**< The lidar scans: only stop may be sent (section 2). */
-    TMINI_ERROR_BUSY = -3,     /**< An earlier command has not finished. */
-    TMINI_ERROR_TIMEOUT = -4,  /**< The lidar did not answer, or did not become quiet, in time. */
-    TMINI_ERROR_WRITE = -5,    /**< The port's write function failed, or took no byte for too
+    TMINI_ERROR_STATE = -2,    /**< The lidar scans, or is to: only stop may be sent (section 2). */
+    TMINI_ERROR_TIMEOUT = -3,  /**< The lidar did not answer, or did not become quiet, in time. */
+    TMINI_ERROR_WRITE = -4,    /**< The port's write function failed, or took no byte for too
                                 * long. */
-    TMINI_ERROR_REPLY = -6,    /**< The lidar answered, but did not do what the command asked. */
-    TMINI_ERROR_ABORTED = -7,  /**< A stop ended the command before it had finished. */
-    TMINI_ERROR_LISTEN_ONLY = -8, /**< Nothing may be sent, because of listen_only. */
+    TMINI_ERROR_REPLY = -5,    /**< The lidar answered, but did not do what the command asked. */
+    TMINI_ERROR_ABORTED = -6,  /**< A stop ended the command before it had finished. */
+    TMINI_ERROR_LISTEN_ONLY = -7, /**< Nothing may be sent, because of listen_only. */
 } tmini_status_t;
 
 /* --------------------------------------------------------------------------------------- points */
@@ -135,12 +134,19 @@ static inline bool tmini_packet_is_start(const tmini_packet_t *packet)
     return (packet->ct & 1u) != 0;
 }
 
+/** The frequency of the revolution before a start packet, in 0.01 Hz (sections 7 and 9.8); 0:
+ * unknown. Only start packets carry it. The parsing context; no waiting. */
+static inline uint16_t tmini_packet_frequency_chz(const tmini_packet_t *packet)
+{
+    return (uint16_t)((packet->ct >> 1) * 10);
+}
+
 /** Reads point `index` (from 0), unfiltered. Returns false if `index` is not below count, or if DMA
  * has overwritten the packet: then do not use the point. The parsing context; no waiting. */
 bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_t *point);
 
 /** Reads the packet's points, at most `max_points`, and applies `filter` (a combination of
- * tmini_filter_t). Returns how many were read. Use them only if tmini_frame_intact() is then true.
+ * tmini_filter_t). Returns how many were read. Use them only if tmini_packet_intact() is then true.
  * The parsing context; no waiting; about 12 instructions per point on a Cortex-M4. */
 size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_point_t *points,
                            size_t max_points);

@@ -37,6 +37,8 @@ typedef struct {
     tmini_builder_t builder; /**< Holds the `scan`; if it was not set up, no scans are built. */
     tmini_parser_t parser;   /**< Finds packets and replies. */
     tmini_ct_t ct;           /**< The unit's reports about itself in the stream. */
+    bool is_whole;           /**< Nothing has been lost since the last start packet. */
+    bool was_whole;          /**< The latest packet ends a revolution that came whole. */
     uint8_t verdict;         /**< What the latest packet shows about the revolution that it ends: a
                               * tmini_ct_verdict_t. */
 } tmini_decoder_t;
