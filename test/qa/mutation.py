@@ -4,7 +4,7 @@
 
 """Changes the sources in one small place at a time, and checks that a test notices the change.
 
-    mutation.py --build DIR [--sample N [--seed S]] [--results FILE] [--jobs N] [--list] [FILE …]
+    mutation.py --build DIR [--sample N [--seed S] [--tolerate N]] [--results FILE] [--jobs N] [--list] [FILE …]
 
 DIR is a build folder with the tests, configured with CMAKE_EXPORT_COMPILE_COMMANDS=ON (as test/run.sh does).
 FILE is a source in lib/src or port, a public header, or a folder of these; lib/src by default. Changes to the
@@ -17,7 +17,8 @@ named like the source run first, then those that have killed the most mutants pe
 than with the original is stopped and counts as failed. A mutant that survives is not counted if its optimised machine
 code equals the original's.
 
-A mutant that no test notices is an error, unless test/qa/mutants.txt lists it with the reason why no test can.
+A mutant that no test notices is an error, unless test/qa/mutants.txt lists it with the reason why no test can, or
+--tolerate allows that many in a sample.
 An entry there is an error if its mutant no longer exists or, without --sample, if a test notices it.
 """
 
@@ -655,6 +656,7 @@ def main():
     parser.add_argument("--build", required=True)
     parser.add_argument("--sample", type=int, help="only this many mutants, drawn at random")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--tolerate", type=int, default=0, help="this many survivors are no error")
     parser.add_argument("--results", help="a file to which each mutant's fate is appended, and read from")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--list", action="store_true", help="only prints the mutants")
@@ -682,7 +684,7 @@ def main():
     noticed = [] if arguments.sample else sorted({mutant.key for mutant in mutants} & known.keys() - needed)
     for key in noticed:
         print(f"in {KNOWN}, but a test notices it: {key}")
-    sys.exit(1 if survivors or stale or noticed else 0)
+    sys.exit(1 if survivors > arguments.tolerate or stale or noticed else 0)
 
 
 if __name__ == "__main__":
