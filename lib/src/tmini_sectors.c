@@ -31,7 +31,7 @@ size_t tmini_sectors_at(const tmini_sectors_t *sectors, uint16_t angle_q6)
     return tmini_bin(angle_q6, sectors->count);
 }
 
-static void count_one(uint16_t *count)
+static void count_point(uint16_t *count)
 {
     *count = (uint16_t)(*count + (*count < UINT16_MAX ? 1 : 0));
 }
@@ -40,11 +40,11 @@ void tmini_sectors_add(tmini_sectors_t *sectors, const tmini_point_t *point)
 {
     tmini_sector_t *const sector = &sectors->sectors[tmini_sectors_at(sectors, point->angle_q6)];
     const bool is_filtered = ((unsigned)sectors->filter >> (point->flag & 3u) & 1u) != 0;
-    count_one(&sector->points);
+    count_point(&sector->points);
     if (point->distance_mm == 0 || is_filtered) {
         return;
     }
-    count_one(&sector->ranges);
+    count_point(&sector->ranges);
     if (tmini_is_nearer(point, sector->nearest_mm)) {
         sector->nearest_mm = point->distance_mm;
         sector->angle_q6 = point->angle_q6;
