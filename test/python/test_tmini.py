@@ -138,6 +138,8 @@ def test_a_scan_comes_out_as_the_robot_sees_it():
     assert np.isnan(turned.ranges_m[masked]).all() and masked.any()
     assert np.array_equal(turned.ranges_m[~masked], plain.ranges_m[~masked], equal_nan=True)
     assert np.array_equal(turned.times_s, plain.times_s)
+    longer = next(tmini.read(RECORDINGS / "sim-6hz.bin", offset_mm=69))
+    assert np.allclose(longer.ranges_m, plain.ranges_m + 0.069, atol=1e-6, equal_nan=True)
 
 
 def test_bins_and_sectors_hold_the_nearest_of_equal_parts_clockwise_from_the_front():

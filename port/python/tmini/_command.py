@@ -40,6 +40,8 @@ def add_mount_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--front", type=float, default=0.0, metavar="DEG",
                         help="the lidar's angle that points to the robot's front")
     parser.add_argument("--upside-down", action="store_true", help="the lidar hangs upside down")
+    parser.add_argument("--offset", type=int, default=0, metavar="MM", dest="offset_mm",
+                        help="added to each range")
     parser.add_argument("--mask", type=_arc, action="append", default=[], metavar="FROM:TO",
                         help="where it sees the robot itself, in degrees clockwise from the front")
 
@@ -67,7 +69,7 @@ def _arc(text: str) -> tuple[int, int]:
 
 
 def mount(arguments: argparse.Namespace) -> dict[str, Any]:
-    return {name: getattr(arguments, name) for name in ("front", "upside_down", "mask")}
+    return {name: getattr(arguments, name) for name in ("front", "upside_down", "mask", "offset_mm")}
 
 
 def _signals(*names: str) -> Iterator[int]:

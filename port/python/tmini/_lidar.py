@@ -79,10 +79,10 @@ class Lidar:
 
     def __init__(self, port: str | os.PathLike[str], frequency_hz: float | None = None, *,
                  front: float = 0, upside_down: bool = False, mask: Sequence[tuple[int, int]] = (),
-                 listen_only: bool = False, backlog: int = 1,
+                 offset_mm: int = 0, listen_only: bool = False, backlog: int = 1,
                  timeout: float | None = 10.0) -> None:
-        """`frequency_hz`: as in set_frequency(); None: left as it is. `front`, `upside_down` and
-        `mask`: see Mount. `listen_only`: never sends anything; neither does a timed
+        """`frequency_hz`: as in set_frequency(); None: left as it is. `front`, `upside_down`,
+        `mask` and `offset_mm`: see Mount. `listen_only`: never sends anything; neither does a timed
         stream. Waits up to `timeout` seconds for the first scan, and raises LidarError if there is
         none, OSError if there is no such port; None: returns at once, even if the port does not
         exist yet."""
@@ -108,7 +108,7 @@ class Lidar:
         self._is_stale = False  # The line is silent, and is to be opened again.
         self._tap: Callable[[int, bytes | None], None] | None = None  # Gets what comes, and when.
         self._witness: Witness | None = Witness()  # Until the first scan.
-        self._mount = Mount(front, upside_down, mask)
+        self._mount = Mount(front, upside_down, mask, offset_mm)
         self._listen_only = listen_only
         chz = 0 if frequency_hz is None else _chz(frequency_hz)
         try:

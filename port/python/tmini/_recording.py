@@ -19,12 +19,12 @@ _BLOCK = 16384
 
 
 def read(path: str | os.PathLike[str], *, front: float = 0, upside_down: bool = False,
-         mask: Sequence[tuple[int, int]] = ()) -> Iterator[Scan]:
+         mask: Sequence[tuple[int, int]] = (), offset_mm: int = 0) -> Iterator[Scan]:
     """The scans of a recording, one after the other: of a file of `tmini record` or of the viewer
     (.tmini), or of bytes as they came (.bin). Other parameters: see Mount. Raises ValueError if the
     file holds no packets of a lidar. Of a damaged recording the intact parts are read, with a
     RuntimeWarning."""
-    mount = Mount(front, upside_down, mask)
+    mount = Mount(front, upside_down, mask, offset_mm)
     tape = ffi.new("tape_t *")
     lib.tape_begin(tape, mount.native, 0)
     data = b""
