@@ -232,6 +232,54 @@ static bool set_boot(options_t *options, const char *value)
     return true;
 }
 
+static bool set_turned(options_t *options, const char *value)
+{
+    double degrees;
+
+    if (!parse_number(value, 0, 359.99, &degrees)) {
+        return false;
+    }
+    options->device.turned_q6 = (uint16_t)(degrees * 64.0 + 0.5);
+    return true;
+}
+
+static bool set_turning(options_t *options, const char *value)
+{
+    double degrees;
+
+    if (!parse_number(value, -360, 360, &degrees)) {
+        return false;
+    }
+    options->device.turning_q6_s = (int32_t)(degrees * 64.0);
+    return true;
+}
+
+static bool set_mast(options_t *options, const char *value)
+{
+    unsigned from, to, mm;
+    char end;
+
+    if (sscanf(value, "%u:%u:%u%c", &from, &to, &mm, &end) != 3 || from > 359 || to < from ||
+        to > 359 || mm > 9999) {
+        return false;
+    }
+    options->device.mast_from_q6 = (uint16_t)(from * 64u);
+    options->device.mast_wide_q6 = (uint16_t)((to - from) * 64u);
+    options->device.mast_mm = (uint16_t)mm;
+    return true;
+}
+
+static bool set_longer(options_t *options, const char *value)
+{
+    double mm;
+
+    if (!parse_number(value, -40, 1000, &mm)) {
+        return false;
+    }
+    options->device.range_error_mm = (int16_t)mm;
+    return true;
+}
+
 static const option_t known[] = {
     {0, "pty", NULL, "serve a pseudo-terminal; its path is the first line printed", NULL,
      PLACE(pty)},
@@ -272,6 +320,11 @@ static const option_t known[] = {
      set_bridge, 0},
     {0, "bursts", "MS", "a bridge that delivers what came in the meantime every 1 to 4000 ms",
      set_bursts, 0},
+    {0, "turned", "DEGREES", "its angle at the room's 0, clockwise: it is mounted turned (0)",
+     set_turned, 0},
+    {0, "turning", "DEG/S", "the robot under it is turned, clockwise (0)", set_turning, 0},
+    {0, "mast", "FROM:TO:MM", "it sees a part of the robot, in whole degrees", set_mast, 0},
+    {0, "longer", "MM", "its ranges are too long by this, -40 to 1000 (0)", set_longer, 0},
     {0, "fault", "KIND=RATE",
      "drop, flip, insert: probability per byte;\n"
      "                          burst, stall, cut, unplug, garble: events per second",

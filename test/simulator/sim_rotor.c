@@ -183,11 +183,39 @@ static uint16_t add_noise(uint16_t distance_mm, uint32_t dice, uint32_t noise_mm
     return (uint16_t)(distance_mm + added - noise_mm);
 }
 
+/* The angle of the room that the lidar sees at one of its own: the room turns the other way when
+ * the robot is turned. */
+static uint32_t room_angle(const sim_t *sim, uint32_t angle_q6)
+{
+    const sim_config_t *const config = &sim->config;
+    const int64_t full = ENCODE_FULL_TURN_Q6;
+    int64_t turned = (int64_t)angle_q6 - config->turned_q6;
+
+    if (config->turning_q6_s != 0) {
+        turned += (int64_t)sim->now_us * config->turning_q6_s / 1000000 % full;
+    }
+    return (uint32_t)(turned < 0 ? turned + full : turned < full ? turned : turned - full);
+}
+
+static bool is_mast(const sim_config_t *config, uint32_t angle_q6)
+{
+    return config->mast_mm != 0 && angle_q6 >= config->mast_from_q6 &&
+           angle_q6 <= (uint32_t)config->mast_from_q6 + config->mast_wide_q6;
+}
+
 static uint16_t ideal_distance(const sim_t *sim, uint32_t angle_q16)
 {
     const bool is_dark = sim->rotor_blocked || sim->window_covered;
+    const uint32_t angle_q6 = angle_q16 >> 16;
+    uint16_t seen_mm;
 
-    return is_dark ? 0 : sim->scene.distance_mm[(angle_q16 >> 16) / SIM_SCENE_STEP_Q6];
+    if (is_dark) {
+        return 0;
+    }
+    seen_mm = is_mast(&sim->config, angle_q6)
+                  ? sim->config.mast_mm
+                  : sim->scene.distance_mm[room_angle(sim, angle_q6) / SIM_SCENE_STEP_Q6];
+    return (uint16_t)(seen_mm == 0 ? 0 : seen_mm + sim->config.range_error_mm);
 }
 
 /* One random number per sample: 16 bits each decide the noise, whether the range is missing, and

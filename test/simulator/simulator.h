@@ -113,6 +113,12 @@ typedef struct {
     uint8_t wobble_permille;       /* deviation of the speed, drawn for every revolution */
     uint8_t angle_jitter_q6;       /* of FSA and LSA, plus or minus */
     uint8_t noise_mm;              /* of distances, plus or minus */
+    uint16_t turned_q6;            /* the lidar's angle at the room's 0: it is mounted turned */
+    int32_t turning_q6_s;          /* the robot is turned clockwise, in 1/64 degree per second */
+    uint16_t mast_from_q6;         /* a part of the robot that the lidar sees: where it begins, */
+    uint16_t mast_wide_q6;         /* how wide it is, */
+    uint16_t mast_mm;              /* and how far away; 0: there is none */
+    int16_t range_error_mm;        /* ranges are too long by this */
     uint16_t invalid_permille;     /* samples without range, in addition to the scene's */
     uint16_t flagged_permille;     /* samples flagged 2 or 3, equally often (section 9.9) */
     uint16_t lone_packet_permille; /* point packets with LSN 1 and LSA slightly below FSA (9.6) */
