@@ -285,9 +285,9 @@ static void explain(const command_t *command)
 /* ------------------------------------------------------------------------------------ commands */
 
 static const command_t *const commands[] = {
-    &command_ports,     &command_check,  &command_info, &command_health,
-    &command_frequency, &command_reboot, &command_scan, &command_record,
-    &command_survey,    &command_decode, &command_plot, &command_view,
+    &command_ports,  &command_check, &command_info,   &command_health, &command_frequency,
+    &command_reboot, &command_scan,  &command_record, &command_survey, &command_calibrate,
+    &command_decode, &command_plot,  &command_view,
 };
 
 #define COMMANDS (sizeof commands / sizeof commands[0])

@@ -69,6 +69,6 @@ const char *ports_stable_name(const char *path);
 /* Each command, or group of similar commands, has its own file. */
 extern const command_t command_ports, command_check, command_info, command_health,
     command_frequency, command_reboot, command_scan, command_record, command_decode, command_plot,
-    command_survey, command_view;
+    command_survey, command_calibrate, command_view;
 
 #endif
