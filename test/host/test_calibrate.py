@@ -48,12 +48,12 @@ def test_without_a_hint_the_nearest_wall_is_the_front(calibrate):
 
 
 def test_what_turns_with_the_robot_is_masked(calibrate):
-    sim = ["--turning", "20", "--turned", "30", "--mast", "100:112:180"]
-    screen, status = calibrate(sim, [], [SKIP, ENTER, SKIP])
+    sim = ["--turning", "40", "--turned", "30", "--mast", "100:112:180"]
+    screen, status = calibrate(sim, ["--seconds", "10"], [SKIP, ENTER, SKIP])
     assert status == 0
     assert re.search(r"masked\[\] = \{\{9[789], 11[345]\}\};", screen.text)
     assert re.search(r"--mask 9[789]:11[345]", screen.text)
-    screen, status = calibrate(sim, ["--upside-down", "--front", "30"], [SKIP, ENTER, SKIP])
+    screen, status = calibrate(sim, ["--seconds", "10", "--upside-down", "--front", "30"], [SKIP, ENTER, SKIP])
     assert status == 0
     assert re.search(r"mask=\[\(27[567], 29[123]\)\]", screen.text)  # 30 - 112 and 30 - 100, two wider.
     assert "upside_down = true" in screen.text and "--roll 3.14159" in screen.text
@@ -63,7 +63,7 @@ def test_what_turns_with_the_robot_is_masked(calibrate):
     (["--turning", "20"], [], [ENTER], "Not good: "),
     (["--covered"], [], [ENTER], "there is no straight wall"),
     ([], ["--front", "135"], [ENTER], "no straight wall of 0.6 m within 30 degrees of --front"),
-    (["--mast", "100:112:180"], [], [SKIP, ENTER], "too little has moved: the robot was not turned"),
+    (["--mast", "100:112:180"], ["--seconds", "6"], [SKIP, ENTER], "too little has moved: the robot was not turned"),
     (["--turning", "90"], ["--seconds", "1"], [SKIP, ENTER], "not enough scans"),
     ([], [], [SKIP, SKIP, "two metres\r"], "type the distance in mm"),
     ([], [], [SKIP, SKIP, "20\r"], "type the distance in mm"),

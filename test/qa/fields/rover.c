@@ -76,15 +76,18 @@ void rover_init(rover_t *rover, const rover_config_t *config, const tmini_fields
     need(tmini_start(&rover->lidar) == TMINI_OK, "the driver does not start");
 }
 
+static double cosines[SIM_SCENE_ENTRIES]; /* Of the entries' angles: the scene is often made. */
+
 static double nearer(double one, double other)
 {
     return one < other ? one : other;
 }
 
-static double hall_at(const rover_hall_t *hall, double degrees)
+static double hall_at(const rover_hall_t *hall, unsigned entry)
 {
-    const double ahead = cos(degrees * RADIANS);
-    const double aside = sin(degrees * RADIANS);
+    const double degrees = entry * SIM_SCENE_STEP_Q6 / 64.0;
+    const double ahead = cosines[entry];
+    const double aside = cosines[(entry + SIM_SCENE_ENTRIES / 4) % SIM_SCENE_ENTRIES];
     double distance = nearer(HALL_MM / fabs(ahead), HALL_MM / fabs(aside));
     if (hall->wall_mm > 0 && ahead > 0) {
         distance = nearer(distance, hall->wall_mm / ahead);
@@ -99,8 +102,13 @@ static double hall_at(const rover_hall_t *hall, double degrees)
 
 void rover_furnish(rover_t *rover, const rover_hall_t *hall)
 {
+    if (cosines[0] == 0) {
+        for (unsigned i = 0; i < SIM_SCENE_ENTRIES; i++) {
+            cosines[i] = cos(i * SIM_SCENE_STEP_Q6 / 64.0 * RADIANS);
+        }
+    }
     for (unsigned i = 0; i < SIM_SCENE_ENTRIES; i++) {
-        const double distance = hall_at(hall, i * SIM_SCENE_STEP_Q6 / 64.0);
+        const double distance = hall_at(hall, i);
         rover->sim.scene.distance_mm[i] = (uint16_t)(distance < 50 ? 0 : lround(distance));
     }
 }

@@ -47,9 +47,9 @@ static drive_t drive(const rover_config_t *config, unsigned points, unsigned sca
     double speed = 0;
     bool may_drive = false;
     rover_init(&rover, config, &fields);
-    for (unsigned ms = 0; ms < 12000 && result.gap_mm > 0; ms++) {
+    for (unsigned ms = 0; ms < 9000 && result.gap_mm > 0; ms++) {
         const rover_hall_t hall = {.wall_mm = result.gap_mm};
-        if (ms % 5 == 0) {
+        if (ms % 10 == 0 && (ms == 0 || speed > 0)) {
             rover_furnish(&rover, &hall);
         }
         (void)rover_pass(&rover);
