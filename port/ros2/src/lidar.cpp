@@ -97,7 +97,7 @@ void Lidar::tell_of_port()
         return;
     }
     told_ = port_.state;
-    const std::string text = settings_.port + ": " + tmini_posix_status_name(told_);
+    const std::string text = settings_.port + ": " + tmini_posix_status_name(port_.state);
     if (told_ == TMINI_POSIX_OK) {
         listener_.tell(LEVEL_OK, text);
     } else {

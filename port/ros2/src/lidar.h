@@ -65,7 +65,7 @@ class Lidar
     /* Used by the thread alone. */
     bool is_started_ = false;
     std::uint16_t frequency_chz_;
-    tmini_posix_status_t told_ = TMINI_POSIX_NO_DEVICE;
+    int told_ = 1; /* The port's state that was told last; at first none of them. */
     tmini_posix_t port_ = {};
     tmini_t lidar_ = {};
     tmini_timing_t timing_ = tmini_timing_default;

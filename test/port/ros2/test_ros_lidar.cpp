@@ -219,6 +219,15 @@ static void a_lidar_that_goes_away_is_reported_and_found_again()
     require(lidar.report().reconnections >= 1, "the reconnection is counted");
 }
 
+static void a_port_that_does_not_exist_is_told_at_once()
+{
+    settings.port = "/dev/no-such-lidar";
+    Lidar lidar(settings, *observer);
+    observer->await("words", [] {
+        return observer->has_told("/dev/no-such-lidar: no such device; trying again");
+    });
+}
+
 static void incomplete_scans_are_counted_and_published_only_if_wished()
 {
     for (const bool is_wished : {false, true}) {
@@ -244,6 +253,7 @@ int main()
     RUN_TEST(a_wish_stops_and_starts_the_lidar);
     RUN_TEST(in_standby_the_lidar_scans_only_while_somebody_subscribes);
     RUN_TEST(a_lidar_that_goes_away_is_reported_and_found_again);
+    RUN_TEST(a_port_that_does_not_exist_is_told_at_once);
     RUN_TEST(incomplete_scans_are_counted_and_published_only_if_wished);
     return UNITY_END();
 }
