@@ -312,13 +312,15 @@ def test_a_port_has_one_user_and_is_free_afterwards(simulator):
         assert lidar.read(1).number == 1
 
 
-@pytest.mark.parametrize("end", ["sys.exit()", "raise ValueError", "os.kill(os.getpid(), signal.SIGTERM); lidar.read(5)"])
+@pytest.mark.parametrize("end", ["sys.exit()", "raise ValueError", "os.kill(os.getpid(), signal.SIGTERM)\nlidar.read(5)",
+                                 "os.kill(os.getpid(), signal.SIGHUP)\nlidar.read(5)"])
 def test_however_a_program_ends_the_lidar_stops(simulator, end):
     """A signal needs the lines of the README."""
     readme = (ROOT / "port" / "python" / "README.md").read_text()
     lines = next(code for code in re.findall("```python\n(.*?)```", readme, re.DOTALL) if "SIGTERM" in code)
     program = f"{lines}\nimport os, tmini\nlidar = tmini.Lidar(sys.argv[1])\nlidar.read(1)\n{end}"
-    subprocess.run([sys.executable, "-c", program, simulator.start()], stderr=subprocess.DEVNULL, timeout=20, check=False)
+    subprocess.run([sys.executable, "-c", program, simulator.start()], stderr=subprocess.DEVNULL, timeout=20,
+                   check=False)
     simulator.await_idle()
 
 
@@ -355,7 +357,7 @@ def paced(data):
 
 def test_bytes_that_waited_while_the_program_was_busy_cost_no_scan(monkeypatch):
     content = (RECORDINGS / "sim-6hz.bin").read_bytes()
-    line = paced(content[:4000]) + [(1500, b""), (10, content[4000:])]  # Busy after it had read; more than is fed at once.
+    line = paced(content[:4000]) + [(1500, b""), (10, content[4000:])]  # More than is fed at once.
     assert [scan.complete for scan in played(monkeypatch, line, count=8)] == [True] * 8
 
 

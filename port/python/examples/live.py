@@ -14,7 +14,8 @@ import tmini
 
 
 def main(port: str) -> None:
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # Ends the `with`: the lidar stops.
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, lambda *_: sys.exit())  # Ends the `with`: the lidar stops.
     axes = plt.subplot(projection="polar", theta_offset=np.pi / 2)
     points = axes.scatter([], [], s=3, c=[], cmap="viridis", vmin=0, vmax=255)
     with tmini.Lidar(port, frequency_hz=6) as lidar:

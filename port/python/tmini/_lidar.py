@@ -101,7 +101,6 @@ class Lidar:
         self._is_inherited = False  # This process is a fork of the one that opened it.
         self._complete_s = time.monotonic()  # When the newest complete scan ended.
         self._failure: Exception | None = None
-        self._received = 0
         self._number = 0
         self._line: Line | None = None
         self._name: str | None = None  # The line's; None: to be found.
@@ -256,7 +255,6 @@ class Lidar:
             return -1
 
     def _feed(self, data: bytes) -> None:
-        self._received += len(data)
         for begin in range(0, max(len(data), 1), _BLOCK):
             block = data[begin:begin + _BLOCK]
             if self._witness is not None:
