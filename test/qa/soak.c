@@ -114,9 +114,6 @@ static bool carry_out(soak_t *soak, tmini_status_t begun, tmini_event_t end, uin
     const uint64_t begun_us = world->now_us;
 
     soak->commands++;
-    if (begun == TMINI_ERROR_BUSY && tmini_state(&world->lidar) == TMINI_STATE_STOPPING) {
-        return false; /* The stop was lost on the line: the library is stopping the lidar again. */
-    }
     if (begun != TMINI_OK) {
         world_violate(world, VIOLATION_ANSWER, "not begun");
         return false;

@@ -317,12 +317,13 @@ static uint32_t in_one_scan(const oracle_t *oracle, const line_packet_t *packet)
     return count;
 }
 
-/* Each point of an intact packet after the first start packet must be in exactly one scan. The
- * current, unfinished scan counts as one. */
-static void judge_points(oracle_t *oracle, const host_t *host)
+/* Each point of an intact packet after the first start packet must be in exactly one scan, unless
+ * the library has withheld it, which it counts. The current, unfinished scan counts as one. */
+static void judge_points(oracle_t *oracle, const host_t *host, uint32_t withheld)
 {
     const line_t *const line = oracle->line;
     const tmini_builder_t *const builder = &host->lidar.decoder.builder;
+    uint32_t lacking = 0;
     bool begun = false;
 
     if (builder->open) {
@@ -337,7 +338,7 @@ static void judge_points(oracle_t *oracle, const host_t *host)
 
             oracle->verdicts->intact += packet->samples;
             oracle->verdicts->in_one += in_one;
-            note(oracle, WRONG_LOSS, in_one < packet->samples);
+            lacking += packet->samples - in_one;
             if (oracle->speaks && in_one < packet->samples) {
                 printf("  packet of revolution %u, samples %u to %u, sent at %u ms\n",
                        packet->revolution, packet->first, packet->first + packet->samples - 1,
@@ -345,6 +346,8 @@ static void judge_points(oracle_t *oracle, const host_t *host)
             }
         }
     }
+    note(oracle, WRONG_LOSS, lacking > withheld);
+    oracle->verdicts->withheld += withheld;
 }
 
 void oracle_end(oracle_t *oracle, const host_t *host)
@@ -362,7 +365,7 @@ void oracle_end(oracle_t *oracle, const host_t *host)
         (counters.bytes_overrun == 0 && host->gaps_reported == 0)) {
         judge_cost(oracle, host);
         if (!host->was_lost && host->config.max_points == HOST_POINTS) {
-            judge_points(oracle, host);
+            judge_points(oracle, host, counters.points_withheld);
         }
     }
 }
@@ -377,7 +380,7 @@ const char *oracle_name(wrong_t wrong)
         [WRONG_COMPLETE] = "complete, but something is missing",
         [WRONG_SILENCE] = "something missing, but not reported",
         [WRONG_TWICE] = "scans with points of an earlier one",
-        [WRONG_LOSS] = "intact packets in no scan",
+        [WRONG_LOSS] = "trials with intact points in no scan, and not counted as withheld",
         [WRONG_ACCOUNT] = "counters that do not add up",
         [WRONG_REMAINDER] = "bytes still pending at the end",
         [WRONG_COST] = "whole revolutions not complete"};

@@ -18,7 +18,7 @@ typedef enum {
     WRONG_TWICE,           /* A point was already in an earlier scan. */
     WRONG_ACCOUNT,         /* The counters have a byte too many or too few. */
     WRONG_REMAINDER,       /* Bytes are still pending after a long silence. */
-    WRONG_LOSS,            /* An intact packet is in no scan. */
+    WRONG_LOSS,            /* Intact points are in no scan, and were not withheld. */
     WRONG_COST,            /* A revolution without losses is not delivered as complete. */
     WRONG_KINDS
 } wrong_t;
@@ -44,6 +44,7 @@ typedef struct {
     uint64_t invisible; /* Scans reported complete whose missing samples cannot be noticed. */
     uint64_t intact;    /* Points of packets certainly without losses. */
     uint64_t in_one;    /* Those of them that are in exactly one scan. */
+    uint64_t withheld;  /* Points that the library withheld, because the program was behind. */
     uint64_t mixed[MIXED_KINDS];
     uint64_t wrongs[WRONG_KINDS];
     uint64_t first_trial[WRONG_KINDS]; /* The first trial with this error. */
