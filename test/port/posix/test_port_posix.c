@@ -388,7 +388,7 @@ void test_a_cable_that_is_pulled_and_plugged_in_again_is_a_loss_and_a_recovery(v
     program_plug_in(NULL);
     poll_until(TMINI_EVENT_LOST);
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, port.state);
-    program_plug_in(program_start_lidar_again((const char *const[]){NULL}));
+    program_plug_in(program_start_lidar((const char *const[]){NULL}));
     poll_until(TMINI_EVENT_RECOVERED);
     poll_until(TMINI_EVENT_SCAN);
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, port.state);
@@ -400,7 +400,7 @@ void test_a_reconnection_is_a_gap(void)
 {
     begin_with_an_adapter();
     program_stop_lidar();
-    program_plug_in(program_start_lidar_again((const char *const[]){NULL}));
+    program_plug_in(program_start_lidar((const char *const[]){NULL}));
     for (int i = 0; i < 1000 && port.reconnections == 0; i++) {
         TEST_ASSERT_TRUE(tmini_feed_room(&lidar) > 0);
         (void)tmini_posix_wait(&port, 10);
@@ -634,7 +634,6 @@ static unsigned count_gaps(void)
 void test_a_pause_of_the_program_costs_no_scan(void)
 {
     unsigned gaps = 1;
-    program_use_real_time();
     begin();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
     poll_until(TMINI_EVENT_SCAN);
