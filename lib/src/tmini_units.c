@@ -36,15 +36,17 @@ static uint32_t turned_q6(const tmini_scan_t *scan, size_t index)
     return scan->upside_down ? tmini_clockwise(point, first) : tmini_clockwise(first, point);
 }
 
+/* Near enough that jitter alone can lead from here to the other side of the first point. */
 static bool is_near_first(const tmini_scan_t *scan, size_t index)
 {
     const uint32_t turned = turned_q6(scan, index);
-    return turned < JITTER_Q6 || turned > TURN_Q6 - JITTER_Q6;
+    return turned < 2 * JITTER_Q6 || turned > TURN_Q6 - 2 * JITTER_Q6;
 }
 
 /* The angle turned since the first point, up to slightly more than a circle. Because of the
  * encoder's jitter, early points may lie slightly before the first one, and late points slightly
- * beyond the full circle. A point is late if some earlier point is not near the first one. */
+ * beyond the full circle. A point is late if some earlier point is not near the first one: at least
+ * twice the jitter from it. */
 static uint32_t swept_q6(const tmini_scan_t *scan, size_t index)
 {
     const uint32_t turned = turned_q6(scan, index);

@@ -138,20 +138,20 @@ void test_an_early_point_less_than_4_degrees_before_the_first_is_not_a_turn_late
     is_at(1, 0);
 }
 
-/* 256 / 23040 of 100 ms are 1111 us; (255 + 23040) / 23040 are 101,106 us. */
+/* 512 / 23040 of 100 ms are 2222 us; (255 + 23040) / 23040 are 101,106 us. */
 void test_a_late_point_less_than_4_degrees_beyond_the_circle_is_a_turn_later(void)
 {
-    has_angles(0, 1 * DEGREE, 4 * DEGREE, 4 * DEGREE - 1);
-    is_at(2, 1111);
+    has_angles(0, 1 * DEGREE, 8 * DEGREE, 4 * DEGREE - 1);
+    is_at(2, 2222);
     is_at(3, 101106);
 }
 
-/* A point near the first one is a turn later if the second point is at least 4 degrees away. */
+/* A point near the first one is a turn later if the second point is at least 8 degrees away. */
 void test_the_third_of_three_points_may_be_a_turn_later(void)
 {
     has_angles(10, 90 * DEGREE, 16, 0);
     is_at(2, 100026);
-    has_angles(0, 356 * DEGREE, 1 * DEGREE, 0);
+    has_angles(0, 352 * DEGREE, 1 * DEGREE, 0);
     is_at(2, 100277);
 }
 
@@ -253,4 +253,12 @@ void test_the_longest_period_does_not_overflow(void)
     is_at(3, 2857011);
     scan.frequency_chz = 34;
     is_at(3, 750);
+}
+
+/* Between 0 and 4.03 degrees; 255 * 6250 / 1440. */
+void test_a_small_step_back_near_four_degrees_is_no_turn(void)
+{
+    has_angles(0, 258, 255, 300);
+    is_at(1, 258 * 6250 / 1440);
+    is_at(2, 255 * 6250 / 1440);
 }
