@@ -2,7 +2,7 @@
 # Copyright (c) 2026 The tmini authors
 
 # Adds one test for each target of ../compile.sh. ../barriers.sh looks for the memory barriers in
-# the machine code, and ../layers.sh checks which source file may call which.
+# the machine code, and ../layers.py checks which source file may call which.
 
 if(NOT TMINI_SH)
     return()
@@ -17,4 +17,4 @@ foreach(target esp32-c3 rp2040 cortex-m4)
         COMMAND ${TMINI_SH} ${CMAKE_CURRENT_SOURCE_DIR}/barriers.sh ${target})
 endforeach()
 tmini_add_check(layers compile NEEDS tmini
-    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/layers.sh $<TARGET_FILE:tmini>)
+    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/layers.py)
