@@ -452,8 +452,12 @@ static bool give_up_candidate(tmini_t *lidar)
  * than one poll may do. */
 static bool receive(tmini_t *lidar)
 {
-    const tmini_parser_t *const parser = &lidar->decoder.parser;
+    const tmini_decoder_t *const decoder = &lidar->decoder;
+    const tmini_parser_t *const parser = &decoder->parser;
     uint16_t effort = 0;
+    if (decoder->builder.ended) { /* The packet that ended the scan is decoded again. */
+        effort = (uint16_t)(FRAME_EFFORT + tmini_parser_frame(parser)->size);
+    }
     while (lidar->pending == 0) {
         if (effort >= TMINI_PARSER_EFFORT) {
             return false;

@@ -13,7 +13,7 @@
  * Each writes its own group of members of tmini_t (`command`, `recovery`, `monitor`, `line`;
  * tmini.c those without a group), and reads only its own and those of files below it, and `link`,
  * the configuration. Ring and decoder are written by their own modules only, which know nothing of
- * tmini_t. test/layers.sh checks all this. docs/design.md draws the states and phases. */
+ * tmini_t. test/layers.py checks all this. docs/design.md draws the states and phases. */
 
 #ifndef TMINI_DRIVER_H
 #define TMINI_DRIVER_H

@@ -19,10 +19,10 @@
  *     for (;;) {
  *         switch (tmini_poll(&lidar)) {
  *         case TMINI_EVENT_SCAN: avoid_obstacles(tmini_scan(&lidar)); break;
- *         case TMINI_EVENT_LOST: stop_robot(); break;    until scans come again
  *         case TMINI_EVENT_FAULTS_CHANGED: signal_faults(tmini_faults(&lidar)); break;
  *         default: break;
  *         }
+ *         if (tmini_scan_age_ms(&lidar) > 300) { stop_robot(); }    three turns, whatever the reason
  *     }
  *
  * Contexts. The functions tmini_feed…() belong to the one context that receives: an interrupt, a
@@ -87,18 +87,19 @@ typedef struct {
      * where a layer below delays bytes: 250 for a computer. 0: pauses are not looked for. Whatever
      * the value, a scan that took more than one and a half turns has a gap. */
     uint16_t max_pause_ms;
-    /** After a stop, the line counts as quiet when it has been silent for this long: below 600. If
-     * the value is above 50 and polls are more than 50 ms apart, it may be at most
-     * 30000 / (time between polls). Bytes that a layer below holds for longer seem to come after
-     * the next start. 0: at once. */
+    /** After a stop, and between two commands, the line counts as quiet when it has been silent for
+     * this long: below 600. If the value is above 50 and polls are more than 50 ms apart, it may be
+     * at most 30000 / (time between polls). Bytes that a layer below holds for longer seem to come
+     * after the next start. 0: at once. */
     uint16_t quiet_line_ms;
-    /** How long to wait for a reply (section 9.11). 0: without limit. */
+    /** How long to wait for a reply (section 9.11). 0: without limit. The question that begins a
+     * start is repeated each 250 ms instead, for 7.5 s. */
     uint16_t reply_timeout_ms;
     /** The pause after a failed attempt to start begins with 500 ms and doubles up to this value.
      * 0: after a failed attempt there is no other until you call tmini_stop() and tmini_start(). */
     uint16_t back_off_max_ms;
-    /** How often a query, a stop or a reboot is tried; with TMINI_RECOVERY_OFF also each command of
-     * a start. 0: once. */
+    /** How often a question, a stop or a reboot is tried; with TMINI_RECOVERY_OFF also the start.
+     * 0: once. */
     uint8_t max_attempts;
 } tmini_timing_t;
 
@@ -107,8 +108,8 @@ extern const tmini_timing_t tmini_timing_default;
 
 /** Whether the driver keeps trying after a failed start, or when the lidar is lost. */
 typedef enum {
-    TMINI_RECOVERY_ON,  /**< It does, by stop and start; after every third failure it reboots the
-                         * lidar first. */
+    TMINI_RECOVERY_ON,  /**< It does, by stop and start. A lidar that answers and does not scan is
+                         * rebooted before the fourth attempt and each later one. */
     TMINI_RECOVERY_OFF, /**< It does not: a failed start ends the wish; a loss is reported, and
                          * nothing is sent until the next start. */
 } tmini_recovery_mode_t;
@@ -140,8 +141,9 @@ typedef struct {
     uint16_t frequency_chz; /**< The wanted scan frequency, as for tmini_set_frequency(); 0: leave
                              * it as the lidar has it. */
     bool listen_only;       /**< Nothing is ever sent: for a lidar that something else controls, or
-                             * whose RX wire is not connected. frequency_chz must be 0. An attempt
-                             * to start fails when no packet comes for three seconds; the next ones
+                             * whose RX wire is not connected. frequency_chz must be 0. Call
+                             * tmini_start() even so: before it, no scan comes. An attempt to start
+                             * fails when no packet comes for three seconds; the next ones
                              * fail after the pauses of back_off_max_ms. */
     tmini_recovery_mode_t recovery; /**< 0: on. */
     tmini_step_t step;              /**< Called for each scan; NULL: none. Needs points. */
@@ -161,12 +163,11 @@ typedef enum {
     TMINI_EVENT_INFO,           /**< tmini_info() has been read. */
     TMINI_EVENT_HEALTH,         /**< tmini_health() has been read. */
     TMINI_EVENT_FREQUENCY,      /**< tmini_frequency_chz() has been read, or set and read back. */
-    TMINI_EVENT_REBOOTED,       /**< The time that a soft reboot takes has passed. */
+    TMINI_EVENT_REBOOTED,       /**< After a soft reboot the lidar answers again. */
     TMINI_EVENT_COMMAND_FAILED, /**< A command has failed; tmini_command_error() gives the reason.
                                  * If the state is TMINI_STATE_STARTING, it was an attempt to start
-                                 * or the command before the start, and an attempt follows. If it
-                                 * is TMINI_STATE_SCANNING, the wanted frequency could not be
-                                 * set. */
+                                 * or a question before the start, and an attempt follows. If it is
+                                 * TMINI_STATE_SCANNING, the wanted frequency could not be set. */
     TMINI_EVENT_UNWANTED_SCANNING, /**< A lidar that was stopped is scanning. The driver stops it
                                     * again, with the same events as tmini_stop(). */
     TMINI_EVENT_RECOVERED,         /**< A start packet has come: the lidar scans again. */
@@ -189,9 +190,10 @@ typedef enum {
     TMINI_STATE_UNKNOWN,    /**< The lidar may be scanning: after init, a reboot or a failure, or
                              * when bytes have come from an idle lidar. */
     TMINI_STATE_IDLE,       /**< Not scanning, and the line is quiet. */
-    TMINI_STATE_BUSY,       /**< Carrying out a query, a frequency change or a reboot. */
+    TMINI_STATE_BUSY,       /**< Carrying out a question, a frequency change or a reboot. */
     TMINI_STATE_STOPPING,   /**< Waiting for the line to fall quiet after a stop. */
-    TMINI_STATE_STARTING,   /**< Being started, until the first packet; any number of attempts. */
+    TMINI_STATE_STARTING,   /**< To be started: until the first packet, with any number of attempts,
+                             * and with what has to be done before. */
     TMINI_STATE_SCANNING,   /**< Packets come. */
     TMINI_STATE_RECOVERING, /**< Lost while scanning: the driver recovers it or, if configured not
                              * to, waits. */
@@ -299,13 +301,17 @@ static inline size_t tmini_feed_position(const tmini_t *lidar);
  * at no more than TMINI_PARSER_EFFORT bytes and one packet (docs/footprint.md gives the worst
  * time), and sends at most two bytes. If bytes are left and there is no event, it returns
  * TMINI_EVENT_MORE: call it again when other work allows. For a null pointer it returns
- * TMINI_EVENT_NONE. */
+ * TMINI_EVENT_NONE.
+ * After the first start packet every intact point is in exactly one scan, with one exception: while
+ * the program is behind (bytes have waited for 150 ms), a scan of at most two packets that ends
+ * because packets may be missing is not delivered, and its points count as points_withheld. So the
+ * program catches up. */
 tmini_event_t tmini_poll(tmini_t *lidar);
 
 /** For how long tmini_poll() may be left out if no byte comes meanwhile, in milliseconds: for a task
- * that sleeps, and is woken by its receiver. 0: poll now. 1: the port has not taken a whole command.
- * UINT16_MAX or more: as long as you like. Never longer than the receive buffer lasts, if the lidar
- * scans. Call it when tmini_poll() has returned TMINI_EVENT_NONE. */
+ * that sleeps and is woken by its receiver. 0: poll now; also for a lidar that was not set up. At
+ * most 65535, when nothing is due. Call it when tmini_poll() has returned TMINI_EVENT_NONE. No
+ * waiting. */
 uint32_t tmini_next_poll_ms(const tmini_t *lidar);
 
 /** @name Wishes
@@ -313,32 +319,35 @@ uint32_t tmini_next_poll_ms(const tmini_t *lidar);
  * these functions waits, and each sends at most two bytes. */
 /** @{ */
 
-/** The lidar is to scan until tmini_stop(). Scanning begins at once, or when the current command
- * has ended. A lidar that gets its power later, restarts or is plugged in again is started too.
+/** The lidar is to scan until tmini_stop(). First the questions that wait are answered; then the
+ * driver asks for the frequency until the lidar answers, sets the wanted one, and starts. So a
+ * lidar that gets its power together with the controller is started once, as soon as it listens. It
+ * is started again after it has lost its power or its cable.
  * TMINI_EVENT_STARTED comes with the first packet; after that TMINI_EVENT_SCAN comes for each
  * revolution (section 2). Each failed attempt is reported by one TMINI_EVENT_COMMAND_FAILED, and
- * the next attempt follows after a pause. With TMINI_RECOVERY_OFF the first failure ends the wish.
- * If the lidar scans or starts already, the call changes nothing.
+ * the next attempt follows after a pause. A lidar that has never answered is started after 7.5 s
+ * even so. With TMINI_RECOVERY_OFF the first failure ends the wish. If the lidar scans or starts
+ * already, the call changes nothing.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, or a lidar that was not set up. */
 tmini_status_t tmini_start(tmini_t *lidar);
 
-/** The lidar is to stop, in any state [TMINI_EVENT_STOPPED]. An unfinished command or start ends
- * with TMINI_EVENT_COMMAND_FAILED and TMINI_ERROR_ABORTED. If the lidar scans later although it was
+/** The lidar is to stop, in any state [TMINI_EVENT_STOPPED]. An unfinished start or question, and
+ * the questions that wait, end with one TMINI_EVENT_COMMAND_FAILED and TMINI_ERROR_ABORTED. If the lidar scans later although it was
  * stopped, it is stopped again: TMINI_EVENT_UNWANTED_SCANNING (section 9.10). If it cannot be
  * stopped, TMINI_EVENT_COMMAND_FAILED comes once per round of attempts, at most twice per second.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, or a lidar that was not set up. */
 tmini_status_t tmini_stop(tmini_t *lidar);
 
-/** The lidar is to turn at this frequency, in 0.01 Hz: 600 to 1200, a multiple of 10. From now on
- * the driver sets it before every start, also after a loss or a reboot, and reads it back
- * [TMINI_EVENT_FREQUENCY]; a value within 0.05 Hz of the wish is accepted.
- * An idle lidar is set at once. A lidar that scans, or is to scan, is stopped, set and started
- * again if the wish has changed [TMINI_EVENT_STARTED, or TMINI_EVENT_RECOVERED while it is being
- * recovered]. During a query the wish waits for the next start or the next query of the frequency.
+/** The lidar is to turn at this frequency, in 0.01 Hz: 600 to 1200, rounded to the nearest multiple
+ * of 10. From now on the driver sets it before every start, also after a loss or a reboot, and
+ * reads it back [TMINI_EVENT_FREQUENCY]; a value within 0.05 Hz of the wish is accepted.
+ * A lidar that is not to scan is set as soon as it has carried out what is in progress. A lidar
+ * that scans goes on until the wish has not changed for four start packets; then it is stopped, set
+ * and started again [TMINI_EVENT_PAUSED, then TMINI_EVENT_STARTED]. So the call may follow a slider.
  * Scanning matters more than the frequency: if it cannot be set, the lidar scans at the old one,
- * and TMINI_EVENT_COMMAND_FAILED follows TMINI_EVENT_STARTED. A lidar that turns at another
- * frequency for three seconds gets TMINI_FAULT_FREQUENCY, and the driver stops it, sets the
- * frequency again and starts it. As long as the lidar does not answer, this is repeated at growing
+ * and TMINI_EVENT_COMMAND_FAILED comes with TMINI_EVENT_STARTED or TMINI_EVENT_RECOVERED. A lidar
+ * that turns at another frequency for three seconds gets TMINI_FAULT_FREQUENCY, and the driver sets
+ * the frequency again, as above. As long as it is not known to be set, this is repeated at growing
  * intervals. With TMINI_RECOVERY_OFF the fault is only reported. To state the same wish again
  * changes nothing, unless the lidar is idle or its state unknown.
  * Returns TMINI_OK; TMINI_ERROR_ARGUMENT: null pointer, a lidar that was not set up, or a frequency
@@ -348,22 +357,22 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz);
 
 /** @} */
 
-/** @name Queries
- * Each call starts a command; the bracketed event, or TMINI_EVENT_COMMAND_FAILED, reports its end.
- * In TMINI_STATE_UNKNOWN the driver first stops the lidar and waits for a quiet line (section
- * 9.10). All return
+/** @name Questions
+ * Each is answered once; the bracketed event, or TMINI_EVENT_COMMAND_FAILED, reports its end.
+ * Several wait for each other, in the order below. In TMINI_STATE_UNKNOWN the driver first stops
+ * the lidar and waits for a quiet line (section 9.10). All return
  *
- *     TMINI_OK                 begun
+ *     TMINI_OK                 begun, or waiting for what is in progress
  *     TMINI_ERROR_ARGUMENT     null pointer, or a lidar that was not set up
- *     TMINI_ERROR_STATE        the lidar is scanning or being recovered: only stop may be sent
- *     TMINI_ERROR_BUSY         another command has not finished
+ *     TMINI_ERROR_STATE        the lidar scans, or is to: only stop may be sent. Ask before
+ *                              tmini_start(), or after tmini_stop()
  *     TMINI_ERROR_LISTEN_ONLY  nothing is sent
  *
- * and change nothing unless they return TMINI_OK. If the event of the previous command has not been
+ * and change nothing unless they return TMINI_OK. If the event of the same question has not been
  * polled yet, it is dropped. From the polling context. None waits, and each sends at most two
- * bytes; tmini_poll() does the rest of a command. If the port reports a failure, it is asked again
- * at the first poll at which the clock has advanced. So a program may repeat a failed command even
- * in a loop that polls until TMINI_EVENT_NONE. */
+ * bytes; tmini_poll() does the rest. If the port reports a failure, it is asked again at the first
+ * poll at which the clock has advanced. So a program may repeat a failed question even in a loop
+ * that polls until TMINI_EVENT_NONE. */
 /** @{ */
 
 /** Asks for the device information [INFO]: tmini_info() (section 4). */
@@ -376,7 +385,7 @@ tmini_status_t tmini_request_health(tmini_t *lidar);
  * frequency is wanted and the lidar has another, the wanted one is set. */
 tmini_status_t tmini_request_frequency(tmini_t *lidar);
 
-/** Reboots the lidar [REBOOTED], which takes five seconds (section 9.11). */
+/** Reboots the lidar [REBOOTED, when it answers again, which takes some seconds] (section 9.11). */
 tmini_status_t tmini_reboot(tmini_t *lidar);
 
 /** @} */

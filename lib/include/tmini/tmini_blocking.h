@@ -48,10 +48,9 @@ tmini_status_t tmini_blocking_read_frequency(tmini_t *lidar, uint16_t *frequency
                                              uint32_t timeout_ms);
 
 /** States the wish for a scan frequency, in 0.01 Hz, as tmini_set_frequency() does, and waits until
- * it has been set or has failed, at most `timeout_ms`. Allow 2 s more than for a query: up to 15
- * steps may be needed. Returns what is listed above. In two cases it returns at once and
- * keeps the wish: TMINI_ERROR_BUSY during another command; TMINI_ERROR_STATE if the lidar scans
- * without the wished frequency, or is lost with TMINI_RECOVERY_OFF. */
+ * it has been set or has failed, at most `timeout_ms`. Allow 2 s more than for a question: up to 15
+ * steps may be needed. Returns what is listed above; TMINI_ERROR_STATE at once if the lidar already
+ * scans without this wish fulfilled, or is lost with TMINI_RECOVERY_OFF. The wish remains. */
 tmini_status_t tmini_blocking_set_frequency(tmini_t *lidar, uint16_t frequency_chz,
                                             uint32_t timeout_ms);
 
