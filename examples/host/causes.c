@@ -68,6 +68,11 @@ static bool is_text(const facts_t *facts)
     return traits->bytes >= 8 && traits->text * 100 >= traits->bytes * 95;
 }
 
+static bool is_text_file(const facts_t *facts)
+{
+    return facts->is_file && is_text(facts);
+}
+
 static bool is_seven(const facts_t *facts)
 {
     const traits_t *const traits = facts->traits;
@@ -175,6 +180,7 @@ static const cause_t causes[] = {
      "this program's own commands come back, and nothing else: TX and RX touch, or the lidar's "
      "wires are bridged",
      "separate them: the adapter's TX goes to the lidar's RX, its RX to the lidar's TX", true},
+    {"text", NULL, is_text_file, "it holds no lidar packet, but text: \"{excerpt}\"", NULL, true},
     {"text", "text comes, not a lidar's packets", is_text,
      "text comes, not a lidar's packets: \"{excerpt}\"",
      "it is a console or another device: is this the port that the lidar is on?", true},

@@ -54,6 +54,7 @@ typedef struct {
     unsigned faults;        /* Faults reported since. */
     count_t points;
     count_t valid;
+    uint32_t longest_ms;         /* The longest time without a byte. */
     unsigned turns, blind_turns; /* Blind: without one distance. */
     tmini_point_t nearest;       /* Of the latest scan; a distance of 0: none. */
     answer_t answers[ANSWERS_MAX];
@@ -253,6 +254,7 @@ static void watch(check_t *check)
                          device->stream.packets);
     }
     take_rest(device);
+    check->longest_ms = device->witness.longest_ms;
     message_progress(true, "%u s watched, %llu packets",
                      (unsigned)(device_ms(device) - begun_ms) / 1000, device->stream.packets);
 }
@@ -316,7 +318,7 @@ static void judge_line(check_t *check)
 static void judge_pace(check_t *check)
 {
     const device_t *const device = check->device;
-    const uint32_t longest_ms = device->witness.longest_ms;
+    const uint32_t longest_ms = check->longest_ms;
     const count_t witnessed = device->witness.tape.stream.packets - device->witness.packets_before;
     const count_t late =
         witnessed > device->stream.packets + 1 ? witnessed - device->stream.packets : 0;
@@ -404,7 +406,7 @@ static void judge_stop(check_t *check)
     }
     if (!device_stop(device)) {
         answer(check, BAD, "stop", advice, "the lidar does not stop");
-    } else if (device->strays > 0 && device->witness.longest_ms < LATE_MS) {
+    } else if (device->strays > 0 && check->longest_ms < LATE_MS) {
         answer(check, REMARK, "stop", advice, "the lidar went on after it had been stopped");
     }
 }

@@ -93,13 +93,19 @@ static const survey_wire_t wire = {
  * which stops the lidar. */
 static bool ask_everything(device_t *device, uint32_t seconds)
 {
-    tmini_posix_tap(&device->port, take, NULL);
+    device_tap(device, take, NULL);
     bool is_good = tmini_posix_start(&device->port, NULL) == TMINI_POSIX_OK;
     device_begin(device);
     line.device = device;
     line.stamp_us = now_us(NULL);
     is_good = is_good && survey_run(&survey, &wire, seconds);
-    tmini_posix_tap(&device->port, NULL, NULL);
+    if (interrupt_has_come() && survey.wire != NULL) {
+        message_note("giving the lidar back as it was …");
+        device->ignores_interrupt = true;
+        survey_restore(&survey);
+        device->ignores_interrupt = false;
+    }
+    device_tap(device, NULL, NULL);
     if (device->port.state == TMINI_POSIX_OK) {
         (void)tmini_posix_start(&device->port, &device->lidar);
     }
@@ -153,6 +159,9 @@ static int use_survey(device_t *device, const options_t *options)
         return message_usage("--seconds: %u at least, so that the motor is up to speed",
                              SURVEY_SECONDS_MIN);
     }
+    if (options->operand != NULL && !output_may_open(options->operand, options->force)) {
+        return STATUS_FAILED;
+    }
     int status = open_recording(options, name, sizeof name);
     if (status != STATUS_OK) {
         return status;
@@ -173,14 +182,15 @@ static int use_survey(device_t *device, const options_t *options)
 
 const command_t command_survey = {
     .name = "survey",
-    .usage = "[-p PORT] [REPORT|-] [--seconds N] [--with-serial]",
+    .usage = "[-p PORT] [REPORT|-] [--seconds N] [--with-serial] [--force]",
     .summary = "compares this unit with docs/protocol.md in two minutes",
     .details = "A line per statement of docs/protocol.md: as expected, differs or unknown. The\n"
                "REPORT also has each answer as `key = value`, for an issue and for `tmini-sim\n"
                "--like REPORT`. The lidar is rebooted; its frequency is left as it was. The\n"
                "serial number is left out. --with-serial includes it, and writes all that was\n"
-               "received to REPORT.tmini. --seconds: how long to scan at 6 Hz (40).",
-    .accepts = "psIq",
+               "received to REPORT.tmini. --seconds: how long to scan at 6 Hz (40).\n"
+               "An existing REPORT is overwritten only with --force.",
+    .accepts = "psIXq",
     .has_operand = true,
     .use = use_survey,
 };

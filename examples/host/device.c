@@ -4,7 +4,9 @@
 #include "device.h"
 
 #include <errno.h>
+#include <poll.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -43,6 +45,10 @@
  * A lidar that sends again within this time is stopped again, this many times at most. */
 #define STAYS_MS 200u
 #define STOPS 3
+
+/* The same without the driver: how long the line must be quiet, and how often this is tried. */
+#define RAW_QUIET_MS 300u
+#define RAW_TAILS 8u
 
 /* The driver's default times, changed for a user who waits at a keyboard, and for a computer, where
  * bytes may come late and in large blocks. */
@@ -150,6 +156,59 @@ static void note_line(const device_t *device)
     started_fd = device->was_started && !device->listens ? device->port.fd : -1;
 }
 
+/* Closes the port of a lidar that was not meant. */
+static void leave_alone(device_t *device, const char *serial)
+{
+    message_note("%s is there, but with another lidar: serial %s, not %s. Waiting for that one",
+                 device->path, serial, device->serial);
+    tmini_posix_stop(&device->port);
+    device->is_wrong = stat(device->path, &device->wrong_node) == 0;
+    device->is_away = true;
+}
+
+/* Whether the same device is still there as when the port was closed. */
+static bool is_still_wrong(const device_t *device)
+{
+    struct stat node;
+    return stat(device->path, &node) == 0 && node.st_dev == device->wrong_node.st_dev &&
+           node.st_ino == device->wrong_node.st_ino && node.st_rdev == device->wrong_node.st_rdev;
+}
+
+static void await_right_one(device_t *device)
+{
+    if (is_still_wrong(device)) {
+        (void)poll(NULL, 0, SLICE_MS);
+        return;
+    }
+    device->is_wrong = false;
+    (void)tmini_posix_start(&device->port, &device->lidar); /* Or it is opened later. */
+}
+
+/* --wait: the name of a port does not show which lidar is there. The first one is the one that was
+ * meant. One that does not answer is taken for it. */
+static void compare_lidar(device_t *device)
+{
+    char serial[TMINI_SERIAL_DIGITS + 1];
+    if (device->is_comparing || device->listens) {
+        return;
+    }
+    device->is_comparing = true;
+    if (device_await(device, tmini_stop(&device->lidar), TMINI_EVENT_STOPPED) &&
+        device_ask(device, tmini_request_info, TMINI_EVENT_INFO)) {
+        tmini_serial_text(tmini_info(&device->lidar), serial);
+        if (device->serial[0] == '\0') {
+            (void)snprintf(device->serial, sizeof device->serial, "%s", serial);
+        }
+        if (strcmp(device->serial, serial) != 0) {
+            leave_alone(device, serial);
+        }
+    }
+    device->is_comparing = false;
+    if (device->was_started) {
+        (void)tmini_start(&device->lidar);
+    }
+}
+
 /* --wait: says that the adapter has gone, or is back. */
 static void watch_adapter(device_t *device)
 {
@@ -161,6 +220,9 @@ static void watch_adapter(device_t *device)
     note_line(device);
     if (!device->is_secretive) {
         message_note(is_away ? "%s is not there; waiting for it" : "%s is there", device->path);
+    }
+    if (!is_away) {
+        compare_lidar(device);
     }
 }
 
@@ -224,6 +286,9 @@ tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
             return follow(device, event);
         }
         if (event == TMINI_EVENT_NONE) {
+            if (device->is_wrong) {
+                await_right_one(device);
+            }
             (void)tmini_posix_wait(&device->port, SLICE_MS);
             note_times(device);
             note_look(device);
@@ -338,10 +403,13 @@ static bool may_still_start(const device_t *device)
 }
 
 /* The driver keeps trying to start: a failed attempt is only reported. */
-int device_start(device_t *device)
+bool device_try_start(device_t *device)
 {
     tmini_event_t event = TMINI_EVENT_NONE;
     bool is_reported = device->listens; /* With --listen this program starts nothing. */
+    if (device->waits && device->port.state == TMINI_POSIX_OK) {
+        compare_lidar(device);
+    }
     device_begin(device);
     (void)tmini_start(&device->lidar);
     while (event != TMINI_EVENT_STARTED && may_still_start(device) && !is_hopeless(device)) {
@@ -352,11 +420,50 @@ int device_start(device_t *device)
             is_reported = true;
         }
     }
-    return event == TMINI_EVENT_STARTED ? STATUS_OK : device_why(device);
+    return event == TMINI_EVENT_STARTED;
+}
+
+int device_start(device_t *device)
+{
+    return device_try_start(device) ? STATUS_OK : device_why(device);
+}
+
+static void send_raw(device_t *device, tmini_command_code_t code)
+{
+    const uint8_t command[2] = {TMINI_COMMAND_SYNC, (uint8_t)code};
+    (void)tmini_posix_port.write(&device->port, command, sizeof command);
+}
+
+void device_start_raw(device_t *device)
+{
+    const bool sends = !device->listens;
+    device->listens = true;
+    set_up_lidar(device);
+    (void)tmini_start(&device->lidar);
+    if (sends) {
+        device->is_raw = true;
+        send_raw(device, TMINI_COMMAND_START);
+    }
+}
+
+/* Until the line is quiet, but not for long: it may be deaf. */
+static bool stop_raw(device_t *device)
+{
+    uint64_t before = 0;
+    send_raw(device, TMINI_COMMAND_STOP);
+    for (unsigned i = 0; i < RAW_TAILS && device->witness.received != before; i++) {
+        before = device->witness.received;
+        (void)device_wait(device, RAW_QUIET_MS);
+    }
+    device->was_started = false;
+    return device->witness.received == before;
 }
 
 bool device_stop(device_t *device)
 {
+    if (device->is_raw) {
+        return stop_raw(device);
+    }
     tmini_status_t begun = tmini_stop(&device->lidar);
     bool is_stopped = false;
     bool stays = false;
@@ -473,6 +580,9 @@ int device_why(device_t *device)
     facts_t facts;
     device_facts(device, &facts);
     const cause_t *const cause = cause_find(&facts);
+    if (facts.received == 0 && !device->listens && answers_info(device)) {
+        return explain_command(device);
+    }
     if (cause != NULL && cause->text != NULL) {
         return explain_cause(device, cause, &facts);
     }

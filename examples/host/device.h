@@ -7,6 +7,8 @@
 #ifndef DEVICE_H
 #define DEVICE_H
 
+#include <sys/stat.h>
+
 #include "options.h"
 #include "causes.h"
 #include "stream.h"
@@ -32,10 +34,14 @@ typedef struct device {
     tmini_posix_tap_t tap; /* device_tap() */
     void *tap_context;
     char serial[TMINI_SERIAL_DIGITS + 1]; /* --wait: of the lidar that was there first. */
+    bool is_comparing;                    /* It is being compared. */
+    bool is_wrong;                        /* Another lidar is there: the port is closed, until */
+    struct stat wrong_node;               /* this device has gone. */
     bool is_secretive;                    /* May be set: the caller reports what happens. */
     bool waits;                           /* --wait: continue when the adapter has disappeared. */
     bool is_away; /* The adapter has disappeared, and the program waits for it. */
     bool listens; /* --listen: nothing is sent. */
+    bool is_raw;  /* device_start_raw() */
     bool was_started;
     bool ignores_interrupt; /* While stopping. */
     uint8_t rx[4096];
@@ -81,6 +87,13 @@ void device_begin(device_t *device);
 /* Begins to scan, and waits for the first packet. The lidar may still be booting, or the adapter be
  * plugged in later (--wait). Returns as device_finish() does. */
 int device_start(device_t *device);
+
+/* The same without a message: returns false if the lidar does not start. */
+bool device_try_start(device_t *device);
+
+/* Starts the lidar without the driver, which finds no packet in what it sends and would stop it
+ * again and again. The bytes then only go to the tap. */
+void device_start_raw(device_t *device);
 
 /* Stops scanning, and waits until the line is quiet and stays quiet. Returns whether it does. */
 bool device_stop(device_t *device);

@@ -39,7 +39,7 @@ typedef struct {
 #define PLACE(member) offsetof(options_t, member)
 
 static const option_t table[] = {
-    {'p', "port", "PORT", "the lidar: /dev/ttyUSB0, tcp:HOST:PORT; else $TMINI_PORT", PLACE(port),
+    {'p', "port", "PORT", "/dev/ttyUSB0, tcp:HOST:PORT, serial:END; else $TMINI_PORT", PLACE(port),
      0, 0, NULL},
     {'n', "count", "N", "how many scans; 0: until Ctrl-C", PLACE(count), 0, 1000000, NULL},
     {'s', "seconds", "N", "how long", PLACE(seconds), 1, 1000000, NULL},
@@ -67,6 +67,8 @@ static const option_t table[] = {
      PLACE(masked), 0, 0, mount_read_mask},
     {'I', "with-serial", NULL, "the serial number too, and a recording", PLACE(with_serial), 0, 0,
      NULL},
+    {'E', "ask", NULL, "ask which lidar is there", PLACE(ask), 0, 0, NULL},
+    {'X', "force", NULL, "overwrite an existing file", PLACE(force), 0, 0, NULL},
     {'q', "quiet", NULL, "no progress or remarks, only results and errors", PLACE(quiet), 0, 0,
      NULL},
     {'h', "help", NULL, "this text", PLACE(help), 0, 0, NULL},

@@ -35,6 +35,8 @@ typedef struct {
     bool wait;
     bool listen;
     bool with_serial;
+    bool ask;
+    bool force;
     tmini_mount_t mount;
     tmini_arc_t masked[OPTIONS_MASKS]; /* The arcs of the mount. */
     bool quiet;

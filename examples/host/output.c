@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <stdarg.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static bool is_silent;
@@ -54,6 +55,26 @@ FILE *output_open(const char *path)
         (void)message_fail("cannot write %s: %s", path, strerror(errno));
     }
     return file;
+}
+
+bool output_may_open(const char *path, bool force)
+{
+    struct stat status;
+    const bool exists = stat(path, &status) == 0;
+    if (strcmp(path, "-") == 0 || (exists && (force || !S_ISREG(status.st_mode)))) {
+        return true;
+    }
+    if (exists) {
+        (void)message_fail("%s exists; --force overwrites it", path);
+        return false;
+    }
+    FILE *const file = fopen(path, "wb");
+    if (file == NULL) {
+        (void)message_fail("cannot write %s: %s", path, strerror(errno));
+        return false;
+    }
+    (void)fclose(file);
+    return remove(path) == 0;
 }
 
 int output_close(FILE *file, const char *path, int status)

@@ -39,6 +39,10 @@ void message_silence(bool silent);
  * returns NULL. */
 FILE *output_open(const char *path);
 
+/* Whether that file may be written: it does not exist, or is no ordinary file, or `force` is given,
+ * and its folder exists. If not, prints the reason. */
+bool output_may_open(const char *path, bool force);
+
 /* Closes the file. Returns `status`; if not all could be written, prints this and returns
  * STATUS_FAILED. (For standard output main() does this.) */
 int output_close(FILE *file, const char *path, int status);

@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "causes.h"
 #include "mount.h"
 #include "output.h"
 
@@ -30,17 +31,54 @@ static void show_progress(recording_t *recording)
 
 /* Reads the bytes that are there, without waiting for a full buffer: they may come live through a
  * pipe. */
-static void read_block(recording_t *recording)
+static size_t read_some(recording_t *recording, uint8_t *bytes)
 {
     ssize_t count = 0;
     do {
-        count = read(recording->fd, recording->block, sizeof recording->block);
+        count = read(recording->fd, bytes, sizeof recording->block);
     } while (count < 0 && errno == EINTR);
     recording->error = count < 0 ? errno : 0;
-    recording->at = 0;
-    recording->count = count > 0 ? (size_t)count : 0;
-    recording->consumed += recording->count;
+    recording->consumed += count > 0 ? (count_t)count : 0;
     show_progress(recording);
+    return count > 0 ? (size_t)count : 0;
+}
+
+/* Some blocks of a hex dump end no line, and so give no bytes. */
+static size_t read_dump(recording_t *recording)
+{
+    size_t count = 0;
+    size_t made = 0;
+    do {
+        count = read_some(recording, recording->text);
+        made = hexdump_take(&recording->dump, recording->text, count, recording->block);
+    } while (made == 0 && count > 0);
+    return made;
+}
+
+static void read_block(recording_t *recording)
+{
+    const bool is_first = recording->consumed == 0;
+    recording->at = 0;
+    recording->count =
+        recording->is_dump ? read_dump(recording) : read_some(recording, recording->block);
+    if (is_first && hexdump_is(recording->block, recording->count)) {
+        message_note("%s is a hex dump", recording->name);
+        recording->is_dump = true;
+        memcpy(recording->text, recording->block, recording->count);
+        recording->count =
+            hexdump_take(&recording->dump, recording->text, recording->count, recording->block);
+        recording->count = recording->count > 0 ? recording->count : read_dump(recording);
+    }
+}
+
+/* The tape's tap. */
+static void keep_first(void *context, const uint8_t *bytes, size_t count)
+{
+    recording_t *const recording = context;
+    const size_t room = sizeof recording->first - recording->kept;
+    const size_t kept = count < room ? count : room;
+    memcpy(recording->first + recording->kept, bytes, kept);
+    recording->kept += kept;
 }
 
 /* Gives the tape more bytes, or none at the end. Returns false if there are none yet. */
@@ -64,7 +102,12 @@ static void begin(recording_t *recording)
     recording->at = recording->count = 0;
     recording->consumed = 0;
     recording->is_at_end = false;
+    recording->is_dump = false;
+    recording->dump = (hexdump_t){.count = 0};
+    recording->kept = 0;
     tape_begin(&recording->tape, mount_of(options), (uint8_t)options->max_samples);
+    recording->tape.tap = keep_first;
+    recording->tape.tap_context = recording;
     while (!recording->tape.is_begun && feed(recording)) {
     }
 }
@@ -118,6 +161,30 @@ bool recording_rewind(recording_t *recording)
     return true;
 }
 
+/* What the bytes show if they hold no packet, or damaged ones. */
+static int explain(const recording_t *recording)
+{
+    static traits_t traits;
+    char text[CAUSE_TEXT_SIZE];
+    const count_t packets = recording->tape.stream.packets;
+    const facts_t facts = {.is_file = true,
+                           .received = recording->tape.bytes,
+                           .packets = packets,
+                           .is_damaged = recording->tape.stream.damaged > 0,
+                           .users = "",
+                           .traits = &traits};
+    traits_find(&traits, recording->first, recording->kept);
+    const cause_t *const cause = cause_find(&facts);
+    if (packets == 0 && cause != NULL) {
+        return message_fail("%s (%llu bytes): %s", recording->name, recording->tape.bytes,
+                            cause_text(cause, &facts, text));
+    }
+    if (cause != NULL && cause->is_sign) {
+        message_note("%s: %s", recording->name, cause_text(cause, &facts, text));
+    }
+    return STATUS_OK;
+}
+
 int recording_verdict(const recording_t *recording)
 {
     const tape_t *const tape = &recording->tape;
@@ -129,11 +196,11 @@ int recording_verdict(const recording_t *recording)
         return message_fail("%s is empty: nothing was recorded. Was the lidar scanning?",
                             recording->name);
     }
-    if (tape->stream.packets == 0) {
-        return message_fail("%s holds no lidar packet in %llu bytes: it is not a recording "
-                            "of a T-mini Plus,\nor was recorded with another baud rate than "
-                            "230400, or before the lidar scanned.",
-                            recording->name, tape->bytes);
+    if (tape->stream.packets == 0 || tape->stream.damaged > 0) {
+        const int status = explain(recording);
+        if (status != STATUS_OK) {
+            return status;
+        }
     }
     if (damages > 0) {
         message_note("%s is damaged in %u place%s: bytes are missing or wrong there",

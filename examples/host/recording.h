@@ -8,7 +8,9 @@
 #define RECORDING_H
 
 #include "options.h"
+#include "hexdump.h"
 #include "tape.h"
+#include "traits.h"
 
 /* Members down to `tape` may be read. */
 typedef struct {
@@ -25,6 +27,11 @@ typedef struct {
     unsigned shown_percent;
     size_t at, count; /* In `block`: what has been read and not yet fed. */
     uint8_t block[16384];
+    bool is_dump; /* The file is a hex dump. */
+    hexdump_t dump;
+    uint8_t text[16384];
+    size_t kept; /* The lidar's first bytes, which show what it is if they hold no packet. */
+    uint8_t first[TRAITS_MAX];
 } recording_t;
 
 /* Opens the recording that is the options' operand; "-" is standard input. Returns STATUS_OK; or

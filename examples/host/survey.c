@@ -127,7 +127,12 @@ static uint32_t push(survey_t *survey, tmini_command_code_t coarse, tmini_comman
 static void set_frequency(survey_t *survey, uint32_t wanted_chz)
 {
     uint32_t is_chz = step(survey, TMINI_COMMAND_GET_FREQUENCY);
+    uint32_t before_chz = 0;
     for (unsigned i = 0; i < 2 * STEPS_MAX && is_chz != 0 && is_chz != wanted_chz; i++) {
+        if (is_chz == before_chz) {
+            return; /* It is refused. */
+        }
+        before_chz = is_chz;
         const uint32_t off_chz = is_chz < wanted_chz ? wanted_chz - is_chz : is_chz - wanted_chz;
         const bool is_far = off_chz >= 100;
         is_chz =
@@ -199,6 +204,14 @@ static void try_reboot(survey_t *survey)
 
 /* ------------------------------------------------------------------------------------- scanning */
 
+static void keep_sample(survey_scan_t *scan, const uint8_t *bytes, size_t count)
+{
+    const size_t room = sizeof scan->sample - scan->sample_count;
+    const size_t kept = count < room ? count : room;
+    memcpy(scan->sample + scan->sample_count, bytes, kept);
+    scan->sample_count += kept;
+}
+
 /* Receives until `end_us`, or until the line has been quiet for `quiet_us`. */
 static void listen(survey_t *survey, survey_scan_t *scan, uint64_t end_us, uint64_t quiet_us)
 {
@@ -212,6 +225,7 @@ static void listen(survey_t *survey, survey_scan_t *scan, uint64_t end_us, uint6
         is_quiet = count == 0 && at_us >= silent_us;
         if (count > 0) {
             take_reply(&scan->reply, bytes, count, at_us - scan->start_us);
+            keep_sample(scan, bytes, count);
             survey_scan_feed(scan, bytes, count, at_us);
             scan->last_us = at_us;
         }
@@ -232,6 +246,15 @@ static void scan_at(survey_t *survey, survey_scan_t *scan, uint32_t chz, uint32_
     scan->last_us = scan->stop_us = now_us(survey);
     send(survey, TMINI_COMMAND_STOP);
     listen(survey, scan, scan->stop_us + TAIL_US, QUIET_US);
+}
+
+void survey_restore(survey_t *survey)
+{
+    send(survey, TMINI_COMMAND_STOP);
+    (void)drain(survey);
+    if (survey->frequency_chz > 0) {
+        set_frequency(survey, survey->frequency_chz);
+    }
 }
 
 bool survey_run(survey_t *survey, const survey_wire_t *wire, uint32_t seconds)
@@ -262,8 +285,6 @@ bool survey_run(survey_t *survey, const survey_wire_t *wire, uint32_t seconds)
     scan_at(survey, &survey->scans[SURVEY_MEDIUM], 1000, fast_s);
     say(survey, "scanning at 12 Hz");
     scan_at(survey, &survey->scans[SURVEY_FAST], 1200, fast_s);
-    if (survey->steps == SURVEY_STEPS_OBEYED) {
-        set_frequency(survey, survey->frequency_chz);
-    }
+    survey_restore(survey);
     return !is_over(survey);
 }

@@ -33,6 +33,7 @@ typedef struct {
 } survey_reply_t;
 
 #define SURVEY_EARLY 1200u
+#define SURVEY_SAMPLE 300u
 
 /* What a unit sends from start to stop. */
 typedef struct {
@@ -71,6 +72,8 @@ typedef struct {
     tmini_ring_t ring;
     tmini_decoder_t decoder;
     uint8_t memory[4096];
+    size_t sample_count; /* The first bytes, for a unit of which nothing can be decoded. */
+    uint8_t sample[SURVEY_SAMPLE];
 } survey_scan_t;
 
 enum { SURVEY_SLOW, SURVEY_MEDIUM, SURVEY_FAST, SURVEY_SCANS };
@@ -102,6 +105,10 @@ typedef struct {
  * false if the wire has failed, or nothing was answered. The unit is left idle, at the frequency
  * that it had. */
 bool survey_run(survey_t *survey, const survey_wire_t *wire, uint32_t seconds);
+
+/* Stops the unit and gives it back the frequency that it had, also after survey_run() was
+ * interrupted: then `is_over` must be false again. */
+void survey_restore(survey_t *survey);
 
 /* The first bytes of a reply's content; NULL if it is not of this type and size. */
 const uint8_t *survey_content(const survey_reply_t *reply, uint8_t type, size_t size);

@@ -511,6 +511,35 @@ static void print_serial(const survey_t *survey, FILE *file)
     (void)fputs(info != NULL ? "\n" : "unknown\n", file);
 }
 
+/* A unit that sends something else: its first bytes, but not its serial number, be it as in the
+ * reply or in the CT bytes of ten packets in a row (section 7). */
+static void print_sample(const survey_t *survey, FILE *file)
+{
+    const survey_scan_t *const scan = slow(survey);
+    const uint8_t *const info = info_of(survey);
+    size_t hidden = 0;
+    unsigned headers = 0;
+    if (scan->packets > 0 || scan->sample_count == 0) {
+        return;
+    }
+    (void)fputs("not_understood =", file);
+    for (size_t i = 0; i < scan->sample_count; i++) {
+        const uint8_t *const at = scan->sample + i;
+        const size_t left = scan->sample_count - i;
+        headers += left > 1 && at[0] == 0xAA && at[1] == 0x55 ? 1 : 0;
+        if (info != NULL && left >= TMINI_SERIAL_DIGITS &&
+            memcmp(at, info + 4, TMINI_SERIAL_DIGITS) == 0) {
+            hidden = TMINI_SERIAL_DIGITS;
+        }
+        if (headers > 9) {
+            break;
+        }
+        (void)fprintf(file, hidden > 0 ? " **" : " %02X", *at);
+        hidden -= hidden > 0 ? 1 : 0;
+    }
+    (void)fputc('\n', file);
+}
+
 void survey_print_report(const survey_t *survey, FILE *file, bool with_serial)
 {
     survey_reply_t start = slow(survey)->reply;
@@ -529,4 +558,5 @@ void survey_print_report(const survey_t *survey, FILE *file, bool with_serial)
     print_reply(&survey->health, "reply_92", SIZE_MAX, file);
     print_reply(&survey->frequency, "reply_0D", SIZE_MAX, file);
     print_reply(&start, "reply_60", SIZE_MAX, file);
+    print_sample(survey, file);
 }

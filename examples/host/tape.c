@@ -77,6 +77,9 @@ static bool refill(tape_t *tape)
         tape->chunks.left -= (uint32_t)count;
     }
     (void)tmini_ring_write(&tape->ring, tape->buffer + tape->at, count);
+    if (tape->tap != NULL) {
+        tape->tap(tape->tap_context, tape->buffer + tape->at, count);
+    }
     tape->at += count;
     tape->bytes += count;
     return count > 0;

@@ -30,6 +30,9 @@ typedef struct {
     chunks_t chunks;
     stream_t stream;
 
+    void (*tap)(void *context, const uint8_t *bytes, size_t count); /* May be set: gets all of the
+                                                                     * lidar's bytes. */
+    void *tap_context;
     bool is_at_end;
     size_t at, count; /* In `buffer`: what has been fed and not yet decoded. */
     tmini_ring_t ring;

@@ -89,6 +89,10 @@ sed -n 's/.*idVendor}=="\(....\)".*idProduct}=="\(....\)".*/\1:\2/p' "$rule" | s
 grep -o '"[0-9a-f]\{4\}:[0-9a-f]\{4\}"' "$root/examples/host/ports.c" | tr -d '"' |
     sort >"$work/known"
 cmp "$work/ruled" "$work/known" || complain "rule and tool know different adapters"
+sed -n 's/.*idVendor}=="\(....\)".*idProduct}=="\(....\)".*/\1:\2/p' \
+    "$root/examples/host/share/95-tmini-brltty.rules" | sort | cmp - "$work/known" ||
+    complain "the rule against brltty and the tool know different adapters"
+! grep -q SYMLINK "$root"/examples/host/share/*.rules || complain "a rule makes a link"
 grep -q 'ID_MM_DEVICE_IGNORE}="1"' "$rule" || complain "ModemManager is not kept away"
 
 [ -z "$failed" ] || exit 1

@@ -11,7 +11,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from conftest import TMINI
+from conftest import TMINI, TMINI_SIM
 from lidar_bytes import MAGIC, damaged, decode, packet, points, timed
 
 HEADER = "scan,packet,point,angle_deg,distance_mm,intensity,flag,time_ms,frequency_hz\n"
@@ -197,8 +197,8 @@ def test_what_cannot_be_read_or_written_is_named(fails, folder):
     fails(1, "nowhere.bin: No such file", "plot", "nowhere.bin", "-o", "x.svg")
     fails(1, "is empty", "decode", "empty")
     fails(1, "Is a directory", "decode", "recordings")
-    assert fails(1, "no lidar packet in", "decode", "recordings/README.md", "--csv").out == HEADER
-    fails(1, "no lidar packet in", "plot", "recordings/README.md", "-o", "x.svg")
+    assert fails(1, "no lidar packet", "decode", "recordings/README.md", "--csv").out == HEADER
+    fails(1, "no lidar packet", "plot", "recordings/README.md", "-o", "x.svg")
     fails(1, "cannot write /nowhere/stats", "decode", ROOM, "--csv", "--stats", "/nowhere/stats")
 
 
@@ -299,3 +299,54 @@ def test_every_command_explains_itself(tmini, command):
     for words in (["--help"], ["help"]):
         run = tmini(*words)
         assert run.status == 0 and f"tmini {command} " in run.out
+
+
+# ---------------------------------------------------------------------------------------------------- other forms
+
+def xxd(data):
+    return "".join(f"{at:08x}: {data[at:at + 16].hex(' ', 2):39}  {'.' * len(data[at:at + 16])}\n"
+                   for at in range(0, len(data), 16))
+
+
+def hexdump_c(data):
+    return "".join(f"{at:08x}  {data[at:at + 8].hex(' ')}  {data[at + 8:at + 16].hex(' '):23}  |{'U|' * 8}|\n"
+                   for at in range(0, len(data), 16)) + f"{len(data):08x}\n"
+
+
+def hexdump_words(data):
+    return "".join(f"{at:07x} " + " ".join(f"{data[i + 1]:02x}{data[i]:02x}" for i in range(at, min(at + 16, len(data)), 2)) +
+                   "\n" for at in range(0, len(data), 16)) + f"{len(data):07x}\n"
+
+
+def od(data):
+    return "".join(f"{at:07o} {data[at:at + 16].hex(' ')}\n" for at in range(0, len(data), 16)) + f"{len(data):07o}\n"
+
+
+@pytest.mark.parametrize("form", (xxd, hexdump_c, hexdump_words, od, bytes.hex, lambda data: data.hex(" ").upper(),
+                                  lambda data: ", ".join(f"0x{byte:02X}" for byte in data)),
+                         ids=("xxd", "hexdump -C", "hexdump", "od", "plain", "spaced", "C"))
+def test_a_hex_dump_is_decoded_as_one(tmini, folder, form):
+    data = (folder / "recordings/sim-6hz.bin").read_bytes()
+    (folder / "dump.txt").write_text(form(data))
+    run = tmini("decode", "dump.txt", "--csv", "-q")
+    assert (run.status, run.out) == (0, tmini("decode", "recordings/sim-6hz.bin", "--csv", "-q").out)
+    assert "dump.txt is a hex dump\n" in tmini("decode", "dump.txt").err
+
+
+@pytest.mark.parametrize("convert, said", (
+    (lambda data: data.decode("latin-1").encode(), "the bytes above 7F have become UTF-8"),
+    (lambda data: data.decode("utf-8", "replace").encode(), "the bytes above 7F have become UTF-8"),
+    (lambda _: b"nothing of interest\n" * 9, 'it holds no lidar packet, but text: "nothing of interest"'),
+    (lambda _: bytes(range(256)) * 9, "it is not a recording of a T-mini Plus")), ids=("latin", "lost", "text", "noise"))
+def test_what_is_no_recording_is_named(tmini, folder, convert, said):
+    (folder / "file").write_bytes(convert((folder / "recordings/sim-6hz.bin").read_bytes()))
+    run = tmini("decode", "file")
+    assert run.status == 1 and said in run.err
+
+
+@pytest.mark.parametrize("options, said", (("--samples 2", "they fit two-byte samples: another YDLIDAR"),
+                                           ("--samples 4", "they fit four-byte samples: perhaps a T-mini Plus SH"),
+                                           ("--bridge telnet", "each byte FF comes twice")))
+def test_a_stream_of_another_kind_is_named(tmini, start, options, said):
+    start("--write", "file", "--seconds", "10", *options.split(), program=TMINI_SIM).finish()
+    assert said in tmini("decode", "file").err
