@@ -174,7 +174,8 @@ static int run(const options_t *options)
 
 const command_t command_record = {
     .name = "record",
-    .usage = "[-p PORT] FILE|- [--seconds N] [--timed] [--force] [--wait] [--listen]",
+    .usage = "[-p PORT] FILE|- [--seconds N] [--timed] [--force] [--wait]\n"
+             "             [--listen]",
     .summary = "all that the lidar sends, until Ctrl-C or for N seconds",
     .details = "FILE then holds all that came from the opening of the port on, also what is no\n"
                "packet, for `tmini decode`, `plot` and `view`. A FILE.tmini, or any FILE with\n"

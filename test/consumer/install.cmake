@@ -23,7 +23,8 @@ function(expect_all_files)
             lib/pkgconfig/tmini.pc bin/tmini
             lib/cmake/tmini/tmini-config.cmake lib/cmake/tmini/tmini-config-version.cmake
             share/doc/tmini/LICENSE share/man/man1/tmini.1 share/bash-completion/completions/tmini
-            lib/udev/rules.d/60-tmini.rules)
+            lib/udev/rules.d/60-tmini.rules
+            lib/udev/rules.d/95-tmini-brltty.rules)
         expect_file(${file})
     endforeach()
     file(GLOB headers RELATIVE ${TMINI_SOURCE}/lib ${TMINI_SOURCE}/lib/include/tmini/*.h
