@@ -53,6 +53,13 @@ static const claim_t claims[] = {
     {"without_recovery_a_start_fails_once_and_can_be_asked_for_again", play,
      "no recovery, begin, power 0, start, run 60000, command failed 1, in unknown, power 1, "
      "run 5000, start, run 5000, scans 600"},
+    {"without_recovery_a_loss_is_only_reported", play,
+     "no recovery, begin, start, run 4000, power 0, run 2000, power 1, run 30000, lost 1, "
+     "in recovering, lidar idle, stop, run 1000, stopped 1, start, run 5000, scans 600"},
+    {"a_lost_answer_is_asked_for_again", play,
+     "lose reply, ask, run 3000, information 1, command failed 0"},
+    {"a_lidar_that_streams_already_is_stopped", play,
+     "others start, run 3000, stop, run 1000, stopped 1, lidar idle, in idle"},
     {"a_listener_waits_and_takes_what_comes",
      play, /* It fails after 3, 3.5, 4.5, 6.5 and 8.5 seconds. */
      "listen, begin, start, run 10000, in starting, command failed 5, others start, run 5000, "

@@ -196,14 +196,6 @@ void test_a_lidar_that_is_still_streaming_is_rebooted(void)
     scan();
 }
 
-void test_a_lidar_that_is_still_streaming_is_stopped(void)
-{
-    streams_on_while_the_program_restarts();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
-    ends_with(TMINI_EVENT_STOPPED, 1000);
-    TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
-}
-
 /* The program polls every 60 ms. */
 static unsigned run_at_leisure(uint32_t ms)
 {
@@ -257,38 +249,6 @@ void test_every_frequency_can_be_set_from_where_the_last_one_left_it(void)
         TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, target_chz));
         ends_with(TMINI_EVENT_FREQUENCY, 3000);
         TEST_ASSERT_EQUAL_UINT16(target_chz, sim_frequency_chz(&world.sim));
-    }
-}
-
-void test_a_frequency_that_the_unit_refuses_fails_with_the_reply(void)
-{
-    config.sim.max_frequency_chz = 900;
-    begin();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 1000));
-    fails_with(TMINI_ERROR_REPLY, 20000);
-}
-
-void test_a_lost_reply_is_asked_for_again(void)
-{
-    begin();
-    sim_lose_next_reply(&world.sim);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(&world.lidar));
-    ends_with(TMINI_EVENT_INFO, 3000);
-}
-
-void test_a_lost_reply_to_any_frequency_step_does_no_harm(void)
-{
-    for (unsigned lost = 0; lost < 6; lost++) {
-        begin();
-        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 820));
-        while (world.sim.counts.replies < lost) {
-            (void)world_step(&world);
-        }
-        sim_lose_next_reply(&world.sim);
-        ends_with(TMINI_EVENT_FREQUENCY, 6000);
-        TEST_ASSERT_EQUAL_UINT16(820, sim_frequency_chz(&world.sim));
-        TEST_ASSERT_EQUAL_UINT32(1, world.sim.counts.lost_replies);
-        check_world(&world);
     }
 }
 
@@ -347,13 +307,6 @@ void test_a_late_reply_to_a_command_of_another_program_disturbs_no_answer(void)
     }
 }
 
-void test_a_lost_reply_to_the_start_does_not_keep_scans_away(void)
-{
-    begin();
-    sim_lose_next_reply(&world.sim);
-    scan();
-}
-
 void test_a_tail_of_300_ms_after_a_stop_is_waited_for(void)
 {
     config.sim.stop_tail_ms = 300;
@@ -372,14 +325,6 @@ void test_commands_arrive_through_a_transmitter_that_is_often_busy(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 1180));
     ends_with(TMINI_EVENT_FREQUENCY, 5000);
     TEST_ASSERT_EQUAL_UINT16(1180, sim_frequency_chz(&world.sim));
-}
-
-void test_a_lidar_without_power_fails_every_attempt(void)
-{
-    begin();
-    sim_link_force(&world.link, SIM_LINK_UNPLUG, 60000, world.now_us);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&world.lidar));
-    fails_with(TMINI_ERROR_TIMEOUT, 10000);
 }
 
 /* ---- Faults of the line, at several rates ---- */
@@ -466,43 +411,6 @@ void test_wrong_baud_rates_for_a_while_are_recovered_from(void)
 }
 
 /* ---- Recovery ---- */
-
-void test_a_lidar_unplugged_for_a_minute_is_recovered_in_time(void)
-{
-    begin_scanning();
-    sim_link_force(&world.link, SIM_LINK_UNPLUG, 60000, world.now_us);
-    (void)world_run_ms(&world, 60000);
-    TEST_ASSERT_EQUAL_UINT32(1, count(TMINI_EVENT_LOST));
-    TEST_ASSERT_EQUAL_INT(TMINI_STATE_RECOVERING, tmini_state(&world.lidar));
-    ends_with(TMINI_EVENT_RECOVERED, WORLD_RECOVERY_MS + config.sim.boot_ms);
-    ends_with(TMINI_EVENT_SCAN, 1000);
-}
-
-void test_a_lidar_unplugged_is_recovered_in_time_whenever_it_comes_back(void)
-{
-    for (uint32_t away_ms = 500; away_ms < 40000; away_ms += 1250) {
-        begin_scanning();
-        sim_link_force(&world.link, SIM_LINK_UNPLUG, away_ms, world.now_us);
-        (void)world_run_ms(&world, away_ms);
-        (void)world_run_ms(&world, WORLD_RECOVERY_MS + config.sim.boot_ms);
-        TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(&world.lidar));
-        check_world(&world);
-    }
-}
-
-void test_without_recovery_the_program_starts_the_lidar_again(void)
-{
-    config.recovery = TMINI_RECOVERY_OFF;
-    begin_scanning();
-    const uint32_t commands = world.sim.counts.commands;
-    sim_link_force(&world.link, SIM_LINK_UNPLUG, 2000, world.now_us);
-    ends_with(TMINI_EVENT_LOST, 2000);
-    TEST_ASSERT_EQUAL_HEX(0, world_run_ms(&world, 30000));
-    TEST_ASSERT_EQUAL_UINT32(commands, world.sim.counts.commands);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
-    ends_with(TMINI_EVENT_STOPPED, 1000);
-    scan();
-}
 
 void test_a_lidar_that_shuts_itself_off_is_lost_and_recovered_when_it_is_well_again(void)
 {
