@@ -30,7 +30,7 @@ class Simulator:
         os.symlink(self.process.stdout.readline().strip(), self.port)
         return self.port
 
-    def await_idle(self, seconds=2):
+    def await_idle(self, seconds=30):
         """Fails unless the last thing that the lidar does is to stop."""
         for _ in range(100 * seconds):
             if self.log.read_text().splitlines()[-1].endswith("idle"):

@@ -40,7 +40,7 @@ def nearest(scan, ray):
 
 def run(command, *words):
     process = command(*words)
-    out, error = process.communicate(timeout=20)
+    out, error = process.communicate(timeout=60)
     return process.returncode, out, error
 
 
@@ -113,7 +113,7 @@ def test_a_signal_ends_a_live_file_and_stops_the_lidar(command, simulator, tmp_p
         time.sleep(0.05)
     time.sleep(0.5)
     process.send_signal(number)
-    out, error = process.communicate(timeout=10)
+    out, error = process.communicate(timeout=60)
     assert (process.returncode, error) == (0, "") and "incomplete" in out
     simulator.await_idle()
     stamps = [stamp for stamp, _ in messages_in(path)]
@@ -128,7 +128,7 @@ def test_foxglove_gets_each_scan(command, simulator):
     with connect(process.stdout.readline().strip(), subprotocols=["foxglove.sdk.v1"]) as client:
         channel = None
         while channel is None:
-            said = json.loads(client.recv(10))
+            said = json.loads(client.recv(60))
             channel = next(iter(said.get("channels", [])), None)
         assert (channel["topic"], channel["encoding"], channel["schemaName"]) == (
             "/scan", "protobuf", "foxglove.LaserScan")
@@ -136,9 +136,9 @@ def test_foxglove_gets_each_scan(command, simulator):
                                 "subscriptions": [{"id": 7, "channelId": channel["id"]}]}))
         before = None
         for _ in range(3):
-            data = client.recv(10)
+            data = client.recv(60)
             while isinstance(data, str):
-                data = client.recv(10)
+                data = client.recv(60)
             assert struct.unpack_from("<BI", data) == (1, 7)
             fields = protobuf(data[13:])
             ranges = np.frombuffer(fields[6], "<f8")
@@ -148,11 +148,11 @@ def test_foxglove_gets_each_scan(command, simulator):
             # 2.2 m to the left wall, 1.7 m to the one behind; counter-clockwise.
             assert ranges[[90, 180]] == pytest.approx([2.2, 1.7], abs=0.05)
             stamp = protobuf(fields[1])
-            assert time.time() - 1 < stamp[1] + stamp[2] / 1e9 < time.time()
+            assert time.time() - 5 < stamp[1] + stamp[2] / 1e9 < time.time()
             assert before != stamp
             before = stamp
     process.send_signal(signal.SIGTERM)
-    assert process.wait(10) == 0
+    assert process.wait(60) == 0
     simulator.await_idle()
 
 
