@@ -162,7 +162,7 @@ static void cut(const sample_t *sample, const bool *used, double within_mm, line
     unsigned last = 0;
     unsigned longest = 0;
     memset(is_taken, 0, sizeof is_taken);
-    line->from_mm = -PIECE_MM * (PIECES / 2 - 1);
+    line->from_mm = -PIECE_MM * (PIECES / 2.0 - 1);
     line->to_mm = -line->from_mm;
     for (size_t i = 0; i < sample->count; i++) {
         if (!used[i] && is_on(sample, i, *line, within_mm)) {

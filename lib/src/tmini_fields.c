@@ -96,19 +96,19 @@ static void find_directions(tmini_field_t *field, tmini_xy_t lidar, int32_t stra
     field->wide_q6 = (uint16_t)(most - least < CIRCLE ? most - least : CIRCLE);
 }
 
-/* At least the distance of the farthest corner: sqrt(a * a + b * b) <= a + b / 2 for a >= b. */
+static int32_t larger(int32_t one, int32_t other)
+{
+    return one > other ? one : other;
+}
+
+/* At least the distance of the farthest place in the box around the field: sqrt(a * a + b * b) <=
+ * a + b / 2 for a >= b. A place may be rounded into the field. */
 static void find_reach(tmini_field_t *field, tmini_xy_t lidar)
 {
-    field->reach_mm = 0;
-    for (size_t i = 0; i < count_corners(field); i++) {
-        const place_t corner = corner_of(field, i, lidar);
-        const int32_t ahead = corner.x < 0 ? -corner.x : corner.x;
-        const int32_t aside = corner.y < 0 ? -corner.y : corner.y;
-        const int32_t far_mm = ahead > aside ? ahead + (aside + 1) / 2 : aside + (ahead + 1) / 2;
-        if (far_mm + 1 > field->reach_mm) { /* A place may be rounded into the field. */
-            field->reach_mm = (uint16_t)(far_mm + 1);
-        }
-    }
+    const int32_t ahead = larger(field->most.x_mm - lidar.x_mm, lidar.x_mm - field->least.x_mm);
+    const int32_t aside = larger(field->most.y_mm - lidar.y_mm, lidar.y_mm - field->least.y_mm);
+    const int32_t sum = ahead + aside + larger(ahead, aside);
+    field->reach_mm = (uint16_t)(sum / 2 + 2);
 }
 
 static bool is_ahead(const tmini_field_t *field, uint16_t angle_q6)

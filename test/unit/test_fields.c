@@ -358,6 +358,10 @@ void test_a_field_around_the_lidar_has_all_directions(void)
     static const place_t in_box[] = {{0, 500, true, true},    {135, 700, true, true},
                                      {135, 710, false, true}, {180, 500, true, true},
                                      {-90, 501, false, true}, {359, 20, true, true}};
+    static const tmini_xy_t aside[] = {{-500, -300}, {800, 500}};
+    static const place_t in_aside[] = {{0, 799, true, true},   {90, 299, true, true},
+                                       {180, 499, true, true}, {270, 499, true, true},
+                                       {45, 600, false, true}, {225, 600, true, true}};
     static const place_t in_triangle[] = {{0, 999, true, true},    {60, 499, true, true},
                                           {60, 501, false, true},  {180, 499, true, true},
                                           {180, 501, false, true}, {120, 990, true, true}};
@@ -365,6 +369,29 @@ void test_a_field_around_the_lidar_has_all_directions(void)
     check_places(in_box, COUNT(in_box));
     set_up(triangle, 3);
     check_places(in_triangle, COUNT(in_triangle));
+    set_up(aside, 2);
+    check_places(in_aside, COUNT(in_aside));
+}
+
+/* A corner at the lidar, 2 mm from it, and 1 mm beside its axis. */
+void test_a_field_may_begin_at_the_lidar(void)
+{
+    static const struct {
+        tmini_xy_t box[2];
+        int16_t not_ahead[2];
+        int16_t ahead;
+    } cases[] = {
+        {{{0, 0}, {600, 300}}, {225, 1}, 315},
+        {{{2, 1}, {20, 300}}, {268, 359}, 315},
+        {{{-2, -1}, {-20, -300}}, {88, 179}, 135},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        const place_t places[] = {{cases[i].not_ahead[0], 1000, false, false},
+                                  {cases[i].not_ahead[1], 1000, false, false},
+                                  {cases[i].ahead, 1000, false, true}};
+        set_up(cases[i].box, 2);
+        check_places(places, COUNT(places));
+    }
 }
 
 #if DBL_MANT_DIG > 24

@@ -8,7 +8,7 @@
 #include "tmini/tmini_steps.h"
 #include "unity.h"
 
-static tmini_point_t points[8];
+static tmini_point_t points[300];
 static tmini_scan_t scan;
 
 void setUp(void)
@@ -61,7 +61,10 @@ void test_a_point_without_a_near_neighbour_loses_its_range(void)
         {{3000, 3000, 1000, 1000, 3000}, 1000},
         {{1000, 3000, 1000, 3000, 3000}, 1000}, /* also the next but one. */
         {{3000, 3000, 1000, 3000, 1000}, 1000},
-        {{3000, 1092, 1000, 3000, 3000}, 1000}, /* 50 mm + 6 % of 1000 mm - 17 mm = 93 mm */
+        {{3000, 3000, 1, 3000, 3000}, 0},
+        {{3000, 1, 1, 3000, 3000}, 1},
+        {{3000, 0, 40, 3000, 3000}, 0},         /* No range is not near. */
+        {{3000, 1093, 1000, 3000, 3000}, 1000}, /* 50 mm + 6 % of 1000 mm - 17 mm = 93 mm */
         {{3000, 1094, 1000, 3000, 3000}, 0},
         {{3000, 908, 1000, 3000, 3000}, 0}, /* 6 % of 908 mm are less. */
         {{3000, 915, 1000, 3000, 3000}, 1000},
@@ -126,12 +129,36 @@ void test_a_point_is_not_its_own_neighbour(void)
     scan.count = 1;
     tmini_isolated_step(NULL, &scan);
     has(1, 0);
+    has(2, 1000); /* Not in the scan. */
     points[1].distance_mm = 1000;
     points[2] = (tmini_point_t){64, 5000, 0, 0};
     scan.count = 2;
     tmini_isolated_step(NULL, &scan);
     has(1, 0);
     has(2, 0);
+}
+
+void test_the_third_point_away_is_no_neighbour(void)
+{
+    static const uint16_t distances_mm[] = {1000, 3000, 5000, 1000, 7000, 9000, 11000};
+    for (size_t i = 0; i < 7; i++) {
+        add(distances_mm[i]);
+    }
+    tmini_isolated_step(NULL, &scan);
+    for (size_t i = 0; i < 7; i++) {
+        has(i, 0);
+    }
+}
+
+void test_a_scan_may_have_more_than_256_points(void)
+{
+    for (uint16_t i = 0; i < 300; i++) {
+        add(i == 298 ? 5000 : 1000);
+    }
+    tmini_isolated_step(NULL, &scan);
+    has(297, 1000);
+    has(298, 0);
+    has(299, 1000);
 }
 
 /* --------------------------------------------------------------------------------------- steps */

@@ -213,12 +213,13 @@ void test_a_front_may_be_any_number_of_sixty_fourths_of_a_degree(void)
     mount = (tmini_mount_t){.front_q6 = 5594}; /* 87.4 degrees. */
     TEST_ASSERT_EQUAL_UINT16(6, tmini_mount_angle(&mount, 5600));
     TEST_ASSERT_EQUAL_UINT16(0, tmini_mount_angle(&mount, 5594));
+    TEST_ASSERT_EQUAL_UINT16(23039, tmini_mount_angle(&mount, 5593));
 }
 
 void test_any_number_of_degrees_is_an_arc(void)
 {
-    static const tmini_arc_t arcs[] = {{-32768, -32768}, {32767, 32767}}; /* -8 and 7 degrees. */
-    static const tmini_mount_t mount = {.masked = arcs, .masked_count = 2};
+    static const tmini_arc_t arcs[] = {{-32768, -32768}, {32767, 32767}, {-1, -1}}; /* -8, 7. */
+    static const tmini_mount_t mount = {.masked = arcs, .masked_count = 3};
     add(352 * DEGREE, 1000);
     add(7 * DEGREE, 1001);
     add(8 * DEGREE, 1002);
@@ -226,6 +227,9 @@ void test_any_number_of_degrees_is_an_arc(void)
     is_point(0, 352 * DEGREE, 0);
     is_point(1, 7 * DEGREE, 0);
     is_point(2, 8 * DEGREE, 1002);
+    points[2].angle_q6 = 359 * DEGREE;
+    apply(&mount);
+    is_point(2, 359 * DEGREE, 0);
 }
 
 void test_an_offset_is_added_to_ranges_and_not_to_what_is_unknown(void)
@@ -253,7 +257,7 @@ void test_an_offset_leaves_a_range_a_range(void)
     mount.offset_mm = 32767;
     apply(&mount);
     is_point(0, 0, 16383);
-    mount.offset_mm = -16382;
+    mount.offset_mm = -16383;
     apply(&mount);
     is_point(0, 0, 1);
 }

@@ -18,6 +18,7 @@ import sys
 import flash
 import host
 import instructions
+import optional
 import python_package
 import stack
 import streams
@@ -60,7 +61,8 @@ def measure_target(name, level, folder, made):
     if counts["stack seen"] > depth["polling"][0]:
         raise BenchError(f"{name} {level}: {counts['stack seen']} bytes of stack are used, "
                          f"more than the bound of {depth['polling'][0]}")
-    return {"flash": weights, "stack": depth, "counts": counts}
+    return {"flash": weights, "stack": depth, "counts": counts,
+            "optional": optional.measure(target, level, objects, place)}
 
 
 def measure_compiler(name, folder, made):

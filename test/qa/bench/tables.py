@@ -63,6 +63,15 @@ def compilers(figures):
                   for f in figures["compilers"].values()])
 
 
+def optional(figures):
+    rows = []
+    m0, m4 = (figures["targets"][name, "-Os"]["optional"] for name in ("cortex-m0", "cortex-m4"))
+    for module, (size, costs) in m4.items():
+        rows.append([f"`{module}.h`", m0[module][0], size,
+                     *("; ".join(one(cost) for cost in f[module][1]) for f in (m0, m4))])
+    return table(["`-Os`", "flash, Cortex-M0", "Cortex-M4", "instructions per point, Cortex-M0", "Cortex-M4"], rows)
+
+
 def instructions(figures):
     rows = []
     for title, f in small(figures):
@@ -144,7 +153,7 @@ def summary(figures):
 
 
 BLOCKS = {"versions": versions, "budgets": budgets, "memory": memory, "modules": modules,
-          "compilers": compilers,
+          "compilers": compilers, "optional": optional,
           "instructions": instructions, "per-poll": per_poll,
           "compared": compared, "load": cpu, "pauses": pauses, "footprint": summary}
 

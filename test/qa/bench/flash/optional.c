@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* A program that uses each optional module once, on a scan of 400 points. Each function is one
+ * module's use of it, called by optional.py. */
+
+#include "tmini/tmini_cartesian.h"
+#include "tmini/tmini_fields.h"
+#include "tmini/tmini_isolated.h"
+#include "tmini/tmini_mount.h"
+#include "tmini/tmini_ranges.h"
+#include "tmini/tmini_sectors.h"
+#include "tmini/tmini_steps.h"
+#include "tmini/tmini_units.h"
+
+#define POINTS 400u
+
+void bench_fill(void);
+void bench_mount(void);
+void bench_steps(void);
+void bench_fields(void);
+void bench_fields_near(void);
+void bench_isolated(void);
+void bench_cartesian(void);
+void bench_sectors(void);
+void bench_ranges(void);
+void bench_units(void);
+void bench_main(void);
+void bench_interrupt(uint8_t byte);
+
+static tmini_point_t points[POINTS];
+static tmini_scan_t scan = {.points = points, .count = POINTS, .complete = true};
+static volatile uint32_t sink;
+
+static const tmini_arc_t mast[] = {{170, 190}};
+static const tmini_mount_t mount = {.front_q6 = 5594, .masked = mast, .masked_count = 1};
+static const tmini_xy_t stop_box[] = {{0, -250}, {600, 250}};
+static const tmini_xy_t hall[] = {{-5000, -5000}, {5000, 5000}};
+static tmini_field_t list[] = {{.corners = stop_box, .corner_count = 2},
+                               {.corners = hall, .corner_count = 2}};
+static const tmini_fields_t far_field = {.list = &list[0], .count = 1};
+static const tmini_fields_t near_field = {.list = &list[1], .count = 1};
+static const tmini_one_step_t steps_list[] = {{tmini_mount_step, &mount}};
+static const tmini_steps_t steps = {steps_list, 1};
+static tmini_sector_t memory[8];
+static tmini_sectors_t sectors;
+static uint16_t ranges_mm[360];
+
+/* A wall from 1.0 to 2.6 m away, and back. */
+void bench_fill(void)
+{
+    for (uint16_t i = 0; i < POINTS; i++) {
+        const uint16_t along = i < POINTS / 2 ? i : (uint16_t)(POINTS - i);
+        points[i] = (tmini_point_t){.angle_q6 = (uint16_t)(i * 57u),
+                                    .distance_mm = (uint16_t)(1000u + 8u * along)};
+    }
+    (void)tmini_fields_init(&far_field);
+    (void)tmini_fields_init(&near_field);
+    (void)tmini_sectors_init(&sectors, memory, 8, TMINI_FILTER_NONE);
+}
+
+void bench_mount(void)
+{
+    tmini_mount_step(&mount, &scan);
+}
+
+void bench_steps(void)
+{
+    tmini_steps_step(&steps, &scan);
+}
+
+void bench_fields(void)
+{
+    tmini_fields_step(&far_field, &scan);
+}
+
+void bench_fields_near(void)
+{
+    tmini_fields_step(&near_field, &scan);
+}
+
+void bench_isolated(void)
+{
+    tmini_isolated_step(NULL, &scan);
+}
+
+void bench_cartesian(void)
+{
+    for (uint16_t i = 0; i < POINTS; i++) {
+        sink = (uint32_t)tmini_cartesian_point(&points[i]).x_mm;
+    }
+}
+
+void bench_sectors(void)
+{
+    tmini_sectors_add_scan(&sectors, &scan);
+}
+
+void bench_ranges(void)
+{
+    (void)tmini_ranges_of_scan(&scan, ranges_mm, NULL, 360);
+}
+
+void bench_units(void)
+{
+    for (uint16_t i = 0; i < POINTS; i++) {
+        sink = tmini_point_time_us(&scan, i);
+    }
+}
+
+void bench_interrupt(uint8_t byte)
+{
+    sink = byte;
+}
+
+void bench_main(void)
+{
+    bench_fill();
+    bench_mount();
+    bench_steps();
+    bench_fields();
+    bench_fields_near();
+    bench_isolated();
+    bench_cartesian();
+    bench_sectors();
+    bench_ranges();
+    bench_units();
+    sink = (uint32_t)tmini_field_state(&list[0], sink);
+}
