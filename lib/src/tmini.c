@@ -341,17 +341,19 @@ static bool note_scanning(tmini_t *lidar)
     }
 }
 
-/* A wrong frequency is set again once. As long as the lidar does not answer, this is repeated at
- * growing intervals. With TMINI_RECOVERY_OFF it is never set again. */
+/* A wrong or unknown frequency is set again once. As long as it is not known to be set, this is
+ * repeated at growing intervals, unless the lidar never answers. With TMINI_RECOVERY_OFF it is never
+ * set again. */
 static bool is_worth_a_restart(const tmini_t *lidar)
 {
-    return !lidar->is_recovery_off &&
-           (lidar->monitor.off_times == 1 || tmini_frequency_chz(lidar) == 0);
+    const bool is_worth_another =
+        tmini_frequency_chz(lidar) == 0 && !tmini_recovery_is_mute(lidar);
+    return !lidar->is_recovery_off && (lidar->monitor.off_times == 1 || is_worth_another);
 }
 
 static void monitor_packet(tmini_t *lidar)
 {
-    const bool is_unknown = tmini_frequency_chz(lidar) == 0 && !tmini_recovery_is_mute(lidar);
+    const bool is_unknown = tmini_frequency_chz(lidar) == 0;
     switch (tmini_monitor_packet(&lidar->monitor, &lidar->decoder, lidar->command.wanted_chz,
                                  is_unknown)) {
     case TMINI_TURN_WHOLE:

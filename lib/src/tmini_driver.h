@@ -260,7 +260,7 @@ typedef enum {
 } tmini_turn_t;
 
 /* Takes the latest packet. If it ends a revolution, judges that revolution. `wanted_chz` 0: any.
- * `is_unknown`: the lidar answers, but has not reported which frequency is set. */
+ * `is_unknown`: the lidar has not reported which frequency is set. */
 tmini_turn_t tmini_monitor_packet(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
                                   uint16_t wanted_chz, bool is_unknown);
 

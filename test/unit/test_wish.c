@@ -342,13 +342,17 @@ void test_what_is_not_known_to_be_set_is_asked_again_although_it_turns_well(void
     go_on("turns:16:60 <turn:60 !SCAN !PAUSED >65 +50 >0D <610 !FREQUENCY >60 <scan <S !STARTED");
 }
 
-void test_a_unit_that_never_answers_is_not_stopped_for_what_is_not_known(void)
+void test_a_unit_that_never_answers_is_asked_again_once(void)
 {
     tell("wish:1000 " IDLE "start");
     for (unsigned asks = 0; asks < 30; asks++) {
         go_on(">0D +250");
     }
-    go_on(">65 +50 >60 <S !STARTED !FAILED ?TIMEOUT turns:300:100");
+    go_on(">65 +50 >60 <S !STARTED !FAILED ?TIMEOUT turns:28:100 <turn:100 !SCAN !PAUSED >65 +50");
+    for (unsigned asks = 0; asks < 30; asks++) {
+        go_on(">0D +250");
+    }
+    go_on(">65 +50 >60 <S !STARTED !FAILED turns:300:100");
 }
 
 void test_a_frequency_that_is_not_reported_is_no_fault(void)
