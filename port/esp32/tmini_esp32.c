@@ -170,7 +170,18 @@ static size_t take(tmini_esp32_t *port, size_t wanted)
     }
     const int count =
         uart_read_bytes((uart_port_t)port->wiring.uart, port->chunk, (uint32_t)wanted, 0);
+    if (count > 0 && port->tap != NULL) {
+        port->tap(port->tap_context, port->chunk, (size_t)count);
+    }
     return count > 0 ? tmini_feed(port->lidar, port->chunk, (size_t)count) : 0;
+}
+
+static void feed_gap(tmini_esp32_t *port)
+{
+    if (port->tap != NULL) {
+        port->tap(port->tap_context, NULL, 0);
+    }
+    tmini_feed_gap(port->lidar);
 }
 
 /* Called when the driver holds no bytes. It stores bytes before it announces them, so all announced
@@ -187,7 +198,7 @@ static void pass_gap(tmini_esp32_t *port)
 {
     if (port->gap_ahead && distance_to(port, port->gap) == 0) {
         port->gap_ahead = false;
-        tmini_feed_gap(port->lidar);
+        feed_gap(port);
     }
 }
 
@@ -303,7 +314,7 @@ static void set_up_again(tmini_esp32_t *port)
     port->announced = port->counters.bytes;
     port->gap_ahead = false;
     port->lost_more = false;
-    tmini_feed_gap(port->lidar);
+    feed_gap(port);
 }
 
 /* Takes all events before any bytes, so that the place of an overflow among the bytes is known. */
@@ -394,6 +405,12 @@ static const char *mistake_in(const tmini_esp32_wiring_t *wiring)
         return "timeout_symbols: 1 to 100";
     }
     return mistake_in_task(wiring);
+}
+
+void tmini_esp32_tap(tmini_esp32_t *port, tmini_esp32_tap_t tap, void *context)
+{
+    port->tap = tap;
+    port->tap_context = context;
 }
 
 esp_err_t tmini_esp32_init(tmini_esp32_t *port, const tmini_esp32_wiring_t *wiring)

@@ -101,11 +101,17 @@ typedef struct {
                               * it. */
 } tmini_esp32_counters_t;
 
+/** Called with all bytes that are received, before the lidar gets them; with no bytes where some were
+ * lost. For recordings and bridges. Context: whichever receives. */
+typedef void (*tmini_esp32_tap_t)(void *context, const uint8_t *bytes, size_t count);
+
 /** One UART with a lidar. Treat the members as private. */
 typedef struct {
     /** @cond private */
     tmini_esp32_wiring_t wiring;
     tmini_t *lidar;
+    tmini_esp32_tap_t tap;
+    void *tap_context;
     QueueHandle_t events;
     esp_pm_lock_handle_t pm_lock; /* NULL: power management is not compiled in. */
     bool is_ready;                /* tmini_esp32_init() has found nothing wrong. */
@@ -132,6 +138,10 @@ extern const tmini_port_t tmini_esp32_port;
  * ESP_OK, or ESP_ERR_INVALID_ARG for a null pointer or a value outside its documented range, with a
  * line in the log that names it. */
 esp_err_t tmini_esp32_init(tmini_esp32_t *port, const tmini_esp32_wiring_t *wiring);
+
+/** From now on received bytes also go to `tap`; NULL: to the lidar alone. After tmini_esp32_init(),
+ * before tmini_esp32_start(). */
+void tmini_esp32_tap(tmini_esp32_t *port, tmini_esp32_tap_t tap, void *context);
 
 /** Installs the UART driver, sets it up for the lidar and starts the receiving task. The UART's
  * interrupt is served by the core that makes this call. `lidar`, set up by tmini_init(), and `port`

@@ -426,6 +426,26 @@ void test_bytes_are_handed_on_in_order_and_counted(void)
     TEST_ASSERT_EQUAL_UINT32(260, counted().bytes);
 }
 
+static void tap(void *context, const uint8_t *bytes, size_t count)
+{
+    char *const heard = context;
+    (void)snprintf(heard + strlen(heard), 16, "%u%s ", (unsigned)count, bytes == NULL ? "!" : "");
+}
+
+void test_a_tap_gets_every_byte_and_is_told_of_each_gap(void)
+{
+    char heard[100] = "";
+    start_well(false);
+    tmini_esp32_tap(&port, tap, heard);
+    play("H178 D128 O D50 >128! >50");
+    TEST_ASSERT_EQUAL_STRING("128 0! 50 ", heard);
+    play("H100 R p >0! H100 D70 D40 O >100! >0");
+    TEST_ASSERT_EQUAL_STRING("128 0! 50 0! 100 0! ", heard);
+    tmini_esp32_tap(&port, NULL, NULL);
+    play("p H20 D20 O >20!");
+    TEST_ASSERT_EQUAL_STRING("128 0! 50 0! 100 0! ", heard);
+}
+
 /* A packet of two samples; the distance of the first sample is the packet's number. */
 static size_t make_packet(uint8_t *out, uint16_t number)
 {
