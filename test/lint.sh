@@ -76,7 +76,8 @@ tidy_firmware() {
 tidy_programs() {
     quietly cmake -S . -B build-lint -DTMINI_BUILD_TESTS=OFF || return 1
     # shellcheck disable=SC2016 # expanded in the inner shell
-    printf '%s\n' lib/src/*.c port/posix/*.c examples/host/*.c examples/obstacle_stop/*.c |
+    printf '%s\n' lib/src/*.c port/posix/*.c examples/host/*.c examples/obstacle_stop/*.c \
+        examples/bridge/core/*.c examples/bridge/pc/*.c |
         xargs -n 8 -P "$(job_count)" sh -c \
             'exec clang-tidy --quiet -p build-lint --header-filter="$0" "$@" 2>/dev/null' \
             "^$root/(lib|port|examples)/"
@@ -88,7 +89,8 @@ check_tidy() {
     tidy_firmware port/template/*.c examples/common/*.c -- -I port/template || clean=1
     tidy_firmware port/stm32/*.c examples/stm32_cube/*.c -- -I port/stm32 -I examples/stm32_cube \
         -isystem test/port/stm32/stm32_model -isystem test/support || clean=1
-    tidy_firmware port/esp32/*.c examples/esp32_idf/main/*.c -- -I port/esp32 \
+    tidy_firmware port/esp32/*.c examples/esp32_idf/main/*.c examples/bridge/main/main.c \
+        examples/bridge/main/web.c -- -I port/esp32 -I port/posix -I examples/bridge/core \
         -isystem test/port/esp32/esp_idf || clean=1
     tidy_firmware port/pico/*.c examples/pico/*.c -- -I port/pico -D_DEFAULT_SOURCE \
         -isystem test/port/pico/sdk_stub || clean=1

@@ -30,6 +30,11 @@
 #define CONFIG_TMINI_ESP32_TASK_PRIORITY 12
 #define CONFIG_TMINI_ESP32_TASK_CORE -1
 
+/* Options of examples/bridge. */
+#define CONFIG_BRIDGE_HOSTNAME "lidar"
+#define CONFIG_BRIDGE_TCP_PORT 8090
+#define CONFIG_BRIDGE_FREQUENCY_CHZ 1000
+
 /* Option of examples/esp32_idf. */
 #define CONFIG_EXAMPLE_STOP_GPIO 10
 
