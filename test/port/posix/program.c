@@ -25,12 +25,42 @@
 static pid_t lidars[LIDARS_MAX]; /* 0: has been ended. */
 static size_t lidar_count;
 
+/* shared_clock.c */
+void shared_clock_open(const char *path);
+void shared_clock_expect(pid_t pid);
+
+static char preload[PORT_SIZE];
+
+static void remove_link(void)
+{
+    (void)unlink(preload);
+}
+
+/* The test and its lidars share a clock, which stands while one of them works. In LD_PRELOAD spaces
+ * separate libraries, so it has a path without them. */
+static void begin_clock(void)
+{
+    static const char nothing[4096];
+    FILE *const file = fopen(HOME_DIR "/clock", "wb");
+    if (file == NULL || fwrite(nothing, 1, sizeof nothing, file) != sizeof nothing ||
+        fclose(file) != 0) {
+        abort();
+    }
+    (void)snprintf(preload, sizeof preload, "/tmp/tmini-clock.%ld", (long)getpid());
+    (void)unlink(preload);
+    if (symlink(SHARED_CLOCK, preload) != 0 || atexit(remove_link) != 0) {
+        abort();
+    }
+    shared_clock_open(HOME_DIR "/clock");
+}
+
 /* The test leaves its files in its own folder, wherever it is started. */
 __attribute__((constructor)) static void go_home(void)
 {
     if (chdir(HOME_DIR) != 0) {
         abort();
     }
+    begin_clock();
 }
 
 const char *program_path(const char *name)
@@ -74,9 +104,13 @@ const char *program_start_lidar(const char *const options[])
         (void)dup2(ends[1], STDOUT_FILENO);
         (void)close(ends[0]);
         (void)close(ends[1]);
+        (void)setenv("LD_PRELOAD", preload, 1);
+        (void)setenv("TMINI_SHARED_CLOCK", HOME_DIR "/clock", 1);
+        (void)setenv("ASAN_OPTIONS", "verify_asan_link_order=0", 1);
         (void)execv(TMINI_SIM, words);
         _exit(127);
     }
+    shared_clock_expect(lidar);
     char *const port = ports[lidar_count];
     lidars[lidar_count++] = lidar;
     (void)close(ends[1]);

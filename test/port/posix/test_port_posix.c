@@ -16,6 +16,7 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -313,7 +314,7 @@ void test_a_timed_stream_that_comes_late_has_the_times_of_its_sender(void)
     TEST_ASSERT_EQUAL_INT(-1, tmini_posix_port.write(&port, stream, 2));
     unsigned complete = 0;
     for (size_t at = 148; at < size; at += 33 * 140) {
-        (void)usleep(330000);
+        (void)poll(NULL, 0, 330);
         TEST_ASSERT_EQUAL_INT(33 * 140, write(other, stream + at, 33 * 140));
         complete += count_complete();
     }
@@ -624,20 +625,20 @@ static unsigned count_gaps(void)
     for (int i = 0; i < 8; i++) {
         poll_until(TMINI_EVENT_SCAN);
         gaps += tmini_scan(&lidar)->complete ? 0 : 1;
-        (void)usleep(i == 2 || i == 5 ? 250000 : 0);
+        (void)poll(NULL, 0, i == 2 || i == 5 ? 250 : 0);
     }
     return gaps;
 }
 
-/* The receive buffer holds a third of the bytes of 250 ms, the system the rest. A busy computer may
- * itself pause for longer: one success in four tries is enough. */
+/* The receive buffer holds a third of the bytes of 250 ms, the system the rest. On a busy computer
+ * that rest may be late, in real time: one success in four tries is enough. */
 void test_a_pause_of_the_program_costs_no_scan(void)
 {
-    unsigned gaps = 1;
     begin();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
     poll_until(TMINI_EVENT_SCAN);
-    for (int i = 0; i < 4 && gaps > 0; i++) {
+    unsigned gaps = count_gaps();
+    for (int i = 1; i < 4 && gaps > 0; i++) {
         gaps = count_gaps();
     }
     TEST_ASSERT_EQUAL_UINT(0, gaps);
