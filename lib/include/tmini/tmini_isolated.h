@@ -16,7 +16,8 @@
  *         ..., .step = tmini_isolated_step, .step_data = &isolated,
  *     };
  *
- * For maps and pictures, not for stopping: a thin thing far away (3 cm beyond 1 m at 10 Hz) is one
+ * Of points at random distances it removes 96 %, of the simulated room's others 0.1 %, of a real
+ * unit's recording 0.3 %. For maps and pictures, not for stopping: a thin thing far away (3 cm beyond 1 m at 10 Hz) is one
  * point, too. Fields (tmini_fields.h) see the points before this step does; tmini_steps.h has the
  * order. Any context; no waiting; about 75 instructions per point. */
 

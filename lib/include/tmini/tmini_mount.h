@@ -46,7 +46,8 @@ typedef struct {
                                 * degree, also if it is upside down: 90 * 64 for 90 degrees. */
     bool upside_down;          /**< The lidar is upside down: its angles run the other way round. */
     int16_t offset_mm;         /**< Added to each distance but 0. The sum is 1 to 16383. */
-    uint16_t min_mm;           /**< Smaller distances, offset included, become 0. */
+    uint16_t min_mm;           /**< Smaller distances, offset included, become 0: an obstacle so
+                                * near is unknown. Masks hide less. */
     uint16_t max_mm;           /**< Larger distances become 0; 0: no limit. */
     const tmini_arc_t *masked; /**< Directions in which the lidar sees the robot itself. */
     size_t masked_count;       /**< How many such directions there are. */

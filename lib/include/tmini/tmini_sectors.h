@@ -28,11 +28,10 @@
  *         if (!tmini_sector_is_free(&sectors.sectors[0], 300)) { stop(); }
  *     }
  *
- * Sectors do not age. A lost lidar delivers no scans, TMINI_EVENT_LOST comes only after a second,
- * and the state is TMINI_STATE_SCANNING again before the first new scan. So, in each round of the
- * loop, also stop unless the state is TMINI_STATE_SCANNING, tmini_faults() is 0 and the last
- * complete scan is younger than half a second. Clear the sectors when the lidar is lost and before
- * each start.
+ * Sectors do not age, and a lost lidar delivers no scans. So, in each round of the loop, also stop
+ * if tmini_scan_age_ms() is above 300 (three turns at 10 Hz) or tmini_faults() is not 0. Clear the
+ * sectors when the lidar is lost and before each start. Fields (tmini_fields.h) do all this, and
+ * have the robot's shape.
  *
  * A sector without a valid range is blind, not free: the lidar may be covered, a packet lost, or
  * the space open for more than 12 m. Its nearest_mm is 0, which is below any limit. All functions:

@@ -30,5 +30,5 @@ def measure(target, level, objects, folder):
         costs = [machine.cost(use)[1] / POINTS for use in uses]
         figures[module] = (sum(weights[name] for name in (module, *needs)), costs)
     steps_flash, steps_costs = figures["tmini_steps"]
-    figures["tmini_steps"] = steps_flash, [steps_costs[0] - figures["tmini_mount"][1][0]]
+    figures["tmini_steps"] = steps_flash, [max(0, steps_costs[0] - figures["tmini_mount"][1][0])]
     return figures
