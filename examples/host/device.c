@@ -184,31 +184,6 @@ static void await_right_one(device_t *device)
     (void)tmini_posix_start(&device->port, &device->lidar); /* Or it is opened later. */
 }
 
-/* --wait: the name of a port does not show which lidar is there. The first one is the one that was
- * meant. One that does not answer is taken for it. */
-static void compare_lidar(device_t *device)
-{
-    char serial[TMINI_SERIAL_DIGITS + 1];
-    if (device->is_comparing || device->listens) {
-        return;
-    }
-    device->is_comparing = true;
-    if (device_await(device, tmini_stop(&device->lidar), TMINI_EVENT_STOPPED) &&
-        device_ask(device, tmini_request_info, TMINI_EVENT_INFO)) {
-        tmini_serial_text(tmini_info(&device->lidar), serial);
-        if (device->serial[0] == '\0') {
-            (void)snprintf(device->serial, sizeof device->serial, "%s", serial);
-        }
-        if (strcmp(device->serial, serial) != 0) {
-            leave_alone(device, serial);
-        }
-    }
-    device->is_comparing = false;
-    if (device->was_started) {
-        (void)tmini_start(&device->lidar);
-    }
-}
-
 /* --wait: says that the adapter has gone, or is back. */
 static void watch_adapter(device_t *device)
 {
@@ -221,9 +196,7 @@ static void watch_adapter(device_t *device)
     if (!device->is_secretive) {
         message_note(is_away ? "%s is not there; waiting for it" : "%s is there", device->path);
     }
-    if (!is_away) {
-        compare_lidar(device);
-    }
+    device->must_compare = !is_away && !device->listens;
 }
 
 static void print_event(const device_t *device, tmini_event_t event)
@@ -273,7 +246,7 @@ static void note_look(device_t *device)
     device->absent_ms = passed_ms > device->absent_ms ? passed_ms : device->absent_ms;
 }
 
-tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
+static tmini_event_t wait_for_event(device_t *device, uint32_t timeout_ms)
 {
     const uint32_t begun_ms = device_ms(device);
     if (!tmini_posix_is_timed(&device->port)) {   /* Its bytes can wait. */
@@ -304,6 +277,57 @@ static bool is_aborted(const device_t *device, tmini_event_t wanted)
 {
     return wanted == TMINI_EVENT_STOPPED &&
            tmini_command_error(&device->lidar) == TMINI_ERROR_ABORTED;
+}
+
+/* A lidar that has lost its supply boots: three attempts of a query may be too few. */
+#define INFO_TRIES 2u
+
+/* Like device_await(), while the lidar is being compared. */
+static bool settle(device_t *device, tmini_status_t begun, tmini_event_t wanted)
+{
+    const uint32_t begun_ms = device_ms(device);
+    tmini_event_t event = TMINI_EVENT_NONE;
+    while (begun == TMINI_OK && device_is_usable(device) && event != wanted &&
+           (event != TMINI_EVENT_COMMAND_FAILED || is_aborted(device, wanted)) &&
+           device_ms(device) - begun_ms < COMMAND_MS) {
+        event = wait_for_event(device, SLICE_MS);
+    }
+    return event == wanted;
+}
+
+/* --wait: the name of a port does not show which lidar is there. The first one is the one that was
+ * meant. One that does not answer is taken for it. */
+static void compare_lidar(device_t *device)
+{
+    char serial[TMINI_SERIAL_DIGITS + 1];
+    bool is_known = false;
+    device->must_compare = false;
+    if (settle(device, tmini_stop(&device->lidar), TMINI_EVENT_STOPPED)) {
+        for (unsigned i = 0; i < INFO_TRIES && !is_known; i++) {
+            is_known = settle(device, tmini_request_info(&device->lidar), TMINI_EVENT_INFO);
+        }
+    }
+    if (is_known) {
+        tmini_serial_text(tmini_info(&device->lidar), serial);
+        if (device->serial[0] == '\0') {
+            (void)snprintf(device->serial, sizeof device->serial, "%s", serial);
+        }
+        if (strcmp(device->serial, serial) != 0) {
+            leave_alone(device, serial);
+        }
+    }
+    if (device->was_started) {
+        (void)tmini_start(&device->lidar);
+    }
+}
+
+tmini_event_t device_wait(device_t *device, uint32_t timeout_ms)
+{
+    const tmini_event_t event = wait_for_event(device, timeout_ms);
+    if (device->must_compare) {
+        compare_lidar(device);
+    }
+    return event;
 }
 
 void device_facts(device_t *device, facts_t *facts)
@@ -407,7 +431,7 @@ bool device_try_start(device_t *device)
 {
     tmini_event_t event = TMINI_EVENT_NONE;
     bool is_reported = device->listens; /* With --listen this program starts nothing. */
-    if (device->waits && device->port.state == TMINI_POSIX_OK) {
+    if (device->waits && !device->listens && device->port.state == TMINI_POSIX_OK) {
         compare_lidar(device);
     }
     device_begin(device);

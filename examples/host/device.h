@@ -34,7 +34,7 @@ typedef struct device {
     tmini_posix_tap_t tap; /* device_tap() */
     void *tap_context;
     char serial[TMINI_SERIAL_DIGITS + 1]; /* --wait: of the lidar that was there first. */
-    bool is_comparing;                    /* It is being compared. */
+    bool must_compare;                    /* An adapter is back: which lidar is there? */
     bool is_wrong;                        /* Another lidar is there: the port is closed, until */
     struct stat wrong_node;               /* this device has gone. */
     bool is_secretive;                    /* May be set: the caller reports what happens. */

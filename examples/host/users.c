@@ -144,7 +144,7 @@ static long read_stat(const char *process, char name[40])
     const char *const end = strrchr(line, ')');
     if (begin != NULL && end != NULL && end > begin) {
         (void)snprintf(name, 40, "%.*s", (int)(end - begin - 1), begin + 1);
-        (void)sscanf(end + 1, " %*c %ld", &parent);
+        parent = strtol(end + 4 < line + sizeof line ? end + 4 : "", NULL, 10); /* After ") S ". */
     }
     return parent;
 }

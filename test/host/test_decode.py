@@ -314,8 +314,8 @@ def hexdump_c(data):
 
 
 def hexdump_words(data):
-    return "".join(f"{at:07x} " + " ".join(f"{data[i + 1]:02x}{data[i]:02x}" for i in range(at, min(at + 16, len(data)), 2)) +
-                   "\n" for at in range(0, len(data), 16)) + f"{len(data):07x}\n"
+    words = [f"{data[i + 1]:02x}{data[i]:02x}" for i in range(0, len(data), 2)]
+    return "".join(f"{2 * i:07x} {' '.join(words[i:i + 8])}\n" for i in range(0, len(words), 8)) + f"{len(data):07x}\n"
 
 
 def od(data):
@@ -337,7 +337,8 @@ def test_a_hex_dump_is_decoded_as_one(tmini, folder, form):
     (lambda data: data.decode("latin-1").encode(), "the bytes above 7F have become UTF-8"),
     (lambda data: data.decode("utf-8", "replace").encode(), "the bytes above 7F have become UTF-8"),
     (lambda _: b"nothing of interest\n" * 9, 'it holds no lidar packet, but text: "nothing of interest"'),
-    (lambda _: bytes(range(256)) * 9, "it is not a recording of a T-mini Plus")), ids=("latin", "lost", "text", "noise"))
+    (lambda _: bytes(range(256)) * 9, "it is not a recording of a T-mini Plus")),
+                         ids=("latin", "lost", "text", "noise"))
 def test_what_is_no_recording_is_named(tmini, folder, convert, said):
     (folder / "file").write_bytes(convert((folder / "recordings/sim-6hz.bin").read_bytes()))
     run = tmini("decode", "file")

@@ -48,7 +48,8 @@ def other(folder):
 @pytest.fixture
 def real_lidar(folder):
     """The simulated lidar in real time: its port, and its process, which prints its log."""
-    with subprocess.Popen([os.environ["TMINI_SIM"], "--pty", "--log", "-"], stdout=subprocess.PIPE, text=True) as process:
+    words = [os.environ["TMINI_SIM"], "--pty", "--log", "-"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as process:
         yield process.stdout.readline().strip(), process
         process.kill()
 
@@ -597,7 +598,8 @@ def test_a_command_without_a_port_asks_for_one(failure):
 
 
 @pytest.mark.parametrize("port, reason", (
-    ("/dev/nowhere", "there is no such device"), ("127.0.0.1:4000", "tcp:HOST:PORT"), ("tcp:localhost", "tcp:HOST:PORT"),
+    ("/dev/nowhere", "there is no such device"), ("127.0.0.1:4000", "tcp:HOST:PORT"),
+    ("tcp:localhost", "tcp:HOST:PORT"),
     ("tcp:", "tcp:HOST:PORT"), ("tcp:no.such.host.invalid:1", "no host of that name"),
     ("tcp:127.0.0.1:lidar", "a number from 1 to 65535"), ("tcp:127.0.0.1:65536", "a number from 1 to 65535"),
     ("tcp:127.0.0.1:0", "a number from 1 to 65535"), ("/dev/nowhere/deep", "/dev/nowhere/deep"),
