@@ -25,6 +25,7 @@
 static pid_t lidars[LIDARS_MAX]; /* 0: has been ended. */
 static size_t lidar_count;
 
+#ifdef SHARED_CLOCK
 /* shared_clock.c */
 void shared_clock_open(const char *path);
 void shared_clock_expect(pid_t pid);
@@ -53,6 +54,23 @@ static void begin_clock(void)
     }
     shared_clock_open(HOME_DIR "/clock");
 }
+
+static void share_clock(void)
+{
+    (void)setenv("LD_PRELOAD", preload, 1);
+    (void)setenv("TMINI_SHARED_CLOCK", HOME_DIR "/clock", 1);
+    (void)setenv("ASAN_OPTIONS", "verify_asan_link_order=0", 1);
+}
+#else
+static void begin_clock(void) {}
+
+static void share_clock(void) {}
+
+static void shared_clock_expect(pid_t pid)
+{
+    (void)pid;
+}
+#endif
 
 /* The test leaves its files in its own folder, wherever it is started. */
 __attribute__((constructor)) static void go_home(void)
@@ -104,9 +122,7 @@ const char *program_start_lidar(const char *const options[])
         (void)dup2(ends[1], STDOUT_FILENO);
         (void)close(ends[0]);
         (void)close(ends[1]);
-        (void)setenv("LD_PRELOAD", preload, 1);
-        (void)setenv("TMINI_SHARED_CLOCK", HOME_DIR "/clock", 1);
-        (void)setenv("ASAN_OPTIONS", "verify_asan_link_order=0", 1);
+        share_clock();
         (void)execv(TMINI_SIM, words);
         _exit(127);
     }
