@@ -162,8 +162,8 @@ static int64_t first_wait(void)
     return first_ns;
 }
 
-/* Notes that this process has looked in vain since `events` had this value. Returns whether anything
- * has happened since it last did so. */
+/* Notes that this process has looked in vain since `events` had this value. Returns whether
+ * anything has happened since it last did so. */
 static bool look_in_vain(uint64_t events, int64_t until_ns)
 {
     (void)flock(lock_fd, LOCK_EX);
