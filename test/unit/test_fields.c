@@ -358,10 +358,10 @@ void test_a_field_around_the_lidar_has_all_directions(void)
     static const place_t in_box[] = {{0, 500, true, true},    {135, 700, true, true},
                                      {135, 710, false, true}, {180, 500, true, true},
                                      {-90, 501, false, true}, {359, 20, true, true}};
-    static const tmini_xy_t aside[] = {{-500, -300}, {800, 500}};
-    static const place_t in_aside[] = {{0, 799, true, true},   {90, 299, true, true},
-                                       {180, 499, true, true}, {270, 499, true, true},
-                                       {45, 600, false, true}, {225, 600, true, true}};
+    static const tmini_xy_t aside[] = {{-200, -400}, {800, 500}};
+    static const place_t in_aside[] = {{0, 799, true, true},   {90, 399, true, true},
+                                       {180, 199, true, true}, {270, 499, true, true},
+                                       {45, 600, false, true}, {225, 250, true, true}};
     static const place_t in_triangle[] = {{0, 999, true, true},    {60, 499, true, true},
                                           {60, 501, false, true},  {180, 499, true, true},
                                           {180, 501, false, true}, {120, 990, true, true}};
