@@ -25,6 +25,7 @@
 
 /* A poll that finds the lidar lost after a pause of this length gives it another chance. */
 #define LATE_POLL_MS 50
+#define JITTER_MS 10 /* A task that sleeps until this poll wakes up this late. */
 #define LAST_CHANCE_MS 100
 #define CHANCES_MAX 3
 
@@ -282,12 +283,14 @@ static int on_no_reply(tmini_t *lidar, int error)
     return command->asks < ASKS_MAX ? ask(lidar) : error;
 }
 
-/* No packet has come in time. If the program has paused until now, the lidar gets another chance:
- * DMA may have overwritten all packets meanwhile, or the clock may have jumped. */
+/* No packet has come in time. If the program has paused, and not just slept until now, the lidar
+ * gets another chance: DMA may have overwritten all packets, or the clock may have jumped. */
 static int on_no_packet(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
-    if (command->asks == CHANCES_MAX || lidar->line.busy_ms < LATE_POLL_MS) {
+    const uint32_t late_ms = (uint32_t)command->timeout_ms + JITTER_MS;
+    if (command->asks == CHANCES_MAX || lidar->line.busy_ms < LATE_POLL_MS ||
+        !tmini_has_elapsed(lidar, command->since_ms, late_ms)) {
         return TMINI_ERROR_TIMEOUT;
     }
     command->asks++;

@@ -311,18 +311,29 @@ static void read_held(bed_t *bed)
                     held->count < held->reported_max ? held->count : held->reported_max);
 }
 
-void bed_step(bed_t *bed)
+static void poll(bed_t *bed)
 {
     tmini_event_t event;
 
+    bed->wakes++;
+    while ((event = tmini_poll(&bed->lidar)) != TMINI_EVENT_NONE) {
+        note(bed, event);
+    }
+    if (bed->sleeps) {
+        bed->due_us = bed->now_us + tmini_next_poll_ms(&bed->lidar) * (uint64_t)1000u;
+    }
+}
+
+void bed_step(bed_t *bed)
+{
     empty_outbox(bed);
     bed->now_us += bed->poll_ms * 1000u;
     carry_bytes(bed);
     if (bed->held != NULL) {
         read_held(bed);
     }
-    while ((event = tmini_poll(&bed->lidar)) != TMINI_EVENT_NONE) {
-        note(bed, event);
+    if (bed->now_us >= bed->due_us || bed->heard_us == bed->now_us) {
+        poll(bed);
     }
     note_gaps(bed);
     if (sim_mode(&bed->sim) != SIM_IDLE || (tmini_state(&bed->lidar) != TMINI_STATE_IDLE &&

@@ -34,6 +34,7 @@ typedef struct {
     uint32_t work_ms;      /* What the program does with each scan takes this long. */
     uint32_t flip_one_in;  /* Of the bytes from the lidar, one in so many is damaged. 0: none. */
     bool is_told;          /* What happens is printed. */
+    bool sleeps;           /* The program polls only when bytes come or tmini_next_poll_ms() ends. */
     bed_held_t *held;      /* The caller's. NULL: bytes come by an interrupt. */
     tmini_config_t config; /* Without buffers and port. */
     tmini_timing_t timing;
@@ -74,6 +75,8 @@ typedef struct {
     bool flows;          /* And scans have come. */
     bool stop_sent;      /* By the driver, in this step. */
     uint64_t heard_us;   /* When bytes came last. */
+    uint64_t due_us;     /* The next poll, if the program sleeps and no byte comes. */
+    uint32_t wakes;      /* Rounds of polls. */
     const char *unheard; /* The first gap that was not announced; NULL: none. */
 
     uint8_t rx[4096];

@@ -468,6 +468,45 @@ static void pause_with_a_large_ring(const char *unused)
     one_pause(4096, 30, 1500, 20);
 }
 
+/* ---- A task that sleeps ---- */
+
+/* A minute of start, loss and stop. */
+static void live_a_minute(bool sleeps)
+{
+    prepare(1000);
+    bed.sleeps = sleeps;
+    begin();
+    start();
+    bed_run_ms(&bed, 10000);
+    sim_power(&bed.sim, false, bed.now_us);
+    bed_run_ms(&bed, 10000);
+    sim_power(&bed.sim, true, bed.now_us);
+    bed_run_ms(&bed, 10000);
+    bed.due_us = 0; /* A program that states a wish polls after it. */
+    expect(bed_stop(&bed) == TMINI_OK, "stop is refused");
+    bed_run_ms(&bed, 30000);
+}
+
+static void sleep_as_long_as_allowed(const char *unused)
+{
+    static bed_t awake;
+
+    (void)unused;
+    live_a_minute(false);
+    awake = bed;
+    live_a_minute(true);
+    for (unsigned event = 0; event < BED_EVENTS; event++) {
+        expect(bed.events[event] == awake.events[event], "event %u: %u instead of %u", event,
+               bed.events[event], awake.events[event]);
+        expect(bed.event_us[event] == awake.event_us[event], "event %u at %llu instead of %llu us",
+               event, (unsigned long long)bed.event_us[event],
+               (unsigned long long)awake.event_us[event]);
+    }
+    expect(bed.events[TMINI_EVENT_LOST] == 1 && bed.events[TMINI_EVENT_STOPPED] == 1, "no story");
+    expect(bed.sent == awake.sent, "other commands");
+    expect(bed.wakes < awake.wakes / 3, "%u wake-ups instead of %u", bed.wakes, awake.wakes);
+}
+
 /* ---- Rows ---- */
 
 static const claim_t claims[] = {
@@ -490,6 +529,7 @@ static const claim_t claims[] = {
     {"a_quiet_line_time_works_or_is_refused", any_quiet_line, NULL},
     {"a_program_with_a_small_ring_catches_up_after_a_pause", pause_with_a_small_ring, NULL},
     {"a_program_with_a_large_ring_catches_up_after_a_pause", pause_with_a_large_ring, NULL},
+    {"a_task_that_sleeps_as_long_as_it_may_gets_the_same_events", sleep_as_long_as_allowed, NULL},
 };
 
 int main(int argc, char **argv)

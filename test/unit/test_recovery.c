@@ -44,12 +44,17 @@ void test_bytes_without_valid_packets_are_a_loss_too(void)
 
 void test_a_poll_less_than_50_ms_after_another_reports_the_loss(void)
 {
-    tell(SCANS "~952 !NONE ~48 !LOST >65");
+    tell(SCANS "~962 !NONE ~48 !LOST >65");
+}
+
+void test_a_task_that_slept_until_the_loss_reports_it(void)
+{
+    tell(SCANS "~1009 !LOST >65");
 }
 
 void test_a_poll_after_a_pause_of_the_program_gives_the_lidar_another_100_ms(void)
 {
-    tell(SCANS "~951 !NONE ~49 !NONE @SCANNING +100 !LOST >65");
+    tell(SCANS "~951 !NONE ~59 !NONE @SCANNING +100 !LOST >65");
 }
 
 void test_late_polls_give_three_chances(void)
