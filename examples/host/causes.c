@@ -29,8 +29,7 @@ static bool are_two_byte(const facts_t *facts)
 static bool is_telnet(const facts_t *facts)
 {
     const traits_t *const traits = facts->traits;
-    return traits->doubled >= ENOUGH && traits->undoubled >= traits->packets + ENOUGH &&
-           traits->of[0xFF] == 2 * traits->doubled;
+    return traits->doubled >= ENOUGH && traits->undoubled >= traits->packets + ENOUGH;
 }
 
 static bool is_swapped(const facts_t *facts, unsigned missing)
@@ -53,8 +52,7 @@ static bool is_nlcr(const facts_t *facts)
 static bool is_xonxoff(const facts_t *facts)
 {
     const traits_t *const traits = facts->traits;
-    return traits->of[0x11] + traits->of[0x13] == 0 && traits->eaten >= ENOUGH &&
-           2 * traits->eaten >= traits->one_short;
+    return traits->of[0x11] + traits->of[0x13] == 0 && traits->eaten >= ENOUGH;
 }
 
 static bool is_terminal(const facts_t *facts)

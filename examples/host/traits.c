@@ -96,7 +96,6 @@ static void look_at_header(traits_t *traits, run_t run, size_t at)
         traits->damaged++;
         traits->swapped += is_swapped(run.bytes + at) ? 1 : 0;
     } else if (at + size <= run.count && is_sync(run, at + size - 1)) {
-        traits->one_short++;
         traits->eaten += is_eaten(run, at) ? 1 : 0;
     }
     for (size_t sample_size = 2; sample_size <= 4 && run.bytes[at + 3] > 1; sample_size += 2) {

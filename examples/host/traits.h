@@ -22,8 +22,7 @@ typedef struct {
     size_t damaged; /* Packets of the right length with a wrong checksum; and how many of these one
                      * 0A instead of 0D, or the reverse, explains. */
     size_t swapped;
-    size_t one_short; /* Packets that lack one byte; and how many a byte 11 or 13 makes valid. */
-    size_t eaten;
+    size_t eaten;     /* Packets that lack one byte, and that 11 or 13 makes valid. */
     size_t doubled;   /* Doubled FF; and how many packets are valid without the second one. */
     size_t undoubled; /* (The valid ones above included.) */
     size_t seven;     /* Packets and replies in seven bits. */

@@ -139,6 +139,15 @@ def test_a_lidar_that_boots_is_waited_for(lidar, check, tmini):
     assert tmini("health", "-p", lidar("--boot", "4").port).out == "healthy\n"
 
 
+def test_time_in_which_the_program_does_not_run_is_no_silence(lidar, start):
+    run = start("check", "-p", lidar("--boot", "2.5").port, "-s1")
+    run.wait_for("no answer yet")
+    run.process.send_signal(signal.SIGSTOP)
+    run.clock.sleep(8000)
+    run.process.send_signal(signal.SIGCONT)
+    assert "BAD" not in run.finish().out
+
+
 def test_a_network_that_delivers_late_loses_nothing(lidar, check):
     run = check(lidar("--tcp", "0", "--bursts", "400").port)
     assert run.out.startswith("verdict: usable, but look at: pace\n")

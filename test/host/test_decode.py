@@ -328,8 +328,8 @@ def od(data):
 def test_a_hex_dump_is_decoded_as_one(tmini, folder, form):
     data = (folder / "recordings/sim-6hz.bin").read_bytes()
     (folder / "dump.txt").write_text(form(data))
-    run = tmini("decode", "dump.txt", "--csv", "-q")
-    assert (run.status, run.out) == (0, tmini("decode", "recordings/sim-6hz.bin", "--csv", "-q").out)
+    run = tmini("decode", "dump.txt", "-q")
+    assert (run.status, run.out) == (0, tmini("decode", "recordings/sim-6hz.bin", "-q").out)
     assert "dump.txt is a hex dump\n" in tmini("decode", "dump.txt").err
 
 

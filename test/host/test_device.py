@@ -477,6 +477,7 @@ def test_ask_shows_which_lidar_is_where(computer, lidar, talker, other, output, 
     computer("ttyUSB3", streaming.port, "0403:6015")
     computer("ttyUSB4", named.port, "dead:beef")
     computer("ttyACM0", "/dev/null", "0483:5740")
+    computer("ttyUSB6", talker(NOISE))
     os.makedirs("root/proc/812")
     computer("ttyUSB5", talker(b""), "067b:2303")
     for name, content in (("cmdline", "screen\0/dev/ttyUSB5\0"), ("stat", "812 (screen) S 1 812")):
@@ -496,6 +497,7 @@ def test_ask_shows_which_lidar_is_where(computer, lidar, talker, other, output, 
     assert answers["ttyUSB3"] == "a lidar that scans, not asked; serial 2026031700012345"
     assert answers["ttyUSB4"] == "not asked"
     assert answers["ttyUSB5"] .startswith("not asked: screen (process 812) uses ")
+    assert answers["ttyUSB6"] == "not asked: bytes come that no T-mini Plus sends"
     assert "not a serial device" in answers["ttyACM0"]
     assert [re.findall("command A5 (..)", device.log) for device in (first, second, named)] == [["90"], ["90"], []]
     assert streaming.log.count("command") == 1
