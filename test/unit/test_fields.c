@@ -351,6 +351,21 @@ void test_a_polygon_may_have_a_dent(void)
     check_places(places, COUNT(places));
 }
 
+void test_a_polygon_may_have_255_corners(void)
+{
+    static const place_t places[] = {{0, 999, false, true},
+                                     {0, 1500, true, true},
+                                     {0, 2300, false, true},
+                                     {7, 1500, false, false}};
+    tmini_xy_t corners[255];
+    for (int16_t i = 0; i < 255; i++) {
+        corners[i].x_mm = (int16_t)(1000 + 10 * (i < 128 ? i : 254 - i));
+        corners[i].y_mm = i < 128 ? -100 : 100;
+    }
+    set_up(corners, 255);
+    check_places(places, COUNT(places));
+}
+
 void test_a_field_around_the_lidar_has_all_directions(void)
 {
     static const tmini_xy_t around[] = {{-500, -500}, {500, 500}};
@@ -382,6 +397,7 @@ void test_a_field_may_begin_at_the_lidar(void)
         int16_t ahead;
     } cases[] = {
         {{{0, 0}, {600, 300}}, {225, 1}, 315},
+        {{{600, 300}, {0, 0}}, {225, 1}, 315},
         {{{2, 1}, {20, 300}}, {268, 359}, 315},
         {{{-2, -1}, {-20, -300}}, {88, 179}, 135},
     };
