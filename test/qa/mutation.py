@@ -226,8 +226,9 @@ class Build:
 
     def link_of(self, target):
         """The folder in which a program is linked, and the command."""
-        (link,) = glob.glob(os.path.join(glob.escape(self.folder), "**", "CMakeFiles", target + ".dir", "link.txt"),
-                            recursive=True)
+        links = glob.glob(os.path.join(glob.escape(self.folder), "**", "CMakeFiles", target + ".dir", "link.txt"),
+                          recursive=True)
+        link = min(links, key=len)  # Tests may have made other builds in folders of this one.
         with open(link, encoding="utf-8") as file:
             return os.path.dirname(os.path.dirname(os.path.dirname(link))), shlex.split(file.read())
 
@@ -546,6 +547,8 @@ class Bench:
         """Returns 'killed by …', 'survived', 'the same code' or 'not C'."""
         if mutant.path.startswith(PUBLIC):
             return self.fate_of_header(mutant)
+        if mutant.path.endswith(".c") and not self.build.entries_of(mutant.path):
+            return "not C"  # Here it is not compiled.
         tests = sorted(self.tests_of(mutant.path), key=lambda test: test.promise(mutant.path))
         is_other = False  # Checked only before the first test that takes long.
         with self.changed(mutant):
