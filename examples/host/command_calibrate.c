@@ -308,13 +308,12 @@ static int calibrate(device_t *device, const options_t *options)
 
 const command_t command_calibrate = {
     .name = "calibrate",
-    .usage = "[-p PORT] [--seconds N] [--front DEG] [--upside-down] [--offset MM]",
-    .summary = "how the lidar is mounted: front, the robot's own parts, offset of ranges",
-    .details =
-        "Asks one question at a time, and prints the result for C, Python, ROS and this tool.\n"
-        "What does not fit is refused with the reason, and asked again. --upside-down: the\n"
-        "lidar hangs; --front: roughly where the front is, if two walls are equally near;\n"
-        "--seconds: how long the robot is turned (20).",
+    .usage = "[-p PORT] [--seconds N] [--front DEG] [--upside-down]\n                [--offset MM]",
+    .summary = "how the lidar is mounted: front, own parts, offset of ranges",
+    .details = "Asks one question at a time, and prints the result for C, Python, ROS and this\n"
+               "tool. What does not fit is refused with the reason, and asked again.\n"
+               "--upside-down: the lidar hangs; --front: roughly where the front is, if two\n"
+               "walls are equally near; --seconds: how long the robot is turned (20).",
     .accepts = "psFUOq",
     .use = calibrate,
 };
