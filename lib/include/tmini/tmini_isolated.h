@@ -17,9 +17,9 @@
  *     };
  *
  * Of points at random distances it removes 96 %, of the simulated room's others 0.1 %, of a real
- * unit's recording 0.3 %. For maps and pictures, not for stopping: a thin thing far away (3 cm beyond 1 m at 10 Hz) is one
- * point, too. Fields (tmini_fields.h) see the points before this step does; tmini_steps.h has the
- * order. Any context; no waiting; about 75 instructions per point. */
+ * unit's recording 0.3 %. For maps and pictures, not for stopping: a thin thing far away (3 cm
+ * beyond 1 m at 10 Hz) is one point, too. Fields (tmini_fields.h) see the points before this step
+ * does; tmini_steps.h has the order. Any context; no waiting; about 75 instructions per point. */
 
 #ifndef TMINI_ISOLATED_H
 #define TMINI_ISOLATED_H
