@@ -66,6 +66,9 @@ void lidar_log_event(lidar_log_t *log, tmini_event_t event)
     case TMINI_EVENT_FAULTS_CHANGED:
         print_faults(log, tmini_faults(log->lidar));
         break;
+    case TMINI_EVENT_PAUSED:
+        log->print("paused, to set the frequency\n");
+        break;
     case TMINI_EVENT_LOST:
         log->print("lost; trying to get it back\n");
         break;

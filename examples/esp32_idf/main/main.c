@@ -95,6 +95,9 @@ static void handle(tmini_event_t event)
     case TMINI_EVENT_FAULTS_CHANGED:
         ESP_LOGW(TAG, "faults: %s", tmini_faults_text(tmini_faults(&lidar), faults, sizeof faults));
         break;
+    case TMINI_EVENT_PAUSED:
+        ESP_LOGW(TAG, "paused, to set the frequency");
+        break;
     case TMINI_EVENT_LOST:
         ESP_LOGW(TAG, "lost; trying to get it back");
         break;

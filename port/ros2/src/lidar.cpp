@@ -120,6 +120,7 @@ void Lidar::handle(tmini_event_t event)
         (void)tmini_faults_text(tmini_faults(&lidar_), faults, sizeof faults);
         listener_.tell(LEVEL_WARN, std::string("the lidar's faults: ") + faults);
         break;
+    case TMINI_EVENT_PAUSED:
     case TMINI_EVENT_LOST:
     case TMINI_EVENT_UNWANTED_SCANNING:
         listener_.tell(LEVEL_WARN, std::string("the lidar: ") + tmini_event_name(event));
