@@ -272,7 +272,7 @@ static void begin_stop(tmini_t *lidar)
 }
 
 /* A question, or a reboot. */
-static tmini_status_t request(tmini_t *lidar, tmini_event_t event)
+static tmini_status_t take_question(tmini_t *lidar, tmini_event_t event)
 {
     if (!is_set_up(lidar)) {
         return TMINI_ERROR_ARGUMENT;
@@ -346,8 +346,7 @@ static bool note_scanning(tmini_t *lidar)
  * set again. */
 static bool is_worth_a_restart(const tmini_t *lidar)
 {
-    const bool is_worth_another =
-        tmini_frequency_chz(lidar) == 0 && !tmini_recovery_is_mute(lidar);
+    const bool is_worth_another = tmini_frequency_chz(lidar) == 0 && !tmini_recovery_is_mute(lidar);
     return !lidar->is_recovery_off && (lidar->monitor.off_times == 1 || is_worth_another);
 }
 
@@ -705,7 +704,7 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
         tmini_monitor_forget_frequency(&lidar->monitor);
     }
     if (tmini_state(lidar) < TMINI_STATE_STARTING) {
-        return is_new || !tmini_command_is_busy(lidar) ? request(lidar, TMINI_EVENT_FREQUENCY)
+        return is_new || !tmini_command_is_busy(lidar) ? take_question(lidar, TMINI_EVENT_FREQUENCY)
                                                        : TMINI_OK;
     }
     if (is_new) {
@@ -716,22 +715,22 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
 
 tmini_status_t tmini_request_info(tmini_t *lidar)
 {
-    return request(lidar, TMINI_EVENT_INFO);
+    return take_question(lidar, TMINI_EVENT_INFO);
 }
 
 tmini_status_t tmini_request_health(tmini_t *lidar)
 {
-    return request(lidar, TMINI_EVENT_HEALTH);
+    return take_question(lidar, TMINI_EVENT_HEALTH);
 }
 
 tmini_status_t tmini_request_frequency(tmini_t *lidar)
 {
-    return request(lidar, TMINI_EVENT_FREQUENCY);
+    return take_question(lidar, TMINI_EVENT_FREQUENCY);
 }
 
 tmini_status_t tmini_reboot(tmini_t *lidar)
 {
-    return request(lidar, TMINI_EVENT_REBOOTED);
+    return take_question(lidar, TMINI_EVENT_REBOOTED);
 }
 
 void tmini_withdraw(tmini_t *lidar, tmini_event_t query)

@@ -3,9 +3,9 @@
 
 #include "tmini/tmini_cartesian.h"
 
-#define CIRCLE ((uint32_t)TMINI_FULL_CIRCLE_Q6)
-#define HALF (CIRCLE / 2)
-#define QUARTER (CIRCLE / 4)
+#define TURN ((uint32_t)TMINI_FULL_CIRCLE_Q6)
+#define HALF_TURN (TURN / 2)
+#define QUARTER (TURN / 4)
 
 /* The sine of 0 to 91 degrees in 1/65536. Straight lines between these lie below the curve by up to
  * 38 millionths, so that the entries are half of that too large. */
@@ -32,11 +32,11 @@ static uint32_t sine(uint32_t angle_q6)
 /* distance * sin(angle), for angles below a circle and a quarter. */
 static int16_t leg(uint32_t angle_q6, uint16_t distance_mm)
 {
-    const uint32_t angle = angle_q6 < CIRCLE ? angle_q6 : angle_q6 - CIRCLE;
-    const uint32_t within = angle < HALF ? angle : angle - HALF;
-    const uint32_t up = sine(within <= QUARTER ? within : HALF - within);
+    const uint32_t angle = angle_q6 < TURN ? angle_q6 : angle_q6 - TURN;
+    const uint32_t within = angle < HALF_TURN ? angle : angle - HALF_TURN;
+    const uint32_t up = sine(within <= QUARTER ? within : HALF_TURN - within);
     const int16_t length_mm = (int16_t)((distance_mm * up + 32768u) / 65536u);
-    return (int16_t)(angle < HALF ? length_mm : -length_mm);
+    return (int16_t)(angle < HALF_TURN ? length_mm : -length_mm);
 }
 
 tmini_xy_t tmini_cartesian(uint16_t angle_q6, uint16_t distance_mm)

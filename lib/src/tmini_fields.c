@@ -3,8 +3,8 @@
 
 #include "tmini/tmini_fields.h"
 
-#define CIRCLE ((int32_t)TMINI_FULL_CIRCLE_Q6)
-#define HALF (CIRCLE / 2)
+#define ROUND_Q6 ((int32_t)TMINI_FULL_CIRCLE_Q6)
+#define HALF_ROUND_Q6 (ROUND_Q6 / 2)
 #define STRAIGHT_Q6 2 /* Directions are exact to 1/64 degree. */
 
 /* --------------------------------------------------------------------------------- directions */
@@ -47,8 +47,8 @@ static bool is_origin(place_t place)
 static int32_t direction_of(place_t place)
 {
     const bool is_left = place.y > 0 || (place.y == 0 && place.x < 0);
-    int32_t from = is_left ? HALF : 0;
-    int32_t wide = HALF;
+    int32_t from = is_left ? HALF_ROUND_Q6 : 0;
+    int32_t wide = HALF_ROUND_Q6;
     while (wide > 1) {
         const int32_t middle = from + wide / 2;
         const tmini_xy_t ray = tmini_cartesian((uint16_t)middle, TMINI_FIELD_CORNER_MAX_MM);
@@ -67,8 +67,9 @@ static int32_t direction_of(place_t place)
 static int32_t turn(place_t from, place_t to, int32_t straight)
 {
     int32_t angle = direction_of(to) - direction_of(from);
-    angle += angle <= -HALF ? CIRCLE : angle > HALF ? -CIRCLE : 0;
-    return angle >= HALF - STRAIGHT_Q6 || angle <= STRAIGHT_Q6 - HALF ? straight : angle;
+    angle += angle <= -HALF_ROUND_Q6 ? ROUND_Q6 : angle > HALF_ROUND_Q6 ? -ROUND_Q6 : 0;
+    return angle >= HALF_ROUND_Q6 - STRAIGHT_Q6 || angle <= STRAIGHT_Q6 - HALF_ROUND_Q6 ? straight
+                                                                                        : angle;
 }
 
 /* Walks around the field and sees how far the view turns to both sides. If the lidar is in the
@@ -92,8 +93,8 @@ static void find_directions(tmini_field_t *field, tmini_xy_t lidar, int32_t stra
         most = turned > most ? turned : most;
     }
     const int32_t from = direction_of(first) + least;
-    field->from_q6 = (uint16_t)(from < 0 ? from + CIRCLE : from);
-    field->wide_q6 = (uint16_t)(most - least < CIRCLE ? most - least : CIRCLE);
+    field->from_q6 = (uint16_t)(from < 0 ? from + ROUND_Q6 : from);
+    field->wide_q6 = (uint16_t)(most - least < ROUND_Q6 ? most - least : ROUND_Q6);
 }
 
 static int32_t larger(int32_t one, int32_t other)
@@ -180,9 +181,9 @@ static bool set_up(tmini_field_t *field, tmini_xy_t lidar)
     }
     set_defaults(field);
     find_reach(field, lidar);
-    find_directions(field, lidar, HALF);
-    if (field->wide_q6 == CIRCLE) { /* Or the lidar is on its edge. */
-        find_directions(field, lidar, -HALF);
+    find_directions(field, lidar, HALF_ROUND_Q6);
+    if (field->wide_q6 == ROUND_Q6) { /* Or the lidar is on its edge. */
+        find_directions(field, lidar, -HALF_ROUND_Q6);
     }
     field->is_set_up = true;
     return true;

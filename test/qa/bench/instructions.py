@@ -246,6 +246,11 @@ def conversation(target, program, clean, faulty):
     session.until("STOPPED")
     session.spin_up()
     session.run(clean)
+    if session.machine.call("bench_set_frequency", 800) != 0:
+        raise BenchError("another frequency is refused")
+    session.run(clean)
+    session.reach_scanning()
+    session.run(clean)
     session.run(faulty)
     session.until("LOST")
     session.reach_scanning()
