@@ -126,6 +126,7 @@ void Lidar::handle(tmini_event_t event)
         listener_.tell(LEVEL_WARN, std::string("the lidar: ") + tmini_event_name(event));
         break;
     case TMINI_EVENT_STARTED:
+    case TMINI_EVENT_PAUSED:
     case TMINI_EVENT_STOPPED:
     case TMINI_EVENT_RECOVERED:
         listener_.tell(LEVEL_OK, std::string("the lidar: ") + tmini_event_name(event));
@@ -155,6 +156,7 @@ void Lidar::renew_report()
     report_.state = tmini_state(&lidar_);
     report_.port = port_.state;
     report_.reconnections = port_.reconnections;
+    report_.age_ms = tmini_scan_age_ms(&lidar_);
     report_.faults = tmini_faults(&lidar_);
     report_.wanted_chz = frequency_chz_;
     report_.info = *tmini_info(&lidar_);

@@ -127,6 +127,7 @@ Verdict judge(const Report &before, const Report &now, double seconds)
              {"scans published", std::to_string(now.published)},
              {"scans complete", std::to_string(now.complete)},
              {"scans incomplete", std::to_string(now.incomplete)},
+             {"age of the newest complete scan, ms", std::to_string(now.age_ms)},
              {"wrong checksums", std::to_string(counters.checksum_errors)},
              {"bytes skipped", std::to_string(counters.bytes_skipped)},
              {"bytes overrun", std::to_string(counters.bytes_overrun)},

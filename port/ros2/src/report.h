@@ -29,6 +29,7 @@ struct Report {
     std::uint32_t complete = 0;   /* Scans. */
     std::uint32_t incomplete = 0; /* Scans, published or not. */
     std::uint32_t published = 0;  /* Messages. */
+    std::uint32_t age_ms = 0;     /* Of the newest complete scan. */
     tmini_counters_t counters = {};
     tmini_info_t info = {};
     tmini_ct_info_t ct = {};

@@ -308,7 +308,8 @@ def main():
     if "TMINI_ROS_BUILT" not in os.environ:
         script = build(package, archive, work)
         os.environ.update(TMINI_ROS_BUILT="1", ROS_LOCALHOST_ONLY="1", ROS_DOMAIN_ID=str(os.getpid() % 100 + 1))
-        os.execlp("sh", "sh", "-c", '. "$0" && exec "$@"', script, "python3", *sys.argv)
+        python = Path(shutil.which("ros2")).read_text(encoding="utf-8").splitlines()[0][2:].strip()
+        os.execlp("sh", "sh", "-c", '. "$0" && exec "$@"', script, python, *sys.argv)
     os.chdir(work)
     atexit.register(ros2, "daemon", "stop")
     unittest.main(argv=sys.argv[:1] + sys.argv[6:], verbosity=2)

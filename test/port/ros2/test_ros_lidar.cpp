@@ -165,12 +165,15 @@ static void scans_come_at_the_wished_frequency_which_may_change_and_the_end_stop
         observer->await("10 Hz", [] { return observer->frequency_chz >= 980; });
         lidar.want_frequency(700);
         observer->await("7 Hz", [] { return observer->frequency_chz <= 720; });
+        observer->await_scans(2);
         const Report report = lidar.report();
         require(report.state == TMINI_STATE_SCANNING, "scanning is reported");
         require(report.wanted_chz == 700, "the wish is reported");
         require(report.info.model == TMINI_MODEL_T_MINI_PLUS, "the model is known");
         require(report.complete >= 3 && report.published == report.complete, "scans are counted");
         require(report.counters.packets > 0, "packets are counted");
+        require(report.age_ms < 1000, "the newest scan is young");
+        require(observer->has_told("the lidar: paused"), "the pause is told");
     }
     simulator.end();
     require(is_lidar_idle(), "the lidar is idle at the end");

@@ -279,6 +279,7 @@ static void values_are_totals_and_the_rate()
     now.published = 31;
     now.counters.checksum_errors = 4;
     now.counters.losses = 5;
+    now.age_ms = 70;
     now.reconnections = 6;
     TEST_ASSERT_EQUAL_STRING("10.5", value_of(now, "scans published per second").c_str());
     TEST_ASSERT_EQUAL_STRING("20", value_of(now, "scans complete").c_str());
@@ -286,6 +287,7 @@ static void values_are_totals_and_the_rate()
     TEST_ASSERT_EQUAL_STRING("31", value_of(now, "scans published").c_str());
     TEST_ASSERT_EQUAL_STRING("4", value_of(now, "wrong checksums").c_str());
     TEST_ASSERT_EQUAL_STRING("5", value_of(now, "losses").c_str());
+    TEST_ASSERT_EQUAL_STRING("70", value_of(now, "age of the newest complete scan, ms").c_str());
     TEST_ASSERT_EQUAL_STRING("6", value_of(now, "reconnections").c_str());
 }
 
