@@ -412,16 +412,16 @@ static void judge_stop(check_t *check)
 }
 
 /* The names of the answers with that grade; the first one's headline explains it. */
-static void print_names(const check_t *check, grade_t grade)
+static void print_names(const check_t *check, grade_t wanted)
 {
     const char *headline = NULL;
     const char *comma = "";
     for (size_t i = 0; i < check->answer_count; i++) {
-        const answer_t *const answer = &check->answers[i];
-        if (answer->grade == grade) {
-            (void)printf("%s%s", comma, answer->name);
+        const answer_t *const one = &check->answers[i];
+        if (one->grade == wanted) {
+            (void)printf("%s%s", comma, one->name);
             comma = ", ";
-            headline = headline == NULL ? answer->headline : headline;
+            headline = headline == NULL ? one->headline : headline;
         }
     }
     (void)printf(headline != NULL ? " (%s)\n" : "\n", headline);
@@ -442,9 +442,9 @@ static int conclude(const check_t *check)
     if (worst != GOOD) {
         print_names(check, worst);
     }
-    for (int grade = BAD; grade >= GOOD; grade--) {
+    for (int shown = BAD; shown >= GOOD; shown--) {
         for (size_t i = 0; i < check->answer_count; i++) {
-            if (check->answers[i].grade == (grade_t)grade) {
+            if (check->answers[i].grade == (grade_t)shown) {
                 print_answer(&check->answers[i]);
             }
         }

@@ -97,7 +97,7 @@ static int send_rest(tmini_t *lidar)
     return TMINI_UNDER_WAY;
 }
 
-/* Waits in `phase` for a quiet line; if it does not become quiet in time, the attempt has failed. */
+/* Waits in `phase` for a quiet line. If it does not become quiet in time, the attempt fails. */
 static void await_quiet(tmini_t *lidar, tmini_phase_t phase)
 {
     const unsigned quiet_ms = lidar->link.timing->quiet_line_ms;
@@ -113,7 +113,7 @@ TMINI_NOINLINE static void quiesce(tmini_t *lidar)
 }
 
 /* Sends a command (the line is quiet) and awaits its reply in `phase`. */
-static int request(tmini_t *lidar, uint8_t code, tmini_phase_t phase, uint16_t timeout_ms)
+static int send_and_await(tmini_t *lidar, uint8_t code, tmini_phase_t phase, uint16_t timeout_ms)
 {
     tmini_reply_header_t reply;
     send(lidar, (tmini_command_code_t)code);
@@ -127,7 +127,7 @@ static int request(tmini_t *lidar, uint8_t code, tmini_phase_t phase, uint16_t t
 static int ask(tmini_t *lidar)
 {
     lidar->command.asks++;
-    return request(lidar, TMINI_COMMAND_GET_FREQUENCY, TMINI_PHASE_ASKING, ASK_EACH_MS);
+    return send_and_await(lidar, TMINI_COMMAND_GET_FREQUENCY, TMINI_PHASE_ASKING, ASK_EACH_MS);
 }
 
 /* --------------------------------------------------------------------------- how commands end */
@@ -182,7 +182,7 @@ static int step(tmini_t *lidar)
         command->steps++;
         code = next_step(lidar);
     }
-    return request(lidar, code, TMINI_PHASE_AWAITING, lidar->link.timing->reply_timeout_ms);
+    return send_and_await(lidar, code, TMINI_PHASE_AWAITING, lidar->link.timing->reply_timeout_ms);
 }
 
 /* A late reply to the previous step looks like the reply to a step that was refused. So another
@@ -260,12 +260,13 @@ static int on_quiet(tmini_t *lidar)
             return ask_again(lidar); /* It has been sent already. */
         }
         tmini_command_forget_frequency(lidar);
-        return request(lidar, TMINI_COMMAND_REBOOT, TMINI_PHASE_REBOOTING, TMINI_REBOOT_TIME_MS);
+        return send_and_await(lidar, TMINI_COMMAND_REBOOT, TMINI_PHASE_REBOOTING,
+                              TMINI_REBOOT_TIME_MS);
     case TMINI_EVENT_FREQUENCY:
         return has_answered ? step(lidar) : ask_again(lidar);
     default:
-        return request(lidar, codes[command->operation], TMINI_PHASE_AWAITING,
-                       lidar->link.timing->reply_timeout_ms);
+        return send_and_await(lidar, codes[command->operation], TMINI_PHASE_AWAITING,
+                              lidar->link.timing->reply_timeout_ms);
     }
 }
 

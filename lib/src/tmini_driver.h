@@ -198,7 +198,7 @@ bool tmini_command_has_frequency(const tmini_t *lidar);
 /* A wish is a bit, named by the event of its success: to scan, to stop, or a question. */
 static inline bool tmini_recovery_wishes(const tmini_t *lidar, tmini_event_t event)
 {
-    return (lidar->recovery.wishes >> event & 1u) != 0;
+    return (lidar->recovery.wishes & 1u << event) != 0;
 }
 
 /* Adds a wish. To stop replaces all others. */

@@ -248,7 +248,8 @@ def conversation(target, program, clean, faulty):
     session.run(clean)
     if session.machine.call("bench_set_frequency", 800) != 0:
         raise BenchError("another frequency is refused")
-    session.run(clean)
+    for _ in range(4):
+        session.run(clean)
     session.reach_scanning()
     session.run(clean)
     session.run(faulty)

@@ -39,7 +39,7 @@ static sim_config_t lidar_config(const line_config_t *config, uint64_t seed)
     return lidar;
 }
 
-/* How far the rotor has turned since the previous sample noted; jitter may take it back a little. */
+/* How far the rotor has turned since the previous sample noted; jitter may take it back. */
 static int32_t turn_on(line_t *line, uint16_t angle_q6)
 {
     const uint32_t turned = (angle_q6 + FULL_CIRCLE_Q6 - line->last_q6) % FULL_CIRCLE_Q6;
