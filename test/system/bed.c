@@ -228,13 +228,22 @@ static void note(bed_t *bed, tmini_event_t event)
     }
 }
 
+/* A program that polls each 50 ms or more seldom looks like one that pauses: it gives the lidar
+ * another 100 ms. */
+static uint64_t silence_us(const bed_t *bed)
+{
+    const uint32_t chance_ms = bed->poll_ms >= 50 ? 100 + bed->poll_ms : 0;
+
+    return SILENCE_US + (bed->poll_ms + chance_ms) * (uint64_t)1000u;
+}
+
 /* The driver announces its own stops before, a silent line within a second. */
 static void note_gaps(bed_t *bed)
 {
     if (bed->flows && bed->stop_sent) {
         bed->unheard = "the driver stopped the lidar without an event";
     } else if (bed->flows && bed->held == NULL &&
-               bed->now_us - bed->heard_us > SILENCE_US + bed->poll_ms * 1000u) {
+               bed->now_us - bed->heard_us > silence_us(bed)) {
         bed->unheard = "a second of silence without an event";
     }
     bed->stop_sent = false;

@@ -201,10 +201,12 @@ static const char *tell(uint32_t seed, bool is_told)
     const uint64_t sound_us = needs_reboot ? 0 : sim_sound_us(&bed.sim);
     const uint64_t end_us = (sound_us > bed.now_us ? sound_us : bed.now_us) +
                             (needs_reboot ? 2u : 1u) * LIMIT_MS * UINT64_C(1000);
-    while (bed_shortcoming(&bed) != NULL && bed.now_us < end_us && bed_misdeed(&bed) == NULL) {
-        bed_step(&bed);
-    }
-    run_ms(3000); /* And stays so. */
+    do { /* Fulfilled, and stays so. */
+        while (bed_shortcoming(&bed) != NULL && bed.now_us < end_us && bed_misdeed(&bed) == NULL) {
+            bed_step(&bed);
+        }
+        run_ms(3000);
+    } while (bed_shortcoming(&bed) != NULL && bed.now_us < end_us && bed_misdeed(&bed) == NULL);
     bed_tell_state(&bed);
     const char *const shortcoming = bed_shortcoming(&bed);
     if (bed_misdeed(&bed) != NULL) {
