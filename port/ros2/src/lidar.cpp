@@ -126,7 +126,6 @@ void Lidar::handle(tmini_event_t event)
         listener_.tell(LEVEL_WARN, std::string("the lidar: ") + tmini_event_name(event));
         break;
     case TMINI_EVENT_STARTED:
-    case TMINI_EVENT_PAUSED:
     case TMINI_EVENT_STOPPED:
     case TMINI_EVENT_RECOVERED:
         listener_.tell(LEVEL_OK, std::string("the lidar: ") + tmini_event_name(event));
