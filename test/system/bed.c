@@ -14,7 +14,9 @@
 #define STOP 0x65u
 #define SCANS 5u            /* In a row, before a wish counts as fulfilled. */
 #define IDLE_US 1500000u    /* Idle, before it does. */
-#define SILENCE_US 1050000u /* Announced by LOST; a second, and what a slow poll adds. */
+/* Announced by LOST: a second after the last packet. A damaged one may hide it for 100 ms more, until
+ * it is given up. */
+#define SILENCE_US 1150000u
 #define MOST_EVENTS_PER_SECOND 10u
 
 static int port_write(void *context, const uint8_t *bytes, size_t count)
@@ -228,22 +230,13 @@ static void note(bed_t *bed, tmini_event_t event)
     }
 }
 
-/* A program that polls each 50 ms or more seldom looks like one that pauses: it gives the lidar
- * another 100 ms. */
-static uint64_t silence_us(const bed_t *bed)
-{
-    const uint32_t chance_ms = bed->poll_ms >= 50 ? 100 + bed->poll_ms : 0;
-
-    return SILENCE_US + (bed->poll_ms + chance_ms) * (uint64_t)1000u;
-}
-
 /* The driver announces its own stops before, a silent line within a second. */
 static void note_gaps(bed_t *bed)
 {
     if (bed->flows && bed->stop_sent) {
         bed->unheard = "the driver stopped the lidar without an event";
     } else if (bed->flows && bed->held == NULL &&
-               bed->now_us - bed->heard_us > silence_us(bed)) {
+               bed->now_us - bed->heard_us > SILENCE_US + bed->poll_ms * 1000u) {
         bed->unheard = "a second of silence without an event";
     }
     bed->stop_sent = false;
