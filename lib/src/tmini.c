@@ -326,9 +326,10 @@ TMINI_NOINLINE static tmini_sign_t sign_of_packet(const tmini_t *lidar)
  * again: the program expects no scans, so the motor would wear out unnoticed. */
 static bool note_scanning(tmini_t *lidar)
 {
-    switch (tmini_command_packet(lidar, sign_of_packet(lidar))) {
-    case TMINI_PACKET_NEXT:
+    if (tmini_command_is_scanning(lidar)) {
         return true;
+    }
+    switch (tmini_command_packet(lidar, sign_of_packet(lidar))) {
     case TMINI_PACKET_FIRST:
         begin_scanning(lidar);
         return true;

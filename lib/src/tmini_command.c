@@ -461,9 +461,6 @@ tmini_packet_meaning_t tmini_command_packet(tmini_t *lidar, tmini_sign_t sign)
     case TMINI_PHASE_PAUSING:
     case TMINI_PHASE_LISTENING:
         return sign == TMINI_SIGN_SCANS ? TMINI_PACKET_FIRST : TMINI_PACKET_IGNORED;
-    case TMINI_PHASE_SCANNING:
-    case TMINI_PHASE_LAST_CHANCE:
-        return TMINI_PACKET_NEXT;
     default: /* Nothing is known, it has been stopped just now, or it reboots. */
         return TMINI_PACKET_IGNORED;
     }

@@ -31,11 +31,11 @@ def packet(samples, first_q6, last_q6, *, is_start=False, sample=bytes(3)):
 
 def points(parameter):
     """A packet of 1 to 80 samples with LSA just below FSA, so that its angles wrap. From parameter 80 on, the
-    samples have ranges."""
+    samples have ranges and a flag."""
     samples = 1 + parameter % 80
     first = 6400
     last = first if samples == 1 else first - 1
-    return packet(samples, first, last, sample=b"\x01\x55\xAA" if parameter >= 80 else bytes(3))
+    return packet(samples, first, last, sample=b"\x01\x57\xAA" if parameter >= 80 else bytes(3))
 
 
 def header(parameter):

@@ -22,7 +22,7 @@ static tmini_counters_t counters;
 static limit_point_t limit_points[LIMIT_POINTS];
 
 void bench_main(void);
-void bench_begin(bool dma, bool streaming, size_t rx_size);
+void bench_begin(bool dma, bool streaming, size_t rx_size, unsigned filter);
 tmini_status_t bench_command(tmini_command_code_t command);
 tmini_status_t bench_set_frequency(uint16_t frequency_chz);
 void interrupt_feed_byte(uint8_t byte);
@@ -49,14 +49,15 @@ static uint32_t bench_clock(void *context)
 
 static const tmini_port_t port = {.write = bench_write, .now_ms = bench_clock};
 
-void bench_begin(bool dma, bool streaming, size_t rx_size)
+void bench_begin(bool dma, bool streaming, size_t rx_size, unsigned filter)
 {
     const tmini_config_t config = {.port = &port,
                                    .rx_buffer = bench_rx,
                                    .rx_size = rx_size,
                                    .rx_dma = dma,
                                    .points = streaming ? NULL : points,
-                                   .max_points = streaming ? 0 : TMINI_SCAN_POINTS_TYPICAL};
+                                   .max_points = streaming ? 0 : TMINI_SCAN_POINTS_TYPICAL,
+                                   .filter = (uint8_t)filter};
     if (tmini_init(&bench_lidar, &config) != TMINI_OK) {
         for (;;) {
         }
