@@ -312,7 +312,8 @@ def test_a_port_has_one_user_and_is_free_afterwards(simulator):
         assert lidar.read(30).number == 1
 
 
-@pytest.mark.parametrize("end", ["sys.exit()", "raise ValueError", "os.kill(os.getpid(), signal.SIGTERM)\nlidar.read(5)",
+@pytest.mark.parametrize("end", ["sys.exit()", "raise ValueError",
+                                 "os.kill(os.getpid(), signal.SIGTERM)\nlidar.read(5)",
                                  "os.kill(os.getpid(), signal.SIGHUP)\nlidar.read(5)"])
 def test_however_a_program_ends_the_lidar_stops(simulator, end):
     """A signal needs the lines of the README."""

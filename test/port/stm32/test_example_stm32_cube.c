@@ -135,13 +135,18 @@ static void work_for(uint32_t ms)
     }
 }
 
-/* Runs from reset to the start command: a stop command, a quiet line, a start command. */
+/* Runs from reset to the start command: a stop command, a quiet line, a question that is answered
+ * (6.00 Hz), a start command. */
 static void start_scanning(void)
 {
     lidar_start(&huart1);
     work_for(2);
     TEST_ASSERT_EQUAL_HEX8(0x65, sent[1]);
+    static const uint8_t answer[] = {0xA5, 0x5A, 4, 0, 0, 0, 4, 0x58, 2, 0, 0};
     work_for(60);
+    TEST_ASSERT_EQUAL_HEX8(0x0D, sent[1]);
+    line_send(answer, sizeof answer);
+    work_for(5);
     TEST_ASSERT_EQUAL_HEX8(0x60, sent[1]);
     static const uint8_t reply[] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
     line_send(reply, sizeof reply);
