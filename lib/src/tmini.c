@@ -146,8 +146,9 @@ static void begin_scanning(tmini_t *lidar)
         tmini_recovery_forget(lidar);
         raise_event(lidar, TMINI_EVENT_STARTED);
     }
-    if (!tmini_command_has_frequency(lidar) && lidar->monitor.turns_to_still == 0) {
+    if (tmini_recovery_is_unset(lidar)) {
         fail(lidar, lidar->command_error);
+        tmini_recovery_note_frequency(lidar, true);
     }
     expect_packet(lidar);
     tmini_decoder_restart(&lidar->decoder);
@@ -168,15 +169,20 @@ static void fail_attempt(tmini_t *lidar, int result)
             return;
         }
     }
-    tmini_recovery_back_off(lidar);
+    tmini_recovery_back_off(lidar, result);
 }
 
 /* The event is not raised if no frequency is wanted and nobody has asked. */
 static void end_frequency(tmini_t *lidar, int result)
 {
+    const bool is_set = result == TMINI_OK || lidar->command.wanted_chz == 0;
     tmini_monitor_forget_wish(&lidar->monitor);
+    tmini_recovery_note_frequency(lidar, is_set);
     if (result != TMINI_OK) {
         lidar->command_error = (int8_t)result;
+        if (tmini_recovery_wishes(lidar, TMINI_EVENT_FREQUENCY)) {
+            fail(lidar, result);
+        }
     } else if (lidar->command.wanted_chz != 0 ||
                tmini_recovery_wishes(lidar, TMINI_EVENT_FREQUENCY)) {
         raise_event(lidar, TMINI_EVENT_FREQUENCY);
@@ -459,6 +465,7 @@ static bool receive(tmini_t *lidar)
     uint16_t effort = 0;
     if (decoder->builder.ended) { /* The packet that ended the scan is decoded again. */
         effort = (uint16_t)(FRAME_EFFORT + tmini_parser_frame(parser)->size);
+        effort = effort < TMINI_PARSER_EFFORT ? effort : TMINI_PARSER_EFFORT - 1;
     }
     while (lidar->pending == 0) {
         if (effort >= TMINI_PARSER_EFFORT) {
@@ -670,6 +677,7 @@ tmini_status_t tmini_stop(tmini_t *lidar)
     }
     if (is_stopping) {
         tmini_recovery_wish(lidar, TMINI_EVENT_STOPPED); /* And nothing else. */
+        lidar->idle_ms = 0;
         return TMINI_OK;
     }
     if (!lidar->is_listen_only) {
@@ -765,21 +773,32 @@ uint32_t tmini_scan_age_ms(const tmini_t *lidar)
     return age_ms < AGE_MAX_MS ? age_ms : AGE_MAX_MS;
 }
 
-/* Silence is observed in steps of 50 ms at most (tmini_line.c). */
+/* For how long silence may be left unobserved: it counts as 50 ms at most (tmini_line.c). */
+static uint32_t candidate_due_ms(const tmini_t *lidar)
+{
+    const uint32_t frame_ms = lidar->link.timing->frame_timeout_ms;
+    const uint32_t silent_ms = lidar->line.silent_ms;
+    const uint32_t left_ms = frame_ms > silent_ms ? frame_ms - silent_ms : 1;
+    if (tmini_parser_pending(&lidar->decoder.parser) == 0) {
+        return UINT16_MAX;
+    }
+    return left_ms < TMINI_UNSEEN_SILENCE_MAX_MS ? left_ms : TMINI_UNSEEN_SILENCE_MAX_MS;
+}
+
 uint32_t tmini_next_poll_ms(const tmini_t *lidar)
 {
-    if (!is_set_up(lidar) || lidar->idle_ms == 0) {
-        const bool waits_for_port =
-            is_set_up(lidar) && lidar->pending == 0 && tmini_command_is_sending(lidar);
-        return waits_for_port ? 1 : 0;
+    if (!is_set_up(lidar) || lidar->pending != 0) {
+        return 0;
     }
-    uint32_t due_ms = tmini_command_due_ms(lidar);
-    if (tmini_parser_pending(&lidar->decoder.parser) > 0) {
-        const uint32_t frame_ms = lidar->link.timing->frame_timeout_ms;
-        const uint32_t silent_ms = lidar->line.silent_ms;
-        const uint32_t left_ms = frame_ms > silent_ms ? frame_ms - silent_ms : 1;
-        due_ms = left_ms < due_ms ? left_ms : due_ms;
+    if (tmini_command_is_sending(lidar)) {
+        return 1;
     }
+    if (lidar->idle_ms == 0) {
+        return 0;
+    }
+    const uint32_t command_ms = tmini_command_due_ms(lidar);
+    const uint32_t candidate_ms = candidate_due_ms(lidar);
+    const uint32_t due_ms = candidate_ms < command_ms ? candidate_ms : command_ms;
     const uint32_t passed_ms = since_look_ms(lidar);
     return due_ms > passed_ms ? due_ms - passed_ms : 0;
 }

@@ -17,7 +17,8 @@
  * not, because late replies to them could not be told apart. */
 #define ASK_EACH_MS 250
 #define ASKS_MAX 30
-#define ASKS_PER_STEP 8 /* What a step without an answer counts for. */
+#define UNCHANGED_MS 2000 /* For another reply to a step, if replies have no limit. */
+#define ASKS_PER_STEP 8   /* What a step without an answer counts for. */
 
 /* A reply outside these limits is garbage: section 1 gives 6 to 12 Hz. */
 #define PLAUSIBLE_CHZ_MIN 100
@@ -190,7 +191,10 @@ static int step(tmini_t *lidar)
 static int await_another_frequency(tmini_t *lidar)
 {
     tmini_parser_await_again(&lidar->decoder.parser);
-    lidar->command.phase = TMINI_PHASE_UNCHANGED; /* Without a new time limit. */
+    lidar->command.phase = TMINI_PHASE_UNCHANGED; /* Without a new time limit, if there is one. */
+    if (lidar->command.timeout_ms == 0) {
+        enter(lidar, TMINI_PHASE_UNCHANGED, UNCHANGED_MS);
+    }
     return TMINI_UNDER_WAY;
 }
 
@@ -200,6 +204,7 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
     const bool is_step = command->code != TMINI_COMMAND_GET_FREQUENCY;
     const bool may_be_late = command->phase == TMINI_PHASE_ASKING && command->is_repeated;
     if (frequency_chz < PLAUSIBLE_CHZ_MIN || frequency_chz > PLAUSIBLE_CHZ_MAX) {
+        tmini_command_forget_frequency(lidar);
         return TMINI_ERROR_REPLY;
     }
     if (is_step && frequency_chz == command->frequency_chz) {
@@ -304,7 +309,8 @@ static int on_time_out(tmini_t *lidar)
 {
     switch (lidar->command.phase) {
     case TMINI_PHASE_NONE: /* From now on packets mean unwanted scanning. */
-        enter(lidar, TMINI_PHASE_WATCHING, 0);
+        lidar->command.phase = TMINI_PHASE_WATCHING;
+        lidar->command.timeout_ms = 0;
         return TMINI_UNDER_WAY;
     case TMINI_PHASE_ASKING:
         return ask_again(lidar);
@@ -366,16 +372,24 @@ uint16_t tmini_command_idle_ms(const tmini_t *lidar)
     return lidar->command.timeout_ms == 0 ? UINT16_MAX : time_left_ms(lidar);
 }
 
+/* How much of `whole_ms` is left. */
+static uint32_t rest_ms(uint32_t whole_ms, uint32_t passed_ms)
+{
+    return whole_ms > passed_ms ? whole_ms - passed_ms : 0;
+}
+
+/* A quiet line is watched closely enough to see its silence. */
 uint16_t tmini_command_due_ms(const tmini_t *lidar)
 {
-    const uint16_t quiet_ms = lidar->link.timing->quiet_line_ms;
-    const uint16_t silent_ms = lidar->line.silent_ms;
-    if (!awaits_quiet(lidar) || silent_ms >= quiet_ms) {
+    const uint32_t quiet_ms = lidar->link.timing->quiet_line_ms;
+    const uint32_t silent_ms = rest_ms(quiet_ms, lidar->line.silent_ms);
+    const uint32_t since_ms = rest_ms(quiet_ms, lidar->line.now_ms - lidar->command.since_ms);
+    uint32_t due_ms = silent_ms > since_ms ? silent_ms : since_ms;
+    if (!awaits_quiet(lidar)) {
         return tmini_command_idle_ms(lidar);
     }
-    const uint16_t left_ms = time_left_ms(lidar);
-    const uint16_t due_ms = (uint16_t)(quiet_ms - silent_ms);
-    return due_ms < left_ms ? due_ms : left_ms;
+    due_ms = due_ms < TMINI_UNSEEN_SILENCE_MAX_MS ? due_ms : TMINI_UNSEEN_SILENCE_MAX_MS;
+    return (uint16_t)(due_ms < time_left_ms(lidar) ? due_ms : time_left_ms(lidar));
 }
 
 /* ------------------------------------------------------------------------ for the layers above */
@@ -447,8 +461,10 @@ tmini_packet_meaning_t tmini_command_packet(tmini_t *lidar, tmini_sign_t sign)
     const bool is_start = lidar->command.operation == TMINI_EVENT_STARTED;
     switch (lidar->command.phase) {
     case TMINI_PHASE_WATCHING:
-    case TMINI_PHASE_IDLE:
-        return TMINI_PACKET_UNWANTED;
+    case TMINI_PHASE_IDLE: /* At once, it may be of the tail, or held by a layer below. */
+        return tmini_has_elapsed(lidar, lidar->command.since_ms, TMINI_BACK_OFF_MS)
+                   ? TMINI_PACKET_UNWANTED
+                   : TMINI_PACKET_IGNORED;
     case TMINI_PHASE_ASKING:
     case TMINI_PHASE_UNCHANGED:
         return on_packet_while_idle(lidar);

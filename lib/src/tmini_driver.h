@@ -46,6 +46,10 @@ void tmini_withdraw(tmini_t *lidar, tmini_event_t query);
 
 /* ------------------------------------------------------------------------------- tmini_line.c */
 
+/* Of the time between two polls, at most this much counts as silence: bytes may be waiting in a
+ * layer below. */
+#define TMINI_UNSEEN_SILENCE_MAX_MS 50u
+
 /* The driver has handled all that had come, unless the port holds more. */
 static inline void tmini_line_settle(tmini_t *lidar)
 {
@@ -230,9 +234,16 @@ bool tmini_recovery_is_mute(const tmini_t *lidar);
 /* Asks the port, if it can, to start its reception again: after a loss or a failed attempt. */
 void tmini_recovery_restart_reception(const tmini_t *lidar);
 
-/* An attempt has failed: waits before the next one, unless that has been asking in vain for longer
- * than any pause. */
-void tmini_recovery_back_off(tmini_t *lidar);
+/* An attempt has failed with this result: waits before the next one, unless it has been asking in
+ * vain for longer than any pause. */
+void tmini_recovery_back_off(tmini_t *lidar, int result);
+
+/* The wanted frequency has been set, or could not be. */
+void tmini_recovery_note_frequency(tmini_t *lidar, bool is_set);
+
+/* True from the failure on, until tmini_recovery_note_frequency() has heard that it is set or
+ * reported. */
+bool tmini_recovery_is_unset(const tmini_t *lidar);
 
 /* The lidar scans again, by an attempt or by itself. */
 void tmini_recovery_end(tmini_t *lidar);

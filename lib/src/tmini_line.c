@@ -6,10 +6,6 @@
 
 #include "tmini_driver.h"
 
-/* Of the time between two polls, at most this much counts as silence: bytes may be waiting in a
- * layer below. */
-#define UNSEEN_SILENCE_MAX_MS 50
-
 /* When bytes came is known only if polls are at most WATCHED_MS apart and the bytes are at most
  * FIFO_MS late (a UART's FIFO). */
 #define WATCHED_MS 30u
@@ -131,7 +127,8 @@ static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t pa
 
 static void note_silence(tmini_line_t *line, uint32_t passed_ms)
 {
-    const uint32_t seen_ms = passed_ms < UNSEEN_SILENCE_MAX_MS ? passed_ms : UNSEEN_SILENCE_MAX_MS;
+    const uint32_t seen_ms =
+        passed_ms < TMINI_UNSEEN_SILENCE_MAX_MS ? passed_ms : TMINI_UNSEEN_SILENCE_MAX_MS;
     const uint32_t silent_ms = line->silent_ms + seen_ms;
     line->silent_ms = (uint16_t)(silent_ms < UINT16_MAX ? silent_ms : UINT16_MAX);
 }

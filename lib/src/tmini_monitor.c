@@ -95,6 +95,7 @@ static bool has_become_off(tmini_monitor_t *monitor, uint16_t chz, uint16_t want
     if (monitor->off_turns < OFF_TURNS || lasted < enough) {
         return false;
     }
+    monitor->faults = monitor->faults & TMINI_FAULT_MASK;
     if (is_wrong) {
         monitor->faults |= TMINI_FAULT_FREQUENCY;
     }

@@ -5,11 +5,11 @@
  * operation from what is wanted and what is known. To scan, a ladder of attempts is made, at the
  * start and after a loss: an attempt asks until the lidar answers, sets the wanted frequency, and
  * starts. After a failure comes a pause, which doubles up to a limit. A lidar that answers and does
- * not scan is rebooted after every third failure. */
+ * not scan is rebooted before the fourth attempt and each later one. */
 
 #include "tmini_driver.h"
 
-/* After every third failed attempt, the next one reboots the lidar first. */
+/* After so many failed attempts, the next one reboots the lidar first. */
 #define REBOOT_AFTER 3
 
 /* Value of `attempts` while the first attempt has not failed yet. */
@@ -18,6 +18,7 @@
 /* Bits of tmini_recovery_t.contact. */
 #define MUTE 1u /* The lidar has been asked again and again, and has answered nothing since. */
 #define HAS_ANSWERED 2u /* Since the lidar was set up. */
+#define UNSET 4u        /* The wanted frequency could not be set, which has not been reported. */
 
 #define BIT(event) (1u << (event))
 
@@ -55,7 +56,18 @@ void tmini_recovery_reset(tmini_t *lidar)
 
 void tmini_recovery_note_reply(tmini_t *lidar)
 {
-    lidar->recovery.contact = HAS_ANSWERED;
+    lidar->recovery.contact = (uint8_t)((lidar->recovery.contact & UNSET) | HAS_ANSWERED);
+}
+
+void tmini_recovery_note_frequency(tmini_t *lidar, bool is_set)
+{
+    const unsigned others = lidar->recovery.contact & ~UNSET;
+    lidar->recovery.contact = (uint8_t)(others | (is_set ? 0 : UNSET));
+}
+
+bool tmini_recovery_is_unset(const tmini_t *lidar)
+{
+    return (lidar->recovery.contact & UNSET) != 0;
 }
 
 bool tmini_recovery_note_silence(tmini_t *lidar)
@@ -69,12 +81,12 @@ bool tmini_recovery_is_mute(const tmini_t *lidar)
     return (lidar->recovery.contact & MUTE) != 0;
 }
 
-void tmini_recovery_back_off(tmini_t *lidar)
+void tmini_recovery_back_off(tmini_t *lidar, int result)
 {
     tmini_recovery_t *const recovery = &lidar->recovery;
     const uint16_t max_ms = lidar->link.timing->back_off_max_ms;
     const uint32_t doubled_ms = 2u * (uint32_t)recovery->pause_ms;
-    if (tmini_recovery_is_mute(lidar) && max_ms > 0) {
+    if (tmini_recovery_is_mute(lidar) && result == TMINI_ERROR_TIMEOUT && max_ms > 0) {
         tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
         return;
     }
@@ -162,7 +174,8 @@ void tmini_recovery_begin(tmini_t *lidar)
     if (lidar->is_recovery_off) {
         tmini_command_wait(lidar, TMINI_PHASE_LISTENING, 0);
     } else if (recovery->attempts > 0) {
-        tmini_recovery_back_off(lidar); /* Lost again before it made a complete revolution. */
+        tmini_recovery_back_off(lidar,
+                                TMINI_OK); /* Lost again before it made a complete revolution. */
     } else {
         tmini_recovery_reset(lidar);
         tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);

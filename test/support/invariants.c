@@ -311,7 +311,7 @@ static bool monitor_is_sound(const tmini_monitor_t *monitor)
 
 static bool recovery_is_sound(const tmini_recovery_t *recovery)
 {
-    return recovery->attempts <= 4;
+    return recovery->attempts <= 4 && recovery->contact < 8;
 }
 
 /* When only listening, no operation runs and no frequency is wanted. */

@@ -13,17 +13,13 @@ foreach(test test_tmini test_monitor test_blocking)
     endif()
 endforeach()
 
-# The same, told in words. The ATmega2560 keeps text in its 8 KB of RAM: two have too much.
+# The same, told in words. The ATmega2560 keeps text in its 8 KB of RAM: this is too much.
 foreach(test test_command test_recovery test_wish)
-    set(except "")
-    if(NOT test STREQUAL test_command)
-        set(except NOT_ON int16)
-    endif()
     tmini_add_unit_test(${test}
         SOURCES ${test}.c ../support/rig.c ../support/tale.c ../support/invariants.c
         MOCKS ../support/port_functions.h
         LIBRARIES tmini_test_support
-        ${except})
+        NOT_ON int16)
     if(TARGET ${test})
         target_include_directories(${test} PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
     endif()

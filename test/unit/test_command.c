@@ -172,7 +172,12 @@ void test_packets_right_after_a_failed_stop_mean_nothing(void)
 
 void test_an_idle_lidar_that_scans_is_stopped(void)
 {
-    tell(IDLE "<P !UNWANTED >65 @STOPPING +50 !STOPPED");
+    tell(IDLE "+500 <P !UNWANTED >65 @STOPPING +50 !STOPPED");
+}
+
+void test_packets_soon_after_a_stop_may_have_been_held_by_a_layer_below(void)
+{
+    tell(IDLE "~499 <P @IDLE !NONE @UNKNOWN");
 }
 
 void test_a_byte_from_an_idle_lidar_makes_its_state_unknown(void)
@@ -265,6 +270,11 @@ void test_a_lidar_that_refuses_steps_fails_with_an_error_of_its_reply(void)
         go_on(">0B <600 ~2000 >0D <600 +50");
     }
     go_on(">0B <600 ~2000 !FAILED ?REPLY");
+}
+
+void test_another_reply_to_a_step_is_awaited_for_2_s_even_if_replies_have_no_limit(void)
+{
+    tell("reply:0 " IDLE "set:700 >0D <600 +50 >0B <600 !NONE +2000 >0D <600 +50 >0B");
 }
 
 void test_a_step_without_an_answer_makes_the_driver_ask_anew(void)

@@ -118,6 +118,39 @@ void test_a_port_that_always_fails_is_reported_at_growing_intervals(void)
          "!FAILED");
 }
 
+void test_a_port_that_fails_after_the_lidar_was_asked_in_vain_is_no_endless_loop(void)
+{
+    tell(IDLE "start");
+    for (unsigned asks = 0; asks < 30; asks++) {
+        go_on(">0D +250");
+    }
+    go_on("takes:-1 !FAILED ?WRITE");
+    for (unsigned polls = 0; polls < 100; polls++) {
+        (void)tmini_poll(&rig.lidar);
+    }
+    go_on("!NONE");
+}
+
+void test_a_question_about_the_frequency_that_the_start_cannot_answer_fails(void)
+{
+    tell(IDLE "frequency >0D start +250");
+    for (unsigned asks = 0; asks < 28; asks++) {
+        go_on(">0D +250");
+    }
+    go_on(">0D +250 !FAILED ?TIMEOUT >65 +50 >60 <S !STARTED");
+}
+
+void test_a_frequency_that_nobody_tried_to_set_is_no_failure(void)
+{
+    tell("off " SCANS_AT_10 "turns:3:100 +1000 !LOST <S !RECOVERED turns:3:100");
+}
+
+void test_an_implausible_answer_leaves_the_frequency_unknown(void)
+{
+    tell(SCANS_AT_10
+         "stop >65 +50 !STOPPED start >0D <0 >65 +50 >60 <S !STARTED !FAILED ?REPLY #0");
+}
+
 /* ---- Stop ---- */
 
 void test_a_stop_ends_a_start_which_is_reported(void)

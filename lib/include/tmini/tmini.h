@@ -302,7 +302,8 @@ static inline size_t tmini_feed_position(const tmini_t *lidar);
  * time), and sends at most two bytes. If bytes are left and there is no event, it returns
  * TMINI_EVENT_MORE: call it again when other work allows. For a null pointer it returns
  * TMINI_EVENT_NONE.
- * After the first start packet every intact point is in exactly one scan, with one exception: while
+ * After the first start packet every intact point is in exactly one scan, except those of a turn
+ * that a loss, a stop or a pause cuts off; and with one exception more: while
  * the program is behind (bytes have waited for 150 ms), a scan of at most two packets that ends
  * because packets may be missing is not delivered, and its points count as points_withheld. So the
  * program catches up. */
@@ -483,9 +484,9 @@ typedef struct {
 /* tmini_recovery.c */
 typedef struct {
     uint8_t wishes;    /* A bit for each event that ends what is wanted: STARTED to REBOOTED. */
-    uint8_t attempts;  /* Failed attempts since the last complete revolution or reboot; 0: none has
-                        * been made. */
-    uint8_t contact;   /* Whether the lidar answers; two bits. */
+    uint8_t attempts;  /* Failed attempts since the last complete revolution, 1 to 3; 4: the first
+                        * has not failed yet; 0: none has been made. */
+    uint8_t contact;   /* Whether the lidar answers, and has the wanted frequency; three bits. */
     bool is_lost;      /* LOST has been raised, and RECOVERED has not. */
     uint16_t pause_ms; /* The pause after the latest failed attempt. */
     uint16_t losses;
