@@ -300,6 +300,10 @@ static void tell_word(char *word)
         tale.takes = atoi(word + 6);
     } else if (strncmp(word, "turns:", 6) == 0) {
         feed_turns(word + 6);
+    } else if (strncmp(word, "next:", 5) == 0) {
+        expect_equal(atoi(word + 5), (int)tmini_next_poll_ms(&rig.lidar), "next poll");
+    } else if (strncmp(word, "age:", 4) == 0) {
+        expect_equal((int)atol(word + 4), (int)tmini_scan_age_ms(&rig.lidar), "age");
     } else if (strchr("><+~!@#?", word[0]) == NULL) {
         tell_call(word);
     } else if (!tale.is_set_up) {

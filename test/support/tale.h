@@ -21,6 +21,7 @@
  *     @IDLE           the state
  *     #600            the frequency that is known to be set
  *     ?TIMEOUT        the error of the command that failed last
+ *     next:50 age:300 tmini_next_poll_ms() and tmini_scan_age_ms()
  *     takes:1         the port takes so many bytes per call from now on; takes:-1: it fails
  *
  * At the end a poll returns no event and sends nothing, and all that was sent has been named. After

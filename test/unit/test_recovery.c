@@ -291,6 +291,78 @@ void test_samples_without_a_range_and_without_a_start_packet_are_no_loss(void)
 
 /* ---- Without recovery ---- */
 
+/* ---- How old the newest complete scan is ---- */
+
+/* A turn of the rig is not a full circle, so a builder's verdict is put in its place. */
+void test_the_age_of_a_scan_counts_from_its_end_and_before_the_first_from_init(void)
+{
+    tell(IDLE "age:50 ~250 age:300 !NONE age:300 start >0D <600 >60 <scan <S !STARTED");
+    rig.lidar.complete_ms = rig.now_ms - 100;
+    go_on("age:100 turns:3:60 age:580 ~20 age:600");
+}
+
+void test_a_clock_that_is_set_back_a_little_makes_no_scan_younger(void)
+{
+    tell(IDLE "~250 !NONE age:300");
+    rig.now_ms -= 200;
+    go_on("age:300 !NONE age:300");
+}
+
+void test_an_age_of_24_days_remains(void)
+{
+    tell(IDLE "age:50");
+    for (unsigned i = 0; i < 5; i++) {
+        rig.now_ms += UINT32_MAX / 4;
+        go_on("!NONE");
+    }
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX / 2, tmini_scan_age_ms(&rig.lidar));
+    rig.now_ms += 1000;
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX / 2, tmini_scan_age_ms(&rig.lidar));
+}
+
+/* ---- How long a task may sleep ---- */
+
+void test_an_idle_lidar_needs_no_poll(void)
+{
+    tell(IDLE "!NONE next:65535");
+}
+
+void test_a_task_sleeps_until_the_line_is_quiet_in_steps_of_50_ms_at_most(void)
+{
+    tell("stop >65 !NONE next:50 ~20 next:30 !NONE ~20 !NONE next:10 ~10 next:0 !STOPPED");
+    tell("quiet:200 stop >65 !NONE next:50 ~50 !NONE next:50 ~50 !NONE ~50 !NONE ~50 !STOPPED");
+    tell("quiet:20 ~100 !NONE stop >65 !NONE next:20 ~20 next:0 !STOPPED");
+    tell("quiet:599 stop >65 !NONE ~300 <junk !NONE ~300 <junk !NONE ~300 <junk !NONE ~240 !NONE "
+         "next:9 ~9 >65");
+}
+
+void test_a_task_sleeps_until_a_reply_is_overdue(void)
+{
+    tell(IDLE "info >90 !NONE next:2000 ~500 next:1500 ~1600 next:0 >65");
+}
+
+void test_a_task_sleeps_until_a_candidate_is_given_up(void)
+{
+    tell(SCANS "!NONE next:1000");
+    rig_feed_byte(0xAA);
+    go_on("~10 !NONE next:50 ~50 !NONE next:50 ~10 !NONE next:40 ~50 next:0");
+}
+
+void test_a_candidate_with_no_time_at_all_is_polled_after_a_millisecond(void)
+{
+    rig_open();
+    tell(SCANS);
+    rig.timing.frame_timeout_ms = 0;
+    rig_feed_byte(0xAA);
+    go_on("~10 !NONE next:1");
+}
+
+void test_an_event_or_a_byte_that_waits_for_the_port_is_polled_at_once(void)
+{
+    tell(IDLE "takes:0 info next:1 takes:2 >90 !NONE next:2000 <info !INFO next:0 !NONE info >90");
+    go_on("stop >65 next:0 !FAILED +50 !STOPPED");
+}
+
 /* ---- What outlives a loss ---- */
 
 void test_after_a_recovery_no_scan_continues_one_from_before_the_loss(void)
