@@ -745,9 +745,9 @@ tmini_status_t tmini_reboot(tmini_t *lidar)
 void tmini_withdraw(tmini_t *lidar, tmini_event_t query)
 {
     const bool is_current =
-        tmini_command_is_busy(lidar) && lidar->command.operation == (uint8_t)query;
+        tmini_recovery_wishes(lidar, query) && lidar->command.operation == (uint8_t)query;
     tmini_recovery_forget_wish(lidar, query);
-    if (is_current && tmini_state(lidar) == TMINI_STATE_BUSY) {
+    if (is_current) {
         tmini_command_end(lidar, TMINI_ERROR_ABORTED);
         lidar->idle_ms = 0;
         act(lidar);

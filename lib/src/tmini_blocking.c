@@ -71,7 +71,7 @@ static tmini_status_t wait_for(tmini_t *lidar, tmini_status_t begun, tmini_event
             idle(lidar);
         }
     } while (is_time_left(lidar, &begun_ms, timeout_ms));
-    if (wanted >= TMINI_EVENT_INFO && wanted <= TMINI_EVENT_REBOOTED) {
+    if (wanted >= TMINI_EVENT_INFO && wanted <= TMINI_EVENT_FREQUENCY) {
         tmini_withdraw(lidar, wanted);
     }
     return TMINI_ERROR_TIMEOUT;

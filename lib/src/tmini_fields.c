@@ -62,14 +62,18 @@ static int32_t direction_of(place_t place)
     return from;
 }
 
+static int32_t larger(int32_t one, int32_t other)
+{
+    return one > other ? one : other;
+}
+
 /* The turn from one corner to the next, to the right positive. If the lidar is between them, it is
  * half a turn to either side: `straight` to that side. */
 static int32_t turn(place_t from, place_t to, int32_t straight)
 {
     int32_t angle = direction_of(to) - direction_of(from);
     angle += angle <= -HALF_ROUND_Q6 ? ROUND_Q6 : angle > HALF_ROUND_Q6 ? -ROUND_Q6 : 0;
-    return angle >= HALF_ROUND_Q6 - STRAIGHT_Q6 || angle <= STRAIGHT_Q6 - HALF_ROUND_Q6 ? straight
-                                                                                        : angle;
+    return larger(angle, -angle) >= HALF_ROUND_Q6 - STRAIGHT_Q6 ? straight : angle;
 }
 
 /* Walks around the field and sees how far the view turns to both sides. If the lidar is in the
@@ -97,11 +101,6 @@ static void find_directions(tmini_field_t *field, tmini_xy_t lidar, int32_t stra
     field->wide_q6 = (uint16_t)(most - least < ROUND_Q6 ? most - least : ROUND_Q6);
 }
 
-static int32_t larger(int32_t one, int32_t other)
-{
-    return one > other ? one : other;
-}
-
 /* At least the distance of the farthest place in the box around the field: sqrt(a * a + b * b) <=
  * a + b / 2 for a >= b. A place may be rounded into the field. */
 static void find_reach(tmini_field_t *field, tmini_xy_t lidar)
@@ -121,8 +120,8 @@ static bool is_ahead(const tmini_field_t *field, uint16_t angle_q6)
 
 static bool is_near(tmini_xy_t place)
 {
-    return place.x_mm >= -TMINI_FIELD_CORNER_MAX_MM && place.x_mm <= TMINI_FIELD_CORNER_MAX_MM &&
-           place.y_mm >= -TMINI_FIELD_CORNER_MAX_MM && place.y_mm <= TMINI_FIELD_CORNER_MAX_MM;
+    return larger(place.x_mm, -place.x_mm) <= TMINI_FIELD_CORNER_MAX_MM &&
+           larger(place.y_mm, -place.y_mm) <= TMINI_FIELD_CORNER_MAX_MM;
 }
 
 /* Finds the box around the field. False if a corner is too far away, or nothing is in it. */

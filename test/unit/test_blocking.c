@@ -380,6 +380,23 @@ void test_a_timeout_gives_the_command_up_and_the_next_one_stops_the_lidar_first(
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&rig.lidar, &info, 100));
 }
 
+void test_a_stop_that_times_out_still_stands(void)
+{
+    sends(STOP);
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_stop(&rig.lidar, 10));
+    is_in(TMINI_STATE_STOPPING);
+}
+
+void test_a_question_that_waits_is_withdrawn_and_the_one_under_way_is_not(void)
+{
+    tmini_info_t info;
+    begins_with(GET_HEALTH, tmini_request_health(&rig.lidar));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT, tmini_blocking_read_info(&rig.lidar, &info, 10));
+    feed_healthy();
+    polls_to(TMINI_EVENT_HEALTH);
+    is_in(TMINI_STATE_IDLE);
+}
+
 void test_time_runs_across_the_clocks_wrap_around(void)
 {
     tmini_info_t info;

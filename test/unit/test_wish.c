@@ -131,6 +131,23 @@ void test_a_port_that_fails_after_the_lidar_was_asked_in_vain_is_no_endless_loop
     go_on("!NONE");
 }
 
+void test_a_lidar_that_has_never_answered_gets_no_reboot(void)
+{
+    tell("start >65 takes:-1 +50 !FAILED +500 !NONE !FAILED +1000 !NONE !FAILED takes:2 +2000 >65 "
+         "+50");
+    for (unsigned asks = 0; asks < 30; asks++) {
+        go_on(">0D +250");
+    }
+    go_on(">65 +50 >60 <S !STARTED");
+}
+
+void test_a_listener_needs_no_write_function(void)
+{
+    rig.port.write = NULL;
+    rig.config.listen_only = true;
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&rig.lidar, &rig.config));
+}
+
 void test_a_question_about_the_frequency_that_the_start_cannot_answer_fails(void)
 {
     tell(IDLE "frequency >0D start +250");
