@@ -34,7 +34,10 @@ CALLS = {
     "blocking": "tmini command recovery",
     "units": "ranges",
     "sectors": "packet frame",
-    "mount": "", "names": "", "ranges": "units", "fields": "cartesian", "isolated": "", "cartesian": "mount", "steps": "",
+    "ranges": "units",
+    "fields": "cartesian",
+    "cartesian": "mount",
+    "mount": "", "names": "", "isolated": "", "steps": "",
 }
 
 # Members of tmini_t that a file may read; those before the bar it may write as well. Configuration may be read by all.

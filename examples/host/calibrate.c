@@ -63,13 +63,13 @@ typedef struct {
 #define EVERYWHERE (-1e6), 1e6
 
 #define ANGLES 720u
-#define AWAYS 250u
+#define AWAY_STEPS 250u
 #define AWAY_STEP_MM 20.0
 
 /* The line on which most points lie, among those that are not used up. */
 static line_t strongest(const sample_t *sample, const bool *used)
 {
-    static unsigned votes[ANGLES][AWAYS];
+    static unsigned votes[ANGLES][AWAY_STEPS];
     unsigned best = 0;
     line_t line = {0, 0, EVERYWHERE};
     memset(votes, 0, sizeof votes);
@@ -78,8 +78,8 @@ static line_t strongest(const sample_t *sample, const bool *used)
         const double sine = sin(a * 2 * PI / ANGLES);
         for (size_t i = 0; i < sample->count; i += 3) { /* A third of them is enough. */
             const double away = sample->points[i].x * cosine + sample->points[i].y * sine;
-            const unsigned step = away > 0 ? (unsigned)(away / AWAY_STEP_MM) : AWAYS;
-            if (!used[i] && step < AWAYS && ++votes[a][step] > best) {
+            const unsigned step = away > 0 ? (unsigned)(away / AWAY_STEP_MM) : AWAY_STEPS;
+            if (!used[i] && step < AWAY_STEPS && ++votes[a][step] > best) {
                 best = votes[a][step];
                 line = (line_t){a * 2 * PI / ANGLES, (step + 0.5) * AWAY_STEP_MM, EVERYWHERE};
             }

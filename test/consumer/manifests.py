@@ -217,7 +217,8 @@ def check_esp_idf_lists():
 def check_esp_idf_example():
     folder = "examples/esp32_idf/main"
     name = folder + "/idf_component.yml"
-    where = os.path.exists(path(name)) and find(name, r"^dependencies:\n  tmini:\n(?:    .*\n)*    override_path: (.*)$")
+    where = os.path.exists(path(name)) and find(
+        name, r"^dependencies:\n  tmini:\n(?:    .*\n)*    override_path: (.*)$")
     if not where or not os.path.samefile(path(os.path.join(folder, where)), path(".")):
         complain("%s does not lead to the component" % name)
 

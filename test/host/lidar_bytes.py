@@ -22,7 +22,8 @@ FULL_TURN_Q6 = 360 * 64
 
 def checksum(content):
     """Of a packet whose own checksum is ignored. Intensities are words whose high byte is 0."""
-    words = content[:8] + b"".join(bytes([content[at], 0]) + content[at + 1:at + 3] for at in range(10, len(content), 3))
+    samples = (content[at:at + 3] for at in range(10, len(content), 3))
+    words = content[:8] + b"".join(bytes([sample[0], 0]) + sample[1:] for sample in samples)
     return functools.reduce(operator.xor, struct.unpack(f"<{len(words) // 2}H", words))
 
 

@@ -161,7 +161,8 @@ def test_any_recording_is_read_to_its_end(lidar, tmini, folder):
         draw = random.Random(seed)
         content = Path(draw.choice(["two.tmini", "raw.bin"])).read_bytes()
         kept = draw.choice([0, 0, 8])  # So that many still begin as a timed recording does.
-        (folder / "some").write_bytes(content[:kept] + damaged(content[kept:draw.randint(40, 9000)], 1 + seed % 30, seed))
+        rest = content[kept:draw.randint(40, 9000)]
+        (folder / "some").write_bytes(content[:kept] + damaged(rest, 1 + seed % 30, seed))
         table = call(TMINI, ["decode", "some", "--csv", "--stats", "stats"])
         assert table.returncode in (0, 1), f"seed {seed}: {table}"
         rows = [line.split(",") for line in table.stdout.decode("ascii").splitlines()[1:]]
@@ -185,7 +186,8 @@ def test_any_report_is_played_or_refused(lidar, tmini, folder):
         draw = random.Random(seed)
         words = re.split(r"(\s+)", text)
         for _ in range(draw.randint(1, 12)):
-            words[draw.randrange(len(words))] = draw.choice(["", "-1", "nan", "1e300", "65536", "x" * 200, "\0", "\n", "0"])
+            odd = ["", "-1", "nan", "1e300", "65536", "x" * 200, "\0", "\n", "0"]
+            words[draw.randrange(len(words))] = draw.choice(odd)
         (folder / "report").write_text("".join(words), encoding="utf-8")
         run = call(TMINI_SIM, ["--like", "report", "--write", "/dev/null", "--seconds", "0.3"])
         assert run.returncode in (0, 1, 2), f"seed {seed}: {run}"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Measures the pictures of `tmini plot`: every point must be in the right place. The points come from a plain reading of
-the protocol, the scale from the tool's message and from the measured rings."""
+"""Measures the pictures of `tmini plot`: every point must be in the right place. The points come from a plain reading
+of the protocol, the scale from the tool's message and from the measured rings."""
 
 import ctypes
 import math

@@ -34,6 +34,7 @@ extern int board_uart;
 
 /* Functions of the reader's program. */
 void avoid_obstacles(const tmini_scan_t *scan);
+void steer_away_from(unsigned degrees, unsigned distance_mm);
 void signal_faults(uint8_t faults);
 void stop_robot(void);
 void halt(void);
