@@ -328,8 +328,8 @@ TMINI_NOINLINE static tmini_sign_t sign_of_packet(const tmini_t *lidar)
     return tmini_packet_has_range(&packet) ? TMINI_SIGN_TURNS : TMINI_SIGN_STANDS;
 }
 
-/* True if the lidar scans, as it is wanted to. A lidar that scans although it was stopped is stopped
- * again: the program expects no scans, so the motor would wear out unnoticed. */
+/* True if the lidar scans, as it is wanted to. A lidar that scans although it was stopped is
+ * stopped again: the program expects no scans, so the motor would wear out unnoticed. */
 static bool note_scanning(tmini_t *lidar)
 {
     if (tmini_command_is_scanning(lidar)) {
@@ -349,8 +349,8 @@ static bool note_scanning(tmini_t *lidar)
 }
 
 /* A wrong or unknown frequency is set again once. As long as it is not known to be set, this is
- * repeated at growing intervals, unless the lidar never answers. With TMINI_RECOVERY_OFF it is never
- * set again. */
+ * repeated at growing intervals, unless the lidar never answers. With TMINI_RECOVERY_OFF it is
+ * never set again. */
 static bool is_worth_a_restart(const tmini_t *lidar)
 {
     const bool is_worth_another = tmini_frequency_chz(lidar) == 0 && !tmini_recovery_is_mute(lidar);
@@ -413,8 +413,9 @@ static uint32_t arrival_ms(tmini_t *lidar)
     return tmini_line_arrival_ms(lidar);
 }
 
-/* A program that is behind and gets a scan for each packet in doubt would never catch up. So it gets
- * whole scans or none: a scan of at most two packets that a doubt ends is counted, not delivered. */
+/* A program that is behind and gets a scan for each packet in doubt would never catch up. So it
+ * gets whole scans or none: a scan of at most two packets that a doubt ends is counted, not
+ * delivered. */
 static void end_scan(tmini_t *lidar, bool is_doubtful)
 {
     const tmini_scan_t *const scan = &lidar->decoder.builder.scan;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What to try next. The wishes are a set: to stop, questions, to scan. One function chooses the next
- * operation from what is wanted and what is known. To scan, a ladder of attempts is made, at the
- * start and after a loss: an attempt asks until the lidar answers, sets the wanted frequency, and
- * starts. After a failure comes a pause, which doubles up to a limit. A lidar that answers and does
- * not scan is rebooted before the fourth attempt and each later one. */
+/* What to try next. The wishes are a set: to stop, questions, to scan. One function chooses the
+ * next operation from what is wanted and what is known. To scan, a ladder of attempts is made, at
+ * the start and after a loss: an attempt asks until the lidar answers, sets the wanted frequency,
+ * and starts. After a failure comes a pause, which doubles up to a limit. A lidar that answers and
+ * does not scan is rebooted before the fourth attempt and each later one. */
 
 #include "tmini_driver.h"
 

@@ -282,19 +282,43 @@ static bool awaits_as_it_should(const tmini_t *lidar)
            phase == TMINI_PHASE_AWAITING || phase == TMINI_PHASE_UNCHANGED;
 }
 
+/* What is in progress is wished, or a step of the ladder; a stop is in progress as soon as it is
+ * wished. */
+static bool operation_is_wished(const tmini_t *lidar)
+{
+    const uint8_t operation = lidar->command.operation;
+    const unsigned wishes = lidar->recovery.wishes;
+    const bool is_step = (wishes & 1u << TMINI_EVENT_STARTED) != 0 &&
+                         (operation == TMINI_EVENT_FREQUENCY || operation == TMINI_EVENT_REBOOTED);
+    const bool is_stopping =
+        operation == TMINI_EVENT_STOPPED && lidar->command.phase == TMINI_PHASE_QUIESCING;
+    return ((wishes & 1u << TMINI_EVENT_STOPPED) == 0 || is_stopping) &&
+           (operation == TMINI_EVENT_NONE || is_step || (wishes & 1u << operation) != 0);
+}
+
 /* Every wish is being carried out. */
 static bool wishes_fit(const tmini_t *lidar)
 {
     const unsigned wishes = lidar->recovery.wishes;
     const unsigned all = (1u << (TMINI_EVENT_REBOOTED + 1)) - (1u << TMINI_EVENT_STARTED);
-    return (wishes & ~all) == 0 && (wishes == 0) == (lidar->command.phase <= TMINI_PHASE_IDLE) &&
+    const bool is_busy = lidar->command.phase > TMINI_PHASE_IDLE;
+    return (wishes & ~all) == 0 && (wishes != 0) == is_busy &&
+           (!is_busy || operation_is_wished(lidar)) &&
            (!lidar->recovery.is_lost || wishes == 1u << TMINI_EVENT_STARTED);
+}
+
+/* Nothing; nothing after a half-sent command; two bytes, offered or not; the second one, likewise.
+ * (4: not offered; 8: the first byte has been sent.) */
+static bool unsent_is_sound(unsigned unsent)
+{
+    return unsent == 0 || unsent == 8 || unsent == 2 || unsent == (2 | 4) || unsent == (1 | 8) ||
+           unsent == (1 | 4 | 8);
 }
 
 static bool command_is_sound(const tmini_command_t *command)
 {
     const unsigned bytes = command->unsent & TMINI_UNSENT_BYTES;
-    return is_operation(command->operation) && bytes <= 2 && command->unsent < 16 &&
+    return is_operation(command->operation) && unsent_is_sound(command->unsent) &&
            (bytes == 0 || (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
            (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE ||
             (command->phase == TMINI_PHASE_NONE && command->timeout_ms == TMINI_BACK_OFF_MS)) &&

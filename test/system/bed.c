@@ -14,8 +14,8 @@
 #define STOP 0x65u
 #define SCANS 5u         /* In a row, before a wish counts as fulfilled. */
 #define IDLE_US 1500000u /* Idle, before it does. */
-/* Announced by LOST: a second after the last packet. A damaged one may hide it for 100 ms more, until
- * it is given up. */
+/* Announced by LOST: a second after the last packet. A damaged one may hide it for 100 ms more,
+ * until it is given up. */
 #define SILENCE_US 1150000u
 #define MOST_EVENTS_PER_SECOND 10u
 

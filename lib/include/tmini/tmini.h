@@ -309,9 +309,9 @@ static inline size_t tmini_feed_position(const tmini_t *lidar);
  * program catches up. */
 tmini_event_t tmini_poll(tmini_t *lidar);
 
-/** For how long tmini_poll() may be left out if no byte comes meanwhile, in milliseconds: for a task
- * that sleeps and is woken by its receiver. 0: poll now; also for a lidar that was not set up. At
- * most 65535, when nothing is due. Call it when tmini_poll() has returned TMINI_EVENT_NONE. No
+/** For how long tmini_poll() may be left out if no byte comes meanwhile, in milliseconds: for a
+ * task that sleeps and is woken by its receiver. 0: poll now; also for a lidar that was not set up.
+ * At most 65535, when nothing is due. Call it when tmini_poll() has returned TMINI_EVENT_NONE. No
  * waiting. */
 uint32_t tmini_next_poll_ms(const tmini_t *lidar);
 
@@ -333,9 +333,10 @@ uint32_t tmini_next_poll_ms(const tmini_t *lidar);
 tmini_status_t tmini_start(tmini_t *lidar);
 
 /** The lidar is to stop, in any state [TMINI_EVENT_STOPPED]. An unfinished start or question, and
- * the questions that wait, end with one TMINI_EVENT_COMMAND_FAILED and TMINI_ERROR_ABORTED. If the lidar scans later although it was
- * stopped, it is stopped again: TMINI_EVENT_UNWANTED_SCANNING (section 9.10). If it cannot be
- * stopped, TMINI_EVENT_COMMAND_FAILED comes once per round of attempts, at most twice per second.
+ * the questions that wait, end with one TMINI_EVENT_COMMAND_FAILED and TMINI_ERROR_ABORTED. If the
+ * lidar scans later although it was stopped, it is stopped again: TMINI_EVENT_UNWANTED_SCANNING
+ * (section 9.10). If it cannot be stopped, TMINI_EVENT_COMMAND_FAILED comes once per round of
+ * attempts, at most twice per second.
  * Returns TMINI_OK, or TMINI_ERROR_ARGUMENT: null pointer, or a lidar that was not set up. */
 tmini_status_t tmini_stop(tmini_t *lidar);
 
@@ -343,8 +344,9 @@ tmini_status_t tmini_stop(tmini_t *lidar);
  * of 10. From now on the driver sets it before every start, also after a loss or a reboot, and
  * reads it back [TMINI_EVENT_FREQUENCY]; a value within 0.05 Hz of the wish is accepted.
  * A lidar that is not to scan is set as soon as it has carried out what is in progress. A lidar
- * that scans goes on until the wish has not changed for four start packets; then it is stopped, set
- * and started again [TMINI_EVENT_PAUSED, then TMINI_EVENT_STARTED]. So the call may follow a slider.
+ * that scans goes on until the wish has not changed for four start packets, so that the call may
+ * follow a slider; then it is stopped, set and started again [TMINI_EVENT_PAUSED, then
+ * TMINI_EVENT_STARTED].
  * Scanning matters more than the frequency: if it cannot be set, the lidar scans at the old one,
  * and TMINI_EVENT_COMMAND_FAILED comes with TMINI_EVENT_STARTED or TMINI_EVENT_RECOVERED. A lidar
  * that turns at another frequency for three seconds gets TMINI_FAULT_FREQUENCY, and the driver sets

@@ -64,16 +64,20 @@ static void step(const void *data, tmini_scan_t *scan)
     CLAIM(lidar.link.spare_points == NULL || scan->points != lidar.decoder.builder.scan.points);
 }
 
-/* In listen-only mode, no command is being sent. A start follows only an operation that ends with
- * an event. Without a wanted frequency, there is no frequency fault. */
+/* The first byte of a command has been sent, and the second has not. */
+static bool is_half(void)
+{
+    return (lidar.command.unsent & 8u) != 0;
+}
+
+/* In listen-only mode, no command is being sent. Without a wanted frequency, there is no frequency
+ * fault. */
 static bool wish_fits(void)
 {
     const uint8_t phase = lidar.command.phase;
     return (!lidar.is_listen_only ||
-            (lidar.command.unsent == 0 && !lidar.command.sync_sent &&
-             (phase == TMINI_PHASE_NONE || phase == TMINI_PHASE_WAITING))) &&
-           (!lidar.start_follows || lidar.state == TMINI_STATE_BUSY ||
-            lidar.state == TMINI_STATE_STOPPING) &&
+            (lidar.command.unsent == 0 &&
+             (phase == TMINI_PHASE_NONE || phase >= TMINI_PHASE_LISTENING))) &&
            (lidar.command.wanted_chz != 0 || (lidar.monitor.faults & TMINI_FAULT_FREQUENCY) == 0);
 }
 
@@ -86,7 +90,7 @@ static bool buffers_are_apart(void)
 
 static bool is_sound(void)
 {
-    return lidar_is_sound(&lidar) && is_half_sent == lidar.command.sync_sent && wish_fits() &&
+    return lidar_is_sound(&lidar) && is_half_sent == is_half() && wish_fits() &&
            buffers_are_apart();
 }
 
@@ -118,16 +122,17 @@ static void any_lidar(void)
     lidar = nondet_lidar();
     timing = nondet_timing();
     lidar.ring = any_early_ring(LARGE_RING_SIZE);
-    lidar.start_follows = any_bool();
     lidar.is_recovery_off = any_bool();
     lidar.is_listen_only = any_bool();
     lidar.line.late_ms = nondet_half();
-    lidar.command.sync_sent = any_bool();
-    lidar.monitor.is_complete = any_bool();
+    lidar.command.is_repeated = any_bool();
+    lidar.recovery.is_lost = any_bool();
+    lidar.decoder.is_whole = any_bool();
+    lidar.decoder.was_whole = any_bool();
     lidar.monitor.ranges = nondet_byte();
     any_link();
     any_decoder();
-    is_half_sent = lidar.command.sync_sent;
+    is_half_sent = is_half();
     ASSUME(is_sound());
 }
 
@@ -156,7 +161,8 @@ void prove_driver_init(void)
     CLAIM((status == TMINI_OK) == (lidar.link.port != NULL));
     CLAIM(status != TMINI_OK || (config.points == NULL) == (config.max_points == 0));
     CLAIM(status != TMINI_OK || config.frequency_chz == 0 || !config.listen_only);
-    CLAIM(status != TMINI_OK || lidar.command.wanted_chz == config.frequency_chz);
+    CLAIM(status != TMINI_OK ||
+          lidar.command.wanted_chz == (config.frequency_chz + 5u) / 10u * 10u);
     CLAIM(tmini_init(NULL, &config) == TMINI_ERROR_ARGUMENT);
     REACHED();
 }
@@ -190,7 +196,7 @@ void prove_driver_take_event(void)
     const unsigned before = lidar.pending;
     const tmini_event_t event = take_event(&lidar);
     CLAIM(is_sound());
-    CLAIM(event >= TMINI_EVENT_STARTED && event <= TMINI_EVENT_SCAN);
+    CLAIM(event >= TMINI_EVENT_STARTED && event <= TMINI_EVENT_LOST);
     CLAIM((before & ((1u << event) - 1)) == 0); /* It is the first one. */
     CLAIM(lidar.pending == (before ^ 1u << event));
     REACHED();
@@ -256,56 +262,54 @@ void prove_driver_poll(void)
     CLAIM(event <= TMINI_EVENT_MORE);
     CLAIM(before == 0 || (before >> event & 1u) != 0);
     CLAIM(before != 0 || event == TMINI_EVENT_NONE || event == TMINI_EVENT_MORE);
-    CLAIM(event == TMINI_EVENT_NONE ? lidar.idle_ms > 0 || lidar.command.unsent > 0
+    CLAIM(event == TMINI_EVENT_NONE ? lidar.idle_ms > 0 || tmini_command_is_sending(&lidar)
                                     : lidar.idle_ms == 0);
     REACHED();
 }
 
 /* ---- Commands ---- */
 
-/* A query begins only in a state that allows it; otherwise nothing is changed. */
-static void prove_query(tmini_status_t (*query)(tmini_t *), tmini_event_t operation)
+/* A question is accepted unless the lidar is to scan; otherwise nothing is changed. */
+static void prove_question(tmini_status_t (*question)(tmini_t *), tmini_event_t event)
 {
     any_lidar();
     const tmini_t before = lidar;
     const bool may_send = !lidar.is_listen_only;
-    const tmini_status_t status = query(&lidar);
+    const bool is_to_scan_before = tmini_state(&before) >= TMINI_STATE_STARTING;
+    const tmini_status_t status = question(&lidar);
     CLAIM(is_sound());
     CLAIM((status == TMINI_ERROR_LISTEN_ONLY) == !may_send);
-    CLAIM((status == TMINI_ERROR_STATE) == (may_send && before.state >= TMINI_STATE_SCANNING));
-    CLAIM((status == TMINI_OK) == (may_send && before.state <= TMINI_STATE_IDLE));
-    CLAIM(status == TMINI_OK || status == TMINI_ERROR_STATE || status == TMINI_ERROR_BUSY ||
-          status == TMINI_ERROR_LISTEN_ONLY);
-    CLAIM(status == TMINI_OK || (lidar.state == before.state && lidar.pending == before.pending &&
-                                 lidar.command.phase == before.command.phase &&
-                                 lidar.command.unsent == before.command.unsent &&
-                                 lidar.line.now_ms == before.line.now_ms));
+    CLAIM((status == TMINI_ERROR_STATE) == (may_send && is_to_scan_before));
+    CLAIM((status == TMINI_OK) == (may_send && !is_to_scan_before));
+    CLAIM(status == TMINI_OK ||
+          (lidar.pending == before.pending && lidar.command.phase == before.command.phase &&
+           lidar.command.unsent == before.command.unsent &&
+           lidar.line.now_ms == before.line.now_ms));
     CLAIM(status != TMINI_OK ||
-          (lidar.state == TMINI_STATE_BUSY && lidar.command.operation == operation &&
-           (lidar.pending & END_EVENTS) == 0));
+          (tmini_recovery_wishes(&lidar, event) && tmini_state(&lidar) < TMINI_STATE_STARTING));
 }
 
 void prove_driver_request_info(void)
 {
-    prove_query(tmini_request_info, TMINI_EVENT_INFO);
+    prove_question(tmini_request_info, TMINI_EVENT_INFO);
     REACHED();
 }
 
 void prove_driver_request_health(void)
 {
-    prove_query(tmini_request_health, TMINI_EVENT_HEALTH);
+    prove_question(tmini_request_health, TMINI_EVENT_HEALTH);
     REACHED();
 }
 
 void prove_driver_request_frequency(void)
 {
-    prove_query(tmini_request_frequency, TMINI_EVENT_FREQUENCY);
+    prove_question(tmini_request_frequency, TMINI_EVENT_FREQUENCY);
     REACHED();
 }
 
 void prove_driver_reboot(void)
 {
-    prove_query(tmini_reboot, TMINI_EVENT_REBOOTED);
+    prove_question(tmini_reboot, TMINI_EVENT_REBOOTED);
     REACHED();
 }
 
@@ -314,15 +318,12 @@ void prove_driver_reboot(void)
 void prove_driver_start(void)
 {
     any_lidar();
-    const uint8_t before = lidar.state;
     const uint8_t phase = lidar.command.phase;
-    const bool begins =
-        before <= TMINI_STATE_IDLE || (before == TMINI_STATE_RECOVERING && lidar.is_recovery_off);
+    const bool is_wanted = is_to_scan(&lidar);
     CLAIM(tmini_start(&lidar) == TMINI_OK);
-    CLAIM(is_sound());
-    CLAIM(lidar.state == (begins ? (uint8_t)TMINI_STATE_STARTING : before));
-    CLAIM(begins || lidar.command.phase == phase);
-    CLAIM((before != TMINI_STATE_BUSY && before != TMINI_STATE_STOPPING) || lidar.start_follows);
+    CLAIM(is_sound() && is_to_scan(&lidar));
+    CLAIM(!is_wanted || lidar.command.phase == phase);
+    CLAIM(tmini_state(&lidar) >= TMINI_STATE_STARTING);
     REACHED();
 }
 
@@ -331,14 +332,14 @@ void prove_driver_set_frequency(void)
     any_lidar();
     const uint16_t frequency_chz = nondet_half();
     const uint16_t before_chz = lidar.command.wanted_chz;
-    const bool is_permitted =
-        frequency_chz >= 600 && frequency_chz <= 1200 && frequency_chz % 10 == 0;
+    const bool is_permitted = frequency_chz >= 600 && frequency_chz <= 1200;
     const tmini_status_t status = tmini_set_frequency(&lidar, frequency_chz);
     CLAIM(is_sound());
     CLAIM((status == TMINI_ERROR_ARGUMENT) == !is_permitted);
     CLAIM((status == TMINI_ERROR_LISTEN_ONLY) == (is_permitted && lidar.is_listen_only));
     CLAIM((status == TMINI_OK) == (is_permitted && !lidar.is_listen_only));
-    CLAIM(lidar.command.wanted_chz == (status == TMINI_OK ? frequency_chz : before_chz));
+    CLAIM(lidar.command.wanted_chz ==
+          (status == TMINI_OK ? (frequency_chz + 5u) / 10u * 10u : before_chz));
     REACHED();
 }
 
@@ -346,15 +347,27 @@ void prove_driver_stop(void)
 {
     any_lidar();
     CLAIM(tmini_stop(&lidar) == TMINI_OK);
-    CLAIM(is_sound() && !lidar.start_follows);
-    CLAIM(lidar.state == (lidar.is_listen_only ? TMINI_STATE_UNKNOWN : TMINI_STATE_STOPPING));
+    CLAIM(is_sound() && !is_to_scan(&lidar));
+    CLAIM(tmini_state(&lidar) ==
+          (lidar.is_listen_only ? TMINI_STATE_UNKNOWN : TMINI_STATE_STOPPING));
     REACHED();
 }
 
-void prove_driver_cancel(void)
+void prove_driver_withdraw(void)
 {
     any_lidar();
-    tmini_cancel(&lidar);
-    CLAIM(is_sound() && lidar.state == TMINI_STATE_UNKNOWN && lidar.command.unsent == 0);
+    const uint8_t query = nondet_byte();
+    ASSUME(query >= TMINI_EVENT_INFO && query <= TMINI_EVENT_FREQUENCY);
+    tmini_withdraw(&lidar, (tmini_event_t)query);
+    CLAIM(is_sound() && !tmini_recovery_wishes(&lidar, (tmini_event_t)query));
+    REACHED();
+}
+
+/* The age never shrinks by the clock alone, and a task may sleep for a minute at most. */
+void prove_driver_time(void)
+{
+    any_lidar();
+    CLAIM(tmini_scan_age_ms(&lidar) <= UINT32_MAX / 2);
+    CLAIM(tmini_next_poll_ms(&lidar) <= UINT16_MAX);
     REACHED();
 }
