@@ -94,10 +94,10 @@ extern const tmini_port_t tmini_posix_port;
 
 /** Sets the path of the device, or of the socket to a controller that forwards its UART:
  * "tcp:HOST:PORT". It may forward raw bytes, or a timed stream: then times are those of the sender,
- * late bytes cost no scan, nothing can be sent, and the driver has to be `listen_only`. While nothing
+ * late bytes cost no scan, nothing can be sent, and the driver has to be `listen_only`. If nothing
  * comes, the driver's clock stands still for up to 0.6 s, as late bytes may follow, and so does
- * tmini_scan_age_ms(). Opens nothing yet. `path` stays the caller's, and must last as long as `port` is
- * used. Do not call it between tmini_posix_start() and tmini_posix_stop(). */
+ * tmini_scan_age_ms(). Opens nothing yet. `path` stays the caller's, and must last as long as the
+ * port is used. Do not call it between tmini_posix_start() and tmini_posix_stop(). */
 void tmini_posix_init(tmini_posix_t *port, const char *path);
 
 /** From now on received bytes also go to `tap`; NULL: to the lidar alone. */
@@ -132,7 +132,7 @@ tmini_posix_status_t tmini_posix_wait(tmini_posix_t *port, int timeout_ms);
  * come within 0.6 s. */
 bool tmini_posix_is_timed(const tmini_posix_t *port);
 
-/** The time of the bytes that are being handed over, in microseconds of the system's monotonic clock:
+/** The time of the bytes being handed over, in microseconds of the system's monotonic clock:
  * now, or when the sender of a timed stream received them, without the delay. The scans' times are
  * on this clock, in milliseconds. */
 int64_t tmini_posix_now_us(const tmini_posix_t *port);

@@ -7,7 +7,8 @@
 
 /* As in tmini_command.c, which does not export them. */
 #define STEPS_MAX 20
-#define ASKS_MAX (30 + 8)
+#define ASKS_MAX 30
+#define ASKS_LEFT_MAX (ASKS_MAX + 8) /* When the last step has failed. */
 #define PLAUSIBLE_CHZ_MAX 2000
 
 /* As in tmini_builder.c: 4 degrees back. */
@@ -292,7 +293,11 @@ static bool operation_is_wished(const tmini_t *lidar)
                          (operation == TMINI_EVENT_FREQUENCY || operation == TMINI_EVENT_REBOOTED);
     const bool is_stopping =
         operation == TMINI_EVENT_STOPPED && lidar->command.phase == TMINI_PHASE_QUIESCING;
+    const bool is_only_to_scan = wishes == 1u << TMINI_EVENT_STARTED;
     return ((wishes & 1u << TMINI_EVENT_STOPPED) == 0 || is_stopping) &&
+           (operation > TMINI_EVENT_STARTED || is_only_to_scan) &&
+           (operation != TMINI_EVENT_REBOOTED || is_only_to_scan ||
+            (wishes & 1u << TMINI_EVENT_REBOOTED) != 0) &&
            (operation == TMINI_EVENT_NONE || is_step || (wishes & 1u << operation) != 0);
 }
 
@@ -322,7 +327,8 @@ static bool command_is_sound(const tmini_command_t *command)
            (bytes == 0 || (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
            (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE ||
             (command->phase == TMINI_PHASE_NONE && command->timeout_ms == TMINI_BACK_OFF_MS)) &&
-           command->steps <= STEPS_MAX && command->asks <= ASKS_MAX &&
+           command->steps <= STEPS_MAX &&
+           command->asks <= (command->phase > TMINI_PHASE_IDLE ? ASKS_MAX : ASKS_LEFT_MAX) &&
            command->frequency_chz <= PLAUSIBLE_CHZ_MAX;
 }
 

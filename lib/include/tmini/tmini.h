@@ -22,7 +22,7 @@
  *         case TMINI_EVENT_FAULTS_CHANGED: signal_faults(tmini_faults(&lidar)); break;
  *         default: break;
  *         }
- *         if (tmini_scan_age_ms(&lidar) > 300) { stop_robot(); }    three turns, whatever the reason
+ *         if (tmini_scan_age_ms(&lidar) > 300) { stop_robot(); }    three turns
  *     }
  *
  * Contexts. The functions tmini_feed…() belong to the one context that receives: an interrupt, a

@@ -196,7 +196,7 @@ TMINI_INLINE void tmini_fence(void)
 /** @def TMINI_COPY
  * Copies some bytes, a constant number: by moves, also where memcpy() is always a call
  * (-ffreestanding, -fno-builtin). */
-#if defined(__GNUC__) && !defined(__CPROVER__) /* The model checker knows only memcpy(). */
+#if defined(__GNUC__) && !defined(TMINI_MEMCPY_ONLY) /* For a model checker. */
 #define TMINI_COPY(to, from, size) __builtin_memcpy(to, from, size)
 #else
 #define TMINI_COPY(to, from, size) memcpy(to, from, size)
