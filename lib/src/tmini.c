@@ -158,7 +158,7 @@ static void begin_scanning(tmini_t *lidar)
 /* ----------------------------------------------------------------------- how operations end */
 
 /* Each failed attempt to start is reported. During recovery none is, because the loss has been
- * reported. */
+ * reported. Questions that wait are next. */
 static void fail_attempt(tmini_t *lidar, int result)
 {
     tmini_recovery_restart_reception(lidar);
@@ -166,10 +166,13 @@ static void fail_attempt(tmini_t *lidar, int result)
         fail(lidar, result);
         if (lidar->is_recovery_off) {
             tmini_recovery_forget_wish(lidar, TMINI_EVENT_STARTED);
-            return;
         }
     }
-    tmini_recovery_back_off(lidar, result);
+    if (lidar->recovery.wishes == BIT(TMINI_EVENT_STARTED)) {
+        tmini_recovery_back_off(lidar, result);
+    } else {
+        tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
+    }
 }
 
 /* The event is not raised if no frequency is wanted and nobody has asked. */

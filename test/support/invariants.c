@@ -261,7 +261,8 @@ static bool phase_fits(const tmini_t *lidar)
     case TMINI_PHASE_STANDING:
         return is_starting && is_lost;
     case TMINI_PHASE_REBOOTING:
-        return command->operation == TMINI_EVENT_REBOOTED && command->code == TMINI_COMMAND_REBOOT;
+        return command->operation == TMINI_EVENT_REBOOTED &&
+               command->code == TMINI_COMMAND_REBOOT && command->asks == 0;
     case TMINI_PHASE_PAUSING:
         return has_none && is_to_scan && !lidar->is_listen_only;
     case TMINI_PHASE_LISTENING:

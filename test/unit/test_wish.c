@@ -235,6 +235,19 @@ void test_a_reboot_comes_before_the_start_and_is_reported(void)
     TEST_ASSERT_EQUAL_UINT16(0, rig_counters().reboots);
 }
 
+void test_a_question_that_waits_outlives_an_attempt_that_fails(void)
+{
+    for (unsigned i = 0; i < 2; i++) {
+        tell(i == 0 ? IDLE "info >90 <info !INFO frequency >0D health start"
+                    : "off " IDLE "info >90 <info !INFO frequency >0D health start");
+        for (unsigned asks = 0; asks < 29; asks++) {
+            go_on("+250 >0D");
+        }
+        go_on("+250 !FAILED ?TIMEOUT >65 +50 >92 <health !HEALTH");
+        go_on(i == 0 ? ">0D" : "@IDLE");
+    }
+}
+
 void test_the_same_question_twice_is_one(void)
 {
     tell(IDLE "info >90 info <info !INFO @IDLE");
