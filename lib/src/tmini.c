@@ -103,6 +103,9 @@ static void fail(tmini_t *lidar, int status)
 /* Looks at the line. Once bytes have come, the lidar is no longer known to be idle. */
 TMINI_NOINLINE static void look(tmini_t *lidar)
 {
+    if (lidar->line.now_ms == 0) { /* The first look: the port may be set up after the lidar. */
+        lidar->complete_ms = lidar->link.port->now_ms(lidar->link.port_context);
+    }
     if (tmini_line_look(lidar, tmini_command_is_scanning(lidar))) {
         tmini_command_disturb(lidar);
     }
@@ -637,7 +640,6 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
         .spare_points = config->spare_points,
     };
     tmini_command_want(lidar, rounded(config->frequency_chz));
-    lidar->complete_ms = config->port->now_ms(config->port_context);
     lidar->is_recovery_off = config->recovery == TMINI_RECOVERY_OFF;
     lidar->is_listen_only = config->listen_only;
     return TMINI_OK;

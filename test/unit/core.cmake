@@ -29,7 +29,9 @@ tmini_add_unit_test(test_interrupts
         ${PROJECT_SOURCE_DIR}/lib/src/tmini_parser.c
     LIBRARIES tmini_test_receiver)
 if(TARGET test_interrupts)
-    target_compile_definitions(test_interrupts PRIVATE TMINI_WORD_ALIGNMENT=4u)
+    if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+        target_compile_definitions(test_interrupts PRIVATE TMINI_WORD_ALIGNMENT=4u)
+    endif()
     target_compile_definitions(test_interrupts
         PRIVATE TMINI_ATOMIC_HEADER="interrupting_atomic.h")
     target_include_directories(test_interrupts PRIVATE ../support)

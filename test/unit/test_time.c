@@ -259,6 +259,6 @@ void test_the_longest_period_does_not_overflow(void)
 void test_a_small_step_back_near_four_degrees_is_no_turn(void)
 {
     has_angles(0, 258, 255, 300);
-    is_at(1, 258 * 6250 / 1440);
-    is_at(2, 255 * 6250 / 1440);
+    is_at(1, 1119);
+    is_at(2, 1106);
 }
