@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The chunks of a timed recording (FILE.tmini): tmini_timed.h describes version 2, which is written.
- * Version 1, which is read as well, has neither A7 C3 nor the CRC, and no chunk without bytes. In
- * both versions chunks are found again after damage: by the CRC, or by a chain of plausible heads.
+/* The chunks of a timed recording (FILE.tmini): tmini_timed.h describes version 2, which is
+ * written. Version 1, which is read as well, has neither A7 C3 nor the CRC, and no chunk without
+ * bytes. In both versions chunks are found again after damage: by the CRC, or by a chain of
+ * plausible heads.
  */
 
 #ifndef CHUNK_H

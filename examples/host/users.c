@@ -106,8 +106,8 @@ static bool is_named_by(const port_t *port, const char *process)
     return false;
 }
 
-/* One of its descriptors is this device. (Of a pseudo-terminal it may also be an earlier one with the
- * same number.) */
+/* One of its descriptors is this device. (Of a pseudo-terminal it may also be an earlier one with
+ * the same number.) */
 static bool is_held_by(const port_t *port, const char *process)
 {
     char path[PATH_SIZE];

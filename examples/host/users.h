@@ -3,7 +3,8 @@
 
 /* Who else uses a serial port: the kernel's console, and programs whose command line names the port
  * or that hold it open. Of other users' programs the descriptors are visible only to root. For
- * tests, the environment variable TMINI_ROOT names the folder that contains dev/, proc/ and sys/. */
+ * tests, the environment variable TMINI_ROOT names the folder that
+ * contains dev/, proc/ and sys/. */
 
 #ifndef USERS_H
 #define USERS_H

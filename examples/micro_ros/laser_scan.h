@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Converts a scan to ROS's LaserScan message, in the caller's memory: nothing is allocated. What the
- * message holds is decided in port/ros2/src/tmini_laser.h. */
+/* Converts a scan to ROS's LaserScan message, in the caller's memory: nothing is allocated. What
+ * the message holds is decided in port/ros2/src/tmini_laser.h. */
 
 #ifndef LASER_SCAN_H
 #define LASER_SCAN_H

@@ -26,9 +26,9 @@
  *
  * Time. The lidar sends a byte every 43 us. Bytes that the sketch does not take in time are lost
  * when the core's receive buffer is full: after 2.7 ms with 64 bytes (most boards), after 44 ms
- * with 1024 (ESP32, ESP8266, RP2040, RP2350, Teensy). loop() takes them, and so does a loop over points().
- * During longer work of your own call receive(). On an 8-bit board a float operation takes 10 us,
- * and print() waits while its own buffer (64 bytes) is full. */
+ * with 1024 (ESP32, ESP8266, RP2040, RP2350, Teensy). loop() takes them, and so does a loop over
+ * points(). During longer work of your own call receive(). On an 8-bit board a float operation
+ * takes 10 us, and print() waits while its own buffer (64 bytes) is full. */
 
 #ifndef TMINI_LIDAR_H
 #define TMINI_LIDAR_H
@@ -150,11 +150,11 @@ class TMiniLidarBase
 {
   public:
     /** Opens the serial port at the lidar's 230400 baud; on an ESP32, ESP8266, RP2040, RP2350 and
-     * Teensy with a large receive buffer. (On an ESP32, a port that the sketch has opened already keeps
-     * its pins, and its buffer.) `hertz`: scans per second, 6 to 12, also after a power failure; 0:
-     * whatever the lidar has. Returns false, and error() gives the reason, if the configuration is
-     * wrong (for example a buffer's size or the frequency); on an ESP32 also if the port could not
-     * be opened. */
+     * Teensy with a large receive buffer. (On an ESP32, a port that the sketch has opened already
+     * keeps its pins, and its buffer.) `hertz`: scans per second, 6 to 12, also after a power
+     * failure; 0: whatever the lidar has. Returns false, and error() gives the reason, if the
+     * configuration is wrong (for example a buffer's size or the frequency); on an ESP32 also if
+     * the port could not be opened. */
     bool begin(TMiniSerial &serial, float hertz = 0);
 #if defined(ESP32) || TMINI_LIDAR_ON_RP2040
     /** The same on these pins; a port that is open already is closed and opened again. */

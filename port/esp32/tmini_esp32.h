@@ -101,8 +101,8 @@ typedef struct {
                               * it. */
 } tmini_esp32_counters_t;
 
-/** Called with all bytes that are received, before the lidar gets them; with no bytes where some were
- * lost. For recordings and bridges. Context: whichever receives. */
+/** Called with all bytes that are received, before the lidar gets them; with no bytes where some
+ * were lost. For recordings and bridges. Context: whichever receives. */
 typedef void (*tmini_esp32_tap_t)(void *context, const uint8_t *bytes, size_t count);
 
 /** One UART with a lidar. Treat the members as private. */

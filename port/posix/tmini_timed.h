@@ -85,8 +85,8 @@ void tmini_timed_put(tmini_timed_t *timed, size_t count);
 
 /** Returns how many of the lidar's bytes come next, at most `most`, and where they are; all of them
  * came at the time of tmini_timed_now_us(). Returns 0 if more must be received, or if bytes were
- * lost here: then *is_gap is true, and the next bytes may be there already. `now_us`: the receiver's
- * clock, which must never go back. */
+ * lost here: then *is_gap is true, and the next bytes may be there already. `now_us`: the
+ * receiver's clock, which must never go back. */
 size_t tmini_timed_take(tmini_timed_t *timed, int64_t now_us, size_t most, const uint8_t **bytes,
                         bool *is_gap);
 

@@ -61,8 +61,8 @@ typedef enum {
     SIM_FAULT     /* section 2's stop mode: no stream until the fault is gone and start is sent */
 } sim_mode_t;
 
-/* What happens on the wire that on_event() may spoil. Of a scan the beginning (its first packet) and
- * the next start packets are events, SIM_STARTS_NOTED in all. */
+/* What happens on the wire that on_event() may spoil. Of a scan the beginning (its first packet)
+ * and the next start packets are events, SIM_STARTS_NOTED in all. */
 typedef enum {
     SIM_EVENT_COMMAND,
     SIM_EVENT_REPLY,
@@ -72,8 +72,8 @@ typedef enum {
 
 #define SIM_STARTS_NOTED 3u
 
-/* How an unkind lidar, its supply or its wires spoil an event (sections 9.16 and 9.17). Each but the
- * first four also befalls a lidar at any other time: sim_befall(). */
+/* How an unkind lidar, its supply or its wires spoil an event (sections 9.16 and 9.17). Each but
+ * the first four also befalls a lidar at any other time: sim_befall(). */
 typedef enum {
     SIM_SOUND,
     SIM_LOST,    /* the command, reply or packet; a scan that loses its beginning does not begin */

@@ -43,7 +43,8 @@ is_ubuntu() {
 # Ubuntu has the package, but not in the component that is always there.
 ask_for_universe() {
     cat >&2 <<'END'
-The package cmock is in Ubuntu's component "universe", which this computer does not use. Please add it:
+The package cmock is in Ubuntu's component "universe", which this computer does not use. Please
+add it:
 sudo add-apt-repository universe && sudo apt-get update
 END
 }

@@ -215,8 +215,8 @@ static const char *tell(uint32_t seed, bool is_told)
     return shortcoming == NULL || is_excused(shortcoming) ? NULL : shortcoming;
 }
 
-/* A story that is known to fail, and not explained yet: it ends at another frequency. It is an error
- * if it does not fail any more: then it is to be removed here. */
+/* A story that is known to fail, and not explained yet: it ends at another frequency. It is an
+ * error if it does not fail any more: then it is to be removed here. */
 #define KNOWN_TO_FAIL 19201u
 
 int main(int argc, char **argv)

@@ -2,9 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* What a lidar sends, passed on to listeners as timed streams (tmini_timed.h). Knows nothing of
- * networks: it has a queue of bytes for each listener, which a server empties as fast as the network
- * takes them. A listener that is too slow loses all that waits for it, and is told so by an empty
- * chunk. No function waits. */
+ * networks: it has a queue of bytes for each listener, which a server empties as fast as the
+ * network takes them. A listener that is too slow loses all that waits for it, and is told so by an
+ * empty chunk. No function waits. */
 
 #ifndef BRIDGE_H
 #define BRIDGE_H
@@ -54,8 +54,8 @@ size_t bridge_next(const bridge_t *bridge, int listener, const uint8_t **bytes);
 void bridge_sent(bridge_t *bridge, int listener, size_t count);
 
 /* Whether a browser's request may have the stream: it names this server by an address, by
- * "localhost" or by `own_name`, and comes from a page of this server. Otherwise any page in a browser
- * could see the room. `host`, `origin`: the headers; NULL: absent. */
+ * "localhost" or by `own_name`, and comes from a page of this server. Otherwise any page in a
+ * browser could see the room. `host`, `origin`: the headers; NULL: absent. */
 bool bridge_may_listen(const char *host, const char *origin, const char *own_name);
 
 #endif

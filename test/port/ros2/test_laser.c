@@ -139,8 +139,8 @@ void test_every_ray_has_the_direction_of_its_point(void)
 }
 
 /* Points are 250 us apart, and the turn ended at end_ms. If it began up to 3 degrees beside ahead,
- * ray 0 is ahead nevertheless: all times are up to 0.8 ms off, and 3 rays have the time of the other
- * end. */
+ * ray 0 is ahead nevertheless: all times are up to 0.8 ms off, and 3 rays have the time of the
+ * other end. */
 void test_every_ray_has_the_time_of_its_point(void)
 {
     for (size_t i = 0; i < LAYOUTS; i++) {

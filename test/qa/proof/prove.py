@@ -159,7 +159,8 @@ PROOFS = [
     driver("reply", "lib/src/tmini_command.c", "|| frequency_chz > PLAUSIBLE_CHZ_MAX", "|| frequency_chz > 65535"),
     driver("nothing", "lib/src/tmini.c", "tmini_parser_abandon(&lidar->decoder.parser);",
            "tmini_command_end(lidar, TMINI_ERROR_ABORTED);"),
-    driver("keep_time", "lib/src/tmini_command.c", "command->steps == STEPS_MAX", "command->steps > STEPS_MAX", slow=True),
+    driver("keep_time", "lib/src/tmini_command.c", "command->steps == STEPS_MAX",
+           "command->steps > STEPS_MAX", slow=True),
     driver("start", "lib/src/tmini.c", "    if (!is_to_scan(lidar)) {", "    if (true) {"),
     driver("request_info", "lib/src/tmini.c", "tmini_state(lidar) >= TMINI_STATE_STARTING) {",
            "tmini_state(lidar) > TMINI_STATE_STARTING) {"),
@@ -213,7 +214,8 @@ class Checker:
         files = [f"{self.folder}/test/qa/proof/{name}" for name in ["any.c"] + proof.files]
         files += [f"{self.folder}/test/support/invariants.c"]
         files += [f"{self.folder}/lib/src/{name}" for name in proof.sources]
-        self.demand("goto-cc", "-DTMINI_MEMCPY_ONLY", "-o", program, "--function", proof.function, *folders, *defines, *files)
+        self.demand("goto-cc", "-DTMINI_MEMCPY_ONLY", "-o", program, "--function",
+                    proof.function, *folders, *defines, *files)
         for stub in proof.stubs:
             self.demand("goto-instrument", "--remove-function-body", stub, program, program)
             self.demand("goto-instrument", "--generate-function-body", stub, "--generate-function-body-options",

@@ -3,9 +3,9 @@
 
 /* The part of Arduino's API that the port and its sketches use, written for the tests from the
  * public reference. It is the poorest of the cores: what one of them leaves out, it does not have
- * (LED_BUILTIN, a serial port's availableForWrite()). A test sets the clock, and fills and reads the
- * serial ports. The macros ESP32, ARDUINO_ARCH_RP2040 and CORE_TEENSY add the functions of these
- * cores. */
+ * (LED_BUILTIN, a serial port's availableForWrite()). A test sets the clock, and fills and reads
+ * the serial ports. The macros ESP32, ARDUINO_ARCH_RP2040 and CORE_TEENSY add the functions of
+ * these cores. */
 
 #ifndef ARDUINO_H
 #define ARDUINO_H
