@@ -9,6 +9,7 @@
 #define STEPS_MAX 20
 #define ASKS_MAX 30
 #define ASKS_LEFT_MAX (ASKS_MAX + 8) /* When the last step has failed. */
+#define CHANCES_MAX 3
 #define PLAUSIBLE_CHZ_MAX 2000
 
 /* As in tmini_builder.c: 4 degrees back. */
@@ -321,6 +322,15 @@ static bool unsent_is_sound(unsigned unsent)
            unsent == (1 | 4 | 8);
 }
 
+/* The same member counts questions, and the chances of a lidar whose packets stay away. */
+static unsigned asks_max(uint8_t phase)
+{
+    if (phase >= TMINI_PHASE_SCANNING) {
+        return CHANCES_MAX;
+    }
+    return phase > TMINI_PHASE_IDLE ? ASKS_MAX : ASKS_LEFT_MAX;
+}
+
 static bool command_is_sound(const tmini_command_t *command)
 {
     const unsigned bytes = command->unsent & TMINI_UNSENT_BYTES;
@@ -328,8 +338,7 @@ static bool command_is_sound(const tmini_command_t *command)
            (bytes == 0 || (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
            (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE ||
             (command->phase == TMINI_PHASE_NONE && command->timeout_ms == TMINI_BACK_OFF_MS)) &&
-           command->steps <= STEPS_MAX &&
-           command->asks <= (command->phase > TMINI_PHASE_IDLE ? ASKS_MAX : ASKS_LEFT_MAX) &&
+           command->steps <= STEPS_MAX && command->asks <= asks_max(command->phase) &&
            command->frequency_chz <= PLAUSIBLE_CHZ_MAX;
 }
 
