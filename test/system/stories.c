@@ -22,6 +22,7 @@
 static bed_t bed;
 static random_t dice;
 static uint32_t spoils_one_in; /* Of the events on the wire; 0: none. */
+static uint64_t damaged_until_us;
 
 static uint32_t below(uint32_t limit)
 {
@@ -100,7 +101,10 @@ static void make_trouble(void)
 
 static void end_trouble(void)
 {
-    bed.flip_one_in = 0;
+    if (bed.flip_one_in > 0) {
+        damaged_until_us = bed.now_us;
+        bed.flip_one_in = 0;
+    }
     bed.sim.config.refuses_steps = false;
     bed.sim.config.never_answers = false;
 }
@@ -126,6 +130,7 @@ static void begin(uint32_t seed, bool is_told)
     bed.poll_ms = 1 + below(20);
     bed.config.frequency_chz = (uint16_t)(below(2) == 0 ? 0 : 600 + 10 * below(61));
     spoils_one_in = below(3) == 0 ? 0 : 3 + below(40);
+    damaged_until_us = 0;
     if (!bed_init(&bed, &lidar)) {
         printf("the library was not set up\n");
         exit(2);
@@ -167,14 +172,30 @@ static void act(void)
     }
 }
 
+/* A reply has no checksum: a damaged one has reported the wanted frequency. That shows only if the
+ * revolutions are off by more than 5 % (seed 19201: 930 becomes 898 by one bit, 900 is wanted). */
+static bool is_deceived(void)
+{
+    const int off_chz = abs(sim_frequency_chz(&bed.sim) - bed.wants_chz);
+
+    return bed.event_us[TMINI_EVENT_FREQUENCY] < damaged_until_us &&
+           abs(tmini_frequency_chz(&bed.lidar) - bed.wants_chz) <= 5 &&
+           off_chz * 20 <= bed.wants_chz;
+}
+
 /* That the frequency could not be set was reported with the latest start. */
-static bool is_excused(const char *shortcoming)
+static bool could_not_set(void)
 {
     const uint64_t failed_us = bed.event_us[TMINI_EVENT_COMMAND_FAILED];
 
     return failed_us > 0 && failed_us >= bed.event_us[TMINI_EVENT_STARTED] &&
-           failed_us >= bed.event_us[TMINI_EVENT_RECOVERED] && bed.wants_scans &&
-           bed_scans_at(&bed, 0, 5) && strstr(shortcoming, "frequency") != NULL;
+           failed_us >= bed.event_us[TMINI_EVENT_RECOVERED];
+}
+
+static bool is_excused(const char *shortcoming)
+{
+    return bed.wants_scans && bed_scans_at(&bed, 0, 5) &&
+           strstr(shortcoming, "frequency") != NULL && (could_not_set() || is_deceived());
 }
 
 static void run_ms(uint32_t ms)
@@ -215,10 +236,6 @@ static const char *tell(uint32_t seed, bool is_told)
     return shortcoming == NULL || is_excused(shortcoming) ? NULL : shortcoming;
 }
 
-/* A story that is known to fail, and not explained yet: it ends at another frequency. It is an
- * error if it does not fail any more: then it is to be removed here. */
-#define KNOWN_TO_FAIL 19201u
-
 int main(int argc, char **argv)
 {
     const bool is_told = argc == 3 && strcmp(argv[1], "--tell") == 0;
@@ -227,11 +244,8 @@ int main(int argc, char **argv)
     uint32_t failures = 0;
 
     for (uint32_t seed = first; seed < first + count; seed++) {
-        const char *what = tell(seed, is_told);
+        const char *const what = tell(seed, is_told);
 
-        if (seed == KNOWN_TO_FAIL && !is_told) {
-            what = what == NULL ? "does not fail any more: see KNOWN_TO_FAIL" : NULL;
-        }
         if (what != NULL && ++failures <= MOST_FAILURES) {
             printf("stories --tell %u    # %s\n", seed, what);
         }
