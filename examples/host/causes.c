@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* So many packets are no accident. */
+/* This many packets are no accident. */
 #define ENOUGH 3u
 
 static bool are_of(const facts_t *facts, size_t sample_size)

@@ -9,7 +9,7 @@
 
 #include "tmini_driver.h"
 
-/* After so many failed attempts, the next one reboots the lidar first. */
+/* Failed attempts after which the next one reboots the lidar first. */
 #define REBOOT_AFTER 3
 
 /* Value of `attempts` while the first attempt has not failed yet. */

@@ -43,7 +43,7 @@ def listen():
 
 
 def receive(clock, listener, size):
-    """So many bytes; fewer if the bridge leaves."""
+    """Receives `size` bytes; fewer if the bridge leaves."""
     content = b""
     while len(content) < size:
         clock.wait([listener.fileno()])

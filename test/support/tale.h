@@ -15,14 +15,14 @@
  *     <600 <info <health <scan    a reply comes: a frequency (digits), …; scan: to the start
  *     <P <S <Z        a point packet, a start packet, a point packet without ranges comes
  *     <turn:100       a whole turn at 10.0 Hz; turns:30:600: that many, at 6.0 Hz, each polled
- *     +50             so many milliseconds pass; until just before their end nothing happens
- *     ~50             so many milliseconds pass in a single step
+ *     +50             50 ms pass; until just before their end nothing happens
+ *     ~50             50 ms pass in a single step
  *     !STARTED        the next poll returns this event
  *     @IDLE           the state
  *     #600            the frequency that is known to be set
  *     ?TIMEOUT        the error of the command that failed last
  *     next:50 age:300 tmini_next_poll_ms() and tmini_scan_age_ms()
- *     takes:1         the port takes so many bytes per call from now on; takes:-1: it fails
+ *     takes:1         the port takes one byte per call from now on; takes:-1: it fails
  *
  * At the end a poll returns no event and sends nothing, and all that was sent has been named. After
  * each poll the invariants hold. */

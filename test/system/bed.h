@@ -32,7 +32,7 @@ typedef struct {
     uint32_t poll_ms;     /* Between two rounds of polls. */
     uint32_t write_max;   /* Bytes that the port takes per call. 0: all. */
     uint32_t work_ms;     /* What the program does with each scan takes this long. */
-    uint32_t flip_one_in; /* Of the bytes from the lidar, one in so many is damaged. 0: none. */
+    uint32_t flip_one_in; /* One in this many bytes from the lidar is damaged. 0: none. */
     bool is_told;         /* What happens is printed. */
     bool sleeps;          /* The program polls only when bytes come or tmini_next_poll_ms() ends. */
     bed_held_t *held;     /* The caller's. NULL: bytes come by an interrupt. */

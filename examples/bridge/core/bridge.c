@@ -7,7 +7,7 @@
 
 #include "tmini_timed.h"
 
-/* So many bytes of the lidar in a chunk, at most: three chunks fit into a queue. */
+/* The most bytes of the lidar in a chunk: three chunks fit into a queue. */
 #define PART_MAX 1024u
 
 #define HOST_MAX 64u

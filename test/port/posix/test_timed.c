@@ -349,7 +349,7 @@ void test_what_is_written_is_read(void)
 void test_a_damaged_chunk_is_a_gap(void)
 {
     uint8_t more[300];
-    memset(more, 'z', sizeof more); /* So many bytes may be awaited. */
+    memset(more, 'z', sizeof more); /* The most that may be awaited. */
     for (size_t damaged = 8; damaged < 8 + 13; damaged++) {
         stream_size = 0;
         put(tmini_timed_magic, TMINI_TIMED_MAGIC_SIZE);

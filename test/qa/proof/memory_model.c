@@ -41,7 +41,7 @@ enum { PRODUCER, CONSUMER, THREADS };
 #define STORES_MAX 12u
 #define ACCESSES_MAX 8u /* Of one operation. */
 
-/* A value of an index: it has been closed or opened so often, and counts so many bytes. */
+/* A value of an index: how often it was closed or opened, and the bytes that it counts. */
 typedef struct {
     uint8_t closed;
     uint8_t bytes;
