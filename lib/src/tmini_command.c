@@ -295,7 +295,7 @@ static int on_no_packet(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     const uint32_t late_ms = (uint32_t)command->timeout_ms + JITTER_MS;
-    if (command->asks == CHANCES_MAX || lidar->line.busy_ms < LATE_POLL_MS ||
+    if (command->asks == CHANCES_MAX || lidar->line.pause_ms < LATE_POLL_MS ||
         !tmini_has_elapsed(lidar, command->since_ms, late_ms)) {
         return TMINI_ERROR_TIMEOUT;
     }

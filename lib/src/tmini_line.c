@@ -125,19 +125,26 @@ static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t pa
     note_delay(line, late_ms, line->busy_ms == 0 && !were_held);
 }
 
+static uint16_t limited(uint32_t time_ms)
+{
+    return (uint16_t)(time_ms < UINT16_MAX ? time_ms : UINT16_MAX);
+}
+
 static void note_silence(tmini_line_t *line, uint32_t passed_ms)
 {
     const uint32_t seen_ms =
         passed_ms < TMINI_UNSEEN_SILENCE_MAX_MS ? passed_ms : TMINI_UNSEEN_SILENCE_MAX_MS;
-    const uint32_t silent_ms = line->silent_ms + seen_ms;
-    line->silent_ms = (uint16_t)(silent_ms < UINT16_MAX ? silent_ms : UINT16_MAX);
+    line->silent_ms = limited(line->silent_ms + seen_ms);
 }
 
-/* Counts the time since the driver has handled all that had come; 0 until the next look. */
+/* Counts the time since the first look after the driver had handled all that had come. The pause
+ * before that look counts only if it was longer than the ring lasts: then the port holds bytes. */
 static void note_work(tmini_line_t *line, uint32_t passed_ms)
 {
-    const uint32_t busy_ms = line->busy_ms + passed_ms + (line->busy_ms == 0 ? 1 : 0);
-    line->busy_ms = (uint16_t)(busy_ms < UINT16_MAX ? busy_ms : UINT16_MAX);
+    const bool was_busy = line->busy_ms > 0;
+    const bool counts = was_busy || line->arrived != line->received;
+    line->pause_ms = limited(passed_ms);
+    line->busy_ms = limited(line->busy_ms + (counts ? passed_ms : 0) + (was_busy ? 0 : 1));
 }
 
 bool tmini_line_look(tmini_t *lidar, bool is_scanning)

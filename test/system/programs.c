@@ -456,6 +456,32 @@ static void one_pause(size_t rx_size, uint16_t max_pause_ms, uint32_t pause_ms, 
     expect(bed.mixed == 0, "%u scans of two revolutions", bed.mixed);
 }
 
+static uint32_t points_withheld(void)
+{
+    tmini_counters_t counters;
+
+    tmini_counters(&bed.lidar, &counters);
+    return counters.points_withheld;
+}
+
+/* Each silence puts all bytes of a poll in doubt, so that each packet is a scan of its own. */
+static void rare_polls(const char *unused)
+{
+    (void)unused;
+    prepare(0);
+    begin();
+    start();
+    scans_within(5000);
+    bed.poll_ms = 200; /* The ring lasts 312 ms. */
+    const uint32_t small = bed.small;
+    for (uint32_t i = 0; i < 10; i++) {
+        sim_befall(&bed.sim, SIM_SILENT, 100, bed.now_us);
+        bed_run_ms(&bed, 1000);
+    }
+    expect(bed.small - small >= 50, "only %u scans of one packet", bed.small - small);
+    expect(points_withheld() == 0, "%u points withheld", points_withheld());
+}
+
 static void pause_with_a_small_ring(const char *unused)
 {
     (void)unused;
@@ -529,6 +555,7 @@ static const claim_t claims[] = {
     {"a_quiet_line_time_works_or_is_refused", any_quiet_line, NULL},
     {"a_program_with_a_small_ring_catches_up_after_a_pause", pause_with_a_small_ring, NULL},
     {"a_program_with_a_large_ring_catches_up_after_a_pause", pause_with_a_large_ring, NULL},
+    {"a_program_that_polls_rarely_gets_every_point", rare_polls, NULL},
     {"a_task_that_sleeps_as_long_as_it_may_gets_the_same_events", sleep_as_long_as_allowed, NULL},
 };
 
