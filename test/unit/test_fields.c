@@ -497,11 +497,18 @@ static int16_t draw(uint32_t *state, int16_t limit)
     return (int16_t)((int32_t)(*state >> 16) % (2 * limit + 1) - limit);
 }
 
+/* Each takes seconds on an emulated machine without a floating-point unit. */
+#if SIZE_MAX > 0xFFFFFFFFu
+#define POLYGONS 400u
+#else
+#define POLYGONS 8u
+#endif
+
 /* Polygons of any kind. Half of them have corners on a grid: straight ahead, behind or aside. */
 void test_any_polygon_has_the_directions_and_the_places_that_geometry_gives_it(void)
 {
     uint32_t state = 1;
-    for (unsigned i = 0; i < 400; i++) {
+    for (unsigned i = 0; i < POLYGONS; i++) {
         tmini_xy_t corners[5];
         const size_t count = 3 + i % 3;
         const int16_t grid = i % 2 == 0 ? 4000 : 3;
