@@ -12,7 +12,7 @@
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
 #include <sensor_msgs/msg/laser_scan.hpp>
-#include <sensor_msgs/msg/point_cloud2.hpp>
+#include <sensor_msgs/point_cloud2_iterator.hpp>
 #include <std_srvs/srv/empty.hpp>
 
 #include "lidar.h"
@@ -40,19 +40,6 @@ static Value value_of(const rclcpp::ParameterValue &value)
     default:
         return {};
     }
-}
-
-static rclcpp::ParameterValue ros_value_of(const Value &value)
-{
-    return std::visit(
-        [](const auto &held) {
-            if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>) {
-                return rclcpp::ParameterValue();
-            } else {
-                return rclcpp::ParameterValue(held);
-            }
-        },
-        value);
 }
 
 class Node : public rclcpp::Node, private Listener
@@ -93,8 +80,9 @@ class Node : public rclcpp::Node, private Listener
             descriptor.description = parameter.description;
             descriptor.dynamic_typing = true; /* An integer is a number, too. */
             descriptor.read_only = std::strcmp(parameter.name, "frequency") != 0;
-            const rclcpp::ParameterValue value =
-                declare_parameter(parameter.name, ros_value_of(parameter.initial), descriptor);
+            const auto initial = std::visit(
+                [](const auto &held) { return rclcpp::ParameterValue(held); }, parameter.initial);
+            const auto value = declare_parameter(parameter.name, initial, descriptor);
             refuse_if(put(settings_, parameter.name, value_of(value)), parameter.name);
         }
         refuse_if(contradiction(settings_), "parameters:");
@@ -239,24 +227,15 @@ class Node : public rclcpp::Node, private Listener
     void publish_cloud(const tmini_scan_t &scan, const rclcpp::Time &end)
     {
         const std::chrono::milliseconds taken(scan.end_ms - scan.start_ms);
+        const int kind = PointField::FLOAT32;
         auto message = std::make_unique<PointCloud2>();
+        sensor_msgs::PointCloud2Modifier modifier(*message);
+        modifier.setPointCloud2Fields(5, "x", 1, kind, "y", 1, kind, "z", 1, kind, "intensity", 1,
+                                      kind, "time", 1, kind);
+        modifier.resize(tmini_cloud_of_scan(&settings_.laser, &scan, cloud_));
+        std::memcpy(message->data.data(), cloud_, message->data.size());
         message->header.frame_id = settings_.frame_id;
         message->header.stamp = end - rclcpp::Duration(taken);
-        for (const char *const name : {"x", "y", "z", "intensity", "time"}) {
-            PointField field;
-            field.name = name;
-            field.offset = static_cast<std::uint32_t>(message->fields.size() * sizeof(float));
-            field.datatype = PointField::FLOAT32;
-            field.count = 1;
-            message->fields.push_back(field);
-        }
-        const std::size_t count = tmini_cloud_of_scan(&settings_.laser, &scan, cloud_);
-        const auto *const bytes = reinterpret_cast<const std::uint8_t *>(cloud_);
-        message->data.assign(bytes, bytes + count * sizeof cloud_[0]);
-        message->height = 1;
-        message->width = static_cast<std::uint32_t>(count);
-        message->point_step = sizeof cloud_[0];
-        message->row_step = static_cast<std::uint32_t>(message->data.size());
         message->is_bigendian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
         message->is_dense = true;
         clouds_->publish(std::move(message));

@@ -218,7 +218,8 @@ Settings initial_settings()
     Settings settings = {};
     settings.laser = tmini_laser_default;
     for (const Parameter &parameter : parameters()) {
-        parameter.put(settings, parameter.initial);
+        const auto value = [](const auto &held) { return Value(held); };
+        parameter.put(settings, std::visit(value, parameter.initial));
     }
     return settings;
 }

@@ -32,7 +32,7 @@ struct Settings {
 struct Parameter {
     const char *name;
     const char *description;
-    Value initial;
+    std::variant<bool, std::int64_t, double, std::string> initial;
     std::string (*put)(Settings &settings, const Value &value); /* See put() below. */
 };
 
