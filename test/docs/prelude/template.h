@@ -7,3 +7,5 @@
 #include "tmini_port_template.h"
 
 extern void *const uart;
+extern tmini_t lidar;
+extern const tmini_config_t config;
