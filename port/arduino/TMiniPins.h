@@ -13,6 +13,10 @@
  * To the TX of the lidar on Serial1. */
 /** @def TMINI_TX1_PIN
  * To its RX. */
+/** @def TMINI_RX2_PIN
+ * The same on Serial2, where there is one. */
+/** @def TMINI_TX2_PIN
+ * The same. */
 /** @def TMINI_LED_PINS
  * Pins that are free for LEDs, eight where the chip has them. */
 #if defined(ESP32)

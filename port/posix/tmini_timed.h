@@ -25,9 +25,9 @@
 extern "C" {
 #endif
 
-#define TMINI_TIMED_MAGIC_SIZE 8u
-#define TMINI_TIMED_HEAD_SIZE 10u
-#define TMINI_TIMED_MAX 4096u
+#define TMINI_TIMED_MAGIC_SIZE 8u /**< Bytes that begin each stream. */
+#define TMINI_TIMED_HEAD_SIZE 10u /**< Bytes before those of the lidar in a chunk. */
+#define TMINI_TIMED_MAX 4096u     /**< The most bytes of the lidar in a chunk. */
 
 /** Chunks that come later than others by up to this much keep their times. While nothing comes, the
  * clock stands still for this long, because late chunks may follow. */
@@ -62,7 +62,8 @@ typedef enum {
 /** A stream that is being received. All 0: nothing has been received. Its members are private,
  * except `kind`. */
 typedef struct {
-    tmini_timed_kind_t kind;
+    tmini_timed_kind_t kind; /**< What kind of stream comes. */
+    /** @cond private */
     bool is_anchored;
     bool is_gap;        /* Bytes were lost before the next ones. */
     int64_t sent_us;    /* The sender's clock at the latest chunk. */
@@ -73,6 +74,7 @@ typedef struct {
     size_t count;
     uint32_t left; /* Of the latest chunk. */
     uint8_t bytes[TMINI_TIMED_HEAD_SIZE + TMINI_TIMED_MAX];
+    /** @endcond */
 } tmini_timed_t;
 
 /** A connection has been made: another stream begins. */
@@ -81,6 +83,8 @@ void tmini_timed_begin(tmini_timed_t *timed);
 /** Where to put received bytes, and how many; then call tmini_timed_put(). There is always room
  * when tmini_timed_take() has returned 0. */
 uint8_t *tmini_timed_room(tmini_timed_t *timed, size_t *room);
+
+/** `count` bytes were put there. */
 void tmini_timed_put(tmini_timed_t *timed, size_t count);
 
 /** Returns how many of the lidar's bytes come next, at most `most`, and where they are; all of them
