@@ -141,10 +141,10 @@ static void note_silence(tmini_line_t *line, uint32_t passed_ms)
  * before that look counts only if it was longer than the ring lasts: then the port holds bytes. */
 static void note_work(tmini_line_t *line, uint32_t passed_ms)
 {
-    const bool was_busy = line->busy_ms > 0;
-    const bool counts = was_busy || line->arrived != line->received;
-    line->pause_ms = limited(passed_ms);
-    line->busy_ms = limited(line->busy_ms + (counts ? passed_ms : 0) + (was_busy ? 0 : 1));
+    const bool counts = line->busy_ms > 0 || line->arrived != line->received;
+    const uint32_t busy_ms = counts ? line->busy_ms + passed_ms : 0;
+    line->pause_ms = (uint8_t)(passed_ms < UINT8_MAX ? passed_ms : UINT8_MAX);
+    line->busy_ms = limited(busy_ms > 0 ? busy_ms : 1);
 }
 
 bool tmini_line_look(tmini_t *lidar, bool is_scanning)

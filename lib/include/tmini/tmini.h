@@ -512,8 +512,8 @@ typedef struct {
 /* tmini_line.c */
 typedef struct {
     bool doubt;         /* Bytes may be missing somewhere before `doubtful_to`. */
+    uint8_t pause_ms;   /* Between the last two looks; at most 255. */
     uint16_t busy_ms;   /* For how long not all that came has been handled; 0: it has been. */
-    uint16_t pause_ms;  /* Between the last two looks. */
     uint16_t late_ms;   /* By how much the latest bytes may be late, if not in doubt. */
     uint16_t silent_ms; /* Observed silence; at most 65535. */
     uint32_t now_ms;    /* When the line was last looked at. It does not go back. */
