@@ -5,6 +5,7 @@
 tool takes options, and what it says when there is nothing to decode."""
 
 import json
+import os
 import resource
 import signal
 import subprocess
@@ -93,6 +94,22 @@ def test_a_recording_can_come_from_standard_input(tmini):
 
 
 # ---- Scans
+
+
+def line_of(scan):
+    """What examples/decoder_only prints."""
+    near = min((point for point in scan["points"] if point[1] > 0), key=lambda point: point[1], default=None)
+    return (f"{len(scan['points'])} points, {'complete' if scan['complete'] else 'incomplete'}"
+            + (f", nearest {near[1]} mm at {near[0]:.2f} degrees" if near else ""))
+
+
+@pytest.mark.parametrize("name", RECORDINGS)
+def test_the_decoder_without_the_driver_finds_the_same_scans(tmini, name):
+    content = Path("recordings", name).read_bytes()
+    alone = subprocess.run([os.environ["TMINI_DECODER_ONLY"]], input=content, capture_output=True, check=True)
+    run = tmini("decode", f"recordings/{name}", "--json", "--quiet")
+    ended = [line_of(json.loads(line)) for line in run.out.splitlines()][:-1]  # The last one goes on.
+    assert alone.stdout.decode().splitlines() == ended
 
 
 def test_json_is_an_object_per_line_for_each_scan(tmini, folder):

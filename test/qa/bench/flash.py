@@ -10,6 +10,7 @@ from targets import HERE, LIB_SOURCES, BenchError, contributions, run
 # The order of the tables. Each entry has a file name and a title.
 CONFIGURATIONS = (
     ("parser", "parser + decoding"),
+    ("points", "ring, parser and scan builder"),
     ("streaming", "streaming, no scan buffer"),
     ("driver", "full driver"),
     ("no_ct", "the same without CT information"),
@@ -62,7 +63,7 @@ def weigh_program(name, target, level, objects, folder):
 
 def measure(target, level, objects, folder):
     weights = {"no_ct": weigh_without_ct(target, level, folder)}
-    for name in ("parser", "streaming", "driver", "everything"):
+    for name in ("parser", "points", "streaming", "driver", "everything"):
         weights[name] = weigh_program(name, target, level, objects, folder)
     return weights
 
