@@ -53,7 +53,7 @@ check_header() {
             $(stand_in "$port") -I "$(dirname "$header")" -
 }
 
-# What can fail says so: port/README.md, "What they return".
+# What can fail says so: port/README.md.
 check_results() {
     ! grep -nE '^void tmini_[a-z0-9_]+_(init|start|start_[a-z]+)\(' "$root"/port/*/*.h |
         grep -v tmini_posix_init
