@@ -6,6 +6,7 @@
 #include "unity.h"
 
 #include "irq_lines.h"
+#include "machine.h"
 
 #define ENOUGH_POINTS 2000u
 #define PATIENCE_US 10000000u
@@ -36,8 +37,8 @@ void scanning_begin(const scanning_t *the_program, size_t rx_size)
 
 void poll_until(tmini_event_t wanted)
 {
-    const uint64_t begun_us = program.now_us();
-    while (program.now_us() - begun_us < PATIENCE_US) {
+    const uint64_t begun_us = machine.now_us;
+    while (machine.now_us - begun_us < PATIENCE_US) {
         const tmini_event_t event = tmini_poll(&lidar);
         if (event == wanted) {
             return;

@@ -15,7 +15,6 @@
 typedef struct {
     const tmini_port_t *port;
     void *context;
-    uint64_t (*now_us)(void);
     void (*wait)(void);        /* Called when a poll returns no event. */
     void (*work)(uint32_t us); /* Keeps the program busy for this time. */
 } scanning_t;

@@ -3,9 +3,14 @@
 
 #include "story.h"
 
-#include "console.h"
+#include <setjmp.h>
 
-static story_board_t board;
+#include "console.h"
+#include "machine.h"
+#include "unity.h"
+
+static void (*assert_stops)(bool stops);
+static jmp_buf end_of_story;
 static unsigned chapter;
 
 static void it_scans_and_an_obstacle_comes(void)
@@ -13,34 +18,34 @@ static void it_scans_and_an_obstacle_comes(void)
     assert_said("model 151, firmware 1.2, hardware 1, serial 2026031700012345\n");
     assert_last_said(", go; bytes ");
     assert_last_said("lost: 0 checksums, 0 bytes, 0 gaps\n");
-    board.assert_stops(false);
-    sim_place_obstacle(board.lidar, 0, 640, 250);
+    assert_stops(false);
+    sim_place_obstacle(&machine.lidar, 0, 640, 250);
 }
 
 static void it_stops_and_the_obstacle_goes(void)
 {
     assert_last_said(", STOP;");
-    board.assert_stops(true);
-    sim_clear_obstacles(board.lidar);
+    assert_stops(true);
+    sim_clear_obstacles(&machine.lidar);
 }
 
 static void it_goes_and_power_fails(void)
 {
-    board.assert_stops(false);
-    sim_power(board.lidar, false, board.now_us());
+    assert_stops(false);
+    machine_power(false);
 }
 
 static void it_is_blind_and_power_returns(void)
 {
     assert_said("lost; trying to get it back\n");
-    board.assert_stops(true);
-    sim_power(board.lidar, true, board.now_us());
+    assert_stops(true);
+    machine_power(true);
 }
 
 static void it_has_come_back(void)
 {
     assert_said("back again\n");
-    board.assert_stops(false);
+    assert_stops(false);
 }
 
 static const struct {
@@ -56,17 +61,45 @@ static const struct {
 
 #define CHAPTERS (sizeof chapters / sizeof chapters[0])
 
-void story_begin(const story_board_t *the_board)
+void story_begin(void (*check)(bool stops))
 {
-    board = *the_board;
+    assert_stops = check;
     chapter = 0;
 }
 
 bool story_goes_on(void)
 {
-    if (chapter < CHAPTERS && board.now_us() >= chapters[chapter].time_us) {
+    if (chapter < CHAPTERS && machine.now_us >= chapters[chapter].time_us) {
         chapters[chapter].happens();
         chapter++;
     }
     return chapter < CHAPTERS;
+}
+
+void story_go_on(void)
+{
+    if (!story_goes_on()) {
+        story_leave();
+    }
+}
+
+void story_leave(void)
+{
+    longjmp(end_of_story, 1);
+}
+
+void story_run(int (*program)(void), void (*on_sleep)(void))
+{
+    machine.on_sleep = on_sleep;
+    if (setjmp(end_of_story) == 0) {
+        (void)program();
+    }
+}
+
+void story_tell(int (*program)(void), void (*check)(bool stops), void (*on_sleep)(void))
+{
+    story_begin(check);
+    story_run(program, on_sleep);
+    TEST_ASSERT_FALSE(story_goes_on());
+    assert_console_leaves_time(1024);
 }

@@ -9,19 +9,20 @@
 #define STORY_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
-#include "simulator.h"
-
-typedef struct {
-    sim_t *lidar;
-    uint64_t (*now_us)(void);
-    void (*assert_stops)(bool stops); /* Checks whether the program now stops the robot. */
-} story_board_t;
-
-void story_begin(const story_board_t *board);
+/* Begins the story; `assert_stops` checks whether the program now stops the robot. */
+void story_begin(void (*assert_stops)(bool stops));
 
 /* Call this repeatedly: it does and checks what is due. Returns false at the end of the story. */
 bool story_goes_on(void);
+
+/* For a program that never ends: while it sleeps, story_go_on() lets the story go on, and leaves
+ * the program at the end; story_leave() leaves it at once. */
+void story_go_on(void);
+void story_leave(void);
+void story_run(int (*program)(void), void (*on_sleep)(void));
+
+/* Tells the whole story; printing must leave time. */
+void story_tell(int (*program)(void), void (*assert_stops)(bool stops), void (*on_sleep)(void));
 
 #endif

@@ -14,6 +14,9 @@
 
 #define STOP_PIN VIRTUAL_IDF_JTAG_PIN /* CONFIG_EXAMPLE_STOP_GPIO */
 
+/* Other tasks may run at the same time. */
+#define CHANGE(call) (virtual_idf_lock(), (call), virtual_idf_unlock())
+
 void app_main(void);
 
 static void run_program(void *argument)
@@ -50,30 +53,31 @@ void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
     assert_logged(", go; lost: 0 checksums, 0 bytes, 0 overflows\n");
     TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
 
-    virtual_idf_place_obstacle(0, 640, 250); /* 10 degrees wide, 250 mm ahead. */
+    CHANGE(sim_place_obstacle(&machine.lidar, 0, 640, 250)); /* 10 degrees wide, 250 mm ahead. */
     vTaskDelay(100);
     TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN));
     assert_logged(", STOP;");
 
-    virtual_idf_clear_obstacles();
+    CHANGE(sim_clear_obstacles(&machine.lidar));
     vTaskDelay(100);
     TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
 
-    virtual_idf_set_health(SIM_HEALTH_PD); /* The lidar still reports ranges, all of them far. */
+    CHANGE(sim_set_health(&machine.lidar,
+                          SIM_HEALTH_PD)); /* The lidar still reports ranges, all of them far. */
     vTaskDelay(100);
     TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN));
     assert_logged("W lidar: faults: PD\n");
 
-    virtual_idf_set_health(0);
+    CHANGE(sim_set_health(&machine.lidar, 0));
     vTaskDelay(100);
     TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));
 
-    virtual_idf_power_lidar(false);
+    CHANGE(machine_power(false));
     vTaskDelay(200);
     TEST_ASSERT_EQUAL_INT(1, virtual_idf_pin(STOP_PIN));
     assert_logged("W lidar: lost; trying to get it back\n");
 
-    virtual_idf_power_lidar(true);
+    CHANGE(machine_power(true));
     vTaskDelay(2500);
     assert_logged("I lidar: back again\n");
     TEST_ASSERT_EQUAL_INT(0, virtual_idf_pin(STOP_PIN));

@@ -9,7 +9,6 @@
 
 #include "freertos/FreeRTOS.h"
 #include "freertos/task.h"
-#include "esp_timer.h"
 #include "scanning.h"
 #include "tmini/tmini_blocking.h"
 #include "tmini_esp32.h"
@@ -17,11 +16,6 @@
 
 static tmini_esp32_t port;
 static tmini_esp32_wiring_t wiring;
-
-static uint64_t now_us(void)
-{
-    return (uint64_t)esp_timer_get_time();
-}
 
 static void wait(void)
 {
@@ -37,7 +31,7 @@ void setUp(void)
 {
     const sim_observer_t observer = truth_begin();
     const scanning_t program = {
-        .port = &tmini_esp32_port, .context = &port, .now_us = now_us, .wait = wait, .work = work};
+        .port = &tmini_esp32_port, .context = &port, .wait = wait, .work = work};
     virtual_idf_begin(&observer);
     memset(&port, 0, sizeof port);
     wiring = (tmini_esp32_wiring_t)TMINI_ESP32_WIRING_DEFAULT;
@@ -48,10 +42,11 @@ void setUp(void)
 void tearDown(void)
 {
     (void)tmini_esp32_stop(&port);
-    TEST_ASSERT_EQUAL_UINT(0, virtual_idf_tasks());
-    TEST_ASSERT_FALSE(virtual_idf_driver_is_installed());
-    TEST_ASSERT_EQUAL_UINT(0, virtual_idf_locks_held());
-    TEST_ASSERT_EQUAL_UINT(0, virtual_idf_stray_calls());
+    const virtual_idf_state_t state = virtual_idf_state();
+    TEST_ASSERT_EQUAL_UINT(1, state.tasks);
+    TEST_ASSERT_FALSE(state.installed);
+    TEST_ASSERT_EQUAL_UINT(0, state.locks_held);
+    TEST_ASSERT_EQUAL_UINT(0, state.stray_calls);
 }
 
 static void start_port(void)
@@ -283,8 +278,8 @@ void test_a_port_is_stopped_while_bytes_come_and_started_again(void)
         (void)tmini_start(&lidar); /* The first time. */
         vTaskDelay(20 + i);
         TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
-        TEST_ASSERT_EQUAL_UINT(0, virtual_idf_tasks());
-        TEST_ASSERT_FALSE(virtual_idf_driver_is_installed());
+        TEST_ASSERT_EQUAL_UINT(1, virtual_idf_state().tasks);
+        TEST_ASSERT_FALSE(virtual_idf_state().installed);
     }
 }
 

@@ -43,15 +43,11 @@ typedef struct {
 static struct {
     pthread_mutex_t lock;
     pthread_cond_t changed;
-    uint64_t now_us;
     uint64_t held_until_us;
-    unsigned tasks;
     unsigned waiting;
     waiter_t waiters[WAITERS];
 
-    sim_t lidar;
-    bool installed;
-    unsigned stray_calls;
+    virtual_idf_state_t state;
     uint8_t fifo[FIFO_SIZE];
     size_t fifo_count;
     size_t fifo_threshold;
@@ -70,18 +66,17 @@ static struct {
     size_t queue_size;
     size_t queue_count;
 
-    unsigned locks_held; /* Power management locks. */
     virtual_pin_t pins[PINS];
     char log[16384];
     size_t log_length;
 } world = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
-static void lock(void)
+void virtual_idf_lock(void)
 {
     pthread_mutex_lock(&world.lock);
 }
 
-static void unlock(void)
+void virtual_idf_unlock(void)
 {
     pthread_mutex_unlock(&world.lock);
 }
@@ -99,7 +94,7 @@ static void post(uart_event_type_t type, size_t size)
 static void fill_fifo(void)
 {
     uint8_t bytes[256];
-    const size_t count = sim_transmit(&world.lidar, world.now_us, bytes, sizeof bytes);
+    const size_t count = sim_transmit(&machine.lidar, machine.now_us, bytes, sizeof bytes);
     world.line_pauses = count == 0; /* A time step is longer than the UART's receive timeout. */
     for (size_t i = 0; i < count; i++) {
         if (!world.is_routed) {
@@ -146,7 +141,7 @@ static void empty_fifo(void)
  * lost. */
 static void serve_interrupt(void)
 {
-    if (!world.installed || !world.has_interrupts || world.now_us < world.held_until_us) {
+    if (!world.state.installed || !world.has_interrupts || machine.now_us < world.held_until_us) {
         return;
     }
     if (has_cause_to_read() && world.stash_count == 0) {
@@ -163,7 +158,7 @@ static void serve_interrupt(void)
 
 static bool is_over(const waiter_t *waiter)
 {
-    return world.now_us >= waiter->until_us || (waiter->for_event && world.queue_count > 0);
+    return machine.now_us >= waiter->until_us || (waiter->for_event && world.queue_count > 0);
 }
 
 static void release_waiters(void)
@@ -180,8 +175,8 @@ static void release_waiters(void)
 
 static void let_time_pass(void)
 {
-    while (world.tasks > 0 && world.waiting == world.tasks) {
-        world.now_us += STEP_US;
+    while (world.state.tasks > 0 && world.waiting == world.state.tasks) {
+        machine.now_us += STEP_US;
         fill_fifo();
         serve_interrupt();
         release_waiters();
@@ -232,9 +227,9 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t function, const char *name, ui
         return pdFAIL;
     }
     *start = (start_t){.function = function, .argument = argument};
-    lock();
-    world.tasks++;
-    unlock();
+    virtual_idf_lock();
+    world.state.tasks++;
+    virtual_idf_unlock();
     if (pthread_create(&thread, NULL, run_task, start) != 0) {
         abort();
     }
@@ -245,34 +240,34 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t function, const char *name, ui
 void vTaskDelete(TaskHandle_t task)
 {
     (void)task; /* Always the calling task. */
-    lock();
-    world.tasks--;
+    virtual_idf_lock();
+    world.state.tasks--;
     let_time_pass();
-    unlock();
+    virtual_idf_unlock();
     pthread_exit(NULL);
 }
 
 void vTaskDelay(TickType_t ticks)
 {
-    lock();
-    wait_until(world.now_us + (uint64_t)ticks * TICK_US, false);
-    unlock();
+    virtual_idf_lock();
+    wait_until(machine.now_us + (uint64_t)ticks * TICK_US, false);
+    virtual_idf_unlock();
 }
 
 int64_t esp_timer_get_time(void)
 {
-    lock();
-    const int64_t now_us = (int64_t)world.now_us;
-    unlock();
+    virtual_idf_lock();
+    const int64_t now_us = (int64_t)machine.now_us;
+    virtual_idf_unlock();
     return now_us;
 }
 
 BaseType_t xQueueReceive(QueueHandle_t queue, void *buffer, TickType_t ticks)
 {
     (void)queue;
-    lock();
+    virtual_idf_lock();
     if (world.queue_count == 0 && ticks > 0) {
-        wait_until(world.now_us + (uint64_t)ticks * TICK_US, true);
+        wait_until(machine.now_us + (uint64_t)ticks * TICK_US, true);
     }
     const bool received = world.queue_count > 0;
     if (received) {
@@ -280,16 +275,16 @@ BaseType_t xQueueReceive(QueueHandle_t queue, void *buffer, TickType_t ticks)
         world.queue_count--;
         memmove(&world.queue[0], &world.queue[1], world.queue_count * sizeof world.queue[0]);
     }
-    unlock();
+    virtual_idf_unlock();
     return received ? pdTRUE : pdFALSE;
 }
 
 UBaseType_t uxQueueSpacesAvailable(const QueueHandle_t queue)
 {
     (void)queue;
-    lock();
+    virtual_idf_lock();
     const UBaseType_t spaces = (UBaseType_t)(world.queue_size - world.queue_count);
-    unlock();
+    virtual_idf_unlock();
     return spaces;
 }
 
@@ -298,12 +293,12 @@ UBaseType_t uxQueueSpacesAvailable(const QueueHandle_t queue)
 /* Returns true, with the lock held, if the driver is installed. */
 static bool enter_driver(void)
 {
-    lock();
-    if (!world.installed) {
-        world.stray_calls++;
-        unlock();
+    virtual_idf_lock();
+    if (!world.state.installed) {
+        world.state.stray_calls++;
+        virtual_idf_unlock();
     }
-    return world.installed;
+    return world.state.installed;
 }
 
 static esp_err_t check_driver(void)
@@ -311,7 +306,7 @@ static esp_err_t check_driver(void)
     if (!enter_driver()) {
         return ESP_FAIL;
     }
-    unlock();
+    virtual_idf_unlock();
     return ESP_OK;
 }
 
@@ -321,10 +316,10 @@ esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffe
     (void)uart;
     (void)tx_buffer_size;
     (void)intr_alloc_flags;
-    lock();
-    const bool was_installed = world.installed;
+    virtual_idf_lock();
+    const bool was_installed = world.state.installed;
     if (!was_installed) {
-        world.installed = true;
+        world.state.installed = true;
         world.has_interrupts = true;
         world.buffer_size = (size_t)rx_buffer_size;
         world.buffer_count = 0;
@@ -336,7 +331,7 @@ esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffe
         world.fifo_overflowed = false;
     }
     *queue = (QueueHandle_t)(void *)&world.queue;
-    unlock();
+    virtual_idf_unlock();
     return was_installed ? ESP_FAIL : ESP_OK;
 }
 
@@ -346,8 +341,8 @@ esp_err_t uart_driver_delete(uart_port_t uart)
     if (!enter_driver()) {
         return ESP_FAIL;
     }
-    world.installed = false;
-    unlock();
+    world.state.installed = false;
+    virtual_idf_unlock();
     return ESP_OK;
 }
 
@@ -362,9 +357,9 @@ esp_err_t uart_set_pin(uart_port_t uart, int tx, int rx, int rts, int cts)
     (void)uart;
     (void)rts;
     (void)cts;
-    lock();
+    virtual_idf_lock();
     world.is_routed = tx != rx;
-    unlock();
+    virtual_idf_unlock();
     return tx != rx ? ESP_OK : ESP_FAIL;
 }
 
@@ -375,7 +370,7 @@ esp_err_t uart_set_rx_full_threshold(uart_port_t uart, int threshold)
         return ESP_FAIL;
     }
     world.fifo_threshold = (size_t)threshold;
-    unlock();
+    virtual_idf_unlock();
     return ESP_OK;
 }
 
@@ -400,7 +395,7 @@ esp_err_t uart_enable_rx_intr(uart_port_t uart)
         return ESP_FAIL;
     }
     world.has_interrupts = true;
-    unlock();
+    virtual_idf_unlock();
     return ESP_OK;
 }
 
@@ -413,7 +408,7 @@ esp_err_t uart_flush_input(uart_port_t uart)
     world.fifo_count = 0;
     world.stash_count = 0;
     world.buffer_count = 0;
-    unlock();
+    virtual_idf_unlock();
     return ESP_OK;
 }
 
@@ -424,16 +419,16 @@ esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size)
         return ESP_FAIL;
     }
     *size = world.buffer_count;
-    unlock();
+    virtual_idf_unlock();
     return ESP_OK;
 }
 
 void virtual_idf_break_reception(void)
 {
-    lock();
+    virtual_idf_lock();
     world.has_interrupts = false;
     world.is_routed = false;
-    unlock();
+    virtual_idf_unlock();
 }
 
 static size_t take_from_buffer(uint8_t *bytes, size_t length)
@@ -467,7 +462,7 @@ int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t 
     if (put_stash_back()) {
         count += take_from_buffer(&bytes[count], length - count);
     }
-    unlock();
+    virtual_idf_unlock();
     return (int)count;
 }
 
@@ -477,8 +472,8 @@ int uart_tx_chars(uart_port_t uart, const char *buffer, uint32_t length)
     if (!enter_driver()) {
         return -1;
     }
-    sim_receive(&world.lidar, (const uint8_t *)buffer, length, world.now_us);
-    unlock();
+    sim_receive(&machine.lidar, (const uint8_t *)buffer, length, machine.now_us);
+    virtual_idf_unlock();
     return (int)length;
 }
 
@@ -496,25 +491,25 @@ esp_err_t esp_pm_lock_create(esp_pm_lock_type_t type, int arg, const char *name,
     (void)type;
     (void)arg;
     (void)name;
-    *created = (esp_pm_lock_handle_t)(void *)&world.locks_held;
+    *created = (esp_pm_lock_handle_t)(void *)&world.state.locks_held;
     return ESP_OK;
 }
 
 esp_err_t esp_pm_lock_acquire(esp_pm_lock_handle_t held)
 {
     (void)held;
-    lock();
-    world.locks_held++;
-    unlock();
+    virtual_idf_lock();
+    world.state.locks_held++;
+    virtual_idf_unlock();
     return ESP_OK;
 }
 
 esp_err_t esp_pm_lock_release(esp_pm_lock_handle_t held)
 {
     (void)held;
-    lock();
-    world.locks_held--;
-    unlock();
+    virtual_idf_lock();
+    world.state.locks_held--;
+    virtual_idf_unlock();
     return ESP_OK;
 }
 
@@ -533,28 +528,28 @@ static void drive(virtual_pin_t *pin)
 
 esp_err_t gpio_reset_pin(gpio_num_t pin)
 {
-    lock();
+    virtual_idf_lock();
     world.pins[pin].is_gpio = true;
     world.pins[pin].is_output = false;
-    unlock();
+    virtual_idf_unlock();
     return ESP_OK;
 }
 
 esp_err_t gpio_set_direction(gpio_num_t pin, gpio_mode_t mode)
 {
-    lock();
+    virtual_idf_lock();
     world.pins[pin].is_output = mode == GPIO_MODE_OUTPUT;
     drive(&world.pins[pin]);
-    unlock();
+    virtual_idf_unlock();
     return ESP_OK;
 }
 
 esp_err_t gpio_set_level(gpio_num_t pin, uint32_t level)
 {
-    lock();
+    virtual_idf_lock();
     world.pins[pin].level = (int)level;
     drive(&world.pins[pin]);
-    unlock();
+    virtual_idf_unlock();
     return ESP_OK;
 }
 
@@ -565,19 +560,19 @@ void esp_log_line(char level, const char *tag, const char *format, ...)
 {
     va_list arguments;
     char *const end = world.log + sizeof world.log;
-    lock();
+    virtual_idf_lock();
     char *at = world.log + world.log_length;
     at += snprintf(at, (size_t)(end - at), "%c %s: ", level, tag);
     va_start(arguments, format);
     at += vsnprintf(at, (size_t)(end - at), format, arguments);
     va_end(arguments);
     at += snprintf(at, (size_t)(end - at), "\n");
-    console_note(world.now_us, (size_t)(at - world.log) - world.log_length + LOG_EXTRA);
+    console_note(machine.now_us, (size_t)(at - world.log) - world.log_length + LOG_EXTRA);
     world.log_length = (size_t)(at - world.log);
     if (world.log_length > sizeof world.log - 1024u) {
         abort(); /* No test logs this much. */
     }
-    unlock();
+    virtual_idf_unlock();
 }
 
 void esp_stop(esp_err_t error)
@@ -588,91 +583,26 @@ void esp_stop(esp_err_t error)
 
 void virtual_idf_begin(const sim_observer_t *observer)
 {
-    const sim_config_t config = sim_default_config();
-    lock();
-    world.now_us = 0;
+    static const machine_uart_t none;
+    virtual_idf_lock();
+    machine_begin(observer, &none);
     world.held_until_us = 0;
-    world.tasks = 1;
+    world.state = (virtual_idf_state_t){.tasks = 1};
     world.waiting = 0;
     memset(world.waiters, 0, sizeof world.waiters);
-    world.installed = false;
-    world.stray_calls = 0;
-    world.locks_held = 0;
     world.log_length = 0;
     world.log[0] = '\0';
     for (unsigned i = 0; i < PINS; i++) {
         world.pins[i] = (virtual_pin_t){.is_gpio = i != VIRTUAL_IDF_JTAG_PIN};
     }
-    sim_init(&world.lidar, &config);
-    sim_observe(&world.lidar, observer);
-    unlock();
+    virtual_idf_unlock();
 }
 
 void virtual_idf_hold_interrupts(uint32_t duration_us)
 {
-    lock();
-    world.held_until_us = world.now_us + duration_us;
-    unlock();
-}
-
-void virtual_idf_place_obstacle(uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm)
-{
-    lock();
-    sim_place_obstacle(&world.lidar, angle_q6, width_q6, distance_mm);
-    unlock();
-}
-
-void virtual_idf_clear_obstacles(void)
-{
-    lock();
-    sim_clear_obstacles(&world.lidar);
-    unlock();
-}
-
-void virtual_idf_power_lidar(bool on)
-{
-    lock();
-    sim_power(&world.lidar, on, world.now_us);
-    unlock();
-}
-
-void virtual_idf_set_health(uint8_t bits)
-{
-    lock();
-    sim_set_health(&world.lidar, bits);
-    unlock();
-}
-
-unsigned virtual_idf_locks_held(void)
-{
-    lock();
-    const unsigned held = world.locks_held;
-    unlock();
-    return held;
-}
-
-bool virtual_idf_driver_is_installed(void)
-{
-    lock();
-    const bool installed = world.installed;
-    unlock();
-    return installed;
-}
-
-unsigned virtual_idf_tasks(void)
-{
-    lock();
-    const unsigned tasks = world.tasks - 1;
-    unlock();
-    return tasks;
-}
-
-unsigned virtual_idf_stray_calls(void)
-{
-    lock();
-    const unsigned calls = world.stray_calls;
-    unlock();
-    return calls;
+    virtual_idf_lock();
+    world.held_until_us = machine.now_us + duration_us;
+    virtual_idf_unlock();
 }
 
 const char *virtual_idf_log(void)
@@ -682,16 +612,24 @@ const char *virtual_idf_log(void)
 
 int virtual_idf_pin(int pin)
 {
-    lock();
+    virtual_idf_lock();
     const virtual_pin_t state = world.pins[pin];
-    unlock();
+    virtual_idf_unlock();
     return state.is_gpio && state.is_output ? state.level : -1;
 }
 
 bool virtual_idf_pin_has_been_low(int pin)
 {
-    lock();
+    virtual_idf_lock();
     const bool has_been_low = world.pins[pin].has_been_low;
-    unlock();
+    virtual_idf_unlock();
     return has_been_low;
+}
+
+virtual_idf_state_t virtual_idf_state(void)
+{
+    virtual_idf_lock();
+    const virtual_idf_state_t state = world.state;
+    virtual_idf_unlock();
+    return state;
 }

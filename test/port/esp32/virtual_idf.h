@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "simulator.h"
+#include "machine.h"
 
 /* Resets the model, with the caller as the only task. `observer` watches the lidar. */
 void virtual_idf_begin(const sim_observer_t *observer);
@@ -24,21 +24,18 @@ void virtual_idf_hold_interrupts(uint32_t duration_us);
 /* Switches the UART's interrupts off and disconnects its receive pin, as other code could do. */
 void virtual_idf_break_reception(void);
 
-/* Change the simulated lidar: see simulator.h. */
-void virtual_idf_place_obstacle(uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm);
-void virtual_idf_clear_obstacles(void);
-void virtual_idf_power_lidar(bool on);
-void virtual_idf_set_health(uint8_t bits);
+/* While it is locked, a test may change the simulated lidar. */
+void virtual_idf_lock(void);
+void virtual_idf_unlock(void);
 
-bool virtual_idf_driver_is_installed(void);
+typedef struct {
+    unsigned tasks;       /* With the caller. */
+    bool installed;       /* The UART's driver. */
+    unsigned stray_calls; /* Calls for a UART without a driver; should be 0. */
+    unsigned locks_held;  /* Of the power management. */
+} virtual_idf_state_t;
 
-unsigned virtual_idf_locks_held(void);
-
-/* The number of tasks, not counting the caller. */
-unsigned virtual_idf_tasks(void);
-
-/* The number of calls for a UART without a driver; should be 0. */
-unsigned virtual_idf_stray_calls(void);
+virtual_idf_state_t virtual_idf_state(void);
 
 const char *virtual_idf_log(void);
 

@@ -3,7 +3,6 @@
 
 #include "freertos_model.h"
 
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,47 +12,15 @@
 #include "console.h"
 #include "irq_lines.h"
 #include "stream_buffer.h"
-#include "task.h"
 
 #define STEP_US 20u
 #define FIFO_SIZE 16u
-#define TASKS 4u
 #define NEVER UINT64_MAX
 #define STACK_WORDS_MIN 128u
 
-struct freertos_task {
-    pthread_t thread;
-    pthread_cond_t turn;
-    TaskFunction_t function;
-    void *argument;
-    UBaseType_t priority;
-    bool used;
-    bool suspended;
-    bool waiting;    /* Waits until `until_us`. */
-    bool for_notice; /* A notification also ends the wait. */
-    uint64_t until_us;
-    uint32_t notices;
-};
-
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
-static struct {
-    struct freertos_task tasks[TASKS]; /* The first one is the test itself. */
-    struct freertos_task *current;
-    bool ending;
-    bool pending; /* The test has raised the UART's interrupt. */
-    uint64_t now_us;
-    uint64_t skipped_us;
-    sim_t lidar;
-    bool interrupt_enabled;
-    uint8_t fifo[FIFO_SIZE];
-    unsigned count;
-    bool overrun;
-    uint64_t last_us;
-    uint32_t line_bytes;
-    uint32_t overrun_bytes;
-    unsigned wakes;
-} world;
+freertos_world_t world;
 
 void freertos_model_assert(const char *condition)
 {
@@ -70,26 +37,11 @@ static void demand(bool condition, const char *what)
 
 /* ----------------------------------------------------------------------------- time, interrupts */
 
-static void receive_bytes(void)
-{
-    uint8_t byte;
-    while (sim_transmit(&world.lidar, world.now_us, &byte, 1) == 1) {
-        world.line_bytes++;
-        world.last_us = world.now_us;
-        if (world.count < FIFO_SIZE) {
-            world.fifo[world.count++] = byte;
-        } else {
-            world.overrun = true;
-            world.overrun_bytes++;
-        }
-    }
-}
-
 /* The UART interrupts when its FIFO is half full, or after 32 bit times without a byte. */
 static bool wants_interrupt(void)
 {
-    const bool timed_out = world.count > 0 && world.now_us - world.last_us >= 139;
-    return world.interrupt_enabled && (world.count >= FIFO_SIZE / 2 || timed_out);
+    const bool timed_out = machine.count > 0 && machine.now_us - machine.last_us >= 139;
+    return world.interrupt_enabled && (machine.count >= FIFO_SIZE / 2 || timed_out);
 }
 
 static bool line_is_up(void)
@@ -103,17 +55,9 @@ static void serve_line(void)
     UART1_Handler();
 }
 
-static void fail(unsigned line)
+static void arrive(uint32_t overrun, uint8_t byte)
 {
-    (void)line;
-    freertos_model_assert("a handler leaves its flag: the processor is locked up");
-}
-
-static void pass_step(void)
-{
-    world.now_us += STEP_US;
-    receive_bytes();
-    irq_serve();
+    world.overrun = !machine_put(byte) || world.overrun || overrun != 0;
 }
 
 /* --------------------------------------------------------------------------------------- tasks */
@@ -124,7 +68,7 @@ static bool is_ready(const struct freertos_task *task)
         return false;
     }
     return !task->waiting || (task->for_notice && task->notices > 0) ||
-           world.now_us >= task->until_us;
+           machine.now_us >= task->until_us;
 }
 
 static struct freertos_task *most_urgent(void)
@@ -144,7 +88,7 @@ static void reschedule(struct freertos_task *self)
 {
     struct freertos_task *next = most_urgent();
     while (next == NULL) {
-        pass_step();
+        machine_step(STEP_US);
         next = most_urgent();
     }
     next->waiting = false;
@@ -168,14 +112,11 @@ static void yield_to_more_urgent(void)
     }
 }
 
-/* At each access to the library's indices, an interrupt or another task may run. */
-void interrupt(void)
+/* At each access to the library's indices, another task may run. */
+static void switch_tasks(void)
 {
-    if (world.current != NULL) {
-        irq_access();
-        if (!irq_is_in_handler()) {
-            yield_to_more_urgent();
-        }
+    if (!irq_is_in_handler()) {
+        yield_to_more_urgent();
     }
 }
 
@@ -184,7 +125,7 @@ static uint64_t after(TickType_t ticks)
     if (ticks == portMAX_DELAY) {
         return NEVER;
     }
-    return world.now_us + (uint64_t)ticks * 1000000u / configTICK_RATE_HZ;
+    return machine.now_us + (uint64_t)ticks * 1000000u / configTICK_RATE_HZ;
 }
 
 static void wait_until(uint64_t until_us, bool for_notice)
@@ -240,17 +181,17 @@ static void end_tasks(void)
 
 void freertos_model_begin(const sim_observer_t *observer, unsigned priority)
 {
-    const sim_config_t config = sim_default_config();
+    const machine_uart_t uart = {.fifo_size = FIFO_SIZE,
+                                 .arrive = arrive,
+                                 .is_up = line_is_up,
+                                 .serve = serve_line,
+                                 .switch_tasks = switch_tasks};
     if (world.current == NULL) {
         pthread_mutex_lock(&lock); /* From here on the test's thread has the processor. */
     }
     end_tasks();
-    console_begin();
     memset(&world, 0, sizeof world);
-    irq_reset(fail);
-    irq.lines[0] = (irq_line_t){.is_up = line_is_up, .handler = serve_line};
-    sim_init(&world.lidar, &config);
-    sim_observe(&world.lidar, observer);
+    machine_begin(observer, &uart);
     world.current = new_task(priority);
 }
 
@@ -277,7 +218,7 @@ TaskHandle_t xTaskGetCurrentTaskHandle(void)
 
 TickType_t xTaskGetTickCount(void)
 {
-    return (TickType_t)((world.now_us + world.skipped_us) * configTICK_RATE_HZ / 1000000u);
+    return (TickType_t)((machine.now_us + world.skipped_us) * configTICK_RATE_HZ / 1000000u);
 }
 
 void vTaskDelay(TickType_t ticks)
@@ -391,69 +332,13 @@ BaseType_t xStreamBufferReset(StreamBufferHandle_t stream)
 
 /* --------------------------------------------------------------------------------- for the test */
 
-sim_t *freertos_model_lidar(void)
-{
-    return &world.lidar;
-}
-
-uint64_t freertos_model_now_us(void)
-{
-    return world.now_us;
-}
-
-void freertos_model_work(uint32_t us)
-{
-    for (const uint64_t end_us = world.now_us + us; world.now_us < end_us;) {
-        pass_step();
-        yield_to_more_urgent();
-    }
-}
-
-void freertos_model_work_undisturbed(uint32_t us)
-{
-    irq.masked = true;
-    for (const uint64_t end_us = world.now_us + us; world.now_us < end_us;) {
-        pass_step();
-    }
-    irq.masked = false;
-}
-
 void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count)
 {
-    world.overrun = overrun;
-    for (size_t i = 0; i < count; i++) {
-        world.fifo[world.count++] = bytes[i];
-        world.line_bytes++;
-        if (world.count == FIFO_SIZE / 2 || i + 1 == count) {
-            world.pending = true;
-            irq_serve();
-        }
+    for (size_t i = 0; i < count; i += FIFO_SIZE / 2) {
+        const size_t part = count - i < FIFO_SIZE / 2 ? count - i : FIFO_SIZE / 2;
+        world.pending = true;
+        machine_receive(overrun && i == 0, &bytes[i], part);
     }
-}
-
-void freertos_model_overrun(void)
-{
-    world.overrun = true;
-}
-
-void freertos_model_skip(uint64_t us)
-{
-    world.skipped_us += us;
-}
-
-uint32_t freertos_model_line_bytes(void)
-{
-    return world.line_bytes;
-}
-
-uint32_t freertos_model_overrun_bytes(void)
-{
-    return world.overrun_bytes;
-}
-
-unsigned freertos_model_wakes(void)
-{
-    return world.wakes;
 }
 
 unsigned freertos_model_tasks(void)
@@ -474,7 +359,7 @@ void board_sleep(void) {}
 int board_lidar_write(void *uart, const uint8_t *bytes, size_t count)
 {
     (void)uart;
-    sim_receive(&world.lidar, bytes, count, world.now_us);
+    sim_receive(&machine.lidar, bytes, count, machine.now_us);
     return (int)count;
 }
 
@@ -483,24 +368,15 @@ void board_enable_lidar_interrupt(void)
     world.interrupt_enabled = true;
 }
 
-void freertos_model_disable_interrupt(void)
-{
-    world.interrupt_enabled = false;
-}
-
 size_t board_lidar_read(uint8_t *bytes, size_t max, int *overrun)
 {
-    const size_t taken = world.count < max ? world.count : max;
     demand(irq_is_in_handler(), "in the interrupt only");
-    memcpy(bytes, world.fifo, taken);
-    world.count -= (unsigned)taken;
-    memmove(world.fifo, &world.fifo[taken], world.count);
     *overrun = world.overrun;
     world.overrun = false;
-    return taken;
+    return machine_read(bytes, max);
 }
 
 void board_print(const char *text)
 {
-    console_write(world.now_us, text);
+    console_write(machine.now_us, text);
 }

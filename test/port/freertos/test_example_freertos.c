@@ -30,8 +30,7 @@ static void assert_last_line(bool stops)
 /* One test for the whole program, because it never ends. */
 void test_it_names_the_lidar_and_reports_whether_a_robot_may_move(void)
 {
-    const story_board_t board = {freertos_model_lidar(), freertos_model_now_us, assert_last_line};
-    story_begin(&board);
+    story_begin(assert_last_line);
     (void)example_main();
     while (story_goes_on()) {
         vTaskDelay(pdMS_TO_TICKS(100));

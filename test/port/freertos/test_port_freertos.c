@@ -43,11 +43,8 @@ static void wait(void)
 
 static void init_lidar(size_t rx_size)
 {
-    const scanning_t program = {.port = &tmini_freertos_port,
-                                .context = &port,
-                                .now_us = freertos_model_now_us,
-                                .wait = wait,
-                                .work = freertos_model_work};
+    const scanning_t program = {
+        .port = &tmini_freertos_port, .context = &port, .wait = wait, .work = machine_pass};
     scanning_begin(&program, rx_size);
 }
 
@@ -94,15 +91,14 @@ void test_every_point_arrives_by_the_interrupt(void)
     start();
     assert_true_scans(1, 10);
     TEST_ASSERT_EQUAL_UINT(0, freertos_model_tasks());
-    TEST_ASSERT_EQUAL_UINT32(freertos_model_line_bytes(), counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, counted().bytes);
 }
 
 void test_the_polling_task_is_woken_once_per_64_bytes(void)
 {
     start();
     assert_true_scans(1, 10);
-    TEST_ASSERT_UINT_WITHIN(freertos_model_line_bytes() / 64 / 5, freertos_model_line_bytes() / 64,
-                            freertos_model_wakes());
+    TEST_ASSERT_UINT_WITHIN(machine.line_bytes / 64 / 5, machine.line_bytes / 64, world.wakes);
 }
 
 void test_a_polling_task_that_works_60_ms_loses_nothing(void)
@@ -110,7 +106,7 @@ void test_a_polling_task_that_works_60_ms_loses_nothing(void)
     start();
     assert_true_scans(1, 2);
     for (uint32_t revolution = 3; revolution < 8; revolution++) {
-        freertos_model_work(60000);
+        machine_pass(60000);
         assert_true_scans(revolution, revolution);
     }
 }
@@ -125,11 +121,10 @@ void test_an_overrun_of_the_uart_is_a_gap(void)
 {
     start();
     assert_true_scans(1, 2);
-    freertos_model_work_undisturbed(20000);
+    machine_pass_held_up(20000);
     assert_gap();
     TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
-    TEST_ASSERT_EQUAL_UINT32(freertos_model_line_bytes() - freertos_model_overrun_bytes(),
-                             counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes - machine.overrun_bytes, counted().bytes);
 }
 
 /* ---------------------------------------------------------------------------- through a stream */
@@ -152,7 +147,7 @@ void test_the_stream_keeps_bytes_for_which_the_lidar_has_no_room(void)
     start();
     assert_true_scans(1, 2);
     for (uint32_t revolution = 3; revolution < 8; revolution++) {
-        freertos_model_work(60000);
+        machine_pass(60000);
         assert_true_scans(revolution, revolution);
     }
     tmini_counters(&lidar, &counters);
@@ -175,12 +170,12 @@ void test_a_stream_that_overflows_is_one_gap(void)
     receive_by_stream();
     start();
     assert_true_scans(1, 2);
-    freertos_model_work(300000);
+    machine_pass(300000);
     assert_gap();
     tmini_counters(&lidar, &counters);
     TEST_ASSERT_UINT_WITHIN(500, 3930 - 2047, counted().bytes_lost);
     TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
-    TEST_ASSERT_EQUAL_UINT32(freertos_model_line_bytes(), counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, counted().bytes);
 }
 
 void test_an_overrun_of_the_uart_before_the_stream_is_a_gap(void)
@@ -188,7 +183,7 @@ void test_an_overrun_of_the_uart_before_the_stream_is_a_gap(void)
     receive_by_stream();
     start();
     assert_true_scans(1, 2);
-    freertos_model_work_undisturbed(20000);
+    machine_pass_held_up(20000);
     assert_gap();
     TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
 }
@@ -201,7 +196,7 @@ void test_an_overrun_costs_no_more_than_the_bytes_in_the_fifo(void)
     start();
     assert_true_scans(1, 2);
     for (unsigned i = 0; i < 20; i++) {
-        freertos_model_overrun();
+        world.overrun = true;
         poll_until(TMINI_EVENT_SCAN);
     }
     TEST_ASSERT_EQUAL_UINT32(20, counted().overruns);
@@ -216,9 +211,9 @@ void test_an_overrun_before_the_stream_wakes_the_polling_task(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     tmini_freertos_wait(&port, 1); /* The first call sets the task that is to be woken. */
     freertos_model_receive(true, manual_packet, 1);
-    const uint64_t begun_us = freertos_model_now_us();
+    const uint64_t begun_us = machine.now_us;
     tmini_freertos_wait(&port, pdMS_TO_TICKS(1000));
-    TEST_ASSERT_TRUE(freertos_model_now_us() - begun_us < 100000);
+    TEST_ASSERT_TRUE(machine.now_us - begun_us < 100000);
 }
 
 /* If the line pauses in the middle of a packet, the first part must still be handed on. */
@@ -348,8 +343,8 @@ void test_bytes_before_the_start_are_dropped(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
     board_enable_lidar_interrupt();
     (void)board_lidar_write(NULL, start_scanning, 2);
-    freertos_model_work(600000);
-    TEST_ASSERT_TRUE(freertos_model_line_bytes() > 1000);
+    machine_pass(600000);
+    TEST_ASSERT_TRUE(machine.line_bytes > 1000);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes);
 }
 
@@ -360,7 +355,7 @@ static void assert_stops_and_starts(unsigned tasks)
     for (unsigned i = 0; i < 20; i++) {
         tmini_freertos_stop(&port);
         const uint32_t bytes = counted().bytes;
-        freertos_model_work(5000 + 100 * i);
+        machine_pass(5000 + 100 * i);
         TEST_ASSERT_EQUAL_UINT32(bytes, counted().bytes);
         TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
         poll_until(TMINI_EVENT_SCAN);
@@ -389,10 +384,10 @@ void test_stopping_waits_for_the_receiving_task_every_time(void)
     for (unsigned i = 0; i < 3; i++) {
         TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
         vTaskDelay(1);
-        const uint64_t begun_us = freertos_model_now_us();
+        const uint64_t begun_us = machine.now_us;
         tmini_freertos_stop(&port);
-        TEST_ASSERT_TRUE(freertos_model_now_us() > begun_us);
-        TEST_ASSERT_TRUE(freertos_model_now_us() - begun_us <= 10000 + 2 * TICK_US);
+        TEST_ASSERT_TRUE(machine.now_us > begun_us);
+        TEST_ASSERT_TRUE(machine.now_us - begun_us <= 10000 + 2 * TICK_US);
     }
 }
 
@@ -402,7 +397,7 @@ void test_bytes_in_the_stream_at_a_stop_are_not_handed_on_later(void)
     init_lidar(256);
     start();
     assert_true_scans(1, 1);
-    freertos_model_work(50000); /* rx_buffer is full, and the stream half full. */
+    machine_pass(50000); /* rx_buffer is full, and the stream half full. */
     tmini_freertos_stop(&port);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     TEST_ASSERT_EQUAL_INT(pdTRUE, xStreamBufferIsEmpty(port.stream));
@@ -417,7 +412,7 @@ void test_the_clock_runs_in_milliseconds_across_every_wrap_of_the_tick(void)
     const uint32_t begun_ms = tmini_freertos_port.now_ms(&port);
     uint64_t passed_us = 0;
     for (unsigned i = 0; i < 3000; i++) {
-        freertos_model_skip(4294967 + i);
+        world.skipped_us += 4294967 + i;
         passed_us += 4294967 + i;
         const uint32_t shown_ms = tmini_freertos_port.now_ms(&port) - begun_ms;
         const uint32_t error_ms = shown_ms - (uint32_t)(passed_us / 1000u);
@@ -428,10 +423,10 @@ void test_the_clock_runs_in_milliseconds_across_every_wrap_of_the_tick(void)
 
 void test_waiting_for_0_ticks_waits_for_one_tick(void)
 {
-    const uint64_t begun_us = freertos_model_now_us();
+    const uint64_t begun_us = machine.now_us;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
     tmini_freertos_wait(&port, 0);
-    TEST_ASSERT_TRUE(freertos_model_now_us() > begun_us);
+    TEST_ASSERT_TRUE(machine.now_us > begun_us);
 }
 
 static void restart_uart(void *uart)
@@ -445,9 +440,9 @@ void test_the_programs_uart_is_restarted_when_the_lidar_is_lost(void)
     wiring.restart = restart_uart;
     start();
     assert_true_scans(1, 1);
-    freertos_model_disable_interrupt();
+    world.interrupt_enabled = false;
     assert_recovery();
-    freertos_model_disable_interrupt();
+    world.interrupt_enabled = false;
     tmini_freertos_stop(&port);
     tmini_freertos_port.restart(&port); /* A restart of a stopped port does nothing. */
     wiring.restart = NULL;

@@ -16,36 +16,61 @@
 #ifndef PICO_MODEL_H
 #define PICO_MODEL_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include "simulator.h"
+#include "hardware/dma.h"
+#include "hardware/irq.h"
+#include "hardware/uart.h"
+#include "machine.h"
+#include "random.h"
 
 #define PICO_PINS 48
+#define FIFO_SIZE 32u
+#define CHANNELS 12u
+#define IRQS 64u
+
+typedef struct {
+    bool overrun; /* The next entry gets the overrun flag. */
+    bool receive_irq;
+    unsigned places_to_send; /* With fewer than FIFO_SIZE places, they become fewer. */
+    uart_hw_t hw;
+} uart_model_t;
+
+typedef struct {
+    bool claimed;
+    bool busy;
+    bool enabled;
+    dma_channel_config config;
+    uint8_t *write;
+    uint32_t reload;
+    uint32_t count;
+    dma_channel_hw_t shown;
+} channel_t;
+
+typedef struct {
+    uart_model_t uart;
+    channel_t channels[CHANNELS];
+    bool dma_blocked; /* As a busy bus does. */
+    irq_handler_t handlers[IRQS];
+    bool irq_enabled[IRQS];
+    unsigned baud_rate;
+    int baud_error_permille;
+    unsigned changes_of_channel; /* How often one DMA channel has taken over from the other. */
+    /* After DMA's position has been read so often, this time passes before the reader continues. */
+    unsigned pass_after;
+    uint32_t pass_us;
+    /* After each reading of DMA's position, a random time passes: mostly some bytes, sometimes
+     * several laps. */
+    bool erratic;
+    random_t random;
+    int functions[PICO_PINS]; /* Function and level of a pin; -1: never set. */
+    int levels[PICO_PINS];
+    bool values[PICO_PINS]; /* Bits of the output registers. */
+    bool pulled_up[PICO_PINS];
+} chip_t;
+
+extern chip_t chip;
 
 /* Resets the chip. The lidar is at rest, and `observer` watches it. */
 void pico_model_begin(const sim_observer_t *observer);
-
-sim_t *pico_model_lidar(void);
-
-uint64_t pico_model_now_us(void);
-
-/* Time passes: bytes arrive, DMA moves them, interrupts are served. */
-void pico_model_pass(uint32_t us);
-
-/* As above, but no interrupt is served. */
-void pico_model_pass_held_up(uint32_t us);
-
-/* After DMA's position has been read `reads` more times, time passes before the reader
- * continues. */
-void pico_model_pass_after_read(unsigned reads, uint32_t us);
-
-/* After each reading of DMA's position, a random time passes: mostly some bytes, sometimes several
- * laps. */
-void pico_model_be_erratic(uint64_t seed);
-
-unsigned pico_model_reads(void);
 
 /* The active channel advances by this many bytes at once, but writes nothing. */
 void pico_model_move_on(uint32_t bytes);
@@ -53,43 +78,8 @@ void pico_model_move_on(uint32_t bytes);
 /* Stops DMA, as a bus error does: both channels become idle. */
 void pico_model_break_dma(void);
 
-/* Blocks DMA, as a busy bus does, or unblocks it. */
-void pico_model_block_dma(bool blocked);
-
-/* Bytes arrive now, with these error flags of the data register. */
-void pico_model_receive(uint32_t flags, const uint8_t *bytes, size_t count);
-
-/* Bytes that have arrived on the line so far, including lost ones. */
-uint32_t pico_model_line_bytes(void);
-
-/* Other code takes DMA channels or an interrupt, or baud rates are wrong by this much. */
+/* Other code takes DMA channels. */
 void pico_model_take_channels(unsigned count);
-void pico_model_take_interrupt(unsigned number);
-void pico_model_set_baud_error(int permille);
-
-/* Sets the room in the transmitter, which then stays busy until the next call. */
-void pico_model_fill_transmitter(unsigned places_left);
-
 unsigned pico_model_claimed_channels(void);
-bool pico_model_is_claimed(unsigned channel);
-bool pico_model_is_interrupt_enabled(unsigned number);
-bool pico_model_has_handler(void);
-bool pico_model_asks_for_interrupts(void);
-
-/* How often one DMA channel has taken over from the other. */
-unsigned pico_model_changes_of_channel(void);
-unsigned pico_model_interrupts(void);
-unsigned pico_model_baud_rate(void);
-
-/* A pin's function, pull-up and level; -1: the pin was never set. */
-int pico_model_function(unsigned pin);
-bool pico_model_is_pulled_up(unsigned pin);
-int pico_model_level(unsigned pin);
-
-/* Called whenever the program sleeps; may leave by longjmp(), or be NULL. */
-void pico_model_on_sleep(void (*callback)(void));
-
-/* Replaces printf() in a program built for the model: see console.h. */
-int pico_model_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 #endif

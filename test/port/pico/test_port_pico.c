@@ -8,8 +8,7 @@
 #include "unity.h"
 
 #include "hardware/gpio.h"
-#include "hardware/irq.h"
-#include "hardware/uart.h"
+#include "irq_lines.h"
 #include "pico_model.h"
 #include "scanning.h"
 #include "tmini/tmini_blocking.h"
@@ -28,17 +27,14 @@ static uint32_t pause_ms;
 /* Waits `pause_ms`, then receives. */
 static void wait(void)
 {
-    pico_model_pass(pause_ms * 1000u);
+    machine_pass(pause_ms * 1000u);
     (void)tmini_pico_wait(&port, 0);
 }
 
 static void init_lidar(size_t rx_size)
 {
-    const scanning_t program = {.port = &tmini_pico_port,
-                                .context = &port,
-                                .now_us = pico_model_now_us,
-                                .wait = wait,
-                                .work = pico_model_pass};
+    const scanning_t program = {
+        .port = &tmini_pico_port, .context = &port, .wait = wait, .work = machine_pass};
     scanning_begin(&program, rx_size);
 }
 
@@ -58,8 +54,8 @@ void tearDown(void)
 {
     tmini_pico_stop(&port);
     TEST_ASSERT_EQUAL_UINT(0, pico_model_claimed_channels());
-    TEST_ASSERT_FALSE(pico_model_has_handler());
-    TEST_ASSERT_FALSE(pico_model_asks_for_interrupts());
+    TEST_ASSERT_FALSE(chip.handlers[UART1_IRQ] != NULL);
+    TEST_ASSERT_FALSE(chip.uart.receive_irq);
 }
 
 static void receive_by_interrupt(void)
@@ -93,16 +89,18 @@ static tmini_pico_counters_t counted(void)
 void test_the_uart_is_set_up_for_the_lidar_and_an_unplugged_line_is_idle(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_UINT(230400, pico_model_baud_rate());
-    TEST_ASSERT_EQUAL_INT(GPIO_FUNC_UART, pico_model_function(4));
-    TEST_ASSERT_EQUAL_INT(GPIO_FUNC_UART, pico_model_function(5));
-    TEST_ASSERT_TRUE(pico_model_is_pulled_up(5));
+    TEST_ASSERT_EQUAL_UINT(230400, chip.baud_rate);
+    TEST_ASSERT_EQUAL_INT(GPIO_FUNC_UART, chip.functions[4]);
+    TEST_ASSERT_EQUAL_INT(GPIO_FUNC_UART, chip.functions[5]);
+    TEST_ASSERT_TRUE(chip.pulled_up[5]);
 }
+
+static void handle_for_somebody_else(void) {}
 
 static void assert_refused(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_pico_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(-1, pico_model_function(wiring.rx_pin % PICO_PINS));
+    TEST_ASSERT_EQUAL_INT(-1, chip.functions[wiring.rx_pin % PICO_PINS]);
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_pico_start(&port, &lidar));
     setUp();
 }
@@ -148,8 +146,8 @@ void test_the_other_pins_of_a_uart_depend_on_the_chip(void)
 {
 #if PICO_RP2350
     TEST_ASSERT_TRUE(is_accepted(uart1, 6, 7));
-    TEST_ASSERT_EQUAL_INT(GPIO_FUNC_UART_AUX, pico_model_function(6));
-    TEST_ASSERT_EQUAL_INT(GPIO_FUNC_UART_AUX, pico_model_function(7));
+    TEST_ASSERT_EQUAL_INT(GPIO_FUNC_UART_AUX, chip.functions[6]);
+    TEST_ASSERT_EQUAL_INT(GPIO_FUNC_UART_AUX, chip.functions[7]);
     TEST_ASSERT_TRUE(is_accepted(uart1, 36, 37));
     TEST_ASSERT_FALSE(is_accepted(uart1, 52, 53)); /* This chip has 48 pins. */
 #else
@@ -181,12 +179,12 @@ void test_a_ring_that_the_hardware_cannot_wrap_is_refused(void)
 
 void test_a_clock_that_does_not_make_the_baud_rate_is_reported(void)
 {
-    pico_model_set_baud_error(21);
+    chip.baud_error_permille = 21;
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_pico_init(&port, &wiring));
-    pico_model_set_baud_error(-21);
+    chip.baud_error_permille = -21;
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_pico_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_pico_start(&port, &lidar));
-    pico_model_set_baud_error(19);
+    chip.baud_error_permille = 19;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
 }
 
@@ -205,10 +203,10 @@ void test_start_takes_what_it_needs_or_nothing(void)
     tmini_pico_stop(&port);
     receive_by_interrupt();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    pico_model_take_interrupt(UART1_IRQ);
+    chip.handlers[UART1_IRQ] = handle_for_somebody_else;
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_pico_start(&port, &lidar));
     tmini_pico_stop(&port); /* This must not remove the handler of others. */
-    TEST_ASSERT_TRUE(pico_model_has_handler());
+    TEST_ASSERT_TRUE(chip.handlers[UART1_IRQ] != NULL);
     pico_model_begin(NULL);
 }
 
@@ -218,15 +216,15 @@ void test_channels_and_interrupts_of_others_are_left_alone(void)
     pico_model_take_channels(1);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
     tmini_pico_stop(&port);
-    TEST_ASSERT_TRUE(pico_model_is_claimed(0));
+    TEST_ASSERT_TRUE(chip.channels[0].claimed);
     TEST_ASSERT_EQUAL_UINT(1, pico_model_claimed_channels());
     pico_model_begin(NULL);
     receive_by_interrupt();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-    TEST_ASSERT_TRUE(pico_model_is_interrupt_enabled(UART1_IRQ));
+    TEST_ASSERT_TRUE(chip.irq_enabled[UART1_IRQ]);
     tmini_pico_stop(&port);
-    TEST_ASSERT_FALSE(pico_model_is_interrupt_enabled(UART1_IRQ));
+    TEST_ASSERT_FALSE(chip.irq_enabled[UART1_IRQ]);
 }
 
 void test_starting_twice_is_refused_and_changes_nothing(void)
@@ -247,16 +245,16 @@ static void assert_stops_and_starts(void)
         for (unsigned ms = 0; ms < 20 + i; ms++) {
             while (receive_and_poll() != TMINI_EVENT_NONE) {
             }
-            pico_model_pass(1000);
+            machine_pass(1000);
         }
         tmini_pico_stop(&port);
         TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
         const uint32_t bytes = counted().bytes;
-        pico_model_pass(5000);
+        machine_pass(5000);
         (void)receive_and_poll();
         TEST_ASSERT_EQUAL_UINT32(bytes, counted().bytes);
         TEST_ASSERT_EQUAL_UINT(0, pico_model_claimed_channels());
-        TEST_ASSERT_FALSE(pico_model_has_handler());
+        TEST_ASSERT_FALSE(chip.handlers[UART1_IRQ] != NULL);
     }
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
     TEST_ASSERT_TRUE(scans_until_complete() <= 3);
@@ -277,7 +275,7 @@ void test_bytes_before_the_start_are_dropped(void)
 {
     uint8_t old[40] = {0};
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    pico_model_receive(0, old, sizeof old); /* This also overruns the FIFO. */
+    machine_receive(0, old, sizeof old); /* This also overruns the FIFO. */
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
     (void)receive_and_poll();
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes);
@@ -291,10 +289,10 @@ void test_a_busy_transmitter_takes_what_it_can(void)
     static const uint8_t bytes[2] = {0xA5, 0x60};
     TEST_ASSERT_EQUAL_INT(-1, tmini_pico_port.write(&port, bytes, 2));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    pico_model_fill_transmitter(1);
+    chip.uart.places_to_send = 1;
     TEST_ASSERT_EQUAL_INT(1, tmini_pico_port.write(&port, bytes, 2));
     TEST_ASSERT_EQUAL_INT(0, tmini_pico_port.write(&port, bytes + 1, 1));
-    pico_model_fill_transmitter(32);
+    chip.uart.places_to_send = 32;
     TEST_ASSERT_EQUAL_INT(2, tmini_pico_port.write(&port, bytes, 2));
 }
 
@@ -323,7 +321,7 @@ void test_every_point_arrives_by_interrupt(void)
     pause_ms = 5;
     assert_true_scans(1, 10);
     /* The port sets the level to half a FIFO; with the lowest level there would be more. */
-    TEST_ASSERT_TRUE(pico_model_interrupts() < pico_model_line_bytes() / 10);
+    TEST_ASSERT_TRUE(irq.lines[0].served < machine.line_bytes / 10);
 }
 
 void test_wherever_an_interrupt_comes_every_point_arrives(void)
@@ -340,7 +338,7 @@ void test_an_interrupt_that_comes_too_late_costs_the_packets_that_it_hit(void)
     receive_by_interrupt();
     start();
     assert_true_scans(1, 2);
-    pico_model_pass_held_up(20000);
+    machine_pass_held_up(20000);
     poll_until(TMINI_EVENT_SCAN);
     TEST_ASSERT_FALSE(tmini_scan(&lidar)->complete);
     TEST_ASSERT_EQUAL_UINT16(1, tmini_scan(&lidar)->gaps);
@@ -359,14 +357,14 @@ void test_errors_of_the_line_are_counted_and_the_byte_is_stored(void)
     start();
     assert_true_scans(1, 1);
     tmini_pico_counters_t before = counted();
-    pico_model_receive(UART_UARTDR_FE_BITS, &byte, 1);
-    pico_model_receive(UART_UARTDR_FE_BITS | UART_UARTDR_BE_BITS, &byte, 1); /* A break. */
-    pico_model_pass(200);
+    machine_receive(UART_UARTDR_FE_BITS, &byte, 1);
+    machine_receive(UART_UARTDR_FE_BITS | UART_UARTDR_BE_BITS, &byte, 1); /* A break. */
+    machine_pass(200);
     TEST_ASSERT_EQUAL_UINT32(1, counted().framing_errors);
     TEST_ASSERT_EQUAL_UINT32(1, counted().breaks);
     TEST_ASSERT_EQUAL_UINT32(0, counted().overruns);
     TEST_ASSERT_TRUE(counted().bytes >= before.bytes + 2);
-    TEST_ASSERT_EQUAL_UINT32(pico_model_line_bytes(), counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, counted().bytes);
 }
 
 /* --------------------------------------------------------------- losses that bytes do not show */
@@ -386,14 +384,14 @@ static void receive_packet_with(uint32_t flags)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-    pico_model_receive(0, manual_packet, PACKET_CUT);
-    pico_model_pass(200);
+    machine_receive(0, manual_packet, PACKET_CUT);
+    machine_pass(200);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
-    pico_model_receive(flags, &manual_packet[PACKET_CUT], 1);
-    pico_model_receive(0, &manual_packet[PACKET_CUT + 1], 16);
-    pico_model_pass(200);
-    pico_model_receive(0, &manual_packet[PACKET_CUT + 17], sizeof manual_packet - PACKET_CUT - 17);
-    pico_model_pass(200);
+    machine_receive(flags, &manual_packet[PACKET_CUT], 1);
+    machine_receive(0, &manual_packet[PACKET_CUT + 1], 16);
+    machine_pass(200);
+    machine_receive(0, &manual_packet[PACKET_CUT + 17], sizeof manual_packet - PACKET_CUT - 17);
+    machine_pass(200);
 }
 
 void test_no_packet_is_put_together_across_an_overrun(void)
@@ -418,11 +416,11 @@ void test_no_packet_is_put_together_across_lost_laps(void)
     const size_t rest = sizeof manual_packet - PACKET_CUT;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-    pico_model_receive(0, manual_packet, PACKET_CUT);
+    machine_receive(0, manual_packet, PACKET_CUT);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
-    pico_model_receive(0, nothing, 2 * LAP);
-    pico_model_receive(0, &manual_packet[PACKET_CUT], rest);
-    pico_model_receive(0, nothing, LAP / 2 - rest);
+    machine_receive(0, nothing, 2 * LAP);
+    machine_receive(0, &manual_packet[PACKET_CUT], rest);
+    machine_receive(0, nothing, LAP / 2 - rest);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
     TEST_ASSERT_EQUAL_UINT32(2 * LAP, counted().bytes_lost);
 }
@@ -434,7 +432,7 @@ void test_every_point_arrives_by_dma_without_an_interrupt(void)
     start();
     pause_ms = 5;
     assert_true_scans(1, 10);
-    TEST_ASSERT_EQUAL_UINT(0, pico_model_interrupts());
+    TEST_ASSERT_EQUAL_UINT(0, irq.lines[0].served);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
 }
 
@@ -470,7 +468,7 @@ void test_a_lidar_with_little_room_takes_the_ring_in_portions(void)
     start();
     pause_ms = 5;
     assert_true_scans(1, 2);
-    pico_model_pass(60000);
+    machine_pass(60000);
     while (tmini_pico_wait(&port, 0) > 0) {
         while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
         }
@@ -478,7 +476,7 @@ void test_a_lidar_with_little_room_takes_the_ring_in_portions(void)
     tmini_counters(&lidar, &counters);
     TEST_ASSERT_EQUAL_UINT32(truth_packets(), counters.packets);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
-    TEST_ASSERT_EQUAL_UINT32(pico_model_line_bytes(), counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, counted().bytes);
 }
 
 void test_errors_are_counted_although_dma_does_not_see_them(void)
@@ -486,9 +484,9 @@ void test_errors_are_counted_although_dma_does_not_see_them(void)
     static const uint8_t byte = 0x55;
     start();
     assert_true_scans(1, 1);
-    pico_model_receive(UART_UARTDR_FE_BITS, &byte, 1);
+    machine_receive(UART_UARTDR_FE_BITS, &byte, 1);
     (void)receive_and_poll();
-    pico_model_receive(UART_UARTDR_FE_BITS | UART_UARTDR_BE_BITS, &byte, 1);
+    machine_receive(UART_UARTDR_FE_BITS | UART_UARTDR_BE_BITS, &byte, 1);
     (void)receive_and_poll();
     TEST_ASSERT_EQUAL_UINT32(1, counted().framing_errors);
     TEST_ASSERT_EQUAL_UINT32(1, counted().breaks);
@@ -499,9 +497,9 @@ void test_an_overrun_of_the_uart_on_a_busy_bus_is_noticed(void)
 {
     start();
     assert_true_scans(1, 2);
-    pico_model_block_dma(true);
-    pico_model_pass(20000);
-    pico_model_block_dma(false);
+    chip.dma_blocked = true;
+    machine_pass(20000);
+    chip.dma_blocked = false;
     TEST_ASSERT_TRUE(scans_until_complete() >= 2);
     TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
 }
@@ -509,11 +507,11 @@ void test_an_overrun_of_the_uart_on_a_busy_bus_is_noticed(void)
 /* Reads all bytes; then lets this many arrive before the next poll. */
 static void stall_bytes(uint32_t bytes)
 {
-    const uint32_t line_bytes = pico_model_line_bytes();
+    const uint32_t line_bytes = machine.line_bytes;
     while (receive_and_poll() != TMINI_EVENT_NONE) {
     }
-    while (pico_model_line_bytes() - line_bytes < bytes) {
-        pico_model_pass(BYTE_US / 2);
+    while (machine.line_bytes - line_bytes < bytes) {
+        machine_pass(BYTE_US / 2);
     }
 }
 
@@ -526,7 +524,7 @@ static void assert_stall_is_noticed(uint32_t bytes)
     (void)tmini_pico_wait(&port, 0);
     TEST_ASSERT_EQUAL_UINT32(bytes - LAP / 2, counted().bytes_lost);
     TEST_ASSERT_TRUE(scans_until_complete() >= 2);
-    TEST_ASSERT_EQUAL_UINT32(pico_model_line_bytes(), counted().bytes + counted().bytes_lost);
+    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, counted().bytes + counted().bytes_lost);
     TEST_ASSERT_EQUAL_UINT32(bytes - LAP / 2, counted().bytes_lost);
     tmini_pico_stop(&port);
     setUp();
@@ -560,7 +558,8 @@ void test_a_poll_that_is_delayed_at_any_reading_delivers_nothing_wrong(void)
             start();
             assert_true_scans(1, 2);
             stall_bytes(300);
-            pico_model_pass_after_read(reads, stalls[i] * 76u); /* 76 µs per byte of a scan. */
+            chip.pass_after = reads;
+            chip.pass_us = stalls[i] * 76u; /* 76 µs per byte of a scan. */
             (void)scans_until_complete();
             tmini_pico_stop(&port);
             setUp();
@@ -573,8 +572,9 @@ void test_with_polls_delayed_at_random_no_point_is_wrong(void)
     for (uint64_t seed = 1; seed <= 8; seed++) {
         unsigned scans = 0;
         start();
-        pico_model_be_erratic(seed);
-        while (pico_model_now_us() < 20000000) {
+        chip.erratic = true;
+        random_seed(&chip.random, seed);
+        while (machine.now_us < 20000000) {
             const tmini_event_t event = receive_and_poll();
             if (event == TMINI_EVENT_SCAN) {
                 truth_assert_nothing_invented(tmini_scan(&lidar));
@@ -582,7 +582,7 @@ void test_with_polls_delayed_at_random_no_point_is_wrong(void)
             }
         }
         const tmini_pico_counters_t counters = counted();
-        const uint32_t missing = pico_model_line_bytes() - counters.bytes - counters.bytes_lost;
+        const uint32_t missing = machine.line_bytes - counters.bytes - counters.bytes_lost;
         TEST_ASSERT_TRUE(missing < 25000); /* Only bytes since the last poll are not counted. */
         TEST_ASSERT_TRUE(counters.bytes_lost > 0);
         TEST_ASSERT_TRUE(scans >= 20);
@@ -611,13 +611,13 @@ void test_one_channel_takes_over_from_the_other_without_losing_a_byte(void)
         approach_end_of_turn(8 * LAP);
         TEST_ASSERT_TRUE(scans_until_complete() >= 2);
         const uint32_t lost = counted().bytes_lost;
-        TEST_ASSERT_EQUAL_UINT(turn, pico_model_changes_of_channel());
+        TEST_ASSERT_EQUAL_UINT(turn, chip.changes_of_channel);
         for (unsigned i = 0; i < 5; i++) {
             pause_ms = 5;
             poll_until(TMINI_EVENT_SCAN);
             truth_assert_some_revolution(tmini_scan(&lidar));
         }
-        TEST_ASSERT_EQUAL_UINT(turn + 1, pico_model_changes_of_channel());
+        TEST_ASSERT_EQUAL_UINT(turn + 1, chip.changes_of_channel);
         TEST_ASSERT_EQUAL_UINT32(lost, counted().bytes_lost);
     }
 }
@@ -657,9 +657,9 @@ void test_a_lidar_that_loses_its_supply_comes_back_by_dma(void)
 {
     start();
     assert_true_scans(1, 1);
-    sim_power(pico_model_lidar(), false, pico_model_now_us());
+    machine_power(false);
     poll_until(TMINI_EVENT_LOST);
-    sim_power(pico_model_lidar(), true, pico_model_now_us());
+    machine_power(true);
     poll_until(TMINI_EVENT_RECOVERED);
     (void)scans_until_complete();
 }
@@ -678,16 +678,16 @@ void test_waiting_ends_with_the_first_bytes_or_at_its_timeout(void)
     for (unsigned i = 0; i < 2; i++) {
         start();
         poll_until(TMINI_EVENT_STARTED);
-        pico_model_pass(20000);
-        uint64_t begun_us = pico_model_now_us();
+        machine_pass(20000);
+        uint64_t begun_us = machine.now_us;
         TEST_ASSERT_NOT_EQUAL_UINT(0, tmini_pico_wait(&port, 10));
-        TEST_ASSERT_EQUAL_UINT64(begun_us, pico_model_now_us());
-        sim_power(pico_model_lidar(), false, pico_model_now_us());
-        pico_model_pass(2000);
+        TEST_ASSERT_EQUAL_UINT64(begun_us, machine.now_us);
+        machine_power(false);
+        machine_pass(2000);
         (void)tmini_pico_wait(&port, 10);
-        begun_us = pico_model_now_us();
+        begun_us = machine.now_us;
         TEST_ASSERT_EQUAL_UINT(0, tmini_pico_wait(&port, 10));
-        TEST_ASSERT_EQUAL_UINT64(begun_us + 10000, pico_model_now_us());
+        TEST_ASSERT_EQUAL_UINT64(begun_us + 10000, machine.now_us);
         tmini_pico_stop(&port);
         TEST_ASSERT_EQUAL_UINT(0, tmini_pico_wait(&port, 10));
         setUp();

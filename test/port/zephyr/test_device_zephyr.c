@@ -59,9 +59,9 @@ void test_each_scan_is_an_event_at_the_devicetrees_frequency(void)
     scans = 0;
     pass_ms(1000);
     TEST_ASSERT_UINT_WITHIN(1, 10, scans);
-    TEST_ASSERT_EQUAL_UINT(1000, sim_frequency_chz(zephyr_model_lidar()));
+    TEST_ASSERT_EQUAL_UINT(1000, sim_frequency_chz(&machine.lidar));
     tmini_zephyr_device_counters(device, &uart);
-    TEST_ASSERT_UINT_WITHIN(64, zephyr_model_line_bytes(), uart.bytes);
+    TEST_ASSERT_UINT_WITHIN(64, machine.line_bytes, uart.bytes);
 }
 
 void test_a_scan_stays_valid_until_the_next(void)
@@ -115,7 +115,7 @@ void test_a_request_that_the_library_refuses_is_an_error(void)
 void test_a_uart_that_is_not_ready_makes_no_device(void)
 {
     zephyr_model_begin(NULL);
-    zephyr_model_set_ready(false);
+    board.ready = false;
     zephyr_model_boot();
     TEST_ASSERT_FALSE(device_is_ready(device));
 }

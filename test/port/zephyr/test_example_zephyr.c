@@ -3,8 +3,6 @@
 
 /* Runs the unchanged program examples/zephyr with the simulated lidar in its room. */
 
-#include <setjmp.h>
-
 #include "unity.h"
 
 #include "console.h"
@@ -13,18 +11,9 @@
 
 int example_main(void);
 
-static jmp_buf end_of_story;
-
 static void assert_last_line(bool stops)
 {
     assert_last_said(stops ? ", STOP;" : ", go;");
-}
-
-static void go_on(void)
-{
-    if (!story_goes_on()) {
-        longjmp(end_of_story, 1);
-    }
 }
 
 void setUp(void)
@@ -38,20 +27,13 @@ void tearDown(void) {}
 /* One test for the whole program, because it never ends. */
 void test_it_names_the_lidar_and_reports_whether_a_robot_may_move(void)
 {
-    const story_board_t board = {zephyr_model_lidar(), zephyr_model_now_us, assert_last_line};
-    story_begin(&board);
-    zephyr_model_on_sleep(go_on);
-    if (setjmp(end_of_story) == 0) {
-        (void)example_main();
-    }
-    TEST_ASSERT_FALSE(story_goes_on());
-    assert_console_leaves_time(1024);
+    story_tell(example_main, assert_last_line, story_go_on);
 }
 
 void test_it_says_so_when_the_lidar_cannot_be_started(void)
 {
     zephyr_model_begin(NULL);
-    zephyr_model_set_ready(false);
+    board.ready = false;
     zephyr_model_boot();
     TEST_ASSERT_EQUAL_INT(0, example_main());
     assert_said("the lidar cannot be started");

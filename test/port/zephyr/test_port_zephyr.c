@@ -29,15 +29,15 @@ void test_every_point_arrives_through_a_fifo(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 10);
-    TEST_ASSERT_EQUAL_UINT32(zephyr_model_line_bytes(), zephyr_rig_counters().bytes);
+    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, zephyr_rig_counters().bytes);
 }
 
 void test_every_point_arrives_byte_by_byte(void)
 {
-    zephyr_model_set_fifo(1);
+    machine.uart.fifo_size = 1;
     zephyr_rig_start();
     assert_true_scans(1, 10);
-    TEST_ASSERT_EQUAL_UINT32(zephyr_model_line_bytes(), zephyr_rig_counters().bytes);
+    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, zephyr_rig_counters().bytes);
 }
 
 void test_wherever_an_interrupt_comes_every_point_arrives(void)
@@ -49,34 +49,33 @@ void test_wherever_an_interrupt_comes_every_point_arrives(void)
 void test_a_fifo_is_emptied_even_if_that_takes_several_readings(void)
 {
     static const uint8_t bytes[64];
-    zephyr_model_set_fifo(64);
+    machine.uart.fifo_size = 64;
     zephyr_rig_start();
     const uint32_t before = zephyr_rig_counters().bytes;
-    zephyr_model_receive(bytes, sizeof bytes);
+    machine_receive(0, bytes, sizeof bytes);
     TEST_ASSERT_EQUAL_UINT32(before + 64, zephyr_rig_counters().bytes);
 }
 
 /* One interrupt per byte must not cause one thread switch per byte. */
 void test_the_polling_thread_is_woken_once_per_64_bytes(void)
 {
-    zephyr_model_set_fifo(1);
+    machine.uart.fifo_size = 1;
     zephyr_rig_start();
     assert_true_scans(1, 10);
-    TEST_ASSERT_UINT_WITHIN(zephyr_model_line_bytes() / 64 / 10, zephyr_model_line_bytes() / 64,
-                            zephyr_model_wakes());
+    TEST_ASSERT_UINT_WITHIN(machine.line_bytes / 64 / 10, machine.line_bytes / 64, board.wakes);
 }
 
 void test_the_uart_gets_the_lidars_baud_rate(void)
 {
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
-    TEST_ASSERT_EQUAL_UINT32(230400, zephyr_model_baud_rate());
+    TEST_ASSERT_EQUAL_UINT32(230400, board.baud_rate);
 }
 
 void test_a_driver_that_cannot_change_the_baud_rate_keeps_the_devicetrees(void)
 {
-    zephyr_model_set_configure(-ENOSYS);
+    board.configure = -ENOSYS;
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
-    zephyr_model_set_configure(-ENOTSUP);
+    board.configure = -ENOTSUP;
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
 }
@@ -87,13 +86,13 @@ void test_what_cannot_work_is_refused(void)
     TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_init(&port, NULL));
     TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_start(NULL, &lidar));
     TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_start(&port, &lidar));
-    zephyr_model_set_ready(false);
+    board.ready = false;
     TEST_ASSERT_EQUAL_INT(-ENODEV, tmini_zephyr_init(&port, &zephyr_model_uart));
-    zephyr_model_set_ready(true);
-    zephyr_model_set_configure(-EIO);
+    board.ready = true;
+    board.configure = -EIO;
     TEST_ASSERT_EQUAL_INT(-EIO, tmini_zephyr_init(&port, &zephyr_model_uart));
     TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_start(&port, &lidar));
-    zephyr_model_set_configure(0);
+    board.configure = 0;
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
     TEST_ASSERT_EQUAL_INT(-EINVAL, tmini_zephyr_start(&port, NULL));
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
@@ -106,13 +105,13 @@ void test_a_driver_without_interrupts_is_refused_and_not_started(void)
     TEST_IGNORE_MESSAGE("Zephyr before 3.3 does not tell");
 #endif
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
-    zephyr_model_set_interrupts(-ENOSYS);
+    board.interrupts = -ENOSYS;
     TEST_ASSERT_EQUAL_INT(-ENOSYS, tmini_zephyr_start(&port, &lidar));
-    TEST_ASSERT_FALSE(zephyr_model_is_receiving());
-    zephyr_model_set_interrupts(-ENOTSUP);
+    TEST_ASSERT_FALSE(board.receiving || board.async_is_on);
+    board.interrupts = -ENOTSUP;
     TEST_ASSERT_EQUAL_INT(-ENOTSUP, tmini_zephyr_start(&port, &lidar));
-    TEST_ASSERT_FALSE(zephyr_model_is_receiving());
-    zephyr_model_set_interrupts(0);
+    TEST_ASSERT_FALSE(board.receiving || board.async_is_on);
+    board.interrupts = 0;
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
 }
 
@@ -129,7 +128,7 @@ void test_it_stops_and_starts_while_the_lidar_streams(void)
     for (unsigned i = 0; i < 20; i++) {
         tmini_zephyr_stop(&port);
         const uint32_t bytes = zephyr_rig_counters().bytes;
-        zephyr_model_pass(5000 + 100 * i);
+        machine_pass(5000 + 100 * i);
         TEST_ASSERT_EQUAL_UINT32(bytes, zephyr_rig_counters().bytes);
         TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
         /* Overruns while stopped are not counted; bytes may be those of a full FIFO. */
@@ -168,7 +167,7 @@ static void assert_overrun_is_a_gap(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 2);
-    zephyr_model_pass_held_up(20000);
+    machine_pass_held_up(20000);
     assert_gap_in_revolution(3);
 }
 
@@ -180,7 +179,7 @@ void test_an_overrun_of_the_fifo_is_a_gap(void)
 
 void test_an_overrun_without_a_fifo_is_a_gap(void)
 {
-    zephyr_model_set_fifo(1);
+    machine.uart.fifo_size = 1;
     assert_overrun_is_a_gap();
     TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().overruns);
 }
@@ -189,7 +188,7 @@ void test_a_byte_lost_while_the_fifo_is_read_is_a_gap(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 2);
-    zephyr_model_lose_while_reading();
+    board.lose_while_reading = true;
     assert_gap_in_revolution(3);
     TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().overruns);
 }
@@ -209,12 +208,12 @@ static void receive_packet_with_loss(bool lost)
 {
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
-    zephyr_model_receive(manual_packet, sizeof manual_packet - 16);
+    machine_receive(0, manual_packet, sizeof manual_packet - 16);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
     if (lost) {
-        zephyr_model_lose_while_reading();
+        board.lose_while_reading = true;
     }
-    zephyr_model_receive(&manual_packet[sizeof manual_packet - 16], 16);
+    machine_receive(0, &manual_packet[sizeof manual_packet - 16], 16);
 }
 
 void test_no_packet_is_put_together_across_a_loss(void)
@@ -230,14 +229,14 @@ void test_no_packet_is_put_together_across_a_loss(void)
 /* On some USARTs, the driver clears the error by reading the only byte. */
 void test_an_overrun_without_a_byte_to_read_is_a_gap(void)
 {
-    zephyr_model_set_fifo(1);
-    zephyr_model_set_clearing_reads_data();
+    machine.uart.fifo_size = 1;
+    board.clearing_reads_data = true;
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
-    zephyr_model_receive(manual_packet, 10);
+    machine_receive(0, manual_packet, 10);
     TEST_ASSERT_EQUAL_size_t(1024 - 10, tmini_feed_room(&lidar));
-    zephyr_model_damage(UART_ERROR_OVERRUN);
-    zephyr_model_receive(&manual_packet[10], 1);
+    board.damage = UART_ERROR_OVERRUN;
+    machine_receive(0, &manual_packet[10], 1);
     TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().overruns);
     TEST_ASSERT_EQUAL_UINT32(10, zephyr_rig_counters().bytes);
     TEST_ASSERT_EQUAL_size_t(0, tmini_feed_room(&lidar));
@@ -249,14 +248,15 @@ void test_an_interrupt_that_is_late_for_the_stop_stores_nothing(void)
     assert_true_scans(1, 1);
     tmini_zephyr_stop(&port);
     const uint32_t bytes = zephyr_rig_counters().bytes;
-    zephyr_model_receive(manual_packet, 10);
-    zephyr_model_interrupt_late();
+    machine_receive(0, manual_packet, 10);
+    board.late = true;
+    irq_serve();
     TEST_ASSERT_EQUAL_UINT32(bytes, zephyr_rig_counters().bytes);
 }
 
 void test_a_uart_that_was_left_on_is_switched_off_first(void)
 {
-    zephyr_model_leave_receiving();
+    board.receiving = true;
     zephyr_rig_start();
     assert_true_scans(1, 1);
 }
@@ -276,10 +276,10 @@ void test_line_errors_are_counted_by_kind(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 1);
-    zephyr_model_damage(UART_ERROR_FRAMING);
-    zephyr_model_pass(20000);
-    zephyr_model_damage(UART_BREAK);
-    zephyr_model_pass(20000);
+    board.damage = UART_ERROR_FRAMING;
+    machine_pass(20000);
+    board.damage = UART_BREAK;
+    machine_pass(20000);
     TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().framing_errors);
     TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().breaks);
     TEST_ASSERT_EQUAL_UINT32(0, zephyr_rig_counters().overruns);
@@ -288,7 +288,7 @@ void test_line_errors_are_counted_by_kind(void)
 /* A negative result of uart_err_check() is not a set of error flags. */
 void test_a_driver_that_reports_no_errors_has_none(void)
 {
-    zephyr_model_set_error_check(-ENOSYS);
+    board.error_check = -ENOSYS;
     zephyr_rig_start();
     assert_true_scans(1, 3);
     TEST_ASSERT_EQUAL_UINT32(0, zephyr_rig_counters().overruns);

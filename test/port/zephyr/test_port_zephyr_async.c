@@ -28,8 +28,8 @@ void test_every_point_arrives_through_two_buffers_in_turn(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 10);
-    zephyr_model_pass(3000); /* Longer than the driver's timeout. */
-    TEST_ASSERT_UINT_WITHIN(64, zephyr_model_line_bytes(), zephyr_rig_counters().bytes);
+    machine_pass(3000); /* Longer than the driver's timeout. */
+    TEST_ASSERT_UINT_WITHIN(64, machine.line_bytes, zephyr_rig_counters().bytes);
 }
 
 void test_wherever_an_interrupt_comes_every_point_arrives(void)
@@ -49,7 +49,7 @@ void test_an_overrun_is_a_gap_after_which_reception_starts_again(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 1);
-    zephyr_model_pass_held_up(20000);
+    machine_pass_held_up(20000);
     assert_gap();
     TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().overruns);
 }
@@ -60,7 +60,7 @@ void test_line_errors_are_counted_by_kind_and_reception_starts_again(void)
     zephyr_rig_start();
     assert_true_scans(1, 1);
     for (unsigned i = 0; i < 3; i++) {
-        zephyr_model_damage(errors[i]);
+        board.damage = errors[i];
         assert_gap();
     }
     TEST_ASSERT_EQUAL_UINT32(1, zephyr_rig_counters().framing_errors);
@@ -74,23 +74,23 @@ void test_a_line_held_low_causes_no_interrupt_storm(void)
 {
     zephyr_rig_start();
     assert_true_scans(1, 1);
-    sim_power(zephyr_model_lidar(), false, zephyr_model_now_us());
+    machine_power(false);
     const uint32_t before = zephyr_rig_counters().breaks;
     for (unsigned i = 0; i < 1000; i++) {
-        zephyr_model_damage(UART_BREAK);
-        zephyr_model_receive((const uint8_t *)"", 1);
+        board.damage = UART_BREAK;
+        machine_receive(0, (const uint8_t *)"", 1);
     }
     TEST_ASSERT_LESS_OR_EQUAL_UINT32(before + 2, zephyr_rig_counters().breaks);
 }
 
 void test_a_driver_without_the_async_api_is_refused_and_not_started(void)
 {
-    zephyr_model_set_async(-ENOSYS);
+    board.async = -ENOSYS;
     TEST_ASSERT_EQUAL_INT(-ENOSYS, zephyr_rig_start_port());
-    zephyr_model_set_async(0);
-    zephyr_model_set_async_enable(-ENODEV);
+    board.async = 0;
+    board.async_enable = -ENODEV;
     TEST_ASSERT_EQUAL_INT(-ENODEV, tmini_zephyr_start(&port, &lidar));
-    zephyr_model_set_async_enable(0);
+    board.async_enable = 0;
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
     TEST_ASSERT_EQUAL_INT(-EALREADY, tmini_zephyr_start(&port, &lidar));
 }
@@ -101,8 +101,8 @@ void test_it_stops_and_starts_while_the_lidar_streams(void)
     for (unsigned i = 0; i < 5; i++) {
         (void)scans_until_complete();
         tmini_zephyr_stop(&port);
-        TEST_ASSERT_FALSE(zephyr_model_is_receiving());
-        zephyr_model_pass(3000 + 7000 * i);
+        TEST_ASSERT_FALSE(board.receiving || board.async_is_on);
+        machine_pass(3000 + 7000 * i);
         TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
     }
 }

@@ -17,9 +17,6 @@
 static struct {
     uart_callback_t callback;
     void *user_data;
-    int result;
-    int enable_result;
-    bool enabled;
     bool ending;
     uint64_t end_us; /* Disabling takes until this time: the UART is busy. */
     uint8_t *buffer;
@@ -34,21 +31,6 @@ static struct {
 void zephyr_async_begin(void)
 {
     memset(&async, 0, sizeof async);
-}
-
-void zephyr_model_set_async(int result)
-{
-    async.result = result;
-}
-
-void zephyr_model_set_async_enable(int result)
-{
-    async.enable_result = result;
-}
-
-bool zephyr_async_is_enabled(void)
-{
-    return async.enabled;
 }
 
 static void post(struct uart_event event)
@@ -89,7 +71,7 @@ static void end(void)
     report();
     release(async.buffer);
     release(async.next);
-    async.enabled = false;
+    board.async_is_on = false;
     async.ending = false;
     post((struct uart_event){.type = UART_RX_DISABLED});
 }
@@ -111,24 +93,24 @@ static void change_buffers(void)
 static bool has_paused(void)
 {
     return async.count > async.reported &&
-           zephyr_model_now_us() - zephyr_board_last_byte_us() >= (uint64_t)async.timeout_us;
+           machine.now_us - machine.last_us >= (uint64_t)async.timeout_us;
 }
 
 static bool is_over(void)
 {
-    return async.ending && zephyr_model_now_us() >= async.end_us;
+    return async.ending && machine.now_us >= async.end_us;
 }
 
 bool zephyr_async_is_up(void)
 {
-    return async.enabled && (is_over() || zephyr_board_has_byte() || has_paused());
+    return board.async_is_on && (is_over() || machine.count > 0 || has_paused());
 }
 
 void zephyr_async_serve(void)
 {
     const int errors = zephyr_board_take_errors();
-    while (async.enabled && zephyr_board_has_byte()) {
-        async.buffer[async.count++] = zephyr_board_take_byte();
+    while (board.async_is_on && machine.count > 0) {
+        async.buffer[async.count++] = (uint8_t)machine_take();
         if (async.count == async.size) {
             change_buffers();
         }
@@ -137,7 +119,7 @@ void zephyr_async_serve(void)
         post((struct uart_event){.type = UART_RX_STOPPED,
                                  .data.rx_stop.reason = (enum uart_rx_stop_reason)errors});
     }
-    if (async.enabled && (errors != 0 || is_over())) {
+    if (board.async_is_on && (errors != 0 || is_over())) {
         end();
     } else if (has_paused()) {
         report();
@@ -149,18 +131,18 @@ int uart_callback_set(const struct device *device, uart_callback_t callback, voi
     (void)device;
     async.callback = callback;
     async.user_data = user_data;
-    return async.result;
+    return board.async;
 }
 
 int uart_rx_enable(const struct device *device, uint8_t *buffer, size_t size, int32_t timeout_us)
 {
     (void)device;
-    if (async.enabled || async.enable_result != 0) {
-        return async.enabled ? -EBUSY : async.enable_result;
+    if (board.async_is_on || board.async_enable != 0) {
+        return board.async_is_on ? -EBUSY : board.async_enable;
     }
     use(buffer, size);
     async.timeout_us = timeout_us;
-    async.enabled = true;
+    board.async_is_on = true;
     (void)zephyr_board_take_errors();
     post((struct uart_event){.type = UART_RX_BUF_REQUEST});
     irq_access();
@@ -173,8 +155,8 @@ int uart_rx_buf_rsp(const struct device *device, uint8_t *buffer, size_t size)
     if (buffer == async.buffer) {
         abort(); /* This buffer is still being filled. */
     }
-    if (!async.enabled || async.next != NULL) {
-        return async.enabled ? -EBUSY : -EACCES;
+    if (!board.async_is_on || async.next != NULL) {
+        return board.async_is_on ? -EBUSY : -EACCES;
     }
     async.next = buffer;
     async.next_size = size;
@@ -185,11 +167,11 @@ int uart_rx_buf_rsp(const struct device *device, uint8_t *buffer, size_t size)
 int uart_rx_disable(const struct device *device)
 {
     (void)device;
-    if (!async.enabled) {
+    if (!board.async_is_on) {
         return -EFAULT;
     }
     async.ending = true;
-    async.end_us = zephyr_model_now_us() + 500u;
+    async.end_us = machine.now_us + 500u;
     irq_access();
     return 0;
 }

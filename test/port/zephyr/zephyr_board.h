@@ -13,14 +13,8 @@ void zephyr_kernel_begin(void);
 void zephyr_async_begin(void);
 
 /* The UART's interrupt while the async API is in use. */
-bool zephyr_async_is_enabled(void);
 bool zephyr_async_is_up(void);
 void zephyr_async_serve(void);
-
-/* The FIFO: whether it has a byte, its oldest byte, and the time of its last byte. */
-bool zephyr_board_has_byte(void);
-uint8_t zephyr_board_take_byte(void);
-uint64_t zephyr_board_last_byte_us(void);
 
 /* The line's errors since the last call. */
 int zephyr_board_take_errors(void);

@@ -28,8 +28,6 @@ typedef struct {
 static struct {
     thread_t threads[THREADS];
     int current;
-    unsigned wakes;
-    void (*on_sleep)(void);
 } kernel;
 
 static char stack_of_thread[STACK_SIZE];
@@ -39,25 +37,13 @@ void zephyr_kernel_begin(void)
     kernel.threads[0] = (thread_t){.used = true};
     kernel.threads[1].used = false;
     kernel.current = 0;
-    kernel.wakes = 0;
-    kernel.on_sleep = NULL;
-}
-
-unsigned zephyr_model_wakes(void)
-{
-    return kernel.wakes;
-}
-
-void zephyr_model_on_sleep(void (*callback)(void))
-{
-    kernel.on_sleep = callback;
 }
 
 /* -------------------------------------------------------------------------------------- threads */
 
 static bool may_run(const thread_t *thread)
 {
-    return thread->used && (zephyr_model_now_us() >= thread->until_us ||
+    return thread->used && (machine.now_us >= thread->until_us ||
                             (thread->awaited != NULL && thread->awaited->count > 0));
 }
 
@@ -75,18 +61,18 @@ static void block(uint64_t us, const struct k_sem *awaited)
 {
     thread_t *const me = &kernel.threads[kernel.current];
     const int other = 1 - kernel.current;
-    me->until_us = zephyr_model_now_us() + us;
+    me->until_us = machine.now_us + us;
     me->awaited = awaited;
     while (!may_run(me)) {
         if (may_run(&kernel.threads[other])) {
             switch_to(other);
         } else {
-            zephyr_model_pass(STEP_US);
+            machine_pass(STEP_US);
         }
     }
     me->awaited = NULL;
-    if (kernel.on_sleep != NULL && kernel.current == 0) {
-        kernel.on_sleep();
+    if (machine.on_sleep != NULL && kernel.current == 0) {
+        machine.on_sleep();
     }
 }
 
@@ -139,7 +125,7 @@ int32_t k_sleep(k_timeout_t timeout)
 
 uint32_t k_uptime_get_32(void)
 {
-    return (uint32_t)(zephyr_model_now_us() / 1000u);
+    return (uint32_t)(machine.now_us / 1000u);
 }
 
 /* ------------------------------------------------------------------------- semaphores and locks */
@@ -167,7 +153,7 @@ int k_sem_take(struct k_sem *sem, k_timeout_t timeout)
         return -EAGAIN;
     }
     sem->count--;
-    kernel.wakes++;
+    board.wakes++;
     return 0;
 }
 

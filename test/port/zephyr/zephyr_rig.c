@@ -20,11 +20,8 @@ static void wait(void)
 void zephyr_rig_begin(void)
 {
     const sim_observer_t observer = truth_begin();
-    const scanning_t program = {.port = &tmini_zephyr_port,
-                                .context = &port,
-                                .now_us = zephyr_model_now_us,
-                                .wait = wait,
-                                .work = zephyr_model_pass};
+    const scanning_t program = {
+        .port = &tmini_zephyr_port, .context = &port, .wait = wait, .work = machine_pass};
     zephyr_model_begin(&observer);
     memset(&port, 0, sizeof port);
     scanning_begin(&program, 1024);
@@ -33,7 +30,7 @@ void zephyr_rig_begin(void)
 void zephyr_rig_end(void)
 {
     tmini_zephyr_stop(&port);
-    TEST_ASSERT_FALSE(zephyr_model_is_receiving());
+    TEST_ASSERT_FALSE(board.receiving || board.async_is_on);
 }
 
 int zephyr_rig_start_port(void)

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+#include "machine.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "console.h"
+#include "irq_lines.h"
+
+#define STEP_US 20u
+
+machine_t machine;
+
+static void fail(unsigned line)
+{
+    (void)line;
+    abort(); /* The handler left its flag set: a lock-up. */
+}
+
+void machine_begin(const sim_observer_t *observer, const machine_uart_t *uart)
+{
+    const sim_config_t config = sim_default_config();
+    console_begin();
+    memset(&machine, 0, sizeof machine);
+    machine.uart = *uart;
+    sim_init(&machine.lidar, &config);
+    sim_observe(&machine.lidar, observer);
+    irq_reset(fail);
+    irq.lines[0] = (irq_line_t){.is_up = uart->is_up, .handler = uart->serve};
+}
+
+static void arrive(uint32_t flags, uint8_t byte)
+{
+    machine.line_bytes++;
+    machine.last_us = machine.now_us;
+    machine.uart.arrive(flags, byte);
+    if (machine.uart.move != NULL) {
+        machine.uart.move();
+    }
+}
+
+void machine_step(uint32_t us)
+{
+    uint8_t byte;
+    machine.now_us += us;
+    while (sim_transmit(&machine.lidar, machine.now_us, &byte, 1) == 1) {
+        arrive(0, byte);
+        irq_serve();
+    }
+    if (machine.uart.move != NULL) {
+        machine.uart.move();
+    }
+    irq_serve();
+}
+
+static void switch_tasks(void)
+{
+    if (machine.uart.switch_tasks != NULL && !irq.masked) {
+        machine.uart.switch_tasks();
+    }
+}
+
+void machine_pass(uint32_t us)
+{
+    for (const uint64_t end_us = machine.now_us + us; machine.now_us < end_us;) {
+        const uint64_t left_us = end_us - machine.now_us;
+        machine_step(left_us < STEP_US ? (uint32_t)left_us : STEP_US);
+        switch_tasks();
+    }
+}
+
+void machine_pass_held_up(uint32_t us)
+{
+    irq.masked = true;
+    machine_pass(us);
+    irq.masked = false;
+    irq_serve();
+}
+
+void machine_receive(uint32_t flags, const uint8_t *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        arrive(flags, bytes[i]);
+        if (machine.count == machine.uart.fifo_size || i + 1 == count) {
+            irq_serve();
+        }
+    }
+}
+
+bool machine_put(uint32_t entry)
+{
+    if (machine.count >= machine.uart.fifo_size) {
+        machine.overrun_bytes++;
+        return false;
+    }
+    machine.fifo[machine.count++] = (uint16_t)entry;
+    return true;
+}
+
+uint16_t machine_take(void)
+{
+    const uint16_t entry = machine.fifo[0];
+    machine.count--;
+    memmove(machine.fifo, &machine.fifo[1], machine.count * sizeof machine.fifo[0]);
+    return entry;
+}
+
+size_t machine_read(uint8_t *bytes, size_t max)
+{
+    size_t taken = 0;
+    while (taken < max && machine.count > 0) {
+        bytes[taken++] = (uint8_t)machine_take();
+    }
+    return taken;
+}
+
+void machine_sleep_us(uint64_t us)
+{
+    machine_pass((uint32_t)us);
+    if (machine.on_sleep != NULL) {
+        machine.on_sleep();
+    }
+}
+
+void machine_power(bool on)
+{
+    sim_power(&machine.lidar, on, machine.now_us);
+}
+
+/* Interrupts also come at accesses to the library's indices. */
+void interrupt(void)
+{
+    irq_access();
+    switch_tasks();
+}
+
+int machine_printf(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = console_print(machine.now_us, format, arguments);
+    va_end(arguments);
+    return length;
+}
