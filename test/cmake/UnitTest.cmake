@@ -3,6 +3,7 @@
 
 # tmini_add_unit_test(NAME
 #     SOURCES test_file.c [more.c …]   the first one holds the tests: void test_…(void)
+#     [SHARED file.c]                  a source whose tests run, too, before those of the first one
 #     [MOCKS header.h …]               functions declared there are mocked; in the test file,
 #                                      #include "mock_header.h"
 #     [LIBRARIES target …]             linked besides the library, Unity and CMock
@@ -20,8 +21,8 @@ set(TMINI_SHORTEN_RUNNER ${CMAKE_CURRENT_LIST_DIR}/ShortenRunner.cmake)
 
 # -W0 turns off Ruby's warnings about the generator's own code.
 
-# Sets OUT to the runner made for the test file SOURCE in the folder DIR.
-function(tmini_generate_runner out source dir)
+# Sets OUT to the runner made in the folder DIR for the test file SOURCE, and for SHARED if given.
+function(tmini_generate_runner out source dir shared)
     set(generator ${TMINI_UNITY_DIR}/auto/generate_test_runner.rb)
     set(runner ${dir}/runner.c)
     set(shorten "")
@@ -30,6 +31,17 @@ function(tmini_generate_runner out source dir)
     endif()
     get_filename_component(test_dir ${source} DIRECTORY)
     get_filename_component(test_file ${source} NAME)
+    if(shared)
+        set(both "")
+        foreach(file ${shared} ${source})
+            file(READ ${file} text)
+            string(APPEND both "${text}")
+        endforeach()
+        set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${shared} ${source})
+        set(test_dir ${dir})
+        set(source ${dir}/${test_file})
+        file(GENERATE OUTPUT ${source} CONTENT "${both}")
+    endif()
     # Run in the folder of the test file: then reports name "test_x.c" without a path.
     add_custom_command(OUTPUT ${runner}
         COMMAND ${TMINI_RUBY} -W0 ${generator} ${TMINI_CMOCK_CONFIG} ${test_file} ${runner}
@@ -87,7 +99,7 @@ function(tmini_register_unit_test name label)
 endfunction()
 
 function(tmini_add_unit_test name)
-    cmake_parse_arguments(arg "" "LABEL" "SOURCES;MOCKS;LIBRARIES;NOT_ON" ${ARGN})
+    cmake_parse_arguments(arg "" "LABEL;SHARED" "SOURCES;MOCKS;LIBRARIES;NOT_ON" ${ARGN})
     if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
         message(FATAL_ERROR "tmini_add_unit_test(${name}): needs SOURCES; "
             "not understood: ${arg_UNPARSED_ARGUMENTS}")
@@ -104,7 +116,11 @@ function(tmini_add_unit_test name)
     file(MAKE_DIRECTORY ${dir})
     list(GET arg_SOURCES 0 test_file)
     get_filename_component(test_file ${test_file} ABSOLUTE)
-    tmini_generate_runner(runner ${test_file} ${dir})
+    if(arg_SHARED)
+        get_filename_component(arg_SHARED ${arg_SHARED} ABSOLUTE)
+        list(APPEND arg_SOURCES ${arg_SHARED})
+    endif()
+    tmini_generate_runner(runner ${test_file} ${dir} "${arg_SHARED}")
     tmini_generate_mocks(mocks ${dir} ${arg_MOCKS})
     set_source_files_properties(${runner} ${mocks} PROPERTIES COMPILE_OPTIONS -w)
 

@@ -9,8 +9,7 @@
 
 #include "freertos/FreeRTOS.h"
 #include "freertos/task.h"
-#include "scanning.h"
-#include "tmini/tmini_blocking.h"
+#include "every_port.h"
 #include "tmini_esp32.h"
 #include "virtual_idf.h"
 
@@ -27,21 +26,36 @@ static void work(uint32_t us)
     vTaskDelay(us / 10000u);
 }
 
+const scanning_t port_program = {
+    .port = &tmini_esp32_port, .context = &port, .wait = wait, .work = work};
+
 void setUp(void)
 {
     const sim_observer_t observer = truth_begin();
-    const scanning_t program = {
-        .port = &tmini_esp32_port, .context = &port, .wait = wait, .work = work};
     virtual_idf_begin(&observer);
     memset(&port, 0, sizeof port);
     wiring = (tmini_esp32_wiring_t)TMINI_ESP32_WIRING_DEFAULT;
-    scanning_begin(&program, 1024);
+    init_lidar(1024);
 }
 
-/* After each test nothing is left installed, and no call has named a missing driver. */
-void tearDown(void)
+int port_init(void)
+{
+    return tmini_esp32_init(&port, &wiring);
+}
+
+int port_start(void)
+{
+    return tmini_esp32_start(&port, &lidar);
+}
+
+void port_stop(void)
 {
     (void)tmini_esp32_stop(&port);
+}
+
+/* Nothing is left installed, and no call has named a missing driver. */
+void port_assert_stopped(void)
+{
     const virtual_idf_state_t state = virtual_idf_state();
     TEST_ASSERT_EQUAL_UINT(1, state.tasks);
     TEST_ASSERT_FALSE(state.installed);
@@ -49,54 +63,45 @@ void tearDown(void)
     TEST_ASSERT_EQUAL_UINT(0, state.stray_calls);
 }
 
-static void start_port(void)
+void tearDown(void)
 {
-    TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_start(&port, &lidar));
+    port_stop();
+    port_assert_stopped();
 }
 
-static void start_port_and_lidar(void)
+port_counts_t port_counted(void)
 {
-    start_port();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
+    tmini_esp32_counters_t c;
+    tmini_esp32_counters(&port, &c);
+    return (port_counts_t){.bytes = c.bytes,
+                           .lost = c.buffers_full + c.queues_full,
+                           .overruns = c.overruns,
+                           .framing_errors = c.framing_errors,
+                           .breaks = c.breaks};
 }
 
-void test_every_point_arrives_through_a_receiving_task(void)
-{
-    start_port_and_lidar();
-    assert_true_scans(1, 10);
-}
+static void through_a_task(void) {}
 
-void test_every_point_arrives_through_the_callers_own_loop(void)
+static void through_the_callers_loop(void)
 {
     wiring.with_task = false;
-    start_port_and_lidar();
-    assert_true_scans(1, 10);
 }
 
-/* In 20 ms 262 bytes arrive: twice the size of the FIFO. */
-void test_an_overflow_costs_the_packets_that_it_hit_and_no_other(void)
+static void enlarge(void)
 {
-    tmini_esp32_counters_t uart;
-    tmini_counters_t counters;
-    start_port_and_lidar();
-    poll_until(TMINI_EVENT_SCAN);
-    virtual_idf_hold_interrupts(20000);
-    poll_until(TMINI_EVENT_SCAN);
-    TEST_ASSERT_FALSE(tmini_scan(&lidar)->complete);
-    TEST_ASSERT_NOT_EQUAL_UINT16(0, tmini_scan(&lidar)->gaps);
-    while (!tmini_scan(&lidar)->complete) { /* The parts before and after the gap. */
-        poll_until(TMINI_EVENT_SCAN);
-    }
-    truth_assert_revolution(tmini_scan(&lidar), 3);
-
-    tmini_esp32_counters(&port, &uart);
-    tmini_counters(&lidar, &counters);
-    TEST_ASSERT_EQUAL_UINT32(1, uart.overruns);
-    /* Lost are at most two whole packets and two partly hit ones. One more may still be
-     * arriving. */
-    TEST_ASSERT_TRUE(truth_packets() - counters.packets <= 4 + 1);
+    wiring.buffer_size = 8192;
+    wiring.queue_length = 128;
 }
+
+#define WAY                                                                      \
+    .enlarge = enlarge, .holds = 8192, .behind = 128 + 8, .packets_per_loss = 4, \
+    .hold_up = virtual_idf_hold_interrupts, .break_reception = virtual_idf_break_reception
+
+const port_way_t port_ways[] = {
+    {.name = "through a task", .choose = through_a_task, WAY},
+    {.name = "through the caller's loop", .choose = through_the_callers_loop, WAY},
+};
+const unsigned port_way_count = sizeof port_ways / sizeof port_ways[0];
 
 static void poll_all(void)
 {
@@ -119,7 +124,7 @@ static void receive_and_poll_all(void)
 static void start_by_hand(void)
 {
     wiring.with_task = false;
-    start_port_and_lidar();
+    start();
     poll_until(TMINI_EVENT_SCAN);
     receive_and_poll_all();
 }
@@ -232,25 +237,11 @@ static void assert_nothing_was_lost(void)
     TEST_ASSERT_TRUE(truth_packets() - counters.packets <= 12); /* Still in the buffers. */
 }
 
-void test_pauses_that_the_drivers_buffer_can_hold_cost_no_scan(void)
-{
-    for (unsigned i = 0; i < 2; i++) {
-        wiring.with_task = i == 0;
-        wiring.buffer_size = 8192;
-        wiring.queue_length = 128;
-        start_port_and_lidar();
-        assert_pauses_cost_no_scan((uint32_t)wiring.buffer_size);
-        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
-        tearDown();
-        setUp();
-    }
-}
-
 /* Pauses of 10 ms, but every 20th is longer: 1570 bytes arrive, more than the library's ring
  * holds. */
 void test_a_pause_of_120_ms_between_polls_loses_nothing(void)
 {
-    start_port_and_lidar();
+    start();
     for (unsigned i = 0; i < 400; i++) {
         vTaskDelay(i % 20 == 0 ? 12 : 1);
         poll_all();
@@ -263,48 +254,10 @@ void test_a_pause_of_120_ms_between_polls_loses_nothing(void)
 void test_a_loop_that_always_pauses_for_120_ms_and_receives_by_itself_loses_nothing(void)
 {
     wiring.with_task = false;
-    start_port_and_lidar();
+    start();
     for (unsigned i = 0; i < 40; i++) {
         vTaskDelay(12);
         receive_and_poll_all();
     }
     assert_nothing_was_lost();
-}
-
-void test_a_port_is_stopped_while_bytes_come_and_started_again(void)
-{
-    for (unsigned i = 0; i < 20; i++) {
-        start_port();
-        (void)tmini_start(&lidar); /* The first time. */
-        vTaskDelay(20 + i);
-        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
-        TEST_ASSERT_EQUAL_UINT(1, virtual_idf_state().tasks);
-        TEST_ASSERT_FALSE(virtual_idf_state().installed);
-    }
-}
-
-void test_reception_starts_again_whatever_has_stopped_it(void)
-{
-    for (unsigned i = 0; i < 2; i++) {
-        wiring.with_task = i == 0;
-        start_port_and_lidar();
-        poll_until(TMINI_EVENT_SCAN);
-        virtual_idf_break_reception();
-        assert_recovery();
-        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
-        tmini_esp32_port.restart(&port); /* A restart of a stopped port does nothing. */
-        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&lidar));
-    }
-}
-
-void test_commands_that_wait_work_with_a_task_and_without(void)
-{
-    for (unsigned i = 0; i < 2; i++) {
-        tmini_info_t info;
-        wiring.with_task = i == 0;
-        start_port();
-        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 1000));
-        TEST_ASSERT_EQUAL_UINT(151, info.model);
-        TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
-    }
 }

@@ -95,6 +95,7 @@ static void fill_fifo(void)
 {
     uint8_t bytes[256];
     const size_t count = sim_transmit(&machine.lidar, machine.now_us, bytes, sizeof bytes);
+    machine.line_bytes += (uint32_t)count;
     world.line_pauses = count == 0; /* A time step is longer than the UART's receive timeout. */
     for (size_t i = 0; i < count; i++) {
         if (!world.is_routed) {

@@ -9,9 +9,8 @@
 #include "unity.h"
 
 #include "board.h"
+#include "every_port.h"
 #include "freertos_model.h"
-#include "scanning.h"
-#include "tmini/tmini_blocking.h"
 #include "tmini_freertos.h"
 
 #define POLLING_PRIORITY 1u
@@ -41,26 +40,52 @@ static void wait(void)
     tmini_freertos_wait(&port, pdMS_TO_TICKS(10));
 }
 
-static void init_lidar(size_t rx_size)
+static void restart_uart(void *uart)
 {
-    const scanning_t program = {
-        .port = &tmini_freertos_port, .context = &port, .wait = wait, .work = machine_pass};
-    scanning_begin(&program, rx_size);
+    (void)uart;
+    board_enable_lidar_interrupt();
 }
+
+const scanning_t port_program = {
+    .port = &tmini_freertos_port, .context = &port, .wait = wait, .work = machine_pass};
 
 void setUp(void)
 {
     const sim_observer_t observer = truth_begin();
     freertos_model_begin(&observer, POLLING_PRIORITY);
     memset(&port, 0, sizeof port);
-    wiring = (tmini_freertos_wiring_t){.write = board_lidar_write};
+    wiring = (tmini_freertos_wiring_t){.write = board_lidar_write, .restart = restart_uart};
     init_lidar(1024);
+}
+
+int port_init(void)
+{
+    board_enable_lidar_interrupt();
+    return tmini_freertos_init(&port, &wiring);
+}
+
+int port_start(void)
+{
+    return tmini_freertos_start(&port, &lidar);
+}
+
+void port_stop(void)
+{
+    tmini_freertos_stop(&port);
+}
+
+/* The receiving task sleeps and is used again. */
+void port_assert_stopped(void)
+{
+    TEST_ASSERT_EQUAL_UINT(wiring.stream != NULL ? 1 : 0, freertos_model_tasks());
 }
 
 void tearDown(void)
 {
-    tmini_freertos_stop(&port);
+    port_stop();
 }
+
+static void receive_from_interrupt(void) {}
 
 static void receive_by_stream(void)
 {
@@ -69,13 +94,35 @@ static void receive_by_stream(void)
     wiring.priority = RECEIVING_PRIORITY;
 }
 
-static void start(void)
+static void enlarge(void)
 {
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
-    board_enable_lidar_interrupt();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
+    wiring.stream_size = sizeof stream;
 }
+
+static void disable_interrupt(void)
+{
+    world.interrupt_enabled = false;
+}
+
+const port_way_t port_ways[] = {
+    {.name = "from the interrupt",
+     .choose = receive_from_interrupt,
+     .packets_per_loss = 4,
+     .behind = 16,
+     .hold_up = machine_pass_held_up,
+     .break_reception = disable_interrupt,
+     .loss = 1},
+    {.name = "through a stream",
+     .choose = receive_by_stream,
+     .enlarge = enlarge,
+     .holds = sizeof stream,
+     .packets_per_loss = 6,
+     .behind = 16,
+     .hold_up = machine_pass_held_up,
+     .break_reception = disable_interrupt,
+     .loss = 1},
+};
+const unsigned port_way_count = sizeof port_ways / sizeof port_ways[0];
 
 static tmini_freertos_counters_t counted(void)
 {
@@ -84,15 +131,13 @@ static tmini_freertos_counters_t counted(void)
     return counters;
 }
 
-/* ------------------------------------------------------------------------- from the interrupt */
-
-void test_every_point_arrives_by_the_interrupt(void)
+port_counts_t port_counted(void)
 {
-    start();
-    assert_true_scans(1, 10);
-    TEST_ASSERT_EQUAL_UINT(0, freertos_model_tasks());
-    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, counted().bytes);
+    const tmini_freertos_counters_t c = counted();
+    return (port_counts_t){.bytes = c.bytes, .lost = c.bytes_lost, .overruns = c.overruns};
 }
+
+/* ------------------------------------------------------------------------- from the interrupt */
 
 void test_the_polling_task_is_woken_once_per_64_bytes(void)
 {
@@ -111,32 +156,7 @@ void test_a_polling_task_that_works_60_ms_loses_nothing(void)
     }
 }
 
-void test_wherever_an_interrupt_comes_every_point_arrives(void)
-{
-    start();
-    assert_true_scans_wherever_bytes_come();
-}
-
-void test_an_overrun_of_the_uart_is_a_gap(void)
-{
-    start();
-    assert_true_scans(1, 2);
-    machine_pass_held_up(20000);
-    assert_gap();
-    TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
-    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes - machine.overrun_bytes, counted().bytes);
-}
-
 /* ---------------------------------------------------------------------------- through a stream */
-
-void test_every_point_arrives_through_the_receiving_task(void)
-{
-    receive_by_stream();
-    start();
-    assert_true_scans(1, 10);
-    TEST_ASSERT_EQUAL_UINT(1, freertos_model_tasks());
-    TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
-}
 
 /* In 60 ms 786 bytes arrive: more than rx_buffer holds. The stream keeps the rest. */
 void test_the_stream_keeps_bytes_for_which_the_lidar_has_no_room(void)
@@ -155,14 +175,6 @@ void test_the_stream_keeps_bytes_for_which_the_lidar_has_no_room(void)
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
 }
 
-void test_pauses_that_the_stream_can_hold_cost_no_scan(void)
-{
-    receive_by_stream();
-    wiring.stream_size = sizeof stream;
-    start();
-    assert_pauses_cost_no_scan(sizeof stream);
-}
-
 /* In 300 ms 3930 bytes arrive; stream and rx_buffer together hold 2047. */
 void test_a_stream_that_overflows_is_one_gap(void)
 {
@@ -176,16 +188,6 @@ void test_a_stream_that_overflows_is_one_gap(void)
     TEST_ASSERT_UINT_WITHIN(500, 3930 - 2047, counted().bytes_lost);
     TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
     TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, counted().bytes);
-}
-
-void test_an_overrun_of_the_uart_before_the_stream_is_a_gap(void)
-{
-    receive_by_stream();
-    start();
-    assert_true_scans(1, 2);
-    machine_pass_held_up(20000);
-    assert_gap();
-    TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
 }
 
 /* Only the bytes read together with the overrun are lost: the receiving task is woken at once, not
@@ -216,18 +218,6 @@ void test_an_overrun_before_the_stream_wakes_the_polling_task(void)
     TEST_ASSERT_TRUE(machine.now_us - begun_us < 100000);
 }
 
-/* If the line pauses in the middle of a packet, the first part must still be handed on. */
-void test_bytes_below_the_streams_trigger_level_are_handed_on_in_time(void)
-{
-    tmini_info_t info;
-    receive_by_stream(); /* The reply has 27 bytes, but the stream's trigger level is 32. */
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
-    board_enable_lidar_interrupt();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 1000));
-    TEST_ASSERT_EQUAL_UINT(151, info.model);
-}
-
 /* --------------------------------------------------------------- losses that bytes do not show */
 
 static uint32_t packets(void)
@@ -238,33 +228,6 @@ static uint32_t packets(void)
     }
     tmini_counters(&lidar, &counters);
     return counters.packets;
-}
-
-/* Receives a packet in two parts. The bytes alone do not show a loss in between. */
-static void receive_packet(bool overrun)
-{
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
-    freertos_model_receive(false, manual_packet, PACKET_CUT);
-    vTaskDelay(pdMS_TO_TICKS(20));
-    TEST_ASSERT_EQUAL_UINT32(0, packets());
-    freertos_model_receive(overrun, &manual_packet[PACKET_CUT], sizeof manual_packet - PACKET_CUT);
-    vTaskDelay(pdMS_TO_TICKS(20));
-}
-
-void test_no_packet_is_put_together_across_an_overrun(void)
-{
-    for (unsigned way = 0; way < 2; way++) {
-        receive_packet(false);
-        TEST_ASSERT_EQUAL_UINT32(1, packets());
-        tmini_freertos_stop(&port);
-        init_lidar(1024);
-        receive_packet(true);
-        TEST_ASSERT_EQUAL_UINT32(0, packets());
-        tmini_freertos_stop(&port);
-        setUp();
-        receive_by_stream();
-    }
 }
 
 static void fill_small_stream(void)
@@ -337,45 +300,6 @@ void test_what_cannot_work_is_refused(void)
     TEST_ASSERT_EQUAL_UINT(1, freertos_model_tasks());
 }
 
-void test_bytes_before_the_start_are_dropped(void)
-{
-    static const uint8_t start_scanning[2] = {0xA5, 0x60};
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
-    board_enable_lidar_interrupt();
-    (void)board_lidar_write(NULL, start_scanning, 2);
-    machine_pass(600000);
-    TEST_ASSERT_TRUE(machine.line_bytes > 1000);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().bytes);
-}
-
-static void assert_stops_and_starts(unsigned tasks)
-{
-    start();
-    assert_true_scans(1, 1);
-    for (unsigned i = 0; i < 20; i++) {
-        tmini_freertos_stop(&port);
-        const uint32_t bytes = counted().bytes;
-        machine_pass(5000 + 100 * i);
-        TEST_ASSERT_EQUAL_UINT32(bytes, counted().bytes);
-        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
-        poll_until(TMINI_EVENT_SCAN);
-        truth_assert_nothing_invented(tmini_scan(&lidar));
-    }
-    (void)scans_until_complete();
-    TEST_ASSERT_EQUAL_UINT(tasks, freertos_model_tasks());
-}
-
-void test_it_stops_and_starts_while_the_lidar_streams(void)
-{
-    assert_stops_and_starts(0);
-}
-
-void test_the_receiving_task_sleeps_while_stopped_and_is_used_again(void)
-{
-    receive_by_stream();
-    assert_stops_and_starts(1);
-}
-
 /* The receiving task notices the stop only when its wait for bytes times out. */
 void test_stopping_waits_for_the_receiving_task_every_time(void)
 {
@@ -427,31 +351,4 @@ void test_waiting_for_0_ticks_waits_for_one_tick(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
     tmini_freertos_wait(&port, 0);
     TEST_ASSERT_TRUE(machine.now_us > begun_us);
-}
-
-static void restart_uart(void *uart)
-{
-    (void)uart;
-    board_enable_lidar_interrupt();
-}
-
-void test_the_programs_uart_is_restarted_when_the_lidar_is_lost(void)
-{
-    wiring.restart = restart_uart;
-    start();
-    assert_true_scans(1, 1);
-    world.interrupt_enabled = false;
-    assert_recovery();
-    world.interrupt_enabled = false;
-    tmini_freertos_stop(&port);
-    tmini_freertos_port.restart(&port); /* A restart of a stopped port does nothing. */
-    wiring.restart = NULL;
-    start();
-    tmini_freertos_port.restart(&port);
-}
-
-void test_without_wiring_nothing_is_sent(void)
-{
-    static const uint8_t byte = 0xA5;
-    TEST_ASSERT_EQUAL_INT(-1, tmini_freertos_port.write(&port, &byte, 1));
 }

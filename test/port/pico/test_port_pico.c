@@ -8,10 +8,9 @@
 #include "unity.h"
 
 #include "hardware/gpio.h"
+#include "every_port.h"
 #include "irq_lines.h"
 #include "pico_model.h"
-#include "scanning.h"
-#include "tmini/tmini_blocking.h"
 #include "tmini_pico.h"
 
 #define UART1_IRQ 21u
@@ -31,12 +30,8 @@ static void wait(void)
     (void)tmini_pico_wait(&port, 0);
 }
 
-static void init_lidar(size_t rx_size)
-{
-    const scanning_t program = {
-        .port = &tmini_pico_port, .context = &port, .wait = wait, .work = machine_pass};
-    scanning_begin(&program, rx_size);
-}
+const scanning_t port_program = {
+    .port = &tmini_pico_port, .context = &port, .wait = wait, .work = machine_pass};
 
 void setUp(void)
 {
@@ -49,13 +44,40 @@ void setUp(void)
     pause_ms = 1;
 }
 
-/* After each test, all DMA channels must be free again. */
-void tearDown(void)
+int port_init(void)
+{
+    return tmini_pico_init(&port, &wiring);
+}
+
+int port_start(void)
+{
+    return tmini_pico_start(&port, &lidar);
+}
+
+void port_stop(void)
 {
     tmini_pico_stop(&port);
+}
+
+void port_assert_stopped(void)
+{
     TEST_ASSERT_EQUAL_UINT(0, pico_model_claimed_channels());
-    TEST_ASSERT_FALSE(chip.handlers[UART1_IRQ] != NULL);
+    TEST_ASSERT_NULL(chip.handlers[UART1_IRQ]);
     TEST_ASSERT_FALSE(chip.uart.receive_irq);
+}
+
+void tearDown(void)
+{
+    port_stop();
+    port_assert_stopped();
+}
+
+static void receive_by_dma(void) {}
+
+static void enlarge(void)
+{
+    wiring.ring = large_ring;
+    wiring.ring_size = sizeof large_ring;
 }
 
 static void receive_by_interrupt(void)
@@ -64,12 +86,41 @@ static void receive_by_interrupt(void)
     wiring.ring_size = 0;
 }
 
-static void start(void)
+static void block_dma(uint32_t us)
 {
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
+    chip.dma_blocked = true;
+    machine_pass(us);
+    chip.dma_blocked = false;
 }
+
+static void switch_interrupts_off(void)
+{
+    uart_set_irqs_enabled(uart1, false, false);
+}
+
+#define ERRORS                                                         \
+    .loss = UART_UARTDR_OE_BITS, .framing_error = UART_UARTDR_FE_BITS, \
+    .line_break = UART_UARTDR_FE_BITS | UART_UARTDR_BE_BITS
+
+const port_way_t port_ways[] = {
+    {.name = "by DMA",
+     .choose = receive_by_dma,
+     .enlarge = enlarge,
+     .holds = sizeof large_ring,
+     .behind = 64,
+     .packets_per_loss = 4,
+     .hold_up = block_dma,
+     .break_reception = pico_model_break_dma,
+     ERRORS},
+    {.name = "by interrupt",
+     .choose = receive_by_interrupt,
+     .behind = 31,
+     .packets_per_loss = 4,
+     .hold_up = machine_pass_held_up,
+     .break_reception = switch_interrupts_off,
+     ERRORS},
+};
+const unsigned port_way_count = sizeof port_ways / sizeof port_ways[0];
 
 static tmini_event_t receive_and_poll(void)
 {
@@ -82,6 +133,12 @@ static tmini_pico_counters_t counted(void)
     tmini_pico_counters_t counters;
     tmini_pico_counters(&port, &counters);
     return counters;
+}
+
+port_counts_t port_counted(void)
+{
+    const tmini_pico_counters_t c = counted();
+    return (port_counts_t){c.bytes, c.bytes_lost, c.overruns, c.framing_errors, c.breaks};
 }
 
 /* ------------------------------------------------------------------------------------- wiring */
@@ -227,61 +284,6 @@ void test_channels_and_interrupts_of_others_are_left_alone(void)
     TEST_ASSERT_FALSE(chip.irq_enabled[UART1_IRQ]);
 }
 
-void test_starting_twice_is_refused_and_changes_nothing(void)
-{
-    start();
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_pico_start(&port, &lidar));
-    TEST_ASSERT_EQUAL_UINT(2, pico_model_claimed_channels());
-    assert_true_scans(1, 1);
-}
-
-static void assert_stops_and_starts(void)
-{
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    for (unsigned i = 0; i < 20; i++) {
-        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-        TEST_ASSERT_EQUAL_UINT32(0, counted().bytes); /* A start resets the counters. */
-        (void)tmini_start(&lidar);
-        for (unsigned ms = 0; ms < 20 + i; ms++) {
-            while (receive_and_poll() != TMINI_EVENT_NONE) {
-            }
-            machine_pass(1000);
-        }
-        tmini_pico_stop(&port);
-        TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
-        const uint32_t bytes = counted().bytes;
-        machine_pass(5000);
-        (void)receive_and_poll();
-        TEST_ASSERT_EQUAL_UINT32(bytes, counted().bytes);
-        TEST_ASSERT_EQUAL_UINT(0, pico_model_claimed_channels());
-        TEST_ASSERT_FALSE(chip.handlers[UART1_IRQ] != NULL);
-    }
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-    TEST_ASSERT_TRUE(scans_until_complete() <= 3);
-}
-
-void test_reception_by_dma_stops_and_starts_while_the_lidar_streams(void)
-{
-    assert_stops_and_starts();
-}
-
-void test_reception_by_interrupt_stops_and_starts_while_the_lidar_streams(void)
-{
-    receive_by_interrupt();
-    assert_stops_and_starts();
-}
-
-void test_bytes_before_the_start_are_dropped(void)
-{
-    uint8_t old[40] = {0};
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    machine_receive(0, old, sizeof old); /* This also overruns the FIFO. */
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-    (void)receive_and_poll();
-    TEST_ASSERT_EQUAL_UINT32(0, counted().bytes);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().overruns);
-}
-
 /* ------------------------------------------------------------------------------------- sending */
 
 void test_a_busy_transmitter_takes_what_it_can(void)
@@ -296,22 +298,6 @@ void test_a_busy_transmitter_takes_what_it_can(void)
     TEST_ASSERT_EQUAL_INT(2, tmini_pico_port.write(&port, bytes, 2));
 }
 
-void test_blocking_commands_work_either_way(void)
-{
-    tmini_info_t info;
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 1000));
-    TEST_ASSERT_EQUAL_UINT(151, info.model);
-    tmini_pico_stop(&port);
-    receive_by_interrupt();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-    memset(&info, 0, sizeof info);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_info(&lidar, &info, 1000));
-    TEST_ASSERT_EQUAL_UINT(151, info.model);
-}
-
 /* ------------------------------------------------------------------------------- by interrupt */
 
 void test_every_point_arrives_by_interrupt(void)
@@ -324,49 +310,6 @@ void test_every_point_arrives_by_interrupt(void)
     TEST_ASSERT_TRUE(irq.lines[0].served < machine.line_bytes / 10);
 }
 
-void test_wherever_an_interrupt_comes_every_point_arrives(void)
-{
-    receive_by_interrupt();
-    start();
-    assert_true_scans_wherever_bytes_come();
-}
-
-/* In 20 ms 262 bytes arrive; the FIFO holds 32. */
-void test_an_interrupt_that_comes_too_late_costs_the_packets_that_it_hit(void)
-{
-    tmini_counters_t counters;
-    receive_by_interrupt();
-    start();
-    assert_true_scans(1, 2);
-    machine_pass_held_up(20000);
-    poll_until(TMINI_EVENT_SCAN);
-    TEST_ASSERT_FALSE(tmini_scan(&lidar)->complete);
-    TEST_ASSERT_EQUAL_UINT16(1, tmini_scan(&lidar)->gaps);
-    poll_until(TMINI_EVENT_SCAN); /* The part after the gap. */
-    TEST_ASSERT_FALSE(tmini_scan(&lidar)->complete);
-    assert_true_scans(4, 6);
-    TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
-    tmini_counters(&lidar, &counters);
-    TEST_ASSERT_TRUE(truth_packets() - counters.packets <= 4 + 1);
-}
-
-void test_errors_of_the_line_are_counted_and_the_byte_is_stored(void)
-{
-    static const uint8_t byte = 0x55;
-    receive_by_interrupt();
-    start();
-    assert_true_scans(1, 1);
-    tmini_pico_counters_t before = counted();
-    machine_receive(UART_UARTDR_FE_BITS, &byte, 1);
-    machine_receive(UART_UARTDR_FE_BITS | UART_UARTDR_BE_BITS, &byte, 1); /* A break. */
-    machine_pass(200);
-    TEST_ASSERT_EQUAL_UINT32(1, counted().framing_errors);
-    TEST_ASSERT_EQUAL_UINT32(1, counted().breaks);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().overruns);
-    TEST_ASSERT_TRUE(counted().bytes >= before.bytes + 2);
-    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, counted().bytes);
-}
-
 /* --------------------------------------------------------------- losses that bytes do not show */
 
 static uint32_t packets(void)
@@ -377,36 +320,6 @@ static uint32_t packets(void)
     }
     tmini_counters(&lidar, &counters);
     return counters.packets;
-}
-
-/* Receives a packet in parts. Only the flags show a loss in between. */
-static void receive_packet_with(uint32_t flags)
-{
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
-    machine_receive(0, manual_packet, PACKET_CUT);
-    machine_pass(200);
-    TEST_ASSERT_EQUAL_UINT32(0, packets());
-    machine_receive(flags, &manual_packet[PACKET_CUT], 1);
-    machine_receive(0, &manual_packet[PACKET_CUT + 1], 16);
-    machine_pass(200);
-    machine_receive(0, &manual_packet[PACKET_CUT + 17], sizeof manual_packet - PACKET_CUT - 17);
-    machine_pass(200);
-}
-
-void test_no_packet_is_put_together_across_an_overrun(void)
-{
-    for (unsigned way = 0; way < 2; way++) {
-        receive_packet_with(0);
-        TEST_ASSERT_EQUAL_UINT32(1, packets());
-        tmini_pico_stop(&port);
-        init_lidar(1024);
-        receive_packet_with(UART_UARTDR_OE_BITS);
-        TEST_ASSERT_EQUAL_UINT32(0, packets());
-        tmini_pico_stop(&port);
-        setUp();
-        receive_by_interrupt();
-    }
 }
 
 /* Two laps of other bytes come between the packet's two parts, and the ring no longer has them. */
@@ -436,12 +349,6 @@ void test_every_point_arrives_by_dma_without_an_interrupt(void)
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
 }
 
-void test_wherever_bytes_come_by_dma_every_point_arrives(void)
-{
-    start();
-    assert_true_scans_wherever_bytes_come();
-}
-
 /* Of rx_buffer's 1024 bytes, a partly received packet takes up to 129. At 13.1 bytes per
  * millisecond, the rest is full after 68 ms. */
 void test_the_ring_lasts_from_one_poll_to_the_next_65_ms_later(void)
@@ -450,14 +357,6 @@ void test_the_ring_lasts_from_one_poll_to_the_next_65_ms_later(void)
     pause_ms = 65;
     assert_true_scans(1, 10);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
-}
-
-void test_pauses_that_the_ring_can_hold_cost_no_scan(void)
-{
-    wiring.ring = large_ring;
-    wiring.ring_size = sizeof large_ring;
-    start();
-    assert_pauses_cost_no_scan(sizeof large_ring);
 }
 
 /* The port takes only bytes for which the lidar has room; the others stay in the ring. */
@@ -477,31 +376,6 @@ void test_a_lidar_with_little_room_takes_the_ring_in_portions(void)
     TEST_ASSERT_EQUAL_UINT32(truth_packets(), counters.packets);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
     TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, counted().bytes);
-}
-
-void test_errors_are_counted_although_dma_does_not_see_them(void)
-{
-    static const uint8_t byte = 0x55;
-    start();
-    assert_true_scans(1, 1);
-    machine_receive(UART_UARTDR_FE_BITS, &byte, 1);
-    (void)receive_and_poll();
-    machine_receive(UART_UARTDR_FE_BITS | UART_UARTDR_BE_BITS, &byte, 1);
-    (void)receive_and_poll();
-    TEST_ASSERT_EQUAL_UINT32(1, counted().framing_errors);
-    TEST_ASSERT_EQUAL_UINT32(1, counted().breaks);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().overruns);
-}
-
-void test_an_overrun_of_the_uart_on_a_busy_bus_is_noticed(void)
-{
-    start();
-    assert_true_scans(1, 2);
-    chip.dma_blocked = true;
-    machine_pass(20000);
-    chip.dma_blocked = false;
-    TEST_ASSERT_TRUE(scans_until_complete() >= 2);
-    TEST_ASSERT_EQUAL_UINT32(1, counted().overruns);
 }
 
 /* Reads all bytes; then lets this many arrive before the next poll. */
@@ -636,41 +510,6 @@ void test_a_stall_across_the_change_of_channels_is_noticed_to_the_byte(void)
     stall_bytes(4 * LAP);
     (void)tmini_pico_wait(&port, 0);
     TEST_ASSERT_EQUAL_UINT32(lost + 4 * LAP - LAP / 2, counted().bytes_lost);
-}
-
-static void assert_true_scan_after_recovery(void)
-{
-    assert_recovery();
-    tmini_pico_stop(&port);
-    tmini_pico_port.restart(&port); /* A restart of a stopped port does nothing. */
-}
-
-void test_a_dma_that_has_stopped_is_started_again(void)
-{
-    start();
-    assert_true_scans(1, 1);
-    pico_model_break_dma();
-    assert_true_scan_after_recovery();
-}
-
-void test_a_lidar_that_loses_its_supply_comes_back_by_dma(void)
-{
-    start();
-    assert_true_scans(1, 1);
-    machine_power(false);
-    poll_until(TMINI_EVENT_LOST);
-    machine_power(true);
-    poll_until(TMINI_EVENT_RECOVERED);
-    (void)scans_until_complete();
-}
-
-void test_interrupts_that_were_switched_off_are_enabled_again(void)
-{
-    receive_by_interrupt();
-    start();
-    assert_true_scans(1, 1);
-    uart_set_irqs_enabled(uart1, false, false);
-    assert_true_scan_after_recovery();
 }
 
 void test_waiting_ends_with_the_first_bytes_or_at_its_timeout(void)

@@ -7,9 +7,6 @@
 
 #include "unity.h"
 
-#include "scanning.h"
-#include "zephyr_model.h"
-
 tmini_zephyr_t port;
 
 static void wait(void)
@@ -17,37 +14,55 @@ static void wait(void)
     tmini_zephyr_wait(&port, K_MSEC(10));
 }
 
-void zephyr_rig_begin(void)
+const scanning_t port_program = {
+    .port = &tmini_zephyr_port, .context = &port, .wait = wait, .work = machine_pass};
+
+void setUp(void)
 {
     const sim_observer_t observer = truth_begin();
-    const scanning_t program = {
-        .port = &tmini_zephyr_port, .context = &port, .wait = wait, .work = machine_pass};
     zephyr_model_begin(&observer);
     memset(&port, 0, sizeof port);
-    scanning_begin(&program, 1024);
+    init_lidar(1024);
 }
 
-void zephyr_rig_end(void)
+int port_init(void)
 {
-    tmini_zephyr_stop(&port);
-    TEST_ASSERT_FALSE(board.receiving || board.async_is_on);
+    return tmini_zephyr_init(&port, &zephyr_model_uart);
 }
 
-int zephyr_rig_start_port(void)
+int port_start(void)
 {
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
     return tmini_zephyr_start(&port, &lidar);
 }
 
-void zephyr_rig_start(void)
+void port_stop(void)
 {
-    TEST_ASSERT_EQUAL_INT(0, zephyr_rig_start_port());
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
+    tmini_zephyr_stop(&port);
 }
 
-tmini_zephyr_counters_t zephyr_rig_counters(void)
+void port_assert_stopped(void)
+{
+    TEST_ASSERT_FALSE(board.receiving || board.async_is_on);
+}
+
+void tearDown(void)
+{
+    port_stop();
+    port_assert_stopped();
+}
+
+tmini_zephyr_counters_t counted(void)
 {
     tmini_zephyr_counters_t counters;
     tmini_zephyr_counters(&port, &counters);
     return counters;
+}
+
+port_counts_t port_counted(void)
+{
+    const tmini_zephyr_counters_t c = counted();
+    return (port_counts_t){.bytes = c.bytes,
+                           .overruns = c.overruns,
+                           .framing_errors = c.framing_errors,
+                           .breaks = c.breaks};
 }

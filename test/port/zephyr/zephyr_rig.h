@@ -6,19 +6,12 @@
 #ifndef ZEPHYR_RIG_H
 #define ZEPHYR_RIG_H
 
+#include "every_port.h"
 #include "tmini_zephyr.h"
+#include "zephyr_model.h"
 
 extern tmini_zephyr_t port;
 
-void zephyr_rig_begin(void);
-void zephyr_rig_end(void);
-
-/* Starts the port; returns the result of tmini_zephyr_start(). */
-int zephyr_rig_start_port(void);
-
-/* Starts the port and the lidar. */
-void zephyr_rig_start(void);
-
-tmini_zephyr_counters_t zephyr_rig_counters(void);
+tmini_zephyr_counters_t counted(void);
 
 #endif

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* What every port must do, however it receives. The tests in every_port.c run for each way of
+ * receiving that a port's test describes here. */
+
+#ifndef EVERY_PORT_H
+#define EVERY_PORT_H
+
+#include "machine.h"
+#include "scanning.h"
+
+/* What the port has counted; what it does not count is 0. */
+typedef struct {
+    uint32_t bytes;
+    uint32_t lost;
+    uint32_t overruns;
+    uint32_t framing_errors;
+    uint32_t breaks;
+} port_counts_t;
+
+typedef struct {
+    const char *name;
+    void (*choose)(void);          /* Changes the wiring that setUp() has made. */
+    void (*enlarge)(void);         /* Gives the layer below `holds` bytes. */
+    bool without_fifo;             /* A pause of 300 µs without interrupts overruns the UART. */
+    uint32_t holds;                /* 0: there is no layer below. */
+    uint32_t behind;               /* Most bytes not yet counted, while the lidar scans. */
+    uint32_t old;                  /* Most bytes from before the start. */
+    uint32_t packets_per_loss;     /* Packets that a loss of 20 ms costs at most. */
+    void (*hold_up)(uint32_t us);  /* Keeps bytes from being received: the UART overruns. */
+    void (*break_reception)(void); /* As other code could do. NULL: reception cannot break. */
+    /* Errors of a byte, for machine_receive(). 0: unknown to the port. */
+    uint32_t loss;
+    uint32_t framing_error;
+    uint32_t line_break;
+} port_way_t;
+
+/* Defined by a port's test, besides setUp() and tearDown(). */
+extern const port_way_t port_ways[];
+extern const unsigned port_way_count;
+extern const scanning_t port_program; /* The port, and a program that uses it. */
+int port_init(void);                  /* With the wiring of this way; 0: it worked. */
+int port_start(void);
+void port_stop(void);
+port_counts_t port_counted(void);
+void port_assert_stopped(void); /* Nothing is left switched on, or taken. */
+
+/* Starts port and lidar. */
+void start(void);
+
+/* Sets up the program with a lidar whose receive buffer has this size. */
+void init_lidar(size_t rx_size);
+
+#endif
