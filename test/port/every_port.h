@@ -21,8 +21,8 @@ typedef struct {
 
 typedef struct {
     const char *name;
-    void (*choose)(void);          /* Changes the wiring that setUp() has made. */
-    void (*enlarge)(void);         /* Gives the layer below `holds` bytes. */
+    void (*choose)(void);          /* Changes the wiring; NULL: it is as at first. */
+    void (*enlarge)(void);         /* Gives the layer below `holds` bytes. NULL: it has them. */
     bool without_fifo;             /* A pause of 300 µs without interrupts overruns the UART. */
     uint32_t holds;                /* 0: there is no layer below. */
     uint32_t behind;               /* Most bytes not yet counted, while the lidar scans. */
@@ -36,15 +36,38 @@ typedef struct {
     uint32_t line_break;
 } port_way_t;
 
-/* Defined by a port's test, besides setUp() and tearDown(). */
+/* Defined by a port's test. */
 extern const port_way_t port_ways[];
 extern const unsigned port_way_count;
-extern const scanning_t port_program; /* The port, and a program that uses it. */
-int port_init(void);                  /* With the wiring of this way; 0: it worked. */
+extern const scanning_t port_program;            /* The port, and a program that uses it. */
+void port_begin(const sim_observer_t *observer); /* Resets the model, the wiring and the port. */
+int port_init(void);                             /* 0: it worked. */
 int port_start(void);
 void port_stop(void);
 port_counts_t port_counted(void);
 void port_assert_stopped(void); /* Nothing is left switched on, or taken. */
+
+/* What keeps the program busy for some time. */
+#ifndef PORT_WORK
+#define PORT_WORK machine_pass
+#endif
+
+/* These functions and port_program, for a port with the usual names. */
+#define PORT_UNDER_TEST(platform, wiring)               \
+    int port_init(void)                                 \
+    {                                                   \
+        return tmini_##platform##_init(&port, wiring);  \
+    }                                                   \
+    int port_start(void)                                \
+    {                                                   \
+        return tmini_##platform##_start(&port, &lidar); \
+    }                                                   \
+    void port_stop(void)                                \
+    {                                                   \
+        (void)tmini_##platform##_stop(&port);           \
+    }                                                   \
+    const scanning_t port_program = {                   \
+        .port = &tmini_##platform##_port, .context = &port, .wait = wait, .work = PORT_WORK}
 
 /* Starts port and lidar. */
 void start(void);

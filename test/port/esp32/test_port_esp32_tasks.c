@@ -9,6 +9,7 @@
 
 #include "freertos/FreeRTOS.h"
 #include "freertos/task.h"
+#define PORT_WORK work
 #include "every_port.h"
 #include "tmini_esp32.h"
 #include "virtual_idf.h"
@@ -26,31 +27,13 @@ static void work(uint32_t us)
     vTaskDelay(us / 10000u);
 }
 
-const scanning_t port_program = {
-    .port = &tmini_esp32_port, .context = &port, .wait = wait, .work = work};
+PORT_UNDER_TEST(esp32, &wiring);
 
-void setUp(void)
+void port_begin(const sim_observer_t *observer)
 {
-    const sim_observer_t observer = truth_begin();
-    virtual_idf_begin(&observer);
+    virtual_idf_begin(observer);
     memset(&port, 0, sizeof port);
     wiring = (tmini_esp32_wiring_t)TMINI_ESP32_WIRING_DEFAULT;
-    init_lidar(1024);
-}
-
-int port_init(void)
-{
-    return tmini_esp32_init(&port, &wiring);
-}
-
-int port_start(void)
-{
-    return tmini_esp32_start(&port, &lidar);
-}
-
-void port_stop(void)
-{
-    (void)tmini_esp32_stop(&port);
 }
 
 /* Nothing is left installed, and no call has named a missing driver. */
@@ -63,12 +46,6 @@ void port_assert_stopped(void)
     TEST_ASSERT_EQUAL_UINT(0, state.stray_calls);
 }
 
-void tearDown(void)
-{
-    port_stop();
-    port_assert_stopped();
-}
-
 port_counts_t port_counted(void)
 {
     tmini_esp32_counters_t c;
@@ -79,8 +56,6 @@ port_counts_t port_counted(void)
                            .framing_errors = c.framing_errors,
                            .breaks = c.breaks};
 }
-
-static void through_a_task(void) {}
 
 static void through_the_callers_loop(void)
 {
@@ -98,7 +73,7 @@ static void enlarge(void)
     .hold_up = virtual_idf_hold_interrupts, .break_reception = virtual_idf_break_reception
 
 const port_way_t port_ways[] = {
-    {.name = "through a task", .choose = through_a_task, WAY},
+    {.name = "through a task", WAY},
     {.name = "through the caller's loop", .choose = through_the_callers_loop, WAY},
 };
 const unsigned port_way_count = sizeof port_ways / sizeof port_ways[0];

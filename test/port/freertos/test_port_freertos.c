@@ -46,46 +46,21 @@ static void restart_uart(void *uart)
     board_enable_lidar_interrupt();
 }
 
-const scanning_t port_program = {
-    .port = &tmini_freertos_port, .context = &port, .wait = wait, .work = machine_pass};
+PORT_UNDER_TEST(freertos, &wiring);
 
-void setUp(void)
+void port_begin(const sim_observer_t *observer)
 {
-    const sim_observer_t observer = truth_begin();
-    freertos_model_begin(&observer, POLLING_PRIORITY);
+    freertos_model_begin(observer, POLLING_PRIORITY);
     memset(&port, 0, sizeof port);
     wiring = (tmini_freertos_wiring_t){.write = board_lidar_write, .restart = restart_uart};
-    init_lidar(1024);
-}
-
-int port_init(void)
-{
     board_enable_lidar_interrupt();
-    return tmini_freertos_init(&port, &wiring);
-}
-
-int port_start(void)
-{
-    return tmini_freertos_start(&port, &lidar);
-}
-
-void port_stop(void)
-{
-    tmini_freertos_stop(&port);
 }
 
 /* The receiving task sleeps and is used again. */
 void port_assert_stopped(void)
 {
-    TEST_ASSERT_EQUAL_UINT(wiring.stream != NULL ? 1 : 0, freertos_model_tasks());
+    TEST_ASSERT_EQUAL_UINT(port.receiver != NULL ? 1 : 0, freertos_model_tasks());
 }
-
-void tearDown(void)
-{
-    port_stop();
-}
-
-static void receive_from_interrupt(void) {}
 
 static void receive_by_stream(void)
 {
@@ -106,7 +81,6 @@ static void disable_interrupt(void)
 
 const port_way_t port_ways[] = {
     {.name = "from the interrupt",
-     .choose = receive_from_interrupt,
      .packets_per_loss = 4,
      .behind = 16,
      .hold_up = machine_pass_held_up,

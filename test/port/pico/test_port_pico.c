@@ -30,33 +30,15 @@ static void wait(void)
     (void)tmini_pico_wait(&port, 0);
 }
 
-const scanning_t port_program = {
-    .port = &tmini_pico_port, .context = &port, .wait = wait, .work = machine_pass};
+PORT_UNDER_TEST(pico, &wiring);
 
-void setUp(void)
+void port_begin(const sim_observer_t *observer)
 {
-    const sim_observer_t observer = truth_begin();
-    pico_model_begin(&observer);
+    pico_model_begin(observer);
     memset(&port, 0, sizeof port);
     wiring = (tmini_pico_wiring_t){
         .uart = uart1, .tx_pin = 4, .rx_pin = 5, .ring = ring, .ring_size = sizeof ring};
-    init_lidar(1024);
     pause_ms = 1;
-}
-
-int port_init(void)
-{
-    return tmini_pico_init(&port, &wiring);
-}
-
-int port_start(void)
-{
-    return tmini_pico_start(&port, &lidar);
-}
-
-void port_stop(void)
-{
-    tmini_pico_stop(&port);
 }
 
 void port_assert_stopped(void)
@@ -65,14 +47,6 @@ void port_assert_stopped(void)
     TEST_ASSERT_NULL(chip.handlers[UART1_IRQ]);
     TEST_ASSERT_FALSE(chip.uart.receive_irq);
 }
-
-void tearDown(void)
-{
-    port_stop();
-    port_assert_stopped();
-}
-
-static void receive_by_dma(void) {}
 
 static void enlarge(void)
 {
@@ -104,7 +78,6 @@ static void switch_interrupts_off(void)
 
 const port_way_t port_ways[] = {
     {.name = "by DMA",
-     .choose = receive_by_dma,
      .enlarge = enlarge,
      .holds = sizeof large_ring,
      .behind = 64,

@@ -12,8 +12,6 @@
 #include "irq_lines.h"
 #include "zephyr_rig.h"
 
-static void through_a_fifo(void) {}
-
 static void byte_by_byte(void)
 {
     machine.uart.fifo_size = 1;
@@ -31,7 +29,7 @@ static void switch_off(void)
     .framing_error = UART_ERROR_FRAMING, .line_break = UART_BREAK
 
 const port_way_t port_ways[] = {
-    {.name = "through a FIFO", .choose = through_a_fifo, WAY},
+    {.name = "through a FIFO", WAY},
     {.name = "byte by byte", .choose = byte_by_byte, .without_fifo = true, WAY},
 };
 const unsigned port_way_count = sizeof port_ways / sizeof port_ways[0];

@@ -12,12 +12,8 @@
 #include "irq_lines.h"
 #include "zephyr_rig.h"
 
-static void nothing(void) {}
-
 const port_way_t port_ways[] = {
     {.name = "through two buffers in turn",
-     .choose = nothing,
-     .enlarge = nothing,
      .holds = 1024 / 2, /* The library assumes the line's full rate, twice the lidar's. */
      .behind = 64,
      .packets_per_loss = 6,

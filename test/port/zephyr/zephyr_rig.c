@@ -14,41 +14,17 @@ static void wait(void)
     tmini_zephyr_wait(&port, K_MSEC(10));
 }
 
-const scanning_t port_program = {
-    .port = &tmini_zephyr_port, .context = &port, .wait = wait, .work = machine_pass};
+PORT_UNDER_TEST(zephyr, &zephyr_model_uart);
 
-void setUp(void)
+void port_begin(const sim_observer_t *observer)
 {
-    const sim_observer_t observer = truth_begin();
-    zephyr_model_begin(&observer);
+    zephyr_model_begin(observer);
     memset(&port, 0, sizeof port);
-    init_lidar(1024);
-}
-
-int port_init(void)
-{
-    return tmini_zephyr_init(&port, &zephyr_model_uart);
-}
-
-int port_start(void)
-{
-    return tmini_zephyr_start(&port, &lidar);
-}
-
-void port_stop(void)
-{
-    tmini_zephyr_stop(&port);
 }
 
 void port_assert_stopped(void)
 {
     TEST_ASSERT_FALSE(board.receiving || board.async_is_on);
-}
-
-void tearDown(void)
-{
-    port_stop();
-    port_assert_stopped();
 }
 
 tmini_zephyr_counters_t counted(void)
