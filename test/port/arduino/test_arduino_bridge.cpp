@@ -7,7 +7,7 @@
 
 #include "Bridge/Bridge.ino"
 
-#include "unity.h"
+#include "cpp_tests.h"
 
 #include "virtual_lidar.h"
 
@@ -18,7 +18,7 @@ void setUp(void)
 
 void tearDown(void) {}
 
-static void it_forwards_every_byte_in_both_directions(void)
+TEST(it_forwards_every_byte_in_both_directions)
 {
     for (unsigned i = 0; i < 256; i++) {
         Serial1.take(static_cast<uint8_t>(i));
@@ -33,16 +33,8 @@ static void it_forwards_every_byte_in_both_directions(void)
     }
 }
 
-static void both_ports_have_the_lidars_baud_rate(void)
+TEST(both_ports_have_the_lidars_baud_rate)
 {
     TEST_ASSERT_EQUAL_UINT(230400, Serial.baud_rate);
     TEST_ASSERT_EQUAL_UINT(230400, Serial1.baud_rate);
-}
-
-int main(void)
-{
-    UnityBegin("test_arduino_bridge.cpp");
-    RUN_TEST(it_forwards_every_byte_in_both_directions);
-    RUN_TEST(both_ports_have_the_lidars_baud_rate);
-    return UnityEnd();
 }

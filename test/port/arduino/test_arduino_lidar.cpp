@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-#include "unity.h"
+#include "cpp_tests.h"
 
 #include "virtual_lidar.h"
 
@@ -62,7 +62,7 @@ static void assert_same_points(const std::vector<reference_point_t> &expected,
 }
 
 #if defined(ESP32) || defined(ARDUINO_ARCH_RP2040)
-static void begin_enlarges_the_buffer_before_it_opens_the_port(void)
+TEST(begin_enlarges_the_buffer_before_it_opens_the_port)
 {
     TMiniLidar lidar;
     TEST_ASSERT_TRUE(lidar.begin(Serial1, 16, 17));
@@ -77,7 +77,7 @@ static void begin_enlarges_the_buffer_before_it_opens_the_port(void)
 #endif
 }
 
-static void a_hardware_port_on_its_default_pins_is_enlarged_too(void)
+TEST(a_hardware_port_on_its_default_pins_is_enlarged_too)
 {
     TMiniLidar lidar;
     TEST_ASSERT_TRUE(lidar.begin(Serial1));
@@ -89,7 +89,7 @@ static void a_hardware_port_on_its_default_pins_is_enlarged_too(void)
 #endif
 }
 
-static void a_port_that_the_sketch_has_opened_is_enlarged_on_the_pins_it_is_given(void)
+TEST(a_port_that_the_sketch_has_opened_is_enlarged_on_the_pins_it_is_given)
 {
     TMiniLidar lidar;
     Serial1.begin(9600);
@@ -105,7 +105,7 @@ static void a_port_that_the_sketch_has_opened_is_enlarged_on_the_pins_it_is_give
 #if defined(ESP32)
 /* Its buffer stays small: an open port cannot be enlarged, and closing it would release the
  * pins. */
-static void a_port_that_the_sketch_has_opened_on_its_pins_stays_on_them(void)
+TEST(a_port_that_the_sketch_has_opened_on_its_pins_stays_on_them)
 {
     TMiniLidar lidar;
     Serial1.begin(9600, SERIAL_8N1, 26, 27);
@@ -116,7 +116,7 @@ static void a_port_that_the_sketch_has_opened_on_its_pins_stays_on_them(void)
     TEST_ASSERT_EQUAL_INT(27, Serial1.tx_pin);
 }
 
-static void a_port_that_cannot_be_opened_is_reported(void)
+TEST(a_port_that_cannot_be_opened_is_reported)
 {
     TMiniLidar lidar;
     Serial1.refuses = true;
@@ -127,7 +127,7 @@ static void a_port_that_cannot_be_opened_is_reported(void)
     TEST_ASSERT_TRUE(lidar.begin(Serial1, 16, 17));
 }
 #elif defined(ARDUINO_ARCH_RP2040)
-static void a_port_that_the_sketch_has_opened_is_enlarged_too(void)
+TEST(a_port_that_the_sketch_has_opened_is_enlarged_too)
 {
     TMiniLidar lidar;
     Serial1.begin(9600);
@@ -137,7 +137,7 @@ static void a_port_that_the_sketch_has_opened_is_enlarged_too(void)
 #endif
 
 #if defined(CORE_TEENSY)
-static void begin_gives_the_port_more_memory_as_long_as_the_lidar_lives(void)
+TEST(begin_gives_the_port_more_memory_as_long_as_the_lidar_lives)
 {
     {
         TMiniLidar lidar;
@@ -152,7 +152,7 @@ static void begin_gives_the_port_more_memory_as_long_as_the_lidar_lives(void)
     }
 }
 
-static void a_port_that_another_lidar_has_taken_over_keeps_its_memory(void)
+TEST(a_port_that_another_lidar_has_taken_over_keeps_its_memory)
 {
     TMiniLidarStreaming second;
     {
@@ -179,7 +179,7 @@ static void run_with_pauses(TMiniLidarBase &lidar, unsigned ms, unsigned pause)
 
 #if !defined(SERIAL_RX_BUFFER_SIZE)
 /* In 50 ms 660 bytes arrive: too many for the lidar's own buffer, but not for the core's. */
-static void bytes_that_do_not_fit_in_the_lidars_buffer_stay_in_the_cores(void)
+TEST(bytes_that_do_not_fit_in_the_lidars_buffer_stay_in_the_cores)
 {
     static TMiniLidarWith<256, 0> lidar;
     tmini_counters_t counters;
@@ -193,7 +193,7 @@ static void bytes_that_do_not_fit_in_the_lidars_buffer_stay_in_the_cores(void)
 }
 #else
 /* 260 bytes arrive in 20 ms, but the core's buffer has room for 63. */
-static void an_overflow_of_the_cores_buffer_is_counted_and_no_scan_is_complete(void)
+TEST(an_overflow_of_the_cores_buffer_is_counted_and_no_scan_is_complete)
 {
     static TMiniLidar lidar;
     lidar.begin(Serial1);
@@ -211,7 +211,7 @@ static void an_overflow_of_the_cores_buffer_is_counted_and_no_scan_is_complete(v
 
 /* Every 20 points take a millisecond. If the iteration did not receive, the core's buffer of 63
  * bytes would overflow. */
-static void iterating_over_the_points_also_receives(void)
+TEST(iterating_over_the_points_also_receives)
 {
     static TMiniLidar lidar;
     size_t points = 0;
@@ -227,7 +227,7 @@ static void iterating_over_the_points_also_receives(void)
 }
 #endif
 
-static void any_other_stream_is_left_as_the_sketch_has_opened_it(void)
+TEST(any_other_stream_is_left_as_the_sketch_has_opened_it)
 {
     TMiniLidar lidar;
     Stream &stream = Serial1;
@@ -253,7 +253,7 @@ class StuckStream : public Stream
     }
 };
 
-static void a_stream_that_promises_bytes_but_gives_none_does_not_block(void)
+TEST(a_stream_that_promises_bytes_but_gives_none_does_not_block)
 {
     TMiniLidar lidar;
     StuckStream stream;
@@ -261,7 +261,7 @@ static void a_stream_that_promises_bytes_but_gives_none_does_not_block(void)
     TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, lidar.loop());
 }
 
-static void before_begin_nothing_happens(void)
+TEST(before_begin_nothing_happens)
 {
     TMiniLidar lidar;
     TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, lidar.loop());
@@ -269,13 +269,13 @@ static void before_begin_nothing_happens(void)
     TEST_ASSERT_FALSE(lidar.start());
 }
 
-static void buffers_of_a_wrong_size_are_refused(void)
+TEST(buffers_of_a_wrong_size_are_refused)
 {
     TMiniLidarWith<300, 10> lidar;
     TEST_ASSERT_FALSE(lidar.begin(Serial1));
 }
 
-static void every_point_of_every_scan_is_there(void)
+TEST(every_point_of_every_scan_is_there)
 {
     static TMiniLidarWith<1024, 2000> lidar; /* Revolutions during spin-up have more points. */
     lidar.begin(Serial1);
@@ -288,7 +288,7 @@ static void every_point_of_every_scan_is_there(void)
     TEST_ASSERT_TRUE(lidar.isScanning());
 }
 
-static void every_point_of_every_packet_is_there_when_streaming(void)
+TEST(every_point_of_every_packet_is_there_when_streaming)
 {
     static TMiniLidarStreaming lidar;
     lidar.begin(Serial1);
@@ -300,7 +300,7 @@ static void every_point_of_every_packet_is_there_when_streaming(void)
     }
 }
 
-static void with_a_spare_buffer_a_scan_stays_until_the_next(void)
+TEST(with_a_spare_buffer_a_scan_stays_until_the_next)
 {
     static TMiniLidarWith<1024, 2000, true> lidar;
     scan(lidar);
@@ -319,7 +319,7 @@ static void assert_mounted(std::vector<reference_point_t> points, TMiniLidarBase
     assert_same_points(points, lidar);
 }
 
-static void points_have_the_angles_and_the_mask_of_the_robot(void)
+TEST(points_have_the_angles_and_the_mask_of_the_robot)
 {
     static const tmini_arc_t masts[] = {{80, 100}};
     tmini_mount_t mount = tmini_mount_t();
@@ -349,7 +349,7 @@ static void leave(const void *data, tmini_scan_t *scan)
 }
 
 /* The driver calls only one step. */
-static void a_mount_and_the_users_own_step_exclude_each_other(void)
+TEST(a_mount_and_the_users_own_step_exclude_each_other)
 {
     static const tmini_mount_t mount = tmini_mount_t();
     static TMiniLidarWith<1024, 2000> lidar;
@@ -362,7 +362,7 @@ static void a_mount_and_the_users_own_step_exclude_each_other(void)
     TEST_ASSERT_TRUE(lidar.begin(Serial1));
 }
 
-static void points_are_gone_with_the_next_loop(void)
+TEST(points_are_gone_with_the_next_loop)
 {
     static TMiniLidar lidar;
     scan(lidar);
@@ -371,7 +371,7 @@ static void points_are_gone_with_the_next_loop(void)
     TEST_ASSERT_EQUAL_UINT(0, lidar.points().size());
 }
 
-static void points_are_gone_when_it_begins_again(void)
+TEST(points_are_gone_when_it_begins_again)
 {
     static TMiniLidar lidar;
     scan(lidar);
@@ -387,7 +387,7 @@ static void assert_taken_in_one_loop(TMiniLidarBase &lidar, size_t count)
 }
 
 /* A single byte, and one more than the lidar's buffer holds. */
-static void one_loop_takes_all_waiting_bytes(void)
+TEST(one_loop_takes_all_waiting_bytes)
 {
     static TMiniLidarWith<256, 0> lidar;
     lidar.begin(Serial1);
@@ -395,14 +395,14 @@ static void one_loop_takes_all_waiting_bytes(void)
     assert_taken_in_one_loop(lidar, 257);
 }
 
-static void it_never_reads_more_than_is_available(void)
+TEST(it_never_reads_more_than_is_available)
 {
     static TMiniLidar lidar;
     scan(lidar);
     TEST_ASSERT_FALSE(Serial1.waited);
 }
 
-static void information_and_health_are_read(void)
+TEST(information_and_health_are_read)
 {
     TMiniLidar lidar;
     lidar.begin(Serial1);
@@ -414,7 +414,7 @@ static void information_and_health_are_read(void)
     TEST_ASSERT_EQUAL_UINT(0, lidar.health().faults);
 }
 
-static void a_frequency_in_begin_is_set_before_the_start(void)
+TEST(a_frequency_in_begin_is_set_before_the_start)
 {
     static TMiniLidar lidar;
     TEST_ASSERT_TRUE(lidar.begin(Serial1, 10));
@@ -426,7 +426,7 @@ static void a_frequency_in_begin_is_set_before_the_start(void)
 }
 
 /* Another library may close the port. On an ESP32, the pins must then be set again. */
-static void a_port_that_something_has_closed_is_opened_again(void)
+TEST(a_port_that_something_has_closed_is_opened_again)
 {
     static TMiniLidar lidar;
 #if defined(ESP32)
@@ -454,7 +454,7 @@ static unsigned frequency_set_to(float hertz)
     return tmini_frequency_chz(lidar.driver());
 }
 
-static void the_slowest_and_the_fastest_frequency_are_possible(void)
+TEST(the_slowest_and_the_fastest_frequency_are_possible)
 {
     TEST_ASSERT_EQUAL_UINT(1200, frequency_set_to(12.0f));
     TEST_ASSERT_EQUAL_UINT(730, frequency_set_to(7.3f));
@@ -462,7 +462,7 @@ static void the_slowest_and_the_fastest_frequency_are_possible(void)
 }
 
 /* Rounding must not make 5.99 and 12.01 valid. */
-static void a_frequency_out_of_range_is_refused(void)
+TEST(a_frequency_out_of_range_is_refused)
 {
     TMiniLidar lidar;
     lidar.begin(Serial1);
@@ -476,7 +476,7 @@ static void a_frequency_out_of_range_is_refused(void)
     TEST_ASSERT_FALSE(lidar.setFrequency(NAN));
 }
 
-static void while_scanning_only_stop_is_possible(void)
+TEST(while_scanning_only_stop_is_possible)
 {
     static TMiniLidar lidar;
     scan(lidar);
@@ -489,7 +489,7 @@ static void while_scanning_only_stop_is_possible(void)
     TEST_ASSERT_FALSE(lidar.isScanning());
 }
 
-static void without_a_lidar_a_command_fails_and_says_why(void)
+TEST(without_a_lidar_a_command_fails_and_says_why)
 {
     TMiniLidar lidar;
     unit->unplug();
@@ -499,7 +499,7 @@ static void without_a_lidar_a_command_fails_and_says_why(void)
     TEST_ASSERT_EQUAL_STRING("timeout", lidar.error());
 }
 
-static void a_degree_is_64_units_and_distance_zero_is_invalid(void)
+TEST(a_degree_is_64_units_and_distance_zero_is_invalid)
 {
     TMiniPoint point;
     point.angle_q6 = 5776; /* 90.25 * 64 */
@@ -508,52 +508,4 @@ static void a_degree_is_64_units_and_distance_zero_is_invalid(void)
     TEST_ASSERT_FALSE(point.isValid());
     point.distance_mm = 1;
     TEST_ASSERT_TRUE(point.isValid());
-}
-
-int main(void)
-{
-    UnityBegin("test_arduino_lidar.cpp");
-#if defined(ESP32) || defined(ARDUINO_ARCH_RP2040)
-    RUN_TEST(begin_enlarges_the_buffer_before_it_opens_the_port);
-    RUN_TEST(a_hardware_port_on_its_default_pins_is_enlarged_too);
-    RUN_TEST(a_port_that_the_sketch_has_opened_is_enlarged_on_the_pins_it_is_given);
-#endif
-#if defined(ESP32)
-    RUN_TEST(a_port_that_the_sketch_has_opened_on_its_pins_stays_on_them);
-    RUN_TEST(a_port_that_cannot_be_opened_is_reported);
-#elif defined(ARDUINO_ARCH_RP2040)
-    RUN_TEST(a_port_that_the_sketch_has_opened_is_enlarged_too);
-#endif
-#if defined(CORE_TEENSY)
-    RUN_TEST(begin_gives_the_port_more_memory_as_long_as_the_lidar_lives);
-    RUN_TEST(a_port_that_another_lidar_has_taken_over_keeps_its_memory);
-#endif
-#if !defined(SERIAL_RX_BUFFER_SIZE)
-    RUN_TEST(bytes_that_do_not_fit_in_the_lidars_buffer_stay_in_the_cores);
-#else
-    RUN_TEST(an_overflow_of_the_cores_buffer_is_counted_and_no_scan_is_complete);
-    RUN_TEST(iterating_over_the_points_also_receives);
-#endif
-    RUN_TEST(any_other_stream_is_left_as_the_sketch_has_opened_it);
-    RUN_TEST(a_stream_that_promises_bytes_but_gives_none_does_not_block);
-    RUN_TEST(before_begin_nothing_happens);
-    RUN_TEST(buffers_of_a_wrong_size_are_refused);
-    RUN_TEST(every_point_of_every_scan_is_there);
-    RUN_TEST(every_point_of_every_packet_is_there_when_streaming);
-    RUN_TEST(with_a_spare_buffer_a_scan_stays_until_the_next);
-    RUN_TEST(a_mount_and_the_users_own_step_exclude_each_other);
-    RUN_TEST(points_have_the_angles_and_the_mask_of_the_robot);
-    RUN_TEST(points_are_gone_with_the_next_loop);
-    RUN_TEST(points_are_gone_when_it_begins_again);
-    RUN_TEST(one_loop_takes_all_waiting_bytes);
-    RUN_TEST(it_never_reads_more_than_is_available);
-    RUN_TEST(information_and_health_are_read);
-    RUN_TEST(a_frequency_in_begin_is_set_before_the_start);
-    RUN_TEST(a_port_that_something_has_closed_is_opened_again);
-    RUN_TEST(the_slowest_and_the_fastest_frequency_are_possible);
-    RUN_TEST(a_frequency_out_of_range_is_refused);
-    RUN_TEST(while_scanning_only_stop_is_possible);
-    RUN_TEST(without_a_lidar_a_command_fails_and_says_why);
-    RUN_TEST(a_degree_is_64_units_and_distance_zero_is_invalid);
-    return UnityEnd();
 }

@@ -8,16 +8,16 @@
 
 #include "ObstacleStop/ObstacleStop.ino"
 
-#include "unity.h"
+#include "cpp_tests.h"
 
 #include "virtual_lidar.h"
 
-static VirtualLidar *unit;
+static VirtualLidar unit;
 
 static void run_for(unsigned ms)
 {
     for (unsigned i = 0; i < ms; i++) {
-        unit->pass();
+        unit.pass();
         loop();
     }
 }
@@ -26,7 +26,7 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-static void it_stops_until_it_has_seen_that_the_way_is_free(void)
+TEST(it_stops_until_it_has_seen_that_the_way_is_free)
 {
     setup();
     TEST_ASSERT_EQUAL_INT(HIGH, arduino_pins[STOP_PIN]);
@@ -36,36 +36,36 @@ static void it_stops_until_it_has_seen_that_the_way_is_free(void)
 }
 
 /* Three whole scans make the field free again, at 10 Hz. */
-static void something_near_in_front_stops_the_robot(void)
+TEST(something_near_in_front_stops_the_robot)
 {
-    unit->placeObstacle(250);
+    unit.placeObstacle(250);
     run_for(300);
     TEST_ASSERT_EQUAL_INT(HIGH, arduino_pins[STOP_PIN]);
-    unit->clearObstacles();
+    unit.clearObstacles();
     run_for(500);
     TEST_ASSERT_EQUAL_INT(LOW, arduino_pins[STOP_PIN]);
 }
 
 /* The lidar hangs upside down: its 50 degrees are at the robot's left. */
-static void an_obstacle_at_the_side_does_not(void)
+TEST(an_obstacle_at_the_side_does_not)
 {
-    unit->placeObstacle(250, 50 * 64);
+    unit.placeObstacle(250, 50 * 64);
     run_for(300);
     TEST_ASSERT_EQUAL_INT(LOW, arduino_pins[STOP_PIN]);
-    unit->placeObstacle(170, 30 * 64);
+    unit.placeObstacle(170, 30 * 64);
     run_for(300);
     TEST_ASSERT_EQUAL_INT(HIGH, arduino_pins[STOP_PIN]);
-    unit->clearObstacles();
+    unit.clearObstacles();
     run_for(500);
 }
 
-static void the_mast_is_ignored(void)
+TEST(the_mast_is_ignored)
 {
-    unit->placeObstacle(150, 180 * 64);
+    unit.placeObstacle(150, 180 * 64);
     run_for(200);
     unsigned points = 0;
     for (unsigned i = 0; i < 100; i++) {
-        unit->pass();
+        unit.pass();
         while (lidar.loop()) {
             for (TMiniPoint point : lidar.points()) {
                 points++;
@@ -74,25 +74,12 @@ static void the_mast_is_ignored(void)
         }
     }
     TEST_ASSERT_TRUE(points > 300);
-    unit->clearObstacles();
+    unit.clearObstacles();
 }
 
-static void an_unplugged_lidar_stops_the_robot(void)
+TEST(an_unplugged_lidar_stops_the_robot)
 {
-    unit->unplug();
+    unit.unplug();
     run_for(500);
     TEST_ASSERT_EQUAL_INT(HIGH, arduino_pins[STOP_PIN]);
-}
-
-int main(void)
-{
-    VirtualLidar lidar_on_the_robot;
-    unit = &lidar_on_the_robot;
-    UnityBegin("test_arduino_obstacle_stop.cpp");
-    RUN_TEST(it_stops_until_it_has_seen_that_the_way_is_free);
-    RUN_TEST(something_near_in_front_stops_the_robot);
-    RUN_TEST(an_obstacle_at_the_side_does_not);
-    RUN_TEST(the_mast_is_ignored);
-    RUN_TEST(an_unplugged_lidar_stops_the_robot);
-    return UnityEnd();
 }

@@ -8,16 +8,16 @@
 
 #include "Scan/Scan.ino"
 
-#include "unity.h"
+#include "cpp_tests.h"
 
 #include "virtual_lidar.h"
 
-static VirtualLidar *unit;
+static VirtualLidar unit;
 
 static void run_for(unsigned ms)
 {
     for (unsigned i = 0; i < ms; i++) {
-        unit->pass();
+        unit.pass();
         loop();
     }
 }
@@ -58,55 +58,43 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-static void the_sketch_prints_the_model_and_every_second_the_nearest_distance(void)
+TEST(the_sketch_prints_the_model_and_every_second_the_nearest_distance)
 {
     setup();
     run_for(3500);
     TEST_ASSERT_TRUE(has_printed("lidar model 151\r\n"));
     TEST_ASSERT_TRUE(scans >= 12 && complete >= scans - 1); /* The first turn was too slow. */
     const std::string line = next_line();
-    const unsigned truth = nearest_in_front(unit->revolutions[scans]);
+    const unsigned truth = nearest_in_front(unit.revolutions[scans]);
     const std::string expected = std::to_string(scans) + " scans, " + std::to_string(complete) +
                                  " complete, nearest in front " + std::to_string(truth) + " mm\r\n";
     TEST_ASSERT_EQUAL_STRING(expected.c_str(), line.c_str());
 }
 
-static void something_near_in_front_stops_the_robot(void)
+TEST(something_near_in_front_stops_the_robot)
 {
-    unit->placeObstacle(350);
+    unit.placeObstacle(350);
     run_for(1500);
     TEST_ASSERT_TRUE(has_printed(" mm: STOP\r\n"));
-    unit->clearObstacles();
+    unit.clearObstacles();
     run_for(1500);
     TEST_ASSERT_FALSE(next_line().find("STOP") != std::string::npos);
 }
 
-static void a_faulty_lidar_stops_the_robot_whatever_it_measures(void)
+TEST(a_faulty_lidar_stops_the_robot_whatever_it_measures)
 {
-    unit->setHealth(SIM_HEALTH_PD);
+    unit.setHealth(SIM_HEALTH_PD);
     run_for(1500);
     TEST_ASSERT_TRUE(has_printed("lidar faults 8\r\n"));
     TEST_ASSERT_TRUE(has_printed(" complete, blind: STOP\r\n"));
-    unit->setHealth(0);
+    unit.setHealth(0);
     run_for(1500);
     TEST_ASSERT_FALSE(next_line().find("STOP") != std::string::npos);
 }
 
-static void an_unplugged_lidar_stops_the_robot(void)
+TEST(an_unplugged_lidar_stops_the_robot)
 {
-    unit->unplug();
+    unit.unplug();
     run_for(600);
     TEST_ASSERT_TRUE(next_line().find(" complete, blind: STOP\r\n") != std::string::npos);
-}
-
-int main(void)
-{
-    VirtualLidar lidar_on_the_table;
-    unit = &lidar_on_the_table;
-    UnityBegin("test_arduino_scan.cpp");
-    RUN_TEST(the_sketch_prints_the_model_and_every_second_the_nearest_distance);
-    RUN_TEST(something_near_in_front_stops_the_robot);
-    RUN_TEST(a_faulty_lidar_stops_the_robot_whatever_it_measures);
-    RUN_TEST(an_unplugged_lidar_stops_the_robot);
-    return UnityEnd();
 }

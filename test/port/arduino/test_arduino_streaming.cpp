@@ -7,7 +7,7 @@
 
 #include "Streaming/Streaming.ino"
 
-#include "unity.h"
+#include "cpp_tests.h"
 
 #include "virtual_lidar.h"
 
@@ -42,7 +42,7 @@ static unsigned nearest_of(const std::vector<reference_point_t> &points)
     return result;
 }
 
-static void the_sketch_prints_the_nearest_distance_of_each_revolution(void)
+TEST(the_sketch_prints_the_nearest_distance_of_each_revolution)
 {
     VirtualLidar unit;
     setup();
@@ -58,11 +58,4 @@ static void the_sketch_prints_the_nearest_distance_of_each_revolution(void)
         TEST_ASSERT_EQUAL_UINT(nearest_of(unit.revolutions[static_cast<uint32_t>(i + 1)]),
                                numbers[i]);
     }
-}
-
-int main(void)
-{
-    UnityBegin("test_arduino_streaming.cpp");
-    RUN_TEST(the_sketch_prints_the_nearest_distance_of_each_revolution);
-    return UnityEnd();
 }

@@ -13,7 +13,7 @@
 
 #include "lidar.h"
 
-#include "unity.h"
+#include "cpp_tests.h"
 
 using namespace tmini_ros;
 
@@ -155,7 +155,7 @@ static bool is_lidar_idle()
     return is_idle;
 }
 
-static void scans_come_at_the_wished_frequency_which_may_change_and_the_end_stops_the_lidar()
+TEST(scans_come_at_the_wished_frequency_which_may_change_and_the_end_stops_the_lidar)
 {
     Simulator simulator("--pty");
     settings.port = simulator.address;
@@ -179,7 +179,7 @@ static void scans_come_at_the_wished_frequency_which_may_change_and_the_end_stop
     require(is_lidar_idle(), "the lidar is idle at the end");
 }
 
-static void a_wish_stops_and_starts_the_lidar()
+TEST(a_wish_stops_and_starts_the_lidar)
 {
     Simulator simulator("--pty");
     settings.port = simulator.address;
@@ -192,7 +192,7 @@ static void a_wish_stops_and_starts_the_lidar()
     observer->await_scans(2);
 }
 
-static void in_standby_the_lidar_scans_only_while_somebody_subscribes()
+TEST(in_standby_the_lidar_scans_only_while_somebody_subscribes)
 {
     Simulator simulator("--pty");
     settings.port = simulator.address;
@@ -206,7 +206,7 @@ static void in_standby_the_lidar_scans_only_while_somebody_subscribes()
     observer->await("a stop", [] { return observer->has_told("stopped"); });
 }
 
-static void a_lidar_that_goes_away_is_reported_and_found_again()
+TEST(a_lidar_that_goes_away_is_reported_and_found_again)
 {
     Simulator first("--tcp", "0");
     settings.port = "tcp:" + first.address;
@@ -222,7 +222,7 @@ static void a_lidar_that_goes_away_is_reported_and_found_again()
     require(lidar.report().reconnections >= 1, "the reconnection is counted");
 }
 
-static void a_port_that_does_not_exist_is_told_at_once()
+TEST(a_port_that_does_not_exist_is_told_at_once)
 {
     settings.port = "/dev/no-such-lidar";
     Lidar lidar(settings, *observer);
@@ -231,7 +231,7 @@ static void a_port_that_does_not_exist_is_told_at_once()
     });
 }
 
-static void incomplete_scans_are_counted_and_published_only_if_wished()
+TEST(incomplete_scans_are_counted_and_published_only_if_wished)
 {
     for (const bool is_wished : {false, true}) {
         Simulator simulator("--fault=flip=0.0005", "--pty");
@@ -247,16 +247,4 @@ static void incomplete_scans_are_counted_and_published_only_if_wished()
         require(report.published == report.complete + (is_wished ? report.incomplete : 0),
                 "what is published");
     }
-}
-
-int main()
-{
-    UNITY_BEGIN();
-    RUN_TEST(scans_come_at_the_wished_frequency_which_may_change_and_the_end_stops_the_lidar);
-    RUN_TEST(a_wish_stops_and_starts_the_lidar);
-    RUN_TEST(in_standby_the_lidar_scans_only_while_somebody_subscribes);
-    RUN_TEST(a_lidar_that_goes_away_is_reported_and_found_again);
-    RUN_TEST(a_port_that_does_not_exist_is_told_at_once);
-    RUN_TEST(incomplete_scans_are_counted_and_published_only_if_wished);
-    return UNITY_END();
 }

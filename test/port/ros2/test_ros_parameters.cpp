@@ -9,7 +9,7 @@
 #include "report.h"
 #include "settings.h"
 
-#include "unity.h"
+#include "cpp_tests.h"
 
 using namespace tmini_ros;
 using Text = std::string;
@@ -25,7 +25,7 @@ void tearDown() {}
 
 /* -------------------------------------------------------------------------------- parameters */
 
-static void initially_the_lidar_is_as_the_data_sheet_has_it()
+TEST(initially_the_lidar_is_as_the_data_sheet_has_it)
 {
     TEST_ASSERT_EQUAL_STRING("/dev/ttyUSB0", settings.port.c_str());
     TEST_ASSERT_EQUAL_STRING("laser_frame", settings.frame_id.c_str());
@@ -69,7 +69,7 @@ static const struct {
     {"standby", true, [](const Settings &s) { return s.standby; }},
 };
 
-static void each_value_arrives_and_a_number_may_be_an_integer()
+TEST(each_value_arrives_and_a_number_may_be_an_integer)
 {
     for (const auto &one : taken) {
         TEST_ASSERT_FALSE_MESSAGE(one.has_arrived(settings), one.name);
@@ -114,7 +114,7 @@ static const struct {
     {"no_such_parameter", 1.0},
 };
 
-static void what_cannot_be_is_refused_with_a_reason_and_changes_nothing()
+TEST(what_cannot_be_is_refused_with_a_reason_and_changes_nothing)
 {
     for (const auto &one : refused) {
         TEST_ASSERT_TRUE_MESSAGE(put(settings, one.name, one.value) != "", one.name);
@@ -122,7 +122,7 @@ static void what_cannot_be_is_refused_with_a_reason_and_changes_nothing()
     initially_the_lidar_is_as_the_data_sheet_has_it();
 }
 
-static void ignored_directions_are_pairs_between_commas()
+TEST(ignored_directions_are_pairs_between_commas)
 {
     TEST_ASSERT_EQUAL_STRING("",
                              put(settings, "ignore_array", Text(" -180,-150.5, 150 ,180")).c_str());
@@ -135,7 +135,7 @@ static void ignored_directions_are_pairs_between_commas()
     TEST_ASSERT_EQUAL_size_t(0, settings.laser.masked_count);
 }
 
-static void sixteen_pairs_fit_and_no_more()
+TEST(sixteen_pairs_fit_and_no_more)
 {
     Text pairs = "0,1";
     for (int i = 1; i < 16; i++) {
@@ -146,7 +146,7 @@ static void sixteen_pairs_fit_and_no_more()
     TEST_ASSERT_TRUE(put(settings, "ignore_array", pairs + ",0,1") != "");
 }
 
-static void limits_that_leave_nothing_are_noticed()
+TEST(limits_that_leave_nothing_are_noticed)
 {
     Settings other = settings;
     other.laser.seen.to_deg = other.laser.seen.from_deg;
@@ -185,7 +185,7 @@ static const struct {
     {"invalid_range_is_inf", false},
 };
 
-static void the_vendors_parameters_for_this_lidar_need_no_remark()
+TEST(the_vendors_parameters_for_this_lidar_need_no_remark)
 {
     for (const auto &one : of_the_vendor) {
         if (put(settings, one.name, one.value) != "") {
@@ -196,7 +196,7 @@ static void the_vendors_parameters_for_this_lidar_need_no_remark()
     TEST_ASSERT_FALSE(settings.laser.is_mirrored);
 }
 
-static void values_for_other_lidars_and_unknown_names_get_a_remark()
+TEST(values_for_other_lidars_and_unknown_names_get_a_remark)
 {
     TEST_ASSERT_EQUAL_STRING("baudrate has no effect: a T-mini has 230400",
                              remark("baudrate", std::int64_t{115200}).c_str());
@@ -244,7 +244,7 @@ static const struct {
      [](Report &now) { now.is_wanted = false, now.state = TMINI_STATE_IDLE; }},
 };
 
-static void each_trouble_has_its_level_and_words()
+TEST(each_trouble_has_its_level_and_words)
 {
     for (const auto &one : judged) {
         Report now = healthy(110);
@@ -255,7 +255,7 @@ static void each_trouble_has_its_level_and_words()
     }
 }
 
-static void a_lidar_that_has_just_begun_is_not_blamed()
+TEST(a_lidar_that_has_just_begun_is_not_blamed)
 {
     Report before = healthy(100);
     before.state = TMINI_STATE_STARTING;
@@ -272,7 +272,7 @@ static Text value_of(const Report &report, const char *name)
     return "missing";
 }
 
-static void values_are_totals_and_the_rate()
+TEST(values_are_totals_and_the_rate)
 {
     Report now = healthy(20);
     now.incomplete = 3;
@@ -291,7 +291,7 @@ static void values_are_totals_and_the_rate()
     TEST_ASSERT_EQUAL_STRING("6", value_of(now, "reconnections").c_str());
 }
 
-static void serial_number_and_firmware_are_known_from_an_answer_or_while_scanning()
+TEST(serial_number_and_firmware_are_known_from_an_answer_or_while_scanning)
 {
     Report now = healthy(1);
     TEST_ASSERT_EQUAL_STRING("unknown", serial_number(now).c_str());
@@ -308,22 +308,4 @@ static void serial_number_and_firmware_are_known_from_an_answer_or_while_scannin
     now.ct.firmware_minor = 3;
     TEST_ASSERT_EQUAL_STRING("2024010200000077", value_of(now, "serial number").c_str());
     TEST_ASSERT_EQUAL_STRING("1.3", value_of(now, "firmware").c_str());
-}
-
-int main()
-{
-    UNITY_BEGIN();
-    RUN_TEST(initially_the_lidar_is_as_the_data_sheet_has_it);
-    RUN_TEST(each_value_arrives_and_a_number_may_be_an_integer);
-    RUN_TEST(what_cannot_be_is_refused_with_a_reason_and_changes_nothing);
-    RUN_TEST(ignored_directions_are_pairs_between_commas);
-    RUN_TEST(sixteen_pairs_fit_and_no_more);
-    RUN_TEST(limits_that_leave_nothing_are_noticed);
-    RUN_TEST(the_vendors_parameters_for_this_lidar_need_no_remark);
-    RUN_TEST(values_for_other_lidars_and_unknown_names_get_a_remark);
-    RUN_TEST(each_trouble_has_its_level_and_words);
-    RUN_TEST(a_lidar_that_has_just_begun_is_not_blamed);
-    RUN_TEST(values_are_totals_and_the_rate);
-    RUN_TEST(serial_number_and_firmware_are_known_from_an_answer_or_while_scanning);
-    return UNITY_END();
 }
