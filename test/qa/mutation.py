@@ -608,8 +608,11 @@ def known_survivors():
     with open(KNOWN, encoding="utf-8") as file:
         for line in file:
             if line.strip() and not line.startswith("#"):
-                key, reason = line.rstrip("\n").rsplit(" | ", 1)
-                known[key] = reason
+                place, reason = line.rstrip("\n").rsplit(" | ", 1)
+                code, *changes = place.split(" -> ")
+                known.update((f"{code} -> {change}", reason) for change in changes)
+                if not changes:  # "code removed"
+                    known[code] = reason
     return known
 
 
