@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Tests in C++: TEST(name) { … } defines a test and adds it to those that cpp_tests.cpp runs, in the
- * order of the file. */
+/* Tests in C++: TEST(name) { … } defines a test and adds it to those that cpp_tests.cpp runs, in
+ * the order of the file. */
 
 #ifndef CPP_TESTS_H
 #define CPP_TESTS_H

@@ -229,8 +229,7 @@ static bool forward(uint8_t byte)
 static void print(struct avr_irq_t *irq, uint32_t value, void *context)
 {
     const size_t length = strlen(line);
-    (void)irq;
-    (void)context;
+    (void)irq, (void)context;
     if (forward((uint8_t)value)) {
         return;
     }
@@ -247,8 +246,7 @@ static void print(struct avr_irq_t *irq, uint32_t value, void *context)
 static avr_cycle_count_t press_start(avr_t *avr, avr_cycle_count_t when, void *context)
 {
     static const uint8_t command[] = {0xA5, SIM_COMMAND_START};
-    (void)when;
-    (void)context;
+    (void)when, (void)context;
     for (unsigned i = 0; i < sizeof command; i++) {
         avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT), command[i]);
     }

@@ -344,8 +344,7 @@ TEST(points_have_the_angles_and_the_mask_of_the_robot)
 
 static void leave(const void *data, tmini_scan_t *scan)
 {
-    (void)data;
-    (void)scan;
+    (void)data, (void)scan;
 }
 
 /* The driver calls only one step. */

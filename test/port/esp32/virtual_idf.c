@@ -219,11 +219,7 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t function, const char *name, ui
 {
     pthread_t thread;
     start_t *const start = malloc(sizeof *start);
-    (void)name;
-    (void)stack_depth;
-    (void)priority;
-    (void)task;
-    (void)core;
+    (void)name, (void)stack_depth, (void)priority, (void)task, (void)core;
     if (start == NULL) {
         return pdFAIL;
     }
@@ -314,9 +310,7 @@ static esp_err_t check_driver(void)
 esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffer_size,
                               int queue_size, QueueHandle_t *queue, int intr_alloc_flags)
 {
-    (void)uart;
-    (void)tx_buffer_size;
-    (void)intr_alloc_flags;
+    (void)uart, (void)tx_buffer_size, (void)intr_alloc_flags;
     virtual_idf_lock();
     const bool was_installed = world.state.installed;
     if (!was_installed) {
@@ -355,9 +349,7 @@ esp_err_t uart_param_config(uart_port_t uart, const uart_config_t *config)
 
 esp_err_t uart_set_pin(uart_port_t uart, int tx, int rx, int rts, int cts)
 {
-    (void)uart;
-    (void)rts;
-    (void)cts;
+    (void)uart, (void)rts, (void)cts;
     virtual_idf_lock();
     world.is_routed = tx != rx;
     virtual_idf_unlock();
@@ -377,15 +369,13 @@ esp_err_t uart_set_rx_full_threshold(uart_port_t uart, int threshold)
 
 esp_err_t uart_set_rx_timeout(uart_port_t uart, const uint8_t symbols)
 {
-    (void)uart;
-    (void)symbols;
+    (void)uart, (void)symbols;
     return check_driver();
 }
 
 esp_err_t uart_enable_intr_mask(uart_port_t uart, uint32_t mask)
 {
-    (void)uart;
-    (void)mask;
+    (void)uart, (void)mask;
     return check_driver();
 }
 
@@ -454,8 +444,7 @@ static bool put_stash_back(void)
 int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t ticks)
 {
     uint8_t *const bytes = buffer;
-    (void)uart;
-    (void)ticks;
+    (void)uart, (void)ticks;
     if (!enter_driver()) {
         return -1;
     }
@@ -489,9 +478,7 @@ esp_err_t gpio_pullup_en(gpio_num_t pin)
 esp_err_t esp_pm_lock_create(esp_pm_lock_type_t type, int arg, const char *name,
                              esp_pm_lock_handle_t *created)
 {
-    (void)type;
-    (void)arg;
-    (void)name;
+    (void)type, (void)arg, (void)name;
     *created = (esp_pm_lock_handle_t)(void *)&world.state.locks_held;
     return ESP_OK;
 }

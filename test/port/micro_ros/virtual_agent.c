@@ -105,8 +105,7 @@ rcl_ret_t rclc_support_init(rclc_support_t *support, int argc, char const *const
 {
     TEST_ASSERT_FALSE(virtual_agent.support_open);
     TEST_ASSERT_EQUAL_PTR(&virtual_agent, allocator->state);
-    (void)argc;
-    (void)argv;
+    (void)argc, (void)argv;
     if (virtual_agent.refuses_support || !virtual_agent.present) {
         return RCL_RET_ERROR;
     }

@@ -89,11 +89,7 @@ k_tid_t k_thread_create(struct k_thread *thread, k_thread_stack_t *stack, size_t
                         uint32_t options, k_timeout_t delay)
 {
     thread_t *const created = &kernel.threads[1];
-    (void)stack;
-    (void)stack_size;
-    (void)priority;
-    (void)options;
-    (void)delay;
+    (void)stack, (void)stack_size, (void)priority, (void)options, (void)delay;
     if (created->used || getcontext(&created->context) != 0) {
         abort();
     }

@@ -71,8 +71,7 @@ static host_config_t draw_host(random_t *random)
 
 static void draw_nothing(host_config_t *config, random_t *random)
 {
-    (void)config;
-    (void)random;
+    (void)config, (void)random;
 }
 
 /* The program is busy for up to nine tenths of the time that the layer below can bridge; this layer

@@ -194,6 +194,5 @@ unsigned tmini_ct_faults(const tmini_ct_t *ct)
 
 void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
 {
-    (void)ct;
-    (void)info;
+    (void)ct, (void)info;
 }

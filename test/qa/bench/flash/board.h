@@ -15,8 +15,7 @@ void bench_interrupt(uint8_t byte);
 
 static int board_write(void *context, const uint8_t *bytes, size_t count)
 {
-    (void)context;
-    (void)bytes;
+    (void)context, (void)bytes;
     return (int)count;
 }
 
