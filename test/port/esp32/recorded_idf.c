@@ -33,6 +33,13 @@ static esp_err_t call(const char *format, ...)
                                                                                        : ESP_OK;
 }
 
+/* A function of ESP-IDF that does nothing else. */
+#define RECORD(function, parameters, ...) \
+    esp_err_t function parameters         \
+    {                                     \
+        return call(__VA_ARGS__);         \
+    }
+
 void esp_log_line(char level, const char *tag, const char *format, ...)
 {
     char text[96];
@@ -85,10 +92,7 @@ esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffe
                 intr_alloc_flags);
 }
 
-esp_err_t uart_driver_delete(uart_port_t uart)
-{
-    return call("remove(%d)", uart);
-}
+RECORD(uart_driver_delete, (uart_port_t uart), "remove(%d)", uart)
 
 esp_err_t uart_param_config(uart_port_t uart, const uart_config_t *config)
 {
@@ -107,35 +111,15 @@ esp_err_t uart_set_pin(uart_port_t uart, int tx, int rx, int rts, int cts)
     return call("pins(%d,%d,%d)", uart, tx, rx);
 }
 
-esp_err_t gpio_reset_pin(gpio_num_t pin)
-{
-    return call("reset(%d)", pin);
-}
-
-esp_err_t gpio_pullup_en(gpio_num_t pin)
-{
-    return call("pull-up(%d)", pin);
-}
-
-esp_err_t uart_set_rx_full_threshold(uart_port_t uart, int threshold)
-{
-    return call("threshold(%d,%d)", uart, threshold);
-}
-
-esp_err_t uart_set_rx_timeout(uart_port_t uart, const uint8_t symbols)
-{
-    return call("timeout(%d,%d)", uart, symbols);
-}
-
-esp_err_t uart_enable_intr_mask(uart_port_t uart, uint32_t mask)
-{
-    return call("interrupts(%d,%d)", uart, (int)mask);
-}
-
-esp_err_t uart_enable_rx_intr(uart_port_t uart)
-{
-    return call("receive(%d)", uart);
-}
+RECORD(gpio_reset_pin, (gpio_num_t pin), "reset(%d)", pin)
+RECORD(gpio_pullup_en, (gpio_num_t pin), "pull-up(%d)", pin)
+RECORD(uart_set_rx_full_threshold, (uart_port_t uart, int threshold), "threshold(%d,%d)", uart,
+       threshold)
+RECORD(uart_set_rx_timeout, (uart_port_t uart, const uint8_t symbols), "timeout(%d,%d)", uart,
+       symbols)
+RECORD(uart_enable_intr_mask, (uart_port_t uart, uint32_t mask), "interrupts(%d,%d)", uart,
+       (int)mask)
+RECORD(uart_enable_rx_intr, (uart_port_t uart), "receive(%d)", uart)
 
 esp_err_t uart_flush_input(uart_port_t uart)
 {

@@ -298,14 +298,28 @@ static bool enter_driver(void)
     return world.state.installed;
 }
 
-static esp_err_t check_driver(void)
-{
-    if (!enter_driver()) {
-        return ESP_FAIL;
+/* A function that does this. */
+#define LOCKED(function, parameters, ...) \
+    esp_err_t function parameters         \
+    {                                     \
+        virtual_idf_lock();               \
+        (void)(__VA_ARGS__);              \
+        virtual_idf_unlock();             \
+        return ESP_OK;                    \
     }
-    virtual_idf_unlock();
-    return ESP_OK;
-}
+
+/* A function of the driver that does this, and fails without a driver. */
+#define WITH_DRIVER(function, parameters, ...) \
+    esp_err_t function parameters              \
+    {                                          \
+        (void)uart;                            \
+        if (!enter_driver()) {                 \
+            return ESP_FAIL;                   \
+        }                                      \
+        (void)(__VA_ARGS__);                   \
+        virtual_idf_unlock();                  \
+        return ESP_OK;                         \
+    }
 
 esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffer_size,
                               int queue_size, QueueHandle_t *queue, int intr_alloc_flags)
@@ -330,16 +344,7 @@ esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffe
     return was_installed ? ESP_FAIL : ESP_OK;
 }
 
-esp_err_t uart_driver_delete(uart_port_t uart)
-{
-    (void)uart;
-    if (!enter_driver()) {
-        return ESP_FAIL;
-    }
-    world.state.installed = false;
-    virtual_idf_unlock();
-    return ESP_OK;
-}
+WITH_DRIVER(uart_driver_delete, (uart_port_t uart), world.state.installed = false)
 
 esp_err_t uart_param_config(uart_port_t uart, const uart_config_t *config)
 {
@@ -356,63 +361,15 @@ esp_err_t uart_set_pin(uart_port_t uart, int tx, int rx, int rts, int cts)
     return tx != rx ? ESP_OK : ESP_FAIL;
 }
 
-esp_err_t uart_set_rx_full_threshold(uart_port_t uart, int threshold)
-{
-    (void)uart;
-    if (!enter_driver()) {
-        return ESP_FAIL;
-    }
-    world.fifo_threshold = (size_t)threshold;
-    virtual_idf_unlock();
-    return ESP_OK;
-}
-
-esp_err_t uart_set_rx_timeout(uart_port_t uart, const uint8_t symbols)
-{
-    (void)uart, (void)symbols;
-    return check_driver();
-}
-
-esp_err_t uart_enable_intr_mask(uart_port_t uart, uint32_t mask)
-{
-    (void)uart, (void)mask;
-    return check_driver();
-}
-
-esp_err_t uart_enable_rx_intr(uart_port_t uart)
-{
-    (void)uart;
-    if (!enter_driver()) {
-        return ESP_FAIL;
-    }
-    world.has_interrupts = true;
-    virtual_idf_unlock();
-    return ESP_OK;
-}
-
-esp_err_t uart_flush_input(uart_port_t uart)
-{
-    (void)uart;
-    if (!enter_driver()) {
-        return ESP_FAIL;
-    }
-    world.fifo_count = 0;
-    world.stash_count = 0;
-    world.buffer_count = 0;
-    virtual_idf_unlock();
-    return ESP_OK;
-}
-
-esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size)
-{
-    (void)uart;
-    if (!enter_driver()) {
-        return ESP_FAIL;
-    }
-    *size = world.buffer_count;
-    virtual_idf_unlock();
-    return ESP_OK;
-}
+WITH_DRIVER(uart_set_rx_full_threshold, (uart_port_t uart, int threshold),
+            world.fifo_threshold = (size_t)threshold)
+WITH_DRIVER(uart_set_rx_timeout, (uart_port_t uart, const uint8_t symbols), (void)symbols)
+WITH_DRIVER(uart_enable_intr_mask, (uart_port_t uart, uint32_t mask), (void)mask)
+WITH_DRIVER(uart_enable_rx_intr, (uart_port_t uart), world.has_interrupts = true)
+WITH_DRIVER(uart_flush_input, (uart_port_t uart), world.fifo_count = 0, world.stash_count = 0,
+            world.buffer_count = 0)
+WITH_DRIVER(uart_get_buffered_data_len, (uart_port_t uart, size_t *size),
+            *size = world.buffer_count)
 
 void virtual_idf_break_reception(void)
 {
@@ -483,23 +440,8 @@ esp_err_t esp_pm_lock_create(esp_pm_lock_type_t type, int arg, const char *name,
     return ESP_OK;
 }
 
-esp_err_t esp_pm_lock_acquire(esp_pm_lock_handle_t held)
-{
-    (void)held;
-    virtual_idf_lock();
-    world.state.locks_held++;
-    virtual_idf_unlock();
-    return ESP_OK;
-}
-
-esp_err_t esp_pm_lock_release(esp_pm_lock_handle_t held)
-{
-    (void)held;
-    virtual_idf_lock();
-    world.state.locks_held--;
-    virtual_idf_unlock();
-    return ESP_OK;
-}
+LOCKED(esp_pm_lock_acquire, (esp_pm_lock_handle_t held), (void)held, world.state.locks_held++)
+LOCKED(esp_pm_lock_release, (esp_pm_lock_handle_t held), (void)held, world.state.locks_held--)
 
 esp_err_t esp_pm_lock_delete(esp_pm_lock_handle_t held)
 {
@@ -514,32 +456,12 @@ static void drive(virtual_pin_t *pin)
     pin->has_been_low = pin->has_been_low || (pin->is_gpio && pin->is_output && pin->level == 0);
 }
 
-esp_err_t gpio_reset_pin(gpio_num_t pin)
-{
-    virtual_idf_lock();
-    world.pins[pin].is_gpio = true;
-    world.pins[pin].is_output = false;
-    virtual_idf_unlock();
-    return ESP_OK;
-}
-
-esp_err_t gpio_set_direction(gpio_num_t pin, gpio_mode_t mode)
-{
-    virtual_idf_lock();
-    world.pins[pin].is_output = mode == GPIO_MODE_OUTPUT;
-    drive(&world.pins[pin]);
-    virtual_idf_unlock();
-    return ESP_OK;
-}
-
-esp_err_t gpio_set_level(gpio_num_t pin, uint32_t level)
-{
-    virtual_idf_lock();
-    world.pins[pin].level = (int)level;
-    drive(&world.pins[pin]);
-    virtual_idf_unlock();
-    return ESP_OK;
-}
+LOCKED(gpio_reset_pin, (gpio_num_t pin), world.pins[pin].is_gpio = true,
+       world.pins[pin].is_output = false)
+LOCKED(gpio_set_direction, (gpio_num_t pin, gpio_mode_t mode),
+       world.pins[pin].is_output = mode == GPIO_MODE_OUTPUT, drive(&world.pins[pin]))
+LOCKED(gpio_set_level, (gpio_num_t pin, uint32_t level), world.pins[pin].level = (int)level,
+       drive(&world.pins[pin]))
 
 /* Bytes that ESP-IDF adds to a log line: colours, and the time in brackets. */
 #define LOG_EXTRA 24u
