@@ -164,7 +164,7 @@ static void command(uint8_t which)
     const tmini_state_t before = tmini_state(&world.lidar);
     tmini_status_t status;
     if (which % 8 == 7) {
-        tmini_cancel(&world.lidar);
+        tmini_withdraw(&world.lidar, (tmini_event_t)(TMINI_EVENT_INFO + take() % 3));
         return;
     }
     if (which % 8 == 6) {
@@ -231,6 +231,8 @@ static void look_around(void)
     demand(tmini_faults(&world.lidar) <= (TMINI_FAULT_MASK | TMINI_FAULT_FREQUENCY));
     demand(tmini_info(&world.lidar) != NULL && tmini_health(&world.lidar) != NULL);
     demand(tmini_frequency_chz(&world.lidar) <= 2000);
+    demand(tmini_next_poll_ms(&world.lidar) <= UINT16_MAX);
+    demand(tmini_scan_age_ms(&world.lidar) <= UINT32_MAX / 2);
 }
 
 static void poll_events(uint8_t times)
@@ -380,7 +382,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .max_points = streaming                    ? 0
                       : (setup & MANY_POINTS) != 0 ? POINTS
                                                    : FEW_POINTS,
-        .filter = (uint8_t)(setup & TMINI_FILTER_BOTH),
+        .filter = streaming ? 0 : (uint8_t)(setup & TMINI_FILTER_BOTH),
         .recovery = (setup & NO_RECOVERY) != 0 ? TMINI_RECOVERY_OFF : TMINI_RECOVERY_ON,
     };
     demand(tmini_init(&world.lidar, &config) == TMINI_OK);
