@@ -221,6 +221,7 @@ static tmini_event_t follow(device_t *device, tmini_event_t event)
 {
     if (event == TMINI_EVENT_PACKET) {
         device->good_at = device->port.received;
+        device->stream.is_late = is_socket(device->path) && !tmini_posix_is_timed(&device->port);
         const bool is_scan = stream_take(&device->stream, tmini_packet(&device->lidar),
                                          tmini_posix_port.now_ms(&device->port) - device->begun_ms);
         return is_scan ? TMINI_EVENT_SCAN : TMINI_EVENT_PACKET;

@@ -88,16 +88,28 @@ static tmini_packet_t judge_gap(stream_t *stream, const tmini_packet_t *packet, 
     return judged;
 }
 
+/* When the packet was sent, about: its samples took 250 us each (section 1), and a millisecond more
+ * lets the time catch up. */
+static uint32_t sent_ms(const stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms)
+{
+    const uint32_t due_ms = stream->sent_ms + packet->count / 4u + 1u;
+    const bool is_late = stream->is_late && stream->packets > 0 &&
+                         now_ms - stream->sent_ms <= PAUSE_MS && now_ms > due_ms;
+    return is_late ? due_ms : now_ms;
+}
+
 bool stream_take(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms)
 {
     tmini_builder_t *const builder = &stream->decoder.builder;
     const tmini_packet_t judged = judge_gap(stream, packet, now_ms);
+    const uint32_t came_ms = sent_ms(stream, packet, now_ms);
+    stream->sent_ms = came_ms;
     stream->has_scan = false;
-    if (tmini_decoder_take_packet(&stream->decoder, &judged, now_ms)) {
+    if (tmini_decoder_take_packet(&stream->decoder, &judged, came_ms)) {
         if (builder->scan.packets > 1 || judged.gap != TMINI_GAP_UNKNOWN) {
             keep_scan(stream); /* A start packet and then a pause is no scan. */
         }
-        (void)tmini_builder_add(builder, &judged, now_ms);
+        (void)tmini_builder_add(builder, &judged, came_ms);
     }
     stream->confirmed += stream->decoder.verdict == TMINI_CT_CONFIRMED ? 1 : 0;
     count(stream, packet, now_ms);

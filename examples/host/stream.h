@@ -30,11 +30,13 @@ typedef struct {
     count_t last_crc_bytes;     /* LastCRC bytes (section 7). */
     count_t confirmed;          /* Revolutions that LastCRC confirmed. */
     uint32_t packet_ms;         /* When the latest packet came. */
+    uint32_t sent_ms;           /* The same, as the scan builder was told: see `is_late`. */
     uint32_t longest_ms;        /* The longest pause between two packets. */
     unsigned frequency_chz;     /* As reported last; 0: not yet. */
     bool has_scan;              /* The latest packet has completed `scan`. */
     bool is_broken;             /* The next packet does not follow the latest one. */
     bool is_in_doubt;           /* According to the driver, bytes may be missing before it. */
+    bool is_late;               /* May be set: packets come late and many at once, by a network. */
     const tmini_mount_t *mount; /* NULL: none. */
     tmini_decoder_t decoder;    /* Its `packet` is the latest, its builder has the next scan. */
     tmini_point_t *spare;       /* The buffer for the scan after that. */

@@ -3,6 +3,7 @@
 
 """The tool with a lidar: each command, and what it says if there is none, another device, or one that disappears."""
 
+import json
 import os
 import re
 import signal
@@ -656,3 +657,26 @@ def test_a_lidar_that_sends_but_does_not_hear(talker, failure):
 def test_a_lidar_that_answers_one_command_is_not_a_fault_of_the_wires(answerer, output, failure):
     assert output("info", "-p", answerer(0x90, INFORMATION)).startswith("model       151")
     failure(1, "answers `tmini info`, so its wires are good", "scan", "-p", answerer(0x90, INFORMATION))
+
+
+def test_a_network_that_delivers_late_spoils_no_scan(lidar, tmini):
+    run = tmini("scan", "-p", lidar("--tcp", "0", "--bursts", "500", "--frequency", "10").port, "-n", "60", "--json")
+    scans = [json.loads(line) for line in run.out.splitlines()]
+    assert [scan["complete"] for scan in scans] == 60 * [True]
+    times_ms = [scan["time_ms"] for scan in scans]
+    steps = [after - before for before, after in zip(times_ms[10:], times_ms[11:])]
+    assert 40 <= min(steps) and max(steps) <= 130, steps
+
+
+def test_after_a_silence_in_a_network_times_are_right_at_once(lidar, start, clock):
+    device = lidar("--tcp", "0")
+    run = start("scan", "-p", device.port, "--json")
+    lines(run, 3)
+    begun_ms = clock.now_ms()
+    device.freeze()
+    run.wait_for("the lidar has fallen silent")
+    device.thaw()
+    lines(run, 6)
+    passed_ms = clock.now_ms() - begun_ms
+    third, sixth = (json.loads(run.out.splitlines()[at])["time_ms"] for at in (2, 5))
+    assert passed_ms > 1000 and abs(sixth - third - passed_ms) < 100
