@@ -240,8 +240,10 @@ void test_255_scans_that_free_a_field_can_be_counted(void)
 void test_clearing_makes_fields_blind(void)
 {
     see_free(3);
+    field[1] = field[0]; /* Not in the list. */
     tmini_fields_clear(&fields);
     is(TMINI_FIELD_BLIND);
+    TEST_ASSERT_EQUAL_INT(TMINI_FIELD_FREE, tmini_field_state(&field[1], now_ms));
     see_free(2);
     is(TMINI_FIELD_BLIND);
 }

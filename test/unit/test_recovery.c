@@ -331,6 +331,8 @@ void test_a_task_sleeps_until_the_line_is_quiet_in_steps_of_50_ms_at_most(void)
 {
     tell("stop >65 !NONE next:50 ~20 next:30 !NONE ~20 !NONE next:10 ~10 next:0 !STOPPED");
     tell("quiet:200 stop >65 !NONE next:50 ~50 !NONE next:50 ~50 !NONE ~50 !NONE ~50 !STOPPED");
+    tell("quiet:300 ~50 !NONE ~50 !NONE ~50 !NONE ~50 !NONE ~50 !NONE ~50 !NONE "
+         "stop >65 !NONE next:50");
     tell("quiet:20 ~100 !NONE stop >65 !NONE next:20 ~20 next:0 !STOPPED");
     tell("quiet:599 stop >65 !NONE ~300 <junk !NONE ~300 <junk !NONE ~300 <junk !NONE ~240 !NONE "
          "next:9 ~9 >65");
