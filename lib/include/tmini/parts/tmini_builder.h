@@ -51,7 +51,7 @@ typedef struct {
                                  * degrees at most. */
     uint32_t late_scans;        /**< Scans that ended early or are incomplete because of time
                                  * alone. */
-    tmini_scan_t scan;          /**< The scan so far. */
+    tmini_scan_t scan; /**< The scan so far; its `checksum_errors` count when it has ended. */
 } tmini_builder_t;
 
 /** Sets up a builder that collects points in `buffer`, which has room for `capacity` points, stays
