@@ -53,7 +53,7 @@ static bool next_way(void)
     return true;
 }
 
-static void start_port(void)
+void start_port(void)
 {
     TEST_ASSERT_EQUAL_INT(0, port_init());
     TEST_ASSERT_EQUAL_INT(0, port_start());

@@ -69,7 +69,8 @@ void port_assert_stopped(void); /* Nothing is left switched on, or taken. */
     const scanning_t port_program = {                   \
         .port = &tmini_##platform##_port, .context = &port, .wait = wait, .work = PORT_WORK}
 
-/* Starts port and lidar. */
+/* Starts the port; the port and the lidar. */
+void start_port(void);
 void start(void);
 
 /* Sets up the program with a lidar whose receive buffer has this size. */

@@ -183,8 +183,7 @@ void test_an_overrun_costs_no_more_than_the_bytes_in_the_fifo(void)
 void test_an_overrun_before_the_stream_wakes_the_polling_task(void)
 {
     receive_by_stream();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
+    start_port();
     tmini_freertos_wait(&port, 1); /* The first call sets the task that is to be woken. */
     freertos_model_receive(true, manual_packet, 1);
     const uint64_t begun_us = machine.now_us;
@@ -209,8 +208,7 @@ static void fill_small_stream(void)
     static const uint8_t nothing[97] = {0};
     receive_by_stream();
     wiring.stream_size = 128; /* It holds 127 bytes. */
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
+    start_port();
     freertos_model_receive(false, nothing, sizeof nothing);
     freertos_model_receive(false, manual_packet, PACKET_CUT);
     TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);

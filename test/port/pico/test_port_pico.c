@@ -250,8 +250,7 @@ void test_channels_and_interrupts_of_others_are_left_alone(void)
     TEST_ASSERT_EQUAL_UINT(1, pico_model_claimed_channels());
     pico_model_begin(NULL);
     receive_by_interrupt();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
+    start_port();
     TEST_ASSERT_TRUE(chip.irq_enabled[UART1_IRQ]);
     tmini_pico_stop(&port);
     TEST_ASSERT_FALSE(chip.irq_enabled[UART1_IRQ]);
@@ -300,8 +299,7 @@ void test_no_packet_is_put_together_across_lost_laps(void)
 {
     static const uint8_t nothing[2 * LAP] = {0};
     const size_t rest = sizeof manual_packet - PACKET_CUT;
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_pico_start(&port, &lidar));
+    start_port();
     machine_receive(0, manual_packet, PACKET_CUT);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
     machine_receive(0, nothing, 2 * LAP);

@@ -11,17 +11,7 @@ hal_rig_t hal_rig;
 uint8_t hal_rig_rx[HAL_RIG_RX_SIZE] __ALIGNED(32);
 uint8_t hal_rig_block[HAL_RIG_BLOCK_SIZE] __ALIGNED(32);
 
-static const uint8_t packet[HAL_RIG_PACKET_SIZE] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
-                                                    0x00, 0x9E, 0x56, 0x15, 0x54, 0x02};
-
 static hal_rig_way_t way;
-
-void hal_rig_line_packets(unsigned count)
-{
-    for (unsigned i = 0; i < count; i++) {
-        line_send(packet, sizeof packet);
-    }
-}
 
 /* ---------------------------------------------------------- handlers and callbacks of a project */
 
@@ -152,32 +142,13 @@ tmini_stm32_hal_counters_t hal_rig_errors(void)
 
 /* -------------------------------------------------------------------------------------- running */
 
-tmini_counters_t hal_rig_poll(void)
-{
-    tmini_counters_t counters;
-    while (tmini_poll(&hal_rig.lidar) != TMINI_EVENT_NONE) {
-    }
-    tmini_counters(&hal_rig.lidar, &counters);
-    return counters;
-}
-
 uint32_t hal_rig_packets(void)
 {
     return hal_rig_poll().packets;
 }
 
-void hal_rig_run(void)
-{
-    while (!line_is_empty()) {
-        model_pass(1000);
-        (void)hal_rig_poll();
-    }
-    model_pass(1000);
-    (void)hal_rig_poll();
-}
-
 void hal_rig_receive(unsigned packets)
 {
-    hal_rig_line_packets(packets);
+    line_send_packets(packets);
     hal_rig_run();
 }

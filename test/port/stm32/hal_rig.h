@@ -11,7 +11,6 @@
 
 #define HAL_RIG_RX_SIZE 1024u
 #define HAL_RIG_BLOCK_SIZE 256u
-#define HAL_RIG_PACKET_SIZE 13u
 
 typedef enum { BY_DMA, BY_BLOCKS, BY_BYTES } hal_rig_way_t;
 
@@ -46,16 +45,19 @@ void hal_rig_open_and_start(hal_rig_way_t way);
 
 tmini_stm32_hal_counters_t hal_rig_errors(void);
 
-/* Puts copies of a real unit's packet on the line (section 9.14). */
-void hal_rig_line_packets(unsigned count);
-
-/* Polls until all bytes have arrived and the line is idle. */
-void hal_rig_run(void);
-
 /* Puts this many packets on the line and runs until all have arrived. */
 void hal_rig_receive(unsigned packets);
 
-tmini_counters_t hal_rig_poll(void);
+static inline tmini_counters_t hal_rig_poll(void)
+{
+    return line_poll(&hal_rig.lidar);
+}
+
+/* Polls until all bytes have arrived and the line is idle. */
+static inline void hal_rig_run(void)
+{
+    (void)line_run(&hal_rig.lidar, 1000);
+}
 
 uint32_t hal_rig_packets(void);
 

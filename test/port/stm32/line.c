@@ -62,3 +62,32 @@ void line_open(void)
     model.next = next;
     model.take = take;
 }
+
+const uint8_t line_packet[LINE_PACKET_SIZE] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
+                                               0x00, 0x9E, 0x56, 0x15, 0x54, 0x02};
+
+void line_send_packets(unsigned count)
+{
+    for (unsigned i = 0; i < count; i++) {
+        line_send(line_packet, sizeof line_packet);
+    }
+}
+
+tmini_counters_t line_poll(tmini_t *lidar)
+{
+    tmini_counters_t counters;
+    while (tmini_poll(lidar) != TMINI_EVENT_NONE) {
+    }
+    tmini_counters(lidar, &counters);
+    return counters;
+}
+
+tmini_counters_t line_run(tmini_t *lidar, uint32_t step_us)
+{
+    while (!line_is_empty()) {
+        model_pass(step_us);
+        (void)line_poll(lidar);
+    }
+    model_pass(1000);
+    return line_poll(lidar);
+}

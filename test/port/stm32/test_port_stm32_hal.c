@@ -10,7 +10,7 @@
 
 #include "unity.h"
 
-#define PACKET HAL_RIG_PACKET_SIZE
+#define PACKET LINE_PACKET_SIZE
 
 static uint32_t commands_sent;
 static uint8_t last_sent[2];
@@ -42,7 +42,7 @@ void test_bytes_line_errors_are_counted_and_cost_no_byte(void)
 {
     hal_rig_open_and_start(BY_BYTES);
     line_send_with(MODEL_FE);
-    hal_rig_line_packets(1);
+    line_send_packets(1);
     line_send_with(MODEL_NE);
     hal_rig_receive(1);
     TEST_ASSERT_EQUAL_UINT32(2, hal_rig_packets());
@@ -54,7 +54,7 @@ void test_bytes_line_errors_are_counted_and_cost_no_byte(void)
 void test_bytes_a_late_interrupt_is_an_overrun_that_is_counted_and_survived(void)
 {
     hal_rig_open_and_start(BY_BYTES);
-    hal_rig_line_packets(3);
+    line_send_packets(3);
     model.held_until_ns = model.now_ns + 16 * MODEL_BYTE_NS; /* Until the second packet. */
     hal_rig_run();
     hal_rig_receive(1);
@@ -66,7 +66,7 @@ void test_bytes_a_late_interrupt_is_an_overrun_that_is_counted_and_survived(void
 void test_bytes_no_packet_continues_across_an_overrun(void)
 {
     hal_rig_open_and_start(BY_BYTES);
-    hal_rig_line_packets(2);
+    line_send_packets(2);
     model_pass(MODEL_BYTE_NS * 13 / 2000);
     model.held_until_ns = model.now_ns + 14 * MODEL_BYTE_NS;
     hal_rig_run();
@@ -91,7 +91,7 @@ void test_bytes_an_overrun_without_a_byte_stops_reception_only_until_the_next_po
 void test_bytes_reception_starts_after_a_controller_reset_while_the_lidar_spins(void)
 {
     hal_rig_open(BY_BYTES);
-    hal_rig_line_packets(8);
+    line_send_packets(8);
     model_pass(2000); /* An overrun is pending. */
     TEST_ASSERT_NOT_EQUAL(0, model.flags & MODEL_ORE);
     TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());

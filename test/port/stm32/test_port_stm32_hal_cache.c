@@ -29,7 +29,7 @@ void test_the_cache_is_invalidated_up_to_the_buffers_end(void)
 {
     hal_rig_open(BY_DMA);
     TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
-    hal_rig_line_packets(HAL_RIG_RX_SIZE / 13 + 1);
+    line_send_packets(HAL_RIG_RX_SIZE / 13 + 1);
     model_pass(100000);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(model.ram, hal_rig_rx, HAL_RIG_RX_SIZE);
 }

@@ -10,7 +10,7 @@
 
 #include "unity.h"
 
-#define PACKET HAL_RIG_PACKET_SIZE
+#define PACKET LINE_PACKET_SIZE
 #define LAP_US 44445u
 
 void setUp(void) {}
@@ -121,7 +121,7 @@ void test_callbacks_of_another_uart_change_nothing(void)
         UART_HandleTypeDef other = {.RxState = HAL_UART_STATE_READY,
                                     .ErrorCode = HAL_UART_ERROR_FE};
         hal_rig_open_and_start(way);
-        hal_rig_line_packets(1);
+        line_send_packets(1);
         model_pass(300);
         tmini_stm32_hal_rx_event(&hal_rig.port, &other);
         tmini_stm32_hal_rx_half_complete(&hal_rig.port, &other);
@@ -138,7 +138,7 @@ void test_idle_events_at_any_position_lose_and_repeat_nothing(void)
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
         for (unsigned i = 0; i < 300; i++) {
-            hal_rig_line_packets(1);
+            line_send_packets(1);
             model_pass(1000);
             (void)hal_rig_poll();
         }
@@ -178,7 +178,7 @@ void test_an_event_between_reading_and_using_the_position_does_no_harm(void)
         random_t random;
         hal_rig_open_and_start(way);
         random_seed(&random, 1);
-        hal_rig_line_packets(600);
+        line_send_packets(600);
         for (uint32_t place = 0; place < 60; place = irq_next_place(&random, place)) {
             model_pass(1000);
             irq_happen_after(place, idle_event);
@@ -207,7 +207,7 @@ void test_an_overrun_pending_at_the_start_does_no_harm(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open(way);
-        hal_rig_line_packets(100);
+        line_send_packets(100);
         model_pass(2000);
         TEST_ASSERT_NOT_EQUAL(0, model.flags & MODEL_ORE);
         TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
@@ -243,7 +243,7 @@ void test_a_line_error_costs_only_its_byte(void)
         hal_rig_open_and_start(way);
         for (unsigned i = 0; i < 20; i++) {
             static const uint8_t broken = 0x00;
-            hal_rig_line_packets(10);
+            line_send_packets(10);
             line_send_with(i % 2 == 0 ? MODEL_FE : MODEL_NE);
             line_send(&broken, 1);
         }
@@ -261,7 +261,7 @@ void test_an_overrun_while_dma_runs_is_counted_and_does_not_stop_it(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
-        hal_rig_line_packets(10);
+        line_send_packets(10);
         model_pass(2000);
         model.flags |= MODEL_ORE;
         hal_rig_run();
@@ -428,7 +428,7 @@ void test_bytes_before_a_dma_failure_are_not_delivered_again(void)
 void test_packets_before_a_restart_are_not_delivered_again(void)
 {
     hal_rig_open_and_start(BY_DMA);
-    hal_rig_line_packets(78); /* 1014 bytes: the buffer is full of packets. */
+    line_send_packets(78); /* 1014 bytes: the buffer is full of packets. */
     hal_rig_run();
     hal_rig_receive(10);
     TEST_ASSERT_EQUAL_UINT32(88, hal_rig_packets());
@@ -469,7 +469,7 @@ static void pass(unsigned ms)
 static uint32_t packets_with_interrupts_held(hal_rig_way_t way, uint32_t us)
 {
     hal_rig_open_and_start(way);
-    hal_rig_line_packets(200);
+    line_send_packets(200);
     pass(30);
     model.held_until_ns = model.now_ns + us * 1000u;
     model_pass(us + 10);
@@ -495,7 +495,7 @@ void test_each_of_several_laps_is_counted_once(void)
 {
     for (uint32_t us = LAP_US + 1000; us < LAP_US * 3 / 2; us += 3000) {
         hal_rig_open_and_start(BY_DMA);
-        hal_rig_line_packets(600);
+        line_send_packets(600);
         for (unsigned laps = 1; laps <= 3; laps++) {
             pass(30);
             model.held_until_ns = model.now_ns + us * 1000u;
@@ -521,7 +521,7 @@ void test_bytes_that_a_lap_has_overwritten_count_as_lost(void)
 void test_an_event_that_is_reported_twice_is_no_lap(void)
 {
     hal_rig_open_and_start(BY_DMA);
-    hal_rig_line_packets(60);
+    line_send_packets(60);
     model_pass(520 * 44); /* DMA has passed the middle. */
     tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart);
     tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart);
@@ -552,8 +552,8 @@ void test_an_event_of_the_wrong_type_is_no_lap(void)
     irq.lines[MODEL_DMA_IRQ].priority = 4;
     model.access_ns = 5000;
     for (unsigned i = 0; i < 2000; i++) {
-        hal_rig_line_packets(1);
-        model_pass(HAL_RIG_PACKET_SIZE * 44 + 30 + i % 50);
+        line_send_packets(1);
+        model_pass(LINE_PACKET_SIZE * 44 + 30 + i % 50);
         (void)hal_rig_poll();
     }
     TEST_ASSERT_EQUAL_UINT32(2000, hal_rig_packets());
@@ -566,7 +566,7 @@ void test_after_stop_dma_is_off_and_received_bytes_are_kept(void)
 {
     for (hal_rig_way_t way = BY_DMA; way <= BY_BLOCKS; way++) {
         hal_rig_open_and_start(way);
-        hal_rig_line_packets(5);
+        line_send_packets(5);
         model_pass(3000); /* No event has come yet. */
         tmini_stm32_hal_stop(&hal_rig.port);
         TEST_ASSERT_EQUAL_UINT32(5, hal_rig_packets());
@@ -602,7 +602,7 @@ void test_an_event_after_the_end_of_reception_hands_nothing_over(void)
         hal_rig_receive(5);
         const size_t head = tmini_ring_head(&hal_rig.lidar.ring);
         hal_rig.uart.RxState = HAL_UART_STATE_READY;
-        hal_rig_line_packets(1);
+        line_send_packets(1);
         model_pass(10000);
         tmini_stm32_hal_rx_half_complete(&hal_rig.port, &hal_rig.uart);
         TEST_ASSERT_EQUAL_UINT32(head, tmini_ring_head(&hal_rig.lidar.ring));

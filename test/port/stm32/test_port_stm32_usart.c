@@ -15,10 +15,7 @@
 #define RX_SIZE 1024u
 #define LINE_PACKETS 300u
 
-/* A packet of a real unit (section 9.14). */
-static const uint8_t packet[] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F,
-                                 0x00, 0x9E, 0x56, 0x15, 0x54, 0x02};
-#define PACKET sizeof packet
+#define PACKET LINE_PACKET_SIZE
 
 static volatile uint32_t time_ms;
 static uint8_t rx[RX_SIZE];
@@ -92,15 +89,6 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-static tmini_counters_t poll(void)
-{
-    tmini_counters_t counters;
-    while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
-    }
-    tmini_counters(&lidar, &counters);
-    return counters;
-}
-
 static tmini_stm32_usart_counters_t errors(void)
 {
     tmini_stm32_usart_counters_t counters;
@@ -108,28 +96,21 @@ static tmini_stm32_usart_counters_t errors(void)
     return counters;
 }
 
-static void send_packets(unsigned count)
+static tmini_counters_t poll(void)
 {
-    for (unsigned i = 0; i < count; i++) {
-        line_send(packet, PACKET);
-    }
+    return line_poll(&lidar);
 }
 
 static uint32_t run(void)
 {
-    while (!line_is_empty()) {
-        model_pass(200);
-        (void)poll();
-    }
-    model_pass(1000);
-    return poll().packets;
+    return line_run(&lidar, 200).packets;
 }
 
 /* Sends `count` packets; returns how many arrive. */
 static uint32_t run_packets(unsigned count)
 {
     const uint32_t before = poll().packets;
-    send_packets(count);
+    line_send_packets(count);
     return run() - before;
 }
 
@@ -210,10 +191,10 @@ void test_after_stop_no_byte_arrives_and_received_bytes_are_kept(void)
 {
     for (int rx_dma = 0; rx_dma < 2; rx_dma++) {
         start(rx_dma != 0);
-        send_packets(3);
+        line_send_packets(3);
         model_pass(3 * PACKET * 50);
         tmini_stm32_usart_stop(&port);
-        send_packets(3);
+        line_send_packets(3);
         TEST_ASSERT_EQUAL_UINT32(3, run());
         tmini_stm32_usart_dma_interrupt(&port, true, true); /* A pending interrupt. */
         tmini_stm32_usart_interrupt(&port);
@@ -262,7 +243,7 @@ void test_a_byte_with_a_line_error_is_counted_and_stored(void)
 {
     start(false);
     line_send_with(MODEL_FE);
-    send_packets(1);
+    line_send_packets(1);
     line_send_with(MODEL_NE);
     TEST_ASSERT_EQUAL_UINT32(2, run_packets(1));
     TEST_ASSERT_EQUAL_UINT32(1, errors().framing_errors);
@@ -274,11 +255,11 @@ void test_a_byte_with_a_line_error_is_counted_and_stored(void)
 void test_no_packet_continues_across_an_overrun(void)
 {
     start(false);
-    line_send(packet, 6);
+    line_send(line_packet, 6);
     (void)run();
     model.flags |= MODEL_ORE;
     model_pass(1000);
-    line_send(&packet[6], PACKET - 6);
+    line_send(&line_packet[6], PACKET - 6);
     TEST_ASSERT_EQUAL_UINT32(0, run());
     TEST_ASSERT_EQUAL_UINT32(1, errors().overruns);
     TEST_ASSERT_EQUAL_UINT32(5, run_packets(5));
@@ -305,7 +286,7 @@ void test_dma_delivers_every_byte(void)
 void test_half_a_buffer_and_an_idle_line_are_handed_over_without_a_poll(void)
 {
     start(true);
-    send_packets(40);
+    line_send_packets(40);
     model_pass(22400); /* 516 bytes arrive. */
     TEST_ASSERT_EQUAL_UINT32(RX_SIZE / 2, tmini_ring_head(&lidar.ring));
     model_pass(1000);
@@ -324,7 +305,7 @@ void test_an_idle_line_at_any_access_of_a_poll_is_no_lock_up(void)
     random_seed(&random, 1);
     start(true);
     for (uint32_t place = 0; place < 80; place = irq_next_place(&random, place)) {
-        send_packets(1);
+        line_send_packets(1);
         model_pass(500);
         irq_happen_after(place, line_falls_idle);
         (void)poll();
@@ -338,12 +319,12 @@ void test_a_lap_without_any_interrupt_is_noticed(void)
     start(true);
     TEST_ASSERT_EQUAL_UINT32(10, run_packets(10));
     model.held_until_ns = model.now_ns + 60000000u;
-    send_packets(90); /* 1170 bytes: DMA passes its old position again. */
+    line_send_packets(90); /* 1170 bytes: DMA passes its old position again. */
     model_pass(60000);
     TEST_ASSERT_UINT32_WITHIN(1, 10 + 11, run()); /* Only the bytes after the lap are left. */
     TEST_ASSERT_EQUAL_UINT32(1, errors().laps);
     model.held_until_ns = model.now_ns + 60000000u;
-    send_packets(102); /* A lap and 302 bytes, past the middle: only the end shows the lap. */
+    line_send_packets(102); /* A lap and 302 bytes, past the middle: only the end shows the lap. */
     model_pass(60000);
     (void)run();
     TEST_ASSERT_EQUAL_UINT32(2, errors().laps);
@@ -356,7 +337,7 @@ void test_a_byte_that_waits_for_dma_is_not_removed(void)
     start(true);
     irq.lines[MODEL_USART_IRQ].handler = NULL;
     model.dma.enabled = false;
-    send_packets(1);
+    line_send_packets(1);
     model_pass(2000);
     TEST_ASSERT_EQUAL_HEX32(MODEL_RXNE | MODEL_ORE, model.flags & (MODEL_RXNE | MODEL_ORE));
     tmini_stm32_usart_interrupt(&port);
@@ -376,7 +357,7 @@ void test_a_dma_channel_that_has_stopped_is_no_lock_up(void)
     set_up_channel();
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_stm32_usart_start(&port, &lidar));
     TEST_ASSERT_EQUAL_UINT32(10, run_packets(10));
-    send_packets(1);
+    line_send_packets(1);
     model_pass(1000);
     TEST_ASSERT_NOT_EQUAL(0, model_usart.CR1 & MODEL_CR1_IDLEIE);
 }
@@ -420,7 +401,7 @@ void test_an_enabled_fifo_keeps_eight_bytes_for_a_late_interrupt(void)
     start_with_settings(false);
     model_usart.CR1 |= MODEL_CR1_FIFOEN;
     for (unsigned i = 0; i < 20; i++) {
-        send_packets(1);
+        line_send_packets(1);
         model_pass(100);
         model.held_until_ns = model.now_ns + 340000u;
         model_pass(2000);

@@ -64,8 +64,7 @@ void test_a_driver_that_cannot_change_the_baud_rate_keeps_the_devicetrees(void)
     board.configure = -ENOSYS;
     TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
     board.configure = -ENOTSUP;
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
+    start_port();
 }
 
 void test_what_cannot_work_is_refused(void)
@@ -129,8 +128,7 @@ void test_an_overrun_without_a_byte_to_read_is_a_gap(void)
 {
     machine.uart.fifo_size = 1;
     board.clearing_reads_data = true;
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_init(&port, &zephyr_model_uart));
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
+    start_port();
     machine_receive(0, manual_packet, 10);
     TEST_ASSERT_EQUAL_size_t(1024 - 10, tmini_feed_room(&lidar));
     board.damage = UART_ERROR_OVERRUN;

@@ -286,24 +286,20 @@ static bool may_start(UART_HandleTypeDef *uart)
     return uart->RxState == HAL_UART_STATE_READY && lock(uart);
 }
 
-HAL_StatusTypeDef HAL_UART_Receive_IT(UART_HandleTypeDef *huart, uint8_t *pData, uint16_t Size)
-{
-    if (!may_start(huart)) {
-        return HAL_BUSY;
+/* A function that starts a reception of this type in this way. */
+#define RECEPTION(function, type, start)                                                 \
+    HAL_StatusTypeDef function(UART_HandleTypeDef *huart, uint8_t *pData, uint16_t Size) \
+    {                                                                                    \
+        if (!may_start(huart)) {                                                         \
+            return HAL_BUSY;                                                             \
+        }                                                                                \
+        huart->ReceptionType = type;                                                     \
+        return start;                                                                    \
     }
-    huart->ReceptionType = HAL_UART_RECEPTION_STANDARD;
-    return start_interrupt(huart, pData, Size);
-}
 
-HAL_StatusTypeDef HAL_UARTEx_ReceiveToIdle_IT(UART_HandleTypeDef *huart, uint8_t *pData,
-                                              uint16_t Size)
-{
-    if (!may_start(huart)) {
-        return HAL_BUSY;
-    }
-    huart->ReceptionType = TO_IDLE;
-    return await_idle(huart, start_interrupt(huart, pData, Size));
-}
+RECEPTION(HAL_UART_Receive_IT, HAL_UART_RECEPTION_STANDARD, start_interrupt(huart, pData, Size))
+RECEPTION(HAL_UARTEx_ReceiveToIdle_IT, TO_IDLE,
+          await_idle(huart, start_interrupt(huart, pData, Size)))
 
 #ifndef STM32_MODEL_NO_DMA
 
@@ -331,24 +327,8 @@ static HAL_StatusTypeDef start_dma(UART_HandleTypeDef *uart, uint8_t *memory, ui
     return HAL_OK;
 }
 
-HAL_StatusTypeDef HAL_UART_Receive_DMA(UART_HandleTypeDef *huart, uint8_t *pData, uint16_t Size)
-{
-    if (!may_start(huart)) {
-        return HAL_BUSY;
-    }
-    huart->ReceptionType = HAL_UART_RECEPTION_STANDARD;
-    return start_dma(huart, pData, Size);
-}
-
-HAL_StatusTypeDef HAL_UARTEx_ReceiveToIdle_DMA(UART_HandleTypeDef *huart, uint8_t *pData,
-                                               uint16_t Size)
-{
-    if (!may_start(huart)) {
-        return HAL_BUSY;
-    }
-    huart->ReceptionType = TO_IDLE;
-    return await_idle(huart, start_dma(huart, pData, Size));
-}
+RECEPTION(HAL_UART_Receive_DMA, HAL_UART_RECEPTION_STANDARD, start_dma(huart, pData, Size))
+RECEPTION(HAL_UARTEx_ReceiveToIdle_DMA, TO_IDLE, await_idle(huart, start_dma(huart, pData, Size)))
 
 #endif
 
