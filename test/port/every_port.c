@@ -126,7 +126,7 @@ void test_an_overrun_is_a_gap_and_costs_only_the_packets_that_it_hit(void)
     }
 }
 
-static uint32_t packets(void)
+uint32_t packets(void)
 {
     tmini_counters_t counters;
     for (unsigned polls = 0; polls < 10; polls++) {

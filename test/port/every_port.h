@@ -73,6 +73,9 @@ void port_assert_stopped(void); /* Nothing is left switched on, or taken. */
 void start_port(void);
 void start(void);
 
+/* Receives what waits; returns the number of packets since the start. */
+uint32_t packets(void);
+
 /* Sets up the program with a lidar whose receive buffer has this size. */
 void init_lidar(size_t rx_size);
 

@@ -193,16 +193,6 @@ void test_an_overrun_before_the_stream_wakes_the_polling_task(void)
 
 /* --------------------------------------------------------------- losses that bytes do not show */
 
-static uint32_t packets(void)
-{
-    tmini_counters_t counters;
-    for (unsigned polls = 0; polls < 10; polls++) {
-        (void)tmini_poll(&lidar);
-    }
-    tmini_counters(&lidar, &counters);
-    return counters.packets;
-}
-
 static void fill_small_stream(void)
 {
     static const uint8_t nothing[97] = {0};

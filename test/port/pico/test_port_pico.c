@@ -284,16 +284,6 @@ void test_every_point_arrives_by_interrupt(void)
 
 /* --------------------------------------------------------------- losses that bytes do not show */
 
-static uint32_t packets(void)
-{
-    tmini_counters_t counters;
-    for (unsigned polls = 0; polls < 10; polls++) {
-        (void)receive_and_poll();
-    }
-    tmini_counters(&lidar, &counters);
-    return counters.packets;
-}
-
 /* Two laps of other bytes come between the packet's two parts, and the ring no longer has them. */
 void test_no_packet_is_put_together_across_lost_laps(void)
 {
