@@ -42,6 +42,9 @@ PATIENCE_S = int(os.environ.get("TMINI_PATIENCE_S", 60))  # Of real time.
 HAS_RIGHTS = os.geteuid() == 0
 
 sys.path.insert(0, str(HERE))
+for _number in (signal.SIGINT, signal.SIGQUIT, signal.SIGHUP):  # Those that a background job, or nohup, ignores.
+    if signal.getsignal(_number) == signal.SIG_IGN:
+        signal.signal(_number, lambda *_: None)  # What is started does not inherit it.
 
 
 class Poll(ctypes.Structure):

@@ -578,7 +578,7 @@ def test_an_interrupted_survey_gives_the_lidar_its_frequency_back(lidar, start, 
 
 
 def test_a_survey_of_another_unit_keeps_some_bytes_without_the_serial_number(lidar, folder, tmini):
-    tmini("survey", "-p", lidar("--samples", "4").port, "unit", "-s10")
+    tmini("survey", "-p", lidar("--samples", "4").port, "unit")  # For so long that a checksum matches by chance.
     report = (folder / "unit").read_text()
     sample = re.search("\nnot_understood = (.*)\n", report)[1].split()
     assert sample[:7] == ["A5", "5A", "05", "00", "00", "40", "81"] and 250 < len(sample) <= 300
