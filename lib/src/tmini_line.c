@@ -138,7 +138,7 @@ static void note_silence(tmini_line_t *line, uint32_t passed_ms)
 }
 
 /* Counts the time since the first look after the driver had handled all that had come. The pause
- * before that look counts only if it was longer than the ring lasts: then the port holds bytes. */
+ * before that look counts only if the port still holds bytes: then the ring did not last. */
 static void note_work(tmini_line_t *line, uint32_t passed_ms)
 {
     const bool counts = line->busy_ms > 0 || line->arrived != line->received;
@@ -157,6 +157,9 @@ bool tmini_line_look(tmini_t *lidar, bool is_scanning)
     const bool is_back = line->now_ms != 0 && back_ms <= STEP_BACK_MAX_MS;
     const uint32_t passed_ms = is_back ? 0 : clock_ms - line->now_ms;
     line->now_ms += passed_ms;
+    if (line->now_ms == 0 && passed_ms > 0) {
+        line->now_ms = 1; /* 0 means: never looked. The clock catches up. */
+    }
     line->received = head;
     const size_t arrived = arrived_to(lidar);
     if (is_back && back_ms > STEP_BACK_FREE_MS) {

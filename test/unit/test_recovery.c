@@ -308,6 +308,18 @@ void test_a_clock_that_is_set_back_a_little_makes_no_scan_younger(void)
     go_on("age:300 !NONE age:300");
 }
 
+void test_a_clock_that_wraps_around_to_zero_makes_no_scan_younger(void)
+{
+    tell(IDLE);
+    rig.now_ms = UINT32_MAX - 49;
+    go_on("!NONE");
+    rig.now_ms = 0;
+    go_on("!NONE");
+    rig.now_ms = 50;
+    go_on("!NONE");
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX / 2, tmini_scan_age_ms(&rig.lidar));
+}
+
 void test_an_age_of_24_days_remains(void)
 {
     tell(IDLE "age:50");
