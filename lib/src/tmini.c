@@ -698,8 +698,8 @@ tmini_status_t tmini_stop(tmini_t *lidar)
     return TMINI_OK;
 }
 
-/* An unchanged wish makes the driver ask again only while the lidar is idle or its state unknown.
- * Otherwise it changes nothing: it must not interrupt a scan or clear the frequency fault. */
+/* While the lidar is to scan, an unchanged wish changes nothing: it must not interrupt a scan or
+ * clear the frequency fault. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
 {
     if (!is_set_up(lidar) || !is_frequency(frequency_chz)) {
@@ -719,8 +719,7 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
         tmini_monitor_forget_frequency(&lidar->monitor);
     }
     if (tmini_state(lidar) < TMINI_STATE_STARTING) {
-        return is_new || !tmini_command_is_busy(lidar) ? take_question(lidar, TMINI_EVENT_FREQUENCY)
-                                                       : TMINI_OK;
+        return take_question(lidar, TMINI_EVENT_FREQUENCY);
     }
     if (is_new) {
         tmini_monitor_await_still(&lidar->monitor);

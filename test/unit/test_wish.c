@@ -291,9 +291,9 @@ void test_the_same_wish_for_an_idle_lidar_asks_again(void)
     tell("wish:700 " IDLE "set:700 >0D <700 !FREQUENCY set:700 >0D <700 !FREQUENCY");
 }
 
-void test_the_same_wish_during_a_command_changes_nothing(void)
+void test_the_same_wish_during_a_command_asks_after_it(void)
 {
-    tell("wish:700 " IDLE "info >90 set:700 <info !INFO @IDLE");
+    tell("wish:700 " IDLE "info >90 set:700 <info !INFO >0D <700 !FREQUENCY @IDLE");
 }
 
 void test_a_wish_during_a_command_is_carried_out_after_it(void)

@@ -170,7 +170,8 @@ typedef enum {
                                  * TMINI_STATE_SCANNING, the wanted frequency could not be set. */
     TMINI_EVENT_UNWANTED_SCANNING, /**< A lidar that was stopped is scanning. The driver stops it
                                     * again, with the same events as tmini_stop(). */
-    TMINI_EVENT_RECOVERED,         /**< A start packet has come: the lidar scans again. */
+    TMINI_EVENT_RECOVERED,         /**< The lidar scans again: a start packet has come, or for three
+                                    * seconds only packets without ranges (a blocked rotor). */
     TMINI_EVENT_FAULTS_CHANGED,    /**< tmini_faults() has changed, to 0 as well. */
     TMINI_EVENT_PACKET, /**< A packet, if there is no scan buffer: tmini_packet() is valid until the
                          * next tmini_poll(). */
@@ -351,8 +352,8 @@ tmini_status_t tmini_stop(tmini_t *lidar);
  * and TMINI_EVENT_COMMAND_FAILED comes with TMINI_EVENT_STARTED or TMINI_EVENT_RECOVERED. A lidar
  * that turns at another frequency for three seconds gets TMINI_FAULT_FREQUENCY, and the driver sets
  * the frequency again, as above. As long as it is not known to be set, this is repeated at growing
- * intervals. With TMINI_RECOVERY_OFF the fault is only reported. To state the same wish again
- * changes nothing, unless the lidar is idle or its state unknown.
+ * intervals. With TMINI_RECOVERY_OFF the fault is only reported. While the lidar is to scan, to
+ * state the same wish again changes nothing.
  * Returns TMINI_OK; TMINI_ERROR_ARGUMENT: null pointer, a lidar that was not set up, or a frequency
  * out of range; TMINI_ERROR_LISTEN_ONLY: the configuration says that nothing is sent. After an
  * error the wish is unchanged. */
@@ -414,11 +415,11 @@ static inline const tmini_packet_t *tmini_packet(const tmini_t *lidar);
 static inline bool tmini_packet_intact(const tmini_packet_t *packet);
 
 /** The age of the newest complete scan, counted from its end, in milliseconds; before the first,
- * from tmini_init() on. At most 2147483647 (24 days), and that for a lidar that was not set up. It
+ * from the first poll or call on. At most 2147483647 (24 days), and that for a lidar that was not set up. It
  * grows whatever the reason is: the lidar boots, is lost, sends damaged packets, or is being set
  * to another frequency. So a robot that stops when the age is above three turns (300 ms at 10 Hz)
  * never drives blind; a scan that is not complete may stop it, never release it. If the clock is
- * set back by more than a second, the age is at its maximum until the next complete scan. Without
+ * set back by up to a second, the age stands still until the clock has caught up; if by more, the age is at its maximum until the next complete scan. Without
  * `points` no scan comes. */
 uint32_t tmini_scan_age_ms(const tmini_t *lidar);
 
