@@ -122,7 +122,7 @@ static int32_t begin_scan(tmini_builder_t *builder, const tmini_packet_t *first,
         scan->frequency_chz = tmini_packet_frequency_chz(first);
     }
     scan->gaps = is_start ? 0 : 1;
-    scan->start_ms = now_ms - (first->count - 1u) * SAMPLE_SENT_US / 1000u;
+    scan->start_ms = now_ms - (uint32_t)(first->count - 1u) * SAMPLE_SENT_US / 1000u;
     scan->checksum_errors = first->frame->checksum_errors; /* note_end() subtracts this. */
     builder->late_ms = builder->next_late_ms;
     builder->open = true;

@@ -8,7 +8,7 @@
 
 #include "tmini_driver.h"
 
-/* More frequency steps than any change needs (6 of 1 Hz and 9 of 0.1 Hz). */
+/* More steps than any change between 6 and 12 Hz needs (6 of 1 Hz and 9 of 0.1 Hz). */
 #define STEPS_MAX 20
 #define COARSE_STEP_CHZ 100
 
@@ -294,9 +294,9 @@ static int on_no_reply(tmini_t *lidar, int error)
 static int on_no_packet(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
-    const uint32_t late_ms = (uint32_t)command->timeout_ms + JITTER_MS;
+    const uint32_t limit_ms = (uint32_t)command->timeout_ms + JITTER_MS;
     if (command->asks == CHANCES_MAX || lidar->line.pause_ms < LATE_POLL_MS ||
-        !tmini_has_elapsed(lidar, command->since_ms, late_ms)) {
+        !tmini_has_elapsed(lidar, command->since_ms, limit_ms)) {
         return TMINI_ERROR_TIMEOUT;
     }
     command->asks++;
