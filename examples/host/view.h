@@ -20,8 +20,7 @@ typedef struct {
     unsigned zoom_mm;  /* The range chosen by the user; 0: as far as the points. */
     unsigned range_mm; /* The range shown; 0: to be chosen. */
     survey_t survey;   /* Private to view_draw(): the survey of the scan. */
-    survey_t colours;  /* Private: the range of the colours, so that an intensity keeps its
-                        * colour. */
+    survey_t colours;  /* Private: the range of the colours, kept from scan to scan. */
 } view_t;
 
 /* Draws the view on the screen, whatever its size. */

@@ -419,8 +419,8 @@ static double span(double x, double y, double other_x, double other_y)
     return x * other_y - y * other_x;
 }
 
-/* Whether the ray in this direction meets an edge; `is_clear` becomes false where either answer
- * is right: within 1/32 degree of a corner, and if the lidar is on an edge. */
+/* True if a ray in this direction meets an edge. Clears `is_clear` where rounding may decide either
+ * way: within 1/32 degree of a corner, or if the lidar is on an edge. */
 static bool meets(const tmini_xy_t *corners, size_t count, double x, double y, bool *is_clear)
 {
     bool is_met = false;

@@ -113,7 +113,7 @@ def _reported(data: bytes) -> str:
 
 
 def _is_held(name: str) -> bool:
-    """Another program has opened it; of other users' programs that is visible only to root."""
+    """True if a program has this port open; of other users' programs only root sees it."""
     device = os.path.realpath(name)
     for link in glob.iglob("/proc/[0-9]*/fd/*"):
         try:

@@ -22,7 +22,7 @@ class VirtualLidar
     VirtualLidar();
     /* Lets a millisecond pass: bytes are transferred in both directions. */
     void pass();
-    /* From then on no byte arrives. */
+    /* After this call no byte arrives. */
     void unplug();
     /* An obstacle 10 degrees wide, in front or at another angle. */
     void placeObstacle(uint16_t distance_mm, uint16_t angle_q6 = 0);
