@@ -42,8 +42,8 @@
 #define SLICE_MS 10
 
 /* A stop command may be lost while the line is quiet for another reason, for example in a USB hub.
- * A lidar that sends again within this time is stopped again, this many times at most. For the first
- * 500 ms the driver takes packets for the tail of the stop. */
+ * A lidar that sends again within this time is stopped again, this many times at most. For the
+ * first 500 ms the driver takes packets for the tail of the stop. */
 #define STAYS_MS 600u
 #define STOPS 3
 
