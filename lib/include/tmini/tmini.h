@@ -415,12 +415,12 @@ static inline const tmini_packet_t *tmini_packet(const tmini_t *lidar);
 static inline bool tmini_packet_intact(const tmini_packet_t *packet);
 
 /** The age of the newest complete scan, counted from its end, in milliseconds; before the first,
- * from the first poll or call on. At most 2147483647 (24 days), and that for a lidar that was not set up. It
- * grows whatever the reason is: the lidar boots, is lost, sends damaged packets, or is being set
- * to another frequency. So a robot that stops when the age is above three turns (300 ms at 10 Hz)
- * never drives blind; a scan that is not complete may stop it, never release it. If the clock is
- * set back by up to a second, the age stands still until the clock has caught up; if by more, the age is at its maximum until the next complete scan. Without
- * `points` no scan comes. */
+ * from the first poll or call on. At most 2147483647 (24 days), and that for a lidar that was not
+ * set up. It grows whatever the reason is: the lidar boots, is lost, sends damaged packets, or is
+ * being set to another frequency. So a robot that stops when the age is above three turns (300 ms
+ * at 10 Hz) never drives blind; a scan that is not complete may stop it, never release it. If the
+ * clock is set back by up to a second, the age stands still until the clock has caught up; if by
+ * more, the age is at its maximum until the next complete scan. Without `points` no scan comes. */
 uint32_t tmini_scan_age_ms(const tmini_t *lidar);
 
 /** The device information that TMINI_EVENT_INFO announced, valid until the next such event; all 0
