@@ -90,7 +90,10 @@ void tmini_recovery_back_off(tmini_t *lidar, int result)
         tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
         return;
     }
-    recovery->attempts = (uint8_t)(recovery->attempts < REBOOT_AFTER ? recovery->attempts + 1 : 1);
+    if (result != TMINI_ERROR_WRITE) { /* Otherwise the lidar has heard nothing. */
+        recovery->attempts =
+            (uint8_t)(recovery->attempts < REBOOT_AFTER ? recovery->attempts + 1 : 1);
+    }
     recovery->pause_ms = (uint16_t)(doubled_ms < max_ms ? doubled_ms : max_ms);
     tmini_command_wait(lidar, lidar->is_listen_only ? TMINI_PHASE_LISTENING : TMINI_PHASE_PAUSING,
                        recovery->pause_ms);
