@@ -103,8 +103,8 @@ static void fail(tmini_t *lidar, int status)
 /* Looks at the line. Once bytes have come, the lidar is no longer known to be idle. */
 TMINI_NOINLINE static void look(tmini_t *lidar)
 {
-    if (lidar->line.now_ms == 0) { /* The first look: the port may be set up after the lidar. */
-        lidar->complete_ms = lidar->link.port->now_ms(lidar->link.port_context);
+    if (lidar->line.now_ms == 0) { /* The first look: no scan has come. */
+        lidar->complete_ms = lidar->link.port->now_ms(lidar->link.port_context) - AGE_MAX_MS;
     }
     if (tmini_line_look(lidar, tmini_command_is_scanning(lidar))) {
         tmini_command_disturb(lidar);
@@ -770,7 +770,7 @@ static uint32_t since_look_ms(const tmini_t *lidar)
 
 uint32_t tmini_scan_age_ms(const tmini_t *lidar)
 {
-    if (!is_set_up(lidar)) {
+    if (!is_set_up(lidar) || lidar->line.now_ms == 0) { /* It was never looked at. */
         return AGE_MAX_MS;
     }
     const uint32_t now_ms = lidar->line.now_ms + since_look_ms(lidar);

@@ -136,6 +136,13 @@ void test_a_port_that_fails_makes_the_attempt_fail(void)
     tell(LOST "takes:-1 !NONE !NONE ~500 takes:2 >65");
 }
 
+/* The lidar has heard nothing. */
+void test_attempts_that_the_port_fails_cause_no_reboot(void)
+{
+    tell(LOST "takes:-1 !NONE !NONE ~500 !NONE !NONE ~1000 !NONE !NONE ~2000 !NONE !NONE ~2000 "
+              "!NONE !NONE takes:2 ~2000 >65 +50 >0D <600 >60");
+}
+
 static unsigned restarts;
 
 static void count_restart(void *context)
@@ -294,16 +301,25 @@ void test_samples_without_a_range_and_without_a_start_packet_are_no_loss(void)
 /* ---- How old the newest complete scan is ---- */
 
 /* A turn of the rig is not a full circle, so a builder's verdict is put in its place. */
-void test_the_age_of_a_scan_counts_from_its_end_and_before_the_first_from_init(void)
+void test_before_the_first_complete_scan_its_age_is_at_its_maximum(void)
 {
-    tell(IDLE "age:50 ~250 age:300 !NONE age:300 start >0D <600 >60 <scan <S !STARTED");
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX / 2, tmini_scan_age_ms(&rig.lidar));
+    tell(IDLE "age:2147483647 ~250 !NONE age:2147483647 start >0D <600 >60 <scan <S !STARTED "
+              "age:2147483647");
+}
+
+void test_the_age_of_a_scan_counts_from_its_end(void)
+{
+    tell(SCANS);
     rig.lidar.complete_ms = rig.now_ms - 100;
     go_on("age:100 turns:3:60 age:580 ~20 age:600");
 }
 
 void test_a_clock_that_is_set_back_a_little_makes_no_scan_younger(void)
 {
-    tell(IDLE "~250 !NONE age:300");
+    tell(IDLE);
+    rig.lidar.complete_ms = rig.now_ms - 50;
+    go_on("~250 !NONE age:300");
     rig.now_ms -= 200;
     go_on("age:300 !NONE age:300");
 }
@@ -313,16 +329,17 @@ void test_a_clock_that_wraps_around_to_zero_makes_no_scan_younger(void)
     tell(IDLE);
     rig.now_ms = UINT32_MAX - 49;
     go_on("!NONE");
+    rig.lidar.complete_ms = rig.now_ms - 500;
     rig.now_ms = 0;
     go_on("!NONE");
     rig.now_ms = 50;
-    go_on("!NONE");
-    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX / 2, tmini_scan_age_ms(&rig.lidar));
+    go_on("!NONE age:600");
 }
 
 void test_an_age_of_24_days_remains(void)
 {
-    tell(IDLE "age:50");
+    tell(IDLE);
+    rig.lidar.complete_ms = rig.now_ms;
     for (unsigned i = 0; i < 5; i++) {
         rig.now_ms += UINT32_MAX / 4;
         go_on("!NONE");

@@ -16,13 +16,13 @@
  *
  *     if (tmini_init(&lidar, &config) != TMINI_OK) { halt(); }
  *     tmini_start(&lidar);                   holds until tmini_stop()
- *     for (;;) {
+ *     for (;;) {                             300 ms: three turns
  *         switch (tmini_poll(&lidar)) {
  *         case TMINI_EVENT_SCAN: avoid_obstacles(tmini_scan(&lidar)); break;
  *         case TMINI_EVENT_FAULTS_CHANGED: signal_faults(tmini_faults(&lidar)); break;
  *         default: break;
  *         }
- *         if (tmini_scan_age_ms(&lidar) > 300) { stop_robot(); }    three turns
+ *         if (tmini_scan_age_ms(&lidar) > 300 || tmini_faults(&lidar) != 0) { stop_robot(); }
  *     }
  *
  * Contexts. The functions tmini_feed…() belong to the one context that receives: an interrupt, a
@@ -208,15 +208,15 @@ typedef struct {
     uint32_t bytes_in_packets; /**< Bytes of valid packets. */
     uint32_t bytes_in_replies; /**< Bytes of awaited replies. */
     uint32_t bytes_skipped;    /**< Bytes of neither; they include LastCRC bytes. */
-    uint32_t bytes_overrun; /**< Bytes refused by a full buffer, or overwritten by DMA before they
+    uint32_t bytes_overrun;   /**< Bytes refused by a full buffer, or overwritten by DMA before they
                              * were read. */
-    uint32_t bytes_pending; /**< Bytes received and not yet judged. */
-    uint32_t scans;         /**< Scans delivered as TMINI_EVENT_SCAN. */
-    uint32_t late_scans; /**< Of these, the ones that ended early or are incomplete only because of
-                          * time, although no byte was lost there. If it grows and bytes_overrun
-                          * does not, a layer below may delay bytes for longer than max_pause_ms. It
-                          * also grows after each tmini_feed_gap() with DMA, and while a clock that
-                          * was set back catches up. */
+    uint32_t bytes_pending;   /**< Bytes received and not yet judged. */
+    uint32_t scans;           /**< Scans delivered as TMINI_EVENT_SCAN. */
+    uint32_t late_scans;      /**< Of these and of those withheld, the ones that ended early or are
+                          * incomplete only because of time, although no byte was lost there. If it
+                          * grows and bytes_overrun does not, a layer below may delay bytes for
+                          * longer than max_pause_ms. It also grows after each tmini_feed_gap() with
+                          * DMA, and while a clock that was set back catches up. */
     uint32_t points_withheld; /**< Intact points in no scan, because the program was behind: see
                                * tmini_poll(). */
     uint16_t timeouts;   /**< Attempts at commands that waited in vain for a reply, a quiet line or
@@ -414,13 +414,13 @@ static inline const tmini_packet_t *tmini_packet(const tmini_t *lidar);
  * Without DMA it is always true. */
 static inline bool tmini_packet_intact(const tmini_packet_t *packet);
 
-/** The age of the newest complete scan, counted from its end, in milliseconds; before the first,
- * from the first poll or call on. At most 2147483647 (24 days), and that for a lidar that was not
- * set up. It grows whatever the reason is: the lidar boots, is lost, sends damaged packets, or is
- * being set to another frequency. So a robot that stops when the age is above three turns (300 ms
- * at 10 Hz) never drives blind; a scan that is not complete may stop it, never release it. If the
- * clock is set back by up to a second, the age stands still until the clock has caught up; if by
- * more, the age is at its maximum until the next complete scan. Without `points` no scan comes. */
+/** The age of the newest complete scan, counted from its end, in milliseconds. At most 2147483647
+ * (24 days): before the first complete scan, and for a lidar that was not set up. It grows whatever
+ * the reason is: the lidar boots, is lost, sends damaged packets, or is being set to another
+ * frequency. So a robot that stops when the age is above three turns (300 ms at 10 Hz) never drives
+ * blind; a scan that is not complete may stop it, never release it. If the clock is set back by up
+ * to a second, the age stands still until the clock has caught up; if by more, the age is at its
+ * maximum until the next complete scan. Without `points` no scan comes. */
 uint32_t tmini_scan_age_ms(const tmini_t *lidar);
 
 /** The device information that TMINI_EVENT_INFO announced, valid until the next such event; all 0
@@ -547,8 +547,8 @@ struct tmini_lidar {
     tmini_link_t link;
     uint32_t scans;
     uint32_t points_withheld;
-    uint32_t complete_ms; /* When the newest complete scan ended; before the first, when the lidar
-                           * was set up; at most half the clock's range ago. */
+    uint32_t complete_ms; /* When the newest complete scan ended: at most half the clock's range
+                           * ago, which also means that there was none. */
     size_t held_to; /* Written by the receiving context: up to where bytes wait in the port; 0:
                      * unknown. */
     tmini_ring_t ring;

@@ -38,10 +38,11 @@
  * the thing may be nearer than 5 cm, black, of glass, or farther away than 12 m. Masked directions
  * have no range.
  *
- * What stands before a field hides what is in it, so let fields begin at the robot. Fields must see
- * the points before a filter does: leave the configuration's `filter` 0, and see tmini_steps.h for
- * the order of steps. A lidar that is turned or upside down needs the mounting first
- * (tmini_mount.h).
+ * What stands before a field hides what is in it, so let fields begin at the robot. Such a field
+ * spans half the circle: with an `unseen_percent` of 50 it may be free although 89 degrees straight
+ * ahead have no range; 5 are 9 degrees. Fields must see the points before a filter does: leave the
+ * configuration's `filter` 0, and see tmini_steps.h for the order of steps. A lidar that is turned
+ * or upside down needs the mounting first (tmini_mount.h).
  *
  * How long it takes to see something, and how often noise stops the robot, for each `points` and
  * `scans`: docs/robotics.md, "Fields". All functions: one context, the one that polls; no waiting.

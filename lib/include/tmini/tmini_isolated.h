@@ -30,9 +30,9 @@
 extern "C" {
 #endif
 
-/** When two points are near each other: at most near_mm + percent of the nearer one's range apart.
- * Neighbouring points on a wall square to the beam are 0.9 % of the range apart at 6 Hz and 1.9 %
- * at 12 Hz; on a wall at 60 degrees three times that. */
+/** When two points are near each other: their places, not their ranges, are at most near_mm +
+ * percent of the nearer one's range apart. Neighbouring points on a wall square to the beam are 0.9
+ * % of the range apart at 6 Hz and 1.9 % at 12 Hz; on a wall at 60 degrees three times that. */
 typedef struct {
     uint16_t near_mm; /**< 0: TMINI_ISOLATED_NEAR_MM. */
     uint8_t percent;  /**< 0: TMINI_ISOLATED_PERCENT. */

@@ -7,7 +7,7 @@
  * the configuration: each scan is changed once, before it is delivered. Integers only.
  *
  *     static const tmini_arc_t masts[] = {{170, 190}};
- *     static const tmini_mount_t mount = {.front_q6 = 5594, (87.4 degrees * 64)
+ *     static const tmini_mount_t mount = {.front_q6 = 5594,      87.4 degrees * 64
  *                                         .upside_down = true, .min_mm = 100,
  *                                         .masked = masts, .masked_count = 1};
  *
