@@ -241,6 +241,21 @@ static bool has_moved(const sample_t *sample, line_t line)
            fabs(early.away_mm - late.away_mm) > 10;
 }
 
+#define AHEAD_DEG 3.0
+#define AHEAD_POINTS 3u /* In each scan. */
+
+/* True if the wall is there where the robot's front would meet it: two faces with another thing
+ * between them look like one wall. */
+static bool is_ahead(const sample_t *sample, line_t line)
+{
+    const double aside_mm = line.away_mm * tan(AHEAD_DEG * RADIANS);
+    size_t count = 0;
+    for (size_t i = 0; i < sample->count; i++) {
+        count += is_on(sample, i, line, 60) && fabs(along_line(sample, i, line)) < aside_mm ? 1 : 0;
+    }
+    return count >= AHEAD_POINTS * sample->scans;
+}
+
 static const char *judge(const wall_t *wall)
 {
     static char reason[160];
@@ -293,13 +308,18 @@ const char *calibrate_wall(sample_t *sample, bool is_rough, double rough_deg, wa
     if (has_moved(sample, lines[nearest - walls])) {
         return "the robot or the wall has moved";
     }
+    if (!is_ahead(sample, lines[nearest - walls])) {
+        (void)snprintf(reason, sizeof reason,
+                       "straight towards the nearest wall, at %.0f degrees, is another thing: give "
+                       "--front roughly",
+                       nearest->degrees);
+        return reason;
+    }
     *wall = *nearest;
     return judge(nearest);
 }
 
 /* ---------------------------------------------------------------------------------- the offset */
-
-#define AHEAD_DEG 3.0
 
 const char *calibrate_offset(const sample_t *sample, double front_deg, double true_mm,
                              double *offset_mm)
@@ -319,7 +339,7 @@ const char *calibrate_offset(const sample_t *sample, double front_deg, double tr
             squares += ahead * ahead;
         }
     }
-    if (n < 3 * sample->scans) {
+    if (n < (double)(AHEAD_POINTS * sample->scans)) {
         return "there are not enough ranges straight ahead";
     }
     const double rough_mm = sqrt(fmax(0, squares / n - (sum / n) * (sum / n)));

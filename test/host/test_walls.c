@@ -18,6 +18,7 @@ static tmini_point_t points[720];
 static double walls_mm[4]; /* At 0, 90, 180 and 270 degrees of the room. */
 static double turned_deg;  /* The lidar's angle at the room's 0. */
 static double rough_mm;    /* How far points are off the walls, to either side in turn. */
+static double gap_deg;     /* The wall at the room's 0 has a gap as far to either side. */
 static wall_t wall;
 
 void setUp(void)
@@ -27,6 +28,7 @@ void setUp(void)
     }
     turned_deg = 0;
     rough_mm = 0;
+    gap_deg = 0;
     calibrate_begin(&sample);
 }
 
@@ -34,11 +36,12 @@ void tearDown(void) {}
 
 static double distance_at(double degrees)
 {
-    double nearest = 1e9;
+    double nearest = fabs(remainder(degrees, 360)) < gap_deg ? 1700 : 1e9;
     for (unsigned i = 0; i < 4; i++) {
         const double towards = cos((degrees - 90.0 * i) * RADIANS);
         const double away = walls_mm[i] / towards;
-        nearest = towards > 0 && away < nearest ? away : nearest;
+        const bool is_gap = i == 0 && fabs(remainder(degrees, 360)) < gap_deg;
+        nearest = towards > 0 && away < nearest && !is_gap ? away : nearest;
     }
     return nearest;
 }
@@ -93,6 +96,14 @@ void test_two_walls_that_are_equally_near_are_refused(void)
     look(4);
     refuses("two walls are about equally near");
     finds(0, 1000, true, 20);
+}
+
+void test_two_faces_with_another_thing_between_them_are_refused(void)
+{
+    gap_deg = 5;
+    look(4);
+    refuses("straight towards the nearest wall, at 0 degrees, is another thing");
+    finds(90, 2000, true, 90);
 }
 
 void test_a_wall_that_is_not_straight_is_refused(void)
