@@ -17,6 +17,9 @@
 #define RECEIVING_TASK_PRIORITY 2
 #define LIDAR_TASK_STACK_WORDS 384
 
+/* The longest sleep: the console's line must not be late. */
+#define LOOK_MS 100u
+
 #if LIDAR_BY_STREAM
 static uint8_t stream[1024];
 #define STREAM stream
@@ -74,6 +77,12 @@ static void report_each_second(void)
     }
 }
 
+static void sleep_until_due(void)
+{
+    const uint32_t due_ms = tmini_next_poll_ms(&lidar);
+    tmini_freertos_sleep(&port, due_ms < LOOK_MS ? due_ms : LOOK_MS);
+}
+
 static bool start_lidar(void)
 {
     const tmini_freertos_wiring_t wiring = {
@@ -116,7 +125,7 @@ static void run_lidar(void *argument)
             obstacle_see(&obstacle, tmini_scan(&lidar));
         } else if (event == TMINI_EVENT_NONE) {
             report_each_second();
-            tmini_freertos_wait(&port, pdMS_TO_TICKS(10));
+            sleep_until_due();
         }
     }
 }

@@ -12,19 +12,37 @@
 
 #define STREAM_SIZE_MIN 128u
 
-/* The receiving task wakes after this many bytes or this time, so that a packet's end need not wait
- * for the next packet. It waits for its notification, not for the stream: only a sender wakes a
- * task that waits for a stream, and nothing is sent to a closed one. */
-#define RECEIVER_WAKE_BYTES 32u
+/* While bytes come, a task wakes after this time at the latest, so that a packet's end need not
+ * wait for the next packet. */
 #define PATIENCE_MS 10u
+
+/* The receiving task wakes after this many bytes. It waits for its notification, not for the
+ * stream: only a sender wakes a task that waits for a stream, and nothing is sent to a closed
+ * one. */
+#define RECEIVER_WAKE_BYTES 32u
 
 #define CHUNK 64u
 
-/* At least one tick, at any tick rate. */
+/* Rounded down, but at least one tick, at any tick rate; at most half of what a tick of 16 bits
+ * holds, because the clock must be read before the tick wraps around. */
 static TickType_t ticks_of(uint32_t ms)
 {
-    const TickType_t ticks = (TickType_t)(ms * configTICK_RATE_HZ / 1000u);
-    return ticks > 0 ? ticks : 1;
+    const uint32_t ticks = ms * configTICK_RATE_HZ / 1000u;
+    const TickType_t most = portMAX_DELAY / 2;
+    if (ticks > most) {
+        return most;
+    }
+    return ticks > 0 ? (TickType_t)ticks : 1;
+}
+
+/* Between writing what the other side reads and reading what it writes. The two are volatile, which
+ * is enough on one core. */
+static void write_before_reading(void)
+{
+    tmini_fence();
+#if defined(configNUMBER_OF_CORES) && configNUMBER_OF_CORES > 1
+    __atomic_thread_fence(__ATOMIC_SEQ_CST);
+#endif
 }
 
 /* ----------------------------------------------------------------- the UART's interrupt context */
@@ -35,8 +53,17 @@ static void notify_from_isr(tmini_freertos_t *port, TaskHandle_t task, BaseType_
 {
     if (task != NULL) {
         port->unannounced = 0;
+        port->wakes_at_once = false;
         vTaskNotifyGiveIndexedFromISR(task, TMINI_FREERTOS_NOTIFICATION, woken);
     }
+}
+
+/* A task that sleeps long wants the first byte, another one `wake_bytes` (see doze()). */
+static bool is_worth_waking(tmini_freertos_t *port, uint32_t wake_bytes)
+{
+    port->has_received = true;
+    write_before_reading();
+    return port->wakes_at_once || port->unannounced >= wake_bytes;
 }
 
 /* A stream that has refused a byte stays closed until the receiving task has emptied it. So the
@@ -52,7 +79,7 @@ static void send_to_stream(tmini_freertos_t *port, const uint8_t *bytes, size_t 
         port->counters.bytes_lost += (uint32_t)(count - sent);
         port->is_closed = true;
     }
-    if (port->is_closed || port->unannounced >= RECEIVER_WAKE_BYTES) {
+    if (is_worth_waking(port, RECEIVER_WAKE_BYTES) || port->is_closed) {
         notify_from_isr(port, port->receiver, woken);
     }
 }
@@ -60,7 +87,7 @@ static void send_to_stream(tmini_freertos_t *port, const uint8_t *bytes, size_t 
 static void feed(tmini_freertos_t *port, const uint8_t *bytes, size_t count, BaseType_t *woken)
 {
     tmini_feed(port->lidar, bytes, count);
-    if (port->unannounced >= TMINI_FREERTOS_WAKE_BYTES) {
+    if (is_worth_waking(port, TMINI_FREERTOS_WAKE_BYTES)) {
         notify_from_isr(port, port->poller, woken);
     }
 }
@@ -93,6 +120,33 @@ void tmini_freertos_gap_from_isr(tmini_freertos_t *port)
     }
 }
 
+/* ------------------------------------------------------------------------------------- sleeping */
+
+static void await_notification(TickType_t ticks)
+{
+    (void)ulTaskNotifyTakeIndexed(TMINI_FREERTOS_NOTIFICATION, pdTRUE, ticks);
+}
+
+/* For the task that the interrupt notifies, after it has taken all bytes. If none has come since
+ * the last call, it sleeps for `ticks`, and the next byte ends that. Else bytes are flowing: it
+ * waits for several, but not long.
+ * No byte is slept over. The interrupt stores it, sets `has_received`, then reads `wakes_at_once`;
+ * here the order is the opposite. So for a byte that this call does not see as received, the
+ * interrupt sees the flag and notifies, and a notification that comes before the wait ends it. A
+ * byte whose `has_received` is cleared here waits for the short time at most. */
+static void doze(tmini_freertos_t *port, TickType_t ticks)
+{
+    const TickType_t patience = ticks_of(PATIENCE_MS);
+    port->wakes_at_once = true;
+    write_before_reading();
+    if (port->has_received) {
+        port->has_received = false;
+        port->wakes_at_once = false;
+        ticks = ticks < patience ? ticks : patience;
+    }
+    await_notification(ticks);
+}
+
 /* --------------------------------------------------------------------------- the receiving task */
 
 static void announce(const tmini_freertos_t *port)
@@ -111,11 +165,6 @@ static void open_when_empty(tmini_freertos_t *port)
         port->is_closed = false;
         announce(port);
     }
-}
-
-static void await_notification(TickType_t ticks)
-{
-    (void)ulTaskNotifyTakeIndexed(TMINI_FREERTOS_NOTIFICATION, pdTRUE, ticks);
 }
 
 static void report_held(const tmini_freertos_t *port)
@@ -141,7 +190,7 @@ static void hand_on(tmini_freertos_t *port)
     }
     open_when_empty(port);
     if (count == 0) {
-        await_notification(ticks_of(PATIENCE_MS));
+        doze(port, portMAX_DELAY);
     }
 }
 
@@ -152,10 +201,10 @@ static void receive_task(void *argument)
         if (port->is_receiving) {
             hand_on(port);
         } else {
-            await_notification(0); /* Drops a notification for earlier bytes: the next one means a
-                                    * start. */
             port->is_parked = true;
-            await_notification(portMAX_DELAY);
+            while (!port->is_receiving) {
+                await_notification(portMAX_DELAY);
+            }
         }
     }
 }
@@ -186,6 +235,11 @@ tmini_status_t tmini_freertos_init(tmini_freertos_t *port, const tmini_freertos_
     return TMINI_OK;
 }
 
+static void wake_receiver(const tmini_freertos_t *port)
+{
+    (void)xTaskNotifyGiveIndexed(port->receiver, TMINI_FREERTOS_NOTIFICATION);
+}
+
 /* The task is created at the first start; later starts only wake it. */
 static void start_receiver(tmini_freertos_t *port)
 {
@@ -193,7 +247,7 @@ static void start_receiver(tmini_freertos_t *port)
         port->receiver = xTaskCreateStatic(receive_task, "tmini", TMINI_FREERTOS_STACK_WORDS, port,
                                            port->wiring.priority, port->stack, &port->task_memory);
     } else {
-        (void)xTaskNotifyGiveIndexed(port->receiver, TMINI_FREERTOS_NOTIFICATION);
+        wake_receiver(port);
     }
 }
 
@@ -208,6 +262,8 @@ tmini_status_t tmini_freertos_start(tmini_freertos_t *port, tmini_t *lidar)
     port->counters = (tmini_freertos_counters_t){0};
     port->lidar = lidar;
     port->unannounced = 0;
+    port->has_received = false;
+    port->wakes_at_once = false;
     port->is_parked = false;
     port->is_closed = false;
     if (port->stream != NULL) {
@@ -226,8 +282,11 @@ void tmini_freertos_stop(tmini_freertos_t *port)
         return;
     }
     port->is_receiving = false;
-    while (port->stream != NULL && !port->is_parked) {
-        vTaskDelay(1);
+    if (port->stream != NULL) {
+        wake_receiver(port);
+        while (!port->is_parked) {
+            vTaskDelay(1);
+        }
     }
 }
 
@@ -235,6 +294,20 @@ void tmini_freertos_wait(tmini_freertos_t *port, TickType_t ticks)
 {
     port->poller = xTaskGetCurrentTaskHandle();
     await_notification(ticks > 0 ? ticks : 1);
+}
+
+/* The first call returns at once, because bytes that came before it have notified no task. The
+ * receiving task notifies for each byte that it hands on. */
+void tmini_freertos_sleep(tmini_freertos_t *port, uint32_t due_ms)
+{
+    TaskHandle_t self = xTaskGetCurrentTaskHandle();
+    if (due_ms == 0 || port->poller != self) {
+        port->poller = self;
+    } else if (port->stream != NULL) {
+        await_notification(ticks_of(due_ms));
+    } else {
+        doze(port, ticks_of(due_ms));
+    }
 }
 
 void tmini_freertos_counters(const tmini_freertos_t *port, tmini_freertos_counters_t *counters)

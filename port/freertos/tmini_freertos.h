@@ -15,7 +15,7 @@
  *     for (;;) {
  *         switch (tmini_poll(&lidar)) {
  *         case TMINI_EVENT_SCAN: use(tmini_scan(&lidar)); break;
- *         case TMINI_EVENT_NONE: tmini_freertos_wait(&port, pdMS_TO_TICKS(10)); break;
+ *         case TMINI_EVENT_NONE: tmini_freertos_sleep(&port, tmini_next_poll_ms(&lidar)); break;
  *         default: break;
  *         }
  *     }
@@ -61,7 +61,7 @@ extern "C" {
 
 #ifndef TMINI_FREERTOS_WAKE_BYTES
 /** The polling task is woken after this many bytes: 13,100 come per second while scanning. Fewer
- * wait for the time-out of tmini_freertos_wait(). */
+ * wait for 10 ms in tmini_freertos_sleep(), for the time-out in tmini_freertos_wait(). */
 #define TMINI_FREERTOS_WAKE_BYTES 64
 #endif
 
@@ -96,12 +96,14 @@ typedef struct {
     TaskHandle_t poller;
     TaskHandle_t receiver;
     StreamBufferHandle_t stream;
-    volatile bool is_receiving; /* Written by start and stop. */
-    volatile bool is_parked;    /* The receiving task has noticed the stop. */
-    volatile bool is_closed;    /* The stream takes no bytes until it has been emptied. */
-    uint32_t unannounced;       /* Bytes since the polling task was last woken. */
-    uint32_t time_ms;           /* The time at `tick`, in ms. */
-    uint32_t time_rest;         /* The fraction of a millisecond to add. */
+    volatile bool is_receiving;  /* Written by start and stop. */
+    volatile bool is_parked;     /* The receiving task has noticed the stop. */
+    volatile bool is_closed;     /* The stream takes no bytes until it has been emptied. */
+    volatile bool has_received;  /* Bytes have come: set by the interrupt, cleared by its task. */
+    volatile bool wakes_at_once; /* The next byte shall wake the task that the interrupt wakes. */
+    uint32_t unannounced;        /* Bytes since the polling task was last woken. */
+    uint32_t time_ms;            /* The time at `tick`, in ms. */
+    uint32_t time_rest;          /* The fraction of a millisecond to add. */
     TickType_t tick;
     tmini_freertos_counters_t counters;
     StaticStreamBuffer_t stream_memory;
@@ -130,12 +132,20 @@ tmini_status_t tmini_freertos_init(tmini_freertos_t *port, const tmini_freertos_
 tmini_status_t tmini_freertos_start(tmini_freertos_t *port, tmini_t *lidar);
 
 /** From now on received bytes are dropped. With a stream it waits until the receiving task has
- * stopped: at most 10 ms and two ticks. Stop the lidar first, or it keeps scanning. The UART's
+ * stopped: at most two ticks. Stop the lidar first, or it keeps scanning. The UART's
  * interrupt must not be running on another core. */
 void tmini_freertos_stop(tmini_freertos_t *port);
 
-/** Sleeps until bytes have come, at most `ticks` (at least one): for a polling task that has
- * nothing left to do. About 10 ms is right, because the driver must also check its time-outs. The
+/** Sleeps until the lidar must be polled again, when tmini_poll() has returned TMINI_EVENT_NONE:
+ * `due_ms` is tmini_next_poll_ms(). The first byte after a silence wakes the task at once, so that
+ * a tickless system sleeps while a lidar is idle, lost or awaited; while bytes flow,
+ * TMINI_FREERTOS_WAKE_BYTES or 10 ms. Rounded down to ticks, but at least one; at once for 0. The
+ * caller is the task that will be woken. Only this task may call the functions of tmini.h: no call
+ * from elsewhere ends the sleep. */
+void tmini_freertos_sleep(tmini_freertos_t *port, uint32_t due_ms);
+
+/** Sleeps until TMINI_FREERTOS_WAKE_BYTES have come, at most `ticks` (at least one): for a polling
+ * task with a time of its own. Not above 10 ms, because fewer bytes wait for the time-out. The
  * caller is the task that will be woken. */
 void tmini_freertos_wait(tmini_freertos_t *port, TickType_t ticks);
 

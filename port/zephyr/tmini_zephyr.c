@@ -16,6 +16,10 @@
 /* UART_ERROR_NOISE, which older versions of Zephyr do not have. */
 #define ERROR_NOISE (1 << 5)
 
+/* While bytes come, the polling thread wakes after this time at the latest, so that a packet's end
+ * need not wait for the next packet. */
+#define PATIENCE_MS 10u
+
 /* --------------------------------------------------------------------------------- the callback */
 
 bool tmini_zephyr_count_errors(tmini_zephyr_t *port, int errors)
@@ -32,8 +36,10 @@ void tmini_zephyr_take(tmini_zephyr_t *port, const uint8_t *bytes, size_t count)
     tmini_feed(port->lidar, bytes, count);
     port->counters.bytes += (uint32_t)count;
     port->unannounced += (uint32_t)count;
-    if (port->unannounced >= CONFIG_TMINI_WAKE_BYTES) {
+    port->has_received = true;
+    if (port->wakes_at_once || port->unannounced >= CONFIG_TMINI_WAKE_BYTES) {
         port->unannounced = 0;
+        port->wakes_at_once = false;
         k_sem_give(&port->received);
     }
 }
@@ -53,6 +59,7 @@ int tmini_zephyr_init(tmini_zephyr_t *port, const struct device *uart)
         return -EINVAL;
     }
     *port = (tmini_zephyr_t){0};
+    k_sem_init(&port->received, 0, 1);
     if (uart == NULL) {
         return -EINVAL;
     }
@@ -63,7 +70,6 @@ int tmini_zephyr_init(tmini_zephyr_t *port, const struct device *uart)
     if (error != 0 && error != -ENOSYS && error != -ENOTSUP) {
         return error;
     }
-    k_sem_init(&port->received, 0, 1);
     port->uart = uart;
     return 0;
 }
@@ -78,6 +84,8 @@ int tmini_zephyr_start(tmini_zephyr_t *port, tmini_t *lidar)
     }
     port->counters = (tmini_zephyr_counters_t){0};
     port->unannounced = 0;
+    port->has_received = false;
+    port->wakes_at_once = false;
     port->lidar = lidar;
     const int error = tmini_zephyr_begin_reception(port);
     if (error != 0) {
@@ -97,6 +105,27 @@ void tmini_zephyr_wait(tmini_zephyr_t *port, k_timeout_t timeout)
 {
     (void)k_sem_take(&port->received, timeout);
     tmini_zephyr_keep_receiving(port);
+}
+
+/* If no byte has come since the last sleep, the next one ends this sleep. Else bytes are flowing:
+ * the thread waits for several, but not long. The callback holds the same lock while it feeds the
+ * lidar. So each byte has come before this, and the sleep is short, or it comes later and gives the
+ * semaphore, which also counts before the wait: none is slept over. */
+static uint32_t sleep_ms(tmini_zephyr_t *port, uint32_t due_ms)
+{
+    const k_spinlock_key_t key = k_spin_lock(&port->lock);
+    const bool is_flowing = port->has_received;
+    port->has_received = false;
+    port->wakes_at_once = !is_flowing;
+    k_spin_unlock(&port->lock, key);
+    return is_flowing && due_ms > PATIENCE_MS ? PATIENCE_MS : due_ms;
+}
+
+void tmini_zephyr_sleep(tmini_zephyr_t *port, uint32_t due_ms)
+{
+    if (due_ms > 0) {
+        tmini_zephyr_wait(port, K_MSEC(sleep_ms(port, due_ms)));
+    }
 }
 
 void tmini_zephyr_counters(const tmini_zephyr_t *port, tmini_zephyr_counters_t *counters)

@@ -18,7 +18,7 @@
  *     for (;;) {
  *         switch (tmini_poll(&lidar)) {
  *         case TMINI_EVENT_SCAN: use(tmini_scan(&lidar)); break;
- *         case TMINI_EVENT_NONE: tmini_zephyr_wait(&port, K_MSEC(10)); break;
+ *         case TMINI_EVENT_NONE: tmini_zephyr_sleep(&port, tmini_next_poll_ms(&lidar)); break;
  *         default: break;
  *         }
  *     }
@@ -65,6 +65,8 @@ typedef struct {
     struct k_sem received;
     struct k_spinlock lock; /* Separates stopping from the callback on another core. */
     uint32_t unannounced;   /* Bytes since the polling thread was last woken. */
+    bool has_received;      /* Bytes have come since the last tmini_zephyr_sleep(). */
+    bool wakes_at_once;     /* The next byte shall wake the polling thread. */
 #ifdef CONFIG_TMINI_UART_ASYNC
     uint8_t buffers[2][CONFIG_TMINI_UART_BUFFER];
     uint8_t buffer;           /* The buffer given to the UART driver last. */
@@ -96,9 +98,14 @@ int tmini_zephyr_start(tmini_zephyr_t *port, tmini_t *lidar);
 /** Ends reception. Stop the lidar before, or it goes on scanning. */
 void tmini_zephyr_stop(tmini_zephyr_t *port);
 
-/** Sleeps until bytes have come (CONFIG_TMINI_WAKE_BYTES), at most `timeout`: for a polling thread
- * that has nothing left to do. About 10 ms is right, because the driver must also check its
- * time-outs. */
+/** Sleeps until the lidar must be polled again, when tmini_poll() has returned TMINI_EVENT_NONE:
+ * `due_ms` is tmini_next_poll_ms(); 0: not at all. The first byte after a silence wakes the thread
+ * at once, so that a tickless system sleeps while a lidar is idle, lost or awaited; while bytes
+ * flow, CONFIG_TMINI_WAKE_BYTES or 10 ms. */
+void tmini_zephyr_sleep(tmini_zephyr_t *port, uint32_t due_ms);
+
+/** Sleeps until CONFIG_TMINI_WAKE_BYTES have come, at most `timeout`: for a polling thread with a
+ * time of its own. Not above 10 ms, because fewer bytes wait for the time-out. */
 void tmini_zephyr_wait(tmini_zephyr_t *port, k_timeout_t timeout);
 
 /** Copies the counters. */

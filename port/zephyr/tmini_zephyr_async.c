@@ -13,6 +13,8 @@
 /* How long the driver may take to end reception: longer than the time-out. */
 #define END_MS 20
 
+/* After a failure the polling thread sleeps for a short time only, as if bytes had come, and tries
+ * again. */
 static int begin(tmini_zephyr_t *port)
 {
     port->buffer = 0;
@@ -21,6 +23,7 @@ static int begin(tmini_zephyr_t *port)
         uart_rx_enable(port->uart, port->buffers[0], sizeof port->buffers[0], TIMEOUT_US);
     if (error != 0) {
         port->is_enabled = false;
+        port->has_received = true;
     }
     return error;
 }

@@ -7,9 +7,6 @@
 
 #include <errno.h>
 
-/* The longest pause between polls without bytes: the driver must also check its time-outs. */
-#define POLL_MS 10
-
 typedef struct {
     const struct device *uart;
     k_thread_stack_t *stack;
@@ -27,16 +24,20 @@ typedef struct {
     void *user_data;
 } device_data_t;
 
-static tmini_event_t poll_once(const struct device *device)
+/* Returns for how long the thread may sleep, in milliseconds. */
+static uint32_t poll_once(const struct device *device)
 {
     device_data_t *const data = device->data;
+    uint32_t due_ms = 0;
     (void)k_mutex_lock(&data->lock, K_FOREVER);
     const tmini_event_t event = tmini_poll(&data->lidar);
-    if (event != TMINI_EVENT_NONE && data->callback != NULL) {
+    if (event == TMINI_EVENT_NONE) {
+        due_ms = tmini_next_poll_ms(&data->lidar);
+    } else if (data->callback != NULL) {
         data->callback(device, event, data->user_data);
     }
     (void)k_mutex_unlock(&data->lock);
-    return event;
+    return due_ms;
 }
 
 static void run(void *argument, void *unused_1, void *unused_2)
@@ -46,9 +47,7 @@ static void run(void *argument, void *unused_1, void *unused_2)
     (void)unused_1;
     (void)unused_2;
     for (;;) {
-        if (poll_once(device) == TMINI_EVENT_NONE) {
-            tmini_zephyr_wait(&data->port, K_MSEC(POLL_MS));
-        }
+        tmini_zephyr_sleep(&data->port, poll_once(device));
     }
 }
 
@@ -110,6 +109,7 @@ void tmini_zephyr_device_unlock(const struct device *device)
 {
     device_data_t *const data = device->data;
     (void)k_mutex_unlock(&data->lock);
+    k_sem_give(&data->port.received); /* The thread polls: a wish may have changed what is due. */
 }
 
 void tmini_zephyr_device_callback_set(const struct device *device, tmini_zephyr_callback_t callback,

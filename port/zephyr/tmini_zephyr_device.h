@@ -55,7 +55,7 @@ tmini_t *tmini_zephyr_device_lidar(const struct device *device);
  * the lidar, for a short time. Returns the lidar. Any thread; waits for the device's thread. */
 tmini_t *tmini_zephyr_device_lock(const struct device *device);
 
-/** Lets the device's thread continue. */
+/** Lets the device's thread continue, and wakes it, so that what was asked for begins at once. */
 void tmini_zephyr_device_unlock(const struct device *device);
 
 /** Copies the port's counters; any thread. */

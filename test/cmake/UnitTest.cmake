@@ -3,7 +3,7 @@
 
 # tmini_add_unit_test(NAME
 #     SOURCES test_file.c [more.c …]   the first one holds the tests: void test_…(void)
-#     [SHARED file.c]                  a source whose tests run, too, before those of the first one
+#     [SHARED file.c …]                sources whose tests run, too, before those of the first one
 #     [MOCKS header.h …]               functions declared there are mocked; in the test file,
 #                                      #include "mock_header.h"
 #     [LIBRARIES target …]             linked besides the library, Unity and CMock
@@ -99,7 +99,7 @@ function(tmini_register_unit_test name label)
 endfunction()
 
 function(tmini_add_unit_test name)
-    cmake_parse_arguments(arg "" "LABEL;SHARED" "SOURCES;MOCKS;LIBRARIES;NOT_ON" ${ARGN})
+    cmake_parse_arguments(arg "" "LABEL" "SOURCES;SHARED;MOCKS;LIBRARIES;NOT_ON" ${ARGN})
     if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
         message(FATAL_ERROR "tmini_add_unit_test(${name}): needs SOURCES; "
             "not understood: ${arg_UNPARSED_ARGUMENTS}")
@@ -116,10 +116,8 @@ function(tmini_add_unit_test name)
     file(MAKE_DIRECTORY ${dir})
     list(GET arg_SOURCES 0 test_file)
     get_filename_component(test_file ${test_file} ABSOLUTE)
-    if(arg_SHARED)
-        get_filename_component(arg_SHARED ${arg_SHARED} ABSOLUTE)
-        list(APPEND arg_SOURCES ${arg_SHARED})
-    endif()
+    list(TRANSFORM arg_SHARED PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+    list(APPEND arg_SOURCES ${arg_SHARED})
     tmini_generate_runner(runner ${test_file} ${dir} "${arg_SHARED}")
     tmini_generate_mocks(mocks ${dir} ${arg_MOCKS})
     set_source_files_properties(${runner} ${mocks} PROPERTIES COMPILE_OPTIONS -w)

@@ -42,8 +42,12 @@ static void begin(const port_way_t *chosen)
     }
 }
 
-/* Begins with the next way; returns false after the last one. */
-static bool next_way(void)
+void begin_again(void)
+{
+    begin(way);
+}
+
+bool next_way(void)
 {
     const port_way_t *const next = way == NULL ? port_ways : way + 1;
     if (next == &port_ways[port_way_count]) {

@@ -69,6 +69,10 @@ void port_assert_stopped(void); /* Nothing is left switched on, or taken. */
     const scanning_t port_program = {                   \
         .port = &tmini_##platform##_port, .context = &port, .wait = wait, .work = PORT_WORK}
 
+/* Begins with the next way; returns false after the last one. */
+bool next_way(void);
+void begin_again(void); /* With the same way. */
+
 /* Starts the port; the port and the lidar. */
 void start_port(void);
 void start(void);

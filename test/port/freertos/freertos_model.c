@@ -10,6 +10,7 @@
 #include "FreeRTOS.h"
 #include "board.h"
 #include "console.h"
+#include "interrupting_atomic.h"
 #include "irq_lines.h"
 #include "stream_buffer.h"
 
@@ -213,6 +214,7 @@ TaskHandle_t xTaskCreateStatic(TaskFunction_t function, const char *name, uint32
 
 TaskHandle_t xTaskGetCurrentTaskHandle(void)
 {
+    interrupt();
     return world.current;
 }
 
@@ -259,6 +261,7 @@ uint32_t ulTaskNotifyTakeIndexed(UBaseType_t index, BaseType_t clear, TickType_t
 {
     struct freertos_task *const self = world.current;
     demand(index < configTASK_NOTIFICATION_ARRAY_ENTRIES, "an index");
+    interrupt();
     if (self->notices == 0 && ticks > 0) {
         wait_until(after(ticks), true);
     }
@@ -308,6 +311,9 @@ size_t xStreamBufferReceive(StreamBufferHandle_t stream, void *bytes, size_t siz
     memcpy(bytes, stream->memory, taken);
     stream->count -= taken;
     memmove(stream->memory, &stream->memory[taken], stream->count);
+    if (world.current != &world.tasks[0]) {
+        interrupt();
+    }
     return taken;
 }
 

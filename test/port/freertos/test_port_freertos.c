@@ -11,6 +11,7 @@
 #include "board.h"
 #include "every_port.h"
 #include "freertos_model.h"
+#include "sleeping.h"
 #include "tmini_freertos.h"
 
 #define POLLING_PRIORITY 1u
@@ -39,6 +40,13 @@ static void wait(void)
 {
     tmini_freertos_wait(&port, pdMS_TO_TICKS(10));
 }
+
+void port_sleep(uint32_t due_ms)
+{
+    tmini_freertos_sleep(&port, due_ms);
+}
+
+const uint32_t port_tick_us = TICK_US;
 
 static void restart_uart(void *uart)
 {
@@ -262,18 +270,25 @@ void test_what_cannot_work_is_refused(void)
     TEST_ASSERT_EQUAL_UINT(1, freertos_model_tasks());
 }
 
-/* The receiving task notices the stop only when its wait for bytes times out. */
+/* Without room for its bytes, the receiving task notices the stop only after a tick. */
 void test_stopping_waits_for_the_receiving_task_every_time(void)
 {
+    static const uint8_t nothing[300];
     receive_by_stream();
+    init_lidar(256);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
-    for (unsigned i = 0; i < 3; i++) {
+    for (unsigned i = 0; i < 6; i++) {
+        const bool is_full = i % 2 == 1;
         TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
+        freertos_model_receive(false, nothing, is_full ? sizeof nothing : 0);
         vTaskDelay(1);
         const uint64_t begun_us = machine.now_us;
         tmini_freertos_stop(&port);
-        TEST_ASSERT_TRUE(machine.now_us > begun_us);
-        TEST_ASSERT_TRUE(machine.now_us - begun_us <= 10000 + 2 * TICK_US);
+        TEST_ASSERT_TRUE(port.is_parked);
+        TEST_ASSERT_EQUAL(is_full, machine.now_us > begun_us);
+        TEST_ASSERT_TRUE(machine.now_us - begun_us <= 2 * TICK_US);
+        while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
+        }
     }
 }
 
@@ -287,6 +302,23 @@ void test_bytes_in_the_stream_at_a_stop_are_not_handed_on_later(void)
     tmini_freertos_stop(&port);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     TEST_ASSERT_EQUAL_INT(pdTRUE, xStreamBufferIsEmpty(port.stream));
+}
+
+/* ------------------------------------------------------------------------------------- sleeping */
+
+/* A tick of 16 bits wraps around after 64 s; its maximum would mean for ever. */
+void test_no_sleep_reaches_the_wrap_of_the_tick(void)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_init(&port, &wiring));
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
+    const uint64_t begun_us = machine.now_us;
+    tmini_freertos_sleep(&port, 65535);
+    TEST_ASSERT_EQUAL_UINT64(begun_us, machine.now_us); /* The first call. */
+    tmini_freertos_sleep(&port, 0);
+    TEST_ASSERT_EQUAL_UINT64(begun_us, machine.now_us);
+    tmini_freertos_sleep(&port, 65535);
+    TEST_ASSERT_TRUE(machine.now_us - begun_us > 30000000);
+    TEST_ASSERT_TRUE(machine.now_us - begun_us <= 65535000);
 }
 
 /* ----------------------------------------------------------------------------------- the clock */

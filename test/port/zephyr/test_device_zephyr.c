@@ -95,6 +95,22 @@ void test_other_commands_are_given_between_lock_and_unlock(void)
     TEST_ASSERT_EQUAL_UINT(1, infos);
 }
 
+/* At rest, nothing but the unlocking wakes the thread. */
+void test_a_command_from_another_thread_wakes_the_sleeping_one(void)
+{
+    pass_ms(5000);
+    const unsigned before = board.waits;
+    pass_ms(60000);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(3, board.waits - before);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(tmini_zephyr_device_lock(device)));
+    tmini_zephyr_device_unlock(device);
+    pass_ms(100);
+    TEST_ASSERT_EQUAL_UINT(1, infos);
+    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_device_start(device));
+    pass_ms(3000);
+    TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(tmini_zephyr_device_lidar(device)));
+}
+
 void test_without_a_callback_the_device_scans_too(void)
 {
     tmini_zephyr_device_callback_set(device, NULL, NULL);
@@ -118,4 +134,5 @@ void test_a_uart_that_is_not_ready_makes_no_device(void)
     board.ready = false;
     zephyr_model_boot();
     TEST_ASSERT_FALSE(device_is_ready(device));
+    TEST_ASSERT_LESS_THAN_INT(0, tmini_zephyr_device_start(device));
 }

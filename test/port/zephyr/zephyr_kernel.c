@@ -144,6 +144,8 @@ void k_sem_give(struct k_sem *sem)
 
 int k_sem_take(struct k_sem *sem, k_timeout_t timeout)
 {
+    irq_access();
+    board.waits++;
     block((uint64_t)timeout.ms * 1000u, sem);
     if (sem->count == 0) {
         return -EAGAIN;
@@ -182,6 +184,7 @@ int k_mutex_unlock(struct k_mutex *mutex)
 /* On one processor a spin lock keeps interrupts out. */
 k_spinlock_key_t k_spin_lock(struct k_spinlock *lock)
 {
+    irq_access();
     const k_spinlock_key_t key = {.key = irq.masked};
     if (lock->held) {
         abort(); /* A deadlock. */
@@ -195,5 +198,5 @@ void k_spin_unlock(struct k_spinlock *lock, k_spinlock_key_t key)
 {
     lock->held = false;
     irq.masked = key.key != 0;
-    irq_serve();
+    irq_access();
 }

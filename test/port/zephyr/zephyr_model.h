@@ -39,6 +39,7 @@ typedef struct {
     bool late; /* An interrupt that was already pending when it was switched off. */
     uart_irq_callback_user_data_t callback;
     void *user_data;
+    unsigned waits; /* How often a thread has waited for a semaphore. */
     unsigned wakes; /* How often the semaphore, not the timeout, has woken the polling thread. */
 } zephyr_board_t;
 

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "sleeping.h"
 #include "unity.h"
 
 tmini_zephyr_t port;
@@ -13,6 +14,13 @@ static void wait(void)
 {
     tmini_zephyr_wait(&port, K_MSEC(10));
 }
+
+void port_sleep(uint32_t due_ms)
+{
+    tmini_zephyr_sleep(&port, due_ms);
+}
+
+const uint32_t port_tick_us = 1000;
 
 PORT_UNDER_TEST(zephyr, &zephyr_model_uart);
 
