@@ -114,6 +114,24 @@ void test_a_line_that_does_not_fall_quiet_is_a_failed_attempt(void)
     }
 }
 
+void test_noise_and_then_silence_cause_no_reboot(void)
+{
+    static const char *const pauses[] = {"~40 !FAILED +500 >65", "~40 !FAILED +1000 >65",
+                                         "~40 !FAILED +2000 >65"};
+    tell("start >65");
+    for (unsigned i = 0; i < 6; i++) { /* Asking fails, then starting, three times. */
+        for (unsigned j = 0; j < 14; j++) {
+            go_on("~40 <junk");
+        }
+        go_on(i % 2 == 0 ? "~40 >65" : pauses[i / 2]);
+    }
+    go_on("+50");
+    for (unsigned asks = 0; asks < 30; asks++) {
+        go_on(">0D +250");
+    }
+    go_on(">65 +50 >60");
+}
+
 void test_a_loss_before_a_whole_turn_continues_the_ladder(void)
 {
     tell(LOST ">65 +50 >0D " FAILS "+500 >65 +50 >0D <600 >60 <scan <S !RECOVERED +1000 !LOST "
@@ -322,6 +340,12 @@ void test_a_clock_that_is_set_back_a_little_makes_no_scan_younger(void)
     go_on("~250 !NONE age:300");
     rig.now_ms -= 200;
     go_on("age:300 !NONE age:300");
+}
+
+void test_a_clock_may_begin_at_zero(void)
+{
+    rig.now_ms = 0;
+    tell("!NONE age:2147483647 ~50 !NONE age:2147483647 start >65");
 }
 
 void test_a_clock_that_wraps_around_to_zero_makes_no_scan_younger(void)
