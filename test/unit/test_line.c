@@ -353,6 +353,37 @@ void test_a_clock_that_steps_back_by_more_than_10_ms_may_hide_a_silence(void)
     TEST_ASSERT_FALSE(lidar.line.doubt);
 }
 
+/* ---- A program that is behind ---- */
+
+static bool is_behind_after(uint32_t passed_ms)
+{
+    (void)look_after(passed_ms, 13);
+    return tmini_line_is_behind(&lidar);
+}
+
+void test_a_pause_between_polls_is_no_work(void)
+{
+    TEST_ASSERT_FALSE(is_behind_after(200));
+    TEST_ASSERT_FALSE(is_behind_after(200));
+}
+
+void test_a_pause_counts_as_work_if_the_port_still_holds_bytes(void)
+{
+    tmini_feed_held(&lidar, 100);
+    TEST_ASSERT_TRUE(is_behind_after(151));
+}
+
+void test_a_program_is_behind_after_more_than_150_ms_of_work(void)
+{
+    (void)look_after(1000, 13);
+    is_settled = false;
+    TEST_ASSERT_FALSE(is_behind_after(149));
+    TEST_ASSERT_TRUE(is_behind_after(1));
+    TEST_ASSERT_TRUE(is_behind_after(65536));
+    is_settled = true;
+    TEST_ASSERT_FALSE(is_behind_after(1));
+}
+
 /* ---- When a packet came ---- */
 
 /* The 70,000 bytes after it take 5332 ms. */
