@@ -374,7 +374,8 @@ void test_a_field_around_the_lidar_has_all_directions(void)
     static const tmini_xy_t triangle[] = {{1000, 0}, {-500, 866}, {-500, -866}};
     static const place_t in_box[] = {{0, 500, true, true},    {135, 700, true, true},
                                      {135, 710, false, true}, {180, 500, true, true},
-                                     {-90, 501, false, true}, {359, 20, true, true}};
+                                     {-90, 501, false, true}, {359, 20, true, true},
+                                     {90, 500, true, true},   {270, 500, true, true}};
     static const tmini_xy_t aside[] = {{-200, -400}, {800, 500}};
     static const place_t in_aside[] = {{0, 799, true, true},   {90, 399, true, true},
                                        {180, 199, true, true}, {270, 499, true, true},

@@ -371,6 +371,9 @@ void test_a_pause_counts_as_work_if_the_port_still_holds_bytes(void)
 {
     tmini_feed_held(&lidar, 100);
     TEST_ASSERT_TRUE(is_behind_after(151));
+    open_at(1000);
+    tmini_feed_held(&lidar, 100);
+    TEST_ASSERT_TRUE(is_behind_after(65536));
 }
 
 void test_a_program_is_behind_after_more_than_150_ms_of_work(void)
