@@ -5,6 +5,7 @@
 
 import json
 import os
+import re
 import signal
 import socket
 from pathlib import Path
@@ -94,9 +95,9 @@ def test_a_slow_listener_is_told_what_it_lost_and_the_others_lose_nothing(lidar,
     stats, text = counts(tmini, content)
     assert (stats["checksum_errors"], "damaged" in text) == (0, False)
     stats, text = counts(tmini, slow_content)
-    assert "damaged" in text
+    places = int(re.search(r"damaged in (\d+) place", text)[1])
     assert stats["packets"] > 500
-    assert stats["checksum_errors"] <= 1
+    assert stats["checksum_errors"] <= places  # One packet is cut at each.
 
 
 def test_a_listener_that_takes_nothing_for_15_s_is_left(lidar, bridge, listen, clock):
