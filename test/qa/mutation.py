@@ -215,20 +215,20 @@ class Build:
         with open(os.path.join(self.folder, "compile_commands.json"), encoding="utf-8") as file:
             self.entries = json.load(file)
         self.entry_of = {os.path.realpath(object_of(entry)): entry for entry in self.entries}
-        self.archives, self.folders = [], []
+        self.archives, self.folders, self.links = [], [], {}
         for place, folders, files in os.walk(self.folder):  # Does not follow links, which may form a circle.
             if "CMakeCache.txt" in files and place != self.folder:
                 folders.clear()  # This is another build.
                 continue
+            if "link.txt" in files:
+                self.links[os.path.basename(place)] = os.path.join(place, "link.txt")
             self.archives += [os.path.join(place, file) for file in sorted(files) if file.endswith(".a") and
                               os.path.isdir(os.path.join(place, "CMakeFiles", file[3:-2] + ".dir"))]  # By this build.
             self.folders += [os.path.join(place, name) for name in sorted(folders) if re.match(r"test_.*\.dir$", name)]
 
     def link_of(self, target):
         """The folder in which a program is linked, and the command."""
-        links = glob.glob(os.path.join(glob.escape(self.folder), "**", "CMakeFiles", target + ".dir", "link.txt"),
-                          recursive=True)
-        link = min(links, key=len)  # Tests may have made other builds in folders of this one.
+        link = self.links[target + ".dir"]
         with open(link, encoding="utf-8") as file:
             return os.path.dirname(os.path.dirname(os.path.dirname(link))), shlex.split(file.read())
 
