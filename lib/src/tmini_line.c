@@ -157,7 +157,7 @@ bool tmini_line_look(tmini_t *lidar, bool is_scanning)
     const bool is_back = line->now_ms != 0 && back_ms <= STEP_BACK_MAX_MS;
     const uint32_t passed_ms = is_back ? 0 : clock_ms - line->now_ms;
     line->now_ms += passed_ms;
-    if (line->now_ms == 0) {
+    if (line->now_ms == 0 && passed_ms > 0) {
         line->now_ms = 1; /* 0 means: never looked. The clock catches up. */
     }
     line->received = head;
