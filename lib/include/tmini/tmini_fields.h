@@ -10,7 +10,7 @@
  *     static const tmini_xy_t stop_box[] = {{0, -250}, {600, 250}};   corners of a box
  *     static const tmini_xy_t slow_box[] = {{0, -250}, {1500, 250}};
  *     static tmini_field_t list[] = {
- *         {.corners = stop_box, .corner_count = 2},
+ *         {.corners = stop_box, .corner_count = 2, .unseen_percent = 10},      see "Blind"
  *         {.corners = slow_box, .corner_count = 2},
  *     };
  *     static const tmini_fields_t fields = {.list = list, .count = 2};

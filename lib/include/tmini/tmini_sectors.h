@@ -15,6 +15,11 @@
  *
  * From whole scans:
  *
+ *     static tmini_sector_t memory[8];
+ *     static tmini_sectors_t sectors;
+ *
+ *     (void)tmini_sectors_init(&sectors, memory, 8, TMINI_FILTER_NONE);      once
+ *     ...
  *     tmini_sectors_add_scan(&sectors, tmini_scan(&lidar));
  *     if (!tmini_sector_is_free(&sectors.sectors[0], 300)) { stop(); }
  *     else if (tmini_scan(&lidar)->complete) { go(); }
