@@ -176,9 +176,8 @@ void tmini_recovery_begin(tmini_t *lidar)
     tmini_recovery_restart_reception(lidar);
     if (lidar->is_recovery_off) {
         tmini_command_wait(lidar, TMINI_PHASE_LISTENING, 0);
-    } else if (recovery->attempts > 0) {
-        tmini_recovery_back_off(lidar,
-                                TMINI_OK); /* Lost again before it made a complete revolution. */
+    } else if (recovery->attempts > 0) { /* Lost again before it made a complete revolution. */
+        tmini_recovery_back_off(lidar, TMINI_OK);
     } else {
         tmini_recovery_reset(lidar);
         tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);

@@ -314,8 +314,6 @@ void test_samples_without_a_range_and_without_a_start_packet_are_no_loss(void)
     is_in(TMINI_STATE_SCANNING);
 }
 
-/* ---- Without recovery ---- */
-
 /* ---- How old the newest complete scan is ---- */
 
 /* A turn of the rig is not a full circle, so a builder's verdict is put in its place. */
