@@ -1,41 +1,28 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The driver, on a mocked port.
-foreach(test test_tmini test_monitor test_blocking)
-    tmini_add_unit_test(${test}
-        SOURCES ${test}.c ../support/rig.c ../support/invariants.c
-        MOCKS ../support/port_functions.h
-        LIBRARIES tmini_test_support
-        )
-    if(TARGET ${test})
-        target_include_directories(${test} PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
-    endif()
-endforeach()
+# tmini_add_driver_tests(TEST … [WITH SOURCE …] [NOT_ON MACHINE …]): the driver, on a mocked port.
+function(tmini_add_driver_tests)
+    cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "WITH;NOT_ON")
+    foreach(test ${arg_UNPARSED_ARGUMENTS})
+        tmini_add_unit_test(${test}
+            SOURCES ${test}.c ../support/rig.c ${arg_WITH} ../support/invariants.c
+            MOCKS ../support/port_functions.h
+            LIBRARIES tmini_test_support
+            NOT_ON ${arg_NOT_ON})
+        if(TARGET ${test})
+            target_include_directories(${test} PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
+        endif()
+    endforeach()
+endfunction()
 
-# The same, told in words. The ATmega2560 keeps text in its 8 KB of RAM: this is too much.
-foreach(test test_command test_recovery test_wish)
-    tmini_add_unit_test(${test}
-        SOURCES ${test}.c ../support/rig.c ../support/tale.c ../support/invariants.c
-        MOCKS ../support/port_functions.h
-        LIBRARIES tmini_test_support
-        NOT_ON int16)
-    if(TARGET ${test})
-        target_include_directories(${test} PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
-    endif()
-endforeach()
+tmini_add_driver_tests(test_tmini test_monitor test_blocking)
+
+# Told in words. The ATmega2560 keeps text in its 8 KB of RAM: this is too much.
+tmini_add_driver_tests(test_command test_recovery test_wish WITH ../support/tale.c NOT_ON int16)
 
 # Tests with large rings.
-foreach(test test_effort test_pauses test_line)
-    tmini_add_unit_test(${test}
-        SOURCES ${test}.c ../support/rig.c ../support/invariants.c
-        MOCKS ../support/port_functions.h
-        LIBRARIES tmini_test_support
-        NOT_ON int16)
-    if(TARGET ${test})
-        target_include_directories(${test} PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
-    endif()
-endforeach()
+tmini_add_driver_tests(test_effort test_pauses test_line NOT_ON int16)
 
 # The driver with a lidar that turns (turns.h), on a port that records the commands.
 foreach(test test_honest_scans test_honest_commands test_real_bytes)
