@@ -58,6 +58,16 @@ def receive(clock, listener, size):
     return content
 
 
+def whole_chunks(content):
+    """Without the last chunk, which receive() may have cut in its head: that would be damage."""
+    end = len(MAGIC)
+    while True:
+        size = 10 + int.from_bytes(content[end + 6:end + 8], "little")
+        if end + size > len(content):
+            return content[:end]
+        end += size
+
+
 def counts(tmini, content):
     """What the tool finds in a timed stream."""
     Path("heard.tmini").write_bytes(content)
@@ -92,7 +102,7 @@ def test_a_slow_listener_is_told_what_it_lost_and_the_others_lose_nothing(lidar,
     content = receive(clock, well, 140000)
     receive(clock, slow, 1)
     slow_content = MAGIC[:1] + receive(clock, slow, 100000)
-    stats, text = counts(tmini, content)
+    stats, text = counts(tmini, whole_chunks(content))
     assert (stats["checksum_errors"], "damaged" in text) == (0, False)
     stats, text = counts(tmini, slow_content)
     places = int(re.search(r"damaged in (\d+) place", text)[1])
