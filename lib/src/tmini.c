@@ -103,11 +103,12 @@ static void fail(tmini_t *lidar, int status)
 /* Looks at the line. Once bytes have come, the lidar is no longer known to be idle. */
 TMINI_NOINLINE static void look(tmini_t *lidar)
 {
-    if (lidar->line.now_ms == 0) { /* The first look: no scan has come. */
-        lidar->complete_ms = lidar->link.port->now_ms(lidar->link.port_context) - AGE_MAX_MS;
-    }
+    const bool is_first = lidar->line.now_ms == 0;
     if (tmini_line_look(lidar, tmini_command_is_scanning(lidar))) {
         tmini_command_disturb(lidar);
+    }
+    if (is_first) { /* No scan has come. */
+        lidar->complete_ms = lidar->line.now_ms - AGE_MAX_MS;
     }
 }
 

@@ -50,12 +50,6 @@ static void count_one(uint16_t *total)
     }
 }
 
-/* True if bytes may be missing before the packet. One byte before a start packet is LastCRC. */
-static bool is_gap(const tmini_packet_t *packet, uint16_t bytes)
-{
-    return bytes > (tmini_packet_is_start(packet) ? 1 : 0);
-}
-
 /* True if the scan took more than one and a half turns at the reported frequency, if there is
  * one. */
 static bool took_too_long(const tmini_builder_t *builder)
@@ -78,7 +72,7 @@ static void note_end(tmini_builder_t *builder, const tmini_packet_t *packet, int
     }
     scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - scan->checksum_errors);
     scan->end_ms = (int32_t)(now_ms - scan->start_ms) < 0 ? scan->start_ms : now_ms;
-    if (!is_start || is_gap(packet, packet->gap) || ahead > JUMP_Q6) {
+    if (!is_start || tmini_packet_misses(packet, packet->gap) || ahead > JUMP_Q6) {
         count_one(&scan->gaps);
     }
 }
@@ -101,7 +95,7 @@ static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32
         scan->gaps = 1; /* It was 0. */
         builder->late_scans++;
     } else if (packet->gap == TMINI_GAP_UNKNOWN && ahead <= JUMP_Q6 &&
-               !is_gap(packet, packet->frame->gap)) {
+               !tmini_packet_misses(packet, packet->frame->gap)) {
         builder->late_scans++;
     }
 }
@@ -184,7 +178,7 @@ bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, u
             finish(builder, packet, ahead, now_ms);
             return true;
         }
-        if (packet->gap > 0 || ahead > JUMP_Q6) {
+        if (tmini_packet_misses(packet, packet->gap) || ahead > JUMP_Q6) {
             count_one(&builder->scan.gaps);
         }
     } else if (is_start || builder->origin_q6 != NO_ORIGIN) {

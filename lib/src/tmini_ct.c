@@ -67,7 +67,7 @@ void tmini_ct_discard(tmini_ct_t *ct)
     TMINI_COPY(ct->current, ct->trusted, sizeof ct->current);
 }
 
-tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)
+tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet, bool is_whole)
 {
     tmini_ct_verdict_t verdict = TMINI_CT_UNKNOWN;
     if (tmini_packet_is_start(packet)) {
@@ -76,7 +76,7 @@ tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)
             trust_current(ct);
         }
         tmini_ct_discard(ct);
-    } else if (ct->packets == 0 || packet->gap > 0) {
+    } else if (!is_whole) {
         tmini_ct_discard(ct); /* Until the next start packet the index is not known. */
         return TMINI_CT_UNKNOWN;
     } else {

@@ -12,11 +12,11 @@ tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring, 
     return tmini_parser_init(&decoder->parser, ring, max_samples);
 }
 
-/* One byte before a start packet is LastCRC (section 7). */
 static void note_turn(tmini_decoder_t *decoder)
 {
-    const bool is_start = tmini_packet_is_start(&decoder->packet);
-    const bool is_whole = decoder->is_whole && decoder->packet.gap <= (is_start ? 1 : 0);
+    const tmini_packet_t *const packet = &decoder->packet;
+    const bool is_start = tmini_packet_is_start(packet);
+    const bool is_whole = decoder->is_whole && !tmini_packet_misses(packet, packet->gap);
     decoder->was_whole = is_start && is_whole;
     decoder->is_whole = is_start || is_whole;
 }
@@ -25,7 +25,7 @@ static void note_turn(tmini_decoder_t *decoder)
 TMINI_INLINE bool take_opened(tmini_decoder_t *decoder, uint32_t now_ms)
 {
     note_turn(decoder);
-    decoder->verdict = (uint8_t)tmini_ct_add(&decoder->ct, &decoder->packet);
+    decoder->verdict = (uint8_t)tmini_ct_add(&decoder->ct, &decoder->packet, decoder->is_whole);
     if (decoder->builder.capacity == 0) {
         return false;
     }

@@ -9,8 +9,7 @@
 #include "effort.h"
 #include "receiver.h"
 
-#include "tmini/parts/tmini_builder.h"
-#include "tmini/parts/tmini_ct.h"
+#include "tmini/parts/tmini_decoder.h"
 #include "unity.h"
 
 #include <stdio.h>
@@ -26,8 +25,7 @@ static size_t size;
 static uint8_t memory[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL + 200];
 static receiver_t receiver;
-static tmini_builder_t builder;
-static tmini_ct_t turn;
+static tmini_decoder_t decoder; /* Takes what the receiver finds. */
 
 typedef struct {
     unsigned packets_before_first;
@@ -74,11 +72,12 @@ static void handle_packet(uint32_t now_ms)
     replay.points += packet->count;
     replay.starts += tmini_packet_is_start(packet) ? 1 : 0;
     replay.packets_before_first += replay.starts == 0 ? 1 : 0;
-    replay.trusted += tmini_ct_add(&turn, packet) == TMINI_CT_CONFIRMED ? 1 : 0;
-    if (tmini_builder_add(&builder, packet, now_ms)) {
+    const bool is_end = tmini_decoder_take_packet(&decoder, packet, now_ms);
+    replay.trusted += decoder.verdict == TMINI_CT_CONFIRMED ? 1 : 0;
+    if (is_end) {
         TEST_ASSERT_TRUE(replay.scans < SCANS_MAX);
-        replay.scan[replay.scans++] = builder.scan;
-        TEST_ASSERT_FALSE(tmini_builder_add(&builder, packet, now_ms));
+        replay.scan[replay.scans++] = decoder.builder.scan;
+        TEST_ASSERT_FALSE(tmini_builder_add(&decoder.builder, packet, now_ms));
     }
 }
 
@@ -86,9 +85,9 @@ static void handle_packet(uint32_t now_ms)
 static void replay_in_chunks(size_t chunk)
 {
     replay = (replay_t){0};
-    tmini_ct_init(&turn);
-    TEST_ASSERT_EQUAL_INT(
-        TMINI_OK, tmini_builder_init(&builder, points, sizeof points / sizeof points[0], 0));
+    decoder = (tmini_decoder_t){0};
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_builder_init(&decoder.builder, points,
+                                                       sizeof points / sizeof points[0], 0));
     receiver_open(&receiver, memory, sizeof memory, 0);
     for (size_t fed = 0; fed < size; fed += chunk) {
         chunk = chunk < size - fed ? chunk : size - fed;
@@ -167,7 +166,7 @@ void test_a_recording_at_6_hz_has_all_ct_information(void)
     tmini_ct_info_t info;
     load_own("sim-6hz.bin");
     replay_in_chunks(64);
-    tmini_ct_read(&turn, &info);
+    tmini_ct_read(&decoder.ct, &info);
     TEST_ASSERT_TRUE((info.known & TMINI_KNOWN_SERIAL) != 0);
     TEST_ASSERT_EQUAL_UINT16(2026, info.year);
     TEST_ASSERT_EQUAL_UINT8(3, info.month);
@@ -175,7 +174,7 @@ void test_a_recording_at_6_hz_has_all_ct_information(void)
     TEST_ASSERT_EQUAL_UINT32(12345, info.number);
     TEST_ASSERT_EQUAL_UINT8(1, info.firmware_major);
     TEST_ASSERT_EQUAL_UINT8(2, info.firmware_minor);
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&turn));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&decoder.ct));
 }
 
 void test_a_recording_at_10_hz_of_a_plain_unit_has_scans_but_no_ct_information(void)
@@ -188,7 +187,7 @@ void test_a_recording_at_10_hz_of_a_plain_unit_has_scans_but_no_ct_information(v
     expect_counts(143, 11, 5132, 99, 0);
     expect_scans(10, counts, packets, frequencies);
     TEST_ASSERT_EQUAL_UINT(0, replay.trusted);
-    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&turn));
+    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&decoder.ct));
 }
 
 void test_a_recording_at_12_hz_has_scans_and_the_beginning_of_the_ct_information(void)
@@ -202,7 +201,7 @@ void test_a_recording_at_12_hz_has_scans_and_the_beginning_of_the_ct_information
     expect_counts(149, 13, 5149, 19, 0);
     expect_scans(12, counts, packets, frequencies);
     TEST_ASSERT_EQUAL_UINT(12, replay.trusted);
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&turn));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&decoder.ct));
 }
 
 /* 299 packets were sent; each of the 266 that arrived intact is delivered. No revolution arrived
@@ -316,7 +315,7 @@ void test_a_real_units_recording_gives_four_complete_scans(void)
     TEST_ASSERT_EQUAL_UINT(20, replay.packets_before_first);
     expect_scans(4, counts, packets, frequencies);
     TEST_ASSERT_EQUAL_UINT(0, replay.trusted);
-    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&turn));
+    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&decoder.ct));
 }
 
 /* Each copy goes in random chunks through the smallest ring. */

@@ -52,7 +52,7 @@ void test_every_function_of_ct_information_is_there(void)
     tmini_ct_info_t info;
     tmini_ct_init(&ct);
     tmini_ct_discard(&ct);
-    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, tmini_ct_add(&ct, tmini_packet(&rig.lidar)));
+    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, tmini_ct_add(&ct, tmini_packet(&rig.lidar), true));
     TEST_ASSERT_EQUAL_HEX(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&ct));
     tmini_ct_read(&ct, &info);
     TEST_ASSERT_EQUAL_HEX16(0, info.known);

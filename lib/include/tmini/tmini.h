@@ -162,7 +162,8 @@ typedef enum {
                                  * you have called tmini_stop(), and the lidar may still scan. */
     TMINI_EVENT_INFO,           /**< tmini_info() has been read. */
     TMINI_EVENT_HEALTH,         /**< tmini_health() has been read. */
-    TMINI_EVENT_FREQUENCY,      /**< tmini_frequency_chz() has been read, or set and read back. */
+    TMINI_EVENT_FREQUENCY,      /**< tmini_frequency_chz() has been read, or set and read back. It
+                                 * is 0 if a reboot of the driver's own has followed at once. */
     TMINI_EVENT_REBOOTED,       /**< After a soft reboot the lidar answers again. */
     TMINI_EVENT_COMMAND_FAILED, /**< A command has failed; tmini_command_error() gives the reason.
                                  * If the state is TMINI_STATE_STARTING, it was an attempt to start

@@ -174,10 +174,11 @@ void tmini_ct_discard(tmini_ct_t *ct)
     change_ct(ct);
 }
 
-tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)
+tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet, bool is_whole)
 {
     const uint8_t verdict = nondet_byte();
     CLAIM(ct_is_sound(ct) && packet_is_sound(packet, packet->frame));
+    CLAIM(is_whole || !tmini_packet_is_start(packet));
     change_ct(ct);
     ASSUME(verdict <= TMINI_CT_REFUTED);
     ASSUME(verdict == TMINI_CT_UNKNOWN || tmini_packet_is_start(packet));

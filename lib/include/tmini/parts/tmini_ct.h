@@ -68,10 +68,11 @@ static inline void tmini_ct_init(tmini_ct_t *ct)
 /** Forgets the current revolution, because it was interrupted. Trusted information is kept. */
 void tmini_ct_discard(tmini_ct_t *ct);
 
-/** Takes the next packet. Returns what it shows about the revolution that it ends, or
+/** Takes the next packet. `is_whole`: no packet has been lost since the last start packet, which may
+ * be this one; a tmini_decoder_t knows. Returns what it shows about the revolution that it ends, or
  * TMINI_CT_UNKNOWN if it ends none. After TMINI_CT_CONFIRMED, tmini_ct_read() includes that
  * revolution. A few instructions. */
-tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet);
+tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet, bool is_whole);
 
 /** The faults that the last trusted revolution reported, a combination of tmini_fault_t, or
  * TMINI_FAULTS_UNKNOWN if none has. */
@@ -88,10 +89,12 @@ static inline void tmini_ct_discard(tmini_ct_t *ct)
     (void)ct;
 }
 
-static inline tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet)
+static inline tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet,
+                                              bool is_whole)
 {
     (void)ct;
     (void)packet;
+    (void)is_whole;
     return TMINI_CT_UNKNOWN;
 }
 

@@ -29,6 +29,13 @@ extern "C" {
  * refers to `frame` from then on. One division. */
 void tmini_packet_open(tmini_packet_t *packet, const tmini_frame_t *frame);
 
+/** True if packets may be missing when `bytes` were skipped before the packet. One byte before a
+ * start packet is LastCRC, or noise (section 7). */
+static inline bool tmini_packet_misses(const tmini_packet_t *packet, uint16_t bytes)
+{
+    return bytes > (tmini_packet_is_start(packet) ? 1u : 0u);
+}
+
 #ifdef __cplusplus
 }
 #endif
