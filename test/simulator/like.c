@@ -3,44 +3,34 @@
 
 #include "like.h"
 
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define PLACE(member) offsetof(options_t, member)
 
-/* Key of a number that, multiplied by `scale`, goes into the member of `size` bytes at `place`. */
-typedef struct {
+static const struct {
     const char *key;
-    size_t place;
-    size_t size;
-    double scale;
-    double max;
-} number_t;
-
-#define NUMBER(key, member, scale, max)                                     \
-    {                                                                       \
-        key, PLACE(member), sizeof(((options_t *)NULL)->member), scale, max \
-    }
-
-static const number_t numbers[] = {
-    NUMBER("model", device.information.model, 1, 255),
-    NUMBER("hardware", device.information.hardware, 1, 255),
-    NUMBER("health", health, 1, 63),
-    NUMBER("frequency_hz", device.frequency_chz, 100, 20),
-    NUMBER("min_frequency_hz", device.min_frequency_chz, 100, 20),
-    NUMBER("max_frequency_hz", device.max_frequency_chz, 100, 20),
-    NUMBER("reply_ms", device.reply_latency_ms, 1, 10000),
-    NUMBER("boot_ms", device.boot_ms, 1, 60000),
-    NUMBER("first_packet_ms", device.first_packet_ms, 1, 60000),
-    NUMBER("spin_up_ms", device.spin_up_ms, 1, 60000),
-    NUMBER("spin_up_percent", device.spin_up_percent, 1, 100),
-    NUMBER("motor_percent", device.motor_percent, 1, 200),
-    NUMBER("stop_tail_ms", device.stop_tail_ms, 1, 60000),
-    NUMBER("first_angle_deg", device.first_angle_q6, 64, 359),
-    NUMBER("start_angle_deg", device.start_angle_q6, 64, 359),
-    NUMBER("samples_per_packet", device.samples_per_packet, 1, 40),
-    NUMBER("flagged_permille", device.flagged_permille, 1, 1000),
+    number_t number;
+} numbers[] = {
+    {"model", NUMBER(device.information.model, 1, 0, 255)},
+    {"hardware", NUMBER(device.information.hardware, 1, 0, 255)},
+    {"health", NUMBER(health, 1, 0, 63)},
+    {"frequency_hz", NUMBER(device.frequency_chz, 100, 0, 20)},
+    {"min_frequency_hz", NUMBER(device.min_frequency_chz, 100, 0, 20)},
+    {"max_frequency_hz", NUMBER(device.max_frequency_chz, 100, 0, 20)},
+    {"reply_ms", NUMBER(device.reply_latency_ms, 1, 0, 10000)},
+    {"boot_ms", NUMBER(device.boot_ms, 1, 0, 60000)},
+    {"first_packet_ms", NUMBER(device.first_packet_ms, 1, 0, 60000)},
+    {"spin_up_ms", NUMBER(device.spin_up_ms, 1, 0, 60000)},
+    {"spin_up_percent", NUMBER(device.spin_up_percent, 1, 0, 100)},
+    {"motor_percent", NUMBER(device.motor_percent, 1, 0, 200)},
+    {"stop_tail_ms", NUMBER(device.stop_tail_ms, 1, 0, 60000)},
+    {"first_angle_deg", NUMBER(device.first_angle_q6, 64, 0, 359)},
+    {"start_angle_deg", NUMBER(device.start_angle_q6, 64, 0, 359)},
+    {"samples_per_packet", NUMBER(device.samples_per_packet, 1, 0, 40)},
+    {"flagged_permille", NUMBER(device.flagged_permille, 1, 0, 1000)},
 };
 
 /* The word sets the switch; any other value clears it. */
@@ -56,26 +46,50 @@ static const struct {
     {"serial_digits", "ascii", PLACE(device.ascii_serial)},
 };
 
-static void store(options_t *options, const number_t *number, double value)
+bool like_parse(const char *text, double low, double high, double *number)
 {
-    const uint16_t scaled = (uint16_t)(value * number->scale + 0.5);
-    const uint8_t byte = (uint8_t)scaled;
+    char *end;
+    *number = strtod(text, &end);
+    return end != text && *end == '\0' && *number >= low && *number <= high;
+}
 
-    memcpy((char *)options + number->place,
-           number->size == 1 ? (const void *)&byte : (const void *)&scaled, number->size);
+bool like_read_number(options_t *options, const number_t *number, const char *text)
+{
+    char *const place = (char *)options + number->place;
+    double value;
+    if (!like_parse(text, number->low, number->high, &value)) {
+        return false;
+    }
+    const double scaled = value * number->scale;
+    const int32_t whole = (int32_t)(scaled < 0.0 ? scaled - 0.5 : scaled + 0.5);
+    const uint16_t half = (uint16_t)whole;
+    const uint8_t byte = (uint8_t)whole;
+    const void *const source = number->size == sizeof byte    ? (const void *)&byte
+                               : number->size == sizeof half  ? (const void *)&half
+                               : number->size == sizeof whole ? (const void *)&whole
+                                                              : (const void *)&scaled;
+    memcpy(place, source, number->size);
+    return true;
+}
+
+bool like_set_beginning(options_t *options, const char *value)
+{
+    static const char *const names[] = {[SIM_BEGINS_ANYWHERE] = "anywhere",
+                                        [SIM_BEGINS_UNMARKED] = "unmarked",
+                                        [SIM_BEGINS_WITH_A_START] = "start"};
+    unsigned beginning = 0;
+    while (beginning < 3 && strcmp(value, names[beginning]) != 0) {
+        beginning++;
+    }
+    options->device.beginning = (sim_beginning_t)(beginning % 3);
+    return beginning < 3;
 }
 
 static bool set_number(options_t *options, const char *key, const char *value)
 {
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         if (strcmp(key, numbers[i].key) == 0) {
-            char *end;
-            const double read = strtod(value, &end);
-
-            if (end == value || *end != '\0' || !(read >= 0.0 && read <= numbers[i].max)) {
-                return false;
-            }
-            store(options, &numbers[i], read);
+            return like_read_number(options, &numbers[i].number, value);
         }
     }
     return true;
@@ -93,7 +107,6 @@ static void set_switch(options_t *options, const char *key, const char *value)
 static bool set_version(const char *value, uint8_t *major, uint8_t *minor)
 {
     unsigned read[2];
-
     if (sscanf(value, "%u.%u", &read[0], &read[1]) != 2 || read[0] > 255u || read[1] > 255u) {
         return false;
     }
@@ -105,7 +118,6 @@ static bool set_version(const char *value, uint8_t *major, uint8_t *minor)
 static bool set_serial(sim_config_t *device, const char *value)
 {
     const size_t count = sizeof device->information.serial;
-
     if (strlen(value) != count || strspn(value, "0123456789") != count) {
         return false;
     }
@@ -115,18 +127,9 @@ static bool set_serial(sim_config_t *device, const char *value)
     return true;
 }
 
-static bool set_beginning(sim_config_t *device, const char *value)
-{
-    device->beginning = strcmp(value, "start") == 0      ? SIM_BEGINS_WITH_A_START
-                        : strcmp(value, "unmarked") == 0 ? SIM_BEGINS_UNMARKED
-                                                         : SIM_BEGINS_ANYWHERE;
-    return device->beginning != SIM_BEGINS_ANYWHERE || strcmp(value, "anywhere") == 0;
-}
-
 static bool set(options_t *options, const char *key, const char *value)
 {
     sim_config_t *device = &options->device;
-
     if (strcmp(value, "unknown") == 0) {
         return true;
     }
@@ -141,7 +144,7 @@ static bool set(options_t *options, const char *key, const char *value)
         return set_serial(device, value);
     }
     if (strcmp(key, "first_packets") == 0) {
-        return set_beginning(device, value);
+        return like_set_beginning(options, value);
     }
     if (strcmp(key, "lone_packets") == 0 && strcmp(value, "no") == 0) {
         device->lone_packet_permille = 0;
@@ -156,11 +159,9 @@ bool like_read(options_t *options, const char *path)
     char line[200];
     bool is_good = file != NULL;
     bool is_report = false;
-
     while (is_good && fgets(line, sizeof line, file) != NULL) {
         char key[40];
         char value[120];
-
         if (line[0] != '#' && sscanf(line, "%39s = %119[^\n]", key, value) == 2) {
             is_good = set(options, key, value);
             is_report = true;
