@@ -65,7 +65,6 @@ static bool one_in(soak_t *soak, uint32_t number)
 static world_config_t draw_config(soak_t *soak, uint64_t seed)
 {
     world_config_t config = world_default_config();
-
     config.seed = seed;
     config.sim.ct_information = !one_in(soak, 3);
     config.sim.frequency_chz = (uint16_t)(600 + 10 * between(soak, 0, 60));
@@ -92,7 +91,6 @@ static void keep_scanning(soak_t *soak)
 {
     tmini_t *const lidar = &soak->world.lidar;
     const tmini_state_t state = tmini_state(lidar);
-
     if ((state == TMINI_STATE_UNKNOWN || state == TMINI_STATE_IDLE) &&
         soak->world.now_us % 100000u == 0) {
         (void)tmini_start(lidar);
@@ -112,7 +110,6 @@ static bool carry_out(soak_t *soak, tmini_status_t begun, tmini_event_t end, uin
 {
     world_t *const world = &soak->world;
     const uint64_t begun_us = world->now_us;
-
     soak->commands++;
     if (begun != TMINI_OK) {
         world_violate(world, VIOLATION_ANSWER, "not begun");
@@ -145,10 +142,8 @@ static void ask_for_info(soak_t *soak)
     world_t *const world = &soak->world;
     const uint64_t since_us = world->now_us;
     const encode_information_t *const truth = &world->config.sim.information;
-
     if (carry_out(soak, tmini_request_info(&world->lidar), TMINI_EVENT_INFO, 10000)) {
         const tmini_info_t *const info = tmini_info(&world->lidar);
-
         check_answer(soak,
                      info->model == truth->model && info->hardware == truth->hardware &&
                          info->firmware_major == truth->firmware_major &&
@@ -162,7 +157,6 @@ static void ask_for_health(soak_t *soak)
 {
     world_t *const world = &soak->world;
     const uint64_t since_us = world->now_us;
-
     if (carry_out(soak, tmini_request_health(&world->lidar), TMINI_EVENT_HEALTH, 10000)) {
         check_answer(soak, tmini_health(&world->lidar)->faults == sim_health(&world->sim),
                      since_us);
@@ -173,7 +167,6 @@ static void ask_for_frequency(soak_t *soak)
 {
     world_t *const world = &soak->world;
     const uint64_t since_us = world->now_us;
-
     if (carry_out(soak, tmini_request_frequency(&world->lidar), TMINI_EVENT_FREQUENCY, 10000)) {
         check_answer(soak, tmini_frequency_chz(&world->lidar) == sim_frequency_chz(&world->sim),
                      since_us);
@@ -185,7 +178,6 @@ static void set_frequency(soak_t *soak)
     world_t *const world = &soak->world;
     const uint64_t since_us = world->now_us;
     const uint16_t target_chz = (uint16_t)(600 + 10 * between(soak, 0, 60));
-
     if (carry_out(soak, tmini_set_frequency(&world->lidar, target_chz), TMINI_EVENT_FREQUENCY,
                   20000)) {
         check_answer(soak, sim_frequency_chz(&world->sim) == target_chz, since_us);
@@ -204,7 +196,6 @@ static void (*const requests[])(soak_t *soak) = {ask_for_info, ask_for_health, a
 static void make_requests(soak_t *soak)
 {
     world_t *const world = &soak->world;
-
     if (!carry_out(soak, tmini_stop(&world->lidar), TMINI_EVENT_STOPPED, 5000)) {
         return;
     }
@@ -227,7 +218,6 @@ static void restart_library(soak_t *soak)
 static uint32_t draw_gap(soak_t *soak, uint32_t low, uint32_t high)
 {
     uint32_t gap = low;
-
     while (gap < high && !one_in(soak, 3)) {
         gap *= 2;
     }
@@ -282,7 +272,6 @@ typedef enum { BLOCKED, COVERED, SICK, LIDAR_FAULTS } lidar_fault_t;
 static void set_fault(soak_t *soak, lidar_fault_t fault, bool on)
 {
     sim_t *const sim = &soak->world.sim;
-
     if (fault == BLOCKED) {
         sim_block_rotor(sim, on);
     } else if (fault == COVERED) {
@@ -296,7 +285,6 @@ static void set_fault(soak_t *soak, lidar_fault_t fault, bool on)
 static uint8_t expected_faults(const soak_t *soak, lidar_fault_t fault)
 {
     const sim_config_t *const sim = &soak->world.config.sim;
-
     switch (fault) {
     case BLOCKED:
         return !sim->ct_information && sim->blocked_sends_starts ? TMINI_FAULT_DATA
@@ -313,7 +301,6 @@ static void expect_faults(soak_t *soak, uint8_t expected, uint64_t since_us)
     /* Without TMINI_FAULT_FREQUENCY, which scripts.c tests. */
     const uint8_t faults = tmini_faults(&soak->world.lidar) & TMINI_FAULT_MASK;
     char what[60];
-
     if (faults != expected && world_is_undisturbed_since(&soak->world, since_us)) {
         (void)snprintf(what, sizeof what, "%02X reported, %02X is there", faults, expected);
         world_violate(&soak->world, VIOLATION_MISSED_FAULT, what);
@@ -324,7 +311,6 @@ static void live_through_a_fault(soak_t *soak)
 {
     const lidar_fault_t fault = (lidar_fault_t)between(soak, 0, LIDAR_FAULTS - 1);
     const uint64_t since_us = soak->world.now_us;
-
     soak->lidar_faults++;
     set_fault(soak, fault, true);
     run_ms(soak, WORLD_FAULT_MS + between(soak, 0, 20000));
@@ -339,7 +325,6 @@ static void live_through_a_fault(soak_t *soak)
 static void live(soak_t *soak, uint32_t ms)
 {
     world_t *const world = &soak->world;
-
     while (world->now_us < (uint64_t)ms * 1000u) {
         live_through_bad_weather(soak);
         /* After any faults, scans must have resumed by then. */
@@ -361,7 +346,6 @@ static void add_up(totals_t *totals, const soak_t *soak)
 {
     const world_t *const world = &soak->world;
     const world_counts_t *const counts = &world->counts;
-
     totals->lives++;
     totals->ms += world->now_us / 1000u;
     totals->bytes += world->fed_before + world->fed;
@@ -398,7 +382,6 @@ static void print_number(const char *what, uint64_t number)
 static uint32_t print(const totals_t *totals)
 {
     uint32_t violations = 0;
-
     print_number("minutes of virtual time", totals->ms / 60000u);
     print_number("lidars, lines and programs", totals->lives);
     print_number("bytes", totals->bytes);
@@ -435,7 +418,6 @@ int main(int argc, char **argv)
     static totals_t totals;
     const double hours = argc > 1 ? strtod(argv[1], NULL) : 0;
     const uint64_t seed = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
-
     if (argc > 3 || !(hours > 0 && hours <= MAX_HOURS)) {
         fprintf(stderr, "usage: soak HOURS [SEED]: hours of virtual time, above 0 to 1000\n");
         return 2;
@@ -444,7 +426,6 @@ int main(int argc, char **argv)
     for (uint64_t ms = 0; ms < all_ms; ms += LIFE_MS) {
         const uint64_t left_ms = all_ms - ms;
         const uint64_t life = seed * 1000000u + ms / LIFE_MS;
-
         memset(&soak, 0, sizeof soak);
         random_seed(&soak.random, life);
         const world_config_t config = draw_config(&soak, life);

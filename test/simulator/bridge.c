@@ -24,7 +24,6 @@ static void put_byte(bridge_t *bridge, uint8_t byte)
 static void deliver(bridge_t *bridge, uint8_t byte)
 {
     const bridge_kind_t kind = bridge->config.kind;
-
     if (kind == BRIDGE_XONXOFF && (byte == 0x11 || byte == 0x13)) {
         return;
     }
@@ -40,7 +39,6 @@ static void deliver(bridge_t *bridge, uint8_t byte)
 static bool is_blind(const bridge_t *bridge)
 {
     const uint8_t every = bridge->config.blind_every;
-
     return every > 0 && bridge->turns % every == 0;
 }
 
@@ -53,13 +51,11 @@ static void deliver_packet(bridge_t *bridge)
     encode_packet_t packet = {open[2], open[3], 0, 0, samples};
     uint8_t out[ENCODE_OTHER_MAX];
     size_t count;
-
     bridge->turns += open[2] & 1u;
     packet.first_q6 = (uint16_t)((open[4] | (unsigned)open[5] << 8) >> 1);
     packet.last_q6 = (uint16_t)((open[6] | (unsigned)open[7] << 8) >> 1);
     for (unsigned i = 0; i < packet.lsn; i++) {
         const reference_point_t point = reference_point(open, i);
-
         samples[i].distance_mm = is_blind(bridge) ? 0 : point.distance_mm;
         samples[i].intensity = point.intensity;
         samples[i].flag = point.flag;
@@ -76,7 +72,6 @@ static size_t missing(const bridge_t *bridge)
     const size_t need = bridge->open_count < ENCODE_PACKET_HEADER
                             ? ENCODE_PACKET_HEADER
                             : ENCODE_PACKET_HEADER + ENCODE_SAMPLE_SIZE * bridge->open[3];
-
     return need - bridge->open_count;
 }
 
@@ -100,7 +95,6 @@ static void put(bridge_t *bridge, uint8_t byte)
 void bridge_put(bridge_t *bridge, const uint8_t *bytes, size_t count)
 {
     const bool changes_packets = bridge->config.sample_size != 0 || bridge->config.blind_every != 0;
-
     for (size_t i = 0; i < count; i++) {
         if (changes_packets) {
             put(bridge, bytes[i]);
@@ -113,7 +107,6 @@ void bridge_put(bridge_t *bridge, const uint8_t *bytes, size_t count)
 size_t bridge_take(bridge_t *bridge, uint64_t now_us, uint8_t *bytes, size_t max)
 {
     const size_t count = bridge->out_count < max ? bridge->out_count : max;
-
     if (now_us < bridge->deliver_us || count == 0) {
         return 0;
     }
@@ -129,7 +122,6 @@ size_t bridge_take(bridge_t *bridge, uint64_t now_us, uint8_t *bytes, size_t max
 bool bridge_kind_named(const char *name, bridge_kind_t *kind)
 {
     static const char *const names[BRIDGE_KINDS] = {"clean", "telnet", "crnl", "xonxoff", "seven"};
-
     for (*kind = BRIDGE_CLEAN; *kind < BRIDGE_KINDS; *kind = (bridge_kind_t)(*kind + 1)) {
         if (strcmp(name, names[*kind]) == 0) {
             return true;

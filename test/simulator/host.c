@@ -30,7 +30,6 @@ void host_forget_client(host_t *host)
 static int wait_for(int fd, short events, int timeout_ms)
 {
     struct pollfd entry = {fd, events, 0};
-
     return poll(&entry, 1, timeout_ms);
 }
 
@@ -49,7 +48,6 @@ void host_wait(host_t *host, int timeout_ms)
 size_t host_read(host_t *host, uint8_t *bytes, size_t max)
 {
     ssize_t count;
-
     host->connected = host->update(host);
     if (host->fd < 0 || host->input_ended) {
         return 0;
@@ -69,7 +67,6 @@ static bool is_passing(int error)
 static void send_pending(host_t *host)
 {
     const ssize_t count = write(host->fd, host->pending, host->pending_count);
-
     if (count > 0) {
         host->pending_count -= (size_t)count;
         memmove(host->pending, host->pending + count, host->pending_count);
@@ -82,7 +79,6 @@ void host_write(host_t *host, const uint8_t *bytes, size_t count)
 {
     const size_t room = HOST_PENDING - host->pending_count;
     const size_t taken = count < room ? count : room;
-
     if (!host->connected) {
         return;
     }

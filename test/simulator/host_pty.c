@@ -23,7 +23,6 @@
 static bool make_raw(int fd)
 {
     struct termios settings;
-
     if (tcgetattr(fd, &settings) != 0) {
         return false;
     }
@@ -44,7 +43,6 @@ static bool prepare_slave(const char *path)
 {
     const int slave = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK);
     bool done;
-
     if (slave < 0) {
         return false;
     }
@@ -56,14 +54,12 @@ static bool prepare_slave(const char *path)
 static bool has_client(const host_t *host)
 {
     struct pollfd entry = {host->fd, POLLIN, 0};
-
     return poll(&entry, 1, 0) >= 0 && (entry.revents & POLLHUP) == 0;
 }
 
 static bool update_pty(host_t *host)
 {
     const bool connected = has_client(host);
-
     if (host->connected && !connected) {
         host_forget_client(host);
         prepare_slave(host->address);
@@ -74,7 +70,6 @@ static bool update_pty(host_t *host)
 static bool open_master(host_t *host)
 {
     const char *path;
-
     host->fd = posix_openpt(O_RDWR | O_NOCTTY);
     if (host->fd < 0 || grantpt(host->fd) != 0 || unlockpt(host->fd) != 0) {
         return false;

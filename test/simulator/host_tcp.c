@@ -25,14 +25,12 @@
 static bool has_event(int fd, short events)
 {
     struct pollfd entry = {fd, events, 0};
-
     return poll(&entry, 1, 0) > 0 && (entry.revents & (events | POLLERR | POLLHUP)) != 0;
 }
 
 static void set_flag(int fd, int level, int option)
 {
     const int on = 1;
-
     setsockopt(fd, level, option, &on, sizeof on);
 }
 
@@ -72,7 +70,6 @@ static bool listen_on(host_t *host, uint16_t port)
 {
     struct sockaddr_in address;
     socklen_t length = sizeof address;
-
     memset(&address, 0, sizeof address);
     address.sin_family = AF_INET;
     address.sin_port = htons(port);

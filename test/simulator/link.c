@@ -19,7 +19,6 @@ const char *sim_link_kind_name(sim_link_kind_t kind)
 sim_link_kind_t sim_link_kind_named(const char *name)
 {
     unsigned kind = 0;
-
     while (kind < SIM_LINK_KINDS && strcmp(name, kind_names[kind]) != 0) {
         kind++;
     }
@@ -34,7 +33,6 @@ bool sim_link_counts_bytes(sim_link_kind_t kind)
 sim_link_config_t sim_link_default_config(void)
 {
     sim_link_config_t config;
-
     memset(&config, 0, sizeof config);
     config.seed = 1;
     config.shortest[SIM_LINK_BURST] = 2;
@@ -54,7 +52,6 @@ static uint64_t draw_gap(sim_link_t *link, sim_link_kind_t kind)
 {
     const uint32_t mean = link->config.mean_gap[kind];
     const uint64_t unit = sim_link_counts_bytes(kind) ? 1u : 1000u;
-
     return random_gap(&link->random, mean) * unit;
 }
 
@@ -72,7 +69,6 @@ static void find_nearest_byte(sim_link_t *link)
 static void schedule(sim_link_t *link, sim_link_kind_t kind, uint64_t from_us)
 {
     const bool never = link->config.mean_gap[kind] == 0u;
-
     if (sim_link_counts_bytes(kind)) {
         link->next_byte[kind] = never ? SIM_NEVER : link->passed + draw_gap(link, kind);
         find_nearest_byte(link);
@@ -101,7 +97,6 @@ void sim_link_init(sim_link_t *link, sim_t *sim, const sim_link_config_t *config
 void sim_link_observe(sim_link_t *link, const sim_link_observer_t *observer)
 {
     static const sim_link_observer_t nobody = {NULL, NULL, NULL};
-
     link->observer = observer == NULL ? nobody : *observer;
 }
 
@@ -126,7 +121,6 @@ static void report_end(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
 static void close_packet(sim_link_t *link, bool complete)
 {
     sim_link_packet_t *packet = &link->packet;
-
     if (!link->packet_open) {
         return;
     }
@@ -157,7 +151,6 @@ static void deliver(sim_link_t *link, const uint8_t *bytes, size_t count)
     const size_t at = (size_t)(link->produced % SIM_LINK_BACKLOG);
     const size_t to_end = SIM_LINK_BACKLOG - at;
     const size_t first = count < to_end ? count : to_end;
-
     memcpy(link->backlog + at, bytes, first);
     memcpy(link->backlog, bytes + first, count - first);
     link->produced += count;
@@ -185,7 +178,6 @@ static bool meets(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
 static void insert_before(sim_link_t *link, uint8_t following)
 {
     const uint8_t byte = spoiled(link, following);
-
     deliver(link, &byte, 1);
 }
 
@@ -203,7 +195,6 @@ static void pass_byte(sim_link_t *link, const sim_run_t *run, size_t i)
     const uint64_t at_us = sim_byte_us(run->start_us, place);
     const bool in_packet = place >= run->packet_at;
     uint8_t byte = run->bytes[i];
-
     if (meets(link, SIM_LINK_INSERT, at_us)) {
         insert_before(link, run->bytes[i]);
         link->packet.intact = link->packet.intact && place <= run->packet_at;
@@ -281,7 +272,6 @@ static uint64_t draw_amount(sim_link_t *link, sim_link_kind_t kind)
 static uint64_t delivery_limit(const sim_link_t *link, uint64_t now_us)
 {
     uint64_t limit = link->held_from;
-
     if (!link->throttled) {
         return link->produced;
     }
@@ -331,7 +321,6 @@ static void replug(sim_link_t *link, uint64_t at_us)
 static void begin_fault(sim_link_t *link, sim_link_kind_t kind, uint64_t amount, uint64_t at_us)
 {
     const uint64_t end_us = at_us + amount * 1000u;
-
     report_begin(link, kind, at_us);
     switch (kind) {
     case SIM_LINK_BURST:
@@ -381,7 +370,6 @@ static bool is_under_way(const sim_link_t *link, sim_link_kind_t kind)
 static bool has_an_effect(const sim_link_t *link, sim_link_kind_t kind)
 {
     const sim_mode_t mode = sim_mode(link->sim);
-
     if (kind == SIM_LINK_BURST || kind == SIM_LINK_CUT) {
         return mode == SIM_SCANNING || mode == SIM_STOPPING;
     }
@@ -401,7 +389,6 @@ static void fault_is_due(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
 static uint64_t next_event_us(const sim_link_t *link)
 {
     uint64_t next = SIM_NEVER;
-
     for (unsigned kind = SIM_LINK_BURST; kind < SIM_LINK_KINDS; kind++) {
         next = link->begin_us[kind] < next ? link->begin_us[kind] : next;
         next = link->end_us[kind] < next ? link->end_us[kind] : next;
@@ -427,7 +414,6 @@ static bool pass_next(sim_link_t *link, uint64_t now_us)
 {
     const uint64_t event_us = next_event_us(link);
     sim_run_t run;
-
     if (link->produced - link->delivered > SIM_LINK_BACKLOG - ROOM_FOR_A_FRAME) {
         return false;
     }
@@ -455,7 +441,6 @@ static size_t hand_over(sim_link_t *link, uint64_t now_us, uint8_t *out, size_t 
     const size_t count = ready < max ? ready : max;
     const size_t to_end = SIM_LINK_BACKLOG - at;
     const size_t first = count < to_end ? count : to_end;
-
     memcpy(out, link->backlog + at, first);
     memcpy(out + first, link->backlog, count - first);
     link->delivered += count;
@@ -470,7 +455,6 @@ size_t sim_link_read(sim_link_t *link, uint64_t now_us, uint8_t *out, size_t max
 {
     size_t count = 0;
     size_t more;
-
     do {
         pass_all(link, now_us);
         more = hand_over(link, now_us, out + count, max - count);
@@ -504,7 +488,6 @@ uint64_t sim_link_next_us(sim_link_t *link)
     const uint64_t device_us = sim_next_us(link->sim);
     const uint64_t delivery_us = next_delivery_us(link);
     const uint64_t next_us = event_us < device_us ? event_us : device_us;
-
     return delivery_us < next_us ? delivery_us : next_us;
 }
 

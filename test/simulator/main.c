@@ -41,7 +41,6 @@ static void request_stop(int signal_number)
 static void catch_signals(void)
 {
     struct sigaction action;
-
     memset(&action, 0, sizeof action);
     sigemptyset(&action.sa_mask);
     action.sa_handler = request_stop;
@@ -55,7 +54,6 @@ static void catch_signals(void)
 static size_t read_bytes(uint64_t now_us, uint8_t *bytes, size_t max)
 {
     const size_t count = sim_link_read(&wire, now_us, bytes, max);
-
     bridge_put(&bridge, bytes, count);
     return bridge_take(&bridge, now_us, bytes, max);
 }
@@ -63,7 +61,6 @@ static size_t read_bytes(uint64_t now_us, uint8_t *bytes, size_t max)
 static double real_seconds(void)
 {
     struct timespec now;
-
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
@@ -80,7 +77,6 @@ static void exchange(const options_t *options, uint64_t now_us)
 {
     uint8_t bytes[4096];
     size_t count = host_read(&host, bytes, sizeof bytes);
-
     if (options->boots && host.connected) {
         sim_power(&device, true, now_us); /* without effect if it has power */
     }
@@ -97,7 +93,6 @@ static int time_to_sleep_ms(uint64_t now_us, uint64_t until_us, double speed)
 {
     uint64_t next_us = sim_link_next_us(&wire);
     double sleep_ms;
-
     next_us = next_us < until_us ? next_us : until_us;
     if (next_us <= now_us || host.pending_count > 0u) {
         return TICK_MS;
@@ -114,7 +109,6 @@ static uint64_t serve(const options_t *options)
     const double origin = real_seconds();
     const uint64_t until_us = end_us(options);
     uint64_t now_us = 0;
-
     while (stop_requested == 0 && now_us < until_us) {
         now_us = (uint64_t)((real_seconds() - origin) * options->speed * 1e6);
         now_us = now_us < until_us ? now_us : until_us;
@@ -135,7 +129,6 @@ static bool open_host(const options_t *options)
 static int run_in_real_time(const options_t *options)
 {
     uint64_t now_us;
-
     if (!open_host(options)) {
         return EXIT_FAILURE;
     }
@@ -156,7 +149,6 @@ static size_t parse_hex(const char *text, uint8_t *bytes, size_t max)
 {
     size_t count = 0;
     unsigned value = 0;
-
     while (count < max && sscanf(text, "%2x", &value) == 1) {
         bytes[count++] = (uint8_t)value;
         text += 2;
@@ -168,7 +160,6 @@ static void answer(uint64_t now_us)
 {
     uint8_t bytes[4096];
     size_t count;
-
     do {
         count = read_bytes(now_us, bytes, sizeof bytes);
         for (size_t i = 0; i < count; i++) {
@@ -184,12 +175,10 @@ static uint64_t serve_lines(void)
 {
     char line[1024];
     uint64_t now_us = 0;
-
     while (stop_requested == 0 && fgets(line, sizeof line, stdin) != NULL) {
         uint8_t bytes[sizeof line / 2];
         char *rest = line;
         size_t count;
-
         now_us = strtoull(line, &rest, 10);
         rest += *rest == ' ' ? 1 : 0;
         count = parse_hex(rest, bytes, sizeof bytes);
@@ -218,11 +207,9 @@ static bool record(FILE *file, uint64_t until_us)
     const uint64_t step_us = 10000;
     uint8_t bytes[4096];
     uint64_t now_us = 0;
-
     sim_link_write(&wire, start, sizeof start, 0);
     while (now_us < until_us && stop_requested == 0) {
         size_t count;
-
         now_us = until_us - now_us < step_us ? until_us : now_us + step_us;
         count = read_bytes(now_us, bytes, sizeof bytes);
         if (fwrite(bytes, 1, count, file) != count) {
@@ -237,7 +224,6 @@ static bool write_recording(const options_t *options)
     const bool to_stdout = strcmp(options->write_path, "-") == 0;
     FILE *file = to_stdout ? stdout : fopen(options->write_path, "wb");
     bool written;
-
     if (file == NULL) {
         fprintf(stderr, "tmini-sim: cannot write %s: %s\n", options->write_path, strerror(errno));
         return false;
@@ -253,7 +239,6 @@ static bool write_recording(const options_t *options)
 static int run_in_virtual_time(const options_t *options)
 {
     bool written;
-
     if (!report_open(&report, options->log_path, options->truth_path, &device, &wire)) {
         return EXIT_FAILURE;
     }
@@ -277,7 +262,6 @@ static void set_up(const options_t *options)
 int main(int argc, char **argv)
 {
     options_t options;
-
     if (!options_parse(&options, argc, argv)) {
         return EXIT_WRONG_USAGE;
     }

@@ -35,7 +35,6 @@ static void log_command(void *context, uint8_t code, uint64_t now_us)
 {
     report_t *report = context;
     const bool scanning = sim_mode(report->sim) == SIM_SCANNING && code != SIM_COMMAND_STOP;
-
     print_time(report, now_us);
     fprintf(report->log, "command A5 %02X %s%s\n", (unsigned)code, command_name(code),
             scanning ? " (forbidden while scanning)" : "");
@@ -44,7 +43,6 @@ static void log_command(void *context, uint8_t code, uint64_t now_us)
 static void log_mode(void *context, sim_mode_t from, sim_mode_t to, uint64_t now_us)
 {
     report_t *report = context;
-
     print_time(report, now_us);
     fprintf(report->log, "mode %s -> %s\n", sim_mode_name(from), sim_mode_name(to));
 }
@@ -52,7 +50,6 @@ static void log_mode(void *context, sim_mode_t from, sim_mode_t to, uint64_t now
 static void log_fault(void *context, sim_link_kind_t kind, bool begins, uint64_t at_us)
 {
     report_t *report = context;
-
     if (report->log != NULL) {
         print_time(report, at_us);
         fprintf(report->log, "fault %s %s\n", sim_link_kind_name(kind), begins ? "begins" : "ends");
@@ -64,10 +61,8 @@ static void write_truth(void *context, const sim_link_packet_t *packet)
     report_t *report = context;
     const sim_packet_t *sent = &packet->sent;
     const unsigned lsn = sent->bytes[3];
-
     for (unsigned i = 0; report->truth != NULL && i < lsn; i++) {
         const reference_point_t point = reference_point(sent->bytes, i);
-
         fprintf(report->truth, "%" PRIu32 ",%" PRIu32 ",%u,%u,%u,%u,%u,%d\n", sent->number,
                 sent->revolution, i, (unsigned)point.angle_q6, (unsigned)point.distance_mm,
                 (unsigned)point.intensity, (unsigned)point.flag, packet->intact ? 1 : 0);
@@ -125,7 +120,6 @@ static void write_totals(report_t *report, uint64_t now_us, uint64_t lost_by_hos
 {
     const sim_counts_t *device = &report->sim->counts;
     const sim_link_counts_t *link = &report->link->counts;
-
     print_time(report, now_us);
     fprintf(report->log, "totals: %" PRIu32 " packets, %" PRIu32 " intact after the line, ",
             device->packets, link->intact_packets);
@@ -143,14 +137,12 @@ static bool close_file(FILE *file)
         return file == NULL || (fflush(stdout) == 0 && ferror(stdout) == 0);
     }
     const bool is_whole = ferror(file) == 0; /* a line-buffered file has nothing left to write */
-
     return fclose(file) == 0 && is_whole;
 }
 
 bool report_close(report_t *report, uint64_t now_us, uint64_t lost_by_host)
 {
     bool written;
-
     if (report->log != NULL) {
         write_totals(report, now_us, lost_by_host);
     }

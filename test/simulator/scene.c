@@ -48,7 +48,6 @@ static int64_t sine_of_quarter(uint32_t angle_q6)
     const int64_t x = (int64_t)angle_q6 * ONE_Q30 / QUARTER_Q6;
     const int64_t square = x * x / ONE_Q30;
     int64_t sum = 0;
-
     for (size_t i = 0; i < sizeof terms / sizeof terms[0]; i++) {
         sum = terms[i] - sum * square / ONE_Q30;
     }
@@ -60,7 +59,6 @@ static int64_t sine(uint32_t angle_q6)
     const uint32_t quarter = angle_q6 / QUARTER_Q6 % 4u;
     const uint32_t rest = angle_q6 % QUARTER_Q6;
     const int64_t value = sine_of_quarter(quarter % 2u == 0u ? rest : QUARTER_Q6 - rest);
-
     return quarter < 2u ? value : -value;
 }
 
@@ -71,7 +69,6 @@ static int64_t distance_to_wall(const wall_t *wall, int64_t x, int64_t y)
     const int64_t along = wall->across ? x : y;
     int64_t distance;
     int64_t place;
-
     if (towards == 0 || (towards > 0) != (wall->at > 0)) {
         return NOTHING;
     }
@@ -83,7 +80,6 @@ static int64_t distance_to_wall(const wall_t *wall, int64_t x, int64_t y)
 static int64_t square_root(int64_t value)
 {
     int64_t root = 0;
-
     while ((root + 1) * (root + 1) <= value) {
         root++;
     }
@@ -95,7 +91,6 @@ static int64_t distance_to_pillar(int64_t x, int64_t y)
     const int64_t ahead = (pillar_x * x + pillar_y * y) / ONE_Q30;
     const int64_t aside = (pillar_x * y - pillar_y * x) / ONE_Q30;
     const int64_t depth = pillar_radius * pillar_radius - aside * aside;
-
     return ahead > 0 && depth > 0 ? ahead - square_root(depth) : NOTHING;
 }
 
@@ -104,10 +99,8 @@ static uint16_t look(uint32_t angle_q6)
     const int64_t x = sine(angle_q6); /* clockwise from straight ahead, seen from above */
     const int64_t y = sine(angle_q6 + QUARTER_Q6);
     int64_t nearest = distance_to_pillar(x, y);
-
     for (size_t i = 0; i < sizeof walls / sizeof walls[0]; i++) {
         const int64_t distance = distance_to_wall(&walls[i], x, y);
-
         nearest = distance < nearest ? distance : nearest;
     }
     return nearest >= NEAREST_MM && nearest <= FARTHEST_MM ? (uint16_t)nearest : 0u;
@@ -131,7 +124,6 @@ void sim_scene_place(sim_scene_t *scene, uint16_t angle_q6, uint16_t width_q6, u
 {
     const uint32_t centre = angle_q6 / SIM_SCENE_STEP_Q6 + SIM_SCENE_ENTRIES;
     const uint32_t half = width_q6 / (2u * SIM_SCENE_STEP_Q6);
-
     for (uint32_t i = centre - half; i <= centre + half; i++) {
         put(&scene->distance_mm[i % SIM_SCENE_ENTRIES], distance_mm);
     }

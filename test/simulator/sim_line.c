@@ -19,7 +19,6 @@ uint64_t sim_byte_us(uint64_t start_us, size_t offset)
 static uint16_t bytes_left(const sim_frame_t *frame, uint64_t now_us)
 {
     uint32_t count;
-
     if (now_us <= frame->start_us) {
         return 0;
     }
@@ -38,7 +37,6 @@ static sim_frame_t *frame_at(sim_line_t *line, uint32_t place)
 sim_frame_t *sim_line_open(sim_line_t *line)
 {
     sim_frame_t *frame;
-
     if (sim_line_front(line) != NULL && line->count == SIM_LINE_FRAMES) {
         line->lost++;
         return NULL;
@@ -55,7 +53,6 @@ sim_frame_t *sim_line_open(sim_line_t *line)
 void sim_line_send(sim_line_t *line, uint64_t now_us)
 {
     sim_frame_t *frame = frame_at(line, line->count);
-
     frame->start_us = now_us > line->free_us ? now_us : line->free_us;
     line->free_us = frame->start_us + duration_us(frame->length);
     line->count++;
@@ -65,7 +62,6 @@ sim_frame_t *sim_line_front(sim_line_t *line)
 {
     while (line->count > 0) {
         sim_frame_t *frame = frame_at(line, 0);
-
         if (frame->taken < frame->length) {
             return frame;
         }
@@ -98,7 +94,6 @@ bool sim_line_take(sim_line_t *line, uint64_t now_us, size_t max, sim_run_t *run
 {
     sim_frame_t *frame = sim_line_front(line);
     size_t length;
-
     if (frame == NULL) {
         return false;
     }
@@ -121,7 +116,6 @@ bool sim_line_take(sim_line_t *line, uint64_t now_us, size_t max, sim_run_t *run
 void sim_line_cut(sim_line_t *line, uint64_t now_us)
 {
     sim_frame_t *frame = sim_line_front(line);
-
     line->free_us = now_us;
     line->count = 0;
     if (frame == NULL || bytes_left(frame, now_us) == 0u) {

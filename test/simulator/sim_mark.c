@@ -15,7 +15,6 @@
 static uint32_t inverse(uint32_t odd)
 {
     uint32_t x = odd;
-
     for (unsigned round = 0; round < 4; round++) {
         x = x * (2u - odd * x);
     }
@@ -31,7 +30,6 @@ encode_sample_t sim_mark(const sim_t *sim, uint32_t revolution, uint32_t sample)
 {
     const uint32_t plain = (revolution << SIM_MARK_SAMPLE_BITS | sample) ^ key_of(sim);
     uint32_t mark = (plain * FACTOR_A) & MARK_MASK;
-
     mark ^= mark >> 13;
     mark = (mark * FACTOR_B) & MARK_MASK;
     return (encode_sample_t){.distance_mm = (uint16_t)(mark & 0x3FFFu),
@@ -44,7 +42,6 @@ void sim_read_mark(const sim_t *sim, encode_sample_t point, uint32_t *revolution
     const uint32_t mark =
         (uint32_t)point.intensity << 16 | (uint32_t)point.flag << 14 | point.distance_mm;
     uint32_t plain = (mark * inverse(FACTOR_B)) & MARK_MASK;
-
     plain ^= plain >> 13;
     plain = ((plain * inverse(FACTOR_A)) & MARK_MASK) ^ key_of(sim);
     *revolution = plain >> SIM_MARK_SAMPLE_BITS;

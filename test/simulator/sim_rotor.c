@@ -42,7 +42,6 @@ static void turn_rotor(sim_t *sim, uint32_t samples)
     const uint32_t spin_up_samples = (uint32_t)sim->config.spin_up_ms * 4u;
     const uint32_t most =
         spin_up_samples == 0u ? target : set_speed(sim) / spin_up_samples * samples + 1u;
-
     rotor->speed = approach(rotor->speed, target, most);
     rotor->step = frozen(sim) ? 0u : step_of(rotor->speed);
 }
@@ -51,14 +50,12 @@ static void turn_rotor(sim_t *sim, uint32_t samples)
 static int32_t draw_wobble(sim_t *sim)
 {
     const uint32_t most = set_speed(sim) / 1000u * sim->config.wobble_permille;
-
     return (int32_t)random_between(&sim->random, 0, 2u * most) - (int32_t)most;
 }
 
 static uint32_t samples_to_full_turn(const sim_t *sim)
 {
     const sim_rotor_t *rotor = &sim->rotor;
-
     if (rotor->step == 0u || rotor->unmarked) {
         return sim->config.samples_per_packet;
     }
@@ -74,7 +71,6 @@ static bool happens(sim_t *sim, uint16_t permille)
 static uint32_t draw_packet_samples(sim_t *sim)
 {
     const uint32_t left = samples_to_full_turn(sim);
-
     if (sim->rotor.at_start || happens(sim, sim->config.lone_packet_permille)) {
         return 1;
     }
@@ -90,7 +86,6 @@ static void plan_packet(sim_t *sim, uint64_t from_us)
 static uint32_t decimal(const uint8_t *digits, unsigned count)
 {
     uint32_t value = 0;
-
     for (unsigned i = 0; i < count; i++) {
         value = value * 10u + digits[i];
     }
@@ -102,7 +97,6 @@ static void prepare_turn_information(sim_t *sim)
 {
     const encode_information_t *information = &sim->config.information;
     encode_turn_t *turn = &sim->rotor.turn;
-
     turn->user_major = sim->config.user_major;
     turn->user_minor = sim->config.user_minor;
     turn->hardware = information->hardware;
@@ -120,7 +114,6 @@ static uint32_t first_phase(sim_t *sim)
 {
     const uint32_t chance = random_below(&sim->random, FULL_TURN_Q16);
     const uint32_t angle_q6 = sim->config.first_angle_q6;
-
     if (angle_q6 == 0u) {
         return chance;
     }
@@ -131,7 +124,6 @@ static uint32_t first_phase(sim_t *sim)
 void sim_rotor_start(sim_t *sim, uint64_t at_us)
 {
     sim_rotor_t *rotor = &sim->rotor;
-
     prepare_turn_information(sim);
     rotor->phase = first_phase(sim);
     rotor->speed = set_speed(sim) / 100u * sim->config.spin_up_percent;
@@ -162,7 +154,6 @@ void sim_rotor_stop(sim_t *sim)
 bool sim_rotor_measures(const sim_t *sim)
 {
     const sim_rotor_t *rotor = &sim->rotor;
-
     return rotor->due_us != SIM_NEVER &&
            sim->now_us + (uint32_t)rotor->planned * SAMPLE_US >= rotor->due_us;
 }
@@ -176,7 +167,6 @@ static uint8_t intensity_at(uint16_t distance_mm)
 static uint16_t add_noise(uint16_t distance_mm, uint32_t dice, uint32_t noise_mm)
 {
     const uint32_t added = (dice & 0xFFFFu) * (2u * noise_mm + 1u) >> 16;
-
     if (distance_mm <= noise_mm) {
         return distance_mm;
     }
@@ -190,7 +180,6 @@ static uint32_t room_angle(const sim_t *sim, uint32_t angle_q6)
     const sim_config_t *const config = &sim->config;
     const int64_t full = ENCODE_FULL_TURN_Q6;
     int64_t turned = (int64_t)angle_q6 - config->turned_q6;
-
     if (config->turning_q6_s != 0) {
         turned += (int64_t)sim->now_us * config->turning_q6_s / 1000000 % full;
     }
@@ -208,7 +197,6 @@ static uint16_t ideal_distance(const sim_t *sim, uint32_t angle_q16)
     const bool is_dark = sim->rotor_blocked || sim->window_covered;
     const uint32_t angle_q6 = angle_q16 >> 16;
     uint16_t seen_mm;
-
     if (is_dark) {
         return 0;
     }
@@ -227,7 +215,6 @@ static encode_sample_t measure_noisy(sim_t *sim, uint32_t angle_q16)
     const uint32_t flagged = ((uint32_t)(dice >> 32) & 0xFFFFu) * 1000u >> 16;
     const uint16_t ideal = ideal_distance(sim, angle_q16);
     encode_sample_t sample = {0, 0, 0};
-
     if (sim->rotor_blocked || sim->window_covered) {
         return sample;
     }
@@ -246,7 +233,6 @@ static encode_sample_t measure_quiet(sim_t *sim, uint32_t angle_q16)
 {
     const uint16_t ideal = ideal_distance(sim, angle_q16);
     const encode_sample_t sample = {ideal, intensity_at(ideal), 0};
-
     return ideal != 0u ? sample : (encode_sample_t){0, 0, 0};
 }
 
@@ -264,14 +250,12 @@ static encode_sample_t measure(sim_t *sim, uint32_t angle_q16)
 static uint32_t turned_by(uint32_t angle_q16, uint32_t more_q16)
 {
     const uint32_t room = FULL_TURN_Q16 - angle_q16;
-
     return more_q16 < room ? angle_q16 + more_q16 : more_q16 - room;
 }
 
 static void measure_all(sim_t *sim, encode_sample_t *samples)
 {
     uint32_t angle = turned_by(sim->rotor.phase, (uint32_t)sim->config.start_angle_q6 << 16);
-
     for (uint32_t i = 0; i < sim->rotor.planned; i++) {
         samples[i] = sim->config.marked ? sim_mark(sim, sim->revolution, sim->rotor.samples + i)
                                         : measure(sim, angle);
@@ -284,7 +268,6 @@ static void measure_all(sim_t *sim, encode_sample_t *samples)
 static uint32_t draw_jitter(sim_t *sim)
 {
     const uint32_t most = frozen(sim) ? 0u : sim->config.angle_jitter_q6;
-
     return random_between(&sim->random, 0, 2u * most);
 }
 
@@ -298,7 +281,6 @@ static void set_angles(sim_t *sim, encode_packet_t *packet)
     const uint32_t swept = rotor->step * (rotor->planned - 1u);
     const uint32_t first = zero + (rotor->phase >> 16) + draw_jitter(sim);
     uint32_t last = zero + ((rotor->phase + swept) >> 16) + draw_jitter(sim);
-
     if (rotor->planned == 1u) {
         last = rotor->at_start ? first : first - LONE_STEP_BACK_Q6;
     } else if (last < first) {
@@ -312,7 +294,6 @@ static void set_angles(sim_t *sim, encode_packet_t *packet)
 static uint16_t measured_frequency_dhz(const sim_rotor_t *rotor)
 {
     uint32_t dhz = rotor->speed / (10u * SPEED_PER_CHZ);
-
     if (rotor->in_turn && rotor->samples > 0u) {
         dhz = (40000u + rotor->samples / 2u) / rotor->samples;
     }
@@ -324,7 +305,6 @@ static uint16_t measured_frequency_dhz(const sim_rotor_t *rotor)
 static void begin_revolution(sim_t *sim)
 {
     sim_rotor_t *rotor = &sim->rotor;
-
     rotor->turn.frequency_dhz = measured_frequency_dhz(rotor);
     rotor->turn.production = (uint8_t)random_below(&sim->random, 128);
     rotor->data_fault = rotor->in_turn && rotor->valid == 0u && !sim->rotor_blocked;
@@ -342,7 +322,6 @@ static void begin_revolution(sim_t *sim)
 static uint8_t next_ct(sim_t *sim)
 {
     sim_rotor_t *rotor = &sim->rotor;
-
     if (!rotor->at_start && (!sim->config.ct_information || !rotor->in_turn)) {
         return 0;
     }
@@ -365,7 +344,6 @@ static void fill_frame(sim_t *sim, sim_frame_t *frame)
     sim_rotor_t *rotor = &sim->rotor;
     encode_sample_t samples[FULL_PACKET];
     encode_packet_t packet = {0, 0, 0, 0, NULL};
-
     frame->packet_at = add_last_crc(sim, frame);
     if (rotor->at_start) {
         begin_revolution(sim);
@@ -390,7 +368,6 @@ static void turn_past_packet(sim_t *sim)
     sim_rotor_t *rotor = &sim->rotor;
     const uint32_t swept = rotor->step * rotor->planned;
     const uint32_t to_start = FULL_TURN_Q16 - rotor->phase;
-
     const bool passes = swept >= to_start;
 
     rotor->at_start = passes && !rotor->unmarked;
@@ -406,7 +383,6 @@ static void send_packet(sim_t *sim, bool is_sent, bool is_doubled)
 {
     sim_frame_t *frame = sim_line_open(&sim->line);
     sim_frame_t *again;
-
     if (frame == NULL) {
         return;
     }
@@ -425,7 +401,6 @@ static void send_packet(sim_t *sim, bool is_sent, bool is_doubled)
 static sim_trouble_t spoil(sim_t *sim, uint32_t *for_ms)
 {
     sim_rotor_t *rotor = &sim->rotor;
-
     if (rotor->noted >= SIM_STARTS_NOTED || (rotor->noted > 0u && !rotor->at_start)) {
         return SIM_SOUND;
     }
@@ -439,7 +414,6 @@ void sim_rotor_packet(sim_t *sim)
     uint32_t for_ms = 0;
     const sim_trouble_t trouble = spoil(sim, &for_ms);
     const bool is_hidden = sim_is_silent(sim) || (sim->no_starts && rotor->at_start);
-
     if (rotor->due_us == SIM_NEVER) {
         return; /* The trouble was a loss of power. */
     }

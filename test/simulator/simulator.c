@@ -13,7 +13,6 @@ sim_config_t sim_default_config(void)
 {
     static const uint8_t serial[16] = {2, 0, 2, 6, 0, 3, 1, 7, 0, 0, 0, 1, 2, 3, 4, 5};
     sim_config_t config = {0};
-
     config.seed = 1;
     config.ct_information = true;
     config.frequency_chz = 600;
@@ -51,7 +50,6 @@ static uint64_t ms(uint32_t milliseconds)
 static void set_mode(sim_t *sim, sim_mode_t mode, uint64_t due_us)
 {
     const sim_mode_t before = sim->mode;
-
     sim->mode = mode;
     sim->mode_due_us = due_us;
     if (mode != before && sim->observer.on_mode != NULL) {
@@ -75,7 +73,6 @@ void sim_init(sim_t *sim, const sim_config_t *config)
 void sim_observe(sim_t *sim, const sim_observer_t *observer)
 {
     static const sim_observer_t nobody = {NULL, NULL, NULL, NULL, NULL};
-
     sim->observer = observer == NULL ? nobody : *observer;
 }
 
@@ -92,7 +89,6 @@ static void sound_from(sim_t *sim, uint64_t at_us)
 static void befall(sim_t *sim, sim_trouble_t trouble, uint32_t for_ms)
 {
     const uint64_t end_us = sim->now_us + ms(for_ms);
-
     switch (trouble) {
     case SIM_POWER_CUT:
         reset(sim, SIM_OFF, SIM_NEVER);
@@ -124,7 +120,6 @@ static void befall(sim_t *sim, sim_trouble_t trouble, uint32_t for_ms)
 sim_trouble_t sim_event(sim_t *sim, sim_event_t event, uint32_t *for_ms)
 {
     sim_trouble_t trouble = SIM_SOUND;
-
     *for_ms = 0;
     if (sim->observer.on_event != NULL) {
         trouble = sim->observer.on_event(sim->observer.context, event, sim->now_us, for_ms);
@@ -146,10 +141,8 @@ bool sim_is_silent(const sim_t *sim)
 static uint64_t reply_due_us(sim_t *sim)
 {
     uint64_t due = sim->now_us + ms(sim->config.reply_latency_ms) + ms(sim->extra_latency_ms);
-
     if (sim->reply_count > 0u) {
         const uint32_t last = (sim->first_reply + sim->reply_count - 1u) % SIM_REPLIES;
-
         due = sim->replies[last].due_us > due ? sim->replies[last].due_us : due;
     }
     sim->extra_latency_ms = 0;
@@ -161,7 +154,6 @@ static uint64_t answer(sim_t *sim, const uint8_t *bytes, size_t length)
 {
     const uint64_t due = reply_due_us(sim);
     sim_reply_t *reply = &sim->replies[(sim->first_reply + sim->reply_count) % SIM_REPLIES];
-
     if (sim->lose_reply || sim->config.never_answers || sim->reply_count == SIM_REPLIES) {
         sim->lose_reply = false;
         sim->counts.lost_replies++;
@@ -184,7 +176,6 @@ static uint64_t next_reply_us(const sim_t *sim)
 static void put_reply(sim_t *sim, const sim_reply_t *reply)
 {
     sim_frame_t *frame = sim_is_silent(sim) ? NULL : sim_line_open(&sim->line);
-
     if (frame != NULL) {
         frame->length = reply->length;
         memcpy(frame->bytes, reply->bytes, reply->length);
@@ -197,7 +188,6 @@ static void delay_replies(sim_t *sim, uint64_t due_us)
 {
     for (uint32_t i = 0; i < sim->reply_count; i++) {
         sim_reply_t *reply = &sim->replies[(sim->first_reply + i) % SIM_REPLIES];
-
         reply->due_us = reply->due_us > due_us ? reply->due_us : due_us;
     }
 }
@@ -208,7 +198,6 @@ static void send_reply(sim_t *sim)
     uint32_t late_ms = 0;
     const sim_trouble_t trouble =
         reply->is_late ? SIM_SOUND : sim_event(sim, SIM_EVENT_REPLY, &late_ms);
-
     if (sim->reply_count == 0u) {
         return; /* The trouble was a loss of power. */
     }
@@ -240,7 +229,6 @@ static void start(sim_t *sim)
     uint8_t reply[ENCODE_REPLY_MAX];
     const size_t length = encode_scan_reply(reply);
     const uint64_t due = answer(sim, reply, length);
-
     if (is_fatal(sim)) {
         set_mode(sim, SIM_FAULT, SIM_NEVER);
         return;
@@ -274,7 +262,6 @@ static void answer_information(sim_t *sim)
     encode_information_t information = sim->config.information;
     uint8_t reply[ENCODE_REPLY_MAX];
     size_t length;
-
     if (sim->config.firmware_major_first) {
         information.firmware_major = sim->config.information.firmware_minor;
         information.firmware_minor = sim->config.information.firmware_major;
@@ -292,7 +279,6 @@ static void answer_health(sim_t *sim)
     const uint8_t status = sim_health(sim);
     uint8_t reply[ENCODE_REPLY_MAX];
     const size_t length = encode_health_reply(reply, status, status);
-
     answer(sim, reply, length);
 }
 
@@ -302,7 +288,6 @@ static void answer_undocumented_98(sim_t *sim)
     static const uint8_t content[4] = {0, 0, 0, 0};
     uint8_t reply[ENCODE_REPLY_MAX];
     const size_t length = encode_reply(reply, ENCODE_MODE_SINGLE, 0x10, content, sizeof content);
-
     answer(sim, reply, length);
 }
 
@@ -311,7 +296,6 @@ static void step_frequency(sim_t *sim, int step_chz)
     const int frequency = (int)sim->frequency_chz + step_chz;
     uint8_t reply[ENCODE_REPLY_MAX];
     size_t length;
-
     if (!sim->config.refuses_steps && frequency >= (int)sim->config.min_frequency_chz &&
         frequency <= (int)sim->config.max_frequency_chz) {
         sim->frequency_chz = (uint16_t)frequency;
@@ -399,7 +383,6 @@ static void count_command(sim_t *sim, uint8_t code, sim_mode_t mode)
 static void execute(sim_t *sim, uint8_t code)
 {
     const sim_mode_t mode = sim->mode;
-
     if (sim->observer.on_command != NULL) {
         sim->observer.on_command(sim->observer.context, code, sim->now_us);
     }
@@ -423,7 +406,6 @@ static void execute_late(sim_t *sim)
 {
     sim_late_t *late = &sim->late;
     const uint8_t code = late->codes[0];
-
     late->count--;
     for (uint32_t i = 0; i < late->count; i++) {
         late->codes[i] = late->codes[i + 1u];
@@ -441,7 +423,6 @@ static void receive_command(sim_t *sim, uint8_t code)
     const sim_trouble_t trouble = sim_event(sim, SIM_EVENT_COMMAND, &late_ms);
     const bool is_heard = trouble == SIM_SOUND || trouble == SIM_LATE || trouble == SIM_DOUBLED ||
                           trouble == SIM_SILENT || trouble == SIM_NO_STARTS;
-
     if (trouble == SIM_LATE) {
         due_us += ms(late_ms);
         sound_from(sim, due_us);
@@ -484,7 +465,6 @@ static uint64_t next_event_us(const sim_t *sim)
 {
     const uint64_t late_us = sim->late.count > 0u ? sim->late.due_us[0] : SIM_NEVER;
     const uint64_t outer_us = earlier(sim->power_us, late_us);
-
     return earlier(outer_us,
                    earlier(sim->mode_due_us, earlier(next_reply_us(sim), sim->rotor.due_us)));
 }
@@ -499,7 +479,6 @@ static void boot(sim_t *sim)
 static bool step(sim_t *sim, uint64_t until_us)
 {
     const uint64_t event_us = next_event_us(sim);
-
     if (event_us > until_us) {
         return false;
     }
@@ -577,7 +556,6 @@ size_t sim_transmit(sim_t *sim, uint64_t now_us, uint8_t *out, size_t max)
 {
     size_t count = 0;
     sim_run_t run;
-
     while (count < max && take_run(sim, now_us, max - count, &run)) {
         memcpy(out + count, run.bytes, run.length);
         count += run.length;
@@ -589,7 +567,6 @@ uint64_t sim_next_us(sim_t *sim)
 {
     const sim_frame_t *frame = sim_line_front(&sim->line);
     const uint64_t event_us = next_event_us(sim);
-
     if (frame == NULL) {
         return event_us;
     }
@@ -684,7 +661,6 @@ sim_mode_t sim_mode(const sim_t *sim)
 const char *sim_mode_name(sim_mode_t mode)
 {
     static const char *const names[] = {"off", "booting", "idle", "scanning", "stopping", "fault"};
-
     return names[mode];
 }
 
@@ -696,7 +672,6 @@ uint16_t sim_frequency_chz(const sim_t *sim)
 uint8_t sim_health(const sim_t *sim)
 {
     uint8_t health = sim->health;
-
     if (sim->rotor_blocked) {
         health |= SIM_HEALTH_ENCODER;
     }

@@ -52,7 +52,6 @@ static void connect(void)
 {
     static const sim_link_observer_t observer = {NULL, hear_packet, hear_fault};
     const sim_config_t device = sim_default_config();
-
     sim_init(&sim, &device);
     sim_link_init(&wire, &sim, &config);
     sim_link_observe(&wire, &observer);
@@ -78,7 +77,6 @@ static void run_ms(uint32_t milliseconds)
 static void send(uint8_t code)
 {
     const uint8_t command[2] = {0xA5, code};
-
     sim_link_write(&wire, command, 2, now);
 }
 
@@ -101,7 +99,6 @@ static void scan_into_a_packet(void)
 static size_t intact_packets(void)
 {
     size_t intact = 0;
-
     for (size_t i = 0; i < fate_count; i++) {
         intact += fates[i].packet.intact ? 1u : 0u;
     }
@@ -120,10 +117,8 @@ static void expect_the_truth_about_every_packet(void)
     const reference_options_t options = {80, NULL};
     uint64_t found;
     size_t there = 0;
-
     for (size_t i = 0; i < fate_count; i++) {
         const sim_link_packet_t *packet = &fates[i].packet;
-
         if (is_in_stream(packet)) {
             TEST_ASSERT_EQUAL_MEMORY(fates[i].bytes, stream + packet->offset, packet->sent.length);
             there++;
@@ -160,7 +155,6 @@ void test_a_faultless_wire_passes_every_byte_in_its_time(void)
     const sim_config_t device = sim_default_config();
     static const uint8_t start[2] = {0xA5, 0x60};
     size_t direct_size = 0;
-
     send(0x60);
     run_ms(5000);
     sim_init(&sim, &device);
@@ -238,7 +232,6 @@ void test_a_stall_makes_bytes_late_but_loses_none(void)
 void test_nothing_comes_during_a_stall_and_then_it_comes_at_the_lines_speed(void)
 {
     size_t before;
-
     scan_with(SIM_LINK_STALL, 0, 3);
     sim_link_force(&wire, SIM_LINK_STALL, 100, now);
     before = size;
@@ -256,7 +249,6 @@ void test_nothing_comes_during_a_stall_and_then_it_comes_at_the_lines_speed(void
 void test_a_stall_while_the_backlog_drains_holds_the_rest_back(void)
 {
     size_t before;
-
     scan_with(SIM_LINK_STALL, 0, 3);
     sim_link_force(&wire, SIM_LINK_STALL, 100, now);
     run_ms(110);
@@ -273,11 +265,9 @@ void test_a_stall_while_the_backlog_drains_holds_the_rest_back(void)
 void test_a_spoiled_last_crc_does_not_hit_the_start_packet(void)
 {
     unsigned starts = 0;
-
     scan_with(SIM_LINK_FLIP, 0, 3);
     for (int i = 0; i < 200; i++) {
         size_t before;
-
         while (wire.packet_open) {
             run_us(20);
         }
@@ -419,7 +409,6 @@ void test_the_same_seed_gives_the_same_faults_whatever_the_steps(void)
 {
     static uint8_t other[STREAM_MAX];
     size_t other_size;
-
     config.mean_gap[SIM_LINK_DROP] = 1000;
     config.mean_gap[SIM_LINK_STALL] = 500;
     config.mean_gap[SIM_LINK_GARBLE] = 3000;
@@ -441,7 +430,6 @@ void test_the_next_event_is_never_later_than_the_next_byte(void)
     scan_with(SIM_LINK_STALL, 200, 3);
     for (int i = 0; i < 20000; i++) {
         const uint64_t next = sim_link_next_us(&wire);
-
         if (next > now + 1u) {
             TEST_ASSERT_EQUAL_size_t(0, sim_link_read(&wire, next - 1u, stream, 100));
         }

@@ -45,7 +45,6 @@ static void run_ms(uint32_t milliseconds)
 static void send(uint8_t code)
 {
     const uint8_t command[2] = {0xA5, code};
-
     sim_receive(&sim, command, 2, now);
 }
 
@@ -66,7 +65,6 @@ static void decode(void)
 {
     static const reference_reply_t start_reply = {1, 0x81, 0};
     const reference_options_t options = {80, &start_reply};
-
     packet_count = 0;
     counts = reference_decode(stream, size, &options, collect, NULL);
     TEST_ASSERT_EQUAL_UINT32(0, sim_lost_frames(&sim));
@@ -94,7 +92,6 @@ static size_t next_start(size_t from)
 static unsigned points_between(size_t from, size_t to)
 {
     unsigned points = 0;
-
     for (; from < to; from++) {
         points += packets[from].lsn;
     }
@@ -110,7 +107,6 @@ static void expect_stream(const uint8_t *expected, size_t length)
 static void expect_frequency_reply(uint8_t low, uint8_t high)
 {
     const uint8_t expected[] = {0xA5, 0x5A, 0x04, 0, 0, 0, 0x04, low, high, 0, 0};
-
     run_ms(10);
     expect_stream(expected, sizeof expected);
     forget_stream();
@@ -139,7 +135,6 @@ void test_device_information_has_the_minor_firmware_version_first(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, 0x97, 2, 1, 1, 2, 0, 2,
                                        6,    0,    3,    1, 7, 0, 0,    0,    1, 2, 3, 4, 5};
-
     send(0x90);
     run_ms(10);
     expect_stream(expected, sizeof expected);
@@ -148,7 +143,6 @@ void test_device_information_has_the_minor_firmware_version_first(void)
 void test_health_is_all_clear_at_first(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x03, 0, 0, 0, 0x06, 0, 0, 0};
-
     send(0x92);
     run_ms(10);
     expect_stream(expected, sizeof expected);
@@ -217,7 +211,6 @@ void test_a_command_may_arrive_in_two_parts_and_among_garbage(void)
 {
     static const uint8_t first[] = {0x0D, 0x60, 0xA5, 0xA5};
     static const uint8_t second[] = {0x0D, 0x60, 0x90};
-
     sim_receive(&sim, first, sizeof first, now);
     run_ms(50);
     sim_receive(&sim, second, sizeof second, now);
@@ -288,7 +281,6 @@ void test_one_reply_can_be_lost(void)
 void test_lone_point_packets_end_slightly_before_they_begin(void)
 {
     unsigned lone = 0;
-
     config.lone_packet_permille = 200;
     power_up();
     scan_seconds(10);
@@ -316,7 +308,6 @@ void test_start_packets_are_at_the_start_angle(void)
 void test_bytes_never_come_faster_than_the_line(void)
 {
     uint8_t chunk[1000];
-
     send(0x60);
     for (uint32_t i = 0; i < 30000; i++) {
         now += 100;
@@ -328,7 +319,6 @@ void test_one_late_call_gives_the_same_bytes_as_many_early_ones(void)
 {
     static uint8_t other[STREAM_MAX];
     size_t other_size;
-
     send(0x60);
     run_ms(5000);
     sim_init(&sim, &config);
@@ -344,7 +334,6 @@ void test_a_small_buffer_loses_nothing(void)
     static uint8_t other[STREAM_MAX];
     size_t other_size = 0;
     size_t more;
-
     send(0x60);
     run_ms(2000);
     sim_init(&sim, &config);
@@ -392,7 +381,6 @@ void test_the_first_packet_may_be_a_start_packet_anywhere(void)
 void test_an_undocumented_command_is_answered_with_four_zeros(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x04, 0, 0, 0, 0x10, 0, 0, 0, 0};
-
     send(0x98);
     run_ms(10);
     expect_stream(expected, sizeof expected);
@@ -403,7 +391,6 @@ void test_an_undocumented_command_is_answered_with_four_zeros(void)
 void test_the_ct_bytes_carry_what_section_7_says(void)
 {
     size_t start;
-
     scan_seconds(5);
     start = next_start(0);
     TEST_ASSERT_EQUAL_HEX8(0x40, packets[start + 1u].ct);  /* user version 1.0 */
@@ -423,7 +410,6 @@ void test_last_crc_guards_the_ct_bytes_of_every_revolution(void)
     for (size_t start = next_start(0), turn = 0; turn < 100; turn++) {
         const size_t next = next_start(start + 1u);
         uint8_t crc = 0;
-
         for (size_t i = start; i < next; i++) {
             crc = encode_crc8(crc, packets[i].ct);
         }
@@ -435,7 +421,6 @@ void test_last_crc_guards_the_ct_bytes_of_every_revolution(void)
 void test_last_crc_is_sometimes_aa(void)
 {
     unsigned seen = 0;
-
     config.frequency_chz = 1200;
     power_up();
     scan_seconds(120);
@@ -469,7 +454,6 @@ void test_a_unit_without_ct_information_sends_neither_ct_nor_last_crc(void)
 static unsigned ranges_from(size_t first)
 {
     unsigned ranges = 0;
-
     for (size_t i = first; i < packet_count; i++) {
         for (unsigned s = 0; s < packets[i].lsn; s++) {
             ranges += reference_point(packets[i].bytes, s).distance_mm != 0u ? 1u : 0u;
@@ -481,7 +465,6 @@ static unsigned ranges_from(size_t first)
 void test_a_covered_window_gives_no_ranges_and_the_data_fault(void)
 {
     size_t start;
-
     sim_cover_window(&sim, true);
     scan_seconds(3);
     TEST_ASSERT_EQUAL_UINT(0, ranges_from(0));
@@ -546,7 +529,6 @@ static reference_point_t nearest_to(uint16_t angle_q6)
     for (size_t i = next_start(0); i < packet_count; i++) {
         for (unsigned s = 0; s < packets[i].lsn; s++) {
             const reference_point_t point = reference_point(packets[i].bytes, s);
-
             if (point.angle_q6 + 20u > angle_q6 && point.angle_q6 < angle_q6 + 20u &&
                 point.distance_mm != 0u) {
                 return point;
@@ -594,7 +576,6 @@ void test_an_obstacle_appears_where_it_is_placed_and_can_be_removed(void)
 void test_flags_2_and_3_occur_as_often_as_configured(void)
 {
     unsigned flags[4] = {0, 0, 0, 0};
-
     config.flagged_permille = 100;
     power_up();
     scan_seconds(10);
@@ -641,7 +622,6 @@ void test_a_stop_before_the_first_packet_leaves_silence(void)
 void test_commands_while_scanning_are_counted_and_answered_between_packets(void)
 {
     size_t stray;
-
     scan_seconds(1);
     forget_stream();
     send(0x0D);
@@ -717,7 +697,6 @@ void test_what_left_before_power_was_lost_can_still_be_read(void)
 {
     uint32_t before;
     sim_run_t run;
-
     scan_seconds(1);
     while (!sim_next_run(&sim, now, &run) || run.packet == NULL || run.offset > 0) {
         now += 100;
@@ -802,7 +781,6 @@ void test_the_observer_gets_every_packet_and_its_place(void)
 void test_the_observer_gets_commands_and_modes(void)
 {
     static const uint8_t codes[] = {0x60, 0x77, 0x65};
-
     observe();
     send(0x60);
     run_ms(1000);
@@ -846,7 +824,6 @@ static struct {
 static sim_trouble_t spoil_event(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms)
 {
     const unsigned number = spoil.counts[event]++;
-
     (void)context;
     (void)now_us;
     *ms = spoil.ms;
@@ -856,7 +833,6 @@ static sim_trouble_t spoil_event(void *context, sim_event_t event, uint64_t now_
 static void unkind(sim_event_t event, unsigned number, sim_trouble_t trouble, uint32_t ms)
 {
     const sim_observer_t observer = {.on_event = spoil_event};
-
     power_up();
     memset(&spoil, 0, sizeof spoil);
     spoil.event = event;
@@ -869,7 +845,6 @@ static void unkind(sim_event_t event, unsigned number, sim_trouble_t trouble, ui
 static unsigned starts_sent(void)
 {
     unsigned starts = 0;
-
     decode();
     for (size_t i = 0; i < packet_count; i++) {
         starts += packets[i].starts_revolution ? 1 : 0;
@@ -952,7 +927,6 @@ void test_a_scan_that_loses_its_beginning_does_not_begin_and_another_start_is_ob
 void test_start_packets_are_lost_doubled_or_missing_until_it_boots(void)
 {
     unsigned starts[3];
-
     for (unsigned i = 0; i < 3; i++) {
         unkind(SIM_EVENT_START, 0, i == 0 ? SIM_SOUND : i == 1 ? SIM_LOST : SIM_DOUBLED, 0);
         send(0x60);
@@ -993,7 +967,6 @@ void test_a_lidar_that_answers_and_does_not_scan_needs_a_reboot(void)
 void test_a_stream_that_is_silent_or_late_goes_on_afterwards(void)
 {
     static const sim_trouble_t troubles[] = {SIM_SILENT, SIM_LATE};
-
     for (size_t i = 0; i < 2; i++) {
         unkind(SIM_EVENT_START, 0, troubles[i], 800);
         send(0x60);
@@ -1034,7 +1007,6 @@ void test_a_mark_shows_its_sample_and_revolution_and_no_data_fault(void)
     uint32_t revolution, sample;
     uint32_t first = 0;
     unsigned count = 0;
-
     for (; at < end; at++) {
         for (unsigned i = 0; i < packets[at].lsn; i++) {
             const reference_point_t point = reference_point(packets[at].bytes, i);

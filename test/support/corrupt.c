@@ -10,7 +10,6 @@ uint8_t corrupt_lookalike(random_t *random)
     static const uint8_t likely[] = {0xAA, 0x55, 0xAA, 0x55, 0xA5, 0x5A,
                                      0x00, 0x01, 0x02, 0x03, 0x28, 0x81};
     const uint32_t draw = random_below(random, 2u * sizeof likely);
-
     return draw < sizeof likely ? likely[draw] : (uint8_t)random_below(random, 256);
 }
 
@@ -58,7 +57,6 @@ size_t corrupt_once(random_t *random, corrupt_kind_t kind, uint8_t *bytes, size_
                     size_t capacity)
 {
     size_t at;
-
     if (size == 0) {
         return 0;
     }
@@ -85,7 +83,6 @@ size_t corrupt_some(random_t *random, unsigned faults, uint8_t *bytes, size_t si
 {
     for (; faults > 0; faults--) {
         const corrupt_kind_t kind = (corrupt_kind_t)random_below(random, CORRUPT_KINDS);
-
         size = corrupt_once(random, kind, bytes, size, capacity);
     }
     return size;

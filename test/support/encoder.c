@@ -47,7 +47,6 @@ uint16_t encode_checksum(const uint8_t *packet)
     const uint8_t *sample = packet + ENCODE_PACKET_HEADER;
     uint8_t low = (uint8_t)(packet[0] ^ packet[2] ^ packet[4] ^ packet[6]);
     uint8_t high = (uint8_t)(packet[1] ^ packet[3] ^ packet[5] ^ packet[7]);
-
     for (uint8_t left = packet[3]; left > 0; left--) {
         low = (uint8_t)(low ^ sample[0] ^ sample[1]);
         high = (uint8_t)(high ^ sample[2]);
@@ -64,7 +63,6 @@ void encode_seal(uint8_t *packet)
 size_t encode_packet(uint8_t *out, const encode_packet_t *packet)
 {
     uint8_t *sample = out + ENCODE_PACKET_HEADER;
-
     encode_packet_header(out, packet);
     for (size_t i = 0; i < packet->lsn; i++) {
         encode_sample(sample, packet->samples[i]);
@@ -78,12 +76,10 @@ size_t encode_other_packet(uint8_t *out, const encode_packet_t *packet, uint8_t 
 {
     const size_t size = ENCODE_PACKET_HEADER + (size_t)sample_size * packet->lsn;
     uint16_t checksum = 0;
-
     encode_packet_header(out, packet);
     for (size_t i = 0; i < packet->lsn; i++) {
         const encode_sample_t *const from = &packet->samples[i];
         uint8_t *const sample = out + ENCODE_PACKET_HEADER + sample_size * i;
-
         if (sample_size == 2) {
             encode_u16(sample, (uint16_t)(((uint32_t)from->distance_mm << 2) | (from->flag & 3u)));
         } else {
@@ -122,7 +118,6 @@ size_t encode_scan_reply(uint8_t *out)
 size_t encode_information_reply(uint8_t *out, const encode_information_t *information)
 {
     uint8_t content[20];
-
     content[0] = information->model;
     content[1] = information->firmware_minor;
     content[2] = information->firmware_major;
@@ -134,7 +129,6 @@ size_t encode_information_reply(uint8_t *out, const encode_information_t *inform
 size_t encode_health_reply(uint8_t *out, uint8_t status, uint16_t error_code)
 {
     uint8_t content[3];
-
     content[0] = status;
     encode_u16(content + 1, error_code);
     return encode_reply(out, ENCODE_MODE_SINGLE, ENCODE_TYPE_HEALTH, content, sizeof content);
@@ -143,7 +137,6 @@ size_t encode_health_reply(uint8_t *out, uint8_t status, uint16_t error_code)
 size_t encode_frequency_reply(uint8_t *out, uint32_t frequency_chz)
 {
     uint8_t content[4];
-
     encode_u32(content, frequency_chz);
     return encode_reply(out, ENCODE_MODE_SINGLE, ENCODE_TYPE_INFORMATION, content, sizeof content);
 }

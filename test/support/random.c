@@ -43,7 +43,6 @@ static uint32_t log2_q16(uint32_t x)
 {
     uint32_t result = 31;
     uint64_t mantissa = x;
-
     while ((mantissa & UINT64_C(0x80000000)) == 0) {
         mantissa <<= 1;
         result--;
@@ -66,6 +65,5 @@ uint64_t random_gap(random_t *random, uint32_t mean)
     const uint32_t draw = random_u32(random) | 1u;
     const uint64_t log_q16 = UINT64_C(32) * 65536u - log2_q16(draw);
     const uint64_t exponential_q16 = (log_q16 * ln2_q16) >> 16;
-
     return ((exponential_q16 * mean) >> 16) + 1u;
 }

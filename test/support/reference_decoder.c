@@ -28,13 +28,11 @@ static size_t packet_length(const uint8_t *packet)
 static uint16_t checksum_of(const uint8_t *packet)
 {
     uint16_t sum = word_at(packet);
-
     sum ^= word_at(packet + 2);
     sum ^= word_at(packet + 4);
     sum ^= word_at(packet + 6);
     for (unsigned i = 0; i < packet[3]; i++) {
         const uint8_t *sample = packet + 10u + 3u * i;
-
         sum ^= sample[0];
         sum ^= word_at(sample + 1);
     }
@@ -59,7 +57,6 @@ static verdict_t judge_packet(const decoding_t *d, size_t at)
 {
     const uint8_t *packet = d->bytes + at;
     const size_t left = d->size - at;
-
     if (left < 10u || !header_is_acceptable(packet, d->options.max_samples)) {
         return NOT_A_PACKET;
     }
@@ -76,7 +73,6 @@ static size_t match_reply(const decoding_t *d, size_t at)
     const uint8_t *reply = d->bytes + at;
     const size_t left = d->size - at;
     uint32_t length;
-
     if (awaited == NULL || left < 7u || reply[0] != 0xA5 || reply[1] != 0x5A) {
         return 0;
     }
@@ -101,7 +97,6 @@ static size_t deliver_packet(decoding_t *d, size_t at)
 {
     const uint8_t *packet = d->bytes + at;
     reference_item_t item = {0};
-
     item.is_packet = true;
     item.offset = at;
     item.length = packet_length(packet);
@@ -122,7 +117,6 @@ static size_t deliver_packet(decoding_t *d, size_t at)
 static size_t deliver_reply(decoding_t *d, size_t at, size_t length)
 {
     reference_item_t item = {0};
-
     item.offset = at;
     item.length = length;
     item.bytes = d->bytes + at;
@@ -144,7 +138,6 @@ static size_t decode_at(decoding_t *d, size_t at)
 {
     const verdict_t verdict = judge_packet(d, at);
     const size_t reply = match_reply(d, at);
-
     if (verdict == VALID_PACKET) {
         return deliver_packet(d, at);
     }
@@ -160,7 +153,6 @@ reference_counts_t reference_decode(const uint8_t *bytes, size_t size,
 {
     decoding_t d = {0};
     size_t at = 0;
-
     d.bytes = bytes;
     d.size = size;
     d.options = *options;
@@ -183,7 +175,6 @@ static uint16_t angle_of(const uint8_t *packet, unsigned index)
     const uint64_t parts = packet[3] > 1u ? packet[3] - 1u : 1u;
     const uint64_t moved = packet[3] > 1u ? difference * index : 0;
     const uint64_t twice = 2u * (first * parts + moved) + parts;
-
     return (uint16_t)(twice / (2u * parts) % full);
 }
 
@@ -191,7 +182,6 @@ reference_point_t reference_point(const uint8_t *packet, unsigned index)
 {
     const uint8_t *sample = packet + 10u + 3u * index;
     reference_point_t point;
-
     point.angle_q6 = angle_of(packet, index);
     point.distance_mm = (uint16_t)(sample[2] * 64u + sample[1] / 4u);
     point.intensity = sample[0];

@@ -26,7 +26,6 @@ static int last_angle(const reference_item_t *packet)
 static int turn(int from, int to)
 {
     const int clockwise = (to - from + FULL) % FULL;
-
     return clockwise > FULL - DEGREES(4) ? clockwise - FULL : clockwise;
 }
 
@@ -72,13 +71,11 @@ static bool follow(const reference_item_t *items, size_t count, size_t start,
     size_t at = scan->first;
     int swept = (first_angle(&items[at]) - first_angle(&items[start]) + FULL) % FULL +
                 turn(first_angle(&items[at]), last_angle(&items[at]));
-
     scan->decihertz = items[start].ct / 2;
     scan->gaps = start == at ? 0 : 1;
     include(scan, &items[at]);
     for (;;) {
         const size_t next = next_packet(items, count, at + 1);
-
         if (next == count) {
             return false;
         }
@@ -87,7 +84,6 @@ static bool follow(const reference_item_t *items, size_t count, size_t start,
         const int began = swept + ahead;
         const int ended = began + turn(first_angle(packet), last_angle(packet));
         const size_t skipped = bytes_before(items, next);
-
         if (packet->starts_revolution) {
             /* One byte before a start packet may be LastCRC. */
             scan->gaps += skipped > 1 || ahead > DEGREES(4) ? 1 : 0;
@@ -115,7 +111,6 @@ bool reference_scan(const reference_item_t *items, size_t count, size_t from,
 {
     for (size_t at = from; at < count; at++) {
         size_t start;
-
         if (items[at].is_packet && last_start(items, at, &start)) {
             *scan = (reference_scan_t){.first = at};
             return follow(items, count, start, scan);

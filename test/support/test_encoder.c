@@ -18,7 +18,6 @@ static const encode_sample_t manual_samples[19] = {
 static encode_turn_t a_turn(void)
 {
     encode_turn_t turn = {0};
-
     turn.frequency_dhz = 60;
     turn.user_major = 1;
     turn.user_minor = 3;
@@ -40,7 +39,6 @@ void test_the_manuals_packet_is_encoded_byte_for_byte(void)
 {
     const encode_packet_t packet = {0x20, 19, 21706, 49, manual_samples};
     uint8_t out[ENCODE_PACKET_MAX];
-
     TEST_ASSERT_EQUAL_size_t(67, encode_packet(out, &packet));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(manual_packet, out, 67);
 }
@@ -62,7 +60,6 @@ void test_packets_of_other_units(void)
     const encode_sample_t sample = {300, 5, 2};
     const encode_packet_t packet = {0x00, 1, 64, 64, &sample};
     uint8_t out[ENCODE_OTHER_MAX];
-
     TEST_ASSERT_EQUAL_size_t(12, encode_other_packet(out, &packet, 2));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(two, out, 12);
     TEST_ASSERT_EQUAL_size_t(14, encode_other_packet(out, &packet, 4));
@@ -74,7 +71,6 @@ void test_a_real_units_start_packet_is_encoded_byte_for_byte(void)
     const encode_sample_t sample = {149, 21, 0};
     const encode_packet_t packet = {0x75, 1, 31, 31, &sample};
     uint8_t out[ENCODE_PACKET_MAX];
-
     TEST_ASSERT_EQUAL_size_t(13, encode_packet(out, &packet));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(start_packet, out, 13);
 }
@@ -84,7 +80,6 @@ void test_the_example_sample_of_section_5_is_64_e5_6f(void)
     static const uint8_t expected[] = {0x64, 0xE5, 0x6F};
     const encode_sample_t sample = {7161, 100, 1};
     uint8_t out[3];
-
     encode_sample(out, sample);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 3);
 }
@@ -94,7 +89,6 @@ void test_the_largest_sample_fills_all_its_bits(void)
     static const uint8_t expected[] = {0xFF, 0xFF, 0xFF};
     const encode_sample_t sample = {16383, 255, 3};
     uint8_t out[3];
-
     encode_sample(out, sample);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 3);
 }
@@ -109,7 +103,6 @@ void test_an_angle_has_its_check_bit_set(void)
 void test_sealing_makes_a_changed_packet_valid_again(void)
 {
     uint8_t packet[] = {0xAA, 0x55, 0x75, 0x01, 0x3F, 0x00, 0x3F, 0x00, 0, 0, 0x14, 0x54, 0x02};
-
     encode_seal(packet);
     TEST_ASSERT_EQUAL_HEX8(0x9F, packet[8]);
     TEST_ASSERT_EQUAL_HEX8(0x56, packet[9]);
@@ -120,7 +113,6 @@ void test_a_packet_may_have_255_samples(void)
     static const encode_sample_t samples[255];
     const encode_packet_t packet = {0, 255, 0, 0, samples};
     uint8_t out[ENCODE_PACKET_MAX];
-
     TEST_ASSERT_EQUAL_size_t(775, encode_packet(out, &packet));
     TEST_ASSERT_EQUAL_HEX8(0xAA, out[8]); /* AA ^ CT 0 ^ 01 ^ 01 */
     TEST_ASSERT_EQUAL_HEX8(0xAA, out[9]); /* 55 ^ LSN FF */
@@ -130,7 +122,6 @@ void test_the_scan_reply_is_that_of_the_manual(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
     uint8_t out[ENCODE_REPLY_MAX];
-
     TEST_ASSERT_EQUAL_size_t(7, encode_scan_reply(out));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
 }
@@ -153,7 +144,6 @@ void test_health_has_status_and_a_little_endian_error_code(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x03, 0x00, 0x00, 0x00, 0x06, 0x22, 0x34, 0x12};
     uint8_t out[ENCODE_REPLY_MAX];
-
     TEST_ASSERT_EQUAL_size_t(10, encode_health_reply(out, 0x22, 0x1234));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 10);
 }
@@ -163,7 +153,6 @@ void test_six_hertz_is_600_hundredths(void)
     static const uint8_t expected[] = {0xA5, 0x5A, 0x04, 0x00, 0x00, 0x00,
                                        0x04, 0x58, 0x02, 0x00, 0x00};
     uint8_t out[ENCODE_REPLY_MAX];
-
     TEST_ASSERT_EQUAL_size_t(11, encode_frequency_reply(out, 600));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 11);
 }
@@ -172,7 +161,6 @@ void test_a_reply_of_any_mode_and_length_can_be_made(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0x56, 0x34, 0x12, 0xC0, 0x99};
     uint8_t out[ENCODE_REPLY_MAX];
-
     TEST_ASSERT_EQUAL_size_t(7, encode_reply(out, 3, 0x99, NULL, 0x123456));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
 }
@@ -181,7 +169,6 @@ void test_a_length_never_spills_into_the_mode(void)
 {
     static const uint8_t expected[] = {0xA5, 0x5A, 0xFF, 0xFF, 0xFF, 0x7F, 0x81};
     uint8_t out[ENCODE_REPLY_MAX];
-
     TEST_ASSERT_EQUAL_size_t(7, encode_reply(out, 1, 0x81, NULL, 0xFFFFFFFF));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
 }
@@ -189,7 +176,6 @@ void test_a_length_never_spills_into_the_mode(void)
 void test_the_crc_of_123456789_is_a1(void)
 {
     uint8_t crc = 0;
-
     for (uint8_t digit = '1'; digit <= '9'; digit++) {
         crc = encode_crc8(crc, digit);
     }
@@ -199,7 +185,6 @@ void test_the_crc_of_123456789_is_a1(void)
 void test_ct_bytes_follow_the_table_of_section_7(void)
 {
     const encode_turn_t turn = a_turn();
-
     TEST_ASSERT_EQUAL_HEX8(0x79, encode_ct(&turn, 0)); /* 60 << 1 | 1 */
     TEST_ASSERT_EQUAL_HEX8(0x46, encode_ct(&turn, 1)); /* 1 << 6 | 3 << 1 */
     TEST_ASSERT_EQUAL_HEX8(0x44, encode_ct(&turn, 3)); /* 0x22 << 1 */
@@ -211,7 +196,6 @@ void test_ct_bytes_follow_the_table_of_section_7(void)
 void test_the_serial_number_is_spread_over_indices_9_to_13(void)
 {
     const encode_turn_t turn = a_turn();
-
     TEST_ASSERT_EQUAL_HEX8(0x2C, encode_ct(&turn, 9));  /* 5 << 3 | 2 << 1 */
     TEST_ASSERT_EQUAL_HEX8(0x44, encode_ct(&turn, 10)); /* 4 << 4 | 2 << 1 */
     TEST_ASSERT_EQUAL_HEX8(0xC0, encode_ct(&turn, 11)); /* 24 << 3 | 0 << 1 */
@@ -222,7 +206,6 @@ void test_the_serial_number_is_spread_over_indices_9_to_13(void)
 void test_only_index_0_has_bit_0_set(void)
 {
     const encode_turn_t turn = a_turn();
-
     for (uint32_t index = 1; index < 300; index++) {
         TEST_ASSERT_EQUAL_HEX8(0, encode_ct(&turn, index) & 1u);
     }

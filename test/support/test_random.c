@@ -22,7 +22,6 @@ void tearDown(void) {}
 void test_the_same_seed_gives_the_same_numbers(void)
 {
     random_t other;
-
     random_seed(&other, 1);
     for (int i = 0; i < 100; i++) {
         TEST_ASSERT_EQUAL_UINT64(random_u64(&other), random_u64(&dice));
@@ -32,7 +31,6 @@ void test_the_same_seed_gives_the_same_numbers(void)
 void test_another_seed_gives_other_numbers(void)
 {
     random_t other;
-
     random_seed(&other, 0);
     TEST_ASSERT_NOT_EQUAL(random_u64(&other), random_u64(&dice));
 }
@@ -40,10 +38,8 @@ void test_another_seed_gives_other_numbers(void)
 void test_every_number_in_a_range_comes_up_about_equally_often(void)
 {
     unsigned seen[10] = {0};
-
     for (int i = 0; i < 100000; i++) {
         const uint32_t number = random_between(&dice, 5, 14);
-
         TEST_ASSERT_TRUE(number >= 5u && number <= 14u);
         seen[number - 5u]++;
     }
@@ -64,10 +60,8 @@ void test_gaps_are_exponentially_distributed(void)
     uint64_t sum = 0;
     unsigned beyond = 0;
     unsigned far_beyond = 0;
-
     for (int i = 0; i < 100000; i++) {
         const uint64_t gap = random_gap(&dice, 1000);
-
         TEST_ASSERT_TRUE(gap >= 1u);
         sum += gap;
         beyond += gap > 1000u ? 1u : 0u;
@@ -81,7 +75,6 @@ void test_gaps_are_exponentially_distributed(void)
 void test_damage_changes_the_size_as_its_kind_says(void)
 {
     uint8_t bytes[100] = {0};
-
     TEST_ASSERT_EQUAL_size_t(59, corrupt_once(&dice, CORRUPT_DROP, bytes, 60, 100));
     TEST_ASSERT_EQUAL_size_t(60, corrupt_once(&dice, CORRUPT_FLIP, bytes, 60, 100));
     TEST_ASSERT_EQUAL_size_t(61, corrupt_once(&dice, CORRUPT_INSERT, bytes, 60, 100));
@@ -95,7 +88,6 @@ void test_a_flip_changes_one_bit(void)
 {
     uint8_t bytes[100] = {0};
     unsigned sum = 0;
-
     corrupt_once(&dice, CORRUPT_FLIP, bytes, 100, 100);
     for (int i = 0; i < 100; i++) {
         sum += bytes[i];
@@ -107,7 +99,6 @@ void test_damage_stays_within_the_capacity(void)
 {
     uint8_t bytes[64];
     size_t size = 40;
-
     memset(bytes, 0xEE, sizeof bytes);
     for (int i = 0; i < 10000; i++) {
         size = corrupt_some(&dice, 3, bytes, size, 60);
@@ -121,7 +112,6 @@ void test_look_alike_garbage_is_full_of_false_headers(void)
 {
     static uint8_t bytes[10000];
     unsigned headers = 0;
-
     corrupt_fill(&dice, bytes, sizeof bytes);
     for (size_t i = 1; i < sizeof bytes; i++) {
         headers += bytes[i - 1u] == 0xAA && bytes[i] == 0x55 ? 1u : 0u;

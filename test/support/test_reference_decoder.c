@@ -34,7 +34,6 @@ void test_all_that_is_found_is_counted(void)
                                                 .bytes_in_replies = 11,
                                                 .bytes_skipped = 1};
     uint8_t bytes[159];
-
     memcpy(bytes, manual_packet, 67);
     memcpy(bytes + 67, after_it, 25);
     memcpy(bytes + 92, manual_packet, 67);
@@ -56,7 +55,6 @@ void test_the_manuals_points_are_those_of_the_manual(void)
 
     for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
         const reference_point_t point = reference_point(manual_packet, expected[i].index);
-
         TEST_ASSERT_EQUAL_UINT16(expected[i].point.angle_q6, point.angle_q6);
         TEST_ASSERT_EQUAL_UINT16(expected[i].point.distance_mm, point.distance_mm);
         TEST_ASSERT_EQUAL_UINT8(expected[i].point.intensity, point.intensity);

@@ -77,7 +77,6 @@ size_t turns_packet(uint8_t *out, unsigned index, uint16_t distance_mm)
                                     .last_q6 = (uint16_t)((before + count - 1) * TURNS_STEP_Q6),
                                     .samples = samples};
     const size_t guard = index == 0 && turns.ct_information ? 1 : 0;
-
     out[0] = turns.crc;
     turns.crc = encode_crc8(index == 0 ? 0 : turns.crc, packet.ct);
     for (unsigned i = 0; i < count; i++) {
@@ -89,7 +88,6 @@ size_t turns_packet(uint8_t *out, unsigned index, uint16_t distance_mm)
 void turns_feed_packets(unsigned first, unsigned last, uint16_t distance_mm)
 {
     uint8_t bytes[TURNS_PACKET_MAX + 1];
-
     for (unsigned index = first; index <= last; index++) {
         turns.now_ms += (samples_of(index) + 3) / 4;
         turns_feed(bytes, turns_packet(bytes, index, distance_mm));
@@ -99,7 +97,6 @@ void turns_feed_packets(unsigned first, unsigned last, uint16_t distance_mm)
 unsigned turns_pass(unsigned first, unsigned last, uint16_t distance_mm)
 {
     unsigned events = 0;
-
     for (unsigned index = first; index <= last; index++) {
         turns_feed_packets(index, index, distance_mm);
         events |= turns_poll();
@@ -126,7 +123,6 @@ void turns_open(size_t rx_size, bool dma)
 void turns_open_scanning(size_t rx_size, bool dma)
 {
     uint8_t reply[ENCODE_REPLY_MAX];
-
     turns_open(rx_size, dma);
     (void)tmini_start(&turns.lidar);
     (void)turns_poll();
@@ -143,7 +139,6 @@ void turns_open_scanning(size_t rx_size, bool dma)
 static void look_at_scan(const tmini_scan_t *scan)
 {
     bool mixed = false;
-
     for (unsigned i = 1; i < scan->count; i++) {
         mixed = mixed || scan->points[i].distance_mm != scan->points[0].distance_mm;
     }
@@ -157,7 +152,6 @@ unsigned turns_poll(void)
 {
     unsigned events = 0;
     tmini_event_t event;
-
     while ((event = tmini_poll(&turns.lidar)) != TMINI_EVENT_NONE) {
         events |= 1u << event;
         if (event == TMINI_EVENT_SCAN) {

@@ -41,7 +41,6 @@ static void report_gap(host_t *host)
 static void feed(host_t *host, uint32_t from, uint32_t count)
 {
     const size_t stored = tmini_feed(&host->lidar, &host->line->bytes[from], count);
-
     line_lose(host->line, from + (uint32_t)stored, from + count);
     host->reported += count;
 }
@@ -51,7 +50,6 @@ static void feed(host_t *host, uint32_t from, uint32_t count)
 static void receive_byte(host_t *host)
 {
     const size_t refused = tmini_ring_overrun(&host->lidar.ring);
-
     tmini_feed_byte(&host->lidar, host->line->bytes[host->next]);
     if (tmini_ring_overrun(&host->lidar.ring) != refused) {
         line_lose(host->line, host->next, host->next + 1);
@@ -63,7 +61,6 @@ static void receive_byte(host_t *host)
 static uint64_t receive_bytes(host_t *host)
 {
     const uint64_t until_us = now_us(host);
-
     while (arrival_us(host, host->next) <= until_us) {
         receive_byte(host);
     }
@@ -95,7 +92,6 @@ static void hand_over(host_t *host)
 {
     const uint32_t fits = room(host);
     const uint32_t count = held_bytes(host) < fits ? held_bytes(host) : fits;
-
     feed(host, host->fed, count);
     host->fed += count;
     if (host->closed_at > 0 && held_bytes(host) == 0) {
@@ -119,7 +115,6 @@ static void hold_bytes(host_t *host, uint64_t until_us)
 static uint64_t receive_blocks(host_t *host)
 {
     const uint64_t until_us = now_us(host);
-
     while (host->config.block_us > 0 && host->block_due_us <= until_us) {
         hold_bytes(host, host->block_due_us);
         hand_over(host);
@@ -163,13 +158,11 @@ static void write_byte(host_t *host)
 static uint64_t receive_dma(host_t *host)
 {
     const uint64_t until_us = now_us(host);
-
     for (;;) {
         const uint64_t byte_us = arrival_us(host, host->next);
         const uint64_t idle_us = host->next > 0 && host->published != host->position
                                      ? arrival_us(host, host->next - 1) + IDLE_LINE_US
                                      : NEVER;
-
         if (idle_us < byte_us && idle_us <= until_us && !host->idle) {
             host->idle = true;
         } else if (byte_us <= until_us) {
@@ -209,7 +202,6 @@ static void stall(host_t *host)
                                                              : random_below(host->random, 64);
     const uint32_t last = host->next + laps * lap + more;
     const uint64_t end_us = arrival_us(host, last < host->line->size ? last : host->line->size - 1);
-
     host->stalled = true;
     if (end_us > now_us(host)) {
         host_wait_us(host, end_us - now_us(host));
@@ -237,7 +229,6 @@ static void preempt(host_t *host)
 void interrupt(void)
 {
     host_t *const host = polling;
-
     if (host == NULL) {
         return;
     }
@@ -262,7 +253,6 @@ static uint32_t read_clock(void *context)
     const host_t *const host = context;
     const host_config_t *const config = &host->config;
     const bool is_back = host->started && now_us(host) - host->begun_us >= config->back_at_us;
-
     return (uint32_t)(now_us(host) * (uint64_t)(1000000 + config->clock_ppm) / 1000000000u) -
            (is_back ? config->back_ms : 0);
 }
@@ -270,7 +260,6 @@ static uint32_t read_clock(void *context)
 static int take_command(void *context, const uint8_t *bytes, size_t count)
 {
     host_t *const host = context;
-
     if (count == 2 && bytes[1] == 0x60 && !host->started) {
         host->started = true;
         host->begun_us = now_us(host);
@@ -295,7 +284,6 @@ void host_begin(host_t *host, const host_config_t *config, line_t *line, random_
                                     .max_points = config->max_points,
                                     .recovery = TMINI_RECOVERY_OFF,
                                     .timing = &host->timing};
-
     memset(host, 0, offsetof(host_t, points));
     memset(&host->now_ns, 0, sizeof *host - offsetof(host_t, now_ns));
     host->config = *config;
@@ -317,7 +305,6 @@ void host_begin(host_t *host, const host_config_t *config, line_t *line, random_
 tmini_event_t host_poll(host_t *host)
 {
     tmini_event_t event;
-
     host->reported_before_poll = host->reported;
     host->accesses = 0;
     host->preempted_at = 0;
@@ -359,7 +346,6 @@ void host_handle_scan(host_t *host)
         const uint32_t most_us = host->config.is_bridged && bridged_us < host->config.handler_us
                                      ? bridged_us
                                      : host->config.handler_us;
-
         host_wait_us(host, random_between(host->random, 1000, most_us > 1000 ? most_us : 1000));
     }
 }
@@ -368,6 +354,5 @@ bool host_has_received_all(const host_t *host)
 {
     const bool held = host->config.feed == FEED_BLOCKS && host->fed < host->next;
     const bool unpublished = host->config.feed == FEED_DMA && host->published != host->position;
-
     return host->next >= host->line->size && !held && !unpublished;
 }

@@ -15,7 +15,6 @@ bool line_identify(const line_t *line, uint16_t distance_mm, uint8_t intensity, 
                    line_mark_t *mark)
 {
     const encode_sample_t sample = {distance_mm, intensity, flag};
-
     sim_read_mark(&line->lidar, sample, &mark->revolution, &mark->sample);
     return mark->revolution < line->config.revolutions &&
            mark->sample < line->counts[mark->revolution];
@@ -26,7 +25,6 @@ bool line_identify(const line_t *line, uint16_t distance_mm, uint8_t intensity, 
 static sim_config_t lidar_config(const line_config_t *config, uint64_t seed)
 {
     sim_config_t lidar = sim_default_config();
-
     lidar.seed = seed;
     lidar.marked = true;
     lidar.ct_information = config->ct_information;
@@ -43,7 +41,6 @@ static sim_config_t lidar_config(const line_config_t *config, uint64_t seed)
 static int32_t turn_on(line_t *line, uint16_t angle_q6)
 {
     const uint32_t turned = (angle_q6 + FULL_CIRCLE_Q6 - line->last_q6) % FULL_CIRCLE_Q6;
-
     line->last_q6 = angle_q6;
     return turned < FULL_CIRCLE_Q6 / 2 ? (int32_t)turned
                                        : (int32_t)turned - (int32_t)FULL_CIRCLE_Q6;
@@ -53,11 +50,9 @@ static int32_t turn_on(line_t *line, uint16_t angle_q6)
 static void note_angles(line_t *line, line_packet_t *packet, const uint8_t *bytes)
 {
     uint16_t *const count = &line->counts[packet->revolution];
-
     packet->first = *count;
     for (uint32_t i = 0; i < packet->samples; i++) {
         const uint16_t angle_q6 = reference_point(bytes, i).angle_q6;
-
         line->turned_q6 = (uint64_t)((int64_t)line->turned_q6 + turn_on(line, angle_q6));
         packet->turned_q6 = i == 0 ? line->turned_q6 : packet->turned_q6;
         line->angles_q6[packet->revolution][(*count)++] = angle_q6;
@@ -78,7 +73,6 @@ static void note_bytes(line_t *line, const sim_run_t *run)
 static void note_packet(line_t *line, const sim_run_t *run)
 {
     line_packet_t *const packet = &line->packets[line->packet_count];
-
     *packet = (line_packet_t){.from = line->size + (uint32_t)run->packet_at,
                               .to = line->size + (uint32_t)run->length,
                               .samples = run->packet->bytes[3],
@@ -95,7 +89,6 @@ void line_make(line_t *line, const line_config_t *config, random_t *random)
     static const uint8_t start[] = {0xA5, SIM_COMMAND_START};
     const sim_config_t lidar = lidar_config(config, random_u64(random));
     sim_run_t run;
-
     memset(line->counts, 0, sizeof line->counts);
     memset(line->touched, 0, sizeof line->touched);
     line->config = *config;
@@ -123,7 +116,6 @@ void line_make(line_t *line, const line_config_t *config, random_t *random)
 static void touch(line_t *line, uint32_t byte)
 {
     const line_packet_t *const packet = &line->packets[line->owner[byte]];
-
     line->touched[packet->revolution] = true;
     if (packet->is_start && packet->revolution > 0) {
         line->touched[packet->revolution - 1] = true;
@@ -150,7 +142,6 @@ static uint32_t byte_at_time(const line_t *line, uint32_t from, uint64_t us)
 static uint32_t packet_nearest(const line_t *line, uint64_t turned_q6)
 {
     uint32_t nearest = 0;
-
     while (nearest + 1 < line->packet_count &&
            line->packets[nearest + 1].turned_q6 <= turned_q6 + FULL_CIRCLE_Q6 / 128) {
         nearest++;
@@ -163,7 +154,6 @@ static void cut_whole_turns(line_t *line, random_t *random, uint32_t cut[2])
 {
     const uint32_t first = random_between(random, 1, line->packet_count - 2);
     const uint64_t turns = random_between(random, 1, 5);
-
     cut[0] = line->packets[first].to;
     cut[1] =
         line->packets[packet_nearest(line, line->packets[first].ends_q6 + turns * FULL_CIRCLE_Q6)]
@@ -177,7 +167,6 @@ static void cut_turns_of_time(line_t *line, random_t *random, uint32_t cut[2])
         &line->packets[random_between(random, 1, line->packet_count - 2)];
     const uint32_t turns_us =
         random_between(random, 1, 5) * 100000000u / line->config.frequency_chz;
-
     cut[0] = last->to;
     cut[1] =
         byte_at_time(line, cut[0], last->sent_us + turns_us + random_below(random, 16000) - 8000);
@@ -186,7 +175,6 @@ static void cut_turns_of_time(line_t *line, random_t *random, uint32_t cut[2])
 static void cut_start_packet(line_t *line, random_t *random, uint32_t cut[2])
 {
     uint32_t packet = random_below(random, line->packet_count);
-
     while (packet > 0 && !line->packets[packet].is_start) {
         packet--;
     }
@@ -199,7 +187,6 @@ static void cut_anywhere(line_t *line, random_t *random, uint32_t cut[2])
 {
     const uint64_t turn_us = 100000000u / line->config.frequency_chz;
     const uint32_t head = line->packets[0].to;
-
     cut[0] = random_between(random, head, line->size - 1);
     if (random_below(random, 5) == 0) {
         cut[1] = cut[0] + random_between(random, 1, 300);
@@ -212,7 +199,6 @@ static void cut_anywhere(line_t *line, random_t *random, uint32_t cut[2])
 static void remove_lost(line_t *line)
 {
     uint32_t left = 0;
-
     for (uint32_t i = 0; i < line->size; i++) {
         if (!line->lost[i]) {
             line->bytes[left] = line->bytes[i];
@@ -230,7 +216,6 @@ static void remove_lost(line_t *line)
 static uint32_t gather(const line_t *line, uint32_t from, uint8_t *bytes, uint32_t most)
 {
     uint32_t count = 0;
-
     for (uint32_t i = from; i < line->size && count < most; i++) {
         if (!line->lost[i]) {
             bytes[count++] = line->bytes[i];
@@ -254,13 +239,11 @@ static bool forges_a_packet(const line_t *line, uint32_t cut)
 {
     uint8_t bytes[ENCODE_PACKET_HEADER + ENCODE_SAMPLE_SIZE * LINE_MAX_SAMPLES];
     uint32_t seen = 0;
-
     if (!line->lost[cut] || cut == 0 || line->lost[cut - 1]) {
         return false;
     }
     for (uint32_t i = cut; i-- > 0 && seen < sizeof bytes;) {
         uint32_t size = 0;
-
         if (line->lost[i]) {
             continue;
         }
@@ -282,11 +265,9 @@ static void lose(line_t *line, uint32_t from, uint32_t to)
 static void let_dribble(line_t *line, random_t *random, uint32_t from, uint32_t to)
 {
     const uint32_t most = random_between(random, 1, 30);
-
     for (uint32_t i = 0; i < line->packet_count; i++) {
         const line_packet_t *const packet = &line->packets[i];
         const uint32_t end = packet->from + random_between(random, 1, most);
-
         if (packet->from >= from && packet->to <= to && end < packet->to) {
             memset(&line->lost[packet->from], 0, end - packet->from);
         }
@@ -317,7 +298,6 @@ static void draw_cut(line_t *line, random_t *random, uint32_t cut[2])
 static void move_near(const line_t *line, random_t *random, uint32_t before, uint32_t cut[2])
 {
     const uint32_t away = before + random_between(random, 0, 500);
-
     cut[1] = cut[1] - cut[0] + away;
     cut[0] = away < line->size ? away : line->size;
 }
@@ -335,10 +315,8 @@ void line_interrupt(line_t *line, random_t *random)
 {
     const uint32_t count = random_between(random, 1, LINE_CUTS);
     uint32_t before = 0;
-
     for (uint32_t i = 0; i < count; i++) {
         uint32_t cut[2];
-
         draw_cut(line, random, cut);
         if (i > 0 && random_below(random, 4) == 0) {
             move_near(line, random, before, cut);

@@ -42,7 +42,6 @@ void oracle_speak(oracle_t *oracle)
 static void note(oracle_t *oracle, wrong_t wrong, bool is_so)
 {
     verdicts_t *const verdicts = oracle->verdicts;
-
     if (!is_so) {
         return;
     }
@@ -65,7 +64,6 @@ static void follow(reading_t *reading, uint32_t index, const tmini_point_t *poin
 {
     const bool is_odd =
         mark->revolution != reading->first.revolution || mark->sample < reading->next;
-
     if (is_odd && !reading->merged && !reading->disorder) {
         reading->before = reading->last;
         reading->odd = *mark;
@@ -78,7 +76,6 @@ static void follow(reading_t *reading, uint32_t index, const tmini_point_t *poin
         reading->disorder = true;
     } else if (mark->sample > reading->next) {
         const uint32_t hole_q6 = turned_q6(reading->angle_q6, point->angle_q6);
-
         reading->missing += mark->sample - reading->next;
         reading->widest_q6 = hole_q6 > reading->widest_q6 ? hole_q6 : reading->widest_q6;
     }
@@ -90,7 +87,6 @@ static uint32_t sent_us(const line_t *line, const line_mark_t *mark)
 {
     for (uint32_t i = 0; i < line->packet_count; i++) {
         const line_packet_t *const packet = &line->packets[i];
-
         if (packet->revolution == mark->revolution &&
             mark->sample < packet->first + packet->samples) {
             return packet->sent_us;
@@ -102,11 +98,9 @@ static uint32_t sent_us(const line_t *line, const line_mark_t *mark)
 static reading_t read_points(const line_t *line, const tmini_scan_t *scan)
 {
     reading_t reading = {0};
-
     for (uint32_t i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
         line_mark_t mark;
-
         if (!line_identify(line, point->distance_mm, point->intensity, point->flag, &mark) ||
             line->angles_q6[mark.revolution][mark.sample] != point->angle_q6) {
             reading.false_point = true;
@@ -129,12 +123,10 @@ static void read_end(reading_t *reading, const line_t *line, const tmini_scan_t 
 {
     const uint32_t count = line->counts[reading->first.revolution];
     const uint32_t next = reading->first.revolution + 1;
-
     if (reading->next < count && scan->dropped == 0) {
         const uint32_t hole_q6 = next < line->config.revolutions && line->counts[next] > 0
                                      ? turned_q6(reading->angle_q6, line->angles_q6[next][0])
                                      : UINT32_MAX;
-
         reading->missing += count - reading->next;
         reading->widest_q6 = hole_q6 > reading->widest_q6 ? hole_q6 : reading->widest_q6;
     }
@@ -145,7 +137,6 @@ static void judge_completeness(oracle_t *oracle, const reading_t *reading, const
     const bool is_invisible =
         !oracle->line->config.ct_information && reading->widest_q6 <= INVISIBLE_Q6;
     const bool lacks = reading->missing > 0 || reading->first.revolution == 0;
-
     if (scan->complete && lacks && !reading->merged && is_invisible) {
         oracle->verdicts->invisible++;
         return;
@@ -172,11 +163,9 @@ static void say(const reading_t *reading, const line_t *line, const tmini_scan_t
 static void mark_points(oracle_t *oracle, const tmini_scan_t *scan)
 {
     bool again = false;
-
     for (uint32_t i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
         line_mark_t mark;
-
         if (line_identify(oracle->line, point->distance_mm, point->intensity, point->flag, &mark)) {
             again |= oracle->seen[mark.revolution][mark.sample]++ > 0;
         }
@@ -188,7 +177,6 @@ static void mark_points(oracle_t *oracle, const tmini_scan_t *scan)
 static bool may_be_late(const host_config_t *config)
 {
     const uint32_t pause_us = config->max_pause_ms * 1000u;
-
     return config->poll_us > pause_us || config->block_us > pause_us || config->hold_one_in > 0 ||
            (config->feed == FEED_BLOCKS && config->block_us == 0) || config->stall_one_in > 0 ||
            (config->handle_one_in > 0 && config->handler_us > pause_us);
@@ -198,10 +186,8 @@ static bool may_be_late(const host_config_t *config)
 static uint32_t longest_silence_us(const line_t *line, uint32_t from_us, uint32_t to_us)
 {
     uint32_t longest = 0;
-
     for (uint32_t i = 1; i < line->size && line->at_us[i] <= to_us; i++) {
         const uint32_t silence_us = line->at_us[i] - line->at_us[i - 1];
-
         if (line->at_us[i] > from_us && silence_us > longest) {
             longest = silence_us;
         }
@@ -217,7 +203,6 @@ static mixed_t explain(const line_t *line, const host_config_t *config, const re
                               (config->feed == FEED_BLOCKS ? config->block_us : 0) + 10000u;
     const uint32_t from_us = sent_us(line, &reading->before);
     const uint32_t to_us = sent_us(line, &reading->odd);
-
     if (config->max_pause_ms == 0) {
         return MIXED_UNTIMED;
     }
@@ -233,7 +218,6 @@ static void judge_mixture(oracle_t *oracle, const host_t *host, const reading_t 
     note(oracle, WRONG_MERGED_COMPLETE, scan->complete);
     if (!scan->complete) {
         const mixed_t mixed = explain(oracle->line, &host->config, reading);
-
         oracle->verdicts->mixed[mixed]++;
         note(oracle, WRONG_MERGED, mixed == MIXED_STRANGE);
         if (oracle->speaks) {
@@ -245,7 +229,6 @@ static void judge_mixture(oracle_t *oracle, const host_t *host, const reading_t 
 void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t *scan)
 {
     reading_t reading = read_points(oracle->line, scan);
-
     if (oracle->speaks) {
         say(&reading, oracle->line, scan);
     }
@@ -267,7 +250,6 @@ void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t 
 void oracle_judge_account(oracle_t *oracle, const host_t *host)
 {
     tmini_counters_t counters;
-
     tmini_counters(&host->lidar, &counters);
     note(oracle, WRONG_ACCOUNT,
          host->reported != counters.bytes_in_packets + counters.bytes_in_replies +
@@ -288,7 +270,6 @@ static bool is_certain(const line_t *line, const host_config_t *config, uint32_t
     const uint32_t waits_us = config->asks_room ? config->block_size * BYTE_US : 0;
     const uint32_t look_us = config->poll_us > UNCERTAIN_US ? config->poll_us : UNCERTAIN_US;
     const bool is_watched = config->poll_us <= WATCHED_US && config->block_us > 0;
-
     return revolution > (is_watched ? 0 : look_us / turn_us + 2) &&
            revolution + 2 + (look_us + waits_us) / turn_us < line->config.revolutions;
 }
@@ -296,7 +277,6 @@ static bool is_certain(const line_t *line, const host_config_t *config, uint32_t
 static void judge_cost(oracle_t *oracle, const host_t *host)
 {
     const line_t *const line = oracle->line;
-
     for (uint32_t i = 0; i < line->config.revolutions; i++) {
         if (!line->touched[i] && line->counts[i] <= host->config.max_points &&
             is_certain(line, &host->config, i)) {
@@ -310,7 +290,6 @@ static void judge_cost(oracle_t *oracle, const host_t *host)
 static uint32_t in_one_scan(const oracle_t *oracle, const line_packet_t *packet)
 {
     uint32_t count = 0;
-
     for (uint32_t i = 0; i < packet->samples; i++) {
         count += oracle->seen[packet->revolution][packet->first + i] == 1 ? 1 : 0;
     }
@@ -333,17 +312,14 @@ static void judge_points(oracle_t *oracle, const host_t *host, uint32_t withheld
     const tmini_builder_t *const builder = &host->lidar.decoder.builder;
     uint32_t lacking = 0;
     bool begun = false;
-
     if (builder->open) {
         mark_points(oracle, &builder->scan);
     }
     for (uint32_t i = 0; i < line->packet_count; i++) {
         const line_packet_t *const packet = &line->packets[i];
-
         begun |= packet->is_start && packet->missing == 0;
         if (begun && packet->missing == 0) {
             const uint32_t in_one = in_one_scan(oracle, packet);
-
             oracle->verdicts->intact += packet->samples;
             oracle->verdicts->in_one += in_one;
             lacking += packet->samples - in_one;
@@ -361,7 +337,6 @@ static void judge_points(oracle_t *oracle, const host_t *host, uint32_t withheld
 void oracle_end(oracle_t *oracle, const host_t *host)
 {
     tmini_counters_t counters;
-
     tmini_counters(&host->lidar, &counters);
     oracle->verdicts->bytes += host->reported;
     oracle->verdicts->overrun += counters.bytes_overrun;
@@ -403,6 +378,5 @@ const char *oracle_mixed_name(mixed_t mixed)
                                                        "a poll or a hand-over came late",
                                                    [MIXED_DRIBBLE] = "silences too short to count",
                                                    [MIXED_STRANGE] = "unexplained"};
-
     return names[mixed];
 }

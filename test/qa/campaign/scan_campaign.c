@@ -39,7 +39,6 @@ static line_config_t draw_line(random_t *random)
 {
     static const uint32_t frequencies[] = {600, 800, 1000, 1200};
     const bool at_zero = random_below(random, 2) == 0;
-
     return (line_config_t){.frequency_chz = one_of(random, frequencies, 4),
                            .start_angle_q6 = at_zero ? 0 : random_below(random, 23040),
                            .revolutions = random_between(random, 10, LINE_REVOLUTIONS),
@@ -52,7 +51,6 @@ static host_config_t draw_host(random_t *random)
 {
     static const uint32_t accesses_ns[] = {50, 200, 1000, 3000};
     const feed_t feed = (feed_t)random_below(random, FEED_KINDS);
-
     return (host_config_t){.feed = feed,
                            .rx_size = feed == FEED_DMA ? 2048 : 1024,
                            .max_points = HOST_POINTS,
@@ -100,7 +98,6 @@ static void draw_set_back(host_config_t *config, random_t *random)
 static void draw_overflow(host_config_t *config, random_t *random)
 {
     const uint32_t smallest = config->feed == FEED_DMA ? 9 : 8;
-
     config->rx_size = (size_t)1 << random_between(random, smallest, 13);
     config->handle_one_in = random_between(random, 1, 4);
     config->handler_us = random_between(random, 1, 6) * 100000;
@@ -135,7 +132,6 @@ static void draw_hold_ups(host_config_t *config, random_t *random)
 static void draw_rare_polls(host_config_t *config, random_t *random)
 {
     static const uint32_t polls_us[] = {100000, 350000, 500000, 700000, 1100000};
-
     config->poll_us = one_of(random, polls_us, 5);
     config->rx_size = (size_t)1 << random_between(random, 13, 16);
 }
@@ -143,7 +139,6 @@ static void draw_rare_polls(host_config_t *config, random_t *random)
 static void draw_limits(host_config_t *config, random_t *random)
 {
     static const uint32_t limits_ms[] = {0, 70, 250};
-
     config->max_pause_ms = (uint16_t)one_of(random, limits_ms, 3);
     config->rx_size = (size_t)1 << random_between(random, 11, 16);
     if (random_below(random, 3) == 0) {
@@ -209,7 +204,6 @@ static const campaign_mode_t modes[] = {
 static void poll_until_nothing(oracle_t *oracle)
 {
     tmini_event_t event;
-
     while ((event = host_poll(&host)) != TMINI_EVENT_NONE) {
         if (event == TMINI_EVENT_SCAN) {
             oracle_judge_scan(oracle, &host, tmini_scan(&host.lidar));
@@ -225,7 +219,6 @@ static void say_what_is_tried(void)
 {
     static const char *const feeds[FEED_KINDS] = {"bytes", "blocks", "DMA"};
     const host_config_t *const config = &host.config;
-
     printf("%u revolutions at %u.%u Hz%s%s\n", line.config.revolutions,
            line.config.frequency_chz / 100, line.config.frequency_chz / 10 % 10,
            line.config.ct_information ? ", CT information" : "",
@@ -234,7 +227,6 @@ static void say_what_is_tried(void)
         if (line.at_us[i] - line.at_us[i - 1] > 15000) {
             const line_packet_t *const before = &line.packets[line.owner[i - 1]];
             const line_packet_t *const after = &line.packets[line.owner[i]];
-
             printf("silent from %u to %u ms: revolution %u to %u\n", line.at_us[i - 1] / 1000,
                    line.at_us[i] / 1000, before->revolution, after->revolution);
         }
@@ -256,7 +248,6 @@ static void run_trial(const campaign_mode_t *mode, uint64_t seed, uint64_t trial
 {
     random_t random;
     oracle_t oracle;
-
     random_seed(&random, seed * 1000003u + trial);
     const line_config_t line_config = draw_line(&random);
     host_config_t host_config = draw_host(&random);
@@ -293,12 +284,10 @@ static void run_trial(const campaign_mode_t *mode, uint64_t seed, uint64_t trial
 static bool lied(const campaign_mode_t *mode, const verdicts_t *verdicts)
 {
     uint64_t wrongs = 0;
-
     for (unsigned wrong = 0; wrong < WRONG_KINDS; wrong++) {
         /* With all at once, half a packet may be held for longer than frame_timeout_ms. */
         const bool is_unjudged = (wrong == WRONG_COST && !mode->costs_nothing) ||
                                  (wrong == WRONG_LOSS && mode->draw == draw_everything);
-
         if (!is_unjudged) {
             wrongs += verdicts->wrongs[wrong];
         }
@@ -342,7 +331,6 @@ static void report(const campaign_mode_t *mode, const verdicts_t *verdicts)
 static bool run_mode(const campaign_mode_t *mode, uint64_t scans, uint64_t seed, const char *only)
 {
     verdicts_t verdicts = {0};
-
     if (only != NULL) {
         run_trial(mode, seed, strtoull(only, NULL, 10), true, &verdicts);
     } else {
@@ -360,7 +348,6 @@ int main(int argc, char **argv)
     const uint64_t seed = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
     bool found = false;
     bool honest = true;
-
     for (size_t i = 0; scans > 0 && i < MODES; i++) {
         if (argc <= 3 || strcmp(argv[3], modes[i].name) == 0 || strcmp(argv[3], "all") == 0) {
             found = true;

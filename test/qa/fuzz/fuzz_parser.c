@@ -138,7 +138,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                                          .awaited = waits ? &reply : NULL};
     const uint8_t *const stream = data + SETUP_SIZE;
     size -= SETUP_SIZE;
-
     expected_count = 0;
     seen = 0;
     scanned = 0;
