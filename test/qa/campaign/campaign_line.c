@@ -212,50 +212,6 @@ static void remove_lost(line_t *line)
     line->size = left;
 }
 
-/* Copies up to `most` bytes that arrive, beginning at `from`; returns their number. */
-static uint32_t gather(const line_t *line, uint32_t from, uint8_t *bytes, uint32_t most)
-{
-    uint32_t count = 0;
-    for (uint32_t i = from; i < line->size && count < most; i++) {
-        if (!line->lost[i]) {
-            bytes[count++] = line->bytes[i];
-        }
-    }
-    return count;
-}
-
-static bool is_valid_packet(const uint8_t *bytes, uint32_t count, uint32_t *size)
-{
-    if (count < ENCODE_PACKET_HEADER || bytes[0] != 0xAA || bytes[1] != 0x55 || bytes[3] == 0 ||
-        bytes[3] > LINE_MAX_SAMPLES) {
-        return false;
-    }
-    *size = ENCODE_PACKET_HEADER + ENCODE_SAMPLE_SIZE * bytes[3];
-    return *size <= count && encode_checksum(bytes) == (bytes[8] | bytes[9] << 8);
-}
-
-/* True if the bytes on both sides of the hole at `cut` look like a packet. */
-static bool forges_a_packet(const line_t *line, uint32_t cut)
-{
-    uint8_t bytes[ENCODE_PACKET_HEADER + ENCODE_SAMPLE_SIZE * LINE_MAX_SAMPLES];
-    uint32_t seen = 0;
-    if (!line->lost[cut] || cut == 0 || line->lost[cut - 1]) {
-        return false;
-    }
-    for (uint32_t i = cut; i-- > 0 && seen < sizeof bytes;) {
-        uint32_t size = 0;
-        if (line->lost[i]) {
-            continue;
-        }
-        seen++;
-        if (line->bytes[i] == 0xAA &&
-            is_valid_packet(bytes, gather(line, i, bytes, sizeof bytes), &size) && size > seen) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static void lose(line_t *line, uint32_t from, uint32_t to)
 {
     memset(&line->lost[from], 1, to - from);
@@ -274,15 +230,40 @@ static void let_dribble(line_t *line, random_t *random, uint32_t from, uint32_t 
     }
 }
 
-/* Makes a hole a byte wider if the bytes on both sides look like a packet. */
+/* What arrives, and where on the line each byte of it was sent. */
+static struct {
+    uint8_t bytes[LINE_BYTES];
+    uint32_t sent_at[LINE_BYTES];
+    bool is_forged; /* Bytes from both sides of a hole look like a packet. */
+} arrived;
+
+/* Makes the hole in the item a byte wider. */
+static void lose_forged(void *context, const reference_item_t *item)
+{
+    const uint32_t *const sent_at = &arrived.sent_at[item->offset];
+    uint32_t at = 1;
+    while (at < item->length && sent_at[at] == sent_at[at - 1] + 1) {
+        at++;
+    }
+    if (at < item->length) {
+        lose(context, sent_at[at - 1], sent_at[at - 1] + 1);
+        arrived.is_forged = true;
+    }
+}
+
 static void forge_nothing(line_t *line)
 {
-    for (uint32_t i = 1; i < line->size; i++) {
-        while (forges_a_packet(line, i)) {
-            lose(line, i - 1, i);
-            i = i > 300 ? i - 300 : 1; /* This may affect the holes before it: check them again. */
+    static const reference_options_t options = {.max_samples = LINE_MAX_SAMPLES};
+    do {
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < line->size; i++) {
+            arrived.bytes[count] = line->bytes[i];
+            arrived.sent_at[count] = i;
+            count += line->lost[i] ? 0 : 1;
         }
-    }
+        arrived.is_forged = false;
+        (void)reference_decode(arrived.bytes, count, &options, lose_forged, line);
+    } while (arrived.is_forged);
 }
 
 static void draw_cut(line_t *line, random_t *random, uint32_t cut[2])
