@@ -98,18 +98,36 @@ static unsigned points_between(size_t from, size_t to)
     return points;
 }
 
-static void expect_stream(const uint8_t *expected, size_t length)
+/* Within 10 ms exactly these bytes come, given in hexadecimal. */
+static void expect_stream(const char *hex)
 {
-    TEST_ASSERT_EQUAL_size_t(length, size);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, stream, length);
+    char text[200] = "";
+    run_ms(10);
+    for (size_t i = 0; i < size && i < sizeof text / 3; i++) {
+        (void)snprintf(&text[3 * i], 4, i + 1 < size ? "%02X " : "%02X", stream[i]);
+    }
+    TEST_ASSERT_EQUAL_STRING(hex, text);
+    forget_stream();
 }
 
-static void expect_frequency_reply(uint8_t low, uint8_t high)
+static void expect_frequency(unsigned chz)
 {
-    const uint8_t expected[] = {0xA5, 0x5A, 0x04, 0, 0, 0, 0x04, low, high, 0, 0};
-    run_ms(10);
-    expect_stream(expected, sizeof expected);
-    forget_stream();
+    char hex[40];
+    (void)snprintf(hex, sizeof hex, "A5 5A 04 00 00 00 04 %02X %02X 00 00", chz & 0xFF, chz >> 8);
+    expect_stream(hex);
+}
+
+/* Sends the command; the reply is this frequency. */
+static void expect_step(uint8_t code, unsigned chz)
+{
+    send(code);
+    expect_frequency(chz);
+}
+
+static void power_up_at(uint16_t frequency_chz)
+{
+    config.frequency_chz = frequency_chz;
+    power_up();
 }
 
 void setUp(void)
@@ -133,67 +151,43 @@ void test_it_is_idle_and_silent_after_power_up(void)
 
 void test_device_information_has_the_minor_firmware_version_first(void)
 {
-    static const uint8_t expected[] = {0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, 0x97, 2, 1, 1, 2, 0, 2,
-                                       6,    0,    3,    1, 7, 0, 0,    0,    1, 2, 3, 4, 5};
     send(0x90);
-    run_ms(10);
-    expect_stream(expected, sizeof expected);
+    expect_stream(
+        "A5 5A 14 00 00 00 04 97 02 01 01 02 00 02 06 00 03 01 07 00 00 00 01 02 03 04 05");
 }
 
-void test_health_is_all_clear_at_first(void)
+void test_health_is_all_clear_at_first_and_reports_the_bits_that_are_set(void)
 {
-    static const uint8_t expected[] = {0xA5, 0x5A, 0x03, 0, 0, 0, 0x06, 0, 0, 0};
     send(0x92);
-    run_ms(10);
-    expect_stream(expected, sizeof expected);
-}
-
-void test_health_reports_the_bits_that_are_set(void)
-{
+    expect_stream("A5 5A 03 00 00 00 06 00 00 00");
     sim_set_health(&sim, SIM_HEALTH_PD | SIM_HEALTH_LD);
     send(0x92);
-    run_ms(10);
-    TEST_ASSERT_EQUAL_size_t(10, size);
-    TEST_ASSERT_EQUAL_HEX8(0x18, stream[7]);
-    TEST_ASSERT_NOT_EQUAL(0, stream[8]);
+    expect_stream("A5 5A 03 00 00 00 06 18 18 00");
 }
 
 void test_frequency_steps_are_a_tenth_and_a_whole_hertz(void)
 {
-    send(0x0D);
-    expect_frequency_reply(0x58, 0x02); /* 600 */
-    send(0x09);
-    expect_frequency_reply(0x62, 0x02); /* 610 */
-    send(0x0B);
-    expect_frequency_reply(0xC6, 0x02); /* 710 */
-    send(0x0A);
-    expect_frequency_reply(0xBC, 0x02); /* 700 */
-    send(0x0C);
-    expect_frequency_reply(0x58, 0x02); /* 600 */
+    expect_step(0x0D, 600);
+    expect_step(0x09, 610);
+    expect_step(0x0B, 710);
+    expect_step(0x0A, 700);
+    expect_step(0x0C, 600);
 }
 
 void test_a_step_beyond_a_limit_changes_nothing_and_says_so(void)
 {
-    config.frequency_chz = 1150;
-    power_up();
-    send(0x0B);
-    expect_frequency_reply(0x7E, 0x04); /* 1150 */
-    config.frequency_chz = 500;
-    power_up();
-    send(0x0A);
-    expect_frequency_reply(0xF4, 0x01); /* 500 */
+    power_up_at(1150);
+    expect_step(0x0B, 1150);
+    power_up_at(500);
+    expect_step(0x0A, 500);
 }
 
 void test_the_limits_themselves_can_be_reached(void)
 {
-    config.frequency_chz = 1190;
-    power_up();
-    send(0x09);
-    expect_frequency_reply(0xB0, 0x04); /* 1200 */
-    config.frequency_chz = 600;
-    power_up();
-    send(0x0C);
-    expect_frequency_reply(0xF4, 0x01); /* 500 */
+    power_up_at(1190);
+    expect_step(0x09, 1200);
+    power_up_at(600);
+    expect_step(0x0C, 500);
 }
 
 void test_stop_and_unknown_commands_have_no_reply(void)
@@ -214,7 +208,7 @@ void test_a_command_may_arrive_in_two_parts_and_among_garbage(void)
     sim_receive(&sim, first, sizeof first, now);
     run_ms(50);
     sim_receive(&sim, second, sizeof second, now);
-    expect_frequency_reply(0x58, 0x02);
+    expect_frequency(600);
     TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
 }
 
@@ -224,14 +218,14 @@ void test_a_reply_comes_after_the_latency_at_the_lines_speed(void)
     power_up();
     send(0x92);
     /* 20 ms and ten bytes of 43.403 us are 20434.03 us. */
-    size = sim_transmit(&sim, 20043, stream, STREAM_MAX);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-    size = sim_transmit(&sim, 20044, stream, STREAM_MAX);
-    TEST_ASSERT_EQUAL_size_t(1, size);
-    size += sim_transmit(&sim, 20434, stream, STREAM_MAX);
-    TEST_ASSERT_EQUAL_size_t(9, size);
-    size += sim_transmit(&sim, 20435, stream, STREAM_MAX);
-    TEST_ASSERT_EQUAL_size_t(10, size);
+    static const struct {
+        uint64_t us;
+        size_t size;
+    } rows[] = {{20043, 0}, {20044, 1}, {20434, 9}, {20435, 10}};
+    for (size_t i = 0; i < 4; i++) {
+        size += sim_transmit(&sim, rows[i].us, stream + size, STREAM_MAX);
+        TEST_ASSERT_EQUAL_size_t(rows[i].size, size);
+    }
 }
 
 void test_one_reply_can_be_delayed_and_the_next_one_waits_for_it(void)
@@ -247,8 +241,7 @@ void test_one_reply_can_be_delayed_and_the_next_one_waits_for_it(void)
     TEST_ASSERT_EQUAL_HEX8(0x06, stream[6]);
     TEST_ASSERT_EQUAL_HEX8(0x04, stream[16]);
     forget_stream();
-    send(0x0D);
-    expect_frequency_reply(0x58, 0x02);
+    expect_step(0x0D, 600);
 }
 
 /* The health reply (10 bytes) at 3003 ms, then the start command's reply (7), then the stream. */
@@ -272,8 +265,7 @@ void test_one_reply_can_be_lost(void)
     send(0x0D);
     run_ms(100);
     TEST_ASSERT_EQUAL_size_t(0, size);
-    send(0x0D);
-    expect_frequency_reply(0x58, 0x02);
+    expect_step(0x0D, 600);
 }
 
 /* ---- Scanning ---- */
@@ -315,36 +307,33 @@ void test_bytes_never_come_faster_than_the_line(void)
     }
 }
 
-void test_one_late_call_gives_the_same_bytes_as_many_early_ones(void)
-{
-    static uint8_t other[STREAM_MAX];
-    size_t other_size;
-    send(0x60);
-    run_ms(5000);
-    sim_init(&sim, &config);
-    now = 0;
-    send(0x60);
-    other_size = sim_transmit(&sim, 5 * SECOND, other, STREAM_MAX);
-    TEST_ASSERT_EQUAL_size_t(size, other_size);
-    TEST_ASSERT_EQUAL_MEMORY(stream, other, size);
-}
-
-void test_a_small_buffer_loses_nothing(void)
+/* 5 s in steps of 1 ms, and at once, in portions of this size. */
+static void expect_the_same_bytes_by(size_t portion)
 {
     static uint8_t other[STREAM_MAX];
     size_t other_size = 0;
     size_t more;
     send(0x60);
-    run_ms(2000);
+    run_ms(5000);
     sim_init(&sim, &config);
     now = 0;
     send(0x60);
     do {
-        more = sim_transmit(&sim, 2 * SECOND, other + other_size, 7);
+        more = sim_transmit(&sim, 5 * SECOND, other + other_size, portion);
         other_size += more;
     } while (more > 0);
     TEST_ASSERT_EQUAL_size_t(size, other_size);
     TEST_ASSERT_EQUAL_MEMORY(stream, other, size);
+}
+
+void test_one_late_call_gives_the_same_bytes_as_many_early_ones(void)
+{
+    expect_the_same_bytes_by(STREAM_MAX);
+}
+
+void test_a_small_buffer_loses_nothing(void)
+{
+    expect_the_same_bytes_by(7);
 }
 
 /* The stream begins at 329.7 degrees and passes 0 degrees without a start packet. */
@@ -380,28 +369,32 @@ void test_the_first_packet_may_be_a_start_packet_anywhere(void)
 
 void test_an_undocumented_command_is_answered_with_four_zeros(void)
 {
-    static const uint8_t expected[] = {0xA5, 0x5A, 0x04, 0, 0, 0, 0x10, 0, 0, 0, 0};
     send(0x98);
-    run_ms(10);
-    expect_stream(expected, sizeof expected);
+    expect_stream("A5 5A 04 00 00 00 10 00 00 00 00");
 }
 
 /* ---- Turn information ---- */
 
 void test_the_ct_bytes_carry_what_section_7_says(void)
 {
-    size_t start;
+    static const struct {
+        uint8_t index, ct;
+    } rows[] = {
+        {1, 0x40},  /* user version 1.0 */
+        {3, 0x00},  /* healthy */
+        {4, 0x22},  /* hardware 1, firmware 1. */
+        {5, 0x04},  /* .2 */
+        {9, 0x30},  /* 2026 */
+        {10, 0x30}, /* March */
+        {11, 0x88}, /* 17th */
+        {12, 0xC0}, /* 12345 = 0x60 << 7 */
+        {13, 0x72}, /*         + 0x39 */
+    };
     scan_seconds(5);
-    start = next_start(0);
-    TEST_ASSERT_EQUAL_HEX8(0x40, packets[start + 1u].ct);  /* user version 1.0 */
-    TEST_ASSERT_EQUAL_HEX8(0x00, packets[start + 3u].ct);  /* healthy */
-    TEST_ASSERT_EQUAL_HEX8(0x22, packets[start + 4u].ct);  /* hardware 1, firmware 1. */
-    TEST_ASSERT_EQUAL_HEX8(0x04, packets[start + 5u].ct);  /* .2 */
-    TEST_ASSERT_EQUAL_HEX8(0x30, packets[start + 9u].ct);  /* 2026 */
-    TEST_ASSERT_EQUAL_HEX8(0x30, packets[start + 10u].ct); /* March */
-    TEST_ASSERT_EQUAL_HEX8(0x88, packets[start + 11u].ct); /* 17th */
-    TEST_ASSERT_EQUAL_HEX8(0xC0, packets[start + 12u].ct); /* 12345 = 0x60 << 7 */
-    TEST_ASSERT_EQUAL_HEX8(0x72, packets[start + 13u].ct); /*         + 0x39 */
+    const size_t start = next_start(0);
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        TEST_ASSERT_EQUAL_HEX8(rows[i].ct, packets[start + rows[i].index].ct);
+    }
 }
 
 void test_last_crc_guards_the_ct_bytes_of_every_revolution(void)
@@ -661,8 +654,7 @@ void test_nothing_is_answered_during_a_reboot_and_the_frequency_is_reset(void)
     run_ms(100);
     TEST_ASSERT_EQUAL_size_t(0, size);
     TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
-    send(0x0D);
-    expect_frequency_reply(0x58, 0x02);
+    expect_step(0x0D, 600);
 }
 
 void test_a_reboot_forgets_a_reply_that_is_due(void)
@@ -689,8 +681,7 @@ void test_losing_power_cuts_a_packet_in_the_middle(void)
     TEST_ASSERT_EQUAL(SIM_BOOTING, sim_mode(&sim));
     run_ms(2500);
     TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
-    send(0x0D);
-    expect_frequency_reply(0x58, 0x02);
+    expect_step(0x0D, 600);
 }
 
 void test_what_left_before_power_was_lost_can_still_be_read(void)
