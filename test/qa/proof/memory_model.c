@@ -35,7 +35,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { HEAD, TAIL, OVERRUN, CELL, CELLS = 4, LOCATIONS = CELL + CELLS };
+enum { HEAD, TAIL, OVERRUN, CELL, CELLS = 4, LOCATIONS = CELL + CELLS, FENCE };
 enum { PRODUCER, CONSUMER, THREADS };
 
 #define STORES_MAX 12u
@@ -54,7 +54,7 @@ typedef struct {
     uint8_t clock[THREADS];
 } store_t;
 
-typedef enum { PUT, GAP, TAKE, WRITE_BY_DMA, PUBLISH, TAKE_FROM_DMA } operation_t;
+typedef enum { PUT, GAP, TAKE, WRITE_BY_DMA, PUBLISH, TAKE_FROM_DMA, NOTHING } operation_t;
 
 /* What a thread has when no operation is under way. */
 typedef struct {
@@ -83,23 +83,12 @@ typedef struct {
     uint8_t read[CELLS];    /* Time of the last read, by the consumer's clock. */
 } state_t;
 
-/* The accesses that have an order. */
-typedef enum {
-    NOTHING,
-    CELLS_OWN, /* Accesses to DMA's bytes: never weakened. */
-    PUT_LOADS_TAIL,
-    PUT_STORES_HEAD,
-    REFUSE_STORES_OVERRUN,
-    REFUSE_CLOSES,
-    GAP_LOADS_TAIL,
-    GAP_CLOSES,
-    TAKE_LOADS_HEAD,
-    TAKE_STORES_TAIL,
-    TAKE_OPENS,
-    COUNT_LOADS_OVERRUN,
-    PUBLISH_STORES_HEAD,
-    DMA_TAKE_LOADS_HEAD,
-    INTACT_FENCES,
+/* An access that has an order: a load or store of this location by this operation, and whether the
+ * store closes or opens the ring. */
+typedef struct {
+    operation_t operation;
+    unsigned location;
+    bool closes;
 } access_t;
 
 typedef struct {
@@ -116,7 +105,15 @@ static const char *wrong;
 
 static uint64_t states;
 static uint64_t *seen_hashes;
-static size_t seen_capacity;
+static size_t hashes; /* Room for these: a power of two, twice the number of states. */
+
+static void give_up(bool is_so, const char *why)
+{
+    if (is_so) {
+        (void)fprintf(stderr, "memory_model: %s\n", why);
+        exit(2);
+    }
+}
 
 static uint64_t hash_of(const state_t *state)
 {
@@ -131,43 +128,18 @@ static uint64_t hash_of(const state_t *state)
     return hash | 1;
 }
 
-static bool insert(uint64_t *table, size_t capacity, uint64_t hash)
-{
-    size_t at = (size_t)(hash * 0xD6E8FEB86659FD93u >> 20) & (capacity - 1);
-    for (; table[at] != 0; at = (at + 1) & (capacity - 1)) {
-        if (table[at] == hash) {
-            return false;
-        }
-    }
-    table[at] = hash;
-    return true;
-}
-
-static uint64_t *new_table(size_t capacity)
-{
-    uint64_t *const table = calloc(capacity, sizeof *table);
-    if (table == NULL) {
-        (void)fprintf(stderr, "no memory\n");
-        exit(2);
-    }
-    return table;
-}
-
 static bool is_new(const state_t *state)
 {
-    if (2 * states >= seen_capacity) {
-        const size_t capacity = 2 * seen_capacity;
-        uint64_t *const table = new_table(capacity);
-        for (size_t i = 0; i < seen_capacity; i++) {
-            if (seen_hashes[i] != 0) {
-                (void)insert(table, capacity, seen_hashes[i]);
-            }
+    const uint64_t hash = hash_of(state);
+    size_t at = (size_t)(hash * 0xD6E8FEB86659FD93u >> 20) & (hashes - 1);
+    for (; seen_hashes[at] != hash; at = (at + 1) & (hashes - 1)) {
+        if (seen_hashes[at] == 0) {
+            give_up(2 * states++ >= hashes, "too many states");
+            seen_hashes[at] = hash;
+            return true;
         }
-        free(seen_hashes);
-        seen_hashes = table;
-        seen_capacity = capacity;
     }
-    return insert(seen_hashes, seen_capacity, hash_of(state));
+    return false;
 }
 
 /* ---- The step under way ---- */
@@ -188,10 +160,7 @@ static bool is_new_access(value_t *value)
     if (accesses > thread->made) {
         longjmp(stopped, PAUSES);
     }
-    if (accesses == ACCESSES_MAX) {
-        (void)fprintf(stderr, "too many accesses for the model\n");
-        exit(2);
-    }
+    give_up(accesses == ACCESSES_MAX, "too many accesses");
     *value = thread->values[accesses];
     return accesses++ == thread->made;
 }
@@ -229,7 +198,13 @@ static void note_writes(void)
     }
 }
 
-static value_t load(unsigned location, access_t access)
+static bool is_weak(unsigned location, bool closes)
+{
+    return weakened.operation == (operation_t)thread->operation && weakened.location == location &&
+           weakened.closes == closes;
+}
+
+static value_t load(unsigned location)
 {
     value_t value;
     if (!is_new_access(&value)) {
@@ -243,7 +218,7 @@ static value_t load(unsigned location, access_t access)
     note_writes();
     thread->seen[location] = (uint8_t)at;
     see(thread->unfenced, store->seen, LOCATIONS);
-    if (access != weakened && location < CELL) {
+    if (location < CELL && !is_weak(location, false)) {
         see(thread->seen, store->seen, LOCATIONS);
         see(thread->clock, store->clock, THREADS);
     }
@@ -252,7 +227,7 @@ static value_t load(unsigned location, access_t access)
 }
 
 /* Only the location's writer calls this: it has seen all earlier values. */
-static void store(unsigned location, access_t access, value_t value)
+static void store(unsigned location, bool closes, value_t value)
 {
     value_t unused;
     if (!is_new_access(&unused)) {
@@ -260,16 +235,13 @@ static void store(unsigned location, access_t access, value_t value)
     }
     const unsigned at = state->counts[location]++;
     allow_one_choice();
-    if (at == STORES_MAX) {
-        (void)fprintf(stderr, "too many stores for the model\n");
-        exit(2);
-    }
+    give_up(at == STORES_MAX, "too many stores");
     store_t *const stored = &state->stores[location][at];
     note_writes();
     thread->seen[location] = (uint8_t)at;
     stored->value = value;
     stored->seen[location] = (uint8_t)at;
-    if (access != weakened) {
+    if (!is_weak(location, closes)) {
         see(stored->seen, thread->seen, LOCATIONS);
         see(stored->clock, thread->clock, THREADS);
     }
@@ -280,7 +252,7 @@ static uint8_t read_byte(const tmini_ring_t *ring)
     const unsigned at = (unsigned)(ring->tail & (ring->size - 1));
     value_t value;
     if (bounds.dma) {
-        return load(CELL + at, CELLS_OWN).bytes;
+        return load(CELL + at).bytes;
     }
     if (is_new_access(&value)) {
         allow_one_choice();
@@ -309,34 +281,26 @@ static value_t modelled(size_t index, size_t refused)
 
 static uint8_t refused_before; /* The head loaded last. */
 
+/* Of the ring's members that both sides use. */
+static unsigned location_of(const size_t *value)
+{
+    return value == &work.ring.head ? HEAD : value == &work.ring.tail ? TAIL : OVERRUN;
+}
+
 size_t tmini_load(const size_t *value)
 {
-    if (value == &work.ring.tail) {
-        return plain(load(TAIL, thread->operation == GAP ? GAP_LOADS_TAIL : PUT_LOADS_TAIL));
+    const value_t loaded = load(location_of(value));
+    if (value == &work.ring.head) {
+        refused_before = loaded.refused;
     }
-    if (value == &work.ring.overrun) {
-        return plain(load(OVERRUN, COUNT_LOADS_OVERRUN));
-    }
-    const value_t head = load(HEAD, bounds.dma ? DMA_TAKE_LOADS_HEAD : TAKE_LOADS_HEAD);
-    refused_before = head.refused;
-    return plain(head);
+    return plain(loaded);
 }
 
 void tmini_store(size_t *value, size_t stored)
 {
     const bool closes = stored - *value >= TMINI_RING_CLOSED; /* Or opens. */
-    const value_t model = modelled(stored, closes ? work.ring.overrun : 0);
-    if (value == &work.ring.head) {
-        store(HEAD,
-              thread->operation == PUBLISH ? PUBLISH_STORES_HEAD
-              : thread->operation == GAP   ? GAP_CLOSES
-              : closes                     ? REFUSE_CLOSES
-                                           : PUT_STORES_HEAD,
-              model);
-    } else if (value == &work.ring.tail) {
-        store(TAIL, closes ? TAKE_OPENS : TAKE_STORES_TAIL, model);
-    } else if (value == &work.ring.overrun) {
-        store(OVERRUN, REFUSE_STORES_OVERRUN, model);
+    if (value != &work.ring.size) {                           /* Nothing runs while it is set up. */
+        store(location_of(value), closes, modelled(stored, closes ? work.ring.overrun : 0));
     }
     *value = stored;
 }
@@ -346,7 +310,7 @@ void tmini_fence(void)
     value_t unused;
     if (is_new_access(&unused)) {
         allow_one_choice();
-        if (weakened != INTACT_FENCES) {
+        if (!is_weak(FENCE, false)) {
             see(thread->seen, thread->unfenced, LOCATIONS);
         }
     }
@@ -415,7 +379,7 @@ static void operate(void)
         tmini_ring_gap(&work.ring);
         break;
     case WRITE_BY_DMA:
-        store(CELL + cell, CELLS_OWN, (value_t){0, (uint8_t)(work.turns + 1), 0});
+        store(CELL + cell, false, (value_t){0, (uint8_t)(work.turns + 1), 0});
         break;
     case PUBLISH:
         tmini_ring_publish(&work.ring, cell);
@@ -493,7 +457,6 @@ static void explore(const state_t *from)
         for (unsigned option = 0; option < 2 * STORES_MAX && wrong == NULL; option++) {
             state_t next = *from;
             if (step(&next, number, option) && wrong == NULL && is_new(&next)) {
-                states++;
                 explore(&next);
             }
         }
@@ -508,15 +471,13 @@ static const char *run(bounds_t within, access_t weak)
     weakened = weak;
     wrong = NULL;
     states = 0;
-    seen_capacity = 1 << 16;
-    seen_hashes = new_table(seen_capacity);
+    seen_hashes = calloc(hashes, sizeof *seen_hashes);
+    give_up(seen_hashes == NULL, "no memory");
     memset(&first, 0, sizeof first);
     for (unsigned location = 0; location < LOCATIONS; location++) {
         first.counts[location] = 1;
     }
-    if (tmini_ring_init(&work.ring, memory, bounds.size, bounds.dma) != TMINI_OK) {
-        exit(2);
-    }
+    give_up(tmini_ring_init(&work.ring, memory, bounds.size, bounds.dma) != TMINI_OK, "no ring");
     first.threads[PRODUCER].work.ring = work.ring;
     first.threads[CONSUMER].work.ring = work.ring;
     explore(&first);
@@ -530,21 +491,21 @@ static const struct {
     bool dma;
     bool is_needed;
 } barriers[] = {
-    {NOTHING, "as it is", false, false},
-    {PUT_LOADS_TAIL, "put: tail, acquire", false, true},
-    {PUT_STORES_HEAD, "put: head, release", false, true},
-    {REFUSE_STORES_OVERRUN, "refuse: overrun, release", false, false},
-    {REFUSE_CLOSES, "refuse: head, release", false, true},
-    {GAP_LOADS_TAIL, "gap: tail, acquire", false, false},
-    {GAP_CLOSES, "gap: head, release", false, true},
-    {TAKE_LOADS_HEAD, "ahead: head, acquire", false, true},
-    {TAKE_STORES_TAIL, "discard: tail, release", false, true},
-    {TAKE_OPENS, "open: tail, release", false, true},
-    {COUNT_LOADS_OVERRUN, "overrun, acquire", false, false},
-    {NOTHING, "DMA, as it is", true, false},
-    {PUBLISH_STORES_HEAD, "publish: head, release", true, true},
-    {DMA_TAKE_LOADS_HEAD, "DMA, ahead: head, acquire", true, true},
-    {INTACT_FENCES, "intact: fence", true, true},
+    {{NOTHING, 0, false}, "as it is", false, false},
+    {{PUT, TAIL, false}, "put: tail, acquire", false, true},
+    {{PUT, HEAD, false}, "put: head, release", false, true},
+    {{PUT, OVERRUN, false}, "refuse: overrun, release", false, false},
+    {{PUT, HEAD, true}, "refuse: head, release", false, true},
+    {{GAP, TAIL, false}, "gap: tail, acquire", false, false},
+    {{GAP, HEAD, true}, "gap: head, release", false, true},
+    {{TAKE, HEAD, false}, "ahead: head, acquire", false, true},
+    {{TAKE, TAIL, false}, "discard: tail, release", false, true},
+    {{TAKE, TAIL, true}, "open: tail, release", false, true},
+    {{TAKE, OVERRUN, false}, "overrun, acquire", false, false},
+    {{NOTHING, 0, false}, "DMA, as it is", true, false},
+    {{PUBLISH, HEAD, false}, "publish: head, release", true, true},
+    {{TAKE_FROM_DMA, HEAD, false}, "DMA, ahead: head, acquire", true, true},
+    {{TAKE_FROM_DMA, FENCE, false}, "intact: fence", true, true},
 };
 
 int main(int argc, char **argv)
@@ -553,6 +514,7 @@ int main(int argc, char **argv)
     const bounds_t by_cpu = {is_long ? 4 : 2, {is_long ? 6 : 5, is_long ? 8 : 7}, false};
     const bounds_t by_dma = {4, {is_long ? 10 : 8, is_long ? 5 : 4}, true};
     bool is_right = true;
+    hashes = (size_t)1 << (is_long ? 25 : 21);
     if (argc > (is_long ? 2 : 1)) {
         (void)fprintf(stderr, "usage: memory_model [--long]\n");
         return 2;
