@@ -10,239 +10,135 @@ checks that each list of sources contains every source of the library. Exit stat
 which are printed.
 """
 
-import glob
 import json
-import os
 import re
 import sys
+from pathlib import Path
 
-ROOT = os.path.abspath(sys.argv[1] if len(sys.argv) > 1
-                       else os.path.join(os.path.dirname(__file__), "..", ".."))
+ROOT = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parents[2]).resolve()
+SOURCES = {path.name for path in ROOT.glob("lib/src/*.c")}
 complaints = []
 
 
-def complain(text):
-    complaints.append(text)
-
-
-def path(name):
-    return os.path.join(ROOT, name)
+def demand(is_so, text):
+    if not is_so:
+        complaints.append(text)
 
 
 def read(name):
-    with open(path(name), encoding="utf-8") as file:
-        return file.read()
+    return (ROOT / name).read_text(encoding="utf-8")
 
 
 def find(name, pattern):
+    """What the pattern's group matches in the file, without quotes; a list of matches, sorted, if it ends with *."""
+    if pattern.endswith("*"):
+        return sorted(re.findall(pattern[:-1], read(name), re.MULTILINE))
     match = re.search(pattern, read(name), re.MULTILINE)
-    return match and match.group(1).strip().strip('"')
+    return match[1].strip().strip('"') if match else None
 
 
-def without_comments(text):
-    return re.sub(r"#.*", "", text)
+PLATFORMIO = json.loads(read("library.json"))
 
-
-# ---- What each manifest says ----
-
-def of_cmake():
-    name = "CMakeLists.txt"
-    return {"description": find(name, r'DESCRIPTION\s+("[^"]*")')}
-
-
-def of_platformio():
-    manifest = json.loads(read("library.json"))
-    return {
-        "name": manifest.get("name"),
-        "description": manifest.get("description"),
-        "licence": manifest.get("license"),
-        "author": ", ".join(author["name"] for author in manifest.get("authors", [])),
-        "keywords": sorted(manifest.get("keywords", [])),
-    }
-
-
-def of_arduino():
-    name = "port/arduino/library.properties"
-    return {
-        "name": find(name, r"^name=(.*)$"),
-        "description": (find(name, r"^sentence=(.*)$") or "").rstrip("."),
-        "author": find(name, r"^author=(.*)$"),
-    }
-
-
-def of_ros2():
-    name = "port/ros2/package.xml"
-    return {
-        "description": find(name, r"<description>(.*)</description>"),
-        "licence": find(name, r"<license>(.*)</license>"),
-        "author": find(name, r"<author>(.*)</author>"),
-    }
-
-
-def of_esp_idf():
-    name = "idf_component.yml"
-    tags = re.search(r"^tags:\n((?:  - .*\n)+)", read(name), re.MULTILINE)
-    return {
-        "description": find(name, r"^description: (.*)$"),
-        "licence": find(name, r"^license: (.*)$"),
-        "keywords": sorted(re.findall(r"- (.*)", tags.group(1))) if tags else None,
-    }
-
-
-def of_licence():
-    return {
-        "licence": (find("LICENSE", r"^(.*)$") or "").replace(" License", ""),
-        "author": find("LICENSE", r"^Copyright \(c\) [0-9-]+ (.*)$"),
-    }
-
-
-def of_python():
-    name = "port/python/pyproject.toml"
-    return {"name": find(name, r"^name = (.*)$"), "licence": find(name, r"^license = (.*)$")}
-
-
-def of_readme():
-    return {"licence": find("README.md", r"^(\w+) licence\.")}
-
-
-# The facts that each manifest must state.
+# Where each manifest states each fact.
 SAID = {
-    "CMakeLists.txt": (of_cmake, "description"),
-    "library.json": (of_platformio, "name description licence author keywords"),
-    "library.properties": (of_arduino, "name description author"),
-    "idf_component.yml": (of_esp_idf, "description licence keywords"),
-    "package.xml": (of_ros2, "description licence author"),
-    "LICENSE": (of_licence, "licence author"),
-    "README.md": (of_readme, "licence"),
-    "pyproject.toml": (of_python, "name licence"),
+    "name": {"library.json": PLATFORMIO.get("name"),
+             "port/arduino/library.properties": "^name=(.*)$",
+             "port/python/pyproject.toml": "^name = (.*)$",
+             "zephyr/module.yml": "^name: (.*)$"},
+    "description": {"CMakeLists.txt": 'DESCRIPTION\\s+("[^"]*")',
+                    "library.json": PLATFORMIO.get("description"),
+                    "port/arduino/library.properties": r"^sentence=(.*)\.$",
+                    "idf_component.yml": "^description: (.*)$",
+                    "port/ros2/package.xml": "<description>(.*)</description>"},
+    "licence": {"LICENSE": "^(.*) License$",
+                "library.json": PLATFORMIO.get("license"),
+                "idf_component.yml": "^license: (.*)$",
+                "port/ros2/package.xml": "<license>(.*)</license>",
+                "port/python/pyproject.toml": "^license = (.*)$",
+                "README.md": r"^(\w+) licence\."},
+    "author": {"LICENSE": r"^Copyright \(c\) [0-9-]+ (.*)$",
+               "library.json": ", ".join(author["name"] for author in PLATFORMIO.get("authors", [])),
+               "port/arduino/library.properties": "^author=(.*)$",
+               "port/ros2/package.xml": "<author>(.*)</author>"},
+    "keywords": {"library.json": sorted(PLATFORMIO.get("keywords", [])),
+                 "idf_component.yml": "^  - (.*)$*"},
 }
 
 
 def check_facts():
-    said = {}
-    for manifest, (facts_of, needed) in SAID.items():
-        facts = facts_of()
-        for fact in needed.split():
-            if not facts.get(fact):
-                complain("%s says nothing of %s" % (manifest, fact))
-        for fact, value in facts.items():
-            if value:
-                said.setdefault(fact, {}).setdefault(str(value), []).append(manifest)
-    for fact, values in said.items():
-        if len(values) > 1:
-            complain("%s differs:" % fact)
-            for value, manifests in values.items():
-                complain("    %s: %s" % (", ".join(manifests), value))
+    for fact, places in SAID.items():
+        said = {name: value if name == "library.json" else find(name, value) for name, value in places.items()}
+        for name, value in said.items():
+            demand(value, f"{name} says nothing of {fact}")
+        if len(set(map(str, said.values()))) > 1:
+            complaints.extend([f"{fact} differs:", *(f"    {name}: {value}" for name, value in said.items())])
 
 
-# ---- Lists of sources ----
-
-SOURCES = sorted(os.path.basename(name) for name in glob.glob(path("lib/src/*.c")))
-
-
-def build_files():
-    for folder, folders, files in os.walk(ROOT):
-        folders[:] = [name for name in folders
-                      if name not in ("test", ".git") and not name.startswith("build")]
-        for file in files:
-            if file == "CMakeLists.txt" or file.endswith((".cmake", ".mk")):
-                yield os.path.relpath(os.path.join(folder, file), ROOT)
+def code_of(name):
+    return re.sub(r"#.*", "", read(name))
 
 
 def check_sources():
-    """Checks that a build file that names one of the library's sources names all of them."""
-    listed = re.findall(r"src/(\w+\.c)", read("lib/CMakeLists.txt"))
-    if sorted(listed) != SOURCES:
-        complain("lib/CMakeLists.txt does not list what lib/src holds: %s"
-                 % ", ".join(sorted(set(listed) ^ set(SOURCES))))
-    for name in build_files():
-        named = set(re.findall(r"lib/src/(\w+\.c)", without_comments(read(name))))
-        if named and named != set(SOURCES):
-            complain("%s names some of lib/src, but not %s"
-                     % (name, ", ".join(sorted(set(SOURCES) - named))))
+    """A build file that names one of the library's sources names all of them."""
+    listed = set(re.findall(r"src/(\w+\.c)", read("lib/CMakeLists.txt")))
+    demand(listed == SOURCES, f"lib/CMakeLists.txt does not list what lib/src holds: {listed ^ SOURCES}")
+    for path in ROOT.rglob("*"):
+        name = path.relative_to(ROOT).as_posix()
+        if re.match(r"test/|\.git/|(.*/)?build", name) or not re.search(r"(^|/)CMakeLists\.txt$|\.(cmake|mk)$", name):
+            continue
+        named = set(re.findall(r"lib/src/(\w+\.c)", code_of(name)))
+        demand(named in (set(), SOURCES), f"{name} names some of lib/src, but not {SOURCES - named}")
+    for name in ("esp32/component.cmake", "pico/CMakeLists.txt", "ros2/CMakeLists.txt", "zephyr/CMakeLists.txt"):
+        demand("/lib/src/*.c" in code_of(f"port/{name}"), f"port/{name} does not take lib/src/*.c")
 
 
-# Build files that compile all sources in lib/src, by a pattern.
-TAKERS = ["port/esp32/component.cmake", "port/pico/CMakeLists.txt",
-          "port/ros2/CMakeLists.txt", "port/zephyr/CMakeLists.txt"]
+def exists(pattern):
+    return any(ROOT.glob(pattern))
 
 
-def check_takers():
-    for name in TAKERS:
-        if "/lib/src/*.c" not in without_comments(read(name)):
-            complain("%s does not take lib/src/*.c" % name)
+def check_platformio():
+    demand("+<lib/src/*.c>" in PLATFORMIO["build"]["srcFilter"], "library.json does not build lib/src/*.c")
+    for header in PLATFORMIO["headers"]:
+        demand(exists(f"lib/include/{header}") or exists(f"port/*/{header}"), f"library.json: no such header: {header}")
+    files = [(example["base"], file) for example in PLATFORMIO["examples"] for file in example["files"]]
+    for name in [*PLATFORMIO["export"]["include"], *("/".join(file) for file in files)]:
+        demand((ROOT / name).exists(), f"library.json: no such file: {name}")
+    folder = ROOT / "examples/esp32_arduino"
+    for sketch in folder.glob("*/*.ino"):
+        demand(sketch.name in [file for _, file in files], f"library.json: no example: {sketch.name}")
+    for sketch in re.findall(r'SKETCH="(.*?)"', read("examples/esp32_arduino/platformio.ini")):
+        demand((folder / "platformio" / sketch).exists(), f"platformio.ini: no such sketch: {sketch}")
 
 
-def check_platformio_lists():
-    manifest = json.loads(read("library.json"))
-    if "+<lib/src/*.c>" not in manifest["build"]["srcFilter"]:
-        complain("library.json does not build lib/src/*.c")
-    for header in manifest["headers"]:
-        if not glob.glob(path("lib/include/" + header)) + glob.glob(path("port/*/" + header)):
-            complain("library.json: no such header: %s" % header)
-    for name in manifest["export"]["include"]:
-        if not os.path.exists(path(name)):
-            complain("library.json: nothing to export: %s" % name)
-    for example in manifest["examples"]:
-        for file in example["files"]:
-            if not os.path.exists(path(os.path.join(example["base"], file))):
-                complain("library.json: no such example: %s" % file)
-    folder = "examples/esp32_arduino"
-    for sketch in glob.glob(path(folder + "/*/*.ino")):
-        if os.path.basename(sketch) not in sum((example["files"] for example in manifest["examples"]), []):
-            complain("library.json: no example: %s" % os.path.basename(sketch))
-    for sketch in re.findall(r'SKETCH="(.*?)"', read(folder + "/platformio.ini")):
-        if not os.path.exists(path(os.path.join(folder, "platformio", sketch))):
-            complain("platformio.ini: no such sketch: %s" % sketch)
+def check_arduino():
+    for header in (find("port/arduino/library.properties", "^includes=(.*)$") or "nothing").split(","):
+        demand((ROOT / "port/arduino" / header).exists(), f"library.properties: no such header: {header}")
 
 
-def check_arduino_lists():
-    for header in (find("port/arduino/library.properties", r"^includes=(.*)$") or "").split(","):
-        if not os.path.exists(path("port/arduino/" + header)):
-            complain("library.properties: no such header: %s" % header)
-
-
-def check_esp_idf_lists():
-    included = re.search(r"\n  include:\n(.*)", read("idf_component.yml"), re.DOTALL)
-    patterns = re.findall(r"    - (.*)", included.group(1)) if included else []
+def check_esp_idf():
+    patterns = re.findall("^    - (.*)$", read("idf_component.yml").partition("\n  include:\n")[2], re.MULTILINE)
     for pattern in patterns:
-        if not glob.glob(path(pattern)):
-            complain("idf_component.yml: nothing to include: %s" % pattern)
-    for needed in ("lib/src/*.c", "lib/src/*.h", "lib/include/tmini/*.h",
-                   "lib/include/tmini/parts/*.h"):
-        if needed not in patterns:
-            complain("idf_component.yml does not include %s" % needed)
+        demand(exists(pattern), f"idf_component.yml: nothing to include: {pattern}")
+    for needed in ("lib/src/*.c", "lib/src/*.h", "lib/include/tmini/*.h", "lib/include/tmini/parts/*.h"):
+        demand(needed in patterns, f"idf_component.yml does not include {needed}")
+    name = "examples/esp32_idf/main/idf_component.yml"
+    where = find(name, r"^dependencies:\n  tmini:\n(?:    .*\n)*    override_path: (.*)$")
+    demand(where and (ROOT / name).parent.joinpath(where).resolve() == ROOT, f"{name} does not lead to the component")
 
 
-def check_esp_idf_example():
-    folder = "examples/esp32_idf/main"
-    name = folder + "/idf_component.yml"
-    where = os.path.exists(path(name)) and find(
-        name, r"^dependencies:\n  tmini:\n(?:    .*\n)*    override_path: (.*)$")
-    if not where or not os.path.samefile(path(os.path.join(folder, where)), path(".")):
-        complain("%s does not lead to the component" % name)
-
-
-def check_zephyr_lists():
-    name = "zephyr/module.yml"
-    if find(name, r"^name: (.*)$") != of_platformio()["name"]:
-        complain("%s has another name" % name)
-    places = re.findall(r"(?:cmake|kconfig|dts_root): (.*)", read(name))
-    places += re.findall(r"^  - (.*)$", read(name), re.MULTILINE)
-    if len(places) < 4:
-        complain("%s names only %s" % (name, places))
+def check_zephyr():
+    places = find("zephyr/module.yml", "(?:cmake|kconfig|dts_root): (.*)*")
+    places += find("zephyr/module.yml", "^  - (.*)$*")
+    demand(len(places) >= 4, f"zephyr/module.yml names only {places}")
     for place in places:
-        if not os.path.exists(path(place)):
-            complain("%s: no such place: %s" % (name, place))
+        demand((ROOT / place).exists(), f"zephyr/module.yml: no such place: {place}")
 
 
 check_facts()
 check_sources()
-check_takers()
-check_zephyr_lists()
-check_platformio_lists()
-check_arduino_lists()
-check_esp_idf_lists()
-check_esp_idf_example()
+check_platformio()
+check_arduino()
+check_esp_idf()
+check_zephyr()
 print("\n".join(complaints) or "the manifests agree")
 sys.exit(1 if complaints else 0)
