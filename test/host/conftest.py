@@ -74,6 +74,10 @@ class Clock:
     def expect(self, pid):
         self.library.shared_clock_expect(pid)
 
+    def stop(self, pid):
+        """As SIGSTOP: never while the program holds what others need. SIGCONT ends it."""
+        self.library.shared_clock_stop(pid)
+
     def now_ms(self):
         return self.library.shared_clock_now_ns() // 1000000
 
@@ -204,7 +208,7 @@ class Lidar(Program):
 
     def freeze(self):
         """As if its supply failed: the port stays, and nothing comes."""
-        self.process.send_signal(signal.SIGSTOP)
+        self.clock.stop(self.process.pid)
 
     def thaw(self):
         self.process.send_signal(signal.SIGCONT)

@@ -8,7 +8,8 @@
  *
  * The programs share a file, named by TMINI_SHARED_CLOCK. It holds the time, and until when each
  * program waits in poll(). The clock jumps when each of them has looked for input in vain after the
- * last of them began to wait: what one has written before, another would have found. Stopped and
+ * last of them began to wait: what one has written before, another would have found. The last one
+ * wakes the others to look; whoever moves the clock wakes those whose time has come. Stopped and
  * ended programs do not count. A program that waits elsewhere than in poll() stops the clock. */
 
 #define _GNU_SOURCE
@@ -17,27 +18,32 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <signal.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
 
 #define NEVER INT64_MAX
 #define BEGIN_NS INT64_C(1000000000000)
 #define READING_NS 1000 /* What it takes to read the clock: loops that only do this end. */
-#define LOOK_NS 50000   /* Between two looks; doubled while nothing happens. */
-#define LOOK_MAX_NS 2000000
+#define LOOK_NS 2000000 /* Real time between two looks: programs end without a word. */
 #define PROGRAMS_MAX 64
+#define FDS_MAX 16  /* That a program waits for. */
 #define HIGH_FD 100 /* Never a standard descriptor, even if one of those is closed. */
 
 typedef struct {
     pid_t pid; /* 0: free entry. */
     bool is_waiting;
+    bool is_stopped;
     uint64_t seen; /* Value of `events` since which it has looked in vain. */
     int64_t until_ns;
 } program_t;
@@ -50,12 +56,15 @@ typedef struct {
 
 static clock_file_t *shared;
 static int lock_fd;
+static int wake_fd;    /* Others wake this program here. */
+static char name[100]; /* Of the file: part of the names of all `wake_fd`. */
 
 /* The real time after which poll() gives up with ETIME; 0: never. For the test itself. */
 int shared_clock_patience_ms;
 
 void shared_clock_open(const char *path);
 void shared_clock_expect(pid_t pid);
+void shared_clock_stop(pid_t pid);
 int64_t shared_clock_now_ns(void);
 
 static int real_clock(clockid_t clock, struct timespec *now)
@@ -108,6 +117,17 @@ int clock_gettime(clockid_t clock, struct timespec *now)
     return 0;
 }
 
+static void lock(void)
+{
+    while (flock(lock_fd, LOCK_EX) != 0 && errno == EINTR) {
+    }
+}
+
+static void unlock(void)
+{
+    (void)flock(lock_fd, LOCK_UN);
+}
+
 /* The state of a process, as /proc reports it; X if there is none. */
 static char state_of(pid_t pid)
 {
@@ -143,43 +163,96 @@ static program_t *place_of(pid_t pid)
     return place;
 }
 
-/* The earliest time until which a program waits; NEVER unless all wait and have found nothing. */
-static int64_t first_wait(void)
+/* The address of a program's `wake_fd`: a name that needs no file. */
+static struct sockaddr_un wake_address(pid_t pid, socklen_t *length)
 {
-    int64_t first_ns = NEVER;
-    for (program_t *one = shared->programs; one < shared->programs + PROGRAMS_MAX; one++) {
-        const bool waits = one->is_waiting && one->seen == shared->events;
-        if (one->pid != 0 && !waits) {
-            const char state = state_of(one->pid);
-            if (strchr("TtZX", state) == NULL) {
-                return NEVER;
-            }
-            one->pid = state == 'X' || state == 'Z' ? 0 : one->pid;
-        } else if (one->pid != 0) {
-            first_ns = one->until_ns < first_ns ? one->until_ns : first_ns;
-        }
-    }
-    return first_ns;
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    *length = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + 1) +
+              (socklen_t)snprintf(address.sun_path + 1, sizeof address.sun_path - 1, "%s.%d", name,
+                                  (int)pid);
+    return address;
 }
 
-/* Notes that this process has looked in vain since `events` had this value. Returns whether
- * anything has happened since it last did so. */
-static bool look_in_vain(uint64_t events, int64_t until_ns)
+static void wake(const program_t *program)
 {
-    (void)flock(lock_fd, LOCK_EX);
-    program_t *const own = place_of(getpid());
-    const bool has_missed_one = events != shared->events;
-    shared->events += own->is_waiting ? 0 : 1; /* What it has written until now must be found. */
-    events = has_missed_one ? events : shared->events;
-    const bool is_news = own->seen != events;
-    *own = (program_t){getpid(), true, events, until_ns};
-    const int64_t first_ns = first_wait();
+    socklen_t length;
+    const struct sockaddr_un address = wake_address(program->pid, &length);
+    (void)sendto(wake_fd, "", 1, MSG_DONTWAIT, (const struct sockaddr *)&address, length);
+}
+
+static bool has_looked(const program_t *program)
+{
+    return program->is_waiting && program->seen == shared->events;
+}
+
+/* Whether the clock must wait for the program: it works, or waits and has not looked. */
+static bool is_awaited(program_t *program, bool is_late)
+{
+    if (program->pid == 0 || has_looked(program)) {
+        return false;
+    }
+    if (!is_late && !program->is_stopped) {
+        return true; /* Reading the state takes longer than all the rest. */
+    }
+    const char state = state_of(program->pid);
+    program->pid = state == 'X' || state == 'Z' ? 0 : program->pid;
+    program->is_stopped = state == 'T' || state == 't';
+    return program->pid != 0 && !program->is_stopped;
+}
+
+/* Whether the clock must wait for any program. If all wait, those that must look are woken. */
+static bool is_any_awaited(pid_t own, bool is_late)
+{
+    bool is_one[PROGRAMS_MAX] = {false};
+    bool is_any = false;
+    bool works = false;
+    for (int i = 0; i < PROGRAMS_MAX; i++) {
+        is_one[i] = is_awaited(&shared->programs[i], is_late);
+        is_any = is_any || is_one[i];
+        works = works || (is_one[i] && !shared->programs[i].is_waiting);
+    }
+    for (int i = 0; i < PROGRAMS_MAX && !works; i++) {
+        if (is_one[i] && shared->programs[i].pid != own) {
+            wake(&shared->programs[i]);
+        }
+    }
+    return is_any;
+}
+
+/* All wait in vain: moves the clock to the earliest time until which one waits. */
+static void jump(pid_t own)
+{
+    const program_t *const end = shared->programs + PROGRAMS_MAX;
+    int64_t first_ns = NEVER;
+    for (const program_t *one = shared->programs; one < end; one++) {
+        const bool counts = one->pid != 0 && has_looked(one); /* Others are stopped. */
+        first_ns = counts && one->until_ns < first_ns ? one->until_ns : first_ns;
+    }
     if (first_ns != NEVER && first_ns > now_ns()) {
         __atomic_store_n(&shared->passed_ns, first_ns - BEGIN_NS, __ATOMIC_SEQ_CST);
         shared->events++;
     }
-    (void)flock(lock_fd, LOCK_UN);
-    return is_news;
+    for (const program_t *one = shared->programs; one < end; one++) {
+        if (one->pid != 0 && one->pid != own && one->until_ns <= now_ns()) {
+            wake(one);
+        }
+    }
+}
+
+/* Notes that this process has looked in vain since `events` had this value. Returns whether it must
+ * look again at once. */
+static bool look_in_vain(uint64_t events, int64_t until_ns, bool is_late)
+{
+    lock();
+    program_t *const own = place_of(getpid());
+    const bool has_missed_one = events != shared->events;
+    shared->events += own->is_waiting ? 0 : 1; /* What it has written until now must be found. */
+    *own = (program_t){getpid(), true, false, has_missed_one ? events : shared->events, until_ns};
+    if (!is_any_awaited(own->pid, is_late)) {
+        jump(own->pid);
+    }
+    unlock();
+    return has_missed_one;
 }
 
 /* From now on the clock stands until the process waits. */
@@ -188,10 +261,34 @@ void shared_clock_expect(pid_t pid)
     if (shared == NULL) {
         return;
     }
-    (void)flock(lock_fd, LOCK_EX);
+    lock();
     *place_of(pid) = (program_t){.pid = pid};
     shared->events++;
-    (void)flock(lock_fd, LOCK_UN);
+    unlock();
+}
+
+static int open_wake(const char *path)
+{
+    (void)snprintf(name, sizeof name, "%.90s", path);
+    socklen_t length;
+    const struct sockaddr_un address = wake_address(getpid(), &length);
+    const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const int high_fd = fcntl(fd, F_DUPFD_CLOEXEC, HIGH_FD);
+    (void)close(fd);
+    return bind(high_fd, (const struct sockaddr *)&address, length) == 0 ? high_fd : -1;
+}
+
+/* Stops a process outside of the functions that lock the file. */
+void shared_clock_stop(pid_t pid)
+{
+    static const struct timespec moment = {0, 100000};
+    lock();
+    (void)kill(pid, SIGSTOP);
+    while (strchr("TtZX", state_of(pid)) == NULL) {
+        (void)nanosleep(&moment, NULL);
+    }
+    place_of(pid)->is_stopped = true;
+    unlock();
 }
 
 /* Uses this file's clock; NULL: real time. */
@@ -200,6 +297,7 @@ void shared_clock_open(const char *path)
     if (shared != NULL) {
         (void)munmap(shared, sizeof *shared);
         (void)close(lock_fd);
+        (void)close(wake_fd);
     }
     shared = NULL;
     const int fd = path == NULL ? -1 : open(path, O_RDWR | O_CLOEXEC);
@@ -207,26 +305,53 @@ void shared_clock_open(const char *path)
         return;
     }
     lock_fd = fcntl(fd, F_DUPFD_CLOEXEC, HIGH_FD);
+    wake_fd = open_wake(path);
     void *const memory = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-    shared = memory != MAP_FAILED && lock_fd >= 0 ? memory : NULL;
+    shared = memory != MAP_FAILED && lock_fd >= 0 && wake_fd >= 0 ? memory : NULL;
     (void)close(fd);
     shared_clock_expect(getpid());
 }
 
-/* Waits in steps of real time until there is input, or the clock has been moved on. */
+/* ppoll() that also ends, with 0, when another program wakes this one. */
+static int wait_or_be_woken(struct pollfd *fds, nfds_t count, long wait_ns, bool *is_woken)
+{
+    struct pollfd all[FDS_MAX + 1];
+    const struct timespec wait = {0, wait_ns};
+    if (count > FDS_MAX) {
+        abort();
+    }
+    for (nfds_t i = 0; i < count; i++) {
+        all[i] = fds[i];
+    }
+    all[count] = (struct pollfd){.fd = wake_fd, .events = POLLIN};
+    const int ready = ppoll(all, count + 1, &wait, NULL);
+    *is_woken = ready > 0 && all[count].revents != 0;
+    if (*is_woken) {
+        char bytes[1];
+        while (recv(wake_fd, bytes, sizeof bytes, MSG_DONTWAIT) > 0) {
+        }
+    }
+    for (nfds_t i = 0; i < count && ready > 0; i++) {
+        fds[i].revents = all[i].revents;
+    }
+    return *is_woken ? ready - 1 : ready;
+}
+
+/* Waits until there is input, or the clock has been moved on. */
 static int wait_together(struct pollfd *fds, nfds_t count, int timeout_ms)
 {
     const int64_t until_ns = timeout_ms < 0 ? NEVER : now_ns() + timeout_ms * INT64_C(1000000);
-    struct timespec step = {0, LOOK_NS};
     const int64_t begun_ms = real_ms();
+    bool is_late = false;
     int ready = 0;
     do {
+        bool is_woken = false;
         const uint64_t events = __atomic_load_n(&shared->events, __ATOMIC_SEQ_CST);
-        ready = ppoll(fds, count, &step, NULL);
-        if (ready == 0) {
-            step.tv_nsec = look_in_vain(events, until_ns)   ? LOOK_NS
-                           : step.tv_nsec * 2 < LOOK_MAX_NS ? step.tv_nsec * 2
-                                                            : LOOK_MAX_NS;
+        ready = wait_or_be_woken(fds, count, 0, &is_woken);
+        if (ready == 0 && now_ns() < until_ns) {
+            const bool must_look = look_in_vain(events, until_ns, is_late);
+            ready = wait_or_be_woken(fds, count, must_look ? 0 : LOOK_NS, &is_woken);
+            is_late = !must_look && !is_woken;
         }
         if (ready == 0 && shared_clock_patience_ms > 0 &&
             real_ms() - begun_ms > shared_clock_patience_ms) {

@@ -145,7 +145,7 @@ def test_time_in_which_the_program_does_not_run_is_no_silence(lidar, start, cloc
     run.wait_for("no answer yet")
     assert 1000 <= clock.now_ms() - begun_ms < 1500
     clock.sleep(500)  # It has asked again.
-    run.process.send_signal(signal.SIGSTOP)
+    clock.stop(run.process.pid)
     clock.sleep(8000)
     run.process.send_signal(signal.SIGCONT)
     assert run.finish().out == "healthy\n"
