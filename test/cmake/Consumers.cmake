@@ -16,7 +16,7 @@ endforeach()
 if(TARGET tmini_tool)
     find_program(TMINI_PKG_CONFIG pkg-config)
     mark_as_advanced(TMINI_PKG_CONFIG)
-    tmini_add_check(consumer.install consumer COMMAND ${CMAKE_COMMAND}
+    tmini_add_check(consumer.install consumer ALL COMMAND ${CMAKE_COMMAND}
         -D TMINI_SOURCE=${PROJECT_SOURCE_DIR} -D BUILD=${CMAKE_CURRENT_BINARY_DIR}/consumer.install
         -D COMPILER=${CMAKE_C_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
         -D PKG_CONFIG=${TMINI_PKG_CONFIG}

@@ -33,10 +33,10 @@ function(tmini_add_machine machine)
         PROPERTIES COST 100)
 endfunction()
 
-tmini_add_machine(bigendian
+tmini_add_machine(bigendian ALL
     TOOLCHAIN powerpc-linux.cmake BUILD_TYPE RelWithDebInfo
     PROGRAMS powerpc-linux-gnu-gcc qemu-ppc|qemu-ppc-static)
-tmini_add_machine(int16
+tmini_add_machine(int16 ALL
     TOOLCHAIN avr-atmega2560.cmake BUILD_TYPE MinSizeRel
     PROGRAMS avr-gcc simavr)
 tmini_add_machine(cortex-m4

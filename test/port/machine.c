@@ -10,7 +10,7 @@
 #include "console.h"
 #include "irq_lines.h"
 
-#define STEP_US 20u
+#define STEP_US 40u
 
 machine_t machine;
 

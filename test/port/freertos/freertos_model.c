@@ -14,7 +14,7 @@
 #include "irq_lines.h"
 #include "stream_buffer.h"
 
-#define STEP_US 20u
+#define STEP_US 40u
 #define FIFO_SIZE 16u
 #define NEVER UINT64_MAX
 #define STACK_WORDS_MIN 128u

@@ -12,7 +12,7 @@
 #include "irq_lines.h"
 #include "zephyr_model.h"
 
-#define STEP_US 20u
+#define STEP_US 40u
 #define STACK_SIZE (256u * 1024u)
 #define THREADS 2
 
