@@ -1,346 +1,129 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Faults that are derived from packets while the lidar scans. */
+/* Faults that are derived from packets while the lidar scans, and the frequency's closed loop
+ * (tale.h). */
 
-#include "invariants.h"
-#include "rig.h"
+#include "tale.h"
 
-#include "mock_port_functions.h"
-#include "unity.h"
-
-void setUp(void)
-{
-    rig_open();
-}
+void setUp(void) {}
 
 void tearDown(void)
 {
-    TEST_ASSERT_TRUE(lidar_is_sound(&rig.lidar));
+    tale_end();
 }
 
-/* ---- Faults from CT information ---- */
+#define SCANS "no-scans scans "
+#define DATA_FAULT SCANS "2( <blind !NONE ) <blind !FAULTS faults:0x20 "
+/* Point packets without a range, 4000 samples per second. */
+#define STANDS_STILL "<SZ drain 1495( <PZ:8 +2 ) 5( <PZ:8 ) !FAULTS "
+#define NO_ANSWER "<99 >65 +50 >60 <scan <S !STARTED !FAILED "
+#define AGAIN "<turn:60 !SCAN !PAUSED >65 +50 >0D " NO_ANSWER
 
-void test_a_fault_seen_in_two_trusted_turns_is_reported(void)
+static const row_t tales[] = {
+    /* ---- Faults from CT information ---- */
+    ROW(a_fault_seen_in_two_trusted_turns_is_reported_once,
+        SCANS "2( <ct:1 !NONE ) faults:0 <ct:1 !FAULTS faults:1 <ct:1 !NONE"),
+    ROW(a_fault_seen_in_one_turn_only_is_not_reported,
+        SCANS "<ct:0 !NONE 3( <ct:1 !NONE <ct:0 !NONE ) <ct:0 !NONE faults:0"),
+    ROW(a_fault_is_cleared_by_two_trusted_turns_without_it,
+        SCANS "2( <ct:8 drain ) <ct:0 drain faults:8 <ct:0 !NONE <ct:0 !FAULTS faults:0"),
+    ROW(a_fault_seen_in_one_trusted_turn_and_one_that_is_not_is_not_reported,
+        SCANS "<ct:1 !NONE <ct:0 !NONE bad-crc <ct:0 !NONE faults:0"),
+    ROW(a_data_fault_that_ends_in_turns_of_which_a_packet_is_missing_is_reported,
+        DATA_FAULT "2( bad-crc <ct:0 !NONE ) bad-crc <ct:0 !FAULTS faults:0"),
+    ROW(a_second_fault_is_reported_beside_the_first,
+        SCANS "2( <ct:8 drain ) 2( <ct:0x18 drain ) <ct:0 !FAULTS faults:0x18"),
+    ROW(a_turn_that_is_not_trusted_neither_reports_nor_clears, /* Only one is trusted at last. */
+        SCANS "2( <ct:0 drain ) <ct:1 drain 2( bad-crc <ct:1 !NONE ) <ct:1 !NONE <ct:0 !FAULTS"),
+    ROW(a_unit_that_reports_its_health_is_believed_even_without_any_range,
+        SCANS "<ct:0 drain 4( <blind-ct:0 !NONE ) faults:0"),
+    ROW(ct_information_is_known_once_a_turn_was_trusted,
+        SCANS "<ct:0x10 !NONE known:0 <ct:0x10 !NONE known:0x1A user:1 unit-faults:0x10"),
+    /* ---- Faults from distances, on units without CT information ---- */
+    ROW(two_turns_without_any_range_are_a_data_fault, DATA_FAULT "<blind !NONE"),
+    ROW(a_data_fault_is_cleared_by_two_turns_with_a_range,
+        DATA_FAULT "2( <plain !NONE ) <plain !FAULTS faults:0"),
+    ROW(one_valid_range_a_turn_is_no_fault, SCANS "4( <SZ <PZ <P:1 <PZ !NONE )"),
+    ROW(the_start_packets_own_range_counts, SCANS "4( <S <PZ !NONE )"),
+    ROW(turns_of_which_packets_were_lost_are_no_data_fault, SCANS "4( <SZ 20( <junk ) !NONE )"),
+    ROW(a_turn_of_which_a_point_packet_was_lost_is_no_data_fault,
+        SCANS "4( <SZ <junk <junk <PZ !NONE )"),
+    ROW(one_byte_before_a_start_packet_may_be_last_crc_and_the_turn_is_whole,
+        SCANS "3( <blind drain <x:00 ) faults:0x20"),
+    ROW(a_range_clears_a_data_fault_though_packets_were_lost,
+        DATA_FAULT "3( <junk <junk <S drain ) faults:0"),
+    ROW(ranges_in_two_incomplete_turns_clear_a_data_fault,
+        DATA_FAULT "2( <junk <junk <P <SZ drain ) faults:0"),
+    ROW(what_precedes_the_first_start_packet_is_no_turn,
+        "no-scans starts <scan <PZ !STARTED <SZ !NONE <S !NONE"),
+    ROW(packets_without_scans_are_judged_too,
+        "packets starts 3( <blind drain ) faults:0x20 +1000 !LOST >65"),
+    /* ---- A blocked rotor, and start packets that stop ---- */
+    ROW(packets_without_a_start_for_3_s_are_an_encoder_fault, /* Reported once, and no loss. */
+        SCANS STANDS_STILL "faults:2 5000( <PZ:8 +2 ) @SCANNING"),
+    ROW(a_rotor_blocked_from_the_start_is_an_encoder_fault,
+        "no-scans starts <scan <PZ:8 !STARTED 1495( <PZ:8 +2 ) 5( <PZ:8 ) !FAULTS faults:2"),
+    ROW(a_rotor_blocked_in_the_middle_of_a_turn_is_an_encoder_fault,
+        SCANS "<SZ <P drain 1495( <PZ:8 +2 ) 5( <PZ:8 ) !FAULTS faults:2"),
+    ROW(start_packets_without_a_range_every_now_and_then_are_no_encoder_fault,
+        SCANS "3( <junk <junk <SZ drain 1450( <PZ:8 +2 ) ) faults:0"),
+    ROW(a_rotor_that_turns_again_clears_the_fault_after_two_turns, /* The blocked one is partial. */
+        SCANS STANDS_STILL "2( <plain drain ) <plain !FAULTS faults:0"),
+    ROW(a_blocked_turn_does_not_count_as_a_turn_without_a_range,
+        SCANS STANDS_STILL "2( <blind drain ) faults:2 <blind drain faults:0x20"),
+    ROW(a_blocked_rotor_with_start_packets_is_what_ct_information_says,
+        SCANS "3( <blind-ct:2 drain ) faults:2"),
+    ROW(a_blocked_rotor_with_start_packets_and_no_ct_information_is_a_data_fault,
+        SCANS "30( <blind drain ) faults:0x20"),
+    ROW(a_blocked_rotor_keeps_the_faults_reported_before,
+        SCANS "3( <ct:8 drain ) <crc " STANDS_STILL "faults:0x0A"),
+    ROW(three_seconds_of_ranges_without_a_start_packet_are_a_fault_and_three_more_a_loss,
+        "scans <ranges:11999 faults:0 <ranges:1 faults:0x02 <ranges:11960 @SCANNING <ranges:40 "
+        "@RECOVERING >65"),
+    ROW(without_start_packets_100_of_300_packets_with_a_range_are_a_loss_and_99_are_not,
+        "scans <blinds:12000 <ranges:3960 <blinds:8040 @SCANNING <ranges:4000 <blinds:8000 "
+        "@RECOVERING "
+        ">65"),
+    ROW(samples_without_a_range_and_without_a_start_packet_are_no_loss, /* The rotor is blocked. */
+        "scans <blinds:60000 faults:0x02 @SCANNING"),
+    /* ---- The frequency while it scans ---- */
+    ROW(three_seconds_of_another_frequency_are_a_fault_and_another_try,
+        "scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65 #0 +50 >0D <600 +50 >0B <700 "
+        "stop >65 !FAILED +50 !STOPPED faults:0x40"),
+    ROW(five_percent_off_is_no_fault_and_more_is,
+        "scans-at-10 turns:60:95 / scans-at-10 turns:60:105 / off scans-at-10 turns:26:94 <turn:94 "
+        "!SCAN faults:0 <turn:94 !FAULTS !SCAN faults:0x40"),
+    ROW(two_slow_turns_are_no_fault_and_three_are,
+        "off scans-at-10 turns:1:6 <turn:6 !FAULTS !SCAN"),
+    ROW(a_right_turn_ends_the_fault,
+        "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN <turn:100 !FAULTS !SCAN faults:0"),
+    ROW(without_recovery_another_frequency_is_only_a_fault,
+        "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN turns:300:60"),
+    ROW(a_frequency_that_the_lidar_has_and_does_not_keep_is_set_once_more_only,
+        "scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65 +50 >0D <1000 !FREQUENCY >60 "
+        "<scan <S !STARTED turns:300:60"),
+    ROW(a_lidar_that_does_not_answer_is_tried_less_and_less_often, /* 3, 6, 12, 24, 42.5 s. */
+        "wish:1000 idle start >0D " NO_ANSWER
+        "turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65 +50 >0D " NO_ANSWER "turns:34:60 " AGAIN
+        "turns:70:60 " AGAIN "turns:142:60 " AGAIN "turns:253:60 " AGAIN "turns:253:60 " AGAIN),
+    ROW(what_is_not_known_to_be_set_is_asked_again_although_it_turns_well,
+        "wish:610 attempts:1 idle start >0D <600 +50 >09 3( +2000 >0D <600 +50 >09 ) +2000 >65 +50 "
+        ">60 <scan <S !STARTED !FAILED #0 turns:16:60 <turn:60 !SCAN !PAUSED >65 +50 >0D <610 "
+        "!FREQUENCY >60 <scan <S !STARTED"),
+    ROW(a_unit_that_never_answers_is_asked_again_once,
+        "wish:1000 idle start 30( >0D +250 ) >65 +50 >60 <S !STARTED !FAILED ?TIMEOUT turns:28:100 "
+        "<turn:100 !SCAN !PAUSED >65 +50 30( >0D +250 ) >65 +50 >60 <S !STARTED !FAILED "
+        "turns:300:100"),
+    ROW(a_frequency_that_is_not_reported_is_no_fault, "scans-at-10 turns:60:0"),
+    ROW(without_a_wish_any_frequency_is_right, "scans turns:60:90"),
+    ROW(another_wish_clears_the_fault,
+        "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN set:600 !FAULTS faults:0"),
+    ROW(the_same_wish_does_not_clear_it,
+        "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN set:1000 faults:0x40"),
+};
+
+void test_tales(void)
 {
-    rig_go_scanning();
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_turn_events(TMINI_FAULT_SENSOR));
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_SENSOR, tmini_faults(&rig.lidar));
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR)); /* Reported only once. */
-}
-
-void test_a_fault_seen_in_one_turn_only_is_not_reported(void)
-{
-    rig_go_scanning();
-    (void)rig_turn_events(0);
-    for (unsigned i = 0; i < 3; i++) {
-        TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
-        TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0));
-    }
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0));
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-}
-
-void test_a_fault_is_cleared_by_two_trusted_turns_without_it(void)
-{
-    rig_go_scanning();
-    (void)rig_turn_events(TMINI_FAULT_PD);
-    (void)rig_turn_events(TMINI_FAULT_PD);
-    (void)rig_turn_events(0);
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_PD, tmini_faults(&rig.lidar));
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0));
-    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_turn_events(0));
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-}
-
-void test_a_fault_seen_in_one_trusted_turn_and_one_that_is_not_is_not_reported(void)
-{
-    rig_go_scanning();
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0)); /* One trusted turn has ended. */
-    rig.crc ^= 1u;                                /* LastCRC is wrong. */
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(0));
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-}
-
-void test_a_data_fault_that_ends_in_turns_of_which_a_packet_is_missing_is_reported(void)
-{
-    unsigned events = 0;
-
-    rig_go_scanning();
-    rig_plain_turns(3, 0);
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
-    for (unsigned i = 0; i < 3; i++) {
-        rig.crc ^= 1u; /* LastCRC is wrong. */
-        events |= rig_turn_events(0);
-    }
-    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), events);
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-}
-
-void test_a_second_fault_is_reported_beside_the_first(void)
-{
-    rig_go_scanning();
-    (void)rig_turn_events(TMINI_FAULT_PD);
-    (void)rig_turn_events(TMINI_FAULT_PD);
-    (void)rig_turn_events(TMINI_FAULT_PD | TMINI_FAULT_LD);
-    (void)rig_turn_events(TMINI_FAULT_PD | TMINI_FAULT_LD);
-    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_turn_events(0));
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_PD | TMINI_FAULT_LD, tmini_faults(&rig.lidar));
-}
-
-void test_a_turn_that_is_not_trusted_neither_reports_nor_clears(void)
-{
-    rig_go_scanning();
-    (void)rig_turn_events(0);
-    (void)rig_turn_events(0); /* From here on the unit is known to report its health. */
-    (void)rig_turn_events(TMINI_FAULT_SENSOR);
-    rig.crc ^= 1u; /* LastCRC is wrong. */
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
-    rig.crc ^= 1u;
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR));
-    TEST_ASSERT_EQUAL_HEX(0, rig_turn_events(TMINI_FAULT_SENSOR)); /* Only one is trusted so far. */
-    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_turn_events(0));
-}
-
-void test_a_unit_that_reports_its_health_is_believed_even_without_any_range(void)
-{
-    rig_go_scanning();
-    (void)rig_turn_events(0);
-    for (unsigned i = 0; i < 4; i++) {
-        rig.now_ms += 160;
-        rig_feed_turn(0, 0);
-        TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_SCAN), rig_drain());
-    }
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-}
-
-/* ---- Faults from distances, on units without CT information ---- */
-
-void test_two_turns_without_any_range_are_a_data_fault(void)
-{
-    rig_go_scanning();
-    TEST_ASSERT_EQUAL_HEX(0, rig_plain_turn_events(0));
-    TEST_ASSERT_EQUAL_HEX(0, rig_plain_turn_events(0));
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_plain_turn_events(0));
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
-    TEST_ASSERT_EQUAL_HEX(0, rig_plain_turn_events(0));
-}
-
-void test_a_data_fault_is_cleared_by_two_turns_with_a_range(void)
-{
-    rig_go_scanning();
-    rig_plain_turns(3, 0);
-    TEST_ASSERT_EQUAL_HEX(0, rig_plain_turn_events(1000));
-    TEST_ASSERT_EQUAL_HEX(0, rig_plain_turn_events(1000));
-    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_plain_turn_events(1000));
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-}
-
-void test_one_valid_range_a_turn_is_no_fault(void)
-{
-    rig_go_scanning();
-    for (unsigned i = 0; i < 4; i++) {
-        rig_feed_start_packet(0);
-        rig_feed_point_packet(0);
-        rig_feed_packet(0, 1, 1);
-        rig_feed_point_packet(0);
-        TEST_ASSERT_EQUAL_HEX(0, rig_drain() & BIT(TMINI_EVENT_FAULTS_CHANGED));
-    }
-}
-
-void test_the_start_packets_own_range_counts(void)
-{
-    rig_go_scanning();
-    for (unsigned i = 0; i < 4; i++) {
-        rig_feed_start_packet(1000);
-        rig_feed_point_packet(0);
-        TEST_ASSERT_EQUAL_HEX(0, rig_drain() & BIT(TMINI_EVENT_FAULTS_CHANGED));
-    }
-}
-
-void test_turns_of_which_packets_were_lost_are_no_data_fault(void)
-{
-    rig_go_scanning();
-    for (unsigned i = 0; i < 4; i++) {
-        rig_feed_start_packet(0); /* It has no range. */
-        for (unsigned k = 0; k < 20; k++) {
-            rig_feed_byte(0x00); /* The packets with ranges were damaged. */
-        }
-        TEST_ASSERT_EQUAL_HEX(0, rig_drain() & BIT(TMINI_EVENT_FAULTS_CHANGED));
-    }
-}
-
-void test_a_turn_of_which_a_point_packet_was_lost_is_no_data_fault(void)
-{
-    rig_go_scanning();
-    for (unsigned i = 0; i < 4; i++) {
-        rig_feed_start_packet(0);
-        rig_feed_byte(0x00);
-        rig_feed_byte(0x00);
-        rig_feed_point_packet(0);
-        TEST_ASSERT_EQUAL_HEX(0, rig_drain() & BIT(TMINI_EVENT_FAULTS_CHANGED));
-    }
-}
-
-void test_one_byte_before_a_start_packet_may_be_last_crc_and_the_turn_is_whole(void)
-{
-    rig_go_scanning();
-    for (unsigned i = 0; i < 3; i++) {
-        (void)rig_plain_turn_events(0);
-        rig_feed_byte(0x00);
-    }
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
-}
-
-void test_a_range_clears_a_data_fault_though_packets_were_lost(void)
-{
-    rig_go_scanning();
-    rig_plain_turns(3, 0);
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
-    for (unsigned i = 0; i < 3; i++) {
-        rig_feed_byte(0x00);
-        rig_feed_byte(0x00);
-        rig_feed_start_packet(1000);
-        (void)rig_drain();
-    }
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-}
-
-void test_what_precedes_the_first_start_packet_is_no_turn(void)
-{
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
-    answers_and_gets(600, START);
-    rig_feed_scan_reply();
-    rig_feed_point_packet(0); /* A partial turn. */
-    rig_feed_start_packet(0); /* A turn without a range. */
-    (void)rig_drain();
-    rig_feed_start_packet(1000);
-    TEST_ASSERT_EQUAL_HEX(0, rig_drain() & BIT(TMINI_EVENT_FAULTS_CHANGED));
-}
-
-/* ---- A blocked rotor ---- */
-
-/* Point packets without a range, 4000 samples per second; no event comes. */
-static void stands_still_for(uint32_t ms)
-{
-    for (uint32_t end_ms = rig.now_ms + ms; rig.now_ms != end_ms;) {
-        rig_feed_packet(0, 8, 0);
-        passes(2);
-    }
-}
-
-static void is_noticed_after_3_s(void)
-{
-    stands_still_for(2990);
-    for (unsigned i = 0; i < 5; i++) {
-        rig_feed_packet(0, 8, 0);
-    }
-    polls_to(TMINI_EVENT_FAULTS_CHANGED);
-}
-
-void test_packets_without_a_start_for_3_s_are_an_encoder_fault(void)
-{
-    rig_go_scanning();
-    rig_feed_start_packet(0);
-    (void)rig_drain();
-    is_noticed_after_3_s();
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
-    stands_still_for(10000); /* Reported once; the lidar is not called lost. */
-    is_in(TMINI_STATE_SCANNING);
-}
-
-void test_a_rotor_blocked_from_the_start_is_an_encoder_fault(void)
-{
-    rig_go_spinning_up();
-    rig_feed_packet(0, 8, 0);
-    polls_to(TMINI_EVENT_STARTED);
-    is_noticed_after_3_s();
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
-}
-
-void test_a_rotor_blocked_in_the_middle_of_a_turn_is_an_encoder_fault(void)
-{
-    rig_go_scanning();
-    rig_feed_start_packet(0);
-    rig_feed_point_packet(1000);
-    (void)rig_drain();
-    is_noticed_after_3_s();
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
-}
-
-void test_start_packets_without_a_range_every_now_and_then_are_no_encoder_fault(void)
-{
-    rig_go_scanning();
-    for (unsigned i = 0; i < 3; i++) {
-        rig_feed_byte(0x00);
-        rig_feed_byte(0x00); /* A packet was lost, so it is unknown whether the turn had ranges. */
-        rig_feed_start_packet(0);
-        (void)rig_drain();
-        stands_still_for(2900);
-    }
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-}
-
-void test_a_rotor_that_turns_again_clears_the_fault_after_two_turns(void)
-{
-    rig_go_scanning();
-    rig_feed_start_packet(0);
-    (void)rig_drain();
-    is_noticed_after_3_s();
-    /* The blocked turn ends: it had no range, but was not complete. */
-    (void)rig_plain_turn_events(1000);
-    (void)rig_plain_turn_events(1000);
-    TEST_ASSERT_EQUAL_HEX(BIT(TMINI_EVENT_FAULTS_CHANGED), rig_plain_turn_events(1000));
-    TEST_ASSERT_EQUAL_HEX8(0, tmini_faults(&rig.lidar));
-}
-
-/* The blocked turn is not complete, so only the next turn without a range counts as the first. */
-void test_a_blocked_turn_does_not_count_as_a_turn_without_a_range(void)
-{
-    rig_go_scanning();
-    rig_feed_start_packet(0);
-    (void)rig_drain();
-    is_noticed_after_3_s();
-    (void)rig_plain_turn_events(0);
-    (void)rig_plain_turn_events(0);
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
-    (void)rig_plain_turn_events(0);
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
-}
-
-void test_a_blocked_rotor_with_start_packets_is_what_ct_information_says(void)
-{
-    rig_go_scanning();
-    for (unsigned i = 0; i < 3; i++) {
-        rig.now_ms += 160;
-        rig_feed_turn(TMINI_FAULT_ENCODER, 0);
-        (void)rig_drain();
-    }
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
-}
-
-void test_a_blocked_rotor_with_start_packets_and_no_ct_information_is_a_data_fault(void)
-{
-    rig_go_scanning();
-    rig_plain_turns(30, 0);
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_DATA, tmini_faults(&rig.lidar));
-}
-
-void test_a_blocked_rotor_keeps_the_faults_reported_before(void)
-{
-    rig_go_scanning();
-    for (unsigned i = 0; i < 3; i++) {
-        (void)rig_turn_events(TMINI_FAULT_PD);
-    }
-    rig_feed_byte(rig.crc);
-    rig_feed_start_packet(0);
-    (void)rig_drain();
-    is_noticed_after_3_s();
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_PD | TMINI_FAULT_ENCODER, tmini_faults(&rig.lidar));
+    run_rows(tales, tale_tell_row);
 }

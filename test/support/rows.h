@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* A table whose rows are tests: each has a name, which is a claim, and runs alone, with setUp() and
+ * tearDown(). A row that fails is reported by its name and line, and the others run on. */
+
+#ifndef ROWS_H
+#define ROWS_H
+
+#include <stddef.h>
+
+/* `steps` is what the table's runner understands. */
+typedef struct {
+    const char *name;
+    unsigned line;
+    const char *steps;
+} row_t;
+
+#define ROW(claim, steps) {"test_" #claim, __LINE__, steps}
+
+/* Runs each row by `run`. It must be the last statement of a test function. */
+#define run_rows(rows, run) rows_run(rows, sizeof(rows) / sizeof(rows)[0], run)
+void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row));
+
+#endif
