@@ -16,10 +16,10 @@ function(tmini_add_driver_tests)
     endforeach()
 endfunction()
 
-tmini_add_driver_tests(test_tmini test_blocking)
+tmini_add_driver_tests(test_tmini)
 
 # Told in words. The ATmega2560 keeps text in its 8 KB of RAM: this is too much.
-tmini_add_driver_tests(test_command test_recovery test_wish test_monitor test_poll
+tmini_add_driver_tests(test_command test_recovery test_wish test_monitor test_poll test_blocking
     WITH ../support/tale.c ../support/rows.c NOT_ON int16)
 
 # Tests with large rings.
