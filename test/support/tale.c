@@ -4,6 +4,7 @@
 #include "tale.h"
 
 #include "invariants.h"
+#include "members.h"
 #include "tmini/tmini_names.h"
 
 #include <stdio.h>
@@ -359,48 +360,38 @@ static bool call(const char *word, int *status)
 /* A word before the set-up gives a member of the configuration its number, or this one. */
 static bool configure(const char *word)
 {
-#define MEMBER(name) &rig.name, sizeof rig.name
     const struct {
         const char *word;
         void *member;
         size_t size;
         unsigned number;
     } members[] = {
-        {"wish", MEMBER(config.frequency_chz), 0},
-        {"off", MEMBER(config.recovery), TMINI_RECOVERY_OFF},
-        {"recovery", MEMBER(config.recovery), 0},
-        {"listen", MEMBER(config.listen_only), true},
-        {"no-port", MEMBER(config.port), 0},
-        {"no-write", MEMBER(port.write), 0},
-        {"no-clock", MEMBER(port.now_ms), 0},
-        {"no-rx", MEMBER(config.rx_buffer), 0},
-        {"rx", MEMBER(config.rx_size), 0},
-        {"dma", MEMBER(config.rx_dma), true},
-        {"samples", MEMBER(config.max_samples), 0},
-        {"no-points", MEMBER(config.points), 0},
-        {"points", MEMBER(config.max_points), 0},
-        {"filter", MEMBER(config.filter), 0},
-        {"backoff", MEMBER(timing.back_off_max_ms), 0},
-        {"attempts", MEMBER(timing.max_attempts), 0},
-        {"quiet", MEMBER(timing.quiet_line_ms), 0},
-        {"reply", MEMBER(timing.reply_timeout_ms), 0},
-        {"frame", MEMBER(timing.frame_timeout_ms), 0},
-        {"pause", MEMBER(timing.max_pause_ms), 0},
+        {"wish", MEMBER(rig.config.frequency_chz), 0},
+        {"off", MEMBER(rig.config.recovery), TMINI_RECOVERY_OFF},
+        {"recovery", MEMBER(rig.config.recovery), 0},
+        {"listen", MEMBER(rig.config.listen_only), true},
+        {"no-port", MEMBER(rig.config.port), 0},
+        {"no-write", MEMBER(rig.port.write), 0},
+        {"no-clock", MEMBER(rig.port.now_ms), 0},
+        {"no-rx", MEMBER(rig.config.rx_buffer), 0},
+        {"rx", MEMBER(rig.config.rx_size), 0},
+        {"dma", MEMBER(rig.config.rx_dma), true},
+        {"samples", MEMBER(rig.config.max_samples), 0},
+        {"no-points", MEMBER(rig.config.points), 0},
+        {"points", MEMBER(rig.config.max_points), 0},
+        {"filter", MEMBER(rig.config.filter), 0},
+        {"backoff", MEMBER(rig.timing.back_off_max_ms), 0},
+        {"attempts", MEMBER(rig.timing.max_attempts), 0},
+        {"quiet", MEMBER(rig.timing.quiet_line_ms), 0},
+        {"reply", MEMBER(rig.timing.reply_timeout_ms), 0},
+        {"frame", MEMBER(rig.timing.frame_timeout_ms), 0},
+        {"pause", MEMBER(rig.timing.max_pause_ms), 0},
     };
-#undef MEMBER
     const char *const at = strchr(word, ':');
     for (size_t i = 0; i < sizeof members / sizeof members[0]; i++) {
         const size_t number = at != NULL ? (size_t)strtoul(at + 1, NULL, 0) : members[i].number;
-        const uint8_t byte = (uint8_t)number;
-        const uint16_t half = (uint16_t)number;
-        const uint32_t whole = (uint32_t)number;
         if (tale_is(word, members[i].word)) {
-            memcpy(members[i].member,
-                   members[i].size == 1   ? (const void *)&byte
-                   : members[i].size == 2 ? (const void *)&half
-                   : members[i].size == 4 ? (const void *)&whole
-                                          : (const void *)&number,
-                   members[i].size);
+            member_store(members[i].member, members[i].size, number);
             return true;
         }
     }

@@ -27,18 +27,15 @@ target_compile_options(tmini_bed PRIVATE -O2 -Wall -Wextra $<$<BOOL:${TMINI_WERR
 set_target_properties(tmini_bed PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 
 # explore: at every event on the wire every trouble, and every pair of them (triples by hand).
-# programs: as users write them, at every moment at which power may come or fail.
-# scripts: wishes and what comes of them, as text. stories: random ones.
-foreach(program explore programs scripts stories)
+# programs: as users write them, at every moment at which power may come or fail. stories: random.
+foreach(program explore programs stories)
     add_executable(${program} EXCLUDE_FROM_ALL ${program}.c claims.c)
     target_link_libraries(${program} PRIVATE tmini_bed)
     target_compile_options(${program} PRIVATE -O2 -Wall -Wextra
         $<$<BOOL:${TMINI_WERROR}>:-Werror>)
     set_target_properties(${program} PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 endforeach()
-foreach(program programs scripts)
-    tmini_add_check(${program} system NEEDS ${program} COMMAND ${program})
-endforeach()
+tmini_add_check(programs system NEEDS programs COMMAND programs)
 tmini_add_check(stories system NEEDS stories COMMAND stories 3000)
 tmini_add_check(stories.all system ALL NEEDS stories COMMAND stories 20000)
 tmini_add_check(explore system NEEDS explore COMMAND explore --depth 1)
