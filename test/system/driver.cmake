@@ -16,7 +16,7 @@ tmini_add_unit_test(test_intact
     SOURCES test_intact.c ../support/turns.c
     LIBRARIES tmini_test_support)
 tmini_add_unit_test(test_driver
-    SOURCES test_driver.c
+    SOURCES test_driver.c ../support/rows.c
     LIBRARIES tmini_world)
 
 # The driver and an unkind lidar.

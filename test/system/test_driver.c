@@ -4,10 +4,12 @@
 /* The library drives the simulated lidar, in virtual time. world.h lists what is always checked;
  * the tests check the results. */
 
+#include "rows.h"
 #include "world.h"
 
 #include "unity.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static world_t world;
@@ -342,72 +344,51 @@ static void survives(sim_link_kind_t kind, uint32_t mean_gap)
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_FAULTS_CHANGED));
 }
 
-static void survives_in_every_mode(sim_link_kind_t kind, uint32_t mean_gap)
+/* The steps are a kind of fault and mean gaps. */
+static void survives_in_every_mode(const row_t *row)
 {
-    for (unsigned mode = 0; mode < 4; mode++) {
-        config.seed = mode;
-        config.streaming = (mode & 1u) != 0;
-        config.dma = (mode & 2u) != 0;
-        config.rx_size = config.dma ? 8192 : 2048;
-        config.sim.ct_information = !config.sim.ct_information;
-        config.busy_one_in = 100;
-        config.busy_ms = 60;
-        survives(kind, mean_gap);
+    static const char *const kinds[] = {
+        [SIM_LINK_DROP] = "drop",     [SIM_LINK_FLIP] = "flip",     [SIM_LINK_INSERT] = "insert",
+        [SIM_LINK_BURST] = "burst",   [SIM_LINK_STALL] = "stall",   [SIM_LINK_CUT] = "cut",
+        [SIM_LINK_UNPLUG] = "unplug", [SIM_LINK_GARBLE] = "garble",
+    };
+    const char *rest = strchr(row->steps, ' ');
+    unsigned kind = 0;
+
+    while (strncmp(kinds[kind], row->steps, strlen(kinds[kind])) != 0) {
+        kind++;
+    }
+    while (*rest != '\0') {
+        const uint32_t mean_gap = (uint32_t)strtoul(rest, (char **)&rest, 10);
+
+        for (unsigned mode = 0; mode < 4; mode++) {
+            config.seed = mode;
+            config.streaming = (mode & 1u) != 0;
+            config.dma = (mode & 2u) != 0;
+            config.rx_size = config.dma ? 8192 : 2048;
+            config.sim.ct_information = !config.sim.ct_information;
+            config.busy_one_in = 100;
+            config.busy_ms = 60;
+            survives((sim_link_kind_t)kind, mean_gap);
+            check_world(&world);
+        }
     }
 }
 
-void test_lost_bytes_cost_no_other_packet(void)
-{
-    survives_in_every_mode(SIM_LINK_DROP, 200);
-    survives_in_every_mode(SIM_LINK_DROP, 2000);
-    survives_in_every_mode(SIM_LINK_DROP, 50000);
-}
+static const row_t lines[] = {
+    ROW(lost_bytes_cost_no_other_packet, "drop 200 2000 50000"),
+    ROW(flipped_bits_cost_no_other_packet, "flip 200 2000 50000"),
+    ROW(extra_bytes_cost_no_other_packet, "insert 200 2000 50000"),
+    ROW(bursts_cost_no_other_packet, "burst 20 200 5000"),
+    ROW(stalls_cost_at_most_the_packet_that_they_cut, "stall 200 1000 10000"),
+    ROW(packets_cut_short_cost_no_other_packet, "cut 20 200 5000"),
+    ROW(loss_of_power_is_recovered_from, "unplug 5000 15000"),
+    ROW(wrong_baud_rates_for_a_while_are_recovered_from, "garble 2000 10000"),
+};
 
-void test_flipped_bits_cost_no_other_packet(void)
+void test_faults_of_the_line(void)
 {
-    survives_in_every_mode(SIM_LINK_FLIP, 200);
-    survives_in_every_mode(SIM_LINK_FLIP, 2000);
-    survives_in_every_mode(SIM_LINK_FLIP, 50000);
-}
-
-void test_extra_bytes_cost_no_other_packet(void)
-{
-    survives_in_every_mode(SIM_LINK_INSERT, 200);
-    survives_in_every_mode(SIM_LINK_INSERT, 2000);
-    survives_in_every_mode(SIM_LINK_INSERT, 50000);
-}
-
-void test_bursts_cost_no_other_packet(void)
-{
-    survives_in_every_mode(SIM_LINK_BURST, 20);
-    survives_in_every_mode(SIM_LINK_BURST, 200);
-    survives_in_every_mode(SIM_LINK_BURST, 5000);
-}
-
-void test_stalls_cost_at_most_the_packet_that_they_cut(void)
-{
-    survives_in_every_mode(SIM_LINK_STALL, 200);
-    survives_in_every_mode(SIM_LINK_STALL, 1000);
-    survives_in_every_mode(SIM_LINK_STALL, 10000);
-}
-
-void test_packets_cut_short_cost_no_other_packet(void)
-{
-    survives_in_every_mode(SIM_LINK_CUT, 20);
-    survives_in_every_mode(SIM_LINK_CUT, 200);
-    survives_in_every_mode(SIM_LINK_CUT, 5000);
-}
-
-void test_loss_of_power_is_recovered_from(void)
-{
-    survives_in_every_mode(SIM_LINK_UNPLUG, 5000);
-    survives_in_every_mode(SIM_LINK_UNPLUG, 15000);
-}
-
-void test_wrong_baud_rates_for_a_while_are_recovered_from(void)
-{
-    survives_in_every_mode(SIM_LINK_GARBLE, 2000);
-    survives_in_every_mode(SIM_LINK_GARBLE, 10000);
+    run_rows(lines, survives_in_every_mode);
 }
 
 /* ---- Recovery ---- */
@@ -451,46 +432,28 @@ static void begin_with(bool ct_information, bool blocked_sends_starts)
     begin_scanning();
 }
 
-void test_a_blocked_rotor_is_reported_and_not_repaired(void)
+/* The steps: what the unit sends, what befalls it, and the fault. */
+static void is_reported_and_not_repaired(const row_t *row)
 {
-    begin_with(true, true);
-    sim_block_rotor(&world.sim, true);
-    reports(TMINI_FAULT_ENCODER);
+    begin_with(strstr(row->steps, "ct") != NULL, strstr(row->steps, "starts") != NULL);
+    sim_block_rotor(&world.sim, strstr(row->steps, "blocked") != NULL);
+    sim_cover_window(&world.sim, strstr(row->steps, "covered") != NULL);
+    reports(strstr(row->steps, "data") != NULL ? TMINI_FAULT_DATA : TMINI_FAULT_ENCODER);
 }
 
-void test_a_blocked_rotor_without_start_packets_is_reported_and_not_repaired(void)
-{
-    begin_with(true, false);
-    sim_block_rotor(&world.sim, true);
-    reports(TMINI_FAULT_ENCODER);
-}
+static const row_t faults[] = {
+    ROW(a_blocked_rotor_is_reported, "ct starts blocked: encoder"),
+    ROW(a_blocked_rotor_without_start_packets_is_reported, "ct blocked: encoder"),
+    ROW(a_blocked_rotor_of_a_unit_without_ct_information_is_reported, "blocked: encoder"),
+    ROW(a_blocked_rotor_with_start_packets_but_no_ct_information_shows_as_no_data,
+        "starts blocked: data"),
+    ROW(a_covered_window_is_reported, "ct starts covered: data"),
+    ROW(a_covered_window_of_a_unit_without_ct_information_is_reported, "starts covered: data"),
+};
 
-void test_a_blocked_rotor_of_a_unit_without_ct_information_is_reported_and_not_repaired(void)
+void test_faults_are_reported_and_not_repaired(void)
 {
-    begin_with(false, false);
-    sim_block_rotor(&world.sim, true);
-    reports(TMINI_FAULT_ENCODER);
-}
-
-void test_a_blocked_rotor_with_start_packets_but_no_ct_information_shows_as_no_data(void)
-{
-    begin_with(false, true);
-    sim_block_rotor(&world.sim, true);
-    reports(TMINI_FAULT_DATA);
-}
-
-void test_a_covered_window_is_reported_and_not_repaired(void)
-{
-    begin_with(true, true);
-    sim_cover_window(&world.sim, true);
-    reports(TMINI_FAULT_DATA);
-}
-
-void test_a_covered_window_of_a_unit_without_ct_information_is_reported_and_not_repaired(void)
-{
-    begin_with(false, true);
-    sim_cover_window(&world.sim, true);
-    reports(TMINI_FAULT_DATA);
+    run_rows(faults, is_reported_and_not_repaired);
 }
 
 void test_every_health_bit_is_reported(void)
