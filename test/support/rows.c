@@ -5,6 +5,9 @@
 
 #include "unity.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 static const row_t *current;
 static void (*run_row)(const row_t *row);
 
@@ -13,7 +16,6 @@ static void run_current(void)
     run_row(current);
 }
 
-/* Unity allows this if nothing is asserted afterwards. */
 void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row))
 {
     const char *const name = Unity.CurrentTestName;
@@ -26,4 +28,37 @@ void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row))
     }
     Unity.CurrentTestName = name;
     Unity.CurrentTestLineNumber = line;
+}
+
+/* The place after the ")" that belongs to a "(" before `text`. */
+static const char *end_of(const char *text)
+{
+    for (unsigned open = 1; open > 0; text++) {
+        TEST_ASSERT_NOT_EQUAL('\0', *text);
+        open += *text == '(' ? 1u : 0u;
+        open -= *text == ')' ? 1u : 0u;
+    }
+    return text;
+}
+
+/* Ends before a ")" that belongs to no "(". */
+void row_tell(const char *text, void (*tell)(char *word))
+{
+    for (text += strspn(text, " "); *text != '\0' && *text != ')'; text += strspn(text, " ")) {
+        const size_t length = strcspn(text, " ");
+        char word[ROW_WORD_MAX];
+
+        TEST_ASSERT_TRUE(length < sizeof word);
+        memcpy(word, text, length);
+        word[length] = '\0';
+        text += length;
+        if (word[length - 1] == '(') {
+            for (unsigned times = (unsigned)atoi(word); times > 0; times--) {
+                row_tell(text, tell);
+            }
+            text = end_of(text);
+        } else {
+            tell(word);
+        }
+    }
 }

@@ -9,17 +9,25 @@
 
 #include <stddef.h>
 
-/* `steps` is what the table's runner understands. */
+/* `steps` is what the table's runner understands; mostly words. */
 typedef struct {
     const char *name;
     unsigned line;
     const char *steps;
 } row_t;
 
-#define ROW(claim, steps) {"test_" #claim, __LINE__, steps}
+#define ROW(claim, steps)               \
+    {                                   \
+        "test_" #claim, __LINE__, steps \
+    }
 
 /* Runs each row by `run`. It must be the last statement of a test function. */
 #define run_rows(rows, run) rows_run(rows, sizeof(rows) / sizeof(rows)[0], run)
 void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row));
+
+/* Calls `tell` with each word of a text. Words are separated by spaces; those in "30( … )" come 30
+ * times. */
+#define ROW_WORD_MAX 40
+void row_tell(const char *text, void (*tell)(char *word));
 
 #endif

@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WORD_MAX 32
 #define SENT_MAX 16
 
 typedef struct {
@@ -77,7 +76,7 @@ static const struct {
 
 static struct {
     UNITY_LINE_TYPE line;
-    char word[WORD_MAX]; /* The one being told. */
+    char word[ROW_WORD_MAX]; /* The one being told. */
     uint8_t sent[SENT_MAX];
     unsigned sent_count;
     int takes;
@@ -88,7 +87,6 @@ static struct {
 } tale;
 
 static void tell_text(const char *text);
-static const char *repeat(const char *text, unsigned times);
 static void begin_again(void);
 
 static void fail(const char *why)
@@ -553,6 +551,7 @@ static void tell_sign(const char *word)
 static void tell_word(char *word)
 {
     const char *const at = strchr(word, ':');
+    memcpy(tale.word, word, strlen(word) + 1);
     if (strchr("><+~!@#?", word[0]) != NULL) {
         tell_sign(word);
     } else if (tell_beginning(word) || tell_means(word) ||
@@ -565,38 +564,9 @@ static void tell_word(char *word)
     }
 }
 
-/* The words before the next ")" or the end. */
 static void tell_text(const char *text)
 {
-    while (*text != '\0' && *text != ')') {
-        const size_t length = strcspn(text, " ");
-        char word[WORD_MAX];
-        TEST_ASSERT_TRUE(length < WORD_MAX);
-        memcpy(word, text, length);
-        word[length] = '\0';
-        text += length + strspn(text + length, " ");
-        if (length > 0 && word[length - 1] == '(') {
-            text = repeat(text, (unsigned)atoi(word));
-        } else if (length > 0) {
-            memcpy(tale.word, word, length + 1);
-            tell_word(word);
-        }
-    }
-}
-
-/* Returns what follows the ")". */
-static const char *repeat(const char *text, unsigned times)
-{
-    const char *end = text;
-    for (unsigned open = 1; open > 0; end++) {
-        TEST_ASSERT_NOT_EQUAL('\0', *end);
-        open += *end == '(' ? 1u : 0u;
-        open -= *end == ')' ? 1u : 0u;
-    }
-    for (; times > 0; times--) {
-        tell_text(text);
-    }
-    return end + strspn(end, " ");
+    row_tell(text, tell_word);
 }
 
 void tale_end(void)

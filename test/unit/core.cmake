@@ -5,7 +5,8 @@
 tmini_add_unit_test(test_names SOURCES test_names.c)
 tmini_add_unit_test(test_ring SOURCES test_ring.c)
 tmini_add_unit_test(test_frame SOURCES test_frame.c)
-tmini_add_unit_test(test_parser SOURCES test_parser.c LIBRARIES tmini_test_receiver)
+tmini_add_unit_test(test_parser SOURCES test_parser.c ../support/rows.c
+    LIBRARIES tmini_test_receiver)
 tmini_add_unit_test(test_packet SOURCES test_packet.c LIBRARIES tmini_test_receiver)
 tmini_add_unit_test(test_reply SOURCES test_reply.c)
 tmini_add_unit_test(test_ct SOURCES test_ct.c)

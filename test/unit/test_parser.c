@@ -6,10 +6,12 @@
 
 #include "known_packets.h"
 #include "receiver.h"
+#include "rows.h"
 #include "stream.h"
 
 #include "unity.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static uint8_t memory[1024];
@@ -75,6 +77,21 @@ static void expect_skipped(uint32_t count)
 static void expect_pending(size_t count)
 {
     TEST_ASSERT_EQUAL_UINT(count, tmini_parser_pending(&receiver.parser));
+}
+
+static void expect_reply(size_t offset, const uint8_t *reply, size_t content)
+{
+    uint8_t copy[21];
+    memset(copy, 0xEE, sizeof copy);
+    expect_frame(TMINI_FRAME_REPLY);
+    TEST_ASSERT_EQUAL_UINT(offset, receiver_frame_offset(&receiver));
+    (void)tmini_frame_content(tmini_parser_frame(&receiver.parser), copy, content);
+    if (content > 0) {
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(&reply[7], copy, content);
+    }
+    TEST_ASSERT_EQUAL_HEX8(0xEE, copy[content]);
+    TEST_ASSERT_EQUAL_UINT32(7 + content, receiver_counters(&receiver).bytes_in_replies);
+    expect_skipped((uint32_t)offset);
 }
 
 /* ---------------------------------------------------------------------------------------- init */
@@ -168,24 +185,6 @@ void test_refused_bytes_leave_a_gap_where_they_are_missing(void)
 
 /* ------------------------------------------------------------------------------------- packets */
 
-void test_the_manuals_packet_is_found(void)
-{
-    feed(manual_packet, 67);
-    expect_packet(19, 0);
-    TEST_ASSERT_EQUAL_UINT32(1, receiver_counters(&receiver).packets);
-    TEST_ASSERT_EQUAL_UINT32(67, receiver_counters(&receiver).bytes_in_packets);
-    TEST_ASSERT_EQUAL_UINT32(0, receiver_counters(&receiver).checksum_errors);
-    expect_skipped(0);
-    expect_pending(0);
-    expect_nothing();
-}
-
-void test_nothing_is_found_where_nothing_has_come(void)
-{
-    expect_nothing();
-    expect_pending(0);
-}
-
 void test_a_packet_is_delivered_with_its_last_byte_and_not_before(void)
 {
     for (size_t i = 0; i < 66; i++) {
@@ -218,119 +217,6 @@ void test_a_candidate_is_no_work_until_it_can_be_looked_at_further(void)
     TEST_ASSERT_EQUAL_UINT(13, moments[3]);
 }
 
-void test_a_byte_after_a_frame_is_work(void)
-{
-    feed(start_packet, sizeof start_packet);
-    expect_frame(TMINI_FRAME_PACKET);
-    expect_nothing();
-    TEST_ASSERT_FALSE(tmini_parser_has_work(&receiver.parser));
-    feed_byte(0xAA);
-    TEST_ASSERT_TRUE(tmini_parser_has_work(&receiver.parser));
-}
-
-void test_a_candidate_whose_rest_was_lost_is_work(void)
-{
-    feed(start_packet, 5);
-    expect_nothing();
-    TEST_ASSERT_FALSE(tmini_parser_has_work(&receiver.parser));
-    tmini_ring_gap(&receiver.ring);
-    TEST_ASSERT_TRUE(tmini_parser_has_work(&receiver.parser));
-}
-
-void test_packets_in_a_row_are_delivered_one_at_a_time(void)
-{
-    feed(start_packet, 13);
-    feed(manual_packet, 67);
-    feed(start_packet, 13);
-    expect_packet(1, 0);
-    expect_pending(80);
-    expect_packet(19, 13);
-    expect_pending(13);
-    expect_packet(1, 80);
-    expect_nothing();
-    TEST_ASSERT_EQUAL_UINT32(3, receiver_counters(&receiver).packets);
-    TEST_ASSERT_EQUAL_UINT32(93, receiver_counters(&receiver).bytes_in_packets);
-}
-
-void test_a_delivered_packet_keeps_its_place_until_the_next_call(void)
-{
-    feed(manual_packet, 67);
-    expect_packet(19, 0);
-    TEST_ASSERT_EQUAL_UINT(67, tmini_ring_unread(&receiver.ring));
-    TEST_ASSERT_EQUAL_UINT(189, receiver_room(&receiver));
-    expect_nothing();
-    TEST_ASSERT_EQUAL_UINT(256, receiver_room(&receiver));
-}
-
-void test_garbage_before_and_between_packets_is_skipped_and_counted(void)
-{
-    const uint8_t garbage[] = {0x00, 0x55, 0xAA, 0xA5, 0x5A, 0xAA, 0x54, 0x55, 0xFF};
-    feed(garbage, sizeof garbage);
-    feed(manual_packet, 67);
-    feed(garbage, sizeof garbage);
-    feed(manual_packet, 67);
-    expect_packet(19, 9);
-    expect_skipped(9);
-    expect_packet(19, 85);
-    expect_skipped(18);
-}
-
-void test_garbage_is_skipped_as_soon_as_it_cannot_begin_a_packet(void)
-{
-    const uint8_t garbage[] = {0x01, 0x55, 0x5A, 0xA5};
-    feed(garbage, sizeof garbage);
-    expect_nothing();
-    expect_skipped(4);
-    expect_pending(0);
-    feed_byte(0xAA);
-    expect_nothing();
-    expect_pending(1);
-    feed_byte(0x54);
-    expect_nothing();
-    expect_skipped(6);
-    expect_pending(0);
-}
-
-void test_garbage_after_a_packet_is_skipped_in_the_same_poll(void)
-{
-    feed(start_packet, 13);
-    expect_packet(1, 0);
-    feed_byte(0x00);
-    expect_nothing();
-    expect_skipped(1);
-    expect_pending(0);
-}
-
-void test_aa_before_a_packet_does_not_hide_it(void)
-{
-    feed_byte(0xAA);
-    feed_byte(0xAA);
-    feed(start_packet, 13);
-    expect_packet(1, 2);
-    expect_skipped(2);
-}
-
-void test_the_gap_before_a_packet_is_reported_with_its_last_byte(void)
-{
-    feed(start_packet, 13);
-    feed_byte(0x11);
-    feed_byte(0x22);
-    feed(start_packet, 13);
-    feed(start_packet, 13);
-    feed_byte(0xAA);
-    feed(start_packet, 13);
-    expect_packet(1, 0);
-    TEST_ASSERT_EQUAL_UINT16(0, receiver.packet.gap);
-    expect_packet(1, 15);
-    TEST_ASSERT_EQUAL_UINT16(2, receiver.packet.gap);
-    TEST_ASSERT_EQUAL_HEX8(0x22, receiver.packet.frame->last_skipped);
-    expect_packet(1, 28);
-    TEST_ASSERT_EQUAL_UINT16(0, receiver.packet.gap);
-    expect_packet(1, 42);
-    TEST_ASSERT_EQUAL_UINT16(1, receiver.packet.gap);
-    TEST_ASSERT_EQUAL_HEX8(0xAA, receiver.packet.frame->last_skipped);
-}
-
 /* Feeds garbage in pieces that fit into the ring together with an earlier frame. */
 static void skip_garbage(uint32_t count)
 {
@@ -357,17 +243,6 @@ void test_a_gap_is_counted_up_to_65535(void)
     skip_garbage(65537);
     feed(start_packet, 13);
     expect_packet_after_gap(65535);
-}
-
-void test_a_reply_ends_a_gap_too(void)
-{
-    receiver_await(&receiver, 1, 0x81, 0);
-    feed_byte(0x77);
-    feed(start_reply, 7);
-    feed(start_packet, 13);
-    expect_frame(TMINI_FRAME_REPLY);
-    expect_packet(1, 8);
-    TEST_ASSERT_EQUAL_UINT16(0, receiver.packet.gap);
 }
 
 /* -------------------------------------------------------------------------- invalid packets */
@@ -703,37 +578,6 @@ void test_the_same_frames_are_found_while_the_rings_indices_wrap(void)
 
 /* ------------------------------------------------------------------------------------- replies */
 
-static void expect_reply(size_t offset, const uint8_t *reply, size_t content)
-{
-    uint8_t copy[21];
-    memset(copy, 0xEE, sizeof copy);
-    expect_frame(TMINI_FRAME_REPLY);
-    TEST_ASSERT_EQUAL_UINT(offset, receiver_frame_offset(&receiver));
-    (void)tmini_frame_content(tmini_parser_frame(&receiver.parser), copy, content);
-    if (content > 0) {
-        TEST_ASSERT_EQUAL_HEX8_ARRAY(&reply[7], copy, content);
-    }
-    TEST_ASSERT_EQUAL_HEX8(0xEE, copy[content]);
-    TEST_ASSERT_EQUAL_UINT32(7 + content, receiver_counters(&receiver).bytes_in_replies);
-    expect_skipped((uint32_t)offset);
-}
-
-void test_an_awaited_start_reply_is_found_and_the_packets_after_it(void)
-{
-    receiver_await(&receiver, 1, 0x81, 0);
-    feed(start_reply, 7);
-    feed(start_packet, 13);
-    expect_reply(0, start_reply, 0);
-    expect_packet(1, 7);
-}
-
-void test_an_awaited_device_information_is_found(void)
-{
-    receiver_await(&receiver, 0, 0x04, 20);
-    feed(info_reply, 27);
-    expect_reply(0, info_reply, 20);
-}
-
 void test_a_reply_is_delivered_with_its_last_byte_and_not_before(void)
 {
     receiver_await(&receiver, 0, 0x04, 20);
@@ -747,17 +591,6 @@ void test_a_reply_is_delivered_with_its_last_byte_and_not_before(void)
     expect_pending(0);
 }
 
-void test_a_reply_is_found_after_garbage_and_half_a_start_sign(void)
-{
-    receiver_await(&receiver, 0, 0x06, 3);
-    feed_byte(0x5A);
-    feed_byte(0xA5);
-    feed_byte(0x00);
-    feed_byte(0xA5);
-    feed(health_reply, 10);
-    expect_reply(4, health_reply, 3);
-}
-
 void test_a_reply_lies_anywhere_in_the_ring(void)
 {
     for (size_t start = 220; start <= 256; start++) {
@@ -769,53 +602,11 @@ void test_a_reply_lies_anywhere_in_the_ring(void)
     }
 }
 
-void test_packets_are_found_while_a_reply_is_awaited(void)
-{
-    receiver_await(&receiver, 0, 0x06, 3);
-    feed(start_packet, 13);
-    feed(manual_packet, 67);
-    feed(health_reply, 10);
-    expect_packet(1, 0);
-    expect_packet(19, 13);
-    expect_frame(TMINI_FRAME_REPLY);
-    expect_skipped(0);
-}
-
 static void expect_no_reply(const uint8_t *reply, size_t size)
 {
     feed(reply, size);
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, receiver_next_at_end(&receiver));
     TEST_ASSERT_EQUAL_UINT32(0, receiver_counters(&receiver).bytes_in_replies);
-}
-
-void test_a_reply_that_is_not_awaited_is_skipped_at_once(void)
-{
-    feed(frequency_reply, 11);
-    expect_nothing();
-    expect_skipped(11);
-}
-
-void test_a_reply_of_another_type_is_not_taken(void)
-{
-    receiver_await(&receiver, 0, 0x06, 4);
-    expect_no_reply(frequency_reply, 11);
-}
-
-void test_a_reply_of_another_length_is_not_taken(void)
-{
-    receiver_await(&receiver, 0, 0x04, 20);
-    expect_no_reply(frequency_reply, 11);
-    receiver_await(&receiver, 0, 0x04, 4);
-    expect_no_reply(info_reply, 27);
-}
-
-void test_a_reply_of_another_mode_is_not_taken(void)
-{
-    receiver_await(&receiver, 1, 0x04, 0);
-    expect_no_reply(frequency_reply, 11);
-    receiver_await(&receiver, 0, 0x81, 5);
-    feed(start_reply, 7);
-    expect_no_reply(start_packet, 5);
 }
 
 void test_every_bit_of_the_length_is_compared(void)
@@ -829,133 +620,6 @@ void test_every_bit_of_the_length_is_compared(void)
     }
 }
 
-void test_undefined_modes_are_not_taken(void)
-{
-    receiver_await(&receiver, 0, 0x06, 3);
-    memcpy(bytes, health_reply, 10);
-    bytes[5] = 0x80;
-    expect_no_reply(bytes, 10);
-    bytes[5] = 0xC0;
-    expect_no_reply(bytes, 10);
-}
-
-void test_both_bytes_of_the_sign_are_compared(void)
-{
-    receiver_await(&receiver, 0, 0x06, 3);
-    memcpy(bytes, health_reply, 10);
-    bytes[0] = 0xAA;
-    expect_no_reply(bytes, 10);
-    bytes[0] = 0xA5;
-    bytes[1] = 0x55;
-    expect_no_reply(bytes, 10);
-}
-
-void test_the_length_of_a_continuous_reply_is_ignored(void)
-{
-    static const uint8_t lengths[][4] = {
-        {0, 0, 0, 0x40}, {5, 0, 0, 0x40}, {0xFF, 0xFF, 0xFF, 0x7F}};
-    for (size_t i = 0; i < 3; i++) {
-        receiver_open(&receiver, memory, 256, 0);
-        receiver_await(&receiver, 1, 0x81, 0);
-        memcpy(bytes, start_reply, 7);
-        memcpy(&bytes[2], lengths[i], 4);
-        feed(bytes, 7);
-        feed(start_packet, 13);
-        expect_reply(0, bytes, 0);
-        expect_packet(1, 7);
-    }
-}
-
-void test_a_delivered_reply_ends_the_waiting(void)
-{
-    receiver_await(&receiver, 0, 0x06, 3);
-    feed(health_reply, 10);
-    feed(health_reply, 10);
-    expect_frame(TMINI_FRAME_REPLY);
-    expect_nothing();
-    expect_skipped(10);
-}
-
-void test_a_reply_can_be_awaited_again(void)
-{
-    receiver_await(&receiver, 0, 0x06, 3);
-    feed(health_reply, 10);
-    expect_frame(TMINI_FRAME_REPLY);
-    receiver_await(&receiver, 0, 0x04, 4);
-    feed(frequency_reply, 11);
-    expect_frame(TMINI_FRAME_REPLY);
-    TEST_ASSERT_EQUAL_UINT32(21, receiver_counters(&receiver).bytes_in_replies);
-    expect_skipped(0);
-}
-
-void test_the_reply_delivered_last_can_be_awaited_again_without_its_header(void)
-{
-    receiver_await(&receiver, 0, 0x06, 3);
-    feed(health_reply, 10);
-    feed(health_reply, 10);
-    feed(health_reply, 10);
-    expect_frame(TMINI_FRAME_REPLY);
-    tmini_parser_await_again(&receiver.parser);
-    expect_frame(TMINI_FRAME_REPLY);
-    expect_nothing();
-    expect_skipped(10);
-}
-
-void test_a_reply_that_comes_after_the_waiting_is_skipped(void)
-{
-    receiver_await(&receiver, 0, 0x06, 3);
-    tmini_parser_await(&receiver.parser, NULL);
-    feed(health_reply, 10);
-    expect_nothing();
-    expect_skipped(10);
-}
-
-void test_when_the_waiting_ends_a_part_of_the_reply_is_looked_at_again(void)
-{
-    receiver_await(&receiver, 0, 0x04, 20);
-    feed(info_reply, 12);
-    feed(start_packet, 13); /* The reply was cut off. */
-    expect_nothing();
-    expect_pending(25);
-    tmini_parser_await(&receiver.parser, NULL);
-    expect_packet(1, 12);
-    expect_skipped(12);
-}
-
-void test_another_reply_awaited_meanwhile_is_found_in_what_is_pending(void)
-{
-    receiver_await(&receiver, 0, 0x04, 20);
-    feed(info_reply, 10);
-    feed(health_reply, 10);
-    expect_nothing();
-    receiver_await(&receiver, 0, 0x06, 3);
-    expect_reply(10, health_reply, 3);
-}
-
-void test_when_the_waiting_ends_a_lone_first_byte_of_a_reply_is_skipped(void)
-{
-    receiver_await(&receiver, 0, 0x04, 20);
-    feed_byte(0xA5);
-    expect_nothing();
-    expect_pending(1);
-    tmini_parser_await(&receiver.parser, NULL);
-    expect_nothing();
-    expect_skipped(1);
-    expect_pending(0);
-}
-
-void test_waiting_for_a_reply_takes_nothing_from_an_empty_ring(void)
-{
-    receiver_await(&receiver, 0, 0x04, 20);
-    expect_nothing();
-    tmini_parser_await(&receiver.parser, NULL);
-    expect_nothing();
-    expect_skipped(0);
-    expect_pending(0);
-    feed(start_packet, 13);
-    expect_packet(1, 0);
-}
-
 void test_an_awaited_shape_is_copied(void)
 {
     tmini_reply_header_t shape = {.type = 0x06, .mode = 0, .length = 3};
@@ -963,13 +627,6 @@ void test_an_awaited_shape_is_copied(void)
     shape.type = 0x04;
     feed(health_reply, 10);
     expect_frame(TMINI_FRAME_REPLY);
-}
-
-void test_a_packet_inside_a_reply_that_is_not_awaited_is_found(void)
-{
-    feed(info_reply, 7);
-    feed(start_packet, 13);
-    expect_packet(1, 7);
 }
 
 void test_a_packet_inside_an_awaited_reply_is_its_content(void)
@@ -983,38 +640,6 @@ void test_a_packet_inside_an_awaited_reply_is_its_content(void)
 }
 
 /* ------------------------------------------------------------------------------------- abandon */
-
-void test_an_abandoned_candidate_costs_the_bytes_before_the_next_one(void)
-{
-    feed(manual_packet, 66);
-    expect_nothing();
-    receiver_abandon(&receiver);
-    expect_skipped(30); /* The AA at this place may begin another candidate. */
-    expect_pending(36);
-    expect_nothing();
-    expect_skipped(66); /* That AA did not begin a packet. */
-    expect_pending(0);
-}
-
-void test_what_an_abandoned_candidate_hid_is_found(void)
-{
-    feed(manual_packet, 20);
-    feed(start_packet, 13);
-    expect_nothing();
-    receiver_abandon(&receiver);
-    expect_packet(1, 20);
-    expect_skipped(20);
-}
-
-void test_an_abandoned_reply_is_searched_too(void)
-{
-    receiver_await(&receiver, 0, 0x04, 20);
-    feed(info_reply, 9);
-    feed(start_packet, 13);
-    expect_nothing();
-    receiver_abandon(&receiver);
-    expect_packet(1, 9);
-}
 
 /* The header is that of a packet of 100 samples, 310 bytes. */
 static void feed_256_bytes_of_310(void)
@@ -1037,129 +662,6 @@ void test_a_candidate_of_256_bytes_can_be_abandoned_or_cut_off_by_a_gap(void)
     tmini_ring_gap(&receiver.ring);
     expect_nothing();
     expect_skipped(256);
-}
-
-void test_a_lone_first_byte_can_be_abandoned(void)
-{
-    feed_byte(0xAA);
-    expect_nothing();
-    receiver_abandon(&receiver);
-    expect_skipped(1);
-    expect_pending(0);
-}
-
-void test_without_a_candidate_there_is_nothing_to_abandon(void)
-{
-    receiver_abandon(&receiver);
-    expect_skipped(0);
-    feed(start_packet, 13);
-    expect_packet(1, 0);
-    receiver_abandon(&receiver);
-    TEST_ASSERT_EQUAL_UINT(13, tmini_ring_unread(&receiver.ring));
-    expect_skipped(0);
-}
-
-void test_a_candidate_that_has_become_complete_is_not_abandoned(void)
-{
-    feed(start_packet, 12);
-    expect_nothing();
-    feed(&start_packet[12], 1);
-    receiver_abandon(&receiver);
-    expect_packet(1, 0);
-}
-
-void test_bytes_that_have_not_been_looked_at_are_not_abandoned(void)
-{
-    feed(start_packet, 1);
-    receiver_abandon(&receiver);
-    expect_skipped(0);
-    feed(&start_packet[1], 12);
-    expect_packet(1, 0);
-}
-
-/* ------------------------------------------------------------------------ a ring that overflows */
-
-void test_refused_bytes_are_counted_as_overrun(void)
-{
-    memset(bytes, 0, 300);
-    feed(bytes, 300);
-    expect_nothing();
-    TEST_ASSERT_EQUAL_UINT32(44, receiver_counters(&receiver).bytes_overrun);
-    expect_skipped(256);
-    feed(bytes, 260);
-    expect_nothing();
-    TEST_ASSERT_EQUAL_UINT32(48, receiver_counters(&receiver).bytes_overrun);
-}
-
-/* The ring overflows, one packet is read, and it overflows again before the rest has been read. */
-void test_each_of_several_overflows_leaves_its_gap_where_it_was(void)
-{
-    memset(bytes, 0, 300);
-    for (unsigned i = 0; i < 3; i++) {
-        feed(start_packet, 13);
-        feed(start_packet, 13);
-        feed(bytes, 231); /* One byte is refused. */
-        expect_frame(TMINI_FRAME_PACKET);
-        TEST_ASSERT_EQUAL_UINT16(i == 0 ? 0 : 65535, receiver.packet.gap);
-        feed(start_packet, 13); /* Refused: there is room, but bytes are missing before it. */
-        expect_packet_after_gap(0);
-        expect_nothing();
-        TEST_ASSERT_EQUAL_UINT32(14 * (i + 1), receiver_counters(&receiver).bytes_overrun);
-    }
-}
-
-/* The bytes before the gap and those after it would form a packet. */
-void test_no_packet_spans_a_gap(void)
-{
-    feed(manual_packet, 40);
-    expect_nothing();
-    tmini_ring_gap(&receiver.ring);
-    expect_nothing();
-    expect_skipped(40);
-    feed(&manual_packet[40], 27);
-    expect_nothing();
-    expect_skipped(67);
-    feed(start_packet, 13);
-    expect_packet_after_gap(65535);
-}
-
-void test_refused_bytes_leave_a_gap_after_the_packets_that_came_before_them(void)
-{
-    receiver_open(&receiver, memory, 256, 82);
-    (void)stream_add_packet(&stream, 0, 82, 0, 5000); /* Fills the ring. */
-    feed(bytes, 256);
-    feed_byte(0);
-    expect_packet_after_gap(0);
-    expect_nothing();
-    feed(start_packet, 13);
-    expect_packet_after_gap(65535);
-}
-
-void test_packets_before_and_after_an_overflow_are_found(void)
-{
-    for (unsigned i = 0; i < 4; i++) {
-        feed(manual_packet, 67); /* 268 bytes: the last one is cut. */
-    }
-    expect_packet(19, 12); /* The offset counts refused bytes. */
-    expect_packet(19, 79);
-    expect_packet(19, 146);
-    expect_nothing();
-    feed(start_packet, 13);
-    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
-    TEST_ASSERT_EQUAL_UINT8(1, receiver.packet.count);
-    TEST_ASSERT_EQUAL_UINT32(12, receiver_counters(&receiver).bytes_overrun);
-    expect_skipped(55);
-}
-
-void test_bytes_refused_while_a_packet_is_read_leave_it_intact(void)
-{
-    feed(manual_packet, 67);
-    expect_packet(19, 0);
-    memset(bytes, 0x11, 300);
-    feed(bytes, 300);
-    TEST_ASSERT_TRUE(tmini_frame_intact(tmini_parser_frame(&receiver.parser)));
-    expect_nothing();
-    TEST_ASSERT_EQUAL_UINT32(111, receiver_counters(&receiver).bytes_overrun);
 }
 
 /* ----------------------------------------------------------------------------------------- DMA */
@@ -1191,127 +693,6 @@ void test_a_dma_ring_gives_the_same_frames_while_its_indices_wrap(void)
     }
 }
 
-void test_a_dma_ring_may_hold_half_its_size(void)
-{
-    open_dma();
-    memset(bytes, 0, 256);
-    memcpy(bytes, start_packet, 13);
-    memcpy(&bytes[243], start_packet, 13);
-    feed(bytes, 256);
-    expect_packet(1, 0);
-    expect_packet(1, 243);
-    TEST_ASSERT_EQUAL_UINT32(0, receiver_counters(&receiver).bytes_overrun);
-}
-
-void test_what_dma_may_have_overwritten_is_dropped_and_counted(void)
-{
-    open_dma();
-    memset(bytes, 0, 257);
-    memcpy(bytes, start_packet, 13);
-    memcpy(&bytes[244], start_packet, 13);
-    feed(bytes, 257); /* One more than half: the first packet's first byte is not trusted. */
-    expect_packet(1, 244);
-    TEST_ASSERT_EQUAL_UINT32(1, receiver_counters(&receiver).bytes_overrun);
-    expect_skipped(243);
-}
-
-void test_overruns_of_dma_add_up(void)
-{
-    open_dma();
-    memset(bytes, 0, 300);
-    feed(bytes, 300);
-    expect_nothing();
-    TEST_ASSERT_EQUAL_UINT32(44, receiver_counters(&receiver).bytes_overrun);
-    feed(bytes, 260);
-    expect_nothing();
-    TEST_ASSERT_EQUAL_UINT32(48, receiver_counters(&receiver).bytes_overrun);
-}
-
-void test_an_overrun_of_dma_is_a_gap_of_65535(void)
-{
-    open_dma();
-    feed(start_packet, 13);
-    expect_packet(1, 0);
-    memset(bytes, 0, 300);
-    memcpy(&bytes[44], start_packet, 13); /* Right after the lost bytes. */
-    feed(bytes, 300);
-    expect_packet(1, 57);
-    TEST_ASSERT_EQUAL_UINT16(65535, receiver.packet.gap);
-    TEST_ASSERT_EQUAL_UINT32(44, receiver_counters(&receiver).bytes_overrun);
-    feed(start_packet, 13);
-    expect_packet(1, 313);
-    TEST_ASSERT_EQUAL_UINT16(243, receiver.packet.gap);
-}
-
-void test_a_candidate_that_dma_overran_is_forgotten(void)
-{
-    open_dma();
-    feed(manual_packet, 60);
-    expect_nothing();
-    memset(bytes, 0, 230);
-    memcpy(&bytes[0], start_packet, 13); /* At 60, inside the candidate. */
-    feed(bytes, 230);                    /* 34 bytes are lost. */
-    expect_packet(1, 60);
-    TEST_ASSERT_EQUAL_UINT32(34, receiver_counters(&receiver).bytes_overrun);
-    TEST_ASSERT_EQUAL_UINT32(0, receiver_counters(&receiver).checksum_errors);
-    expect_skipped(26);
-}
-
-void test_many_laps_of_dma_are_counted_and_survived(void)
-{
-    open_dma();
-    memset(bytes, 0, 900);
-    feed(bytes, 900);
-    feed(bytes, 900);
-    feed(start_packet, 13);
-    expect_packet(1, 1800);
-    TEST_ASSERT_EQUAL_UINT32(1557, receiver_counters(&receiver).bytes_overrun);
-    expect_skipped(243);
-}
-
-/* The ring counts a lap, as if 512 bytes had come. */
-static void lap_was_perhaps_missed(void)
-{
-    tmini_ring_gap(&receiver.ring);
-    receiver.received += 512;
-}
-
-void test_after_a_lap_reported_by_mistake_nothing_is_found_twice(void)
-{
-    open_dma();
-    feed(start_packet, 13);
-    expect_packet(1, 0);
-    lap_was_perhaps_missed();
-    expect_nothing();
-    TEST_ASSERT_EQUAL_UINT32(512, receiver_counters(&receiver).bytes_overrun);
-    memset(bytes, 0, 300);
-    memcpy(bytes, start_packet, 13);
-    memcpy(&bytes[187], start_packet, 13);
-    feed(bytes, 201);
-    lap_was_perhaps_missed();
-    expect_packet(1, 1024 + 13);
-    TEST_ASSERT_EQUAL_UINT16(65535, receiver.packet.gap);
-    expect_packet(1, 1024 + 13 + 187);
-    TEST_ASSERT_EQUAL_UINT32(1024, receiver_counters(&receiver).bytes_overrun);
-}
-
-void test_a_packet_that_dma_overwrites_while_it_is_read_is_not_intact(void)
-{
-    open_dma();
-    feed(manual_packet, 67);
-    expect_packet(19, 0);
-    TEST_ASSERT_TRUE(tmini_frame_intact(tmini_parser_frame(&receiver.parser)));
-    memset(bytes, 0, 190);
-    feed(bytes, 189);
-    TEST_ASSERT_TRUE(tmini_frame_intact(tmini_parser_frame(&receiver.parser)));
-    feed(bytes, 1);
-    TEST_ASSERT_FALSE(tmini_frame_intact(tmini_parser_frame(&receiver.parser)));
-    expect_nothing();
-    TEST_ASSERT_EQUAL_UINT32(
-        0, receiver_counters(&receiver).bytes_overrun); /* Nothing undelivered was lost. */
-    expect_skipped(190);
-}
-
 /* ------------------------------------------------------------------------------------ counters */
 
 void test_counters_wrap_around_modulo_2_to_the_32(void)
@@ -1325,8 +706,6 @@ void test_counters_wrap_around_modulo_2_to_the_32(void)
     TEST_ASSERT_EQUAL_UINT32(2, receiver_counters(&receiver).bytes_in_packets);
 }
 
-/* -------------------------------------------------------------------------- replies, skipping */
-
 void test_a_reply_longer_than_the_ring_is_not_awaited(void)
 {
     const tmini_reply_header_t header = {.type = 0x04, .mode = 0, .length = 250};
@@ -1339,29 +718,286 @@ void test_a_reply_longer_than_the_ring_is_not_awaited(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_parser_await(&receiver.parser, &longest));
 }
 
-void test_skipping_drops_all_unread_bytes(void)
+/* ---------------------------------------------------------------------------------------- rows */
+
+#ifndef __AVR__ /* Its RAM is too small for the text. */
+
+/* Words of the rows below:
+ *
+ *     <start <manual <info <health <frequency <scan    these bytes come; <manual:40: the first 40;
+ *                     <manual+40: what follows them
+ *     <x:AA55 <zeros:300      these bytes
+ *     !19@0           the next frame is a packet of 19 samples, which began at this offset
+ *     !health@4       the next frame is this reply; so many bytes before it have been skipped
+ *     !none           there is no frame; !end: nor will there be, if no more bytes come
+ *     await:0:06:3    a reply of this mode, type and length is awaited; await:none
+ *     skipped:9 pending:0 …   see number_named() */
+
+static const struct {
+    const char *name;
+    const uint8_t *bytes;
+    size_t size;
+} sources[] = {
+    {"start", start_packet, sizeof start_packet},
+    {"manual", manual_packet, sizeof manual_packet},
+    {"info", info_reply, sizeof info_reply},
+    {"health", health_reply, sizeof health_reply},
+    {"frequency", frequency_reply, sizeof frequency_reply},
+    {"scan", start_reply, sizeof start_reply},
+};
+
+static unsigned source_named(const char *word)
 {
-    feed(start_packet, 13);
-    feed_byte(0x22);
-    tmini_parser_skip_all(&receiver.parser);
-    expect_skipped(14);
-    expect_pending(0);
-    TEST_ASSERT_EQUAL_HEX8(0x22, tmini_parser_frame(&receiver.parser)->last_skipped);
-    feed(manual_packet, 67);
-    expect_packet(19, 14);
-    TEST_ASSERT_EQUAL_UINT16(14, receiver.packet.gap);
-    feed_byte(0xAA);
-    tmini_parser_skip_all(&receiver.parser);
-    expect_pending(0);
+    const size_t length = strcspn(word, ":+@");
+    unsigned i = 0;
+    while (strncmp(sources[i].name, word, length) != 0 || sources[i].name[length] != '\0') {
+        i++;
+        TEST_ASSERT_TRUE_MESSAGE(i < sizeof sources / sizeof sources[0], word);
+    }
+    return i;
 }
 
-void test_a_frame_delivered_is_not_skipped(void)
+static void tell_feed(const char *word)
 {
-    feed(manual_packet, 67);
-    expect_packet(19, 0);
-    tmini_parser_skip_all(&receiver.parser);
-    expect_skipped(0);
-    expect_nothing();
+    const char *const at = word + strcspn(word, ":+");
+    const size_t number = at[0] != '\0' ? (size_t)strtoul(at + 1, NULL, 10) : 0;
+    if (strncmp(word, "x:", 2) == 0) {
+        for (const char *digits = at + 1; digits[0] != '\0'; digits += 2) {
+            const char pair[3] = {digits[0], digits[1], '\0'};
+            feed_byte((uint8_t)strtoul(pair, NULL, 16));
+        }
+    } else if (strncmp(word, "zeros:", 6) == 0) {
+        memset(bytes, 0, number);
+        feed(bytes, number);
+    } else {
+        const unsigned i = source_named(word);
+        const size_t from = at[0] == '+' ? number : 0;
+        feed(sources[i].bytes + from, (at[0] == ':' ? number : sources[i].size) - from);
+    }
+}
+
+static void tell_frame(const char *word)
+{
+    const char *const at = strchr(word, '@');
+    const size_t offset = at != NULL ? (size_t)strtoul(at + 1, NULL, 10) : 0;
+    if (strcmp(word, "none") == 0) {
+        expect_nothing();
+    } else if (strcmp(word, "end") == 0) {
+        TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, receiver_next_at_end(&receiver));
+    } else if (strcmp(word, "reply") == 0) {
+        expect_frame(TMINI_FRAME_REPLY);
+    } else if (at == NULL) {
+        expect_frame(TMINI_FRAME_PACKET);
+        TEST_ASSERT_EQUAL_UINT8(strtoul(word, NULL, 10), receiver.packet.count);
+    } else if (word[0] >= '0' && word[0] <= '9') {
+        expect_packet((uint8_t)strtoul(word, NULL, 10), offset);
+    } else {
+        const unsigned i = source_named(word);
+        const bool is_continuous = sources[i].bytes == start_reply;
+        expect_reply(offset, sources[i].bytes, is_continuous ? 0 : sources[i].size - 7);
+    }
+}
+
+static void tell_await(const char *word)
+{
+    char *rest;
+    if (strcmp(word, "none") == 0) {
+        (void)tmini_parser_await(&receiver.parser, NULL);
+        return;
+    }
+    const unsigned long mode = strtoul(word, &rest, 10);
+    const unsigned long type = strtoul(rest + 1, &rest, 16);
+    receiver_await(&receiver, (uint8_t)mode, (uint8_t)type, (uint8_t)strtoul(rest + 1, NULL, 10));
+}
+
+static size_t number_named(const char *word)
+{
+    const tmini_parser_counters_t counters = receiver_counters(&receiver);
+    const tmini_frame_t *const frame = tmini_parser_frame(&receiver.parser);
+    const struct {
+        const char *name;
+        size_t number;
+    } numbers[] = {
+        {"skipped:", counters.bytes_skipped},
+        {"pending:", tmini_parser_pending(&receiver.parser)},
+        {"packets:", counters.packets},
+        {"in-packets:", counters.bytes_in_packets},
+        {"in-replies:", counters.bytes_in_replies},
+        {"errors:", counters.checksum_errors},
+        {"overrun:", counters.bytes_overrun},
+        {"unread:", tmini_ring_unread(&receiver.ring)},
+        {"room:", receiver_room(&receiver)},
+        {"work:", tmini_parser_has_work(&receiver.parser)},
+        {"intact:", tmini_frame_intact(frame)},
+        {"gap:", receiver.packet.gap},
+        {"last:", frame->last_skipped},
+    };
+    unsigned i = 0;
+    while (strncmp(numbers[i].name, word, strlen(numbers[i].name)) != 0) {
+        i++;
+        TEST_ASSERT_TRUE_MESSAGE(i < sizeof numbers / sizeof numbers[0], word);
+    }
+    return numbers[i].number;
+}
+
+static void tell_word(char *word)
+{
+    if (word[0] == '<') {
+        tell_feed(word + 1);
+    } else if (word[0] == '!') {
+        tell_frame(word + 1);
+    } else if (strcmp(word, "dma") == 0) {
+        receiver_open_dma(&receiver, memory, 512, 0);
+    } else if (strcmp(word, "lap") == 0) { /* Was perhaps missed; it counts 512 bytes. */
+        tmini_ring_gap(&receiver.ring);
+        receiver.received += 512;
+    } else if (strcmp(word, "gap") == 0) {
+        tmini_ring_gap(&receiver.ring);
+    } else if (strcmp(word, "abandon") == 0) {
+        receiver_abandon(&receiver);
+    } else if (strcmp(word, "skip-all") == 0) {
+        tmini_parser_skip_all(&receiver.parser);
+    } else if (strcmp(word, "await-again") == 0) {
+        tmini_parser_await_again(&receiver.parser);
+    } else if (strncmp(word, "await:", 6) == 0) {
+        tell_await(word + 6);
+    } else {
+        TEST_ASSERT_EQUAL_UINT_MESSAGE(strtoul(strchr(word, ':') + 1, NULL, 0), number_named(word),
+                                       word);
+    }
+}
+
+static void tell_row(const row_t *row)
+{
+    row_tell(row->steps, tell_word);
+}
+
+#define GARBAGE "<x:0055AAA55AAA5455FF "
+#define AWAIT_INFO "await:0:04:20 "
+#define AWAIT_HEALTH "await:0:06:3 "
+#define AWAIT_FREQUENCY "await:0:04:4 "
+#define AWAIT_SCAN "await:1:81:0 "
+#define NO_REPLY "!end in-replies:0 "
+
+static const row_t rows[] = {
+    /* ---- Packets ---- */
+    ROW(the_manuals_packet_is_found,
+        "<manual !19@0 packets:1 in-packets:67 errors:0 skipped:0 pending:0 !none"),
+    ROW(nothing_is_found_where_nothing_has_come, "!none pending:0"),
+    ROW(a_byte_after_a_frame_is_work, "<start !1@0 !none work:0 <x:AA work:1"),
+    ROW(a_candidate_whose_rest_was_lost_is_work, "<start:5 !none work:0 gap work:1"),
+    ROW(packets_in_a_row_are_delivered_one_at_a_time,
+        "<start <manual <start !1@0 pending:80 !19@13 pending:13 !1@80 !none packets:3 "
+        "in-packets:93"),
+    ROW(a_delivered_packet_keeps_its_place_until_the_next_call,
+        "<manual !19@0 unread:67 room:189 !none room:256"),
+    ROW(garbage_before_and_between_packets_is_skipped_and_counted,
+        GARBAGE "<manual " GARBAGE "<manual !19@9 skipped:9 !19@85 skipped:18"),
+    ROW(garbage_is_skipped_as_soon_as_it_cannot_begin_a_packet,
+        "<x:01555AA5 !none skipped:4 pending:0 <x:AA !none pending:1 <x:54 !none skipped:6 "
+        "pending:0"),
+    ROW(garbage_after_a_packet_is_skipped_in_the_same_poll,
+        "<start !1@0 <x:00 !none skipped:1 pending:0"),
+    ROW(aa_before_a_packet_does_not_hide_it, "<x:AAAA <start !1@2 skipped:2"),
+    ROW(the_gap_before_a_packet_is_reported_with_its_last_byte,
+        "<start <x:1122 <start <start <x:AA <start !1@0 gap:0 !1@15 gap:2 last:0x22 !1@28 gap:0 "
+        "!1@42 gap:1 last:0xAA"),
+    ROW(a_reply_ends_a_gap_too, AWAIT_SCAN "<x:77 <scan <start !reply !1@8 gap:0"),
+    /* ---- Replies ---- */
+    ROW(an_awaited_start_reply_is_found_and_the_packets_after_it,
+        AWAIT_SCAN "<scan <start !scan@0 !1@7"),
+    ROW(an_awaited_device_information_is_found, AWAIT_INFO "<info !info@0"),
+    ROW(a_reply_is_found_after_garbage_and_half_a_start_sign,
+        AWAIT_HEALTH "<x:5AA500A5 <health !health@4"),
+    ROW(packets_are_found_while_a_reply_is_awaited,
+        AWAIT_HEALTH "<start <manual <health !1@0 !19@13 !reply skipped:0"),
+    ROW(a_reply_that_is_not_awaited_is_skipped_at_once, "<frequency !none skipped:11"),
+    ROW(a_reply_of_another_type_is_not_taken, "await:0:06:4 <frequency " NO_REPLY),
+    ROW(a_reply_of_another_length_is_not_taken,
+        AWAIT_INFO "<frequency " NO_REPLY AWAIT_FREQUENCY "<info " NO_REPLY),
+    ROW(a_reply_of_another_mode_is_not_taken,
+        "await:1:04:0 <frequency " NO_REPLY "await:0:81:5 <scan <start:5 " NO_REPLY),
+    ROW(undefined_modes_are_not_taken,
+        AWAIT_HEALTH "<x:A55A0300008006201122 " NO_REPLY "<x:A55A030000C006201122 " NO_REPLY),
+    ROW(both_bytes_of_the_sign_are_compared,
+        AWAIT_HEALTH "<x:AA5A0300000006201122 " NO_REPLY "<x:A5550300000006201122 " NO_REPLY),
+    ROW(the_length_of_a_continuous_reply_is_ignored,
+        AWAIT_SCAN "<x:A55A0000004081 <start !reply !1@7 " AWAIT_SCAN
+                   "<x:A55AFFFFFF7F81 <start !reply !1@27 skipped:0"),
+    ROW(a_delivered_reply_ends_the_waiting, AWAIT_HEALTH "<health <health !reply !none skipped:10"),
+    ROW(a_reply_can_be_awaited_again,
+        AWAIT_HEALTH "<health !reply " AWAIT_FREQUENCY "<frequency !reply in-replies:21 skipped:0"),
+    ROW(the_reply_delivered_last_can_be_awaited_again_without_its_header,
+        AWAIT_HEALTH "3( <health ) !reply await-again !reply !none skipped:10"),
+    ROW(a_reply_that_comes_after_the_waiting_is_skipped,
+        AWAIT_HEALTH "await:none <health !none skipped:10"),
+    ROW(when_the_waiting_ends_a_part_of_the_reply_is_looked_at_again, /* It was cut off. */
+        AWAIT_INFO "<info:12 <start !none pending:25 await:none !1@12 skipped:12"),
+    ROW(another_reply_awaited_meanwhile_is_found_in_what_is_pending,
+        AWAIT_INFO "<info:10 <health !none " AWAIT_HEALTH "!health@10"),
+    ROW(when_the_waiting_ends_a_lone_first_byte_of_a_reply_is_skipped,
+        AWAIT_INFO "<x:A5 !none pending:1 await:none !none skipped:1 pending:0"),
+    ROW(waiting_for_a_reply_takes_nothing_from_an_empty_ring,
+        AWAIT_INFO "!none await:none !none skipped:0 pending:0 <start !1@0"),
+    ROW(a_packet_inside_a_reply_that_is_not_awaited_is_found, "<info:7 <start !1@7"),
+    /* ---- Candidates that are abandoned ---- */
+    ROW(an_abandoned_candidate_costs_the_bytes_before_the_next_one, /* An AA, which was none. */
+        "<manual:66 !none abandon skipped:30 pending:36 !none skipped:66 pending:0"),
+    ROW(what_an_abandoned_candidate_hid_is_found,
+        "<manual:20 <start !none abandon !1@20 skipped:20"),
+    ROW(an_abandoned_reply_is_searched_too, AWAIT_INFO "<info:9 <start !none abandon !1@9"),
+    ROW(a_lone_first_byte_can_be_abandoned, "<x:AA !none abandon skipped:1 pending:0"),
+    ROW(without_a_candidate_there_is_nothing_to_abandon,
+        "abandon skipped:0 <start !1@0 abandon unread:13 skipped:0"),
+    ROW(a_candidate_that_has_become_complete_is_not_abandoned,
+        "<start:12 !none <start+12 abandon !1@0"),
+    ROW(bytes_that_have_not_been_looked_at_are_not_abandoned,
+        "<start:1 abandon skipped:0 <start+1 !1@0"),
+    /* ---- A ring that overflows ---- */
+    ROW(refused_bytes_are_counted_as_overrun,
+        "<zeros:300 !none overrun:44 skipped:256 <zeros:260 !none overrun:48"),
+    ROW(each_of_several_overflows_leaves_its_gap_where_it_was, /* It overflows before all is read. */
+        "<start <start <zeros:231 !1 gap:0 <start !1 gap:0 !none overrun:14 "
+        "2( <start <start <zeros:231 !1 gap:65535 <start !1 gap:0 !none ) overrun:42"),
+    ROW(no_packet_spans_a_gap, /* The bytes before it and those after it would form one. */
+        "<manual:40 !none gap !none skipped:40 <manual+40 !none skipped:67 <start !1 gap:65535"),
+    ROW(packets_before_and_after_an_overflow_are_found, /* The fourth is cut by 12 bytes. */
+        "4( <manual ) !19@12 !19@79 !19@146 !none <start abandon !1 overrun:12 skipped:55"),
+    ROW(bytes_refused_while_a_packet_is_read_leave_it_intact,
+        "<manual !19@0 <zeros:300 intact:1 !none overrun:111"),
+    /* ---- DMA ---- */
+    ROW(a_dma_ring_may_hold_half_its_size, "dma <start <zeros:230 <start !1@0 !1@243 overrun:0"),
+    ROW(what_dma_may_have_overwritten_is_dropped_and_counted, /* The first packet's first byte. */
+        "dma <start <zeros:231 <start !1@244 overrun:1 skipped:243"),
+    ROW(overruns_of_dma_add_up, "dma <zeros:300 !none overrun:44 <zeros:260 !none overrun:48"),
+    ROW(an_overrun_of_dma_is_a_gap_of_65535,
+        "dma <start !1@0 <zeros:44 <start <zeros:243 !1@57 gap:65535 overrun:44 <start !1@313 "
+        "gap:243"),
+    ROW(a_candidate_that_dma_overran_is_forgotten, /* The packet is inside it. */
+        "dma <manual:60 !none <start <zeros:217 !1@60 overrun:34 errors:0 skipped:26"),
+    ROW(many_laps_of_dma_are_counted_and_survived,
+        "dma 2( <zeros:900 ) <start !1@1800 overrun:1557 skipped:243"),
+    ROW(after_a_lap_reported_by_mistake_nothing_is_found_twice,
+        "dma <start !1@0 lap !none overrun:512 <start <zeros:174 <start <x:00 lap !1@1037 "
+        "gap:65535 "
+        "!1@1224 overrun:1024"),
+    ROW(a_packet_that_dma_overwrites_while_it_is_read_is_not_intact, /* It was delivered. */
+        "dma <manual !19@0 intact:1 <zeros:189 intact:1 <zeros:1 intact:0 !none overrun:0 "
+        "skipped:190"),
+    /* ---- Skipping ---- */
+    ROW(skipping_drops_all_unread_bytes,
+        "<start <x:22 skip-all skipped:14 pending:0 last:0x22 <manual !19@14 gap:14 <x:AA skip-all "
+        "pending:0"),
+    ROW(a_frame_delivered_is_not_skipped, "<manual !19@0 skip-all skipped:0 !none"),
+};
+
+#endif
+
+void test_rows(void)
+{
+#ifndef __AVR__
+    run_rows(rows, tell_row);
+#endif
 }
 
 /* -------------------------------------------------------------------------------- large rings */
