@@ -26,7 +26,7 @@ tmini_add_driver_tests(test_command test_recovery test_wish test_monitor test_po
 tmini_add_driver_tests(test_effort test_pauses test_line NOT_ON int16)
 
 # The driver with a lidar that turns (turns.h), on a port that records the commands.
-foreach(test test_honest_scans test_honest_commands test_real_bytes)
+foreach(test test_honest_scans test_real_bytes)
     tmini_add_unit_test(${test} SOURCES ${test}.c ../support/turns.c
         LIBRARIES tmini_test_support NOT_ON int16)
 endforeach()

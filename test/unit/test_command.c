@@ -12,6 +12,9 @@ void tearDown(void)
     tale_end();
 }
 
+/* The header of a packet of 40 samples. */
+#define CUT_PACKET "<x:AA550028010001000000 "
+
 static const row_t tales[] = {
     /* ---- Sending ---- */
     ROW(a_question_in_an_unknown_state_first_stops_and_waits_for_a_quiet_line,
@@ -49,6 +52,12 @@ static const row_t tales[] = {
     ROW(reply_timeout_0_waits_without_limit, "reply:0 info >65 +50 >90 +60000 <info !INFO"),
     ROW(what_came_before_a_question_is_no_answer_to_it, "info >65 <info +50 >90 +1999 <info !INFO"),
     ROW(a_reply_of_another_length_is_not_taken, "idle info >90 <600 !NONE <info !INFO @IDLE"),
+    ROW(a_late_reply_to_a_command_that_this_driver_never_sends_disturbs_no_answer, /* Section 9. */
+        "idle frequency >0D <x:A55A040000001000000000 ~10 !NONE <1000 !FREQUENCY #1000"),
+    ROW(a_stale_reply_after_a_packet_cut_off_by_the_stop_is_no_answer,
+        "scans stop >65 " CUT_PACKET "<800 +50 !STOPPED frequency >0D +200 <600 !FREQUENCY #600"),
+    ROW(a_stop_that_cuts_a_packet_does_not_delay_the_next_answer,
+        "scans stop >65 " CUT_PACKET "+50 !STOPPED frequency >0D ~3 <600 !FREQUENCY #600"),
     ROW(a_packet_instead_of_an_answer_means_that_the_stop_was_lost,
         "idle info >90 <P >65 +50 >90 <info !INFO @UNKNOWN"),
     ROW(a_lidar_that_no_stop_reaches_fails_the_question_in_the_end,
@@ -79,9 +88,12 @@ static const row_t tales[] = {
         "idle frequency >0D +250 >0D +250 >0D <600 !FREQUENCY #600 @IDLE"),
     ROW(a_lidar_that_never_answers_is_asked_30_times,
         "idle frequency 29( >0D +250 ) >0D +250 !FAILED ?TIMEOUT @UNKNOWN #0"),
-    ROW(an_implausible_frequency_is_an_error,
-        "idle frequency >0D <99 !FAILED ?REPLY / idle frequency >0D <2001 !FAILED ?REPLY / idle "
-        "frequency >0D <100 !FREQUENCY #100 frequency >0D <2000 !FREQUENCY #2000"),
+    ROW(an_implausible_frequency_is_an_error, /* In 16 bits the last two would be 0 and 600. */
+        "idle frequency >0D <0 !FAILED ?REPLY #0 / idle frequency >0D <99 !FAILED ?REPLY / "
+        "idle frequency >0D <2001 !FAILED ?REPLY / idle frequency >0D <65535 !FAILED ?REPLY / "
+        "idle frequency >0D <65536 !FAILED ?REPLY / idle frequency >0D <66136 !FAILED ?REPLY #0"),
+    ROW(a_plausible_frequency_is_taken,
+        "idle frequency >0D <100 !FREQUENCY #100 frequency >0D <2000 !FREQUENCY #2000"),
     /* ---- Setting it ---- */
     ROW(steps_of_1_hz_then_of_a_tenth_lead_to_the_wish,
         "idle set:820 >0D <600 +50 >0B <700 +50 >0B <800 +50 >09 <810 +50 >09 <820 +50 >0D <820 "

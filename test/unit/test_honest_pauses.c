@@ -246,27 +246,20 @@ static void play_at_all_moments(program_t rare)
     TEST_ASSERT_EQUAL_UINT(0, lies);
 }
 
-void test_polls_of_350_ms_with_a_slow_clock_mix_no_turns(void)
+void test_rare_polls_mix_no_turns_even_with_a_slow_clock(void)
 {
-    for (int32_t ppm = -30000; ppm <= -20000; ppm += 5000) {
-        play_at_all_moments(
-            (program_t){.ring = 8192, .poll_us = 350000, .clock_ppm = ppm, .limit_ms = 30});
+    static const program_t rare[] = {
+        {.ring = 8192, .poll_us = 350000, .clock_ppm = -30000, .limit_ms = 30},
+        {.ring = 8192, .poll_us = 350000, .clock_ppm = -25000, .limit_ms = 30},
+        {.ring = 8192, .poll_us = 350000, .clock_ppm = -20000, .limit_ms = 30},
+        {.ring = 8192, .poll_us = 500000, .limit_ms = 30},
+        {.ring = 16384, .poll_us = 700000, .limit_ms = 30},
+        {.ring = 65536, .poll_us = 1100000, .limit_ms = 30},
+    };
+
+    for (unsigned i = 0; i < sizeof rare / sizeof rare[0]; i++) {
+        play_at_all_moments(rare[i]);
     }
-}
-
-void test_polls_of_500_ms_mix_no_turns(void)
-{
-    play_at_all_moments((program_t){.ring = 8192, .poll_us = 500000, .limit_ms = 30});
-}
-
-void test_polls_of_700_ms_mix_no_turns(void)
-{
-    play_at_all_moments((program_t){.ring = 16384, .poll_us = 700000, .limit_ms = 30});
-}
-
-void test_polls_of_1100_ms_mix_no_turns(void)
-{
-    play_at_all_moments((program_t){.ring = 65536, .poll_us = 1100000, .limit_ms = 30});
 }
 
 /* ---- A limit that does not detect a silence of a turn ---- */

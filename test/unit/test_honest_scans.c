@@ -395,28 +395,6 @@ void test_a_pause_between_polls_costs_no_scan(void)
     TEST_ASSERT_EQUAL_UINT(1, turns_scans.complete);
 }
 
-/* ---- A stream without start packets ---- */
-
-/* Without start packets no scan would ever be delivered. After 12,000 samples a fault is reported;
- * after another 12,000, with ranges, the lidar is lost and started again. A turn without its start
- * packet has 657. */
-void test_a_lidar_that_sends_no_start_packets_is_lost(void)
-{
-    unsigned turns_passed = 0;
-    unsigned events = 0;
-
-    for (; (events & BIT(TMINI_EVENT_FAULTS_CHANGED)) == 0; turns_passed++) {
-        events |= turns_pass(1, TURNS_PACKETS - 1, 100);
-        TEST_ASSERT_TRUE(turns_passed < 12000 / 657 + 1);
-    }
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, tmini_faults(&turns.lidar));
-    for (; (events & BIT(TMINI_EVENT_LOST)) == 0; turns_passed++) {
-        events |= turns_pass(1, TURNS_PACKETS - 1, 100);
-        TEST_ASSERT_TRUE(turns_passed < 24000 / 657 + 1);
-    }
-    TEST_ASSERT_EQUAL_UINT(0, turns_scans.count);
-}
-
 /* ---- A stream that steps backwards ---- */
 
 /* After 360 degrees back in small steps, a scan must still end after one turn forwards. */

@@ -32,6 +32,8 @@ static const row_t tales[] = {
     ROW(bytes_of_a_second_overflow_are_counted_with_the_first_ones,
         "<zeros:256 <zeros:7 !NONE <zeros:256 <zeros:5 overrun:12"),
     ROW(packets_in_the_unknown_state_are_counted_but_are_no_event, "<S !NONE packets:1 @UNKNOWN"),
+    ROW(a_late_reply_among_packets_costs_none_of_them,
+        "scans <P <x:A55A040000001000000000 <P drain packets:3 skipped:11"),
     ROW(the_reply_to_another_query_does_not_change_the_health,
         "idle health >92 <health:2 !HEALTH frequency >0D <600 !FREQUENCY health-faults:2 "
         "health-code:0x1234"),

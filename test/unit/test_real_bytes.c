@@ -10,7 +10,6 @@
  * No capture of a unit that sends LastCRC was available. */
 
 #include "tmini/tmini_names.h"
-#include "known_packets.h"
 #include "turns.h"
 
 #include "unity.h"
@@ -130,17 +129,6 @@ void test_a_start_packet_of_a_t_mini_pro(void)
     expect_point(packet, 0, 42 * DEGREE, 152, 20, 2);
 }
 
-void test_a_start_packet_of_a_t_mini_plus(void)
-{
-    feed_start_reply();
-    turns_feed(start_packet, sizeof start_packet);
-    const tmini_packet_t *const packet = polled_packet();
-
-    TEST_ASSERT_TRUE(tmini_packet_is_start(packet));
-    TEST_ASSERT_EQUAL_UINT8(58, packet->ct >> 1);
-    expect_point(packet, 0, 31, 149, 21, 0); /* 0.484 degrees */
-}
-
 /* ---- Replies ---- */
 
 static void go_idle(void)
@@ -151,62 +139,41 @@ static void go_idle(void)
     (void)turns_poll();
 }
 
-static void answer_info(const uint8_t *reply, size_t size)
+/* The second is not a logged reply, but composed from the output of the vendor's program (issue 65
+ * of YDLIDAR/YDLidar-SDK). */
+static const struct {
+    uint8_t content[20];
+    tmini_info_t info; /* Without the serial number. */
+    const char *serial;
+} units[] = {
+    {{0x97, 2, 1, 1, 2, 0, 2, 5, 0, 4, 2, 4, 0, 0, 0, 9, 0, 1, 9, 4},
+     {.model = 151, .firmware_major = 1, .firmware_minor = 2, .hardware = 1},
+     "2025042400090194"},
+    {{0x97, 3, 1, 1, 2, 0, 2, 4, 0, 4, 1, 3, 0, 0, 0, 9, 0, 0, 9, 0},
+     {.model = 151, .firmware_major = 1, .firmware_minor = 3, .hardware = 1},
+     "2024041300090090"},
+    {{0x96, 0, 1, 2, 2, 0, 2, 2, 1, 1, 0, 3, 0, 1, 1, 1, 1, 1, 1, 1},
+     {.model = 150, .firmware_major = 1, .firmware_minor = 0, .hardware = 2},
+     "2022110301111111"},
+};
+
+void test_device_information_of_two_t_mini_plus_and_a_t_mini_pro(void)
 {
-    go_idle();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(&turns.lidar));
-    turns_feed(reply, size);
-    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_INFO, tmini_poll(&turns.lidar));
-}
+    for (unsigned i = 0; i < sizeof units / sizeof units[0]; i++) {
+        static const uint8_t header[] = {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04};
+        char serial[TMINI_SERIAL_DIGITS + 1];
 
-void test_device_information_of_a_t_mini_plus(void)
-{
-    static const uint8_t reply[] = {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x97, 0x02,
-                                    0x01, 0x01, 0x02, 0x00, 0x02, 0x05, 0x00, 0x04, 0x02,
-                                    0x04, 0x00, 0x00, 0x00, 0x09, 0x00, 0x01, 0x09, 0x04};
-    char serial[TMINI_SERIAL_DIGITS + 1];
-
-    answer_info(reply, sizeof reply);
-    const tmini_info_t *const info = tmini_info(&turns.lidar);
-
-    TEST_ASSERT_EQUAL_UINT8(TMINI_MODEL_T_MINI_PLUS, info->model);
-    TEST_ASSERT_EQUAL_UINT8(1, info->firmware_major);
-    TEST_ASSERT_EQUAL_UINT8(2, info->firmware_minor);
-    TEST_ASSERT_EQUAL_UINT8(1, info->hardware);
-    tmini_serial_text(info, serial);
-    TEST_ASSERT_EQUAL_STRING("2025042400090194", serial);
-}
-
-/* Not a logged reply, but composed from the output of the vendor's program (issue 65 of
- * YDLIDAR/YDLidar-SDK): firmware 1.3, hardware 1, serial 2024041300090090. */
-void test_device_information_of_a_t_mini_plus_with_firmware_1_3(void)
-{
-    static const uint8_t reply[] = {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x97, 0x03,
-                                    0x01, 0x01, 0x02, 0x00, 0x02, 0x04, 0x00, 0x04, 0x01,
-                                    0x03, 0x00, 0x00, 0x00, 0x09, 0x00, 0x00, 0x09, 0x00};
-    char serial[TMINI_SERIAL_DIGITS + 1];
-
-    answer_info(reply, sizeof reply);
-    const tmini_info_t *const info = tmini_info(&turns.lidar);
-
-    TEST_ASSERT_EQUAL_UINT8(TMINI_MODEL_T_MINI_PLUS, info->model);
-    TEST_ASSERT_EQUAL_UINT8(1, info->firmware_major);
-    TEST_ASSERT_EQUAL_UINT8(3, info->firmware_minor);
-    tmini_serial_text(info, serial);
-    TEST_ASSERT_EQUAL_STRING("2024041300090090", serial);
-}
-
-void test_device_information_of_a_t_mini_pro(void)
-{
-    static const uint8_t reply[] = {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x96, 0x00,
-                                    0x01, 0x02, 0x02, 0x00, 0x02, 0x02, 0x01, 0x01, 0x00,
-                                    0x03, 0x00, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01};
-
-    answer_info(reply, sizeof reply);
-    const tmini_info_t *const info = tmini_info(&turns.lidar);
-
-    TEST_ASSERT_EQUAL_UINT8(TMINI_MODEL_T_MINI_PRO, info->model);
-    TEST_ASSERT_EQUAL_UINT8(1, info->firmware_major);
-    TEST_ASSERT_EQUAL_UINT8(0, info->firmware_minor);
-    TEST_ASSERT_EQUAL_UINT8(2, info->hardware);
+        go_idle();
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(&turns.lidar));
+        turns_feed(header, sizeof header);
+        turns_feed(units[i].content, sizeof units[i].content);
+        TEST_ASSERT_EQUAL_INT(TMINI_EVENT_INFO, tmini_poll(&turns.lidar));
+        const tmini_info_t *const info = tmini_info(&turns.lidar);
+        TEST_ASSERT_EQUAL_UINT8(units[i].info.model, info->model);
+        TEST_ASSERT_EQUAL_UINT8(units[i].info.firmware_major, info->firmware_major);
+        TEST_ASSERT_EQUAL_UINT8(units[i].info.firmware_minor, info->firmware_minor);
+        TEST_ASSERT_EQUAL_UINT8(units[i].info.hardware, info->hardware);
+        tmini_serial_text(info, serial);
+        TEST_ASSERT_EQUAL_STRING(units[i].serial, serial);
+    }
 }
