@@ -145,6 +145,34 @@ def test_there_are_four_listeners_at_most(lidar, bridge, listen, clock):
     assert receive(clock, listen(one), 8) == MAGIC
 
 
+def held(program):
+    """(open files, kB of memory at most) of it."""
+    process = Path(f"/proc/{program.process.pid}")
+    return (len(list((process / "fd").iterdir())),
+            int(re.search(r"VmHWM:\s*(\d+)", (process / "status").read_text(encoding="ascii"))[1]))
+
+
+def test_200_strangers_cost_nothing_and_the_others_lose_nothing(lidar, bridge, listen, clock, tmini):
+    one = bridge(lidar().port)
+    well = listen(one)
+    content = receive(clock, well, 40000)
+    before = held(one)
+    for i in range(200):
+        stranger = listen(one)
+        if i % 4 < 3:  # Half a request, garbage, much; or it goes at once.
+            stranger.setblocking(False)
+            stranger.send((b"GET / HTTP", b"\xA5\x65" * 100, bytes(100000))[i % 4])
+            stranger.setblocking(True)
+            receive(clock, stranger, 10**6)
+        stranger.close()
+        content += receive(clock, well, 500)
+    content += receive(clock, well, 40000)
+    stats, text = counts(tmini, whole_chunks(content))
+    assert (stats["checksum_errors"], "damaged" in text) == (0, False)
+    after = held(one)
+    assert after[0] == before[0] and after[1] < before[1] + 100
+
+
 def test_a_lidar_that_comes_back_goes_on_after_a_gap(lidar, bridge, listen, clock, tmini):
     device = lidar()
     Path("adapter").symlink_to(device.port)

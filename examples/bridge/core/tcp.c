@@ -77,10 +77,14 @@ static void welcome(tcp_t *tcp, int fd, int listener, uint64_t now_us)
     (void)setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
 }
 
-/* Who is one too many is left at once. */
-static void accept_all(tcp_t *tcp, uint64_t now_us)
+/* Who is one too many is left at once. A flood of connections must not hold up the caller. */
+static void accept_some(tcp_t *tcp, uint64_t now_us)
 {
-    for (int fd; (fd = accept(tcp->fd, NULL, NULL)) >= 0;) {
+    for (int i = 0; i < BRIDGE_LISTENERS_MAX; i++) {
+        const int fd = accept(tcp->fd, NULL, NULL);
+        if (fd < 0) {
+            return;
+        }
         const int listener = bridge_join(tcp->bridge);
         if (listener < 0) {
             (void)close(fd);
@@ -113,7 +117,7 @@ static bool send_next(tcp_t *tcp, tcp_client_t *client, uint64_t now_us)
 
 void tcp_serve(tcp_t *tcp, uint64_t now_us)
 {
-    accept_all(tcp, now_us);
+    accept_some(tcp, now_us);
     for (tcp_client_t *client = tcp->clients; client < tcp->clients + BRIDGE_LISTENERS_MAX;
          client++) {
         if (client->fd >= 0 && (!is_listening(client) || !send_next(tcp, client, now_us))) {

@@ -124,9 +124,13 @@ static void send_frame(void *argument)
     browser_t *const browser = argument;
     httpd_ws_frame_t frame = {
         .type = HTTPD_WS_TYPE_BINARY, .payload = browser->frame, .len = browser->frame_size};
-    if (!is_set(&browser->has_gone) &&
-        httpd_ws_send_frame_async(server, browser->fd, &frame) != ESP_OK) {
-        (void)httpd_sess_trigger_close(server, browser->fd);
+    if (!is_set(&browser->has_gone)) {
+        if (httpd_ws_send_frame_async(server, browser->fd, &frame) == ESP_OK) {
+            /* When strangers take all sockets, the server closes those that it used least. */
+            (void)httpd_sess_update_lru_counter(server, browser->fd);
+        } else {
+            (void)httpd_sess_trigger_close(server, browser->fd);
+        }
     }
     set(&browser->is_sending, false);
 }
@@ -148,7 +152,7 @@ esp_err_t web_begin(void)
     config.max_open_sockets = BROWSERS_MAX + 2; /* And some that ask for the page. */
     config.lru_purge_enable = true;
     config.send_wait_timeout = 1; /* A browser that takes nothing for a second is left. */
-    config.recv_wait_timeout = 2;
+    config.recv_wait_timeout = 1; /* Half a request holds up the browsers for so long. */
     config.close_fn = on_close;
     esp_err_t error = httpd_start(&server, &config);
     error = error == ESP_OK ? httpd_register_uri_handler(server, &root) : error;

@@ -68,6 +68,7 @@ esp_err_t httpd_resp_send(httpd_req_t *request, const char *text, ssize_t size);
 esp_err_t httpd_resp_sendstr(httpd_req_t *request, const char *text);
 esp_err_t httpd_queue_work(httpd_handle_t server, void (*work)(void *argument), void *argument);
 esp_err_t httpd_ws_send_frame_async(httpd_handle_t server, int fd, httpd_ws_frame_t *frame);
+esp_err_t httpd_sess_update_lru_counter(httpd_handle_t server, int fd);
 esp_err_t httpd_sess_trigger_close(httpd_handle_t server, int fd);
 
 #endif
