@@ -8,6 +8,8 @@ import binascii
 import contextlib
 import http.client
 import json
+import pathlib
+import re
 import select
 import socket
 import struct
@@ -220,6 +222,93 @@ def test_who_sends_something_is_left_and_the_lidar_hears_nothing_of_it(server, s
     process.terminate()
     assert process.communicate()[1] == ""
     assert "A5 40" not in simulator.log.read_text()
+
+
+@pytest.fixture
+def crowd():
+    """crowd(number, content): a stranger who sends that, as far as it is taken; the system receives little for it."""
+    with contextlib.ExitStack() as stack:
+        def join(number, content):
+            one = stack.enter_context(socket.socket())
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            one.settimeout(20)
+            one.connect(("127.0.0.1", number))
+            with contextlib.suppress(ConnectionError):
+                one.sendall(content)
+            return one
+        yield join
+
+
+def rest(stranger, most=10**6):
+    """How many bytes come until the server leaves."""
+    size = 0
+    with contextlib.suppress(ConnectionError):
+        while (more := len(stranger.recv(4096))) > 0 and size < most:
+            size += more
+    return size
+
+
+def memory_kb(process, name="VmHWM"):
+    """The peak, unless another name is given."""
+    status = pathlib.Path(f"/proc/{process.pid}/status")
+    if not status.exists():
+        pytest.skip("this system does not say how much memory a process takes")
+    return int(re.search(rf"{name}:\s*(\d+)", status.read_text())[1])
+
+
+OPENING = b"GET /stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n" \
+    b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
+PING = b"\x89\xFD" + bytes(4 + 125)
+
+
+def test_who_sends_much_is_left_and_takes_no_memory(server, crowd):
+    number, process = server()
+    with listen(number) as one:
+        receive(one, 2000)
+        before = memory_kb(process)
+        for content in (b"GET /" + b"a" * 3000000,
+                        b"GET / HTTP/1.1\r\n" + b"".join(b"X-%d: %s\r\n" % (i, b"a" * 8000) for i in range(400)),
+                        bytes(range(256)) * 12000,
+                        OPENING + b"\x82\xFF" + struct.pack(">Q", 10**8) + bytes(3000000),
+                        OPENING + PING * 24000,
+                        OPENING + (b"\x02\x80" + bytes(4)) * 500000):  # A message without an end.
+            assert rest(crowd(number, content)) < 100000, content[-200:]
+            receive(one, 2000)
+        assert memory_kb(process) < before + 4096
+    process.terminate()
+    assert process.communicate()[1] == ""
+
+
+def test_200_strangers_who_wait_cost_little_and_go(server, crowd):
+    number, process = server()
+    with listen(number) as one:
+        receive(one, 2000)
+        before = memory_kb(process)
+        strangers = [crowd(number, content) for _ in range(50) for content in (
+            b"", OPENING[:60], OPENING[:-2] + b"X: 1", b"GET /live HTTP/1.1\r\nHost: localhost\r\n\r\n")]
+        assert memory_kb(process) < before + 12288
+        receive(one, 80000)  # For six seconds.
+        assert all(rest(stranger) < 200000 for stranger in strangers)
+        with listen(number) as other:
+            receive(other, 2000)
+    process.terminate()
+    assert process.communicate()[1] == ""
+
+
+def test_listeners_that_take_nothing_or_come_and_go_cost_nothing_in_the_long_run(server, crowd):
+    number, process = server()
+    with listen(number) as one:
+        dead = crowd(number, OPENING)
+        for i in range(700):
+            if i == 200:  # Until then the memory settles.
+                before = memory_kb(process)
+            with crowd(number, OPENING) as guest:
+                guest.recv(4096)
+            while select.select([one.socket], [], [], 0)[0]:
+                one.recv(10)
+        assert memory_kb(process) < before + 512  # A kilobyte for each.
+        receive(one, 14000 * 20)
+    assert rest(dead) < 200000
 
 
 def test_there_are_eight_listeners_at_most(server):

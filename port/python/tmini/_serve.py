@@ -14,6 +14,7 @@ import logging
 import pathlib
 import socket
 import sys
+import time
 import urllib.parse
 from typing import Any
 
@@ -28,6 +29,10 @@ _MAGIC = b"\x89tmini\x02\n"
 _LISTENERS_MAX = 8
 _WAITING_MAX = 32768  # Bytes for one listener: more than two seconds.
 _SYSTEM_BYTES = 16384  # What the system keeps for one, about.
+_CONNECTIONS_MAX = 32  # Listeners, and those that ask for the page.
+_HEARD_MAX = 16384  # Bytes of one connection: its request; and then the answers to our pings:
+_HEARD_MAX_PER_S = 100
+_DEAD_S = 15.0  # Who takes nothing for as long is left.
 _LINGER_S = 2.0  # The lidar scans on for as long, for a page that is loaded again.
 _HEADERS = {"Cache-Control": "no-store", "X-Content-Type-Options": "nosniff",
             "X-Frame-Options": "DENY", "Connection": "close"}
@@ -139,6 +144,72 @@ class _Hub:
             self._lidar.stop()
 
 
+class _Guard(asyncio.Protocol):
+    """Between the system and a connection of `websockets`, which has no limit for the number of
+    connections, for what one sends (each ping is answered, even if nobody reads the answers), and
+    for the time in which one takes nothing (the ping that should notice it waits, too). Who is too
+    much is left without a word."""
+
+    number = 0  # Of connections.
+
+    def __init__(self, connection: Any) -> None:
+        self._connection = connection
+        self._is_admitted = False
+        self._heard = 0
+        self._timer: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: Any) -> None:
+        self._transport = transport
+        self._since = time.monotonic()
+        if _Guard.number >= _CONNECTIONS_MAX:
+            transport.abort()
+            return
+        self._is_admitted = True
+        _Guard.number += 1
+        self._connection.connection_made(transport)
+
+    def data_received(self, data: bytes) -> None:
+        self._heard += len(data)
+        if self._heard > _HEARD_MAX + _HEARD_MAX_PER_S * (time.monotonic() - self._since):
+            self._transport.abort()
+        else:
+            self._connection.data_received(data)
+
+    def eof_received(self) -> bool | None:
+        is_kept: bool | None = self._connection.eof_received()
+        return is_kept
+
+    def pause_writing(self) -> None:
+        """Too much waits for the other end."""
+        self._watch()
+        self._connection.pause_writing()
+
+    def resume_writing(self) -> None:
+        self._unwatch()
+        self._connection.resume_writing()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._unwatch()
+        if self._is_admitted:
+            _Guard.number -= 1
+            self._connection.connection_lost(exc)
+
+    def _watch(self) -> None:
+        waits = self._transport.get_write_buffer_size()
+        self._timer = asyncio.get_running_loop().call_later(_DEAD_S, self._look, waits)
+
+    def _look(self, waited: int) -> None:
+        if self._transport.get_write_buffer_size() < waited:
+            self._watch()
+        else:
+            self._transport.abort()
+
+    def _unwatch(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+
 class _Answers:
     """Answers requests. A page of others must not see the room: its name is not this computer's,
     or its origin is another."""
@@ -191,7 +262,8 @@ async def _serve(arguments: argparse.Namespace, hub: _Hub, server: Any, answers:
     async with server.serve(
             hub.serve, arguments.host, arguments.tcp, compression=None, write_limit=8192,
             max_size=125, max_queue=1, open_timeout=5, ping_interval=10, ping_timeout=10, close_timeout=1, logger=quiet,
-            process_request=lambda _, request: answers.answer(hub, request)) as running:
+            process_request=lambda _, request: answers.answer(hub, request),
+            create_connection=lambda *words, **more: _Guard(server.ServerConnection(*words, **more))) as running:
         for one in running.sockets:  # More would only be old.
             one.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SYSTEM_BYTES)
         number = running.sockets[0].getsockname()[1]
