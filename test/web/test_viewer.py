@@ -827,6 +827,7 @@ class Served(Viewer):
         self.assertGreater(self.coloured(), 300)
         self.assertEqual([0] * 3, [self.number(key) for key in ("#checksums", "#overrun", "#losses")])
         self.assertFalse(self.page.is_shown("#panel-lidar"))
+        self.assertFalse(self.page.is_shown("#panel-unit"))
         urls = {url for url in OneFile.requests(self) if not url.startswith("data:")}
         self.assertEqual({f"{self.url}/", f"{self.url}/live"}, urls)
 

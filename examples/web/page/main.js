@@ -262,6 +262,7 @@ class Viewer {
         show('zoom', Boolean(source));
         show('disconnect', Boolean(source));
         show('panel-lidar', lidar !== null && !source.listensOnly);
+        show('panel-unit', !source?.listensOnly); // It cannot be asked.
         show('panel-recording', this.#player !== null);
         show('panel-simulation', source?.kind === 'simulation');
         setText('disconnect', this.#player ? 'Close' : 'Disconnect');
