@@ -12,15 +12,11 @@ FENCE = re.compile(r"^( *)(`{3,}|~{3,}) *([^`]*)$")
 HEADING = re.compile(r"^#+ +(.*?) *#*$")
 
 
-def is_ours(folder):
-    return not folder.startswith("build") and folder not in (".git", ".pio", "managed_components")
-
-
 def documents(language=""):
     """The paths of all documents in one language (English by default), except in build folders."""
+    not_ours = re.compile(r"(.*/)?(build[^/]*|\.git|\.pio|managed_components)/")
     return [path for path in sorted(ROOT.rglob("*.md"))
-            if path.name.partition(".")[2] == language + "md" and
-            all(is_ours(folder) for folder in path.relative_to(ROOT).parts[:-1])]
+            if path.name.partition(".")[2] == language + "md" and not not_ours.match(name(path))]
 
 
 def name(path):
@@ -78,21 +74,14 @@ def indented_blocks(prose):
     return found
 
 
-def anchor(heading):
-    """The anchor that links to a heading use."""
-    text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading)
-    text = re.sub(r"[`*]", "", text).strip().lower()
-    return re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", text))
-
-
 def anchors(path):
+    """The anchors that links to the document's headings use, and those that it sets itself."""
     found = []
     for _, line in parse(path)[1]:
-        heading = HEADING.match(line)
-        if heading:
-            plain = anchor(heading[1])
-            count = sum(re.fullmatch(re.escape(plain) + r"(-\d+)?", other) is not None
-                        for other in found)
+        if heading := HEADING.match(line):
+            text = re.sub(r"\[([^]]*)\]\([^)]*\)|[`*]", r"\1", heading[1]).strip().lower()
+            plain = re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", text))
+            count = sum(re.fullmatch(re.escape(plain) + r"(-\d+)?", other) is not None for other in found)
             found.append(f"{plain}-{count}" if count else plain)
         found += re.findall(r'<a (?:id|name)="([^"]+)"', line)
     return found

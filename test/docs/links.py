@@ -26,63 +26,47 @@ NOT_OURS = ("test/recordings/real",)
 PLACEHOLDER = re.compile(r"(?<![A-Za-z])[A-Z]+(?=/|\.|$)")
 
 
-def without_code(line):
-    return re.sub(r"`[^`]*`", "", line)
-
-
-def check_link(path, number, target):
-    if re.match(r"[a-z][a-z0-9+.-]*:", target):
-        return None
+def wrong_link(path, target):
+    """What is wrong with a link, or None."""
     file, _, anchor = target.partition("#")
     goal = (path.parent / file).resolve() if file else path
+    if re.match(r"[a-z][a-z0-9+.-]*:", target):
+        return None
     if not goal.exists():
-        return f"{name(path)}:{number}: no such file: {target}"
+        return "no such file"
     if ROOT not in goal.parents and goal != ROOT:
-        return f"{name(path)}:{number}: leads out of the project: {target}"
-    if anchor and (goal.suffix != ".md" or anchor not in anchors(goal)):
-        return f"{name(path)}:{number}: no such heading: {target}"
-    return None
+        return "leads out of the project"
+    return "no such heading" if anchor and (goal.suffix != ".md" or anchor not in anchors(goal)) else None
 
 
-def links(path):
-    for number, line in parse(path)[1]:
-        for target in [*LINK.findall(without_code(line)), *REFERENCE.findall(line),
-                       *TAG.findall(line)]:
-            yield number, target
-
-
-def named_paths(path):
-    """Finds paths relative to the project's folder, in prose, code and comments."""
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        for named in PATH.findall(re.sub(r"\]\([^)]*\)", "]", line)):
-            yield number, named
-
-
-def check_path(path, number, named):
+def wrong_path(path, named):
+    """What is wrong with a path in prose, code or a comment, relative to the project's folder or to the file's."""
     if PLACEHOLDER.search(named.removesuffix("/README.md")) or named.startswith(NOT_OURS):
         return None
-    for folder in (ROOT, path.parent):
-        if (folder / named).exists() or list(folder.glob(named + ".*")):
-            return None
-    return f"{name(path)}:{number}: no such file: {named}"
+    return None if any((folder / named).exists() or list(folder.glob(named + ".*"))
+                       for folder in (ROOT, path.parent)) else "no such file"
+
+
+def found_in(paths):
+    """All links and paths, each with the check for it."""
+    for path in [*documents(), *documents("zh-CN.")]:
+        for number, line in parse(path)[1]:
+            for target in [*LINK.findall(re.sub(r"`[^`]*`", "", line)), *REFERENCE.findall(line), *TAG.findall(line)]:
+                yield path, number, target, wrong_link
+    for path in paths:
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            for named in PATH.findall(re.sub(r"\]\([^)]*\)", "]", line)):
+                yield path, number, named, wrong_path
 
 
 def main():
-    complaints, count = [], 0
-    for path in [*documents(), *documents("zh-CN.")]:
-        for number, target in links(path):
-            count += 1
-            complaints.append(check_link(path, number, target))
-    sources = [*documents(), *sorted(ROOT.glob("lib/include/tmini/**/*.h")),
-               *sorted(ROOT.glob("port/*/*.[ch]"))]
-    for path in sources:
-        for number, named in named_paths(path):
-            count += 1
-            complaints.append(check_path(path, number, named))
-    complaints = [complaint for complaint in complaints if complaint]
-    if count < 100:
+    found = list(found_in([*documents(), *sorted(ROOT.glob("lib/include/tmini/**/*.h")),
+                           *sorted(ROOT.glob("port/*/*.[ch]"))]))
+    complaints = [f"{name(path)}:{number}: {wrong}: {what}" for path, number, what, check in found
+                  if (wrong := check(path, what))]
+    if len(found) < 100:
         complaints.append("hardly any links have been found: is this check still one?")
-    print("\n".join(complaints) or f"all of {count} links and paths lead somewhere")
+    print("\n".join(complaints) or f"all of {len(found)} links and paths lead somewhere")
     sys.exit(1 if complaints else 0)
 
 
