@@ -1,44 +1,193 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
+#define _DEFAULT_SOURCE /* cfmakeraw() */
 #define _XOPEN_SOURCE 600
 
 #include "host.h"
 
+#include <arpa/inet.h>
 #include <errno.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <termios.h>
 #include <unistd.h>
 
 /* Nothing signals that a client opens the pty, so it is polled at this interval. */
 #define LOOK_MS 10
 
-void host_reset(host_t *host)
+static void reset(host_t *host, bool (*update)(host_t *host))
 {
     memset(host, 0, sizeof *host);
     host->listener = -1;
     host->fd = -1;
+    host->update = update;
 }
 
-void host_forget_client(host_t *host)
+static void forget_client(host_t *host)
 {
     host->connected = false;
     host->input_ended = false;
     host->pending_count = 0;
 }
 
-static int wait_for(int fd, short events, int timeout_ms)
+/* The events of these that there are, and POLLERR, POLLHUP. */
+static short events_of(int fd, short events, int timeout_ms)
 {
     struct pollfd entry = {fd, events, 0};
-    return poll(&entry, 1, timeout_ms);
+    return (short)(poll(&entry, 1, timeout_ms) > 0 ? entry.revents : 0);
 }
+
+/* ---- A pseudo-terminal ---- */
+
+/* Makes the slave raw (no echo, no line discipline), at the start and whenever a client has left,
+ * and discards bytes that an earlier client left unread. Bytes that a new client has already sent
+ * stay. The slave is not kept open here, so that poll() reports "hung up" on the master exactly
+ * while there is no client. */
+static bool prepare_slave(const char *path)
+{
+    struct termios settings = {0};
+    const int slave = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK);
+    if (slave < 0) {
+        return false;
+    }
+    bool done = tcgetattr(slave, &settings) == 0;
+    cfmakeraw(&settings);
+    settings.c_iflag &= ~(tcflag_t)IXOFF;
+    done = done && tcsetattr(slave, TCSANOW, &settings) == 0 && tcflush(slave, TCIFLUSH) == 0;
+    (void)close(slave);
+    return done;
+}
+
+static bool update_pty(host_t *host)
+{
+    const bool connected = (events_of(host->fd, POLLIN, 0) & POLLHUP) == 0;
+    if (host->connected && !connected) {
+        forget_client(host);
+        (void)prepare_slave(host->address);
+    }
+    return connected;
+}
+
+static bool open_master(host_t *host)
+{
+    host->fd = posix_openpt(O_RDWR | O_NOCTTY);
+    if (host->fd < 0 || grantpt(host->fd) != 0 || unlockpt(host->fd) != 0) {
+        return false;
+    }
+    const char *const path = ptsname(host->fd);
+    if (path == NULL || strlen(path) >= sizeof host->address) {
+        return false;
+    }
+    memcpy(host->address, path, strlen(path) + 1);
+    return fcntl(host->fd, F_SETFL, O_NONBLOCK) == 0;
+}
+
+bool host_open_pty(host_t *host)
+{
+    reset(host, update_pty);
+    if (open_master(host) && prepare_slave(host->address)) {
+        return true;
+    }
+    fprintf(stderr, "tmini-sim: no pseudo-terminal: %s\n", strerror(errno));
+    host_close(host);
+    return false;
+}
+
+/* ---- A TCP socket ---- */
+
+static void set_flag(int fd, int level, int option)
+{
+    const int on = 1;
+    setsockopt(fd, level, option, &on, sizeof on);
+}
+
+static void close_fd(int *fd)
+{
+    if (*fd >= 0) {
+        (void)close(*fd);
+    }
+    *fd = -1;
+}
+
+static bool waits(const host_t *host)
+{
+    return (events_of(host->listener, POLLIN, 0) & (POLLIN | POLLERR | POLLHUP)) != 0;
+}
+
+static bool has_gone(const host_t *host)
+{
+    return (host->input_ended && waits(host)) ||
+           (events_of(host->fd, 0, 0) & (POLLERR | POLLHUP)) != 0;
+}
+
+/* The next client waits in the listener's queue until the present one has gone. A client that has
+ * only shut down its sending still gets the stream, until it goes or another comes. */
+static bool update_tcp(host_t *host)
+{
+    if (host->fd >= 0 && has_gone(host)) {
+        close_fd(&host->fd);
+        forget_client(host);
+    }
+    if (host->fd < 0 && waits(host)) {
+        host->fd = accept(host->listener, NULL, NULL);
+        if (host->fd >= 0) {
+            set_flag(host->fd, IPPROTO_TCP, TCP_NODELAY);
+            fcntl(host->fd, F_SETFL, O_NONBLOCK);
+        }
+    }
+    return host->fd >= 0;
+}
+
+static bool listen_on(host_t *host, uint16_t port)
+{
+    struct sockaddr_in address;
+    socklen_t length = sizeof address;
+    memset(&address, 0, sizeof address);
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    host->listener = socket(AF_INET, SOCK_STREAM, 0);
+    if (host->listener < 0) {
+        return false;
+    }
+    set_flag(host->listener, SOL_SOCKET, SO_REUSEADDR);
+    if (bind(host->listener, (struct sockaddr *)&address, length) != 0 ||
+        listen(host->listener, 4) != 0 ||
+        getsockname(host->listener, (struct sockaddr *)&address, &length) != 0) {
+        return false;
+    }
+    (void)snprintf(host->address, sizeof host->address, "127.0.0.1:%u",
+                   (unsigned)ntohs(address.sin_port));
+    return fcntl(host->listener, F_SETFL, O_NONBLOCK) == 0;
+}
+
+bool host_open_tcp(host_t *host, uint16_t port)
+{
+    reset(host, update_tcp);
+    if (listen_on(host, port)) {
+        return true;
+    }
+    fprintf(stderr, "tmini-sim: cannot listen on 127.0.0.1:%u: %s\n", (unsigned)port,
+            strerror(errno));
+    host_close(host);
+    return false;
+}
+
+/* ---- Bytes ---- */
 
 void host_wait(host_t *host, int timeout_ms)
 {
     if (host->connected && !host->input_ended) {
-        wait_for(host->fd, POLLIN, timeout_ms);
+        (void)events_of(host->fd, POLLIN, timeout_ms);
     } else if (host->listener >= 0) {
-        wait_for(host->listener, POLLIN, timeout_ms);
+        (void)events_of(host->listener, POLLIN, timeout_ms);
     } else {
         poll(NULL, 0, timeout_ms < LOOK_MS ? timeout_ms : LOOK_MS);
     }
@@ -47,21 +196,13 @@ void host_wait(host_t *host, int timeout_ms)
 /* Reads also without a client: one that wrote and closed at once has left bytes. */
 size_t host_read(host_t *host, uint8_t *bytes, size_t max)
 {
-    ssize_t count;
     host->connected = host->update(host);
     if (host->fd < 0 || host->input_ended) {
         return 0;
     }
-    count = read(host->fd, bytes, max);
-    if (count == 0) {
-        host->input_ended = true;
-    }
+    const ssize_t count = read(host->fd, bytes, max);
+    host->input_ended = count == 0;
     return count > 0 ? (size_t)count : 0u;
-}
-
-static bool is_passing(int error)
-{
-    return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
 }
 
 static void send_pending(host_t *host)
@@ -70,7 +211,7 @@ static void send_pending(host_t *host)
     if (count > 0) {
         host->pending_count -= (size_t)count;
         memmove(host->pending, host->pending + count, host->pending_count);
-    } else if (count < 0 && !is_passing(errno)) {
+    } else if (count < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) {
         host->pending_count = 0; /* the client has gone: update() will notice */
     }
 }
@@ -88,14 +229,6 @@ void host_write(host_t *host, const uint8_t *bytes, size_t count)
     if (host->pending_count > 0u) {
         send_pending(host);
     }
-}
-
-static void close_fd(int *fd)
-{
-    if (*fd >= 0) {
-        close(*fd);
-    }
-    *fd = -1;
 }
 
 void host_close(host_t *host)

@@ -45,8 +45,4 @@ void host_write(host_t *host, const uint8_t *bytes, size_t count);
 
 void host_close(host_t *host);
 
-/* For the two implementations: common initialisation, and the end of a client. */
-void host_reset(host_t *host);
-void host_forget_client(host_t *host);
-
 #endif
