@@ -8,6 +8,11 @@
 #include "tmini/tmini_names.h"
 #include "board.h"
 
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
 #define SCANS 4u
 
 char log_text[128 * 1024];
@@ -20,54 +25,33 @@ static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static unsigned step;
 static unsigned scans;
 
+/* Printed at the end: the processor would not keep up with the lidar. */
+static tmini_scan_t kept[SCANS];
+static tmini_point_t kept_points[SCANS][TMINI_SCAN_POINTS_TYPICAL];
+
 /* ------------------------------------------------------------------------------------- the log */
 
-static void put(char character)
+__attribute__((format(printf, 1, 2))) static void put(const char *format, ...)
 {
-    if (log_length < sizeof log_text) {
-        log_text[log_length] = character;
-        log_length++;
-    }
-}
-
-static void put_text(const char *text)
-{
-    while (*text != '\0') {
-        put(*text++);
-    }
-}
-
-static void put_number(uint32_t number)
-{
-    char digits[10];
-    unsigned count = 0;
-    do {
-        digits[count++] = (char)('0' + number % 10u);
-        number /= 10u;
-    } while (number > 0);
-    while (count > 0) {
-        put(digits[--count]);
-    }
+    const size_t room = sizeof log_text - log_length;
+    va_list arguments;
+    va_start(arguments, format);
+    const int count = vsnprintf(&log_text[log_length], room, format, arguments);
+    va_end(arguments);
+    log_length += (size_t)count < room ? (uint32_t)count : 0;
 }
 
 static void put_named(const char *name, uint32_t number)
 {
-    put_text(name);
-    put(' ');
-    put_number(number);
-    put('\n');
+    put("%s %" PRIu32 "\n", name, number);
 }
 
 static void log_info(const tmini_info_t *info)
 {
     char serial[TMINI_SERIAL_DIGITS + 1];
     tmini_serial_text(info, serial);
-    put_named("model", info->model);
-    put_named("firmware_major", info->firmware_major);
-    put_named("firmware_minor", info->firmware_minor);
-    put_text("serial ");
-    put_text(serial);
-    put('\n');
+    put("model %u\nfirmware_major %u\nfirmware_minor %u\nserial %s\n", info->model,
+        info->firmware_major, info->firmware_minor, serial);
 }
 
 static void log_scan(const tmini_scan_t *scan)
@@ -76,15 +60,8 @@ static void log_scan(const tmini_scan_t *scan)
     put_named("complete", scan->complete);
     for (unsigned i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
-        put_text("point ");
-        put_number(point->angle_q6);
-        put(' ');
-        put_number(point->distance_mm);
-        put(' ');
-        put_number(point->intensity);
-        put(' ');
-        put_number(point->flag);
-        put('\n');
+        put("point %u %u %u %u\n", point->angle_q6, point->distance_mm, point->intensity,
+            point->flag);
     }
 }
 
@@ -101,6 +78,9 @@ static void log_totals(void)
     const board_statistics_t board = board_statistics();
     tmini_counters_t counters;
     tmini_counters(&lidar, &counters);
+    for (unsigned i = 0; i < SCANS; i++) {
+        log_scan(&kept[i]);
+    }
     put_named("packets", counters.packets);
     put_named("checksum_errors", counters.checksum_errors);
     put_named("bytes_overrun", counters.bytes_overrun);
@@ -117,31 +97,23 @@ static void log_totals(void)
 
 static void next_step(void)
 {
-    switch (step++) {
-    case 0:
-        (void)tmini_request_info(&lidar);
-        break;
-    case 1:
-        (void)tmini_request_health(&lidar);
-        break;
-    case 2:
-        (void)tmini_start(&lidar);
-        break;
-    case 3:
-        (void)tmini_stop(&lidar);
-        break;
-    default:
+    static tmini_status_t (*const steps[])(tmini_t *) = {tmini_request_info, tmini_request_health,
+                                                         tmini_start, tmini_stop};
+    if (step < sizeof steps / sizeof steps[0]) {
+        (void)steps[step++](&lidar);
+    } else {
         log_totals();
         finished = 1;
-        break;
     }
 }
 
 static void take_scan(void)
 {
     if (scans < SCANS) {
-        scans++;
-        log_scan(tmini_scan(&lidar));
+        tmini_scan_t *const scan = &kept[scans];
+        *scan = *tmini_scan(&lidar);
+        memcpy(kept_points[scans], scan->points, scan->count * sizeof *scan->points);
+        scan->points = kept_points[scans++];
     }
     if (scans == SCANS) {
         log_turn();
@@ -168,13 +140,13 @@ static void handle(tmini_event_t event)
         put_named("frequency_chz", tmini_frequency_chz(&lidar));
         break;
     case TMINI_EVENT_STARTED:
-        put_text("started\n");
+        put("started\n");
         break;
     case TMINI_EVENT_SCAN:
         take_scan();
         break;
     case TMINI_EVENT_STOPPED:
-        put_text("stopped\n");
+        put("stopped\n");
         next_step();
         break;
     default:
@@ -195,7 +167,7 @@ int main(void)
         .frequency_chz = 1200,
     };
     if (tmini_init(&lidar, &config) != TMINI_OK) {
-        put_text("not set up\n");
+        put("not set up\n");
         finished = 1;
         return 1;
     }
