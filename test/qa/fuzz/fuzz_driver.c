@@ -43,9 +43,7 @@ static struct {
     uint32_t fed;
     bool half_sent;
     bool dma;
-    bool is_true;                     /* The bytes come from the turning lidar. */
-    uint8_t reply[TURNING_REPLY_MAX]; /* Its next reply. */
-    size_t reply_size;
+    bool is_true;        /* The bytes come from the turning lidar. */
     unsigned surprises;  /* A packet arrives at each of this many readings of the clock. */
     bool surprise_first; /* It arrives before the reading, otherwise after it. */
     tmini_t lidar;
@@ -86,7 +84,7 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
         demand(world.half_sent ? is_command(bytes[i]) : bytes[i] == 0xA5);
         world.half_sent = !world.half_sent;
         if (world.is_true && !world.half_sent) {
-            world.reply_size = turning_command(bytes[i], world.reply);
+            turning_command(bytes[i]);
         }
     }
     return taken;
@@ -117,16 +115,16 @@ static void arrive(const uint8_t *bytes, size_t count)
     }
 }
 
-/* The lidar sends its next packet, of which the bytes from `from` up to `to` are lost. */
+/* The lidar sends what it has to reply, and its next packet, of which the bytes from `from` up to
+ * `to` are lost. */
 static void pass_packet(size_t from, size_t to, uint8_t flipped)
 {
-    uint8_t packet[TURNING_PACKET_MAX];
-    if (world.reply_size > 0) {
-        world.now_ms += 3;
-        arrive(world.reply, world.reply_size);
-        world.reply_size = 0;
+    uint8_t packet[SIM_FRAME_MAX];
+    bool is_packet = false;
+    size_t size;
+    while ((size = turning_frame(packet, &is_packet, &world.now_ms)) > 0 && !is_packet) {
+        arrive(packet, size);
     }
-    const size_t size = turning_packet(packet, &world.now_ms);
     if (size > 0) {
         packet[flipped % size] ^= flipped;
         from = from < size ? from : size;
@@ -294,7 +292,7 @@ static void act(void)
 static void turn(unsigned packets, bool come, bool polled)
 {
     for (unsigned i = 0; i < packets; i++) {
-        pass_packet(0, come ? 0 : TURNING_PACKET_MAX, 0);
+        pass_packet(0, come ? 0 : SIM_FRAME_MAX, 0);
         if (polled) {
             poll_events(2);
         }
@@ -382,7 +380,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .max_points = streaming                    ? 0
                       : (setup & MANY_POINTS) != 0 ? POINTS
                                                    : FEW_POINTS,
-        .filter = streaming ? 0 : (uint8_t)(setup & TMINI_FILTER_BOTH),
+        /* The true lidar's marks use all bits of a sample. */
+        .filter = streaming || world.is_true ? 0 : (uint8_t)(setup & TMINI_FILTER_BOTH),
         .recovery = (setup & NO_RECOVERY) != 0 ? TMINI_RECOVERY_OFF : TMINI_RECOVERY_ON,
     };
     demand(tmini_init(&world.lidar, &config) == TMINI_OK);

@@ -17,6 +17,7 @@ set -eu
 
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 support=$root/test/support
+simulator=$root/test/simulator
 build=$root/build-fuzz
 compiler=${TMINI_FUZZ_CC:-clang}
 action=${1:-60}
@@ -33,7 +34,8 @@ sources() {
         "$support/reference_decoder.c" "$root"/lib/src/*.c
     case $1 in
         fuzz_parser) printf '%s\n' "$support/reference_scans.c" "$support/random.c" ;;
-        *) printf '%s\n' "$root/test/qa/fuzz/turning_lidar.c" ;;
+        *) printf '%s\n' "$root/test/qa/fuzz/turning_lidar.c" "$support/random.c" \
+            "$simulator"/sim*.c "$simulator/scene.c" ;;
     esac
 }
 
@@ -43,7 +45,8 @@ compile() {
     target=$2
     shift 2
     sources "$target" | tr '\n' '\0' | xargs -0 "$compiler" -std=c99 -g -O1 -Wall -Wextra -Werror \
-        "$@" -I"$root/lib/include" -I"$root/lib/src" -I"$support" -o "$build/$program"
+        "$@" -I"$root/lib/include" -I"$root/lib/src" -I"$support" \
+        -I"$simulator" -o "$build/$program"
 }
 
 # unpack TARGET: writes the inputs in corpus_TARGET.txt to its corpus folder.
