@@ -11,35 +11,34 @@
 
 sim_config_t sim_default_config(void)
 {
-    static const uint8_t serial[16] = {2, 0, 2, 6, 0, 3, 1, 7, 0, 0, 0, 1, 2, 3, 4, 5};
-    sim_config_t config = {0};
-    config.seed = 1;
-    config.ct_information = true;
-    config.frequency_chz = 600;
-    config.min_frequency_chz = 500;
-    config.max_frequency_chz = 1200;
-    config.reply_latency_ms = 3;
-    config.stop_tail_ms = 60;
-    config.first_packet_ms = 200;
-    config.spin_up_ms = 1000;
-    config.spin_up_percent = 40;
-    config.boot_ms = 2500;
-    config.motor_percent = 100;
-    config.wobble_permille = 5;
-    config.angle_jitter_q6 = 3;
-    config.noise_mm = 8;
-    config.invalid_permille = 3;
-    config.flagged_permille = 5;
-    config.lone_packet_permille = 2;
-    config.samples_per_packet = 40;
-    config.blocked_sends_starts = true;
-    config.information.model = 151;
-    config.information.firmware_major = 1;
-    config.information.firmware_minor = 2;
-    config.information.hardware = 1;
-    memcpy(config.information.serial, serial, sizeof serial);
-    config.user_major = 1;
-    return config;
+    return (sim_config_t){
+        .seed = 1,
+        .ct_information = true,
+        .frequency_chz = 600,
+        .min_frequency_chz = 500,
+        .max_frequency_chz = 1200,
+        .reply_latency_ms = 3,
+        .stop_tail_ms = 60,
+        .first_packet_ms = 200,
+        .spin_up_ms = 1000,
+        .spin_up_percent = 40,
+        .boot_ms = 2500,
+        .motor_percent = 100,
+        .wobble_permille = 5,
+        .angle_jitter_q6 = 3,
+        .noise_mm = 8,
+        .invalid_permille = 3,
+        .flagged_permille = 5,
+        .lone_packet_permille = 2,
+        .samples_per_packet = 40,
+        .blocked_sends_starts = true,
+        .information = {.model = 151,
+                        .firmware_major = 1,
+                        .firmware_minor = 2,
+                        .hardware = 1,
+                        .serial = {2, 0, 2, 6, 0, 3, 1, 7, 0, 0, 0, 1, 2, 3, 4, 5}},
+        .user_major = 1,
+    };
 }
 
 static uint64_t ms(uint32_t milliseconds)
@@ -227,8 +226,7 @@ static bool is_fatal(const sim_t *sim)
 static void start(sim_t *sim)
 {
     uint8_t reply[ENCODE_REPLY_MAX];
-    const size_t length = encode_scan_reply(reply);
-    const uint64_t due = answer(sim, reply, length);
+    const uint64_t due = answer(sim, reply, encode_scan_reply(reply));
     if (is_fatal(sim)) {
         set_mode(sim, SIM_FAULT, SIM_NEVER);
         return;
@@ -261,7 +259,6 @@ static void answer_information(sim_t *sim)
 {
     encode_information_t information = sim->config.information;
     uint8_t reply[ENCODE_REPLY_MAX];
-    size_t length;
     if (sim->config.firmware_major_first) {
         information.firmware_major = sim->config.information.firmware_minor;
         information.firmware_minor = sim->config.information.firmware_major;
@@ -269,8 +266,7 @@ static void answer_information(sim_t *sim)
     for (size_t i = 0; i < sizeof information.serial && sim->config.ascii_serial; i++) {
         information.serial[i] = (uint8_t)(information.serial[i] + '0');
     }
-    length = encode_information_reply(reply, &information);
-    answer(sim, reply, length);
+    answer(sim, reply, encode_information_reply(reply, &information));
 }
 
 /* The values of the error code are undisclosed (section 4): it repeats the status. */
@@ -278,8 +274,7 @@ static void answer_health(sim_t *sim)
 {
     const uint8_t status = sim_health(sim);
     uint8_t reply[ENCODE_REPLY_MAX];
-    const size_t length = encode_health_reply(reply, status, status);
-    answer(sim, reply, length);
+    answer(sim, reply, encode_health_reply(reply, status, status));
 }
 
 /* Undocumented: type 0x10, four zero bytes of unknown meaning. */
@@ -287,21 +282,18 @@ static void answer_undocumented_98(sim_t *sim)
 {
     static const uint8_t content[4] = {0, 0, 0, 0};
     uint8_t reply[ENCODE_REPLY_MAX];
-    const size_t length = encode_reply(reply, ENCODE_MODE_SINGLE, 0x10, content, sizeof content);
-    answer(sim, reply, length);
+    answer(sim, reply, encode_reply(reply, ENCODE_MODE_SINGLE, 0x10, content, sizeof content));
 }
 
 static void step_frequency(sim_t *sim, int step_chz)
 {
     const int frequency = (int)sim->frequency_chz + step_chz;
     uint8_t reply[ENCODE_REPLY_MAX];
-    size_t length;
     if (!sim->config.refuses_steps && frequency >= (int)sim->config.min_frequency_chz &&
         frequency <= (int)sim->config.max_frequency_chz) {
         sim->frequency_chz = (uint16_t)frequency;
     }
-    length = encode_frequency_reply(reply, sim->frequency_chz);
-    answer(sim, reply, length);
+    answer(sim, reply, encode_frequency_reply(reply, sim->frequency_chz));
 }
 
 static void reset(sim_t *sim, sim_mode_t mode, uint64_t due_us)
@@ -331,43 +323,34 @@ static void reboot(sim_t *sim)
 
 static bool obey(sim_t *sim, uint8_t code)
 {
-    switch (code) {
-    case SIM_COMMAND_FREQUENCY_UP_TENTH:
-        step_frequency(sim, 10);
-        return true;
-    case SIM_COMMAND_FREQUENCY_DOWN_TENTH:
-        step_frequency(sim, -10);
-        return true;
-    case SIM_COMMAND_FREQUENCY_UP:
-        step_frequency(sim, 100);
-        return true;
-    case SIM_COMMAND_FREQUENCY_DOWN:
-        step_frequency(sim, -100);
-        return true;
-    case SIM_COMMAND_GET_FREQUENCY:
-        step_frequency(sim, 0);
-        return true;
-    case SIM_COMMAND_REBOOT:
-        reboot(sim);
-        return true;
-    case SIM_COMMAND_START:
-        start(sim);
-        return true;
-    case SIM_COMMAND_STOP:
-        stop(sim);
-        return true;
-    case SIM_COMMAND_INFORMATION:
-        answer_information(sim);
-        return true;
-    case SIM_COMMAND_HEALTH:
-        answer_health(sim);
-        return true;
-    case SIM_COMMAND_UNDOCUMENTED_98:
-        answer_undocumented_98(sim);
-        return true;
-    default:
-        return false;
+    static const struct {
+        uint8_t code;
+        int step_chz;
+        void (*obey)(sim_t *sim); /* NULL: a step of the frequency. */
+    } commands[] = {
+        {SIM_COMMAND_FREQUENCY_UP_TENTH, 10, NULL},
+        {SIM_COMMAND_FREQUENCY_DOWN_TENTH, -10, NULL},
+        {SIM_COMMAND_FREQUENCY_UP, 100, NULL},
+        {SIM_COMMAND_FREQUENCY_DOWN, -100, NULL},
+        {SIM_COMMAND_GET_FREQUENCY, 0, NULL},
+        {SIM_COMMAND_REBOOT, 0, reboot},
+        {SIM_COMMAND_START, 0, start},
+        {SIM_COMMAND_STOP, 0, stop},
+        {SIM_COMMAND_INFORMATION, 0, answer_information},
+        {SIM_COMMAND_HEALTH, 0, answer_health},
+        {SIM_COMMAND_UNDOCUMENTED_98, 0, answer_undocumented_98},
+    };
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        if (commands[i].code == code && commands[i].obey != NULL) {
+            commands[i].obey(sim);
+            return true;
+        }
+        if (commands[i].code == code) {
+            step_frequency(sim, commands[i].step_chz);
+            return true;
+        }
     }
+    return false;
 }
 
 /* The manual's rule (section 2): while scanning, only stop is allowed. */
@@ -407,10 +390,8 @@ static void execute_late(sim_t *sim)
     sim_late_t *late = &sim->late;
     const uint8_t code = late->codes[0];
     late->count--;
-    for (uint32_t i = 0; i < late->count; i++) {
-        late->codes[i] = late->codes[i + 1u];
-        late->due_us[i] = late->due_us[i + 1u];
-    }
+    memmove(late->codes, late->codes + 1, late->count * sizeof late->codes[0]);
+    memmove(late->due_us, late->due_us + 1, late->count * sizeof late->due_us[0]);
     execute(sim, code);
 }
 
@@ -512,25 +493,21 @@ void sim_receive(sim_t *sim, const uint8_t *bytes, size_t count, uint64_t now_us
     }
 }
 
-static void note_packet(sim_t *sim, const sim_packet_t *packet)
+static void note_sent(sim_t *sim, const sim_run_t *run)
 {
+    const sim_packet_t *const packet = run->packet;
+    if (!run->completes) {
+        return;
+    }
+    if (packet == NULL) {
+        sim->counts.replies++;
+        return;
+    }
     sim->counts.packets++;
     sim->counts.start_packets += packet->starts_revolution ? 1u : 0u;
     sim->counts.samples += packet->bytes[3];
     if (sim->observer.on_packet != NULL) {
         sim->observer.on_packet(sim->observer.context, packet);
-    }
-}
-
-static void note_sent(sim_t *sim, const sim_run_t *run)
-{
-    if (!run->completes) {
-        return;
-    }
-    if (run->packet == NULL) {
-        sim->counts.replies++;
-    } else {
-        note_packet(sim, run->packet);
     }
 }
 
@@ -671,14 +648,8 @@ uint16_t sim_frequency_chz(const sim_t *sim)
 
 uint8_t sim_health(const sim_t *sim)
 {
-    uint8_t health = sim->health;
-    if (sim->rotor_blocked) {
-        health |= SIM_HEALTH_ENCODER;
-    }
-    if (sim->rotor.data_fault) {
-        health |= SIM_HEALTH_DATA;
-    }
-    return health;
+    return (uint8_t)(sim->health | (sim->rotor_blocked ? SIM_HEALTH_ENCODER : 0) |
+                     (sim->rotor.data_fault ? SIM_HEALTH_DATA : 0));
 }
 
 uint32_t sim_lost_frames(const sim_t *sim)
