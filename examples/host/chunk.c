@@ -123,7 +123,6 @@ static chunk_state_t read_chunk(const chunks_t *chunks, const uint8_t *bytes, si
                                 : read_new(bytes, count, chunk);
 }
 
-/* The file's last chunk may be incomplete. */
 bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_end, size_t *head)
 {
     chunk_t chunk;
@@ -132,6 +131,10 @@ bool chunks_begin(chunks_t *chunks, const uint8_t *bytes, size_t count, bool is_
         return false;
     }
     const bool was_lost = chunks->is_lost;
+    if (state == CHUNK_SHORT && !was_lost && !chunk.is_plausible) {
+        *head = count; /* The file ends in the head. */
+        return true;
+    }
     const bool is_believed = chunk.is_plausible && !was_lost;
     const bool is_good = state == CHUNK_WHOLE || (state == CHUNK_SHORT && is_believed);
     chunks->is_lost = !is_good;

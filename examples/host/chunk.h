@@ -4,8 +4,8 @@
 /* The chunks of a timed recording (FILE.tmini): tmini_timed.h describes version 2, which is
  * written. Version 1, which is read as well, has neither A7 C3 nor the CRC, and no chunk without
  * bytes. In both versions chunks are found again after damage: by the CRC, or by a chain of
- * plausible heads.
- */
+ * plausible heads. A file may end anywhere in its last chunk, because the program that wrote it may
+ * have been ended there: this is no damage. */
 
 #ifndef CHUNK_H
 #define CHUNK_H

@@ -363,17 +363,49 @@ void test_blocks_of_any_size_give_the_same_chunks(void)
     }
 }
 
-/* The last chunk has two packets; the second one lacks a byte. */
-void test_the_last_chunk_may_be_cut_short(void)
+/* The program that wrote the file was ended. The last chunk has two packets of 67 bytes. */
+static void play_cut(unsigned version)
 {
-    put_magic(2);
+    const size_t head = version == 1 ? 6 : 10;
     uint8_t packets[2 * sizeof manual_packet];
     memcpy(packets, manual_packet, sizeof manual_packet);
     memcpy(packets + sizeof manual_packet, manual_packet, sizeof manual_packet);
-    put_chunk(2, 1000, packets, sizeof packets);
-    feed(file, size - 1);
-    finish();
+    size = 0;
+    put_magic(version);
+    put_chunk(version, 1000, manual_packet, sizeof manual_packet);
+    const size_t last = size;
+    put_chunk(version, 1000, packets, sizeof packets);
+    for (size_t end = last; end <= size; end++) {
+        const size_t left = end > last + head ? end - last - head : 0;
+        tape_begin(&tape, NULL, 0);
+        feed(file, end);
+        finish();
+        TEST_ASSERT_EQUAL_UINT(0, tape.chunks.damages);
+        TEST_ASSERT_EQUAL_UINT64(1 + left / 67, tape.stream.packets);
+        TEST_ASSERT_EQUAL_UINT64(67 + left, tape.bytes);
+    }
+}
+
+void test_a_recording_of_version_1_that_ends_anywhere_in_a_chunk_is_not_damaged(void)
+{
+    play_cut(1);
+}
+
+void test_a_recording_of_version_2_that_ends_anywhere_in_a_chunk_is_not_damaged(void)
+{
+    play_cut(2);
+}
+
+/* While the next chunk is looked for, the lidar's bytes are passed on, down to the last. */
+void test_a_recording_may_end_in_a_damaged_place(void)
+{
+    put_magic(1);
+    put_number(0xFFFFFFFF, 4);
+    put_bytes(manual_packet, sizeof manual_packet);
+    play_whole();
+    TEST_ASSERT_EQUAL_UINT(1, tape.chunks.damages);
     TEST_ASSERT_EQUAL_UINT64(1, tape.stream.packets);
+    TEST_ASSERT_EQUAL_UINT64(71, tape.bytes);
 }
 
 /* ---------------------------------------------------------------------- what a stream reports */
