@@ -93,8 +93,8 @@ static tmini_packet_t judge_gap(stream_t *stream, const tmini_packet_t *packet, 
 static uint32_t sent_ms(const stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms)
 {
     const uint32_t due_ms = stream->sent_ms + packet->count / 4u + 1u;
-    const bool is_late = stream->is_late && stream->packets > 0 &&
-                         now_ms - stream->sent_ms <= PAUSE_MS && now_ms > due_ms;
+    const uint32_t late_ms = now_ms - due_ms; /* Large if it comes early: unsigned. */
+    const bool is_late = stream->is_late && stream->packets > 0 && late_ms <= PAUSE_MS;
     return is_late ? due_ms : now_ms;
 }
 

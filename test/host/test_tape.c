@@ -735,3 +735,47 @@ void test_what_was_interrupted_is_no_scan(void)
     TEST_ASSERT_FALSE(come(2, false, 84));
     TEST_ASSERT_FALSE(stream_end(&tape.stream));
 }
+
+/* 40 samples take 10 ms. Packets that come together are dated 11 ms apart, so that those that come
+ * in time catch up by 1 ms each. */
+void test_packets_that_come_late_get_the_times_at_which_they_were_sent(void)
+{
+    static const uint32_t came_ms[] = {900, 911, 990, 990, 990, 990};
+    static const uint32_t sent_ms[] = {900, 911, 922, 933, 944, 945};
+    tape.stream.is_late = true;
+    for (unsigned i = 0; i < 6; i++) {
+        (void)come(i % 5, false, came_ms[i]);
+        TEST_ASSERT_EQUAL_UINT32(sent_ms[i], tape.stream.sent_ms);
+    }
+    for (uint32_t now_ms = 1000; now_ms <= 1600; now_ms += 10) {
+        const uint32_t behind_ms = now_ms < 1440 ? 45 - (now_ms - 990) / 10 : 0;
+        (void)come(1, false, now_ms);
+        TEST_ASSERT_EQUAL_UINT32(now_ms - behind_ms, tape.stream.sent_ms);
+    }
+}
+
+void test_a_packet_that_comes_early_gets_the_time_at_which_it_comes(void)
+{
+    tape.stream.is_late = true;
+    (void)come(1, false, 100);
+    (void)come(2, false, 110);
+    TEST_ASSERT_EQUAL_UINT32(110, tape.stream.sent_ms);
+}
+
+void test_a_packet_that_comes_more_than_a_second_late_was_sent_then(void)
+{
+    for (uint32_t late_ms = 1000; late_ms <= 1001; late_ms++) {
+        setUp();
+        tape.stream.is_late = true;
+        (void)come(1, false, 0);
+        (void)come(2, false, 11 + late_ms);
+        TEST_ASSERT_EQUAL_UINT32(late_ms == 1000 ? 11 : 1012, tape.stream.sent_ms);
+    }
+}
+
+void test_without_a_network_packets_are_not_late(void)
+{
+    (void)come(1, false, 0);
+    (void)come(2, false, 500);
+    TEST_ASSERT_EQUAL_UINT32(500, tape.stream.sent_ms);
+}
