@@ -88,6 +88,20 @@ def test_a_file_that_cannot_be_written_is_exit_status_1(sim, words):
     assert sim(*words.split()).finish().status == 1
 
 
+# The distance to what stands at these angles, in mm.
+ROOM = {0: 2300, 12: 2351, 38: 5457, 76: 2886, 82: 0, 90: 2800, 143: 1000, 180: 1700, 218: 1045, 270: 2200,
+        312: 1345, 349: 1380}
+
+
+def test_the_room_is_as_described(sim):
+    assert sim("--write", "room.bin", "-s3", "--truth", "room.csv").finish().status == 0
+    with open("room.csv", encoding="ascii") as file:
+        samples = [[int(number) for number in line.split(",")] for line in list(file)[1:]]
+    for angle, distance in ROOM.items():
+        seen = [sample[4] for sample in samples if abs(sample[3] - 64 * angle) <= 16]
+        assert distance - 40 <= sorted(seen)[len(seen) // 2] <= distance + 40, angle
+
+
 # ---- Pseudo-terminal and socket
 
 

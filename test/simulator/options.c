@@ -199,7 +199,7 @@ static const option_t known[] = {
      .number = NUMBER(device.turned_q6, 64, 0, 359.99)},
     {"turning", "DEG/S", "the robot under it is turned, clockwise (0)",
      .number = NUMBER(device.turning_q6_s, 64, -360, 360)},
-    {"mast", "FROM:TO:MM", "it sees a part of the robot, in whole degrees", .set = set_mast},
+    {"mast", "A:B:MM", "it sees a part of the robot from A to B (whole degrees)", .set = set_mast},
     {"longer", "MM", "its ranges are too long by this, -40 to 1000 (0)",
      .number = NUMBER(device.range_error_mm, 1, -40, 1000)},
     {"fault", "KIND=RATE",
@@ -240,6 +240,10 @@ void options_print_help(void)
     for (size_t i = 0; i < KNOWN_OPTIONS; i++) {
         print_option(stdout, &known[i]);
     }
+    puts("\nThe room: walls 2.3 m ahead, 2.8 m on the right (90 degrees), 1.7 m behind and 2.2 m\n"
+         "on the left. On the right a window (no range), ahead a doorway to a corridor. A pillar\n"
+         "ahead, a box ahead left, a table's leg behind left, a box behind right: its corner is\n"
+         "nearest, 1.0 m at 143 degrees. More in test/simulator/README.md.");
 }
 
 static bool complain(const char *about, const char *what)
