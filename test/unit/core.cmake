@@ -3,7 +3,7 @@
 
 # The library's core, from bytes to scans.
 tmini_add_unit_test(test_names SOURCES test_names.c)
-tmini_add_unit_test(test_ring SOURCES test_ring.c)
+tmini_add_unit_test(test_ring SOURCES test_ring.c ../support/rows.c LIBRARIES tmini_test_support)
 tmini_add_unit_test(test_frame SOURCES test_frame.c)
 tmini_add_unit_test(test_parser SOURCES test_parser.c ../support/rows.c
     LIBRARIES tmini_test_receiver)

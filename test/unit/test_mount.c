@@ -40,164 +40,122 @@ static void apply(const tmini_mount_t *mount)
     TEST_ASSERT_EQUAL_INT(mount->upside_down, scan.upside_down);
 }
 
-void test_a_mount_of_zeros_changes_nothing(void)
-{
-    static const tmini_mount_t mount = {0};
-    add(0, 0);
-    add(23039, 16383);
-    apply(&mount);
-    is_point(0, 0, 0);
-    is_point(1, 23039, 16383);
-    TEST_ASSERT_EQUAL_UINT8(11, points[1].intensity);
-    TEST_ASSERT_EQUAL_UINT8(1, points[1].flag);
-}
+/* What a mount makes of points: each is its angle and distance before and after. */
+typedef struct {
+    const char *claim;
+    tmini_mount_t mount;
+    tmini_arc_t arcs[3];
+    uint16_t points[5][4];
+} case_t;
 
-/* The lidar's 90 degrees are the front, so a point at 100 is 10 degrees to the right of the
- * front. */
-void test_a_lidar_mounted_turned_is_turned_back(void)
-{
-    static const tmini_mount_t mount = {.front_q6 = 90 * 64};
-    add(90 * DEGREE, 1000);
-    add(100 * DEGREE, 1001);
-    add(89 * DEGREE, 1002);
-    add(0, 1003);
-    apply(&mount);
-    is_point(0, 0, 1000);
-    is_point(1, 10 * DEGREE, 1001);
-    is_point(2, 359 * DEGREE, 1002);
-    is_point(3, 270 * DEGREE, 1003);
-}
+#define D 64 /* Per degree. */
+#define MASKED(arcs) .masked_count = arcs
 
-/* Seen from above, the angles of a hanging lidar run counter-clockwise. */
-void test_a_lidar_upside_down_is_mirrored(void)
-{
-    static const tmini_mount_t mount = {.upside_down = true};
-    add(0, 1000);
-    add(10 * DEGREE, 1001);
-    add(350 * DEGREE, 1002);
-    apply(&mount);
-    is_point(0, 0, 1000);
-    is_point(1, 350 * DEGREE, 1001);
-    is_point(2, 10 * DEGREE, 1002);
-}
+static const case_t cases[] = {
+    {"a mount of zeros changes nothing", {0}, {{0}}, {{0, 0, 0, 0}, {23039, 16383, 23039, 16383}}},
+    /* The lidar's 90 degrees are the front; a point at 100 is 10 degrees to its right. */
+    {"a lidar mounted turned is turned back",
+     {.front_q6 = 90 * 64},
+     {{0}},
+     {{90 * D, 1000, 0, 1000},
+      {100 * D, 1001, 10 * D, 1001},
+      {89 * D, 1002, 359 * D, 1002},
+      {0, 1003, 270 * D, 1003}}},
+    /* Seen from above, the angles of a hanging lidar run counter-clockwise. */
+    {"a lidar upside down is mirrored",
+     {.upside_down = true},
+     {{0}},
+     {{0, 1000, 0, 1000}, {10 * D, 1001, 350 * D, 1001}, {350 * D, 1002, 10 * D, 1002}}},
+    {"a lidar upside down and turned is mirrored about the front",
+     {.front_q6 = 30 * 64, .upside_down = true},
+     {{0}},
+     {{30 * D, 1000, 0, 1000},
+      {40 * D, 1001, 350 * D, 1001},
+      {20 * D, 1002, 10 * D, 1002},
+      {60 * D, 1003, 330 * D, 1003}}},
+    {"distances out of range become unknown",
+     {.min_mm = 100, .max_mm = 5000},
+     {{0}},
+     {{0, 99, 0, 0}, {1, 100, 1, 100}, {2, 5000, 2, 5000}, {3, 5001, 3, 0}, {4, 0, 4, 0}}},
+    {"without a largest distance none is too far", {.min_mm = 1}, {{0}}, {{0, 16383, 0, 16383}}},
+    {"an arc masks the directions from its beginning to its end",
+     {MASKED(1)},
+     {{10, 20}},
+     {{10 * D - 1, 1000, 10 * D - 1, 1000},
+      {10 * D, 1001, 10 * D, 0},
+      {20 * D, 1002, 20 * D, 0},
+      {20 * D + 1, 1003, 20 * D + 1, 1003}}},
+    {"an arc may go through the front",
+     {MASKED(2)},
+     {{100, 110}, {350, 10}},
+     {{350 * D - 1, 1000, 350 * D - 1, 1000},
+      {350 * D, 1001, 350 * D, 0},
+      {0, 1002, 0, 0},
+      {10 * D, 1003, 10 * D, 0},
+      {10 * D + 1, 1004, 10 * D + 1, 1004}}},
+    /* The lidar hangs and sees a mast at 120 degrees, which is 60 degrees for the robot. */
+    {"arcs are the robot's directions",
+     {.front_q6 = 180 * 64, .upside_down = true, MASKED(1)},
+     {{59, 61}},
+     {{120 * D, 300, 60 * D, 0}, {60 * D, 1001, 120 * D, 1001}}},
+    /* For users who count angles to the left as negative. */
+    {"arcs and front may be negative",
+     {.front_q6 = -90 * 64, MASKED(2)},
+     {{-10, 10}, {-190, -170}},
+     {{270 * D, 1000, 0, 0},
+      {281 * D, 1001, 11 * D, 1001},
+      {259 * D, 1002, 349 * D, 1002},
+      {100 * D, 1003, 190 * D, 0},
+      {79 * D, 1004, 169 * D, 1004}}},
+    {"an arc may be a single direction",
+     {MASKED(1)},
+     {{90, 90}},
+     {{90 * D, 1000, 90 * D, 0}, {90 * D + 1, 1001, 90 * D + 1, 1001}}},
+    {"an arc may be the whole circle from behind",
+     {MASKED(1)},
+     {{-180, 180}},
+     {{90 * D + 1, 1001, 90 * D + 1, 0}}},
+    {"an arc may be the whole circle from the front",
+     {MASKED(1)},
+     {{0, 360}},
+     {{90 * D, 1000, 90 * D, 0}}},
+    {"any number of degrees is an arc", /* -8, 7 and -1. */
+     {MASKED(3)},
+     {{-32768, -32768}, {32767, 32767}, {-1, -1}},
+     {{352 * D, 1000, 352 * D, 0},
+      {7 * D, 1001, 7 * D, 0},
+      {8 * D, 1002, 8 * D, 1002},
+      {359 * D, 1003, 359 * D, 0}}},
+    {"an offset is added to ranges and not to what is unknown",
+     {.offset_mm = 69, .min_mm = 169, .max_mm = 5069},
+     {{0}},
+     {{0, 0, 0, 0}, {1, 99, 1, 0}, {2, 100, 2, 169}, {3, 5000, 3, 5069}, {4, 5001, 4, 0}}},
+    {"an offset leaves a range a range", {.offset_mm = -32768}, {{0}}, {{0, 16383, 0, 1}}},
+    {"an offset leaves a range in its bits", {.offset_mm = 32767}, {{0}}, {{0, 1, 0, 16383}}},
+    {"an offset of the largest range leaves 1 mm",
+     {.offset_mm = -16383},
+     {{0}},
+     {{0, 16383, 0, 1}}},
+};
 
-void test_a_lidar_upside_down_and_turned_is_mirrored_about_the_front(void)
+void test_a_mount_gives_points_the_robots_directions_and_distances(void)
 {
-    static const tmini_mount_t mount = {.front_q6 = 30 * 64, .upside_down = true};
-    add(30 * DEGREE, 1000);
-    add(40 * DEGREE, 1001);
-    add(20 * DEGREE, 1002);
-    apply(&mount);
-    is_point(0, 0, 1000);
-    is_point(1, 350 * DEGREE, 1001);
-    is_point(2, 10 * DEGREE, 1002);
-    TEST_ASSERT_EQUAL_UINT16(330 * DEGREE, tmini_mount_angle(&mount, 60 * DEGREE));
-}
-
-void test_distances_out_of_range_become_unknown(void)
-{
-    static const tmini_mount_t mount = {.min_mm = 100, .max_mm = 5000};
-    add(0, 99);
-    add(1, 100);
-    add(2, 5000);
-    add(3, 5001);
-    add(4, 0);
-    apply(&mount);
-    is_point(0, 0, 0);
-    is_point(1, 1, 100);
-    is_point(2, 2, 5000);
-    is_point(3, 3, 0);
-    is_point(4, 4, 0);
-}
-
-void test_without_a_largest_distance_none_is_too_far(void)
-{
-    static const tmini_mount_t mount = {.min_mm = 1};
-    add(0, 16383);
-    apply(&mount);
-    is_point(0, 0, 16383);
-}
-
-void test_an_arc_masks_the_directions_from_its_beginning_to_its_end(void)
-{
-    static const tmini_arc_t arcs[] = {{10, 20}};
-    static const tmini_mount_t mount = {.masked = arcs, .masked_count = 1};
-    add(10 * DEGREE - 1, 1000);
-    add(10 * DEGREE, 1001);
-    add(20 * DEGREE, 1002);
-    add(20 * DEGREE + 1, 1003);
-    apply(&mount);
-    is_point(0, 10 * DEGREE - 1, 1000);
-    is_point(1, 10 * DEGREE, 0);
-    is_point(2, 20 * DEGREE, 0);
-    is_point(3, 20 * DEGREE + 1, 1003);
-}
-
-void test_an_arc_may_go_through_the_front(void)
-{
-    static const tmini_arc_t arcs[] = {{100, 110}, {350, 10}};
-    static const tmini_mount_t mount = {.masked = arcs, .masked_count = 2};
-    add(350 * DEGREE - 1, 1000);
-    add(350 * DEGREE, 1001);
-    add(0, 1002);
-    add(10 * DEGREE, 1003);
-    add(10 * DEGREE + 1, 1004);
-    apply(&mount);
-    is_point(0, 350 * DEGREE - 1, 1000);
-    is_point(1, 350 * DEGREE, 0);
-    is_point(2, 0, 0);
-    is_point(3, 10 * DEGREE, 0);
-    is_point(4, 10 * DEGREE + 1, 1004);
-}
-
-/* The lidar hangs and sees a mast at 120 degrees, which is 60 degrees for the robot. */
-void test_arcs_are_the_robots_directions(void)
-{
-    static const tmini_arc_t arcs[] = {{59, 61}};
-    static const tmini_mount_t mount = {
-        .front_q6 = 180 * 64, .upside_down = true, .masked = arcs, .masked_count = 1};
-    add(120 * DEGREE, 300);
-    add(60 * DEGREE, 1001);
-    apply(&mount);
-    is_point(0, 60 * DEGREE, 0);
-    is_point(1, 120 * DEGREE, 1001);
-}
-
-/* For users who count angles to the left as negative. */
-void test_arcs_and_front_may_be_negative(void)
-{
-    static const tmini_arc_t arcs[] = {{-10, 10}, {-190, -170}};
-    static const tmini_mount_t mount = {.front_q6 = -90 * 64, .masked = arcs, .masked_count = 2};
-    add(270 * DEGREE, 1000);
-    add(281 * DEGREE, 1001);
-    add(259 * DEGREE, 1002);
-    add(100 * DEGREE, 1003);
-    add(79 * DEGREE, 1004);
-    apply(&mount);
-    is_point(0, 0, 0);
-    is_point(1, 11 * DEGREE, 1001);
-    is_point(2, 349 * DEGREE, 1002);
-    is_point(3, 190 * DEGREE, 0);
-    is_point(4, 169 * DEGREE, 1004);
-}
-
-void test_an_arc_may_be_the_whole_circle_or_a_single_direction(void)
-{
-    static const tmini_arc_t all[] = {{0, 360}};
-    static const tmini_arc_t one[] = {{-180, 180}, {90, 90}};
-    tmini_mount_t mount = {.masked = one + 1, .masked_count = 1};
-    add(90 * DEGREE, 1000);
-    add(90 * DEGREE + 1, 1001);
-    apply(&mount);
-    is_point(0, 90 * DEGREE, 0);
-    is_point(1, 90 * DEGREE + 1, 1001);
-    mount.masked = one;
-    apply(&mount);
-    is_point(1, 90 * DEGREE + 1, 0);
-    points[0].distance_mm = 1000;
-    mount.masked = all;
-    apply(&mount);
-    is_point(0, 90 * DEGREE, 0);
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const case_t *const row = &cases[i];
+        tmini_mount_t mount = row->mount;
+        mount.masked = row->arcs;
+        count = 0;
+        for (unsigned j = 0; j < 5; j++) {
+            add(row->points[j][0], row->points[j][1]);
+        }
+        apply(&mount);
+        for (unsigned j = 0; j < 5 && (j == 0 || row->points[j][2] + row->points[j][3] > 0); j++) {
+            TEST_ASSERT_EQUAL_UINT16_MESSAGE(row->points[j][2], points[j].angle_q6, row->claim);
+            TEST_ASSERT_EQUAL_UINT16_MESSAGE(row->points[j][3], points[j].distance_mm, row->claim);
+            TEST_ASSERT_EQUAL_UINT8(10 + j, points[j].intensity);
+            TEST_ASSERT_EQUAL_UINT8(j % 4, points[j].flag);
+        }
+    }
 }
 
 void test_a_front_may_be_any_number_of_sixty_fourths_of_a_degree(void)
@@ -214,52 +172,6 @@ void test_a_front_may_be_any_number_of_sixty_fourths_of_a_degree(void)
     TEST_ASSERT_EQUAL_UINT16(6, tmini_mount_angle(&mount, 5600));
     TEST_ASSERT_EQUAL_UINT16(0, tmini_mount_angle(&mount, 5594));
     TEST_ASSERT_EQUAL_UINT16(23039, tmini_mount_angle(&mount, 5593));
-}
-
-void test_any_number_of_degrees_is_an_arc(void)
-{
-    static const tmini_arc_t arcs[] = {{-32768, -32768}, {32767, 32767}, {-1, -1}}; /* -8, 7. */
-    static const tmini_mount_t mount = {.masked = arcs, .masked_count = 3};
-    add(352 * DEGREE, 1000);
-    add(7 * DEGREE, 1001);
-    add(8 * DEGREE, 1002);
-    apply(&mount);
-    is_point(0, 352 * DEGREE, 0);
-    is_point(1, 7 * DEGREE, 0);
-    is_point(2, 8 * DEGREE, 1002);
-    points[2].angle_q6 = 359 * DEGREE;
-    apply(&mount);
-    is_point(2, 359 * DEGREE, 0);
-}
-
-void test_an_offset_is_added_to_ranges_and_not_to_what_is_unknown(void)
-{
-    tmini_mount_t mount = {.offset_mm = 69, .min_mm = 169, .max_mm = 5069};
-    add(0, 0);
-    add(1, 99);
-    add(2, 100);
-    add(3, 5000);
-    add(4, 5001);
-    apply(&mount);
-    is_point(0, 0, 0);
-    is_point(1, 1, 0);
-    is_point(2, 2, 169);
-    is_point(3, 3, 5069);
-    is_point(4, 4, 0);
-}
-
-void test_an_offset_leaves_a_range_a_range(void)
-{
-    tmini_mount_t mount = {.offset_mm = -32768};
-    add(0, 16383);
-    apply(&mount);
-    is_point(0, 0, 1);
-    mount.offset_mm = 32767;
-    apply(&mount);
-    is_point(0, 0, 16383);
-    mount.offset_mm = -16383;
-    apply(&mount);
-    is_point(0, 0, 1);
 }
 
 void test_full_circles_are_no_angle(void)
