@@ -50,7 +50,6 @@ void tmini_recovery_reset(tmini_t *lidar)
 {
     lidar->recovery.attempts = FIRST_ATTEMPT;
     lidar->recovery.pause_ms = TMINI_BACK_OFF_MS / 2; /* It doubles before it is used. */
-    lidar->recovery.contact &= HAS_ANSWERED;
     lidar->recovery.is_lost = false;
 }
 
