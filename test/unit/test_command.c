@@ -48,6 +48,8 @@ static const row_t tales[] = {
         "idle info >90 +2000 >65 +50 >90 +2000 >65 +50 >90 +2000 !FAILED ?TIMEOUT @UNKNOWN"),
     ROW(an_answer_to_a_later_attempt_leaves_the_state_unknown,
         "idle info >90 +2000 >65 +50 >90 <info !INFO @UNKNOWN"),
+    ROW(the_time_for_a_reply_begins_when_the_port_has_taken_the_command,
+        "idle takes:0 info ~90 !NONE takes:2 >90 +2000 >65"),
     ROW(max_attempts_0_means_one, "attempts:0 info >65 +50 >90 +2000 !FAILED"),
     ROW(reply_timeout_0_waits_without_limit, "reply:0 info >65 +50 >90 +60000 <info !INFO"),
     ROW(what_came_before_a_question_is_no_answer_to_it, "info >65 <info +50 >90 +1999 <info !INFO"),

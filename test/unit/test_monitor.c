@@ -36,6 +36,8 @@ static const row_t tales[] = {
         SCANS "2( <ct:8 drain ) 2( <ct:0x18 drain ) <ct:0 !FAULTS faults:0x18"),
     ROW(a_turn_that_is_not_trusted_neither_reports_nor_clears, /* Only one is trusted at last. */
         SCANS "2( <ct:0 drain ) <ct:1 drain 2( bad-crc <ct:1 !NONE ) <ct:1 !NONE <ct:0 !FAULTS"),
+    ROW(a_turn_that_is_not_trusted_between_two_that_are_does_not_part_them,
+        SCANS "2( <ct:1 !NONE ) bad-crc <ct:1 !NONE <ct:0 !FAULTS faults:1"),
     ROW(a_unit_that_reports_its_health_is_believed_even_without_any_range,
         SCANS "<ct:0 drain 4( <blind-ct:0 !NONE ) faults:0"),
     ROW(ct_information_is_known_once_a_turn_was_trusted,
@@ -97,7 +99,15 @@ static const row_t tales[] = {
     ROW(two_slow_turns_are_no_fault_and_three_are,
         "off scans-at-10 turns:1:6 <turn:6 !FAULTS !SCAN"),
     ROW(a_right_turn_ends_the_fault,
-        "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN <turn:100 !FAULTS !SCAN faults:0"),
+        "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN <turn:100 !FAULTS !SCAN faults:0 "
+        "turns:17:60 <turn:60 !FAULTS !SCAN"),
+    ROW(the_frequencys_fault_stands_beside_others,
+        "off no-scans wish:700 idle start >0D <700 !FREQUENCY >60 <scan <S !STARTED 40( <ct:8 "
+        "drain ) faults:0x48"),
+    ROW(each_wish_is_tried_twice,
+        "scans-at-10 set:900 turns:3:100 <turn:100 !SCAN !PAUSED >65 +50 >0D <900 !FREQUENCY >60 "
+        "<scan <S !STARTED turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65 +50 >0D <900 !FREQUENCY "
+        ">60"),
     ROW(without_recovery_another_frequency_is_only_a_fault,
         "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN turns:300:60"),
     ROW(a_frequency_that_the_lidar_has_and_does_not_keep_is_set_once_more_only,

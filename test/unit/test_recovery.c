@@ -16,6 +16,7 @@ void tearDown(void)
 /* Pauses of 0.5, 1, 2 and 2 s; a reboot before the fourth attempt and each later one. */
 #define FAILS "<600 >60 +2000 !NONE "
 #define FAILS_WITH_REBOOT "<600 >40 +1000 >0D <600 >0D <600 >60 +2000 !NONE "
+#define MUTE "30( >0D +250 ) >65 +50 "
 #define NOISE "14( ~40 <junk ) "
 #define NO_AGE "age:2147483647 "
 
@@ -50,6 +51,14 @@ static const row_t tales[] = {
     ROW(a_loss_before_a_whole_turn_continues_the_ladder,
         "lost >65 +50 >0D " FAILS
         "+500 >65 +50 >0D <600 >60 <scan <S !RECOVERED +1000 !LOST +1000 >65"),
+    /* The third loss counts as a new first attempt: two more failures lead to a reboot. */
+    ROW(a_lidar_that_never_answers_is_lost_again_and_again_without_a_reboot,
+        "start >65 +50 " MUTE ">60 <S !STARTED +1000 !LOST >65 +50 " MUTE
+        ">60 <S !RECOVERED +1000 !LOST +500 >65 +50 " MUTE
+        ">60 <S !RECOVERED +1000 !LOST +1000 >65 +50 " MUTE
+        ">60 <S !RECOVERED +1000 !LOST +2000 >65 +50 " MUTE
+        ">60 <S !RECOVERED +1000 !LOST +2000 >65 +50 >0D " FAILS "+2000 >65 +50 >0D " FAILS
+        "+2000 >65 +50 >0D <600 >40 +1000 >0D <600 >0D <600 >60"),
     ROW(a_loss_after_a_whole_turn_begins_it_again,
         "lost >65 +50 >0D " FAILS
         "+500 >65 +50 >0D <600 >60 <scan <S !RECOVERED turns:2:60 +1000 !LOST >65"),
@@ -106,7 +115,9 @@ static const row_t tales[] = {
         "quiet:200 stop >65 !NONE next:50 ~50 !NONE next:50 ~50 !NONE ~50 !NONE ~50 !STOPPED / "
         "quiet:300 ~50 !NONE ~50 !NONE ~50 !NONE ~50 !NONE ~50 !NONE ~50 !NONE stop >65 !NONE "
         "next:50 / quiet:20 ~100 !NONE stop >65 !NONE next:20 ~20 next:0 !STOPPED / quiet:599 stop "
-        ">65 !NONE ~300 <junk !NONE ~300 <junk !NONE ~300 <junk !NONE ~240 !NONE next:9 ~9 >65"),
+        ">65 !NONE ~300 <junk !NONE ~300 <junk !NONE ~300 <junk !NONE ~240 !NONE next:9 ~9 >65 / "
+        "stop >65 6( ~40 <junk !NONE ) ~30 "
+        "!NONE next:20"),
     ROW(a_task_sleeps_until_a_reply_is_overdue,
         "idle info >90 !NONE next:2000 ~500 next:1500 ~1600 next:0 >65"),
     ROW(an_event_or_a_byte_that_waits_for_the_port_is_polled_at_once,
