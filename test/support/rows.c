@@ -23,8 +23,15 @@ void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row))
 
     run_row = run;
     for (size_t i = 0; i < count; i++) {
+#ifdef __AVR__
+        static row_t row;
+        memcpy_P(&row, &rows[i], sizeof row);
+        current = &row;
+        UnityDefaultTestRun(run_current, "", (int)current->line);
+#else
         current = &rows[i];
         UnityDefaultTestRun(run_current, current->name, (int)current->line);
+#endif
     }
     Unity.CurrentTestName = name;
     Unity.CurrentTestLineNumber = line;

@@ -9,17 +9,32 @@
 
 #include <stddef.h>
 
-/* `steps` is what the table's runner understands; mostly words. */
+/* `steps` is what the table's runner understands; mostly words. A table is declared as
+ *
+ *     static const row_t rows[] IN_FLASH = {ROW(a_claim, "steps"), …}; */
+#ifdef __AVR__ /* Rows would fill its RAM. Names are left out: the line identifies the row. */
+#include <avr/pgmspace.h>
+#define IN_FLASH PROGMEM
 typedef struct {
-    const char *name;
     unsigned line;
+    char steps[640];
+} row_t;
+#define ROW(claim, steps) \
+    {                     \
+        __LINE__, steps   \
+    }
+#else
+#define IN_FLASH
+typedef struct {
+    unsigned line;
+    const char *name;
     const char *steps;
 } row_t;
-
 #define ROW(claim, steps)               \
     {                                   \
-        "test_" #claim, __LINE__, steps \
+        __LINE__, "test_" #claim, steps \
     }
+#endif
 
 /* Runs each row by `run`. It must be the last statement of a test function. */
 #define run_rows(rows, run) rows_run(rows, sizeof(rows) / sizeof(rows)[0], run)

@@ -375,7 +375,7 @@ static void survives_in_every_mode(const row_t *row)
     }
 }
 
-static const row_t lines[] = {
+static const row_t lines[] IN_FLASH = {
     ROW(lost_bytes_cost_no_other_packet, "drop 200 2000 50000"),
     ROW(flipped_bits_cost_no_other_packet, "flip 200 2000 50000"),
     ROW(extra_bytes_cost_no_other_packet, "insert 200 2000 50000"),
@@ -441,7 +441,7 @@ static void is_reported_and_not_repaired(const row_t *row)
     reports(strstr(row->steps, "data") != NULL ? TMINI_FAULT_DATA : TMINI_FAULT_ENCODER);
 }
 
-static const row_t faults[] = {
+static const row_t faults[] IN_FLASH = {
     ROW(a_blocked_rotor_is_reported, "ct starts blocked: encoder"),
     ROW(a_blocked_rotor_without_start_packets_is_reported, "ct blocked: encoder"),
     ROW(a_blocked_rotor_of_a_unit_without_ct_information_is_reported, "blocked: encoder"),

@@ -18,7 +18,7 @@ endfunction()
 
 tmini_add_driver_tests(test_tmini)
 
-# Told in words. The ATmega2560 keeps text in its 8 KB of RAM: this is too much.
+# Told in words. They fit into the ATmega2560, but take too long there.
 tmini_add_driver_tests(test_command test_recovery test_wish test_monitor test_poll test_blocking
     WITH ../support/tale.c ../support/rows.c NOT_ON int16)
 

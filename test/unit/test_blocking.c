@@ -163,7 +163,7 @@ void tearDown(void)
     tale_end();
 }
 
-static const row_t tales[] = {
+static const row_t tales[] IN_FLASH = {
     ROW(info_is_read, "idle in:5:info read-info:100 >90 model:151 serial:4 waited:5 @IDLE"),
     ROW(health_is_read, "idle in:5:health:0x10 read-health:100 >92 error:0x10 code:0x1234"),
     ROW(the_frequency_is_read, "idle in:5:640 read-frequency:100 >0D chz:640"),

@@ -5,11 +5,13 @@
  * here have few packets of few samples: within a packet, samples may be any angle apart. */
 
 #include "receiver.h"
+#include "rows.h"
 #include "stream.h"
 
 #include "tmini/parts/tmini_builder.h"
 #include "unity.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define DEGREE 64u
@@ -157,45 +159,12 @@ void test_only_defined_filters_are_taken(void)
 
 /* ---------------------------------------------------------------------------------- revolutions */
 
-void test_what_precedes_the_first_start_packet_is_no_scan(void)
-{
-    quarter(180 * DEGREE);
-    quarter(270 * DEGREE);
-    TEST_ASSERT_FALSE(start(0));
-    TEST_ASSERT_EQUAL_UINT16(1, scan->count);
-}
-
-void test_a_scan_goes_from_a_start_packet_to_the_next(void)
-{
-    TEST_ASSERT_FALSE(start(0));
-    rest_of_turn(0);
-    now_ms = 5167;
-    expect_scan(0, 0, true);
-    TEST_ASSERT_EQUAL_PTR(points, scan->points);
-    TEST_ASSERT_EQUAL_UINT16(21, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(5, scan->packets);
-    TEST_ASSERT_EQUAL_UINT16(0, scan->dropped);
-    TEST_ASSERT_EQUAL_UINT16(0, scan->checksum_errors);
-    TEST_ASSERT_EQUAL_UINT32(5000, scan->start_ms);
-    TEST_ASSERT_EQUAL_UINT32(5167, scan->end_ms);
-    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz); /* Reported by the next start packet. */
-}
-
-/* The estimated arrival time of held-back bytes may go backwards slightly. */
-void test_a_scan_does_not_end_before_it_began(void)
-{
-    whole_turn();
-    now_ms = 4999;
-    expect_scan(0, 0, true);
-    TEST_ASSERT_EQUAL_UINT32(5000, scan->start_ms);
-    TEST_ASSERT_EQUAL_UINT32(5000, scan->end_ms);
-}
-
 void test_points_are_in_order_of_arrival(void)
 {
     (void)start(3);
     (void)point(7, 47);
     (void)point(90 * DEGREE, 91 * DEGREE);
+    TEST_ASSERT_EQUAL_PTR(points, scan->points);
     TEST_ASSERT_EQUAL_UINT16(11, scan->count);
     TEST_ASSERT_EQUAL_UINT16(3, points[0].angle_q6);
     TEST_ASSERT_EQUAL_UINT16(7, points[1].angle_q6);
@@ -209,57 +178,6 @@ void test_points_are_in_order_of_arrival(void)
     TEST_ASSERT_EQUAL_UINT8(3, points[4].flag);
 }
 
-void test_a_scan_stays_as_it_is_until_the_packet_that_closed_it_is_added(void)
-{
-    whole_turn();
-    expect_scan(17, 0, true);
-    TEST_ASSERT_EQUAL_UINT16(0, points[0].angle_q6);
-    now_ms = 5167;
-    add();
-    TEST_ASSERT_EQUAL_UINT16(17, points[0].angle_q6);
-    TEST_ASSERT_EQUAL_UINT16(1, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(1, scan->packets);
-    TEST_ASSERT_EQUAL_UINT32(5167, scan->start_ms);
-    TEST_ASSERT_FALSE(scan->complete);
-}
-
-void test_a_scan_is_closed_once(void)
-{
-    (void)start(0);
-    expect_scan(0, 0, false);
-    add();
-}
-
-void test_scans_follow_one_another(void)
-{
-    (void)start(0);
-    for (unsigned i = 0; i < 3; i++) {
-        rest_of_turn(0);
-        expect_scan(0, 0, true);
-        add();
-    }
-}
-
-void test_the_frequency_has_steps_of_a_tenth_of_a_hertz(void)
-{
-    (void)start(0);
-    TEST_ASSERT_TRUE(arrive(0x75, 1, 0, 0)); /* From a real unit: 5.8 Hz. */
-    TEST_ASSERT_EQUAL_UINT16(580, scan->frequency_chz);
-    add();
-    TEST_ASSERT_TRUE(arrive(0xFF, 1, 0, 0));
-    TEST_ASSERT_EQUAL_UINT16(1270, scan->frequency_chz);
-}
-
-void test_a_discarded_scan_is_not_continued(void)
-{
-    (void)start(0);
-    quarter(0);
-    tmini_builder_discard(&builder);
-    quarter(90 * DEGREE); /* The angle at which turns begin is also forgotten. */
-    TEST_ASSERT_FALSE(start(0));
-    TEST_ASSERT_EQUAL_UINT16(1, scan->count);
-}
-
 void test_filtered_points_keep_their_place(void)
 {
     begin_with(ROOM, TMINI_FILTER_SPECULAR);
@@ -270,206 +188,6 @@ void test_filtered_points_keep_their_place(void)
     TEST_ASSERT_EQUAL_UINT16(0, points[3].distance_mm);
     TEST_ASSERT_EQUAL_UINT8(2, points[3].flag);
     TEST_ASSERT_EQUAL_UINT16(1021, points[4].distance_mm);
-}
-
-/* ------------------------------------------------------------------------------- a small buffer */
-
-void test_points_that_do_not_fit_are_counted_and_not_written(void)
-{
-    begin_with(8, TMINI_FILTER_NONE);
-    whole_turn();
-    TEST_ASSERT_EQUAL_HEX16(0xEEEE, points[8].angle_q6);
-    expect_scan(0, 0, false);
-    TEST_ASSERT_EQUAL_UINT16(8, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(13, scan->dropped);
-    TEST_ASSERT_EQUAL_UINT16(5, scan->packets);
-}
-
-void test_a_buffer_that_just_fits_makes_a_complete_scan(void)
-{
-    begin_with(21, TMINI_FILTER_NONE);
-    whole_turn();
-    expect_scan(0, 0, true);
-    begin_with(20, TMINI_FILTER_NONE);
-    add();
-    rest_of_turn(0);
-    expect_scan(0, 0, false);
-    TEST_ASSERT_EQUAL_UINT16(20, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(1, scan->dropped);
-}
-
-void test_the_next_scan_has_the_whole_buffer_again(void)
-{
-    begin_with(8, TMINI_FILTER_NONE);
-    whole_turn();
-    expect_scan(0, 0, false);
-    add();
-    quarter(0);
-    TEST_ASSERT_EQUAL_UINT16(6, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(0, scan->dropped);
-}
-
-/* ------------------------------------------------------------------------------------- quality */
-
-void test_one_byte_before_a_start_packet_is_last_crc_and_no_gap(void)
-{
-    whole_turn();
-    strays = 1;
-    expect_scan(0, 0, true);
-    add();
-    rest_of_turn(0);
-    expect_scan(0, 0, true);
-}
-
-void test_two_bytes_before_a_start_packet_are_a_gap(void)
-{
-    whole_turn();
-    strays = 2;
-    expect_scan(0, 1, false);
-}
-
-void test_257_bytes_before_a_start_packet_are_a_gap(void)
-{
-    whole_turn();
-    strays = 257;
-    expect_scan(0, 1, false);
-}
-
-void test_a_gap_before_a_scan_is_not_its_own(void)
-{
-    strays = 9;
-    whole_turn();
-    expect_scan(0, 0, true);
-}
-
-void test_a_byte_before_a_point_packet_is_a_gap(void)
-{
-    (void)start(0);
-    quarter(0);
-    strays = 1;
-    quarter(90 * DEGREE);
-    quarter(180 * DEGREE);
-    strays = 1;
-    quarter(270 * DEGREE);
-    expect_scan(0, 2, false);
-}
-
-static void garbage(unsigned count)
-{
-    static const uint8_t byte = 0x11;
-    for (; count > 0; count--) {
-        receiver_feed(&receiver, &byte, 1);
-        TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, receiver_next(&receiver));
-    }
-}
-
-/* A turn at 12 Hz has about 1100 bytes, so half a turn or more may be missing. */
-void test_more_than_500_skipped_bytes_end_a_scan(void)
-{
-    (void)start(0);
-    quarter(0);
-    garbage(500);
-    TEST_ASSERT_FALSE(arrive(0x00, 5, 90 * DEGREE, 179 * DEGREE));
-    garbage(501);
-    TEST_ASSERT_TRUE(arrive(0x00, 5, 180 * DEGREE, 269 * DEGREE));
-    TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
-    TEST_ASSERT_FALSE(scan->complete);
-}
-
-void test_a_jump_of_more_than_4_degrees_is_a_gap(void)
-{
-    (void)start(0);
-    (void)point(256, 1000);
-    TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
-    (void)point(1256, 2000);
-    TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
-    (void)point(2257, 3000);
-    TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
-    (void)point(3000 + 170 * DEGREE, 3100 + 170 * DEGREE);
-    TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
-}
-
-void test_a_jump_of_more_than_half_a_turn_ends_the_scan(void)
-{
-    (void)start(0);
-    (void)point(64, 640);
-    TEST_ASSERT_FALSE(point(640 + 180 * DEGREE, 700 + 180 * DEGREE));
-    begin_with(ROOM, TMINI_FILTER_NONE);
-    (void)start(0);
-    (void)point(64, 640);
-    TEST_ASSERT_TRUE(point(641 + 180 * DEGREE, 700 + 180 * DEGREE));
-}
-
-/* The turn lacks 4 degrees the first time, and 1/64 degree more the second time. */
-void test_a_turn_that_lacks_more_than_4_degrees_is_incomplete(void)
-{
-    static const uint16_t ends[] = {0, 23039};
-    for (unsigned i = 0; i < 2; i++) {
-        begin_with(ROOM, TMINI_FILTER_NONE);
-        (void)start(256);
-        (void)point(300, 10000);
-        (void)point(10100, 20000);
-        (void)point(20100, 23030);
-        TEST_ASSERT_TRUE(arrive(0x79, 1, ends[i], ends[i]));
-        TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
-        TEST_ASSERT_EQUAL(i == 0, scan->complete);
-    }
-}
-
-void test_a_jump_at_the_end_of_a_turn_is_a_gap(void)
-{
-    (void)start(0);
-    quarter(0);
-    quarter(90 * DEGREE);
-    quarter(180 * DEGREE);
-    expect_scan(0, 1, false);
-}
-
-void test_a_step_back_by_less_than_4_degrees_is_jitter(void)
-{
-    (void)start(116 * DEGREE);
-    (void)point(115 * DEGREE, 200 * DEGREE);
-    (void)point(196 * DEGREE + 1, 270 * DEGREE);
-    TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
-    (void)point(266 * DEGREE + 1, 300 * DEGREE);
-    TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
-    (void)point(296 * DEGREE, 302 * DEGREE); /* Exactly 4 degrees back count as 356 forwards. */
-    TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
-}
-
-void test_a_packet_of_two_samples_goes_from_the_first_angle_to_the_last(void)
-{
-    (void)start(0);
-    (void)arrive(0x00, 2, DEGREE, 180 * DEGREE);
-    (void)arrive(0x00, 2, 181 * DEGREE, 360 * DEGREE);
-    expect_scan(0, 0, true);
-}
-
-void test_the_last_angle_of_a_lone_sample_does_not_count(void)
-{
-    (void)start(0);
-    quarter(0);
-    (void)arrive(0x00, 1, 91 * DEGREE, 50 * DEGREE); /* Section 9.6: LSA before FSA. */
-    quarter(91 * DEGREE);
-    quarter(181 * DEGREE);
-    quarter(270 * DEGREE);
-    expect_scan(0, 0, true);
-}
-
-void test_checksum_errors_are_counted_while_the_scan_is_received(void)
-{
-    receiver.parser.counters.checksum_errors = 65530;
-    whole_turn();
-    receiver.parser.counters.checksum_errors += 3;
-    TEST_ASSERT_TRUE(arrive(0x79, 1, 0, 0));
-    TEST_ASSERT_EQUAL_UINT16(3, scan->checksum_errors);
-    add();
-    receiver.parser.counters.checksum_errors += 263; /* The lower 16 bits overflow. */
-    TEST_ASSERT_TRUE(arrive(0x79, 1, 0, 0));
-    TEST_ASSERT_EQUAL_UINT16(263, scan->checksum_errors);
-    add();
-    TEST_ASSERT_TRUE(arrive(0x79, 1, 0, 0));
-    TEST_ASSERT_EQUAL_UINT16(0, scan->checksum_errors);
 }
 
 void test_a_count_reaches_65535_exactly(void)
@@ -530,164 +248,13 @@ static void expect_two_scans_without_start(uint32_t from_q6)
     add();
 }
 
-void test_a_lost_start_packet_never_merges_two_revolutions(void)
+void test_a_lost_start_packet_never_merges_two_revolutions_wherever_they_start(void)
 {
     expect_two_scans_without_start(0);
-}
-
-void test_a_lost_start_packet_is_noticed_wherever_revolutions_start(void)
-{
     for (uint32_t degrees = 4; degrees < 360; degrees += 28) {
         expect_two_scans_without_start(degrees * DEGREE);
         expect_two_scans_without_start(degrees * DEGREE + 1);
     }
-}
-
-void test_packets_lost_around_a_start_do_not_merge_revolutions(void)
-{
-    for (uint32_t start_at = 0; start_at <= 116; start_at += 116) {
-        begin_with(ROOM, TMINI_FILTER_NONE);
-        const uint32_t from_q6 = start_at * DEGREE;
-        (void)start(from_q6);
-        quarter(from_q6);
-        quarter(from_q6 + 90 * DEGREE);
-        /* Lost: two point packets, the start packet, the next point packet. */
-        TEST_ASSERT_TRUE(arrive(0x00, 5, from_q6 + 91 * DEGREE, from_q6 + 180 * DEGREE));
-        TEST_ASSERT_EQUAL_UINT16(11, scan->count);
-        TEST_ASSERT_FALSE(scan->complete);
-        add();
-        TEST_ASSERT_TRUE(start(from_q6));
-    }
-}
-
-/* If several start packets in a row are missing, turns end at the angle of the last one
- * received. */
-void test_a_scan_without_its_start_packet_ends_where_the_next_start_packet_is_missing(void)
-{
-    const uint32_t from_q6 = 116 * DEGREE;
-    (void)start(from_q6);
-    rest_of_turn(from_q6);
-    for (unsigned turn = 0; turn < 3; turn++) {
-        TEST_ASSERT_TRUE(arrive(0x00, 5, from_q6 + 40 * DEGREE, from_q6 + 90 * DEGREE));
-        TEST_ASSERT_EQUAL_UINT16(turn == 0 ? 21 : 20, scan->count);
-        add();
-        quarter(from_q6 + 90 * DEGREE);
-        quarter(from_q6 + 180 * DEGREE);
-        quarter(from_q6 + 270 * DEGREE);
-    }
-    expect_scan(from_q6, 1, false);
-    TEST_ASSERT_EQUAL_UINT16(20, scan->count);
-}
-
-/* The last part of a turn does not belong to the next one. */
-void test_a_last_packet_alone_is_a_scan_of_its_own(void)
-{
-    (void)start(0);
-    quarter(0);
-    TEST_ASSERT_TRUE(arrive(0x00, 2, 358 * DEGREE, 359 * DEGREE));
-    add();
-    TEST_ASSERT_TRUE(point(DEGREE, 90 * DEGREE));
-    TEST_ASSERT_EQUAL_UINT16(5, scan->count);
-    quarter(90 * DEGREE);
-    TEST_ASSERT_EQUAL_UINT16(10, scan->count);
-}
-
-/* From 14 degrees before the beginning of a revolution to 14 after it: the packet fits in no
- * revolution, and no packet continues it. */
-void test_a_packet_across_the_end_of_a_turn_is_a_scan_of_its_own(void)
-{
-    (void)start(0);
-    for (unsigned i = 0; i < 2; i++) {
-        garbage(501);
-        (void)point(346 * DEGREE, 14 * DEGREE);
-        TEST_ASSERT_TRUE(point(11 * DEGREE, 90 * DEGREE));
-        TEST_ASSERT_EQUAL_UINT16(5, scan->count);
-    }
-}
-
-/* Its angles span nearly a turn. */
-void test_the_widest_packet_at_the_end_of_a_turn_is_a_scan_of_its_own(void)
-{
-    (void)start(0);
-    garbage(501);
-    (void)point(359 * DEGREE, 354 * DEGREE);
-    TEST_ASSERT_TRUE(point(355 * DEGREE, 356 * DEGREE));
-    TEST_ASSERT_EQUAL_UINT16(5, builder.scan.count);
-}
-
-void test_each_packet_after_a_gap_of_unknown_size_is_a_scan_of_its_own(void)
-{
-    (void)start(0);
-    for (uint32_t turned = 0; turned < 3; turned++) {
-        garbage(501);
-        TEST_ASSERT_TRUE(point(turned * 90 * DEGREE + DEGREE, (turned + 1) * 90 * DEGREE));
-        TEST_ASSERT_EQUAL_UINT16(5, scan->count);
-    }
-}
-
-/* The last start packet reported 6.1 Hz. */
-void test_a_scan_whose_end_is_missing_has_the_frequency_reported_last(void)
-{
-    (void)arrive(0x7B, 1, 0, 0);
-    rest_of_turn(0);
-    TEST_ASSERT_TRUE(arrive(0x00, 5, DEGREE, 90 * DEGREE));
-    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz);
-    add();
-    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz);
-    expect_scan(0, 2, false);
-    TEST_ASSERT_EQUAL_UINT16(610, scan->frequency_chz);
-}
-
-/* The packet comes at 5000 ms. Measuring its 40 samples took 39 * 250 us. It has 39 * 3 bytes more
- * than a start packet; sending these took 39 * 130 us. */
-void test_a_scan_without_its_start_packet_begins_when_its_first_point_was_measured(void)
-{
-    (void)start(0);
-    garbage(501);
-    TEST_ASSERT_TRUE(arrive(0x00, 40, 90 * DEGREE, 112 * DEGREE));
-    add();
-    TEST_ASSERT_EQUAL_UINT32(5000 - 14, scan->start_ms);
-}
-
-/* The scan ends at the angle at which the lost start packet would have been. */
-void test_a_scan_without_its_start_packet_counts_its_first_packet_as_swept(void)
-{
-    (void)start(0);
-    garbage(501);
-    TEST_ASSERT_TRUE(point(91 * DEGREE, 180 * DEGREE));
-    quarter(180 * DEGREE);
-    quarter(270 * DEGREE);
-    TEST_ASSERT_TRUE(point(1 * DEGREE, 90 * DEGREE));
-}
-
-/* The last sample is slightly before the next start packet, whose angle jitters. A lone sample
- * after a lost start packet is half a degree after that packet's angle. */
-void test_a_revolution_may_take_a_quarter_of_a_degree_more_than_a_circle_and_no_more(void)
-{
-    whole_turn();
-    TEST_ASSERT_FALSE(point(1, 16));
-    TEST_ASSERT_TRUE(arrive(0x00, 5, 17, 17));
-    begin_with(ROOM, TMINI_FILTER_NONE);
-    whole_turn();
-    TEST_ASSERT_TRUE(arrive(0x00, 5, 1, 17));
-}
-
-void test_jitter_backwards_does_not_count_as_a_turn(void)
-{
-    (void)start(0);
-    for (unsigned i = 0; i < 6; i++) {
-        TEST_ASSERT_FALSE(point(10 * DEGREE, 12 * DEGREE)); /* Two degrees forwards, two back. */
-    }
-    TEST_ASSERT_FALSE(point(13 * DEGREE, 350 * DEGREE));
-    TEST_ASSERT_FALSE(point(351 * DEGREE, 360 * DEGREE + 10));
-    TEST_ASSERT_TRUE(arrive(0x00, 5, 11, 140));
-}
-
-void test_a_start_packet_a_little_before_a_full_turn_closes_the_scan(void)
-{
-    (void)start(117 * DEGREE);
-    rest_of_turn(117 * DEGREE);
-    expect_scan(115 * DEGREE, 0, true);
 }
 
 /* ----------------------------------------------------------------------------------------- time */
@@ -736,6 +303,31 @@ void test_a_turn_of_49_days_is_too_long(void)
     TEST_ASSERT_FALSE(scan->complete);
 }
 
+/* ---------------------------------------------------------------------------------------- rows */
+
+/* Words of the rows. Angles are sixty-fourths of a degree, with "d" degrees: 180d+1.
+ *
+ *     S:0 P:1d,90d    a start packet at this angle, a packet of five samples: it closes no scan.
+ *     S!:0 P!:1d,90d  it closes the scan, and is not added yet: add. P40: of 40 samples; S75: of
+ *                     this CT, hexadecimal
+ *     end:0           a start packet that closes the scan, and reports 6.1 Hz
+ *     turn rest:0 quarter:90d     as above; rest: without its start packet
+ *     pause:1d,90d pause-S:0      a packet that closes the scan because of a pause, and is added
+ *     get:1d,90d overrun      a packet that DMA overwrites before it is added
+ *     strays:2 garbage:501    bytes before the next packet; bytes, one after the other
+ *     room:8 later:167 bad:3  the buffer; the time passes; so many checksum errors
+ *     new             from the beginning
+ *     count:21 …      see number_named() */
+
+static void garbage(unsigned count)
+{
+    static const uint8_t byte = 0x11;
+    for (; count > 0; count--) {
+        receiver_feed(&receiver, &byte, 1);
+        TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, receiver_next(&receiver));
+    }
+}
+
 /* The packet ends the scan because of the pause; no byte is missing. */
 static void arrive_after_a_pause(uint8_t ct, uint8_t count, uint32_t first_q6, uint32_t last_q6)
 {
@@ -746,44 +338,6 @@ static void arrive_after_a_pause(uint8_t ct, uint8_t count, uint32_t first_q6, u
     add();
 }
 
-void test_scans_that_only_time_has_ended_are_counted_as_late(void)
-{
-    (void)start(0);
-    quarter(0);
-    arrive_after_a_pause(0x00, 5, 91 * DEGREE, 180 * DEGREE);
-    TEST_ASSERT_EQUAL_UINT32(1, builder.late_scans);
-    quarter(180 * DEGREE);
-    quarter(270 * DEGREE);
-    strays = 1; /* LastCRC. */
-    arrive_after_a_pause(0x79, 1, 0, 0);
-    TEST_ASSERT_EQUAL_UINT32(2, builder.late_scans);
-}
-
-void test_scans_that_bytes_or_angles_also_end_are_not_counted_as_late(void)
-{
-    (void)start(0);
-    garbage(501);
-    (void)point(DEGREE, 90 * DEGREE);
-    strays = 1;
-    arrive_after_a_pause(0x00, 5, 91 * DEGREE, 180 * DEGREE);
-    arrive_after_a_pause(0x00, 5, 185 * DEGREE, 190 * DEGREE);
-    strays = 2;
-    arrive_after_a_pause(0x79, 1, 191 * DEGREE, 191 * DEGREE);
-    TEST_ASSERT_EQUAL_UINT32(0, builder.late_scans);
-}
-
-void test_a_jump_of_4_degrees_is_not_what_ends_a_scan(void)
-{
-    (void)start(0);
-    quarter(0);
-    arrive_after_a_pause(0x00, 5, 94 * DEGREE, 180 * DEGREE);
-    TEST_ASSERT_EQUAL_UINT32(1, builder.late_scans);
-    arrive_after_a_pause(0x00, 5, 184 * DEGREE + 1, 190 * DEGREE);
-    TEST_ASSERT_EQUAL_UINT32(1, builder.late_scans);
-}
-
-/* ------------------------------------------------------------------------------------------ DMA */
-
 static void overrun(void)
 {
     memset(bytes, 0, sizeof bytes);
@@ -791,119 +345,227 @@ static void overrun(void)
     TEST_ASSERT_FALSE(tmini_frame_intact(tmini_parser_frame(&receiver.parser)));
 }
 
-void test_a_packet_that_dma_has_overwritten_is_a_gap_and_no_point(void)
+static uint32_t angle_of(const char *text, char **rest)
 {
-    receiver_open_dma(&receiver, memory, 512, 0);
-    (void)start(0);
-    quarter(0);
-    receive(0x00, 5, 91 * DEGREE, 180 * DEGREE);
-    overrun();
-    add();
-    TEST_ASSERT_EQUAL_UINT16(6, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(2, scan->packets);
-    TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
-    TEST_ASSERT_EQUAL_UINT16(0, scan->dropped);
-    TEST_ASSERT_TRUE(arrive(0x00, 5, 181 * DEGREE, 270 * DEGREE)); /* Its turn is unknown. */
-    TEST_ASSERT_EQUAL_UINT16(6, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
-    TEST_ASSERT_FALSE(scan->complete);
+    uint32_t angle_q6 = (uint32_t)strtoul(text, rest, 10);
+    if (**rest == 'd') {
+        angle_q6 *= DEGREE;
+        (*rest)++;
+    }
+    return **rest == '+' ? angle_q6 + angle_of(*rest + 1, rest) : angle_q6;
 }
 
-/* A start packet has come and ended a scan, but DMA overwrites it before it is added. */
-static void lose_the_next_start(void)
+/* "S!:0" or "P40:1d,90d". */
+static void tell_packet(const char *word, bool is_start)
 {
-    receiver_open_dma(&receiver, memory, 512, 0);
-    whole_turn();
-    expect_scan(0, 0, true);
-    overrun();
-    add();
+    const char *const at = strchr(word, ':');
+    const unsigned long given = strtoul(word + 1, NULL, is_start ? 16 : 10);
+    char *rest;
+    const uint32_t first_q6 = angle_of(at + 1, &rest);
+    const uint32_t last_q6 = *rest == ',' ? angle_of(rest + 1, &rest) : first_q6;
+    const uint8_t ct = (uint8_t)(is_start ? (given > 0 ? given : 0x79) : 0);
+    const uint8_t count = (uint8_t)(is_start ? 1 : given > 0 ? given : 5);
+    TEST_ASSERT_EQUAL_MESSAGE(at[-1] == '!', arrive(ct, count, first_q6, last_q6), word);
 }
 
-void test_a_packet_after_the_first_that_dma_has_overwritten_leaves_the_scan_open(void)
+static bool number_named(const char *word, uint32_t *number)
 {
-    receiver_open_dma(&receiver, memory, 512, 0);
-    (void)start(0);
-    receive(0x00, 5, DEGREE, 90 * DEGREE);
-    overrun();
-    add();
-    TEST_ASSERT_TRUE(arrive(0x00, 5, 91 * DEGREE, 180 * DEGREE)); /* Its turn is unknown. */
-    TEST_ASSERT_EQUAL_UINT16(1, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(2, scan->gaps);
+    const struct {
+        const char *name;
+        uint32_t number;
+    } numbers[] = {
+        {"count:", scan->count},        {"packets:", scan->packets},
+        {"gaps:", scan->gaps},          {"complete:", scan->complete},
+        {"dropped:", scan->dropped},    {"errors:", scan->checksum_errors},
+        {"chz:", scan->frequency_chz},  {"start-ms:", scan->start_ms},
+        {"end-ms:", scan->end_ms},      {"first:", points[0].angle_q6},
+        {"ninth:", points[8].angle_q6}, {"late:", builder.late_scans},
+    };
+    for (unsigned i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        if (strncmp(word, numbers[i].name, strlen(numbers[i].name)) == 0) {
+            *number = numbers[i].number;
+            return true;
+        }
+    }
+    return false;
 }
 
-void test_after_a_start_packet_that_dma_has_overwritten_a_scan_has_a_gap(void)
+static bool is_word(const char *word, const char *name)
 {
-    lose_the_next_start();
-    quarter(0);
-    TEST_ASSERT_EQUAL_UINT16(5, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(1, scan->packets);
-    TEST_ASSERT_EQUAL_UINT16(1, scan->gaps);
+    const size_t length = strlen(name);
+    return strncmp(word, name, length) == 0 && (word[length] == ':' || word[length] == '\0');
 }
 
-void test_a_scan_of_no_packet_is_not_delivered(void)
+static void tell_word(char *word)
 {
-    lose_the_next_start();
-    TEST_ASSERT_FALSE(start(0));
-    TEST_ASSERT_EQUAL_UINT16(1, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
+    const char *const at = strchr(word, ':');
+    char *rest;
+    uint32_t number = at != NULL ? angle_of(at + 1, &rest) : 0;
+    if (is_word(word, "new")) {
+        setUp();
+    } else if (is_word(word, "dma")) {
+        receiver_open_dma(&receiver, memory, 512, 0);
+    } else if (is_word(word, "add")) {
+        add();
+    } else if (is_word(word, "discard")) {
+        tmini_builder_discard(&builder);
+    } else if (is_word(word, "refute")) {
+        tmini_builder_refute(&builder);
+    } else if (is_word(word, "overrun")) {
+        overrun();
+    } else if (is_word(word, "turn")) {
+        whole_turn();
+    } else if (is_word(word, "rest")) {
+        rest_of_turn(number);
+    } else if (is_word(word, "quarter")) {
+        quarter(number);
+    } else if (is_word(word, "end")) {
+        TEST_ASSERT_TRUE(arrive(0x7B, 1, number, number));
+    } else if (is_word(word, "get")) {
+        receive(0x00, 5, number, angle_of(rest + 1, &rest));
+    } else if (is_word(word, "pause")) {
+        arrive_after_a_pause(0x00, 5, number, angle_of(rest + 1, &rest));
+    } else if (is_word(word, "pause-S")) {
+        arrive_after_a_pause(0x79, 1, number, number);
+    } else if (is_word(word, "strays")) {
+        strays = number;
+    } else if (is_word(word, "garbage")) {
+        garbage(number);
+    } else if (is_word(word, "room")) {
+        begin_with(number, TMINI_FILTER_NONE);
+    } else if (is_word(word, "later")) {
+        now_ms += (uint32_t)strtol(at + 1, NULL, 10);
+    } else if (is_word(word, "bad")) {
+        receiver.parser.counters.checksum_errors += number;
+    } else if (number_named(word, &number)) {
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(strtoul(at + 1, NULL, 0), number, word);
+    } else {
+        tell_packet(word, word[0] == 'S');
+    }
 }
 
-/* ------------------------------------------------------------------ scans that do not continue */
-
-void test_a_part_of_a_circle_is_not_complete(void)
+static void tell_row(const row_t *row)
 {
-    (void)start(42 * DEGREE);
-    quarter(42 * DEGREE); /* To 132 degrees. */
-    expect_scan(133 * DEGREE, 0, false);
+    row_tell(row->steps, tell_word);
 }
 
-void test_a_circle_is_complete_to_within_four_degrees(void)
-{
-    whole_turn();
-    expect_scan(4 * DEGREE, 0, true);
-    add();
-    rest_of_turn(4 * DEGREE);
-    expect_scan(DEGREE, 0, true);
-    (void)start(0);
-    quarter(0);
-    quarter(90 * DEGREE);
-    quarter(180 * DEGREE);
-    TEST_ASSERT_FALSE(point(271 * DEGREE, 353 * DEGREE));
-    expect_scan(355 * DEGREE, 0, false); /* Five degrees less than a circle. */
-    whole_turn();
-    TEST_ASSERT_FALSE(point(360 * DEGREE, 360 * DEGREE + 16));
-    expect_scan(364 * DEGREE + 1, 0, false); /* Four degrees and 1/64 more. */
-}
+#define COMPLETE "gaps:0 complete:1 "
+#define LACKS "S:256 P:300,10000 P:10100,20000 P:20100,23030 "
+#define REST_FROM_116 "quarter:206d quarter:296d quarter:386d "
+#define LOSES_START "dma turn end:0 " COMPLETE "overrun add "
 
-void test_half_a_turn_missing_by_its_angle_ends_a_scan(void)
-{
-    (void)start(0);
-    quarter(0); /* Its last sample is at 90 degrees. */
-    TEST_ASSERT_FALSE(arrive(0x00, 5, 270 * DEGREE, 280 * DEGREE));
-    TEST_ASSERT_TRUE(arrive(0x00, 5, 270 * DEGREE + 1, 280 * DEGREE));
-}
+static const row_t rows[] IN_FLASH = {
+    /* ---- Revolutions ---- */
+    ROW(what_precedes_the_first_start_packet_is_no_scan, "quarter:180d quarter:270d S:0 count:1"),
+    ROW(a_scan_goes_from_a_start_packet_to_the_next, /* Which reports its frequency. */
+        "turn later:167 end:0 " COMPLETE "count:21 packets:5 dropped:0 errors:0 start-ms:5000 "
+        "end-ms:5167 chz:610"),
+    ROW(a_scan_does_not_end_before_it_began, /* The estimated times of bytes may step back. */
+        "turn later:-1 end:0 " COMPLETE "start-ms:5000 end-ms:5000"),
+    ROW(a_scan_stays_as_it_is_until_the_packet_that_closed_it_is_added,
+        "turn end:17 " COMPLETE "first:0 later:167 add first:17 count:1 packets:1 start-ms:5167 "
+        "complete:0"),
+    ROW(a_scan_is_closed_once, "S:0 end:0 gaps:0 complete:0 add"),
+    ROW(scans_follow_one_another, "S:0 3( rest:0 end:0 " COMPLETE "add )"),
+    ROW(the_frequency_has_steps_of_a_tenth_of_a_hertz, /* 0x75 is from a real unit: 5.8 Hz. */
+        "S:0 S75!:0 chz:580 add SFF!:0 chz:1270"),
+    ROW(a_discarded_scan_is_not_continued, /* Where turns begin is also forgotten. */
+        "S:0 quarter:0 discard quarter:90d S:0 count:1"),
+    /* ---- A small buffer ---- */
+    ROW(points_that_do_not_fit_are_counted_and_not_written,
+        "room:8 turn ninth:0xEEEE end:0 gaps:0 complete:0 count:8 dropped:13 packets:5"),
+    ROW(a_buffer_that_just_fits_makes_a_complete_scan,
+        "room:21 turn end:0 " COMPLETE "room:20 add rest:0 end:0 gaps:0 complete:0 count:20 "
+        "dropped:1"),
+    ROW(the_next_scan_has_the_whole_buffer_again,
+        "room:8 turn end:0 gaps:0 complete:0 add quarter:0 count:6 dropped:0"),
+    /* ---- Quality ---- */
+    ROW(one_byte_before_a_start_packet_is_last_crc_and_no_gap,
+        "turn strays:1 end:0 " COMPLETE "add rest:0 end:0 " COMPLETE),
+    ROW(two_bytes_or_257_before_a_start_packet_are_a_gap,
+        "turn strays:2 end:0 gaps:1 complete:0 new turn strays:257 end:0 gaps:1 complete:0"),
+    ROW(a_gap_before_a_scan_is_not_its_own, "strays:9 turn end:0 " COMPLETE),
+    ROW(a_byte_before_a_point_packet_is_a_gap,
+        "S:0 quarter:0 strays:1 quarter:90d quarter:180d strays:1 quarter:270d end:0 gaps:2 "
+        "complete:0"),
+    ROW(more_than_500_skipped_bytes_end_a_scan, /* A turn at 12 Hz has about 1100 bytes. */
+        "S:0 quarter:0 garbage:500 P:90d,179d garbage:501 P!:180d,269d gaps:2 complete:0"),
+    ROW(a_jump_of_more_than_4_degrees_is_a_gap,
+        "S:0 P:256,1000 gaps:0 P:1256,2000 gaps:0 P:2257,3000 gaps:1 P:170d+3000,170d+3100 gaps:2"),
+    ROW(a_jump_of_more_than_half_a_turn_ends_the_scan,
+        "S:0 P:64,640 P:180d+640,180d+700 new S:0 P:64,640 P!:180d+641,180d+700"),
+    ROW(a_turn_that_lacks_more_than_4_degrees_is_incomplete,
+        LACKS "S!:0 " COMPLETE "new " LACKS "S!:23039 gaps:0 complete:0"),
+    ROW(a_jump_at_the_end_of_a_turn_is_a_gap,
+        "S:0 quarter:0 quarter:90d quarter:180d end:0 gaps:1 complete:0"),
+    ROW(a_step_back_by_less_than_4_degrees_is_jitter, /* Exactly 4 count as 356 forwards. */
+        "S:116d P:115d,200d P:196d+1,270d gaps:0 P:266d+1,300d gaps:0 P!:296d,302d add gaps:1"),
+    ROW(a_packet_of_two_samples_goes_from_the_first_angle_to_the_last,
+        "S:0 P2:1d,180d P2:181d,360d end:0 " COMPLETE),
+    ROW(the_last_angle_of_a_lone_sample_does_not_count, /* Section 9.6: LSA before FSA. */
+        "S:0 quarter:0 P1:91d,50d quarter:91d quarter:181d quarter:270d end:0 " COMPLETE),
+    ROW(checksum_errors_are_counted_while_the_scan_is_received, /* The lower 16 bits overflow. */
+        "bad:65530 turn bad:3 S!:0 errors:3 add bad:263 S!:0 errors:263 add S!:0 errors:0"),
+    ROW(a_scan_that_is_refuted_is_not_complete, "turn refute end:0 gaps:1 complete:0"),
+    ROW(a_part_of_a_circle_is_not_complete, "S:42d quarter:42d end:133d gaps:0 complete:0"),
+    ROW(a_circle_is_complete_to_within_four_degrees, /* Five less; 4 1/64 more. */
+        "turn end:4d " COMPLETE "add rest:4d end:1d " COMPLETE
+        "new S:0 quarter:0 quarter:90d quarter:180d P:271d,353d end:355d gaps:0 complete:0 "
+        "new turn P:360d,360d+16 end:364d+1 gaps:0 complete:0"),
+    ROW(half_a_turn_missing_by_its_angle_ends_a_scan, /* The last sample is at 90 degrees. */
+        "S:0 quarter:0 P:270d,280d new S:0 quarter:0 P!:270d+1,280d"),
+    ROW(a_stream_that_steps_backwards_ends_a_scan, "S:10d P1:8d,8d P1:6d,6d P1!:5d,5d complete:0"),
+    /* ---- Lost start packets ---- */
+    ROW(packets_lost_around_a_start_do_not_merge_revolutions, /* Five of them. */
+        "S:0 quarter:0 quarter:90d P!:91d,180d count:11 complete:0 add S!:0 new S:116d "
+        "quarter:116d quarter:206d P!:207d,296d count:11 complete:0 add S!:116d"),
+    ROW(a_scan_without_its_start_packet_ends_where_the_next_start_packet_is_missing,
+        "S:116d rest:116d P!:156d,206d count:21 add " REST_FROM_116
+        "2( P!:156d,206d count:20 add " REST_FROM_116 ") end:116d gaps:1 complete:0 count:20"),
+    ROW(a_last_packet_alone_is_a_scan_of_its_own, /* It does not belong to the next turn. */
+        "S:0 quarter:0 P2!:358d,359d add P!:1d,90d add count:5 quarter:90d count:10"),
+    ROW(a_packet_across_the_end_of_a_turn_is_a_scan_of_its_own, /* It fits in no revolution. */
+        "S:0 2( garbage:501 P!:346d,14d add P!:11d,90d add count:5 )"),
+    ROW(the_widest_packet_at_the_end_of_a_turn_is_a_scan_of_its_own,
+        "S:0 garbage:501 P!:359d,354d add P!:355d,356d add count:5"),
+    ROW(each_packet_after_a_gap_of_unknown_size_is_a_scan_of_its_own,
+        "S:0 garbage:501 P!:1d,90d add count:5 garbage:501 P!:91d,180d add count:5 garbage:501 "
+        "P!:181d,270d add count:5"),
+    ROW(a_partial_scan_ends_where_its_turn_ends, "S:0 P!:299d,340d add P!:341d,362d"),
+    ROW(a_scan_whose_end_is_missing_has_the_frequency_reported_last,
+        "S7B:0 rest:0 P!:1d,90d chz:610 add chz:610 end:0 gaps:2 complete:0 chz:610"),
+    /* Measuring 40 samples took 39 * 250 us; their 39 * 3 bytes more took 39 * 130 us. */
+    ROW(a_scan_without_its_start_packet_begins_when_its_first_point_was_measured,
+        "S:0 garbage:501 P40!:90d,112d add start-ms:4986"),
+    ROW(a_scan_without_its_start_packet_counts_its_first_packet_as_swept,
+        "S:0 garbage:501 P!:91d,180d add quarter:180d quarter:270d P!:1d,90d"),
+    /* The last sample is slightly before the next start packet, whose angle jitters. */
+    ROW(a_revolution_may_take_a_quarter_of_a_degree_more_than_a_circle_and_no_more,
+        "turn P:1,16 P!:17,17 new turn P!:1,17"),
+    ROW(jitter_backwards_does_not_count_as_a_turn, /* Two degrees forwards, two back. */
+        "S:0 6( P:10d,12d ) P:13d,350d P:351d,360d+10 P!:11,140"),
+    ROW(a_start_packet_a_little_before_a_full_turn_closes_the_scan,
+        "S:117d rest:117d end:115d " COMPLETE),
+    /* ---- Time ---- */
+    ROW(scans_that_only_time_has_ended_are_counted_as_late, /* A stray byte may be LastCRC. */
+        "S:0 quarter:0 pause:91d,180d late:1 quarter:180d quarter:270d strays:1 pause-S:0 late:2"),
+    ROW(scans_that_bytes_or_angles_also_end_are_not_counted_as_late,
+        "S:0 garbage:501 P!:1d,90d add strays:1 pause:91d,180d pause:185d,190d strays:2 "
+        "pause-S:191d late:0"),
+    ROW(a_jump_of_4_degrees_is_not_what_ends_a_scan,
+        "S:0 quarter:0 pause:94d,180d late:1 pause:184d+1,190d late:1"),
+    /* ---- DMA: after an overwritten packet its turn is unknown ---- */
+    ROW(a_packet_that_dma_has_overwritten_is_a_gap_and_no_point,
+        "dma S:0 quarter:0 get:91d,180d overrun add count:6 packets:2 gaps:1 dropped:0 "
+        "P!:181d,270d count:6 gaps:2 complete:0"),
+    ROW(a_packet_after_the_first_that_dma_has_overwritten_leaves_the_scan_open,
+        "dma S:0 get:1d,90d overrun add P!:91d,180d count:1 gaps:2"),
+    ROW(after_a_start_packet_that_dma_has_overwritten_a_scan_has_a_gap,
+        LOSES_START "quarter:0 count:5 packets:1 gaps:1"),
+    ROW(a_scan_of_no_packet_is_not_delivered, LOSES_START "S:0 count:1 gaps:0"),
+};
 
-void test_a_stream_that_steps_backwards_ends_a_scan(void)
+void test_rows(void)
 {
-    (void)start(10 * DEGREE);
-    TEST_ASSERT_FALSE(arrive(0x00, 1, 8 * DEGREE, 8 * DEGREE));
-    TEST_ASSERT_FALSE(arrive(0x00, 1, 6 * DEGREE, 6 * DEGREE));
-    TEST_ASSERT_TRUE(arrive(0x00, 1, 5 * DEGREE, 5 * DEGREE));
-    TEST_ASSERT_FALSE(scan->complete);
-}
-
-void test_a_scan_that_is_refuted_is_not_complete(void)
-{
-    whole_turn();
-    tmini_builder_refute(&builder);
-    expect_scan(0, 1, false);
-}
-
-/* A partial scan begins at 299 degrees. Its first packet ends at 340; the second would go past the
- * turn's end, to 2 degrees, so it ends the scan. */
-void test_a_partial_scan_ends_where_its_turn_ends(void)
-{
-    TEST_ASSERT_FALSE(start(0));
-    TEST_ASSERT_TRUE(point(299 * DEGREE, 340 * DEGREE));
-    TEST_ASSERT_TRUE(point(341 * DEGREE, 362 * DEGREE));
+    run_rows(rows, tell_row);
 }

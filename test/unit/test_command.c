@@ -15,7 +15,7 @@ void tearDown(void)
 /* The header of a packet of 40 samples. */
 #define CUT_PACKET "<x:AA550028010001000000 "
 
-static const row_t tales[] = {
+static const row_t tales[] IN_FLASH = {
     /* ---- Sending ---- */
     ROW(a_question_in_an_unknown_state_first_stops_and_waits_for_a_quiet_line,
         "info @BUSY >65 +50 >90 <info !INFO @IDLE"),

@@ -20,7 +20,7 @@ void tearDown(void)
 #define NO_ANSWER "<99 >65 +50 >60 <scan <S !STARTED !FAILED "
 #define AGAIN "<turn:60 !SCAN !PAUSED >65 +50 >0D " NO_ANSWER
 
-static const row_t tales[] = {
+static const row_t tales[] IN_FLASH = {
     /* ---- Faults from CT information ---- */
     ROW(a_fault_seen_in_two_trusted_turns_is_reported_once,
         SCANS "2( <ct:1 !NONE ) faults:0 <ct:1 !FAULTS faults:1 <ct:1 !NONE"),

@@ -720,8 +720,6 @@ void test_a_reply_longer_than_the_ring_is_not_awaited(void)
 
 /* ---------------------------------------------------------------------------------------- rows */
 
-#ifndef __AVR__ /* Its RAM is too small for the text. */
-
 /* Words of the rows below:
  *
  *     <start <manual <info <health <frequency <scan    these bytes come; <manual:40: the first 40;
@@ -879,7 +877,7 @@ static void tell_row(const row_t *row)
 #define AWAIT_SCAN "await:1:81:0 "
 #define NO_REPLY "!end in-replies:0 "
 
-static const row_t rows[] = {
+static const row_t rows[] IN_FLASH = {
     /* ---- Packets ---- */
     ROW(the_manuals_packet_is_found,
         "<manual !19@0 packets:1 in-packets:67 errors:0 skipped:0 pending:0 !none"),
@@ -991,13 +989,9 @@ static const row_t rows[] = {
     ROW(a_frame_delivered_is_not_skipped, "<manual !19@0 skip-all skipped:0 !none"),
 };
 
-#endif
-
 void test_rows(void)
 {
-#ifndef __AVR__
     run_rows(rows, tell_row);
-#endif
 }
 
 /* -------------------------------------------------------------------------------- large rings */

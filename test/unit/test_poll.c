@@ -22,7 +22,7 @@ void tearDown(void)
 #define EIGHT_PACKETS "8( <P ) "
 #define GARBAGE "pause:30 scans 2( <small:700 drain ~1 ) <P drain "
 
-static const row_t tales[] = {
+static const row_t tales[] IN_FLASH = {
     /* ---- Bytes ---- */
     ROW(every_byte_is_accounted_for, /* 35 have come. */
         "idle health >92 <junk <health <junk <P <x:AA !HEALTH !NONE in-packets:22 in-replies:10 "

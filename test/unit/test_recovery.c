@@ -20,7 +20,7 @@ void tearDown(void)
 #define NOISE "14( ~40 <junk ) "
 #define NO_AGE "age:2147483647 "
 
-static const row_t tales[] = {
+static const row_t tales[] IN_FLASH = {
     /* ---- How a loss is noticed ---- */
     ROW(a_second_without_a_packet_is_a_loss, "scans +1000 !LOST @RECOVERING #0 >65"),
     ROW(each_packet_puts_the_loss_off, "scans +999 <P +1000 !LOST >65"),

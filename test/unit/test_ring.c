@@ -377,7 +377,7 @@ static void tell_row(const row_t *row)
 #define ALL "abcdefghijklmnop"
 #define PUT_ALL "put:" ALL " "
 
-static const row_t rows[] = {
+static const row_t rows[] IN_FLASH = {
     /* ---- Filled by a CPU ---- */
     ROW(bytes_come_out_in_the_order_in_which_they_went_in,
         "put:abc unread:abc discard:1 unread:bc put:d unread:bcd discard:3 unread:"),

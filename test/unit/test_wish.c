@@ -22,7 +22,7 @@ void tearDown(void)
     "info >90 <info !INFO frequency >0D health start 29( +250 >0D ) +250 !FAILED ?TIMEOUT >65 " \
     "+50 >92 <health !HEALTH "
 
-static const row_t tales[] = {
+static const row_t tales[] IN_FLASH = {
     /* ---- Start ---- */
     ROW(a_start_stops_asks_and_starts,
         "start @STARTING >65 +50 >0D <600 >60 <scan +100 <P !STARTED @SCANNING #600"),
