@@ -33,7 +33,8 @@ void tmini_packet_open(tmini_packet_t *packet, const tmini_frame_t *frame);
  * start packet is LastCRC, or noise (section 7). */
 static inline bool tmini_packet_misses(const tmini_packet_t *packet, uint16_t bytes)
 {
-    return bytes > (tmini_packet_is_start(packet) ? 1u : 0u);
+    const unsigned may_be_last_crc = packet->ct & 1u; /* Of a start packet. */
+    return bytes > may_be_last_crc;
 }
 
 #ifdef __cplusplus
