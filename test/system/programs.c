@@ -5,9 +5,9 @@
  * wish, what happens, and what comes of it. Each row is a claim (claims.h).
  *
  * A row is a script, or a function where power may come or fail at every moment. A script is a list
- * of steps: a word (store(), act(), judge()) and a number, or one of these claims: "in scanning": the driver's state;
- * "lost 1": how often an event has come. Steps before "begin" are configuration; a script without
- * it begins at once. */
+ * of steps: a word (store(), act(), judge()) and a number, or one of these claims: "in scanning":
+ * the driver's state; "lost 1": how often an event has come. Steps before "begin" are
+ * configuration; a script without it begins at once. */
 
 #include "bed.h"
 #include "claims.h"

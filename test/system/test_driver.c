@@ -150,7 +150,7 @@ static void streams_on_while_the_program_restarts(void)
     world_restart_library(&world);
 }
 
-void test_info_is_asked_of_a_lidar_that_is_still_streaming(void)
+void test_each_question_reaches_a_lidar_that_is_still_streaming(void)
 {
     static const uint8_t serial[16] = {2, 0, 2, 6, 0, 3, 1, 7, 0, 0, 0, 1, 2, 3, 4, 5};
 
@@ -160,10 +160,6 @@ void test_info_is_asked_of_a_lidar_that_is_still_streaming(void)
     TEST_ASSERT_EQUAL_UINT8(151, tmini_info(&world.lidar)->model);
     TEST_ASSERT_EQUAL_UINT8_ARRAY(serial, tmini_info(&world.lidar)->serial, 16);
     TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
-}
-
-void test_health_is_asked_of_a_lidar_that_is_still_streaming(void)
-{
     streams_on_while_the_program_restarts();
     sim_set_health(&world.sim, SIM_HEALTH_LD);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_health(&world.lidar));
@@ -171,15 +167,7 @@ void test_health_is_asked_of_a_lidar_that_is_still_streaming(void)
     TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_LD, tmini_health(&world.lidar)->faults);
 }
 
-void test_the_frequency_is_asked_of_a_lidar_that_is_still_streaming(void)
-{
-    streams_on_while_the_program_restarts();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_frequency(&world.lidar));
-    ends_with(TMINI_EVENT_FREQUENCY, 1000);
-    TEST_ASSERT_EQUAL_UINT16(600, tmini_frequency_chz(&world.lidar));
-}
-
-void test_the_frequency_of_a_lidar_that_is_still_streaming_is_set(void)
+void test_each_setting_reaches_a_lidar_that_is_still_streaming(void)
 {
     streams_on_while_the_program_restarts();
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 940));
@@ -187,11 +175,7 @@ void test_the_frequency_of_a_lidar_that_is_still_streaming_is_set(void)
     TEST_ASSERT_EQUAL_UINT16(940, sim_frequency_chz(&world.sim));
     scan();
     TEST_ASSERT_UINT16_WITHIN(20, 940, world.scan.frequency_chz);
-}
-
-void test_a_lidar_that_is_still_streaming_is_rebooted(void)
-{
-    streams_on_while_the_program_restarts();
+    world_restart_library(&world);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_reboot(&world.lidar));
     ends_with(TMINI_EVENT_REBOOTED, 6000);
     TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&world.sim));
@@ -307,26 +291,6 @@ void test_a_late_reply_to_a_command_of_another_program_disturbs_no_answer(void)
         scan();
         check_world(&world);
     }
-}
-
-void test_a_tail_of_300_ms_after_a_stop_is_waited_for(void)
-{
-    config.sim.stop_tail_ms = 300;
-    begin_scanning();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
-    TEST_ASSERT_EQUAL_HEX(0, world_run_ms(&world, 300));
-    ends_with(TMINI_EVENT_STOPPED, 100);
-}
-
-void test_commands_arrive_through_a_transmitter_that_is_often_busy(void)
-{
-    config.short_writes = true;
-    begin_scanning();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&world.lidar));
-    ends_with(TMINI_EVENT_STOPPED, 1000);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_set_frequency(&world.lidar, 1180));
-    ends_with(TMINI_EVENT_FREQUENCY, 5000);
-    TEST_ASSERT_EQUAL_UINT16(1180, sim_frequency_chz(&world.sim));
 }
 
 /* ---- Faults of the line, at several rates ---- */
@@ -519,37 +483,4 @@ void test_a_program_that_pauses_for_seconds_does_not_lose_a_lidar_that_streams(v
     TEST_ASSERT_TRUE(count(TMINI_EVENT_SCAN) > 0);
     TEST_ASSERT_EQUAL_UINT32(0, count(TMINI_EVENT_LOST));
     check_world(&world);
-}
-
-/* ---- Several ---- */
-
-void test_three_lidars_at_once_do_not_affect_each_other(void)
-{
-    static world_t worlds[3];
-
-    for (unsigned i = 0; i < 3; i++) {
-        config.seed = i;
-        config.sim.frequency_chz = (uint16_t)(600 + 200 * i);
-        config.streaming = i == 1;
-        world_init(&worlds[i], &config);
-        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&worlds[i].lidar));
-    }
-    for (unsigned ms = 0; ms < 20000; ms++) {
-        for (unsigned i = 0; i < 3; i++) {
-            (void)world_step(&worlds[i]);
-        }
-        if (ms == 10000) {
-            sim_link_force(&worlds[0].link, SIM_LINK_UNPLUG, 1500, worlds[0].now_us);
-            TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_stop(&worlds[2].lidar));
-        }
-    }
-    TEST_ASSERT_EQUAL_UINT32(1, worlds[0].counts.events[TMINI_EVENT_RECOVERED]);
-    TEST_ASSERT_EQUAL_UINT32(0, worlds[1].counts.events[TMINI_EVENT_LOST]);
-    TEST_ASSERT_EQUAL_UINT32(1, worlds[2].counts.events[TMINI_EVENT_STOPPED]);
-    TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(&worlds[0].lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_STATE_SCANNING, tmini_state(&worlds[1].lidar));
-    TEST_ASSERT_EQUAL_INT(TMINI_STATE_IDLE, tmini_state(&worlds[2].lidar));
-    for (unsigned i = 0; i < 3; i++) {
-        check_world(&worlds[i]);
-    }
 }

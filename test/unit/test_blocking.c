@@ -177,8 +177,7 @@ static const row_t tales[] IN_FLASH = {
         "waited:5 @SCANNING"),
     ROW(a_frequency_that_could_not_be_set_is_not_waited_for_while_scanning, /* It is not tried. */
         "wish:640 start >65 +50 >0D <99 >65 +50 >60 <P !STARTED set-to:640:100=STATE !FAILED "
-        "waited:0 "
-        "@SCANNING"),
+        "waited:0 @SCANNING"),
     ROW(a_frequency_that_a_lost_lidar_refuses_is_waited_for_until_it_scans_again,
         "scans +1000 !LOST >65 in:55:99 in:115:S set-to:640:8000=REPLY >0D >65 >60 waited:115 "
         "@SCANNING !RECOVERED"),

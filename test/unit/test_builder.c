@@ -458,13 +458,13 @@ static const row_t rows[] IN_FLASH = {
     /* ---- Revolutions ---- */
     ROW(what_precedes_the_first_start_packet_is_no_scan, "quarter:180d quarter:270d S:0 count:1"),
     ROW(a_scan_goes_from_a_start_packet_to_the_next, /* Which reports its frequency. */
-        "turn later:167 end:0 " COMPLETE "count:21 packets:5 dropped:0 errors:0 start-ms:5000 "
-        "end-ms:5167 chz:610"),
+        "turn later:167 end:0 " COMPLETE
+        "count:21 packets:5 dropped:0 errors:0 start-ms:5000 end-ms:5167 chz:610"),
     ROW(a_scan_does_not_end_before_it_began, /* The estimated times of bytes may step back. */
         "turn later:-1 end:0 " COMPLETE "start-ms:5000 end-ms:5000"),
     ROW(a_scan_stays_as_it_is_until_the_packet_that_closed_it_is_added,
-        "turn end:17 " COMPLETE "first:0 later:167 add first:17 count:1 packets:1 start-ms:5167 "
-        "complete:0"),
+        "turn end:17 " COMPLETE
+        "first:0 later:167 add first:17 count:1 packets:1 start-ms:5167 complete:0"),
     ROW(a_scan_is_closed_once, "S:0 end:0 gaps:0 complete:0 add"),
     ROW(scans_follow_one_another, "S:0 3( rest:0 end:0 " COMPLETE "add )"),
     ROW(the_frequency_has_steps_of_a_tenth_of_a_hertz, /* 0x75 is from a real unit: 5.8 Hz. */
@@ -475,8 +475,8 @@ static const row_t rows[] IN_FLASH = {
     ROW(points_that_do_not_fit_are_counted_and_not_written,
         "room:8 turn ninth:0xEEEE end:0 gaps:0 complete:0 count:8 dropped:13 packets:5"),
     ROW(a_buffer_that_just_fits_makes_a_complete_scan,
-        "room:21 turn end:0 " COMPLETE "room:20 add rest:0 end:0 gaps:0 complete:0 count:20 "
-        "dropped:1"),
+        "room:21 turn end:0 " COMPLETE
+        "room:20 add rest:0 end:0 gaps:0 complete:0 count:20 dropped:1"),
     ROW(the_next_scan_has_the_whole_buffer_again,
         "room:8 turn end:0 gaps:0 complete:0 add quarter:0 count:6 dropped:0"),
     /* ---- Quality ---- */
@@ -485,9 +485,8 @@ static const row_t rows[] IN_FLASH = {
     ROW(two_bytes_or_257_before_a_start_packet_are_a_gap,
         "turn strays:2 end:0 gaps:1 complete:0 new turn strays:257 end:0 gaps:1 complete:0"),
     ROW(a_gap_before_a_scan_is_not_its_own, "strays:9 turn end:0 " COMPLETE),
-    ROW(a_byte_before_a_point_packet_is_a_gap,
-        "S:0 quarter:0 strays:1 quarter:90d quarter:180d strays:1 quarter:270d end:0 gaps:2 "
-        "complete:0"),
+    ROW(a_byte_before_a_point_packet_is_a_gap, "S:0 quarter:0 strays:1 quarter:90d quarter:180d "
+                                               "strays:1 quarter:270d end:0 gaps:2 complete:0"),
     ROW(more_than_500_skipped_bytes_end_a_scan, /* A turn at 12 Hz has about 1100 bytes. */
         "S:0 quarter:0 garbage:500 P:90d,179d garbage:501 P!:180d,269d gaps:2 complete:0"),
     ROW(a_jump_of_more_than_4_degrees_is_a_gap,
@@ -510,8 +509,8 @@ static const row_t rows[] IN_FLASH = {
     ROW(a_part_of_a_circle_is_not_complete, "S:42d quarter:42d end:133d gaps:0 complete:0"),
     ROW(a_circle_is_complete_to_within_four_degrees, /* Five less; 4 1/64 more. */
         "turn end:4d " COMPLETE "add rest:4d end:1d " COMPLETE
-        "new S:0 quarter:0 quarter:90d quarter:180d P:271d,353d end:355d gaps:0 complete:0 "
-        "new turn P:360d,360d+16 end:364d+1 gaps:0 complete:0"),
+        "new S:0 quarter:0 quarter:90d quarter:180d P:271d,353d end:355d gaps:0 complete:0 new "
+        "turn P:360d,360d+16 end:364d+1 gaps:0 complete:0"),
     ROW(half_a_turn_missing_by_its_angle_ends_a_scan, /* The last sample is at 90 degrees. */
         "S:0 quarter:0 P:270d,280d new S:0 quarter:0 P!:270d+1,280d"),
     ROW(a_stream_that_steps_backwards_ends_a_scan, "S:10d P1:8d,8d P1:6d,6d P1!:5d,5d complete:0"),

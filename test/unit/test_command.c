@@ -77,8 +77,8 @@ static const row_t tales[] IN_FLASH = {
     ROW(an_idle_lidar_that_scans_is_stopped_each_time_and_its_tail_is_not_reported,
         "idle +500 <S !UNWANTED >65 @STOPPING <P +50 !STOPPED @IDLE +500 <P !UNWANTED >65"),
     ROW(a_lidar_that_scans_after_a_question_or_a_reboot_is_stopped,
-        "idle health >92 <health !HEALTH +500 <P !UNWANTED >65 / "
-        "idle reboot >40 +1000 >0D <600 !REBOOTED +500 <P !UNWANTED >65"),
+        "idle health >92 <health !HEALTH +500 <P !UNWANTED >65 / idle reboot >40 +1000 >0D <600 "
+        "!REBOOTED +500 <P !UNWANTED >65"),
     ROW(a_port_that_cannot_send_the_stop_is_asked_twice_a_second,
         "idle takes:-1 1000( +10 <P drain ) events:39"), /* Two events each time, one STOPPED. */
     ROW(packets_soon_after_a_stop_may_have_been_held_by_a_layer_below,
@@ -91,9 +91,9 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_lidar_that_never_answers_is_asked_30_times,
         "idle frequency 29( >0D +250 ) >0D +250 !FAILED ?TIMEOUT @UNKNOWN #0"),
     ROW(an_implausible_frequency_is_an_error, /* In 16 bits the last two would be 0 and 600. */
-        "idle frequency >0D <0 !FAILED ?REPLY #0 / idle frequency >0D <99 !FAILED ?REPLY / "
-        "idle frequency >0D <2001 !FAILED ?REPLY / idle frequency >0D <65535 !FAILED ?REPLY / "
-        "idle frequency >0D <65536 !FAILED ?REPLY / idle frequency >0D <66136 !FAILED ?REPLY #0"),
+        "idle frequency >0D <0 !FAILED ?REPLY #0 / idle frequency >0D <99 !FAILED ?REPLY / idle "
+        "frequency >0D <2001 !FAILED ?REPLY / idle frequency >0D <65535 !FAILED ?REPLY / idle "
+        "frequency >0D <65536 !FAILED ?REPLY / idle frequency >0D <66136 !FAILED ?REPLY #0"),
     ROW(a_plausible_frequency_is_taken,
         "idle frequency >0D <100 !FREQUENCY #100 frequency >0D <2000 !FREQUENCY #2000"),
     /* ---- Setting it ---- */

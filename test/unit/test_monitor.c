@@ -85,8 +85,7 @@ static const row_t tales[] IN_FLASH = {
         "@RECOVERING >65"),
     ROW(without_start_packets_100_of_300_packets_with_a_range_are_a_loss_and_99_are_not,
         "scans <blinds:12000 <ranges:3960 <blinds:8040 @SCANNING <ranges:4000 <blinds:8000 "
-        "@RECOVERING "
-        ">65"),
+        "@RECOVERING >65"),
     ROW(samples_without_a_range_and_without_a_start_packet_are_no_loss, /* The rotor is blocked. */
         "scans <blinds:60000 faults:0x02 @SCANNING"),
     /* ---- The frequency while it scans ---- */
@@ -98,16 +97,14 @@ static const row_t tales[] IN_FLASH = {
         "!SCAN faults:0 <turn:94 !FAULTS !SCAN faults:0x40"),
     ROW(two_slow_turns_are_no_fault_and_three_are,
         "off scans-at-10 turns:1:6 <turn:6 !FAULTS !SCAN"),
-    ROW(a_right_turn_ends_the_fault,
-        "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN <turn:100 !FAULTS !SCAN faults:0 "
-        "turns:17:60 <turn:60 !FAULTS !SCAN"),
+    ROW(a_right_turn_ends_the_fault, "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN <turn:100 "
+                                     "!FAULTS !SCAN faults:0 turns:17:60 <turn:60 !FAULTS !SCAN"),
     ROW(the_frequencys_fault_stands_beside_others,
         "off no-scans wish:700 idle start >0D <700 !FREQUENCY >60 <scan <S !STARTED 40( <ct:8 "
         "drain ) faults:0x48"),
-    ROW(each_wish_is_tried_twice,
-        "scans-at-10 set:900 turns:3:100 <turn:100 !SCAN !PAUSED >65 +50 >0D <900 !FREQUENCY >60 "
-        "<scan <S !STARTED turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65 +50 >0D <900 !FREQUENCY "
-        ">60"),
+    ROW(each_wish_is_tried_twice, "scans-at-10 set:900 turns:3:100 <turn:100 !SCAN !PAUSED >65 +50 "
+                                  ">0D <900 !FREQUENCY >60 <scan <S !STARTED turns:16:60 <turn:60 "
+                                  "!FAULTS !SCAN !PAUSED >65 +50 >0D <900 !FREQUENCY >60"),
     ROW(without_recovery_another_frequency_is_only_a_fault,
         "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN turns:300:60"),
     ROW(a_frequency_that_the_lidar_has_and_does_not_keep_is_set_once_more_only,

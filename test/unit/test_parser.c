@@ -954,9 +954,9 @@ static const row_t rows[] IN_FLASH = {
     /* ---- A ring that overflows ---- */
     ROW(refused_bytes_are_counted_as_overrun,
         "<zeros:300 !none overrun:44 skipped:256 <zeros:260 !none overrun:48"),
-    ROW(each_of_several_overflows_leaves_its_gap_where_it_was, /* It overflows before all is read. */
-        "<start <start <zeros:231 !1 gap:0 <start !1 gap:0 !none overrun:14 "
-        "2( <start <start <zeros:231 !1 gap:65535 <start !1 gap:0 !none ) overrun:42"),
+    ROW(each_of_several_overflows_leaves_its_gap_where_it_was, /* Before all has been read. */
+        "<start <start <zeros:231 !1 gap:0 <start !1 gap:0 !none overrun:14 2( <start <start "
+        "<zeros:231 !1 gap:65535 <start !1 gap:0 !none ) overrun:42"),
     ROW(no_packet_spans_a_gap, /* The bytes before it and those after it would form one. */
         "<manual:40 !none gap !none skipped:40 <manual+40 !none skipped:67 <start !1 gap:65535"),
     ROW(packets_before_and_after_an_overflow_are_found, /* The fourth is cut by 12 bytes. */
@@ -968,24 +968,21 @@ static const row_t rows[] IN_FLASH = {
     ROW(what_dma_may_have_overwritten_is_dropped_and_counted, /* The first packet's first byte. */
         "dma <start <zeros:231 <start !1@244 overrun:1 skipped:243"),
     ROW(overruns_of_dma_add_up, "dma <zeros:300 !none overrun:44 <zeros:260 !none overrun:48"),
-    ROW(an_overrun_of_dma_is_a_gap_of_65535,
-        "dma <start !1@0 <zeros:44 <start <zeros:243 !1@57 gap:65535 overrun:44 <start !1@313 "
-        "gap:243"),
+    ROW(an_overrun_of_dma_is_a_gap_of_65535, "dma <start !1@0 <zeros:44 <start <zeros:243 !1@57 "
+                                             "gap:65535 overrun:44 <start !1@313 gap:243"),
     ROW(a_candidate_that_dma_overran_is_forgotten, /* The packet is inside it. */
         "dma <manual:60 !none <start <zeros:217 !1@60 overrun:34 errors:0 skipped:26"),
     ROW(many_laps_of_dma_are_counted_and_survived,
         "dma 2( <zeros:900 ) <start !1@1800 overrun:1557 skipped:243"),
     ROW(after_a_lap_reported_by_mistake_nothing_is_found_twice,
         "dma <start !1@0 lap !none overrun:512 <start <zeros:174 <start <x:00 lap !1@1037 "
-        "gap:65535 "
-        "!1@1224 overrun:1024"),
+        "gap:65535 !1@1224 overrun:1024"),
     ROW(a_packet_that_dma_overwrites_while_it_is_read_is_not_intact, /* It was delivered. */
         "dma <manual !19@0 intact:1 <zeros:189 intact:1 <zeros:1 intact:0 !none overrun:0 "
         "skipped:190"),
     /* ---- Skipping ---- */
-    ROW(skipping_drops_all_unread_bytes,
-        "<start <x:22 skip-all skipped:14 pending:0 last:0x22 <manual !19@14 gap:14 <x:AA skip-all "
-        "pending:0"),
+    ROW(skipping_drops_all_unread_bytes, "<start <x:22 skip-all skipped:14 pending:0 last:0x22 "
+                                         "<manual !19@14 gap:14 <x:AA skip-all pending:0"),
     ROW(a_frame_delivered_is_not_skipped, "<manual !19@0 skip-all skipped:0 !none"),
 };
 

@@ -72,7 +72,7 @@ static const row_t tales[] IN_FLASH = {
         PAUSES "~95 " EIGHT_PACKETS "!NONE"),
     ROW(a_longer_pause_ends_the_scan_and_packets_without_a_pause_continue_the_next,
         PAUSES "~96 " EIGHT_PACKETS "!SCAN count:9 complete:0 late:1 <small:800 <small:900 !SCAN "
-               "count:32 !SCAN count:9 gaps:0"),
+                                    "count:32 !SCAN count:9 gaps:0"),
     ROW(pauses_longer_than_a_quarter_of_a_second_can_be_allowed,
         "pause:300 scans <small:700 drain ~250 " EIGHT_PACKETS "!NONE"),
     ROW(pauses_are_ignored_if_the_limit_is_0,

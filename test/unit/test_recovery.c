@@ -116,8 +116,7 @@ static const row_t tales[] IN_FLASH = {
         "quiet:300 ~50 !NONE ~50 !NONE ~50 !NONE ~50 !NONE ~50 !NONE ~50 !NONE stop >65 !NONE "
         "next:50 / quiet:20 ~100 !NONE stop >65 !NONE next:20 ~20 next:0 !STOPPED / quiet:599 stop "
         ">65 !NONE ~300 <junk !NONE ~300 <junk !NONE ~300 <junk !NONE ~240 !NONE next:9 ~9 >65 / "
-        "stop >65 6( ~40 <junk !NONE ) ~30 "
-        "!NONE next:20"),
+        "stop >65 6( ~40 <junk !NONE ) ~30 !NONE next:20"),
     ROW(a_task_sleeps_until_a_reply_is_overdue,
         "idle info >90 !NONE next:2000 ~500 next:1500 ~1600 next:0 >65"),
     ROW(an_event_or_a_byte_that_waits_for_the_port_is_polled_at_once,
