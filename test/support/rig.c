@@ -240,19 +240,6 @@ void rig_go_recovering(void)
     polls_and_sends(STOP);
 }
 
-void rig_go_asking_again(void)
-{
-    rig_go_recovering();
-    finds_quiet_and_sends(GET_FREQUENCY);
-    answers_and_gets(600, START);
-}
-
-void rig_go_backing_off(void)
-{
-    rig_go_asking_again();
-    passes_to(2000, TMINI_EVENT_NONE); /* The attempt has failed. */
-}
-
 /* ---- Turns and their events ---- */
 
 unsigned rig_turn_events(uint8_t health)

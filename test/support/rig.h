@@ -104,13 +104,6 @@ void rig_pass(unsigned line, uint32_t ms);
         polls_to(event);     \
     } while (false)
 
-/* The line has been quiet for long enough, and this command is sent. */
-#define finds_quiet_and_sends(code) \
-    do {                            \
-        passes(50);                 \
-        polls_and_sends(code);      \
-    } while (false)
-
 /* The lidar answers that this frequency is set, and this command follows. */
 #define answers_and_gets(frequency_chz, code) \
     do {                                      \
@@ -164,11 +157,9 @@ void rig_go_idle(void);
         begins_with(code, call);      \
     } while (false)
 
-void rig_go_starting(void);     /* The start has been sent, its reply is awaited. */
-void rig_go_spinning_up(void);  /* The start has been acknowledged. */
-void rig_go_scanning(void);     /* One point packet with a range has come. */
-void rig_go_recovering(void);   /* Lost; a stop has been sent just now. */
-void rig_go_asking_again(void); /* Recovering; a start has been sent just now. */
-void rig_go_backing_off(void);  /* Recovering; the first attempt has failed just now. */
+void rig_go_starting(void);    /* The start has been sent, its reply is awaited. */
+void rig_go_spinning_up(void); /* The start has been acknowledged. */
+void rig_go_scanning(void);    /* One point packet with a range has come. */
+void rig_go_recovering(void);  /* Lost; a stop has been sent just now. */
 
 #endif
