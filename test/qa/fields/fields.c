@@ -43,63 +43,42 @@ typedef struct {
     uint32_t freed;  /* Although the pillar was there. */
 } result_t;
 
+/* One for each place, K and N, in this order. */
+#define ALL (2 * KS * NS)
+
 static rover_t rover;
-static tmini_field_t fields[2][KS][NS];
-static tmini_field_state_t before[2][KS][NS];
-static result_t results[2][KS][NS];
+static tmini_field_t fields[ALL];
+static tmini_field_state_t before[ALL];
+static result_t results[ALL];
 
 static void set_up(const rover_config_t *config)
 {
-    static const tmini_fields_t all = {.list = &fields[0][0][0], .count = 2 * KS * NS};
-    for (unsigned i = 0; i < 2 * KS * NS; i++) {
-        fields[i / (KS * NS)][i / NS % KS][i % NS] =
-            (tmini_field_t){.corners = places[i / (KS * NS)].box,
-                            .corner_count = 2,
-                            .points = (uint8_t)(1 + i / NS % KS),
-                            .scans = scans_to_free[i % NS],
-                            .max_age_ms = 600};
-        before[i / (KS * NS)][i / NS % KS][i % NS] = TMINI_FIELD_BLIND;
-        results[i / (KS * NS)][i / NS % KS][i % NS] = (result_t){0};
+    static const tmini_fields_t all = {.list = fields, .count = ALL};
+    for (unsigned i = 0; i < ALL; i++) {
+        fields[i] = (tmini_field_t){.corners = places[i / (KS * NS)].box,
+                                    .corner_count = 2,
+                                    .points = (uint8_t)(1 + i / NS % KS),
+                                    .scans = scans_to_free[i % NS],
+                                    .max_age_ms = 600};
+        before[i] = TMINI_FIELD_BLIND;
+        results[i] = (result_t){0};
     }
     rover_init(&rover, config, &all);
 }
 
-typedef void (*change_t)(unsigned place, unsigned k, unsigned n, tmini_field_state_t now);
+typedef enum { NOTHING, ALARMS, FREED } counted_t;
 
-/* Calls `change` for each field whose state has changed. */
-static void look(change_t change)
+static void pass(uint32_t ms, counted_t counted)
 {
-    for (unsigned i = 0; i < 2 * KS * NS; i++) {
-        const unsigned place = i / (KS * NS);
-        const unsigned k = i / NS % KS;
-        const unsigned n = i % NS;
-        const tmini_field_state_t now =
-            tmini_field_state(&fields[place][k][n], rover_now_ms(&rover));
-        if (change != NULL && now != before[place][k][n]) {
-            change(place, k, n, now);
-        }
-        before[place][k][n] = now;
-    }
-}
-
-static void pass(uint32_t ms, change_t change)
-{
-    for (uint32_t i = 0; i < ms; i++) {
-        if (rover_pass(&rover)) {
-            look(change);
+    while (ms-- > 0) {
+        for (unsigned i = rover_pass(&rover) ? 0 : ALL; i < ALL; i++) {
+            const tmini_field_state_t now = tmini_field_state(&fields[i], rover_now_ms(&rover));
+            results[i].alarms +=
+                counted == ALARMS && now != before[i] && before[i] == TMINI_FIELD_FREE;
+            results[i].freed += counted == FREED && now != before[i] && now == TMINI_FIELD_FREE;
+            before[i] = now;
         }
     }
-}
-
-static void count_alarm(unsigned place, unsigned k, unsigned n, tmini_field_state_t now)
-{
-    (void)now;
-    results[place][k][n].alarms += before[place][k][n] == TMINI_FIELD_FREE;
-}
-
-static void count_freed(unsigned place, unsigned k, unsigned n, tmini_field_state_t now)
-{
-    results[place][k][n].freed += now == TMINI_FIELD_FREE;
 }
 
 static void show_pillar(unsigned place)
@@ -112,14 +91,13 @@ static void show_pillar(unsigned place)
                                    ((double)random_below(&rover.random, 2 * most) - most) / 100.0};
     static const rover_hall_t empty = {0};
     rover_furnish(&rover, &hall);
-    pass(FOUND_MS, NULL);
-    for (unsigned i = 0; i < KS * NS; i++) {
-        results[place][i / NS][i % NS].found +=
-            before[place][i / NS][i % NS] == TMINI_FIELD_OCCUPIED;
+    pass(FOUND_MS, NOTHING);
+    for (unsigned i = place * KS * NS; i < (place + 1) * KS * NS; i++) {
+        results[i].found += before[i] == TMINI_FIELD_OCCUPIED;
     }
-    pass(STAY_MS - FOUND_MS, count_freed);
+    pass(STAY_MS - FOUND_MS, FREED);
     rover_furnish(&rover, &empty);
-    pass(REST_MS + random_below(&rover.random, 200), NULL);
+    pass(REST_MS + random_below(&rover.random, 200), NOTHING);
 }
 
 static void print_by_n(const char *before_it, const double values[NS])
@@ -128,13 +106,13 @@ static void print_by_n(const char *before_it, const double values[NS])
 }
 
 /* The rows of one frequency, from `quiet`, without random points, and from `noisy`. */
-static void print_places(unsigned hertz, result_t quiet[2][KS][NS], result_t noisy[2][KS][NS],
+static void print_places(unsigned hertz, const result_t *quiet, const result_t *noisy,
                          unsigned hours)
 {
     static const double shown_hours = (double)TRIALS * (STAY_MS - FOUND_MS) / 3600000.0;
     for (unsigned i = 0; i < 2 * KS; i++) {
-        const result_t *const by_n = quiet[i / KS][i % KS];
-        const result_t *const noisy_by_n = noisy[i / KS][i % KS];
+        const result_t *const by_n = &quiet[i * NS];
+        const result_t *const noisy_by_n = &noisy[i * NS];
         double freed[NS];
         double alarms[NS];
         for (unsigned n = 0; n < NS; n++) {
@@ -156,8 +134,8 @@ static void measure(const rover_config_t *config, unsigned hours)
     static const rover_hall_t empty = {0};
     set_up(config);
     rover_furnish(&rover, &empty);
-    pass(10000, NULL);
-    pass(hours * 3600000u, count_alarm);
+    pass(10000, NOTHING);
+    pass(hours * 3600000u, ALARMS);
     for (unsigned i = 0; i < 2 * TRIALS; i++) {
         show_pillar(i % 2);
     }
@@ -165,7 +143,7 @@ static void measure(const rover_config_t *config, unsigned hours)
 
 static void measure_frequency(uint16_t hertz, unsigned hours, unsigned seed)
 {
-    static result_t quiet[2][KS][NS];
+    static result_t quiet[ALL];
     rover_config_t config = {(uint16_t)(hertz * 100u), 0, seed};
     measure(&config, hours);
     memcpy(quiet, results, sizeof quiet);

@@ -204,8 +204,7 @@ def run(args):
 
 class Packet:
     def __init__(self, number, samples):
-        self.number = number
-        self.revolution = samples[0]["revolution"]
+        self.number, self.revolution = number, samples[0]["revolution"]
         self.intact = samples[0]["intact"] == 1
         self.starts = False
         self.points = [struct.pack("<HHBB", *(sample[name] for name in
@@ -217,8 +216,7 @@ class Packet:
 
     def follows(self, packet):
         """True if no packet was sent between that packet and this one."""
-        return self.number == packet.number + 1 and (self.starts or
-                                                     self.revolution == packet.revolution)
+        return self.number == packet.number + 1 and (self.starts or self.revolution == packet.revolution)
 
 
 def read_packets(truth):
@@ -232,10 +230,9 @@ def read_packets(truth):
 
 
 def end_of_scan(intact, first, points, digest):
-    """The index after the last packet of the scan that begins with intact[first], or None if no such
-    scan has this number and digest of points."""
-    count = 0
-    crc = 0
+    """The index after the last packet of the scan that begins with intact[first], or None if no such scan has this
+    number and digest of points."""
+    count = crc = 0
     for i in range(first, len(intact)):
         if count == MOST_POINTS and (i == first or intact[i].starts):
             return i if f"{crc:08x}" == digest else None
@@ -252,22 +249,16 @@ def end_of_scan(intact, first, points, digest):
 # ------------------------------------------------------------------------------------- checking
 
 
-class Findings:
-    def __init__(self):
-        self.problems = []
+class Findings(list):
+    """The problems found."""
 
     def check(self, right, problem):
         if not right:
-            self.problems.append(problem)
+            self.append(problem)
 
     def equal(self, what, is_value, should):
         print(f"{what}: {is_value} (should be {should})")
         self.check(is_value == should, f"{what} is {is_value}, should be {should}")
-
-
-def check_answers(findings, texts):
-    for line in (INFO, HEALTH, FREQUENCY, "started", "stopped"):
-        findings.check(line in texts, f'the console does not say "{line}"')
 
 
 class Scans:
@@ -277,10 +268,7 @@ class Scans:
         self.intact = [packet for packet in packets if packet.intact]
         self.place = 0  # Index of the packet after the last scan.
         self.may_skip = 1  # 0: the next scan begins at `place`; N: at one of the next N start packets.
-        self.skipped_revolutions = 0
-        self.strange = 0
-        self.complete = 0
-        self.doubted = 0
+        self.skipped_revolutions = self.strange = self.complete = self.doubted = 0
         self.problems = []
 
     def begin_again(self):
@@ -288,42 +276,35 @@ class Scans:
         if self.place > 0:
             self.may_skip = 1 + MOST_CUT_OFF
 
-    def _places(self):
-        """The indices at which the next scan may begin."""
-        if not self.may_skip:
-            return [self.place]
-        rest = range(self.place, len(self.intact))
-        return [i for i in rest if self.intact[i].starts][:self.may_skip]
-
     def see(self, line):
         said = values(line)
-        for first in self._places():
+        rest = range(self.place, len(self.intact))
+        places = [i for i in rest if self.intact[i].starts][:self.may_skip] if self.may_skip else [self.place]
+        for first in places:
             end = end_of_scan(self.intact, first, int(said["points"]), said["crc"])
             if end is not None:
                 self.skipped_revolutions += sum(packet.starts for packet in self.intact[self.place:first])
-                self._judge(line, said["complete"] == "1", first, end)
-                self.place = end
-                self.may_skip = 0
+                self._judge(line, said["complete"] == "1", self.intact[first:end], self.intact[end:end + 1])
+                self.place, self.may_skip = end, 0
                 return
         self.strange += 1
         self.problems.append(f"these are not the points that were sent: {line}")
         self.may_skip = 1 + MOST_CUT_OFF
 
-    def _judge(self, line, says_complete, first, end):
-        scan = self.intact[first:end]
-        following = self.intact[end] if end < len(self.intact) else None
-        is_joined = all(b.follows(a) for a, b in zip(scan, scan[1:]))
-        is_closed = following is not None and following.follows(scan[-1])
-        is_whole = (scan[0].starts and is_joined and is_closed and following.starts and
+    def _judge(self, line, says_complete, scan, following):
+        """`following` has the next intact packet, if there is one."""
+        is_closed = bool(following) and following[0].follows(scan[-1])
+        is_whole = (scan[0].starts and all(b.follows(a) for a, b in zip(scan, scan[1:])) and
+                    is_closed and following[0].starts and
                     sum(len(packet.points) for packet in scan) <= MOST_POINTS)
         self.complete += is_whole and says_complete
         self.doubted += is_whole and not says_complete
-        if says_complete and not is_whole:
-            self.problems.append(f"this scan is not complete: {line}")
-        if len({packet.revolution for packet in scan}) > 1:
-            self.problems.append(f"this scan is of two revolutions: {line}")
-        if is_closed and not following.starts:
-            self.problems.append(f"this scan ended although nothing was missing: {line}")
+        for is_wrong, what in (
+                (says_complete and not is_whole, "is not complete"),
+                (len({packet.revolution for packet in scan}) > 1, "is of two revolutions"),
+                (is_closed and not following[0].starts, "ended although nothing was missing")):
+            if is_wrong:
+                self.problems.append(f"this scan {what}: {line}")
 
     def left(self):
         return sum(packet.starts for packet in self.intact[self.place:])
@@ -339,30 +320,26 @@ def check_scans(findings, args, texts, log, packets, counters, accepted):
     print(f"scans: {len(scan_lines(texts))}, complete: {scans.complete}, unlike what was sent: "
           f"{scans.strange}; revolutions cut off by starting anew: {scans.skipped_revolutions}, "
           f"by the stop: {scans.left()}")
-    for problem in scans.problems[accepted:]:
-        findings.check(False, problem)
-    findings.check(args.lossy or scans.complete >= args.scans,
-                   f"only {scans.complete} scans are complete")
+    findings += scans.problems[accepted:]
+    findings.check(args.lossy or scans.complete >= args.scans, f"only {scans.complete} scans are complete")
     # A byte inserted between two intact packets looks like the remainder of a lost packet.
     inserted = len(re.findall("fault insert begins", log))
     findings.check(scans.doubted <= inserted, f"{scans.doubted} complete scans are said to have gaps")
     findings.check(scans.left() <= MOST_CUT_OFF, f"the last {scans.left()} revolutions became no scans")
-    findings.equal("scans counted", int(counters["scans"]), len(scan_lines(texts)))
+    findings.equal("scans counted", counters["scans"], len(scan_lines(texts)))
 
 
 def check_packets(findings, packets, counters):
-    """How many harmed packets were accepted. The packet's checksum is only an XOR: about one harmed
-    packet in 10,000 passes it."""
+    """How many harmed packets were accepted. The packet's checksum is only an XOR: about one harmed packet in 10,000
+    passes it."""
     intact = [packet for packet in packets if packet.intact]
     harmed = len(packets) - len(intact)
     print(f"packets sent: {len(packets)}, harmed on the line: {harmed}")
-    accepted = int(counters["packets"]) - len(intact)
-    if accepted == 1 and harmed > 0:
+    if counters["packets"] - len(intact) == 1 and harmed > 0:
         print("one harmed packet had a valid checksum")
-        return accepted
-    findings.equal("packets parsed", int(counters["packets"]), len(intact))
-    findings.equal("bytes in packets", int(counters["in_packets"]),
-                   sum(packet.size() for packet in intact))
+        return 1
+    findings.equal("packets parsed", counters["packets"], len(intact))
+    findings.equal("bytes in packets", counters["in_packets"], sum(packet.size() for packet in intact))
     return 0
 
 
@@ -371,50 +348,42 @@ def check_console(findings, lines):
     waiting = most = before = 0
     for at, text in lines:
         waiting = max(0, waiting - CONSOLE_BYTES_PER_MS * (at - before)) + len(text) + len("\r\n")
-        most = max(most, waiting)
-        before = at
+        most, before = max(most, waiting), at
     print(f"bytes waiting for the console's UART: up to {most}")
     findings.check(most <= CONSOLE_HOLDS, "the firmware prints more than its console holds")
 
 
-def check_sum(findings, counters):
-    parts = ("in_packets", "in_replies", "skipped", "overrun", "pending")
-    total = sum(int(counters[part]) for part in parts)
-    findings.equal("bytes in " + " + ".join(parts), total, int(counters["bytes"]))
-    findings.equal("bytes overrun", int(counters["overrun"]), 0)
-
-
 def check_clean_line(findings, packets, counters, log):
     """Without faults, the only bytes skipped are the LastCRC before each start packet except the first."""
-    codes = re.findall(r"command A5 ([0-9A-F]{2})", log)
-    replies = sum(REPLY_BYTES.get(code, 0) for code in codes)
-    starts_sent = sum(packet.starts for packet in packets)
-    findings.equal("bytes in replies", int(counters["in_replies"]), replies)
-    findings.equal("bytes skipped", int(counters["skipped"]), starts_sent - 1)
-    findings.equal("checksum errors", int(counters["checksum_errors"]), 0)
-    findings.equal("losses", int(counters["losses"]), 0)
+    replies = sum(REPLY_BYTES.get(code, 0) for code in re.findall(r"command A5 ([0-9A-F]{2})", log))
+    findings.equal("bytes in replies", counters["in_replies"], replies)
+    findings.equal("bytes skipped", counters["skipped"], sum(packet.starts for packet in packets) - 1)
+    findings.equal("checksum errors", counters["checksum_errors"], 0)
+    findings.equal("losses", counters["losses"], 0)
 
 
 def check_recoveries(findings, lines, counters, log, packets):
-    harmed_starts = sum(packet.starts and not packet.intact for packet in packets)
-    print(f"start packets harmed: {harmed_starts}")
+    print(f"start packets harmed: {sum(packet.starts and not packet.intact for packet in packets)}")
     unplugged = len(re.findall("fault unplug begins", log))
-    lost = [at for at, text in lines if text == "lost"]
-    recovered = [at for at, text in lines if text == "recovered"]
+    lost, recovered = ([at for at, text in lines if text == word] for word in ("lost", "recovered"))
     times = [f"{(after - before) / 1000:.1f}" for before, after in zip(lost, recovered)]
     print(f"unplugged {unplugged} times; seconds from loss to recovery: {' '.join(times)}")
     findings.check(unplugged > 0, "the lidar was never unplugged")
     findings.check(len(lost) > 0, "no loss was noticed")
-    findings.equal("recoveries", int(counters["recoveries"]), len(lost))
+    findings.equal("recoveries", counters["recoveries"], len(lost))
 
 
 def check(args, lines, log, packets):
     texts = [text for _, text in lines]
     findings = Findings()
-    counters = values([text for text in texts if text.startswith("counters ")][-1])
-    check_answers(findings, texts)
+    counters = {name: int(value) for name, value in
+                values([text for text in texts if text.startswith("counters ")][-1]).items()}
+    for line in (INFO, HEALTH, FREQUENCY, "started", "stopped"):
+        findings.check(line in texts, f'the console does not say "{line}"')
     accepted = check_packets(findings, packets, counters)
-    check_sum(findings, counters)
+    parts = ("in_packets", "in_replies", "skipped", "overrun", "pending")
+    findings.equal("bytes in " + " + ".join(parts), sum(counters[part] for part in parts), counters["bytes"])
+    findings.equal("bytes overrun", counters["overrun"], 0)
     check_console(findings, lines)
     check_scans(findings, args, texts, log, packets, counters, accepted)
     if args.fault:
@@ -422,7 +391,7 @@ def check(args, lines, log, packets):
     else:
         check_clean_line(findings, packets, counters, log)
     findings.check(" 0 forbidden while scanning" in log, "a forbidden command was sent")
-    return findings.problems
+    return findings
 
 
 def parse_arguments():
