@@ -23,20 +23,18 @@ typedef struct {
     bool merged;
     bool false_point;
     bool disorder;
+    bool again; /* A point was already in an earlier scan. */
 } reading_t;
 
-void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, const line_t *line)
+void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, const line_t *line,
+                  bool speaks)
 {
     memset(oracle, 0, sizeof *oracle);
     oracle->verdicts = verdicts;
     oracle->trial = trial;
     oracle->line = line;
+    oracle->speaks = speaks;
     verdicts->trials++;
-}
-
-void oracle_speak(oracle_t *oracle)
-{
-    oracle->speaks = true;
 }
 
 static void note(oracle_t *oracle, wrong_t wrong, bool is_so)
@@ -95,14 +93,20 @@ static uint32_t sent_us(const line_t *line, const line_mark_t *mark)
     return 0;
 }
 
-static reading_t read_points(const line_t *line, const tmini_scan_t *scan)
+/* Also counts in how many scans each point is: it must be only one. */
+static reading_t read_points(oracle_t *oracle, const tmini_scan_t *scan)
 {
+    const line_t *const line = oracle->line;
     reading_t reading = {0};
     for (uint32_t i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
         line_mark_t mark;
-        if (!line_identify(line, point->distance_mm, point->intensity, point->flag, &mark) ||
-            line->angles_q6[mark.revolution][mark.sample] != point->angle_q6) {
+        const bool is_sent =
+            line_identify(line, point->distance_mm, point->intensity, point->flag, &mark);
+        if (is_sent) {
+            reading.again |= oracle->seen[mark.revolution][mark.sample]++ > 0;
+        }
+        if (!is_sent || line->angles_q6[mark.revolution][mark.sample] != point->angle_q6) {
             reading.false_point = true;
             continue;
         }
@@ -157,20 +161,6 @@ static void say(const reading_t *reading, const line_t *line, const tmini_scan_t
         printf("  point %u is sample %u of revolution %u\n", reading->odd_at, reading->odd.sample,
                reading->odd.revolution);
     }
-}
-
-/* Counts in how many scans each point is: it must be only one. */
-static void mark_points(oracle_t *oracle, const tmini_scan_t *scan)
-{
-    bool again = false;
-    for (uint32_t i = 0; i < scan->count; i++) {
-        const tmini_point_t *const point = &scan->points[i];
-        line_mark_t mark;
-        if (line_identify(oracle->line, point->distance_mm, point->intensity, point->flag, &mark)) {
-            again |= oracle->seen[mark.revolution][mark.sample]++ > 0;
-        }
-    }
-    note(oracle, WRONG_TWICE, again);
 }
 
 /* True if a poll or a hand-over may come later than the longest pause allowed. */
@@ -228,7 +218,7 @@ static void judge_mixture(oracle_t *oracle, const host_t *host, const reading_t 
 
 void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t *scan)
 {
-    reading_t reading = read_points(oracle->line, scan);
+    reading_t reading = read_points(oracle, scan);
     if (oracle->speaks) {
         say(&reading, oracle->line, scan);
     }
@@ -240,7 +230,7 @@ void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t 
         judge_mixture(oracle, host, &reading, scan);
     }
     note(oracle, WRONG_ORDER, reading.disorder && !reading.merged);
-    mark_points(oracle, scan);
+    note(oracle, WRONG_TWICE, reading.again);
     if (!reading.merged && !reading.false_point) {
         read_end(&reading, oracle->line, scan);
         judge_completeness(oracle, &reading, scan);
@@ -313,7 +303,7 @@ static void judge_points(oracle_t *oracle, const host_t *host, uint32_t withheld
     uint32_t lacking = 0;
     bool begun = false;
     if (builder->open) {
-        mark_points(oracle, &builder->scan);
+        note(oracle, WRONG_TWICE, read_points(oracle, &builder->scan).again);
     }
     for (uint32_t i = 0; i < line->packet_count; i++) {
         const line_packet_t *const packet = &line->packets[i];

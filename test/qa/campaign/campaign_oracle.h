@@ -59,9 +59,9 @@ typedef struct {
     uint8_t seen[LINE_REVOLUTIONS][LINE_SAMPLES]; /* Number of scans that have this sample. */
 } oracle_t;
 
-void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, const line_t *line);
-
-void oracle_speak(oracle_t *oracle);
+/* `speaks`: prints each scan and each error. */
+void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, const line_t *line,
+                  bool speaks);
 
 void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t *scan);
 

@@ -258,10 +258,9 @@ static void run_trial(const campaign_mode_t *mode, uint64_t seed, uint64_t trial
         line_interrupt(&line, &random);
     }
     host_begin(&host, &host_config, &line, &random);
-    oracle_begin(&oracle, verdicts, trial, &line);
+    oracle_begin(&oracle, verdicts, trial, &line, speaks);
     if (speaks) {
         say_what_is_tried();
-        oracle_speak(&oracle);
     }
     while (!host_has_received_all(&host)) {
         poll_until_nothing(&oracle); /* Also before the program fetches bytes: a useless poll. */
