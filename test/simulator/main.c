@@ -40,10 +40,8 @@ static void request_stop(int signal_number)
 
 static void catch_signals(void)
 {
-    struct sigaction action;
-    memset(&action, 0, sizeof action);
+    struct sigaction action = {.sa_handler = request_stop};
     sigemptyset(&action.sa_mask);
-    action.sa_handler = request_stop;
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
     action.sa_handler = SIG_IGN; /* a client that disconnects must not end this program */
@@ -92,13 +90,9 @@ static void exchange(const options_t *options, uint64_t now_us)
 static int time_to_sleep_ms(uint64_t now_us, uint64_t until_us, double speed)
 {
     uint64_t next_us = sim_link_next_us(&wire);
-    double sleep_ms;
     next_us = next_us < until_us ? next_us : until_us;
-    if (next_us <= now_us || host.pending_count > 0u) {
-        return TICK_MS;
-    }
-    sleep_ms = (double)(next_us - now_us) / 1000.0 / speed + 1.0;
-    if (sleep_ms < TICK_MS) {
+    const double sleep_ms = (double)(next_us - now_us) / 1000.0 / speed + 1.0;
+    if (next_us <= now_us || host.pending_count > 0u || sleep_ms < TICK_MS) {
         return TICK_MS;
     }
     return sleep_ms < LONGEST_SLEEP_MS ? (int)sleep_ms : LONGEST_SLEEP_MS;
@@ -116,31 +110,6 @@ static uint64_t serve(const options_t *options)
         host_wait(&host, time_to_sleep_ms(now_us, until_us, options->speed));
     }
     return now_us;
-}
-
-static bool open_host(const options_t *options)
-{
-    if (options->pty ? !host_open_pty(&host) : !host_open_tcp(&host, options->tcp_port)) {
-        return false;
-    }
-    return true;
-}
-
-static int run_in_real_time(const options_t *options)
-{
-    uint64_t now_us;
-    if (!open_host(options)) {
-        return EXIT_FAILURE;
-    }
-    if (!report_open(&report, options->log_path, options->truth_path, &device, &wire)) {
-        host_close(&host);
-        return EXIT_FAILURE;
-    }
-    printf("%s\n", host.address);
-    fflush(stdout);
-    now_us = serve(options);
-    host_close(&host);
-    return report_close(&report, now_us, host.lost) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 /* ---- In the caller's time ---- */
@@ -190,14 +159,6 @@ static uint64_t serve_lines(void)
     return now_us;
 }
 
-static int run_by_lines(const options_t *options)
-{
-    if (!report_open(&report, options->log_path, options->truth_path, &device, &wire)) {
-        return EXIT_FAILURE;
-    }
-    return report_close(&report, serve_lines(), 0) ? EXIT_SUCCESS : EXIT_FAILURE;
-}
-
 /* ---- In virtual time ---- */
 
 /* Records the stream from the start command on, including its reply. */
@@ -223,27 +184,14 @@ static bool write_recording(const options_t *options)
 {
     const bool to_stdout = strcmp(options->write_path, "-") == 0;
     FILE *file = to_stdout ? stdout : fopen(options->write_path, "wb");
-    bool written;
-    if (file == NULL) {
-        fprintf(stderr, "tmini-sim: cannot write %s: %s\n", options->write_path, strerror(errno));
-        return false;
+    bool written = file != NULL && record(file, end_us(options));
+    if (file != NULL) {
+        written = (to_stdout ? fflush(file) : fclose(file)) == 0 && written;
     }
-    written = record(file, end_us(options));
-    written = (to_stdout ? fflush(file) : fclose(file)) == 0 && written;
     if (!written) {
         fprintf(stderr, "tmini-sim: cannot write %s: %s\n", options->write_path, strerror(errno));
     }
     return written;
-}
-
-static int run_in_virtual_time(const options_t *options)
-{
-    bool written;
-    if (!report_open(&report, options->log_path, options->truth_path, &device, &wire)) {
-        return EXIT_FAILURE;
-    }
-    written = write_recording(options);
-    return report_close(&report, end_us(options), 0) && written ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 static void set_up(const options_t *options)
@@ -259,9 +207,28 @@ static void set_up(const options_t *options)
     sim_link_init(&wire, &device, &options->link);
 }
 
+/* Runs until the end; false: something could not be written. */
+static bool run(const options_t *options, uint64_t *now_us)
+{
+    if (options->write_path != NULL) {
+        *now_us = end_us(options);
+        return write_recording(options);
+    }
+    if (options->lines) {
+        *now_us = serve_lines();
+        return true;
+    }
+    printf("%s\n", host.address);
+    fflush(stdout);
+    *now_us = serve(options);
+    host_close(&host);
+    return true;
+}
+
 int main(int argc, char **argv)
 {
     options_t options;
+    uint64_t now_us = 0;
     if (!options_parse(&options, argc, argv)) {
         return EXIT_WRONG_USAGE;
     }
@@ -271,8 +238,11 @@ int main(int argc, char **argv)
     }
     catch_signals();
     set_up(&options);
-    if (options.lines) {
-        return run_by_lines(&options);
+    if ((options.pty && !host_open_pty(&host)) ||
+        (options.tcp && !host_open_tcp(&host, options.tcp_port)) ||
+        !report_open(&report, options.log_path, options.truth_path, &device, &wire)) {
+        return EXIT_FAILURE;
     }
-    return options.write_path != NULL ? run_in_virtual_time(&options) : run_in_real_time(&options);
+    const bool is_written = run(&options, &now_us);
+    return report_close(&report, now_us, host.lost) && is_written ? EXIT_SUCCESS : EXIT_FAILURE;
 }
