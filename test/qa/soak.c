@@ -4,8 +4,8 @@
 /* soak HOURS [SEED]
  *
  * Runs the library with the simulated lidar for HOURS of virtual time, half an hour for each of
- * many configurations, with all kinds of faults: on the line, in the lidar, in the program that uses
- * the library. Prints what happened. Exit status: 0 if the library did nothing wrong
+ * many configurations, with all kinds of faults: on the line, in the lidar, in the program that
+ * uses the library. Prints what happened. Exit status: 0 if the library did nothing wrong
  * (world.h lists the checks), 1 if it did, 2 wrong usage. The same seed gives the same run. */
 
 #include "world.h"

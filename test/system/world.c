@@ -34,16 +34,6 @@ void world_violate(world_t *world, violation_t violation, const char *what)
     }
 }
 
-uint32_t world_violations(const world_t *world)
-{
-    uint32_t sum = 0;
-
-    for (unsigned i = 0; i < VIOLATION_KINDS; i++) {
-        sum += world->counts.violations[i];
-    }
-    return sum;
-}
-
 /* ---- The port ---- */
 
 static int port_write(void *context, const uint8_t *bytes, size_t count)

@@ -133,9 +133,6 @@ bool world_is_undisturbed_since(const world_t *world, uint64_t since_us);
 /* Counts a violation that the test has found itself. */
 void world_violate(world_t *world, violation_t violation, const char *what);
 
-/* The sum of all violations. */
-uint32_t world_violations(const world_t *world);
-
 const char *world_violation_name(violation_t violation);
 
 #define BIT(event) (1u << (event))
