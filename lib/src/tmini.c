@@ -755,7 +755,6 @@ void tmini_withdraw(tmini_t *lidar, tmini_event_t query)
     tmini_recovery_forget_wish(lidar, query);
     if (is_current) {
         tmini_command_end(lidar, TMINI_ERROR_ABORTED);
-        lidar->idle_ms = 0;
         act(lidar);
     }
 }
