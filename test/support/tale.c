@@ -454,6 +454,7 @@ static uint32_t number_named(const char *word)
         {"overrun", counters.bytes_overrun},
         {"scans", counters.scans},
         {"late", counters.late_scans},
+        {"withheld", counters.points_withheld},
         {"losses", counters.losses},
         {"recoveries", counters.recoveries},
         {"restarts", counters.restarts},
@@ -508,6 +509,8 @@ static bool tell_means(const char *word)
         drain();
     } else if (strcmp(word, "bad-crc") == 0) {
         rig.crc ^= 1u;
+    } else if (tale_is(word, "held")) {
+        tmini_feed_held(&rig.lidar, strtoul(word + 5, NULL, 0));
     } else if (tale_is(word, "takes")) {
         tale.takes = atoi(at + 1);
     } else if (tale_is(word, "turns")) {

@@ -34,6 +34,7 @@
  *     ?TIMEOUT        the error of the command that failed last
  *     next:50 age:300 faults:0x40 losses:1 …  numbers: see number_named()
  *     takes:1         the port takes one byte per call from now on; takes:-1: it fails
+ *     held:5          the port holds five bytes that it has not fed
  *     30( >0D +250 )  that many times
  *     /               another tale begins
  *     idle scans lost …       how many tales begin: see beginnings[]

@@ -63,6 +63,11 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_new_start_does_not_continue_the_scan_before_the_stop,
         "scans <small:700 !SCAN idle start >0D <600 >60 <scan <small:800 !STARTED !NONE <small:900 "
         "!SCAN first-mm:800 gaps:0"),
+    ROW(while_the_program_is_behind_scans_of_two_packets_that_a_doubt_ends_are_withheld,
+        "pause:30 scans <S <S <P !SCAN ~160 <S !NONE scans:1 withheld:6 / pause:30 scans <S <P "
+        "held:5 !SCAN !NONE ~160 <S !NONE withheld:5 / pause:30 scans <small:700 held:5 !SCAN "
+        "!NONE "
+        "~160 <S !SCAN withheld:0"),
     ROW(a_packet_that_comes_in_time_has_a_gap_of_the_bytes_before_it,
         GARBAGE "83( ~1 <x:00 !NONE ) ~1 <P drain gap:83"),
     ROW(a_packet_that_comes_too_late_has_an_unknown_gap_though_the_line_was_never_silent,
@@ -72,7 +77,7 @@ static const row_t tales[] IN_FLASH = {
         PAUSES "~95 " EIGHT_PACKETS "!NONE"),
     ROW(a_longer_pause_ends_the_scan_and_packets_without_a_pause_continue_the_next,
         PAUSES "~96 " EIGHT_PACKETS "!SCAN count:9 complete:0 late:1 <small:800 <small:900 !SCAN "
-                                    "count:32 !SCAN count:9 gaps:0"),
+               "count:32 !SCAN count:9 gaps:0"),
     ROW(pauses_longer_than_a_quarter_of_a_second_can_be_allowed,
         "pause:300 scans <small:700 drain ~250 " EIGHT_PACKETS "!NONE"),
     ROW(pauses_are_ignored_if_the_limit_is_0,

@@ -106,6 +106,8 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_clock_may_begin_at_zero, "clock:0 !NONE " NO_AGE "~1 !NONE " NO_AGE "~1 !NONE " NO_AGE),
     ROW(a_clock_that_wraps_around_to_zero_makes_no_scan_younger,
         "idle clock:-50 !NONE completed:500 clock:0 !NONE clock:50 !NONE age:600"),
+    ROW(an_age_of_24_days_is_known_without_a_poll,
+        "idle completed:0 !NONE ~2147483647 age:2147483647"),
     ROW(an_age_of_24_days_remains,
         "idle completed:0 5( ~1073741823 !NONE ) " NO_AGE "~1000 " NO_AGE),
     /* ---- How long a task may sleep ---- */

@@ -23,6 +23,13 @@ void tearDown(void)
     "+50 >92 <health !HEALTH "
 
 static const row_t tales[] IN_FLASH = {
+    ROW(a_stop_takes_back_a_failure_that_waits_after_a_start,
+        "wish:800 idle start >0D <99 >65 +50 >60 <scan <S !STARTED stop >65 +50 !STOPPED"),
+    ROW(a_change_of_frequency_has_pauses_of_its_own, /* Not those of the start before it. */
+        "wish:800 idle start >0D <800 !FREQUENCY >60 +2000 !FAILED +500 >65 +50 >0D <800 "
+        "!FREQUENCY >60 +2000 !FAILED +1000 >65 +50 >0D <800 !FREQUENCY >60 <scan <S !STARTED "
+        "set:700 turns:3:80 <turn:80 !SCAN !PAUSED >65 +50 >0D <700 !FREQUENCY >60 +2000 !FAILED "
+        "+500 >65"),
     /* ---- Start ---- */
     ROW(a_start_stops_asks_and_starts,
         "start @STARTING >65 +50 >0D <600 >60 <scan +100 <P !STARTED @SCANNING #600"),
