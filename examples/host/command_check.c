@@ -321,7 +321,7 @@ static void judge_pace(check_t *check)
     const uint32_t longest_ms = check->longest_ms;
     const count_t witnessed = device->witness.tape.stream.packets - device->witness.packets_before;
     const count_t late =
-        witnessed > device->stream.packets + 1 ? witnessed - device->stream.packets : 0;
+        witnessed > device->stream.packets ? witnessed - device->stream.packets : 0;
     char halves[80] = "";
     if (longest_ms <= PAUSE_MS || device->silences + device->noises > 0) {
         return;
@@ -332,8 +332,8 @@ static void judge_pace(check_t *check)
         return;
     }
     if (late > 0) {
-        (void)snprintf(halves, sizeof halves, "; the late halves of %llu packets were dropped",
-                       late);
+        (void)snprintf(halves, sizeof halves, "; late halves of %llu packet%s were dropped", late,
+                       late == 1 ? "" : "s");
     }
     answer(check, REMARK, "pace",
            strncmp(device->path, "tcp:", 4) == 0
@@ -359,12 +359,15 @@ static void judge_speed(check_t *check)
     } else if (set_chz == 0) {
         answer(check, GOOD, "frequency", NULL, "%.1f Hz measured", speed_chz / 100.0);
     } else {
-        answer(check, grade(percent > SPEED_PERCENT, percent > SPEED_REMARK_PERCENT), "frequency",
-               speed_chz < set_chz
-                   ? "the supply may be weak, or something may brake the rotor"
-                   : "faster than it should be: its speed control has failed; no supply and no "
-                     "brake does that",
-               "%.1f Hz measured, %.1f Hz set", speed_chz / 100.0, set_chz / 100.0);
+        const bool is_slow = speed_chz < set_chz;
+        const grade_t how = grade(percent > SPEED_PERCENT, percent > SPEED_REMARK_PERCENT);
+        answer(check, how, "frequency",
+               is_slow ? "the supply may be weak, or something may brake the rotor"
+                       : "its speed control has failed; no supply and no brake does that",
+               "%.1f Hz measured, %.1f Hz set%s", speed_chz / 100.0, set_chz / 100.0,
+               how == GOOD ? ""
+               : is_slow   ? ": it turns too slowly"
+                           : ": it turns too fast");
     }
 }
 
