@@ -351,6 +351,8 @@ class Viewer {
         const isFront = judge(front, !Number.isNaN(degrees), 'Degrees, -360 to 360');
         const isMask = judge(mask, arcs.length <= MASKED_MAX && arcs.every((arc) => arc.length === 2) &&
             !arcs.flat().some(Number.isNaN), 'Like this: 170:190, 350:10');
+        const advice = front.validationMessage || mask.validationMessage;
+        setText('mount-wrong', advice === '' ? '' : `Not applied. ${advice}`);
         if (!isFront || !isMask) {
             return;
         }
