@@ -19,6 +19,8 @@ BYTES_PER_POLL = (1, 4, 13, 64, 131, 512)
 FALSE_HEADERS = bytes([0xAA, 0x55, 0, 80, 1, 1, 1, 1, 1, 1]) * 102
 SCAN_REPLY = bytes.fromhex("A5 5A 05 00 00 40 81")
 START, STOP, INFO, HEALTH, GET_FREQUENCY, REBOOT = 0x60, 0x65, 0x90, 0x92, 0x0D, 0x40
+COMMANDS = {START: "tmini_start", STOP: "tmini_stop", INFO: "tmini_request_info", HEALTH: "tmini_request_health",
+            GET_FREQUENCY: "tmini_request_frequency", REBOOT: "tmini_reboot"}
 STEPS_CHZ = {0x09: 10, 0x0A: -10, 0x0B: 100, 0x0C: -100}
 
 
@@ -58,6 +60,7 @@ class Session:
     def __init__(self, target, program, feed="bytes", streaming=False, rx_size=RX_SIZE, filters=0):
         self.machine = Machine(target.name, program)
         self.machine.paint_stack()
+        self.at = self.machine.addresses["bench_lidar"]
         self.names = event_names()
         self.lidar = FakeLidar()
         self.now_ms = 0
@@ -90,7 +93,7 @@ class Session:
         self._fed(self.machine.cost("bench_feed_dma", self.position)[1])
 
     def poll(self):
-        value, cost = self.machine.cost("bench_poll")
+        value, cost = self.machine.cost("tmini_poll", self.at)
         name = self.names[value]
         self.worst_poll[name] = max(self.worst_poll.get(name, 0), cost)
         self.poll_total += cost
@@ -127,8 +130,12 @@ class Session:
                 raise BenchError(f"the event {wanted} does not come")
 
     def command(self, code):
-        if self.machine.call("bench_command", code) != 0:
+        if self.machine.call(COMMANDS[code], self.at) != 0:
             raise BenchError(f"the command {code:#x} is refused")
+
+    def set_frequency(self, chz):
+        if self.machine.call("tmini_set_frequency", self.at, chz) != 0:
+            raise BenchError(f"the frequency {chz} is refused")
 
     def reach_scanning(self):
         """Exchanges commands and replies until the lidar has replied to the start."""
@@ -147,7 +154,8 @@ class Session:
 
     def counters(self):
         """Returns packets, checksum errors, bytes in packets, in replies, skipped, overrun."""
-        address = self.machine.call("bench_counters")
+        address = self.machine.addresses["bench_counters"]
+        self.machine.call("tmini_counters", self.at, address)
         data = self.machine.read(address, 24)
         return [int.from_bytes(data[i:i + 4], "little") for i in range(0, 24, 4)]
 
@@ -219,7 +227,8 @@ def limit(target, program, stream):
     while len(stream) - at >= 13:
         block = stream[at:at + 4096]
         machine.write("bench_block", block)
-        used, count = machine.cost("bench_limit", len(block))
+        used, count = machine.cost("limit_decode", machine.addresses["bench_block"], len(block),
+                                   machine.addresses["bench_limit_points"])
         at += used
         cost += count
     return cost / at
@@ -234,8 +243,7 @@ def conversation(target, program, clean, faulty):
                         (GET_FREQUENCY, "FREQUENCY"), (REBOOT, "REBOOTED")):
         session.command(code)
         session.until(event)
-    if session.machine.call("bench_set_frequency", 730) != 0:
-        raise BenchError("setting the frequency is refused")
+    session.set_frequency(730)
     session.until("FREQUENCY")
     session.lidar.answers = False
     session.command(INFO)
@@ -248,8 +256,7 @@ def conversation(target, program, clean, faulty):
     session.until("STOPPED")
     session.spin_up()
     session.run(clean)
-    if session.machine.call("bench_set_frequency", 800) != 0:
-        raise BenchError("another frequency is refused")
+    session.set_frequency(800)
     for _ in range(4):
         session.run(clean)
     session.reach_scanning()
@@ -299,8 +306,8 @@ def check_counting(target, program, clean):
     for session in (fast, slow):
         session.spin_up()
         session.feed(clean[:1000])
-    _, blocks = fast.machine.cost("bench_poll")
-    _, steps = slow.machine.single_steps("bench_poll")
+    _, blocks = fast.machine.cost("tmini_poll", fast.at)
+    _, steps = slow.machine.single_steps("tmini_poll", slow.at)
     may_skip = target.name in ("cortex-m3", "cortex-m4")
     if not (steps <= blocks <= 1.2 * steps if may_skip else steps == blocks):
         raise BenchError(f"{target.title}: {blocks} instructions by blocks, {steps} by steps")

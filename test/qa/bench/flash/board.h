@@ -10,9 +10,6 @@
 
 static tmini_t lidar;
 
-void bench_main(void);
-void bench_interrupt(uint8_t byte);
-
 static int board_write(void *context, const uint8_t *bytes, size_t count)
 {
     (void)context, (void)bytes;

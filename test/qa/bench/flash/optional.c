@@ -15,19 +15,6 @@
 
 #define POINTS 400u
 
-void bench_fill(void);
-void bench_mount(void);
-void bench_steps(void);
-void bench_fields(void);
-void bench_fields_near(void);
-void bench_isolated(void);
-void bench_cartesian(void);
-void bench_sectors(void);
-void bench_ranges(void);
-void bench_units(void);
-void bench_main(void);
-void bench_interrupt(uint8_t byte);
-
 static tmini_point_t points[POINTS];
 static tmini_scan_t scan = {.points = points, .count = POINTS, .complete = true};
 static volatile uint32_t sink;

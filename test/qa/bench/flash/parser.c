@@ -12,9 +12,6 @@ static tmini_parser_t parser;
 static tmini_packet_t packet;
 static tmini_point_t points[TMINI_MAX_SAMPLES_DEFAULT];
 
-void bench_main(void);
-void bench_interrupt(uint8_t byte);
-
 void bench_interrupt(uint8_t byte)
 {
     tmini_ring_put(&ring, byte);

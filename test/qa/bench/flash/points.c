@@ -5,9 +5,6 @@
 
 #include "../../../../examples/decoder_only/lidar_points.c"
 
-void bench_main(void);
-void bench_interrupt(uint8_t byte);
-
 static volatile size_t points_seen;
 
 void bench_main(void)
