@@ -193,10 +193,12 @@ void test_errors_of_the_line_are_counted_by_kind(void)
 void test_starting_twice_is_refused_and_changes_nothing(void)
 {
     while (next_way()) {
-        TEST_ASSERT_NOT_EQUAL_INT(0, port_start()); /* It has no wiring yet. */
-        start();
-        TEST_ASSERT_NOT_EQUAL_INT(0, port_start());
-        assert_true_scans(1, 1);
+        if (!way->always_wired) {
+            TEST_ASSERT_NOT_EQUAL_INT(0, port_start()); /* It has no wiring yet. */
+            start();
+            TEST_ASSERT_NOT_EQUAL_INT(0, port_start());
+            assert_true_scans(1, 1);
+        }
     }
 }
 
@@ -256,6 +258,9 @@ void test_reception_that_was_broken_is_started_again(void)
 void test_without_wiring_nothing_is_sent(void)
 {
     static const uint8_t byte = 0xA5;
+    if (port_ways[0].always_wired) {
+        return;
+    }
     TEST_ASSERT_EQUAL_INT(-1, port_program.port->write(port_program.context, &byte, 1));
 }
 

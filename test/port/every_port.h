@@ -23,6 +23,7 @@ typedef struct {
     const char *name;
     void (*choose)(void);          /* Changes the wiring; NULL: it is as at first. */
     void (*enlarge)(void);         /* Gives the layer below `holds` bytes. NULL: it has them. */
+    bool always_wired;             /* No wiring is missing, and another start begins anew. */
     bool without_fifo;             /* A pause of 300 µs without interrupts overruns the UART. */
     uint32_t holds;                /* 0: there is no layer below. */
     uint32_t behind;               /* Most bytes not yet counted, while the lidar scans. */
@@ -39,7 +40,7 @@ typedef struct {
 /* Defined by a port's test. */
 extern const port_way_t port_ways[];
 extern const unsigned port_way_count;
-extern const scanning_t port_program;            /* The port, and a program that uses it. */
+extern scanning_t port_program;                  /* The port, and a program that uses it. */
 void port_begin(const sim_observer_t *observer); /* Resets the model, the wiring and the port. */
 int port_init(void);                             /* 0: it worked. */
 int port_start(void);
@@ -66,7 +67,7 @@ void port_assert_stopped(void); /* Nothing is left switched on, or taken. */
     {                                                   \
         (void)tmini_##platform##_stop(&port);           \
     }                                                   \
-    const scanning_t port_program = {                   \
+    scanning_t port_program = {                         \
         .port = &tmini_##platform##_port, .context = &port, .wait = wait, .work = PORT_WORK}
 
 /* Begins with the next way; returns false after the last one. */

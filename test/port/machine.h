@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the models of the platforms share: virtual time, the simulated lidar on the line of a UART
- * with its FIFO and its interrupt line (irq_lines.h), and the console. Tests and models read and
- * set its members directly. */
+/* What the models of the platforms share: virtual time, the simulated lidar or a test's own bytes on
+ * the line of a UART with its FIFO and its interrupt line (irq_lines.h), and the console. Tests and
+ * models read and set its members directly. */
 
 #ifndef MACHINE_H
 #define MACHINE_H
@@ -14,14 +14,15 @@
 
 #include "simulator.h"
 
-#define MACHINE_FIFO_MAX 64u
+#define MACHINE_FIFO_MAX 128u
+#define MACHINE_BYTE_NS 43403u /* 10 bits at 230400 baud. */
 
 /* One platform's UART. */
 typedef struct {
     size_t fifo_size;
     void (*arrive)(uint32_t flags, uint8_t byte); /* A byte comes from the line, with errors. */
-    void (*move)(void);                           /* DMA empties the FIFO; NULL: there is none. */
-    bool (*is_up)(void);                          /* The interrupt line, and its handler. */
+    void (*move)(void);  /* What the UART does by itself: DMA empties the FIFO. NULL: nothing. */
+    bool (*is_up)(void); /* The interrupt line, and its handler. */
     void (*serve)(void);
     void (*switch_tasks)(void); /* A kernel gives the processor to another task; NULL: none. */
 } machine_uart_t;
@@ -29,6 +30,8 @@ typedef struct {
 typedef struct {
     sim_t lidar;
     uint64_t now_us;
+    uint64_t now_ns;    /* The same time. */
+    uint32_t access_ns; /* Time that an access takes. */
     machine_uart_t uart;
     uint16_t fifo[MACHINE_FIFO_MAX]; /* Bytes with their errors. */
     size_t count;
@@ -52,6 +55,14 @@ void machine_pass_held_up(uint32_t us);
 
 /* Bytes arrive now. The interrupt comes when the FIFO is full, and at the end. */
 void machine_receive(uint32_t flags, const uint8_t *bytes, size_t count);
+
+/* These bytes follow each other on the line at full speed, after those sent before; the first one
+ * comes with errors. */
+void machine_send(uint32_t flags, const uint8_t *bytes, size_t count);
+bool machine_has_sent(void);
+
+/* An access to a register: time passes, then interrupts may come. */
+void machine_access(void);
 
 /* Puts an entry into the FIFO; returns false if it was full. */
 bool machine_put(uint32_t entry);

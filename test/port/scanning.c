@@ -17,7 +17,7 @@
 
 tmini_t lidar;
 
-static uint8_t rx[1024];
+static uint8_t rx[1024] __attribute__((aligned(32)));
 static tmini_point_t points[ENOUGH_POINTS];
 static scanning_t program;
 
@@ -29,6 +29,7 @@ void scanning_begin(const scanning_t *the_program, size_t rx_size)
         .port_context = program.context,
         .rx_buffer = rx,
         .rx_size = rx_size,
+        .rx_dma = program.rx_dma,
         .points = points,
         .max_points = ENOUGH_POINTS,
     };

@@ -17,6 +17,7 @@ typedef struct {
     void *context;
     void (*wait)(void);        /* Called when a poll returns no event. */
     void (*work)(uint32_t us); /* Keeps the program busy for this time. */
+    bool rx_dma;               /* DMA writes into the receive buffer. */
 } scanning_t;
 
 extern tmini_t lidar;

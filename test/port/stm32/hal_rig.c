@@ -5,13 +5,13 @@
 
 #include <string.h>
 
-#include "unity.h"
-
 hal_rig_t hal_rig;
-uint8_t hal_rig_rx[HAL_RIG_RX_SIZE] __ALIGNED(32);
 uint8_t hal_rig_block[HAL_RIG_BLOCK_SIZE] __ALIGNED(32);
 
-static hal_rig_way_t way;
+static rig_way_t way;
+
+const tmini_port_t *const rig_port = &tmini_stm32_hal_port;
+void *const rig_context = &hal_rig.port;
 
 /* ---------------------------------------------------------- handlers and callbacks of a project */
 
@@ -39,7 +39,6 @@ void HAL_UART_RxCpltCallback(UART_HandleTypeDef *huart)
 void HAL_UART_ErrorCallback(UART_HandleTypeDef *huart)
 {
     const bool was_ready = huart->RxState == HAL_UART_STATE_READY;
-    hal_rig.errors_seen++;
     tmini_stm32_hal_error(&hal_rig.port, huart);
     hal_rig.started_in_error =
         hal_rig.started_in_error || (was_ready && huart->RxState != HAL_UART_STATE_READY);
@@ -47,20 +46,10 @@ void HAL_UART_ErrorCallback(UART_HandleTypeDef *huart)
 
 void __WFI(void)
 {
-    model_pass(1000);
+    machine_pass(1000);
 }
 
 /* --------------------------------------------------------------------------------------- set-up */
-
-static void open_uart(void)
-{
-    hal_rig.uart = (UART_HandleTypeDef){
-        .Instance = &model_usart,
-        .Init = {.BaudRate = 230400, .WordLength = UART_WORDLENGTH_8B, .Parity = UART_PARITY_NONE},
-        .gState = HAL_UART_STATE_READY,
-        .RxState = HAL_UART_STATE_READY,
-    };
-}
 
 #ifdef HAL_DMA_MODULE_ENABLED
 
@@ -81,8 +70,6 @@ static void open_dma(void)
 #endif
     hal_rig.uart.hdmarx = &hal_rig.dma;
     irq.lines[MODEL_DMA_IRQ].handler = dma_interrupt;
-    model.cached = way == BY_BLOCKS ? hal_rig_block : hal_rig_rx;
-    model.cached_size = way == BY_BLOCKS ? sizeof hal_rig_block : sizeof hal_rig_rx;
 }
 
 #else
@@ -91,64 +78,58 @@ static void open_dma(void) {}
 
 #endif
 
-static void open_lidar(void)
-{
-    const tmini_config_t config = {
-        .port = &tmini_stm32_hal_port,
-        .port_context = &hal_rig.port,
-        .rx_buffer = hal_rig_rx,
-        .rx_size = sizeof hal_rig_rx,
-        .rx_dma = way == BY_DMA,
-        .points = hal_rig.points,
-        .max_points = sizeof hal_rig.points / sizeof hal_rig.points[0],
-    };
-    (void)tmini_stm32_hal_init(&hal_rig.port, &hal_rig.uart);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&hal_rig.lidar, &config));
-}
-
-void hal_rig_open(hal_rig_way_t wanted)
+void rig_open(rig_way_t wanted)
 {
     way = wanted;
     memset(&hal_rig, 0, sizeof hal_rig);
-    memset(hal_rig_rx, 0, sizeof hal_rig_rx);
     model_reset();
-    line_open();
     irq.lines[MODEL_USART_IRQ].handler = usart_interrupt;
-    open_uart();
+    hal_rig.uart = (UART_HandleTypeDef){
+        .Instance = &model_usart,
+        .Init = {.BaudRate = 230400, .WordLength = UART_WORDLENGTH_8B, .Parity = UART_PARITY_NONE},
+        .gState = HAL_UART_STATE_READY,
+        .RxState = HAL_UART_STATE_READY,
+    };
     open_dma();
-    open_lidar();
+    (void)tmini_stm32_hal_init(&hal_rig.port, &hal_rig.uart);
 }
 
-tmini_status_t hal_rig_start(void)
+tmini_status_t rig_start(void)
 {
-    return way == BY_BLOCKS ? tmini_stm32_hal_start_blocks(&hal_rig.port, &hal_rig.lidar,
-                                                           hal_rig_block, sizeof hal_rig_block)
-                            : tmini_stm32_hal_start(&hal_rig.port, &hal_rig.lidar);
+    if (way == BY_BLOCKS) {
+        model.cached = hal_rig_block;
+        model.cached_size = sizeof hal_rig_block;
+        return tmini_stm32_hal_start_blocks(&hal_rig.port, &lidar, hal_rig_block,
+                                            sizeof hal_rig_block);
+    }
+    model.cached = tmini_rx_buffer(&lidar, &model.cached_size);
+    return tmini_stm32_hal_start(&hal_rig.port, &lidar);
 }
 
-void hal_rig_open_and_start(hal_rig_way_t wanted)
+void rig_stop(void)
 {
-    hal_rig_open(wanted);
-    model_pass(10000);
-    TEST_ASSERT_EQUAL(TMINI_OK, hal_rig_start());
+    tmini_stm32_hal_stop(&hal_rig.port);
 }
 
-tmini_stm32_hal_counters_t hal_rig_errors(void)
+rig_errors_t rig_errors(void)
 {
-    tmini_stm32_hal_counters_t counters;
-    tmini_stm32_hal_counters(&hal_rig.port, &counters);
-    return counters;
+    tmini_stm32_hal_counters_t c;
+    tmini_stm32_hal_counters(&hal_rig.port, &c);
+    return (rig_errors_t){c.overruns, c.framing_errors, c.noise_errors,
+                          c.laps,     c.restarts,       c.other_errors};
 }
 
-/* -------------------------------------------------------------------------------------- running */
-
-uint32_t hal_rig_packets(void)
+bool rig_is_off(void)
 {
-    return hal_rig_poll().packets;
+    const uint32_t on = model_usart.CR1 & (MODEL_CR1_RXNEIE | MODEL_CR1_IDLEIE);
+    return on == 0 && (model_usart.CR3 & MODEL_CR3_DMAR) == 0 && !model.dma.enabled;
 }
 
-void hal_rig_receive(unsigned packets)
+void rig_break_reception(void)
 {
-    line_send_packets(packets);
-    hal_rig_run();
+    model.dma.enabled = false;
+    if (way == BY_BYTES) {
+        model_usart.CR1 &= ~MODEL_CR1_RXNEIE;
+        model_usart.CR3 &= ~MODEL_CR3_EIE;
+    }
 }

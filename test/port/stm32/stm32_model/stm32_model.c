@@ -5,10 +5,7 @@
 
 #include <string.h>
 
-#include "interrupting_atomic.h"
-#include "unity.h"
-
-#define STEP_NS 5000u
+#include "machine.h"
 
 #define ERRORS (MODEL_FE | MODEL_NE | MODEL_ORE)
 
@@ -85,44 +82,33 @@ static bool receives(void)
     return (model_usart.CR1 & on) == on;
 }
 
-static void receive(const model_byte_t *byte)
+static void receive(uint32_t errors, uint8_t byte)
 {
     const bool held = model.ore_holds_rxne && (model.flags & MODEL_ORE) != 0;
     if (held || model.waiting >= (has_fifo() ? MODEL_FIFO : 1u)) {
         model.flags |= MODEL_ORE;
-        model.overruns++;
     } else {
-        model.data[model.waiting++] = byte->byte;
-        model.flags |= byte->errors;
+        model.data[model.waiting++] = byte;
+        model.flags |= errors;
         note_waiting();
     }
     model.was_busy = model.was_busy || !held;
-    model.idle_ns = byte->at_ns + MODEL_BYTE_NS;
+    model.idle_ns = machine.now_ns + MACHINE_BYTE_NS;
     serve_dma();
 }
 
-/* Receives the bytes that have arrived by now, and notices an idle line after them. */
-static void catch_up(void)
+static void arrive(uint32_t errors, uint8_t byte)
 {
-    model_byte_t byte;
-    while (model.next != NULL && model.next(&byte) && byte.at_ns <= model.now_ns) {
-        model.take();
-        if (receives()) {
-            receive(&byte);
-        }
+    if (receives()) {
+        receive(errors, byte);
     }
-    if (model.was_busy && model.now_ns >= model.idle_ns) {
-        model.was_busy = false;
-        model.flags |= MODEL_IDLE;
-    }
-    serve_dma();
 }
 
 /* ----------------------------------------------------------------------------------- interrupts */
 
 static bool is_held(void)
 {
-    return model.now_ns < model.held_until_ns;
+    return machine.now_ns < model.held_until_ns;
 }
 
 static bool usart_interrupts(void)
@@ -145,56 +131,36 @@ static bool is_dma_up(void)
     return (model.dma.flags & model.dma.interrupts) != 0 && !is_held();
 }
 
-static void fail(unsigned line)
+/* The tick's interrupt is held back like all others. Ticks missed meanwhile are lost. After a byte
+ * the line may fall idle. */
+static void move(void)
 {
-    TEST_FAIL_MESSAGE(line == MODEL_USART_IRQ ? "the USART's handler leaves its flag: a lock-up"
-                                              : "the DMA's handler leaves its flag: a lock-up");
+    if (!is_held()) {
+        model.tick_ns += machine.now_ns - model.seen_ns;
+    }
+    model.seen_ns = machine.now_ns;
+    model.tick_ms = (uint32_t)(model.tick_ns / 1000000u);
+    if (model.was_busy && machine.now_ns >= model.idle_ns) {
+        model.was_busy = false;
+        model.flags |= MODEL_IDLE;
+    }
+    serve_dma();
 }
 
 void model_reset(void)
 {
-    model = (model_t){.access_ns = 100, .flags = MODEL_TXE | MODEL_TC};
+    const machine_uart_t uart = {.arrive = arrive, .move = move, .is_up = is_usart_up};
+    machine_begin(NULL, &uart);
+    machine.access_ns = 100;
+    model = (model_t){.flags = MODEL_TXE | MODEL_TC};
     model_usart = (USART_TypeDef){.CR1 = MODEL_CR1_UE | MODEL_CR1_RE | MODEL_CR1_TE};
-    irq_reset(fail);
-    irq.lines[MODEL_USART_IRQ] = (irq_line_t){.is_up = is_usart_up, .priority = 5};
+    irq.lines[MODEL_USART_IRQ].priority = 5;
     irq.lines[MODEL_DMA_IRQ] = (irq_line_t){.is_up = is_dma_up, .priority = 5};
-}
-
-/* The tick's interrupt is held back like all others. Ticks missed meanwhile are lost. */
-static void pass(uint64_t ns)
-{
-    model.now_ns += ns;
-    if (!is_held()) {
-        model.tick_ns += ns;
-    }
-    catch_up();
-}
-
-static void advance(uint64_t ns)
-{
-    pass(ns);
-    irq_serve();
 }
 
 void model_step(void)
 {
-    pass(model.access_ns);
-    irq_access();
-}
-
-/* An index of the library is accessed. */
-void interrupt(void)
-{
-    model_step();
-}
-
-void model_pass(uint64_t us)
-{
-    const uint64_t end_ns = model.now_ns + us * 1000u;
-    while (model.now_ns < end_ns) {
-        const uint64_t left_ns = end_ns - model.now_ns;
-        advance(left_ns < STEP_NS ? left_ns : STEP_NS);
-    }
+    machine_access();
 }
 
 /* ------------------------------------------------------------------------------------- accesses */
@@ -217,9 +183,10 @@ uint8_t model_read_data(void)
 void model_write_data(uint8_t byte)
 {
     model_step();
-    if (model.sent != NULL) {
-        model.sent(byte, model.now_ns / 1000u);
-    }
+    model.sent_count++;
+    model.sent[0] = model.sent[1];
+    model.sent[1] = byte;
+    sim_receive(&machine.lidar, &byte, 1, machine.now_us);
 }
 
 void model_clear(uint32_t flags)
@@ -232,7 +199,7 @@ void model_set(volatile uint32_t *reg, uint32_t bits)
 {
     model_step();
     *reg |= bits;
-    advance(0);
+    machine_step(0);
 }
 
 void model_unset(volatile uint32_t *reg, uint32_t bits)
@@ -288,10 +255,5 @@ void model_write(volatile uint32_t *at, uint32_t value)
     }
     model_step();
     *at = value;
-    advance(0);
-}
-
-uint32_t model_tick_ms(void)
-{
-    return (uint32_t)(model.tick_ns / 1000000u);
+    machine_step(0);
 }

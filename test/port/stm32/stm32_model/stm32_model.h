@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A model of the hardware: one USART at 230400 baud with one DMA channel, on two interrupt
- * lines. Registers are accessed only by these functions: reading has side effects. Each access
- * takes some nanoseconds, in which interrupts may come.
+/* A model of the hardware: one USART at 230400 baud with one DMA channel, on two interrupt lines
+ * (machine.h has time and line). Registers are accessed only by these functions: reading has side
+ * effects. Each access takes some nanoseconds, in which interrupts may come.
  *
  * Variants, by macros:
  *   STM32_MODEL_SR            registers SR and DR (F1, F2, F4, L1), where reading clears flags;
@@ -27,8 +27,6 @@
 #include <stdint.h>
 
 #include "irq_lines.h"
-
-#define MODEL_BYTE_NS 43403u
 
 /* Flags with the same bits in SR and ISR. */
 #define MODEL_FE (1u << 1)
@@ -93,17 +91,7 @@ typedef struct {
 enum { MODEL_USART_IRQ, MODEL_DMA_IRQ };
 
 typedef struct {
-    uint64_t at_ns; /* Time at which its stop bit has arrived. */
-    uint8_t byte;
-    uint32_t errors; /* MODEL_FE, MODEL_NE. */
-} model_byte_t;
-
-typedef struct {
     /* Set by tests. */
-    bool (*next)(model_byte_t *byte); /* Gets the line's next byte; false: there is none. */
-    void (*take)(void);               /* Removes this byte: it has arrived. */
-    void (*sent)(uint8_t byte, uint64_t now_us);
-    uint32_t access_ns;     /* Time that an access takes. */
     uint64_t held_until_ns; /* No interrupt is served before this time. */
     bool ore_holds_rxne;    /* No byte is received while ORE is set, as on many boards. */
 
@@ -113,8 +101,9 @@ typedef struct {
     uint8_t ram[1024];
 
     /* State of the hardware. */
-    uint64_t now_ns;
+    uint64_t seen_ns;
     uint64_t tick_ns; /* Time that the tick's interrupt has counted. */
+    volatile uint32_t tick_ms;
     uint32_t flags;
     uint32_t seen;            /* Flags read in SR: reading DR clears them. */
     uint8_t data[MODEL_FIFO]; /* Only the first is used without the FIFO. */
@@ -122,18 +111,16 @@ typedef struct {
     bool was_busy;
     uint64_t idle_ns;
     model_dma_t dma;
-    uint32_t overruns;
+    uint32_t sent_count;
+    uint8_t sent[2]; /* The last two bytes. */
 } model_t;
 
 extern model_t model;
 extern USART_TypeDef model_usart;
 
-/* Resets the model: the USART is on and idle; interrupt lines have equal priority and no handlers.
- * A lock-up fails the test. */
+/* Resets machine and model: the USART is on and idle; interrupt lines have equal priority and no
+ * handlers. */
 void model_reset(void);
-
-/* Lets `us` pass: only interrupts run. */
-void model_pass(uint64_t us);
 
 uint32_t model_status(void);   /* Reads SR or ISR. */
 uint8_t model_read_data(void); /* Reads DR or RDR. */
@@ -142,7 +129,6 @@ void model_clear(uint32_t flags); /* Writes ICR. */
 void model_set(volatile uint32_t *reg, uint32_t bits);
 void model_unset(volatile uint32_t *reg, uint32_t bits);
 uint32_t model_dma_left(void);
-uint32_t model_tick_ms(void);
 
 /* Access one of these registers by its address. */
 uint32_t model_read(const volatile uint32_t *at);

@@ -497,7 +497,7 @@ HAL_StatusTypeDef HAL_UART_Transmit_IT(UART_HandleTypeDef *huart, const uint8_t 
 
 uint32_t HAL_GetTick(void)
 {
-    return model_tick_ms();
+    return model.tick_ms;
 }
 
 /* ----------------------------------------------------------------------------------- data cache */
