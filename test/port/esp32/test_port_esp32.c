@@ -11,7 +11,7 @@
 #include "unity.h"
 
 #include "encoder.h"
-#include "recorded_idf.h"
+#include "idf.h"
 #include "tmini_esp32.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -36,8 +36,33 @@ static tmini_esp32_t port;
 static tmini_esp32_wiring_t wiring;
 
 static const char *const *waits; /* The story to play at each wait of the receiving task. */
+static void (*on_wait)(void);    /* Called at each wait for an event; may be NULL. */
+static void (*on_delay)(void);   /* Called while a task sleeps; may be NULL. */
+static TaskFunction_t task;
+static void *task_argument;
 
 /* -------------------------------------------------------------------------------------- helpers */
+
+void idf_lock(void) {}
+
+void idf_unlock(void) {}
+
+void idf_wait(TickType_t ticks, bool for_event)
+{
+    void (*const happens)(void) = for_event ? on_wait : on_delay;
+    (void)ticks;
+    if (happens != NULL) {
+        happens();
+    }
+}
+
+void idf_begin_task(TaskFunction_t function, void *argument)
+{
+    task = function;
+    task_argument = argument;
+}
+
+void idf_end_task(void) {}
 
 static void set_up(void)
 {
@@ -45,7 +70,9 @@ static void set_up(void)
                                    .port_context = &port,
                                    .rx_buffer = ring,
                                    .rx_size = sizeof ring};
-    recorded_idf_begin();
+    idf_begin(NULL);
+    idf.records = true;
+    on_wait = on_delay = NULL;
     memset(&port, 0, sizeof port);
     wiring = (tmini_esp32_wiring_t)TMINI_ESP32_WIRING_DEFAULT;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
@@ -74,13 +101,13 @@ static esp_err_t start(void)
 static void run_task(void)
 {
     if (port.stopping && port.receiving) {
-        idf.task(idf.task_argument);
+        task(task_argument);
     }
 }
 
 static void start_well(bool with_task)
 {
-    idf.on_delay = run_task;
+    on_delay = run_task;
     wiring.with_task = with_task;
     TEST_ASSERT_EQUAL_INT(ESP_OK, start());
     idf.calls[0] = 0;
@@ -229,14 +256,14 @@ static void assert_taken(int *member, int value)
 {
     *member = value;
     TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_STRING("", idf.logged);
+    TEST_ASSERT_EQUAL_STRING("", idf.log);
 }
 
 static void assert_refused(int *member, int value, const char *name)
 {
     *member = value;
     TEST_ASSERT_EQUAL_INT(ESP_ERR_INVALID_ARG, tmini_esp32_init(&port, &wiring));
-    if (strstr(idf.logged, "E tmini: ") == NULL || strstr(idf.logged, name) == NULL) {
+    if (strstr(idf.log, "E tmini: ") == NULL || strstr(idf.log, name) == NULL) {
         TEST_FAIL_MESSAGE(name);
     }
     TEST_ASSERT_EQUAL_INT(ESP_ERR_INVALID_STATE, tmini_esp32_start(&port, &lidar));
@@ -253,7 +280,7 @@ void test_values_out_of_range_are_refused_by_name_before_anything_is_touched(voi
             assert_refused(ranges[i].member, ranges[i].most + 1, ranges[i].name);
         }
         if (i >= 7) { /* Without a task, its settings are not checked. */
-            idf.logged[0] = 0;
+            idf_forget_log();
             wiring.with_task = false;
             assert_taken(ranges[i].member, ranges[i].least - 1);
         }
@@ -263,17 +290,11 @@ void test_values_out_of_range_are_refused_by_name_before_anything_is_touched(voi
 
 /* ------------------------------------------------------------------------------------ receiving */
 
-static void post(uart_event_type_t type, size_t size)
-{
-    TEST_ASSERT_TRUE(idf.event_count < COUNT(idf.events));
-    idf.events[idf.event_count++] = (uart_event_t){.type = type, .size = size};
-}
-
 static void receive(size_t expected, bool gap)
 {
     const size_t before = tmini_ring_unread(&lidar.ring);
     TEST_ASSERT_EQUAL_UINT(expected, tmini_esp32_wait(&port, 7));
-    TEST_ASSERT_EQUAL_UINT(0, idf.event_count);
+    TEST_ASSERT_EQUAL_UINT(0, idf.queue_count);
     TEST_ASSERT_EQUAL_UINT(before + expected, tmini_ring_unread(&lidar.ring));
     TEST_ASSERT_EQUAL_UINT(gap ? 0 : RING - before - expected, tmini_feed_room(&lidar));
     TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&lidar.ring));
@@ -284,8 +305,8 @@ static void receive(size_t expected, bool gap)
 
 static void hold(size_t count)
 {
-    idf.held_count = count;
-    memset(idf.held, 0x11, count);
+    idf.buffer_count = count;
+    memset(idf.buffer, 0x11, count);
 }
 
 static void start_again(void)
@@ -312,7 +333,7 @@ static void act(char what, size_t number, bool gap)
         tmini_poll(&lidar);
         break;
     case 'Q':
-        idf.queue_length = number;
+        idf.queue_size = number;
         break;
     case 'S':
         start_again();
@@ -324,7 +345,7 @@ static void act(char what, size_t number, bool gap)
         port.stopping = true;
         break;
     default: /* An event with its size. */
-        post((uart_event_type_t)(strchr(letters, what) - letters), number);
+        idf_post((uart_event_type_t)(strchr(letters, what) - letters), number);
         break;
     }
 }
@@ -416,7 +437,7 @@ void test_bytes_are_handed_on_in_order_and_counted(void)
     for (unsigned round = 0; round < 2; round++) {
         hold(130);
         for (unsigned i = 0; i < 130; i++) {
-            idf.held[i] = (uint8_t)(130 * round + i);
+            idf.buffer[i] = (uint8_t)(130 * round + i);
         }
         play("D130 >130");
     }
@@ -466,12 +487,12 @@ void test_an_overflow_costs_no_packet_before_or_after_it(void)
     TEST_ASSERT_EQUAL_UINT(64, size);
     start_well(false);
     hold(20);
-    memcpy(idf.held, stream, 20);
+    memcpy(idf.buffer, stream, 20);
     play("D20 O >20!");
     hold(24);
-    memcpy(idf.held, &stream[40], 24);
+    memcpy(idf.buffer, &stream[40], 24);
     play("D24 >24");
-    idf.now_us = 1000 * 1000; /* A long silence: the parser gives up on partial packets. */
+    machine.now_us = 1000 * 1000; /* A long silence: the parser gives up on partial packets. */
     tmini_poll(&lidar);
     tmini_counters(&lidar, &counters);
     TEST_ASSERT_EQUAL_UINT32(2, counters.packets);
@@ -520,8 +541,8 @@ void test_the_task_receives_until_it_is_stopped_and_checks_a_full_ring_each_tick
         set_up();
         start_well(true);
         waits = tasks[i].events;
-        idf.on_wait = play_next;
-        idf.task(idf.task_argument);
+        on_wait = play_next;
+        task(task_argument);
         assert_calls(tasks[i].calls);
         TEST_ASSERT_EQUAL_UINT(tasks[i].unread, tmini_ring_unread(&lidar.ring));
         TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&lidar.ring));
@@ -535,8 +556,8 @@ void test_a_task_that_is_started_again_receives_again(void)
     TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
     TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_start(&port, &lidar));
     waits = events_again;
-    idf.on_wait = play_next;
-    idf.task(idf.task_argument);
+    on_wait = play_next;
+    task(task_argument);
     TEST_ASSERT_EQUAL_UINT(3, tmini_ring_unread(&lidar.ring));
 }
 
@@ -556,9 +577,9 @@ void test_commands_go_to_the_transmit_fifo_as_far_as_it_has_room(void)
 
 void test_the_clock_counts_milliseconds_modulo_2_to_32(void)
 {
-    idf.now_us = 1999;
+    machine.now_us = 1999;
     TEST_ASSERT_EQUAL_UINT32(1, tmini_esp32_port.now_ms(&port));
-    idf.now_us = (INT64_C(4294967296) + 5) * 1000;
+    machine.now_us = (INT64_C(4294967296) + 5) * 1000;
     TEST_ASSERT_EQUAL_UINT32(5, tmini_esp32_port.now_ms(&port));
 }
 

@@ -12,7 +12,7 @@
 #define PORT_WORK work
 #include "every_port.h"
 #include "tmini_esp32.h"
-#include "virtual_idf.h"
+#include "idf.h"
 
 static tmini_esp32_t port;
 static tmini_esp32_wiring_t wiring;
@@ -31,7 +31,8 @@ PORT_UNDER_TEST(esp32, &wiring);
 
 void port_begin(const sim_observer_t *observer)
 {
-    virtual_idf_begin(observer);
+    idf_begin(observer);
+    idf_begin_tasks();
     memset(&port, 0, sizeof port);
     wiring = (tmini_esp32_wiring_t)TMINI_ESP32_WIRING_DEFAULT;
 }
@@ -39,11 +40,10 @@ void port_begin(const sim_observer_t *observer)
 /* Nothing is left installed, and no call has named a missing driver. */
 void port_assert_stopped(void)
 {
-    const virtual_idf_state_t state = virtual_idf_state();
-    TEST_ASSERT_EQUAL_UINT(1, state.tasks);
-    TEST_ASSERT_FALSE(state.installed);
-    TEST_ASSERT_EQUAL_UINT(0, state.locks_held);
-    TEST_ASSERT_EQUAL_UINT(0, state.stray_calls);
+    TEST_ASSERT_EQUAL_UINT(1, idf_tasks());
+    TEST_ASSERT_FALSE(idf.installed);
+    TEST_ASSERT_EQUAL_UINT(0, idf.locks_held);
+    TEST_ASSERT_EQUAL_UINT(0, idf.stray_calls);
 }
 
 port_counts_t port_counted(void)
@@ -65,12 +65,12 @@ static void through_the_callers_loop(void)
 static void enlarge(void)
 {
     wiring.buffer_size = 8192;
-    wiring.queue_length = 128;
+    wiring.queue_length = 256;
 }
 
 #define WAY                                                                      \
     .enlarge = enlarge, .holds = 8192, .behind = 128 + 8, .packets_per_loss = 4, \
-    .hold_up = virtual_idf_hold_interrupts, .break_reception = virtual_idf_break_reception
+    .hold_up = idf_hold_interrupts, .break_reception = idf_break_reception
 
 const port_way_t port_ways[] = {
     {.name = "through a task", WAY},
@@ -108,7 +108,7 @@ static void start_by_hand(void)
 void test_an_overflow_is_reported_in_its_place_however_late_the_events_are_taken(void)
 {
     start_by_hand();
-    virtual_idf_hold_interrupts(20000);
+    idf_hold_interrupts(20000);
     vTaskDelay(3);
     TEST_ASSERT_EQUAL_UINT(128, tmini_esp32_wait(&port, 0));
     TEST_ASSERT_EQUAL_UINT(128, tmini_ring_unread(&lidar.ring));
