@@ -7,8 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "machine.h"
 #include "scan_node.h"
-#include "simulator.h"
 #include "virtual_agent.h"
 
 #include "unity.h"
@@ -16,8 +16,6 @@
 #define EPOCH_NS INT64_C(1790000000000000000) /* ROS's clock when our clock is 0. */
 #define NS_PER_US 1000
 
-static sim_t sim;
-static uint64_t now_us;
 static bool plugged;
 static uint64_t turn_began_us; /* The end of the last start packet. */
 static uint8_t rx[2048];
@@ -44,51 +42,45 @@ static void note_packet(void *context, const sim_packet_t *packet)
 {
     (void)context;
     if (packet->bytes[2] & 1) { /* A start packet. */
-        turn_began_us = now_us;
+        turn_began_us = machine.now_us;
     }
 }
 
 static uint32_t now_ms(void *context)
 {
     (void)context;
-    return (uint32_t)(now_us / 1000);
+    return (uint32_t)(machine.now_us / 1000);
 }
 
 static int send_to_lidar(void *context, const uint8_t *bytes, size_t count)
 {
     (void)context;
     if (plugged) {
-        sim_receive(&sim, bytes, count, now_us);
+        sim_receive(&machine.lidar, bytes, count, machine.now_us);
     }
     return (int)count;
 }
 
-/* Lets a millisecond pass in which only the interrupt runs. */
-static void tick(void)
+/* The interrupt. */
+static void arrive(uint32_t flags, uint8_t byte)
 {
-    uint8_t bytes[64];
-    size_t count;
-    now_us += 1000;
-    virtual_agent.epoch_ns = EPOCH_NS + (int64_t)now_us * NS_PER_US;
-    while ((count = sim_transmit(&sim, now_us, bytes, sizeof bytes)) > 0) {
-        if (plugged) {
-            (void)tmini_feed(&lidar, bytes, count);
-        }
+    (void)flags;
+    if (plugged) {
+        (void)tmini_feed(&lidar, &byte, 1);
     }
 }
 
 static void wait(int ms)
 {
-    for (int i = 0; i < ms; i++) {
-        tick();
-    }
+    machine_pass((uint32_t)ms * 1000);
+    virtual_agent.epoch_ns = EPOCH_NS + (int64_t)machine.now_us * NS_PER_US;
 }
 
 static void run_for(unsigned ms)
 {
-    const uint64_t end_us = now_us + ms * UINT64_C(1000);
-    while (now_us < end_us) {
-        tick();
+    const uint64_t end_us = machine.now_us + ms * UINT64_C(1000);
+    while (machine.now_us < end_us) {
+        wait(1);
         scan_node_step(&node);
     }
 }
@@ -104,7 +96,7 @@ void setUp(void)
 {
     static const tmini_port_t port = {.write = send_to_lidar, .now_ms = now_ms};
     static const sim_observer_t observer = {.on_packet = note_packet};
-    const sim_config_t sim_config = sim_default_config();
+    static const machine_uart_t uart = {.arrive = arrive};
     const tmini_config_t config = {
         .port = &port,
         .rx_buffer = rx,
@@ -112,11 +104,10 @@ void setUp(void)
         .points = points,
         .max_points = 800,
     };
-    now_us = 0;
     plugged = true;
-    sim_init(&sim, &sim_config);
-    sim_observe(&sim, &observer);
+    machine_begin(&observer, &uart);
     virtual_agent_reset(wait);
+    virtual_agent.present = true;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
     scan_node_init(&node, &lidar, &config, frame);
 }
@@ -125,7 +116,6 @@ void tearDown(void) {}
 
 void test_each_scan_is_published(void)
 {
-    virtual_agent.present = true;
     run_for(10000); /* 6 Hz, minus the time in which the motor spins up. */
     TEST_ASSERT_GREATER_THAN_UINT(50, virtual_agent.published);
     TEST_ASSERT_EQUAL_UINT32(virtual_agent.published, node.counters.published);
@@ -136,8 +126,7 @@ void test_each_scan_is_published(void)
 
 void test_a_message_shows_the_room(void)
 {
-    virtual_agent.present = true;
-    sim_place_obstacle(&sim, 90 * 64, 20 * 64, 700); /* To the right. */
+    sim_place_obstacle(&machine.lidar, 90 * 64, 20 * 64, 700); /* To the right. */
     run_for(5000);
     TEST_ASSERT_FLOAT_WITHIN(0.05f, 0.7f, virtual_agent.message.ranges.data[270]);
     TEST_ASSERT_FALSE(fabsf(virtual_agent.message.ranges.data[90] - 0.7f) < 0.1f);
@@ -154,7 +143,6 @@ static int64_t stamp_is_late_ns(void)
 
 void test_a_messages_stamp_is_the_scans_end_in_the_agents_clock(void)
 {
-    virtual_agent.present = true;
     run_for(5000);
     const unsigned published = virtual_agent.published;
     while (virtual_agent.published == published) {
@@ -166,7 +154,6 @@ void test_a_messages_stamp_is_the_scans_end_in_the_agents_clock(void)
 
 void test_without_the_agents_clock_nothing_is_published(void)
 {
-    virtual_agent.present = true;
     virtual_agent.keeps_its_clock = true;
     run_for(5000);
     TEST_ASSERT_EQUAL_UINT(0, virtual_agent.published);
@@ -177,7 +164,6 @@ void test_without_the_agents_clock_nothing_is_published(void)
 
 void test_the_clock_is_synchronised_again_each_minute(void)
 {
-    virtual_agent.present = true;
     run_for(185000);
     TEST_ASSERT_EQUAL_UINT(4, virtual_agent.synchronisations);
 }
@@ -187,7 +173,6 @@ void test_the_clock_is_synchronised_again_each_minute(void)
 void test_a_scan_that_is_polled_late_keeps_its_time(void)
 {
     int64_t latest_ns = 0;
-    virtual_agent.present = true;
     run_for(5000);
     for (int i = 0; i < 100; i++) {
         const unsigned published = virtual_agent.published;
@@ -202,7 +187,6 @@ void test_a_scan_that_is_polled_late_keeps_its_time(void)
 
 void test_nothing_is_allocated_while_scans_are_published(void)
 {
-    virtual_agent.present = true;
     run_for(3000);
     allocations = 0;
     run_for(3000);
@@ -211,6 +195,7 @@ void test_nothing_is_allocated_while_scans_are_published(void)
 
 void test_an_agent_that_comes_later_is_found(void)
 {
+    virtual_agent.present = false;
     run_for(5000);
     TEST_ASSERT_FALSE(virtual_agent.support_open);
     TEST_ASSERT_GREATER_THAN_UINT32(20, node.counters.unpublished);
@@ -222,7 +207,6 @@ void test_an_agent_that_comes_later_is_found(void)
 
 void test_the_node_connects_again_to_an_agent_that_comes_back(void)
 {
-    virtual_agent.present = true;
     run_for(3000);
     virtual_agent.present = false;
     run_for(3000);
@@ -238,7 +222,6 @@ void test_the_node_connects_again_to_an_agent_that_comes_back(void)
 
 void test_waiting_for_the_agent_costs_no_byte_of_the_lidar(void)
 {
-    virtual_agent.present = true;
     run_for(3000);
     virtual_agent.present = false;
     run_for(5000);
@@ -248,7 +231,6 @@ void test_waiting_for_the_agent_costs_no_byte_of_the_lidar(void)
 
 void test_after_a_failure_all_is_closed_and_opened_again(void)
 {
-    virtual_agent.present = true;
     virtual_agent.refuses_publisher = true;
     run_for(1500);
     TEST_ASSERT_FALSE(virtual_agent.node_open);
@@ -268,7 +250,6 @@ void test_after_a_failure_all_is_closed_and_opened_again(void)
 
 void test_a_scan_that_cannot_be_published_is_counted(void)
 {
-    virtual_agent.present = true;
     run_for(3000);
     virtual_agent.takes_nothing = true;
     run_for(1000);
@@ -278,7 +259,6 @@ void test_a_scan_that_cannot_be_published_is_counted(void)
 
 void test_failures_to_close_are_counted(void)
 {
-    virtual_agent.present = true;
     run_for(1500);
     virtual_agent.present = false;
     virtual_agent.closes_badly = true;
@@ -288,7 +268,6 @@ void test_failures_to_close_are_counted(void)
 
 void test_a_lidar_that_is_plugged_in_later_is_started(void)
 {
-    virtual_agent.present = true;
     plugged = false;
     run_for(20000);
     TEST_ASSERT_EQUAL_UINT(0, virtual_agent.published);
