@@ -14,12 +14,9 @@
 #include "irq_lines.h"
 #include "stream_buffer.h"
 
-#define STEP_US 40u
 #define FIFO_SIZE 16u
 #define NEVER UINT64_MAX
 #define STACK_WORDS_MIN 128u
-
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
 freertos_world_t world;
 
@@ -63,61 +60,11 @@ static void arrive(uint32_t overrun, uint8_t byte)
 
 /* --------------------------------------------------------------------------------------- tasks */
 
-static bool is_ready(const struct freertos_task *task)
-{
-    if (!task->used || task->suspended) {
-        return false;
-    }
-    return !task->waiting || (task->for_notice && task->notices > 0) ||
-           machine.now_us >= task->until_us;
-}
-
-static struct freertos_task *most_urgent(void)
-{
-    struct freertos_task *chosen = NULL;
-    for (unsigned i = 0; i < TASKS; i++) {
-        struct freertos_task *const task = &world.tasks[i];
-        if (is_ready(task) && (chosen == NULL || task->priority > chosen->priority)) {
-            chosen = task;
-        }
-    }
-    return chosen;
-}
-
-/* Gives the processor to the most urgent task, and waits until the caller gets it back. */
-static void reschedule(struct freertos_task *self)
-{
-    struct freertos_task *next = most_urgent();
-    while (next == NULL) {
-        machine_step(STEP_US);
-        next = most_urgent();
-    }
-    next->waiting = false;
-    world.current = next;
-    pthread_cond_signal(&next->turn);
-    while (world.current != self && !world.ending) {
-        pthread_cond_wait(&self->turn, &lock);
-    }
-    if (world.ending && self != &world.tasks[0]) {
-        pthread_mutex_unlock(&lock);
-        pthread_exit(NULL);
-    }
-}
-
-static void yield_to_more_urgent(void)
-{
-    struct freertos_task *const self = world.current;
-    const struct freertos_task *const next = most_urgent();
-    if (next != NULL && next != self && next->priority > self->priority) {
-        reschedule(self);
-    }
-}
-
 /* At each access to the library's indices, another task may run. */
 static void switch_tasks(void)
 {
     if (!irq_is_in_handler()) {
-        yield_to_more_urgent();
+        tasks_yield();
     }
 }
 
@@ -129,55 +76,10 @@ static uint64_t after(TickType_t ticks)
     return machine.now_us + (uint64_t)ticks * 1000000u / configTICK_RATE_HZ;
 }
 
-static void wait_until(uint64_t until_us, bool for_notice)
+static void wait_until(uint64_t until_us, bool (*is_awaited)(const task_t *))
 {
-    struct freertos_task *const self = world.current;
     demand(!irq_is_in_handler(), "no waiting in an interrupt");
-    self->waiting = true;
-    self->for_notice = for_notice;
-    self->until_us = until_us;
-    reschedule(self);
-}
-
-static void *run_task(void *argument)
-{
-    struct freertos_task *const self = argument;
-    pthread_mutex_lock(&lock);
-    while (world.current != self && !world.ending) {
-        pthread_cond_wait(&self->turn, &lock);
-    }
-    if (!world.ending) {
-        self->function(self->argument); /* It holds the lock: no other task runs. */
-        freertos_model_assert("a task must not return");
-    }
-    pthread_mutex_unlock(&lock);
-    return NULL;
-}
-
-static struct freertos_task *new_task(UBaseType_t priority)
-{
-    for (unsigned i = 0; i < TASKS; i++) {
-        if (!world.tasks[i].used) {
-            world.tasks[i] = (struct freertos_task){.used = true, .priority = priority};
-            pthread_cond_init(&world.tasks[i].turn, NULL);
-            return &world.tasks[i];
-        }
-    }
-    freertos_model_assert("no more tasks");
-    return NULL;
-}
-
-static void end_tasks(void)
-{
-    world.ending = true;
-    for (unsigned i = 1; i < TASKS; i++) {
-        if (world.tasks[i].used) {
-            pthread_cond_signal(&world.tasks[i].turn);
-            pthread_mutex_unlock(&lock);
-            pthread_join(world.tasks[i].thread, NULL);
-            pthread_mutex_lock(&lock);
-        }
-    }
+    tasks_wait(until_us, is_awaited);
 }
 
 void freertos_model_begin(const sim_observer_t *observer, unsigned priority)
@@ -187,13 +89,9 @@ void freertos_model_begin(const sim_observer_t *observer, unsigned priority)
                                  .is_up = line_is_up,
                                  .serve = serve_line,
                                  .switch_tasks = switch_tasks};
-    if (world.current == NULL) {
-        pthread_mutex_lock(&lock); /* From here on the test's thread has the processor. */
-    }
-    end_tasks();
     memset(&world, 0, sizeof world);
     machine_begin(observer, &uart);
-    world.current = new_task(priority);
+    tasks_begin(priority);
 }
 
 TaskHandle_t xTaskCreateStatic(TaskFunction_t function, const char *name, uint32_t stack_words,
@@ -202,20 +100,17 @@ TaskHandle_t xTaskCreateStatic(TaskFunction_t function, const char *name, uint32
 {
     demand(name != NULL && stack != NULL && memory != NULL, "a task needs memory");
     demand(stack_words >= STACK_WORDS_MIN && priority < configMAX_PRIORITIES, "a task's size");
-    struct freertos_task *const task = new_task(priority);
+    task_t *const task = tasks_new((unsigned)priority, function, argument);
     memset(stack, 0xA5, stack_words * sizeof *stack);
     memory->kept = task;
-    task->function = function;
-    task->argument = argument;
-    demand(pthread_create(&task->thread, NULL, run_task, task) == 0, "a thread");
-    yield_to_more_urgent();
+    tasks_yield();
     return task;
 }
 
 TaskHandle_t xTaskGetCurrentTaskHandle(void)
 {
     interrupt();
-    return world.current;
+    return tasks_current;
 }
 
 TickType_t xTaskGetTickCount(void)
@@ -225,14 +120,14 @@ TickType_t xTaskGetTickCount(void)
 
 void vTaskDelay(TickType_t ticks)
 {
-    wait_until(after(ticks), false);
+    wait_until(after(ticks), NULL);
 }
 
 void vTaskSuspend(TaskHandle_t task)
 {
     demand(task == NULL, "only itself");
-    world.current->suspended = true;
-    reschedule(world.current);
+    tasks_current->suspended = true;
+    tasks_wait(0, NULL);
 }
 
 /* The tasks exist already: they run whenever the test's task lets them. */
@@ -243,7 +138,7 @@ BaseType_t xTaskNotifyGiveIndexed(TaskHandle_t task, UBaseType_t index)
     demand(index < configTASK_NOTIFICATION_ARRAY_ENTRIES, "an index");
     demand(!irq_is_in_handler(), "not from an interrupt");
     task->notices++;
-    yield_to_more_urgent();
+    tasks_yield();
     return pdPASS;
 }
 
@@ -252,22 +147,27 @@ void vTaskNotifyGiveIndexedFromISR(TaskHandle_t task, UBaseType_t index, BaseTyp
     demand(index < configTASK_NOTIFICATION_ARRAY_ENTRIES, "an index");
     demand(irq_is_in_handler(), "from an interrupt only");
     task->notices++;
-    if (task->priority > world.current->priority) {
+    if (task->priority > tasks_current->priority) {
         *woken = pdTRUE;
     }
 }
 
+static bool has_notice(const task_t *task)
+{
+    return task->notices > 0;
+}
+
 uint32_t ulTaskNotifyTakeIndexed(UBaseType_t index, BaseType_t clear, TickType_t ticks)
 {
-    struct freertos_task *const self = world.current;
+    task_t *const self = tasks_current;
     demand(index < configTASK_NOTIFICATION_ARRAY_ENTRIES, "an index");
     interrupt();
     if (self->notices == 0 && ticks > 0) {
-        wait_until(after(ticks), true);
+        wait_until(after(ticks), has_notice);
     }
     const uint32_t notices = self->notices;
     self->notices = clear == pdTRUE || notices == 0 ? 0 : notices - 1;
-    world.wakes += self == &world.tasks[0] && notices > 0;
+    world.wakes += tasks_is_test() && notices > 0;
     return notices;
 }
 
@@ -292,7 +192,7 @@ size_t xStreamBufferSendFromISR(StreamBufferHandle_t stream, const void *bytes, 
     stream->count += sent;
     if (stream->waiting != NULL && stream->count >= stream->trigger) {
         stream->waiting->until_us = 0;
-        if (stream->waiting->priority > world.current->priority) {
+        if (stream->waiting->priority > tasks_current->priority) {
             *woken = pdTRUE;
         }
         stream->waiting = NULL;
@@ -303,15 +203,15 @@ size_t xStreamBufferSendFromISR(StreamBufferHandle_t stream, const void *bytes, 
 size_t xStreamBufferReceive(StreamBufferHandle_t stream, void *bytes, size_t size, TickType_t ticks)
 {
     if (stream->count == 0 && ticks > 0) {
-        stream->waiting = world.current;
-        wait_until(after(ticks), false);
+        stream->waiting = tasks_current;
+        wait_until(after(ticks), NULL);
         stream->waiting = NULL;
     }
     const size_t taken = stream->count < size ? stream->count : size;
     memcpy(bytes, stream->memory, taken);
     stream->count -= taken;
     memmove(stream->memory, &stream->memory[taken], stream->count);
-    if (world.current != &world.tasks[0]) {
+    if (!tasks_is_test()) {
         interrupt();
     }
     return taken;
@@ -345,15 +245,6 @@ void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count)
         world.pending = true;
         machine_receive(overrun && i == 0, &bytes[i], part);
     }
-}
-
-unsigned freertos_model_tasks(void)
-{
-    unsigned tasks = 0;
-    for (unsigned i = 1; i < TASKS; i++) {
-        tasks += world.tasks[i].used;
-    }
-    return tasks;
 }
 
 /* -------------------------------------------------------------------------- the example's board */

@@ -35,6 +35,6 @@ void test_it_names_the_lidar_and_reports_whether_a_robot_may_move(void)
     while (story_goes_on()) {
         vTaskDelay(pdMS_TO_TICKS(100));
     }
-    TEST_ASSERT_EQUAL_UINT(TASKS_EXPECTED, freertos_model_tasks());
+    TEST_ASSERT_EQUAL_UINT(TASKS_EXPECTED, tasks_count());
     assert_console_leaves_time(1024);
 }

@@ -67,7 +67,7 @@ void port_begin(const sim_observer_t *observer)
 /* The receiving task sleeps and is used again. */
 void port_assert_stopped(void)
 {
-    TEST_ASSERT_EQUAL_UINT(port.receiver != NULL ? 1 : 0, freertos_model_tasks());
+    TEST_ASSERT_EQUAL_UINT(port.receiver != NULL ? 1 : 0, tasks_count());
 }
 
 static void receive_by_stream(void)
@@ -267,7 +267,7 @@ void test_what_cannot_work_is_refused(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_freertos_start(&port, NULL));
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_STATE, tmini_freertos_start(&port, &lidar));
-    TEST_ASSERT_EQUAL_UINT(1, freertos_model_tasks());
+    TEST_ASSERT_EQUAL_UINT(1, tasks_count());
 }
 
 /* Without room for its bytes, the receiving task notices the stop only after a tick. */

@@ -5,82 +5,37 @@
 
 #include <errno.h>
 #include <stdlib.h>
-#include <ucontext.h>
 
 #include <zephyr/kernel.h>
 
 #include "irq_lines.h"
+#include "tasks.h"
 #include "zephyr_model.h"
-
-#define STEP_US 40u
-#define STACK_SIZE (256u * 1024u)
-#define THREADS 2
-
-typedef struct {
-    bool used;
-    ucontext_t context;
-    uint64_t until_us;
-    const struct k_sem *awaited;
-    k_thread_entry_t entry;
-    void *arguments[3];
-} thread_t;
-
-static struct {
-    thread_t threads[THREADS];
-    int current;
-} kernel;
-
-static char stack_of_thread[STACK_SIZE];
 
 void zephyr_kernel_begin(void)
 {
-    kernel.threads[0] = (thread_t){.used = true};
-    kernel.threads[1].used = false;
-    kernel.current = 0;
+    tasks_begin(0);
 }
 
 /* -------------------------------------------------------------------------------------- threads */
 
-static bool may_run(const thread_t *thread)
+static void block(uint64_t us, bool (*is_awaited)(const task_t *))
 {
-    return thread->used && (machine.now_us >= thread->until_us ||
-                            (thread->awaited != NULL && thread->awaited->count > 0));
-}
-
-static void switch_to(int number)
-{
-    const int from = kernel.current;
-    kernel.current = number;
-    if (swapcontext(&kernel.threads[from].context, &kernel.threads[number].context) != 0) {
-        abort();
-    }
-}
-
-/* Runs the other thread, or lets time pass, until the calling thread may continue. */
-static void block(uint64_t us, const struct k_sem *awaited)
-{
-    thread_t *const me = &kernel.threads[kernel.current];
-    const int other = 1 - kernel.current;
-    me->until_us = machine.now_us + us;
-    me->awaited = awaited;
-    while (!may_run(me)) {
-        if (may_run(&kernel.threads[other])) {
-            switch_to(other);
-        } else {
-            machine_pass(STEP_US);
-        }
-    }
-    me->awaited = NULL;
-    if (machine.on_sleep != NULL && kernel.current == 0) {
+    tasks_wait(machine.now_us + us, is_awaited);
+    if (machine.on_sleep != NULL && tasks_is_test()) {
         machine.on_sleep();
     }
 }
 
-static void enter(void)
+static struct {
+    k_thread_entry_t entry;
+    void *arguments[3];
+} created;
+
+static void enter(void *argument)
 {
-    const thread_t *const me = &kernel.threads[1];
-    me->entry(me->arguments[0], me->arguments[1], me->arguments[2]);
-    abort(); /* The port's thread must not end. */
+    (void)argument;
+    created.entry(created.arguments[0], created.arguments[1], created.arguments[2]);
 }
 
 /* The new thread runs when the test's thread waits for the first time. */
@@ -88,22 +43,12 @@ k_tid_t k_thread_create(struct k_thread *thread, k_thread_stack_t *stack, size_t
                         k_thread_entry_t entry, void *p1, void *p2, void *p3, int priority,
                         uint32_t options, k_timeout_t delay)
 {
-    thread_t *const created = &kernel.threads[1];
     (void)stack, (void)stack_size, (void)priority, (void)options, (void)delay;
-    if (created->used || getcontext(&created->context) != 0) {
-        abort();
-    }
-    created->used = true;
-    created->until_us = 0;
-    created->awaited = NULL;
-    created->entry = entry;
-    created->arguments[0] = p1;
-    created->arguments[1] = p2;
-    created->arguments[2] = p3;
-    created->context.uc_stack.ss_sp = stack_of_thread;
-    created->context.uc_stack.ss_size = sizeof stack_of_thread;
-    created->context.uc_link = NULL;
-    makecontext(&created->context, enter, 0);
+    created.entry = entry;
+    created.arguments[0] = p1;
+    created.arguments[1] = p2;
+    created.arguments[2] = p3;
+    (void)tasks_new(0, enter, NULL);
     return thread;
 }
 
@@ -142,11 +87,17 @@ void k_sem_give(struct k_sem *sem)
     }
 }
 
+static bool is_given(const task_t *task)
+{
+    return ((const struct k_sem *)task->awaited)->count > 0;
+}
+
 int k_sem_take(struct k_sem *sem, k_timeout_t timeout)
 {
     irq_access();
     board.waits++;
-    block((uint64_t)timeout.ms * 1000u, sem);
+    tasks_current->awaited = sem;
+    block((uint64_t)timeout.ms * 1000u, is_given);
     if (sem->count == 0) {
         return -EAGAIN;
     }
@@ -164,17 +115,17 @@ int k_mutex_init(struct k_mutex *mutex)
 int k_mutex_lock(struct k_mutex *mutex, k_timeout_t timeout)
 {
     (void)timeout;
-    while (mutex->count > 0 && mutex->owner != kernel.current) {
-        switch_to(mutex->owner);
+    while (mutex->count > 0 && mutex->owner != tasks_current) {
+        tasks_run(mutex->owner);
     }
-    mutex->owner = kernel.current;
+    mutex->owner = tasks_current;
     mutex->count++;
     return 0;
 }
 
 int k_mutex_unlock(struct k_mutex *mutex)
 {
-    if (mutex->count == 0 || mutex->owner != kernel.current) {
+    if (mutex->count == 0 || mutex->owner != tasks_current) {
         abort(); /* -EPERM, -EINVAL: a bug of the port. */
     }
     mutex->count--;

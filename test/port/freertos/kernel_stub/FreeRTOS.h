@@ -42,7 +42,7 @@ void freertos_model_assert(const char *condition);
 typedef struct {
     void *kept;
 } StaticTask_t;
-typedef struct freertos_task *TaskHandle_t;
+typedef struct task *TaskHandle_t;
 typedef struct freertos_stream {
     uint8_t *memory;
     size_t size;

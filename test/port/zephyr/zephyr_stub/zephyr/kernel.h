@@ -33,7 +33,7 @@ int k_thread_name_set(k_tid_t thread, const char *name);
 int32_t k_sleep(k_timeout_t timeout);
 
 struct k_mutex {
-    int owner; /* The thread's number. */
+    struct task *owner;
     unsigned count;
 };
 int k_mutex_init(struct k_mutex *mutex);
