@@ -570,10 +570,16 @@ class Bench:
             return "survived" if is_other or not self.is_same_code(tests) else "the same code"
 
 
+def open_to_all(folder):
+    """A test runs the tool as another user, who must find it."""
+    os.chmod(folder, 0o755)
+    return folder
+
+
 def begin_worker(build, work):
     global bench
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    bench = Bench(build, tempfile.mkdtemp(dir=work))
+    bench = Bench(build, open_to_all(tempfile.mkdtemp(dir=work)))
 
 
 def fate_of(mutant):
@@ -684,7 +690,7 @@ def main():
     for key in stale:
         print(f"in {KNOWN}, but no longer a mutant: {key}")
     with tempfile.TemporaryDirectory() as work, \
-            multiprocessing.Pool(arguments.jobs, begin_worker, (arguments.build, work)) as pool:
+            multiprocessing.Pool(arguments.jobs, begin_worker, (arguments.build, open_to_all(work))) as pool:
         survivors, needed = try_mutants(mutants, arguments.sample or len(mutants), pool, Results(arguments.results),
                                         known)
     noticed = [] if arguments.sample else sorted({mutant.key for mutant in mutants} & known.keys() - needed)

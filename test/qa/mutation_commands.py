@@ -81,7 +81,9 @@ class Package:
 
     def make(self, bench, _test, source, folder):
         target = Path(bench.work, folder, "site", "tmini")
-        installed = next(self.environment(bench.build).glob("lib/*/site-packages/tmini"))
+        installed = next(self.environment(bench.build).glob("lib/*/site-packages/tmini"), None)
+        if installed is None:
+            raise SystemExit("Run the test `python` first: it installs the package.")
         shutil.copytree(installed, target, dirs_exist_ok=True)
         shutil.copytree(ROOT / "port" / "python" / "tmini", target, dirs_exist_ok=True)
         shutil.copy(source, target)
