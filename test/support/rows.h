@@ -2,7 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* A table whose rows are tests: each has a name, which is a claim, and runs alone, with setUp() and
- * tearDown(). A row that fails is reported by its name and line, and the others run on. */
+ * tearDown(). A row that fails is reported by its name and line, and the others run on.
+ *
+ *     TMINI_TEST_ROW=test_a_claim build/test/bin/test_x    only this one of the rows */
 
 #ifndef ROWS_H
 #define ROWS_H
