@@ -36,6 +36,7 @@
 #define BEGIN_NS INT64_C(1000000000000)
 #define READING_NS 1000 /* What it takes to read the clock: loops that only do this end. */
 #define LOOK_NS 2000000 /* Real time between two looks: programs end without a word. */
+#define LONGEST_NS INT64_C(1200000000000)
 #define PROGRAMS_MAX 64
 #define FDS_MAX 16  /* That a program waits for. */
 #define HIGH_FD 100 /* Never a standard descriptor, even if one of those is closed. */
@@ -59,7 +60,8 @@ static int lock_fd;
 static int wake_fd;    /* Others wake this program here. */
 static char name[100]; /* Of the file: part of the names of all `wake_fd`. */
 
-/* The real time after which poll() gives up with ETIME; 0: never. For the test itself. */
+/* The real time in which nothing happens after which poll() gives up with ETIME; 0: never. It also
+ * gives up after LONGEST_NS of the clock's time. For the test itself. */
 int shared_clock_patience_ms;
 
 void shared_clock_open(const char *path);
@@ -340,8 +342,10 @@ static int wait_or_be_woken(struct pollfd *fds, nfds_t count, long wait_ns, bool
 /* Waits until there is input, or the clock has been moved on. */
 static int wait_together(struct pollfd *fds, nfds_t count, int timeout_ms)
 {
-    const int64_t until_ns = timeout_ms < 0 ? NEVER : now_ns() + timeout_ms * INT64_C(1000000);
-    const int64_t begun_ms = real_ms();
+    const int64_t begun_ns = now_ns();
+    const int64_t until_ns = timeout_ms < 0 ? NEVER : begun_ns + timeout_ms * INT64_C(1000000);
+    uint64_t latest = 0; /* Value of `events`, and when it was seen first. */
+    int64_t latest_ms = real_ms();
     bool is_late = false;
     int ready = 0;
     do {
@@ -353,8 +357,11 @@ static int wait_together(struct pollfd *fds, nfds_t count, int timeout_ms)
             ready = wait_or_be_woken(fds, count, must_look ? 0 : LOOK_NS, &is_woken);
             is_late = !must_look && !is_woken;
         }
+        latest_ms = latest == events ? latest_ms : real_ms();
+        latest = events;
         if (ready == 0 && shared_clock_patience_ms > 0 &&
-            real_ms() - begun_ms > shared_clock_patience_ms) {
+            (real_ms() - latest_ms > shared_clock_patience_ms ||
+             now_ns() - begun_ns > LONGEST_NS)) {
             errno = ETIME;
             ready = -1;
         }

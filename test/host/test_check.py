@@ -74,8 +74,8 @@ CASES = {
     "third turn": ("--blind 3 --no-ct", "not good: ranges",
                    ["BAD ranges 19 of 58 turns saw nothing; 65 % of all points"]),
     "too fast": ("--motor 130", "not good: frequency",
-                 ["BAD frequency 7.8 Hz measured, 6.0 Hz set: it turns too fast its speed control has failed; no supply and "
-                  "no brake does that"]),
+                 ["BAD frequency 7.8 Hz measured, 6.0 Hz set: it turns too fast its speed control has failed; "
+                  "no supply and no brake does that"]),
     "drop": ("--fault drop=1e-3", "not good: line", [" packets damaged, ", PLAIN_LINE]),
     "flip": ("--fault flip=1e-3", "not good: line", [" packets damaged, ", PLAIN_LINE]),
     "insert": ("--fault insert=1e-3", "not good: line", [" packets damaged, ", PLAIN_LINE]),
@@ -94,8 +94,10 @@ CASES = {
     "pd": ("--health 0x08", "not good: health", ["faulty: PD"]),
     "ld": ("--health 0x10", "not good: health", ["faulty: LD"]),
     "data": ("--health 0x20", "not good: health", ["faulty: data (is the window covered?)"]),
-    "slow": ("--motor 70", "not good: frequency", ["BAD frequency 4.2 Hz measured, 6.0 Hz set: it turns too slowly", "brake the rotor"]),
-    "brake": ("--motor 85", "usable, but look at: frequency", ["look frequency 5.1 Hz measured, 6.0 Hz set: it turns too slowly"]),
+    "slow": ("--motor 70", "not good: frequency",
+             ["BAD frequency 4.2 Hz measured, 6.0 Hz set: it turns too slowly", "brake the rotor"]),
+    "brake": ("--motor 85", "usable, but look at: frequency",
+              ["look frequency 5.1 Hz measured, 6.0 Hz set: it turns too slowly"]),
     "weak": ("--spin-up 8", "usable, but look at: supply", ["the motor took "]),
     "late": ("--bursts 400", "usable, but look at: pace",
              ["look pace bytes come in bursts, up to 4", " ms apart; late halves of ", " packets were dropped",
