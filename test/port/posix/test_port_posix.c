@@ -54,20 +54,43 @@ static tmini_posix_status_t start(tmini_posix_t *device, const char *path)
     return tmini_posix_start(device, NULL);
 }
 
+static void init_lidar(bool listen_only)
+{
+    const tmini_config_t config = {.port = &tmini_posix_port,
+                                   .port_context = &port,
+                                   .rx_buffer = rx,
+                                   .rx_size = sizeof rx,
+                                   .points = points,
+                                   .max_points = sizeof points / sizeof points[0],
+                                   .listen_only = listen_only};
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+}
+
+static void begin_with(const char *const options[])
+{
+    tmini_posix_init(&port, program_start_lidar(options));
+    init_lidar(false);
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
+}
+
 static void begin(void)
 {
-    const tmini_config_t config = {
-        .port = &tmini_posix_port,
-        .port_context = &port,
-        .rx_buffer = rx,
-        .rx_size = sizeof rx,
-        .points = points,
-        .max_points = sizeof points / sizeof points[0],
-    };
-    const char *const device = program_start_lidar((const char *const[]){NULL});
-    tmini_posix_init(&port, device);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
+    begin_with((const char *const[]){NULL});
+}
+
+static void begin_by_socket(void)
+{
+    begin_with((const char *const[]){"--tcp", "0", NULL});
+}
+
+/* A new pseudo-terminal is set for typing: it echoes, edits lines, and changes characters. */
+static int open_terminal(void)
+{
+    const int master = posix_openpt(O_RDWR | O_NOCTTY);
+    TEST_ASSERT_TRUE(master >= 0);
+    TEST_ASSERT_EQUAL_INT(0, grantpt(master));
+    TEST_ASSERT_EQUAL_INT(0, unlockpt(master));
+    return master;
 }
 
 static void tap(void *context, const uint8_t *bytes, size_t count)
@@ -77,20 +100,26 @@ static void tap(void *context, const uint8_t *bytes, size_t count)
     tapped += count;
 }
 
+/* Polls until the event comes, at most 20 s. */
+static void poll_until(tmini_event_t wanted)
+{
+    const uint32_t begun_ms = tmini_posix_port.now_ms(&port);
+    tmini_event_t event = TMINI_EVENT_NONE;
+    do {
+        TEST_ASSERT_TRUE(tmini_posix_port.now_ms(&port) - begun_ms < 20000u);
+        event = tmini_poll(&lidar);
+        if (event == TMINI_EVENT_NONE) {
+            TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 10));
+        }
+    } while (event != wanted);
+}
+
 /* Waits for a scan without a gap: on a busy computer, some scans may have gaps. */
 static void await_complete_scan(void)
 {
-    const uint32_t begun_ms = tmini_posix_port.now_ms(&port);
-    while (!tmini_scan(&lidar)->complete) {
-        tmini_event_t event = TMINI_EVENT_NONE;
-        do {
-            TEST_ASSERT_TRUE(tmini_posix_port.now_ms(&port) - begun_ms < 20000u);
-            event = tmini_poll(&lidar);
-            if (event == TMINI_EVENT_NONE) {
-                (void)tmini_posix_wait(&port, 10);
-            }
-        } while (event != TMINI_EVENT_SCAN);
-    }
+    do {
+        poll_until(TMINI_EVENT_SCAN);
+    } while (!tmini_scan(&lidar)->complete);
 }
 
 void test_the_blocking_helpers_work(void)
@@ -133,11 +162,7 @@ void test_a_line_without_counters_has_no_errors(void)
 void test_a_lidar_can_be_reached_through_a_socket(void)
 {
     tmini_info_t info;
-    const tmini_config_t config = {
-        .port = &tmini_posix_port, .port_context = &port, .rx_buffer = rx, .rx_size = sizeof rx};
-    tmini_posix_init(&port, program_start_lidar((const char *const[]){"--tcp", "0", NULL}));
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
+    begin_by_socket();
     int sends_at_once = 0;
     socklen_t size = sizeof sends_at_once;
     TEST_ASSERT_EQUAL_INT(0, getsockopt(port.fd, IPPROTO_TCP, TCP_NODELAY, &sends_at_once, &size));
@@ -297,14 +322,7 @@ void test_a_timed_stream_that_comes_late_has_the_times_of_its_sender(void)
     for (size_t at = 0; at < sizeof bytes; at += 130) {
         size += put_chunk(stream + size, bytes + at, 130);
     }
-    const tmini_config_t config = {.port = &tmini_posix_port,
-                                   .port_context = &port,
-                                   .rx_buffer = rx,
-                                   .rx_size = sizeof rx,
-                                   .points = points,
-                                   .max_points = sizeof points / sizeof points[0],
-                                   .listen_only = true};
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+    init_lidar(true);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
     const int other = start_on_pair(&lidar, stream, 8 + 140);
     TEST_ASSERT_EQUAL_UINT(0, count_complete());
@@ -356,20 +374,6 @@ void test_a_failure_to_wait_for_bytes_is_an_error(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_wait(&port, 0));
 }
 
-/* Polls until the event comes, at most 20 s. */
-static void poll_until(tmini_event_t wanted)
-{
-    const uint32_t begun_ms = tmini_posix_port.now_ms(&port);
-    tmini_event_t event = TMINI_EVENT_NONE;
-    do {
-        TEST_ASSERT_TRUE(tmini_posix_port.now_ms(&port) - begun_ms < 20000u);
-        event = tmini_poll(&lidar);
-        if (event == TMINI_EVENT_NONE) {
-            TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 10));
-        }
-    } while (event != wanted);
-}
-
 static void begin_with_an_adapter(void)
 {
     begin();
@@ -413,9 +417,7 @@ void test_a_reconnection_is_a_gap(void)
 
 void test_bytes_from_before_the_start_are_thrown_away(void)
 {
-    const int master = posix_openpt(O_RDWR | O_NOCTTY);
-    TEST_ASSERT_EQUAL_INT(0, grantpt(master));
-    TEST_ASSERT_EQUAL_INT(0, unlockpt(master));
+    const int master = open_terminal();
     const int line = open(ptsname(master), O_RDWR | O_NOCTTY); /* Otherwise stopping would do it. */
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&port, ptsname(master))); /* Makes it raw. */
     TEST_ASSERT_EQUAL_INT(3, write(master, "old", 3));
@@ -464,39 +466,28 @@ void test_writing_to_an_unplugged_device_fails(void)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, tmini_blocking_read_info(&lidar, &info, 8000));
 }
 
+/* The system allows root to open a claimed device, but the port refuses it to root, too, and leaves
+ * the claim. */
 void test_a_device_is_used_by_one_program_at_a_time(void)
 {
     tmini_posix_t other;
     const char *const device = program_start_lidar((const char *const[]){NULL});
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&port, device));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_BUSY, start(&other, device));
+#if defined(TIOCGEXCL)
+    int is_claimed = 0;
+    TEST_ASSERT_EQUAL_INT(0, ioctl(port.fd, TIOCGEXCL, &is_claimed));
+    TEST_ASSERT_EQUAL_INT(1, is_claimed);
+#endif
     tmini_posix_stop(&port);
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&other, device));
     tmini_posix_stop(&other);
 }
 
-/* The system allows root to open a claimed device, but the port refuses it to root, too. */
-void test_a_refused_start_leaves_the_claim_of_another_program(void)
-{
-#if defined(TIOCGEXCL)
-    tmini_posix_t other;
-    int is_claimed = 0;
-    const char *const device = program_start_lidar((const char *const[]){NULL});
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&port, device));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_BUSY, start(&other, device));
-    TEST_ASSERT_EQUAL_INT(0, ioctl(port.fd, TIOCGEXCL, &is_claimed));
-    TEST_ASSERT_EQUAL_INT(1, is_claimed);
-#else
-    TEST_IGNORE_MESSAGE("this system does not report claims");
-#endif
-}
-
 /* Otherwise Ctrl-C would no longer interrupt the program, and typed text would not be shown. */
 void test_the_programs_own_terminal_is_refused(void)
 {
-    const int master = posix_openpt(O_RDWR | O_NOCTTY);
-    TEST_ASSERT_EQUAL_INT(0, grantpt(master));
-    TEST_ASSERT_EQUAL_INT(0, unlockpt(master));
+    const int master = open_terminal();
     const pid_t child = fork();
     if (child == 0) {
         (void)setsid();
@@ -523,8 +514,7 @@ void test_children_inherit_neither_device_nor_socket(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start_on(&port, ends[0], &lidar));
     TEST_ASSERT_EQUAL_INT(FD_CLOEXEC, fcntl(port.fd, F_GETFD));
     close(ends[1]);
-    tmini_posix_init(&port, program_start_lidar((const char *const[]){"--tcp", "0", NULL}));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
+    begin_by_socket();
     TEST_ASSERT_EQUAL_INT(FD_CLOEXEC, fcntl(port.fd, F_GETFD));
 }
 
@@ -655,13 +645,9 @@ void test_each_reason_for_not_opening_has_its_own_status(void)
 
 void test_a_terminal_for_typing_becomes_a_line_for_bytes(void)
 {
-    /* A new pseudo-terminal is set for typing: it echoes, edits lines, and changes characters.
-     * Another program has set it so that read() returns 0 after 0.1 s without a byte. */
+    /* Another program has set it so that read() returns 0 after 0.1 s without a byte. */
     struct termios settings;
-    const int master = posix_openpt(O_RDWR | O_NOCTTY);
-    TEST_ASSERT_TRUE(master >= 0);
-    TEST_ASSERT_EQUAL_INT(0, grantpt(master));
-    TEST_ASSERT_EQUAL_INT(0, unlockpt(master));
+    const int master = open_terminal();
     TEST_ASSERT_EQUAL_INT(0, tcgetattr(master, &settings));
     settings.c_cc[VMIN] = 0;
     settings.c_cc[VTIME] = 1;
