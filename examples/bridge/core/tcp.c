@@ -24,7 +24,7 @@ static bool is_only_busy(void)
     return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
 }
 
-void tcp_init(tcp_t *tcp, bridge_t *bridge)
+void tcp_server_init(tcp_server_t *tcp, bridge_t *bridge)
 {
     tcp->bridge = bridge;
     tcp->fd = -1;
@@ -33,7 +33,7 @@ void tcp_init(tcp_t *tcp, bridge_t *bridge)
     }
 }
 
-unsigned tcp_listen(tcp_t *tcp, unsigned port, bool is_open)
+unsigned tcp_server_listen(tcp_server_t *tcp, unsigned port, bool is_open)
 {
     struct sockaddr_in place = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
     socklen_t size = sizeof place;
@@ -49,21 +49,21 @@ unsigned tcp_listen(tcp_t *tcp, unsigned port, bool is_open)
         listen(tcp->fd, BRIDGE_LISTENERS_MAX) != 0 ||
         getsockname(tcp->fd, (struct sockaddr *)&place, &size) != 0) {
         const int error = errno;
-        tcp_close(tcp, 0);
+        tcp_server_close(tcp, 0);
         errno = error;
         return 0;
     }
     return ntohs(place.sin_port);
 }
 
-static void leave(tcp_t *tcp, tcp_client_t *client, uint64_t now_us)
+static void leave(tcp_server_t *tcp, tcp_client_t *client, uint64_t now_us)
 {
     (void)close(client->fd);
     client->fd = -1;
     bridge_leave(tcp->bridge, client->listener, now_us);
 }
 
-static void welcome(tcp_t *tcp, int fd, int listener, uint64_t now_us)
+static void welcome(tcp_server_t *tcp, int fd, int listener, uint64_t now_us)
 {
     const int on = 1;
     tcp_client_t *client = tcp->clients;
@@ -78,7 +78,7 @@ static void welcome(tcp_t *tcp, int fd, int listener, uint64_t now_us)
 }
 
 /* Who is one too many is left at once. A flood of connections must not hold up the caller. */
-static void accept_some(tcp_t *tcp, uint64_t now_us)
+static void accept_some(tcp_server_t *tcp, uint64_t now_us)
 {
     for (int i = 0; i < BRIDGE_LISTENERS_MAX; i++) {
         const int fd = accept(tcp->fd, NULL, NULL);
@@ -102,7 +102,7 @@ static bool is_listening(const tcp_client_t *client)
 }
 
 /* False: it has gone. */
-static bool send_next(tcp_t *tcp, tcp_client_t *client, uint64_t now_us)
+static bool send_next(tcp_server_t *tcp, tcp_client_t *client, uint64_t now_us)
 {
     const uint8_t *bytes = NULL;
     const size_t count = bridge_next(tcp->bridge, client->listener, &bytes);
@@ -115,7 +115,7 @@ static bool send_next(tcp_t *tcp, tcp_client_t *client, uint64_t now_us)
     return true;
 }
 
-void tcp_serve(tcp_t *tcp, uint64_t now_us)
+void tcp_server_serve(tcp_server_t *tcp, uint64_t now_us)
 {
     accept_some(tcp, now_us);
     for (tcp_client_t *client = tcp->clients; client < tcp->clients + BRIDGE_LISTENERS_MAX;
@@ -126,7 +126,7 @@ void tcp_serve(tcp_t *tcp, uint64_t now_us)
     }
 }
 
-void tcp_close(tcp_t *tcp, uint64_t now_us)
+void tcp_server_close(tcp_server_t *tcp, uint64_t now_us)
 {
     for (tcp_client_t *client = tcp->clients; client < tcp->clients + BRIDGE_LISTENERS_MAX;
          client++) {

@@ -3,7 +3,7 @@
 
 /* A TCP server for the bridge's streams, over the sockets of POSIX, which ESP-IDF's lwIP has, too.
  * No function waits. Listeners send nothing: who does is left. So is who takes nothing for a
- * while. */
+ * while. (lwIP has a tcp_init(), a tcp_listen() and a tcp_close() of its own.) */
 
 #ifndef TCP_H
 #define TCP_H
@@ -23,18 +23,18 @@ typedef struct {
     bridge_t *bridge;
     int fd; /* -1: not open. */
     tcp_client_t clients[BRIDGE_LISTENERS_MAX];
-} tcp_t;
+} tcp_server_t;
 
-void tcp_init(tcp_t *tcp, bridge_t *bridge);
+void tcp_server_init(tcp_server_t *tcp, bridge_t *bridge);
 
 /* Listens on this TCP port; 0: any that is free. `is_open`: not only for programs on this computer.
  * Returns the number of the port, or 0 and sets errno. */
-unsigned tcp_listen(tcp_t *tcp, unsigned port, bool is_open);
+unsigned tcp_server_listen(tcp_server_t *tcp, unsigned port, bool is_open);
 
 /* Accepts, sends, and leaves. Call it often. */
-void tcp_serve(tcp_t *tcp, uint64_t now_us);
+void tcp_server_serve(tcp_server_t *tcp, uint64_t now_us);
 
 /* Ends all connections. */
-void tcp_close(tcp_t *tcp, uint64_t now_us);
+void tcp_server_close(tcp_server_t *tcp, uint64_t now_us);
 
 #endif

@@ -20,7 +20,7 @@ static uint8_t rx[1024];
 static tmini_t lidar;
 static tmini_esp32_t port;
 static bridge_t bridge;
-static tcp_t tcp;
+static tcp_server_t tcp;
 
 static uint64_t now_us(void)
 {
@@ -67,8 +67,8 @@ static void open_network(void)
 {
     wifi_begin();
     ESP_ERROR_CHECK(web_begin());
-    tcp_init(&tcp, &bridge);
-    if (tcp_listen(&tcp, CONFIG_BRIDGE_TCP_PORT, true) == 0) {
+    tcp_server_init(&tcp, &bridge);
+    if (tcp_server_listen(&tcp, CONFIG_BRIDGE_TCP_PORT, true) == 0) {
         ESP_LOGE(TAG, "no socket for TCP");
     }
 }
@@ -93,7 +93,7 @@ void app_main(void)
         for (tmini_event_t event; (event = tmini_poll(&lidar)) != TMINI_EVENT_NONE;) {
             report(event);
         }
-        tcp_serve(&tcp, now_us());
+        tcp_server_serve(&tcp, now_us());
         web_serve(&bridge, now_us());
         follow_wish();
         (void)tmini_esp32_wait(&port, pdMS_TO_TICKS(5));

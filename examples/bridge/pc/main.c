@@ -25,7 +25,7 @@ static tmini_t lidar;
 static tmini_timing_t timing;
 static uint8_t rx[4096];
 static bridge_t bridge;
-static tcp_t tcp;
+static tcp_server_t tcp;
 static uint32_t reconnections;
 static volatile sig_atomic_t is_over;
 
@@ -67,7 +67,7 @@ static void work(void)
         reconnections = port.reconnections;
         bridge_pass(&bridge, now_us(), NULL, 0);
     }
-    tcp_serve(&tcp, now_us());
+    tcp_server_serve(&tcp, now_us());
 }
 
 static void serve(void)
@@ -107,7 +107,7 @@ static bool set_up(const char *path, uint16_t frequency_chz)
     tmini_posix_init(&port, path);
     tmini_posix_tap(&port, pass, &bridge);
     tmini_posix_reconnect(&port, true);
-    tcp_init(&tcp, &bridge);
+    tcp_server_init(&tcp, &bridge);
     return tmini_init(&lidar, &config) == TMINI_OK;
 }
 
@@ -148,7 +148,7 @@ int main(int count, char **words)
         return use();
     }
     const tmini_posix_status_t opened = tmini_posix_start(&port, &lidar);
-    const unsigned listened = tcp_listen(&tcp, (unsigned)number, is_open);
+    const unsigned listened = tcp_server_listen(&tcp, (unsigned)number, is_open);
     if (listened == 0) {
         perror("tmini-bridge: cannot listen");
         return 1;
@@ -162,7 +162,7 @@ int main(int count, char **words)
     watch_signals();
     serve();
     stop();
-    tcp_close(&tcp, now_us());
+    tcp_server_close(&tcp, now_us());
     tmini_posix_stop(&port);
     return 0;
 }
