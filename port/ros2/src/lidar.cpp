@@ -43,8 +43,9 @@ Report Lidar::report()
 
 void Lidar::set_up()
 {
-    timing_.frame_timeout_ms = 250; /* On a computer bytes may come late, and in bursts. */
-    timing_.max_pause_ms = 250;
+    /* On a computer bytes may come late, and in bursts; from a network even more so. */
+    timing_.frame_timeout_ms = settings_.port.rfind("tcp:", 0) == 0 ? 1000 : 250;
+    timing_.max_pause_ms = timing_.frame_timeout_ms;
     tmini_config_t config = {};
     config.port = &tmini_posix_port;
     config.port_context = &port_;
