@@ -111,7 +111,7 @@ def test_a_signal_ends_a_live_file_and_stops_the_lidar(command, simulator, tmp_p
     while not path.exists():
         assert process.poll() is None
         time.sleep(0.05)
-    time.sleep(0.5)
+    time.sleep(1.5)
     process.send_signal(number)
     out, error = process.communicate(timeout=60)
     assert (process.returncode, error) == (0, "") and "incomplete" in out
@@ -134,8 +134,8 @@ def test_foxglove_gets_each_scan(command, simulator):
             "/scan", "protobuf", "foxglove.LaserScan")
         client.send(json.dumps({"op": "subscribe",
                                 "subscriptions": [{"id": 7, "channelId": channel["id"]}]}))
-        before = None
-        for _ in range(3):
+        before, seen = None, 0
+        for _ in range(60):
             data = client.recv(60)
             while isinstance(data, str):
                 data = client.recv(60)
@@ -145,12 +145,17 @@ def test_foxglove_gets_each_scan(command, simulator):
             assert (fields[2], len(ranges), len(fields[7])) == (b"laser", 360, 8 * 360)
             assert 4 not in fields  # start_angle: the default, 0.
             assert struct.unpack("<d", fields[5])[0] == pytest.approx(math.radians(359))
+            if np.isnan(ranges[[90, 180]]).any():
+                continue  # A part of a turn, on a busy computer.
             # 2.2 m to the left wall, 1.7 m to the one behind; counter-clockwise.
             assert ranges[[90, 180]] == pytest.approx([2.2, 1.7], abs=0.05)
             stamp = protobuf(fields[1])
             assert time.time() - 5 < stamp[1] + stamp[2] / 1e9 < time.time()
             assert before != stamp
-            before = stamp
+            before, seen = stamp, seen + 1
+            if seen == 3:
+                break
+        assert seen == 3
     process.send_signal(signal.SIGTERM)
     assert process.wait(60) == 0
     simulator.await_idle()

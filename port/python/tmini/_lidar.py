@@ -29,6 +29,7 @@ from ._witness import Witness
 _PERIOD_S = 0.01  # 130 bytes come in this time.
 _REOPEN_S = 0.25
 _CLOSE_S = 1.0
+_CLOSE_TURNS = 20
 _RING = 32768
 _BLOCK = 16384
 _POINTS = 2400  # For a turn at 2 Hz, while the motor comes up to speed.
@@ -304,11 +305,12 @@ class Lidar:
             time.sleep(_PERIOD_S if self._line is not None else _REOPEN_S)
         with self._changed:
             lib.tmini_stop(self._lidar)
-        end = time.monotonic() + _CLOSE_S
-        while (self._line is not None and time.monotonic() < end
+        end, turns = time.monotonic() + _CLOSE_S, 0  # A busy computer may be away for all the time.
+        while (self._line is not None and (time.monotonic() < end or turns < _CLOSE_TURNS)
                and lib.tmini_state(self._lidar) != lib.TMINI_STATE_IDLE):
             self._turn()
             time.sleep(_PERIOD_S)
+            turns += 1
 
     def _turn(self) -> None:
         """Feeds received bytes to the driver, and opens the line again if it has gone."""
