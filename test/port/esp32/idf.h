@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The part of ESP-IDF that the ESP32 port needs. It can record each call, and fails in the call that
- * a test chooses. Its UART's driver takes what the machine's line brings (machine.h), or what a test
- * puts into its buffer.
+/* The part of ESP-IDF that the ESP32 port needs. It can record each call, and fails in the call
+ * that a test chooses. Its UART's driver takes what the machine's line brings (machine.h), or what
+ * a test puts into its buffer.
  *
- * With idf_tasks.c tasks are real threads and run at the same time, as on two cores; time is virtual
- * and advances only when all of them wait. Without it a test plays tasks and time. */
+ * With idf_tasks.c tasks are real threads and run at the same time, as on two cores; time is
+ * virtual and advances only when all of them wait. Without it a test plays tasks and time. */
 
 #ifndef IDF_H
 #define IDF_H

@@ -180,8 +180,8 @@ void test_no_packet_continues_across_an_overrun(void)
     }
 }
 
-/* Only the overrun flag is set: the byte before it has already been read. The next one may belong to
- * another packet. */
+/* Only the overrun flag is set: the byte before it has already been read. The next one may belong
+ * to another packet. */
 void test_an_overrun_without_a_byte_is_a_gap_and_stops_reception_only_until_the_next_poll(void)
 {
     while (next_way(BY_BYTES)) {

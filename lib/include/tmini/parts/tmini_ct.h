@@ -70,8 +70,8 @@ void tmini_ct_discard(tmini_ct_t *ct);
 
 /** Takes the next packet. `is_whole`: none has been lost since the last start packet, which may be
  * this one; a tmini_decoder_t knows. Returns what the packet shows about the revolution that it
- * ends, or TMINI_CT_UNKNOWN if it ends none. After TMINI_CT_CONFIRMED, tmini_ct_read() includes that
- * revolution. A few instructions. */
+ * ends, or TMINI_CT_UNKNOWN if it ends none. After TMINI_CT_CONFIRMED, tmini_ct_read() includes
+ * that revolution. A few instructions. */
 tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet, bool is_whole);
 
 /** The faults that the last trusted revolution reported, a combination of tmini_fault_t, or
