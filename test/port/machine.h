@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What the models of the platforms share: virtual time, the simulated lidar or a test's own bytes on
- * the line of a UART with its FIFO and its interrupt line (irq_lines.h), and the console. Tests and
- * models read and set its members directly. */
+/* What the models of the platforms share: virtual time, the simulated lidar or a test's own bytes
+ * on the line of a UART with its FIFO and its interrupt line (irq_lines.h), and the console. Tests
+ * and models read and set its members directly. */
 
 #ifndef MACHINE_H
 #define MACHINE_H

@@ -269,7 +269,7 @@ int uart_tx_chars(uart_port_t uart, const char *buffer, uint32_t length)
     return error == ESP_OK ? 2 : error;
 }
 
-/* ------------------------------------------------------------------------- tasks, queues and time */
+/* ----------------------------------------------------------------------- tasks, queues and time */
 
 BaseType_t xTaskCreatePinnedToCore(TaskFunction_t function, const char *name, uint32_t stack_depth,
                                    void *argument, UBaseType_t priority, TaskHandle_t *handle,

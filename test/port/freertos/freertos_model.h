@@ -2,9 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* A model of the FreeRTOS functions that the port uses, and of the example's board
- * (examples/freertos/board.h) with the simulated lidar. Time passes when no task is ready (tasks.h), or
- * when the running task calls machine_pass(). Then bytes arrive and the UART's interrupt is served.
- * If it wakes a task of higher priority, this task runs at once. */
+ * (examples/freertos/board.h) with the simulated lidar. Time passes when no task is ready
+ * (tasks.h), or when the running task calls machine_pass(). Then bytes arrive and the UART's
+ * interrupt is served. If it wakes a task of higher priority, this task runs at once. */
 
 #ifndef FREERTOS_MODEL_H
 #define FREERTOS_MODEL_H
