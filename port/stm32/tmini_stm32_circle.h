@@ -90,12 +90,14 @@ static inline bool tmini_stm32_circle_advance(tmini_stm32_circle_t *circle, uint
     const bool middle = end ? from < half || to >= half : from < half && to >= half;
     const int more_middles =
         circle->unreported_middles + middle - (uint8_t)(middles - circle->known_middles);
-    const int more_ends = circle->unreported_ends + end - (uint8_t)(ends - circle->known_ends);
+    const uint8_t reported_ends = (uint8_t)(ends - circle->known_ends);
+    const int more_ends = circle->unreported_ends + end - reported_ends;
+    const bool end_follows = more_middles < 0 && more_ends == 0 && reported_ends == 0;
     circle->position = to;
     circle->known_middles = middles;
     circle->known_ends = ends;
     circle->unreported_middles = more_middles > 0;
-    circle->unreported_ends = more_ends > 0 || (more_middles < 0 && more_ends == 0);
+    circle->unreported_ends = more_ends > 0 || end_follows;
     return more_middles < 0 || more_ends < 0 || (middle && end);
 }
 
