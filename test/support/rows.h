@@ -19,7 +19,7 @@
 #define IN_FLASH PROGMEM
 typedef struct {
     unsigned line;
-    char steps[640];
+    char steps[300];
 } row_t;
 #define ROW(claim, steps) \
     {                     \
