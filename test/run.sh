@@ -84,4 +84,5 @@ fi
 if [ "$all" = yes ] || [ -n "$labels" ]; then
     set -- -C All "$@"
 fi
-exec ctest --output-on-failure --no-tests=error --parallel "$(job_count)" "$@"
+# One more than there are cores, because many tests wait for real time.
+exec ctest --output-on-failure --no-tests=error --parallel "$(($(job_count) + 1))" "$@"
