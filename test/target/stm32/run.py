@@ -48,6 +48,7 @@ MOST_POINTS = 800
 # Revolutions lost at a stop (the driver also stops the lidar before each new start): the scan in progress, and one
 # more, because the lidar continues to send for about 100 ms.
 MOST_CUT_OFF = 2
+MOST_BY_CHANCE = 3
 
 # The console has 115200 baud and a buffer of this size.
 CONSOLE_BYTES_PER_MS = 11
@@ -330,14 +331,15 @@ def check_scans(findings, args, texts, log, packets, counters, accepted):
 
 
 def check_packets(findings, packets, counters):
-    """How many harmed packets were accepted. The packet's checksum is only an XOR: about one harmed packet in 10,000
-    passes it."""
+    """How many harmed packets were accepted. The packet's checksum is only an XOR, so one in 15 pairs of flipped bits
+    passes it: at this rate of flips 0.35 packets in a run."""
     intact = [packet for packet in packets if packet.intact]
     harmed = len(packets) - len(intact)
     print(f"packets sent: {len(packets)}, harmed on the line: {harmed}")
-    if counters["packets"] - len(intact) == 1 and harmed > 0:
-        print("one harmed packet had a valid checksum")
-        return 1
+    accepted = counters["packets"] - len(intact)
+    if 0 < accepted <= min(MOST_BY_CHANCE, harmed):
+        print(f"harmed packets with a valid checksum: {accepted}")
+        return accepted
     findings.equal("packets parsed", counters["packets"], len(intact))
     findings.equal("bytes in packets", counters["in_packets"], sum(packet.size() for packet in intact))
     return 0
