@@ -217,16 +217,11 @@ void rig_go_starting(void)
     answers_and_gets(600, START);
 }
 
-void rig_go_spinning_up(void)
+void rig_go_scanning(void)
 {
     rig_go_starting();
     rig_feed_scan_reply();
     polls_to(TMINI_EVENT_NONE);
-}
-
-void rig_go_scanning(void)
-{
-    rig_go_spinning_up();
     rig_feed_point_packet(1000);
     polls_to(TMINI_EVENT_STARTED);
     (void)rig_drain();
@@ -249,16 +244,11 @@ unsigned rig_turn_events(uint8_t health)
     return rig_drain() & ~BIT(TMINI_EVENT_SCAN);
 }
 
-unsigned rig_plain_turn_events(uint16_t distance_mm)
-{
-    rig.now_ms += 160;
-    rig_feed_plain_turn(distance_mm);
-    return rig_drain() & ~BIT(TMINI_EVENT_SCAN);
-}
-
 void rig_plain_turns(unsigned count, uint16_t distance_mm)
 {
     while (count-- > 0) {
-        (void)rig_plain_turn_events(distance_mm);
+        rig.now_ms += 160;
+        rig_feed_plain_turn(distance_mm);
+        (void)rig_drain();
     }
 }

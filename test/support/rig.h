@@ -66,7 +66,6 @@ void rig_init(void);
 void rig_expect_write(unsigned line, uint8_t first, uint8_t second, size_t count, int taken);
 
 /* All bytes expected so far have been sent. */
-#define was_sent() rig_verify()
 void rig_verify(void);
 
 /* ---- Time and events ---- */
@@ -140,10 +139,11 @@ void rig_feed_plain_turn(uint16_t distance_mm);
  * comes first: that turn is now complete, and is judged. */
 void rig_feed_turn(uint8_t health, uint16_t distance_mm);
 
-/* Feeds a turn of either kind, 160 ms later. Returns a bit for each event, except for scans. With
- * CT information a turn is judged when the next one begins. */
+/* Feeds a turn with CT information, 160 ms later; it is judged when the next one begins. Returns a
+ * bit for each event, except for scans. */
 unsigned rig_turn_events(uint8_t health);
-unsigned rig_plain_turn_events(uint16_t distance_mm);
+
+/* Feeds turns without it, each 160 ms later. */
 void rig_plain_turns(unsigned count, uint16_t distance_mm);
 
 /* ---- Ways into each state ---- */
@@ -157,9 +157,8 @@ void rig_go_idle(void);
         begins_with(code, call);      \
     } while (false)
 
-void rig_go_starting(void);    /* The start has been sent, its reply is awaited. */
-void rig_go_spinning_up(void); /* The start has been acknowledged. */
-void rig_go_scanning(void);    /* One point packet with a range has come. */
-void rig_go_recovering(void);  /* Lost; a stop has been sent just now. */
+void rig_go_starting(void);   /* The start has been sent, its reply is awaited. */
+void rig_go_scanning(void);   /* One point packet with a range has come. */
+void rig_go_recovering(void); /* Lost; a stop has been sent just now. */
 
 #endif

@@ -315,7 +315,7 @@ void test_a_turn_of_49_days_is_too_long(void)
  *     pause:1d,90d pause-S:0      a packet that closes the scan because of a pause, and is added
  *     get:1d,90d overrun      a packet that DMA overwrites before it is added
  *     strays:2 garbage:501    bytes before the next packet; bytes, one after the other
- *     room:8 later:167 bad:3  the buffer; the time passes; so many checksum errors
+ *     room:8 later:167 bad:3  the buffer; the time passes; 3 checksum errors
  *     new             from the beginning
  *     count:21 …      see number_named() */
 

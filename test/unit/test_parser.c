@@ -726,7 +726,7 @@ void test_a_reply_longer_than_the_ring_is_not_awaited(void)
  *                     <manual+40: what follows them
  *     <x:AA55 <zeros:300      these bytes
  *     !19@0           the next frame is a packet of 19 samples, which began at this offset
- *     !health@4       the next frame is this reply; so many bytes before it have been skipped
+ *     !health@4       the next frame is this reply; 4 bytes before it have been skipped
  *     !none           there is no frame; !end: nor will there be, if no more bytes come
  *     await:0:06:3    a reply of this mode, type and length is awaited; await:none
  *     skipped:9 pending:0 …   see number_named() */

@@ -287,7 +287,7 @@ void test_of_unread_bytes_in_two_pieces_the_first_piece_comes_first(void)
 /* Words of the rows:
  *
  *     put:abc write:abc=2     these bytes come one by one; as a block, of which two are stored
- *     dma age:-3      the ring is one for DMA; its indices are as after so many bytes
+ *     dma age:-3      the ring is one for DMA; its indices are 3 before their wraparound
  *     at:8:abc        DMA writes there and publishes its position; store:8:abc publish:11
  *     discard:2 gap open      calls
  *     unread:abc memory:abc   what is unread, what the memory begins with
