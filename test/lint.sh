@@ -2,16 +2,20 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Checks the sources without running them: formatting, static analysis, and strict compilation for
-# most targets of test/compile.sh. Runs all checks, then fails if any has found something.
+# Checks the sources without running them: formatting and static analysis. Runs all checks, as many
+# at a time as there are cores, then fails if any has found something.
 #
 #   test/lint.sh [--fix]       --fix first corrects the formatting of the files
+#   test/lint.sh CHECK         one of them
 
 set -eu
 
 root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=test/support/environment.sh
 . "$root/test/support/environment.sh"
+
+# The longest first.
+checks="programs library analyzer firmware cxx cppcheck misra scripts format lengths"
 
 need clang-format clang-format
 need clang-tidy clang-tidy
@@ -20,22 +24,6 @@ need gcc gcc
 need shellcheck shellcheck
 need_build_tools
 need_drawing
-install_tools
-
-cd "$root"
-failed=
-
-# check NAME COMMAND…
-check() {
-    name=$1
-    shift
-    if "$@"; then
-        echo "clean: $name"
-    else
-        echo "NOT CLEAN: $name"
-        failed="$failed $name"
-    fi
-}
 
 # The files of this project, without those in build folders; also works without git.
 find_files() {
@@ -45,6 +33,10 @@ find_files() {
 # format OPTION…
 format() {
     find_files -name '*.c' -o -name '*.h' -o -name '*.cpp' | xargs clang-format "$@"
+}
+
+check_format() {
+    format --dry-run -Werror
 }
 
 # Checks the length of all lines except in documents, where a paragraph may be one line.
@@ -59,55 +51,73 @@ check_lengths() {
     return "$found"
 }
 
-# tidy FILE… -- FLAG…: prints findings on standard output. The number of suppressed ones, on
-# standard error, goes into a log.
-tidy() {
-    clang-tidy --quiet --header-filter="^$root/(lib|port|examples)/" "$@" 2>>build-lint/tidy.log
-}
-
-# Firmware is compiled as in its tests, with the stand-ins for its platforms. There, addresses of
-# registers are integers converted to pointers.
-tidy_firmware() {
-    tidy --checks=-performance-no-int-to-ptr "$@" -std=c99 -I lib/include -I examples/common \
-        -I examples/obstacle_stop
-}
-
-# Uses cmake's list of commands, and one process per processor.
-tidy_programs() {
-    quietly cmake -S . -B build-lint -DTMINI_BUILD_TESTS=OFF || return 1
-    # shellcheck disable=SC2016 # expanded in the inner shell
-    printf '%s\n' lib/src/*.c port/posix/*.c examples/host/*.c examples/obstacle_stop/*.c \
-        examples/bridge/core/*.c examples/bridge/pc/*.c |
-        xargs -n 8 -P "$(job_count)" sh -c \
-            'exec clang-tidy --quiet -p build-lint --header-filter="$0" "$@" 2>/dev/null' \
-            "^$root/(lib|port|examples)/"
-}
-
-check_tidy() {
+# each_platform COMMAND: calls COMMAND "FILE…" FLAG… for the ports and examples of each platform,
+# which are compiled as in their tests, with the stand-ins for the platform.
+each_platform() {
     clean=0
-    tidy_programs || clean=1
-    tidy_firmware port/template/*.c examples/common/*.c -- -I port/template || clean=1
-    tidy_firmware port/stm32/*.c examples/stm32_cube/*.c -- -I port/stm32 -I examples/stm32_cube \
+    "$1" "port/template/*.c examples/common/*.c" -I port/template || clean=1
+    "$1" "port/stm32/*.c examples/stm32_cube/*.c" -I port/stm32 -I examples/stm32_cube \
         -isystem test/port/stm32/stm32_model -isystem test/support || clean=1
-    tidy_firmware port/esp32/*.c examples/esp32_idf/main/*.c examples/bridge/main/main.c \
-        examples/bridge/main/web.c -- -I port/esp32 -I port/posix -I examples/bridge/core \
-        -isystem test/port/esp32/esp_idf || clean=1
-    tidy_firmware port/pico/*.c examples/pico/*.c -- -I port/pico -D_DEFAULT_SOURCE \
+    "$1" "examples/stm32f405_baremetal/*.c" -I port/stm32 || clean=1
+    bridge="examples/bridge/main/main.c examples/bridge/main/web.c"
+    "$1" "port/esp32/*.c examples/esp32_idf/main/*.c $bridge" \
+        -I port/esp32 -I port/posix -I examples/bridge/core -isystem test/port/esp32/esp_idf ||
+        clean=1
+    "$1" "port/pico/*.c examples/pico/*.c" -I port/pico -D_DEFAULT_SOURCE \
         -isystem test/port/pico/sdk_stub || clean=1
-    tidy_firmware port/zephyr/*.c examples/zephyr/src/*.c -- -I port/zephyr -DZEPHYR_ASYNC \
+    "$1" "port/zephyr/*.c examples/zephyr/src/*.c" -I port/zephyr -DZEPHYR_ASYNC \
         -isystem test/port/zephyr/zephyr_stub || clean=1
-    tidy_firmware port/freertos/*.c examples/freertos/*.c -- -I port/freertos -I examples/freertos \
+    "$1" "port/freertos/*.c examples/freertos/*.c" -I port/freertos -I examples/freertos \
         -isystem test/port/freertos/kernel_stub || clean=1
-    tidy_firmware examples/stm32f405_baremetal/*.c -- -I port/stm32 || clean=1
-    # In C++ unused parameters have no name. A positive number may be rounded by adding a half.
-    tidy --checks=-readability-named-parameter,-bugprone-incorrect-roundings \
-        port/arduino/*.cpp -- -std=c++11 -I lib/include -isystem test/port/arduino/arduino_stub \
-        -DARDUINO=10819 -DESP32 -DESP_ARDUINO_VERSION_MAJOR=3 || clean=1
-    tidy port/ros2/src/settings.cpp port/ros2/src/report.cpp port/ros2/src/lidar.cpp -- \
-        -std=c++17 -I lib/include -I port/posix -I port/ros2/src || clean=1
-    tidy_firmware port/ros2/src/*.c examples/micro_ros/*.c -- -I port/ros2/src \
+    "$1" "port/ros2/src/*.c examples/micro_ros/*.c" -I port/ros2/src \
         -isystem test/port/micro_ros/micro_ros_stub || clean=1
     return "$clean"
+}
+
+# tidy "FILE…" CHECKS FLAG…: clang-tidy says on standard error how much it has suppressed.
+tidy() {
+    files=$1 leave_out=$2
+    shift 2
+    # shellcheck disable=SC2086 # files are several words
+    clang-tidy --quiet --checks="$leave_out" --header-filter="^$root/(lib|port|examples)/" \
+        $files -- "$@" -I lib/include 2>/dev/null
+}
+
+# Addresses of registers are integers converted to pointers.
+tidy_platform() {
+    files=$1
+    shift
+    tidy "$files" -performance-no-int-to-ptr -std=c99 -I examples/common -I examples/obstacle_stop \
+        "$@"
+}
+
+check_firmware() {
+    each_platform tidy_platform
+}
+
+# In C++ unused parameters have no name. A positive number may be rounded by adding a half.
+check_cxx() {
+    clean=0
+    tidy "port/arduino/*.cpp" -readability-named-parameter,-bugprone-incorrect-roundings \
+        -std=c++11 -isystem test/port/arduino/arduino_stub \
+        -DARDUINO=10819 -DESP32 -DESP_ARDUINO_VERSION_MAJOR=3 || clean=1
+    tidy "port/ros2/src/settings.cpp port/ros2/src/report.cpp port/ros2/src/lidar.cpp" "" \
+        -std=c++17 -I port/posix -I port/ros2/src || clean=1
+    return "$clean"
+}
+
+# With the commands that cmake writes.
+check_library() {
+    cmake -S . -B build-lint -DTMINI_BUILD_TESTS=OFF || return 1
+    clang-tidy --quiet -p build-lint --header-filter="^$root/(lib|port|examples)/" \
+        lib/src/*.c port/posix/*.c 2>/dev/null
+}
+
+check_programs() {
+    cmake -S . -B build-lint/programs -DTMINI_BUILD_TESTS=OFF || return 1
+    clang-tidy --quiet -p build-lint/programs --header-filter="^$root/(lib|port|examples)/" \
+        examples/host/*.c examples/obstacle_stop/*.c examples/bridge/core/*.c \
+        examples/bridge/pc/*.c 2>/dev/null
 }
 
 # Suppressed, because cppcheck
@@ -148,47 +158,26 @@ check_misra() {
         END { exit !found }' test/misra.txt -
 }
 
-# analyse FLAG… FILE…: GCC's own analyser.
+# analyse "FILE…" FLAG…: GCC's own analyser.
 analyse() {
-    gcc -std=c99 -O2 -fanalyzer -Werror -Ilib/include -Iexamples/common -Iexamples/obstacle_stop \
-        -S -o /dev/null "$@"
+    files=$1 found=0
+    shift
+    for source in $files; do
+        gcc -std=c99 -O2 -fanalyzer -Werror -S -o /dev/null -Ilib/include -Iexamples/common \
+            -Iexamples/obstacle_stop "$@" "$source" || found=1
+    done
+    return "$found"
 }
 
-# Firmware is compiled with the stand-ins, as above. In examples/host the analyser overlooks the
-# only branch that closes a file, and believes that finding an existing entry may fail.
+# In examples/host it overlooks the only branch that closes a file, and believes that finding an
+# existing entry may fail.
 check_analyzer() {
     clean=0
-    for source in lib/src/*.c port/posix/*.c port/template/*.c examples/common/*.c \
-        examples/obstacle_stop/obstacle*.c; do
-        analyse -Iport/template "$source" || clean=1
-    done
-    for source in examples/host/*.c; do
-        # shellcheck disable=SC2046 # flags are several words
-        analyse -Iport/posix $(pkg-config --cflags cairo) -Wno-analyzer-file-leak \
-            -Wno-analyzer-malloc-leak -Wno-analyzer-null-dereference "$source" || clean=1
-    done
-    for source in port/stm32/*.c examples/stm32_cube/*.c; do
-        analyse -Iport/stm32 -Iexamples/stm32_cube -isystem test/port/stm32/stm32_model \
-            -isystem test/support "$source" ||
-            clean=1
-    done
-    for source in port/esp32/*.c examples/esp32_idf/main/*.c; do
-        analyse -Iport/esp32 -isystem test/port/esp32/esp_idf "$source" || clean=1
-    done
-    for source in port/pico/*.c examples/pico/*.c; do
-        analyse -Iport/pico -D_DEFAULT_SOURCE -isystem test/port/pico/sdk_stub "$source" || clean=1
-    done
-    for source in port/zephyr/*.c examples/zephyr/src/*.c; do
-        analyse -Iport/zephyr -DZEPHYR_ASYNC -isystem test/port/zephyr/zephyr_stub "$source" ||
-            clean=1
-    done
-    for source in port/ros2/src/*.c; do
-        analyse "$source" || clean=1
-    done
-    for source in port/freertos/*.c examples/freertos/*.c; do
-        analyse -Iport/freertos -Iexamples/freertos -isystem test/port/freertos/kernel_stub \
-            "$source" || clean=1
-    done
+    analyse "lib/src/*.c port/posix/*.c examples/obstacle_stop/obstacle*.c" || clean=1
+    # shellcheck disable=SC2046 # flags are several words
+    analyse "examples/host/*.c" -Iport/posix $(pkg-config --cflags cairo) \
+        -Wno-analyzer-file-leak -Wno-analyzer-malloc-leak -Wno-analyzer-null-dereference || clean=1
+    each_platform analyse || clean=1
     return "$clean"
 }
 
@@ -196,27 +185,30 @@ check_scripts() {
     find_files -name '*.sh' -o -path './.ci/run' -o -path './.ci/release' | xargs shellcheck -x
 }
 
-# compile.sh reports a missing compiler, which is not a finding.
-check_compile() {
-    status=0
-    test/compile.sh "$1" || status=$?
-    [ "$status" -eq 0 ] || [ "$status" -eq 77 ]
+# check NAME
+check() {
+    if "check_$1" >"build-lint/$1.log" 2>&1; then
+        echo "clean: $1"
+    else
+        cat "build-lint/$1.log"
+        echo "NOT CLEAN: $1"
+        return 1
+    fi
 }
 
+cd "$root"
+mkdir -p build-lint
+case " $checks " in
+    *" ${1:-} "*)
+        check "$1"
+        exit
+        ;;
+esac
+install_tools
 [ "${1:-}" != --fix ] || format -i
-check clang-format format --dry-run -Werror
-check line-lengths check_lengths
-check clang-tidy check_tidy
-check cppcheck check_cppcheck
-check misra check_misra
-check gcc-analyzer check_analyzer
-check shellcheck check_scripts
-for target in gcc clang c++ cortex-m0 avr rv32imc powerpc; do
-    check "compile.$target" check_compile "$target"
-done
-
-if [ -n "$failed" ]; then
-    echo "Not clean:$failed"
+# shellcheck disable=SC2086 # checks are several words
+if ! printf '%s\n' $checks | xargs -n 1 -P "$(job_count)" "$0"; then
+    echo "Not clean: see above."
     exit 1
 fi
 echo "All clean."
