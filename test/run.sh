@@ -43,7 +43,10 @@ if [ "$all" = yes ]; then
     wish_for_everything
 fi
 install_tools
-[ "$all" = no ] || prepare_everything
+if [ "$all" = yes ]; then
+    # Downloads, while the tests are built.
+    prepare_everything &
+fi
 
 # targets: prints the build targets.
 targets() {
@@ -76,6 +79,7 @@ quietly cmake -S "$root" -B "$root/build" -DTMINI_BUILD_TESTS=ON \
 check_labels
 # shellcheck disable=SC2046 # targets are several words
 quietly cmake --build "$root/build" --parallel "$(job_count)" --target $(targets)
+wait
 
 cd "$root/build"
 if [ -n "$labels" ]; then
