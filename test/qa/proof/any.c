@@ -109,10 +109,27 @@ static void come(tmini_ring_t *ring)
     ring->stop = ring->head;
 }
 
-void proof_access(void)
+static void let_other_side_act(void)
 {
     if (fed != NULL && any_bool()) {
         has_come = true;
         come(fed);
     }
+}
+
+size_t tmini_load(const size_t *value)
+{
+    let_other_side_act();
+    return *value;
+}
+
+void tmini_store(size_t *value, size_t stored)
+{
+    *value = stored;
+    let_other_side_act();
+}
+
+void tmini_fence(void)
+{
+    let_other_side_act();
 }

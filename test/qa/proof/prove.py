@@ -158,7 +158,7 @@ PROOFS = [
     driver("packet", "lib/src/tmini.c", "tmini_command_end(lidar, TMINI_ERROR_ABORTED);\n    if", "if"),
     driver("reply", "lib/src/tmini_command.c", "|| frequency_chz > PLAUSIBLE_CHZ_MAX", "|| frequency_chz > 65535"),
     driver("nothing", "lib/src/tmini.c", "tmini_parser_abandon(&lidar->decoder.parser);",
-           "tmini_command_end(lidar, TMINI_ERROR_ABORTED);"),
+           "(tmini_command_end(lidar, TMINI_ERROR_ABORTED), true);"),
     driver("keep_time", "lib/src/tmini_command.c", "command->steps == STEPS_MAX",
            "command->steps > STEPS_MAX"),
     driver("start", "lib/src/tmini.c", "    if (!is_to_scan(lidar)) {", "    if (true) {"),
