@@ -76,11 +76,12 @@ check_clang() {
         sed -n 's|^# 1 "\(.*\)/string\.h".*|\1|p' | head -n 1)
     set -- clang "$@" -Os -isystem "$headers"
     check_c "$@"
-    for source in "$lib"/src/*.c "$lib"/../test/qa/bench/flash/everything.c; do
-        "$@" -std=c99 -I "$lib/include" -c "$source" -o "$work/$(basename "$source").o"
+    bench=$lib/../test/qa/bench
+    for source in "$lib"/src/*.c "$bench/emulated/main.c" "$bench/limit.c"; do
+        "$@" -std=c99 -I "$lib/include" -I "$bench" -c "$source" -o "$work/$(basename "$source").o"
     done
     # shellcheck disable=SC2086
-    $gcc -nostartfiles -T "$lib/../test/qa/bench/program.ld" "$work"/*.c.o -o "$work/program"
+    $gcc -nostartfiles -Wl,--entry=0 -T "$bench/program.ld" "$work"/*.c.o -o "$work/program"
 }
 
 check_cxx() {

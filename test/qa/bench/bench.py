@@ -70,7 +70,7 @@ def measure_compiler(name, folder, made):
     target = other_compilers()[name]
     place = folder / name
     objects = [target.compile(source, "-Os", place) for source in LIB_SOURCES]
-    return {"title": target.title, "driver": flash.weigh_program("driver", target, "-Os", objects, place),
+    return {"title": target.title, "driver": flash.weigh(target, objects, place / "driver.elf", flash.DRIVER),
             "blocks": instructions.by_blocks(target, "-Os", objects, place, made)}
 
 
@@ -97,7 +97,7 @@ def measure_all(folder):
     made = streams.make(folder)
     recording = folder / "clean.bin"
     recording.write_bytes(made["clean"])
-    figures = {"versions": tool_versions(), "targets": {}, "ram": {}}
+    figures = {"versions": tool_versions(), "targets": {}}
     with concurrent.futures.ProcessPoolExecutor(max_workers=2) as pool:
         jobs = {(target.name, level): pool.submit(measure_target, target.name, level, folder, made)
                 for target in TARGETS for level in LEVELS}
@@ -108,8 +108,6 @@ def measure_all(folder):
         for key, job in jobs.items():
             figures["targets"][key] = job.result()
         figures["compilers"] = {name: job.result() for name, job in others.items()}
-    for target in TARGETS:
-        figures["ram"][target.name] = flash.sizes_of_types(target, folder / target.name)
     figures["budgets"] = read_budgets(figures)
     return figures
 
@@ -145,9 +143,8 @@ def measured_for_budgets(figures):
         "flash_driver_m4": m4[0]["flash"]["driver"]["own"],
         **{f"flash_{name}": f["driver"]["own"] for name, f in figures["compilers"].items()},
         "flash_no_ct_m4": m4[0]["flash"]["no_ct"]["own"],
-        "ram": max(figures["ram"][target.name]["tmini_t"] +
-                   figures["targets"][target.name, level]["flash"]["everything"]["writable"]
-                   for target in TARGETS for level in LEVELS),
+        "ram": max(f["counts"]["tmini_t"] + f["flash"]["everything"]["writable"]
+                   for f in figures["targets"].values()),
         "stack_m4": max(f["stack"]["polling"][0] for f in m4),
         "stack_set_up_m4": max(f["stack"]["set-up"][0] for f in m4),
     }

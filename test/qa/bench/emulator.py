@@ -63,12 +63,13 @@ class Machine:
             segments = [(s["p_vaddr"], s.data(), s["p_memsz"]) for s in elf.iter_segments()
                         if s["p_type"] == "PT_LOAD"]
         self.addresses = {s.name: s["st_value"] & ~1 for s in symbols if s.name}
+        self.sizes = {s.name: s["st_size"] for s in symbols}
         self.functions = sorted((s["st_value"] & ~1, s.name) for s in symbols
                                 if s["st_info"]["type"] == "STT_FUNC")
         self._starts = [start for start, _ in self.functions]
         self._make_processor(target_name)
         self._load(segments)
-        self._sizes = {}     # (address, size) of a block: its instructions
+        self._blocks = {}     # (address, size) of a block: its instructions
         self._counted = {}   # address: whether it belongs to the library
         self.count = 0
         self.uc.hook_add(UC_HOOK_BLOCK, self._block)
@@ -117,10 +118,10 @@ class Machine:
 
     def _block(self, _uc, address, size, _data):
         key = (address, size)
-        count = self._sizes.get(key)
+        count = self._blocks.get(key)
         if count is None:
             count = self._instructions(address, size) if address != RETURN else 0
-            self._sizes[key] = count
+            self._blocks[key] = count
         self.count += count
 
     def call(self, name, *arguments):

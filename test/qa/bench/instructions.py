@@ -5,6 +5,7 @@
 
 import re
 
+import flash
 import load
 import worst
 from emulator import Machine
@@ -316,7 +317,9 @@ def check_counting(target, program, clean):
 def link(target, level, objects, folder):
     sources = (HERE / "emulated" / "main.c", HERE / "limit.c")
     extra = [target.compile(source, level, folder / "emulated", "-I", HERE) for source in sources]
-    return target.link([*objects, *extra], folder / "emulated.elf")[0]
+    program = folder / "emulated.elf"
+    target.link([*objects, *extra], program, [*flash.DRIVER, "limit_decode", "bench_limit_points", "bench_counters"])
+    return program
 
 
 def by_blocks(target, level, objects, folder, streams):
@@ -340,7 +343,7 @@ def measure(target, level, objects, folder, streams):
             caller = session.machine.cost("interrupt_nothing")[1]
     costs["corrupted"], _ = through(target, program, streams["corrupted"], "blocks")
     figures = {"costs": costs, "feed worst": feed_worst, "idle poll": idle, "caller": caller,
-               "limit": limit(target, program, clean),
+               "limit": limit(target, program, clean), "tmini_t": session.machine.sizes["bench_lidar"],
                "per poll": {count: {feed: per_poll(target, program, streams["turn"], feed, count)
                                     for feed in ("bytes", "blocks")} for count in BYTES_PER_POLL},
                "stack seen": conversation(target, program, streams["turn"], streams["faulty"])}

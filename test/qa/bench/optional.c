@@ -94,23 +94,3 @@ void bench_units(void)
         sink = tmini_point_time_us(&scan, i);
     }
 }
-
-void bench_interrupt(uint8_t byte)
-{
-    sink = byte;
-}
-
-void bench_main(void)
-{
-    bench_fill();
-    bench_mount();
-    bench_steps();
-    bench_fields();
-    bench_fields_near();
-    bench_isolated();
-    bench_cartesian();
-    bench_sectors();
-    bench_ranges();
-    bench_units();
-    sink = (uint32_t)tmini_field_state(&list[0], sink);
-}

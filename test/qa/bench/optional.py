@@ -5,9 +5,10 @@
 
 import flash
 from emulator import Machine
+from targets import HERE
 
 POINTS = 400
-# Modules of the table, what they need besides, and the functions of flash/optional.c that use them.
+# Modules of the table, what they need besides, and the functions of optional.c that use them.
 MODULES = (
     ("tmini_mount", (), ("bench_mount",)),
     ("tmini_steps", (), ("bench_steps",)),
@@ -22,8 +23,10 @@ MODULES = (
 
 def measure(target, level, objects, folder):
     """{module: (flash, instructions per point for each use)}; flash with what the module needs."""
-    weights = flash.weigh_program("optional", target, level, objects, folder)["modules"]
-    machine = Machine(target.name, folder / "optional.elf")
+    program = folder / "optional.elf"
+    uses = target.compile(HERE / "optional.c", level, folder)
+    weights = flash.weigh(target, [*objects, uses], program, ["tmini_field_state"])["modules"]
+    machine = Machine(target.name, program)
     machine.call("bench_fill")
     figures = {}
     for module, needs, uses in MODULES:

@@ -11,8 +11,6 @@ SUPPORT = ROOT / "test" / "support"
 REVOLUTIONS = 20
 PACKETS_PER_REVOLUTION = 18  # 667 points: one start packet with 1 point, 16 packets with 40, one with 26.
 
-POINTS = 667  # Points per revolution at 6 Hz, with 4000 samples per second (section 1).
-
 
 def make(folder):
     """All streams by name, and the number of packets in the clean one."""
@@ -24,11 +22,6 @@ def make(folder):
     def made(*words):
         return subprocess.run([maker, *map(str, words)], capture_output=True, check=True).stdout
 
-    streams = {
-        "clean": made("clean", REVOLUTIONS, POINTS),
-        "corrupted": made("corrupted", REVOLUTIONS, POINTS),
-        "turn": made("clean", 2, POINTS),
-        "faulty": made("faulty", 4, POINTS),
-    }
-    streams["clean packets"] = REVOLUTIONS * PACKETS_PER_REVOLUTION
-    return streams
+    encoder_fault = 2
+    return {"clean": made(REVOLUTIONS), "clean packets": REVOLUTIONS * PACKETS_PER_REVOLUTION,
+            "corrupted": made(REVOLUTIONS, 0, 500), "turn": made(2), "faulty": made(4, encoder_fault)}

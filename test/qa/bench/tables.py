@@ -6,7 +6,7 @@
 import re
 
 import load
-from flash import CONFIGURATIONS
+from flash import PROGRAMS
 from targets import LEVELS, TARGETS, target_named
 
 
@@ -42,10 +42,10 @@ def memory(figures):
     rows = []
     for name in (target.name for target in TARGETS):
         f = figures["targets"][name, "-Os"]
-        rows.append([f"{target_named(name).title} `-Os`", *(f["flash"][part]["own"] for part, _ in CONFIGURATIONS),
-                     f["flash"]["everything"]["support"], figures["ram"][name]["tmini_t"],
+        rows.append([f"{target_named(name).title} `-Os`", *(f["flash"][part]["own"] for part, _, _ in PROGRAMS),
+                     f["flash"]["everything"]["support"], f["counts"]["tmini_t"],
                      f["stack"]["polling"][0], f["counts"]["stack seen"], f["stack"]["interrupt"][0]])
-    return table(["bytes", *(title for _, title in CONFIGURATIONS), "C library", "RAM: `tmini_t`",
+    return table(["bytes", *(title for _, title, _ in PROGRAMS), "C library", "RAM: `tmini_t`",
                   "stack, polling, at most", "seen", "interrupt, at most"], rows)
 
 
@@ -139,7 +139,7 @@ def summary(figures):
     rows = [
         ["flash, full driver", *(f["flash"]["driver"]["own"] for f in (m0, m4))],
         ["RAM per lidar, excluding your buffers",
-         *(figures["ram"][name]["tmini_t"] for name in ("cortex-m0", "cortex-m4"))],
+         *(f["counts"]["tmini_t"] for f in (m0, m4))],
         ["stack, at most", *(f["stack"]["polling"][0] for f in (m0, m4))],
         ["instructions in the receive interrupt's call",
          *(f["counts"]["feed worst"] for f in (m0, m4))],

@@ -58,13 +58,15 @@ class Target:
         return [self.compile(source, level, folder, "-fcallgraph-info=su,da")
                 for source in LIB_SOURCES]
 
-    def link(self, objects, program):
-        """Links without start-up code and without unused functions; returns program and map."""
+    def link(self, objects, program, functions=()):
+        """Links without start-up code. Keeps only these functions, bench_… and interrupt_…, and what they need.
+        Returns the map."""
         map_file = program.with_suffix(".map")
         run(self.tool("gcc"), *self.machine, *self.link_options, "-nostartfiles",
-            "-Wl,--gc-sections", "-Xlinker", f"-Map={map_file}", "-T", HERE / "program.ld",
+            "-Wl,--entry=0", "-Wl,--gc-sections", *(f"-Wl,--undefined={name}" for name in functions),
+            "-Xlinker", f"-Map={map_file}", "-T", HERE / "program.ld",
             *objects, "-o", program)
-        return program, map_file
+        return map_file
 
 
 def cortex(name, title):

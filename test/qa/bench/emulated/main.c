@@ -80,18 +80,3 @@ void bench_decode(void)
     (void)tmini_packet_points(tmini_packet(&bench_lidar), TMINI_FILTER_NONE, packet_points,
                               TMINI_MAX_SAMPLES_DEFAULT);
 }
-
-/* The emulator calls these itself; this function, the linker's entry point, it never runs. */
-void bench_main(void)
-{
-    (void)tmini_start(&bench_lidar);
-    (void)tmini_stop(&bench_lidar);
-    (void)tmini_request_info(&bench_lidar);
-    (void)tmini_request_health(&bench_lidar);
-    (void)tmini_request_frequency(&bench_lidar);
-    (void)tmini_set_frequency(&bench_lidar, 600);
-    (void)tmini_reboot(&bench_lidar);
-    (void)tmini_poll(&bench_lidar);
-    tmini_counters(&bench_lidar, &bench_counters);
-    (void)limit_decode(bench_block, 0, bench_limit_points);
-}
