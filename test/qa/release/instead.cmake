@@ -1,17 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Included by project(tmini). At the end of the configuration, it replaces the sources of
-# the library's target, and in the test that compiles them itself, by the one file in TMINI_SINGLE,
-# with its headers.
+# Included by project(tmini). At the end of the configuration, it replaces the sources of the
+# library's target by the one file in TMINI_SINGLE, with its headers.
 
 function(tmini_use_single_file)
     set_target_properties(tmini PROPERTIES SOURCES ${TMINI_SINGLE}/tmini_all.c
         INCLUDE_DIRECTORIES ${TMINI_SINGLE} INTERFACE_INCLUDE_DIRECTORIES ${TMINI_SINGLE})
-    get_target_property(sources test_interrupts SOURCES)
-    list(FILTER sources EXCLUDE REGEX "/lib/src/")
-    set_target_properties(test_interrupts PROPERTIES
-        SOURCES "${sources};${TMINI_SINGLE}/tmini_all.c")
 endfunction()
 
 cmake_language(DEFER CALL tmini_use_single_file)

@@ -20,9 +20,16 @@ function(unpack ending)
     endif()
 endfunction()
 
-# build(SOURCE OPTION…): builds in WORK/build.
-function(build source)
+# configure(SOURCE OPTION…): for a build in WORK/build. Fails if a source is missing.
+function(configure source)
     run_or_fail(${CMAKE_COMMAND} -S ${source} -B ${WORK}/build -G ${GENERATOR}
         -DCMAKE_C_COMPILER=${COMPILER} -DCMAKE_C_COMPILER_LAUNCHER=${LAUNCHER} ${ARGN})
-    run_or_fail(${CMAKE_COMMAND} --build ${WORK}/build --parallel 2)
+endfunction()
+
+# The driver with the simulated lidar, and the decoder beside the reference.
+function(test_driver_and_decoder)
+    foreach(test test_driver test_differential)
+        run_or_fail(${CMAKE_COMMAND} --build ${WORK}/build --parallel 2 --target ${test})
+        run_or_fail(${WORK}/build/test/bin/${test})
+    endforeach()
 endfunction()
