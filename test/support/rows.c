@@ -84,3 +84,26 @@ void row_tell(const char *text, void (*tell)(char *word))
         }
     }
 }
+
+bool row_is(const char *word, const char *name)
+{
+    const size_t length = strlen(name);
+    return strncmp(word, name, length) == 0 && (word[length] == ':' || word[length] == '\0');
+}
+
+uint32_t row_number(const char *word)
+{
+    const char *const at = strchr(word, ':');
+    return at != NULL ? (uint32_t)strtoul(at + 1, NULL, 0) : 0;
+}
+
+bool rows_expect(const char *word, const row_number_t *numbers, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (row_is(word, numbers[i].name)) {
+            TEST_ASSERT_EQUAL_UINT32_MESSAGE(row_number(word), numbers[i].number, word);
+            return true;
+        }
+    }
+    return false;
+}

@@ -9,7 +9,9 @@
 #ifndef ROWS_H
 #define ROWS_H
 
+#include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /* `steps` is what the table's runner understands; mostly words. A table is declared as
  *
@@ -46,5 +48,18 @@ void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row));
  * times. */
 #define ROW_WORD_MAX 40
 void row_tell(const char *text, void (*tell)(char *word));
+
+/* Whether the word is "name" or "name:…"; the number after its first ":", 0 if there is none. */
+bool row_is(const char *word, const char *name);
+uint32_t row_number(const char *word);
+
+/* For words such as "count:21", which name a number and the value that is expected. If the word's
+ * name is none of these, returns false. */
+typedef struct {
+    const char *name;
+    uint32_t number;
+} row_number_t;
+#define row_expects(word, numbers) rows_expect(word, numbers, sizeof(numbers) / sizeof(numbers)[0])
+bool rows_expect(const char *word, const row_number_t *numbers, size_t count);
 
 #endif

@@ -7,9 +7,10 @@ tmini_add_unit_test(test_ring SOURCES test_ring.c ../support/rows.c LIBRARIES tm
 tmini_add_unit_test(test_frame SOURCES test_frame.c)
 tmini_add_unit_test(test_parser SOURCES test_parser.c ../support/rows.c
     LIBRARIES tmini_test_receiver)
-tmini_add_unit_test(test_packet SOURCES test_packet.c LIBRARIES tmini_test_receiver)
+tmini_add_unit_test(test_packet SOURCES test_packet.c ../support/rows.c
+    LIBRARIES tmini_test_receiver)
 tmini_add_unit_test(test_reply SOURCES test_reply.c)
-tmini_add_unit_test(test_ct SOURCES test_ct.c)
+tmini_add_unit_test(test_ct SOURCES test_ct.c ../support/rows.c)
 tmini_add_unit_test(test_builder SOURCES test_builder.c ../support/rows.c
     LIBRARIES tmini_test_receiver)
 tmini_add_unit_test(test_decoder SOURCES test_decoder.c LIBRARIES tmini_test_receiver)

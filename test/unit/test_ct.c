@@ -3,35 +3,29 @@
 
 /* CT information: the content of a revolution's CT bytes, and when it is trusted (section 7). */
 
-#include "tmini/parts/tmini_reply.h"
+#include "rows.h"
+
 #include "tmini/parts/tmini_ct.h"
+#include "tmini/parts/tmini_reply.h"
 
 #include "unity.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-static tmini_ct_t ct_state;
-static tmini_ct_info_t info;
-static bool is_whole; /* Nothing lost since the last start packet. */
+static tmini_ct_t state;
+static bool is_whole; /* Nothing has been lost since the last start packet. */
 
 /* 17 packets at 6.0 Hz, worked out by hand from the table: user version 1.0, faults encoder and LD,
- * hardware 1, firmware 2.7, 2025-04-24, number 1193046 = 10 010 00 1101000 1010110 in binary. */
-static const uint8_t six_hertz[17] = {0x79, 0x40, 0x34, 0x24, 0x24, 0x0E, 0x12, 0x56, 0x9A,
-                                      0x2C, 0x44, 0xC0, 0xD0, 0xAC, 0x10, 0x20, 0x30};
-/* Their CRC-8/MAXIM. All CRCs in this file were computed by a separate program. */
-#define SIX_HERTZ_CRC 0xD8
-
-/* The same unit at 10 Hz (11 packets) and at 12 Hz (10). */
-#define TEN_HERTZ_CT 0xC9
-#define TEN_HERTZ_CRC 0xDD
-#define TWELVE_HERTZ_CT 0xF1
-#define TWELVE_HERTZ_CRC 0xB0
+ * hardware 1, firmware 2.7, 2025-04-24, number 1193046 = 10 010 00 1101000 1010110 in binary. Their
+ * CRC-8/MAXIM is D8. All CRCs in this file were computed by a separate program. */
+static const uint8_t unit[17] = {0x79, 0x40, 0x34, 0x24, 0x24, 0x0E, 0x12, 0x56, 0x9A,
+                                 0x2C, 0x44, 0xC0, 0xD0, 0xAC, 0x10, 0x20, 0x30};
 
 void setUp(void)
 {
-    memset(&ct_state, 0xEE, sizeof ct_state);
-    memset(&info, 0xEE, sizeof info);
-    tmini_ct_init(&ct_state);
+    memset(&state, 0xEE, sizeof state);
+    tmini_ct_init(&state);
     is_whole = false;
 }
 
@@ -44,84 +38,164 @@ static tmini_ct_verdict_t verdict_on(uint8_t ct, uint16_t gap, uint8_t skipped)
     const tmini_frame_t frame = {.gap = gap, .last_skipped = skipped};
     const tmini_packet_t packet = {.ct = ct, .count = 1, .gap = gap, .frame = &frame};
     is_whole = (ct & 1u) != 0 || (is_whole && gap == 0);
-    return tmini_ct_add(&ct_state, &packet, is_whole);
+    return tmini_ct_add(&state, &packet, is_whole);
 }
 
-static void discard(void)
+/* Packets of that unit from index `first` to `last` in their turn. */
+static void add_unit(size_t first, size_t last)
 {
-    tmini_ct_discard(&ct_state);
-    is_whole = false;
-}
-
-static bool add(uint8_t ct, uint16_t gap, uint8_t skipped)
-{
-    return verdict_on(ct, gap, skipped) == TMINI_CT_CONFIRMED;
-}
-
-/* Point packets without skipped bytes before them; 0xD8 was skipped earlier. */
-static void add_points(const uint8_t *cts, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        TEST_ASSERT_FALSE(add(cts[i], 0, 0xD8));
+    for (size_t i = first; i <= last; i++) {
+        TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(unit[i], 0, 0xD8));
     }
 }
 
-/* A revolution from its start packet on. */
-static void add_revolution(uint8_t start_ct, const uint8_t *point_cts, size_t points)
+/* ---------------------------------------------------------------------------------------- rows */
+
+/* Words of the rows:
+ *
+ *     <79             a packet of this CT comes; it says nothing about the turn before
+ *     +79:D8 -79:D8   it comes after this byte, and confirms or refutes the turn before
+ *     <40:00*3        3 bytes were skipped before it, the last of which is 00
+ *     unit:1:16       packets of the unit above from index 1 to 16
+ *     discard         the turn was interrupted
+ *     known:0x2 …     see expect_number() */
+
+static void tell_packet(const char *word)
 {
-    (void)add(start_ct, 0, 0);
-    add_points(point_cts, points);
+    char *rest;
+    const uint8_t ct = (uint8_t)strtoul(word + 1, &rest, 16);
+    const bool has_gap = rest[0] == ':';
+    const uint8_t skipped = (uint8_t)(has_gap ? strtoul(rest + 1, &rest, 16) : 0);
+    const uint16_t gap = (uint16_t)(rest[0] == '*' ? strtoul(rest + 1, NULL, 10) : has_gap);
+    const tmini_ct_verdict_t expected = word[0] == '+'   ? TMINI_CT_CONFIRMED
+                                        : word[0] == '-' ? TMINI_CT_REFUTED
+                                                         : TMINI_CT_UNKNOWN;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(expected, verdict_on(ct, gap, skipped), word);
 }
 
-static void add_six_hertz(void)
+static void expect_number(const char *word)
 {
-    add_revolution(0x79, &six_hertz[1], 16);
+    tmini_ct_info_t info;
+    memset(&info, 0xEE, sizeof info);
+    tmini_ct_read(&state, &info);
+    const row_number_t numbers[] = {
+        {"known", info.known},
+        {"user", info.user_major},
+        {"user-minor", info.user_minor},
+        {"faults", tmini_ct_faults(&state)},
+        {"info-faults", info.faults},
+        {"hardware", info.hardware},
+        {"firmware", info.firmware_major},
+        {"firmware-minor", info.firmware_minor},
+        {"year", info.year},
+        {"month", info.month},
+        {"day", info.day},
+        {"number", info.number},
+    };
+    TEST_ASSERT_TRUE_MESSAGE(row_expects(word, numbers), word);
 }
 
-/* The next start packet, with this LastCRC before it. */
-static bool end_with(uint8_t last_crc)
+static void tell_word(char *word)
 {
-    return add(0x79, 1, last_crc);
+    if (strchr("<+-", word[0]) != NULL) {
+        tell_packet(word);
+    } else if (row_is(word, "unit")) {
+        add_unit(row_number(word), row_number(strchr(word, ':') + 1));
+    } else if (row_is(word, "discard")) {
+        tmini_ct_discard(&state);
+        is_whole = false;
+    } else {
+        expect_number(word);
+    }
 }
 
-static void expect_nothing_known(void)
+static void tell_row(const row_t *row)
 {
-    const tmini_ct_info_t nothing = {0};
-    tmini_ct_read(&ct_state, &info);
-    TEST_ASSERT_EQUAL_UINT16(nothing.known, info.known);
-    TEST_ASSERT_EQUAL_UINT8(0, info.user_major);
-    TEST_ASSERT_EQUAL_UINT8(0, info.user_minor);
-    TEST_ASSERT_EQUAL_UINT8(0, info.faults);
-    TEST_ASSERT_EQUAL_UINT8(0, info.hardware);
-    TEST_ASSERT_EQUAL_UINT8(0, info.firmware_major);
-    TEST_ASSERT_EQUAL_UINT8(0, info.firmware_minor);
-    TEST_ASSERT_EQUAL_UINT8(0, info.month);
-    TEST_ASSERT_EQUAL_UINT8(0, info.day);
-    TEST_ASSERT_EQUAL_UINT16(0, info.year);
-    TEST_ASSERT_EQUAL_UINT32(0, info.number);
-    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&ct_state));
+    row_tell(row->steps, tell_word);
 }
 
-static void expect_serial(uint16_t year, uint8_t month, uint8_t day, uint32_t number)
+#define TURN "<79 unit:1:16 "
+#define NOTHING                                                                         \
+    "known:0 user:0 user-minor:0 info-faults:0 hardware:0 firmware:0 firmware-minor:0 " \
+    "year:0 month:0 day:0 number:0 faults:0x100 "
+#define VERSIONS "user:1 user-minor:0 hardware:1 firmware:2 firmware-minor:7 "
+#define FAULTS "faults:0x12 info-faults:0x12 "
+
+static const row_t rows[] IN_FLASH = {
+    /* ---- Fields ---- */
+    ROW(before_the_first_packet_nothing_is_known, NOTHING),
+    ROW(a_turn_at_6_hz_reports_everything, /* Bits 1, 3, 4, 5, 9, 10, 11 and 13. */
+        TURN "known:0 +79:D8 known:0x2E3A " VERSIONS FAULTS
+             "year:2025 month:4 day:24 number:1193046"),
+    ROW(a_turn_at_10_hz_does_not_show_day_and_number, /* It has 11 packets. */
+        "<C9 unit:1:10 +79:DD known:0x063A " VERSIONS FAULTS "year:2025 month:4 day:0 number:0"),
+    ROW(a_turn_at_12_hz_does_not_show_the_month_either, /* It has 10 packets. */
+        "<F1 unit:1:9 +79:B0 known:0x023A year:2025 month:0"),
+    ROW(a_field_is_known_when_the_packet_that_completes_it_has_come,
+        "<79 unit:1:1 +79:42 known:0x0002 unit:1:2 +79:25 known:0x0002 faults:0x100 "
+        "unit:1:3 +79:5E known:0x000A " FAULTS "hardware:0 unit:1:8 +79:72 known:0x003A year:0"),
+    ROW(the_largest_values_fit_their_fields, /* The faults' reserved bit is left out. */
+        "<FF 13( <FE ) +79:51 user:3 user-minor:31 info-faults:0x3F faults:0x3F hardware:7 "
+        "firmware:15 firmware-minor:127 year:2051 month:15 day:31 number:2097151"),
+    ROW(each_bit_of_the_serial_number_has_its_place, /* 01 101 10 0110101 0101011: 891563. */
+        "<79 8( <00 ) <32 <CA <FC <6A <56 3( <00 ) +79:E1 year:2026 month:12 day:31 "
+        "number:891563"),
+    ROW(a_healthy_lidar_is_known_to_have_no_faults, "<79 unit:1:2 <00 unit:4:16 +79:95 faults:0"),
+    /* ---- Trust ---- */
+    ROW(a_last_crc_of_aa_is_like_any_other, "<79 unit:1:15 <96 +79:AA"),
+    ROW(without_last_crc_nothing_is_trusted, /* An earlier stray byte has that value. */
+        TURN "<79:D8*0 known:0"),
+    ROW(more_than_one_stray_byte_is_no_last_crc,
+        TURN "<79:D8*2 unit:1:16 <79:D8*257 unit:1:16 <79:D8*65535 known:0"),
+    /* Section 9.1: no CT information in point packets, no LastCRC, but sometimes a noise byte. */
+    ROW(a_unit_without_ct_information_never_becomes_healthy,
+        "2( 16( <00 ) <79:32 ) 16( <00 ) <79:00 <00 known:0"),
+    ROW(ct_information_that_stops_coming_confirms_nothing_sent_before, /* By chance right. */
+        TURN "+79:D8 16( <00 ) <79:32 faults:0x12"),
+    ROW(one_point_packet_with_information_is_enough, "<79 15( <00 ) <02 +79:8E faults:0"),
+    ROW(a_gap_within_a_turn_leaves_it_unjudged, /* 42 is the CRC of 79 and 40 alone. */
+        "<79 unit:1:6 <56:00*1 unit:8:16 <79:D8 <40 <34:00*3 <79:42 known:0"),
+    ROW(a_lost_packet_refutes_the_turn, "<79 unit:1:6 unit:8:16 -79:D8 unit:1:15 -79:D8 " NOTHING),
+    ROW(a_lost_start_packet_refutes_both_turns, TURN "unit:1:16 -79:D8 " NOTHING),
+    ROW(the_turn_after_a_refuted_one_is_trusted, TURN "-79:00 unit:1:16 +79:D8"),
+    ROW(the_turn_after_one_with_a_gap_is_trusted, "<79 <40:00*3 <79:42 unit:1:16 +79:D8"),
+    ROW(packets_before_the_first_start_packet_are_no_turn, "unit:1:16 <79:D8 unit:1:16 +79:D8"),
+    ROW(a_first_start_packet_ends_nothing, "<79:00 <79:61 known:0"), /* 61: the CRC of 79. */
+    ROW(the_crc_covers_all_packets_of_however_long_a_turn,           /* 255, 256 and 300. */
+        TURN "238( <10 ) +79:5C unit:1:16 239( <10 ) +79:E5 unit:1:16 283( <10 ) +79:68 " VERSIONS
+             "number:1193046"),
+    /* ---- What is kept ---- */
+    ROW(what_is_known_stays_known_when_a_turn_is_refuted,
+        TURN "+79:D8 unit:2:11 -79:11 " VERSIONS FAULTS "number:1193046"),
+    ROW(a_short_turn_does_not_remove_what_a_long_one_reported,
+        TURN "+F1:D8 unit:1:9 +79:B0 known:0x2E3A number:1193046"),
+    ROW(a_short_turn_confirms_nothing_of_a_long_one_that_was_not_confirmed,
+        TURN "+79:D8 16( <66 ) <F1 unit:1:9 +79:B0 year:2025 month:4 day:24 number:1193046"),
+    ROW(the_faults_are_those_of_the_last_trusted_turn,
+        TURN "+79:D8 faults:0x12 unit:1:2 <00 unit:4:16 faults:0x12 +79:95 faults:0"),
+    ROW(an_interrupted_turn_is_not_continued_but_what_is_known_is_kept,
+        TURN "+79:D8 unit:1:8 discard unit:9:16 <79:D8 faults:0x12 unit:1:16 +79:D8"),
+    ROW(packets_between_an_interruption_and_a_start_packet_are_no_turn, /* EB: their CRC. */
+        TURN "discard unit:9:16 <79:EB known:0"),
+    ROW(an_interrupted_turn_does_not_spoil_the_next_one, "<79 <40:00*9 discard " TURN "+79:D8"),
+};
+
+void test_rows(void)
 {
-    TEST_ASSERT_EQUAL_UINT16(year, info.year);
-    TEST_ASSERT_EQUAL_UINT8(month, info.month);
-    TEST_ASSERT_EQUAL_UINT8(day, info.day);
-    TEST_ASSERT_EQUAL_UINT32(number, info.number);
+    run_rows(rows, tell_row);
 }
 
-static void expect_versions_and_faults(uint8_t faults)
+void test_every_wrong_last_crc_refutes_the_turn(void)
 {
-    TEST_ASSERT_EQUAL_UINT8(1, info.user_major);
-    TEST_ASSERT_EQUAL_UINT8(0, info.user_minor);
-    TEST_ASSERT_EQUAL_HEX8(faults, info.faults);
-    TEST_ASSERT_EQUAL_UINT(faults, tmini_ct_faults(&ct_state));
-    TEST_ASSERT_EQUAL_UINT8(1, info.hardware);
-    TEST_ASSERT_EQUAL_UINT8(2, info.firmware_major);
-    TEST_ASSERT_EQUAL_UINT8(7, info.firmware_minor);
+    for (unsigned crc = 0; crc <= 255; crc++) {
+        if (crc != 0xD8) {
+            setUp();
+            add_unit(0, 16);
+            TEST_ASSERT_EQUAL_INT(TMINI_CT_REFUTED, verdict_on(0x79, 1, (uint8_t)crc));
+            expect_number("known:0");
+        }
+    }
 }
-
-/* --------------------------------------------------------------------------------------- fields */
 
 void test_the_crc_of_123456789_is_a1(void)
 {
@@ -131,402 +205,4 @@ void test_the_crc_of_123456789_is_a1(void)
         crc = tmini_ct_crc8(crc, digits[i]);
     }
     TEST_ASSERT_EQUAL_HEX8(0xA1, crc);
-}
-
-void test_before_the_first_packet_nothing_is_known(void)
-{
-    expect_nothing_known();
-}
-
-void test_a_revolution_at_6_hz_reports_everything(void)
-{
-    add_six_hertz();
-    expect_nothing_known();
-    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
-    tmini_ct_read(&ct_state, &info);
-    TEST_ASSERT_EQUAL_HEX16(0x2E3A, info.known); /* Bits 1, 3, 4, 5, 9, 10, 11 and 13. */
-    expect_versions_and_faults(TMINI_FAULT_ENCODER | TMINI_FAULT_LD);
-    expect_serial(2025, 4, 24, 1193046);
-}
-
-void test_a_revolution_at_10_hz_does_not_show_day_and_number(void)
-{
-    add_revolution(TEN_HERTZ_CT, &six_hertz[1], 10);
-    TEST_ASSERT_TRUE(end_with(TEN_HERTZ_CRC));
-    tmini_ct_read(&ct_state, &info);
-    TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE |
-                                TMINI_KNOWN_FIRMWARE | TMINI_KNOWN_YEAR | TMINI_KNOWN_MONTH,
-                            info.known);
-    expect_versions_and_faults(TMINI_FAULT_ENCODER | TMINI_FAULT_LD);
-    expect_serial(2025, 4, 0, 0);
-}
-
-void test_a_revolution_at_12_hz_does_not_show_month_day_and_number(void)
-{
-    add_revolution(TWELVE_HERTZ_CT, &six_hertz[1], 9);
-    TEST_ASSERT_TRUE(end_with(TWELVE_HERTZ_CRC));
-    tmini_ct_read(&ct_state, &info);
-    TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE |
-                                TMINI_KNOWN_FIRMWARE | TMINI_KNOWN_YEAR,
-                            info.known);
-    TEST_ASSERT_EQUAL_UINT16(2025, info.year);
-    TEST_ASSERT_EQUAL_UINT8(0, info.month);
-}
-
-/* The fields that are known after a revolution of `count` packets. */
-static uint16_t known_after(size_t count, uint8_t last_crc)
-{
-    tmini_ct_init(&ct_state);
-    add_revolution(0x79, &six_hertz[1], count - 1);
-    TEST_ASSERT_TRUE(end_with(last_crc));
-    tmini_ct_read(&ct_state, &info);
-    return info.known;
-}
-
-void test_a_field_is_known_when_the_packet_that_completes_it_has_come(void)
-{
-    TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION, known_after(2, 0x42));
-    TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION, known_after(3, 0x25));
-    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&ct_state));
-    TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS, known_after(4, 0x5E));
-    TEST_ASSERT_EQUAL_UINT(TMINI_FAULT_ENCODER | TMINI_FAULT_LD, tmini_ct_faults(&ct_state));
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER | TMINI_FAULT_LD, info.faults);
-    TEST_ASSERT_EQUAL_UINT8(0, info.hardware);
-    TEST_ASSERT_EQUAL_HEX16(TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE |
-                                TMINI_KNOWN_FIRMWARE,
-                            known_after(9, 0x72));
-    TEST_ASSERT_EQUAL_UINT16(0, info.year);
-}
-
-void test_the_largest_values_fit_their_fields(void)
-{
-    uint8_t cts[13];
-    memset(cts, 0xFE, sizeof cts);
-    add_revolution(0xFF, cts, 13);
-    TEST_ASSERT_TRUE(end_with(0x51));
-    tmini_ct_read(&ct_state, &info);
-    TEST_ASSERT_EQUAL_UINT8(3, info.user_major);
-    TEST_ASSERT_EQUAL_UINT8(31, info.user_minor);
-    TEST_ASSERT_EQUAL_HEX8(0x3F, info.faults); /* The reserved bit is left out. */
-    TEST_ASSERT_EQUAL_UINT(0x3F, tmini_ct_faults(&ct_state));
-    TEST_ASSERT_EQUAL_UINT8(7, info.hardware);
-    TEST_ASSERT_EQUAL_UINT8(15, info.firmware_major);
-    TEST_ASSERT_EQUAL_UINT8(127, info.firmware_minor);
-    expect_serial(2051, 15, 31, 2097151);
-}
-
-/* The number's 21 bits are 01 101 10 0110101 0101011: 891563. */
-void test_each_bit_of_the_serial_number_has_its_place(void)
-{
-    uint8_t crc = tmini_ct_crc8(0, 0x79);
-    uint8_t cts[16] = {0};
-    cts[8] = 6 << 3 | 1 << 1;
-    cts[9] = 12 << 4 | 5 << 1;
-    cts[10] = 31 << 3 | 2 << 1;
-    cts[11] = 0x35 << 1;
-    cts[12] = 0x2B << 1;
-    for (unsigned i = 0; i < 16; i++) {
-        crc = tmini_ct_crc8(crc, cts[i]);
-    }
-    add_revolution(0x79, cts, 16);
-    TEST_ASSERT_TRUE(end_with(crc));
-    tmini_ct_read(&ct_state, &info);
-    expect_serial(2026, 12, 31, 891563);
-}
-
-void test_a_healthy_lidar_is_known_to_have_no_faults(void)
-{
-    uint8_t cts[17];
-    memcpy(cts, six_hertz, 17);
-    cts[3] = 0;
-    add_revolution(0x79, &cts[1], 16);
-    TEST_ASSERT_TRUE(end_with(0x95));
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&ct_state));
-}
-
-/* ---------------------------------------------------------------------------------------- trust */
-
-void test_a_last_crc_of_aa_is_like_any_other(void)
-{
-    uint8_t cts[17];
-    memcpy(cts, six_hertz, 17);
-    cts[16] = 0x96; /* Makes the CRC 0xAA. */
-    add_revolution(0x79, &cts[1], 16);
-    TEST_ASSERT_TRUE(end_with(0xAA));
-}
-
-void test_every_wrong_last_crc_drops_the_revolution(void)
-{
-    for (unsigned crc = 0; crc <= 255; crc++) {
-        if (crc != SIX_HERTZ_CRC) {
-            tmini_ct_init(&ct_state);
-            add_six_hertz();
-            TEST_ASSERT_FALSE(end_with((uint8_t)crc));
-            expect_nothing_known();
-        }
-    }
-}
-
-void test_without_last_crc_nothing_is_trusted(void)
-{
-    add_six_hertz();
-    /* An earlier stray byte has the same value by chance. */
-    TEST_ASSERT_FALSE(add(0x79, 0, SIX_HERTZ_CRC));
-    expect_nothing_known();
-}
-
-void test_more_than_one_stray_byte_is_no_last_crc(void)
-{
-    add_six_hertz();
-    TEST_ASSERT_FALSE(add(0x79, 2, SIX_HERTZ_CRC));
-    add_six_hertz();
-    TEST_ASSERT_FALSE(add(0x79, 65535, SIX_HERTZ_CRC));
-    expect_nothing_known();
-}
-
-/* Section 9.1: no CT information in point packets, no LastCRC, but sometimes a byte of noise. */
-void test_a_unit_without_ct_information_never_becomes_healthy(void)
-{
-    static const uint8_t zeros[16] = {0};
-    for (unsigned noise = 0; noise <= 255; noise++) {
-        add_points(zeros, 16);
-        TEST_ASSERT_FALSE(add(0x79, 1, (uint8_t)noise)); /* 0x32 would be the CRC. */
-    }
-    expect_nothing_known();
-}
-
-void test_ct_information_that_stops_coming_confirms_nothing_sent_before(void)
-{
-    static const uint8_t zeros[16] = {0};
-    add_six_hertz();
-    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
-    add_points(zeros, 16);
-    TEST_ASSERT_FALSE(end_with(0x32)); /* By chance the right CRC. */
-    TEST_ASSERT_EQUAL_UINT(0x12, tmini_ct_faults(&ct_state));
-}
-
-void test_one_point_packet_with_information_is_enough(void)
-{
-    uint8_t cts[16] = {0};
-    uint8_t crc = tmini_ct_crc8(0, 0x79);
-    cts[15] = 0x02;
-    for (unsigned i = 0; i < 16; i++) {
-        crc = tmini_ct_crc8(crc, cts[i]);
-    }
-    add_revolution(0x79, cts, 16);
-    TEST_ASSERT_TRUE(end_with(crc));
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&ct_state));
-}
-
-void test_bytes_lost_or_skipped_inside_a_revolution_spoil_it(void)
-{
-    for (size_t hit = 1; hit < 17; hit++) {
-        tmini_ct_init(&ct_state);
-        (void)add(0x79, 0, 0);
-        for (size_t i = 1; i < 17; i++) {
-            (void)add(six_hertz[i], i == hit ? 1 : 0, 0);
-        }
-        TEST_ASSERT_FALSE(end_with(SIX_HERTZ_CRC));
-        expect_nothing_known();
-    }
-}
-
-void test_a_lost_packet_drops_the_revolution(void)
-{
-    add_revolution(0x79, &six_hertz[1], 6);
-    add_points(&six_hertz[8], 9); /* The eighth is lost with all its bytes. */
-    TEST_ASSERT_FALSE(end_with(SIX_HERTZ_CRC));
-    expect_nothing_known();
-}
-
-void test_a_lost_start_packet_drops_both_revolutions(void)
-{
-    add_six_hertz();
-    add_points(&six_hertz[1], 16);
-    TEST_ASSERT_FALSE(end_with(SIX_HERTZ_CRC));
-    expect_nothing_known();
-}
-
-void test_the_revolution_after_a_dropped_one_is_trusted(void)
-{
-    add_six_hertz();
-    TEST_ASSERT_FALSE(end_with(0x00));
-    add_points(&six_hertz[1], 16);
-    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
-}
-
-void test_the_revolution_after_a_spoiled_one_is_trusted(void)
-{
-    (void)add(0x79, 0, 0);
-    (void)add(0x40, 3, 0);
-    TEST_ASSERT_FALSE(end_with(0x42));
-    add_points(&six_hertz[1], 16);
-    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
-}
-
-void test_what_comes_before_the_first_start_packet_is_left_out(void)
-{
-    add_points(&six_hertz[1], 16);
-    TEST_ASSERT_FALSE(end_with(SIX_HERTZ_CRC));
-    add_points(&six_hertz[1], 16);
-    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
-}
-
-void test_packets_before_the_first_start_packet_are_no_revolution_even_with_last_crc(void)
-{
-    for (unsigned crc = 0; crc <= 255; crc++) {
-        setUp();
-        add_points(&six_hertz[1], 16);
-        TEST_ASSERT_FALSE(end_with((uint8_t)crc));
-        expect_nothing_known();
-    }
-}
-
-void test_a_first_start_packet_ends_nothing(void)
-{
-    TEST_ASSERT_FALSE(add(0x79, 1, 0x00));
-    TEST_ASSERT_FALSE(add(0x79, 1, 0x61)); /* The CRC of 79, without a point packet. */
-    expect_nothing_known();
-}
-
-/* ------------------------------------------------------------------------------ what is kept */
-
-void test_what_is_known_stays_known_when_a_revolution_is_dropped(void)
-{
-    add_six_hertz();
-    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
-    add_points(&six_hertz[2], 10);
-    TEST_ASSERT_FALSE(end_with(0x11));
-    tmini_ct_read(&ct_state, &info);
-    expect_versions_and_faults(TMINI_FAULT_ENCODER | TMINI_FAULT_LD);
-    TEST_ASSERT_EQUAL_UINT32(1193046, info.number);
-}
-
-void test_a_short_revolution_does_not_remove_what_a_long_one_reported(void)
-{
-    add_six_hertz();
-    TEST_ASSERT_TRUE(add(TWELVE_HERTZ_CT, 1, SIX_HERTZ_CRC));
-    add_points(&six_hertz[1], 9);
-    TEST_ASSERT_TRUE(end_with(TWELVE_HERTZ_CRC));
-    tmini_ct_read(&ct_state, &info);
-    TEST_ASSERT_EQUAL_UINT32(1193046, info.number);
-    TEST_ASSERT_TRUE((info.known & TMINI_KNOWN_SERIAL) != 0);
-}
-
-void test_a_short_revolution_confirms_nothing_of_a_long_one_that_was_dropped(void)
-{
-    static const uint8_t others[16] = {0x66, 0x66, 0x66, 0x66, 0x66, 0x66, 0x66, 0x66,
-                                       0x66, 0x66, 0x66, 0x66, 0x66, 0x66, 0x66, 0x66};
-    add_six_hertz();
-    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
-    add_points(others, 16);
-    TEST_ASSERT_FALSE(add(TWELVE_HERTZ_CT, 0, 0)); /* No LastCRC. */
-    add_points(&six_hertz[1], 9);
-    TEST_ASSERT_TRUE(end_with(TWELVE_HERTZ_CRC));
-    tmini_ct_read(&ct_state, &info);
-    expect_serial(2025, 4, 24, 1193046);
-}
-
-void test_the_faults_are_those_of_the_last_trusted_revolution(void)
-{
-    uint8_t cts[17];
-    memcpy(cts, six_hertz, 17);
-    cts[3] = 0;
-    add_six_hertz();
-    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
-    TEST_ASSERT_EQUAL_UINT(0x12, tmini_ct_faults(&ct_state));
-    add_points(&cts[1], 16);
-    TEST_ASSERT_EQUAL_UINT(0x12,
-                           tmini_ct_faults(&ct_state)); /* The new faults are not confirmed yet. */
-    TEST_ASSERT_TRUE(end_with(0x95));
-    TEST_ASSERT_EQUAL_UINT(0x00, tmini_ct_faults(&ct_state));
-}
-
-void test_a_discarded_revolution_is_not_continued_but_what_is_known_is_kept(void)
-{
-    add_six_hertz();
-    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
-    add_points(&six_hertz[1], 8);
-    discard();
-    add_points(&six_hertz[9], 8);
-    TEST_ASSERT_FALSE(end_with(SIX_HERTZ_CRC));
-    TEST_ASSERT_EQUAL_UINT(0x12, tmini_ct_faults(&ct_state));
-    add_points(&six_hertz[1], 16);
-    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
-}
-
-/* EB is the CRC of the eight packets added here. */
-void test_packets_between_a_discarded_revolution_and_a_start_packet_are_no_revolution(void)
-{
-    add_six_hertz();
-    discard();
-    add_points(&six_hertz[9], 8);
-    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0xEB));
-    expect_nothing_known();
-}
-
-void test_a_discarded_revolution_does_not_spoil_the_next_one(void)
-{
-    (void)add(0x79, 0, 0);
-    (void)add(0x40, 9, 0);
-    discard();
-    add_six_hertz();
-    TEST_ASSERT_TRUE(end_with(SIX_HERTZ_CRC));
-}
-
-/* --------------------------------------------------------------------------- long revolutions */
-
-/* The revolution has 17 packets, then `more` with CT 10. */
-static bool long_revolution_is_trusted(unsigned more, uint8_t last_crc)
-{
-    add_six_hertz();
-    for (unsigned i = 0; i < more; i++) {
-        (void)add(0x10, 0, 0);
-    }
-    return end_with(last_crc);
-}
-
-void test_the_crc_covers_all_packets_of_however_long_a_revolution(void)
-{
-    TEST_ASSERT_TRUE(long_revolution_is_trusted(238, 0x5C)); /* 255 packets. */
-    TEST_ASSERT_TRUE(long_revolution_is_trusted(239, 0xE5)); /* 256. */
-    TEST_ASSERT_TRUE(long_revolution_is_trusted(283, 0x68)); /* 300. */
-    tmini_ct_read(&ct_state, &info);
-    TEST_ASSERT_EQUAL_UINT32(1193046, info.number);
-    expect_versions_and_faults(TMINI_FAULT_ENCODER | TMINI_FAULT_LD);
-}
-
-/* ---------------------------------------------------------------------------------- verdicts */
-
-void test_a_right_last_crc_confirms_that_no_packet_was_lost(void)
-{
-    add_six_hertz();
-    TEST_ASSERT_EQUAL_INT(TMINI_CT_CONFIRMED, verdict_on(0x79, 1, SIX_HERTZ_CRC));
-}
-
-void test_a_wrong_last_crc_says_that_a_packet_was_lost(void)
-{
-    add_revolution(0x79, &six_hertz[1], 15); /* The sixteenth is missing. */
-    TEST_ASSERT_EQUAL_INT(TMINI_CT_REFUTED, verdict_on(0x79, 1, SIX_HERTZ_CRC));
-}
-
-void test_without_last_crc_or_ct_information_the_verdict_is_unknown(void)
-{
-    static const uint8_t zeros[16] = {0};
-    add_six_hertz();
-    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 0, SIX_HERTZ_CRC));
-    add_points(zeros, 16); /* A unit without LastCRC: the byte before its start packet is noise. */
-    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0x00));
-    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x00, 0, 0x00));
-}
-
-void test_a_revolution_with_a_gap_is_not_refuted_by_last_crc(void)
-{
-    (void)add(0x79, 0, 0);
-    (void)add(0x40, 3, 0);
-    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0x00));
-    (void)add(0x40, 0, 0);
-    (void)add(0x34, 3, 0);
-    /* 42 is the CRC of 79 and 40 alone. */
-    TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(0x79, 1, 0x42));
 }
