@@ -56,7 +56,7 @@ def measure_target(name, level, folder, made):
     place = folder / (name + level)
     objects = target.compile_library(level, place)
     weights = flash.measure(target, level, objects, place)
-    depth = stack.measure(target, objects, place / "everything.elf")
+    depth = stack.measure(target, objects, place)
     counts = instructions.measure(target, level, objects, place, made)
     if counts["stack seen"] > depth["polling"][0]:
         raise BenchError(f"{name} {level}: {counts['stack seen']} bytes of stack are used, "
