@@ -12,6 +12,8 @@
 
 need_test_tools() {
     need_build_tools
+    because "to build the tests in less time"
+    wish ninja ninja-build
     because "to generate the unit tests' mocks and main functions"
     need ruby ruby
     need_cmock
@@ -26,6 +28,7 @@ install_tools() {
     status=0
     install_missing || status=$?
     remove_cmock_download
+    ! is_present ninja || export CMAKE_GENERATOR="${CMAKE_GENERATOR:-Ninja}"
     return "$status"
 }
 
