@@ -34,7 +34,8 @@ static void fail(unsigned number)
 
 void machine_begin(const sim_observer_t *observer, const machine_uart_t *uart)
 {
-    const sim_config_t config = sim_default_config();
+    sim_config_t config = sim_default_config();
+    config.marked = observer != NULL; /* So that each point shows which sample it is (truth.h). */
     console_begin();
     memset(&machine, 0, sizeof machine);
     memset(&line, 0, sizeof line);

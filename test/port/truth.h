@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A record of the points that the simulated lidar has sent, to compare scans with. */
+/* Compares scans with what the simulated lidar has sent (sim_judge.h). */
 
 #ifndef TRUTH_H
 #define TRUTH_H
@@ -26,7 +26,8 @@ void truth_assert_revolution(const tmini_scan_t *scan, uint32_t revolution);
 /* The scan is complete and has exactly the points of some later revolution. */
 void truth_assert_some_revolution(const tmini_scan_t *scan);
 
-/* All points were sent, in this order and later than the previous scan's. Some may be missing. */
+/* The scan has nothing but points of one revolution, in this order and in no other scan. Some may be
+ * missing, if it says so. */
 void truth_assert_nothing_invented(const tmini_scan_t *scan);
 
 #endif

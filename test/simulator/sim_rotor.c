@@ -192,12 +192,16 @@ static bool is_mast(const sim_config_t *config, uint32_t angle_q6)
            angle_q6 <= (uint32_t)config->mast_from_q6 + config->mast_wide_q6;
 }
 
+static bool is_dark(const sim_t *sim)
+{
+    return sim->rotor_blocked || sim->window_covered;
+}
+
 static uint16_t ideal_distance(const sim_t *sim, uint32_t angle_q16)
 {
-    const bool is_dark = sim->rotor_blocked || sim->window_covered;
     const uint32_t angle_q6 = angle_q16 >> 16;
     uint16_t seen_mm;
-    if (is_dark) {
+    if (is_dark(sim)) {
         return 0;
     }
     seen_mm = is_mast(&sim->config, angle_q6)
@@ -215,7 +219,7 @@ static encode_sample_t measure_noisy(sim_t *sim, uint32_t angle_q16)
     const uint32_t flagged = ((uint32_t)(dice >> 32) & 0xFFFFu) * 1000u >> 16;
     const uint16_t ideal = ideal_distance(sim, angle_q16);
     encode_sample_t sample = {0, 0, 0};
-    if (sim->rotor_blocked || sim->window_covered) {
+    if (is_dark(sim)) {
         return sample;
     }
     if (ideal != 0u && missing >= sim->config.invalid_permille) {
@@ -257,8 +261,9 @@ static void measure_all(sim_t *sim, encode_sample_t *samples)
 {
     uint32_t angle = turned_by(sim->rotor.phase, (uint32_t)sim->config.start_angle_q6 << 16);
     for (uint32_t i = 0; i < sim->rotor.planned; i++) {
-        samples[i] = sim->config.marked ? sim_mark(sim, sim->revolution, sim->rotor.samples + i)
-                                        : measure(sim, angle);
+        samples[i] = sim->config.marked && !is_dark(sim)
+                         ? sim_mark(sim, sim->revolution, sim->rotor.samples + i)
+                         : measure(sim, angle);
         sim->rotor.valid += samples[i].distance_mm != 0u ? 1u : 0u;
         angle = turned_by(angle, sim->rotor.step);
     }

@@ -3,22 +3,11 @@
 
 #include "campaign_line.h"
 
-#include "reference_decoder.h"
-
 #include <string.h>
 
 #define FULL_CIRCLE_Q6 23040u
 #define SPIN_UP_CHZ 240u
 #define FAR_US UINT64_C(60000000)
-
-bool line_identify(const line_t *line, uint16_t distance_mm, uint8_t intensity, uint8_t flag,
-                   line_mark_t *mark)
-{
-    const encode_sample_t sample = {distance_mm, intensity, flag};
-    sim_read_mark(&line->lidar, sample, &mark->revolution, &mark->sample);
-    return mark->revolution < line->config.revolutions &&
-           mark->sample < line->counts[mark->revolution];
-}
 
 /* ---- What the simulated lidar sends ---- */
 
@@ -37,27 +26,14 @@ static sim_config_t lidar_config(const line_config_t *config, uint64_t seed)
     return lidar;
 }
 
-/* How far the rotor has turned since the previous sample noted; jitter may take it back. */
-static int32_t turn_on(line_t *line, uint16_t angle_q6)
+/* How far the rotor has turned in all, at this angle; jitter may take it back. */
+static uint64_t turn_to(line_t *line, uint16_t angle_q6)
 {
     const uint32_t turned = (angle_q6 + FULL_CIRCLE_Q6 - line->last_q6) % FULL_CIRCLE_Q6;
     line->last_q6 = angle_q6;
-    return turned < FULL_CIRCLE_Q6 / 2 ? (int32_t)turned
-                                       : (int32_t)turned - (int32_t)FULL_CIRCLE_Q6;
-}
-
-/* Section 5: what a decoder written apart makes of the packet's angles. */
-static void note_angles(line_t *line, line_packet_t *packet, const uint8_t *bytes)
-{
-    uint16_t *const count = &line->counts[packet->revolution];
-    packet->first = *count;
-    for (uint32_t i = 0; i < packet->samples; i++) {
-        const uint16_t angle_q6 = reference_point(bytes, i).angle_q6;
-        line->turned_q6 = (uint64_t)((int64_t)line->turned_q6 + turn_on(line, angle_q6));
-        packet->turned_q6 = i == 0 ? line->turned_q6 : packet->turned_q6;
-        line->angles_q6[packet->revolution][(*count)++] = angle_q6;
-    }
-    packet->ends_q6 = line->turned_q6;
+    line->turned_q6 += turned;
+    line->turned_q6 -= turned < FULL_CIRCLE_Q6 / 2 ? 0 : FULL_CIRCLE_Q6;
+    return line->turned_q6;
 }
 
 static void note_bytes(line_t *line, const sim_run_t *run)
@@ -73,12 +49,16 @@ static void note_bytes(line_t *line, const sim_run_t *run)
 static void note_packet(line_t *line, const sim_run_t *run)
 {
     line_packet_t *const packet = &line->packets[line->packet_count];
+    const uint8_t *const bytes = run->packet->bytes;
     *packet = (line_packet_t){.from = line->size + (uint32_t)run->packet_at,
                               .to = line->size + (uint32_t)run->length,
-                              .samples = run->packet->bytes[3],
+                              .first = sim_judge_sent(&line->judge, run->packet),
+                              .samples = bytes[3],
                               .revolution = (uint16_t)run->packet->revolution,
                               .is_start = run->packet->starts_revolution};
-    note_angles(line, packet, run->packet->bytes);
+    packet->turned_q6 = turn_to(line, reference_point(bytes, 0).angle_q6);
+    packet->ends_q6 = turn_to(line, reference_point(bytes, packet->samples - 1u).angle_q6);
+    line->counts[packet->revolution] += packet->samples;
     note_bytes(line, run);
     packet->sent_us = line->at_us[line->size - 1];
     line->packet_count++;
@@ -96,6 +76,8 @@ void line_make(line_t *line, const line_config_t *config, random_t *random)
     line->packet_count = 0;
     line->turned_q6 = FULL_CIRCLE_Q6;
     line->last_q6 = 0;
+    sim_judge_begin(&line->judge);
+    line->judge.is_guarded = config->ct_information;
     sim_init(&line->lidar, &lidar);
     sim_receive(&line->lidar, start, sizeof start, 0);
     /* As far in the future as needed: the whole next frame. */

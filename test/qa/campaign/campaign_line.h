@@ -4,20 +4,14 @@
 /* The bytes that the lidar sends in one trial: some revolutions, with the arrival time of each
  * byte, and with parts that never arrive.
  *
- * The simulated lidar marks its samples. So each point shows whether it was sent, where it belongs
- * and its correct angle. */
+ * The simulated lidar marks its samples, and the judge notes them. */
 
 #ifndef CAMPAIGN_LINE_H
 #define CAMPAIGN_LINE_H
 
-#include "simulator.h"
-
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "sim_judge.h"
 
 #define LINE_REVOLUTIONS 20u
-#define LINE_SAMPLES 2048u /* Most samples of a revolution: at 2.4 Hz there are 1667. */
 #define LINE_BYTES (LINE_REVOLUTIONS * 6000u)
 #define LINE_PACKETS (LINE_REVOLUTIONS * 200u)
 #define LINE_CUTS 4u
@@ -37,7 +31,7 @@ typedef struct {
     uint32_t from; /* Index of its first byte; a LastCRC is before this. */
     uint32_t to;
     uint32_t sent_us;   /* Time at which its last byte has arrived. */
-    uint16_t first;     /* Index of its first sample within the revolution. */
+    uint32_t first;     /* Place of its first sample (sim_judge.h). */
     uint16_t samples;   /* Number of its samples. */
     uint16_t missing;   /* Number of its bytes that have not reached the library. */
     uint64_t turned_q6; /* Angle of its first sample, counted from the beginning. */
@@ -48,7 +42,8 @@ typedef struct {
 
 typedef struct {
     line_config_t config;
-    sim_t lidar;        /* Whose samples are marked. */
+    sim_t lidar;
+    sim_judge_t judge;
     uint64_t turned_q6; /* Since the beginning, and the latest angle. */
     uint16_t last_q6;
 
@@ -63,14 +58,8 @@ typedef struct {
     uint32_t packet_count;
 
     uint16_t counts[LINE_REVOLUTIONS]; /* Number of samples of each revolution. */
-    uint16_t angles_q6[LINE_REVOLUTIONS][LINE_SAMPLES];
-    bool touched[LINE_REVOLUTIONS]; /* A byte of it, or of the next start packet, is lost. */
+    bool touched[LINE_REVOLUTIONS];    /* A byte of it, or of the next start packet, is lost. */
 } line_t;
-
-typedef struct {
-    uint32_t revolution;
-    uint32_t sample;
-} line_mark_t;
 
 /* Makes the reply to the start command, and the revolutions. */
 void line_make(line_t *line, const line_config_t *config, random_t *random);
@@ -83,9 +72,5 @@ void line_lose(line_t *line, uint32_t from, uint32_t to);
  * each packet in it arrive, or only a start packet is lost. The bytes on both sides never look like
  * a packet: one pair in 65536 would, and no receiver could notice that. */
 void line_interrupt(line_t *line, random_t *random);
-
-/* Finds the sample of a point. Returns false if no such sample was sent. */
-bool line_identify(const line_t *line, uint16_t distance_mm, uint8_t intensity, uint8_t flag,
-                   line_mark_t *mark);
 
 #endif

@@ -6,28 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Without LastCRC, if whole packets are missing, only the angles can show the hole between two
- * packets. Below 4 degrees, a hole cannot be distinguished from jitter. */
-#define INVISIBLE_Q6 256u
-
-typedef struct {
-    line_mark_t first;
-    line_mark_t last;   /* The previous point. */
-    line_mark_t before; /* The last point before `odd`. */
-    line_mark_t odd;    /* The first point of another revolution or out of order. */
-    uint32_t odd_at;    /* Index of `odd` in the scan. */
-    uint32_t next;      /* The expected sample. */
-    uint32_t missing;   /* Samples missing so far. */
-    uint32_t widest_q6; /* The widest hole that these left. */
-    uint16_t angle_q6;  /* Angle of the previous point. */
-    bool merged;
-    bool false_point;
-    bool disorder;
-    bool again; /* A point was already in an earlier scan. */
-} reading_t;
-
-void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, const line_t *line,
-                  bool speaks)
+void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, line_t *line, bool speaks)
 {
     memset(oracle, 0, sizeof *oracle);
     oracle->verdicts = verdicts;
@@ -37,7 +16,7 @@ void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, const 
     verdicts->trials++;
 }
 
-static void note(oracle_t *oracle, wrong_t wrong, bool is_so)
+static void note(oracle_t *oracle, unsigned wrong, bool is_so)
 {
     verdicts_t *const verdicts = oracle->verdicts;
     if (!is_so) {
@@ -52,114 +31,41 @@ static void note(oracle_t *oracle, wrong_t wrong, bool is_so)
     }
 }
 
-static uint32_t turned_q6(uint16_t from, uint16_t to)
+static uint32_t revolution_at(const oracle_t *oracle, uint32_t place)
 {
-    return to >= from ? (uint32_t)to - from : (uint32_t)to + 23040u - from;
+    return sim_judge_sample(&oracle->line->judge, place)->turn;
 }
 
-static void follow(reading_t *reading, uint32_t index, const tmini_point_t *point,
-                   const line_mark_t *mark)
+static uint32_t sent_us(const line_t *line, uint32_t place)
 {
-    const bool is_odd =
-        mark->revolution != reading->first.revolution || mark->sample < reading->next;
-    if (is_odd && !reading->merged && !reading->disorder) {
-        reading->before = reading->last;
-        reading->odd = *mark;
-        reading->odd_at = index;
+    uint32_t packet = 0;
+    while (place >= line->packets[packet].first + line->packets[packet].samples) {
+        packet++;
     }
-    reading->last = *mark;
-    if (mark->revolution != reading->first.revolution) {
-        reading->merged = true;
-    } else if (mark->sample < reading->next) {
-        reading->disorder = true;
-    } else if (mark->sample > reading->next) {
-        const uint32_t hole_q6 = turned_q6(reading->angle_q6, point->angle_q6);
-        reading->missing += mark->sample - reading->next;
-        reading->widest_q6 = hole_q6 > reading->widest_q6 ? hole_q6 : reading->widest_q6;
-    }
-    reading->next = mark->sample + 1;
-    reading->angle_q6 = point->angle_q6;
+    return line->packets[packet].sent_us;
 }
 
-static uint32_t sent_us(const line_t *line, const line_mark_t *mark)
+static sim_reading_t read_points(oracle_t *oracle, const tmini_scan_t *scan)
 {
-    for (uint32_t i = 0; i < line->packet_count; i++) {
-        const line_packet_t *const packet = &line->packets[i];
-        if (packet->revolution == mark->revolution &&
-            mark->sample < packet->first + packet->samples) {
-            return packet->sent_us;
-        }
-    }
-    return 0;
-}
-
-/* Also counts in how many scans each point is: it must be only one. */
-static reading_t read_points(oracle_t *oracle, const tmini_scan_t *scan)
-{
-    const line_t *const line = oracle->line;
-    reading_t reading = {0};
+    sim_reading_t reading = {0};
     for (uint32_t i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
-        line_mark_t mark;
-        const bool is_sent =
-            line_identify(line, point->distance_mm, point->intensity, point->flag, &mark);
-        if (is_sent) {
-            reading.again |= oracle->seen[mark.revolution][mark.sample]++ > 0;
-        }
-        if (!is_sent || line->angles_q6[mark.revolution][mark.sample] != point->angle_q6) {
-            reading.false_point = true;
-            continue;
-        }
-        if (i == 0) {
-            reading.first = mark;
-            reading.missing = mark.sample; /* A scan begins with the start packet: sample 0. */
-            reading.widest_q6 = mark.sample > 0 ? UINT32_MAX : 0;
-            reading.angle_q6 = point->angle_q6;
-            reading.next = mark.sample;
-        }
-        follow(&reading, i, point, &mark);
+        sim_read_point(&oracle->line->judge, &reading,
+                       (reference_point_t){point->angle_q6, point->distance_mm, point->intensity,
+                                           point->flag});
     }
     return reading;
 }
 
-/* Counts the samples missing between the last point and the next start packet. */
-static void read_end(reading_t *reading, const line_t *line, const tmini_scan_t *scan)
+static void say(const oracle_t *oracle, const sim_reading_t *reading, const tmini_scan_t *scan)
 {
-    const uint32_t count = line->counts[reading->first.revolution];
-    const uint32_t next = reading->first.revolution + 1;
-    if (reading->next < count && scan->dropped == 0) {
-        const uint32_t hole_q6 = next < line->config.revolutions && line->counts[next] > 0
-                                     ? turned_q6(reading->angle_q6, line->angles_q6[next][0])
-                                     : UINT32_MAX;
-        reading->missing += count - reading->next;
-        reading->widest_q6 = hole_q6 > reading->widest_q6 ? hole_q6 : reading->widest_q6;
-    }
-}
-
-static void judge_completeness(oracle_t *oracle, const reading_t *reading, const tmini_scan_t *scan)
-{
-    const bool is_invisible =
-        !oracle->line->config.ct_information && reading->widest_q6 <= INVISIBLE_Q6;
-    const bool lacks = reading->missing > 0 || reading->first.revolution == 0;
-    if (scan->complete && lacks && !reading->merged && is_invisible) {
-        oracle->verdicts->invisible++;
-        return;
-    }
-    note(oracle, WRONG_COMPLETE, scan->complete && (lacks || scan->dropped > 0));
-    note(oracle, WRONG_SILENCE, lacks && scan->gaps == 0 && scan->dropped == 0 && !is_invisible);
-    if (scan->complete && !lacks && reading->first.revolution < LINE_REVOLUTIONS) {
-        oracle->delivered[reading->first.revolution] = true;
-    }
-}
-
-static void say(const reading_t *reading, const line_t *line, const tmini_scan_t *scan)
-{
+    const uint32_t revolution = revolution_at(oracle, reading->first);
     printf("scan of revolution %u: %u of %u points, %u packets, %u gaps, %u dropped%s\n",
-           reading->first.revolution, scan->count, line->counts[reading->first.revolution],
-           scan->packets, scan->gaps, scan->dropped, scan->complete ? ", complete" : "");
-    if (reading->merged || reading->disorder) {
-        printf("  point %u is sample %u of revolution %u\n", reading->odd_at, reading->odd.sample,
-               reading->odd.revolution);
+           revolution, scan->count, oracle->line->counts[revolution], scan->packets, scan->gaps,
+           scan->dropped, scan->complete ? ", complete" : "");
+    if (reading->odd_at > 0) {
+        printf("  point %u is of revolution %u\n", reading->odd_at,
+               revolution_at(oracle, reading->odd));
     }
 }
 
@@ -187,12 +93,13 @@ static uint32_t longest_silence_us(const line_t *line, uint32_t from_us, uint32_
 
 /* Returns why one incomplete scan may have points of two revolutions: the library measures a
  * silence only by the times of polls and hand-overs. */
-static mixed_t explain(const line_t *line, const host_config_t *config, const reading_t *reading)
+static mixed_t explain(const line_t *line, const host_config_t *config,
+                       const sim_reading_t *reading)
 {
     const uint32_t pause_us = config->max_pause_ms * 1040u + config->poll_us + config->preempt_us +
                               (config->feed == FEED_BLOCKS ? config->block_us : 0) + 10000u;
-    const uint32_t from_us = sent_us(line, &reading->before);
-    const uint32_t to_us = sent_us(line, &reading->odd);
+    const uint32_t from_us = sent_us(line, reading->before);
+    const uint32_t to_us = sent_us(line, reading->odd);
     if (config->max_pause_ms == 0) {
         return MIXED_UNTIMED;
     }
@@ -202,38 +109,38 @@ static mixed_t explain(const line_t *line, const host_config_t *config, const re
     return longest_silence_us(line, from_us, to_us) < pause_us ? MIXED_DRIBBLE : MIXED_STRANGE;
 }
 
-static void judge_mixture(oracle_t *oracle, const host_t *host, const reading_t *reading,
-                          const tmini_scan_t *scan)
+static void explain_mixture(oracle_t *oracle, const host_t *host, const sim_reading_t *reading)
 {
-    note(oracle, WRONG_MERGED_COMPLETE, scan->complete);
-    if (!scan->complete) {
-        const mixed_t mixed = explain(oracle->line, &host->config, reading);
-        oracle->verdicts->mixed[mixed]++;
-        note(oracle, WRONG_MERGED, mixed == MIXED_STRANGE);
-        if (oracle->speaks) {
-            printf("  mixed: %s\n", oracle_mixed_name(mixed));
-        }
+    const mixed_t mixed = explain(oracle->line, &host->config, reading);
+    oracle->verdicts->mixed[mixed]++;
+    note(oracle, WRONG_MERGED, mixed == MIXED_STRANGE);
+    if (oracle->speaks) {
+        printf("  mixed: %s\n", oracle_mixed_name(mixed));
     }
 }
 
 void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t *scan)
 {
-    reading_t reading = read_points(oracle, scan);
+    verdicts_t *const verdicts = oracle->verdicts;
+    sim_reading_t reading = read_points(oracle, scan);
+    unsigned lies =
+        sim_read_end(&oracle->line->judge, &reading, scan->complete, scan->gaps, scan->dropped);
     if (oracle->speaks) {
-        say(&reading, oracle->line, scan);
+        say(oracle, &reading, scan);
     }
-    oracle->verdicts->scans++;
-    oracle->verdicts->points += scan->count;
-    oracle->verdicts->complete += scan->complete ? 1 : 0;
-    note(oracle, WRONG_POINT, reading.false_point);
-    if (reading.merged) {
-        judge_mixture(oracle, host, &reading, scan);
+    verdicts->scans++;
+    verdicts->points += scan->count;
+    verdicts->complete += scan->complete ? 1 : 0;
+    verdicts->invisible += scan->complete && reading.is_hidden ? 1 : 0;
+    if ((lies & SIM_LIE(SIM_LIE_MIXED)) != 0 && !scan->complete) {
+        explain_mixture(oracle, host, &reading);
+        lies &= ~SIM_LIE(SIM_LIE_MIXED);
     }
-    note(oracle, WRONG_ORDER, reading.disorder && !reading.merged);
-    note(oracle, WRONG_TWICE, reading.again);
-    if (!reading.merged && !reading.false_point) {
-        read_end(&reading, oracle->line, scan);
-        judge_completeness(oracle, &reading, scan);
+    for (unsigned lie = 0; lie < SIM_LIES; lie++) {
+        note(oracle, lie, (lies & SIM_LIE(lie)) != 0);
+    }
+    if (scan->complete && reading.missing == 0) {
+        oracle->delivered[revolution_at(oracle, reading.first)] = true;
     }
 }
 
@@ -276,16 +183,6 @@ static void judge_cost(oracle_t *oracle, const host_t *host)
     }
 }
 
-/* How many points of the packet are in exactly one scan. */
-static uint32_t in_one_scan(const oracle_t *oracle, const line_packet_t *packet)
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < packet->samples; i++) {
-        count += oracle->seen[packet->revolution][packet->first + i] == 1 ? 1 : 0;
-    }
-    return count;
-}
-
 /* While the program works on a scan, DMA may overwrite the packet that ended it and waits to be
  * added to the next one, which then has a gap. (14 bytes per millisecond, beside the packet.) */
 static bool may_overwrite_a_packet(const host_config_t *config)
@@ -303,19 +200,19 @@ static void judge_points(oracle_t *oracle, const host_t *host, uint32_t withheld
     uint32_t lacking = 0;
     bool begun = false;
     if (builder->open) {
-        note(oracle, WRONG_TWICE, read_points(oracle, &builder->scan).again);
+        const unsigned lies = read_points(oracle, &builder->scan).lies;
+        note(oracle, SIM_LIE_AGAIN, (lies & SIM_LIE(SIM_LIE_AGAIN)) != 0);
     }
     for (uint32_t i = 0; i < line->packet_count; i++) {
         const line_packet_t *const packet = &line->packets[i];
         begun |= packet->is_start && packet->missing == 0;
         if (begun && packet->missing == 0) {
-            const uint32_t in_one = in_one_scan(oracle, packet);
+            const uint32_t in_one = sim_judge_in_one(&line->judge, packet->first, packet->samples);
             oracle->verdicts->intact += packet->samples;
             oracle->verdicts->in_one += in_one;
             lacking += packet->samples - in_one;
             if (oracle->speaks && in_one < packet->samples) {
-                printf("  packet of revolution %u, samples %u to %u, sent at %u ms\n",
-                       packet->revolution, packet->first, packet->first + packet->samples - 1,
+                printf("  packet of revolution %u, sent at %u ms\n", packet->revolution,
                        packet->sent_us / 1000);
             }
         }
@@ -343,22 +240,16 @@ void oracle_end(oracle_t *oracle, const host_t *host)
     }
 }
 
-const char *oracle_name(wrong_t wrong)
+const char *oracle_name(unsigned wrong)
 {
     static const char *const names[WRONG_KINDS] = {
-        [WRONG_MERGED_COMPLETE] = "complete scans of two revolutions",
         [WRONG_MERGED] = "incomplete scans of two revolutions, unexplained",
-        [WRONG_POINT] = "scans with points never sent",
-        [WRONG_ORDER] = "scans out of order",
-        [WRONG_COMPLETE] = "complete, but something is missing",
-        [WRONG_SILENCE] = "something missing, but not reported",
-        [WRONG_TWICE] = "scans with points of an earlier one",
         [WRONG_LOSS] = "trials with intact points in no scan, and not counted as withheld",
         [WRONG_ACCOUNT] = "counters that do not add up",
         [WRONG_REMAINDER] = "bytes still pending at the end",
         [WRONG_COST] = "whole revolutions not complete"};
 
-    return names[wrong];
+    return wrong < SIM_LIES ? sim_lie_name((sim_lie_t)wrong) : names[wrong];
 }
 
 const char *oracle_mixed_name(mixed_t mixed)

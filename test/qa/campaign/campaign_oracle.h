@@ -1,25 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Checks the library's scans against the samples on the line: each sample encodes its place. */
+/* Checks the library's scans against the samples on the line (sim_judge.h), and its counters. */
 
 #ifndef CAMPAIGN_ORACLE_H
 #define CAMPAIGN_ORACLE_H
 
 #include "campaign_host.h"
 
+/* Each lie of a scan (of those of two revolutions, the complete ones), and: */
 typedef enum {
-    WRONG_MERGED_COMPLETE, /* A complete scan has points of two revolutions. */
-    WRONG_MERGED,          /* An incomplete one has, and nothing explains it. */
-    WRONG_POINT,           /* A point was never sent, or sent with another angle. */
-    WRONG_ORDER,           /* A point is not later than the point before it. */
-    WRONG_COMPLETE,        /* A scan is reported complete, but points are missing. */
-    WRONG_SILENCE,         /* Points are missing, but gaps and dropped are 0. */
-    WRONG_TWICE,           /* A point was already in an earlier scan. */
-    WRONG_ACCOUNT,         /* The counters have a byte too many or too few. */
-    WRONG_REMAINDER,       /* Bytes are still pending after a long silence. */
-    WRONG_LOSS,            /* Intact points are in no scan, and were not withheld. */
-    WRONG_COST,            /* A revolution without losses is not delivered as complete. */
+    WRONG_MERGED = SIM_LIES, /* An incomplete scan is of two revolutions: nothing explains it. */
+    WRONG_ACCOUNT,           /* The counters have a byte too many or too few. */
+    WRONG_REMAINDER,         /* Bytes are still pending after a long silence. */
+    WRONG_LOSS,              /* Intact points are in no scan, and were not withheld. */
+    WRONG_COST,              /* A revolution without losses is not delivered as complete. */
     WRONG_KINDS
 } wrong_t;
 
@@ -53,14 +48,13 @@ typedef struct {
 typedef struct {
     verdicts_t *verdicts;
     uint64_t trial;
-    const line_t *line;
-    bool speaks;                                  /* Prints each scan and each error. */
-    bool delivered[LINE_REVOLUTIONS];             /* Revolutions delivered as complete. */
-    uint8_t seen[LINE_REVOLUTIONS][LINE_SAMPLES]; /* Number of scans that have this sample. */
+    line_t *line;
+    bool speaks;                      /* Prints each scan and each error. */
+    bool delivered[LINE_REVOLUTIONS]; /* Revolutions delivered as complete. */
 } oracle_t;
 
 /* `speaks`: prints each scan and each error. */
-void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, const line_t *line,
+void oracle_begin(oracle_t *oracle, verdicts_t *verdicts, uint64_t trial, line_t *line,
                   bool speaks);
 
 void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t *scan);
@@ -71,7 +65,7 @@ void oracle_judge_account(oracle_t *oracle, const host_t *host);
 /* Call it after a long silence, when the library has delivered everything. */
 void oracle_end(oracle_t *oracle, const host_t *host);
 
-const char *oracle_name(wrong_t wrong);
+const char *oracle_name(unsigned wrong);
 const char *oracle_mixed_name(mixed_t mixed);
 
 #endif

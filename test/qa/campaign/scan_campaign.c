@@ -317,8 +317,7 @@ static void report(const campaign_mode_t *mode, const verdicts_t *verdicts)
         }
     }
     for (unsigned wrong = 0; wrong < WRONG_KINDS; wrong++) {
-        printf("  %8llu %s", (unsigned long long)verdicts->wrongs[wrong],
-               oracle_name((wrong_t)wrong));
+        printf("  %8llu %s", (unsigned long long)verdicts->wrongs[wrong], oracle_name(wrong));
         if (verdicts->wrongs[wrong] > 0) {
             printf(" (first in trial %llu)", (unsigned long long)verdicts->first_trial[wrong]);
         }

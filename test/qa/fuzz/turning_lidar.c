@@ -5,19 +5,16 @@
 
 #include <string.h>
 
-#include "reference_decoder.h"
-#include "simulator.h"
+#include "sim_judge.h"
 
-#define REVOLUTIONS 8192u /* As many as marks can tell apart. */
 #define RECEIVED_MAX 49152u
 #define PACKET_US 10000u
 #define FAR_US 1000000u
-#define HIDDEN_Q6 256u /* A hole of less than 4 degrees may be jitter. */
 
 static struct {
     sim_t sim;
+    sim_judge_t judge;
     uint64_t now_us;
-    uint16_t counts[REVOLUTIONS]; /* The samples of each revolution sent so far. */
     uint8_t received[RECEIVED_MAX];
     size_t received_count;
     const char *wrong;
@@ -46,9 +43,9 @@ void turning_begin(bool ct_information)
     lidar.sim = fresh;
     lidar.sim.config = config;
     lidar.now_us = 0;
-    lidar.counts[0] = 0;
     lidar.received_count = 0;
     lidar.wrong = NULL;
+    sim_judge_begin(&lidar.judge);
 }
 
 void turning_command(uint8_t code)
@@ -79,8 +76,7 @@ size_t turning_frame(uint8_t *out, bool *is_packet, uint32_t *now_ms)
     pass_until(left_us > lidar.now_us ? left_us : lidar.now_us, now_ms);
     *is_packet = run.packet != NULL;
     if (*is_packet) {
-        uint16_t *const count = &lidar.counts[run.packet->revolution % REVOLUTIONS];
-        *count = (uint16_t)((run.packet->starts_revolution ? 0 : *count) + run.packet->bytes[3]);
+        (void)sim_judge_sent(&lidar.judge, run.packet);
     }
     memcpy(out, run.bytes, run.length);
     return run.length;
@@ -96,76 +92,23 @@ bool turning_received(const uint8_t *bytes, size_t count)
     return true;
 }
 
-/* ---- Checks of the delivered scans ---- */
-
-static void complain(bool is_wrong, const char *what)
-{
-    if (is_wrong && lidar.wrong == NULL) {
-        lidar.wrong = what;
-    }
-}
-
-/* Returns false if no such sample was sent. */
-static bool identify(encode_sample_t sample, uint32_t *revolution, uint32_t *number)
-{
-    sim_read_mark(&lidar.sim, sample, revolution, number);
-    return *revolution <= lidar.sim.revolution && *number < lidar.counts[*revolution];
-}
-
-static bool is_seen_hole(unsigned from_q6, unsigned to_q6)
-{
-    return (to_q6 + ENCODE_FULL_TURN_Q6 - from_q6) % ENCODE_FULL_TURN_Q6 > HIDDEN_Q6;
-}
-
 void turning_judge(const tmini_scan_t *scan)
 {
-    uint32_t revolution = 0;
-    uint32_t first = 0;
-    uint32_t number = 0;
-    uint32_t next = 0;
-    bool lacks = false;
+    sim_reading_t reading = {0};
     for (unsigned i = 0; i < scan->count; i++) {
         const tmini_point_t *const point = &scan->points[i];
-        const encode_sample_t sample = {point->distance_mm, point->intensity, point->flag};
-        complain(!identify(sample, &revolution, &number), "a point that was never sent");
-        first = i == 0 ? revolution : first;
-        complain(revolution != first, "points of two revolutions");
-        complain(number < next, "points out of order");
-        lacks = lacks ||
-                (number != next && (i == 0 || is_seen_hole(point[-1].angle_q6, point->angle_q6)));
-        next = number + 1;
+        sim_read_point(&lidar.judge, &reading,
+                       (reference_point_t){point->angle_q6, point->distance_mm, point->intensity,
+                                           point->flag});
     }
-    const bool is_cut = first >= lidar.sim.revolution || next < lidar.counts[first];
-    lacks = lacks || (is_cut && scan->dropped == 0 &&
-                      is_seen_hole(scan->points[scan->count - 1].angle_q6, 0));
-    complain(scan->complete && (lacks || scan->dropped > 0), "complete, but something is missing");
-    complain(lacks && scan->gaps == 0, "something is missing, and no gap says so");
-}
-
-/* Sets `context` if this packet was never sent: remains of others look like one by chance. */
-static void look_for_chance(void *context, const reference_item_t *item)
-{
-    bool *const by_chance = context;
-    uint32_t revolution = 0;
-    uint32_t before = 0;
-    for (unsigned i = 0; i < item->lsn; i++) {
-        const reference_point_t point = reference_point(item->bytes, i);
-        uint32_t number;
-        const uint32_t last = revolution;
-        *by_chance |= !identify((encode_sample_t){point.distance_mm, point.intensity, point.flag},
-                                &revolution, &number) ||
-                      (i > 0 && (number != before + 1 || revolution != last));
-        before = number;
+    const unsigned lies =
+        sim_read_end(&lidar.judge, &reading, scan->complete, scan->gaps, scan->dropped);
+    for (unsigned lie = 0; lie < SIM_LIES && lidar.wrong == NULL; lie++) {
+        lidar.wrong = (lies & SIM_LIE(lie)) != 0 ? sim_lie_name((sim_lie_t)lie) : NULL;
     }
 }
 
 const char *turning_verdict(void)
 {
-    const reference_options_t options = {.max_samples = 80};
-    bool by_chance = false;
-    if (lidar.wrong != NULL) {
-        (void)reference_decode(lidar.received, lidar.received_count, &options, look_for_chance,
-                               &by_chance);
-    }
-    return by_chance ? NULL : lidar.wrong;
+    return sim_judge_knows(&lidar.judge, lidar.received, lidar.received_count) ? lidar.wrong : NULL;
 }
