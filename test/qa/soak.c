@@ -6,9 +6,9 @@
  * Runs the library with the simulated lidar for HOURS of virtual time, half an hour for each of
  * many configurations, with all kinds of faults: on the line, in the lidar, in the program that
  * uses the library. Prints what happened. Exit status: 0 if the library did nothing wrong
- * (world.h lists the checks), 1 if it did, 2 wrong usage. The same seed gives the same run. */
+ * (watch.h lists the checks), 1 if it did, 2 wrong usage. The same seed gives the same run. */
 
-#include "world.h"
+#include "bed.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +17,10 @@
 #define LIFE_MS 1800000u
 #define MAX_HOURS 1000.0
 
-static world_t world;
+static bed_t bed;
+static watch_t watch;
+static uint8_t rx[8192];
+static tmini_point_t points[4000];
 static random_t dice;
 
 /* What is added up over all lives, in the order of the report. */
@@ -40,32 +43,30 @@ typedef enum {
     COMMANDS_IN_TAIL,
     BY_CHANCE,
     SPLIT,
-    ECLIPSED,
     TOTALS
 } total_t;
 
-static const char *const total_names[TOTALS] = {
-    [MINUTES] = "minutes of virtual time",
-    [LIVES] = "lidars, lines and programs",
-    [BYTES] = "bytes",
-    [SCANS] = "scans",
-    [PACKETS] = "packets compared with what was sent",
-    [POINTS] = "points compared",
-    [LIDAR_FAULTS_MADE] = "faults of the lidar",
-    [FAULT_EVENTS] = "fault events",
-    [LOSSES] = "losses",
-    [RECOVERIES] = "recoveries",
-    [WORST_RECOVERY_MS] = "worst time to recover, ms",
-    [RESTARTS] = "restarts of the program",
-    [COMMANDS] = "commands besides start",
-    [FAILURES] = "of which failed",
-    [COMMANDS_IN_TAIL] = "commands into the tail of a stop",
-    [BY_CHANCE] = "damaged, but valid by chance",
-    [SPLIT] = "given up in a silence",
-    [ECLIPSED] = "begun inside a packet valid by chance"};
+static const char *const total_names[TOTALS] = {[MINUTES] = "minutes of virtual time",
+                                                [LIVES] = "lidars, lines and programs",
+                                                [BYTES] = "bytes",
+                                                [SCANS] = "scans",
+                                                [PACKETS] = "packets compared with what was sent",
+                                                [POINTS] = "points compared",
+                                                [LIDAR_FAULTS_MADE] = "faults of the lidar",
+                                                [FAULT_EVENTS] = "fault events",
+                                                [LOSSES] = "losses",
+                                                [RECOVERIES] = "recoveries",
+                                                [WORST_RECOVERY_MS] = "worst time to recover, ms",
+                                                [RESTARTS] = "restarts of the program",
+                                                [COMMANDS] = "commands besides start",
+                                                [FAILURES] = "of which failed",
+                                                [COMMANDS_IN_TAIL] =
+                                                    "commands into the tail of a stop",
+                                                [BY_CHANCE] = "damaged, but valid by chance",
+                                                [SPLIT] = "given up in a silence"};
 
 static uint64_t totals[TOTALS];
-static uint32_t violations[VIOLATION_KINDS];
+static uint32_t wrongs[WRONG_KINDS];
 
 static uint32_t between(uint32_t low, uint32_t high)
 {
@@ -79,43 +80,58 @@ static bool one_in(uint32_t number)
 
 /* ---- Configuration: each life has another lidar, another line and another program ---- */
 
-static world_config_t draw_config(uint64_t seed)
+static sim_config_t draw_lidar(uint64_t seed)
 {
-    world_config_t config = world_default_config();
-    config.seed = seed;
-    config.sim.ct_information = !one_in(3);
-    config.sim.frequency_chz = (uint16_t)(600 + 10 * between(0, 60));
-    config.sim.stop_tail_ms = (uint16_t)between(10, 300);
-    config.sim.reply_latency_ms = (uint16_t)between(1, 40);
-    config.sim.start_angle_q6 = one_in(2) ? 0 : (uint16_t)between(0, 23039);
-    config.sim.blocked_sends_starts = one_in(2);
-    config.sim.boot_ms = (uint16_t)between(500, 4000);
-    config.sim.beginning = (sim_beginning_t)between(SIM_BEGINS_ANYWHERE, SIM_BEGINS_WITH_A_START);
-    config.sim.information.firmware_minor = one_in(2) ? 3 : 2;
-    config.dma = one_in(2);
-    config.rx_size = config.dma ? 8192 : 2048;
-    config.streaming = one_in(3);
-    config.short_writes = one_in(3);
-    config.busy_one_in = one_in(3) ? 0 : (uint16_t)between(20, 500);
-    config.busy_ms = 60;
-    return config;
+    sim_config_t lidar = sim_default_config();
+    lidar.seed = seed;
+    lidar.marked = true;
+    lidar.ct_information = !one_in(3);
+    lidar.frequency_chz = (uint16_t)(600 + 10 * between(0, 60));
+    lidar.stop_tail_ms = (uint16_t)between(10, 300);
+    lidar.reply_latency_ms = (uint16_t)between(1, 40);
+    lidar.start_angle_q6 = one_in(2) ? 0 : (uint16_t)between(0, 23039);
+    lidar.blocked_sends_starts = one_in(2);
+    lidar.boot_ms = (uint16_t)between(500, 4000);
+    lidar.beginning = (sim_beginning_t)between(SIM_BEGINS_ANYWHERE, SIM_BEGINS_WITH_A_START);
+    lidar.information.firmware_minor = one_in(2) ? 3 : 2;
+    return lidar;
+}
+
+static void begin_life(uint64_t seed)
+{
+    const sim_config_t lidar = draw_lidar(seed);
+    memset(&watch, 0, sizeof watch);
+    watch.line = sim_link_default_config();
+    watch.line.seed = seed;
+    bed_prepare(&bed);
+    bed.watch = &watch;
+    bed.config.rx_buffer = rx;
+    bed.config.rx_dma = one_in(2);
+    bed.config.rx_size = bed.config.rx_dma ? sizeof rx : 2048;
+    bed.config.points = one_in(3) ? NULL : points;
+    bed.config.max_points = bed.config.points == NULL ? 0 : sizeof points / sizeof points[0];
+    bed.writes_short = one_in(3);
+    bed.busy_one_in = one_in(3) ? 0 : (uint16_t)between(20, 500);
+    bed.busy_ms = 60;
+    if (!bed_init(&bed, &lidar)) {
+        watch_complain(&bed, WRONG_STATE);
+    }
 }
 
 /* ---- The program that uses the library: it always wants scans ---- */
 
 static void keep_scanning(void)
 {
-    const tmini_state_t state = tmini_state(&world.lidar);
-    if ((state == TMINI_STATE_UNKNOWN || state == TMINI_STATE_IDLE) &&
-        world.now_us % 100000u == 0) {
-        (void)tmini_start(&world.lidar);
+    const tmini_state_t state = tmini_state(&bed.lidar);
+    if ((state == TMINI_STATE_UNKNOWN || state == TMINI_STATE_IDLE) && bed.now_us % 100000u == 0) {
+        (void)tmini_start(&bed.lidar);
     }
 }
 
 static void run_ms(uint32_t ms)
 {
     for (; ms > 0; ms--) {
-        (void)world_step(&world);
+        bed_step(&bed);
         keep_scanning();
     }
 }
@@ -123,40 +139,40 @@ static void run_ms(uint32_t ms)
 /* Waits for the end of a command that has begun. Returns true if it ended with the event `end`. */
 static bool carry_out(tmini_status_t begun, tmini_event_t end, uint32_t limit_ms)
 {
-    const uint64_t begun_us = world.now_us;
+    const uint64_t begun_us = bed.now_us;
     totals[COMMANDS]++;
     if (begun != TMINI_OK) {
-        world_violate(&world, VIOLATION_ANSWER, "not begun");
+        watch_complain(&bed, WRONG_ANSWER);
         return false;
     }
-    unsigned events = world_run_until(&world, BIT(end) | BIT(TMINI_EVENT_COMMAND_FAILED), limit_ms);
-    if ((events & BIT(end)) == 0 && tmini_command_error(&world.lidar) == TMINI_ERROR_ABORTED) {
+    unsigned events = bed_run_until(&bed, BIT(end) | BIT(TMINI_EVENT_COMMAND_FAILED), limit_ms);
+    if ((events & BIT(end)) == 0 && tmini_command_error(&bed.lidar) == TMINI_ERROR_ABORTED) {
         /* This was only the end of an earlier start: wait again. */
-        events |= world_run_until(&world, BIT(end) | BIT(TMINI_EVENT_COMMAND_FAILED), limit_ms);
+        events |= bed_run_until(&bed, BIT(end) | BIT(TMINI_EVENT_COMMAND_FAILED), limit_ms);
     }
     if ((events & BIT(end)) != 0) {
         return true;
     }
     totals[FAILURES]++;
-    if (world_is_undisturbed_since(&world, begun_us)) {
-        world_violate(&world, VIOLATION_ANSWER, "none");
+    if (watch_is_undisturbed_since(&bed, begun_us)) {
+        watch_complain(&bed, WRONG_ANSWER);
     }
     return false;
 }
 
 static void check_answer(bool right, uint64_t since_us)
 {
-    if (!right && world_is_undisturbed_since(&world, since_us)) {
-        world_violate(&world, VIOLATION_ANSWER, "not the truth");
+    if (!right && watch_is_undisturbed_since(&bed, since_us)) {
+        watch_complain(&bed, WRONG_ANSWER);
     }
 }
 
 static void ask_for_info(void)
 {
-    const uint64_t since_us = world.now_us;
-    const encode_information_t *const truth = &world.config.sim.information;
-    if (carry_out(tmini_request_info(&world.lidar), TMINI_EVENT_INFO, 10000)) {
-        const tmini_info_t *const info = tmini_info(&world.lidar);
+    const uint64_t since_us = bed.now_us;
+    const encode_information_t *const truth = &bed.sim.config.information;
+    if (carry_out(tmini_request_info(&bed.lidar), TMINI_EVENT_INFO, 10000)) {
+        const tmini_info_t *const info = tmini_info(&bed.lidar);
         check_answer(info->model == truth->model && info->hardware == truth->hardware &&
                          info->firmware_major == truth->firmware_major &&
                          info->firmware_minor == truth->firmware_minor &&
@@ -167,21 +183,21 @@ static void ask_for_info(void)
 
 static void ask_for_health(void)
 {
-    const uint64_t since_us = world.now_us;
-    if (carry_out(tmini_request_health(&world.lidar), TMINI_EVENT_HEALTH, 10000)) {
-        check_answer(tmini_health(&world.lidar)->faults == sim_health(&world.sim), since_us);
+    const uint64_t since_us = bed.now_us;
+    if (carry_out(tmini_request_health(&bed.lidar), TMINI_EVENT_HEALTH, 10000)) {
+        check_answer(tmini_health(&bed.lidar)->faults == sim_health(&bed.sim), since_us);
     }
 }
 
 /* What the lidar is set to is what the driver knows, and what was wanted; 0: only asked. */
 static void settle_frequency(uint16_t wanted_chz)
 {
-    const uint64_t since_us = world.now_us;
-    const tmini_status_t begun = wanted_chz == 0 ? tmini_request_frequency(&world.lidar)
-                                                 : tmini_set_frequency(&world.lidar, wanted_chz);
+    const uint64_t since_us = bed.now_us;
+    const tmini_status_t begun = wanted_chz == 0 ? tmini_request_frequency(&bed.lidar)
+                                                 : tmini_set_frequency(&bed.lidar, wanted_chz);
     if (carry_out(begun, TMINI_EVENT_FREQUENCY, wanted_chz == 0 ? 10000 : 20000)) {
-        const uint16_t set_chz = sim_frequency_chz(&world.sim);
-        check_answer(set_chz == (wanted_chz == 0 ? tmini_frequency_chz(&world.lidar) : wanted_chz),
+        const uint16_t set_chz = sim_frequency_chz(&bed.sim);
+        check_answer(set_chz == (wanted_chz == 0 ? tmini_frequency_chz(&bed.lidar) : wanted_chz),
                      since_us);
     }
 }
@@ -198,7 +214,7 @@ static void set_frequency(void)
 
 static void reboot(void)
 {
-    (void)carry_out(tmini_reboot(&world.lidar), TMINI_EVENT_REBOOTED, 10000);
+    (void)carry_out(tmini_reboot(&bed.lidar), TMINI_EVENT_REBOOTED, 10000);
 }
 
 static void (*const requests[])(void) = {ask_for_info, ask_for_health, ask_for_frequency,
@@ -207,12 +223,12 @@ static void (*const requests[])(void) = {ask_for_info, ask_for_health, ask_for_f
 /* Stops the lidar and makes some requests. After that, keep_scanning() starts it again. */
 static void make_requests(void)
 {
-    if (!carry_out(tmini_stop(&world.lidar), TMINI_EVENT_STOPPED, 5000)) {
+    if (!carry_out(tmini_stop(&bed.lidar), TMINI_EVENT_STOPPED, 5000)) {
         return;
     }
     for (uint32_t left = between(0, 4); left > 0; left--) {
         requests[between(0, 4)]();
-        if (tmini_state(&world.lidar) == TMINI_STATE_BUSY) {
+        if (tmini_state(&bed.lidar) == TMINI_STATE_BUSY) {
             return; /* The request has not ended in time: make no others. */
         }
     }
@@ -221,7 +237,7 @@ static void make_requests(void)
 static void restart_library(void)
 {
     totals[RESTARTS]++;
-    world_restart_library(&world);
+    (void)bed_restart(&bed);
 }
 
 /* ---- The line ---- */
@@ -237,7 +253,7 @@ static uint32_t draw_gap(uint32_t low, uint32_t high)
 
 static void set_gap(sim_link_kind_t kind, uint32_t low, uint32_t high)
 {
-    sim_link_set_mean_gap(&world.link, kind, draw_gap(low, high), world.now_us);
+    sim_link_set_mean_gap(&watch.link, kind, draw_gap(low, high), bed.now_us);
 }
 
 /* Sets rates from one damaged byte in 150 to one in 100,000, and of other faults. */
@@ -273,7 +289,7 @@ static void live_through_bad_weather(void)
             make_requests();
         }
     }
-    sim_link_calm(&world.link, world.now_us);
+    sim_link_calm(&watch.link, bed.now_us);
 }
 
 /* ---- The lidar ---- */
@@ -283,18 +299,18 @@ typedef enum { BLOCKED, COVERED, SICK, LIDAR_FAULTS } lidar_fault_t;
 static void set_fault(lidar_fault_t fault, bool on)
 {
     if (fault == BLOCKED) {
-        sim_block_rotor(&world.sim, on);
+        sim_block_rotor(&bed.sim, on);
     } else if (fault == COVERED) {
-        sim_cover_window(&world.sim, on);
+        sim_cover_window(&bed.sim, on);
     } else {
-        sim_set_health(&world.sim, on ? SIM_HEALTH_SENSOR | SIM_HEALTH_LD : 0);
+        sim_set_health(&bed.sim, on ? SIM_HEALTH_SENSOR | SIM_HEALTH_LD : 0);
     }
 }
 
 /* The faults that the library must report (tmini_faults() in tmini.h). */
 static uint8_t expected_faults(lidar_fault_t fault)
 {
-    const sim_config_t *const sim = &world.config.sim;
+    const sim_config_t *const sim = &bed.sim.config;
     switch (fault) {
     case BLOCKED:
         return !sim->ct_information && sim->blocked_sends_starts ? TMINI_FAULT_DATA
@@ -309,24 +325,22 @@ static uint8_t expected_faults(lidar_fault_t fault)
 static void expect_faults(uint8_t expected, uint64_t since_us)
 {
     /* Without TMINI_FAULT_FREQUENCY, which scripts.c tests. */
-    const uint8_t faults = tmini_faults(&world.lidar) & TMINI_FAULT_MASK;
-    char what[60];
-    if (faults != expected && world_is_undisturbed_since(&world, since_us)) {
-        (void)snprintf(what, sizeof what, "%02X reported, %02X is there", faults, expected);
-        world_violate(&world, VIOLATION_MISSED_FAULT, what);
+    const uint8_t faults = tmini_faults(&bed.lidar) & TMINI_FAULT_MASK;
+    if (faults != expected && watch_is_undisturbed_since(&bed, since_us)) {
+        watch_complain(&bed, WRONG_MISSED_FAULT);
     }
 }
 
 static void live_through_a_fault(void)
 {
     const lidar_fault_t fault = (lidar_fault_t)between(0, LIDAR_FAULTS - 1);
-    const uint64_t since_us = world.now_us;
+    const uint64_t since_us = bed.now_us;
     totals[LIDAR_FAULTS_MADE]++;
     set_fault(fault, true);
-    run_ms(WORLD_FAULT_MS + between(0, 20000));
+    run_ms(WATCH_FAULT_MS + between(0, 20000));
     expect_faults(expected_faults(fault), since_us);
     set_fault(fault, false);
-    run_ms(WORLD_FAULT_MS);
+    run_ms(WATCH_FAULT_MS);
     expect_faults(0, since_us);
 }
 
@@ -334,47 +348,46 @@ static void live_through_a_fault(void)
 
 static void live(uint32_t ms)
 {
-    while (world.now_us < (uint64_t)ms * 1000u) {
+    while (bed.now_us < (uint64_t)ms * 1000u) {
         live_through_bad_weather();
         /* After any faults, scans must have resumed by then. */
-        run_ms(WORLD_RECOVERY_MS + 5000u);
-        if (tmini_state(&world.lidar) != TMINI_STATE_SCANNING) {
-            world_violate(&world, VIOLATION_SLOW_RECOVERY, "not scanning on an undisturbed line");
+        run_ms(WATCH_RECOVERY_MS + 5000u);
+        if (tmini_state(&bed.lidar) != TMINI_STATE_SCANNING) {
+            watch_complain(&bed, WRONG_SLOW_RECOVERY);
         }
         if (one_in(2)) {
             live_through_a_fault();
         }
         if (one_in(3)) {
             make_requests();
-            run_ms(WORLD_RECOVERY_MS);
+            run_ms(WATCH_RECOVERY_MS);
         }
     }
 }
 
 static void add_up(void)
 {
-    const world_counts_t *const counts = &world.counts;
+    const watch_counts_t *const counts = &watch.counts;
     totals[LIVES]++;
-    totals[MINUTES] += world.now_us / 1000u / 60u;
-    totals[BYTES] += world.fed_before + world.fed;
-    totals[SCANS] += counts->events[TMINI_EVENT_SCAN];
-    totals[PACKETS] += counts->packets_checked;
+    totals[MINUTES] += bed.now_us / 1000u / 60u;
+    totals[BYTES] += watch.arrived;
+    totals[SCANS] += bed.events[TMINI_EVENT_SCAN];
+    totals[PACKETS] += counts->packets;
     totals[POINTS] += counts->points;
-    totals[FAULT_EVENTS] += counts->events[TMINI_EVENT_FAULTS_CHANGED];
-    totals[LOSSES] += counts->events[TMINI_EVENT_LOST];
-    totals[RECOVERIES] += counts->events[TMINI_EVENT_RECOVERED];
-    totals[COMMANDS_IN_TAIL] += world.sim.counts.commands_in_tail;
-    totals[BY_CHANCE] += counts->packets_by_chance;
-    totals[SPLIT] += counts->packets_split;
-    totals[ECLIPSED] += counts->packets_eclipsed;
+    totals[FAULT_EVENTS] += bed.events[TMINI_EVENT_FAULTS_CHANGED];
+    totals[LOSSES] += bed.events[TMINI_EVENT_LOST];
+    totals[RECOVERIES] += counts->recoveries;
+    totals[COMMANDS_IN_TAIL] += bed.sim.counts.commands_in_tail;
+    totals[BY_CHANCE] += counts->by_chance;
+    totals[SPLIT] += counts->split;
     if (counts->worst_recovery_ms > totals[WORST_RECOVERY_MS]) {
         totals[WORST_RECOVERY_MS] = counts->worst_recovery_ms;
     }
     for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
-        totals[LINE_FAULTS + kind] += world.link.counts.faults[kind];
+        totals[LINE_FAULTS + kind] += watch.link.counts.faults[kind];
     }
-    for (unsigned kind = 0; kind < VIOLATION_KINDS; kind++) {
-        violations[kind] += counts->violations[kind];
+    for (unsigned kind = 0; kind < WRONG_KINDS; kind++) {
+        wrongs[kind] += counts->wrongs[kind];
     }
 }
 
@@ -390,10 +403,9 @@ static uint32_t print(void)
         printf("%-44s %12llu\n", total_names[i] == NULL ? fault : total_names[i],
                (unsigned long long)totals[i]);
     }
-    for (unsigned kind = 0; kind < VIOLATION_KINDS; kind++) {
-        printf("VIOLATIONS: %-32s %12u\n", world_violation_name((violation_t)kind),
-               (unsigned)violations[kind]);
-        sum += violations[kind];
+    for (unsigned kind = 0; kind < WRONG_KINDS; kind++) {
+        printf("WRONG: %-37s %12u\n", watch_name(kind), (unsigned)wrongs[kind]);
+        sum += wrongs[kind];
     }
     return sum;
 }
@@ -411,8 +423,7 @@ int main(int argc, char **argv)
         const uint64_t left_ms = all_ms - ms;
         const uint64_t life = seed * 1000000u + ms / LIFE_MS;
         random_seed(&dice, life);
-        const world_config_t config = draw_config(life);
-        world_init(&world, &config);
+        begin_life(life);
         live(left_ms < LIFE_MS ? (uint32_t)left_ms : LIFE_MS);
         add_up();
     }

@@ -91,9 +91,9 @@ static void note_hole(sim_reading_t *reading, uint32_t missing, uint32_t wide_q6
     reading->widest_q6 = wide_q6 > reading->widest_q6 ? wide_q6 : reading->widest_q6;
 }
 
-/* All points of a scan are from one turn, with one exception. If the lidar began with a start packet
- * at any angle (section 9.8), nothing shows where turns begin until the next start packet. Until
- * then a scan is one turn from the first packet's angle on, and may have points of two turns. */
+/* All points of a scan are from one turn, with one exception. If the lidar began with a start
+ * packet at any angle (section 9.8), nothing shows where turns begin until the next start packet.
+ * Until then a scan is one turn from the first packet's angle on, and may have points of two. */
 static unsigned lie_about_place(sim_judge_t *judge, const sim_reading_t *reading, uint32_t place)
 {
     const sim_sample_t *const sample = sim_judge_sample(judge, place);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What a simulated lidar has sent, sample by sample, and whether the points of a scan are that: each
- * as it was sent, in order, none in two scans, none of another turn, none missing unreported. Every
- * test that compares scans with what was sent asks it. It includes nothing of lib/.
+/* What a simulated lidar has sent, sample by sample, and whether the points of a scan are that:
+ * each as it was sent, in order, none in two scans, none of another turn, none missing unreported.
+ * Every test that compares scans with what was sent asks it. It includes nothing of lib/.
  *
  * Points are found by their values, so the lidar should be marked (sim_config_t). */
 
@@ -13,7 +13,7 @@
 #include "reference_decoder.h"
 #include "simulator.h"
 
-#define SIM_JUDGE_SAMPLES 65536u /* The latest ones are kept: 16 s. */
+#define SIM_JUDGE_SAMPLES 131072u /* The latest ones are kept: 32 s. */
 
 typedef struct {
     reference_point_t point;

@@ -12,6 +12,7 @@
 
 #define CLOCK_AT_THE_BEGINNING 0xFFFFE000u /* It wraps around after eight seconds. */
 #define STOP 0x65u
+#define TIMER_US 10000u
 #define SCANS 5u         /* In a row, before a wish counts as fulfilled. */
 #define IDLE_US 1500000u /* Idle, before it does. */
 /* Announced by LOST: a second after the last packet. A damaged one may hide it for 100 ms more,
@@ -24,7 +25,8 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
     bed_t *const bed = context;
     const size_t room = sizeof bed->outbox - bed->outbox_count;
     const size_t most = bed->write_max == 0 || bed->write_max > room ? room : bed->write_max;
-    const size_t taken = count < most ? count : most;
+    const size_t all = count < most ? count : most;
+    const size_t taken = bed->writes_short ? random_below(&bed->random, (uint32_t)all + 1) : all;
 
     for (size_t i = 0; i < taken; i++) {
         bed->outbox[bed->outbox_count++] = bytes[i];
@@ -56,12 +58,30 @@ bool bed_init(bed_t *bed, const sim_config_t *sim)
     bed->port.now_ms = port_now_ms;
     bed->config.port = &bed->port;
     bed->config.port_context = bed;
-    bed->config.rx_buffer = bed->rx;
-    bed->config.points = bed->points;
+    bed->config.rx_buffer = bed->config.rx_buffer != NULL ? bed->config.rx_buffer : bed->rx;
+    if (bed->config.points == NULL && bed->config.max_points > 0) {
+        bed->config.points = bed->points;
+    }
     bed->config.timing = &bed->timing;
     bed->wants_chz = bed->config.frequency_chz;
     random_seed(&bed->random, sim->seed);
     sim_init(&bed->sim, sim);
+    if (bed->watch != NULL) {
+        watch_begin(bed);
+    }
+    return bed_restart(bed);
+}
+
+bool bed_restart(bed_t *bed)
+{
+    bed->known = 0;
+    bed->come = 0;
+    bed->dma_position = 0;
+    bed->may_flow = false;
+    bed->flows = false;
+    if (bed->watch != NULL) {
+        watch_restart(bed);
+    }
     return tmini_init(&bed->lidar, &bed->config) == TMINI_OK;
 }
 
@@ -182,7 +202,7 @@ static void note_scan(bed_t *bed)
     bed->scan = *scan;
     bed->flows = bed->may_flow;
     bed->small += scan->packets == 1 ? 1u : 0u;
-    bed->mixed += bed->sim.config.marked && is_mixed(bed, scan) ? 1u : 0u;
+    bed->mixed += bed->watch == NULL && bed->sim.config.marked && is_mixed(bed, scan) ? 1u : 0u;
     if (!scan->complete) {
         bed->complete_in_a_row = 0;
         return;
@@ -208,8 +228,12 @@ static void note(bed_t *bed, tmini_event_t event)
     if (event == TMINI_EVENT_MORE) {
         return;
     }
+    bed->latest |= BIT(event);
     bed->events[event]++;
     bed->event_us[event] = bed->now_us;
+    if (bed->watch != NULL) {
+        watch_event(bed, event);
+    }
     if (event == TMINI_EVENT_SCAN) {
         note_scan(bed);
         bed_pause_ms(bed, bed->work_ms);
@@ -262,19 +286,65 @@ static void damage(bed_t *bed, uint8_t *bytes, size_t count)
     }
 }
 
+static void publish(bed_t *bed)
+{
+    tmini_feed_dma(&bed->lidar, bed->dma_position);
+    bed->known = bed->come;
+}
+
+/* Publishes in the interrupts for half transfer and transfer complete. */
+static void write_by_dma(bed_t *bed, uint8_t byte)
+{
+    bed->config.rx_buffer[bed->dma_position++] = byte;
+    bed->come++;
+    if (bed->dma_position % (bed->config.rx_size / 2) == 0) {
+        bed->dma_position %= bed->config.rx_size;
+        publish(bed);
+    }
+}
+
+static void feed(bed_t *bed, const uint8_t *bytes, size_t count)
+{
+    (void)tmini_feed(&bed->lidar, bytes, count);
+    bed->known += count;
+}
+
+static size_t read_line(bed_t *bed, uint8_t *bytes, size_t max)
+{
+    return bed->watch != NULL ? sim_link_read(&bed->watch->link, bed->now_us, bytes, max)
+                              : sim_transmit(&bed->sim, bed->now_us, bytes, max);
+}
+
+static void receive(bed_t *bed, const uint8_t *bytes, size_t count)
+{
+    bed->heard_us = bed->now_us;
+    if (bed->watch != NULL) {
+        watch_arrive(bed, bytes, count);
+    }
+    if (bed->held != NULL) {
+        hold(bed->held, bytes, count);
+    } else if (!bed->config.rx_dma) {
+        feed(bed, bytes, count);
+    } else {
+        for (size_t i = 0; i < count; i++) {
+            write_by_dma(bed, bytes[i]);
+        }
+    }
+}
+
+/* DMA also publishes when the line is idle, and by a timer: otherwise a large buffer would be
+ * published so rarely that the library would detect silence. */
 static void carry_bytes(bed_t *bed)
 {
     uint8_t bytes[512];
     size_t count;
 
-    while ((count = sim_transmit(&bed->sim, bed->now_us, bytes, sizeof bytes)) > 0) {
+    while ((count = read_line(bed, bytes, sizeof bytes)) > 0) {
         damage(bed, bytes, count);
-        bed->heard_us = bed->now_us;
-        if (bed->held != NULL) {
-            hold(bed->held, bytes, count);
-        } else {
-            (void)tmini_feed(&bed->lidar, bytes, count);
-        }
+        receive(bed, bytes, count);
+    }
+    if (bed->config.rx_dma && (bed->heard_us != bed->now_us || bed->now_us % TIMER_US == 0)) {
+        publish(bed);
     }
 }
 
@@ -283,7 +353,9 @@ static void empty_outbox(bed_t *bed)
     const size_t count = bed->outbox_count;
 
     bed->outbox_count = 0;
-    if (count > 0) {
+    if (count > 0 && bed->watch != NULL) {
+        sim_link_write(&bed->watch->link, bed->outbox, count, bed->now_us);
+    } else if (count > 0) {
         sim_receive(&bed->sim, bed->outbox, count, bed->now_us);
     }
 }
@@ -306,7 +378,7 @@ static void read_held(bed_t *bed)
     const size_t room = tmini_feed_room(&bed->lidar);
     const size_t count = held->count < room ? held->count : room;
 
-    (void)tmini_feed(&bed->lidar, held->bytes, count);
+    feed(bed, held->bytes, count);
     held->count -= count;
     memmove(held->bytes, held->bytes + count, held->count);
     tmini_feed_held(&bed->lidar,
@@ -318,12 +390,28 @@ static void poll(bed_t *bed)
     tmini_event_t event;
 
     bed->wakes++;
+    if (bed->watch != NULL) {
+        watch_before_polls(bed);
+    }
     while ((event = tmini_poll(&bed->lidar)) != TMINI_EVENT_NONE) {
         note(bed, event);
+    }
+    if (bed->watch != NULL) {
+        watch_after_polls(bed);
     }
     if (bed->sleeps) {
         bed->due_us = bed->now_us + tmini_next_poll_ms(&bed->lidar) * (uint64_t)1000u;
     }
+}
+
+/* Between two busy periods there is at least one poll. */
+static bool is_busy(bed_t *bed)
+{
+    if (bed->now_us > bed->busy_until_us && bed->busy_one_in > 0 &&
+        random_below(&bed->random, bed->busy_one_in) == 0) {
+        bed->busy_until_us = bed->now_us + random_between(&bed->random, 1, bed->busy_ms) * 1000u;
+    }
+    return bed->now_us < bed->busy_until_us;
 }
 
 void bed_step(bed_t *bed)
@@ -334,7 +422,10 @@ void bed_step(bed_t *bed)
     if (bed->held != NULL) {
         read_held(bed);
     }
-    if (bed->now_us >= bed->due_us || bed->heard_us == bed->now_us) {
+    if (bed->watch != NULL) {
+        watch_step(bed);
+    }
+    if (!is_busy(bed) && (bed->now_us >= bed->due_us || bed->heard_us == bed->now_us)) {
         poll(bed);
     }
     note_gaps(bed);
@@ -351,6 +442,17 @@ void bed_run_ms(bed_t *bed, uint32_t ms)
     while (bed->now_us < end_us) {
         bed_step(bed);
     }
+}
+
+unsigned bed_run_until(bed_t *bed, unsigned events, uint32_t ms)
+{
+    const uint64_t end_us = bed->now_us + ms * 1000u;
+
+    bed->latest = 0;
+    while (bed->now_us < end_us && (bed->latest & events) == 0) {
+        bed_step(bed);
+    }
+    return bed->latest;
 }
 
 /* ---- Whether a wish is fulfilled ---- */
@@ -426,6 +528,9 @@ const char *bed_shortcoming(const bed_t *bed)
 
 const char *bed_misdeed(const bed_t *bed)
 {
+    if (bed->watch != NULL && bed->watch->wrong != NULL) {
+        return bed->watch->wrong;
+    }
     if (bed->mixed > 0) {
         return "a scan of two revolutions";
     }

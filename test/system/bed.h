@@ -1,19 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A program, the library and an unkind lidar (simulator.h: on_event, sim_befall()) in virtual time,
- * as light as can be: thousands of seconds per second. It keeps what the program wants and sees.
- * For checks against the bytes on the line there is world.h.
+/* A program, the library and an unkind lidar (simulator.h: on_event, sim_befall()) in virtual
+ * time, as light as can be: thousands of seconds per second. It keeps what the program wants and sees.
+ * With a watch (watch.h) there is a faulty wire, and all that comes is compared with what was sent.
  *
- * All of it is in one struct, so that a copy of it, put back in the same place, goes on from
- * there. */
+ * Without one, all of it is in one struct, so that a copy of it, put back in the same place, goes
+ * on from there. */
 
 #ifndef BED_H
 #define BED_H
 
-#include "simulator.h"
-
-#include "tmini/tmini.h"
+#include "watch.h"
 
 #define BED_EVENTS 32u
 #define BED_RECENT 12u
@@ -27,7 +25,7 @@ typedef struct {
     uint8_t bytes[BED_HELD_MAX];
 } bed_held_t;
 
-typedef struct {
+struct bed {
     /* To be set between bed_prepare() and bed_init(). */
     uint32_t poll_ms;     /* Between two rounds of polls. */
     uint32_t write_max;   /* Bytes that the port takes per call. 0: all. */
@@ -35,8 +33,13 @@ typedef struct {
     uint32_t flip_one_in; /* One in this many bytes from the lidar is damaged. 0: none. */
     bool is_told;         /* What happens is printed. */
     bool sleeps;          /* The program polls only when bytes come or tmini_next_poll_ms() ends. */
-    bed_held_t *held;     /* The caller's. NULL: bytes come by an interrupt. */
-    tmini_config_t config; /* Without buffers and port. */
+    bool writes_short;    /* The port takes 0, 1 or 2 bytes, at random. */
+    uint16_t busy_one_in; /* One poll in this many begins a busy period. 0: none. */
+    uint16_t busy_ms;     /* The longest of these. */
+    bed_held_t *held;     /* The caller's. NULL: bytes come by an interrupt, or by DMA. */
+    watch_t *watch;       /* The caller's. NULL: none. */
+    tmini_config_t
+        config; /* Without port; without buffers, unless those of the bed are too small. */
     tmini_timing_t timing;
 
     sim_t sim;
@@ -46,7 +49,11 @@ typedef struct {
     uint64_t now_us;
     uint8_t outbox[16]; /* Bytes that reach the lidar with the next step. */
     size_t outbox_count;
-    uint32_t sent; /* Bytes to the lidar. */
+    uint32_t sent;  /* Bytes to the lidar. */
+    uint64_t known; /* Bytes from it that the library knows of. */
+    uint64_t come;  /* And those that have come. */
+    size_t dma_position;
+    uint64_t busy_until_us;
 
     /* What the program wants. */
     bool wants_scans;
@@ -56,6 +63,7 @@ typedef struct {
     uint64_t stop_us;   /* The latest stop; 0: none. */
 
     /* What the program has seen. */
+    uint32_t latest; /* Events: bits, for bed_run_until(). */
     uint32_t events[BED_EVENTS];
     uint64_t event_us[BED_EVENTS];  /* The latest of each kind; 0: none. */
     uint64_t recent_us[BED_RECENT]; /* The latest ones except packets and scans, in a circle. */
@@ -81,13 +89,16 @@ typedef struct {
 
     uint8_t rx[4096];
     tmini_point_t points[800];
-} bed_t;
+};
 
 /* The README's program without a frequency, polling each millisecond. */
 void bed_prepare(bed_t *bed);
 
 /* The lidar is idle and powered. False: the library refuses the configuration. */
 bool bed_init(bed_t *bed, const sim_config_t *sim);
+
+/* The controller restarts: the library is set up anew, while the lidar goes on. */
+bool bed_restart(bed_t *bed);
 
 /* A documented unit whose sensor has no noise: random numbers would take most of the time. */
 sim_config_t bed_quiet_lidar(void);
@@ -101,6 +112,10 @@ tmini_status_t bed_request_info(bed_t *bed);
 /* Time passes: bytes go both ways, then the program polls until nothing is left to do. */
 void bed_step(bed_t *bed);
 void bed_run_ms(bed_t *bed, uint32_t ms);
+
+/* Runs until one of these events (bits) comes or the time is over; returns a bit for each event. */
+unsigned bed_run_until(bed_t *bed, unsigned events, uint32_t ms);
+#define BIT(event) (1u << (event))
 
 /* The program does something else. */
 void bed_pause_ms(bed_t *bed, uint32_t ms);

@@ -1,41 +1,32 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# The driver against the simulated lidar, over a line with all kinds of faults.
-add_library(tmini_world STATIC EXCLUDE_FROM_ALL world.c truth.c ../support/invariants.c)
-target_include_directories(tmini_world PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
-target_include_directories(tmini_world PRIVATE ../support ${PROJECT_SOURCE_DIR}/lib/src)
-target_link_libraries(tmini_world PUBLIC tmini_simulator tmini::tmini)
-target_compile_options(tmini_world PRIVATE -O2 -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
-set_target_properties(tmini_world PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
-
-tmini_add_unit_test(test_stamps
-    SOURCES test_stamps.c
-    LIBRARIES tmini_test_support)
-tmini_add_unit_test(test_intact
-    SOURCES test_intact.c ../support/turns.c
-    LIBRARIES tmini_test_support)
-tmini_add_unit_test(test_driver
-    SOURCES test_driver.c ../support/rows.c
-    LIBRARIES tmini_world)
-
-# The driver and an unkind lidar.
-add_library(tmini_bed STATIC EXCLUDE_FROM_ALL bed.c)
+# The driver, an unkind lidar, and a watch over the line with all kinds of faults.
+add_library(tmini_bed STATIC EXCLUDE_FROM_ALL bed.c watch.c ../support/invariants.c)
 target_include_directories(tmini_bed PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
+target_include_directories(tmini_bed PRIVATE ../support ${PROJECT_SOURCE_DIR}/lib/src)
 target_link_libraries(tmini_bed PUBLIC tmini_simulator tmini::tmini)
 target_compile_options(tmini_bed PRIVATE -O2 -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
 set_target_properties(tmini_bed PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 
+tmini_add_unit_test(test_stamps
+    SOURCES test_stamps.c
+    LIBRARIES tmini_test_support)
+
+# Programs as users write them, at every moment at which power may come or fail.
+tmini_add_unit_test(test_programs
+    SOURCES test_programs.c ../support/rows.c
+    LIBRARIES tmini_bed)
+
 # explore: at every event on the wire every trouble, and every pair of them (triples by hand).
-# programs: as users write them, at every moment at which power may come or fail. stories: random.
-foreach(program explore programs stories)
-    add_executable(${program} EXCLUDE_FROM_ALL ${program}.c claims.c)
+# stories: random.
+foreach(program explore stories)
+    add_executable(${program} EXCLUDE_FROM_ALL ${program}.c)
     target_link_libraries(${program} PRIVATE tmini_bed)
     target_compile_options(${program} PRIVATE -O2 -Wall -Wextra
         $<$<BOOL:${TMINI_WERROR}>:-Werror>)
     set_target_properties(${program} PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 endforeach()
-tmini_add_check(programs system NEEDS programs COMMAND programs)
 tmini_add_check(stories system NEEDS stories COMMAND stories 3000)
 tmini_add_check(stories.all system ALL NEEDS stories COMMAND stories 20000)
 tmini_add_check(explore system NEEDS explore COMMAND explore --depth 1)

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT */
+/* Copyright (c) 2026 The tmini authors */
+
+/* The faulty wire between a bed and its lidar (link.h), and an observer that knows the state of
+ * both, and checks the library:
+ *
+ *   - every packet that arrives unharmed while the library scans is delivered, in exactly one scan;
+ *   - no scan lies (sim_judge.h); nothing is delivered that was not sent;
+ *   - every byte is counted exactly once in the library's counters;
+ *   - its state is possible (test/support/invariants.h);
+ *   - the lidar never gets a command other than stop while it scans;
+ *   - a fault is reported exactly while it exists, within the time allowed;
+ *   - after the last trouble packets come again within the time allowed.
+ *
+ * The lidar must be marked. */
+
+#ifndef WATCH_H
+#define WATCH_H
+
+#include "link.h"
+#include "sim_judge.h"
+
+#include "tmini/tmini.h"
+
+#define WATCH_PACKETS 1024u
+#define WATCH_HISTORY 16384u /* Bytes: 1.2 s of scanning. */
+
+/* The time after the end of the last trouble in which scans must resume. In the worst case the
+ * lidar returns just after a start was sent (timeout 2 s), the longest pause follows (4 s), then a
+ * reboot (5 s), and the query for the frequency is lost (2 s). Start and first revolution take the
+ * rest. */
+#define WATCH_RECOVERY_MS 15000u
+
+/* A fault of the lidar, and its end, must be reported within this time: three revolutions, or the 3
+ * s until missing revolutions are noticed. */
+#define WATCH_FAULT_MS 5000u
+
+/* Each lie of a scan, and: */
+typedef enum {
+    WRONG_LOST_PACKET = SIM_LIES, /* A packet arrived unharmed, but was not delivered. */
+    WRONG_BYTES,                  /* Bytes not accounted for. */
+    WRONG_COMMAND,                /* A command other than stop was sent to a scanning lidar. */
+    WRONG_FALSE_FAULT,   /* A fault was reported but absent, or reported as gone but present. */
+    WRONG_MISSED_FAULT,  /* A fault was not reported in time, or gone but still reported. */
+    WRONG_ANSWER,        /* A command on an undisturbed line had no reply, or a wrong one. */
+    WRONG_SLOW_RECOVERY, /* It took longer than WATCH_RECOVERY_MS after the last trouble. */
+    WRONG_STATE,         /* An impossible state of the library. */
+    WRONG_KINDS
+} wrong_t;
+
+/* A packet that arrived unharmed. Places on the line are counted in bytes that reached the host. */
+typedef struct {
+    uint64_t offset;
+    uint16_t length;
+    bool starts_revolution;
+    bool is_split;  /* A silence in its middle: the library gives it up. */
+    uint32_t place; /* Of its first sample (sim_judge.h). */
+    uint32_t samples;
+} watch_packet_t;
+
+typedef struct {
+    uint64_t points;            /* Compared. */
+    uint32_t packets;           /* Arrived unharmed, and delivered. */
+    uint32_t by_chance;         /* Deliveries spoilt by damage whose checksum matches. */
+    uint32_t split;             /* Packets interrupted by a silence and given up. */
+    uint32_t recoveries;        /* Whose duration was measured. */
+    uint32_t worst_recovery_ms; /* From the end of the trouble to the first packet. */
+    uint32_t wrongs[WRONG_KINDS];
+} watch_counts_t;
+
+typedef struct {
+    /* To be set before bed_init(). */
+    sim_link_config_t line;
+    bool may_lose; /* Packets: the ring is too small, or the program too slow. */
+
+    sim_link_t link;
+    sim_judge_t judge;
+    watch_packet_t packets[WATCH_PACKETS]; /* Not yet delivered, in order. */
+    uint32_t first;
+    uint32_t count;
+    bool has_begun; /* A start packet has come: from then on every packet is in a scan. */
+    bool was_scanning;
+    uint8_t history[WATCH_HISTORY];
+    uint64_t arrived;         /* Bytes in all. */
+    uint64_t begun_at;        /* Those before the library was set up. */
+    uint64_t silent_since_us; /* Time of the last poll that found new bytes, */
+    uint64_t known_at_poll;   /* and how many the library knew of. */
+    uint64_t trouble_us;      /* When the last trouble ended. */
+    bool in_trouble;          /* A loss has been reported and not recovered. */
+    uint64_t fault_on_us[8];  /* When each fault was last present. */
+    uint64_t fault_off_us[8]; /* When it was last absent. */
+    uint8_t faults;           /* The faults reported last. */
+    watch_counts_t counts;
+    const char *wrong; /* The first thing that was wrong; NULL: nothing. */
+} watch_t;
+
+typedef struct bed bed_t;
+
+/* Called by the bed: at its beginning; when the library was set up; for bytes that come; in each
+ * step; before a round of polls, for each of its events, and after it. */
+void watch_begin(bed_t *bed);
+void watch_restart(bed_t *bed);
+void watch_arrive(bed_t *bed, const uint8_t *bytes, size_t count);
+void watch_step(bed_t *bed);
+void watch_before_polls(bed_t *bed);
+void watch_event(bed_t *bed, tmini_event_t event);
+void watch_after_polls(bed_t *bed);
+
+/* Counts what the test itself has found wrong. */
+void watch_complain(bed_t *bed, unsigned wrong);
+
+/* Whether line and power have had no fault since then. */
+bool watch_is_undisturbed_since(const bed_t *bed, uint64_t since_us);
+
+const char *watch_name(unsigned wrong);
+
+#endif
