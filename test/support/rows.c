@@ -91,10 +91,15 @@ bool row_is(const char *word, const char *name)
     return strncmp(word, name, length) == 0 && (word[length] == ':' || word[length] == '\0');
 }
 
+const char *row_text(const char *word)
+{
+    const char *const colon = strchr(word, ':');
+    return colon != NULL ? colon + 1 : "";
+}
+
 uint32_t row_number(const char *word)
 {
-    const char *const at = strchr(word, ':');
-    return at != NULL ? (uint32_t)strtoul(at + 1, NULL, 0) : 0;
+    return (uint32_t)strtoul(row_text(word), NULL, 0);
 }
 
 bool rows_expect(const char *word, const row_number_t *numbers, size_t count)

@@ -49,8 +49,10 @@ void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row));
 #define ROW_WORD_MAX 40
 void row_tell(const char *text, void (*tell)(char *word));
 
-/* Whether the word is "name" or "name:…"; the number after its first ":", 0 if there is none. */
+/* Whether the word is "name" or "name:…"; the text after its first ":", and the number there; "" and
+ * 0 if there is none. */
 bool row_is(const char *word, const char *name);
+const char *row_text(const char *word);
 uint32_t row_number(const char *word);
 
 /* For words such as "count:21", which name a number and the value that is expected. If the word's

@@ -70,14 +70,10 @@ static void expect_refused_arguments(uint8_t *bytes, size_t size)
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ring_init(&ring, bytes, size, true));
 }
 
-void test_a_null_pointer_is_an_argument_error(void)
+void test_no_memory_or_a_size_that_is_no_power_of_two_is_an_argument_error(void)
 {
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ring_init(NULL, memory, SIZE, false));
     expect_refused_arguments(NULL, SIZE);
-}
-
-void test_a_size_that_is_no_power_of_two_is_an_argument_error(void)
-{
     expect_refused_arguments(memory, 0);
     expect_refused_arguments(memory, 1); /* The indices could not distinguish full from empty. */
     expect_refused_arguments(memory, 3);
@@ -108,38 +104,26 @@ void test_every_power_of_two_is_a_size(void)
 }
 
 /* No call in any order stores a byte. */
-static void expect_refusal(void)
+void test_a_ring_without_memory_refuses_every_byte(void)
 {
-    tmini_ring_put(&ring, 'a');
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_write(&ring, letters, 5));
-    tmini_ring_gap(&ring);
-    tmini_ring_publish(&ring, 3);
-    tmini_ring_put(&ring, 'b');
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring));
-    TEST_ASSERT_EQUAL_UINT(7, tmini_ring_overrun(&ring));
-}
-
-void test_a_ring_that_was_not_initialised_refuses_every_byte(void)
-{
-    ring = (tmini_ring_t){0};
-    tmini_ring_publish(&ring, 3);
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
-    expect_refusal();
-}
-
-void test_a_ring_whose_initialisation_failed_refuses_every_byte(void)
-{
-    put_letters(0, 3);
-    (void)tmini_ring_init(&ring, memory, 12, false);
-    expect_refusal();
-}
-
-void test_initialisation_empties_a_ring(void)
-{
-    put_letters(0, SIZE + 2);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE, false));
-    expect_unread("");
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&ring));
+    for (unsigned failed = 0; failed <= 1; failed++) {
+        if (failed) {
+            put_letters(0, 3);
+            (void)tmini_ring_init(&ring, memory, 12, false);
+        } else {
+            ring = (tmini_ring_t){0};
+        }
+        tmini_ring_publish(&ring, 3);
+        TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
+        tmini_ring_put(&ring, 'a');
+        TEST_ASSERT_EQUAL_UINT(0, tmini_ring_write(&ring, letters, 5));
+        tmini_ring_gap(&ring);
+        tmini_ring_publish(&ring, 3);
+        tmini_ring_put(&ring, 'b');
+        TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring));
+        TEST_ASSERT_EQUAL_UINT(7, tmini_ring_overrun(&ring));
+        setUp();
+    }
 }
 
 /* ------------------------------------------------------------------------------------ CPU-fed */
@@ -160,41 +144,6 @@ void test_bytes_and_blocks_in_turn_lose_nothing_at_any_place(void)
         }
     }
     TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&ring));
-}
-
-void test_an_offset_beyond_the_unread_bytes_still_reads_inside_the_memory(void)
-{
-    put_letters(0, SIZE);
-    TEST_ASSERT_EQUAL_INT('a', tmini_ring_peek(&ring, SIZE));
-    TEST_ASSERT_EQUAL_INT('p', tmini_ring_peek(&ring, SIZE_MAX));
-    tmini_ring_discard(&ring, 5);
-    TEST_ASSERT_EQUAL_INT('b', tmini_ring_peek(&ring, 12));
-}
-
-/* -------------------------------------------------------------------------------------- blocks */
-
-void test_a_block_of_the_rings_size_fits_at_every_position(void)
-{
-    for (size_t start = 0; start < 2 * SIZE; start++) {
-        age(start);
-        tmini_ring_write(&ring, letters, SIZE);
-        expect_unread("abcdefghijklmnop");
-    }
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&ring));
-}
-
-void test_the_part_of_a_block_that_does_not_fit_is_refused_and_counted(void)
-{
-    put_letters(0, 10);
-    tmini_ring_discard(&ring, 2);
-    tmini_ring_write(&ring, &letters[10], 11);
-    expect_unread("cdefghijklmnopqr");
-    TEST_ASSERT_EQUAL_UINT(3, tmini_ring_overrun(&ring));
-    tmini_ring_write(&ring, letters, 4);
-    expect_unread("cdefghijklmnopqr");
-    TEST_ASSERT_EQUAL_UINT(7, tmini_ring_overrun(&ring));
-    tmini_ring_write(&ring, letters, SIZE_MAX / 2); /* Closed: none of them is read. */
-    TEST_ASSERT_EQUAL_UINT(SIZE_MAX / 2 + 7, tmini_ring_overrun(&ring));
 }
 
 /* -------------------------------------------------------------------------------- a closed ring */
@@ -226,8 +175,8 @@ void test_the_count_of_refused_bytes_wraps_around_with_size_t(void)
     ring.overrun = SIZE_MAX - 1;
     put_letters(0, SIZE + 1);
     TEST_ASSERT_EQUAL_UINT(SIZE_MAX, tmini_ring_overrun(&ring));
-    tmini_ring_write(&ring, letters, 3);
-    TEST_ASSERT_EQUAL_UINT(2, tmini_ring_overrun(&ring));
+    tmini_ring_write(&ring, letters, SIZE_MAX / 2); /* Closed: none of them is read. */
+    TEST_ASSERT_EQUAL_UINT(SIZE_MAX / 2 - 1, tmini_ring_overrun(&ring));
 }
 
 /* ----------------------------------------------------------------------------------------- DMA */
@@ -245,126 +194,104 @@ void test_bytes_put_into_a_dma_ring_stay_inside_its_memory(void)
     }
 }
 
-/* ----------------------------------------------------------------------------- reading in place */
-
-void test_unread_bytes_are_copied_across_the_memorys_end(void)
-{
-    uint8_t copy[6] = {0};
-    age(12);
-    put_letters(0, 10);
-    tmini_ring_copy(&ring, 2, copy, 5);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY("cdefg\0", copy, 6);
-    tmini_ring_copy(&ring, 2, copy, 0);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY("cdefg\0", copy, 6);
-}
-
-void test_unread_bytes_in_one_piece_are_read_where_they_are(void)
-{
-    size_t count = 5;
-    age(5);
-    put_letters(0, SIZE);
-    TEST_ASSERT_EQUAL_PTR(&memory[7], tmini_ring_piece(&ring, 2, &count));
-    TEST_ASSERT_EQUAL_UINT(5, count);
-    count = 9;
-    TEST_ASSERT_EQUAL_PTR(&memory[7], tmini_ring_piece(&ring, 2, &count));
-    TEST_ASSERT_EQUAL_UINT(9, count); /* Up to the memory's last byte. */
-}
-
-void test_of_unread_bytes_in_two_pieces_the_first_piece_comes_first(void)
-{
-    size_t count = 10;
-    age(5);
-    put_letters(0, SIZE);
-    TEST_ASSERT_EQUAL_PTR(&memory[7], tmini_ring_piece(&ring, 2, &count));
-    TEST_ASSERT_EQUAL_UINT(9, count);
-    count = 5;
-    TEST_ASSERT_EQUAL_PTR(&memory[0], tmini_ring_piece(&ring, 11, &count));
-    TEST_ASSERT_EQUAL_UINT(5, count);
-}
-
 /* ---------------------------------------------------------------------------------------- rows */
 
 /* Words of the rows:
  *
  *     put:abc write:abc=2     these bytes come one by one; as a block, of which two are stored
  *     dma age:-3      the ring is one for DMA; its indices are 3 before their wraparound
- *     at:8:abc        DMA writes there and publishes its position; store:8:abc publish:11
- *     discard:2 gap open      calls
+ *     at:8:abc        DMA writes there and publishes its position; publish:11
+ *     discard:2 gap open init     calls
  *     unread:abc memory:abc   what is unread, what the memory begins with
- *     overrun:1 room:16 …     see number_named() */
+ *     peek:5:a copy:2:cde     the byte with this offset; a copy of bytes from there on
+ *     piece:2:9=5     of 9 bytes from offset 2 on, 5 lie in one piece
+ *     overrun:1 room:16 …     see tell_word() */
 
-static void tell_call(const char *word, const char *text)
+static void tell_write(const char *text)
 {
-    const size_t number = (size_t)strtol(text, NULL, 10);
-    const char *const rest = strchr(text, ':');
-    const char *const wanted = strchr(text, '=');
-    if (strncmp(word, "put", 3) == 0) {
-        for (; *text != '\0'; text++) {
-            tmini_ring_put(&ring, (uint8_t)*text);
-        }
-    } else if (strncmp(word, "write", 5) == 0) {
-        const size_t count = wanted != NULL ? (size_t)(wanted - text) : strlen(text);
-        const size_t stored = tmini_ring_write(&ring, (const uint8_t *)text, count);
-        TEST_ASSERT_EQUAL_UINT(wanted != NULL ? strtoul(wanted + 1, NULL, 10) : stored, stored);
-    } else if (strncmp(word, "age", 3) == 0) {
-        age(number);
-    } else if (strncmp(word, "discard", 7) == 0) {
-        tmini_ring_discard(&ring, number);
-    } else if (strncmp(word, "publish", 7) == 0) {
-        tmini_ring_publish(&ring, number);
-    } else { /* at or store */
-        const size_t count = strlen(rest + 1);
-        for (size_t i = 0; i < count; i++) {
-            memory[(number + i) % SIZE] = (uint8_t)rest[1 + i];
-        }
-        if (word[0] == 'a') {
-            tmini_ring_publish(&ring, (number + count) % SIZE);
-        }
+    const size_t count = strcspn(text, "=");
+    const size_t stored = tmini_ring_write(&ring, (const uint8_t *)text, count);
+    TEST_ASSERT_EQUAL_UINT(text[count] == '=' ? strtoul(text + count + 1, NULL, 10) : stored,
+                           stored);
+}
+
+static void tell_dma(size_t place, const char *text)
+{
+    for (; *text != '\0'; text++) {
+        memory[place++ % SIZE] = (uint8_t)*text;
+    }
+    tmini_ring_publish(&ring, place % SIZE);
+}
+
+static void expect_copy(size_t offset, const char *text)
+{
+    uint8_t copy[8];
+    memset(copy, GUARD, sizeof copy);
+    tmini_ring_copy(&ring, offset, copy, strlen(text));
+    TEST_ASSERT_EQUAL_HEX8(GUARD, copy[strlen(text)]);
+    for (size_t i = 0; text[i] != '\0'; i++) {
+        TEST_ASSERT_EQUAL_HEX8(text[i], copy[i]);
     }
 }
 
-static bool number_named(const char *word, size_t *number)
+static void expect_piece(size_t offset, const char *text)
 {
-    const struct {
-        const char *name;
-        size_t number;
-    } numbers[] = {
-        {"overrun:", tmini_ring_overrun(&ring)},
-        {"room:", tmini_ring_room(&ring)},
-        {"count:", tmini_ring_unread(&ring)},
-        {"head:", tmini_ring_distance(0, tmini_ring_head(&ring))},
-        {"window:", ring.window},
-        {"closed:", tmini_ring_is_closed(&ring)},
-        {"full:", tmini_ring_is_full(&ring)},
-        {"intact:", tmini_ring_intact(&ring)},
-    };
-    for (unsigned i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        if (strncmp(word, numbers[i].name, strlen(numbers[i].name)) == 0) {
-            *number = numbers[i].number;
-            return true;
-        }
-    }
-    return false;
+    char *rest;
+    size_t count = strtoul(text, &rest, 10);
+    const uint8_t *const piece = tmini_ring_piece(&ring, offset, &count);
+    TEST_ASSERT_EQUAL_PTR(&memory[(ring.tail + offset) % SIZE], piece);
+    TEST_ASSERT_EQUAL_UINT(strtoul(rest + 1, NULL, 10), count);
 }
 
 static void tell_word(char *word)
 {
-    const char *const at = strchr(word, ':');
-    size_t number;
-    if (strcmp(word, "dma") == 0) {
+    const row_number_t numbers[] = {
+        {"overrun", tmini_ring_overrun(&ring)},
+        {"room", tmini_ring_room(&ring)},
+        {"count", tmini_ring_unread(&ring)},
+        {"head", tmini_ring_distance(0, tmini_ring_head(&ring))},
+        {"window", ring.window},
+        {"closed", tmini_ring_is_closed(&ring)},
+        {"full", tmini_ring_is_full(&ring)},
+        {"intact", tmini_ring_intact(&ring)},
+    };
+    const char *const text = row_text(word);
+    const char *const rest = row_text(text);
+    const size_t number = (size_t)strtol(text, NULL, 10);
+    if (row_is(word, "put")) {
+        for (size_t i = 0; text[i] != '\0'; i++) {
+            tmini_ring_put(&ring, (uint8_t)text[i]);
+        }
+    } else if (row_is(word, "write")) {
+        tell_write(text);
+    } else if (row_is(word, "dma")) {
         use_dma();
-    } else if (strcmp(word, "gap") == 0) {
+    } else if (row_is(word, "age")) {
+        age(number);
+    } else if (row_is(word, "at")) {
+        tell_dma(number, rest);
+    } else if (row_is(word, "publish")) {
+        tmini_ring_publish(&ring, number);
+    } else if (row_is(word, "discard")) {
+        tmini_ring_discard(&ring, number);
+    } else if (row_is(word, "gap")) {
         tmini_ring_gap(&ring);
-    } else if (strcmp(word, "open") == 0) {
+    } else if (row_is(word, "open")) {
         tmini_ring_open(&ring);
-    } else if (strncmp(word, "unread", 6) == 0) {
-        expect_unread(at + 1);
-    } else if (strncmp(word, "memory", 6) == 0) {
-        TEST_ASSERT_EQUAL_HEX8_ARRAY(at + 1, memory, strlen(at + 1));
-    } else if (number_named(word, &number)) {
-        TEST_ASSERT_EQUAL_UINT_MESSAGE(strtoul(at + 1, NULL, 10), number, word);
+    } else if (row_is(word, "init")) {
+        setUp();
+    } else if (row_is(word, "unread")) {
+        expect_unread(text);
+    } else if (row_is(word, "memory")) {
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(text, memory, strlen(text));
+    } else if (row_is(word, "peek")) {
+        TEST_ASSERT_EQUAL_HEX8(rest[0], tmini_ring_peek(&ring, number));
+    } else if (row_is(word, "copy")) {
+        expect_copy(number, rest);
+    } else if (row_is(word, "piece")) {
+        expect_piece(number, rest);
     } else {
-        tell_call(word, at + 1);
+        TEST_ASSERT_TRUE_MESSAGE(row_expects(word, numbers), word);
     }
 }
 
@@ -401,12 +328,25 @@ static const row_t rows[] IN_FLASH = {
         "put:ABCDEFGHIJKL discard:12 write:abcdefghij unread:abcdefghij memory:efghij"),
     ROW(a_block_that_ends_at_the_memorys_end_fits,
         "put:ABCDEFGHIJKL discard:12 write:abcd unread:abcd memory:A"),
+    ROW(the_part_of_a_block_that_does_not_fit_is_refused_and_counted,
+        "put:abcdefghij discard:2 write:klmnopqrstu=8 unread:cdefghijklmnopqr overrun:3 "
+        "write:abcd=0 unread:cdefghijklmnopqr overrun:7"),
     ROW(a_block_that_just_fits_does_not_close_the_ring,
         "write:" ALL "=16 closed:0 write:=0 closed:0"),
     ROW(a_block_larger_than_the_ring_is_cut,
         "write:" ALL "qrstuvwxyz=16 unread:" ALL " overrun:10"),
     ROW(a_block_is_stored_across_the_wrap_of_size_t,
         "age:-3 write:" ALL "qrst unread:" ALL " overrun:4"),
+    /* ---- Reading ---- */
+    ROW(an_offset_beyond_the_unread_bytes_still_reads_inside_the_memory,
+        PUT_ALL "peek:16:a peek:-1:p discard:5 peek:12:b"),
+    ROW(unread_bytes_are_copied_across_the_memorys_end,
+        "age:12 put:abcdefghij copy:2:cdefg copy:2:"),
+    ROW(unread_bytes_in_one_piece_are_read_where_they_are, /* Up to the memory's last byte. */
+        "age:5 " PUT_ALL "piece:2:5=5 piece:2:9=9"),
+    ROW(of_unread_bytes_in_two_pieces_the_first_piece_comes_first,
+        "age:5 " PUT_ALL "piece:2:10=9 piece:11:5=5"),
+    ROW(initialisation_empties_a_ring, PUT_ALL "put:q init unread: overrun:0"),
     /* ---- A closed ring ---- */
     ROW(a_closed_ring_that_is_closed_again_stays_so,
         "put:abc gap gap put:x unread:abc discard:3 open put:de unread:de"),
@@ -432,7 +372,7 @@ static const row_t rows[] IN_FLASH = {
     ROW(published_bytes_can_be_read,
         "dma unread: at:0:abc unread:abc publish:3 unread:abc at:3:de unread:abcde"),
     ROW(a_position_equal_to_the_size_means_0,
-        "dma at:0:abcdefgh store:8:ijklmnop publish:16 unread:" ALL " publish:0 unread:" ALL),
+        "dma at:0:abcdefgh at:8:ijklmnop publish:16 unread:" ALL " publish:0 unread:" ALL),
     ROW(a_position_before_the_last_one_has_wrapped_around_the_memorys_end,
         "dma at:0:abcdefgh at:8:ijklmn discard:12 at:14:opqrs unread:mnopqrs"),
     ROW(more_unread_bytes_than_the_window_are_an_overrun,
