@@ -16,7 +16,8 @@ tmini_add_unit_test(test_builder SOURCES test_builder.c ../support/rows.c
 tmini_add_unit_test(test_decoder SOURCES test_decoder.c LIBRARIES tmini_test_receiver)
 
 # Optional modules.
-tmini_add_unit_test(test_sectors SOURCES test_sectors.c LIBRARIES tmini_test_receiver)
+tmini_add_unit_test(test_sectors SOURCES test_sectors.c ../support/rows.c
+    LIBRARIES tmini_test_receiver)
 tmini_add_unit_test(test_ranges SOURCES test_ranges.c)
 tmini_add_unit_test(test_mount SOURCES test_mount.c)
 tmini_add_unit_test(test_cartesian SOURCES test_cartesian.c)

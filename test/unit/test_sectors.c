@@ -5,9 +5,12 @@
 
 #include "encoder.h"
 #include "receiver.h"
+#include "rows.h"
 
 #include "tmini/tmini_sectors.h"
 #include "unity.h"
+
+#include <stdlib.h>
 
 #define DEGREE 64u
 
@@ -29,6 +32,7 @@ void setUp(void)
         array[i] = (tmini_sector_t){0x5555, 0x5555, 0x5555, 0x5555};
     }
     begin(8, TMINI_FILTER_NONE);
+    receiver_open(&receiver, memory, sizeof memory, 0);
 }
 
 void tearDown(void)
@@ -36,65 +40,163 @@ void tearDown(void)
     TEST_ASSERT_EQUAL_HEX16(0xEEEE, array[8].nearest_mm);
 }
 
-static void see(uint16_t angle_q6, uint16_t distance_mm, uint8_t flag)
+/* ---------------------------------------------------------------------------------------- rows */
+
+/* Words of the rows. Angles are degrees.
+ *
+ *     sectors:3:4     three sectors, and this filter
+ *     see:45:1000     a point at this angle, with this distance; see:45:1000:2 with this flag
+ *     scan            a scan of points at 0, 90 and 270 degrees, with 900, 800 and 700 mm
+ *     clear           forgets all points
+ *     dma             packets come by DMA
+ *     S:100           a start packet at 0 degrees, with this distance; S!:100: ends a revolution
+ *     P               a packet of points at 0, 45 and 90 degrees: 300 mm, no range, 200 mm
+ *     lost:100 lost   such packets come, and DMA overwrites them
+ *     add add!        adds the last packet, which ends no revolution, or one
+ *     at:60:1         the angle belongs to this sector; at:60-:1: an angle just below it does
+ *     0=300,2,1       what a sector holds: nearest range, points, ranges
+ *     angle:0:10      the angle of a sector's nearest range, in sixty-fourths of a degree
+ *     free:0:300 not-free:0:301       whether a sector is free up to this distance */
+
+static uint16_t angle_of(const char *text)
 {
-    const tmini_point_t point = {angle_q6, distance_mm, 100, flag};
+    char *rest;
+    const unsigned long degrees = strtoul(text, &rest, 10);
+    return (uint16_t)(degrees * DEGREE - (rest[0] == '-' ? 1 : 0));
+}
+
+static void see(const char *text)
+{
+    const char *const distance = row_text(text);
+    const tmini_point_t point = {angle_of(text), (uint16_t)strtoul(distance, NULL, 10), 100,
+                                 (uint8_t)row_number(distance)};
     tmini_sectors_add(&sectors, &point);
 }
 
-static void holds(size_t index, uint16_t nearest_mm, uint16_t points, uint16_t ranges)
+static void add_scan(void)
 {
-    TEST_ASSERT_EQUAL_UINT16(nearest_mm, array[index].nearest_mm);
-    TEST_ASSERT_EQUAL_UINT16(points, array[index].points);
-    TEST_ASSERT_EQUAL_UINT16(ranges, array[index].ranges);
+    static tmini_point_t points[4] = {{0, 900, 50, 0},
+                                      {90 * DEGREE, 800, 50, 0},
+                                      {270 * DEGREE, 700, 50, 0},
+                                      {180 * DEGREE, 600, 50, 0}}; /* Beyond the scan's count. */
+    const tmini_scan_t scan = {.points = points, .count = 3};
+    tmini_sectors_add_scan(&sectors, &scan);
 }
 
-void test_sectors_are_blind_to_begin_with(void)
+static void receive(uint16_t start_mm)
 {
-    for (size_t i = 0; i < 8; i++) {
-        holds(i, 0, 0, 0);
-        TEST_ASSERT_TRUE(tmini_sector_is_blind(&array[i]));
+    static const encode_sample_t three[3] = {{300, 10, 0}, {0, 10, 0}, {200, 10, 0}};
+    const encode_sample_t one = {start_mm, 10, 0};
+    const encode_packet_t start = {0x79, 1, 0, 0, &one};
+    const encode_packet_t points = {0, 3, 0, 90 * DEGREE, three};
+    receiver_feed(&receiver, bytes, encode_packet(bytes, start_mm > 0 ? &start : &points));
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next(&receiver));
+}
+
+static bool add_packet(void)
+{
+    return tmini_sectors_add_packet(&sectors, &receiver.packet);
+}
+
+static void holds(const char *word)
+{
+    char *rest;
+    const tmini_sector_t *const sector = &array[strtoul(word, &rest, 10)];
+    const uint16_t holding[] = {sector->nearest_mm, sector->points, sector->ranges};
+    for (unsigned i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(strtoul(rest + 1, &rest, 10), holding[i], word);
+    }
+    TEST_ASSERT_EQUAL_MESSAGE(sector->nearest_mm == 0, tmini_sector_is_blind(sector), word);
+}
+
+static void tell_word(char *word)
+{
+    const char *const text = row_text(word);
+    const size_t index = row_number(word) < 8 ? row_number(word) : 0;
+    const uint16_t second = (uint16_t)row_number(text);
+    if (row_is(word, "see")) {
+        see(text);
+    } else if (word[0] >= '0' && word[0] <= '9') {
+        holds(word);
+    } else if (row_is(word, "sectors")) {
+        begin(row_number(word), second);
+    } else if (row_is(word, "scan")) {
+        add_scan();
+    } else if (row_is(word, "clear")) {
+        tmini_sectors_clear(&sectors);
+    } else if (row_is(word, "dma")) {
+        receiver_open_dma(&receiver, memory, sizeof memory, 0);
+    } else if (row_is(word, "lost")) {
+        receive((uint16_t)row_number(word));
+        receiver_feed(&receiver, bytes, sizeof bytes);
+    } else if (word[0] == 'S' || word[0] == 'P') {
+        receive((uint16_t)row_number(word));
+        TEST_ASSERT_EQUAL_MESSAGE(word[1] == '!', add_packet(), word);
+    } else if (row_is(word, "add!")) {
+        TEST_ASSERT_TRUE(add_packet());
+    } else if (row_is(word, "add")) {
+        TEST_ASSERT_FALSE(add_packet());
+    } else if (row_is(word, "at")) {
+        TEST_ASSERT_EQUAL_size_t_MESSAGE(second, tmini_sectors_at(&sectors, angle_of(text)), word);
+    } else if (row_is(word, "angle")) {
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(second, array[index].angle_q6, word);
+    } else if (row_is(word, "free")) {
+        TEST_ASSERT_TRUE_MESSAGE(tmini_sector_is_free(&array[index], second), word);
+    } else if (row_is(word, "not-free")) {
+        TEST_ASSERT_FALSE_MESSAGE(tmini_sector_is_free(&array[index], second), word);
+    } else {
+        TEST_FAIL_MESSAGE(word);
     }
 }
 
-void test_eight_sectors_go_clockwise_from_the_front(void)
+static void tell_row(const row_t *row)
 {
-    static const uint16_t angles[8] = {0, 45, 90, 135, 180, 225, 270, 315};
-    for (uint16_t i = 0; i < 8; i++) {
-        see((uint16_t)(angles[i] * DEGREE), (uint16_t)(1000 + i), 0);
-    }
-    for (uint16_t i = 0; i < 8; i++) {
-        TEST_ASSERT_EQUAL_UINT16(1000 + i, array[i].nearest_mm);
-        TEST_ASSERT_EQUAL_UINT16(angles[i] * DEGREE, array[i].angle_q6);
-    }
+    row_tell(row->steps, tell_word);
 }
 
-void test_the_front_sector_reaches_as_far_left_as_right(void)
+static const row_t rows[] IN_FLASH = {
+    /* ---- Directions ---- */
+    ROW(eight_sectors_go_clockwise_from_the_front,
+        "see:0:1000 see:45:1001 see:90:1002 see:135:1003 see:180:1004 see:225:1005 see:270:1006 "
+        "see:315:1007 0=1000,1,1 1=1001,1,1 2=1002,1,1 3=1003,1,1 4=1004,1,1 5=1005,1,1 "
+        "6=1006,1,1 7=1007,1,1 angle:0:0 angle:1:2880 angle:7:20160"),
+    ROW(one_sector_holds_everything, "sectors:1 at:0:0 at:180:0 at:360-:0"),
+    ROW(three_sectors_are_120_degrees_wide, /* A boundary belongs to the sector clockwise. */
+        "sectors:3 at:60-:0 at:60:1 at:180-:1 at:180:2 at:300-:2 at:300:0 at:360-:0"),
+    /* ---- Points ---- */
+    ROW(sectors_are_blind_to_begin_with, "0=0,0,0 3=0,0,0 7=0,0,0 not-free:0:0"),
+    ROW(a_sector_has_its_nearest_range_and_the_angle_of_that,
+        "see:0:700 see:10:500 see:20:600 0=500,3,3 angle:0:640"),
+    ROW(points_without_a_range_leave_a_sector_blind_and_not_free,
+        "see:0:0 see:1:0 0=0,2,0 not-free:0:300 not-free:0:0"),
+    ROW(a_sector_is_free_up_to_its_nearest_range,
+        "see:0:0 see:0:16383 see:0:300 0=300,3,2 free:0:300 not-free:0:301"),
+    ROW(one_range_is_enough_for_a_sector_to_be_free, "see:0:300 free:0:300"),
+    ROW(a_sector_counts_more_than_255_ranges, "300( see:0:500 ) 0=500,300,300"),
+    ROW(a_sector_with_65536_ranges_is_not_blind, /* As it would be if it counted 0. */
+        "see:0:200 256( 256( see:0:500 ) ) 0=200,65535,65535 free:0:200"),
+    ROW(flagged_points_count_unless_filtered, "see:0:400:2 see:90:500:3 0=400,1,1 2=500,1,1"),
+    ROW(a_filter_takes_no_range_from_the_points_with_its_flag,
+        "sectors:8:4 see:0:400:2 see:90:500:3 see:180:600 0=0,1,0 2=500,1,1 4=600,1,1"),
+    ROW(clearing_forgets_all_points, "see:0:400 see:315:500 clear 0=0,0,0 7=0,0,0"),
+    ROW(a_scan_takes_the_place_of_what_was_there,
+        "see:0:100 see:45:100 scan 0=900,1,1 1=0,0,0 2=800,1,1 4=0,0,0 6=700,1,1"),
+    /* ---- Packets ---- */
+    ROW(packets_add_their_points, "P 0=300,1,1 1=0,1,0 2=200,1,1"),
+    ROW(what_precedes_the_first_start_packet_is_no_revolution, "P S:250 P 0=250,2,2"),
+    ROW(a_start_packet_ends_a_revolution_and_begins_another,
+        "S:100 P S!:250 0=100,2,2 2=200,1,1 P 0=250,2,2 S!:150 0=250,2,2"),
+    ROW(a_packet_that_dma_has_overwritten_adds_nothing, "dma lost add 0=0,0,0 2=0,0,0"),
+    ROW(a_start_packet_that_dma_has_overwritten_leaves_nothing_of_the_one_before,
+        "dma S:100 lost:200 add! 0=100,1,1 add! 0=0,1,0"),
+};
+
+void test_rows(void)
 {
-    /* 22.5 degrees are 1440. A boundary belongs to the sector clockwise of it. */
-    TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 1439));
-    TEST_ASSERT_EQUAL_size_t(1, tmini_sectors_at(&sectors, 1440));
-    TEST_ASSERT_EQUAL_size_t(7, tmini_sectors_at(&sectors, 21599));
-    TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 21600));
-    TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 23039));
+    run_rows(rows, tell_row);
 }
 
-void test_one_sector_holds_everything(void)
-{
-    begin(1, TMINI_FILTER_NONE);
-    TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 0));
-    TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 11520));
-    TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 23039));
-}
-
-void test_three_sectors_are_120_degrees_wide(void)
-{
-    begin(3, TMINI_FILTER_NONE);
-    TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 60 * DEGREE - 1));
-    TEST_ASSERT_EQUAL_size_t(1, tmini_sectors_at(&sectors, 60 * DEGREE));
-    TEST_ASSERT_EQUAL_size_t(2, tmini_sectors_at(&sectors, 180 * DEGREE));
-    TEST_ASSERT_EQUAL_size_t(0, tmini_sectors_at(&sectors, 300 * DEGREE));
-}
+/* -------------------------------------------------------------------------------------- limits */
 
 void test_65535_sectors_do_not_overflow(void)
 {
@@ -102,193 +204,6 @@ void test_65535_sectors_do_not_overflow(void)
     TEST_ASSERT_EQUAL_size_t(32768, tmini_sectors_at(&sectors, 11520)); /* 32767.5 */
     TEST_ASSERT_EQUAL_size_t(65532, tmini_sectors_at(&sectors, 23039)); /* 65532.16 */
     sectors.count = 8;
-}
-
-void test_a_sector_has_its_nearest_range_and_the_angle_of_that(void)
-{
-    see(0, 700, 0);
-    see(10, 500, 0);
-    see(20, 600, 0);
-    holds(0, 500, 3, 3);
-    TEST_ASSERT_EQUAL_UINT16(10, array[0].angle_q6);
-}
-
-void test_points_without_a_range_leave_a_sector_blind_and_not_free(void)
-{
-    see(0, 0, 0);
-    see(1, 0, 0);
-    holds(0, 0, 2, 0);
-    TEST_ASSERT_TRUE(tmini_sector_is_blind(&array[0]));
-    TEST_ASSERT_FALSE(tmini_sector_is_free(&array[0], 300));
-    TEST_ASSERT_FALSE(tmini_sector_is_free(&array[0], 0));
-    TEST_ASSERT_TRUE(array[0].nearest_mm < 300); /* The condition in which a user would stop. */
-}
-
-void test_a_sector_is_free_up_to_its_nearest_range(void)
-{
-    see(0, 0, 0);
-    see(0, 16383, 0);
-    see(0, 300, 0);
-    holds(0, 300, 3, 2);
-    TEST_ASSERT_FALSE(tmini_sector_is_blind(&array[0]));
-    TEST_ASSERT_TRUE(tmini_sector_is_free(&array[0], 300));
-    TEST_ASSERT_FALSE(tmini_sector_is_free(&array[0], 301));
-}
-
-void test_one_range_is_enough_for_a_sector_to_be_free(void)
-{
-    see(0, 300, 0);
-    TEST_ASSERT_TRUE(tmini_sector_is_free(&array[0], 300));
-}
-
-void test_a_sector_counts_more_than_255_ranges(void)
-{
-    for (unsigned i = 0; i < 300; i++) {
-        see(0, 500, 0);
-    }
-    holds(0, 500, 300, 300);
-}
-
-/* A sector that counts from 65535 to 0 would be blind although it has a range. */
-void test_a_sector_with_65536_ranges_is_not_blind(void)
-{
-    see(0, 200, 0);
-    for (unsigned long i = 1; i < 65536; i++) {
-        see(0, 500, 0);
-    }
-    holds(0, 200, 65535, 65535);
-    TEST_ASSERT_FALSE(tmini_sector_is_blind(&array[0]));
-    TEST_ASSERT_TRUE(tmini_sector_is_free(&array[0], 200));
-}
-
-void test_flagged_points_count_unless_filtered(void)
-{
-    see(0, 400, TMINI_FLAG_SPECULAR);
-    see(90 * DEGREE, 500, TMINI_FLAG_AMBIENT);
-    holds(0, 400, 1, 1);
-    holds(2, 500, 1, 1);
-}
-
-void test_a_filter_takes_no_range_from_the_points_with_its_flag(void)
-{
-    begin(8, TMINI_FILTER_SPECULAR);
-    see(0, 400, TMINI_FLAG_SPECULAR);
-    see(90 * DEGREE, 500, TMINI_FLAG_AMBIENT);
-    see(180 * DEGREE, 600, 0);
-    holds(0, 0, 1, 0);
-    holds(2, 500, 1, 1);
-    holds(4, 600, 1, 1);
-}
-
-void test_clearing_forgets_all_points(void)
-{
-    see(0, 400, 0);
-    see(315 * DEGREE, 500, 0);
-    tmini_sectors_clear(&sectors);
-    holds(0, 0, 0, 0);
-    holds(7, 0, 0, 0);
-}
-
-void test_a_scan_takes_the_place_of_what_was_there(void)
-{
-    static tmini_point_t points[4] = {{0, 900, 50, 0},
-                                      {90 * DEGREE, 800, 50, 0},
-                                      {270 * DEGREE, 700, 50, 0},
-                                      {180 * DEGREE, 600, 50, 0}};
-    const tmini_scan_t scan = {.points = points, .count = 3};
-    see(0, 100, 0);
-    see(45 * DEGREE, 100, 0);
-    tmini_sectors_add_scan(&sectors, &scan);
-    holds(0, 900, 1, 1);
-    holds(1, 0, 0, 0);
-    holds(2, 800, 1, 1);
-    holds(4, 0, 0, 0); /* This point is beyond the scan's count. */
-    holds(6, 700, 1, 1);
-}
-
-/* Samples at 0, 45 and 90 degrees. */
-static size_t make_packet(void)
-{
-    static const encode_sample_t samples[3] = {{300, 10, 0}, {0, 10, 0}, {200, 10, 0}};
-    const encode_packet_t packet = {0, 3, 0, 90 * DEGREE, samples};
-    return encode_packet(bytes, &packet);
-}
-
-static void receive(size_t count)
-{
-    receiver_feed(&receiver, bytes, count);
-    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next(&receiver));
-}
-
-static bool receive_start(uint16_t distance_mm)
-{
-    const encode_sample_t sample = {distance_mm, 10, 0};
-    const encode_packet_t packet = {0x79, 1, 0, 0, &sample};
-    receive(encode_packet(bytes, &packet));
-    return tmini_sectors_add_packet(&sectors, &receiver.packet);
-}
-
-static bool receive_points(void)
-{
-    receive(make_packet());
-    return tmini_sectors_add_packet(&sectors, &receiver.packet);
-}
-
-void test_packets_add_their_points(void)
-{
-    receiver_open(&receiver, memory, sizeof memory, 0);
-    TEST_ASSERT_FALSE(receive_points());
-    holds(0, 300, 1, 1);
-    holds(1, 0, 1, 0);
-    holds(2, 200, 1, 1);
-}
-
-void test_what_precedes_the_first_start_packet_is_no_revolution(void)
-{
-    receiver_open(&receiver, memory, sizeof memory, 0);
-    TEST_ASSERT_FALSE(receive_points());
-    TEST_ASSERT_FALSE(receive_start(250));
-    TEST_ASSERT_FALSE(receive_points());
-    holds(0, 250, 2, 2);
-}
-
-void test_a_start_packet_reports_the_revolution_that_it_ends_and_begins_another(void)
-{
-    receiver_open(&receiver, memory, sizeof memory, 0);
-    (void)receive_start(100);
-    (void)receive_points();
-    TEST_ASSERT_TRUE(receive_start(250));
-    holds(0, 100, 2, 2);
-    holds(2, 200, 1, 1);
-    TEST_ASSERT_FALSE(receive_points());
-    holds(0, 250, 2, 2);
-    TEST_ASSERT_TRUE(receive_start(150));
-    holds(0, 250, 2, 2);
-}
-
-void test_a_packet_that_dma_has_overwritten_adds_nothing(void)
-{
-    receiver_open_dma(&receiver, memory, sizeof memory, 0);
-    receive(make_packet());
-    receiver_feed(&receiver, bytes, sizeof bytes);
-
-    TEST_ASSERT_FALSE(tmini_sectors_add_packet(&sectors, &receiver.packet));
-    holds(0, 0, 0, 0);
-    holds(2, 0, 0, 0);
-}
-
-void test_a_start_packet_that_dma_has_overwritten_leaves_nothing_of_the_one_before(void)
-{
-    receiver_open_dma(&receiver, memory, sizeof memory, 0);
-    (void)receive_start(100);
-    const encode_sample_t sample = {200, 10, 0};
-    const encode_packet_t packet = {0x79, 1, 0, 0, &sample};
-    receive(encode_packet(bytes, &packet));
-    receiver_feed(&receiver, bytes, sizeof bytes);
-    TEST_ASSERT_TRUE(tmini_sectors_add_packet(&sectors, &receiver.packet));
-    holds(0, 100, 1, 1);
-    (void)tmini_sectors_add_packet(&sectors, &receiver.packet); /* The next revolution begins. */
-    holds(0, 0, 1, 0);
 }
 
 /* 720 points half a degree apart, in 360 sectors of a degree: too large for a small machine. */
