@@ -174,7 +174,7 @@ static const row_t rows[] IN_FLASH = {
     ROW(one_range_is_enough_for_a_sector_to_be_free, "see:0:300 free:0:300"),
     ROW(a_sector_counts_more_than_255_ranges, "300( see:0:500 ) 0=500,300,300"),
     ROW(a_sector_with_65536_ranges_is_not_blind, /* As it would be if it counted 0. */
-        "see:0:200 256( 256( see:0:500 ) ) 0=200,65535,65535 free:0:200"),
+        "see:0:200 257( 255( see:0:500 ) ) 0=200,65535,65535 free:0:200"),
     ROW(flagged_points_count_unless_filtered, "see:0:400:2 see:90:500:3 0=400,1,1 2=500,1,1"),
     ROW(a_filter_takes_no_range_from_the_points_with_its_flag,
         "sectors:8:4 see:0:400:2 see:90:500:3 see:180:600 0=0,1,0 2=500,1,1 4=600,1,1"),
