@@ -46,7 +46,7 @@ void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row));
 
 /* Calls `tell` with each word of a text. Words are separated by spaces; those in "30( … )" come 30
  * times. */
-#define ROW_WORD_MAX 40
+#define ROW_WORD_MAX 80
 void row_tell(const char *text, void (*tell)(char *word));
 
 /* Whether the word is "name" or "name:…"; the text after its first ":", and the number there; "" and

@@ -21,7 +21,7 @@ tmini_add_unit_test(test_sectors SOURCES test_sectors.c ../support/rows.c
 tmini_add_unit_test(test_ranges SOURCES test_ranges.c)
 tmini_add_unit_test(test_mount SOURCES test_mount.c)
 tmini_add_unit_test(test_cartesian SOURCES test_cartesian.c)
-tmini_add_unit_test(test_fields SOURCES test_fields.c)
+tmini_add_unit_test(test_fields SOURCES test_fields.c ../support/rows.c)
 tmini_add_unit_test(test_isolated SOURCES test_isolated.c)
 tmini_add_unit_test(test_time SOURCES test_time.c ../support/rows.c)
 tmini_add_unit_test(test_units SOURCES test_units.c)

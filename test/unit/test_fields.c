@@ -3,25 +3,28 @@
 
 /* Fields: where they are, and when they are free, occupied and blind. */
 
-#include <float.h>
-#include <string.h>
+#include "rows.h"
 
 #include "tmini/tmini_fields.h"
 #include "unity.h"
 
-#define DEGREE 64u
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
 static const tmini_xy_t box[] = {{0, -300}, {600, 300}}; /* From straight left to straight right. */
+static tmini_xy_t polygon[6];
 static tmini_field_t field[2];
 static tmini_fields_t fields;
-static tmini_point_t points[40];
+static tmini_point_t points[20];
 static tmini_scan_t scan;
 static uint32_t now_ms;
 
-static void set_up(const tmini_xy_t *corners, size_t count)
+static void set_up(const tmini_xy_t *list, size_t count)
 {
-    field[0].corners = corners;
+    field[0].corners = list;
     field[0].corner_count = (uint8_t)count;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_fields_init(&fields));
 }
@@ -36,381 +39,227 @@ void setUp(void)
 
 void tearDown(void) {}
 
-static void begin(void)
-{
-    scan = (tmini_scan_t){.points = points, .complete = true};
-}
-
-static void add(int16_t degrees, uint16_t distance_mm)
-{
-    points[scan.count++] =
-        (tmini_point_t){(uint16_t)((degrees + 360) % 360 * 64), distance_mm, 0, 0};
-}
-
 static void is(tmini_field_state_t wanted)
 {
     TEST_ASSERT_EQUAL_INT(wanted, tmini_field_state(&field[0], now_ms));
 }
 
-/* A scan each 100 ms with points in the field, `others` behind it, and `unseen` without a range, 20
- * in all. */
+static tmini_point_t point_at(long degrees, uint16_t distance_mm)
+{
+    return (tmini_point_t){(uint16_t)((degrees + 360) % 360 * 64), distance_mm, 0, 0};
+}
+
+/* A scan of points ahead, 100 ms later: `inside` are in the field, `unseen` have no range, and the
+ * others, of 20, are beyond it. */
 static void see(size_t inside, size_t unseen, bool complete)
 {
-    begin();
-    for (size_t i = 0; i < 20; i++) {
-        add((int16_t)(i * 2), i < inside ? 400 : i < inside + unseen ? 0 : 3000);
-    }
     now_ms += 100;
-    scan.end_ms = now_ms;
-    scan.complete = complete;
+    scan = (tmini_scan_t){.points = points, .count = 20, .complete = complete, .end_ms = now_ms};
+    for (size_t i = 0; i < 20; i++) {
+        points[i] = point_at((long)i * 2, i < inside ? 400 : i < inside + unseen ? 0 : 3000);
+    }
     tmini_fields_step(&fields, &scan);
 }
 
 static void see_free(size_t times)
 {
-    for (size_t i = 0; i < times; i++) {
+    for (; times > 0; times--) {
         see(0, 0, true);
     }
 }
 
-/* ---------------------------------------------------------------------------------- the states */
+/* ---------------------------------------------------------------------------------------- rows */
 
-void test_a_field_is_blind_until_three_complete_scans_have_seen_nothing_in_it(void)
+/* Words of the rows:
+ *
+ *     FREE OCCUPIED BLIND     the field's state
+ *     free:3          three complete scans 100 ms apart, with nothing in the field
+ *     see:2 see:2:18  such a scan with 2 points in the field; and 18 of 20 have no range
+ *     part:2          the same, but the scan is incomplete
+ *     back            a complete scan of a point straight back
+ *     +301 clock:-250 this time passes; the clock is set
+ *     points:5 scans:1 unseen:10 age:50       the user's figures
+ *     box             sets the field up: the box above
+ *     corners:0,-300,600,300  sets it up with these corners: x, y
+ *     lidar:300,100   where the lidar is, before that
+ *     in:0,600 out:0,601 away:91,100  a point of this angle and distance is in the field; is out of
+ *                     it, in one of its directions; is in none of them. Or several such points. */
+
+static long next_number(const char **text)
 {
-    is(TMINI_FIELD_BLIND);
-    see_free(2);
-    is(TMINI_FIELD_BLIND);
-    see_free(1);
-    is(TMINI_FIELD_FREE);
+    char *rest;
+    const long number = strtol(*text, &rest, 10);
+    *text = rest + (rest[0] == ',' ? 1 : 0);
+    return number;
 }
 
-void test_two_points_in_one_scan_occupy_a_field_at_once(void)
+static void set_corners(const char *text)
 {
-    see_free(3);
-    see(1, 0, true);
-    is(TMINI_FIELD_FREE);
-    see(1, 0, true); /* One in each of two scans are not two. */
-    is(TMINI_FIELD_FREE);
-    see(2, 0, true);
-    is(TMINI_FIELD_OCCUPIED);
-    TEST_ASSERT_EQUAL_UINT16(2, field[0].inside);
-}
-
-void test_three_complete_scans_in_a_row_free_a_field_again(void)
-{
-    see_free(3);
-    see(20, 0, true);
-    see_free(2);
-    is(TMINI_FIELD_OCCUPIED);
-    see(2, 0, true);
-    see_free(2);
-    is(TMINI_FIELD_OCCUPIED);
-    see(1, 0, true);
-    is(TMINI_FIELD_FREE);
-}
-
-void test_an_incomplete_scan_occupies_a_field_and_never_frees_it(void)
-{
-    see_free(3);
-    see(2, 0, false);
-    is(TMINI_FIELD_OCCUPIED);
-    see_free(2);
-    see(0, 0, false);
-    is(TMINI_FIELD_OCCUPIED);
-    see_free(1);
-    is(TMINI_FIELD_FREE);
-}
-
-void test_a_field_becomes_blind_without_complete_scans(void)
-{
-    see_free(3);
-    now_ms += 300;
-    is(TMINI_FIELD_FREE);
-    now_ms += 1;
-    is(TMINI_FIELD_BLIND);
-    see_free(2);
-    is(TMINI_FIELD_BLIND);
-    see_free(1);
-    is(TMINI_FIELD_FREE);
-}
-
-void test_incomplete_scans_do_not_keep_a_field_free(void)
-{
-    see_free(3);
-    for (size_t i = 0; i < 3; i++) {
-        see(0, 0, false);
-        is(TMINI_FIELD_FREE);
+    size_t count = 0;
+    while (text[0] != '\0') {
+        polygon[count].x_mm = (int16_t)next_number(&text);
+        polygon[count++].y_mm = (int16_t)next_number(&text);
     }
-    see(0, 0, false);
-    is(TMINI_FIELD_BLIND);
+    set_up(polygon, count);
 }
 
-/* A program that asks only after the gap sees the scans after it alone. */
-void test_a_gap_in_the_scans_is_noticed_even_if_nobody_asked_during_it(void)
+static void expect_places(const char *word)
 {
-    see_free(3);
-    now_ms += 201;
-    see_free(1);
-    is(TMINI_FIELD_BLIND);
-    see_free(2);
-    is(TMINI_FIELD_FREE);
-}
-
-void test_a_field_that_was_blind_once_stays_blind_when_the_clock_wraps_around(void)
-{
-    see_free(3);
-    now_ms += 301;
-    is(TMINI_FIELD_BLIND);
-    now_ms -= 301;
-    is(TMINI_FIELD_BLIND);
-}
-
-void test_the_clock_may_wrap_around_between_scans(void)
-{
-    now_ms = UINT32_MAX - 250;
-    see_free(3);
-    is(TMINI_FIELD_FREE);
-}
-
-void test_directions_without_a_range_make_a_field_blind(void)
-{
-    see_free(3);
-    see(0, 10, true);
-    is(TMINI_FIELD_FREE);
-    see(0, 11, true); /* Of 20. */
-    is(TMINI_FIELD_BLIND);
-    see_free(2);
-    is(TMINI_FIELD_BLIND);
-    see_free(1);
-    is(TMINI_FIELD_FREE);
-    see(0, 20, false); /* The rest may be missing. */
-    is(TMINI_FIELD_FREE);
-    see(2, 18, true);
-    is(TMINI_FIELD_OCCUPIED);
-}
-
-void test_a_complete_scan_without_any_point_in_a_fields_directions_makes_it_blind(void)
-{
-    see_free(3);
-    begin();
-    add(180, 3000);
-    now_ms += 100;
-    scan.end_ms = now_ms;
-    tmini_fields_step(&fields, &scan);
-    is(TMINI_FIELD_BLIND);
-}
-
-void test_the_users_figures_count(void)
-{
-    field[0].points = 5;
-    field[0].scans = 1;
-    field[0].unseen_percent = 10;
-    field[0].max_age_ms = 50;
-    set_up(box, 2);
-    see(4, 2, true);
-    is(TMINI_FIELD_FREE);
-    see(5, 0, true);
-    is(TMINI_FIELD_OCCUPIED);
-    see(0, 3, true);
-    is(TMINI_FIELD_BLIND);
-    see_free(1);
-    now_ms += 51;
-    is(TMINI_FIELD_BLIND);
-    field[0].unseen_percent = 100;
-    set_up(box, 2);
-    see(0, 20, true);
-    is(TMINI_FIELD_FREE);
-}
-
-void test_255_scans_that_free_a_field_can_be_counted(void)
-{
-    field[0].scans = 255;
-    set_up(box, 2);
-    see_free(254);
-    is(TMINI_FIELD_BLIND);
-    see_free(1);
-    is(TMINI_FIELD_FREE);
-    see_free(1);
-    is(TMINI_FIELD_FREE);
-    see(2, 0, true);
-    see_free(254);
-    is(TMINI_FIELD_OCCUPIED);
-}
-
-void test_clearing_makes_fields_blind(void)
-{
-    see_free(3);
-    field[1] = field[0]; /* Not in the list. */
-    tmini_fields_clear(&fields);
-    is(TMINI_FIELD_BLIND);
-    TEST_ASSERT_EQUAL_INT(TMINI_FIELD_FREE, tmini_field_state(&field[1], now_ms));
-    see_free(2);
-    is(TMINI_FIELD_BLIND);
-}
-
-void test_65536_points_in_a_field_occupy_it(void)
-{
-    const tmini_point_t point = {0, 400, 0, 0};
-    tmini_fields_begin(&fields);
-    for (uint32_t i = 0; i < 65536; i++) {
-        tmini_fields_add(&fields, &point);
-    }
-    tmini_fields_end(&fields, true, now_ms);
-    is(TMINI_FIELD_OCCUPIED);
-    TEST_ASSERT_EQUAL_UINT16(65535, field[0].inside);
-}
-
-void test_each_field_is_judged_for_itself(void)
-{
-    static const tmini_xy_t behind[] = {{-10, -300}, {-600, 300}};
-    field[1] = (tmini_field_t){.corners = behind, .corner_count = 2, .scans = 1};
-    fields.count = 2;
-    set_up(box, 2);
-    begin();
-    add(0, 400);
-    add(1, 400);
-    add(180, 3000);
-    now_ms += 100;
-    scan.end_ms = now_ms;
-    tmini_fields_step(&fields, &scan);
-    is(TMINI_FIELD_OCCUPIED);
-    TEST_ASSERT_EQUAL_INT(TMINI_FIELD_FREE, tmini_field_state(&field[1], now_ms));
-}
-
-/* ---------------------------------------------------------------------------------- the places */
-
-/* Where a single point lies. */
-typedef struct {
-    int16_t degrees;
-    uint16_t distance_mm;
-    bool inside;
-    bool ahead; /* Whether the direction is one of the field's. */
-} place_t;
-
-static void check_places(const place_t *places, size_t count)
-{
-    char number[] = "place ?";
-    for (size_t i = 0; i < count; i++) {
-        number[6] = (char)('a' + i);
-        const tmini_point_t seen = {(uint16_t)((places[i].degrees + 360) % 360 * 64),
-                                    places[i].distance_mm, 0, 0};
+    for (const char *text = row_text(word); text[0] != '\0';) {
+        const long degrees = next_number(&text);
+        const tmini_point_t point = point_at(degrees, (uint16_t)next_number(&text));
         tmini_fields_begin(&fields);
-        tmini_fields_add(&fields, &seen);
-        TEST_ASSERT_EQUAL_UINT16_MESSAGE(places[i].inside, field[0].inside, number);
-        TEST_ASSERT_EQUAL_UINT16_MESSAGE(places[i].ahead, field[0].directions, number);
+        tmini_fields_add(&fields, &point);
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(word[0] == 'i', field[0].inside, word);
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(word[0] != 'a', field[0].directions, word);
     }
 }
 
-/* Its far corners are at 26.57 degrees. */
-void test_a_box_reaches_from_corner_to_corner(void)
+static void see_back(void)
 {
-    static const place_t places[] = {
-        {0, 600, true, true},     {0, 601, false, true},   {26, 667, true, true},
-        {26, 669, false, true},   {-26, 667, true, true},  {27, 660, true, true},
-        {27, 662, false, true},   {89, 299, true, true},   {-89, 299, true, true},
-        {90, 301, false, true},   {-90, 301, false, true}, {91, 100, false, false},
-        {-91, 100, false, false}, {180, 1, false, false},
-    };
-    static const tmini_xy_t turned[] = {{600, -300}, {0, 300}};
-    check_places(places, COUNT(places));
-    set_up(turned, 2);
-    check_places(places, COUNT(places));
+    now_ms += 100;
+    points[0] = point_at(180, 3000);
+    scan = (tmini_scan_t){.points = points, .count = 1, .complete = true, .end_ms = now_ms};
+    tmini_fields_step(&fields, &scan);
 }
 
-/* The same box, the lidar on its edge; the edge is the first, a middle and the last one. */
+static void tell_word(char *word)
+{
+    const char *text = row_text(word);
+    const uint8_t number = (uint8_t)row_number(word);
+    if (row_is(word, "FREE")) {
+        is(TMINI_FIELD_FREE);
+    } else if (row_is(word, "OCCUPIED")) {
+        is(TMINI_FIELD_OCCUPIED);
+    } else if (row_is(word, "BLIND")) {
+        is(TMINI_FIELD_BLIND);
+    } else if (row_is(word, "free")) {
+        see_free(number);
+    } else if (row_is(word, "see") || row_is(word, "part")) {
+        see(number, row_number(text), word[0] == 's');
+    } else if (row_is(word, "back")) {
+        see_back();
+    } else if (word[0] == '+') {
+        now_ms += (uint32_t)strtol(word + 1, NULL, 10);
+    } else if (row_is(word, "clock")) {
+        now_ms = (uint32_t)strtol(text, NULL, 10);
+    } else if (row_is(word, "points")) {
+        field[0].points = number;
+    } else if (row_is(word, "scans")) {
+        field[0].scans = number;
+    } else if (row_is(word, "unseen")) {
+        field[0].unseen_percent = number;
+    } else if (row_is(word, "age")) {
+        field[0].max_age_ms = number;
+    } else if (row_is(word, "box")) {
+        set_up(box, 2);
+    } else if (row_is(word, "lidar")) {
+        fields.lidar.x_mm = (int16_t)next_number(&text);
+        fields.lidar.y_mm = (int16_t)next_number(&text);
+    } else if (row_is(word, "corners")) {
+        set_corners(text);
+    } else if (row_is(word, "in") || row_is(word, "out") || row_is(word, "away")) {
+        expect_places(word);
+    } else {
+        TEST_FAIL_MESSAGE(word);
+    }
+}
+
+static void tell_row(const row_t *row)
+{
+    row_tell(row->steps, tell_word);
+}
+
+/* The box above; its far corners are at 26.57 degrees. */
+#define IN_BOX                                                                              \
+    "in:0,600,26,667,-26,667,27,660,89,299,-89,299 out:0,601,26,669,27,662,90,301,-90,301 " \
+    "away:91,100,-91,100,180,1 "
+#define AT_CORNER "in:135,16383,91,16383,179,16383 away:89,100,-179,100,-45,16383 "
+
+static const row_t rows[] IN_FLASH = {
+    /* ---- States ---- */
+    ROW(a_field_is_blind_until_three_complete_scans_have_seen_nothing_in_it,
+        "BLIND free:2 BLIND free:1 FREE"),
+    ROW(two_points_in_one_scan_occupy_a_field_at_once, /* One in each of two scans are not two. */
+        "free:3 see:1 FREE see:1 FREE see:2 OCCUPIED"),
+    ROW(three_complete_scans_in_a_row_free_a_field_again,
+        "free:3 see:20 free:2 OCCUPIED see:2 free:2 OCCUPIED see:1 FREE"),
+    ROW(an_incomplete_scan_occupies_a_field_and_never_frees_it,
+        "free:3 part:2 OCCUPIED free:2 part:0 OCCUPIED free:1 FREE"),
+    ROW(a_field_becomes_blind_without_complete_scans,
+        "free:3 +300 FREE +1 BLIND free:2 BLIND free:1 FREE"),
+    ROW(incomplete_scans_do_not_keep_a_field_free, "free:3 3( part:0 FREE ) part:0 BLIND"),
+    ROW(a_gap_in_the_scans_is_noticed_even_if_nobody_asked_during_it,
+        "free:3 +201 free:1 BLIND free:2 FREE"),
+    ROW(a_field_that_was_blind_once_stays_blind_when_the_clock_wraps_around,
+        "free:3 +301 BLIND +-301 BLIND"),
+    ROW(the_clock_may_wrap_around_between_scans, "clock:-251 free:3 FREE"),
+    ROW(directions_without_a_range_make_a_field_blind, /* In an incomplete scan: perhaps. */
+        "free:3 see:0:10 FREE see:0:11 BLIND free:2 BLIND free:1 FREE part:0:20 FREE see:2:18 "
+        "OCCUPIED"),
+    ROW(a_complete_scan_without_any_point_in_a_fields_directions_makes_it_blind,
+        "free:3 back BLIND"),
+    ROW(the_users_figures_count,
+        "points:5 scans:1 unseen:10 age:50 box see:4:2 FREE see:5 OCCUPIED see:0:3 BLIND free:1 "
+        "+51 BLIND unseen:100 box see:0:20 FREE"),
+    ROW(scans_that_free_a_field_can_be_255,
+        "scans:255 box free:254 BLIND free:1 FREE free:1 FREE see:2 free:254 OCCUPIED"),
+    ROW(fields_set_up_again_are_blind, "free:3 box BLIND free:2 BLIND free:1 FREE"),
+    /* ---- Places ---- */
+    ROW(a_box_reaches_from_corner_to_corner, IN_BOX "corners:600,-300,0,300 " IN_BOX),
+    ROW(a_polygon_may_have_a_dent, /* An L around the lidar's left. */
+        "corners:-200,100,800,100,800,-500,1000,-500,1000,500,-200,500 "
+        "in:0,801,0,999,30,930,-90,101,-150,210 out:0,799,0,1001,30,920,-90,99,-90,501 "
+        "out:-150,240,-120,100 away:33,950,-154,100,180,150"),
+    ROW(a_box_around_the_lidar_has_all_directions,
+        "corners:-500,-500,500,500 in:0,500,135,700,180,500,359,20,90,500,270,500 "
+        "out:135,710,-90,501 corners:-200,-400,800,500 in:0,799,90,399,180,199,270,499,225,250 "
+        "out:45,600"),
+    ROW(a_triangle_around_the_lidar_has_all_directions,
+        "corners:1000,0,-500,866,-500,-866 in:0,999,60,499,180,499,120,990 out:60,501,180,501"),
+    ROW(a_field_may_begin_at_the_lidar, /* Also 2 mm from it, and 1 mm beside its axis. */
+        "corners:0,0,600,300 away:225,1000,1,1000 out:315,1000 corners:600,300,0,0 "
+        "away:225,1000,1,1000 out:315,1000 corners:2,1,20,300 away:268,1000,359,1000 out:315,1000 "
+        "corners:-2,-1,-20,-300 away:88,1000,179,1000 out:135,1000"),
+    ROW(places_count_from_the_robot_and_the_lidar_has_its_own,
+        "lidar:300,100 box in:0,299,90,399,-90,199,180,299 out:0,301,90,401,-90,201,180,301"),
+    ROW(the_largest_fields_do_not_overflow, /* Products just below 2^31. */
+        "corners:-16383,-16383,16383,16383 in:0,16382,45,16383"),
+    ROW(the_largest_fields_with_the_lidar_at_a_corner_do_not_overflow,
+        "lidar:16383,16383 corners:-16383,-16383,16383,-16383,16383,16383,-16383,16383 " AT_CORNER
+        "corners:16383,16383,-16383,16383,-16383,-16383,16383,-16383 " AT_CORNER),
+};
+
+void test_rows(void)
+{
+    run_rows(rows, tell_row);
+}
+
+/* ------------------------------------------------------------------------------------ polygons */
+
+/* The box, the lidar on its edge; the edge is the first, a middle and the last one. */
 void test_a_polygon_may_begin_anywhere_and_run_either_way(void)
 {
-    static const tmini_xy_t corners[] = {{0, 300}, {600, 300}, {600, -300}, {0, -300},
-                                         {0, 300}, {600, 300}, {600, -300}};
-    static const tmini_xy_t back[] = {{0, -300}, {600, -300}, {600, 300}, {0, 300},
-                                      {0, -300}, {600, -300}, {600, 300}};
-    static const place_t places[] = {
-        {0, 599, true, true},    {0, 601, false, true},    {27, 660, true, true},
-        {27, 662, false, true},  {85, 299, true, true},    {-85, 299, true, true},
-        {95, 100, false, false}, {-95, 100, false, false},
-    };
-    for (size_t i = 0; i < 4; i++) {
-        set_up(&corners[i], 4);
-        check_places(places, COUNT(places));
-        set_up(&back[i], 4);
-        check_places(places, COUNT(places));
+    static const tmini_xy_t clockwise[] = {{0, 300}, {600, 300}, {600, -300}, {0, -300},
+                                           {0, 300}, {600, 300}, {600, -300}};
+    for (size_t i = 0; i < 8; i++) {
+        for (size_t j = 0; j < 4; j++) {
+            polygon[j] = clockwise[i < 4 ? i + j : i - 1 - j];
+        }
+        set_up(polygon, 4);
+        row_tell("in:0,599,27,660,85,299,-85,299 out:0,601,27,662 away:95,100,-95,100", tell_word);
     }
-}
-
-/* An L around the lidar's left: from (-200, 100) to (1000, 500), and down to (800, -500). */
-void test_a_polygon_may_have_a_dent(void)
-{
-    static const tmini_xy_t corners[] = {{-200, 100},  {800, 100},  {800, -500},
-                                         {1000, -500}, {1000, 500}, {-200, 500}};
-    static const place_t places[] = {
-        {0, 799, false, true},     {0, 801, true, true},     {0, 999, true, true},
-        {0, 1001, false, true},    {30, 920, false, true},   {30, 930, true, true},
-        {33, 950, false, false},   {-90, 99, false, true},   {-90, 101, true, true},
-        {-90, 501, false, true},   {-150, 210, true, true},  {-150, 240, false, true},
-        {-154, 100, false, false}, {-120, 100, false, true}, {180, 150, false, false},
-    };
-    set_up(corners, COUNT(corners));
-    check_places(places, COUNT(places));
 }
 
 void test_a_polygon_may_have_255_corners(void)
 {
-    static const place_t places[] = {{0, 999, false, true},
-                                     {0, 1500, true, true},
-                                     {0, 2300, false, true},
-                                     {7, 1500, false, false}};
-    tmini_xy_t corners[255];
+    tmini_xy_t many[255];
     for (int16_t i = 0; i < 255; i++) {
-        corners[i].x_mm = (int16_t)(1000 + 10 * (i < 128 ? i : 254 - i));
-        corners[i].y_mm = i < 128 ? -100 : 100;
+        many[i].x_mm = (int16_t)(1000 + 10 * (i < 128 ? i : 254 - i));
+        many[i].y_mm = i < 128 ? -100 : 100;
     }
-    set_up(corners, 255);
-    check_places(places, COUNT(places));
-}
-
-void test_a_field_around_the_lidar_has_all_directions(void)
-{
-    static const tmini_xy_t around[] = {{-500, -500}, {500, 500}};
-    static const tmini_xy_t triangle[] = {{1000, 0}, {-500, 866}, {-500, -866}};
-    static const place_t in_box[] = {{0, 500, true, true},    {135, 700, true, true},
-                                     {135, 710, false, true}, {180, 500, true, true},
-                                     {-90, 501, false, true}, {359, 20, true, true},
-                                     {90, 500, true, true},   {270, 500, true, true}};
-    static const tmini_xy_t aside[] = {{-200, -400}, {800, 500}};
-    static const place_t in_aside[] = {{0, 799, true, true},   {90, 399, true, true},
-                                       {180, 199, true, true}, {270, 499, true, true},
-                                       {45, 600, false, true}, {225, 250, true, true}};
-    static const place_t in_triangle[] = {{0, 999, true, true},    {60, 499, true, true},
-                                          {60, 501, false, true},  {180, 499, true, true},
-                                          {180, 501, false, true}, {120, 990, true, true}};
-    set_up(around, 2);
-    check_places(in_box, COUNT(in_box));
-    set_up(triangle, 3);
-    check_places(in_triangle, COUNT(in_triangle));
-    set_up(aside, 2);
-    check_places(in_aside, COUNT(in_aside));
-}
-
-/* A corner at the lidar, 2 mm from it, and 1 mm beside its axis. */
-void test_a_field_may_begin_at_the_lidar(void)
-{
-    static const struct {
-        tmini_xy_t box[2];
-        int16_t not_ahead[2];
-        int16_t ahead;
-    } cases[] = {
-        {{{0, 0}, {600, 300}}, {225, 1}, 315},
-        {{{600, 300}, {0, 0}}, {225, 1}, 315},
-        {{{2, 1}, {20, 300}}, {268, 359}, 315},
-        {{{-2, -1}, {-20, -300}}, {88, 179}, 135},
-    };
-    for (size_t i = 0; i < COUNT(cases); i++) {
-        const place_t places[] = {{cases[i].not_ahead[0], 1000, false, false},
-                                  {cases[i].not_ahead[1], 1000, false, false},
-                                  {cases[i].ahead, 1000, false, true}};
-        set_up(cases[i].box, 2);
-        check_places(places, COUNT(places));
-    }
+    set_up(many, 255);
+    row_tell("out:0,999 in:0,1500 out:0,2300 away:7,1500", tell_word);
 }
 
 #if DBL_MANT_DIG > 24
@@ -535,36 +384,39 @@ void test_any_polygon_has_the_directions_and_the_places_that_geometry_gives_it(v
 void test_any_polygon_has_the_directions_and_the_places_that_geometry_gives_it(void) {}
 #endif
 
-/* The lidar is 300 mm ahead of the robot's middle and 100 mm to the left. */
-void test_places_count_from_the_robot_and_the_lidar_has_its_own(void)
+/* -------------------------------------------------------------------------------------- fields */
+
+void test_65536_points_in_a_field_occupy_it(void)
 {
-    static const place_t places[] = {{0, 299, true, true},   {0, 301, false, true},
-                                     {90, 399, true, true},  {90, 401, false, true},
-                                     {-90, 199, true, true}, {-90, 201, false, true},
-                                     {180, 299, true, true}, {180, 301, false, true}};
-    fields.lidar = (tmini_xy_t){300, 100};
-    set_up(box, 2);
-    check_places(places, COUNT(places));
+    const tmini_point_t point = {0, 400, 0, 0};
+    tmini_fields_begin(&fields);
+    for (uint32_t i = 0; i < 65536; i++) {
+        tmini_fields_add(&fields, &point);
+    }
+    tmini_fields_end(&fields, true, now_ms);
+    is(TMINI_FIELD_OCCUPIED);
+    TEST_ASSERT_EQUAL_UINT16(65535, field[0].inside);
 }
 
-/* Products of such numbers are just below 2^31. */
-void test_the_largest_fields_do_not_overflow(void)
+void test_each_field_is_judged_for_itself_and_set_back_with_its_list(void)
 {
-    static const tmini_xy_t corners[] = {{-16383, -16383}, {16383, -16383},  {16383, 16383},
-                                         {-16383, 16383},  {-16383, -16383}, {16383, -16383},
-                                         {16383, 16383}};
-    static const place_t from_corner[] = {{135, 16383, true, true},  {91, 16383, true, true},
-                                          {179, 16383, true, true},  {89, 100, false, false},
-                                          {-179, 100, false, false}, {-45, 16383, false, false}};
-    static const place_t from_middle[] = {{0, 16382, true, true}, {45, 16383, true, true}};
-    for (size_t i = 0; i < 4; i++) {
-        fields.lidar = (tmini_xy_t){16383, 16383};
-        set_up(&corners[i], 4); /* The lidar is at one of the corners. */
-        check_places(from_corner, COUNT(from_corner));
-    }
-    fields.lidar = (tmini_xy_t){0, 0};
-    set_up(corners, 4);
-    check_places(from_middle, COUNT(from_middle));
+    static const tmini_xy_t behind[] = {{-10, -300}, {-600, 300}};
+    field[1] = (tmini_field_t){.corners = behind, .corner_count = 2, .scans = 1};
+    fields.count = 2;
+    set_up(box, 2);
+    see(2, 0, true);
+    points[19] = point_at(180, 3000);
+    tmini_fields_step(&fields, &scan);
+    is(TMINI_FIELD_OCCUPIED);
+    TEST_ASSERT_EQUAL_INT(TMINI_FIELD_FREE, tmini_field_state(&field[1], now_ms));
+    fields.count = 1;
+    see_free(3);
+    is(TMINI_FIELD_FREE);
+    tmini_fields_clear(&fields);
+    is(TMINI_FIELD_BLIND);
+    TEST_ASSERT_EQUAL_INT(TMINI_FIELD_FREE, tmini_field_state(&field[1], now_ms));
+    see_free(2);
+    is(TMINI_FIELD_BLIND);
 }
 
 void test_fields_that_cannot_be_are_refused_and_stay_blind(void)
