@@ -15,7 +15,8 @@
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
 static const tmini_xy_t box[] = {{0, -300}, {600, 300}}; /* From straight left to straight right. */
-static tmini_xy_t polygon[6];
+static tmini_xy_t memory[7] = {{-16000, -16000}}; /* What is before the corners does not count. */
+static tmini_xy_t *const polygon = &memory[1];
 static tmini_field_t field[2];
 static tmini_fields_t fields;
 static tmini_point_t points[20];
