@@ -61,6 +61,11 @@ int console_print(uint64_t now_us, const char *format, va_list arguments)
     return length;
 }
 
+const char *console_text(void)
+{
+    return console.text;
+}
+
 void assert_said(const char *text)
 {
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(console.text, text), console.text);

@@ -20,8 +20,11 @@ void console_write(uint64_t now_us, const char *text);
 int console_print(uint64_t now_us, const char *format, va_list arguments)
     __attribute__((format(printf, 2, 0)));
 
-/* For a model that stores the text itself. */
+/* Bytes that are no text. */
 void console_note(uint64_t now_us, size_t bytes);
+
+/* The whole output. */
+const char *console_text(void);
 
 /* Search for the text in the whole output, or in the last line with a comma, which examples print
  * each second. */

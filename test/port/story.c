@@ -16,8 +16,8 @@ static unsigned chapter;
 static void it_scans_and_an_obstacle_comes(void)
 {
     assert_said("model 151, firmware 1.2, hardware 1, serial 2026031700012345\n");
-    assert_last_said(", go; bytes ");
-    assert_last_said("lost: 0 checksums, 0 bytes, 0 gaps\n");
+    assert_last_said(", go;");
+    assert_last_said("lost: 0 checksums, 0 bytes, 0 "); /* Gaps or overflows. */
     assert_stops(false);
     sim_place_obstacle(&machine.lidar, 0, 640, 250);
 }
@@ -27,6 +27,20 @@ static void it_stops_and_the_obstacle_goes(void)
     assert_last_said(", STOP;");
     assert_stops(true);
     sim_clear_obstacles(&machine.lidar);
+}
+
+/* It still measures, and nothing is near. */
+static void it_goes_and_becomes_faulty(void)
+{
+    assert_stops(false);
+    sim_set_health(&machine.lidar, SIM_HEALTH_PD);
+}
+
+static void it_stops_and_is_repaired(void)
+{
+    assert_said("faults: PD\n");
+    assert_stops(true);
+    sim_set_health(&machine.lidar, 0);
 }
 
 static void it_goes_and_power_fails(void)
@@ -54,9 +68,11 @@ static const struct {
 } chapters[] = {
     {4000000, it_scans_and_an_obstacle_comes},
     {5500000, it_stops_and_the_obstacle_goes},
-    {6500000, it_goes_and_power_fails},
-    {8500000, it_is_blind_and_power_returns},
-    {30000000, it_has_come_back},
+    {6500000, it_goes_and_becomes_faulty},
+    {7500000, it_stops_and_is_repaired},
+    {8500000, it_goes_and_power_fails},
+    {10500000, it_is_blind_and_power_returns},
+    {32000000, it_has_come_back},
 };
 
 #define CHAPTERS (sizeof chapters / sizeof chapters[0])

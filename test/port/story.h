@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A story for the obstacle stops in examples/: an obstacle comes and goes, and the lidar's power
- * fails and returns. The program must print the lidar's model, and stop the robot only while
- * needed. */
+/* A story for the obstacle stops in examples/: an obstacle comes and goes, the lidar becomes faulty
+ * and is repaired, and its power fails and returns. The program must print the lidar's model, and
+ * stop the robot only while needed. */
 
 #ifndef STORY_H
 #define STORY_H

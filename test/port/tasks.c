@@ -10,7 +10,7 @@
 
 #include "machine.h"
 
-#define TASKS 4u
+#define TASKS 4
 #define STACK_SIZE (256u * 1024u)
 #define STEP_US 40u
 
@@ -40,7 +40,7 @@ static void enter(void)
 
 task_t *tasks_new(unsigned priority, void (*function)(void *argument), void *argument)
 {
-    unsigned i = 0;
+    int i = 0;
     while (i < TASKS && tasks[i].used) {
         i++;
     }
@@ -69,7 +69,7 @@ static bool is_ready(const task_t *task)
 static task_t *most_urgent(void)
 {
     task_t *chosen = NULL;
-    for (unsigned i = 0; i < TASKS; i++) {
+    for (int i = 0; i < TASKS; i++) {
         if (is_ready(&tasks[i]) && (chosen == NULL || tasks[i].priority > chosen->priority)) {
             chosen = &tasks[i];
         }
@@ -84,6 +84,15 @@ void tasks_run(task_t *next)
     if (next != self && swapcontext(&self->context, &next->context) != 0) {
         fail("no change of tasks");
     }
+}
+
+void tasks_alternate(void)
+{
+    ptrdiff_t next = tasks_current - tasks;
+    do {
+        next = (next + 1) % TASKS;
+    } while (!is_ready(&tasks[next]));
+    tasks_run(&tasks[next]);
 }
 
 void tasks_yield(void)
@@ -110,10 +119,17 @@ void tasks_wait(uint64_t until_us, bool (*is_awaited)(const task_t *))
     self->is_awaited = NULL;
 }
 
+/* Nobody runs it again. */
+void tasks_end(void)
+{
+    tasks_current->used = false;
+    tasks_wait(0, NULL);
+}
+
 unsigned tasks_count(void)
 {
     unsigned count = 0;
-    for (unsigned i = 1; i < TASKS; i++) {
+    for (int i = 1; i < TASKS; i++) {
         count += tasks[i].used;
     }
     return count;

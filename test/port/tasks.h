@@ -38,6 +38,12 @@ void tasks_yield(void);
 /* Gives it to this one. */
 void tasks_run(task_t *next);
 
+/* Gives it to the next task that is ready, whatever its priority: it has a processor of its own. */
+void tasks_alternate(void);
+
+/* Ends the running task. */
+void tasks_end(void);
+
 void tasks_wait(uint64_t until_us, bool (*is_awaited)(const task_t *));
 
 /* The number of tasks, not counting the test. */

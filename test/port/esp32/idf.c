@@ -15,6 +15,7 @@
 #include "esp_log.h"
 #include "esp_pm.h"
 #include "esp_timer.h"
+#include "interrupting_atomic.h"
 
 #define FIFO_SIZE 128u
 
@@ -40,12 +41,10 @@ static esp_err_t call(const char *format, ...)
 #define CALL(function, parameters, check, record, ...)          \
     esp_err_t function parameters                               \
     {                                                           \
-        idf_lock();                                             \
         const esp_err_t error = check ? call record : ESP_FAIL; \
         if (error == ESP_OK) {                                  \
             (void)(__VA_ARGS__);                                \
         }                                                       \
-        idf_unlock();                                           \
         return error;                                           \
     }
 #define RECORDED(function, parameters, ...) CALL(function, parameters, true, __VA_ARGS__)
@@ -139,17 +138,13 @@ void idf_begin(const sim_observer_t *observer)
 
 void idf_hold_interrupts(uint32_t us)
 {
-    idf_lock();
     idf.held_until_us = machine.now_us + us;
-    idf_unlock();
 }
 
 void idf_break_reception(void)
 {
-    idf_lock();
     idf.has_interrupts = false;
     idf.is_routed = false;
-    idf_unlock();
 }
 
 /* ---------------------------------------------------------------------------------- UART driver */
@@ -157,7 +152,6 @@ void idf_break_reception(void)
 esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffer_size,
                               int queue_size, QueueHandle_t *queue, int intr_alloc_flags)
 {
-    idf_lock();
     const esp_err_t error = idf.installed ? ESP_FAIL
                                           : call("install(%d,%d,%d,%d,%d)", uart, rx_buffer_size,
                                                  tx_buffer_size, queue_size, intr_alloc_flags);
@@ -174,7 +168,6 @@ esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffe
         idf.fifo_overflowed = false;
     }
     *queue = (QueueHandle_t)(void *)&idf.queue;
-    idf_unlock();
     return error;
 }
 
@@ -194,10 +187,8 @@ esp_err_t uart_set_pin(uart_port_t uart, int tx, int rx, int rts, int cts)
     TEST_ASSERT_NOT_EQUAL(tx, rx);
     TEST_ASSERT_EQUAL(UART_PIN_NO_CHANGE, rts);
     TEST_ASSERT_EQUAL(UART_PIN_NO_CHANGE, cts);
-    idf_lock();
     const esp_err_t error = call("pins(%d,%d,%d)", uart, tx, rx);
     idf.is_routed = error == ESP_OK;
-    idf_unlock();
     return error;
 }
 
@@ -215,11 +206,9 @@ OF_DRIVER(uart_flush_input, (uart_port_t uart), ("flush(%d)", uart), machine.cou
 esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size)
 {
     TEST_ASSERT_EQUAL(UART_NUM_1, uart);
-    idf_lock();
-    const bool is_there = has_driver();
+    interrupt();
     *size = idf.buffer_count;
-    idf_unlock();
-    return is_there ? ESP_OK : ESP_FAIL;
+    return has_driver() ? ESP_OK : ESP_FAIL;
 }
 
 static size_t take_from_buffer(uint8_t *bytes, size_t length)
@@ -247,25 +236,21 @@ int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t 
     TEST_ASSERT_EQUAL(UART_NUM_1, uart);
     TEST_ASSERT_EQUAL_UINT32(0, ticks);
     TEST_ASSERT_NOT_EQUAL_UINT32(0, length);
-    idf_lock();
+    interrupt();
     const bool fails = !has_driver() || (idf.failing != NULL && strcmp(idf.failing, "read") == 0);
-    const int count = fails ? -1 : (int)read_bytes(buffer, length);
-    idf_unlock();
-    return count;
+    return fails ? -1 : (int)read_bytes(buffer, length);
 }
 
 /* A failing call sends `idf.failure` bytes. */
 int uart_tx_chars(uart_port_t uart, const char *buffer, uint32_t length)
 {
     TEST_ASSERT_EQUAL_UINT32(2, length);
-    idf_lock();
     const esp_err_t error =
         !has_driver() ? -1
                       : call("send(%d,%02X,%02X)", uart, (uint8_t)buffer[0], (uint8_t)buffer[1]);
     if (error == ESP_OK) {
         sim_receive(&machine.lidar, (const uint8_t *)buffer, length, machine.now_us);
     }
-    idf_unlock();
     return error == ESP_OK ? 2 : error;
 }
 
@@ -292,33 +277,26 @@ void vTaskDelete(TaskHandle_t handle)
 
 void vTaskDelay(TickType_t ticks)
 {
-    idf_lock();
     (void)call("delay(%d)", (int)ticks);
     idf_wait(ticks, false);
-    idf_unlock();
 }
 
 int64_t esp_timer_get_time(void)
 {
-    idf_lock();
-    const int64_t now_us = (int64_t)machine.now_us;
-    idf_unlock();
-    return now_us;
+    return (int64_t)machine.now_us;
 }
 
 UBaseType_t uxQueueSpacesAvailable(const QueueHandle_t queue)
 {
     TEST_ASSERT_EQUAL_PTR(idf.queue, queue);
-    idf_lock();
-    const UBaseType_t spaces = (UBaseType_t)(idf.queue_size - idf.queue_count);
-    idf_unlock();
-    return spaces;
+    interrupt();
+    return (UBaseType_t)(idf.queue_size - idf.queue_count);
 }
 
 BaseType_t xQueueReceive(QueueHandle_t queue, void *buffer, TickType_t ticks)
 {
     TEST_ASSERT_EQUAL_PTR(idf.queue, queue);
-    idf_lock();
+    interrupt();
     if (ticks > 0) {
         (void)call("%d", (int)ticks);
         idf_wait(ticks, true);
@@ -330,7 +308,6 @@ BaseType_t xQueueReceive(QueueHandle_t queue, void *buffer, TickType_t ticks)
         idf.queue_count--;
         memmove(&idf.queue[0], &idf.queue[1], idf.queue_count * sizeof idf.queue[0]);
     }
-    idf_unlock();
     return received ? pdTRUE : pdFALSE;
 }
 
@@ -375,10 +352,8 @@ RECORDED(gpio_set_level, (gpio_num_t pin, uint32_t level), ("level(%d)", pin),
 
 int idf_pin(int pin)
 {
-    idf_lock();
-    const idf_pin_t state = idf.pins[pin];
-    idf_unlock();
-    return state.is_gpio && state.is_output ? state.level : -1;
+    const idf_pin_t *const state = &idf.pins[pin];
+    return state->is_gpio && state->is_output ? state->level : -1;
 }
 
 /* Bytes that ESP-IDF adds to a log line: colours, and the time in brackets. */
@@ -387,26 +362,12 @@ int idf_pin(int pin)
 void esp_log_line(char level, const char *tag, const char *format, ...)
 {
     va_list arguments;
-    char *const end = idf.log + sizeof idf.log;
-    idf_lock();
-    char *at = idf.log + idf.log_length;
-    at += snprintf(at, (size_t)(end - at), "%c %s: ", level, tag);
+    (void)machine_printf("%c %s: ", level, tag);
     va_start(arguments, format);
-    at += vsnprintf(at, (size_t)(end - at), format, arguments);
+    (void)console_print(machine.now_us, format, arguments);
     va_end(arguments);
-    at += snprintf(at, (size_t)(end - at), "\n");
-    console_note(machine.now_us, (size_t)(at - idf.log) - idf.log_length + LOG_EXTRA);
-    idf.log_length = (size_t)(at - idf.log);
-    if (idf.log_length > sizeof idf.log - 1024u) {
-        abort(); /* No test logs this much. */
-    }
-    idf_unlock();
-}
-
-void idf_forget_log(void)
-{
-    idf.log_length = 0;
-    idf.log[0] = '\0';
+    (void)machine_printf("\n");
+    console_note(machine.now_us, LOG_EXTRA);
 }
 
 void esp_stop(esp_err_t error)

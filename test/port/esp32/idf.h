@@ -5,8 +5,8 @@
  * that a test chooses. Its UART's driver takes what the machine's line brings (machine.h), or what
  * a test puts into its buffer.
  *
- * With idf_tasks.c tasks are real threads and run at the same time, as on two cores; time is
- * virtual and advances only when all of them wait. Without it a test plays tasks and time. */
+ * With idf_tasks.c tasks run as on two cores, and time passes while all of them wait, or one works.
+ * Without it a test plays tasks and time. */
 
 #ifndef IDF_H
 #define IDF_H
@@ -45,8 +45,6 @@ typedef struct {
     char calls[1024];    /* All calls so far, in order. */
     const char *failing; /* Calls whose record begins with this text fail; NULL: none. */
     esp_err_t failure;   /* The result of a call that fails. */
-    char log[16384];
-    size_t log_length;
     idf_pin_t pins[64];
     unsigned locks_held; /* Of the power management. */
 
@@ -75,8 +73,6 @@ extern idf_t idf;
 /* Resets the model. `observer` watches the lidar. */
 void idf_begin(const sim_observer_t *observer);
 
-void idf_forget_log(void);
-
 /* The level of a pin; -1 if it is no output. */
 int idf_pin(int pin);
 
@@ -89,15 +85,12 @@ void idf_hold_interrupts(uint32_t us);
 /* Puts an event into the queue. If it is full, the event is lost, as in ESP-IDF. */
 void idf_post(uart_event_type_t type, size_t size);
 
-/* Tasks and time. While it is locked, a test may change model and lidar. */
-void idf_lock(void);
-void idf_unlock(void);
-void idf_wait(TickType_t ticks, bool for_event); /* With the lock held. */
+/* Tasks and time; the test of the calls plays them. */
+void idf_wait(TickType_t ticks, bool for_event);
 void idf_begin_task(TaskFunction_t function, void *argument);
 void idf_end_task(void);
 
-/* idf_tasks.c: forgets all tasks but the caller; their number. */
+/* idf_tasks.c: forgets all tasks but the caller. */
 void idf_begin_tasks(void);
-unsigned idf_tasks(void);
 
 #endif

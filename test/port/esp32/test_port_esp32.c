@@ -10,7 +10,7 @@
 
 #include "unity.h"
 
-#include "encoder.h"
+#include "console.h"
 #include "idf.h"
 #include "tmini_esp32.h"
 
@@ -42,10 +42,6 @@ static TaskFunction_t task;
 static void *task_argument;
 
 /* -------------------------------------------------------------------------------------- helpers */
-
-void idf_lock(void) {}
-
-void idf_unlock(void) {}
 
 void idf_wait(TickType_t ticks, bool for_event)
 {
@@ -256,16 +252,15 @@ static void assert_taken(int *member, int value)
 {
     *member = value;
     TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_init(&port, &wiring));
-    TEST_ASSERT_EQUAL_STRING("", idf.log);
+    TEST_ASSERT_EQUAL_STRING("", console_text());
 }
 
 static void assert_refused(int *member, int value, const char *name)
 {
     *member = value;
     TEST_ASSERT_EQUAL_INT(ESP_ERR_INVALID_ARG, tmini_esp32_init(&port, &wiring));
-    if (strstr(idf.log, "E tmini: ") == NULL || strstr(idf.log, name) == NULL) {
-        TEST_FAIL_MESSAGE(name);
-    }
+    assert_said("E tmini: ");
+    assert_said(name);
     TEST_ASSERT_EQUAL_INT(ESP_ERR_INVALID_STATE, tmini_esp32_start(&port, &lidar));
 }
 
@@ -280,7 +275,7 @@ void test_values_out_of_range_are_refused_by_name_before_anything_is_touched(voi
             assert_refused(ranges[i].member, ranges[i].most + 1, ranges[i].name);
         }
         if (i >= 7) { /* Without a task, its settings are not checked. */
-            idf_forget_log();
+            console_begin();
             wiring.with_task = false;
             assert_taken(ranges[i].member, ranges[i].least - 1);
         }
@@ -431,22 +426,6 @@ void test_every_byte_is_handed_on_and_every_gap_is_reported_in_its_place(void)
     }
 }
 
-void test_bytes_are_handed_on_in_order_and_counted(void)
-{
-    start_well(false);
-    for (unsigned round = 0; round < 2; round++) {
-        hold(130);
-        for (unsigned i = 0; i < 130; i++) {
-            idf.buffer[i] = (uint8_t)(130 * round + i);
-        }
-        play("D130 >130");
-    }
-    for (unsigned i = 0; i < 260; i++) {
-        TEST_ASSERT_EQUAL_HEX8(i & 0xFF, tmini_ring_peek(&lidar.ring, i));
-    }
-    TEST_ASSERT_EQUAL_UINT32(260, counted().bytes);
-}
-
 static void tap(void *context, const uint8_t *bytes, size_t count)
 {
     char *const heard = context;
@@ -465,39 +444,6 @@ void test_a_tap_gets_every_byte_and_is_told_of_each_gap(void)
     tmini_esp32_tap(&port, NULL, NULL);
     play("p H20 D20 O >20!");
     TEST_ASSERT_EQUAL_STRING("128 0! 50 0! 100 0! ", heard);
-}
-
-/* A packet of two samples; the distance of the first sample is the packet's number. */
-static size_t make_packet(uint8_t *out, uint16_t number)
-{
-    const encode_sample_t samples[2] = {{.distance_mm = number}, {.distance_mm = 9}};
-    const encode_packet_t packet = {.lsn = 2, .first_q6 = 640, .last_q6 = 704, .samples = samples};
-    return encode_packet(out, &packet);
-}
-
-/* Each packet has 16 bytes. Bytes 20 to 39 are lost: most of packet 2 and half of packet 3. */
-void test_an_overflow_costs_no_packet_before_or_after_it(void)
-{
-    uint8_t stream[4 * ENCODE_PACKET_MAX];
-    tmini_counters_t counters;
-    size_t size = 0;
-    for (uint16_t number = 1; number <= 4; number++) {
-        size += make_packet(&stream[size], number);
-    }
-    TEST_ASSERT_EQUAL_UINT(64, size);
-    start_well(false);
-    hold(20);
-    memcpy(idf.buffer, stream, 20);
-    play("D20 O >20!");
-    hold(24);
-    memcpy(idf.buffer, &stream[40], 24);
-    play("D24 >24");
-    machine.now_us = 1000 * 1000; /* A long silence: the parser gives up on partial packets. */
-    tmini_poll(&lidar);
-    tmini_counters(&lidar, &counters);
-    TEST_ASSERT_EQUAL_UINT32(2, counters.packets);
-    TEST_ASSERT_EQUAL_UINT32(32, counters.bytes_in_packets);
-    TEST_ASSERT_EQUAL_UINT32(12, counters.bytes_skipped);
 }
 
 void test_a_driver_that_fails_to_read_ends_the_call(void)
@@ -547,18 +493,6 @@ void test_the_task_receives_until_it_is_stopped_and_checks_a_full_ring_each_tick
         TEST_ASSERT_EQUAL_UINT(tasks[i].unread, tmini_ring_unread(&lidar.ring));
         TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&lidar.ring));
     }
-}
-
-void test_a_task_that_is_started_again_receives_again(void)
-{
-    static const char *const events_again[] = {"H3 D3 X"};
-    start_well(true);
-    TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_stop(&port));
-    TEST_ASSERT_EQUAL_INT(ESP_OK, tmini_esp32_start(&port, &lidar));
-    waits = events_again;
-    on_wait = play_next;
-    task(task_argument);
-    TEST_ASSERT_EQUAL_UINT(3, tmini_ring_unread(&lidar.ring));
 }
 
 /* ------------------------------------------------------------------------------------- the port */
