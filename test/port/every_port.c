@@ -9,7 +9,7 @@
 void setUp(void);
 void tearDown(void);
 
-static const port_way_t *way; /* NULL: no way has been chosen yet. */
+const port_way_t *port_way;
 
 void init_lidar(size_t rx_size)
 {
@@ -19,7 +19,7 @@ void init_lidar(size_t rx_size)
 void setUp(void)
 {
     const sim_observer_t observer = truth_begin();
-    way = NULL;
+    port_way = NULL;
     port_begin(&observer);
     init_lidar(1024);
 }
@@ -35,21 +35,26 @@ static void begin(const port_way_t *chosen)
 {
     tearDown();
     setUp();
-    way = chosen;
-    UNITY_SET_DETAIL(way->name);
-    if (way->choose != NULL) {
-        way->choose();
+    port_way = chosen;
+    UNITY_SET_DETAIL(port_way->name);
+    if (port_way->choose != NULL) {
+        port_way->choose();
     }
 }
 
 void begin_again(void)
 {
-    begin(way);
+    begin(port_way);
+}
+
+void begin_way(unsigned number)
+{
+    begin(&port_ways[number]);
 }
 
 bool next_way(void)
 {
-    const port_way_t *const next = way == NULL ? port_ways : way + 1;
+    const port_way_t *const next = port_way == NULL ? port_ways : port_way + 1;
     if (next == &port_ways[port_way_count]) {
         return false;
     }
@@ -84,7 +89,7 @@ void test_every_point_arrives(void)
     while (next_way()) {
         start();
         assert_true_scans(1, 10);
-        TEST_ASSERT_UINT32_WITHIN(way->behind, machine.line_bytes, port_counted().bytes);
+        TEST_ASSERT_UINT32_WITHIN(port_way->behind, machine.line_bytes, port_counted().bytes);
         TEST_ASSERT_EQUAL_UINT32(0, port_counted().lost);
         assert_counted(0);
     }
@@ -93,7 +98,7 @@ void test_every_point_arrives(void)
 void test_wherever_bytes_come_every_point_arrives(void)
 {
     while (next_way()) {
-        if (!way->without_fifo) {
+        if (!port_way->without_fifo) {
             start();
             assert_true_scans_wherever_bytes_come();
         }
@@ -103,12 +108,12 @@ void test_wherever_bytes_come_every_point_arrives(void)
 void test_pauses_that_the_layer_below_can_hold_cost_no_scan(void)
 {
     while (next_way()) {
-        if (way->holds > 0) {
-            if (way->enlarge != NULL) {
-                way->enlarge();
+        if (port_way->holds > 0) {
+            if (port_way->enlarge != NULL) {
+                port_way->enlarge();
             }
             start();
-            assert_pauses_cost_no_scan(way->holds);
+            assert_pauses_cost_no_scan(port_way->holds);
         }
     }
 }
@@ -120,12 +125,12 @@ void test_an_overrun_is_a_gap_and_costs_only_the_packets_that_it_hit(void)
         tmini_counters_t counters;
         start();
         assert_true_scans(1, 2);
-        way->hold_up(20000);
+        port_way->hold_up(20000);
         assert_gap();
         assert_counted(1);
         tmini_counters(&lidar, &counters);
         /* One more may still be arriving. */
-        TEST_ASSERT_LESS_OR_EQUAL_UINT32(way->packets_per_loss + 1,
+        TEST_ASSERT_LESS_OR_EQUAL_UINT32(port_way->packets_per_loss + 1,
                                          truth_packets() - counters.packets);
     }
 }
@@ -162,10 +167,10 @@ static uint32_t packets_with(uint32_t errors)
 void test_no_packet_is_put_together_across_a_loss(void)
 {
     while (next_way()) {
-        if (way->loss != 0) {
+        if (port_way->loss != 0) {
             TEST_ASSERT_EQUAL_UINT32(1, packets_with(0));
-            begin(way);
-            TEST_ASSERT_EQUAL_UINT32(0, packets_with(way->loss));
+            begin_again();
+            TEST_ASSERT_EQUAL_UINT32(0, packets_with(port_way->loss));
         }
     }
 }
@@ -174,12 +179,12 @@ void test_errors_of_the_line_are_counted_by_kind(void)
 {
     while (next_way()) {
         static const uint8_t byte = 0x55;
-        if (way->framing_error != 0) {
+        if (port_way->framing_error != 0) {
             start();
             assert_true_scans(1, 1);
-            machine_receive(way->framing_error, &byte, 1);
+            machine_receive(port_way->framing_error, &byte, 1);
             poll_until(TMINI_EVENT_SCAN);
-            machine_receive(way->line_break, &byte, 1);
+            machine_receive(port_way->line_break, &byte, 1);
             poll_until(TMINI_EVENT_SCAN);
             TEST_ASSERT_EQUAL_UINT32(1, port_counted().framing_errors);
             TEST_ASSERT_EQUAL_UINT32(1, port_counted().breaks);
@@ -193,7 +198,7 @@ void test_errors_of_the_line_are_counted_by_kind(void)
 void test_starting_twice_is_refused_and_changes_nothing(void)
 {
     while (next_way()) {
-        if (!way->always_wired) {
+        if (!port_way->always_wired) {
             TEST_ASSERT_NOT_EQUAL_INT(0, port_start()); /* It has no wiring yet. */
             start();
             TEST_ASSERT_NOT_EQUAL_INT(0, port_start());
@@ -212,7 +217,7 @@ void test_bytes_before_the_start_are_dropped(void)
         TEST_ASSERT_GREATER_THAN_UINT32(1000, machine.line_bytes);
         TEST_ASSERT_EQUAL_UINT32(0, port_counted().bytes);
         TEST_ASSERT_EQUAL_INT(0, port_start());
-        TEST_ASSERT_LESS_OR_EQUAL_UINT32(way->old, port_counted().bytes);
+        TEST_ASSERT_LESS_OR_EQUAL_UINT32(port_way->old, port_counted().bytes);
         TEST_ASSERT_EQUAL_UINT32(0, port_counted().overruns);
     }
 }
@@ -229,7 +234,7 @@ void test_it_stops_and_starts_while_the_lidar_streams(void)
             port_program.work(10000 + 100 * i);
             TEST_ASSERT_EQUAL_UINT32(bytes, port_counted().bytes);
             TEST_ASSERT_EQUAL_INT(0, port_start());
-            TEST_ASSERT_LESS_OR_EQUAL_UINT32(way->old, port_counted().bytes);
+            TEST_ASSERT_LESS_OR_EQUAL_UINT32(port_way->old, port_counted().bytes);
             assert_counted(0);
             poll_until(TMINI_EVENT_SCAN);
             truth_assert_nothing_invented(tmini_scan(&lidar));
@@ -241,10 +246,10 @@ void test_it_stops_and_starts_while_the_lidar_streams(void)
 void test_reception_that_was_broken_is_started_again(void)
 {
     while (next_way()) {
-        if (way->break_reception != NULL) {
+        if (port_way->break_reception != NULL) {
             start();
             assert_true_scans(1, 1);
-            way->break_reception();
+            port_way->break_reception();
             assert_recovery();
             port_stop();
             port_program.port->restart(port_program.context); /* Stopped, it does nothing. */

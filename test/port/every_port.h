@@ -70,9 +70,12 @@ void port_assert_stopped(void); /* Nothing is left switched on, or taken. */
     scanning_t port_program = {                         \
         .port = &tmini_##platform##_port, .context = &port, .wait = wait, .work = PORT_WORK}
 
+extern const port_way_t *port_way; /* NULL: no way has been chosen yet. */
+
 /* Begins with the next way; returns false after the last one. */
 bool next_way(void);
-void begin_again(void); /* With the same way. */
+void begin_again(void);          /* With the same way. */
+void begin_way(unsigned number); /* Of port_ways. */
 
 /* Starts the port; the port and the lidar. */
 void start_port(void);

@@ -5,13 +5,23 @@
 
 #include <string.h>
 
+#include "unity.h"
+
 hal_rig_t hal_rig;
 uint8_t hal_rig_block[HAL_RIG_BLOCK_SIZE] __ALIGNED(32);
 
-static rig_way_t way;
+static void wait(void)
+{
+    machine_pass(1000);
+}
 
-const tmini_port_t *const rig_port = &tmini_stm32_hal_port;
-void *const rig_context = &hal_rig.port;
+scanning_t port_program = {
+    .port = &tmini_stm32_hal_port, .context = &hal_rig.port, .wait = wait, .work = machine_pass};
+#ifdef STM32_MODEL_NO_DMA
+const unsigned port_way_count = 1;
+#else
+const unsigned port_way_count = 3;
+#endif
 
 /* ---------------------------------------------------------- handlers and callbacks of a project */
 
@@ -40,8 +50,7 @@ void HAL_UART_ErrorCallback(UART_HandleTypeDef *huart)
 {
     const bool was_ready = huart->RxState == HAL_UART_STATE_READY;
     tmini_stm32_hal_error(&hal_rig.port, huart);
-    hal_rig.started_in_error =
-        hal_rig.started_in_error || (was_ready && huart->RxState != HAL_UART_STATE_READY);
+    TEST_ASSERT_EQUAL(was_ready, huart->RxState == HAL_UART_STATE_READY); /* It starts nothing. */
 }
 
 void __WFI(void)
@@ -78,9 +87,8 @@ static void open_dma(void) {}
 
 #endif
 
-void rig_open(rig_way_t wanted)
+void rig_open(void)
 {
-    way = wanted;
     memset(&hal_rig, 0, sizeof hal_rig);
     model_reset();
     irq.lines[MODEL_USART_IRQ].handler = usart_interrupt;
@@ -96,7 +104,7 @@ void rig_open(rig_way_t wanted)
 
 tmini_status_t rig_start(void)
 {
-    if (way == BY_BLOCKS) {
+    if (rig_way == BY_BLOCKS) {
         model.cached = hal_rig_block;
         model.cached_size = sizeof hal_rig_block;
         return tmini_stm32_hal_start_blocks(&hal_rig.port, &lidar, hal_rig_block,
@@ -106,17 +114,25 @@ tmini_status_t rig_start(void)
     return tmini_stm32_hal_start(&hal_rig.port, &lidar);
 }
 
-void rig_stop(void)
+void hal_rig_assert_refused(uint32_t *member, uint32_t value)
+{
+    const uint32_t good = *member;
+    *member = value;
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, rig_start());
+    *member = good;
+}
+
+void port_stop(void)
 {
     tmini_stm32_hal_stop(&hal_rig.port);
 }
 
-rig_errors_t rig_errors(void)
+rig_counts_t rig_counts(void)
 {
     tmini_stm32_hal_counters_t c;
     tmini_stm32_hal_counters(&hal_rig.port, &c);
-    return (rig_errors_t){c.overruns, c.framing_errors, c.noise_errors,
-                          c.laps,     c.restarts,       c.other_errors};
+    return (rig_counts_t){0,      c.overruns, c.framing_errors, c.noise_errors,
+                          c.laps, c.restarts, c.other_errors};
 }
 
 bool rig_is_off(void)
@@ -128,8 +144,65 @@ bool rig_is_off(void)
 void rig_break_reception(void)
 {
     model.dma.enabled = false;
-    if (way == BY_BYTES) {
+    if (rig_way == BY_BYTES) {
         model_usart.CR1 &= ~MODEL_CR1_RXNEIE;
         model_usart.CR3 &= ~MODEL_CR3_EIE;
     }
 }
+
+/* ------------------------------------------------------------------------------ words of scenes */
+
+#ifdef HAL_DMA_MODULE_ENABLED
+
+ACT(ask_for_info, TEST_ASSERT_EQUAL(TMINI_OK, tmini_request_info(&lidar)))
+ACT(end_reception, hal_rig.uart.RxState = HAL_UART_STATE_READY)
+ACT(pause_dma, model_usart.CR3 = 0)
+
+static void set_up_again(void)
+{
+    model_usart.CR1 = MODEL_CR1_UE | MODEL_CR1_RE | MODEL_CR1_TE;
+    pause_dma();
+    end_reception();
+}
+
+ACT(abort_dma, TEST_ASSERT_EQUAL(HAL_OK, HAL_DMA_Abort(&hal_rig.dma)))
+
+static void suspend_dma(void)
+{
+    model.dma.enabled = false;
+    hal_rig.dma.State = HAL_DMA_STATE_SUSPEND;
+}
+
+ACT(fail_dma, model.dma.flags |= MODEL_DMA_TE)
+
+static void block_dma(void)
+{
+    hal_rig.dma.State = HAL_DMA_STATE_ABORT;
+    pause_dma();
+    end_reception();
+}
+
+ACT(unblock_dma, hal_rig.dma.State = HAL_DMA_STATE_BUSY)
+ACT(report_event, tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart))
+ACT(report_half, tmini_stm32_hal_rx_half_complete(&hal_rig.port, &hal_rig.uart))
+
+#endif
+
+static const play_word_t hal_words[] = {
+#ifdef HAL_DMA_MODULE_ENABLED
+    {.name = "info", .act = ask_for_info},
+    {.name = "end", .act = end_reception},
+    {.name = "pause", .act = pause_dma},
+    {.name = "set-up", .act = set_up_again},
+    {.name = "abort", .act = abort_dma},
+    {.name = "suspend", .act = suspend_dma},
+    {.name = "TE", .act = fail_dma},
+    {.name = "block", .act = block_dma},
+    {.name = "unblock", .act = unblock_dma},
+    {.name = "event", .act = report_event},
+    {.name = "half", .act = report_half},
+#endif
+    {.name = NULL},
+};
+
+const play_word_t *const port_words[] = {rig_words, hal_words, NULL};

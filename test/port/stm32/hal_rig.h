@@ -22,10 +22,12 @@ typedef struct {
     DMA_QListTypeDef list;
 #endif
     tmini_stm32_hal_t port;
-    bool started_in_error; /* Reception was started again in the HAL's error callback. */
 } hal_rig_t;
 
 extern hal_rig_t hal_rig;
 extern uint8_t hal_rig_block[HAL_RIG_BLOCK_SIZE];
+
+/* With this value in this place, a start is refused. */
+void hal_rig_assert_refused(uint32_t *member, uint32_t value);
 
 #endif
