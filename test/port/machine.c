@@ -32,16 +32,21 @@ static void fail(unsigned number)
     abort();
 }
 
-void machine_begin(const sim_observer_t *observer, const machine_uart_t *uart)
+void machine_new_lidar(const sim_observer_t *observer)
 {
     sim_config_t config = sim_default_config();
     config.marked = observer != NULL; /* So that each point shows which sample it is (truth.h). */
+    sim_init(&machine.lidar, &config);
+    sim_observe(&machine.lidar, observer);
+}
+
+void machine_begin(const sim_observer_t *observer, const machine_uart_t *uart)
+{
     console_begin();
     memset(&machine, 0, sizeof machine);
     memset(&line, 0, sizeof line);
     machine.uart = *uart;
-    sim_init(&machine.lidar, &config);
-    sim_observe(&machine.lidar, observer);
+    machine_new_lidar(observer);
     irq_reset(fail);
     irq.lines[0] = (irq_line_t){.is_up = uart->is_up, .handler = uart->serve};
 }

@@ -46,6 +46,9 @@ extern machine_t machine;
 /* Resets everything; `observer` watches the lidar, which is at rest. */
 void machine_begin(const sim_observer_t *observer, const machine_uart_t *uart);
 
+/* Replaces the lidar by another one. */
+void machine_new_lidar(const sim_observer_t *observer);
+
 /* A step of time: bytes arrive, DMA moves them, the interrupt is served. */
 void machine_step(uint32_t us);
 void machine_pass(uint32_t us);

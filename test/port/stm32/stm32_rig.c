@@ -37,7 +37,7 @@ void port_begin(const sim_observer_t *observer)
     port_program.rx_dma = false;
     bytes_before = overruns_before = 0;
     rig_open();
-    sim_observe(&machine.lidar, observer);
+    machine_new_lidar(observer);
 }
 
 int port_init(void)
