@@ -128,8 +128,3 @@ void sim_scene_place(sim_scene_t *scene, uint16_t angle_q6, uint16_t width_q6, u
         put(&scene->distance_mm[i % SIM_SCENE_ENTRIES], distance_mm);
     }
 }
-
-uint16_t sim_scene_distance(const sim_scene_t *scene, uint16_t angle_q6)
-{
-    return scene->distance_mm[angle_q6 / SIM_SCENE_STEP_Q6];
-}

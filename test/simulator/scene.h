@@ -29,7 +29,4 @@ void sim_scene_build(sim_scene_t *scene);
 void sim_scene_place(sim_scene_t *scene, uint16_t angle_q6, uint16_t width_q6,
                      uint16_t distance_mm);
 
-/* The ideal distance at an angle (0..23039). */
-uint16_t sim_scene_distance(const sim_scene_t *scene, uint16_t angle_q6);
-
 #endif

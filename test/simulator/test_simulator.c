@@ -4,12 +4,15 @@
 /* Compares the simulated lidar's bytes with docs/protocol.md. The check `recordings` compares those
  * of a healthy one with test/recordings. */
 
+#include "members.h"
 #include "reference_decoder.h"
+#include "rows.h"
 #include "simulator.h"
 
 #include "unity.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define SECOND UINT64_C(1000000)
@@ -98,38 +101,6 @@ static unsigned points_between(size_t from, size_t to)
     return points;
 }
 
-/* Within 10 ms exactly these bytes come, given in hexadecimal. */
-static void expect_stream(const char *hex)
-{
-    char text[200] = "";
-    run_ms(10);
-    for (size_t i = 0; i < size && i < sizeof text / 3; i++) {
-        (void)snprintf(&text[3 * i], 4, i + 1 < size ? "%02X " : "%02X", stream[i]);
-    }
-    TEST_ASSERT_EQUAL_STRING(hex, text);
-    forget_stream();
-}
-
-static void expect_frequency(unsigned chz)
-{
-    char hex[40];
-    (void)snprintf(hex, sizeof hex, "A5 5A 04 00 00 00 04 %02X %02X 00 00", chz & 0xFF, chz >> 8);
-    expect_stream(hex);
-}
-
-/* Sends the command; the reply is this frequency. */
-static void expect_step(uint8_t code, unsigned chz)
-{
-    send(code);
-    expect_frequency(chz);
-}
-
-static void power_up_at(uint16_t frequency_chz)
-{
-    config.frequency_chz = frequency_chz;
-    power_up();
-}
-
 void setUp(void)
 {
     config = sim_default_config();
@@ -138,137 +109,426 @@ void setUp(void)
 
 void tearDown(void) {}
 
-/* ---- Idle and its commands ---- */
+/* ---- What spoils an event on the wire ---- */
 
-void test_it_is_idle_and_silent_after_power_up(void)
+/* The first event of the kind; how many there have been. */
+static struct {
+    sim_event_t event;
+    sim_trouble_t trouble;
+    uint32_t ms;
+    unsigned count;
+} spoil;
+
+static sim_trouble_t spoil_event(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms)
 {
-    run_ms(5000);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
-    TEST_ASSERT_EQUAL_UINT16(600, sim_frequency_chz(&sim));
-    TEST_ASSERT_EQUAL_UINT64(SIM_NEVER, sim_next_us(&sim));
+    const bool is_first = event == spoil.event && spoil.count++ == 0;
+    (void)context;
+    (void)now_us;
+    *ms = spoil.ms;
+    return is_first ? spoil.trouble : SIM_SOUND;
 }
 
-void test_device_information_has_the_minor_firmware_version_first(void)
+static void unkind(sim_event_t event, sim_trouble_t trouble, uint32_t ms)
 {
-    send(0x90);
-    expect_stream(
-        "A5 5A 14 00 00 00 04 97 02 01 01 02 00 02 06 00 03 01 07 00 00 00 01 02 03 04 05");
+    const sim_observer_t observer = {.on_event = spoil_event};
+    spoil.event = event;
+    spoil.trouble = trouble;
+    spoil.ms = ms;
+    spoil.count = 0;
+    sim_observe(&sim, &observer);
 }
 
-void test_health_is_all_clear_at_first_and_reports_the_bits_that_are_set(void)
+static unsigned number_of(const char *name, const char *const *names, unsigned count)
 {
-    send(0x92);
-    expect_stream("A5 5A 03 00 00 00 06 00 00 00");
-    sim_set_health(&sim, SIM_HEALTH_PD | SIM_HEALTH_LD);
-    send(0x92);
-    expect_stream("A5 5A 03 00 00 00 06 18 18 00");
+    unsigned number = 0;
+    while (number < count && strncmp(name, names[number], strlen(names[number])) != 0) {
+        number++;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(number < count, name);
+    return number;
 }
 
-void test_frequency_steps_are_a_tenth_and_a_whole_hertz(void)
+static sim_trouble_t trouble_named(const char *name)
 {
-    expect_step(0x0D, 600);
-    expect_step(0x09, 610);
-    expect_step(0x0B, 710);
-    expect_step(0x0A, 700);
-    expect_step(0x0C, 600);
+    static const char *const names[] = {"sound", "lost",   "late",    "doubled",   "cut",
+                                        "deaf",  "silent", "reboots", "no-starts", "no-scans"};
+    return (sim_trouble_t)number_of(name, names, sizeof names / sizeof names[0]);
 }
 
-void test_a_step_beyond_a_limit_changes_nothing_and_says_so(void)
+/* ---- Rows ---- */
+
+static size_t taken; /* Bytes of the stream that a row has named. */
+
+static unsigned ranges(void)
 {
-    power_up_at(1150);
-    expect_step(0x0B, 1150);
-    power_up_at(500);
-    expect_step(0x0A, 500);
+    unsigned sum = 0;
+    for (size_t i = 0; i < packet_count; i++) {
+        for (unsigned s = 0; s < packets[i].lsn; s++) {
+            sum += reference_point(packets[i].bytes, s).distance_mm != 0u ? 1u : 0u;
+        }
+    }
+    return sum;
 }
 
-void test_the_limits_themselves_can_be_reached(void)
+static bool look_up(const char *word, size_t length, uint64_t *number)
 {
-    power_up_at(1190);
-    expect_step(0x09, 1200);
-    power_up_at(600);
-    expect_step(0x0C, 500);
+    decode();
+    const struct {
+        const char *word;
+        uint64_t number;
+    } facts[] = {
+        {"bytes", size},
+        {"hz", sim_frequency_chz(&sim)},
+        {"sleeps", sim_next_us(&sim) == SIM_NEVER ? 1 : 0},
+        {"commands", sim.counts.commands},
+        {"unknown", sim.counts.unknown_commands},
+        {"forbidden", sim.counts.commands_while_scanning},
+        {"in_tail", sim.counts.commands_in_tail},
+        {"packets", counts.packets},
+        {"starts", counts.start_packets},
+        {"replies", counts.replies},
+        {"checksum_errors", counts.checksum_errors},
+        {"stray", size - counts.bytes_in_packets - counts.start_packets},
+        {"ranges", ranges()},
+        {"turned",
+         packet_count > 0 ? (uint64_t)(packets[packet_count - 1u].lsa - packets[0].fsa) : 0u},
+    };
+    for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++) {
+        if (strlen(facts[i].word) == length && strncmp(facts[i].word, word, length) == 0) {
+            *number = facts[i].number;
+            return true;
+        }
+    }
+    return false;
 }
 
-void test_stop_and_unknown_commands_have_no_reply(void)
+/* A fact of this number; at least, at most. */
+static bool is_fact(const char *word)
 {
-    send(0x65);
-    send(0x61);
-    send(0x00);
-    run_ms(100);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-    TEST_ASSERT_EQUAL_UINT32(1, sim.counts.commands);
-    TEST_ASSERT_EQUAL_UINT32(2, sim.counts.unknown_commands);
+    const size_t length = strcspn(word, ":<>");
+    uint64_t is = 0;
+    if (word[length] == '\0' || !look_up(word, length, &is)) {
+        return false;
+    }
+    const uint64_t number = strtoull(&word[length + 1], NULL, 0);
+    char text[80];
+    (void)snprintf(text, sizeof text, "%s, but it is %llu", word, (unsigned long long)is);
+    TEST_ASSERT_TRUE_MESSAGE(word[length] == ':'   ? is == number
+                             : word[length] == '>' ? is > number
+                                                   : is < number,
+                             text);
+    return true;
 }
 
-void test_a_command_may_arrive_in_two_parts_and_among_garbage(void)
+/* A setting, before anything else: powers up again. */
+static bool is_setting(const char *word)
 {
-    static const uint8_t first[] = {0x0D, 0x60, 0xA5, 0xA5};
-    static const uint8_t second[] = {0x0D, 0x60, 0x90};
-    sim_receive(&sim, first, sizeof first, now);
-    run_ms(50);
-    sim_receive(&sim, second, sizeof second, now);
-    expect_frequency(600);
-    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
-}
-
-void test_a_reply_comes_after_the_latency_at_the_lines_speed(void)
-{
-    config.reply_latency_ms = 20;
-    power_up();
-    send(0x92);
-    /* 20 ms and ten bytes of 43.403 us are 20434.03 us. */
-    static const struct {
-        uint64_t us;
+    const struct {
+        const char *word;
+        void *member;
         size_t size;
-    } rows[] = {{20043, 0}, {20044, 1}, {20434, 9}, {20435, 10}};
-    for (size_t i = 0; i < 4; i++) {
-        size += sim_transmit(&sim, rows[i].us, stream + size, STREAM_MAX);
-        TEST_ASSERT_EQUAL_size_t(rows[i].size, size);
+    } members[] = {
+        {"frequency:", MEMBER(config.frequency_chz)},
+        {"latency:", MEMBER(config.reply_latency_ms)},
+        {"tail:", MEMBER(config.stop_tail_ms)},
+        {"fatal:", MEMBER(config.fatal_health)},
+        {"never_answers:", MEMBER(config.never_answers)},
+        {"blocked_sends_starts:", MEMBER(config.blocked_sends_starts)},
+        {"first_angle:", MEMBER(config.first_angle_q6)},
+        {"spin_percent:", MEMBER(config.spin_up_percent)},
+        {"wobble:", MEMBER(config.wobble_permille)},
+    };
+    for (size_t i = 0; i < sizeof members / sizeof members[0]; i++) {
+        const size_t length = strlen(members[i].word);
+        if (strncmp(members[i].word, word, length) == 0) {
+            member_store(members[i].member, members[i].size, strtoul(&word[length], NULL, 0));
+            power_up();
+            return true;
+        }
+    }
+    return false;
+}
+
+static size_t parse_hex(const char *text, uint8_t *bytes)
+{
+    size_t count = 0;
+    unsigned value;
+    while (sscanf(text, "%2x", &value) == 1) {
+        bytes[count++] = (uint8_t)value;
+        text += 2;
+    }
+    return count;
+}
+
+/* The next bytes of the stream. */
+static void expect_bytes(const char *hex)
+{
+    uint8_t bytes[ROW_WORD_MAX];
+    const size_t count = parse_hex(hex, bytes);
+    run_ms(taken == 0 ? 10 : 0);
+    TEST_ASSERT_TRUE_MESSAGE(taken + count <= size, "no more bytes come");
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(bytes, &stream[taken], count);
+    taken += count;
+}
+
+static void expect_end(void)
+{
+    TEST_ASSERT_EQUAL_size_t(taken, size);
+    taken = 0;
+    forget_stream();
+}
+
+static void expect_frequency(unsigned chz)
+{
+    char hex[30];
+    (void)snprintf(hex, sizeof hex, "A55A0400000004%02X%02X0000", chz & 0xFF, chz >> 8);
+    expect_bytes(hex);
+    expect_end();
+}
+
+static void expect_range_at(unsigned angle_q6, unsigned distance_mm)
+{
+    decode();
+    for (size_t i = next_start(0); i < packet_count; i++) {
+        for (unsigned s = 0; s < packets[i].lsn; s++) {
+            const reference_point_t point = reference_point(packets[i].bytes, s);
+            if (point.angle_q6 + 20u > angle_q6 && point.angle_q6 < angle_q6 + 20u &&
+                point.distance_mm != 0u) {
+                TEST_ASSERT_UINT_WITHIN(20, distance_mm, point.distance_mm);
+                return;
+            }
+        }
+    }
+    TEST_FAIL_MESSAGE("no point there");
+}
+
+static void expect_mode(const char *name)
+{
+    TEST_ASSERT_EQUAL_STRING(name, sim_mode_name(sim_mode(&sim)));
+}
+
+static void run_into_a_packet(void)
+{
+    do {
+        forget_stream();
+        run_ms(1);
+    } while (size != 23);
+    forget_stream();
+}
+
+/* The time is this; nothing was taken since the latest bytes. */
+static void run_until(uint64_t us)
+{
+    now = us;
+    size += sim_transmit(&sim, now, stream + size, STREAM_MAX - size);
+}
+
+static void plan_trouble(const char *text)
+{
+    static const char *const events[] = {"command", "reply", "beginning", "start"};
+    const char *const trouble = strchr(text, ':') + 1;
+    const char *const ms = strchr(trouble, ':');
+    unkind((sim_event_t)number_of(text, events, 4), trouble_named(trouble),
+           ms == NULL ? 0 : (uint32_t)atoi(ms + 1));
+}
+
+static void run_until_spoilt(void)
+{
+    do {
+        run_ms(1);
+    } while (spoil.count == 0);
+}
+
+static void send_raw(const char *hex)
+{
+    uint8_t bytes[ROW_WORD_MAX];
+    sim_receive(&sim, bytes, parse_hex(hex, bytes), now);
+}
+
+/* ">0D": a command; "<0DA5": bytes to the lidar; "+50": 50 ms pass; "=A55A": the next bytes that
+ * come, within 10 ms; "end": no more come; "got:600": the reply that a frequency is set; "forget": what
+ * came before no longer counts; "@idle": the mode; "at:64:2300": angle and range; "ct:3:40": the CT
+ * byte of a packet in a turn; "spoil:command:late:700", "befalls:no-scans": trouble; settings and
+ * facts above. */
+static void tell(char *word)
+{
+    const unsigned long number =
+        strchr(word, ':') == NULL ? 0 : strtoul(strchr(word, ':') + 1, NULL, 0);
+    const bool is_on = number != 0;
+    unsigned a, b;
+    if (word[0] == '>') {
+        send((uint8_t)strtoul(&word[1], NULL, 16));
+    } else if (word[0] == '<') {
+        send_raw(&word[1]);
+    } else if (word[0] == '+') {
+        run_ms((uint32_t)atoi(&word[1]));
+    } else if (word[0] == '=') {
+        expect_bytes(&word[1]);
+    } else if (word[0] == '@') {
+        expect_mode(&word[1]);
+    } else if (sscanf(word, "at:%u:%u", &a, &b) == 2) {
+        expect_range_at(a, b);
+    } else if (sscanf(word, "ct:%u:%x", &a, &b) == 2) {
+        decode();
+        TEST_ASSERT_EQUAL_HEX8(b, packets[next_start(0) + a].ct);
+    } else if (strncmp(word, "spoil:", 6) == 0) {
+        plan_trouble(&word[6]);
+    } else if (strncmp(word, "befalls:", 8) == 0) {
+        sim_befall(&sim, trouble_named(&word[8]), 0, now);
+    } else if (strcmp(word, "end") == 0) {
+        expect_end();
+    } else if (strcmp(word, "forget") == 0) {
+        taken = 0;
+        forget_stream();
+    } else if (strcmp(word, "inside") == 0) {
+        run_into_a_packet();
+    } else if (strcmp(word, "spoilt") == 0) {
+        run_until_spoilt();
+    } else if (strcmp(word, "lose") == 0) {
+        sim_lose_next_reply(&sim);
+    } else if (strcmp(word, "clear") == 0) {
+        sim_clear_obstacles(&sim);
+    } else if (strncmp(word, "got:", 4) == 0) {
+        expect_frequency((unsigned)number);
+    } else if (strncmp(word, "us:", 3) == 0) {
+        run_until(number);
+    } else if (strncmp(word, "scan:", 5) == 0) {
+        scan_seconds((uint32_t)number);
+    } else if (strncmp(word, "delay:", 6) == 0) {
+        sim_delay_next_reply(&sim, (uint32_t)number);
+    } else if (strncmp(word, "sick:", 5) == 0) {
+        sim_set_health(&sim, (uint8_t)number);
+    } else if (strncmp(word, "block:", 6) == 0) {
+        sim_block_rotor(&sim, is_on);
+    } else if (strncmp(word, "cover:", 6) == 0) {
+        sim_cover_window(&sim, is_on);
+    } else if (strncmp(word, "power:", 6) == 0) {
+        sim_power(&sim, is_on, now);
+    } else if (strncmp(word, "obstacle:", 9) == 0) {
+        sim_place_obstacle(&sim, 0, 640, (uint16_t)number);
+    } else {
+        TEST_ASSERT_TRUE_MESSAGE(is_setting(word) || is_fact(word), word);
     }
 }
 
-void test_one_reply_can_be_delayed_and_the_next_one_waits_for_it(void)
+static void tell_row(const row_t *row)
 {
-    sim_delay_next_reply(&sim, 3000);
-    send(0x92);
-    run_ms(1000);
-    send(0x0D);
-    run_ms(1990);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-    run_ms(20);
-    TEST_ASSERT_EQUAL_size_t(21, size);
-    TEST_ASSERT_EQUAL_HEX8(0x06, stream[6]);
-    TEST_ASSERT_EQUAL_HEX8(0x04, stream[16]);
-    forget_stream();
-    expect_step(0x0D, 600);
+    taken = 0;
+    row_tell(row->steps, tell);
 }
 
-/* The health reply (10 bytes) at 3003 ms, then the start command's reply (7), then the stream. */
-void test_a_stream_waits_for_its_own_late_reply(void)
+static const row_t rows[] IN_FLASH = {
+    ROW(it_is_idle_and_silent_after_power_up, "+5000 bytes:0 @idle hz:600 sleeps:1"),
+    ROW(device_information_has_the_minor_firmware_version_first,
+        ">90 =A55A1400000004 =9702010102000206 =000301070000000102030405 end"),
+    ROW(health_is_all_clear_at_first_and_reports_the_bits_that_are_set,
+        ">92 =A55A0300000006000000 end sick:0x18 >92 =A55A0300000006181800 end"),
+    ROW(frequency_steps_are_a_tenth_and_a_whole_hertz,
+        ">0D got:600 >09 got:610 >0B got:710 >0A got:700 >0C got:600"),
+    ROW(a_step_beyond_the_upper_limit_changes_nothing_and_says_so, "frequency:1150 >0B got:1150"),
+    ROW(a_step_beyond_the_lower_limit_changes_nothing_and_says_so, "frequency:500 >0A got:500"),
+    ROW(the_upper_limit_itself_can_be_reached, "frequency:1190 >09 got:1200"),
+    ROW(the_lower_limit_itself_can_be_reached, "frequency:600 >0C got:500"),
+    ROW(stop_and_unknown_commands_have_no_reply, ">65 >61 >00 +100 bytes:0 commands:1 unknown:2"),
+    ROW(a_command_may_arrive_in_two_parts_and_among_garbage, "<0D60A5A5 +50 <0D6090 got:600 @idle"),
+    ROW(an_undocumented_command_is_answered_with_four_zeros, ">98 =A55A040000001000000000 end"),
+    ROW(a_reply_comes_after_the_latency_at_the_lines_speed,
+        "latency:20 >92 us:20043 bytes:0 us:20044 bytes:1 us:20434 bytes:9 us:20435 bytes:10"),
+    ROW(one_reply_can_be_delayed_and_the_next_one_waits_for_it,
+        "delay:3000 >92 +1000 >0D +1990 bytes:0 +20 bytes:21 =A55A0300000006000000 "
+        "=A55A0400000004 forget >0D got:600"),
+    ROW(a_stream_waits_for_its_own_late_reply,
+        "delay:3000 >92 +1000 >60 +2200 bytes:17 =A55A0300000006000000 =A55A0500004081 +1000 "
+        "packets>50"),
+    ROW(one_reply_can_be_lost, "lose >0D +100 bytes:0 >0D got:600"),
+    ROW(a_lidar_that_never_answers_obeys,
+        "never_answers:1 >0B +100 bytes:0 hz:700 scan:1 packets>90"),
+    ROW(the_ct_bytes_carry_what_section_7_says,
+        "scan:5 ct:1:40 ct:3:00 ct:4:22 ct:5:04 ct:9:30 ct:10:30 ct:11:88 ct:12:C0 ct:13:72"),
+    ROW(a_covered_window_gives_no_ranges_and_the_data_fault,
+        "cover:1 scan:3 ranges:0 ct:3:40 cover:0 +1000 forget +1000 ranges>3000 ct:3:00"),
+    ROW(a_blocked_rotor_gives_no_ranges_and_the_encoder_fault,
+        "block:1 scan:3 packets>250 ranges:0 ct:3:04"),
+    ROW(a_blocked_rotor_may_stop_the_start_packets,
+        "blocked_sends_starts:0 block:1 scan:3 packets>250 starts:0 turned:0 block:0 +2000 "
+        "starts>5"),
+    ROW(a_fatal_fault_ends_the_stream_until_it_is_gone_and_start_is_sent,
+        "fatal:0x10 scan:1 sick:0x10 @fault +20 forget >60 +2000 bytes:7 sick:0 >60 +2000 "
+        "@scanning bytes>10000"),
+    ROW(the_room_is_seen_clockwise_from_straight_ahead,
+        "scan:1 at:64:2300 at:5760:2800 at:11520:1700 at:17280:2200"),
+    ROW(a_round_pillar_stands_ahead_to_the_left, "scan:1 at:22316:1380"),
+    ROW(an_obstacle_appears_where_it_is_placed_and_can_be_removed,
+        "obstacle:400 scan:1 at:64:400 at:23000:400 at:400:2314 clear forget +1000 at:64:2300"),
+    ROW(stop_has_a_tail_of_whole_packets,
+        "tail:100 scan:1 forget >65 @stopping +90 bytes>1000 +30 @idle forget +1000 bytes:0"),
+    ROW(a_stop_before_the_first_packet_leaves_silence, ">60 +100 >65 @idle forget +1000 bytes:0"),
+    ROW(commands_while_scanning_are_counted_and_answered_between_packets,
+        "scan:1 forget >0D >60 +1000 forbidden:2 checksum_errors:0 stray>18 stray<278 >65 "
+        "forbidden:2 >0D forbidden:2 in_tail:1"),
+    ROW(a_lost_start_reply_does_not_stop_the_stream, "lose >60 +2000 replies:0 packets>100"),
+    ROW(nothing_is_answered_during_a_reboot_and_the_frequency_is_reset,
+        ">0B +10 >40 @booting forget +2490 >0D +100 bytes:0 @idle >0D got:600"),
+    ROW(a_reboot_forgets_a_reply_that_is_due, ">90 >40 +5000 bytes:0"),
+    ROW(losing_power_cuts_a_packet_in_the_middle,
+        "scan:1 inside power:0 +5000 bytes:0 @off power:1 @booting +2500 @idle >0D got:600"),
+    ROW(commands_wait_for_a_late_one_and_keep_their_order,
+        "spoil:command:late:700 >0B >0A +699 bytes:0 +20 bytes:22 =A55A0400000004BC020000 "
+        "=A55A0400000004B2020000 end"),
+    ROW(replies_wait_for_a_late_one, "spoil:reply:late:700 >0B >0A +700 bytes:0 +20 bytes:22"),
+    ROW(a_scan_that_loses_its_beginning_does_not_begin_and_another_start_is_obeyed,
+        "spoil:beginning:lost >60 +2000 bytes:7 @idle scan:1 packets>90"),
+    ROW(start_packets_are_missing_until_it_boots,
+        "spoil:start:no-starts >60 +4000 starts:0 packets>200 >65 +500 scan:1 starts:0 >40 +2501 "
+        "scan:1 starts>0"),
+    ROW(a_start_packet_is_doubled,
+        "first_angle:100 spin_percent:100 wobble:0 spoil:start:doubled >60 +1150 starts:6"),
+    ROW(a_start_packet_is_lost,
+        "first_angle:100 spin_percent:100 wobble:0 spoil:start:lost >60 +1150 starts:4"),
+    ROW(a_lidar_that_answers_and_does_not_scan_needs_a_reboot,
+        "befalls:no-scans >60 +2000 bytes:7 >40 +2501 scan:1 packets>90"),
+    ROW(a_command_is_obeyed_and_answered,
+        "spoil:command:sound >0B +100 bytes:11 +5000 >0D +1000 hz:700 bytes:22"),
+    ROW(a_lost_command_is_not_obeyed,
+        "spoil:command:lost >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
+    ROW(a_late_command_is_obeyed_later,
+        "spoil:command:late:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:22"),
+    ROW(a_doubled_command_is_obeyed_twice,
+        "spoil:command:doubled >0B +100 bytes:22 +5000 >0D +1000 hz:800 bytes:33"),
+    ROW(a_deaf_lidar_does_not_hear_the_command,
+        "spoil:command:deaf:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
+    ROW(a_silent_lidar_obeys_and_does_not_answer,
+        "spoil:command:silent:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:11"),
+    ROW(a_power_cut_at_a_command_forgets_it,
+        "spoil:command:cut:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
+    ROW(a_reboot_at_a_command_forgets_it,
+        "spoil:command:reboots >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
+    ROW(a_lost_reply_does_not_come,
+        "spoil:reply:lost >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:11"),
+    ROW(a_late_reply_comes_later,
+        "spoil:reply:late:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:22"),
+    ROW(a_doubled_reply_comes_twice,
+        "spoil:reply:doubled >0B +100 bytes:22 +5000 >0D +1000 hz:700 bytes:33"),
+    ROW(a_lidar_that_is_deaf_at_a_reply_sends_it,
+        "spoil:reply:deaf:1000 >0B +100 bytes:11 +5000 >0D +1000 hz:700 bytes:22"),
+    ROW(a_lidar_that_is_silent_at_a_reply_does_not_send_it,
+        "spoil:reply:silent:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:11"),
+    ROW(a_power_cut_at_a_reply_forgets_the_step,
+        "spoil:reply:cut:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
+    ROW(a_reboot_at_a_reply_forgets_the_step,
+        "spoil:reply:reboots >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
+    ROW(a_silent_stream_goes_on_afterwards,
+        "spoil:start:silent:800 >60 spoilt +30 forget +760 bytes:0 +1000 packets>90"),
+    ROW(a_late_start_packet_delays_the_stream,
+        "spoil:start:late:800 >60 spoilt +30 forget +760 bytes:0 +1000 packets>90"),
+};
+
+void test_the_simulated_lidar(void)
 {
-    sim_delay_next_reply(&sim, 3000);
-    send(0x92);
-    run_ms(1000);
-    send(0x60);
-    run_ms(2200);
-    TEST_ASSERT_EQUAL_size_t(17, size);
-    TEST_ASSERT_EQUAL_HEX8(0x81, stream[16]);
-    run_ms(1000);
-    decode();
-    TEST_ASSERT_TRUE(counts.packets > 50);
+    run_rows(rows, tell_row);
 }
 
-void test_one_reply_can_be_lost(void)
-{
-    sim_lose_next_reply(&sim);
-    send(0x0D);
-    run_ms(100);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-    expect_step(0x0D, 600);
-}
-
-/* ---- Scanning ---- */
+/* ---- The stream ---- */
 
 void test_lone_point_packets_end_slightly_before_they_begin(void)
 {
@@ -367,36 +627,6 @@ void test_the_first_packet_may_be_a_start_packet_anywhere(void)
     TEST_ASSERT_TRUE(packets[second].fsa >> 1 <= 64 || packets[second].fsa >> 1 >= 22976);
 }
 
-void test_an_undocumented_command_is_answered_with_four_zeros(void)
-{
-    send(0x98);
-    expect_stream("A5 5A 04 00 00 00 10 00 00 00 00");
-}
-
-/* ---- Turn information ---- */
-
-void test_the_ct_bytes_carry_what_section_7_says(void)
-{
-    static const struct {
-        uint8_t index, ct;
-    } rows[] = {
-        {1, 0x40},  /* user version 1.0 */
-        {3, 0x00},  /* healthy */
-        {4, 0x22},  /* hardware 1, firmware 1. */
-        {5, 0x04},  /* .2 */
-        {9, 0x30},  /* 2026 */
-        {10, 0x30}, /* March */
-        {11, 0x88}, /* 17th */
-        {12, 0xC0}, /* 12345 = 0x60 << 7 */
-        {13, 0x72}, /*         + 0x39 */
-    };
-    scan_seconds(5);
-    const size_t start = next_start(0);
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        TEST_ASSERT_EQUAL_HEX8(rows[i].ct, packets[start + rows[i].index].ct);
-    }
-}
-
 void test_last_crc_guards_the_ct_bytes_of_every_revolution(void)
 {
     scan_seconds(20);
@@ -442,130 +672,6 @@ void test_a_unit_without_ct_information_sends_neither_ct_nor_last_crc(void)
     }
 }
 
-/* ---- Faults of the device ---- */
-
-static unsigned ranges_from(size_t first)
-{
-    unsigned ranges = 0;
-    for (size_t i = first; i < packet_count; i++) {
-        for (unsigned s = 0; s < packets[i].lsn; s++) {
-            ranges += reference_point(packets[i].bytes, s).distance_mm != 0u ? 1u : 0u;
-        }
-    }
-    return ranges;
-}
-
-void test_a_covered_window_gives_no_ranges_and_the_data_fault(void)
-{
-    size_t start;
-    sim_cover_window(&sim, true);
-    scan_seconds(3);
-    TEST_ASSERT_EQUAL_UINT(0, ranges_from(0));
-    start = next_start(0);
-    TEST_ASSERT_EQUAL_HEX8(0x40, packets[start + 3u].ct);
-    sim_cover_window(&sim, false);
-    run_ms(1000);
-    forget_stream();
-    run_ms(1000);
-    decode();
-    TEST_ASSERT_TRUE(ranges_from(0) > 3000);
-    TEST_ASSERT_EQUAL_HEX8(0x00, packets[next_start(0) + 3u].ct);
-}
-
-void test_a_blocked_rotor_gives_no_ranges_and_the_encoder_fault(void)
-{
-    sim_block_rotor(&sim, true);
-    scan_seconds(3);
-    TEST_ASSERT_TRUE(packet_count > 250);
-    TEST_ASSERT_EQUAL_UINT(0, ranges_from(0));
-    TEST_ASSERT_EQUAL_HEX8(0x04, packets[next_start(0) + 3u].ct);
-}
-
-void test_a_blocked_rotor_may_stop_the_start_packets(void)
-{
-    config.blocked_sends_starts = false;
-    power_up();
-    sim_block_rotor(&sim, true);
-    scan_seconds(3);
-    TEST_ASSERT_TRUE(packet_count > 250);
-    TEST_ASSERT_EQUAL_UINT64(0, counts.start_packets);
-    TEST_ASSERT_EQUAL_UINT16(packets[0].fsa, packets[packet_count - 1u].lsa);
-    sim_block_rotor(&sim, false);
-    run_ms(2000);
-    decode();
-    TEST_ASSERT_TRUE(counts.start_packets > 5);
-}
-
-void test_a_fatal_fault_ends_the_stream_until_it_is_gone_and_start_is_sent(void)
-{
-    config.fatal_health = SIM_HEALTH_LD;
-    power_up();
-    scan_seconds(1);
-    sim_set_health(&sim, SIM_HEALTH_LD);
-    TEST_ASSERT_EQUAL(SIM_FAULT, sim_mode(&sim));
-    run_ms(20);
-    forget_stream();
-    send(0x60);
-    run_ms(2000);
-    TEST_ASSERT_EQUAL_size_t(7, size);
-    sim_set_health(&sim, 0);
-    send(0x60);
-    run_ms(2000);
-    TEST_ASSERT_EQUAL(SIM_SCANNING, sim_mode(&sim));
-    TEST_ASSERT_TRUE(size > 10000);
-}
-
-/* ---- Scene ---- */
-
-static reference_point_t nearest_to(uint16_t angle_q6)
-{
-    for (size_t i = next_start(0); i < packet_count; i++) {
-        for (unsigned s = 0; s < packets[i].lsn; s++) {
-            const reference_point_t point = reference_point(packets[i].bytes, s);
-            if (point.angle_q6 + 20u > angle_q6 && point.angle_q6 < angle_q6 + 20u &&
-                point.distance_mm != 0u) {
-                return point;
-            }
-        }
-    }
-    TEST_FAIL_MESSAGE("no point there");
-    return reference_point(packets[0].bytes, 0);
-}
-
-/* The lidar is 2.2 m from the left wall, 2.8 m from the right one, 1.7 m from the back one and 2.3
- * m from the front one. 90 degrees are to the right: clockwise seen from above. */
-void test_the_room_is_seen_clockwise_from_straight_ahead(void)
-{
-    scan_seconds(1);
-    TEST_ASSERT_UINT_WITHIN(15, 2300, nearest_to(64).distance_mm);
-    TEST_ASSERT_UINT_WITHIN(15, 2800, nearest_to(5760).distance_mm);
-    TEST_ASSERT_UINT_WITHIN(15, 1700, nearest_to(11520).distance_mm);
-    TEST_ASSERT_UINT_WITHIN(15, 2200, nearest_to(17280).distance_mm);
-}
-
-/* The nearest side of the pillar: its centre is sqrt(300^2 + 1500^2) = 1529.7 mm away at
- * -11.31 degrees, its radius 150 mm. */
-void test_a_round_pillar_stands_ahead_to_the_left(void)
-{
-    scan_seconds(1);
-    TEST_ASSERT_UINT_WITHIN(15, 1380, nearest_to(22316).distance_mm);
-}
-
-void test_an_obstacle_appears_where_it_is_placed_and_can_be_removed(void)
-{
-    sim_place_obstacle(&sim, 0, 640, 400);
-    TEST_ASSERT_EQUAL_UINT16(400, sim_scene_distance(&sim.scene, 23039));
-    scan_seconds(1);
-    TEST_ASSERT_UINT_WITHIN(10, 400, nearest_to(64).distance_mm);
-    TEST_ASSERT_UINT_WITHIN(10, 400, nearest_to(23000).distance_mm);
-    TEST_ASSERT_TRUE(nearest_to(400).distance_mm > 2000);
-    sim_clear_obstacles(&sim);
-    forget_stream();
-    run_ms(1000);
-    decode();
-    TEST_ASSERT_UINT_WITHIN(15, 2300, nearest_to(64).distance_mm);
-}
-
 void test_flags_2_and_3_occur_as_often_as_configured(void)
 {
     unsigned flags[4] = {0, 0, 0, 0};
@@ -580,108 +686,6 @@ void test_flags_2_and_3_occur_as_often_as_configured(void)
     TEST_ASSERT_EQUAL_UINT(0, flags[1]);
     TEST_ASSERT_UINT_WITHIN(300, 2000, flags[2]);
     TEST_ASSERT_UINT_WITHIN(300, 2000, flags[3]);
-}
-
-/* ---- Stop, reboot, power ---- */
-
-void test_stop_has_a_tail_of_whole_packets(void)
-{
-    config.stop_tail_ms = 100;
-    power_up();
-    scan_seconds(1);
-    forget_stream();
-    send(0x65);
-    TEST_ASSERT_EQUAL(SIM_STOPPING, sim_mode(&sim));
-    run_ms(90);
-    TEST_ASSERT_TRUE(size > 1000);
-    run_ms(30);
-    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
-    forget_stream();
-    run_ms(1000);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-}
-
-void test_a_stop_before_the_first_packet_leaves_silence(void)
-{
-    send(0x60);
-    run_ms(100);
-    send(0x65);
-    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
-    forget_stream();
-    run_ms(1000);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-}
-
-void test_commands_while_scanning_are_counted_and_answered_between_packets(void)
-{
-    size_t stray;
-    scan_seconds(1);
-    forget_stream();
-    send(0x0D);
-    send(0x60);
-    run_ms(1000);
-    decode();
-    TEST_ASSERT_EQUAL_UINT32(2, sim.counts.commands_while_scanning);
-    TEST_ASSERT_EQUAL_UINT64(0, counts.checksum_errors);
-    stray = size - (size_t)counts.bytes_in_packets - (size_t)counts.start_packets;
-    TEST_ASSERT_TRUE(stray >= 18 && stray < 18 + 260);
-    send(0x65);
-    TEST_ASSERT_EQUAL_UINT32(2, sim.counts.commands_while_scanning);
-    send(0x0D);
-    TEST_ASSERT_EQUAL_UINT32(2, sim.counts.commands_while_scanning);
-    TEST_ASSERT_EQUAL_UINT32(1, sim.counts.commands_in_tail);
-}
-
-void test_a_lost_start_reply_does_not_stop_the_stream(void)
-{
-    sim_lose_next_reply(&sim);
-    send(0x60);
-    run_ms(2000);
-    decode();
-    TEST_ASSERT_EQUAL_UINT64(0, counts.replies);
-    TEST_ASSERT_TRUE(counts.packets > 100);
-}
-
-void test_nothing_is_answered_during_a_reboot_and_the_frequency_is_reset(void)
-{
-    send(0x0B);
-    run_ms(10);
-    send(0x40);
-    TEST_ASSERT_EQUAL(SIM_BOOTING, sim_mode(&sim));
-    forget_stream();
-    run_ms(2490);
-    send(0x0D);
-    run_ms(100);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
-    expect_step(0x0D, 600);
-}
-
-void test_a_reboot_forgets_a_reply_that_is_due(void)
-{
-    send(0x90);
-    send(0x40);
-    run_ms(5000);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-}
-
-void test_losing_power_cuts_a_packet_in_the_middle(void)
-{
-    scan_seconds(1);
-    do {
-        forget_stream();
-        run_ms(1);
-    } while (size != 23);
-    forget_stream();
-    sim_power(&sim, false, now);
-    run_ms(5000);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-    TEST_ASSERT_EQUAL(SIM_OFF, sim_mode(&sim));
-    sim_power(&sim, true, now);
-    TEST_ASSERT_EQUAL(SIM_BOOTING, sim_mode(&sim));
-    run_ms(2500);
-    TEST_ASSERT_EQUAL(SIM_IDLE, sim_mode(&sim));
-    expect_step(0x0D, 600);
 }
 
 void test_what_left_before_power_was_lost_can_still_be_read(void)
@@ -793,197 +797,6 @@ void test_frames_that_are_not_taken_in_time_are_lost_and_counted(void)
     now += 500000;
     send(0x65);
     TEST_ASSERT_UINT_WITHIN(8, 50 + 3 - 16, sim_lost_frames(&sim));
-}
-
-void test_modes_have_names(void)
-{
-    TEST_ASSERT_EQUAL_STRING("off", sim_mode_name(SIM_OFF));
-    TEST_ASSERT_EQUAL_STRING("fault", sim_mode_name(SIM_FAULT));
-}
-
-/* ---- Unkind behaviour ---- */
-
-/* What spoils the event with that number, counted per kind from 0. */
-static struct {
-    sim_event_t event;
-    unsigned number;
-    sim_trouble_t trouble;
-    uint32_t ms;
-    unsigned counts[SIM_EVENT_START + 1];
-} spoil;
-
-static sim_trouble_t spoil_event(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms)
-{
-    const unsigned number = spoil.counts[event]++;
-    (void)context;
-    (void)now_us;
-    *ms = spoil.ms;
-    return event == spoil.event && number == spoil.number ? spoil.trouble : SIM_SOUND;
-}
-
-static void unkind(sim_event_t event, unsigned number, sim_trouble_t trouble, uint32_t ms)
-{
-    const sim_observer_t observer = {.on_event = spoil_event};
-    power_up();
-    memset(&spoil, 0, sizeof spoil);
-    spoil.event = event;
-    spoil.number = number;
-    spoil.trouble = trouble;
-    spoil.ms = ms;
-    sim_observe(&sim, &observer);
-}
-
-static unsigned starts_sent(void)
-{
-    unsigned starts = 0;
-    decode();
-    for (size_t i = 0; i < packet_count; i++) {
-        starts += packets[i].starts_revolution ? 1 : 0;
-    }
-    return starts;
-}
-
-/* A step of the frequency is spoilt, then the frequency is asked for. A reply has 11 bytes. */
-void test_a_command_or_reply_is_spoilt_as_decided(void)
-{
-    static const struct {
-        sim_event_t event;
-        sim_trouble_t trouble;
-        uint16_t frequency_chz;
-        size_t bytes_soon, bytes_later; /* In 100 ms; until 6 s later, with the question's reply. */
-    } rows[] = {
-        {SIM_EVENT_COMMAND, SIM_SOUND, 700, 11, 22},
-        {SIM_EVENT_COMMAND, SIM_LOST, 600, 0, 11},
-        {SIM_EVENT_COMMAND, SIM_LATE, 700, 0, 22},
-        {SIM_EVENT_COMMAND, SIM_DOUBLED, 800, 22, 33},
-        {SIM_EVENT_COMMAND, SIM_DEAF, 600, 0, 11},
-        {SIM_EVENT_COMMAND, SIM_SILENT, 700, 0, 11},
-        {SIM_EVENT_COMMAND, SIM_POWER_CUT, 600, 0, 11},
-        {SIM_EVENT_COMMAND, SIM_REBOOTS, 600, 0, 11},
-        {SIM_EVENT_REPLY, SIM_LOST, 700, 0, 11},
-        {SIM_EVENT_REPLY, SIM_LATE, 700, 0, 22},
-        {SIM_EVENT_REPLY, SIM_DOUBLED, 700, 22, 33},
-        {SIM_EVENT_REPLY, SIM_DEAF, 700, 11, 22},
-        {SIM_EVENT_REPLY, SIM_SILENT, 700, 0, 11},
-        {SIM_EVENT_REPLY, SIM_POWER_CUT, 600, 0, 11},
-        {SIM_EVENT_REPLY, SIM_REBOOTS, 600, 0, 11},
-    };
-
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        char text[40];
-        (void)snprintf(text, sizeof text, "event %u, trouble %u", rows[i].event, rows[i].trouble);
-        unkind(rows[i].event, 0, rows[i].trouble, 1000);
-        send(0x0B);
-        run_ms(100);
-        TEST_ASSERT_EQUAL_size_t_MESSAGE(rows[i].bytes_soon, size, text);
-        run_ms(5000);
-        send(0x0D);
-        run_ms(1000);
-        TEST_ASSERT_EQUAL_UINT16_MESSAGE(rows[i].frequency_chz, sim_frequency_chz(&sim), text);
-        TEST_ASSERT_EQUAL_size_t_MESSAGE(rows[i].bytes_later, size, text);
-    }
-}
-
-void test_commands_and_replies_wait_for_a_late_one_and_keep_their_order(void)
-{
-    unkind(SIM_EVENT_COMMAND, 0, SIM_LATE, 700);
-    send(0x0B);
-    send(0x0A);
-    run_ms(699);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-    run_ms(20);
-    TEST_ASSERT_EQUAL_size_t(22, size);
-    TEST_ASSERT_EQUAL_HEX8(700 & 0xFF, stream[7]);
-    TEST_ASSERT_EQUAL_HEX8(690 & 0xFF, stream[18]);
-    unkind(SIM_EVENT_REPLY, 0, SIM_LATE, 700);
-    send(0x0B);
-    send(0x0A);
-    run_ms(700);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-    run_ms(20);
-    TEST_ASSERT_EQUAL_size_t(22, size);
-}
-
-void test_a_scan_that_loses_its_beginning_does_not_begin_and_another_start_is_obeyed(void)
-{
-    unkind(SIM_EVENT_BEGINNING, 0, SIM_LOST, 0);
-    send(0x60);
-    run_ms(2000);
-    TEST_ASSERT_EQUAL_size_t(7, size);
-    TEST_ASSERT_EQUAL_INT(SIM_IDLE, sim_mode(&sim));
-    scan_seconds(1);
-    TEST_ASSERT_TRUE(packet_count > 90);
-}
-
-void test_start_packets_are_lost_doubled_or_missing_until_it_boots(void)
-{
-    unsigned starts[3];
-    for (unsigned i = 0; i < 3; i++) {
-        unkind(SIM_EVENT_START, 0, i == 0 ? SIM_SOUND : i == 1 ? SIM_LOST : SIM_DOUBLED, 0);
-        send(0x60);
-        run_ms(3000);
-        starts[i] = starts_sent();
-    }
-    TEST_ASSERT_EQUAL_UINT(starts[0] - 1, starts[1]);
-    TEST_ASSERT_EQUAL_UINT(starts[0] + 1, starts[2]);
-    unkind(SIM_EVENT_START, 1, SIM_NO_STARTS, 0);
-    send(0x60);
-    run_ms(4000);
-    TEST_ASSERT_EQUAL_UINT(1, starts_sent());
-    TEST_ASSERT_TRUE(packet_count > 200);
-    TEST_ASSERT_EQUAL_UINT64(SIM_NEVER, sim_sound_us(&sim));
-    send(0x65);
-    run_ms(500);
-    scan_seconds(1);
-    TEST_ASSERT_EQUAL_UINT(0, starts_sent());
-    send(0x40);
-    TEST_ASSERT_EQUAL_UINT64(now + config.boot_ms * 1000u, sim_sound_us(&sim));
-    run_ms(config.boot_ms + 1u);
-    scan_seconds(1);
-    TEST_ASSERT_TRUE(starts_sent() > 0);
-}
-
-void test_a_lidar_that_answers_and_does_not_scan_needs_a_reboot(void)
-{
-    sim_befall(&sim, SIM_NO_SCANS, 0, now);
-    send(0x60);
-    run_ms(2000);
-    TEST_ASSERT_EQUAL_size_t(7, size);
-    send(0x40);
-    run_ms(config.boot_ms + 1u);
-    scan_seconds(1);
-    TEST_ASSERT_TRUE(packet_count > 90);
-}
-
-void test_a_stream_that_is_silent_or_late_goes_on_afterwards(void)
-{
-    static const sim_trouble_t troubles[] = {SIM_SILENT, SIM_LATE};
-    for (size_t i = 0; i < 2; i++) {
-        unkind(SIM_EVENT_START, 0, troubles[i], 800);
-        send(0x60);
-        do {
-            run_ms(1);
-        } while (spoil.counts[SIM_EVENT_START] == 0);
-        run_ms(30); /* What is on the line already. */
-        forget_stream();
-        run_ms(760);
-        TEST_ASSERT_EQUAL_size_t(0, size);
-        run_ms(1000);
-        decode();
-        TEST_ASSERT_TRUE(packet_count > 90);
-    }
-}
-
-void test_a_lidar_that_never_answers_obeys(void)
-{
-    config.never_answers = true;
-    power_up();
-    send(0x0B);
-    run_ms(100);
-    TEST_ASSERT_EQUAL_size_t(0, size);
-    TEST_ASSERT_EQUAL_UINT16(700, sim_frequency_chz(&sim));
-    scan_seconds(1);
-    TEST_ASSERT_TRUE(packet_count > 90);
 }
 
 /* ---- Marks ---- */

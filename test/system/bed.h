@@ -2,8 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* A program, the library and an unkind lidar (simulator.h: on_event, sim_befall()) in virtual
- * time, as light as can be: thousands of seconds per second. It keeps what the program wants and sees.
- * With a watch (watch.h) there is a faulty wire, and all that comes is compared with what was sent.
+ * time, as light as can be: thousands of seconds per second. It keeps what the program wants and
+ * sees. With a watch (watch.h) there is a faulty wire, and all that comes is compared with what was
+ * sent.
  *
  * Without one, all of it is in one struct, so that a copy of it, put back in the same place, goes
  * on from there. */
