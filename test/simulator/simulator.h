@@ -286,6 +286,12 @@ void sim_lose_next_reply(sim_t *sim);
 encode_sample_t sim_mark(const sim_t *sim, uint32_t revolution, uint32_t sample);
 void sim_read_mark(const sim_t *sim, encode_sample_t point, uint32_t *revolution, uint32_t *sample);
 
+/* "lost", "late", "doubled", "cut", "deaf", "silent", "reboots", "no-starts", "no-scans". */
+const char *sim_trouble_name(sim_trouble_t trouble);
+
+/* A trouble and its milliseconds: "late700". SIM_SOUND: there is none of this name. */
+sim_trouble_t sim_trouble_named(const char *text, uint32_t *for_ms);
+
 sim_mode_t sim_mode(const sim_t *sim);
 const char *sim_mode_name(sim_mode_t mode);
 uint16_t sim_frequency_chz(const sim_t *sim); /* set, not measured */

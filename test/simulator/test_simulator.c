@@ -148,13 +148,6 @@ static unsigned number_of(const char *name, const char *const *names, unsigned c
     return number;
 }
 
-static sim_trouble_t trouble_named(const char *name)
-{
-    static const char *const names[] = {"sound", "lost",   "late",    "doubled",   "cut",
-                                        "deaf",  "silent", "reboots", "no-starts", "no-scans"};
-    return (sim_trouble_t)number_of(name, names, sizeof names / sizeof names[0]);
-}
-
 /* ---- Rows ---- */
 
 static size_t taken; /* Bytes of the stream that a row has named. */
@@ -326,10 +319,16 @@ static void run_until(uint64_t us)
 static void plan_trouble(const char *text)
 {
     static const char *const events[] = {"command", "reply", "beginning", "start"};
-    const char *const trouble = strchr(text, ':') + 1;
-    const char *const ms = strchr(trouble, ':');
-    unkind((sim_event_t)number_of(text, events, 4), trouble_named(trouble),
-           ms == NULL ? 0 : (uint32_t)atoi(ms + 1));
+    uint32_t ms;
+    const sim_trouble_t trouble = sim_trouble_named(strchr(text, ':') + 1, &ms);
+    unkind((sim_event_t)number_of(text, events, 4), trouble, ms);
+}
+
+static void befall(const char *name)
+{
+    uint32_t ms;
+    const sim_trouble_t trouble = sim_trouble_named(name, &ms);
+    sim_befall(&sim, trouble, ms, now);
 }
 
 static void run_until_spoilt(void)
@@ -346,10 +345,10 @@ static void send_raw(const char *hex)
 }
 
 /* ">0D": a command; "<0DA5": bytes to the lidar; "+50": 50 ms pass; "=A55A": the next bytes that
- * come, within 10 ms; "end": no more come; "got:600": the reply that a frequency is set; "forget": what
- * came before no longer counts; "@idle": the mode; "at:64:2300": angle and range; "ct:3:40": the CT
- * byte of a packet in a turn; "spoil:command:late:700", "befalls:no-scans": trouble; settings and
- * facts above. */
+ * come, within 10 ms; "end": no more come; "got:600": the reply that a frequency is set; "forget":
+ * what came before no longer counts; "@idle": the mode; "at:64:2300": angle and range; "ct:3:40":
+ * the CT byte of a packet in a turn; "spoil:command:late700", "befalls:no-scans": trouble; settings
+ * and facts above. */
 static void tell(char *word)
 {
     const unsigned long number =
@@ -374,7 +373,7 @@ static void tell(char *word)
     } else if (strncmp(word, "spoil:", 6) == 0) {
         plan_trouble(&word[6]);
     } else if (strncmp(word, "befalls:", 8) == 0) {
-        sim_befall(&sim, trouble_named(&word[8]), 0, now);
+        befall(&word[8]);
     } else if (strcmp(word, "end") == 0) {
         expect_end();
     } else if (strcmp(word, "forget") == 0) {
@@ -473,9 +472,9 @@ static const row_t rows[] IN_FLASH = {
     ROW(losing_power_cuts_a_packet_in_the_middle,
         "scan:1 inside power:0 +5000 bytes:0 @off power:1 @booting +2500 @idle >0D got:600"),
     ROW(commands_wait_for_a_late_one_and_keep_their_order,
-        "spoil:command:late:700 >0B >0A +699 bytes:0 +20 bytes:22 =A55A0400000004BC020000 "
+        "spoil:command:late700 >0B >0A +699 bytes:0 +20 bytes:22 =A55A0400000004BC020000 "
         "=A55A0400000004B2020000 end"),
-    ROW(replies_wait_for_a_late_one, "spoil:reply:late:700 >0B >0A +700 bytes:0 +20 bytes:22"),
+    ROW(replies_wait_for_a_late_one, "spoil:reply:late700 >0B >0A +700 bytes:0 +20 bytes:22"),
     ROW(a_scan_that_loses_its_beginning_does_not_begin_and_another_start_is_obeyed,
         "spoil:beginning:lost >60 +2000 bytes:7 @idle scan:1 packets>90"),
     ROW(start_packets_are_missing_until_it_boots,
@@ -492,35 +491,35 @@ static const row_t rows[] IN_FLASH = {
     ROW(a_lost_command_is_not_obeyed,
         "spoil:command:lost >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
     ROW(a_late_command_is_obeyed_later,
-        "spoil:command:late:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:22"),
+        "spoil:command:late1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:22"),
     ROW(a_doubled_command_is_obeyed_twice,
         "spoil:command:doubled >0B +100 bytes:22 +5000 >0D +1000 hz:800 bytes:33"),
     ROW(a_deaf_lidar_does_not_hear_the_command,
-        "spoil:command:deaf:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
+        "spoil:command:deaf1000 >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
     ROW(a_silent_lidar_obeys_and_does_not_answer,
-        "spoil:command:silent:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:11"),
+        "spoil:command:silent1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:11"),
     ROW(a_power_cut_at_a_command_forgets_it,
-        "spoil:command:cut:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
+        "spoil:command:cut1000 >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
     ROW(a_reboot_at_a_command_forgets_it,
         "spoil:command:reboots >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
     ROW(a_lost_reply_does_not_come,
         "spoil:reply:lost >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:11"),
     ROW(a_late_reply_comes_later,
-        "spoil:reply:late:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:22"),
+        "spoil:reply:late1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:22"),
     ROW(a_doubled_reply_comes_twice,
         "spoil:reply:doubled >0B +100 bytes:22 +5000 >0D +1000 hz:700 bytes:33"),
     ROW(a_lidar_that_is_deaf_at_a_reply_sends_it,
-        "spoil:reply:deaf:1000 >0B +100 bytes:11 +5000 >0D +1000 hz:700 bytes:22"),
+        "spoil:reply:deaf1000 >0B +100 bytes:11 +5000 >0D +1000 hz:700 bytes:22"),
     ROW(a_lidar_that_is_silent_at_a_reply_does_not_send_it,
-        "spoil:reply:silent:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:11"),
+        "spoil:reply:silent1000 >0B +100 bytes:0 +5000 >0D +1000 hz:700 bytes:11"),
     ROW(a_power_cut_at_a_reply_forgets_the_step,
-        "spoil:reply:cut:1000 >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
+        "spoil:reply:cut1000 >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
     ROW(a_reboot_at_a_reply_forgets_the_step,
         "spoil:reply:reboots >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
     ROW(a_silent_stream_goes_on_afterwards,
-        "spoil:start:silent:800 >60 spoilt +30 forget +760 bytes:0 +1000 packets>90"),
+        "spoil:start:silent800 >60 spoilt +30 forget +760 bytes:0 +1000 packets>90"),
     ROW(a_late_start_packet_delays_the_stream,
-        "spoil:start:late:800 >60 spoilt +30 forget +760 bytes:0 +1000 packets>90"),
+        "spoil:start:late800 >60 spoilt +30 forget +760 bytes:0 +1000 packets>90"),
 };
 
 void test_the_simulated_lidar(void)

@@ -52,8 +52,41 @@ void bed_prepare(bed_t *bed)
     bed->config.max_points = sizeof bed->points / sizeof bed->points[0];
 }
 
+static void hear_command(void *context, uint8_t code, uint64_t now_us)
+{
+    bed_t *const bed = context;
+    bed_heard_t *const heard = &bed->heard;
+
+    bed_tell(bed, "the lidar obeys %02X", code);
+    heard->commands++;
+    if (code == SIM_COMMAND_START && heard->starts++ == 0) {
+        heard->start_us = now_us;
+        heard->start_chz = sim_frequency_chz(&bed->sim);
+    } else if (code == SIM_COMMAND_STOP) {
+        heard->stops++;
+        heard->stops_while_scanning += sim_mode(&bed->sim) == SIM_SCANNING ? 1u : 0u;
+    } else if (code == SIM_COMMAND_REBOOT) {
+        heard->reboots++;
+    }
+}
+
+static sim_trouble_t spoil_event(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms)
+{
+    static const char *const texts[] = {"command", "reply", "beginning of a scan", "start packet"};
+    bed_t *const bed = context;
+    const sim_trouble_t trouble = bed->spoil != NULL ? bed->spoil(bed, ms) : SIM_SOUND;
+
+    (void)now_us;
+    bed_tell(bed, "%u: %s%s%s", bed->wire_events++, texts[event], trouble != SIM_SOUND ? ": " : "",
+             trouble != SIM_SOUND ? sim_trouble_name(trouble) : "");
+    return trouble;
+}
+
 bool bed_init(bed_t *bed, const sim_config_t *sim)
 {
+    const sim_observer_t observer = {
+        .context = bed, .on_command = hear_command, .on_event = spoil_event};
+
     bed->port.write = port_write;
     bed->port.now_ms = port_now_ms;
     bed->config.port = &bed->port;
@@ -66,6 +99,7 @@ bool bed_init(bed_t *bed, const sim_config_t *sim)
     bed->wants_chz = bed->config.frequency_chz;
     random_seed(&bed->random, sim->seed);
     sim_init(&bed->sim, sim);
+    sim_observe(&bed->sim, &observer);
     if (bed->watch != NULL) {
         watch_begin(bed);
     }
@@ -176,25 +210,6 @@ tmini_status_t bed_request_info(bed_t *bed)
 
 /* ---- What the program sees ---- */
 
-static uint32_t revolution_of(const bed_t *bed, const tmini_point_t *point)
-{
-    const encode_sample_t sample = {point->distance_mm, point->intensity, point->flag};
-    uint32_t revolution, number;
-
-    sim_read_mark(&bed->sim, sample, &revolution, &number);
-    return revolution;
-}
-
-static bool is_mixed(const bed_t *bed, const tmini_scan_t *scan)
-{
-    for (uint16_t i = 1; i < scan->count; i++) {
-        if (revolution_of(bed, &scan->points[i]) != revolution_of(bed, &scan->points[0])) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static void note_scan(bed_t *bed)
 {
     const tmini_scan_t *const scan = tmini_scan(&bed->lidar);
@@ -202,7 +217,6 @@ static void note_scan(bed_t *bed)
     bed->scan = *scan;
     bed->flows = bed->may_flow;
     bed->small += scan->packets == 1 ? 1u : 0u;
-    bed->mixed += bed->watch == NULL && bed->sim.config.marked && is_mixed(bed, scan) ? 1u : 0u;
     if (!scan->complete) {
         bed->complete_in_a_row = 0;
         return;
@@ -530,9 +544,6 @@ const char *bed_misdeed(const bed_t *bed)
 {
     if (bed->watch != NULL && bed->watch->wrong != NULL) {
         return bed->watch->wrong;
-    }
-    if (bed->mixed > 0) {
-        return "a scan of two revolutions";
     }
     return bed->most_per_second > MOST_EVENTS_PER_SECOND ? "more than ten events in a second"
                                                          : bed->unheard;

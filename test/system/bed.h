@@ -19,6 +19,14 @@
 #define BED_ROW 8u
 #define BED_HELD_MAX 65536u
 
+/* What the lidar has heard. */
+typedef struct {
+    uint32_t commands, starts, stops, reboots;
+    uint64_t start_us;  /* The first start, */
+    uint16_t start_chz; /* and what frequency was set then. */
+    uint32_t stops_while_scanning;
+} bed_heard_t;
+
 /* Bytes that a system below the program holds; it reports at most `reported_max` of them. */
 typedef struct {
     size_t reported_max;
@@ -39,6 +47,8 @@ struct bed {
     uint16_t busy_ms;     /* The longest of these. */
     bed_held_t *held;     /* The caller's. NULL: bytes come by an interrupt, or by DMA. */
     watch_t *watch;       /* The caller's. NULL: none. */
+    /* Decides what spoils an event on the wire, as sim_observer_t. NULL: nothing. */
+    sim_trouble_t (*spoil)(bed_t *bed, uint32_t *ms);
     tmini_config_t
         config; /* Without port; without buffers, unless those of the bed are too small. */
     tmini_timing_t timing;
@@ -56,6 +66,9 @@ struct bed {
     size_t dma_position;
     uint64_t busy_until_us;
 
+    bed_heard_t heard;    /* Since it was cleared. */
+    uint32_t wire_events; /* Those that may be spoilt. */
+
     /* What the program wants. */
     bool wants_scans;
     uint16_t wants_chz; /* 0: any. */
@@ -72,7 +85,6 @@ struct bed {
     uint32_t most_per_second;       /* The most of these in any second. */
     tmini_scan_t scan;              /* The latest; its points may have been overwritten. */
     uint32_t small;                 /* Scans of one packet. */
-    uint32_t mixed;                 /* Scans of two revolutions, if the lidar marks them. */
     uint32_t complete;              /* Complete scans. */
     uint64_t complete_us;           /* The latest of these. */
     uint32_t complete_in_a_row;     /* Now. */

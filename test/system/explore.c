@@ -55,23 +55,15 @@ static const story_t stories[] = {
 
 /* ---- Troubles ---- */
 
-typedef struct {
-    const char *name;
-    sim_trouble_t trouble;
-    uint32_t ms;
-} spoil_t;
-
-static const spoil_t spoils[] = {
-    {"lost", SIM_LOST, 0},           {"late700", SIM_LATE, 700},   {"late2300", SIM_LATE, 2300},
-    {"doubled", SIM_DOUBLED, 0},     {"cut50", SIM_POWER_CUT, 50}, {"cut2500", SIM_POWER_CUT, 2500},
-    {"deaf400", SIM_DEAF, 400},      {"deaf3000", SIM_DEAF, 3000}, {"silent1500", SIM_SILENT, 1500},
-    {"no-starts", SIM_NO_STARTS, 0}, {"reboots", SIM_REBOOTS, 0},  {"no-scans", SIM_NO_SCANS, 0},
-};
+/* With milliseconds. */
+static const char *const spoils[] = {"lost",       "late700",   "late2300", "doubled",
+                                     "cut50",      "cut2500",   "deaf400",  "deaf3000",
+                                     "silent1500", "no-starts", "reboots",  "no-scans"};
 #define SPOILS (sizeof spoils / sizeof spoils[0])
 
 typedef struct {
     uint32_t event; /* The number of the event on the wire, from 0. */
-    const spoil_t *spoil;
+    const char *spoil;
 } plan_t;
 
 /* ---- One run ---- */
@@ -81,58 +73,35 @@ typedef struct {
     bed_t bed;
     const story_t *story;
     uint32_t scene; /* The next one. */
-    uint32_t wire_events;
     plan_t plan[DEPTH_MAX];
     uint32_t troubles;
 } run_t;
 
 static run_t run;
 
-static const char *event_text(sim_event_t event)
+static sim_trouble_t spoil(bed_t *bed, uint32_t *ms)
 {
-    static const char *const texts[] = {"command", "reply", "beginning of a scan", "start packet"};
-
-    return texts[event];
-}
-
-static sim_trouble_t on_event(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms)
-{
-    const uint32_t number = run.wire_events++;
-
-    (void)context;
-    (void)now_us;
     for (uint32_t i = 0; i < run.troubles; i++) {
-        if (run.plan[i].event == number) {
-            *ms = run.plan[i].spoil->ms;
-            bed_tell(&run.bed, "%u: %s: %s", number, event_text(event), run.plan[i].spoil->name);
-            return run.plan[i].spoil->trouble;
+        if (run.plan[i].event == bed->wire_events) {
+            return sim_trouble_named(run.plan[i].spoil, ms);
         }
     }
-    bed_tell(&run.bed, "%u: %s", number, event_text(event));
     return SIM_SOUND;
-}
-
-static void on_command(void *context, uint8_t code, uint64_t now_us)
-{
-    (void)context;
-    (void)now_us;
-    bed_tell(&run.bed, "the lidar obeys %02X", code);
 }
 
 static void begin(const story_t *story)
 {
     const sim_config_t config = bed_quiet_lidar();
-    const sim_observer_t observer = {.on_command = on_command, .on_event = on_event};
 
     memset(&run, 0, sizeof run);
     bed_prepare(&run.bed);
     run.bed.poll_ms = POLL_MS;
+    run.bed.spoil = spoil;
     run.bed.config.frequency_chz = story->frequency_chz;
     if (!bed_init(&run.bed, &config)) {
         printf("the library was not set up\n");
         exit(2);
     }
-    sim_observe(&run.bed.sim, &observer);
     run.story = story;
 }
 
@@ -227,7 +196,7 @@ static void report(const char *what)
     }
     printf("explore --replay %s", run.story->name);
     for (uint32_t i = 0; i < run.troubles; i++) {
-        printf(" %u:%s", run.plan[i].event, run.plan[i].spoil->name);
+        printf(" %u:%s", run.plan[i].event, run.plan[i].spoil);
     }
     printf("    # %s\n", what);
 }
@@ -250,13 +219,13 @@ static bool keep_place(trail_t *trail)
 
 static void close_place(trail_t *trail, bool is_kept, uint32_t events_before)
 {
-    if (run.wire_events > events_before) {
+    if (run.bed.wire_events > events_before) {
         if (!is_kept) {
             printf("an event came unexpectedly, or there were too many\n");
             exit(2);
         }
         trail->places[trail->count].first = events_before;
-        trail->places[trail->count].end = run.wire_events;
+        trail->places[trail->count].end = run.bed.wire_events;
         trail->count++;
     }
 }
@@ -268,7 +237,7 @@ static void play(trail_t *trail)
 
     runs++;
     while (!is_fulfilled() && (what = complaint()) == NULL) {
-        const uint32_t events_before = run.wire_events;
+        const uint32_t events_before = run.bed.wire_events;
 
         const bool is_kept = trail != NULL && keep_place(trail);
 
@@ -300,7 +269,7 @@ static void go_back(const trail_t *trail)
 {
     run = trail->places[trail->place].before;
     run.plan[run.troubles].event = trail->event;
-    run.plan[run.troubles].spoil = &spoils[trail->spoil];
+    run.plan[run.troubles].spoil = spoils[trail->spoil];
     run.troubles++;
 }
 
@@ -370,9 +339,9 @@ static void plan_one(const char *text)
     const char *const colon = strchr(text, ':');
 
     for (size_t i = 0; colon != NULL && i < SPOILS && run.troubles < DEPTH_MAX; i++) {
-        if (strcmp(colon + 1, spoils[i].name) == 0) {
+        if (strcmp(colon + 1, spoils[i]) == 0) {
             run.plan[run.troubles].event = (uint32_t)strtoul(text, NULL, 10);
-            run.plan[run.troubles].spoil = &spoils[i];
+            run.plan[run.troubles].spoil = spoils[i];
             run.troubles++;
             return;
         }

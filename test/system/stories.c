@@ -31,51 +31,32 @@ static uint32_t below(uint32_t limit)
 
 /* ---- Trouble ---- */
 
-typedef struct {
-    const char *name;
-    sim_trouble_t trouble;
-} trouble_t;
-
 /* The first four spoil only something that happens on the wire. */
-static const trouble_t troubles[] = {
-    {"lost", SIM_LOST},         {"lost", SIM_LOST},           {"late", SIM_LATE},
-    {"doubled", SIM_DOUBLED},   {"power cut", SIM_POWER_CUT}, {"deaf", SIM_DEAF},
-    {"silent", SIM_SILENT},     {"reboots", SIM_REBOOTS},     {"no starts", SIM_NO_STARTS},
-    {"no scans", SIM_NO_SCANS},
-};
+static const sim_trouble_t troubles[] = {SIM_LOST,      SIM_LOST,    SIM_LATE,   SIM_DOUBLED,
+                                         SIM_POWER_CUT, SIM_DEAF,    SIM_SILENT, SIM_REBOOTS,
+                                         SIM_NO_STARTS, SIM_NO_SCANS};
 #define TROUBLES (sizeof troubles / sizeof troubles[0])
 #define OF_THE_WIRE 4u
 
-static sim_trouble_t on_event(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms)
+static sim_trouble_t spoil(bed_t *story, uint32_t *ms)
 {
-    static const char *const events[] = {"command", "reply", "beginning", "start packet"};
-    const trouble_t *const trouble = &troubles[below(TROUBLES)];
+    const sim_trouble_t trouble = troubles[below(TROUBLES)];
 
-    (void)context;
-    (void)now_us;
+    (void)story;
     if (spoils_one_in == 0 || below(spoils_one_in) > 0) {
-        bed_tell(&bed, "%s", events[event]);
         return SIM_SOUND;
     }
     *ms = below(3000);
-    bed_tell(&bed, "%s: %s, %u ms", events[event], trouble->name, *ms);
-    return trouble->trouble;
-}
-
-static void on_command(void *context, uint8_t code, uint64_t now_us)
-{
-    (void)context;
-    (void)now_us;
-    bed_tell(&bed, "the lidar obeys %02X", code);
+    return trouble;
 }
 
 static void befall(void)
 {
-    const trouble_t *const trouble = &troubles[OF_THE_WIRE + below(TROUBLES - OF_THE_WIRE)];
+    const sim_trouble_t trouble = troubles[OF_THE_WIRE + below(TROUBLES - OF_THE_WIRE)];
     const uint32_t ms = below(5000);
 
-    bed_tell(&bed, "%s, %u ms", trouble->name, ms);
-    sim_befall(&bed.sim, trouble->trouble, ms, bed.now_us);
+    bed_tell(&bed, "%s, %u ms", sim_trouble_name(trouble), ms);
+    sim_befall(&bed.sim, trouble, ms, bed.now_us);
 }
 
 static void make_trouble(void)
@@ -113,7 +94,6 @@ static void end_trouble(void)
 
 static void begin(uint32_t seed, bool is_told)
 {
-    const sim_observer_t observer = {.on_command = on_command, .on_event = on_event};
     sim_config_t lidar = bed_quiet_lidar();
 
     random_seed(&dice, seed);
@@ -128,6 +108,7 @@ static void begin(uint32_t seed, bool is_told)
     lidar.ct_information = below(2) == 0;
     lidar.keeps_frequency = below(4) == 0;
     bed.poll_ms = 1 + below(20);
+    bed.spoil = spoil;
     bed.config.frequency_chz = (uint16_t)(below(2) == 0 ? 0 : 600 + 10 * below(61));
     spoils_one_in = below(3) == 0 ? 0 : 3 + below(40);
     damaged_until_us = 0;
@@ -135,7 +116,6 @@ static void begin(uint32_t seed, bool is_told)
         printf("the library was not set up\n");
         exit(2);
     }
-    sim_observe(&bed.sim, &observer);
 }
 
 static void act(void)

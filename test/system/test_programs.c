@@ -49,59 +49,22 @@ static void expect_good_behaviour(uint32_t moment)
     expect(misdeed == NULL, "at %u: %s", moment, misdeed);
 }
 
-/* ---- What the lidar has heard ---- */
-
-static struct {
-    uint32_t commands, starts, stops, reboots;
-    uint64_t start_us;  /* The first one. */
-    uint16_t start_chz; /* What was set then. */
-    uint32_t stops_while_scanning;
-} heard;
-
-static void hear(void *context, uint8_t code, uint64_t now_us)
-{
-    (void)context;
-    heard.commands++;
-    switch (code) {
-    case SIM_COMMAND_START:
-        if (heard.starts++ == 0) {
-            heard.start_us = now_us;
-            heard.start_chz = sim_frequency_chz(&bed.sim);
-        }
-        break;
-    case SIM_COMMAND_STOP:
-        heard.stops++;
-        heard.stops_while_scanning += sim_mode(&bed.sim) == SIM_SCANNING ? 1u : 0u;
-        break;
-    case SIM_COMMAND_REBOOT:
-        heard.reboots++;
-        break;
-    default:
-        break;
-    }
-}
-
-static void forget_heard(void)
-{
-    memset(&heard, 0, sizeof heard);
-}
-
+/* All that comes is watched. */
 static void prepare(uint16_t frequency_chz)
 {
     lidar = bed_quiet_lidar();
     lidar.seed = 3;
     lidar.marked = true;
+    memset(&watch, 0, sizeof watch);
+    watch.line = sim_link_default_config();
     bed_prepare(&bed);
+    bed.watch = &watch;
     bed.config.frequency_chz = frequency_chz;
-    forget_heard();
 }
 
 static void begin(void)
 {
-    const sim_observer_t observer = {.on_command = hear};
-
     expect(bed_init(&bed, &lidar), "the library refuses the configuration");
-    sim_observe(&bed.sim, &observer);
 }
 
 /* Power comes for board and lidar; the lidar listens `deaf_ms` later. */
@@ -146,14 +109,14 @@ static void power_up_together(uint16_t frequency_chz, uint32_t step_ms)
         begin_together(deaf_ms);
         start();
         (void)run_until_scans(12000);
-        expect(bed_scans_at(&bed, frequency_chz, 3), "deaf for %u: no scans", deaf_ms);
-        expect(heard.start_us <= deaf_ms * 1000u + 600000u, "deaf for %u: started at %u", deaf_ms,
-               (uint32_t)(heard.start_us / 1000u));
-        expect(heard.starts == 1, "deaf for %u: %u starts", deaf_ms, heard.starts);
-        expect(frequency_chz == 0 || heard.start_chz == frequency_chz,
-               "deaf for %u: started at %u * 0.01 Hz", deaf_ms, heard.start_chz);
+        expect(bed_scans_at(&bed, frequency_chz, 3), "deaf for %u: no-scans", deaf_ms);
+        expect(bed.heard.start_us <= deaf_ms * 1000u + 600000u, "deaf for %u: started at %u",
+               deaf_ms, (uint32_t)(bed.heard.start_us / 1000u));
+        expect(bed.heard.starts == 1, "deaf for %u: %u starts", deaf_ms, bed.heard.starts);
+        expect(frequency_chz == 0 || bed.heard.start_chz == frequency_chz,
+               "deaf for %u: started at %u * 0.01 Hz", deaf_ms, bed.heard.start_chz);
         bed_run_ms(&bed, 2000);
-        expect(heard.stops_while_scanning == 0, "deaf for %u: stopped while scanning", deaf_ms);
+        expect(bed.heard.stops_while_scanning == 0, "deaf for %u: stopped while scanning", deaf_ms);
         expect_good_behaviour(deaf_ms);
     }
 }
@@ -186,7 +149,7 @@ static void supply_fails_for(uint32_t off_ms, uint16_t boot_ms)
     begin();
     start();
     scans_within(5000);
-    forget_heard();
+    memset(&bed.heard, 0, sizeof bed.heard);
     fail_supply(off_ms);
     bed_run_ms(&bed, boot_ms);
     const uint32_t listens_ms = bed_ms(&bed);
@@ -196,9 +159,9 @@ static void supply_fails_for(uint32_t off_ms, uint16_t boot_ms)
     }
     expect(bed_ms(&bed) <= listens_ms + 4000, "off for %u, boots for %u: scans after %u", off_ms,
            boot_ms, bed_ms(&bed) - listens_ms);
-    expect(heard.starts == 1 && heard.start_chz == 1000,
-           "off for %u, boots for %u: %u starts, at %u * 0.01 Hz", off_ms, boot_ms, heard.starts,
-           heard.start_chz);
+    expect(bed.heard.starts == 1 && bed.heard.start_chz == 1000,
+           "off for %u, boots for %u: %u starts, at %u * 0.01 Hz", off_ms, boot_ms,
+           bed.heard.starts, bed.heard.start_chz);
     bed_run_ms(&bed, 3000);
     expect(bed_scans_at(&bed, 1000, 3), "off for %u: not at 10 Hz", off_ms);
     expect(bed.events[TMINI_EVENT_LOST] <= 1 &&
@@ -258,11 +221,9 @@ void test_a_quiet_line_time_works_or_is_refused(void)
         prepare(1000);
         lidar.stop_tail_ms = 300;
         bed.timing.quiet_line_ms = quiet_ms;
-        const sim_observer_t observer = {.on_command = hear};
         if (!bed_init(&bed, &lidar)) {
             continue; /* Refused. */
         }
-        sim_observe(&bed.sim, &observer);
         let_others_start();
         bed_run_ms(&bed, 2000);
         start();
@@ -393,21 +354,17 @@ static bool call(const char *word, uint32_t number)
 /* What happens to the lidar; or faults of the line (link.h), with this mean gap. */
 static bool befall(const char *word, uint32_t number)
 {
-    static const struct {
-        const char *word;
-        sim_trouble_t trouble;
-    } troubles[] = {{"deaf", SIM_DEAF}, {"no scans", SIM_NO_SCANS}, {"no starts", SIM_NO_STARTS}};
+    uint32_t unused;
+    const sim_trouble_t trouble = sim_trouble_named(word, &unused);
     const sim_link_kind_t kind = sim_link_kind_named(word);
 
     if (kind != SIM_LINK_KINDS) {
         sim_link_set_mean_gap(&watch.link, kind, number, bed.now_us);
         return true;
     }
-    for (size_t i = 0; i < sizeof troubles / sizeof troubles[0]; i++) {
-        if (strcmp(troubles[i].word, word) == 0) {
-            sim_befall(&bed.sim, troubles[i].trouble, number, bed.now_us);
-            return true;
-        }
+    if (trouble == SIM_DEAF || trouble >= SIM_NO_STARTS) {
+        sim_befall(&bed.sim, trouble, number, bed.now_us);
+        return true;
     }
     if (strcmp(word, "power") == 0) {
         sim_power(&bed.sim, number != 0, bed.now_us);
@@ -472,7 +429,7 @@ static void mark(void)
     marked.small = bed.small;
     marked.scans = bed.events[TMINI_EVENT_SCAN];
     marked.events = events();
-    forget_heard();
+    memset(&bed.heard, 0, sizeof bed.heard);
 }
 
 /* Complete scans, and nothing else, for three seconds. */
@@ -502,7 +459,7 @@ static void expect_report(uint32_t faults)
     bed_run_ms(&bed, WATCH_FAULT_MS);
     expect(tmini_faults(&bed.lidar) == 0 && bed.events[TMINI_EVENT_FAULTS_CHANGED] == 2,
            "its end is not reported");
-    expect(bed.events[TMINI_EVENT_LOST] == 0 && heard.commands == 0, "it was \"repaired\"");
+    expect(bed.events[TMINI_EVENT_LOST] == 0 && bed.heard.commands == 0, "it was \"repaired\"");
 }
 
 static bool act(const char *word, uint32_t number)
@@ -570,8 +527,8 @@ static bool judge(const char *word, uint32_t number)
         {"lidar idle", sim_mode(&bed.sim) == SIM_IDLE ? 0 : 1, 0},
         {"lidar at", sim_frequency_chz(&bed.sim), 0},
         {"sent", bed.sent, 0},
-        {"reboots", heard.reboots, 0},
-        {"stops", heard.stops, 0},
+        {"reboots", bed.heard.reboots, 0},
+        {"stops", bed.heard.stops, 0},
         {"undelivered", bed.sim.counts.packets - bed.events[TMINI_EVENT_PACKET], 0},
         {"any event", events() - marked.events, 0},
         {"scans at least", bed.events[TMINI_EVENT_SCAN] - marked.scans, UINT32_MAX},
@@ -633,19 +590,10 @@ static void play_steps(const char *script)
     }
 }
 
-/* All that comes is watched. */
-static void prepare_watched(void)
+static void play(const row_t *row)
 {
     prepare(0);
     memset(&marked, 0, sizeof marked);
-    memset(&watch, 0, sizeof watch);
-    watch.line = sim_link_default_config();
-    bed.watch = &watch;
-}
-
-static void play(const row_t *row)
-{
-    prepare_watched();
     if (strstr(row->steps, "begin, ") == NULL && strstr(row->steps, "together") == NULL) {
         begin();
     }
@@ -745,15 +693,15 @@ static const row_t rows[] IN_FLASH = {
         "wants 1000, never answers 1, boots together 300, start, run 9000, complete 3, run 2000, "
         "command failed 1"),
     ROW(a_lidar_that_answers_and_does_not_scan_is_rebooted,
-        "wants 1000, begin, no scans, start, within 30000, reboots 1"),
+        "wants 1000, begin, no-scans, start, within 30000, reboots 1"),
     ROW(a_lidar_that_does_not_scan_after_a_loss_is_rebooted,
-        "wants 1000, begin, start, within 5000, power 0, run 300, power 1, run 2500, no scans, "
+        "wants 1000, begin, start, within 5000, power 0, run 300, power 1, run 2500, no-scans, "
         "within 30000, reboots 1"),
     ROW(a_lidar_whose_start_packets_stop_is_rebooted_and_lost_once,
-        "wants 1000, begin, start, within 5000, no starts, run 15000, lost 1, recovered 0, run "
+        "wants 1000, begin, start, within 5000, no-starts, run 15000, lost 1, recovered 0, run "
         "16000, reboots 1, within 12000, lost 1, recovered 1"),
     ROW(a_lidar_that_begins_without_start_packets_is_rebooted,
-        "wants 1000, begin, no starts, start, within 42000, reboots 1"),
+        "wants 1000, begin, no-starts, start, within 42000, reboots 1"),
     /* Every second packet of 40 samples is damaged, and one start packet in 16. */
     ROW(a_lidar_that_sends_start_packets_on_a_bad_line_is_not_stopped,
         "wants 1000, begin, start, within 5000, mark, flip 200, run 60000, stops 0, lost 0"),
@@ -827,7 +775,7 @@ void test_programs(void)
 
 void test_every_frequency_can_be_set_from_where_the_last_one_left_it(void)
 {
-    prepare_watched();
+    prepare(0);
     begin();
     for (unsigned i = 0; i < 61; i++) {
         const uint32_t chz = 600 + 10 * (i * 37 % 61);
@@ -846,7 +794,7 @@ void test_a_late_reply_to_any_frequency_step_does_no_harm(void)
     static const uint32_t delays_ms[] = {40, 100, 1900, 2050, 2500};
 
     for (unsigned i = 0; i < 5 * 6; i++) {
-        prepare_watched();
+        prepare(0);
         begin();
         (void)call("set", 820);
         while (bed.sim.counts.replies < i % 6) {
@@ -865,7 +813,7 @@ void test_a_late_reply_to_a_command_of_another_program_disturbs_no_answer(void)
     static const uint8_t command[2] = {0xA5, SIM_COMMAND_UNDOCUMENTED_98};
 
     for (uint32_t late_ms = 0; late_ms < 200; late_ms += 9) {
-        prepare_watched();
+        prepare(0);
         begin();
         sim_delay_next_reply(&bed.sim, 50 + late_ms);
         sim_receive(&bed.sim, command, 2, bed.now_us);
@@ -883,7 +831,7 @@ void test_a_late_reply_to_a_command_of_another_program_disturbs_no_answer(void)
 /* A minute of such faults, then none: scans must resume. */
 static void survive(const char *kind, uint32_t mean_gap, unsigned mode)
 {
-    prepare_watched();
+    prepare(0);
     lidar = sim_default_config();
     lidar.marked = true;
     lidar.seed = 1 + mode;
