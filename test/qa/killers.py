@@ -4,7 +4,7 @@
 
 """Finds the test functions that notice a mutant, and those that alone notice one. Use it before you remove a test.
 
-    killers.py --build DIR --sample N [--seed S] [--jobs N] FILE [SOURCE …]
+    killers.py --build DIR [--sample N [--seed S]] [--jobs N] FILE [SOURCE …]
 
 Appends a line to FILE for each mutant of mutation.py: the change, a tab, and the test functions that fail, as
 "program:function", or as "program:*" for a program that crashes or does not end. At the end it prints, for each
@@ -14,12 +14,9 @@ the run continues it.
 
 import argparse
 import collections
-import hashlib
 import multiprocessing
 import os
 import re
-import signal
-import subprocess
 import tempfile
 
 import mutation
@@ -29,16 +26,9 @@ class Matrix(mutation.Bench):
     """Runs all tests of a mutant, also after one has failed."""
 
     def failures(self, test, shared):
-        try:
-            done = subprocess.run([test.program], cwd=test.work_folder() or self.work, stdin=subprocess.DEVNULL,
-                                  capture_output=True, text=True, errors="replace", check=False,
-                                  env={**os.environ, "LD_LIBRARY_PATH": os.path.dirname(shared)},
-                                  preexec_fn=lambda: signal.setitimer(signal.ITIMER_PROF, 0.25 + 4 * test.seconds),
-                                  timeout=20 + 20 * test.seconds)
-        except subprocess.TimeoutExpired:
-            return [test.name + ":*"]
-        failed = re.findall(r":(test_\w+):FAIL", done.stdout)
-        return [f"{test.name}:{name}" for name in failed or (["*"] if done.returncode != 0 else [])]
+        status, output = self.run(test, shared)
+        failed = re.findall(r":(test_\w+):FAIL", output)
+        return [f"{test.name}:{name}" for name in failed or (["*"] if status != 0 else [])]
 
     def killers(self, mutant):
         """The test functions that fail, or None if the mutant does not compile."""
@@ -83,17 +73,11 @@ def report(lines):
 
 def main():
     parser = argparse.ArgumentParser(description="Names the test functions that notice mutants.")
-    parser.add_argument("--build", required=True)
-    parser.add_argument("--sample", type=int, default=1 << 30)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("file", metavar="FILE")
-    parser.add_argument("sources", nargs="*", metavar="SOURCE", default=[os.path.join(mutation.ROOT, "lib", "src")])
+    mutation.add_arguments(parser)
     arguments = parser.parse_args()
     lines = read(arguments.file)
-    mutants = [mutant for path in mutation.files_among(arguments.sources) for mutant in mutation.mutants_of(path)]
-    mutants.sort(key=lambda mutant: hashlib.sha256(f"{arguments.seed} {mutant.key}".encode()).digest())
-    fresh = [mutant for mutant in mutants[:arguments.sample] if str(mutant) not in lines]
+    fresh = [mutant for mutant in mutation.mutants_for(arguments)[:arguments.sample] if str(mutant) not in lines]
     with tempfile.TemporaryDirectory() as work, open(arguments.file, "a", encoding="utf-8") as file, \
             multiprocessing.Pool(arguments.jobs, begin_worker, (arguments.build, work)) as pool:
         for mutant, names in pool.imap(killers_of, fresh):

@@ -176,17 +176,6 @@ def object_of(entry):
     return os.path.join(entry["directory"], words[words.index("-o") + 1])
 
 
-def objects_of(folder):
-    """The object files of a program. `folder` is the program's folder in CMakeFiles."""
-    link = os.path.join(folder, "link.txt")
-    if not os.path.exists(link):
-        return []
-    with open(link, encoding="utf-8") as file:
-        words = shlex.split(file.read())
-    place = os.path.dirname(os.path.dirname(folder))
-    return [os.path.realpath(os.path.join(place, word)) for word in words if word.endswith(".o")]
-
-
 def files_of(folder):
     return sorted(os.path.relpath(file, ROOT) for kind in ("c", "cpp", "h", "py", "js")
                   for file in glob.glob(os.path.join(glob.escape(os.path.join(ROOT, folder)), "*." + kind)))
@@ -207,6 +196,10 @@ def sources_with(path):
     return sorted(file for file in found if not file.endswith(".h"))
 
 
+class Unable(Exception):
+    """An error that makes it impossible to test mutants."""
+
+
 class Build:
     """The content of the build folder: command lines of the compiler, and object files of test programs."""
 
@@ -215,22 +208,30 @@ class Build:
         with open(os.path.join(self.folder, "compile_commands.json"), encoding="utf-8") as file:
             self.entries = json.load(file)
         self.entry_of = {os.path.realpath(object_of(entry)): entry for entry in self.entries}
-        self.archives, self.folders, self.links = [], [], {}
+        self.archives, self.folders = [], []
         for place, folders, files in os.walk(self.folder):  # Does not follow links, which may form a circle.
             if "CMakeCache.txt" in files and place != self.folder:
                 folders.clear()  # This is another build.
                 continue
-            if "link.txt" in files:
-                self.links[os.path.basename(place)] = os.path.join(place, "link.txt")
             self.archives += [os.path.join(place, file) for file in sorted(files) if file.endswith(".a") and
                               os.path.isdir(os.path.join(place, "CMakeFiles", file[3:-2] + ".dir"))]  # By this build.
             self.folders += [os.path.join(place, name) for name in sorted(folders) if re.match(r"test_.*\.dir$", name)]
 
+    @functools.cache
+    def objects_of(self, folder):
+        """The object files of a program, whose folder in CMakeFiles this is."""
+        return [path for path in self.entry_of if path.startswith(os.path.realpath(folder) + os.sep)]
+
+    @functools.cache
     def link_of(self, target):
-        """The folder in which a program is linked, and the command."""
-        link = self.links[target + ".dir"]
-        with open(link, encoding="utf-8") as file:
-            return os.path.dirname(os.path.dirname(os.path.dirname(link))), shlex.split(file.read())
+        """The program's name, and the command that links it in the build folder. Only Ninja tells it."""
+        ninja = pathlib.Path(self.folder, "build.ninja")
+        if not ninja.exists():
+            raise Unable(f"{self.folder} was not configured for Ninja: {target} cannot be linked again")
+        program = re.search(rf"^build (\S+): \w+_EXECUTABLE_LINKER__{target}_", ninja.read_text(), re.MULTILINE)[1]
+        command = subprocess.run(["ninja", "-t", "commands", "-s", program], cwd=self.folder, check=True,
+                                 capture_output=True, text=True).stdout
+        return os.path.join(self.folder, program), shlex.split(command)[2:-2]  # ": && COMMAND && :"
 
     @staticmethod
     def compiled(entry):
@@ -260,7 +261,7 @@ class Build:
                                 r"(?!.*/examples/|" + re.escape(os.path.join(self.folder, "test", "")) + ")")
         library = [entry for entry in entries if is_library.match(object_of(entry))]
         for folder in self.folders:
-            linked = [own[obj] for obj in objects_of(folder) if obj in own]
+            linked = [own[obj] for obj in self.objects_of(folder) if obj in own]
             entry = (linked + library + [None])[0]
             name = os.path.basename(folder)[:-len(".dir")]
             if re.search(f"/test/.*{place}/", folder) and entry and \
@@ -278,9 +279,6 @@ class Test:
         self.seconds = 6.0  # Processor time with the original; an estimate until the test has run.
         self.kills = 0
 
-    def objects(self):
-        return [obj for obj in objects_of(self.folder) if obj != os.path.realpath(object_of(self.entry))]
-
     def work_folder(self):
         """The folder in which ctest runs the test, if it needs a folder of its own."""
         place = re.sub(r"CMakeFiles/(\w+)\.dir$", r"\1.work", self.folder)
@@ -294,15 +292,6 @@ class Test:
 def cpu_seconds():
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
-
-
-def is_in_body(mutant):
-    above = (line[0] for line in reversed(mutant.text.split("\n")[:mutant.line]) if line[:1] in ("{", "}"))
-    return next(above, "") == "{"
-
-
-class Unable(Exception):
-    """An error that makes it impossible to test mutants."""
 
 
 class Bench:
@@ -376,12 +365,10 @@ class Bench:
             self.begin_command(test, original)
             return
         test.program = os.path.join(self.work, os.path.dirname(original), test.name)
-        subprocess.run([test.compiler, "-o", test.program, *test.objects(), "-Wl,--no-as-needed", original,
+        objects = [obj for obj in self.build.objects_of(test.folder) if obj != os.path.realpath(object_of(test.entry))]
+        subprocess.run([test.compiler, "-o", test.program, *objects, "-Wl,--no-as-needed", original,
                         "-Wl,--start-group", *self.build.archives, "-Wl,--end-group", "-lm", "-lpthread"], check=True)
-        before = cpu_seconds()
-        if not self.passes(test, original):
-            raise Unable(f"{test.name} fails without any mutant")
-        test.seconds = max(cpu_seconds() - before, 0.001)
+        self.measure(test, original)
 
     def begin_command(self, test, original):
         begun = time.monotonic()
@@ -392,22 +379,30 @@ class Bench:
         test.seconds = time.monotonic() - begun
 
     def run(self, test, shared):
-        """The exit status. A signal ends a test that computes or waits much longer than usual."""
+        """Exit status and output. A signal ends a test that computes or waits much longer than usual."""
         if isinstance(test, elsewhere.Command):
-            return test.run(shared, self.work, "-x")[0]
+            return test.run(shared, self.work, "-x")
         try:
-            return subprocess.run([test.program], cwd=test.work_folder() or self.work, stdin=subprocess.DEVNULL,
-                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            done = subprocess.run([test.program], cwd=test.work_folder() or self.work, stdin=subprocess.DEVNULL,
+                                  capture_output=True, text=True, errors="replace", check=False,
                                   env={**os.environ, "LD_LIBRARY_PATH": os.path.dirname(shared)},
                                   preexec_fn=lambda: signal.setitimer(signal.ITIMER_PROF, 0.25 + 4 * test.seconds),
-                                  timeout=20 + 20 * test.seconds, check=False).returncode
+                                  timeout=20 + 20 * test.seconds)
+            return done.returncode, done.stdout
         except subprocess.TimeoutExpired:
-            return -signal.SIGKILL
+            return -signal.SIGKILL, ""
 
     def passes(self, test, shared):
         """True if the test passes. A test that fails is run again: some tests depend on the real time."""
-        status = self.run(test, shared)
-        return status == 0 or status > 0 and self.run(test, shared) == 0
+        status = self.run(test, shared)[0]
+        return status == 0 or status > 0 and self.run(test, shared)[0] == 0
+
+    def measure(self, test, original):
+        """The test must pass with the original; measures its time."""
+        before = cpu_seconds()
+        if not self.passes(test, original):
+            raise Unable(f"{test.name} fails without any mutant")
+        test.seconds = max(cpu_seconds() - before, 0.001)
 
     # A public header is part of the library and of the tests: all code that it changes is recompiled.
 
@@ -444,9 +439,9 @@ class Bench:
         target = self.object_with(self.with_headers(entry), entry, option, "recompiled")
         return target, target is None or pathlib.Path(target).read_bytes() != code
 
-    def relink(self, test, objects, program):
+    def relink(self, test, objects):
         """Links a test with the library as a shared object, which may be in any folder."""
-        test.program = os.path.join(self.work, program, test.name)
+        test.program = os.path.join(self.work, "relinked", test.name)
         os.makedirs(os.path.dirname(test.program), exist_ok=True)
         subprocess.run([test.compiler, "-o", test.program, *objects, "-Wl,--no-as-needed", self.original_library,
                         "-Wl,--start-group", *self.build.archives, "-Wl,--end-group", "-lm"], check=True)
@@ -462,50 +457,20 @@ class Bench:
 
     def recompiled_objects(self, header, test):
         """The parts of a test without the library: command line, object, and whether it has changed."""
-        own = [self.build.entry_of[obj] for obj in objects_of(test.folder)]
+        own = [self.build.entry_of[obj] for obj in self.build.objects_of(test.folder)]
         own += [entry for entry in self.build.entries if entry["file"].endswith("/test/support/receiver.c")]
         return [(entry, *self.recompiled(header, entry)) for entry in own]
 
-    def begin_headers(self, tests):
-        """Builds the library, as one source, and the original tests, which must pass; measures their time."""
+    def begin_headers(self, compiler):
+        """Builds the library, as one source."""
         text = single.single({os.path.basename(path): read(path) for path in files_of("lib/src")}, "")
         source = pathlib.Path(self.work, "tmini_all.c")
         source.write_text(text, encoding="utf-8")
         shutil.copytree(os.path.join(ROOT, PUBLIC), os.path.join(self.work, PUBLIC))
         entry = self.build.entries_of("lib/src/tmini_ring.c")[0]
         self.library = {**entry, "file": str(source), "command": entry["command"].replace(entry["file"], str(source))}
-        self.compiler = tests[0].compiler
-        self.original_library = os.path.join(self.work, "mutant.so")
-        self.recompiled_library("", "")
-        for test in tests:
-            self.relink(test, [target for _, target, _ in self.recompiled_objects("", test)], "original_tests")
-            before = cpu_seconds()
-            if not self.passes(test, self.original_library):
-                raise Unable(f"{test.name} fails without any mutant")
-            test.seconds = cpu_seconds() - before + 0.1 * len(objects_of(test.folder))
-
-    def notice(self, tests, library):
-        """The first of the original tests that notices a changed library."""
-        for test in tests:
-            test.program = os.path.join(self.work, "original_tests", test.name)
-            if not self.passes(test, library):
-                return test
-        return None
-
-    def notice_recompiled(self, header, tests, library, is_new_to_all):
-        """The first recompiled test that notices the mutant, and the parts of tests that it changes."""
-        different = []
-        for test in tests:
-            made = self.recompiled_objects(header, test)
-            if any(target is None for _, target, _ in made):
-                return "not C", []
-            others = [entry for entry, _, is_other in made if is_other]
-            if others or is_new_to_all:
-                self.relink(test, [target for _, target, _ in made], "recompiled")
-                if not self.passes(test, library):
-                    return test, []
-            different += others
-        return None, different
+        self.compiler = compiler
+        self.original_library, _ = self.recompiled_library("", "")
 
     def preprocessed(self, header):
         """The header after preprocessing, for each set of macros with which it is included."""
@@ -514,11 +479,28 @@ class Bench:
         return [subprocess.run([self.compiler, "-E", "-P", "-dD", "-I" + os.path.join(ROOT, "test", "support"), *way,
                                 header], check=True, capture_output=True).stdout for way in sorted(ways)]
 
+    def notice_recompiled(self, header, library, is_other):
+        """The first test that notices a changed header, and what else than the library the header changes. None
+        instead of the latter if something does not compile."""
+        different = []
+        for test in sorted(self.tests_of("lib/src/tmini_ring.c"), key=lambda test: test.promise(header)):
+            made = self.recompiled_objects(header, test)
+            if any(target is None for _, target, _ in made):
+                return None, None
+            others = [entry for entry, _, is_changed in made if is_changed]
+            different += others
+            if others or is_other:
+                if test.program is None:
+                    self.relink(test, [target for _, target, _ in self.recompiled_objects("", test)])
+                    self.measure(test, self.original_library)
+                self.relink(test, [target for _, target, _ in made])
+                if not self.passes(test, library):
+                    return test, different
+        return None, different
+
     def fate_of_header(self, mutant):
-        """Tries a mutant of a header. If it is in a function's body, the original tests run first."""
-        tests = sorted(self.tests_of("lib/src/tmini_ring.c"), key=lambda test: test.promise(mutant.path))
         if not self.original_library:
-            self.begin_headers(tests)
+            self.begin_headers(self.tests_of("lib/src/tmini_ring.c")[0].compiler)
         changed = os.path.join(self.work, mutant.path)
         pathlib.Path(changed).write_text(mutant.text, encoding="utf-8")
         try:
@@ -527,13 +509,9 @@ class Bench:
             library, is_other = self.recompiled_library(mutant.path, "recompiled")
             if library is None:
                 return "not C"
-            different = []
-            is_inline = is_other and is_in_body(mutant)
-            test = self.notice(tests, library) if is_inline else None
-            if test is None:
-                test, different = self.notice_recompiled(mutant.path, tests, library, is_other and not is_inline)
-            if test == "not C":
-                return test
+            test, different = self.notice_recompiled(mutant.path, library, is_other)
+            if different is None:
+                return "not C"
             if test is not None:
                 test.kills += 1
                 return "killed by " + test.name
@@ -663,22 +641,31 @@ def try_mutants(mutants, wanted, pool, results, known):
     return counts["survived"], needed
 
 
-def main():
-    parser = argparse.ArgumentParser(description="Mutates the library or ports and runs their unit tests.")
+def add_arguments(parser):
     parser.add_argument("--build", required=True)
     parser.add_argument("--sample", type=int, help="only this many mutants, drawn at random")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--tolerate", type=int, default=0, help="this many survivors are no error")
-    parser.add_argument("--results", help="a file to which each mutant's fate is appended, and read from")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
-    parser.add_argument("--list", action="store_true", help="only prints the mutants")
-    parser.add_argument("files", nargs="*", metavar="FILE", default=[os.path.join(ROOT, "lib", "src")])
-    arguments = parser.parse_args()
+    parser.add_argument("files", nargs="*", metavar="SOURCE", default=[os.path.join(ROOT, "lib", "src")])
+
+
+def mutants_for(arguments):
     mutants = [mutant for path in files_among(arguments.files) for mutant in mutants_of(path)]
-    if not mutants:
-        parser.error(f"nothing to change in {' '.join(arguments.files)}")
     if arguments.sample:  # By hash: a changed line does not change the rest of the sample.
         mutants.sort(key=lambda mutant: hashlib.sha256(f"{arguments.seed} {mutant.key}".encode()).digest())
+    return mutants
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Mutates the library or ports and runs their unit tests.")
+    add_arguments(parser)
+    parser.add_argument("--tolerate", type=int, default=0, help="this many survivors are no error")
+    parser.add_argument("--results", help="a file to which each mutant's fate is appended, and read from")
+    parser.add_argument("--list", action="store_true", help="only prints the mutants")
+    arguments = parser.parse_args()
+    mutants = mutants_for(arguments)
+    if not mutants:
+        parser.error(f"nothing to change in {' '.join(arguments.files)}")
     if arguments.list:
         print(*mutants, f"{len(mutants)} mutants", sep="\n")
         return

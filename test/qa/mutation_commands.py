@@ -58,16 +58,15 @@ class Program:
         target.parent.mkdir(parents=True, exist_ok=True)
         if not bench.compile(test, source, f"{target}.o", "-O1", "-c"):
             return None
-        place, words = bench.build.link_of(self.target)
-        own = os.path.realpath(test.object)
+        _, words = bench.build.link_of(self.target)
+        place, own = bench.build.folder, os.path.realpath(test.object)
         words = [word for word in words if os.path.realpath(os.path.join(place, word)) != own]
         at = words.index("-o")
         subprocess.run([*words[:at], f"{target}.o", "-o", target, *words[at + 2:]], cwd=place, check=True)
         return str(target)
 
     def use(self, build, product, words, settings):
-        place, link = build.link_of(self.target)
-        original = os.path.normpath(os.path.join(place, link[link.index("-o") + 1]))
+        original, _ = build.link_of(self.target)
         return ([product if word == original else word for word in words],
                 {name: product if value == original else value for name, value in settings.items()})
 
