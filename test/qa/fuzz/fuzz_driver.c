@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "encoder.h"
 #include "invariants.h"
 #include "tmini_driver.h"
 #include "turning_lidar.h"
@@ -102,6 +103,13 @@ static void receive_byte(uint8_t byte)
     world.fed++;
 }
 
+static void receive_all(const uint8_t *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        receive_byte(bytes[i]);
+    }
+}
+
 /* ---- The turning lidar's line ---- */
 
 static void arrive(const uint8_t *bytes, size_t count)
@@ -110,9 +118,7 @@ static void arrive(const uint8_t *bytes, size_t count)
         world.left = 0; /* End this input. */
         return;
     }
-    for (size_t i = 0; i < count; i++) {
-        receive_byte(bytes[i]);
-    }
+    receive_all(bytes, count);
 }
 
 /* The lidar sends what it has to reply, and its next packet, of which the bytes from `from` up to
@@ -196,15 +202,8 @@ static void receive_packet(uint8_t ct, uint8_t samples)
     for (size_t i = 10; i < size; i++) {
         packet[i] = (uint8_t)(i * samples);
     }
-    for (size_t i = 0; i < size; i++) {
-        const bool is_high = i < 10 ? i % 2 != 0 : (i - 10) % 3 == 2;
-        if (i != 8 && i != 9) {
-            packet[is_high ? 9 : 8] ^= packet[i];
-        }
-    }
-    for (size_t i = 0; i < size; i++) {
-        receive_byte(packet[i]);
-    }
+    encode_seal(packet);
+    receive_all(packet, size);
 }
 
 /* Receives a reply with a valid header and any content. */
@@ -215,9 +214,7 @@ static void receive_reply(uint8_t shape)
                                          {0xA5, 0x5A, 3, 0, 0, 0, 0x06},
                                          {0xA5, 0x5A, 4, 0, 0, 0, 0x04}};
     const uint8_t *const header = headers[shape % 4u];
-    for (size_t i = 0; i < sizeof headers[0]; i++) {
-        receive_byte(header[i]);
-    }
+    receive_all(header, sizeof headers[0]);
     receive(shape % 4u == 0 ? 0 : header[2]);
 }
 
