@@ -143,6 +143,7 @@ int poll(struct pollfd *file, nfds_t count, int timeout_ms)
 {
     fd_set readable;
     fd_set writable;
+    TEST_ASSERT_TRUE(count == (file != NULL ? 1 : 0));
     for (int passed_ms = 0;; passed_ms++) {
         struct timeval at_once = {0, 0};
         FD_ZERO(&readable);
@@ -178,6 +179,7 @@ void setUp(void)
 {
     tapped = 0;
     poll_error = 0;
+    now_us = UINT64_C(0xFFFFFE00) * 1000; /* In half a second 32 bits of milliseconds wrap. */
     its_end = listener = -1;
     pull_the_cable();
     tmini_posix_init(&port, device);
@@ -630,6 +632,7 @@ void test_a_timed_stream_that_comes_late_has_the_times_of_its_sender(void)
     TEST_ASSERT_TRUE(tmini_posix_is_timed(&port));
     TEST_ASSERT_EQUAL_INT(-1, tmini_posix_port.write(&port, command, sizeof command));
     close(other);
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_wait(&port, 0));
 }
 
 void test_silence_is_no_error(void)
@@ -672,10 +675,19 @@ void test_a_device_that_is_not_there_yet_is_waited_for(void)
 {
     begin_to_wait();
     plug_in();
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 0));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 199));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, port.state);
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 1));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, port.state);
+}
+
+void test_a_device_that_was_stopped_is_not_waited_for(void)
+{
+    begin_to_wait();
+    plug_in();
+    tmini_posix_stop(&port);
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_wait(&port, 1000));
 }
 
 void test_a_cable_that_is_pulled_and_plugged_in_again_is_a_loss_and_a_recovery(void)
