@@ -1,32 +1,26 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Runs the simulated lidar in an emulator's time, and reads its own record of what it sent."""
+"""Runs the simulated lidar in an emulator's time, and keeps the bytes that it sends."""
 
-import csv
 import subprocess
 
 
 class Lidar:
     """A process that runs tmini-sim with the given options."""
 
-    def __init__(self, program, truth, *options):
-        self.truth = truth
-        self.process = subprocess.Popen([program, "--lines", "--truth", truth, *options], text=True,
-                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    def __init__(self, program, *options):
+        self.process = subprocess.Popen([program, "--lines", *options], text=True, stdin=subprocess.PIPE,
+                                        stdout=subprocess.PIPE)
+        self.sent = b""
 
     def exchange(self, now_us, received):
         """Passes the received bytes to the lidar, and returns the bytes that it has sent by now."""
         self.process.stdin.write(f"{now_us} {received.hex()}\n")
         self.process.stdin.flush()
-        return bytes.fromhex(self.process.stdout.readline())
+        new = bytes.fromhex(self.process.stdout.readline())
+        self.sent += new
+        return new
 
     def end(self):
-        """The packets that were sent, by number: each is a list of samples, dicts of numbers."""
         self.process.communicate()
-        packets = {}
-        with open(self.truth, encoding="ascii") as file:
-            for row in csv.DictReader(file):
-                sample = {name: int(value) for name, value in row.items()}
-                packets.setdefault(sample["packet"], []).append(sample)
-        return packets

@@ -1,124 +1,145 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The firmware requests information and health, receives four scans at 12 Hz and stops the lidar.
- * It writes its results as text to `log_text`, which the test reads from memory: the UART is in use
- * for the lidar. */
+/* Firmware without an operating system for the ESP32-C3 that the Python package labwired (0.25.0)
+ * simulates register by register. It asks for information and health, receives four scans at 12 Hz
+ * through UART0 and stops the lidar. run.py reads its results from memory.
+ *
+ * Registers are as in Espressif's "ESP32-C3 Technical Reference Manual". The simulator differs from
+ * the chip in three ways: see (1), (2) and (3) below. */
 
-#include "tmini/tmini_names.h"
-#include "board.h"
+#include "tmini/tmini.h"
 
-#include <inttypes.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
+
+#define REGISTER(address) (*(volatile uint32_t *)(address))
+
+#define UART 0x60000000u
+#define UART_FIFO REGISTER(UART + 0x00u)
+#define UART_INT_STATUS REGISTER(UART + 0x08u)
+#define UART_INT_ENABLE REGISTER(UART + 0x0Cu)
+#define UART_INT_CLEAR REGISTER(UART + 0x10u)
+#define UART_CLKDIV REGISTER(UART + 0x14u)
+#define UART_STATUS REGISTER(UART + 0x1Cu)
+#define UART_CONF1 REGISTER(UART + 0x24u)
+#define UART_MEM_CONF REGISTER(UART + 0x60u)
+#define UART_CLK_CONF REGISTER(UART + 0x78u)
+#define RXFIFO_FULL (1u << 0)
+#define RXFIFO_OVF (1u << 4)
+#define RXFIFO_TOUT (1u << 8)
+#define RX_TOUT_EN (1u << 21)
+#define FIFO_SIZE 128u
+
+#define TIMER 0x6001F000u
+#define TIMER_CONFIG REGISTER(TIMER + 0x00u)
+#define TIMER_LOW REGISTER(TIMER + 0x04u)
+#define TIMER_HIGH REGISTER(TIMER + 0x08u)
+#define TIMER_UPDATE REGISTER(TIMER + 0x0Cu)
+
+/* (1) The chip's timer counts the 40 MHz crystal divided by 40. The simulator's ignores the divider
+ * and counts processor cycles, at 20 MHz as on the chip after reset. */
+#define TICKS_PER_MS 20000u
+
+/* (2) The chip has an interrupt matrix with lines of its own. In the simulator the UART raises
+ * RISC-V's machine external interrupt, (3) which stays pending until it is cleared. */
+#define EXTERNAL_INTERRUPT (1u << 11)
 
 #define SCANS 4u
 
-char log_text[128 * 1024];
-volatile uint32_t log_length;
+/* The results; the last one says that there are some. */
+tmini_info_t info;
+tmini_ct_info_t turn;
+uint32_t harm; /* Bytes and packets that were lost or damaged. */
+uint32_t faults, frequency_chz, overflows, incomplete, unexpected;
+uint32_t counts[SCANS];
+tmini_point_t kept[SCANS][TMINI_SCAN_POINTS_TYPICAL];
 volatile uint32_t finished;
 
 static tmini_t lidar;
 static uint8_t rx[512];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
-static unsigned step;
 static unsigned scans;
 
-/* Printed at the end: the processor would not keep up with the lidar. */
-static tmini_scan_t kept[SCANS];
-static tmini_point_t kept_points[SCANS][TMINI_SCAN_POINTS_TYPICAL];
+/* ------------------------------------------------------------------------------------- the board */
 
-/* ------------------------------------------------------------------------------------- the log */
-
-__attribute__((format(printf, 1, 2))) static void put(const char *format, ...)
+__attribute__((interrupt, aligned(4))) static void receive(void)
 {
-    const size_t room = sizeof log_text - log_length;
-    va_list arguments;
-    va_start(arguments, format);
-    const int count = vsnprintf(&log_text[log_length], room, format, arguments);
-    va_end(arguments);
-    log_length += (size_t)count < room ? (uint32_t)count : 0;
-}
-
-static void put_named(const char *name, uint32_t number)
-{
-    put("%s %" PRIu32 "\n", name, number);
-}
-
-static void log_info(const tmini_info_t *info)
-{
-    char serial[TMINI_SERIAL_DIGITS + 1];
-    tmini_serial_text(info, serial);
-    put("model %u\nfirmware_major %u\nfirmware_minor %u\nserial %s\n", info->model,
-        info->firmware_major, info->firmware_minor, serial);
-}
-
-static void log_scan(const tmini_scan_t *scan)
-{
-    put_named("scan", scan->count);
-    put_named("complete", scan->complete);
-    for (unsigned i = 0; i < scan->count; i++) {
-        const tmini_point_t *const point = &scan->points[i];
-        put("point %u %u %u %u\n", point->angle_q6, point->distance_mm, point->intensity,
-            point->flag);
+    const uint32_t status = UART_INT_STATUS;
+    while ((UART_STATUS & 0x3FFu) > 0) {
+        tmini_feed_byte(&lidar, (uint8_t)UART_FIFO);
     }
+    overflows += (status & RXFIFO_OVF) != 0;
+    UART_INT_CLEAR = status;
+    __asm__ volatile("csrc mip, %0" ::"r"(EXTERNAL_INTERRUPT));
 }
 
-static void log_turn(void)
+/* 230400 8N1: the 40 MHz crystal divided by 173 10/16, 0.008 % slow. The UART interrupts after 64
+ * bytes, or 40 bit times after the last byte. */
+static void open_uart(void)
 {
-    tmini_ct_info_t info;
-    tmini_ct_info(&lidar, &info);
-    put_named("turn_known", info.known);
-    put_named("turn_number", info.number);
+    UART_CLK_CONF = (UART_CLK_CONF & ~(0xFFFFFu)) | 3u << 20 | 1u << 22;
+    UART_CLKDIV = 10u << 20 | 173u;
+    UART_CONF1 = (UART_CONF1 & ~0x1FFu) | 64u | RX_TOUT_EN;
+    UART_MEM_CONF = (UART_MEM_CONF & ~(0x3FFu << 16)) | 40u << 16;
+    UART_INT_CLEAR = RXFIFO_FULL | RXFIFO_OVF | RXFIFO_TOUT;
+    UART_INT_ENABLE = RXFIFO_FULL | RXFIFO_OVF | RXFIFO_TOUT;
 }
 
-static void log_totals(void)
+static void open_board(void)
 {
-    const board_statistics_t board = board_statistics();
-    tmini_counters_t counters;
-    tmini_counters(&lidar, &counters);
-    for (unsigned i = 0; i < SCANS; i++) {
-        log_scan(&kept[i]);
+    TIMER_CONFIG = 1u << 31 | 1u << 30 | 40u << 13 | 1u << 9;
+    open_uart();
+    __asm__ volatile("csrw mtvec, %0" ::"r"((uintptr_t)receive));
+    __asm__ volatile("csrs mie, %0" ::"r"(EXTERNAL_INTERRUPT));
+    __asm__ volatile("csrsi mstatus, 8");
+}
+
+static uint32_t now_ms(void *context)
+{
+    (void)context;
+    TIMER_UPDATE = 1u << 31;
+    return (uint32_t)(((uint64_t)TIMER_HIGH << 32 | TIMER_LOW) / TICKS_PER_MS);
+}
+
+static int write_uart(void *context, const uint8_t *bytes, size_t count)
+{
+    size_t taken = 0;
+    (void)context;
+    while (taken < count && (UART_STATUS >> 16 & 0x3FFu) < FIFO_SIZE) {
+        UART_FIFO = bytes[taken++];
     }
-    put_named("packets", counters.packets);
-    put_named("checksum_errors", counters.checksum_errors);
-    put_named("bytes_overrun", counters.bytes_overrun);
-    put_named("losses", counters.losses);
-    put_named("timeouts", counters.timeouts);
-    put_named("interrupts", board.interrupts);
-    put_named("most_bytes_an_interrupt", board.most_bytes);
-    put_named("fifo_overflows", board.overflows);
-    put_named("stack_used", board_stack_used());
-    put_named("lidar_struct", (uint32_t)sizeof lidar);
+    return (int)taken;
 }
 
-/* -------------------------------------------------------------------------------------- the job */
+/* --------------------------------------------------------------------------------------- the job */
 
 static void next_step(void)
 {
     static tmini_status_t (*const steps[])(tmini_t *) = {tmini_request_info, tmini_request_health,
                                                          tmini_start, tmini_stop};
+    static unsigned step;
     if (step < sizeof steps / sizeof steps[0]) {
         (void)steps[step++](&lidar);
     } else {
-        log_totals();
+        tmini_counters_t counters;
+        tmini_counters(&lidar, &counters);
+        harm =
+            counters.checksum_errors + counters.bytes_overrun + counters.losses + counters.timeouts;
         finished = 1;
     }
 }
 
-static void take_scan(void)
+/* Scans that come after the last wanted one are ignored. */
+static void keep(const tmini_scan_t *scan)
 {
     if (scans < SCANS) {
-        tmini_scan_t *const scan = &kept[scans];
-        *scan = *tmini_scan(&lidar);
-        memcpy(kept_points[scans], scan->points, scan->count * sizeof *scan->points);
-        scan->points = kept_points[scans++];
-    }
-    if (scans == SCANS) {
-        log_turn();
-        next_step();
-        scans++; /* Scans that arrive after the last wanted one are ignored. */
+        counts[scans] = scan->count;
+        incomplete += !scan->complete;
+        memcpy(kept[scans++], scan->points, scan->count * sizeof *scan->points);
+        if (scans == SCANS) {
+            tmini_ct_info(&lidar, &turn);
+            next_step();
+        }
     }
 }
 
@@ -126,31 +147,29 @@ static void handle(tmini_event_t event)
 {
     switch (event) {
     case TMINI_EVENT_NONE:
-        board_sleep();
+        __asm__ volatile("wfi");
         break;
     case TMINI_EVENT_INFO:
-        log_info(tmini_info(&lidar));
+        info = *tmini_info(&lidar);
         next_step();
         break;
     case TMINI_EVENT_HEALTH:
-        put_named("faults", tmini_health(&lidar)->faults);
+        faults = tmini_health(&lidar)->faults;
         next_step();
         break;
     case TMINI_EVENT_FREQUENCY:
-        put_named("frequency_chz", tmini_frequency_chz(&lidar));
+        frequency_chz = tmini_frequency_chz(&lidar);
         break;
     case TMINI_EVENT_STARTED:
-        put("started\n");
         break;
     case TMINI_EVENT_SCAN:
-        take_scan();
+        keep(tmini_scan(&lidar));
         break;
     case TMINI_EVENT_STOPPED:
-        put("stopped\n");
         next_step();
         break;
     default:
-        put_named("unexpected_event", event);
+        unexpected = event;
         finished = 1;
         break;
     }
@@ -158,8 +177,9 @@ static void handle(tmini_event_t event)
 
 int main(void)
 {
+    static const tmini_port_t port = {.write = write_uart, .now_ms = now_ms};
     const tmini_config_t config = {
-        .port = &board_port,
+        .port = &port,
         .rx_buffer = rx,
         .rx_size = sizeof rx,
         .points = points,
@@ -167,11 +187,9 @@ int main(void)
         .frequency_chz = 1200,
     };
     if (tmini_init(&lidar, &config) != TMINI_OK) {
-        put("not set up\n");
-        finished = 1;
         return 1;
     }
-    board_open(&lidar);
+    open_board();
     next_step();
     while (finished == 0) {
         handle(tmini_poll(&lidar));
