@@ -3,37 +3,40 @@
 
 #include "rig.h"
 
-#include "mock_port_functions.h"
-
 #include <string.h>
 
 rig_t rig;
 
-/* CMock reads the expected bytes when the call comes, so they must still exist then. */
-#define EXPECTATIONS 16
-static uint8_t expected[EXPECTATIONS][2];
-static unsigned expectations;
+/* ---- The port ---- */
 
-static uint32_t read_clock(void *context, int calls)
+static int record(void *context, const uint8_t *bytes, size_t count)
 {
-    (void)calls;
+    const int taken = rig.takes < (int)count ? rig.takes : (int)count;
+    TEST_ASSERT_EQUAL_PTR(&rig.port, context);
+    for (int i = 0; i < taken; i++) {
+        TEST_ASSERT_TRUE(rig.sent_count < RIG_SENT_MAX);
+        rig.sent[rig.sent_count++] = bytes[i];
+    }
+    return taken;
+}
+
+static uint32_t read_clock(void *context)
+{
     TEST_ASSERT_EQUAL_PTR(&rig.port, context);
     return rig.now_ms;
 }
 
-static void renew_mocks(void)
+static void count_restart(void *context)
 {
-    mock_port_functions_Destroy();
-    mock_port_functions_Init();
-    port_now_ms_StubWithCallback(read_clock);
+    TEST_ASSERT_EQUAL_PTR(&rig.port, context);
+    rig.port_restarts++;
 }
 
 void rig_open(void)
 {
     memset(&rig, 0, sizeof rig);
-    rig.port.write = port_write;
-    rig.port.now_ms = port_now_ms;
-    renew_mocks();
+    rig.port = (tmini_port_t){.write = record, .now_ms = read_clock, .restart = count_restart};
+    rig.takes = 2;
     rig.now_ms = 1000;
     rig.config.port = &rig.port;
     rig.config.port_context = &rig.port;
@@ -49,64 +52,8 @@ void rig_open(void)
 
 void rig_init(void)
 {
-    rig.fed = 0;
     rig.in_turn = false;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&rig.lidar, &rig.config));
-}
-
-/* ---- The port ---- */
-
-void rig_expect_write(unsigned line, uint8_t first, uint8_t second, size_t count, int taken)
-{
-    uint8_t *const bytes = expected[expectations++ % EXPECTATIONS];
-
-    bytes[0] = first;
-    bytes[1] = second;
-    port_write_CMockExpectAndReturn((UNITY_LINE_TYPE)line, &rig.port, bytes, count, taken);
-}
-
-void rig_verify(void)
-{
-    mock_port_functions_Verify();
-    renew_mocks(); /* CMock's memory would not hold the calls of a long story. */
-}
-
-/* ---- Time and events ---- */
-
-static void check_silence(unsigned line)
-{
-    UNITY_TEST_ASSERT_EQUAL_INT(TMINI_EVENT_NONE, tmini_poll(&rig.lidar), (UNITY_LINE_TYPE)line,
-                                "an event too early");
-}
-
-void rig_pass(unsigned line, uint32_t ms)
-{
-    const uint32_t from_ms = rig.now_ms;
-
-    check_silence(line);
-    rig.now_ms = from_ms + ms / 2;
-    check_silence(line);
-    rig.now_ms = from_ms + ms - 1;
-    check_silence(line);
-    rig.now_ms = from_ms + ms;
-}
-
-unsigned rig_drain(void)
-{
-    unsigned events = 0;
-    tmini_event_t event;
-
-    while ((event = tmini_poll(&rig.lidar)) != TMINI_EVENT_NONE) {
-        events |= BIT(event);
-    }
-    return events;
-}
-
-tmini_counters_t rig_counters(void)
-{
-    tmini_counters_t counters;
-    tmini_counters(&rig.lidar, &counters);
-    return counters;
 }
 
 /* ---- Bytes from the lidar ---- */
@@ -114,7 +61,6 @@ tmini_counters_t rig_counters(void)
 void rig_feed(const uint8_t *bytes, size_t count)
 {
     tmini_feed(&rig.lidar, bytes, count);
-    rig.fed += (uint32_t)count;
 }
 
 void rig_feed_byte(uint8_t byte)
@@ -198,57 +144,5 @@ void rig_feed_turn(uint8_t health, uint16_t distance_mm)
 
         rig_feed_packet(ct, index == 0 ? 1 : 4, distance_mm);
         rig.crc = encode_crc8(rig.crc, ct);
-    }
-}
-
-/* ---- Ways into each state ---- */
-
-void rig_go_idle(void)
-{
-    begins_with(STOP, tmini_stop(&rig.lidar));
-    passes_to(50, TMINI_EVENT_STOPPED);
-    is_in(TMINI_STATE_IDLE);
-}
-
-void rig_go_starting(void)
-{
-    rig_go_idle();
-    begins_with(GET_FREQUENCY, tmini_start(&rig.lidar));
-    answers_and_gets(600, START);
-}
-
-void rig_go_scanning(void)
-{
-    rig_go_starting();
-    rig_feed_scan_reply();
-    polls_to(TMINI_EVENT_NONE);
-    rig_feed_point_packet(1000);
-    polls_to(TMINI_EVENT_STARTED);
-    (void)rig_drain();
-    is_in(TMINI_STATE_SCANNING);
-}
-
-void rig_go_recovering(void)
-{
-    rig_go_scanning();
-    passes_to(1000, TMINI_EVENT_LOST);
-    polls_and_sends(STOP);
-}
-
-/* ---- Turns and their events ---- */
-
-unsigned rig_turn_events(uint8_t health)
-{
-    rig.now_ms += 160;
-    rig_feed_turn(health, 1000);
-    return rig_drain() & ~BIT(TMINI_EVENT_SCAN);
-}
-
-void rig_plain_turns(unsigned count, uint16_t distance_mm)
-{
-    while (count-- > 0) {
-        rig.now_ms += 160;
-        rig_feed_plain_turn(distance_mm);
-        (void)rig_drain();
     }
 }

@@ -106,7 +106,8 @@ bool rows_expect(const char *word, const row_number_t *numbers, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         if (row_is(word, numbers[i].name)) {
-            TEST_ASSERT_EQUAL_UINT32_MESSAGE(row_number(word), numbers[i].number, word);
+            UNITY_TEST_ASSERT_EQUAL_UINT32(row_number(word), numbers[i].number,
+                                           Unity.CurrentTestLineNumber, word);
             return true;
         }
     }

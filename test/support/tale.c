@@ -11,8 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SENT_MAX 16
-
 typedef struct {
     const char *word;
     int value;
@@ -34,6 +32,7 @@ static const entry_t events[] = {
     {"SCAN", TMINI_EVENT_SCAN},
     {"PAUSED", TMINI_EVENT_PAUSED},
     {"LOST", TMINI_EVENT_LOST},
+    {"MORE", TMINI_EVENT_MORE},
     {NULL, 0},
 };
 
@@ -77,28 +76,21 @@ static const struct {
 static struct {
     UNITY_LINE_TYPE line;
     char word[ROW_WORD_MAX]; /* The one being told. */
-    uint8_t sent[SENT_MAX];
-    unsigned sent_count;
-    int takes;
     bool is_set_up;
     bool scans_are_told;
     uint32_t events;
-    uint32_t port_restarts;
 } tale;
-
-static void tell_text(const char *text);
-static void begin_again(void);
 
 static void fail(const char *why)
 {
-    char message[100];
+    char message[ROW_WORD_MAX + 40];
     (void)snprintf(message, sizeof message, "%s: %s", tale.word, why);
     UNITY_TEST_FAIL(tale.line, message);
 }
 
 static void expect_equal(int expected, int actual, const char *what)
 {
-    char message[60];
+    char message[ROW_WORD_MAX + 40];
     (void)snprintf(message, sizeof message, "%s: %s", tale.word, what);
     UNITY_TEST_ASSERT_EQUAL_INT(expected, actual, tale.line, message);
 }
@@ -122,38 +114,16 @@ void tale_expect_status(const char *wanted, int status)
     expect_equal(wanted != NULL ? value_of(errors, wanted) : TMINI_OK, status, "status");
 }
 
-void tale_expect_number(const char *digits, uint32_t number)
-{
-    expect_equal((int)strtoul(digits, NULL, 0), (int)number, "number");
-}
-
 /* ---- The port ---- */
-
-static int record(void *context, const uint8_t *bytes, size_t count)
-{
-    const int taken = tale.takes < (int)count ? tale.takes : (int)count;
-    TEST_ASSERT_EQUAL_PTR(&rig.port, context);
-    for (int i = 0; i < taken; i++) {
-        TEST_ASSERT_TRUE(tale.sent_count < SENT_MAX);
-        tale.sent[tale.sent_count++] = bytes[i];
-    }
-    return taken;
-}
-
-static void count_restart(void *context)
-{
-    TEST_ASSERT_EQUAL_PTR(&rig.port, context);
-    tale.port_restarts++;
-}
 
 static uint8_t next_byte(void)
 {
-    const uint8_t byte = tale.sent[0];
-    if (tale.sent_count == 0) {
+    const uint8_t byte = rig.sent[0];
+    if (rig.sent_count == 0) {
         fail("nothing was sent");
     }
-    tale.sent_count--;
-    memmove(tale.sent, tale.sent + 1, tale.sent_count);
+    rig.sent_count--;
+    memmove(rig.sent, rig.sent + 1, rig.sent_count);
     return byte;
 }
 
@@ -168,7 +138,7 @@ static int poll_once(void)
 static void poll_to(tmini_event_t expected)
 {
     tmini_event_t event = (tmini_event_t)poll_once();
-    char message[60];
+    char message[ROW_WORD_MAX + 40];
     while (!tale.scans_are_told && event == TMINI_EVENT_SCAN && expected != TMINI_EVENT_SCAN) {
         event = (tmini_event_t)poll_once();
     }
@@ -178,14 +148,14 @@ static void poll_to(tmini_event_t expected)
 
 static void expect_nothing_sent(void)
 {
-    expect_equal(0, (int)tale.sent_count, "sent, and not told");
+    expect_equal(0, (int)rig.sent_count, "sent, and not told");
 }
 
 static void expect_sent(const char *word)
 {
     const bool is_rest = word[0] == '!';
     const int code = (int)strtol(word + (is_rest ? 1 : 0), NULL, 16);
-    if (tale.sent_count == 0) {
+    if (rig.sent_count == 0) {
         poll_to(TMINI_EVENT_NONE);
     }
     if (!is_rest && code != 0xA5) {
@@ -284,45 +254,39 @@ static void feed_ct_turn(uint8_t faults, uint16_t distance_mm)
     rig_feed_turn(faults, distance_mm);
 }
 
-bool tale_is(const char *word, const char *name)
-{
-    return strncmp(word, name, strlen(name)) == 0 &&
-           (word[strlen(name)] == '\0' || word[strlen(name)] == ':');
-}
-
 void tale_feed(const char *word)
 {
     const char *const at = strchr(word, ':');
     const unsigned number = at != NULL ? (unsigned)strtol(at + 1, NULL, 0) : 0;
     if (word[0] >= '0' && word[0] <= '9') {
         rig_feed_frequency((uint32_t)atol(word));
-    } else if (tale_is(word, "info")) {
+    } else if (row_is(word, "info")) {
         rig_feed_info();
-    } else if (tale_is(word, "health")) {
+    } else if (row_is(word, "health")) {
         rig_feed_health((uint8_t)number, 0x1234);
-    } else if (tale_is(word, "scan")) {
+    } else if (row_is(word, "scan")) {
         rig_feed_scan_reply();
-    } else if (tale_is(word, "P") || tale_is(word, "PZ")) {
+    } else if (row_is(word, "P") || row_is(word, "PZ")) {
         rig_feed_packet(0, at != NULL ? (uint8_t)number : 4, word[1] == 'Z' ? 0 : 1000);
-    } else if (tale_is(word, "S") || tale_is(word, "SZ")) {
+    } else if (row_is(word, "S") || row_is(word, "SZ")) {
         rig_feed_start_packet(word[1] == 'Z' ? 0 : 1000);
-    } else if (tale_is(word, "junk")) {
+    } else if (row_is(word, "junk")) {
         rig_feed_byte(0x11);
-    } else if (tale_is(word, "crc")) {
+    } else if (row_is(word, "crc")) {
         rig_feed_byte(rig.crc);
-    } else if (tale_is(word, "x")) {
+    } else if (row_is(word, "x")) {
         feed_hex(at + 1);
-    } else if (tale_is(word, "zeros")) {
+    } else if (row_is(word, "zeros")) {
         feed_zeros(number);
-    } else if (tale_is(word, "turn")) {
+    } else if (row_is(word, "turn")) {
         feed_turn(number);
-    } else if (tale_is(word, "small")) {
+    } else if (row_is(word, "small")) {
         feed_small_turn((uint16_t)number);
-    } else if (tale_is(word, "plain") || tale_is(word, "blind")) {
+    } else if (row_is(word, "plain") || row_is(word, "blind")) {
         feed_plain_turn(word[0] == 'p' ? 1000 : 0);
-    } else if (tale_is(word, "ct") || tale_is(word, "blind-ct")) {
+    } else if (row_is(word, "ct") || row_is(word, "blind-ct")) {
         feed_ct_turn((uint8_t)number, word[0] == 'c' ? 1000 : 0);
-    } else if (tale_is(word, "ranges") || tale_is(word, "blinds")) {
+    } else if (row_is(word, "ranges") || row_is(word, "blinds")) {
         feed_samples(number, word[0] == 'r' ? 1000 : 0);
     } else {
         fail("what is this?");
@@ -388,7 +352,7 @@ static bool configure(const char *word)
     const char *const at = strchr(word, ':');
     for (size_t i = 0; i < sizeof members / sizeof members[0]; i++) {
         const size_t number = at != NULL ? (size_t)strtoul(at + 1, NULL, 0) : members[i].number;
-        if (tale_is(word, members[i].word)) {
+        if (row_is(word, members[i].word)) {
             member_store(members[i].member, members[i].size, number);
             return true;
         }
@@ -427,25 +391,27 @@ static void expect_refusal(void)
 {
     expect_equal(TMINI_ERROR_ARGUMENT, tmini_init(&rig.lidar, &rig.config), "the set-up");
     tale.is_set_up = true;
-    tell_text("start=ARGUMENT stop=ARGUMENT !FAILED ?ARGUMENT !NONE @UNKNOWN");
+    tale_tell("start=ARGUMENT stop=ARGUMENT !FAILED ?ARGUMENT !NONE @UNKNOWN");
 }
 
 /* ---- What has been counted ---- */
 
-static uint32_t number_named(const char *word)
+static bool expect_number(const char *word)
 {
-    tmini_counters_t counters = rig_counters();
+    tmini_counters_t counters;
     tmini_ct_info_t unit;
+    tmini_point_t first = {0};
+    const tmini_scan_t *const scan = tmini_scan(&rig.lidar);
+    const tmini_packet_t *const packet = tmini_packet(&rig.lidar);
+    tmini_counters(&rig.lidar, &counters);
     tmini_ct_info(&rig.lidar, &unit);
-    const struct {
-        const char *name;
-        uint32_t number;
-    } numbers[] = {
+    (void)(packet->frame != NULL && tmini_packet_point(packet, 0, &first));
+    const row_number_t numbers[] = {
         {"next", tmini_next_poll_ms(&rig.lidar)},
         {"age", tmini_scan_age_ms(&rig.lidar)},
         {"faults", tmini_faults(&rig.lidar)},
         {"events", tale.events},
-        {"port-restarts", tale.port_restarts},
+        {"port-restarts", rig.port_restarts},
         {"packets", counters.packets},
         {"in-packets", counters.bytes_in_packets},
         {"in-replies", counters.bytes_in_replies},
@@ -464,21 +430,24 @@ static uint32_t number_named(const char *word)
         {"unit-faults", unit.faults},
         {"health-faults", tmini_health(&rig.lidar)->faults},
         {"health-code", tmini_health(&rig.lidar)->error_code},
-        {"gap", tmini_packet(&rig.lidar)->gap},
-        {"count", tmini_scan(&rig.lidar)->count},
+        {"gap", packet->gap},
+        {"count", scan->count},
         {"first-mm", rig.points[0].distance_mm},
-        {"gaps", tmini_scan(&rig.lidar)->gaps},
-        {"dropped", tmini_scan(&rig.lidar)->dropped},
-        {"complete", tmini_scan(&rig.lidar)->complete},
-        {"start-ms", tmini_scan(&rig.lidar)->start_ms},
+        {"gaps", scan->gaps},
+        {"dropped", scan->dropped},
+        {"complete", scan->complete},
+        {"start-ms", scan->start_ms},
+        {"end-ms", scan->end_ms},
+        {"chz", scan->frequency_chz},
+        {"scan-packets", scan->packets},
+        {"second-mm", rig.points[1].distance_mm},
+        {"third-mm", rig.points[2].distance_mm},
+        {"errors", counters.checksum_errors},
+        {"is-start", tmini_packet_is_start(packet)},
+        {"packet-count", packet->count},
+        {"packet-mm", first.distance_mm},
     };
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        if (tale_is(word, numbers[i].name)) {
-            return numbers[i].number;
-        }
-    }
-    fail("what is this?");
-    return 0;
+    return row_expects(word, numbers);
 }
 
 /* ---- Words ---- */
@@ -487,7 +456,7 @@ static bool tell_beginning(const char *word)
 {
     for (size_t i = 0; i < sizeof beginnings / sizeof beginnings[0]; i++) {
         if (strcmp(word, beginnings[i].word) == 0) {
-            tell_text(beginnings[i].tale);
+            tale_tell(beginnings[i].tale);
             return true;
         }
     }
@@ -500,7 +469,7 @@ static bool tell_means(const char *word)
     const char *const at = strchr(word, ':');
     const uint32_t number = at != NULL ? (uint32_t)atol(at + 1) : 0;
     if (strcmp(word, "/") == 0) {
-        begin_again();
+        tale_begin();
     } else if (strcmp(word, "refused") == 0) {
         expect_refusal();
     } else if (strcmp(word, "no-scans") == 0) {
@@ -509,17 +478,17 @@ static bool tell_means(const char *word)
         drain();
     } else if (strcmp(word, "bad-crc") == 0) {
         rig.crc ^= 1u;
-    } else if (tale_is(word, "held")) {
+    } else if (row_is(word, "held")) {
         tmini_feed_held(&rig.lidar, strtoul(word + 5, NULL, 0));
-    } else if (tale_is(word, "takes")) {
-        tale.takes = atoi(at + 1);
-    } else if (tale_is(word, "turns")) {
+    } else if (row_is(word, "takes")) {
+        rig.takes = atoi(at + 1);
+    } else if (row_is(word, "turns")) {
         feed_turns(at + 1);
-    } else if (tale_is(word, "clock")) {
+    } else if (row_is(word, "clock")) {
         rig.now_ms = number;
-    } else if (tale_is(word, "back")) {
+    } else if (row_is(word, "back")) {
         rig.now_ms -= number;
-    } else if (tale_is(word, "completed")) {
+    } else if (row_is(word, "completed")) {
         rig.lidar.complete_ms = rig.now_ms - number;
     } else {
         return false;
@@ -553,21 +522,18 @@ static void tell_sign(const char *word)
 
 static void tell_word(char *word)
 {
-    const char *const at = strchr(word, ':');
     memcpy(tale.word, word, strlen(word) + 1);
     if (strchr("><+~!@#?", word[0]) != NULL) {
         tell_sign(word);
     } else if (tell_beginning(word) || tell_means(word) ||
                (tale_words != NULL && tale_words(word))) {
         return;
-    } else if (at != NULL && tale.is_set_up && !tale_is(word, "set")) {
-        tale_expect_number(at + 1, number_named(word));
-    } else {
+    } else if (!tale.is_set_up || !expect_number(word)) {
         tell_call(word);
     }
 }
 
-static void tell_text(const char *text)
+void tale_tell(const char *text)
 {
     row_tell(text, tell_word);
 }
@@ -584,24 +550,21 @@ void tale_end(void)
     }
 }
 
-static void begin_again(void)
+void tale_begin(void)
 {
     const UNITY_LINE_TYPE line = tale.line;
     tale_end();
     memset(&tale, 0, sizeof tale);
     tale.line = line;
-    tale.takes = 2;
     tale.scans_are_told = true;
     rig_open();
-    rig.port.write = record;
-    rig.port.restart = count_restart;
     rig.port.wait = tale_wait;
 }
 
 void tale_tell_row(const row_t *row)
 {
-    begin_again();
+    tale_begin();
     tale.line = row->line;
-    tell_text(row->steps);
+    tale_tell(row->steps);
     tale_end();
 }

@@ -32,7 +32,7 @@
  *     @IDLE           the state
  *     #600            the frequency that is known to be set
  *     ?TIMEOUT        the error of the command that failed last
- *     next:50 age:300 faults:0x40 losses:1 …  numbers: see number_named()
+ *     next:50 age:300 faults:0x40 losses:1 …  numbers: see expect_number()
  *     takes:1         the port takes one byte per call from now on; takes:-1: it fails
  *     held:5          the port holds five bytes that it has not fed
  *     30( >0D +250 )  that many times
@@ -51,7 +51,10 @@
 /* Tells the row's tale, for run_rows(). */
 void tale_tell_row(const row_t *row);
 
-/* Ends a tale that has failed; for tearDown(). */
+/* For a test that does more than words can say: begins a tale, tells words of it, and ends it. A
+ * tearDown() ends a tale that has failed. */
+void tale_begin(void);
+void tale_tell(const char *text);
 void tale_end(void);
 
 /* A test's own words; false: the word is none of them. */
@@ -60,12 +63,10 @@ extern tale_words_t tale_words;
 
 extern void (*tale_wait)(void *context); /* The port's. */
 
-/* For these: sets the lidar up, unless it is; the word, perhaps with ":" and more; "<" without its
- * sign; what must be equal, of which NULL is TMINI_OK. */
+/* For these: sets the lidar up, unless it is; "<" without its sign; what must be equal, of which
+ * NULL is TMINI_OK. */
 void tale_set_up(void);
-bool tale_is(const char *word, const char *name);
 void tale_feed(const char *word);
 void tale_expect_status(const char *wanted, int status);
-void tale_expect_number(const char *digits, uint32_t number);
 
 #endif

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# tmini_add_driver_tests(TEST … [WITH SOURCE …] [NOT_ON MACHINE …]): the driver, on a mocked port.
+# tmini_add_driver_tests(TEST … [NOT_ON MACHINE …]): the driver, told in words.
+set(tale ../support/tale.c ../support/rig.c ../support/rows.c ../support/invariants.c)
 function(tmini_add_driver_tests)
-    cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "WITH;NOT_ON")
+    cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "NOT_ON")
     foreach(test ${arg_UNPARSED_ARGUMENTS})
-        tmini_add_unit_test(${test}
-            SOURCES ${test}.c ../support/rig.c ${arg_WITH} ../support/invariants.c
-            MOCKS ../support/port_functions.h
+        tmini_add_unit_test(${test} SOURCES ${test}.c ${tale}
             LIBRARIES tmini_test_support
             NOT_ON ${arg_NOT_ON})
         if(TARGET ${test})
@@ -16,15 +15,17 @@ function(tmini_add_driver_tests)
     endforeach()
 endfunction()
 
-tmini_add_driver_tests(test_tmini)
-
-# Told in words. The simulated ATmega2560 takes minutes for the long tales of the last four.
-set(tale WITH ../support/tale.c ../support/rows.c)
-tmini_add_driver_tests(test_command test_blocking ${tale})
-tmini_add_driver_tests(test_monitor test_poll test_recovery test_wish ${tale} NOT_ON int16)
-
+tmini_add_driver_tests(test_tmini test_command test_blocking)
+# The simulated ATmega2560 takes minutes for the long tales of these.
+tmini_add_driver_tests(test_monitor test_poll test_recovery test_wish NOT_ON int16)
 # Tests with large rings.
-tmini_add_driver_tests(test_effort test_pauses test_line NOT_ON int16)
+tmini_add_driver_tests(test_effort test_pauses NOT_ON int16)
+
+# One module of the driver.
+tmini_add_unit_test(test_line SOURCES test_line.c NOT_ON int16)
+if(TARGET test_line)
+    target_include_directories(test_line PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
+endif()
 
 # The driver with a lidar that turns (turns.h), on a port that records the commands.
 foreach(test test_honest_scans test_real_bytes)
@@ -49,8 +50,7 @@ endif()
 
 # The library is compiled again without CT information.
 tmini_add_unit_test(test_no_ct
-    SOURCES test_no_ct.c ../support/rig.c ../support/invariants.c ${library_sources}
-    MOCKS ../support/port_functions.h
+    SOURCES test_no_ct.c ${tale} ${library_sources}
     LIBRARIES tmini_test_support NOT_ON int16)
 if(TARGET test_no_ct)
     target_compile_definitions(test_no_ct PRIVATE TMINI_NO_CT)

@@ -4,7 +4,7 @@
 /* The work of one call of the parser or the driver is bounded, whatever has arrived. The rings here
  * are large and full of the bytes that cost most. */
 
-#include "rig.h"
+#include "tale.h"
 #include "tmini_driver.h"
 
 #include "tmini/parts/tmini_parser.h"
@@ -20,14 +20,11 @@ static uint8_t memory[8192];
 static tmini_ring_t ring;
 static tmini_parser_t parser;
 
-void setUp(void)
-{
-    rig_open();
-}
+void setUp(void) {}
 
 void tearDown(void)
 {
-    rig_verify();
+    tale_end();
 }
 
 static void open_parser(void)
@@ -113,106 +110,43 @@ void test_a_call_is_bounded_by_what_others_have_left(void)
     TEST_ASSERT_EQUAL_UINT32(48, parser_counters().bytes_skipped);
 }
 
-static tmini_counters_t poll_counters(void)
-{
-    tmini_counters_t counters;
-    tmini_counters(&rig.lidar, &counters);
-    return counters;
-}
+/* ---- The driver's polls ---- */
 
-static void open_driver(void)
+/* "large": the receive buffer has 8192 bytes; "forget-info": nothing is to be told of information
+ * any more. */
+static bool tell(char *word)
 {
-    rig.config.rx_buffer = memory;
-    rig.config.rx_size = sizeof memory;
-    rig_init();
-}
-
-/* A packet of one sample costs 44 and twice its 13 bytes: 1536 / 70, rounded up. */
-static void check_that_short_packets_are_bounded(void)
-{
-    const uint32_t before = poll_counters().packets;
-    for (unsigned i = 0; i < 200; i++) {
-        rig_feed_packet(0, 1, 1000);
+    if (row_is(word, "large")) {
+        rig.config.rx_buffer = memory;
+        rig.config.rx_size = sizeof memory;
+    } else if (row_is(word, "forget-info")) {
+        tmini_withdraw(&rig.lidar, TMINI_EVENT_INFO);
+    } else {
+        return false;
     }
-    polls_to(TMINI_EVENT_MORE);
-    TEST_ASSERT_EQUAL_UINT32(22, poll_counters().packets - before);
-    while (tmini_poll(&rig.lidar) == TMINI_EVENT_MORE) {
-    }
-    TEST_ASSERT_EQUAL_UINT32(200, poll_counters().packets - before);
+    return true;
 }
 
-void test_packets_that_were_not_asked_for_are_bounded(void)
-{
-    open_driver();
-    check_that_short_packets_are_bounded();
-}
+static const row_t tales[] IN_FLASH = {
+    /* A packet of one sample costs 44 and twice its 13 bytes: 1536 / 70, rounded up. */
+    ROW(packets_that_were_not_asked_for_are_bounded,
+        "large 200( <P:1 ) !MORE packets:22 drain packets:200"),
+    ROW(packets_of_a_scan_are_bounded,
+        "large scans <S drain packets:2 200( <P:1 ) !MORE packets:24 drain packets:202"),
+    /* A packet of 32 samples costs 44 and twice its 106 bytes: six of them cost 1536. */
+    ROW(a_poll_ends_when_its_effort_is_exactly_used_up,
+        "large 7( <P:32 ) !MORE packets:6 !NONE packets:7"),
+    /* Ten packets of 4 samples cost 88 each, which leaves 656 for the garbage after them. */
+    ROW(packets_and_the_garbage_after_them_share_a_polls_effort,
+        "large 10( <P ) 16( <zeros:256 ) !MORE packets:10 skipped:656 drain"),
+    ROW(a_poll_that_has_more_to_do_says_so_and_goes_on_with_the_next, /* 376 are complete. */
+        "large 400( <x:AA550050010001000000 ) 20( !MORE ) drain errors:376 ~100 drain"),
+    ROW(a_question_withdrawn_does_not_end_what_a_poll_has_left_over,
+        "large 60( <P:1 ) !MORE forget-info drain packets:60"),
+};
 
-void test_packets_of_a_scan_are_bounded(void)
+void test_tales(void)
 {
-    open_driver();
-    rig_go_scanning();
-    rig_feed_start_packet(1000);
-    TEST_ASSERT_EQUAL_UINT(0, rig_drain());
-    check_that_short_packets_are_bounded();
-}
-
-/* A packet of 32 samples costs 44 and twice its 106 bytes: six of them cost 1536. */
-void test_a_poll_ends_when_its_effort_is_exactly_used_up(void)
-{
-    open_driver();
-    for (unsigned i = 0; i < 7; i++) {
-        rig_feed_packet(0, 32, 1000);
-    }
-    polls_to(TMINI_EVENT_MORE);
-    TEST_ASSERT_EQUAL_UINT32(6, poll_counters().packets);
-    polls_to(TMINI_EVENT_NONE);
-    TEST_ASSERT_EQUAL_UINT32(7, poll_counters().packets);
-}
-
-/* Ten packets of 4 samples cost 88 each, which leaves 656 for the garbage after them. */
-void test_packets_and_the_garbage_after_them_share_a_polls_effort(void)
-{
-    open_driver();
-    for (unsigned i = 0; i < 10; i++) {
-        rig_feed_point_packet(1000);
-    }
-    for (unsigned i = 0; i < 4096; i++) {
-        rig_feed_byte(0);
-    }
-    polls_to(TMINI_EVENT_MORE);
-    TEST_ASSERT_EQUAL_UINT32(10, poll_counters().packets);
-    TEST_ASSERT_EQUAL_UINT32(656, poll_counters().bytes_skipped);
-}
-
-static uint32_t checksum_errors(void)
-{
-    return poll_counters().checksum_errors;
-}
-
-void test_a_poll_that_has_more_to_do_says_so_and_goes_on_with_the_next(void)
-{
-    open_driver();
-    for (unsigned i = 0; i < HEADERS; i++) {
-        rig_feed(header, sizeof header);
-    }
-    polls_to(TMINI_EVENT_MORE);
-    TEST_ASSERT_TRUE(checksum_errors() > 0 && checksum_errors() < 20);
-    unsigned polls = 1;
-    while (tmini_poll(&rig.lidar) == TMINI_EVENT_MORE) {
-        polls++;
-    }
-    TEST_ASSERT_TRUE(polls > 20);
-    TEST_ASSERT_EQUAL_UINT32(CANDIDATES, checksum_errors());
-}
-
-void test_a_question_withdrawn_does_not_end_what_a_poll_has_left_over(void)
-{
-    open_driver();
-    for (unsigned i = 0; i < 60; i++) {
-        rig_feed_packet(0, 1, 1000);
-    }
-    polls_to(TMINI_EVENT_MORE);
-    tmini_withdraw(&rig.lidar, TMINI_EVENT_INFO);
-    (void)rig_drain();
-    TEST_ASSERT_EQUAL_UINT32(60, poll_counters().packets);
+    tale_words = tell;
+    run_rows(tales, tale_tell_row);
 }

@@ -213,7 +213,7 @@ void test_rows(void)
     run_rows(rows, tell_row);
 }
 
-/* --------------------------------------------------------------------------- the manual's packet */
+/* -------------------------------------------------------------------------- the manual's packet */
 
 /* Worked out by hand from S2 and S3. */
 static const uint16_t manual_distances[19] = {11842, 11819, 11710, 11618, 11158, 10992, 10881,
@@ -270,7 +270,7 @@ void test_a_point_of_a_packet_that_dma_has_overwritten_may_not_be_used(void)
     TEST_ASSERT_FALSE(tmini_packet_point(&receiver.packet, 18, &point));
 }
 
-/* ------------------------------------------------------------------------------------- directions */
+/* ---------------------------------------------------------------------------------- directions */
 
 void test_an_angle_from_one_direction_clockwise_to_another_is_below_a_full_circle(void)
 {

@@ -6,11 +6,9 @@
 
 #include "tale.h"
 
-#include "mock_port_functions.h"
-
 void setUp(void)
 {
-    rig_open();
+    tale_begin();
 }
 
 void tearDown(void)
@@ -219,17 +217,17 @@ static void scan_turns(unsigned count)
         rig_feed_plain_turn((uint16_t)(1000 + 100 * i));
     }
 }
+
 void test_a_step_changes_each_scan_once_before_it_is_delivered(void)
 {
     rig.config.step = step;
     rig.config.step_data = &rig;
-    rig_init();
-    rig_go_scanning();
+    tale_tell("starts <scan <P !STARTED");
     scan_turns(2);
-    polls_to(TMINI_EVENT_SCAN);
+    tale_tell("!SCAN");
     TEST_ASSERT_EQUAL_UINT16(1001, tmini_scan(&rig.lidar)->points[0].distance_mm);
     scan_turns(1);
-    polls_to(TMINI_EVENT_SCAN);
+    tale_tell("!SCAN");
     TEST_ASSERT_EQUAL_UINT16(1101, tmini_scan(&rig.lidar)->points[0].distance_mm);
 }
 
@@ -237,19 +235,18 @@ void test_with_spare_points_a_scan_stays_until_the_next(void)
 {
     static tmini_point_t spare[RIG_POINTS];
     rig.config.spare_points = spare;
-    rig_init();
-    rig_go_scanning();
+    tale_tell("starts <scan <P !STARTED");
     scan_turns(2);
-    polls_to(TMINI_EVENT_SCAN);
+    tale_tell("!SCAN");
     const tmini_scan_t *const scan = tmini_scan(&rig.lidar);
     TEST_ASSERT_EQUAL_PTR(rig.points, scan->points);
-    polls_to(TMINI_EVENT_NONE); /* The next scan is stored elsewhere. */
+    tale_tell("!NONE"); /* The next scan is stored elsewhere. */
     TEST_ASSERT_EQUAL_UINT16(17, scan->count);
     TEST_ASSERT_EQUAL_UINT16(1000, scan->points[1].distance_mm);
     scan_turns(1);
-    polls_to(TMINI_EVENT_SCAN);
+    tale_tell("!SCAN");
     TEST_ASSERT_EQUAL_PTR(spare, tmini_scan(&rig.lidar)->points);
-    polls_to(TMINI_EVENT_NONE);
+    tale_tell("!NONE");
     TEST_ASSERT_EQUAL_UINT16(1100, spare[1].distance_mm); /* The third is stored over the first. */
     TEST_ASSERT_EQUAL_UINT16(1000, rig.points[1].distance_mm);
 }
