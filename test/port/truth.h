@@ -26,8 +26,8 @@ void truth_assert_revolution(const tmini_scan_t *scan, uint32_t revolution);
 /* The scan is complete and has exactly the points of some later revolution. */
 void truth_assert_some_revolution(const tmini_scan_t *scan);
 
-/* The scan has nothing but points of one revolution, in this order and in no other scan. Some may be
- * missing, if it says so. */
+/* The scan has nothing but points of one revolution, in this order and in no other scan. Some may
+ * be missing, if it says so. */
 void truth_assert_nothing_invented(const tmini_scan_t *scan);
 
 #endif

@@ -23,50 +23,10 @@ static uint8_t rx[8192];
 static tmini_point_t points[4000];
 static random_t dice;
 
-/* What is added up over all lives, in the order of the report. */
-typedef enum {
-    MINUTES,
-    LIVES,
-    BYTES,
-    SCANS,
-    PACKETS,
-    POINTS,
-    LINE_FAULTS,
-    LIDAR_FAULTS_MADE = LINE_FAULTS + SIM_LINK_KINDS,
-    FAULT_EVENTS,
-    LOSSES,
-    RECOVERIES,
-    WORST_RECOVERY_MS,
-    RESTARTS,
-    COMMANDS,
-    FAILURES,
-    COMMANDS_IN_TAIL,
-    BY_CHANCE,
-    SPLIT,
-    TOTALS
-} total_t;
-
-static const char *const total_names[TOTALS] = {[MINUTES] = "minutes of virtual time",
-                                                [LIVES] = "lidars, lines and programs",
-                                                [BYTES] = "bytes",
-                                                [SCANS] = "scans",
-                                                [PACKETS] = "packets compared with what was sent",
-                                                [POINTS] = "points compared",
-                                                [LIDAR_FAULTS_MADE] = "faults of the lidar",
-                                                [FAULT_EVENTS] = "fault events",
-                                                [LOSSES] = "losses",
-                                                [RECOVERIES] = "recoveries",
-                                                [WORST_RECOVERY_MS] = "worst time to recover, ms",
-                                                [RESTARTS] = "restarts of the program",
-                                                [COMMANDS] = "commands besides start",
-                                                [FAILURES] = "of which failed",
-                                                [COMMANDS_IN_TAIL] =
-                                                    "commands into the tail of a stop",
-                                                [BY_CHANCE] = "damaged, but valid by chance",
-                                                [SPLIT] = "given up in a silence"};
-
-static uint64_t totals[TOTALS];
-static uint32_t wrongs[WRONG_KINDS];
+/* What the program did, in all lives. */
+static struct {
+    uint32_t lives, lidar_faults, restarts, commands, failures;
+} done;
 
 static uint32_t between(uint32_t low, uint32_t high)
 {
@@ -140,7 +100,7 @@ static void run_ms(uint32_t ms)
 static bool carry_out(tmini_status_t begun, tmini_event_t end, uint32_t limit_ms)
 {
     const uint64_t begun_us = bed.now_us;
-    totals[COMMANDS]++;
+    done.commands++;
     if (begun != TMINI_OK) {
         watch_complain(&bed, WRONG_ANSWER);
         return false;
@@ -153,7 +113,7 @@ static bool carry_out(tmini_status_t begun, tmini_event_t end, uint32_t limit_ms
     if ((events & BIT(end)) != 0) {
         return true;
     }
-    totals[FAILURES]++;
+    done.failures++;
     if (watch_is_undisturbed_since(&bed, begun_us)) {
         watch_complain(&bed, WRONG_ANSWER);
     }
@@ -236,7 +196,7 @@ static void make_requests(void)
 
 static void restart_library(void)
 {
-    totals[RESTARTS]++;
+    done.restarts++;
     (void)bed_restart(&bed);
 }
 
@@ -335,7 +295,7 @@ static void live_through_a_fault(void)
 {
     const lidar_fault_t fault = (lidar_fault_t)between(0, LIDAR_FAULTS - 1);
     const uint64_t since_us = bed.now_us;
-    totals[LIDAR_FAULTS_MADE]++;
+    done.lidar_faults++;
     set_fault(fault, true);
     run_ms(WATCH_FAULT_MS + between(0, 20000));
     expect_faults(expected_faults(fault), since_us);
@@ -365,49 +325,78 @@ static void live(uint32_t ms)
     }
 }
 
+/* ---- The report ---- */
+
+static void print(const char *what, const char *kind, uint64_t number)
+{
+    char name[60];
+
+    (void)snprintf(name, sizeof name, "%s%s", what, kind);
+    printf("%-44s %12llu\n", name, (unsigned long long)number);
+}
+
+static uint64_t seconds;
+static uint64_t bytes;
+static uint32_t events[BED_EVENTS];
+static uint32_t line_faults[SIM_LINK_KINDS];
+static uint32_t commands_in_tail;
+static watch_counts_t sums;
+
 static void add_up(void)
 {
     const watch_counts_t *const counts = &watch.counts;
-    totals[LIVES]++;
-    totals[MINUTES] += bed.now_us / 1000u / 60u;
-    totals[BYTES] += watch.arrived;
-    totals[SCANS] += bed.events[TMINI_EVENT_SCAN];
-    totals[PACKETS] += counts->packets;
-    totals[POINTS] += counts->points;
-    totals[FAULT_EVENTS] += bed.events[TMINI_EVENT_FAULTS_CHANGED];
-    totals[LOSSES] += bed.events[TMINI_EVENT_LOST];
-    totals[RECOVERIES] += counts->recoveries;
-    totals[COMMANDS_IN_TAIL] += bed.sim.counts.commands_in_tail;
-    totals[BY_CHANCE] += counts->by_chance;
-    totals[SPLIT] += counts->split;
-    if (counts->worst_recovery_ms > totals[WORST_RECOVERY_MS]) {
-        totals[WORST_RECOVERY_MS] = counts->worst_recovery_ms;
+    done.lives++;
+    seconds += bed.now_us / 1000000u;
+    bytes += watch.arrived;
+    commands_in_tail += bed.sim.counts.commands_in_tail;
+    sums.points += counts->points;
+    sums.packets += counts->packets;
+    sums.by_chance += counts->by_chance;
+    sums.split += counts->split;
+    sums.recoveries += counts->recoveries;
+    if (counts->worst_recovery_ms > sums.worst_recovery_ms) {
+        sums.worst_recovery_ms = counts->worst_recovery_ms;
+    }
+    for (unsigned event = 0; event < BED_EVENTS; event++) {
+        events[event] += bed.events[event];
     }
     for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
-        totals[LINE_FAULTS + kind] += watch.link.counts.faults[kind];
+        line_faults[kind] += watch.link.counts.faults[kind];
     }
     for (unsigned kind = 0; kind < WRONG_KINDS; kind++) {
-        wrongs[kind] += counts->wrongs[kind];
+        sums.wrongs[kind] += counts->wrongs[kind];
     }
 }
 
-static uint32_t print(void)
+/* Returns whether nothing was wrong. */
+static bool report(void)
 {
-    uint32_t sum = 0;
-    totals[MINUTES] /= 1000u;
-    for (unsigned i = 0; i < TOTALS; i++) {
-        char fault[40];
-        (void)snprintf(
-            fault, sizeof fault, "faults of the line: %s",
-            total_names[i] == NULL ? sim_link_kind_name((sim_link_kind_t)(i - LINE_FAULTS)) : "");
-        printf("%-44s %12llu\n", total_names[i] == NULL ? fault : total_names[i],
-               (unsigned long long)totals[i]);
+    bool is_right = true;
+    print("minutes of virtual time", "", seconds / 60u);
+    print("lidars, lines and programs", "", done.lives);
+    print("bytes", "", bytes);
+    print("scans", "", events[TMINI_EVENT_SCAN]);
+    print("packets compared with what was sent", "", sums.packets);
+    print("points compared", "", sums.points);
+    for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
+        print("faults of the line: ", sim_link_kind_name((sim_link_kind_t)kind), line_faults[kind]);
     }
+    print("faults of the lidar", "", done.lidar_faults);
+    print("fault events", "", events[TMINI_EVENT_FAULTS_CHANGED]);
+    print("losses", "", events[TMINI_EVENT_LOST]);
+    print("recoveries", "", sums.recoveries);
+    print("worst time to recover, ms", "", sums.worst_recovery_ms);
+    print("restarts of the program", "", done.restarts);
+    print("commands besides start", "", done.commands);
+    print("of which failed", "", done.failures);
+    print("commands into the tail of a stop", "", commands_in_tail);
+    print("damaged, but valid by chance", "", sums.by_chance);
+    print("given up in a silence", "", sums.split);
     for (unsigned kind = 0; kind < WRONG_KINDS; kind++) {
-        printf("WRONG: %-37s %12u\n", watch_name(kind), (unsigned)wrongs[kind]);
-        sum += wrongs[kind];
+        print("WRONG: ", watch_name(kind), sums.wrongs[kind]);
+        is_right = is_right && sums.wrongs[kind] == 0;
     }
-    return sum;
+    return is_right;
 }
 
 int main(int argc, char **argv)
@@ -427,5 +416,5 @@ int main(int argc, char **argv)
         live(left_ms < LIFE_MS ? (uint32_t)left_ms : LIFE_MS);
         add_up();
     }
-    return print() == 0 ? 0 : 1;
+    return report() ? 0 : 1;
 }

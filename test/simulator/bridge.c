@@ -3,8 +3,6 @@
 
 #include "bridge.h"
 
-#include "reference_decoder.h"
-
 #include <string.h>
 
 void bridge_init(bridge_t *bridge, const bridge_config_t *config)
@@ -34,73 +32,10 @@ static void deliver(bridge_t *bridge, uint8_t byte)
     put_byte(bridge, kind == BRIDGE_SEVEN ? byte & 0x7F : byte);
 }
 
-/* ---- Packets ---- */
-
-static bool is_blind(const bridge_t *bridge)
-{
-    const uint8_t every = bridge->config.blind_every;
-    return every > 0 && bridge->turns % every == 0;
-}
-
-/* The bytes in `open` are a whole packet: delivers the one that this unit sends instead. */
-static void deliver_packet(bridge_t *bridge)
-{
-    const uint8_t *const open = bridge->open;
-    const uint8_t size = bridge->config.sample_size > 0 ? bridge->config.sample_size : 3;
-    encode_sample_t samples[255];
-    encode_packet_t packet = {open[2], open[3], 0, 0, samples};
-    uint8_t out[ENCODE_OTHER_MAX];
-    size_t count;
-    bridge->turns += open[2] & 1u;
-    packet.first_q6 = (uint16_t)((open[4] | (unsigned)open[5] << 8) >> 1);
-    packet.last_q6 = (uint16_t)((open[6] | (unsigned)open[7] << 8) >> 1);
-    for (unsigned i = 0; i < packet.lsn; i++) {
-        const reference_point_t point = reference_point(open, i);
-        samples[i].distance_mm = is_blind(bridge) ? 0 : point.distance_mm;
-        samples[i].intensity = point.intensity;
-        samples[i].flag = point.flag;
-    }
-    count = size == 3 ? encode_packet(out, &packet) : encode_other_packet(out, &packet, size);
-    for (size_t i = 0; i < count; i++) {
-        deliver(bridge, out[i]);
-    }
-    bridge->open_count = 0;
-}
-
-static size_t missing(const bridge_t *bridge)
-{
-    const size_t need = bridge->open_count < ENCODE_PACKET_HEADER
-                            ? ENCODE_PACKET_HEADER
-                            : ENCODE_PACKET_HEADER + ENCODE_SAMPLE_SIZE * bridge->open[3];
-    return need - bridge->open_count;
-}
-
-/* The device's stream is undamaged, so AA 55 outside of a packet begins one. */
-static void put(bridge_t *bridge, uint8_t byte)
-{
-    bridge->open[bridge->open_count++] = byte;
-    if (bridge->open_count == 2 && byte != 0x55) {
-        deliver(bridge, bridge->open[0]);
-        bridge->open[0] = byte;
-        bridge->open_count = 1;
-    }
-    if (bridge->open_count == 1 && bridge->open[0] != 0xAA) {
-        deliver(bridge, byte);
-        bridge->open_count = 0;
-    } else if (bridge->open_count >= ENCODE_PACKET_HEADER && missing(bridge) == 0) {
-        deliver_packet(bridge);
-    }
-}
-
 void bridge_put(bridge_t *bridge, const uint8_t *bytes, size_t count)
 {
-    const bool changes_packets = bridge->config.sample_size != 0 || bridge->config.blind_every != 0;
     for (size_t i = 0; i < count; i++) {
-        if (changes_packets) {
-            put(bridge, bytes[i]);
-        } else {
-            deliver(bridge, bytes[i]);
-        }
+        deliver(bridge, bytes[i]);
     }
 }
 

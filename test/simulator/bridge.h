@@ -2,17 +2,16 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /*
- * What tmini-sim does to the device's bytes on their way to the host: packets of other units
- * (sections 9.18, 9.19), turns without a range, and bridges and terminals that change, drop or
- * delay bytes (section 9.20). Without settings, bytes pass unchanged.
+ * What tmini-sim does to the device's bytes on their way to the host: bridges and terminals that
+ * change, drop or delay bytes (section 9.20). Without settings, bytes pass unchanged.
  */
 
 #ifndef BRIDGE_H
 #define BRIDGE_H
 
-#include "encoder.h"
-
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 typedef enum {
     BRIDGE_CLEAN,
@@ -24,8 +23,6 @@ typedef enum {
 } bridge_kind_t;
 
 typedef struct {
-    uint8_t sample_size; /* 2 or 4: packets of such samples; otherwise 3 */
-    uint8_t blind_every; /* each turn of this many has no range, and no fault; 0: none */
     bridge_kind_t kind;
     uint16_t bursts_ms; /* bytes are delivered this often; 0: at once */
 } bridge_config_t;
@@ -34,9 +31,6 @@ typedef struct {
 
 typedef struct {
     bridge_config_t config;
-    uint32_t turns;
-    size_t open_count; /* the packet that has not yet come whole */
-    uint8_t open[ENCODE_PACKET_MAX];
     uint64_t deliver_us; /* when `out` may be taken */
     size_t out_count;
     uint8_t out[BRIDGE_HELD];

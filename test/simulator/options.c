@@ -121,7 +121,7 @@ static bool set_fault(options_t *options, const char *value)
 
 static bool set_samples(options_t *options, const char *value)
 {
-    options->bridge.sample_size = (uint8_t)(value[0] - '0');
+    options->device.sample_size = (uint8_t)(value[0] - '0');
     return strcmp(value, "2") == 0 || strcmp(value, "3") == 0 || strcmp(value, "4") == 0;
 }
 
@@ -188,7 +188,7 @@ static const option_t known[] = {
     {"samples", "BYTES", "packets of another unit: samples of 2 or 4 bytes (3)",
      .set = set_samples},
     {"blind", "N", "each turn of N has no range, and no fault",
-     .number = NUMBER(bridge.blind_every, 1, 1, 255)},
+     .number = NUMBER(device.blind_every, 1, 1, 255)},
     {"bridge", "KIND",
      "a bridge or terminal in between: telnet (doubles FF), crnl (0D\n"
      "                          becomes 0A), xonxoff (takes 11 and 13), seven (bits)",

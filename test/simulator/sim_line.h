@@ -14,8 +14,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* LastCRC and a packet of 40 samples. */
-#define SIM_FRAME_MAX 131u
+/* LastCRC and a packet of 40 samples, of up to four bytes. */
+#define SIM_FRAME_MAX 171u
 #define SIM_LINE_FRAMES 16u
 
 /* One packet as it was sent: the truth that tests compare with. */

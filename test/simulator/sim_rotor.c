@@ -257,6 +257,12 @@ static uint32_t turned_by(uint32_t angle_q16, uint32_t more_q16)
     return more_q16 < room ? angle_q16 + more_q16 : more_q16 - room;
 }
 
+static bool is_blind(const sim_t *sim)
+{
+    const uint8_t every = sim->config.blind_every;
+    return every != 0u && sim->revolution % every == 0u;
+}
+
 static void measure_all(sim_t *sim, encode_sample_t *samples)
 {
     uint32_t angle = turned_by(sim->rotor.phase, (uint32_t)sim->config.start_angle_q6 << 16);
@@ -265,6 +271,7 @@ static void measure_all(sim_t *sim, encode_sample_t *samples)
                          ? sim_mark(sim, sim->revolution, sim->rotor.samples + i)
                          : measure(sim, angle);
         sim->rotor.valid += samples[i].distance_mm != 0u ? 1u : 0u;
+        samples[i].distance_mm = is_blind(sim) ? 0u : samples[i].distance_mm;
         angle = turned_by(angle, sim->rotor.step);
     }
 }
@@ -344,6 +351,14 @@ static uint8_t add_last_crc(const sim_t *sim, sim_frame_t *frame)
     return 1;
 }
 
+static size_t encode(const sim_t *sim, sim_frame_t *frame, const encode_packet_t *packet)
+{
+    uint8_t *const out = frame->bytes + frame->packet_at;
+    return sim->config.sample_size == 3u
+               ? encode_packet(out, packet)
+               : encode_other_packet(out, packet, sim->config.sample_size);
+}
+
 static void fill_frame(sim_t *sim, sim_frame_t *frame)
 {
     sim_rotor_t *rotor = &sim->rotor;
@@ -358,8 +373,7 @@ static void fill_frame(sim_t *sim, sim_frame_t *frame)
     packet.samples = samples;
     set_angles(sim, &packet);
     measure_all(sim, samples);
-    frame->length =
-        (uint16_t)(encode_packet(frame->bytes + frame->packet_at, &packet) + frame->packet_at);
+    frame->length = (uint16_t)(frame->packet_at + encode(sim, frame, &packet));
     frame->is_packet = true;
     frame->packet.number = sim->packet_number++;
     frame->packet.revolution = sim->revolution;

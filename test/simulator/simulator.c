@@ -32,6 +32,7 @@ sim_config_t sim_default_config(void)
         .flagged_permille = 5,
         .lone_packet_permille = 2,
         .samples_per_packet = 40,
+        .sample_size = 3,
         .blocked_sends_starts = true,
         .information = {.model = 151,
                         .firmware_major = 1,

@@ -123,6 +123,8 @@ typedef struct {
     uint16_t flagged_permille;     /* samples flagged 2 or 3, equally often (section 9.9) */
     uint16_t lone_packet_permille; /* point packets with LSN 1 and LSA slightly below FSA (9.6) */
     uint8_t samples_per_packet;    /* 1..40 (9.6) */
+    uint8_t sample_size;           /* 3; 2 or 4: bytes, as other units send (9.18, 9.19) */
+    uint8_t blind_every;           /* each turn of this many has no range, and no fault; 0: none */
     bool keeps_frequency;          /* the set frequency survives reboot and loss of power */
     bool refuses_steps;            /* frequency commands change nothing */
     bool never_answers;            /* obeys, but sends no replies */

@@ -230,6 +230,8 @@ static bool is_setting(const char *word)
         {"first_angle:", MEMBER(config.first_angle_q6)},
         {"spin_percent:", MEMBER(config.spin_up_percent)},
         {"wobble:", MEMBER(config.wobble_permille)},
+        {"sample_size:", MEMBER(config.sample_size)},
+        {"blind_every:", MEMBER(config.blind_every)},
     };
     for (size_t i = 0; i < sizeof members / sizeof members[0]; i++) {
         const size_t length = strlen(members[i].word);
@@ -344,8 +346,8 @@ static void send_raw(const char *hex)
     sim_receive(&sim, bytes, parse_hex(hex, bytes), now);
 }
 
-/* ">0D": a command; "<0DA5": bytes to the lidar; "+50": 50 ms pass; "=A55A": the next bytes that
- * come, within 10 ms; "end": no more come; "got:600": the reply that a frequency is set; "forget":
+/* ">0D": a command; "<0DA5": bytes to the lidar; "+50": 50 ms pass; "=A55A": the next bytes, which
+ * come within 10 ms; "end": no more come; "got:600": the reply that a frequency is set; "forget":
  * what came before no longer counts; "@idle": the mode; "at:64:2300": angle and range; "ct:3:40":
  * the CT byte of a packet in a turn; "spoil:command:late700", "befalls:no-scans": trouble; settings
  * and facts above. */
@@ -454,6 +456,10 @@ static const row_t rows[] IN_FLASH = {
     ROW(a_fatal_fault_ends_the_stream_until_it_is_gone_and_start_is_sent,
         "fatal:0x10 scan:1 sick:0x10 @fault +20 forget >60 +2000 bytes:7 sick:0 >60 +2000 "
         "@scanning bytes>10000"),
+    ROW(a_turn_may_have_no_range_without_a_fault,
+        "blind_every:1 scan:3 packets>250 ranges:0 ct:3:00"),
+    ROW(a_unit_with_larger_samples_sends_longer_packets_none_of_them_valid,
+        "sample_size:4 scan:3 packets<20 bytes>48000"),
     ROW(the_room_is_seen_clockwise_from_straight_ahead,
         "scan:1 at:64:2300 at:5760:2800 at:11520:1700 at:17280:2200"),
     ROW(a_round_pillar_stands_ahead_to_the_left, "scan:1 at:22316:1380"),
