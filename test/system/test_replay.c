@@ -5,8 +5,6 @@
  * there is one, that of a real unit. The expected counts come from the simulated lidar's own report
  * and, for the real unit, from the recording's description; none from the library. */
 
-#include "corrupt.h"
-#include "effort.h"
 #include "receiver.h"
 
 #include "tmini/parts/tmini_decoder.h"
@@ -20,7 +18,6 @@
 #define PATH_SIZE 4096u /* Room for any path of the project. */
 
 static uint8_t bytes[RECORDING_MAX];
-static uint8_t damaged[RECORDING_MAX];
 static size_t size;
 static uint8_t memory[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL + 200];
@@ -316,67 +313,4 @@ void test_a_real_units_recording_gives_four_complete_scans(void)
     expect_scans(4, counts, packets, frequencies);
     TEST_ASSERT_EQUAL_UINT(0, replay.trusted);
     TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&decoder.ct));
-}
-
-/* Each copy goes in random chunks through the smallest ring. */
-static void compare_damaged_copies(uint32_t copies)
-{
-    random_t random;
-    const receiver_course_t course = {.random = &random};
-    for (uint32_t i = 0; i < copies; i++) {
-        random_seed(&random, effort_seed() + i);
-        memcpy(damaged, bytes, size);
-        const size_t left =
-            corrupt_some(&random, random_below(&random, 40), damaged, size, sizeof damaged);
-        receiver_open(&receiver, memory, 256, 0);
-        (void)receiver_compare(&receiver, &course, damaged, left);
-    }
-}
-
-void test_damaged_copies_of_a_real_units_recording_give_what_the_reference_decoder_gives(void)
-{
-    load_real();
-    compare_damaged_copies(300 * effort());
-}
-
-void test_damaged_copies_of_a_recording_give_what_the_reference_decoder_gives(void)
-{
-    load_own("sim-6hz.bin");
-    compare_damaged_copies(300 * effort());
-}
-
-/* ------------------------------------------------------------- every single byte of a recording */
-
-static void expect_like_reference(size_t left)
-{
-    const receiver_course_t course = {.chunk = 300};
-    receiver_open(&receiver, memory, 1024, 0);
-    (void)receiver_compare(&receiver, &course, damaged, left);
-}
-
-/* Each of the 600 bytes around a start packet is changed, lost, and doubled. */
-static void compare_each_fault(void)
-{
-    static const uint8_t values[] = {0x00, 0x01, 0x28, 0x55, 0xAA, 0xFF};
-    for (size_t place = 0; place < size; place++) {
-        for (unsigned i = 0; i < sizeof values; i++) {
-            memcpy(damaged, bytes, size);
-            damaged[place] = values[i];
-            expect_like_reference(size);
-        }
-        memcpy(damaged, bytes, place);
-        memcpy(&damaged[place], &bytes[place + 1], size - place - 1);
-        expect_like_reference(size - 1);
-        memcpy(&damaged[place], &bytes[place], size - place);
-        memmove(&damaged[place + 1], &damaged[place], size - place);
-        expect_like_reference(size + 1);
-    }
-}
-
-void test_every_fault_in_one_byte_gives_what_the_reference_decoder_gives(void)
-{
-    load_own("sim-6hz.bin");
-    memmove(bytes, &bytes[8516 - 300], 600); /* The third start packet is at 8516. */
-    size = 600;
-    compare_each_fault();
 }
