@@ -22,7 +22,7 @@ tmini_add_driver_tests(test_monitor test_poll test_recovery test_wish NOT_ON int
 tmini_add_driver_tests(test_effort test_pauses NOT_ON int16)
 
 # One module of the driver.
-tmini_add_unit_test(test_line SOURCES test_line.c NOT_ON int16)
+tmini_add_unit_test(test_line SOURCES test_line.c ../support/rows.c NOT_ON int16)
 if(TARGET test_line)
     target_include_directories(test_line PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
 endif()
