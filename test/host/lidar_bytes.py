@@ -3,12 +3,13 @@
 
 """Bytes as the lidar sends them, and what they mean: written from docs/protocol.md alone."""
 
+import binascii
 import functools
 import operator
 import random
 import struct
 
-MAGIC = b"\x89tmini\x01\n"
+MAGIC = b"\x89tmini\x02\n"  # Of a timed stream or recording.
 
 # The reply to A5 90: model 151, firmware 1.2, hardware 1, and a serial number.
 INFORMATION = bytes.fromhex("A55A140000000497020101" "02000206000301070000000102030405")
@@ -40,9 +41,21 @@ def turn(samples):
     return start + packet(samples[1:], 90 * 64, 270 * 64) + start
 
 
-def timed(*chunks):
+def chunk(delta_us, content, version=2):
+    """A chunk of it, this many microseconds after the one before."""
+    head = struct.pack("<IH", delta_us, len(content))
+    crc = struct.pack("<H", binascii.crc_hqx(head + content, 0xFFFF))
+    return (b"\xA7\xC3" + head + crc if version == 2 else head) + content
+
+
+def timed(*chunks, version=2):
     """A timed recording of (microseconds since the one before, bytes)."""
-    return MAGIC + b"".join(struct.pack("<IH", delta, len(content)) + content for delta, content in chunks)
+    return MAGIC[:6] + bytes([version]) + MAGIC[7:] + b"".join(chunk(*one, version) for one in chunks)
+
+
+def chunks(content, step_us=10000, size=131):
+    """Chunks of what a scanning lidar sends."""
+    return [chunk(step_us, content[at:at + size]) for at in range(0, len(content), size)]
 
 
 def decode(stream, max_samples=80):

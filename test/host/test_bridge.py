@@ -11,9 +11,9 @@ import socket
 from pathlib import Path
 
 import pytest
+from lidar_bytes import MAGIC
 
 BRIDGE = os.environ["TMINI_BRIDGE"]
-MAGIC = b"\x89tmini\x02\n"
 
 
 @pytest.fixture

@@ -186,7 +186,7 @@ def test_a_frequency_that_was_not_reported_is_unknown(tmini, folder):
 
 
 # Three packets, at 0.5, 70.5 and 70.7 seconds, the second one in two chunks.
-TIMED = timed((500000, START), (20000, THREE[:5]), (69980000, THREE[5:]), (200000, START))
+TIMED = timed((500000, START), (20000, THREE[:5]), (69980000, THREE[5:]), (200000, START), version=1)
 
 
 def test_a_timed_recording_reports_when_its_packets_came(tmini, folder):

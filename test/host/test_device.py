@@ -13,9 +13,7 @@ import subprocess
 import pytest
 
 from conftest import HAS_RIGHTS, TMINI
-
-INFORMATION = bytes.fromhex("A55A1400000004 97020101 02000206000301070000000102030405")
-NOISE = bytes.fromhex("334CF800806699E61E")
+from lidar_bytes import INFORMATION, NOISE
 
 
 @pytest.fixture

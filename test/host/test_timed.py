@@ -3,28 +3,16 @@
 
 """A timed stream at tcp:HOST:PORT: the bytes come late, and have the times at which the sender received them."""
 
-import binascii
 import json
 import signal
 import socket
-import struct
 from pathlib import Path
 
 import pytest
 from conftest import TMINI_SIM
+from lidar_bytes import MAGIC, chunks
 
-MAGIC = b"\x89tmini\x02\n"
 CHUNK_MS = 10
-CHUNK_SIZE = 131  # What a scanning lidar sends in this time.
-
-
-def chunk(delta_us, content):
-    head = struct.pack("<IH", delta_us, len(content))
-    return b"\xA7\xC3" + head + struct.pack("<H", binascii.crc_hqx(head + content, 0xFFFF)) + content
-
-
-def chunks(content):
-    return [chunk(1000 * CHUNK_MS, content[at:at + CHUNK_SIZE]) for at in range(0, len(content), CHUNK_SIZE)]
 
 
 class Sender:

@@ -10,10 +10,12 @@ import sys
 import time
 
 import pytest
+from tmini.__main__ import main
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RECORDINGS = ROOT / "test" / "recordings"
 TOOL, SIM = os.environ["TMINI_TOOL"], os.environ["TMINI_SIM"]
+sys.path.append(str(ROOT / "test" / "host"))  # lidar_bytes
 
 
 class Simulator:
@@ -55,12 +57,25 @@ def simulator(tmp_path):
 
 
 @pytest.fixture
+def run(capsys):
+    """run(*words): `python -m tmini WORDS`, to its end; (exit status, output, errors)."""
+    def call(*words):
+        try:
+            status = main(list(map(str, words)))
+        except SystemExit as end:
+            status = end.code
+        return status, *capsys.readouterr()
+    return call
+
+
+@pytest.fixture
 def command():
-    """Starts `python -m tmini WORDS`; ends what still runs in the end."""
+    """Starts the same as a program, after some Python; ends what still runs in the end."""
     started = []
 
-    def start(*words):
-        started.append(subprocess.Popen([sys.executable, "-m", "tmini", *map(str, words)], text=True,
+    def start(*words, first="pass"):
+        program = f"import runpy; {first}; runpy.run_module('tmini', run_name='__main__')"
+        started.append(subprocess.Popen([sys.executable, "-c", program, *map(str, words)], text=True,
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE))
         return started[-1]
 

@@ -31,4 +31,5 @@ if ! cmp -s "$here/extras.txt" "$folder/venv/extras.txt"; then
         echo "the extras' packages are not available: their tests are skipped"
 fi
 cd "$here"
-exec "$python" -m pytest -q -p no:cacheprovider "$@"
+# Four at a time, because they mostly wait for a lidar's motor.
+exec "$python" -m pytest -q -p no:cacheprovider -n 4 "$@"

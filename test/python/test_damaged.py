@@ -4,15 +4,12 @@
 """Recordings with random damage: the package gives the scans that the tool gives, or says what is wrong."""
 
 import random
-import sys
 
 import pytest
 import tmini
-from conftest import RECORDINGS, ROOT
+from conftest import RECORDINGS
+from lidar_bytes import damaged
 from test_tmini import as_json, chunked, decode
-
-sys.path.append(str(ROOT / "test" / "host"))
-from lidar_bytes import damaged  # noqa: E402
 
 
 def recording(seed):

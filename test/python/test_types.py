@@ -3,6 +3,7 @@
 
 """A user's program with types, and the package itself, pass mypy --strict."""
 
+import re
 import sys
 
 import pytest
@@ -44,27 +45,21 @@ lidar.set_speed(3)
 
 @pytest.fixture(scope="module")
 def mypy(tmp_path_factory):
+    """mypy(words): exit status, and where errors are."""
     run, folder = pytest.importorskip("mypy.api").run, tmp_path_factory.mktemp("mypy")
 
-    def check(program, *arguments):
-        path = folder / "program.py"
-        path.write_text(program)
+    def check(*words):
         out, errors, status = run(["--strict", "--cache-dir", str(folder / "cache"), "--python-executable",
-                                   sys.executable, *(arguments or [str(path)])])
-        return status, out + errors
-
+                                   sys.executable, *map(str, words)])
+        return status, errors, re.findall(r"(\w+\.py:\d+): error", out)
     return check
 
 
-def test_a_program_with_types_passes(mypy):
-    assert mypy(RIGHT) == (0, "Success: no issues found in 1 source file\n")
-
-
-def test_mistakes_are_found(mypy):
-    status, out = mypy(WRONG)
-    assert status == 1 and all(f"program.py:{line}: error" in out for line in (4, 5, 6)), out
+def test_a_program_with_types_passes_and_mistakes_are_found(mypy, tmp_path):
+    (tmp_path / "right.py").write_text(RIGHT)
+    (tmp_path / "wrong.py").write_text(WRONG)
+    assert mypy(tmp_path / "right.py", tmp_path / "wrong.py") == (1, "", ["wrong.py:4", "wrong.py:5", "wrong.py:6"])
 
 
 def test_the_package_itself_passes(mypy):
-    status, out = mypy("", "--config-file", str(PACKAGE / "pyproject.toml"), str(PACKAGE / "tmini"))
-    assert status == 0, out
+    assert mypy("--config-file", PACKAGE / "pyproject.toml", PACKAGE / "tmini") == (0, "", [])
