@@ -91,8 +91,8 @@ class Package:
         return str(target.parent) if compiled.returncode == 0 else None
 
     def use(self, build, product, _words, settings):
-        words = [str(self.environment(build) / "bin" / "python"), "-m", "pytest", "-q", "-p", "no:cacheprovider",
-                 str(ROOT / "test" / "python")]
+        words = [str(self.environment(build) / "bin" / "python"), "-m", "pytest", "-q", "-n", "4", "-p",
+                 "no:cacheprovider", str(ROOT / "test" / "python")]
         programs = {"TMINI_TOOL": f"{build.folder}/bin/tmini", "TMINI_SIM": f"{build.folder}/bin/tmini-sim"}
         return words, {**settings, **programs, "PYTHONPATH": product, "PYTHONDONTWRITEBYTECODE": "1"}
 
@@ -109,8 +109,8 @@ class Viewer:
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
         return str(pages / "tmini.html") if done.returncode == 0 else None
 
-    def use(self, build, product, words, settings):
-        return [product if word == f"{build.folder}/bin/tmini.html" else word for word in words], settings
+    def use(self, _build, product, words, settings):
+        return words, {**settings, "TMINI_PAGE": product}
 
 
 # Folders, what is made with a change there, and the tests that use that.

@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The tmini authors
+
+"""What the viewer shows of recordings, and of a lidar on a serial port."""
+
+import os
+import random
+import re
+
+import pytest
+from conftest import HERE, RECORDINGS, decode, stories
+from lidar_bytes import timed
+
+STAND_IN = (HERE / "serial_stand_in.js").read_text(encoding="utf-8")
+START_PACKET = bytes.fromhex("aa5579")  # Its beginning at 6.0 Hz: AA 55 and its CT.
+ROOM = (RECORDINGS / "sim-6hz.bin").read_bytes()
+
+
+# ------------------------------------------------------------------------------------------------------ recordings
+
+def refuted():
+    """With a wrong LastCRC before the last start packet."""
+    content = bytearray(ROOM)
+    content[content.rindex(START_PACKET) - 1] ^= 0x10
+    return content
+
+
+def real():
+    """The recording of a real unit, or None."""
+    folder = os.environ.get("TMINI_RECORDINGS_DIR") or str(RECORDINGS / "real")
+    path = os.path.join(folder, "t-mini-plus-room.bin")
+    return open(path, "rb").read() if os.path.exists(path) else None
+
+
+def damaged():
+    """A byte is missing in the head of a chunk of 100 bytes."""
+    file = timed(*((8000, ROOM[at:at + 100]) for at in range(0, len(ROOM), 100)), version=1)
+    return file[:5000] + file[5001:]
+
+
+RECORDED = [
+    ("clean.bin", lambda: ROOM, "frequency = 6.00 Hz; quality = complete; ct-serial = 2026031700012345; "
+     "faults = no faults; 500 coloured"),
+    ("damaged.bin", (RECORDINGS / "sim-6hz-damaged.bin").read_bytes, "shown checksums"),
+    ("plain.bin", (RECORDINGS / "sim-10hz-plain.bin").read_bytes,
+     "ct-version = not sent by this unit; ct-health = not sent; faults = –"),
+    ("real.bin", real, "500 coloured"),
+    ("long.bin", lambda: (RECORDINGS / "sim-6hz-damaged.bin").read_bytes() * 30, "shown checksums"),
+    ("ends-with-a-start-packet.bin", lambda: ROOM[:ROOM.rindex(START_PACKET) + 13], "not problem"),
+    ("refuted.bin", refuted, "quality = gaps: 1, wrong checksums: 0, points dropped: 0"),
+    ("damaged.tmini", damaged, "problem: damaged.tmini is damaged in 1 place"),
+]
+
+
+@pytest.mark.parametrize("name, content, then", RECORDED, ids=[name for name, *_ in RECORDED])
+def test_of_a_recording_is_shown_what_the_tool_decodes(page, tmp_path, name, content, then):
+    path, content = tmp_path / name, content()
+    if content is None:
+        pytest.skip("no real unit's recording here")
+    path.write_bytes(content)
+    rows, stats = decode(path)
+    page.type("file", path)
+    page.wait_text("source", name)
+    saved, table = page.save("save-csv")
+    assert re.fullmatch(r"tmini-points-[\d-]+\.csv", saved) and table.decode() == rows
+    page.run("const position = document.querySelector('#position'); position.value = position.max; "
+             "position.dispatchEvent(new Event('input'))")
+    page.play(f"packets = {stats['packets']}; bytes = {stats['bytes']}; scans = {stats['start_packets']}; "
+              f"checksums = {stats['checksum_errors']}; {then}")
+    assert page.number("skipped") + page.number("last-crc-bytes") == stats["bytes_skipped"]
+    assert page.run("return document.querySelector('#checksums').className") == "bad" * (stats["checksum_errors"] > 0)
+
+
+def test_a_recording_of_one_packet_has_no_revolution(page):
+    page.type("file", RECORDINGS / "manual-packet.bin")
+    page.wait_text("problem", "1 packets, but no whole revolution")
+    assert page.save("save-csv")[1].decode() == decode(RECORDINGS / "manual-packet.bin")[0]
+
+
+def test_a_file_that_is_no_recording_is_called_so(page, tmp_path):
+    path = tmp_path / "letter.txt"
+    for content, said in ((random.Random(1).randbytes(5000), "letter.txt holds no lidar packet in 5000 bytes."),
+                          (b"", "letter.txt is empty")):
+        path.write_bytes(content)
+        page.type("file", path)
+        page.play(f"problem: {said}; disconnect; state: not connected")
+
+
+def test_a_recording_dropped_on_the_page_plays_to_its_end_and_again(page):
+    path = RECORDINGS / "sim-12hz.bin"
+    page.run("""const data = new DataTransfer();
+        data.items.add(new File([Uint8Array.from(arguments[0])], 'dropped.bin'));
+        document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true, cancelable: true}))""",
+             list(path.read_bytes()))
+    stats = decode(path)[1]
+    seconds = f"{stats['points'] / 4000:.1f}"  # The lidar takes 4000 samples per second.
+    page.play(f"source: dropped.bin; play = Pause; log: end of the recording; time = {seconds} of {seconds} s; "
+              f"packets = {stats['packets']}; play")
+    page.wait("the recording to play again", lambda: 0 < page.number("packets") < 100)
+    page.play("disconnect; state: not connected")
+
+
+def test_a_recording_is_opened_instead_of_a_lidar_and_the_last_of_several_stays(simulated):
+    for name in ("sim-6hz.bin", "sim-12hz.bin"):
+        simulated.type("file", RECORDINGS / name)
+    simulated.play("source: sim-12hz.bin; not panel-lidar")
+    assert simulated.save("save-csv")[1].decode() == decode(RECORDINGS / "sim-12hz.bin")[0]
+    simulated.wait_text("log", "end of the recording")
+    assert simulated.text("log").count("end of the recording") == 1
+
+
+# ----------------------------------------------------------------------------- a serial port, with the stand-in for it
+
+class TestSerial:
+    @pytest.fixture
+    def settings(self):
+        return {"before": STAND_IN}
+
+    def test_the_stand_in_has_the_members_of_the_real_thing(self, page):
+        assert page.run("""return Object.entries(bench.members).flatMap(([name, mine]) =>
+            Object.getOwnPropertyNames(window[name].prototype).filter((member) => !member.startsWith('on'))
+                .filter((member) => !(member in mine)))""") == []
+
+    def test_a_lidar_is_connected_scans_is_unplugged_and_comes_back(self, page):
+        page.play("connect; state: scanning; source: USB adapter 10c4:ea60; 2 scans; serial-number = 2026031700012345; "
+                  "bench.unplug(); problem: The adapter has gone; state: unplugged; bench.plug(); state: scanning; "
+                  "not problem; 2 scans; disconnect; state: not connected")
+        assert page.run("return [bench.opened[0].baudRate, bench.port.readable, ...bench.written.slice(-2)]") == [
+            230400, None, 0xA5, 0x65]
+        page.play("connect; state: scanning")
+
+    @stories({
+        "it scans again with Connect after it was unplugged":
+            "connect; state: scanning; bench.unplug(); state: unplugged; disconnect; state: not connected; "
+            "bench.plug(); connect; state: scanning",
+        "a lidar that was left scanning scans":
+            "return bench.leaveScanning(); connect; serial-number: 2026031700012345; state: scanning",
+        "a write that fails once is repeated":
+            "bench.writeError(); connect; state: scanning; serial-number: 2026031700012345",
+        "a lidar that does not report its health scans":
+            "bench.answers = (code) => code !== 0x92; connect; state: scanning; log: command failed: timeout; "
+            "not problem",
+        "a command that fails later is no silence":
+            "connect; state: scanning; start-stop; state: idle; bench.answers = (code) => code !== 0x90; ask-info; "
+            "problem: The lidar has answered before, but now “info” failed: timeout.; "
+            "bench.answers = () => true; ask-info; not problem",
+        "a lidar that starts by itself is stopped again":
+            "connect; state: scanning; start-stop; state: idle; return bench.leaveScanning(); log: unwanted scanning; "
+            "state: idle",
+        "a lidar that does not hear at first scans":
+            "bench.asked = 0; bench.answers = (code) => code !== 0x90 || ++bench.asked > 4; connect; state: scanning",
+        "a port in use is called so":
+            "bench.opening = 'NetworkError'; connect; problem: another program or tab is using it; shown problem; "
+            "bench.opening = null; connect; state: scanning; not problem",
+        "no port chosen is no problem":
+            "bench.choice = 'none'; connect; not problem; shown welcome",
+        "a lidar that does not answer is called so":
+            "bench.line = 'dead'; connect; problem: No answer: not one byte came.",
+        "a wrong baud rate is called so":
+            "bench.line = 'garbled'; connect; problem: nothing that a T-mini Plus sends: a wrong baud rate",
+        "a lidar that does not hear is called so":
+            "return bench.leaveScanning(); bench.line = 'deaf'; connect; problem: does not do what it is asked",
+    })
+    def test_a_serial_port(self, page, story):
+        page.play(story)
+
+    def test_errors_of_the_line_do_not_end_it(self, page):
+        page.play("connect; state: scanning")
+        for name in ("BufferOverrunError", "FramingError", "ParityError", "BreakError"):
+            page.wait_text("quality", "complete")
+            note_qualities(page)
+            page.play(f"bench.lineError('{name}'); log: {name}")
+            page.wait("a scan that is not complete", lambda: page.run(
+                "return qualities.some((quality) => !quality.includes('complete'))"))
+        page.play("2 scans; state = scanning")
+
+    def test_a_page_that_goes_away_stops_the_lidar(self, page):
+        page.play("connect; state: scanning")
+        page.run("dispatchEvent(new Event('pagehide'))")
+        page.wait("a stop", lambda: page.run("return bench.written.slice(-2)") == [0xA5, 0x65])
+
+
+def note_qualities(page):
+    """Records what the page says of the scans' quality from now on."""
+    page.run("""const place = document.querySelector('#quality');
+        window.qualities = [];
+        window.observer?.disconnect();
+        window.observer = new MutationObserver(() => qualities.push(place.textContent));
+        observer.observe(place, { childList: true, characterData: true, subtree: true })""")
+
+
+class TestSerialInTime:
+    """In real time: a scan that takes too long is not complete."""
+
+    @pytest.fixture
+    def settings(self):
+        return {"before": STAND_IN, "speed": 1}
+
+    def test_a_page_that_is_busy_for_a_while_loses_nothing(self, page):
+        page.play("connect; state: scanning; 2 scans")
+        page.run("""bench.line = 'held';  // Bytes that come meanwhile arrive a little after the page is back.
+            const end = performance.now() + 1080;  // Longer than the lidar may be silent.
+            while (performance.now() < end) { /* Busy. */ }
+            setTimeout(() => { bench.line = 'good'; }, 120)""")
+        page.play("3 scans; losses = 0; checksums = 0; overrun = 0; quality = complete")
+
+    def test_bytes_that_come_late_and_in_portions_are_no_gap(self, page):
+        page.play("connect; state: scanning; 2 scans")
+        note_qualities(page)
+        page.play("bench.line = 'late'; 3 scans")
+        assert page.run("return qualities.filter((quality) => quality !== 'complete')") == []
+
+
+class TestWithoutSerial:
+    @pytest.fixture
+    def settings(self):
+        return {"before": "delete Navigator.prototype.serial"}
+
+    def test_a_browser_without_web_serial_is_told_so_and_simulates(self, page):
+        page.play("connect; problem: This browser cannot reach a serial port.; problem: Chrome, Edge or Opera; "
+                  "simulate; state: scanning; not problem")
+
+
+def test_a_page_opened_from_a_file_can_use_the_browsers_own_web_serial(page):
+    assert page.run("return isSecureContext && navigator.serial instanceof Serial")
+    assert page.run("return navigator.serial.getPorts()") == []
