@@ -2,16 +2,18 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Whatever happens to the line, the receiver or the program: no scan has points of two revolutions,
- * and no scan with missing points is called complete. */
+ * and no scan with missing points is called complete. The campaign (test/qa/campaign) does all this
+ * at random. */
 
+#include "rows.h"
 #include "turns.h"
 
 #include "unity.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-#define BIT(event) (1u << (event))
-#define TURN_MS 164u
+static uint8_t bytes[TURNS_PACKET_MAX + 1];
 
 void setUp(void)
 {
@@ -23,18 +25,17 @@ void tearDown(void)
     TEST_ASSERT_EQUAL_UINT_MESSAGE(0, turns_scans.mixed, "scans of two revolutions");
 }
 
-/* The first `count` packets of a turn come. */
-static void pass_part(unsigned count, uint16_t distance_mm)
-{
-    (void)turns_pass(0, count - 1, distance_mm);
-}
+/* Words of the rows. Turns are named by numbers, packets by their index in a turn, from 0 to 18.
+ *
+ *     open:4096       from the beginning, with a ring of this size; ct: with CT information
+ *     T:100           turn 100 comes; T:101:7-18: of turn 101 packets 7 to 18; T:102:0: the first
+ *     busy:100 …      the same, while the program does not poll; poll; poll-scan: once
+ *     lost:101:18     this packet is sent and lost
+ *     half:100:7 rest:101:7   the first half of this packet comes, or the second
+ *     cut:100         for a turn from packet 7 on, the first 9 bytes of each packet come
+ *     silent:164      no bytes come for this time, and the program polls every millisecond
+ *     scans:4 …       see tell_word(); of the last scan: count, gaps, whole */
 
-static void pass_whole_turn(uint16_t distance_mm)
-{
-    (void)turns_pass(0, TURNS_PACKETS - 1, distance_mm);
-}
-
-/* No bytes come, and the program polls every millisecond. */
 static void be_silent(uint32_t ms)
 {
     for (; ms > 0; ms--) {
@@ -43,316 +44,115 @@ static void be_silent(uint32_t ms)
     }
 }
 
-static uint32_t overrun_bytes(void)
+/* "T:101:7-18" */
+static void tell_packets(const char *word, unsigned *first, unsigned *last)
 {
-    tmini_counters_t counters;
-
-    tmini_counters(&turns.lidar, &counters);
-    return counters.bytes_overrun;
+    const char *const text = row_text(row_text(word));
+    char *rest;
+    *first = (unsigned)strtoul(text, &rest, 10);
+    *last = rest[0] == '-'    ? (unsigned)strtoul(rest + 1, NULL, 10)
+            : text[0] != '\0' ? *first
+                              : TURNS_PACKETS - 1;
 }
 
-void test_on_a_healthy_line_every_turn_is_a_complete_scan(void)
+static void cut_turn(uint16_t turn)
 {
-    for (uint16_t turn = 1; turn <= 4; turn++) {
-        pass_whole_turn(turn);
-    }
-    TEST_ASSERT_EQUAL_UINT(3, turns_scans.complete);
-    TEST_ASSERT_EQUAL_UINT16(TURNS_POINTS, turns_scans.last.count);
-}
-
-/* ---- The line is silent in mid-scan, then continues at the right angle of another turn ---- */
-
-/* After the silence comes the rest of the turn that is `turns_later` turns later. */
-static void continue_after(unsigned turns_later)
-{
-    pass_part(7, 100);
-    be_silent(turns_later * TURN_MS);
-    (void)turns_pass(7, TURNS_PACKETS - 1, (uint16_t)(100 + turns_later));
-    pass_whole_turn(200);
-    (void)turns_pass(0, 0, 300);
-}
-
-void test_a_silence_of_whole_turns_ends_the_scan(void)
-{
-    for (unsigned later = 1; later <= 5; later++) {
-        turns_open_scanning(1024, false);
-        continue_after(later);
-        TEST_ASSERT_EQUAL_UINT(0, turns_scans.mixed);
-        TEST_ASSERT_EQUAL_UINT(4, turns_scans.count); /* Three partial scans and a whole one. */
-        TEST_ASSERT_EQUAL_UINT(1, turns_scans.complete);
-    }
-}
-
-void test_a_scan_that_a_silence_has_ended_is_not_complete_and_has_a_gap(void)
-{
-    pass_part(7, 100);
-    be_silent(TURN_MS);
-    (void)turns_pass(7, 7, 101);
-    TEST_ASSERT_EQUAL_UINT(1, turns_scans.count);
-    TEST_ASSERT_FALSE(turns_scans.last.complete);
-    TEST_ASSERT_EQUAL_UINT16(1, turns_scans.last.gaps);
-    TEST_ASSERT_EQUAL_UINT16(1 + 6 * 40, turns_scans.last.count);
-}
-
-/* The silence is shorter than a turn, but the angles do not jump. */
-void test_a_silence_of_nearly_a_whole_turn_ends_the_scan(void)
-{
-    pass_part(7, 100);
-    be_silent(TURN_MS - 2);
-    (void)turns_pass(7, TURNS_PACKETS - 1, 101);
-    (void)turns_pass(0, 0, 102);
-    TEST_ASSERT_EQUAL_UINT(3, turns_scans.count);
-    TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
-}
-
-/* From packet 3 of a turn to packet 12 of the next: the angles differ by 0.5 turns, the times by
- * 1.5. */
-void test_a_silence_of_one_turn_and_a_half_ends_the_scan(void)
-{
-    pass_part(4, 100);
-    be_silent(TURN_MS + TURN_MS / 2);
-    (void)turns_pass(12, TURNS_PACKETS - 1, 101);
-    (void)turns_pass(0, 0, 102);
-    TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
-}
-
-/* The plug has a bad contact during a packet: its two halves are of different turns. */
-void test_a_silence_within_a_packet_ends_the_scan(void)
-{
-    uint8_t bytes[TURNS_PACKET_MAX + 1];
-
-    pass_part(7, 100);
-    turns_feed(bytes, turns_packet(bytes, 7, 100) / 2);
-    be_silent(TURN_MS);
-    const size_t size = turns_packet(bytes, 7, 101);
-    turns_feed(&bytes[size / 2], size - size / 2);
-    (void)turns_pass(8, TURNS_PACKETS - 1, 101);
-    (void)turns_pass(0, 0, 102);
-    TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
-}
-
-/* For a whole turn only the beginning of each packet comes, without a silence or many skipped
- * bytes. Then the next turn continues at the right angle. */
-void test_packets_cut_to_a_few_bytes_for_a_turn_end_the_scan(void)
-{
-    uint8_t bytes[TURNS_PACKET_MAX + 1];
-
-    pass_part(7, 100);
     for (unsigned index = 7; index < TURNS_PACKETS + 7; index++) {
-        (void)turns_packet(bytes, index % TURNS_PACKETS, 100);
+        (void)turns_packet(bytes, index % TURNS_PACKETS, turn);
         turns_feed(bytes, 9);
         be_silent(9);
     }
-    (void)turns_pass(7, TURNS_PACKETS - 1, 101);
-    (void)turns_pass(0, 0, 102);
-    TEST_ASSERT_EQUAL_UINT(0, turns_scans.complete);
 }
 
-void test_a_silence_between_two_turns_costs_only_their_two_scans(void)
+static void tell_word(char *word)
 {
-    pass_whole_turn(100);
-    be_silent(3 * TURN_MS);
-    pass_whole_turn(101);
-    pass_whole_turn(102);
-    (void)turns_pass(0, 0, 103);
-    TEST_ASSERT_EQUAL_UINT(1, turns_scans.complete);
-    TEST_ASSERT_TRUE(turns_scans.last.complete);
-}
-
-/* ---- The ring overflows while the program is busy ---- */
-
-/* Three turns come without a poll; then the stream continues without a jump of the angle. */
-static void be_busy_for_turns(size_t rx_size)
-{
-    turns_open_scanning(rx_size, false);
-    pass_part(7, 100);
-    turns_feed_packets(7, TURNS_PACKETS - 1, 100);
-    turns_feed_packets(0, TURNS_PACKETS - 1, 101);
-    turns_feed_packets(0, TURNS_PACKETS - 1, 102);
-    turns_feed_packets(0, 8, 103);
-    (void)turns_poll();
-    (void)turns_pass(9, TURNS_PACKETS - 1, 103);
-    pass_whole_turn(104);
-    (void)turns_pass(0, 0, 105);
-}
-
-void test_an_overflow_of_any_ring_mixes_no_turns(void)
-{
-    for (size_t size = 256; size <= 4096; size *= 2) {
-        be_busy_for_turns(size);
+    tmini_counters_t counters;
+    tmini_counters(&turns.lidar, &counters);
+    const row_number_t numbers[] = {
+        {"scans", turns_scans.count},         {"complete", turns_scans.complete},
+        {"count", turns_scans.last.count},    {"gaps", turns_scans.last.gaps},
+        {"whole", turns_scans.last.complete}, {"overruns", counters.bytes_overrun > 0},
+    };
+    const uint16_t turn = (uint16_t)row_number(word);
+    unsigned first;
+    unsigned last;
+    tell_packets(word, &first, &last);
+    if (row_is(word, "open")) {
         TEST_ASSERT_EQUAL_UINT(0, turns_scans.mixed);
-        TEST_ASSERT_TRUE(overrun_bytes() > 0);
-        TEST_ASSERT_TRUE(turns_scans.last.complete);
-    }
-}
-
-/* The second overflow must not hide the first one: the angles of turn 102 continue those of the two
- * packets of turn 101 before it. */
-void test_two_overflows_less_than_a_ring_apart_are_both_remembered(void)
-{
-    turns_open_scanning(512, false);
-    (void)turns_pass(0, 14, 100);
-    turns_feed_packets(15, TURNS_PACKETS - 1, 100);
-    turns_feed_packets(0, 7, 101); /* The first overflow, after 101's second packet. */
-    TEST_ASSERT_EQUAL_INT(TMINI_EVENT_SCAN, tmini_poll(&turns.lidar));
-    turns_feed_packets(2, 8, 102); /* There is room for two of these: the second overflow. */
-    (void)turns_poll();
-    (void)turns_pass(9, TURNS_PACKETS - 1, 102);
-    (void)turns_pass(0, TURNS_PACKETS - 1, 103);
-    (void)turns_pass(0, 0, 104);
-    TEST_ASSERT_EQUAL_UINT(0, turns_scans.mixed);
-    TEST_ASSERT_TRUE(turns_scans.last.complete);
-}
-
-/* ---- DMA goes on while the CPU stands still ---- */
-
-static unsigned next_index; /* Index of the lidar's next packet in its turn. */
-static uint16_t next_turn;  /* The turn of that packet. */
-
-static size_t next_packet(uint8_t *bytes)
-{
-    const size_t size = turns_packet(bytes, next_index, next_turn);
-
-    turns.now_ms += 10;
-    next_index = (next_index + 1) % TURNS_PACKETS;
-    next_turn = (uint16_t)(next_turn + (next_index == 0 ? 1 : 0));
-    return size;
-}
-
-/* DMA writes this many laps and a little more without a served interrupt. Then the loss is reported
- * before the position is published, as by a port that finds the interrupts of both halves
- * pending. */
-static void lose_laps(unsigned laps)
-{
-    uint8_t bytes[TURNS_PACKET_MAX + 1];
-
-    for (size_t written = 0; written < laps * turns.config.rx_size;) {
-        const size_t size = next_packet(bytes);
-
-        for (size_t i = 0; i < size; i++, written++) {
-            turns.rx[turns.dma_position] = bytes[i];
-            turns.dma_position = (turns.dma_position + 1) % turns.config.rx_size;
-        }
-    }
-    tmini_feed_gap(&turns.lidar);
-    tmini_feed_dma(&turns.lidar, turns.dma_position);
-}
-
-/* After the first packets of a turn, laps are lost; then three turns follow. */
-static void go_on_after(unsigned laps, unsigned first_packets)
-{
-    uint8_t bytes[TURNS_PACKET_MAX + 1];
-
-    turns_open_scanning(1024, true);
-    pass_part(first_packets, 100);
-    next_index = first_packets;
-    next_turn = 100;
-    lose_laps(laps);
-    (void)turns_poll();
-    for (unsigned i = 0; i < 3 * TURNS_PACKETS; i++) {
-        turns_feed(bytes, next_packet(bytes));
+        turns_open_scanning(row_number(word), false);
+    } else if (row_is(word, "ct")) {
+        turns.ct_information = true;
+    } else if (row_is(word, "T")) {
+        (void)turns_pass(first, last, turn);
+    } else if (row_is(word, "busy")) {
+        turns_feed_packets(first, last, turn);
+    } else if (row_is(word, "poll")) {
         (void)turns_poll();
+    } else if (row_is(word, "poll-scan")) {
+        TEST_ASSERT_EQUAL_INT(TMINI_EVENT_SCAN, tmini_poll(&turns.lidar));
+    } else if (row_is(word, "lost")) {
+        (void)turns_packet(bytes, first, turn);
+    } else if (row_is(word, "half")) {
+        turns_feed(bytes, turns_packet(bytes, first, turn) / 2);
+    } else if (row_is(word, "rest")) {
+        const size_t size = turns_packet(bytes, first, turn);
+        turns_feed(&bytes[size / 2], size - size / 2);
+    } else if (row_is(word, "cut")) {
+        cut_turn(turn);
+    } else if (row_is(word, "silent")) {
+        be_silent(row_number(word));
+    } else {
+        TEST_ASSERT_TRUE_MESSAGE(row_expects(word, numbers), word);
     }
 }
 
-void test_laps_that_dma_went_round_meanwhile_mix_no_turns(void)
+static void tell_row(const row_t *row)
 {
-    for (unsigned laps = 1; laps <= 9; laps++) {
-        for (unsigned first_packets = 1; first_packets < TURNS_PACKETS; first_packets++) {
-            go_on_after(laps, first_packets);
-            TEST_ASSERT_EQUAL_UINT(0, turns_scans.mixed);
-            TEST_ASSERT_TRUE(turns_scans.last.complete);
-        }
-    }
+    row_tell(row->steps, tell_word);
 }
 
-/* ---- A complete scan has all points of a full turn ---- */
+#define BEGINS "open:1024 T:100:0-6 " /* The first seven packets of turn 100. */
+/* Three partial scans and a whole one. */
+#define LATER(turn, ms) BEGINS "silent:" ms " T:" turn ":7-18 T:200 T:300:0 scans:4 complete:1 "
+/* Three turns come without a poll; then the stream continues without a jump of the angle. */
+#define BUSY(size)                                                                                \
+    "open:" size " T:100:0-6 busy:100:7-18 busy:101 busy:102 busy:103:0-8 poll T:103:9-18 T:104 " \
+    "T:105:0 overruns:1 whole:1 "
 
-/* Samples 2 degrees apart, so that few packets make an arc. */
-static void pass_arc(uint8_t ct, uint8_t count, uint32_t first_q6)
+static const row_t rows[] IN_FLASH = {
+    ROW(on_a_healthy_line_every_turn_is_a_complete_scan, "T:1 T:2 T:3 T:4 complete:3 count:658"),
+    /* ---- The line is silent in mid-scan, then goes on at the right angle of another turn ---- */
+    ROW(a_silence_of_whole_turns_ends_the_scan, /* A turn takes 164 ms. */
+        LATER("101", "164") LATER("102", "328") LATER("103", "492") LATER("105", "820")),
+    ROW(a_scan_that_a_silence_has_ended_is_not_complete_and_has_a_gap,
+        BEGINS "silent:164 T:101:7 scans:1 whole:0 gaps:1 count:241"),
+    ROW(a_silence_of_nearly_a_whole_turn_ends_the_scan, /* The angles do not jump. */
+        BEGINS "silent:162 T:101:7-18 T:102:0 scans:3 complete:0"),
+    ROW(a_silence_of_one_turn_and_a_half_ends_the_scan, /* The angles differ by half a turn. */
+        "T:100:0-3 silent:246 T:101:12-18 T:102:0 complete:0"),
+    ROW(a_silence_within_a_packet_ends_the_scan, /* Its two halves are of different turns. */
+        BEGINS "half:100:7 silent:164 rest:101:7 T:101:8-18 T:102:0 complete:0"),
+    ROW(packets_cut_to_a_few_bytes_for_a_turn_end_the_scan, /* No silence; few bytes are skipped. */
+        BEGINS "cut:100 T:101:7-18 T:102:0 complete:0"),
+    ROW(a_silence_between_two_turns_costs_only_their_two_scans,
+        "T:100 silent:492 T:101 T:102 T:103:0 complete:1 whole:1"),
+    /* ---- The ring overflows while the program is busy ---- */
+    ROW(an_overflow_of_any_ring_mixes_no_turns,
+        BUSY("256") BUSY("512") BUSY("1024") BUSY("2048") BUSY("4096")),
+    /* The second overflow must not hide the first, after turn 101's second packet: the angles of
+     * turn 102 continue those of the two packets of turn 101 before it. */
+    ROW(two_overflows_less_than_a_ring_apart_are_both_remembered,
+        "open:512 T:100:0-14 busy:100:15-18 busy:101:0-7 poll-scan busy:102:2-8 poll "
+        "T:102:9-18 T:103 T:104:0 whole:1"),
+    /* ---- LastCRC guards a turn ---- */
+    ROW(a_guarded_turn_is_complete, "ct T:100 T:101 T:102:0 complete:2"),
+    ROW(a_small_packet_whose_loss_the_guard_proves_is_missing, /* 3.3 degrees might be jitter. */
+        "ct T:100 T:101:0-17 lost:101:18 T:102:0 scans:2 count:652 whole:0 gaps:1"),
+};
+
+void test_rows(void)
 {
-    encode_sample_t samples[40] = {{0}};
-    uint8_t bytes[TURNS_PACKET_MAX];
-    const encode_packet_t packet = {ct, count, (uint16_t)(first_q6 % 23040),
-                                    (uint16_t)((first_q6 + 128u * (count - 1u)) % 23040), samples};
-
-    for (unsigned i = 0; i < count; i++) {
-        samples[i] = (encode_sample_t){500, 9, 0};
-    }
-    turns.now_ms += 10;
-    turns_feed(bytes, encode_packet(bytes, &packet));
-    (void)turns_poll();
-}
-
-void test_an_arc_between_two_start_packets_is_not_complete(void)
-{
-    pass_arc(0x79, 1, 42 * 64);
-    pass_arc(0x00, 16, 44 * 64); /* To 74 degrees. */
-    pass_arc(0x00, 8, 76 * 64);  /* To 90 degrees. */
-    pass_arc(0x79, 1, 93 * 64);
-    TEST_ASSERT_EQUAL_UINT(1, turns_scans.count);
-    TEST_ASSERT_EQUAL_UINT16(25, turns_scans.last.count);
-    TEST_ASSERT_FALSE(turns_scans.last.complete);
-}
-
-/* The start packet is lost, and the next packet has a single sample (section 9.6), less than two
- * degrees after the old turn's end. */
-void test_a_lone_packet_after_a_lost_start_packet_is_not_of_the_old_turn(void)
-{
-    pass_whole_turn(100);
-    pass_arc(0x00, 1, TURNS_STEP_Q6);
-    TEST_ASSERT_EQUAL_UINT(1, turns_scans.count);
-    TEST_ASSERT_EQUAL_UINT16(TURNS_POINTS, turns_scans.last.count);
-    TEST_ASSERT_FALSE(turns_scans.last.complete);
-    (void)turns_pass(1, TURNS_PACKETS - 1, 500); /* The distance of the lone sample. */
-    (void)turns_pass(0, 0, 501);
-    TEST_ASSERT_EQUAL_UINT(2, turns_scans.count);
-    TEST_ASSERT_FALSE(turns_scans.last.complete);
-}
-
-/* As on a real unit: the first packet is a start packet at 85.7 degrees; the next start is at 0. */
-void test_a_first_turn_that_begins_late_is_not_complete(void)
-{
-    pass_arc(0x31, 1, 5485);
-    for (unsigned i = 0; i < 8; i++) {
-        pass_arc(0x00, 16, 5485 + 128 + 2048 * i);
-    }
-    pass_arc(0x00, 8, 5485 + 128 + 2048 * 8);
-    pass_arc(0x31, 1, 0);
-    TEST_ASSERT_EQUAL_UINT(1, turns_scans.count);
-    TEST_ASSERT_EQUAL_UINT16(1 + 8 * 16 + 8, turns_scans.last.count);
-    TEST_ASSERT_FALSE(turns_scans.last.complete);
-}
-
-/* Without the last packet's six samples, 3.3 degrees are missing, which might be jitter. But
- * LastCRC shows that a packet is missing (section 7). */
-static void pass_turn_without_its_last_packet(uint16_t distance_mm)
-{
-    uint8_t bytes[TURNS_PACKET_MAX + 1];
-
-    (void)turns_pass(0, TURNS_PACKETS - 2, distance_mm);
-    (void)turns_packet(bytes, TURNS_PACKETS - 1, distance_mm); /* Sent, and lost. */
-}
-
-void test_a_guarded_turn_is_complete(void)
-{
-    turns.ct_information = true;
-    pass_whole_turn(100);
-    pass_whole_turn(101);
-    (void)turns_pass(0, 0, 102);
-    TEST_ASSERT_EQUAL_UINT(2, turns_scans.complete);
-}
-
-void test_a_small_packet_whose_loss_the_guard_proves_is_missing(void)
-{
-    turns.ct_information = true;
-    pass_whole_turn(100);
-    pass_turn_without_its_last_packet(101);
-    (void)turns_pass(0, 0, 102);
-    TEST_ASSERT_EQUAL_UINT(2, turns_scans.count);
-    TEST_ASSERT_EQUAL_UINT16(TURNS_POINTS - 6, turns_scans.last.count);
-    TEST_ASSERT_FALSE(turns_scans.last.complete);
-    TEST_ASSERT_EQUAL_UINT16(1, turns_scans.last.gaps);
+    run_rows(rows, tell_row);
 }
 
 /* ---- A pause between polls costs nothing ---- */
@@ -361,54 +161,26 @@ void test_a_small_packet_whose_loss_the_guard_proves_is_missing(void)
  * program then polls before that layer has passed on the bytes. */
 static void pause_within_a_packet(uint32_t pause_ms)
 {
-    uint8_t bytes[TURNS_PACKET_MAX + 1];
-
-    turns_open_scanning(4096, false);
-    pass_part(7, 100);
+    tmini_counters_t counters;
+    row_tell("open:4096 T:100:0-6", tell_word);
     const size_t size = turns_packet(bytes, 7, 100);
     turns_feed(bytes, 60);
     (void)turns_poll();
     turns.now_ms += pause_ms;
     (void)turns_poll();
     turns_feed(&bytes[60], size - 60);
-    turns_feed_packets(8, TURNS_PACKETS - 1, 100);
-    turns_feed_packets(0, 0, 101);
-    turns.now_ms -= TURN_MS - 70; /* The bytes came during the pause. */
+    row_tell("busy:100:8-18 busy:101:0", tell_word);
+    turns.now_ms -= 94; /* The bytes came during the pause. */
     (void)turns_poll();
+    tmini_counters(&turns.lidar, &counters);
+    TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_skipped);
 }
 
-void test_a_pause_between_polls_costs_no_packet(void)
+void test_a_pause_between_polls_costs_no_packet_and_no_scan(void)
 {
     for (uint32_t pause_ms = 100; pause_ms <= 250; pause_ms += 25) {
-        tmini_counters_t counters;
-
         pause_within_a_packet(pause_ms);
-        tmini_counters(&turns.lidar, &counters);
-        TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_skipped);
     }
-}
-
-/* The pause is as long as the rest of the turn takes, so the scan is complete. */
-void test_a_pause_between_polls_costs_no_scan(void)
-{
-    pause_within_a_packet(115);
+    pause_within_a_packet(115); /* As long as the rest of the turn takes. */
     TEST_ASSERT_EQUAL_UINT(1, turns_scans.complete);
-}
-
-/* ---- A stream that steps backwards ---- */
-
-/* After 360 degrees back in small steps, a scan must still end after one turn forwards. */
-void test_a_stream_that_steps_backwards_does_not_widen_a_scan(void)
-{
-    uint32_t at_q6 = 100 * 23040;
-
-    pass_arc(0x79, 1, at_q6);
-    for (unsigned i = 0; i < 240; i++, at_q6 -= 192) {
-        pass_arc(0x00, 1, at_q6);
-    }
-    turns_scans.count = 0;
-    for (unsigned i = 0; i < 124; i++, at_q6 += 192) { /* 372 degrees. */
-        pass_arc(0x00, 1, at_q6);
-    }
-    TEST_ASSERT_TRUE(turns_scans.count > 0 || turns_scans.last.count > 0);
 }
