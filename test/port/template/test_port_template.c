@@ -3,48 +3,21 @@
 
 /* Tests the unchanged port template: it counts time and stores bytes, and sending fails. */
 
-#include "known_packets.h"
-#include "machine.h"
 #include "tmini_port_template.h"
 #include "unity.h"
 
-#define PACKETS 5u
-
-static const uint8_t noise = 0x11;
 static uint8_t rx[256];
 static tmini_t lidar;
 static tmini_port_template_t port;
-static tmini_counters_t counters;
-
-#define ERROR 0x100u
-
-static void arrive(uint32_t flags, uint8_t byte)
-{
-    (void)machine_put(flags | byte);
-}
-
-static bool is_up(void)
-{
-    return machine.count > 0;
-}
-
-static void serve(void)
-{
-    const uint16_t entry = machine_take();
-    tmini_port_template_receive(&port, (uint8_t)entry, (entry & ERROR) != 0);
-}
 
 void setUp(void)
 {
-    static const machine_uart_t uart = {
-        .fifo_size = 1, .arrive = arrive, .is_up = is_up, .serve = serve};
     const tmini_config_t config = {
         .port = &tmini_port_template,
         .port_context = &port,
         .rx_buffer = rx,
         .rx_size = sizeof rx,
     };
-    machine_begin(NULL, &uart);
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_port_template_init(&port, NULL));
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_init(&lidar, &config));
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_port_template_start(&port, &lidar));
@@ -78,36 +51,23 @@ void test_the_clock_counts_ticks_and_wraps_around_at_32_bits(void)
     TEST_ASSERT_EQUAL_UINT32(0, tmini_port_template.now_ms(&port));
 }
 
-static void poll_all(void)
+/* What the interrupt does with a byte; returns how many have reached the lidar. */
+static uint32_t receive(bool error)
 {
+    tmini_counters_t counters;
+    tmini_port_template_receive(&port, 0x11, error);
     while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
     }
     tmini_counters(&lidar, &counters);
+    return counters.bytes_skipped;
 }
 
 void test_a_byte_reaches_the_lidar_also_with_an_error_which_is_counted(void)
 {
-    for (uint32_t errors = 0; errors < 2; errors++) {
-        machine_receive(errors * ERROR, &noise, 1);
-        poll_all();
-        TEST_ASSERT_EQUAL_UINT32(errors + 1, counters.bytes_skipped);
-        TEST_ASSERT_EQUAL_UINT32(errors, line_errors());
-    }
-}
-
-/* At every third one. */
-void test_bytes_at_any_access_of_a_poll_reach_the_lidar(void)
-{
-    machine.access_ns = MACHINE_BYTE_NS / 3;
-    for (unsigned i = 0; i < PACKETS; i++) {
-        machine_send(0, start_packet, sizeof start_packet);
-    }
-    while (!machine_has_sent()) {
-        (void)tmini_poll(&lidar);
-    }
-    poll_all();
-    TEST_ASSERT_EQUAL_UINT32(PACKETS, counters.packets);
-    TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(1, receive(false));
+    TEST_ASSERT_EQUAL_UINT32(0, line_errors());
+    TEST_ASSERT_EQUAL_UINT32(2, receive(true));
+    TEST_ASSERT_EQUAL_UINT32(1, line_errors());
 }
 
 void test_null_pointers_are_refused(void)
@@ -127,9 +87,7 @@ void test_a_restart_of_a_stopped_port_starts_nothing(void)
 void test_after_stop_bytes_are_dropped_and_after_start_they_reach_the_lidar(void)
 {
     tmini_port_template_stop(&port);
-    machine_receive(0, &noise, 1);
+    TEST_ASSERT_EQUAL_UINT32(0, receive(false));
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_port_template_start(&port, &lidar));
-    machine_receive(0, &noise, 1);
-    poll_all();
-    TEST_ASSERT_EQUAL_UINT32(1, counters.bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(1, receive(false));
 }
