@@ -8,16 +8,12 @@
 #define VIRTUAL_AGENT_H
 
 #include <rclc/rclc.h>
+#include <stdbool.h>
 
 typedef struct {
     /* Set by a test. */
     bool present;
-    bool refuses_support;
-    bool refuses_node;
-    bool refuses_publisher;
-    bool takes_nothing; /* rcl_publish() fails. */
-    bool closes_badly;
-    bool keeps_its_clock; /* Synchronising the clock fails. */
+    const char *failing; /* The function that fails, in spite of a present agent. */
     int64_t epoch_ns;
     void (*wait)(int ms); /* Called whenever a micro-ROS function waits. */
 

@@ -8,8 +8,6 @@
 #ifndef RCL_RCL_H
 #define RCL_RCL_H
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #define MUST_LOOK __attribute__((warn_unused_result))
@@ -27,12 +25,10 @@ typedef struct {
 } rcl_allocator_t;
 
 typedef struct {
-    bool is_open;
     int destroy_timeout_ms;
 } rmw_context_t;
 
 typedef struct {
-    bool is_open;
     int session_timeout_ms;
 } rmw_publisher_t;
 
@@ -48,9 +44,7 @@ typedef struct {
     rmw_publisher_t *impl;
 } rcl_publisher_t;
 
-typedef struct {
-    void *allocation;
-} rmw_publisher_allocation_t;
+typedef struct rmw_publisher_allocation rmw_publisher_allocation_t;
 
 rcl_allocator_t rcl_get_default_allocator(void);
 rcl_node_t rcl_get_zero_initialized_node(void);
