@@ -3,7 +3,7 @@
 
 #include "truth.h"
 
-#include "sim_judge.h"
+#include "judge_scan.h"
 #include "unity.h"
 
 static sim_judge_t judge;
@@ -28,22 +28,9 @@ uint32_t truth_packets(void)
     return packets;
 }
 
-static sim_reading_t read_scan(const tmini_scan_t *scan)
-{
-    sim_reading_t reading = {0};
-    for (unsigned i = 0; i < scan->count; i++) {
-        const tmini_point_t *const point = &scan->points[i];
-        sim_read_point(&judge, &reading,
-                       (reference_point_t){point->angle_q6, point->distance_mm, point->intensity,
-                                           point->flag});
-    }
-    (void)sim_read_end(&judge, &reading, scan->complete, scan->gaps, scan->dropped);
-    return reading;
-}
-
 void truth_assert_nothing_invented(const tmini_scan_t *scan)
 {
-    const unsigned lies = read_scan(scan).lies;
+    const unsigned lies = judge_scan(&judge, scan).lies;
     for (unsigned lie = 0; lie < SIM_LIES; lie++) {
         TEST_ASSERT_TRUE_MESSAGE((lies & SIM_LIE(lie)) == 0, sim_lie_name((sim_lie_t)lie));
     }
@@ -51,7 +38,7 @@ void truth_assert_nothing_invented(const tmini_scan_t *scan)
 
 void truth_assert_some_revolution(const tmini_scan_t *scan)
 {
-    const sim_reading_t reading = read_scan(scan);
+    const sim_reading_t reading = judge_scan(&judge, scan);
     TEST_ASSERT_TRUE_MESSAGE(scan->complete && scan->count > 0, "the scan is not complete");
     TEST_ASSERT_EQUAL_HEX_MESSAGE(0, reading.lies, "it is no revolution");
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, reading.missing, "points are missing");

@@ -5,6 +5,7 @@
 
 #include "bed.h"
 #include "invariants.h"
+#include "judge_scan.h"
 
 #include <string.h>
 
@@ -198,13 +199,6 @@ static void forget(bed_t *bed, uint64_t end)
     bed->watch->has_begun = false;
 }
 
-static void read_point(bed_t *bed, sim_reading_t *reading, const tmini_point_t *point)
-{
-    sim_read_point(
-        &bed->watch->judge, reading,
-        (reference_point_t){point->angle_q6, point->distance_mm, point->intensity, point->flag});
-}
-
 static void judge_lies(bed_t *bed, const sim_reading_t *reading)
 {
     bed->watch->counts.points += reading->points;
@@ -222,7 +216,7 @@ static void check_packet(bed_t *bed)
     tmini_point_t point;
 
     for (unsigned i = 0; i < packet->count && tmini_packet_point(packet, i, &point); i++) {
-        read_point(bed, &reading, &point);
+        judge_point(&bed->watch->judge, &reading, &point);
     }
     judge_lies(bed, &reading);
 }
@@ -231,12 +225,8 @@ static void check_scan(bed_t *bed)
 {
     const tmini_scan_t *const scan = tmini_scan(&bed->lidar);
     const unsigned closing = TMINI_PACKET_SIZE(tmini_packet(&bed->lidar)->count);
-    sim_reading_t reading = {0};
+    const sim_reading_t reading = judge_scan(&bed->watch->judge, scan);
 
-    for (unsigned i = 0; i < scan->count; i++) {
-        read_point(bed, &reading, &scan->points[i]);
-    }
-    (void)sim_read_end(&bed->watch->judge, &reading, scan->complete, scan->gaps, scan->dropped);
     judge_lies(bed, &reading);
     settle(bed, parsed(bed) - closing, scan->dropped == 0);
     bed->watch->has_begun = true;

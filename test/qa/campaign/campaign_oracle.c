@@ -3,6 +3,8 @@
 
 #include "campaign_oracle.h"
 
+#include "judge_scan.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -43,18 +45,6 @@ static uint32_t sent_us(const line_t *line, uint32_t place)
         packet++;
     }
     return line->packets[packet].sent_us;
-}
-
-static sim_reading_t read_points(oracle_t *oracle, const tmini_scan_t *scan)
-{
-    sim_reading_t reading = {0};
-    for (uint32_t i = 0; i < scan->count; i++) {
-        const tmini_point_t *const point = &scan->points[i];
-        sim_read_point(&oracle->line->judge, &reading,
-                       (reference_point_t){point->angle_q6, point->distance_mm, point->intensity,
-                                           point->flag});
-    }
-    return reading;
 }
 
 static void say(const oracle_t *oracle, const sim_reading_t *reading, const tmini_scan_t *scan)
@@ -122,9 +112,8 @@ static void explain_mixture(oracle_t *oracle, const host_t *host, const sim_read
 void oracle_judge_scan(oracle_t *oracle, const host_t *host, const tmini_scan_t *scan)
 {
     verdicts_t *const verdicts = oracle->verdicts;
-    sim_reading_t reading = read_points(oracle, scan);
-    unsigned lies =
-        sim_read_end(&oracle->line->judge, &reading, scan->complete, scan->gaps, scan->dropped);
+    const sim_reading_t reading = judge_scan(&oracle->line->judge, scan);
+    unsigned lies = reading.lies;
     if (oracle->speaks) {
         say(oracle, &reading, scan);
     }
@@ -193,14 +182,14 @@ static bool may_overwrite_a_packet(const host_config_t *config)
 
 /* Each point of an intact packet after the first start packet must be in exactly one scan, unless
  * the library has withheld it, which it counts. The current, unfinished scan counts as one. */
-static void judge_points(oracle_t *oracle, const host_t *host, uint32_t withheld)
+static void judge_intact(oracle_t *oracle, const host_t *host, uint32_t withheld)
 {
     const line_t *const line = oracle->line;
     const tmini_builder_t *const builder = &host->lidar.decoder.builder;
     uint32_t lacking = 0;
     bool begun = false;
     if (builder->open) {
-        const unsigned lies = read_points(oracle, &builder->scan).lies;
+        const unsigned lies = judge_points(&oracle->line->judge, &builder->scan).lies;
         note(oracle, SIM_LIE_AGAIN, (lies & SIM_LIE(SIM_LIE_AGAIN)) != 0);
     }
     for (uint32_t i = 0; i < line->packet_count; i++) {
@@ -235,7 +224,7 @@ void oracle_end(oracle_t *oracle, const host_t *host)
         (counters.bytes_overrun == 0 && host->gaps_reported == 0)) {
         judge_cost(oracle, host);
         if (!host->was_lost && host->config.max_points == HOST_POINTS) {
-            judge_points(oracle, host, counters.points_withheld);
+            judge_intact(oracle, host, counters.points_withheld);
         }
     }
 }

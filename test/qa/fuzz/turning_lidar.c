@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "sim_judge.h"
+#include "judge_scan.h"
 
 #define RECEIVED_MAX 49152u
 #define PACKET_US 10000u
@@ -94,15 +94,7 @@ bool turning_received(const uint8_t *bytes, size_t count)
 
 void turning_judge(const tmini_scan_t *scan)
 {
-    sim_reading_t reading = {0};
-    for (unsigned i = 0; i < scan->count; i++) {
-        const tmini_point_t *const point = &scan->points[i];
-        sim_read_point(&lidar.judge, &reading,
-                       (reference_point_t){point->angle_q6, point->distance_mm, point->intensity,
-                                           point->flag});
-    }
-    const unsigned lies =
-        sim_read_end(&lidar.judge, &reading, scan->complete, scan->gaps, scan->dropped);
+    const unsigned lies = judge_scan(&lidar.judge, scan).lies;
     for (unsigned lie = 0; lie < SIM_LIES && lidar.wrong == NULL; lie++) {
         lidar.wrong = (lies & SIM_LIE(lie)) != 0 ? sim_lie_name((sim_lie_t)lie) : NULL;
     }
