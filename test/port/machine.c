@@ -181,6 +181,12 @@ bool machine_put(uint32_t entry)
     return true;
 }
 
+bool machine_must_read(size_t level, uint32_t timeout_us)
+{
+    return machine.count >= level ||
+           (machine.count > 0 && machine.now_us - machine.last_us >= timeout_us);
+}
+
 uint16_t machine_take(void)
 {
     const uint16_t entry = machine.fifo[0];

@@ -70,6 +70,9 @@ void machine_access(void);
 /* Puts an entry into the FIFO; returns false if it was full. */
 bool machine_put(uint32_t entry);
 
+/* A UART's cause to interrupt: this many entries, or no byte for this time while some wait. */
+bool machine_must_read(size_t level, uint32_t timeout_us);
+
 /* Takes entries out of the FIFO. */
 uint16_t machine_take(void);
 size_t machine_read(uint8_t *bytes, size_t max);

@@ -18,6 +18,7 @@
 #include "interrupting_atomic.h"
 
 #define FIFO_SIZE 128u
+#define TIMEOUT_US 174u /* Four symbols at 230400 baud. */
 
 idf_t idf;
 
@@ -82,12 +83,10 @@ static bool keep(const uint8_t *bytes, size_t count)
     return true;
 }
 
-/* Four symbols without a byte. While a stash waits, the driver switches this cause off. */
+/* While a stash waits, the driver switches this cause off. */
 static bool has_cause_to_read(void)
 {
-    const bool line_pauses = machine.now_us - machine.last_us >= 174;
-    return idf.stash_count == 0 &&
-           (machine.count >= idf.fifo_threshold || (machine.count > 0 && line_pauses));
+    return idf.stash_count == 0 && machine_must_read(idf.fifo_threshold, TIMEOUT_US);
 }
 
 static void empty_fifo(void)

@@ -15,6 +15,7 @@
 #include "stream_buffer.h"
 
 #define FIFO_SIZE 16u
+#define TIMEOUT_US 139u /* 32 bits at 230400 baud. */
 #define NEVER UINT64_MAX
 #define STACK_WORDS_MIN 128u
 
@@ -36,15 +37,10 @@ static void demand(bool condition, const char *what)
 /* ----------------------------------------------------------------------------- time, interrupts */
 
 /* The UART interrupts when its FIFO is half full, or after 32 bit times without a byte. */
-static bool wants_interrupt(void)
-{
-    const bool timed_out = machine.count > 0 && machine.now_us - machine.last_us >= 139;
-    return world.interrupt_enabled && (machine.count >= FIFO_SIZE / 2 || timed_out);
-}
-
 static bool line_is_up(void)
 {
-    return world.pending || wants_interrupt();
+    return world.pending ||
+           (world.interrupt_enabled && machine_must_read(FIFO_SIZE / 2, TIMEOUT_US));
 }
 
 static void serve_line(void)
