@@ -269,17 +269,6 @@ static HAL_StatusTypeDef start_interrupt(UART_HandleTypeDef *uart, uint8_t *memo
     return HAL_OK;
 }
 
-/* Enables the idle line's interrupt, unless an error has already ended the reception. */
-static HAL_StatusTypeDef await_idle(UART_HandleTypeDef *uart, HAL_StatusTypeDef status)
-{
-    if (uart->ReceptionType != TO_IDLE) {
-        return HAL_ERROR;
-    }
-    clear_idle();
-    model_set(&model_usart.CR1, MODEL_CR1_IDLEIE);
-    return status;
-}
-
 static bool may_start(UART_HandleTypeDef *uart)
 {
     model_step();
@@ -298,8 +287,6 @@ static bool may_start(UART_HandleTypeDef *uart)
     }
 
 RECEPTION(HAL_UART_Receive_IT, HAL_UART_RECEPTION_STANDARD, start_interrupt(huart, pData, Size))
-RECEPTION(HAL_UARTEx_ReceiveToIdle_IT, TO_IDLE,
-          await_idle(huart, start_interrupt(huart, pData, Size)))
 
 #ifndef STM32_MODEL_NO_DMA
 
@@ -325,6 +312,17 @@ static HAL_StatusTypeDef start_dma(UART_HandleTypeDef *uart, uint8_t *memory, ui
     model_set(&model_usart.CR3, MODEL_CR3_EIE);
     model_set(&model_usart.CR3, MODEL_CR3_DMAR);
     return HAL_OK;
+}
+
+/* Enables the idle line's interrupt, unless an error has already ended the reception. */
+static HAL_StatusTypeDef await_idle(UART_HandleTypeDef *uart, HAL_StatusTypeDef status)
+{
+    if (uart->ReceptionType != TO_IDLE) {
+        return HAL_ERROR;
+    }
+    clear_idle();
+    model_set(&model_usart.CR1, MODEL_CR1_IDLEIE);
+    return status;
 }
 
 RECEPTION(HAL_UART_Receive_DMA, HAL_UART_RECEPTION_STANDARD, start_dma(huart, pData, Size))
@@ -373,14 +371,7 @@ static void receive_byte(UART_HandleTypeDef *uart)
     model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE | MODEL_CR1_PEIE);
     model_unset(&model_usart.CR3, MODEL_CR3_EIE);
     uart->RxState = HAL_UART_STATE_READY;
-    if (uart->ReceptionType == TO_IDLE) {
-        uart->ReceptionType = HAL_UART_RECEPTION_STANDARD;
-        model_unset(&model_usart.CR1, MODEL_CR1_IDLEIE);
-        uart->RxEventType = EVENT_TC;
-        HAL_UARTEx_RxEventCallback(uart, uart->RxXferSize);
-    } else {
-        HAL_UART_RxCpltCallback(uart);
-    }
+    HAL_UART_RxCpltCallback(uart);
 }
 
 static void note_errors(UART_HandleTypeDef *uart, uint32_t flags, uint32_t cr1, uint32_t cr3)
@@ -432,21 +423,17 @@ static void handle_errors(UART_HandleTypeDef *uart, uint32_t flags, uint32_t cr1
     }
 }
 
+/* The port waits for it only with DMA. */
 static void handle_idle(UART_HandleTypeDef *uart)
 {
     clear_idle();
 #ifndef STM32_MODEL_NO_DMA
     if ((model_usart.CR3 & MODEL_CR3_DMAR) != 0) {
         idle_with_dma(uart);
-        return;
     }
+#else
+    (void)uart;
 #endif
-    const uint16_t received = (uint16_t)(uart->RxXferSize - uart->RxXferCount);
-    if (uart->RxXferCount > 0 && received > 0) {
-        end_reception(uart);
-        uart->RxEventType = EVENT_IDLE;
-        HAL_UARTEx_RxEventCallback(uart, received);
-    }
 }
 
 static void transmit_next(UART_HandleTypeDef *uart)

@@ -15,10 +15,9 @@
 
 #define __ALIGNED(alignment) __attribute__((aligned(alignment)))
 
-typedef enum { HAL_OK, HAL_ERROR, HAL_BUSY, HAL_TIMEOUT } HAL_StatusTypeDef;
+typedef enum { HAL_OK, HAL_ERROR, HAL_BUSY } HAL_StatusTypeDef;
 
 typedef enum {
-    HAL_UART_STATE_RESET = 0x00,
     HAL_UART_STATE_READY = 0x20,
     HAL_UART_STATE_BUSY_TX = 0x21,
     HAL_UART_STATE_BUSY_RX = 0x22,
@@ -153,7 +152,6 @@ typedef struct {
 #if STM32_MODEL_YEAR >= 2021
 #define ATOMIC_CLEAR_BIT(reg, bit) model_unset(&(reg), bit)
 #define HAL_UART_RECEPTION_STANDARD 0x00000000u
-#define HAL_UART_RECEPTION_TOIDLE 0x00000001u
 #endif
 #if STM32_MODEL_YEAR >= 2024
 #define HAL_UART_RXEVENT_TC 0x00000000u
@@ -165,8 +163,6 @@ HAL_StatusTypeDef HAL_UART_Transmit_IT(UART_HandleTypeDef *huart, const uint8_t 
                                        uint16_t Size);
 HAL_StatusTypeDef HAL_UART_Receive_IT(UART_HandleTypeDef *huart, uint8_t *pData, uint16_t Size);
 HAL_StatusTypeDef HAL_UART_Receive_DMA(UART_HandleTypeDef *huart, uint8_t *pData, uint16_t Size);
-HAL_StatusTypeDef HAL_UARTEx_ReceiveToIdle_IT(UART_HandleTypeDef *huart, uint8_t *pData,
-                                              uint16_t Size);
 HAL_StatusTypeDef HAL_UARTEx_ReceiveToIdle_DMA(UART_HandleTypeDef *huart, uint8_t *pData,
                                                uint16_t Size);
 HAL_StatusTypeDef HAL_UART_AbortReceive(UART_HandleTypeDef *huart);
