@@ -11,7 +11,6 @@
 #include <zephyr/drivers/uart.h>
 
 #include "irq_lines.h"
-#include "zephyr_board.h"
 #include "zephyr_model.h"
 
 static struct {

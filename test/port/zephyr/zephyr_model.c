@@ -4,7 +4,6 @@
 #include "zephyr_model.h"
 
 #include "irq_lines.h"
-#include "zephyr_board.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -55,4 +55,12 @@ static inline void zephyr_model_boot(void)
     board.lidar_ready = zephyr_model_init_lidar() == 0;
 }
 
+/* Private to the model: its kernel and the UART's async API; the UART's interrupt while that is in
+ * use; the line's errors since the last call. */
+void zephyr_kernel_begin(void);
+void zephyr_async_begin(void);
+bool zephyr_async_is_up(void);
+void zephyr_async_serve(void);
+int zephyr_board_take_errors(void);
+
 #endif

@@ -10,19 +10,16 @@
 #include <zephyr/kernel.h>
 #include <zephyr/ztest.h>
 
-#include "reference_decoder.h"
-#include "simulator.h"
+#include "sim_judge.h"
 #include "tmini_zephyr_device.h"
 
-#define REVOLUTIONS 64u
 #define LINE_STACK 4096
 
 static const struct device *const device = DEVICE_DT_GET(DT_NODELABEL(lidar));
 static const struct device *const uart = DEVICE_DT_GET(DT_BUS(DT_NODELABEL(lidar)));
 
 static sim_t sim;
-static reference_point_t truth[REVOLUTIONS][CONFIG_TMINI_POINTS];
-static size_t truth_count[REVOLUTIONS];
+static sim_judge_t judge;
 static unsigned true_scans;
 static unsigned other_scans;
 
@@ -34,14 +31,7 @@ static uint64_t now_us(void)
 static void note_packet(void *context, const sim_packet_t *packet)
 {
     ARG_UNUSED(context);
-    const unsigned samples = packet->bytes[3]; /* LSN */
-    const uint32_t revolution = packet->revolution % REVOLUTIONS;
-    if ((packet->bytes[2] & 1u) != 0) { /* A start packet: drop an old revolution's points. */
-        truth_count[revolution] = 0;
-    }
-    for (unsigned i = 0; i < samples && truth_count[revolution] < CONFIG_TMINI_POINTS; i++) {
-        truth[revolution][truth_count[revolution]++] = reference_point(packet->bytes, i);
-    }
+    (void)sim_judge_sent(&judge, packet);
 }
 
 static void on_sent(const struct device *from, size_t size, void *user_data)
@@ -68,29 +58,17 @@ static void run_line(void *p1, void *p2, void *p3)
 K_THREAD_STACK_DEFINE(line_stack, LINE_STACK);
 static struct k_thread line;
 
-static bool is_revolution(const tmini_scan_t *scan, unsigned revolution)
-{
-    if (scan->count == 0 || scan->count != truth_count[revolution]) {
-        return false;
-    }
-    for (unsigned i = 0; i < scan->count; i++) {
-        const reference_point_t *const point = &truth[revolution][i];
-        if (scan->points[i].angle_q6 != point->angle_q6 ||
-            scan->points[i].distance_mm != point->distance_mm ||
-            scan->points[i].intensity != point->intensity) {
-            return false;
-        }
-    }
-    return true;
-}
-
 static bool is_true(const tmini_scan_t *scan)
 {
-    bool found = false;
-    for (unsigned revolution = 0; revolution < REVOLUTIONS && !found; revolution++) {
-        found = is_revolution(scan, revolution);
+    sim_reading_t reading = {0};
+    for (unsigned i = 0; i < scan->count; i++) {
+        const tmini_point_t *const point = &scan->points[i];
+        sim_read_point(&judge, &reading,
+                       (reference_point_t){point->angle_q6, point->distance_mm, point->intensity,
+                                           point->flag});
     }
-    return found && scan->complete;
+    (void)sim_read_end(&judge, &reading, scan->complete, scan->gaps, scan->dropped);
+    return scan->complete && reading.lies == 0 && reading.missing == 0;
 }
 
 static void on_event(const struct device *from, tmini_event_t event, void *user_data)
@@ -105,8 +83,10 @@ static void on_event(const struct device *from, tmini_event_t event, void *user_
 
 static void *set_up(void)
 {
-    const sim_config_t config = sim_default_config();
+    sim_config_t config = sim_default_config();
     const sim_observer_t observer = {.on_packet = note_packet};
+    config.marked = true;
+    sim_judge_begin(&judge);
     sim_init(&sim, &config);
     sim_observe(&sim, &observer);
     uart_emul_callback_tx_data_ready_set(uart, on_sent, NULL);
