@@ -143,15 +143,6 @@ void dma_channel_configure(uint channel, const dma_channel_config *config, volat
     }
 }
 
-static void pass_erratically(void)
-{
-    if (random_below(&chip.random, 100) != 0) {
-        machine_pass(random_below(&chip.random, 4) * 100u);
-    } else {
-        machine_pass(random_below(&chip.random, 250000)); /* Up to 5 laps of 1024 bytes. */
-    }
-}
-
 /* Time may pass after the count is read: only the next reading shows the change. */
 dma_channel_hw_t *dma_channel_hw_addr(uint channel)
 {
@@ -159,8 +150,6 @@ dma_channel_hw_t *dma_channel_hw_addr(uint channel)
     it->shown.transfer_count = it->count;
     if (chip.pass_after > 0 && --chip.pass_after == 0) {
         machine_pass(chip.pass_us);
-    } else if (chip.erratic) {
-        pass_erratically();
     }
     return &it->shown;
 }
@@ -219,16 +208,10 @@ static unsigned interrupt_level(void)
     return levels[chip.uart.hw.ifls >> UART_UARTIFLS_RXIFLSEL_LSB & 7u];
 }
 
-static bool wants_interrupt(void)
-{
-    const uart_model_t *const uart = &chip.uart;
-    const bool timed_out = machine.count > 0 && machine.now_us - machine.last_us >= TIMEOUT_US;
-    return uart->receive_irq && (machine.count >= interrupt_level() || timed_out);
-}
-
 static bool line_is_up(void)
 {
-    return chip.irq_enabled[UART_IRQ_NUM(uart1)] && wants_interrupt();
+    return chip.irq_enabled[UART_IRQ_NUM(uart1)] && chip.uart.receive_irq &&
+           machine_must_read(interrupt_level(), TIMEOUT_US);
 }
 
 static void serve_line(void)
@@ -236,7 +219,6 @@ static void serve_line(void)
     chip.handlers[UART_IRQ_NUM(uart1)]();
 }
 
-/* Interrupts also come at accesses to the library's indices. */
 /* Bits written as 1 to ICR are cleared. The model sees this store only at the next access. */
 static void clear_status(void)
 {

@@ -20,7 +20,6 @@
 #include "hardware/irq.h"
 #include "hardware/uart.h"
 #include "machine.h"
-#include "random.h"
 
 #define PICO_PINS 48
 #define FIFO_SIZE 32u
@@ -57,10 +56,6 @@ typedef struct {
     /* After DMA's position has been read so often, this time passes before the reader continues. */
     unsigned pass_after;
     uint32_t pass_us;
-    /* After each reading of DMA's position, a random time passes: mostly some bytes, sometimes
-     * several laps. */
-    bool erratic;
-    random_t random;
     int functions[PICO_PINS]; /* Function and level of a pin; -1: never set. */
     int levels[PICO_PINS];
     bool values[PICO_PINS]; /* Bits of the output registers. */
