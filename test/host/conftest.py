@@ -20,6 +20,7 @@ CMakeLists.txt declares a file with tmini_add_pytest(); by hand: ctest --test-di
 `build/test/host/pytest test/host/test_NAME.py -k WORDS`.
 """
 
+import contextlib
 import ctypes
 import errno
 import os
@@ -201,6 +202,15 @@ class Lidar(Program):
             self.clock.sleep(10)
         assert text in self.log
 
+    @contextlib.contextmanager
+    def left_scanning(self):
+        """As a program leaves it that has not stopped it."""
+        line = os.open(self.port, os.O_RDWR | os.O_NOCTTY)
+        os.write(line, b"\xA5\x60")
+        self.wait_for_log("idle -> scanning")
+        yield
+        os.close(line)
+
     def unplug(self):
         self.kill()
 
@@ -289,6 +299,15 @@ class Terminal(Watched):
             self.process.kill(signal.SIGKILL)
         self.process.ptyproc.delayafterclose = 0
         self.process.close(force=False)
+
+
+def plug_in(device, name="adapter"):
+    """As the system does: the name is a link to the device, or, with None, is gone."""
+    os.makedirs(os.path.dirname(name) or ".", exist_ok=True)
+    if os.path.lexists(name):
+        os.unlink(name)
+    if device:
+        os.symlink(device, name)
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,7 @@ import subprocess
 
 import pytest
 
-from conftest import HAS_RIGHTS, TMINI
+from conftest import HAS_RIGHTS, TMINI, plug_in
 from lidar_bytes import INFORMATION, NOISE
 
 
@@ -55,6 +55,16 @@ def real_lidar(folder):
 
 def lines(run, count):
     run.wait_until(lambda: run.out.count("\n") >= count)
+
+
+@pytest.fixture
+def scanning(start):
+    """scanning(port, …): `tmini scan`, which has printed two lines."""
+    def begin(port, *words):
+        run = start("scan", "-p", port, *words)
+        lines(run, 2)
+        return run
+    return begin
 
 
 def wait_for_size(run, path, size):
@@ -250,10 +260,9 @@ def test_with_closed_output_nothing_goes_to_the_lidar(real_lidar):
 
 
 @pytest.mark.parametrize("number", (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
-def test_a_signal_stops_the_lidar_before_leaving(lidar, start, number):
+def test_a_signal_stops_the_lidar_before_leaving(lidar, scanning, number):
     device = lidar()
-    run = start("scan", "-p", device.port)
-    lines(run, 2)
+    run = scanning(device.port)
     assert run.end(number).status == 0
     assert "tmini: " not in run.err
     device.wait_for_log("stopping -> idle")
@@ -269,9 +278,7 @@ def test_a_signal_that_is_ignored_stays_ignored(lidar, start, monkeypatch):
 
 def test_a_lidar_that_is_still_streaming_is_stopped_first(lidar, output):
     device = lidar()
-    with open(device.port, "r+b", buffering=0) as line:
-        line.write(b"\xA5\x60")
-        device.wait_for_log("idle -> scanning")
+    with device.left_scanning():
         assert output("health", "-p", device.port) == "healthy\n"
 
 
@@ -289,29 +296,26 @@ def test_a_lidar_that_scans_although_it_was_stopped_is_stopped_again(lidar, star
 
 # ------------------------------------------------------------------------------------------- losses, and --wait
 
-def test_a_cable_pulled_while_scanning_is_reported(lidar, start):
+def test_a_cable_pulled_while_scanning_is_reported(lidar, scanning):
     device = lidar()
-    run = start("scan", "-p", device.port)
-    lines(run, 2)
+    run = scanning(device.port)
     device.unplug()
     assert run.finish().status == 1
     assert "has gone: the adapter was unplugged" in run.err and "Plug it in" in run.err
 
 
-def test_a_lidar_that_falls_silent_while_scanning_is_reported(lidar, start):
+def test_a_lidar_that_falls_silent_while_scanning_is_reported(lidar, scanning):
     device = lidar()
-    run = start("scan", "-p", device.port)
-    lines(run, 2)
+    run = scanning(device.port)
     device.freeze()
     assert run.finish().status == 1
     assert "has fallen silent; starting it again" in run.err
     assert "has fallen silent and does not come back" in run.err
 
 
-def test_a_lidar_that_comes_back_is_reported(lidar, start):
+def test_a_lidar_that_comes_back_is_reported(lidar, scanning):
     device = lidar()
-    run = start("scan", "-p", device.port)
-    lines(run, 2)
+    run = scanning(device.port)
     device.freeze()
     run.wait_for("the lidar has fallen silent; starting it again\n")
     device.thaw()
@@ -320,20 +324,10 @@ def test_a_lidar_that_comes_back_is_reported(lidar, start):
     assert run.end().status == 0
 
 
-def plug_in(device, name="adapter"):
-    """As the system does: the name is a link to the device, or, with None, is gone."""
-    os.makedirs(os.path.dirname(name) or ".", exist_ok=True)
-    if os.path.lexists(name):
-        os.unlink(name)
-    if device:
-        os.symlink(device, name)
-
-
-def test_with_wait_a_scan_continues_after_a_pulled_cable(lidar, start):
+def test_with_wait_a_scan_continues_after_a_pulled_cable(lidar, scanning):
     device = lidar()
     plug_in(device.port)
-    run = start("scan", "-p", "adapter", "--wait")
-    lines(run, 2)
+    run = scanning("adapter", "--wait")
     device.unplug()
     plug_in(None)
     run.wait_for("adapter is not there; waiting for it\n")
@@ -367,11 +361,10 @@ def test_with_wait_a_port_that_is_not_there_yet_is_waited_for(lidar, start):
     assert run.finish().status == 0 and run.out.count("\n") == 1
 
 
-def test_with_wait_another_lidar_on_the_port_is_not_taken(lidar, start, other):
+def test_with_wait_another_lidar_on_the_port_is_not_taken(lidar, scanning, other):
     device = lidar()
     plug_in(device.port)
-    run = start("scan", "-p", "adapter", "--wait")
-    lines(run, 2)
+    run = scanning("adapter", "--wait")
     device.unplug()
     plug_in(None)
     run.wait_for("waiting for it\n")
@@ -433,21 +426,19 @@ def test_two_equal_adapters_are_told_apart_by_their_places(computer, talker, out
 @pytest.mark.parametrize("given, awaited", (("serial/by-path/pci-1", "serial/by-path/pci-1"),
                                             ("serial/by-id/usb-7", "serial/by-id/usb-7"),
                                             ("ttyUSB0", "ttyUSB0")))
-def test_with_wait_the_name_that_was_given_is_kept(computer, lidar, start, given, awaited):
+def test_with_wait_the_name_that_was_given_is_kept(computer, lidar, scanning, given, awaited):
     device = lidar()
     computer("ttyUSB0", device.port, serial="7", by_id="usb-7", by_path="pci-1")
-    run = start("scan", "-p", f"root/dev/{given}", "--wait")
-    lines(run, 1)
+    run = scanning(f"root/dev/{given}", "--wait")
     device.unplug()
     run.wait_for(f"root/dev/{awaited} is not there; waiting for it\n")
 
 
-def test_with_wait_the_name_of_a_device_becomes_that_of_its_adapter(computer, lidar, start):
+def test_with_wait_the_name_of_a_device_becomes_that_of_its_adapter(computer, lidar, scanning):
     """The next adapter that is plugged in may get the name /dev/ttyUSB0."""
     device = lidar()
     computer("ttyUSB0", device.port, serial="7", by_id="usb-7", by_path="pci-1")
-    run = start("scan", "-p", device.port, "--wait")
-    lines(run, 1)
+    run = scanning(device.port, "--wait")
     device.unplug()
     run.wait_for("root/dev/serial/by-id/usb-7 is not there; waiting for it\n")
     computer("ttyUSB1", lidar().port, serial="7", by_id="usb-7")
@@ -483,9 +474,7 @@ def test_ask_shows_which_lidar_is_where(computer, lidar, talker, other, output, 
         with open(f"root/proc/812/{name}", "w", encoding="ascii") as file:
             file.write(content)
     plug_in("../../dev/ttyUSB5", "root/dev/serial/by-path/pci-5")
-    with open(streaming.port, "r+b", buffering=0) as line:
-        line.write(b"\xA5\x60")
-        streaming.wait_for_log("idle -> scanning")
+    with streaming.left_scanning():
         begun = clock.now_ms()
         text = output("ports", "--ask")
         assert clock.now_ms() - begun <= 3200
@@ -538,9 +527,7 @@ def test_an_invalid_mounting_is_reported(failure, words, reason):
 
 def test_listening_sends_nothing(lidar, tmini):
     device = lidar()
-    with open(device.port, "r+b", buffering=0) as line:
-        line.write(b"\xA5\x60")
-        device.wait_for_log("idle -> scanning")
+    with device.left_scanning():
         assert tmini("scan", "-p", device.port, "--listen", "-n", "2").status == 0
         assert "BAD" not in tmini("check", "-p", device.port, "--listen", "-s", "1").out
         assert tmini("record", "-p", device.port, "--listen", "heard.bin", "-s", "1").status == 0
@@ -609,20 +596,18 @@ def test_a_port_that_is_none(failure, port, reason):
     failure(1, reason, "info", "-p", port)
 
 
-def test_a_socket_that_is_closed_is_reported(lidar, start, failure, output):
+def test_a_socket_that_is_closed_is_reported(lidar, scanning, failure, output):
     device = lidar("--tcp", "0")
     assert output("health", "-p", device.port) == "healthy\n"
-    run = start("scan", "-p", device.port)
-    lines(run, 2)
+    run = scanning(device.port)
     device.unplug()
     assert run.finish().status == 1 and " has gone: the other end closed" in run.err
     failure(1, "Connection refused", "info", "-p", device.port)
 
 
-def test_a_port_that_another_program_uses(lidar, start, failure):
+def test_a_port_that_another_program_uses(lidar, scanning, failure):
     port = lidar().port
-    run = start("scan", "-p", port)
-    lines(run, 1)
+    run = scanning(port)
     failure(1, "another program is using it", "info", "-p", port)
     run.end()
 
@@ -666,9 +651,9 @@ def test_a_network_that_delivers_late_spoils_no_scan(lidar, tmini):
     assert 40 <= min(steps) and max(steps) <= 130, steps
 
 
-def test_after_a_silence_in_a_network_times_are_right_at_once(lidar, start, clock):
+def test_after_a_silence_in_a_network_times_are_right_at_once(lidar, scanning, clock):
     device = lidar("--tcp", "0")
-    run = start("scan", "-p", device.port, "--json")
+    run = scanning(device.port, "--json")
     lines(run, 3)
     begun_ms = clock.now_ms()
     device.freeze()

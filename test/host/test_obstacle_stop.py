@@ -8,6 +8,7 @@ import os
 import signal
 
 import pytest
+from conftest import plug_in
 
 PROGRAM = os.environ["TMINI_OBSTACLE_STOP"]
 
@@ -15,14 +16,6 @@ PROGRAM = os.environ["TMINI_OBSTACLE_STOP"]
 @pytest.fixture
 def robot(start):
     return lambda *words: start(*words, program=PROGRAM)
-
-
-def plug_in(device):
-    """As the system does: "adapter" is a link to the device, or, with None, is gone."""
-    if os.path.lexists("adapter"):
-        os.unlink("adapter")
-    if device:
-        os.symlink(device, "adapter")
 
 
 def wait_for_last(robot, beginning):
