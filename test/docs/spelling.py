@@ -47,10 +47,13 @@ def text_of(path):
     return list(comments(path))
 
 
+def known_words():
+    return [line for line in WORDS.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
+
+
 def misspelt(lines):
     with tempfile.NamedTemporaryFile("w", suffix=".txt", encoding="utf-8") as words:
-        words.write("".join(line for line in WORDS.read_text(encoding="utf-8").splitlines(True)
-                            if line.strip() and not line.startswith("#")))
+        words.write("\n".join(known_words()) + "\n")
         words.flush()
         result = subprocess.run(["hunspell", "-l", "-i", "utf-8", "-d", "en_GB", "-p", words.name],
                                 input="\n".join(lines), text=True, encoding="utf-8",
@@ -68,7 +71,9 @@ def check_documents():
         places = [f"{name(path)}:{number}" for path in paths for number, line in lines[path]
                   if re.search(rf"(?<![\w]){re.escape(word)}(?![\w])", line)]
         complaints.append(f"{word}: {', '.join(places[:5])}")
-    return complaints
+    used = set(re.findall(r"\w+", " ".join(line for path in paths for _, line in lines[path])))
+    return complaints + [f"{word}: in {WORDS.name}, but used nowhere" for word in known_words()
+                         if not used.issuperset(re.findall(r"\w+", word))]
 
 
 def check_sources():

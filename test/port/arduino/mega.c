@@ -50,9 +50,8 @@ typedef struct {
     sim_t lidar;
     uint8_t queue[QUEUE];
     unsigned queued;
-    unsigned lost;    /* Bytes that found the chip's queue or the core's buffer full. */
-    unsigned waiting; /* Most bytes that were in the core's buffer. */
-    unsigned turns;   /* Whole revolutions sent. */
+    unsigned lost;  /* Bytes that found the chip's queue or the core's buffer full. */
+    unsigned turns; /* Whole revolutions sent. */
 } port_t;
 
 static port_t ports[PORTS];
@@ -253,14 +252,6 @@ static avr_cycle_count_t press_start(avr_t *avr, avr_cycle_count_t when, void *c
     return 0;
 }
 
-static void note_waiting(void)
-{
-    for (unsigned i = 0; i < port_count; i++) {
-        const unsigned waiting = core_waiting(&ports[i]);
-        ports[i].waiting = waiting > ports[i].waiting ? waiting : ports[i].waiting;
-    }
-}
-
 static bool all_sent(void)
 {
     for (unsigned i = 0; i < port_count; i++) {
@@ -280,7 +271,6 @@ static void run(avr_t *avr)
             (void)printf("the firmware has crashed\n");
             return;
         }
-        note_waiting();
         if (end_us == LIMIT_US && all_sent()) {
             end_us = now_us(avr) + GRACE_US;
         }
@@ -308,8 +298,8 @@ static avr_t *make_board(elf_firmware_t *firmware, const char *path)
 static void report(void)
 {
     for (unsigned i = 0; i < port_count; i++) {
-        (void)printf("Serial%c: %u revolutions, %u bytes lost, at most %u of 63 waiting\n",
-                     ports[i].uart->name, ports[i].turns, ports[i].lost, ports[i].waiting);
+        (void)printf("Serial%c: %u revolutions, %u bytes lost\n", ports[i].uart->name,
+                     ports[i].turns, ports[i].lost);
     }
     if (is_bridge) {
         (void)printf("%zu bytes sent, %zu forwarded\n", sent_count, forwarded);

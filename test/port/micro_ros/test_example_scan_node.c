@@ -203,6 +203,7 @@ void test_an_agent_that_comes_later_or_comes_back_is_found(void)
         run_for(1300);
         TEST_ASSERT_GREATER_THAN_UINT(0, virtual_agent.published);
         TEST_ASSERT_EQUAL_UINT32(times, node.counters.connections);
+        TEST_ASSERT_EQUAL_UINT(times, virtual_agent.synchronisations);
     }
     TEST_ASSERT_EQUAL_UINT32(0, node.counters.unclosed);
 }
