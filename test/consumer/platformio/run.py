@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Runs PlatformIO without a network, with small platforms of our own (platforms/).
+"""Runs PlatformIO without a network, with small platforms of our own.
 
     run.py native|scan ROOT WORK
     run.py archive ROOT WORK ARCHIVE
@@ -22,6 +22,23 @@ import SCons
 from platformio.dependencies import get_core_dependencies
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+
+# A platform for each that a project names. Programs are built for this computer: for `espressif32` over the tests'
+# stand-in for Arduino (arduino.py).
+PLATFORMS = {
+    "native": {},
+    "espressif32": {"frameworks": {"arduino": {"script": "builder/arduino.py"}}},
+}
+BOARD = {"name": "ESP32 dev module", "vendor": "Espressif", "url": "", "frameworks": ["arduino"],
+         "build": {"mcu": "esp32", "f_cpu": "240000000L"},
+         "upload": {"maximum_ram_size": 1 << 18, "maximum_size": 1 << 20}}
+BUILDER = """\
+from SCons.Script import Default, DefaultEnvironment
+env = DefaultEnvironment()
+env.Tool("gcc")
+env.Tool("g++")
+Default(env.BuildProgram())
+"""
 
 SCONS = """\
 import sys
@@ -55,11 +72,17 @@ def install_scons(core):
 
 
 def install_platforms(core):
-    for name in os.listdir(os.path.join(HERE, "platforms")):
+    for name, more in PLATFORMS.items():
         folder = os.path.join(core, "platforms", name)
-        shutil.copytree(os.path.join(HERE, "platforms", name), folder)
-        with open(os.path.join(folder, "platform.json"), encoding="utf-8") as file:
-            describe(folder, "platform", name, json.load(file)["version"])
+        for part in ("builder", "boards"):
+            os.makedirs(os.path.join(folder, part))
+        write(os.path.join(folder, "builder", "main.py"), BUILDER)
+        shutil.copy(os.path.join(HERE, "arduino.py"), os.path.join(folder, "builder"))
+        write(os.path.join(folder, "boards", "esp32dev.json"), json.dumps(BOARD))
+        write(os.path.join(folder, "platform.json"),
+              json.dumps({"name": name, "title": name, "description": name, "license": "MIT",
+                          "engines": {"platformio": "^6"}, "version": "1.0.0", **more}))
+        describe(folder, "platform", name, "1.0.0")
 
 
 def environment(root, work):
@@ -73,7 +96,7 @@ def environment(root, work):
         PLATFORMIO_SETTING_ENABLE_TELEMETRY="no",
         PLATFORMIO_SETTING_CHECK_PLATFORMIO_INTERVAL="9999",
         PLATFORMIO_SETTING_CHECK_PRUNE_SYSTEM_THRESHOLD="0",
-        TMINI_ARDUINO_STUB=os.path.join(root, "test", "port", "arduino", "arduino_stub"),
+        TMINI_TESTS=os.path.join(root, "test"),
     )
 
 

@@ -7,12 +7,12 @@ import os
 
 from SCons.Script import DefaultEnvironment
 
+TESTS = os.environ["TMINI_TESTS"]
+
 env = DefaultEnvironment()
 env.Append(
-    CPPPATH=[os.environ["TMINI_ARDUINO_STUB"]],
+    CPPPATH=[os.path.join(TESTS, "port/arduino/arduino_stub")],
     CPPDEFINES=[("ARDUINO", 10819), "ESP32", ("ESP_ARDUINO_VERSION_MAJOR", 3)],
     CXXFLAGS=["-std=gnu++11"],
 )
-env.Append(
-    LIBS=[env.BuildLibrary("$BUILD_DIR/core", os.path.join(env.PioPlatform().get_dir(), "core"))]
-)
+env.Append(LIBS=[env.BuildLibrary("$BUILD_DIR/core", os.path.join(TESTS, "consumer/platformio/core"))])
