@@ -7,7 +7,6 @@
 
 #include "sim_rotor.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 sim_config_t sim_default_config(void)
@@ -631,26 +630,6 @@ void sim_lose_next_reply(sim_t *sim)
 }
 
 /* ---- Queries ---- */
-
-const char *sim_trouble_name(sim_trouble_t trouble)
-{
-    static const char *const names[] = {"sound", "lost",   "late",    "doubled",   "cut",
-                                        "deaf",  "silent", "reboots", "no-starts", "no-scans"};
-    return names[trouble];
-}
-
-sim_trouble_t sim_trouble_named(const char *text, uint32_t *for_ms)
-{
-    const size_t length = strcspn(text, "0123456789");
-    unsigned trouble = SIM_NO_SCANS;
-    *for_ms = (uint32_t)strtoul(text + length, NULL, 10);
-    while (trouble > SIM_SOUND &&
-           (strncmp(sim_trouble_name((sim_trouble_t)trouble), text, length) != 0 ||
-            strlen(sim_trouble_name((sim_trouble_t)trouble)) != length)) {
-        trouble--;
-    }
-    return (sim_trouble_t)trouble;
-}
 
 sim_mode_t sim_mode(const sim_t *sim)
 {
