@@ -59,10 +59,7 @@ static const entry_t errors[] = {
     {NULL, 0},
 };
 
-static const struct {
-    const char *word;
-    const char *tale;
-} beginnings[] = {
+static const tale_phrase_t beginnings[] = {
     {"idle", "stop >65 +50 !STOPPED @IDLE"},
     {"starts", "idle start >0D <600 >60"},
     {"scans", "starts <scan <S !STARTED @SCANNING"},
@@ -71,6 +68,7 @@ static const struct {
     {"starts-again", ">65 +50 >0D <600 >60"},
     {"packets", "no-points points:0"},
     {"small", "samples:39"},
+    {NULL, NULL},
 };
 
 static struct {
@@ -106,6 +104,7 @@ static int value_of(const entry_t *entries, const char *word)
     return 0;
 }
 
+const tale_phrase_t *tale_phrases;
 tale_words_t tale_words;
 void (*tale_wait)(void *context);
 
@@ -452,11 +451,11 @@ static bool expect_number(const char *word)
 
 /* ---- Words ---- */
 
-static bool tell_beginning(const char *word)
+static bool tell_phrase(const tale_phrase_t *phrases, const char *word)
 {
-    for (size_t i = 0; i < sizeof beginnings / sizeof beginnings[0]; i++) {
-        if (strcmp(word, beginnings[i].word) == 0) {
-            tale_tell(beginnings[i].tale);
+    for (; phrases != NULL && phrases->word != NULL; phrases++) {
+        if (strcmp(word, phrases->word) == 0) {
+            tale_tell(phrases->tale);
             return true;
         }
     }
@@ -525,8 +524,8 @@ static void tell_word(char *word)
     memcpy(tale.word, word, strlen(word) + 1);
     if (strchr("><+~!@#?", word[0]) != NULL) {
         tell_sign(word);
-    } else if (tell_beginning(word) || tell_means(word) ||
-               (tale_words != NULL && tale_words(word))) {
+    } else if (tell_phrase(beginnings, word) || tell_phrase(tale_phrases, word) ||
+               tell_means(word) || (tale_words != NULL && tale_words(word))) {
         return;
     } else if (!tale.is_set_up || !expect_number(word)) {
         tell_call(word);

@@ -57,7 +57,14 @@ void tale_begin(void);
 void tale_tell(const char *text);
 void tale_end(void);
 
-/* A test's own words; false: the word is none of them. */
+/* A test's own words for parts of tales; the last one's word is NULL. */
+typedef struct {
+    const char *word;
+    const char *tale;
+} tale_phrase_t;
+extern const tale_phrase_t *tale_phrases;
+
+/* Other words of its own; false: the word is none of them. */
 typedef bool (*tale_words_t)(char *word);
 extern tale_words_t tale_words;
 

@@ -15,9 +15,8 @@ function(tmini_add_driver_tests)
     endforeach()
 endfunction()
 
-tmini_add_driver_tests(test_tmini test_command test_blocking)
-# The simulated ATmega2560 takes minutes for the long tales of these.
-tmini_add_driver_tests(test_monitor test_poll test_recovery test_wish NOT_ON int16)
+tmini_add_driver_tests(test_tmini test_command test_blocking test_monitor test_poll test_recovery
+    test_wish)
 # Tests with large rings.
 tmini_add_driver_tests(test_effort test_pauses NOT_ON int16)
 

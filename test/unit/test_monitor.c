@@ -6,7 +6,16 @@
 
 #include "tale.h"
 
-void setUp(void) {}
+static const tale_phrase_t phrases[] = {
+    {"no-answer", "<99 >65 +50 >60 <scan <S !STARTED !FAILED"},
+    {"again", "<turn:60 !SCAN !PAUSED >65 +50 >0D no-answer"},
+    {NULL, NULL},
+};
+
+void setUp(void)
+{
+    tale_phrases = phrases;
+}
 
 void tearDown(void)
 {
@@ -17,8 +26,6 @@ void tearDown(void)
 #define DATA_FAULT SCANS "2( <blind !NONE ) <blind !FAULTS faults:0x20 "
 /* Point packets without a range, 4000 samples per second. */
 #define STANDS_STILL "<SZ drain 1495( <PZ:8 +2 ) 5( <PZ:8 ) !FAULTS "
-#define NO_ANSWER "<99 >65 +50 >60 <scan <S !STARTED !FAILED "
-#define AGAIN "<turn:60 !SCAN !PAUSED >65 +50 >0D " NO_ANSWER
 
 static const row_t tales[] IN_FLASH = {
     /* ---- Faults from CT information ---- */
@@ -111,9 +118,9 @@ static const row_t tales[] IN_FLASH = {
         "scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65 +50 >0D <1000 !FREQUENCY >60 "
         "<scan <S !STARTED turns:300:60"),
     ROW(a_lidar_that_does_not_answer_is_tried_less_and_less_often, /* 3, 6, 12, 24, 42.5 s. */
-        "wish:1000 idle start >0D " NO_ANSWER
-        "turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65 +50 >0D " NO_ANSWER "turns:34:60 " AGAIN
-        "turns:70:60 " AGAIN "turns:142:60 " AGAIN "turns:253:60 " AGAIN "turns:253:60 " AGAIN),
+        "wish:1000 idle start >0D no-answer turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65 +50 >0D "
+        "no-answer turns:34:60 again turns:70:60 again turns:142:60 again turns:253:60 again "
+        "turns:253:60 again"),
     ROW(what_is_not_known_to_be_set_is_asked_again_although_it_turns_well,
         "wish:610 attempts:1 idle start >0D <600 +50 >09 3( +2000 >0D <600 +50 >09 ) +2000 >65 +50 "
         ">60 <scan <S !STARTED !FAILED #0 turns:16:60 <turn:60 !SCAN !PAUSED >65 +50 >0D <610 "
