@@ -282,11 +282,8 @@ bool sim_expects_event(const sim_t *sim);
 void sim_delay_next_reply(sim_t *sim, uint32_t extra_ms);
 void sim_lose_next_reply(sim_t *sim);
 
-/* Which sample this is: 13 bits of its revolution, 11 of its number there, scrambled with the seed
- * to look random; and which one a point of a marked lidar shows. */
-#define SIM_MARK_SAMPLE_BITS 11u
+/* A marked lidar's sample: no other one has its values, so that they show which one a point is. */
 encode_sample_t sim_mark(const sim_t *sim, uint32_t revolution, uint32_t sample);
-void sim_read_mark(const sim_t *sim, encode_sample_t point, uint32_t *revolution, uint32_t *sample);
 
 /* "lost", "late", "doubled", "cut", "deaf", "silent", "reboots", "no-starts", "no-scans". */
 const char *sim_trouble_name(sim_trouble_t trouble);
