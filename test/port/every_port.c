@@ -154,13 +154,13 @@ static uint32_t packets_with(uint32_t errors)
     const uint8_t *const rest = &manual_packet[PACKET_CUT];
     start_port();
     machine_receive(0, manual_packet, PACKET_CUT);
-    port_program.work(200);
+    machine_pass(200);
     TEST_ASSERT_EQUAL_UINT32(0, packets());
     machine_receive(errors, rest, 1);
     machine_receive(0, rest + 1, 14);
-    port_program.work(200);
+    machine_pass(200);
     machine_receive(0, rest + 15, sizeof manual_packet - PACKET_CUT - 15);
-    port_program.work(200);
+    machine_pass(200);
     return packets();
 }
 
@@ -213,7 +213,7 @@ void test_bytes_before_the_start_are_dropped(void)
         static const uint8_t start_scanning[] = {0xA5, 0x60};
         TEST_ASSERT_EQUAL_INT(0, port_init());
         sim_receive(&machine.lidar, start_scanning, sizeof start_scanning, machine.now_us);
-        port_program.work(600000);
+        machine_pass(600000);
         TEST_ASSERT_GREATER_THAN_UINT32(1000, machine.line_bytes);
         TEST_ASSERT_EQUAL_UINT32(0, port_counted().bytes);
         TEST_ASSERT_EQUAL_INT(0, port_start());
@@ -231,7 +231,7 @@ void test_it_stops_and_starts_while_the_lidar_streams(void)
             port_stop();
             port_assert_stopped();
             const uint32_t bytes = port_counted().bytes;
-            port_program.work(10000 + 100 * i);
+            machine_pass(10000 + 100 * i);
             TEST_ASSERT_EQUAL_UINT32(bytes, port_counted().bytes);
             TEST_ASSERT_EQUAL_INT(0, port_start());
             TEST_ASSERT_LESS_OR_EQUAL_UINT32(port_way->old, port_counted().bytes);

@@ -48,10 +48,10 @@ void port_stop(void);
 port_counts_t port_counted(void);
 void port_assert_stopped(void); /* Nothing is left switched on, or taken. */
 
-/* What keeps the program busy for some time. */
-#ifndef PORT_WORK
-#define PORT_WORK machine_pass
-#endif
+/* Also defined where sleeping.c runs: the polling task sleeps until the lidar must be polled, or a
+ * byte comes. */
+void port_sleep(uint32_t due_ms);
+extern const uint32_t port_tick_us;
 
 /* These functions and port_program, for a port with the usual names. */
 #define PORT_UNDER_TEST(platform, wiring)               \
@@ -67,8 +67,7 @@ void port_assert_stopped(void); /* Nothing is left switched on, or taken. */
     {                                                   \
         (void)tmini_##platform##_stop(&port);           \
     }                                                   \
-    scanning_t port_program = {                         \
-        .port = &tmini_##platform##_port, .context = &port, .wait = wait, .work = PORT_WORK}
+    scanning_t port_program = {.port = &tmini_##platform##_port, .context = &port, .wait = wait}
 
 extern const port_way_t *port_way; /* NULL: no way has been chosen yet. */
 

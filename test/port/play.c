@@ -49,20 +49,11 @@ static void send_zeros(uint32_t count)
     }
 }
 
-ACT(send_cut, send(manual_packet, PACKET_CUT))
-ACT(send_rest, send(&manual_packet[PACKET_CUT], sizeof manual_packet - PACKET_CUT))
-
-void play_poll(void)
-{
-    while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
-    }
-}
-
 static void pass_ms(uint32_t ms)
 {
     for (uint32_t i = 0; i < ms; i++) {
         machine_pass(1000);
-        play_poll();
+        poll_all();
     }
 }
 
@@ -91,7 +82,7 @@ ACT(mark, marked = play_packets())
 static tmini_counters_t counters_after_poll(void)
 {
     tmini_counters_t counters;
-    play_poll();
+    poll_all();
     tmini_counters(&lidar, &counters);
     return counters;
 }
@@ -110,33 +101,36 @@ uint32_t play_accounted(void)
 NUMBER(more, (play_packets() - marked))
 NUMBER(skipped, counters_after_poll().bytes_skipped)
 NUMBER(overrun, counters_after_poll().bytes_overrun)
-NUMBER(bytes, port_counted().bytes)
-NUMBER(lost, port_counted().lost)
-NUMBER(overruns, port_counted().overruns)
-NUMBER(framing_errors, port_counted().framing_errors)
-NUMBER(breaks, port_counted().breaks)
 NUMBER(served, irq.lines[0].served)
 NUMBER(position, tmini_ring_head(&lidar.ring))
 
 static const play_word_t words[] = {
-    {.name = "for", .act = nothing},         {.name = "P", .act_on = play_send},
-    {.name = "head", .act = send_head},      {.name = "tail", .act = send_tail},
-    {.name = "x", .act_on = send_zeros},     {.name = "cut", .act = send_cut},
-    {.name = "rest", .act = send_rest},      {.name = "run", .act = run},
-    {.name = "+", .act_on = pass_ms},        {.name = "~", .act_on = machine_pass},
-    {.name = "poll", .act = play_poll},     {.name = "start", .act = start_it},
-    {.name = "stop", .act = port_stop},      {.name = "restart", .act = restart_it},
-    {.name = "anew", .act = set_up_anew},    {.name = "break", .act = break_it},
-    {.name = "mark", .act = mark},           {.name = "packets", .count = play_packets},
-    {.name = "more", .count = more},         {.name = "skipped", .count = skipped},
-    {.name = "overrun", .count = overrun},   {.name = "accounted", .count = play_accounted},
-    {.name = "bytes", .count = bytes},       {.name = "lost", .count = lost},
-    {.name = "overruns", .count = overruns}, {.name = "framing", .count = framing_errors},
-    {.name = "breaks", .count = breaks},     {.name = "served", .count = served},
-    {.name = "position", .count = position}, {.name = NULL},
+    {.name = "for", .act = nothing},
+    {.name = "P", .act_on = play_send},
+    {.name = "head", .act = send_head},
+    {.name = "tail", .act = send_tail},
+    {.name = "x", .act_on = send_zeros},
+    {.name = "run", .act = run},
+    {.name = "+", .act_on = pass_ms},
+    {.name = "~", .act_on = machine_pass},
+    {.name = "poll", .act = poll_all},
+    {.name = "start", .act = start_it},
+    {.name = "stop", .act = port_stop},
+    {.name = "restart", .act = restart_it},
+    {.name = "anew", .act = set_up_anew},
+    {.name = "break", .act = break_it},
+    {.name = "mark", .act = mark},
+    {.name = "packets", .count = play_packets},
+    {.name = "more", .count = more},
+    {.name = "skipped", .count = skipped},
+    {.name = "overrun", .count = overrun},
+    {.name = "accounted", .count = play_accounted},
+    {.name = "served", .count = served},
+    {.name = "position", .count = position},
+    {.name = NULL},
 };
 
-/* -- the play */
+/* ------------------------------------------------------------------------------------ the play */
 
 static const play_word_t *find(const play_word_t *among, const char *name, size_t length)
 {

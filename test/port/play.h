@@ -11,7 +11,6 @@
  *     P P:20          a packet of 13 bytes follows on the line; 20 packets
  *     head tail       six bytes of such a packet; the other seven
  *     x x:20          a byte that belongs to no packet
- *     cut rest        the manual's packet until PACKET_CUT; what is left of it
  *     run             polls each millisecond until all has come and the line is idle
  *     +3 ~200         3 ms, with a poll in each; 200 µs without a poll
  *     poll            polls until there is no event
@@ -19,7 +18,6 @@
  *     break           breaks reception, as port_way_t says
  *     packets:9 packets<9 packets>9      this number, here after a poll, is 9, less, or greater
  *     skipped overrun accounted more     other numbers; more: packets since `mark`
- *     bytes lost overruns framing breaks    what the port has counted since its start
  *     served position interrupts; the place in the stream up to which the lidar has bytes
  *     30( P +1 )      that many times
  *
@@ -66,11 +64,9 @@ void play_row(const row_t *row);
 /* The next byte on the line comes with these errors. */
 void play_damage(uint32_t errors);
 
-/* For tests that are no rows: P:count and run; polls until there is no event; packets, after a
- * poll; bytes that the lidar has accounted for. */
+/* For tests that are no rows: P:count; P:count run; packets; bytes accounted for. */
 void play_send(uint32_t count);
 void play_receive(uint32_t count);
-void play_poll(void);
 uint32_t play_packets(void);
 uint32_t play_accounted(void);
 

@@ -36,6 +36,12 @@ void scanning_begin(const scanning_t *the_program, size_t rx_size)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
 }
 
+void poll_all(void)
+{
+    while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
+    }
+}
+
 void poll_until(tmini_event_t wanted)
 {
     const uint64_t begun_us = machine.now_us;
@@ -87,7 +93,7 @@ void assert_recovery(void)
 
 static void pass_some_time(void)
 {
-    program.work(300); /* Too short to fill a FIFO of 16 bytes. */
+    machine_pass(300); /* Too short to fill a FIFO of 16 bytes. */
 }
 
 void assert_true_scans_wherever_bytes_come(void)
@@ -110,7 +116,7 @@ void assert_pauses_cost_no_scan(uint32_t bytes)
     for (uint32_t tenths = 1; tenths <= 10; tenths++) {
         assert_true_scans(revolution, revolution + CATCH_UP);
         revolution += CATCH_UP + 1;
-        program.work(longest_us * tenths / 10);
+        machine_pass(longest_us * tenths / 10);
     }
     assert_true_scans(revolution, revolution + CATCH_UP);
 }

@@ -15,9 +15,8 @@
 typedef struct {
     const tmini_port_t *port;
     void *context;
-    void (*wait)(void);        /* Called when a poll returns no event. */
-    void (*work)(uint32_t us); /* Keeps the program busy for this time. */
-    bool rx_dma;               /* DMA writes into the receive buffer. */
+    void (*wait)(void); /* Called when a poll returns no event. */
+    bool rx_dma;        /* DMA writes into the receive buffer. */
 } scanning_t;
 
 extern tmini_t lidar;
@@ -25,6 +24,9 @@ extern tmini_t lidar;
 /* Resets the program and sets up `lidar`, with a receive buffer of `rx_size` bytes, at most
  * 1024. */
 void scanning_begin(const scanning_t *program, size_t rx_size);
+
+/* Polls until there is no event. */
+void poll_all(void);
 
 /* Polls until `wanted` happens; fails after ten seconds. */
 void poll_until(tmini_event_t wanted);

@@ -11,7 +11,6 @@
 #include "board.h"
 #include "every_port.h"
 #include "freertos_model.h"
-#include "sleeping.h"
 #include "tmini_freertos.h"
 
 #define POLLING_PRIORITY 1u
@@ -280,8 +279,7 @@ void test_stopping_waits_for_the_receiving_task_every_time(void)
         TEST_ASSERT_TRUE(port.is_parked);
         TEST_ASSERT_EQUAL(is_full, machine.now_us > begun_us);
         TEST_ASSERT_TRUE(machine.now_us - begun_us <= 2 * TICK_US);
-        while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
-        }
+        poll_all();
     }
 }
 

@@ -321,8 +321,7 @@ void test_a_lidar_with_little_room_takes_the_ring_in_portions(void)
     assert_true_scans(1, 2);
     machine_pass(60000);
     while (tmini_pico_wait(&port, 0) > 0) {
-        while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
-        }
+        poll_all();
     }
     tmini_counters(&lidar, &counters);
     TEST_ASSERT_EQUAL_UINT32(truth_packets(), counters.packets);

@@ -15,8 +15,7 @@ static void wait(void)
     machine_pass(1000);
 }
 
-scanning_t port_program = {
-    .port = &tmini_stm32_hal_port, .context = &hal_rig.port, .wait = wait, .work = machine_pass};
+scanning_t port_program = {.port = &tmini_stm32_hal_port, .context = &hal_rig.port, .wait = wait};
 #ifdef STM32_MODEL_NO_DMA
 const unsigned port_way_count = 1;
 #else

@@ -38,7 +38,7 @@ void test_bytes_the_port_waits_for_a_handle_that_others_have_locked(void)
     TEST_ASSERT_EQUAL_UINT32(0, play_packets());
     hal_rig.uart.Lock = false;
     machine_pass(5000);
-    play_poll();
+    poll_all();
     play_receive(2);
     TEST_ASSERT_EQUAL_UINT32(2, play_packets());
 }

@@ -158,7 +158,7 @@ void test_an_event_between_reading_and_using_the_position_does_no_harm(void)
         for (uint32_t place = 0; place < 60; place = irq_next_place(&random, place)) {
             machine_pass(1000);
             irq_happen_after(place, idle_event);
-            play_poll();
+            poll_all();
         }
         play_receive(0);
         TEST_ASSERT_EQUAL_UINT32(600, play_packets());
@@ -175,7 +175,7 @@ void test_an_event_of_the_wrong_type_is_no_lap(void)
     for (unsigned i = 0; i < 2000; i++) {
         play_send(1);
         machine_pass(sizeof start_packet * 44 + 30 + i % 50);
-        play_poll();
+        poll_all();
     }
     TEST_ASSERT_EQUAL_UINT32(2000, play_packets());
     TEST_ASSERT_EQUAL_UINT32(0, rig_counts().laps);

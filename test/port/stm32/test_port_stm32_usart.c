@@ -21,8 +21,7 @@ static void wait(void)
     machine_pass(1000);
 }
 
-scanning_t port_program = {
-    .port = &tmini_stm32_usart_port, .context = &port, .wait = wait, .work = machine_pass};
+scanning_t port_program = {.port = &tmini_stm32_usart_port, .context = &port, .wait = wait};
 const unsigned port_way_count = 2;
 
 static void usart_handler(void)
@@ -253,7 +252,7 @@ void test_an_idle_line_at_any_access_of_a_poll_is_no_lock_up(void)
         play_send(1);
         machine_pass(500);
         irq_happen_after(place, line_falls_idle);
-        play_poll();
+        poll_all();
     }
     play_receive(0);
     TEST_ASSERT_EQUAL_UINT32(0, model.flags & MODEL_IDLE);

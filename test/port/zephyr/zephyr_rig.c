@@ -5,7 +5,6 @@
 
 #include <string.h>
 
-#include "sleeping.h"
 #include "unity.h"
 
 tmini_zephyr_t port;
