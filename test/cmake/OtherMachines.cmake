@@ -25,11 +25,13 @@ function(tmini_add_machine machine)
         return()
     endif()
     tmini_add_check(${machine} ${machine} ${tier} TIMEOUT 1800
-        COMMAND ${CMAKE_COMMAND}
-            -D SOURCE=${PROJECT_SOURCE_DIR} -D BUILD=${CMAKE_CURRENT_BINARY_DIR}/${machine}
-            -D TOOLCHAIN=${CMAKE_CURRENT_SOURCE_DIR}/cmake/toolchains/${arg_TOOLCHAIN}
-            -D BUILD_TYPE=${arg_BUILD_TYPE} -D CMOCK=${TMINI_CMOCK_DIR}
-            -P ${CMAKE_CURRENT_SOURCE_DIR}/cmake/RunOnMachine.cmake
+        COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test
+            ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/${machine}
+            --build-generator ${CMAKE_GENERATOR} --build-noclean --build-target tests
+            --build-options -DTMINI_BUILD_TESTS=ON -DTMINI_BUILD_EXAMPLES=OFF
+            -DCMAKE_TOOLCHAIN_FILE=${PROJECT_SOURCE_DIR}/test/cmake/toolchains/${arg_TOOLCHAIN}
+            -DCMAKE_BUILD_TYPE=${arg_BUILD_TYPE} -DCMOCK_ROOT=${TMINI_CMOCK_DIR}
+            --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error
         PROPERTIES COST 100)
 endfunction()
 

@@ -6,7 +6,9 @@
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -141,21 +143,13 @@ void tearDown()
 /* The last mode in the simulated lidar's log. */
 static bool is_lidar_idle()
 {
-    char line[256];
-    bool is_idle = false;
-    FILE *const log = fopen("log", "r");
-    require(log != nullptr, "a log");
-    while (fgets(line, sizeof line, log) != nullptr) {
-        const std::string text = line;
-        if (text.find(" mode ") != std::string::npos) {
-            is_idle = text.find("-> idle") != std::string::npos;
-        }
-    }
-    (void)fclose(log);
-    return is_idle;
+    std::ifstream log("log");
+    const std::string text((std::istreambuf_iterator<char>(log)), std::istreambuf_iterator<char>());
+    const size_t at = text.rfind(" mode ");
+    return at != std::string::npos && text.find("-> idle", at) < text.find('\n', at);
 }
 
-TEST(scans_come_at_the_wished_frequency_which_may_change_and_the_end_stops_the_lidar)
+TEST(scans_come_at_the_wished_frequency_and_stop_and_start_as_wished_until_the_end)
 {
     Simulator simulator("--pty");
     settings.port = simulator.address;
@@ -174,22 +168,14 @@ TEST(scans_come_at_the_wished_frequency_which_may_change_and_the_end_stops_the_l
         require(report.counters.packets > 0, "packets are counted");
         require(report.age_ms < 1000, "the newest scan is young");
         require(observer->has_told("the lidar: paused"), "the pause is told");
+        lidar.want_scans(false);
+        observer->await("a stop", [] { return observer->has_told("stopped"); });
+        require(!lidar.report().is_wanted, "the wish is reported");
+        lidar.want_scans(true);
+        observer->await_scans(2);
     }
     simulator.end();
     require(is_lidar_idle(), "the lidar is idle at the end");
-}
-
-TEST(a_wish_stops_and_starts_the_lidar)
-{
-    Simulator simulator("--pty");
-    settings.port = simulator.address;
-    Lidar lidar(settings, *observer);
-    observer->await_scans(1);
-    lidar.want_scans(false);
-    observer->await("a stop", [] { return observer->has_told("stopped"); });
-    require(!lidar.report().is_wanted, "the wish is reported");
-    lidar.want_scans(true);
-    observer->await_scans(2);
 }
 
 TEST(in_standby_the_lidar_scans_only_while_somebody_subscribes)

@@ -47,6 +47,7 @@ void test_the_clock_counts_ticks_and_wraps_around_at_32_bits(void)
     tmini_port_template_tick(&port);
     TEST_ASSERT_EQUAL_UINT32(2, tmini_port_template.now_ms(&port));
     port.time_ms = 0xFFFFFFFFu;
+    TEST_ASSERT_EQUAL_UINT32(0xFFFFFFFFu, tmini_port_template.now_ms(&port));
     tmini_port_template_tick(&port);
     TEST_ASSERT_EQUAL_UINT32(0, tmini_port_template.now_ms(&port));
 }
