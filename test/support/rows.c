@@ -102,6 +102,16 @@ uint32_t row_number(const char *word)
     return (uint32_t)strtoul(row_text(word), NULL, 0);
 }
 
+size_t row_bytes(const char *digits, uint8_t *bytes)
+{
+    size_t count = 0;
+    for (; digits[0] != '\0'; digits += 2) {
+        const char pair[3] = {digits[0], digits[1], '\0'};
+        bytes[count++] = (uint8_t)strtoul(pair, NULL, 16);
+    }
+    return count;
+}
+
 bool rows_expect(const char *word, const row_number_t *numbers, size_t count)
 {
     for (size_t i = 0; i < count; i++) {

@@ -55,6 +55,9 @@ bool row_is(const char *word, const char *name);
 const char *row_text(const char *word);
 uint32_t row_number(const char *word);
 
+/* Bytes in hexadecimal digits, such as "AA55"; returns how many there are. */
+size_t row_bytes(const char *digits, uint8_t *bytes);
+
 /* For words such as "count:21", which name a number and the value that is expected. If the word's
  * name is none of these, returns false. */
 typedef struct {

@@ -219,14 +219,6 @@ static void feed_samples(unsigned count, uint16_t distance_mm)
     }
 }
 
-static void feed_hex(const char *digits)
-{
-    for (; digits[0] != '\0'; digits += 2) {
-        const char pair[3] = {digits[0], digits[1], '\0'};
-        rig_feed_byte((uint8_t)strtol(pair, NULL, 16));
-    }
-}
-
 static void feed_zeros(unsigned count)
 {
     static const uint8_t zeros[RIG_RX_SIZE] = {0};
@@ -257,6 +249,7 @@ void tale_feed(const char *word)
 {
     const char *const at = strchr(word, ':');
     const unsigned number = at != NULL ? (unsigned)strtol(at + 1, NULL, 0) : 0;
+    uint8_t bytes[ROW_WORD_MAX / 2];
     if (word[0] >= '0' && word[0] <= '9') {
         rig_feed_frequency((uint32_t)atol(word));
     } else if (row_is(word, "info")) {
@@ -274,7 +267,7 @@ void tale_feed(const char *word)
     } else if (row_is(word, "crc")) {
         rig_feed_byte(rig.crc);
     } else if (row_is(word, "x")) {
-        feed_hex(at + 1);
+        rig_feed(bytes, row_bytes(at + 1, bytes));
     } else if (row_is(word, "zeros")) {
         feed_zeros(number);
     } else if (row_is(word, "turn")) {

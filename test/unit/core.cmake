@@ -18,7 +18,7 @@ tmini_add_unit_test(test_decoder SOURCES test_decoder.c LIBRARIES tmini_test_rec
 # Optional modules.
 tmini_add_unit_test(test_sectors SOURCES test_sectors.c ../support/rows.c
     LIBRARIES tmini_test_receiver)
-tmini_add_unit_test(test_ranges SOURCES test_ranges.c)
+tmini_add_unit_test(test_ranges SOURCES test_ranges.c ../support/rows.c)
 tmini_add_unit_test(test_mount SOURCES test_mount.c)
 tmini_add_unit_test(test_cartesian SOURCES test_cartesian.c)
 tmini_add_unit_test(test_fields SOURCES test_fields.c ../support/rows.c)

@@ -62,16 +62,6 @@ static void open_packet(const uint8_t *packet, size_t size)
  *     none:19         there is no sample with this index
  *     count:19 …      see tell_word() */
 
-static size_t bytes_of(const char *digits, uint8_t *out)
-{
-    size_t count = 0;
-    for (; digits[0] != '\0'; digits += 2) {
-        const char pair[3] = {digits[0], digits[1], '\0'};
-        out[count++] = (uint8_t)strtoul(pair, NULL, 16);
-    }
-    return count;
-}
-
 /* The samples are in `bytes`. */
 static void open_samples(size_t count)
 {
@@ -128,13 +118,13 @@ static void tell_word(char *word)
     } else if (word[0] == 'P') {
         open_angles(word);
     } else if (word[0] == '<') {
-        receiver_feed(&receiver, bytes, bytes_of(word + 1, bytes));
+        receiver_feed(&receiver, bytes, row_bytes(word + 1, bytes));
     } else if (row_is(word, "start")) {
         open_packet(start_packet, sizeof start_packet);
     } else if (row_is(word, "manual")) {
         open_packet(manual_packet, sizeof manual_packet);
     } else if (row_is(word, "x")) {
-        open_samples(bytes_of(word + 2, &bytes[10]) / 3);
+        open_samples(row_bytes(word + 2, &bytes[10]) / 3);
     } else if (row_is(word, "blind")) {
         memset(&bytes[10], 0, 3 * row_number(word));
         open_samples(row_number(word));

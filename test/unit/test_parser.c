@@ -45,11 +45,6 @@ static void feed(const uint8_t *more, size_t count)
     receiver_feed(&receiver, more, count);
 }
 
-static void feed_byte(uint8_t byte)
-{
-    receiver_feed(&receiver, &byte, 1);
-}
-
 static void expect_frame(tmini_frame_type_t expected)
 {
     TEST_ASSERT_EQUAL_INT(expected, receiver_next(&receiver));
@@ -359,10 +354,7 @@ static void tell_feed(const char *word)
     const char *const at = word + strcspn(word, ":+");
     const size_t number = at[0] != '\0' ? (size_t)strtoul(at + 1, NULL, 10) : 0;
     if (row_is(word, "x")) {
-        for (const char *digits = at + 1; digits[0] != '\0'; digits += 2) {
-            const char pair[3] = {digits[0], digits[1], '\0'};
-            feed_byte((uint8_t)strtoul(pair, NULL, 16));
-        }
+        feed(bytes, row_bytes(at + 1, bytes));
     } else if (row_is(word, "zeros")) {
         memset(bytes, 0, number);
         feed(bytes, number);

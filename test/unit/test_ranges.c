@@ -3,8 +3,12 @@
 
 /* Ranges at equal angular steps, counter-clockwise from the back. */
 
+#include "rows.h"
+
 #include "tmini/tmini_ranges.h"
 #include "unity.h"
+
+#include <stdlib.h>
 
 #define DEGREE 64u
 #define BINS 8
@@ -29,112 +33,90 @@ void tearDown(void)
     TEST_ASSERT_EQUAL_HEX8(0xEE, intensities[BINS]);
 }
 
-static void add(uint16_t angle_q6, uint16_t distance_mm, uint8_t intensity)
+/* Words of the rows. Angles are degrees, or with "+" and "-" a sixty-fourth more or less.
+ *
+ *     bin:90:360=270  the angle belongs to this bin of 360
+ *     90:1000,11      a point at this angle, with distance and intensity; after: one after the scan
+ *     eight           makes eight bins of the scan
+ *     no-intensities  the same without their intensities
+ *     4=500,5         the bin's range and intensity */
+
+static uint16_t angle_of(const char *text, char **rest)
 {
-    points[scan.count++] = (tmini_point_t){angle_q6, distance_mm, intensity, 0};
+    const unsigned long degrees = strtoul(text, rest, 10);
+    const int more = **rest == '+' ? 1 : **rest == '-' ? -1 : 0;
+    *rest += more != 0 ? 1 : 0;
+    return (uint16_t)((long)(degrees * DEGREE) + more);
 }
 
-static void resample(void)
+static void expect_bin(const char *text)
 {
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ranges_of_scan(&scan, ranges_mm, intensities, BINS));
+    char *rest;
+    const uint16_t angle_q6 = angle_of(text, &rest);
+    const size_t count = strtoul(rest + 1, &rest, 10);
+    TEST_ASSERT_EQUAL_UINT_MESSAGE(strtoul(rest + 1, NULL, 10), tmini_ranges_bin(angle_q6, count),
+                                   text);
 }
 
-void test_the_bins_go_counter_clockwise_from_the_back(void)
+/* "90:1000,11" adds a point, "4=500,5" expects one. */
+static void tell_numbers(const char *word)
 {
-    TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(180 * DEGREE, 360));
-    TEST_ASSERT_EQUAL_size_t(90, tmini_ranges_bin(90 * DEGREE, 360));   /* right, -90 in ROS */
-    TEST_ASSERT_EQUAL_size_t(180, tmini_ranges_bin(0, 360));            /* ahead, 0 */
-    TEST_ASSERT_EQUAL_size_t(270, tmini_ranges_bin(270 * DEGREE, 360)); /* left, +90 */
-    TEST_ASSERT_EQUAL_size_t(359, tmini_ranges_bin(181 * DEGREE, 360));
-    TEST_ASSERT_EQUAL_size_t(1, tmini_ranges_bin(179 * DEGREE, 360));
-}
-
-void test_a_bin_reaches_half_its_width_to_either_side(void)
-{
-    /* The bin straight ahead is one degree wide: from half a degree to the right to less than half
-     * a degree to the left. */
-    TEST_ASSERT_EQUAL_size_t(180, tmini_ranges_bin(32, 360));
-    TEST_ASSERT_EQUAL_size_t(179, tmini_ranges_bin(33, 360));
-    TEST_ASSERT_EQUAL_size_t(180, tmini_ranges_bin(23040 - 31, 360));
-    TEST_ASSERT_EQUAL_size_t(181, tmini_ranges_bin(23040 - 32, 360));
-    /* The same for the bin straight back, where the numbers begin. */
-    TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(11520 - 31, 360));
-    TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(11520 + 32, 360));
-    TEST_ASSERT_EQUAL_size_t(359, tmini_ranges_bin(11520 + 33, 360));
-}
-
-void test_one_bin_holds_everything(void)
-{
-    TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(0, 1));
-    TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(23039, 1));
-    TEST_ASSERT_EQUAL_size_t(0, tmini_ranges_bin(11521, 1));
-}
-
-void test_65535_bins_do_not_overflow(void)
-{
-    TEST_ASSERT_EQUAL_size_t(32768, tmini_ranges_bin(0, 65535));     /* 32767.5 */
-    TEST_ASSERT_EQUAL_size_t(65532, tmini_ranges_bin(11521, 65535)); /* 65532.16 */
-}
-
-void test_a_scan_without_points_gives_no_ranges(void)
-{
-    resample();
-    for (size_t i = 0; i < BINS; i++) {
-        TEST_ASSERT_EQUAL_UINT16(0, ranges_mm[i]);
-        TEST_ASSERT_EQUAL_UINT8(0, intensities[i]);
+    char *rest;
+    const uint16_t place = angle_of(word, &rest);
+    const bool is_expected = rest[0] == '=';
+    const uint16_t distance_mm = (uint16_t)strtoul(rest + 1, &rest, 10);
+    const uint8_t intensity = (uint8_t)strtoul(rest + 1, NULL, 10);
+    if (is_expected) {
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(distance_mm, ranges_mm[place / DEGREE], word);
+        TEST_ASSERT_EQUAL_UINT8_MESSAGE(intensity, intensities[place / DEGREE], word);
+    } else {
+        points[scan.count++] = (tmini_point_t){place, distance_mm, intensity, 0};
     }
 }
 
-void test_each_point_goes_to_its_bin_with_its_intensity(void)
+static void tell_word(char *word)
 {
-    add(0, 1000, 11);
-    add(90 * DEGREE, 2000, 22);
-    add(180 * DEGREE, 3000, 33);
-    add(270 * DEGREE, 4000, 44);
-    resample();
-    static const uint16_t expected_mm[BINS] = {3000, 0, 2000, 0, 1000, 0, 4000, 0};
-    static const uint8_t expected[BINS] = {33, 0, 22, 0, 11, 0, 44, 0};
-    TEST_ASSERT_EQUAL_UINT16_ARRAY(expected_mm, ranges_mm, BINS);
-    TEST_ASSERT_EQUAL_UINT8_ARRAY(expected, intensities, BINS);
+    if (row_is(word, "bin")) {
+        expect_bin(row_text(word));
+    } else if (row_is(word, "after")) {
+        scan.count--;
+    } else if (row_is(word, "eight") || row_is(word, "no-intensities")) {
+        TEST_ASSERT_EQUAL_INT(
+            TMINI_OK,
+            tmini_ranges_of_scan(&scan, ranges_mm, word[0] == 'e' ? intensities : NULL, BINS));
+    } else {
+        tell_numbers(word);
+    }
 }
 
-void test_the_nearest_point_of_a_bin_counts(void)
+static void tell_row(const row_t *row)
 {
-    add(0, 700, 7);
-    add(64, 500, 5);
-    add(128, 600, 6);
-    resample();
-    TEST_ASSERT_EQUAL_UINT16(500, ranges_mm[4]);
-    TEST_ASSERT_EQUAL_UINT8(5, intensities[4]);
+    row_tell(row->steps, tell_word);
 }
 
-void test_of_points_that_are_equally_near_the_first_counts(void)
-{
-    add(0, 500, 5);
-    add(64, 500, 6);
-    resample();
-    TEST_ASSERT_EQUAL_UINT16(500, ranges_mm[4]);
-    TEST_ASSERT_EQUAL_UINT8(5, intensities[4]);
-}
+static const row_t rows[] IN_FLASH = {
+    ROW(the_bins_go_counter_clockwise_from_the_back, /* Right is -90 degrees in ROS, left 90. */
+        "bin:180:360=0 bin:90:360=90 bin:0:360=180 bin:270:360=270 bin:181:360=359 "
+        "bin:179:360=1"),
+    ROW(a_bin_reaches_half_its_width_to_either_side, /* It has its boundary to the right. */
+        "bin:45:4=2 bin:45+:4=1 bin:315:4=3 bin:315+:4=2 bin:135+:4=0 bin:225:4=0 bin:225+:4=3"),
+    ROW(one_bin_holds_everything, "bin:0:1=0 bin:360-:1=0 bin:180+:1=0"),
+    ROW(bins_can_be_65535, "bin:0:65535=32768 bin:180+:65535=65532"), /* 32767.5, 65532.16. */
+    ROW(a_scan_without_points_gives_no_ranges, "eight 0=0,0 3=0,0 7=0,0"),
+    ROW(each_point_goes_to_its_bin_with_its_intensity,
+        "0:1000,11 90:2000,22 180:3000,33 270:4000,44 eight 0=3000,33 1=0,0 2=2000,22 3=0,0 "
+        "4=1000,11 5=0,0 6=4000,44 7=0,0"),
+    ROW(the_nearest_point_of_a_bin_counts, "0:700,7 1:500,5 2:600,6 eight 4=500,5"),
+    ROW(of_points_that_are_equally_near_the_first_counts, "0:500,5 1:500,6 eight 4=500,5"),
+    ROW(a_point_without_distance_is_no_range, "0:0,9 90:800,8 90:0,9 eight 4=0,0 2=800,8"),
+    ROW(intensities_may_be_left_out, "0:1000,11 no-intensities 4=1000,238"), /* 0xEE. */
+    ROW(a_scan_gives_all_its_points_and_none_after_them,
+        "0:900,9 90:700,7 270:600,6 after eight 0=0,0 2=700,7 4=900,9 6=0,0"),
+};
 
-void test_a_point_without_distance_is_no_range(void)
+void test_rows(void)
 {
-    add(0, 0, 9);
-    add(90 * DEGREE, 800, 8);
-    add(90 * DEGREE, 0, 9);
-    resample();
-    TEST_ASSERT_EQUAL_UINT16(0, ranges_mm[4]);
-    TEST_ASSERT_EQUAL_UINT8(0, intensities[4]);
-    TEST_ASSERT_EQUAL_UINT16(800, ranges_mm[2]);
-    TEST_ASSERT_EQUAL_UINT8(8, intensities[2]);
-}
-
-void test_intensities_may_be_left_out(void)
-{
-    add(0, 1000, 11);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ranges_of_scan(&scan, ranges_mm, NULL, BINS));
-    TEST_ASSERT_EQUAL_UINT16(1000, ranges_mm[4]);
-    TEST_ASSERT_EQUAL_HEX8(0xEE, intensities[4]);
+    run_rows(rows, tell_row);
 }
 
 /* Needs 128 KB: too large for a small machine. */
@@ -148,16 +130,6 @@ void test_65535_ranges_are_given(void)
     TEST_ASSERT_EQUAL_UINT16(0, many_mm[65534]);
     TEST_ASSERT_EQUAL_HEX16(0x5555, many_mm[65535]);
 #endif
-}
-
-void test_a_scan_gives_all_its_points_and_none_after_them(void)
-{
-    static const uint16_t expected_mm[BINS] = {0, 0, 700, 0, 900, 0, 0, 0};
-    add(0, 900, 9);
-    add(90 * DEGREE, 700, 7);
-    points[scan.count] = (tmini_point_t){270 * DEGREE, 600, 6, 0};
-    resample();
-    TEST_ASSERT_EQUAL_UINT16_ARRAY(expected_mm, ranges_mm, BINS);
 }
 
 /* 720 points half a degree apart, in 360 bins of a degree: too large for a small machine. */

@@ -15,21 +15,6 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-static void expect_shape(tmini_command_code_t command, uint8_t mode, uint8_t type, uint8_t length)
-{
-    tmini_reply_header_t shape = {.type = 0xEE, .mode = 0xEE, .length = 0xEE};
-    TEST_ASSERT_TRUE(tmini_reply_header(command, &shape));
-    TEST_ASSERT_EQUAL_HEX8(mode, shape.mode);
-    TEST_ASSERT_EQUAL_HEX8(type, shape.type);
-    TEST_ASSERT_EQUAL_UINT8(length, shape.length);
-}
-
-static void expect_no_reply(tmini_command_code_t command)
-{
-    tmini_reply_header_t shape;
-    TEST_ASSERT_FALSE(tmini_reply_header(command, &shape));
-}
-
 void test_command_codes_are_those_of_section_3(void)
 {
     TEST_ASSERT_EQUAL_HEX8(0xA5, TMINI_COMMAND_SYNC);
@@ -45,34 +30,35 @@ void test_command_codes_are_those_of_section_3(void)
     TEST_ASSERT_EQUAL_HEX8(0x40, TMINI_COMMAND_REBOOT);
 }
 
-void test_stop_and_reboot_are_not_answered(void)
+/* Only the start is answered in continuous mode; stop and reboot are not answered. */
+void test_each_command_has_its_reply(void)
 {
-    expect_no_reply(TMINI_COMMAND_STOP);
-    expect_no_reply(TMINI_COMMAND_REBOOT);
-}
-
-void test_start_is_answered_in_continuous_mode_by_type_81(void)
-{
-    expect_shape(TMINI_COMMAND_START, 1, 0x81, 0);
-}
-
-void test_device_information_is_a_single_reply_of_type_4_with_20_bytes(void)
-{
-    expect_shape(TMINI_COMMAND_GET_INFO, 0, 0x04, 20);
-}
-
-void test_health_is_a_single_reply_of_type_6_with_3_bytes(void)
-{
-    expect_shape(TMINI_COMMAND_GET_HEALTH, 0, 0x06, 3);
-}
-
-void test_all_frequency_commands_have_a_single_reply_of_type_4_with_4_bytes(void)
-{
-    expect_shape(TMINI_COMMAND_FASTER_TENTH, 0, 0x04, 4);
-    expect_shape(TMINI_COMMAND_SLOWER_TENTH, 0, 0x04, 4);
-    expect_shape(TMINI_COMMAND_FASTER_ONE, 0, 0x04, 4);
-    expect_shape(TMINI_COMMAND_SLOWER_ONE, 0, 0x04, 4);
-    expect_shape(TMINI_COMMAND_GET_FREQUENCY, 0, 0x04, 4);
+    static const struct {
+        tmini_command_code_t command;
+        bool is_answered;
+        tmini_reply_header_t header;
+    } replies[] = {
+        {TMINI_COMMAND_STOP, false, {0}},
+        {TMINI_COMMAND_REBOOT, false, {0}},
+        {TMINI_COMMAND_START, true, {.mode = 1, .type = 0x81, .length = 0}},
+        {TMINI_COMMAND_GET_INFO, true, {.mode = 0, .type = 0x04, .length = 20}},
+        {TMINI_COMMAND_GET_HEALTH, true, {.mode = 0, .type = 0x06, .length = 3}},
+        {TMINI_COMMAND_FASTER_TENTH, true, {.mode = 0, .type = 0x04, .length = 4}},
+        {TMINI_COMMAND_SLOWER_TENTH, true, {.mode = 0, .type = 0x04, .length = 4}},
+        {TMINI_COMMAND_FASTER_ONE, true, {.mode = 0, .type = 0x04, .length = 4}},
+        {TMINI_COMMAND_SLOWER_ONE, true, {.mode = 0, .type = 0x04, .length = 4}},
+        {TMINI_COMMAND_GET_FREQUENCY, true, {.mode = 0, .type = 0x04, .length = 4}},
+    };
+    for (size_t i = 0; i < sizeof replies / sizeof replies[0]; i++) {
+        tmini_reply_header_t header = {.type = 0xEE, .mode = 0xEE, .length = 0xEE};
+        const bool is_answered = tmini_reply_header(replies[i].command, &header);
+        TEST_ASSERT_EQUAL_MESSAGE(replies[i].is_answered, is_answered, "is answered");
+        if (is_answered) {
+            TEST_ASSERT_EQUAL_HEX8(replies[i].header.mode, header.mode);
+            TEST_ASSERT_EQUAL_HEX8(replies[i].header.type, header.type);
+            TEST_ASSERT_EQUAL_UINT8(replies[i].header.length, header.length);
+        }
+    }
 }
 
 /* From a real T-mini Plus: 97 02 01 01 is model 151, firmware 1.2, hardware 1 (section 9.4). */
