@@ -326,6 +326,7 @@ static bool configure(const char *word)
         {"listen", MEMBER(rig.config.listen_only), true},
         {"no-port", MEMBER(rig.config.port), 0},
         {"no-write", MEMBER(rig.port.write), 0},
+        {"no-restart", MEMBER(rig.port.restart), 0},
         {"no-clock", MEMBER(rig.port.now_ms), 0},
         {"no-rx", MEMBER(rig.config.rx_buffer), 0},
         {"rx", MEMBER(rig.config.rx_size), 0},

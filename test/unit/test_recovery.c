@@ -75,6 +75,7 @@ static const row_t tales[] IN_FLASH = {
         "!NONE !NONE takes:2 ~2000 >65 +50 >0D <600 >60"),
     ROW(the_port_restarts_its_reception_at_a_loss_and_after_each_failed_attempt,
         "scans +1000 !LOST port-restarts:1 starts-again +2000 !NONE port-restarts:2"),
+    ROW(a_port_may_have_no_restart, "no-restart scans +1000 !LOST >65"),
     ROW(a_stop_ends_the_recovery,
         "lost >65 stop >65 +50 !STOPPED @IDLE / lost >65 +50 >0D fails +100 stop >65 +50 !STOPPED"),
     /* ---- How it comes back ---- */
