@@ -13,7 +13,8 @@ tmini_add_unit_test(test_reply SOURCES test_reply.c)
 tmini_add_unit_test(test_ct SOURCES test_ct.c ../support/rows.c)
 tmini_add_unit_test(test_builder SOURCES test_builder.c ../support/rows.c
     LIBRARIES tmini_test_receiver)
-tmini_add_unit_test(test_decoder SOURCES test_decoder.c LIBRARIES tmini_test_receiver)
+tmini_add_unit_test(test_decoder SOURCES test_decoder.c ../support/rows.c
+    LIBRARIES tmini_test_receiver)
 
 # Optional modules.
 tmini_add_unit_test(test_sectors SOURCES test_sectors.c ../support/rows.c
