@@ -219,8 +219,14 @@ class Build:
 
     @functools.cache
     def objects_of(self, folder):
-        """The object files of a program, whose folder in CMakeFiles this is."""
-        return [path for path in self.entry_of if path.startswith(os.path.realpath(folder) + os.sep)]
+        """The object files of a program, whose folder in CMakeFiles this is. If it is compiled for interrupts at each
+        access, the library that has them belongs to it, unless it compiles the library itself."""
+        own = [path for path in self.entry_of if path.startswith(os.path.realpath(folder) + os.sep)]
+        entries = [self.entry_of[path] for path in own]
+        if any("interrupting_atomic.h" in entry["command"] for entry in entries) and \
+                not any("/lib/src/" in entry["file"] for entry in entries):
+            own += [path for path in self.entry_of if "/tmini_interrupted.dir/" in path]
+        return own
 
     @functools.cache
     def link_of(self, target):
