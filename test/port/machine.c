@@ -174,7 +174,6 @@ void machine_receive(uint32_t flags, const uint8_t *bytes, size_t count)
 bool machine_put(uint32_t entry)
 {
     if (machine.count >= machine.uart.fifo_size) {
-        machine.overrun_bytes++;
         return false;
     }
     machine.fifo[machine.count++] = (uint16_t)entry;

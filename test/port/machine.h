@@ -37,7 +37,6 @@ typedef struct {
     size_t count;
     uint64_t last_us;       /* When the last byte came. */
     uint32_t line_bytes;    /* Bytes on the line so far, including lost ones. */
-    uint32_t overrun_bytes; /* Bytes that found the FIFO full. */
     void (*on_sleep)(void); /* Called when the program sleeps; may leave by longjmp(), or NULL. */
 } machine_t;
 
