@@ -113,6 +113,20 @@ def check_platformio():
 def check_arduino():
     for header in (find("port/arduino/library.properties", "^includes=(.*)$") or "nothing").split(","):
         demand((ROOT / "port/arduino" / header).exists(), f"library.properties: no such header: {header}")
+    check_keywords()
+
+
+def check_keywords():
+    """keywords.txt lists each public method, and no name that does not exist."""
+    header = read("port/arduino/TMiniLidar.h")
+    known = re.findall(r"^(\w+)\t", read("port/arduino/keywords.txt"), re.MULTILINE)
+    names = header + read("lib/include/tmini/tmini.h") + read("lib/include/tmini/tmini_types.h")
+    for name in known:
+        demand(re.search(rf"\b{name}\b", names), f"keywords.txt: there is no {name}")
+    for part in re.split(r"^(?=struct|  (?:public|private|protected):)", header, flags=re.MULTILINE):
+        if part.startswith(("struct", "  public:")):
+            for name in re.findall(r"^    [a-z].*[ *&]([a-z][A-Za-z]+)\(", part, re.MULTILINE):
+                demand(name in known, f"keywords.txt: {name} is missing")
 
 
 def check_esp_idf():
