@@ -60,8 +60,8 @@ static bool come(unsigned third, uint32_t at_ms, uint16_t late_ms)
  *     0:70000 1:70025:90      this third comes at this time, 90 ms late at most
  *     0!:70100        it ends a scan, and begins the next; 0?:70100: it has not begun it yet
  *     rest:70000      the other thirds, which take 75 ms
- *     other           from now on, packets are passed on to another decoder; no-builder: which makes
- *                     no scans
+ *     other           from now on, packets are passed on to another decoder
+ *     no-builder      which makes no scans
  *     doubtful:2:70050        a third that is passed on as doubtful, and ends the scan
  *     ct:2 crc:0xE5   the CT of the first third; a LastCRC comes
  *     upside-down     the scan is marked, as tmini_mount_step() does

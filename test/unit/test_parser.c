@@ -259,8 +259,9 @@ void test_the_same_frames_are_found_wherever_they_lie_in_the_ring(void)
     make_turn();
     stream_add(&stream, info_reply, sizeof info_reply);
     for (unsigned dma = 0; dma <= 1; dma++) {
-        for (size_t before = 0; before <= 512; before += 1 + dma) {
-            open_receiver(512, dma, 0);
+        const size_t size = dma ? 512 : 256;
+        for (size_t before = 0; before <= size; before += 1 + 2 * dma) {
+            open_receiver(size, dma, 0);
             receiver_age(&receiver, (size_t)0 - before);
             (void)receiver_compare(&receiver, &course, bytes, stream.size);
         }
