@@ -354,7 +354,7 @@ void test_connecting_ends_after_5_s_and_not_by_a_signal(void)
     }
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, status);
     TEST_ASSERT_EQUAL_INT(ETIMEDOUT, error);
-    TEST_ASSERT_UINT64_WITHIN(1000, 5000000, now_us - begun_us);
+    TEST_ASSERT_EQUAL_UINT64(5000, (now_us - begun_us) / 1000);
 }
 
 void test_a_lidar_can_be_reached_through_a_socket(void)
@@ -712,7 +712,8 @@ void test_a_reconnection_is_a_gap(void)
     begin_to_wait();
     plug_in();
     TEST_ASSERT_TRUE(tmini_feed_room(&lidar) > 0);
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 200));
+    (void)poll(NULL, 0, 300); /* Then the next attempt is due at once. */
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 0));
     TEST_ASSERT_EQUAL_UINT32(1, port.reconnections);
     TEST_ASSERT_EQUAL_size_t(0, tmini_feed_room(&lidar));
     (void)tmini_poll(&lidar);
