@@ -130,7 +130,7 @@ static const play_word_t words[] = {
     {.name = NULL},
 };
 
-/* ------------------------------------------------------------------------------------ the play */
+/* ------------------------------------------------------------------------------------- the play */
 
 static const play_word_t *find(const play_word_t *among, const char *name, size_t length)
 {
@@ -231,6 +231,7 @@ void play_row(const row_t *row)
             continue;
         }
         (void)sscanf(end + 2, "for:%u:%u:%u", &first, &limit, &step);
+        TEST_ASSERT_LESS_THAN_UINT(limit, first);
         for (it = first; it < limit; it += step) {
             if (it != first) {
                 begin_again();

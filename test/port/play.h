@@ -18,7 +18,7 @@
  *     break           breaks reception, as port_way_t says
  *     packets:9 packets<9 packets>9      this number, here after a poll, is 9, less, or greater
  *     skipped overrun accounted more     other numbers; more: packets since `mark`
- *     served position interrupts; the place in the stream up to which the lidar has bytes
+ *     served position                    interrupts; how many bytes the lidar has been given
  *     30( P +1 )      that many times
  *
  * and the port's own words. */
