@@ -221,7 +221,9 @@ static void begin_by_socket(void)
     begin();
     pull_the_cable();
     make_listener(1);
+    const uint64_t begun_us = now_us;
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
+    TEST_ASSERT_EQUAL_UINT64(600, (now_us - begun_us) / 1000); /* A timed stream would begin. */
 }
 
 /* Without a lidar, but it may be plugged in at any time. */
