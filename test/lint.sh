@@ -198,14 +198,22 @@ check() {
 
 cd "$root"
 mkdir -p build-lint
-case " $checks " in
-    *" ${1:-} "*)
+case " $checks --fix " in
+    *" ${1:---fix} "*) ;;
+    *)
+        sed -n '7,8s/^# \{0,1\}//p' "$0" >&2
+        echo "  CHECK: $checks" >&2
+        exit 2
+        ;;
+esac
+case ${1:-} in
+    "" | --fix) install_tools ;;
+    *)
         check "$1"
         exit
         ;;
 esac
-install_tools
-[ "${1:-}" != --fix ] || format -i
+[ $# -eq 0 ] || format -i
 # shellcheck disable=SC2086 # checks are several words
 if ! printf '%s\n' $checks | xargs -n 1 -P "$(job_count)" "$0"; then
     echo "Not clean: see above."

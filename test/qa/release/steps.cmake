@@ -28,7 +28,7 @@ endfunction()
 
 # The driver with the simulated lidar, and the decoder beside the reference.
 function(test_driver_and_decoder)
-    foreach(test test_driver test_differential)
+    foreach(test test_programs test_differential)
         run_or_fail(${CMAKE_COMMAND} --build ${WORK}/build --parallel 2 --target ${test})
         run_or_fail(${WORK}/build/test/bin/${test})
     endforeach()
