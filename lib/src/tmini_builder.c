@@ -59,45 +59,42 @@ static bool took_too_long(const tmini_builder_t *builder)
     return scan->frequency_chz > 0 && took_ms > 150000u / scan->frequency_chz;
 }
 
-/* Notes what the next packet shows about the scan. The packet begins `ahead` of the scan's end and
- * came at `now_ms`. A start packet carries the frequency of the revolution before it (section 9.8);
- * otherwise the frequency reported last remains. */
-static void note_end(tmini_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
-                     uint32_t now_ms)
+/* True if all of the scan has come, as far as bytes and angles show. */
+static bool is_whole(const tmini_scan_t *scan)
 {
-    tmini_scan_t *const scan = &builder->scan;
-    const bool is_start = tmini_packet_is_start(packet);
-    if (is_start) {
-        scan->frequency_chz = tmini_packet_frequency_chz(packet);
-    }
-    scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - scan->checksum_errors);
-    scan->end_ms = (int32_t)(now_ms - scan->start_ms) < 0 ? scan->start_ms : now_ms;
-    if (!is_start || tmini_packet_misses(packet, packet->gap) || ahead > JUMP_Q6) {
-        count_one(&scan->gaps);
-    }
+    return (scan->gaps | scan->dropped) == 0;
 }
 
-/* The scan ends before `packet`. A scan that took too long has a gap somewhere. A scan is complete
- * when a start packet comes a full circle after its beginning, and nothing is missing. A gap that
- * only the caller reports, without missing bytes or angles, means a late scan. */
+/* The scan ends before `packet`, which begins `ahead` of the scan's end and came at `now_ms`. A
+ * scan that took too long has a gap somewhere. A scan is complete when a start packet comes a full
+ * circle after its beginning, and nothing is missing. A gap that only the caller reports, without
+ * missing bytes or angles, means a late scan. */
 static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32_t ahead,
                    uint32_t now_ms)
 {
     tmini_scan_t *const scan = &builder->scan;
     const int32_t beyond = builder->swept_q6 + ahead - CIRCLE_Q6;
-    note_end(builder, packet, ahead, now_ms);
-    const bool is_whole = (scan->gaps | scan->dropped) == 0;
-    const bool is_long = is_whole && took_too_long(builder);
-    scan->complete = is_whole && !is_long && beyond >= -JUMP_Q6 && beyond <= JUMP_Q6;
-    builder->open = false;
-    builder->ended = true;
+    scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - scan->checksum_errors);
+    scan->end_ms = (int32_t)(now_ms - scan->start_ms) < 0 ? scan->start_ms : now_ms;
+    const bool is_long = is_whole(scan) && took_too_long(builder);
     if (is_long) {
         scan->gaps = 1; /* It was 0. */
-        builder->late_scans++;
-    } else if (packet->gap == TMINI_GAP_UNKNOWN && ahead <= JUMP_Q6 &&
-               !tmini_packet_misses(packet, packet->frame->gap)) {
+    }
+    if (is_long || (packet->gap == TMINI_GAP_UNKNOWN && ahead <= JUMP_Q6 &&
+                    !tmini_packet_misses(packet, packet->frame->gap))) {
         builder->late_scans++;
     }
+    scan->complete = is_whole(scan) && beyond >= -JUMP_Q6 && beyond <= JUMP_Q6;
+    builder->open = false;
+    builder->ended = true;
+}
+
+/* A start packet carries the frequency of the revolution before it (section 9.8), which that scan
+ * gets, too. */
+static void note_start(tmini_builder_t *builder, const tmini_packet_t *start)
+{
+    builder->origin_q6 = start->first_angle_q6;
+    builder->scan.frequency_chz = tmini_packet_frequency_chz(start);
 }
 
 /* Begins a scan and returns the angle that its revolution has already turned. A scan that does not
@@ -105,19 +102,14 @@ static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32
 static int32_t begin_scan(tmini_builder_t *builder, const tmini_packet_t *first, uint32_t now_ms)
 {
     tmini_scan_t *const scan = &builder->scan;
-    const bool is_start = tmini_packet_is_start(first);
     scan->count = 0;
     scan->dropped = 0;
     scan->packets = 0;
     scan->complete = false;
     scan->upside_down = false;
-    if (is_start) {
-        builder->origin_q6 = first->first_angle_q6;
-        scan->frequency_chz = tmini_packet_frequency_chz(first);
-    }
-    scan->gaps = is_start ? 0 : 1;
+    scan->gaps = tmini_packet_is_start(first) ? 0 : 1;
     scan->start_ms = now_ms - (uint32_t)(first->count - 1u) * SAMPLE_SENT_US / 1000u;
-    scan->checksum_errors = first->frame->checksum_errors; /* note_end() subtracts this. */
+    scan->checksum_errors = first->frame->checksum_errors; /* finish() subtracts this. */
     builder->late_ms = builder->next_late_ms;
     builder->open = true;
     builder->ended = false;
@@ -170,24 +162,29 @@ void tmini_builder_refute(tmini_builder_t *builder)
 bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, uint32_t now_ms)
 {
     const bool is_start = tmini_packet_is_start(packet);
-    int32_t angle = swept(packet->first_angle_q6, end_of(packet));
+    const uint16_t end_q6 = end_of(packet);
+    int32_t angle = swept(packet->first_angle_q6, end_q6);
+    if (is_start) {
+        note_start(builder, packet);
+    }
     if (builder->open) {
         const int32_t ahead = swept(builder->previous_angle_q6, packet->first_angle_q6);
         angle += builder->swept_q6 + ahead;
-        if (is_start || !continues(packet, ahead, angle)) {
+        const bool goes_on = !is_start && continues(packet, ahead, angle);
+        if (!(goes_on || is_start) || tmini_packet_misses(packet, packet->gap) || ahead > JUMP_Q6) {
+            count_one(&builder->scan.gaps);
+        }
+        if (!goes_on) {
             finish(builder, packet, ahead, now_ms);
             return true;
         }
-        if (tmini_packet_misses(packet, packet->gap) || ahead > JUMP_Q6) {
-            count_one(&builder->scan.gaps);
-        }
-    } else if (is_start || builder->origin_q6 != NO_ORIGIN) {
+    } else if (builder->origin_q6 != NO_ORIGIN) {
         angle += begin_scan(builder, packet, now_ms);
     } else {
         return false; /* Before the first start packet. */
     }
     builder->swept_q6 = (int16_t)(angle < INT16_MAX ? angle : INT16_MAX);
-    builder->previous_angle_q6 = end_of(packet);
+    builder->previous_angle_q6 = end_q6;
     builder->scan.end_ms = now_ms;
     append_points(builder, packet);
     return false;
