@@ -141,20 +141,16 @@ static void read_header(tmini_frame_t *frame)
 
 static enum verdict classify_packet_header(tmini_parser_t *parser)
 {
-    tmini_frame_t *const frame = &parser->frame;
-    read_header(frame);
     if (!packet_header_is_plausible(parser)) {
         return NOT_A_FRAME;
     }
     parser->kind = TMINI_FRAME_PACKET;
-    parser->need = (uint16_t)TMINI_PACKET_SIZE(frame->header[LSN]);
+    parser->need = (uint16_t)TMINI_PACKET_SIZE(parser->frame.header[LSN]);
     return COMPLETE;
 }
 
 static enum verdict classify_reply_header(tmini_parser_t *parser)
 {
-    tmini_frame_t *const frame = &parser->frame;
-    read_header(frame);
     if (!reply_header_is_awaited(parser)) {
         return NOT_A_FRAME;
     }
@@ -184,6 +180,7 @@ static enum verdict classify_header(tmini_parser_t *parser, size_t unread)
         parser->need = size;
         return INCOMPLETE;
     }
+    read_header(&parser->frame);
     return is_packet ? classify_packet_header(parser) : classify_reply_header(parser);
 }
 
@@ -216,10 +213,12 @@ static void begin_candidate(tmini_parser_t *parser)
 
 /* -------------------------------------------------------------------- skipping and losing bytes */
 
-TMINI_NOINLINE static void discard_skipped(tmini_parser_t *parser, size_t count)
+/* Skips the oldest `count` bytes (at least one). */
+TMINI_NOINLINE static void skip_bytes(tmini_parser_t *parser, size_t count)
 {
     tmini_frame_t *const frame = &parser->frame;
     const uint32_t gap = frame->gap + (uint32_t)count;
+    frame->last_skipped = tmini_ring_peek(frame->ring, count - 1);
     tmini_ring_discard(frame->ring, count);
     frame->gap = (uint16_t)(gap < TMINI_GAP_UNKNOWN ? gap : TMINI_GAP_UNKNOWN);
     parser->counters.bytes_skipped += (uint32_t)count;
@@ -230,30 +229,24 @@ TMINI_NOINLINE static void discard_skipped(tmini_parser_t *parser, size_t count)
  * they are contiguous in memory and effort is left. */
 static void skip(tmini_parser_t *parser, size_t unread)
 {
-    tmini_frame_t *const frame = &parser->frame;
     const size_t done = parser->effort;
     const size_t left = done < TMINI_PARSER_EFFORT ? TMINI_PARSER_EFFORT - done : 1;
     size_t count = unread < left ? unread : left;
-    const uint8_t *const bytes = tmini_ring_piece(frame->ring, 0, &count);
+    const uint8_t *const bytes = tmini_ring_piece(parser->frame.ring, 0, &count);
     size_t skipped = 1;
     while (skipped < count && begins_no_frame(parser, bytes[skipped])) {
         skipped++;
     }
-    frame->last_skipped = bytes[skipped - 1];
-    discard_skipped(parser, skipped);
+    skip_bytes(parser, skipped);
     parser->effort = (uint16_t)(parser->effort + skipped + TMINI_CANDIDATE_EFFORT);
 }
 
-/* Bytes have been lost: `ahead`, the distance from tail to head, is more than the window. Returns
- * the number of unread bytes, after dropping those that DMA may have overwritten. If a lap was
- * reported that perhaps never happened (tmini_ring_gap()), bytes that may have been read before are
- * dropped too: those that are kept are certainly new. */
-static size_t intact_bytes(tmini_parser_t *parser, size_t ahead)
+/* DMA is `ahead` of the tail by more than the window: drops the bytes that it may have overwritten.
+ * If a lap was reported that perhaps never happened (tmini_ring_gap()), bytes that may have been
+ * read before are dropped too: those that are kept are certainly new. */
+static void drop_overwritten(tmini_parser_t *parser, size_t ahead)
 {
     tmini_ring_t *const ring = parser->frame.ring;
-    if (!tmini_ring_is_dma(ring)) {
-        return ahead - TMINI_RING_CLOSED; /* A closed ring. */
-    }
     const size_t fresh = ahead < ring->size ? ahead : ahead & (ring->size - 1);
     const size_t kept = fresh < ring->window ? fresh : ring->window;
     const size_t lost = ahead - kept;
@@ -261,20 +254,15 @@ static size_t intact_bytes(tmini_parser_t *parser, size_t ahead)
     begin_candidate(parser);
     parser->counters.bytes_overrun += (uint32_t)lost;
     parser->frame.gap = TMINI_GAP_UNKNOWN;
-    return kept;
 }
 
-/* Called when the candidate needs more than the `unread` bytes, and the bytes after them have been
- * lost. In a closed ring the candidate is given up; if the ring is empty, it is opened again. */
+/* A closed ring holds `unread` bytes; after them, bytes have been lost. The candidate, which needs
+ * more, is given up. If there is none, the ring is opened again. */
 static void pass_lost_bytes(tmini_parser_t *parser, size_t unread)
 {
-    tmini_ring_t *const ring = parser->frame.ring;
-    if (tmini_ring_is_dma(ring)) {
-        return; /* intact_bytes() has dropped the candidate. */
-    }
     if (unread == 0) {
         parser->frame.gap = TMINI_GAP_UNKNOWN;
-        tmini_ring_open(ring);
+        tmini_ring_open(parser->frame.ring);
     } else {
         skip(parser, unread);
     }
@@ -336,7 +324,11 @@ tmini_frame_type_t tmini_parser_next_after(tmini_parser_t *parser, size_t effort
         }
         size_t unread = ahead;
         if (ahead > parser->frame.ring->window) {
-            unread = intact_bytes(parser, ahead);
+            if (tmini_ring_is_dma(parser->frame.ring)) {
+                drop_overwritten(parser, ahead);
+                continue;
+            }
+            unread = ahead - TMINI_RING_CLOSED;
             if (unread < parser->need) {
                 pass_lost_bytes(parser, unread);
                 continue;
@@ -383,8 +375,7 @@ void tmini_parser_skip_all(tmini_parser_t *parser)
     release_frame(parser);
     const size_t count = tmini_ring_unread(parser->frame.ring);
     if (count > 0) {
-        parser->frame.last_skipped = tmini_ring_peek(parser->frame.ring, count - 1);
-        discard_skipped(parser, count);
+        skip_bytes(parser, count);
     }
 }
 

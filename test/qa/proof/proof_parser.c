@@ -167,14 +167,16 @@ void prove_parser_skip(void)
 }
 
 /* With DMA, bytes that may have been overwritten are skipped. */
-void prove_parser_intact_bytes(void)
+void prove_parser_drop_overwritten(void)
 {
     begin();
-    ASSUME(parser.frame.size == 0 && tmini_ring_ahead(&ring) > ring.window);
-    const size_t unread = intact_bytes(&parser, tmini_ring_ahead(&ring));
+    const size_t ahead = tmini_ring_ahead(&ring);
+    const size_t head = tmini_ring_tail(&ring) + ahead;
+    ASSUME(parser.frame.size == 0 && tmini_ring_is_dma(&ring) && ahead > ring.window);
+    drop_overwritten(&parser, ahead);
     CLAIM(is_accounted_for());
     CLAIM(skip_keeps_its_word(&before, &parser));
-    CLAIM(unread <= ring.window);
+    CLAIM(head - tmini_ring_tail(&ring) <= ring.window);
     CLAIM(parser.frame.gap == before.frame.gap || parser.frame.gap == TMINI_GAP_UNKNOWN);
     REACHED();
 }
@@ -182,15 +184,13 @@ void prove_parser_intact_bytes(void)
 void prove_parser_pass_lost_bytes(void)
 {
     begin();
-    const bool was_closed = tmini_ring_is_closed(&ring);
     const size_t stored = ring.head;
-    ASSUME(parser.frame.size == 0 && (was_closed || tmini_ring_is_dma(&ring)));
+    ASSUME(parser.frame.size == 0 && tmini_ring_is_closed(&ring));
     ASSUME(tmini_ring_unread(&ring) < parser.need && tmini_ring_unread(&ring) <= ring.window);
     pass_lost_bytes(&parser, tmini_ring_unread(&ring));
     CLAIM(is_accounted_for());
     CLAIM(skip_keeps_its_word(&before, &parser));
-    CLAIM(!was_closed || tmini_ring_is_closed(&ring) ||
-          tmini_ring_distance(stored, tmini_ring_tail(&ring)) == 0);
+    CLAIM(tmini_ring_is_closed(&ring) || tmini_ring_distance(stored, tmini_ring_tail(&ring)) == 0);
     REACHED();
 }
 
@@ -266,20 +266,21 @@ void any_skip(tmini_parser_t *same, size_t unread)
     CLAIM(unread >= 1 && unread <= ring.window && unread <= tmini_ring_unread(&ring));
     ASSUME(skipped >= 1 && skipped <= unread);
     ASSUME(skipped == 1 || skipped + parser.effort <= TMINI_PARSER_EFFORT);
-    discard_skipped(&parser, skipped);
+    skip_bytes(&parser, skipped);
     parser.effort = (uint16_t)(parser.effort + skipped + TMINI_CANDIDATE_EFFORT);
 }
 
 static bool is_second_turn;
 static unsigned rank_before;
 
-/* How many turns without effort may follow if no byte arrives: one in which a candidate needs more
- * bytes, and one that opens a closed ring. */
+/* How many turns without effort may follow if no byte arrives: one that drops overwritten bytes,
+ * one in which a candidate needs more bytes, and one that opens a closed ring. */
 static unsigned rank(void)
 {
     let_bytes_come(NULL);
+    const bool is_overwritten = tmini_ring_is_dma(&ring) && tmini_ring_ahead(&ring) > ring.window;
     const bool is_enough = tmini_ring_unread(&ring) >= parser.need;
-    return is_enough ? 2 : tmini_ring_is_closed(&ring) ? 1 : 0;
+    return is_overwritten ? 3 : is_enough ? 2 : tmini_ring_is_closed(&ring) ? 1 : 0;
 }
 
 /* prove.py inserts a call of this function at the beginning of each turn. It proves: if the state
