@@ -103,12 +103,8 @@ static void fail(tmini_t *lidar, int status)
 /* Looks at the line. Once bytes have come, the lidar is no longer known to be idle. */
 TMINI_NOINLINE static void look(tmini_t *lidar)
 {
-    const bool is_first = lidar->line.now_ms == 0;
     if (tmini_line_look(lidar, tmini_command_is_scanning(lidar))) {
         tmini_command_disturb(lidar);
-    }
-    if (is_first) { /* No scan has come. */
-        lidar->complete_ms = lidar->line.now_ms - AGE_MAX_MS;
     }
 }
 
@@ -404,7 +400,7 @@ static void deliver_scan(tmini_t *lidar)
         lidar->link.step(lidar->link.step_data, &lidar->scan);
     }
     if (lidar->scan.complete) {
-        lidar->complete_ms = lidar->scan.end_ms;
+        lidar->complete_ms = lidar->scan.end_ms != 0 ? lidar->scan.end_ms : 1;
     }
     lidar->scans++;
     raise_event(lidar, TMINI_EVENT_SCAN);
@@ -502,12 +498,11 @@ static void keep_time(tmini_t *lidar)
     }
 }
 
-/* An age of 24 days is as good as any greater one: the clock's wrap-around must not make it small
- * again. */
+/* A scan of 24 days ago is as good as none: the clock's wrap-around must not make it new again. */
 static void limit_age(tmini_t *lidar)
 {
     if (lidar->line.now_ms - lidar->complete_ms > AGE_MAX_MS) {
-        lidar->complete_ms = lidar->line.now_ms - AGE_MAX_MS;
+        lidar->complete_ms = 0;
     }
 }
 
@@ -770,7 +765,7 @@ static uint32_t since_look_ms(const tmini_t *lidar)
 
 uint32_t tmini_scan_age_ms(const tmini_t *lidar)
 {
-    if (!is_set_up(lidar) || lidar->line.now_ms == 0) { /* It was never looked at. */
+    if (!is_set_up(lidar) || lidar->complete_ms == 0) {
         return AGE_MAX_MS;
     }
     const uint32_t now_ms = lidar->line.now_ms + since_look_ms(lidar);

@@ -24,9 +24,10 @@
 #define PLAUSIBLE_CHZ_MIN 100
 #define PLAUSIBLE_CHZ_MAX 2000
 
-/* A poll that finds the lidar lost after a pause of this length gives it another chance. */
-#define LATE_POLL_MS 50
-#define JITTER_MS 10 /* A task that sleeps until this poll wakes up this late. */
+/* A lidar that seems to be lost gets another chance, unless the line was seen silent for this
+ * long. */
+#define SILENCE_OF_LOST_MS (TMINI_DATA_TIMEOUT_MS / 2)
+#define JITTER_MS 10 /* A task that sleeps until a time-out wakes up this late. */
 #define LAST_CHANCE_MS 100
 #define CHANCES_MAX 3
 
@@ -294,9 +295,9 @@ static int on_no_reply(tmini_t *lidar, int error)
 static int on_no_packet(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
-    const uint32_t limit_ms = (uint32_t)command->timeout_ms + JITTER_MS;
-    if (command->asks == CHANCES_MAX || lidar->line.pause_ms < LATE_POLL_MS ||
-        !tmini_has_elapsed(lidar, command->since_ms, limit_ms)) {
+    const uint32_t late_ms = (uint32_t)command->timeout_ms + JITTER_MS;
+    if (command->asks == CHANCES_MAX || lidar->line.silent_ms >= SILENCE_OF_LOST_MS ||
+        !tmini_has_elapsed(lidar, command->since_ms, late_ms)) {
         return TMINI_ERROR_TIMEOUT;
     }
     command->asks++;

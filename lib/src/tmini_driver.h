@@ -53,7 +53,7 @@ void tmini_withdraw(tmini_t *lidar, tmini_event_t query);
 /* The driver has handled all that had come, unless the port holds more. */
 static inline void tmini_line_settle(tmini_t *lidar)
 {
-    if (lidar->line.arrived == lidar->line.received) {
+    if (lidar->line.held == 0) {
         lidar->line.busy_ms = 0;
     }
 }

@@ -32,13 +32,12 @@ static uint32_t transit_ms(size_t bytes)
     return (uint32_t)bytes * 39u >> 9;
 }
 
-/* The place up to which bytes have arrived, in the ring or in the port that feeds it. */
-static size_t arrived_to(const tmini_t *lidar)
+/* How many bytes wait in the port, or below it. */
+static size_t held_by_port(const tmini_t *lidar)
 {
-    const size_t received = lidar->line.received;
     const size_t held_to = tmini_load(&lidar->held_to);
-    const bool are_held = held_to != 0 && tmini_ring_distance(received, held_to) <= HELD_MAX;
-    return are_held ? held_to : received;
+    const size_t held = tmini_ring_distance(lidar->line.received, held_to);
+    return held_to != 0 && held <= HELD_MAX ? held : 0;
 }
 
 /* True if a silence may hide a turn: it is longer than max_pause_ms and than half a turn, at the
@@ -91,60 +90,54 @@ static int32_t missing_ms(const tmini_line_t *line, uint32_t due_ms)
     return (int32_t)((pause_ms < SILENCE_MAX_MS ? pause_ms : SILENCE_MAX_MS) - due_ms);
 }
 
-/* Notes `count` new bytes, `passed_ms` after the last look. Together with bytes that the port still
- * holds, bytes have arrived up to `arrived`. Bytes that the port held before have been noted.
+/* Notes `count` new bytes, `passed_ms` after the last look. With the `held` bytes that the port
+ * still has, more have arrived; but those that it had before have been noted.
  * A scanning lidar never pauses for long. If the pause was longer than these bytes need on the
  * wire, bytes may be missing, or these may be late by the difference. The difference counts again
  * for the next bytes, because the silence may continue; after a doubt, only if the port may hold
  * what seemed to be missing.
  * More bytes than the ring holds mean a gap of DMA: their true number is unknown. */
-static void note_bytes(tmini_t *lidar, size_t count, size_t arrived, uint32_t passed_ms,
+static void note_bytes(tmini_t *lidar, size_t count, size_t held, uint32_t passed_ms,
                        bool is_scanning)
 {
     tmini_line_t *const line = &lidar->line;
-    const size_t fed_from = line->received - count;
-    const bool are_lost = arrived - line->arrived >= TMINI_RING_CLOSED; /* Those that it held. */
-    const size_t before = are_lost ? fed_from : line->arrived;
-    const size_t fresh = arrived - before;
-    line->arrived = arrived;
+    const size_t noted = line->held;
+    const size_t fresh = count + held - noted;
+    const size_t arrived = line->received + held;
+    line->held = (uint16_t)held;
     if (fresh == 0) {
         return;
     }
-    const bool were_held = before != fed_from;
     const bool is_gap = count > lidar->ring.size;
     const uint32_t due_ms = transit_ms(fresh);
     int32_t late_ms = missing_ms(line, due_ms);
     line->heard_ms = line->now_ms;
     if (is_gap || may_hide_turn(lidar, late_ms + line->late_ms)) {
         const bool is_before = !is_gap && is_silence_before(due_ms, passed_ms, is_scanning);
-        doubt_to(line, is_before ? before : arrived);
+        doubt_to(line, is_before ? arrived - fresh : arrived);
         if (tmini_load(&lidar->held_to) == 0) {
             late_ms = 0;
         }
     }
-    note_delay(line, late_ms, line->busy_ms == 0 && !were_held);
-}
-
-static uint16_t limited(uint32_t time_ms)
-{
-    return (uint16_t)(time_ms < UINT16_MAX ? time_ms : UINT16_MAX);
+    note_delay(line, late_ms, line->busy_ms == 0 && noted == 0);
 }
 
 static void note_silence(tmini_line_t *line, uint32_t passed_ms)
 {
     const uint32_t seen_ms =
         passed_ms < TMINI_UNSEEN_SILENCE_MAX_MS ? passed_ms : TMINI_UNSEEN_SILENCE_MAX_MS;
-    line->silent_ms = limited(line->silent_ms + seen_ms);
+    const uint32_t silent_ms = line->silent_ms + seen_ms;
+    line->silent_ms = (uint16_t)(silent_ms < SILENCE_MAX_MS ? silent_ms : SILENCE_MAX_MS);
 }
 
 /* Counts the time since the first look after the driver had handled all that had come. The pause
  * before that look counts only if the port still holds bytes: then the ring did not last. */
 static void note_work(tmini_line_t *line, uint32_t passed_ms)
 {
-    const bool counts = line->busy_ms > 0 || line->arrived != line->received;
+    const bool counts = line->busy_ms > 0 || line->held > 0;
     const uint32_t busy_ms = counts ? line->busy_ms + passed_ms : 0;
-    line->pause_ms = (uint8_t)(passed_ms < UINT8_MAX ? passed_ms : UINT8_MAX);
-    line->busy_ms = limited(busy_ms > 0 ? busy_ms : 1);
+    const uint32_t limited_ms = busy_ms < UINT8_MAX ? busy_ms : UINT8_MAX;
+    line->busy_ms = (uint8_t)(limited_ms > 0 ? limited_ms : 1);
 }
 
 bool tmini_line_look(tmini_t *lidar, bool is_scanning)
@@ -161,12 +154,15 @@ bool tmini_line_look(tmini_t *lidar, bool is_scanning)
         line->now_ms = 1; /* 0 means: never looked. The clock catches up. */
     }
     line->received = head;
-    const size_t arrived = arrived_to(lidar);
+    const size_t held = held_by_port(lidar);
     if (is_back && back_ms > STEP_BACK_FREE_MS) {
-        doubt_to(line, arrived);
+        doubt_to(line, head + held);
+    }
+    if (line->held > count + held) {
+        line->held = 0; /* The port has lost them. */
     }
     if (count > 0) {
-        note_bytes(lidar, count, arrived, passed_ms, is_scanning);
+        note_bytes(lidar, count, held, passed_ms, is_scanning);
     }
     note_work(line, passed_ms);
     if (count == 0 && !tmini_ring_is_full(&lidar->ring)) { /* It may have refused bytes. */
@@ -180,7 +176,7 @@ bool tmini_line_look(tmini_t *lidar, bool is_scanning)
 uint32_t tmini_line_arrival_ms(const tmini_t *lidar)
 {
     const size_t position = tmini_parser_position(&lidar->decoder.parser);
-    const size_t after = tmini_ring_distance(position, lidar->line.arrived);
+    const size_t after = tmini_ring_distance(position, lidar->line.received) + lidar->line.held;
     return lidar->line.heard_ms - transit_ms(after);
 }
 

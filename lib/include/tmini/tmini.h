@@ -514,14 +514,14 @@ typedef struct {
 /* tmini_line.c */
 typedef struct {
     bool doubt;         /* Bytes may be missing somewhere before `doubtful_to`. */
-    uint8_t pause_ms;   /* Between the last two looks; at most 255. */
-    uint16_t busy_ms;   /* For how long not all that came has been handled; 0: it has been. */
+    uint8_t busy_ms;    /* For how long not all that came has been handled, at most 255; 0: it has
+                         * been. */
     uint16_t late_ms;   /* By how much the latest bytes may be late, if not in doubt. */
     uint16_t silent_ms; /* Observed silence; at most 65535. */
+    uint16_t held;      /* Bytes that the port held when bytes came last. */
     uint32_t now_ms;    /* When the line was last looked at. It does not go back. */
     uint32_t heard_ms;  /* When bytes arrived last. */
     size_t received;    /* The place in the stream of the newest byte received. */
-    size_t arrived;     /* The same, including bytes that the port reported as held. */
     size_t doubtful_to;
 } tmini_line_t;
 
@@ -548,8 +548,8 @@ struct tmini_lidar {
     tmini_link_t link;
     uint32_t scans;
     uint32_t points_withheld;
-    uint32_t complete_ms; /* When the newest complete scan ended: at most half the clock's range
-                           * ago, which also means that there was none. */
+    uint32_t complete_ms; /* When the newest complete scan ended; 0: there is none, or it ended half
+                           * the clock's range ago. */
     size_t held_to; /* Written by the receiving context: up to where bytes wait in the port; 0:
                      * unknown. */
     tmini_ring_t ring;
