@@ -68,22 +68,20 @@ tmini_state_t tmini_state(const tmini_t *lidar)
 
 /* ------------------------------------------------------------------------------------- events */
 
+/* With an event to return, the next poll must not rest. */
 TMINI_NOINLINE static void raise_event(tmini_t *lidar, tmini_event_t event)
 {
     lidar->pending |= (uint16_t)BIT(event);
+    lidar->idle_ms = 0;
 }
 
 /* Removes and returns the first pending event in the order of tmini_event_t, or
  * TMINI_EVENT_NONE. */
 TMINI_NOINLINE static tmini_event_t take_event(tmini_t *lidar)
 {
-    uint16_t pending = lidar->pending;
-    unsigned event = TMINI_EVENT_NONE;
+    const unsigned pending = lidar->pending;
     lidar->pending = (uint16_t)(pending & (pending - 1)); /* Without the lowest bit. */
-    for (; pending != 0 && (pending & 1u) == 0; pending >>= 1) {
-        event++;
-    }
-    return (tmini_event_t)event;
+    return tmini_recovery_first(pending);
 }
 
 /* A new wish drops the events that ended an earlier one and have not been polled: the program would
@@ -98,6 +96,16 @@ static void fail(tmini_t *lidar, int status)
 {
     lidar->command_error = (int8_t)status;
     raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
+}
+
+/* Something has ended: raises `event`, or reports the error. */
+static void report(tmini_t *lidar, tmini_event_t event, int result)
+{
+    if (result == TMINI_OK) {
+        raise_event(lidar, event);
+    } else {
+        fail(lidar, result);
+    }
 }
 
 /* Looks at the line. Once bytes have come, the lidar is no longer known to be idle. */
@@ -147,7 +155,7 @@ static void begin_scanning(tmini_t *lidar)
         raise_event(lidar, TMINI_EVENT_STARTED);
     }
     if (tmini_recovery_is_unset(lidar)) {
-        fail(lidar, lidar->command_error);
+        raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
         tmini_recovery_note_frequency(lidar, true);
     }
     expect_packet(lidar);
@@ -158,7 +166,7 @@ static void begin_scanning(tmini_t *lidar)
 /* ----------------------------------------------------------------------- how operations end */
 
 /* Each failed attempt to start is reported. During recovery none is, because the loss has been
- * reported. Questions that wait are next. */
+ * reported. */
 static void fail_attempt(tmini_t *lidar, int result)
 {
     tmini_recovery_restart_reception(lidar);
@@ -168,27 +176,19 @@ static void fail_attempt(tmini_t *lidar, int result)
             tmini_recovery_forget_wish(lidar, TMINI_EVENT_STARTED);
         }
     }
-    if (lidar->recovery.wishes == BIT(TMINI_EVENT_STARTED)) {
-        tmini_recovery_back_off(lidar, result);
-    } else {
-        tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
-    }
+    tmini_recovery_back_off(lidar, result);
 }
 
 /* The event is not raised if no frequency is wanted and nobody has asked. */
 static void end_frequency(tmini_t *lidar, int result)
 {
-    const bool is_set = result == TMINI_OK || lidar->command.wanted_chz == 0;
+    const bool is_wanted = lidar->command.wanted_chz != 0;
     tmini_monitor_forget_wish(&lidar->monitor);
-    tmini_recovery_note_frequency(lidar, is_set);
-    if (result != TMINI_OK) {
+    tmini_recovery_note_frequency(lidar, result == TMINI_OK || !is_wanted);
+    if (tmini_recovery_wishes(lidar, TMINI_EVENT_FREQUENCY) || (is_wanted && result == TMINI_OK)) {
+        report(lidar, TMINI_EVENT_FREQUENCY, result);
+    } else if (result != TMINI_OK) {
         lidar->command_error = (int8_t)result;
-        if (tmini_recovery_wishes(lidar, TMINI_EVENT_FREQUENCY)) {
-            fail(lidar, result);
-        }
-    } else if (lidar->command.wanted_chz != 0 ||
-               tmini_recovery_wishes(lidar, TMINI_EVENT_FREQUENCY)) {
-        raise_event(lidar, TMINI_EVENT_FREQUENCY);
     }
     tmini_recovery_forget_wish(lidar, TMINI_EVENT_FREQUENCY);
 }
@@ -214,21 +214,8 @@ static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_s
 static void end_command(tmini_t *lidar, tmini_event_t operation, int result)
 {
     tmini_recovery_forget_wish(lidar, operation);
-    if (result == TMINI_OK) {
-        raise_event(lidar, operation);
-    } else {
-        fail(lidar, result);
-    }
+    report(lidar, operation, result);
     tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
-}
-
-/* True if the operation is a step of the ladder: no wish of its own, or one that the ladder fulfils
- * on its way. */
-static bool is_of_ladder(const tmini_t *lidar, tmini_event_t operation)
-{
-    return tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED) &&
-           (operation <= TMINI_EVENT_STARTED || operation == TMINI_EVENT_FREQUENCY ||
-            !tmini_recovery_wishes(lidar, operation));
 }
 
 /* Acts on the result of the current operation. */
@@ -246,7 +233,7 @@ static void take_result(tmini_t *lidar, int result)
     tmini_command_end(lidar, result);
     if (phase >= TMINI_PHASE_SCANNING) {
         lose(lidar);
-    } else if (is_of_ladder(lidar, operation)) {
+    } else if (tmini_recovery_is_step(lidar, operation)) {
         climb(lidar, operation, result,
               phase == TMINI_PHASE_ASKING && result == TMINI_ERROR_TIMEOUT);
     } else {
@@ -272,12 +259,18 @@ static void act(tmini_t *lidar)
     }
 }
 
-/* Stops the lidar, whatever is in progress. */
+/* Stops the lidar, whatever is in progress. With listen_only nothing was sent, so nothing is
+ * stopped. */
 static void begin_stop(tmini_t *lidar)
 {
     tmini_recovery_wish(lidar, TMINI_EVENT_STOPPED);
-    tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
-    send_first(lidar);
+    if (lidar->is_listen_only) {
+        tmini_command_end(lidar, TMINI_ERROR_ABORTED);
+        end_command(lidar, TMINI_EVENT_STOPPED, TMINI_OK);
+    } else {
+        tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
+        send_first(lidar);
+    }
 }
 
 /* A question, or a reboot. */
@@ -466,15 +459,12 @@ static bool receive(tmini_t *lidar)
 {
     const tmini_decoder_t *const decoder = &lidar->decoder;
     const tmini_parser_t *const parser = &decoder->parser;
-    uint16_t effort = 0;
+    size_t effort = 0;
     if (decoder->builder.ended) { /* The packet that ended the scan is decoded again. */
-        effort = (uint16_t)(FRAME_EFFORT + tmini_parser_frame(parser)->size);
+        effort = FRAME_EFFORT + tmini_parser_frame(parser)->size;
         effort = effort < TMINI_PARSER_EFFORT ? effort : TMINI_PARSER_EFFORT - 1;
     }
-    while (lidar->pending == 0) {
-        if (effort >= TMINI_PARSER_EFFORT) {
-            return false;
-        }
+    do {
         const tmini_frame_type_t type = tmini_decoder_next(&lidar->decoder, effort);
         if (type == TMINI_FRAME_PACKET) {
             take_packet(lidar);
@@ -483,8 +473,11 @@ static bool receive(tmini_t *lidar)
         } else if (type == TMINI_FRAME_NONE && !give_up_candidate(lidar)) {
             return true;
         }
-        effort = (uint16_t)(FRAME_EFFORT + parser->effort + tmini_parser_frame(parser)->size);
-    }
+        effort = FRAME_EFFORT + parser->effort + tmini_parser_frame(parser)->size;
+        if (effort >= TMINI_PARSER_EFFORT) {
+            return false;
+        }
+    } while (lidar->pending == 0);
     return true;
 }
 
@@ -492,8 +485,11 @@ static bool receive(tmini_t *lidar)
 static void keep_time(tmini_t *lidar)
 {
     const int result = tmini_command_poll(lidar);
+    if (result == TMINI_UNDER_WAY) {
+        return;
+    }
     take_result(lidar, result);
-    if (result != TMINI_UNDER_WAY && lidar->pending == 0) {
+    if (lidar->pending == 0) {
         take_result(lidar, tmini_command_poll(lidar)); /* What follows is sent at once. */
     }
 }
@@ -591,17 +587,25 @@ static bool has_port(const tmini_config_t *config)
     return port != NULL && port->now_ms != NULL && (port->write != NULL || config->listen_only);
 }
 
-/* Checks members that require or exclude each other. */
+/* Checks members that are of no module below, or exclude each other. */
 static bool fits_together(const tmini_config_t *config)
 {
     return (config->frequency_chz == 0 ||
             (is_frequency(config->frequency_chz) && !config->listen_only)) &&
-           (config->points != NULL ? config->spare_points != config->points
-                                   : config->step == NULL && config->spare_points == NULL &&
-                                         config->filter == TMINI_FILTER_NONE) &&
            (config->step != NULL || config->step_data == NULL) &&
            (unsigned)config->recovery <= TMINI_RECOVERY_OFF &&
            (config->timing == NULL || config->timing->quiet_line_ms < QUIET_LINE_LIMIT_MS);
+}
+
+/* Scans need points; and what needs scans needs them, too. */
+static bool init_scans(tmini_builder_t *builder, const tmini_config_t *config)
+{
+    const bool are_wanted = config->points != NULL || config->max_points != 0 ||
+                            config->filter != TMINI_FILTER_NONE || config->spare_points != NULL ||
+                            config->step != NULL;
+    return !are_wanted || (config->spare_points != config->points &&
+                           tmini_builder_init(builder, config->points, config->max_points,
+                                              config->filter) == TMINI_OK);
 }
 
 /* Ring and decoder check their own parts of the configuration. */
@@ -610,9 +614,7 @@ static bool init_modules(tmini_t *lidar, const tmini_config_t *config)
     return tmini_ring_init(&lidar->ring, config->rx_buffer, config->rx_size, config->rx_dma) ==
                TMINI_OK &&
            tmini_decoder_init(&lidar->decoder, &lidar->ring, config->max_samples) == TMINI_OK &&
-           ((config->points == NULL && config->max_points == 0) || /* No scans. */
-            tmini_builder_init(&lidar->decoder.builder, config->points, config->max_points,
-                               config->filter) == TMINI_OK);
+           init_scans(&lidar->decoder.builder, config);
 }
 
 tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
@@ -623,7 +625,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
     *lidar = (tmini_t){0}; /* State unknown, no phase, no CT information. */
     if (config == NULL || !has_port(config) || !fits_together(config) ||
         !init_modules(lidar, config)) {
-        *lidar = (tmini_t){0}; /* It refuses bytes. */
+        lidar->ring = (tmini_ring_t){0}; /* It refuses bytes. */
         fail(lidar, TMINI_ERROR_ARGUMENT);
         return TMINI_ERROR_ARGUMENT;
     }
@@ -661,7 +663,6 @@ tmini_status_t tmini_start(tmini_t *lidar)
     return TMINI_OK;
 }
 
-/* With listen_only nothing was sent, so nothing is stopped. */
 tmini_status_t tmini_stop(tmini_t *lidar)
 {
     if (!is_set_up(lidar)) {
@@ -679,18 +680,9 @@ tmini_status_t tmini_stop(tmini_t *lidar)
     }
     if (is_stopping) {
         tmini_recovery_wish(lidar, TMINI_EVENT_STOPPED); /* And nothing else. */
-        lidar->idle_ms = 0;
-        return TMINI_OK;
-    }
-    if (!lidar->is_listen_only) {
+    } else {
         begin_stop(lidar);
-        return TMINI_OK;
     }
-    tmini_recovery_wish(lidar, TMINI_EVENT_STOPPED);
-    tmini_recovery_forget_wish(lidar, TMINI_EVENT_STOPPED);
-    tmini_command_end(lidar, TMINI_ERROR_ABORTED);
-    raise_event(lidar, TMINI_EVENT_STOPPED);
-    lidar->idle_ms = 0;
     return TMINI_OK;
 }
 
@@ -710,7 +702,6 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
         tmini_command_want(lidar, wanted_chz);
         if ((lidar->monitor.faults & TMINI_FAULT_FREQUENCY) != 0) {
             raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
-            lidar->idle_ms = 0;
         }
         tmini_monitor_forget_frequency(&lidar->monitor);
     }

@@ -99,31 +99,29 @@ static int send_rest(tmini_t *lidar)
     return TMINI_UNDER_WAY;
 }
 
-/* Waits in `phase` for a quiet line. If it does not become quiet in time, the attempt fails. */
-static void await_quiet(tmini_t *lidar, tmini_phase_t phase)
-{
-    const unsigned quiet_ms = lidar->link.timing->quiet_line_ms;
-    enter(lidar, phase, (uint16_t)(TMINI_STOP_TIMEOUT_MS + quiet_ms));
-}
-
-/* Stops the lidar first, which is always permitted (section 9.10). */
-TMINI_NOINLINE static void quiesce(tmini_t *lidar)
-{
-    (void)tmini_parser_await(&lidar->decoder.parser, NULL);
-    send(lidar, TMINI_COMMAND_STOP);
-    await_quiet(lidar, TMINI_PHASE_QUIESCING);
-}
-
-/* Sends a command (the line is quiet) and awaits its reply in `phase`. */
+/* Sends a command (the line is quiet, or it is a stop) and awaits its reply, if it has one, in
+ * `phase`. */
 static int send_and_await(tmini_t *lidar, uint8_t code, tmini_phase_t phase, uint16_t timeout_ms)
 {
     tmini_reply_header_t reply;
+    const bool has_reply = tmini_reply_header((tmini_command_code_t)code, &reply);
     send(lidar, (tmini_command_code_t)code);
-    if (tmini_reply_header((tmini_command_code_t)code, &reply)) {
-        (void)tmini_parser_await(&lidar->decoder.parser, &reply);
-    }
+    (void)tmini_parser_await(&lidar->decoder.parser, has_reply ? &reply : NULL);
     enter(lidar, phase, timeout_ms);
     return TMINI_UNDER_WAY;
+}
+
+/* How long the line may take to become quiet. */
+static uint16_t quiet_timeout_ms(const tmini_t *lidar)
+{
+    return (uint16_t)(TMINI_STOP_TIMEOUT_MS + lidar->link.timing->quiet_line_ms);
+}
+
+/* Stops the lidar first, which is always permitted (section 9.10). */
+TMINI_NOINLINE static int quiesce(tmini_t *lidar)
+{
+    return send_and_await(lidar, TMINI_COMMAND_STOP, TMINI_PHASE_QUIESCING,
+                          quiet_timeout_ms(lidar));
 }
 
 static int ask(tmini_t *lidar)
@@ -144,8 +142,7 @@ static int try_again(tmini_t *lidar, int error)
     }
     command->attempts_left--;
     command->is_repeated = true;
-    quiesce(lidar);
-    return TMINI_UNDER_WAY;
+    return quiesce(lidar);
 }
 
 /* ----------------------------------------------------------------------------- frequency change */
@@ -219,7 +216,7 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
         (!is_step && !may_be_late && tmini_command_has_frequency(lidar))) {
         return TMINI_OK;
     }
-    await_quiet(lidar, TMINI_PHASE_SETTLING);
+    enter(lidar, TMINI_PHASE_SETTLING, quiet_timeout_ms(lidar));
     return TMINI_UNDER_WAY;
 }
 
@@ -398,16 +395,13 @@ uint16_t tmini_command_due_ms(const tmini_t *lidar)
 void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, uint8_t attempts)
 {
     tmini_command_t *const command = &lidar->command;
-    const bool is_idle = command->phase == TMINI_PHASE_IDLE;
+    const bool may_send = command->phase == TMINI_PHASE_IDLE && operation != TMINI_EVENT_STOPPED;
     command->operation = (uint8_t)operation;
     command->attempts_left = (uint8_t)(attempts > 0 ? attempts - 1 : 0);
     command->is_repeated = false;
     command->steps = 0;
     command->asks = 0;
-    quiesce(lidar);
-    if (is_idle && operation != TMINI_EVENT_STOPPED) {
-        (void)on_quiet(lidar);
-    }
+    (void)(may_send ? on_quiet(lidar) : quiesce(lidar));
 }
 
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content)
@@ -436,7 +430,7 @@ static tmini_packet_meaning_t on_packet_while_idle(tmini_t *lidar)
     if (command->asks < ASKS_MAX) { /* A lidar that receives no stop goes on scanning. */
         command->asks++;
         command->is_repeated = true;
-        quiesce(lidar);
+        (void)quiesce(lidar);
     }
     return TMINI_PACKET_IGNORED;
 }

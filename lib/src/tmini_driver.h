@@ -208,7 +208,16 @@ static inline bool tmini_recovery_wishes(const tmini_t *lidar, tmini_event_t eve
 void tmini_recovery_wish(tmini_t *lidar, tmini_event_t event);
 
 /* A wish has been fulfilled, has failed or is withdrawn. */
-void tmini_recovery_forget_wish(tmini_t *lidar, tmini_event_t event);
+static inline void tmini_recovery_forget_wish(tmini_t *lidar, tmini_event_t event)
+{
+    lidar->recovery.wishes &= (uint8_t) ~(1u << event);
+}
+
+/* The first of these events in their order, or TMINI_EVENT_NONE. */
+tmini_event_t tmini_recovery_first(unsigned events);
+
+/* True if this operation is, or was, a step of the ladder, and no wish of its own. */
+bool tmini_recovery_is_step(const tmini_t *lidar, tmini_event_t operation);
 
 /* Begins the next operation that the wishes need, after `ended`: TMINI_EVENT_FREQUENCY, or
  * TMINI_EVENT_NONE. Without one the lidar rests. */
@@ -221,32 +230,65 @@ void tmini_recovery_reset(tmini_t *lidar);
  * previous loss, the ladder continues instead. */
 void tmini_recovery_begin(tmini_t *lidar);
 
+/* Bits of tmini_recovery_t.contact. */
+#define TMINI_CONTACT_MUTE \
+    1u                            /* The lidar has been asked again and again, and has answered
+                                  * nothing since. */
+#define TMINI_CONTACT_ANSWERED 2u /* The lidar has answered since it was set up. */
+#define TMINI_CONTACT_UNSET \
+    4u /* The wanted frequency could not be set, which has not been
+                                   * reported. */
+
 /* A reply has come. */
-void tmini_recovery_note_reply(tmini_t *lidar);
+static inline void tmini_recovery_note_reply(tmini_t *lidar)
+{
+    lidar->recovery.contact |= TMINI_CONTACT_ANSWERED;
+    lidar->recovery.contact &= (uint8_t)~TMINI_CONTACT_MUTE;
+}
 
 /* The lidar has been asked again and again in vain. True if it is worth a start even so: it may be
  * one that obeys and never answers. One that has answered before has no power. */
-bool tmini_recovery_note_silence(tmini_t *lidar);
+static inline bool tmini_recovery_note_silence(tmini_t *lidar)
+{
+    lidar->recovery.contact |= TMINI_CONTACT_MUTE;
+    return (lidar->recovery.contact & TMINI_CONTACT_ANSWERED) == 0;
+}
 
 /* True from then on, until a reply comes. */
-bool tmini_recovery_is_mute(const tmini_t *lidar);
+static inline bool tmini_recovery_is_mute(const tmini_t *lidar)
+{
+    return (lidar->recovery.contact & TMINI_CONTACT_MUTE) != 0;
+}
 
 /* Asks the port, if it can, to start its reception again: after a loss or a failed attempt. */
 void tmini_recovery_restart_reception(const tmini_t *lidar);
 
-/* An attempt has failed with this result: waits before the next one, unless it has been asking in
- * vain for longer than any pause. */
+/* An attempt has failed with this result: waits before the next one, unless something else is
+ * wished, or it has been asking in vain for longer than any pause. */
 void tmini_recovery_back_off(tmini_t *lidar, int result);
 
 /* The wanted frequency has been set, or could not be. */
-void tmini_recovery_note_frequency(tmini_t *lidar, bool is_set);
+static inline void tmini_recovery_note_frequency(tmini_t *lidar, bool is_set)
+{
+    lidar->recovery.contact &= (uint8_t)~TMINI_CONTACT_UNSET;
+    if (!is_set) {
+        lidar->recovery.contact |= TMINI_CONTACT_UNSET;
+    }
+}
 
 /* True from the failure on, until tmini_recovery_note_frequency() has heard that it is set or
  * reported. */
-bool tmini_recovery_is_unset(const tmini_t *lidar);
+static inline bool tmini_recovery_is_unset(const tmini_t *lidar)
+{
+    return (lidar->recovery.contact & TMINI_CONTACT_UNSET) != 0;
+}
 
 /* The lidar scans again, by an attempt or by itself. */
-void tmini_recovery_end(tmini_t *lidar);
+static inline void tmini_recovery_end(tmini_t *lidar)
+{
+    lidar->recovery.recoveries++;
+    lidar->recovery.is_lost = false;
+}
 
 /* The lidar has started, or a complete revolution has come: after the next loss the ladder begins
  * again. */
@@ -278,9 +320,16 @@ tmini_turn_t tmini_monitor_packet(tmini_monitor_t *monitor, const tmini_decoder_
  * turns at a wrong one. */
 void tmini_monitor_forget_frequency(tmini_monitor_t *monitor);
 
+/* A wish that is still for this many start packets is carried out: while somebody moves a slider,
+ * the lidar goes on scanning. */
+#define TMINI_STILL_TURNS 4
+
 /* The wish has changed while the lidar is to scan: TMINI_TURN_STILL follows when it has not changed
  * again for some turns. */
-void tmini_monitor_await_still(tmini_monitor_t *monitor);
+static inline void tmini_monitor_await_still(tmini_monitor_t *monitor)
+{
+    monitor->turns_to_still = TMINI_STILL_TURNS;
+}
 
 /* The wish has been carried out, or will be. */
 static inline void tmini_monitor_forget_wish(tmini_monitor_t *monitor)

@@ -17,10 +17,6 @@
  * doublings. */
 #define OFF_DOUBLINGS_MAX 4
 
-/* A wish that is still for this many start packets is carried out: while somebody moves a slider,
- * the lidar goes on scanning. */
-#define STILL_TURNS 4
-
 /* No turn has more samples: three seconds, at 4000 per second (section 1). */
 #define TURN_SAMPLES_MAX 12000u
 
@@ -69,11 +65,6 @@ void tmini_monitor_forget_frequency(tmini_monitor_t *monitor)
 {
     end_frequency_fault(monitor);
     monitor->off_times = 0;
-}
-
-void tmini_monitor_await_still(tmini_monitor_t *monitor)
-{
-    monitor->turns_to_still = STILL_TURNS;
 }
 
 /* Counts consecutive revolutions at another frequency than wanted, or while it `is_unknown` which

@@ -15,11 +15,6 @@
 /* Value of `attempts` while the first attempt has not failed yet. */
 #define FIRST_ATTEMPT (REBOOT_AFTER + 1)
 
-/* Bits of tmini_recovery_t.contact. */
-#define MUTE 1u /* The lidar has been asked again and again, and has answered nothing since. */
-#define HAS_ANSWERED 2u /* Since the lidar was set up. */
-#define UNSET 4u        /* The wanted frequency could not be set, which has not been reported. */
-
 #define BIT(event) (1u << (event))
 
 void tmini_recovery_wish(tmini_t *lidar, tmini_event_t event)
@@ -29,11 +24,6 @@ void tmini_recovery_wish(tmini_t *lidar, tmini_event_t event)
     if (event == TMINI_EVENT_STOPPED) {
         lidar->recovery.is_lost = false;
     }
-}
-
-void tmini_recovery_forget_wish(tmini_t *lidar, tmini_event_t event)
-{
-    lidar->recovery.wishes = (uint8_t)(lidar->recovery.wishes & ~BIT(event));
 }
 
 /* ----------------------------------------------------------------------------------- the ladder */
@@ -53,39 +43,14 @@ void tmini_recovery_reset(tmini_t *lidar)
     lidar->recovery.is_lost = false;
 }
 
-void tmini_recovery_note_reply(tmini_t *lidar)
-{
-    lidar->recovery.contact = (uint8_t)((lidar->recovery.contact & UNSET) | HAS_ANSWERED);
-}
-
-void tmini_recovery_note_frequency(tmini_t *lidar, bool is_set)
-{
-    const unsigned others = lidar->recovery.contact & ~UNSET;
-    lidar->recovery.contact = (uint8_t)(others | (is_set ? 0 : UNSET));
-}
-
-bool tmini_recovery_is_unset(const tmini_t *lidar)
-{
-    return (lidar->recovery.contact & UNSET) != 0;
-}
-
-bool tmini_recovery_note_silence(tmini_t *lidar)
-{
-    lidar->recovery.contact |= MUTE;
-    return (lidar->recovery.contact & HAS_ANSWERED) == 0;
-}
-
-bool tmini_recovery_is_mute(const tmini_t *lidar)
-{
-    return (lidar->recovery.contact & MUTE) != 0;
-}
-
 void tmini_recovery_back_off(tmini_t *lidar, int result)
 {
     tmini_recovery_t *const recovery = &lidar->recovery;
     const uint16_t max_ms = lidar->link.timing->back_off_max_ms;
     const uint32_t doubled_ms = 2u * (uint32_t)recovery->pause_ms;
-    if (tmini_recovery_is_mute(lidar) && result == TMINI_ERROR_TIMEOUT && max_ms > 0) {
+    const bool is_asking =
+        tmini_recovery_is_mute(lidar) && result == TMINI_ERROR_TIMEOUT && max_ms > 0;
+    if (is_asking || recovery->wishes != BIT(TMINI_EVENT_STARTED)) {
         tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
         return;
     }
@@ -113,27 +78,35 @@ static tmini_event_t next_attempt(const tmini_t *lidar, tmini_event_t ended)
 
 /* ------------------------------------------------------------------------------- the next step */
 
-/* To stop comes first, then the questions; an attempt to scan also asks for the frequency. */
-static tmini_event_t next_operation(const tmini_t *lidar, tmini_event_t ended)
+tmini_event_t tmini_recovery_first(unsigned events)
 {
-    const bool is_to_scan = tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED);
-    unsigned wishes = lidar->recovery.wishes;
-    if (is_to_scan) {
-        wishes &= ~(BIT(TMINI_EVENT_STARTED) | BIT(TMINI_EVENT_FREQUENCY));
+    unsigned event = TMINI_EVENT_NONE;
+    for (; events != 0 && (events & 1u) == 0; events >>= 1) {
+        event++;
     }
-    for (unsigned event = TMINI_EVENT_STOPPED; wishes != 0; event++) {
-        if ((wishes & BIT(event)) != 0) {
-            return (tmini_event_t)event;
-        }
-    }
-    return is_to_scan ? next_attempt(lidar, ended) : TMINI_EVENT_NONE;
+    return (tmini_event_t)event;
 }
 
-/* True for a step of the ladder. */
-static bool is_step(const tmini_t *lidar, tmini_event_t operation)
+/* The wishes that have an operation of their own. The others are fulfilled by the ladder, which
+ * also asks for the frequency. */
+static unsigned wishes_beside_ladder(const tmini_t *lidar)
 {
-    return operation == TMINI_EVENT_STARTED || operation == TMINI_EVENT_FREQUENCY ||
-           !tmini_recovery_wishes(lidar, operation);
+    const unsigned by_ladder = BIT(TMINI_EVENT_STARTED) | BIT(TMINI_EVENT_FREQUENCY);
+    const bool is_to_scan = tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED);
+    return lidar->recovery.wishes & ~(is_to_scan ? by_ladder : 0);
+}
+
+bool tmini_recovery_is_step(const tmini_t *lidar, tmini_event_t operation)
+{
+    return (wishes_beside_ladder(lidar) & BIT(operation)) == 0;
+}
+
+/* To stop comes first, then the questions, then the ladder. */
+static tmini_event_t next_operation(const tmini_t *lidar, tmini_event_t ended)
+{
+    const tmini_event_t wished = tmini_recovery_first(wishes_beside_ladder(lidar));
+    const bool is_to_scan = tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED);
+    return wished == TMINI_EVENT_NONE && is_to_scan ? next_attempt(lidar, ended) : wished;
 }
 
 static void note_step(tmini_t *lidar, tmini_event_t operation)
@@ -159,7 +132,7 @@ void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t ended)
         tmini_command_wait(lidar, TMINI_PHASE_LISTENING, TMINI_SPIN_UP_TIMEOUT_MS);
         return;
     }
-    if (is_step(lidar, operation)) {
+    if (tmini_recovery_is_step(lidar, operation)) {
         note_step(lidar, operation);
         if (!lidar->is_recovery_off && operation != TMINI_EVENT_REBOOTED) {
             attempts = 1; /* The ladder repeats it. */
@@ -182,10 +155,4 @@ void tmini_recovery_begin(tmini_t *lidar)
         tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
     }
     recovery->is_lost = true;
-}
-
-void tmini_recovery_end(tmini_t *lidar)
-{
-    lidar->recovery.recoveries++;
-    lidar->recovery.is_lost = false;
 }
