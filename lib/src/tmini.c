@@ -77,7 +77,7 @@ TMINI_NOINLINE static void raise_event(tmini_t *lidar, tmini_event_t event)
 
 /* Removes and returns the first pending event in the order of tmini_event_t, or
  * TMINI_EVENT_NONE. */
-TMINI_NOINLINE static tmini_event_t take_event(tmini_t *lidar)
+static tmini_event_t take_event(tmini_t *lidar)
 {
     const unsigned pending = lidar->pending;
     lidar->pending = (uint16_t)(pending & (pending - 1)); /* Without the lowest bit. */
@@ -309,19 +309,18 @@ TMINI_NOINLINE static void take_reply(tmini_t *lidar)
 }
 
 /* Of a lost lidar, a point packet is no proof that it scans as it should: it may send no start
- * packets. Not inlined, so that the packet takes no stack. */
-TMINI_NOINLINE static tmini_sign_t sign_of_packet(const tmini_t *lidar)
+ * packets. */
+static tmini_sign_t sign_of_packet(tmini_t *lidar)
 {
-    const tmini_frame_t *const frame = tmini_parser_frame(&lidar->decoder.parser);
-    tmini_packet_t packet;
+    tmini_packet_t *const packet = &lidar->decoder.packet;
     if (!lidar->recovery.is_lost) {
         return TMINI_SIGN_SCANS;
     }
-    tmini_packet_open(&packet, frame);
-    if (tmini_packet_is_start(&packet)) {
+    tmini_packet_open(packet, tmini_parser_frame(&lidar->decoder.parser));
+    if (tmini_packet_is_start(packet)) {
         return TMINI_SIGN_SCANS;
     }
-    return tmini_packet_has_range(&packet) ? TMINI_SIGN_TURNS : TMINI_SIGN_STANDS;
+    return tmini_packet_has_range(packet) ? TMINI_SIGN_TURNS : TMINI_SIGN_STANDS;
 }
 
 /* True if the lidar scans, as it is wanted to. A lidar that scans although it was stopped is
@@ -506,16 +505,16 @@ static void limit_age(tmini_t *lidar)
  * is computed once, here, not at each poll. */
 static void settle(tmini_t *lidar)
 {
-    const uint16_t frame_ms = lidar->link.timing->frame_timeout_ms;
-    const int32_t left_ms = (int32_t)frame_ms - lidar->line.silent_ms;
-    const uint16_t give_up_ms = left_ms > 0 ? (uint16_t)left_ms : frame_ms;
-    const uint16_t command_ms = tmini_command_idle_ms(lidar);
-    const uint16_t due_ms = give_up_ms < command_ms ? give_up_ms : command_ms;
-    const uint8_t idle_ms = (uint8_t)(due_ms < IDLE_MAX_MS ? due_ms : IDLE_MAX_MS);
+    const unsigned frame_ms = lidar->link.timing->frame_timeout_ms;
+    const unsigned silent_ms = lidar->line.silent_ms;
+    const unsigned give_up_ms = frame_ms > silent_ms ? frame_ms - silent_ms : frame_ms;
+    const unsigned command_ms = tmini_command_idle_ms(lidar);
+    const unsigned due_ms = give_up_ms < command_ms ? give_up_ms : command_ms;
+    const unsigned idle_ms = due_ms < IDLE_MAX_MS ? due_ms : IDLE_MAX_MS;
     limit_age(lidar);
     tmini_line_settle(lidar);
     if (!tmini_command_is_sending(lidar)) {
-        lidar->idle_ms = idle_ms > 0 ? idle_ms : 1;
+        lidar->idle_ms = (uint8_t)(idle_ms > 0 ? idle_ms : 1);
     }
 }
 
@@ -569,14 +568,12 @@ tmini_event_t tmini_poll(tmini_t *lidar)
 
 /* ---------------------------------------------------------------------------------- life cycle */
 
-TMINI_NOINLINE static bool is_frequency(uint16_t frequency_chz)
+/* The nearest frequency that may be set; 0: this one is out of range. */
+TMINI_NOINLINE static uint16_t nearest_step(uint16_t frequency_chz)
 {
-    return frequency_chz >= TMINI_FREQUENCY_MIN_CHZ && frequency_chz <= TMINI_FREQUENCY_MAX_CHZ;
-}
-
-/* To the nearest step. */
-static uint16_t rounded(uint16_t frequency_chz)
-{
+    if (frequency_chz < TMINI_FREQUENCY_MIN_CHZ || frequency_chz > TMINI_FREQUENCY_MAX_CHZ) {
+        return 0;
+    }
     return (uint16_t)((frequency_chz + TMINI_FREQUENCY_STEP_CHZ / 2) / TMINI_FREQUENCY_STEP_CHZ *
                       TMINI_FREQUENCY_STEP_CHZ);
 }
@@ -591,7 +588,7 @@ static bool has_port(const tmini_config_t *config)
 static bool fits_together(const tmini_config_t *config)
 {
     return (config->frequency_chz == 0 ||
-            (is_frequency(config->frequency_chz) && !config->listen_only)) &&
+            (nearest_step(config->frequency_chz) != 0 && !config->listen_only)) &&
            (config->step != NULL || config->step_data == NULL) &&
            (unsigned)config->recovery <= TMINI_RECOVERY_OFF &&
            (config->timing == NULL || config->timing->quiet_line_ms < QUIET_LINE_LIMIT_MS);
@@ -637,7 +634,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
         .step_data = config->step_data,
         .spare_points = config->spare_points,
     };
-    tmini_command_want(lidar, rounded(config->frequency_chz));
+    tmini_command_want(lidar, nearest_step(config->frequency_chz));
     lidar->is_recovery_off = config->recovery == TMINI_RECOVERY_OFF;
     lidar->is_listen_only = config->listen_only;
     return TMINI_OK;
@@ -690,13 +687,13 @@ tmini_status_t tmini_stop(tmini_t *lidar)
  * clear the frequency fault. */
 tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
 {
-    if (!is_set_up(lidar) || !is_frequency(frequency_chz)) {
+    const uint16_t wanted_chz = nearest_step(frequency_chz);
+    if (!is_set_up(lidar) || wanted_chz == 0) {
         return TMINI_ERROR_ARGUMENT;
     }
     if (lidar->is_listen_only) {
         return TMINI_ERROR_LISTEN_ONLY;
     }
-    const uint16_t wanted_chz = rounded(frequency_chz);
     const bool is_new = lidar->command.wanted_chz != wanted_chz;
     if (is_new) {
         tmini_command_want(lidar, wanted_chz);

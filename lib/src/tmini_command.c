@@ -118,7 +118,7 @@ static uint16_t quiet_timeout_ms(const tmini_t *lidar)
 }
 
 /* Stops the lidar first, which is always permitted (section 9.10). */
-TMINI_NOINLINE static int quiesce(tmini_t *lidar)
+static int quiesce(tmini_t *lidar)
 {
     return send_and_await(lidar, TMINI_COMMAND_STOP, TMINI_PHASE_QUIESCING,
                           quiet_timeout_ms(lidar));
@@ -222,17 +222,11 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
 
 /* -------------------------------------------------------------------------------- keeping time */
 
-static bool awaits_quiet(const tmini_t *lidar)
-{
-    return lidar->command.phase == TMINI_PHASE_QUIESCING ||
-           lidar->command.phase == TMINI_PHASE_SETTLING;
-}
-
 /* The last condition: an interrupt may have stored bytes since the last look at the line. */
 static bool is_quiet(const tmini_t *lidar)
 {
     const uint16_t quiet_ms = lidar->link.timing->quiet_line_ms;
-    return awaits_quiet(lidar) && lidar->line.silent_ms >= quiet_ms &&
+    return tmini_command_awaits_quiet(lidar) && lidar->line.silent_ms >= quiet_ms &&
            tmini_has_elapsed(lidar, lidar->command.since_ms, quiet_ms) &&
            tmini_ring_head(&lidar->ring) == lidar->line.received;
 }
@@ -356,20 +350,6 @@ int tmini_command_poll(tmini_t *lidar)
     return result == TMINI_UNDER_WAY && tmini_command_is_sending(lidar) ? send_rest(lidar) : result;
 }
 
-static uint16_t time_left_ms(const tmini_t *lidar)
-{
-    const tmini_command_t *const command = &lidar->command;
-    return (uint16_t)(command->timeout_ms - (lidar->line.now_ms - command->since_ms));
-}
-
-uint16_t tmini_command_idle_ms(const tmini_t *lidar)
-{
-    if (awaits_quiet(lidar)) {
-        return 0;
-    }
-    return lidar->command.timeout_ms == 0 ? UINT16_MAX : time_left_ms(lidar);
-}
-
 /* How much of `whole_ms` is left. */
 static uint32_t rest_ms(uint32_t whole_ms, uint32_t passed_ms)
 {
@@ -383,11 +363,12 @@ uint16_t tmini_command_due_ms(const tmini_t *lidar)
     const uint32_t silent_ms = rest_ms(quiet_ms, lidar->line.silent_ms);
     const uint32_t since_ms = rest_ms(quiet_ms, lidar->line.now_ms - lidar->command.since_ms);
     uint32_t due_ms = silent_ms > since_ms ? silent_ms : since_ms;
-    if (!awaits_quiet(lidar)) {
+    if (!tmini_command_awaits_quiet(lidar)) {
         return tmini_command_idle_ms(lidar);
     }
     due_ms = due_ms < TMINI_UNSEEN_SILENCE_MAX_MS ? due_ms : TMINI_UNSEEN_SILENCE_MAX_MS;
-    return (uint16_t)(due_ms < time_left_ms(lidar) ? due_ms : time_left_ms(lidar));
+    return (uint16_t)(due_ms < tmini_command_left_ms(lidar) ? due_ms
+                                                            : tmini_command_left_ms(lidar));
 }
 
 /* ------------------------------------------------------------------------ for the layers above */

@@ -30,9 +30,13 @@ enum {
     (TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE | TMINI_KNOWN_FIRMWARE | \
      TMINI_KNOWN_YEAR | TMINI_KNOWN_MONTH | TMINI_KNOWN_DAY | TMINI_KNOWN_SERIAL)
 
+/* Fields that have not come keep their values. */
 static void trust_current(tmini_ct_t *ct)
 {
-    TMINI_COPY(ct->trusted, ct->current, sizeof ct->trusted);
+    while (ct->fields > 0) {
+        ct->fields--;
+        ct->trusted[ct->fields] = ct->current[ct->fields];
+    }
     ct->known = ct->packets > ct->known ? ct->packets : ct->known;
 }
 
@@ -64,7 +68,6 @@ void tmini_ct_discard(tmini_ct_t *ct)
     ct->fields = 0;
     ct->crc = 0;
     ct->cts = 0;
-    TMINI_COPY(ct->current, ct->trusted, sizeof ct->current);
 }
 
 tmini_ct_verdict_t tmini_ct_add(tmini_ct_t *ct, const tmini_packet_t *packet, bool is_whole)

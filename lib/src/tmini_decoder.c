@@ -12,7 +12,7 @@ tmini_status_t tmini_decoder_init(tmini_decoder_t *decoder, tmini_ring_t *ring, 
     return tmini_parser_init(&decoder->parser, ring, max_samples);
 }
 
-static void note_turn(tmini_decoder_t *decoder)
+TMINI_INLINE void note_turn(tmini_decoder_t *decoder)
 {
     const tmini_packet_t *const packet = &decoder->packet;
     const bool is_start = tmini_packet_is_start(packet);

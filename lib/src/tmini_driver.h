@@ -164,9 +164,27 @@ static inline void tmini_command_disturb(tmini_t *lidar)
     }
 }
 
+/* True until the line is quiet. */
+static inline bool tmini_command_awaits_quiet(const tmini_t *lidar)
+{
+    return lidar->command.phase == TMINI_PHASE_QUIESCING ||
+           lidar->command.phase == TMINI_PHASE_SETTLING;
+}
+
+/* How much of the phase's time is left; UINT16_MAX: it has no limit. */
+static inline uint16_t tmini_command_left_ms(const tmini_t *lidar)
+{
+    const tmini_command_t *const command = &lidar->command;
+    const uint32_t passed_ms = lidar->line.now_ms - command->since_ms;
+    return (uint16_t)(command->timeout_ms == 0 ? UINT16_MAX : command->timeout_ms - passed_ms);
+}
+
 /* For how long tmini_command_poll() has nothing to do unless bytes come; UINT16_MAX: without limit;
  * 0: the line is watched. */
-uint16_t tmini_command_idle_ms(const tmini_t *lidar);
+static inline uint16_t tmini_command_idle_ms(const tmini_t *lidar)
+{
+    return tmini_command_awaits_quiet(lidar) ? 0 : tmini_command_left_ms(lidar);
+}
 
 /* The same, with the time until the line will be quiet. */
 uint16_t tmini_command_due_ms(const tmini_t *lidar);
@@ -270,10 +288,8 @@ void tmini_recovery_back_off(tmini_t *lidar, int result);
 /* The wanted frequency has been set, or could not be. */
 static inline void tmini_recovery_note_frequency(tmini_t *lidar, bool is_set)
 {
-    lidar->recovery.contact &= (uint8_t)~TMINI_CONTACT_UNSET;
-    if (!is_set) {
-        lidar->recovery.contact |= TMINI_CONTACT_UNSET;
-    }
+    const unsigned others = lidar->recovery.contact & ~TMINI_CONTACT_UNSET;
+    lidar->recovery.contact = (uint8_t)(others | (is_set ? 0 : TMINI_CONTACT_UNSET));
 }
 
 /* True from the failure on, until tmini_recovery_note_frequency() has heard that it is set or

@@ -214,7 +214,7 @@ static void begin_candidate(tmini_parser_t *parser)
 /* -------------------------------------------------------------------- skipping and losing bytes */
 
 /* Skips the oldest `count` bytes (at least one). */
-TMINI_NOINLINE static void skip_bytes(tmini_parser_t *parser, size_t count)
+static void skip_bytes(tmini_parser_t *parser, size_t count)
 {
     tmini_frame_t *const frame = &parser->frame;
     const uint32_t gap = frame->gap + (uint32_t)count;

@@ -21,9 +21,7 @@ void tmini_recovery_wish(tmini_t *lidar, tmini_event_t event)
 {
     const unsigned others = event == TMINI_EVENT_STOPPED ? 0 : lidar->recovery.wishes;
     lidar->recovery.wishes = (uint8_t)(others | BIT(event));
-    if (event == TMINI_EVENT_STOPPED) {
-        lidar->recovery.is_lost = false;
-    }
+    lidar->recovery.is_lost = false; /* A lost lidar gets no question. */
 }
 
 /* ----------------------------------------------------------------------------------- the ladder */
@@ -40,7 +38,6 @@ void tmini_recovery_reset(tmini_t *lidar)
 {
     lidar->recovery.attempts = FIRST_ATTEMPT;
     lidar->recovery.pause_ms = TMINI_BACK_OFF_MS / 2; /* It doubles before it is used. */
-    lidar->recovery.is_lost = false;
 }
 
 void tmini_recovery_back_off(tmini_t *lidar, int result)
@@ -145,6 +142,7 @@ void tmini_recovery_begin(tmini_t *lidar)
 {
     tmini_recovery_t *const recovery = &lidar->recovery;
     recovery->losses++;
+    recovery->is_lost = true;
     tmini_recovery_restart_reception(lidar);
     if (lidar->is_recovery_off) {
         tmini_command_wait(lidar, TMINI_PHASE_LISTENING, 0);
@@ -154,5 +152,4 @@ void tmini_recovery_begin(tmini_t *lidar)
         tmini_recovery_reset(lidar);
         tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
     }
-    recovery->is_lost = true;
 }

@@ -166,7 +166,7 @@ PROOFS = [
            "tmini_state(lidar) > TMINI_STATE_STARTING) {"),
     driver("request_health", "lib/src/tmini.c", "    tmini_recovery_wish(lidar, event);\n    act", "    act"),
     driver("request_frequency", "lib/src/tmini_command.c", "(command->unsent & SYNC_SENT) != 0 ?", "false ?"),
-    driver("set_frequency", "lib/src/tmini.c", " && frequency_chz <= TMINI_FREQUENCY_MAX_CHZ", ""),
+    driver("set_frequency", "lib/src/tmini.c", " || frequency_chz > TMINI_FREQUENCY_MAX_CHZ", ""),
     driver("stop", "lib/src/tmini_command.c", "taken < unsent ? unsent - taken : 0", "unsent - taken"),
     driver("reboot", "lib/src/tmini.c", "take_question(lidar, TMINI_EVENT_REBOOTED)",
            "take_question(lidar, TMINI_EVENT_INFO)"),

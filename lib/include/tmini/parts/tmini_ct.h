@@ -39,14 +39,13 @@ extern "C" {
 
 /** What has been learned from a unit's CT bytes. Treat the members as private. */
 typedef struct {
-    uint8_t known;   /**< Indices below this have a trusted CT; all others are 0. */
     uint8_t packets; /**< Packets of the current revolution, at most 14; 0 if its beginning or a
                       * later packet is missing. */
     uint8_t fields;  /**< How many fields of the current revolution have come. */
     uint8_t crc;     /**< The CRC of that revolution's CT bytes so far. */
     uint8_t cts;     /**< The OR of its point packets' CT bytes; 0: they carry no information. */
-    uint8_t current[TMINI_CT_FIELDS]; /**< CT bytes of the current revolution; as trusted where none
-                                       * has come yet. */
+    uint8_t known;   /**< Indices below this have a trusted CT; all others are 0. */
+    uint8_t current[TMINI_CT_FIELDS]; /**< The fields of the current revolution that have come. */
     uint8_t trusted[TMINI_CT_FIELDS]; /**< The newest trusted CT byte of each field. */
 } tmini_ct_t;
 
