@@ -48,7 +48,7 @@ void setUp(void)
 
 void tearDown(void) {}
 
-/* ---------------------------------------------------------------------------- what is recorded */
+/* ---- What is recorded ---- */
 
 static void put(unsigned byte)
 {
@@ -155,7 +155,7 @@ static void put_lidar(void)
     }
 }
 
-/* ------------------------------------------------------------------------------- how it is played */
+/* ---- How it is played ---- */
 
 /* Plays until more bytes are needed or the end is reached. */
 static tape_next_t play(void)
@@ -232,7 +232,7 @@ static bool come(unsigned quarter, bool is_doubted)
     return stream_take(&tape.stream, &packet, now_ms);
 }
 
-/* --------------------------------------------------------------------------------- words of rows */
+/* ---- Words of rows ---- */
 
 /* What is in the recording. */
 static bool tell_content(const char *word, unsigned number)
@@ -440,7 +440,7 @@ void test_rows(void)
     run_rows(rows, run);
 }
 
-/* ------------------------------------------------------------------------------- damaged anywhere */
+/* ---- Damaged anywhere ---- */
 
 typedef enum { DROPPED, CHANGED, ADDED, KINDS } damage_t;
 
@@ -520,7 +520,7 @@ void test_a_recording_that_ends_anywhere_in_a_chunk_is_not_damaged(void)
     }
 }
 
-/* ---------------------------------------------------------------------------------- what is kept */
+/* ---- What is kept ---- */
 
 /* There is room for 32,768 bytes. No byte that was accepted is lost. */
 void test_no_more_is_taken_than_there_is_room_for(void)

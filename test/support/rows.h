@@ -49,8 +49,8 @@ void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row));
 #define ROW_WORD_MAX 80
 void row_tell(const char *text, void (*tell)(char *word));
 
-/* Whether the word is "name" or "name:…"; the text after its first ":", "" if there is none; and the
- * number there, or 0. */
+/* Whether the word is "name" or "name:…"; the text after its first ":", "" if there is none; and
+ * the number there, or 0. */
 bool row_is(const char *word, const char *name);
 const char *row_text(const char *word);
 uint32_t row_number(const char *word);

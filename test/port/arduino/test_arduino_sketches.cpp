@@ -87,7 +87,7 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-/* ---------------------------------------------------------------------------------------- Scan */
+/* ---- Scan ---- */
 
 TEST(scan_prints_the_model_and_every_second_the_nearest_distance)
 {
@@ -131,7 +131,7 @@ TEST(scan_an_unplugged_lidar_stops_the_robot)
     TEST_ASSERT_TRUE(next_line().find(" complete, blind: STOP\r\n") != std::string::npos);
 }
 
-/* ---------------------------------------------------------------------------------- ObstacleStop */
+/* ---- ObstacleStop ---- */
 
 static uint8_t stop_pin()
 {
@@ -196,7 +196,7 @@ TEST(obstacle_stop_an_unplugged_lidar_stops_the_robot)
     TEST_ASSERT_EQUAL_INT(HIGH, stop_pin());
 }
 
-/* ----------------------------------------------------------------------------- Streaming, Bridge */
+/* ---- Streaming, Bridge ---- */
 
 TEST(streaming_prints_the_nearest_distance_of_each_revolution)
 {

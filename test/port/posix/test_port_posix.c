@@ -47,7 +47,7 @@ static int its_end;     /* its end of the line (-1: it is unplugged), */
 static int listener;    /* where it can be reached by a socket (-1: it cannot), */
 static char device[64]; /* and the port's name of it. */
 
-/* ---------------------------------------------------------------------- the lidar, and the time */
+/* ---- The lidar, and the time ---- */
 
 static void close_end(int *end)
 {
@@ -173,7 +173,7 @@ int clock_gettime(clockid_t clock, struct timespec *now)
     return 0;
 }
 
-/* --------------------------------------------------------------------------------------- the rig */
+/* ---- The rig ---- */
 
 void setUp(void)
 {
@@ -276,7 +276,7 @@ static int start_on_pair(tmini_t *for_lidar, const uint8_t *bytes, size_t count)
     return ends[1];
 }
 
-/* -------------------------------------------------------------------------------------- opening */
+/* ---- Opening ---- */
 
 static const struct {
     const char *path;
@@ -489,7 +489,7 @@ void test_before_it_is_started_nothing_is_received_or_sent(void)
     TEST_ASSERT_EQUAL_INT(-1, tmini_posix_port.write(&port, stop, sizeof stop));
 }
 
-/* ------------------------------------------------------------------------------------ receiving */
+/* ---- Receiving ---- */
 
 void test_the_blocking_helpers_work(void)
 {
@@ -657,7 +657,7 @@ void test_a_failure_to_wait_for_bytes_is_an_error_but_a_signal_is_not(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_wait(&port, 0));
 }
 
-/* -------------------------------------------------------------------- unplugged, plugged in again */
+/* ---- Unplugged, plugged in again ---- */
 
 void test_an_unplugged_device_stays_unplugged_for_reading_and_writing(void)
 {

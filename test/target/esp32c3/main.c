@@ -60,7 +60,7 @@ static uint8_t rx[512];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static unsigned scans;
 
-/* ------------------------------------------------------------------------------------- the board */
+/* ---- The board ---- */
 
 __attribute__((interrupt, aligned(4))) static void receive(void)
 {
@@ -111,7 +111,7 @@ static int write_uart(void *context, const uint8_t *bytes, size_t count)
     return (int)taken;
 }
 
-/* --------------------------------------------------------------------------------------- the job */
+/* ---- The job ---- */
 
 static void next_step(void)
 {
