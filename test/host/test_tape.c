@@ -235,18 +235,18 @@ static bool come(unsigned quarter, bool is_doubted)
 /* ---- Words of rows ---- */
 
 /* What is in the recording. */
-static bool tell_content(const char *word, unsigned number)
+static bool tell_content(const char *word)
 {
-    if (word[0] == 'v') { /* In chunks, of this version. */
-        put_magic(word[1] - (unsigned)'0');
-    } else if (strcmp(word, "raw") == 0) { /* No longer. */
+    if (row_is(word, "v")) { /* In chunks, of this version. */
+        put_magic(row_number(word));
+    } else if (row_is(word, "raw")) { /* No longer. */
         version = 0;
-    } else if (word[0] == '+') { /* The next chunk comes this many microseconds later. */
-        delta_us = number;
-    } else if (strncmp(word, "zeros:", 6) == 0) {
-        memset(file + size, 0, number);
-        size += number;
-    } else if (strcmp(word, "turn") == 0) {
+    } else if (row_is(word, "after")) { /* The next chunk comes this many microseconds later. */
+        delta_us = row_number(word);
+    } else if (row_is(word, "zeros")) {
+        memset(file + size, 0, row_number(word));
+        size += row_number(word);
+    } else if (row_is(word, "turn")) {
         put_turn();
     } else if (word[0] >= '0' && word[0] <= '4') { /* A packet of it. */
         put_packet(word[0] - (unsigned)'0');
@@ -257,30 +257,30 @@ static bool tell_content(const char *word, unsigned number)
 }
 
 /* What is done with it. */
-static bool tell_act(const char *word, unsigned number)
+static bool tell_act(const char *word)
 {
-    if (strcmp(word, "feed") == 0) { /* All that is there is decoded. */
+    if (row_is(word, "feed")) { /* All that is there is decoded. */
         feed_to(size);
         expect_next(TAPE_NEEDS_BYTES);
-    } else if (strncmp(word, "until:", 6) == 0) { /* What came up to this time. */
+    } else if (row_is(word, "until")) { /* What came up to this time. */
         feed_to(size);
-        tape.until_us = number;
+        tape.until_us = row_number(word);
         expect_next(TAPE_LATER);
-    } else if (strcmp(word, "scan") == 0) { /* Up to the end of the next scan. */
+    } else if (row_is(word, "scan")) { /* Up to the end of the next scan. */
         feed_to(size);
         while (tape_next(&tape) != TAPE_SCAN) {
         }
-    } else if (strcmp(word, "blocks") == 0) { /* To the end, in blocks of a byte, and of more. */
+    } else if (row_is(word, "blocks")) { /* To the end, in blocks of a byte, and of more. */
         for (size_t block = 1; block < 2 * size; block = 3 * block + 1) {
             play_blocks(block);
         }
-    } else if (strcmp(word, "end") == 0) {
+    } else if (row_is(word, "end")) {
         play_whole();
-    } else if (strcmp(word, "rest") == 0 || strcmp(word, "no-rest") == 0) {
+    } else if (row_is(word, "rest") || row_is(word, "no-rest")) {
         TEST_ASSERT_EQUAL(word[0] == 'r', stream_end(&tape.stream));
-    } else if (strcmp(word, "break") == 0) {
+    } else if (row_is(word, "break")) {
         stream_break(&tape.stream);
-    } else if (strcmp(word, "late") == 0) { /* By a network. */
+    } else if (row_is(word, "late")) { /* By a network. */
         tape.stream.is_late = true;
     } else {
         return false;
@@ -288,45 +288,35 @@ static bool tell_act(const char *word, unsigned number)
     return true;
 }
 
-/* NAME=NUMBER: what is known then. */
-static void tell_value(const char *word, unsigned number)
+/* NAME:NUMBER: what is known then. */
+static bool tell_number(const char *word)
 {
     const stream_t *const stream = &tape.stream;
-    const struct {
-        const char *name;
-        count_t value;
-    } values[] = {
-        {"bytes", tape.bytes},
-        {"time_us", tape.time_us},
-        {"skipped", tape_skipped(&tape)},
+    const row_number_t numbers[] = {
+        {"bytes", (uint32_t)tape.bytes},
+        {"time_us", (uint32_t)tape.time_us},
+        {"skipped", (uint32_t)tape_skipped(&tape)},
         {"damages", tape.chunks.damages},
         {"scans", scans}, /* That tape_next() has announced. */
-        {"packets", stream->packets},
-        {"complete", stream->complete},
-        {"points_before", stream->points_before},
-        {"stray_bytes", stream->stray_bytes},
-        {"last_crc_bytes", stream->last_crc_bytes},
-        {"damaged", stream->damaged},
+        {"packets", (uint32_t)stream->packets},
+        {"complete", (uint32_t)stream->complete},
+        {"points_before", (uint32_t)stream->points_before},
+        {"stray_bytes", (uint32_t)stream->stray_bytes},
+        {"last_crc_bytes", (uint32_t)stream->last_crc_bytes},
+        {"damaged", (uint32_t)stream->damaged},
         {"packet_ms", stream->packet_ms},
         {"sent_ms", stream->sent_ms},
         {"longest_ms", stream->longest_ms},
         {"frequency", stream->frequency_chz},
         {"faults", stream_faults(stream)},
         {"reports_nothing", stream_reports_nothing(stream)},
-        {"scan.number", stream->number},
+        {"scan.number", (uint32_t)stream->number},
         {"scan.complete", stream->scan.complete},
         {"scan.packets", stream->scan.packets},
         {"scan.count", stream->scan.count},
         {"scan.start_ms", stream->scan.start_ms},
     };
-    const size_t length = strcspn(word, "=");
-    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
-        if (strlen(values[i].name) == length && strncmp(word, values[i].name, length) == 0) {
-            TEST_ASSERT_EQUAL_UINT64_MESSAGE(number, values[i].value, word);
-            return;
-        }
-    }
-    TEST_FAIL_MESSAGE(word);
+    return row_expects(word, numbers);
 }
 
 /* QUARTER@MS: a packet comes from a driver; QUARTER?@MS: a doubtful one; …!: it ends a scan; …*: or
@@ -343,11 +333,10 @@ static void tell_packet(const char *word)
 
 static void tell(char *word)
 {
-    const unsigned number = (unsigned)strtoul(word + strcspn(word, "+:=") + 1, NULL, 10);
     if (strchr(word, '@') != NULL) {
         tell_packet(word);
-    } else if (!tell_content(word, number) && !tell_act(word, number)) {
-        tell_value(word, number);
+    } else if (!tell_content(word) && !tell_act(word) && !tell_number(word)) {
+        TEST_FAIL_MESSAGE(word);
     }
 }
 
@@ -360,60 +349,60 @@ static void run(const row_t *row)
 static const row_t rows[] = {
     /* A recording. */
     ROW(blocks_of_any_size_give_the_same,
-        "30( turn ) blocks packets=150 scans=29 complete=29"),
+        "30( turn ) blocks packets:150 scans:29 complete:29"),
     ROW(blocks_of_any_size_give_the_same_chunks,
-        "v2 30( turn ) blocks packets=150 time_us=6300000 damages=0"),
+        "v:2 30( turn ) blocks packets:150 time_us:6300000 damages:0"),
     ROW(what_came_later_is_not_there_yet,
-        "v2 +1000 turn until:999 packets=0 until:43000 packets=2 until:85000 packets=3"),
+        "v:2 after:1000 turn until:999 packets:0 until:43000 packets:2 until:85000 packets:3"),
     /* While the next chunk is looked for, the lidar's bytes are passed on, down to the last. */
     ROW(a_recording_may_end_in_a_damaged_place,
-        "v1 zeros:4 raw 1 end damages=1 packets=1 bytes=134"),
+        "v:1 zeros:4 raw 1 end damages:1 packets:1 bytes:134"),
 
     /* What a stream reports. */
     ROW(what_precedes_the_first_packet_is_no_damage,
-        "zeros:300 1 end stray_bytes=0 damaged=0 skipped=300"),
+        "zeros:300 1 end stray_bytes:0 damaged:0 skipped:300"),
     ROW(one_byte_before_a_start_packet_is_a_last_crc,
-        "turn zeros:1 turn end last_crc_bytes=1 stray_bytes=0"),
+        "turn zeros:1 turn end last_crc_bytes:1 stray_bytes:0"),
     ROW(two_bytes_before_a_start_packet_are_damage,
-        "turn zeros:2 turn end last_crc_bytes=0 stray_bytes=2"),
+        "turn zeros:2 turn end last_crc_bytes:0 stray_bytes:2"),
     ROW(the_time_before_the_first_packet_is_no_pause,
-        "v2 +66000000 turn +70000 turn end longest_ms=70 complete=1"),
+        "v:2 after:66000000 turn after:70000 turn end longest_ms:70 complete:1"),
     ROW(a_pause_may_be_longer_than_a_minute,
-        "v2 +0 turn +66000000 turn end longest_ms=66000 packet_ms=66336"),
+        "v:2 after:0 turn after:66000000 turn end longest_ms:66000 packet_ms:66336"),
     /* The start packet's CT has 60, which is 6.00 Hz. */
     ROW(the_frequency_is_that_of_the_latest_start_packet,
-        "4 feed frequency=0 0 1 feed frequency=600"),
+        "4 feed frequency:0 0 1 feed frequency:600"),
     /* Units without LastCRC (section 9.1); this is known after a whole turn. */
     ROW(a_unit_may_report_nothing_in_the_stream,
-        "turn feed reports_nothing=0 0 feed complete=1 reports_nothing=1 faults=256"),
+        "turn feed reports_nothing:0 0 feed complete:1 reports_nothing:1 faults:256"),
     ROW(after_last_crc_a_report_may_follow,
-        "turn turn zeros:1 0 feed complete=2 last_crc_bytes=1 reports_nothing=0"),
+        "turn turn zeros:1 0 feed complete:2 last_crc_bytes:1 reports_nothing:0"),
 
     /* What is a scan. A quarter has 40 points, a turn 161. */
     ROW(a_scan_has_the_number_of_its_start_packet,
-        "4 turn turn 0 scan scan.number=1 scan.count=161 scan.complete=1"
-        " scan scan.number=2 scan.count=161 scan.complete=1 points_before=40"),
+        "4 turn turn 0 scan scan.number:1 scan.count:161 scan.complete:1"
+        " scan scan.number:2 scan.count:161 scan.complete:1 points_before:40"),
     ROW(the_end_leaves_the_rest_of_a_scan_once,
-        "turn 0 1 end scans=1 rest scan.number=2 scan.count=41 scan.complete=0 no-rest"),
+        "turn 0 1 end scans:1 rest scan.number:2 scan.count:41 scan.complete:0 no-rest"),
     ROW(a_start_packet_and_then_a_pause_is_no_scan,
-        "v2 turn 0 +1001000 turn turn end scans=2 complete=2 scan.number=3 longest_ms=1001"),
+        "v:2 turn 0 after:1001000 turn turn end scans:2 complete:2 scan.number:3 longest_ms:1001"),
     ROW(a_start_packet_is_not_joined_with_what_comes_after_a_pause,
-        "v2 0 +1001000 1 end longest_ms=1001 rest scan.packets=1"),
+        "v:2 0 after:1001000 1 end longest_ms:1001 rest scan.packets:1"),
     ROW(a_scan_goes_on_after_a_second,
-        "v2 0 1 +1000000 2 end scans=0"),
+        "v:2 0 1 after:1000000 2 end scans:0"),
     /* The angles fit together, but whole turns may be missing in the pause. */
     ROW(a_scan_does_not_go_on_after_a_longer_pause,
-        "v2 0 1 +1001000 2 end scans=1"),
+        "v:2 0 1 after:1001000 2 end scans:1"),
     /* The packets before and after them must not be joined; how many are lost is unknown. */
     ROW(a_scan_does_not_go_on_after_unreadable_bytes,
-        "0 1 zeros:70000 2 zeros:70000 3 end packets=4 scans=1 damaged=0 rest scan.packets=1"),
+        "0 1 zeros:70000 2 zeros:70000 3 end packets:4 scans:1 damaged:0 rest scan.packets:1"),
     /* Computed backwards from the packets, the first sample would be before it. */
     ROW(no_scan_begins_before_the_recording,
-        "0 zeros:600 1 2 end rest scan.packets=2 scan.start_ms=0"),
+        "0 zeros:600 1 2 end rest scan.packets:2 scan.start_ms:0"),
 
     /* Packets from a driver. After a pause, all of a batch may be doubtful. */
     ROW(a_doubtful_batch_is_one_scan,
-        "0@0 1@42 2?@400! 3?@400 4@440 0@480! scan.packets=3 scan.complete=0 damaged=0"),
+        "0@0 1@42 2?@400! 3?@400 4@440 0@480! scan.packets:3 scan.complete:0 damaged:0"),
     ROW(a_pause_also_ends_a_doubtful_scan,
         "0@0 1@42 2?@400! 3?@400 4?@1401!"),
     ROW(what_was_interrupted_is_no_scan,
@@ -421,17 +410,17 @@ static const row_t rows[] = {
     /* 40 samples take 10 ms. Packets that come together are dated 11 ms apart, so that those that
      * come in time catch up by 1 ms each. */
     ROW(packets_that_come_late_get_the_times_at_which_they_were_sent,
-        "late 0@900 1@911 sent_ms=911 2@990 sent_ms=922 3@990 sent_ms=933 4@990 sent_ms=944"
-        " 0@990! sent_ms=945 1@1000* sent_ms=956 1@1010* sent_ms=967 42( 1@+10* ) sent_ms=1429"
-        " 1@+10* sent_ms=1440 1@+10* sent_ms=1450"),
+        "late 0@900 1@911 sent_ms:911 2@990 sent_ms:922 3@990 sent_ms:933 4@990 sent_ms:944"
+        " 0@990! sent_ms:945 1@1000* sent_ms:956 1@1010* sent_ms:967 42( 1@+10* ) sent_ms:1429"
+        " 1@+10* sent_ms:1440 1@+10* sent_ms:1450"),
     ROW(a_packet_that_comes_early_gets_the_time_at_which_it_comes,
-        "late 1@100 2@110 sent_ms=110"),
+        "late 1@100 2@110 sent_ms:110"),
     ROW(a_packet_that_comes_a_second_late_was_sent_in_time,
-        "late 1@0 2@1011 sent_ms=11"),
+        "late 1@0 2@1011 sent_ms:11"),
     ROW(a_packet_that_comes_later_was_sent_then,
-        "late 1@0 2@1012 sent_ms=1012"),
+        "late 1@0 2@1012 sent_ms:1012"),
     ROW(without_a_network_packets_are_not_late,
-        "1@0 2@500 sent_ms=500"),
+        "1@0 2@500 sent_ms:500"),
 };
 /* clang-format on */
 
