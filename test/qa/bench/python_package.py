@@ -18,7 +18,7 @@ SCANNING_S = 5
 def measure(folder, clean):
     """Installs the package; returns {"hour": seconds, "percent": of one core}."""
     from targets import ROOT, run  # pylint: disable=import-outside-toplevel
-    python = folder / "python" / "bin" / "python"
+    python = ROOT / "build" / "test" / "python" / "venv" / "bin" / "python"
     recording = folder / "hour.bin"
     recording.write_bytes(clean * (3600 * BYTES_PER_SECOND // len(clean) + 1))
     run(python, "-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps",

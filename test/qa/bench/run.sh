@@ -66,12 +66,12 @@ has_library arm-none-eabi-gcc --specs=nano.specs ||
 has_library riscv64-unknown-elf-gcc --specs=picolibc.specs ||
     skip "riscv64-unknown-elf-gcc or picolibc is not installed"
 
-# The emulator and the Python package get separate virtual environments.
+# The emulator gets a virtual environment of its own, the Python package that of its tests.
 mkdir -p "$work"
 install_requirements "$work/venv" "$root/test/qa/bench/requirements.txt" \
     >"$work/install.log" 2>&1 ||
     skip "the emulator cannot be installed; see $work/install.log"
-install_requirements "$work/python" "$root/test/python/requirements.txt" \
+install_requirements "$root/build/test/python/venv" "$root/test/python/requirements.txt" \
     >"$work/install.log" 2>&1 ||
     skip "what the Python package needs cannot be installed; see $work/install.log"
 
