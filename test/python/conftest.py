@@ -5,6 +5,7 @@
 
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import time
@@ -16,6 +17,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 RECORDINGS = ROOT / "test" / "recordings"
 TOOL, SIM = os.environ["TMINI_TOOL"], os.environ["TMINI_SIM"]
 sys.path.append(str(ROOT / "test" / "host"))  # lidar_bytes
+if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN:  # As nohup sets it: programs would inherit it.
+    signal.signal(signal.SIGHUP, lambda *_: None)
 
 
 class Simulator:

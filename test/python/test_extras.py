@@ -3,6 +3,7 @@
 
 """`python -m tmini`: what it writes and sends is read by programs of others."""
 
+import itertools
 import json
 import math
 import signal
@@ -10,12 +11,14 @@ import struct
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import tmini
 from conftest import RECORDINGS, SIM
+from tmini._command import scans_of
 
 RECORDING = RECORDINGS / "sim-6hz.bin"
 
@@ -31,10 +34,10 @@ def messages_in(path):
             yield stamp.sec + stamp.nanosec / 1e9, message
 
 
-def nearest(scan, ray):
+def nearest(scan, ray, half=0.499):
     """The nearest distance within half a degree of ray / 360 of a circle, counter-clockwise."""
     away = (scan.angles_deg + ray + 180) % 360 - 180
-    here = scan.ranges_m[(away > -0.499) & (away < 0.499)]
+    here = scan.ranges_m[(away > -half) & (away < half)]
     return np.nanmin(here, initial=np.inf)
 
 
@@ -78,10 +81,22 @@ def test_times_and_angles_are_right_however_the_lidar_is_mounted(run, tmp_path, 
     first = round(math.degrees(message.angle_min))
     assert abs(first - begin_deg) <= 1
     assert np.isnan(message.ranges[-100 - first]) == ("mask" in mount)
+    for other, (_, sent) in zip(scans, found):
+        for ray in range(4, 356):
+            if math.isfinite(sent.ranges[ray]):
+                assert nearest(other, ray + first, 0.501) - 1e-6 <= sent.ranges[ray]
+                assert sent.ranges[ray] <= nearest(other, ray + first) + 1e-6
     for index in (5, 300, 600):
         ray = round(-scan.angles_deg[index] - first) % 360
         assert message.ranges[ray] == pytest.approx(nearest(scan, ray + first), abs=1e-6)
         assert stamp + ray * message.time_increment == pytest.approx(scan.times_s[index], abs=0.003)
+
+
+@pytest.mark.parametrize("rays", [2, 65534])
+def test_a_message_has_the_wanted_number_of_rays(run, tmp_path, rays):
+    pytest.importorskip("mcap_ros2")
+    assert run("mcap", RECORDING, tmp_path / "room.mcap", "--rays", rays)[0] == 0
+    assert {len(message.ranges) for _, message in messages_in(tmp_path / "room.mcap")} == {rays}
 
 
 def test_a_file_is_not_overwritten_unless_asked_and_not_made_from_nothing(run, tmp_path):
@@ -112,6 +127,22 @@ def test_a_signal_ends_a_live_file_and_stops_the_lidar(command, simulator, tmp_p
     simulator.await_idle()
     stamps = [stamp for stamp, _ in messages_in(path)]
     assert len(stamps) >= 2 and begun < stamps[0] < stamps[-1] < time.time()
+
+
+@pytest.mark.parametrize("seconds, longest, remarks", [
+    (None, 3, "no scans from x; waiting for it\nthe lidar is back\n"),
+    (60, 3, "no scans from x; waiting for it\nthe lidar is back\n"), (2, 2, "")], ids=["ever", "a_minute", "briefly"])
+def test_missing_scans_are_remarked_once_after_three_seconds(capsys, seconds, longest, remarks):
+    scans, waits = ["one", None, None, "two", "three"], []
+
+    def read(timeout):
+        waits.append(timeout)
+        return scans.pop(0)
+
+    lidar = SimpleNamespace(port="x", read=read)
+    assert list(itertools.islice(scans_of(lidar, seconds), 3)) == ["one", "two", "three"]
+    assert capsys.readouterr().err == remarks
+    assert waits == pytest.approx([longest] * 5, abs=0.2)
 
 
 def test_foxglove_gets_each_scan(command, simulator):
@@ -193,6 +224,7 @@ def test_without_its_extra_a_command_names_the_line_that_installs_it(run, monkey
 @pytest.mark.parametrize("words, said", [
     ("", "required: COMMAND"), ("dance", "invalid choice: 'dance'"), ("mcap", "required: SOURCE, FILE"),
     ("mcap x y --rays 7", "invalid _even value: '7'"), ("mcap x y --rays 0", "invalid _even value: '0'"),
+    ("mcap x y --rays 65536", "invalid _even value: '65536'"),
     ("mcap x y --mask 10", "invalid _arc value: '10'")])
 def test_wrong_words_are_answered_in_a_sentence(run, words, said):
     status, _, error = run(*words.split())

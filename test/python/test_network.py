@@ -95,6 +95,21 @@ def test_a_timed_stream_with_stalls_of_half_a_second_spoils_neither_scans_nor_ti
     assert sender.heard == b""
 
 
+def test_a_timed_stream_that_is_there_later_only_listens(sender, monkeypatch):
+    opened, open_line = [], tmini._lidar.open_line
+
+    def open_later(name):
+        opened.append(name)
+        if len(opened) < 3:
+            raise OSError
+        return open_line(name)
+
+    monkeypatch.setattr(tmini._lidar, "open_line", open_later)
+    with tmini.Lidar(sender.port, timeout=None, backlog=9999) as lidar:
+        assert [lidar.read(1000).number for _ in range(16)] == list(range(1, 17))
+    assert sender.heard == b""
+
+
 def test_a_timed_stream_takes_no_frequency(sender):
     with pytest.raises(tmini.LidarError, match="whose sender sets the frequency"):
         tmini.Lidar(sender.port, frequency_hz=8)

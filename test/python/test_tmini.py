@@ -71,8 +71,10 @@ def test_damage_of_a_recording_is_reported_and_the_rest_read(dropped, said, tmp_
     for at in reversed(dropped):
         del file[at]
     path.write_bytes(file)
-    with pytest.warns(RuntimeWarning, match=said):
-        assert [as_json(scan) for scan in tmini.read(path)] == decode(path)
+    with pytest.warns(RuntimeWarning, match=said) as warned:
+        scans = list(tmini.read(path))
+    assert warned[0].filename == __file__
+    assert [as_json(scan) for scan in scans] == decode(path)
 
 
 def test_what_is_no_recording_of_a_lidar_is_reported(tmp_path):
