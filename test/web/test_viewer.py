@@ -106,6 +106,17 @@ def test_the_picture_is_as_light_as_the_system_or_as_chosen(simulated):
             simulated.look("r === 255 && g === 255 && b === 255")[0] > 10000) == light)
 
 
+def touch(page, *events):
+    """Each event: kind, finger, x and y."""
+    page.run("""const picture = document.querySelector('#picture');
+        picture.setPointerCapture = () => {};
+        const at = picture.getBoundingClientRect();
+        for (const [kind, pointerId, x, y] of arguments[0]) {
+            picture.dispatchEvent(new PointerEvent(`pointer${kind}`, { pointerId,
+                clientX: at.left + 1 + x, clientY: at.top + 1 + y }));
+        }""", events)
+
+
 def test_the_place_under_the_pointer_is_shown_and_the_picture_enlarged_and_moved(simulated):
     """Up is ahead, right is right. In an enlarged picture the same pixels are fewer metres."""
     place = simulated.place_at
@@ -115,16 +126,12 @@ def test_the_place_under_the_pointer_is_shown_and_the_picture_enlarged_and_moved
     simulated.click("zoom-in")
     assert place(275, 100)[1] - place(275, 300)[1] == pytest.approx((above[1] - below[1]) / 1.5, abs=0.02)
     before = place(200, 200)
-    simulated.run("""const picture = document.querySelector('#picture');
-        picture.setPointerCapture = () => {};
-        const at = picture.getBoundingClientRect();
-        for (const [kind, x] of [['down', 200], ['move', 250], ['up', 250]]) {
-            picture.dispatchEvent(new PointerEvent(`pointer${kind}`, { pointerId: 1,
-                clientX: at.left + 1 + x, clientY: at.top + 201 }));
-        }""")
+    touch(simulated, ("down", 1, 200, 200), ("move", 1, 250, 200), ("up", 1, 250, 200))
     assert place(250, 200) == before
     simulated.click("zoom-whole")
     assert place(275, 100) == above
+    touch(simulated, ("down", 1, 200, 200), ("down", 2, 300, 200), ("move", 2, 400, 200))
+    assert place(275, 100)[1] - place(275, 300)[1] == pytest.approx((above[1] - below[1]) / 2, abs=0.02)
 
 
 def test_the_mounting_outlives_a_reload(simulated):
