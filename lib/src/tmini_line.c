@@ -101,8 +101,7 @@ static void note_bytes(tmini_t *lidar, size_t count, size_t held, uint32_t passe
                        bool is_scanning)
 {
     tmini_line_t *const line = &lidar->line;
-    const size_t noted = line->held;
-    const size_t fresh = count + held - noted;
+    const size_t fresh = count + held - line->held;
     const size_t arrived = line->received + held;
     line->held = (uint16_t)held;
     if (fresh == 0) {
@@ -119,7 +118,7 @@ static void note_bytes(tmini_t *lidar, size_t count, size_t held, uint32_t passe
             late_ms = 0;
         }
     }
-    note_delay(line, late_ms, line->busy_ms == 0 && noted == 0);
+    note_delay(line, late_ms, line->busy_ms == 0);
 }
 
 static void note_silence(tmini_line_t *line, uint32_t passed_ms)

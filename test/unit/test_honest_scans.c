@@ -28,6 +28,7 @@ void tearDown(void)
 /* Words of the rows. Turns are named by numbers, packets by their index in a turn, from 0 to 18.
  *
  *     open:4096       from the beginning, with a ring of this size; ct: with CT information
+ *     clock:-50       the clock is set
  *     T:100           turn 100 comes; T:101:7-18: of turn 101 packets 7 to 18; T:102:0: the first
  *     busy:100 …      the same, while the program does not poll; poll; poll-scan: once
  *     lost:101:18     this packet is sent and lost
@@ -72,6 +73,7 @@ static void tell_word(char *word)
         {"scans", turns_scans.count},         {"complete", turns_scans.complete},
         {"count", turns_scans.last.count},    {"gaps", turns_scans.last.gaps},
         {"whole", turns_scans.last.complete}, {"overruns", counters.bytes_overrun > 0},
+        {"end-ms", turns_scans.last.end_ms},  {"age", tmini_scan_age_ms(&turns.lidar)},
     };
     const uint16_t turn = (uint16_t)row_number(word);
     unsigned first;
@@ -82,6 +84,8 @@ static void tell_word(char *word)
         turns_open_scanning(row_number(word), false);
     } else if (row_is(word, "ct")) {
         turns.ct_information = true;
+    } else if (row_is(word, "clock")) {
+        turns.now_ms = row_number(word);
     } else if (row_is(word, "T")) {
         (void)turns_pass(first, last, turn);
     } else if (row_is(word, "busy")) {
@@ -121,6 +125,8 @@ static void tell_row(const row_t *row)
 
 static const row_t rows[] IN_FLASH = {
     ROW(on_a_healthy_line_every_turn_is_a_complete_scan, "T:1 T:2 T:3 T:4 complete:3 count:658"),
+    ROW(a_scan_that_ends_when_the_clock_wraps_around_has_an_age, /* A later packet took 9 ms. */
+        "clock:-334 T:1 T:2 busy:3:0-1 poll poll whole:1 end-ms:0 age:8"),
     /* ---- The line is silent in mid-scan, then goes on at the right angle of another turn ---- */
     ROW(a_silence_of_whole_turns_ends_the_scan, /* A turn takes 164 ms. */
         LATER("101", "164") LATER("102", "328") LATER("103", "492") LATER("105", "820")),
