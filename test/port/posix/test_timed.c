@@ -27,8 +27,9 @@ void tearDown(void) {}
 static void put(const void *bytes, size_t count)
 {
     TEST_ASSERT_TRUE(stream_size + count <= sizeof stream);
-    memcpy(stream + stream_size, bytes, count);
-    stream_size += count;
+    for (size_t i = 0; i < count; i++) {
+        stream[stream_size++] = ((const uint8_t *)bytes)[i];
+    }
 }
 
 static void put_chunk(uint32_t delta_us, const void *bytes, size_t count)
