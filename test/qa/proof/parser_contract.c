@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-#include "parser_contract.h"
+#include "proof.h"
 
 bool same_expectations(const tmini_parser_t *before, const tmini_parser_t *after)
 {

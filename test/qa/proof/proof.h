@@ -3,7 +3,7 @@
 
 /* Shared by the proofs. A proof is a function prove_…(): it sets up any state that the module's
  * invariants (invariants.h) allow, with any contents, calls one function, and makes claims. The
- * model checker tries all values at once. A proof ends with REACHED(), a claim that must fail:
+ * model checker tries all values at once. After a proof, prove.py makes a claim that must fail:
  * otherwise no values satisfy the assumptions, and nothing would be proved.
  *
  * The library is compiled with proof_atomic.h: between any two accesses to an index that both sides
@@ -21,7 +21,6 @@
 
 #define ASSUME(condition) __CPROVER_assume(condition)
 #define CLAIM(condition) __CPROVER_assert(condition, #condition)
-#define REACHED() __CPROVER_assert(0, "the end is not reached")
 
 /* Return any value. */
 size_t nondet_size(void);
@@ -54,5 +53,20 @@ void let_bytes_come(tmini_ring_t *ring);
 
 /* True if bytes may have arrived since the last call of let_bytes_come() with a ring. */
 bool have_bytes_come(void);
+
+/* ---- The contract of the parser's functions: parser_contract.c ---- */
+
+/* proof_parser.c proves that the parser keeps it. stubs.c, which replaces the parser in the
+ * driver's proofs, assumes nothing else. */
+
+/* True if the members are equal that only init and await may change. */
+bool same_expectations(const tmini_parser_t *before, const tmini_parser_t *after);
+
+/* The contract of tmini_parser_next(), which has returned `type`. */
+bool next_keeps_its_word(const tmini_parser_t *before, const tmini_parser_t *after,
+                         tmini_frame_type_t type);
+
+/* The contract of tmini_parser_skip_all() and tmini_parser_abandon(). */
+bool skip_keeps_its_word(const tmini_parser_t *before, const tmini_parser_t *after);
 
 #endif

@@ -165,7 +165,6 @@ void prove_driver_init(void)
     CLAIM(status != TMINI_OK ||
           lidar.command.wanted_chz == (config.frequency_chz + 5u) / 10u * 10u);
     CLAIM(tmini_init(NULL, &config) == TMINI_ERROR_ARGUMENT);
-    REACHED();
 }
 
 /* ---- The steps of a poll ---- */
@@ -187,7 +186,6 @@ void prove_driver_look(void)
     any_polled_lidar();
     look(&lidar);
     CLAIM(is_sound());
-    REACHED();
 }
 
 void prove_driver_take_event(void)
@@ -200,7 +198,6 @@ void prove_driver_take_event(void)
     CLAIM(event >= TMINI_EVENT_STARTED && event <= TMINI_EVENT_LOST);
     CLAIM((before & ((1u << event) - 1)) == 0); /* It is the first one. */
     CLAIM(lidar.pending == (before ^ 1u << event));
-    REACHED();
 }
 
 /* A waiting packet is added before the next frame is searched for. */
@@ -211,7 +208,6 @@ void prove_driver_next(void)
     const tmini_frame_type_t type = tmini_decoder_next(&lidar.decoder, 0);
     CLAIM(!lidar.decoder.builder.ended);
     CLAIM(type == TMINI_FRAME_REPLY || is_sound());
-    REACHED();
 }
 
 void prove_driver_packet(void)
@@ -220,7 +216,6 @@ void prove_driver_packet(void)
     ASSUME(tmini_decoder_next(&lidar.decoder, 0) == TMINI_FRAME_PACKET);
     take_packet(&lidar);
     CLAIM(is_sound());
-    REACHED();
 }
 
 void prove_driver_reply(void)
@@ -229,7 +224,6 @@ void prove_driver_reply(void)
     ASSUME(tmini_decoder_next(&lidar.decoder, 0) == TMINI_FRAME_REPLY);
     take_reply(&lidar);
     CLAIM(is_sound());
-    REACHED();
 }
 
 void prove_driver_nothing(void)
@@ -241,7 +235,6 @@ void prove_driver_nothing(void)
         (void)give_up_candidate(&lidar);
     }
     CLAIM(is_sound());
-    REACHED();
 }
 
 void prove_driver_keep_time(void)
@@ -249,7 +242,6 @@ void prove_driver_keep_time(void)
     any_receiving_lidar();
     keep_time(&lidar);
     CLAIM(is_sound());
-    REACHED();
 }
 
 /* Proves tmini_poll() itself; its steps do nothing here. */
@@ -265,7 +257,6 @@ void prove_driver_poll(void)
     CLAIM(before != 0 || event == TMINI_EVENT_NONE || event == TMINI_EVENT_MORE);
     CLAIM(event == TMINI_EVENT_NONE ? lidar.idle_ms > 0 || tmini_command_is_sending(&lidar)
                                     : lidar.idle_ms == 0);
-    REACHED();
 }
 
 /* ---- Commands ---- */
@@ -293,25 +284,21 @@ static void prove_question(tmini_status_t (*question)(tmini_t *), tmini_event_t 
 void prove_driver_request_info(void)
 {
     prove_question(tmini_request_info, TMINI_EVENT_INFO);
-    REACHED();
 }
 
 void prove_driver_request_health(void)
 {
     prove_question(tmini_request_health, TMINI_EVENT_HEALTH);
-    REACHED();
 }
 
 void prove_driver_request_frequency(void)
 {
     prove_question(tmini_request_frequency, TMINI_EVENT_FREQUENCY);
-    REACHED();
 }
 
 void prove_driver_reboot(void)
 {
     prove_question(tmini_reboot, TMINI_EVENT_REBOOTED);
-    REACHED();
 }
 
 /* A start begins at once, or after the current operation. It does nothing if the lidar is already
@@ -325,7 +312,6 @@ void prove_driver_start(void)
     CLAIM(is_sound() && is_to_scan(&lidar));
     CLAIM(!is_wanted || lidar.command.phase == phase);
     CLAIM(tmini_state(&lidar) >= TMINI_STATE_STARTING);
-    REACHED();
 }
 
 void prove_driver_set_frequency(void)
@@ -341,7 +327,6 @@ void prove_driver_set_frequency(void)
     CLAIM((status == TMINI_OK) == (is_permitted && !lidar.is_listen_only));
     CLAIM(lidar.command.wanted_chz ==
           (status == TMINI_OK ? (frequency_chz + 5u) / 10u * 10u : before_chz));
-    REACHED();
 }
 
 void prove_driver_stop(void)
@@ -351,7 +336,6 @@ void prove_driver_stop(void)
     CLAIM(is_sound() && !is_to_scan(&lidar));
     CLAIM(tmini_state(&lidar) ==
           (lidar.is_listen_only ? TMINI_STATE_UNKNOWN : TMINI_STATE_STOPPING));
-    REACHED();
 }
 
 void prove_driver_withdraw(void)
@@ -361,7 +345,6 @@ void prove_driver_withdraw(void)
     ASSUME(query >= TMINI_EVENT_INFO && query <= TMINI_EVENT_FREQUENCY);
     tmini_withdraw(&lidar, (tmini_event_t)query);
     CLAIM(is_sound() && !tmini_recovery_wishes(&lidar, (tmini_event_t)query));
-    REACHED();
 }
 
 /* The age never shrinks by the clock alone, and a task may sleep for a minute at most. */
@@ -370,5 +353,4 @@ void prove_driver_time(void)
     any_lidar();
     CLAIM(tmini_scan_age_ms(&lidar) <= UINT32_MAX / 2);
     CLAIM(tmini_next_poll_ms(&lidar) <= UINT16_MAX);
-    REACHED();
 }

@@ -13,7 +13,7 @@ void at_loop_head(void);
 
 #include "tmini_parser.c"
 
-#include "parser_contract.h"
+#include "proof.h"
 
 enum verdict any_classify(tmini_parser_t *same, size_t unread);
 void any_skip(tmini_parser_t *same, size_t unread);
@@ -61,7 +61,6 @@ void prove_parser_init(void)
     CLAIM(status != TMINI_OK || parser_is_sound(&parser));
     CLAIM(tmini_parser_init(NULL, &ring, max_samples) == TMINI_ERROR_ARGUMENT);
     CLAIM(tmini_parser_init(&parser, NULL, max_samples) == TMINI_ERROR_ARGUMENT);
-    REACHED();
 }
 
 void prove_parser_await(void)
@@ -75,7 +74,6 @@ void prove_parser_await(void)
     CLAIM((status == TMINI_OK) == (is_null || 7u + header.length <= ring.window));
     CLAIM(parser.awaiting == (status == TMINI_OK && !is_null));
     CLAIM(parser.frame.size == before.frame.size);
-    REACHED();
 }
 
 /* classify() changes only kind and need, and counters and effort for a failed candidate; a complete
@@ -95,7 +93,6 @@ void prove_parser_classify(void)
     CLAIM(parser.effort == before.effort ||
           (verdict == NOT_A_FRAME && parser.effort == (uint16_t)(before.effort + parser.need)));
     CLAIM(parser.frame.gap == before.frame.gap);
-    REACHED();
 }
 
 /* The samples' part of the checksum as defined in section 5: byte by byte. */
@@ -118,7 +115,6 @@ void prove_parser_xor_piece(void)
     const size_t samples = nondet_size();
     ASSUME(samples <= 9);
     CLAIM(xor_piece(bytes, samples) == contribution(bytes, samples));
-    REACHED();
 }
 
 /* The samples may be anywhere in the ring, also across its end. */
@@ -141,7 +137,6 @@ void prove_parser_checksum(void)
     }
     sum ^= contribution(samples, frame.header[LSN]);
     CLAIM(checksum_matches(&frame) == (sum == 0));
-    REACHED();
 }
 
 void prove_parser_skip(void)
@@ -163,7 +158,6 @@ void prove_parser_skip(void)
     CLAIM(parser.frame.gap >= before.frame.gap);
     CLAIM(skipped == 1 || skipped + before.effort <= TMINI_PARSER_EFFORT);
     CLAIM(parser.effort == (uint16_t)(before.effort + skipped + TMINI_CANDIDATE_EFFORT));
-    REACHED();
 }
 
 /* With DMA, bytes that may have been overwritten are skipped. */
@@ -178,7 +172,6 @@ void prove_parser_drop_overwritten(void)
     CLAIM(skip_keeps_its_word(&before, &parser));
     CLAIM(head - tmini_ring_tail(&ring) <= ring.window);
     CLAIM(parser.frame.gap == before.frame.gap || parser.frame.gap == TMINI_GAP_UNKNOWN);
-    REACHED();
 }
 
 void prove_parser_pass_lost_bytes(void)
@@ -191,7 +184,6 @@ void prove_parser_pass_lost_bytes(void)
     CLAIM(is_accounted_for());
     CLAIM(skip_keeps_its_word(&before, &parser));
     CLAIM(tmini_ring_is_closed(&ring) || tmini_ring_distance(stored, tmini_ring_tail(&ring)) == 0);
-    REACHED();
 }
 
 void prove_parser_release(void)
@@ -201,7 +193,6 @@ void prove_parser_release(void)
     CLAIM(is_accounted_for());
     CLAIM(skip_keeps_its_word(&before, &parser));
     CLAIM(before.frame.size == 0 || parser.frame.gap == 0);
-    REACHED();
 }
 
 void prove_parser_deliver(void)
@@ -213,7 +204,6 @@ void prove_parser_deliver(void)
     CLAIM(is_accounted_for());
     CLAIM(next_keeps_its_word(&before, &parser, type));
     CLAIM(type == before.kind && parser.frame.size == before.need);
-    REACHED();
 }
 
 void prove_parser_skip_all(void)
@@ -224,7 +214,6 @@ void prove_parser_skip_all(void)
     CLAIM(is_accounted_for());
     CLAIM(skip_keeps_its_word(&before, &parser));
     CLAIM(tmini_parser_pending(&parser) == 0);
-    REACHED();
 }
 
 void prove_parser_abandon(void)
@@ -234,7 +223,6 @@ void prove_parser_abandon(void)
     CLAIM(is_accounted_for());
     CLAIM(parser_is_sound(&parser) && same_expectations(&before, &parser));
     CLAIM(parser.awaiting == before.awaiting && parser.frame.size == before.frame.size);
-    REACHED();
 }
 
 /* ---- One turn of the loop of tmini_parser_next_after() ---- */
@@ -314,5 +302,4 @@ void prove_parser_next(void)
     /* The last turn may add a damaged candidate and its skipped bytes, or a frame. */
     CLAIM(parser.effort <
           TMINI_PARSER_EFFORT + TMINI_PACKET_SIZE(255) + TMINI_CANDIDATE_EFFORT + 1);
-    REACHED();
 }

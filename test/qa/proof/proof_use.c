@@ -38,7 +38,6 @@ void prove_ranges_bin(void)
     const size_t count = nondet_half();
     ASSUME(angle_q6 < TMINI_FULL_CIRCLE_Q6 && count >= 1);
     CLAIM(tmini_ranges_bin(angle_q6, count) < count);
-    REACHED();
 }
 
 void prove_ranges_of_scan(void)
@@ -51,7 +50,6 @@ void prove_ranges_of_scan(void)
     const tmini_status_t status =
         tmini_ranges_of_scan(&scan, ranges_mm, any_bool() ? intensities : NULL, count);
     CLAIM((status == TMINI_OK) == (count > 0));
-    REACHED();
 }
 
 void prove_sectors(void)
@@ -64,7 +62,6 @@ void prove_sectors(void)
     if (tmini_sectors_init(&sectors, array, count, nondet_byte()) == TMINI_OK) {
         tmini_sectors_add_scan(&sectors, &scan);
     }
-    REACHED();
 }
 
 void prove_sectors_at(void)
@@ -74,7 +71,6 @@ void prove_sectors_at(void)
     ASSUME(sectors.count >= 1);
     ASSUME(angle_q6 < TMINI_FULL_CIRCLE_Q6);
     CLAIM(tmini_sectors_at(&sectors, angle_q6) < sectors.count);
-    REACHED();
 }
 
 void prove_mount_angle(void)
@@ -83,7 +79,6 @@ void prove_mount_angle(void)
     const uint16_t angle_q6 = nondet_half();
     ASSUME(angle_q6 < TMINI_FULL_CIRCLE_Q6);
     CLAIM(tmini_mount_angle(&mount, angle_q6) < TMINI_FULL_CIRCLE_Q6);
-    REACHED();
 }
 
 static int16_t any_direction(void)
@@ -107,7 +102,6 @@ void prove_mount(void)
     const size_t index = nondet_size();
     tmini_mount_step(&mount, &scan);
     CLAIM(index >= scan.count || points[index].angle_q6 < TMINI_FULL_CIRCLE_Q6);
-    REACHED();
 }
 
 /* A point's time is at most a revolution and its jitter. */
@@ -123,5 +117,4 @@ void prove_time(void)
     /* A reported frequency gives the period. 3 points are no revolution at any frequency. */
     CLAIM(scan.frequency_chz == 0 || period_ms == (100000000u / scan.frequency_chz + 500u) / 1000u);
     CLAIM(scan.frequency_chz > 0 || scan.complete || time_us == index * 250u);
-    REACHED();
 }

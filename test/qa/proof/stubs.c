@@ -4,7 +4,7 @@
 /* Replaces parser, packets, scans and CT information in the driver's proofs. These functions do
  * anything that the contracts permit; proof_parser.c and proof_scan.c prove the contracts. */
 
-#include "parser_contract.h"
+#include "proof.h"
 
 tmini_parser_t nondet_parser(void);
 tmini_packet_t nondet_packet(void);
