@@ -57,7 +57,7 @@ static void open_packet(const uint8_t *packet, size_t size)
  *     x:64E56F        a packet with these bytes as samples, 100 sixty-fourths of a degree apart
  *     blind:255       a packet of 255 samples without a distance
  *     <112233         these bytes come
- *     filter:4        points are read with this filter
+ *     specular ambient both   points are read with this filter
  *     @3:640,1021,197,3       angle, distance, intensity and flag of the sample with this index
  *     none:19         there is no sample with this index
  *     count:19 …      see tell_word() */
@@ -128,8 +128,12 @@ static void tell_word(char *word)
     } else if (row_is(word, "blind")) {
         memset(&bytes[10], 0, 3 * row_number(word));
         open_samples(row_number(word));
-    } else if (row_is(word, "filter")) {
-        filter = row_number(word);
+    } else if (row_is(word, "specular")) {
+        filter = TMINI_FILTER_SPECULAR;
+    } else if (row_is(word, "ambient")) {
+        filter = TMINI_FILTER_AMBIENT;
+    } else if (row_is(word, "both")) {
+        filter = TMINI_FILTER_BOTH;
     } else if (row_is(word, "none")) {
         TEST_ASSERT_FALSE_MESSAGE(tmini_packet_point(packet, row_number(word), &none), word);
     } else {
@@ -163,12 +167,12 @@ static const row_t rows[] IN_FLASH = {
         "P5:0,400 @0:0,1000,200,0 @1:100,1007,199,1 @2:200,1014,198,2 @3:300,1021,197,3 "
         "@4:400,1028,196,0"),
     ROW(the_specular_filter_takes_the_range_where_the_flag_is_2,
-        "filter:4 P5:0,400 @0:0,1000 @1:100,1007 @2:200,0,198,2 @3:300,1021 @4:400,1028"),
+        "specular P5:0,400 @0:0,1000 @1:100,1007 @2:200,0,198,2 @3:300,1021 @4:400,1028"),
     ROW(the_ambient_filter_takes_the_range_where_the_flag_is_3,
-        "filter:8 P5:0,400 @0:0,1000 @1:100,1007 @2:200,1014 @3:300,0,197,3 @4:400,1028"),
+        "ambient P5:0,400 @0:0,1000 @1:100,1007 @2:200,1014 @3:300,0,197,3 @4:400,1028"),
     ROW(both_filters_take_both,
-        "filter:12 P5:0,400 @0:0,1000 @1:100,1007 @2:200,0 @3:300,0 @4:400,1028"),
-    ROW(the_first_point_is_filtered_too, "filter:4 x:09D207 @0:0,0,9,2"),
+        "both P5:0,400 @0:0,1000 @1:100,1007 @2:200,0 @3:300,0 @4:400,1028"),
+    ROW(the_first_point_is_filtered_too, "specular x:09D207 @0:0,0,9,2"),
     /* ---- Angles ---- */
     ROW(a_lone_sample_is_at_fsa_whatever_lsa_says, /* Section 9.6. */
         "P1:17,10 @0:17 P1:23039,0 @0:23039"),

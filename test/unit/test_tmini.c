@@ -125,6 +125,17 @@ void test_tales(void)
 
 /* ---- Setting up, and wrong use ---- */
 
+/* As docs/design.md says. */
+void test_the_default_timing(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(100, tmini_timing_default.frame_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(30, tmini_timing_default.max_pause_ms);
+    TEST_ASSERT_EQUAL_UINT16(50, tmini_timing_default.quiet_line_ms);
+    TEST_ASSERT_EQUAL_UINT16(2000, tmini_timing_default.reply_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(2000, tmini_timing_default.back_off_max_ms);
+    TEST_ASSERT_EQUAL_UINT8(3, tmini_timing_default.max_attempts);
+}
+
 static tmini_t untouched;
 
 static void refuses_all_commands(tmini_t *lidar)

@@ -151,6 +151,7 @@ static const row_t tales[] IN_FLASH = {
         "listen off start +3000 !FAILED ?TIMEOUT @UNKNOWN"),
     ROW(a_listener_that_hears_nothing_for_a_second_has_lost_its_lidar,
         "listen start <S !STARTED +1000 !LOST @RECOVERING +60000 <P !NONE <S !RECOVERED"),
+    ROW(the_stop_of_a_listener_is_told_by_the_next_poll, "listen !NONE stop !STOPPED"),
     ROW(a_listener_stops_at_once, "listen start <P !STARTED stop !STOPPED @UNKNOWN <P <S / listen "
                                   "start stop !STOPPED !FAILED ?ABORTED"),
     ROW(a_listener_sends_nothing, "listen info=LISTEN_ONLY health=LISTEN_ONLY "
