@@ -11,20 +11,16 @@
 #       -DCMAKE_TOOLCHAIN_FILE=test/cmake/toolchains/avr-atmega2560.cmake
 #   cmake --build build-avr && ctest --test-dir build-avr
 
-# tmini_add_machine(MACHINE [ALL] TOOLCHAIN file BUILD_TYPE type PROGRAMS program …). A program may
+# tmini_add_machine(MACHINE TOOLCHAIN file BUILD_TYPE type PROGRAMS program …). A program may
 # be a list of alternatives separated by "|". A high COST makes ctest start these long tests first.
 function(tmini_add_machine machine)
-    cmake_parse_arguments(arg "ALL" "TOOLCHAIN;BUILD_TYPE" "PROGRAMS" ${ARGN})
-    set(tier "")
-    if(arg_ALL)
-        set(tier ALL)
-    endif()
+    cmake_parse_arguments(arg "" "TOOLCHAIN;BUILD_TYPE" "PROGRAMS" ${ARGN})
     tmini_missing_programs(missing ${arg_PROGRAMS})
     if(missing)
-        tmini_add_skipped_test(${machine} ${machine} "not installed: ${missing}" ${tier})
+        tmini_add_skipped_test(${machine} ${machine} "not installed: ${missing}" ALL)
         return()
     endif()
-    tmini_add_check(${machine} ${machine} ${tier} TIMEOUT 1800
+    tmini_add_check(${machine} ${machine} ALL TIMEOUT 1800
         COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test
             ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/${machine}
             --build-generator ${CMAKE_GENERATOR} --build-noclean --build-target tests
@@ -35,18 +31,18 @@ function(tmini_add_machine machine)
         PROPERTIES COST 100)
 endfunction()
 
-tmini_add_machine(bigendian ALL
+tmini_add_machine(bigendian
     TOOLCHAIN powerpc-linux.cmake BUILD_TYPE RelWithDebInfo
     PROGRAMS powerpc-linux-gnu-gcc qemu-ppc|qemu-ppc-static)
-tmini_add_machine(int16 ALL
+tmini_add_machine(int16
     TOOLCHAIN avr-atmega2560.cmake BUILD_TYPE MinSizeRel
     PROGRAMS avr-gcc simavr)
 tmini_add_machine(cortex-m4
     TOOLCHAIN cortex-m4.cmake BUILD_TYPE MinSizeRel
     PROGRAMS arm-none-eabi-gcc qemu-system-arm)
-tmini_add_machine(cortex-m0 ALL
+tmini_add_machine(cortex-m0
     TOOLCHAIN cortex-m0.cmake BUILD_TYPE MinSizeRel
     PROGRAMS arm-none-eabi-gcc qemu-system-arm)
-tmini_add_machine(rv32imc ALL
+tmini_add_machine(rv32imc
     TOOLCHAIN rv32imc.cmake BUILD_TYPE MinSizeRel
     PROGRAMS riscv64-unknown-elf-gcc qemu-system-riscv32)

@@ -15,10 +15,9 @@ function(tmini_add_driver_tests)
     endforeach()
 endfunction()
 
-tmini_add_driver_tests(test_tmini test_command test_blocking test_monitor test_poll test_recovery
-    test_wish)
-# Tests with large rings.
-tmini_add_driver_tests(test_effort test_pauses NOT_ON int16)
+tmini_add_driver_tests(test_tmini test_command test_blocking test_poll test_recovery test_wish)
+# Tests with large rings; and one of many turns, which take half a minute there.
+tmini_add_driver_tests(test_effort test_pauses test_monitor NOT_ON int16)
 
 # One module of the driver.
 tmini_add_unit_test(test_line SOURCES test_line.c ../support/rows.c NOT_ON int16)

@@ -106,7 +106,7 @@ PROOFS = [
            loops="prove_parser_xor_piece.0:28,contribution.0:28"),
     parser("checksum", "lib/src/tmini_parser.c", "left -= count;", "left = 0;", unwind=5,
            bounds=EARLY + ", up to 3 samples", loops="fill_memory.0:33,prove_parser_checksum.0:10,"
-           "prove_parser_checksum.1:10,contribution.0:10"),
+           "prove_parser_checksum.1:10,contribution.0:10", slow=True),
     parser("skip", "lib/src/tmini_parser.c", "skipped < count && begins_no_frame(parser, bytes[skipped])",
            "skipped < count", slow=True),
     parser("drop_overwritten", "lib/src/tmini_parser.c", "parser->counters.bytes_overrun += (uint32_t)lost;", ""),
@@ -128,7 +128,7 @@ PROOFS = [
          "packet->count"),
     angle(2, "lib/src/tmini_packet.c", "    wrap(packet->first_angle_q6, point, 1);", ""),
     angle(3, "lib/src/tmini_packet.c", "(STEP_BITS - 1))", "(STEP_BITS - 2))"),
-    angle(7, "lib/src/tmini_packet.c", "+ intervals - 1) / intervals", ") / intervals"),
+    angle(7, "lib/src/tmini_packet.c", "+ intervals - 1) / intervals", ") / intervals", slow=True),
     angle(40, "lib/src/tmini_packet.c", "(STEP_BITS - 1))", "(STEP_BITS - 2))", slow=True),
     scan("scan_init", "lib/src/tmini_builder.c", "capacity == 0 || ", ""),
     scan("scan_step", "lib/src/tmini_builder.c", "(size_t)builder->capacity - scan->count)",
@@ -158,11 +158,12 @@ PROOFS = [
            "if (is_done) {\n        return take_event",
            stubs=["look", "receive", "keep_time"]),
     driver("packet", "lib/src/tmini.c", "tmini_command_end(lidar, TMINI_ERROR_ABORTED);\n    if", "if"),
-    driver("reply", "lib/src/tmini_command.c", "|| frequency_chz > PLAUSIBLE_CHZ_MAX", "|| frequency_chz > 65535"),
+    driver("reply", "lib/src/tmini_command.c", "|| frequency_chz > PLAUSIBLE_CHZ_MAX", "|| frequency_chz > 65535",
+           slow=True),
     driver("nothing", "lib/src/tmini.c", "tmini_parser_abandon(&lidar->decoder.parser);",
            "(tmini_command_end(lidar, TMINI_ERROR_ABORTED), true);"),
     driver("keep_time", "lib/src/tmini_command.c", "command->steps == STEPS_MAX",
-           "command->steps > STEPS_MAX"),
+           "command->steps > STEPS_MAX", slow=True),
     driver("start", "lib/src/tmini.c", "    if (!is_to_scan(lidar)) {", "    if (true) {"),
     driver("request_info", "lib/src/tmini.c", "tmini_state(lidar) >= TMINI_STATE_STARTING) {",
            "tmini_state(lidar) > TMINI_STATE_STARTING) {"),
@@ -275,7 +276,7 @@ def prove(checker, proof, broken):
 def main():
     parser_ = argparse.ArgumentParser(description="Proves what proof_….c claim.")
     parser_.add_argument("--work", required=True, help="a folder to work in")
-    parser_.add_argument("--quick", action="store_true", help="only what takes seconds")
+    parser_.add_argument("--quick", action="store_true", help="only what takes at most ten seconds")
     parser_.add_argument("--broken", action="store_true", help="break the library: each proof must fail")
     parser_.add_argument("names", nargs="*", metavar="NAME", help="proofs, or the beginnings of their names")
     arguments = parser_.parse_args()

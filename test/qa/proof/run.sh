@@ -8,7 +8,7 @@
 #   test/qa/proof/run.sh --fetch
 #
 # NAME is a proof, or the beginning of the names of some proofs. --quick runs only proofs that take
-# seconds. With --broken, a copy of the library is broken in one place for each proof, which must
+# at most ten seconds. With --broken, a copy of the library is broken in one place for each proof, which must
 # then fail.
 #
 # Debian 13, Ubuntu 24.04 and later have a package of CBMC. Debian 12 can run the CBMC of Debian 13
