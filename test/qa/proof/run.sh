@@ -8,8 +8,8 @@
 #   test/qa/proof/run.sh --fetch
 #
 # NAME is a proof, or the beginning of the names of some proofs. --quick runs only proofs that take
-# at most ten seconds. With --broken, a copy of the library is broken in one place for each proof, which must
-# then fail.
+# at most ten seconds. With --broken, a copy of the library is broken in one place for each proof,
+# which must then fail.
 #
 # Debian 13, Ubuntu 24.04 and later have a package of CBMC. Debian 12 can run the CBMC of Debian 13
 # with Debian 13's C library: --fetch downloads both to build-proof/, and changes nothing else.
