@@ -248,14 +248,12 @@ void tmini_recovery_reset(tmini_t *lidar);
  * previous loss, the ladder continues instead. */
 void tmini_recovery_begin(tmini_t *lidar);
 
-/* Bits of tmini_recovery_t.contact. */
-#define TMINI_CONTACT_MUTE \
-    1u                            /* The lidar has been asked again and again, and has answered
-                                  * nothing since. */
-#define TMINI_CONTACT_ANSWERED 2u /* The lidar has answered since it was set up. */
-#define TMINI_CONTACT_UNSET \
-    4u /* The wanted frequency could not be set, which has not been
-                                   * reported. */
+/* Bits of tmini_recovery_t.contact. MUTE: the lidar has been asked again and again, and has not
+ * answered since. ANSWERED: it has answered since it was set up. UNSET: the wanted frequency could
+ * not be set, which has not been reported. */
+#define TMINI_CONTACT_MUTE 1u
+#define TMINI_CONTACT_ANSWERED 2u
+#define TMINI_CONTACT_UNSET 4u
 
 /* A reply has come. */
 static inline void tmini_recovery_note_reply(tmini_t *lidar)
