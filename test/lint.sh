@@ -106,18 +106,22 @@ check_cxx() {
     return "$clean"
 }
 
-# With the commands that cmake writes.
+configure() {
+    quietly cmake -S . -B build-lint -DTMINI_BUILD_TESTS=OFF
+}
+
+# tidy_built FILE…: with the commands that cmake writes.
+tidy_built() {
+    clang-tidy --quiet -p build-lint --header-filter="^$root/(lib|port|examples)/" "$@" 2>/dev/null
+}
+
 check_library() {
-    cmake -S . -B build-lint -DTMINI_BUILD_TESTS=OFF || return 1
-    clang-tidy --quiet -p build-lint --header-filter="^$root/(lib|port|examples)/" \
-        lib/src/*.c port/posix/*.c 2>/dev/null
+    tidy_built lib/src/*.c port/posix/*.c
 }
 
 check_programs() {
-    cmake -S . -B build-lint/programs -DTMINI_BUILD_TESTS=OFF || return 1
-    clang-tidy --quiet -p build-lint/programs --header-filter="^$root/(lib|port|examples)/" \
-        examples/host/*.c examples/obstacle_stop/*.c examples/bridge/core/*.c \
-        examples/bridge/pc/*.c 2>/dev/null
+    tidy_built examples/host/*.c examples/obstacle_stop/*.c examples/bridge/core/*.c \
+        examples/bridge/pc/*.c
 }
 
 # Suppressed, because cppcheck
@@ -197,7 +201,6 @@ check() {
 }
 
 cd "$root"
-mkdir -p build-lint
 case " $checks --fix " in
     *" ${1:---fix} "*) ;;
     *)
@@ -207,8 +210,12 @@ case " $checks --fix " in
         ;;
 esac
 case ${1:-} in
-    "" | --fix) install_tools ;;
+    "" | --fix)
+        install_tools
+        configure
+        ;;
     *)
+        [ -d build-lint ] || configure
         check "$1"
         exit
         ;;
