@@ -15,8 +15,8 @@ tmini_add_unit_test(test_stamps
 
 # Programs as users write them, at every moment at which power may come or fail.
 tmini_add_unit_test(test_programs
-    SOURCES test_programs.c ../support/rows.c
-    LIBRARIES tmini_bed)
+    SOURCES test_programs.c
+    LIBRARIES tmini_test_rows tmini_bed)
 
 # explore: at every event on the wire every trouble, and every pair of them (triples by hand).
 # stories: random.

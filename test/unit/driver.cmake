@@ -2,12 +2,10 @@
 # Copyright (c) 2026 The tmini authors
 
 # tmini_add_driver_tests(TEST … [NOT_ON MACHINE …]): the driver, told in words.
-set(tale ../support/tale.c ../support/rig.c ../support/rows.c ../support/invariants.c)
 function(tmini_add_driver_tests)
     cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "NOT_ON")
     foreach(test ${arg_UNPARSED_ARGUMENTS})
-        tmini_add_unit_test(${test} SOURCES ${test}.c ${tale}
-            LIBRARIES tmini_test_support
+        tmini_add_unit_test(${test} SOURCES ${test}.c LIBRARIES tmini_test_tale
             NOT_ON ${arg_NOT_ON})
         if(TARGET ${test})
             target_include_directories(${test} PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
@@ -20,15 +18,15 @@ tmini_add_driver_tests(test_tmini test_command test_blocking test_poll test_reco
 tmini_add_driver_tests(test_effort test_pauses test_monitor NOT_ON int16)
 
 # One module of the driver.
-tmini_add_unit_test(test_line SOURCES test_line.c ../support/rows.c NOT_ON int16)
+tmini_add_unit_test(test_line SOURCES test_line.c LIBRARIES tmini_test_rows NOT_ON int16)
 if(TARGET test_line)
     target_include_directories(test_line PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
 endif()
 
 # The driver with a lidar that turns (turns.h), on a port that records the commands.
 foreach(test test_honest_scans test_real_bytes)
-    tmini_add_unit_test(${test} SOURCES ${test}.c ../support/turns.c ../support/rows.c
-        LIBRARIES tmini_test_support NOT_ON int16)
+    tmini_add_unit_test(${test} SOURCES ${test}.c ../support/turns.c
+        LIBRARIES tmini_test_rows tmini_test_support NOT_ON int16)
 endforeach()
 
 # The same, with the library compiled again with an atomic header that calls the test at each access
@@ -45,8 +43,9 @@ endif()
 
 # The library is compiled again without CT information.
 tmini_add_unit_test(test_no_ct
-    SOURCES test_no_ct.c ${tale} ${library_sources}
-    LIBRARIES tmini_test_support NOT_ON int16)
+    SOURCES test_no_ct.c ../support/tale.c ../support/rig.c ../support/invariants.c
+        ${library_sources}
+    LIBRARIES tmini_test_rows tmini_test_support NOT_ON int16)
 if(TARGET test_no_ct)
     target_compile_definitions(test_no_ct PRIVATE TMINI_NO_CT)
     target_include_directories(test_no_ct PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
