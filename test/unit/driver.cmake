@@ -17,6 +17,9 @@ tmini_add_driver_tests(test_tmini test_command test_blocking test_poll test_reco
 # Tests with large rings; and one of many turns, which take half a minute there.
 tmini_add_driver_tests(test_effort test_pauses test_monitor NOT_ON int16)
 
+# What the driver asks of its port, in which order; the port is mocked.
+tmini_add_unit_test(test_port_calls SOURCES test_port_calls.c MOCKS ../support/port_functions.h)
+
 # One module of the driver.
 tmini_add_unit_test(test_line SOURCES test_line.c LIBRARIES tmini_test_rows NOT_ON int16)
 if(TARGET test_line)
