@@ -5,7 +5,8 @@
  * trouble comes, then at each later event a second one, and so on. Within 15 s after the lidar is
  * sound again each wish must be fulfilled.
  *
- *     explore [--depth N] [STORY …]     N troubles, 2 unless given; all stories
+ *     explore [--depth N] [--every N] [STORY …]   N troubles, 2 unless given; each, or each Nth, of
+ *                                                 the last ones; all stories
  *     explore --replay STORY 7:cut50 12:lost      one run, with what happens in it
  *
  * A failure is printed as the arguments of --replay. The state before each event is kept, so that
@@ -185,6 +186,8 @@ typedef struct {
 } trail_t;
 
 static trail_t trails[DEPTH_MAX];
+static uint32_t every = 1; /* Of the last troubles, one in so many is played. */
+static uint64_t last_troubles;
 static uint64_t runs;
 static uint64_t failures;
 
@@ -300,11 +303,12 @@ static void explore(uint32_t depth)
             level--;
             continue;
         }
-        go_back(trail);
         if (level + 1u < depth) {
+            go_back(trail);
             level++;
             play_on(&trails[level], trail->event + 1u);
-        } else {
+        } else if (last_troubles++ % every == 0) {
+            go_back(trail);
             play(NULL);
         }
     }
@@ -390,8 +394,12 @@ int main(int argc, char **argv)
         depth = (uint32_t)strtoul(argv[first + 1], NULL, 10);
         first += 2;
     }
-    if (depth == 0 || depth > DEPTH_MAX) {
-        printf("1 to %u troubles\n", DEPTH_MAX);
+    if (argc > first + 1 && strcmp(argv[first], "--every") == 0) {
+        every = (uint32_t)strtoul(argv[first + 1], NULL, 10);
+        first += 2;
+    }
+    if (depth == 0 || depth > DEPTH_MAX || every == 0) {
+        printf("1 to %u troubles, every from 1\n", DEPTH_MAX);
         return 2;
     }
     prepare_trails(depth);
