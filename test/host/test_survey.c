@@ -4,8 +4,6 @@
 /* The survey of the simulated lidar, in virtual time: a documented unit is as expected, each
  * deviation is reported, and a lidar simulated from a report gives the same report. */
 
-#define _POSIX_C_SOURCE 200809L
-
 #include "like.h"
 #include "rows.h"
 #include "survey.h"
@@ -14,11 +12,9 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-/* Temporary files. */
-static char report_file[] = "/tmp/tmini-report.XXXXXX";
-static char like_file[] = "/tmp/tmini-like.XXXXXX";
+#define REPORT_FILE "test_survey.report"
+#define LIKE_FILE "test_survey.like"
 
 static unsigned lost_every; /* One in this many bytes is lost on the line; 0: none. */
 static unsigned sent;
@@ -28,25 +24,15 @@ static survey_t survey;
 static char report[8192];
 static char first[sizeof report];
 
-static void make_file(char *name)
-{
-    memcpy(name + strlen(name) - 6, "XXXXXX", 6);
-    const int fd = mkstemp(name);
-    TEST_ASSERT_TRUE(fd >= 0);
-    TEST_ASSERT_EQUAL_INT(0, close(fd));
-}
-
 void setUp(void)
 {
     lost_every = 0;
-    make_file(report_file);
-    make_file(like_file);
 }
 
 void tearDown(void)
 {
-    (void)remove(report_file);
-    (void)remove(like_file);
+    (void)remove(REPORT_FILE);
+    (void)remove(LIKE_FILE);
 }
 
 static uint64_t now_us(void *context)
@@ -102,15 +88,9 @@ static void say(void *context, const char *text)
 static const survey_wire_t wire = {
     .now_us = now_us, .send = send_bytes, .receive = receive, .is_over = is_over, .say = say};
 
-static options_t documented(void)
-{
-    options_t options = {.device = sim_default_config()};
-    return options;
-}
-
 static void read_report(bool with_serial)
 {
-    FILE *const file = fopen(report_file, "w+");
+    FILE *const file = fopen(REPORT_FILE, "w+");
     TEST_ASSERT_NOT_NULL(file);
     survey_print_report(&survey, file, with_serial);
     rewind(file);
@@ -118,98 +98,118 @@ static void read_report(bool with_serial)
     TEST_ASSERT_EQUAL_INT(0, fclose(file));
 }
 
-/* Surveys a lidar with these options; the report is then in report_file and in `report`. */
-static void survey_of(const options_t *options)
+/* Surveys a documented lidar, changed by this report; its own report is then in REPORT_FILE and in
+ * `report`. */
+static void survey_like(const char *path, bool is_covered, unsigned seed)
 {
+    options_t options = {.device = sim_default_config()};
+    options.device.seed = seed;
+    TEST_ASSERT_TRUE_MESSAGE(like_read(&options, path), path);
     time_us = 0;
-    sim_init(&device, &options->device);
-    sim_set_health(&device, options->health);
-    sim_cover_window(&device, options->covered);
+    sim_init(&device, &options.device);
+    sim_set_health(&device, options.health);
+    sim_cover_window(&device, is_covered);
     TEST_ASSERT_TRUE(survey_run(&survey, &wire, SURVEY_SECONDS));
     read_report(false);
 }
 
-/* The report has these lines; between them is "; ". */
-static void expect(const char *lines)
+static void write_like(const char *text)
 {
+    FILE *const file = fopen(LIKE_FILE, "w");
+    TEST_ASSERT_NOT_NULL(file);
+    (void)fputs(text, file);
+    TEST_ASSERT_EQUAL_INT(0, fclose(file));
+}
+
+/* The same with the text before " > ". "lost_every" and "covered" are the line's and the window's,
+ * and like_read() ignores them, as all that it does not know. Returns the text after " > ". */
+static const char *survey_row(const row_t *row)
+{
+    char text[200];
+    const char *const expected = strstr(row->steps, " > ") + 3;
+    (void)snprintf(text, sizeof text,
+                   "# as written by hand\n%.*s\nno_such_key = 1\nboot_ms = unknown\n",
+                   (int)(expected - 3 - row->steps), row->steps);
+    for (char *end = strstr(text, "; "); end != NULL; end = strstr(end, "; ")) {
+        *end = '\n';
+    }
+    write_like(text);
+    const char *const lost = strstr(text, "lost_every = ");
+    lost_every = lost != NULL ? (unsigned)atoi(lost + 13) : lost_every;
+    survey_like(LIKE_FILE, strstr(text, "covered") != NULL, sim_default_config().seed);
+    return expected;
+}
+
+/* --------------------------------------------------------------------------------- one report */
+
+/* "What the lidar is like > lines of the report": whole ones, but of those with # the beginning.
+ * What begins with ! is not in the report. */
+static void run_once(const row_t *row)
+{
+    const char *lines = survey_row(row);
     while (*lines != '\0') {
         char line[120];
-        const char *const end = strstr(lines, "; ");
-        const size_t length = end != NULL ? (size_t)(end - lines) : strlen(lines);
-        (void)snprintf(line, sizeof line, "\n%.*s\n", (int)length, lines);
-        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(report, line), line);
-        lines += end != NULL ? length + 2 : length;
+        const size_t length = strcspn(lines, ";");
+        (void)snprintf(line, sizeof line, "\n%.*s%s", (int)length, lines,
+                       *lines == '#' ? "" : "\n");
+        if (*lines == '!') {
+            line[length + 1] = '\0';
+            TEST_ASSERT_NULL_MESSAGE(strstr(report, line + 2), report);
+        } else {
+            TEST_ASSERT_NOT_NULL_MESSAGE(strstr(report, line), line);
+        }
+        lines += length + strspn(lines + length, "; ");
     }
 }
 
-void test_a_documented_unit_is_as_expected(void)
+/* clang-format off */
+static const row_t reports[] = {
+    ROW(a_documented_unit_is_reported_as_documented,
+        "model = 151 > !# differs; model = 151; firmware = 1.2; frequency_hz = 6.00;"
+        " min_frequency_hz = 5.00; max_frequency_hz = 12.00; reply_ms = 3; boot_ms = 2500;"
+        " first_packet_ms = 200; spin_up_ms = 1000; spin_up_percent = 40; stop_tail_ms = 50;"
+        " samples_per_second = 4000; points_slow = 670; flagged_permille = 5;"
+        " reply_92 = A5 5A 03 00 00 00 06 00 00 00; reply_60 = A5 5A 05 00 00 40 81"),
+    /* It is 2026031700012345. */
+    ROW(the_serial_number_is_left_out,
+        "model = 151 > reply_90 = A5 5A 14 00 00 00 04 97 02 01 01 ** ** ** ** ** ** ** ** ** **"
+        " ** ** ** ** ** **; !12345"),
+    /* A covered window is a live data fault (section 7): only the stream reports it. */
+    ROW(a_live_fault_does_not_change_the_index_of_the_health,
+        "model = 151; covered = yes > health = 0; health_index = 3"),
+    /* The bytes are lost on the line, so the unit's properties are still found. Three turns of four
+     * lack a packet. */
+    ROW(a_damaged_line_does_not_look_like_another_unit,
+        "model = 151; lost_every = 3001 > # differs     9.12  places with stray bytes ;"
+        " motor_percent = 100; spin_up_ms = 1000; samples_per_second = 4000; points_slow = 670;"
+        " points_medium = 400; points_fast = 330; last_crc = right"),
+    /* Here each turn lacks two packets. */
+    ROW(what_a_damaged_line_hides_is_unknown,
+        "model = 151; lost_every = 997 > motor_percent = unknown; points_slow = unknown;"
+        " last_crc = unknown; samples_per_second = 4000"),
+    ROW(a_turn_that_begins_without_a_start_packet_is_reported,
+        "first_packets = unmarked; first_angle_deg = 330 > first_packets = unmarked;"
+        " first_angle_deg = 330"),
+    ROW(without_lone_packets_the_report_says_unknown,
+        "lone_packets = no > lone_packets = unknown"),
+};
+/* clang-format on */
+
+void test_reports(void)
 {
-    const options_t options = documented();
-    survey_of(&options);
-    TEST_ASSERT_NULL_MESSAGE(strstr(report, "# differs"), report);
-    expect("model = 151; firmware = 1.2; frequency_hz = 6.00; min_frequency_hz = 5.00; "
-           "max_frequency_hz = 12.00; reply_ms = 3; boot_ms = 2500; first_packet_ms = 200; "
-           "spin_up_ms = 1000; spin_up_percent = 40; stop_tail_ms = 50; samples_per_second = 4000; "
-           "points_slow = 670; flagged_permille = 5; reply_92 = A5 5A 03 00 00 00 06 00 00 00; "
-           "reply_60 = A5 5A 05 00 00 40 81");
+    run_rows(reports, run_once);
 }
 
-/* The number is 2026031700012345. */
-void test_the_serial_number_is_left_out_unless_it_is_wanted(void)
+void test_the_serial_number_is_reported_if_it_is_wanted(void)
 {
-    const options_t options = documented();
-    survey_of(&options);
-    expect("reply_90 = A5 5A 14 00 00 00 04 97 02 01 01 ** ** ** ** ** ** ** ** ** ** ** ** ** ** "
-           "** **");
-    TEST_ASSERT_NULL(strstr(report, "12345"));
+    write_like("model = 151\n");
+    survey_like(LIKE_FILE, false, 1);
     read_report(true);
-    expect("serial = 2026031700012345");
+    TEST_ASSERT_NOT_NULL(strstr(report, "\nserial = 2026031700012345\n"));
     TEST_ASSERT_NOT_NULL(strstr(report, " 01 02 03 04 05\n"));
 }
 
-/* A covered window is a live data fault (section 7): only the stream reports it. */
-void test_a_live_fault_does_not_change_the_index_of_the_health(void)
-{
-    options_t options = documented();
-    options.covered = true;
-    survey_of(&options);
-    expect("health = 0; health_index = 3");
-}
-
-/* The bytes are lost on the line, so the unit's properties are still found. Three turns of four
- * lack a packet. */
-void test_a_damaged_line_does_not_look_like_another_unit(void)
-{
-    const options_t options = documented();
-    lost_every = 3001;
-    survey_of(&options);
-    TEST_ASSERT_NOT_NULL(strstr(report, "\n# differs     9.12  places with stray bytes "));
-    expect("motor_percent = 100; spin_up_ms = 1000; samples_per_second = 4000; points_slow = 670; "
-           "points_medium = 400; points_fast = 330; last_crc = right");
-}
-
-/* Here each turn lacks two packets. */
-void test_what_a_damaged_line_hides_is_unknown(void)
-{
-    const options_t options = documented();
-    lost_every = 997;
-    survey_of(&options);
-    expect("motor_percent = unknown; points_slow = unknown; last_crc = unknown; "
-           "samples_per_second = 4000");
-}
-
-/* ----------------------------------------------------------------------------------- deviations */
-
-static options_t like(const char *text)
-{
-    options_t options = documented();
-    FILE *const file = fopen(like_file, "w");
-    TEST_ASSERT_NOT_NULL(file);
-    (void)fprintf(file, "# as written by hand\n%s\nno_such_key = 1\nboot_ms = unknown\n", text);
-    TEST_ASSERT_EQUAL_INT(0, fclose(file));
-    TEST_ASSERT_TRUE_MESSAGE(like_read(&options, like_file), text);
-    return options;
-}
+/* --------------------------------------------------------------------------------- deviations */
 
 /* Removes lines that depend on chance: whether one of the LastCRC bytes is AA. */
 static void remove_chance(char *text)
@@ -229,28 +229,20 @@ static void remove_chance(char *text)
 
 /* "What the lidar is like > the line that reports it": the deviation is seen, and a lidar simulated
  * from that report gives the same report. */
-static void run(const row_t *row)
+static void run_twice(const row_t *row)
 {
-    char text[100];
     char line[100];
-    const char *const expected = strstr(row->steps, " > ") + 3;
-    (void)snprintf(text, sizeof text, "%.*s", (int)(expected - 3 - row->steps), row->steps);
-    options_t options = like(text);
-    survey_of(&options);
-    (void)snprintf(line, sizeof line, "\n# differs     %s ", expected);
+    (void)snprintf(line, sizeof line, "\n# differs     %s ", survey_row(row));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(report, line), report);
     memcpy(first, report, sizeof first);
     remove_chance(first);
-    options = documented();
-    options.device.seed = 7;
-    TEST_ASSERT_TRUE(like_read(&options, report_file));
-    survey_of(&options);
+    survey_like(REPORT_FILE, false, 7);
     remove_chance(report);
     TEST_ASSERT_EQUAL_STRING(first, report);
 }
 
 /* clang-format off */
-static const row_t rows[] = {
+static const row_t deviations[] = {
     ROW(another_model, "model = 150 > 9.15  model                          150"),
     ROW(the_order_of_the_firmwares_bytes,
         "firmware_order = major-first > 9.4   firmware's bytes               major-first"),
@@ -284,33 +276,16 @@ static const row_t rows[] = {
 };
 /* clang-format on */
 
-void test_rows(void)
+void test_deviations(void)
 {
-    run_rows(rows, run);
-}
-
-void test_a_turn_that_begins_without_a_start_packet_is_reported(void)
-{
-    const options_t options = like("first_packets = unmarked\nfirst_angle_deg = 330");
-    survey_of(&options);
-    expect("first_packets = unmarked; first_angle_deg = 330");
-}
-
-void test_without_lone_packets_the_report_says_unknown(void)
-{
-    const options_t options = like("lone_packets = no");
-    survey_of(&options);
-    expect("lone_packets = unknown");
+    run_rows(deviations, run_twice);
 }
 
 void test_a_file_that_is_no_report_is_refused(void)
 {
-    options_t options = documented();
-    FILE *const file = fopen(like_file, "w");
-    TEST_ASSERT_NOT_NULL(file);
-    (void)fputs("boot_ms = soon\n", file);
-    TEST_ASSERT_EQUAL_INT(0, fclose(file));
-    TEST_ASSERT_FALSE(like_read(&options, like_file));
+    options_t options = {.device = sim_default_config()};
+    write_like("boot_ms = soon\n");
+    TEST_ASSERT_FALSE(like_read(&options, LIKE_FILE));
     TEST_ASSERT_FALSE(like_read(&options, "no/such/report"));
     TEST_ASSERT_FALSE(like_read(&options, "/dev/null"));
     TEST_ASSERT_FALSE(like_read(&options, "/"));
