@@ -199,10 +199,20 @@ def test_a_timed_recording_reports_when_its_packets_came(tmini, folder):
     assert run.err == "packets 3, start packets 2, points 5, checksum errors 0, bytes 45, bytes skipped 0\n"
 
 
-@pytest.mark.parametrize("cut", range(len(MAGIC), len(TIMED)))
-def test_a_timed_recording_may_be_cut_anywhere(tmini, folder, cut):
-    (folder / "timed.tmini").write_bytes(TIMED[:cut])
-    assert tmini("decode", "timed.tmini").status == (0 if cut >= len(MAGIC) + 6 + len(START) else 1)
+@pytest.mark.parametrize("version", (1, 2))
+def test_a_timed_recording_that_ends_anywhere_is_not_damaged(tmini, folder, version):
+    """The program that wrote it was ended."""
+    bytes_of = [START, THREE[:5], THREE[5:] + START]
+    content = timed(*((10000, part) for part in bytes_of), version=version)
+    head = (6, 10)[version - 1]
+    for cut in range(len(MAGIC), len(content) + 1):
+        (folder / "timed.tmini").write_bytes(content[:cut])
+        run = tmini("decode", "timed.tmini", "--csv", "--stats", "stats.json")
+        begins = [len(MAGIC) + head * (i + 1) + len(b"".join(bytes_of[:i])) for i in range(3)]
+        there = b"".join(part[:max(0, cut - begin)] for part, begin in zip(bytes_of, begins))
+        packets, counts = decode(there)
+        assert (run.status, "damaged" in run.err) == (0 if packets else 1, False)
+        assert json.loads(Path("stats.json").read_text(encoding="ascii")) == counts
 
 
 # ---- Nothing to decode, nowhere to print
