@@ -17,8 +17,9 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 RECORDINGS = ROOT / "test" / "recordings"
 TOOL, SIM = os.environ["TMINI_TOOL"], os.environ["TMINI_SIM"]
 sys.path.append(str(ROOT / "test" / "host"))  # lidar_bytes
-if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN:  # As nohup sets it: programs would inherit it.
-    signal.signal(signal.SIGHUP, lambda *_: None)
+for _number in (signal.SIGINT, signal.SIGHUP):  # Those that a background job, or nohup, ignores.
+    if signal.getsignal(_number) == signal.SIG_IGN:
+        signal.signal(_number, lambda *_: None)  # What is started does not inherit it.
 
 
 class Simulator:
