@@ -6,6 +6,7 @@
 import json
 import os
 import re
+import resource
 import signal
 import stat
 import subprocess
@@ -212,6 +213,16 @@ def test_a_recording_ends_with_ctrl_c_and_is_whole(lidar, start, output):
     assert "0 stray bytes between packets" in text and " bytes before the first packet, 0 after the last" in text
 
 
+def test_what_came_is_soon_in_the_file_for_programs_that_read_it_meanwhile(lidar, start):
+    device = lidar()
+    run = start("record", "-p", device.port, "it.bin")
+    wait_for_size(run, "it.bin", 8000)
+    device.freeze()
+    run.clock.sleep(250)
+    size = os.path.getsize("it.bin")
+    assert run.end().status == 0 and os.path.getsize("it.bin") == size
+
+
 def test_a_recording_survives_a_pulled_cable(lidar, start, tmini):
     device = lidar()
     run = start("record", "-p", device.port, "pulled.bin", "-q")
@@ -227,8 +238,10 @@ def test_a_file_that_cannot_be_written_is_reported_first(lidar, failure, monkeyp
     failure(1, "cannot write /nowhere/x", "survey", "-p", device.port, "/nowhere/x")
     assert "start" not in device.log
     monkeypatch.setenv("TMINI_PORT", device.port)
-    run = start("-c", f"ulimit -f 8; exec '{TMINI}' record short.bin", program="/bin/sh").finish()
-    assert run.status == 1 and "cannot write short.bin" in run.err
+    run = start("-c", f"ulimit -S -f 8; exec '{TMINI}' record short.bin", program="/bin/sh")
+    device.wait_for_log("scanning -> stopping")
+    resource.prlimit(run.process.pid, resource.RLIMIT_FSIZE, (-1, -1))  # What follows can be written again.
+    assert run.finish().status == 1 and "cannot write short.bin" in run.err
     device.wait_for_log("stopping -> idle")
 
 

@@ -112,9 +112,9 @@ def test_a_timed_stream_that_is_there_later_only_listens(sender, monkeypatch):
 
 def test_a_timed_stream_takes_no_frequency(sender):
     with pytest.raises(tmini.LidarError, match="whose sender sets the frequency"):
-        tmini.Lidar(sender.port, frequency_hz=8)
+        tmini.Lidar(sender.port, frequency_hz=12)
     with tmini.Lidar(sender.port) as lidar, pytest.raises(tmini.LidarError, match="sends nothing"):
-        lidar.set_frequency(8)
+        lidar.set_frequency(6)
 
 
 # ---- serve
