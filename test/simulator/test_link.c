@@ -246,11 +246,6 @@ static void tell(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell);
-}
-
 /* 60 s are about 780,000 bytes and 6400 packets. */
 static const row_t rows[] IN_FLASH = {
     ROW(without_faults_every_packet_is_intact, "scan:10 truth spoilt:0 faulty:0 untold:0"),
@@ -298,7 +293,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_the_wire(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell);
 }
 
 /* ---- The rest ---- */

@@ -85,6 +85,19 @@ void row_tell(const char *text, void (*tell)(char *word))
     }
 }
 
+static void (*tell_word)(char *word);
+
+static void tell_steps(const row_t *row)
+{
+    row_tell(row->steps, tell_word);
+}
+
+void rows_tell(const row_t *rows, size_t count, void (*tell)(char *word))
+{
+    tell_word = tell;
+    rows_run(rows, count, tell_steps);
+}
+
 bool row_is(const char *word, const char *name)
 {
     const size_t length = strlen(name);

@@ -45,9 +45,11 @@ typedef struct {
 void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row));
 
 /* Calls `tell` with each word of a text. Words are separated by spaces; those in "30( … )" come 30
- * times. */
+ * times. `tell_rows` runs rows that are nothing but words; it, too, must be the last statement. */
 #define ROW_WORD_MAX 80
 void row_tell(const char *text, void (*tell)(char *word));
+#define tell_rows(rows, tell) rows_tell(rows, sizeof(rows) / sizeof(rows)[0], tell)
+void rows_tell(const row_t *rows, size_t count, void (*tell)(char *word));
 
 /* Whether the word is "name" or "name:…"; the text after its first ":", "" if there is none; and
  * the number there, or 0. */

@@ -124,12 +124,6 @@ static bool tell(char *word)
     return true;
 }
 
-static void tell_row(const row_t *row)
-{
-    tale_words = tell;
-    tale_tell_row(row);
-}
-
 void setUp(void)
 {
     memset(&script, 0, sizeof script);
@@ -137,6 +131,7 @@ void setUp(void)
     script.info.serial[15] = 2;
     script.health = (tmini_health_t){.faults = 3, .error_code = 4};
     script.frequency_chz = 5;
+    tale_words = tell;
     tale_wait = wait;
     tale_begin();
 }
@@ -221,7 +216,7 @@ static const row_t tales[] IN_FLASH = {
 
 void test_tales(void)
 {
-    run_rows(tales, tell_row);
+    run_rows(tales, tale_tell_row);
 }
 
 static int take_one_byte(void *context, const uint8_t *bytes, size_t count)

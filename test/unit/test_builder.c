@@ -358,11 +358,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 #define COMPLETE "gaps:0 complete:1 "
 #define LACKS "S:256 P:300,10000 P:10100,20000 P:20100,23030 "
 #define REST_FROM_116 "quarter:206d quarter:296d quarter:386d "
@@ -490,5 +485,5 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }

@@ -109,11 +109,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 #define TURN "<79 unit:1:16 "
 #define NOTHING                                                                         \
     "known:0 user:0 user-minor:0 info-faults:0 hardware:0 firmware:0 firmware-minor:0 " \
@@ -182,7 +177,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }
 
 void test_every_wrong_last_crc_refutes_the_turn(void)

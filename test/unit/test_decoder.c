@@ -134,11 +134,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 #define TURN "0:70000 rest:70000 "
 
 static const row_t rows[] IN_FLASH = {
@@ -176,7 +171,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }
 
 void test_initialisation_clears_the_memory(void)

@@ -166,11 +166,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 /* The box above; its far corners are at 26.57 degrees. */
 #define IN_BOX                                                                              \
     "in:0,600,26,667,-26,667,27,660,89,299,-89,299 out:0,601,26,669,27,662,90,301,-90,301 " \
@@ -233,7 +228,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }
 
 /* ------------------------------------------------------------------------------------ polygons */

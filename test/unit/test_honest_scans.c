@@ -110,11 +110,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 #define BEGINS "open:1024 T:100:0-6 " /* The first seven packets of turn 100. */
 /* Three partial scans and a whole one. */
 #define LATER(turn, ms) BEGINS "silent:" ms " T:" turn ":7-18 T:200 T:300:0 scans:4 complete:1 "
@@ -158,7 +153,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }
 
 /* ---- A pause between polls costs nothing ---- */

@@ -142,11 +142,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 static const row_t rows[] IN_FLASH = {
     /* ---- Half a turn ---- */
     ROW(a_silence_of_half_a_turn_is_no_pause_and_a_millisecond_more_is_one,
@@ -225,7 +220,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }
 
 /* An unset `held_to` (0) must not count as a place just ahead, when the index is about to wrap. */

@@ -141,11 +141,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 static const row_t rows[] IN_FLASH = {
     /* ---- Header ---- */
     ROW(the_manuals_packet_has_its_header_fields, /* 339.15625 and 0.765625 degrees. */
@@ -204,7 +199,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }
 
 /* -------------------------------------------------------------------------- the manual's packet */

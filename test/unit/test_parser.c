@@ -449,11 +449,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 #define GARBAGE "<x:0055AAA55AAA5455FF "
 #define AWAIT_INFO "await:0:04:20 "
 #define AWAIT_HEALTH "await:0:06:3 "
@@ -612,7 +607,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }
 
 #if SIZE_MAX > 65535 /* Otherwise an index cannot count that far. */

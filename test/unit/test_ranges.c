@@ -89,11 +89,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 static const row_t rows[] IN_FLASH = {
     ROW(the_bins_go_counter_clockwise_from_the_back, /* Right is -90 degrees in ROS, left 90. */
         "bin:180:360=0 bin:90:360=90 bin:0:360=180 bin:270:360=270 bin:181:360=359 "
@@ -116,7 +111,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }
 
 /* Needs 128 KB: too large for a small machine. */

@@ -295,11 +295,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 /* It fills the ring. */
 #define ALL "abcdefghijklmnop"
 #define PUT_ALL "put:" ALL " "
@@ -386,7 +381,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }
 
 /* -------------------------------------------------------------------------------- large rings */

@@ -149,11 +149,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 static const row_t rows[] IN_FLASH = {
     /* ---- Directions ---- */
     ROW(eight_sectors_go_clockwise_from_the_front,
@@ -193,7 +188,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }
 
 /* -------------------------------------------------------------------------------------- limits */

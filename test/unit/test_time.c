@@ -78,11 +78,6 @@ static void tell_word(char *word)
     }
 }
 
-static void tell_row(const row_t *row)
-{
-    row_tell(row->steps, tell_word);
-}
-
 static const row_t rows[] IN_FLASH = {
     /* ---- Periods ---- */
     ROW(a_complete_scans_period_is_that_of_its_samples, /* At 4000 per second. */
@@ -127,7 +122,7 @@ static const row_t rows[] IN_FLASH = {
 
 void test_rows(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell_word);
 }
 
 /* ---------------------------------------------------------------------------------- long scans */
