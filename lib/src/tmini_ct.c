@@ -24,8 +24,6 @@ enum {
 #define KEPT_MASK \
     (1u << 1 | 1u << 3 | 1u << 4 | 1u << 5 | 1u << 9 | 1u << 10 | 1u << 11 | 1u << 12 | 1u << 13)
 
-#define HEALTH_INDEX 3u
-
 #define KNOWN_MASK                                                                                 \
     (TMINI_KNOWN_USER_VERSION | TMINI_KNOWN_FAULTS | TMINI_KNOWN_HARDWARE | TMINI_KNOWN_FIRMWARE | \
      TMINI_KNOWN_YEAR | TMINI_KNOWN_MONTH | TMINI_KNOWN_DAY | TMINI_KNOWN_SERIAL)
@@ -37,7 +35,7 @@ static void trust_current(tmini_ct_t *ct)
         ct->fields--;
         ct->trusted[ct->fields] = ct->current[ct->fields];
     }
-    ct->known = ct->packets > ct->known ? ct->packets : ct->known;
+    ct->known |= ((1u << ct->packets) - 1) & KNOWN_MASK;
 }
 
 /* If there is exactly one byte between the last point packet and this start packet, it is LastCRC.
@@ -99,8 +97,8 @@ static uint32_t serial_number(const uint8_t *ct)
 
 unsigned tmini_ct_faults(const tmini_ct_t *ct)
 {
-    return ct->known > HEALTH_INDEX ? ct->trusted[HEALTH] >> 1 & TMINI_FAULT_MASK
-                                    : TMINI_FAULTS_UNKNOWN;
+    return (ct->known & TMINI_KNOWN_FAULTS) != 0 ? ct->trusted[HEALTH] >> 1 & TMINI_FAULT_MASK
+                                                 : TMINI_FAULTS_UNKNOWN;
 }
 
 void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
@@ -108,7 +106,7 @@ void tmini_ct_read(const tmini_ct_t *ct, tmini_ct_info_t *info)
     const uint8_t *const trusted = ct->trusted; /* 0 where a field is not known. */
     const unsigned user_version = trusted[USER_VERSION];
     const unsigned hardware = trusted[HARDWARE];
-    info->known = ((1u << ct->known) - 1) & KNOWN_MASK;
+    info->known = ct->known;
     info->user_major = (uint8_t)(user_version >> 6);
     info->user_minor = user_version >> 1 & 0x1Fu;
     info->faults = trusted[HEALTH] >> 1 & TMINI_FAULT_MASK;

@@ -127,7 +127,7 @@ static unsigned fields_among(unsigned packets)
 bool ct_is_sound(const tmini_ct_t *ct)
 {
     return ct->packets <= TMINI_CT_INDICES && ct->fields == fields_among(ct->packets) &&
-           ct->known <= TMINI_CT_INDICES;
+           (ct->known & ~0x2E3Au) == 0; /* The indices that complete what can be known. */
 }
 
 bool builder_is_sound(const tmini_builder_t *builder)

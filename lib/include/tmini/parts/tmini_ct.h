@@ -44,9 +44,9 @@ typedef struct {
     uint8_t fields;  /**< How many fields of the current revolution have come. */
     uint8_t crc;     /**< The CRC of that revolution's CT bytes so far. */
     uint8_t cts;     /**< The OR of its point packets' CT bytes; 0: they carry no information. */
-    uint8_t known;   /**< Indices below this have a trusted CT; all others are 0. */
+    uint16_t known;  /**< What the trusted fields hold, a combination of tmini_known_t. */
     uint8_t current[TMINI_CT_FIELDS]; /**< The fields of the current revolution that have come. */
-    uint8_t trusted[TMINI_CT_FIELDS]; /**< The newest trusted CT byte of each field. */
+    uint8_t trusted[TMINI_CT_FIELDS]; /**< The newest trusted CT byte of each field; 0: none. */
 } tmini_ct_t;
 
 /** What a start packet shows about the revolution that it ends. */
