@@ -22,9 +22,7 @@ const uint8_t *tmini_frame_samples(const tmini_frame_t *frame, size_t index, siz
         *count = third_of(bytes);
         return piece;
     }
-    for (size_t i = 0; i < TMINI_SAMPLE_SIZE; i++) {
-        joined[i] = tmini_frame_peek(frame, TMINI_SAMPLE_OFFSET(index) + i);
-    }
+    tmini_ring_copy(frame->ring, TMINI_SAMPLE_OFFSET(index), joined, TMINI_SAMPLE_SIZE);
     *count = 1;
     return joined;
 }

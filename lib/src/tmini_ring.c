@@ -110,6 +110,15 @@ void tmini_ring_gap(tmini_ring_t *ring)
     }
 }
 
+bool tmini_ring_intact(const tmini_ring_t *ring)
+{
+    if (!tmini_ring_is_dma(ring)) {
+        return true;
+    }
+    tmini_fence(); /* All earlier reads come before this read of the producer's index. */
+    return tmini_ring_ahead(ring) <= ring->window;
+}
+
 void tmini_ring_copy(const tmini_ring_t *ring, size_t offset, uint8_t *bytes, size_t count)
 {
     /* In local variables, because the compiler must assume that `bytes` overlaps the ring. */

@@ -178,14 +178,7 @@ static inline uint8_t tmini_ring_peek(const tmini_ring_t *ring, size_t offset)
 
 /** True if nothing that has been read so far can have been overwritten. Only DMA can make it
  * false. */
-static inline bool tmini_ring_intact(const tmini_ring_t *ring)
-{
-    if (!tmini_ring_is_dma(ring)) {
-        return true;
-    }
-    tmini_fence(); /* All earlier reads come before this read of the producer's index. */
-    return tmini_ring_ahead(ring) <= ring->window;
-}
+bool tmini_ring_intact(const tmini_ring_t *ring);
 
 /** Copies `count` unread bytes from `offset` on to `bytes`; offset + count is at most
  * tmini_ring_unread(). A loop per byte: meant for a few bytes. */
