@@ -56,7 +56,7 @@ static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
 
 /* The same for contiguous samples, most of them by blocks. If the address is `ahead` bytes above a
  * multiple of 4, `ahead` samples of three bytes lead to the next multiple. */
-TMINI_NOINLINE static unsigned xor_piece(const uint8_t *sample, size_t count)
+static unsigned xor_piece(const uint8_t *sample, size_t count)
 {
     unsigned sum = 0;
     const size_t ahead = (uintptr_t)sample & (TMINI_WORD_ALIGNMENT - 1);

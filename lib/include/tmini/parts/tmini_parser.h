@@ -88,10 +88,10 @@ typedef struct {
     tmini_frame_t frame; /**< The frame delivered last; size 0 while the parser looks for the next
                           * one. */
     uint16_t need;       /**< Bytes needed before the candidate can be judged further. */
+    uint16_t kind;       /**< What the candidate's header announces: a tmini_frame_type_t. */
     uint16_t effort;     /**< Work done by the end of the last call that looked for a frame
                           * (TMINI_PARSER_EFFORT). */
     uint8_t max_samples; /**< Packets with more are not valid. */
-    uint8_t kind;        /**< What the candidate's header announces: a tmini_frame_type_t. */
     bool awaiting;       /**< A reply is awaited. */
     tmini_reply_header_t awaited;     /**< Its header. */
     tmini_parser_counters_t counters; /**< bytes_overrun excludes bytes that the ring refused. */
@@ -103,9 +103,8 @@ typedef struct {
 tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uint8_t max_samples);
 
 /** Finds the next frame; tmini_parser_frame() then returns it. It stays at the ring's tail until
- * the next call gives its bytes back. `effort`, below TMINI_PARSER_EFFORT, is the work that the
- * caller has already done: this call does at most the rest of TMINI_PARSER_EFFORT, and one
- * frame. */
+ * the next call gives its bytes back. `effort` is the work that the caller has already done: this
+ * call does at most the rest of TMINI_PARSER_EFFORT, and one frame. */
 tmini_frame_type_t tmini_parser_next_after(tmini_parser_t *parser, size_t effort);
 
 /** The same, with no work done yet. */
