@@ -37,10 +37,10 @@ extern "C" {
 
 /** A scan in progress. Treat the members as private, except `scan` and `late_scans`. */
 typedef struct {
-    uint8_t filter;             /**< A combination of tmini_filter_t. */
     bool open;                  /**< A scan is in progress. */
     bool ended;                 /**< A scan has ended: the packet that ended it has to be added
                                  * again. */
+    uint8_t filter;             /**< A combination of tmini_filter_t. */
     uint16_t capacity;          /**< Size of the buffer in points. */
     uint16_t previous_angle_q6; /**< Where the last packet ended. */
     uint16_t origin_q6;         /**< The angle of the last start packet; UINT16_MAX: none has

@@ -34,13 +34,13 @@ extern "C" {
  * functions. */
 typedef struct {
     tmini_packet_t packet;   /**< The latest packet; valid until the next tmini_decoder_next(). */
-    tmini_builder_t builder; /**< Holds the `scan`; if it was not set up, no scans are built. */
-    tmini_parser_t parser;   /**< Finds packets and replies. */
-    tmini_ct_t ct;           /**< The unit's reports about itself in the stream. */
     bool is_whole;           /**< Nothing has been lost since the last start packet. */
     bool was_whole;          /**< The latest packet ends a revolution that came whole. */
     uint8_t verdict;         /**< What the latest packet shows about the revolution that it ends: a
                               * tmini_ct_verdict_t. */
+    tmini_builder_t builder; /**< Holds the `scan`; if it was not set up, no scans are built. */
+    tmini_parser_t parser;   /**< Finds packets and replies. */
+    tmini_ct_t ct;           /**< The unit's reports about itself in the stream. */
 } tmini_decoder_t;
 
 /** Sets up a decoder of the bytes in `ring`, which must outlive it. `max_samples`: packets with
