@@ -74,7 +74,8 @@ void tmini_monitor_forget_frequency(tmini_monitor_t *monitor)
 static bool has_become_off(tmini_monitor_t *monitor, uint16_t chz, uint16_t wanted_chz,
                            bool is_unknown)
 {
-    const int32_t off_chz = chz > wanted_chz ? chz - wanted_chz : wanted_chz - chz;
+    const int32_t faster_chz = (int32_t)chz - wanted_chz;
+    const int32_t off_chz = faster_chz < 0 ? -faster_chz : faster_chz;
     const int32_t enough = OFF_SECONDS * (int32_t)chz;
     const bool is_wrong = off_chz * OFF_PART > wanted_chz;
     if (wanted_chz == 0 || chz == 0 || (!is_wrong && !is_unknown)) {
